@@ -90,7 +90,7 @@ Result<std::vector<CohortPatient>> cohort_patients(const Options& options) {
 
 /// All novices on one patient: the same plan, seeds 1 to kNovices of operator and friction.
 Status add_cohort(std::vector<CaseResult>& results, const CohortPatient& on, const Options& options) {
-  TROCAR_TRY(const attempt::Case the_case, attempt::prepare_case(on.patient, {}, options.progress));
+  TROCAR_TRY(const cases::Case the_case, cases::prepare_case(on.patient, {}, options.progress));
   const TemporaryFolder folder;
   std::vector<double> scores, inward_n, step_n, largest_n;
   int reached = 0;

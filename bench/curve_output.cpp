@@ -30,7 +30,7 @@ double length_mm(const PathCurves& path) {
 double largest_n(const PathCurves& path) {
   double largest = 0.0;
   for (const NamedCurve& curve : path.curves)
-    for (const attempt::CurvePoint& point : curve.points) largest = std::max(largest, point.force_n);
+    for (const cases::CurvePoint& point : curve.points) largest = std::max(largest, point.force_n);
   return largest;
 }
 
@@ -42,12 +42,12 @@ struct Bin {
 Bin bin_of(const NamedCurve& curve, double from_mm, double to_mm) {
   Bin bin;
   bool is_first = true;
-  for (const attempt::CurvePoint& point : curve.points) {
+  for (const cases::CurvePoint& point : curve.points) {
     if (point.way_mm < from_mm || point.way_mm >= to_mm) continue;
     bin.force_n = is_first ? point.force_n : std::max(bin.force_n, point.force_n);
     is_first = false;
   }
-  for (const attempt::CurveEvent& event : curve.events)
+  for (const cases::CurveEvent& event : curve.events)
     if (event.way_mm >= from_mm && event.way_mm < to_mm) bin.is_puncture = true;
   return bin;
 }
@@ -55,7 +55,7 @@ Bin bin_of(const NamedCurve& curve, double from_mm, double to_mm) {
 /// Names of the path pieces that begin in a row; in the first row, all pieces present.
 std::string names_in(const PathCurves& path, double from_mm, double to_mm) {
   std::string names;
-  for (const attempt::PathPiece& piece : path.pieces) {
+  for (const cases::PathPiece& piece : path.pieces) {
     if (piece.from_mm < from_mm || piece.from_mm >= to_mm) continue;
     if (!names.empty()) names += ", ";
     names += words(piece.name);
@@ -72,13 +72,13 @@ report::Plot plot_of(const PathCurves& path) {
   plot.width = 940.0;
   plot.height = 400.0;
   plot.x_range = report::AxisRange{0.0, length_mm(path)};
-  for (const attempt::PathPiece& piece : path.pieces) {
+  for (const cases::PathPiece& piece : path.pieces) {
     plot.bands.push_back({piece.from_mm, piece.to_mm, words(piece.name), "t-" + piece.tissue});
     if (piece.from_mm > 0.0) plot.lines.push_back({piece.from_mm, ""});
   }
   for (std::size_t i = 0; i < path.curves.size(); ++i) {
     report::PlotSeries series{path.curves[i].name, kStyles[i % std::size(kStyles)], {}};
-    for (const attempt::CurvePoint& point : path.curves[i].points)
+    for (const cases::CurvePoint& point : path.curves[i].points)
       series.points.emplace_back(point.way_mm, point.force_n);
     plot.series.push_back(std::move(series));
   }
@@ -87,7 +87,7 @@ report::Plot plot_of(const PathCurves& path) {
       std::max_element(path.curves.begin(), path.curves.end(),
                        [](const NamedCurve& a, const NamedCurve& b) { return a.events.size() <= b.events.size(); });
   if (marked == path.curves.end()) return plot;
-  for (const attempt::CurveEvent& event : marked->events)
+  for (const cases::CurveEvent& event : marked->events)
     plot.markers.push_back(
         {{event.way_mm, event.peak_n}, fmt::format("{} {:.1f} N", words(event.layer), event.peak_n)});
   return plot;
@@ -110,7 +110,7 @@ std::string csv_of(const PathCurves& path, const anatomy::TissueTable& tissues) 
         csv += ",,,,";
         continue;
       }
-      const attempt::CurvePoint& point = curve.points[i];
+      const cases::CurvePoint& point = curve.points[i];
       csv += fmt::format(",{:.5f},{:.4f},{},{}", point.force_n, point.tip_mm, tissues.tissues[point.tissue].name,
                          point.layer == haptics::kNoLayer ? std::string() : tissues.layers[point.layer].name);
     }

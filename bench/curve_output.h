@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "attempt/offline/force_curve.h"
+#include "cases/force_curve.h"
 #include "core/result.h"
 
 namespace trocar::bench {
@@ -12,15 +12,15 @@ namespace trocar::bench {
 /// One of the curves that are held against each other: of a force model, or of a patient.
 struct NamedCurve {
   std::string name;  ///< "proxy".
-  std::vector<attempt::CurvePoint> points;
-  std::vector<attempt::CurveEvent> events;
+  std::vector<cases::CurvePoint> points;
+  std::vector<cases::CurveEvent> events;
 };
 
 /// One path with its curves: the same motion for each.
 struct PathCurves {
   std::string name;   ///< "lumbar": of files and cases.
   std::string title;  ///< Patient, needle, speed: above the plot.
-  std::vector<attempt::PathPiece> pieces;
+  std::vector<cases::PathPiece> pieces;
   std::vector<NamedCurve> curves;
 };
 

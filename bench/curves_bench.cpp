@@ -6,9 +6,9 @@
 #include <map>
 
 #include "anatomy/phantom/phantom.h"
-#include "attempt/guide/needle_geometry.h"
 #include "bench/benchmarks.h"
 #include "bench/curve_output.h"
+#include "cases/needle_geometry.h"
 #include "core/files/atomic_file.h"
 #include "core/files/data_dir.h"
 #include "tasks/needle.h"
@@ -79,7 +79,7 @@ Result<PathCurves> curves_of(std::shared_ptr<const anatomy::VirtualPatient> pati
   if (needle == tables.needles.end())
     return fail("there is no needle of that name", needle_name, "use a needle of data/needles.toml");
 
-  attempt::PrescribedMotion motion;
+  cases::PrescribedMotion motion;
   motion.line_P = patient->paths.front().line_P;
   motion.speed_mm_per_s = kSpeed_mm_per_s;
   motion.after_mm = kAfter_mm;
@@ -92,11 +92,11 @@ Result<PathCurves> curves_of(std::shared_ptr<const anatomy::VirtualPatient> pati
     haptics::HapticOptions haptic;
     haptic.force_model = model;
     haptic.has_weight_compensation = false;
-    const haptics::NeedleGeometry geometry = attempt::needle_geometry(*needle);
+    const haptics::NeedleGeometry geometry = cases::needle_geometry(*needle);
     TROCAR_TRY(const auto scene, haptics::make_haptic_scene(patient, tables.tissues, geometry, {}, haptic));
-    if (path.pieces.empty()) path.pieces = attempt::pieces_along(*scene, tables.tissues, with_rest);
-    NamedCurve curve{to_string(model), attempt::force_curve(*scene, motion), {}};
-    curve.events = attempt::find_curve_events(curve.points, tables.tissues);
+    if (path.pieces.empty()) path.pieces = cases::pieces_along(*scene, tables.tissues, with_rest);
+    NamedCurve curve{to_string(model), cases::force_curve(*scene, motion), {}};
+    curve.events = cases::find_curve_events(curve.points, tables.tissues);
     path.curves.push_back(std::move(curve));
   }
   return path;
@@ -113,7 +113,7 @@ Figures single(double value) {
 void add_cases(std::vector<CaseResult>& results, const PathCurves& path, bool is_for_people) {
   for (const NamedCurve& curve : path.curves) {
     std::map<std::string, int> times;
-    for (const attempt::CurveEvent& event : curve.events) {
+    for (const cases::CurveEvent& event : curve.events) {
       const int number = ++times[event.layer];
       std::string name = fmt::format("curves/{}/{}/{}", path.name, curve.name, event.layer);
       if (number > 1) name += fmt::format("-{}", number);

@@ -9,10 +9,10 @@
 #include <memory>
 
 #include "anatomy/phantom/phantom.h"
-#include "attempt/case/prepare_case.h"
-#include "attempt/guide/needle_geometry.h"
 #include "bench/benchmarks.h"
 #include "bench/calibration.h"
+#include "cases/needle_geometry.h"
+#include "cases/prepare_case.h"
 #include "haptics/tick.h"
 
 namespace trocar::bench {
@@ -84,9 +84,9 @@ Result<std::vector<CaseResult>> run_haptics_benchmark() {
   anatomy::PhantomResolution resolution;
   resolution.size = {512, 512, 119};
   TROCAR_TRY(anatomy::VirtualPatient generated, anatomy::generate_phantom("abdomen", 1, resolution));
-  TROCAR_TRY(const attempt::Case the_case,
-             attempt::prepare_case(std::make_shared<const anatomy::VirtualPatient>(std::move(generated)), {}));
-  const haptics::NeedleGeometry needle = attempt::needle_geometry(the_case.needle);
+  TROCAR_TRY(const cases::Case the_case,
+             cases::prepare_case(std::make_shared<const anatomy::VirtualPatient>(std::move(generated)), {}));
+  const haptics::NeedleGeometry needle = cases::needle_geometry(the_case.needle);
 
   std::vector<CaseResult> results;
   constexpr std::array<std::pair<haptics::ForceModel, const char*>, 3> kCases{

@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "anatomy/phantom/phantom.h"
-#include "attempt/case/prepare_case.h"
-#include "attempt/guide/needle_geometry.h"
 #include "bench/harness.h"
+#include "cases/needle_geometry.h"
+#include "cases/prepare_case.h"
 #include "haptics/tick.h"
 
 namespace trocar::bench {
@@ -17,8 +17,8 @@ namespace {
 
 constexpr double kDt_s = 0.001;
 
-std::shared_ptr<const haptics::HapticScene> make_scene(const attempt::Case& the_case) {
-  const haptics::NeedleGeometry needle = attempt::needle_geometry(the_case.needle);
+std::shared_ptr<const haptics::HapticScene> make_scene(const cases::Case& the_case) {
+  const haptics::NeedleGeometry needle = cases::needle_geometry(the_case.needle);
   const auto scene = haptics::make_haptic_scene(the_case.patient, the_case.tissues, needle);
   return scene ? *scene : nullptr;
 }
@@ -90,7 +90,7 @@ double last_puncture_mm(const std::vector<telemetry::TickSample>& samples) {
 }
 
 /// The same path twice: mean resistance in the organ, after the relaxation of the coupling behind its surface.
-void add_second_insertion(std::vector<CaseResult>& results, const attempt::Case& the_case,
+void add_second_insertion(std::vector<CaseResult>& results, const cases::Case& the_case,
                           const haptics::HapticScene& scene) {
   haptics::HapticState state;
   const Segment& path = the_case.plan.line_P;
@@ -119,9 +119,9 @@ Result<std::vector<CaseResult>> run_insertion_benchmark() {
   const auto patient = std::make_shared<const anatomy::VirtualPatient>(std::move(generated));
   std::vector<CaseResult> results;
   for (const char* profile : {"paper-a", "tented"}) {
-    attempt::CaseOptions options;
+    cases::CaseOptions options;
     options.profile = profile;
-    TROCAR_TRY(const attempt::Case the_case, attempt::prepare_case(patient, options));
+    TROCAR_TRY(const cases::Case the_case, cases::prepare_case(patient, options));
     const auto scene = make_scene(the_case);
     if (!scene) return fail("the scene could not be built", "bench insertion", "check data/tissues.toml");
     for (const double speed : {2.0, 10.0, 50.0}) {

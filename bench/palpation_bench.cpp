@@ -10,9 +10,9 @@
 #include <numbers>
 
 #include "anatomy/phantom/phantom.h"
-#include "attempt/case/prepare_case.h"
 #include "bench/benchmarks.h"
 #include "bench/calibration.h"
+#include "cases/prepare_case.h"
 #include "haptics/tick.h"
 #include "volume/sampling.h"
 
@@ -239,7 +239,7 @@ void add_time(std::vector<CaseResult>& results, const haptics::HapticScene& scen
 }  // namespace
 
 Result<std::vector<CaseResult>> run_palpation_benchmark() {
-  TROCAR_TRY(const attempt::Case tables, attempt::load_tables({}));
+  TROCAR_TRY(const cases::Case tables, cases::load_tables({}));
   TROCAR_TRY(anatomy::VirtualPatient generated, anatomy::generate_phantom("abdomen", 1, {{512, 512, 119}}));
   const auto patient = std::make_shared<const anatomy::VirtualPatient>(std::move(generated));
   TROCAR_TRY(const auto finger, scene_for(patient, tables.tissues, haptics::Tool::kFinger));

@@ -8,11 +8,11 @@
 #include <numeric>
 
 #include "anatomy/phantom/phantom.h"
-#include "attempt/case/prepare_case.h"
-#include "attempt/guide/needle_geometry.h"
-#include "attempt/offline/segmentation_study.h"
 #include "bench/benchmarks.h"
 #include "bench/curve_output.h"
+#include "cases/needle_geometry.h"
+#include "cases/prepare_case.h"
+#include "cases/segmentation_study.h"
 #include "core/files/atomic_file.h"
 
 namespace trocar::bench {
@@ -28,23 +28,23 @@ Result<std::shared_ptr<const anatomy::VirtualPatient>> patient_of(const Options&
   return std::make_shared<const anatomy::VirtualPatient>(std::move(generated));
 }
 
-Result<std::vector<attempt::PrescribedMotion>> plan_motions(const attempt::Case& tables,
-                                                            const anatomy::VirtualPatient& patient,
-                                                            const Options& options) {
+Result<std::vector<cases::PrescribedMotion>> plan_motions(const cases::Case& tables,
+                                                          const anatomy::VirtualPatient& patient,
+                                                          const Options& options) {
   TROCAR_TRY(const auto planned,
              tasks::plan_paths(tables.task, patient, tables.needle, {kMostPlanned, options.seed}, options.progress));
-  attempt::StudyMotion study;
+  cases::StudyMotion study;
   study.seed = options.seed;
-  std::vector<attempt::PrescribedMotion> motions;
+  std::vector<cases::PrescribedMotion> motions;
   for (const std::size_t i :
-       attempt::spread_choice(planned.size(), static_cast<std::size_t>(options.paths), options.seed))
-    motions.push_back(attempt::study_motion(planned[i].line_P, i, study));
+       cases::spread_choice(planned.size(), static_cast<std::size_t>(options.paths), options.seed))
+    motions.push_back(cases::study_motion(planned[i].line_P, i, study));
   return motions;
 }
 
-Figures over_paths(const std::vector<attempt::PathError>& errors, double attempt::PathError::*value) {
+Figures over_paths(const std::vector<cases::PathError>& errors, double cases::PathError::*value) {
   std::vector<double> values;
-  for (const attempt::PathError& error : errors) values.push_back(error.*value);
+  for (const cases::PathError& error : errors) values.push_back(error.*value);
   return figures_of(std::move(values));
 }
 
@@ -54,12 +54,12 @@ Figures single(double value) {
   return figures;
 }
 
-std::vector<CaseResult> results_of(const std::vector<attempt::PathError>& errors, const std::string& what,
+std::vector<CaseResult> results_of(const std::vector<cases::PathError>& errors, const std::string& what,
                                    double took_s) {
-  const attempt::StudyFigures figures = attempt::study_figures(errors);
-  Figures max = over_paths(errors, &attempt::PathError::max_n);
+  const cases::StudyFigures figures = cases::study_figures(errors);
+  Figures max = over_paths(errors, &cases::PathError::max_n);
   return {{"paths/mean-rms", "n", single(figures.mean_rms_n), {}, "mean over paths; published 0.12; " + what},
-          {"paths/rms", "n", over_paths(errors, &attempt::PathError::rms_n), {}, "over paths"},
+          {"paths/rms", "n", over_paths(errors, &cases::PathError::rms_n), {}, "over paths"},
           {"paths/mean-max", "n", single(figures.mean_max_n), {}, "mean over paths of the largest error of each"},
           {"paths/max", "n", max, {}, "over paths, of the largest error of each; published max 1.6"},
           {"paths/affected",
@@ -67,24 +67,24 @@ std::vector<CaseResult> results_of(const std::vector<attempt::PathError>& errors
            single(figures.affected),
            {},
            fmt::format("of all ticks behind the skin: off by more than {} N and {:.0f} %; published 0.12",
-                       attempt::kAffected_n, 100.0 * attempt::kAffectedShare)},
+                       cases::kAffected_n, 100.0 * cases::kAffectedShare)},
           {"paths/torque-rms",
            "nmm",
-           over_paths(errors, &attempt::PathError::torque_rms_nmm),
+           over_paths(errors, &cases::PathError::torque_rms_nmm),
            {},
            fmt::format("over paths; mean {:.2f}", figures.mean_torque_rms_nmm)},
-          {"paths/torque-max", "nmm", over_paths(errors, &attempt::PathError::torque_max_nmm), {}, "over paths"},
+          {"paths/torque-max", "nmm", over_paths(errors, &cases::PathError::torque_max_nmm), {}, "over paths"},
           {"paths/force-rms",
            "n",
-           over_paths(errors, &attempt::PathError::full_rms_n),
+           over_paths(errors, &cases::PathError::full_rms_n),
            {},
            "the fully segmented force itself, to hold the errors against"},
           {"paths/time", "ms", single(1e3 * took_s), {}, "both forces on all paths, planning not counted"}};
 }
 
-void add_worst_places(std::vector<CaseResult>& results, const std::vector<attempt::PathError>& errors,
+void add_worst_places(std::vector<CaseResult>& results, const std::vector<cases::PathError>& errors,
                       const anatomy::TissueTable& tissues) {
-  const auto places = attempt::worst_places(errors, tissues);
+  const auto places = cases::worst_places(errors, tissues);
   for (std::size_t i = 0; i < std::min(places.size(), kWorstPlaces); ++i) {
     Figures figures = single(places[i].mean_max_n);
     figures.max = places[i].max_n;
@@ -100,8 +100,8 @@ void add_worst_places(std::vector<CaseResult>& results, const std::vector<attemp
 struct Study {
   std::shared_ptr<const haptics::HapticScene> full;
   std::shared_ptr<const haptics::HapticScene> partly;
-  std::vector<attempt::PrescribedMotion> motions;
-  std::vector<attempt::PathError> errors;
+  std::vector<cases::PrescribedMotion> motions;
+  std::vector<cases::PathError> errors;
 };
 
 std::string csv_of(const Study& study, const anatomy::TissueTable& tissues) {
@@ -109,7 +109,7 @@ std::string csv_of(const Study& study, const anatomy::TissueTable& tissues) {
       "path,entry_x_mm,entry_y_mm,entry_z_mm,target_x_mm,target_y_mm,target_z_mm,rms_n,max_n,torque_rms_nmm,"
       "torque_max_nmm,affected,force_rms_n,force_max_n,worst_at_mm,worst_tissue,worst_ahead\n";
   for (std::size_t i = 0; i < study.errors.size(); ++i) {
-    const attempt::PathError& e = study.errors[i];
+    const cases::PathError& e = study.errors[i];
     const Vec3& a = e.line_P.a;
     const Vec3& b = e.line_P.b;
     csv +=
@@ -129,10 +129,10 @@ PathCurves curves_on(const Study& study, std::size_t i, const anatomy::TissueTab
   path.title =
       fmt::format("{}, {} model, path {}, rms {:.2f} N, max {:.2f} N", study.full->patient->name,
                   to_string(study.full->options.force_model), i + 1, study.errors[i].rms_n, study.errors[i].max_n);
-  path.pieces = attempt::pieces_along(*study.full, tissues, study.motions[i].line_P);
+  path.pieces = cases::pieces_along(*study.full, tissues, study.motions[i].line_P);
   for (const auto& [label, scene] : {std::pair("fully segmented", study.full), std::pair("partly", study.partly)}) {
-    NamedCurve curve{label, attempt::force_curve(*scene, study.motions[i]), {}};
-    curve.events = attempt::find_curve_events(curve.points, tissues);
+    NamedCurve curve{label, cases::force_curve(*scene, study.motions[i]), {}};
+    curve.events = cases::find_curve_events(curve.points, tissues);
     path.curves.push_back(std::move(curve));
   }
   return path;
@@ -153,11 +153,11 @@ Status write_study(const Study& study, const anatomy::TissueTable& tissues, cons
 }  // namespace
 
 Result<std::vector<CaseResult>> run_paths_benchmark(const Options& options) {
-  attempt::CaseOptions case_options;
+  cases::CaseOptions case_options;
   case_options.task = options.task;
-  TROCAR_TRY(const attempt::Case tables, attempt::load_tables(case_options));
+  TROCAR_TRY(const cases::Case tables, cases::load_tables(case_options));
   TROCAR_TRY(const auto patient, patient_of(options));
-  const haptics::NeedleGeometry needle = attempt::needle_geometry(tables.needle);
+  const haptics::NeedleGeometry needle = cases::needle_geometry(tables.needle);
   haptics::HapticOptions haptic;
   haptic.force_model = options.force_model.value_or(kModel);
   haptic.has_weight_compensation = false;
@@ -165,12 +165,12 @@ Result<std::vector<CaseResult>> run_paths_benchmark(const Options& options) {
   Study study;
   TROCAR_TRY(study.full, haptics::make_haptic_scene(patient, tables.tissues, needle, {}, haptic));
   const auto less =
-      std::make_shared<const anatomy::VirtualPatient>(attempt::partly_segmented(*patient, attempt::kPartlySegmented));
+      std::make_shared<const anatomy::VirtualPatient>(cases::partly_segmented(*patient, cases::kPartlySegmented));
   TROCAR_TRY(study.partly, haptics::make_haptic_scene(less, tables.tissues, needle, {}, haptic));
   TROCAR_TRY(study.motions, plan_motions(tables, *patient, options));
 
   const auto start = std::chrono::steady_clock::now();
-  study.errors = attempt::compare_forces(*study.full, *study.partly, study.motions, options.progress);
+  study.errors = cases::compare_forces(*study.full, *study.partly, study.motions, options.progress);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
 
   const std::string what = fmt::format("{} paths of {}, {} model, {} of {} labels kept", study.errors.size(),

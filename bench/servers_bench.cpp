@@ -16,9 +16,9 @@
 #include <thread>
 
 #include "anatomy/phantom/phantom.h"
-#include "attempt/case/scene_request.h"
 #include "attempt/hands/probe_hand.h"
 #include "bench/benchmarks.h"
+#include "cases/scene_request.h"
 #include "core/files/temporary_folder.h"
 #include "link/client/haptic_client.h"
 #include "link/client/server_process.h"
@@ -191,7 +191,7 @@ CaseResult machine_holes(double rate_hz) {
 }
 
 /// Draws and moves the hands until the end time; returns the number of frames.
-int play(std::array<Station*, 2> stations, const attempt::Case& the_case, double seconds, const Progress& progress) {
+int play(std::array<Station*, 2> stations, const cases::Case& the_case, double seconds, const Progress& progress) {
   const attempt::ProbeHand probe(*the_case.patient, the_case.plan.line_P);
   const Segment& line_P = the_case.plan.line_P;
   const auto start = std::chrono::steady_clock::now();
@@ -228,8 +228,7 @@ int play(std::array<Station*, 2> stations, const attempt::Case& the_case, double
   return frames;
 }
 
-Status measure(const attempt::Case& the_case, const Options& options, double rate_hz,
-               std::vector<CaseResult>& results) {
+Status measure(const cases::Case& the_case, const Options& options, double rate_hz, std::vector<CaseResult>& results) {
   results.push_back(machine_holes(rate_hz));
   TROCAR_TRY(const std::filesystem::path program, link::find_server_program());
   const TemporaryFolder folder;
@@ -238,11 +237,11 @@ Status measure(const attempt::Case& the_case, const Options& options, double rat
   const attempt::ProbeHand probe(*the_case.patient, the_case.plan.line_P);
   const auto patience = std::chrono::duration_cast<std::chrono::milliseconds>(kPatience);
   for (Station* station : {&needle, &probe_station}) {
-    attempt::SceneChoice choice;
+    cases::SceneChoice choice;
     choice.tool = station->tool;
     choice.force_model = to_string(options.force_model.value_or(haptics::ForceModel::kProxy));
     choice.patient_source = "abdomen";
-    link::LoadScene request = attempt::scene_request(the_case, choice);
+    link::LoadScene request = cases::scene_request(the_case, choice);
     request.patient_hash.clear();
     if (station->tool == "probe") request.X_PW = probe.room(request.X_PW);
     TROCAR_TRY_STATUS(station->client.ask(request, patience));
@@ -268,8 +267,8 @@ Status measure(const attempt::Case& the_case, const Options& options, double rat
 
 Result<std::vector<CaseResult>> run_servers_benchmark(const Options& options) {
   TROCAR_TRY(anatomy::VirtualPatient abdomen, anatomy::generate_phantom("abdomen"));
-  TROCAR_TRY(const attempt::Case the_case,
-             attempt::prepare_case(std::make_shared<const anatomy::VirtualPatient>(std::move(abdomen)), {}));
+  TROCAR_TRY(const cases::Case the_case,
+             cases::prepare_case(std::make_shared<const anatomy::VirtualPatient>(std::move(abdomen)), {}));
   std::vector<CaseResult> results;
   for (const double rate_hz : options.rates_hz) {
     TROCAR_TRY_STATUS(measure(the_case, options, rate_hz, results));

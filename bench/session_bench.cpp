@@ -43,8 +43,8 @@ Result<std::vector<CaseResult>> run_session_benchmark() {
   TROCAR_TRY(anatomy::VirtualPatient generated, anatomy::generate_phantom("abdomen"));
   const fs::path patient_folder = folder.path() / "patient";
   TROCAR_TRY_STATUS(io::save_patient(generated, {}, patient_folder));
-  TROCAR_TRY(const attempt::Case the_case,
-             attempt::prepare_case(std::make_shared<const anatomy::VirtualPatient>(std::move(generated)), {}));
+  TROCAR_TRY(const cases::Case the_case,
+             cases::prepare_case(std::make_shared<const anatomy::VirtualPatient>(std::move(generated)), {}));
 
   // In and out along the path in exactly 30 simulated seconds.
   const double speed = 2.0 * (the_case.plan.line_P.length_mm() + kOutside_mm) / kSimulated_s;

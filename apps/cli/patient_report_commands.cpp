@@ -9,7 +9,7 @@
 
 #include "anatomy/build_patient.h"
 #include "anatomy/patient_doubts.h"
-#include "attempt/case/prepare_case.h"
+#include "cases/prepare_case.h"
 #include "commands.h"
 #include "core/files/atomic_file.h"
 #include "io/markups_file.h"
@@ -128,7 +128,7 @@ Result<std::vector<CheckedTask>> checked_tasks(const Arguments& arguments, const
     return {};
   };
   for (const tasks::Task& task : tasks) TROCAR_TRY_STATUS(check(task));
-  if (attempt::has_own_task(arguments.source.folder_or_name)) {
+  if (cases::has_own_task(arguments.source.folder_or_name)) {
     TROCAR_TRY(tasks::Task task,
                tasks::load_task_file(fs::path(arguments.source.folder_or_name) / tasks::kOwnTaskFile, folder));
     task.name += fmt::format(" ({})", tasks::kOwnTaskFile);

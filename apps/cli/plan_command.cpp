@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
-#include "attempt/case/prepare_case.h"
+#include "cases/prepare_case.h"
 #include "commands.h"
 #include "io/markups_file.h"
 #include "io/patient/patient_source.h"
@@ -54,11 +54,11 @@ void print_plan(const std::vector<tasks::PlannedPath>& paths, bool is_json) {
 
 Status plan(const Arguments& arguments) {
   TROCAR_TRY_STATUS(check_new(arguments.out));
-  attempt::CaseOptions options;
+  cases::CaseOptions options;
   options.task = arguments.task;
   options.needle = arguments.needle;
   options.patient_folder = arguments.source.folder_or_name;
-  TROCAR_TRY(const attempt::Case tables, attempt::load_tables(options));
+  TROCAR_TRY(const cases::Case tables, cases::load_tables(options));
   std::vector<tasks::PlannedPath> paths;
   {
     const ProgressPrinter printer;

@@ -15,7 +15,7 @@ Status check_same(const NamedOptions& named, const char* option, const Value& va
                     "omit it: a replay takes it from the session");
 }
 
-Status check_contradictions(const NamedOptions& named, const attempt::CaseOptions& the_case,
+Status check_contradictions(const NamedOptions& named, const cases::CaseOptions& the_case,
                             const attempt::RunOptions& run, const io::PatientSource& source) {
   const storage::SessionInfo& info = run.replayed->info;
   TROCAR_TRY_STATUS(check_same(named, kTask, the_case.task, info.task));
@@ -37,7 +37,7 @@ void NamedOptions::note(const CLI::App& command) {
   }
 }
 
-Status restore_arguments(const NamedOptions& named, attempt::CaseOptions& the_case, attempt::RunOptions& run,
+Status restore_arguments(const NamedOptions& named, cases::CaseOptions& the_case, attempt::RunOptions& run,
                          io::PatientSource& source) {
   TROCAR_TRY(run.replayed, attempt::load_replayed(run.operator_name));
   if (run.replayed == nullptr) {

@@ -16,7 +16,7 @@ namespace trocar::cli {
 namespace {
 
 struct Arguments {
-  attempt::CaseOptions the_case;
+  cases::CaseOptions the_case;
   attempt::RunOptions run;
   io::PatientSource source;
   bool is_json = false;
@@ -74,7 +74,7 @@ void print_server(const attempt::ServerFigures& server) {
   fmt::print("  {} ticks received, {} missing; {}\n", server.ticks_received, server.ticks_missing, server.grant);
 }
 
-config::Json result_json(const Arguments& arguments, const attempt::Case& the_case, const attempt::RunResult& result) {
+config::Json result_json(const Arguments& arguments, const cases::Case& the_case, const attempt::RunResult& result) {
   const tasks::Outcome& outcome = result.outcome;
   config::Json parts = config::Json::array();
   for (const tasks::ScorePart& part : outcome.parts) {
@@ -131,7 +131,7 @@ void print_part(const tasks::ScorePart& part) {
   }
 }
 
-void print_result(const Arguments& arguments, const attempt::Case& the_case, const attempt::RunResult& result) {
+void print_result(const Arguments& arguments, const cases::Case& the_case, const attempt::RunResult& result) {
   const tasks::Outcome& outcome = result.outcome;
   fmt::print("{} on {} by {}: {:.1f} s, {} ticks\n", the_case.task.title, the_case.patient->name,
              arguments.run.operator_name, result.simulated_s, result.ticks);
@@ -196,10 +196,10 @@ Status make_room(const std::filesystem::path& session) {
 Status check_case(const Arguments& arguments) {
   const attempt::RunOptions& run = arguments.run;
   if (run.replayed == nullptr) {
-    TROCAR_TRY_STATUS(attempt::load_tables(arguments.the_case));
+    TROCAR_TRY_STATUS(cases::load_tables(arguments.the_case));
     return {};
   }
-  TROCAR_TRY_STATUS(attempt::replay_parameters(*run.replayed, run.replay_changes));
+  TROCAR_TRY_STATUS(cases::replay_parameters(*run.replayed, run.replay_changes));
   if (run.replay_changes.is_any())
     print_warning(
         "the replay uses other tissues or another force model than the session: its forces differ from the recorded "
@@ -207,12 +207,12 @@ Status check_case(const Arguments& arguments) {
   return {};
 }
 
-Result<attempt::Case> make_case(const Arguments& arguments, anatomy::VirtualPatient opened, const Progress& progress) {
+Result<cases::Case> make_case(const Arguments& arguments, anatomy::VirtualPatient opened, const Progress& progress) {
   auto patient = std::make_shared<const anatomy::VirtualPatient>(std::move(opened));
   const attempt::RunOptions& run = arguments.run;
-  if (run.replayed == nullptr) return attempt::prepare_case(std::move(patient), arguments.the_case, progress);
-  TROCAR_TRY(const auto parameters, attempt::replay_parameters(*run.replayed, run.replay_changes));
-  return attempt::restore_case(std::move(patient), *run.replayed, parameters.front(), run.is_other_patient_meant);
+  if (run.replayed == nullptr) return cases::prepare_case(std::move(patient), arguments.the_case, progress);
+  TROCAR_TRY(const auto parameters, cases::replay_parameters(*run.replayed, run.replay_changes));
+  return cases::restore_case(std::move(patient), *run.replayed, parameters.front(), run.is_other_patient_meant);
 }
 
 Status run(Arguments& arguments) {
@@ -227,7 +227,7 @@ Status run(Arguments& arguments) {
   TROCAR_TRY_STATUS(check_servers(arguments));
   TROCAR_TRY_STATUS(check_case(arguments));
   if (arguments.is_realtime) TROCAR_TRY_STATUS(attempt::find_servers(arguments.realtime));
-  attempt::Case the_case;
+  cases::Case the_case;
   attempt::RunResult result;
   {
     const ProgressPrinter printer;

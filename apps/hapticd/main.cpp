@@ -9,7 +9,7 @@
 #include <mutex>
 #include <thread>
 
-#include "attempt/case/scene_request.h"
+#include "cases/scene_request.h"
 #include "core/files/data_dir.h"
 #include "core/log.h"
 #include "core/version.h"
@@ -29,7 +29,7 @@ struct Arguments {
   std::string device = "virtual", preset, tool = "needle", endpoint, replay_file;
   std::vector<std::string> faults;
   io::PatientSource patient;
-  attempt::CaseOptions the_case;
+  cases::CaseOptions the_case;
   std::string force_model;
   double rate_hz = 1000.0;
   int priority = 80;
@@ -59,7 +59,7 @@ class Patients {
 
 Result<std::vector<Pose>> replayed_poses(const storage::Session& session, double needle_length_mm) {
   // The room of the replay is that of its own plan; the stylus is at the needle's grip.
-  const Pose X_WP = attempt::room_in_patient(session.info.plan_P.line_P, needle_length_mm).inverse();
+  const Pose X_WP = cases::room_in_patient(session.info.plan_P.line_P, needle_length_mm).inverse();
   const Pose X_NS = Pose::translation({0.0, 0.0, -needle_length_mm});
   std::vector<Pose> poses;
   poses.reserve(session.samples.size());
@@ -84,10 +84,10 @@ Result<std::unique_ptr<devices::HapticDevice>> open_named_device(const Arguments
   }
   if (spec.kind == "replay") {
     TROCAR_TRY(const storage::Session session, storage::load_session(spec.argument));
-    attempt::CaseOptions of_session;
+    cases::CaseOptions of_session;
     of_session.task = session.info.task;
     of_session.needle = session.info.needle;
-    TROCAR_TRY(const attempt::Case tables, attempt::load_tables(of_session));
+    TROCAR_TRY(const cases::Case tables, cases::load_tables(of_session));
     TROCAR_TRY(options.replay, replayed_poses(session, tables.needle.length_mm));
     options.replay_rate_hz = session.info.rate_hz;
   }
@@ -108,14 +108,14 @@ Result<std::optional<link::ServerSecurity>> load_security(const Arguments& argum
 Result<link::LoadScene> first_scene(const Arguments& arguments, Patients& patients) {
   TROCAR_TRY(anatomy::VirtualPatient opened, io::open_patient(arguments.patient));
   const auto patient = std::make_shared<const anatomy::VirtualPatient>(std::move(opened));
-  TROCAR_TRY(const attempt::Case the_case, attempt::prepare_case(patient, arguments.the_case));
+  TROCAR_TRY(const cases::Case the_case, cases::prepare_case(patient, arguments.the_case));
   patients.keep(arguments.patient, patient);
-  attempt::SceneChoice choice;
+  cases::SceneChoice choice;
   choice.tool = arguments.tool;
   choice.force_model = arguments.force_model;
   choice.patient_source = arguments.patient.folder_or_name;
   choice.patient_seed = arguments.patient.seed;
-  return attempt::scene_request(the_case, choice);
+  return cases::scene_request(the_case, choice);
 }
 
 /// Waits for the signals that end the server, on a separate thread. While no device is open, the program ends at once:

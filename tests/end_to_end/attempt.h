@@ -18,7 +18,7 @@ struct Attempt {
 };
 
 /// Performs an attempt and reads its session back; a failure is a failed test with its message.
-inline Attempt perform(const attempt::Case& the_case, const std::string& operator_name, std::uint64_t seed = 1,
+inline Attempt perform(const cases::Case& the_case, const std::string& operator_name, std::uint64_t seed = 1,
                        const std::string& force_model = "") {
   const TemporaryFolder folder;
   attempt::RunOptions options;

@@ -24,9 +24,9 @@ class EmbeddedBiopsy : public ::testing::Test {
   static void SetUpTestSuite() {
     auto patient = anatomy::generate_phantom("abdomen");
     ASSERT_TRUE(patient.has_value());
-    auto prepared = attempt::prepare_case(std::make_shared<const anatomy::VirtualPatient>(*std::move(patient)), {});
+    auto prepared = cases::prepare_case(std::make_shared<const anatomy::VirtualPatient>(*std::move(patient)), {});
     ASSERT_TRUE(prepared.has_value()) << prepared.error().text();
-    the_case = new attempt::Case(*std::move(prepared));
+    the_case = new cases::Case(*std::move(prepared));
     expert = new Attempt(perform(*the_case, "expert"));
   }
   static void TearDownTestSuite() {
@@ -35,7 +35,7 @@ class EmbeddedBiopsy : public ::testing::Test {
     expert = nullptr;
     the_case = nullptr;
   }
-  static inline attempt::Case* the_case = nullptr;
+  static inline cases::Case* the_case = nullptr;
   static inline Attempt* expert = nullptr;
 };
 
@@ -178,7 +178,7 @@ TEST_F(EmbeddedBiopsy, ReplayKeepsItsSeedsAndRefusesAnotherPatient) {
   EXPECT_EQ(replay.session.info.seed, 42u);
   EXPECT_NEAR(replay.result.outcome.score, first->outcome.score, 1e-6);
 
-  attempt::Case other = *the_case;
+  cases::Case other = *the_case;
   auto changed = std::make_shared<anatomy::VirtualPatient>(*the_case->patient);
   changed->content_hash = "another";
   other.patient = changed;
@@ -206,7 +206,7 @@ TEST_F(EmbeddedBiopsy, SessionExportsOneRowATick) {
 }
 
 /// Runs an attempt in a process of its own that meets trouble at the `moment`-th progress step; gives its exit status.
-int run_in_child(const attempt::Case& the_case, const std::filesystem::path& session, int moment, void (*trouble)()) {
+int run_in_child(const cases::Case& the_case, const std::filesystem::path& session, int moment, void (*trouble)()) {
   const pid_t child = ::fork();
   if (child == 0) {
     handle_interruptions("trocar run");

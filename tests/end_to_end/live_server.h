@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "attempt/case/prepare_case.h"
+#include "cases/prepare_case.h"
 #include "core/files/data_dir.h"
 #include "core/files/temporary_folder.h"
 #include "devices/device_spec.h"
@@ -18,7 +18,7 @@ namespace trocar::testing {
 /// when.
 class LiveServer {
  public:
-  LiveServer(const attempt::Case& the_case, const std::string& tool, const TemporaryFolder& folder)
+  LiveServer(const cases::Case& the_case, const std::string& tool, const TemporaryFolder& folder)
       : patient_(the_case.patient), tool_(tool), url_("ipc://" + (folder / tool).string()) {
     start();
   }

@@ -26,18 +26,18 @@ struct Volumes {
   }
 };
 
-Result<attempt::Case> case_of(const Volumes& volumes) {
+Result<cases::Case> case_of(const Volumes& volumes) {
   std::vector<std::string> warnings;
   TROCAR_TRY(anatomy::VirtualPatient patient,
              anatomy::build_patient(volumes.ct, volumes.sources, {"stored", {"test"}}, warnings));
-  return attempt::prepare_case(std::make_shared<const anatomy::VirtualPatient>(std::move(patient)), {});
+  return cases::prepare_case(std::make_shared<const anatomy::VirtualPatient>(std::move(patient)), {});
 }
 
 constexpr double kRounding_mm = 1e-6;
 constexpr double kRounding_n = 1e-6;
 
 /// The same patient, path and forces as those of the axial volumes. An attempt that led the needle once.
-void expect_same(const attempt::Case& axial, const Attempt& expected, const Volumes& volumes) {
+void expect_same(const cases::Case& axial, const Attempt& expected, const Volumes& volumes) {
   const auto prepared = case_of(volumes);
   ASSERT_TRUE(prepared.has_value()) << prepared.error().text();
   EXPECT_EQ(prepared->patient->labels.voxels, axial.patient->labels.voxels);

@@ -15,17 +15,17 @@ namespace trocar::testing {
 namespace {
 namespace fs = std::filesystem;
 
-Result<attempt::Case> case_of(const fs::path& ct_path, const std::vector<fs::path>& labels,
-                              const std::string& label_map) {
+Result<cases::Case> case_of(const fs::path& ct_path, const std::vector<fs::path>& labels,
+                            const std::string& label_map) {
   TROCAR_TRY(const volume::CtGrid ct, io::read_ct(ct_path));
   TROCAR_TRY(auto sources, io::read_label_sources(labels, label_map));
   std::vector<std::string> warnings;
   TROCAR_TRY(anatomy::VirtualPatient patient,
              anatomy::build_patient(ct, std::move(sources), {"real", {"test data"}}, warnings));
-  return attempt::prepare_case(std::make_shared<const anatomy::VirtualPatient>(std::move(patient)), {});
+  return cases::prepare_case(std::make_shared<const anatomy::VirtualPatient>(std::move(patient)), {});
 }
 
-void expect_whole_line(const Result<attempt::Case>& prepared) {
+void expect_whole_line(const Result<cases::Case>& prepared) {
   ASSERT_TRUE(prepared.has_value()) << prepared.error().text();
   const Attempt expert = perform(*prepared, "expert");
   expect_three_peaks(expert);

@@ -33,15 +33,15 @@ class RealtimeSession : public ::testing::Test {
   static void SetUpTestSuite() {
     auto patient = anatomy::generate_phantom("abdomen");
     ASSERT_TRUE(patient.has_value());
-    auto prepared = attempt::prepare_case(std::make_shared<const anatomy::VirtualPatient>(*std::move(patient)), {});
+    auto prepared = cases::prepare_case(std::make_shared<const anatomy::VirtualPatient>(*std::move(patient)), {});
     ASSERT_TRUE(prepared.has_value()) << prepared.error().text();
-    the_case = new attempt::Case(*std::move(prepared));
+    the_case = new cases::Case(*std::move(prepared));
   }
   static void TearDownTestSuite() {
     delete the_case;
     the_case = nullptr;
   }
-  static inline attempt::Case* the_case = nullptr;
+  static inline cases::Case* the_case = nullptr;
 
   attempt::RunOptions run_options(const std::string& operator_name) const {
     attempt::RunOptions options;

@@ -16,11 +16,11 @@ namespace {
 using testing::GamepadStandIn;
 using testing::SpacenavDaemon;
 
-std::shared_ptr<const attempt::OpenCase> layered_case() {
-  static const std::shared_ptr<const attempt::OpenCase> kOpen = [] {
-    attempt::CaseChoice choice;
+std::shared_ptr<const cases::OpenCase> layered_case() {
+  static const std::shared_ptr<const cases::OpenCase> kOpen = [] {
+    cases::CaseChoice choice;
     choice.patient_source = "layers-liver";
-    auto made = attempt::make_open_case(choice);
+    auto made = cases::make_open_case(choice);
     EXPECT_TRUE(made) << made.error().text();
     return made ? *made : nullptr;
   }();

@@ -5,18 +5,18 @@
 #include <memory>
 #include <string>
 
-#include "attempt/case/open_case.h"
 #include "attempt/live/live_attempt.h"
+#include "cases/open_case.h"
 #include "core/files/temporary_folder.h"
 #include "servers/live_server.h"
 
 namespace trocar::servers_test {
 
-inline std::shared_ptr<const attempt::OpenCase> layered_case() {
-  static const std::shared_ptr<const attempt::OpenCase> kOpen = [] {
-    attempt::CaseChoice choice;
+inline std::shared_ptr<const cases::OpenCase> layered_case() {
+  static const std::shared_ptr<const cases::OpenCase> kOpen = [] {
+    cases::CaseChoice choice;
     choice.patient_source = "layers-liver";
-    auto made = attempt::make_open_case(choice);
+    auto made = cases::make_open_case(choice);
     EXPECT_TRUE(made) << made.error().text();
     return made ? *made : nullptr;
   }();
@@ -25,10 +25,10 @@ inline std::shared_ptr<const attempt::OpenCase> layered_case() {
 
 /// Its way to the liver is slanted: a stylus that sags leaves the needle's channel. The patient is kept, so that the
 /// servers need not make it again.
-inline std::shared_ptr<const attempt::OpenCase> abdomen_case() {
+inline std::shared_ptr<const cases::OpenCase> abdomen_case() {
   static const TemporaryFolder kKept;
-  static const std::shared_ptr<const attempt::OpenCase> kOpen = [] {
-    auto made = attempt::make_open_case({}, attempt::OpenOptions{nullptr, kKept.path()});
+  static const std::shared_ptr<const cases::OpenCase> kOpen = [] {
+    auto made = cases::make_open_case({}, cases::OpenOptions{nullptr, kKept.path()});
     EXPECT_TRUE(made) << made.error().text();
     return made ? *made : nullptr;
   }();
@@ -55,7 +55,7 @@ class LiveAttemptTest : public ::testing::Test {
            attempt->view().phase == phase;
   }
   std::unique_ptr<tasks::Operator> expert() const {
-    const attempt::Case& the_case = open->the_case;
+    const cases::Case& the_case = open->the_case;
     return tasks::make_expert({the_case.plan.line_P, the_case.needle.is_biopsy, 1});
   }
   bool wait_deeper(double depth_mm) {
@@ -74,7 +74,7 @@ class LiveAttemptTest : public ::testing::Test {
   }
 
   TemporaryFolder folder_;
-  std::shared_ptr<const attempt::OpenCase> open = layered_case();
+  std::shared_ptr<const cases::OpenCase> open = layered_case();
   std::unique_ptr<attempt::LiveAttempt> attempt;
 };
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <thread>
 
-#include "attempt/case/scene_request.h"
+#include "cases/scene_request.h"
 
 namespace trocar::servers_test {
 namespace {
@@ -54,7 +54,7 @@ link::HapticClient connect(const std::string& url, bool wants_control) {
 link::LoadScene layers_scene() {
   link::LoadScene scene;
   scene.patient = "layers-liver";
-  scene.X_PW = attempt::room_in_patient({kEntry_P, kEntry_P + 40.0 * Vec3::UnitY()}, scene.needle_length_mm);
+  scene.X_PW = cases::room_in_patient({kEntry_P, kEntry_P + 40.0 * Vec3::UnitY()}, scene.needle_length_mm);
   return scene;
 }
 

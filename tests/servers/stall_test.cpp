@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <future>
 
-#include "attempt/case/prepare_case.h"
 #include "attempt/live/realtime_session.h"
 #include "attempt/servers/server_seat.h"
+#include "cases/prepare_case.h"
 #include "servers/live_attempt_lab.h"
 #include "storage/session_file.h"
 
@@ -240,7 +240,7 @@ class RealtimeStalls : public ::testing::Test {
  protected:
   /// `trocar run --realtime` on a thread of its own; a watcher sees how deep its needle is.
   void begin(milliseconds patience) {
-    auto prepared = attempt::prepare_case(abdomen_case()->the_case.patient, {});
+    auto prepared = cases::prepare_case(abdomen_case()->the_case.patient, {});
     ASSERT_TRUE(prepared) << prepared.error().text();
     the_case_.emplace(*std::move(prepared));
     attempt::RunOptions run;
@@ -272,7 +272,7 @@ class RealtimeStalls : public ::testing::Test {
   TemporaryFolder folder_;
   LiveServer server_;
   link::HapticClient watcher_ = connect(server_.url(), false);
-  std::optional<attempt::Case> the_case_;
+  std::optional<cases::Case> the_case_;
   std::future<Result<attempt::RunResult>> result_;
 };
 

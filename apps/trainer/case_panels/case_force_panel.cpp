@@ -49,16 +49,16 @@ class ForcePanel final : public CasePanel {
     }
     text_->setText(tr("At 10 mm/s along the path; at most %1 N.").arg(preview->highest_n, 0, 'f', 1));
     std::vector<QPointF> curve;
-    for (const attempt::CurvePoint& point : preview->curve)
+    for (const cases::CurvePoint& point : preview->curve)
       if (curve.empty() || point.tip_mm > curve.back().x()) curve.emplace_back(point.tip_mm, point.force_n);
     plot_->set_predicted(std::move(curve));
     std::vector<ForcePlot::Band> bands;
-    for (const attempt::PathPiece& piece : preview->pieces)
+    for (const cases::PathPiece& piece : preview->pieces)
       bands.push_back({piece.from_mm, piece.to_mm, to_qt(piece.name), color_of(piece.name)});
     plot_->set_bands(std::move(bands));
     table_->setRowCount(static_cast<int>(preview->events.size()));
     for (std::size_t n = 0; n < preview->events.size(); ++n) {
-      const attempt::CurveEvent& event = preview->events[n];
+      const cases::CurveEvent& event = preview->events[n];
       const QStringList texts{to_qt(event.layer).replace(QLatin1Char('_'), QLatin1Char(' ')),
                               QString::number(event.way_mm, 'f', 1), QString::number(event.peak_n, 'f', 2)};
       for (int column = 0; column < 3; ++column) {

@@ -53,7 +53,7 @@ QString phase_text(const attempt::AttemptView& view) {
   return {};
 }
 
-bool is_risk(const attempt::Case& the_case, const attempt::AttemptEvent& event) {
+bool is_risk(const cases::Case& the_case, const attempt::AttemptEvent& event) {
   if (event.kind != telemetry::EventKind::kEnter) return false;
   const anatomy::Label* label = the_case.patient->label_table.find(std::string_view(event.name));
   return label != nullptr && find_risk(the_case.task, *label) != nullptr;
@@ -61,7 +61,7 @@ bool is_risk(const attempt::Case& the_case, const attempt::AttemptEvent& event) 
 
 }  // namespace
 
-AttemptControl::AttemptControl(std::shared_ptr<const attempt::OpenCase> open, const SeatChoice& choice,
+AttemptControl::AttemptControl(std::shared_ptr<const cases::OpenCase> open, const SeatChoice& choice,
                                attempt::AttemptOptions options, std::shared_ptr<attempt::SeatServers> servers,
                                WorkPage& page)
     : open_(std::move(open)),

@@ -4,9 +4,9 @@
 #include <QVariantMap>
 #include <memory>
 
-#include "attempt/case/open_case.h"
 #include "attempt/hands/pointer_hand.h"
 #include "attempt/live/live_attempt.h"
+#include "cases/open_case.h"
 #include "control/page_keys.h"
 #include "control/tool_gestures.h"
 #include "shell/seat_choice.h"
@@ -20,8 +20,8 @@ class AttemptControl : public QObject {
   Q_OBJECT
 
  public:
-  AttemptControl(std::shared_ptr<const attempt::OpenCase> open, const SeatChoice& choice,
-                 attempt::AttemptOptions options, std::shared_ptr<attempt::SeatServers> servers, WorkPage& page);
+  AttemptControl(std::shared_ptr<const cases::OpenCase> open, const SeatChoice& choice, attempt::AttemptOptions options,
+                 std::shared_ptr<attempt::SeatServers> servers, WorkPage& page);
   ~AttemptControl() override;
 
   /// Once a frame.
@@ -66,7 +66,7 @@ class AttemptControl : public QObject {
   QVariantMap solution_facts() const;
   double distance_mm() const;
 
-  std::shared_ptr<const attempt::OpenCase> open_;
+  std::shared_ptr<const cases::OpenCase> open_;
   SeatChoice choice_;
   WorkPage& page_;
   attempt::LiveAttempt attempt_;

@@ -6,7 +6,7 @@
 namespace trocar::trainer {
 namespace {
 
-QColor color_of(const attempt::OpenCase& open, const attempt::PathPiece& piece) {
+QColor color_of(const cases::OpenCase& open, const cases::PathPiece& piece) {
   for (const anatomy::Label& label : open.the_case.patient->label_table.labels)
     if (label.name == piece.name) return {label.color[0], label.color[1], label.color[2]};
   return {0x8a, 0x7a, 0x60};  // unlabelled: fat, the skin's shell
@@ -14,18 +14,18 @@ QColor color_of(const attempt::OpenCase& open, const attempt::PathPiece& piece) 
 
 }  // namespace
 
-std::vector<ForcePlot::Band> force_bands(const attempt::OpenCase& open) {
+std::vector<ForcePlot::Band> force_bands(const cases::OpenCase& open) {
   std::vector<ForcePlot::Band> bands;
-  for (const attempt::PathPiece& piece : open.pieces) {
+  for (const cases::PathPiece& piece : open.pieces) {
     bands.push_back({piece.from_mm, piece.to_mm, to_qt(anatomy::structure_words(piece.name)), color_of(open, piece)});
   }
   return bands;
 }
 
-std::vector<QPointF> predicted_curve(const attempt::OpenCase& open) {
+std::vector<QPointF> predicted_curve(const cases::OpenCase& open) {
   std::vector<QPointF> curve;
   curve.reserve(open.predicted.size());
-  for (const attempt::CurvePoint& point : open.predicted) curve.emplace_back(point.tip_mm, point.force_n);
+  for (const cases::CurvePoint& point : open.predicted) curve.emplace_back(point.tip_mm, point.force_n);
   return curve;
 }
 

@@ -79,8 +79,8 @@ QString level_title(const std::string& name) {
 
 }  // namespace
 
-ReplayControl::ReplayControl(attempt::AttemptReplay replay, std::shared_ptr<const attempt::OpenCase> open,
-                             WorkPage& page, const std::vector<std::string>& warnings)
+ReplayControl::ReplayControl(attempt::AttemptReplay replay, std::shared_ptr<const cases::OpenCase> open, WorkPage& page,
+                             const std::vector<std::string>& warnings)
     : replay_(std::move(replay)),
       open_(std::move(open)),
       page_(page),

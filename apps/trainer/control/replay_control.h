@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <memory>
 
-#include "attempt/case/open_case.h"
 #include "attempt/record/attempt_replay.h"
+#include "cases/open_case.h"
 #include "control/page_keys.h"
 #include "shell/seat_choice.h"
 
@@ -20,7 +20,7 @@ class ReplayControl : public QObject {
 
  public:
   /// `warnings`: of the attempt that has just ended, see RunResult.
-  ReplayControl(attempt::AttemptReplay replay, std::shared_ptr<const attempt::OpenCase> open, WorkPage& page,
+  ReplayControl(attempt::AttemptReplay replay, std::shared_ptr<const cases::OpenCase> open, WorkPage& page,
                 const std::vector<std::string>& warnings = {});
 
   /// Once a frame.
@@ -37,7 +37,7 @@ class ReplayControl : public QObject {
   Pose transducer_at(double time_s) const;
 
   attempt::AttemptReplay replay_;
-  std::shared_ptr<const attempt::OpenCase> open_;
+  std::shared_ptr<const cases::OpenCase> open_;
   WorkPage& page_;
   PageKeys keys_;
   double shown_s_ = -1.0;

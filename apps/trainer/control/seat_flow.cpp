@@ -5,8 +5,8 @@
 #include <QFileDialog>
 #include <algorithm>
 
-#include "attempt/case/scene_request.h"
 #include "attempt/record/recording_room.h"
+#include "cases/scene_request.h"
 #include "control/attempt_control.h"
 #include "control/mirror_station.h"
 #include "control/replay_control.h"
@@ -38,10 +38,10 @@ namespace {
 constexpr int kFrame_ms = 16;
 constexpr std::size_t kMostFrames = 200'000;  // an hour
 
-attempt::CaseChoice case_choice(const SeatChoice& choice) {
-  attempt::CaseChoice result;
+cases::CaseChoice case_choice(const SeatChoice& choice) {
+  cases::CaseChoice result;
   // A patient of the case builder contains its own task.
-  result.options.task = attempt::has_own_task(choice.patient) ? std::string() : choice.task;
+  result.options.task = cases::has_own_task(choice.patient) ? std::string() : choice.task;
   result.options.needle = choice.needle;
   result.patient_source = choice.patient;
   result.patient_seed = choice.patient_seed;
@@ -141,8 +141,7 @@ void SeatFlow::open(const SeatChoice& choice) {
   window_.work().set_parameters_locked(is_exam() && !cut_off_);
   opened_.reset();
   retired_.retire(std::exchange(
-      opening_,
-      attempt::open_case(case_choice(choice), attempt::OpenOptions{open_, user_cache_folder() / "patients"})));
+      opening_, cases::open_case(case_choice(choice), cases::OpenOptions{open_, user_cache_folder() / "patients"})));
   window_.briefing().show_opening(choice);
   window_.show_page(QStringLiteral("briefing"));
 }
@@ -345,9 +344,9 @@ void SeatFlow::frame() {
   if (window_.page() == QLatin1String("case-builder")) window_.case_builder().advance();
   if (attempt_ || replay_) {
     window_.work().parameters().advance();
-    const attempt::Case& the_case = open_->the_case;
+    const cases::Case& the_case = open_->the_case;
     window_.mirror().lead_camera(window_.work().desk().view_3d(),
-                                 attempt::room_in_patient(the_case.plan.line_P, the_case.needle.length_mm));
+                                 cases::room_in_patient(the_case.plan.line_P, the_case.needle.length_mm));
     window_.work().desk().draw(now);
   }
   if (attempt_) attempt_->attempt().frame_drawn();

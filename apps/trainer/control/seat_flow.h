@@ -9,10 +9,10 @@
 #include <optional>
 #include <vector>
 
-#include "attempt/case/open_case.h"
 #include "attempt/live/live_attempt.h"
 #include "attempt/record/attempt_replay.h"
 #include "attempt/record/journal.h"
+#include "cases/open_case.h"
 #include "core/background_job.h"
 #include "devices/pointer/speaker.h"
 #include "shell/seat_choice.h"
@@ -68,15 +68,15 @@ class SeatFlow : public QObject {
   std::filesystem::path state_folder_;
   attempt::Journal journal_;
   SeatChoice choice_;
-  BackgroundJob<std::shared_ptr<const attempt::OpenCase>> opening_;
+  BackgroundJob<std::shared_ptr<const cases::OpenCase>> opening_;
   BackgroundJob<attempt::AttemptReplay> loading_;
   RetiredJobs retired_;
   devices::Speaker speaker_;
   std::vector<float> gun_click_ = devices::make_gun_click();
-  std::optional<attempt::SeatState> offered_;        ///< Was cut off; offered on the start page.
-  std::optional<attempt::SeatState> cut_off_;        ///< Being opened, to be scored and shown.
-  std::shared_ptr<const attempt::OpenCase> opened_;  ///< Being shown, a part a frame; open_ when all is shown.
-  std::shared_ptr<const attempt::OpenCase> open_;
+  std::optional<attempt::SeatState> offered_;      ///< Was cut off; offered on the start page.
+  std::optional<attempt::SeatState> cut_off_;      ///< Being opened, to be scored and shown.
+  std::shared_ptr<const cases::OpenCase> opened_;  ///< Being shown, a part a frame; open_ when all is shown.
+  std::shared_ptr<const cases::OpenCase> open_;
   std::shared_ptr<attempt::SeatServers> servers_;  ///< Kept from one attempt to the next.
   std::unique_ptr<AttemptControl> attempt_;
   std::unique_ptr<ReplayControl> replay_;

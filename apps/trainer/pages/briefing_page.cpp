@@ -90,13 +90,13 @@ QString counts_text(const tasks::Task& task) {
           .arg(risks_text(task));
 }
 
-QString goal_text(const attempt::Case& the_case) {
+QString goal_text(const cases::Case& the_case) {
   return BriefingPage::tr("Bring the needle's tip to the %1 %2, under ultrasound.")
       .arg(the_case.is_parenchymal ? BriefingPage::tr("healthy tissue of the") : BriefingPage::tr("lesion of the"),
            to_qt(the_case.task.organ));
 }
 
-QString way_text(const attempt::Case& the_case) {
+QString way_text(const cases::Case& the_case) {
   return BriefingPage::tr(" The planned path is %1 mm long, %2 mm of it in the %3; nearest structure: %4.")
       .arg(the_case.plan.length_mm, 0, 'f', 0)
       .arg(the_case.plan.organ_path_mm, 0, 'f', 0)
@@ -209,8 +209,8 @@ void BriefingPage::show_error(const QString& text) {
   state_->setWordWrap(true);
 }
 
-void BriefingPage::show_case(const attempt::OpenCase& open, Difficulty difficulty) {
-  const attempt::Case& the_case = open.the_case;
+void BriefingPage::show_case(const cases::OpenCase& open, Difficulty difficulty) {
+  const cases::Case& the_case = open.the_case;
   const scene::Guidance guidance = guidance_of(difficulty);
   title_->setText(to_qt(the_case.task.title));
   subtitle_->setText(tr("Patient %1 · %2 · %3: %4")

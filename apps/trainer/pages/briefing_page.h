@@ -2,7 +2,7 @@
 
 #include <QWidget>
 
-#include "attempt/case/open_case.h"
+#include "cases/open_case.h"
 #include "shell/seat_choice.h"
 
 class QBoxLayout;
@@ -23,7 +23,7 @@ class BriefingPage : public QWidget {
   void show_opening(const SeatChoice& choice);
   void show_progress(const QString& step, double fraction);
   void show_error(const QString& text);
-  void show_case(const attempt::OpenCase& open, Difficulty difficulty);
+  void show_case(const cases::OpenCase& open, Difficulty difficulty);
 
  Q_SIGNALS:
   void begin_wanted();

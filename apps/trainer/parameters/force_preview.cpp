@@ -20,10 +20,10 @@ constexpr std::size_t kMostAtWork = 2;  ///< Cancelled predictions that have not
 
 /// Points of force against tip depth, thinned to the resolution of the plot. While the tip moves back slightly at a
 /// puncture, the largest depth is used.
-std::vector<QPointF> shown_points(const std::vector<attempt::CurvePoint>& curve) {
+std::vector<QPointF> shown_points(const std::vector<cases::CurvePoint>& curve) {
   constexpr double kStep_mm = 0.1, kStep_n = 0.02;
   std::vector<QPointF> points;
-  for (const attempt::CurvePoint& point : curve) {
+  for (const cases::CurvePoint& point : curve) {
     const QPointF next(points.empty() ? point.tip_mm : std::max(points.back().x(), point.tip_mm), point.force_n);
     if (!points.empty() && next.x() - points.back().x() < kStep_mm && std::abs(next.y() - points.back().y()) < kStep_n)
       continue;
@@ -32,7 +32,7 @@ std::vector<QPointF> shown_points(const std::vector<attempt::CurvePoint>& curve)
   return points;
 }
 
-QColor color_of(const anatomy::VirtualPatient& patient, const attempt::PathPiece& piece) {
+QColor color_of(const anatomy::VirtualPatient& patient, const cases::PathPiece& piece) {
   for (const anatomy::Label& label : patient.label_table.labels)
     if (label.name == piece.name) return {label.color[0], label.color[1], label.color[2]};
   return {0xe0, 0xac, 0x8c};  // the skin's shell has no label
@@ -85,13 +85,13 @@ QString ForcePreview::model() const {
   return model_->currentData().toString();
 }
 
-const std::vector<attempt::CurvePoint>& ForcePreview::default_curve() const {
-  static const std::vector<attempt::CurvePoint> none;
+const std::vector<cases::CurvePoint>& ForcePreview::default_curve() const {
+  static const std::vector<cases::CurvePoint> none;
   const auto found = defaults_.find(to_std(model()));
   return found != defaults_.end() ? found->second : none;
 }
 
-void ForcePreview::show_case(std::shared_ptr<const attempt::OpenCase> open_case) {
+void ForcePreview::show_case(std::shared_ptr<const cases::OpenCase> open_case) {
   case_ = std::move(open_case);
   retired_.retire(std::exchange(job_, {}));
   retired_.retire(std::exchange(default_job_, {}));
@@ -150,7 +150,7 @@ void ForcePreview::start_work() {
   const std::string model = to_std(this->model());
   if (default_curve().empty()) {
     if (default_job_.has_work() && default_model_ == model) return;
-    retired_.retire(std::exchange(default_job_, attempt::predict_force_in_background(case_, {}, model)));
+    retired_.retire(std::exchange(default_job_, cases::predict_force_in_background(case_, {}, model)));
     default_model_ = model;
     return;  // the changed curve follows: two at once would delay both
   }
@@ -161,7 +161,7 @@ void ForcePreview::start_work() {
     show_curves();
     return;
   }
-  job_ = attempt::predict_force_in_background(case_, settings_, model);
+  job_ = cases::predict_force_in_background(case_, settings_, model);
 }
 
 void ForcePreview::take_work() {
@@ -194,7 +194,7 @@ void ForcePreview::show_curves() {
 void ForcePreview::show_bands() {
   std::vector<ForcePlot::Band> bands;
   if (case_)
-    for (const attempt::PathPiece& piece : case_->pieces)
+    for (const cases::PathPiece& piece : case_->pieces)
       bands.push_back({piece.from_mm, piece.to_mm, to_qt(piece.name).replace(QLatin1Char('_'), QLatin1Char(' ')),
                        color_of(*case_->the_case.patient, piece)});
   plot_->set_bands(std::move(bands));

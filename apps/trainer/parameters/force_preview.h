@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "attempt/case/open_case.h"
-#include "attempt/offline/force_curve.h"
+#include "cases/force_curve.h"
+#include "cases/open_case.h"
 #include "core/background_job.h"
 
 class QComboBox;
@@ -30,7 +30,7 @@ class ForcePreview : public QWidget {
   ~ForcePreview() override;
 
   /// Null: nothing to show. Chooses the case's force model.
-  void show_case(std::shared_ptr<const attempt::OpenCase> open_case);
+  void show_case(std::shared_ptr<const cases::OpenCase> open_case);
   /// What differs from the case's numbers; the curve follows.
   void show_settings(std::vector<std::string> settings);
   /// Looks at the work in the background; once a frame.
@@ -43,8 +43,8 @@ class ForcePreview : public QWidget {
   /// Whether the curves are those of what was last asked for.
   bool is_settled() const noexcept { return !is_wanted_ && !job_.has_work() && !default_job_.has_work(); }
   /// As shown; empty until it is there.
-  const std::vector<attempt::CurvePoint>& changed_curve() const noexcept { return changed_; }
-  const std::vector<attempt::CurvePoint>& default_curve() const;
+  const std::vector<cases::CurvePoint>& changed_curve() const noexcept { return changed_; }
+  const std::vector<cases::CurvePoint>& default_curve() const;
 
  Q_SIGNALS:
   /// A person has chosen another.
@@ -59,12 +59,12 @@ class ForcePreview : public QWidget {
   void show_busy(bool is_busy);
   void show_error(const QString& text);
 
-  std::shared_ptr<const attempt::OpenCase> case_;
+  std::shared_ptr<const cases::OpenCase> case_;
   std::vector<std::string> settings_;
-  std::map<std::string, std::vector<attempt::CurvePoint>> defaults_;  ///< By model.
-  std::vector<attempt::CurvePoint> changed_;
+  std::map<std::string, std::vector<cases::CurvePoint>> defaults_;  ///< By model.
+  std::vector<cases::CurvePoint> changed_;
   bool is_wanted_ = false;  ///< Work that has not been started yet.
-  BackgroundJob<std::vector<attempt::CurvePoint>> job_, default_job_;
+  BackgroundJob<std::vector<cases::CurvePoint>> job_, default_job_;
   std::string default_model_;  ///< Of default_job_.
   RetiredJobs retired_;
   QComboBox* model_;

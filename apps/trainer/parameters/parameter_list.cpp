@@ -19,9 +19,9 @@ QString title_of(const std::string& tissue) {
 }
 
 /// "0–2 mm": depth range of a tissue on the path; several ranges are given from first to last.
-QString place_of(const std::string& tissue, const std::vector<attempt::PathPiece>& pieces) {
+QString place_of(const std::string& tissue, const std::vector<cases::PathPiece>& pieces) {
   double from = 0.0, to = -1.0;
-  for (const attempt::PathPiece& piece : pieces) {
+  for (const cases::PathPiece& piece : pieces) {
     if (piece.tissue != tissue) continue;
     if (to < 0.0) from = piece.from_mm;
     to = piece.to_mm;
@@ -29,9 +29,9 @@ QString place_of(const std::string& tissue, const std::vector<attempt::PathPiece
   return to < 0.0 ? QString() : QStringLiteral("%1–%2 mm").arg(from, 0, 'f', 0).arg(to, 0, 'f', 0);
 }
 
-std::vector<std::string> along_path(const std::vector<attempt::PathPiece>& pieces) {
+std::vector<std::string> along_path(const std::vector<cases::PathPiece>& pieces) {
   std::vector<std::string> names;
-  for (const attempt::PathPiece& piece : pieces)
+  for (const cases::PathPiece& piece : pieces)
     if (std::find(names.begin(), names.end(), piece.tissue) == names.end()) names.push_back(piece.tissue);
   return names;
 }
@@ -49,7 +49,7 @@ ParameterList::ParameterList(QWidget* parent) : QWidget(parent) {
 }
 
 void ParameterList::show_tissues(const std::vector<anatomy::TissueParameterGroup>& groups,
-                                 const std::vector<attempt::PathPiece>& pieces) {
+                                 const std::vector<cases::PathPiece>& pieces) {
   sections_.clear();
   rows_.clear();
   body_ = nullptr;

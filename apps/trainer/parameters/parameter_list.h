@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "attempt/offline/force_curve.h"
+#include "cases/force_curve.h"
 #include "parameters/parameter_edits.h"
 #include "parameters/parameter_row.h"
 
@@ -25,7 +25,7 @@ class ParameterList : public QWidget {
   explicit ParameterList(QWidget* parent = nullptr);
   /// Another table; the first tissue on the path is chosen, or the last chosen one where it is still there.
   void show_tissues(const std::vector<anatomy::TissueParameterGroup>& groups,
-                    const std::vector<attempt::PathPiece>& pieces);
+                    const std::vector<cases::PathPiece>& pieces);
   /// Numbers as they are now.
   void show_values(const ParameterEdits& edits);
   void show_model(const QString& force_model);

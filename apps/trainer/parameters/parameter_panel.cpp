@@ -111,14 +111,14 @@ QWidget* ParameterPanel::make_head() {
   return head;
 }
 
-void ParameterPanel::show_case(std::shared_ptr<const attempt::OpenCase> open_case) {
+void ParameterPanel::show_case(std::shared_ptr<const cases::OpenCase> open_case) {
   case_ = std::move(open_case);
   empty_->setVisible(case_ == nullptr);
   body_->setVisible(case_ != nullptr);
   preview_->show_case(case_);
   edits_.start(case_ ? case_->the_case.tissues : anatomy::TissueTable{}, to_std(preview_->model()));
   list_->show_model(preview_->model());
-  list_->show_tissues(edits_.groups(), case_ ? case_->pieces : std::vector<attempt::PathPiece>{});
+  list_->show_tissues(edits_.groups(), case_ ? case_->pieces : std::vector<cases::PathPiece>{});
   // A server that has just loaded the case uses the numbers of the case.
   sent_.clear();
   show_changes();
@@ -186,8 +186,8 @@ void ParameterPanel::set_profile_folder(const std::filesystem::path& folder) {
 
 void ParameterPanel::choose_profile(const std::string& file) {
   if (!case_) return;
-  attempt::TissueProfile profile;  // The case's own.
-  if (const attempt::TissueProfile* found = profiles_->find(file)) profile = *found;
+  cases::TissueProfile profile;  // The case's own.
+  if (const cases::TissueProfile* found = profiles_->find(file)) profile = *found;
   if (profile.force_model.empty()) profile.force_model = case_->force_model;
   Status done;
   if (preview_->offers(to_qt(profile.force_model))) {
@@ -205,12 +205,12 @@ void ParameterPanel::choose_profile(const std::string& file) {
                                : tr("“%1” was not applied: %2").arg(to_qt(profile.name), to_qt(done.error().text())));
 }
 
-void ParameterPanel::save_profile_as(attempt::TissueProfile profile, bool may_replace) {
+void ParameterPanel::save_profile_as(cases::TissueProfile profile, bool may_replace) {
   if (!case_) return;
   profile.force_model = edits_.model();
   profile.overrides = edits_.settings();
-  profile.file = attempt::profile_file(profiles_->folder(), profile.name);
-  const Status saved = attempt::save_profile(profile, case_->the_case.tissues, profiles_->folder(), may_replace);
+  profile.file = cases::profile_file(profiles_->folder(), profile.name);
+  const Status saved = cases::save_profile(profile, case_->the_case.tissues, profiles_->folder(), may_replace);
   if (!saved) {
     profiles_->show_problem(to_qt(saved.error().text()));
     return;

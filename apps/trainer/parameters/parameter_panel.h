@@ -8,8 +8,8 @@
 #include <memory>
 #include <optional>
 
-#include "attempt/case/open_case.h"
-#include "attempt/case/tissue_profile.h"
+#include "cases/open_case.h"
+#include "cases/tissue_profile.h"
 #include "parameters/parameter_edits.h"
 #include "ui_kit/undo_buttons.h"
 
@@ -36,7 +36,7 @@ class ParameterPanel : public QWidget {
   explicit ParameterPanel(QWidget* parent = nullptr);
 
   /// Null: nothing to adjust.
-  void show_case(std::shared_ptr<const attempt::OpenCase> open_case);
+  void show_case(std::shared_ptr<const cases::OpenCase> open_case);
   /// Where profiles are kept; else in the user's folder of settings.
   void set_profile_folder(const std::filesystem::path& folder);
   /// Once a frame: sends what has changed, looks at the work in the background.
@@ -67,10 +67,10 @@ class ParameterPanel : public QWidget {
   void show_values();
   void show_model();
   void choose_profile(const std::string& file);
-  void save_profile_as(attempt::TissueProfile profile, bool may_replace);
+  void save_profile_as(cases::TissueProfile profile, bool may_replace);
   void scroll_to_opened();
 
-  std::shared_ptr<const attempt::OpenCase> case_;
+  std::shared_ptr<const cases::OpenCase> case_;
   ParameterEdits edits_;
   QStringList sent_;
   std::optional<std::chrono::steady_clock::time_point> changed_at_;  ///< Of a change that is not sent yet.

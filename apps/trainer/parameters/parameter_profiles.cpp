@@ -63,7 +63,7 @@ QString breakable(const QString& text) {
   return broken;
 }
 
-QString about(const attempt::TissueProfile& profile) {
+QString about(const cases::TissueProfile& profile) {
   const int count = static_cast<int>(profile.overrides.size());
   QString text = count == 1 ? ParameterProfiles::tr("1 number") : ParameterProfiles::tr("%1 numbers").arg(count);
   if (!profile.force_model.empty()) text += QStringLiteral(", ") + to_qt(profile.force_model);
@@ -150,7 +150,7 @@ void ParameterProfiles::set_folder(const std::filesystem::path& folder) {
 }
 
 void ParameterProfiles::read_folder() {
-  attempt::ProfileList list = attempt::list_profiles(folder_);
+  cases::ProfileList list = cases::list_profiles(folder_);
   profiles_ = std::move(list.profiles);
   list_entries();
   if (!list.problems.empty()) {
@@ -164,7 +164,7 @@ void ParameterProfiles::read_folder() {
 void ParameterProfiles::list_entries() {
   choice_->clear();
   choice_->addItem(tr("As in the case"), QString());
-  for (const attempt::TissueProfile& profile : profiles_) {
+  for (const cases::TissueProfile& profile : profiles_) {
     choice_->addItem(to_qt(profile.name), to_qt(profile.file.string()));
     choice_->setItemData(choice_->count() - 1, about(profile), Qt::ToolTipRole);
   }
@@ -185,19 +185,19 @@ void ParameterProfiles::show_chosen(const std::string& file, bool differs) {
   delete_->setEnabled(index > 0);
 }
 
-const attempt::TissueProfile* ParameterProfiles::find(const std::string& file) const noexcept {
+const cases::TissueProfile* ParameterProfiles::find(const std::string& file) const noexcept {
   const auto found = std::find_if(profiles_.begin(), profiles_.end(),
-                                  [&](const attempt::TissueProfile& profile) { return profile.file.native() == file; });
+                                  [&](const cases::TissueProfile& profile) { return profile.file.native() == file; });
   return found != profiles_.end() ? &*found : nullptr;
 }
 
-const attempt::TissueProfile* ParameterProfiles::find_same(const std::string& name) const noexcept {
-  for (const attempt::TissueProfile& profile : profiles_)
+const cases::TissueProfile* ParameterProfiles::find_same(const std::string& name) const noexcept {
+  for (const cases::TissueProfile& profile : profiles_)
     if (profile.name == name) return &profile;
-  return find(attempt::profile_file(folder_, name).string());
+  return find(cases::profile_file(folder_, name).string());
 }
 
-const attempt::TissueProfile* ParameterProfiles::current() const noexcept {
+const cases::TissueProfile* ParameterProfiles::current() const noexcept {
   return find(chosen_);
 }
 
@@ -214,7 +214,7 @@ void ParameterProfiles::ask(Question question) {
   QString verb = tr("Save"), name = name_->text().trimmed();
   if (question == Question::kReplace) {
     verb = tr("Replace");
-    if (const attempt::TissueProfile* old = find_same(to_std(name))) name = to_qt(old->name);
+    if (const cases::TissueProfile* old = find_same(to_std(name))) name = to_qt(old->name);
   } else if (question == Question::kDelete && current() != nullptr) {
     verb = tr("Delete");
     name = to_qt(current()->name);
@@ -247,11 +247,11 @@ void ParameterProfiles::answer_no() {
 }
 
 void ParameterProfiles::save() {
-  attempt::TissueProfile profile;
+  cases::TissueProfile profile;
   profile.name = to_std(name_->text().trimmed());
   std::error_code error;
-  const attempt::TissueProfile* old = find_same(profile.name);
-  const bool replaces = old != nullptr || std::filesystem::exists(attempt::profile_file(folder_, profile.name), error);
+  const cases::TissueProfile* old = find_same(profile.name);
+  const bool replaces = old != nullptr || std::filesystem::exists(cases::profile_file(folder_, profile.name), error);
   if (replaces && question_ != Question::kReplace && !profile.name.empty()) {
     ask(Question::kReplace);
     return;
@@ -261,21 +261,21 @@ void ParameterProfiles::save() {
   Q_EMIT save_asked(profile, question_ == Question::kReplace);
 }
 
-void ParameterProfiles::finish_saving(const attempt::TissueProfile& saved) {
+void ParameterProfiles::finish_saving(const cases::TissueProfile& saved) {
   // Deletes a profile of the same name in another file.
   Status done;
-  for (const attempt::TissueProfile& profile : profiles_)
-    if (profile.name == saved.name && profile.file != saved.file) done = attempt::delete_profile(profile);
+  for (const cases::TissueProfile& profile : profiles_)
+    if (profile.name == saved.name && profile.file != saved.file) done = cases::delete_profile(profile);
   ask(Question::kNone);
   read_folder();
   if (!done) show_problem(to_qt(done.error().text()));
 }
 
 void ParameterProfiles::remove() {
-  const attempt::TissueProfile* profile = current();
+  const cases::TissueProfile* profile = current();
   if (profile == nullptr) return;
   const QString name = to_qt(profile->name);
-  const Status done = attempt::delete_profile(*profile);
+  const Status done = cases::delete_profile(*profile);
   ask(Question::kNone);
   read_folder();
   if (done) {

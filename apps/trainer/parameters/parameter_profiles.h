@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "attempt/case/tissue_profile.h"
+#include "cases/tissue_profile.h"
 
 class QComboBox;
 class QLabel;
@@ -34,19 +34,19 @@ class ParameterProfiles : public QWidget {
   /// Looks at the folder again; it may be another program's, too.
   void read_folder();
   /// Nullptr: there is none of that file.
-  const attempt::TissueProfile* find(const std::string& file) const noexcept;
+  const cases::TissueProfile* find(const std::string& file) const noexcept;
   /// The profile of that file stands in the choice; empty: the case's own. A dot says that numbers or model differ.
   void show_chosen(const std::string& file, bool differs);
   /// What went wrong; empty hides it.
   void show_problem(const QString& text);
   /// What was asked to be saved has been saved.
-  void finish_saving(const attempt::TissueProfile& saved);
+  void finish_saving(const cases::TissueProfile& saved);
 
  Q_SIGNALS:
   /// By its file; empty: the case's own.
   void chosen(const std::string& file);
   /// With name and note; the numbers are the listener's.
-  void save_asked(const attempt::TissueProfile& profile, bool may_replace);
+  void save_asked(const cases::TissueProfile& profile, bool may_replace);
   /// Profiles have come or gone.
   void listed();
 
@@ -68,11 +68,11 @@ class ParameterProfiles : public QWidget {
   void list_entries();
   void tell(const QString& text, bool is_problem);
   /// The profile that saving under this name would replace: one of that name, or one in that name's file.
-  const attempt::TissueProfile* find_same(const std::string& name) const noexcept;
-  const attempt::TissueProfile* current() const noexcept;
+  const cases::TissueProfile* find_same(const std::string& name) const noexcept;
+  const cases::TissueProfile* current() const noexcept;
 
   std::filesystem::path folder_;
-  std::vector<attempt::TissueProfile> profiles_;
+  std::vector<cases::TissueProfile> profiles_;
   std::string chosen_;
   bool differs_ = false;
   Question question_ = Question::kNone;

@@ -3,7 +3,7 @@
 #include <array>
 #include <string>
 
-#include "attempt/case/prepare_case.h"
+#include "cases/prepare_case.h"
 #include "scene/guidance.h"
 
 namespace trocar::trainer {

@@ -23,8 +23,8 @@
 #include <filesystem>
 
 #include "anatomy/phantom/phantom.h"
-#include "attempt/case/prepare_case.h"
 #include "case_builder/case_edits.h"
+#include "cases/prepare_case.h"
 #include "core/files/atomic_file.h"
 #include "core/files/temporary_folder.h"
 #include "core/testing/test_data.h"
@@ -224,11 +224,11 @@ TEST_F(CasePageTest, CaseIsMadeByClicksSavedAndOpenedAgain) {
   ASSERT_EQ(patient->landmarks.size(), 2U);
   EXPECT_EQ(patient->landmarks[0].name, "xiphoid process");
   EXPECT_EQ(patient->landmarks[1].name, "where the drain was");
-  attempt::CaseOptions options;
+  cases::CaseOptions options;
   options.task.clear();
   options.patient_folder = case_folder.string();
   const auto the_case =
-      attempt::prepare_case(std::make_shared<const anatomy::VirtualPatient>(std::move(*patient)), options);
+      cases::prepare_case(std::make_shared<const anatomy::VirtualPatient>(std::move(*patient)), options);
   ASSERT_TRUE(the_case) << the_case.error().text();
   const case_builder::CaseDraft made = page_.desk().draft();
   EXPECT_LT((the_case->plan.line_P.a - case_builder::find_expert_path(made)->line_P.a).norm(), 1e-6);

@@ -79,7 +79,7 @@ class ParameterLab : public testing::Test {
   /// Where the device is when a layer gives way.
   double way_mm(const char* layer) const {
     const auto& curve = panel.preview().changed_curve();
-    for (const attempt::CurveEvent& event : attempt::find_curve_events(curve, opened->the_case.tissues))
+    for (const cases::CurveEvent& event : cases::find_curve_events(curve, opened->the_case.tissues))
       if (event.layer == layer) return event.way_mm;
     return -1.0;
   }
@@ -90,7 +90,7 @@ class ParameterLab : public testing::Test {
       panel.grab().save(place + QLatin1Char('/') + QString::fromLatin1(name));
   }
 
-  static inline std::shared_ptr<const attempt::OpenCase> opened;
+  static inline std::shared_ptr<const cases::OpenCase> opened;
   TemporaryFolder folder;
   ParameterPanel panel;
   std::vector<QStringList> sent;

@@ -32,7 +32,7 @@ TEST_F(ParameterPanelTest, EveryTextHasRoom) {
 
 TEST_F(ParameterPanelTest, TissuesOnThePathComeFirst) {
   std::vector<std::string> on_path;
-  for (const attempt::PathPiece& piece : opened->pieces)
+  for (const cases::PathPiece& piece : opened->pieces)
     if (std::find(on_path.begin(), on_path.end(), piece.tissue) == on_path.end()) on_path.push_back(piece.tissue);
   std::vector<std::pair<int, std::string>> shown;
   for (auto* header : panel.findChildren<QPushButton*>())
@@ -47,14 +47,14 @@ TEST_F(ParameterPanelTest, TissuesOnThePathComeFirst) {
 TEST_F(ParameterPanelTest, AStifferCapsuleChangesThePredictedForceAndUndoGivesItBack) {
   open_tissue("parameter-tissue-liver");
   const double before_mm = way_mm("liver_capsule");
-  const std::vector<attempt::CurvePoint> before = panel.preview().changed_curve();
+  const std::vector<cases::CurvePoint> before = panel.preview().changed_curve();
   ASSERT_GT(before_mm, 0.0);
   type("parameter-liver-k", "0.05");
   EXPECT_TRUE(sent.empty()) << "waits for more";
   settle();
   ASSERT_EQ(sent.size(), 1u);
   EXPECT_EQ(sent.back(), QStringList{QStringLiteral("liver.k=0.05")});
-  const auto expected = attempt::predict_force(opened->the_case, {"liver.k=0.05"}, "insertion");
+  const auto expected = cases::predict_force(opened->the_case, {"liver.k=0.05"}, "insertion");
   ASSERT_TRUE(expected);
   const auto& curve = panel.preview().changed_curve();
   ASSERT_EQ(curve.size(), expected->size());

@@ -45,7 +45,7 @@ TEST_F(ParameterProfilesTest, WhatIsSavedComesBackWhenItIsChosen) {
   EXPECT_FALSE(part<QLineEdit>("parameter-profile-name")->isVisible());
   EXPECT_EQ(choice().currentText(), QStringLiteral("Soft liver"));
   EXPECT_FALSE(is_marked());
-  const auto saved = attempt::load_profile(attempt::profile_file(place(), "Soft liver"));
+  const auto saved = cases::load_profile(cases::profile_file(place(), "Soft liver"));
   ASSERT_TRUE(saved) << saved.error().text();
   EXPECT_EQ(saved->name, "Soft liver");
   EXPECT_EQ(saved->force_model, "combined");
@@ -98,13 +98,13 @@ TEST_F(ParameterProfilesTest, ReplacingIsAskedAndKeepsTheNote) {
   auto* question = part<QLabel>("parameter-profile-question");
   ASSERT_TRUE(question->isVisible());
   EXPECT_TRUE(question->text().contains(QStringLiteral("Replace “Mine”"))) << question->text().toStdString();
-  EXPECT_EQ(attempt::load_profile(place() / "mine.toml")->overrides, std::vector<std::string>{"skin.fp=4"});
+  EXPECT_EQ(cases::load_profile(place() / "mine.toml")->overrides, std::vector<std::string>{"skin.fp=4"});
   keep_picture("profiles_replace.png");
   click("parameter-profile-no");
   EXPECT_TRUE(part<QLineEdit>("parameter-profile-name")->isVisible()) << "for another name";
   key(*part<QLineEdit>("parameter-profile-name"), Qt::Key_Return);
   click("parameter-profile-yes");
-  const attempt::ProfileList list = attempt::list_profiles(place());
+  const cases::ProfileList list = cases::list_profiles(place());
   ASSERT_EQ(list.profiles.size(), 1u) << "not two of one name";
   EXPECT_EQ(list.profiles[0].overrides, std::vector<std::string>{"liver.k=0.3"});
   EXPECT_EQ(list.profiles[0].note, "by hand");
@@ -119,11 +119,11 @@ TEST_F(ParameterProfilesTest, DeletingIsAskedAndLeavesTheNumbers) {
   EXPECT_TRUE(part<QLabel>("parameter-profile-question")->text().contains(QStringLiteral("Delete “Soft”")));
   EXPECT_TRUE(strike(panel, QStringLiteral("Escape")));
   EXPECT_FALSE(part<QLabel>("parameter-profile-question")->isVisible());
-  EXPECT_EQ(attempt::list_profiles(place()).profiles.size(), 1u);
+  EXPECT_EQ(cases::list_profiles(place()).profiles.size(), 1u);
   click("parameter-profile-delete");
   keep_picture("profiles_delete.png");
   click("parameter-profile-yes");
-  EXPECT_TRUE(attempt::list_profiles(place()).profiles.empty());
+  EXPECT_TRUE(cases::list_profiles(place()).profiles.empty());
   EXPECT_EQ(panel.settings(), QStringList{QStringLiteral("liver.k=0.3")}) << "can be saved again";
   EXPECT_EQ(choice().currentIndex(), 0);
   EXPECT_TRUE(is_marked());

@@ -30,7 +30,7 @@ struct Patient {
 inline const Patient& abdomen() {
   static const Patient made = [] {
     Patient p;
-    const attempt::OpenCase& open = *open_abdomen();
+    const cases::OpenCase& open = *open_abdomen();
     p.patient = open.the_case.patient;
     p.scene = open.acoustic;
     p.flow = open.flow;

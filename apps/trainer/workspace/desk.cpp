@@ -37,7 +37,7 @@ constexpr QSize kLeastView(130, 100);
 constexpr double kFrameOfOne_ms = 32.0, kFrameOfTwo_ms = 20.0;
 
 /// The task's entry zone, else the skin around the planned entry.
-tasks::EntryZone entry_zone_of(const attempt::Case& the_case) {
+tasks::EntryZone entry_zone_of(const cases::Case& the_case) {
   return the_case.task.entry_zone.value_or(tasks::EntryZone{the_case.plan.line_P.a, kEntryZone_mm});
 }
 
@@ -190,13 +190,13 @@ void Desk::show_in_space(PatientView& view) {
   view.scene().set_entry_centre(zone.centre_P);
 }
 
-void Desk::show_case(std::shared_ptr<const attempt::OpenCase> open) {
+void Desk::show_case(std::shared_ptr<const cases::OpenCase> open) {
   begin_case(std::move(open));
   while (show_part()) {
   }
 }
 
-void Desk::begin_case(std::shared_ptr<const attempt::OpenCase> open) {
+void Desk::begin_case(std::shared_ptr<const cases::OpenCase> open) {
   open_ = std::move(open);
   has_side_patient_ = false;
   picture_number_ = 0;
@@ -226,7 +226,7 @@ bool Desk::show_part() {
 }
 
 void Desk::show_in_slices() {
-  const attempt::Case& the_case = open_->the_case;
+  const cases::Case& the_case = open_->the_case;
   const slices::Box body_P = slices::body_box(*the_case.patient);
   for (SliceView* slice : slices_) {
     slice->show_patient(the_case.patient, body_P);

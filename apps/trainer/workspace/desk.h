@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "attempt/case/open_case.h"
+#include "cases/open_case.h"
 #include "geometry/pose.h"
 #include "geometry/segment.h"
 #include "shell/seat_choice.h"
@@ -47,9 +47,9 @@ class Desk : public QMainWindow {
  public:
   explicit Desk(QWidget* parent = nullptr);
 
-  void show_case(std::shared_ptr<const attempt::OpenCase> open);
+  void show_case(std::shared_ptr<const cases::OpenCase> open);
   /// The same in parts, each short enough for one frame: show_part() shows the next one; returns false when complete.
-  void begin_case(std::shared_ptr<const attempt::OpenCase> open);
+  void begin_case(std::shared_ptr<const cases::OpenCase> open);
   bool show_part();
   /// Of the plan, in all views; the structure panel and the keys of the views show no more than that.
   void show_help(Difficulty difficulty);
@@ -109,7 +109,7 @@ class Desk : public QMainWindow {
   QString layout_;
   std::map<QString, QSizeF> shares_;  ///< Of the desk's size, by view; of a hidden view the last one.
   bool is_arranging_ = false;         ///< The program moves the docks, not a person.
-  std::shared_ptr<const attempt::OpenCase> open_;
+  std::shared_ptr<const cases::OpenCase> open_;
   bool is_tip_hidden_ = false;
   std::optional<ToolsShown> tools_;   ///< Of the last frame.
   ToolsShown shown_;                  ///< What slices and 3D may show of them.

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "attempt/guide/needle_geometry.h"
+#include "cases/needle_geometry.h"
 
 namespace trocar::case_builder {
 namespace {
@@ -20,16 +20,16 @@ Result<ForcePreview> preview_forces(const CaseDraft& draft, std::shared_ptr<cons
   options.has_weight_compensation = false;
   TROCAR_TRY(options.force_model, haptics::parse_force_model(draft.task.force_model));
   TROCAR_TRY(const auto scene,
-             haptics::make_haptic_scene(std::move(patient), tissues, attempt::needle_geometry(needle), {}, options));
-  attempt::PrescribedMotion motion;
+             haptics::make_haptic_scene(std::move(patient), tissues, cases::needle_geometry(needle), {}, options));
+  cases::PrescribedMotion motion;
   motion.line_P = path->line_P;
   motion.speed_mm_per_s = kSpeed_mm_per_s;
   motion.after_mm = kMostLag_mm;
   ForcePreview preview;
-  preview.curve = attempt::force_curve(*scene, motion);
-  preview.events = attempt::find_curve_events(preview.curve, tissues);
-  preview.pieces = attempt::pieces_along(*scene, tissues, path->line_P);
-  for (const attempt::CurvePoint& point : preview.curve) preview.highest_n = std::max(preview.highest_n, point.force_n);
+  preview.curve = cases::force_curve(*scene, motion);
+  preview.events = cases::find_curve_events(preview.curve, tissues);
+  preview.pieces = cases::pieces_along(*scene, tissues, path->line_P);
+  for (const cases::CurvePoint& point : preview.curve) preview.highest_n = std::max(preview.highest_n, point.force_n);
   return preview;
 }
 

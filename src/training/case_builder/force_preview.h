@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "anatomy/tissue/tissue_table.h"
-#include "attempt/offline/force_curve.h"
 #include "case_builder/case_draft.h"
+#include "cases/force_curve.h"
 #include "core/result.h"
 #include "tasks/needle.h"
 
@@ -12,9 +12,9 @@ namespace trocar::case_builder {
 
 /// Predicted force on the hand along the expert's path: at 10 mm/s, without the stylus' weight.
 struct ForcePreview {
-  std::vector<attempt::CurvePoint> curve;
-  std::vector<attempt::CurveEvent> events;  ///< Punctured layers.
-  std::vector<attempt::PathPiece> pieces;   ///< Tissue from the skin to the path's end.
+  std::vector<cases::CurvePoint> curve;
+  std::vector<cases::CurveEvent> events;  ///< Punctured layers.
+  std::vector<cases::PathPiece> pieces;   ///< Tissue from the skin to the path's end.
   double highest_n = 0.0;
 };
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "anatomy/phantom/phantom.h"
-#include "attempt/case/prepare_case.h"
+#include "cases/prepare_case.h"
 #include "core/files/data_dir.h"
 #include "core/part_of_progress.h"
 #include "io/patient/build_from_files.h"
@@ -53,9 +53,9 @@ bool is_whole_patient(const ImportRequest& request) {
 
 Result<CaseDraft> import_case(const ImportRequest& request, const Progress& progress, const std::stop_token& stop) {
   TROCAR_TRY_STATUS(check_request(request));
-  attempt::CaseOptions options;
+  cases::CaseOptions options;
   options.task = request.task;
-  TROCAR_TRY(const attempt::Case tables, attempt::load_tables(options));
+  TROCAR_TRY(const cases::Case tables, cases::load_tables(options));
 
   auto imported = std::make_shared<ImportedPatient>();
   imported->source = request.ct;
@@ -77,13 +77,13 @@ Result<CaseDraft> import_case(const ImportRequest& request, const Progress& prog
   draft.landmarks = imported->patient.landmarks;
   draft.paths = imported->patient.paths;
   draft.base = draft.task = tables.task;
-  if (attempt::has_own_task(request.ct)) {
+  if (cases::has_own_task(request.ct)) {
     options.task.clear();
     options.patient_folder = request.ct;
-    TROCAR_TRY(const attempt::Case own, attempt::load_tables(options));
+    TROCAR_TRY(const cases::Case own, cases::load_tables(options));
     draft.task = own.task;
     options.task = own.task.name;
-    TROCAR_TRY(const attempt::Case base, attempt::load_tables(options));
+    TROCAR_TRY(const cases::Case base, cases::load_tables(options));
     draft.base = base.task;
   }
   draft.imported = std::move(imported);

@@ -13,12 +13,12 @@ namespace {
 constexpr double kAroundPath_mm = 60.0;
 
 /// Centre of the target: a biopsy needle stops short of it.
-Vec3 target_of(const attempt::Case& the_case) {
+Vec3 target_of(const cases::Case& the_case) {
   const Segment& path_P = the_case.plan.line_P;
   return path_P.b + the_case.needle.notch_middle_mm() * path_P.direction();
 }
 
-slices::SliceGeometry geometry_of(const attempt::OpenCase& open, BriefingPlane plane, const QSize& size) {
+slices::SliceGeometry geometry_of(const cases::OpenCase& open, BriefingPlane plane, const QSize& size) {
   const anatomy::VirtualPatient& patient = *open.the_case.patient;
   const Segment& path_P = open.the_case.plan.line_P;
   slices::SliceGeometry geometry;
@@ -41,7 +41,7 @@ slices::SliceGeometry geometry_of(const attempt::OpenCase& open, BriefingPlane p
   return geometry;
 }
 
-void draw_path(QPainter& painter, const slices::SliceGeometry& geometry, const attempt::Case& the_case,
+void draw_path(QPainter& painter, const slices::SliceGeometry& geometry, const cases::Case& the_case,
                scene::Guidance guidance) {
   const Segment& path_P = the_case.plan.line_P;
   const auto pixel = [&](const Vec3& p_P) {
@@ -67,8 +67,7 @@ QImage to_qimage(const volume::RgbImage& picture) {
       .copy();
 }
 
-QImage briefing_picture(const attempt::OpenCase& open, BriefingPlane plane, const QSize& size,
-                        scene::Guidance guidance) {
+QImage briefing_picture(const cases::OpenCase& open, BriefingPlane plane, const QSize& size, scene::Guidance guidance) {
   const slices::SliceGeometry geometry = geometry_of(open, plane, size);
   slices::SliceBuffers buffers;
   volume::RgbImage picture;

@@ -6,7 +6,7 @@
 
 namespace trocar::attempt {
 
-GunShot make_gun_shot(const Case& the_case, const telemetry::TickSample& fired) {
+GunShot make_gun_shot(const cases::Case& the_case, const telemetry::TickSample& fired) {
   const tasks::Needle& needle = the_case.needle;
   const anatomy::VirtualPatient& patient = *the_case.patient;
   GunShot shot;

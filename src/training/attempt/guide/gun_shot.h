@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "attempt/case/prepare_case.h"
+#include "cases/prepare_case.h"
 #include "geometry/segment.h"
 #include "tasks/core_sample.h"
 #include "telemetry/tick_sample.h"
@@ -30,7 +30,7 @@ struct GunShot {
 };
 
 /// The shot at a tick. Outside of the body it takes nothing.
-GunShot make_gun_shot(const Case& the_case, const telemetry::TickSample& fired);
+GunShot make_gun_shot(const cases::Case& the_case, const telemetry::TickSample& fired);
 
 /// "the gun was fired at 92 mm: a core of 17 mm, 14 mm of it target tissue".
 std::string shot_words(const GunShot& shot);

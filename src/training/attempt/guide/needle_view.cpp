@@ -6,7 +6,7 @@
 
 namespace trocar::attempt {
 
-NeedleView needle_view(const Case& the_case, const telemetry::TickSample& sample, const Pose& X_PN_hand) {
+NeedleView needle_view(const cases::Case& the_case, const telemetry::TickSample& sample, const Pose& X_PN_hand) {
   NeedleView view;
   view.is_known = true;
   view.time_s = sample.time_s;

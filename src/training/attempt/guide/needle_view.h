@@ -1,11 +1,11 @@
 #pragma once
 
-#include "attempt/case/prepare_case.h"
 #include "attempt/live/attempt_view.h"
+#include "cases/prepare_case.h"
 
 namespace trocar::attempt {
 
 /// Display data of a needle tick. `X_PN_hand`: target pose of the hand.
-NeedleView needle_view(const Case& the_case, const telemetry::TickSample& sample, const Pose& X_PN_hand);
+NeedleView needle_view(const cases::Case& the_case, const telemetry::TickSample& sample, const Pose& X_PN_hand);
 
 }  // namespace trocar::attempt

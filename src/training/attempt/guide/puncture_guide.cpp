@@ -18,7 +18,7 @@ constexpr double kLookStep_mm = 0.5;
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 /// Structures at risk ahead of the tip.
-std::string danger_ahead(const Case& the_case, const telemetry::TickSample& sample) {
+std::string danger_ahead(const cases::Case& the_case, const telemetry::TickSample& sample) {
   for (double ahead_mm = 0.0; ahead_mm <= kGuideAhead_mm; ahead_mm += kLookStep_mm) {
     const anatomy::Label* label = anatomy::find_label(*the_case.patient, sample.tip_mm + ahead_mm * sample.axis);
     if (label == nullptr) continue;
@@ -45,7 +45,7 @@ std::string guide_outside(const Segment& path_P, const telemetry::TickSample& sa
   return "On the path: advance";
 }
 
-std::string guide_inside(const Case& the_case, const telemetry::TickSample& sample) {
+std::string guide_inside(const cases::Case& the_case, const telemetry::TickSample& sample) {
   const Segment& path_P = the_case.plan.line_P;
   const Vec3 axis = path_P.direction();
   const Vec3 to_target = path_P.b - sample.tip_mm;
@@ -65,7 +65,7 @@ std::string guide_inside(const Case& the_case, const telemetry::TickSample& samp
 
 }  // namespace
 
-std::string guide_puncture(const Case& the_case, const telemetry::TickSample& sample, bool has_fired) {
+std::string guide_puncture(const cases::Case& the_case, const telemetry::TickSample& sample, bool has_fired) {
   if (!sample.tip_mm.allFinite() || !(std::abs(sample.axis.norm() - 1.0) < 1e-3)) return {};
   if (has_fired)
     return sample.phase == telemetry::InsertionPhase::kOutside ? "The needle is out: end the attempt"

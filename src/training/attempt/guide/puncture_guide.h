@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "attempt/case/prepare_case.h"
+#include "cases/prepare_case.h"
 #include "telemetry/tick_sample.h"
 
 namespace trocar::attempt {
@@ -10,7 +10,7 @@ namespace trocar::attempt {
 /// Advice of a teacher about the virtual needle and the planned path; at most one sentence, or empty. Priority:
 /// structures at risk ahead of the tip, depth, offset from the path, direction. Distances are measured in the resting
 /// anatomy. After the shot only "withdraw the needle" remains.
-std::string guide_puncture(const Case& the_case, const telemetry::TickSample& sample, bool has_fired = false);
+std::string guide_puncture(const cases::Case& the_case, const telemetry::TickSample& sample, bool has_fired = false);
 
 inline constexpr double kGuideAhead_mm = 12.0;  ///< Distance ahead of the tip that is checked.
 inline constexpr double kGuideBeside_mm = 2.0;  ///< Beside the path; less is not worth a word. [assumed]

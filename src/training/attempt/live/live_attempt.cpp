@@ -48,7 +48,7 @@ struct LiveAttempt::Impl {
   std::jthread thread;
 };
 
-LiveAttempt::LiveAttempt(std::shared_ptr<const OpenCase> open_case, AttemptOptions options,
+LiveAttempt::LiveAttempt(std::shared_ptr<const cases::OpenCase> open_case, AttemptOptions options,
                          std::shared_ptr<SeatServers> servers)
     : options_(std::move(options)), impl_(std::make_unique<Impl>()) {
   impl_->thread = std::jthread([desk = &impl_->desk, open_case = std::move(open_case), servers = std::move(servers),

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "attempt/case/open_case.h"
 #include "attempt/live/attempt_view.h"
 #include "attempt/record/run_result.h"
 #include "attempt/servers/own_server.h"
+#include "cases/open_case.h"
 #include "core/files/disk_space.h"
 #include "tasks/operator.h"
 
@@ -68,7 +68,7 @@ class SeatServers {
 class LiveAttempt {
  public:
   /// Starts; what is wrong shows as kFailed. `servers` that do not fit the options are not used.
-  LiveAttempt(std::shared_ptr<const OpenCase> open_case, AttemptOptions options,
+  LiveAttempt(std::shared_ptr<const cases::OpenCase> open_case, AttemptOptions options,
               std::shared_ptr<SeatServers> servers = nullptr);
   ~LiveAttempt();
   LiveAttempt(const LiveAttempt&) = delete;

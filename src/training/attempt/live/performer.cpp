@@ -41,16 +41,16 @@ Result<OperatorChoice> parse_operator(std::string_view name) {
                     "use expert, novice, constant-velocity:MM_PER_S or replay:SESSION");
 }
 
-Result<Performer> make_replayer(const Case& the_case, const RunOptions& options) {
+Result<Performer> make_replayer(const cases::Case& the_case, const RunOptions& options) {
   std::shared_ptr<const storage::Session> session = options.replayed;
   if (session == nullptr) {
     TROCAR_TRY(session, load_replayed(options.operator_name));
   }
-  if (!options.is_other_patient_meant) TROCAR_TRY_STATUS(check_patient(*session, *the_case.patient));
-  ReplayChanges changes = options.replay_changes;
+  if (!options.is_other_patient_meant) TROCAR_TRY_STATUS(cases::check_patient(*session, *the_case.patient));
+  cases::ReplayChanges changes = options.replay_changes;
   if (changes.force_model.empty()) changes.force_model = options.force_model;
   Performer performer;
-  TROCAR_TRY(performer.parameters, replay_parameters(*session, changes));
+  TROCAR_TRY(performer.parameters, cases::replay_parameters(*session, changes));
   performer.the_operator = tasks::make_replay(session->samples, session->fired);
   performer.rate_hz = session->info.rate_hz;
   performer.has_own_rate = true;
@@ -59,7 +59,7 @@ Result<Performer> make_replayer(const Case& the_case, const RunOptions& options)
   return performer;
 }
 
-Result<Performer> make_named(const Case& the_case, const RunOptions& options) {
+Result<Performer> make_named(const cases::Case& the_case, const RunOptions& options) {
   const tasks::OperatorCase what{the_case.plan.line_P, the_case.needle.is_biopsy, options.seed};
   const std::string& force_model = the_case.task.force_model;
   TROCAR_TRY(const OperatorChoice choice, parse_operator(options.operator_name));
@@ -83,7 +83,7 @@ Status check_operator(std::string_view name) {
   return {};
 }
 
-Result<Performer> make_performer(const Case& the_case, const RunOptions& options) {
+Result<Performer> make_performer(const cases::Case& the_case, const RunOptions& options) {
   TROCAR_TRY(Performer performer, make_named(the_case, options));
   if (!options.force_model.empty()) performer.force_model = options.force_model;
   return performer;

@@ -28,7 +28,7 @@ Status check_operator(std::string_view name);
 /// The session of a replay:SESSION; null for another operator. Errors: the file, a session without ticks.
 Result<std::shared_ptr<const storage::Session>> load_replayed(std::string_view operator_name);
 /// Errors: no such operator, a session to be replayed that cannot be read or is of another patient.
-Result<Performer> make_performer(const Case& the_case, const RunOptions& options);
+Result<Performer> make_performer(const cases::Case& the_case, const RunOptions& options);
 /// The preset of the device on which a session was recorded; empty: it was none of data/devices.toml.
 std::string recorded_preset(const storage::SessionInfo& info);
 /// The options with what a replay takes of its session: seeds, rate, device.

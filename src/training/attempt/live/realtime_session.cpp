@@ -8,11 +8,11 @@
 #include <span>
 #include <thread>
 
-#include "attempt/case/scene_request.h"
 #include "attempt/hands/probe_hand.h"
 #include "attempt/live/live_operator.h"
 #include "attempt/servers/detail/own_servers.h"
 #include "attempt/servers/server_seat.h"
+#include "cases/scene_request.h"
 #include "core/interruption.h"
 #include "io/patient/patient_source.h"
 #include "link/endpoint.h"
@@ -164,15 +164,15 @@ void LiveServers::tell(RunResult& result) {
 }
 
 /// Initial hand poses of needle and transducer.
-SeatRequest needle_request(const Case& the_case, const SceneChoice& choice, const tasks::HandCommand& first,
-                           const Performer& performer) {
-  SeatRequest request{scene_request(the_case, choice), hand_target(first, 0.0)};
-  if (!performer.parameters.empty()) request.parameters = as_command(performer.parameters.front());
+SeatRequest needle_request(const cases::Case& the_case, const cases::SceneChoice& choice,
+                           const tasks::HandCommand& first, const Performer& performer) {
+  SeatRequest request{cases::scene_request(the_case, choice), hand_target(first, 0.0)};
+  if (!performer.parameters.empty()) request.parameters = cases::as_command(performer.parameters.front());
   return request;
 }
-SeatRequest probe_request(const Case& the_case, SceneChoice choice, const ProbeHand& hand) {
+SeatRequest probe_request(const cases::Case& the_case, cases::SceneChoice choice, const ProbeHand& hand) {
   choice.tool = "probe";
-  SeatRequest request{scene_request(the_case, choice), hand.at(0.0)};
+  SeatRequest request{cases::scene_request(the_case, choice), hand.at(0.0)};
   request.scene.X_PW = hand.room(request.scene.X_PW);
   return request;
 }
@@ -190,7 +190,7 @@ class ReplayedChanges {
 
   void send(ServerSeat& needle, std::size_t ticks) {
     while (next_ < parameters_.size() && parameters_[next_].tick <= ticks) {
-      const link::SetParameters command = as_command(parameters_[next_++]);
+      const link::SetParameters command = cases::as_command(parameters_[next_++]);
       needle.adjust(command);
       needle.send(command);
     }
@@ -277,8 +277,8 @@ Status find_servers(const RealtimeOptions& options) {
   return {};
 }
 
-Result<RunResult> run_realtime_session(const Case& the_case, const RunOptions& given, const RealtimeOptions& realtime,
-                                       const Progress& progress) {
+Result<RunResult> run_realtime_session(const cases::Case& the_case, const RunOptions& given,
+                                       const RealtimeOptions& realtime, const Progress& progress) {
   TROCAR_TRY_STATUS(check_run(given));
   TROCAR_TRY_STATUS(check_realtime(realtime));
   TROCAR_TRY(Performer performer, make_performer(the_case, given));
@@ -296,7 +296,7 @@ Result<RunResult> run_realtime_session(const Case& the_case, const RunOptions& g
   tasks::OperatorView before;
   before.dt_s = 1.0 / rate_hz;
   const tasks::HandCommand first = performer.the_operator->next(before);
-  SceneChoice choice;
+  cases::SceneChoice choice;
   choice.force_model = performer.force_model;
   choice.patient_source = io::absolute_source(options.patient_source);
   choice.patient_seed = options.patient_seed;

@@ -33,7 +33,7 @@ Status find_servers(const RealtimeOptions& options);
 /// on from where the needle was. Errors: no server, another client in control, what a server refuses, a fault of the
 /// needle's gate, a needle's server that stays away, an interruption; the session file then holds everything up to
 /// there and is incomplete.
-Result<RunResult> run_realtime_session(const Case& the_case, const RunOptions& options, const RealtimeOptions& realtime,
-                                       const Progress& progress = {});
+Result<RunResult> run_realtime_session(const cases::Case& the_case, const RunOptions& options,
+                                       const RealtimeOptions& realtime, const Progress& progress = {});
 
 }  // namespace trocar::attempt

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <optional>
 
-#include "attempt/guide/needle_geometry.h"
 #include "attempt/live/performer.h"
 #include "attempt/record/attempt_record.h"
+#include "cases/needle_geometry.h"
 #include "core/files/data_dir.h"
 #include "core/files/unfinished_output.h"
 #include "core/interruption.h"
@@ -57,7 +57,7 @@ class SceneSchedule {
     std::shared_ptr<const haptics::HapticScene> scene;
     SceneParameters parameters;
   };
-  static Result<SceneSchedule> make(const Case& the_case, const Performer& performer, const RunOptions& options,
+  static Result<SceneSchedule> make(const cases::Case& the_case, const Performer& performer, const RunOptions& options,
                                     const haptics::DevicePreset& device);
 
   const Entry& first() const noexcept { return entries_.front(); }
@@ -68,14 +68,14 @@ class SceneSchedule {
   }
 
  private:
-  Status add(const Case& the_case, const storage::SessionParameters& parameters, haptics::HapticOptions options,
+  Status add(const cases::Case& the_case, const storage::SessionParameters& parameters, haptics::HapticOptions options,
              haptics::DeviceCapability device);
   std::vector<Entry> entries_;  ///< Not empty, sorted by tick.
   std::size_t now_ = 0;
 };
 
-Result<SceneSchedule> SceneSchedule::make(const Case& the_case, const Performer& performer, const RunOptions& options,
-                                          const haptics::DevicePreset& device) {
+Result<SceneSchedule> SceneSchedule::make(const cases::Case& the_case, const Performer& performer,
+                                          const RunOptions& options, const haptics::DevicePreset& device) {
   haptics::HapticOptions haptics;
   haptics.seed = options.seed;
   haptics::apply_device_preset(device, haptics);
@@ -90,15 +90,15 @@ Result<SceneSchedule> SceneSchedule::make(const Case& the_case, const Performer&
   return schedule;
 }
 
-Status SceneSchedule::add(const Case& the_case, const storage::SessionParameters& parameters,
+Status SceneSchedule::add(const cases::Case& the_case, const storage::SessionParameters& parameters,
                           haptics::HapticOptions options, haptics::DeviceCapability device) {
   TROCAR_TRY_STATUS(haptics::restore_options(parameters.options, options, device));
   TROCAR_TRY(const anatomy::TissueTable tissues,
              anatomy::parse_tissue_table(parameters.tissue_table_toml, "the parameters in force"));
   Entry entry;
   entry.tick = parameters.tick;
-  TROCAR_TRY(entry.scene,
-             haptics::make_haptic_scene(the_case.patient, tissues, needle_geometry(the_case.needle), device, options));
+  TROCAR_TRY(entry.scene, haptics::make_haptic_scene(the_case.patient, tissues, cases::needle_geometry(the_case.needle),
+                                                     device, options));
   entry.parameters = {haptics::option_texts(*entry.scene), parameters.tissue_table_toml};
   entries_.push_back(std::move(entry));
   return {};
@@ -195,7 +195,7 @@ Status check_run(const RunOptions& options) {
   return check_operator(options.operator_name);
 }
 
-Result<RunResult> run_session(const Case& the_case, const RunOptions& given, const Progress& progress) {
+Result<RunResult> run_session(const cases::Case& the_case, const RunOptions& given, const Progress& progress) {
   TROCAR_TRY_STATUS(check_run(given));
   TROCAR_TRY(const Performer performer, make_performer(the_case, given));
   const RunOptions options = options_of(performer, given);

@@ -5,9 +5,9 @@
 #include <memory>
 #include <string>
 
-#include "attempt/case/prepare_case.h"
-#include "attempt/record/replay.h"
 #include "attempt/record/run_result.h"
+#include "cases/prepare_case.h"
+#include "cases/session_case.h"
 #include "core/progress.h"
 #include "core/result.h"
 
@@ -25,7 +25,7 @@ struct RunOptions {
   std::filesystem::path session;  ///< Written here; must not exist.
   // Of a replay alone. Seeds, rate and device are its session's, whatever stands above.
   std::shared_ptr<const storage::Session> replayed;  ///< What the operator's name names, where it is loaded already.
-  ReplayChanges replay_changes;
+  cases::ReplayChanges replay_changes;
   bool is_other_patient_meant = false;  ///< A patient with another content hash is not refused.
 };
 
@@ -34,6 +34,6 @@ Status check_run(const RunOptions& options);
 
 /// Performs an attempt in one thread, faster than real time: operator, hand, device, tick, recording, score. Every tick
 /// is in the session file. A failure or interruption leaves no file: the same options reproduce the same ticks.
-Result<RunResult> run_session(const Case& the_case, const RunOptions& options, const Progress& progress = {});
+Result<RunResult> run_session(const cases::Case& the_case, const RunOptions& options, const Progress& progress = {});
 
 }  // namespace trocar::attempt

@@ -15,7 +15,7 @@
 namespace trocar::attempt {
 namespace {
 
-storage::SessionInfo describe(const Case& the_case, const RunOptions& options, const AttemptFacts& facts) {
+storage::SessionInfo describe(const cases::Case& the_case, const RunOptions& options, const AttemptFacts& facts) {
   storage::SessionInfo info;
   info.program_version = kVersion;
   info.started_utc = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now()));
@@ -67,13 +67,13 @@ std::string preset_of_device(std::string_view device_name) {
   return device_name.starts_with(kVirtual) ? std::string(device_name.substr(kVirtual.size())) : std::string();
 }
 
-AttemptRecord::AttemptRecord(const Case& the_case, storage::SessionInfo info, storage::SessionWriter writer,
+AttemptRecord::AttemptRecord(const cases::Case& the_case, storage::SessionInfo info, storage::SessionWriter writer,
                              std::size_t expected_ticks)
     : the_case_(&the_case), info_(std::move(info)), writer_(std::move(writer)) {
   samples_.reserve(expected_ticks);
 }
 
-Result<AttemptRecord> AttemptRecord::create(const Case& the_case, const RunOptions& options,
+Result<AttemptRecord> AttemptRecord::create(const cases::Case& the_case, const RunOptions& options,
                                             const AttemptFacts& facts) {
   storage::SessionInfo info = describe(the_case, options, facts);
   TROCAR_TRY(storage::SessionWriter writer, storage::SessionWriter::create(options.session, info));

@@ -33,7 +33,8 @@ inline constexpr double kTransducerEvery_s = 0.01;
 class AttemptRecord {
  public:
   /// The case must outlive it. Errors: the session file.
-  static Result<AttemptRecord> create(const Case& the_case, const RunOptions& options, const AttemptFacts& facts);
+  static Result<AttemptRecord> create(const cases::Case& the_case, const RunOptions& options,
+                                      const AttemptFacts& facts);
 
   /// What the operator does before the next tick: fires, perhaps.
   void note(const tasks::HandCommand& command) noexcept;
@@ -70,10 +71,10 @@ class AttemptRecord {
   Status written(Status status);
   RunResult score();
 
-  AttemptRecord(const Case& the_case, storage::SessionInfo info, storage::SessionWriter writer,
+  AttemptRecord(const cases::Case& the_case, storage::SessionInfo info, storage::SessionWriter writer,
                 std::size_t expected_ticks);
 
-  const Case* the_case_;
+  const cases::Case* the_case_;
   storage::SessionInfo info_;
   storage::SessionWriter writer_;
   std::vector<telemetry::TickSample> samples_;

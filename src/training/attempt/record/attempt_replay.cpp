@@ -13,7 +13,7 @@ namespace trocar::attempt {
 namespace {
 
 /// The label of an event, by its id in the session.
-const anatomy::Label* find_entered(const OpenCase& open, const telemetry::TickEvent& event) {
+const anatomy::Label* find_entered(const cases::OpenCase& open, const telemetry::TickEvent& event) {
   if (event.kind != telemetry::EventKind::kEnter) return nullptr;
   for (const anatomy::Label& label : open.the_case.patient->label_table.labels)
     if (label.id == event.id) return &label;
@@ -22,27 +22,28 @@ const anatomy::Label* find_entered(const OpenCase& open, const telemetry::TickEv
 
 }  // namespace
 
-Result<AttemptReplay> AttemptReplay::load(const std::filesystem::path& path, std::shared_ptr<const OpenCase> open) {
+Result<AttemptReplay> AttemptReplay::load(const std::filesystem::path& path,
+                                          std::shared_ptr<const cases::OpenCase> open) {
   TROCAR_TRY(storage::Session session, storage::load_session(path));
   Result<AttemptReplay> replay = of(std::move(session), std::move(open));
   if (!replay) replay.error().where = path.string();
   return replay;
 }
 
-Result<AttemptReplay> AttemptReplay::of(storage::Session session, std::shared_ptr<const OpenCase> open) {
+Result<AttemptReplay> AttemptReplay::of(storage::Session session, std::shared_ptr<const cases::OpenCase> open) {
   if (session.samples.empty()) return fail("the attempt ended before its first tick", {}, "start another one");
   if (session.info.patient_hash != open->the_case.patient->content_hash)
     return fail("the session is of another patient than the case", {}, "open that patient first");
   const bool was_cut_off = !session.outcome.has_value();
   if (was_cut_off) {
-    const Case& the_case = open->the_case;
+    const cases::Case& the_case = open->the_case;
     session.outcome = tasks::score_attempt(the_case.task, *the_case.patient, the_case.tissues, the_case.needle,
                                            the_case.plan, session.samples, session.fired, session.interruptions);
   }
   return AttemptReplay(std::move(session), std::move(open), was_cut_off);
 }
 
-AttemptReplay::AttemptReplay(storage::Session session, std::shared_ptr<const OpenCase> open, bool was_cut_off)
+AttemptReplay::AttemptReplay(storage::Session session, std::shared_ptr<const cases::OpenCase> open, bool was_cut_off)
     : session_(std::move(session)), open_(std::move(open)), was_cut_off_(was_cut_off) {
   if (session_.fired) shot_ = make_gun_shot(open_->the_case, session_.samples[*session_.fired]);
   find_moments();

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "attempt/case/open_case.h"
 #include "attempt/guide/gun_shot.h"
+#include "cases/open_case.h"
 #include "core/result.h"
 #include "storage/session_file.h"
 
@@ -26,10 +26,10 @@ class AttemptReplay {
  public:
   /// Reads a session and, where a crash has kept it from its score, scores it against the case. Errors: the file; a
   /// session of another patient; no ticks.
-  static Result<AttemptReplay> load(const std::filesystem::path& session, std::shared_ptr<const OpenCase> open);
+  static Result<AttemptReplay> load(const std::filesystem::path& session, std::shared_ptr<const cases::OpenCase> open);
 
   /// The same of a session in memory, whose file could not be written to the end.
-  static Result<AttemptReplay> of(storage::Session session, std::shared_ptr<const OpenCase> open);
+  static Result<AttemptReplay> of(storage::Session session, std::shared_ptr<const cases::OpenCase> open);
 
   const storage::Session& session() const noexcept { return session_; }
   const tasks::Outcome& outcome() const noexcept { return *session_.outcome; }
@@ -51,12 +51,12 @@ class AttemptReplay {
   const std::optional<ReplayMoment>& worst() const noexcept { return worst_; }
 
  private:
-  AttemptReplay(storage::Session session, std::shared_ptr<const OpenCase> open, bool was_cut_off);
+  AttemptReplay(storage::Session session, std::shared_ptr<const cases::OpenCase> open, bool was_cut_off);
   void find_moments();
   void find_worst();
 
   storage::Session session_;
-  std::shared_ptr<const OpenCase> open_;
+  std::shared_ptr<const cases::OpenCase> open_;
   bool was_cut_off_;
   std::optional<GunShot> shot_;
   std::vector<ReplayMoment> moments_;

@@ -10,7 +10,7 @@ namespace {
 constexpr int kVersion = 1;
 
 config::Json to_json(const SeatState& state) {
-  const CaseOptions& options = state.choice.options;
+  const cases::CaseOptions& options = state.choice.options;
   return {{"version", kVersion},
           {"session", state.session.string()},
           {"patient", state.choice.patient_source},
@@ -40,7 +40,7 @@ std::optional<SeatState> from_json(const config::Json& json) {
   state.choice.patient_source = *patient;
   state.choice.patient_seed = number("patient_seed");
   state.choice.force_model = text("force_model").value_or("");
-  CaseOptions& options = state.choice.options;
+  cases::CaseOptions& options = state.choice.options;
   options.task = *task;
   options.needle = text("needle").value_or("");
   options.tissue_file = text("tissue_file").value_or("");

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "attempt/case/open_case.h"
+#include "cases/open_case.h"
 #include "core/files/file_lock.h"
 #include "core/result.h"
 
@@ -11,7 +11,7 @@ namespace trocar::attempt {
 
 /// Record of the running attempts in a file, so that a crash loses no data.
 struct SeatState {
-  CaseChoice choice;
+  cases::CaseChoice choice;
   std::filesystem::path session;  ///< Of the attempt under way.
 };
 

@@ -107,7 +107,7 @@ TEST(ForcePreview, HasTheLayersOfThePathInOrder) {
   const auto preview = preview_forces(draft, patients.of(draft), biopsy_gun(), shipped_tissues());
   ASSERT_TRUE(preview) << preview.error().text();
   std::vector<std::string> layers;
-  for (const attempt::CurveEvent& event : preview->events) layers.push_back(event.layer);
+  for (const cases::CurveEvent& event : preview->events) layers.push_back(event.layer);
   EXPECT_EQ(layers, (std::vector<std::string>{"skin", "muscle", "liver_capsule"}));
   ASSERT_FALSE(preview->pieces.empty());
   EXPECT_EQ(preview->pieces.front().name, "skin");

@@ -4,11 +4,11 @@
 
 #include <filesystem>
 
-#include "attempt/case/prepare_case.h"
 #include "case_builder/case_edits.h"
 #include "case_builder/case_history.h"
 #include "case_builder/import_case.h"
 #include "case_builder/test/made_draft.h"
+#include "cases/prepare_case.h"
 #include "core/files/atomic_file.h"
 #include "core/files/temporary_folder.h"
 #include "core/testing/test_data.h"
@@ -54,17 +54,17 @@ TEST(SaveCase, SavedCaseIsReadyForAnAttemptWithItsOwnTask) {
   ASSERT_TRUE(save_case(draft, patients, {folder.path() / "case", false}));
   auto patient = io::load_patient(folder.path() / "case");
   ASSERT_TRUE(patient) << patient.error().text();
-  attempt::CaseOptions options;
+  cases::CaseOptions options;
   options.task.clear();
   options.patient_folder = (folder.path() / "case").string();
   const auto the_case =
-      attempt::prepare_case(std::make_shared<const anatomy::VirtualPatient>(std::move(*patient)), options);
+      cases::prepare_case(std::make_shared<const anatomy::VirtualPatient>(std::move(*patient)), options);
   ASSERT_TRUE(the_case) << the_case.error().text();
   EXPECT_EQ(the_case->plan.line_P.a, good_path(biopsy_gun()).a);
   EXPECT_GT(the_case->plan.organ_path_mm, 10.0);
   EXPECT_EQ(the_case->task.target_label, "lesion");
   options.patient_folder = "abdomen";
-  EXPECT_FALSE(attempt::load_tables(options));
+  EXPECT_FALSE(cases::load_tables(options));
 }
 
 TEST(SaveCase, NothingIsOverwrittenWithoutBeingTold) {

@@ -4,17 +4,17 @@
 
 #include <memory>
 
-#include "attempt/case/open_case.h"
 #include "attempt/guide/puncture_guide.h"
+#include "cases/open_case.h"
 
 namespace trocar::attempt {
 namespace {
 
-const OpenCase& liver() {
-  static const std::shared_ptr<const OpenCase> open = [] {
-    CaseChoice choice;
+const cases::OpenCase& liver() {
+  static const std::shared_ptr<const cases::OpenCase> open = [] {
+    cases::CaseChoice choice;
     choice.patient_source = "layers-liver";
-    return *make_open_case(choice);
+    return *cases::make_open_case(choice);
   }();
   return *open;
 }
@@ -31,7 +31,7 @@ telemetry::TickSample at_target() {
 }
 
 TEST(GunShot, TakesACoreWhereTheNotchWas) {
-  const Case& the_case = liver().the_case;
+  const cases::Case& the_case = liver().the_case;
   const GunShot shot = make_gun_shot(the_case, at_target());
   EXPECT_EQ(shot.throw_mm, the_case.needle.throw_mm);
   EXPECT_NEAR((shot.core_P.b - at_target().tip_mm).norm(), shot.throw_mm - the_case.needle.dead_space_mm, 1e-9);

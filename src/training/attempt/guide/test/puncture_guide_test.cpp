@@ -12,7 +12,7 @@ class PunctureGuide : public ::testing::Test {
   static void SetUpTestSuite() {
     auto patient = io::open_patient({"layers-liver", 1});
     ASSERT_TRUE(patient) << patient.error().text();
-    auto made = prepare_case(std::make_shared<const anatomy::VirtualPatient>(*std::move(patient)), {});
+    auto made = cases::prepare_case(std::make_shared<const anatomy::VirtualPatient>(*std::move(patient)), {});
     ASSERT_TRUE(made) << made.error().text();
     the_case = *std::move(made);
   }
@@ -33,7 +33,7 @@ class PunctureGuide : public ::testing::Test {
   static bool says(const telemetry::TickSample& sample, const std::string& words) {
     return guide_puncture(the_case, sample).find(words) != std::string::npos;
   }
-  static inline Case the_case;
+  static inline cases::Case the_case;
 };
 
 TEST_F(PunctureGuide, SaysAdvanceOnThePathAndFireAtItsEnd) {

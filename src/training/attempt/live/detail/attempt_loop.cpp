@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <thread>
 
-#include "attempt/case/scene_request.h"
 #include "attempt/guide/gun_shot.h"
 #include "attempt/live/attempt_event.h"
 #include "attempt/record/recording_room.h"
+#include "cases/scene_request.h"
 #include "telemetry/tick_pose.h"
 
 namespace trocar::attempt {
@@ -30,14 +30,14 @@ std::string as_server_sees(const std::string& patient) {
   return std::filesystem::absolute(patient, ignored).lexically_normal().string();
 }
 
-SeatRequest seat_request(const OpenCase& open_case, const AttemptOptions& options, const char* tool) {
-  SceneChoice choice;
+SeatRequest seat_request(const cases::OpenCase& open_case, const AttemptOptions& options, const char* tool) {
+  cases::SceneChoice choice;
   choice.tool = tool;
   choice.force_model = options.force_model.empty() ? open_case.force_model : options.force_model;
   choice.patient_source = as_server_sees(open_case.server_source);
   choice.patient_seed = open_case.choice.patient_seed;
   choice.seed = options.seed;
-  return {scene_request(open_case.the_case, choice), {}};
+  return {cases::scene_request(open_case.the_case, choice), {}};
 }
 
 Pose before_entry(const Segment& path_P) {
@@ -46,7 +46,7 @@ Pose before_entry(const Segment& path_P) {
 
 }  // namespace
 
-AttemptLoop::AttemptLoop(std::shared_ptr<const OpenCase> open_case, const AttemptOptions& options,
+AttemptLoop::AttemptLoop(std::shared_ptr<const cases::OpenCase> open_case, const AttemptOptions& options,
                          std::shared_ptr<SeatServers> servers, AttemptDesk& desk)
     : open_case_(std::move(open_case)), options_(options), servers_(std::move(servers)), desk_(desk) {
   auto steering = std::make_unique<SteeredNeedle>();

@@ -52,7 +52,7 @@ struct AttemptDesk {
 /// The attempt itself, all on one thread.
 class AttemptLoop {
  public:
-  AttemptLoop(std::shared_ptr<const OpenCase> open_case, const AttemptOptions& options,
+  AttemptLoop(std::shared_ptr<const cases::OpenCase> open_case, const AttemptOptions& options,
               std::shared_ptr<SeatServers> servers, AttemptDesk& desk);
   /// Until it is finished, has failed, or is told to stop.
   void run(const std::stop_token& stop);
@@ -81,7 +81,7 @@ class AttemptLoop {
   TransducerView probe_now() const;
   void publish(AttemptPhase phase, std::optional<Result<RunResult>> result = {});
 
-  std::shared_ptr<const OpenCase> open_case_;
+  std::shared_ptr<const cases::OpenCase> open_case_;
   AttemptOptions options_;
   std::shared_ptr<SeatServers> servers_;
   AttemptDesk& desk_;

@@ -30,7 +30,7 @@ class LiveOperatorTest : public testing::Test {
  protected:
   void SetUp() override {
     auto patient = anatomy::generate_phantom("layers-liver");
-    auto tables = load_tables({});
+    auto tables = cases::load_tables({});
     ASSERT_TRUE(patient.has_value() && tables.has_value());
     the_case_ = *std::move(tables);
     the_case_.patient = std::make_shared<const anatomy::VirtualPatient>(*std::move(patient));
@@ -66,7 +66,7 @@ class LiveOperatorTest : public testing::Test {
   }
 
   TemporaryFolder folder_;
-  Case the_case_;
+  cases::Case the_case_;
   Performer performer_;
   Witness* witness_ = nullptr;
   std::optional<AttemptRecord> record_;

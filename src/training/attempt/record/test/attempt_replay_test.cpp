@@ -10,7 +10,7 @@ namespace {
 
 /// The expert's liver biopsy, performed once.
 struct Recorded {
-  std::shared_ptr<const OpenCase> open;
+  std::shared_ptr<const cases::OpenCase> open;
   std::unique_ptr<TemporaryFolder> folder;
   std::filesystem::path session;
 };
@@ -18,7 +18,7 @@ struct Recorded {
 const Recorded& recorded() {
   static const Recorded the_one = [] {
     Recorded r;
-    r.open = *make_open_case({});
+    r.open = *cases::make_open_case({});
     r.folder = std::make_unique<TemporaryFolder>();
     r.session = r.folder->path() / "expert.trocar";
     RunOptions options;
@@ -120,7 +120,7 @@ TEST(AttemptReplay, ASessionInMemoryIsSeenLikeOneOfAFile) {
 }
 
 TEST(AttemptReplay, ASessionOfAnotherPatientIsRefused) {
-  auto other = std::make_shared<OpenCase>(*recorded().open);
+  auto other = std::make_shared<cases::OpenCase>(*recorded().open);
   auto patient = std::make_shared<anatomy::VirtualPatient>(*other->the_case.patient);
   patient->content_hash = "another";
   other->the_case.patient = patient;

@@ -1,4 +1,4 @@
-#include "attempt/case/tissue_profile.h"
+#include "cases/tissue_profile.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include "config/toml_quoted.h"
 #include "core/files/atomic_file.h"
 
-namespace trocar::attempt {
+namespace trocar::cases {
 namespace {
 
 constexpr std::size_t kLongestName = 80;
@@ -112,4 +112,4 @@ Result<anatomy::TissueTable> with_profile(anatomy::TissueTable table, const Tiss
   return table;
 }
 
-}  // namespace trocar::attempt
+}  // namespace trocar::cases

@@ -2,10 +2,10 @@
 
 #include <string>
 
-#include "attempt/case/prepare_case.h"
+#include "cases/prepare_case.h"
 #include "link/messages.h"
 
-namespace trocar::attempt {
+namespace trocar::cases {
 
 /// How a scene is asked of a server.
 struct SceneChoice {
@@ -22,4 +22,4 @@ link::LoadScene scene_request(const Case& the_case, const SceneChoice& choice);
 /// the whole puncture.
 Pose room_in_patient(const Segment& path_P, double needle_length_mm) noexcept;
 
-}  // namespace trocar::attempt
+}  // namespace trocar::cases

@@ -1,4 +1,4 @@
-#include "attempt/case/tissue_profile.h"
+#include "cases/tissue_profile.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include "core/files/data_dir.h"
 #include "core/files/temporary_folder.h"
 
-namespace trocar::attempt {
+namespace trocar::cases {
 namespace {
 
 class Profiles : public ::testing::Test {
@@ -103,4 +103,4 @@ TEST_F(Profiles, ThatCannotBeReadAreNamed) {
 }
 
 }  // namespace
-}  // namespace trocar::attempt
+}  // namespace trocar::cases

@@ -1,4 +1,4 @@
-#include "attempt/case/open_case.h"
+#include "cases/open_case.h"
 
 #include <array>
 #include <chrono>
@@ -7,14 +7,14 @@
 #include <optional>
 #include <utility>
 
-#include "attempt/case/probe_start.h"
-#include "attempt/guide/needle_geometry.h"
+#include "cases/needle_geometry.h"
+#include "cases/probe_start.h"
 #include "core/files/data_dir.h"
 #include "core/parallel.h"
 #include "io/patient/patient_cache.h"
 #include "io/patient/patient_source.h"
 
-namespace trocar::attempt {
+namespace trocar::cases {
 namespace {
 
 constexpr double kPredictedSpeed_mm_per_s = 10.0;
@@ -209,4 +209,4 @@ BackgroundJob<std::vector<CurvePoint>> predict_force_in_background(std::shared_p
   });
 }
 
-}  // namespace trocar::attempt
+}  // namespace trocar::cases

@@ -8,16 +8,16 @@
 #include <vector>
 
 #include "anatomy/patient.h"
-#include "attempt/case/neutral_start.h"
-#include "attempt/case/prepare_case.h"
-#include "attempt/offline/force_curve.h"
+#include "cases/force_curve.h"
+#include "cases/neutral_start.h"
+#include "cases/prepare_case.h"
 #include "core/background_job.h"
 #include "geometry/pose.h"
 #include "ultrasound/doppler/vessel_flow.h"
 #include "ultrasound/probe/transducer.h"
 #include "ultrasound/tissue/acoustic_scene.h"
 
-namespace trocar::attempt {
+namespace trocar::cases {
 
 /// What a trainee chooses on the start page.
 struct CaseChoice {
@@ -76,4 +76,4 @@ BackgroundJob<std::vector<CurvePoint>> predict_force_in_background(std::shared_p
                                                                    std::vector<std::string> overrides,
                                                                    std::string force_model = {});
 
-}  // namespace trocar::attempt
+}  // namespace trocar::cases

@@ -1,8 +1,8 @@
-#include "attempt/guide/needle_geometry.h"
+#include "cases/needle_geometry.h"
 
 #include <numbers>
 
-namespace trocar::attempt {
+namespace trocar::cases {
 
 haptics::NeedleGeometry needle_geometry(const tasks::Needle& needle) noexcept {
   haptics::NeedleGeometry geometry;
@@ -15,4 +15,4 @@ haptics::NeedleGeometry needle_geometry(const tasks::Needle& needle) noexcept {
   return geometry;
 }
 
-}  // namespace trocar::attempt
+}  // namespace trocar::cases

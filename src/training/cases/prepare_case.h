@@ -12,7 +12,7 @@
 #include "tasks/plan.h"
 #include "tasks/task.h"
 
-namespace trocar::attempt {
+namespace trocar::cases {
 
 /// Selection of an attempt; empty texts mean the default.
 struct CaseOptions {
@@ -48,4 +48,4 @@ bool has_own_task(const std::string& patient_folder);
 Result<Case> prepare_case(std::shared_ptr<const anatomy::VirtualPatient> patient, const CaseOptions& options,
                           const Progress& progress = {});
 
-}  // namespace trocar::attempt
+}  // namespace trocar::cases

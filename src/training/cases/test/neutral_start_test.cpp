@@ -1,4 +1,4 @@
-#include "attempt/case/neutral_start.h"
+#include "cases/neutral_start.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include "core/files/data_dir.h"
 #include "volume/sampling.h"
 
-namespace trocar::attempt {
+namespace trocar::cases {
 namespace {
 
 constexpr double kAcross_mm = 150.0, kFrontBack_mm = 100.0;  ///< Half axes of the body.
@@ -130,4 +130,4 @@ TEST(NeutralStart, SaysWhereAPatientIsTooSmall) {
 }
 
 }  // namespace
-}  // namespace trocar::attempt
+}  // namespace trocar::cases

@@ -1,4 +1,4 @@
-#include "attempt/record/replay.h"
+#include "cases/session_case.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include "core/files/data_dir.h"
 #include "tasks/assess_path.h"
 
-namespace trocar::attempt {
+namespace trocar::cases {
 namespace {
 namespace fs = std::filesystem;
 
@@ -92,4 +92,4 @@ link::SetParameters as_command(const storage::SessionParameters& parameters) {
   return command;
 }
 
-}  // namespace trocar::attempt
+}  // namespace trocar::cases

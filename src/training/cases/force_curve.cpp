@@ -1,9 +1,9 @@
-#include "attempt/offline/force_curve.h"
+#include "cases/force_curve.h"
 
 #include <algorithm>
 #include <memory>
 
-namespace trocar::attempt {
+namespace trocar::cases {
 
 std::vector<CurvePoint> force_curve(const haptics::HapticScene& scene, const PrescribedMotion& motion) {
   const auto state = std::make_unique<haptics::HapticState>();
@@ -82,4 +82,4 @@ std::vector<PathPiece> pieces_along(const haptics::HapticScene& scene, const ana
   return pieces;
 }
 
-}  // namespace trocar::attempt
+}  // namespace trocar::cases

@@ -8,11 +8,11 @@
 
 #include "anatomy/patient.h"
 #include "anatomy/tissue/tissue_table.h"
-#include "attempt/hands/prescribed_motion.h"
+#include "cases/prescribed_motion.h"
 #include "core/progress.h"
 #include "haptics/haptic_scene.h"
 
-namespace trocar::attempt {
+namespace trocar::cases {
 
 /// What stays labelled in a partly segmented patient (the study of the Luebeck group: references.md, Sci Rep 2017):
 /// bones, the liver with its lesions, the vessels. The skin is a distance, not a label, and stays too. Rib cartilage is
@@ -75,4 +75,4 @@ struct WorstPlace {
 };
 std::vector<WorstPlace> worst_places(std::span<const PathError> errors, const anatomy::TissueTable& tissues);
 
-}  // namespace trocar::attempt
+}  // namespace trocar::cases

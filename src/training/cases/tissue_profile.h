@@ -7,7 +7,7 @@
 #include "anatomy/tissue/tissue_table.h"
 #include "core/result.h"
 
-namespace trocar::attempt {
+namespace trocar::cases {
 
 /// Numbers of tissues that somebody fitted to a patient, under a name of its own: what differs from the table.
 struct TissueProfile {
@@ -38,4 +38,4 @@ ProfileList list_profiles(const std::filesystem::path& folder);
 /// The table with the profile's numbers. Errors: a number that the table does not take.
 Result<anatomy::TissueTable> with_profile(anatomy::TissueTable table, const TissueProfile& profile);
 
-}  // namespace trocar::attempt
+}  // namespace trocar::cases

@@ -1,4 +1,4 @@
-#include "attempt/case/neutral_start.h"
+#include "cases/neutral_start.h"
 
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@
 #include "ultrasound/probe/probe_placement.h"
 #include "volume/sampling.h"
 
-namespace trocar::attempt {
+namespace trocar::cases {
 namespace {
 
 constexpr double kPastTarget_mm = 25.0;      ///< Minimum distance of the needle's line from the target.
@@ -244,4 +244,4 @@ Result<NeutralStart> find_neutral_start(const Case& the_case, const ultrasound::
   return start;
 }
 
-}  // namespace trocar::attempt
+}  // namespace trocar::cases

@@ -1,4 +1,4 @@
-#include "attempt/case/prepare_case.h"
+#include "cases/prepare_case.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,7 +11,7 @@
 #include "core/log.h"
 #include "tasks/assess_path.h"
 
-namespace trocar::attempt {
+namespace trocar::cases {
 namespace {
 namespace fs = std::filesystem;
 
@@ -96,4 +96,4 @@ Result<Case> prepare_case(std::shared_ptr<const anatomy::VirtualPatient> patient
   return made;
 }
 
-}  // namespace trocar::attempt
+}  // namespace trocar::cases

@@ -1,4 +1,4 @@
-#include "attempt/case/open_case.h"
+#include "cases/open_case.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "ultrasound/probe/probe_contact.h"
 #include "ultrasound/probe/scan_geometry.h"
 
-namespace trocar::attempt {
+namespace trocar::cases {
 namespace {
 
 class OpenedCase : public ::testing::Test {
@@ -154,4 +154,4 @@ TEST(OpenCase, CancelledGivesNothing) {
 }
 
 }  // namespace
-}  // namespace trocar::attempt
+}  // namespace trocar::cases

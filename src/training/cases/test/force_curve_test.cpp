@@ -1,10 +1,10 @@
-#include "attempt/offline/force_curve.h"
+#include "cases/force_curve.h"
 
 #include <gtest/gtest.h>
 
 #include "haptics/test/layered_patient.h"
 
-namespace trocar::attempt {
+namespace trocar::cases {
 namespace {
 
 using testing::layered_patient;
@@ -105,4 +105,4 @@ TEST(PiecesAlong, NamesTheLabelsBelowTheSkinShell) {
 }
 
 }  // namespace
-}  // namespace trocar::attempt
+}  // namespace trocar::cases

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "anatomy/tissue/tissue_table.h"
-#include "attempt/hands/prescribed_motion.h"
+#include "cases/prescribed_motion.h"
 #include "haptics/haptic_scene.h"
 
-namespace trocar::attempt {
+namespace trocar::cases {
 
 /// Force on a device moved along a path, at one tick.
 struct CurvePoint {
@@ -50,4 +50,4 @@ std::vector<CurveEvent> find_curve_events(const std::vector<CurvePoint>& curve, 
 std::vector<PathPiece> pieces_along(const haptics::HapticScene& scene, const anatomy::TissueTable& tissues,
                                     const Segment& line_P);
 
-}  // namespace trocar::attempt
+}  // namespace trocar::cases

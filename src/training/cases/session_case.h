@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "attempt/case/prepare_case.h"
+#include "cases/prepare_case.h"
 #include "link/messages.h"
 #include "storage/session_file.h"
 
-namespace trocar::attempt {
+namespace trocar::cases {
 
 /// Intended differences of a replay: other tissue. Empty: as recorded.
 struct ReplayChanges {
@@ -38,4 +38,4 @@ Status check_patient(const storage::Session& session, const anatomy::VirtualPati
 /// SetParameters message that gives a loaded scene these parameters.
 link::SetParameters as_command(const storage::SessionParameters& parameters);
 
-}  // namespace trocar::attempt
+}  // namespace trocar::cases

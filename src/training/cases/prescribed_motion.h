@@ -4,7 +4,7 @@
 #include "geometry/segment.h"
 #include "haptics/tick.h"
 
-namespace trocar::attempt {
+namespace trocar::cases {
 
 /// Moves a device along a needle path at constant speed, independent of forces (open loop), so that two scenes get the
 /// same poses: from `before_mm` outside the skin to the path's end, with smooth drift and tilt inside the body, which
@@ -25,4 +25,4 @@ double way_mm(const PrescribedMotion& motion, int tick) noexcept;
 /// What the device gives the scene at that tick.
 haptics::HapticInput input_at(const PrescribedMotion& motion, int tick) noexcept;
 
-}  // namespace trocar::attempt
+}  // namespace trocar::cases

@@ -2,11 +2,11 @@
 
 #include <string>
 
-#include "attempt/case/prepare_case.h"
+#include "cases/prepare_case.h"
 #include "geometry/pose.h"
 #include "ultrasound/probe/transducer.h"
 
-namespace trocar::attempt {
+namespace trocar::cases {
 
 /// Initial poses of needle and transducer that do not reveal the plan. Frame P.
 struct NeutralStart {
@@ -27,4 +27,4 @@ struct NeutralStart {
 Result<NeutralStart> find_neutral_start(const Case& the_case, const ultrasound::Transducer& transducer,
                                         const Pose& X_PT_planned);
 
-}  // namespace trocar::attempt
+}  // namespace trocar::cases

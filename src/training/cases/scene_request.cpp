@@ -1,8 +1,8 @@
-#include "attempt/case/scene_request.h"
+#include "cases/scene_request.h"
 
-#include "attempt/guide/needle_geometry.h"
+#include "cases/needle_geometry.h"
 
-namespace trocar::attempt {
+namespace trocar::cases {
 
 Pose room_in_patient(const Segment& path_P, double needle_length_mm) noexcept {
   Mat3 R_PW;
@@ -37,4 +37,4 @@ link::LoadScene scene_request(const Case& the_case, const SceneChoice& choice) {
   return request;
 }
 
-}  // namespace trocar::attempt
+}  // namespace trocar::cases

@@ -1,9 +1,9 @@
-#include "attempt/hands/prescribed_motion.h"
+#include "cases/prescribed_motion.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace trocar::attempt {
+namespace trocar::cases {
 namespace {
 
 /// 0 at the skin, 1 at the path's end, with continuous speed.
@@ -38,4 +38,4 @@ haptics::HapticInput input_at(const PrescribedMotion& motion, int tick) noexcept
   return input;
 }
 
-}  // namespace trocar::attempt
+}  // namespace trocar::cases

@@ -1,4 +1,4 @@
-#include "attempt/guide/needle_geometry.h"
+#include "cases/needle_geometry.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 
 #include "core/files/data_dir.h"
 
-namespace trocar::attempt {
+namespace trocar::cases {
 namespace {
 
 TEST(NeedleGeometryOfNeedle, HalvesDiametersAndTurnsDegreesIntoRadians) {
@@ -38,4 +38,4 @@ TEST(NeedleGeometryOfNeedle, EveryNeedleOfTheListIsATubeThatItsStyletFits) {
 }
 
 }  // namespace
-}  // namespace trocar::attempt
+}  // namespace trocar::cases

@@ -1,4 +1,4 @@
-#include "attempt/case/probe_start.h"
+#include "cases/probe_start.h"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 #include "ultrasound/probe/probe_placement.h"
 #include "volume/sampling.h"
 
-namespace trocar::attempt {
+namespace trocar::cases {
 namespace {
 
 constexpr const char* kTransducer = "C5-2";  // of the abdomen's view
@@ -220,4 +220,4 @@ Result<ProbeStart> find_probe_start(const anatomy::VirtualPatient& patient, cons
   return start;
 }
 
-}  // namespace trocar::attempt
+}  // namespace trocar::cases

@@ -1,4 +1,4 @@
-#include "attempt/offline/segmentation_study.h"
+#include "cases/segmentation_study.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 
 #include "haptics/test/layered_patient.h"
 
-namespace trocar::attempt {
+namespace trocar::cases {
 namespace {
 
 using testing::kFat;
@@ -118,4 +118,4 @@ TEST(PrescribedMotion, RunsFromOutsideTheSkinToTheTargetAndItsDrift) {
 }
 
 }  // namespace
-}  // namespace trocar::attempt
+}  // namespace trocar::cases

@@ -8,7 +8,7 @@
 #include "geometry/segment.h"
 #include "ultrasound/probe/transducer.h"
 
-namespace trocar::attempt {
+namespace trocar::cases {
 
 /// Where a transducer begins.
 struct ProbeStart {
@@ -25,4 +25,4 @@ struct ProbeStart {
 /// a standard view of it. Errors: the transducers' or views' file.
 Result<ProbeStart> find_probe_start(const anatomy::VirtualPatient& patient, const Segment& path_P);
 
-}  // namespace trocar::attempt
+}  // namespace trocar::cases

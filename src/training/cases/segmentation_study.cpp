@@ -1,4 +1,4 @@
-#include "attempt/offline/segmentation_study.h"
+#include "cases/segmentation_study.h"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 #include "core/random.h"
 #include "haptics/tick.h"
 
-namespace trocar::attempt {
+namespace trocar::cases {
 namespace {
 
 constexpr std::size_t kPathsAtOnce = 64;  ///< Between two reports of progress.
@@ -172,4 +172,4 @@ std::vector<WorstPlace> worst_places(std::span<const PathError> errors, const an
   return sorted;
 }
 
-}  // namespace trocar::attempt
+}  // namespace trocar::cases
