@@ -7,6 +7,7 @@
 #include <future>
 
 #include "attempt/live/realtime_session.h"
+#include "attempt/servers/link_connection.h"
 #include "attempt/servers/server_seat.h"
 #include "cases/prepare_case.h"
 #include "servers/live_attempt_lab.h"
@@ -220,8 +221,10 @@ TEST(SeatStalls, ASeatWaitsForControlThatIsNotFreeYet) {
   ASSERT_TRUE(wait_for([&] { return gone->view().welcome.has_control; }));
   link::ClientOptions options;
   options.endpoint = server.url();
-  auto seat = attempt::ServerSeat::connect(options, kPatience);
-  ASSERT_TRUE(seat) << seat.error().text();
+  auto connection = attempt::connect_by_link(options);
+  ASSERT_TRUE(connection) << connection.error().text();
+  SteadyClock clock;
+  std::optional<attempt::ServerSeat> seat(std::in_place, *std::move(connection), server.url(), kPatience, clock);
   ASSERT_TRUE(wait_for([&] {
     const auto looked = seat->look();
     EXPECT_TRUE(looked) << looked.error().text();

@@ -3,7 +3,7 @@
 #include <QStringList>
 #include <algorithm>
 
-#include "attempt/servers/own_server.h"
+#include "attempt/servers/local_server.h"
 #include "control/seat_words.h"
 #include "link/client/server_process.h"
 #include "ui_kit/parts.h"

@@ -8,8 +8,8 @@
 namespace trocar::attempt {
 namespace {
 
-OwnServerOptions server_options(const AttemptOptions& options, const char* tool) {
-  OwnServerOptions of_tool;
+LocalServerOptions server_options(const AttemptOptions& options, const char* tool) {
+  LocalServerOptions of_tool;
   of_tool.tool = tool;
   of_tool.device = of_tool.tool == "needle" ? options.device_needle : options.device_probe;
   of_tool.rate_hz = options.rate_hz;
@@ -18,8 +18,8 @@ OwnServerOptions server_options(const AttemptOptions& options, const char* tool)
   return of_tool;
 }
 
-bool fits_one(const OwnServer& server, const OwnServerOptions& wanted) {
-  const OwnServerOptions& is = server.options();
+bool fits_one(const LocalServer& server, const LocalServerOptions& wanted) {
+  const LocalServerOptions& is = server.options();
   return is.device == wanted.device && is.rate_hz == wanted.rate_hz && is.priority == wanted.priority;
 }
 
@@ -30,16 +30,16 @@ bool is_moved_by_hand_targets(const std::string& device) {
 }
 
 Result<std::shared_ptr<SeatServers>> SeatServers::start(const AttemptOptions& options) {
-  TROCAR_TRY(OwnServer of_needle, OwnServer::start(server_options(options, "needle")));
-  std::shared_ptr<SeatServers> servers(new SeatServers(std::move(of_needle)));
+  std::shared_ptr<SeatServers> servers(new SeatServers);
+  TROCAR_TRY(servers->needle, LocalServer::start(server_options(options, "needle")));
   if (options.has_probe) {
-    TROCAR_TRY(servers->probe, OwnServer::start(server_options(options, "probe")));
+    TROCAR_TRY(servers->probe, LocalServer::start(server_options(options, "probe")));
   }
   return servers;
 }
 
 bool SeatServers::fits(const AttemptOptions& options) const {
-  if (probe.has_value() != options.has_probe || !fits_one(needle, server_options(options, "needle"))) return false;
+  if ((probe != nullptr) != options.has_probe || !fits_one(*needle, server_options(options, "needle"))) return false;
   return !probe || fits_one(*probe, server_options(options, "probe"));
 }
 
@@ -63,9 +63,8 @@ LiveAttempt::~LiveAttempt() = default;
 AttemptView LiveAttempt::view() const {
   const std::lock_guard lock(impl_->desk.mutex);
   const AttemptNews& news = impl_->desk.news;
-  AttemptView view =
-      aged(news.view, std::chrono::duration<double>(std::chrono::steady_clock::now() - news.told).count());
-  // A second press reverses the first, even before the thread has processed it.
+  AttemptView view = aged(news.view, seconds_between(news.told, options_.clock->now()));
+  // A second press acts against the first, even where the thread has not taken that one yet.
   view.are_forces_stopped = impl_->desk.wishes.stopped.value_or(view.are_forces_stopped);
   return view;
 }

@@ -10,8 +10,9 @@
 
 #include "attempt/live/attempt_view.h"
 #include "attempt/record/run_result.h"
-#include "attempt/servers/own_server.h"
+#include "attempt/servers/local_server.h"
 #include "cases/open_case.h"
+#include "core/clock.h"
 #include "core/files/disk_space.h"
 #include "tasks/operator.h"
 
@@ -41,6 +42,7 @@ struct AttemptOptions {
   std::chrono::milliseconds patience{8000};
   /// Asked about the session's folder once a second while it is recorded; tests put another disk in its place.
   std::function<std::optional<std::uintmax_t>(const std::filesystem::path&)> free_bytes = find_free_bytes;
+  std::shared_ptr<Clock> clock = std::make_shared<SteadyClock>();  ///< Of supervision and recording.
 };
 
 /// Whether set_hand() moves a device of that name; else it moves itself, or a person does.
@@ -54,11 +56,11 @@ class SeatServers {
   static Result<std::shared_ptr<SeatServers>> start(const AttemptOptions& options);
   bool fits(const AttemptOptions& options) const;
 
-  OwnServer needle;
-  std::optional<OwnServer> probe;
+  std::unique_ptr<LocalServer> needle;
+  std::unique_ptr<LocalServer> probe;  ///< Null: none.
 
  private:
-  explicit SeatServers(OwnServer of_needle) : needle(std::move(of_needle)) {}
+  SeatServers() = default;
 };
 
 /// A running attempt, on a thread of its own: starts and supervises the haptic servers, sends hand targets, records

@@ -11,6 +11,7 @@
 #include "attempt/hands/probe_hand.h"
 #include "attempt/live/live_operator.h"
 #include "attempt/servers/detail/own_servers.h"
+#include "attempt/servers/link_connection.h"
 #include "attempt/servers/server_seat.h"
 #include "cases/scene_request.h"
 #include "core/interruption.h"
@@ -74,8 +75,8 @@ Result<LiveServers> LiveServers::connect(const RunOptions& options, const Realti
     client.endpoint = endpoint;
     client.name = "trocar run";
     client.security = realtime.security;
-    TROCAR_TRY(ServerSeat seat, ServerSeat::connect(client, realtime.patience));
-    seats.push_back(std::move(seat));
+    TROCAR_TRY(std::unique_ptr<ServerConnection> connection, connect_by_link(client));
+    seats.emplace_back(std::move(connection), endpoint, realtime.patience, *realtime.clock);
   }
   const auto is_ready = [](const ServerSeat& seat) { return seat.state() == State::kReady; };
   while (!std::all_of(seats.begin(), seats.end(), is_ready)) {

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <chrono>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "attempt/offline/run_session.h"
+#include "core/clock.h"
 #include "link/client/haptic_client.h"
 
 namespace trocar::attempt {
@@ -18,6 +20,7 @@ struct RealtimeOptions {
   std::optional<link::ClientSecurity> security;  ///< For servers on tcp.
   /// Timeout for a server without messages or without progress (except loading a scene).
   std::chrono::milliseconds patience{5000};
+  std::shared_ptr<Clock> clock = std::make_shared<SteadyClock>();
 };
 
 /// Checks the options before a patient is opened (exit status 2); run_realtime_session calls it, too.

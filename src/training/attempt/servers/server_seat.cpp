@@ -34,13 +34,13 @@ bool has_fault(const link::ServerStatus& status) {
 
 }  // namespace
 
-Result<ServerSeat> ServerSeat::connect(const link::ClientOptions& options, milliseconds patience) {
-  TROCAR_TRY(link::HapticClient client, link::HapticClient::connect(options));
-  return ServerSeat(std::move(client), options.endpoint, patience);
-}
-
-ServerSeat::ServerSeat(link::HapticClient client, std::string endpoint, milliseconds patience)
-    : client_(std::move(client)), endpoint_(std::move(endpoint)), patience_(patience), looked_(Clock::now()) {}
+ServerSeat::ServerSeat(std::unique_ptr<ServerConnection> connection, std::string endpoint, milliseconds patience,
+                       Clock& clock)
+    : connection_(std::move(connection)),
+      clock_(&clock),
+      endpoint_(std::move(endpoint)),
+      patience_(patience),
+      looked_(clock.now()) {}
 
 void ServerSeat::hold(const SeatRequest& request) {
   request_ = request;
@@ -59,7 +59,7 @@ void ServerSeat::adjust(const link::SetParameters& parameters) {
 }
 
 std::vector<link::Reply> ServerSeat::take_replies() {
-  std::vector<link::Reply> replies = client_.take_replies();
+  std::vector<link::Reply> replies = connection_->take_replies();
   for (const link::Reply& reply : replies) scenes_.learn(reply);
   return replies;
 }
@@ -72,7 +72,7 @@ void ServerSeat::enter(State state) {
 }
 
 void ServerSeat::count_time() {
-  const Clock::time_point now = Clock::now();
+  const Clock::TimePoint now = clock_->now();
   in_state_s_ += std::min(std::chrono::duration<double>(now - looked_).count(), kLongestLook_s);
   looked_ = now;
 }
@@ -84,7 +84,7 @@ Status ServerSeat::check_time(const char* what, const char* advice) const {
 }
 
 Result<State> ServerSeat::look() {
-  view_ = client_.view();
+  view_ = connection_->view();
   count_time();
   if (view_.silent_s > std::chrono::duration<double>(patience_).count()) {
     const bool was_heard = view_.welcome.session != 0;
@@ -105,7 +105,7 @@ Result<State> ServerSeat::look() {
       break;
     case State::kReady:
       if (request_) {
-        asked_ = client_.send(request_->scene);
+        asked_ = connection_->send(request_->scene);
         enter(State::kLoading);
       }
       break;
@@ -150,10 +150,10 @@ Status ServerSeat::wait_for_control() {
 }
 
 Status ServerSeat::reset_fault() {
-  if (Clock::now() - reset_ > kResetAgain) {
-    client_.send(link::ServerCommand::kStop);  // the forces are switched on when the tool is in place
-    client_.send(link::ServerCommand::kResetFault);
-    reset_ = Clock::now();
+  if (clock_->now() - reset_ > kResetAgain) {
+    connection_->send(link::ServerCommand::kStop);  // forces come on when the tool is in its place
+    connection_->send(link::ServerCommand::kResetFault);
+    reset_ = clock_->now();
   }
   return check_time("the fault of the safety gate persists", "look at the server's log");
 }
@@ -176,8 +176,8 @@ Result<bool> ServerSeat::is_answered() {
   for (const link::Reply& reply : take_replies()) {
     if (reply.request != asked_) continue;
     if (reply.is_done) return true;
-    // A command that found the server disconnected is not refused: it is sent again after reconnection.
-    const link::ClientView now = client_.view();
+    // A command that found the server gone is no refusal: when it is back it will be asked again.
+    const link::ClientView now = connection_->view();
     if (now.is_connected && now.welcome.session == session_)
       return fail(reply.text, endpoint_, "see the log of the server");
     return false;
@@ -206,7 +206,7 @@ void ServerSeat::load_parameters() {
     enter(State::kPlacing);
     return;
   }
-  asked_ = client_.send(adjusted_);
+  asked_ = connection_->send(adjusted_);
   is_adjusting_ = true;
 }
 
@@ -217,26 +217,26 @@ bool ServerSeat::is_near(const telemetry::TickSample& sample, double most_mm) co
 Status ServerSeat::placing() {
   TROCAR_TRY_STATUS(check_time("the device did not reach the pose of the operator's hand",
                                "scripted operators work only with simulated devices: trocar-hapticd --device virtual"));
-  const std::optional<telemetry::TickSample> newest = client_.newest();
+  const std::optional<telemetry::TickSample> newest = connection_->newest();
   if (!newest) return {};
   link::HandTarget place = request_->place;
   place.server_time_s = newest->time_s;
   if (request_->is_in_real_hand) {
-    asked_ = client_.send(link::ServerCommand::kStart);
+    asked_ = connection_->send(link::ServerCommand::kStart);
     started_server_s_ = 0.0;
     enter(State::kStarting);
     return {};
   }
   if (was_placed_ && newest->time_s != placed_newest_s_ && is_near(*newest, kSagging_mm)) {
-    client_.set_hand(place);
-    asked_ = client_.send(link::ServerCommand::kStart);
+    connection_->set_target(place);
+    asked_ = connection_->send(link::ServerCommand::kStart);
     started_server_s_ = 0.0;
     enter(State::kStarting);
-  } else if (Clock::now() - placed_ > kPlaceAgain) {
+  } else if (clock_->now() - placed_ > kPlaceAgain) {
     place.is_placed = true;
-    client_.set_hand(place);
+    connection_->set_target(place);
     was_placed_ = true;
-    placed_ = Clock::now();
+    placed_ = clock_->now();
     placed_newest_s_ = newest->time_s;
   }
   return {};
@@ -257,21 +257,21 @@ Status ServerSeat::starting() {
 }
 
 void ServerSeat::settling() {
-  const std::optional<telemetry::TickSample> newest = client_.newest();
+  const std::optional<telemetry::TickSample> newest = connection_->newest();
   const bool is_settled =
       request_->is_in_real_hand || (newest && is_near(*newest, kSettled_mm) &&
                                     (axis_of(*newest) - request_->place.X_PN.R().col(2)).norm() < kSettledAxis);
   if (!is_settled && in_state_s_ < kMostSettling_s) return;
-  client_.take_samples();
+  connection_->take_samples();
   last_tick_.reset();
   enter(State::kOn);
 }
 
 std::vector<link::NumberedSample> ServerSeat::take_samples() {
   if (state_ != State::kOn) return {};
-  std::vector<link::NumberedSample> samples = client_.take_samples();
-  if (client_.view().welcome.session != session_) {
-    // Ticks from before the reconnection may be among them: ours are those that continue without a gap.
+  std::vector<link::NumberedSample> samples = connection_->take_samples();
+  if (connection_->view().welcome.session != session_) {
+    // Ticks of the server that came back may be among them: ours are those that follow on without a gap.
     std::uint64_t next = last_tick_ ? *last_tick_ + 1 : 0;
     const auto end = std::find_if(samples.begin(), samples.end(),
                                   [&next](const link::NumberedSample& sample) { return sample.tick != next++; });
@@ -286,8 +286,8 @@ std::vector<link::NumberedSample> ServerSeat::take_samples() {
 
 void ServerSeat::stop() {
   constexpr milliseconds kStopPatience{500};
-  if (view_.is_connected) static_cast<void>(client_.ask(link::ServerCommand::kStop, kStopPatience));
-  view_ = client_.view();
+  if (view_.is_connected) static_cast<void>(connection_->ask(link::ServerCommand::kStop, kStopPatience));
+  view_ = connection_->view();
 }
 
 ServerFigures ServerSeat::figures() const {

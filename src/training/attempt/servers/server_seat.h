@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -9,8 +10,8 @@
 
 #include "attempt/record/known_scenes.h"
 #include "attempt/record/run_result.h"
-#include "core/progress.h"
-#include "link/client/haptic_client.h"
+#include "attempt/servers/server_connection.h"
+#include "core/clock.h"
 
 namespace trocar::attempt {
 
@@ -33,7 +34,9 @@ class ServerSeat {
  public:
   enum class State { kConnecting, kReady, kLoading, kPlacing, kStarting, kSettling, kOn };
 
-  static Result<ServerSeat> connect(const link::ClientOptions& options, std::chrono::milliseconds patience);
+  /// `endpoint` is for messages. The clock must outlive this.
+  ServerSeat(std::unique_ptr<ServerConnection> connection, std::string endpoint, std::chrono::milliseconds patience,
+             Clock& clock);
 
   /// Sets the scene; before that, a connected server stays in kReady.
   void hold(const SeatRequest& request);
@@ -54,15 +57,15 @@ class ServerSeat {
   std::vector<link::NumberedSample> take_samples();
   std::uint64_t ticks_missing() const noexcept { return missing_; }  ///< Among them, so far.
   /// Only in kOn.
-  void set_hand(const link::HandTarget& target) { client_.set_hand(target); }
+  void set_hand(const link::HandTarget& target) { connection_->set_target(target); }
   void stop();
   /// Sends a further command (only in kOn, or when the server is released). Returns its number.
-  std::uint32_t send(decltype(link::Command::what) what) { return client_.send(std::move(what)); }
+  std::uint32_t send(decltype(link::Command::what) what) { return connection_->send(std::move(what)); }
   std::vector<link::Reply> take_replies();                        ///< Only in kOn.
   const KnownScenes& scenes() const noexcept { return scenes_; }  ///< Of the server that is there now.
-  void frame_drawn() { client_.frame_drawn(); }                   ///< See HapticClient.
-  /// The newest tick in any state, for the device pose without control.
-  std::optional<telemetry::TickSample> newest() const { return client_.newest(); }
+  void frame_drawn() { connection_->frame_drawn(); }              ///< See HapticClient.
+  /// The newest tick, whatever the state: where the device is while it is not ours.
+  std::optional<telemetry::TickSample> newest() const { return connection_->newest(); }
 
   const link::ClientView& view() const noexcept { return view_; }
   const std::string& endpoint() const noexcept { return endpoint_; }
@@ -71,9 +74,6 @@ class ServerSeat {
   ServerFigures figures() const;
 
  private:
-  using Clock = std::chrono::steady_clock;
-
-  ServerSeat(link::HapticClient client, std::string endpoint, std::chrono::milliseconds patience);
   void enter(State state);
   void count_time();
   bool is_stall_to_forgive() const;
@@ -90,17 +90,18 @@ class ServerSeat {
   void settling();
   bool is_near(const telemetry::TickSample& sample, double most_mm) const;
 
-  link::HapticClient client_;
+  std::unique_ptr<ServerConnection> connection_;
+  Clock* clock_;
   std::string endpoint_;
   std::chrono::milliseconds patience_;
   std::optional<SeatRequest> request_;
   link::ClientView view_;
   State state_ = State::kConnecting;
-  Clock::time_point looked_;
+  Clock::TimePoint looked_;
   double in_state_s_ = 0.0;  ///< As far as look() was called meanwhile.
   bool was_placed_ = false;  ///< In this state.
-  Clock::time_point placed_;
-  Clock::time_point reset_;
+  Clock::TimePoint placed_;
+  Clock::TimePoint reset_;
   std::uint64_t session_ = 0;  ///< Of the server that holds our scene.
   std::optional<std::uint64_t> last_tick_;
   std::uint64_t missing_ = 0;

@@ -65,7 +65,7 @@ void AttemptLoop::run(const std::stop_token& stop) {
     status = step();
     watch_disk();
     publish(phase_now());
-    std::this_thread::sleep_for(kBetweenLooks);
+    options_.clock->sleep_for(kBetweenLooks);
   }
   if (!stop.stop_requested()) conclude(std::move(status));
 }
@@ -79,7 +79,7 @@ Status AttemptLoop::start() {
     TROCAR_TRY(servers_, SeatServers::start(options_));
   }
   const Segment& path_P = open_case_->the_case.plan.line_P;
-  needle_.emplace(servers_->needle, options_.patience, true);
+  needle_.emplace(*servers_->needle, options_.patience, true, *options_.clock);
   SeatRequest needle = seat_request(*open_case_, options_, "needle");
   command_.X_PN = options_.X_PN_start.value_or(before_entry(path_P));
   steering_->hand().put(command_.X_PN);
@@ -87,7 +87,7 @@ Status AttemptLoop::start() {
   needle_->hold(needle);
   if (!servers_->probe) return {};
 
-  probe_.emplace(*servers_->probe, options_.patience, true);
+  probe_.emplace(*servers_->probe, options_.patience, true, *options_.clock);
   SeatRequest probe = seat_request(*open_case_, options_, "probe");
   const Pose X_PT = options_.X_PT_start.value_or(open_case_->X_PT_start);
   probe_hand_.put(X_PT * Pose::translation({0.0, -kAboveSkin_mm, 0.0}));
@@ -140,7 +140,7 @@ Status AttemptLoop::step() {
 /// Ends the attempt while there is still space to close its session.
 void AttemptLoop::watch_disk() {
   constexpr auto kEvery = std::chrono::seconds(1);
-  const auto now = std::chrono::steady_clock::now();
+  const auto now = options_.clock->now();
   if (!record_ || !options_.free_bytes || now - disk_looked_at_ < kEvery) return;
   disk_looked_at_ = now;
   const std::filesystem::path folder = options_.session.parent_path();

@@ -35,7 +35,7 @@ struct AttemptWishes {
 /// What goes from the attempt's thread to the window.
 struct AttemptNews {
   AttemptView view;
-  std::chrono::steady_clock::time_point told;  ///< When the view was made.
+  Clock::TimePoint told;  ///< When the view was made.
   std::vector<ForcePoint> forces;
   std::vector<AttemptEvent> events;
   std::optional<Result<RunResult>> result;
@@ -101,7 +101,7 @@ class AttemptLoop {
   std::optional<double> contact_s_;
   double session_s_ = 0.0, since_contact_s_ = 0.0;  ///< Active time: kept for the view after the record is closed.
   ForceTrace trace_;
-  std::chrono::steady_clock::time_point disk_looked_at_;
+  Clock::TimePoint disk_looked_at_;
   std::string disk_banner_, cut_short_;
   std::vector<AttemptEvent> events_;
   std::shared_ptr<const GunShot> shot_;

@@ -118,7 +118,7 @@ void AttemptLoop::publish(AttemptPhase phase, std::optional<Result<RunResult>> r
   AttemptNews& news = desk_.news;
   view.is_performing = view.is_performing || desk_.wishes.performer != nullptr;
   news.view = std::move(view);
-  news.told = std::chrono::steady_clock::now();
+  news.told = options_.clock->now();
   news.servers = servers_;
   if (news.forces.size() < kMostKept) news.forces.insert(news.forces.end(), forces.begin(), forces.end());
   if (news.events.size() < kMostKept) news.events.insert(news.events.end(), events_.begin(), events_.end());

@@ -5,12 +5,12 @@ namespace trocar::attempt {
 Result<OwnServers> OwnServers::start(const RunOptions& options, double rate_hz) {
   OwnServers own;
   for (const char* tool : {"needle", "probe"}) {
-    OwnServerOptions of_tool;
+    LocalServerOptions of_tool;
     of_tool.tool = tool;
     of_tool.device = "virtual:" + options.device;
     of_tool.rate_hz = rate_hz;
     of_tool.flight_folder = options.session.parent_path();
-    TROCAR_TRY(OwnServer server, OwnServer::start(of_tool));
+    TROCAR_TRY(std::unique_ptr<LocalServer> server, LocalServer::start(of_tool));
     own.servers_.push_back(std::move(server));
   }
   return own;
@@ -18,13 +18,13 @@ Result<OwnServers> OwnServers::start(const RunOptions& options, double rate_hz) 
 
 std::vector<std::string> OwnServers::endpoints() const {
   std::vector<std::string> all;
-  for (const OwnServer& server : servers_) all.push_back(server.endpoint());
+  for (const auto& server : servers_) all.push_back(server->endpoint());
   return all;
 }
 
 Status OwnServers::check(std::string_view tool) {
-  for (OwnServer& server : servers_)
-    if (server.options().tool == tool) return server.check();
+  for (const auto& server : servers_)
+    if (server->tool() == tool) return server->check();
   return {};
 }
 

@@ -1,11 +1,12 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "attempt/offline/run_session.h"
-#include "attempt/servers/own_server.h"
+#include "attempt/servers/local_server.h"
 
 namespace trocar::attempt {
 
@@ -20,7 +21,7 @@ class OwnServers {
   Status check(std::string_view tool);
 
  private:
-  std::vector<OwnServer> servers_;
+  std::vector<std::unique_ptr<LocalServer>> servers_;
 };
 
 }  // namespace trocar::attempt

@@ -40,12 +40,13 @@ DeviceHold device_hold(const std::string& device_spec) {
   return DeviceHold::kRealHand;
 }
 
-ToolServer::ToolServer(OwnServer& process, std::chrono::milliseconds patience, bool has_window)
-    : process_(&process),
+ToolServer::ToolServer(ServerHost& host, std::chrono::milliseconds patience, bool has_window, Clock& clock)
+    : host_(&host),
+      clock_(&clock),
       patience_(patience),
       has_window_(has_window),
-      is_real_hand_(device_hold(process.options().device) == DeviceHold::kRealHand),
-      tool_(process.options().tool) {
+      is_real_hand_(device_hold(host.device()) == DeviceHold::kRealHand),
+      tool_(host.tool()) {
   connect();
 }
 
@@ -57,15 +58,14 @@ void ToolServer::connect() {
   lost_device_.reset();
   before_.clear();
   link::ClientOptions options;
-  options.endpoint = process_->endpoint();
   options.name = "trocar station";
   options.has_window = has_window_;
-  Result<ServerSeat> seat = ServerSeat::connect(options, patience_);
-  if (!seat) {
-    give_up(seat.error());
+  Result<std::unique_ptr<ServerConnection>> connection = host_->connect(options);
+  if (!connection) {
+    give_up(connection.error());
     return;
   }
-  seat_.emplace(*std::move(seat));
+  seat_.emplace(*std::move(connection), host_->endpoint(), patience_, *clock_);
   if (!request_) return;
   request_->parameters = parameters();
   seat_->hold(*request_);
@@ -91,7 +91,7 @@ std::string ToolServer::give_up(Error why) {
 }
 
 std::string ToolServer::bring_back(const std::string& what, bool is_new_process) {
-  const auto now = Clock::now();
+  const auto now = clock_->now();
   while (!returns_.empty() && now - returns_.front() > 60s) returns_.pop_front();
   returns_.push_back(now);
   if (returns_.size() > kMostReturns) {
@@ -114,7 +114,7 @@ std::string ToolServer::seat_again(bool is_new_process) {
   is_restart_due_ = false;
   ++restarts_;
   if (is_new_process) {
-    if (const Status started = process_->restart(); !started) {
+    if (const Status started = host_->restart(); !started) {
       return give_up(started.error());
     }
   }
@@ -131,7 +131,7 @@ bool ToolServer::is_device_lost() const {
 /// Until it is connected again; forces stay off meanwhile, because the fault is latched.
 std::string ToolServer::open_device_again() {
   LostDevice& lost = *lost_device_;
-  const auto now = Clock::now();
+  const auto now = clock_->now();
   for (const link::Reply& reply : seat_->take_replies()) {
     if (reply.request != lost.asked) continue;
     if (reply.is_done) return bring_back(fmt::format("the {} is connected again", device_words()), false);
@@ -150,7 +150,7 @@ std::string ToolServer::look() {
   if (has_given_up_ || waits_for_resume_ || !seat_) return {};
   if (is_stopped_ && !was_on_) return {};  // holding a scene would switch the forces on
   if (is_restart_due_) return seat_again(true);
-  if (const Status alive = process_->check(); !alive) {
+  if (const Status alive = host_->check(); !alive) {
     if (!was_ever_heard_) {
       // It cannot start: a missing device, a wrong name.
       return give_up(alive.error());
@@ -162,7 +162,7 @@ std::string ToolServer::look() {
   }
   const Result<State> state = seat_->look();
   was_ever_heard_ = was_ever_heard_ || seat_->view().welcome.session != 0;
-  if (seat_->view().is_connected || process_->is_held_up()) held_up_ = Clock::now();
+  if (seat_->view().is_connected || host_->is_held_up()) held_up_ = clock_->now();
   if (std::optional<std::string> refusal = seat_->take_refusal()) {
     settings_ = {};
     messages_.push_back(*std::move(refusal));
@@ -171,7 +171,7 @@ std::string ToolServer::look() {
   if (*state == State::kOn && !was_on_) {
     was_on_ = true;
     ++seatings_;
-    ticked_ = Clock::now();
+    ticked_ = clock_->now();
     banner_.clear();
     if (!interrupted_by_.empty())
       recovery_ = fmt::format("{}. The forces are on again and the puncture continues", sentence(interrupted_by_));
@@ -183,7 +183,7 @@ std::string ToolServer::look() {
   if (!was_on_) return {};
   if (!seat_->view().is_connected) {
     banner_ = fmt::format("The {} server does not respond. Waiting for it", tool_);
-  } else if (Clock::now() - ticked_ > kFresh) {
+  } else if (clock_->now() - ticked_ > kFresh) {
     banner_ = fmt::format("No data from the {}: this machine is too busy", tool_);
   } else {
     banner_.clear();
@@ -217,7 +217,7 @@ std::string ToolServer::note_interruption() {
 
 /// True if a silent server only lacks processor time.
 bool ToolServer::is_slow() const {
-  return Clock::now() - held_up_ < kAsleep &&
+  return clock_->now() - held_up_ < kAsleep &&
          seat_->view().silent_s < kMostPatience * std::chrono::duration<double>(patience_).count();
 }
 
@@ -252,7 +252,7 @@ std::string ToolServer::cannot_go_on(const Error& why) {
 
 bool ToolServer::is_on() const noexcept {
   return seat_ && was_on_ && !has_given_up_ && seat_->state() == State::kOn && seat_->view().is_connected &&
-         Clock::now() - ticked_ < kFresh;
+         clock_->now() - ticked_ < kFresh;
 }
 
 std::string ToolServer::doing() const {
@@ -275,7 +275,7 @@ std::string ToolServer::doing() const {
 std::vector<link::NumberedSample> ToolServer::take_samples() {
   if (!seat_ || !was_on_) return {};
   std::vector<link::NumberedSample> samples = seat_->take_samples();
-  if (!samples.empty()) ticked_ = Clock::now();
+  if (!samples.empty()) ticked_ = clock_->now();
   return samples;
 }
 
@@ -319,7 +319,7 @@ void ToolServer::resume_forces() {
   is_stopped_ = false;
   waits_for_resume_ = false;
   if (has_given_up_) returns_.clear();
-  const Status alive = process_->check();
+  const Status alive = host_->check();
   const bool is_alive = alive.has_value();
   if (is_on() && is_alive) {
     seat_->send(link::ServerCommand::kStart);
@@ -359,7 +359,7 @@ ServerView ToolServer::view() const {
   const link::ServerStatus& status = client_view.status;
   ServerView view;
   view.tool = tool_;
-  view.pid = process_->pid();
+  view.pid = host_->pid();
   view.is_connected = client_view.is_connected;
   view.is_on = is_on() && !is_stopped_;
   view.device = client_view.welcome.device.name;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "attempt/live/attempt_view.h"
-#include "attempt/servers/own_server.h"
+#include "attempt/servers/server_host.h"
 #include "attempt/servers/server_seat.h"
 
 namespace trocar::attempt {
@@ -28,8 +28,8 @@ DeviceHold device_hold(const std::string& device_spec);
 /// real hand gets no forces again by itself after a fault: somebody must resume. Nothing waits.
 class ToolServer {
  public:
-  /// The process must outlive it.
-  ToolServer(OwnServer& process, std::chrono::milliseconds patience, bool has_window);
+  /// Host and clock must outlive it.
+  ToolServer(ServerHost& host, std::chrono::milliseconds patience, bool has_window, Clock& clock);
 
   void hold(const SeatRequest& request);
   void place_at(const Pose& X_PN);  ///< Where it is put when it comes back.
@@ -67,7 +67,6 @@ class ToolServer {
   ServerFigures figures() const;
 
  private:
-  using Clock = std::chrono::steady_clock;
   void connect();
   std::string give_up(Error why);
   std::string bring_back(const std::string& what, bool is_new_process);
@@ -82,7 +81,8 @@ class ToolServer {
   link::SetParameters parameters() const;
   void note_replies();
 
-  OwnServer* process_;
+  ServerHost* host_;
+  Clock* clock_;
   std::chrono::milliseconds patience_;
   bool has_window_;
   bool is_real_hand_;
@@ -102,10 +102,10 @@ class ToolServer {
   Settings settings_;
   std::map<std::uint32_t, Settings> before_;  ///< What held before a message that is not answered yet.
   std::vector<std::string> messages_;
-  std::deque<Clock::time_point> returns_;  ///< Of the last minute.
-  Clock::time_point ticked_;               ///< When a tick was last taken.
-  Clock::time_point held_up_;              ///< When it was last heard, or its process had no processor.
-  int stalls_ = 0;                         ///< Of the seat, as far as they were told.
+  std::deque<Clock::TimePoint> returns_;  ///< Of the last minute.
+  Clock::TimePoint ticked_;               ///< When a tick was last taken.
+  Clock::TimePoint held_up_;              ///< When it was last heard, or its process had no processor.
+  int stalls_ = 0;                        ///< Of the seat, as far as they were told.
   int restarts_ = 0, seatings_ = 0;
   std::uint64_t missing_before_ = 0;  ///< By seats that were given up.
   bool was_on_ = false;               ///< Since the seat was taken.
@@ -116,7 +116,7 @@ class ToolServer {
   /// The device is gone, its server is not.
   struct LostDevice {
     std::optional<std::uint32_t> asked;  ///< To open it again; not answered yet.
-    Clock::time_point refused;           ///< When it was last not there.
+    Clock::TimePoint refused;            ///< When it was last not there.
   };
   std::optional<LostDevice> lost_device_;
 };

@@ -1,8 +1,11 @@
-#include "attempt/servers/own_server.h"
+#include "attempt/servers/local_server.h"
 
 #include <fmt/format.h>
 
 #include <fstream>
+#include <utility>
+
+#include "attempt/servers/link_connection.h"
 
 namespace trocar::attempt {
 namespace {
@@ -30,16 +33,21 @@ std::optional<Error> error_of_line(std::string_view line) {
   return Error{what, first == last ? std::string() : std::string(line.substr(begin, last - begin)), advice};
 }
 
-Result<OwnServer> OwnServer::start(const OwnServerOptions& options) {
-  OwnServer server;
-  server.options_ = options;
-  server.folder_ = std::make_unique<TemporaryFolder>();
-  server.endpoint_ = "ipc://" + (*server.folder_ / options.tool).string();
-  TROCAR_TRY_STATUS(server.restart());
+Result<std::unique_ptr<LocalServer>> LocalServer::start(const LocalServerOptions& options) {
+  std::unique_ptr<LocalServer> server(new LocalServer);
+  server->options_ = options;
+  server->folder_ = std::make_unique<TemporaryFolder>();
+  server->endpoint_ = "ipc://" + (*server->folder_ / options.tool).string();
+  TROCAR_TRY_STATUS(server->restart());
   return server;
 }
 
-Status OwnServer::restart() {
+Result<std::unique_ptr<ServerConnection>> LocalServer::connect(link::ClientOptions options) {
+  options.endpoint = endpoint_;
+  return connect_by_link(options);
+}
+
+Status LocalServer::restart() {
   TROCAR_TRY(const std::filesystem::path program, link::find_server_program());
   const std::string flights = options_.flight_folder.empty() ? "." : options_.flight_folder.string();
   const std::vector<std::string> arguments{"--device",         options_.device,
@@ -54,7 +62,7 @@ Status OwnServer::restart() {
   return {};
 }
 
-Status OwnServer::check() {
+Status LocalServer::check() {
   if (process_ && process_->is_running()) return {};
   const std::string last = last_line(*folder_ / kLog);
   if (auto told = error_of_line(last)) return tl::unexpected(*std::move(told));
