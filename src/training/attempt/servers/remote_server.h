@@ -21,9 +21,7 @@ class RemoteServer final : public ServerHost {
   int pid() const override { return 0; }
   Status check() override { return {}; }
   bool is_held_up() override { return false; }
-  Status restart() override {
-    return fail("this program did not start the server", endpoint_, "start it again");
-  }
+  Status restart() override { return fail("this program did not start the server", endpoint_, "start it again"); }
   Result<std::unique_ptr<ServerConnection>> connect(link::ClientOptions options) override {
     options.endpoint = endpoint_;
     options.security = security_;
