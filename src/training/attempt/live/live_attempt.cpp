@@ -3,7 +3,7 @@
 #include <thread>
 #include <utility>
 
-#include "attempt/live/detail/attempt_loop.h"
+#include "attempt/live/attempt_loop.h"
 
 namespace trocar::attempt {
 namespace {

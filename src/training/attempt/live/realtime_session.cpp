@@ -8,7 +8,7 @@
 #include <span>
 #include <thread>
 
-#include "attempt/hands/probe_hand.h"
+#include "attempt/hands/resting_transducer.h"
 #include "attempt/live/live_operator.h"
 #include "attempt/servers/detail/own_servers.h"
 #include "attempt/servers/link_connection.h"

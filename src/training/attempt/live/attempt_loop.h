@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "attempt/hands/probe_hand.h"
+#include "attempt/hands/resting_transducer.h"
 #include "attempt/live/detail/force_trace.h"
-#include "attempt/live/detail/steered_needle.h"
 #include "attempt/live/live_attempt.h"
 #include "attempt/live/live_operator.h"
+#include "attempt/live/needle_steering.h"
 #include "attempt/servers/detail/tool_server.h"
 
 namespace trocar::attempt {

@@ -1,4 +1,4 @@
-#include "attempt/hands/probe_hand.h"
+#include "attempt/hands/resting_transducer.h"
 
 #include <algorithm>
 #include <array>

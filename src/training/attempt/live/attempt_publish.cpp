@@ -2,7 +2,7 @@
 #include "attempt/guide/gun_shot.h"
 #include "attempt/guide/needle_view.h"
 #include "attempt/guide/puncture_guide.h"
-#include "attempt/live/detail/attempt_loop.h"
+#include "attempt/live/attempt_loop.h"
 #include "telemetry/tick_pose.h"
 
 namespace trocar::attempt {

@@ -1,4 +1,4 @@
-#include "attempt/live/detail/attempt_loop.h"
+#include "attempt/live/attempt_loop.h"
 
 #include <fmt/format.h>
 
