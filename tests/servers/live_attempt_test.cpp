@@ -123,14 +123,14 @@ TEST_F(LiveAttemptTest, TheHandLeadsTheNeedleAndAClampedOneDoesNot) {
   const Pose from = attempt->view().needle.X_PN;
   const Pose aside = attempt::moved(from, Vec3(6.0, 0.0, 0.0), Vec3::Zero());
   ASSERT_TRUE(wait_for([&] {
-    attempt->set_hand(attempt::HandTool::kNeedle, aside);
+    attempt->set_goal(attempt::HandTool::kNeedle, aside);
     return (attempt->view().needle.X_PN.p() - aside.p()).norm() < 0.5;
   })) << where();
-  attempt->hold(attempt::HandTool::kNeedle, true);
+  attempt->clamp(attempt::HandTool::kNeedle, true);
   ASSERT_TRUE(wait_for([&] { return attempt->view().needle.is_clamped; }));
-  attempt->set_hand(attempt::HandTool::kNeedle, from);
+  attempt->set_goal(attempt::HandTool::kNeedle, from);
   const Pose probe = attempt->view().probe.X_PT;
-  attempt->set_hand(attempt::HandTool::kProbe, attempt::moved(probe, Vec3(0.0, -20.0, 0.0), Vec3::Zero()));
+  attempt->set_goal(attempt::HandTool::kProbe, attempt::moved(probe, Vec3(0.0, -20.0, 0.0), Vec3::Zero()));
   ASSERT_TRUE(wait_for([&] { return attempt->view().probe.contact_n == 0.0; }));  // lifted off
   EXPECT_LT((attempt->view().needle.X_PN.p() - aside.p()).norm(), 1.0);
 }
@@ -142,7 +142,7 @@ TEST_F(LiveAttemptTest, TheReplayMovesTheTransducerAsItWasMoved) {
   const Pose from = attempt->view().probe.X_PT;
   const double pressed_s = attempt->view().session_s;
   const Pose aside = attempt::moved(from, Vec3(12.0, 0.0, 0.0), Vec3::Zero());
-  attempt->set_hand(attempt::HandTool::kProbe, aside);
+  attempt->set_goal(attempt::HandTool::kProbe, aside);
   ASSERT_TRUE(wait_for([&] { return (attempt->view().probe.X_PT.p() - aside.p()).norm() < 1.0; })) << where();
   const double moved_s = attempt->view().session_s;
   ASSERT_TRUE(wait_for([&] { return attempt->view().session_s > moved_s + 0.2; }));
@@ -265,7 +265,7 @@ TEST_F(LiveAttemptTest, NextAttemptTakesTheServersOver) {
   EXPECT_EQ(attempt->view().session_s, 0.0);
   EXPECT_FALSE(std::filesystem::exists(waiting.session));
   const int pid = attempt->view().servers[0].pid;
-  std::shared_ptr<attempt::SeatServers> servers = attempt->servers();
+  std::shared_ptr<attempt::HapticServers> servers = attempt->servers();
   attempt.reset();
   attempt::AttemptOptions next = options();
   next.session = folder_ / "next.trocar";

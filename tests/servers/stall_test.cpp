@@ -7,8 +7,8 @@
 #include <future>
 
 #include "attempt/live/realtime_session.h"
-#include "attempt/servers/link_connection.h"
-#include "attempt/servers/server_seat.h"
+#include "attempt/servers/remote_server.h"
+#include "attempt/servers/server_supervisor.h"
 #include "cases/prepare_case.h"
 #include "servers/live_attempt_lab.h"
 #include "storage/session_file.h"
@@ -56,7 +56,7 @@ class Stalls : public LiveAttemptTest {
     attempt::AttemptOptions chosen = options();
     chosen.device_needle = device;
     chosen.device_probe = "mouse";
-    chosen.patience = kImpatient;
+    chosen.timeout = kImpatient;
     return chosen;
   }
   /// The hand goes to that depth on the planned path and stays; false: the needle did not come to rest there.
@@ -65,7 +65,7 @@ class Stalls : public LiveAttemptTest {
     hand_ = needle_pose(path_P.a + depth_mm * path_P.direction(), path_P.direction());
     double rest_s = 0.0;
     return wait_for([&] {
-      attempt->set_hand(attempt::HandTool::kNeedle, hand_);
+      attempt->set_goal(attempt::HandTool::kNeedle, hand_);
       const attempt::AttemptView view = attempt->view();
       const bool is_at_rest = view.needle.depth_mm > 0.5 * depth_mm && std::abs(view.needle.speed_mm_s) < 0.2;
       if (!is_at_rest) rest_s = view.session_s;
@@ -205,7 +205,7 @@ TEST_F(Stalls, WhatTheHandDoesMeanwhileIsForgotten) {
   {
     const Stall stall(attempt->view().servers[0].pid);
     ASSERT_TRUE(wait_phase(attempt::AttemptPhase::kServerLost)) << where();
-    attempt->set_hand(attempt::HandTool::kNeedle, hand_ * Pose::translation({0.0, 0.0, 15.0}));
+    attempt->set_goal(attempt::HandTool::kNeedle, hand_ * Pose::translation({0.0, 0.0, 15.0}));
     stall.lasts(kShortStall);
   }
   ASSERT_TRUE(goes_on()) << where();
@@ -215,28 +215,22 @@ TEST_F(Stalls, WhatTheHandDoesMeanwhileIsForgotten) {
 }
 
 /// A client that went away without a word holds its server for a while: the next one waits for that.
-TEST(SeatStalls, ASeatWaitsForControlThatIsNotFreeYet) {
+TEST(SupervisorStalls, WaitsForControlThatIsNotFreeYet) {
   LiveServer server;
   auto gone = std::make_unique<link::HapticClient>(connect(server.url()));
   ASSERT_TRUE(wait_for([&] { return gone->view().welcome.has_control; }));
-  link::ClientOptions options;
-  options.endpoint = server.url();
-  auto connection = attempt::connect_by_link(options);
-  ASSERT_TRUE(connection) << connection.error().text();
   SteadyClock clock;
-  std::optional<attempt::ServerSeat> seat(std::in_place, *std::move(connection), server.url(), kPatience, clock);
+  attempt::RemoteServer host(server.url(), {});
+  attempt::ServerSupervisor supervisor(host, {attempt::Recovery::kReturnsOnly, kPatience}, clock);
   ASSERT_TRUE(wait_for([&] {
-    const auto looked = seat->look();
-    EXPECT_TRUE(looked) << looked.error().text();
-    return !looked || seat->view().welcome.session != 0;
+    supervisor.poll();
+    return supervisor.client().welcome.session != 0;
   }));
   gone.reset();
   EXPECT_TRUE(wait_for([&] {
-    const auto looked = seat->look();
-    EXPECT_TRUE(looked) << looked.error().text();
-    return !looked || *looked == attempt::ServerSeat::State::kReady;
+    supervisor.poll();
+    return supervisor.state() == attempt::ServerState::kIdle;
   }));
-  EXPECT_EQ(seat->state(), attempt::ServerSeat::State::kReady);
 }
 
 class RealtimeStalls : public ::testing::Test {
@@ -252,7 +246,7 @@ class RealtimeStalls : public ::testing::Test {
     run.session = folder_ / "live.session";
     attempt::RealtimeOptions realtime;
     realtime.endpoints = {server_.url()};
-    realtime.patience = patience;
+    realtime.timeout = patience;
     result_ = std::async(std::launch::async, [this, run, realtime] {
       return attempt::run_realtime_session(*the_case_, run, realtime, {});
     });
