@@ -1,9 +1,6 @@
-// One test for each row of the table of the supervision (README.md): a server that ends, falls silent, returns or has a
-// fault, in a test's own time.
-#include <gtest/gtest.h>
-
-#include "attempt/servers/server_supervisor.h"
-#include "attempt/servers/test/scripted_server.h"
+// One test for each row of the tables in docs/supervision.md: a server that ends, falls silent, returns or has a fault,
+// in a test's own time.
+#include "attempt/servers/test/supervision_lab.h"
 
 namespace trocar::attempt {
 namespace {
@@ -11,54 +8,6 @@ namespace {
 using link::ServerCommand;
 using telemetry::GateFault;
 using telemetry::GateMode;
-using testing::ScriptedServer;
-
-constexpr double kTimeout_s = 2.0;
-
-class SupervisionTest : public ::testing::Test {
- protected:
-  void supervise(const std::string& device = "virtual:premium") {
-    server.emplace(clock, device);
-    SupervisionOptions options;
-    options.recovery = recovery;
-    options.timeout = std::chrono::milliseconds(static_cast<int>(1000.0 * kTimeout_s));
-    tool.emplace(*server, options, clock);
-    PreparationRequest request;
-    request.place.X_PN = X_PN;
-    tool->prepare(request);
-  }
-  void start(const std::string& device = "virtual:premium") {
-    supervise(device);
-    ASSERT_TRUE(run_until([&] { return tool->is_fresh(); })) << tool->banner();
-    notes.clear();
-  }
-  void run_for(double seconds) {
-    for (int i = 0; i < static_cast<int>(1000.0 * seconds); ++i) {
-      if (std::string note = tool->poll(); !note.empty()) notes.push_back(std::move(note));
-      if (std::string text = tool->take_recovery(); !text.empty()) recoveries.push_back(std::move(text));
-      for (std::string& message : tool->take_messages()) messages.push_back(std::move(message));
-      ticks += tool->take_samples().size();
-      clock.advance(std::chrono::milliseconds(1));
-    }
-  }
-  bool run_until(const std::function<bool()>& is_so, double most_s = 60.0) {
-    for (double at_s = 0.0; at_s < most_s && !is_so(); at_s += 0.001) run_for(0.001);
-    return is_so();
-  }
-  bool has_note(const std::string& text) const {
-    return std::any_of(notes.begin(), notes.end(), [&](const auto& note) { return note.find(text) != note.npos; });
-  }
-  bool has_given_up() const { return tool->state() == ServerState::kFailed; }
-  bool shows(const std::string& text) const { return tool->banner().find(text) != std::string::npos; }
-
-  testing::FakeClock clock;
-  std::optional<ScriptedServer> server;
-  std::optional<ServerSupervisor> tool;
-  Recovery recovery = Recovery::kAll;
-  const Pose X_PN = Pose::translation({10.0, 20.0, 30.0});
-  std::vector<std::string> notes, recoveries, messages;
-  std::size_t ticks = 0;
-};
 
 TEST_F(SupervisionTest, PlacesTheToolThenSwitchesTheForcesOn) {
   start();
@@ -408,63 +357,6 @@ TEST_F(SupervisionTest, ASceneThatIsRefusedEndsInGivingUp) {
   server->refuses_scene = "no such patient";
   EXPECT_TRUE(run_until([&] { return has_given_up(); }, 10.0)) << tool->banner();
   EXPECT_TRUE(shows("no such patient")) << tool->banner();
-}
-
-class ReturnsOnly : public SupervisionTest {
- protected:
-  ReturnsOnly() { recovery = Recovery::kReturnsOnly; }
-};
-
-TEST_F(ReturnsOnly, PreparesAServerAgainThatCameBackOrStalled) {
-  start();
-  server->come_back();
-  run_for(0.01);
-  ASSERT_TRUE(run_until([&] { return tool->is_fresh(); }));
-  server->set_fault(GateFault::kLoopStalled);
-  run_for(0.01);
-  ASSERT_TRUE(run_until([&] { return tool->is_fresh(); }));
-  EXPECT_EQ(tool->activations(), 3);
-  EXPECT_EQ(tool->figures().returns, 2);
-}
-
-TEST_F(ReturnsOnly, FailsWithAServerThatEnds) {
-  start();
-  server->end("it ended");
-  run_for(0.01);
-  EXPECT_TRUE(has_given_up());
-  EXPECT_EQ(tool->failure().what, "it ended");
-  EXPECT_EQ(server->restarts, 0);
-}
-
-TEST_F(ReturnsOnly, FailsAfterTheTimeoutEvenWithoutAProcessor) {
-  start();
-  server->is_silent = server->has_no_processor = true;
-  run_for(0.9 * kTimeout_s);
-  EXPECT_FALSE(has_given_up());
-  run_for(0.2 * kTimeout_s);
-  EXPECT_TRUE(has_given_up());
-  EXPECT_NE(tool->failure().what.find("has not responded"), std::string::npos) << tool->failure().what;
-}
-
-TEST_F(ReturnsOnly, FailsWithAnyOtherFault) {
-  start();
-  server->set_fault(GateFault::kRunaway);
-  run_for(0.01);
-  EXPECT_TRUE(has_given_up());
-  EXPECT_EQ(server->count(ServerCommand::kResetFault), 0);
-}
-
-TEST_F(ReturnsOnly, FailsWithAFaultThatWasThereBefore) {
-  supervise();
-  server->set_fault(GateFault::kRunaway);
-  EXPECT_TRUE(run_until([&] { return has_given_up(); }, 1.0));
-}
-
-TEST_F(ReturnsOnly, FailsWhereAnotherClientHasControl) {
-  supervise();
-  server->has_control = false;
-  ASSERT_TRUE(run_until([&] { return has_given_up(); }, 5.0));
-  EXPECT_EQ(tool->failure().what, "another client controls this server");
 }
 
 }  // namespace
