@@ -16,7 +16,7 @@
 #include <thread>
 
 #include "anatomy/phantom/phantom.h"
-#include "attempt/hands/probe_hand.h"
+#include "attempt/hands/resting_transducer.h"
 #include "bench/benchmarks.h"
 #include "cases/scene_request.h"
 #include "core/files/temporary_folder.h"
@@ -192,7 +192,7 @@ CaseResult machine_holes(double rate_hz) {
 
 /// Draws and moves the hands until the end time; returns the number of frames.
 int play(std::array<Station*, 2> stations, const cases::Case& the_case, double seconds, const Progress& progress) {
-  const attempt::ProbeHand probe(*the_case.patient, the_case.plan.line_P);
+  const attempt::RestingTransducer probe(*the_case.patient, the_case.plan.line_P);
   const Segment& line_P = the_case.plan.line_P;
   const auto start = std::chrono::steady_clock::now();
   const auto time_s = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
@@ -234,7 +234,7 @@ Status measure(const cases::Case& the_case, const Options& options, double rate_
   const TemporaryFolder folder;
   TROCAR_TRY(Station needle, open_station(program, folder, "needle", rate_hz));
   TROCAR_TRY(Station probe_station, open_station(program, folder, "probe", rate_hz));
-  const attempt::ProbeHand probe(*the_case.patient, the_case.plan.line_P);
+  const attempt::RestingTransducer probe(*the_case.patient, the_case.plan.line_P);
   const auto patience = std::chrono::duration_cast<std::chrono::milliseconds>(kPatience);
   for (Station* station : {&needle, &probe_station}) {
     cases::SceneChoice choice;
@@ -243,7 +243,7 @@ Status measure(const cases::Case& the_case, const Options& options, double rate_
     choice.patient_source = "abdomen";
     link::LoadScene request = cases::scene_request(the_case, choice);
     request.patient_hash.clear();
-    if (station->tool == "probe") request.X_PW = probe.room(request.X_PW);
+    if (station->tool == "probe") request.X_PW = attempt::transducer_room(request.X_PW, probe.X_PT_room());
     TROCAR_TRY_STATUS(station->client.ask(request, patience));
     link::HandTarget hand = station->tool == "needle" ? needle_hand(the_case.plan.line_P, 0.0) : probe.at(0.0);
     hand.is_placed = true;

@@ -178,7 +178,7 @@ Status check_servers(Arguments& a) {
     TROCAR_TRY(security.server_key, link::load_public_key(a.server_key_file));
     a.realtime.security = std::move(security);
   }
-  a.realtime.patience = std::chrono::milliseconds(static_cast<int>(1000.0 * a.patience_s));
+  a.realtime.timeout = std::chrono::milliseconds(static_cast<int>(1000.0 * a.patience_s));
   return attempt::check_realtime(a.realtime);
 }
 

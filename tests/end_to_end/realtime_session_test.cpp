@@ -52,7 +52,7 @@ class RealtimeSession : public ::testing::Test {
                                           milliseconds patience, const Progress& progress = {}) const {
     attempt::RealtimeOptions realtime;
     realtime.endpoints = endpoints;
-    realtime.patience = patience;
+    realtime.timeout = patience;
     return attempt::run_realtime_session(*the_case, run_options(operator_name), realtime, progress);
   }
   storage::Session recorded() const {

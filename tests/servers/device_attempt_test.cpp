@@ -8,7 +8,7 @@
 #include "core/files/temporary_folder.h"
 #include "devices/pointer/test/gamepad_stand_in.h"
 #include "devices/pointer/test/spacenav_daemon.h"
-#include "servers/live_server.h"
+#include "servers/live_attempt_lab.h"
 
 namespace trocar::servers_test {
 namespace {
@@ -16,24 +16,13 @@ namespace {
 using testing::GamepadStandIn;
 using testing::SpacenavDaemon;
 
-std::shared_ptr<const cases::OpenCase> layered_case() {
-  static const std::shared_ptr<const cases::OpenCase> kOpen = [] {
-    cases::CaseChoice choice;
-    choice.patient_source = "layers-liver";
-    auto made = cases::make_open_case(choice);
-    EXPECT_TRUE(made) << made.error().text();
-    return made ? *made : nullptr;
-  }();
-  return kOpen;
-}
-
 class DeviceAttemptTest : public ::testing::Test {
  protected:
   void start(const char* device) {
     attempt::AttemptOptions options;
     options.session = folder_ / "attempt.trocar";
     options.priority = 0;  // ordinary scheduling: it takes no core from other tests
-    options.patience = std::chrono::seconds(30);
+    options.timeout = std::chrono::seconds(30);
     options.device_needle = device;
     options.has_probe = false;
     attempt = std::make_unique<attempt::LiveAttempt>(layered_case(), options);
@@ -74,7 +63,7 @@ TEST_F(DeviceAttemptTest, AGamepadPushesTheNeedleInAndRumbles) {
   const Pose begun = attempt->view().needle.X_PN;
   EXPECT_NEAR((begun.p() - layered_case()->the_case.plan.line_P.a).norm(), 20.0, 1.0);
   // A hand of the window moves nothing.
-  attempt->set_hand(attempt::HandTool::kNeedle, begun * Pose::translation({0.0, 0.0, 30.0}));
+  attempt->set_goal(attempt::HandTool::kNeedle, begun * Pose::translation({0.0, 0.0, 30.0}));
   pad.push_left_stick(1.0, 0.0);
   ASSERT_TRUE(wait_for([&] { return (attempt->view().needle.X_PN.p() - begun.p()).norm() > 3.0; })) << where();
   pad.push_left_stick(0.0, 0.0);

@@ -1,9 +1,7 @@
-// The disk fills up while a trainee's attempt is recorded.
+// The disk is full while a trainee's attempt is recorded, and its file cannot be written.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
-
-#include <atomic>
 
 #include "attempt/live/live_attempt.h"
 #include "attempt/record/attempt_replay.h"
@@ -28,33 +26,6 @@ class FullDisk {
  private:
   rlimit before_{};
 };
-
-TEST_F(LiveAttemptTest, WarnsOfAFullDiskThenEndsInOrderWithAWholeSession) {
-  const auto free_MB = std::make_shared<std::atomic<int>>(10'000);
-  attempt::AttemptOptions watched = options();
-  watched.free_bytes = [free_MB](const std::filesystem::path&) {
-    return std::optional<std::uintmax_t>(*free_MB * 1'000'000ull);
-  };
-  start(watched);
-  ASSERT_TRUE(wait_phase(attempt::AttemptPhase::kReady)) << where();
-  attempt->perform(expert());
-  ASSERT_TRUE(wait_deeper(5.0)) << where();
-  EXPECT_EQ(attempt->view().banner, "");
-  *free_MB = 20;
-  ASSERT_TRUE(wait_for([&] { return attempt->view().banner.find("can still be recorded") != std::string::npos; }))
-      << where();
-  ASSERT_TRUE(wait_for([&] { return attempt->view().has_fired; })) << where();
-  *free_MB = 1;
-  const attempt::RunResult result = finished();
-  EXPECT_NE(result.cut_short.find("The disk is full"), std::string::npos) << result.cut_short;
-  EXPECT_FALSE(result.unsaved);
-  EXPECT_TRUE(result.outcome.is_scored());
-  const auto session = storage::load_session(options().session);
-  ASSERT_TRUE(session) << session.error().text();
-  EXPECT_FALSE(session->is_incomplete);
-  EXPECT_EQ(session->samples.size(), result.ticks);
-  EXPECT_EQ(session->outcome->score, result.outcome.score);
-}
 
 TEST_F(LiveAttemptTest, ADiskThatIsFullAtOnceLosesNoScoreAndSaysWhatTheFileLacks) {
   start(options());

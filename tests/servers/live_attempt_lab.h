@@ -41,10 +41,10 @@ class LiveAttemptTest : public ::testing::Test {
     attempt::AttemptOptions options;
     options.session = folder_ / "attempt.trocar";
     options.priority = 0;  // ordinary scheduling: it takes no core from other tests
-    options.patience = std::chrono::seconds(30);
+    options.timeout = std::chrono::seconds(30);
     return options;
   }
-  void start(const attempt::AttemptOptions& options, std::shared_ptr<attempt::SeatServers> servers = nullptr) {
+  void start(const attempt::AttemptOptions& options, std::shared_ptr<attempt::HapticServers> servers = nullptr) {
     attempt = std::make_unique<attempt::LiveAttempt>(open, options, std::move(servers));
   }
   bool wait_phase(attempt::AttemptPhase phase) {

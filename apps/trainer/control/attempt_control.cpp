@@ -62,7 +62,7 @@ bool is_risk(const cases::Case& the_case, const attempt::AttemptEvent& event) {
 }  // namespace
 
 AttemptControl::AttemptControl(std::shared_ptr<const cases::OpenCase> open, const SeatChoice& choice,
-                               attempt::AttemptOptions options, std::shared_ptr<attempt::SeatServers> servers,
+                               attempt::AttemptOptions options, std::shared_ptr<attempt::HapticServers> servers,
                                WorkPage& page)
     : open_(std::move(open)),
       choice_(choice),
@@ -70,8 +70,7 @@ AttemptControl::AttemptControl(std::shared_ptr<const cases::OpenCase> open, cons
       attempt_(open_, std::move(options), std::move(servers)),
       needle_(*open_->the_case.patient, open_->the_case.plan.line_P, open_->the_case.needle.length_mm),
       probe_(*open_->the_case.patient, attempt_.options().X_PT_start.value_or(open_->X_PT_start)),
-      is_led_{attempt::is_moved_by_hand_targets(choice.needle_device),
-              attempt::is_moved_by_hand_targets(choice.probe_device)},
+      is_led_{attempt::follows_targets(choice.needle_device), attempt::follows_targets(choice.probe_device)},
       keys_(page, [this](const QKeyEvent& key, const KeyPlace& place) { return take_key(key, place); }) {
   if (const auto& X_PN_start = attempt_.options().X_PN_start) needle_.put(*X_PN_start);
   page_.workspace().show_help(choice_.difficulty);  // the replay of the last attempt showed all
@@ -204,7 +203,7 @@ void AttemptControl::toggle_clamp() {
       gestures_.active_tool() == ActiveTool::kNeedle ? attempt::HandTool::kNeedle : attempt::HandTool::kProbe;
   bool& is_clamped = is_clamped_[static_cast<std::size_t>(tool)];
   is_clamped = !is_clamped;
-  attempt_.hold(tool, is_clamped);
+  attempt_.clamp(tool, is_clamped);
 }
 
 void AttemptControl::toggle_forces() {
@@ -224,8 +223,8 @@ void AttemptControl::advance(double dt_s) {
     needle_.put(view_.needle.X_PN);
   }
   if (!is_led_[1] && view_.probe.is_known) probe_.put(view_.probe.X_PT);
-  attempt_.set_hand(attempt::HandTool::kNeedle, needle_.X_PN());
-  attempt_.set_hand(attempt::HandTool::kProbe, probe_.X_PT());
+  attempt_.set_goal(attempt::HandTool::kNeedle, needle_.X_PN());
+  attempt_.set_goal(attempt::HandTool::kProbe, probe_.X_PT());
   ForcePlot& plot = page_.forces();
   if (++frame_ % kFramesAPlot == 0) {
     std::vector<ForcePoint> points;

@@ -21,7 +21,7 @@ class AttemptControl : public QObject {
 
  public:
   AttemptControl(std::shared_ptr<const cases::OpenCase> open, const SeatChoice& choice, attempt::AttemptOptions options,
-                 std::shared_ptr<attempt::SeatServers> servers, WorkPage& page);
+                 std::shared_ptr<attempt::HapticServers> servers, WorkPage& page);
   ~AttemptControl() override;
 
   /// Once a frame.

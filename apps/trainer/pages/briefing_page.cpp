@@ -8,6 +8,7 @@
 #include <span>
 
 #include "attempt/live/live_attempt.h"
+#include "attempt/servers/device_control.h"
 #include "attempt/servers/seat_devices.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
@@ -58,8 +59,8 @@ QString device_rows(const std::string& device, bool is_needle) {
 }
 
 QString controls_text(const SeatChoice& choice) {
-  const bool is_needle_led = attempt::is_moved_by_hand_targets(choice.needle_device);
-  const bool is_probe_led = attempt::is_moved_by_hand_targets(choice.probe_device);
+  const bool is_needle_led = attempt::follows_targets(choice.needle_device);
+  const bool is_probe_led = attempt::follows_targets(choice.probe_device);
   QString all;
   if (is_needle_led && is_probe_led) {
     all = rows(kTakeMouse);

@@ -77,7 +77,7 @@ class SeatFlow : public QObject {
   std::optional<attempt::SeatState> cut_off_;      ///< Being opened, to be scored and shown.
   std::shared_ptr<const cases::OpenCase> opened_;  ///< Being shown, a part a frame; open_ when all is shown.
   std::shared_ptr<const cases::OpenCase> open_;
-  std::shared_ptr<attempt::SeatServers> servers_;  ///< Kept from one attempt to the next.
+  std::shared_ptr<attempt::HapticServers> servers_;  ///< Kept from one attempt to the next.
   std::unique_ptr<AttemptControl> attempt_;
   std::unique_ptr<ReplayControl> replay_;
   bool is_close_confirmed_ = false;

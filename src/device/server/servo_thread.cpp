@@ -2,47 +2,19 @@
 
 #include "realtime/periodic_loop.h"
 #include "server/detail/shared.h"
+#include "server/servo_commands.h"
 
 namespace trocar::server {
 namespace {
 
 constexpr double kStatistics_s = 0.05;  // interval of copying the statistics
 
-/// State set by the commands so far.
-struct Switches {
-  bool is_wanted = false;
-  bool is_stylet_in = true;
-  bool is_reset = false;  ///< In this period.
-};
-
 /// Pops a bounded number of commands.
-void obey(Shared& shared, Switches& switches, realtime::LoopStatistics& statistics) noexcept {
-  switches.is_reset = false;
+void obey(Shared& shared, ServoSwitches& switches, realtime::LoopStatistics& statistics) noexcept {
+  switches.begin_period();
   link::ServerCommand command{};
-  for (int i = 0; i < kMostCommandsAPeriod && shared.commands.pop(command); ++i) {
-    switch (command) {
-      case link::ServerCommand::kStart:
-        switches.is_wanted = true;
-        break;
-      case link::ServerCommand::kStop:
-        switches.is_wanted = false;
-        break;
-      case link::ServerCommand::kResetFault:
-        switches.is_reset = true;
-        break;
-      case link::ServerCommand::kStyletOut:
-        switches.is_stylet_in = false;
-        break;
-      case link::ServerCommand::kStyletIn:
-        switches.is_stylet_in = true;
-        break;
-      case link::ServerCommand::kRestartStatistics:
-        statistics = realtime::LoopStatistics(shared.period_ns);
-        break;
-      case link::ServerCommand::kReconnect:  // handled by the control thread
-        break;
-    }
-  }
+  for (int i = 0; i < kMostCommandsAPeriod && shared.commands.pop(command); ++i) switches.obey(command);
+  if (switches.restarts_statistics) statistics = realtime::LoopStatistics(shared.period_ns);
 }
 
 }  // namespace
@@ -53,7 +25,7 @@ void run_servo_thread(Shared& shared, Servo& servo, int priority) noexcept {
   shared.grant = realtime::request_real_time(priority);
   shared.has_grant.store(true, std::memory_order_release);
   realtime::LoopStatistics statistics(shared.period_ns);
-  Switches switches;
+  ServoSwitches switches;
   double told_s = 0.0;
   bool is_lent = false;
   std::int64_t busy_ns = 0;

@@ -18,12 +18,14 @@ TEST(FakeClock, StandsStillUntilItIsAdvanced) {
   EXPECT_DOUBLE_EQ(seconds_between(begin, clock.now()), 0.25);
 }
 
-TEST(FakeClock, CallsItsParticipantsInEveryStep) {
+TEST(FakeClock, CallsItsParticipantsInEveryStepUntilTheyLeave) {
   testing::FakeClock clock;
   std::vector<Clock::Duration> at;
   const Clock::TimePoint begin = clock.now();
-  clock.attach([&] { at.push_back(clock.now() - begin); });
+  auto participant = clock.attach([&] { at.push_back(clock.now() - begin); });
   clock.advance(2500us);
+  participant.reset();
+  clock.advance(1ms);
   EXPECT_EQ(at, (std::vector<Clock::Duration>{1ms, 2ms, 2500us}));
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -23,15 +24,20 @@ class FakeClock final : public Clock {
     const TimePoint end = now_ + duration;
     while (now_ < end) {
       now_ = std::min(now_ + kStep, end);
-      for (const auto& participant : participants_) participant();
+      for (std::size_t i = 0; i < participants_.size(); ++i)
+        if (const auto participant = participants_[i].lock()) (*participant)();
     }
   }
-  /// Called after every step. What it refers to must outlive the clock's last advance.
-  void attach(std::function<void()> participant) { participants_.push_back(std::move(participant)); }
+  /// Called after every step, until the returned handle is released.
+  [[nodiscard]] std::shared_ptr<const void> attach(std::function<void()> participant) {
+    auto shared = std::make_shared<const std::function<void()>>(std::move(participant));
+    participants_.push_back(shared);
+    return shared;
+  }
 
  private:
   TimePoint now_{std::chrono::hours(1)};  // a clock of 0 would hide what was never set
-  std::vector<std::function<void()>> participants_;
+  std::vector<std::weak_ptr<const std::function<void()>>> participants_;
 };
 
 }  // namespace trocar::testing

@@ -17,7 +17,7 @@ constexpr double kFarFromEntry_mm = 15.0;
 constexpr double kLookStep_mm = 0.5;
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
-/// What must not be touched, ahead of the tip.
+/// Structures at risk ahead of the tip.
 std::string danger_ahead(const cases::Case& the_case, const telemetry::TickSample& sample) {
   for (double ahead_mm = 0.0; ahead_mm <= kGuideAhead_mm; ahead_mm += kLookStep_mm) {
     const anatomy::Label* label = anatomy::find_label(*the_case.patient, sample.tip_mm + ahead_mm * sample.axis);

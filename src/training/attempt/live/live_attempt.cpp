@@ -1,145 +1,119 @@
 #include "attempt/live/live_attempt.h"
 
-#include <thread>
+#include <fmt/format.h>
+
 #include <utility>
 
-#include "attempt/live/detail/attempt_loop.h"
+#include "io/patient/patient_source.h"
+#include "tasks/operator.h"
 
 namespace trocar::attempt {
 namespace {
 
-LocalServerOptions server_options(const AttemptOptions& options, const char* tool) {
+constexpr std::chrono::milliseconds kBetweenPolls{2};
+constexpr double kBeforeEntry_mm = 20.0;
+
+LocalServerOptions server_options(const AttemptOptions& options, const char* tool, const std::string& device) {
   LocalServerOptions of_tool;
   of_tool.tool = tool;
-  of_tool.device = of_tool.tool == "needle" ? options.device_needle : options.device_probe;
+  of_tool.device = device;
   of_tool.rate_hz = options.rate_hz;
   of_tool.priority = options.priority;
   of_tool.flight_folder = options.session.parent_path();
   return of_tool;
 }
 
-bool fits_one(const LocalServer& server, const LocalServerOptions& wanted) {
-  const LocalServerOptions& is = server.options();
-  return is.device == wanted.device && is.rate_hz == wanted.rate_hz && is.priority == wanted.priority;
+Pose before_entry(const Segment& path_P) {
+  return needle_pose(path_P.a - kBeforeEntry_mm * path_P.direction(), path_P.direction());
 }
 
 }  // namespace
 
-bool is_moved_by_hand_targets(const std::string& device) {
-  return device_hold(device) == DeviceHold::kOurHand;
+LoopOptions loop_options(const cases::OpenCase& open_case, const AttemptOptions& options) {
+  LoopOptions loop;
+  loop.session = options.session;
+  loop.operator_name = options.trainee;
+  loop.level = options.level;
+  loop.seed = options.seed;
+  loop.X_PN_start = options.X_PN_start.value_or(before_entry(open_case.the_case.plan.line_P));
+  loop.X_PT_start = options.X_PT_start.value_or(open_case.X_PT_start);
+  loop.waits_for_begin = options.waits_for_begin;
+  loop.is_guided = options.is_guided;
+  loop.is_transducer_optional = follows_targets(options.device_probe);
+  loop.free_bytes = options.free_bytes;
+  return loop;
 }
 
-Result<std::shared_ptr<SeatServers>> SeatServers::start(const AttemptOptions& options) {
-  std::shared_ptr<SeatServers> servers(new SeatServers);
-  TROCAR_TRY(servers->needle, LocalServer::start(server_options(options, "needle")));
-  if (options.has_probe) {
-    TROCAR_TRY(servers->probe, LocalServer::start(server_options(options, "probe")));
-  }
-  return servers;
+AttemptCase attempt_case(std::shared_ptr<const cases::OpenCase> open_case) {
+  AttemptCase of;
+  of.patient_source = open_case->choice.patient_source;
+  of.server_source = io::absolute_source(open_case->server_source);
+  of.patient_seed = open_case->choice.patient_seed;
+  const cases::Case* const the_case = &open_case->the_case;
+  of.the_case = {std::move(open_case), the_case};
+  return of;
 }
 
-bool SeatServers::fits(const AttemptOptions& options) const {
-  if ((probe != nullptr) != options.has_probe || !fits_one(*needle, server_options(options, "needle"))) return false;
-  return !probe || fits_one(*probe, server_options(options, "probe"));
+AttemptOperators trainee_operators(const cases::OpenCase& open_case, const AttemptOptions& options) {
+  AttemptOperators operators;
+  operators.needle.rate_hz = options.rate_hz;
+  operators.needle.force_model = options.force_model.empty() ? open_case.force_model : options.force_model;
+  return operators;
 }
-
-struct LiveAttempt::Impl {
-  AttemptDesk desk;
-  std::jthread thread;
-};
 
 LiveAttempt::LiveAttempt(std::shared_ptr<const cases::OpenCase> open_case, AttemptOptions options,
-                         std::shared_ptr<SeatServers> servers)
-    : options_(std::move(options)), impl_(std::make_unique<Impl>()) {
-  impl_->thread = std::jthread([desk = &impl_->desk, open_case = std::move(open_case), servers = std::move(servers),
-                                chosen = options_](const std::stop_token& stop) mutable {
-    AttemptLoop loop(std::move(open_case), chosen, std::move(servers), *desk);
-    loop.run(stop);
-  });
+                         std::shared_ptr<HapticServers> servers)
+    : AttemptExchange(std::make_shared<SteadyClock>()), options_(std::move(options)) {
+  thread_ = std::jthread([this, open = std::move(open_case), kept = std::move(servers)](
+                             const std::stop_token& stop) mutable { run(stop, std::move(open), std::move(kept)); });
 }
 
 LiveAttempt::~LiveAttempt() = default;
 
-AttemptView LiveAttempt::view() const {
-  const std::lock_guard lock(impl_->desk.mutex);
-  const AttemptNews& news = impl_->desk.news;
-  AttemptView view = aged(news.view, seconds_between(news.told, options_.clock->now()));
-  // A second press acts against the first, even where the thread has not taken that one yet.
-  view.are_forces_stopped = impl_->desk.wishes.stopped.value_or(view.are_forces_stopped);
-  return view;
+Result<std::shared_ptr<HapticServers>> LiveAttempt::find_servers(std::shared_ptr<HapticServers> kept) const {
+  std::error_code ignored;
+  if (std::filesystem::exists(options_.session, ignored))
+    return fail_usage("there is a session of that name already", options_.session.string(), "choose another name");
+  const LocalServerOptions needle = server_options(options_, "needle", options_.device_needle);
+  std::optional<LocalServerOptions> transducer;
+  if (options_.has_probe) transducer = server_options(options_, "probe", options_.device_probe);
+  if (kept && kept->fits(needle, transducer)) return kept;
+  kept.reset();  // ends their processes, and releases their devices, before others are started
+  return HapticServers::start(needle, transducer);
 }
 
-std::vector<ForcePoint> LiveAttempt::take_forces() {
-  const std::lock_guard lock(impl_->desk.mutex);
-  return std::exchange(impl_->desk.news.forces, {});
-}
-
-std::vector<AttemptEvent> LiveAttempt::take_events() {
-  const std::lock_guard lock(impl_->desk.mutex);
-  return std::exchange(impl_->desk.news.events, {});
+void LiveAttempt::run(const std::stop_token& stop, std::shared_ptr<const cases::OpenCase> open_case,
+                      std::shared_ptr<HapticServers> kept) {
+  AttemptUpdate starting;
+  starting.view.progress = "starting the haptic servers";
+  publish(std::move(starting));
+  Result<std::shared_ptr<HapticServers>> found = find_servers(std::move(kept));
+  if (!found) {
+    AttemptUpdate failed;
+    failed.view.phase = AttemptPhase::kFailed;
+    failed.result = tl::unexpected(found.error());
+    publish(std::move(failed));
+    return;
+  }
+  SteadyClock clock;
+  const SupervisionOptions supervision{Recovery::kAll, options_.timeout, "trocar station", true};
+  ToolSupervisors supervisors = (*found)->supervise(supervision, clock);
+  AttemptLoop loop(attempt_case(open_case), loop_options(*open_case, options_), trainee_operators(*open_case, options_),
+                   *std::move(found), std::move(supervisors), clock, *this);
+  while (!stop.stop_requested() && loop.poll()) clock.sleep_for(kBetweenPolls);
 }
 
 std::optional<Result<RunResult>> LiveAttempt::take_result() {
-  const std::lock_guard lock(impl_->desk.mutex);
-  return std::exchange(impl_->desk.news.result, std::nullopt);
-}
-
-std::shared_ptr<SeatServers> LiveAttempt::servers() const {
-  const std::lock_guard lock(impl_->desk.mutex);
-  return impl_->desk.news.servers;
-}
-
-void LiveAttempt::frame_drawn() {
-  const std::lock_guard lock(impl_->desk.mutex);
-  impl_->desk.wishes.has_drawn = true;
-}
-
-void LiveAttempt::set_hand(HandTool tool, const Pose& X_PTool, const Vec3& v_P, const Vec3& w_P) {
-  const std::lock_guard lock(impl_->desk.mutex);
-  AttemptWishes& wishes = impl_->desk.wishes;
-  (tool == HandTool::kNeedle ? wishes.needle : wishes.probe) = AttemptWishes::Lead{X_PTool, v_P, w_P};
-}
-
-void LiveAttempt::hold(HandTool tool, bool is_clamped) {
-  const std::lock_guard lock(impl_->desk.mutex);
-  AttemptWishes& wishes = impl_->desk.wishes;
-  (tool == HandTool::kNeedle ? wishes.needle_clamped : wishes.probe_clamped) = is_clamped;
-}
-
-void LiveAttempt::begin() {
-  const std::lock_guard lock(impl_->desk.mutex);
-  impl_->desk.wishes.begins = true;
-}
-
-void LiveAttempt::fire() {
-  const std::lock_guard lock(impl_->desk.mutex);
-  impl_->desk.wishes.fires = true;
-}
-
-void LiveAttempt::stop_forces() {
-  const std::lock_guard lock(impl_->desk.mutex);
-  impl_->desk.wishes.stopped = true;
-}
-
-void LiveAttempt::resume_forces() {
-  const std::lock_guard lock(impl_->desk.mutex);
-  impl_->desk.wishes.stopped = false;
-}
-
-void LiveAttempt::set_parameters(link::SetParameters parameters) {
-  const std::lock_guard lock(impl_->desk.mutex);
-  impl_->desk.wishes.parameters.push_back(std::move(parameters));
-}
-
-void LiveAttempt::perform(std::unique_ptr<tasks::Operator> the_operator) {
-  const std::lock_guard lock(impl_->desk.mutex);
-  impl_->desk.news.view.is_performing = impl_->desk.news.view.is_performing || the_operator != nullptr;
-  impl_->desk.wishes.performer = std::move(the_operator);
-}
-
-void LiveAttempt::finish() {
-  const std::lock_guard lock(impl_->desk.mutex);
-  impl_->desk.wishes.finishes = true;
+  std::optional<Result<RunResult>> result = AttemptExchange::take_result();
+  if (!result || !*result) return result;
+  RunResult& scored = **result;
+  if (scored.ticks_missing > 0)
+    scored.warnings.push_back(
+        fmt::format("{} ticks of the needle did not arrive: the session has gaps there", scored.ticks_missing));
+  if (scored.paused_s > 0.0)
+    scored.warnings.push_back(
+        fmt::format("the needle's server was away: {:.1f} s are missing from the session", scored.paused_s));
+  return result;
 }
 
 }  // namespace trocar::attempt

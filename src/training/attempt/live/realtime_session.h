@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "attempt/offline/run_session.h"
+#include "attempt/servers/haptic_servers.h"
 #include "core/clock.h"
 #include "link/client/haptic_client.h"
 
@@ -18,25 +19,30 @@ struct RealtimeOptions {
   /// end with it.
   std::vector<std::string> endpoints;
   std::optional<link::ClientSecurity> security;  ///< For servers on tcp.
-  /// Timeout for a server without messages or without progress (except loading a scene).
-  std::chrono::milliseconds patience{5000};
-  std::shared_ptr<Clock> clock = std::make_shared<SteadyClock>();
+  /// For a server without messages or without progress (except loading a scene).
+  std::chrono::milliseconds timeout{5000};
 };
 
 /// Checks the options before a patient is opened (exit status 2); run_realtime_session calls it, too.
 Status check_realtime(const RealtimeOptions& options);
 
-/// Checks that every named server responds, or that one can be started; call it before a patient is opened.
+/// Checks that every named server responds, or that one can be started; before a patient is opened.
 Status find_servers(const RealtimeOptions& options);
 
-/// Performs an attempt through live haptic servers, in real time: operator here, hand, device and tick there. The
-/// needle's every tick is recorded and scored as by run_session, times from the first one; ticks that get lost on the
-/// way are counted. A transducer is held on the skin beside the entry meanwhile; where it was is recorded, too.
-/// A needle's server that goes away and comes back within the patience gets scene and hand again, and the attempt goes
-/// on from where the needle was. Errors: no server, another client in control, what a server refuses, a fault of the
-/// needle's gate, a needle's server that stays away, an interruption; the session file then holds everything up to
-/// there and is incomplete.
+/// Performs a scripted attempt through live haptic servers, in real time: operator here; hand, device and tick in the
+/// server. The command line's client of AttemptLoop, on the caller's thread. Every needle tick is recorded and scored
+/// as by run_session, times from the first one; lost ticks are counted. Meanwhile a transducer is held on the skin
+/// beside the entry; its pose is recorded, too. A server that disconnects and returns within the timeout gets scene and
+/// hand again, and the attempt continues from the needle's last pose. Errors: no server, another client in control,
+/// what a server refuses, a fault of the needle's gate, a needle server that does not return, an interruption; the
+/// session file then contains everything recorded until then and is incomplete.
 Result<RunResult> run_realtime_session(const cases::Case& the_case, const RunOptions& options,
                                        const RealtimeOptions& realtime, const Progress& progress = {});
+
+/// The same through these servers, in the time of a clock.
+Result<RunResult> run_realtime_session(const cases::Case& the_case, const RunOptions& options,
+                                       std::vector<std::unique_ptr<ServerHost>> servers,
+                                       std::chrono::milliseconds timeout, std::shared_ptr<Clock> clock,
+                                       const Progress& progress = {});
 
 }  // namespace trocar::attempt

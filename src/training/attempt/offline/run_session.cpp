@@ -104,6 +104,10 @@ Status SceneSchedule::add(const cases::Case& the_case, const storage::SessionPar
   return {};
 }
 
+RecordOptions record_options(const RunOptions& options) {
+  return {options.session, options.operator_name, options.patient_source, options.patient_seed, options.seed};
+}
+
 /// When a tick is, and where its tool: regular, or as recorded by the session that is replayed.
 class RecordedTicks {
  public:
@@ -207,7 +211,7 @@ Result<RunResult> run_session(const cases::Case& the_case, const RunOptions& giv
                            scenes.first().parameters};
   const InterruptibleWork interruptible;
   std::optional<UnfinishedOutput> unfinished;  // declared before the record, whose destructor still writes
-  TROCAR_TRY(AttemptRecord record, AttemptRecord::create(the_case, options, facts));
+  TROCAR_TRY(AttemptRecord record, AttemptRecord::create(the_case, record_options(options), facts));
   unfinished.emplace(storage::session_files(options.session));
   const auto start = std::chrono::steady_clock::now();
   TROCAR_TRY(const std::size_t ticks, perform(performer, scenes, device.apparent_mass_kg, record, progress));

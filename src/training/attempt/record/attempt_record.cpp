@@ -15,7 +15,7 @@
 namespace trocar::attempt {
 namespace {
 
-storage::SessionInfo describe(const cases::Case& the_case, const RunOptions& options, const AttemptFacts& facts) {
+storage::SessionInfo describe(const cases::Case& the_case, const RecordOptions& options, const AttemptFacts& facts) {
   storage::SessionInfo info;
   info.program_version = kVersion;
   info.started_utc = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now()));
@@ -73,7 +73,7 @@ AttemptRecord::AttemptRecord(const cases::Case& the_case, storage::SessionInfo i
   samples_.reserve(expected_ticks);
 }
 
-Result<AttemptRecord> AttemptRecord::create(const cases::Case& the_case, const RunOptions& options,
+Result<AttemptRecord> AttemptRecord::create(const cases::Case& the_case, const RecordOptions& options,
                                             const AttemptFacts& facts) {
   storage::SessionInfo info = describe(the_case, options, facts);
   TROCAR_TRY(storage::SessionWriter writer, storage::SessionWriter::create(options.session, info));

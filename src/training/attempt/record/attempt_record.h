@@ -1,12 +1,15 @@
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "attempt/offline/run_session.h"
 #include "attempt/record/known_scenes.h"
+#include "attempt/record/run_result.h"
+#include "cases/prepare_case.h"
 #include "tasks/operator.h"
 
 namespace trocar::attempt {
@@ -21,6 +24,15 @@ struct AttemptFacts {
   std::string level = {};      ///< See SessionInfo.
 };
 
+/// Where an attempt is recorded, and what is recorded of its choice.
+struct RecordOptions {
+  std::filesystem::path session;  ///< Written here; must not exist.
+  std::string operator_name;
+  std::string patient_source;  ///< As the user named it: a folder, or an embedded patient's name.
+  std::uint64_t patient_seed = 1;
+  std::uint64_t seed = 1;
+};
+
 /// The preset of a server's device: "premium" of "virtual:premium"; empty: it is none of data/devices.toml.
 std::string preset_of_device(std::string_view device_name);
 
@@ -33,7 +45,7 @@ inline constexpr double kTransducerEvery_s = 0.01;
 class AttemptRecord {
  public:
   /// The case must outlive it. Errors: the session file.
-  static Result<AttemptRecord> create(const cases::Case& the_case, const RunOptions& options,
+  static Result<AttemptRecord> create(const cases::Case& the_case, const RecordOptions& options,
                                       const AttemptFacts& facts);
 
   /// What the operator does before the next tick: fires, perhaps.

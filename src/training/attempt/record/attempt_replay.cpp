@@ -12,7 +12,7 @@
 namespace trocar::attempt {
 namespace {
 
-/// The label behind an event, by its id in the session.
+/// The label of an event, by its id in the session.
 const anatomy::Label* find_entered(const cases::OpenCase& open, const telemetry::TickEvent& event) {
   if (event.kind != telemetry::EventKind::kEnter) return nullptr;
   for (const anatomy::Label& label : open.the_case.patient->label_table.labels)

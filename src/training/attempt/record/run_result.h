@@ -39,6 +39,8 @@ struct RunResult {
   double simulated_s = 0.0;            ///< Of the last tick; through live servers their time, gaps included.
   double active_s = 0.0;               ///< Of it without interruptions: the trainee could act.
   std::uint64_t ticks_missing = 0;     ///< Of the session: ticks that a live server made and nobody received.
+  double paused_s = 0.0;               ///< Of it without a server; through live servers only, and
+  double unseen_s = 0.0;               ///< of it without an operator, because this program got no processor.
   std::vector<ServerFigures> servers;  ///< Of an attempt through live servers: the needle's first.
   std::vector<std::string> warnings;
   std::string cut_short;  ///< Why the attempt was ended before the operator ended it; empty: it was not.

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "attempt/live/live_attempt.h"
+#include "attempt/servers/device_control.h"
 
 namespace trocar::attempt {
 namespace {
@@ -69,7 +69,7 @@ std::string seat_device_title(const std::string& spec) {
 }
 
 bool can_share_seat(const std::string& needle_spec, const std::string& probe_spec) {
-  if (is_moved_by_hand_targets(needle_spec) || is_moved_by_hand_targets(probe_spec)) return true;
+  if (follows_targets(needle_spec) || follows_targets(probe_spec)) return true;
   return hardware_of(needle_spec) != hardware_of(probe_spec);
 }
 

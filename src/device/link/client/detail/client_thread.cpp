@@ -19,10 +19,6 @@
 namespace trocar::link::detail {
 namespace {
 
-constexpr double kHelloAgain_s = 0.2;
-/// Heartbeats without a message until the server counts as disconnected, 2 s: a server that loads a scene may be silent
-/// for some time. Heartbeats instead of time: a suspended client reads the waiting messages before it disconnects.
-constexpr int kSilentBeats = 200;
 constexpr int kMostWaitingOut = 200;  ///< Messages that the server does not accept [assumed: 2 s of heartbeats].
 constexpr int kMostWaitingIn = 1000;  ///< [assumed: ten seconds of batches at 100 Hz]
 constexpr int kMostReadAtOnce = 256;  ///< Messages between two checks of the clock [assumed].
@@ -112,8 +108,7 @@ Status ClientThread::open_socket() {
   if (zmq_connect(socket_.get(), options_.endpoint.c_str()) != 0) {
     return fail("the endpoint cannot be used", options_.endpoint, zmq_strerror(zmq_errno()));
   }
-  hello_s_ = 0.0;
-  silent_beats_ = 0;
+  beat_.reset();
   return {};
 }
 
@@ -165,7 +160,7 @@ void ClientThread::read_messages() {
       session_.refuse();
       mailbox_.put_refusal(message.error().text());
     } else if (session_.take(std::move(*message), steady_s())) {
-      silent_beats_ = 0;
+      beat_.heard();
     }
   }
 }
@@ -175,17 +170,15 @@ void ClientThread::beat() {
   mailbox_.put_beat();
   if (const auto failure = handshakes_.take()) mailbox_.put_refusal(*failure);
   if (!socket_.is_open() && !open_socket()) return;
-  if (!session_.is_welcomed()) {
-    if (now_s - hello_s_ >= kHelloAgain_s) send_hello(now_s);
-    return;
-  }
-  if (++silent_beats_ <= kSilentBeats) {
+  const BeatAction action = beat_.next(session_.is_welcomed(), now_s);
+  if (action == BeatAction::kHello) send_hello(now_s);
+  if (action == BeatAction::kHeartbeat) {
     // An age of 0 would mean that there is no window.
     const double age_s =
         options_.has_window ? now_s - realtime::seconds(frame_drawn_ns_.load(std::memory_order_relaxed)) : 0.0;
     send(Heartbeat{now_s, std::max(0.0, age_s), session_.ticks_received()});
-    return;
   }
+  if (action != BeatAction::kReconnect) return;
   // A new connection, so that it contains no old messages.
   session_.lose();
   if (const Status opened = open_socket(); !opened) log_warning("{}", opened.error().text());
@@ -193,7 +186,7 @@ void ClientThread::beat() {
 
 void ClientThread::send_hello(double now_s) {
   const ClientMessage hello{0, 0, Hello{options_.name, options_.wants_control}};
-  if (socket_.send(encode(hello), ZMQ_DONTWAIT)) hello_s_ = now_s;
+  if (socket_.send(encode(hello), ZMQ_DONTWAIT)) beat_.said_hello(now_s);
 }
 
 void ClientThread::send_outgoing(Outgoing outgoing) {

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "core/result.h"
+#include "link/client/detail/client_beat.h"
 #include "link/client/detail/client_mailbox.h"
 #include "link/client/detail/client_session.h"
 #include "link/client/detail/zmq_handles.h"
@@ -54,8 +55,7 @@ class ClientThread {
   ZmqSocket socket_;
   HandshakeMonitor handshakes_;
   ClientSession session_{mailbox_};
-  double hello_s_ = 0.0;  ///< When the last Hello went out; 0: none on this connection.
-  int silent_beats_ = 0;  ///< Since the server was last heard.
+  ClientBeat beat_;
 
   std::thread thread_;
 };

@@ -39,7 +39,7 @@ class LiveOperatorTest : public testing::Test {
     auto witness = std::make_unique<Witness>();
     witness_ = witness.get();
     performer_.the_operator = std::move(witness);
-    RunOptions options;
+    RecordOptions options;
     options.session = folder_ / "attempt.session";
     auto record = AttemptRecord::create(the_case_, options, {"a device", performer_.rate_hz, "insertion", "", {}});
     ASSERT_TRUE(record.has_value()) << record.error().text();

@@ -8,20 +8,36 @@
 
 namespace trocar::attempt {
 
-inline constexpr HandLimits kSteeredHand;  ///< A jump of the mouse is no jump of the tool.
-
-/// Who moves the needle's hand: the trainee's, led by the window, or a scripted operator, to whose start the hand goes
-/// first. To the attempt it is one operator that is never done.
-class SteeredNeedle final : public tasks::Operator {
+/// The operator of every live attempt: the trainee's hand, led by the window, or a scripted operator. A scripted
+/// operator of the attempt's options begins at its first pose; one that is given later begins after the hand has gone
+/// to its first pose, and the trainee continues after it.
+class NeedleSteering final : public tasks::Operator {
  public:
   LedHand& hand() noexcept { return hand_; }
+  const LedHand& hand() const noexcept { return hand_; }
   void fire() noexcept { fires_ = true; }
   bool has_fired() const noexcept { return has_fired_; }
   bool is_performing() const noexcept { return performer_ != nullptr; }
+  /// The performer is that of the attempt's options: the attempt begins with its first command.
+  bool is_scripted() const noexcept { return is_scripted_; }
 
+  /// The hand begins at the performer's first command, which it returns. `dt_s`: period of the ticks. The attempt ends
+  /// with the performer where `ends_with_it`.
+  tasks::HandCommand begin_with(std::unique_ptr<tasks::Operator> performer, double dt_s, bool ends_with_it) {
+    performer_ = std::move(performer);
+    is_scripted_ = is_at_start_ = true;
+    ends_with_performer_ = ends_with_it;
+    tasks::OperatorView before;
+    before.dt_s = dt_s;
+    first_ = performer_->next(before);
+    hand_.put(first_.X_PN);
+    return first_;
+  }
+
+  /// The hand goes to the performer's first pose, then the performer moves it. Null: the trainee does.
   void perform(std::unique_ptr<tasks::Operator> performer) noexcept {
     performer_ = std::move(performer);
-    is_at_start_ = false;
+    is_scripted_ = is_at_start_ = false;
     performed_s_ = 0.0;
     if (performer_ == nullptr) return;
     first_ = performer_->next({});
@@ -39,11 +55,9 @@ class SteeredNeedle final : public tasks::Operator {
 
   tasks::HandCommand next(const tasks::OperatorView& view) noexcept override {
     tasks::HandCommand command = is_performing() ? next_of_performer(view) : tasks::HandCommand{};
-    if (!is_performing()) {
+    if (!is_performing() && !command.is_done) {
       hand_.step(view.dt_s);
-      command = tasks::HandCommand{};
-      command.X_PN = hand_.X_P();
-      command.v_P = hand_.v_P();
+      command = led();
     }
     command.has_fired = (command.has_fired || fires_) && !has_fired_;
     has_fired_ = has_fired_ || command.has_fired;
@@ -52,30 +66,35 @@ class SteeredNeedle final : public tasks::Operator {
   }
 
  private:
+  tasks::HandCommand led() const noexcept {
+    tasks::HandCommand command;
+    command.X_PN = hand_.X_P();
+    command.v_P = hand_.v_P();
+    return command;
+  }
+
   tasks::HandCommand next_of_performer(const tasks::OperatorView& view) noexcept {
     constexpr double kThere_mm = 0.5, kThere_rad = 0.02;
     if (!is_at_start_) {
       hand_.step(view.dt_s);
-      tasks::HandCommand going;
-      going.X_PN = hand_.X_P();
-      going.v_P = hand_.v_P();
       is_at_start_ = (hand_.X_P().p() - first_.X_PN.p()).norm() < kThere_mm &&
                      turn_between(hand_.X_P().R(), first_.X_PN.R()).norm() < kThere_rad;
-      return going;
+      return led();
     }
     tasks::OperatorView own = view;
     own.time_s = performed_s_ += view.dt_s;
     tasks::HandCommand command = performer_->next(own);
     hand_.put(command.X_PN);
     if (command.is_done) performer_.reset();
-    command.is_done = false;
+    command.is_done = command.is_done && ends_with_performer_;
     return command;
   }
 
-  LedHand hand_{kSteeredHand};
+  LedHand hand_;
   std::unique_ptr<tasks::Operator> performer_;
   tasks::HandCommand first_;
   double performed_s_ = 0.0;
+  bool is_scripted_ = false, ends_with_performer_ = false;
   bool is_at_start_ = false;
   bool fires_ = false, has_fired_ = false;
 };

@@ -1,11 +1,10 @@
-#include "attempt/hands/probe_hand.h"
+#include "attempt/hands/resting_transducer.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
-#include "haptics/contact/contact_face.h"
 #include "volume/sampling.h"
 
 namespace trocar::attempt {
@@ -35,7 +34,7 @@ SkinPoint find_skin(const volume::FloatGrid& distance_mm, Vec3 p_P) noexcept {
 
 }  // namespace
 
-ProbeHand::ProbeHand(const anatomy::VirtualPatient& patient, const Segment& path_P) noexcept {
+RestingTransducer::RestingTransducer(const anatomy::VirtualPatient& patient, const Segment& path_P) noexcept {
   const volume::FloatGrid& distance_mm = patient.skin_distance_mm;
   const SkinPoint entry = find_skin(distance_mm, path_P.a);
   const bool is_on_top = std::abs(entry.outwards_P.z()) > kNearlyAlongBody;
@@ -54,7 +53,7 @@ ProbeHand::ProbeHand(const anatomy::VirtualPatient& patient, const Segment& path
   X_PT_skin_ = Pose(R_PT, place.p_P);
 }
 
-link::HandTarget ProbeHand::at(double time_s) const noexcept {
+link::HandTarget RestingTransducer::at(double time_s) const noexcept {
   const double lowered_mm = std::min(std::max(0.0, time_s) * kPressing_mm_s, kAbove_mm + kPress_mm);
   const bool is_moving = time_s > 0.0 && lowered_mm < kAbove_mm + kPress_mm;
   Vec3 tremor_T, tremor_mm_s_T;
@@ -68,15 +67,6 @@ link::HandTarget ProbeHand::at(double time_s) const noexcept {
   hand.X_PN = X_PT_skin_ * Pose::translation(offset_T);
   hand.v_P = X_PT_skin_.R() * (tremor_mm_s_T + (is_moving ? kPressing_mm_s : 0.0) * Vec3::UnitY());
   return hand;
-}
-
-Pose ProbeHand::room(const Pose& X_PW_of_needle) const noexcept {
-  return probe_room(X_PW_of_needle, X_PT_skin_);
-}
-
-Pose probe_room(const Pose& X_PW_of_needle, const Pose& X_PT) noexcept {
-  const Pose X_TS = haptics::tool_in_stylus(haptics::make_face(haptics::Tool::kTransducer)).inverse();
-  return {X_PW_of_needle.R(), (X_PT * X_TS).p()};
 }
 
 }  // namespace trocar::attempt

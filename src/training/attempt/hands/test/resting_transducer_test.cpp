@@ -1,4 +1,4 @@
-#include "attempt/hands/probe_hand.h"
+#include "attempt/hands/resting_transducer.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 namespace trocar::attempt {
 namespace {
 
-class HeldProbe : public testing::Test {
+class RestingTransducerTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     auto made = anatomy::generate_phantom("layers-liver");
@@ -28,25 +28,25 @@ class HeldProbe : public testing::Test {
   static constexpr double kTremor_mm = 0.2;  // of three axes together
 };
 
-TEST_F(HeldProbe, ComesDownFromAboveAndStaysPressedIn) {
-  const ProbeHand hand(*patient, path());
-  EXPECT_NEAR(above_skin_mm(hand.at(0.0)), ProbeHand::kAbove_mm, 0.5);
+TEST_F(RestingTransducerTest, ComesDownFromAboveAndStaysPressedIn) {
+  const RestingTransducer hand(*patient, path());
+  EXPECT_NEAR(above_skin_mm(hand.at(0.0)), RestingTransducer::kAbove_mm, 0.5);
   for (const double time_s : {2.0, 10.0, 60.0})
-    EXPECT_NEAR(above_skin_mm(hand.at(time_s)), -ProbeHand::kPress_mm, 0.5) << time_s;
+    EXPECT_NEAR(above_skin_mm(hand.at(time_s)), -RestingTransducer::kPress_mm, 0.5) << time_s;
 }
 
-TEST_F(HeldProbe, LooksIntoTheBodyBesideTheEntry) {
-  const ProbeHand hand(*patient, path());
+TEST_F(RestingTransducerTest, LooksIntoTheBodyBesideTheEntry) {
+  const RestingTransducer hand(*patient, path());
   const link::HandTarget held = hand.at(10.0);
-  EXPECT_NEAR((held.X_PN.p() - path().a).norm(), ProbeHand::kBeside_mm, 0.15 * ProbeHand::kBeside_mm);
+  EXPECT_NEAR((held.X_PN.p() - path().a).norm(), RestingTransducer::kBeside_mm, 0.15 * RestingTransducer::kBeside_mm);
   const Vec3 outwards_P = volume::gradient_per_mm(patient->skin_distance_mm, held.X_PN.p()).normalized();
   EXPECT_LT(held.X_PN.R().col(1).dot(outwards_P), -0.99);
   EXPECT_NEAR(held.X_PN.R().determinant(), 1.0, 1e-9);
   EXPECT_LT((held.X_PN.R() * held.X_PN.R().transpose() - Mat3::Identity()).norm(), 1e-9);
 }
 
-TEST_F(HeldProbe, NeverStandsStillAndTellsItsVelocity) {
-  const ProbeHand hand(*patient, path());
+TEST_F(RestingTransducerTest, NeverStandsStillAndTellsItsVelocity) {
+  const RestingTransducer hand(*patient, path());
   constexpr double kStep_s = 1e-6;
   for (int i = 0; i < 400; ++i) {
     const double time_s = 0.013 * i + 0.001;

@@ -1,0 +1,129 @@
+// What an attempt does with the ticks of its tools.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "attempt/guide/gun_shot.h"
+#include "attempt/live/attempt_event.h"
+#include "attempt/live/attempt_loop.h"
+#include "cases/session_case.h"
+#include "telemetry/tick_pose.h"
+
+namespace trocar::attempt {
+namespace {
+
+/// Ticks that are older when they arrive were not answered in time: a server's hand stops when it gets no target for so
+/// long, and the operator's must not have moved on meanwhile.
+constexpr double kAnswered_s = 0.05;
+constexpr double kLongestStep_s = 0.02;  ///< Of a hand between two ticks.
+
+}  // namespace
+
+Status AttemptLoop::step_needle() {
+  const std::vector<link::NumberedSample> samples = needle_->take_samples();
+  if (samples.empty()) {
+    was_needle_on_ = was_needle_on_ && needle_->is_fresh();
+    return {};
+  }
+  if (!was_needle_on_) {
+    if (live_) live_->begin(needle_->client().clock_offset_s, needle_->activations() != needle_activations_);
+    needle_activations_ = needle_->activations();
+    if (has_ever_been_on_) steering_->resume_at(telemetry::device_pose(samples.front().sample));
+    needle_time_s_ = samples.front().sample.time_s;
+  }
+  was_needle_on_ = true;
+  needle_->place_at(telemetry::felt_needle(samples.back().sample));  // in its channel, wherever the grip has moved
+  if (!live_) {
+    answer_unrecorded(samples);
+    return {};
+  }
+  TROCAR_TRY_STATUS(record(samples));
+  needle_->set_target(live_->hand());
+  send_scheduled_parameters();
+  return {};
+}
+
+void AttemptLoop::answer_unrecorded(const std::vector<link::NumberedSample>& samples) {
+  // A scripted operator begins with the record; until then the needle rests where it was put.
+  const bool is_resting = steering_->is_scripted();
+  tasks::OperatorView view;
+  for (const link::NumberedSample& numbered : samples) {
+    view.last = numbered.sample;
+    view.dt_s = std::clamp(numbered.sample.time_s - needle_time_s_, 0.0, kLongestStep_s);
+    view.X_PN_device = telemetry::device_pose(numbered.sample);
+    needle_time_s_ = numbered.sample.time_s;
+    if (!is_resting) command_ = performer_.the_operator->next(view);
+  }
+  last_needle_ = samples.back().sample;
+  last_needle_->time_s = 0.0;
+  if (!is_resting) needle_->set_target(hand_target(command_, needle_time_s_ + 1.0 / performer_.rate_hz));
+}
+
+Status AttemptLoop::record(const std::vector<link::NumberedSample>& samples) {
+  for (const link::NumberedSample& numbered : samples) {
+    bool goes_on = true;
+    if (numbered.sample.time_s < samples.back().sample.time_s - kAnswered_s) {
+      TROCAR_TRY_STATUS(live_->take_unseen(numbered.sample));
+    } else {
+      TROCAR_TRY(goes_on, live_->take(numbered.sample));
+    }
+    TROCAR_TRY_STATUS(record_->note_scene(numbered.scene, needle_->scenes()));
+    note_tick(live_->last());
+    finishes_ = finishes_ || !goes_on;
+    if (!goes_on) break;
+  }
+  note_shot();
+  command_ = live_->command();
+  last_needle_ = live_->last();
+  return {};
+}
+
+void AttemptLoop::note_tick(const telemetry::TickSample& sample) {
+  if (!options_.has_view) return;
+  trace_.add({sample.time_s, sample.depth_mm, telemetry::axial_resistance_n(sample)});
+  if (!contact_s_ && sample.phase != telemetry::InsertionPhase::kOutside) contact_s_ = sample.time_s;
+  for (const telemetry::TickEvent& event : sample.events) {
+    if (event.kind == telemetry::EventKind::kNone) break;
+    if (auto described = describe_event(record_->info(), sample, event)) events_.push_back(*std::move(described));
+  }
+}
+
+void AttemptLoop::note_shot() {
+  const std::optional<std::size_t>& fired = record_->fired();
+  if (!options_.has_view || shot_ || !fired || *fired >= record_->samples().size()) return;
+  shot_ = std::make_shared<const GunShot>(make_gun_shot(*case_.the_case, record_->samples()[*fired]));
+  // The composition of the core is displayed beside its picture.
+  events_.push_back({shot_->time_s, shot_->depth_mm, telemetry::EventKind::kNone, "shot",
+                     fmt::format("the gun was fired at {:.0f}\u00a0mm", shot_->depth_mm)});
+}
+
+/// Parameters of a replayed session, sent when as many ticks were made as before them. The server replies from which
+/// tick they apply.
+void AttemptLoop::send_scheduled_parameters() {
+  const auto& all = performer_.parameters;
+  while (next_parameters_ < all.size() && all[next_parameters_].tick <= record_->samples().size())
+    needle_->set_parameters(cases::as_command(all[next_parameters_++]));
+}
+
+Status AttemptLoop::step_transducer() {
+  const std::vector<link::NumberedSample> samples = transducer_->take_samples();
+  if (samples.empty()) {
+    was_transducer_on_ = was_transducer_on_ && transducer_->is_fresh();
+    return {};
+  }
+  const double first_s = samples.front().sample.time_s, now_s = samples.back().sample.time_s;
+  if (!was_transducer_on_) transducer_time_s_ = first_s;
+  if (transducer_->activations() != transducer_activations_) transducer_on_s_ = first_s;
+  transducer_activations_ = transducer_->activations();
+  was_transducer_on_ = true;
+  link::HandTarget target =
+      transducer_motion_->next(now_s - transducer_on_s_, std::min(now_s - transducer_time_s_, kAnswered_s));
+  target.server_time_s = now_s;
+  transducer_time_s_ = now_s;
+  last_transducer_ = samples.back().sample;
+  transducer_->set_target(target);
+  transducer_->place_at(transducer_motion_->X_PT_to_resume(*last_transducer_));
+  return live_ ? live_->note_transducer(samples, transducer_->client().clock_offset_s) : Status{};
+}
+
+}  // namespace trocar::attempt

@@ -1,0 +1,134 @@
+// What a client sees of an attempt.
+#include "attempt/guide/gun_shot.h"
+#include "attempt/guide/needle_view.h"
+#include "attempt/guide/puncture_guide.h"
+#include "attempt/live/attempt_loop.h"
+#include "telemetry/tick_pose.h"
+
+namespace trocar::attempt {
+
+const char* to_string(AttemptPhase phase) noexcept {
+  switch (phase) {
+    case AttemptPhase::kStarting:
+      return "starting";
+    case AttemptPhase::kReady:
+      return "ready";
+    case AttemptPhase::kInBody:
+      return "in the body";
+    case AttemptPhase::kServerLost:
+      return "server lost";
+    case AttemptPhase::kStopped:
+      return "forces stopped";
+    case AttemptPhase::kFinishing:
+      return "finishing";
+    case AttemptPhase::kFinished:
+      return "finished";
+    case AttemptPhase::kFailed:
+      return "failed";
+  }
+  return "?";
+}
+
+AttemptView aged(AttemptView view, double age_s) {
+  constexpr double kFresh_s = 0.25;
+  const bool moves = view.phase == AttemptPhase::kReady || view.phase == AttemptPhase::kInBody;
+  if (!moves || age_s < kFresh_s) return view;
+  view.phase = AttemptPhase::kServerLost;
+  view.banner = "The puncture is paused: this machine is too busy";
+  view.hint.clear();
+  return view;
+}
+
+AttemptPhase AttemptLoop::phase_now() const {
+  if (is_stopped_) return AttemptPhase::kStopped;
+  if (!has_ever_been_on_) return AttemptPhase::kStarting;
+  if (!needle_->is_fresh()) return AttemptPhase::kServerLost;
+  const bool is_inside = last_needle_ && (last_needle_->phase == telemetry::InsertionPhase::kInserted ||
+                                          last_needle_->phase == telemetry::InsertionPhase::kRetracting ||
+                                          last_needle_->depth_mm > case_.the_case->tissues.skin_thickness_mm);
+  return is_inside ? AttemptPhase::kInBody : AttemptPhase::kReady;
+}
+
+NeedleView AttemptLoop::needle_now() const {
+  NeedleView view;
+  if (last_needle_) {
+    const bool is_led = follows_targets(needle_->host().device());
+    view = needle_view(*case_.the_case, *last_needle_, is_led ? command_.X_PN : telemetry::device_pose(*last_needle_));
+  } else {
+    view.X_PN = view.X_PN_device = view.X_PN_hand = command_.X_PN;
+  }
+  view.is_clamped = steering_->hand().is_clamped();
+  return view;
+}
+
+TransducerView AttemptLoop::transducer_now() const {
+  TransducerView view;
+  const LedHand& hand = led_transducer_.hand();
+  view.X_PT_hand = view.X_PT = hand.X_P();
+  view.is_clamped = hand.is_clamped();
+  if (!last_transducer_) return view;
+  view.is_known = true;
+  view.X_PT = telemetry::felt_probe(*last_transducer_);
+  if (!follows_targets(transducer_->host().device())) view.X_PT_hand = telemetry::device_pose(*last_transducer_);
+  view.contact_n = last_transducer_->f_constraint_n.norm();
+  view.pressed_mm = last_transducer_->depth_mm;
+  return view;
+}
+
+void AttemptLoop::add_servers(AttemptView& view) const {
+  view.are_forces_stopped = is_stopped_;
+  for (const ServerSupervisor* server : {transducer_.get(), needle_.get()}) {  // the needle's banner has priority
+    if (server == nullptr) continue;
+    ServerView& shown = view.servers[server == needle_.get() ? 0 : 1];
+    shown = server->view();
+    view.are_forces_stopped = view.are_forces_stopped || shown.waits_for_resume;
+    if (!server->banner().empty()) view.banner = server->banner();
+  }
+  if (view.banner.empty()) view.banner = disk_banner_;
+  if (is_stopped_ && view.banner.empty()) view.banner = "Forces are stopped. Resume to continue.";
+}
+
+void AttemptLoop::add_times(AttemptView& view) {
+  if (!last_needle_) return;
+  if (live_) session_s_ = live_->active_s();
+  if (contact_s_ && record_)
+    since_contact_s_ = tasks::active_time_s(*contact_s_, last_needle_->time_s, record_->interruptions());
+  view.session_s = session_s_;
+  view.since_contact_s = since_contact_s_;
+  view.shot = shot_;
+  if (shot_) view.since_shot_s = last_needle_->time_s - shot_->time_s;
+}
+
+void AttemptLoop::publish(AttemptPhase phase, std::optional<Result<RunResult>> result) {
+  AttemptUpdate update;
+  update.result = std::move(result);
+  update.servers = servers_;
+  AttemptView& view = update.view;
+  view.phase = phase;
+  view.progress = progress_;
+  view.progress_fraction = progress_fraction_;
+  if (!options_.has_view) {
+    if (live_) view.needle.time_s = live_->time_s();
+    exchange_.publish(std::move(update));
+    return;
+  }
+  view.message = message_;
+  view.recovered = recovered_;
+  view.recoveries = recoveries_;
+  view.needle = needle_now();
+  view.probe = transducer_now();
+  view.has_probe = transducer_ != nullptr;
+  view.is_performing = steering_->is_performing();
+  view.has_fired = steering_->has_fired();
+  view.notes = notes_;
+  add_servers(view);
+  add_times(view);
+  const bool is_moving = phase == AttemptPhase::kReady || phase == AttemptPhase::kInBody;
+  if (options_.is_guided && is_moving && last_needle_)
+    view.hint = guide_puncture(*case_.the_case, *last_needle_, view.has_fired);
+  update.forces = trace_.take();
+  update.events = std::exchange(events_, {});
+  exchange_.publish(std::move(update));
+}
+
+}  // namespace trocar::attempt

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "attempt/servers/local_server.h"
+#include "attempt/servers/server_supervisor.h"
+#include "core/progress.h"
+
+namespace trocar::attempt {
+
+/// Supervisors of an attempt's servers. The servers must outlive them.
+struct ToolSupervisors {
+  std::unique_ptr<ServerSupervisor> needle, transducer;  ///< No transducer: null.
+};
+
+/// The haptic servers of an attempt: the needle's, and perhaps the transducer's. If they are kept between attempts,
+/// they need not reopen the patient. Only one attempt uses them at a time.
+class HapticServers {
+ public:
+  /// `transducer` may be null.
+  HapticServers(std::unique_ptr<ServerHost> needle, std::unique_ptr<ServerHost> transducer);
+
+  /// Starts processes. Errors: no trocar-hapticd, it cannot be started.
+  static Result<std::shared_ptr<HapticServers>> start(const LocalServerOptions& needle,
+                                                      const std::optional<LocalServerOptions>& transducer);
+  /// Whether start() with these options would make such servers.
+  bool fits(const LocalServerOptions& needle, const std::optional<LocalServerOptions>& transducer) const;
+
+  ToolSupervisors supervise(const SupervisionOptions& options, Clock& clock);
+
+ private:
+  std::unique_ptr<ServerHost> needle_, transducer_;
+  std::optional<LocalServerOptions> needle_options_, transducer_options_;  ///< Of processes that start() made.
+};
+
+/// Servers that were found by what they answer, connected and idle.
+struct IdentifiedServers {
+  std::shared_ptr<HapticServers> servers;
+  ToolSupervisors supervisors;
+};
+
+/// Connects to servers in any order and tells them apart by their tool; polls them until each is idle. Errors: a server
+/// that fails, a second one of a tool, none of the needle, an interruption of the program.
+Result<IdentifiedServers> identify_servers(std::vector<std::unique_ptr<ServerHost>> hosts,
+                                           const SupervisionOptions& options, Clock& clock, const Progress& progress);
+
+}  // namespace trocar::attempt
