@@ -99,7 +99,7 @@ TYPED_TEST(ConnectionContract, WelcomesTheFirstClientWithControl) {
   EXPECT_TRUE(view.welcome.has_control);
   EXPECT_EQ(view.welcome.tool, "needle");
   EXPECT_EQ(view.welcome.device.name, "virtual:premium");
-  EXPECT_EQ(view.status.fault, "none");
+  EXPECT_EQ(view.status.fault, telemetry::GateFault::kNone);
   const auto second = this->connect();
   EXPECT_FALSE(second->view().welcome.has_control);
   EXPECT_FALSE(this->ask(*second, ServerCommand::kStop).is_done);
@@ -147,10 +147,10 @@ TYPED_TEST(ConnectionContract, SwitchesTheForcesOffWhenItsControllerLeaves) {
   const auto watcher = this->connect(false);
   ASSERT_TRUE(this->ask(*connection, this->scene()).is_done);
   ASSERT_TRUE(this->ask(*connection, ServerCommand::kStart).is_done);
-  ASSERT_TRUE(this->rig.wait([&] { return watcher->view().status.gate_mode != "off"; }));
+  ASSERT_TRUE(this->rig.wait([&] { return watcher->view().status.gate_mode != telemetry::GateMode::kOff; }));
   connection.reset();
   EXPECT_TRUE(this->rig.wait([&] {
-    const std::string gate = watcher->view().status.gate_mode;
+    const telemetry::GateMode gate = watcher->view().status.gate_mode;
     return gate == "off" || gate == "fading";
   }));
 }

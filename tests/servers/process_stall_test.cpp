@@ -49,7 +49,8 @@ class ProcessStalls : public LiveAttemptTest {
   void expect_going_on() {
     ASSERT_TRUE(wait_for([&] {
       const attempt::AttemptView view = attempt->view();
-      return view.phase == attempt::AttemptPhase::kInBody && view.banner.empty() && view.servers[0].gate == "on";
+      return view.phase == attempt::AttemptPhase::kInBody && view.banner.empty() &&
+             view.servers[0].gate == telemetry::GateMode::kOn;
     })) << where();
     EXPECT_LT((attempt->view().needle.X_PN.p() - rest_P).norm(), kCreep_mm);
     EXPECT_EQ(attempt->view().servers[0].pid, pid) << "a slow server was ended";

@@ -6,6 +6,7 @@
 
 #include "attempt/offline/run_session.h"
 #include "attempt/record/attempt_replay.h"
+#include "cases/scene_request.h"
 #include "servers/simulated_attempt_lab.h"
 #include "storage/session_file.h"
 
@@ -25,10 +26,12 @@ TEST_F(SimulatedAttemptTest, StopsTheForcesAndGoesOn) {
   ASSERT_TRUE(run_until_deeper(10.0)) << where();
   attempt->stop_forces();
   ASSERT_TRUE(run_until_phase(attempt::AttemptPhase::kStopped));
-  ASSERT_TRUE(run_until([&] { return attempt->view().servers[0].gate == "off"; })) << attempt->view().servers[0].gate;
+  ASSERT_TRUE(run_until([&] { return attempt->view().servers[0].gate == telemetry::GateMode::kOff; }))
+      << to_string(attempt->view().servers[0].gate);
   EXPECT_FALSE(attempt->view().banner.empty());
   attempt->resume_forces();
-  ASSERT_TRUE(run_until([&] { return attempt->view().servers[0].gate == "on"; })) << attempt->view().servers[0].gate;
+  ASSERT_TRUE(run_until([&] { return attempt->view().servers[0].gate == telemetry::GateMode::kOn; }))
+      << to_string(attempt->view().servers[0].gate);
   ASSERT_TRUE(run_until([&] { return !attempt->view().is_performing; })) << where();
   EXPECT_GT(finished().outcome.score, 0.0);
 }
@@ -37,7 +40,7 @@ TEST_F(SimulatedAttemptTest, StaysStoppedWhenTheServerDiesMeanwhile) {
   start(options());
   ASSERT_TRUE(run_until_phase(attempt::AttemptPhase::kReady)) << where();
   attempt->stop_forces();
-  ASSERT_TRUE(run_until([&] { return attempt->view().servers[0].gate == "off"; }));
+  ASSERT_TRUE(run_until([&] { return attempt->view().servers[0].gate == telemetry::GateMode::kOff; }));
   const int pid = attempt->view().servers[0].pid;
   needle->kill();
   ASSERT_TRUE(run_until([&] { return attempt->view().banner.find("resume") != std::string::npos; })) << where();
@@ -92,13 +95,13 @@ TEST_F(SimulatedAttemptTest, TheReplayMovesTheTransducerAsItWasMoved) {
 TEST_F(SimulatedAttemptTest, ParametersReachTheServerWhileItRuns) {
   start(options());
   ASSERT_TRUE(run_until_phase(attempt::AttemptPhase::kReady)) << where();
-  attempt->set_parameters({"skin.fp=30"});
+  attempt->set_parameters(cases::tissue_parameters({{"skin", "fp", 30.0}}));
   ASSERT_TRUE(run_until([&] { return attempt->view().message.find("changed parameters") != std::string::npos; }));
-  attempt->set_parameters({"skin.colour=9"});
+  attempt->set_parameters(cases::tissue_parameters({{"skin", "colour", 9.0}}));
   ASSERT_TRUE(run_until([&] { return attempt->view().message.find("colour") != std::string::npos; }))
       << attempt->view().message;
   // What was refused changed nothing, and a message replaces the one before it.
-  attempt->set_parameters({"skin.fp=30", "liver.mu=0.2"});
+  attempt->set_parameters(cases::tissue_parameters({{"skin", "fp", 30.0}, {"liver", "mu", 0.2}}));
   attempt->perform(expert());  // gives up at a skin that does not give way
   ASSERT_TRUE(run_until([&] { return !attempt->view().is_performing; })) << where();
   const attempt::RunResult result = finished();
@@ -116,11 +119,11 @@ TEST_F(SimulatedAttemptTest, RecordsTheTissuesThatWereFeltAndReplaysThem) {
   chosen.waits_for_begin = true;
   start(chosen);
   ASSERT_TRUE(run_until_phase(attempt::AttemptPhase::kReady)) << where();
-  attempt->set_parameters({"skin.fp=4"});  // before anything is recorded
+  attempt->set_parameters(cases::tissue_parameters({{"skin", "fp", 4.0}}));  // before anything is recorded
   ASSERT_TRUE(run_until([&] { return !attempt->view().message.empty(); }));
   attempt->begin();
   ASSERT_TRUE(run_until([&] { return attempt->view().session_s > 0.1; }));
-  attempt->set_parameters({"skin.fp=6"});
+  attempt->set_parameters(cases::tissue_parameters({{"skin", "fp", 6.0}}));
   attempt->perform(expert());
   ASSERT_TRUE(run_until([&] { return !attempt->view().is_performing; })) << where();
   const attempt::RunResult felt = finished();
@@ -156,7 +159,7 @@ TEST_F(SimulatedAttemptTest, RecordsTheTissuesThatWereFeltAndReplaysThem) {
 TEST_F(SimulatedAttemptTest, ChangedTissuesOutliveTheirServer) {
   start(options());
   ASSERT_TRUE(run_until_phase(attempt::AttemptPhase::kReady)) << where();
-  attempt->set_parameters({"skin.fp=6"});
+  attempt->set_parameters(cases::tissue_parameters({{"skin", "fp", 6.0}}));
   ASSERT_TRUE(run_until([&] { return !attempt->view().message.empty(); }));
   ASSERT_TRUE(run_until([&] { return attempt->view().session_s > 0.1; }));
   needle->kill();

@@ -298,8 +298,8 @@ link::ServerStatus SimulatedServer::status(double now_s) const {
   const Process& process = *process_;
   link::ServerStatus status;
   status.server_time_s = now_s;
-  status.gate_mode = to_string(process.newest.mode);
-  status.fault = to_string(process.newest.fault);
+  status.gate_mode = process.newest.mode;
+  status.fault = process.newest.fault;
   status.grant = "simulated";
   const bool is_loading = !process.jobs.empty() && std::holds_alternative<link::LoadScene>(process.jobs.front().what);
   status.loading = is_loading ? 0.5 : 0.0;

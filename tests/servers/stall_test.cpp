@@ -54,7 +54,8 @@ class Stalls : public SimulatedAttemptTest {
     Clock::TimePoint since = clock->now();
     return run_until([&] {
       const attempt::AttemptView view = attempt->view();
-      const bool is_well = view.phase == AttemptPhase::kInBody && view.banner.empty() && view.servers[0].gate == "on";
+      const bool is_well = view.phase == AttemptPhase::kInBody && view.banner.empty() &&
+                           view.servers[0].gate == telemetry::GateMode::kOn;
       if (!is_well) since = clock->now();
       return clock->now() - since > milliseconds(300);
     });

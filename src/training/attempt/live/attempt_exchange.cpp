@@ -67,9 +67,9 @@ void AttemptExchange::resume_forces() {
   requests_.stopped = false;
 }
 
-void AttemptExchange::set_parameters(std::vector<std::string> settings) {
+void AttemptExchange::set_parameters(link::SetParameters parameters) {
   const std::lock_guard lock(mutex_);
-  requests_.settings.push_back(std::move(settings));
+  requests_.parameters.push_back(std::move(parameters));
 }
 
 void AttemptExchange::perform(std::unique_ptr<tasks::Operator> the_operator) {

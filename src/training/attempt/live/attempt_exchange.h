@@ -31,7 +31,7 @@ struct AttemptRequests {
   std::optional<Goal> needle, probe;
   std::optional<bool> needle_clamped, probe_clamped;
   std::optional<bool> stopped;
-  std::vector<std::vector<std::string>> settings;  ///< Messages, in order.
+  std::vector<link::SetParameters> parameters;  ///< Messages, in order.
   std::unique_ptr<tasks::Operator> performer;
   bool begins = false, fires = false, finishes = false, has_drawn = false;
 };
@@ -73,10 +73,9 @@ class AttemptExchange {
   void fire();   ///< The biopsy gun; counts once.
   void stop_forces();
   void resume_forces();
-  /// "liver.k=0.5", "force_model=proxy": to the servers while they run; the insertion continues. Numbers of tissues are
-  /// all that differ from the case's table, and replace those of the last call that named any; an empty list: the
-  /// case's numbers (see link::SetParameters). The server's reply is the view's message.
-  void set_parameters(std::vector<std::string> settings);
+  /// To the servers while they run; the insertion continues. The loaded table is the case's. The server's reply is the
+  /// view's message.
+  void set_parameters(link::SetParameters parameters);
   /// A scripted operator moves the needle, after the hand has gone to its start; the view's is_performing tells how
   /// long.
   void perform(std::unique_ptr<tasks::Operator> the_operator);

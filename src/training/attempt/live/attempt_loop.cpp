@@ -107,9 +107,9 @@ void AttemptLoop::take_requests() {
   if (requests.fires) steering_->fire();
   if (requests.stopped) stop_or_resume(*requests.stopped);
   if (requests.performer) steering_->perform(std::move(requests.performer));
-  for (const std::vector<std::string>& settings : requests.settings) {
-    needle_->set_parameters({settings});
-    if (transducer_) transducer_->set_parameters({settings});
+  for (const link::SetParameters& parameters : requests.parameters) {
+    needle_->set_parameters(parameters);
+    if (transducer_) transducer_->set_parameters(parameters);
   }
   if (requests.has_drawn) {
     needle_->frame_drawn();

@@ -1,29 +1,15 @@
 #include "attempt/servers/parameter_memory.h"
 
-#include <utility>
-
 namespace trocar::attempt {
 
 void ParameterMemory::apply(const link::SetParameters& message) {
-  std::vector<std::string> tissues;
-  for (const std::string& setting : message.settings) {
-    const std::string key = setting.substr(0, setting.find('='));
-    const bool is_tissues = key != "force_model" && key != "bending" && !key.starts_with("coupling.");
-    if (is_tissues) {
-      tissues.push_back(setting);
-    } else {
-      options_[key] = setting;
-    }
-  }
   const bool has_table = !message.tissues_toml.empty();
-  if (has_table) tissues_toml_ = message.tissues_toml;
-  if (has_table || !tissues.empty() || message.settings.empty()) tissues_ = std::move(tissues);
-}
-
-link::SetParameters ParameterMemory::message() const {
-  link::SetParameters all{tissues_, tissues_toml_};
-  for (const auto& [key, setting] : options_) all.settings.push_back(setting);
-  return all;
+  if (has_table) all_.tissues_toml = message.tissues_toml;
+  if (has_table || message.tissues) all_.tissues = message.tissues;
+  if (!message.force_model.empty()) all_.force_model = message.force_model;
+  if (message.coupling_stiffness_n_per_mm) all_.coupling_stiffness_n_per_mm = message.coupling_stiffness_n_per_mm;
+  if (message.coupling_damping_ns_per_mm) all_.coupling_damping_ns_per_mm = message.coupling_damping_ns_per_mm;
+  if (message.has_bending) all_.has_bending = message.has_bending;
 }
 
 }  // namespace trocar::attempt

@@ -1,9 +1,5 @@
 #pragma once
 
-#include <map>
-#include <string>
-#include <vector>
-
 #include "link/messages.h"
 
 namespace trocar::attempt {
@@ -12,16 +8,14 @@ namespace trocar::attempt {
 /// as the server merges them (see link::SetParameters). They are sent again whenever the scene is loaded again.
 class ParameterMemory {
  public:
-  /// Numbers of tissues replace those of the last message that named any, options replace those of the same key, and a
-  /// table replaces the loaded one. An empty message: the tissues as they were loaded.
+  /// Numbers of tissues replace those of the last message that had any, each option replaces the one before, and a
+  /// table replaces the loaded one.
   void apply(const link::SetParameters& message);
   /// All of them in one message; empty: the scene as it was loaded.
-  link::SetParameters message() const;
+  const link::SetParameters& message() const noexcept { return all_; }
 
  private:
-  std::string tissues_toml_;
-  std::vector<std::string> tissues_;            ///< "liver.k=0.5", of the last message that named any.
-  std::map<std::string, std::string> options_;  ///< "force_model=proxy", by key.
+  link::SetParameters all_;
 };
 
 }  // namespace trocar::attempt

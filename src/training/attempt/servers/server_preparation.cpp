@@ -106,8 +106,7 @@ Status ServerSupervisor::step_connecting() {
   const bool has_all = client_.is_connected && client_.welcome.session != 0 && client_.status.loop.wanted_hz > 0.0;
   if (!has_all) return {};
   if (!client_.welcome.has_control) return wait_for_control();
-  const bool has_fault =
-      !client_.status.fault.empty() && client_.status.fault != to_string(telemetry::GateFault::kNone);
+  const bool has_fault = client_.status.fault != telemetry::GateFault::kNone;
   const bool may_reset = request_ && (options_.recovery == Recovery::kAll || is_forgivable_stall());
   if (has_fault && may_reset) return reset_fault();
   const bool is_another = session_ != client_.welcome.session;
@@ -160,7 +159,7 @@ Status ServerSupervisor::step_loading() {
 
 void ServerSupervisor::adjust() {
   adjusted_ = memory_.message();
-  if (adjusted_.settings.empty() && adjusted_.tissues_toml.empty()) {
+  if (adjusted_ == link::SetParameters{}) {
     enter(ServerState::kPlacing);
     return;
   }
@@ -218,7 +217,7 @@ Status ServerSupervisor::step_starting() {
     if (is_started) started_server_s_ = client_.status.server_time_s;
   }
   const bool has_later_status = started_server_s_ > 0.0 && client_.status.server_time_s > started_server_s_;
-  if (has_later_status && client_.status.gate_mode == to_string(telemetry::GateMode::kOn)) {
+  if (has_later_status && client_.status.gate_mode == telemetry::GateMode::kOn) {
     enter(ServerState::kSettling);
     return {};
   }
@@ -244,8 +243,7 @@ void ServerSupervisor::become_on() {
         fmt::format("{}. The forces are on again and the puncture continues", detail::sentence(interrupted_by_));
   interrupted_by_.clear();
   const link::SetParameters now = memory_.message();  // it may have changed while the forces were being switched on
-  const bool is_changed = now.settings != adjusted_.settings || now.tissues_toml != adjusted_.tissues_toml;
-  if (is_changed) unanswered_[connection_->send(now)] = memory_;
+  if (now != adjusted_) unanswered_[connection_->send(now)] = memory_;
 }
 
 }  // namespace trocar::attempt

@@ -115,11 +115,11 @@ std::string ServerSupervisor::poll_connection() {
   }
   if (state_ == ServerState::kDeviceLost) return poll_lost_device();
   if (const Status stepped = step_preparation(); !stepped) return fail_with(stepped.error());
-  const std::string& fault = client_.status.fault;
-  const bool has_fault = !fault.empty() && fault != to_string(telemetry::GateFault::kNone);
+  const telemetry::GateFault fault = client_.status.fault;
+  const bool has_fault = fault != telemetry::GateFault::kNone;
   if (state_ != ServerState::kConnecting && client_.is_connected && has_fault) {
     if (!is_forgivable_stall())
-      return fail_with({fmt::format("the safety gate has latched a fault: {}", fault), host_->endpoint(),
+      return fail_with({fmt::format("the safety gate has latched a fault: {}", to_string(fault)), host_->endpoint(),
                         "see the server's flight record for the cause; restart the server"});
     ++stalls_;
     const bool was_on = state_ == ServerState::kOn;
@@ -153,16 +153,15 @@ std::string ServerSupervisor::note_interruption(const char* what) {
 
 /// The motors of a device in a person's hand are not switched on again without the person.
 bool ServerSupervisor::is_forgivable_stall() const {
-  const std::string& fault = client_.status.fault;
-  const bool is_stall =
-      fault == to_string(telemetry::GateFault::kLoopStalled) || fault == to_string(telemetry::GateFault::kLoopSlow);
+  const telemetry::GateFault fault = client_.status.fault;
+  const bool is_stall = fault == telemetry::GateFault::kLoopStalled || fault == telemetry::GateFault::kLoopSlow;
   return request_ && !has_person() && is_stall;
 }
 
 bool ServerSupervisor::is_device_lost() const {
-  const std::string& fault = client_.status.fault;
-  return client_.is_connected && (fault == to_string(telemetry::GateFault::kDeviceLost) ||
-                                  fault == to_string(telemetry::GateFault::kDeviceSilent));
+  const telemetry::GateFault fault = client_.status.fault;
+  return client_.is_connected &&
+         (fault == telemetry::GateFault::kDeviceLost || fault == telemetry::GateFault::kDeviceSilent);
 }
 
 /// Whether a silent server only waits for a processor.
@@ -193,7 +192,7 @@ std::string ServerSupervisor::fail_with(const Error& why) {
 std::string ServerSupervisor::await_resume(const Error& why) {
   enter(is_stopped_ ? ServerState::kStopped : ServerState::kNeedsResume);
   if (!is_device_lost()) return banner_ = why.what + "; resume when you are ready";
-  const bool is_gone = client_.status.fault == to_string(telemetry::GateFault::kDeviceLost);
+  const bool is_gone = client_.status.fault == telemetry::GateFault::kDeviceLost;
   return banner_ = fmt::format("{}, which moves the {}, {}, then resume the forces (Space).",
                                device_words(client_.welcome.device.name), tool() == "probe" ? "transducer" : tool(),
                                is_gone ? "is disconnected. Plug it in again" : "sends no data. Check its cable");
@@ -370,7 +369,7 @@ ServerView ServerSupervisor::view() const {
   view.p99_us = status.loop.lateness.p99_us;
   view.ticks_missing = missing_;
   view.gate = status.gate_mode;
-  view.fault = status.fault == "none" ? std::string() : status.fault;
+  view.fault = status.fault;
   view.grant = status.grant;
   view.warning = status.warning;
   view.restarts = restarts_;

@@ -48,7 +48,7 @@ class ScriptedServer final : public attempt::ServerHost {
   // What it was asked for.
   int restarts = 0, connections = 0, scenes = 0;
   std::vector<link::ServerCommand> commands;
-  std::vector<std::vector<std::string>> parameters;  ///< Settings of every SetParameters.
+  std::vector<link::SetParameters> parameters;  ///< All that came.
   std::optional<link::HandTarget> target;
   int count(link::ServerCommand command) const {
     return static_cast<int>(std::count(commands.begin(), commands.end(), command));
@@ -173,8 +173,8 @@ inline void ScriptedServer::step() {
 inline link::ServerStatus ScriptedServer::status() const {
   link::ServerStatus status;
   status.server_time_s = time_s_;
-  status.gate_mode = to_string(gate_);
-  status.fault = to_string(fault_);
+  status.gate_mode = gate_;
+  status.fault = fault_;
   status.loop.wanted_hz = status.loop.achieved_hz = 1000.0;
   return status;
 }
@@ -188,7 +188,7 @@ inline link::Reply ScriptedServer::answer(const link::Command& command) {
     return reply;
   }
   const auto* changed = std::get_if<link::SetParameters>(&command.what);
-  if (changed != nullptr) parameters.push_back(changed->settings);
+  if (changed != nullptr) parameters.push_back(*changed);
   const std::string& refusal = changed != nullptr ? refuses_parameters : refuses_scene;
   if (!refusal.empty()) return {command.request, false, refusal};
   reply.text = changed != nullptr ? "the scene has changed parameters" : "the scene is loaded";

@@ -1,6 +1,7 @@
 // One test for each row of the tables in docs/supervision.md: a server that ends, falls silent, returns or has a fault,
 // in a test's own time.
 #include "attempt/servers/test/supervision_lab.h"
+#include "cases/scene_request.h"
 
 namespace trocar::attempt {
 namespace {
@@ -8,6 +9,9 @@ namespace {
 using link::ServerCommand;
 using telemetry::GateFault;
 using telemetry::GateMode;
+
+const link::SetParameters kHarderSkin = cases::tissue_parameters({{"skin", "fp", 6.0}});
+const link::SetParameters kProxyModel{.force_model = "proxy"};
 
 TEST_F(SupervisionTest, PlacesTheToolThenSwitchesTheForcesOn) {
   start();
@@ -292,24 +296,26 @@ TEST_F(SupervisionTest, StoppedWhilePreparingIsPreparedByResume) {
 
 TEST_F(SupervisionTest, SendsParametersNowAndBeforeTheForcesReturn) {
   start();
-  tool->set_parameters({{"skin.fp=6"}});
-  tool->set_parameters({{"force_model=proxy"}});
+  tool->set_parameters(kHarderSkin);
+  tool->set_parameters(kProxyModel);
   run_for(0.05);
-  EXPECT_EQ(server->parameters, (std::vector<std::vector<std::string>>{{"skin.fp=6"}, {"force_model=proxy"}}));
+  EXPECT_EQ(server->parameters, (std::vector<link::SetParameters>{kHarderSkin, kProxyModel}));
   EXPECT_EQ(messages.size(), 2u);
   server->parameters.clear();
   server->end("it ended");
   run_for(0.01);
   ASSERT_TRUE(run_until([&] { return tool->is_fresh(); }));
-  EXPECT_EQ(server->parameters, (std::vector<std::vector<std::string>>{{"skin.fp=6", "force_model=proxy"}}));
+  link::SetParameters both = kHarderSkin;
+  both.force_model = kProxyModel.force_model;
+  EXPECT_EQ(server->parameters, (std::vector<link::SetParameters>{both}));
 }
 
 TEST_F(SupervisionTest, ForgetsParametersThatWereRefused) {
   start();
-  tool->set_parameters({{"skin.fp=6"}});
+  tool->set_parameters(kHarderSkin);
   run_for(0.05);
   server->refuses_parameters = "no such number";
-  tool->set_parameters({{"skin.colour=9"}});
+  tool->set_parameters(cases::tissue_parameters({{"skin", "colour", 9.0}}));
   run_for(0.05);
   EXPECT_EQ(messages.back(), "no such number");
   server->refuses_parameters.clear();
@@ -317,12 +323,12 @@ TEST_F(SupervisionTest, ForgetsParametersThatWereRefused) {
   server->come_back();
   run_for(0.01);
   ASSERT_TRUE(run_until([&] { return tool->is_fresh(); }));
-  EXPECT_EQ(server->parameters, (std::vector<std::vector<std::string>>{{"skin.fp=6"}}));
+  EXPECT_EQ(server->parameters, (std::vector<link::SetParameters>{kHarderSkin}));
 }
 
 TEST_F(SupervisionTest, GoesOnWithoutParametersThatAreRefusedWhileItPrepares) {
   start();
-  tool->set_parameters({{"skin.fp=6"}});
+  tool->set_parameters(kHarderSkin);
   run_for(0.05);
   server->refuses_parameters = "no such number";
   server->come_back();
@@ -334,11 +340,11 @@ TEST_F(SupervisionTest, GoesOnWithoutParametersThatAreRefusedWhileItPrepares) {
 TEST_F(SupervisionTest, SendsParametersThatChangedWhileItPrepared) {
   supervise();
   ASSERT_TRUE(run_until([&] { return server->count(ServerCommand::kStart) == 1; }));
-  tool->set_parameters({{"skin.fp=6"}});
+  tool->set_parameters(kHarderSkin);
   EXPECT_TRUE(server->parameters.empty());
   ASSERT_TRUE(run_until([&] { return tool->is_fresh(); }));
   run_for(0.01);
-  EXPECT_EQ(server->parameters, (std::vector<std::vector<std::string>>{{"skin.fp=6"}}));
+  EXPECT_EQ(server->parameters, (std::vector<link::SetParameters>{kHarderSkin}));
 }
 
 TEST_F(SupervisionTest, TimeWithoutPollsIsNoDelayOfTheServer) {
