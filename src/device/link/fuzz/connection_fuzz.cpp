@@ -85,6 +85,6 @@ void run(std::span<const std::byte> input) {
 }  // namespace trocar::link::detail
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  trocar::detail::run(std::as_bytes(std::span(data, size)));
+  trocar::link::detail::run(std::as_bytes(std::span(data, size)));
   return 0;
 }

@@ -32,7 +32,7 @@ void check(std::span<const std::byte> bytes, Decode decode) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto bytes = std::as_bytes(std::span(data, size));
-  trocar::check<trocar::link::ClientMessage>(bytes, trocar::link::decode_client_message);
-  trocar::check<trocar::link::ServerMessage>(bytes, trocar::link::decode_server_message);
+  trocar::link::check<trocar::link::ClientMessage>(bytes, trocar::link::decode_client_message);
+  trocar::link::check<trocar::link::ServerMessage>(bytes, trocar::link::decode_server_message);
   return 0;
 }

@@ -41,7 +41,7 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "usage: make_seeds FOLDER\n");
     return 2;
   }
-  const trocar::Status written = trocar::write_seeds(argv[1]);
+  const trocar::Status written = trocar::link::write_seeds(argv[1]);
   if (!written) fmt::print(stderr, "error: {}\n", written.error().text());
   return written ? 0 : 1;
 }
