@@ -127,10 +127,10 @@ TYPED_TEST(ConnectionContract, NumbersScenesAndTicks) {
   ASSERT_TRUE(loaded.is_done) << loaded.text;
   EXPECT_EQ(loaded.scene, 1u);
   EXPECT_FALSE(loaded.tissues_toml.empty());
-  const link::Reply changed = this->ask(*connection, link::SetParameters{{"skin.fp=6"}});
+  const link::Reply changed = this->ask(*connection, cases::tissue_parameters({{"skin", "fp", 6.0}}));
   ASSERT_TRUE(changed.is_done) << changed.text;
   EXPECT_EQ(changed.scene, 2u);
-  const link::Reply refused = this->ask(*connection, link::SetParameters{{"skin.colour=6"}});
+  const link::Reply refused = this->ask(*connection, cases::tissue_parameters({{"skin", "colour", 6.0}}));
   EXPECT_FALSE(refused.is_done);
   connection->take_samples();
   std::vector<link::NumberedSample> samples;
@@ -151,7 +151,7 @@ TYPED_TEST(ConnectionContract, SwitchesTheForcesOffWhenItsControllerLeaves) {
   connection.reset();
   EXPECT_TRUE(this->rig.wait([&] {
     const telemetry::GateMode gate = watcher->view().status.gate_mode;
-    return gate == "off" || gate == "fading";
+    return gate == telemetry::GateMode::kOff || gate == telemetry::GateMode::kFading;
   }));
 }
 

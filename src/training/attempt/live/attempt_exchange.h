@@ -13,6 +13,7 @@
 #include "core/clock.h"
 #include "core/result.h"
 #include "geometry/pose.h"
+#include "link/messages.h"
 #include "tasks/operator.h"
 
 namespace trocar::attempt {
