@@ -16,7 +16,7 @@
 #include <thread>
 
 #include "anatomy/phantom/phantom.h"
-#include "attempt/hands/resting_transducer.h"
+#include "attempt/tools/resting_transducer.h"
 #include "bench/benchmarks.h"
 #include "cases/scene_request.h"
 #include "core/files/temporary_folder.h"

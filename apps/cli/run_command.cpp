@@ -184,7 +184,7 @@ Status check_servers(Arguments& a) {
 
 /// Checks that the session can be written: an interrupted run's session is kept under another name; any other file is
 /// an error.
-Status make_room(const std::filesystem::path& session) {
+Status prepare_session_file(const std::filesystem::path& session) {
   TROCAR_TRY(const auto kept_as, storage::set_aside_incomplete_session(session));
   if (kept_as)
     print_warning(fmt::format("{} is the incomplete session of an interrupted run — kept as {}", session.string(),
@@ -219,7 +219,7 @@ Status run(Arguments& arguments) {
   attempt::RunOptions& run = arguments.run;
   TROCAR_TRY_STATUS(attempt::check_run(run));
   TROCAR_TRY_STATUS(restore_arguments(arguments.named, arguments.the_case, run, arguments.source));
-  TROCAR_TRY_STATUS(make_room(run.session));
+  TROCAR_TRY_STATUS(prepare_session_file(run.session));
   run.patient_source = arguments.source.folder_or_name;
   run.patient_seed = arguments.source.seed;
   arguments.the_case.seed = run.seed;

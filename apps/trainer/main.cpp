@@ -21,7 +21,7 @@
 #include "script/benchmark.h"
 #include "script/script_player.h"
 #include "shell/main_window.h"
-#include "shell/seat_flow.h"
+#include "shell/trainer_flow.h"
 #include "tasks/task.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/screen_scale.h"
@@ -60,7 +60,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
 }
 
 /// Applies the arguments before there is a window: an unknown name is an error.
-Result<SeatChoice> with_arguments(SeatChoice choice, const Arguments& arguments) {
+Result<TrainerChoice> with_arguments(TrainerChoice choice, const Arguments& arguments) {
   if (arguments.task) {
     TROCAR_TRY(const tasks::Task task, tasks::load_task(data_dir() / "tasks", *arguments.task));
     choice.task = task.name;
@@ -138,7 +138,7 @@ int run(int argc, char** argv) {
   if (arguments.is_benchmark) QSettings::setPath(QSettings::NativeFormat, QSettings::UserScope, own_settings.path());
   apply_theme(application, kept_text_percent());
   MainWindow window(arguments.state_folder.empty() ? user_state_folder() : fs::path(arguments.state_folder));
-  const Result<SeatChoice> choice = with_arguments(window.start().choice(), arguments);
+  const Result<TrainerChoice> choice = with_arguments(window.start().choice(), arguments);
   if (!choice) return arguments::report_error(choice.error());
   window.start().choose(*choice);
   window.show();

@@ -63,7 +63,7 @@ TEST_F(DeviceAttemptTest, AGamepadPushesTheNeedleInAndRumbles) {
   const Pose begun = attempt->view().needle.X_PN;
   EXPECT_NEAR((begun.p() - layered_case()->the_case.plan.line_P.a).norm(), 20.0, 1.0);
   // A hand of the window moves nothing.
-  attempt->set_goal(attempt::HandTool::kNeedle, begun * Pose::translation({0.0, 0.0, 30.0}));
+  attempt->set_goal(attempt::Tool::kNeedle, begun * Pose::translation({0.0, 0.0, 30.0}));
   pad.push_left_stick(1.0, 0.0);
   ASSERT_TRUE(wait_for([&] { return (attempt->view().needle.X_PN.p() - begun.p()).norm() > 3.0; })) << where();
   pad.push_left_stick(0.0, 0.0);

@@ -6,9 +6,9 @@
 
 #include <algorithm>
 
-#include "attempt/hands/hand_motion.h"
 #include "attempt/offline/run_session.h"
 #include "attempt/record/attempt_replay.h"
+#include "attempt/tools/led_pose.h"
 #include "cases/scene_request.h"
 #include "core/files/temporary_folder.h"
 #include "servers/live_attempt_lab.h"

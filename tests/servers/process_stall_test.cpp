@@ -37,7 +37,7 @@ class ProcessStalls : public LiveAttemptTest {
     const Pose hand = needle_pose(path_P.a + 20.0 * path_P.direction(), path_P.direction());
     double rest_s = 0.0;
     ASSERT_TRUE(wait_for([&] {
-      attempt->set_goal(attempt::HandTool::kNeedle, hand);
+      attempt->set_goal(attempt::Tool::kNeedle, hand);
       const attempt::AttemptView view = attempt->view();
       const bool is_at_rest = view.needle.depth_mm > 10.0 && std::abs(view.needle.speed_mm_s) < 0.2;
       if (!is_at_rest) rest_s = view.session_s;

@@ -9,9 +9,9 @@
 #include <string>
 
 #include "anatomy/phantom/phantom.h"
-#include "attempt/hands/resting_transducer.h"
 #include "attempt/live/attempt_loop.h"
 #include "attempt/live/live_attempt.h"
+#include "attempt/tools/resting_transducer.h"
 #include "core/files/temporary_folder.h"
 #include "servers/simulated_server.h"
 

@@ -57,14 +57,14 @@ TEST_F(SimulatedAttemptTest, TheHandLeadsTheNeedleAndAClampedOneDoesNot) {
   const Pose from = attempt->view().needle.X_PN;
   const Pose aside = attempt::moved(from, Vec3(6.0, 0.0, 0.0), Vec3::Zero());
   ASSERT_TRUE(run_until([&] {
-    attempt->set_goal(attempt::HandTool::kNeedle, aside);
+    attempt->set_goal(attempt::Tool::kNeedle, aside);
     return (attempt->view().needle.X_PN.p() - aside.p()).norm() < 0.5;
   })) << where();
-  attempt->clamp(attempt::HandTool::kNeedle, true);
+  attempt->clamp(attempt::Tool::kNeedle, true);
   ASSERT_TRUE(run_until([&] { return attempt->view().needle.is_clamped; }));
-  attempt->set_goal(attempt::HandTool::kNeedle, from);
+  attempt->set_goal(attempt::Tool::kNeedle, from);
   const Pose on_skin = attempt->view().probe.X_PT;
-  attempt->set_goal(attempt::HandTool::kProbe, attempt::moved(on_skin, Vec3(0.0, -20.0, 0.0), Vec3::Zero()));
+  attempt->set_goal(attempt::Tool::kProbe, attempt::moved(on_skin, Vec3(0.0, -20.0, 0.0), Vec3::Zero()));
   ASSERT_TRUE(run_until([&] { return attempt->view().probe.contact_n == 0.0; }));  // lifted off
   EXPECT_LT((attempt->view().needle.X_PN.p() - aside.p()).norm(), 1.0);
 }
@@ -76,7 +76,7 @@ TEST_F(SimulatedAttemptTest, TheReplayMovesTheTransducerAsItWasMoved) {
   const Pose from = attempt->view().probe.X_PT;
   const double pressed_s = attempt->view().session_s;
   const Pose aside = attempt::moved(from, Vec3(12.0, 0.0, 0.0), Vec3::Zero());
-  attempt->set_goal(attempt::HandTool::kProbe, aside);
+  attempt->set_goal(attempt::Tool::kProbe, aside);
   ASSERT_TRUE(run_until([&] { return (attempt->view().probe.X_PT.p() - aside.p()).norm() < 1.0; })) << where();
   const double moved_s = attempt->view().session_s;
   ASSERT_TRUE(run_until([&] { return attempt->view().session_s > moved_s + 0.2; }));

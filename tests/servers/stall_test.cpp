@@ -42,7 +42,7 @@ class Stalls : public SimulatedAttemptTest {
     hand = needle_pose(path_P.a + depth_mm * path_P.direction(), path_P.direction());
     double rest_s = 0.0;
     return run_until([&] {
-      attempt->set_goal(attempt::HandTool::kNeedle, hand);
+      attempt->set_goal(attempt::Tool::kNeedle, hand);
       const attempt::AttemptView view = attempt->view();
       const bool is_at_rest = view.needle.depth_mm > 0.5 * depth_mm && std::abs(view.needle.speed_mm_s) < 0.2;
       if (!is_at_rest) rest_s = view.session_s;
@@ -168,7 +168,7 @@ TEST_F(Stalls, WhatTheHandDoesMeanwhileIsForgotten) {
   start_inside();
   needle->pause();
   ASSERT_TRUE(run_until_phase(AttemptPhase::kServerLost)) << where();
-  attempt->set_goal(attempt::HandTool::kNeedle, hand * Pose::translation({0.0, 0.0, 15.0}));
+  attempt->set_goal(attempt::Tool::kNeedle, hand * Pose::translation({0.0, 0.0, 15.0}));
   run_for(kShortStall_s);
   needle->go_on();
   ASSERT_TRUE(goes_on()) << where();

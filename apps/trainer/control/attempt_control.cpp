@@ -61,7 +61,7 @@ bool is_risk(const cases::Case& the_case, const attempt::AttemptEvent& event) {
 
 }  // namespace
 
-AttemptControl::AttemptControl(std::shared_ptr<const cases::OpenCase> open, const SeatChoice& choice,
+AttemptControl::AttemptControl(std::shared_ptr<const cases::OpenCase> open, const TrainerChoice& choice,
                                attempt::AttemptOptions options, std::shared_ptr<attempt::HapticServers> servers,
                                WorkPage& page)
     : open_(std::move(open)),
@@ -174,11 +174,11 @@ void AttemptControl::gesture(const Gesture& gesture) {
         return hand.push(gesture.right);
     }
   };
-  if (gestures_.active_tool() == ActiveTool::kNeedle && is_free(attempt::HandTool::kNeedle)) move(needle_);
-  if (gestures_.active_tool() == ActiveTool::kTransducer && is_free(attempt::HandTool::kProbe)) move(probe_);
+  if (gestures_.active_tool() == ActiveTool::kNeedle && is_free(attempt::Tool::kNeedle)) move(needle_);
+  if (gestures_.active_tool() == ActiveTool::kTransducer && is_free(attempt::Tool::kProbe)) move(probe_);
 }
 
-bool AttemptControl::is_free(attempt::HandTool tool) const {
+bool AttemptControl::is_free(attempt::Tool tool) const {
   const auto t = static_cast<std::size_t>(tool);
   return is_led_[t] && !is_clamped_[t] && !view_.is_performing;
 }
@@ -199,8 +199,8 @@ void AttemptControl::show_notice(const QString& text) {
 
 void AttemptControl::toggle_clamp() {
   if (gestures_.active_tool() == ActiveTool::kNone) return;
-  const attempt::HandTool tool =
-      gestures_.active_tool() == ActiveTool::kNeedle ? attempt::HandTool::kNeedle : attempt::HandTool::kProbe;
+  const attempt::Tool tool =
+      gestures_.active_tool() == ActiveTool::kNeedle ? attempt::Tool::kNeedle : attempt::Tool::kProbe;
   bool& is_clamped = is_clamped_[static_cast<std::size_t>(tool)];
   is_clamped = !is_clamped;
   attempt_.clamp(tool, is_clamped);
@@ -223,8 +223,8 @@ void AttemptControl::advance(double dt_s) {
     needle_.put(view_.needle.X_PN);
   }
   if (!is_led_[1] && view_.probe.is_known) probe_.put(view_.probe.X_PT);
-  attempt_.set_goal(attempt::HandTool::kNeedle, needle_.X_PN());
-  attempt_.set_goal(attempt::HandTool::kProbe, probe_.X_PT());
+  attempt_.set_goal(attempt::Tool::kNeedle, needle_.X_PN());
+  attempt_.set_goal(attempt::Tool::kProbe, probe_.X_PT());
   ForcePlot& plot = page_.forces();
   if (++frame_ % kFramesAPlot == 0) {
     std::vector<ForcePoint> points;
@@ -271,14 +271,14 @@ void AttemptControl::show_tools(double dt_s) {
     constexpr double kAhead_mm = 40.0;
     tools.focus_P =
         needle.depth_mm > 0.0 ? needle.X_PN.p() : Vec3(needle_.entry_P() + kAhead_mm * needle_.X_PN().R().col(2));
-    const Pose& X_PN_hand = needle.X_PN_hand;
+    const Pose& X_PN_goal = needle.X_PN_goal;
     const double length_mm = open_->the_case.needle.length_mm;
-    if ((X_PN_hand.p() - needle.X_PN.p()).norm() > kGhost_mm)
-      tools.hand_P = Segment{X_PN_hand.p() - length_mm * X_PN_hand.R().col(2), X_PN_hand.p()};
+    if ((X_PN_goal.p() - needle.X_PN.p()).norm() > kGhost_mm)
+      tools.goal_P = Segment{X_PN_goal.p() - length_mm * X_PN_goal.R().col(2), X_PN_goal.p()};
   }
   if (view_.has_probe && view_.probe.is_known) tools.X_PT = view_.probe.X_PT;
   constexpr double kMoving_mm_s = 0.5;
-  const bool is_moving = std::abs(needle.speed_mm_s) > kMoving_mm_s || tools.hand_P.has_value();
+  const bool is_moving = std::abs(needle.speed_mm_s) > kMoving_mm_s || tools.goal_P.has_value();
   still_s_ = is_moving ? 0.0 : still_s_ + dt_s;
   tools.are_moving = still_s_ < kStill_s;
   if (view_.shot) show_shot(tools, *view_.shot, view_.since_shot_s, needle.depth_mm);

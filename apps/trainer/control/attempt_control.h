@@ -4,10 +4,10 @@
 #include <QVariantMap>
 #include <memory>
 
-#include "attempt/hands/pointer_hand.h"
 #include "attempt/live/live_attempt.h"
+#include "attempt/tools/pointer_tools.h"
 #include "cases/open_case.h"
-#include "choice/seat_choice.h"
+#include "choice/trainer_choice.h"
 #include "control/page_keys.h"
 #include "control/tool_gestures.h"
 
@@ -15,13 +15,13 @@ namespace trocar::trainer {
 
 class WorkPage;
 
-/// One attempt in the window: gestures move the hands, servers send states, workspace and panel display them.
+/// One attempt in the window: gestures move the tools, servers send states, workspace and panel display them.
 class AttemptControl : public QObject {
   Q_OBJECT
 
  public:
-  AttemptControl(std::shared_ptr<const cases::OpenCase> open, const SeatChoice& choice, attempt::AttemptOptions options,
-                 std::shared_ptr<attempt::HapticServers> servers, WorkPage& page);
+  AttemptControl(std::shared_ptr<const cases::OpenCase> open, const TrainerChoice& choice,
+                 attempt::AttemptOptions options, std::shared_ptr<attempt::HapticServers> servers, WorkPage& page);
   ~AttemptControl() override;
 
   /// Once a frame.
@@ -57,7 +57,7 @@ class AttemptControl : public QObject {
   void show_panel();
   void poll_events();
   void poll_shot();
-  bool is_free(attempt::HandTool tool) const;
+  bool is_free(attempt::Tool tool) const;
   /// True in an exam that hides the needle tip in the body.
   bool is_tip_hidden() const noexcept { return is_exam() && !open_->the_case.task.exam_shows_needle; }
   bool is_exam() const noexcept { return choice_.difficulty == Difficulty::kExam; }
@@ -67,15 +67,15 @@ class AttemptControl : public QObject {
   double distance_mm() const;
 
   std::shared_ptr<const cases::OpenCase> open_;
-  SeatChoice choice_;
+  TrainerChoice choice_;
   WorkPage& page_;
   attempt::LiveAttempt attempt_;
   ToolGestures gestures_;
   attempt::PointerNeedle needle_;
   attempt::PointerProbe probe_;
-  bool is_led_[2];  ///< By HandTool: moved by mouse and keys; else its device moves itself.
+  bool is_led_[2];  ///< By Tool: moved by mouse and keys; else its device moves itself.
   PageKeys keys_;
-  bool is_clamped_[2] = {false, false};  ///< By HandTool.
+  bool is_clamped_[2] = {false, false};  ///< By Tool.
   attempt::AttemptView view_;
   bool has_shown_shot_ = false;
   double still_s_ = 0.0;

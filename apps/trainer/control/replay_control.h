@@ -7,7 +7,7 @@
 
 #include "attempt/record/attempt_replay.h"
 #include "cases/open_case.h"
-#include "choice/seat_choice.h"
+#include "choice/trainer_choice.h"
 #include "control/page_keys.h"
 
 namespace trocar::trainer {

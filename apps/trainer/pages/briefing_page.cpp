@@ -9,7 +9,7 @@
 
 #include "attempt/live/live_attempt.h"
 #include "attempt/servers/device_control.h"
-#include "attempt/servers/seat_devices.h"
+#include "attempt/servers/tool_devices.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
 #include "views/slices/briefing_picture.h"
@@ -55,10 +55,10 @@ QString device_rows(const std::string& device, bool is_needle) {
   const QString tool = is_needle ? BriefingPage::tr("needle") : BriefingPage::tr("transducer");
   if (device == "spacemouse")
     return row(BriefingPage::tr("cap"), BriefingPage::tr("push and turn it to move and turn the %1").arg(tool));
-  return row(to_qt(attempt::seat_device_title(device)), BriefingPage::tr("its stylus is the %1").arg(tool));
+  return row(to_qt(attempt::device_title(device)), BriefingPage::tr("its stylus is the %1").arg(tool));
 }
 
-QString controls_text(const SeatChoice& choice) {
+QString controls_text(const TrainerChoice& choice) {
   const bool is_needle_led = attempt::follows_targets(choice.needle_device);
   const bool is_probe_led = attempt::follows_targets(choice.probe_device);
   QString all;
@@ -185,7 +185,7 @@ QWidget* BriefingPage::make_bottom() {
   return bottom;
 }
 
-void BriefingPage::show_opening(const SeatChoice& choice) {
+void BriefingPage::show_opening(const TrainerChoice& choice) {
   const QString patient = to_qt(choice.patient).section('/', -1);
   title_->setText(tr("Briefing"));
   subtitle_->setText(tr("Patient %1").arg(patient));

@@ -3,7 +3,7 @@
 #include <QWidget>
 
 #include "cases/open_case.h"
-#include "choice/seat_choice.h"
+#include "choice/trainer_choice.h"
 
 class QBoxLayout;
 class QLabel;
@@ -20,7 +20,7 @@ class BriefingPage : public QWidget {
  public:
   explicit BriefingPage(QWidget* parent = nullptr);
 
-  void show_opening(const SeatChoice& choice);
+  void show_opening(const TrainerChoice& choice);
   void show_progress(const QString& step, double fraction);
   void show_error(const QString& text);
   void show_case(const cases::OpenCase& open, Difficulty difficulty);

@@ -99,7 +99,7 @@ StartPage::StartPage(QWidget* parent) : QWidget(parent) {
   const auto text = [&](const char* key, const std::string& otherwise) {
     return to_std(settings.value(QString::fromLatin1(key), to_qt(otherwise)).toString());
   };
-  SeatChoice last;
+  TrainerChoice last;
   last.task = text("start/task", last.task);
   last.patient = text("start/patient", last.patient);
   last.needle = text("start/needle", {});
@@ -283,7 +283,7 @@ void StartPage::add_patient(const QString& folder) {
   patients_->setCurrentItem(find_item(*patients_, folder));
 }
 
-void StartPage::choose(const SeatChoice& choice) {
+void StartPage::choose(const TrainerChoice& choice) {
   QListWidgetItem* task = find_item(*tasks_, to_qt(choice.task));
   tasks_->setCurrentItem(task != nullptr ? task : tasks_->item(0));
   fill_patients();
@@ -304,8 +304,8 @@ void StartPage::choose(const SeatChoice& choice) {
   lock_for_exam();
 }
 
-SeatChoice StartPage::choice() const {
-  SeatChoice choice;
+TrainerChoice StartPage::choice() const {
+  TrainerChoice choice;
   if (const auto* task = tasks_->currentItem()) choice.task = to_std(task->data(kSource).toString());
   if (const auto* patient = patients_->currentItem()) choice.patient = to_std(patient->data(kSource).toString());
   choice.needle_device = devices_->needle();
@@ -319,7 +319,7 @@ SeatChoice StartPage::choice() const {
 }
 
 void StartPage::save() const {
-  const SeatChoice now = choice();
+  const TrainerChoice now = choice();
   QSettings settings;
   settings.setValue(QStringLiteral("start/task"), to_qt(now.task));
   settings.setValue(QStringLiteral("start/patient"), to_qt(now.patient));

@@ -2,7 +2,7 @@
 
 #include <QWidget>
 
-#include "choice/seat_choice.h"
+#include "choice/trainer_choice.h"
 
 class QButtonGroup;
 class QComboBox;
@@ -23,15 +23,15 @@ class StartPage : public QWidget {
  public:
   explicit StartPage(QWidget* parent = nullptr);
 
-  void choose(const SeatChoice& choice);
-  SeatChoice choice() const;
+  void choose(const TrainerChoice& choice);
+  TrainerChoice choice() const;
   /// Offers to go on with an attempt that a crash has cut off; empty: nothing to offer.
   void offer_recovery(const QString& text);
   /// Adds a patient folder to the list and chooses it.
   void add_patient(const QString& folder);
 
  Q_SIGNALS:
-  void start_requested(const trocar::trainer::SeatChoice& choice);
+  void start_requested(const trocar::trainer::TrainerChoice& choice);
   void recovery_requested();
   void recovery_declined();
 

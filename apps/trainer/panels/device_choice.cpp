@@ -10,7 +10,7 @@
 #include <QVBoxLayout>
 #include <algorithm>
 
-#include "attempt/servers/seat_devices.h"
+#include "attempt/servers/tool_devices.h"
 #include "panels/device_test_dialog.h"
 #include "ui_kit/parts.h"
 
@@ -29,7 +29,7 @@ std::string spec_of(const QComboBox& box) {
 void grey_out(QComboBox& box, const std::string& other) {
   auto* model = qobject_cast<QStandardItemModel*>(box.model());
   for (int row = 0; row < box.count(); ++row) {
-    const bool is_free = attempt::can_share_seat(to_std(box.itemData(row).toString()), other);
+    const bool is_free = attempt::can_be_used_together(to_std(box.itemData(row).toString()), other);
     QStandardItem* item = model->item(row);
     item->setEnabled(is_free);
     item->setToolTip(is_free ? QString() : DeviceChoice::tr("Already used for the other tool"));
@@ -82,18 +82,19 @@ QComboBox* DeviceChoice::add_tool(QBoxLayout& column, const QString& title, cons
 }
 
 void DeviceChoice::fill() {
-  for (const attempt::SeatDevice& device : attempt::seat_devices()) list(to_qt(device.spec));
+  for (const attempt::ToolDevice& device : attempt::tool_devices()) list(to_qt(device.spec));
   for (const QString& spec : QSettings().value(QString::fromLatin1(kAdded)).toStringList()) list(spec);
 }
 
 void DeviceChoice::list(const QString& spec) {
   for (QComboBox* box : {needle_, probe_})
-    if (box->findData(spec) < 0) box->addItem(to_qt(attempt::seat_device_title(to_std(spec))), spec);
+    if (box->findData(spec) < 0) box->addItem(to_qt(attempt::device_title(to_std(spec))), spec);
 }
 
 /// On a conflict, the transducer gets the mouse.
 void DeviceChoice::keep_apart() {
-  if (!attempt::can_share_seat(spec_of(*needle_), spec_of(*probe_))) probe_->setCurrentIndex(probe_->findData("mouse"));
+  if (!attempt::can_be_used_together(spec_of(*needle_), spec_of(*probe_)))
+    probe_->setCurrentIndex(probe_->findData("mouse"));
   grey_out(*probe_, spec_of(*needle_));
   grey_out(*needle_, spec_of(*probe_));
 }

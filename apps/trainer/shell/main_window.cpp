@@ -22,7 +22,7 @@
 #include "panels/device_test_dialog.h"
 #include "panels/status_strip.h"
 #include "shell/keys_dialog.h"
-#include "shell/seat_flow.h"
+#include "shell/trainer_flow.h"
 #include "ui_kit/focus_ring.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
@@ -71,7 +71,7 @@ MainWindow::MainWindow(const std::filesystem::path& state_folder, QWidget* paren
   new FocusRing(this);
   mirror_ = new MirrorStation(*this);
   mirror_->fill_menu(*views_menu_);
-  flow_ = new SeatFlow(*this, state_folder);
+  flow_ = new TrainerFlow(*this, state_folder);
   // A page that needs more space is scrolled, so that the strip at the bottom is always visible.
   setMinimumSize(kLeastSize);
   resize(QSize(1280, 800).boundedTo(screen()->availableSize()));

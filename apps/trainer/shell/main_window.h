@@ -17,7 +17,7 @@ namespace trocar::trainer {
 class BriefingPage;
 class CasePage;
 class MirrorStation;
-class SeatFlow;
+class TrainerFlow;
 class StartPage;
 class StatusStrip;
 class WorkPage;
@@ -36,7 +36,7 @@ class MainWindow : public QMainWindow {
   WorkPage& work() noexcept { return *work_; }
   CasePage& case_builder() noexcept { return *case_; }
   StatusStrip& strip() noexcept { return *strip_; }
-  SeatFlow& flow() noexcept { return *flow_; }
+  TrainerFlow& flow() noexcept { return *flow_; }
   MirrorStation& mirror() noexcept { return *mirror_; }
 
   /// "start", "briefing", "puncture", "feedback", "case-builder".
@@ -69,7 +69,7 @@ class MainWindow : public QMainWindow {
   Banner* banner_ = nullptr;
   QMenu* views_menu_ = nullptr;
   std::vector<QLabel*> steps_;
-  SeatFlow* flow_ = nullptr;
+  TrainerFlow* flow_ = nullptr;
   MirrorStation* mirror_ = nullptr;
   QString page_;
 };

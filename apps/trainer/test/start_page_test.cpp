@@ -35,7 +35,7 @@ TEST_F(StartPageTest, BeginsWithTheLiverBiopsyOfTheEmbeddedPatient) {
 }
 
 TEST_F(StartPageTest, RemembersWhatWasStarted) {
-  SeatChoice wanted;
+  TrainerChoice wanted;
   wanted.difficulty = Difficulty::kAssisted;
   wanted.force_model = "proxy";
   wanted.needle_device = "gamepad";
@@ -51,7 +51,7 @@ TEST_F(StartPageTest, RemembersWhatWasStarted) {
 }
 
 TEST_F(StartPageTest, AnExamTakesTheTasksOwnNeedleAndForces) {
-  SeatChoice wanted;
+  TrainerChoice wanted;
   wanted.needle = "biopsy-16g";
   wanted.force_model = "proxy";
   StartPage page;
@@ -66,7 +66,7 @@ TEST_F(StartPageTest, AnExamTakesTheTasksOwnNeedleAndForces) {
 }
 
 TEST_F(StartPageTest, RemembersADeviceForEachTool) {
-  SeatChoice wanted;
+  TrainerChoice wanted;
   wanted.needle_device = "openhaptics:Left Device";
   wanted.probe_device = "openhaptics:Right Device";
   {

@@ -351,8 +351,8 @@ TEST_F(UltrasoundViewTest, NothingLiesOnTheScan) {
     for (const QSize size : {QSize(240, 180), QSize(480, 420), QSize(900, 700), QSize(700, 300), QSize(300, 800)}) {
       const ultrasound::ScanGeometry scan = ultrasound::make_scan_geometry(probe, probe.depth_mm, 128, 256);
       const bool is_small = size.width() < 300;
-      const UltrasoundRoom room{is_small ? QSizeF(75.0, 32.0) : QSizeF(110.0, 130.0),
-                                is_small ? QSizeF() : QSizeF(56.0, 150.0), 34.0, 8.0};
+      const MarginSpace room{is_small ? QSizeF(75.0, 32.0) : QSizeF(110.0, 130.0),
+                             is_small ? QSizeF() : QSizeF(56.0, 150.0), 34.0, 8.0};
       const UltrasoundLayout layout = lay_out(size, scan, room);
       const ultrasound::RasterGeometry raster = ultrasound::fit_raster(scan, static_cast<int>(layout.picture.width()),
                                                                        static_cast<int>(layout.picture.height()));

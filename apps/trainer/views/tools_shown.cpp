@@ -29,7 +29,7 @@ bool are_same(const std::optional<Segment>& s, const std::optional<Segment>& t) 
 
 bool look_same(const ToolsShown& a, const ToolsShown& b) {
   return are_near(a.shaft_P, b.shaft_P) && are_near(a.X_PN, b.X_PN) && a.X_PT.has_value() == b.X_PT.has_value() &&
-         (!a.X_PT || are_near(*a.X_PT, *b.X_PT)) && are_same(a.hand_P, b.hand_P) && are_same(a.stylet_P, b.stylet_P) &&
+         (!a.X_PT || are_near(*a.X_PT, *b.X_PT)) && are_same(a.goal_P, b.goal_P) && are_same(a.stylet_P, b.stylet_P) &&
          are_same(a.core_P, b.core_P) && a.focus_P.has_value() == b.focus_P.has_value() &&
          (!a.focus_P || (*a.focus_P - *b.focus_P).norm() < kUnseen_mm);
 }
@@ -37,7 +37,7 @@ bool look_same(const ToolsShown& a, const ToolsShown& b) {
 ToolsShown seen_from_outside(ToolsShown tools) {
   tools.shaft_P = attempt::shaft_outside(std::move(tools.shaft_P), tools.inside_mm);
   if (!tools.shaft_P.empty()) tools.X_PN = Pose(tools.X_PN.R(), tools.shaft_P.back());
-  if (tools.inside_mm > 0.0) tools.hand_P.reset();
+  if (tools.inside_mm > 0.0) tools.goal_P.reset();
   tools.stylet_P.reset();
   tools.core_P.reset();
   tools.focus_P.reset();

@@ -12,7 +12,7 @@ namespace trocar::trainer {
 struct ToolsShown {
   std::vector<Vec3> shaft_P;        ///< Hub to tip; empty: no needle.
   Pose X_PN;                        ///< Of the needle's tip.
-  std::optional<Segment> hand_P;    ///< Where the hand holds the needle, when it is ahead of it.
+  std::optional<Segment> goal_P;    ///< Where the hand holds the needle, when it is ahead of it.
   std::optional<Segment> stylet_P;  ///< Of a gun, ahead of its cannula.
   std::optional<Segment> core_P;    ///< Where a core was taken.
   std::optional<Pose> X_PT;         ///< Transducer.

@@ -10,7 +10,7 @@
 
 #include "core/log.h"
 #include "core/parse_number.h"
-#include "link/detail/clean_text.h"
+#include "link/detail/plain_text.h"
 #include "link/detail/private_folder.h"
 #include "link/zmtp/detail/tcp_address.h"
 
@@ -57,7 +57,7 @@ Result<Endpoint> parse_tcp(std::string_view address) {
 
 Result<Endpoint> parse_endpoint(std::string_view text) {
   if (text.empty()) return fail_usage("no endpoint is given", "endpoint", std::string(kAdvice));
-  if (!detail::is_clean_text(text, detail::Layout::kLine)) {
+  if (!detail::is_plain_text(text, detail::Layout::kLine)) {
     return fail_usage("has control characters or is not UTF-8", "endpoint", std::string(kAdvice));
   }
   if (text.starts_with(kIpc)) return parse_ipc(text.substr(kIpc.size()));

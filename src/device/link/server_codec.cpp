@@ -153,7 +153,7 @@ void read_samples(const flatbuffers::Vector<const wire::Sample*>& samples, Inspe
   for (const wire::Sample* packed : samples) {
     read_sample(*packed, in, sample);
     result.push_back(sample);
-    if (!in.is_good()) return;
+    if (!in.is_valid()) return;
   }
 }
 
@@ -210,7 +210,7 @@ Result<ServerMessage> decode_server_message(std::span<const std::byte> bytes) {
   TROCAR_TRY(const wire::ServerMessage* root, find_root<wire::ServerMessage>(aligned, kServerIdentifier));
   Inspection inspection(bytes.size());
   ServerMessage message{root->session(), root->sequence(), read(*root, inspection)};
-  if (!inspection.is_good()) return tl::unexpected(*inspection.complaint());
+  if (!inspection.is_valid()) return tl::unexpected(*inspection.complaint());
   return message;
 }
 

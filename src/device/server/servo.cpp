@@ -78,10 +78,10 @@ Servo::Sensed Servo::sense(const ServoInput& input) noexcept {
   unread_s_ = now.status == devices::DeviceStatus::kFresh ? 0.0 : since_fresh_s;
   if (now.status == devices::DeviceStatus::kDisconnected || has_refused_)
     sensed.fault = telemetry::GateFault::kDeviceLost;
-  const bool is_good = now.X_DS.is_finite() && now.X_DS.p().norm() < haptics::kFarAway_mm;
-  if (!is_good) sensed.fault = telemetry::GateFault::kNotFinite;
+  const bool is_valid = now.X_DS.is_finite() && now.X_DS.p().norm() < haptics::kFarAway_mm;
+  if (!is_valid) sensed.fault = telemetry::GateFault::kNotFinite;
   if (has_read_ && input.dt_s > params_.max_hole_s) sensed.fault = telemetry::GateFault::kLoopStalled;
-  if (now.status != devices::DeviceStatus::kFresh || !is_good) {
+  if (now.status != devices::DeviceStatus::kFresh || !is_valid) {
     sensed.reading.X_DS = last_.X_DS;
     return sensed;
   }

@@ -281,8 +281,8 @@ void PatientScene::set_needle(std::span<const Vec3> shaft_P, double diameter_mm,
   if (impl_->tools.set_needle(shaft_P, diameter_mm, model)) impl_->has_changed = true;
 }
 
-void PatientScene::set_hand(const std::optional<Segment>& ghost_P) {
-  if (impl_->tools.set_hand(ghost_P)) impl_->has_changed = true;
+void PatientScene::set_needle_goal(const std::optional<Segment>& ghost_P) {
+  if (impl_->tools.set_needle_goal(ghost_P)) impl_->has_changed = true;
 }
 
 void PatientScene::set_shot(const std::optional<Segment>& stylet_P, const std::optional<Segment>& core_P) {

@@ -57,7 +57,7 @@ class PatientScene {
   void set_landmarks_visible(bool are_visible);
   /// Fewer than two points: no needle.
   void set_needle(std::span<const Vec3> shaft_P, double diameter_mm, NeedleModel model);
-  void set_hand(const std::optional<Segment>& ghost_P);
+  void set_needle_goal(const std::optional<Segment>& ghost_P);
   /// A gun's stylet ahead of the needle, and the place that a core was taken from.
   void set_shot(const std::optional<Segment>& stylet_P, const std::optional<Segment>& core_P);
   void set_transducer(const std::optional<Pose>& X_PT, const TransducerFace& face);

@@ -6,7 +6,7 @@
 namespace trocar::haptics {
 namespace {
 
-bool is_usable(const HapticInput& input, const HapticScene& scene) noexcept {
+bool is_valid(const HapticInput& input, const HapticScene& scene) noexcept {
   const bool is_near = (input.tool.p_mm - scene.X_PD.p()).norm() < kFarAway_mm;
   return input.tool.is_valid() && is_near && input.dt_s > 0.0 && input.dt_s <= kMaxDt_s;
 }
@@ -56,7 +56,7 @@ telemetry::ToolPose tool_pose(const HapticScene& scene, const Pose& X_DS) noexce
 }
 
 HapticOutput tick(HapticState& state, const HapticInput& input, const HapticScene& scene) noexcept {
-  if (!is_usable(input, scene)) return reject(state, input);
+  if (!is_valid(input, scene)) return reject(state, input);
   if (scene.options.tool != Tool::kNeedle) return tick_contact(state, input, scene);
   const Pose X_PN = input.tool.pose();
   const Pose X_PS = X_PN * scene.X_SN.inverse();

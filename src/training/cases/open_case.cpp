@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "cases/needle_geometry.h"
-#include "cases/probe_start.h"
+#include "cases/transducer_start.h"
 #include "core/files/data_dir.h"
 #include "core/parallel.h"
 #include "io/patient/patient_cache.h"
@@ -93,7 +93,7 @@ Status add_acoustics(OpenCase& made, const anatomy::VirtualPatient& patient, con
 Status add_case(OpenCase& made, std::shared_ptr<const anatomy::VirtualPatient> patient, const Progress& progress) {
   TROCAR_TRY(made.the_case, prepare_case(std::move(patient), made.choice.options, progress));
   made.force_model = made.choice.force_model.empty() ? made.the_case.task.force_model : made.choice.force_model;
-  TROCAR_TRY(ProbeStart start, find_probe_start(*made.the_case.patient, made.the_case.plan.line_P));
+  TROCAR_TRY(TransducerStart start, find_transducer_start(*made.the_case.patient, made.the_case.plan.line_P));
   made.transducer = std::move(start.transducer);
   made.probe_depth_mm = start.depth_mm;
   made.X_PT_start = start.X_PT;

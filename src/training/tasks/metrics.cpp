@@ -16,7 +16,7 @@ constexpr double kStep_mm = 0.5;         // distance of the points tested for ri
 constexpr double kTremor_mm = 1.0;       // smaller motions to and fro do not count as travel
 constexpr double kSkinSearch_mm = 40.0;  // from the tip that pierced the skin back to the resting skin
 
-bool is_usable(const telemetry::TickSample& sample) noexcept {
+bool is_valid(const telemetry::TickSample& sample) noexcept {
   return sample.tip_mm.allFinite() && sample.axis.allFinite() && std::isfinite(sample.depth_mm) &&
          std::isfinite(sample.time_s);
 }
@@ -77,7 +77,7 @@ std::vector<RiskTouch> find_risks(const Task& task, const anatomy::VirtualPatien
   RiskFinder finder(task, patient);
   const telemetry::TickSample* before = nullptr;  // the last sample inside the body
   for (const telemetry::TickSample& sample : samples) {
-    if (!is_usable(sample)) continue;
+    if (!is_valid(sample)) continue;
     if (sample.depth_mm <= 0.0) {
       before = nullptr;
       continue;
@@ -98,7 +98,7 @@ double inward_travel_mm(std::span<const telemetry::TickSample> samples) noexcept
   double turn_mm = 0.0;  // the deepest point during insertion, the shallowest during withdrawal
   bool is_going_in = true;
   for (const telemetry::TickSample& sample : samples) {
-    if (!is_usable(sample)) continue;
+    if (!is_valid(sample)) continue;
     const double depth_mm = std::max(0.0, sample.depth_mm);
     if (is_going_in) {
       travel_mm += std::max(0.0, depth_mm - turn_mm);
@@ -115,10 +115,10 @@ double inward_travel_mm(std::span<const telemetry::TickSample> samples) noexcept
 
 std::optional<std::size_t> end_of_attempt(std::span<const telemetry::TickSample> samples,
                                           std::optional<std::size_t> fired) {
-  if (fired && *fired < samples.size() && is_usable(samples[*fired])) return fired;
+  if (fired && *fired < samples.size() && is_valid(samples[*fired])) return fired;
   std::optional<std::size_t> deepest;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (!is_usable(samples[i])) continue;
+    if (!is_valid(samples[i])) continue;
     if (!deepest || samples[i].depth_mm > samples[*deepest].depth_mm) deepest = i;
   }
   return deepest;
@@ -134,11 +134,11 @@ Entry find_entry(std::span<const telemetry::TickSample> samples, std::size_t end
                  std::optional<std::uint8_t> skin_layer) {
   Entry entry;
   for (std::size_t i = 0; i <= end; ++i)
-    if (is_usable(samples[i]) && has_punctured(samples[i], skin_layer)) entry = {i, entry.count + 1};
+    if (is_valid(samples[i]) && has_punctured(samples[i], skin_layer)) entry = {i, entry.count + 1};
   if (entry.sample) return entry;
   bool is_inside = false;
   for (std::size_t i = 0; i <= end; ++i) {
-    if (!is_usable(samples[i])) continue;
+    if (!is_valid(samples[i])) continue;
     if (samples[i].depth_mm <= 0.0) {
       is_inside = false;
     } else if (!is_inside && samples[i].phase != telemetry::InsertionPhase::kLoading) {
@@ -157,7 +157,7 @@ AttemptMetrics measure_attempt(const Task& task, const anatomy::VirtualPatient& 
                                std::span<const Interruption> interruptions) {
   AttemptMetrics metrics;
   const auto touch = std::find_if(samples.begin(), samples.end(), [](const telemetry::TickSample& sample) {
-    return is_usable(sample) && (sample.phase != telemetry::InsertionPhase::kOutside || sample.depth_mm > 0.0);
+    return is_valid(sample) && (sample.phase != telemetry::InsertionPhase::kOutside || sample.depth_mm > 0.0);
   });
   metrics.has_touched_skin = touch != samples.end();
   const std::optional<std::size_t> end = end_of_attempt(samples, fired);
@@ -176,7 +176,7 @@ AttemptMetrics measure_attempt(const Task& task, const anatomy::VirtualPatient& 
   metrics.target_offset_P = last.tip_mm - plan.line_P.b;
   metrics.travel_mm = inward_travel_mm(samples.first(*end + 1));
   for (const telemetry::TickSample& sample : samples.first(*end + 1))
-    if (is_usable(sample)) metrics.deepest_mm = std::max(metrics.deepest_mm, sample.depth_mm);
+    if (is_valid(sample)) metrics.deepest_mm = std::max(metrics.deepest_mm, sample.depth_mm);
   metrics.time_s = active_time_s(touch->time_s, last.time_s, interruptions);
   metrics.risks = find_risks(task, patient, samples, *end);
   return metrics;

@@ -117,8 +117,8 @@ void PatientView::set_needle(std::span<const Vec3> shaft_P, double diameter_mm, 
   impl_->scene->set_needle(shaft_P, diameter_mm, model);
 }
 
-void PatientView::set_hand(const std::optional<Segment>& ghost_P) {
-  impl_->scene->set_hand(ghost_P);
+void PatientView::set_needle_goal(const std::optional<Segment>& ghost_P) {
+  impl_->scene->set_needle_goal(ghost_P);
 }
 
 void PatientView::set_shot(const std::optional<Segment>& stylet_P, const std::optional<Segment>& core_P) {

@@ -48,7 +48,7 @@ class PatientView : public QWidget {
   /// From the hub to the tip; fewer than two points: no needle.
   void set_needle(std::span<const Vec3> shaft_P, double diameter_mm, scene::NeedleModel model);
   /// Where the hand holds the needle, hub to tip; nothing when it is where the needle is.
-  void set_hand(const std::optional<Segment>& ghost_P);
+  void set_needle_goal(const std::optional<Segment>& ghost_P);
   void set_shot(const std::optional<Segment>& stylet_P, const std::optional<Segment>& core_P);
   void set_transducer(const std::optional<Pose>& X_PT, const ultrasound::ScanGeometry& scan);
   /// Corners of the picture's outline in P: top left, top right, bottom left. What lies outside of the scan of the last

@@ -7,8 +7,8 @@
 namespace trocar::trainer {
 namespace {
 
-constexpr double kTickRoom_x = 52.0;  ///< Space in points for a number along its axis.
-constexpr double kTickRoom_y = 30.0;
+constexpr double kTickSpace_x = 52.0;  ///< Space in points for a number along its axis.
+constexpr double kTickSpace_y = 30.0;
 
 int steps_in(double points, double room) {
   return std::max(1, static_cast<int>(points / room));
@@ -35,8 +35,8 @@ void PlotFrame::draw_axes(QPainter& painter, const QString& x_unit, const QStrin
   painter.setFont(scaled_font(0.82));
   const QFontMetricsF metrics(painter.font());
   const double high = metrics.height();
-  const double step_x = report::nice_step(x, steps_in(area.width(), kTickRoom_x));
-  const double step_y = report::nice_step(y, steps_in(area.height(), kTickRoom_y));
+  const double step_x = report::nice_step(x, steps_in(area.width(), kTickSpace_x));
+  const double step_y = report::nice_step(y, steps_in(area.height(), kTickSpace_y));
   for (const double value : report::ticks_in(y, step_y)) {
     const double at = to_point({x.low, value}).y();
     painter.setPen(QPen(value == 0.0 ? t.dim : t.line, 1.0));

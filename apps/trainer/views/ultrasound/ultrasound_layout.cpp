@@ -32,7 +32,7 @@ bool touches(const QRectF& box, const QRectF& picture, const ultrasound::RasterG
 
 }  // namespace
 
-UltrasoundLayout lay_out(const QSizeF& view, const ultrasound::ScanGeometry& scan, const UltrasoundRoom& room) {
+UltrasoundLayout lay_out(const QSizeF& view, const ultrasound::ScanGeometry& scan, const MarginSpace& room) {
   UltrasoundLayout layout;
   layout.scale_x = view.width() - room.scale_width;
   layout.caption = QRectF(QPointF(room.margin, room.margin), room.caption);

@@ -9,7 +9,7 @@
 namespace trocar::trainer {
 
 /// Room that texts and bars need beside the scan, in the widget's own pixels.
-struct UltrasoundRoom {
+struct MarginSpace {
   QSizeF caption;             ///< At the top left.
   QSizeF bars;                ///< At the right, below the orientation marker; beside the depth scale.
   double scale_width = 34.0;  ///< Depth scale and its numbers, at the right edge.
@@ -25,7 +25,7 @@ struct UltrasoundLayout {
   QRectF bars;
   double scale_x = 0.0;  ///< Of the depth scale's line.
 };
-UltrasoundLayout lay_out(const QSizeF& view, const ultrasound::ScanGeometry& scan, const UltrasoundRoom& room);
+UltrasoundLayout lay_out(const QSizeF& view, const ultrasound::ScanGeometry& scan, const MarginSpace& room);
 
 /// From a picture's pixels to the widget's and back: the raster as large as fits into the layout's picture.
 class PictureMap {

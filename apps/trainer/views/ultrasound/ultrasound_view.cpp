@@ -245,8 +245,8 @@ std::optional<PictureMap> UltrasoundView::picture_map() const {
   return PictureMap(layout_for(picture_->scan).picture, picture_->raster);
 }
 
-UltrasoundRoom UltrasoundView::room() const {
-  UltrasoundRoom room;
+MarginSpace UltrasoundView::room() const {
+  MarginSpace room;
   const bool is_small = height() < kSmallHeight_px || width() < kSmallWidth_px;
   const QFont font = caption_font(is_small);
   room.scale_width = QFontMetricsF(font).horizontalAdvance(QStringLiteral("20")) + 12.0;
@@ -267,7 +267,7 @@ UltrasoundRoom UltrasoundView::room() const {
 }
 
 const UltrasoundLayout& UltrasoundView::layout_for(const ultrasound::ScanGeometry& scan) const {
-  const UltrasoundRoom wanted = room();
+  const MarginSpace wanted = room();
   const LayoutKey key{QSizeF(size()), wanted.caption, wanted.bars, scan};
   const bool is_known = layout_key_ && layout_key_->view == key.view && layout_key_->caption == key.caption &&
                         layout_key_->bars == key.bars && is_same(layout_key_->scan, scan);

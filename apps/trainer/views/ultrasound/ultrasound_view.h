@@ -126,7 +126,7 @@ class UltrasoundView : public QWidget {
   void save_now();
 
   ultrasound::ScanGeometry requested_scan() const;
-  UltrasoundRoom room() const;
+  MarginSpace room() const;
   const UltrasoundLayout& layout_for(const ultrasound::ScanGeometry& scan) const;
   std::vector<ultrasound::Vec2> guide_line_T() const;
   void set_mark(const ultrasound::Vec2& p_T);

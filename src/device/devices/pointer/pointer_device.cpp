@@ -19,7 +19,7 @@ PointerDevice::PointerDevice(haptics::DevicePreset preset, const PointerParams& 
     : preset_(std::move(preset)), params_(params) {}
 
 void PointerDevice::hold(const DeviceHand& hand) noexcept {
-  if (!is_usable(hand)) return;
+  if (!is_valid(hand)) return;
   hand_ = hand;
   const bool is_new_place = hand.is_placed && (!was_ever_held_ || hand.time_s != placed_s_);
   if (is_new_place) placed_s_ = hand.time_s;
@@ -55,7 +55,7 @@ DeviceReading PointerDevice::read(double now_s) noexcept {
 }
 
 bool PointerDevice::write(const haptics::Wrench& wrench_D) noexcept {
-  return is_sane(wrench_D);
+  return is_valid(wrench_D);
 }
 
 OpenedDevice open_pointer(const DeviceSpec&, const DeviceOptions& options) {

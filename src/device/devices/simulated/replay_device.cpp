@@ -48,7 +48,7 @@ DeviceReading ReplayDevice::read(double now_s) noexcept {
 }
 
 bool ReplayDevice::write(const haptics::Wrench& wrench_D) noexcept {
-  return is_sane(wrench_D);
+  return is_valid(wrench_D);
 }
 
 OpenedDevice open_replay(const DeviceSpec& spec, const DeviceOptions& options) {

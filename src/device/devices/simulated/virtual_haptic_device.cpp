@@ -32,7 +32,7 @@ VirtualHapticDevice::VirtualHapticDevice(haptics::DevicePreset preset, const Sim
 }
 
 void VirtualHapticDevice::hold(const DeviceHand& hand) noexcept {
-  if (!is_usable(hand)) return;
+  if (!is_valid(hand)) return;
   hand_ = hand;
   hand_.stiffness_n_per_mm = std::min(hand.stiffness_n_per_mm, kStiffestHand_n_per_mm);
   hand_.turning_nmm_per_rad = std::min(hand.turning_nmm_per_rad, kStiffestTurn_nmm_per_rad);
@@ -50,7 +50,7 @@ void VirtualHapticDevice::hold(const DeviceHand& hand) noexcept {
 }
 
 bool VirtualHapticDevice::write(const haptics::Wrench& wrench_D) noexcept {
-  if (!is_sane(wrench_D)) return false;
+  if (!is_valid(wrench_D)) return false;
   haptics::Wrench wrench = wrench_D;
   clamp_norm(wrench.force_n, preset_.has_force() ? preset_.capability.peak_force_n : 0.0);
   clamp_norm(wrench.torque_nmm, preset_.capability.peak_torque_nmm);

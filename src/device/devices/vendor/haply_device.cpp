@@ -131,8 +131,8 @@ void HaplyDevice::run() {
 /// Returns false if the device is disconnected.
 bool HaplyDevice::take_state(const std::string& message) {
   const HaplyState state = parse_haply_state(message, device_id_);
-  const bool is_usable = state.condition == HaplyCondition::kReady && (state.q_grip.has_value() || !*has_grip_);
-  if (is_usable) {
+  const bool is_valid = state.condition == HaplyCondition::kReady && (state.q_grip.has_value() || !*has_grip_);
+  if (is_valid) {
     unusable_ = 0;
     state_.write({pose_of(state), state.buttons});
     return true;

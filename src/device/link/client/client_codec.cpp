@@ -170,7 +170,7 @@ std::vector<TissueSetting> read(const flatbuffers::Vector<flatbuffers::Offset<wi
     const std::string row = in.text(setting->row(), "row of a tissue setting");
     const std::string key = in.text(setting->key(), "key of a tissue setting");
     settings.push_back({row, key, in.number(setting->value(), kSettingValues, "value of a tissue setting")});
-    if (!in.is_good()) return {};
+    if (!in.is_valid()) return {};
   }
   return settings;
 }
@@ -251,7 +251,7 @@ Result<ClientMessage> decode_client_message(std::span<const std::byte> bytes) {
   TROCAR_TRY(const wire::ClientMessage* root, find_root<wire::ClientMessage>(aligned, kClientIdentifier));
   Inspection inspection(bytes.size());
   ClientMessage message{root->session(), root->sequence(), read(*root, inspection)};
-  if (!inspection.is_good()) return tl::unexpected(*inspection.complaint());
+  if (!inspection.is_valid()) return tl::unexpected(*inspection.complaint());
   return message;
 }
 

@@ -33,7 +33,7 @@ std::string Inspection::text(const flatbuffers::String* text, const char* field,
     refuse(fmt::format("a text of {} bytes, {} are allowed", view.size(), kMostTextBytes), field);
   } else if (view.size() > text_budget_) {
     refuse("more text than the message has bytes", field);
-  } else if (!is_clean_text(view, layout)) {
+  } else if (!is_plain_text(view, layout)) {
     refuse("a text that is not UTF-8 or has control characters", field);
   } else {
     text_budget_ -= view.size();

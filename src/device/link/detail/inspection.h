@@ -9,8 +9,8 @@
 
 #include "core/result.h"
 #include "geometry/pose.h"
-#include "link/detail/clean_text.h"
 #include "link/detail/messages_generated.h"
+#include "link/detail/plain_text.h"
 
 namespace trocar::link::detail {
 
@@ -65,7 +65,7 @@ class Inspection {
   }
 
   void refuse(std::string what, const char* field);
-  bool is_good() const { return !complaint_; }
+  bool is_valid() const { return !complaint_; }
   const std::optional<Error>& complaint() const { return complaint_; }
 
  private:

@@ -18,7 +18,7 @@ Result<ServerMessage> decode(std::span<const std::byte> bytes, const ServerMessa
 
 /// Refused, or good in every respect: then it comes through the codec once more as it is.
 template <class Message>
-void expect_refused_or_sound(const Result<Message>& decoded) {
+void expect_refused_or_valid(const Result<Message>& decoded) {
   if (!decoded) {
     EXPECT_FALSE(decoded.error().what.empty());
     return;
@@ -52,7 +52,7 @@ void flip_everywhere(const Message& message) {
       byte = before ^ std::byte(mask);
       const auto decoded = decode(bytes, message);
       accepted += decoded.has_value();
-      expect_refused_or_sound(decoded);
+      expect_refused_or_valid(decoded);
     }
     byte = before;
   }
@@ -78,8 +78,8 @@ TEST(DamagedMessage, SeveralWrongBytesAreRefusedOrStillSound) {
     RandomMessages messages(random.next());
     Bytes bytes = trial % 2 == 0 ? encode(messages.client_message()) : encode(messages.server_message());
     for (int i = 0; i < 4; ++i) bytes[random.next() % bytes.size()] = std::byte(random.next() & 0xFF);
-    expect_refused_or_sound(decode_client_message(bytes));
-    expect_refused_or_sound(decode_server_message(bytes));
+    expect_refused_or_valid(decode_client_message(bytes));
+    expect_refused_or_valid(decode_server_message(bytes));
   }
 }
 
@@ -95,7 +95,7 @@ TEST(DamagedMessage, NoiseIsRefused) {
     // The same behind a good beginning.
     const Bytes good = encode(ClientMessage{1, 1, Goodbye{}});
     std::copy_n(good.begin(), kRootOffset, noise.begin());
-    expect_refused_or_sound(decode_client_message(noise));
+    expect_refused_or_valid(decode_client_message(noise));
   }
 }
 

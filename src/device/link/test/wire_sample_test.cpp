@@ -82,7 +82,7 @@ TEST(WireSample, GivesEveryFieldBackBitForBit) {
     telemetry::TickSample read;
     read_sample(to_wire(sample), inspection, read);
     EXPECT_EQ(Fingerprint(read), Fingerprint(sample)) << "seed " << seed;
-    EXPECT_TRUE(inspection.is_good());
+    EXPECT_TRUE(inspection.is_valid());
   }
 }
 

@@ -186,9 +186,9 @@ inline std::optional<link::Received> InProcessServerEnd::take(const std::string&
     return {};
   }
   using link::detail::PeerTable;
-  const bool is_good = hello != nullptr || PeerTable::judge(*peer, message.session, message.sequence, now_s) ==
-                                               link::detail::Verdict::kGood;
-  if (!is_good) return {};
+  const bool is_valid = hello != nullptr || PeerTable::judge(*peer, message.session, message.sequence, now_s) ==
+                                                link::detail::Verdict::kGood;
+  if (!is_valid) return {};
   const bool is_leaving = std::holds_alternative<link::Goodbye>(message.body);
   if (!is_leaving) peers_.offer_control(*peer, now_s);
   link::Received received{peer->session, peers_.has_control(*peer), std::move(message.body)};

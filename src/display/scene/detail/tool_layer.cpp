@@ -116,7 +116,7 @@ void ToolLayer::set_least_thickness(double least_mm) {
   rebuild_needle();
 }
 
-bool ToolLayer::set_hand(const std::optional<Segment>& ghost_P) {
+bool ToolLayer::set_needle_goal(const std::optional<Segment>& ghost_P) {
   if (are_same(ghost_P, ghost_P_)) return false;
   ghost_P_ = ghost_P;
   ghost_->SetVisibility(ghost_P.has_value());

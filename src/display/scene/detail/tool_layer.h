@@ -20,7 +20,7 @@ class ToolLayer {
 
   // Each tells whether it changed the picture.
   bool set_needle(std::span<const Vec3> shaft_P, double diameter_mm, NeedleModel model);
-  bool set_hand(const std::optional<Segment>& ghost_P);
+  bool set_needle_goal(const std::optional<Segment>& ghost_P);
   bool set_shot(const std::optional<Segment>& stylet_P, const std::optional<Segment>& core_P);
   bool set_transducer(const std::optional<Pose>& X_PT, const TransducerFace& face);
   /// What stands behind the transducer is seen through it.

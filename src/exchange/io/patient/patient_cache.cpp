@@ -68,7 +68,7 @@ std::optional<fs::path> use(const fs::path& entry) {
 
 PatientCache::PatientCache(fs::path folder) : folder_(std::move(folder)) {}
 
-bool PatientCache::is_usable(const PatientSource& source) const {
+bool PatientCache::is_valid(const PatientSource& source) const {
   return !folder_.empty() && !build_hash().empty() && is_embedded(source);
 }
 
@@ -78,17 +78,17 @@ fs::path PatientCache::folder_of(const PatientSource& source, bool has_surfaces)
 }
 
 std::optional<fs::path> PatientCache::find(const PatientSource& source) const {
-  return is_usable(source) ? use(folder_of(source, true)) : std::nullopt;
+  return is_valid(source) ? use(folder_of(source, true)) : std::nullopt;
 }
 
 std::optional<fs::path> PatientCache::find_volumes(const PatientSource& source) const {
   if (auto entry = find(source)) return entry;
-  return is_usable(source) ? use(folder_of(source, false)) : std::nullopt;
+  return is_valid(source) ? use(folder_of(source, false)) : std::nullopt;
 }
 
 Result<fs::path> PatientCache::keep(const PatientSource& source, const anatomy::VirtualPatient& patient,
                                     const std::vector<anatomy::NamedMesh>& meshes) const {
-  if (!is_usable(source))
+  if (!is_valid(source))
     return fail("the patient is not cached", source.folder_or_name, "name an embedded patient and a cache folder");
   std::error_code error;
   fs::create_directories(folder_, error);
@@ -104,7 +104,7 @@ Result<fs::path> PatientCache::keep(const PatientSource& source, const anatomy::
 }
 
 void PatientCache::forget(const PatientSource& source) const noexcept {
-  if (!is_usable(source)) return;
+  if (!is_valid(source)) return;
   std::error_code ignored;
   for (const bool has_surfaces : {true, false}) fs::remove_all(folder_of(source, has_surfaces), ignored);
 }

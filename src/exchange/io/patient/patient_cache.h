@@ -34,7 +34,7 @@ class PatientCache {
 
  private:
   std::filesystem::path folder_of(const PatientSource& source, bool has_surfaces) const;
-  bool is_usable(const PatientSource& source) const;
+  bool is_valid(const PatientSource& source) const;
   std::filesystem::path folder_;
 };
 

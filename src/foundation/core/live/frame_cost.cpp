@@ -15,7 +15,7 @@ constexpr double kMemory = 0.985;
 /// Limit of the ratio of measured to expected time: a frame that was interrupted for long is no measurement.
 constexpr double kGreatestRatio = 3.0;
 /// Share of the target that a finer level may take, so that levels do not alternate.
-constexpr double kRoomToRefine = 0.8;
+constexpr double kShareToRefine = 0.8;
 
 }  // namespace
 
@@ -41,7 +41,7 @@ std::size_t FrameCost::select_level(std::span<const double> work, double target_
   if (!ms_per_work_) return 0;
   std::size_t best = 0;
   for (std::size_t level = 1; level < corrections_.size(); ++level) {
-    const double room = level > selected_ ? kRoomToRefine : 1.0;
+    const double room = level > selected_ ? kShareToRefine : 1.0;
     if (*expected_ms(level, work[level]) <= room * target_ms) best = level;
   }
   return selected_ = best;

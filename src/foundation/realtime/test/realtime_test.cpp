@@ -40,15 +40,15 @@ TEST(TripleBuffer, NeverTearsAndNeverGoesBackBetweenThreads) {
     for (std::uint64_t i = 1; i <= kLast; ++i) buffer.write({i, ~i});
   });
   std::uint64_t last = 0;
-  bool is_good = true;
+  bool is_valid = true;
   while (last < kLast) {
     if (!buffer.update()) continue;
     const Pair pair = buffer.value();
-    is_good = is_good && pair.b == ~pair.a && pair.a > last;
+    is_valid = is_valid && pair.b == ~pair.a && pair.a > last;
     last = std::max(last, pair.a);
   }
   writer.join();
-  EXPECT_TRUE(is_good);
+  EXPECT_TRUE(is_valid);
 }
 
 TEST(SpscRing, KeepsEveryValueInOrderAndRefusesWhenFull) {
@@ -70,15 +70,15 @@ TEST(SpscRing, LosesNothingBetweenThreads) {
     for (std::uint64_t i = 1; i <= kCount;) i += ring.push({i, ~i}) ? 1 : 0;
   });
   std::uint64_t expected = 1;
-  bool is_good = true;
+  bool is_valid = true;
   Pair pair;
   while (expected <= kCount) {
     if (!ring.pop(pair)) continue;
-    is_good = is_good && pair.a == expected && pair.b == ~expected;
+    is_valid = is_valid && pair.a == expected && pair.b == ~expected;
     ++expected;
   }
   writer.join();
-  EXPECT_TRUE(is_good);
+  EXPECT_TRUE(is_valid);
 }
 
 /// Notes in its destructor that it is gone.
@@ -111,12 +111,12 @@ TEST(Handover, NeverGivesAFreedObjectToTheOtherThread) {
     for (int i = 0; i < 20'000; ++i) handover.publish(std::make_shared<const Mortal>(i));
     is_done = true;
   });
-  bool is_good = true;
+  bool is_valid = true;
   while (!is_done) {
-    if (const Mortal* mortal = handover.acquire()) is_good = is_good && mortal->check == mortal->number;
+    if (const Mortal* mortal = handover.acquire()) is_valid = is_valid && mortal->check == mortal->number;
   }
   maker.join();
-  EXPECT_TRUE(is_good);
+  EXPECT_TRUE(is_valid);
 }
 
 TEST(LatencyHistogram, TellsQuantilesToWithinThreePercentOfTheSortedValues) {

@@ -17,8 +17,8 @@ constexpr double kLateralShare = 0.2;  // of the force's limit that an axial for
 constexpr double kLeastAxis = 1e-6;    // length below which an axis has no direction
 constexpr double kRounding = 1e-12;    // relative margin that keeps a limited norm below its limit
 
-bool is_sound(const Vec3& value) noexcept {
-  return detail::is_sound(value.x()) && detail::is_sound(value.y()) && detail::is_sound(value.z());
+bool is_valid(const Vec3& value) noexcept {
+  return detail::is_valid(value.x()) && detail::is_valid(value.y()) && detail::is_valid(value.z());
 }
 
 Vec3 clipped(const Vec3& value, double limit) noexcept {
@@ -64,18 +64,18 @@ double warmed(double heat, double norm, double continuous, double share) noexcep
 
 }  // namespace
 
-bool is_sound(double value) noexcept {
+bool is_valid(double value) noexcept {
   return std::abs(value) <= kBeyondReason;  // false for NaN
 }
 
-bool is_sound(const Wrench& wrench) noexcept {
-  return is_sound(wrench.force_n) && is_sound(wrench.torque_nmm);
+bool is_valid(const Wrench& wrench) noexcept {
+  return is_valid(wrench.force_n) && is_valid(wrench.torque_nmm);
 }
 
-bool is_sound(const GateInput& input) noexcept {
-  return is_sound(input.wanted) && is_sound(input.weight) && is_sound(input.axis) && is_sound(input.v_mm_per_s) &&
-         is_sound(input.w_rad_per_s) && is_sound(input.dt_s) && input.dt_s > 0.0 && is_sound(input.busy_s) &&
-         is_sound(input.coupling.stiffness_n_per_mm) && is_sound(input.coupling.damping_ns_per_mm);
+bool is_valid(const GateInput& input) noexcept {
+  return is_valid(input.wanted) && is_valid(input.weight) && is_valid(input.axis) && is_valid(input.v_mm_per_s) &&
+         is_valid(input.w_rad_per_s) && is_valid(input.dt_s) && input.dt_s > 0.0 && is_valid(input.busy_s) &&
+         is_valid(input.coupling.stiffness_n_per_mm) && is_valid(input.coupling.damping_ns_per_mm);
 }
 
 bool is_small(const Wrench& wrench, const GateParams& params) noexcept {
@@ -83,20 +83,20 @@ bool is_small(const Wrench& wrench, const GateParams& params) noexcept {
 }
 
 bool restore(GateState& state) noexcept {
-  const bool is_watch_usable =
-      state.slow_s >= 0.0 && is_sound(state.slow_s) && state.since_late_s >= 0.0 && is_sound(state.since_late_s) &&
-      state.slow_period_s >= 0.0 && is_sound(state.slow_period_s) && state.coupling_share >= 0.0 &&
-      state.coupling_share <= 1.0 && is_sound(state.slow_f_n) && is_sound(state.slow_tau_nmm) &&
-      is_sound(state.slow_v_mm_per_s) && is_sound(state.slow_w_rad_per_s) && is_sound(state.last_v_mm_per_s) &&
-      std::isfinite(state.vibration_mw) && is_sound(state.vibration_s);
-  const bool is_usable = is_watch_usable && is_sound(state.last) && is_sound(state.watched) && state.scale >= 0.0 &&
-                         state.scale <= 1.0 && std::isfinite(state.energy_mj) && state.force_heat >= 0.0 &&
-                         std::isfinite(state.force_heat) && state.torque_heat >= 0.0 &&
-                         std::isfinite(state.torque_heat) && is_sound(state.runaway_s) && is_sound(state.quiet_s) &&
-                         is_sound(state.drop_from_n) && is_sound(state.drop_s) &&
-                         state.mode <= telemetry::GateMode::kFault && state.fault <= telemetry::kLastGateFault &&
-                         (state.mode == telemetry::GateMode::kFault) == (state.fault != telemetry::GateFault::kNone);
-  if (is_usable) return true;
+  const bool is_watch_valid =
+      state.slow_s >= 0.0 && is_valid(state.slow_s) && state.since_late_s >= 0.0 && is_valid(state.since_late_s) &&
+      state.slow_period_s >= 0.0 && is_valid(state.slow_period_s) && state.coupling_share >= 0.0 &&
+      state.coupling_share <= 1.0 && is_valid(state.slow_f_n) && is_valid(state.slow_tau_nmm) &&
+      is_valid(state.slow_v_mm_per_s) && is_valid(state.slow_w_rad_per_s) && is_valid(state.last_v_mm_per_s) &&
+      std::isfinite(state.vibration_mw) && is_valid(state.vibration_s);
+  const bool is_state_valid =
+      is_watch_valid && is_valid(state.last) && is_valid(state.watched) && state.scale >= 0.0 && state.scale <= 1.0 &&
+      std::isfinite(state.energy_mj) && state.force_heat >= 0.0 && std::isfinite(state.force_heat) &&
+      state.torque_heat >= 0.0 && std::isfinite(state.torque_heat) && is_valid(state.runaway_s) &&
+      is_valid(state.quiet_s) && is_valid(state.drop_from_n) && is_valid(state.drop_s) &&
+      state.mode <= telemetry::GateMode::kFault && state.fault <= telemetry::kLastGateFault &&
+      (state.mode == telemetry::GateMode::kFault) == (state.fault != telemetry::GateFault::kNone);
+  if (is_state_valid) return true;
   const telemetry::GateFault fault =
       state.fault <= telemetry::kLastGateFault ? state.fault : telemetry::GateFault::kNotFinite;
   state = GateState{};

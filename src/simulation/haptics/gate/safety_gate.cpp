@@ -23,7 +23,7 @@ struct Period {
 };
 
 Period make_period(double dt_s) noexcept {
-  const bool is_time = detail::is_sound(dt_s) && dt_s > 0.0;
+  const bool is_time = detail::is_valid(dt_s) && dt_s > 0.0;
   const double counted_s = is_time ? std::min(dt_s, kLongestPeriod_s) : kNominalPeriod_s;
   return {counted_s, std::min(counted_s, kLongestRise_s)};
 }
@@ -50,10 +50,10 @@ void count_runaway(GateState& state, bool is_braking, double rise_s) noexcept {
 
 /// Fault of this period. The caller's fault comes first: it names the cause.
 telemetry::GateFault find_cause(const GateState& state, const GateInput& input, const GateParams& params,
-                                bool is_usable) noexcept {
+                                bool is_valid) noexcept {
   if (input.device_fault > telemetry::kLastGateFault) return telemetry::GateFault::kNotFinite;
   if (input.device_fault != telemetry::GateFault::kNone) return input.device_fault;
-  if (!is_usable) return telemetry::GateFault::kNotFinite;
+  if (!is_valid) return telemetry::GateFault::kNotFinite;
   if (!(input.unread_s <= params.max_unread_s)) return telemetry::GateFault::kDeviceSilent;
   if (state.mode != telemetry::GateMode::kOff && detail::is_motion_impossible(state, input, params))
     return telemetry::GateFault::kImpossibleMotion;
@@ -193,19 +193,19 @@ void restart_gate(GateState& state) noexcept {
 GateOutput step_gate(GateState& state, const GateInput& input, const GateParams& given) noexcept {
   const GateParams params = detail::made_safe(given);
   const Period period = make_period(input.dt_s);
-  const bool is_input_sound = detail::is_sound(input);
-  const bool is_usable = detail::restore(state) && is_input_sound;
+  const bool is_input_valid = detail::is_valid(input);
+  const bool is_valid = detail::restore(state) && is_input_valid;
   const bool is_braking =
-      is_input_sound && state.scale > 0.0 && state.fault == telemetry::GateFault::kNone && is_too_fast(input, params);
-  if (is_input_sound) {
+      is_input_valid && state.scale > 0.0 && state.fault == telemetry::GateFault::kNone && is_too_fast(input, params);
+  if (is_input_valid) {
     detail::watch_loop(state, input, period.rise_s, params);
     detail::watch_vibration(state, input, period.dt_s, params);
   }
   const GateInput given_input = weakened(input, state.coupling_share);
-  if (is_input_sound) detail::observe_energy(state, given_input, period.dt_s, params);
+  if (is_input_valid) detail::observe_energy(state, given_input, period.dt_s, params);
   count_runaway(state, is_braking, period.rise_s);
 
-  const telemetry::GateFault cause = find_cause(state, input, params, is_usable);
+  const telemetry::GateFault cause = find_cause(state, input, params, is_valid);
   if (state.fault == telemetry::GateFault::kNone && cause != telemetry::GateFault::kNone) latch(state, cause);
   if (state.fault != telemetry::GateFault::kNone && cause == telemetry::GateFault::kNone && input.is_reset)
     release(state);
@@ -224,7 +224,7 @@ GateOutput step_gate(GateState& state, const GateInput& input, const GateParams&
   if (is_client_silent(input, params)) output.actions |= kGateStale;
   follow_drop(state, output.wrench.force_n.norm(), period.dt_s, output);
   state.last = output.wrench;
-  state.last_v_mm_per_s = is_input_sound ? input.v_mm_per_s : Vec3(Vec3::Zero());
+  state.last_v_mm_per_s = is_input_valid ? input.v_mm_per_s : Vec3(Vec3::Zero());
   detail::warm(state, period.dt_s, params);
   return output;
 }

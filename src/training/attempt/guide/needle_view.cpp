@@ -6,16 +6,16 @@
 
 namespace trocar::attempt {
 
-NeedleView needle_view(const cases::Case& the_case, const telemetry::TickSample& sample, const Pose& X_PN_hand) {
+NeedleView needle_view(const cases::Case& the_case, const telemetry::TickSample& sample, const Pose& X_PN_goal) {
   NeedleView view;
   view.is_known = true;
   view.time_s = sample.time_s;
   view.X_PN = telemetry::felt_needle(sample);
   view.shaft_P = needle_shaft(sample, the_case.needle.length_mm);
   view.X_PN_device = telemetry::device_pose(sample);
-  view.X_PN_hand = X_PN_hand;
+  view.X_PN_goal = X_PN_goal;
   view.resistance_n = telemetry::axial_resistance_n(sample);
-  view.lag_mm = (X_PN_hand.p() - sample.tip_mm).dot(view.X_PN.R().col(2));
+  view.lag_mm = (X_PN_goal.p() - sample.tip_mm).dot(view.X_PN.R().col(2));
   view.depth_mm = sample.depth_mm;
   view.speed_mm_s = sample.axial_velocity_mm_s;
   view.phase = sample.phase;

@@ -5,7 +5,7 @@
 
 namespace trocar::attempt {
 
-/// Display data of a needle tick. `X_PN_hand`: target pose of the hand.
-NeedleView needle_view(const cases::Case& the_case, const telemetry::TickSample& sample, const Pose& X_PN_hand);
+/// Display data of a needle tick. `X_PN_goal`: target pose of the hand.
+NeedleView needle_view(const cases::Case& the_case, const telemetry::TickSample& sample, const Pose& X_PN_goal);
 
 }  // namespace trocar::attempt

@@ -37,14 +37,14 @@ void AttemptExchange::frame_drawn() {
   requests_.has_drawn = true;
 }
 
-void AttemptExchange::set_goal(HandTool tool, const Pose& X_PTool, const Vec3& v_P, const Vec3& w_P) {
+void AttemptExchange::set_goal(Tool tool, const Pose& X_PTool, const Vec3& v_P, const Vec3& w_P) {
   const std::lock_guard lock(mutex_);
-  (tool == HandTool::kNeedle ? requests_.needle : requests_.probe) = AttemptRequests::Goal{X_PTool, v_P, w_P};
+  (tool == Tool::kNeedle ? requests_.needle : requests_.probe) = AttemptRequests::Goal{X_PTool, v_P, w_P};
 }
 
-void AttemptExchange::clamp(HandTool tool, bool is_clamped) {
+void AttemptExchange::clamp(Tool tool, bool is_clamped) {
   const std::lock_guard lock(mutex_);
-  (tool == HandTool::kNeedle ? requests_.needle_clamped : requests_.probe_clamped) = is_clamped;
+  (tool == Tool::kNeedle ? requests_.needle_clamped : requests_.probe_clamped) = is_clamped;
 }
 
 void AttemptExchange::begin() {

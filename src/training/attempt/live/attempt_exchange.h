@@ -21,7 +21,7 @@ namespace trocar::attempt {
 class HapticServers;
 
 /// Tool held by a hand.
-enum class HandTool : std::uint8_t { kNeedle, kProbe };
+enum class Tool : std::uint8_t { kNeedle, kProbe };
 
 /// Requests of a client to the attempt, between two polls of its loop.
 struct AttemptRequests {
@@ -67,9 +67,9 @@ class AttemptExchange {
   /// Target pose and velocity (mm/s of tip or face, rad/s) of a hand. A hand without an update for 50 ms stops; a jump
   /// is slowed down to possible hand motion. While there are no data from the needle (kServerLost), targets are
   /// ignored.
-  void set_goal(HandTool tool, const Pose& X_PTool, const Vec3& v_P = Vec3::Zero(), const Vec3& w_P = Vec3::Zero());
+  void set_goal(Tool tool, const Pose& X_PTool, const Vec3& v_P = Vec3::Zero(), const Vec3& w_P = Vec3::Zero());
   /// Clamped: the tool stays in place and ignores set_goal.
-  void clamp(HandTool tool, bool is_clamped);
+  void clamp(Tool tool, bool is_clamped);
   void begin();  ///< See AttemptOptions::waits_for_begin.
   void fire();   ///< The biopsy gun; counts once.
   void stop_forces();

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "attempt/record/recording_room.h"
+#include "attempt/record/recording_space.h"
 #include "cases/scene_request.h"
 #include "cases/session_case.h"
 
@@ -119,8 +119,8 @@ void AttemptLoop::take_requests() {
 }
 
 void AttemptLoop::lead(const AttemptRequests& requests) {
-  LedHand& needle = steering_->hand();
-  LedHand& transducer = led_transducer_.hand();
+  LedPose& needle = steering_->hand();
+  LedPose& transducer = led_transducer_.hand();
   if (requests.needle_clamped) needle.clamp(*requests.needle_clamped);
   if (requests.probe_clamped) transducer.clamp(*requests.probe_clamped);
   // A trainee who does not see where the needle is does not move it: motion of that time is discarded.
@@ -193,7 +193,7 @@ void AttemptLoop::watch_disk() {
   if (!record_ || !options_.free_bytes || now - disk_polled_ < kEvery) return;
   disk_polled_ = now;
   const std::filesystem::path folder = options_.session.parent_path();
-  const RecordingRoom room(folder, options_.free_bytes(folder), performer_.rate_hz);
+  const RecordingSpace room(folder, options_.free_bytes(folder), performer_.rate_hz);
   disk_banner_ = room.banner();
   if (!room.is_full() || finishes_) return;
   finishes_ = true;

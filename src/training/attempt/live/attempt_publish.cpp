@@ -55,7 +55,7 @@ NeedleView AttemptLoop::needle_now() const {
     const bool is_led = follows_targets(needle_->host().device());
     view = needle_view(*case_.the_case, *last_needle_, is_led ? command_.X_PN : telemetry::device_pose(*last_needle_));
   } else {
-    view.X_PN = view.X_PN_device = view.X_PN_hand = command_.X_PN;
+    view.X_PN = view.X_PN_device = view.X_PN_goal = command_.X_PN;
   }
   view.is_clamped = steering_->hand().is_clamped();
   return view;
@@ -63,13 +63,13 @@ NeedleView AttemptLoop::needle_now() const {
 
 TransducerView AttemptLoop::transducer_now() const {
   TransducerView view;
-  const LedHand& hand = led_transducer_.hand();
-  view.X_PT_hand = view.X_PT = hand.X_P();
+  const LedPose& hand = led_transducer_.hand();
+  view.X_PT_goal = view.X_PT = hand.X_P();
   view.is_clamped = hand.is_clamped();
   if (!last_transducer_) return view;
   view.is_known = true;
   view.X_PT = telemetry::felt_probe(*last_transducer_);
-  if (!follows_targets(transducer_->host().device())) view.X_PT_hand = telemetry::device_pose(*last_transducer_);
+  if (!follows_targets(transducer_->host().device())) view.X_PT_goal = telemetry::device_pose(*last_transducer_);
   view.contact_n = last_transducer_->f_constraint_n.norm();
   view.pressed_mm = last_transducer_->depth_mm;
   return view;

@@ -33,7 +33,7 @@ struct NeedleView {
   std::vector<Vec3> shaft_P;  ///< Hub to tip, see needle_shaft.h.
   Pose X_PN_device;           ///< Needle pose of the device: ahead of the virtual needle by the deformation of the
                               ///< tissue.
-  Pose X_PN_hand;             ///< Target pose of the hand.
+  Pose X_PN_goal;             ///< Target pose of the hand.
   double resistance_n = 0.0;  ///< Along the needle; positive pushes it out.
   double lag_mm = 0.0;        ///< Distance of the virtual tip behind the hand's, along the axis.
   double depth_mm = 0.0;      ///< Of the tip below the skin.
@@ -47,7 +47,7 @@ struct NeedleView {
 struct TransducerView {
   bool is_known = false;
   Pose X_PT;                ///< Felt: it does not pass through the skin.
-  Pose X_PT_hand;           ///< Where the hand wants it.
+  Pose X_PT_goal;           ///< Where the hand wants it.
   double contact_n = 0.0;   ///< Of skin and face.
   double pressed_mm = 0.0;  ///< Deepest dent of the skin.
   bool is_clamped = false;

@@ -55,13 +55,13 @@ LiveOperator::LiveOperator(const Performer& performer, AttemptRecord& record, co
 
 void LiveOperator::begin(double clock_offset_s, bool is_placed_anew) noexcept {
   offset_s_ = clock_offset_s;
-  is_seated_anew_ = true;
+  has_new_servers_ = true;
   is_placed_anew_ = is_placed_anew;
   if (is_placed_anew) record_->forget_scenes();
 }
 
 Status LiveOperator::note_interruption(double step_s, bool is_seen) {
-  const bool was_away = is_seated_anew_ && step_s > period_s_;
+  const bool was_away = has_new_servers_ && step_s > period_s_;
   const bool can_act = is_seen && !was_away && step_s <= kLongestGap_s;
   if (!can_act && !idle_) {
     const char* const reason = !is_seen ? "the program did not run" : "ticks were lost";
@@ -79,16 +79,16 @@ Result<double> LiveOperator::record(const telemetry::TickSample& tick, bool is_s
   server_time_s_ = tick.time_s;
   if (!has_begun_) origin_s_ = tick.time_s - offset_s_;
   view_.last = tick;
-  if (has_begun_ && is_seated_anew_ && is_placed_anew_) note_resumption(view_.last);
+  if (has_begun_ && has_new_servers_ && is_placed_anew_) note_resumption(view_.last);
   double step_s = has_begun_ ? std::max(0.0, tick.time_s - offset_s_ - origin_s_ - time_s_) : 0.0;
   time_s_ += step_s;
   if (has_begun_) TROCAR_TRY_STATUS(note_interruption(step_s, is_seen));
   has_begun_ = true;
-  if (is_seated_anew_) {
+  if (has_new_servers_) {
     paused_s_ += std::max(0.0, step_s - period_s_);
     step_s = period_s_;
   }
-  is_seated_anew_ = false;
+  has_new_servers_ = false;
   view_.last.time_s = time_s_;
   view_.X_PN_device = telemetry::device_pose(tick);
   TROCAR_TRY_STATUS(record_->append(view_.last));

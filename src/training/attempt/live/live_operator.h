@@ -64,7 +64,7 @@ class LiveOperator {
   std::optional<tasks::Interruption> idle_;  ///< Under way.
   double server_time_s_ = 0.0;
   bool has_begun_ = false;
-  bool is_seated_anew_ = false, is_placed_anew_ = false;
+  bool has_new_servers_ = false, is_placed_anew_ = false;
 };
 
 /// A command as a server's hand takes it: the in-process hand (tasks/hand.h), which holds the tip. `server_time_s`:

@@ -3,7 +3,7 @@
 #include <memory>
 #include <utility>
 
-#include "attempt/hands/hand_motion.h"
+#include "attempt/tools/led_pose.h"
 #include "tasks/operator.h"
 
 namespace trocar::attempt {
@@ -13,8 +13,8 @@ namespace trocar::attempt {
 /// to its first pose, and the trainee continues after it.
 class NeedleSteering final : public tasks::Operator {
  public:
-  LedHand& hand() noexcept { return hand_; }
-  const LedHand& hand() const noexcept { return hand_; }
+  LedPose& hand() noexcept { return hand_; }
+  const LedPose& hand() const noexcept { return hand_; }
   void fire() noexcept { fires_ = true; }
   bool has_fired() const noexcept { return has_fired_; }
   bool is_performing() const noexcept { return performer_ != nullptr; }
@@ -90,7 +90,7 @@ class NeedleSteering final : public tasks::Operator {
     return command;
   }
 
-  LedHand hand_;
+  LedPose hand_;
   std::unique_ptr<tasks::Operator> performer_;
   tasks::HandCommand first_;
   double performed_s_ = 0.0;

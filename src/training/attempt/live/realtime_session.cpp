@@ -5,9 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#include "attempt/hands/resting_transducer.h"
 #include "attempt/live/attempt_loop.h"
 #include "attempt/servers/remote_server.h"
+#include "attempt/tools/resting_transducer.h"
 #include "core/interruption.h"
 #include "io/patient/patient_source.h"
 #include "link/endpoint.h"

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kVersion = 1;
 
-config::Json to_json(const SeatState& state) {
+config::Json to_json(const JournalEntry& state) {
   const cases::CaseOptions& options = state.choice.options;
   return {{"version", kVersion},
           {"session", state.session.string()},
@@ -25,7 +25,7 @@ config::Json to_json(const SeatState& state) {
 }
 
 /// Empty if a field is missing or has another type.
-std::optional<SeatState> from_json(const config::Json& json) {
+std::optional<JournalEntry> from_json(const config::Json& json) {
   const auto text = [&](const char* key) -> std::optional<std::string> {
     return json.contains(key) && json[key].is_string() ? std::optional(json[key].get<std::string>()) : std::nullopt;
   };
@@ -35,7 +35,7 @@ std::optional<SeatState> from_json(const config::Json& json) {
   if (!json.is_object() || !json.contains("version") || json["version"] != kVersion) return std::nullopt;
   const auto session = text("session"), patient = text("patient"), task = text("task");
   if (!session || !patient || !task) return std::nullopt;
-  SeatState state;
+  JournalEntry state;
   state.session = *session;
   state.choice.patient_source = *patient;
   state.choice.patient_seed = number("patient_seed");
@@ -52,7 +52,7 @@ std::optional<SeatState> from_json(const config::Json& json) {
   return state;
 }
 
-std::optional<SeatState> load_state(const fs::path& file) {
+std::optional<JournalEntry> load_state(const fs::path& file) {
   const Result<config::Json> json = config::load_json(file);
   return json ? from_json(*json) : std::nullopt;
 }
@@ -63,13 +63,13 @@ std::optional<FileLock> lock_of(fs::path file) {
   return lock ? *std::move(lock) : std::nullopt;
 }
 
-fs::path file_of(const fs::path& folder, const SeatState& state) {
+fs::path file_of(const fs::path& folder, const JournalEntry& state) {
   return folder / (state.session.stem().string() + ".json");
 }
 
 }  // namespace
 
-Status Journal::begin(const SeatState& state) {
+Status Journal::begin(const JournalEntry& state) {
   clear();
   std::error_code error;
   fs::create_directories(folder_, error);
@@ -88,13 +88,13 @@ void Journal::clear() noexcept {
   lock_.reset();
 }
 
-std::optional<SeatState> Journal::find_cut_off() const {
-  std::optional<SeatState> newest;
+std::optional<JournalEntry> Journal::find_cut_off() const {
+  std::optional<JournalEntry> newest;
   fs::file_time_type newest_time;
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_, error)) {
     if (entry.path().extension() != ".json") continue;
-    std::optional<SeatState> state = load_state(entry.path());
+    std::optional<JournalEntry> state = load_state(entry.path());
     if (!state || !fs::is_regular_file(state->session, error) || !lock_of(entry.path())) continue;
     const fs::file_time_type time = fs::last_write_time(entry.path(), error);
     if (newest && time < newest_time) continue;
@@ -104,7 +104,7 @@ std::optional<SeatState> Journal::find_cut_off() const {
   return newest;
 }
 
-bool Journal::forget(const SeatState& state) const noexcept {
+bool Journal::forget(const JournalEntry& state) const noexcept {
   const fs::path file = file_of(folder_, state);
   std::optional<FileLock> lock = lock_of(file);
   if (!lock) return false;

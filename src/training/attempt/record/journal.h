@@ -10,7 +10,7 @@
 namespace trocar::attempt {
 
 /// Record of the running attempts in a file, so that a crash loses no data.
-struct SeatState {
+struct JournalEntry {
   cases::CaseChoice choice;
   std::filesystem::path session;  ///< Of the attempt under way.
 };
@@ -23,14 +23,14 @@ class Journal {
   explicit Journal(const std::filesystem::path& folder) : folder_(folder / "attempts") {}
 
   /// Ends the one that was begun before. Errors: the files cannot be written or locked.
-  Status begin(const SeatState& state);
+  Status begin(const JournalEntry& state);
   /// The attempt begun has ended in order.
   void clear() noexcept;
   /// The newest interrupted attempt whose session still exists; attempts of running trainers are excluded. Unreadable
   /// files are ignored.
-  std::optional<SeatState> find_cut_off() const;
+  std::optional<JournalEntry> find_cut_off() const;
   /// Takes a cut-off attempt out of the journal. False: it is no longer there, or another trainer has it.
-  bool forget(const SeatState& state) const noexcept;
+  bool forget(const JournalEntry& state) const noexcept;
 
  private:
   std::filesystem::path folder_;

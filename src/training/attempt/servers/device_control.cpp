@@ -1,6 +1,6 @@
 #include "attempt/servers/device_control.h"
 
-#include "attempt/servers/seat_devices.h"
+#include "attempt/servers/tool_devices.h"
 
 namespace trocar::attempt {
 
@@ -17,7 +17,7 @@ bool follows_targets(const std::string& device_spec) {
 
 std::string device_words(const std::string& device_spec) {
   if (device_spec == "spacemouse") return "SpaceMouse";
-  if (device_spec.find(':') != std::string::npos) return seat_device_title(device_spec);
+  if (device_spec.find(':') != std::string::npos) return device_title(device_spec);
   return device_spec.empty() ? "device" : device_spec;
 }
 

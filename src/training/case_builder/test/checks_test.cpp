@@ -24,12 +24,12 @@ const CaseCheck* find(const std::vector<CaseCheck>& checks, CheckLevel level, co
   return nullptr;
 }
 
-CaseDraft sound_draft() {
+CaseDraft valid_draft() {
   return *set_expert_path(made_draft(), good_path(shipped_needle()));
 }
 
 TEST(Checks, SoundDraftHasNoError) {
-  const auto checks = checks_of(sound_draft());
+  const auto checks = checks_of(valid_draft());
   for (const CaseCheck& check : checks) EXPECT_NE(check.level, CheckLevel::kError) << check.text;
   EXPECT_EQ(worst_level(checks, CaseStep::kPath), CheckLevel::kOk);
   EXPECT_NE(find(checks, CheckLevel::kOk, "the path is 6"), nullptr);
@@ -103,7 +103,7 @@ TEST(Checks, FaultsOfThePathAreNamedWithTheirPlace) {
 }
 
 TEST(ForcePreview, HasTheLayersOfThePathInOrder) {
-  const CaseDraft draft = sound_draft();
+  const CaseDraft draft = valid_draft();
   DraftPatient patients;
   const auto preview = preview_forces(draft, patients.of(draft), shipped_needle(), shipped_tissues());
   ASSERT_TRUE(preview) << preview.error().text();

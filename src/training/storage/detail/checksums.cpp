@@ -91,9 +91,9 @@ void read_blocks(soci::session& database, std::vector<TickBlock>& blocks) {
   select.execute();
   while (select.fetch()) {
     const std::size_t end = blocks.empty() ? 0 : blocks.back().first_tick + blocks.back().ticks;
-    const bool is_good = first_tick >= static_cast<long long>(end) && ticks > 0 &&
-                         first_tick + ticks < std::numeric_limits<int>::max() && digest.size() == kDigestDigits;
-    if (!is_good || blocks.size() >= kMaxBlocks) throw soci::soci_error("a block of ticks is out of order");
+    const bool is_valid = first_tick >= static_cast<long long>(end) && ticks > 0 &&
+                          first_tick + ticks < std::numeric_limits<int>::max() && digest.size() == kDigestDigits;
+    if (!is_valid || blocks.size() >= kMaxBlocks) throw soci::soci_error("a block of ticks is out of order");
     blocks.push_back({static_cast<std::size_t>(first_tick), static_cast<std::size_t>(ticks), digest});
   }
 }

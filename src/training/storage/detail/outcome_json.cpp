@@ -25,7 +25,7 @@ config::Json core_json(const tasks::BiopsyCore& core) {
 /// Reads the members of one object; a missing member or a wrong type makes the whole reading fail.
 class Reader {
  public:
-  explicit Reader(const config::Json& object, bool& is_good) : object_(object), is_good_(is_good) {}
+  explicit Reader(const config::Json& object, bool& is_valid) : object_(object), is_valid_(is_valid) {}
 
   double number(const char* key) {
     const config::Json* member = find(key);
@@ -47,7 +47,7 @@ class Reader {
   }
   Vec3 vector(const char* key) {
     const config::Json& items = array(key);
-    if (items.size() != 3) return is_good_ = false, Vec3::Zero();
+    if (items.size() != 3) return is_valid_ = false, Vec3::Zero();
     return {number_of(items[0]), number_of(items[1]), number_of(items[2])};
   }
   const config::Json& array(const char* key) {
@@ -59,30 +59,30 @@ class Reader {
  private:
   const config::Json* find(const char* key) {
     const auto found = object_.find(key);
-    if (found == object_.end()) return is_good_ = false, nullptr;
+    if (found == object_.end()) return is_valid_ = false, nullptr;
     return &*found;
   }
   bool is_kind(const config::Json* value, config::Json::value_t kind) {
-    if (value == nullptr || value->type() != kind) is_good_ = false;
-    return is_good_;
+    if (value == nullptr || value->type() != kind) is_valid_ = false;
+    return is_valid_;
   }
   double number_of(const config::Json& value) {
     if (value.is_null()) return std::numeric_limits<double>::quiet_NaN();
-    if (!value.is_number()) return is_good_ = false, 0.0;
+    if (!value.is_number()) return is_valid_ = false, 0.0;
     return value.get<double>();
   }
 
   const config::Json& object_;
-  bool& is_good_;
+  bool& is_valid_;
 };
 
-tasks::BiopsyCore read_core(const config::Json& object, bool& is_good) {
-  Reader reader(object, is_good);
+tasks::BiopsyCore read_core(const config::Json& object, bool& is_valid) {
+  Reader reader(object, is_valid);
   tasks::BiopsyCore core;
   core.tip_P = reader.vector("tip_P");
   core.axis_P = reader.vector("axis_P");
   for (const config::Json& item : reader.array("pieces")) {
-    Reader piece(item, is_good);
+    Reader piece(item, is_valid);
     core.pieces.push_back({piece.text("label"), piece.text("tissue"), piece.number("from_mm"), piece.number("to_mm")});
   }
   core.target_mm = reader.number("target_mm");
@@ -116,21 +116,21 @@ std::string outcome_to_json(const tasks::Outcome& outcome) {
 
 Result<tasks::Outcome> outcome_from_json(std::string_view text, const std::string& where) {
   TROCAR_TRY(const config::Json object, config::parse_json(text, where));
-  bool is_good = true;
-  Reader reader(object, is_good);
+  bool is_valid = true;
+  Reader reader(object, is_valid);
   tasks::Outcome outcome;
   outcome.score = reader.number("score");
   outcome.target_reached = reader.boolean("target_reached");
   for (const config::Json& item : reader.array("parts")) {
-    Reader part(item, is_good);
+    Reader part(item, is_valid);
     outcome.parts.push_back({part.text("name"), part.text("title"), part.number("value"), part.text("unit"),
                              part.number("points"), part.number("max_points")});
   }
   outcome.hints = reader.texts("hints");
   outcome.risks_touched = reader.texts("risks_touched");
   if (object.contains("not_scored")) outcome.not_scored = reader.text("not_scored");
-  if (const auto core = object.find("core"); core != object.end()) outcome.core = read_core(*core, is_good);
-  if (!is_good) return fail("the session's outcome is damaged", where, "record the session again");
+  if (const auto core = object.find("core"); core != object.end()) outcome.core = read_core(*core, is_valid);
+  if (!is_valid) return fail("the session's outcome is damaged", where, "record the session again");
   return outcome;
 }
 

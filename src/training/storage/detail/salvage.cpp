@@ -79,13 +79,13 @@ class Salvage {
   bool check(const char* part, const CheckedRows& rows, bool is_required) {
     if (!session_.has_checksums) return true;
     if (has_part(part)) return false;
-    bool is_good = false;
+    bool is_valid = false;
     attempt(part, [&] {
       const auto written = read_checksum(database_.session(), rows);
-      is_good = written ? digest_of_rows(database_.session(), rows.query) == *written : !is_required;
+      is_valid = written ? digest_of_rows(database_.session(), rows.query) == *written : !is_required;
     });
-    if (!is_good) note(part);
-    return is_good;
+    if (!is_valid) note(part);
+    return is_valid;
   }
 
   bool has_part(const std::string& part) const {

@@ -120,11 +120,11 @@ void read_events(soci::session& database, const TickBlock& block, std::vector<te
                             soci::into(tick), soci::into(slot), soci::into(kind), soci::into(id));
   select.execute();
   while (select.fetch()) {
-    const bool is_good = tick >= 0 && slot >= 0 &&
-                         static_cast<std::size_t>(slot) < telemetry::TickSample{}.events.size() && id >= 0 &&
-                         id <= 255 && kind > 0 && kind <= static_cast<int>(telemetry::kLastEventKind) &&
-                         static_cast<std::size_t>(tick) - block.first_tick < samples.size();
-    if (!is_good) throw soci::soci_error("an event is out of range");
+    const bool is_valid = tick >= 0 && slot >= 0 &&
+                          static_cast<std::size_t>(slot) < telemetry::TickSample{}.events.size() && id >= 0 &&
+                          id <= 255 && kind > 0 && kind <= static_cast<int>(telemetry::kLastEventKind) &&
+                          static_cast<std::size_t>(tick) - block.first_tick < samples.size();
+    if (!is_valid) throw soci::soci_error("an event is out of range");
     samples[static_cast<std::size_t>(tick) - block.first_tick].events[static_cast<std::size_t>(slot)] = {
         static_cast<telemetry::EventKind>(kind), static_cast<std::uint8_t>(id)};
   }

@@ -20,7 +20,7 @@ HandNow hand_at(const DeviceHand& hand, double time_s) noexcept {
   return now;
 }
 
-bool is_usable(const DeviceHand& hand) noexcept {
+bool is_valid(const DeviceHand& hand) noexcept {
   const std::array amounts{hand.stiffness_n_per_mm,          hand.damping_ns_per_mm, hand.mass_kg,
                            hand.turning_nmm_per_rad,         hand.inertia_kg_mm2,    hand.point_mm,
                            hand.turning_damping_nmms_per_rad};
@@ -30,7 +30,7 @@ bool is_usable(const DeviceHand& hand) noexcept {
          std::isfinite(hand.time_s);
 }
 
-bool is_sane(const haptics::Wrench& wrench) noexcept {
+bool is_valid(const haptics::Wrench& wrench) noexcept {
   return wrench.force_n.norm() <= kAbsurdForce_n && wrench.torque_nmm.norm() <= kAbsurdTorque_nmm;
 }
 

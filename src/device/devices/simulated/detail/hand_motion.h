@@ -18,11 +18,11 @@ struct HandNow {
 HandNow hand_at(const DeviceHand& hand, double time_s) noexcept;
 
 /// Everything in it is finite, and nothing negative that must not be. Real-time safe.
-bool is_usable(const DeviceHand& hand) noexcept;
+bool is_valid(const DeviceHand& hand) noexcept;
 
 /// A wrench that some gate may have written: finite, and less than any device of the table could give a hundred times
 /// over. Real-time safe.
-bool is_sane(const haptics::Wrench& wrench) noexcept;
+bool is_valid(const haptics::Wrench& wrench) noexcept;
 inline constexpr double kAbsurdForce_n = 2e4;
 inline constexpr double kAbsurdTorque_nmm = 5e5;
 

@@ -23,7 +23,7 @@ inline constexpr int kSigma7 = 104;
 inline constexpr int kSigma7Left = 105;
 
 /// DHD_MAX_STATUS is 16 or 17, and grew before: room for more.
-inline constexpr int kStatusRoom = 64;
+inline constexpr int kStatusLength = 64;
 inline constexpr int kStatusPower = 0;
 inline constexpr int kStatusReset = 3;  ///< Waits for its calibration.
 inline constexpr int kStatusForce = 5;  ///< The motors are on.

@@ -54,7 +54,7 @@ tl::unexpected<Error> Connection::failed(const char* what) const {
 }
 
 Status Connection::check_state() {
-  std::array<int, kStatusRoom> status{};
+  std::array<int, kStatusLength> status{};
   if (api_.get_status(status.data(), id_) < kNoError) return failed("the device does not report its state");
   if (status[kStatusPower] == 0) return fail("the device has no power", name_, "switch it on, then open it again");
   if (status[kStatusReset] != 0) {
@@ -148,7 +148,7 @@ bool Connection::apply(const haptics::Wrench& wrench_D) noexcept {
 /// Returns false if its button, velocity brake or watchdog keeps the motors off. Only the person at the device can
 /// switch them on again (force button).
 bool Connection::has_force() noexcept {
-  std::array<int, kStatusRoom> status{};
+  std::array<int, kStatusLength> status{};
   return api_.get_status(status.data(), id_) < kNoError || status[kStatusForce] != 0;
 }
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "devices/haptic_device.h"
-#include "devices/simulated/detail/hand_motion.h"  // is_sane
+#include "devices/simulated/detail/hand_motion.h"  // is_valid
 #include "geometry/clamp_norm.h"
 #include "realtime/triple_buffer.h"
 
@@ -53,7 +53,7 @@ class ServoExchange {
   /// By the real-time thread. Cut to the device's peaks, a torque left out where that peak is zero. false: no gate
   /// wrote that (zero goes out instead), the vendor's safety refuses forces, or the device is lost.
   bool write(const haptics::Wrench& wrench_D, const haptics::DeviceCapability& capability) noexcept {
-    const bool is_taken = is_sane(wrench_D);
+    const bool is_taken = is_valid(wrench_D);
     haptics::Wrench sent;
     if (is_taken) {
       sent.force_n = clamped_norm(wrench_D.force_n, capability.peak_force_n);

@@ -137,7 +137,7 @@ void ZmtpConnection::take_handshake(std::span<const std::byte> command) {
 
 void ZmtpConnection::take_metadata(std::span<const std::byte> bytes) {
   const zmtp::Metadata metadata = zmtp::read_metadata(bytes);
-  if (!metadata.is_good || metadata.socket_type != kClientSocketType) {
+  if (!metadata.is_valid || metadata.socket_type != kClientSocketType) {
     break_off("a client whose socket is not a DEALER");
     return;
   }

@@ -80,7 +80,7 @@ Metadata read_metadata(std::span<const std::byte> bytes) {
     if (name == "Socket-Type") metadata.socket_type = value;
     if (name == "Identity") metadata.identity = value;
   }
-  metadata.is_good = true;
+  metadata.is_valid = true;
   return metadata;
 }
 

@@ -30,7 +30,7 @@ GreetingFault check_greeting(std::span<const std::byte> greeting, std::string_vi
 void append_frame(std::vector<std::byte>& bytes, std::uint8_t flags, std::span<const std::byte> body);
 std::vector<std::byte> make_metadata(std::string_view socket_type);
 struct Metadata {
-  bool is_good = false;
+  bool is_valid = false;
   std::string_view socket_type, identity;  ///< Within the bytes given.
 };
 Metadata read_metadata(std::span<const std::byte> bytes);

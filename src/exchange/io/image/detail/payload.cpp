@@ -50,7 +50,7 @@ std::vector<std::int64_t> whole_numbers(const std::string& text) {
 
 /// Unpacks a gzip or zlib stream of `packed` bytes and discards the result: true if it is valid and has at least
 /// `bytes` bytes.
-bool is_sound_stream(std::ifstream& file, std::uint64_t packed, std::uint64_t bytes) {
+bool is_valid_stream(std::ifstream& file, std::uint64_t packed, std::uint64_t bytes) {
   InflateInput input(file, packed);
   if (!input.is_ready()) return false;
   z_stream& stream = input.stream();
@@ -87,7 +87,7 @@ Status check_payload(const Payload& payload, const InputFile& input, Check check
   file.seekg(static_cast<std::streamoff>(payload.offset));
   const std::uint64_t packed = payload.packed > 0 ? payload.packed : available;
   const bool could_be_enough = packed <= available && available > 0 && payload.bytes / kMaxDeflateRatio <= available;
-  if (could_be_enough && (check == Check::kSize || is_sound_stream(file, packed, payload.bytes))) return {};
+  if (could_be_enough && (check == Check::kSize || is_valid_stream(file, packed, payload.bytes))) return {};
   return fail("the compressed voxels are damaged or end too early", where, kExportAgain);
 }
 

@@ -20,9 +20,9 @@ struct GateLimits {
 GateParams made_safe(const GateParams& params) noexcept;
 
 /// Finite and within reason, all of it (physics.md G1).
-bool is_sound(double value) noexcept;
-bool is_sound(const Wrench& wrench) noexcept;
-bool is_sound(const GateInput& input) noexcept;
+bool is_valid(double value) noexcept;
+bool is_valid(const Wrench& wrench) noexcept;
+bool is_valid(const GateInput& input) noexcept;
 /// Small enough for a safe start to begin.
 bool is_small(const Wrench& wrench, const GateParams& params) noexcept;
 /// Makes a state usable whatever its bits are; false: something had to be thrown away.

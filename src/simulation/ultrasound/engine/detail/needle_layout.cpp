@@ -187,7 +187,7 @@ class Layer {
   float smooth_ = 0.0F, rough_ = 0.0F, tip_rough_ = 0.0F, tip_point_ = 0.0F;
 };
 
-bool is_usable(const NeedleEcho& needle) noexcept {
+bool is_valid(const NeedleEcho& needle) noexcept {
   constexpr double kFarthest_mm = 1e5;
   if (needle.shaft_P.size() < 2) return false;
   const bool are_numbers = std::isfinite(needle.diameter_mm) && std::isfinite(needle.tip_mm) &&
@@ -249,7 +249,7 @@ void lay_out_needles(const ScanPlan& plan, FrameState& frame, std::span<const Ne
   std::size_t piece = 0, grain = 0;
   for (const NeedleEcho& needle : needles) {
     if (image.count == NeedleImage::kMostNeedles) return;
-    if (!is_usable(needle)) continue;
+    if (!is_valid(needle)) continue;
     const std::span<const Vec3> shaft = needle.shaft_P;
     const Vec3 axis_P = tip_axis(shaft);
     if (axis_P.isZero()) continue;

@@ -21,13 +21,13 @@ struct JournalTest : testing::Test {
   }
   std::unique_ptr<TemporaryFolder> folder;
   Journal journal;
-  SeatState state;
+  JournalEntry state;
 };
 
 /// Another trainer's process that begins the attempt and is killed when this object goes.
 class OtherTrainer {
  public:
-  OtherTrainer(const std::filesystem::path& folder, const SeatState& state) {
+  OtherTrainer(const std::filesystem::path& folder, const JournalEntry& state) {
     int told[2];
     if (::pipe(told) != 0) return;
     process_ = ::fork();
@@ -82,7 +82,7 @@ TEST_F(JournalTest, AnAttemptOfALivingTrainerIsNotCutOffUntilItIsKilled) {
   ASSERT_TRUE(other.has_begun());
   EXPECT_FALSE(journal.find_cut_off());
   EXPECT_FALSE(journal.forget(state));
-  SeatState own = state;
+  JournalEntry own = state;
   own.session = folder->path() / "two.trocar";
   ASSERT_TRUE(write_file_atomically(own.session, "ticks"));
   ASSERT_TRUE(journal.begin(own));

@@ -1,4 +1,4 @@
-#include "attempt/hands/hand_motion.h"
+#include "attempt/tools/led_pose.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,14 +31,14 @@ Pose moved_towards(const Pose& from, const Pose& to, double most_mm, double most
   return moved(from, clamped_norm(to.p() - from.p(), most_mm), clamped_norm(turn_between(from.R(), to.R()), most_rad));
 }
 
-void LedHand::put(const Pose& X_P) noexcept {
+void LedPose::put(const Pose& X_P) noexcept {
   if (!X_P.is_finite()) return;
   X_P_ = goal_P_ = X_P;
   v_P_ = w_P_ = goal_v_P_ = goal_w_P_ = Vec3::Zero();
   age_s_ = 0.0;
 }
 
-void LedHand::lead(const Pose& X_P, const Vec3& v_P, const Vec3& w_P) noexcept {
+void LedPose::lead(const Pose& X_P, const Vec3& v_P, const Vec3& w_P) noexcept {
   if (is_clamped_ || !X_P.is_finite() || !v_P.allFinite() || !w_P.allFinite()) return;
   goal_P_ = X_P;
   goal_v_P_ = clamped_norm(v_P, limits_.most_mm_per_s);
@@ -46,7 +46,7 @@ void LedHand::lead(const Pose& X_P, const Vec3& v_P, const Vec3& w_P) noexcept {
   age_s_ = 0.0;
 }
 
-void LedHand::step(double dt_s) noexcept {
+void LedPose::step(double dt_s) noexcept {
   if (!(dt_s > 0.0)) return;
   age_s_ += dt_s;
   const double ahead_s = std::min(age_s_, kStandsStill_s);

@@ -1,4 +1,4 @@
-#include "link/detail/clean_text.h"
+#include "link/detail/plain_text.h"
 
 #include "core/utf8.h"
 
@@ -12,7 +12,7 @@ bool is_control(char32_t c, Layout layout) {
 
 }  // namespace
 
-bool is_clean_text(std::string_view text, Layout layout) {
+bool is_plain_text(std::string_view text, Layout layout) {
   while (!text.empty()) {
     const auto character = first_character(text);
     if (!character || is_control(character->code_point, layout)) return false;

@@ -1,4 +1,4 @@
-#include "attempt/record/recording_room.h"
+#include "attempt/record/recording_space.h"
 
 #include <fmt/format.h>
 
@@ -21,20 +21,20 @@ std::string duration_words(double seconds) {
 
 }  // namespace
 
-RecordingRoom::RecordingRoom(std::filesystem::path folder, std::optional<std::uintmax_t> free_bytes, double rate_hz)
+RecordingSpace::RecordingSpace(std::filesystem::path folder, std::optional<std::uintmax_t> free_bytes, double rate_hz)
     : folder_(std::move(folder)), bytes_a_second_(kBytesATick * rate_hz) {
   if (free_bytes) free_bytes_ = static_cast<double>(*free_bytes);
 }
 
-bool RecordingRoom::is_full() const noexcept {
+bool RecordingSpace::is_full() const noexcept {
   return free_bytes_ && *free_bytes_ < kClosing_bytes;
 }
 
-double RecordingRoom::left_s() const noexcept {
+double RecordingSpace::left_s() const noexcept {
   return free_bytes_ ? std::max(0.0, *free_bytes_ - kClosing_bytes) / bytes_a_second_ : HUGE_VAL;
 }
 
-Status RecordingRoom::check_start() const {
+Status RecordingSpace::check_start() const {
   const double needed_bytes = kClosing_bytes + kLeastStart_s * bytes_a_second_;
   if (!free_bytes_ || *free_bytes_ >= needed_bytes) return {};
   return fail(fmt::format("the disk is full: {:.1f} MB are free in {}, an attempt needs at least {:.0f} MB",
@@ -42,13 +42,13 @@ Status RecordingRoom::check_start() const {
               {}, kAdvice);
 }
 
-std::string RecordingRoom::start_warning() const {
+std::string RecordingSpace::start_warning() const {
   if (left_s() >= kAmple_s) return {};
   return fmt::format("The disk is almost full: {:.0f} MB are free in {}, enough to record {}.", *free_bytes_ / 1e6,
                      folder_.string(), duration_words(left_s()));
 }
 
-std::string RecordingRoom::banner() const {
+std::string RecordingSpace::banner() const {
   if (left_s() >= kScarce_s) return {};
   return fmt::format("The disk is almost full: {} can still be recorded in {}. Then the attempt ends and is scored",
                      duration_words(left_s()), folder_.string());

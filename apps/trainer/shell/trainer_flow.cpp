@@ -1,11 +1,11 @@
-#include "shell/seat_flow.h"
+#include "shell/trainer_flow.h"
 
 #include <QDateTime>
 #include <QDir>
 #include <QFileDialog>
 #include <algorithm>
 
-#include "attempt/record/recording_room.h"
+#include "attempt/record/recording_space.h"
 #include "cases/scene_request.h"
 #include "control/attempt_control.h"
 #include "control/mirror_station.h"
@@ -38,7 +38,7 @@ namespace {
 constexpr int kFrame_ms = 16;
 constexpr std::size_t kMostFrames = 200'000;  // an hour
 
-cases::CaseChoice case_choice(const SeatChoice& choice) {
+cases::CaseChoice case_choice(const TrainerChoice& choice) {
   cases::CaseChoice result;
   // A patient of the case builder contains its own task.
   result.options.task = cases::has_own_task(choice.patient) ? std::string() : choice.task;
@@ -58,7 +58,7 @@ double quantile(std::vector<double> values, double share) {
 
 }  // namespace
 
-SeatFlow::SeatFlow(MainWindow& window, std::filesystem::path state_folder)
+TrainerFlow::TrainerFlow(MainWindow& window, std::filesystem::path state_folder)
     : QObject(&window), window_(window), state_folder_(std::move(state_folder)), journal_(state_folder_) {
   connect_pages();
   offered_ = journal_.find_cut_off();
@@ -70,24 +70,24 @@ SeatFlow::SeatFlow(MainWindow& window, std::filesystem::path state_folder)
   timer_.setTimerType(Qt::PreciseTimer);
   timer_.setInterval(kFrame_ms);
   timer_.setObjectName(QStringLiteral("frame-timer"));
-  connect(&timer_, &QTimer::timeout, this, &SeatFlow::frame);
+  connect(&timer_, &QTimer::timeout, this, &TrainerFlow::frame);
   timer_.start();
 }
 
-SeatFlow::~SeatFlow() = default;
+TrainerFlow::~TrainerFlow() = default;
 
-void SeatFlow::connect_pages() {
-  connect(&window_.start(), &StartPage::start_requested, this, &SeatFlow::open);
-  connect(&window_.start(), &StartPage::recovery_requested, this, &SeatFlow::recover);
+void TrainerFlow::connect_pages() {
+  connect(&window_.start(), &StartPage::start_requested, this, &TrainerFlow::open);
+  connect(&window_.start(), &StartPage::recovery_requested, this, &TrainerFlow::recover);
   connect(&window_.start(), &StartPage::recovery_declined, this, [this] {
     if (offered_) journal_.forget(*std::exchange(offered_, {}));
   });
-  connect(&window_.briefing(), &BriefingPage::back_requested, this, &SeatFlow::go_to_start);
-  connect(&window_.briefing(), &BriefingPage::begin_requested, this, &SeatFlow::begin_attempt);
+  connect(&window_.briefing(), &BriefingPage::back_requested, this, &TrainerFlow::go_to_start);
+  connect(&window_.briefing(), &BriefingPage::begin_requested, this, &TrainerFlow::begin_attempt);
   FeedbackPanel& feedback = window_.work().feedback();
-  connect(&feedback, &FeedbackPanel::again_requested, this, &SeatFlow::try_again);
-  connect(&feedback, &FeedbackPanel::other_case_requested, this, &SeatFlow::go_to_start);
-  connect(&feedback, &FeedbackPanel::report_requested, this, &SeatFlow::save_report);
+  connect(&feedback, &FeedbackPanel::again_requested, this, &TrainerFlow::try_again);
+  connect(&feedback, &FeedbackPanel::other_case_requested, this, &TrainerFlow::go_to_start);
+  connect(&feedback, &FeedbackPanel::report_requested, this, &TrainerFlow::save_report);
   connect(&window_.case_builder(), &CasePage::case_saved, this, [this](const QString& folder) {
     window_.start().add_patient(folder);
     go_to_start();
@@ -105,7 +105,7 @@ void SeatFlow::connect_pages() {
   });
 }
 
-void SeatFlow::go_to_start() {
+void TrainerFlow::go_to_start() {
   retired_.retire(std::exchange(opening_, {}));
   opened_.reset();
   attempt_.reset();
@@ -119,7 +119,7 @@ void SeatFlow::go_to_start() {
   release_freed_memory();  // a replay holds every tick
 }
 
-void SeatFlow::go_to_case_builder() {
+void TrainerFlow::go_to_case_builder() {
   const QString is_scored = tr("The attempt is being scored. The case builder is available afterwards.");
   if (attempt_) {
     const bool is_ending = attempt_->view().phase == attempt::AttemptPhase::kFinishing;
@@ -130,7 +130,7 @@ void SeatFlow::go_to_case_builder() {
   window_.show_page(QStringLiteral("case-builder"));
 }
 
-void SeatFlow::open(const SeatChoice& choice) {
+void TrainerFlow::open(const TrainerChoice& choice) {
   choice_ = choice;
   // An interrupted exam can be replayed but not continued.
   window_.work().set_parameters_locked(is_exam() && !cut_off_);
@@ -141,7 +141,7 @@ void SeatFlow::open(const SeatChoice& choice) {
   window_.show_page(QStringLiteral("briefing"));
 }
 
-void SeatFlow::poll_opening() {
+void TrainerFlow::poll_opening() {
   if (!opening_.has_work()) return;
   const JobView view = opening_.view();
   auto result = opening_.take();
@@ -156,7 +156,7 @@ void SeatFlow::poll_opening() {
 }
 
 /// The briefing is last: it enables the start.
-void SeatFlow::show_opened() {
+void TrainerFlow::show_opened() {
   if (!opened_) return;
   if (window_.work().workspace().show_part()) return;
   if (open_ != opened_) {
@@ -176,7 +176,7 @@ void SeatFlow::show_opened() {
 }
 
 /// Checks if sessions can be written; displays present and impending problems.
-bool SeatFlow::can_record() {
+bool TrainerFlow::can_record() {
   const std::filesystem::path folder = state_folder_ / "sessions";
   if (const Status made = make_writable_folder(folder); !made) {
     window_.show_banner(
@@ -185,14 +185,14 @@ bool SeatFlow::can_record() {
         BannerKind::kError);
     return false;
   }
-  const attempt::RecordingRoom room(folder, find_free_bytes(folder));
+  const attempt::RecordingSpace room(folder, find_free_bytes(folder));
   const Status start = room.check_start();
   if (!start) window_.show_banner(sentence_of(start.error()), BannerKind::kError);
   if (start && !room.start_warning().empty()) window_.show_banner(to_qt(room.start_warning()));
   return start.has_value();
 }
 
-void SeatFlow::begin_attempt() {
+void TrainerFlow::begin_attempt() {
   if (!open_ || !can_record()) return;
   attempt::AttemptOptions options;
   const QString name = QDateTime::currentDateTime().toString(QStringLiteral("yyyy-MM-dd_HH-mm-ss-zzz"));
@@ -230,12 +230,12 @@ void SeatFlow::begin_attempt() {
     attempt_->attempt().set_parameters(cases::tissue_parameters(changes));
 }
 
-void SeatFlow::try_again() {
+void TrainerFlow::try_again() {
   attempt_.reset();
   begin_attempt();
 }
 
-void SeatFlow::poll_attempt() {
+void TrainerFlow::poll_attempt() {
   if (!attempt_) return;
   const attempt::AttemptView& view = attempt_->view();
   window_.show_banner(to_qt(view.banner),
@@ -269,25 +269,25 @@ void SeatFlow::poll_attempt() {
   }
 }
 
-void SeatFlow::report_recoveries(const attempt::AttemptView& view) {
+void TrainerFlow::report_recoveries(const attempt::AttemptView& view) {
   if (view.recoveries == recoveries_) return;
   recoveries_ = view.recoveries;
   window_.show_message(to_qt(view.recovered), BannerKind::kSuccess);
 }
 
-void SeatFlow::load_replay(const std::filesystem::path& session) {
+void TrainerFlow::load_replay(const std::filesystem::path& session) {
   loading_ = BackgroundJob<attempt::AttemptReplay>(
       [session, open = open_](const Progress&) { return attempt::AttemptReplay::load(session, open); });
 }
 
-void SeatFlow::poll_replay() {
+void TrainerFlow::poll_replay() {
   auto loaded = loading_.take();
   if (!loaded) return;
   loading_ = {};
   show_replay(*std::move(loaded));
 }
 
-void SeatFlow::show_replay(Result<attempt::AttemptReplay> replay) {
+void TrainerFlow::show_replay(Result<attempt::AttemptReplay> replay) {
   if (!replay) return window_.show_banner(sentence_of(replay.error()), BannerKind::kError);
   window_.show_banner(to_qt(std::exchange(cut_short_, {})));
   replay_ = std::make_unique<ReplayControl>(*std::move(replay), open_, window_.work(), std::exchange(warnings_, {}));
@@ -298,7 +298,7 @@ void SeatFlow::show_replay(Result<attempt::AttemptReplay> replay) {
 }
 
 /// Opens the case of the interrupted attempt; its replay follows when the case is open.
-void SeatFlow::recover() {
+void TrainerFlow::recover() {
   window_.start().offer_recovery({});
   if (!offered_) return;
   cut_off_ = std::exchange(offered_, {});
@@ -306,7 +306,7 @@ void SeatFlow::recover() {
     cut_off_.reset();
     return window_.show_message(tr("The attempt has been opened in another trainer."), BannerKind::kWarning);
   }
-  SeatChoice choice = window_.start().choice();
+  TrainerChoice choice = window_.start().choice();
   choice.task = cut_off_->choice.options.task;
   choice.patient = cut_off_->choice.patient_source;
   choice.patient_seed = cut_off_->choice.patient_seed;
@@ -315,7 +315,7 @@ void SeatFlow::recover() {
   open(choice);
 }
 
-void SeatFlow::save_report() {
+void TrainerFlow::save_report() {
   if (!replay_) return;
   const QString file = QFileDialog::getSaveFileName(&window_, tr("Report of the attempt"),
                                                     QStringLiteral("report.html"), tr("Pages (*.html)"));
@@ -325,7 +325,7 @@ void SeatFlow::save_report() {
   window_.show_message(tr("The report is in %1").arg(file), BannerKind::kSuccess);
 }
 
-void SeatFlow::frame() {
+void TrainerFlow::frame() {
   const double now = now_s();
   retired_.sweep();
   show_opened();
@@ -347,20 +347,20 @@ void SeatFlow::frame() {
   measure_frame(now_s());
 }
 
-void SeatFlow::measure_frame(double now) {
+void TrainerFlow::measure_frame(double now) {
   const double frame_s = frames_.since_last_s(now);
   if (frame_s > 0.0 && (attempt_ || replay_) && frame_ms_.size() < kMostFrames) frame_ms_.push_back(1e3 * frame_s);
   frames_.add(now, attempt_ != nullptr);
   if (const auto figures = frames_.figures()) window_.strip().show_frames(*figures);
 }
 
-bool SeatFlow::may_close() {
+bool TrainerFlow::may_close() {
   if (!attempt_ || is_close_confirmed_ || attempt_->view().phase == attempt::AttemptPhase::kStarting) return true;
   attempt_->ask_to_close();
   return false;
 }
 
-void SeatFlow::close() {
+void TrainerFlow::close() {
   timer_.stop();
   attempt_.reset();
   replay_.reset();
@@ -368,11 +368,11 @@ void SeatFlow::close() {
   retired_.retire(std::exchange(opening_, {}));
 }
 
-void SeatFlow::end_server(const QString& tool) {
+void TrainerFlow::end_server(const QString& tool) {
   if (attempt_) attempt_->end_server(tool);
 }
 
-QVariantMap SeatFlow::facts() const {
+QVariantMap TrainerFlow::facts() const {
   QVariantMap facts;
   facts[QStringLiteral("case")] = open_ ? to_qt(open_->the_case.patient->name) : QString();
   facts[QStringLiteral("is_open")] = open_ != nullptr && !opening_.has_work() && !opened_;
@@ -403,7 +403,7 @@ QVariantMap SeatFlow::facts() const {
   return facts;
 }
 
-void SeatFlow::reset_watch() {
+void TrainerFlow::reset_watch() {
   window_.work().view_3d().clear_frame_times();
   frame_ms_.clear();
   if (auto* application = qobject_cast<TrainerApplication*>(QCoreApplication::instance())) application->reset_watch();

@@ -1,4 +1,4 @@
-#include "attempt/servers/seat_devices.h"
+#include "attempt/servers/tool_devices.h"
 
 #include <algorithm>
 #include <array>
@@ -42,21 +42,21 @@ std::string hardware_of(const std::string& spec) {
 
 }  // namespace
 
-std::vector<SeatDevice> seat_devices() {
-  std::vector<SeatDevice> devices;
+std::vector<ToolDevice> tool_devices() {
+  std::vector<ToolDevice> devices;
   for (const DeviceTitle& pointer : kPointers)
     devices.push_back({std::string(pointer.spec), std::string(pointer.title)});
   const std::vector<std::string> names = openhaptics_names();
-  if (names.empty()) devices.push_back({std::string(kOpenHaptics), seat_device_title(std::string(kOpenHaptics))});
+  if (names.empty()) devices.push_back({std::string(kOpenHaptics), device_title(std::string(kOpenHaptics))});
   for (const std::string& name : names) {
     const std::string spec = std::string(kOpenHaptics) + ":" + name;
-    devices.push_back({spec, seat_device_title(spec)});
+    devices.push_back({spec, device_title(spec)});
   }
   for (const DeviceTitle& other : kOthers) devices.push_back({std::string(other.spec), std::string(other.title)});
   return devices;
 }
 
-std::string seat_device_title(const std::string& spec) {
+std::string device_title(const std::string& spec) {
   if (spec == kOpenHaptics) return "3D Systems Touch (OpenHaptics)";
   for (const auto& titles :
        {std::vector(kPointers.begin(), kPointers.end()), std::vector(kOthers.begin(), kOthers.end())})
@@ -65,10 +65,10 @@ std::string seat_device_title(const std::string& spec) {
   const std::size_t colon = spec.find(':');
   if (colon == std::string::npos) return spec;
   const std::string kind = spec.substr(0, colon), name = spec.substr(colon + 1);
-  return name + (kind == kOpenHaptics ? " (OpenHaptics)" : " (" + seat_device_title(kind) + ")");
+  return name + (kind == kOpenHaptics ? " (OpenHaptics)" : " (" + device_title(kind) + ")");
 }
 
-bool can_share_seat(const std::string& needle_spec, const std::string& probe_spec) {
+bool can_be_used_together(const std::string& needle_spec, const std::string& probe_spec) {
   if (follows_targets(needle_spec) || follows_targets(probe_spec)) return true;
   return hardware_of(needle_spec) != hardware_of(probe_spec);
 }

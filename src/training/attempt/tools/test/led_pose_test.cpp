@@ -1,4 +1,4 @@
-#include "attempt/hands/hand_motion.h"
+#include "attempt/tools/led_pose.h"
 
 #include <gtest/gtest.h>
 
@@ -33,9 +33,9 @@ TEST(TurnBetween, IsTheInverseOfMoved) {
   }
 }
 
-TEST(LedHand, AJumpOfThePointerIsNoJumpOfTheHand) {
-  const HandLimits limits;
-  LedHand hand(limits);
+TEST(LedPose, AJumpOfThePointerIsNoJumpOfTheHand) {
+  const SpeedLimits limits;
+  LedPose hand(limits);
   hand.put({});
   hand.lead(Pose(Eigen::AngleAxisd(2.0, Vec3::UnitZ()).toRotationMatrix(), Vec3(200.0, 0.0, 0.0)), Vec3::Zero(),
             Vec3::Zero());
@@ -49,9 +49,9 @@ TEST(LedHand, AJumpOfThePointerIsNoJumpOfTheHand) {
   EXPECT_NEAR(hand.X_P().p().x(), 2.0 * limits.most_mm_per_s, 0.1);
 }
 
-TEST(LedHand, MakesAnEvenMotionOfAWindowsFrames) {
+TEST(LedPose, MakesAnEvenMotionOfAWindowsFrames) {
   constexpr double kSpeed_mm_s = 10.0;
-  LedHand hand;
+  LedPose hand;
   hand.put({});
   double slowest = kSpeed_mm_s, fastest = kSpeed_mm_s;
   for (int frame = 0; frame < 120; ++frame) {
@@ -67,17 +67,17 @@ TEST(LedHand, MakesAnEvenMotionOfAWindowsFrames) {
   EXPECT_LT(fastest, 1.1 * kSpeed_mm_s);
 }
 
-TEST(LedHand, StandsStillWhenNothingIsSaidAnyMore) {
-  LedHand hand;
+TEST(LedPose, StandsStillWhenNothingIsSaidAnyMore) {
+  LedPose hand;
   hand.put({});
   hand.lead({}, {40.0, 0.0, 0.0}, Vec3::Zero());
   for (int i = 0; i < 2000; ++i) hand.step(kTick_s);
-  EXPECT_NEAR(hand.X_P().p().x(), 40.0 * LedHand::kStandsStill_s, 1e-3);
+  EXPECT_NEAR(hand.X_P().p().x(), 40.0 * LedPose::kStandsStill_s, 1e-3);
   EXPECT_NEAR(hand.v_P().norm(), 0.0, 1e-6);
 }
 
-TEST(LedHand, ClampedStaysWhateverIsAsked) {
-  LedHand hand;
+TEST(LedPose, ClampedStaysWhateverIsAsked) {
+  LedPose hand;
   hand.put({});
   hand.lead(Pose::translation({50.0, 0.0, 0.0}), Vec3::Zero(), Vec3::Zero());
   hand.step(kTick_s);
@@ -89,8 +89,8 @@ TEST(LedHand, ClampedStaysWhateverIsAsked) {
   EXPECT_EQ(hand.v_P(), Vec3::Zero());
 }
 
-TEST(LedHand, IgnoresWhatIsNoNumber) {
-  LedHand hand;
+TEST(LedPose, IgnoresWhatIsNoNumber) {
+  LedPose hand;
   hand.put({});
   hand.lead(Pose::translation(Vec3::Constant(std::numeric_limits<double>::infinity())), Vec3::Zero(), Vec3::Zero());
   hand.step(kTick_s);

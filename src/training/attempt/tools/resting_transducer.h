@@ -1,7 +1,7 @@
 #pragma once
 
 #include "anatomy/patient.h"
-#include "attempt/hands/transducer_motion.h"
+#include "attempt/tools/transducer_motion.h"
 #include "geometry/segment.h"
 
 namespace trocar::attempt {

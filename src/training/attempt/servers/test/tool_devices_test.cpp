@@ -1,4 +1,4 @@
-#include "attempt/servers/seat_devices.h"
+#include "attempt/servers/tool_devices.h"
 
 #include <gtest/gtest.h>
 #include <stdlib.h>
@@ -13,7 +13,7 @@ namespace {
 
 std::vector<std::string> specs() {
   std::vector<std::string> all;
-  for (const SeatDevice& device : seat_devices()) all.push_back(device.spec);
+  for (const ToolDevice& device : tool_devices()) all.push_back(device.spec);
   return all;
 }
 
@@ -22,18 +22,18 @@ bool has(const std::vector<std::string>& all, const char* spec) {
 }
 
 /// The vendor's folder of configurations, made by the test.
-struct SeatDevices : ::testing::Test {
-  SeatDevices() {
+struct ToolDevices : ::testing::Test {
+  ToolDevices() {
     std::filesystem::create_directories(folder / "config");
     setenv("GTDD_HOME", (folder / ".").c_str(), 1);
   }
-  ~SeatDevices() override { unsetenv("GTDD_HOME"); }
+  ~ToolDevices() override { unsetenv("GTDD_HOME"); }
   void configure(const char* name) const { std::ofstream(folder / "config" / name) << "{}\n"; }
 
   TemporaryFolder folder;
 };
 
-TEST_F(SeatDevices, AreListedByTheNamesOfTheVendorsSetup) {
+TEST_F(ToolDevices, AreListedByTheNamesOfTheVendorsSetup) {
   configure("Right Device.config");
   configure("Left Device.config");
   configure("notes.txt");
@@ -44,20 +44,20 @@ TEST_F(SeatDevices, AreListedByTheNamesOfTheVendorsSetup) {
   EXPECT_FALSE(has(all, "openhaptics"));
   EXPECT_EQ(std::count_if(all.begin(), all.end(), [](const std::string& s) { return s.starts_with("openhaptics"); }),
             2);
-  EXPECT_EQ(seat_device_title("openhaptics:Left Device"), "Left Device (OpenHaptics)");
+  EXPECT_EQ(device_title("openhaptics:Left Device"), "Left Device (OpenHaptics)");
 }
 
-TEST_F(SeatDevices, WithoutASetupThereIsTheDefaultDevice) {
+TEST_F(ToolDevices, WithoutASetupThereIsTheDefaultDevice) {
   EXPECT_TRUE(has(specs(), "openhaptics"));
 }
 
-TEST_F(SeatDevices, OneDeviceIsNotInTwoHands) {
-  EXPECT_TRUE(can_share_seat("mouse", "mouse"));
-  EXPECT_TRUE(can_share_seat("gamepad", "mouse"));
-  EXPECT_TRUE(can_share_seat("openhaptics:Left Device", "openhaptics:Right Device"));
-  EXPECT_FALSE(can_share_seat("gamepad", "gamepad"));
-  EXPECT_FALSE(can_share_seat("openhaptics:Left Device", "openhaptics:Left Device"));
-  EXPECT_FALSE(can_share_seat("openhaptics", "openhaptics:Default Device"));
+TEST_F(ToolDevices, OneDeviceIsNotInTwoHands) {
+  EXPECT_TRUE(can_be_used_together("mouse", "mouse"));
+  EXPECT_TRUE(can_be_used_together("gamepad", "mouse"));
+  EXPECT_TRUE(can_be_used_together("openhaptics:Left Device", "openhaptics:Right Device"));
+  EXPECT_FALSE(can_be_used_together("gamepad", "gamepad"));
+  EXPECT_FALSE(can_be_used_together("openhaptics:Left Device", "openhaptics:Left Device"));
+  EXPECT_FALSE(can_be_used_together("openhaptics", "openhaptics:Default Device"));
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 #include "attempt/record/attempt_replay.h"
 #include "attempt/record/journal.h"
 #include "cases/open_case.h"
-#include "choice/seat_choice.h"
+#include "choice/trainer_choice.h"
 #include "core/background_job.h"
 #include "devices/pointer/speaker.h"
 #include "ui_kit/frame_count.h"
@@ -26,16 +26,16 @@ class ReplayControl;
 
 /// Sequence of pages: start, open, briefing, puncture, feedback. Owns the data of case and attempt; polls background
 /// work and draws the views once per frame.
-class SeatFlow : public QObject {
+class TrainerFlow : public QObject {
   Q_OBJECT
 
  public:
-  SeatFlow(MainWindow& window, std::filesystem::path state_folder);
-  ~SeatFlow() override;
+  TrainerFlow(MainWindow& window, std::filesystem::path state_folder);
+  ~TrainerFlow() override;
 
   void go_to_start();
   void go_to_case_builder();
-  void open(const SeatChoice& choice);
+  void open(const TrainerChoice& choice);
   void begin_attempt();
   void try_again();
   void save_report();
@@ -67,14 +67,14 @@ class SeatFlow : public QObject {
   MainWindow& window_;
   std::filesystem::path state_folder_;
   attempt::Journal journal_;
-  SeatChoice choice_;
+  TrainerChoice choice_;
   BackgroundJob<std::shared_ptr<const cases::OpenCase>> opening_;
   BackgroundJob<attempt::AttemptReplay> loading_;
   RetiredJobs retired_;
   devices::Speaker speaker_;
   std::vector<float> gun_click_ = devices::make_gun_click();
-  std::optional<attempt::SeatState> offered_;      ///< Was cut off; offered on the start page.
-  std::optional<attempt::SeatState> cut_off_;      ///< Being opened, to be scored and shown.
+  std::optional<attempt::JournalEntry> offered_;   ///< Was cut off; offered on the start page.
+  std::optional<attempt::JournalEntry> cut_off_;   ///< Being opened, to be scored and shown.
   std::shared_ptr<const cases::OpenCase> opened_;  ///< Being shown, a part a frame; open_ when all is shown.
   std::shared_ptr<const cases::OpenCase> open_;
   std::shared_ptr<attempt::HapticServers> servers_;  ///< Kept from one attempt to the next.

@@ -8,7 +8,7 @@
 namespace trocar::trainer {
 
 /// What is chosen on the start page.
-struct SeatChoice {
+struct TrainerChoice {
   std::string task = "liver-biopsy";
   std::string patient = "abdomen";  ///< Embedded patient's name, or a folder.
   std::uint64_t patient_seed = 1;

@@ -1,4 +1,4 @@
-#include "attempt/hands/pointer_hand.h"
+#include "attempt/tools/pointer_tools.h"
 
 #include <gtest/gtest.h>
 

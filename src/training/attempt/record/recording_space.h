@@ -10,10 +10,10 @@
 namespace trocar::attempt {
 
 /// Remaining recording time on a disk. A session takes 11 MB a minute at 1000 ticks a second.
-class RecordingRoom {
+class RecordingSpace {
  public:
   /// `free_bytes`: free space of the file system of `folder`; empty: unknown, no warning.
-  RecordingRoom(std::filesystem::path folder, std::optional<std::uintmax_t> free_bytes, double rate_hz = 1000.0);
+  RecordingSpace(std::filesystem::path folder, std::optional<std::uintmax_t> free_bytes, double rate_hz = 1000.0);
 
   /// Nothing more can be recorded: what is left is needed to close the session with its score.
   bool is_full() const noexcept;

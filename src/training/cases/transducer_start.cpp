@@ -1,4 +1,4 @@
-#include "cases/probe_start.h"
+#include "cases/transducer_start.h"
 
 #include <algorithm>
 #include <array>
@@ -45,7 +45,7 @@ struct Place {
   Pose X_PT;
   double cost = std::numeric_limits<double>::infinity();
   double target_depth_mm = 0.0;
-  bool is_good = false;
+  bool shows_target = false;
 };
 
 class InPlane {
@@ -114,7 +114,7 @@ class InPlane {
     place.cost = kTargetCost * target_hidden + hidden + kDarkCost * dark_share(fit.X_PT, place.target_depth_mm) +
                  kTiltCost * tilt + kContactCost * (1.0 - fit.touching) + kUnderHubCost * under_hub +
                  kFarCost * far_mm / kFarthest_mm;
-    place.is_good = target_hidden == 0.0 && tilt < kTiltedSkin && fit.touching > kTouching;
+    place.shows_target = target_hidden == 0.0 && tilt < kTiltedSkin && fit.touching > kTouching;
     return place;
   }
 
@@ -196,15 +196,15 @@ std::optional<Pose> standard_view(const anatomy::VirtualPatient& patient,
 
 }  // namespace
 
-Result<ProbeStart> find_probe_start(const anatomy::VirtualPatient& patient, const Segment& path_P) {
-  ProbeStart start;
+Result<TransducerStart> find_transducer_start(const anatomy::VirtualPatient& patient, const Segment& path_P) {
+  TransducerStart start;
   TROCAR_TRY(start.transducer, ultrasound::load_transducer(data_dir() / "transducers.toml", kTransducer));
   TROCAR_TRY(const std::vector<ultrasound::ProbeView> views, ultrasound::load_probe_views(data_dir() / "views.toml"));
   const Place place = InPlane(patient, path_P, start.transducer).best();
   start.X_PT = place.X_PT;
-  start.is_in_plane = place.is_good;
+  start.is_in_plane = place.shows_target;
   double deepest_mm = place.target_depth_mm;
-  if (!place.is_good) {
+  if (!place.shows_target) {
     std::string title;
     const auto X_PT = standard_view(patient, views, start.transducer, title);
     if (!X_PT && !std::isfinite(place.cost))

@@ -7,6 +7,6 @@ namespace trocar::link::detail {
 enum class Layout { kLine, kLines };  ///< kLines: tab, CR and newline may be in the text.
 
 /// Valid UTF-8 (no overlong forms, surrogates or values beyond U+10FFFF) without C0, DEL and C1 control characters.
-bool is_clean_text(std::string_view text, Layout layout);
+bool is_plain_text(std::string_view text, Layout layout);
 
 }  // namespace trocar::link::detail

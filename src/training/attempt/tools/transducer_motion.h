@@ -1,6 +1,6 @@
 #pragma once
 
-#include "attempt/hands/hand_motion.h"
+#include "attempt/tools/led_pose.h"
 #include "link/messages.h"
 #include "telemetry/tick_sample.h"
 
@@ -27,8 +27,8 @@ class LedTransducer final : public TransducerMotion {
   static constexpr double kAboveSkin_mm = 10.0;
 
   explicit LedTransducer(const Pose& X_PT = {});
-  LedHand& hand() noexcept { return hand_; }
-  const LedHand& hand() const noexcept { return hand_; }
+  LedPose& hand() noexcept { return hand_; }
+  const LedPose& hand() const noexcept { return hand_; }
 
   Pose X_PT_start() const override { return X_PT_start_; }
   Pose X_PT_room() const override { return X_PT_; }
@@ -37,7 +37,7 @@ class LedTransducer final : public TransducerMotion {
 
  private:
   Pose X_PT_, X_PT_start_;
-  LedHand hand_;
+  LedPose hand_;
 };
 
 /// Room of a transducer in the patient: turned as the needle's, with the grip at its origin where it is held at X_PT.

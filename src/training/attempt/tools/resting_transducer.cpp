@@ -1,4 +1,4 @@
-#include "attempt/hands/resting_transducer.h"
+#include "attempt/tools/resting_transducer.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "attempt/hands/transducer_motion.h"
+#include "attempt/tools/transducer_motion.h"
 
 #include "haptics/contact/contact_face.h"
 #include "telemetry/tick_pose.h"

@@ -11,7 +11,7 @@
 namespace trocar::cases {
 
 /// Where a transducer begins.
-struct ProbeStart {
+struct TransducerStart {
   ultrasound::Transducer transducer;
   Pose X_PT;                 ///< Pressed onto the skin so that the face touches along its width.
   double depth_mm = 160.0;   ///< Of the picture: the target and a third more.
@@ -23,6 +23,6 @@ struct ProbeStart {
 /// the entry and not under the needle's hub, with the target in the fan, least bone, gas and lung before it, and as
 /// much else as can be seen. Of planes about the path and places along the skin the best; where none shows the target,
 /// a standard view of it. Errors: the transducers' or views' file.
-Result<ProbeStart> find_probe_start(const anatomy::VirtualPatient& patient, const Segment& path_P);
+Result<TransducerStart> find_transducer_start(const anatomy::VirtualPatient& patient, const Segment& path_P);
 
 }  // namespace trocar::cases

@@ -5,7 +5,7 @@
 namespace trocar::attempt {
 
 /// How fast a hand moves a tool, at most. [assumed]
-struct HandLimits {
+struct SpeedLimits {
   double most_mm_per_s = 60.0;  ///< Of the tool's origin. Range 1..1000.
   double most_rad_per_s = 1.5;  ///< Range 0.1..20.
 };
@@ -21,12 +21,12 @@ Pose moved(const Pose& X, const Vec3& shift, const Vec3& turn_rad) noexcept;
 
 /// A hand whose target is set by a window once per frame, and which moves smoothly: first-order lag of kSmoothing_s,
 /// with limits. Between targets it extrapolates with the last velocity for at most kStandsStill_s. Bounded; no clock.
-class LedHand {
+class LedPose {
  public:
   static constexpr double kStandsStill_s = 0.05;
   static constexpr double kSmoothing_s = 0.03;  ///< Two frames of a window. [assumed]
 
-  explicit LedHand(const HandLimits& limits = {}) noexcept : limits_(limits) {}
+  explicit LedPose(const SpeedLimits& limits = {}) noexcept : limits_(limits) {}
 
   void put(const Pose& X_P) noexcept;                                     ///< At once, at rest.
   void lead(const Pose& X_P, const Vec3& v_P, const Vec3& w_P) noexcept;  ///< Ignored where it is not finite.
@@ -40,7 +40,7 @@ class LedHand {
   bool is_clamped() const noexcept { return is_clamped_; }
 
  private:
-  HandLimits limits_;
+  SpeedLimits limits_;
   Pose X_P_, goal_P_;
   Vec3 v_P_ = Vec3::Zero(), w_P_ = Vec3::Zero();
   Vec3 goal_v_P_ = Vec3::Zero(), goal_w_P_ = Vec3::Zero();
