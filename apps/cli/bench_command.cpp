@@ -7,7 +7,7 @@
 
 #include "bench/harness.h"
 #include "commands.h"
-#include "io/patient/patient_source.h"
+#include "io/patient/open_patient.h"
 #include "number_option.h"
 #include "patient_option.h"
 

@@ -13,7 +13,7 @@
 #include "commands.h"
 #include "core/files/atomic_file.h"
 #include "io/markups_file.h"
-#include "io/patient/patient_source.h"
+#include "io/patient/open_patient.h"
 #include "number_option.h"
 #include "patient_option.h"
 #include "patient_summary.h"

@@ -7,7 +7,7 @@
 #include "cases/prepare_case.h"
 #include "commands.h"
 #include "io/markups_file.h"
-#include "io/patient/patient_source.h"
+#include "io/patient/open_patient.h"
 #include "number_option.h"
 #include "patient_option.h"
 #include "tasks/plan.h"

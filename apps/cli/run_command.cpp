@@ -7,7 +7,7 @@
 #include "anatomy/structure_words.h"
 #include "attempt/live/realtime_session.h"
 #include "commands.h"
-#include "io/patient/patient_source.h"
+#include "io/patient/open_patient.h"
 #include "number_option.h"
 #include "patient_option.h"
 #include "replay_arguments.h"
@@ -199,7 +199,7 @@ Status check_case(const Arguments& arguments) {
     TROCAR_TRY_STATUS(cases::load_tables(arguments.the_case));
     return {};
   }
-  TROCAR_TRY_STATUS(cases::replay_parameters(*run.replayed, run.replay_changes));
+  TROCAR_TRY_STATUS(attempt::replay_parameters(*run.replayed, run.replay_changes));
   if (run.replay_changes.is_any())
     print_warning(
         "the replay uses other tissues or another force model than the session: its forces differ from the recorded "
@@ -211,8 +211,8 @@ Result<cases::Case> make_case(const Arguments& arguments, anatomy::VirtualPatien
   auto patient = std::make_shared<const anatomy::VirtualPatient>(std::move(opened));
   const attempt::RunOptions& run = arguments.run;
   if (run.replayed == nullptr) return cases::prepare_case(std::move(patient), arguments.the_case, progress);
-  TROCAR_TRY(const auto parameters, cases::replay_parameters(*run.replayed, run.replay_changes));
-  return cases::restore_case(std::move(patient), *run.replayed, parameters.front(), run.is_other_patient_meant);
+  TROCAR_TRY(const auto parameters, attempt::replay_parameters(*run.replayed, run.replay_changes));
+  return attempt::restore_case(std::move(patient), *run.replayed, parameters.front(), run.is_other_patient_meant);
 }
 
 Status run(Arguments& arguments) {

@@ -1,11 +1,12 @@
-// trocar session export and report.
+// trocar session export, motion and report.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 
+#include "attempt/record/stylus_motion.h"
 #include "commands.h"
 #include "core/files/atomic_file.h"
-#include "io/patient/patient_source.h"
+#include "io/patient/open_patient.h"
 #include "patient_option.h"
 #include "report/html_report.h"
 #include "storage/session_file.h"
@@ -33,6 +34,13 @@ Status export_session(const std::string& session_file, const std::string& csv) {
   return tl::unexpected(storage::damage_error(
       session, session_file,
       "the undamaged part was exported; after a gap the event column contains damaged:FIRST-LAST"));
+}
+
+Status write_session_motion(const std::string& session_file, const std::string& csv) {
+  TROCAR_TRY_STATUS(check_new(csv, "--csv"));
+  TROCAR_TRY(const storage::Session session, storage::load_session(session_file));
+  TROCAR_TRY(const devices::RecordedMotion motion, attempt::stylus_motion(session));
+  return devices::write_motion(motion, csv);
 }
 
 struct ReportArguments {
@@ -98,6 +106,18 @@ void add_session_commands(CLI::App& program, Action& action) {
       "Units are mm, N, N mm, s; vectors are in the patient frame P (LPS).\n"
       "Example:\n  trocar session export first.session --csv first.csv\n");
   export_command->callback([&action, e] { action = [e] { return export_session(e->session, e->csv); }; });
+
+  CLI::App* motion_command =
+      session->add_subcommand("motion", "Write the stylus's motion as CSV, for trocar-hapticd --device replay:FILE");
+  const auto m = std::make_shared<ExportArguments>();
+  motion_command->add_option("SESSION", m->session, "Session file of trocar run")->required();
+  motion_command->add_option("--csv", m->csv, "CSV file to write")->required();
+  motion_command->footer(
+      "One pose per tick: time (s), position of the grip (mm) and quaternion of the stylus, in the room: x towards the "
+      "feet, y to the patient's left, z up.\n"
+      "Example:\n  trocar session motion first.session --csv motion.csv\n  trocar-hapticd --device replay:motion.csv "
+      "--tool needle --patient abdomen\n");
+  motion_command->callback([&action, m] { action = [m] { return write_session_motion(m->session, m->csv); }; });
 
   CLI::App* report_command =
       session->add_subcommand("report", "Write an HTML report with score, hints, forces and slices");

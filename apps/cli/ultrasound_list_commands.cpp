@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "commands.h"
-#include "io/patient/patient_source.h"
+#include "io/patient/open_patient.h"
 #include "number_option.h"
 #include "patient_option.h"
 #include "ultrasound/probe/probe_view.h"

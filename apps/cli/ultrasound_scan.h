@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "io/patient/patient_source.h"
+#include "io/patient/open_patient.h"
 #include "output.h"
 #include "ultrasound/doppler/vessel_flow.h"
 #include "ultrasound/engine/b_mode.h"

@@ -17,9 +17,8 @@
 #include "io/patient/patient_source.h"
 #include "number_option.h"
 #include "program_end.h"
+#include "replayed_motion.h"
 #include "server/haptic_server.h"
-#include "storage/session_file.h"
-#include "telemetry/tick_pose.h"
 #include "test_mode.h"
 
 namespace {
@@ -45,7 +44,7 @@ class Patients {
                                                               const Progress& progress) {
     if (patient_ != nullptr && name == source_.folder_or_name && seed == source_.seed)
       return std::exchange(patient_, {});
-    TROCAR_TRY(anatomy::VirtualPatient patient, io::open_patient({name, seed}, progress));
+    TROCAR_TRY(anatomy::VirtualPatient patient, io::load_source({name, seed}, progress));
     return std::make_shared<const anatomy::VirtualPatient>(std::move(patient));
   }
   void keep(const io::PatientSource& source, std::shared_ptr<const anatomy::VirtualPatient> patient) {
@@ -58,18 +57,6 @@ class Patients {
   std::shared_ptr<const anatomy::VirtualPatient> patient_;
 };
 
-Result<std::vector<Pose>> replayed_poses(const storage::Session& session, double needle_length_mm) {
-  // The room of the replay is that of its own plan; the stylus is at the needle's grip.
-  const Pose X_WP = cases::room_in_patient(session.info.plan_P.line_P, needle_length_mm).inverse();
-  const Pose X_NS = Pose::translation({0.0, 0.0, -needle_length_mm});
-  std::vector<Pose> poses;
-  poses.reserve(session.samples.size());
-  for (const telemetry::TickSample& sample : session.samples)
-    poses.push_back(X_WP * telemetry::device_pose(sample) * X_NS);
-  if (poses.empty()) return fail("the session has no ticks to replay", "replay", "give a recorded session");
-  return poses;
-}
-
 Result<std::unique_ptr<devices::HapticDevice>> open_named_device(const Arguments& arguments) {
   TROCAR_TRY(const devices::DeviceSpec spec, devices::parse_device_spec(arguments.device));
   devices::DeviceOptions options;
@@ -81,13 +68,7 @@ Result<std::unique_ptr<devices::HapticDevice>> open_named_device(const Arguments
     options.faults.push_back(fault);
   }
   if (spec.kind == "replay") {
-    TROCAR_TRY(const storage::Session session, storage::load_session(spec.argument));
-    cases::CaseOptions of_session;
-    of_session.task = session.info.task;
-    of_session.needle = session.info.needle;
-    TROCAR_TRY(const cases::Case tables, cases::load_tables(of_session));
-    TROCAR_TRY(options.replay, replayed_poses(session, tables.needle.length_mm));
-    options.replay_rate_hz = session.info.rate_hz;
+    TROCAR_TRY(options.motion, load_motion(spec.argument));
   }
   return devices::open_device(spec, options);
 }
@@ -104,7 +85,7 @@ Result<std::optional<link::ServerSecurity>> load_security(const Arguments& argum
 
 /// Scene of the command line: the path is planned as in `trocar run`, so that the room is placed at the entry.
 Result<link::LoadScene> first_scene(const Arguments& arguments, Patients& patients) {
-  TROCAR_TRY(anatomy::VirtualPatient opened, io::open_patient(arguments.patient));
+  TROCAR_TRY(anatomy::VirtualPatient opened, io::load_source(arguments.patient));
   const auto patient = std::make_shared<const anatomy::VirtualPatient>(std::move(opened));
   TROCAR_TRY(const cases::Case the_case, cases::prepare_case(patient, arguments.the_case));
   patients.keep(arguments.patient, patient);
@@ -220,7 +201,7 @@ Status serve(Arguments& arguments) {
 void add_options(CLI::App& program, Arguments& a) {
   program
       .add_option("--device", a.device,
-                  "Device: virtual[:PRESET], mouse, gamepad, spacemouse, replay:SESSION, openhaptics[:NAME], "
+                  "Device: virtual[:PRESET], mouse, gamepad, spacemouse, replay:FILE, openhaptics[:NAME], "
                   "forcedimension or haply[:ws://HOST:PORT]")
       ->capture_default_str();
   program.add_option("--preset", a.preset, "Preset (row of data/devices.toml); default: that of the device");

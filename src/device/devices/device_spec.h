@@ -10,6 +10,7 @@
 #include "core/result.h"
 #include "devices/haptic_device.h"
 #include "devices/simulated/fault_schedule.h"
+#include "devices/simulated/replay_file.h"
 
 namespace trocar::devices {
 
@@ -27,10 +28,7 @@ struct DeviceOptions {
   std::filesystem::path devices_file;  ///< data/devices.toml
   std::string preset;                  ///< Row of it; empty: the kind's own.
   std::vector<ScheduledFault> faults;  ///< Not empty: wrapped by a FaultyDevice.
-  /// Poses X_DS of a recorded session, one per period at rate_hz, for "replay" (session files are read in a higher
-  /// module).
-  std::vector<Pose> replay;
-  double replay_rate_hz = 1000.0;
+  RecordedMotion motion;               ///< For "replay", whose argument is the file it is from.
   bool has_weight_compensation = true;
   /// The device is in its calibration position (stylus in the inkwell, arm in the reset position) and is calibrated
   /// while it is opened. Only for "openhaptics".

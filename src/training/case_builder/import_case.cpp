@@ -7,7 +7,7 @@
 #include "core/files/data_dir.h"
 #include "core/part_of_progress.h"
 #include "io/patient/build_from_files.h"
-#include "io/patient/patient_source.h"
+#include "io/patient/open_patient.h"
 #include "surface/extract_surface.h"
 
 namespace trocar::case_builder {

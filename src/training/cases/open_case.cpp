@@ -11,8 +11,8 @@
 #include "cases/transducer_start.h"
 #include "core/files/data_dir.h"
 #include "core/parallel.h"
+#include "io/patient/open_patient.h"
 #include "io/patient/patient_cache.h"
-#include "io/patient/patient_source.h"
 
 namespace trocar::cases {
 namespace {

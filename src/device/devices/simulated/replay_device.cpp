@@ -53,18 +53,18 @@ bool ReplayDevice::write(const haptics::Wrench& wrench_D) noexcept {
 
 OpenedDevice open_replay(const DeviceSpec& spec, const DeviceOptions& options) {
   constexpr double kMaxRate_hz = 10000.0;
-  if (options.replay.empty()) {
+  if (options.motion.poses.empty()) {
     return fail("there are no poses to replay", spec.argument, "name a session with at least one sample");
   }
-  for (std::size_t i = 0; i < options.replay.size(); ++i) {
-    if (options.replay[i].is_finite()) continue;
+  for (std::size_t i = 0; i < options.motion.poses.size(); ++i) {
+    if (options.motion.poses[i].is_finite()) continue;
     return fail("a recorded pose is not finite", spec.argument + ", sample " + std::to_string(i), "record it again");
   }
-  if (!(options.replay_rate_hz > 0.0 && options.replay_rate_hz <= kMaxRate_hz)) {
+  if (!(options.motion.rate_hz > 0.0 && options.motion.rate_hz <= kMaxRate_hz)) {
     return fail("the rate of the recorded poses is not in 0..10000 Hz", spec.argument, "record it again");
   }
   TROCAR_TRY(haptics::DevicePreset preset, load_preset_of(options, "premium"));
-  return std::make_unique<ReplayDevice>(std::move(preset), spec.argument, options.replay, options.replay_rate_hz);
+  return std::make_unique<ReplayDevice>(std::move(preset), spec.argument, options.motion.poses, options.motion.rate_hz);
 }
 
 }  // namespace trocar::devices

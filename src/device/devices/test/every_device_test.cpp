@@ -15,7 +15,7 @@ class EveryDevice : public ::testing::TestWithParam<const char*> {
   static DeviceOptions options() {
     DeviceOptions options;
     options.devices_file = data_dir() / "devices.toml";
-    options.replay = {Pose(), Pose::translation({1.0, 0.0, 0.0}), Pose::translation({2.0, 0.0, 0.0})};
+    options.motion.poses = {Pose(), Pose::translation({1.0, 0.0, 0.0}), Pose::translation({2.0, 0.0, 0.0})};
     return options;
   }
   static std::unique_ptr<HapticDevice> open(const DeviceOptions& options) {

@@ -17,6 +17,7 @@
 #include <system_error>
 #include <thread>
 
+#include "core/files/find_program.h"
 #include "link/client/detail/start_program.h"
 
 namespace trocar::link {
@@ -25,11 +26,6 @@ namespace {
 
 constexpr const char* kProgram = "trocar-hapticd";
 constexpr std::chrono::seconds kPatience(2);  ///< From SIGTERM to SIGKILL.
-
-bool is_program(const fs::path& path) {
-  std::error_code ignored;
-  return fs::is_regular_file(path, ignored) && ::access(path.c_str(), X_OK) == 0;
-}
 
 /// "R" is running or runnable, "D" waits for a disk, "T" and "t" are stopped; the state follows the name in brackets
 /// (proc(5)).
@@ -159,21 +155,7 @@ void ServerProcess::stop() {
 }
 
 Result<fs::path> find_server_program() {
-  std::error_code ignored;
-  const fs::path self = fs::read_symlink("/proc/self/exe", ignored);
-  if (const fs::path beside = self.parent_path() / kProgram; is_program(beside)) return beside;
-  if (const char* folder = std::getenv("TROCAR_BIN_DIR");
-      folder != nullptr && is_program(fs::path(folder) / kProgram)) {
-    return fs::path(folder) / kProgram;
-  }
-  const char* path = std::getenv("PATH");
-  std::string_view rest = path == nullptr ? "" : path;
-  while (!rest.empty()) {
-    const std::size_t end = std::min(rest.find(':'), rest.size());
-    const fs::path folder(rest.substr(0, end));
-    if (!folder.empty() && is_program(folder / kProgram)) return folder / kProgram;
-    rest.remove_prefix(std::min(end + 1, rest.size()));
-  }
+  if (auto program = find_program(kProgram)) return *std::move(program);
   return fail("the haptic server's program was not found", kProgram, "install it beside this program or on PATH");
 }
 

@@ -4,20 +4,12 @@
 #include <filesystem>
 
 #include "anatomy/phantom/phantom.h"
-#include "core/log.h"
 #include "io/patient/detail/patient_toml.h"
-#include "io/patient/patient_cache.h"
 #include "io/patient/patient_folder.h"
-#include "surface/extract_surface.h"
 
 namespace trocar::io {
 namespace {
 namespace fs = std::filesystem;
-
-bool is_path(const std::string& folder_or_name) {
-  std::error_code ignored;
-  return folder_or_name.find('/') != std::string::npos || fs::exists(folder_or_name, ignored);
-}
 
 constexpr std::size_t kMostFolders = 256;  // number of folders searched next to a session
 
@@ -46,12 +38,12 @@ std::vector<fs::path> candidates(const fs::path& recorded, const fs::path& besid
   return folders;
 }
 
-/// If the cache cannot be written, the command continues more slowly.
-void log_if_failed(const Result<fs::path>& kept) {
-  if (!kept) log_info("the patient is not cached: {}", kept.error().text());
-}
-
 }  // namespace
+
+bool is_path(const std::string& folder_or_name) {
+  std::error_code ignored;
+  return folder_or_name.find('/') != std::string::npos || fs::exists(folder_or_name, ignored);
+}
 
 std::string absolute_source(const std::string& folder_or_name) {
   std::error_code ignored;
@@ -71,29 +63,12 @@ Result<std::string> find_recorded_patient(const std::string& recorded, const std
               "name it with --patient");
 }
 
-Result<anatomy::VirtualPatient> open_patient(const PatientSource& source, const Progress& progress) {
+Result<anatomy::VirtualPatient> load_source(const PatientSource& source, const Progress& progress) {
   if (is_path(source.folder_or_name)) return load_patient(source.folder_or_name);
-  const PatientCache cache(source.cache_folder);
-  if (const auto kept = cache.find_volumes(source)) {
-    if (auto patient = load_patient(*kept)) return patient;
-    cache.forget(source);
-  }
   TROCAR_TRY(anatomy::VirtualPatient patient,
              anatomy::generate_phantom(source.folder_or_name, source.seed, {}, progress));
   round_as_saved(patient);
-  if (!source.cache_folder.empty()) log_if_failed(cache.keep(source, patient, {}));
   return patient;
-}
-
-Result<std::vector<anatomy::NamedMesh>> open_meshes(const PatientSource& source, const anatomy::VirtualPatient& patient,
-                                                    const Progress& progress) {
-  if (is_path(source.folder_or_name)) return load_patient_meshes(source.folder_or_name);
-  const PatientCache cache(source.cache_folder);
-  if (const auto kept = cache.find(source))
-    if (auto meshes = load_patient_meshes(*kept)) return meshes;
-  auto meshes = surface::extract_surfaces(patient, {}, progress);
-  if (!source.cache_folder.empty()) log_if_failed(cache.keep(source, patient, meshes));
-  return meshes;
 }
 
 }  // namespace trocar::io

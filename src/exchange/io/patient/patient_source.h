@@ -28,12 +28,12 @@ std::string absolute_source(const std::string& folder_or_name);
 Result<std::string> find_recorded_patient(const std::string& recorded, const std::string& hash,
                                           const std::filesystem::path& beside);
 
-/// The patient behind a source. A folder wins over an embedded patient of the same name; a name that is neither is an
-/// error that lists the embedded patients (exit status 2). A patient is the same whether it comes from the cache or
-/// not.
-Result<anatomy::VirtualPatient> open_patient(const PatientSource& source, const Progress& progress = {});
-/// Its surfaces: read from the folder, extracted from the labels of an embedded patient.
-Result<std::vector<anatomy::NamedMesh>> open_meshes(const PatientSource& source, const anatomy::VirtualPatient& patient,
-                                                    const Progress& progress = {});
+/// Whether a source names a folder; else it is an embedded patient's name.
+bool is_path(const std::string& folder_or_name);
+
+/// The patient behind a source: read from its folder, or generated. A folder wins over an embedded patient of the same
+/// name; a name that is neither is an error that lists the embedded patients (exit status 2). Ignores the cache: for
+/// programs that only read (open_patient.h for the others).
+Result<anatomy::VirtualPatient> load_source(const PatientSource& source, const Progress& progress = {});
 
 }  // namespace trocar::io

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "attempt/record/recording_space.h"
+#include "attempt/record/session_case.h"
 #include "cases/scene_request.h"
-#include "cases/session_case.h"
 
 namespace trocar::attempt {
 namespace {
@@ -55,7 +55,7 @@ AttemptLoop::AttemptLoop(AttemptCase the_case, LoopOptions options, AttemptOpera
 }
 
 void AttemptLoop::prepare() {
-  if (!performer_.parameters.empty()) needle_->set_parameters(cases::as_command(performer_.parameters.front()));
+  if (!performer_.parameters.empty()) needle_->set_parameters(as_command(performer_.parameters.front()));
   needle_->prepare({scene_of(case_, performer_.force_model, options_.seed, "needle"), hand_target(command_, 0.0)});
   if (!transducer_) return;
   PreparationRequest request{scene_of(case_, performer_.force_model, options_.seed, "probe"), {}};

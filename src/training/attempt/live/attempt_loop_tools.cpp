@@ -6,7 +6,7 @@
 #include "attempt/guide/gun_shot.h"
 #include "attempt/live/attempt_event.h"
 #include "attempt/live/attempt_loop.h"
-#include "cases/session_case.h"
+#include "attempt/record/session_case.h"
 #include "telemetry/tick_pose.h"
 
 namespace trocar::attempt {
@@ -102,7 +102,7 @@ void AttemptLoop::note_shot() {
 void AttemptLoop::send_scheduled_parameters() {
   const auto& all = performer_.parameters;
   while (next_parameters_ < all.size() && all[next_parameters_].tick <= record_->samples().size())
-    needle_->set_parameters(cases::as_command(all[next_parameters_++]));
+    needle_->set_parameters(as_command(all[next_parameters_++]));
 }
 
 Status AttemptLoop::step_transducer() {

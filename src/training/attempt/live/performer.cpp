@@ -44,11 +44,11 @@ Result<Performer> make_replayer(const cases::Case& the_case, const RunOptions& o
   if (session == nullptr) {
     TROCAR_TRY(session, load_replayed(options.operator_name));
   }
-  if (!options.is_other_patient_meant) TROCAR_TRY_STATUS(cases::check_patient(*session, *the_case.patient));
-  cases::ReplayChanges changes = options.replay_changes;
+  if (!options.is_other_patient_meant) TROCAR_TRY_STATUS(check_patient(*session, *the_case.patient));
+  ReplayChanges changes = options.replay_changes;
   if (changes.force_model.empty()) changes.force_model = options.force_model;
   Performer performer;
-  TROCAR_TRY(performer.parameters, cases::replay_parameters(*session, changes));
+  TROCAR_TRY(performer.parameters, replay_parameters(*session, changes));
   performer.the_operator = tasks::make_replay(session->samples, session->fired);
   performer.rate_hz = session->info.rate_hz;
   performer.has_own_rate = true;

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "attempt/record/run_result.h"
+#include "attempt/record/session_case.h"
 #include "cases/prepare_case.h"
-#include "cases/session_case.h"
 #include "core/progress.h"
 #include "core/result.h"
 
@@ -25,7 +25,7 @@ struct RunOptions {
   std::filesystem::path session;  ///< Written here; must not exist.
   // Of a replay alone. Seeds, rate and device are its session's, whatever stands above.
   std::shared_ptr<const storage::Session> replayed;  ///< What the operator's name names, where it is loaded already.
-  cases::ReplayChanges replay_changes;
+  ReplayChanges replay_changes;
   bool is_other_patient_meant = false;  ///< A patient with another content hash is not refused.
 };
 

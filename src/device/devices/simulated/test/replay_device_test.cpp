@@ -53,14 +53,14 @@ TEST(ReplayDevice, IsOpenedWithPosesOnly) {
   const DeviceSpec spec{"replay", "a.trocar"};
   const auto open = [&] { return open_device(spec, options); };
   EXPECT_FALSE(open());
-  options.replay = swing(2);
+  options.motion.poses = swing(2);
   const auto device = open();
   ASSERT_TRUE(device) << device.error().text();
   EXPECT_EQ((*device)->name(), "replay:a.trocar");
-  options.replay_rate_hz = 0.0;
+  options.motion.rate_hz = 0.0;
   EXPECT_FALSE(open());
-  options.replay_rate_hz = 1000.0;
-  options.replay.push_back(Pose::translation(Vec3::Constant(std::numeric_limits<double>::infinity())));
+  options.motion.rate_hz = 1000.0;
+  options.motion.poses.push_back(Pose::translation(Vec3::Constant(std::numeric_limits<double>::infinity())));
   EXPECT_NE(open().error().text().find("sample 2"), std::string::npos);
 }
 

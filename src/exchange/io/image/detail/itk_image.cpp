@@ -1,32 +1,13 @@
 #include "io/image/detail/itk_image.h"
 
-#include <itkMetaImageIO.h>
-#include <itkNiftiImageIO.h>
-#include <itkNrrdImageIO.h>
-
 #include <optional>
 
 #include "core/available_memory.h"
+#include "io/image/detail/itk_format.h"
 #include "io/image/detail/quiet.h"
 
 namespace trocar::io::detail {
-namespace fs = std::filesystem;
 namespace {
-
-/// Fast: level 1 unpacks as quickly as 6, packs four times faster and gives slightly larger files.
-constexpr int kCompressionLevel = 1;
-
-itk::ImageIOBase::Pointer make_image_io(ImageFormat format) {
-  switch (format) {
-    case ImageFormat::kNifti:
-      return itk::NiftiImageIO::New().GetPointer();
-    case ImageFormat::kNrrd:
-      return itk::NrrdImageIO::New().GetPointer();
-    case ImageFormat::kMeta:
-      break;
-  }
-  return itk::MetaImageIO::New().GetPointer();
-}
 
 std::optional<VoxelType> find_voxel_type(itk::IOComponentEnum type) {
   using Type = itk::IOComponentEnum;
@@ -76,16 +57,6 @@ TextFields text_fields(const itk::ImageIOBase& io) {
   return fields;
 }
 
-/// Selects the whole image as the region to read or write.
-void take_whole_region(itk::ImageIOBase& io) {
-  itk::ImageIORegion region(io.GetNumberOfDimensions());
-  for (unsigned axis = 0; axis < io.GetNumberOfDimensions(); ++axis) {
-    region.SetIndex(axis, 0);
-    region.SetSize(axis, io.GetDimensions(axis));
-  }
-  io.SetIORegion(region);
-}
-
 /// May throw exceptions of ITK.
 Result<ItkImage> read_throwing(itk::ImageIOBase& io, const CheckedImage& checked, ImageFormat format) {
   const std::string where = checked.file.path().string();
@@ -115,40 +86,6 @@ Result<ItkImage> read_throwing(itk::ImageIOBase& io, const CheckedImage& checked
   return image;
 }
 
-itk::IOComponentEnum component_of(VoxelType type) {
-  switch (type) {
-    case VoxelType::kInt16:
-      return itk::IOComponentEnum::SHORT;
-    case VoxelType::kUInt8:
-      return itk::IOComponentEnum::UCHAR;
-    default:
-      return itk::IOComponentEnum::FLOAT;
-  }
-}
-
-/// May throw exceptions of ITK.
-void write_throwing(itk::ImageIOBase& io, const ItkImage& image, std::span<const std::byte> bytes, const fs::path& path,
-                    Packing packing) {
-  io.SetFileName(path.string());
-  io.SetNumberOfDimensions(3);
-  io.SetNumberOfComponents(1);
-  io.SetPixelType(itk::IOPixelEnum::SCALAR);
-  io.SetComponentType(component_of(image.type));
-  for (unsigned axis = 0; axis < 3; ++axis) {
-    io.SetDimensions(axis, static_cast<itk::SizeValueType>(image.size[axis]));
-    io.SetSpacing(axis, image.spacing_mm[axis]);
-    io.SetOrigin(axis, image.origin_P[axis]);
-    io.SetDirection(axis, std::vector<double>(image.axes_P[axis].begin(), image.axes_P[axis].end()));
-  }
-  io.SetUseCompression(packing == Packing::kCompressed);
-  io.SetCompressionLevel(kCompressionLevel);
-  for (const auto& [key, value] : image.fields)
-    itk::EncapsulateMetaData<std::string>(io.GetMetaDataDictionary(), key, value);
-  take_whole_region(io);
-  io.WriteImageInformation();
-  io.Write(bytes.data());
-}
-
 }  // namespace
 
 Result<ItkImage> read_with_itk(const CheckedImage& checked, ImageFormat format) {
@@ -174,17 +111,6 @@ Result<TextFields> read_fields_with_itk(const CheckedImage& checked, ImageFormat
     return text_fields(*io);
   } catch (const std::exception&) {
     return fail("the header cannot be read", checked.file.path().string(), "open it in 3D Slicer and save it as .nrrd");
-  }
-}
-
-Status write_with_itk(const ItkImage& image, std::span<const std::byte> bytes, const fs::path& path, ImageFormat format,
-                      Packing packing) {
-  silence_libraries();
-  try {
-    write_throwing(*make_image_io(format), image, bytes, path, packing);
-    return {};
-  } catch (const std::exception&) {
-    return fail("the image cannot be written", path.string(), "check the disk space and the permissions");
   }
 }
 

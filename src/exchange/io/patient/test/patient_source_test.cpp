@@ -1,5 +1,4 @@
-#include "io/patient/patient_source.h"
-
+#include "io/patient/open_patient.h"
 #include "io/patient/patient_folder.h"
 #include "io/test/test_support.h"
 

@@ -1,4 +1,4 @@
-#include "cases/session_case.h"
+#include "attempt/record/session_case.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include "haptics/scene_options.h"
 #include "tasks/assess_path.h"
 
-namespace trocar::cases {
+namespace trocar::attempt {
 namespace {
 namespace fs = std::filesystem;
 
@@ -65,13 +65,14 @@ Status check_patient(const storage::Session& session, const anatomy::VirtualPati
                     fmt::format("name the patient of the session ({}), or add --other-patient", info.patient_source));
 }
 
-Result<Case> restore_case(std::shared_ptr<const anatomy::VirtualPatient> patient, const storage::Session& session,
-                          const storage::SessionParameters& first, bool is_other_patient_meant) {
+Result<cases::Case> restore_case(std::shared_ptr<const anatomy::VirtualPatient> patient,
+                                 const storage::Session& session, const storage::SessionParameters& first,
+                                 bool is_other_patient_meant) {
   if (!is_other_patient_meant) TROCAR_TRY_STATUS(check_patient(session, *patient));
   const fs::path data = data_dir();
   if (data.empty()) return fail("the data folder was not found", "", "set TROCAR_DATA_DIR to it");
   const storage::SessionInfo& info = session.info;
-  Case restored;
+  cases::Case restored;
   restored.task_toml = info.task_toml;
   TROCAR_TRY(restored.task, info.task_toml.empty()
                                 ? tasks::load_task(data / "tasks", info.task)
@@ -100,4 +101,4 @@ link::SetParameters as_command(const storage::SessionParameters& parameters) {
   return command;
 }
 
-}  // namespace trocar::cases
+}  // namespace trocar::attempt

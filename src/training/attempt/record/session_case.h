@@ -9,7 +9,7 @@
 #include "link/messages.h"
 #include "storage/session_file.h"
 
-namespace trocar::cases {
+namespace trocar::attempt {
 
 /// Intended differences of a replay: other tissue. Empty: as recorded.
 struct ReplayChanges {
@@ -29,8 +29,9 @@ Result<std::vector<storage::SessionParameters>> replay_parameters(const storage:
 
 /// The case of a session: its task, needle, plan, and the tissues in force at its first tick. Errors: another patient
 /// (exit status 2) unless that is meant, a task or needle that this program does not know.
-Result<Case> restore_case(std::shared_ptr<const anatomy::VirtualPatient> patient, const storage::Session& session,
-                          const storage::SessionParameters& first, bool is_other_patient_meant = false);
+Result<cases::Case> restore_case(std::shared_ptr<const anatomy::VirtualPatient> patient,
+                                 const storage::Session& session, const storage::SessionParameters& first,
+                                 bool is_other_patient_meant = false);
 
 /// Whether the session was recorded in that patient. Error (exit status 2): it was not.
 Status check_patient(const storage::Session& session, const anatomy::VirtualPatient& patient);
@@ -38,4 +39,4 @@ Status check_patient(const storage::Session& session, const anatomy::VirtualPati
 /// SetParameters message that gives a loaded scene these parameters.
 link::SetParameters as_command(const storage::SessionParameters& parameters);
 
-}  // namespace trocar::cases
+}  // namespace trocar::attempt

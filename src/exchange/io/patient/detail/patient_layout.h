@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "anatomy/patient.h"
+#include "core/result.h"
+#include "io/patient/detail/patient_toml.h"
+
+namespace trocar::io::detail {
+
+// Files of a patient folder.
+inline constexpr const char* kDescriptionFile = "patient.toml";
+inline constexpr const char* kCtFile = "ct.nrrd";
+inline constexpr const char* kLabelFile = "labels.nrrd";
+inline constexpr const char* kDistanceFile = "skin_distance.nrrd";
+inline constexpr const char* kLandmarkFile = "landmarks.mrk.json";
+inline constexpr const char* kPathFile = "paths.mrk.json";
+
+inline constexpr const char* kBuildAgain = "build the patient again";
+
+/// Reads patient.toml. Errors: no patient folder, a newer version, a damaged file.
+Result<PatientDescription> load_description(const std::filesystem::path& folder);
+
+/// The distance to the skin in hundredths of a mm, clamped at 327 mm, as skin_distance.nrrd stores it.
+volume::CtGrid to_hundredths(const volume::FloatGrid& distance_mm);
+volume::FloatGrid from_hundredths(const volume::CtGrid& hundredths);
+
+/// Error: the label table lacks a label of the volume.
+Status check_label_ids(const anatomy::VirtualPatient& patient, const std::string& where);
+/// Error: CT, labels and skin distance are on different grids.
+Status check_geometry(const anatomy::VirtualPatient& patient, const std::string& where);
+
+}  // namespace trocar::io::detail

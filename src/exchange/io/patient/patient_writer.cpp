@@ -1,0 +1,85 @@
+#include <fmt/format.h>
+
+#include <cctype>
+#include <set>
+
+#include "core/check.h"
+#include "core/files/atomic_file.h"
+#include "core/parallel.h"
+#include "io/image/detail/volume_file.h"
+#include "io/image/image_file.h"
+#include "io/markups_file.h"
+#include "io/mesh_file.h"
+#include "io/patient/detail/patient_layout.h"
+#include "io/patient/patient_folder.h"
+
+namespace trocar::io {
+namespace fs = std::filesystem;
+namespace {
+
+/// A unique file name for a structure.
+std::string mesh_file_name(const std::string& name, std::set<std::string>& taken) {
+  std::string stem;
+  for (const char c : name) {
+    const bool is_plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
+    stem += is_plain ? c : '_';
+  }
+  if (stem.empty()) stem = "surface";
+  std::string file = stem;
+  for (int n = 2; !taken.insert(file).second; ++n) file = fmt::format("{}_{}", stem, n);
+  return fmt::format("meshes/{}.vtp", file);
+}
+
+/// Distances compress badly and unpack slowly: not compressed.
+Status write_distance(const volume::FloatGrid& distance_mm, const fs::path& path) {
+  const volume::CtGrid hundredths = detail::to_hundredths(distance_mm);
+  return detail::write_volume_file({detail::VoxelType::kInt16, std::as_bytes(std::span(hundredths.voxels))},
+                                   hundredths.geometry, path, detail::Packing::kPlain);
+}
+
+Status write_volumes(const anatomy::VirtualPatient& patient, const fs::path& folder) {
+  Status ct, labels, distance;
+  parallel_invoke([&] { ct = write_image(patient.ct, folder / detail::kCtFile); },
+                  [&] { labels = write_image(patient.labels, folder / detail::kLabelFile); },
+                  [&] { distance = write_distance(patient.skin_distance_mm, folder / detail::kDistanceFile); });
+  TROCAR_TRY_STATUS(ct);
+  TROCAR_TRY_STATUS(labels);
+  return distance;
+}
+
+Status write_contents(const anatomy::VirtualPatient& patient, const std::vector<anatomy::NamedMesh>& meshes,
+                      const fs::path& folder, const Progress& progress) {
+  report(progress, "volumes", 0.0);
+  TROCAR_TRY_STATUS(write_volumes(patient, folder));
+  detail::PatientDescription description{
+      patient.name, patient.description, patient.provenance, anatomy::hash_patient(patient), patient.label_table, {}};
+  std::set<std::string> taken;
+  for (const anatomy::NamedMesh& mesh : meshes) {
+    report(progress, "surfaces", 0.8 + 0.2 * static_cast<double>(taken.size()) / static_cast<double>(meshes.size()));
+    description.meshes.push_back({mesh.name, mesh_file_name(mesh.name, taken)});
+    TROCAR_TRY_STATUS(write_mesh(mesh.mesh_P, folder / description.meshes.back().file));
+  }
+  TROCAR_TRY_STATUS(write_landmarks(patient.landmarks, folder / detail::kLandmarkFile));
+  TROCAR_TRY_STATUS(write_paths(patient.paths, folder / detail::kPathFile));
+  TROCAR_TRY_STATUS(write_file_atomically(folder / detail::kDescriptionFile, detail::to_toml(description)));
+  report(progress, "saved", 1.0);
+  return {};
+}
+
+}  // namespace
+
+Status save_patient(const anatomy::VirtualPatient& patient, const std::vector<anatomy::NamedMesh>& meshes,
+                    const fs::path& folder, const Progress& progress, const std::vector<PatientExtra>& extras) {
+  TROCAR_TRY_STATUS(detail::check_geometry(patient, folder.string()));
+  TROCAR_TRY_STATUS(detail::check_label_ids(patient, folder.string()));
+  return write_folder_atomically(folder, [&](const fs::path& temporary) -> Status {
+    TROCAR_TRY_STATUS(write_contents(patient, meshes, temporary, progress));
+    for (const PatientExtra& extra : extras) {
+      TROCAR_CHECK(!fs::exists(temporary / extra.name));
+      TROCAR_TRY_STATUS(write_file_atomically(temporary / extra.name, extra.text));
+    }
+    return {};
+  });
+}
+
+}  // namespace trocar::io
