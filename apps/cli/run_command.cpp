@@ -74,6 +74,12 @@ void print_server(const attempt::ServerFigures& server) {
   fmt::print("  {} ticks received, {} missing; {}\n", server.ticks_received, server.ticks_missing, server.grant);
 }
 
+/// Whether a replay gave the session's ticks bit by bit; empty: no replay, or the session is too old to tell.
+std::optional<bool> has_same_ticks(const attempt::RunOptions& run, const attempt::RunResult& result) {
+  if (run.replayed == nullptr || run.replayed->ticks_hash.empty() || result.ticks_hash.empty()) return std::nullopt;
+  return run.replayed->ticks_hash == result.ticks_hash;
+}
+
 config::Json result_json(const Arguments& arguments, const cases::Case& the_case, const attempt::RunResult& result) {
   const tasks::Outcome& outcome = result.outcome;
   config::Json parts = config::Json::array();
@@ -106,6 +112,7 @@ config::Json result_json(const Arguments& arguments, const cases::Case& the_case
                        {"simulated_s", result.simulated_s},
                        {"active_s", result.active_s},
                        {"ticks", result.ticks},
+                       {"ticks_hash", result.ticks_hash},
                        {"score", outcome.is_scored() ? config::Json(outcome.score) : config::Json(nullptr)},
                        {"not_scored", outcome.is_scored() ? config::Json(nullptr) : config::Json(outcome.not_scored)},
                        {"target_reached", outcome.target_reached},
@@ -114,6 +121,7 @@ config::Json result_json(const Arguments& arguments, const cases::Case& the_case
                        {"risks_touched", outcome.risks_touched},
                        {"core", outcome.core ? core_json(*outcome.core) : config::Json(nullptr)},
                        {"hints", outcome.hints}};
+  if (const auto same = has_same_ticks(arguments.run, result)) json["same_ticks_as_session"] = *same;
   if (arguments.is_realtime) {
     json["ticks_missing"] = result.ticks_missing;
     json["servers"] = servers_json(result.servers);
@@ -157,6 +165,9 @@ void print_result(const Arguments& arguments, const cases::Case& the_case, const
   }
   for (const tasks::ScorePart& part : outcome.parts) print_part(part);
   for (const std::string& hint : outcome.hints) fmt::print("hint: {}\n", hint);
+  if (const auto same = has_same_ticks(arguments.run, result))
+    fmt::print("{}\n",
+               *same ? "the ticks are those of the session, to the bit" : "the ticks differ from the session's");
   for (const attempt::ServerFigures& server : result.servers) print_server(server);
 }
 

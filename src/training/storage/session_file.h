@@ -86,6 +86,8 @@ class SessionWriter {
   /// can be appended afterwards.
   Status finish(const tasks::Outcome& outcome, std::optional<std::size_t> fired);
   std::size_t saved_ticks() const noexcept;  ///< Committed so far.
+  /// Hash of all ticks, see Session; empty before finish().
+  const std::string& ticks_hash() const noexcept;
 
  private:
   struct Impl;
@@ -110,6 +112,9 @@ struct Session {
   std::optional<tasks::Outcome> outcome;           ///< Missing when the program was killed before the end.
   std::optional<std::size_t> fired;                ///< Sample at which the biopsy gun was fired.
   bool is_incomplete = false;                      ///< The program ended before the attempt did.
+  /// XXH3 (128 bits, hexadecimal) of all values of all ticks: two sessions have the same if and only if their ticks are
+  /// the same bit by bit (NaN is one value, -0.0 is 0.0). Empty: incomplete, or of an older program.
+  std::string ticks_hash;
   bool has_checksums = false;         ///< Missing in sessions of older programs: damage may pass unnoticed.
   std::vector<SessionDamage> damage;  ///< In the order of ticks; empty in what load_session gives.
 };

@@ -77,6 +77,9 @@ struct SessionWriter::Impl {
   TransducerBuffer transducer;
   ParametersBuffer parameters;
 
+  ContentHash all_ticks;
+  std::string ticks_hash;  ///< When finished.
+
   soci::session database;
   std::optional<soci::statement> insert_ticks, insert_events;
 
@@ -195,6 +198,7 @@ Status SessionWriter::Impl::flush() {
   });
   if (!status) failure = status.error();
   if (status) saved_ticks += samples.size();
+  if (status) add_ticks(all_ticks, samples);
   clear();
   return status;
 }
@@ -279,6 +283,10 @@ std::size_t SessionWriter::saved_ticks() const noexcept {
   return impl_->saved_ticks;
 }
 
+const std::string& SessionWriter::ticks_hash() const noexcept {
+  return impl_->ticks_hash;
+}
+
 Status SessionWriter::finish(const tasks::Outcome& outcome, std::optional<std::size_t> fired) {
   TROCAR_CHECK(impl_ != nullptr && !impl_->is_finished);
   TROCAR_CHECK(!fired || *fired < static_cast<std::size_t>(impl_->next_tick));
@@ -297,6 +305,8 @@ Status SessionWriter::finish(const tasks::Outcome& outcome, std::optional<std::s
         soci::use(json);
     for (const CheckedRows& rows : {kTransducerRows, kParameterRows, kInterruptionRows, kOutcomeRows, kBlockRows})
       write_checksum(impl_->database, rows);
+    impl_->ticks_hash = impl_->all_ticks.digest();
+    write_ticks_hash(impl_->database, impl_->saved_ticks, impl_->ticks_hash);
     impl_->database << "COMMIT";
   });
   if (!status) impl_->failure = status.error();

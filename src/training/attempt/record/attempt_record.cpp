@@ -165,6 +165,7 @@ RunResult AttemptRecord::score() {
 Result<RunResult> AttemptRecord::finish() {
   RunResult result = score();
   TROCAR_TRY_STATUS(written(writer_.finish(result.outcome, fired_)));
+  result.ticks_hash = writer_.ticks_hash();
   return result;
 }
 

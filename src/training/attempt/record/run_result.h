@@ -36,8 +36,9 @@ struct RunResult {
   std::vector<PunctureRecord> punctures;
   std::string force_model;  ///< At the first tick.
   std::size_t ticks = 0;
-  double simulated_s = 0.0;            ///< Of the last tick; through live servers their time, gaps included.
-  double active_s = 0.0;               ///< Of it without interruptions: the trainee could act.
+  std::string ticks_hash;    ///< Of all of them, as in the session file (storage::Session); empty: it was not finished.
+  double simulated_s = 0.0;  ///< Of the last tick; through live servers their time, gaps included.
+  double active_s = 0.0;     ///< Of it without interruptions: the trainee could act.
   std::uint64_t ticks_missing = 0;     ///< Of the session: ticks that a live server made and nobody received.
   double paused_s = 0.0;               ///< Of it without a server; through live servers only, and
   double unseen_s = 0.0;               ///< of it without an operator, because this program got no processor.

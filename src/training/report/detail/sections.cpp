@@ -236,6 +236,7 @@ std::string case_section(const storage::Session& session) {
                                 number_text(tasks::active_time_s(0.0, duration_s, session.interruptions), 1)));
   out += interruption_rows(session);
   out += changes_rows(session);
+  out += case_row("Hash of all ticks", session.ticks_hash);
   out += case_row("Program", "Trocar " + info.program_version);
   out += "</tbody></table>" + tissue_tables(session);
   return out + "</section>";

@@ -12,6 +12,7 @@ namespace trocar::storage::detail {
 namespace {
 
 constexpr std::size_t kDigestDigits = 32;
+constexpr const char* kTicksName = "ticks";  ///< Of the hash of all ticks in the table `checksums`.
 
 template <class Value>
 void add(ContentHash& hash, const Value& value) {
@@ -46,6 +47,21 @@ void add_value(ContentHash& hash, sqlite_api::sqlite3_stmt* statement, int colum
   }
 }
 
+void insert_digest(soci::session& database, const std::string& name, const RowsDigest& digest) {
+  const long long count = digest.rows;
+  database << "INSERT INTO checksums (name, row_count, digest) VALUES (:name, :count, :digest)", soci::use(name),
+      soci::use(count), soci::use(digest.digest);
+}
+
+std::optional<RowsDigest> read_digest(soci::session& database, const std::string& name) {
+  long long count = 0;
+  std::string digest;
+  database << "SELECT row_count, digest FROM checksums WHERE name = :name", soci::use(name), soci::into(count),
+      soci::into(digest);
+  if (digest.empty()) return std::nullopt;
+  return RowsDigest{count, digest};
+}
+
 }  // namespace
 
 std::vector<std::string> checksum_schema() {
@@ -54,8 +70,8 @@ std::vector<std::string> checksum_schema() {
           "ROWID"};
 }
 
-std::string digest_of(std::span<const telemetry::TickSample> samples, const std::set<std::string>* present) {
-  ContentHash hash;
+void add_ticks(ContentHash& hash, std::span<const telemetry::TickSample> samples,
+               const std::set<std::string>* present) {
   std::vector<double> values;
   for (const telemetry::TickSample& sample : samples) {
     values.clear();
@@ -72,6 +88,11 @@ std::string digest_of(std::span<const telemetry::TickSample> samples, const std:
     }
     hash.add(std::as_bytes(std::span(values)));
   }
+}
+
+std::string digest_of(std::span<const telemetry::TickSample> samples, const std::set<std::string>* present) {
+  ContentHash hash;
+  add_ticks(hash, samples, present);
   return hash.digest();
 }
 
@@ -117,21 +138,19 @@ RowsDigest digest_of_rows(soci::session& database, const std::string& query) {
 }
 
 void write_checksum(soci::session& database, const CheckedRows& rows) {
-  const RowsDigest computed = digest_of_rows(database, rows.query);
-  const std::string name = rows.name;
-  const long long count = computed.rows;
-  database << "INSERT INTO checksums (name, row_count, digest) VALUES (:name, :count, :digest)", soci::use(name),
-      soci::use(count), soci::use(computed.digest);
+  insert_digest(database, rows.name, digest_of_rows(database, rows.query));
+}
+
+void write_ticks_hash(soci::session& database, std::size_t ticks, const std::string& hash) {
+  insert_digest(database, kTicksName, {static_cast<std::int64_t>(ticks), hash});
+}
+
+std::string read_ticks_hash(soci::session& database) {
+  const auto written = read_digest(database, kTicksName);
+  return written && written->digest.size() == kDigestDigits ? written->digest : std::string();
 }
 
 std::optional<RowsDigest> read_checksum(soci::session& database, const CheckedRows& rows) {
-  const std::string name = rows.name;
-  long long count = 0;
-  std::string digest;
-  database << "SELECT row_count, digest FROM checksums WHERE name = :name", soci::use(name), soci::into(count),
-      soci::into(digest);
-  if (digest.empty()) return std::nullopt;
-  return RowsDigest{count, digest};
+  return read_digest(database, rows.name);
 }
-
 }  // namespace trocar::storage::detail

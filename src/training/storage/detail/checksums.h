@@ -20,6 +20,14 @@ std::vector<std::string> checksum_schema();
 /// Digest of ticks with their events, over the values as a session keeps them (NaN is one value, -0.0 is 0.0).
 /// Over the columns that the session's table has; nullptr: all.
 std::string digest_of(std::span<const telemetry::TickSample> samples, const std::set<std::string>* present = nullptr);
+/// Adds them to the hash of a whole session.
+void add_ticks(ContentHash& hash, std::span<const telemetry::TickSample> samples,
+               const std::set<std::string>* present = nullptr);
+
+/// The hash of all ticks of a finished session, in the table `checksums`. Throws soci::soci_error.
+void write_ticks_hash(soci::session& database, std::size_t ticks, const std::string& hash);
+/// Empty in sessions of older programs. Throws soci::soci_error.
+std::string read_ticks_hash(soci::session& database);
 
 /// A block of ticks with one checksum.
 struct TickBlock {

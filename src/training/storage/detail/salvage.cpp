@@ -22,6 +22,7 @@ constexpr const char* kBlocksPart = "list of tick blocks (table tick_blocks)";
 constexpr const char* kTransducerPart = "poses of the transducer";
 constexpr const char* kParametersPart = "changes of parameters";
 constexpr const char* kInterruptionsPart = "interruptions";
+constexpr const char* kTicksHashPart = "hash of all ticks";
 constexpr const char* kOutcomePart = "outcome (score and hints)";
 
 class Salvage {
@@ -40,6 +41,8 @@ class Salvage {
     const bool is_read = attempt(kTransducerPart, [&] { session_.transducer = read_transducer(database_.session()); });
     if (!is_read || !check(kTransducerPart, kTransducerRows, is_finished_)) session_.transducer.clear();
     read_parameters_and_interruptions();
+    if (is_finished_ && session_.has_checksums)
+      attempt(kTicksHashPart, [&] { session_.ticks_hash = read_ticks_hash(database_.session()); });
     session_.is_incomplete = !is_finished_ && !has_part(kOutcomePart);
     return read_outcome();
   }

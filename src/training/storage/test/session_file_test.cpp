@@ -49,6 +49,29 @@ TEST(SessionFile, GivesEveryTickBackBitByBit) {
   for (std::size_t n = 0; n < 1234; ++n) EXPECT_EQ(bits_of(session->samples[n]), bits_of(example_sample(n))) << n;
 }
 
+TEST(SessionFile, HashIsThatOfEveryBitOfEveryTick) {
+  const TemporaryFolder folder;
+  const auto hash_of = [&](const char* name, std::size_t ticks, std::size_t changed, double value) {
+    auto writer = SessionWriter::create(folder / name, example_info());
+    EXPECT_EQ(writer->ticks_hash(), "");
+    for (std::size_t n = 0; n < ticks; ++n) {
+      telemetry::TickSample sample = example_sample(n);
+      if (n == changed) sample.device_tau_nmm.z() = value;
+      EXPECT_TRUE(writer->append(sample));
+    }
+    EXPECT_TRUE(writer->finish(example_outcome(), std::nullopt));
+    const auto session = load_session(folder / name);
+    EXPECT_EQ(session->ticks_hash, writer->ticks_hash());
+    return session->ticks_hash;
+  };
+  const double value = 0.125;
+  const std::string hash = hash_of("a.trocar", 1234, 700, value);
+  EXPECT_EQ(hash.size(), 32u);
+  EXPECT_EQ(hash_of("b.trocar", 1234, 700, value), hash);
+  EXPECT_NE(hash_of("c.trocar", 1234, 700, std::nextafter(value, 1.0)), hash) << "one bit of one number";
+  EXPECT_NE(hash_of("d.trocar", 1233, 700, value), hash) << "one tick less";
+}
+
 TEST(SessionFile, GivesTheCaseBack) {
   const TemporaryFolder folder;
   write_session(folder / "s.trocar", 1);

@@ -1,5 +1,7 @@
 #include "io/image/detail/itk_image.h"
 
+#include <itkMetaDataObject.h>
+
 #include <optional>
 
 #include "core/available_memory.h"

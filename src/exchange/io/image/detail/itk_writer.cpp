@@ -1,3 +1,5 @@
+#include <itkMetaDataObject.h>
+
 #include "io/image/detail/itk_format.h"
 #include "io/image/detail/itk_image.h"
 #include "io/image/detail/quiet.h"
