@@ -1,6 +1,9 @@
 // A replay takes everything from its session.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdio>
+#include <fstream>
 #include <memory>
 
 #include "program.h"
@@ -84,6 +87,48 @@ TEST_F(ReplayCommand, NamesTheNumbersThatWereSetInCsvAndReport) {
   ASSERT_EQ(trocar("session report '" + session_ + "' --out '" + html + "'").exit_status, 0);
   EXPECT_NE(read_text(csv).find("set:skin.fp=4"), std::string::npos);
   EXPECT_NE(read_text(html).find("skin.fp=4"), std::string::npos);
+}
+
+TEST_F(ReplayCommand, SaysThatTheTicksAreTheSameToTheBit) {
+  const config::Json same = json_of(replay("", "bits.session"));
+  EXPECT_EQ(same["ticks_hash"], recorded_["ticks_hash"]);
+  EXPECT_EQ(same["ticks_hash"].get<std::string>().size(), 32u);
+  EXPECT_EQ(same["same_ticks_as_session"], true);
+  EXPECT_EQ(json_of(replay("--set skin.fp=5", "other_bits.session"))["same_ticks_as_session"], false);
+  EXPECT_FALSE(recorded_.contains("same_ticks_as_session"));
+}
+
+/// The position that a replaying server shows first, in its test mode.
+std::string first_state(const std::string& file) {
+  const Outcome outcome = run_program("trocar-hapticd", "--device 'replay:" + file + "' --test", "sleep 0.3 | ");
+  EXPECT_EQ(outcome.exit_status, 0) << outcome.err;
+  const auto first = outcome.out.find("state\t");
+  if (first == std::string::npos) return outcome.out;
+  return outcome.out.substr(first, outcome.out.find('\n', first) - first);
+}
+
+TEST_F(ReplayCommand, ServerReplaysASessionAndItsMotionAlike) {
+  const std::string csv = *folder_ / "motion.csv";
+  ASSERT_EQ(trocar("session motion '" + session_ + "' --csv '" + csv + "'").exit_status, 0);
+  const std::string motion = first_state(csv);
+  EXPECT_EQ(motion.substr(0, 6), "state\t") << motion;
+  EXPECT_EQ(first_state(session_), motion);
+  double x = 0.0, y = 0.0, z = 0.0, shown_x = 0.0, shown_y = 0.0, shown_z = 0.0;
+  const std::string text = read_text(csv);
+  ASSERT_EQ(std::sscanf(text.c_str() + text.find('\n') + 1, "0,%lf,%lf,%lf,", &x, &y, &z), 3);
+  ASSERT_EQ(std::sscanf(motion.c_str(), "state\t%lf\t%lf\t%lf\t", &shown_x, &shown_y, &shown_z), 3);
+  EXPECT_LT(std::hypot(x - shown_x, y - shown_y, z - shown_z), 0.1) << motion;
+}
+
+TEST_F(ReplayCommand, ServerSaysInOneLineWhyAFileIsNoMotion) {
+  std::ofstream(*folder_ / "damaged.session") << read_text(session_).substr(0, 30'000);
+  std::ofstream(*folder_ / "text.csv") << "time,x\n0,1\n";
+  for (const char* file : {"damaged.session", "text.csv", "none.csv"}) {
+    const Outcome outcome = run_program("trocar-hapticd", "--device 'replay:" + (*folder_ / file) + "' --test");
+    EXPECT_EQ(outcome.exit_status, 1) << file;
+    EXPECT_EQ(line_count(outcome.err), 1) << outcome.err;
+    EXPECT_NE(outcome.err.find(file), std::string::npos) << outcome.err;
+  }
 }
 
 TEST(Seeds, OfTheOperatorDoNotChangeTheAnatomy) {
