@@ -11,6 +11,7 @@
 #include "number_option.h"
 #include "patient_option.h"
 #include "replay_arguments.h"
+#include "storage/score_json.h"
 
 namespace trocar::cli {
 namespace {
@@ -26,17 +27,6 @@ struct Arguments {
   double patience_s = 5.0;
   NamedOptions named;
 };
-
-config::Json core_json(const tasks::BiopsyCore& core) {
-  config::Json pieces = config::Json::array();
-  for (const tasks::CorePiece& piece : core.pieces) {
-    pieces.push_back(
-        {{"label", piece.label}, {"tissue", piece.tissue}, {"from_mm", piece.from_mm}, {"to_mm", piece.to_mm}});
-  }
-  return {{"target_mm", core.target_mm},           {"organ_mm", core.organ_mm},
-          {"vessel_mm", core.vessel_mm},           {"other_mm", core.other_mm},
-          {"risks_in_throw", core.risks_in_throw}, {"pieces", pieces}};
-}
 
 config::Json latency_json(const realtime::LatencySummary& latency) {
   return {
@@ -82,15 +72,6 @@ std::optional<bool> has_same_ticks(const attempt::RunOptions& run, const attempt
 
 config::Json result_json(const Arguments& arguments, const cases::Case& the_case, const attempt::RunResult& result) {
   const tasks::Outcome& outcome = result.outcome;
-  config::Json parts = config::Json::array();
-  for (const tasks::ScorePart& part : outcome.parts) {
-    parts.push_back({{"name", part.name},
-                     {"title", part.title},
-                     {"value", part.value},
-                     {"unit", part.unit},
-                     {"points", part.points},
-                     {"max_points", part.max_points}});
-  }
   config::Json punctures = config::Json::array();
   for (const attempt::PunctureRecord& puncture : result.punctures) {
     punctures.push_back({{"layer", puncture.layer},
@@ -116,10 +97,10 @@ config::Json result_json(const Arguments& arguments, const cases::Case& the_case
                        {"score", outcome.is_scored() ? config::Json(outcome.score) : config::Json(nullptr)},
                        {"not_scored", outcome.is_scored() ? config::Json(nullptr) : config::Json(outcome.not_scored)},
                        {"target_reached", outcome.target_reached},
-                       {"parts", parts},
+                       {"parts", storage::parts_json(outcome.parts)},
                        {"punctures", punctures},
                        {"risks_touched", outcome.risks_touched},
-                       {"core", outcome.core ? core_json(*outcome.core) : config::Json(nullptr)},
+                       {"core", outcome.core ? storage::core_json(*outcome.core) : config::Json(nullptr)},
                        {"hints", outcome.hints}};
   if (const auto same = has_same_ticks(arguments.run, result)) json["same_ticks_as_session"] = *same;
   if (arguments.is_realtime) {

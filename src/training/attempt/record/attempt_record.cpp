@@ -157,7 +157,7 @@ RunResult AttemptRecord::score() {
   result.simulated_s = samples_.empty() ? 0.0 : samples_.back().time_s;
   result.active_s = tasks::active_time_s(0.0, result.simulated_s, interruptions_);
   if (has_lost_scene_ || !unknown_.empty())
-    result.warnings.push_back(
+    result.warnings.emplace_back(
         "the server did not report the parameters of some ticks: a change is missing in the session");
   return result;
 }

@@ -3,24 +3,10 @@
 #include <limits>
 
 #include "config/json.h"
+#include "storage/score_json.h"
 
 namespace trocar::storage::detail {
 namespace {
-
-config::Json vector_json(const Vec3& v) {
-  return config::Json::array({v.x(), v.y(), v.z()});
-}
-
-config::Json core_json(const tasks::BiopsyCore& core) {
-  config::Json pieces = config::Json::array();
-  for (const tasks::CorePiece& piece : core.pieces)
-    pieces.push_back(
-        {{"label", piece.label}, {"tissue", piece.tissue}, {"from_mm", piece.from_mm}, {"to_mm", piece.to_mm}});
-  return {{"tip_P", vector_json(core.tip_P)}, {"axis_P", vector_json(core.axis_P)},
-          {"pieces", std::move(pieces)},      {"target_mm", core.target_mm},
-          {"organ_mm", core.organ_mm},        {"vessel_mm", core.vessel_mm},
-          {"other_mm", core.other_mm},        {"risks_in_throw", core.risks_in_throw}};
-}
 
 /// Reads the members of one object; a missing member or a wrong type makes the whole reading fail.
 class Reader {
@@ -96,17 +82,9 @@ tasks::BiopsyCore read_core(const config::Json& object, bool& is_valid) {
 }  // namespace
 
 std::string outcome_to_json(const tasks::Outcome& outcome) {
-  config::Json parts = config::Json::array();
-  for (const tasks::ScorePart& part : outcome.parts)
-    parts.push_back({{"name", part.name},
-                     {"title", part.title},
-                     {"value", part.value},
-                     {"unit", part.unit},
-                     {"points", part.points},
-                     {"max_points", part.max_points}});
   config::Json object{{"score", outcome.score},
                       {"target_reached", outcome.target_reached},
-                      {"parts", std::move(parts)},
+                      {"parts", parts_json(outcome.parts)},
                       {"hints", outcome.hints},
                       {"risks_touched", outcome.risks_touched}};
   if (!outcome.is_scored()) object["not_scored"] = outcome.not_scored;

@@ -1,0 +1,35 @@
+#include "storage/score_json.h"
+
+namespace trocar::storage {
+namespace {
+
+config::Json vector_json(const Vec3& v) {
+  return config::Json::array({v.x(), v.y(), v.z()});
+}
+
+}  // namespace
+
+config::Json parts_json(const std::vector<tasks::ScorePart>& parts) {
+  config::Json all = config::Json::array();
+  for (const tasks::ScorePart& part : parts)
+    all.push_back({{"name", part.name},
+                   {"title", part.title},
+                   {"value", part.value},
+                   {"unit", part.unit},
+                   {"points", part.points},
+                   {"max_points", part.max_points}});
+  return all;
+}
+
+config::Json core_json(const tasks::BiopsyCore& core) {
+  config::Json pieces = config::Json::array();
+  for (const tasks::CorePiece& piece : core.pieces)
+    pieces.push_back(
+        {{"label", piece.label}, {"tissue", piece.tissue}, {"from_mm", piece.from_mm}, {"to_mm", piece.to_mm}});
+  return {{"tip_P", vector_json(core.tip_P)}, {"axis_P", vector_json(core.axis_P)},
+          {"pieces", std::move(pieces)},      {"target_mm", core.target_mm},
+          {"organ_mm", core.organ_mm},        {"vessel_mm", core.vessel_mm},
+          {"other_mm", core.other_mm},        {"risks_in_throw", core.risks_in_throw}};
+}
+
+}  // namespace trocar::storage
