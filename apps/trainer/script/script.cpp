@@ -1,5 +1,7 @@
 #include "script/script.h"
 
+#include <fmt/format.h>
+
 #include <QFile>
 #include <map>
 #include <optional>
@@ -108,14 +110,15 @@ Result<std::vector<ScriptStep>> parse_script(const QString& text, const QString&
     const QString verb = words->takeFirst();
     const auto found = verbs().find(verb);
     if (found == verbs().end())
-      return fail("unknown step \"" + to_std(verb) + "\"", where, "see trocar-trainer --help");
+      return fail(fmt::format("unknown step \"{}\"", to_std(verb)), where, "see trocar-trainer --help");
     if (words->size() < found->second.least || words->size() > found->second.most)
-      return fail("\"" + to_std(verb) + "\" has " + std::to_string(words->size()) + " arguments", where,
+      return fail(fmt::format("\"{}\" has {} arguments", to_std(verb), words->size()), where,
                   "see trocar-trainer --help");
     if (const auto wrong = find_no_number(verb, *words))
-      return fail("\"" + to_std(*wrong) + "\" is not a number", where, "see trocar-trainer --help");
+      return fail(fmt::format("\"{}\" is not a number", to_std(*wrong)), where, "see trocar-trainer --help");
     if (const auto wrong = find_no_comparison(verb, *words))
-      return fail("\"" + to_std(*wrong) + "\" is not a comparison", where, "write is, isnt, has, <, >, <= or >=");
+      return fail(fmt::format("\"{}\" is not a comparison", to_std(*wrong)), where,
+                  "write is, isnt, has, <, >, <= or >=");
     steps.push_back({number, verb, *words});
   }
   if (steps.empty()) return fail("the script contains no steps", to_std(name), "see trocar-trainer --help");

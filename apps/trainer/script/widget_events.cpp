@@ -1,5 +1,7 @@
 #include "script/widget_events.h"
 
+#include <fmt/format.h>
+
 #include <QAbstractButton>
 #include <QAbstractItemView>
 #include <QAbstractSlider>
@@ -54,7 +56,7 @@ QWidget& focused(QWidget& window) {
 }
 
 Status no_such(const QWidget& widget, const QString& what) {
-  return fail("\"" + to_std(what) + "\" cannot be set", to_std(widget.objectName()),
+  return fail(fmt::format("\"{}\" cannot be set", to_std(what)), to_std(widget.objectName()),
               std::string("it is a ") + widget.metaObject()->className());
 }
 

@@ -106,8 +106,8 @@ TaskReadiness check_task(const Task& task, const anatomy::VirtualPatient& patien
   const LabelCounts counts = count_labels(patient.labels);
   const Inventory found = take_inventory(task, patient, counts);
   TaskReadiness readiness;
-  const auto note = [&](bool is_true, std::string text) {
-    if (is_true) readiness.reasons.push_back(std::move(text));
+  const auto note = [&](bool is_true, const std::string& text) {
+    if (is_true) readiness.reasons.push_back(text);
   };
   const bool has_skin = std::any_of(patient.skin_distance_mm.voxels.begin(), patient.skin_distance_mm.voxels.end(),
                                     [](float distance) { return distance > 0.0F; });

@@ -28,7 +28,8 @@ class ScanLevels {
   using Level = ScanDetail;
   static constexpr std::size_t kLevels = kScanDetails;
 
-  explicit ScanLevels(const ScanPace& pace = {}) : pace_(pace) {}
+  ScanLevels() = default;
+  explicit ScanLevels(const ScanPace& pace) : pace_(pace) {}
 
   LivePace pace() const noexcept { return pace_.live; }
   bool is_same(const ScanRequest& a, const ScanRequest& b) const noexcept {
