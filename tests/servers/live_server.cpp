@@ -80,7 +80,7 @@ void press_on_skin(link::HapticClient& client) {
   ASSERT_TRUE(loaded) << loaded.error().text();
   link::HandTarget hand = hand_at_depth(-5.0);
   hand.is_placed = true;
-  client.set_needle_goal(hand);
+  client.set_hand(hand);
   ASSERT_TRUE(client.ask(link::ServerCommand::kStart, kPatience));
   ASSERT_TRUE(wait_for([&] {
     reset_slow_loop(client);
@@ -92,7 +92,7 @@ void press_on_skin(link::HapticClient& client) {
   ASSERT_TRUE(wait_for([&] {
     reset_slow_loop(client);
     depth_mm = std::min(depth_mm + kStep_mm, kDeepest_mm);
-    client.set_needle_goal(hand_at_depth(depth_mm));
+    client.set_hand(hand_at_depth(depth_mm));
     const auto newest = client.newest();
     return newest && felt_n(*newest) > 0.5;
   }));
