@@ -8,6 +8,7 @@
 #include "anatomy/phantom/layers.h"
 #include "anatomy/phantom/render.h"
 #include "anatomy/phantom/skeleton.h"
+#include "core/files/data_dir.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -58,7 +59,9 @@ Result<VirtualPatient> generate_abdomen(const PhantomInfo& info, std::uint64_t s
                                         const PhantomResolution& resolution, const Progress& progress) {
   const volume::GridGeometry geometry = box_geometry(resolution);
   report(progress, "generating the anatomy", 0.0);
-  Anatomy anatomy(seed);
+  TROCAR_TRY(const std::filesystem::path data_folder, checked_data_dir());
+  TROCAR_TRY(KnownStructures known, KnownStructures::load(data_folder));
+  Anatomy anatomy(seed, std::move(known));
   TROCAR_TRY(BiopsyPlan plan, build_abdomen(anatomy));
 
   Rendering rendering = render(anatomy, geometry, progress);
