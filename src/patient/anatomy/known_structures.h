@@ -12,6 +12,9 @@
 
 namespace trocar::anatomy {
 
+/// In the data folder.
+inline constexpr std::string_view kStructuresFile = "structures.toml";
+
 /// A structure that is known by its name.
 struct KnownStructure {
   std::string tissue;  ///< Tissue class (TissueTable). "skin": a mask of the whole body, no structure inside it.

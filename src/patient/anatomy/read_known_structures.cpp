@@ -112,7 +112,7 @@ class StructureReader {
 
 Result<KnownStructures> KnownStructures::load(const std::filesystem::path& data_folder) {
   StructureReader reader;
-  TROCAR_TRY(const config::TomlTable structures, config::load_toml(data_folder / "structures.toml"));
+  TROCAR_TRY(const config::TomlTable structures, config::load_toml(data_folder / kStructuresFile));
   TROCAR_TRY_STATUS(reader.read_structures(structures));
   TROCAR_TRY(const config::TomlTable totalsegmentator, config::load_toml(data_folder / "totalsegmentator.toml"));
   TROCAR_TRY_STATUS(reader.read_totalsegmentator(totalsegmentator));

@@ -129,10 +129,11 @@ Result<VirtualPatient> make_layered_scene(std::string_view name, std::uint64_t s
   const auto& scenes = layered_scenes();
   const auto info = std::find_if(scenes.begin(), scenes.end(), [&](const PhantomInfo& i) { return i.name == name; });
   if (info == scenes.end()) return fail_usage("unknown layered scene", std::string(name), "see trocar patient list");
-  const LayerScene scene = name == "layers-lumbar"    ? lumbar_scene()
-                           : name == "layers-ascites" ? ascites_scene()
-                                                      : liver_scene();
   TROCAR_TRY(const std::filesystem::path data_folder, checked_data_dir());
+  TROCAR_TRY(const LayerData data, load_layer_data(data_folder / kLayersFile));
+  const LayerScene scene = name == "layers-lumbar"    ? lumbar_scene(data)
+                           : name == "layers-ascites" ? ascites_scene(data)
+                                                      : liver_scene(data);
   TROCAR_TRY(const KnownStructures known, KnownStructures::load(data_folder));
   TROCAR_TRY(const ShapeLabels labels, ShapeLabels::make(scene, known));
   const volume::GridGeometry geometry = scene_geometry(resolution);

@@ -8,6 +8,7 @@
 
 #include "anatomy/known_structures.h"
 #include "anatomy/label_table.h"
+#include "anatomy/phantom/phantom_data.h"
 #include "anatomy/phantom/shapes.h"
 #include "anatomy/phantom/torso.h"
 #include "core/result.h"
@@ -37,10 +38,11 @@ struct Structure {
 
 /// The anatomy of one seed: everything about the patient but the voxels.
 struct Anatomy {
-  Anatomy(std::uint64_t seed_, KnownStructures known_);
-  Anatomy(const Anatomy&) = delete;  // the structures refer to the noise
+  Anatomy(std::uint64_t seed_, AbdomenData data_, KnownStructures known_);
+  Anatomy(const Anatomy&) = delete;  // the structures refer to the data and the noise
   Anatomy& operator=(const Anatomy&) = delete;
 
+  AbdomenData data;
   KnownStructures known;
   std::uint64_t seed;
   Torso torso;
@@ -66,9 +68,11 @@ struct Anatomy {
   std::string unknown_label_;
 };
 
-/// Where the portal vein enters the liver and the hepatic veins leave it (q).
-inline const Vec3f kHilum(-32.0F, -12.0F, 14.0F);
-inline const Vec3f kVenousConfluence(-23.0F, -8.0F, 66.0F);
+/// Ending of a label: "_right" for the sign -1, "_left" for 1.
+std::string side_of(float sign);
+
+/// A centre moved by up to spread_mm along each axis.
+Vec3f varied(Random& random, const Vec3f& centre, float spread_mm);
 
 /// The whole box.
 Box whole_box();

@@ -7,6 +7,7 @@
 
 #include "anatomy/test/make_torso.h"
 #include "anatomy/testing/shipped_structures.h"
+#include "core/testing/data_folder.h"
 #include "volume/sampling.h"
 #include "volume/test/make_grids.h"
 
@@ -231,6 +232,18 @@ TEST(BuildPatient, IgnoredAndBackgroundLabelsAreLeftOut) {
   EXPECT_EQ(name_at(*built.patient, {-50.0, -10.0, 0.0}), "liver");
   const KnownStructures known = trocar::testing::shipped_structures();
   for (const Label& label : built.patient->label_table.labels) EXPECT_NE(known.find(label.name), nullptr) << label.name;
+}
+
+TEST(BuildPatient, AStructureFoundFromHuMustBeKnown) {
+  const trocar::testing::OwnDataFolder own;
+  own.change(kStructuresFile, "\"bone_other\", ", "");
+  const Built built = build({liver()});
+  ASSERT_FALSE(built.patient);
+  EXPECT_NE(built.patient.error().what.find("\"bone_other\""), std::string::npos) << built.patient.error().text();
+  own.remove(kStructuresFile);
+  const Built none = build({liver()});
+  ASSERT_FALSE(none.patient);
+  EXPECT_NE(none.patient.error().where.find("structures.toml"), std::string::npos) << none.patient.error().text();
 }
 
 TEST(BuildPatient, EmptyMasksAreWarningsUnlessAllAre) {

@@ -14,12 +14,17 @@
 #include "anatomy/phantom/abdomen.h"
 #include "anatomy/phantom/render.h"
 #include "anatomy/testing/shipped_structures.h"
+#include "core/files/data_dir.h"
 #include "volume/sampling.h"
 
 namespace trocar::anatomy::phantom {
 namespace {
 
 using trocar::testing::shipped_structures;
+
+AbdomenData shipped_abdomen() {
+  return load_abdomen_data(data_dir() / kAbdomenFile).value();
+}
 
 /// Voxels of 1 mm around a path.
 volume::GridGeometry box_around(const Segment& line, double margin_mm) {
@@ -33,7 +38,7 @@ volume::GridGeometry box_around(const Segment& line, double margin_mm) {
 
 /// A planned biopsy and the voxels around its path.
 struct Case {
-  explicit Case(std::uint64_t seed) : anatomy(seed, shipped_structures()) {
+  explicit Case(std::uint64_t seed) : anatomy(seed, shipped_abdomen(), shipped_structures()) {
     if (auto built = build_abdomen(anatomy)) {
       plan = *std::move(built);
       rendering = render(anatomy, box_around(plan->path.line_P, 14.0));
@@ -130,7 +135,7 @@ TEST_P(ExpertPath, PassesBetweenTwoRibs) {
 INSTANTIATE_TEST_SUITE_P(Seeds, ExpertPath, ::testing::Values(1, 2, 3, 4, 5));
 
 TEST(Rendering, IsNotChangedByLeavingOutWhatIsFar) {
-  Anatomy anatomy(3, shipped_structures());
+  Anatomy anatomy(3, shipped_abdomen(), shipped_structures());
   ASSERT_TRUE(build_abdomen(anatomy));
   // A slab through liver, stomach and spine, and one through bowel and pelvis, with ordinary voxels.
   for (const double z : {20.0, -70.0}) {
