@@ -14,4 +14,4 @@ cmake -S "$source/tests/package/consumer" -B "$prefix/build" -G Ninja -DCMAKE_BU
   -DCMAKE_PREFIX_PATH="$prefix/usr" >/dev/null
 cmake --build "$prefix/build"
 # It pushes a needle into the skin of an embedded patient, and fails if it feels no force.
-"$prefix/build/first_force" "$prefix/usr/share/trocar"
+TROCAR_DATA_DIR=$prefix/usr/share/trocar "$prefix/build/first_force" "$prefix/usr/share/trocar"

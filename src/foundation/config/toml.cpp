@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "config/detail/toml_library.h"
 #include "config/detail/toml_text.h"
@@ -52,6 +53,17 @@ std::string number_words(Range range) {
 
 bool is_inside(double value, Range range) {
   return std::isfinite(value) && value >= range.low && value <= range.high;
+}
+
+/// The numbers of a list; nothing if an element is none inside the range.
+std::optional<std::vector<double>> finite_numbers(const toml::array& list, Range range) {
+  std::vector<double> values;
+  for (const toml::node& element : list) {
+    const double value = element.is_number() ? element.value<double>().value_or(std::nan("")) : std::nan("");
+    if (!is_inside(value, range)) return std::nullopt;
+    values.push_back(value);
+  }
+  return values;
 }
 
 }  // namespace
@@ -154,13 +166,25 @@ Result<std::vector<double>> TomlTable::numbers(std::string_view key, Range range
   const toml::node* node = nodes.find(key);
   if (!node) return nodes.missing(key, expected);
   if (!node->is_array()) return nodes.wrong(key, expected);
-  std::vector<double> values;
+  auto values = finite_numbers(*node->as_array(), range);
+  if (!values) return nodes.wrong(key, expected);
+  return *std::move(values);
+}
+
+Result<std::vector<std::vector<double>>> TomlTable::rows(std::string_view key, std::size_t columns, Range range) const {
+  const TomlNodes nodes{*this};
+  const std::string expected = fmt::format("a list of lists of {}, each {}", columns, number_words(range));
+  const toml::node* node = nodes.find(key);
+  if (!node) return nodes.missing(key, expected);
+  if (!node->is_array()) return nodes.wrong(key, expected);
+  std::vector<std::vector<double>> rows;
   for (const toml::node& element : *node->as_array()) {
-    const double value = element.is_number() ? element.value<double>().value_or(std::nan("")) : std::nan("");
-    if (!is_inside(value, range)) return nodes.wrong(key, expected);
-    values.push_back(value);
+    auto row = element.is_array() ? finite_numbers(*element.as_array(), range) : std::nullopt;
+    if (!row || row->size() != columns)
+      return nodes.wrong(key, fmt::format("{}; row {} is not", expected, rows.size() + 1));
+    rows.push_back(*std::move(row));
   }
-  return values;
+  return rows;
 }
 
 Result<TomlTable> TomlTable::table(std::string_view key) const {

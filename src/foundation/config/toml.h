@@ -43,6 +43,8 @@ class TomlTable {
   Result<std::string> string_or(std::string_view key, std::string fallback) const;
   Result<std::vector<std::string>> strings(std::string_view key) const;  ///< A missing key is an empty list.
   Result<std::vector<double>> numbers(std::string_view key, Range range) const;
+  /// A list of lists with `columns` numbers each.
+  Result<std::vector<std::vector<double>>> rows(std::string_view key, std::size_t columns, Range range) const;
   Result<TomlTable> table(std::string_view key) const;
   /// All tables of an array of tables ([[key]]); a missing key is an empty list.
   Result<std::vector<TomlTable>> tables(std::string_view key) const;

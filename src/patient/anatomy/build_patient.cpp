@@ -9,8 +9,10 @@
 
 #include "anatomy/detail/fill_unlabelled.h"
 #include "anatomy/detail/merge_sources.h"
+#include "anatomy/known_structures.h"
 #include "anatomy/tissue/hounsfield.h"
 #include "anatomy/tissue/plausible_hu.h"
+#include "core/files/data_dir.h"
 #include "volume/distance.h"
 #include "volume/morphology.h"
 #include "volume/orientation.h"
@@ -84,6 +86,9 @@ Result<VirtualPatient> build_patient(const volume::CtGrid& ct, std::vector<Label
                                      const Progress& progress) {
   if (ct.empty()) return fail("the CT has no voxels", "CT", "give a CT volume with image data");
   TROCAR_TRY_STATUS(check_hounsfield(ct));
+  TROCAR_TRY(const std::filesystem::path data_folder, checked_data_dir());
+  TROCAR_TRY(const KnownStructures known, KnownStructures::load(data_folder));
+  TROCAR_TRY_STATUS(detail::check_fill_names(known));
   VirtualPatient patient;
   patient.name = options.name;
   patient.provenance = options.provenance;
@@ -91,7 +96,8 @@ Result<VirtualPatient> build_patient(const volume::CtGrid& ct, std::vector<Label
   // Slices are axial from here on, independent of the stored order of the CT.
   patient.ct = volume::along_P(ct);
   report(progress, "labels", 0.0);
-  TROCAR_TRY(detail::MergedLabels merged, detail::merge_sources(std::move(sources), patient.ct.geometry, warnings));
+  TROCAR_TRY(detail::MergedLabels merged,
+             detail::merge_sources(std::move(sources), patient.ct.geometry, known, warnings));
   report(progress, "body", 0.2);
   TROCAR_TRY(const volume::MaskGrid body, find_checked_body(patient.ct, merged.body_hint));
   merged.body_hint = {};
@@ -104,7 +110,7 @@ Result<VirtualPatient> build_patient(const volume::CtGrid& ct, std::vector<Label
 
   report(progress, "fat and muscle", 0.7);
   const std::size_t known_count = patient.label_table.labels.size();
-  detail::fill_unlabelled(patient.ct, patient.skin_distance_mm, patient.labels, patient.label_table);
+  detail::fill_unlabelled(patient.ct, patient.skin_distance_mm, patient.labels, patient.label_table, known);
   warn_of_doubtful_structures(patient, known_count, warnings);
   patient.content_hash = hash_patient(patient);
   report(progress, "patient", 1.0);

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "anatomy/build_patient.h"
-#include "anatomy/label_table.h"
 #include "config/toml.h"
+#include "core/files/data_dir.h"
 #include "core/parse_number.h"
 
 namespace trocar::io {
@@ -14,10 +14,10 @@ constexpr int kMaxLabel = 255;
 constexpr std::string_view kTotalSegmentator = "totalsegmentator";
 constexpr std::string_view kRest = "*";
 
-std::map<int, std::string> totalsegmentator_names() {
+std::map<int, std::string> totalsegmentator_names(const anatomy::KnownStructures& structures) {
   std::map<int, std::string> names;
-  for (int number = 1; number <= kMaxLabel; ++number)
-    if (const auto name = anatomy::totalsegmentator_name(number)) names.emplace(number, *name);
+  for (const std::string& name : structures.totalsegmentator_names())
+    names.emplace(static_cast<int>(names.size() + 1), name);
   return names;
 }
 
@@ -52,9 +52,11 @@ Status LabelMap::read_entry(const std::string& key, std::string name, const std:
 
 Result<LabelMap> LabelMap::load(const std::string& label_map) {
   LabelMap map;
+  TROCAR_TRY(const std::filesystem::path data_folder, checked_data_dir());
+  TROCAR_TRY(map.structures_, anatomy::KnownStructures::load(data_folder));
   if (label_map.empty()) return map;
   if (label_map == kTotalSegmentator) {
-    map.by_number_ = totalsegmentator_names();
+    map.by_number_ = totalsegmentator_names(map.structures_);
     return map;
   }
   TROCAR_TRY(const config::TomlTable file, config::load_toml(label_map));
@@ -62,7 +64,7 @@ Result<LabelMap> LabelMap::load(const std::string& label_map) {
   TROCAR_TRY(const std::string base, file.string_or("base", ""));
   if (!base.empty() && base != kTotalSegmentator)
     return fail(fmt::format("unknown base \"{}\"", base), file.where(), "write base = \"totalsegmentator\"");
-  if (!base.empty()) map.by_number_ = totalsegmentator_names();
+  if (!base.empty()) map.by_number_ = totalsegmentator_names(map.structures_);
   TROCAR_TRY(const std::vector<std::string> ignored, ignored_labels(file));
   for (const std::string& key : ignored)
     TROCAR_TRY_STATUS(map.read_entry(key, std::string(anatomy::kIgnoredStructure), file.where() + ": ignore"));
@@ -82,7 +84,7 @@ std::optional<std::string> LabelMap::name_of(int number) const {
 
 std::string LabelMap::name_of(const std::string& name) const {
   if (const auto found = by_name_.find(name); found != by_name_.end()) return found->second;
-  return rest_ && !anatomy::find_known_structure(name) && !anatomy::is_background_name(name) ? *rest_ : name;
+  return rest_ && structures_.find(name) == nullptr && !structures_.is_background(name) ? *rest_ : name;
 }
 
 }  // namespace trocar::io

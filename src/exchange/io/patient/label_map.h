@@ -5,11 +5,12 @@
 #include <string>
 #include <string_view>
 
+#include "anatomy/known_structures.h"
 #include "core/result.h"
 
 namespace trocar::io {
 
-/// Names that a user gives to the labels of segmentations.
+/// Names that a user gives to the labels of segmentations, and the structures of data_dir().
 ///   base = "totalsegmentator"     names of numbers that [labels] does not have
 ///   ignore = [13, 14]             or ignore = ["13", "my_roi"]: labels that are left out
 ///   [labels]
@@ -19,7 +20,7 @@ namespace trocar::io {
 ///   "*" = "ignore"                every label that is not named otherwise
 class LabelMap {
  public:
-  /// "totalsegmentator", a TOML file, or empty: no names.
+  /// "totalsegmentator", a TOML file, or empty: no names. Error: a file that cannot be used, no data folder.
   static Result<LabelMap> load(const std::string& label_map);
 
   bool is_empty() const noexcept { return by_number_.empty() && !rest_; }
@@ -29,9 +30,11 @@ class LabelMap {
   std::optional<std::string> name_of(int number) const;
   /// Structure of a name that a file brings: itself, unless the map says otherwise.
   std::string name_of(const std::string& name) const;
+  const anatomy::KnownStructures& structures() const noexcept { return structures_; }
 
  private:
   Status read_entry(const std::string& key, std::string name, const std::string& where);
+  anatomy::KnownStructures structures_;
   std::map<int, std::string> by_number_;
   std::map<std::string, std::string, std::less<>> by_name_;
   std::optional<std::string> rest_;

@@ -6,7 +6,6 @@
 #include <array>
 #include <map>
 
-#include "anatomy/label_table.h"
 #include "core/parallel.h"
 #include "core/parse_number.h"
 #include "io/dicom/detail/find_series.h"
@@ -45,7 +44,7 @@ enum class Place { kNamedByUser, kInFolder };
 /// this holds if only the label map knows a name.
 bool is_mask(const std::vector<int>& values, const std::string& stem, const LabelMap& map, Place place) {
   if (values.size() != 1) return values.empty();
-  return place == Place::kInFolder || anatomy::find_known_structure(stem) || !map.has_number(values.front());
+  return place == Place::kInFolder || map.structures().find(stem) != nullptr || !map.has_number(values.front());
 }
 
 /// Values without a name are reported by build_patient, which lists those of all files.

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <span>
 
+#include "anatomy/phantom/phantom.h"
 #include "core/files/atomic_file.h"
+#include "core/files/input_file.h"
 #include "core/files/unfinished_output.h"
 #include "core/hash.h"
 #include "io/patient/patient_folder.h"
@@ -25,6 +27,15 @@ const std::string& build_hash() {
     return hash.digest();
   }();
   return kHash;
+}
+
+/// Hash of program and data files: another build or other data may generate other patients.
+std::string maker_hash() {
+  ContentHash hash;
+  hash.add(std::as_bytes(std::span(build_hash())));
+  for (const fs::path& file : anatomy::phantom_data_files())
+    if (const auto text = read_input(file, FileKind::kToml)) hash.add(std::as_bytes(std::span(*text)));
+  return hash.digest();
 }
 
 bool is_embedded(const PatientSource& source) {
@@ -74,7 +85,7 @@ bool PatientCache::is_valid(const PatientSource& source) const {
 
 fs::path PatientCache::folder_of(const PatientSource& source, bool has_surfaces) const {
   return folder_ /
-         fmt::format("{}-{}-{}{}", source.folder_or_name, source.seed, build_hash(), has_surfaces ? "" : "-volumes");
+         fmt::format("{}-{}-{}{}", source.folder_or_name, source.seed, maker_hash(), has_surfaces ? "" : "-volumes");
 }
 
 std::optional<fs::path> PatientCache::find(const PatientSource& source) const {

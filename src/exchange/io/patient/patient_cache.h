@@ -12,8 +12,9 @@
 namespace trocar::io {
 
 /// Embedded patients kept as patient folders, with their surfaces or without: loading takes a second, generating many.
-/// An entry belongs to one name, one seed and one build of the program, since another build may generate other
-/// patients. Entries are written whole or not at all; the least recently used ones are removed.
+/// An entry belongs to one name, one seed, one build of the program and its data files (phantom_data_files), since
+/// another build or other data may generate other patients. Entries are written whole or not at all; the least recently
+/// used ones are removed.
 class PatientCache {
  public:
   static constexpr std::size_t kMostKept = 6;                            ///< Entries.

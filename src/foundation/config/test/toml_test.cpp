@@ -92,6 +92,20 @@ TEST(Toml, ErrorsNameFileLineKeyAndRange) {
             "must be a number from 1 to 20, it is 22.5 — tissues.toml, line 12: needles[1].gauge — correct the value");
 }
 
+TEST(Toml, RowsAreListsOfNumbersOfOneLength) {
+  const TomlTable table =
+      *parse_toml("a = [[1, 2.5], [-3, 4]]\nb = []\nc = [[1, 2], [3]]\nd = [1, 2]\ne = [[1, nan]]\n", "f");
+  const Range range{-3, 4};
+  EXPECT_EQ(table.rows("a", 2, range), (std::vector<std::vector<double>>{{1, 2.5}, {-3, 4}}));
+  EXPECT_TRUE(table.rows("b", 2, range)->empty());
+  EXPECT_EQ(
+      error_of(table.rows("c", 2, range)),
+      "must be a list of lists of 2, each a number from -3 to 4; row 2 is not — f, line 3: c — correct the value");
+  EXPECT_FALSE(table.rows("a", 3, range));
+  EXPECT_FALSE(table.rows("a", 2, {-2, 4}));
+  for (const char* key : {"d", "e", "absent"}) EXPECT_FALSE(table.rows(key, 2, range)) << key;
+}
+
 TEST(Toml, SyntaxErrorNamesLineAndColumn) {
   const auto table = parse_toml("a = 1\nb = = 2\n", "tasks.toml");
   ASSERT_FALSE(table);

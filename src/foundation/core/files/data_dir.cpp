@@ -18,5 +18,12 @@ fs::path data_dir() {
   return {};
 }
 
+Result<fs::path> checked_data_dir() {
+  fs::path folder = data_dir();
+  if (folder.empty())
+    return fail("the folder with Trocar's tables was not found", "TROCAR_DATA_DIR", "set it to the folder data");
+  return folder;
+}
+
 }  // namespace core
 }  // namespace trocar

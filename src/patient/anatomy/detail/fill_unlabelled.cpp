@@ -10,6 +10,7 @@
 #include "anatomy/detail/merge_small_parts.h"
 #include "anatomy/tissue/detail/smooth_hu.h"
 #include "anatomy/tissue/detail/tissue_ranges.h"
+#include "core/check.h"
 #include "core/parallel.h"
 #include "volume/morphology.h"
 #include "volume/sampling.h"
@@ -147,21 +148,30 @@ void restore_air_walls(const LabelTable& table, const FillIds& ids, volume::Labe
   for (const std::size_t n : walls) labels.voxels[n] = ids.soft_tissue;
 }
 
-void add_used(const FillIds& ids, const volume::LabelGrid& labels, LabelTable& table) {
+void add_used(const FillIds& ids, const volume::LabelGrid& labels, const KnownStructures& known, LabelTable& table) {
   std::array<bool, 256> used{};
   for (const std::uint8_t id : labels.voxels) used[id] = true;
   for (std::size_t n = 0; n < kFillNames.size(); ++n) {
     const std::uint8_t id = ids.all()[n];
     if (!used[id] || table.find(id) != nullptr) continue;
-    const KnownStructure known = *find_known_structure(kFillNames[n]);
-    table.labels.push_back({id, std::string(kFillNames[n]), std::string(known.tissue), known.color});
+    const KnownStructure* structure = known.find(kFillNames[n]);
+    TROCAR_ASSERT(structure != nullptr);
+    table.labels.push_back({id, std::string(kFillNames[n]), structure->tissue, structure->color});
   }
 }
 
 }  // namespace
 
+Status check_fill_names(const KnownStructures& known) {
+  for (const std::string_view name : kFillNames)
+    if (known.find(name) == nullptr)
+      return fail("the structure \"" + std::string(name) + "\", which is found from HU, is not known", known.file(),
+                  "add the name to an entry [[structures]]");
+  return {};
+}
+
 void fill_unlabelled(const volume::CtGrid& ct, const volume::FloatGrid& skin_distance_mm, volume::LabelGrid& labels,
-                     LabelTable& table) {
+                     LabelTable& table, const KnownStructures& known) {
   const FillIds ids = choose_ids(table);
   const volume::CtGrid smooth = smooth_hu(ct);
   classify_all(smooth, skin_distance_mm, find_body_fields(smooth, labels, table, skin_distance_mm), ids, labels);
@@ -170,7 +180,7 @@ void fill_unlabelled(const volume::CtGrid& ct, const volume::FloatGrid& skin_dis
   demote_faint_bone(ct, ids, labels);
   const auto min_voxels = static_cast<std::size_t>(std::ceil(kMinPartMm3 / ct.geometry.voxel_volume_mm3()));
   merge_small_parts(labels, ids.all(), min_voxels);
-  add_used(ids, labels, table);
+  add_used(ids, labels, known, table);
 }
 
 }  // namespace trocar::anatomy::detail

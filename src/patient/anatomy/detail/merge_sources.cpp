@@ -7,6 +7,7 @@
 #include <array>
 #include <string_view>
 
+#include "core/check.h"
 #include "core/parallel.h"
 #include "volume/orientation.h"
 #include "volume/resample.h"
@@ -24,8 +25,8 @@ std::array<std::size_t, 256> count_values(const volume::LabelGrid& labels) {
   return counts;
 }
 
-bool is_left_out(std::string_view name) {
-  return name == kIgnoredStructure || is_background_name(name);
+bool is_left_out(std::string_view name, const KnownStructures& known) {
+  return name == kIgnoredStructure || known.is_background(name);
 }
 
 /// "my_roi" (label 3), "livr" (label 5, perhaps liver); label values 7, 9 without a name.
@@ -33,13 +34,13 @@ struct UnknownLabels {
   std::vector<std::string> names, files;
   std::vector<int> values;
 
-  void add(const LabelSource& source) {
+  void add(const LabelSource& source, const KnownStructures& known) {
     const std::size_t before = names.size() + values.size();
     std::array<bool, 256> is_named{};
     for (const auto& [value, name] : source.names) {
       if (value >= 0 && value <= 255) is_named[static_cast<std::size_t>(value)] = true;
-      if (is_left_out(name) || find_known_structure(name)) continue;
-      const std::vector<std::string> similar = similar_structure_names(name);
+      if (is_left_out(name, known) || known.find(name) != nullptr) continue;
+      const std::vector<std::string> similar = known.similar_names(name);
       names.push_back(similar.empty() ? fmt::format("\"{}\" (label {})", name, value)
                                       : fmt::format("\"{}\" (label {}, perhaps {})", name, value, similar.front()));
     }
@@ -61,9 +62,9 @@ struct UnknownLabels {
   }
 };
 
-Status check_names(const std::vector<LabelSource>& sources) {
+Status check_names(const std::vector<LabelSource>& sources, const KnownStructures& known) {
   UnknownLabels unknown;
-  for (const LabelSource& source : sources) unknown.add(source);
+  for (const LabelSource& source : sources) unknown.add(source, known);
   return unknown.status();
 }
 
@@ -77,10 +78,12 @@ Status check_overlap(const LabelSource& source, const volume::GridGeometry& grid
               "give the segmentation that was made from this CT");
 }
 
-/// Merges one source after the other.
+/// Merges one source after the other. Their names are known or left out (check_names).
 class Merger {
  public:
-  explicit Merger(const volume::GridGeometry& grid) { merged_.labels = volume::LabelGrid(grid); }
+  Merger(const volume::GridGeometry& grid, const KnownStructures& known) : known_(known) {
+    merged_.labels = volume::LabelGrid(grid);
+  }
 
   Status add(LabelSource source, std::vector<std::string>& empty_masks) {
     volume::LabelGrid labels = volume::along_P(std::move(source.labels));
@@ -93,20 +96,22 @@ class Merger {
         return fail(fmt::format("label value {} of \"{}\" is not in 0..255", value, name), source.file,
                     "number the labels from 0 to 255");
       const auto v = static_cast<std::uint8_t>(value);
-      if (v == 0 || is_left_out(name)) continue;
+      if (v == 0 || is_left_out(name, known_)) continue;
       if (counts[v] == 0) {
         // A label map can name more structures than a scan contains; an empty mask file causes a warning.
         if (source.names.size() == 1) empty_masks.push_back(name);
         continue;
       }
-      if (find_known_structure(name)->tissue == "skin") {
+      const KnownStructure* structure = known_.find(name);
+      TROCAR_ASSERT(structure != nullptr);
+      if (structure->tissue == "skin") {
         add_body_hint(labels, v);
         continue;
       }
       if (merged_.table.labels.size() == kMaxStructures)
         return fail(fmt::format("more than {} structures", kMaxStructures), source.file,
                     "leave some out with a label map");
-      id_of[v] = find_or_add(name);
+      id_of[v] = find_or_add(name, *structure);
     }
     paint(labels, id_of);
     return {};
@@ -115,12 +120,11 @@ class Merger {
   MergedLabels take() { return std::move(merged_); }
 
  private:
-  std::uint8_t find_or_add(const std::string& name) {
+  std::uint8_t find_or_add(const std::string& name, const KnownStructure& structure) {
     if (const Label* label = merged_.table.find(name)) return label->id;
-    const KnownStructure known = *find_known_structure(name);
     const auto id = static_cast<std::uint8_t>(merged_.table.labels.size() + 1);
-    merged_.table.labels.push_back({id, name, std::string(known.tissue), known.color});
-    priority_[id] = known.priority;
+    merged_.table.labels.push_back({id, name, structure.tissue, structure.color});
+    priority_[id] = structure.priority;
     return id;
   }
 
@@ -139,6 +143,7 @@ class Merger {
     });
   }
 
+  const KnownStructures& known_;
   MergedLabels merged_;
   std::array<int, 256> priority_{};
 };
@@ -146,12 +151,12 @@ class Merger {
 }  // namespace
 
 Result<MergedLabels> merge_sources(std::vector<LabelSource> sources, const volume::GridGeometry& grid,
-                                   std::vector<std::string>& warnings) {
+                                   const KnownStructures& known, std::vector<std::string>& warnings) {
   if (sources.empty()) return fail_usage("no segmentation given", "--labels", "give at least one label file");
-  TROCAR_TRY_STATUS(check_names(sources));
+  TROCAR_TRY_STATUS(check_names(sources, known));
   for (const LabelSource& source : sources) TROCAR_TRY_STATUS(check_overlap(source, grid));
   const std::string where = sources.size() == 1 ? sources.front().file : fmt::format("{} files", sources.size());
-  Merger merger(grid);
+  Merger merger(grid, known);
   std::vector<std::string> empty_masks;
   for (LabelSource& source : sources) {
     TROCAR_TRY_STATUS(merger.add(std::move(source), empty_masks));

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "anatomy/build_patient.h"
+#include "anatomy/known_structures.h"
 
 namespace trocar::anatomy::detail {
 
@@ -18,6 +19,6 @@ struct MergedLabels {
 /// priority has it, the earlier one among equals. Sources are freed as they are used. Errors and warnings as
 /// build_patient.
 Result<MergedLabels> merge_sources(std::vector<LabelSource> sources, const volume::GridGeometry& grid,
-                                   std::vector<std::string>& warnings);
+                                   const KnownStructures& known, std::vector<std::string>& warnings);
 
 }  // namespace trocar::anatomy::detail

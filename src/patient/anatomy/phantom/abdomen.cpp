@@ -17,6 +17,7 @@ Result<BiopsyPlan> build_abdomen(Anatomy& anatomy) {
   TROCAR_TRY(BiopsyPlan plan, plan_biopsy(anatomy));
   add_liver_vessels(anatomy, plan);
   add_lesions(anatomy, plan);
+  TROCAR_TRY_STATUS(anatomy.check_labels());
   return plan;
 }
 

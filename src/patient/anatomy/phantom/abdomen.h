@@ -4,7 +4,8 @@
 
 namespace trocar::anatomy::phantom {
 
-/// Fills an empty anatomy with an upper abdomen, and returns the biopsy planned in it. Error: see plan_biopsy.
+/// Fills an empty anatomy with an upper abdomen, and returns the biopsy planned in it. Errors: see plan_biopsy; a
+/// structure whose name is not known.
 Result<BiopsyPlan> build_abdomen(Anatomy& anatomy);
 
 }  // namespace trocar::anatomy::phantom

@@ -4,16 +4,10 @@
 #include <utility>
 #include <vector>
 
-#include "anatomy/phantom/skeleton.h"
 #include "anatomy/phantom/structure.h"
 
 namespace trocar::anatomy::phantom {
 namespace {
-
-// sign: -1 for the right side, 1 for the left.
-std::string side_of(float sign) {
-  return sign < 0.0F ? "_right" : "_left";
-}
 
 /// Multifidus next to the spinous processes, longissimus and iliocostalis outside it, with a cleft of fat in between.
 void add_erector_spinae(Anatomy& anatomy, float sign) {
@@ -21,13 +15,17 @@ void add_erector_spinae(Anatomy& anatomy, float sign) {
   const auto& noise = anatomy.noise;
   const std::string side = side_of(sign);
   const std::uint8_t erector = anatomy.label("autochthon" + side);
-  const auto bellies = [=](const Place& place) {
+  const auto bellies = [sign, &data = anatomy.data.back_muscles, &spine = anatomy.data.spine](const Place& place) {
     const float x = sign * place.p.x();
-    const float thoracic = smooth_step(-20.0F, 90.0F, place.p.z());
-    const float y = place.p.y() - spine_y(place.p.z());
-    const float multifidus = elliptic_cylinder(x - 13.5F, y - 47.0F, 12.0F, 16.5F);
-    const float outer = elliptic_cylinder(x - 37.0F + 2.0F * thoracic, y - mix(54.0F, 57.0F, thoracic),
-                                          mix(29.0F, 25.0F, thoracic), mix(20.0F, 15.0F, thoracic));
+    const float thoracic = data.chest_z.share(place.p.z());
+    const float y = place.p.y() - spine.y(place.p.z());
+    const Ellipse& inner = data.multifidus;
+    const Ellipse& low = data.outer_lumbar;
+    const Ellipse& high = data.outer_thoracic;
+    const float multifidus = elliptic_cylinder(x - inner.x, y - inner.y, inner.radius_x, inner.radius_y);
+    const float outer =
+        elliptic_cylinder(x - low.x + (low.x - high.x) * thoracic, y - mix(low.y, high.y, thoracic),
+                          mix(low.radius_x, high.radius_x, thoracic), mix(low.radius_y, high.radius_y, thoracic));
     return std::pair{multifidus, outer};
   };
   const Box back{Vec3f(sign < 0.0F ? -75.0F : 0.0F, 40.0F, -kHalfHeight - 5.0F),
@@ -49,11 +47,7 @@ void add_erector_spinae(Anatomy& anatomy, float sign) {
 
 void add_psoas(Anatomy& anatomy, float sign) {
   const std::string side = side_of(sign);
-  const std::vector<Knot> knots{{Vec3f(22.0F, 24.0F, 26.0F), 5.0F},
-                                {Vec3f(28.0F, 26.0F, -2.0F), 11.0F},
-                                {Vec3f(34.0F, 27.0F, -32.0F), 15.5F},
-                                {Vec3f(40.0F, 25.0F, -70.0F), 19.5F},
-                                {Vec3f(45.0F, 20.0F, -125.0F), 22.5F}};
+  const Course& knots = anatomy.data.back_muscles.psoas;
   const Tube psoas(chain(sign < 0.0F ? mirrored(knots) : knots));
   anatomy.add_plain(
       "iliopsoas" + side, warped(psoas.bounds()), [=](const Place& place) { return psoas.distance(place.q); }, 62.0F,
@@ -61,25 +55,24 @@ void add_psoas(Anatomy& anatomy, float sign) {
 }
 
 void add_quadratus_lumborum(Anatomy& anatomy, float sign) {
-  const Vec3f quadratus(sign * 64.0F, 59.0F, 0.0F);
+  const BackMuscleData::QuadratusLumborum& data = anatomy.data.back_muscles.quadratus_lumborum;
+  const Vec3f quadratus(sign * data.x_mm, data.y_mm, 0.0F);
   anatomy.add_plain(
       "muscle", warped(Box{Vec3f(quadratus.x() - 28.0F, 40.0F, -125.0F), Vec3f(quadratus.x() + 28.0F, 80.0F, 28.0F)}),
-      [=](const Place& place) {
-        const float widening = smooth_step(30.0F, -60.0F, place.p.z());
+      [=, &data](const Place& place) {
+        const float widening = data.wider_z.share(place.p.z());
         const Vec3f u = place.q - quadratus;
-        const float slanted = u.y() + 0.18F * sign * u.x();
-        const float belly = elliptic_cylinder(u.x(), slanted, 14.0F + 9.0F * widening, 5.0F + 3.5F * widening);
-        return smooth_max(belly, place.p.z() - 22.0F, 4.0F);
+        const float slanted = u.y() + data.slant * sign * u.x();
+        const float belly = elliptic_cylinder(u.x(), slanted, data.upper_radii_mm[0] + data.wider_mm[0] * widening,
+                                              data.upper_radii_mm[1] + data.wider_mm[1] * widening);
+        return smooth_max(belly, place.p.z() - data.top_z_mm, 4.0F);
       },
       60.0F, 9.0F, 6.0F);
 }
 
 /// The crura of the diaphragm next to the aorta.
 void add_crus(Anatomy& anatomy, float sign) {
-  const std::vector<Knot> crus_knots{{Vec3f(20.0F, -2.0F, 66.0F), 4.5F},
-                                     {Vec3f(19.0F, 4.0F, 45.0F), 5.0F},
-                                     {Vec3f(17.0F, 10.0F, 15.0F), 4.5F},
-                                     {Vec3f(14.0F, 12.0F, -18.0F), 3.0F}};
+  const Course& crus_knots = anatomy.data.back_muscles.crus;
   const Tube crus(chain(sign < 0.0F ? mirrored(crus_knots) : crus_knots));
   anatomy.add_plain(
       "muscle", warped(crus.bounds()), [=](const Place& place) { return crus.distance(place.q); }, 62.0F);

@@ -14,9 +14,7 @@ namespace {
 
 constexpr float kDegree = std::numbers::pi_v<float> / 180.0F;
 constexpr int kTries = 20000;
-constexpr float kLongestPathMm = 120.0F;
 constexpr std::size_t kLesions = 3;
-constexpr float kFromHilumMm = 38.0F;  ///< Space for the main branches of the vessels.
 
 /// Structures that a path avoids.
 struct Risks {
@@ -56,7 +54,7 @@ float organ_margin(const PathMargins& m) {
 /// Intersection of a ray from inside with the body surface.
 Vec3f leave_body(const Anatomy& anatomy, Vec3f inside, const Vec3f& direction) {
   float low = 0.0F;
-  float high = kLongestPathMm + 150.0F;
+  float high = anatomy.data.lesions.longest_path_mm + 150.0F;
   for (int n = 0; n < 40; ++n) {
     const float middle = 0.5F * (low + high);
     (anatomy.torso.at(inside + middle * direction).skin < 0.0F ? low : high) = middle;
@@ -67,8 +65,8 @@ Vec3f leave_body(const Anatomy& anatomy, Vec3f inside, const Vec3f& direction) {
 /// True if a lesion can be here: covered by liver, and without a significant vessel.
 bool has_room(const Anatomy& anatomy, const Risks& risks, const Lesion& lesion, float cover_mm, float vessel_mm) {
   const Place place = anatomy.torso.at(lesion.centre);
-  for (const Vec3f& gate : {kHilum, kVenousConfluence})
-    if ((lesion.centre - gate).norm() < lesion.radius_mm + kFromHilumMm) return false;
+  for (const Vec3f& gate : {anatomy.data.liver.hilum, anatomy.data.liver.venous_confluence})
+    if ((lesion.centre - gate).norm() < lesion.radius_mm + anatomy.data.lesions.from_hilum_mm) return false;
   return risks.liver->distance(place) < -(lesion.radius_mm + cover_mm) &&
          Risks::all_farther(risks.organs, place, lesion.radius_mm + vessel_mm);
 }
@@ -78,7 +76,7 @@ bool is_safe(const Anatomy& anatomy, const Risks& risks, const Vec3f& entry, con
              const PathMargins& margins) {
   const Vec3f direction = (lesion.centre - entry).normalized();
   const float length = (lesion.centre - entry).norm();
-  if (length > kLongestPathMm) return false;
+  if (length > anatomy.data.lesions.longest_path_mm) return false;
   float liver_mm = 0.0F;
   constexpr float kStepMm = 0.5F;
   for (float along = 0.0F; along < length + 5.0F; along += kStepMm) {
@@ -99,18 +97,20 @@ struct Case {
 
 /// A lesion and a path to it between the ribs of the right flank.
 std::optional<Case> find_case(const Anatomy& anatomy, const Risks& risks, const PathMargins& margins, Random& random) {
-  const auto between = [&](double low, double high) { return static_cast<float>(random.uniform(low, high)); };
+  const LesionData& data = anatomy.data.lesions;
+  const auto off = [&](std::size_t axis) {
+    return static_cast<float>(random.uniform(-data.direction_spread[axis], data.direction_spread[axis]));
+  };
   for (int n = 0; n < kTries; ++n) {
-    const float side = between(74.0, 110.0) * kDegree;
-    const Vec3f gate = anatomy.torso.contours().on_cavity(-side, between(-12.0, 40.0), 6.0F);
+    const float side = data.gate_deg.draw(random) * kDegree;
+    const Vec3f gate = anatomy.torso.contours().on_cavity(-side, data.gate_z_mm.draw(random), data.gate_outward_mm);
     const Vec3f inward = Vec3f(std::sin(side), -std::cos(side), 0.0F);
-    const Vec3f direction =
-        (inward + Vec3f(between(-0.15, 0.15), between(-0.3, 0.3), between(-0.25, 0.25))).normalized();
+    const Vec3f direction = (inward + Vec3f(off(0), off(1), off(2))).normalized();
     const Place at_gate = anatomy.torso.at(gate);
-    if (!intercostal_space(at_gate)) continue;
+    if (!intercostal_space(anatomy.data, at_gate)) continue;
     if (!Risks::all_farther(risks.bones, at_gate, bone_margin(margins))) continue;
     if (!Risks::all_farther(risks.organs, at_gate, organ_margin(margins))) continue;
-    const Lesion lesion{gate + between(34.0, 58.0) * direction, between(9.0, 12.5)};
+    const Lesion lesion{gate + data.depth_mm.draw(random) * direction, data.radius_mm.draw(random)};
     if (!has_room(anatomy, risks, lesion, 6.0F, 1.5F)) continue;
     const Vec3f entry = leave_body(anatomy, gate, -direction);
     if (is_safe(anatomy, risks, entry, lesion, margins)) return Case{lesion, entry};
@@ -121,14 +121,15 @@ std::optional<Case> find_case(const Anatomy& anatomy, const Risks& risks, const 
 /// A further lesion anywhere in the liver, away from the others.
 std::optional<Lesion> find_lesion(const Anatomy& anatomy, const Risks& risks, const std::vector<Lesion>& others,
                                   Random& random) {
+  const LesionData& data = anatomy.data.lesions;
   const Box& box = risks.liver->bounds;
   for (int n = 0; n < kTries; ++n) {
     const auto within = [&](int axis) { return static_cast<float>(random.uniform(box.low[axis], box.high[axis])); };
     const float x = within(0);
     const float y = within(1);
-    const Lesion lesion{Vec3f(x, y, within(2)), static_cast<float>(random.uniform(6.5, 13.0))};
+    const Lesion lesion{Vec3f(x, y, within(2)), data.other_radius_mm.draw(random)};
     const bool apart = std::all_of(others.begin(), others.end(), [&](const Lesion& other) {
-      return (other.centre - lesion.centre).norm() > other.radius_mm + lesion.radius_mm + 18.0F;
+      return (other.centre - lesion.centre).norm() > other.radius_mm + lesion.radius_mm + data.apart_mm;
     });
     if (apart && has_room(anatomy, risks, lesion, 4.0F, 1.0F)) return lesion;
   }

@@ -36,7 +36,7 @@ Paint paint_lumen(const Place& place, float distance, const Brush& brush, const 
 }
 
 /// A loop of bowel; `lumen_at` returns its content along the loop.
-void add_loop(Anatomy& anatomy, const std::string& name, std::vector<Cone> cones, float haustra_mm, float haustra_depth,
+void add_loop(Anatomy& anatomy, const std::string& name, std::vector<Cone> cones, const Folds& folds,
               const std::function<Lumen(const TubeHit&)>& lumen_at) {
   const Tube tube(std::move(cones));
   const auto& noise = anatomy.noise;
@@ -44,8 +44,8 @@ void add_loop(Anatomy& anatomy, const std::string& name, std::vector<Cone> cones
   const std::uint8_t gas = anatomy.label("gas");
   const std::uint8_t fat = anatomy.label("fat");
   const auto distance = [=, &noise](const Place& place, const TubeHit& hit) {
-    const float folds = std::abs(std::sin(kPi * hit.arc_mm / haustra_mm + 1.2F * noise(place.p / 18.0F)));
-    const float d = hit.distance + haustra_depth * (1.0F - folds) + 1.5F * noise(place.p / 14.0F);
+    const float fold = std::abs(std::sin(kPi * hit.arc_mm / folds.distance_mm + 1.2F * noise(place.p / 18.0F)));
+    const float d = hit.distance + folds.depth_mm * (1.0F - fold) + 1.5F * noise(place.p / 14.0F);
     return smooth_max(d, place.cavity + 4.0F, 4.0F);
   };
   // Fat around the loop separates it from its neighbours.
@@ -62,25 +62,23 @@ void add_loop(Anatomy& anatomy, const std::string& name, std::vector<Cone> cones
 }
 
 /// Loops that fill the space below the pancreas: one tube in a serpentine.
-std::vector<Knot> small_bowel_way(Random& random) {
-  std::vector<Knot> knots;
+Course small_bowel_course(const SmallBowelData& data, Random& random) {
+  Course knots;
   const auto jitter = [&](float mm) { return static_cast<float>(random.uniform(-mm, mm)); };
-  constexpr int kColumns = 6;
-  constexpr int kLayers = 3;
-  constexpr int kRows = 4;
-  constexpr int kUpperColumn = 3;  // the highest row is only left of the pancreas's head
-  for (int row = 0; row < kRows; ++row)
-    for (int n = 0; n < kColumns; ++n) {
-      const int column = row % 2 == 0 ? n : kColumns - 1 - n;
-      if (row == 0 && column < kUpperColumn) continue;
-      for (int m = 0; m < kLayers; ++m) {
-        const int layer = n % 2 == 0 ? m : kLayers - 1 - m;
-        // Staggered, so that no row is visible in a slice.
-        const float x = -50.0F + 25.0F * static_cast<float>(column) + 9.0F * static_cast<float>((row + layer) % 2);
-        const float y = -68.0F + 25.0F * static_cast<float>(layer);
-        const float slant = 9.0F * std::sin(1.3F * static_cast<float>(column) + 2.0F * static_cast<float>(layer));
-        const float z = -16.0F - 27.0F * static_cast<float>(row) + slant;
-        knots.push_back({Vec3f(x + jitter(8.0F), y + jitter(7.0F), z + jitter(10.0F)), 11.0F + jitter(2.8F)});
+  for (int row = 0; row < data.rows; ++row)
+    for (int n = 0; n < data.columns; ++n) {
+      const int column = row % 2 == 0 ? n : data.columns - 1 - n;
+      if (row == 0 && column < data.first_upper_column) continue;
+      for (int m = 0; m < data.layers; ++m) {
+        const int layer = n % 2 == 0 ? m : data.layers - 1 - m;
+        const float x = data.first.x() + data.step.x() * static_cast<float>(column) +
+                        data.stagger_mm * static_cast<float>((row + layer) % 2);
+        const float y = data.first.y() + data.step.y() * static_cast<float>(layer);
+        const float slant =
+            data.slant_mm * std::sin(1.3F * static_cast<float>(column) + 2.0F * static_cast<float>(layer));
+        const float z = data.first.z() + data.step.z() * static_cast<float>(row) + slant;
+        knots.push_back({Vec3f(x + jitter(data.spread.x()), y + jitter(data.spread.y()), z + jitter(data.spread.z())),
+                         data.radius_mm + jitter(data.radius_spread_mm)});
       }
     }
   return knots;
@@ -89,35 +87,31 @@ std::vector<Knot> small_bowel_way(Random& random) {
 void add_small_bowel(Anatomy& anatomy) {
   Random random = anatomy.random("small_bowel");
   const ValueNoise content(anatomy.seed ^ 0x626f776cU);
-  add_loop(anatomy, "small_bowel", chain(small_bowel_way(random), 5), 7.0F, 1.2F, [content](const TubeHit& hit) {
-    const float along = content(Vec3f(hit.arc_mm / 70.0F, 3.5F, 8.5F));
-    return Lumen{2.1F, 98.0F, 30.0F + 22.0F * content(Vec3f(hit.arc_mm / 40.0F, 9.5F, 1.5F)),
-                 along > 0.45F ? mix(-0.4F, 0.3F, 2.0F * (along - 0.45F)) : -2.0F, 0.0F};
-  });
-  // The duodenum bends around the head of the pancreas and crosses under it.
-  const std::vector<Knot> duodenum{{Vec3f(-38.0F, -46.0F, 2.0F), 13.0F},   {Vec3f(-50.0F, -28.0F, 0.0F), 13.0F},
-                                   {Vec3f(-50.0F, -18.0F, -22.0F), 13.0F}, {Vec3f(-42.0F, -16.0F, -46.0F), 13.0F},
-                                   {Vec3f(-16.0F, -18.0F, -56.0F), 12.0F}, {Vec3f(18.0F, -22.0F, -50.0F), 11.5F},
-                                   {Vec3f(36.0F, -28.0F, -36.0F), 11.5F}};
-  add_loop(anatomy, "duodenum", chain(duodenum), 8.0F, 1.0F, [](const TubeHit& hit) {
+  const SmallBowelData& data = anatomy.data.small_bowel;
+  add_loop(anatomy, "small_bowel", chain(small_bowel_course(data, random), 5), data.folds,
+           [content](const TubeHit& hit) {
+             const float along = content(Vec3f(hit.arc_mm / 70.0F, 3.5F, 8.5F));
+             return Lumen{2.1F, 98.0F, 30.0F + 22.0F * content(Vec3f(hit.arc_mm / 40.0F, 9.5F, 1.5F)),
+                          along > 0.45F ? mix(-0.4F, 0.3F, 2.0F * (along - 0.45F)) : -2.0F, 0.0F};
+           });
+}
+
+void add_duodenum(Anatomy& anatomy) {
+  const DuodenumData& data = anatomy.data.duodenum;
+  add_loop(anatomy, "duodenum", chain(data.course), data.folds, [](const TubeHit& hit) {
     return Lumen{2.6F, 95.0F, 24.0F, hit.arc_mm < 26.0F ? -0.2F : -2.0F, 0.0F};
   });
 }
 
 void add_colon(Anatomy& anatomy) {
   Random random = anatomy.random("colon");
+  const ColonData& data = anatomy.data.colon;
   const auto jitter = [&](float mm) { return static_cast<float>(random.uniform(-mm, mm)); };
-  const float dip = jitter(8.0F);
-  std::vector<Knot> way{{Vec3f(-98.0F, 22.0F, -128.0F), 24.0F},       {Vec3f(-96.0F, 20.0F, -104.0F), 24.0F},
-                        {Vec3f(-88.0F, 8.0F, -82.0F), 22.0F},         {Vec3f(-80.0F, -22.0F, -72.0F), 21.0F},
-                        {Vec3f(-68.0F, -54.0F, -70.0F + dip), 20.0F}, {Vec3f(-38.0F, -70.0F, -52.0F + dip), 19.0F},
-                        {Vec3f(0.0F, -74.0F, -34.0F + dip), 18.0F},   {Vec3f(40.0F, -72.0F, -22.0F + dip), 19.0F},
-                        {Vec3f(78.0F, -56.0F, -8.0F), 19.0F},         {Vec3f(100.0F, -24.0F, 8.0F), 19.0F},
-                        {Vec3f(108.0F, 6.0F, 6.0F), 18.0F},           {Vec3f(106.0F, 26.0F, -18.0F), 16.0F},
-                        {Vec3f(104.0F, 28.0F, -58.0F), 14.5F},        {Vec3f(102.0F, 26.0F, -95.0F), 14.5F},
-                        {Vec3f(98.0F, 24.0F, -128.0F), 15.0F}};
-  for (Knot& knot : way) knot.p += Vec3f(jitter(2.5F), jitter(2.5F), jitter(3.0F));
-  add_loop(anatomy, "colon", chain(way), 26.0F, 4.5F, [](const TubeHit& hit) {
+  const float dip = jitter(data.hanging_spread_mm);
+  Course course = data.course;
+  for (std::size_t n = data.hanging_knots[0]; n <= data.hanging_knots[1]; ++n) course[n].p.z() += dip;
+  for (Knot& knot : course) knot.p += Vec3f(jitter(data.spread.x()), jitter(data.spread.y()), jitter(data.spread.z()));
+  add_loop(anatomy, "colon", chain(course), data.folds, [](const TubeHit& hit) {
     const float stool = 1.0F - smooth_step(120.0F, 170.0F, hit.arc_mm) + smooth_step(430.0F, 470.0F, hit.arc_mm);
     return Lumen{2.2F, 78.0F, 30.0F, mix(0.45F, -0.6F, clamp01(stool)), clamp01(stool)};
   });
@@ -127,20 +121,19 @@ void add_colon(Anatomy& anatomy) {
 
 void add_bowel(Anatomy& anatomy) {
   add_small_bowel(anatomy);
+  add_duodenum(anatomy);
   add_colon(anatomy);
 }
 
 void add_stomach(Anatomy& anatomy) {
   Random random = anatomy.random("stomach");
   const auto jitter = [&](float mm) { return static_cast<float>(random.uniform(-mm, mm)); };
-  const float fullness = 1.0F + 0.06F * jitter(1.0F);
-  std::vector<Knot> way{{Vec3f(62.0F, 18.0F, 56.0F), 26.0F},  {Vec3f(64.0F, 0.0F, 50.0F), 33.0F},
-                        {Vec3f(64.0F, -26.0F, 34.0F), 31.0F}, {Vec3f(50.0F, -48.0F, 16.0F), 25.0F},
-                        {Vec3f(22.0F, -58.0F, 2.0F), 20.0F},  {Vec3f(-8.0F, -56.0F, 0.0F), 16.0F},
-                        {Vec3f(-28.0F, -50.0F, 3.0F), 11.0F}};
-  for (Knot& knot : way) knot.radius *= fullness;
-  const Tube tube(chain(way));
-  const float level_y = -34.0F + jitter(5.0F);
+  const StomachData& data = anatomy.data.stomach;
+  const float fullness = 1.0F + data.radius_spread * jitter(1.0F);
+  Course course = data.course;
+  for (Knot& knot : course) knot.radius *= fullness;
+  const Tube tube(chain(course));
+  const float level_y = data.fluid_level_y_mm + jitter(data.fluid_level_spread_mm);
   const auto& noise = anatomy.noise;
   const std::uint8_t stomach = anatomy.label("stomach");
   const std::uint8_t gas = anatomy.label("gas");

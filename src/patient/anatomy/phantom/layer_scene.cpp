@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "anatomy/phantom/layers.h"
-
 namespace trocar::anatomy::phantom {
 namespace {
 
@@ -19,6 +17,7 @@ constexpr float kAscitesHu = 8.0F;
 constexpr float kDiscHu = 85.0F;
 constexpr float kCorticalHu = 900.0F;
 constexpr float kCancellousHu = 220.0F;
+constexpr float kPeritoneumHu = -20.0F;
 constexpr float kLiverHu = 105.0F;
 constexpr float kBileHu = 10.0F;
 constexpr float kPortalHu = 170.0F;
@@ -26,8 +25,6 @@ constexpr float kBowelWallHu = 45.0F;
 constexpr float kBowelContentHu = 20.0F;
 constexpr float kGasHu = -850.0F;
 
-constexpr float kSkinMm = 2.0F;
-constexpr float kCortexMm = 1.4F;
 constexpr float kEnd = 1000.0F;  ///< Outside the block.
 
 float slab(float depth, float from, float to) {
@@ -36,139 +33,143 @@ float slab(float depth, float from, float to) {
 
 /// Adds a bone as a shell of cortex around spongy bone.
 template <class Distance>
-void add_bone(LayerScene& scene, std::string_view name, Distance distance) {
+void add_bone(LayerScene& scene, const CoverLayers& cover, std::string_view name, Distance distance) {
   scene.shapes.push_back({name, kCorticalHu, 0.0F, distance});
   scene.shapes.push_back(
-      {name, kCancellousHu, 30.0F, [distance](float x, float d, float z) { return distance(x, d, z) + kCortexMm; }});
+      {name, kCancellousHu, 30.0F,
+       [distance, cortex = cover.bone_cortex](float x, float d, float z) { return distance(x, d, z) + cortex; }});
 }
 
 /// Fat everywhere, skin in front.
-void add_cover(LayerScene& scene) {
+void add_cover(LayerScene& scene, const CoverLayers& cover) {
   scene.shapes.push_back({"fat", kFatHu, 8.0F, [](float, float d, float) { return slab(d, 0.0F, kEnd); }});
-  scene.shapes.push_back({"fat", kSkinHu, 0.0F, [](float, float d, float) { return slab(d, 0.0F, kSkinMm); }});
+  scene.shapes.push_back(
+      {"fat", kSkinHu, 0.0F, [end = cover.skin](float, float d, float) { return slab(d, 0.0F, end); }});
 }
 
-// The lumbar block is between two vertebrae: the interspace is at z = 0.
-constexpr float kSpinousHalfWidth = 3.5F;
-constexpr float kGapHalf = 7.0F;      ///< Half the height between two spinous processes.
-constexpr float kSpinousTop = 27.0F;  ///< Upper end of the upper process, above the interspace.
-constexpr float kDiscHalf = 5.0F;
-constexpr float kCanalEnd = 74.0F;
+/// A slab between two depths.
+float slab(float depth, const std::array<float, 2>& ends) {
+  return slab(depth, ends[0], ends[1]);
+}
 
-float body(float x, float d) {
-  return elliptic_cylinder(x, d - 91.0F, 24.0F, 17.0F);
+float body(const LumbarLayers& l, float x, float d) {
+  return elliptic_cylinder(x - l.body.x, d - l.body.y, l.body.radius_x, l.body.radius_y);
 }
 /// The canal, enlarged by a wall.
-float canal(float x, float d, float wall) {
-  const float half = 0.5F * (kCanalEnd - lumbar::kEpidural);
-  return elliptic_cylinder(x, d - lumbar::kEpidural - half, 12.0F + wall, half + wall);
+float canal(const LumbarLayers& l, float x, float d, float wall) {
+  const float half = 0.5F * (l.canal_end - l.epidural);
+  return elliptic_cylinder(x, d - l.epidural - half, l.canal_half_width + wall, half + wall);
 }
 /// The upper vertebra; the lower one is its mirror image.
-float vertebra(float x, float d, float z) {
+float vertebra(const LumbarLayers& l, float x, float d, float z) {
   const float side = std::abs(x);
-  const float corpus = std::max(body(x, d), kDiscHalf - z);
-  const float lamina = std::max({canal(x, d, 7.0F), -canal(x, d, 0.0F), d - 64.0F, kGapHalf - z, z - 30.0F});
+  const float corpus = std::max(body(l, x, d), l.disc_half_height - z);
+  const float lamina =
+      std::max({canal(l, x, d, l.lamina), -canal(l, x, d, 0.0F), d - l.lamina_end, l.gap_half - z, z - l.lamina_top});
   const float spinous =
-      std::max({side - kSpinousHalfWidth, lumbar::kInterspinous - d, d - 47.0F, kGapHalf - z, z - kSpinousTop});
-  const float pedicle = std::max({std::abs(side - 16.0F) - 4.5F, slab(d, 58.0F, 78.0F), std::abs(z - 19.0F) - 7.0F});
-  const float facet = std::max(std::hypot(side - 19.0F, d - 50.0F) - 6.0F, 0.5F - z);
+      std::max({side - l.spinous_half_width, l.interspinous - d, d - l.spinous_end, l.gap_half - z, z - l.spinous_top});
+  const float pedicle = std::max({std::abs(side - l.pedicle_x) - l.pedicle_half_width, slab(d, l.pedicle_depths),
+                                  std::abs(z - l.pedicle_z) - l.pedicle_half_height});
+  const float facet = std::max(std::hypot(side - l.facet_x, d - l.facet_depth) - l.facet_radius, l.facet_gap_half - z);
   return std::min({corpus, lamina, spinous, pedicle, facet});
 }
 
-void add_back_muscles(LayerScene& scene) {
+void add_back_muscles(LayerScene& scene, const LumbarLayers& l) {
   for (const bool is_left : {true, false}) {
     const float sign = is_left ? 1.0F : -1.0F;
     scene.shapes.push_back(
         {is_left ? "autochthon_left" : "autochthon_right", kMuscleHu, 7.0F,
-         [sign](float x, float d, float) { return std::max(4.0F - sign * x, slab(d, 17.0F, 60.0F)); }});
+         [=](float x, float d, float) { return std::max(l.erector_x - sign * x, slab(d, l.erector_depths)); }});
     scene.shapes.push_back(
         {is_left ? "iliopsoas_left" : "iliopsoas_right", kMuscleHu, 7.0F,
-         [sign](float x, float d, float) { return std::max(26.0F - sign * x, slab(d, 74.0F, 112.0F)); }});
+         [=](float x, float d, float) { return std::max(l.psoas_x - sign * x, slab(d, l.psoas_depths)); }});
   }
 }
 
 /// A loop of bowel across the block: wall, content, and gas in front.
-void add_loop(LayerScene& scene, float z0, bool has_gas) {
-  constexpr float kRadius = 14.0F;
-  constexpr float kWall = 2.5F;
-  const auto loop = [z0](float d, float z) { return std::hypot(d - ascites::kBowel - kRadius, z - z0) - kRadius; };
+void add_loop(LayerScene& scene, const AscitesLayers& l, float z0, bool has_gas) {
+  const auto loop = [l, z0](float d, float z) {
+    return std::hypot(d - l.bowel - l.loop_radius, z - z0) - l.loop_radius;
+  };
   scene.shapes.push_back({"small_bowel", kBowelWallHu, 4.0F, [loop](float, float d, float z) { return loop(d, z); }});
   scene.shapes.push_back(
-      {"small_bowel", kBowelContentHu, 12.0F, [loop](float, float d, float z) { return loop(d, z) + kWall; }});
+      {"small_bowel", kBowelContentHu, 12.0F, [loop, l](float, float d, float z) { return loop(d, z) + l.loop_wall; }});
   if (!has_gas) return;
-  scene.shapes.push_back({"small_bowel", kGasHu, 0.0F, [loop](float, float d, float z) {
-                            return std::max(loop(d, z) + kWall, d - ascites::kBowel - 9.0F);
+  scene.shapes.push_back({"small_bowel", kGasHu, 0.0F, [loop, l](float, float d, float z) {
+                            return std::max(loop(d, z) + l.loop_wall, d - l.bowel - l.gas);
                           }});
 }
 
 }  // namespace
 
-LayerScene lumbar_scene() {
+LayerScene lumbar_scene(const LayerData& data) {
+  const LumbarLayers l = data.lumbar;
   LayerScene scene;
   scene.is_from_back = true;
-  scene.target_mm = lumbar::kDura + 10.0F;  // the dura can be indented by up to 6 mm before its puncture
+  scene.target_mm = l.dura + l.target_behind_dura;
   scene.path_name = "lumbar puncture";
-  add_cover(scene);
-  add_back_muscles(scene);
-  scene.shapes.push_back({"interspinous_ligament", kLigamentHu, 8.0F, [](float x, float d, float) {
-                            return std::max(std::abs(x) - kSpinousHalfWidth,
-                                            slab(d, lumbar::kInterspinous, lumbar::kEpidural));
+  add_cover(scene, data.cover);
+  add_back_muscles(scene, l);
+  scene.shapes.push_back({"interspinous_ligament", kLigamentHu, 8.0F, [l](float x, float d, float) {
+                            return std::max(std::abs(x) - l.spinous_half_width, slab(d, l.interspinous, l.epidural));
                           }});
-  scene.shapes.push_back({"supraspinous_ligament", kLigamentHu, 5.0F, [](float x, float d, float) {
-                            return std::max(std::abs(x) - 5.0F, slab(d, lumbar::kSupraspinous, lumbar::kInterspinous));
+  scene.shapes.push_back({"supraspinous_ligament", kLigamentHu, 5.0F, [l](float x, float d, float) {
+                            return std::max(std::abs(x) - l.supraspinous_half_width,
+                                            slab(d, l.supraspinous, l.interspinous));
                           }});
-  scene.shapes.push_back({"ligamentum_flavum", kFlavumHu, 4.0F, [](float x, float d, float) {
-                            return std::max(canal(x, d, lumbar::kEpidural - lumbar::kFlavum), d - 60.0F);
+  scene.shapes.push_back({"ligamentum_flavum", kFlavumHu, 4.0F, [l](float x, float d, float) {
+                            return std::max(canal(l, x, d, l.epidural - l.flavum), d - l.flavum_end);
                           }});
-  scene.shapes.push_back({"intervertebral_discs", kDiscHu, 6.0F,
-                          [](float x, float d, float z) { return std::max(body(x, d), std::abs(z) - kDiscHalf); }});
-  add_bone(scene, "vertebrae_L3", vertebra);
-  add_bone(scene, "vertebrae_L4", [](float x, float d, float z) { return vertebra(x, d, -z); });
-  scene.shapes.push_back({"epidural_fat", kFatHu, 5.0F, [](float x, float d, float) { return canal(x, d, 0.0F); }});
-  scene.shapes.push_back({"csf", kCsfHu, 0.0F, [](float x, float d, float) {
-                            const float half = 0.5F * (lumbar::kSacEnd - lumbar::kDura);
-                            return elliptic_cylinder(x, d - lumbar::kDura - half, 8.5F, half);
+  scene.shapes.push_back({"intervertebral_discs", kDiscHu, 6.0F, [l](float x, float d, float z) {
+                            return std::max(body(l, x, d), std::abs(z) - l.disc_half_height);
+                          }});
+  add_bone(scene, data.cover, "vertebrae_L3", [l](float x, float d, float z) { return vertebra(l, x, d, z); });
+  add_bone(scene, data.cover, "vertebrae_L4", [l](float x, float d, float z) { return vertebra(l, x, d, -z); });
+  scene.shapes.push_back({"epidural_fat", kFatHu, 5.0F, [l](float x, float d, float) { return canal(l, x, d, 0.0F); }});
+  scene.shapes.push_back({"csf", kCsfHu, 0.0F, [l](float x, float d, float) {
+                            const float half = 0.5F * (l.sac_end - l.dura);
+                            return elliptic_cylinder(x, d - l.dura - half, l.sac_half_width, half);
                           }});
   return scene;
 }
 
-LayerScene ascites_scene() {
+LayerScene ascites_scene(const LayerData& data) {
+  const AscitesLayers l = data.ascites;
   LayerScene scene;
-  scene.target_mm = 0.5F * (ascites::kPeritoneum + ascites::kBowel);
+  scene.target_mm = 0.5F * (l.peritoneum + l.bowel);
   scene.path_name = "paracentesis";
-  add_cover(scene);
-  scene.shapes.push_back({"muscle", kMuscleHu, 7.0F,
-                          [](float, float d, float) { return slab(d, ascites::kMuscle, ascites::kMuscleEnd); }});
-  scene.shapes.push_back({"ascites", kAscitesHu, 0.0F, [](float, float d, float) {
-                            return slab(d, ascites::kPeritoneum, ascites::kBowel + 12.0F);
+  add_cover(scene, data.cover);
+  scene.shapes.push_back(
+      {"muscle", kMuscleHu, 7.0F, [l](float, float d, float) { return slab(d, l.muscle, l.muscle_end); }});
+  scene.shapes.push_back({"ascites", kAscitesHu, 0.0F, [l](float, float d, float) {
+                            return slab(d, l.peritoneum, l.bowel + l.fluid_behind_bowel);
                           }});
   scene.shapes.push_back(
-      {"iliopsoas_left", kMuscleHu, 7.0F, [](float, float d, float) { return slab(d, 88.0F, kEnd); }});
-  add_loop(scene, 0.0F, false);
-  add_loop(scene, 28.5F, true);
-  add_loop(scene, -28.5F, true);
+      {"iliopsoas_left", kMuscleHu, 7.0F, [l](float, float d, float) { return slab(d, l.psoas, kEnd); }});
+  add_loop(scene, l, l.loop_z, false);
+  for (const float z : l.gas_loops_z) add_loop(scene, l, z, true);
   return scene;
 }
 
-LayerScene liver_scene() {
+LayerScene liver_scene(const LayerData& data) {
+  const LiverLayers l = data.liver;
   LayerScene scene;
-  scene.target_mm = liver::kDuct;
+  scene.target_mm = l.duct;
   scene.path_name = "bile duct puncture";
-  add_cover(scene);
+  add_cover(scene, data.cover);
   scene.shapes.push_back(
-      {"muscle", kMuscleHu, 7.0F, [](float, float d, float) { return slab(d, liver::kMuscle, liver::kPeritoneum); }});
+      {"muscle", kMuscleHu, 7.0F, [l](float, float d, float) { return slab(d, l.muscle, l.peritoneum); }});
   scene.shapes.push_back(
-      {"peritoneum", -20.0F, 0.0F, [](float, float d, float) { return slab(d, liver::kPeritoneum, liver::kCapsule); }});
+      {"peritoneum", kPeritoneumHu, 0.0F, [l](float, float d, float) { return slab(d, l.peritoneum, l.capsule); }});
+  scene.shapes.push_back({"liver", kLiverHu, 6.0F, [l](float, float d, float) { return slab(d, l.capsule, l.end); }});
+  scene.shapes.push_back({"portal_vein", kPortalHu, 3.0F,
+                          [l](float, float d, float z) { return std::hypot(d - l.vein, z) - l.vein_radius; }});
   scene.shapes.push_back(
-      {"liver", kLiverHu, 6.0F, [](float, float d, float) { return slab(d, liver::kCapsule, 108.0F); }});
-  scene.shapes.push_back({"portal_vein", kPortalHu, 3.0F, [](float, float d, float z) {
-                            return std::hypot(d - liver::kVein, z) - liver::kVeinRadius;
-                          }});
-  scene.shapes.push_back({"bile_duct", kBileHu, 0.0F, [](float, float d, float z) {
-                            return std::hypot(d - liver::kDuct, z) - liver::kDuctRadius;
-                          }});
-  add_bone(scene, "rib_right_9", [](float, float d, float z) { return std::hypot(d - 18.5F, z - 15.0F) - 5.0F; });
-  add_bone(scene, "rib_right_10", [](float, float d, float z) { return std::hypot(d - 18.5F, z + 15.0F) - 5.0F; });
+      {"bile_duct", kBileHu, 0.0F, [l](float, float d, float z) { return std::hypot(d - l.duct, z) - l.duct_radius; }});
+  add_bone(scene, data.cover, "rib_right_9",
+           [l](float, float d, float z) { return std::hypot(d - l.rib_depth, z - l.rib_z) - l.rib_radius; });
+  add_bone(scene, data.cover, "rib_right_10",
+           [l](float, float d, float z) { return std::hypot(d - l.rib_depth, z + l.rib_z) - l.rib_radius; });
   return scene;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "anatomy/patient.h"
+#include "anatomy/phantom/layer_data.h"
 #include "anatomy/phantom/shapes.h"
 
 namespace trocar::anatomy::phantom {
@@ -25,8 +26,8 @@ struct LayerScene {
   std::string_view path_name;  ///< Of the expert path.
 };
 
-LayerScene lumbar_scene();
-LayerScene ascites_scene();
-LayerScene liver_scene();
+LayerScene lumbar_scene(const LayerData& data);
+LayerScene ascites_scene(const LayerData& data);
+LayerScene liver_scene(const LayerData& data);
 
 }  // namespace trocar::anatomy::phantom

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "anatomy/known_structures.h"
 #include "anatomy/phantom/layer_scene.h"
 #include "anatomy/phantom/texture.h"
-#include "core/check.h"
+#include "core/files/data_dir.h"
 #include "core/parallel.h"
 #include "core/random.h"
 
@@ -37,17 +38,20 @@ struct ShapeLabels {
   LabelTable table;
   std::vector<std::uint8_t> ids;  ///< By shape.
 
-  explicit ShapeLabels(const LayerScene& scene) {
+  static Result<ShapeLabels> make(const LayerScene& scene, const KnownStructures& known) {
+    ShapeLabels labels;
     for (const LayerShape& shape : scene.shapes) {
-      const Label* known = table.find(shape.name);
-      if (known == nullptr) {
-        const auto structure = find_known_structure(shape.name);
-        TROCAR_CHECK(structure.has_value());
-        const auto id = static_cast<std::uint8_t>(table.labels.size() + 1);
-        table.labels.push_back({id, std::string(shape.name), std::string(structure->tissue), structure->color});
+      if (labels.table.find(shape.name) == nullptr) {
+        const KnownStructure* structure = known.find(shape.name);
+        if (structure == nullptr)
+          return fail("the structure \"" + std::string(shape.name) + "\" of a layered scene is not known", known.file(),
+                      "add the name to an entry [[structures]]");
+        const auto id = static_cast<std::uint8_t>(labels.table.labels.size() + 1);
+        labels.table.labels.push_back({id, std::string(shape.name), structure->tissue, structure->color});
       }
-      ids.push_back(table.find(shape.name)->id);
+      labels.ids.push_back(labels.table.find(shape.name)->id);
     }
+    return labels;
   }
 };
 
@@ -125,10 +129,13 @@ Result<VirtualPatient> make_layered_scene(std::string_view name, std::uint64_t s
   const auto& scenes = layered_scenes();
   const auto info = std::find_if(scenes.begin(), scenes.end(), [&](const PhantomInfo& i) { return i.name == name; });
   if (info == scenes.end()) return fail_usage("unknown layered scene", std::string(name), "see trocar patient list");
-  const LayerScene scene = name == "layers-lumbar"    ? lumbar_scene()
-                           : name == "layers-ascites" ? ascites_scene()
-                                                      : liver_scene();
-  const ShapeLabels labels(scene);
+  TROCAR_TRY(const std::filesystem::path data_folder, checked_data_dir());
+  TROCAR_TRY(const LayerData data, load_layer_data(data_folder / kLayersFile));
+  const LayerScene scene = name == "layers-lumbar"    ? lumbar_scene(data)
+                           : name == "layers-ascites" ? ascites_scene(data)
+                                                      : liver_scene(data);
+  TROCAR_TRY(const KnownStructures known, KnownStructures::load(data_folder));
+  TROCAR_TRY(const ShapeLabels labels, ShapeLabels::make(scene, known));
   const volume::GridGeometry geometry = scene_geometry(resolution);
   const std::uint64_t mixed_seed = mix64(seed);
 

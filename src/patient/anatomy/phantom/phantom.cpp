@@ -5,9 +5,10 @@
 #include <numbers>
 
 #include "anatomy/phantom/abdomen.h"
+#include "anatomy/phantom/layer_data.h"
 #include "anatomy/phantom/layers.h"
 #include "anatomy/phantom/render.h"
-#include "anatomy/phantom/skeleton.h"
+#include "core/files/data_dir.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -42,23 +43,30 @@ Status check_resolution(const PhantomResolution& resolution) {
 
 std::vector<Landmark> landmarks(const Anatomy& anatomy) {
   const auto& contours = anatomy.torso.contours();
+  const LandmarkData& data = anatomy.data.landmarks;
+  const SpineData& spine = anatomy.data.spine;
   const auto on_skin = [&](float phi, float z) -> Vec3 {
     const double r = contours.skin_radius(phi, z);
     return {r * std::sin(phi), r * std::cos(phi), z};
   };
+  constexpr int kT10 = 5, kT12 = 7, kL3 = 10;
   constexpr float kFront = std::numbers::pi_v<float>;
-  return {{"xiphoid", on_skin(kFront, 80.0F)},
-          {"umbilicus", on_skin(kFront, kUmbilicusZ)},
-          {"spinous process T12", on_skin(0.0F, vertebra_height(7) - 15.0F)},
-          {"spinous process L3", on_skin(0.0F, vertebra_height(10) - 10.0F)},
-          {"right mid-axillary line, tenth rib", on_skin(-0.5F * kFront, vertebra_height(5) - 74.0F)}};
+  return {{"xiphoid", on_skin(kFront, data.xiphoid_z_mm)},
+          {"umbilicus", on_skin(kFront, anatomy.data.torso.umbilicus_z_mm)},
+          {"spinous process T12", on_skin(0.0F, spine.height(kT12) - data.t12_spinous_below_mm)},
+          {"spinous process L3", on_skin(0.0F, spine.height(kL3) - data.l3_spinous_below_mm)},
+          {"right mid-axillary line, tenth rib",
+           on_skin(-0.5F * kFront, spine.height(kT10) - data.tenth_rib_below_t10_mm)}};
 }
 
 Result<VirtualPatient> generate_abdomen(const PhantomInfo& info, std::uint64_t seed,
                                         const PhantomResolution& resolution, const Progress& progress) {
   const volume::GridGeometry geometry = box_geometry(resolution);
   report(progress, "generating the anatomy", 0.0);
-  Anatomy anatomy(seed);
+  TROCAR_TRY(const std::filesystem::path data_folder, checked_data_dir());
+  TROCAR_TRY(KnownStructures known, KnownStructures::load(data_folder));
+  TROCAR_TRY(AbdomenData data, load_abdomen_data(data_folder / kAbdomenFile));
+  Anatomy anatomy(seed, std::move(data), std::move(known));
   TROCAR_TRY(BiopsyPlan plan, build_abdomen(anatomy));
 
   Rendering rendering = render(anatomy, geometry, progress);
@@ -86,6 +94,11 @@ const std::vector<PhantomInfo>& embedded_patients() {
     return patients;
   }();
   return kPatients;
+}
+
+std::vector<std::filesystem::path> phantom_data_files() {
+  const std::filesystem::path folder = data_dir();
+  return {folder / kStructuresFile, folder / kAbdomenFile, folder / kLayersFile};
 }
 
 Result<VirtualPatient> generate_phantom(std::string_view name, std::uint64_t seed, const PhantomResolution& resolution,

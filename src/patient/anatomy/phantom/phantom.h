@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,13 +20,17 @@ struct PhantomInfo {
 };
 const std::vector<PhantomInfo>& embedded_patients();
 
+/// The files of data_dir() that the embedded patients are made of: other bytes in one of them, other patients.
+std::vector<std::filesystem::path> phantom_data_files();
+
 /// How finely the phantom is sampled. The anatomy does not depend on it.
 struct PhantomResolution {
   std::array<std::int64_t, 3> size{0, 0, 0};  ///< 0: the default grid (1 mm or finer).
 };
 
 /// Generates an embedded patient; bit-identical for the same name, seed and resolution, for any number of threads.
-/// Unknown name: exit status 2, the message lists the names.
+/// Reads phantom_data_files(). Errors: an unknown name (exit status 2, the message lists the names); data that are
+/// missing or broken; see build_abdomen.
 Result<VirtualPatient> generate_phantom(std::string_view name, std::uint64_t seed = 1,
                                         const PhantomResolution& resolution = {}, const Progress& progress = {});
 

@@ -159,6 +159,11 @@ std::vector<Cone> chain(const std::vector<Knot>& knots, int pieces_per_span) {
   return cones;
 }
 
+std::vector<Knot> moved(std::vector<Knot> knots, const Vec3f& offset) {
+  for (Knot& knot : knots) knot.p = offset + knot.p;
+  return knots;
+}
+
 std::vector<Knot> mirrored(std::vector<Knot> knots) {
   for (Knot& knot : knots) knot.p.x() = -knot.p.x();
   return knots;

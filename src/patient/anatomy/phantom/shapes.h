@@ -107,6 +107,8 @@ struct Knot {
 };
 /// A smooth chain of cones through the knots (Catmull-Rom).
 std::vector<Cone> chain(const std::vector<Knot>& knots, int pieces_per_span = 6);
+/// All knots moved by an offset.
+std::vector<Knot> moved(std::vector<Knot> knots, const Vec3f& offset);
 /// The mirror image at the median plane x = 0.
 std::vector<Knot> mirrored(std::vector<Knot> knots);
 

@@ -6,15 +6,30 @@
 
 namespace trocar::anatomy::phantom {
 
-Anatomy::Anatomy(std::uint64_t seed_) : seed(mix64(seed_)), torso(seed), noise(seed ^ 0x6e6f6973U) {}
+Anatomy::Anatomy(std::uint64_t seed_, AbdomenData data_, KnownStructures known_)
+    : data(std::move(data_)),
+      known(std::move(known_)),
+      seed(mix64(seed_)),
+      torso(seed, data.torso),
+      noise(seed ^ 0x6e6f6973U) {}
 
 std::uint8_t Anatomy::label(std::string_view name) {
-  if (const Label* known = label_table.find(name)) return known->id;
-  const auto structure = find_known_structure(name);
-  TROCAR_CHECK(structure && label_table.labels.size() < 255);
+  if (const Label* present = label_table.find(name)) return present->id;
+  const KnownStructure* structure = known.find(name);
+  if (structure == nullptr) {
+    if (unknown_label_.empty()) unknown_label_ = name;
+    return 0;
+  }
+  TROCAR_CHECK(label_table.labels.size() < 255);
   const auto id = static_cast<std::uint8_t>(label_table.labels.size() + 1);
-  label_table.labels.push_back({id, std::string(name), std::string(structure->tissue), structure->color});
+  label_table.labels.push_back({id, std::string(name), structure->tissue, structure->color});
   return id;
+}
+
+Status Anatomy::check_labels() const {
+  if (unknown_label_.empty()) return {};
+  return fail("the phantom's structure \"" + unknown_label_ + "\" is not known", known.file(),
+              "add the name to an entry [[structures]]");
 }
 
 Random Anatomy::random(std::string_view organ) const {
@@ -42,6 +57,17 @@ void Anatomy::add_plain(std::string name, const Box& bounds, std::function<float
          const float texture = texture_hu == 0.0F ? 0.0F : texture_hu * noise.fractal(place.p, texture_mm);
          return Paint{hu + texture, id};
        }});
+}
+
+std::string side_of(float sign) {
+  return sign < 0.0F ? "_right" : "_left";
+}
+
+Vec3f varied(Random& random, const Vec3f& centre, float spread_mm) {
+  const auto one = [&](float c) { return c + static_cast<float>(random.uniform(-spread_mm, spread_mm)); };
+  const float x = one(centre.x());
+  const float y = one(centre.y());
+  return {x, y, one(centre.z())};
 }
 
 Box whole_box() {

@@ -6,9 +6,12 @@
 #include <string_view>
 #include <vector>
 
+#include "anatomy/known_structures.h"
 #include "anatomy/label_table.h"
+#include "anatomy/phantom/phantom_data.h"
 #include "anatomy/phantom/shapes.h"
 #include "anatomy/phantom/torso.h"
+#include "core/result.h"
 
 namespace trocar::anatomy::phantom {
 
@@ -35,18 +38,22 @@ struct Structure {
 
 /// The anatomy of one seed: everything about the patient but the voxels.
 struct Anatomy {
-  explicit Anatomy(std::uint64_t seed_);
-  Anatomy(const Anatomy&) = delete;  // the structures refer to the noise
+  Anatomy(std::uint64_t seed_, AbdomenData data_, KnownStructures known_);
+  Anatomy(const Anatomy&) = delete;  // the structures refer to the data and the noise
   Anatomy& operator=(const Anatomy&) = delete;
 
+  AbdomenData data;
+  KnownStructures known;
   std::uint64_t seed;
   Torso torso;
   ValueNoise noise;
   std::vector<Structure> structures;
   LabelTable label_table;
 
-  /// The label's number; the label is added when it is new.
+  /// The label's number; the label is added when it is new. 0 for an unknown name, which check_labels reports.
   std::uint8_t label(std::string_view name);
+  /// Error: the first name given to label() that is no known structure.
+  Status check_labels() const;
   /// Random numbers of one organ: what is changed in one does not change the others.
   Random random(std::string_view organ) const;
   const Structure& find(std::string_view name) const;
@@ -56,11 +63,16 @@ struct Anatomy {
   /// A structure of one label with HU that varies slowly around `hu` (texture_hu, features of texture_mm).
   void add_plain(std::string name, const Box& bounds, std::function<float(const Place&)> distance, float hu,
                  float texture_hu = 0.0F, float texture_mm = 12.0F);
+
+ private:
+  std::string unknown_label_;
 };
 
-/// Where the portal vein enters the liver and the hepatic veins leave it (q).
-inline const Vec3f kHilum(-32.0F, -12.0F, 14.0F);
-inline const Vec3f kVenousConfluence(-23.0F, -8.0F, 66.0F);
+/// Ending of a label: "_right" for the sign -1, "_left" for 1.
+std::string side_of(float sign);
+
+/// A centre moved by up to spread_mm along each axis.
+Vec3f varied(Random& random, const Vec3f& centre, float spread_mm);
 
 /// The whole box.
 Box whole_box();

@@ -30,14 +30,15 @@ void add_lungs(Anatomy& anatomy) {
 void add_mediastinum(Anatomy& anatomy) {
   Random random = anatomy.random("heart");
   const auto& noise = anatomy.noise;
-  const Vec3f heart(static_cast<float>(random.uniform(16.0, 26.0)), -46.0F,
-                    static_cast<float>(random.uniform(116.0, 122.0)));
-  const Vec3f heart_radii(62.0F, 46.0F, 38.0F);
+  const HeartData& data = anatomy.data.heart;
+  const Vec3f heart(data.x_mm.draw(random), data.y_mm, data.z_mm.draw(random));
+  const Vec3f heart_radii = data.radii_mm;
   const auto heart_distance = [=](const Place& place) { return ellipsoid(place.q - heart, heart_radii); };
   const std::uint8_t fat = anatomy.label("fat");
   anatomy.add({"mediastinum", upper_box(),
-               [=](const Place& place) {
-                 const float column = elliptic_cylinder(place.q.x() - 4.0F, place.q.y() - 14.0F, 34.0F, 40.0F);
+               [=, &around = data.mediastinum](const Place& place) {
+                 const float column = elliptic_cylinder(place.q.x() - around.x, place.q.y() - around.y, around.radius_x,
+                                                        around.radius_y);
                  const float pericardium = heart_distance(place) - 5.0F;
                  return std::max({smooth_min(column, pericardium, 14.0F), -place.diaphragm, place.cavity + 1.5F});
                },
@@ -56,10 +57,7 @@ void add_mediastinum(Anatomy& anatomy) {
 }
 
 void add_oesophagus(Anatomy& anatomy) {
-  const Tube oesophagus(chain({{Vec3f(4.0F, 0.0F, 125.0F), 7.5F},
-                               {Vec3f(8.0F, -6.0F, 100.0F), 8.0F},
-                               {Vec3f(16.0F, -10.0F, 82.0F), 8.0F},
-                               {Vec3f(34.0F, -8.0F, 70.0F), 9.0F}}));
+  const Tube oesophagus(chain(anatomy.data.oesophagus));
   anatomy.add_plain(
       "esophagus", warped(oesophagus.bounds()), [=](const Place& place) { return oesophagus.distance(place.q); }, 62.0F,
       12.0F, 5.0F);

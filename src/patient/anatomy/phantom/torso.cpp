@@ -16,9 +16,12 @@ constexpr float kMargin = 8.0F;  ///< The lattice extends beyond the box, so tha
 constexpr float kWarpMm = 4.5F;
 constexpr float kWarpSizeMm = 75.0F;
 
-float rad(float degrees) {
-  return degrees * kPi / 180.0F;
-}
+// Shape of the skin's contour in a slice.
+constexpr float kAnteriorExponent = 2.25F;
+constexpr float kPosteriorExponent = 2.6F;
+constexpr SeedRange kWavePhases{-3.14, 3.14};
+constexpr float kWaveTwistPerMm = 0.012F;  ///< rad.
+constexpr float kNavelRadiusMm = 110.0F;   ///< Of the body there: mm a rad.
 
 /// Radius of a superellipse |x/a|^n + |y/b|^n = 1 at the angle phi.
 float superellipse(float phi, float a, float b, float exponent) {
@@ -78,59 +81,59 @@ struct SliceContour {
 
 }  // namespace
 
-TorsoContours::TorsoContours(std::uint64_t seed) {
+TorsoContours::TorsoContours(std::uint64_t seed, const TorsoData& data) : data_(data) {
   Random random(seed ^ 0x7072736fU);
-  const auto vary = [&](double centre, double spread) {
-    return static_cast<float>(random.uniform(centre - spread, centre + spread));
-  };
-  half_width_ = vary(161.0, 5.0);
-  half_depth_ = vary(119.0, 4.0);
-  fatness_ = vary(1.0, 0.2);
-  dome_mm_ = vary(0.0, 4.0);
+  half_width_ = data.half_width_mm.draw(random);
+  half_depth_ = data.half_depth_mm.draw(random);
+  fatness_ = data.fat.factor.draw(random);
+  dome_mm_ = data.diaphragm.dome_spread_mm.draw(random);
   for (std::size_t n = 0; n < 3; ++n) {
-    wave_mm_[n] = vary(1.5, 1.0) / static_cast<float>(n + 1);
-    wave_phase_[n] = vary(0.0, 3.14);
+    wave_mm_[n] = data.waves_mm.draw(random) / static_cast<float>(n + 1);
+    wave_phase_[n] = kWavePhases.draw(random);
   }
 }
 
 float TorsoContours::skin_radius(float phi, float z) const {
+  const TorsoData::Skin& skin = data_.skin;
   const float side = std::abs(phi);
-  const float waist = 6.0F * bump(z, -45.0F, 50.0F) + 3.0F * smooth_step(60.0F, 125.0F, z);
-  const float a = half_width_ - waist;
-  const float belly = half_depth_ - 5.0F * smooth_step(20.0F, 120.0F, z) + 2.0F * bump(z, -60.0F, 60.0F);
-  const float back = 108.0F;
-  const float anterior = superellipse(phi, a, belly, 2.25F);
-  const float posterior = superellipse(phi, a, back, 2.6F);
+  const float a = half_width_ - (skin.waist_z.at(z) + skin.chest_taper_z.at(z));
+  const float belly = half_depth_ - skin.chest_depth_z.at(z) + skin.belly_z.at(z);
+  const float anterior = superellipse(phi, a, belly, kAnteriorExponent);
+  const float posterior = superellipse(phi, a, data_.back_depth_mm, kPosteriorExponent);
   float r = side > 0.5F * kPi ? anterior : posterior;
   const float x = r * std::sin(side);
   // The furrow over the spine between the erector muscles, and shallow furrows beside the rectus.
-  r -= (7.5F - 2.0F * smooth_step(20.0F, 110.0F, z)) * (side < 0.5F * kPi ? bump(x, 0.0F, 17.0F) : 0.0F);
-  r += 3.0F * bump(side, rad(28.0F), rad(14.0F));
-  if (side > 0.5F * kPi) r -= 2.0F * bump(x, 0.0F, 8.0F);
-  // The umbilicus.
-  if (side > 0.5F * kPi) r -= 6.0F * bump(std::hypot(x, z - kUmbilicusZ), 0.0F, 13.0F);
+  r -= (skin.spinal_furrow.height - skin.spinal_furrow_chest_z.at(z)) *
+       (side < 0.5F * kPi ? skin.spinal_furrow.shape(x) : 0.0F);
+  r += skin.erector.at(side);
+  if (side > 0.5F * kPi) {
+    r -= skin.linea_alba.at(x);
+    r -= skin.umbilicus.at(std::hypot(x, z - data_.umbilicus_z_mm));
+  }
   for (std::size_t n = 0; n < 3; ++n)
-    r += wave_mm_[n] * std::sin(static_cast<float>(n + 2) * phi + wave_phase_[n] + 0.012F * z);
+    r += wave_mm_[n] * std::sin(static_cast<float>(n + 2) * phi + wave_phase_[n] + kWaveTwistPerMm * z);
   return r;
 }
 
 float TorsoContours::fat_mm(float phi, float z) const {
+  const TorsoData::Fat& fat = data_.fat;
   const float side = std::abs(phi);
-  const float chest = smooth_step(-10.0F, 70.0F, z);
-  const float flank = 9.0F * bump(side, rad(80.0F), rad(38.0F)) * mix(1.0F, 0.62F, chest);
-  const float love_handle = 10.0F * bump(side, rad(48.0F), rad(20.0F)) * (1.0F - smooth_step(-90.0F, -10.0F, z));
-  const float belly = mix(9.0F, 4.0F, chest) * bump(side, rad(158.0F), rad(32.0F));
-  const float navel = -6.0F * bump(std::hypot((kPi - side) * 110.0F, z - kUmbilicusZ), 0.0F, 9.0F);
-  return fatness_ * (8.5F + flank + love_handle + belly) + navel;
+  const float chest = fat.chest_z.share(z);
+  const float flank = fat.flank.at(side) * mix(1.0F, fat.flank_chest_share, chest);
+  const float loin = fat.loin.at(side) * (1.0F - fat.loin_z.share(z));
+  const float front = mix(fat.front_mm[0], fat.front_mm[1], chest) * fat.front.shape(side);
+  const float navel = fat.umbilicus.at(std::hypot((kPi - side) * kNavelRadiusMm, z - data_.umbilicus_z_mm));
+  return fatness_ * (fat.least_mm + flank + loin + front) + navel;
 }
 
 float TorsoContours::muscle_mm(float phi, float z) const {
+  const TorsoData::Muscle& muscle = data_.muscle;
   const float side = std::abs(phi);
-  const float chest = smooth_step(-10.0F, 60.0F, z);
-  const float back = mix(29.0F, 26.0F, chest) * bump(side, 0.0F, rad(34.0F));
-  const float lateral = mix(7.0F, 8.0F, chest) * bump(side, rad(95.0F), rad(35.0F));
-  const float median = -4.0F * bump(side, kPi, rad(4.0F));
-  return 12.0F + back + lateral + median;
+  const float chest = muscle.chest_z.share(z);
+  const float back = mix(muscle.back_mm[0], muscle.back_mm[1], chest) * bump(side, 0.0F, muscle.back_width);
+  const float lateral = mix(muscle.lateral_mm[0], muscle.lateral_mm[1], chest) * muscle.lateral.shape(side);
+  const float median = muscle.linea_alba_mm * bump(side, kPi, muscle.linea_alba_width);
+  return muscle.least_mm + back + lateral + median;
 }
 
 float TorsoContours::wall_radius(float phi, float z) const {
@@ -142,15 +145,14 @@ float TorsoContours::cavity_radius(float phi, float z) const {
 }
 
 float TorsoContours::diaphragm_height(float x, float y, float cavity) const {
+  const TorsoData::Diaphragm& diaphragm = data_.diaphragm;
   const float side = std::atan2(std::abs(x), y);
-  // Height at which the diaphragm leaves the wall: low behind (the costophrenic recess), high in front.
-  const float rim =
-      16.0F + 17.0F * smooth_step(rad(20.0F), rad(95.0F), side) + 41.0F * smooth_step(rad(92.0F), rad(160.0F), side);
-  const float right = 16.0F * bump(x, -72.0F, 58.0F) * bump(y, -5.0F, 75.0F);
-  const float left = 7.0F * bump(x, 70.0F, 52.0F) * bump(y, 0.0F, 75.0F);
-  const float dome = 72.0F + dome_mm_ + right + left;
+  const float rim = diaphragm.rim_back_mm + diaphragm.rim_side.at(side) + diaphragm.rim_front.at(side);
+  const float right = diaphragm.right_dome_x.at(x) * diaphragm.right_dome_y.shape(y);
+  const float left = diaphragm.left_dome_x.at(x) * diaphragm.left_dome_y.shape(y);
+  const float dome = diaphragm.dome_mm + dome_mm_ + right + left;
   const float inward = std::max(-cavity, 0.0F);
-  return mix(rim, dome, 1.0F - std::exp(-inward / 24.0F));
+  return mix(rim, dome, 1.0F - std::exp(-inward / diaphragm.rise_mm));
 }
 
 Vec3f TorsoContours::on_cavity(float phi, float z, float outward_mm) const {
@@ -158,7 +160,7 @@ Vec3f TorsoContours::on_cavity(float phi, float z, float outward_mm) const {
   return {r * std::sin(phi), r * std::cos(phi), z};
 }
 
-Torso::Torso(std::uint64_t seed) : contours_(seed) {
+Torso::Torso(std::uint64_t seed, const TorsoData& data) : contours_(seed, data) {
   const auto nodes = [](float half) {
     return static_cast<std::int64_t>(std::ceil(2.0F * (half + kMargin) / kLatticeMm)) + 1;
   };

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "anatomy/phantom/phantom_data.h"
 #include "anatomy/phantom/shapes.h"
 #include "volume/grid.h"
 
@@ -13,7 +14,6 @@ namespace trocar::anatomy::phantom {
 inline constexpr float kHalfWidth = 180.5F;
 inline constexpr float kHalfDepth = 142.5F;
 inline constexpr float kHalfHeight = 114.0F;
-inline constexpr float kUmbilicusZ = -92.0F;
 
 /// A point in the body and its torso coordinates.
 struct Place {
@@ -29,7 +29,7 @@ struct Place {
 /// pi/2 lateral, pi anterior), positive towards the patient's left.
 class TorsoContours {
  public:
-  explicit TorsoContours(std::uint64_t seed);
+  TorsoContours(std::uint64_t seed, const TorsoData& data);
   float skin_radius(float phi, float z) const;
   float wall_radius(float phi, float z) const;
   float cavity_radius(float phi, float z) const;
@@ -41,6 +41,7 @@ class TorsoContours {
   float fat_mm(float phi, float z) const;
   float muscle_mm(float phi, float z) const;
 
+  TorsoData data_;
   float half_width_;
   float half_depth_;
   float fatness_;
@@ -52,7 +53,7 @@ class TorsoContours {
 /// The torso's distances on a lattice of 4 mm, interpolated between: exact for the contours within hundredths of a mm.
 class Torso {
  public:
-  explicit Torso(std::uint64_t seed);
+  Torso(std::uint64_t seed, const TorsoData& data);
   const TorsoContours& contours() const { return contours_; }
   Place at(const Vec3f& p) const;
 

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "anatomy/test/make_torso.h"
+#include "anatomy/testing/shipped_structures.h"
+#include "core/testing/data_folder.h"
 #include "volume/sampling.h"
 #include "volume/test/make_grids.h"
 
@@ -61,7 +63,8 @@ TEST(BuildPatient, EveryVoxelOfTheBodyHasALabelAndNoneOutside) {
   const VirtualPatient& patient = *built.patient;
   for (std::size_t n = 0; n < patient.labels.voxels.size(); ++n)
     ASSERT_EQ(patient.labels.voxels[n] != 0, patient.skin_distance_mm.voxels[n] < 0.0F) << n;
-  for (const Label& label : patient.label_table.labels) EXPECT_TRUE(find_known_structure(label.name)) << label.name;
+  const KnownStructures known = trocar::testing::shipped_structures();
+  for (const Label& label : patient.label_table.labels) EXPECT_NE(known.find(label.name), nullptr) << label.name;
 }
 
 TEST(BuildPatient, AirInsideIsLungOrGas) {
@@ -227,8 +230,20 @@ TEST(BuildPatient, IgnoredAndBackgroundLabelsAreLeftOut) {
   const Built built = build({organs, background});
   ASSERT_TRUE(built.patient) << built.patient.error().text();
   EXPECT_EQ(name_at(*built.patient, {-50.0, -10.0, 0.0}), "liver");
-  for (const Label& label : built.patient->label_table.labels)
-    EXPECT_TRUE(find_known_structure(label.name)) << label.name;
+  const KnownStructures known = trocar::testing::shipped_structures();
+  for (const Label& label : built.patient->label_table.labels) EXPECT_NE(known.find(label.name), nullptr) << label.name;
+}
+
+TEST(BuildPatient, AStructureFoundFromHuMustBeKnown) {
+  const trocar::testing::OwnDataFolder own;
+  own.change(kStructuresFile, "\"bone_other\", ", "");
+  const Built built = build({liver()});
+  ASSERT_FALSE(built.patient);
+  EXPECT_NE(built.patient.error().what.find("\"bone_other\""), std::string::npos) << built.patient.error().text();
+  own.remove(kStructuresFile);
+  const Built none = build({liver()});
+  ASSERT_FALSE(none.patient);
+  EXPECT_NE(none.patient.error().where.find("structures.toml"), std::string::npos) << none.patient.error().text();
 }
 
 TEST(BuildPatient, EmptyMasksAreWarningsUnlessAllAre) {

@@ -6,6 +6,7 @@
 
 #include "anatomy/phantom/phantom.h"
 #include "core/files/temporary_folder.h"
+#include "core/testing/data_folder.h"
 #include "io/patient/patient_folder.h"
 
 namespace trocar::io {
@@ -37,6 +38,19 @@ TEST(PatientCache, FindsWhatItKeptAndNothingElse) {
   const auto loaded = load_patient(*kept);
   ASSERT_TRUE(loaded) << loaded.error().text();
   EXPECT_EQ(loaded->content_hash, patient.content_hash);
+}
+
+TEST(PatientCache, AnotherDataFileIsAnotherPatient) {
+  const TemporaryFolder folder;
+  const PatientCache cache(folder / "patients");
+  ASSERT_TRUE(cache.keep({"abdomen", 3}, coarse(3), {}));
+  {
+    const trocar::testing::OwnDataFolder own;
+    EXPECT_TRUE(cache.find_volumes({"abdomen", 3})) << "the same bytes in another folder";
+    own.change("phantoms/abdomen.toml", "[liver]", "# changed\n[liver]");
+    EXPECT_FALSE(cache.find_volumes({"abdomen", 3}));
+  }
+  EXPECT_TRUE(cache.find_volumes({"abdomen", 3}));
 }
 
 TEST(PatientCache, KeptPatientIsThePatientRoundedAsSaved) {

@@ -13,10 +13,18 @@
 
 #include "anatomy/phantom/abdomen.h"
 #include "anatomy/phantom/render.h"
+#include "anatomy/testing/shipped_structures.h"
+#include "core/files/data_dir.h"
 #include "volume/sampling.h"
 
 namespace trocar::anatomy::phantom {
 namespace {
+
+using trocar::testing::shipped_structures;
+
+AbdomenData shipped_abdomen() {
+  return load_abdomen_data(data_dir() / kAbdomenFile).value();
+}
 
 /// Voxels of 1 mm around a path.
 volume::GridGeometry box_around(const Segment& line, double margin_mm) {
@@ -30,7 +38,7 @@ volume::GridGeometry box_around(const Segment& line, double margin_mm) {
 
 /// A planned biopsy and the voxels around its path.
 struct Case {
-  explicit Case(std::uint64_t seed) : anatomy(seed) {
+  explicit Case(std::uint64_t seed) : anatomy(seed, shipped_abdomen(), shipped_structures()) {
     if (auto built = build_abdomen(anatomy)) {
       plan = *std::move(built);
       rendering = render(anatomy, box_around(plan->path.line_P, 14.0));
@@ -50,7 +58,7 @@ const Case& case_of(std::uint64_t seed) {
   return *found;
 }
 
-class ExpertPath : public testing::TestWithParam<std::uint64_t> {
+class ExpertPath : public ::testing::TestWithParam<std::uint64_t> {
  protected:
   void SetUp() override {
     ASSERT_TRUE(case_.plan);
@@ -124,10 +132,10 @@ TEST_P(ExpertPath, PassesBetweenTwoRibs) {
   EXPECT_TRUE(meets_rib(-1.0));
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, ExpertPath, testing::Values(1, 2, 3, 4, 5));
+INSTANTIATE_TEST_SUITE_P(Seeds, ExpertPath, ::testing::Values(1, 2, 3, 4, 5));
 
 TEST(Rendering, IsNotChangedByLeavingOutWhatIsFar) {
-  Anatomy anatomy(3);
+  Anatomy anatomy(3, shipped_abdomen(), shipped_structures());
   ASSERT_TRUE(build_abdomen(anatomy));
   // A slab through liver, stomach and spine, and one through bowel and pelvis, with ordinary voxels.
   for (const double z : {20.0, -70.0}) {

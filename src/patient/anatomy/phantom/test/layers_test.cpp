@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "anatomy/build_patient.h"
+#include "anatomy/phantom/layer_data.h"
 #include "anatomy/tissue/plausible_hu.h"
+#include "core/files/data_dir.h"
 #include "volume/sampling.h"
 
 namespace trocar::anatomy::phantom {
@@ -24,6 +26,11 @@ const VirtualPatient& scene(const std::string& name) {
     it = scenes.emplace(name, patient ? *std::move(patient) : VirtualPatient{}).first;
   }
   return it->second;
+}
+
+const LayerData& data() {
+  static const LayerData kData = load_layer_data(data_dir() / kLayersFile).value();
+  return kData;
 }
 
 /// Label and the depth at which it begins, along the expert path and 50 mm beyond.
@@ -50,31 +57,31 @@ void expect_layers(const std::string& name, const std::vector<std::pair<std::str
 
 TEST(LayeredScene, LumbarPathMeetsLigamentsEpiduralFatAndFluidAtTheirDepths) {
   expect_layers("layers-lumbar", {{"fat", 0.0F},
-                                  {"supraspinous_ligament", lumbar::kSupraspinous},
-                                  {"interspinous_ligament", lumbar::kInterspinous},
-                                  {"ligamentum_flavum", lumbar::kFlavum},
-                                  {"epidural_fat", lumbar::kEpidural},
-                                  {"csf", lumbar::kDura},
-                                  {"epidural_fat", lumbar::kSacEnd}});
+                                  {"supraspinous_ligament", data().lumbar.supraspinous},
+                                  {"interspinous_ligament", data().lumbar.interspinous},
+                                  {"ligamentum_flavum", data().lumbar.flavum},
+                                  {"epidural_fat", data().lumbar.epidural},
+                                  {"csf", data().lumbar.dura},
+                                  {"epidural_fat", data().lumbar.sac_end}});
 }
 
 TEST(LayeredScene, AscitesPathMeetsWallFluidAndBowelAtTheMeasuredDepths) {
   expect_layers("layers-ascites", {{"fat", 0.0F},
-                                   {"muscle", ascites::kMuscle},
-                                   {"fat", ascites::kMuscleEnd},
-                                   {"ascites", ascites::kPeritoneum},
-                                   {"small_bowel", ascites::kBowel}});
+                                   {"muscle", data().ascites.muscle},
+                                   {"fat", data().ascites.muscle_end},
+                                   {"ascites", data().ascites.peritoneum},
+                                   {"small_bowel", data().ascites.bowel}});
 }
 
 TEST(LayeredScene, LiverPathMeetsWallCapsuleDuctAndVein) {
   expect_layers("layers-liver", {{"fat", 0.0F},
-                                 {"muscle", liver::kMuscle},
-                                 {"peritoneum", liver::kPeritoneum},
-                                 {"liver", liver::kCapsule},
-                                 {"bile_duct", liver::kDuct - liver::kDuctRadius},
-                                 {"liver", liver::kDuct + liver::kDuctRadius},
-                                 {"portal_vein", liver::kVein - liver::kVeinRadius},
-                                 {"liver", liver::kVein + liver::kVeinRadius}});
+                                 {"muscle", data().liver.muscle},
+                                 {"peritoneum", data().liver.peritoneum},
+                                 {"liver", data().liver.capsule},
+                                 {"bile_duct", data().liver.duct - data().liver.duct_radius},
+                                 {"liver", data().liver.duct + data().liver.duct_radius},
+                                 {"portal_vein", data().liver.vein - data().liver.vein_radius},
+                                 {"liver", data().liver.vein + data().liver.vein_radius}});
 }
 
 TEST(LayeredScene, PathRunsFromTheSkinInwardsFromTheSideOfItsPuncture) {

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "anatomy/detail/structure_pattern.h"
+#include "core/result.h"
+#include "volume/image.h"
+
+namespace trocar::anatomy {
+
+/// In the data folder.
+inline constexpr std::string_view kStructuresFile = "structures.toml";
+
+/// A structure that is known by its name.
+struct KnownStructure {
+  std::string tissue;  ///< Tissue class (TissueTable). "skin": a mask of the whole body, no structure inside it.
+  volume::Rgb color{};
+  int priority = 0;  ///< Where masks overlap, the higher one has the voxel (a tumour over its liver).
+};
+
+/// The structure names of data/structures.toml: TotalSegmentator v2, 3D-IRCADb, the embedded patients, the tissues
+/// found from HU; and the label numbers of data/totalsegmentator.toml. Loaded once for an operation (a build, a
+/// phantom) and passed on; immutable afterwards, and safe to read from several threads.
+class KnownStructures {
+ public:
+  /// Reads the two files of a data folder. Errors name file and line: a missing file, an unknown key, colour or
+  /// priority, a name that cannot match or occurs twice, label numbers that do not count from 1.
+  static Result<KnownStructures> load(const std::filesystem::path& data_folder);
+
+  /// Case, separators, side and a number do not matter. nullptr: an unknown name. Valid as long as this object.
+  const KnownStructure* find(std::string_view name) const;
+
+  /// Names of background labels ("background", "air", "Clear Label"), independent of case and separators.
+  bool is_background(std::string_view name) const;
+
+  /// The known names most like an unknown one, best first; only those within a few letters of it (edit distance at most
+  /// a quarter of the longer name).
+  std::vector<std::string> similar_names(std::string_view name, std::size_t count = 3) const;
+
+  /// TotalSegmentator v2, task "total": the names of the label numbers, 1 first.
+  const std::vector<std::string>& totalsegmentator_names() const noexcept { return totalsegmentator_; }
+
+  /// structures.toml, for messages.
+  const std::string& file() const noexcept { return file_; }
+
+ private:
+  friend class StructureReader;
+  struct Row {
+    detail::StructurePattern pattern;
+    std::size_t structure;  ///< Index into structures_.
+  };
+  std::string file_;
+  std::vector<KnownStructure> structures_;
+  std::vector<Row> rows_;  ///< The first that matches counts.
+  std::vector<std::string> background_;
+  std::vector<std::string> totalsegmentator_;
+};
+
+}  // namespace trocar::anatomy

@@ -1,0 +1,122 @@
+// KnownStructures::load: structures.toml and totalsegmentator.toml.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "anatomy/known_structures.h"
+#include "config/toml.h"
+
+namespace trocar::anatomy {
+namespace {
+
+constexpr config::Range kPriorities{0, 1000};
+constexpr config::Range kColorValues{0, 255};
+constexpr std::size_t kMaxLabels = 255;
+
+Result<volume::Rgb> read_color(const config::TomlTable& colors, const std::string& name) {
+  TROCAR_TRY(const std::vector<double> values, colors.numbers(name, kColorValues));
+  const bool is_whole = std::all_of(values.begin(), values.end(), [](double v) { return v == std::floor(v); });
+  if (values.size() != 3 || !is_whole)
+    return fail(fmt::format("the colour \"{}\" is not three whole numbers", name), colors.where(),
+                "write [red, green, blue], each 0 to 255");
+  return volume::Rgb{static_cast<std::uint8_t>(values[0]), static_cast<std::uint8_t>(values[1]),
+                     static_cast<std::uint8_t>(values[2])};
+}
+
+template <class T>
+Result<T> named(const std::map<std::string, T>& values, const config::TomlTable& row, std::string_view key,
+                std::string_view section) {
+  TROCAR_TRY(const std::string name, row.string(key));
+  const auto found = values.find(name);
+  if (found == values.end())
+    return fail(fmt::format("there is no {} \"{}\"", key, name), row.where(), fmt::format("add it to [{}]", section));
+  return found->second;
+}
+
+}  // namespace
+
+/// Fills a KnownStructures from its files.
+class StructureReader {
+ public:
+  Status read_structures(const config::TomlTable& document) {
+    TROCAR_TRY_STATUS(document.check_keys({"background", "priorities", "colours", "structures"}));
+    known_.file_ = document.where();
+    TROCAR_TRY(const std::vector<std::string> background, document.strings("background"));
+    for (const std::string& name : background) known_.background_.push_back(detail::plain_name(name));
+    TROCAR_TRY(const config::TomlTable priorities, document.table("priorities"));
+    for (const std::string& name : priorities.keys()) {
+      TROCAR_TRY(const std::int64_t priority, priorities.integer(name, kPriorities));
+      priorities_[name] = static_cast<int>(priority);
+    }
+    TROCAR_TRY(const config::TomlTable colors, document.table("colours"));
+    for (const std::string& name : colors.keys()) {
+      TROCAR_TRY(colors_[name], read_color(colors, name));
+    }
+    TROCAR_TRY(const std::vector<config::TomlTable> rows, document.tables("structures"));
+    if (rows.empty()) return fail("there is no structure", document.where(), "add [[structures]]");
+    for (const config::TomlTable& row : rows) TROCAR_TRY_STATUS(read_structure(row));
+    return {};
+  }
+
+  Status read_totalsegmentator(const config::TomlTable& document) {
+    TROCAR_TRY_STATUS(document.check_keys({"labels"}));
+    TROCAR_TRY(const config::TomlTable labels, document.table("labels"));
+    std::vector<std::string>& names = known_.totalsegmentator_;
+    for (const std::string& key : labels.keys()) {
+      if (key != std::to_string(names.size() + 1) || names.size() == kMaxLabels)
+        return fail(fmt::format("label number {} is not the next one", key), labels.where(),
+                    fmt::format("count from 1 to at most {} without a gap", kMaxLabels));
+      TROCAR_TRY(std::string name, labels.string(key));
+      if (std::find(names.begin(), names.end(), name) != names.end())
+        return fail(fmt::format("\"{}\" has two numbers", name), labels.where(), "remove one");
+      names.push_back(std::move(name));
+    }
+    return {};
+  }
+
+  KnownStructures take() { return std::move(known_); }
+
+ private:
+  Status read_structure(const config::TomlTable& row) {
+    TROCAR_TRY_STATUS(row.check_keys({"names", "tissue", "colour", "priority"}));
+    KnownStructure structure;
+    TROCAR_TRY(structure.tissue, row.string("tissue"));
+    TROCAR_TRY(structure.color, named(colors_, row, "colour", "colours"));
+    TROCAR_TRY(structure.priority, named(priorities_, row, "priority", "priorities"));
+    TROCAR_TRY(const std::vector<std::string> names, row.strings("names"));
+    if (names.empty()) return fail("the structure has no name", row.where(), "give names = [\"…\"]");
+    known_.structures_.push_back(std::move(structure));
+    for (const std::string& name : names) TROCAR_TRY_STATUS(add_name(name, row));
+    return {};
+  }
+
+  Status add_name(const std::string& name, const config::TomlTable& row) {
+    auto pattern = detail::StructurePattern::parse(name);
+    if (!pattern)
+      return fail(fmt::format("no structure can have the name \"{}\"", name), row.where(),
+                  "use letters, digits, '_', without left and right; only the end may be '#', '%#' or '*'");
+    std::vector<KnownStructures::Row>& rows = known_.rows_;
+    if (std::any_of(rows.begin(), rows.end(), [&](const auto& other) { return other.pattern == *pattern; }))
+      return fail(fmt::format("the name \"{}\" occurs twice", name), row.where(), "remove one");
+    rows.push_back({*std::move(pattern), known_.structures_.size() - 1});
+    return {};
+  }
+
+  KnownStructures known_;
+  std::map<std::string, int> priorities_;
+  std::map<std::string, volume::Rgb> colors_;
+};
+
+Result<KnownStructures> KnownStructures::load(const std::filesystem::path& data_folder) {
+  StructureReader reader;
+  TROCAR_TRY(const config::TomlTable structures, config::load_toml(data_folder / kStructuresFile));
+  TROCAR_TRY_STATUS(reader.read_structures(structures));
+  TROCAR_TRY(const config::TomlTable totalsegmentator, config::load_toml(data_folder / "totalsegmentator.toml"));
+  TROCAR_TRY_STATUS(reader.read_totalsegmentator(totalsegmentator));
+  return reader.take();
+}
+
+}  // namespace trocar::anatomy
