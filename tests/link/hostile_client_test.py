@@ -112,14 +112,14 @@ def expect(condition, what):
 def press_on_skin(client):
     done, reply = client.ask(scene())
     expect(done, reply)
-    client.set_needle_goal(needle_at(-5.0), is_placed=True)
+    client.set_hand(needle_at(-5.0), is_placed=True)
     done, reply = client.ask(simple(COMMANDS.Start))
     expect(done, reply)
     expect(client.wait(lambda: is_on(client)), "the gate does not open")
     depth = -5.0
     while depth < 2.5:
         depth += 0.02
-        client.set_needle_goal(needle_at(depth))
+        client.set_hand(needle_at(depth))
         time.sleep(0.002)
     expect(client.wait(lambda: client.sample and force_n(client) > 0.2), "no force at the skin")
     time.sleep(1.0)

@@ -232,7 +232,7 @@ class Client:
         self._send(body, CLIENT_BODY.Command)
         return body.request
 
-    def set_needle_goal(self, x_pn, is_placed=False):
+    def set_hand(self, x_pn, is_placed=False):
         hand = wire.Hand.HandT()
         hand.xPn, hand.vP, hand.wP, hand.serverTimeS = x_pn, vec3(0, 0, 0), vec3(0, 0, 0), 0.0
         hand.stiffnessNPerMm, hand.dampingNsPerMm, hand.massKg = 0.6, 0.012, 0.15

@@ -104,7 +104,7 @@ class SimulatedServer::Connection final : public attempt::ServerConnection {
     }
     return fail("the server did not answer", server_.endpoint_);
   }
-  void set_target(const link::HandTarget& target) override { client_.set_needle_goal(target); }
+  void set_target(const link::HandTarget& target) override { client_.set_hand(target); }
   void frame_drawn() override { client_.frame_drawn(); }
 
  private:
