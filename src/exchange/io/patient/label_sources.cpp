@@ -24,7 +24,7 @@ constexpr std::size_t kFilesAtOnce = 8;  ///< Masks unpacked at a time: limits t
 std::string stem_of(const fs::path& path) {
   std::string name = path.filename().string();
   for (const std::string_view ending : {".gz", ".nii", ".nrrd", ".nhdr", ".seg", ".mha", ".mhd"})
-    if (name.size() > ending.size() && name.ends_with(ending)) name.resize(name.size() - ending.size());
+    if (name.size() > ending.size() && name.ends_with(ending)) name.erase(name.size() - ending.size());
   return name;
 }
 

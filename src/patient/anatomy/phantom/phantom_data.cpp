@@ -11,8 +11,8 @@ TorsoData read_torso(SectionReader torso, SectionReader diaphragm) {
   SectionReader skin = torso.section("skin");
   SectionReader fat = torso.section("fat");
   SectionReader muscle = torso.section("muscle");
-  return {.half_width_mm = torso.range("half_width_mm"),
-          .half_depth_mm = torso.range("half_depth_mm"),
+  return {.half_width_mm = torso.size("half_width_mm"),
+          .half_depth_mm = torso.size("half_depth_mm"),
           .back_depth_mm = torso.length("back_depth_mm"),
           .umbilicus_z_mm = torso.number("umbilicus_z_mm"),
           .waves_mm = torso.range("waves_mm"),
@@ -25,7 +25,7 @@ TorsoData read_torso(SectionReader torso, SectionReader diaphragm) {
                    .erector = skin.hill_deg("erector_deg"),
                    .linea_alba = skin.hill("linea_alba"),
                    .umbilicus = skin.hill("umbilicus")},
-          .fat = {.factor = fat.range("factor"),
+          .fat = {.factor = fat.size("factor"),
                   .least_mm = fat.length("least_mm"),
                   .chest_z = fat.transition("chest_z"),
                   .flank = fat.hill_deg("flank_deg"),
@@ -244,7 +244,12 @@ LiverData read_liver(SectionReader liver) {
 }
 
 std::vector<Course> read_branches(SectionReader branches) {
+  constexpr std::size_t kMost = 20;
   std::vector<Course> courses;
+  if (branches.keys().size() > kMost) {
+    branches.refuse(branches.keys().front(), "there are more than 20 branches", "remove some");
+    return courses;
+  }
   for (const std::string& name : branches.keys()) courses.push_back(branches.course(name));
   return courses;
 }
