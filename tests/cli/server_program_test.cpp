@@ -18,10 +18,10 @@ bool has(const std::string& text, const char* part) {
   return text.find(part) != std::string::npos;
 }
 
-TEST(ServerProgram, LoadsNeitherSessionsNorSurfaces) {
+TEST(ServerProgram, LoadsNeitherSessionsNorSurfacesNorDicom) {
   const std::string libraries = told_of_server("readelf -d");
   EXPECT_TRUE(has(libraries, "libITK")) << "it reads patient folders";
-  for (const char* library : {"libvtk", "libsoci", "libsqlite", "libQt", "libpng"})
+  for (const char* library : {"libvtk", "libgdcm", "libsoci", "libsqlite", "libQt", "libpng"})
     EXPECT_FALSE(has(libraries, library)) << library;
 }
 

@@ -3,6 +3,7 @@
 #include <vtkCellArray.h>
 #include <vtkIdList.h>
 #include <vtkNew.h>
+#include <vtkObject.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkSTLReader.h>
@@ -152,7 +153,7 @@ bool write_throwing(const TriangleMesh& mesh, const fs::path& path, MeshFormat f
 }  // namespace
 
 Result<TriangleMesh> read_mesh(const fs::path& path, const fs::path& inside) {
-  detail::silence_libraries();
+  vtkObject::SetGlobalWarningDisplay(0);
   TROCAR_TRY(const MeshFormat format, find_mesh_format(path));
   TROCAR_TRY(const InputFile file, InputFile::open(path, FileKind::kMesh, inside));
   TROCAR_TRY(const std::string bytes, file.read_all());
@@ -167,7 +168,7 @@ Result<TriangleMesh> read_mesh(const fs::path& path, const fs::path& inside) {
 }
 
 Status write_mesh(const TriangleMesh& mesh_P, const fs::path& path) {
-  detail::silence_libraries();
+  vtkObject::SetGlobalWarningDisplay(0);
   TROCAR_TRY(const MeshFormat format, find_mesh_format(path));
   return write_atomically(path, [&](const fs::path& temporary) -> Status {
     try {

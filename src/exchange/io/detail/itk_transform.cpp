@@ -77,7 +77,7 @@ void write_throwing(const AffineMap& map, const fs::path& path) {
 }  // namespace
 
 Result<AffineMap> read_transform_with_itk(const InputFile& file) {
-  silence_libraries();
+  silence_itk();
   try {
     return read_throwing(file);
   } catch (const std::exception&) {
@@ -87,7 +87,7 @@ Result<AffineMap> read_transform_with_itk(const InputFile& file) {
 }
 
 Status write_transform_with_itk(const AffineMap& map, const fs::path& path) {
-  silence_libraries();
+  silence_itk();
   try {
     write_throwing(map, path);
     return {};

@@ -5,7 +5,7 @@
 #include "core/log.h"
 #include "core/parallel.h"
 #include "io/image/detail/raw_volume.h"
-#include "io/image/detail/read_grid.h"
+#include "io/image/detail/volume_file.h"
 #include "io/markups_file.h"
 #include "io/patient/detail/patient_layout.h"
 
@@ -15,7 +15,10 @@ namespace {
 
 template <class T>
 Result<volume::Grid<T>> read_volume(const fs::path& folder, const char* name, detail::Check check) {
-  return detail::read_grid<T>(folder / name, detail::convert_voxels, check, folder);
+  const fs::path file = folder / name;
+  TROCAR_TRY_STATUS(detail::check_volume_path(file));
+  TROCAR_TRY(const detail::RawVolume raw, detail::read_volume_file(file, check, folder));
+  return detail::to_grid<T>(raw, file.string(), detail::convert_voxels);
 }
 
 Status load_volumes(const fs::path& folder, anatomy::VirtualPatient& patient) {

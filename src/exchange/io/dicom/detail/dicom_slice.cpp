@@ -3,6 +3,7 @@
 #include <gdcmFragment.h>
 #include <gdcmImage.h>
 #include <gdcmSequenceOfFragments.h>
+#include <gdcmTrace.h>
 
 #include <algorithm>
 #include <cstring>
@@ -225,6 +226,13 @@ Status decode_throwing(const DicomSlice& slice, const std::function<Status(const
   return {};
 }
 
+/// What is wrong with a file is said once, by our error.
+void silence_gdcm() {
+  gdcm::Trace::DebugOff();
+  gdcm::Trace::WarningOff();
+  gdcm::Trace::ErrorOff();
+}
+
 }  // namespace
 
 Result<std::optional<DicomSlice>> find_dicom_slice(const fs::path& path) {
@@ -239,7 +247,7 @@ Result<std::optional<DicomSlice>> find_dicom_slice(const fs::path& path) {
 }
 
 Status decode_slice(const DicomSlice& slice, const std::function<Status(const RawVoxels&)>& use) {
-  silence_libraries();
+  silence_gdcm();
   try {
     return decode_throwing(slice, use);
   } catch (const std::bad_alloc&) {

@@ -92,7 +92,7 @@ Result<ItkImage> read_throwing(itk::ImageIOBase& io, const CheckedImage& checked
 
 Result<ItkImage> read_with_itk(const CheckedImage& checked, ImageFormat format) {
   const std::string where = checked.file.path().string();
-  silence_libraries();
+  silence_itk();
   try {
     return read_throwing(*make_image_io(format), checked, format);
   } catch (const std::bad_alloc&) {
@@ -104,7 +104,7 @@ Result<ItkImage> read_with_itk(const CheckedImage& checked, ImageFormat format) 
 }
 
 Result<TextFields> read_fields_with_itk(const CheckedImage& checked, ImageFormat format) {
-  silence_libraries();
+  silence_itk();
   try {
     const auto io = make_image_io(format);
     io->SetFileName(checked.library_path.string());

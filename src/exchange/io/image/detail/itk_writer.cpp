@@ -49,7 +49,7 @@ void write_throwing(itk::ImageIOBase& io, const ItkImage& image, std::span<const
 
 Status write_with_itk(const ItkImage& image, std::span<const std::byte> bytes, const fs::path& path, ImageFormat format,
                       Packing packing) {
-  silence_libraries();
+  silence_itk();
   try {
     write_throwing(*make_image_io(format), image, bytes, path, packing);
     return {};

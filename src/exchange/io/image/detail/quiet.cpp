@@ -1,11 +1,9 @@
 #include "io/image/detail/quiet.h"
 
 #include <fcntl.h>
-#include <gdcmTrace.h>
 #include <itkObject.h>
 #include <nifti1_io.h>
 #include <unistd.h>
-#include <vtkObject.h>
 
 #include <cstdio>
 #include <mutex>
@@ -27,14 +25,10 @@ Muting& muting() {
 
 }  // namespace
 
-void silence_libraries() {
+void silence_itk() {
   static std::once_flag once;
   std::call_once(once, [] {
     itk::Object::SetGlobalWarningDisplay(false);
-    vtkObject::SetGlobalWarningDisplay(0);
-    gdcm::Trace::DebugOff();
-    gdcm::Trace::WarningOff();
-    gdcm::Trace::ErrorOff();
     nifti_set_debug_level(0);
   });
 }

@@ -2,9 +2,9 @@
 
 namespace trocar::io::detail {
 
-/// Stops the image libraries from writing to the terminal: what is wrong with a file is said once, by our error.
+/// Stops ITK and its NIfTI library from writing to the terminal: what is wrong with a file is said once, by our error.
 /// Cheap after the first call; safe from any thread.
-void silence_libraries();
+void silence_itk();
 
 /// While one lives, standard error of the whole process goes nowhere: the JPEG codecs inside GDCM print there, even for
 /// sound 12-bit files, as do MetaIO and VNL for damaged headers, and cannot be told not to. Only around such calls of

@@ -9,11 +9,8 @@ namespace fs = std::filesystem;
 
 Status check_image_path(const fs::path& path) {
   std::error_code error;
-  if (!fs::exists(path, error)) return fail("no such file or folder", path.string(), "check the path");
   if (fs::is_directory(path, error)) return {};
-  if (!fs::is_regular_file(path, error))
-    return fail("not a regular file", path.string(), "name a file, not a pipe, socket or device");
-  if (fs::file_size(path, error) == 0) return fail("the file is empty", path.string(), "copy or export it again");
+  TROCAR_TRY_STATUS(check_volume_path(path));
   const auto format = find_image_format(path);
   if (format) return {};
   // A file without a known ending can be one slice of a DICOM series.

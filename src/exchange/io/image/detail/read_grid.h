@@ -12,14 +12,13 @@ namespace trocar::io::detail {
 /// A path that must name an image file or a folder; a single DICOM file is refused with advice.
 Status check_image_path(const std::filesystem::path& path);
 
-/// Any image the project reads: a file or the folder of a DICOM series. With `inside`: a file of that folder.
+/// Any image the project reads: a file or the folder of a DICOM series.
 template <class T>
-Result<volume::Grid<T>> read_grid(const std::filesystem::path& path, Converter<T> convert, Check check = Check::kUnpack,
-                                  const std::filesystem::path& inside = {}) {
+Result<volume::Grid<T>> read_grid(const std::filesystem::path& path, Converter<T> convert) {
   TROCAR_TRY_STATUS(check_image_path(path));
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) return read_dicom_folder<T>(path, convert);
-  TROCAR_TRY(const RawVolume raw, read_volume_file(path, check, inside));
+  TROCAR_TRY(const RawVolume raw, read_volume_file(path));
   return to_grid<T>(raw, path.string(), convert);
 }
 

@@ -5,6 +5,15 @@
 namespace trocar::io::detail {
 namespace fs = std::filesystem;
 
+Status check_volume_path(const fs::path& path) {
+  std::error_code error;
+  if (!fs::exists(path, error)) return fail("no such file or folder", path.string(), "check the path");
+  if (!fs::is_regular_file(path, error))
+    return fail("not a regular file", path.string(), "name a file, not a pipe, socket or device");
+  if (fs::file_size(path, error) == 0) return fail("the file is empty", path.string(), "copy or export it again");
+  return {};
+}
+
 Result<RawVolume> read_volume_file(const fs::path& path, Check check, const fs::path& inside) {
   TROCAR_TRY(const ImageFormat format, find_image_format(path));
   TROCAR_TRY(const CheckedImage checked, open_image_file(path, format, check, inside));

@@ -8,6 +8,9 @@
 
 namespace trocar::io::detail {
 
+/// A path that must name a file with something in it. Errors: no such file, not a regular file, empty.
+Status check_volume_path(const std::filesystem::path& path);
+
 /// Reads a NIfTI, NRRD or MetaImage file as it is, place in LPS mm. Errors of open_image_file().
 Result<RawVolume> read_volume_file(const std::filesystem::path& path, Check check = Check::kUnpack,
                                    const std::filesystem::path& inside = {});

@@ -7,8 +7,6 @@
 
 #include <optional>
 
-#include "io/image/detail/quiet.h"
-
 namespace trocar::io::detail {
 namespace {
 
@@ -55,7 +53,7 @@ Result<std::vector<XmlElement>> parse_xml(std::string_view text) {
   // Entities can expand a few bytes to gigabytes; configurations have none.
   if (text.find("<!DOCTYPE") != std::string_view::npos || text.find("<!ENTITY") != std::string_view::npos)
     return fail("has a document type of its own", {}, "remove the <!DOCTYPE ...>");
-  silence_libraries();
+  vtkObject::SetGlobalWarningDisplay(0);
   const auto parser = vtkSmartPointer<Collector>::New();
   const int is_parsed = parser->Parse(text.data(), static_cast<unsigned>(text.size()));
   if (parser->is_too_much)
