@@ -82,8 +82,7 @@ Status add_flavum(std::vector<CaseResult>& results, const Setting& setting,
 }  // namespace
 
 Result<std::vector<CaseResult>> run_contact_benchmark(const Options& options) {
-  const std::filesystem::path data = data_dir();
-  if (data.empty()) return fail("the data folder was not found", "", "set TROCAR_DATA_DIR to it");
+  TROCAR_TRY(const std::filesystem::path data, checked_data_dir());
   TROCAR_TRY(const anatomy::TissueTable table, anatomy::load_tissue_table(data / "tissues.toml"));
   TROCAR_TRY(auto devices, haptics::load_device_presets(data / "devices.toml"));
   std::erase_if(devices, [](const haptics::DevicePreset& device) { return !device.has_force(); });

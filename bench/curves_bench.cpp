@@ -61,8 +61,7 @@ struct Tables {
 };
 
 Result<Tables> load_tables_of_curves() {
-  const std::filesystem::path data = data_dir();
-  if (data.empty()) return fail("the data folder was not found", "", "set TROCAR_DATA_DIR to it");
+  TROCAR_TRY(const std::filesystem::path data, checked_data_dir());
   Tables tables;
   TROCAR_TRY(tables.tissues, anatomy::load_tissue_table(data / "tissues.toml"));
   TROCAR_TRY(tables.needles, tasks::load_needles(data / "needles.toml"));

@@ -91,8 +91,7 @@ Status measure(const haptics::DevicePreset& preset, const std::filesystem::path&
 }  // namespace
 
 Result<std::vector<CaseResult>> run_faults_benchmark(const Options& options) {
-  const std::filesystem::path data = data_dir();
-  if (data.empty()) return fail("the data folder was not found", "", "set TROCAR_DATA_DIR to it");
+  TROCAR_TRY(const std::filesystem::path data, checked_data_dir());
   TROCAR_TRY(const auto presets, haptics::load_device_presets(data / "devices.toml"));
   if (options.print)
     options.print(fmt::format("{:<10} {:>6} {:>8} {:>7} {:<13} {:>6} {:>6} {:>8} {:>8}\n", "device", "read", "period",

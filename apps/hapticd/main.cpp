@@ -156,7 +156,7 @@ void print_report(const server::ServerReport& report) {
 }
 
 Status serve(Arguments& arguments) {
-  if (data_dir().empty()) return fail("the data folder was not found", "data/", "set TROCAR_DATA_DIR to it");
+  TROCAR_TRY(const std::filesystem::path data, checked_data_dir());
   if (arguments.is_test) {
     TROCAR_TRY(const std::unique_ptr<devices::HapticDevice> device, open_named_device(arguments));
     test_device(*device, arguments.rate_hz);
@@ -169,7 +169,7 @@ Status serve(Arguments& arguments) {
   options.rate_hz = arguments.rate_hz;
   options.tool = arguments.tool;
   options.priority = arguments.priority;
-  options.tissues_file = data_dir() / "tissues.toml";
+  options.tissues_file = data / "tissues.toml";
   options.flight_folder = arguments.flight_folder;
 
   EndSignal end;

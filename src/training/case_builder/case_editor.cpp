@@ -18,8 +18,7 @@ CaseEditor::CaseEditor() {
 CaseEditor::~CaseEditor() = default;
 
 Status CaseEditor::load_tables() {
-  const fs::path data = data_dir();
-  if (data.empty()) return fail("the data folder was not found", {}, "set TROCAR_DATA_DIR to it");
+  TROCAR_TRY(const std::filesystem::path data, checked_data_dir());
   TROCAR_TRY(templates_, tasks::load_tasks(data / "tasks"));
   TROCAR_TRY(needles_, tasks::load_needles(data / "needles.toml"));
   TROCAR_TRY(tissues_, anatomy::load_tissue_table(data / "tissues.toml"));

@@ -61,8 +61,7 @@ bool has_own_task(const std::string& patient_folder) {
 }
 
 Result<Case> load_tables(const CaseOptions& options) {
-  const std::filesystem::path data = data_dir();
-  if (data.empty()) return fail("the data folder was not found", "", "set TROCAR_DATA_DIR to it");
+  TROCAR_TRY(const std::filesystem::path data, checked_data_dir());
   Case made;
   TROCAR_TRY_STATUS(find_task(made, options, data / "tasks"));
   const std::string needle = options.needle.empty() ? made.task.needle : options.needle;

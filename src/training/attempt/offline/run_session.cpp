@@ -25,8 +25,7 @@ namespace trocar::attempt {
 namespace {
 
 Result<haptics::DevicePreset> find_device(const RunOptions& options) {
-  const std::filesystem::path data = data_dir();
-  if (data.empty()) return fail("the data folder was not found", "", "set TROCAR_DATA_DIR to it");
+  TROCAR_TRY(const std::filesystem::path data, checked_data_dir());
   return haptics::load_device_preset(data / "devices.toml", options.device);
 }
 

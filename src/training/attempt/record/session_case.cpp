@@ -69,8 +69,7 @@ Result<cases::Case> restore_case(std::shared_ptr<const anatomy::VirtualPatient> 
                                  const storage::Session& session, const storage::SessionParameters& first,
                                  bool is_other_patient_meant) {
   if (!is_other_patient_meant) TROCAR_TRY_STATUS(check_patient(session, *patient));
-  const fs::path data = data_dir();
-  if (data.empty()) return fail("the data folder was not found", "", "set TROCAR_DATA_DIR to it");
+  TROCAR_TRY(const std::filesystem::path data, checked_data_dir());
   const storage::SessionInfo& info = session.info;
   cases::Case restored;
   restored.task_toml = info.task_toml;

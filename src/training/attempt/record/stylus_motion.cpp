@@ -8,9 +8,9 @@
 namespace trocar::attempt {
 
 Result<devices::RecordedMotion> stylus_motion(const storage::Session& session) {
-  if (data_dir().empty()) return fail("the data folder was not found", "", "set TROCAR_DATA_DIR to it");
+  TROCAR_TRY(const std::filesystem::path data, checked_data_dir());
   if (session.samples.empty()) return fail("the session has no ticks", "", "give a recorded session");
-  TROCAR_TRY(const tasks::Needle needle, tasks::load_needle(data_dir() / "needles.toml", session.info.needle));
+  TROCAR_TRY(const tasks::Needle needle, tasks::load_needle(data / "needles.toml", session.info.needle));
   const Pose X_WP = cases::room_in_patient(session.info.plan_P.line_P, needle.length_mm).inverse();
   const Pose X_NS = Pose::translation({0.0, 0.0, -needle.length_mm});
   devices::RecordedMotion motion;
