@@ -1,6 +1,7 @@
 #include "replayed_motion.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -66,8 +67,8 @@ Result<devices::RecordedMotion> load_motion(const fs::path& path) {
   const fs::path motion = folder / "motion.csv", errors = folder / "errors.txt";
   const int status = run_program(*trocar, {"session", "motion", path.string(), "--csv", motion.string()}, errors);
   if (status == 0) return devices::read_motion(motion);
-  const std::string message = message_in(errors);
-  return fail(message.empty() ? "the session cannot be read: " + path.string() : message);
+  return fail(fmt::format("trocar cannot read the session ({})", message_in(errors)), path.string(),
+              "give another session, or a file of trocar session motion");
 }
 
 }  // namespace trocar
