@@ -73,7 +73,8 @@ Result<Task> parse_task(std::string_view text, const std::string& name, const st
 /// The text of such a file: what `task` has that `base` has not.
 std::string task_to_toml(const Task& task, const Task& base);
 
-/// Whether a label is the task's organ, target, or one of its risk structures (nullptr: none).
+/// Whether a label is the task's organ, target, or one of its risk structures (nullptr: none). A risk that is named by
+/// its tissue excludes organ and target: a biopsy of the pancreas can have "organ" as a risk.
 bool is_organ(const Task& task, const anatomy::Label& label) noexcept;
 bool is_target(const Task& task, const anatomy::Label& label) noexcept;
 const RiskStructure* find_risk(const Task& task, const anatomy::Label& label) noexcept;
