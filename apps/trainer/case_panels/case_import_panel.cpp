@@ -10,6 +10,7 @@
 #include <QVBoxLayout>
 
 #include "case_panels/case_panel.h"
+#include "io/image/image_file.h"
 #include "ui_kit/parts.h"
 
 namespace trocar::trainer {
@@ -17,6 +18,13 @@ namespace {
 
 constexpr int kMostRecent = 6;
 const char* const kRecentKey = "case/recent";
+
+/// "*.nii *.nii.gz …"
+QString volume_patterns() {
+  QStringList patterns;
+  for (const std::string_view ending : io::image_endings()) patterns << QStringLiteral("*") + to_qt(ending);
+  return patterns.join(QStringLiteral(" "));
+}
 
 QString first_line(const QString& entry) {
   return entry.section(QLatin1Char('\n'), 0, 0);
@@ -85,8 +93,8 @@ class ImportPanel final : public CasePanel {
     row->addWidget(folder);
     content()->addLayout(row);
     connect(file, &QPushButton::clicked, this, [this] {
-      const QString path = QFileDialog::getOpenFileName(
-          this, tr("CT"), {}, tr("Volumes (*.nii *.gz *.nrrd *.nhdr *.mha *.mhd);;All files (*)"));
+      const QString path =
+          QFileDialog::getOpenFileName(this, tr("CT"), {}, tr("Volumes (%1);;All files (*)").arg(volume_patterns()));
       if (!path.isEmpty()) ct_->setText(path);
     });
     connect(folder, &QPushButton::clicked, this, [this] {

@@ -8,12 +8,19 @@
 #include <QSettings>
 #include <set>
 
+#include "workspace/standard_views.h"
 #include "workspace/workspace.h"
 
 namespace trocar::trainer {
 namespace {
 
 using Names = std::set<std::string>;
+
+/// With the places of the views.
+const std::vector<Layout>& standard_layouts() {
+  static const std::vector<Layout> layouts = layouts_of(standard_views());
+  return layouts;
+}
 
 /// Without layouts that an earlier test has kept.
 struct LayoutsTest : ::testing::Test {
@@ -43,7 +50,7 @@ TEST_F(LayoutsTest, ALayoutShowsItsViewsAndNoOthersWheneverItIsChosen) {
   workspace.resize(1000, 700);
   workspace.show();
   for (int round = 0; round < 3; ++round) {  // from the second on as it was kept
-    for (const Layout& layout : built_in_layouts()) {
+    for (const Layout& layout : standard_layouts()) {
       workspace.choose_layout(layout.name);
       QApplication::processEvents();
       EXPECT_EQ(workspace.width(), 1000) << "a change of layout must not widen the window";
@@ -56,7 +63,7 @@ TEST_F(LayoutsTest, TheMenuAddsAViewToALayoutThatDoesNotHaveIt) {
   Workspace workspace;
   workspace.resize(1000, 700);
   workspace.show();
-  const Layout& first = built_in_layouts().front();
+  const Layout& first = standard_layouts().front();
   workspace.choose_layout(first.name);
   auto* dock = workspace.findChild<QDockWidget*>(QStringLiteral("dock-coronal"));
   dock->toggleViewAction()->trigger();
@@ -74,10 +81,10 @@ TEST_F(LayoutsTest, AViewThatWasHiddenStaysHiddenUntilTheLayoutIsReset) {
   Workspace workspace;
   workspace.resize(1000, 700);
   workspace.show();
-  const Layout& first = built_in_layouts().front();
+  const Layout& first = standard_layouts().front();
   workspace.choose_layout(first.name);
   workspace.findChild<QDockWidget*>(QStringLiteral("dock-forces"))->hide();
-  workspace.choose_layout(built_in_layouts().back().name);
+  workspace.choose_layout(standard_layouts().back().name);
   workspace.choose_layout(first.name);
   Names expected = named_by(first);
   expected.erase("forces");

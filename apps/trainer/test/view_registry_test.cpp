@@ -96,7 +96,7 @@ TEST_F(ViewRegistryTest, ARegisteredViewHasItsPlacesInLayouts) {
   workspace.choose_layout(QStringLiteral("Fluoroscopy"));
   EXPECT_TRUE(is_visible(workspace, "dock-dummy")) << "a layout of its own";
   EXPECT_FALSE(is_visible(workspace, "dock-3d"));
-  EXPECT_EQ(workspace.layouts().size(), built_in_layouts().size() + 1);
+  EXPECT_EQ(workspace.layouts().size(), layouts_of(standard_views()).size() + 1);
 }
 
 TEST_F(ViewRegistryTest, ARegisteredViewReceivesTheCaseTheToolsAndEachFrame) {

@@ -70,6 +70,16 @@ Status check_vtp(std::string_view text, const std::string& where) {
   return {};
 }
 
+Status check_bytes(const std::string& bytes, MeshFormat format, const std::string& where) {
+  switch (format) {
+    case MeshFormat::kStl:
+      return check_stl(bytes, where);
+    case MeshFormat::kVtp:
+      return check_vtp(bytes, where);
+  }
+  return {};
+}
+
 template <class Reader>
 bool run_reader(Reader& reader) {
   reader.Update();
@@ -101,17 +111,22 @@ Result<TriangleMesh> mesh_of(vtkPolyData& data, const std::string& where) {
 Result<TriangleMesh> read_throwing(const InputFile& file, const std::string& bytes, MeshFormat format) {
   const std::string where = file.path().string();
   const auto bad = [&] { return fail("damaged or not a surface", where, kExportAgain); };
-  if (format == MeshFormat::kStl) {
-    vtkNew<vtkSTLReader> reader;
-    reader->SetFileName(file.pinned_path().c_str());
-    if (!run_reader(*reader)) return bad();
-    return mesh_of(*reader->GetOutput(), where);
+  switch (format) {
+    case MeshFormat::kStl: {
+      vtkNew<vtkSTLReader> reader;
+      reader->SetFileName(file.pinned_path().c_str());
+      if (!run_reader(*reader)) return bad();
+      return mesh_of(*reader->GetOutput(), where);
+    }
+    case MeshFormat::kVtp: {
+      vtkNew<vtkXMLPolyDataReader> reader;
+      reader->ReadFromInputStringOn();
+      reader->SetInputString(bytes);
+      if (!run_reader(*reader)) return bad();
+      return mesh_of(*reader->GetOutput(), where);
+    }
   }
-  vtkNew<vtkXMLPolyDataReader> reader;
-  reader->ReadFromInputStringOn();
-  reader->SetInputString(bytes);
-  if (!run_reader(*reader)) return bad();
-  return mesh_of(*reader->GetOutput(), where);
+  return bad();
 }
 
 vtkNew<vtkPolyData> poly_data_of(const TriangleMesh& mesh) {
@@ -140,14 +155,19 @@ bool run_writer(Writer& writer, vtkPolyData& data, const fs::path& path) {
 
 bool write_throwing(const TriangleMesh& mesh, const fs::path& path, MeshFormat format) {
   const vtkNew<vtkPolyData> data = poly_data_of(mesh);
-  if (format == MeshFormat::kStl) {
-    vtkNew<vtkSTLWriter> writer;
-    writer->SetFileTypeToBinary();
-    writer->SetHeader("trocar surface. SPACE=LPS");  // 3D Slicer reads the frame from this header.
-    return run_writer(*writer, *data, path);
+  switch (format) {
+    case MeshFormat::kStl: {
+      vtkNew<vtkSTLWriter> writer;
+      writer->SetFileTypeToBinary();
+      writer->SetHeader("trocar surface. SPACE=LPS");  // 3D Slicer reads the frame from this header.
+      return run_writer(*writer, *data, path);
+    }
+    case MeshFormat::kVtp: {
+      vtkNew<vtkXMLPolyDataWriter> writer;
+      return run_writer(*writer, *data, path);
+    }
   }
-  vtkNew<vtkXMLPolyDataWriter> writer;
-  return run_writer(*writer, *data, path);
+  return false;
 }
 
 }  // namespace
@@ -157,7 +177,7 @@ Result<TriangleMesh> read_mesh(const fs::path& path, const fs::path& inside) {
   TROCAR_TRY(const MeshFormat format, find_mesh_format(path));
   TROCAR_TRY(const InputFile file, InputFile::open(path, FileKind::kMesh, inside));
   TROCAR_TRY(const std::string bytes, file.read_all());
-  TROCAR_TRY_STATUS(format == MeshFormat::kStl ? check_stl(bytes, path.string()) : check_vtp(bytes, path.string()));
+  TROCAR_TRY_STATUS(check_bytes(bytes, format, path.string()));
   try {
     return read_throwing(file, bytes, format);
   } catch (const std::bad_alloc&) {

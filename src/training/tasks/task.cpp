@@ -84,8 +84,9 @@ bool is_target(const Task& task, const anatomy::Label& label) noexcept {
 }
 
 const RiskStructure* find_risk(const Task& task, const anatomy::Label& label) noexcept {
+  const bool is_wanted = is_organ(task, label) || is_target(task, label);
   const auto it = std::find_if(task.risks.begin(), task.risks.end(), [&](const RiskStructure& risk) {
-    return risk.tissue.empty() ? label.name == risk.label : label.tissue == risk.tissue;
+    return risk.tissue.empty() ? label.name == risk.label : !is_wanted && label.tissue == risk.tissue;
   });
   return it != task.risks.end() ? &*it : nullptr;
 }

@@ -18,6 +18,8 @@ struct RiskStructure {
   std::string label;       ///< a label's name when tissue is empty.
   double margin_mm = 5.0;  ///< Range 0..50.
   double penalty = 20.0;   ///< Points lost when touched. Range 0..100.
+
+  bool operator==(const RiskStructure&) const = default;
 };
 
 /// Where a needle may enter: the skin within a ball about one of its points.
@@ -27,6 +29,7 @@ struct EntryZone {
 
   /// How far a point lies outside the zone, mm; 0 inside.
   double distance_outside_mm(const Vec3& p_P) const noexcept;
+  bool operator==(const EntryZone&) const = default;
 };
 
 /// A training task as data (data/tasks/NAME.toml, or task.toml in a patient's folder).
@@ -55,6 +58,8 @@ struct Task {
   double angle_tolerance_deg = 10.0;
   double time_limit_s = 120.0;
   bool exam_shows_needle = false;  ///< In an exam slices and 3D show the needle inside the body, too.
+
+  bool operator==(const Task&) const = default;
 };
 
 inline constexpr const char* kOwnTaskFile = "task.toml";  ///< Of a patient's folder: the task that was made for it.
@@ -73,7 +78,8 @@ Result<Task> parse_task(std::string_view text, const std::string& name, const st
 /// The text of such a file: what `task` has that `base` has not.
 std::string task_to_toml(const Task& task, const Task& base);
 
-/// Whether a label is the task's organ, target, or one of its risk structures (nullptr: none).
+/// Whether a label is the task's organ, target, or one of its risk structures (nullptr: none). A risk that is named by
+/// its tissue excludes organ and target: a biopsy of the pancreas can have "organ" as a risk.
 bool is_organ(const Task& task, const anatomy::Label& label) noexcept;
 bool is_target(const Task& task, const anatomy::Label& label) noexcept;
 const RiskStructure* find_risk(const Task& task, const anatomy::Label& label) noexcept;

@@ -193,10 +193,6 @@ class DifferenceWriter {
   std::string_view table_;  ///< Not yet written.
 };
 
-bool is_same(const RiskStructure& a, const RiskStructure& b) {
-  return a.tissue == b.tissue && a.label == b.label && a.margin_mm == b.margin_mm && a.penalty == b.penalty;
-}
-
 void write_risk(config::TomlWriter& writer, const RiskStructure& risk) {
   writer.begin_row("risks");
   writer.set(risk.tissue.empty() ? "label" : "tissue", risk.tissue.empty() ? risk.label : risk.tissue);
@@ -248,8 +244,7 @@ std::string task_to_toml(const Task& task, const Task& base) {
   keys.set_changed("force_model", task.force_model, base.force_model);
   keys.set_changed("expert_path", task.expert_path, base.expert_path);
   keys.set_changed("target_tissues", task.target_tissues, base.target_tissues);
-  const bool has_same_risks =
-      std::equal(task.risks.begin(), task.risks.end(), base.risks.begin(), base.risks.end(), is_same);
+  const bool has_same_risks = task.risks == base.risks;
   if (!has_same_risks && task.risks.empty()) keys.set("risks", std::vector<std::string>());
   keys.begin_table("path");
   keys.set_changed("min_organ_path_mm", task.min_organ_path_mm, base.min_organ_path_mm);

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "io/image/detail/image_fields.h"
+#include "io/image/detail/payload.h"
 #include "io/image/detail/read_grid.h"
 #include "io/image/detail/volume_file.h"
 
@@ -21,6 +22,12 @@ Result<volume::CtGrid> read_ct(const fs::path& path, const std::string& series) 
 
 Result<volume::LabelGrid> read_labels(const fs::path& path) {
   return detail::read_grid<std::uint8_t>(path, detail::convert_voxels);
+}
+
+std::vector<std::string_view> image_endings() {
+  std::vector<std::string_view> endings;
+  for (const detail::ImageEnding& ending : detail::kImageEndings) endings.push_back(ending.text);
+  return endings;
 }
 
 Result<volume::FloatGrid> read_float(const fs::path& path) {

@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "core/result.h"
 #include "volume/grid.h"
@@ -22,6 +24,9 @@ Result<volume::CtGrid> read_ct(const std::filesystem::path& path, const std::str
 /// Reads a label volume or a mask: the same formats, .seg.nrrd without overlaps and DICOM mask series included. Values
 /// are whole numbers 0..255, anything else is refused.
 Result<volume::LabelGrid> read_labels(const std::filesystem::path& path);
+
+/// Endings of image files in lower case, for choosers of files: ".nii", ".nii.gz" …
+std::vector<std::string_view> image_endings();
 
 /// A float volume (distance fields, float NIfTI). NaN and infinity are refused.
 Result<volume::FloatGrid> read_float(const std::filesystem::path& path);

@@ -20,14 +20,6 @@ namespace {
 constexpr int kMaxLabel = 255;
 constexpr std::size_t kFilesAtOnce = 8;  ///< Masks unpacked at a time: limits the memory.
 
-/// File name without the endings of image files: "liver.nii.gz" -> "liver".
-std::string stem_of(const fs::path& path) {
-  std::string name = path.filename().string();
-  for (const std::string_view ending : {".gz", ".nii", ".nrrd", ".nhdr", ".seg", ".mha", ".mhd"})
-    if (name.size() > ending.size() && name.ends_with(ending)) name.erase(name.size() - ending.size());
-  return name;
-}
-
 /// The values other than 0 in the image.
 std::vector<int> values_in(const volume::LabelGrid& labels) {
   std::array<bool, 256> occurs{};
@@ -52,7 +44,7 @@ Result<anatomy::LabelSource> name_labels(volume::LabelGrid labels, const fs::pat
                                          Place place) {
   anatomy::LabelSource source{path.string(), std::move(labels), {}};
   const std::vector<int> values = values_in(source.labels);
-  const std::string stem = stem_of(path);
+  const std::string stem = detail::image_stem(path);
   if (is_mask(values, stem, map, place)) {
     source.names = {{values.empty() ? 1 : values.front(), map.name_of(stem)}};
     return source;

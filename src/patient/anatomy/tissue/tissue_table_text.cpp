@@ -64,7 +64,8 @@ class Override {
       const bool is_shared_number = layer_field && own_layer && is_first_with_layer(*tissue);
       return is_shared_number ? set(table_.layers[*own_layer], *layer_field, "layers") : Status{};
     }
-    if (!layer_field || (tissue && !layer && !table_.tissues[*tissue].layer)) return unknown_key(tissue.has_value());
+    const bool has_layer = layer || table_.tissues[*tissue].layer;
+    if (!layer_field || !has_layer) return unknown_key(tissue.has_value(), has_layer);
     return set(table_.layers[layer ? *layer : *table_.tissues[*tissue].layer], *layer_field, "layers");
   }
 
@@ -149,11 +150,14 @@ class Override {
     return {};
   }
 
-  Status unknown_key(bool is_tissue) const {
+  /// A tissue without a layer has no stiffness and no puncture force.
+  Status unknown_key(bool is_tissue, bool has_layer) const {
     std::vector<std::string_view> known;
     if (is_tissue)
       for (const auto& field : kTissueFields) known.push_back(field.short_name);
-    for (const auto& field : kLayerFields) known.push_back(field.short_name);
+    if (has_layer)
+      for (const auto& field : kLayerFields)
+        if (std::find(known.begin(), known.end(), field.short_name) == known.end()) known.push_back(field.short_name);
     return fail_usage(fmt::format("\"{}\" has no \"{}\"", assignment_.name, assignment_.key), std::string(text_),
                       fmt::format("known are: {}", fmt::join(known, ", ")));
   }

@@ -47,6 +47,19 @@ TEST(Task, LiverBiopsyPassesTenMillimetresOfLiver) {
   EXPECT_EQ(task.needle, "biopsy-18g");
 }
 
+TEST(Task, ARiskNamedByItsTissueIsNeitherTheOrganNorTheTarget) {
+  Task task;
+  task.organ = "pancreas";
+  task.target_tissues = {"fluid"};
+  task.risks = {{"organ", "", 5.0, 20.0}, {"fluid", "", 5.0, 10.0}, {"", "spleen_tip", 5.0, 10.0}};
+  EXPECT_EQ(find_risk(task, {1, "pancreas", "organ", {}}), nullptr);
+  EXPECT_EQ(find_risk(task, {2, "pancreas_cyst", "fluid", {}}), nullptr);
+  EXPECT_EQ(find_risk(task, {3, "adrenal_gland_left", "organ", {}}), &task.risks[0]);
+  EXPECT_EQ(find_risk(task, {4, "spleen_tip", "spleen", {}}), &task.risks[2]);
+  task.organ = "spleen";
+  EXPECT_EQ(find_risk(task, {4, "spleen_tip", "spleen", {}}), &task.risks[2]) << "named by its label";
+}
+
 TEST(Task, UnknownNameListsTheKnownOnes) {
   const auto task = load_task(kTasks, "lever-biopsy");
   ASSERT_FALSE(task);

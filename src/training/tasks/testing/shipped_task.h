@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <string_view>
 
 #include "core/files/data_dir.h"
@@ -8,11 +10,17 @@
 
 namespace trocar::testing {
 
+/// The task of the data folder.
 inline tasks::Task liver_biopsy() {
-  return *tasks::load_task(data_dir() / "tasks", "liver-biopsy");
+  auto task = tasks::load_task(data_dir() / "tasks", "liver-biopsy");
+  EXPECT_TRUE(task) << (task ? "" : task.error().text());
+  return task.value_or(tasks::Task{});
 }
+/// A needle of the data folder.
 inline tasks::Needle shipped_needle(std::string_view name = "biopsy-18g") {
-  return *tasks::load_needle(data_dir() / "needles.toml", name);
+  auto needle = tasks::load_needle(data_dir() / "needles.toml", name);
+  EXPECT_TRUE(needle) << (needle ? "" : needle.error().text());
+  return needle.value_or(tasks::Needle{});
 }
 
 }  // namespace trocar::testing

@@ -1,6 +1,7 @@
 #include "io/image/detail/payload.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -20,6 +21,7 @@ namespace {
 
 constexpr std::int64_t kMaxSide = 65'535;            ///< Voxels along one axis.
 constexpr std::uint64_t kMaxVoxels = 2'000'000'000;  ///< 4 GB of int16, far above any CT.
+constexpr std::string_view kSegmentation = ".seg";   ///< 3D Slicer adds it before the ending.
 constexpr std::size_t kMaxHeaderBytes = 16u << 20;   ///< .seg.nrrd files with many segments have long headers.
 
 std::string lower(std::string text) {
@@ -216,6 +218,27 @@ Result<Payload> meta_payload(const InputFile& input) {
   return payload;
 }
 
+/// nullptr: not an image file.
+const ImageEnding* find_ending(const fs::path& path) {
+  const std::string name = lower(path.filename().string());
+  const auto* found = std::find_if(kImageEndings.begin(), kImageEndings.end(), [&](const ImageEnding& ending) {
+    return name.size() > ending.text.size() && name.ends_with(ending.text);
+  });
+  return found != kImageEndings.end() ? found : nullptr;
+}
+
+Result<Payload> payload_of(const InputFile& file, ImageFormat format) {
+  switch (format) {
+    case ImageFormat::kNifti:
+      return nifti_payload(file);
+    case ImageFormat::kNrrd:
+      return nrrd_payload(file);
+    case ImageFormat::kMeta:
+      return meta_payload(file);
+  }
+  return fail("not an image", file.path().string(), kExportAgain);
+}
+
 }  // namespace
 
 Result<std::uint64_t> volume_bytes(const std::vector<std::int64_t>& sizes, std::uint64_t bytes_per_voxel,
@@ -235,12 +258,19 @@ Result<std::uint64_t> volume_bytes(const std::vector<std::int64_t>& sizes, std::
 }
 
 Result<ImageFormat> find_image_format(const fs::path& path) {
-  const std::string name = lower(path.filename().string());
-  if (name.ends_with(".nii") || name.ends_with(".nii.gz")) return ImageFormat::kNifti;
-  if (name.ends_with(".nrrd") || name.ends_with(".nhdr")) return ImageFormat::kNrrd;
-  if (name.ends_with(".mha") || name.ends_with(".mhd")) return ImageFormat::kMeta;
+  if (const ImageEnding* ending = find_ending(path)) return ending->format;
+  std::vector<std::string_view> endings;
+  for (const ImageEnding& known : kImageEndings) endings.push_back(known.text);
   return fail("not an image file of a known kind", path.string(),
-              "give a .nii, .nii.gz, .nrrd, .seg.nrrd, .mha or .mhd file, or the folder of a DICOM series");
+              fmt::format("give a file that ends in {}, or the folder of a DICOM series", fmt::join(endings, ", ")));
+}
+
+std::string image_stem(const fs::path& path) {
+  std::string name = path.filename().string();
+  if (const ImageEnding* ending = find_ending(path)) name.erase(name.size() - ending->text.size());
+  if (lower(name).ends_with(kSegmentation) && name.size() > kSegmentation.size())
+    name.erase(name.size() - kSegmentation.size());
+  return name;
 }
 
 Result<InputFile> open_data_file(const fs::path& header, const fs::path& data_file, FileKind kind) {
@@ -257,9 +287,7 @@ Result<InputFile> open_data_file(const fs::path& header, const fs::path& data_fi
 
 Result<CheckedImage> open_image_file(const fs::path& path, ImageFormat format, Check check, const fs::path& inside) {
   TROCAR_TRY(InputFile file, InputFile::open(path, FileKind::kVolume, inside));
-  TROCAR_TRY(const Payload payload, format == ImageFormat::kNifti  ? nifti_payload(file)
-                                    : format == ImageFormat::kNrrd ? nrrd_payload(file)
-                                                                   : meta_payload(file));
+  TROCAR_TRY(const Payload payload, payload_of(file, format));
   if (!payload.data_file.empty()) {
     if (!inside.empty()) return fail("the voxels are in another file", path.string(), "build the patient again");
     TROCAR_TRY(const InputFile data, open_data_file(path, payload.data_file, FileKind::kVolume));

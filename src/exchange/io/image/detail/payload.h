@@ -1,7 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
+#include <string>
+#include <string_view>
 
 #include "core/files/input_file.h"
 
@@ -10,8 +13,22 @@ namespace trocar::io::detail {
 /// The image formats, told by the file's ending.
 enum class ImageFormat { kNifti, kNrrd, kMeta };
 
-/// Format of a path by its ending (.nii .nii.gz .nrrd .nhdr .mha .mhd, any case). Errors: another ending.
+struct ImageEnding {
+  std::string_view text;
+  ImageFormat format;
+};
+
+/// All endings of image files, in lower case.
+inline constexpr std::array kImageEndings{
+    ImageEnding{".nii", ImageFormat::kNifti}, ImageEnding{".nii.gz", ImageFormat::kNifti},
+    ImageEnding{".nrrd", ImageFormat::kNrrd}, ImageEnding{".nhdr", ImageFormat::kNrrd},
+    ImageEnding{".mha", ImageFormat::kMeta},  ImageEnding{".mhd", ImageFormat::kMeta}};
+
+/// Format of a path by its ending, in any case. Errors: another ending.
 Result<ImageFormat> find_image_format(const std::filesystem::path& path);
+
+/// File name without the ending of an image file and ".seg": "liver.nii.gz" -> "liver", "liver.seg.nrrd" -> "liver".
+std::string image_stem(const std::filesystem::path& path);
 
 /// How closely compressed voxels are looked at before they are read.
 enum class Check {

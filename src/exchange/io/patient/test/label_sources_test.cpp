@@ -68,6 +68,19 @@ TEST(LabelSources, OneNumberOfAMapIsNoMask) {
   EXPECT_EQ((*sources)[0].names, (Names{{5, "liver"}}));
 }
 
+TEST(LabelSources, AMaskIsNamedAfterItsFileWithoutTheEnding) {
+  TemporaryFolder folder;
+  for (const char* ending : {".nii", ".nii.gz", ".mha", ".nrrd"})
+    ASSERT_TRUE(write_image(labels_with({1, 1}), folder / (std::string("liver") + ending))) << ending;
+  for (const char* ending : {".NRRD", ".seg.nrrd", ".Seg.nrrd"})
+    std::filesystem::copy_file(folder / "liver.nrrd", folder / (std::string("liver") + ending));
+  for (const char* ending : {".nii", ".nii.gz", ".mha", ".nrrd", ".NRRD", ".seg.nrrd", ".Seg.nrrd"}) {
+    const auto sources = read_label_sources({folder / (std::string("liver") + ending)}, "");
+    ASSERT_TRUE(sources) << ending << ": " << error_of(sources);
+    EXPECT_EQ((*sources)[0].names, (Names{{1, "liver"}})) << ending;
+  }
+}
+
 TEST(LabelSources, NumbersWithoutNamesAreAnError) {
   TemporaryFolder folder;
   ASSERT_TRUE(write_image(labels_with({5, 2, 200}), folder / "seg.nii.gz"));

@@ -324,6 +324,16 @@ TEST(TissueTable, UnusableOverrideIsAUsageErrorAndChangesNothing) {
   }
 }
 
+TEST(TissueTable, OnlyATissueWithALayerListsItsKeys) {
+  const auto advice_for = [](const char* text) {
+    TissueTable table = shipped_tissues();
+    const Status status = apply_override(table, text);
+    return status ? std::string("no error") : status.error().advice;
+  };
+  EXPECT_EQ(advice_for("kidney.k=1"), "known are: nu, mu, delta, stick, fc, young");
+  EXPECT_EQ(advice_for("liver.stiff=1"), "known are: nu, mu, delta, stick, fc, young, k, dx, fp");
+}
+
 TEST(TissueTable, ReadsTheTextOfOlderVersions) {
   // Every name in quotes, whole numbers without a fraction.
   const TissueTable table = shipped_tissues();
