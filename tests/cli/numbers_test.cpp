@@ -44,24 +44,34 @@ std::vector<std::string> numeric_options(const std::string& help) {
   return options;
 }
 
-class Numbers : public testing::TestWithParam<Command> {};
+/// Refused by every option. All options are read by one function (apps/arguments), so the other spellings are tried
+/// with one option of a command.
+constexpr const char* kNoNumbers[] = {"nan", "''", "1e300", "-1e300", "3x"};
+constexpr const char* kMoreSpellings[] = {"-nan",     "inf",  "-inf", "' '", "18446744073709551616",
+                                          "-1000000", "0x10", "1,5x"};
+
+class Numbers : public testing::TestWithParam<Command> {
+ protected:
+  void expect_refused(const std::string& option, const char* value) {
+    const std::string line = std::string(command_.name) + " " + command_.required + " " + option + "=" + value;
+    const Outcome outcome = run_program(command_.program, line, "cd '" + folder_.path().string() + "' &&");
+    EXPECT_EQ(outcome.exit_status, 2) << line << "\n" << outcome.err;
+    EXPECT_EQ(line_count(outcome.err), 1) << line << "\n" << outcome.err;
+    EXPECT_NE(outcome.err.find(option), std::string::npos) << line << "\n" << outcome.err;
+  }
+
+  const Command command_ = GetParam();
+  const TemporaryFolder folder_;
+};
 
 TEST_P(Numbers, OutsideOfTheirRangeAreRefusedInOneLine) {
-  const Command& command = GetParam();
-  const TemporaryFolder folder;
-  const std::string inside = "cd '" + folder.path().string() + "' &&";
-  const Outcome help = run_program(command.program, std::string(command.name) + " --help");
-  for (const std::string& option : numeric_options(help.out)) {
-    for (const char* value : {"nan", "-nan", "inf", "-inf", "''", "' '", "1e300", "-1e300", "18446744073709551616",
-                              "-1000000", "3x", "0x10", "1,5x"}) {
-      const std::string line = std::string(command.name) + " " + command.required + " " + option + "=" + value;
-      const Outcome outcome = run_program(command.program, line, inside);
-      EXPECT_EQ(outcome.exit_status, 2) << line << "\n" << outcome.err;
-      EXPECT_EQ(line_count(outcome.err), 1) << line << "\n" << outcome.err;
-      EXPECT_NE(outcome.err.find(option), std::string::npos) << line << "\n" << outcome.err;
-    }
-  }
-  EXPECT_TRUE(folder.is_empty());
+  const Outcome help = run_program(command_.program, std::string(command_.name) + " --help");
+  const std::vector<std::string> options = numeric_options(help.out);
+  for (const std::string& option : options)
+    for (const char* value : kNoNumbers) expect_refused(option, value);
+  if (!options.empty())
+    for (const char* value : kMoreSpellings) expect_refused(options.front(), value);
+  EXPECT_TRUE(folder_.is_empty());
 }
 
 TEST_P(Numbers, HaveTheirRangeInTheHelp) {
