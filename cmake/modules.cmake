@@ -128,8 +128,9 @@ function(trocar_add_test name library)
   endif()
   set_tests_properties(${name} PROPERTIES TIMEOUT ${timeout_s}
     ENVIRONMENT "GTEST_BRIEF=1;TROCAR_DATA_DIR=${PROJECT_SOURCE_DIR}/data;TROCAR_BIN_DIR=${CMAKE_BINARY_DIR}/bin;XDG_CACHE_HOME=${CMAKE_BINARY_DIR}/tests/cache")
-  # What reads foreign bytes, talks to devices and clients, or makes ticks: seconds, also in a Debug build with sanitizers.
-  if(name MATCHES "^(core|realtime|config|geometry|volume|telemetry|haptics|link|devices|server|io|tasks|storage|same_bits)$")
+  # What reads foreign bytes, talks to devices and clients, or repeats whole attempts: minutes in a Debug build with
+  # sanitizers, too.
+  if(name MATCHES "^(core|realtime|config|geometry|volume|telemetry|link|devices|server|io|storage|same_bits)$")
     set_tests_properties(${name} PROPERTIES LABELS quick)
     add_dependencies(quick_tests ${name}_test)
   endif()
