@@ -127,7 +127,7 @@ function(trocar_add_test name library)
     set(timeout_s 3600)
   endif()
   set_tests_properties(${name} PROPERTIES TIMEOUT ${timeout_s}
-    ENVIRONMENT "GTEST_BRIEF=1;TROCAR_DATA_DIR=${PROJECT_SOURCE_DIR}/data;TROCAR_BIN_DIR=${CMAKE_BINARY_DIR}/bin;XDG_CACHE_HOME=${CMAKE_BINARY_DIR}/tests/cache")
+    ENVIRONMENT "GTEST_BRIEF=1;TROCAR_DATA_DIR=${PROJECT_SOURCE_DIR}/data;TROCAR_BIN_DIR=${CMAKE_BINARY_DIR}/bin;XDG_CACHE_HOME=${CMAKE_BINARY_DIR}/test-cache")
   # What reads foreign bytes, talks to devices and clients, or repeats whole attempts: minutes in a Debug build with
   # sanitizers, too.
   if(name MATCHES "^(core|realtime|config|geometry|volume|telemetry|link|devices|server|io|storage|same_bits)$")

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "attempt/live/live_attempt.h"
-#include "cases/open_case.h"
+#include "cases/testing/cached_case.h"
 #include "core/files/temporary_folder.h"
 #include "servers/live_server.h"
 
@@ -16,7 +16,7 @@ inline std::shared_ptr<const cases::OpenCase> layered_case() {
   static const std::shared_ptr<const cases::OpenCase> kOpen = [] {
     cases::CaseChoice choice;
     choice.patient_source = "layers-liver";
-    auto made = cases::make_open_case(choice);
+    auto made = testing::open_cached_case(choice);
     EXPECT_TRUE(made) << made.error().text();
     return made ? *made : nullptr;
   }();
@@ -24,11 +24,10 @@ inline std::shared_ptr<const cases::OpenCase> layered_case() {
 }
 
 /// Its way to the liver is slanted: a stylus that sags leaves the needle's channel. The patient is kept, so that the
-/// servers need not make it again.
+/// servers need not generate it again.
 inline std::shared_ptr<const cases::OpenCase> abdomen_case() {
-  static const TemporaryFolder kKept;
   static const std::shared_ptr<const cases::OpenCase> kOpen = [] {
-    auto made = cases::make_open_case({}, cases::OpenOptions{nullptr, kKept.path()});
+    auto made = testing::open_cached_case();
     EXPECT_TRUE(made) << made.error().text();
     return made ? *made : nullptr;
   }();

@@ -8,10 +8,10 @@
 #include <optional>
 #include <string>
 
-#include "anatomy/phantom/phantom.h"
 #include "attempt/live/attempt_loop.h"
 #include "attempt/live/live_attempt.h"
 #include "attempt/tools/resting_transducer.h"
+#include "cases/testing/phantom_case.h"
 #include "core/files/temporary_folder.h"
 #include "servers/simulated_server.h"
 
@@ -23,9 +23,7 @@ inline std::shared_ptr<const cases::OpenCase> prepared_case(const std::string& p
   static std::map<std::string, std::shared_ptr<const cases::OpenCase>> kMade;
   std::shared_ptr<const cases::OpenCase>& made = kMade[patient_name];
   if (made) return made;
-  auto patient = anatomy::generate_phantom(patient_name);
-  TROCAR_CHECK(patient.has_value());
-  auto the_case = cases::prepare_case(std::make_shared<const anatomy::VirtualPatient>(*std::move(patient)), {});
+  auto the_case = testing::phantom_case(patient_name);
   TROCAR_CHECK(the_case.has_value());
   cases::OpenCase open;
   open.choice.patient_source = open.server_source = patient_name;

@@ -20,7 +20,7 @@ namespace trocar::trainer {
 namespace {
 
 /// A window with a view and controls of every kind.
-struct KeysTest : testing::Test {
+struct KeysTest : ::testing::Test {
   KeysTest() {
     auto* column = new QVBoxLayout(&window);
     choice->addItems({QStringLiteral("aorta"), QStringLiteral("spleen"), QStringLiteral("vena cava")});

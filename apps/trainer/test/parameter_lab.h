@@ -19,7 +19,7 @@
 namespace trocar::trainer {
 
 /// A parameter panel with the embedded patient and an empty folder for profiles.
-class ParameterLab : public testing::Test {
+class ParameterLab : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     opened = open_abdomen();

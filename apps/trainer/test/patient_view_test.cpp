@@ -18,7 +18,7 @@
 namespace trocar::trainer {
 namespace {
 
-class PatientViewTest : public testing::Test {
+class PatientViewTest : public ::testing::Test {
  protected:
   void SetUp() override {
     view.resize(480, 360);

@@ -53,7 +53,7 @@ TEST(Script, MistakesNameTheirLine) {
 }
 
 /// A small window to play on.
-struct SmallStage : testing::Test {
+struct SmallStage : ::testing::Test {
   SmallStage() {
     auto* column = new QVBoxLayout(&window);
     button = make_button("push", QStringLiteral("Push"), QStringLiteral("Counts"), QStringLiteral("Ctrl+K"));

@@ -18,7 +18,7 @@ namespace trocar::trainer {
 namespace {
 
 /// Settings of the test's own, so that a person's stay as they are.
-struct StartPageTest : testing::Test {
+struct StartPageTest : ::testing::Test {
   StartPageTest() {
     QSettings::setDefaultFormat(QSettings::IniFormat);
     QSettings::setPath(QSettings::IniFormat, QSettings::UserScope, folder.path());

@@ -24,7 +24,7 @@ TriangleMesh tetrahedron(const Vec3f& middle_P, float size_mm) {
   return mesh;
 }
 
-class StructurePanelTest : public testing::Test {
+class StructurePanelTest : public ::testing::Test {
  protected:
   void SetUp() override {
     anatomy::VirtualPatient patient;

@@ -62,7 +62,7 @@ inline Place place(const std::string& name, const ultrasound::Transducer& probe)
 }
 
 /// Views of the embedded patient, with a frame loop, a mouse and keys; controls are kept in a folder of the test's own.
-class UltrasoundViewTest : public testing::Test {
+class UltrasoundViewTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() { abdomen(); }
 

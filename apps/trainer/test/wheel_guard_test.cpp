@@ -20,7 +20,7 @@ namespace {
 constexpr int kNotch = 120;
 
 /// Controls in a scroll area that is too low for them.
-struct WheelGuardTest : testing::Test {
+struct WheelGuardTest : ::testing::Test {
   WheelGuardTest() {
     qApp->installEventFilter(&guard);
     auto* content = new QWidget;

@@ -19,7 +19,7 @@ namespace {
 const QColor kGreen(0, 200, 0);
 
 /// A window with a green button in its upper left corner that counts its clicks.
-struct WindowMirrorTest : testing::Test {
+struct WindowMirrorTest : ::testing::Test {
   WindowMirrorTest() {
     auto* central = new QWidget;
     central->setStyleSheet(QStringLiteral("background: black;"));

@@ -85,7 +85,7 @@ void expect_same(const Sizes& now, const Sizes& before, const std::string& after
   }
 }
 
-struct WorkspaceLayoutTest : testing::Test {
+struct WorkspaceLayoutTest : ::testing::Test {
   WorkspaceLayoutTest() {
     QSettings().clear();
     workspace.resize(1000, 700);

@@ -6,10 +6,10 @@
 #include <span>
 
 #include "anatomy/phantom/phantom.h"
-#include "core/files/atomic_file.h"
 #include "core/files/input_file.h"
 #include "core/files/unfinished_output.h"
 #include "core/hash.h"
+#include "io/patient/detail/maker_version.h"
 #include "io/patient/patient_folder.h"
 
 namespace trocar::io {
@@ -17,22 +17,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Hash of the running program; empty if it cannot be read.
-const std::string& build_hash() {
-  static const std::string kHash = [] {
-    const auto program = read_file("/proc/self/exe");
-    if (!program) return std::string();
-    ContentHash hash;
-    hash.add(std::as_bytes(std::span(*program)));
-    return hash.digest();
-  }();
-  return kHash;
-}
-
-/// Hash of program and data files: another build or other data may generate other patients.
+/// Hash of the code and the data files that generate patients: other ones may generate other patients.
 std::string maker_hash() {
   ContentHash hash;
-  hash.add(std::as_bytes(std::span(build_hash())));
+  hash.add(std::as_bytes(std::span(detail::maker_version())));
   for (const fs::path& file : anatomy::phantom_data_files())
     if (const auto text = read_input(file, FileKind::kToml)) hash.add(std::as_bytes(std::span(*text)));
   return hash.digest();
@@ -80,7 +68,7 @@ std::optional<fs::path> use(const fs::path& entry) {
 PatientCache::PatientCache(fs::path folder) : folder_(std::move(folder)) {}
 
 bool PatientCache::is_valid(const PatientSource& source) const {
-  return !folder_.empty() && !build_hash().empty() && is_embedded(source);
+  return !folder_.empty() && is_embedded(source);
 }
 
 fs::path PatientCache::folder_of(const PatientSource& source, bool has_surfaces) const {

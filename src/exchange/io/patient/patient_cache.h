@@ -12,9 +12,9 @@
 namespace trocar::io {
 
 /// Embedded patients kept as patient folders, with their surfaces or without: loading takes a second, generating many.
-/// An entry belongs to one name, one seed, one build of the program and its data files (phantom_data_files), since
-/// another build or other data may generate other patients. Entries are written whole or not at all; the least recently
-/// used ones are removed.
+/// An entry belongs to one name, one seed, one version of the code that generates patients and its data files
+/// (phantom_data_files), since other code or data may generate other patients; all programs of a build share the
+/// entries. Entries are written whole or not at all; the least recently used ones are removed.
 class PatientCache {
  public:
   static constexpr std::size_t kMostKept = 6;                            ///< Entries.

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "core/files/temporary_folder.h"
+#include "core/files/user_folders.h"
 #include "ultrasound/probe/probe_contact.h"
 #include "ultrasound/probe/scan_geometry.h"
 
@@ -16,7 +17,8 @@ namespace {
 class OpenedCase : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    BackgroundJob<std::shared_ptr<const OpenCase>> job = open_case({});
+    BackgroundJob<std::shared_ptr<const OpenCase>> job =
+        open_case({}, OpenOptions{nullptr, user_cache_folder() / "patients"});
     while (!job.view().is_done) {
       steps.insert(job.view().step);
       std::this_thread::sleep_for(std::chrono::milliseconds(1));

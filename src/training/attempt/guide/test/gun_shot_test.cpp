@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "attempt/guide/puncture_guide.h"
-#include "cases/open_case.h"
+#include "cases/testing/cached_case.h"
 
 namespace trocar::attempt {
 namespace {
@@ -14,7 +14,7 @@ const cases::OpenCase& liver() {
   static const std::shared_ptr<const cases::OpenCase> open = [] {
     cases::CaseChoice choice;
     choice.patient_source = "layers-liver";
-    return *cases::make_open_case(choice);
+    return *testing::open_cached_case(choice);
   }();
   return *open;
 }

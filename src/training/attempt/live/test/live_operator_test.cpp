@@ -27,7 +27,7 @@ class Witness final : public tasks::Operator {
   std::size_t fires_at = 0, done_at = 0;
 };
 
-class LiveOperatorTest : public testing::Test {
+class LiveOperatorTest : public ::testing::Test {
  protected:
   void SetUp() override {
     auto patient = anatomy::generate_phantom("layers-liver");

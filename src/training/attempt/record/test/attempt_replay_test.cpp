@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "attempt/offline/run_session.h"
+#include "cases/testing/cached_case.h"
 #include "core/files/temporary_folder.h"
 
 namespace trocar::attempt {
@@ -18,7 +19,7 @@ struct Recorded {
 const Recorded& recorded() {
   static const Recorded the_one = [] {
     Recorded r;
-    r.open = *cases::make_open_case({});
+    r.open = *testing::open_cached_case();
     r.folder = std::make_unique<TemporaryFolder>();
     r.session = r.folder->path() / "expert.trocar";
     RunOptions options;

@@ -11,7 +11,7 @@
 namespace trocar::attempt {
 namespace {
 
-struct JournalTest : testing::Test {
+struct JournalTest : ::testing::Test {
   JournalTest() : folder(std::make_unique<TemporaryFolder>()), journal(folder->path()) {
     state.choice.patient_source = "layers-liver";
     state.choice.patient_seed = 7;

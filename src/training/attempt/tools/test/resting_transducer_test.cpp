@@ -8,7 +8,7 @@
 namespace trocar::attempt {
 namespace {
 
-class RestingTransducerTest : public testing::Test {
+class RestingTransducerTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     auto made = anatomy::generate_phantom("layers-liver");
