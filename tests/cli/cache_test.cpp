@@ -13,7 +13,7 @@ TEST(Cache, GivesTheSameSessionAsAGeneratedPatient) {
   const std::string cached = "XDG_CACHE_HOME='" + (folder / "cache") + "'";
   const auto run = [&](const std::string& name, const std::string& more) {
     const Outcome ran =
-        trocar("run liver-biopsy --patient abdomen --patient-seed 3 --operator constant-velocity:40 --out '" +
+        trocar("run liver-biopsy --patient layers-liver --patient-seed 3 --operator constant-velocity:40 --out '" +
                    (folder / name) + "' " + more,
                cached);
     EXPECT_EQ(ran.exit_status, 0) << ran.err;
@@ -26,7 +26,7 @@ TEST(Cache, GivesTheSameSessionAsAGeneratedPatient) {
   const fs::path entries = fs::path(folder / "cache") / "trocar" / "patients";
   ASSERT_TRUE(fs::exists(entries));
   const auto entry = fs::directory_iterator(entries)->path();
-  EXPECT_TRUE(entry.filename().string().starts_with("abdomen-3-")) << entry;
+  EXPECT_TRUE(entry.filename().string().starts_with("layers-liver-3-")) << entry;
   run("warm", "");
   const std::string plain = read_file(folder / "plain.csv").value_or("");
   ASSERT_GT(plain.size(), 100000u);
