@@ -1,5 +1,6 @@
-# The version of what generates patients: a hash of the sources of these modules, of the compiler and of its options. The
-# cache of patients is by it, so that all programs of a build share its entries. Run as a script, it writes that source.
+# The version of what generates patients: a hash of the sources of these modules, of the compiler and of its options. Its
+# entries in the cache of patients carry it, so that all programs of a build share them. Run as a script, this file writes
+# the source that returns it.
 if(CMAKE_SCRIPT_MODE_FILE)
   file(STRINGS ${LIST} files)
   set(all "${MADE_BY}")
