@@ -195,7 +195,7 @@ void SimulatedServer::receive(double now_s) {
     if (const auto* target = std::get_if<link::HandTarget>(&received->body)) process_->hand = *target;
     note_control(*received);
   }
-  link_.drop_silent(now_s);
+  link_.drop_lost(now_s);
 }
 
 void SimulatedServer::take(const link::Received& received, const link::Command& command, double now_s) {

@@ -17,6 +17,8 @@ inline constexpr double kMostBytesPerS = 4.0 * 1024 * 1024;
 inline constexpr double kMostBytesAtOnce = 4.0 * 1024 * 1024;
 /// Waiting for a client to read them; batches beyond are dropped for it [assumed: two seconds at 1 kHz].
 inline constexpr std::size_t kMostBytesOut = 1280 * 1024;
+/// In addition, for replies to commands, which are never dropped; a client that does not even read these is removed.
+inline constexpr std::size_t kMostReplyBytesOut = 1 << 20;
 
 // Connections and clients. [assumed]
 inline constexpr std::size_t kMostStrangers = 16;   ///< Connections that have not said Hello.

@@ -51,7 +51,8 @@ struct ServerSocket::Impl {
   void refuse(std::string_view routing_id, std::string text, double now_s);
   void greet(Peer& peer, const Welcome& welcome);
   bool is_permitted(Peer& peer, const ClientBody& body);
-  bool send(Peer& peer, ServerMessage& message);
+  bool send(Peer& peer, ServerMessage& message, std::size_t most_waiting = kMostBytesOut);
+  void send_reply(Peer& peer, Reply reply);
 };
 
 Result<ServerSocket> ServerSocket::bind(const Endpoint& endpoint, std::optional<ServerSecurity> security) {
@@ -148,8 +149,7 @@ void ServerSocket::Impl::explain(const ServerConnections::Incoming& incoming, co
     refuse(incoming.routing_id, error.text(), now_s);
     return;
   }
-  ServerMessage reply{0, 0, Reply{command->request, false, error.text()}};
-  send(*peer, reply);
+  send_reply(*peer, {command->request, false, error.text()});
 }
 
 void ServerSocket::Impl::refuse(std::string_view routing_id, std::string text, double now_s) {
@@ -177,21 +177,24 @@ bool ServerSocket::Impl::is_permitted(Peer& peer, const ClientBody& body) {
   if (command == nullptr && !std::holds_alternative<HandTarget>(body)) return true;
   if (peers.has_control(peer)) return true;
   ++refused.not_in_control;
-  if (command != nullptr) {
-    ServerMessage reply{0, 0, Reply{command->request, false, "another client controls this server"}};
-    send(peer, reply);
-  }
+  if (command != nullptr) send_reply(peer, {command->request, false, "another client controls this server"});
   return false;
 }
 
 /// Sends the message with the client's session and next number. Returns false if the client is gone or accepts no more
 /// messages.
-bool ServerSocket::Impl::send(Peer& peer, ServerMessage& message) {
+bool ServerSocket::Impl::send(Peer& peer, ServerMessage& message, std::size_t most_waiting) {
   message.session = peer.session;
   message.sequence = peer.last_sent + 1;
-  if (!connections.send(peer.routing_id, encode(message))) return false;
+  if (!connections.send(peer.routing_id, encode(message), most_waiting)) return false;
   ++peer.last_sent;
   return true;
+}
+
+/// Every command has one reply. A client that reads so slowly that it cannot be queued loses its session instead.
+void ServerSocket::Impl::send_reply(Peer& peer, Reply reply) {
+  ServerMessage message{0, 0, std::move(reply)};
+  if (!send(peer, message, kMostBytesOut + kMostReplyBytesOut)) peer.has_missed_reply = true;
 }
 
 void ServerSocket::send_batch(const StateBatch& batch) {
@@ -203,14 +206,11 @@ void ServerSocket::send_batch(const StateBatch& batch) {
 }
 
 void ServerSocket::send_reply(std::uint64_t session, const Reply& reply) {
-  Peer* peer = impl_->peers.find_session(session);
-  if (peer == nullptr) return;
-  ServerMessage message{0, 0, reply};
-  impl_->send(*peer, message);
+  if (Peer* peer = impl_->peers.find_session(session)) impl_->send_reply(*peer, reply);
 }
 
-void ServerSocket::drop_silent(double now_s) {
-  impl_->peers.forget_silent(now_s, kForgotten_s);
+void ServerSocket::drop_lost(double now_s) {
+  impl_->peers.forget_lost(now_s, kForgotten_s);
   impl_->connections.drop_strangers(now_s);
 }
 

@@ -49,9 +49,10 @@ class ServerSocket {
   std::optional<Received> receive(int wait_ms, const Welcome& welcome, double now_s);
   /// To every peer; batches a slow peer cannot take are dropped for it and counted.
   void send_batch(const StateBatch& batch);
+  /// Never dropped: a peer that reads too slowly even for replies loses its session instead.
   void send_reply(std::uint64_t session, const Reply& reply);
-  /// Removes clients that timed out, and closes connections that never sent Hello.
-  void drop_silent(double now_s);
+  /// Removes clients that timed out or missed a reply, and closes connections that never sent Hello.
+  void drop_lost(double now_s);
 
   /// Time of the last message from the client in control (steady clock, s); empty without such a client.
   std::optional<double> controller_heard_s() const;

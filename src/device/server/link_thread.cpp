@@ -34,7 +34,7 @@ void LinkThread::run() {
   while (!shared_.is_stopping.load(std::memory_order_relaxed)) {
     receive_round();
     const double now_s = realtime::seconds(realtime::now_ns());
-    socket_.drop_silent(now_s);
+    socket_.drop_lost(now_s);
     const std::optional<double> heard_s = socket_.controller_heard_s();
     shared_.heard_ns.store(heard_s ? static_cast<std::int64_t>(*heard_s * 1e9) : 0, std::memory_order_relaxed);
     for (const AddressedReply& answer : shared_.door.take_replies()) socket_.send_reply(answer.session, answer.reply);

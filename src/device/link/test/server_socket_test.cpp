@@ -76,41 +76,6 @@ TEST(ServerSocket, SendsEveryTickToEveryClient) {
   EXPECT_EQ(server.batches_not_taken(), 0u);
 }
 
-TEST(ServerSocket, CountsEveryBatchThatASlowClientDoesNotTake) {
-  ServerSocket server = bound();
-  RawClient slow(server.bound_url(), 1), quick(server.bound_url());
-  join(server, slow);
-  join(server, quick, false);
-  // Queues and the system's buffers hold some megabytes; then the slow one takes no more, and the quick one all.
-  std::uint64_t sent = 0;
-  while (server.batches_not_taken() < 50) {
-    ASSERT_LT(sent, 20'000u);
-    server.send_batch(test_batch(sent * kMostSamples, kMostSamples));
-    const auto batch = next_while_served<StateBatch>(server, quick);
-    ASSERT_TRUE(batch);
-    ASSERT_EQ(batch->first_tick, sent * kMostSamples);
-    ++sent;
-  }
-  const std::uint64_t taken = sent - server.batches_not_taken();
-  std::uint64_t sequence = 0;
-  for (std::uint64_t i = 0; i < taken; ++i) {
-    std::optional<ServerMessage> message;
-    ASSERT_TRUE(eventually([&] {
-      EXPECT_FALSE(server.receive(0, test_welcome(), kNow_s));  // it sends what waits
-      message = slow.receive(ZMQ_DONTWAIT);
-      return message.has_value();
-    })) << "batch "
-        << i << " of " << taken;
-    ASSERT_TRUE(std::holds_alternative<StateBatch>(message->body));
-    EXPECT_GT(message->sequence, sequence);
-    sequence = message->sequence;
-  }
-  server.send_batch(test_batch(sent * kMostSamples, 1));
-  const auto last = slow.next<StateBatch>();
-  ASSERT_TRUE(last);
-  EXPECT_EQ(last->first_tick, sent * kMostSamples);
-}
-
 TEST(ServerSocket, FirstWhoWantsControlHasItAndOthersWatch) {
   ServerSocket server = bound();
   RawClient first(server.bound_url()), second(server.bound_url());
@@ -407,9 +372,9 @@ TEST(ServerSocket, SilentPeersAreForgotten) {
   ServerSocket server = bound();
   RawClient client(server.bound_url());
   join(server, client);
-  server.drop_silent(kNow_s);
+  server.drop_lost(kNow_s);
   EXPECT_TRUE(server.controller_heard_s());
-  server.drop_silent(kLongAfter_s);
+  server.drop_lost(kLongAfter_s);
   EXPECT_FALSE(server.controller_heard_s());
   client.send(Heartbeat{});
   EXPECT_TRUE(eventually([&] {

@@ -34,9 +34,9 @@ class InProcessServerEnd {
   std::optional<link::Received> receive(const link::Welcome& welcome, double now_s);
   void send_batch(const link::StateBatch& batch);
   void send_reply(std::uint64_t session, const link::Reply& reply);
-  void drop_silent(double now_s) {
+  void drop_lost(double now_s) {
     constexpr double kForgotten_s = 10.0;
-    peers_.forget_silent(now_s, kForgotten_s);
+    peers_.forget_lost(now_s, kForgotten_s);
   }
   std::optional<double> controller_heard_s() const {
     const link::detail::Peer* controller = peers_.controller();

@@ -237,7 +237,7 @@ TEST(HapticClient, ServerThatForgotItWelcomesItAgainWithControl) {
   RunningServer server(any_endpoint());
   HapticClient client = connected(server.url());
   ASSERT_TRUE(client.wait_connected(kPatience));
-  server.with_socket([](ServerSocket& socket) { socket.drop_silent(1e18); });
+  server.with_socket([](ServerSocket& socket) { socket.drop_lost(1e18); });
   ASSERT_TRUE(eventually([&] { return client.view().welcomes >= 2; }));
   EXPECT_TRUE(client.view().welcome.has_control);
 }

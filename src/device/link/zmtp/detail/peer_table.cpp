@@ -7,7 +7,7 @@ namespace trocar::link::detail {
 Peer* PeerTable::greet(std::string_view routing_id, const Hello& hello, std::uint64_t new_session, double now_s) {
   Peer* peer = find(routing_id);
   if (!has_place(peer, hello.wants_control)) {
-    forget_silent(now_s, kControlLost_s);
+    forget_lost(now_s, kControlLost_s);
     peer = find(routing_id);
     if (!has_place(peer, hello.wants_control)) return nullptr;
   }
@@ -70,8 +70,8 @@ void PeerTable::forget(std::uint64_t session) {
   if (controller_ == session) controller_ = 0;
 }
 
-void PeerTable::forget_silent(double now_s, double longest_s) {
-  std::erase_if(peers_, [&](const Peer& peer) { return now_s - peer.heard_s > longest_s; });
+void PeerTable::forget_lost(double now_s, double longest_s) {
+  std::erase_if(peers_, [&](const Peer& peer) { return peer.has_missed_reply || now_s - peer.heard_s > longest_s; });
   if (controller() == nullptr) controller_ = 0;
 }
 

@@ -19,6 +19,7 @@ struct Peer {
   double heard_s = 0.0;
   bool wants_control = false;
   bool was_told_control = false;  ///< What its last Welcome said.
+  bool has_missed_reply = false;  ///< It reads too slowly; forget_lost() removes it.
 };
 
 enum class Verdict { kGood, kUnknownSession, kReplayed };
@@ -43,7 +44,8 @@ class PeerTable {
   bool has_control(const Peer& peer) const { return peer.session == controller_; }
   const Peer* controller() const;
   void forget(std::uint64_t session);
-  void forget_silent(double now_s, double longest_s);
+  /// Removes the peers that were silent for longer than `longest_s`, and those that missed a reply.
+  void forget_lost(double now_s, double longest_s);
   std::vector<Peer>& all() { return peers_; }
 
  private:

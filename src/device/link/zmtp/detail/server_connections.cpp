@@ -207,9 +207,10 @@ void ServerConnections::make_place() {
   oldest->socket.close();
 }
 
-bool ServerConnections::send(std::string_view routing_id, std::span<const std::byte> message) {
+bool ServerConnections::send(std::string_view routing_id, std::span<const std::byte> message,
+                             std::size_t most_waiting) {
   Connection* const connection = find(routing_id);
-  if (connection == nullptr || !connection->stream->put(message)) return false;
+  if (connection == nullptr || !connection->stream->put(message, most_waiting)) return false;
   flush(*connection);
   return true;
 }

@@ -38,7 +38,8 @@ class ServerConnections {
   /// Waits until a socket is ready; false: nothing came. Shorter where a rate limit holds a connection back.
   bool wait(int wait_ms, double now_s);
 
-  bool send(std::string_view routing_id, std::span<const std::byte> message);
+  /// False: the connection is gone, or more than `most_waiting` bytes would wait for the peer.
+  bool send(std::string_view routing_id, std::span<const std::byte> message, std::size_t most_waiting = kMostBytesOut);
   /// Whether a message to a peer about a bad one of its own is due: they are limited in rate.
   bool may_refuse(std::string_view routing_id, double now_s);
   /// A warning in the log, limited in rate.

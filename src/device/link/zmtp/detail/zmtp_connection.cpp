@@ -199,8 +199,8 @@ void ZmtpConnection::answer_command(std::span<const std::byte> command) {
   }
 }
 
-bool ZmtpConnection::put(std::span<const std::byte> message) {
-  if (!is_ready() || outgoing().size() + message.size() + kFrameOverhead > kMostBytesOut) return false;
+bool ZmtpConnection::put(std::span<const std::byte> message, std::size_t most_waiting) {
+  if (!is_ready() || outgoing().size() + message.size() + kFrameOverhead > most_waiting) return false;
   if (curve_) {
     zmtp::append_frame(out_, 0, curve_->seal(0, message));
   } else {

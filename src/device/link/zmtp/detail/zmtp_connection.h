@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "link/limits.h"
 #include "link/zmtp/detail/curve_handshake.h"
 #include "link/zmtp/detail/token_bucket.h"
 #include "link/zmtp/detail/zmtp_frames.h"
@@ -46,8 +47,8 @@ class ZmtpConnection {
   bool is_ready() const { return state_ == State::kTraffic; }
   const std::string& why() const { return why_; }
 
-  /// Queues a message. False: the peer has not taken what was sent before, or the handshake is not done.
-  bool put(std::span<const std::byte> message);
+  /// Queues a message. False: more than `most_waiting` bytes would wait for the peer, or the handshake is not done.
+  bool put(std::span<const std::byte> message, std::size_t most_waiting = kMostBytesOut);
   std::span<const std::byte> outgoing() const { return std::span<const std::byte>(out_).subspan(out_sent_); }
   void note_sent(std::size_t bytes);
 

@@ -88,9 +88,9 @@ TEST(PeerTable, FullTableTakesANewPeerForASilentOne) {
 TEST(PeerTable, ForgottenControllerLeavesControlFree) {
   PeerTable peers(2, 2);
   joined(peers, "a", 1, kDriver);
-  peers.forget_silent(kNow_s + 5.0, 5.0);
+  peers.forget_lost(kNow_s + 5.0, 5.0);
   EXPECT_NE(peers.controller(), nullptr);
-  peers.forget_silent(kNow_s + 5.1, 5.0);
+  peers.forget_lost(kNow_s + 5.1, 5.0);
   EXPECT_EQ(peers.controller(), nullptr);
   EXPECT_TRUE(peers.has_control(joined(peers, "b", 2, kDriver)));
   peers.forget(2);
