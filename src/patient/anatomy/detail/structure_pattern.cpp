@@ -44,7 +44,7 @@ std::optional<StructurePattern> StructurePattern::parse(std::string_view text) {
   if (!end.empty() && end != "#" && end != "%#" && end != "*") return std::nullopt;
   StructurePattern pattern;
   pattern.stem_ = plain_name(stem);
-  pattern.end_ = end;
+  pattern.end_ = std::string(end);
   if (pattern.stem_.empty() || pattern.stem_ != without_side(pattern.stem_)) return std::nullopt;
   return pattern;
 }

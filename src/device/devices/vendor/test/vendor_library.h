@@ -4,14 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <string>
+#include <filesystem>
 
 namespace trocar::testing {
 
 /// The stand-in's side of a vendor's library from the test tree, and the environment that makes Trocar find it.
 template <class StandIn>
 StandIn* use_stand_in(const char* variable, const char* file, const char* function) {
-  const std::string path = std::string(TROCAR_STANDIN_FOLDER) + "/" + file;
+  const std::filesystem::path path = std::filesystem::path(TROCAR_STANDIN_FOLDER) / file;
   setenv(variable, path.c_str(), 1);
   void* library = dlopen(path.c_str(), RTLD_NOW);
   if (library == nullptr) {

@@ -32,7 +32,7 @@ void write_slice(const fs::path& file, const std::string& uid, const std::string
   for (int p = 0; p < 12; ++p) pixels += little_endian(static_cast<std::uint32_t>(value), 2);
   fs::create_directories(file.parent_path());
   testing::write_bytes(
-      file, std::string(128, '\0') + "DICM" + element(0x0002, 0x0010, "UI", "1.2.840.10008.1.2.1") +
+      file, std::string(128, '\0').append("DICM") + element(0x0002, 0x0010, "UI", "1.2.840.10008.1.2.1") +
                 element(0x0008, 0x0060, "CS", modality) + element(0x0008, 0x103e, "LO", "series of " + modality) +
                 element(0x0020, 0x000e, "UI", uid) + element(0x0020, 0x0032, "DS", "0\\0\\" + std::to_string(2 * n)) +
                 element(0x0020, 0x0037, "DS", "1\\0\\0\\0\\1\\0") + short_element(0x0002, 1) +
