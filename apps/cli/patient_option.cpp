@@ -2,12 +2,12 @@
 
 #include <CLI/CLI.hpp>
 
-#include "core/files/user_folders.h"
+#include "io/patient/patient_cache.h"
 
 namespace trocar::cli {
 
 void add_cache_option(CLI::App& command, io::PatientSource& source) {
-  source.cache_folder = user_cache_folder() / "patients";
+  source.cache_folder = io::patient_cache_folder();
   command.add_flag_callback(
       "--no-cache", [&source] { source.cache_folder.clear(); },
       "Generate an embedded patient again instead of reading it from the cache");

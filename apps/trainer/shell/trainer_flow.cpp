@@ -12,7 +12,7 @@
 #include "control/replay_control.h"
 #include "core/available_memory.h"
 #include "core/files/disk_space.h"
-#include "core/files/user_folders.h"
+#include "io/patient/patient_cache.h"
 #include "pages/briefing_page.h"
 #include "pages/case_page.h"
 #include "pages/start_page.h"
@@ -136,7 +136,7 @@ void TrainerFlow::open(const TrainerChoice& choice) {
   window_.work().set_parameters_locked(is_exam() && !cut_off_);
   opened_.reset();
   retired_.retire(std::exchange(
-      opening_, cases::open_case(case_choice(choice), cases::OpenOptions{open_, user_cache_folder() / "patients"})));
+      opening_, cases::open_case(case_choice(choice), cases::OpenOptions{open_, io::patient_cache_folder()})));
   window_.briefing().show_opening(choice);
   window_.show_page(QStringLiteral("briefing"));
 }

@@ -8,6 +8,7 @@
 #include "anatomy/phantom/phantom.h"
 #include "core/files/input_file.h"
 #include "core/files/unfinished_output.h"
+#include "core/files/user_folders.h"
 #include "core/hash.h"
 #include "io/patient/detail/maker_version.h"
 #include "io/patient/patient_folder.h"
@@ -64,6 +65,10 @@ std::optional<fs::path> use(const fs::path& entry) {
 }
 
 }  // namespace
+
+fs::path patient_cache_folder() {
+  return user_cache_folder() / "patients";
+}
 
 PatientCache::PatientCache(fs::path folder) : folder_(std::move(folder)) {}
 

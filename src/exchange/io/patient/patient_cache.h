@@ -11,6 +11,9 @@
 
 namespace trocar::io {
 
+/// Where the programs of this user keep embedded patients.
+std::filesystem::path patient_cache_folder();
+
 /// Embedded patients kept as patient folders, with their surfaces or without: loading takes a second, generating many.
 /// An entry belongs to one name, one seed, one version of the code that generates patients and its data files
 /// (phantom_data_files), since other code or data may generate other patients; all programs of a build share the
