@@ -23,7 +23,7 @@ inline constexpr double kFrame_s = 1.0 / 60.0;
 struct Patient {
   std::shared_ptr<const anatomy::VirtualPatient> patient;
   std::shared_ptr<const ultrasound::AcousticScene> scene;
-  std::shared_ptr<const ultrasound::VesselFlow> flow;
+  std::shared_ptr<ultrasound::FlowOnDemand> flow;
   std::vector<ultrasound::Transducer> transducers;
 };
 

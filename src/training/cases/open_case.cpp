@@ -77,16 +77,12 @@ Status add_surfaces(OpenCase& made, const anatomy::VirtualPatient& patient, cons
   return {};
 }
 
-Status add_acoustics(OpenCase& made, const anatomy::VirtualPatient& patient, const Progress& progress) {
+Status add_acoustics(OpenCase& made, const std::shared_ptr<const anatomy::VirtualPatient>& patient,
+                     const Progress& progress) {
   TROCAR_TRY(ultrasound::AcousticTable acoustics, ultrasound::load_acoustic_table(data_dir() / "acoustics.toml"));
-  TROCAR_TRY(made.acoustic, ultrasound::make_acoustic_scene(patient, std::move(acoustics), {}, progress));
+  TROCAR_TRY(made.acoustic, ultrasound::make_acoustic_scene(*patient, std::move(acoustics), {}, progress));
   TROCAR_TRY(ultrasound::FlowTable flows, ultrasound::load_flow_table(data_dir() / "flow.toml"));
-  auto flow = ultrasound::make_vessel_flow(patient, std::move(flows));
-  if (flow) {
-    made.flow = *std::move(flow);
-  } else {
-    made.notes.push_back("no colour Doppler: " + flow.error().text());
-  }
+  made.flow = std::make_shared<ultrasound::FlowOnDemand>(patient, std::move(flows));
   return {};
 }
 
@@ -154,7 +150,6 @@ Result<std::shared_ptr<const OpenCase>> make_open_case(const CaseChoice& choice,
     made->meshes = previous->meshes;
     made->acoustic = previous->acoustic;
     made->flow = previous->flow;
-    if (!made->flow) made->notes.push_back("no colour Doppler: no vessel of this patient has flow");
     TROCAR_TRY_STATUS(add_case(*made, patient, shared.part(0.8)));
   } else {
     TROCAR_TRY(patient, patient_of(*made, cache, shared.part(0.3)));
@@ -165,12 +160,14 @@ Result<std::shared_ptr<const OpenCase>> make_open_case(const CaseChoice& choice,
     acoustics.choice = choice;
     parallel_invoke([&] { done[0] = add_case(*made, patient, of_case); },
                     [&] { done[1] = add_surfaces(*made, *patient, cache, of_surfaces); },
-                    [&] { done[2] = add_acoustics(acoustics, *patient, of_acoustics); });
+                    [&] { done[2] = add_acoustics(acoustics, patient, of_acoustics); });
     for (Status& status : done) TROCAR_TRY_STATUS(std::move(status));
     made->acoustic = std::move(acoustics.acoustic);
     made->flow = std::move(acoustics.flow);
-    made->notes.insert(made->notes.end(), acoustics.notes.begin(), acoustics.notes.end());
   }
+  if (!made->flow->is_possible())
+    made->notes.push_back(
+        "no colour Doppler: no vessel of this patient has flow — label some, or add rows to flow.toml");
   if (stop.stop_requested()) return fail("the case was not opened: cancelled", "case", "open it again");
   report(progress, "predicting the force", 0.95);
   TROCAR_TRY_STATUS(add_prediction(*made));

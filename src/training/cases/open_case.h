@@ -13,7 +13,7 @@
 #include "cases/prepare_case.h"
 #include "core/background_job.h"
 #include "geometry/pose.h"
-#include "ultrasound/doppler/vessel_flow.h"
+#include "ultrasound/doppler/flow_on_demand.h"
 #include "ultrasound/probe/transducer.h"
 #include "ultrasound/tissue/acoustic_scene.h"
 
@@ -37,7 +37,7 @@ struct OpenCase {
   std::string server_source;
   std::shared_ptr<const std::vector<anatomy::NamedMesh>> meshes;
   std::shared_ptr<const ultrasound::AcousticScene> acoustic;
-  std::shared_ptr<const ultrasound::VesselFlow> flow;  ///< Null: no vessel of this patient has flow; notes say so.
+  std::shared_ptr<ultrasound::FlowOnDemand> flow;  ///< Notes say if no vessel of this patient has flow.
   ultrasound::Transducer transducer;
   double probe_depth_mm = 160.0;  ///< Depth of picture that shows the target and what lies behind it.
   /// Where the transducer begins: pressed lightly onto the skin, with the planned path in its plane and the face beside
@@ -55,7 +55,8 @@ struct OpenOptions {
   /// Lends patient, surfaces and acoustic scene where they are the same.
   std::shared_ptr<const OpenCase> previous;
   /// Embedded patients are kept there (PatientCache), so that they and the servers' scenes open in a second or two the
-  /// next time; empty: they are made anew each time, half a minute of computing. `user_cache_folder()` is the place.
+  /// next time; empty: they are made anew each time, half a minute of computing. `io::patient_cache_folder()` is the
+  /// place.
   std::filesystem::path cache_folder;
 };
 

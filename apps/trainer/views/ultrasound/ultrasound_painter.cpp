@@ -116,6 +116,17 @@ QSizeF bars_size(const QFont& font, double view_height, bool has_doppler) {
   return {kWedge_px + kBarGap_px + std::max(label, kColourBar_px), height + 3.0 * line_height(font)};
 }
 
+void draw_message(QPainter& painter, const QRectF& picture, const QString& text, const QFont& font) {
+  constexpr double kPadding_px = 8.0;
+  const QFontMetricsF metrics(font);
+  QRectF box = metrics.boundingRect(text).adjusted(-kPadding_px, -kPadding_px, kPadding_px, kPadding_px);
+  box.moveCenter({picture.center().x(), picture.top() + box.height()});
+  painter.fillRect(box, QColor(0, 0, 0, 180));
+  painter.setFont(font);
+  painter.setPen(theme().text);
+  painter.drawText(box, Qt::AlignCenter, text);
+}
+
 void draw_caption(QPainter& painter, const QRectF& place, const std::vector<CaptionLine>& lines, const QFont& font) {
   using Kind = CaptionLine::Kind;
   double y = place.top() + QFontMetricsF(font).ascent();

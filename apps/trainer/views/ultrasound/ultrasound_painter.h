@@ -38,6 +38,8 @@ QSizeF caption_size(const std::vector<CaptionLine>& lines, const QFont& font);
 /// Of the gray wedge, and the colour bar beside it.
 QSizeF bars_size(const QFont& font, double view_height, bool has_doppler);
 
+/// On a dark ground at the top of the picture.
+void draw_message(QPainter& painter, const QRectF& picture, const QString& text, const QFont& font);
 void draw_caption(QPainter& painter, const QRectF& place, const std::vector<CaptionLine>& lines, const QFont& font);
 /// Radius of the orientation marker.
 inline constexpr double kMarker_px = 4.0;

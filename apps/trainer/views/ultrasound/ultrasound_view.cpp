@@ -76,7 +76,7 @@ UltrasoundView::~UltrasoundView() {
 }
 
 void UltrasoundView::show_patient(std::shared_ptr<const ultrasound::AcousticScene> scene,
-                                  std::shared_ptr<const ultrasound::VesselFlow> flow,
+                                  std::shared_ptr<ultrasound::FlowOnDemand> flow,
                                   const ultrasound::Transducer& transducer) {
   save_now();
   scene_ = std::move(scene);
@@ -91,7 +91,7 @@ void UltrasoundView::show_patient(std::shared_ptr<const ultrasound::AcousticScen
   tool_ = MeasuringTool::kNone;
   frames_per_s_ = 0.0;
   counting_since_s_ = -1.0;
-  if (scene_) scanner_.open(scene_, flow_, transducer_);
+  if (scene_) scanner_.open(scene_, transducer_);
   update();
   Q_EMIT changed();
 }
@@ -131,7 +131,7 @@ ultrasound::ScanRequest UltrasoundView::make_request(double now_s) {
   request.tip_shift_mm = tip_shift_mm_;
   request.acquisition = settings_.acquisition;
   request.display = settings_.display;
-  request.has_doppler = settings_.has_doppler && flow_;
+  if (settings_.has_doppler) request.flow = poll_flow();
   request.doppler = settings_.doppler;
   request.time_s = now_s;
   const QSizeF size = layout_for(picture_ && is_frozen() ? picture_->scan : requested_scan()).picture.size();
@@ -140,6 +140,22 @@ ultrasound::ScanRequest UltrasoundView::make_request(double now_s) {
   request.columns = static_cast<int>(std::lround(size.width() * scale));
   request.rows = static_cast<int>(std::lround(size.height() * scale));
   return request;
+}
+
+/// Null while it is computed.
+std::shared_ptr<const ultrasound::VesselFlow> UltrasoundView::poll_flow() {
+  if (!has_flow()) return nullptr;
+  std::shared_ptr<const ultrasound::VesselFlow> flow = flow_->poll();
+  if (std::exchange(is_flow_computing_, flow_->is_computing()) != flow_->is_computing()) update();
+  if (!has_flow()) Q_EMIT changed();
+  return flow;
+}
+
+/// Why there is no colour although it is switched on; empty: there is.
+QString UltrasoundView::flow_message() const {
+  if (!settings_.has_doppler) return {};
+  if (!has_flow()) return tr("No blood flow in this patient's vessels");
+  return is_flow_computing_ ? tr("Computing the blood flow") : QString();
 }
 
 void UltrasoundView::take_picture(double now_s) {
@@ -331,6 +347,7 @@ void UltrasoundView::paintEvent(QPaintEvent*) {
   if (has_guide) draw_needle_axis(painter, map, *picture_, needle_shaft_P_);
   painter.restore();
   draw_measurements(painter, map, measurements_.items(), chosen_);
+  if (const QString message = flow_message(); !message.isEmpty()) draw_message(painter, map.rect(), message, font);
   if (tool_ != MeasuringTool::kNone)
     draw_unfinished(painter, map, marks_T_, hover_T_, tool_ == MeasuringTool::kEllipse, tool_ == MeasuringTool::kAngle);
 }

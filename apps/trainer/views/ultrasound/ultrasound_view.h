@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "ultrasound/doppler/flow_on_demand.h"
 #include "ultrasound/live/live_scanner.h"
 #include "ultrasound/scanner/measurements.h"
 #include "views/ultrasound/caliper_marks.h"
@@ -35,7 +36,7 @@ class UltrasoundView : public QWidget {
 
   /// Begins with another patient; `flow` may be nullptr. The controls are those that were kept for the transducer.
   void show_patient(std::shared_ptr<const ultrasound::AcousticScene> scene,
-                    std::shared_ptr<const ultrasound::VesselFlow> flow, const ultrasound::Transducer& transducer);
+                    std::shared_ptr<ultrasound::FlowOnDemand> flow, const ultrasound::Transducer& transducer);
   void set_transducer_pose(const Pose& X_PT);
   /// From the hub to the tip; empty: none. `bore_share` and `tip_shift_mm` as in ScanRequest.
   void set_needle(std::span<const Vec3> shaft_P, double diameter_mm, double bore_share = 0.0,
@@ -54,7 +55,7 @@ class UltrasoundView : public QWidget {
   bool is_guide_visible() const noexcept { return is_guide_visible_; }
 
   bool has_patient() const noexcept { return scene_ != nullptr; }
-  bool has_flow() const noexcept { return flow_ != nullptr; }
+  bool has_flow() const noexcept { return flow_ && flow_->is_possible(); }
   const ultrasound::Transducer& transducer() const noexcept { return transducer_; }
   /// Another array on the same patient, with its own controls; the patient's view begins anew.
   void choose_transducer(const ultrasound::Transducer& transducer);
@@ -121,6 +122,8 @@ class UltrasoundView : public QWidget {
 
   void make_shortcuts();
   ultrasound::ScanRequest make_request(double now_s);
+  std::shared_ptr<const ultrasound::VesselFlow> poll_flow();
+  QString flow_message() const;
   void take_picture(double now_s);
   void count_picture(double now_s, bool is_live);
   void save_now();
@@ -141,7 +144,8 @@ class UltrasoundView : public QWidget {
 
   ultrasound::LiveScanner scanner_;
   std::shared_ptr<const ultrasound::AcousticScene> scene_;
-  std::shared_ptr<const ultrasound::VesselFlow> flow_;
+  std::shared_ptr<ultrasound::FlowOnDemand> flow_;
+  bool is_flow_computing_ = false;
   ultrasound::Transducer transducer_;
   UltrasoundSettings settings_;
   bool is_saving_wanted_ = false;

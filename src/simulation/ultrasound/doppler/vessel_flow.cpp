@@ -54,14 +54,20 @@ Vec3 VesselFlow::velocity_P(const Vec3& p_P, double time_s) const noexcept {
   return at(p_P.cast<float>(), moment(time_s)).velocity_P.cast<double>();
 }
 
+bool is_vessel(const anatomy::Label& label) {
+  return label.tissue == "vessel";
+}
+
 Result<std::shared_ptr<const VesselFlow>> make_vessel_flow(const anatomy::VirtualPatient& patient, FlowTable table,
-                                                           const VesselFlowOptions& options, const Progress& progress) {
+                                                           const VesselFlowOptions& options, const Progress& progress,
+                                                           const std::stop_token& stop) {
   TROCAR_CHECK(options.spacing_mm >= 0.3 && options.spacing_mm <= 3.0);
   TROCAR_CHECK(table.waveforms.size() <= VesselFlow::Moment{}.size());
   VesselFlowMaker maker(patient, std::move(table), options);
   const std::vector<anatomy::Label>& labels = patient.label_table.labels;
   for (std::size_t n = 0; n < labels.size(); ++n) {
-    if (labels[n].tissue != "vessel") continue;
+    if (!is_vessel(labels[n])) continue;
+    if (stop.stop_requested()) return fail("the blood flow was not computed: cancelled", patient.name, "ask again");
     report(progress, "following " + labels[n].name, static_cast<double>(n) / static_cast<double>(labels.size()));
     maker.add(labels[n]);
   }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -83,9 +84,14 @@ class VesselFlow {
   std::vector<std::string> without_flow_;
 };
 
-/// Errors: no vessel of the patient has flow (with the labels that could).
+/// Whether blood may flow in the label.
+bool is_vessel(const anatomy::Label& label);
+
+/// `stop` is checked between two vessels. Errors: no vessel of the patient has flow (with the labels that could),
+/// stopped.
 Result<std::shared_ptr<const VesselFlow>> make_vessel_flow(const anatomy::VirtualPatient& patient, FlowTable table,
                                                            const VesselFlowOptions& options = {},
-                                                           const Progress& progress = {});
+                                                           const Progress& progress = {},
+                                                           const std::stop_token& stop = {});
 
 }  // namespace trocar::ultrasound

@@ -137,9 +137,8 @@ LiveScanner::LiveScanner(const LiveScannerOptions& options) : impl_(std::make_un
 
 LiveScanner::~LiveScanner() = default;
 
-void LiveScanner::open(std::shared_ptr<const AcousticScene> scene, std::shared_ptr<const VesselFlow> flow,
-                       Transducer transducer) {
-  PictureMaker maker(std::move(scene), std::move(flow), std::move(transducer));
+void LiveScanner::open(std::shared_ptr<const AcousticScene> scene, Transducer transducer) {
+  PictureMaker maker(std::move(scene), std::move(transducer));
   impl_->cine.change([](CineCommands& commands) { commands = {}; });
   impl_->worker.open(std::make_unique<ScanRenderer>(std::move(maker), impl_->cine));
 }

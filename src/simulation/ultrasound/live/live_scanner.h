@@ -2,7 +2,6 @@
 
 #include <memory>
 
-#include "ultrasound/doppler/vessel_flow.h"
 #include "ultrasound/live/scan_picture.h"
 
 namespace trocar::ultrasound {
@@ -34,9 +33,8 @@ class LiveScanner {
   LiveScanner(const LiveScanner&) = delete;
   LiveScanner& operator=(const LiveScanner&) = delete;
 
-  /// Another patient or transducer: pictures, requests and the cine loop are forgotten, the scanner runs. `flow` may be
-  /// nullptr: no colour.
-  void open(std::shared_ptr<const AcousticScene> scene, std::shared_ptr<const VesselFlow> flow, Transducer transducer);
+  /// Another patient or transducer: pictures, requests and the cine loop are removed, the scanner runs.
+  void open(std::shared_ptr<const AcousticScene> scene, Transducer transducer);
 
   /// A request with a non-finite pose or needle is ignored. Settings are clamped.
   void request(ScanRequest request);

@@ -15,6 +15,7 @@ namespace {
 /// Objects that render one level of detail.
 struct Stage {
   BMode engine;
+  std::shared_ptr<const VesselFlow> flow;  ///< Of `doppler`.
   std::optional<ColourDoppler> doppler;
 };
 
@@ -48,7 +49,6 @@ void set_unscanned(const AcousticScene& scene, ScanPicture& picture) {
 
 struct PictureMaker::Impl {
   std::shared_ptr<const AcousticScene> scene;
-  std::shared_ptr<const VesselFlow> flow;
   Transducer transducer;
   std::array<std::optional<Stage>, kScanDetails> stages;
   std::array<std::optional<Scanner>, kScanDetails> scanners;
@@ -76,7 +76,7 @@ Stage& PictureMaker::Impl::stage(const Acquisition& full, ScanDetail detail) {
   std::optional<Stage>& place = stages[static_cast<std::size_t>(detail)];
   const Acquisition wanted = with_detail(full, detail);
   if (!place) {
-    place.emplace(Stage{BMode(scene, transducer, wanted), std::nullopt});
+    place.emplace(Stage{BMode(scene, transducer, wanted), nullptr, std::nullopt});
   } else if (!(place->engine.acquisition() == wanted)) {
     place->engine.set_acquisition(wanted);
   }
@@ -93,7 +93,7 @@ Scanner& PictureMaker::Impl::scanner(std::optional<Scanner>& place, const ScanRe
 
 void PictureMaker::Impl::add_colour(const ScanRequest& request, Stage& stage, const BasebandFrame& echoes,
                                     std::uint64_t seed, ScanPicture& picture, Companion& companion) {
-  if (!stage.doppler) stage.doppler.emplace(flow);
+  if (std::exchange(stage.flow, request.flow) != request.flow) stage.doppler.emplace(request.flow);
   stage.doppler->settings = request.doppler;
   companion.has_doppler = true;
   companion.doppler_scan = echoes.geometry;
@@ -120,12 +120,10 @@ void PictureMaker::Impl::keep(const ScanRequest& request, const ScanPicture& pic
   companions[pushes++ % companions.size()] = std::move(companion);
 }
 
-PictureMaker::PictureMaker(std::shared_ptr<const AcousticScene> scene, std::shared_ptr<const VesselFlow> flow,
-                           Transducer transducer)
+PictureMaker::PictureMaker(std::shared_ptr<const AcousticScene> scene, Transducer transducer)
     : impl_(std::make_unique<Impl>()) {
   TROCAR_CHECK(scene != nullptr);
   impl_->scene = std::move(scene);
-  impl_->flow = std::move(flow);
   impl_->transducer = std::move(transducer);
 }
 PictureMaker::~PictureMaker() = default;
@@ -143,7 +141,7 @@ ScanPicture PictureMaker::make(const ScanRequest& asked, ScanDetail detail, std:
   Scanner& scanner = impl.scanner(impl.scanners[static_cast<std::size_t>(detail)], request);
   // Persistence combines frames of the same kind only: not those of another detail or without colour.
   const bool is_other_detail = impl.last_detail != detail;
-  const bool has_colour = request.has_doppler && impl.flow;
+  const bool has_colour = request.flow != nullptr;
   if (is_other_detail) scanner.reset();
   if (stage.doppler && (is_other_detail || !impl.had_colour)) stage.doppler->reset();
   impl.last_detail = detail;
@@ -214,7 +212,7 @@ ScanPicture PictureMaker::show_kept(const ScanRequest& asked) {
   picture.pressed_mm = companion.pressed_mm;
   picture.dent_reach_mm = companion.dent_reach_mm;
   picture.is_frozen = true;
-  if (companion.has_doppler && request.has_doppler) {
+  if (companion.has_doppler && request.flow) {
     picture.doppler = companion.doppler_settings;
     // Settings that can still change for a stored colour frame.
     picture.doppler.baseline = request.doppler.baseline;

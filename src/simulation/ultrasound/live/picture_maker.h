@@ -3,7 +3,6 @@
 #include <memory>
 #include <optional>
 
-#include "ultrasound/doppler/vessel_flow.h"
 #include "ultrasound/live/scan_picture.h"
 #include "ultrasound/scanner/cine_loop.h"
 
@@ -13,9 +12,7 @@ namespace trocar::ultrasound {
 /// stores it in the loop, or displays a stored frame. Buffers of each detail are allocated at first use.
 class PictureMaker {
  public:
-  /// Without `flow` no request has colour.
-  PictureMaker(std::shared_ptr<const AcousticScene> scene, std::shared_ptr<const VesselFlow> flow,
-               Transducer transducer);
+  PictureMaker(std::shared_ptr<const AcousticScene> scene, Transducer transducer);
   ~PictureMaker();
   PictureMaker(PictureMaker&&) noexcept;
   PictureMaker& operator=(PictureMaker&&) noexcept;

@@ -48,8 +48,8 @@ ScanRequest within_ranges(const ScanRequest& request, const Transducer& transduc
 }
 
 bool has_same_settings(const ScanRequest& a, const ScanRequest& b) noexcept {
-  return a.acquisition == b.acquisition && a.display == b.display && a.has_doppler == b.has_doppler &&
-         (!a.has_doppler || a.doppler == b.doppler) && a.columns == b.columns && a.rows == b.rows;
+  return a.acquisition == b.acquisition && a.display == b.display && a.flow == b.flow &&
+         (!a.flow || a.doppler == b.doppler) && a.columns == b.columns && a.rows == b.rows;
 }
 
 bool is_equivalent(const ScanRequest& a, const ScanRequest& b, double tolerance_mm) noexcept {

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "geometry/pose.h"
 #include "ultrasound/doppler/doppler_settings.h"
+#include "ultrasound/doppler/vessel_flow.h"
 #include "ultrasound/engine/b_mode.h"
 #include "ultrasound/probe/transducer.h"
 #include "ultrasound/scanner/display_settings.h"
@@ -19,7 +21,7 @@ struct ScanRequest {
   double tip_shift_mm = 0.0;         ///< As NeedleEcho::displacement_mm.
   Acquisition acquisition;           ///< At full detail.
   DisplaySettings display;
-  bool has_doppler = false;
+  std::shared_ptr<const VesselFlow> flow;  ///< Null: no colour Doppler.
   DopplerSettings doppler;
   double time_s = 0.0;  ///< Of heart and breath; does not decrease while one patient is scanned.
   int columns = 640;    ///< Of the picture. Range 16..2048, as `rows`.

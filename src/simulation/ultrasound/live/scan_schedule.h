@@ -38,7 +38,7 @@ class ScanLevels {
   /// In samples.
   double work(const ScanRequest& request, ScanDetail detail) const noexcept;
   double refresh_s(const ScanRequest& request) const noexcept {
-    return request.has_doppler ? pace_.doppler_s : pace_.refresh_s;
+    return request.flow ? pace_.doppler_s : pace_.refresh_s;
   }
 
  private:

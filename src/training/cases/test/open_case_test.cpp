@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "core/files/temporary_folder.h"
-#include "core/files/user_folders.h"
+#include "io/patient/patient_cache.h"
 #include "ultrasound/probe/probe_contact.h"
 #include "ultrasound/probe/scan_geometry.h"
 
@@ -18,7 +18,7 @@ class OpenedCase : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     BackgroundJob<std::shared_ptr<const OpenCase>> job =
-        open_case({}, OpenOptions{nullptr, user_cache_folder() / "patients"});
+        open_case({}, OpenOptions{nullptr, io::patient_cache_folder()});
     while (!job.view().is_done) {
       steps.insert(job.view().step);
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -36,7 +36,7 @@ TEST_F(OpenedCase, HoldsAllThatIsShown) {
   EXPECT_EQ(opened->the_case.task.name, "liver-biopsy");
   EXPECT_FALSE(opened->meshes->empty());
   EXPECT_TRUE(opened->acoustic);
-  EXPECT_TRUE(opened->flow);
+  EXPECT_TRUE(opened->flow->is_possible());
   EXPECT_EQ(opened->pieces.front().name, "skin");
   EXPECT_EQ(opened->force_model, "insertion");
   EXPECT_GT(steps.size(), 2u);
@@ -89,6 +89,7 @@ TEST_F(OpenedCase, LendsWhatIsTheSameToTheNextChoice) {
   ASSERT_TRUE(next) << next.error().text();
   EXPECT_EQ((*next)->meshes, opened->meshes);
   EXPECT_EQ((*next)->acoustic, opened->acoustic);
+  EXPECT_EQ((*next)->flow, opened->flow);
   EXPECT_EQ((*next)->the_case.patient, opened->the_case.patient);
   const auto events = find_curve_events((*next)->predicted, (*next)->the_case.tissues);
   ASSERT_EQ(events.size(), 3u);

@@ -158,7 +158,8 @@ std::vector<Ask> make_asks(const Transducer& transducer) {
           {shots[5], ScanDetail::kFull, true, false, 200}};
 }
 
-ScanPicture picture_of(PictureMaker& maker, const Ask& ask, std::uint64_t seed) {
+ScanPicture picture_of(PictureMaker& maker, const std::shared_ptr<const VesselFlow>& flow, const Ask& ask,
+                       std::uint64_t seed) {
   ScanRequest request;
   request.X_PT = ask.shot.X_PT;
   request.acquisition = ask.shot.acquisition;
@@ -166,7 +167,7 @@ ScanPicture picture_of(PictureMaker& maker, const Ask& ask, std::uint64_t seed) 
   request.display.persistence = 0.0;
   request.display.is_mirrored = ask.is_mirrored;
   request.doppler.persistence = 0.0;
-  request.has_doppler = ask.has_doppler;
+  if (ask.has_doppler) request.flow = flow;
   request.columns = ask.columns;
   request.rows = 120;
   return maker.make(request, ask.detail, seed);
@@ -179,14 +180,14 @@ TEST(FrameMemory, PictureWithoutPersistenceIsTheSameAfterAnyOther) {
   const std::vector<Ask> asks = make_asks(transducer);
   std::vector<ScanPicture> fresh;
   for (const Ask& ask : asks) {
-    PictureMaker maker(scene, flow, transducer);
-    fresh.push_back(picture_of(maker, ask, 7));
+    PictureMaker maker(scene, transducer);
+    fresh.push_back(picture_of(maker, flow, ask, 7));
   }
-  PictureMaker used(scene, flow, transducer);
+  PictureMaker used(scene, transducer);
   for (std::size_t before = 0; before < asks.size(); ++before) {
     for (std::size_t n = 0; n < asks.size(); ++n) {
-      picture_of(used, asks[before], 3);
-      const ScanPicture again = picture_of(used, asks[n], 7);
+      picture_of(used, flow, asks[before], 3);
+      const ScanPicture again = picture_of(used, flow, asks[n], 7);
       EXPECT_TRUE(again.gray.pixels == fresh[n].gray.pixels) << "gray.pixels " << n << " behind " << before;
       EXPECT_TRUE(again.levels == fresh[n].levels) << "levels " << n << " behind " << before;
       EXPECT_TRUE(again.colour.pixels == fresh[n].colour.pixels) << "colour.pixels " << n << " behind " << before;
@@ -204,10 +205,10 @@ TEST(FrameMemory, ColourThatIsSwitchedOnAgainHasNoOldFrameInIt) {
     request.X_PT = X_PT;
     request.acquisition = first.shot.acquisition;
     request.doppler.persistence = 0.8;
-    request.has_doppler = has_doppler;
+    if (has_doppler) request.flow = flow;
     return maker.make(request, ScanDetail::kFull, 7).colour.pixels;
   };
-  PictureMaker fresh(scene, flow, transducer), used(scene, flow, transducer);
+  PictureMaker fresh(scene, transducer), used(scene, transducer);
   const Pose X_PT_now = Pose(Eigen::AngleAxisd(0.4, Vec3::UnitX()).toRotationMatrix(), Vec3::Zero());
   colour_of(used, true, Pose(Eigen::AngleAxisd(-0.4, Vec3::UnitX()).toRotationMatrix(), Vec3::Zero()));
   colour_of(used, false, X_PT_now);

@@ -70,7 +70,7 @@ std::shared_ptr<const ScanPicture> ask_until(LiveScanner& scanner, ScanRequest r
 }
 
 TEST(PictureMaker, GivesTheCornersOfThePictureInThePatient) {
-  PictureMaker maker(scene(), nullptr, small_probe());
+  PictureMaker maker(scene(), small_probe());
   ScanRequest request = small_request();
   Mat3 R_PT;
   R_PT.col(0) = Vec3(0, 0, 1);
@@ -90,7 +90,7 @@ TEST(PictureMaker, GivesTheCornersOfThePictureInThePatient) {
 }
 
 TEST(PictureMaker, ShowsTheSameThingsAtEveryDetail) {
-  PictureMaker maker(scene(), nullptr, small_probe());
+  PictureMaker maker(scene(), small_probe());
   for (const ScanDetail detail : {ScanDetail::kFast, ScanDetail::kMiddle, ScanDetail::kFull}) {
     const ScanPicture picture = maker.make(small_request(), detail, 1);
     EXPECT_GT(gray_at(picture, {12.0, 30.0}), gray_at(picture, {-12.0, 30.0}) + 20.0);
@@ -100,7 +100,7 @@ TEST(PictureMaker, ShowsTheSameThingsAtEveryDetail) {
 }
 
 TEST(PictureMaker, ShowsKeptPicturesAsTheyWereAndWithNewGain) {
-  PictureMaker maker(scene(), nullptr, small_probe());
+  PictureMaker maker(scene(), small_probe());
   ScanRequest request = small_request();
   const ScanPicture live = maker.make(request, ScanDetail::kFull, 1);
   const ScanPicture kept = maker.show_kept(request);
@@ -115,7 +115,7 @@ TEST(PictureMaker, ShowsKeptPicturesAsTheyWereAndWithNewGain) {
 }
 
 TEST(PictureMaker, BeginsANewLoopAtAnotherDepth) {
-  PictureMaker maker(scene(), nullptr, small_probe());
+  PictureMaker maker(scene(), small_probe());
   ScanRequest request = small_request();
   maker.make(request, ScanDetail::kFull, 1);
   maker.make(request, ScanDetail::kFast, 2);
@@ -144,7 +144,7 @@ TEST(ResampleLevels, KeepsRampsAndIsExactForTheSameScan) {
 }
 
 TEST(ShownPlace, LiesDeeperUnderAPressedFace) {
-  PictureMaker maker(scene(), nullptr, small_probe());
+  PictureMaker maker(scene(), small_probe());
   ScanRequest request = small_request();
   EXPECT_NEAR((shown_place_T(maker.make(request, ScanDetail::kFull, 1), {3.0, 30.0, 0.0}) - Vec2(3.0, 30.0)).norm(),
               0.0, 0.1);
@@ -159,7 +159,7 @@ TEST(ShownPlace, LiesDeeperUnderAPressedFace) {
 TEST(LiveScanner, ShowsTheNewestOfManyRequests) {
   LiveScanner scanner;
   EXPECT_EQ(scanner.newest(), nullptr);
-  scanner.open(scene(), nullptr, small_probe());
+  scanner.open(scene(), small_probe());
   ScanRequest request = small_request();
   for (int n = 0; n < 200; ++n) {
     request.X_PT = Pose::translation({0.05 * n, 0.0, 0.0});
@@ -178,7 +178,7 @@ TEST(LiveScanner, ShowsTheNewestOfManyRequests) {
 
 TEST(LiveScanner, KeepsTheFrozenPictureWhileTheProbeMoves) {
   LiveScanner scanner;
-  scanner.open(scene(), nullptr, small_probe());
+  scanner.open(scene(), small_probe());
   ScanRequest request = small_request();
   scanner.set_frozen(true);
   EXPECT_FALSE(scanner.cine().is_frozen) << "there is nothing to freeze";
@@ -201,7 +201,7 @@ TEST(LiveScanner, KeepsTheFrozenPictureWhileTheProbeMoves) {
 
 TEST(LiveScanner, StepsAndPlaysTheCineLoop) {
   LiveScanner scanner;
-  scanner.open(scene(), nullptr, small_probe());
+  scanner.open(scene(), small_probe());
   ScanRequest request = small_request();
   for (int n = 0; n < 5; ++n) {
     request.X_PT = Pose::translation({1.0 * n, 0.0, 0.0});
@@ -232,12 +232,12 @@ TEST(LiveScanner, StepsAndPlaysTheCineLoop) {
 
 TEST(LiveScanner, ForgetsThePatientWhoHasLeft) {
   LiveScanner scanner;
-  scanner.open(scene(), nullptr, small_probe());
+  scanner.open(scene(), small_probe());
   const ScanRequest request = small_request();
   ASSERT_NE(ask_until(scanner, request, [](const ScanPicture&) { return true; }), nullptr);
   Transducer other = small_probe();
   other.elements = 60;
-  scanner.open(scene(), nullptr, other);
+  scanner.open(scene(), other);
   EXPECT_EQ(scanner.newest(), nullptr);
   EXPECT_EQ(scanner.cine().size, 0);
   const auto picture = ask_until(scanner, request, [](const ScanPicture&) { return true; });
@@ -247,7 +247,7 @@ TEST(LiveScanner, ForgetsThePatientWhoHasLeft) {
 
 TEST(LiveScanner, LeavesOutWhatIsNoPlace) {
   LiveScanner scanner;
-  scanner.open(scene(), nullptr, small_probe());
+  scanner.open(scene(), small_probe());
   ScanRequest bad = small_request();
   bad.X_PT = Pose::translation(Vec3::Constant(std::nan("")));
   scanner.request(bad);

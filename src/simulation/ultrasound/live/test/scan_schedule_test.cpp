@@ -148,7 +148,7 @@ TEST(ScanSchedule, RendersAtOnceWhenNeedleOrSettingsChange) {
   schedule.note_frame(moved, ScanDetail::kFull, 10.04, 5.0);
   moved.doppler.scale_cm_per_s = 12.0;
   EXPECT_FALSE(schedule.due(moved, 10.05)) << "colour is off";
-  moved.has_doppler = true;
+  moved.flow = std::make_shared<const VesselFlow>();
   EXPECT_TRUE(schedule.due(moved, 10.06));
   moved = request;
   moved.needle_shaft_P.clear();
