@@ -39,6 +39,7 @@ struct Arguments {
   std::optional<std::uint64_t> patient_seed;
   std::string script, screenshot, state_folder;
   bool is_benchmark = false;
+  std::vector<std::string> layouts;
 };
 
 void add_options(CLI::App& app, Arguments& arguments) {
@@ -50,7 +51,9 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->check(CLI::ExistingFile);
   app.add_option("--screenshot", arguments.screenshot,
                  "Save the window as a PNG and exit; after the script if there is one");
-  app.add_flag("--benchmark", arguments.is_benchmark, "Run a puncture in every layout and print frame times");
+  auto* benchmark =
+      app.add_flag("--benchmark", arguments.is_benchmark, "Run a puncture in every layout and print frame times");
+  app.add_option("--layout", arguments.layouts, "Layouts of the benchmark [all]")->needs(benchmark);
   app.add_option("--state", arguments.state_folder, "Folder for sessions [$XDG_STATE_HOME/trocar]");
   app.set_version_flag("--version", fmt::format("trocar-trainer {} (Qt {})", kVersion, qVersion()));
   app.footer(
@@ -95,7 +98,8 @@ Status play(const Arguments& arguments, MainWindow& window) {
       QTimer::singleShot(kSettled_ms, &window, [&] { save_window(window, arguments.screenshot); });
     return {};
   }
-  TROCAR_TRY(std::vector<ScriptStep> steps, arguments.is_benchmark ? benchmark_steps() : load_script(arguments.script));
+  TROCAR_TRY(std::vector<ScriptStep> steps,
+             arguments.is_benchmark ? benchmark_steps(arguments.layouts) : load_script(arguments.script));
   const Stage stage{&window, [&] { return window.facts(); },
                     [&](const QString& tool) { window.flow().end_server(tool); }, [&] { window.flow().reset_watch(); }};
   auto* player = new ScriptPlayer(std::move(steps), stage, &window);

@@ -1,10 +1,28 @@
 #include "script/benchmark.h"
 
+#include <algorithm>
+
 #include "workspace/layouts.h"
 
 namespace trocar::trainer {
+namespace {
 
-Result<std::vector<ScriptStep>> benchmark_steps() {
+/// The layouts' places in the list, from 1: the key that selects them.
+Result<std::vector<std::size_t>> find_layouts(const std::vector<std::string>& names) {
+  const std::vector<Layout>& all = built_in_layouts();
+  std::vector<std::size_t> numbers;
+  for (std::size_t n = 0; n < all.size(); ++n)
+    if (names.empty() || std::ranges::find(names, all[n].name.toStdString()) != names.end()) numbers.push_back(n + 1);
+  for (const std::string& name : names)
+    if (std::ranges::none_of(all, [&](const Layout& layout) { return layout.name.toStdString() == name; }))
+      return fail_usage("no such layout", name, "the view menu lists the layouts");
+  return numbers;
+}
+
+}  // namespace
+
+Result<std::vector<ScriptStep>> benchmark_steps(const std::vector<std::string>& layouts) {
+  TROCAR_TRY(const std::vector<std::size_t> numbers, find_layouts(layouts));
   QString text = QStringLiteral(
       "resize 1280 800\n"
       "click difficulty-guided\n"  // the previous run may have selected another
@@ -14,7 +32,8 @@ Result<std::vector<ScriptStep>> benchmark_steps() {
       "wait-for phase is ready within 120\n"
       "key H\n"
       "wait 2\n");
-  for (std::size_t number = 1; number <= built_in_layouts().size(); ++number) {
+  bool is_inside = false;
+  for (const std::size_t number : numbers) {
     // In and out again, so that each layout displays a tool that moves through skin and liver.
     text += QStringLiteral(
                 "key Ctrl+%1\n"
@@ -25,8 +44,9 @@ Result<std::vector<ScriptStep>> benchmark_steps() {
                 "wait 3\n"  // at rest: full quality
                 "print still_p50_ms unwatched_ms\n")
                 .arg(number)
-                .arg(number % 2 == 1 ? QStringLiteral("12") : QStringLiteral("-12"),
-                     number % 2 == 1 ? QStringLiteral("> 45") : QStringLiteral("< 1"));
+                .arg(is_inside ? QStringLiteral("-12") : QStringLiteral("12"),
+                     is_inside ? QStringLiteral("< 1") : QStringLiteral("> 45"));
+    is_inside = !is_inside;
   }
   return parse_script(text, QStringLiteral("benchmark"));
 }

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "script/script.h"
 
 namespace trocar::trainer {
 
-/// The steps behind --benchmark: a guided puncture of the embedded patient, in every layout; frame times are printed
-/// for each.
-Result<std::vector<ScriptStep>> benchmark_steps();
+/// The steps behind --benchmark: a guided puncture of the embedded patient in these layouts, in every one if `layouts`
+/// is empty; frame times are printed for each. Errors: no layout of this name.
+Result<std::vector<ScriptStep>> benchmark_steps(const std::vector<std::string>& layouts = {});
 
 }  // namespace trocar::trainer
