@@ -128,6 +128,16 @@ function(trocar_add_test name library)
   endif()
   set_tests_properties(${name} PROPERTIES TIMEOUT ${timeout_s}
     ENVIRONMENT "GTEST_BRIEF=1;TROCAR_DATA_DIR=${PROJECT_SOURCE_DIR}/data;TROCAR_BIN_DIR=${CMAKE_BINARY_DIR}/bin;XDG_CACHE_HOME=${CMAKE_BINARY_DIR}/test-cache")
+  # These open the embedded patient: it is generated once, before the first of them.
+  if(name MATCHES "^(cases|attempt|servers|cli|end_to_end|trainer)$")
+    set_tests_properties(${name} PROPERTIES FIXTURES_REQUIRED embedded_patient)
+  endif()
+  if(name STREQUAL "cases")
+    get_test_property(cases ENVIRONMENT environment)
+    add_test(NAME embedded_patient COMMAND cases_test --gtest_filter=OpenedCase.HoldsAllThatIsShown)
+    set_tests_properties(embedded_patient PROPERTIES FIXTURES_SETUP embedded_patient TIMEOUT ${timeout_s} COST 1000
+      ENVIRONMENT "${environment}")
+  endif()
   # What reads foreign bytes, talks to devices and clients, or repeats whole attempts: minutes in a Debug build with
   # sanitizers, too.
   if(name MATCHES "^(core|realtime|config|geometry|volume|telemetry|link|devices|server|io|storage|same_bits)$")
