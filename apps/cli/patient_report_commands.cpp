@@ -153,7 +153,7 @@ Status check(const Arguments& arguments) {
   }
   for (const auto& [task, readiness] : tasks) {
     fmt::print("{:<16} {}{}\n", task.name, readiness.is_possible ? "possible" : "not possible",
-               readiness.is_parenchymal ? " (parenchymal: no lesion)" : "");
+               readiness.is_parenchymal ? " (parenchymal)" : "");
     for (const std::string& reason : readiness.reasons) fmt::print("  {}\n", reason);
   }
   if (!doubts.empty()) fmt::print("doubtful\n");

@@ -64,7 +64,7 @@ QTabWidget::pane { border: none; }
 QTabBar::tab { background: transparent; padding: 7px 14px; border-bottom: 2px solid transparent; color: @dim; }
 QTabBar::tab:selected { color: @text; border-bottom-color: @accent; }
 QListView, QTreeView, QTableView { background: @panel; border: 1px solid @line; border-radius: 6px; alternate-background-color: @raised; }
-QListView::item, QTreeView::item { padding: 4px; }
+QListView::item, QTreeView::item { padding: 4px; border: none; background: transparent; }
 QListView::item:selected, QTreeView::item:selected, QTableView::item:selected { background: @pressed; color: @text; }
 QHeaderView::section { background: @raised; border: none; border-right: 1px solid @line; padding: 5px 8px; color: @dim; }
 QMenu { background: @raised; border: 1px solid @line; padding: 4px; }

@@ -109,6 +109,15 @@ TEST(TaskReadiness, WithoutLesionTheTargetIsParenchymal) {
   EXPECT_TRUE(mentions(readiness, "no lesion is labelled"));
 }
 
+TEST(TaskReadiness, ATaskWithoutTargetTissueIsParenchymalBesideALesion) {
+  tasks::Task task = liver_biopsy();
+  task.target_tissues.clear();
+  const auto readiness = check_task(task, BoxPatient{}.make());
+  EXPECT_TRUE(readiness.is_possible);
+  EXPECT_TRUE(readiness.is_parenchymal);
+  EXPECT_TRUE(mentions(readiness, "the task has no target tissue"));
+}
+
 TEST(TaskReadiness, NamesWhatMakesTheTaskImpossible) {
   BoxPatient no_liver;
   no_liver.special = [](const Vec3& p) { return BoxPatient::skin_distance(p) <= -22.0 ? "soft_tissue" : ""; };
