@@ -40,13 +40,13 @@ class Checks {
         statistics_(anatomy::label_statistics(patient)) {}
 
   std::vector<CaseCheck> run() {
-    look_at_labels();
-    look_at_task();
-    look_at_target();
-    look_at_risks();
-    look_at_zone();
-    look_at_path();
-    look_at_texts();
+    check_labels();
+    check_task();
+    check_target();
+    check_risks();
+    check_zone();
+    check_path();
+    check_texts();
     std::stable_sort(lines_.begin(), lines_.end(), [](const CaseCheck& a, const CaseCheck& b) {
       return std::pair(a.step, -static_cast<int>(a.level)) < std::pair(b.step, -static_cast<int>(b.level));
     });
@@ -67,7 +67,7 @@ class Checks {
     return std::none_of(lines_.begin(), lines_.end(), [&](const CaseCheck& line) { return line.step == step; });
   }
 
-  void look_at_labels() {
+  void check_labels() {
     const std::vector<std::string> doubts = anatomy::find_doubts(patient_, statistics_);
     for (const std::string& doubt : doubts) warn(CaseStep::kLabels, doubt);
     for (const std::string& warning : draft_.imported->warnings) {
@@ -81,7 +81,7 @@ class Checks {
       if (!tissues_.find_tissue(label.tissue))
         refuse(CaseStep::kLabels, fmt::format("{}: tissue \"{}\" is not in the tissue table", label.name, label.tissue),
                s.voxels > 0 ? std::optional(s.centroid_P) : std::nullopt);
-      look_at_volume(label, s);
+      check_volume(label, s);
     }
     if (is_silent(CaseStep::kLabels))
       add(CheckLevel::kOk, CaseStep::kLabels,
@@ -111,7 +111,7 @@ class Checks {
     }
   }
 
-  void look_at_volume(const anatomy::Label& label, const anatomy::LabelStatistics& s) {
+  void check_volume(const anatomy::Label& label, const anatomy::LabelStatistics& s) {
     if (s.voxels == 0) return;
     for (const OrganVolume& organ : kOrganVolumes) {
       if (label.tissue != organ.tissue) continue;
@@ -127,13 +127,13 @@ class Checks {
     }
   }
 
-  void look_at_task() {
+  void check_task() {
     const tasks::TaskReadiness readiness = tasks::check_task(draft_.task, patient_);
     for (const std::string& reason : readiness.reasons)
       add(readiness.is_possible ? CheckLevel::kWarning : CheckLevel::kError, CaseStep::kTarget, reason);
   }
 
-  void look_at_target() {
+  void check_target() {
     const tasks::Task& task = draft_.task;
     if (!task.target_label.empty()) {
       const anatomy::Label* label = patient_.label_table.find(std::string_view(task.target_label));
@@ -165,7 +165,7 @@ class Checks {
           fmt::format("the target is in {}, {:.0f} mm below the skin", place, -skin_mm), target_P);
   }
 
-  void look_at_risks() {
+  void check_risks() {
     if (draft_.task.risks.empty()) warn(CaseStep::kTarget, "no risk structures: contact never costs points");
     for (const tasks::RiskStructure& risk : draft_.task.risks) {
       if (risk.label.empty()) continue;
@@ -174,7 +174,7 @@ class Checks {
     }
   }
 
-  void look_at_zone() {
+  void check_zone() {
     if (!draft_.task.entry_zone) return;
     const tasks::EntryZone& zone = *draft_.task.entry_zone;
     const double skin_mm = volume::sample_linear(patient_.skin_distance_mm, zone.centre_P);
@@ -183,7 +183,7 @@ class Checks {
              zone.centre_P);
   }
 
-  void look_at_path() {
+  void check_path() {
     const anatomy::NeedlePath* path = find_expert_path(draft_);
     if (path == nullptr) {
       warn(CaseStep::kPath, "no expert path: it is planned each time the case is opened");
@@ -204,7 +204,7 @@ class Checks {
         path->line_P.a);
   }
 
-  void look_at_texts() {
+  void check_texts() {
     if (draft_.name.empty()) refuse(CaseStep::kSave, "the case has no name");
     if (draft_.description.empty()) warn(CaseStep::kSave, "no description: trainees see only the name");
     if (draft_.provenance.empty()) warn(CaseStep::kSave, "the source of the patient is not stated");

@@ -39,11 +39,11 @@ class Assessor {
   }
 
   PathAssessment assess() {
-    look_at_entry();
-    look_at_length();
+    check_entry();
+    check_length();
     walk();
     measure_margins();
-    look_at_target();
+    check_target();
     return std::move(made_);
   }
 
@@ -56,7 +56,7 @@ class Assessor {
         {fault, std::move(label), std::move(text), where_P, std::max(0.0, depth_of(where_P)), clearance_mm});
   }
 
-  void look_at_entry() {
+  void check_entry() {
     const Vec3& entry_P = line_P_.a;
     made_.skin_distance_mm = volume::sample_linear(patient_.skin_distance_mm, entry_P);
     if (std::abs(made_.skin_distance_mm) > kOnSkin_mm)
@@ -78,7 +78,7 @@ class Assessor {
       add(PathFault::kOutsideZone, entry_P, fmt::format("the entry is {:.0f} mm outside the entry zone", outside_mm));
   }
 
-  void look_at_length() {
+  void check_length() {
     const double reach_mm = needle_.length_mm - detail::kHubReserve_mm;
     const double longest_mm = std::min(task_.max_path_mm, reach_mm);
     if (made_.path.length_mm <= longest_mm) return;
@@ -166,7 +166,7 @@ class Assessor {
     }
   }
 
-  void look_at_target() {
+  void check_target() {
     const Vec3 reached_P = at(made_.path.length_mm + needle_.notch_middle_mm());
     if (task_.target_P) {
       const double miss_mm = (reached_P - *task_.target_P).norm();

@@ -96,7 +96,7 @@ void LiveAttempt::run(const std::stop_token& stop, std::shared_ptr<const cases::
     return;
   }
   SteadyClock clock;
-  const SupervisionOptions supervision{Recovery::kAll, options_.timeout, "trocar station", true};
+  const SupervisionOptions supervision{Recovery::kAll, options_.timeout, "trocar-trainer", true};
   ToolSupervisors supervisors = (*found)->supervise(supervision, clock);
   AttemptLoop loop(attempt_case(open_case), loop_options(*open_case, options_), trainee_operators(*open_case, options_),
                    *std::move(found), std::move(supervisors), clock, *this);

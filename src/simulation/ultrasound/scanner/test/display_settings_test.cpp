@@ -48,7 +48,7 @@ TEST(DisplaySettings, ErrorNamesTheWrongKnob) {
   EXPECT_FALSE(check(settings));
 }
 
-TEST(DisplaySettings, WrongKnobsAreHeldInTheirRange) {
+TEST(DisplaySettings, WrongSettingsAreHeldInTheirRange) {
   DisplaySettings settings;
   settings.gain_db = 1e9;
   settings.dynamic_range_db = kNan;

@@ -208,7 +208,7 @@ TEST(Scanner, PersistenceSmoothsOverTimeAndResetForgets) {
   EXPECT_NEAR(spread() / single, 1.0, 0.03);
 }
 
-TEST(Scanner, FrozenFramesCanBeShownWithOtherKnobs) {
+TEST(Scanner, FrozenFramesCanBeShownWithOtherSettings) {
   Scanner scanner = make_scanner(true, true);
   const BasebandFrame frame = liver_frame(5);
   scanner.show(frame, 1);
