@@ -20,7 +20,7 @@ namespace trocar::trainer {
 namespace {
 
 constexpr int kBetweenSteps_ms = 15;
-constexpr double kPatience_s = 30.0;
+constexpr double kTimeout_s = 30.0;
 constexpr double kDrag_s = 0.4;
 constexpr double kSettled_s = 1.0;  ///< Time after which a layout is stable.
 constexpr int kMostAtOnce = 2;      ///< Events per call of a step that repeats until a condition is true.
@@ -30,16 +30,22 @@ QPointF place_of(const QStringList& arguments, int first) {
   return {arguments[first].toDouble(), arguments[first + 1].toDouble()};
 }
 
-/// "within SECONDS" at the end of a step.
-double patience_of(const QStringList& arguments, double unless_told_s = kPatience_s) {
+/// TROCAR_SCRIPT_TIMEOUT_FACTOR multiplies all timeouts of a script, for slow builds; 1 without it. Range 1..100.
+double timeout_factor() {
+  return std::clamp(qEnvironmentVariable("TROCAR_SCRIPT_TIMEOUT_FACTOR").toDouble(), 1.0, 100.0);
+}
+
+/// "within SECONDS" at the end of a step, times the factor; else `default_s`.
+double timeout_of(const QStringList& arguments, double default_s) {
   const auto at = arguments.indexOf(QStringLiteral("within"));
-  return at >= 0 && at + 1 < arguments.size() ? arguments[at + 1].toDouble() : unless_told_s;
+  return at >= 0 && at + 1 < arguments.size() ? timeout_factor() * arguments[at + 1].toDouble() : default_s;
 }
 
 }  // namespace
 
 ScriptPlayer::ScriptPlayer(std::vector<ScriptStep> steps, Stage stage, QObject* parent)
     : QObject(parent), steps_(std::move(steps)), stage_(std::move(stage)) {
+  stage_.default_timeout_s *= timeout_factor();
   timer_.setInterval(kBetweenSteps_ms);
   connect(&timer_, &QTimer::timeout, this, &ScriptPlayer::play_on);
 }
@@ -79,14 +85,14 @@ Result<QWidget*> ScriptPlayer::find(const QString& name) const {
     }
   }
   if (hidden == nullptr) return fail("no such widget", to_std(name), "check its object name");
-  if (seconds() < stage_.look_s) return nullptr;
+  if (seconds() < stage_.default_timeout_s) return nullptr;
   return fail("the widget is not visible", to_std(name), "is another page open?");
 }
 
 Result<QWidget*> ScriptPlayer::find_usable(const QString& name) const {
   TROCAR_TRY(QWidget* const widget, find(name));
   if (widget == nullptr || widget->isEnabled()) return widget;
-  if (seconds() < stage_.look_s) return nullptr;
+  if (seconds() < stage_.default_timeout_s) return nullptr;
   return fail("it cannot be used now", to_std(name), "the widget is disabled");
 }
 
@@ -95,7 +101,7 @@ Result<ScriptPlayer::Progress> ScriptPlayer::click_menu_entry(QAction& entry) co
     entry.trigger();
     return Progress::kDone;
   }
-  if (seconds() < stage_.look_s) return Progress::kAgain;
+  if (seconds() < stage_.default_timeout_s) return Progress::kAgain;
   return fail("it cannot be used now", to_std(entry.objectName()), "the widget is disabled");
 }
 
@@ -113,10 +119,10 @@ bool ScriptPlayer::holds(const QString& fact, const QString& op, const QString& 
   return a >= b;
 }
 
-Result<ScriptPlayer::Progress> ScriptPlayer::wait_until_holds(const QStringList& fact_op_value, double patience_s) {
+Result<ScriptPlayer::Progress> ScriptPlayer::wait_until_holds(const QStringList& fact_op_value, double timeout_s) {
   const QString& fact = fact_op_value[0];
   if (holds(fact, fact_op_value[1], fact_op_value[2])) return Progress::kDone;
-  if (seconds() < patience_s) return Progress::kAgain;
+  if (seconds() < timeout_s) return Progress::kAgain;
   const QVariantMap facts = stage_.facts();
   if (!facts.contains(fact))
     return fail("unknown fact \"" + to_std(fact) + "\"", {}, "known: " + to_std(facts.keys().join(' ')));
@@ -217,7 +223,7 @@ Result<ScriptPlayer::Progress> ScriptPlayer::play_drag(const ScriptStep& step, Q
 
 Result<ScriptPlayer::Progress> ScriptPlayer::play_until(const ScriptStep& step, const std::function<Status()>& act) {
   const QStringList& a = step.arguments;
-  TROCAR_TRY(const Progress progress, wait_until_holds(a.mid(2), patience_of(a)));
+  TROCAR_TRY(const Progress progress, wait_until_holds(a.mid(2), timeout_of(a, timeout_factor() * kTimeout_s)));
   if (progress == Progress::kDone) return progress;
   const int due = static_cast<int>(seconds() * std::abs(a[1].toDouble()));
   // Missed events are dropped: catching up would overshoot the condition.
@@ -229,7 +235,7 @@ Result<ScriptPlayer::Progress> ScriptPlayer::play_until(const ScriptStep& step, 
 Result<ScriptPlayer::Progress> ScriptPlayer::play_waiting(const ScriptStep& step) {
   const QStringList& a = step.arguments;
   if (step.verb == QLatin1String("wait")) return seconds() >= a[0].toDouble() ? Progress::kDone : Progress::kAgain;
-  return wait_until_holds(a, patience_of(a));
+  return wait_until_holds(a, timeout_of(a, timeout_factor() * kTimeout_s));
 }
 
 Result<ScriptPlayer::Progress> ScriptPlayer::play_looking(const ScriptStep& step) {
@@ -241,7 +247,7 @@ Result<ScriptPlayer::Progress> ScriptPlayer::play_looking(const ScriptStep& step
     return Progress::kDone;
   }
   if (step.verb == QLatin1String("expect-whole")) return expect_whole();
-  if (step.verb == QLatin1String("expect")) return wait_until_holds(a, patience_of(a, stage_.look_s));
+  if (step.verb == QLatin1String("expect")) return wait_until_holds(a, timeout_of(a, stage_.default_timeout_s));
   TROCAR_TRY(QWidget* const widget,
              find(step.verb == QLatin1String("screenshot") && a.size() < 2 ? QStringLiteral("window")
                   : step.verb == QLatin1String("screenshot")               ? a[1]
@@ -254,7 +260,7 @@ Result<ScriptPlayer::Progress> ScriptPlayer::play_looking(const ScriptStep& step
   }
   const double share = share_near(image, QColor(a[1]), a[2].toInt());
   if (share >= a[3].toDouble()) return Progress::kDone;
-  if (seconds() >= patience_of(a, stage_.look_s))
+  if (seconds() >= timeout_of(a, stage_.default_timeout_s))
     return fail(fmt::format("only {:.2f} % of its pixels are near {}", 100.0 * share, to_std(a[1])), to_std(a[0]),
                 "look at the picture, or correct the step");
   return Progress::kAgain;

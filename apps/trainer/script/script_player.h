@@ -19,7 +19,7 @@ struct Stage {
   std::function<QVariantMap()> facts;
   std::function<void(const QString& tool)> end_server;
   std::function<void()> reset_watch;
-  double look_s = 10.0;  ///< Timeout for a widget that does not exist yet.
+  double default_timeout_s = 10.0;  ///< Timeout for a widget that does not exist yet.
 };
 
 /// Plays a script in a window: sends events to the widgets step by step while the window runs. Ends with an error or
@@ -54,7 +54,7 @@ class ScriptPlayer : public QObject {
   Result<Progress> click_menu_entry(QAction& entry) const;
   bool holds(const QString& fact, const QString& op, const QString& value) const;
   /// Done once the fact holds; an error where it does not within the step's time.
-  Result<Progress> wait_until_holds(const QStringList& fact_op_value, double patience_s);
+  Result<Progress> wait_until_holds(const QStringList& fact_op_value, double timeout_s);
   double seconds() const { return static_cast<double>(clock_.nsecsElapsed()) / 1e9; }
 
   std::vector<ScriptStep> steps_;

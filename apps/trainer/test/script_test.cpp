@@ -71,7 +71,7 @@ struct SmallStage : ::testing::Test {
   QString play(const char* text) {
     const auto steps = parse_script(QString::fromUtf8(text), QStringLiteral("s"));
     EXPECT_TRUE(steps) << steps.error().text();
-    ScriptPlayer player(*steps, {&window, [this] { return facts(); }, [](const QString&) {}, [] {}, look_s});
+    ScriptPlayer player(*steps, {&window, [this] { return facts(); }, [](const QString&) {}, [] {}, default_timeout_s});
     QEventLoop loop;
     QString said;
     QObject::connect(&player, &ScriptPlayer::finished, &loop, [&](const QString& error) {
@@ -88,7 +88,7 @@ struct SmallStage : ::testing::Test {
   QPushButton* button = nullptr;
   QSlider* slider = nullptr;
   int pushed = 0;
-  double look_s = 10.0;
+  double default_timeout_s = 10.0;
 };
 
 TEST_F(SmallStage, ClicksKeysAndValuesReachTheWidgets) {
@@ -110,7 +110,7 @@ TEST_F(SmallStage, EntriesAndNumbersOfAMenuAreReachedWhileItIsClosed) {
   EXPECT_EQ(play("click menu-entry\nset menu-number 7\nexpect pushed is 1\n"), QString());
   EXPECT_EQ(number->value(), 7);
   entry->setEnabled(false);
-  look_s = 0.05;
+  default_timeout_s = 0.05;
   EXPECT_TRUE(play("click menu-entry\n").contains(QStringLiteral("disabled")));
 }
 
@@ -131,7 +131,7 @@ TEST_F(SmallStage, WhatIsNotThereYetIsWaitedFor) {
 }
 
 TEST_F(SmallStage, WhatFailsNamesItsLine) {
-  look_s = 0.05;
+  default_timeout_s = 0.05;
   EXPECT_TRUE(play("click push\nexpect pushed is 7\n").startsWith(QStringLiteral("line 2:")));
   EXPECT_TRUE(play("click nothing\n").contains(QStringLiteral("nothing")));
   EXPECT_TRUE(play("wait-for pushed > 99 within 0.1\n").contains(QStringLiteral("did not become true")));
