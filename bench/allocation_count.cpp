@@ -32,14 +32,36 @@ std::size_t AllocationCount::count() const noexcept {
 
 }  // namespace trocar::bench
 
-// The array and nothrow forms of the library call these.
+// All forms that the standard library's own would provide: the address sanitizer's forms do not call ours.
 void* operator new(std::size_t size) {
   return trocar::bench::take(size, 0);
+}
+void* operator new[](std::size_t size) {
+  return trocar::bench::take(size, 0);
+}
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  try {
+    return trocar::bench::take(size, 0);
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
+}
+void* operator new[](std::size_t size, const std::nothrow_t& nothrow) noexcept {
+  return operator new(size, nothrow);
 }
 void* operator new(std::size_t size, std::align_val_t alignment) {
   return trocar::bench::take(size, static_cast<std::size_t>(alignment));
 }
+void* operator new[](std::size_t size, std::align_val_t alignment) {
+  return trocar::bench::take(size, static_cast<std::size_t>(alignment));
+}
 void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::size_t) noexcept {
   std::free(memory);
 }
 void operator delete(void* memory, std::size_t) noexcept {
@@ -49,5 +71,11 @@ void operator delete(void* memory, std::align_val_t) noexcept {
   std::free(memory);
 }
 void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::align_val_t) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept {
   std::free(memory);
 }
