@@ -20,15 +20,15 @@ struct DeviceSpec {
   std::string kind;
   std::string argument;  ///< After the first colon.
 };
-/// Unknown kind, or an argument that is missing: exit status 2, the message lists the kinds.
+/// Errors (exit status 2): unknown kind, or a missing argument. The message lists the kinds.
 Result<DeviceSpec> parse_device_spec(std::string_view text);
 
-/// Arguments of opening in addition to the name.
+/// Options of open_device() in addition to the DeviceSpec.
 struct DeviceOptions {
   std::filesystem::path devices_file;  ///< data/devices.toml
-  std::string preset;                  ///< Row of it; empty: the kind's own.
-  std::vector<ScheduledFault> faults;  ///< Not empty: wrapped by a FaultyDevice.
-  RecordedMotion motion;               ///< For "replay", whose argument is the file it is from.
+  std::string preset;                  ///< Row of devices_file; empty: the default row of the kind.
+  std::vector<ScheduledFault> faults;  ///< If not empty, a FaultyDevice wraps the device.
+  RecordedMotion motion;               ///< For "replay": the motion read from the file in DeviceSpec::argument.
   bool has_weight_compensation = true;
   /// The device is in its calibration position (stylus in the inkwell, arm in the reset position) and is calibrated
   /// while it is opened. Only for "openhaptics".

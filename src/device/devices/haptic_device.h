@@ -13,18 +13,18 @@ namespace trocar::devices {
 /// Status of a reading.
 enum class DeviceStatus : std::uint8_t {
   kFresh,         ///< Read just now.
-  kRepeated,      ///< No new data; the last reading repeated.
-  kDisconnected,  ///< Gone, until it is opened again.
+  kRepeated,      ///< No new data; the last reading is repeated.
+  kDisconnected,  ///< The device is disconnected until it is opened again.
 };
 
-inline constexpr std::uint32_t kButtonMain = 1;  ///< The stylus' (first) button.
+inline constexpr std::uint32_t kButtonMain = 1;  ///< First button of the stylus.
 inline constexpr std::uint32_t kButtonSecond = 2;
 
-/// What a device senses.
+/// Reading of a device: pose, buttons and status.
 struct DeviceReading {
   DeviceStatus status = DeviceStatus::kFresh;
-  Pose X_DS;                  ///< Stylus in the device base; identity rotation if the device senses none.
-  std::uint32_t buttons = 0;  ///< Bits.
+  Pose X_DS;                  ///< Stylus in the device base; identity rotation if the device senses no rotation.
+  std::uint32_t buttons = 0;  ///< Button bits.
 };
 
 /// Target pose of a simulated hand or pointer, for devices that no person holds.
@@ -32,7 +32,7 @@ struct DeviceHand {
   Pose X_DS;
   Vec3 v_D = Vec3::Zero();  ///< mm/s
   Vec3 w_D = Vec3::Zero();  ///< rad/s
-  double time_s = 0.0;      ///< When it is meant for, steady clock of the server.
+  double time_s = 0.0;      ///< Time of the target, steady clock of the server.
   double stiffness_n_per_mm = 0.0;
   double damping_ns_per_mm = 0.0;
   double mass_kg = 0.0;
@@ -43,13 +43,13 @@ struct DeviceHand {
   double point_mm = 0.0;
   std::uint32_t buttons = 0;
   bool is_held = false;    ///< false: released.
-  bool is_rigid = false;   ///< Follows exactly, independent of the force.
-  bool is_placed = false;  ///< Placed there now, at rest.
+  bool is_rigid = false;   ///< The stylus follows the target exactly, independent of the force.
+  bool is_placed = false;  ///< The stylus is placed at X_DS now, at rest.
 };
 
-/// One haptic device. Opened by a factory, closed by its destructor (at zero force). read, write and hold are called by
-/// one real-time thread, once a period each: read, hold, write. Plug point of the server: one derived class a device,
-/// in a file of its own.
+/// One haptic device. A factory opens it; its destructor closes it at zero force. One real-time thread calls read, hold
+/// and write, in this order, once per period each. Extension point of the server: each device has one derived class in
+/// its own file.
 class HapticDevice {
  public:
   virtual ~HapticDevice() = default;
@@ -58,15 +58,15 @@ class HapticDevice {
 
   /// Limits of the device: from data/devices.toml, lowered to the values that the device reports. Constant while open.
   virtual const haptics::DevicePreset& preset() const noexcept = 0;
-  /// "virtual:premium", for people and records.
+  /// Name for messages and records, for example "virtual:premium".
   virtual std::string name() const = 0;
-  /// The pose now, at a time of the steady clock (s). Real-time safe.
+  /// Reads the present pose. `now_s`: time of the steady clock (s). Real-time safe.
   virtual DeviceReading read(double now_s) noexcept = 0;
   /// Wrench for the motors, in D about S. Returns false if it was not accepted. Real-time safe.
   virtual bool write(const haptics::Wrench& wrench_D) noexcept = 0;
-  /// For devices that nobody really holds; ignored by all others. Real-time safe.
+  /// Sets the hand target of devices that no person holds; all other devices ignore it. Real-time safe.
   virtual void hold(const DeviceHand&) noexcept {}
-  /// True if a person's hand holds it (it is never completely at rest); false: simulated or recorded hand.
+  /// True if a person's hand holds the device (never completely at rest); false: simulated or recorded hand.
   virtual bool is_in_real_hand() const noexcept { return true; }
   /// Reopens the device after kDisconnected. Call it from a thread that may block, while no other thread calls read or
   /// write.

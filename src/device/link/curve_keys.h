@@ -15,15 +15,16 @@ struct CurveKeys {
 };
 Result<CurveKeys> make_curve_keys();
 
-/// Writes DIR/server.key, DIR/server.pub, DIR/client.key, DIR/client.pub and DIR/allowed (the client's public key);
-/// secret files for the user alone (0600), the folder too (0700). A folder that has something in it is refused (exit
-/// status 2).
+/// Writes DIR/server.key, DIR/server.pub, DIR/client.key, DIR/client.pub and DIR/allowed (the client's public key).
+/// Only the user can access the secret files (0600) and the folder (0700). Errors (exit status 2): the folder is not
+/// empty.
 Status write_key_folder(const std::filesystem::path& folder);
-/// A .key file: lines "public KEY" and "secret KEY". Errors: missing, not Z85, no pair, readable by others.
+/// Reads a .key file: lines "public KEY" and "secret KEY". Errors: a key is missing or not Z85, the keys do not match,
+/// or other users can read the file.
 Result<CurveKeys> load_curve_keys(const std::filesystem::path& file);
-/// A .pub file: one key.
+/// Reads a .pub file: one key.
 Result<std::string> load_public_key(const std::filesystem::path& file);
-/// Public keys of the clients that may connect, one a line, # starts a comment.
+/// Reads the public keys of the clients that may connect, one per line; # starts a comment.
 Result<std::set<std::string>> load_allow_list(const std::filesystem::path& file);
 
 }  // namespace trocar::link

@@ -7,16 +7,19 @@
 
 namespace trocar::link {
 
-/// Where a server listens.
+/// Address of a server.
 struct Endpoint {
-  std::string url;          ///< "ipc:///run/user/0/trocar-needle", "tcp://127.0.0.1:5571"
-  bool needs_keys = false;  ///< tcp: other users can connect, on loopback too. On ipc the file's mode keeps them out.
+  std::string url;  ///< "ipc:///run/user/0/trocar-needle", "tcp://127.0.0.1:5571"
+  /// True for tcp: other users can connect, also on loopback. For ipc, the file mode prevents it.
+  bool needs_keys = false;
 };
-/// ipc:///PATH (absolute, no longer than a socket's name may be) and tcp://ADDRESS:PORT (an address of version 4, or of
-/// version 6 in brackets, as inet_pton takes it; port 0: any free one; localhost is 127.0.0.1); else exit status 2.
+/// Parses ipc:///PATH (absolute, at most as long as a socket name may be) or tcp://ADDRESS:PORT (an IPv4 address, or an
+/// IPv6 address in brackets, in the format of inet_pton; port 0: any free port; localhost is 127.0.0.1). Errors (exit
+/// status 2): another format.
 Result<Endpoint> parse_endpoint(std::string_view text);
-/// For a tool, under the user's run-time folder ($XDG_RUNTIME_DIR where it is the user's alone, else /tmp/trocar-UID,
-/// made so). Empty, with a warning in the log, where that one is another's: parse_endpoint() refuses it.
+/// Default endpoint of a tool, in the user's run-time folder: $XDG_RUNTIME_DIR if only the user can access it, else
+/// /tmp/trocar-UID, which is made private to the user. If that folder is not private, logs a warning and returns an
+/// empty text, which parse_endpoint() refuses.
 std::string default_endpoint(std::string_view tool);
 
 }  // namespace trocar::link

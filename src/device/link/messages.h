@@ -15,57 +15,59 @@
 
 namespace trocar::link {
 
-inline constexpr std::uint32_t kLinkVersion = 3;  ///< Both sides must have the same.
+inline constexpr std::uint32_t kLinkVersion = 3;  ///< Both sides must have the same version.
 
 // From a client.
 
-/// The first message. The first client that wants control gets it until it disconnects or times out (kControlLost_s);
-/// others can watch.
+/// The first message. The first client that requests control gets it until it disconnects or times out
+/// (kControlLost_s); other clients can watch.
 struct Hello {
   std::string client;
   bool wants_control = true;
 };
 
-/// At 100 Hz, from a thread of its own.
+/// Sent at 100 Hz by a separate thread of the client.
 struct Heartbeat {
-  double client_time_s = 0.0;        ///< Steady clock of the client, to be sent back.
+  double client_time_s = 0.0;        ///< Steady clock of the client; the Pong returns it.
   double window_age_s = 0.0;         ///< Time since the client's window last drew a frame; 0: no window.
-  std::uint64_t ticks_received = 0;  ///< So far.
+  std::uint64_t ticks_received = 0;  ///< Ticks received so far.
 };
 
-/// A scene: patient, tool, tissues, force model. Built off-line and swapped in whole.
+/// A scene: patient, tool, tissues, force model. The server builds it outside of the real-time thread and swaps it in
+/// as a whole.
 struct LoadScene {
-  std::string task;     ///< For status and log only.
-  std::string patient;  ///< Folder (of the server's machine), or an embedded patient's name.
+  std::string task;     ///< Only for status and log.
+  std::string patient;  ///< Folder (on the server's machine), or name of an embedded patient.
   std::uint64_t patient_seed = 1;
-  std::string patient_hash;         ///< Refused when it is another; empty: any.
+  std::string patient_hash;         ///< A patient with another hash is refused; empty: any hash.
   std::string tool = "needle";      ///< needle | probe | finger
-  double needle_length_mm = 150.0;  ///< Grip to tip; these are the fields of NeedleGeometry.
+  double needle_length_mm = 150.0;  ///< Grip to tip. The needle_ fields are those of NeedleGeometry.
   double needle_radius_mm = 0.635;
   double needle_inner_radius_mm = 0.0;
-  double needle_stylet_radius_mm = 0.0;  ///< 0: has none.
+  double needle_stylet_radius_mm = 0.0;  ///< 0: no stylet.
   double needle_young_gpa = 200.0;
   double needle_bevel_rad = 0.35;
   double needle_bevel_share = 0.1;
   std::string force_model = "insertion";
-  std::string tissues_toml;  ///< The whole table; empty: the server's own.
+  std::string tissues_toml;  ///< The whole table; empty: the server's table.
   std::uint64_t seed = 1;
   Pose X_PW;  ///< Room in the patient.
 };
 
-/// A number of the tissue table; anatomy/tissue/tissue_setting.h has rows, keys and ranges.
+/// A value of the tissue table; anatomy/tissue/tissue_setting.h has rows, keys and ranges.
 struct TissueSetting {
   std::string row, key;         ///< "liver", "k"
-  std::optional<double> value;  ///< None: never gives way.
+  std::optional<double> value;  ///< Empty: the tissue never yields.
   bool operator==(const TissueSetting&) const = default;
 };
 
-/// While it runs. The scene is built anew and swapped in; the insertion goes on. What is empty stays as it is.
+/// Changes a running scene. The server builds the scene again and swaps it in; the insertion continues. Empty fields
+/// leave the values unchanged.
 struct SetParameters {
-  /// All numbers that differ from the loaded table: they replace those of the last message that had any. An empty list:
-  /// as loaded.
+  /// All values that differ from the loaded table. They replace those of the last message that had a list. An empty
+  /// list restores the loaded table.
   std::optional<std::vector<TissueSetting>> tissues = {};
-  std::string tissues_toml = {};  ///< Replaces the loaded table; `tissues` then applies to this one.
+  std::string tissues_toml = {};  ///< Replaces the loaded table; `tissues` then applies to this table.
   std::string force_model = {};   ///< insertion | proxy | combined
   std::optional<double> coupling_stiffness_n_per_mm = {};
   std::optional<double> coupling_damping_ns_per_mm = {};
@@ -77,26 +79,26 @@ enum class ServerCommand : std::uint8_t {
   kStart,  ///< Forces on (through the safe start).
   kStop,   ///< Forces off.
   kResetFault,
-  kReconnect,  ///< Open the device again.
+  kReconnect,  ///< Reopen the device.
   kStyletOut,
   kStyletIn,
-  kRestartStatistics,  ///< Of the loop.
+  kRestartStatistics,  ///< Statistics of the loop.
 };
 inline constexpr ServerCommand kLastServerCommand = ServerCommand::kRestartStatistics;
 
-/// A command wants a Reply with the same number.
+/// The server answers a command with a Reply that has the same number.
 struct Command {
   std::uint32_t request = 0;
   std::variant<LoadScene, SetParameters, ServerCommand> what = ServerCommand::kStop;
 };
 
-/// Target pose of the tool for a simulated or pointing hand: a needle X_PN, a transducer X_PT. No reply; only the
-/// newest is used.
+/// Target pose of the tool for a simulated hand or a pointer: X_PN of a needle, X_PT of a transducer. No reply; the
+/// server uses only the newest target.
 struct HandTarget {
   Pose X_PN;
-  Vec3 v_P = Vec3::Zero();     ///< mm/s, of the tip (for extrapolation), and
-  Vec3 w_P = Vec3::Zero();     ///< rad/s
-  double server_time_s = 0.0;  ///< When it is meant for.
+  Vec3 v_P = Vec3::Zero();     ///< mm/s, of the tip (for extrapolation).
+  Vec3 w_P = Vec3::Zero();     ///< rad/s, for extrapolation.
+  double server_time_s = 0.0;  ///< Time of the target, server's clock.
   double stiffness_n_per_mm = 0.6;
   double damping_ns_per_mm = 0.012;
   double mass_kg = 0.15;
@@ -107,7 +109,7 @@ struct HandTarget {
   std::uint32_t buttons = 0;
   bool is_held = true;
   bool is_rigid = false;
-  bool is_placed = false;  ///< Put there now, at rest; the insertion begins anew there, through the safe start.
+  bool is_placed = false;  ///< Placed at X_PN now, at rest; the insertion restarts there, through the safe start.
 };
 
 struct Goodbye {};
@@ -116,7 +118,7 @@ using ClientBody = std::variant<Hello, Heartbeat, Command, HandTarget, Goodbye>;
 
 // From the server.
 
-/// What the device can do, for a client to show.
+/// Data of the device, for display by a client.
 struct DeviceSummary {
   std::string name, title;
   int sensed_dof = 6, actuated_dof = 6;
@@ -138,15 +140,16 @@ struct Reply {
   std::uint32_t request = 0;
   bool is_done = false;
   std::string text;  ///< The error text, or a description of what was done.
-  /// Of a command that made a scene (LoadScene, SetParameters): its number, and the parameters in force with it. A
-  /// scene is felt from the first tick whose batch has its number; that batch may arrive before this reply.
-  std::uint64_t scene = 0;                ///< 0: made none. Rises while the server runs.
+  /// For a command that made a scene (LoadScene, SetParameters): number of the scene. The fields below are its
+  /// parameters. A scene takes effect at the first tick whose batch has its number; that batch may arrive before this
+  /// reply.
+  std::uint64_t scene = 0;                ///< 0: no new scene. Increases while the server runs.
   std::vector<std::string> options = {};  ///< "coupling.stiffness=0.8", see haptics/scene_options.h.
   std::string tissues_toml = {};          ///< The whole table.
 };
 
 struct Pong {
-  double client_time_s = 0.0;  ///< Of the heartbeat.
+  double client_time_s = 0.0;  ///< client_time_s of the heartbeat.
   double server_time_s = 0.0;
 };
 
@@ -161,38 +164,38 @@ struct ServerStatus {
   std::string patient, patient_hash, force_model, task;
   double loading = 0.0;  ///< 0..1 while a scene is being built.
   realtime::LoopSummary loop;
-  std::uint64_t ticks = 0;          ///< Made.
-  std::uint64_t ticks_dropped = 0;  ///< Ticks that fit into no batch; every gap in the numbers is counted here.
+  std::uint64_t ticks = 0;          ///< Ticks made.
+  std::uint64_t ticks_dropped = 0;  ///< Ticks that are in no batch; includes every gap in the tick numbers.
   std::uint64_t messages_refused = 0;
   std::uint32_t gate_actions = 0;     ///< GateAction bits since the last status.
-  double drop_n = 0.0, drop_s = 0.0;  ///< The last fall of the force.
+  double drop_n = 0.0, drop_s = 0.0;  ///< Size and duration of the last drop of the force.
   bool is_device_connected = true;
   bool has_controller = false;
-  double coupling_share = 1.0;  ///< The smallest since the last status, 0..1; below 1: the loop is slow.
+  double coupling_share = 1.0;  ///< Smallest value since the last status, 0..1; below 1: the loop is slow.
 };
 
-/// Consecutive ticks of one scene: number of the first, and at most kMostSamples of them. The status comes with the
-/// newest.
+/// Consecutive ticks of one scene: number of the first tick, and at most kMostSamples ticks. The status comes with the
+/// newest tick.
 struct StateBatch {
   std::uint64_t first_tick = 0;
   std::vector<telemetry::TickSample> samples;
-  std::optional<ServerStatus> status;  ///< Now and then: at least at 20 Hz.
+  std::optional<ServerStatus> status;  ///< Not in every batch: at least at 20 Hz.
   std::uint64_t scene = 0;             ///< See Reply::scene; 0: none.
 };
 inline constexpr std::size_t kMostSamples = 512;
 
 /// Reason for refusing a message. For a client without a session, session and sequence are 0.
 struct Refusal {
-  std::string text;  ///< As Error::text.
+  std::string text;  ///< Like Error::text.
 };
 
 using ServerBody = std::variant<Welcome, StateBatch, Reply, Pong, Refusal>;
 
-/// What goes over the wire.
+/// A message on the wire: a body with session and sequence number.
 template <class Body>
 struct Envelope {
-  std::uint64_t session = 0;   ///< Of the welcome; 0 in a Hello.
-  std::uint64_t sequence = 0;  ///< Rises by one with every message of a session.
+  std::uint64_t session = 0;   ///< Session of the Welcome; 0 in a Hello.
+  std::uint64_t sequence = 0;  ///< Increases by one with every message of a session.
   Body body;
 };
 using ClientMessage = Envelope<ClientBody>;

@@ -4,16 +4,16 @@
 
 namespace trocar::link {
 
-/// What a haptic server is doing.
+/// State of a haptic server.
 enum class ServerState : std::uint8_t {
-  kNoScene,  ///< Nothing was loaded yet.
+  kNoScene,  ///< No scene was loaded yet.
   kLoading,  ///< Builds a scene.
-  kReady,    ///< Has a scene; no client wants forces.
-  kRunning,  ///< A client wants forces; GateMode tells whether they are on.
+  kReady,    ///< Has a scene; forces are not requested.
+  kRunning,  ///< Forces are requested; GateMode states whether they are on.
   kFault,    ///< The safety gate has latched a fault.
 };
 inline constexpr ServerState kLastServerState = ServerState::kFault;
-/// For people: "no scene", "loading", "ready", "running", "fault".
+/// Text for messages: "no scene", "loading", "ready", "running", "fault".
 const char* to_string(ServerState state) noexcept;
 
 }  // namespace trocar::link

@@ -22,10 +22,11 @@ class DeviceTrial {
   DeviceTrial(devices::HapticDevice& device, double rate_hz) noexcept;
 
   DeviceTrialRecord step(double now_s, double dt_s) noexcept;
-  /// A force upwards (+z of D) rises to push_n() and falls again, within kPush_s after the gate's safe start. Resets a
-  /// fault of the push before.
+  /// Applies a force upwards (+z of D) that rises to push_n() and falls again within kPush_s, after the safe start of
+  /// the gate. Resets a fault of the previous push.
   void push() noexcept;
-  /// Size of the push: 0.6 of the continuous force, 1 N at most; of a device that only shows forces (rumble), 3 N.
+  /// Peak force of the push: 0.6 of the continuous force, at most 1 N; 3 N for a device that only displays forces
+  /// (rumble).
   double push_n() const noexcept { return push_n_; }
 
   static constexpr double kPush_s = 1.5;
@@ -35,7 +36,7 @@ class DeviceTrial {
   const haptics::GateParams gate_;
   const double push_n_;
   haptics::GateState state_;
-  std::optional<double> pushing_s_;  ///< Since push().
+  std::optional<double> pushing_s_;  ///< Time of the push after the safe start.
   std::optional<Pose> last_X_DS_;
   double unread_s_ = 0.0;
   bool is_reset_ = false;

@@ -12,13 +12,13 @@
 
 namespace trocar::server {
 
-/// Keeps the last periods and returns them after a fault has latched and some more periods were recorded. Fed by the
-/// link thread with the records of the servo, at no cost for the servo.
+/// Keeps the records of the last periods. After a fault has latched, it records kAfter_s more and returns them. The
+/// link thread adds the records, so that the servo thread spends no time on them.
 class FlightRecorder {
  public:
-  /// `rate_hz`: of the records. Keeps kBefore_s before the fault and kAfter_s of what came after it.
+  /// `rate_hz`: rate of the records. Keeps kBefore_s before the fault and kAfter_s after it.
   explicit FlightRecorder(double rate_hz);
-  /// One record; a flight when it is complete.
+  /// Adds one record. Returns a flight record when it is complete.
   std::optional<std::vector<ServoRecord>> add(const ServoRecord& record);
 
   static constexpr double kBefore_s = 2.0;
@@ -31,20 +31,20 @@ class FlightRecorder {
   std::deque<ServoRecord> records_;
 };
 
-/// What a folder may hold of flight records.
+/// Limits of the flight records in a folder.
 struct FlightQuota {
   std::size_t files = 20;              ///< Range 1 and up.
-  std::uintmax_t bytes = 64ULL << 20;  ///< Of all together; a flight at 4 kHz has about 3 MB.
+  std::uintmax_t bytes = 64ULL << 20;  ///< Sum of all files; one record at 4 kHz has about 3 MB.
 };
 
-/// Removes the oldest flight records, by the time in their names, until the folder is within its quota. `newest` stays.
-/// Only regular files named flight-UTC-FAULT.csv are counted and removed. Gives how many were removed.
+/// Removes the oldest flight records, by the time in their names, until the folder is within its quota. `newest` is
+/// kept. Only regular files named flight-UTC-FAULT.csv are counted and removed. Returns the number of removed files.
 std::size_t keep_quota(const std::filesystem::path& folder, const std::filesystem::path& newest,
                        const FlightQuota& quota = {});
 
-/// Writes FOLDER/flight-UTC-FAULT.csv, one row per period: the tick's fields that telemetry/tick_fields.h names for it,
-/// pose, buttons, wanted and written wrench, actions of the gate. Older records make room for it (keep_quota). Gives
-/// its path.
+/// Writes FOLDER/flight-UTC-FAULT.csv, one row per period: the tick fields that telemetry/tick_fields.h selects for it,
+/// pose, buttons, wanted and written wrench, actions of the gate. Removes older records beyond the quota (keep_quota).
+/// Returns the path.
 Result<std::filesystem::path> write_flight(const std::filesystem::path& folder, const std::string& utc,
                                            const std::vector<ServoRecord>& flight);
 

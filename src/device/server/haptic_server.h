@@ -21,21 +21,22 @@ struct ServerOptions {
   link::Endpoint endpoint;
   std::optional<link::ServerSecurity> security;
   double rate_hz = 1000.0;      ///< 250..4000
-  std::string tool = "needle";  ///< What this server is for: needle | probe | finger. Scenes of others are refused.
-  int priority = 80;            ///< Of SCHED_FIFO, for the real-time thread; the link's gets kLinkPriority.
+  std::string tool = "needle";  ///< Tool of this server: needle | probe | finger. Scenes of other tools are refused.
+  int priority = 80;            ///< SCHED_FIFO priority of the real-time thread; the link thread has kLinkPriority.
   std::filesystem::path tissues_file;   ///< data/tissues.toml
   std::filesystem::path flight_folder;  ///< Flight records are written here on a fault; empty: not written.
 };
 inline constexpr int kLinkPriority = 20;
 
-/// Starts a thread. An argument, so that a test can let one fail. Errors: the system has no thread left.
+/// Starts a thread. It is an argument of start(), so that a test can make a thread fail. Errors: the system cannot
+/// create a thread.
 using ThreadStarter = std::function<Result<std::thread>(const char* name, std::function<void()> body)>;
 Result<std::thread> start_thread(const char* name, std::function<void()> body);
 
-/// How a server did, for people and benchmarks.
+/// Statistics of a server, for messages and benchmarks.
 struct ServerReport {
-  /// A scene was still being loaded. Threads and device are at rest all the same, but destroying the server waits for
-  /// the loading to end: a program that ends calls std::_Exit instead.
+  /// A scene was still being loaded. The other threads have ended and the device is closed, but the destructor of the
+  /// server waits until the loading ends. A program that exits calls std::_Exit instead.
   bool is_loading = false;
   realtime::LoopSummary loop;
   realtime::RealTimeGrant grant;
@@ -44,22 +45,22 @@ struct ServerReport {
   std::uint64_t batches_not_taken = 0;
 };
 
-/// A haptic server: a real-time thread for the device, a thread for the link, a control thread for all that takes time
-/// (scenes, files, opening the device again). Starts when it is made and stops, forces faded, when it is destroyed.
+/// A haptic server: a real-time thread for the device, a thread for the link, and a control thread for slow work
+/// (scenes, files, reopening the device). start() starts it. The destructor fades the forces and stops it.
 class HapticServer {
  public:
-  /// Errors: the endpoint (see ServerSocket::bind), a rate out of range, a thread that does not start (those that had
-  /// started have ended then).
+  /// Errors: the endpoint (see ServerSocket::bind), a rate out of range, or a thread that does not start (the threads
+  /// that had started have then ended).
   static Result<HapticServer> start(const ServerOptions& options, std::unique_ptr<devices::HapticDevice> device,
                                     PatientOpener open_patient, const ThreadStarter& starter = start_thread);
   HapticServer(HapticServer&&) noexcept;
   HapticServer& operator=(HapticServer&&) noexcept;
   ~HapticServer();
 
-  /// Loads a scene as a client's message would, without a client.
+  /// Loads a scene like the LoadScene message of a client, without a client.
   void load(const link::LoadScene& request);
   std::string url() const;
-  /// Fades the forces, then ends the threads; waits 0.3 s at most for a scene that is being loaded. Once.
+  /// Fades the forces, then ends the threads; waits at most 0.3 s for a scene that is being loaded. Call it once.
   ServerReport stop();
 
  private:

@@ -10,10 +10,11 @@
 
 namespace trocar::server {
 
-/// Zero force where the program crashes: SIGABRT (std::terminate, failed checks, libraries), SIGSEGV, SIGBUS, SIGFPE,
-/// SIGILL, SIGSYS, SIGXCPU. The real-time thread is asked to write zero and to write nothing more; where it does not
-/// answer within kPatience_ms, or crashed itself, the handler writes. Then the signal ends the process as it would
-/// have. While an object lives its device is registered; handlers are installed with the first one.
+/// Commands zero force when the program crashes: SIGABRT (std::terminate, failed checks, libraries), SIGSEGV, SIGBUS,
+/// SIGFPE, SIGILL, SIGSYS, SIGXCPU. The signal handler requests that the real-time thread writes zero once and then
+/// nothing more. If that thread does not respond within kPatience_ms, or has crashed itself, the handler writes zero.
+/// Then the signal ends the process with its default action. The constructor registers the device and installs the
+/// handlers; the destructor unregisters the device.
 class LastChance {
  public:
   static constexpr int kPatience_ms = 20;
@@ -23,13 +24,14 @@ class LastChance {
   LastChance(const LastChance&) = delete;
   LastChance& operator=(const LastChance&) = delete;
 
-  /// The calling thread is the one that writes the device.
+  /// Registers the calling thread as the thread that writes to the device.
   void adopt_thread() noexcept;
-  /// Called by that thread at the start of every period. True: the process is ending and nothing may be written; zero
-  /// has been written unless the device is lent (`is_lent`). Real-time safe.
+  /// That thread calls it at the start of every period. Returns true if the process is ending: the thread must not
+  /// write any more; zero has been written unless the device is lent (`is_lent`). Real-time safe.
   bool takes_over(bool is_lent) noexcept;
 
-  /// What the handler does; async-signal-safe as far as the device's write() is real-time safe.
+  /// Commands zero force; called by the signal handler. Async-signal-safe as far as the device's write() is real-time
+  /// safe.
   void let_go() noexcept;
 
  private:
@@ -39,7 +41,7 @@ class LastChance {
   std::atomic<bool> is_done_{false};
 };
 
-/// A stack of its own for the handlers of the calling thread, so that they run after a stack overflow, too.
+/// A separate stack for the signal handlers of the calling thread, so that they also run after a stack overflow.
 class CrashStack {
  public:
   CrashStack() noexcept;

@@ -15,34 +15,35 @@
 
 namespace trocar::server {
 
-/// Opens a patient folder or makes an embedded patient. Files are above this module, so that its tests need none.
+/// Opens a patient folder or makes an embedded patient. A module above `server` reads the files, so that the tests of
+/// this module need no files.
 using PatientOpener = std::function<Result<std::shared_ptr<const anatomy::VirtualPatient>>(
     const std::string& patient, std::uint64_t seed, const Progress& progress)>;
 
-/// Makes scenes for the servo. By the control thread alone; keeps the patient of the last scene.
+/// Makes scenes for the servo. Only the control thread uses it. Keeps the patient of the last scene.
 class SceneBuilder {
  public:
   SceneBuilder(PatientOpener open_patient, std::filesystem::path tissues_file, haptics::DevicePreset device);
 
-  /// Everything anew. Errors: what is wrong with patient, tissues, needle or options, not enough memory, a stop that
-  /// was requested (looked at between the steps: tables, patient, scene); the last scene stays.
+  /// Builds a new scene. Errors: invalid patient, tissues, needle or options, not enough memory, or a requested stop
+  /// (checked between the steps: tables, patient, scene). After an error the last scene is kept.
   Result<ServoScene> load(const link::LoadScene& request, const Progress& progress = {},
                           const std::stop_token& stop = {});
-  /// The last scene with other numbers: all of the request or none. Numbers of tissues replace those of earlier
-  /// changes: a number that is not named has its loaded value again, so that a change that was undone or a message that
-  /// was lost leaves nothing behind; a request without tissues leaves them. A tissue table in the request replaces the
-  /// loaded one first. Errors: no scene yet, an unknown name, a number out of range.
+  /// Builds the last scene with other parameters. All changes of the request are applied, or none. Tissue settings
+  /// replace those of earlier requests: a setting that is not in the list gets its loaded value again, so that an
+  /// undone change or a lost message has no effect. A request without tissues keeps the earlier settings. A tissue
+  /// table in the request replaces the loaded one first. Errors: no scene yet, an unknown name, a number out of range.
   Result<ServoScene> change(const link::SetParameters& request);
 
   const link::LoadScene& request() const noexcept { return request_; }
-  /// In force with the last scene.
+  /// Tissue table of the last scene.
   const anatomy::TissueTable& tissues() const noexcept { return parts_.tissues; }
   const anatomy::VirtualPatient* patient() const noexcept { return patient_.get(); }
 
  private:
   struct Parts {
-    anatomy::TissueTable loaded;   ///< As the client gave it,
-    anatomy::TissueTable tissues;  ///< and with changed numbers.
+    anatomy::TissueTable loaded;   ///< Loaded table.
+    anatomy::TissueTable tissues;  ///< Loaded table with the changed settings.
     haptics::HapticOptions options;
   };
   Result<ServoScene> load_throwing(const link::LoadScene& request, const Progress& progress,

@@ -12,24 +12,24 @@
 
 namespace trocar::server {
 
-/// Scene of the servo: built by the control thread, swapped as a whole. `scene.X_PD` is X_PW: the tick's device base is
-/// the room.
+/// Scene of the servo. The control thread builds it; it is swapped as a whole. `scene.X_PD` is X_PW: the device base of
+/// the tick is the room.
 struct ServoScene {
   std::shared_ptr<const haptics::HapticScene> scene;
-  std::uint64_t number = 0;  ///< Rises with every scene.
-  bool continues = false;    ///< The insertion continues: same patient with other numbers.
+  std::uint64_t number = 0;  ///< Increases with every scene.
+  bool continues = false;    ///< The insertion continues: same patient with other parameters.
 };
 
-/// Of a device, constant while the servo lives.
+/// Parameters of a device, constant during the lifetime of the servo.
 struct ServoParams {
   haptics::GateParams gate;
   devices::WorkspaceParams workspace;
-  double stuck_s = 5.0;  ///< The same reading for so long under stuck_n: a stuck encoder. A hand trembles. [assumed]
+  double stuck_s = 5.0;  ///< Identical readings for this time above stuck_n: stuck encoder (a hand trembles). [assumed]
   double stuck_n = 1.0;
-  double max_hole_s = 0.25;  ///< A longer period latches a fault, as long as a client may be silent. [assumed]
+  double max_hole_s = 0.25;  ///< A longer period latches a fault; equal to the timeout of a client. [assumed]
 };
 
-/// Gate, calibration and scales of a device's preset; a stuck encoder is looked for above 0.15 of its continuous force
+/// Gate, calibration and scales of a device's preset; a stuck encoder is detected above 0.15 of its continuous force
 /// [assumed].
 ServoParams servo_params(const haptics::DevicePreset& preset, double rate_hz = 1000.0) noexcept;
 
@@ -37,25 +37,25 @@ ServoParams servo_params(const haptics::DevicePreset& preset, double rate_hz = 1
 struct ServoInput {
   double now_s = 0.0;
   double dt_s = 0.001;
-  double busy_s = 0.0;                   ///< Part of dt_s that the last period's own work took.
-  const ServoScene* scene = nullptr;     ///< None: no forces.
-  std::optional<link::HandTarget> hand;  ///< When a new one came.
-  double silence_s = 0.0;                ///< Since the client in control was heard.
-  bool is_wanted = false;                ///< Forces.
-  bool is_reset = false;                 ///< Of a fault.
+  double busy_s = 0.0;                   ///< Part of dt_s used by the work of the last period.
+  const ServoScene* scene = nullptr;     ///< Null: no forces.
+  std::optional<link::HandTarget> hand;  ///< Set if a new target came.
+  double silence_s = 0.0;                ///< Time since the last message of the client in control.
+  bool is_wanted = false;                ///< Forces are requested.
+  bool is_reset = false;                 ///< A fault reset is requested.
   bool is_stylet_in = true;
 };
 
 /// Output of a period: for clients, recorder and flight recorder. Fixed size.
 struct ServoRecord {
   std::uint64_t tick = 0;
-  std::uint64_t scene = 0;       ///< Number of the scene that made it; 0: none.
-  telemetry::TickSample sample;  ///< device_f_n is what the gate wrote, turned into P.
+  std::uint64_t scene = 0;       ///< Number of the scene of this tick; 0: none.
+  telemetry::TickSample sample;  ///< device_f_n is the force that the gate wrote, in P.
   devices::DeviceStatus status = devices::DeviceStatus::kFresh;
   telemetry::GateMode mode = telemetry::GateMode::kOff;
   telemetry::GateFault fault = telemetry::GateFault::kNone;
   std::uint16_t actions = 0;
-  double scale = 0.0;  ///< Of the gate, 0..1.
+  double scale = 0.0;  ///< Scale of the gate, 0..1.
   double drop_n = 0.0, drop_s = 0.0;
   haptics::Wrench wanted_D, written_D;
   Pose X_DS;
@@ -70,9 +70,9 @@ class Servo {
   Servo(devices::HapticDevice& device, const ServoParams& params) noexcept;
   ServoRecord step(const ServoInput& input) noexcept;
   telemetry::GateMode mode() const noexcept { return gate_.mode; }
-  /// Something else than zero was written last.
+  /// True if the last written wrench is not zero.
   bool gives_force() const noexcept;
-  /// Call after the device was lent: earlier readings and outputs are discarded, and forces return through the safe
+  /// Call it after the device was lent: earlier readings and outputs are discarded, and forces return through the safe
   /// start. A fault is kept.
   void resume() noexcept;
 
@@ -97,16 +97,16 @@ class Servo {
 
   devices::HapticDevice& device_;
   ServoParams params_;
-  bool has_torque_, senses_rotation_, is_watched_;  ///< Watched: for a stuck encoder.
+  bool has_torque_, senses_rotation_, is_watched_;  ///< is_watched_: for a stuck encoder.
   devices::WorkspaceState workspace_;
   haptics::GateState gate_;
   haptics::HapticState tick_;
   std::uint64_t scene_number_ = 0;
   std::uint64_t ticks_ = 0;
   bool has_read_ = false;
-  bool was_placed_ = false;            ///< In the last period.
-  devices::DeviceReading last_;        ///< The last reading whose pose can be used.
-  Mat3 R_WS_told_ = Mat3::Identity();  ///< Of a device that senses no rotation: the hand's, or the scene's.
+  bool was_placed_ = false;            ///< The hand target of the last period had is_placed.
+  devices::DeviceReading last_;        ///< Last fresh reading with a valid pose.
+  Mat3 R_WS_told_ = Mat3::Identity();  ///< Used if the device senses no rotation; from the hand target.
   double unread_s_ = 0.0;
   double unmoved_s_ = 0.0;
   bool has_refused_ = false;  ///< The device did not take the last wrench.

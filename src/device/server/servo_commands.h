@@ -4,16 +4,16 @@
 
 namespace trocar::server {
 
-/// What commands have changed so far in the real-time thread.
+/// Switches of the real-time thread that commands have set.
 struct ServoSwitches {
-  bool is_wanted = false;  ///< Forces.
+  bool is_wanted = false;  ///< Forces are requested.
   bool is_stylet_in = true;
-  bool is_reset = false;             ///< Of a fault, in this period.
-  bool restarts_statistics = false;  ///< In this period.
+  bool is_reset = false;             ///< A fault reset was requested in this period.
+  bool restarts_statistics = false;  ///< Requested in this period.
 
-  /// At the begin of a period.
+  /// Call it at the beginning of each period.
   void begin_period() noexcept { is_reset = restarts_statistics = false; }
-  /// Real-time safe. kReconnect is for the control thread and changes nothing here.
+  /// Applies a command. Real-time safe. kReconnect is for the control thread and changes nothing here.
   void obey(link::ServerCommand command) noexcept {
     switch (command) {
       case link::ServerCommand::kStart:

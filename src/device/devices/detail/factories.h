@@ -10,7 +10,8 @@ namespace trocar::devices {
 
 using OpenedDevice = Result<std::unique_ptr<HapticDevice>>;
 
-/// One factory a kind; device_spec.cpp lists them. Each opens the device or says what is missing and how to get it.
+/// One factory per kind; device_spec.cpp lists them. Each opens the device; its error states what is missing and how to
+/// get it.
 OpenedDevice open_virtual(const DeviceSpec& spec, const DeviceOptions& options);
 OpenedDevice open_pointer(const DeviceSpec& spec, const DeviceOptions& options);
 OpenedDevice open_replay(const DeviceSpec& spec, const DeviceOptions& options);
@@ -20,7 +21,7 @@ OpenedDevice open_openhaptics(const DeviceSpec& spec, const DeviceOptions& optio
 OpenedDevice open_forcedimension(const DeviceSpec& spec, const DeviceOptions& options);
 OpenedDevice open_haply(const DeviceSpec& spec, const DeviceOptions& options);
 
-/// For factories: the row of options.preset, or of `own` where none is named.
+/// For factories: loads the row options.preset, or the row `own` if options.preset is empty.
 Result<haptics::DevicePreset> load_preset_of(const DeviceOptions& options, std::string_view own);
 
 }  // namespace trocar::devices

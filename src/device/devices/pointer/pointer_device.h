@@ -4,15 +4,15 @@
 
 namespace trocar::devices {
 
-/// How a pointed pose follows the pointer. All [assumed].
+/// Parameters of the filter between the hand target and the pose. All [assumed].
 struct PointerParams {
-  double time_constant_s = 0.02;      ///< First order; a trainer's frames become a path. Range 0..0.5.
-  double max_speed_mm_per_s = 400.0;  ///< A quick hand; a click far away becomes a motion. Range 10..5000.
+  double time_constant_s = 0.02;      ///< First order: smooths the steps between a trainer's frames. Range 0..0.5.
+  double max_speed_mm_per_s = 400.0;  ///< Speed of a quick hand; turns a distant click into a motion. Range 10..5000.
   double max_turn_rad_per_s = 6.0;    ///< Range 0.1..100.
 };
 
 /// Mouse and keyboard of a trainer: the pose follows the trainer's hand target, smoothed. Written forces are only
-/// displayed, and the tick makes the pointer lag. Real-time safe after construction.
+/// displayed; the tick computes the lag of the pointer. Real-time safe after construction.
 class PointerDevice final : public HapticDevice {
  public:
   PointerDevice(haptics::DevicePreset preset, const PointerParams& params) noexcept;

@@ -22,11 +22,11 @@ struct PointerMotion {
   std::uint32_t buttons = 0;       ///< kButtonMain, kButtonSecond and higher bits.
 };
 
-/// Where a pointer starts: in the middle of the workspace, its tip down, +x of S to the right.
+/// Initial pose of a pointer: in the middle of the workspace, tip down, +x of S to the right.
 Pose pointer_start() noexcept;
 
-/// X_DS after `dt_s` of a motion: its origin stays within the workspace's ball and slides along its edge. A motion or
-/// a time that is not finite, and time that runs back, moves nothing. Real-time safe.
+/// X_DS after `dt_s` of a motion. The origin stays within the sphere of the workspace and slides along its surface. A
+/// non-finite motion or time, or a `dt_s` of zero or less, leaves the pose unchanged. Real-time safe.
 Pose move_pointer(const Pose& X_DS, const PointerMotion& motion, double dt_s, double workspace_radius_mm) noexcept;
 
 /// A gamepad or SpaceMouse whose state is polled. One thread calls all functions.
@@ -37,11 +37,11 @@ class PointerSource {
   PointerSource& operator=(const PointerSource&) = delete;
 
   virtual std::string name() const = 0;
-  /// Finds and opens it; may take a second. Again after close.
+  /// Finds and opens the device; may take a second. May be called again after close().
   virtual Status open() = 0;
   /// File descriptor that becomes readable when there is new data; -1: none.
   virtual int descriptor() const noexcept { return -1; }
-  /// Present motion; false: disconnected.
+  /// Sets `motion` to the present motion. Returns false if the device is disconnected.
   virtual bool poll(PointerMotion& motion) noexcept = 0;
   /// Displays a force (N) as rumble.
   virtual void show_force(double) noexcept {}
@@ -53,7 +53,7 @@ class PointerSource {
 
 inline constexpr std::int64_t kPointerPeriod_ns = 4'000'000;  ///< The thread polls at 250 Hz. [assumed]
 inline constexpr double kPointerSilence_s = 0.1;  ///< Without new data for this time, the stylus stops. [assumed]
-inline constexpr double kPointerStep_s = 0.02;    ///< The longest time that one reading moves the stylus for. [assumed]
+inline constexpr double kPointerStep_s = 0.02;    ///< Longest time of motion per reading. [assumed]
 /// Without a new wrench for this time, no force is rendered. [assumed]
 inline constexpr std::int64_t kPointerForceAge_ns = 20'000'000;
 
@@ -69,7 +69,7 @@ class PolledPointer final : public HapticDevice {
   std::string name() const override { return name_; }
   DeviceReading read(double now_s) noexcept override;
   bool write(const haptics::Wrench& wrench_D) noexcept override;
-  /// Puts the stylus where a new `is_placed` says; all else of the hand is the pad's.
+  /// Places the stylus at X_DS of a new target with `is_placed`. Other fields of the target are ignored.
   void hold(const DeviceHand& hand) noexcept override;
   Status reconnect() override;
 
@@ -83,19 +83,19 @@ class PolledPointer final : public HapticDevice {
   haptics::DevicePreset preset_;
   std::unique_ptr<PointerSource> source_;
   std::string name_;
-  int wake_ = -1;  ///< Event descriptor: ends the thread's waiting.
+  int wake_ = -1;  ///< Event descriptor that ends the thread's wait.
   std::thread thread_;
   std::atomic<bool> is_stopping_{false};
   std::atomic<bool> is_gone_{false};
-  realtime::TripleBuffer<PointerMotion> motion_;  ///< Thread to reader.
-  realtime::TripleBuffer<double> force_n_;        ///< Writer to thread.
+  realtime::TripleBuffer<PointerMotion> motion_;  ///< From the thread to the reader.
+  realtime::TripleBuffer<double> force_n_;        ///< From the writer to the thread.
 
-  // The reader's own.
+  // Used only by the reader.
   Pose X_DS_ = pointer_start();
   double read_s_ = 0.0;
   double heard_s_ = 0.0;
   bool has_read_ = false;
-  std::optional<double> placed_s_;  ///< Which placement was carried out.
+  std::optional<double> placed_s_;  ///< Time of the last target with is_placed that was applied.
 };
 
 }  // namespace trocar::devices

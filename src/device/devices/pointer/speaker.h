@@ -6,8 +6,8 @@
 
 namespace trocar::devices {
 
-/// Plays short sounds on the system's default output. Where there is none it is silent. Nothing waits: the output is
-/// opened on a thread of its own, and what is played before it is open is not heard.
+/// Plays short sounds on the system's default output; without an output it plays nothing. A separate thread opens the
+/// output, so that play() does not wait. Sounds that are played before it is open are dropped.
 class Speaker {
  public:
   Speaker();
@@ -15,7 +15,7 @@ class Speaker {
   Speaker(const Speaker&) = delete;
   Speaker& operator=(const Speaker&) = delete;
 
-  /// Mono, -1..1, at kRate_hz; replaces what is being played.
+  /// Plays mono samples, -1..1, at kRate_hz. They replace the sound that is being played.
   void play(std::span<const float> samples);
   bool is_open() const noexcept;
 
@@ -26,7 +26,7 @@ class Speaker {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The click of a biopsy gun, made by computation: the stylet's spring, and the cannula's 60 ms later.
+/// Synthesises the click of a biopsy gun: the spring of the stylet, and that of the cannula 60 ms later.
 std::vector<float> make_gun_click();
 
 }  // namespace trocar::devices

@@ -10,12 +10,12 @@
 
 namespace trocar::devices {
 
-/// Wraps any device and injects faults at given times; time starts at its first read. Shows the server's reaction to
-/// device faults. Its slow reads and writes block, unlike those of other devices. Seeded: the same reads give the same
-/// poses.
+/// Wraps any device and injects faults at given times, to test the server's reaction to device faults. Time starts at
+/// the first read. Slow reads and writes block, unlike those of other devices. The noise is seeded: the same reads give
+/// the same poses.
 class FaultyDevice final : public HapticDevice {
  public:
-  /// Waits for so many ms; nanosleep unless a simulation counts instead.
+  /// Function that waits for `wait_ms`. The default is nanosleep; a simulation may count the time instead.
   struct Wait {
     void (*wait)(void* context, double wait_ms) noexcept;
     void* context;
@@ -44,12 +44,12 @@ class FaultyDevice final : public HapticDevice {
   std::uint64_t drawn_ = 0;
   Wait wait_;
   double start_s_ = 0.0;
-  double time_s_ = 0.0;  ///< Of the last read, since the first one.
+  double time_s_ = 0.0;  ///< Time of the last read, since the first read.
   bool is_started_ = false;
   bool is_disconnected_ = false;
   bool is_inner_gone_ = false;
   bool has_last_ = false;
-  DeviceReading last_;  ///< Told last.
+  DeviceReading last_;  ///< Last reading without NaN.
 };
 
 }  // namespace trocar::devices

@@ -6,8 +6,8 @@
 
 namespace trocar::devices {
 
-/// A recorded hand: poses X_DS at a fixed rate, from the first read on; interpolated in between, constant after the
-/// last. Written wrenches are ignored. Real-time safe after construction.
+/// A recorded hand: replays poses X_DS at a fixed rate, starting at the first read. Poses are interpolated, and
+/// constant after the last one. Written wrenches are ignored. Real-time safe after construction.
 class ReplayDevice final : public HapticDevice {
  public:
   ReplayDevice(haptics::DevicePreset preset, std::string name, std::vector<Pose> poses, double rate_hz);
@@ -15,7 +15,7 @@ class ReplayDevice final : public HapticDevice {
   const haptics::DevicePreset& preset() const noexcept override { return preset_; }
   std::string name() const override { return "replay:" + name_; }
   DeviceReading read(double now_s) noexcept override;
-  /// Recorded nowhere; not taken is what is no sane wrench.
+  /// Ignores the wrench. Returns false for an invalid wrench.
   bool write(const haptics::Wrench& wrench_D) noexcept override;
   bool is_in_real_hand() const noexcept override { return false; }
   Status reconnect() override { return {}; }

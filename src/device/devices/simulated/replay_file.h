@@ -15,11 +15,12 @@ struct RecordedMotion {
 };
 
 /// Reads a motion from a CSV file: the header "time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz", then one pose X_DS per line at equal
-/// steps in time. Errors name the line: a number that is missing or not finite, a quaternion without length, uneven
-/// steps, fewer than two poses.
+/// steps in time. Errors name the line: a number is missing or not finite, a quaternion is zero, the steps are
+/// uneven, or there are fewer than two poses.
 Result<RecordedMotion> read_motion(const std::filesystem::path& path);
 
-/// Writes it; read_motion() gives the same positions to the bit, and rotations to 1e-15. Whole or not at all.
+/// Writes `motion` to a file, completely or not at all. read_motion() returns bit-identical positions, and rotations
+/// within 1e-15.
 Status write_motion(const RecordedMotion& motion, const std::filesystem::path& path);
 
 }  // namespace trocar::devices

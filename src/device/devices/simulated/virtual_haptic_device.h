@@ -10,18 +10,19 @@ namespace trocar::devices {
 
 /// Simulation parameters in addition to the preset.
 struct SimulatedDeviceParams {
-  /// Whole periods that a written wrench waits before it acts for one period: with 1 the loop has the 1.5 periods of
-  /// physics.md H2. Range 0..8.
+  /// Delay of a written wrench in whole periods; it then acts for one period. With 1, the loop has the 1.5 periods of
+  /// delay of physics.md H2. Range 0..8.
   int force_delay = 1;
-  int reading_delay = 0;                 ///< Whole periods that a reading is old. Range 0..8.
-  double inertia_kg_mm2 = 50.0;          ///< Of stylus and gimbal about S, as in VirtualStylusParams.
+  int reading_delay = 0;                 ///< Age of a reading in whole periods. Range 0..8.
+  double inertia_kg_mm2 = 50.0;          ///< Stylus and gimbal about S, as in VirtualStylusParams.
   double gimbal_friction_nmm = 0.5;      ///< Coulomb friction of the gimbal. Range 0..20. [assumed]
   double gimbal_viscosity_nmms = 0.02;   ///< Range 0..1. [assumed]
-  double wall_stiffness_n_per_mm = 5.0;  ///< Of the arm's end stops, met at the workspace's radius. [assumed]
+  double wall_stiffness_n_per_mm = 5.0;  ///< Stiffness of the arm's end stops at the radius of the workspace. [assumed]
 };
 
 /// A simulated device in a simulated hand: a rigid stylus with the mass, weight, friction, encoders and limits of a
-/// preset, at rest in its holder until a hand first takes it. D with gravity along -z. Real-time safe once made.
+/// preset. The stylus is at rest in its holder until a hand first holds it. Gravity is along -z of D. Real-time safe
+/// after construction.
 class VirtualHapticDevice final : public HapticDevice {
  public:
   static constexpr int kMaxDelay = 8;
@@ -30,11 +31,12 @@ class VirtualHapticDevice final : public HapticDevice {
 
   const haptics::DevicePreset& preset() const noexcept override { return preset_; }
   std::string name() const override { return "virtual:" + preset_.name; }
-  /// Moves the stylus on to `now_s`, in steps of at most 1 ms; a gap counts as 0.1 s at most.
+  /// Advances the stylus to `now_s`, in steps of at most 1 ms. A gap counts as at most 0.1 s.
   DeviceReading read(double now_s) noexcept override;
-  /// Cut to the preset's peaks; torque is ignored where there is no motor for it. Not taken: what is no sane wrench.
+  /// Limits the wrench to the peaks of the preset; torque is ignored without motors for it. Returns false for an
+  /// invalid wrench.
   bool write(const haptics::Wrench& wrench_D) noexcept override;
-  /// Ignored where it is not finite.
+  /// Ignores an invalid target: a value is not finite, or an amount is negative.
   void hold(const DeviceHand& hand) noexcept override;
   bool is_in_real_hand() const noexcept override { return false; }
   Status reconnect() override { return {}; }
@@ -54,16 +56,16 @@ class VirtualHapticDevice final : public HapticDevice {
   SimulatedDeviceParams params_;
   DeviceHand hand_;
   bool was_ever_held_ = false;
-  double placed_s_ = 0.0;  ///< Time of the target that was last put in place.
+  double placed_s_ = 0.0;  ///< Time of the last target with is_placed that was applied.
 
   haptics::VirtualStylusState stylus_;  ///< Its frame P is D.
 
   double last_s_ = 0.0;
   bool is_started_ = false;
   haptics::Wrench acting_D_;                              ///< About S.
-  haptics::Wrench commanded_D_;                           ///< About S: last written; and
-  std::array<haptics::Wrench, kMaxDelay + 1> written_{};  ///< what was so at the last reads, the newest first.
-  std::array<DeviceReading, kMaxDelay + 1> readings_{};   ///< The newest first.
+  haptics::Wrench commanded_D_;                           ///< About S: last written wrench.
+  std::array<haptics::Wrench, kMaxDelay + 1> written_{};  ///< commanded_D_ at the last reads, newest first.
+  std::array<DeviceReading, kMaxDelay + 1> readings_{};   ///< Newest first.
 };
 
 }  // namespace trocar::devices

@@ -4,7 +4,7 @@
 
 namespace trocar::testing {
 
-/// Waits for other threads until `holds()`, at most half a minute; whether it came to hold.
+/// Waits until `holds()` returns true, at most half a minute. Returns false after the timeout.
 template <class Predicate>
 bool wait_until(Predicate&& holds) {
   constexpr int kMostRounds = 30'000;

@@ -18,7 +18,7 @@ inline haptics::DevicePreset preset_of(const char* name) {
   return *preset;
 }
 
-/// Exact sensors and no friction, for closed forms.
+/// A preset with exact sensors and no friction, for comparison with closed-form solutions.
 inline haptics::DevicePreset ideal() {
   haptics::DevicePreset preset = preset_of("premium");
   preset.encoder = {0.0, 0.0};
@@ -55,14 +55,14 @@ inline devices::DeviceHand holding(const Pose& X_DS, double time_s) {
   return hand;
 }
 
-/// The tick's compensation of links and stylus (physics.md W1), from the pose that was told.
+/// The tick's compensation of links and stylus (physics.md W1), from the pose of the reading.
 inline haptics::Wrench weight_compensation(const haptics::DevicePreset& preset, const Pose& X_DS) {
   const Vec3 lift = Vec3::UnitZ() * preset.capability.stylus_weight_n;
   const Vec3 arm = X_DS.R() * Vec3(0.0, 0.0, -preset.capability.stylus_lever_mm);
   return {lift, arm.cross(lift)};
 }
 
-/// A device and its clock; the server's periods.
+/// A simulated device and its clock; runs periods like the server.
 struct Bench {
   devices::VirtualHapticDevice device;
   double time_s = 100.0;

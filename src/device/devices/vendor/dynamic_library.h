@@ -8,19 +8,20 @@
 
 namespace trocar::devices {
 
-/// Where a vendor's library is looked for, and what to tell people who have none.
+/// Search places of a vendor's library, and the advice in the error message if it is missing.
 struct LibraryPlace {
   const char* variable = nullptr;      ///< Environment variable that names another path: "TROCAR_LIBHD".
-  std::span<const char* const> names;  ///< Tried in this order by the system's rules: "libHD.so".
-  std::string_view package;            ///< What is missing: "the OpenHaptics toolkit".
-  std::string_view advice;             ///< How to get it.
+  std::span<const char* const> names;  ///< File names, tried in this order by the system's search rules: "libHD.so".
+  std::string_view package;            ///< Name of the missing package: "the OpenHaptics toolkit".
+  std::string_view advice;             ///< How to get the package.
 };
 
 /// A shared library loaded at run time. It stays loaded until the process ends: vendors' drivers cannot be unloaded
-/// safely (CHAI3D, src/devices/CPhantomDevices.cpp, on PHANTOM's).
+/// safely (CHAI3D, src/devices/CPhantomDevices.cpp, on the PHANTOM driver).
 class DynamicLibrary {
  public:
-  /// Everything is bound at once, so that no first call costs a search. The error names package, driver and variable.
+  /// Binds all symbols at once, so that the first call of a function needs no symbol search. The error names package,
+  /// driver and variable.
   static Result<DynamicLibrary> open(const LibraryPlace& place);
 
   /// Looks up `name` and sets `function`. The error names the missing function of an old library.
@@ -30,7 +31,7 @@ class DynamicLibrary {
     function = reinterpret_cast<Function*>(symbol);
     return {};
   }
-  /// The same for a function that older releases lack: nullptr then.
+  /// Like find(), for a function that older releases lack: sets nullptr if it is missing.
   template <class Function>
   void find_optional(const char* name, Function*& function) const {
     const auto symbol = find_symbol(name);
@@ -44,7 +45,7 @@ class DynamicLibrary {
   Result<void*> find_symbol(const char* name) const;
 
   void* handle_;
-  std::string path_;  ///< As it was asked for.
+  std::string path_;  ///< Path or name passed to the loader.
 };
 
 }  // namespace trocar::devices

@@ -10,17 +10,19 @@
 namespace trocar::devices {
 
 struct OpenHapticsOptions {
-  std::string device;                  ///< Its name in the vendor's settings ("Left Device"); empty: the default one.
+  std::string device;                  ///< Name in the vendor's settings ("Left Device"); empty: the default device.
   std::filesystem::path devices_file;  ///< data/devices.toml
-  std::string preset;                  ///< Row of it; empty: by the model that the device says.
-  /// Somebody holds it where its calibration wants it: calibrated anew while it is opened, encoder reset included.
+  std::string preset;                  ///< Row of devices_file; empty: selected by the model that the device reports.
+  /// A person holds the device in its calibration position: it is calibrated again while it is opened; an encoder
+  /// reset is allowed.
   bool is_calibrating = false;
-  double (*clock_s)() noexcept = nullptr;  ///< Steady clock of the callback; nullptr: the system's.
+  double (*clock_s)() noexcept = nullptr;  ///< Steady clock of the callback; nullptr: the system's clock.
 };
 
-/// A PHANTOM or Touch by the vendor's OpenHaptics HD API (libHD.so, opened now). The vendor's scheduler runs our
-/// callback at 1 kHz; all exchange with the device is there, read and write only meet it in triple buffers. One device
-/// a process: the scheduler is one. Errors: no library, no device, not calibrated.
+/// Opens a PHANTOM or Touch with the vendor's OpenHaptics HD API (libHD.so, loaded at run time). The vendor's scheduler
+/// runs a callback at 1 kHz. Only the callback accesses the device; read and write exchange data with it through triple
+/// buffers. A process can open one device, because the library has one scheduler. Errors: no library, no device, not
+/// calibrated.
 Result<std::unique_ptr<HapticDevice>> open_openhaptics_device(const OpenHapticsOptions& options);
 
 }  // namespace trocar::devices

@@ -4,7 +4,7 @@
 
 namespace trocar::devices {
 
-/// What a servo loop of ours does once a period.
+/// Work of a servo loop in one period.
 class ServoBody {
  public:
   virtual void serve(double now_s) noexcept = 0;
@@ -13,13 +13,13 @@ class ServoBody {
   ~ServoBody() = default;
 };
 
-/// Clock of a servo loop. The real one wakes at absolute times; a test's wakes on request.
+/// Clock of a servo loop. The real clock wakes at absolute times; the clock of a test wakes on request.
 class ServoPace {
  public:
   virtual ~ServoPace() = default;
-  /// By the loop's own thread: a period of `body` after the other until `is_stopping`.
+  /// Runs `body` once per period until `is_stopping` is set. Call it from the thread of the loop.
   virtual void run(const std::atomic<bool>& is_stopping, ServoBody& body) noexcept = 0;
-  /// By another thread, after it set `is_stopping`: ends a long wait.
+  /// Ends a long wait. Call it from another thread, after that thread has set `is_stopping`.
   virtual void wake() noexcept {}
 };
 

@@ -23,7 +23,7 @@ struct ClientOptions {
   std::string name = "trocar";
   bool wants_control = true;
   std::optional<ClientSecurity> security;
-  /// A client with a window must call frame_drawn(); otherwise the server assumes that it has none.
+  /// true: the client has a window and must call frame_drawn(); false: the server assumes that it has none.
   bool has_window = false;
 };
 
@@ -33,21 +33,21 @@ struct ClientView {
   bool is_connected = false;  ///< A message arrived within the last 250 ms.
   double silent_s = 0.0;      ///< Time since the last message; since the start if none arrived.
   Welcome welcome;
-  ServerStatus status;          ///< Empty until this session's first one came.
-  double clock_offset_s = 0.0;  ///< Server's clock minus ours, from the fastest round trip of the last seconds.
-  double round_trip_s = 0.0;    ///< Of that one.
+  ServerStatus status;          ///< Empty until the first status of this session came.
+  double clock_offset_s = 0.0;  ///< Server's clock minus own clock, from the fastest round trip of the last seconds.
+  double round_trip_s = 0.0;    ///< Time of that round trip.
   std::uint64_t ticks_received = 0;
-  std::uint64_t ticks_missing = 0;  ///< Gaps in the numbers: dropped on the way, or by the server.
+  std::uint64_t ticks_missing = 0;  ///< Gaps in the tick numbers: ticks dropped in transit or by the server.
   std::uint64_t messages_refused = 0;
   std::string refusal;         ///< The newest reason for a refusal by the server; empty: none in this session.
-  std::uint64_t welcomes = 0;  ///< Sessions so far: above 1 the server was lost and found again.
+  std::uint64_t welcomes = 0;  ///< Sessions so far; above 1: the client has reconnected.
 };
 
-/// A tick and its number: rises by one with every tick the server makes, begins at 0 again with a new server.
+/// A tick and its number, which increases by one with every tick of the server and starts at 0 with a new server.
 struct NumberedSample {
   std::uint64_t tick = 0;
   telemetry::TickSample sample;
-  std::uint64_t scene = 0;  ///< Number of the scene that made it, see Reply::scene; 0: none.
+  std::uint64_t scene = 0;  ///< Number of the scene of this tick, see Reply::scene; 0: none.
 };
 
 /// The client's side of the link, in a thread that sends heartbeats at 100 Hz independent of the caller. Connects and
@@ -57,7 +57,7 @@ class HapticClient {
   static Result<HapticClient> connect(const ClientOptions& options);
   HapticClient(HapticClient&&) noexcept;
   HapticClient& operator=(HapticClient&&) noexcept;
-  ~HapticClient();  ///< Says goodbye.
+  ~HapticClient();  ///< Sends Goodbye.
 
   ClientView view() const;
   /// All ticks since the last call, in order. At most a minute is kept; older ones are counted as missing.

@@ -15,7 +15,7 @@ namespace trocar::link::detail {
 inline constexpr char kClientIdentifier[] = "TRCC";  ///< File identifier of a client's message.
 inline constexpr char kServerIdentifier[] = "TRCS";
 
-/// A copy of a message that starts where its numbers are aligned: bytes from a socket start anywhere.
+/// An aligned copy of a message. Bytes from a socket may start at any address.
 class AlignedBytes {
  public:
   explicit AlignedBytes(std::span<const std::byte> bytes);
@@ -23,16 +23,16 @@ class AlignedBytes {
   std::size_t size() const { return size_; }
 
  private:
-  std::vector<std::uint64_t> words_;  ///< The strictest alignment that a message has.
+  std::vector<std::uint64_t> words_;  ///< Type with the strictest alignment in a message.
   std::size_t size_;
 };
 
-/// Size, identifier and version, before a byte is copied or any other field is looked at.
+/// Check size, identifier and version before a byte is copied or another field is read.
 Status check_size(std::size_t bytes);
 Status check_frame(const AlignedBytes& bytes, const char* identifier);
 flatbuffers::Verifier make_verifier(const AlignedBytes& bytes);
 
-/// The verified root; lives as long as `bytes`.
+/// Returns the verified root; valid during the lifetime of `bytes`.
 template <class Root>
 Result<const Root*> find_root(const AlignedBytes& bytes, const char* identifier) {
   TROCAR_TRY_STATUS(check_frame(bytes, identifier));
@@ -42,14 +42,14 @@ Result<const Root*> find_root(const AlignedBytes& bytes, const char* identifier)
   return flatbuffers::GetRoot<Root>(bytes.data());
 }
 
-/// A body as the member of a union, as it goes into the root.
+/// A body as a member of the union in the root.
 template <class Type>
 using Member = std::pair<Type, flatbuffers::Offset<void>>;
 
-/// What was built, copied out of the builder.
+/// Copies the built message out of the builder.
 Bytes take_bytes(const flatbuffers::FlatBufferBuilder& builder);
 
-/// FlatBuffers counts in 32 bits; everything that we build is far smaller.
+/// FlatBuffers has 32-bit offsets; the built messages are far smaller.
 using Builder = flatbuffers::FlatBufferBuilder;
 using Text = flatbuffers::Offset<flatbuffers::String>;
 

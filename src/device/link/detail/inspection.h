@@ -14,31 +14,31 @@
 
 namespace trocar::link::detail {
 
-/// Both ends belong to it.
+/// Closed interval.
 struct Range {
   double low, high;
 };
 
-// Far beyond what a real message holds, near enough that no later sum or square overflows. [assumed]
+// Far above the values of real messages, and small enough that no later sum or square overflows. [assumed]
 inline constexpr double kMostPosition_mm = 1e5;
 inline constexpr double kMostTime_s = 1e10;  ///< 300 years of a steady clock.
 inline constexpr Range kTimes_s = {-kMostTime_s, kMostTime_s};
 inline constexpr Range kDurations_s = {0.0, kMostTime_s};
-inline constexpr std::size_t kMostSettings = 256;  ///< In one list; the trainer has some dozens. [assumed]
-inline constexpr Range kMagnitudes = {0.0, 1e9};   ///< Of what is only shown.
+inline constexpr std::size_t kMostSettings = 256;  ///< Items in one list; the trainer uses some dozens. [assumed]
+inline constexpr Range kMagnitudes = {0.0, 1e9};   ///< For values that are only displayed.
 
-/// Takes values out of a verified message of strangers and keeps the first complaint. After a complaint values are
-/// empty or zero; no value leaves it unchecked.
+/// Reads and checks values of a verified but untrusted message, and keeps the first error (complaint). After an error,
+/// values are empty or zero; every returned value is checked.
 class Inspection {
  public:
-  /// `text_budget`: bytes of all texts together, so that one text named often does not multiply.
+  /// `text_budget`: limit of the bytes of all texts together, because a message can refer to one text many times.
   explicit Inspection(std::size_t text_budget) : text_budget_(text_budget) {}
 
-  /// UTF-8 without control characters, at most kMostTextBytes; absent is empty.
+  /// UTF-8 without control characters, at most kMostTextBytes. A missing text gives an empty one.
   std::string text(const flatbuffers::String* text, const char* field, Layout layout = Layout::kLine);
   /// Refuses a list of more than `most` items.
   bool has_room(std::size_t items, std::size_t most, const char* field);
-  /// A list of at most kMostSettings lines; absent is empty.
+  /// A list of at most kMostSettings lines. A missing list gives an empty one.
   std::vector<std::string> texts(const flatbuffers::Vector<flatbuffers::Offset<flatbuffers::String>>* list,
                                  const char* field);
   double number(double value, Range range, const char* field);
@@ -46,12 +46,13 @@ class Inspection {
     return value ? std::optional(number(*value, range, field)) : std::nullopt;
   }
   int whole_number(std::int32_t value, int low, int high, const char* field);
-  /// Finite, and no longer than `longest`.
+  /// A finite vector, at most `longest` long.
   Vec3 vector(const Vec3& vector, double longest, const char* field);
   Vec3 vector(const wire::Vec3& packed, double longest, const char* field);
-  /// A rotation that is one within 1e-6 (made exact when it is off by more than rounding), not too far away.
+  /// A pose whose rotation is orthonormal within 1e-6 (made exact if the error is above rounding) and whose position is
+  /// at most kMostPosition_mm long.
   Pose pose(const wire::Pose& pose, const char* field);
-  /// `last` is the enumeration's last value; an enumeration of the schema has the same numbers.
+  /// `last`: last value of the enumeration. An enumeration of the schema has the same values.
   template <class Enum>
   Enum enumerator(std::uint8_t value, Enum last, const char* field) {
     if (value <= static_cast<std::uint8_t>(last)) return static_cast<Enum>(value);

@@ -10,11 +10,12 @@
 
 namespace trocar::link::detail {
 
-/// A listening Unix socket and its file, for the user alone (0600). The file goes with it, unless another has taken its
-/// place.
+/// A listening Unix socket and its file, accessible only to the user (0600). The destructor removes the file, unless
+/// another file has replaced it.
 class IpcFile {
  public:
-  /// The file of a dead server is replaced. Errors: a live server listens there, another kind of file, no such folder.
+  /// Replaces the socket file of a server that has ended. Errors: another server listens there, the path is another
+  /// kind of file, no such folder.
   static Result<IpcFile> listen(const std::filesystem::path& path);
   IpcFile() noexcept = default;
   IpcFile(IpcFile&& other) noexcept;

@@ -6,9 +6,10 @@
 
 namespace trocar::link::detail {
 
-/// A folder (no link to one) of this user that nobody else may enter or read. Errors: is none.
+/// Checks that `folder` is a folder (not a symbolic link) of this user without access for other users. Errors: it is
+/// not.
 Status check_private_folder(const std::filesystem::path& folder);
-/// The same; made for this user alone where there is nothing yet.
+/// Like check_private_folder(), but makes the folder, for this user only, if it does not exist.
 Status make_private_folder(const std::filesystem::path& folder);
 
 }  // namespace trocar::link::detail

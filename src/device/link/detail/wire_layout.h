@@ -32,9 +32,9 @@ template <std::size_t index>
 inline constexpr WireField kWireFieldAt =
     kWireField<typename std::tuple_element_t<index, decltype(telemetry::kTickFields)>::Value>;
 
-/// Where the fields of kTickFields lie in wire::Sample, in bytes: those of doubles first, then the others, so that the
-/// only padding is at the end. messages.fbs lists them in this order; wire_sample_test compares names, types and
-/// offsets with the schema.
+/// Offsets of the fields of kTickFields in wire::Sample, in bytes: the fields of doubles first, then the others, so
+/// that the only padding is at the end. messages.fbs lists them in this order; wire_sample_test compares names, types
+/// and offsets with the schema.
 inline constexpr auto kWireOffsets = []<std::size_t... I>(std::index_sequence<I...>) {
   constexpr std::array fields{kWireFieldAt<I>...};
   std::array<std::size_t, sizeof...(I)> offsets{};
@@ -50,7 +50,7 @@ inline constexpr auto kWireOffsets = []<std::size_t... I>(std::index_sequence<I.
 }
 (std::make_index_sequence<telemetry::kTickFieldCount>());
 
-/// Of all fields, without the padding at the end.
+/// Bytes of all fields, without the padding at the end.
 inline constexpr std::size_t kWireBytes = []<std::size_t... I>(std::index_sequence<I...>) {
   return (kWireFieldAt<I>.bytes + ...);
 }

@@ -11,7 +11,7 @@
 
 namespace trocar::link {
 
-/// Functions under one name, each for its own type.
+/// A set of overloaded functions, one per type.
 template <class... Functions>
 struct Overloaded : Functions... {
   using Functions::operator()...;
@@ -19,8 +19,8 @@ struct Overloaded : Functions... {
 template <class... Functions>
 Overloaded(Functions...) -> Overloaded<Functions...>;
 
-/// Goes through a message down to its values. Whatever `visit` takes (by T&) is shown to it and not gone into; a value
-/// that it does not take is passed over.
+/// Visits the values of a message recursively. A value that `visit` accepts (by T&) is passed to it and not descended
+/// into; a leaf that it does not accept is skipped.
 template <class Visit>
 class FieldWalk {
  public:

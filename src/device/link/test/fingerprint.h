@@ -8,7 +8,7 @@
 
 namespace trocar::link {
 
-/// All fields of a message, bit for bit, as text: two messages are the same where these are.
+/// All fields of a message, bit for bit, as text: two messages are equal if their fingerprints are equal.
 class Fingerprint {
  public:
   template <class Body>

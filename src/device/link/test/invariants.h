@@ -7,7 +7,7 @@
 
 namespace trocar::link {
 
-/// What holds for every message that a decoder accepts; empty where all does, else what is broken.
+/// Checks the invariants of every message that a decoder accepts. Returns the violated ones; empty: none.
 template <class Body>
 std::string find_broken_invariant(Envelope<Body> message) {
   constexpr double kFar_mm = 1e5;

@@ -18,11 +18,11 @@
 
 namespace trocar::testing {
 
-/// How long a test waits for what must come; it never waits so long where all is well.
+/// Timeout of a test for an expected event; a passing test never waits so long.
 inline constexpr std::chrono::seconds kPatience(30);
 inline constexpr int kPatience_ms = 30'000;
 
-/// Looks again and again until it is so. False: not within kPatience.
+/// Polls until `is_so` returns true. Returns false after kPatience.
 inline bool eventually(const std::function<bool()>& is_so) {
   const auto end = std::chrono::steady_clock::now() + kPatience;
   while (!is_so()) {
@@ -35,7 +35,7 @@ inline bool eventually(const std::function<bool()>& is_so) {
 inline link::Endpoint ipc_endpoint(const TemporaryFolder& folder) {
   return {"ipc://" + (folder / "socket").string(), false};
 }
-/// One that nobody else has, while the program runs.
+/// An endpoint that is unique in this program.
 inline link::Endpoint any_endpoint() {
   static const TemporaryFolder folder;
   static std::atomic<int> count = 0;
@@ -60,7 +60,8 @@ inline void set_version(link::Bytes& bytes, std::uint32_t version) {
     std::memcpy(&value, bytes.data() + offset, sizeof value);
     return value;
   };
-  // The root's table begins with the distance back to its vtable, whose third number is the first field's place.
+  // The root's table begins with the offset back to its vtable. The third number of the vtable is the offset of the
+  // first field.
   const std::size_t table = at(0);
   const std::size_t vtable = table - at(table);
   std::uint16_t field = 0;
@@ -68,7 +69,7 @@ inline void set_version(link::Bytes& bytes, std::uint32_t version) {
   std::memcpy(bytes.data() + table + field, &version, sizeof version);
 }
 
-/// Consecutive ticks whose time is their number.
+/// Consecutive ticks; the time of each tick is its number.
 inline link::StateBatch test_batch(std::uint64_t first, std::size_t count) {
   link::StateBatch batch;
   batch.first_tick = first;
@@ -80,7 +81,7 @@ inline link::StateBatch test_batch(std::uint64_t first, std::size_t count) {
   return batch;
 }
 
-/// A server in a thread: answers commands, remembers what it got, and does what a test asks for in between.
+/// A server in a thread: answers commands, records received messages, and runs calls of a test between them.
 class RunningServer {
  public:
   explicit RunningServer(const link::Endpoint& endpoint, std::optional<link::ServerSecurity> security = {}) {
@@ -99,7 +100,7 @@ class RunningServer {
   const std::string& url() const { return url_; }
   const std::string& error() const { return error_; }
 
-  /// Calls it in the server's thread, and waits until it was.
+  /// Runs `call` in the server's thread and waits until it has returned.
   void with_socket(const std::function<void(link::ServerSocket&)>& call) {
     std::atomic<bool> is_done = false;
     {

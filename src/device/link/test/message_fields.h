@@ -7,8 +7,8 @@
 
 namespace trocar::link {
 
-/// Shows `visit` every field of a struct of messages.h. A field that is added there and forgotten here does not
-/// compile.
+/// Calls `visit` for every field of a struct of messages.h. A field that is added there but not here is a compile
+/// error.
 template <class T, class Visit>
 void each_field(T& value, Visit&& visit) {
   using Plain = std::remove_const_t<T>;

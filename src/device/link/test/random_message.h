@@ -10,15 +10,15 @@
 
 namespace trocar::link {
 
-/// Seeded messages that a decoder must accept: every field different from its default, texts with characters of one to
-/// four bytes, forces that are NaN or infinite.
+/// Seeded random messages that a decoder must accept: every field differs from its default, texts have characters of
+/// one to four bytes, and forces may be NaN or infinite.
 class RandomMessages {
  public:
   explicit RandomMessages(std::uint64_t seed) : random_(seed) {}
 
   ClientMessage client_message() { return {random_.next(), random_.next(), any<ClientBody>()}; }
   ServerMessage server_message() { return {random_.next(), random_.next(), any<ServerBody>()}; }
-  /// One of every kind of body, and of every command.
+  /// One message of every kind of body, and of every command.
   std::vector<ClientMessage> client_messages();
   std::vector<ServerMessage> server_messages();
 
@@ -33,7 +33,7 @@ class RandomMessages {
   static constexpr std::size_t kMostItems = 6;
   std::size_t below(std::size_t end) { return static_cast<std::size_t>(random_.next() % end); }
 
-  /// One of a variant's alternatives.
+  /// The alternative `index` of a variant, with random content.
   template <class Variant, std::size_t... I>
   Variant alternative(std::size_t index, std::index_sequence<I...>) {
     Variant variant;
@@ -50,7 +50,7 @@ class RandomMessages {
   }
 
   void fill(bool& value) { value = random_.next() % 2 == 0; }
-  /// Inside every field's range; at times the zero that is not the usual one.
+  /// A value within the range of every field; sometimes negative zero.
   void fill(double& value) { value = below(16) == 0 ? -0.0 : random_.uniform(); }
   void fill(int& value) { value = static_cast<int>(below(7)); }
   void fill(std::uint8_t& value) { value = static_cast<std::uint8_t>(random_.next()); }

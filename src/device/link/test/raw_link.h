@@ -12,7 +12,7 @@
 
 namespace trocar::testing {
 
-/// A DEALER that sends what a test wants, well formed or not.
+/// A DEALER that sends any messages of a test, valid or invalid.
 class RawClient {
  public:
   explicit RawClient(const std::string& url, int most_waiting = 1000) : socket_(context_, ZMQ_DEALER) {
@@ -34,7 +34,7 @@ class RawClient {
     sequence_ = 0;
     return send(0, 0, link::Hello{name, wants_control});
   }
-  /// The next message, and the session of a Welcome becomes ours.
+  /// Receives the next message; a Welcome sets the session of this client.
   std::optional<link::ServerMessage> receive(int flags = 0) {
     link::detail::ZmqFrame frame;
     if (!socket_.receive(frame, flags)) return {};
@@ -43,7 +43,7 @@ class RawClient {
     if (const auto* welcome = std::get_if<link::Welcome>(&message->body)) session_ = welcome->session;
     return *std::move(message);
   }
-  /// The next message of a kind; others are passed over.
+  /// Receives the next message with this body; other messages are skipped.
   template <class Body>
   std::optional<Body> next() {
     while (auto message = receive()) {
@@ -73,7 +73,8 @@ inline std::optional<link::Received> serve(link::ServerSocket& server, double no
   return server.receive(kPatience_ms, test_welcome(), now_s);
 }
 
-/// The next message of a kind while the server sends what waits; what clients say meanwhile is dropped.
+/// Receives the next message with this body, while the server sends its queued data. Messages of clients are dropped
+/// meanwhile.
 template <class Body>
 std::optional<Body> next_while_served(link::ServerSocket& server, RawClient& client) {
   std::optional<Body> body;
@@ -86,7 +87,7 @@ std::optional<Body> next_while_served(link::ServerSocket& server, RawClient& cli
   return body;
 }
 
-/// Connects a client and gets it its session.
+/// Connects a client and waits for its session.
 inline void join(link::ServerSocket& server, RawClient& client, bool wants_control = true, double now_s = kNow_s) {
   client.connect();
   ASSERT_TRUE(client.hello("raw", wants_control));
@@ -99,7 +100,7 @@ inline void join(link::ServerSocket& server, RawClient& client, bool wants_contr
   EXPECT_EQ(welcome->session, hello->session);
 }
 
-/// A heartbeat that must arrive: all that was sent before it has been judged then.
+/// Sends a heartbeat that must arrive: the server has then checked all earlier messages of the client.
 inline std::optional<link::Received> beat(link::ServerSocket& server, RawClient& client, double now_s = kNow_s) {
   EXPECT_TRUE(client.send(link::Heartbeat{1.0, 0.0, 0}));
   auto received = serve(server, now_s);

@@ -18,8 +18,9 @@
 #include "link/server_socket.h"
 #include "link/zmtp/detail/peer_table.h"
 
-/// Both ends of a link in one thread and in a test's own time: messages go as structs, without sockets. Sessions,
-/// control, beats and silence follow the code of the real ends (PeerTable; ClientSession, ClientMailbox, ClientBeat).
+/// Both ends of a link in one thread and in simulated time: messages are passed as structs, without sockets. Sessions,
+/// control, heartbeats and timeouts use the code of the real ends (PeerTable; ClientSession, ClientMailbox,
+/// ClientBeat).
 namespace trocar::testing {
 
 class InProcessClient;
@@ -42,7 +43,7 @@ class InProcessServerEnd {
     const link::detail::Peer* controller = peers_.controller();
     return controller == nullptr ? std::optional<double>() : controller->heard_s;
   }
-  /// The process has ended: nobody takes messages.
+  /// Simulates the end of the server process: messages are not accepted.
   void close() {
     is_open_ = false;
     waiting_.clear();
@@ -59,9 +60,9 @@ class InProcessServerEnd {
     return id;
   }
   void detach(const std::string& id) { clients_.erase(id); }
-  /// False: not taken.
+  /// Returns false if the message was not accepted.
   bool post(const std::string& id, link::ClientMessage message) {
-    constexpr std::size_t kMostWaiting = 200;  // as a client's socket
+    constexpr std::size_t kMostWaiting = 200;  // like the socket of a client
     if (!is_open_ || waiting_.size() >= kMostWaiting) return false;
     waiting_.emplace_back(id, std::move(message));
     return true;
@@ -102,7 +103,7 @@ class InProcessClient {
   void set_hand(const link::HandTarget& target) { mailbox_.post(target); }
   void frame_drawn() { has_drawn_ = true; }
 
-  /// What the client's thread does until `now_s`: call it every ms. A call that is late is a client that stood still.
+  /// Runs the work of the client thread until `now_s`. Call it every ms; a late call simulates a suspended client.
   void step(double now_s) {
     while (!inbox_.empty()) {
       link::ServerMessage message = std::move(inbox_.front());
@@ -120,7 +121,7 @@ class InProcessClient {
  private:
   friend class InProcessServerEnd;
   void receive(link::ServerMessage message) {
-    constexpr std::size_t kMostWaiting = 1000;  // as a client's socket
+    constexpr std::size_t kMostWaiting = 1000;  // like the socket of a client
     if (inbox_.size() < kMostWaiting) inbox_.push_back(std::move(message));
   }
   void send_outgoing() {

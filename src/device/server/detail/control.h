@@ -7,7 +7,8 @@
 
 namespace trocar::server {
 
-/// The control thread: scenes, reconnecting, flight records; one job after the other, until the door is closed.
+/// The control thread: builds scenes, reconnects the device and writes flight records. It runs one job at a time, until
+/// the ControlDoor is closed.
 class Control {
  public:
   Control(Shared& shared, devices::HapticDevice& device, SceneBuilder builder, std::string tool,
@@ -15,7 +16,7 @@ class Control {
   void run();
 
  private:
-  /// What a reply says of a job that was done, in words.
+  /// Runs a job. Returns the text of the reply.
   Result<std::string> perform(const ControlJob& job);
   Result<std::string> perform(const link::LoadScene& request);
   Result<std::string> perform(const link::SetParameters& request);
@@ -29,7 +30,7 @@ class Control {
   SceneBuilder builder_;
   std::string tool_;
   std::filesystem::path flight_folder_;
-  std::shared_ptr<const ServoScene> scene_;  ///< The one published last.
+  std::shared_ptr<const ServoScene> scene_;  ///< Scene that was published last.
 };
 
 }  // namespace trocar::server

@@ -5,21 +5,21 @@
 
 namespace trocar::server {
 
-/// Lends the device of the real-time thread to the control thread. Every request has a ticket of its own, so that the
-/// answer to an earlier request is never taken for that to a later one. One thread a side; no side ever waits here.
+/// Lends the device of the real-time thread to the control thread. Every request has its own ticket, so that a late
+/// answer to an earlier request does not count for a later one. One thread per side; no call blocks.
 class DeviceLoan {
  public:
-  /// What the real-time thread has seen at the beginning of a period.
+  /// State of the loan at the beginning of a period of the real-time thread.
   struct Request {
     std::uint64_t ticket = 0;
-    bool is_open = false;  ///< The device is wanted, or is lent.
+    bool is_open = false;  ///< The device is requested or lent.
   };
 
   // Control thread.
-  /// A new request. The device must not be touched before is_lent(ticket).
+  /// Starts a new request and returns its ticket. Do not access the device before is_lent(ticket).
   std::uint64_t ask() noexcept { return asked_.fetch_add(1, std::memory_order_acq_rel) + 1; }
   bool is_lent(std::uint64_t ticket) const noexcept { return lent_.load(std::memory_order_acquire) == ticket; }
-  /// Ends the request, granted or not.
+  /// Ends the request, whether it was granted or not.
   void give_back(std::uint64_t ticket) noexcept { returned_.store(ticket, std::memory_order_release); }
 
   // Real-time thread.
@@ -27,7 +27,7 @@ class DeviceLoan {
     const std::uint64_t ticket = asked_.load(std::memory_order_acquire);
     return {ticket, returned_.load(std::memory_order_acquire) < ticket};
   }
-  /// The device is left alone until look() says that the request is no longer open.
+  /// Grants the request. The real-time thread must not access the device until look() returns that it is not open.
   void lend(const Request& request) noexcept { lent_.store(request.ticket, std::memory_order_release); }
 
  private:

@@ -6,12 +6,13 @@
 
 namespace trocar::server {
 
-/// The link's thread: messages in, batches out, status 20 times a second, the flight recorder's feed.
+/// The link thread: receives messages, sends batches, sends the status 20 times per second and feeds the flight
+/// recorder.
 class LinkThread {
  public:
   LinkThread(Shared& shared, link::ServerSocket& socket, link::Welcome welcome, int priority);
   void run();
-  std::uint64_t ticks() const noexcept { return ticks_; }  ///< After run() has ended.
+  std::uint64_t ticks() const noexcept { return ticks_; }  ///< Valid after run() has returned.
 
  private:
   void receive_round();
@@ -31,11 +32,11 @@ class LinkThread {
   link::StateBatch batch_;
   ServoRecord newest_;
   std::uint64_t ticks_ = 0;
-  std::uint64_t in_control_ = 0;  ///< Session; 0: nobody.
+  std::uint64_t in_control_ = 0;  ///< Session of the client in control; 0: none.
   double window_age_s_ = 0.0;
   std::uint32_t actions_ = 0;
   double drop_n_ = 0.0, drop_s_ = 0.0;
-  double coupling_share_ = 1.0;  ///< The smallest since the last status.
+  double coupling_share_ = 1.0;  ///< Smallest value since the last status.
   double sent_s_ = 0.0, told_s_ = 0.0;
 };
 

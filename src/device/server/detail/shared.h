@@ -22,7 +22,7 @@
 #include "server/last_chance.h"
 #include "server/servo.h"
 
-/// What the three threads of a haptic server share. Private to `server`.
+/// Data shared by the three threads of a haptic server. Private to `server`.
 namespace trocar::server {
 
 /// Work for the control thread.
@@ -30,11 +30,11 @@ struct WriteFlight {
   std::vector<ServoRecord> records;
 };
 struct ControlJob {
-  std::uint64_t session = 0;  ///< Who gets the reply; 0: nobody.
+  std::uint64_t session = 0;  ///< Session that gets the reply; 0: none.
   std::uint32_t request = 0;
   std::variant<link::LoadScene, link::SetParameters, link::ServerCommand, WriteFlight> what;
 };
-/// Bytes of the texts that a client sent with it.
+/// Bytes of the texts and tissue settings in the client's message.
 std::size_t text_bytes(const ControlJob& job);
 
 struct AddressedReply {
@@ -42,22 +42,23 @@ struct AddressedReply {
   link::Reply reply;
 };
 
-/// What the control thread knows and the link's thread tells.
+/// Status that the control thread sets and the link thread sends.
 struct ControlStatus {
   std::string patient, patient_hash, force_model, task, warning;
   bool has_scene = false;
   double loading = 0.0;  ///< 0: nothing is being loaded.
 };
 
-/// Jobs of clients that may wait for the control thread, and the bytes of their texts. [assumed]
+/// Limits of the job queue of the control thread: number of jobs, and bytes of their texts. [assumed]
 inline constexpr std::size_t kMostJobs = 16;
 inline constexpr std::size_t kMostJobBytes = 4 << 20;
 
-/// The door between link and control thread: both may wait, neither is the real-time thread. What waits is bounded.
+/// Queues between the link thread and the control thread. Both threads may block; neither is the real-time thread. The
+/// job queue is bounded.
 class ControlDoor {
  public:
-  /// False: kMostJobs or kMostJobBytes would be exceeded, and the job was not taken. A newer scene stops the loading of
-  /// an older one.
+  /// Queues a job. Returns false, and does not queue it, if kMostJobs or kMostJobBytes would be exceeded. A newer scene
+  /// stops the loading of an older one.
   bool post(ControlJob job) {
     {
       const std::lock_guard lock(mutex_);
@@ -70,7 +71,7 @@ class ControlDoor {
     wake_.notify_one();
     return true;
   }
-  /// The next job; false: closed.
+  /// Waits for the next job. Returns false after close().
   bool wait(ControlJob& job) {
     std::unique_lock lock(mutex_);
     wake_.wait(lock, [&] { return is_closed_ || !jobs_.empty(); });
@@ -83,7 +84,8 @@ class ControlDoor {
     if (std::any_of(jobs_.begin(), jobs_.end(), is_scene)) running_.request_stop();
     return true;
   }
-  /// Asks the job that wait() returned last to end early: a newer scene has come, or the door was closed.
+  /// Stop token of the job that wait() returned last. Its stop is requested when a newer scene is posted or after
+  /// close().
   std::stop_token stop_token() const {
     const std::lock_guard lock(mutex_);
     return running_.get_token();
@@ -119,7 +121,7 @@ class ControlDoor {
   std::condition_variable wake_;
   std::deque<ControlJob> jobs_;
   std::stop_source running_;
-  std::size_t bytes_ = 0;  ///< Of the texts in jobs_.
+  std::size_t bytes_ = 0;  ///< Sum of text_bytes() of jobs_.
   std::vector<AddressedReply> replies_;
   ControlStatus status_;
   bool is_closed_ = false;
@@ -130,21 +132,21 @@ inline constexpr std::size_t kCommandsKept = 64;
 inline constexpr int kMostCommandsAPeriod = 8;
 inline constexpr double kNeverHeard_s = 1e6;
 
-/// Everything between the threads, named by its direction.
+/// Data exchanged between the threads, grouped by direction.
 struct Shared {
   explicit Shared(std::int64_t period) : period_ns(period), statistics(realtime::LoopStatistics(period)) {}
 
   const std::int64_t period_ns;
-  LastChance* last_chance = nullptr;  ///< Of the device; outlives the threads.
+  LastChance* last_chance = nullptr;  ///< Crash handler of the device; outlives the threads.
   std::atomic<bool> is_stopping{false};
-  std::atomic<bool> is_fading{false};  ///< The server is about to stop: forces off.
+  std::atomic<bool> is_fading{false};  ///< True before the server stops: forces off.
 
-  // Link -> real time.
+  // From the link thread to the real-time thread.
   realtime::SpscRing<link::ServerCommand> commands{kCommandsKept};
   realtime::TripleBuffer<link::HandTarget> hand;
-  std::atomic<std::int64_t> heard_ns{0};  ///< The client in control; 0: there is none.
+  std::atomic<std::int64_t> heard_ns{0};  ///< Time of the last message of the client in control; 0: no such client.
 
-  // Real time -> link.
+  // From the real-time thread to the link thread.
   realtime::SpscRing<ServoRecord> records{kRecordsKept};
   std::atomic<std::uint64_t> records_dropped{0};
   realtime::TripleBuffer<realtime::LoopStatistics> statistics;
@@ -152,15 +154,15 @@ struct Shared {
   std::atomic<bool> has_grant{false};
   realtime::RealTimeGrant grant;  ///< Written before has_grant is set.
 
-  // Control <-> real time.
+  // Between the control thread and the real-time thread.
   realtime::Handover<ServoScene> scene;
-  DeviceLoan loan;  ///< Of the device, to the control thread.
+  DeviceLoan loan;  ///< Loan of the device to the control thread.
 
-  // Link <-> control.
+  // Between the link thread and the control thread.
   ControlDoor door;
 };
 
-/// The body of the real-time thread.
+/// Function of the real-time thread.
 void run_servo_thread(Shared& shared, Servo& servo, int priority) noexcept;
 
 }  // namespace trocar::server

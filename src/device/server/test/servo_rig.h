@@ -21,8 +21,8 @@ inline haptics::DevicePreset device_preset(const char* name = "premium") {
   return *preset;
 }
 
-/// The flat layered patient lies under the room: z of W is up, the tip of a needle that hangs down from the origin of W
-/// is 20 mm below the skin.
+/// A request for the flat layered patient below the room: z of W is up; the tip of a needle that points down from the
+/// origin of W is 20 mm below the skin.
 inline link::LoadScene layered_request(const std::string& force_model = "insertion") {
   link::LoadScene request;
   request.patient = "layers";
@@ -41,12 +41,12 @@ inline server::PatientOpener layered_opener() {
     return layered_patient(liver_way());
   };
 }
-/// The needle hangs down over the layered patient, its tip so deep below the skin (mm).
+/// Pose of a needle that points down into the layered patient, with the tip at this depth below the skin (mm).
 inline Pose needle_at_depth(double depth_mm) {
   return {rotation_between(Vec3::UnitZ(), -Vec3::UnitZ()), {0.0, 0.0, 20.0 - depth_mm}};
 }
 
-/// A device whose pose is said and whose wrench is written down.
+/// A device with a pose set by the test; it records the last written wrench.
 class ScriptedDevice final : public devices::HapticDevice {
  public:
   explicit ScriptedDevice(haptics::DevicePreset preset) : preset_(std::move(preset)) {}
@@ -93,7 +93,7 @@ class ServoRig {
     input.is_reset = false;
     return record;
   }
-  /// The tip goes to a depth at a speed; all records.
+  /// Moves the tip to a depth at a speed. Returns all records.
   std::vector<server::ServoRecord> move_to(double depth_mm, double speed_mm_per_s) {
     std::vector<server::ServoRecord> records;
     const double step_mm = speed_mm_per_s * input.dt_s;
@@ -104,7 +104,7 @@ class ServoRig {
     }
     return records;
   }
-  /// Trembling a little, as a hand does, so that the encoder is seen to live.
+  /// Holds the tip with a small tremor like that of a hand, so that no stuck encoder is detected. Returns all records.
   std::vector<server::ServoRecord> hold(double seconds) {
     std::vector<server::ServoRecord> records;
     const auto count = static_cast<int>(seconds / input.dt_s + 0.5);
@@ -114,7 +114,7 @@ class ServoRig {
     }
     return records;
   }
-  /// Forces on, past the safe start, outside the body.
+  /// Runs until the safe start is over and forces are on, outside the body.
   void start() { hold(2.0); }
 
   haptics::DevicePreset preset;

@@ -11,15 +11,15 @@ namespace trocar::testing {
 
 inline constexpr const char* kGamepadVariable = "TROCAR_STANDIN_GAMEPAD";
 
-/// How a gamepad stands, in memory that a test shares with the program that polls it. Axes as SDL has them.
+/// State of a gamepad, in memory shared by a test and the program that polls the gamepad. Axes as in SDL.
 struct GamepadControls {
   std::atomic<std::int32_t> is_plugged;
   std::array<std::atomic<std::int32_t>, 6> axes;
-  std::atomic<std::int32_t> strongest_rumble;  ///< Since the beginning, 0..65535.
+  std::atomic<std::int32_t> strongest_rumble;  ///< Largest value since the beginning, 0..65535.
 };
 
-/// A gamepad for programs that are started while it lives: the environment has them load the stand-in library, which
-/// gives them SDL's virtual joystick. Plugged in, everything let go, at the beginning.
+/// A gamepad for programs that are started during the lifetime of this object. The environment makes them load the
+/// stand-in library, which provides SDL's virtual joystick. Initially all controls are released.
 class GamepadStandIn {
  public:
   explicit GamepadStandIn(bool is_plugged = true);
@@ -28,7 +28,7 @@ class GamepadStandIn {
   GamepadStandIn& operator=(const GamepadStandIn&) = delete;
 
   void plug(bool is_plugged) { controls_->is_plugged = is_plugged; }
-  void pull_right_trigger(double share);            ///< 0: let go, 1: to the stop. It pushes the needle in.
+  void pull_right_trigger(double share);            ///< 0: released, 1: fully pulled. It moves the needle inward.
   void push_left_stick(double right, double away);  ///< -1..1
   int strongest_rumble() const { return controls_->strongest_rumble; }
 

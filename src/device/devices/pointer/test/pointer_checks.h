@@ -9,12 +9,12 @@
 #include "devices/device_spec.h"
 #include "devices/test/bounded_wait.h"
 
-/// What the tests of all polled pointers share.
+/// Functions shared by the tests of all polled pointers.
 namespace trocar::testing {
 
 inline constexpr double kTick_s = 0.001;
 
-/// Reads with a simulated clock until the condition holds: the device's thread is asynchronous, the clock is not.
+/// Reads with a simulated clock until the condition holds. The thread of the device runs asynchronously.
 template <class Predicate>
 bool reads_until(devices::HapticDevice& device, double& now_s, Predicate&& holds) {
   return wait_until([&] {

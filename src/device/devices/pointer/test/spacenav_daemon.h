@@ -12,11 +12,11 @@
 
 namespace trocar::testing {
 
-/// A stand-in for spacenavd on a socket in a folder of its own, which $SPNAV_SOCKET names while it lives. One client
-/// after the other. An event is eight integers of 32 bits: the kind, then its data.
+/// A stand-in for spacenavd on a socket in its own folder; $SPNAV_SOCKET names it during the lifetime of this object.
+/// It serves one client at a time. An event is eight 32-bit integers: the kind, then its data.
 class SpacenavDaemon {
  public:
-  /// `speaks_version_1`: false: as daemons before 1.0, which do not answer the question for the version.
+  /// `speaks_version_1`: false: like daemons before 1.0, which do not answer the version request.
   explicit SpacenavDaemon(bool speaks_version_1 = true);
   ~SpacenavDaemon();
   SpacenavDaemon(const SpacenavDaemon&) = delete;
@@ -25,7 +25,7 @@ class SpacenavDaemon {
   void push_cap(const std::array<int, 6>& counts);
   void press(int button, bool is_pressed);
   void unplug_device();
-  /// Any bytes to the client.
+  /// Sends any bytes to the client.
   void send(std::string_view bytes);
   void hang_up();
   bool is_connected() const { return is_connected_; }

@@ -4,7 +4,7 @@
 
 namespace trocar::testing {
 
-/// SDL's virtual joystick in the layout of a gamepad.
+/// Description of SDL's virtual joystick with the layout of a gamepad.
 inline SDL_VirtualJoystickDesc gamepad_description(const char* name) {
   SDL_VirtualJoystickDesc description{};
   description.version = SDL_VIRTUAL_JOYSTICK_DESC_VERSION;

@@ -4,11 +4,11 @@
 
 namespace trocar::devices {
 
-/// A hand target is carried on by its velocity for at most this long, then it stands still: beyond it the next one is
-/// lost rather than late. Five of a trainer's heartbeats.
+/// A hand target is extrapolated by its velocity for at most this time, then the hand is at rest: after this time the
+/// next target counts as lost, not late. Five heartbeats of a trainer.
 inline constexpr double kMaxExtrapolation_s = 0.05;
 
-/// Where the hand is at a time.
+/// Pose and velocity of the hand at a time.
 struct HandNow {
   Pose X_DS;
   Vec3 v_D = Vec3::Zero();  ///< mm/s
@@ -17,11 +17,11 @@ struct HandNow {
 /// Real-time safe.
 HandNow hand_at(const DeviceHand& hand, double time_s) noexcept;
 
-/// Everything in it is finite, and nothing negative that must not be. Real-time safe.
+/// True if all values are finite and no stiffness, damping, mass, inertia or point_mm is negative. Real-time safe.
 bool is_valid(const DeviceHand& hand) noexcept;
 
-/// A wrench that some gate may have written: finite, and less than any device of the table could give a hundred times
-/// over. Real-time safe.
+/// True if a gate can have written the wrench: finite and within kAbsurdForce_n and kAbsurdTorque_nmm, which are more
+/// than a hundred times the peaks of any device in data/devices.toml. Real-time safe.
 bool is_valid(const haptics::Wrench& wrench) noexcept;
 inline constexpr double kAbsurdForce_n = 2e4;
 inline constexpr double kAbsurdTorque_nmm = 5e5;

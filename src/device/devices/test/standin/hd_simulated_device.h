@@ -20,7 +20,7 @@ struct HdJob {
   bool is_synchronous;
 };
 
-/// The device and the vendor's scheduler. One mutex guards all of it; callbacks run without it.
+/// The simulated device and the vendor's scheduler. One mutex guards all members; callbacks run without the lock.
 class HdSimulatedDevice final : public HdStandIn {
  public:
   void reset() override {
@@ -106,7 +106,7 @@ class HdSimulatedDevice final : public HdStandIn {
     return violations_.text();
   }
 
-  // What the vendor's functions do.
+  // Implementation of the vendor's functions.
   devices::hd::Handle init(const char* name);
   void disable_device(devices::hd::Handle handle);
   void begin(devices::hd::Handle handle);
@@ -148,7 +148,7 @@ class HdSimulatedDevice final : public HdStandIn {
     bool has_force_output = false;
     bool has_clamping = true;
     bool is_in_frame = false;
-    bool had_frame = false;  ///< In this period.
+    bool had_frame = false;  ///< A frame was begun in this period.
     Vec3 wanted_n = Vec3::Zero(), wanted_nmm = Vec3::Zero();
     std::vector<devices::hd::Enum> errors, coming_errors;
   };
@@ -159,7 +159,7 @@ class HdSimulatedDevice final : public HdStandIn {
     state_.arm.force_n.setZero();
     state_.arm.torque_nmm.setZero();
   }
-  /// Of the device with that name, where a test beside this program has made some; null: there are none such.
+  /// Controls of the device with that name, if a test process has made them; null: none.
   HdControls* find_controls(const char* name);
   void take_controls();
   bool is_on_scheduler() const { return std::this_thread::get_id() == thread_id_; }

@@ -5,7 +5,7 @@
 
 namespace trocar::testing {
 
-/// Broken calling rules, in the order in which they were broken.
+/// Violated calling rules, in the order of the violations.
 class Violations {
  public:
   void require(bool is_kept, const char* rule) {

@@ -2,13 +2,13 @@
 
 #include "devices/vendor/dynamic_library.h"
 
-/// The part of Force Dimension's DHD library that is used, declared by hand: names, signatures and values are facts of
-/// its header dhdc.h (SDK 3.3 to 3.17).
+/// The used part of Force Dimension's DHD library, declared by hand. Names, signatures and values are those of its
+/// header dhdc.h (SDK 3.3 to 3.17).
 namespace trocar::devices::dhd {
 
-inline constexpr int kNoError = 0;         // DHD_NO_ERROR; below it: failed
-inline constexpr int kTimeGuard = 1;       // DHD_TIMEGUARD: asked again too early, the values of before
-inline constexpr int kMotorSaturated = 2;  // DHD_MOTOR_SATURATED: the force was cut to what the motors can give
+inline constexpr int kNoError = 0;         // DHD_NO_ERROR; a lower value: failed
+inline constexpr int kTimeGuard = 1;       // DHD_TIMEGUARD: called again too early, the previous values
+inline constexpr int kMotorSaturated = 2;  // DHD_MOTOR_SATURATED: the force was reduced to the limit of the motors
 inline constexpr unsigned char kOn = 1;
 inline constexpr unsigned char kOff = 0;
 
@@ -22,17 +22,17 @@ inline constexpr int kFalcon = 60;
 inline constexpr int kSigma7 = 104;
 inline constexpr int kSigma7Left = 105;
 
-/// DHD_MAX_STATUS is 16 or 17, and grew before: room for more.
+/// DHD_MAX_STATUS is 16 or 17, depending on the release; this length leaves a margin for later releases.
 inline constexpr int kStatusLength = 64;
 inline constexpr int kStatusPower = 0;
-inline constexpr int kStatusReset = 3;  ///< Waits for its calibration.
+inline constexpr int kStatusReset = 3;  ///< The device is not calibrated yet.
 inline constexpr int kStatusForce = 5;  ///< The motors are on.
 inline constexpr int kStatusForceOffCause = 14;
 inline constexpr int kForceOffButton = 1;
 inline constexpr int kForceOffVelocity = 2;
 inline constexpr int kForceOffWatchdog = 3;
 
-/// One count of dhdSetWatchdog; 0 counts switch it off.
+/// One count of dhdSetWatchdog; 0 counts switch the watchdog off.
 inline constexpr double kWatchdogCount_s = 125e-6;
 
 struct Api {
@@ -46,15 +46,15 @@ struct Api {
   int (*get_pose)(double* x, double* y, double* z, double (*rows)[3], char id);
   int (*set_wrench)(double fx, double fy, double fz, double tx, double ty, double tz, double gripper, char id);
   int (*get_button)(int index, char id);
-  const char* (*error_text)();  ///< Of the last error of the calling thread.
-  // Since SDK 3.3.2; setting it is for experts (dhdEnableExpertMode).
+  const char* (*error_text)();  ///< Text of the last error of the calling thread.
+  // Since SDK 3.3.2; set_watchdog needs the expert mode (dhdEnableExpertMode).
   int (*get_watchdog)(unsigned char* counts, char id);
   int (*set_watchdog)(unsigned char counts, char id);
   int (*enable_expert_mode)();
   int (*disable_expert_mode)();
 };
 
-/// libdhd.so under one of its names, or what TROCAR_LIBDHD names.
+/// Loads libdhd.so under one of its names, or the file that TROCAR_LIBDHD names.
 Result<Api> load_api();
 
 }  // namespace trocar::devices::dhd

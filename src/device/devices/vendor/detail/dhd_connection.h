@@ -14,12 +14,12 @@ namespace trocar::devices::dhd {
 
 /// V, the vendor's axes: x towards the user, y right, z up. D: x right, y away, z up.
 Mat3 R_DV() noexcept;
-/// H, the vendor's end effector, which is V where the wrist is in its middle: the grip's tip then points away from the
-/// user, along -x [assumed]. S: +z from the grip to the tip.
+/// H, the vendor's end effector: equal to V at the middle position of the wrist, where the tip of the grip points away
+/// from the user, along -x [assumed]. S: +z from the grip to the tip.
 Mat3 R_HS() noexcept;
 
-/// An open device and the thread that talks to it. Invariant: while it lives, dhdOpen was answered with `id_`; its end
-/// leaves the motors off and the device closed.
+/// An open device and its thread. Invariant: dhdOpen returned `id_`, and the device stays open. The destructor switches
+/// the motors off and closes the device.
 class Connection final : private ServoBody {
  public:
   static Result<std::unique_ptr<Connection>> open(std::shared_ptr<ServoPace> pace);
@@ -29,11 +29,12 @@ class Connection final : private ServoBody {
 
   int system_type() const noexcept { return type_; }
   const std::string& system_name() const noexcept { return name_; }
-  /// Motors on at zero force, and the thread runs. `senses_rotation`: else its frame is left out.
+  /// Switches the motors on at zero force and starts the thread. `senses_rotation`: false: the rotation of a reading is
+  /// the identity.
   Status start(bool senses_rotation);
-  /// After start.
+  /// Call it only after start().
   ServoExchange& exchange() noexcept { return *exchange_; }
-  /// The vendor's words for the error that lost the device; nullptr: it is not lost.
+  /// The vendor's text for the error that disconnected the device; nullptr: not disconnected.
   const char* last_error() const noexcept { return last_error_.load(); }
 
  private:
@@ -58,7 +59,7 @@ class Connection final : private ServoBody {
   std::thread thread_;
   std::atomic<bool> is_stopping_{false};
   std::atomic<const char*> last_error_{nullptr};
-  // Of the thread.
+  // Used only by the thread.
   ServoSample sample_;
   int failures_ = 0;
   int periods_ = 0;

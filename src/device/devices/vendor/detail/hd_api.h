@@ -2,8 +2,8 @@
 
 #include "devices/vendor/dynamic_library.h"
 
-/// The part of OpenHaptics' HD API that is used, declared by hand: names, signatures and values are facts of its
-/// headers hdDefines.h, hdDevice.h and hdScheduler.h (3.0 to 3.4; public copy: danepowell/openhaptics, usr/include/HD).
+/// The used part of OpenHaptics' HD API, declared by hand. Names, signatures and values are those of its headers
+/// hdDefines.h, hdDevice.h and hdScheduler.h (3.0 to 3.4; public copy: danepowell/openhaptics, usr/include/HD).
 namespace trocar::devices::hd {
 
 using Handle = unsigned int;                    // HHD
@@ -26,18 +26,18 @@ inline constexpr unsigned short kLowestPriority = 0;        // HD_MIN_SCHEDULER_
 
 inline constexpr Enum kSuccess = 0x0000;
 inline constexpr Enum kBadHandle = 0x0104;
-inline constexpr Enum kWarmMotors = 0x0200;  // the first of the force errors
+inline constexpr Enum kWarmMotors = 0x0200;  // first force error
 inline constexpr Enum kExceededMaxForce = 0x0201;
-inline constexpr Enum kForceError = 0x0204;  // the last of them
+inline constexpr Enum kForceError = 0x0204;  // last force error
 inline constexpr Enum kDeviceFault = 0x0300;
 inline constexpr Enum kCommError = 0x0302;
 inline constexpr Enum kCommConfigError = 0x0303;
 inline constexpr Enum kTimerError = 0x0304;
 
 inline constexpr Enum kCurrentButtons = 0x2000;
-inline constexpr Enum kCurrentTransform = 0x2052;  // 16 doubles, column after column, mm
+inline constexpr Enum kCurrentTransform = 0x2052;  // 16 doubles, column-major, mm
 inline constexpr Enum kDeviceModelType = 0x2501;
-inline constexpr Enum kUsableWorkspace = 0x2551;  // 6 doubles: least x y z, greatest x y z, mm
+inline constexpr Enum kUsableWorkspace = 0x2551;  // 6 doubles: minimum x y z, maximum x y z, mm
 inline constexpr Enum kOutputDof = 0x2554;
 inline constexpr Enum kCalibrationStyle = 0x2555;
 inline constexpr Enum kNominalMaxStiffness = 0x2602;        // N/mm
@@ -85,7 +85,7 @@ struct Api {
   void (*unschedule)(SchedulerHandle);
 };
 
-/// libHD.so, or what TROCAR_LIBHD names.
+/// Loads libHD.so, or the file that TROCAR_LIBHD names.
 Result<Api> load_api();
 
 }  // namespace trocar::devices::hd

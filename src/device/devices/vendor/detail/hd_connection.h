@@ -10,7 +10,7 @@
 
 namespace trocar::devices::hd {
 
-/// What the device says of itself; none where it says nothing usable.
+/// Data that the device reports; empty where it reports no usable value.
 struct Description {
   std::string model;
   int output_dof = 3;
@@ -23,11 +23,11 @@ Mat3 R_DV() noexcept;
 /// H, the vendor's stylus: +z from its tip to its tail. S: +z from the grip to the tip.
 Mat3 R_HS() noexcept;
 
-/// An initialised device with the vendor's scheduler running our callback. Invariant: while it lives, hdInitDevice was
-/// answered with `handle_`; its end leaves the motors at zero and the device disabled.
+/// An initialised device; the vendor's scheduler runs the callback of this class. Invariant: hdInitDevice returned
+/// `handle_`, and the device stays initialised. The destructor leaves the motors at zero and disables the device.
 class Connection {
  public:
-  /// `is_calibrating`: somebody holds the device where its calibration wants it; see OpenHapticsOptions.
+  /// `is_calibrating`: a person holds the device in its calibration position; see OpenHapticsOptions.
   static Result<std::unique_ptr<Connection>> open(const std::string& device, double (*clock_s)() noexcept,
                                                   bool is_calibrating);
   ~Connection();
@@ -36,7 +36,7 @@ class Connection {
 
   const Description& description() const noexcept { return description_; }
   ServoExchange& exchange() noexcept { return *exchange_; }
-  /// The vendor's words for the last error of the callback; empty: none.
+  /// The vendor's text for the last error of the callback; empty: none.
   std::string last_error() const;
 
  private:
@@ -71,7 +71,7 @@ class Connection {
   std::optional<ServoExchange> exchange_;
   std::atomic<Enum> last_error_{kSuccess};
   std::atomic<bool> is_lost_{false};
-  bool is_done_ = false;  ///< Of the scheduler's thread.
+  bool is_done_ = false;  ///< Used only by the scheduler's thread.
 };
 
 }  // namespace trocar::devices::hd

@@ -11,28 +11,28 @@
 
 namespace trocar::devices {
 
-/// What one period of a vendor's servo loop sensed and was told.
+/// Result of one period of a vendor's servo loop.
 struct ServoSample {
   Pose X_DS;
   std::uint32_t buttons = 0;
-  bool is_force_refused = false;  ///< The vendor's own safety keeps the motors off, or took part of the force.
-  bool is_lost = false;           ///< No device any more.
+  bool is_force_refused = false;  ///< The vendor's safety functions keep the motors off or reduced the force.
+  bool is_lost = false;           ///< The device is disconnected.
 };
 
-/// Between our real-time thread and a vendor's servo loop, neither of which ever waits for the other. A wrench that
-/// grows old is zero: a tick that hangs leaves no force in the motors.
+/// Exchanges readings and wrenches between the real-time thread and a vendor's servo loop. Neither waits for the other.
+/// An outdated wrench counts as zero: if the real-time thread hangs, the motors get no force.
 class ServoExchange {
  public:
-  /// No fresh wrench for longer than this: zero. Twenty periods of the slowest loop. [assumed]
+  /// The wrench is zero if no new one came for longer than this: twenty periods of the slowest loop. [assumed]
   static constexpr double kOldestWrench_s = 0.020;
-  /// No sample for longer than this, in so many reads at least (a process that was stopped as a whole lost nothing):
-  /// the servo loop hangs, the device is as good as gone. [assumed]
+  /// The device counts as disconnected (the servo loop hangs) if no sample came for longer than this and in more than
+  /// kLongestSilence_reads reads. The count of reads prevents this after a stop of the whole process. [assumed]
   static constexpr double kLongestSilence_s = 0.100;
   static constexpr int kLongestSilence_reads = 20;
 
   explicit ServoExchange(const ServoSample& first) : sample_(first), samples_(first) {}
 
-  /// By the real-time thread.
+  /// For the real-time thread.
   DeviceReading read(double now_s) noexcept {
     const bool is_new = samples_.update();
     if (is_new) sample_ = samples_.value();
@@ -50,8 +50,9 @@ class ServoExchange {
     reading.status = is_lost() ? DeviceStatus::kDisconnected : is_new ? DeviceStatus::kFresh : DeviceStatus::kRepeated;
     return reading;
   }
-  /// By the real-time thread. Cut to the device's peaks, a torque left out where that peak is zero. false: no gate
-  /// wrote that (zero goes out instead), the vendor's safety refuses forces, or the device is lost.
+  /// For the real-time thread. Limits force and torque to the peaks of the device; a peak torque of zero removes the
+  /// torque. Returns false if the wrench is invalid (zero is sent instead), the vendor's safety functions refuse
+  /// forces, or the device is disconnected.
   bool write(const haptics::Wrench& wrench_D, const haptics::DeviceCapability& capability) noexcept {
     const bool is_taken = is_valid(wrench_D);
     haptics::Wrench sent;
@@ -63,7 +64,7 @@ class ServoExchange {
     return is_taken && !sample_.is_force_refused && !is_lost();
   }
 
-  /// By the servo loop: what the motors are to get now.
+  /// For the servo loop: the present wrench for the motors.
   haptics::Wrench wanted(double now_s) noexcept {
     if (wrenches_.update()) {
       written_s_ = now_s;
@@ -72,21 +73,21 @@ class ServoExchange {
     const bool is_old = !has_written_ || !(now_s - written_s_ <= kOldestWrench_s);
     return is_old || is_closing_.load(std::memory_order_acquire) ? haptics::Wrench{} : wrenches_.value();
   }
-  /// By the servo loop.
+  /// For the servo loop: publishes a sample.
   void sensed(const ServoSample& sample) noexcept { samples_.write(sample); }
 
-  /// By whoever closes the device: nothing but zero from now on.
+  /// For the thread that closes the device: from now on, wanted() returns zero.
   void close() noexcept { is_closing_.store(true, std::memory_order_release); }
-  /// By any thread: the reader was told so.
+  /// For any thread: true if read() has returned kDisconnected.
   bool is_lost() const noexcept { return is_lost_.load(std::memory_order_relaxed); }
 
  private:
-  // Of the real-time thread.
+  // Used only by the real-time thread.
   ServoSample sample_;
   double heard_s_ = 0.0;
   int silent_reads_ = 0;
   bool has_read_ = false;
-  // Of the servo loop.
+  // Used only by the servo loop.
   double written_s_ = 0.0;
   bool has_written_ = false;
 

@@ -18,13 +18,13 @@ struct WebSocketAddress {
 
   std::string text() const { return "ws://" + host + ":" + port + path; }
 };
-/// Exit status 2 where it is not that.
+/// Errors (exit status 2): `text` does not have this format.
 Result<WebSocketAddress> parse_websocket_address(std::string_view text);
 
-/// A client's connection (RFC 6455) that never waits longer than it is told. For one thread at a time.
+/// Connection of a client (RFC 6455). No call waits longer than its `limit`. For one thread at a time.
 class WebSocket {
  public:
-  /// Messages of more than `most_bytes` close the connection.
+  /// A message of more than `most_bytes` closes the connection.
   static Result<std::unique_ptr<WebSocket>> connect(const WebSocketAddress& address, std::size_t most_bytes,
                                                     std::chrono::milliseconds limit);
   ~WebSocket();
@@ -32,11 +32,11 @@ class WebSocket {
   WebSocket& operator=(const WebSocket&) = delete;
 
   enum class Received { kMessage, kNothingYet, kClosed };
-  /// The next message; after kNothingYet ask again.
+  /// Receives the next message; after kNothingYet, call it again.
   Received receive(std::string& message, std::chrono::milliseconds limit);
-  /// false: it was not sent in time, or the connection is closed; it is closed then.
+  /// Returns false if the message was not sent in time or the connection is closed; the connection is closed then.
   bool send(std::string_view message, std::chrono::milliseconds limit);
-  /// Says goodbye and closes.
+  /// Sends the close frame and closes the connection.
   void close(std::chrono::milliseconds limit);
 
  private:

@@ -11,14 +11,14 @@
 
 namespace trocar::testing {
 
-/// What the service does with its next state.
+/// Behaviour of the service for its next state message.
 enum class HaplyMood : int {
   kGood,
-  kClose,          ///< Closes the connection instead of sending it.
-  kNotJson,        ///< Sends half a document.
-  kWrongTypes,     ///< Strings for numbers.
-  kHugeNumbers,    ///< Further away than any arm.
-  kStalled,        ///< Sends nothing while the mood lasts.
+  kClose,          ///< Closes the connection instead of sending the state.
+  kNotJson,        ///< Sends an incomplete JSON document.
+  kWrongTypes,     ///< Strings instead of numbers.
+  kHugeNumbers,    ///< A position beyond the reach of any arm.
+  kStalled,        ///< Sends nothing while this mood is set.
   kTooLong,        ///< Sends a message of a megabyte.
   kNotCalibrated,  ///< status.calibrated false, and so on.
   kNoPower,
@@ -27,8 +27,9 @@ enum class HaplyMood : int {
   kNoGrip,    ///< The grip is missing from the lists.
 };
 
-/// A stand-in for the Inverse service on an own port of the loopback: keeps the vendor's rules (a first state, then one
-/// state a command), notes who breaks them, and moves a mass by the forces it is told. One client after the other.
+/// A stand-in for the Inverse service on its own loopback port. It follows the vendor's rules (a first state, then one
+/// state per command), records violations by the client, and moves a mass with the received forces. It serves one
+/// client at a time.
 class HaplyService {
  public:
   explicit HaplyService(HaplyMood mood = HaplyMood::kGood);
@@ -38,10 +39,10 @@ class HaplyService {
 
   std::string address() const { return "ws://127.0.0.1:" + std::to_string(port_); }
   void set_mood(HaplyMood mood) { mood_ = mood; }
-  /// Puts the cursor there (m, vendor's frame), at rest.
+  /// Places the cursor at `p_m` (m, vendor's frame), at rest.
   void put_cursor(const Vec3& p_m);
   void set_grip(const Eigen::Quaterniond& q, bool is_a_pressed, bool is_b_pressed);
-  /// The first state says that the origin is the workspace's middle.
+  /// true: in the first state, the origin is the middle of the workspace.
   void set_centred(bool is_centred) { is_centred_ = is_centred; }
 
   std::uint64_t commands() const { return commands_; }
@@ -49,7 +50,7 @@ class HaplyService {
   bool is_connected() const { return is_connected_; }
   Vec3 last_force_n() const;
   Vec3 cursor_m() const;
-  /// What broke the vendor's rules, in words.
+  /// Descriptions of the violations of the vendor's rules.
   std::vector<std::string> violations() const;
 
  private:
@@ -69,8 +70,8 @@ class HaplyService {
   std::atomic<bool> is_centred_{false};
   std::atomic<std::uint64_t> commands_{0};
   std::atomic<int> connections_{0};
-  mutable std::mutex mutex_;  ///< Of what follows.
-  int client_ = -1;           ///< Descriptor, to wake the thread.
+  mutable std::mutex mutex_;  ///< Guards the members below.
+  int client_ = -1;           ///< Descriptor of the client, used to wake the thread.
   Vec3 p_m_{0.0, -0.12, 0.15};
   Vec3 v_m_per_s_ = Vec3::Zero();
   Eigen::Quaterniond q_grip_ = Eigen::Quaterniond::Identity();

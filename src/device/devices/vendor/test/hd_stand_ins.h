@@ -12,11 +12,11 @@
 
 namespace trocar::testing {
 
-/// Folder of the devices' files, a file a device, named after it.
+/// Environment variable: folder with one file per device, named after the device.
 inline constexpr const char* kHdVariable = "TROCAR_STANDIN_HD";
 
-/// How an OpenHaptics device stands, in memory that a test shares with the program that has opened it. The hand that
-/// holds it does not give way.
+/// State of an OpenHaptics device, in memory shared by a test and the program that has opened the device. The hand that
+/// holds the device is rigid.
 struct HdControls {
   std::array<char, 64> model{};
   int output_dof = 3;
@@ -26,14 +26,14 @@ struct HdControls {
   std::atomic<int> is_present{1};
   std::atomic<int> is_in_reset_position{0};
   std::atomic<int> buttons{0};
-  std::array<std::atomic<double>, 9> R{};     ///< Row by row, in the vendor's axes.
-  std::array<std::atomic<double>, 3> p_mm{};  ///< Likewise.
-  std::atomic<double> strongest_n{0.0};       ///< Of the motors, since the beginning.
-  std::atomic<int> openings{0};               ///< How often it was opened.
+  std::array<std::atomic<double>, 9> R{};     ///< Row-major, in the vendor's axes.
+  std::array<std::atomic<double>, 3> p_mm{};  ///< In the vendor's axes.
+  std::atomic<double> strongest_n{0.0};       ///< Largest force of the motors since the beginning.
+  std::atomic<int> openings{0};               ///< Number of times that it was opened.
 };
 
-/// OpenHaptics devices for programs that are started while it lives: the environment has them open the stand-in library
-/// and find the configuration that the vendor's setup program would have written.
+/// OpenHaptics devices for programs that are started during the lifetime of this object. The environment makes them
+/// open the stand-in library and find the configuration that the vendor's setup program would have written.
 class HdStandIns {
  public:
   HdStandIns();
@@ -41,7 +41,7 @@ class HdStandIns {
   HdStandIns(const HdStandIns&) = delete;
   HdStandIns& operator=(const HdStandIns&) = delete;
 
-  /// Plugged in and calibrated, held in the middle of its workspace, the tip away from who sits there.
+  /// Add a connected and calibrated device, held in the middle of its workspace, with the tip away from the user.
   HdControls& add_omni(const std::string& name);
   HdControls& add_premium(const std::string& name);
 
@@ -52,9 +52,9 @@ class HdStandIns {
   std::vector<HdControls*> devices_;
 };
 
-/// In the vendor's axes, for HdControls::p_mm.
+/// Sets HdControls::p_mm, in the vendor's axes.
 void place(HdControls& device, const Vec3& p_mm);
-/// As a hand moves it there; returns when it is there.
+/// Moves the device to `p_mm` at this speed, like a hand; returns when it has arrived.
 void glide(HdControls& device, const Vec3& p_mm, double mm_per_s);
 
 }  // namespace trocar::testing

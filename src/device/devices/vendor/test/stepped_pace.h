@@ -9,7 +9,7 @@
 
 namespace trocar::testing {
 
-/// A servo loop that runs as many periods as the test asks for, at the test's time.
+/// Clock of a servo loop that runs the number of periods that the test requests, at the time of the test.
 class SteppedPace final : public devices::ServoPace {
  public:
   void run(const std::atomic<bool>& is_stopping, devices::ServoBody& body) noexcept override {
@@ -33,7 +33,7 @@ class SteppedPace final : public devices::ServoPace {
     changed_.notify_all();
   }
 
-  /// Waits until they are done.
+  /// Runs `periods` periods and waits until they are done.
   void step(int periods) {
     std::unique_lock lock(mutex_);
     granted_ = periods;

@@ -8,7 +8,8 @@
 
 namespace trocar::testing {
 
-/// The stand-in's side of a vendor's library from the test tree, and the environment that makes Trocar find it.
+/// Loads the stand-in for a vendor's library from the test tree and sets the environment variable with which Trocar
+/// finds it. Returns the controls of the stand-in.
 template <class StandIn>
 StandIn* use_stand_in(const char* variable, const char* file, const char* function) {
   const std::filesystem::path path = std::filesystem::path(TROCAR_STANDIN_FOLDER) / file;

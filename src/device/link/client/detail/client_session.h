@@ -10,23 +10,24 @@
 
 namespace trocar::link::detail {
 
-/// What a client's thread knows of its server, from message to message. Knows neither sockets nor clocks; what the
-/// caller may see goes to the mailbox.
+/// State of a client's session with its server. Uses neither sockets nor clocks. Results for the caller go to the
+/// mailbox.
 class ClientSession {
  public:
   explicit ClientSession(ClientMailbox& mailbox) : mailbox_(mailbox) {}
 
   bool is_welcomed() const { return session_ != 0; }
   std::uint64_t ticks_received() const { return ticks_received_; }
-  /// A message of the server came. False: it was not for this session, or old, and is counted.
+  /// Handles a message of the server. Returns false if the message was refused: it is not of this session, old, or a
+  /// refusal without a session.
   bool take(ServerMessage message, double now_s);
-  /// Something came that is no message.
+  /// Counts a received message that is invalid.
   void refuse();
-  /// The next message of this session with such a body.
+  /// Makes the next message of this session, with this body.
   ClientMessage message(ClientBody body);
-  /// A command went out; it will have a reply, the server's or our own.
+  /// Call it after a command was sent. The command gets a reply from the server, or one from lose().
   void expect_reply(std::uint32_t request) { waiting_.push_back(request); }
-  /// The server is gone: commands that wait are answered so.
+  /// Ends the session: commands without a reply get an error reply.
   void lose();
 
  private:

@@ -16,18 +16,18 @@
 
 namespace trocar::link::detail {
 
-/// The thread of a HapticClient: owns its socket, beats on absolute times, greets, and greets anew after silence.
-/// Sleeps until its clock, its socket or wake() ends that.
+/// The thread of a HapticClient: owns the socket, sends heartbeats at absolute times, sends Hello, and sends it again
+/// after a timeout. It sleeps until its clock, its socket or wake() wakes it.
 class ClientThread {
  public:
   static Result<std::unique_ptr<ClientThread>> start(const ClientOptions& options);
-  ~ClientThread();  ///< Says goodbye and joins.
+  ~ClientThread();  ///< Sends Goodbye and joins the thread.
   ClientThread(const ClientThread&) = delete;
   ClientThread& operator=(const ClientThread&) = delete;
 
   ClientMailbox& mailbox() { return mailbox_; }
   const ClientOptions& options() const { return options_; }
-  /// There is something in the mailbox.
+  /// Call it after the mailbox got a request.
   void wake() noexcept;
   void frame_drawn() noexcept;
 
@@ -50,8 +50,8 @@ class ClientThread {
   int clock_ = -1;  ///< timerfd
   ZmqContext context_;
 
-  // The thread's own.
-  std::string routing_id_;  ///< Kept over connections, so that the server knows us again.
+  // Used only by the thread.
+  std::string routing_id_;  ///< Kept for later connections, so that the server identifies this client.
   ZmqSocket socket_;
   HandshakeMonitor handshakes_;
   ClientSession session_{mailbox_};

@@ -5,16 +5,16 @@
 
 namespace trocar::link::detail {
 
-/// The difference of two clocks by question and answer: of the last seconds the fastest round trip counts, since its
-/// two ways can differ least (as NTP's clock filter does, RFC 5905).
+/// Offset between two clocks, measured with round trips. The fastest round trip of the last seconds is used, because
+/// its two directions can differ least (like NTP's clock filter, RFC 5905).
 class ClockOffset {
  public:
   struct Estimate {
-    double offset_s = 0.0;      ///< Their clock minus ours; wrong by at most half the round trip.
+    double offset_s = 0.0;      ///< Remote clock minus own clock; the error is at most half the round trip.
     double round_trip_s = 0.0;  ///< Never negative.
   };
-  /// An answer that gave `their_s` came at `received_s` to a question of `sent_s` (both our clock). False and not taken
-  /// when it came before the question.
+  /// Adds a round trip: request sent at `sent_s`, answer with `their_s` received at `received_s` (sent and received:
+  /// own clock). Returns false, and does not add it, if the answer came before the request.
   bool add(double sent_s, double their_s, double received_s);
   std::optional<Estimate> best() const;
   void clear() { pings_.clear(); }
@@ -24,7 +24,7 @@ class ClockOffset {
     double received_s;
     Estimate estimate;
   };
-  std::deque<Ping> pings_;  ///< Slower ones before a faster one are gone: the first is the best.
+  std::deque<Ping> pings_;  ///< A faster round trip removes the slower ones before it: the first is the best.
 };
 
 }  // namespace trocar::link::detail

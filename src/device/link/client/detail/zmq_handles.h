@@ -27,7 +27,7 @@ class ZmqContext {
   void* context_;
 };
 
-/// One frame that was received; the bytes are the library's and live as long as this.
+/// One received frame. The library owns the bytes; they are valid during the lifetime of this object.
 class ZmqFrame {
  public:
   ZmqFrame() noexcept { zmq_msg_init(&message_); }
@@ -45,11 +45,12 @@ class ZmqFrame {
   zmq_msg_t* get() noexcept { return &message_; }
 
  private:
-  // The library's readers take it unconst.
+  // The library's read functions take a non-const pointer.
   mutable zmq_msg_t message_;
 };
 
-/// Owner of a socket, used by one thread. Nothing throws; the numbers are the library's (errno where false).
+/// Owner of a socket, used by one thread. No function throws. Options and flags are those of the library; errno is set
+/// if a function returns false.
 class ZmqSocket {
  public:
   ZmqSocket() noexcept = default;
@@ -69,19 +70,19 @@ class ZmqSocket {
   bool set_text(int option, std::string_view value) noexcept {
     return zmq_setsockopt(socket_, option, value.data(), value.size()) == 0;
   }
-  /// A key in Z85 or a text that the library wants with its closing zero.
+  /// Sets a key in Z85 or a text that the library needs with its terminating zero.
   bool set_key(int option, const std::string& value) noexcept {
     return zmq_setsockopt(socket_, option, value.c_str(), value.size() + 1) == 0;
   }
   std::string last_endpoint() const;
 
-  /// False: not sent, and errno says why.
+  /// Returns false if it was not sent; errno has the reason.
   bool send(std::span<const std::byte> bytes, int flags) noexcept;
   bool send(std::string_view text, int flags) noexcept { return send(std::as_bytes(std::span(text)), flags); }
   bool receive(ZmqFrame& frame, int flags) noexcept;
-  /// Drops what is left of a message whose last frame that was read is `frame`.
+  /// Drops the remaining frames of a message. `frame`: the last frame that was read.
   void drop_rest(ZmqFrame& frame) noexcept;
-  /// Waits for something to receive, at most so long (ms; -1: for ever).
+  /// Waits for data to receive, at most `wait_ms` (-1: no limit).
   bool wait_readable(int wait_ms) noexcept;
 
  private:

@@ -32,7 +32,7 @@ class CurveIdentity {
 };
 
 /// The server's side of CurveZMQ (ZeroMQ RFC 26) for one connection: HELLO, WELCOME, INITIATE, READY, then MESSAGE
-/// boxes. Cryptography by libsodium. Bytes of strangers are welcome: each step either succeeds or refuses.
+/// boxes. Cryptography by libsodium. Input may be untrusted: each step either succeeds or returns an error.
 class CurveHandshake {
  public:
   explicit CurveHandshake(const CurveIdentity& identity) : identity_(identity) {}
@@ -42,14 +42,16 @@ class CurveHandshake {
     std::vector<std::byte> command;
     std::vector<std::byte> metadata;
   };
-  /// HELLO or INITIATE. Errors: not these, not for this server's key, a client whose key is not allowed.
+  /// Answers HELLO or INITIATE. Errors: another command, a command for another server key, a client key that is not
+  /// allowed.
   Result<Answer> answer(std::span<const std::byte> command);
   bool is_done() const { return step_ == Step::kDone; }
-  /// The command that follows a good INITIATE, with the server's metadata.
+  /// The READY command after a valid INITIATE, with the server's metadata.
   std::vector<std::byte> ready(std::span<const std::byte> metadata);
   const CurveKey& client_key() const { return client_key_; }
 
-  /// What a MESSAGE body holds: flags and payload. Errors: before the handshake is done, damaged, replayed.
+  /// Content of a MESSAGE body: flags and payload. Errors of open(): the handshake is not done, or the message is
+  /// damaged or replayed.
   struct Opened {
     std::uint8_t flags = 0;  ///< bit 0: more frames follow, bit 1: a command.
     std::vector<std::byte> payload;
@@ -65,10 +67,10 @@ class CurveHandshake {
 
   const CurveIdentity& identity_;
   Step step_ = Step::kHello;
-  CurveKey client_short_{};                   ///< C', the client's key of this connection.
+  CurveKey client_short_{};                   ///< C', the client's short-term key of this connection.
   CurveKey short_public_{}, short_secret_{};  ///< S' and s'
   CurveKey cookie_key_{};
-  CurveKey session_key_{};  ///< Precomputed of C' and s'.
+  CurveKey session_key_{};  ///< Precomputed from C' and s'.
   CurveKey client_key_{};   ///< C
   std::uint64_t last_received_ = 0, last_sent_ = 0;
 };

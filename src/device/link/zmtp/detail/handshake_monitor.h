@@ -7,12 +7,12 @@
 
 namespace trocar::link::detail {
 
-/// Why connections of a client's socket fail before a message: keys that do not fit, one side without keys.
+/// Reports why connections of a client's socket fail during the handshake: wrong keys, or keys on only one side.
 class HandshakeMonitor {
  public:
-  /// Watches `socket` from now on. False: not possible; take() then gives nothing.
+  /// Watches `socket` from now on. Returns false if this is not possible; take() then returns nothing.
   bool watch(const ZmqContext& context, ZmqSocket& socket);
-  /// The newest failure since the last call.
+  /// Returns the newest failure since the last call.
   std::optional<std::string> take();
 
  private:

@@ -20,47 +20,50 @@
 
 namespace trocar::link::detail {
 
-/// The listening socket of a server and its connections, in one thread. Bounded in everything that a stranger can
-/// raise: connections, accepts a second, bytes and messages of each connection (link/limits.h). Connections that have
-/// not said Hello are never more than kMostStrangers: a new one takes the place of the oldest.
+/// The listening socket of a server and its connections, used by one thread. Limits for untrusted peers: connections,
+/// accepts per second, bytes and messages of each connection (link/limits.h). At most kMostStrangers connections have
+/// not sent Hello: a new one replaces the oldest of them.
 class ServerConnections {
  public:
-  /// Errors: no keys where the endpoint needs some, address in use, no such folder, too few file descriptors.
+  /// Errors: address in use, no such folder, too few file descriptors.
   static Result<ServerConnections> listen(const Endpoint& endpoint, std::optional<CurveIdentity> identity);
 
   struct Incoming {
     ZmtpConnection::Event event = ZmtpConnection::Event::kNone;
-    std::string routing_id;              ///< Of the connection: the peer's own, else one of ours.
-    std::span<const std::byte> message;  ///< Until the next call.
+    std::string routing_id;              ///< Of the connection: given by the peer, else generated.
+    std::span<const std::byte> message;  ///< Valid until the next call.
   };
-  /// The next event, connections in turn; it reads and accepts what is there, without waiting.
+  /// Returns the next event; connections take turns. Reads available bytes and accepts connections, without waiting.
   std::optional<Incoming> next(double now_s);
-  /// Waits until a socket is ready; false: nothing came. Shorter where a rate limit holds a connection back.
+  /// Waits until a socket is ready. Returns false if none became ready. The wait is shorter, and returns true, if a
+  /// connection has reached a rate limit.
   bool wait(int wait_ms, double now_s);
 
-  /// False: the connection is gone, or more than `most_waiting` bytes would wait for the peer.
+  /// Returns false if the connection is closed, or more than `most_waiting` bytes would be queued for the peer.
   bool send(std::string_view routing_id, std::span<const std::byte> message, std::size_t most_waiting = kMostBytesOut);
-  /// Whether a message to a peer about a bad one of its own is due: they are limited in rate.
+  /// True if a Refusal may be sent to the peer now; refusals are limited in rate.
   bool may_refuse(std::string_view routing_id, double now_s);
-  /// A warning in the log, limited in rate.
+  /// Logs a warning, limited in rate.
   void report(const std::string& what, double now_s);
-  /// Who has said Hello, by routing id: asked when a connection is made, and by refresh().
+  /// Sets the function that returns whether the client with this routing id has sent Hello. It is called after the
+  /// handshake of a connection, and by refresh().
   void set_known(std::function<bool(std::string_view)> is_known) { is_known_ = std::move(is_known); }
-  /// Clients came or went.
+  /// Call it after clients were added or removed.
   void refresh(double now_s);
-  /// Closes connections that have not said Hello within kHelloPatience_s.
+  /// Closes connections that have not sent Hello within kHelloPatience_s.
   void drop_strangers(double now_s);
 
   const std::string& url() const { return url_; }
   std::size_t count() const { return connections_.size(); }
-  std::uint64_t refused() const { return refused_; }  ///< Connections that were closed for what they sent.
+  /// Number of connections that were refused, or closed because of invalid data.
+  std::uint64_t refused() const { return refused_; }
 
  private:
   struct Connection {
     Descriptor socket;
-    std::unique_ptr<ZmtpConnection> stream;  ///< At one place: messages point into it.
+    std::unique_ptr<ZmtpConnection> stream;  ///< At a fixed address: messages point into it.
     std::string routing_id;
-    double since_s = 0.0;  ///< A stranger since.
+    double since_s = 0.0;  ///< Start of the time without a Hello.
     bool is_closed = false;
     TokenBucket refusals{kMostRefusalsPerS, kMostRefusalsAtOnce};
   };

@@ -11,16 +11,16 @@
 
 namespace trocar::link::detail {
 
-/// The number of an interface and a port: "127.0.0.1:5571", "[::1]:5571". Names are not looked up.
+/// A numeric IP address and a port: "127.0.0.1:5571", "[::1]:5571". Names are not resolved.
 struct TcpAddress {
   sockaddr_storage storage{};
   socklen_t size = 0;
 
   std::string url() const;  ///< "tcp://[::1]:5571"
 };
-/// By inet_pton: four decimal octets without leading zeros, or an address of version 6 in brackets.
+/// Parses with inet_pton: four decimal octets without leading zeros, or an IPv6 address in brackets.
 std::optional<TcpAddress> parse_tcp_address(std::string_view host, unsigned port);
-/// A listening socket that does not block, and where it listens (port 0: any free one).
+/// A non-blocking listening socket and its URL (port 0: any free port).
 struct TcpListener {
   Descriptor socket;
   std::string url;

@@ -4,7 +4,7 @@
 
 namespace trocar::link::detail {
 
-/// A rate limit: `burst` at once, `per_s` in the long run. Time is an argument.
+/// A rate limit: `burst` at once, `per_s` on average. Time is an argument.
 class TokenBucket {
  public:
   TokenBucket(double per_s, double burst) noexcept : per_s_(per_s), burst_(burst), tokens_(burst) {}
@@ -15,7 +15,7 @@ class TokenBucket {
     has_time_ = true;
   }
   bool has_tokens() const noexcept { return tokens_ > 0.0; }
-  /// May take more than there is: the debt is paid before has_tokens() is true again.
+  /// May take more tokens than there are; has_tokens() is then false until the deficit is refilled.
   void take(double amount) noexcept { tokens_ -= amount; }
 
  private:

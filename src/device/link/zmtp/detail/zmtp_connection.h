@@ -14,40 +14,42 @@
 
 namespace trocar::link::detail {
 
-/// The server's side of one ZMTP 3 connection, without its socket: bytes in, messages and bytes out. What it holds of a
-/// peer is bounded in bytes, frames and rate, whatever the peer sends. Mechanisms: NULL, or CURVE with an identity.
+/// The server's side of one ZMTP 3 connection, without its socket: bytes in, messages and bytes out. Its buffers and
+/// rates are bounded in bytes and frames for any input. Mechanisms: NULL, or CURVE with an identity.
 class ZmtpConnection {
  public:
-  /// `identity` outlives the connection; null: the mechanism is NULL.
+  /// `identity` must outlive the connection; null: the mechanism is NULL.
   explicit ZmtpConnection(const CurveIdentity* identity);
 
   enum class Event {
-    kNone,       ///< Nothing whole is there, or the rate limit holds it back.
-    kReady,      ///< The handshake is done: identity() is known.
+    kNone,       ///< No complete frame, or the rate limit was reached.
+    kReady,      ///< The handshake is done: identity() is valid.
     kMessage,    ///< One message of one frame.
-    kMultipart,  ///< The begin of a message of several frames: it is skipped.
-    kTooLarge,   ///< A message beyond the limit: it is skipped.
-    kBroken,     ///< The connection cannot go on: why().
+    kMultipart,  ///< The beginning of a message of several frames: it is skipped.
+    kTooLarge,   ///< A message above the size limit: it is skipped.
+    kBroken,     ///< The connection cannot continue; why() has the reason.
   };
   struct Incoming {
     Event event = Event::kNone;
-    std::span<const std::byte> message;  ///< Until the next call.
+    std::span<const std::byte> message;  ///< Valid until the next call.
   };
 
-  /// How many bytes may be read from the socket now; 0: the rate limit, or a full output, holds the peer back.
+  /// Number of bytes that may be read from the socket now; 0: the rate limit was reached, or a buffer is full.
   std::size_t room(double now_s);
   void append(std::span<const std::byte> bytes);
   Incoming next(double now_s);
 
-  /// A peer that has said Hello may send kMostMessageBytes, another kMostBytesBeforeHello.
+  /// A peer that has sent Hello may send kMostMessageBytes, another peer kMostBytesBeforeHello.
   void set_greeted(bool is_greeted) { is_greeted_ = is_greeted; }
   bool is_greeted() const { return is_greeted_; }
-  /// The peer's routing id, with its key in front where it has one. Empty before the handshake is done, or not given.
+  /// Routing id of the peer, preceded by its key if it has one. Empty before the handshake is done, or if the peer gave
+  /// none.
   const std::string& identity() const { return identity_; }
   bool is_ready() const { return state_ == State::kTraffic; }
   const std::string& why() const { return why_; }
 
-  /// Queues a message. False: more than `most_waiting` bytes would wait for the peer, or the handshake is not done.
+  /// Queues a message. Returns false if more than `most_waiting` bytes would be queued for the peer, or the handshake
+  /// is not done.
   bool put(std::span<const std::byte> message, std::size_t most_waiting = kMostBytesOut);
   std::span<const std::byte> outgoing() const { return std::span<const std::byte>(out_).subspan(out_sent_); }
   void note_sent(std::size_t bytes);
@@ -71,7 +73,7 @@ class ZmtpConnection {
   std::vector<std::byte> out_, opened_;
   std::size_t out_sent_ = 0;
   std::size_t multipart_bytes_ = 0;
-  int multipart_frames_ = 0;  ///< Of the message that is skipped; 0: none.
+  int multipart_frames_ = 0;  ///< Frames so far of the message that is skipped; 0: none.
   bool is_greeted_ = false;
   std::string identity_, why_;
 };

@@ -15,7 +15,7 @@ inline void append_bytes(std::vector<std::byte>& bytes, std::span<const std::byt
   if (!more.empty()) std::memcpy(bytes.data() + begin, more.data(), more.size());
 }
 
-/// ZMTP 3 (ZeroMQ RFC 23): the greeting, the frames and the metadata of a connection's bytes. No sockets.
+/// ZMTP 3 (ZeroMQ RFC 23): greeting, frames and metadata of a connection, without sockets.
 namespace zmtp {
 
 inline constexpr std::size_t kGreetingBytes = 64;
@@ -24,35 +24,35 @@ inline constexpr std::uint8_t kMore = 1, kLong = 2, kCommand = 4;  ///< Flag bit
 
 std::vector<std::byte> make_greeting(std::string_view mechanism, bool is_server);
 enum class GreetingFault { kNone, kNotZmtp3, kMechanism };
-/// Of 64 bytes.
+/// Checks a greeting of 64 bytes.
 GreetingFault check_greeting(std::span<const std::byte> greeting, std::string_view mechanism);
 
 void append_frame(std::vector<std::byte>& bytes, std::uint8_t flags, std::span<const std::byte> body);
 std::vector<std::byte> make_metadata(std::string_view socket_type);
 struct Metadata {
   bool is_valid = false;
-  std::string_view socket_type, identity;  ///< Within the bytes given.
+  std::string_view socket_type, identity;  ///< Point into the bytes that were read.
 };
 Metadata read_metadata(std::span<const std::byte> bytes);
 
 }  // namespace zmtp
 
-/// Splits a stream of bytes into frames. Holds no more than one frame of the size limit and what was appended last.
+/// Splits a stream of bytes into frames. Buffers at most one frame of the size limit and the bytes appended last.
 class FrameReader {
  public:
   enum class Outcome {
     kNone,      ///< More bytes are needed.
     kFrame,     ///< A whole frame.
-    kTooLarge,  ///< A frame beyond the limit: reported once, its body is skipped.
-    kBroken,    ///< Not a frame, or beyond the cut-off: the connection cannot go on.
+    kTooLarge,  ///< A frame above the size limit: reported once, its body is skipped.
+    kBroken,    ///< Not a frame, or above the cut-off: the connection cannot continue.
   };
   struct Frame {
     std::uint8_t flags = 0;
-    std::span<const std::byte> body;  ///< Until the next call.
+    std::span<const std::byte> body;  ///< Valid until the next call.
   };
 
   void append(std::span<const std::byte> bytes);
-  /// The first `count` bytes as they are (the greeting); empty: not all are there.
+  /// Takes the first `count` bytes unparsed (the greeting); empty if fewer are buffered.
   std::span<const std::byte> take_raw(std::size_t count);
   Outcome next(std::size_t most_bytes, std::size_t cut_off_bytes, Frame& frame);
   std::size_t held() const { return bytes_.size() - begin_; }
@@ -61,8 +61,8 @@ class FrameReader {
   void drop_taken();
 
   std::vector<std::byte> bytes_;
-  std::size_t begin_ = 0;    ///< Bytes before it were taken.
-  std::size_t skipped_ = 0;  ///< Of a frame that is too large: still to be skipped.
+  std::size_t begin_ = 0;    ///< The bytes before it were taken.
+  std::size_t skipped_ = 0;  ///< Bytes still to be skipped, of a frame that is too large.
 };
 
 }  // namespace trocar::link::detail
