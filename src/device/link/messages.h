@@ -61,8 +61,8 @@ struct TissueSetting {
   bool operator==(const TissueSetting&) const = default;
 };
 
-/// Changes a running scene. The server builds the scene again and swaps it in; the insertion continues. Empty fields
-/// leave the values unchanged.
+/// Changes a running scene. The server builds the scene again and swaps it in; the insertion continues unless the force
+/// model changes. Empty fields leave the values unchanged.
 struct SetParameters {
   /// All values that differ from the loaded table. They replace those of the last message that had a list. An empty
   /// list restores the loaded table.
@@ -179,7 +179,7 @@ struct ServerStatus {
 struct StateBatch {
   std::uint64_t first_tick = 0;
   std::vector<telemetry::TickSample> samples;
-  std::optional<ServerStatus> status;  ///< Not in every batch: at least at 20 Hz.
+  std::optional<ServerStatus> status;  ///< Not in every batch: at most 20 times per second.
   std::uint64_t scene = 0;             ///< See Reply::scene; 0: none.
 };
 inline constexpr std::size_t kMostSamples = 512;

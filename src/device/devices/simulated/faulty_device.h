@@ -12,7 +12,7 @@ namespace trocar::devices {
 
 /// Wraps any device and injects faults at given times, to test the server's reaction to device faults. Time starts at
 /// the first read. Slow reads and writes block, unlike those of other devices. The noise is seeded: the same reads give
-/// the same poses.
+/// the same poses. It counts as held by a person, so that the server watches it for readings that never change.
 class FaultyDevice final : public HapticDevice {
  public:
   /// Function that waits for `wait_ms`. The default is nanosleep; a simulation may count the time instead.

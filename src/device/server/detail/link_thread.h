@@ -6,7 +6,7 @@
 
 namespace trocar::server {
 
-/// The link thread: receives messages, sends batches, sends the status 20 times per second and feeds the flight
+/// The link thread: receives messages, sends batches, sends the status up to 20 times per second and feeds the flight
 /// recorder.
 class LinkThread {
  public:
