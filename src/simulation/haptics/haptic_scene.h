@@ -18,7 +18,7 @@
 
 namespace trocar::haptics {
 
-/// Which law makes the force (docs/physics.md T1, T2).
+/// Law that computes the force (docs/physics.md T1, T2).
 enum class ForceModel : std::uint8_t {
   kInsertion,  ///< Paper A: layers that are loaded and punctured, friction, cutting, path constraint.
   kProxy,      ///< Paper B: tip proxy on CT and labels, body proxies on the path, bending.
@@ -33,7 +33,7 @@ struct DeviceCapability {
   double peak_force_n = 37.5;
   double peak_torque_nmm = 515.0;       ///< 0: senses rotation but has no torque.
   double max_stiffness_n_per_mm = 3.5;  ///< Range 0.1..20. Source: vendor's nominal figure, references.md.
-  double stylus_weight_n = 0.5;         ///< Weight that links and stylus put on the hand. Range 0..5. [assumed]
+  double stylus_weight_n = 0.5;         ///< Weight of links and stylus on the hand. Range 0..5. [assumed]
   double stylus_lever_mm = 20.0;        ///< Centre of that weight behind the stylus origin, along -z of S. [assumed]
 
   bool has_torque() const noexcept { return peak_torque_nmm > 0.0; }
@@ -55,14 +55,14 @@ struct HapticOptions {
   bool has_stick = true;  ///< Karnopp holding force (physics.md F3).
   bool has_weight_compensation = true;
   bool has_bending = true;  ///< Proxy and combined: false keeps the shaft straight.
-  std::uint64_t seed = 1;   ///< Of the friction's fluctuation.
+  std::uint64_t seed = 1;   ///< Seed of the friction's fluctuation.
 };
 
 inline constexpr int kMaxTissues = 32;
 inline constexpr int kMaxLayers = 16;
 inline constexpr std::uint8_t kNoLayer = 0xff;
 
-/// Tissue and layer numbers as the tick reads them: no text, fixed size.
+/// Tissue and layer parameters in the form that the tick reads: no text, fixed size.
 struct TissueLaw {
   double viscosity_ns_per_mm = 0.0;
   double noise_n = 0.0;  ///< delta * mu
@@ -75,11 +75,12 @@ struct TissueLaw {
 struct LayerLaw {
   LoadingLaw loading;
   double puncture_force_n = std::numeric_limits<double>::infinity();
-  double indent_n_per_mm = 1.0;  ///< Puncture force over the static indentation at it; bone: its stiffness.
-  bool is_wall = false;          ///< Proxy models: punctured at a label's border.
+  /// Puncture force divided by the static indentation at that force; bone: its stiffness.
+  double indent_n_per_mm = 1.0;
+  bool is_wall = false;  ///< Proxy models: the layer is punctured at a label's border.
 };
 
-/// Everything the tick reads and never changes. Built off-line, shared, read by many threads.
+/// Constant data of the tick. Built off-line, shared, read by many threads.
 struct HapticScene {
   std::shared_ptr<const anatomy::VirtualPatient> patient;
   std::array<TissueLaw, kMaxTissues> tissues{};
@@ -89,9 +90,9 @@ struct HapticScene {
   std::array<std::uint8_t, 256> tissue_of_label{};  ///< By label id.
   std::uint8_t skin = 0;
   double skin_thickness_mm = 2.0;
-  anatomy::HuTransfer transfer;  ///< Unlabelled tissue, proxy and combined.
+  anatomy::HuTransfer transfer;  ///< Transfer functions of unlabelled tissue; proxy and combined.
   NeedleGeometry needle;
-  ContactFace face;  ///< Of a transducer or a finger.
+  ContactFace face;  ///< Face of a transducer or a finger.
   NeedleBeam beam_with_stylet;
   NeedleBeam beam_without_stylet;
   DeviceCapability device;
@@ -105,8 +106,8 @@ struct HapticScene {
 
 /// Checks every number and builds the scene. Errors: coupling or constraint stiffer than the device, numbers out of
 /// range, too many tissues; a patient without skin distance, without labels (insertion), without CT or a table without
-/// transfer functions (proxy, combined). A label of a tissue that the table lacks counts as soft_tissue, with a
-/// warning; a transducer or a finger needs labels, or a CT and transfer functions, whatever the force model.
+/// transfer functions (proxy, combined). A label whose tissue is not in the table is treated as soft_tissue, with a
+/// warning. A transducer or a finger needs labels, or a CT and transfer functions, for every force model.
 Result<std::shared_ptr<const HapticScene>> make_haptic_scene(std::shared_ptr<const anatomy::VirtualPatient> patient,
                                                              const anatomy::TissueTable& tissues,
                                                              const NeedleGeometry& needle,

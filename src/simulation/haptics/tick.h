@@ -12,20 +12,20 @@ namespace trocar::haptics {
 /// Input of a tick from the device.
 struct HapticInput {
   double time_s = 0.0;
-  double dt_s = 0.001;       ///< Since the last tick; 0 < dt <= kMaxDt_s.
+  double dt_s = 0.001;       ///< Time since the last tick; 0 < dt <= kMaxDt_s.
   telemetry::ToolPose tool;  ///< X_PN or X_PT, see tool_pose().
   bool is_stylet_in = true;
-  anatomy::RestingAnatomy resting{};  ///< The patient's motion now.
+  anatomy::RestingAnatomy resting{};  ///< Present motion of the patient.
 };
 
 /// The scene's tool on the stylus of a device: X_PD * X_DS * X_SN (or X_ST).
 telemetry::ToolPose tool_pose(const HapticScene& scene, const Pose& X_DS) noexcept;
 
-/// All that a tick carries to the next one. Fixed size, copyable: recorded inputs (the sample's time and tool pose)
-/// replay to the same bits.
+/// State from one tick to the next. Fixed size, copyable. Recorded inputs (the sample's time and tool pose) replay to
+/// the same bits.
 struct HapticState {
   NeedleState needle;
-  ContactState contact;  ///< Of a transducer or a finger.
+  ContactState contact;  ///< Contact of a transducer or a finger.
   telemetry::TickSample last;
 };
 
@@ -33,7 +33,7 @@ struct HapticState {
 struct HapticOutput {
   Vec3 f_D = Vec3::Zero();
   Vec3 tau_D = Vec3::Zero();
-  Wrench weight_D;  ///< The part of it that carries the weight of links and stylus (before the device's limits).
+  Wrench weight_D;  ///< Part of the wrench that carries the weight of links and stylus (before the device's limits).
   telemetry::TickSample sample;
 };
 
@@ -43,8 +43,8 @@ inline constexpr double kFarAway_mm = 5000.0;  ///< Beyond the reach of any devi
 /// One haptic tick: pose into P and into the resting anatomy, force model of the scene, weight compensation,
 /// composition (paper A, force composition; physics.md T1, T2), limits of the device. Pure: a function of its arguments
 /// only. Input that is not finite, further than kFarAway_mm or with an impossible dt gives zero force and a limit
-/// event, and leaves the state as it was. A start inside the body and a jump give no force step and say so. Real-time
-/// safe.
+/// event, and leaves the state as it was. A start inside the body and a jump cause no force step and add an event.
+/// Real-time safe.
 HapticOutput tick(HapticState& state, const HapticInput& input, const HapticScene& scene) noexcept;
 
 }  // namespace trocar::haptics

@@ -5,9 +5,9 @@
 namespace trocar::haptics {
 
 /// The tick of a transducer or a finger (physics.md B9, B10, T1): contact with the skin, weight compensation, limits of
-/// the device. In the record the tool stands where the needle would: `tip_mm` and `axis` are its origin and +y as
-/// shown, `depth_mm` the deepest indentation, `f_constraint_n` the contact force, `phase` outside or loading. Input as
-/// tick() has found it usable. Real-time safe.
+/// the device. The record holds the tool in the needle's fields: `tip_mm` and `axis` are its displayed origin and +y,
+/// `depth_mm` is the deepest indentation, `f_constraint_n` is the contact force, `phase` is outside or loading. tick()
+/// has checked the input. Real-time safe.
 HapticOutput tick_contact(HapticState& state, const HapticInput& input, const HapticScene& scene) noexcept;
 
 }  // namespace trocar::haptics

@@ -10,20 +10,20 @@
 
 namespace trocar::haptics {
 
-/// Who holds the simulated device.
+/// Holder of the simulated device.
 enum class Holder { kHand, kGuidingHand, kBare45g, kBare150g };
 inline constexpr std::array kAllHolders{Holder::kHand, Holder::kGuidingHand, Holder::kBare45g, Holder::kBare150g};
 const char* to_string(Holder holder) noexcept;
 
-/// The hand of physics.md H1 with rotational springs about the grip [assumed]: a pen grip of two fingers 30 mm apart.
-/// Range 50..1000 N mm/rad.
+/// Model of the hand (physics.md H1) with rotational springs about the grip [assumed]: a pen grip of two fingers 30 mm
+/// apart. Range 50..1000 N mm/rad.
 StylusHold make_hand() noexcept;
-/// The same hand where it guides the needle at its tip, `tip_mm` before S (physics.md H6).
+/// The same hand guiding the needle at its tip, `tip_mm` before S (physics.md H6).
 StylusHold make_guiding_hand(double tip_mm) noexcept;
 
-/// A simulated device in closed loop with the tick. The pose is told in counts of the device's encoders; the wrench
-/// that comes of it is held for a tick and acts one whole tick late (1.5 ticks of delay in all at 1 kHz: sampled,
-/// computed, held). Heap: one object; then real-time safe. Frame P: the device's base is the scene's.
+/// A simulated device in closed loop with the tick. The pose is quantised to counts of the device's encoders. The
+/// resulting wrench is held for a tick and acts one whole tick late (1.5 ticks of delay in all at 1 kHz: sampling,
+/// computation, hold). Heap: one object; then real-time safe. Frame P: the device's base is the scene's.
 class ClosedLoop {
  public:
   ClosedLoop(std::shared_ptr<const HapticScene> scene, const DevicePreset& preset, Holder holder, double dt_s = 0.001);
@@ -53,9 +53,9 @@ class ClosedLoop {
   double dt_s_;
   double time_s_ = 0.0;
   VirtualStylusState stylus_;
-  Mat3 R_PS_told_ = Mat3::Identity();  ///< Of a device that senses no rotation.
-  Wrench wrench_P_;                    ///< About S: of the last tick, acts during the one after the next.
-  Wrench acting_P_;                    ///< About S: acts during the next tick.
+  Mat3 R_PS_told_ = Mat3::Identity();  ///< Orientation reported for a device that senses no rotation.
+  Wrench wrench_P_;                    ///< About S: wrench of the last tick; acts during the tick after the next.
+  Wrench acting_P_;                    ///< About S: wrench that acts during the next tick.
   HapticState state_;
   telemetry::TickSample sample_;
   PassivityObserver observer_;

@@ -4,7 +4,7 @@
 
 namespace trocar::haptics {
 
-/// What the sensors of a device resolve.
+/// Resolution of a device's sensors.
 struct EncoderParams {
   double count_mm = 0.0295;   ///< One count of position. Range 0.0001..1; 0: exact.
   double count_rad = 4.0e-5;  ///< One count of an angle. Range 1e-6..0.1; 0: exact.

@@ -19,9 +19,9 @@ class PassivityObserver {
     growth_mj_ = std::max(growth_mj_, energy_mj_ - lowest_mj_);
   }
 
-  /// Given to the device since the start; negative: taken from it.
+  /// Energy supplied to the device since the start; negative: absorbed from it.
   double energy_mj() const noexcept { return energy_mj_; }
-  /// The largest rise from any earlier moment: what a passive side keeps below what it had stored.
+  /// Largest rise of the energy from any earlier moment. A passive environment keeps it below its stored energy.
   double growth_mj() const noexcept { return growth_mj_; }
 
  private:

@@ -9,8 +9,8 @@ namespace trocar::haptics {
 /// A hand pushes the device's needle straight down (+z) at constant speed and then holds it; records the force on the
 /// device tick by tick (docs/validation.md, Bone and loss of resistance).
 struct PushTrial {
-  double from_mm = -5.0;         ///< Of the tip that the hand wants; the skin lies at z = 0.
-  double to_mm = 40.0;           ///< Where the hand stops.
+  double from_mm = -5.0;         ///< Start of the hand's target position of the tip; the skin lies at z = 0.
+  double to_mm = 40.0;           ///< End of the hand's target position of the tip.
   double speed_mm_per_s = 10.0;  ///< Range 1..200.
   double hold_s = 1.0;
 };
@@ -18,10 +18,10 @@ struct PushTrial {
 struct PushSample {
   double time_s;
   double hand_mm;       ///< Target position of the tip.
-  double device_mm;     ///< Where the device's tip is.
-  double resistance_n;  ///< Along the needle, of the device's force without the weight; positive pushes out.
-  bool is_puncture;     ///< A layer was punctured in this tick...
-  std::uint8_t layer;   ///< ...this one.
+  double device_mm;     ///< Actual position of the device's tip.
+  double resistance_n;  ///< Component along the needle of the device's force without the weight; positive pushes out.
+  bool is_puncture;     ///< A layer was punctured in this tick.
+  std::uint8_t layer;   ///< Punctured layer.
 };
 
 std::vector<PushSample> run_push_trial(std::shared_ptr<const HapticScene> scene, const DevicePreset& preset,
@@ -29,22 +29,23 @@ std::vector<PushSample> run_push_trial(std::shared_ptr<const HapticScene> scene,
 
 /// Metrics of a push against an unyielding structure. `surface_mm`: depth of its resting surface.
 struct BoneContact {
-  double slope_n_per_mm = 0.0;  ///< Of the force over the device's way, from 10 to 80 % of the steady rise.
+  /// Slope of the force over the device's displacement, from 10 to 80 % of the steady rise.
+  double slope_n_per_mm = 0.0;
   double peak_n = 0.0;
   double steady_n = 0.0;    ///< Mean of the last fifth of the hold.
-  double overshoot = 0.0;   ///< Of the peak over the steady force, as a share of it.
-  double chatter_n = 0.0;   ///< Peak to peak in the last half of the hold.
-  bool is_limited = false;  ///< The device's peak force was reached.
+  double overshoot = 0.0;   ///< Excess of the peak over the steady force, as a share of the steady force.
+  double chatter_n = 0.0;   ///< Peak-to-peak force in the last half of the hold.
+  bool is_limited = false;  ///< The force reached the device's peak force.
 };
 BoneContact judge_bone_contact(const std::vector<PushSample>& samples, const PushTrial& trial, double surface_mm,
                                double peak_force_n) noexcept;
 
 /// Metrics of the puncture of one layer; all zero without a puncture.
 struct LossOfResistance {
-  double peak_n = 0.0;       ///< On the device within 50 ms before.
-  double drop_n = 0.0;       ///< To the lowest force within 0.3 s.
-  double drop_time_s = 0.0;  ///< From a tenth to nine tenths of the drop.
-  double jump_mm = 0.0;      ///< How far the needle went in within 0.3 s beyond what the hand meant to.
+  double peak_n = 0.0;       ///< Largest force on the device within 50 ms before the puncture.
+  double drop_n = 0.0;       ///< Decrease to the lowest force within 0.3 s.
+  double drop_time_s = 0.0;  ///< Time from a tenth to nine tenths of the drop.
+  double jump_mm = 0.0;      ///< Largest advance of the needle beyond the hand's target within 0.3 s.
   bool has_given_way = false;
 };
 LossOfResistance judge_loss_of_resistance(const std::vector<PushSample>& samples, std::uint8_t layer) noexcept;

@@ -8,17 +8,17 @@ namespace trocar::haptics {
 /// act on it one tick late, as on a real device. Frame P throughout; the point is the needle's tip.
 struct VirtualDeviceParams {
   double mass_kg = 0.1;   ///< Apparent mass at the stylus, 45-150 g for PHANTOM devices. Range 0.01..2.
-  double weight_n = 0.5;  ///< Pull of gravity on links and stylus, as in DeviceCapability. Range 0..5.
+  double weight_n = 0.5;  ///< Gravity on links and stylus, as in DeviceCapability. Range 0..5.
 };
 
-/// What holds the stylus during a tick.
+/// Model of the hand during a tick.
 struct HandHold {
-  Vec3 anchor_P = Vec3::Zero();           ///< Where the hand wants the tip at the end of the tick.
+  Vec3 anchor_P = Vec3::Zero();           ///< Target position of the tip at the end of the tick.
   Vec3 anchor_velocity_P = Vec3::Zero();  ///< mm/s.
   double stiffness_n_per_mm = 0.0;
   double damping_ns_per_mm = 0.0;
-  double mass_kg = 0.0;          ///< Of hand and fingers, added to the device's.
-  Mat3 R_PN = Mat3::Identity();  ///< Needle's orientation at the end of the tick: turned freely by the hand.
+  double mass_kg = 0.0;          ///< Mass of hand and fingers, added to the device's.
+  Mat3 R_PN = Mat3::Identity();  ///< Needle's orientation at the end of the tick; the hand turns the needle freely.
 };
 
 struct VirtualDeviceState {

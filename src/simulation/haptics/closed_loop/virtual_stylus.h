@@ -8,13 +8,14 @@ namespace trocar::haptics {
 /// A simulated device in six degrees of freedom: the stylus as a rigid body that moves about its origin S (physics.md
 /// H2). Frame P. The inertia is that of a ball, so that there is no gyroscopic torque.
 struct VirtualStylusParams {
-  double mass_kg = 0.1;              ///< Apparent mass at the stylus. Range 0.01..2.
-  double inertia_kg_mm2 = 50.0;      ///< Of stylus and gimbal about S. Range 5..1000. [assumed] 50 g, 60 mm long: 15 kg
-                                     ///< mm2; with motors on the wrist more.
-  double weight_n = 0.5;             ///< Pull of gravity on links and stylus. Range 0..5.
-  double weight_lever_mm = 0.0;      ///< Where it pulls, behind S along -z of S. Range 0..200. 0: balanced.
-  double viscosity_ns_per_mm = 0.0;  ///< Of the arm's joints, at S. Range 0..0.1.
-  double turning_viscosity_nmms = 0.0;  ///< Of the gimbal. Range 0..1.
+  double mass_kg = 0.1;          ///< Apparent mass at the stylus. Range 0.01..2.
+  double inertia_kg_mm2 = 50.0;  ///< Inertia of stylus and gimbal about S. Range 5..1000. [assumed] 15 kg mm2 for a
+                                 ///< stylus of 50 g, 60 mm long; more with motors on the wrist.
+  double weight_n = 0.5;         ///< Gravity on links and stylus. Range 0..5.
+  /// Distance of the weight's point of action behind S, along -z of S. Range 0..200. 0: balanced.
+  double weight_lever_mm = 0.0;
+  double viscosity_ns_per_mm = 0.0;     ///< Viscous friction of the arm's joints, at S. Range 0..0.1.
+  double turning_viscosity_nmms = 0.0;  ///< Viscous friction of the gimbal. Range 0..1.
   double friction_n = 0.0;              ///< Dry friction of the arm, at S. Range 0..5.
   double turning_friction_nmm = 0.0;    ///< Dry friction of the gimbal. Range 0..20.
 };
@@ -22,33 +23,33 @@ struct VirtualStylusParams {
 /// Model of the hand at the stylus: spring and damper in position and orientation, and a mass. All zero: no hand.
 struct StylusHold {
   Pose X_PS;                               ///< Target pose of the stylus at the end of the tick.
-  Vec3 velocity_P = Vec3::Zero();          ///< Of S in that, mm/s.
+  Vec3 velocity_P = Vec3::Zero();          ///< Velocity of S in the target pose, mm/s.
   Vec3 angular_velocity_P = Vec3::Zero();  ///< rad/s
-  double point_mm = 0.0;                   ///< The point H that it holds: S + point z of S. Range -500..500.
-  double stiffness_n_per_mm = 0.0;         ///< At H, as damping, mass and push.
+  double point_mm = 0.0;            ///< Offset of the held point H: H = S + point_mm along z of S. Range -500..500.
+  double stiffness_n_per_mm = 0.0;  ///< At H, like damping, mass and push.
   double damping_ns_per_mm = 0.0;
-  double mass_kg = 0.0;              ///< Of hand and fingers.
+  double mass_kg = 0.0;              ///< Mass of hand and fingers.
   double turning_nmm_per_rad = 0.0;  ///< Torsional spring.
   double turning_damping_nmms_per_rad = 0.0;
-  double inertia_kg_mm2 = 0.0;  ///< Of the fingers about H.
+  double inertia_kg_mm2 = 0.0;  ///< Inertia of the fingers about H.
   Vec3 push_n = Vec3::Zero();   ///< A constant force on the stylus, in P.
 };
 
 struct VirtualStylusState {
   Pose X_PS;
-  Vec3 v_P = Vec3::Zero();  ///< mm/s, of S.
+  Vec3 v_P = Vec3::Zero();  ///< Velocity of S, mm/s.
   Vec3 w_P = Vec3::Zero();  ///< rad/s
 };
 
-/// Mean velocities over a tick: the wrench worked along just these.
+/// Mean velocities over a tick; the work of the wrench follows from them.
 struct StylusMotion {
   Vec3 v_P = Vec3::Zero();  ///< mm/s
   Vec3 w_P = Vec3::Zero();  ///< rad/s
 };
 
 /// Moves the stylus by one tick under the hand and the wrench (about S, in P) that acts during it. Exact for constant
-/// forces; springs, dampers and friction are implicit: stable for any dt. What friction can stop stands still.
-/// `gravity_P`: unit, downwards. Real-time safe.
+/// forces; springs, dampers and friction are implicit: stable for any dt. Friction stops a motion that it can stop
+/// within the tick. `gravity_P`: unit, downwards. Real-time safe.
 StylusMotion step_stylus(VirtualStylusState& state, const VirtualStylusParams& params, const StylusHold& hold,
                          const Wrench& wrench_P, const Vec3& gravity_P, double dt_s) noexcept;
 

@@ -6,15 +6,16 @@
 
 namespace trocar::haptics {
 
-/// A point of the face at or near the skin, with the tool as it was shown last, carried along by the device.
+/// A point of the face at or near the skin, at the tool's last displayed pose moved with the device.
 struct PressedPoint {
-  Vec3 arm_P = Vec3::Zero();             ///< From the tool's origin.
-  Vec3 normal_P = Vec3::UnitZ();         ///< Of the skin, unit, outwards.
-  Vec3 stretch_P = Vec3::Zero();         ///< Of the skin by friction: from where the point would be free, tangential.
-  Vec3 stretch_before_P = Vec3::Zero();  ///< A tick ago.
+  Vec3 arm_P = Vec3::Zero();      ///< Vector from the tool's origin to the point.
+  Vec3 normal_P = Vec3::UnitZ();  ///< Normal of the skin, unit, outwards.
+  /// Tangential stretch of the skin by friction: from the point's free position to the point.
+  Vec3 stretch_P = Vec3::Zero();
+  Vec3 stretch_before_P = Vec3::Zero();  ///< Stretch one tick ago.
   double depth_mm = 0.0;                 ///< Below the resting skin, negative outside.
-  double depth_before_mm = 0.0;          ///< A tick ago, at least 0.
-  double area_mm2 = 0.0;                 ///< Across the normal.
+  double depth_before_mm = 0.0;          ///< Depth one tick ago, at least 0.
+  double area_mm2 = 0.0;                 ///< Area projected on the plane normal to the skin's normal.
   TissueColumn column;
 };
 
@@ -23,7 +24,7 @@ struct PressedPoint {
 struct ContactBalance {
   int count = 0;
   std::array<PressedPoint, kMaxContactPoints> points{};
-  Vec3 offset_P = Vec3::Zero();  ///< Tool's origin from the device's.
+  Vec3 offset_P = Vec3::Zero();  ///< Vector from the origin of the device's tool to the tool's origin.
   Vec3 tilt_P = Vec3::Zero();    ///< Rotation vector of the tool against the device (rad).
   CouplingParams coupling;
   double lever_mm = 1.0;
@@ -33,19 +34,19 @@ struct ContactBalance {
 };
 
 struct ContactSolution {
-  Vec3 move_P = Vec3::Zero();  ///< Of the tool against the pose of the points.
+  Vec3 move_P = Vec3::Zero();  ///< Displacement of the tool from the pose of the points.
   Vec3 turn_P = Vec3::Zero();
-  Wrench wrench_P;   ///< Of the coupling, on the device, about the tool's origin.
-  Wrench contact_P;  ///< Of the skin on the tool: the same, once balanced.
+  Wrench wrench_P;   ///< Wrench of the coupling on the device, about the tool's origin.
+  Wrench contact_P;  ///< Wrench of the skin on the tool; equal to wrench_P in balance.
   std::array<double, kMaxContactPoints> depth_mm{};
   std::array<double, kMaxContactPoints> normal_n{};
   std::array<Vec3, kMaxContactPoints> friction_P{};
   std::array<Vec3, kMaxContactPoints> stretch_P{};
-  bool hit_bound = false;  ///< The bounded iteration ended before normal forces balanced.
+  bool hit_bound = false;  ///< The bounded iteration ended before the normal forces balanced.
 };
 
-/// Along the mean normal one monotone, convex equation, across it and in rotation linear steps, in bounded sweeps.
-/// Real-time safe.
+/// Solves one monotone, convex equation along the mean normal, and linear steps across it and in rotation, in bounded
+/// sweeps. Real-time safe.
 ContactSolution solve(const ContactBalance& balance) noexcept;
 
 }  // namespace trocar::haptics

@@ -18,10 +18,10 @@ struct AxialBalance {
   LoadingLaw loading;
   double surface_mm = std::numeric_limits<double>::infinity();  ///< Resting surface of the layer ahead.
   double viscous_ns_per_mm = 0.0;                               ///< Sum of nu_i A_i over the inserted shaft.
-  double noise_n = 0.0;                                         ///< Fluctuation of the friction, this step.
+  double noise_n = 0.0;                                         ///< Fluctuation of the friction in this step.
   double dry_n = 0.0;  ///< Dry friction of the body proxies, against the motion.
   double cutting_n = 0.0;
-  double cut_to_mm = 0.0;  ///< Fresh tissue begins here.
+  double cut_to_mm = 0.0;  ///< Start of uncut tissue.
 
   double velocity(double s_mm) const noexcept { return (s_mm - s_previous_mm) / dt_s; }
   double displacement(double s_mm) const noexcept { return s_mm > surface_mm ? s_mm - surface_mm : 0.0; }
@@ -29,7 +29,7 @@ struct AxialBalance {
   double friction_n(double s_mm) const noexcept;
   double cutting_force_n(double s_mm) const noexcept;
   double coupling_n(double s_mm) const noexcept;
-  /// Resistance minus coupling: grows with s.
+  /// Resistance minus coupling; increases with s.
   double unbalance_n(double s_mm) const noexcept;
 };
 
@@ -38,7 +38,7 @@ struct AxialSolution {
   bool hit_bound = false;  ///< The bounded iteration ended before it converged.
 };
 
-/// The s at which resistance and coupling balance. Bounded, real-time safe.
+/// Finds the s at which resistance and coupling balance. Bounded, real-time safe.
 AxialSolution solve(const AxialBalance& balance) noexcept;
 
 }  // namespace trocar::haptics

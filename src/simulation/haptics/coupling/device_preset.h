@@ -13,7 +13,7 @@
 
 namespace trocar::haptics {
 
-/// A haptic device as data (data/devices.toml): what it can do, and the coupling we use with it.
+/// A haptic device as data (data/devices.toml): its capability, and the coupling used with it.
 struct DevicePreset {
   std::string name;
   std::string title;
@@ -21,18 +21,19 @@ struct DevicePreset {
   int actuated_dof = 6;                      ///< 0: no force (display only); 3: forces only; 6: also torques.
   double workspace_radius_mm = 100.0;        ///< Range 10..1000.
   DeviceCapability capability;               ///< Peak values; peak torque 0 without torque.
-  std::optional<double> continuous_force_n;  ///< Where it could be found. Range 0.1..200.
+  std::optional<double> continuous_force_n;  ///< Absent where no value is known. Range 0.1..200.
   std::optional<double> continuous_torque_nmm;
   EncoderParams encoder;
-  double apparent_mass_kg = 0.1;         ///< At the stylus. Range 0.01..2.
-  double friction_n = 0.1;               ///< Coulomb friction of its joints, felt at the stylus. Range 0..2.
-  double viscosity_ns_per_mm = 0.0005;   ///< Viscous friction, likewise. Range 0..0.05.
-  CouplingParams coupling;               ///< Stiffness at most the device's.
-  double max_damping_ns_per_mm = 0.003;  ///< Damper that it can show in a loop of 1 kHz. Range 0..0.1.
-  double force_scale = 1.0;              ///< Device newtons a patient newton. Range 0.01..1.
-  double motion_scale = 1.0;             ///< Patient mm a device mm. Range 0.1..10.
-  int clutch_button = 0;                 ///< 1, 2: clutch button; 0: none.
-  Pose X_WD;                             ///< Calibration: its base in the room.
+  double apparent_mass_kg = 0.1;        ///< Apparent mass at the stylus. Range 0.01..2.
+  double friction_n = 0.1;              ///< Coulomb friction of the joints, at the stylus. Range 0..2.
+  double viscosity_ns_per_mm = 0.0005;  ///< Viscous friction of the joints, at the stylus. Range 0..0.05.
+  CouplingParams coupling;              ///< Its stiffness is at most the device's.
+  /// Largest damping that the device can render in a loop of 1 kHz. Range 0..0.1.
+  double max_damping_ns_per_mm = 0.003;
+  double force_scale = 1.0;   ///< Device newtons per patient newton. Range 0.01..1.
+  double motion_scale = 1.0;  ///< Patient mm per device mm. Range 0.1..10.
+  int clutch_button = 0;      ///< 1, 2: clutch button; 0: none.
+  Pose X_WD;                  ///< Calibration: pose of the device's base in the room.
 
   bool has_torque() const noexcept { return capability.peak_torque_nmm > 0.0; }
   /// false for a mouse or gamepad. Peak and stiffness are then those of the displayed force.
@@ -48,7 +49,7 @@ Result<DevicePreset> load_device_preset(const std::filesystem::path& path, std::
 /// divided by force_scale, stiffness by both scales.
 DeviceCapability scene_capability(const DevicePreset& preset) noexcept;
 
-/// What a scene for this device needs: its coupling, and no constraint stiffer than it.
+/// Sets the options of a scene for this device: its coupling, and no constraint stiffer than that coupling.
 void apply_device_preset(const DevicePreset& preset, HapticOptions& options) noexcept;
 
 }  // namespace trocar::haptics

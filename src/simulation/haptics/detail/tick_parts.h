@@ -4,10 +4,10 @@
 #include "haptics/tick.h"
 #include "telemetry/tick_events.h"
 
-/// What the ticks of all tools share. Private to `haptics`; all of it real-time safe.
+/// Parts of the tick common to all tools. Private to `haptics`; all functions are real-time safe.
 namespace trocar::haptics {
 
-/// Adds events to a sample; the last entry says when there were more.
+/// Adds events to a sample. Overwrites the last entry with kEventsDropped if there are more.
 class EventList {
  public:
   explicit EventList(telemetry::TickSample& sample) noexcept : sample_(sample) {}
@@ -21,7 +21,8 @@ class EventList {
   telemetry::TickSample& sample_;
 };
 
-/// Carries the weight of links and stylus, so that the hand feels only the tool (paper A; physics.md W1).
+/// Wrench that compensates for the weight of links and stylus, so that the user feels only the tool (paper A;
+/// physics.md W1).
 inline Wrench weight_compensation(const HapticScene& scene, const Mat3& R_PS) noexcept {
   if (!scene.options.has_weight_compensation) return {};
   const Vec3 lift_P = -scene.gravity_P * scene.device.stylus_weight_n;
@@ -29,8 +30,8 @@ inline Wrench weight_compensation(const HapticScene& scene, const Mat3& R_PS) no
   return {lift_P, arm_P.cross(lift_P)};
 }
 
-/// The last step of every tick: `device_f_n` and the torque limited to the device's peaks, said in the events, turned
-/// into D, and beside them the weight's part of them.
+/// Last step of every tick. Limits `device_f_n` and the torque to the device's peaks and adds limit events. Transforms
+/// both, and the weight's part of them, to D.
 inline void limit_to_device(HapticOutput& output, const Wrench& weight_P, EventList& events,
                             const HapticScene& scene) noexcept {
   telemetry::TickSample& sample = output.sample;

@@ -5,9 +5,9 @@
 
 namespace trocar::haptics {
 
-/// The gate of a device: its peaks, its continuous force and torque (unknown: a fifth and three tenths of the peaks
-/// [assumed]) and the damping it bears; the rest as GateParams has it. Passes check() for every preset that
-/// load_device_presets() lets in.
+/// Gate parameters of a device: its peaks, its continuous force and torque (if unknown, a fifth and three tenths of the
+/// peaks [assumed]) and its maximum damping; defaults of GateParams otherwise. The result passes check() for every
+/// preset that load_device_presets() accepts.
 GateParams gate_params(const DevicePreset& preset) noexcept;
 
 }  // namespace trocar::haptics

@@ -21,12 +21,12 @@ struct Channel {
   int known_bins = 0;                ///< Bins [0, known_bins) are filled.
   std::array<std::uint8_t, kBins> tissue{};
   std::array<std::uint8_t, kBins> label{};
-  std::array<std::int16_t, kBins> hu{};  ///< Of the CT; filled where the force model reads it, else 0.
+  std::array<std::int16_t, kBins> hu{};  ///< CT value; filled if the force model reads it, else 0.
 
-  /// Wall that begins with this bin (volume proxy; physics.md B4): layer to pierce, else kNoLayer.
+  /// Wall that begins at this bin (volume proxy; physics.md B4): layer to pierce, else kNoLayer.
   std::array<std::uint8_t, kBins> wall{};
-  std::uint8_t wall_here = kNoLayer;    ///< Walled structure of the last known bin,
-  std::uint8_t wall_before = kNoLayer;  ///< and of the stretch before it.
+  std::uint8_t wall_here = kNoLayer;    ///< Walled structure of the last known bin.
+  std::uint8_t wall_before = kNoLayer;  ///< Walled structure of the section before it.
 
   void forget_bins() noexcept {
     known_bins = 0;
@@ -36,10 +36,10 @@ struct Channel {
   void pierce(std::uint8_t layer) noexcept { pierced |= 1U << layer; }
 };
 
-/// Bin of a depth, kept inside the channel.
+/// Bin of a depth, clamped to the channel.
 int bin_of(double s_mm) noexcept;
 
-/// Looks `ahead_mm` past s along the line, at most kMaxBinsPerLook new bins a call. Real-time safe.
+/// Fills the bins up to `ahead_mm` past s along the line, at most kMaxBinsPerLook new bins per call. Real-time safe.
 inline constexpr int kMaxBinsPerLook = 200;
 void look_ahead(Channel& channel, const HapticScene& scene, double s_mm, double ahead_mm) noexcept;
 
@@ -50,21 +50,22 @@ struct LayerAhead {
 };
 LayerAhead next_layer(const Channel& channel, const HapticScene& scene, double from_mm, double to_mm) noexcept;
 
-/// The first wall that begins in uncut tissue between `from_mm` and `to_mm` within the known bins: passed walls stay
+/// The first wall that begins in uncut tissue between `from_mm` and `to_mm` within the known bins. Punctured walls stay
 /// open.
 LayerAhead next_wall(const Channel& channel, double from_mm, double to_mm) noexcept;
 
-/// Channels of the past insertions of one attempt; the oldest is forgotten when it is full.
+/// Channels of the past insertions of one attempt. A new channel replaces the oldest one when the memory is full.
 struct ChannelMemory {
   static constexpr int kCapacity = 8;
-  static constexpr double kSameHole_mm = 1.0;      ///< Entries nearer than this and
-  static constexpr double kSameHole_rad = 0.0873;  ///< within 5 degrees use the same hole. [assumed]
+  static constexpr double kSameHole_mm = 1.0;  ///< Entries within this distance and kSameHole_rad use the same hole.
+  /// Largest angle between two entries into the same hole, 5 degrees. [assumed]
+  static constexpr double kSameHole_rad = 0.0873;
   std::array<Channel, kCapacity> channels{};
   int next = 0;
 
   /// The earlier channel that a needle at this position enters, or nullptr.
   const Channel* find(const Vec3& entry_P, const Vec3& axis_P) const noexcept;
-  /// Keeps a channel; one with the same line is replaced.
+  /// Stores a channel; replaces one with the same line.
   void remember(const Channel& channel) noexcept;
 };
 

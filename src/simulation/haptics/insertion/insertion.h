@@ -16,7 +16,7 @@ struct InsertionState {
   double s_device_mm = 0.0;          ///< Device tip along the path at the last solution.
   double s_mm = 0.0;                 ///< Virtual needle's tip along the path.
   double velocity_mm_per_s = 0.0;
-  double device_velocity_mm_per_s = 0.0;  ///< Axial, of the last step.
+  double device_velocity_mm_per_s = 0.0;  ///< Axial velocity in the last step.
   double device_speed_mm_per_s = 0.0;     ///< Smoothed |axial velocity| of the device.
   double pending_s = 0.0;                 ///< Remaining time of the tick in which a layer was punctured.
 
@@ -39,11 +39,12 @@ struct InsertionStep {
   double friction_n = 0.0;
   double cutting_n = 0.0;
   double stick_n = 0.0;
-  double tip_proxy_n = 0.0;   ///< Combined: the tip in tissue that no layer or cutting force describes.
-  double body_axial_n = 0.0;  ///< Combined: friction of the body proxies, in place of friction_n.
+  /// Combined model: force of the tip proxy in tissue that no layer or cutting force describes.
+  double tip_proxy_n = 0.0;
+  double body_axial_n = 0.0;  ///< Combined model: friction of the body proxies, in place of friction_n.
   std::uint8_t tissue = 0;
   telemetry::InsertionPhase phase = telemetry::InsertionPhase::kOutside;
-  std::uint8_t punctured = kNoLayer;  ///< Layer that gave way in this step.
+  std::uint8_t punctured = kNoLayer;  ///< Layer punctured in this step.
   EnteredLabels entered;
   bool hit_solver_bound = false;
 };
@@ -51,16 +52,16 @@ struct InsertionStep {
 /// Forces of the proxies of paper B along the path, instead of the friction of paper A (combined model; physics.md T2).
 struct ProxyShare {
   ShaftResistance shaft;
-  double tip_n = 0.0;  ///< Threshold of the tip in fresh tissue without parameters of A.
+  double tip_n = 0.0;  ///< Threshold of the tip in uncut tissue without parameters of paper A.
   double tip_viscous_ns_per_mm = 0.0;
 };
 
 /// Sets needle and device to the device's pose: zero force. Real-time safe.
 void start_insertion(InsertionState& state, const InsertionPath& path, const Vec3& device_tip_P) noexcept;
 
-/// One step of the needle: device tip and unit axis in P, dt > 0. A layer that gives way within the step ends it there
-/// (force = puncture force); the rest of the time is added to the next step. `share`: nullptr for the insertion model
-/// alone. Real-time safe.
+/// One step of the needle: device tip and unit axis in P, dt > 0. A puncture within the step ends the step there (force
+/// = puncture force); the rest of the time is added to the next step. `share`: nullptr for the insertion model alone.
+/// Real-time safe.
 InsertionStep step_insertion(InsertionState& state, InsertionPath& path, const HapticScene& scene,
                              const Vec3& device_tip_P, const Vec3& device_axis_P, double dt_s,
                              const ProxyShare* share = nullptr) noexcept;

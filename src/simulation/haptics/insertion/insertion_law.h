@@ -4,8 +4,8 @@
 
 namespace trocar::haptics {
 
-/// The force laws of paper A, section 4.1, each as printed or as docs/physics.md says where the paper leaves something
-/// open. Pure, closed form, real-time safe. Forces here are resistances: positive pushes the needle out.
+/// Force laws of paper A, section 4.1, as printed, or as in docs/physics.md where the paper leaves a choice. Pure,
+/// closed form, real-time safe. Forces are resistances: positive pushes the needle out.
 
 /// Coefficients of one layer's loading law.
 struct LoadingLaw {
@@ -32,7 +32,7 @@ double contact_area_cm2(double radius_mm, double inserted_mm) noexcept;
 /// correlation length 0.2 mm, independent of the tick rate (physics.md F2).
 double friction_noise(std::uint64_t seed, std::uint32_t tissue, double travel_mm) noexcept;
 
-/// Fades a force out as the needle comes to rest: 0 at rest, 1 from 0.5 mm/s (physics.md F2).
+/// Fades out a force as the needle comes to rest: 0 at rest, 1 from 0.5 mm/s (physics.md F2).
 double motion_fade(double speed_mm_per_s) noexcept;
 
 inline constexpr double kNoiseCorrelation_mm = 0.2;

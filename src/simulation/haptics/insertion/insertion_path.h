@@ -18,29 +18,29 @@ struct EnteredLabels {
 /// Path of the needle into the body, for all force models: its line after the skin puncture, the tip's progress on it,
 /// and the channels of earlier insertions. Fixed size.
 struct InsertionPath {
-  bool is_open = false;    ///< The skin is pierced: the needle keeps to channel's line.
-  Channel channel;         ///< Of this insertion.
-  ChannelMemory memory;    ///< Holes of past insertions.
-  double rest_mm = 0.0;    ///< Tip along the line in the resting anatomy: at the surface while a layer is loaded.
-  double travel_mm = 0.0;  ///< Way of the tip through the resting tissue, in and out.
-  std::uint8_t label = 0;  ///< At the tip.
+  bool is_open = false;  ///< The skin is pierced and the needle stays on the channel's line.
+  Channel channel;       ///< Channel of this insertion.
+  ChannelMemory memory;  ///< Holes of past insertions.
+  double rest_mm = 0.0;  ///< Tip along the line in the resting anatomy; at the layer's surface while a layer is loaded.
+  double travel_mm = 0.0;  ///< Distance travelled by the tip through the resting tissue, in and out.
+  std::uint8_t label = 0;  ///< Label at the tip.
   std::array<double, kMaxTissues> inserted_mm{};  ///< Shaft length in each tissue.
   Vec3 contact_to_puncture_P = Vec3::Zero();      ///< PX_p of paper A; zero before the skin puncture.
 };
 
 /// Distance (mm) along the axis from the tip to the resting skin; negative if the tip is below it. Empty if the skin is
-/// not near, or nearly parallel to the axis. Real-time safe.
+/// far away or nearly parallel to the axis. Real-time safe.
 std::optional<double> distance_to_skin_along(const HapticScene& scene, const Vec3& tip_P, const Vec3& axis_P) noexcept;
 
-/// Puts a fresh channel on a line. Real-time safe.
+/// Starts a new channel on a line. Real-time safe.
 void start_channel(InsertionPath& path, const Vec3& origin_P, const Vec3& direction_P) noexcept;
 
 /// Opens the path at the skin, on the channel's line. Real-time safe.
 void open_path(InsertionPath& path, std::uint8_t skin_layer) noexcept;
 
-/// Moves the tip in the resting anatomy: shaft lengths, labels entered, depth cut. A label is entered when the tip is
-/// beyond its border and `loading`, the layer that the tip indents (kNoLayer: none), is not the one over it: a liver is
-/// entered after its capsule gave way. Real-time safe.
+/// Moves the tip in the resting anatomy: updates shaft lengths, labels entered and cut depth. A label is entered when
+/// the tip is beyond its border and the layer over it is not `loading`, the layer that the tip indents (kNoLayer:
+/// none). A liver, for example, is entered after the puncture of its capsule. Real-time safe.
 EnteredLabels move_tip(InsertionPath& path, const HapticScene& scene, double rest_mm, std::uint8_t loading) noexcept;
 
 /// Ends the insertion: stores the channel, closes the path. Real-time safe.

@@ -7,25 +7,26 @@
 
 namespace trocar::haptics {
 
-/// The needle under any force model, from one tick to the next. Fixed size.
+/// State of the needle under any force model, from one tick to the next. Fixed size.
 struct NeedleState {
   bool is_started = false;
-  Pose X_PN;                           ///< Device's needle at the last tick, in the resting anatomy.
-  Vec3 tip_velocity_P = Vec3::Zero();  ///< mm/s, and
-  Vec3 axis_rate_P = Vec3::Zero();     ///< 1/s, of the device's needle, smoothed: counts of its encoders would ripple.
+  Pose X_PN;  ///< Device's needle at the last tick, in the resting anatomy.
+  /// Velocity of the device's needle tip, mm/s, smoothed against ripple from encoder counts.
+  Vec3 tip_velocity_P = Vec3::Zero();
+  Vec3 axis_rate_P = Vec3::Zero();  ///< Rate of the device's needle axis, 1/s, smoothed likewise.
   InsertionPath path;
-  InsertionState insertion;  ///< Insertion and combined.
-  ProxyNeedleState proxy;    ///< Proxy.
-  BentNeedle shape;          ///< For pictures, ultrasound and X-ray.
+  InsertionState insertion;  ///< Used by the insertion and combined models.
+  ProxyNeedleState proxy;    ///< Used by the proxy model.
+  BentNeedle shape;          ///< Shape for display, ultrasound and X-ray.
 };
 
-/// What a step of the needle gives, in P, before weight and limits (physics.md T1, T2).
+/// Result of a step of the needle, in P, before weight and limits (physics.md T1, T2).
 struct NeedleStep {
   InsertionStep axial;
-  Wrench held_P;                    ///< Path constraint, or the body proxies: force, and torque about the grip.
+  Wrench held_P;  ///< Wrench of the path constraint or of the body proxies: force, and torque about the grip.
   Vec3 tip_proxy_P = Vec3::Zero();  ///< Force of the tip proxy on the needle.
-  bool has_resumed = false;         ///< Was found inside the body and taken as inserted.
-  bool has_jumped = false;          ///< The device moved further than a hand can: started afresh.
+  bool has_resumed = false;         ///< The needle was inside the body and is treated as inserted.
+  bool has_jumped = false;          ///< The device moved further than a hand can; the needle restarted.
 };
 
 /// One step of the needle at the pose X_PN (resting anatomy) under the scene's force model. Real-time safe.

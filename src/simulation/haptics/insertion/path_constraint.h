@@ -14,14 +14,14 @@ struct PathConstraintParams {
   double fade_mm = 20.0;     ///< s0: depth of the tip from which the constraint acts in full. Range 5..100. [assumed]
 };
 
-/// Largest stiffness n0/theta0 (N mm/rad) against turning about the stylus origin. physics.md C3: the loop with a light
-/// stylus rings beyond it. [assumed]
+/// Largest stiffness n0/theta0 (N mm/rad) against turning about the stylus origin. physics.md C3: above it the loop
+/// with a light stylus oscillates. [assumed]
 inline constexpr double kMostPathTurning_nmm_per_rad = 1500.0;
 
 /// The parameters with theta0 enlarged until n0/theta0 is at most kMostPathTurning_nmm_per_rad; n0 stays as it is.
 PathConstraintParams renderable(PathConstraintParams params) noexcept;
 
-/// A pull on the needle in P.
+/// Force and torque on the needle in P.
 struct Wrench {
   Vec3 force_n = Vec3::Zero();
   Vec3 torque_nmm = Vec3::Zero();
@@ -33,7 +33,7 @@ struct PathLine {
   Vec3 direction_P = Vec3::UnitZ();
 };
 
-/// The device's needle as the path constraint reads it.
+/// Input of the path constraint: the device's needle.
 struct NeedleAtPath {
   Vec3 stylus_P = Vec3::Zero();  ///< X' = S, the stylus origin, where the force acts.
   Vec3 axis_P = Vec3::UnitZ();   ///< a, unit: the tip is at S + l a.
@@ -49,10 +49,10 @@ double path_fade(double depth_mm, const PathConstraintParams& params) noexcept;
 /// Energy (N mm) stored at `now`: V = f(s) (U(d) + W(theta)), d = |X_i - X'|, X_i = P + u (u.PX').
 double path_energy_nmm(const PathLine& line, const NeedleAtPath& now, const PathConstraintParams& params) noexcept;
 
-/// Minus the gradient of V, force and torque about S. Across the path F = f m(d) (X_i - X'), m = m0 / max(d, d0);
-/// Q = f n(theta) theta (a x u)/|a x u|, n = n0 / max(theta, theta0); along the path -f' (U + W) u at the tip, which is
-/// zero but in the fade and never points into the body. The parts across the path and Q are taken at the pose `ahead`,
-/// which damps them; depth and energy at `now`. Real-time safe.
+/// Minus the gradient of V, force and torque about S. Across the path F = f m(d) (X_i - X'), m = m0 / max(d, d0); Q = f
+/// n(theta) theta (a x u)/|a x u|, n = n0 / max(theta, theta0); along the path -f' (U + W) u at the tip, which is zero
+/// outside the fade and never points into the body. The parts across the path and Q are evaluated at the pose `ahead`,
+/// which damps them; depth and energy are evaluated at `now`. Real-time safe.
 Wrench path_constraint(const PathLine& line, const NeedleAtPath& now, const NeedleAtPath& ahead,
                        const PathConstraintParams& params) noexcept;
 

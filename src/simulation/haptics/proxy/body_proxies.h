@@ -12,9 +12,9 @@ namespace trocar::haptics {
 /// The channel's tissue is sampled in cells fixed in the channel, so that sums over a sliding shaft have no steps.
 inline constexpr double kShaftCell_mm = 2.0;
 
-/// Dry and viscous friction of the inserted shaft: summed over the body proxies, each by the tissue it lies in and the
-/// length of shaft it stands for (paper B, section 2.1; physics.md B6). `tip_mm`: depth of the tip along the channel.
-/// Real-time safe.
+/// Dry and viscous friction of the inserted shaft: the sum over the body proxies. Each proxy counts with the tissue at
+/// its position and with the length of shaft that it represents (paper B, section 2.1; physics.md B6). `tip_mm`: depth
+/// of the tip along the channel. Real-time safe.
 struct ShaftResistance {
   double dry_n = 0.0;
   double viscous_ns_per_mm = 0.0;
@@ -22,9 +22,9 @@ struct ShaftResistance {
 ShaftResistance shaft_resistance(const Channel& channel, const HapticScene& scene, double tip_mm) noexcept;
 
 /// The shaft held to the channel's line by its body proxies, before the tip's force is known. `X_PN`: the device's
-/// needle (rigid, +z axis). Purely elastic; at the grip at most half as stiff as the device can show, and at most
-/// kMostTurning_nmm_per_rad. `beam.is_bound` tells of proxies or deflections beyond kMaxDeflection and
-/// of a pose that is not finite (then nothing holds). Real-time safe.
+/// needle (rigid, +z axis). Purely elastic; the stiffness at the grip is at most half of the device's, and at most
+/// kMostTurning_nmm_per_rad. `beam.is_bound` is set for proxies or deflections beyond kMaxDeflection, and for a pose
+/// that is not finite (then no force acts). Real-time safe.
 struct HeldShaft {
   BeamSolution beam;
   BeamBed bed;
@@ -43,18 +43,19 @@ struct BentNeedle {
   std::array<Vec3, kMaxBeamNodes + 1> points_P = zero_vectors<kMaxBeamNodes + 1>();
 };
 
-/// What the shaft does to the hand with `tip_force_P`, the tissue's force on the tip (only its part across the shaft
-/// bends and is turned into torque here): force across the shaft and torque about the grip, M = sum l_i x f_i (paper B,
-/// eq. 6), in P, all times the shaft's share; no torque about the shaft's own axis: the needle rolls freely.
-/// Real-time safe.
+/// Reaction of the shaft on the hand under `tip_force_P`, the tissue's force on the tip. Only the part of that force
+/// across the shaft bends the shaft and causes torque here. The result is the force across the shaft and the torque
+/// about the grip, M = sum l_i x f_i (paper B, eq. 6), in P, all times the shaft's share. There is no torque about the
+/// shaft's own axis: the needle rolls freely. Real-time safe.
 struct ShaftReaction {
-  Wrench wrench_P;  ///< On the needle, about the grip (stylus origin), of the body proxies and the tip.
+  Wrench wrench_P;  ///< Wrench of the body proxies and the tip on the needle, about the grip (stylus origin).
   BentNeedle needle;
 };
 ShaftReaction react(const HeldShaft& shaft, const HapticScene& scene, const Vec3& tip_force_P) noexcept;
 
-/// Sideways force of the tissue on the bevel (N, in P): `bevel_share` of what resists the advancing tip, towards -y of
-/// N, away from where the face looks; zero on retreat. Goes into the tip force of `react`. Real-time safe.
+/// Sideways force of the tissue on the bevel (N, in P): `bevel_share` of the resistance to the advancing tip, towards
+/// -y of N, opposite to the side that the bevel's face points to; zero on retreat. Add it to the tip force of `react`.
+/// Real-time safe.
 Vec3 bevel_force_P(const NeedleGeometry& needle, const Pose& X_PN, double axial_resistance_n) noexcept;
 
 /// A straight needle, for models without bending.

@@ -11,7 +11,7 @@ namespace trocar::haptics {
 /// Nodes 0..n-1 are the body proxies at equal distances from the grip, node n is the tip.
 struct NeedleBeam {
   int node_count = 17;                       ///< n + 1.
-  double spacing_mm = 150.0 / 17.0;          ///< Between nodes, and from the grip to node 0.
+  double spacing_mm = 150.0 / 17.0;          ///< Distance between nodes, and from the grip to node 0.
   double bending_stiffness_n_mm2 = 20000.0;  ///< E I.
 };
 
@@ -24,25 +24,29 @@ NeedleBeam make_needle_beam(const NeedleGeometry& needle, bool is_stylet_in) noe
 /// Elastic foundation of the shaft: one spring per node, from the shaft to its proxy.
 struct BeamBed {
   std::array<double, kMaxBeamNodes> stiffness_n_per_mm{};  ///< >= 0; 0 outside the body.
-  std::array<Vec3, kMaxBeamNodes> offset_mm =
-      zero_vectors<kMaxBeamNodes>();  ///< From the straight shaft's node to its proxy, across the shaft.
+  /// Vector from the straight shaft's node to its proxy, across the shaft.
+  std::array<Vec3, kMaxBeamNodes> offset_mm = zero_vectors<kMaxBeamNodes>();
 };
 
 /// Equilibrium of the shaft across its straight axis, as a linear function of a force on the tip.
 struct BeamSolution {
   int node_count = 0;
-  std::array<Vec3, kMaxBeamNodes> deflection_mm = zero_vectors<kMaxBeamNodes>();  ///< Without a force on the tip.
-  std::array<double, kMaxBeamNodes> per_tip_force_mm_n{};  ///< Deflection a newton on the tip; the last is the tip's.
-  bool is_bound = false;  ///< Deflections were limited (kMaxDeflection of the length: the beam is linear).
+  /// Deflection without a force on the tip.
+  std::array<Vec3, kMaxBeamNodes> deflection_mm = zero_vectors<kMaxBeamNodes>();
+  /// Deflection per newton on the tip; the last value is the tip's.
+  std::array<double, kMaxBeamNodes> per_tip_force_mm_n{};
+  /// Deflections were limited to kMaxDeflection of the length, because the beam model is linear.
+  bool is_bound = false;
 };
 inline constexpr double kMaxDeflection = 0.3;
 
 /// Exact for forces at nodes, in two passes over them: the compliance of clamp, spans and springs outwards, force and
-/// moment back (physics.md B8). A stiffness that is negative or not finite holds nothing; a solution that is not finite
-/// is zero and flagged. Real-time safe.
+/// moment back (physics.md B8). A stiffness that is negative or not finite counts as zero; a solution that is not
+/// finite is zero and flagged. Real-time safe.
 BeamSolution solve_beam(const NeedleBeam& beam, const BeamBed& bed) noexcept;
 
-/// What a bed opposes to the hand: a force across a shift of the grip, a torque to its turn. Real-time safe.
+/// Stiffness of a bed at the grip: force against a lateral shift of the grip, torque against its rotation. Real-time
+/// safe.
 struct GripStiffness {
   double across_n_per_mm = 0.0;
   double turning_nmm_per_rad = 0.0;

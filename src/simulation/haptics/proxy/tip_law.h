@@ -8,13 +8,13 @@ namespace trocar::haptics {
 /// eq. 2; physics.md B1). Zero outside the body.
 struct TipLaw {
   Vec3 normal_P = Vec3::Zero();  ///< N: unit, along the image gradient, into denser tissue; zero: no border.
-  double border = 0.0;           ///< w: 0 no border .. 1 a border that counts whole.
+  double border = 0.0;           ///< w: 0 (no border) .. 1 (full border).
   anatomy::HuLaw law;
 };
 
-/// Law at a point of the resting anatomy. `tissue`, `label`: what lies there (tissue_at or the channel). Labels stand
-/// on top of the intensities: labelled tissue brings its own resistance, and where a border is that of a walled
-/// structure the wall speaks for it alone. Real-time safe.
+/// Law at a point of the resting anatomy. `here`: tissue and label at the point (from tissue_at or the channel). Labels
+/// override the intensities: labelled tissue has its own resistance, and at the border of a walled structure only the
+/// wall's law applies. Real-time safe.
 TipLaw tip_law_at(const HapticScene& scene, const Vec3& p_P, const TissueAt& here) noexcept;
 
 /// Force (N) needed to move the tip along the unit vector u, without viscosity: the largest F.u that the law permits

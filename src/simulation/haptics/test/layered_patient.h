@@ -48,7 +48,7 @@ inline anatomy::TissueTable paper_tissues() {
   return table;
 }
 
-/// A slab of tissue: from this depth (mm) below the skin on.
+/// A slab of tissue that begins at this depth (mm) below the skin.
 struct Slab {
   double from_mm;
   std::uint8_t label;
@@ -56,7 +56,7 @@ struct Slab {
 inline constexpr std::uint8_t kFat = 1, kMuscle = 2, kLiver = 3, kBone = 4;
 inline constexpr std::array<std::int16_t, 5> kHuOfLabel{0, -100, 50, 60, 800};
 
-/// The usual way to the liver: fat from 0, muscle from 12, liver from 24 mm.
+/// Typical layers above the liver: fat from 0, muscle from 12, liver from 24 mm.
 inline std::vector<Slab> liver_way() {
   return {{0, kFat}, {12, kMuscle}, {24, kLiver}};
 }
@@ -99,7 +99,7 @@ inline std::shared_ptr<const haptics::HapticScene> make_scene(const std::vector<
   return make_scene(slabs, options, tissues);
 }
 
-/// The same patient without labels: everything but the skin is felt from the CT.
+/// The same patient without labels: the CT determines all tissue but the skin.
 inline std::shared_ptr<const haptics::HapticScene> make_unlabelled_scene(
     const std::vector<Slab>& slabs, haptics::ForceModel model, const anatomy::TissueTable& tissues = paper_tissues()) {
   auto patient = layered_patient(slabs);
@@ -122,7 +122,7 @@ class Driver {
     depth_mm_ = tip_P.z();
     return haptics::tick(state_, {time_s_, dt_s_, telemetry::to_tool_pose(needle_pose(tip_P, axis_P))}, *scene_).sample;
   }
-  /// Straight down (or up) to a depth at constant speed; all samples.
+  /// Moves straight down (or up) to a depth at constant speed; returns all samples.
   std::vector<telemetry::TickSample> move(double to_depth_mm, double speed_mm_per_s) {
     std::vector<telemetry::TickSample> samples;
     const double step = speed_mm_per_s * dt_s_ * (to_depth_mm > depth_mm_ ? 1.0 : -1.0);
@@ -131,7 +131,7 @@ class Driver {
     for (int i = 1; i <= count; ++i) samples.push_back(to({0.0, 0.0, start + step * i}));
     return samples;
   }
-  /// Puts the tip there at once.
+  /// Moves the tip there at once.
   void jump_to(double depth_mm) { to({0.0, 0.0, depth_mm}); }
   std::vector<telemetry::TickSample> hold(double seconds) {
     std::vector<telemetry::TickSample> samples;
@@ -148,7 +148,7 @@ class Driver {
   double depth_mm_ = -10.0;
 };
 
-/// Layers that gave way, in order.
+/// Punctured layers, in order.
 inline std::vector<int> punctures(const std::vector<telemetry::TickSample>& samples) {
   std::vector<int> layers;
   for (const telemetry::TickSample& sample : samples) {
@@ -159,7 +159,7 @@ inline std::vector<int> punctures(const std::vector<telemetry::TickSample>& samp
   return layers;
 }
 
-/// Layers that gave way and labels that were entered, in order.
+/// Punctured layers and entered labels, in order.
 inline std::vector<std::pair<telemetry::EventKind, int>> ways_in(const std::vector<telemetry::TickSample>& samples) {
   std::vector<std::pair<telemetry::EventKind, int>> ways;
   for (const telemetry::TickSample& sample : samples) {

@@ -16,31 +16,32 @@ namespace trocar::ultrasound {
 
 class BMode;
 
-/// What one colour frame is made of.
+/// Input of one colour frame.
 struct DopplerInput {
   Pose X_PT;  ///< Transducer in the (resting) patient.
   ScanGeometry geometry;
   Beam beam;
-  double time_s = 0.0;     ///< Of heart and breath.
-  std::uint64_t seed = 0;  ///< Of the noise; another for each frame.
+  double time_s = 0.0;     ///< Time of heart and breath.
+  std::uint64_t seed = 0;  ///< Seed of the noise; differs from frame to frame.
   /// The engine that rendered this frame: losses along the path, and the indentation under the face. nullptr: only
   /// kPlainLoss_db_per_cm_mhz, no indentation.
   const BMode* engine = nullptr;
 };
 inline constexpr double kPlainLoss_db_per_cm_mhz = 0.5;
 
-/// Where colour has been measured: cells on scanlines, gate runs fastest.
+/// Colour Doppler measurements: cells on scanlines, gate runs fastest.
 struct DopplerFrame {
-  double first_line = 0.0;  ///< Scanline of the picture, of the first line of cells.
+  double first_line = 0.0;  ///< Scanline of the picture at the first line of cells.
   double line_step = 2.0;
   int lines = 0;
-  double first_mm = 0.0;  ///< Depth of the first gate's middle.
+  double first_mm = 0.0;  ///< Depth of the middle of the first gate.
   double gate_mm = 0.6;
   int gates = 0;
   double scale_cm_per_s = 30.0;  ///< Nyquist velocity in use.
-  /// Velocity along the beam, towards the transducer positive, as estimated: aliased into +-scale. 0 where no flow is.
+  /// Estimated velocity along the beam, positive towards the transducer, aliased into +-scale. 0 where there is no
+  /// flow.
   std::vector<float> velocity_cm_per_s;
-  std::vector<std::uint8_t> has_flow;  ///< 0 or 1: shown.
+  std::vector<std::uint8_t> has_flow;  ///< 1: flow is displayed; else 0.
   std::vector<float> re, im;           ///< Autocorrelation over one pulse interval, in units of the noise's power.
 
   std::size_t at(int line, int gate) const noexcept {
@@ -50,7 +51,8 @@ struct DopplerFrame {
 
 /// Colour Doppler of the vessels' flow (docs/physics.md U15): velocity along the beam from the phase of the
 /// autocorrelation of blood's echoes between pulses, with aliasing, wall filter, noise and persistence. Buffers are
-/// taken for a geometry and box; while these stay nothing is allocated. The same whatever the number of threads.
+/// allocated for a geometry and box; render() allocates nothing while both stay the same. The result does not depend on
+/// the number of threads.
 class ColourDoppler {
  public:
   explicit ColourDoppler(std::shared_ptr<const VesselFlow> flow);
@@ -72,8 +74,8 @@ class ColourDoppler {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Colour of a velocity in parts of the scale (-1..1), after inversion and shift of the baseline: red over orange to
-/// yellow towards the transducer, blue to cyan away from it; dark near the baseline. Real-time safe.
+/// Colour of a velocity as a fraction of the scale (-1..1), after inversion and shift of the baseline. Towards the
+/// transducer: red, orange, yellow. Away from it: blue to cyan. Dark near the baseline. Real-time safe.
 volume::Rgb doppler_colour(double share, const DopplerSettings& settings) noexcept;
 /// Draws the colour bar with +-scale (cm/s) at its ends; its top left at (column, row).
 void draw_colour_bar(volume::RgbImage& image, int column, int row, int columns, int rows, double scale_cm_per_s,

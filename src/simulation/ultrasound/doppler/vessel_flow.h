@@ -20,11 +20,11 @@ struct VesselPoint {
   Vec3 p_P = Vec3::Zero();
   Vec3 flow_P = Vec3::UnitZ();  ///< Unit vector; flow direction for positive waveform values.
   double radius_mm = 0.0;
-  double peak_mm_per_s = 0.0;  ///< In the middle, at the waveform's 1.
-  bool is_in_own_tube = true;  ///< Else within the vessel that this one leaves.
+  double peak_mm_per_s = 0.0;  ///< Speed in the middle, at waveform value 1.
+  bool is_in_own_tube = true;  ///< False within the vessel that this one leaves.
 };
 
-/// A stretch of a vessel between two ends or forks, in the order in which it was found (not of flow).
+/// A section of a vessel between two ends or forks, in the order in which it was found (not of flow).
 struct VesselBranch {
   std::uint8_t label = 0;
   std::string rule;          ///< Row of the flow table.
@@ -33,9 +33,9 @@ struct VesselBranch {
   std::vector<VesselPoint> points;
 };
 
-/// How finely flow is made.
+/// Resolution of the flow.
 struct VesselFlowOptions {
-  double spacing_mm = 0.8;          ///< Of the velocity's grid. Range 0.3..3.
+  double spacing_mm = 0.8;          ///< Spacing of the velocity grid. Range 0.3..3.
   double least_vessel_mm3 = 100.0;  ///< Smaller pieces of a label have no flow. Range 10..10000.
 };
 
@@ -44,23 +44,23 @@ struct VesselFlowOptions {
 /// pulse's travel time, moving walls.
 class VesselFlow {
  public:
-  /// Blood at a place: velocity (mm/s, P) and how much of the place is lumen, 0..1.
+  /// Blood at a point: velocity (mm/s, P) and the share of lumen there, 0..1.
   struct Blood {
     Vec3f velocity_P = Vec3f::Zero();
     float share = 0.0F;
   };
-  /// What all places share at one time: each waveform's value.
+  /// Value of each waveform at one time; the same for all points.
   using Moment = std::array<float, 32>;
 
   Moment moment(double time_s) const noexcept;
-  /// Real-time safe; nothing beyond the vessels, or where a point is no number.
+  /// Real-time safe. No blood outside the vessels, or at a point with NaN.
   Blood at(const Vec3f& p_P, const Moment& moment) const noexcept;
   /// mm/s; 0 outside vessels. Real-time safe.
   Vec3 velocity_P(const Vec3& p_P, double time_s) const noexcept;
 
   std::span<const VesselBranch> branches() const noexcept { return branches_; }
   const FlowTable& table() const noexcept { return table_; }
-  /// Labels that have a vessel's tissue but no row in the table, or no piece large enough.
+  /// Labels that have a vessel's tissue but no row in the table, or no piece that is large enough.
   std::span<const std::string> without_flow() const noexcept { return without_flow_; }
   std::size_t bytes() const noexcept { return cells_.size() * sizeof(Cell) + bricks_.size() * sizeof(std::int32_t); }
 
@@ -69,25 +69,25 @@ class VesselFlow {
   /// Speeds are in steps of kSpeedStep_mm_per_s.
   struct Cell {
     std::array<std::int16_t, 3> velocity_P{};
-    std::uint8_t share = 0;  ///< Of 255.
+    std::uint8_t share = 0;  ///< Share of lumen, in 1/255.
     std::uint8_t waveform = 0;
   };
 
   volume::GridGeometry geometry_;
-  std::array<std::array<float, 3>, 3> index_of_P_{};  ///< Rows: index along an axis for each mm of P.
+  std::array<std::array<float, 3>, 3> index_of_P_{};  ///< Rows: index along an axis per mm of P.
   std::array<float, 3> index_of_origin_{};
   std::array<std::int32_t, 3> brick_count_{};
-  std::vector<std::int32_t> bricks_;  ///< First cell of each brick, or -1: no blood.
-  std::vector<Cell> cells_;           ///< A brick: 9³, of which the last of each row is the next brick's first.
+  std::vector<std::int32_t> bricks_;  ///< First cell of each brick; -1: no blood.
+  std::vector<Cell> cells_;  ///< 9³ per brick; the last cell of each row equals the first cell of the next brick.
   std::vector<VesselBranch> branches_;
   FlowTable table_;
   std::vector<std::string> without_flow_;
 };
 
-/// Whether blood may flow in the label.
+/// True if blood may flow in the label.
 bool is_vessel(const anatomy::Label& label);
 
-/// `stop` is checked between two vessels. Errors: no vessel of the patient has flow (with the labels that could),
+/// `stop` is checked between two vessels. Errors: no vessel of the patient has flow (lists the labels of vessels),
 /// stopped.
 Result<std::shared_ptr<const VesselFlow>> make_vessel_flow(const anatomy::VirtualPatient& patient, FlowTable table,
                                                            const VesselFlowOptions& options = {},

@@ -13,11 +13,11 @@ struct Artefacts {
   bool reverberation = true;     ///< A-lines, ring-down at gas.
   bool mirror = true;            ///< Mirror image at a strong, smooth reflector (the diaphragm).
   bool refraction = true;        ///< Edge shadows, bent scanlines.
-  bool range_distortion = true;  ///< Depth is time, and sound's speed differs.
-  bool side_lobes = true;        ///< And grating lobes.
-  bool contact_loss = true;      ///< Air where the face has left the skin.
+  bool range_distortion = true;  ///< Depth follows from time; the speed of sound differs between tissues.
+  bool side_lobes = true;        ///< Side lobes and grating lobes.
+  bool contact_loss = true;      ///< Air where the face has no contact with the skin.
   bool clutter = true;           ///< Haze of the near field.
-  bool noise = true;             ///< Of the receiver; rises with depth because the gain does.
+  bool noise = true;             ///< Noise of the receiver; increases with depth because the gain does.
 
   bool operator==(const Artefacts&) const = default;
 };

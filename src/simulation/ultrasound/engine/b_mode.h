@@ -15,15 +15,15 @@
 
 namespace trocar::ultrasound {
 
-/// How the transducer listens: what a scanner's controls change before the echoes are there.
+/// Settings of transmission and reception: the scanner controls that act before the echoes are computed.
 struct Acquisition {
   double depth_mm = 160.0;
   double frequency_mhz = 3.5;
   double focus_mm = 80.0;
   int lines = 256;          ///< Range 2..1024.
-  int samples = 1024;       ///< A scanline. Range 16..4096.
+  int samples = 1024;       ///< Samples per scanline. Range 16..4096.
   int steering_angles = 3;  ///< Number of compounding angles whose images are averaged. Range 1..5; 1: full speckle.
-  int planes = 5;           ///< Across the beam's thickness. 1, 3, 5, 7 or 9.
+  int planes = 5;           ///< Planes across the beam's thickness. 1, 3, 5, 7 or 9.
   Artefacts artefacts;
 
   bool operator==(const Acquisition&) const = default;
@@ -45,7 +45,7 @@ struct BasebandFrame {
   Beam beam;
   int steering_angles = 1;
   std::vector<float> re, im;   ///< steering_angles * lines * samples.
-  std::vector<float> contact;  ///< A scanline: 1 where the face is coupled to the skin, 0 in air.
+  std::vector<float> contact;  ///< Per scanline: 1 where the face is coupled to the skin, 0 in air.
 };
 
 /// Share of the scanlines that are coupled to the skin, 0..1.
@@ -53,15 +53,15 @@ double coupled_share(const BasebandFrame& frame) noexcept;
 
 /// Losses of the last frame along one scanline; for Doppler.
 struct SoundPath {
-  std::span<const float> gain;  ///< A sample: amplitude left of an echo from there, without its own strength.
+  std::span<const float> gain;  ///< Per sample: amplitude of an echo from there after losses, without its own strength.
   /// Tissue displayed at depth r has its rest position at r - pressed_mm * dent_share.
   float pressed_mm = 0.0F;
   std::span<const float> dent_share;
-  float mirror_depth_mm = std::numeric_limits<float>::infinity();  ///< Deeper samples show a mirror image.
+  float mirror_depth_mm = std::numeric_limits<float>::infinity();  ///< Deeper samples display a mirror image.
 };
 
-/// Ultrasound from an acoustic scene (docs/physics.md U1–U9). Buffers are taken once; render allocates nothing. The
-/// result is the same whatever the number of threads.
+/// Ultrasound from an acoustic scene (docs/physics.md U1–U9). Buffers are allocated once; render() allocates nothing.
+/// The result does not depend on the number of threads.
 class BMode {
  public:
   BMode(std::shared_ptr<const AcousticScene> scene, Transducer transducer, const Acquisition& acquisition);
@@ -69,14 +69,14 @@ class BMode {
   BMode(BMode&&) noexcept;
   BMode& operator=(BMode&&) noexcept;
 
-  /// New settings; takes buffers anew.
+  /// Sets the settings and allocates the buffers again.
   void set_acquisition(const Acquisition& acquisition);
   const Acquisition& acquisition() const noexcept;
   const ScanGeometry& geometry() const noexcept;
 
   /// The echoes from that pose. The frame stays valid until the next call.
   const BasebandFrame& render(const BModeInput& input) noexcept;
-  /// Of a scanline of that frame; valid as long. 0 <= line < lines.
+  /// Losses along a scanline of the last frame; valid until the next call of render(). 0 <= line < lines.
   SoundPath sound_path(int line) const noexcept;
 
  private:

@@ -17,28 +17,28 @@ struct FanPicture {
   std::span<const std::uint8_t> pixels;  ///< raster.rows * raster.columns, row by row.
 };
 
-/// The picture as the beam saw it: gray, bilinear, on `lines` scanlines. Beyond the picture is 0.
+/// The picture in scanline coordinates: gray, bilinear, on `lines` scanlines. 0 outside the picture.
 EchoPatch polar_picture(const FanPicture& picture, int lines, double sample_mm);
 
-/// How gray pictures look, in figures that recorded and simulated ones are held together by. They are taken from the
-/// picture after scan conversion, from both alike.
+/// Statistics of gray pictures for the comparison of recorded with simulated ones. Computed in both cases from the
+/// picture after scan conversion.
 struct PictureFigures {
-  GrayHistogram histogram{};  ///< Of all samples of the fan, in polar coordinates.
+  GrayHistogram histogram{};  ///< Histogram of all samples of the fan, in polar coordinates.
   struct Level {
     double depth_mm, mean, median, p99;
   };
-  std::vector<Level> levels;  ///< Gray of the middle two thirds of the scanlines, in bands of depth.
+  std::vector<Level> levels;  ///< Gray values of the middle two thirds of the scanlines, in bands of depth.
   struct Speckle {
     double depth_mm = 0.0;
     int patches = 0;
     double mean = 0.0, standard_deviation = 0.0;        ///< Gray. This and the following: medians over patches.
-    double axial_fwhm_mm = 0.0, lateral_fwhm_mm = 0.0;  ///< Of the autocovariance without trend.
+    double axial_fwhm_mm = 0.0, lateral_fwhm_mm = 0.0;  ///< Widths of the autocovariance without trend.
     double skewness = 0.0;
   };
-  std::vector<Speckle> speckle;  ///< Of homogeneous patches; bands without enough of them are left out.
+  std::vector<Speckle> speckle;  ///< Speckle of homogeneous patches; bands with too few patches are left out.
 };
 
-/// Gathers figures over pictures of one kind.
+/// Accumulates statistics over pictures of one kind.
 class PictureStatistics {
  public:
   void add(const FanPicture& picture);

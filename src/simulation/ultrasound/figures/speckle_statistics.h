@@ -7,13 +7,13 @@ namespace trocar::ultrasound {
 
 struct BasebandFrame;
 
-/// Echo values (amplitudes, intensities or gray) on scanlines that are taken as parallel; sample runs fastest.
+/// Echo values (amplitudes, intensities or gray) on scanlines that are treated as parallel; sample runs fastest.
 struct EchoPatch {
   int lines = 0;
   int samples = 0;
-  double line_mm = 1.0;    ///< Between neighbouring scanlines, in the middle of the patch.
-  double sample_mm = 1.0;  ///< Between neighbouring samples.
-  double depth_mm = 0.0;   ///< Of the first sample.
+  double line_mm = 1.0;    ///< Distance between neighbouring scanlines, in the middle of the patch.
+  double sample_mm = 1.0;  ///< Distance between neighbouring samples.
+  double depth_mm = 0.0;   ///< Depth of the first sample.
   std::vector<float> values;
 
   float& at(int line, int sample) noexcept { return values[offset(line, sample)]; }
@@ -28,11 +28,11 @@ struct EchoPatch {
 /// A half-open piece of a frame: scanlines first_line.., samples of depth within the bounds.
 struct PatchBounds {
   int first_line = 0;
-  int last_line = 0;  ///< Not in the patch.
+  int last_line = 0;  ///< Excluded from the patch.
   double near_mm = 0.0;
   double far_mm = 0.0;
 };
-/// Envelope |re + i im| of a piece of a frame; the bounds are cut to the frame.
+/// Envelope |re + i im| of a piece of a frame; the bounds are clipped to the frame.
 EchoPatch envelope_patch(const BasebandFrame& frame, const PatchBounds& bounds);
 /// The same values squared.
 EchoPatch intensity_of(const EchoPatch& envelope);
@@ -47,7 +47,7 @@ struct SpeckleMoments {
   double standard_deviation = 0.0;
   double snr = 0.0;            ///< mean / standard_deviation.
   double nakagami_m = 0.0;     ///< Inverse normalised variance of the intensity.
-  double nakagami_m_ml = 0.0;  ///< Most likely m.
+  double nakagami_m_ml = 0.0;  ///< Maximum likelihood estimate of m.
   double mean_intensity = 0.0;
 };
 SpeckleMoments speckle_moments(std::span<const float> envelope);
@@ -68,11 +68,12 @@ inline constexpr double kRayleighStatistic999 = 1.57;
 
 /// Second-order statistics: the autocovariance along both directions of the patch.
 struct SpeckleCorrelation {
-  double axial_fwhm_mm = 0.0;  ///< Full width at half maximum; NaN where it does not fall so far within half the patch.
+  /// Full width at half maximum; NaN if the autocovariance does not fall so far within half the patch.
+  double axial_fwhm_mm = 0.0;
   double lateral_fwhm_mm = 0.0;
   double axial_cell_mm = 0.0;  ///< Integral of the autocovariance over both signs of the shift.
   double lateral_cell_mm = 0.0;
-  double cells = 0.0;  ///< Area of the patch in such cells: how many independent values it holds.
+  double cells = 0.0;  ///< Area of the patch in such cells: the number of independent values.
 };
 /// For intensity under a separable Gaussian point spread of amplitude sigma, FWHM is 2.355 sigma and the cell 2.507
 /// sigma.
@@ -80,7 +81,7 @@ SpeckleCorrelation speckle_correlation(const EchoPatch& patch);
 /// Values at least `cells` correlation cells apart in both directions.
 std::vector<float> thinned(const EchoPatch& patch, const SpeckleCorrelation& correlation, double cells = 1.5);
 
-/// Pearson's correlation of two equally long rows of values; 0 where one is constant.
+/// Pearson's correlation of two sequences of equal length; 0 if one is constant.
 double normalised_correlation(std::span<const float> a, std::span<const float> b);
 
 /// Mean level against depth: the root mean square of bands of `band_mm`, in dB.

@@ -6,20 +6,20 @@
 
 namespace trocar::ultrasound {
 
-/// Limits of a live scanner's use of processor time, to leave time for real-time threads.
+/// Limits of a live scanner's processor time, which leave time for real-time threads.
 struct LiveScannerOptions {
-  int threads = 1;  ///< That a frame uses. Range 1..64.
+  int threads = 1;  ///< Threads per frame. Range 1..64.
   int nice = 5;     ///< Added to the worker's niceness where the system has one. Range 0..19.
   ScanPace pace;
 };
-/// One thread on small machines; more where two servers, the window and the drawing still have a core each.
+/// One thread on small machines; more on machines where two servers, the window and the drawing still have a core each.
 LiveScannerOptions default_live_scanner_options();
 
-/// Of the cine loop, at the newest picture.
+/// State of the cine loop at the newest picture.
 struct CineState {
   bool is_frozen = false;
   bool is_playing = false;
-  int position = -1;  ///< That is looked at; frames count from the oldest, 0.
+  int position = -1;  ///< Displayed frame; frames count from the oldest, 0.
   int size = 0;
 };
 
@@ -33,18 +33,18 @@ class LiveScanner {
   LiveScanner(const LiveScanner&) = delete;
   LiveScanner& operator=(const LiveScanner&) = delete;
 
-  /// Another patient or transducer: pictures, requests and the cine loop are removed, the scanner runs.
+  /// Sets another patient or transducer: removes pictures, requests and the cine loop, and unfreezes the scanner.
   void open(std::shared_ptr<const AcousticScene> scene, Transducer transducer);
 
   /// A request with a non-finite pose or needle is ignored. Settings are clamped.
   void request(ScanRequest request);
-  /// nullptr before the first.
+  /// Newest picture; nullptr before the first one.
   std::shared_ptr<const ScanPicture> newest() const;
 
-  /// Frozen, the picture stays whatever is requested, but for gain, dynamic range, gray map, mirroring and size. Depth,
-  /// frequency and TGC wait until it runs. Before the first picture nothing can be frozen.
+  /// While frozen, requests change only gain, dynamic range, gray map, mirroring and size of the picture. Depth,
+  /// frequency and TGC take effect after the freeze. Has no effect before the first picture.
   void set_frozen(bool is_frozen);
-  /// Of the frozen loop. Stepping and showing stop a playing loop.
+  /// Functions of the frozen loop. step_cine and show_cine stop a playing loop.
   void step_cine(int frames);
   void show_cine(int index);
   void play_cine(bool is_playing);

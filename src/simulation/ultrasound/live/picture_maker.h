@@ -19,15 +19,15 @@ class PictureMaker {
 
   const Transducer& transducer() const noexcept;
 
-  /// A picture of now, kept in the loop unless that is frozen; `seed` makes the noise. The request is held to its
-  /// ranges.
+  /// Renders a picture and stores it in the loop unless the loop is frozen; `seed` is the seed of the noise. The
+  /// request is clamped to its ranges.
   ScanPicture make(const ScanRequest& request, ScanDetail detail, std::uint64_t seed);
 
-  /// The loop at full detail: at most kCineFrames and kCineBytes. Another depth begins a new one. Nothing before the
-  /// first picture.
+  /// The loop at full detail: at most kCineFrames and kCineBytes. A change of depth begins a new loop. nullptr before
+  /// the first picture.
   CineLoop* cine() noexcept;
-  /// The loop's frame that is looked at with the request's gain, dynamic range, gray map, mirroring and size. Needs a
-  /// loop with a frame.
+  /// Shows the loop's selected frame with the request's gain, dynamic range, gray map, mirroring and size. Needs a loop
+  /// with a frame.
   ScanPicture show_kept(const ScanRequest& request);
 
   static constexpr int kCineFrames = 200;

@@ -17,25 +17,25 @@ struct ScanRequest {
   Pose X_PT;                         ///< Transducer in the (resting) patient.
   std::vector<Vec3> needle_shaft_P;  ///< From the hub to the tip; fewer than two points: no needle.
   double needle_diameter_mm = 1.2;   ///< Range 0.2..5.
-  double needle_bore_share = 0.0;    ///< As NeedleEcho::bore_share.
-  double tip_shift_mm = 0.0;         ///< As NeedleEcho::displacement_mm.
+  double needle_bore_share = 0.0;    ///< See NeedleEcho::bore_share.
+  double tip_shift_mm = 0.0;         ///< See NeedleEcho::displacement_mm.
   Acquisition acquisition;           ///< At full detail.
   DisplaySettings display;
-  std::shared_ptr<const VesselFlow> flow;  ///< Null: no colour Doppler.
+  std::shared_ptr<const VesselFlow> flow;  ///< nullptr: no colour Doppler.
   DopplerSettings doppler;
-  double time_s = 0.0;  ///< Of heart and breath; does not decrease while one patient is scanned.
-  int columns = 640;    ///< Of the picture. Range 16..2048, as `rows`.
+  double time_s = 0.0;  ///< Time of heart and breath; must not decrease while one patient is scanned.
+  int columns = 640;    ///< Size of the picture. Range 16..2048, like `rows`.
   int rows = 480;
 };
 
-/// The same request with every number in its range; what is no number gets the transducer's or the type's default. A
-/// focus lies within the picture.
+/// Returns the request with every number clamped to its range; a number that is not finite is replaced by the
+/// transducer's or the type's default. The focus is limited to the picture.
 ScanRequest within_ranges(const ScanRequest& request, const Transducer& transducer);
 
 /// True if a frame of `a` can also be displayed for `b`: same pose within a hand's tremor (corners and needle within
 /// `tolerance_mm`), same settings and size. Time is ignored.
 bool is_equivalent(const ScanRequest& a, const ScanRequest& b, double tolerance_mm) noexcept;
-/// The same for the settings only.
+/// True if the settings are the same.
 bool has_same_settings(const ScanRequest& a, const ScanRequest& b) noexcept;
 
 }  // namespace trocar::ultrasound

@@ -9,15 +9,15 @@ namespace trocar::ultrasound {
 enum class ScanDetail { kFast, kMiddle, kFull };
 inline constexpr std::size_t kScanDetails = 3;
 
-/// Scanlines, samples, elevation planes and steering angles of a level; never finer than `full`, no other setting
-/// changed.
+/// Reduces scanlines, samples, elevation planes and steering angles to a level; never finer than `full`. Other settings
+/// stay the same.
 Acquisition with_detail(const Acquisition& full, ScanDetail detail) noexcept;
 
 /// Times of a live ultrasound image.
 struct ScanPace {
   LivePace live;
-  double refresh_s = 0.1;   ///< Between frames in which only noise changes. Range 0.02..2.
-  double doppler_s = 0.05;  ///< The same with colour Doppler, which follows the pulse.
+  double refresh_s = 0.1;   ///< Time between frames in which only noise changes. Range 0.02..2.
+  double doppler_s = 0.05;  ///< The same with colour Doppler, whose picture follows the pulse.
   double tremor_mm = 0.05;  ///< Smaller movements of transducer and needle count as rest. Range 0..1.
 };
 
@@ -35,7 +35,7 @@ class ScanLevels {
   bool is_same(const ScanRequest& a, const ScanRequest& b) const noexcept {
     return is_equivalent(a, b, pace_.tremor_mm);
   }
-  /// In samples.
+  /// Work of a frame in samples.
   double work(const ScanRequest& request, ScanDetail detail) const noexcept;
   double refresh_s(const ScanRequest& request) const noexcept {
     return request.flow ? pace_.doppler_s : pace_.refresh_s;
@@ -45,8 +45,8 @@ class ScanLevels {
   ScanPace pace_;
 };
 
-/// While transducer, needle or settings change, the finest detail whose time stays within the pace; full detail once
-/// still; then a refresh now and then.
+/// While transducer, needle or settings change: the finest detail whose time stays within the pace. At rest: full
+/// detail, then periodic refreshes.
 using ScanSchedule = LiveSchedule<ScanLevels>;
 
 }  // namespace trocar::ultrasound

@@ -6,18 +6,18 @@
 
 namespace trocar::ultrasound {
 
-/// A face that was put onto the skin.
+/// Result of placing a face on the skin.
 struct FaceFit {
   Pose X_PT;
   double touching = 0.0;  ///< Share of the scanlines with contact.
-  double dent_mm = 0.0;   ///< The deepest.
+  double dent_mm = 0.0;   ///< Deepest dent.
 };
 
 inline constexpr double kGreatestFitPress_mm = 15.0;
 
-/// Puts the middle of a face onto a point of the skin: tilted in its plane by at most 15 degrees, so that it lies along
-/// the skin (least squares), and pressed in along y by `pressed_mm` and more, up to kGreatestFitPress_mm, until it
-/// touches along its width. The plane (x, y of `R_PT`) stays.
+/// Places the middle of a face on a point of the skin. Tilts the face in its plane by at most 15 degrees to align it
+/// with the skin (least squares). Presses it in along y by `pressed_mm` or more, up to kGreatestFitPress_mm, until it
+/// touches along its width. The plane (x, y of `R_PT`) does not change.
 FaceFit fit_face(const volume::FloatGrid& skin_distance_mm, const ScanGeometry& scan, const Vec3& skin_P,
                  const Mat3& R_PT, double pressed_mm);
 

@@ -12,47 +12,48 @@ struct AcousticScene;
 
 /// Contact of the face with the skin on one scanline.
 struct LineContact {
-  float pressed_mm = 0.0F;  ///< The face dents the skin so deep, along the scanline. Range 0..kDeepestDent_mm.
-  float gap_mm = 0.0F;      ///< Or stays off it; filled with gel as far as that reaches. Range 0..kWidestGap_mm.
-  float coupling = 1.0F;    ///< Amplitude that passes, 0..1.
+  float pressed_mm = 0.0F;  ///< Depth of the dent in the skin along the scanline. Range 0..kDeepestDent_mm.
+  /// Distance from the skin without contact; gel fills the gap up to its limit. Range 0..kWidestGap_mm.
+  float gap_mm = 0.0F;
+  float coupling = 1.0F;  ///< Transmitted amplitude, 0..1.
 };
 
 inline constexpr double kDeepestDent_mm = 30.0;
 inline constexpr double kWidestGap_mm = 8.0;
-/// Gel fills gaps up to the first distance, remains in wedges up to the second; beyond is air. Assumed: gel layers are
-/// 1 to 2 mm.
+/// Gel fills gaps up to the first distance and remains in wedges up to the second; air lies beyond. Assumed: gel layers
+/// are 1 to 2 mm.
 inline constexpr double kGelFills_mm = 1.0;
 inline constexpr double kGelEnds_mm = 2.0;
 
-/// Amplitude that passes a gap: 1 up to kGelFills_mm, smoothly to 0 at kGelEnds_mm. physics.md U8.
+/// Amplitude transmitted through a gap: 1 up to kGelFills_mm, smoothly to 0 at kGelEnds_mm. physics.md U8.
 float gap_coupling(float gap_mm) noexcept;
 
-/// Contact of every scanline of a face at X_PT; `contact` is as long as the geometry has lines (fewer: the first ones).
-/// Where the skin is met along the scanline, forwards or backwards, to 0.02 mm. Real-time safe. physics.md U8.
+/// Finds the contact of every scanline of a face at X_PT. `contact` is as long as the geometry has lines (fewer: the
+/// first ones). Searches the skin along the scanline, forwards or backwards, to 0.02 mm. Real-time safe. physics.md U8.
 void find_contact(const volume::FloatGrid& skin_distance_mm, const ScanGeometry& geometry, const Pose& X_PT,
                   std::span<LineContact> contact) noexcept;
 
-/// Tissue deeper than this does not yield, where nothing more is known: with it a dent's half is gone at 12 mm, as
-/// under a rigid disc as large as the face in B9. Range 12..60.
+/// Default depth below which tissue does not yield. Half of a dent is left at 12 mm, as under a rigid disc as large as
+/// the face in B9. Range 12..60.
 inline constexpr double kDentReach_mm = 40.0;
 
-// Pressed tissue gives way along the scanline (physics.md U8): what lies `depth_mm` before the face now, rested at
-// depth_mm - pressed_mm * dent_share(depth_mm) from it. All real-time safe; monotone for every pressed_mm >= 0.
+// Pressed tissue yields along the scanline (physics.md U8): tissue at `depth_mm` from the face now has its rest
+// position at depth_mm - pressed_mm * dent_share(depth_mm). All real-time safe; monotone for every pressed_mm >= 0.
 
 /// Share of the dent that tissue follows: (1 - depth/reach)², from 1 at the face to 0 at the reach and beyond.
 inline double dent_share(double depth_mm, double reach_mm = kDentReach_mm) noexcept {
   const double left = depth_mm < reach_mm ? 1.0 - (depth_mm > 0.0 ? depth_mm : 0.0) / reach_mm : 0.0;
   return left * left;
 }
-/// Depth before the face at rest (negative: where the face is now lies behind it) of what is seen at a depth >= 0.
+/// Resting depth (negative: behind the present position of the face) of tissue displayed at a depth >= 0.
 inline double rest_depth_mm(double depth_mm, double pressed_mm, double reach_mm = kDentReach_mm) noexcept {
   return depth_mm - pressed_mm * dent_share(depth_mm, reach_mm);
 }
-/// Its exact inverse, for resting depths >= -pressed_mm.
+/// Exact inverse of rest_depth_mm(), for resting depths >= -pressed_mm.
 double pressed_depth_mm(double rest_depth_mm, double pressed_mm, double reach_mm = kDentReach_mm) noexcept;
 
-/// The reach under a face at X_PT: longer in thick fat, which yields more than the muscle under it, and ending at bone;
-/// a mean over the scanlines, so that it moves smoothly with the probe. Real-time safe.
+/// Reach under a face at X_PT: longer in thick fat, which yields more than the muscle under it, and limited by bone.
+/// The value is a mean over the scanlines, so that it changes smoothly with the probe. Real-time safe.
 double find_dent_reach_mm(const AcousticScene& scene, const ScanGeometry& geometry, const Pose& X_PT) noexcept;
 
 }  // namespace trocar::ultrasound

@@ -19,9 +19,9 @@ enum class ScanPlane {
 
 /// Treatment of bone in a view.
 enum class BonePreference {
-  kAvoid,   ///< None in the middle.
+  kAvoid,   ///< No bone in the middle.
   kBeside,  ///< A free middle with a rib at either side.
-  kShow,    ///< Bone is what the view is about.
+  kShow,    ///< Bone is the subject of the view.
 };
 
 enum class TargetPoint {
@@ -29,23 +29,24 @@ enum class TargetPoint {
   kFacing,  ///< At the closest approach to the centre of the acoustic window.
 };
 
-/// A standard view (data/views.toml): how a transducer is put onto any patient to see a structure. Directions in P
+/// A standard view (data/views.toml): placement of a transducer on any patient to show a structure. Directions in P
 /// (LPS).
 struct ProbeView {
   std::string name;  ///< "liver-right-kidney".
   std::string title;
-  std::vector<std::string> targets;  ///< Label names, the first that the patient has counts; '*' ends a stem.
+  /// Label names; the first one that the patient has is used; '*' matches any ending.
+  std::vector<std::string> targets;
   std::vector<std::string> through;  ///< Labels that the beam should pass through; may be empty.
   TargetPoint point = TargetPoint::kMiddle;
-  Vec3 offset_mm = Vec3::Zero();  ///< From the target's point to what is aimed at.
+  Vec3 offset_mm = Vec3::Zero();  ///< From the target's point to the aiming point.
   Vec3 direction_P{0, -1, 0};     ///< Unit, from the target to the skin.
   ScanPlane plane = ScanPlane::kLongitudinal;
   double angle_rad = 0.0;  ///< Turns the plane about the beam (y of T), right-handed. Range -pi..pi.
   BonePreference bone = BonePreference::kAvoid;
-  double pressed_mm = 5.0;              ///< The middle of the face dents the skin at least so deep. Range 0..15.
-  double search_mm = 20.0;              ///< The face may move so far along the skin for a better way in. Range 0..60.
-  double depth_mm = 160.0;              ///< Of the picture. Range 20..300.
-  std::optional<double> frequency_mhz;  ///< Nothing: the transducer's own. Range 1..20.
+  double pressed_mm = 5.0;              ///< Least depth of the dent at the middle of the face. Range 0..15.
+  double search_mm = 20.0;              ///< Search radius along the skin for a better acoustic window. Range 0..60.
+  double depth_mm = 160.0;              ///< Depth of the picture. Range 20..300.
+  std::optional<double> frequency_mhz;  ///< Empty: the transducer's own. Range 1..20.
   std::optional<double> focus_mm;       ///< The same. Range 5..300.
   std::string transducer;               ///< A name of data/transducers.toml.
 };
@@ -53,8 +54,8 @@ struct ProbeView {
 /// All views of a file. Errors name the line: unknown key, out of range, a direction of length zero.
 Result<std::vector<ProbeView>> load_probe_views(const std::filesystem::path& path);
 
-/// The label that a view aims at: the largest of those that match the first pattern which any matches; labels of fewer
-/// than 8 voxels do not count. Case and separators do not matter.
+/// Target label of a view: the largest label that matches the first pattern with a match. Labels of fewer than 8 voxels
+/// are ignored. Case and separators are ignored.
 const anatomy::Label* find_target(const anatomy::VirtualPatient& patient, std::span<const std::string> patterns);
 
 /// Error (exit status 2): the patient lacks a label that the view needs; it names the label.

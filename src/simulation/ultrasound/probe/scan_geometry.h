@@ -8,26 +8,26 @@ namespace trocar::ultrasound {
 
 using Vec2 = Eigen::Vector2d;
 
-/// A place in the image plane as the beam sees it.
+/// A point of the image plane in scanline coordinates.
 struct Polar {
   double line = 0.0;      ///< Scanline, fractional; 0 is at the most negative x.
   double depth_mm = 0.0;  ///< Along the scanline, from the face.
 };
 
-/// Where scanlines and samples lie in the image plane (x, y) of T. Scanlines are radii of a circle of `radius_mm`
+/// Positions of scanlines and samples in the image plane (x, y) of T. Scanlines are radii of a circle of `radius_mm`
 /// (convex; 0 for a phased array, whose apex is the middle of its face) or parallel (linear). Samples lie at depth (s +
 /// 1/2) * sample_mm.
 struct ScanGeometry {
   bool is_fan = true;
-  double radius_mm = 60.0;  ///< Of the face; fans only.
-  double line_step = 0.0;   ///< Between scanlines: rad (fan) or mm (parallel).
+  double radius_mm = 60.0;  ///< Radius of the face; fans only.
+  double line_step = 0.0;   ///< Step between scanlines: rad (fan) or mm (parallel).
   int lines = 256;
   int samples = 1024;
   double depth_mm = 160.0;
 
   double sample_mm() const noexcept { return depth_mm / samples; }
   double middle_line() const noexcept { return 0.5 * (lines - 1); }
-  /// Where a scanline leaves the face, and its unit direction; in (x, y) of T.
+  /// Origin of a scanline on the face, and its unit direction; in (x, y) of T.
   Vec2 line_origin(double line) const noexcept;
   Vec2 line_direction(double line) const noexcept;
   /// Distance between neighbouring scanlines at a depth, mm.

@@ -27,19 +27,19 @@ struct Transducer {
   double highest_mhz = 5.0;
   double bandwidth = 0.6;               ///< Fractional, -6 dB, of the pulse and its echo. Range 0.2..1.2.
   int elements = 128;                   ///< Range 16..1024.
-  int active_elements = 64;             ///< That work together at most. Range 8..elements.
-  double pitch_mm = 0.5;                ///< Between elements' centres, along the face.
-  double radius_mm = 60.0;              ///< Of the array's arc; convex kinds only.
-  double field_of_view_rad = 1.2;       ///< Between the outermost scanlines; fans only.
+  int active_elements = 64;             ///< Largest number of elements that work together. Range 8..elements.
+  double pitch_mm = 0.5;                ///< Distance between elements' centres, along the face.
+  double radius_mm = 60.0;              ///< Radius of the array's arc; convex kinds only.
+  double field_of_view_rad = 1.2;       ///< Angle between the outermost scanlines; fans only.
   double elevation_aperture_mm = 12.0;  ///< Height of an element.
   double elevation_focus_mm = 70.0;     ///< Depth of the lens' focus.
-  double f_number = 3.0;                ///< Least ratio of depth to receiving aperture.
+  double f_number = 3.0;                ///< Smallest ratio of depth to receiving aperture.
   double depth_mm = 160.0;              ///< Default depth of the picture.
   double greatest_depth_mm = 300.0;
   double focus_mm = 80.0;        ///< Default depth of the transmit focus.
   int scanlines = 256;           ///< Default.
   double sweep_rad = 0.0;        ///< Whole angle of the mechanical sweep; kMechanicalConvex only.
-  double sweep_radius_mm = 0.0;  ///< The motor's axis lies so far behind the face's middle, along x.
+  double sweep_radius_mm = 0.0;  ///< Distance of the motor's axis behind the middle of the face; the axis is along x.
 
   /// Width of the face along its surface, mm.
   double face_width_mm() const noexcept { return pitch_mm * elements; }

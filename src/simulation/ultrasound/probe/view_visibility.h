@@ -10,11 +10,11 @@
 
 namespace trocar::ultrasound {
 
-/// Visible share of a view's subject, and shares by cause of invisibility. They sum to 1.
+/// Visible share of a view's subject, and shares by the cause of invisibility. The sum is 1.
 struct ViewVisibility {
   double visible = 0.0;
   double behind_bone = 0.0;
-  double behind_gas = 0.0;  ///< Also lung, and air where the sound leaves the body.
+  double behind_gas = 0.0;  ///< Includes lung, and air where the sound leaves the body.
   double unscanned = 0.0;   ///< Beyond an end of the CT (scan_ends.h).
   double outside_picture = 0.0;
   double too_deep = 0.0;  ///< The echo is weaker than the receiver's noise.
@@ -29,7 +29,7 @@ inline constexpr double kEnoughVisible = 0.5;
 Result<ViewVisibility> measure_visibility(const anatomy::VirtualPatient& patient, const ProbeView& view,
                                           const Transducer& transducer, const Pose& X_PT);
 
-/// The causes of what is not visible, the largest first: "71 % behind bone, 9 % outside the CT". Shares below half a
+/// Text of the causes of invisibility, the largest first: "71 % behind bone, 9 % outside the CT". Shares below half a
 /// percent are left out.
 std::string hidden_causes(const ViewVisibility& visibility);
 

@@ -16,15 +16,16 @@ struct DistanceCaliper {
 };
 DistanceCaliper place_distance(const RasterGeometry& raster, const Vec2& a_pixel, const Vec2& b_pixel) noexcept;
 
-/// An ellipse: the ends of one axis, and how far the outline is from that axis.
+/// An ellipse: the ends of one axis, and the distance of the outline from that axis.
 struct EllipseCaliper {
   Vec2 a_T{0.0, 0.0}, b_T{0.0, 0.0};
   double half_width_mm = 0.0;  ///< Other semi-axis.
 
-  double length_mm() const noexcept { return (b_T - a_T).norm(); }  ///< Of the axis that was set first.
+  double length_mm() const noexcept { return (b_T - a_T).norm(); }  ///< Length of the axis that was set first.
   double width_mm() const noexcept { return 2.0 * half_width_mm; }
   double area_mm2() const noexcept;
-  /// Of a point from the first axis' line: where the outline goes through such a point's height, it is the semi-axis.
+  /// Distance of a point from the line of the first axis: the other semi-axis of an ellipse whose outline extends to
+  /// that distance.
   double distance_to_axis_mm(const Vec2& p_T) const noexcept;
   /// Exact, by the arithmetic-geometric mean.
   double circumference_mm() const noexcept;

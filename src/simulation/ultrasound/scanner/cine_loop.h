@@ -14,16 +14,16 @@ namespace trocar::ultrasound {
 struct CineFrame {
   Pose X_PT;
   double time_s = 0.0;
-  DisplaySettings settings;  ///< As they were; TGC is in the levels already.
+  DisplaySettings settings;  ///< Settings of the recording; TGC is already included in the levels.
   std::span<const std::uint8_t> levels;
 };
 
-/// The last pictures of a scan, in memory that is taken once. While it is frozen nothing is added, and one frame of a
-/// range is looked at. One geometry: a change of depth or transducer begins a new loop. Frames count from the oldest,
-/// 0.
+/// The last pictures of a scan, in memory that is allocated once. While the loop is frozen, no frame is added, and one
+/// frame of a range is selected for display. One geometry: a change of depth or transducer begins a new loop. Frames
+/// count from the oldest, 0.
 class CineLoop {
  public:
-  /// capacity >= 1; lines and samples of `scan` for each frame, a byte a sample.
+  /// capacity >= 1. Each frame has the lines and samples of `scan`, one byte per sample.
   CineLoop(const ScanGeometry& scan, int capacity);
 
   const ScanGeometry& scan() const noexcept { return scan_; }
@@ -35,23 +35,24 @@ class CineLoop {
   /// does not decrease. Real-time safe.
   void push(std::span<const std::uint8_t> levels, const Pose& X_PT, double time_s,
             const DisplaySettings& settings) noexcept;
-  /// Clears all frames and runs. Real-time safe.
+  /// Clears all frames and unfreezes the loop. Real-time safe.
   void restart() noexcept;
 
-  /// Stops at the newest frame, with the range over all. Nothing can be frozen while there is no frame.
+  /// Freezes the loop at the newest frame, with the range over all frames. Has no effect without frames.
   void freeze() noexcept;
-  /// Runs again after a freeze; what is kept stays until it is replaced.
+  /// Unfreezes the loop; stored frames remain until they are replaced.
   void thaw() noexcept { is_frozen_ = false; }
 
-  /// Of the frozen loop: frames that stepping and playing stay within, held to what there is; first <= last.
+  /// Sets the range of frames for stepping and playing in the frozen loop, clamped to the stored frames; first <= last.
   void set_range(int first, int last) noexcept;
   int first() const noexcept { return first_; }
   int last() const noexcept { return last_; }
-  /// The frame that is looked at; the newest while running, -1 without any.
+  /// Displayed frame; the newest one while not frozen, -1 without frames.
   int position() const noexcept { return is_frozen_ ? position_ : size_ - 1; }
-  /// So many frames on (negative: back), to the end of the range at most. Frozen only.
+  /// Moves by that many frames (negative: back), at most to the end of the range. Frozen only.
   void step(int frames) noexcept;
-  /// On by a time as it was recorded; behind the range's last frame comes its first again. Frozen only; elapsed_s >= 0.
+  /// Advances by a time of the recording; after the range's last frame comes its first one. Frozen only; elapsed_s >=
+  /// 0.
   void play(double elapsed_s) noexcept;
 
   /// Frame 0..size()-1. Valid until the next push or restart.
@@ -74,7 +75,7 @@ class CineLoop {
   int size_ = 0;
   bool is_frozen_ = false;
   int first_ = 0, last_ = 0, position_ = 0;
-  double played_s_ = 0.0;  ///< Time shown beyond that of the frame looked at.
+  double played_s_ = 0.0;  ///< Time played since the time of the displayed frame.
 };
 
 }  // namespace trocar::ultrasound

@@ -10,26 +10,26 @@ namespace trocar::ultrasound {
 
 inline constexpr int kTgcSliders = 8;
 
-/// From a level's place in the dynamic range to gray.
+/// Map from a level's position in the dynamic range to gray.
 enum class GrayMap {
   kLinear,        ///< Proportional to dB.
-  kSoft,          ///< Dark tissue, bright borders; as the abdominal sweep of docs/validation.md looks.
+  kSoft,          ///< Dark tissue, bright borders, like the abdominal sweep of docs/validation.md.
   kHighContrast,  ///< As kSoft but steeper, and black below.
 };
 
 /// Display settings: they process existing echoes.
 struct DisplaySettings {
   double gain_db = 0.0;                      ///< Range -40..40.
-  std::array<double, kTgcSliders> tgc_db{};  ///< From near to far, beside the automatic part. Range -20..20.
-  double automatic_tgc_db_per_cm_mhz = 0.5;  ///< Two-way loss that is made good. Range 0..1.5 (one way).
-  /// Where the automatic part ends, so that the receiver's noise stays darker than tissue. Range 0..120. Assumed from
-  /// the sweep of docs/validation.md, whose liver fades below 11 cm while the depth below it stays black.
+  std::array<double, kTgcSliders> tgc_db{};  ///< From near to far, in addition to the automatic part. Range -20..20.
+  double automatic_tgc_db_per_cm_mhz = 0.5;  ///< Two-way loss that the gain compensates. Range 0..1.5 (one way).
+  /// Upper limit of the automatic part, so that the receiver's noise stays darker than tissue. Range 0..120. Assumed
+  /// from the sweep of docs/validation.md: its liver fades below 11 cm, and the depth below it stays black.
   double automatic_tgc_limit_db = 40.0;
   double dynamic_range_db = 60.0;  ///< Range 20..100.
-  double persistence = 0.0;        ///< Part of the last picture that stays. Range 0..0.95.
+  double persistence = 0.0;        ///< Share of the last picture that remains. Range 0..0.95.
   GrayMap gray_map = GrayMap::kSoft;
-  /// +x of the transducer, its marked side, on the left, as is usual: in a transverse view the patient's right is then
-  /// on the left, as in an axial slice. The orientation marker shows the side.
+  /// True: +x of the transducer, its marked side, is on the left, as usual. In a transverse view the patient's right is
+  /// then on the left, as in an axial slice. The orientation marker shows the side.
   bool is_mirrored = true;
 
   bool operator==(const DisplaySettings&) const = default;
@@ -44,17 +44,17 @@ DisplaySettings within_ranges(const DisplaySettings& settings) noexcept;
 Result<GrayMap> parse_gray_map(std::string_view name);
 std::string_view name_of(GrayMap map) noexcept;
 
-/// Gain at a depth (docs/physics.md U11), dB: the automatic part and the sliders, which are spread over the depth of
-/// the scan and joined by a cubic that never leaves the range of neighbouring sliders. Real-time safe.
+/// Gain at a depth (docs/physics.md U11), dB: the automatic part and the sliders. The sliders are spread over the depth
+/// of the scan and interpolated by a cubic that stays within the range of neighbouring sliders. Real-time safe.
 double tgc_gain_db(const DisplaySettings& settings, double depth_mm, double scan_depth_mm,
                    double frequency_mhz) noexcept;
 
 /// Level displayed as white at gain 0, relative to liver's speckle after TGC (root mean square). Assumed, range 10..35:
-/// liver behind a wall with a loss of about 8 dB then has the gray level of the sweep in docs/validation.md.
+/// at this value liver behind a wall with a loss of about 8 dB has the gray level of the sweep in docs/validation.md.
 inline constexpr double kWhite_db = 15.0;
 
-/// Gray of a level after TGC and before gain, dB against liver's speckle (docs/physics.md U11). Grows with the level.
-/// 0..255. Real-time safe.
+/// Gray of a level after TGC and before gain, dB relative to liver's speckle (docs/physics.md U11). Increases with the
+/// level. 0..255. Real-time safe.
 std::uint8_t gray_of_level(double level_db, const DisplaySettings& settings) noexcept;
 
 }  // namespace trocar::ultrasound

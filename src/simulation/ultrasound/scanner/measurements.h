@@ -11,14 +11,14 @@ namespace trocar::ultrasound {
 
 using Measurement = std::variant<DistanceCaliper, EllipseCaliper, AngleCaliper>;
 
-/// What has been measured in one picture, with undo.
+/// Measurements in one picture, with undo.
 class Measurements {
  public:
   const std::vector<Measurement>& items() const noexcept { return history_.now(); }
   void add(const Measurement& measurement);
-  /// Another one in its place; `joins`: one step of undo with the last (an end that is still held).
+  /// Replaces a measurement; `joins`: shares one undo step with the last change (while the user drags a mark).
   void put(std::size_t item, const Measurement& measurement, bool joins);
-  /// Nothing where there is none such.
+  /// Has no effect if there is no such measurement.
   void remove(std::size_t item);
   void remove_last() { remove(items().size() - 1); }
   void clear();
@@ -32,14 +32,14 @@ class Measurements {
   StepHistory<std::vector<Measurement>> history_{kMostSteps};
 };
 
-/// The marks that it was set by: both ends; ends of the axis and a place on the outline beside its middle; corner and
-/// both arms.
+/// Marks of a measurement: both ends; ends of the axis and a point on the outline beside its middle; corner and both
+/// arms.
 std::vector<Vec2> marks_T(const Measurement& measurement);
-/// With one of these at another place.
+/// Returns the measurement with one mark moved.
 Measurement with_mark(Measurement measurement, std::size_t mark, const Vec2& p_T);
 
-/// Text of a measurement as on a scanner, one line each: "Dist 23.4 mm"; "Ell 40.2 x 31.0 mm", "Area 9.79 cm2",
-/// "Circ 112.3 mm"; "Angle 43.2°". UTF-8.
+/// Text of a measurement in the form of a scanner, one string per line: "Dist 23.4 mm"; "Ell 40.2 x 31.0 mm", "Area
+/// 9.79 cm2", "Circ 112.3 mm"; "Angle 43.2°". UTF-8.
 std::vector<std::string> results(const Measurement& measurement);
 
 }  // namespace trocar::ultrasound

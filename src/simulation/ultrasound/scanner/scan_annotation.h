@@ -8,16 +8,16 @@
 
 namespace trocar::ultrasound {
 
-/// What is said beside a picture.
+/// Text beside a picture.
 struct ScanCaption {
   std::string transducer;
   double frequency_mhz = 3.5;
   double focus_mm = 80.0;
   DisplaySettings settings;
-  std::vector<std::string> remarks;  ///< Further lines, "frozen 12/60"; below the others.
+  std::vector<std::string> remarks;  ///< Further lines, e.g. "frozen 12/60"; below the others.
 };
 
-/// What a scanner draws around its picture, as places in pixels, so that a window and a file show the same.
+/// Annotation around a scanner's picture, as positions in pixels, so that a window and a file show the same.
 struct ScanAnnotation {
   struct Tick {
     double row = 0.0;
@@ -25,7 +25,7 @@ struct ScanAnnotation {
     double depth_mm = 0.0;
   };
   struct Text {
-    int column = 0;  ///< Of the top left dot.
+    int column = 0;  ///< Position of the top left dot.
     int row = 0;
     std::string text;
   };
@@ -33,21 +33,21 @@ struct ScanAnnotation {
     int column = 0;
     int row = 0;
     int columns = 0;
-    std::vector<std::uint8_t> gray;  ///< From the top; a pixel row each.
+    std::vector<std::uint8_t> gray;  ///< From the top; one value per pixel row.
   };
-  int scale_column = 0;         ///< Ticks reach left from here, labels are right of it.
-  std::vector<Tick> ticks;      ///< Depth below the middle of the face; the 0 as well.
-  double focus_row = 0.0;       ///< Of the focus' triangle, which points at the scale from the left.
-  Vec2 marker_pixel{0.0, 0.0};  ///< Beside the end of the face that is marked on the transducer: its +x end.
+  int scale_column = 0;         ///< Ticks extend to the left from here; labels are on the right.
+  std::vector<Tick> ticks;      ///< Depth below the middle of the face, including 0.
+  double focus_row = 0.0;       ///< Row of the focus triangle, which points at the scale from the left.
+  Vec2 marker_pixel{0.0, 0.0};  ///< Beside the marked end of the transducer's face: its +x end.
   Wedge wedge;                  ///< Gray of the levels within the dynamic range, white on top.
   std::vector<Text> texts;      ///< Depth labels in cm and the caption.
-  int text_scale = 1;           ///< Pixels a dot.
+  int text_scale = 1;           ///< Pixels per dot.
 };
 
 ScanAnnotation make_scan_annotation(const RasterGeometry& raster, const ScanGeometry& scan, const ScanCaption& caption);
 
 volume::RgbImage to_rgb(const GrayImage& image);
-/// Draws over a picture of the raster's size; what is beyond it is left out.
+/// Draws over a picture of the raster's size; parts beyond the picture are left out.
 void draw_annotation(volume::RgbImage& image, const ScanAnnotation& annotation);
 
 }  // namespace trocar::ultrasound

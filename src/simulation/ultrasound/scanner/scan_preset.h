@@ -17,13 +17,13 @@ struct ScanPreset {
   std::string name;                                         ///< "liver-biopsy".
   std::string title;                                        ///< "Liver biopsy".
   std::string transducer;                                   ///< A name of data/transducers.toml.
-  std::optional<double> depth_mm, frequency_mhz, focus_mm;  ///< Nothing: the transducer's own.
+  std::optional<double> depth_mm, frequency_mhz, focus_mm;  ///< Empty: the transducer's own.
   DisplaySettings display;
   bool has_doppler = false;
   double doppler_scale_cm_per_s = 30.0;
 };
 
-/// All of a file. Errors name file, preset and key: unknown key, out of range.
+/// All presets of a file. Errors name file, preset and key: unknown key, out of range.
 Result<std::vector<ScanPreset>> load_scan_presets(const std::filesystem::path& path);
 /// The transducer's acquisition with the preset applied.
 Acquisition acquisition_of(const ScanPreset& preset, const Transducer& transducer);

@@ -10,9 +10,10 @@
 
 namespace trocar::ultrasound {
 
-/// 2D gray images with where they were taken, as a tracker said it: what PLUS and 3D Slicer write as .igs.mha. Outside
-/// names stay: "ProbeToTracker" maps points of Probe to Tracker and is X_TrackerProbe here. Matrices, since
-/// calibrations (ImageToProbe) scale pixels to mm. Frame "Image": column, row, 0; pixel centres at integers.
+/// 2D gray images with their poses from a tracker, in the form that PLUS and 3D Slicer write as .igs.mha. The external
+/// names are kept: "ProbeToTracker" maps points of Probe to Tracker and is X_TrackerProbe here. Transforms are
+/// matrices, because calibrations (ImageToProbe) scale pixels to mm. Frame "Image": column, row, 0; pixel centres at
+/// integers.
 struct TrackedSequence {
   using Matrix4 = Eigen::Matrix4d;
   using Transforms = std::map<std::string, Matrix4, std::less<>>;  ///< "ProbeToTracker" -> matrix.

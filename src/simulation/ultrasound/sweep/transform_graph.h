@@ -9,17 +9,17 @@
 
 namespace trocar::ultrasound {
 
-/// Named frames and the transforms between them, as a tracker and a calibration give them: PLUS' transform repository.
+/// Named frames and the transforms between them from a tracker and a calibration, like PLUS' transform repository.
 class TransformGraph {
  public:
   using Matrix4 = TrackedSequence::Matrix4;
 
-  /// Adds them; one of the same name is replaced. "ProbeToTracker" joins Probe and Tracker both ways, unless its matrix
-  /// has no inverse. Names that are not "<Frame>To<Frame>" are left aside.
+  /// Adds transforms; replaces one of the same name. "ProbeToTracker" joins Probe and Tracker in both directions,
+  /// unless its matrix has no inverse. Names that are not "<Frame>To<Frame>" are ignored.
   void add(const TrackedSequence::Transforms& transforms);
-  /// Points of `from` to points of `to`, by the fewest transforms; nothing where they are not joined.
+  /// Maps points of `from` to points of `to`, by the fewest transforms; empty if the frames are not joined.
   std::optional<Matrix4> find(std::string_view from, std::string_view to) const;
-  /// Explains a failed find() for the user: known transforms, and where the chain ends.
+  /// Explains a failed find() for the user: lists the known transforms and the end of the chain.
   std::string explain(std::string_view from, std::string_view to) const;
 
  private:

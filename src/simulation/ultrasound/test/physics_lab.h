@@ -14,7 +14,7 @@
 #include "ultrasound/figures/speckle_statistics.h"
 #include "ultrasound/phantom/test_scenes.h"
 
-/// What the tests of the engine's physics share: shipped transducers before scenes of one thing each.
+/// Common parts of the tests of the engine's physics: shipped transducers in front of scenes with a single object.
 namespace trocar::testing {
 
 inline ultrasound::Transducer shipped(std::string_view name) {
@@ -52,12 +52,12 @@ ultrasound::ScenePtr with_table(const ultrasound::ScenePtr& scene, const Change&
   return copy;
 }
 
-/// Place in the frame of a point (x, y) of the identity pose.
+/// Position in the frame of a point (x, y) at the identity pose.
 inline ultrasound::Polar polar_of(const ultrasound::BasebandFrame& frame, double x_mm, double y_mm) {
   return frame.geometry.to_polar(ultrasound::Vec2(x_mm, y_mm));
 }
 
-/// Samples of a rectangle |x - x0| < half_width, y0..y1 of the picture's plane, as the identity pose sees it.
+/// Samples of a rectangle |x - x0| < half_width, y0..y1 of the picture's plane, at the identity pose.
 inline ultrasound::EchoPatch patch_at(const ultrasound::BasebandFrame& frame, double x0_mm, double half_width_mm,
                                       double y0_mm, double y1_mm) {
   const double middle_mm = 0.5 * (y0_mm + y1_mm);
@@ -82,7 +82,7 @@ inline double level_db(const ultrasound::EchoPatch& patch) {
 
 /// The brightest sample of a patch.
 struct Peak {
-  int line = 0, sample = 0;  ///< Of the patch.
+  int line = 0, sample = 0;  ///< Indices in the patch.
   double amplitude = 0.0;
 };
 inline Peak peak_of(const ultrasound::EchoPatch& patch) {
@@ -93,8 +93,8 @@ inline Peak peak_of(const ultrasound::EchoPatch& patch) {
   return peak;
 }
 
-/// Full width at half of the peak, in steps, of a curve with one peak; linear between values. NaN: it does not fall so
-/// far.
+/// Full width at half of the peak, in steps, of a curve with one peak; linear between values. NaN: the curve does not
+/// fall to half.
 inline double full_width(const std::vector<double>& curve) {
   const auto top = static_cast<std::size_t>(std::max_element(curve.begin(), curve.end()) - curve.begin());
   const double half = 0.5 * curve[top];
@@ -112,7 +112,7 @@ inline double full_width(const std::vector<double>& curve) {
   return right - left;
 }
 
-/// Frames that far apart in elevation hold other scatterers.
+/// Frames at this distance in elevation contain other scatterers.
 inline constexpr double kFrameStep_mm = 12.0;
 inline Pose at_elevation(double z_mm) {
   return Pose::translation(Vec3(0.0, 0.0, z_mm));

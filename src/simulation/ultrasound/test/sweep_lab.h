@@ -11,7 +11,7 @@
 
 namespace trocar::testing {
 
-/// A small array on a motor, and tissue whose skin lies along the dome that it swings in. The identity is X_PT.
+/// A small array on a motor, and tissue whose skin follows the dome of the swing. X_PT is the identity.
 inline ultrasound::Transducer motor_probe() {
   ultrasound::Transducer transducer;
   transducer.name = "motor";
@@ -30,7 +30,7 @@ inline constexpr double kLabDepth_mm = 70.0;
 /// Half a step between frames at the points' depth, and half a voxel.
 inline constexpr double kPlace_mm = 0.8;
 
-/// Beside the middle on all axes, so that a swapped sign or axis is seen.
+/// Off-centre on all axes, so that a swapped sign or axis is detected.
 inline std::vector<ultrasound::AcousticPoint> lab_points() {
   return {{{8.0, 40.0, 5.0}, 24.0}, {{-12.0, 52.0, -9.0}, 24.0}, {{3.0, 30.0, -7.0}, 24.0}};
 }
@@ -53,7 +53,7 @@ inline std::shared_ptr<const ultrasound::AcousticScene> lab_scene() {
   return scene;
 }
 
-/// The scene where a transducer at X_PT meets what one at the identity met.
+/// The scene moved so that a transducer at X_PT images it as one at the identity imaged the original.
 inline std::shared_ptr<const ultrasound::AcousticScene> moved(const ultrasound::AcousticScene& scene,
                                                               const Pose& X_PT) {
   ultrasound::AcousticScene made = scene;
@@ -80,7 +80,7 @@ inline ultrasound::MechanicalSweepOptions lab_options() {
   return options;
 }
 
-/// Middle of what is bright within 5 mm of a place, above most of the speckle.
+/// Centre of the bright samples within 5 mm of a position, above most of the speckle.
 inline Vec3 brightest_near(const volume::LabelGrid& volume, const Vec3& p_P) {
   constexpr double kReach_mm = 5.0;
   const volume::GridGeometry& grid = volume.geometry;

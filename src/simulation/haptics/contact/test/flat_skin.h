@@ -51,7 +51,7 @@ inline std::uint8_t all_fat(const Vec3&) {
   return kFat;
 }
 
-/// The tool's origin at a point, +y inwards (+z of P), turned about its elevation axis.
+/// Pose of the tool with its origin at a point, +y inwards (+z of P), turned about its elevation axis.
 inline Pose face_down(const Vec3& p_PT, double tilt_rad = 0.0) {
   Mat3 R;
   R.col(0) = Vec3::UnitX();

@@ -13,7 +13,7 @@ inline haptics::GateInput wanting(const Vec3& force_n, const Vec3& torque_nmm = 
   return input;
 }
 
-/// A gate that gives full force, as after a safe start in air.
+/// A gate at full force, as after a safe start in air.
 inline haptics::GateState open_gate(const haptics::GateParams& params = {}) {
   haptics::GateState state;
   for (int i = 0; i < 5000 && state.mode != telemetry::GateMode::kOn; ++i)

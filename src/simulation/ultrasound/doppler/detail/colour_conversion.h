@@ -10,18 +10,19 @@ namespace trocar::ultrasound::detail {
 
 bool is_same_scan(const ScanGeometry& a, const ScanGeometry& b) noexcept;
 
-/// Colours of cells over the gray picture's pixels. Between cells the autocorrelation is interpolated, not the
-/// velocity, so that aliasing turns from red to blue at once. Tables are taken for a geometry.
+/// Draws the colours of cells over the gray picture's pixels. The autocorrelation is interpolated between cells, not
+/// the velocity, so that aliasing changes from red to blue without colours in between. Tables are made for a geometry.
 class ColourConversion {
  public:
   ColourConversion() : image_() {}
-  /// The tables no longer fit.
+  /// Discards the tables.
   void forget() noexcept { is_made_ = false; }
   const volume::RgbImage& convert(const GrayImage& image, const RasterGeometry& raster, const ScanGeometry& scan,
                                   const DopplerFrame& frame, const DopplerSettings& settings) noexcept;
 
  private:
-  /// A pixel within the box: its cell (lower line and gate), and how far it is to the next ones, of 255.
+  /// A pixel within the box: its cell (lower line and gate), and its distances to the next line and gate in 1/255 of a
+  /// cell.
   struct Place {
     std::int32_t pixel;
     std::int32_t cell;
@@ -38,7 +39,7 @@ class ColourConversion {
   volume::RgbImage image_;
   std::vector<Place> places_;
   std::vector<std::int32_t> outline_;
-  std::array<volume::Rgb, kColours> colours_{};  ///< From -1 to 1 in parts of the scale.
+  std::array<volume::Rgb, kColours> colours_{};  ///< From -1 to 1 in fractions of the scale.
 };
 
 }  // namespace trocar::ultrasound::detail

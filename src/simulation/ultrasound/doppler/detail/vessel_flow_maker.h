@@ -23,15 +23,16 @@ class VesselFlowMaker {
   std::shared_ptr<const VesselFlow> finish();
 
  private:
-  /// A box of voxels; of the patient's labels or of the flow's grid.
+  /// A box of voxels of the patient's labels or of the flow's grid.
   struct Box {
-    volume::Index3 low, high;  ///< Both within.
+    volume::Index3 low, high;  ///< Both corners are in the box.
   };
 
   /// Depth below the surface (mm, negative outside) on a piece of the flow's grid.
   struct Lumen {
-    volume::FloatGrid own;     ///< Of the label alone.
-    volume::FloatGrid joined;  ///< With the beginnings of the vessels that join it: they may be cut out of it.
+    volume::FloatGrid own;     ///< Depth in the label alone.
+    volume::FloatGrid joined;  ///< Depth in the label and the first parts of the vessels that join it; these may be cut
+                               ///< out of the label.
   };
 
   std::array<bool, 256> find_joining(const anatomy::Label& label) const;

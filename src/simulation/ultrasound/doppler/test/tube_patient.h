@@ -11,7 +11,7 @@
 
 namespace trocar::testing {
 
-/// A patient of nothing but labels, centred on the origin: of each place the first label whose shape has it.
+/// A patient with labels only, centred on the origin. Each point has the first label whose shape contains it.
 inline anatomy::VirtualPatient make_tube_patient(
     const Vec3& extent_mm, const Vec3& spacing_mm,
     const std::vector<std::pair<std::string, std::function<bool(const Vec3&)>>>& shapes) {
@@ -30,7 +30,7 @@ inline anatomy::VirtualPatient make_tube_patient(
   return patient;
 }
 
-/// Steady flow from the head in "tube", that fast in its middle.
+/// Steady flow from the head in "tube", with that speed in its middle.
 inline ultrasound::FlowTable make_steady_table(double peak_cm_per_s, double profile_exponent) {
   ultrasound::FlowTable table;
   table.waveforms.push_back({"steady", {1.0, 1.0, 1.0, 1.0}, 0.0});

@@ -3,24 +3,25 @@
 #include "ultrasound/engine/detail/frame_state.h"
 #include "ultrasound/engine/detail/scan_plan.h"
 
-/// Borders of neighbouring scanlines and planes, put together to surfaces. A border's place on one scanline has the
-/// voxels' steps in it; a line through its neighbours has the surface's own place and tilt.
+/// Fits surfaces to the borders of neighbouring scanlines and planes. The position of a border on one scanline contains
+/// the voxels' steps; a line fitted through its neighbours gives the position and tilt of the surface.
 namespace trocar::ultrasound::detail {
 
-/// A surface where a scanline crosses it.
+/// A surface at its intersection with a scanline.
 struct SurfaceFit {
   float walk = 0.0F;       ///< Sample.
   float lateral = 0.0F;    ///< Slope of its depth along the face.
-  float elevation = 0.0F;  ///< The same across the image; 0 from fit_in_plane.
-  int neighbours = 0;      ///< Scanlines that it was found on beside this one.
+  float elevation = 0.0F;  ///< Slope of its depth across the image; 0 from fit_in_plane.
+  int neighbours = 0;      ///< Number of scanlines with this surface, without the scanline itself.
 };
 
 /// Fits the nearest borders between the same two tissues on neighbouring scanlines of one plane, some millimetres to
-/// either side. Reads the borders of that plane alone.
+/// either side. Reads only the borders of that plane.
 SurfaceFit fit_in_plane(const ScanPlan& plan, const FrameState& frame, int plane, int line,
                         const Border& border) noexcept;
 
-/// The same, and the slope across the image from the borders of all planes. All planes of this frame must be walked.
+/// As fit_in_plane, with the slope across the image from the borders of all planes. All planes of this frame must be
+/// walked.
 SurfaceFit fit_surface(const ScanPlan& plan, const FrameState& frame, int plane, int line,
                        const Border& border) noexcept;
 

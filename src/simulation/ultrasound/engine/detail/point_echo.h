@@ -5,7 +5,8 @@
 
 namespace trocar::ultrasound::detail {
 
-/// Adds the echoes of the scene's single points. They follow the tissue: pressed, bent, late as it is.
+/// Adds the echoes of the scene's single points. The points follow the tissue: pressure, refraction and delay apply to
+/// them.
 void add_points(const ScanPlan& plan, FrameState& frame) noexcept;
 
 }  // namespace trocar::ultrasound::detail

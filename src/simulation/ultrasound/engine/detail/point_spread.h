@@ -9,7 +9,7 @@
 
 namespace trocar::ultrasound::detail {
 
-/// One scanline at all steering angles on its way through spread_echoes; a task has its own.
+/// One scanline at all steering angles: working memory of spread_echoes. Each task has its own.
 class SteeringRows {
  public:
   SteeringRows() = default;
@@ -18,7 +18,7 @@ class SteeringRows {
   /// Samples of one angle, with zeros before and behind them.
   float* re(std::size_t angle) noexcept { return values_.data() + 2 * angle * stride_ + kPad; }
   float* im(std::size_t angle) noexcept { return re(angle) + stride_; }
-  /// Vectors write beyond the last sample: makes that silence again.
+  /// Zeroes the values beyond the last sample, which vector instructions overwrite.
   void clear_padding() noexcept;
 
  private:
@@ -31,7 +31,7 @@ class SteeringRows {
 void spread_echoes(const ScanPlan& plan, const FrameState& frame, int line, SteeringRows& rows,
                    BasebandFrame& out) noexcept;
 
-/// gain[s] = exp(log_gain[s] + added[s]), 0 where that is nothing. Both inputs reach 16 floats beyond n.
+/// gain[s] = exp(log_gain[s] + added[s]), or 0 if that is negligible. Both inputs must extend 16 floats beyond n.
 void to_gain(const float* log_gain, const float* added, int n, float* gain) noexcept;
 
 }  // namespace trocar::ultrasound::detail

@@ -6,28 +6,28 @@
 #include "ultrasound/engine/detail/frame_state.h"
 #include "ultrasound/engine/detail/scan_plan.h"
 
-/// Where a task looks for scatterers: some scanlines, some depth.
+/// Region of a task's scatterers: some scanlines, some depth.
 namespace trocar::ultrasound::detail {
 
-/// The scanlines and resting depths that a task looks for scatterers in, with bounds that are cheap to test in T: half
-/// planes on either side (x * nx + (y + radius) * ny <= 0), squared distance from the apex (fans) or y, thickness.
+/// Scanlines and resting depths of a task's scatterers, with bounds that are cheap to test in T: half planes on either
+/// side (x * nx + (y + radius) * ny <= 0), squared distance from the apex (fans) or y, thickness.
 struct Cell {
   int first_line, last_line;
-  double low_line, high_line;  ///< Straight scanlines between which lies what the bent ones hear.
+  double low_line, high_line;  ///< Straight scanlines that bound the regions of all bent ones.
   float first_rest, last_rest;
   float side_x[2], side_y[2], side_d[2];
   float low, high;
-  float near_mm, far_mm;  ///< The same two, not squared.
+  float near_mm, far_mm;  ///< `low` and `high`, not squared.
   float half_thickness_mm;
   float most_rank;
-  bool yields;  ///< Some of its tissue gives way to a dented face.
-  /// What varies slowly with depth, as a parabola: [0] + [1] * sample + [2] * sample^2.
+  bool yields;  ///< Part of its tissue is displaced by a dented face.
+  /// Slowly varying functions of depth, as parabolas: [0] + [1] * sample + [2] * sample^2.
   float speckle_scale[3], rank[3], inverse_elevation_sigma[3];
 };
 Cell make_cell(const ScanPlan& plan, const FrameState& frame, int first, int last, float first_rest,
                float last_rest) noexcept;
 
-using BrickIndex = std::array<std::int32_t, 3>;  ///< Of a cube of P.
+using BrickIndex = std::array<std::int32_t, 3>;  ///< Index of a cube of P.
 
 /// The box in P around a cell, in bricks.
 struct CellBox {
@@ -35,11 +35,11 @@ struct CellBox {
 };
 CellBox box_of(const ScanPlan& plan, const FrameState& frame, const Cell& cell) noexcept;
 
-/// Narrows first..last to those bricks of a row, balls about start_T + step_T * n, that come into the cell's sides and
-/// the beam's thickness.
+/// Narrows first..last to those bricks of a row that intersect the cell's sides and the beam's thickness. The bricks
+/// are balls about start_T + step_T * n.
 void stay_in_cell(const ScanPlan& plan, const Cell& cell, const Vec3f& start_T, const Vec3f& step_T, float radius_mm,
                   int& first, int& last) noexcept;
-/// Whether such a ball comes into the cell's depths.
+/// True if such a ball intersects the cell's depths.
 bool is_at_depth(const ScanPlan& plan, const Cell& cell, const Vec3f& middle_T, float radius_mm) noexcept;
 
 }  // namespace trocar::ultrasound::detail

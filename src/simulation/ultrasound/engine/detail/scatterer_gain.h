@@ -5,24 +5,24 @@
 
 namespace trocar::ultrasound::detail {
 
-/// What scatterers at a place give: logarithm of their amplitude and the share that is there, in 16 bits. Crowds of
-/// scatterers read them here and there, and half a float's size is what stays in the cache.
+/// Gain of scatterers at a position: logarithm of their amplitude and the share that is present, in 16 bits. Many
+/// scatterers read gains at scattered positions, and half a float's size fits the cache.
 using ScattererGain = std::uint16_t;
 
 inline constexpr int kShareBits = 3;
 /// Shares of scatterers; a tissue gets the nearest.
 inline constexpr std::array<float, 1 << kShareBits> kShares{1.0F, 0.8F, 0.5F, 0.3F, 0.1F, 0.05F, 0.02F, 0.0F};
-inline constexpr float kLeastLogGain = -30.0F;  ///< Neper; as much as nothing.
+inline constexpr float kLeastLogGain = -30.0F;  ///< Neper; a negligible amplitude.
 inline constexpr float kLogGainStep = 36.0F / 8191.0F;
 
 /// Class of a share, index into kShares.
 std::uint8_t share_class(double share) noexcept;
 
-/// gain[s] of log_gain[s] + added[s] neper and the share's class; inputs reach 16 values beyond n.
+/// gain[s] of log_gain[s] + added[s] neper and the share's class; inputs must extend 16 values beyond n.
 void pack_gains(const float* log_gain, const float* added, const std::uint8_t* share_classes, int n,
                 ScattererGain* gains) noexcept;
 
-/// The same gain, weakened by so many neper.
+/// The gain reduced by `neper`.
 constexpr ScattererGain attenuate(ScattererGain gain, float neper) noexcept {
   const auto steps = static_cast<int>(neper / kLogGainStep + 0.5F);
   const int level = (gain >> kShareBits) - steps;

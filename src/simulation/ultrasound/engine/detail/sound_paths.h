@@ -4,20 +4,21 @@
 #include "ultrasound/engine/detail/scan_plan.h"
 #include "ultrasound/engine/detail/tissue_walk.h"
 
-/// Where sound goes: contact of the face, straight scanlines, what bends them and what mirrors them. On the central
-/// plane, in coarse steps (docs/physics.md U7, U8).
+/// Paths of sound: contact of the face, straight scanlines, refraction and mirrors. On the central plane, in coarse
+/// steps (docs/physics.md U7, U8).
 namespace trocar::ultrasound::detail {
 
-/// Frame-wide transforms and each scanline's straight walk.
+/// Computes the frame's transforms and each scanline's straight walk.
 void aim_lines(const ScanPlan& plan, FrameState& frame) noexcept;
 
-/// Slowness, losses and gas of scanlines [first, last).
+/// Computes slowness, losses and gas of scanlines [first, last).
 void probe_lines(const ScanPlan& plan, FrameState& frame, WalkResult& scratch, int first, int last) noexcept;
 
-/// After all lines were probed: the mirrors.
+/// Places the mirrors. Call after all lines were probed.
 void place_mirrors(const ScanPlan& plan, FrameState& frame) noexcept;
 
-/// After all lines were probed: displacement and focusing by refraction, from how slowness changes sideways.
+/// Computes displacement and focusing by refraction, from the lateral change of slowness. Call after all lines were
+/// probed.
 void refract_lines(const ScanPlan& plan, FrameState& frame) noexcept;
 
 }  // namespace trocar::ultrasound::detail

@@ -8,8 +8,8 @@
 
 namespace trocar::ultrasound::detail {
 
-/// A scene's voxels in cubes of 4 x 4 x 4, one cache line each: a scan plane lies across the rows of a plain volume and
-/// would read a line for every voxel. The offset of a voxel is the sum of three parts, one an axis.
+/// A scene's voxels in cubes of 4 x 4 x 4, one cache line each: a scan plane crosses the rows of a plain volume and
+/// would read a cache line for every voxel. The offset of a voxel is the sum of three parts, one per axis.
 class TiledTissue {
  public:
   TiledTissue() = default;
@@ -29,7 +29,7 @@ class TiledTissue {
   std::int8_t texture(std::int32_t offset) const noexcept {
     return static_cast<std::int8_t>(texture_.data()->voxels.data()[offset]);
   }
-  /// Tissue of the whole tile around an offset; kMixedTile where it holds a border.
+  /// Tissue of the whole tile around an offset; kMixedTile if the tile contains a border.
   std::uint8_t tile_tissue(std::int32_t offset) const noexcept { return whole_[static_cast<std::size_t>(offset >> 6)]; }
   bool has_texture() const noexcept { return !texture_.empty(); }
 

@@ -4,10 +4,10 @@
 #include "ultrasound/engine/detail/scan_plan.h"
 #include "ultrasound/engine/detail/tissue_walk.h"
 
-/// How bright the scatterers of one tissue are from place to place (docs/physics.md U5).
+/// Variation of the scatterers' brightness within one tissue (docs/physics.md U5).
 namespace trocar::ultrasound::detail {
 
-/// What is added to a walk's log_gain, neper a sample: the CT's texture, layers of muscle and fat, focusing by
+/// Values added to a walk's log_gain, neper, one per sample: the CT's texture, layers of muscle and fat, focusing by
 /// refraction. `fibres` is made on the central plane and read on the others.
 struct alignas(64) Texture {
   std::array<float, kMaxSamples + 16> added;

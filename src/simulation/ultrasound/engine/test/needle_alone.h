@@ -37,7 +37,7 @@ inline ultrasound::BMode engine_in(ultrasound::TestTissue tissue) {
   return {ultrasound::homogeneous_scene(ultrasound::box_for(convex(), 100.0, 2.0), tissue), convex(), shallow()};
 }
 
-/// Hears needles and nothing else: as the engine, in a medium without loss and scatterers.
+/// Renders the echoes of needles only, like the engine in a medium without loss and scatterers.
 class NeedleAlone {
  public:
   explicit NeedleAlone(const ultrasound::Acquisition& acquisition = shallow())
@@ -106,7 +106,7 @@ inline double envelope(const ultrasound::BasebandFrame& frame, int line, int sam
 struct LinePeak {
   double depth_mm = 0.0, level_db = -1e9;
 };
-/// The brightest sample of a scanline between two depths, its place refined by a parabola.
+/// The brightest sample of a scanline between two depths, with its position refined by a parabola.
 inline LinePeak peak_of(const ultrasound::BasebandFrame& frame, int line, double from_mm = 2.0, double to_mm = 99.0) {
   const double mm = frame.geometry.sample_mm();
   int best = static_cast<int>(from_mm / mm);

@@ -5,9 +5,9 @@
 
 namespace trocar::ultrasound::detail {
 
-/// A label's name, or a pattern, as they are compared: lower case letters, digits and '*' alone.
+/// Normal form of a label's name or pattern for comparison: only lower case letters, digits and '*'.
 std::string plain_name(std::string_view name);
-/// Both plain; '*' ends a stem.
+/// True if a plain name matches a plain pattern; '*' matches any ending.
 bool matches_pattern(std::string_view pattern, std::string_view name) noexcept;
 
 }  // namespace trocar::ultrasound::detail

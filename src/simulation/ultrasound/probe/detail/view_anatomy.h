@@ -10,7 +10,7 @@
 
 namespace trocar::ultrasound::detail {
 
-/// A patient as the placement of a transducer sees him. Frame P, mm. Refers to the patient.
+/// Patient data for the placement of a transducer. Frame P, mm. Refers to the patient.
 struct ViewAnatomy {
   const anatomy::VirtualPatient& patient;
   std::array<bool, 256> is_bone{}, is_lung{}, is_through{};  ///< By label.
@@ -20,10 +20,10 @@ struct ViewAnatomy {
 
   double skin_mm(const Vec3& p_P) const noexcept;    ///< Negative inside.
   Vec3 skin_normal(const Vec3& p_P) const noexcept;  ///< Outwards, unit, of a patch of some millimetres.
-  Vec3 on_skin(Vec3 p_P) const noexcept;             ///< The point of the skin near a point.
-  bool contains(const Vec3& p_P) const noexcept;     ///< The CT does.
+  Vec3 on_skin(Vec3 p_P) const noexcept;             ///< Projects a point onto the skin nearby.
+  bool contains(const Vec3& p_P) const noexcept;     ///< True if the CT contains the point.
   std::uint8_t label_at(const Vec3& p_P) const noexcept;
-  bool is_gas_at(const Vec3& p_P) const noexcept;  ///< By its HU.
+  bool is_gas_at(const Vec3& p_P) const noexcept;  ///< From the HU value.
 };
 
 /// The point of the patient that a view aims at. Errors: the patient lacks the view's target.

@@ -7,12 +7,12 @@
 #include "ultrasound/probe/scan_geometry.h"
 #include "ultrasound/probe/view_visibility.h"
 
-/// How much of a view's subject is seen from a pose, by straight scanlines through the labels (docs/physics.md U16).
+/// Visible share of a view's subject from a pose, by straight scanlines through the labels (docs/physics.md U16).
 namespace trocar::ultrasound::detail {
 
 class ViewRays {
  public:
-  /// Refers to the ground, which must outlive it.
+  /// Refers to `ground`, which must outlive it.
   ViewRays(const ViewAnatomy& ground, const ProbeView& view, const Transducer& transducer, const Vec3& target_P);
 
   ViewVisibility measure(const Pose& X_PT) const;
@@ -20,13 +20,13 @@ class ViewRays {
  private:
   static constexpr int kLines = 33;
 
-  /// Why a scanline ends before the picture does.
+  /// Cause of a scanline's end.
   enum class End : std::uint8_t { kPicture, kBone, kGas, kUnscanned };
   struct Ray {
     double end_mm = 0.0;
     End end = End::kPicture;
     double subject_mm = -1.0;  ///< First sample of the subject near the target; negative: none.
-    bool has_left = false;     ///< The CT, near the target.
+    bool has_left = false;     ///< The scanline left the CT near the target.
   };
   Ray trace(const Pose& X_PT, int line, const Vec2& target_T) const;
   double weight(double line) const noexcept;
@@ -41,7 +41,7 @@ class ViewRays {
   std::array<bool, 256> is_subject_{};  ///< By label.
   bool is_surface_ = false;
   bool is_between_ribs_ = false;
-  bool shows_bone_ = false;  ///< All bone is the subject, however far from the target.
+  bool shows_bone_ = false;  ///< All bone is part of the subject, at any distance from the target.
   double frequency_mhz_ = 3.5;
 };
 

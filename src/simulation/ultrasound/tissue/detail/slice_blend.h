@@ -7,15 +7,15 @@
 
 namespace trocar::ultrasound::detail {
 
-/// Tissue between two slices of a CT. Where both show the same tissue it goes through. Elsewhere a border moves across
-/// the pixel, at the height that the distances to the borders in either slice say (shape-based interpolation, Raya and
-/// Udupa 1990, doi 10.1109/42.52980): a slanted surface becomes a slope, where votes alone would leave terraces. A
-/// layer that moves by more than its own thickness stays in between.
+/// Interpolates tissue between two slices of a CT. Where both slices have the same tissue, it continues between them.
+/// Elsewhere a border crosses the pixel at the height given by the distances to the borders in both slices (shape-based
+/// interpolation, Raya and Udupa 1990, doi 10.1109/42.52980). A slanted surface becomes a slope, where votes alone
+/// would leave terraces. A layer that moves by more than its own thickness stays in between.
 class SliceBlend {
  public:
   explicit SliceBlend(const TissueVolume& volume);
 
-  /// From now on between slices w and w + 1 (the last slice: itself).
+  /// Selects slices w and w + 1 (the last slice: itself).
   void set_slices(std::int64_t w);
   /// Tissues at `fraction` 0..1 of the way from slice w to the next, row by row.
   void blend(double fraction, std::vector<std::uint8_t>& out) const;
@@ -25,15 +25,15 @@ class SliceBlend {
     std::int32_t u, v;
     float mm;
   };
-  /// A pixel whose tissue changes: leaves the lower slice's one and comes to the upper's at these fractions.
+  /// A pixel whose tissue changes: fractions at which it leaves the lower slice's tissue and reaches the upper slice's.
   struct Change {
     std::uint32_t pixel;
     float leave, arrive;
     std::uint8_t between, upper;
   };
 
-  /// Depth of a pixel in its tissue in the lower slice and in the upper one, its way in the lower slice to the upper's
-  /// tissue and the reverse, up to the reach, mm; and the tissues nearest to it.
+  /// Depth of a pixel in its tissue in the lower slice and in the upper one; distance in the lower slice to the upper
+  /// slice's tissue and the reverse, up to the reach, mm; and the tissues nearest to it.
   struct Borders {
     float lower_depth, upper_depth, lower_away, upper_away;
     std::uint8_t beside_lower, beside_upper;
@@ -46,7 +46,7 @@ class SliceBlend {
   const TissueVolume& volume_;
   float half_pixel_mm_;
   float reach_mm_;
-  std::vector<Offset> offsets_;  ///< By growing distance, up to reach_mm_.
+  std::vector<Offset> offsets_;  ///< By increasing distance, up to reach_mm_.
   const std::uint8_t* lower_ = nullptr;
   const std::uint8_t* upper_ = nullptr;
   std::vector<Change> changes_;

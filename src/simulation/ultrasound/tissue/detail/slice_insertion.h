@@ -9,43 +9,43 @@
 
 namespace trocar::ultrasound::detail {
 
-/// Pixels first..last of a row that count.
+/// Pixels first..last of a row that are in use.
 struct PixelRun {
   int row, first, last;
 };
 
-/// The pixels of a picture that the options let count, row by row.
+/// Pixels of a picture that the options select, row by row.
 std::vector<PixelRun> pixel_runs(const TrackedSequence& sequence, const FreehandOptions& options);
 
-/// A picture and its place: column, row, 0, 1 to mm of the volume's P.
+/// A picture and its transform from (column, row, 0, 1) to mm of the volume's P.
 struct PlacedFrame {
   std::size_t frame;
   TrackedSequence::Matrix4 T_PI;
 };
 
-/// The part of a picture that the volume must hold: the clip rectangle as far as it lies in the picture, without one
-/// the pixels that count. At least one pixel.
+/// Part of a picture that the volume must contain: the clip rectangle within the picture, or without one the selected
+/// pixels. At least one pixel.
 ClipRectangle box_of(const TrackedSequence& sequence, const std::vector<PixelRun>& runs,
                      const FreehandOptions& options);
 
-/// The smallest box along the axes of P that holds the centres of a rectangle's pixels in all frames.
+/// The smallest box along the axes of P that contains the centres of a rectangle's pixels in all frames.
 struct Extent {
   Vec3 first_P, last_P;
 };
 Extent extent_of(const std::vector<PlacedFrame>& frames, const ClipRectangle& box);
 
-/// What has met a voxel: gray times weight in the lower 36 bits, weight above; 256 is a whole pixel. A voxel takes a
-/// million whole pixels and then no more.
+/// Accumulated pixels of a voxel: gray times weight in the lower 36 bits, weight above; 256 is a whole pixel. A voxel
+/// accepts at most a million whole pixels.
 using Cell = std::uint64_t;
 inline constexpr int kWeightShift = 36;
 inline constexpr Cell kWholePixel = 256;
 
-/// Puts the pixels of all frames into cells (one a voxel of `grid`), frame after frame in each voxel.
+/// Inserts the pixels of all frames into cells (one per voxel of `grid`), frame after frame in each voxel.
 void insert_frames(const TrackedSequence& sequence, const std::vector<PlacedFrame>& frames,
                    const std::vector<PixelRun>& runs, const FreehandOptions& options, const volume::GridGeometry& grid,
                    std::vector<Cell>& cells);
 
-/// Rounded gray of a cell; nothing has met it: 0.
+/// Rounded gray of a cell; 0 without pixels.
 inline std::uint8_t gray_of(Cell cell) noexcept {
   const Cell weight = cell >> kWeightShift;
   const Cell sum = cell & ((Cell{1} << kWeightShift) - 1);

@@ -4,9 +4,9 @@
 
 namespace trocar::ultrasound::detail {
 
-/// Sheets of connective tissue too small for labels (walls of portal triads in the liver): rows of points close
-/// together, which add up where they lie along the wave front and cancel elsewhere. A pure function of the place in P,
-/// where the whole row lies in a tissue that has them. Appends to scene.points.
+/// Adds sheets of connective tissue that are too small for labels (walls of portal triads in the liver), as rows of
+/// closely spaced points. The echoes of a row add up along the wave front and cancel elsewhere. A pure function of the
+/// position in P; a row is added where all of it lies in a tissue with strands. Appends to scene.points.
 void add_strands(AcousticScene& scene);
 
 }  // namespace trocar::ultrasound::detail

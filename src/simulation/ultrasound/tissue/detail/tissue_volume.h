@@ -10,13 +10,13 @@
 
 namespace trocar::ultrasound::detail {
 
-/// Stands in TissueVolume::tissue where there is no body.
+/// Value of TissueVolume::tissue outside the body.
 inline constexpr std::uint8_t kNoTissue = 0xFF;
 
-/// The part of a patient's grid that holds his body and a margin, with the axis of the thickest voxels last (slices).
+/// Part of a patient's grid that contains the body and a margin, with the axis of the thickest voxels last (slices).
 struct BodyWindow {
-  volume::GridGeometry geometry;      ///< Of the part, axes in their new order.
-  std::array<std::size_t, 3> stride;  ///< From a voxel to the next along each of them, in the patient's grid.
+  volume::GridGeometry geometry;      ///< Geometry of the part, with the axes in their new order.
+  std::array<std::size_t, 3> stride;  ///< Offset between adjacent voxels along each axis, in the patient's grid.
   std::size_t first;                  ///< Offset of its voxel (0, 0, 0) in the patient's grid.
 
   std::size_t patient_offset(std::int64_t u, std::int64_t v, std::int64_t w) const noexcept {
@@ -33,7 +33,7 @@ struct TissueVolume {
   volume::GridGeometry geometry;
   std::uint8_t gas = 0;              ///< Tissue index of gas.
   std::vector<std::uint8_t> tissue;  ///< Index into the table, or kNoTissue.
-  std::vector<std::int8_t> texture;  ///< As AcousticScene::texture. Empty until make_texture has been there.
+  std::vector<std::int8_t> texture;  ///< See AcousticScene::texture. Empty until make_texture fills it.
 
   std::size_t slice_size() const noexcept { return static_cast<std::size_t>(geometry.size[0] * geometry.size[1]); }
   const std::uint8_t* tissue_slice(std::int64_t w) const noexcept {
@@ -44,13 +44,13 @@ struct TissueVolume {
   }
 };
 
-/// Labels become tissues by their name in the table, gas in bowel and what has no label by their HU. Errors: a tissue
-/// without row.
+/// Maps labels to tissues by their name in the table. Gas in bowel and unlabelled voxels are classified by their HU.
+/// Errors: a tissue without a row.
 Result<TissueVolume> make_tissue_volume(const anatomy::VirtualPatient& patient, const BodyWindow& window,
                                         const AcousticTable& table);
 
 /// Fills `texture`: the CT's deviation from the mean of its structure (label), smoothed by a Gaussian of about
-/// `sigma_mm` over the same tissue alone; voxels at a tissue's border, where the CT mixes both, count little.
+/// `sigma_mm` over the same tissue only. Voxels at a tissue's border, where the CT mixes both, have a small weight.
 void make_texture(const anatomy::VirtualPatient& patient, const BodyWindow& window, double sigma_mm,
                   TissueVolume& volume);
 

@@ -20,7 +20,7 @@ struct BlockVoxel {
 inline constexpr std::uint8_t kLiver = 1, kKidney = 2, kVessel = 3, kMuscle = 4, kBone = 5, kLung = 6, kBowel = 7,
                               kFat = 8;
 
-/// A patient made by hand: a block of tissue behind a flat skin at y = 0 (the body where y > 0), centred on x = z = 0,
+/// A synthetic patient: a block of tissue behind a flat skin at y = 0 (the body where y > 0), centred on x = z = 0,
 /// with 12 mm of air in front.
 inline anatomy::VirtualPatient make_block(const Vec3& extent_mm, const Vec3& spacing_mm,
                                           const std::function<BlockVoxel(const Vec3&)>& voxel) {
@@ -47,7 +47,7 @@ inline anatomy::VirtualPatient make_block(const Vec3& extent_mm, const Vec3& spa
   return patient;
 }
 
-/// A table of all tissues that a block may hold, without acoustic sense.
+/// A table of all tissues that a block may contain, without realistic acoustic values.
 inline ultrasound::AcousticTable make_block_table() {
   ultrasound::AcousticTable table;
   for (const char* name : {"air", "skin", "adipose", "gas", "soft_tissue", "liver", "kidney", "vessel", "muscle",
