@@ -53,7 +53,7 @@ ContactFace make_face(Tool tool);
 /// Pose of the tool in the stylus: +y of T along +z of S, x of T along x of S, origin `reach_mm` from the grip.
 Pose tool_in_stylus(const ContactFace& face) noexcept;
 
-/// Settlement (mm) of the surface down to `depth_mm` under a unit of strain E*: the share of tissue above that depth
+/// Settlement (mm) of the surface down to `depth_mm` for a pressure equal to E*: the share of tissue above that depth
 /// (physics.md B9). Grows from 0 to pi/2 spread. Real-time safe.
 double settlement_mm(double depth_mm, double spread_mm) noexcept;
 

@@ -52,7 +52,8 @@ struct GateParams {
   double period_s = 0.001;     ///< Nominal period of the loop. Range 0.0001..0.01.
   /// Damping by the device's joints and a loose hand, which may compensate for a spring's delay. Range 0.0001..0.05.
   double physical_damping_ns_per_mm = 0.0035;
-  double max_slow_s = 0.05;  ///< Sum of late periods that causes a fault (physics.md G11). Range 0.01..5.
+  double max_slow_s = 0.05;  ///< Sum of late periods that causes a fault; those mostly spent in own calls count twice
+                             ///< (physics.md G11). Range 0.01..5.
   double jump_mm = 5.0;      ///< A step beyond jump_mm + hand_mm_per_s * dt is impossible. Range 1..100.
   double kick_mm = 2.5;      ///< A deviation from the extrapolated motion beyond kick_mm + thrust_mm_per_s2 * dt^2 is
                              ///< impossible. Range 0.5..50.

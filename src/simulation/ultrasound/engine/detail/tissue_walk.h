@@ -11,7 +11,7 @@ namespace trocar::ultrasound::detail {
 
 inline constexpr int kMaxSamples = 4096;
 
-/// Result of a walk. About 70 KiB, one per thread.
+/// Result of a walk. About 120 KiB, one per thread.
 struct alignas(64) WalkResult {
   std::array<std::array<float, kMaxSamples + 16>, 3> index;  ///< Position of each sample, fractional voxels.
   /// Offset of the first voxel of its cell among the tiles; -1 outside the volume.
