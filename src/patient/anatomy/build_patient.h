@@ -18,7 +18,7 @@ struct LabelSource {
   std::vector<std::pair<int, std::string>> names;  ///< Value in the file -> structure name, or kIgnoredStructure.
 };
 
-/// The name of label values that are left out, as a label map gives it. Background names are left out, too.
+/// Name in a label map of label values that are left out. Background names are left out, too.
 inline constexpr std::string_view kIgnoredStructure = "ignore";
 
 struct BuildOptions {
@@ -28,11 +28,11 @@ struct BuildOptions {
 
 /// A patient from a CT and segmentations: the body without table and clothing, labels resampled onto the CT's grid with
 /// priorities where they overlap, fat and muscle from HU inside the body, signed distance to the skin. The patient's
-/// volumes have their axes in the order of P (volume/orientation.h), whatever the order in the files.
-/// The structures are those of data_dir(), loaded once (KnownStructures).
-/// Errors: no such data, HU that cannot be (check_hounsfield), a segmentation that does not overlap the CT, unknown
-/// structure names and values without a name (all of them in one line), no body in the CT, all masks empty. Warnings
-/// (an empty mask, a structure cut by the volume's border) are appended to `warnings`.
+/// volumes have their axes in the order of P (volume/orientation.h), whatever the order in the files. The structures
+/// are those of data_dir(), loaded once (KnownStructures). Errors: no such data, impossible HU (check_hounsfield), a
+/// segmentation that does not overlap the CT, unknown structure names and values without a name (all of them in one
+/// line), no body in the CT, all masks empty. Warnings (an empty mask, a structure cut by the volume's border) are
+/// appended to `warnings`.
 Result<VirtualPatient> build_patient(const volume::CtGrid& ct, std::vector<LabelSource> sources,
                                      const BuildOptions& options, std::vector<std::string>& warnings,
                                      const Progress& progress = {});

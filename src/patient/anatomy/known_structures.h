@@ -12,14 +12,14 @@
 
 namespace trocar::anatomy {
 
-/// In the data folder.
+/// File in the data folder.
 inline constexpr std::string_view kStructuresFile = "structures.toml";
 
 /// A structure that is known by its name.
 struct KnownStructure {
   std::string tissue;  ///< Tissue class (TissueTable). "skin": a mask of the whole body, no structure inside it.
   volume::Rgb color{};
-  int priority = 0;  ///< Where masks overlap, the higher one has the voxel (a tumour over its liver).
+  int priority = 0;  ///< Where masks overlap, the higher one gets the voxel (a tumour over its liver).
 };
 
 /// The structure names of data/structures.toml: TotalSegmentator v2, 3D-IRCADb, the embedded patients, the tissues
@@ -31,14 +31,14 @@ class KnownStructures {
   /// priority, a name that cannot match or occurs twice, label numbers that do not count from 1.
   static Result<KnownStructures> load(const std::filesystem::path& data_folder);
 
-  /// Case, separators, side and a number do not matter. nullptr: an unknown name. Valid as long as this object.
+  /// Ignores case, separators, side and a number. nullptr: an unknown name. Valid as long as this object.
   const KnownStructure* find(std::string_view name) const;
 
   /// Names of background labels ("background", "air", "Clear Label"), independent of case and separators.
   bool is_background(std::string_view name) const;
 
-  /// The known names most like an unknown one, best first; only those within a few letters of it (edit distance at most
-  /// a quarter of the longer name).
+  /// The known names most similar to an unknown one, best first; only those within a few letters of it (edit distance
+  /// at most a quarter of the longer name).
   std::vector<std::string> similar_names(std::string_view name, std::size_t count = 3) const;
 
   /// TotalSegmentator v2, task "total": the names of the label numbers, 1 first.
@@ -55,7 +55,7 @@ class KnownStructures {
   };
   std::string file_;
   std::vector<KnownStructure> structures_;
-  std::vector<Row> rows_;  ///< The first that matches counts.
+  std::vector<Row> rows_;  ///< The first matching row is used.
   std::vector<std::string> background_;
   std::vector<std::string> totalsegmentator_;
 };

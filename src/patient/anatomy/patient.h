@@ -38,7 +38,7 @@ struct VirtualPatient {
   volume::FloatGrid skin_distance_mm;  ///< Signed distance to the skin, negative inside the body.
   std::vector<Landmark> landmarks;
   std::vector<NeedlePath> paths;  ///< Expert paths.
-  std::string content_hash;       ///< Of CT, labels and label table (hash_patient).
+  std::string content_hash;       ///< Hash of CT, labels and label table (hash_patient).
 };
 
 /// Content hash of CT, labels, geometry and label table.

@@ -11,13 +11,14 @@ struct SurfaceOptions {
   int smoothing_iterations = 20;      ///< Windowed sinc, which does not shrink. Range 0..200.
   double smoothing_pass_band = 0.05;  ///< Smaller is smoother. Range 0.001..2.
   double decimate_to_fraction = 0.5;  ///< Triangles kept (quadric decimation), 0..1.
-  std::size_t max_triangles = 60000;  ///< Of one mesh, about; larger ones are decimated further. Range 1000 and up.
-  std::size_t min_voxels = 20;        ///< Structures below are left out.
+  /// Approximate limit of one mesh; larger ones are decimated further. Range 1000 and up.
+  std::size_t max_triangles = 60000;
+  std::size_t min_voxels = 20;  ///< Smaller structures are left out.
 };
 
-/// Smoothed, decimated, closed surface of every structure and of the skin ("skin"), in P. What fills the space between
-/// structures (fat, the muscle found from HU, gas, soft tissue) has no surface of its own. An organ's surface goes
-/// about its lesions (lesions_as_organs), which have their own besides. Structures in parallel.
+/// Smoothed, decimated, closed surface of every structure and of the skin ("skin"), in P. The tissue between structures
+/// (fat, the muscle found from HU, gas, soft tissue) has no surface. An organ's surface encloses its lesions
+/// (lesions_as_organs), which also have their own surfaces. Structures are processed in parallel.
 std::vector<anatomy::NamedMesh> extract_surfaces(const anatomy::VirtualPatient& patient,
                                                  const SurfaceOptions& options = {}, const Progress& progress = {});
 /// Surface of one mask, closed also where the grid cuts the mask; empty for an empty mask. It encloses the volume of

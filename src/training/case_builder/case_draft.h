@@ -14,19 +14,19 @@ namespace trocar::case_builder {
 /// Imported data: immutable, shared by all drafts.
 struct ImportedPatient {
   anatomy::VirtualPatient patient;
-  std::vector<anatomy::NamedMesh> meshes;            ///< By the names that the labels had at the import.
-  std::vector<anatomy::LabelStatistics> statistics;  ///< Of the patient's labels.
-  std::vector<std::string> warnings;                 ///< Of the import, a line each.
-  std::string source;                                ///< As it was named: a file, a folder, an embedded patient.
+  std::vector<anatomy::NamedMesh> meshes;            ///< Surfaces by the names that the labels had at the import.
+  std::vector<anatomy::LabelStatistics> statistics;  ///< Statistics of the patient's labels.
+  std::vector<std::string> warnings;                 ///< Warnings of the import, one line each.
+  std::string source;                                ///< As given by the user: a file, a folder, an embedded patient.
 };
 
-/// A case while it is made: a value. The volumes are shared, so that a copy costs some kilobytes. Frame P.
+/// A case that is being built, as a value. Copies share the volumes, so that a copy costs some kilobytes. Frame P.
 struct CaseDraft {
   std::shared_ptr<const ImportedPatient> imported;  ///< Null: nothing was imported yet.
   std::string name;
   std::string description;
   std::vector<std::string> provenance;
-  anatomy::LabelTable label_table;  ///< Names, tissues and colours as they are now.
+  anatomy::LabelTable label_table;  ///< Current names, tissues and colours.
   std::vector<anatomy::Landmark> landmarks;
   std::vector<anatomy::NeedlePath> paths;  ///< The task's expert_path is the name of one of them.
   tasks::Task base;                        ///< The template.

@@ -24,7 +24,7 @@ class CaseEditor {
  public:
   enum class Work : std::uint8_t { kNone, kImporting, kPlanning, kSaving };
 
-  /// Reads the tables of the data folder; what is wrong with them is in message().
+  /// Reads the tables of the data folder; message() returns their errors.
   CaseEditor();
   ~CaseEditor();
   CaseEditor(const CaseEditor&) = delete;
@@ -40,14 +40,14 @@ class CaseEditor {
   std::shared_ptr<const anatomy::VirtualPatient> patient() const noexcept { return patient_; }
   std::shared_ptr<const std::vector<anatomy::NamedMesh>> meshes() const noexcept { return meshes_; }
 
-  /// An edit of the draft (case_edits.h); its error becomes the message. False where it was refused.
+  /// An edit of the draft (case_edits.h); its error becomes the message. False if it was rejected.
   bool edit(Result<CaseDraft> next, std::string what, const std::string& gesture = {});
   void undo();
   void redo();
 
   /// Starts a new import, which replaces the draft on success. Cancels a running import.
   void import_patient(ImportRequest request);
-  /// The expert's path, found by the planner from target, entry zone and risks.
+  /// Starts the planner for the expert's path, from target, entry zone and risks.
   void plan_path();
   void save(SaveOptions options);
   /// Cancels the running work. Saving is not cancelled: a case is written completely.
@@ -64,15 +64,15 @@ class CaseEditor {
   const std::string& message() const noexcept { return message_; }
   bool is_error() const noexcept { return is_error_; }
   void say(std::string message, bool is_error = false);
-  /// Where a case was saved last; empty: not yet.
+  /// Folder of the last saved case; empty: none.
   const std::filesystem::path& saved_folder() const noexcept { return saved_; }
-  /// Whether what was saved last is the draft as it is.
+  /// True if the last saved state is the current draft.
   bool is_saved() const noexcept { return has_patient() && saved_version_ == history_.version(); }
 
   const std::vector<tasks::Task>& templates() const noexcept { return templates_; }
   const std::vector<tasks::Needle>& needles() const noexcept { return needles_; }
   const anatomy::TissueTable& tissues() const noexcept { return tissues_; }
-  /// Of the draft's task; nullptr where the list lacks it.
+  /// Needle of the draft's task; nullptr if the list lacks it.
   const tasks::Needle* needle() const noexcept;
 
  private:

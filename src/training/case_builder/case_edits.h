@@ -12,15 +12,15 @@ inline constexpr const char* kExpertPath = "expert";  ///< Name of the path that
 
 // Each function returns a copy of the draft with one change, or an error; the input is not modified.
 
-/// Names are unique and not empty. Risks and a target that name the label follow it.
+/// Names are unique and not empty. Risks and a target that name the label are changed, too.
 Result<CaseDraft> rename_label(CaseDraft draft, std::uint8_t id, const std::string& name);
-/// `tissue` as in the tissue table; the caller offers those.
+/// `tissue`: a name of the tissue table; the caller ensures this.
 Result<CaseDraft> set_label_tissue(CaseDraft draft, std::uint8_t id, const std::string& tissue);
 Result<CaseDraft> set_label_color(CaseDraft draft, std::uint8_t id, const volume::Rgb& color);
 
-/// The task of another template; target, zone and path stay.
+/// Uses the task of another template; target, zone and path stay.
 CaseDraft use_template(CaseDraft draft, const tasks::Task& base);
-/// The point that the needle is to reach: inside the volume.
+/// Sets the point that the needle must reach: inside the volume.
 Result<CaseDraft> set_target_point(CaseDraft draft, const Vec3& p_P);
 /// Sets the target label (empty: all labels of the template's target tissues) and clears a target point.
 Result<CaseDraft> set_target_label(CaseDraft draft, const std::string& name);

@@ -8,7 +8,7 @@
 
 namespace trocar::case_builder {
 
-/// The draft with its steps back and forth. At most kMaxSteps are kept, some kilobytes each; the volumes of the import
+/// The draft with its undo and redo steps. At most kMaxSteps are kept, some kilobytes each; the volumes of the import
 /// are shared. A new import begins a new history, so that no more than one import is held.
 class CaseHistory {
  public:
@@ -18,7 +18,7 @@ class CaseHistory {
   /// Counts every change of the draft, undo and redo included.
   std::uint64_t version() const noexcept { return version_; }
 
-  /// Forgets all steps.
+  /// Removes all steps and starts with `draft`.
   void begin(CaseDraft draft);
   /// Adds one step. `what`: text for the buttons. Consecutive steps with the same `gesture` (a drag, a spin box) are
   /// merged; empty: a separate step. A draft without a change adds no step.

@@ -13,16 +13,16 @@ namespace trocar::case_builder {
 
 enum class CheckLevel : std::uint8_t { kOk, kWarning, kError };
 
-/// Where in the making of a case something belongs.
+/// Step of building a case to which a check belongs.
 enum class CaseStep : std::uint8_t { kImport, kLabels, kTarget, kPath, kForces, kSave };
 inline constexpr int kCaseSteps = 6;
 
-/// One line about a draft.
+/// Result of a check of a draft, one line.
 struct CaseCheck {
   CheckLevel level = CheckLevel::kOk;
   CaseStep step = CaseStep::kLabels;
   std::string text;             ///< Text of the result.
-  std::optional<Vec3> where_P;  ///< What a view can jump to.
+  std::optional<Vec3> where_P;  ///< Position to which a view can jump.
 };
 
 /// Runs all checks of a draft: labels (outside the body, implausible HU, volume or extent, cut off, unknown tissue),

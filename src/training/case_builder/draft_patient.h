@@ -14,7 +14,7 @@ class DraftPatient {
  public:
   /// With the draft's label table; landmarks, paths and texts are those of the import. The draft must have an import.
   std::shared_ptr<const anatomy::VirtualPatient> of(const CaseDraft& draft);
-  /// The same where it costs nothing; null where labels would have to be copied first.
+  /// The same if no labels must be copied; otherwise null.
   std::shared_ptr<const anatomy::VirtualPatient> find(const CaseDraft& draft) const;
 
  private:
@@ -23,7 +23,7 @@ class DraftPatient {
   std::shared_ptr<const anatomy::VirtualPatient> edited_;
 };
 
-/// The surfaces by the names that their labels have now; those of the import itself where no name was changed.
+/// Surfaces with the current names of their labels; those of the import itself if no name was changed.
 std::shared_ptr<const std::vector<anatomy::NamedMesh>> draft_meshes(const CaseDraft& draft);
 
 }  // namespace trocar::case_builder

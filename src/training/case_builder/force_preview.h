@@ -18,8 +18,7 @@ struct ForcePreview {
   double highest_n = 0.0;
 };
 
-/// With the task's force model. Errors: no path, a label of a tissue that the table does not know. About a tenth of a
-/// second.
+/// With the task's force model. Errors: no path, a label with a tissue that is not in the table. Takes about 0.1 s.
 Result<ForcePreview> preview_forces(const CaseDraft& draft, std::shared_ptr<const anatomy::VirtualPatient> patient,
                                     const tasks::Needle& needle, const anatomy::TissueTable& tissues);
 

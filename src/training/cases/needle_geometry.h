@@ -5,7 +5,7 @@
 
 namespace trocar::cases {
 
-/// A needle of the list as the forces see it, of steel, with its grip at the hub.
+/// Geometry of a listed needle for the force models: of steel, with its grip at the hub.
 haptics::NeedleGeometry needle_geometry(const tasks::Needle& needle) noexcept;
 
 }  // namespace trocar::cases

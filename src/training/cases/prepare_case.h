@@ -18,10 +18,10 @@ namespace trocar::cases {
 struct CaseOptions {
   /// Name of a task of the data folder, or a task file (ends in .toml); empty: the patient's own task.
   std::string task = "liver-biopsy";
-  std::string patient_folder;          ///< Where the patient's own task is looked for; an embedded patient has none.
-  std::string needle;                  ///< Of data/needles.toml; the task's own when empty.
-  std::string tissue_file;             ///< data/tissues.toml when empty.
-  std::string profile;                 ///< Of the tissue file.
+  std::string patient_folder;          ///< Folder of the patient's own task; an embedded patient has none.
+  std::string needle;                  ///< Name in data/needles.toml; empty: the task's needle.
+  std::string tissue_file;             ///< Empty: data/tissues.toml.
+  std::string profile;                 ///< Profile of the tissue file.
   std::vector<std::string> overrides;  ///< "liver.k=0.5"
   std::uint64_t seed = 1;
 };
@@ -30,7 +30,7 @@ struct CaseOptions {
 struct Case {
   std::shared_ptr<const anatomy::VirtualPatient> patient;
   tasks::Task task;
-  std::string task_toml;  ///< Text of the file that the task is from; empty: a task of the data folder.
+  std::string task_toml;  ///< Text of the task's file; empty: a task of the data folder.
   tasks::Needle needle;
   anatomy::TissueTable tissues;
   tasks::PlannedPath plan;
@@ -40,11 +40,11 @@ struct Case {
 /// Task, needle and tissues from the data folder, without a patient: detects their errors early.
 Result<Case> load_tables(const CaseOptions& options);
 
-/// Whether a patient has a task of its own: a folder with task.toml in it.
+/// True if a patient has its own task: a folder with task.toml in it.
 bool has_own_task(const std::string& patient_folder);
 
-/// Loads tables and task, checks that the patient can serve the task, and plans the expert path, or takes the one that
-/// the task names. Errors say which structure is missing or which margin leaves no path.
+/// Loads tables and task, checks that the patient can serve the task, and plans the expert path, or uses the one that
+/// the task names. Errors name the missing structure or the margin that leaves no path.
 Result<Case> prepare_case(std::shared_ptr<const anatomy::VirtualPatient> patient, const CaseOptions& options,
                           const Progress& progress = {});
 

@@ -14,15 +14,15 @@ struct PrescribedMotion {
   double speed_mm_per_s = 10.0;                ///< Range 0.1..500.
   double dt_s = 0.001;
   double before_mm = 10.0;
-  double after_mm = 0.0;           ///< Straight on past the path's end.
-  Vec3 drift_P = Vec3::Zero();     ///< Of the tip at the path's end, across the path.
+  double after_mm = 0.0;           ///< Distance straight on past the path's end.
+  Vec3 drift_P = Vec3::Zero();     ///< Drift of the tip at the path's end, across the path.
   Vec3 tilt_rad_P = Vec3::Zero();  ///< Rotation vector about the tip at the path's end.
 };
 
 int tick_count(const PrescribedMotion& motion) noexcept;
-/// Way of the tip along the path at a tick (1 = the first), mm; negative outside the skin.
+/// Position of the tip along the path at a tick (1 = the first), mm; negative outside the skin.
 double way_mm(const PrescribedMotion& motion, int tick) noexcept;
-/// What the device gives the scene at that tick.
+/// Input from the device to the scene at that tick.
 haptics::HapticInput input_at(const PrescribedMotion& motion, int tick) noexcept;
 
 }  // namespace trocar::cases

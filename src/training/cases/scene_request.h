@@ -9,17 +9,18 @@
 
 namespace trocar::cases {
 
-/// How a scene is asked of a server.
+/// Options of a scene request to a server.
 struct SceneChoice {
   std::string tool = "needle";
-  std::string force_model;     ///< Empty: the task's.
-  std::string patient_source;  ///< As the server can open it: a folder of its machine, or an embedded patient's name.
+  std::string force_model;  ///< Empty: the task's.
+  /// Source that the server can open: a folder of its machine, or an embedded patient's name.
+  std::string patient_source;
   std::uint64_t patient_seed = 1;
   std::uint64_t seed = 1;
 };
 link::LoadScene scene_request(const Case& the_case, const SceneChoice& choice);
 
-/// All numbers of tissues that differ from the scene's table, as the link carries them.
+/// Message with all numbers of tissues that differ from the scene's table.
 link::SetParameters tissue_parameters(const std::vector<anatomy::TissueSetting>& settings);
 
 /// Pose of the room for a supine patient: the user is at the patient's right side (W: x towards the feet, y to the

@@ -14,28 +14,28 @@
 
 namespace trocar::cases {
 
-/// What stays labelled in a partly segmented patient (the study of the Luebeck group: references.md, Sci Rep 2017):
-/// bones, the liver with its lesions, the vessels. The skin is a distance, not a label, and stays too. Rib cartilage is
-/// not among them: a bone threshold does not find it.
+/// Tissues that stay labelled in a partly segmented patient (the study of the Luebeck group: references.md, Sci Rep
+/// 2017): bones, the liver with its lesions, the vessels. The skin is a distance, not a label, and stays too. Rib
+/// cartilage is not among them: a bone threshold does not find it.
 inline constexpr std::string_view kPartlySegmented[] = {"bone", "liver", "liver_lesion", "vessel"};
 
-/// The same patient with only the labels of these tissues; all else is 0, felt from its HU.
+/// The same patient with only the labels of these tissues; all other labels are 0 and their forces follow from HU.
 anatomy::VirtualPatient partly_segmented(const anatomy::VirtualPatient& full,
                                          std::span<const std::string_view> tissues);
 
-/// `count` of `available` numbers, spread evenly over all of them, in rising order; all where there are fewer.
+/// `count` of `available` numbers, spread evenly over all of them, in rising order; all of them if there are fewer.
 std::vector<std::size_t> spread_choice(std::size_t available, std::size_t count, std::uint64_t seed);
 
-/// Motion along a path with a drift and a tilt of its own, at most these.
+/// Limits of a motion along a path; each path has its own drift and tilt within them.
 struct StudyMotion {
   double speed_mm_per_s = 10.0;
-  double max_drift_mm = 1.0;   ///< Of the tip at the target. [assumed]
+  double max_drift_mm = 1.0;   ///< Drift of the tip at the target. [assumed]
   double max_tilt_rad = 0.02;  ///< [assumed]
   std::uint64_t seed = 1;
 };
 PrescribedMotion study_motion(const Segment& line_P, std::size_t number, const StudyMotion& study);
 
-/// How much two scenes differ on one path: wrench on the device (force in N, torque about the grip in N mm, without
+/// Difference between two scenes on one path: wrench on the device (force in N, torque about the grip in N mm, without
 /// the stylus' weight), over the ticks in which the tip is past the skin.
 struct PathError {
   int ticks = 0;
@@ -43,8 +43,8 @@ struct PathError {
   double torque_rms_nmm = 0.0, torque_max_nmm = 0.0;
   int affected = 0;                           ///< Ticks with |dF| > max(kAffected_n, kAffectedShare |F|).
   double full_rms_n = 0.0, full_max_n = 0.0;  ///< |F| of the first scene.
-  // Where it was worst, in the first scene: the tissue that the needle's tip had reached and the one that the device's
-  // tip pushed it against, and how deep.
+  // Place of the largest difference, in the first scene: the tissue that the needle's tip had reached, the tissue
+  // against which the device's tip pushed it, and the depth.
   std::uint8_t worst_tissue = 0, worst_ahead = 0;
   double worst_depth_mm = 0.0;
   Segment line_P{Vec3::Zero(), Vec3::Zero()};

@@ -11,7 +11,7 @@ namespace trocar::report {
 
 /// The session as one self-contained HTML page: score and hints, force-displacement plot with the punctures marked
 /// (paper A, figure 4b), force components over time, the path in three CT slices, the core, the case. `patient` may be
-/// null (gone or changed): then the page says so and has no slices.
+/// null (missing or changed): then the page states this and has no slices.
 std::string html_report(const storage::Session& session, const anatomy::VirtualPatient* patient);
 
 }  // namespace trocar::report

@@ -14,7 +14,7 @@ struct AxisRange {
   double high = 1.0;
 };
 
-/// The range that holds all finite values; a single value gets room around it, no value at all gives 0..1.
+/// Range that contains all finite values; widened around a single value; 0..1 without values.
 AxisRange range_of(const std::vector<double>& values);
 
 /// A step of 1, 2 or 5 times a power of ten that divides the range into at most `at_most` pieces (>= 1).
@@ -30,8 +30,8 @@ std::string tick_text(double value, double step);
 /// highest and last stay, in order, so that no peak is lost (the M4 aggregation of Jugel et al., VLDB 2014).
 std::vector<Point2> thin_out(const std::vector<Point2>& line, double column_width);
 
-/// Places labels of given widths along a line, each as near to its wanted centre as goes without overlap, in the order
-/// given (by rising centre), inside low..high as far as they fit. Returns the centres.
+/// Places labels of given widths along a line, each as near to its wanted centre as possible without overlap, in the
+/// order given (by rising centre), inside low..high as far as they fit. Returns the centres.
 std::vector<double> spread_labels(const std::vector<double>& wanted, const std::vector<double>& widths,
                                   const AxisRange& room);
 

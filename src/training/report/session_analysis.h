@@ -9,19 +9,19 @@
 
 namespace trocar::report {
 
-/// A layer that gave way.
+/// A punctured layer.
 struct Puncture {
   std::size_t tick = 0;
   std::string layer;
   double time_s = 0.0;
   double depth_mm = 0.0;
-  double layer_force_n = 0.0;  ///< On the tip when the layer gave way.
-  double resistance_n = 0.0;   ///< Of all axial forces at that tick.
-  double drop_n = 0.0;         ///< Fall of the resistance within the next 0.1 s, before another layer gives way.
+  double layer_force_n = 0.0;  ///< Force on the tip at the puncture.
+  double resistance_n = 0.0;   ///< Sum of all axial forces at that tick.
+  double drop_n = 0.0;         ///< Fall of the resistance within the next 0.1 s, before another puncture.
 };
 std::vector<Puncture> find_punctures(const storage::Session& session);
 
-/// A stay of the needle in the body: the ticks from first contact to the last before it is outside again.
+/// One insertion of the needle: the ticks from the first contact to the last tick before the needle is outside again.
 struct Insertion {
   std::size_t first = 0;
   std::size_t deepest = 0;  ///< Tick of the greatest depth.
@@ -30,7 +30,7 @@ struct Insertion {
 /// Insertions that reached at least `min_depth_mm`, in order.
 std::vector<Insertion> find_insertions(const storage::Session& session, double min_depth_mm = 1.0);
 
-/// A run of one tissue along the way of the tip.
+/// An interval of one tissue along the path of the tip.
 struct TissueRun {
   double from_mm = 0.0;
   double to_mm = 0.0;
@@ -39,7 +39,7 @@ struct TissueRun {
 /// Tissues that the tip passed during insertion, by depth: each depth counts when it is reached for the first time.
 std::vector<TissueRun> tissues_along(const storage::Session& session, const Insertion& insertion);
 
-/// A run of one phase.
+/// An interval of one phase.
 struct PhaseRun {
   double from_s = 0.0;
   double to_s = 0.0;
@@ -47,7 +47,7 @@ struct PhaseRun {
 };
 std::vector<PhaseRun> phase_runs(const storage::Session& session);
 
-/// Name of a tissue id; "#7" where the session has none.
+/// Name of a tissue id; "#7" if the session has none.
 std::string tissue_name(const storage::SessionInfo& info, std::uint8_t id);
 
 }  // namespace trocar::report

@@ -39,11 +39,11 @@ struct PlotLine {
 
 /// A plot in data units. Legend, names of stripes and lines stand above the plot area, so that they never cover data.
 struct Plot {
-  std::string description;  ///< Read aloud where the picture is not seen.
-  std::string x_title;      ///< With unit.
+  std::string description;  ///< Text for screen readers.
+  std::string x_title;      ///< Title with unit.
   std::string y_title;
   double width = 760.0;
-  double height = 300.0;  ///< Of the plot area and its axes; legend and names come on top.
+  double height = 300.0;  ///< Height of the plot area and its axes; legend and names are added above.
   std::optional<AxisRange> x_range;
   std::vector<PlotBand> bands;
   std::vector<PlotSeries> series;
@@ -53,7 +53,7 @@ struct Plot {
 
 /// The plot as an <svg> element. All texts are escaped.
 std::string to_svg(const Plot& plot);
-/// The same as a file of its own, with style and a title above it: for print, and for programs that know no page.
+/// The same as a separate file, with style and a title above it: for print, and for programs that do not display HTML.
 std::string to_svg_file(const Plot& plot, std::string_view title);
 
 }  // namespace trocar::report

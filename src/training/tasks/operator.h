@@ -16,7 +16,7 @@ struct OperatorView {
   double time_s = 0.0;
   double dt_s = 0.001;
   Pose X_PN_device;            ///< Needle as the device holds it now.
-  telemetry::TickSample last;  ///< What the last tick made; at the first call default values.
+  telemetry::TickSample last;  ///< Result of the last tick; default values at the first call.
 };
 
 /// Target pose of the operator's hand: the hand's spring pulls the device there.
@@ -35,10 +35,10 @@ class Operator {
   virtual HandCommand next(const OperatorView& view) noexcept = 0;
 };
 
-/// What an operator needs to know of the case.
+/// Case data for an operator.
 struct OperatorCase {
-  Segment path_P;             ///< The planned (expert) path: entry on the skin -> where the tip shall stop.
-  bool fires_biopsy = false;  ///< The gun is fired there.
+  Segment path_P;             ///< The planned (expert) path: entry on the skin -> end position of the tip.
+  bool fires_biopsy = false;  ///< The gun is fired at the end position.
   std::uint64_t seed = 1;
 };
 
@@ -47,10 +47,11 @@ struct OperatorCase {
 /// of the first command. Takes about 10..30 s, at most 60.
 std::unique_ptr<Operator> make_expert(const OperatorCase& the_case);
 /// Misses the entry and the angle, trembles, moves unevenly and too fast, hesitates, pulls back, stops short or too
-/// deep: by chance, from the seed. Never more than 60 s.
+/// deep: at random, from the seed. Never more than 60 s.
 std::unique_ptr<Operator> make_novice(const OperatorCase& the_case);
-/// Rigid: the device itself moves at the speed, whatever it meets, so that forces can be held against closed forms.
-/// From 10 mm before the entry to the target, fires there if the case does, and out again. speed in mm/s, 0.1..500.
+/// Rigid: the device moves at the given speed, independent of forces, so that forces can be compared with closed forms.
+/// It moves from 10 mm before the entry to the target, fires there if the case does, and moves out again. speed in
+/// mm/s, 0.1..500.
 std::unique_ptr<Operator> make_constant_velocity(const OperatorCase& the_case, double speed_mm_per_s);
 /// The device poses of a recorded session, tick by tick, rigid; `fired` is the sample at which the gun was fired.
 std::unique_ptr<Operator> make_replay(std::vector<telemetry::TickSample> samples,

@@ -6,8 +6,9 @@
 
 namespace trocar::tasks {
 
-/// check_task, and where that finds nothing missing the planner itself: a patient without a safe path cannot serve the
-/// task. The planner's error is then the last of the reasons. For `patient check`, which agrees with `plan` this way.
+/// Runs check_task and, if nothing is missing, the planner: a patient without a safe path cannot serve the task. The
+/// planner's error is then the last of the reasons. `patient check` uses this function and therefore agrees with
+/// `plan`.
 TaskReadiness check_task_and_paths(const Task& task, const anatomy::VirtualPatient& patient, const Needle& needle,
                                    const Progress& progress = {});
 

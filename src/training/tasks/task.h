@@ -12,22 +12,22 @@
 
 namespace trocar::tasks {
 
-/// A structure that must not be touched, and how far a planned path stays away from it.
+/// A structure that must not be touched, and the margin of a planned path to it.
 struct RiskStructure {
-  std::string tissue;      ///< Tissue class ("vessel", "bowel", "lung", "bone" …), or
-  std::string label;       ///< a label's name when tissue is empty.
+  std::string tissue;      ///< Tissue class ("vessel", "bowel", "lung", "bone" …); empty: `label` is used.
+  std::string label;       ///< A label's name; used when tissue is empty.
   double margin_mm = 5.0;  ///< Range 0..50.
   double penalty = 20.0;   ///< Points lost when touched. Range 0..100.
 
   bool operator==(const RiskStructure&) const = default;
 };
 
-/// Where a needle may enter: the skin within a ball about one of its points.
+/// Permitted place of a needle's entry: the skin within a ball about one of its points.
 struct EntryZone {
   Vec3 centre_P = Vec3::Zero();  ///< On the skin.
   double radius_mm = 20.0;       ///< Range 1..200.
 
-  /// How far a point lies outside the zone, mm; 0 inside.
+  /// Distance of a point outside the zone, mm; 0 inside.
   double distance_outside_mm(const Vec3& p_P) const noexcept;
   bool operator==(const EntryZone&) const = default;
 };
@@ -43,16 +43,16 @@ struct Task {
   std::vector<RiskStructure> risks;
   // Settings that only a patient's own task has: they refer to places and structures of this patient.
   std::string target_label;             ///< The one label that is the target; empty: all of target_tissues.
-  std::optional<Vec3> target_P;         ///< The point to be reached; else the middle of a target's label.
-  std::optional<EntryZone> entry_zone;  ///< Planned inside it; an entry inside it is as good as the expert's.
-  std::string expert_path;              ///< Which of the patient's paths is the expert's; empty: it is planned.
+  std::optional<Vec3> target_P;         ///< Target point; empty: the middle of a target's label.
+  std::optional<EntryZone> entry_zone;  ///< Paths are planned inside it; an entry inside it is as good as the expert's.
+  std::string expert_path;              ///< Name of the patient's path that is the expert's; empty: it is planned.
   double min_organ_path_mm = 10.0;      ///< Organ passed before the target. Range 0..50.
   double parenchymal_depth_mm = 20.0;   ///< Target at least this deep below the organ's surface without a lesion.
-  double parenchymal_vessel_mm = 10.0;  ///< ... and this far from large vessels.
+  double parenchymal_vessel_mm = 10.0;  ///< Target at least this far from large vessels without a lesion.
   double max_path_mm = 150.0;           ///< Skin to the tip when it is at the target. Range 10..300.
   double max_entry_angle_deg = 60.0;    ///< Between the needle and the skin's normal. Range 5..85.
-  double max_posterior_deg = 30.0;      ///< Supine patient: how far the skin's normal may look down. Range 0..90.
-  // Scoring: the deviation at which a part is worth half, and the time at which it is worth nothing.
+  double max_posterior_deg = 30.0;      ///< Supine patient: largest downward angle of the skin's normal. Range 0..90.
+  // Scoring: deviation at which a part gives half its points, and time at which it gives none.
   double target_tolerance_mm = 5.0;
   double entry_tolerance_mm = 10.0;
   double angle_tolerance_deg = 10.0;
@@ -62,24 +62,25 @@ struct Task {
   bool operator==(const Task&) const = default;
 };
 
-inline constexpr const char* kOwnTaskFile = "task.toml";  ///< Of a patient's folder: the task that was made for it.
+/// File in a patient's folder: the task that was made for it.
+inline constexpr const char* kOwnTaskFile = "task.toml";
 
 /// All tasks of a folder, ordered by name. Errors name file, line and key.
 Result<std::vector<Task>> load_tasks(const std::filesystem::path& tasks_folder);
 /// Unknown name: exit status 2, the message lists the names.
 Result<Task> load_task(const std::filesystem::path& tasks_folder, std::string_view name);
-/// A task of a file: a whole one, or one with `base = "liver-biopsy"`, a task of the folder, and below it only what
-/// differs from that; a list of [[risks]] replaces the base's. With a base the task keeps the base's name.
+/// Loads a task from a file: a complete one, or one with `base = "liver-biopsy"`, a task of the folder, and only the
+/// differences from it; a list of [[risks]] replaces the base's. With a base the task keeps the base's name.
 Result<Task> load_task_file(const std::filesystem::path& file, const std::filesystem::path& tasks_folder);
-/// The same of such a file's text; `name`: of a whole task, as its file is called without `.toml`. `where`: for
+/// The same for the text of such a file; `name`: name of a complete task, its file name without `.toml`. `where`: for
 /// messages.
 Result<Task> parse_task(std::string_view text, const std::string& name, const std::string& where,
                         const std::filesystem::path& tasks_folder);
-/// The text of such a file: what `task` has that `base` has not.
+/// Text of such a file: the differences of `task` from `base`.
 std::string task_to_toml(const Task& task, const Task& base);
 
-/// Whether a label is the task's organ, target, or one of its risk structures (nullptr: none). A risk that is named by
-/// its tissue excludes organ and target: a biopsy of the pancreas can have "organ" as a risk.
+/// True if a label is the task's organ or target; its risk structure in the task (nullptr: none). A risk that is named
+/// by its tissue excludes organ and target: a biopsy of the pancreas can have "organ" as a risk.
 bool is_organ(const Task& task, const anatomy::Label& label) noexcept;
 bool is_target(const Task& task, const anatomy::Label& label) noexcept;
 const RiskStructure* find_risk(const Task& task, const anatomy::Label& label) noexcept;
@@ -91,7 +92,7 @@ bool is_parenchymal(const Task& task, const anatomy::VirtualPatient& patient);
 struct TaskReadiness {
   bool is_possible = false;
   bool is_parenchymal = false;       ///< No lesion: the target is in the organ's healthy tissue.
-  std::vector<std::string> reasons;  ///< Why not, or what is doubtful.
+  std::vector<std::string> reasons;  ///< Reasons why it is not possible, or doubts.
 };
 TaskReadiness check_task(const Task& task, const anatomy::VirtualPatient& patient);
 

@@ -5,13 +5,13 @@
 
 namespace trocar::anatomy::detail {
 
-/// Where inside the body a point lies, as far as CT values alone do not tell: smooth fields on a coarse grid (3 mm).
+/// Location of a point inside the body that CT values alone do not determine: smooth fields on a coarse grid (3 mm).
 struct BodyFields {
   /// Negative in the trunk's wall: within reach of the subcutaneous fat or of the spine and pelvis, where lean tissue
   /// is muscle. Positive deeper, where it may be bowel, mesentery or an organ without a label, and in the spine's
   /// discs.
   volume::FloatGrid wall_mm;
-  /// Signed distance to the surface of the aerated lungs, their vessels inside; infinite where there is none.
+  /// Signed distance to the surface of the aerated lungs, their vessels inside; infinite if there are none.
   volume::FloatGrid lung_mm;
 };
 

@@ -10,9 +10,9 @@ namespace trocar::anatomy::detail {
 /// Error: one of the structures that fill_unlabelled assigns is not known.
 Status check_fill_names(const KnownStructures& known);
 
-/// Gives every voxel inside the body that has no label one by its smoothed CT value and its region: "fat", "muscle",
-/// "bone_other", "gas", "lung", else "soft_tissue". The labels that were used are added to the table. check_fill_names
-/// has passed.
+/// Assigns a label to every unlabelled voxel inside the body by its smoothed CT value and its region: "fat", "muscle",
+/// "bone_other", "gas", "lung", else "soft_tissue". The used labels are added to the table. Precondition:
+/// check_fill_names has passed.
 void fill_unlabelled(const volume::CtGrid& ct, const volume::FloatGrid& skin_distance_mm, volume::LabelGrid& labels,
                      LabelTable& table, const KnownStructures& known);
 

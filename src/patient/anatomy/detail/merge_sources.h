@@ -15,9 +15,8 @@ struct MergedLabels {
   volume::MaskGrid body_hint;  ///< A mask of the whole body ("skin"), where a source has one; else empty.
 };
 
-/// Resamples the sources onto the grid of the CT (nearest voxel); where two claim a voxel the structure of higher
-/// priority has it, the earlier one among equals. Sources are freed as they are used. Errors and warnings as
-/// build_patient.
+/// Resamples the sources onto the grid of the CT (nearest voxel); a voxel in two structures gets the one of higher
+/// priority, the earlier one among equals. Each source is freed after use. Errors and warnings as build_patient.
 Result<MergedLabels> merge_sources(std::vector<LabelSource> sources, const volume::GridGeometry& grid,
                                    const KnownStructures& known, std::vector<std::string>& warnings);
 

@@ -15,7 +15,7 @@ std::string without_side(std::string plain);
 /// any number of digits; '*', anything.
 class StructurePattern {
  public:
-  /// Nothing for a text that no name can match: an empty one, other characters, a side in it.
+  /// Empty for a text that no name can match: an empty one, other characters, a side in it.
   static std::optional<StructurePattern> parse(std::string_view text);
 
   /// True if the pattern matches a plain name without side.

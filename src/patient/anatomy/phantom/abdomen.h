@@ -4,8 +4,8 @@
 
 namespace trocar::anatomy::phantom {
 
-/// Fills an empty anatomy with an upper abdomen, and returns the biopsy planned in it. Errors: see plan_biopsy; a
-/// structure whose name is not known.
+/// Fills an empty anatomy with an upper abdomen, and returns the biopsy planned in it. Errors: see plan_biopsy; an
+/// unknown structure name.
 Result<BiopsyPlan> build_abdomen(Anatomy& anatomy);
 
 }  // namespace trocar::anatomy::phantom

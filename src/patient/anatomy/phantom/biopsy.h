@@ -13,7 +13,7 @@ struct PathMargins {
   double bone_mm = 3.0;     ///< Ribs, cartilage, vertebrae.
   double organ_mm = 5.0;    ///< Vessels, lung, bowel, stomach, gallbladder, kidney.
   double liver_mm = 10.0;   ///< Liver before the lesion.
-  double reserve_mm = 1.2;  ///< On top of all: a voxel of the default grid.
+  double reserve_mm = 1.2;  ///< Added to all margins: a voxel of the default grid.
 };
 
 struct Lesion {

@@ -54,10 +54,10 @@ struct LayerData {
   LiverLayers liver;
 };
 
-/// In the data folder.
+/// File in the data folder.
 inline constexpr std::string_view kLayersFile = "phantoms/layers.toml";
 
-/// Reads data/phantoms/layers.toml. Errors as load_abdomen_data; layers on the path that do not follow each other.
+/// Reads data/phantoms/layers.toml. Errors as load_abdomen_data; layers on the path that are not in order of depth.
 Result<LayerData> load_layer_data(const std::filesystem::path& path);
 
 }  // namespace trocar::anatomy::phantom

@@ -21,9 +21,9 @@ struct LayerShape {
 
 struct LayerScene {
   std::vector<LayerShape> shapes;
-  bool is_from_back = false;   ///< The skin faces +y, else -y.
+  bool is_from_back = false;   ///< true: the skin faces +y; false: -y.
   float target_mm = 0.0F;      ///< Depth of the expert path's target, at x = z = 0.
-  std::string_view path_name;  ///< Of the expert path.
+  std::string_view path_name;  ///< Name of the expert path.
 };
 
 LayerScene lumbar_scene(const LayerData& data);

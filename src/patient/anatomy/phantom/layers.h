@@ -13,9 +13,9 @@ namespace trocar::anatomy::phantom {
 /// "layers-lumbar" from the back (+y), the others from the front (-y).
 const std::vector<PhantomInfo>& layered_scenes();
 
-/// The scene of that name, 0.8 mm voxels where the resolution says nothing. The seed changes texture and noise alone:
-/// the same anatomy for every seed. Errors: unknown name; data of the
-/// folder data_dir() that are missing or broken.
+/// Makes the scene of that name, with 0.8 mm voxels if the resolution is the default. The seed changes only texture and
+/// noise: the anatomy is the same for every seed. Errors: unknown name; data of the folder data_dir() that are missing
+/// or broken.
 Result<VirtualPatient> make_layered_scene(std::string_view name, std::uint64_t seed,
                                           const PhantomResolution& resolution = {});
 

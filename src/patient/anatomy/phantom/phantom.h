@@ -20,10 +20,10 @@ struct PhantomInfo {
 };
 const std::vector<PhantomInfo>& embedded_patients();
 
-/// The files of data_dir() that the embedded patients are made of: other bytes in one of them, other patients.
+/// Files of data_dir() from which the embedded patients are made. Other bytes in one of them give other patients.
 std::vector<std::filesystem::path> phantom_data_files();
 
-/// How finely the phantom is sampled. The anatomy does not depend on it.
+/// Sampling resolution of the phantom. The anatomy does not depend on it.
 struct PhantomResolution {
   std::array<std::int64_t, 3> size{0, 0, 0};  ///< 0: the default grid (1 mm or finer).
 };

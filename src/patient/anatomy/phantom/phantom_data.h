@@ -9,7 +9,7 @@
 #include "core/result.h"
 
 // The numbers of data/phantoms/abdomen.toml: sizes and places of the anatomy in P (mm; angles in rad, in the file in
-// degrees). The file describes each of them; here is only what the names do not tell.
+// degrees). The file describes each of them; comments here only add facts that are not in the names.
 namespace trocar::anatomy::phantom {
 
 /// A number that is drawn anew for each seed.
@@ -111,7 +111,8 @@ struct SpineData {
   Transition cord_end_z;
   float disc_half_height_mm;
 
-  /// Height (z, mm) of the centre of a vertebral body; level 0 is T5, 7 is T12, 12 is L5. The nearest beyond these.
+  /// Height (z, mm) of the centre of a vertebral body; level 0 is T5, 7 is T12, 12 is L5. Levels beyond these give the
+  /// nearest one.
   float height(int level) const;
   /// y of the centre of the vertebral bodies at a height.
   float y(float z) const { return y_mm - lordosis_z.at(z) + kyphosis_z.at(z); }
@@ -120,7 +121,7 @@ struct SpineData {
 struct VertebraData {
   float size;
   float half_disc_mm;
-  std::vector<Cone> paired;   ///< Of the left side.
+  std::vector<Cone> paired;   ///< Processes of the left side.
   std::vector<Cone> spinous;  ///< In the median plane.
 };
 
@@ -317,7 +318,7 @@ struct AbdomenData {
   LesionData lesions;
 };
 
-/// In the data folder.
+/// File in the data folder.
 inline constexpr std::string_view kAbdomenFile = "phantoms/abdomen.toml";
 
 /// Reads data/phantoms/abdomen.toml. Every key must be there, and no other. Errors name file and key: a missing file or

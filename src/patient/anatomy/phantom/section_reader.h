@@ -12,7 +12,7 @@
 
 namespace trocar::anatomy::phantom {
 
-/// The first error of a file of numbers, and the keys that were read, for the check of unknown ones.
+/// The first error of a file of numbers, and the keys that were read, for the check of unknown keys.
 class ReadState {
  public:
   void add(Error error) {
@@ -31,9 +31,9 @@ class ReadState {
   std::optional<Error> first_;
 };
 
-/// A table of numbers. A getter that fails keeps the first error in the ReadState, which must live as long, and returns
-/// zeros: the caller fills its structs and asks ReadState::finish at the end. Coordinates are within ±1000 mm; lengths,
-/// radii and widths above 0.
+/// A table of numbers. A getter that fails stores the first error in the ReadState, which must live as long, and
+/// returns zeros. The caller fills its structs and calls ReadState::finish at the end. Coordinates are within ±1000 mm;
+/// lengths, radii and widths above 0.
 class SectionReader {
  public:
   SectionReader(config::TomlTable table, ReadState& state);
@@ -73,7 +73,7 @@ class SectionReader {
   /// Rows of `columns` numbers, at least one.
   std::vector<std::vector<double>> rows(std::string_view key, std::size_t columns);
 
-  /// Keeps an error of a value that the caller has checked.
+  /// Stores an error of a value that the caller has checked.
   void refuse(std::string_view key, std::string what, std::string advice);
 
  private:
@@ -90,7 +90,7 @@ class SectionReader {
   }
 
   SeedRange range(std::string_view key, config::Range ends);
-  /// As many numbers as asked for, zeros after an error.
+  /// Returns `count` numbers; zeros after an error.
   std::vector<double> read(std::string_view key, std::size_t count, config::Range range);
   void check_length(std::string_view key, float value);
   template <class T>

@@ -8,8 +8,9 @@
 #include "core/random.h"
 #include "geometry/vec.h"
 
-// Implicit shapes: functions of a point (mm) that are negative inside, zero on the surface, and near it grow by about
-// 1 a mm. All are Lipschitz within kSteepness (blocks of voxels that a shape cannot reach are skipped by it).
+// Implicit shapes: functions of a point (mm) that are negative inside, zero on the surface, and near it grow by about 1
+// per mm. All are Lipschitz within kSteepness, the bound by which blocks of voxels that a shape cannot reach are
+// skipped.
 namespace trocar::anatomy::phantom {
 
 /// Upper bound of the slope of every structure's distance function, noise and warp included.
@@ -47,7 +48,7 @@ float ellipsoid(const Vec3f& p, const Vec3f& radii);
 /// Elliptic cylinder along z around the origin; a and b are its half axes along x and y.
 float elliptic_cylinder(float x, float y, float a, float b);
 
-/// Smooth random function of place, periodic far away, values about -1..1; one unit of the argument is one cell.
+/// Smooth random function of position, periodic far away, values about -1..1; one unit of the argument is one cell.
 class ValueNoise {
  public:
   explicit ValueNoise(std::uint64_t seed);
@@ -69,7 +70,7 @@ struct Cone {
   float radius_a, radius_b;
 };
 
-/// The nearest place on a tube's centre line.
+/// The nearest point on a tube's centre line.
 struct TubeHit {
   float distance;  ///< To the tube's surface; kReach where the tube is farther than that.
   float arc_mm;    ///< Along the centre line from the tube's beginning (of a chain).
@@ -80,7 +81,7 @@ struct TubeHit {
 /// Many cones (a vessel tree, a bowel loop, a bone's process), found through a grid of cells.
 class Tube {
  public:
-  static constexpr float kReach = 14.0F;  ///< Distances beyond are not told apart.
+  static constexpr float kReach = 14.0F;  ///< Larger distances are not distinguished.
 
   Tube() = default;
   explicit Tube(std::vector<Cone> cones);

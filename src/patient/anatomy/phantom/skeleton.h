@@ -7,7 +7,7 @@
 
 namespace trocar::anatomy::phantom {
 
-/// The rib above the intercostal space at a place of the chest wall; nothing where there are not ribs on both sides.
+/// The rib above the intercostal space at a place of the chest wall; empty without ribs on both sides.
 std::optional<int> intercostal_space(const AbdomenData& data, const Place& place);
 
 }  // namespace trocar::anatomy::phantom

@@ -21,7 +21,7 @@ struct Paint {
   std::uint8_t label = 0;
 };
 
-/// How borders are drawn: as wide as a voxel (partial volume).
+/// Drawing of borders: as wide as a voxel (partial volume).
 struct Brush {
   float blur_mm = 1.0F;
   /// Share 0..1 of a voxel that lies inside a surface at this distance.
@@ -36,7 +36,7 @@ struct Structure {
   std::function<Paint(const Place&, float distance, const Brush&)> paint;
 };
 
-/// The anatomy of one seed: everything about the patient but the voxels.
+/// The anatomy of one seed: all data of the patient except the voxels.
 struct Anatomy {
   Anatomy(std::uint64_t seed_, AbdomenData data_, KnownStructures known_);
   Anatomy(const Anatomy&) = delete;  // the structures refer to the data and the noise
@@ -54,7 +54,7 @@ struct Anatomy {
   std::uint8_t label(std::string_view name);
   /// Error: the first name given to label() that is no known structure.
   Status check_labels() const;
-  /// Random numbers of one organ: what is changed in one does not change the others.
+  /// Random numbers of one organ: a change in one organ does not change the others.
   Random random(std::string_view organ) const;
   const Structure& find(std::string_view name) const;
   /// Point of P that the warp maps to q.
@@ -68,7 +68,7 @@ struct Anatomy {
   std::string unknown_label_;
 };
 
-/// Ending of a label: "_right" for the sign -1, "_left" for 1.
+/// Suffix of a label: "_right" for the sign -1, "_left" for 1.
 std::string side_of(float sign);
 
 /// A centre moved by up to spread_mm along each axis.

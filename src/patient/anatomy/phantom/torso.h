@@ -10,7 +10,7 @@
 
 namespace trocar::anatomy::phantom {
 
-/// The box that every phantom fills, whatever its resolution (mm, P).
+/// The box that every phantom fills, for any resolution (mm, P).
 inline constexpr float kHalfWidth = 180.5F;
 inline constexpr float kHalfDepth = 142.5F;
 inline constexpr float kHalfHeight = 114.0F;
@@ -50,7 +50,8 @@ class TorsoContours {
   std::array<float, 3> wave_phase_;
 };
 
-/// The torso's distances on a lattice of 4 mm, interpolated between: exact for the contours within hundredths of a mm.
+/// The torso's distances on a lattice of 4 mm, interpolated between the nodes. The contours are accurate within
+/// hundredths of a mm.
 class Torso {
  public:
   Torso(std::uint64_t seed, const TorsoData& data);

@@ -7,12 +7,12 @@
 
 namespace trocar::anatomy::phantom {
 
-/// How a vessel tree grows.
+/// Growth parameters of a vessel tree.
 struct GrowthRule {
   float root_radius_mm = 7.0F;
   float root_share = 0.5F;       ///< Fraction of the distance to the territory's centre at which the root forks.
   float least_radius_mm = 1.2F;  ///< Thinner branches are not grown.
-  /// Whether a vessel of this radius may run through a point of P.
+  /// True if a vessel of this radius may run through a point of P.
   std::function<bool(const Vec3f& p, float radius_mm)> allowed;
 };
 

@@ -7,12 +7,12 @@ namespace trocar::anatomy {
 
 /// value -> slope * value + intercept, rounded.
 struct Rescale {
-  double slope = 1.0;      ///< HU a stored number. Range 1e-4..1e4.
+  double slope = 1.0;      ///< HU per stored number. Range 1e-4..1e4.
   double intercept = 0.0;  ///< HU of the stored number 0. Range -1e6..1e6.
 };
 
-/// Stored numbers to HU: for a CT whose file lacks them (--rescale). Below -32768 becomes -32768; an error where a
-/// value would be above 32767.
+/// Converts stored numbers to HU, for a CT whose file lacks them (--rescale). Values below -32768 become -32768; a
+/// value above 32767 is an error.
 Status apply_rescale(const Rescale& rescale, volume::CtGrid& ct);
 
 /// Checks that the numbers of a CT can be HU: air is present, and most of the rest is soft tissue. Fails if the rescale

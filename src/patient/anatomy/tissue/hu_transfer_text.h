@@ -30,11 +30,11 @@ inline constexpr std::string_view kFactorEnding = "_factor";
 inline constexpr config::Range kCurveFactorRange{0.1, 10.0};
 inline constexpr config::Range kHuRange{-1100.0, 4000.0};
 
-/// Reads [transfer] into table.transfer; nothing when the file has none. Errors name the line: knots that do not rise,
+/// Reads [transfer] into table.transfer; no change if the file has none. Errors name the line: knots that do not rise,
 /// curves of another length, numbers out of range or without source, thresholds that cross.
 Status read_hu_transfer(const config::TomlTable& document, TissueTable& table);
 
-/// Writes [transfer] so that read_hu_transfer gives the same; nothing for a table without.
+/// Writes [transfer] so that read_hu_transfer returns the same values; nothing for a table without transfer functions.
 void write_hu_transfer(config::TomlWriter& writer, const TissueTable& table);
 
 }  // namespace trocar::anatomy

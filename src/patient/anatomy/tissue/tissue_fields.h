@@ -10,7 +10,7 @@
 
 namespace trocar::anatomy {
 
-/// A number of a tissue or layer as files and overrides name it. Private to the tissue table's units.
+/// A number of a tissue or layer, with its names in files and overrides. Private to the tissue table's units.
 template <class T>
 struct TissueField {
   std::string_view name;

@@ -30,7 +30,7 @@ struct TissueParameter {
 
 /// The numbers of one tissue with those of its surface; "transfer" is unlabelled tissue over HU.
 struct TissueParameterGroup {
-  std::string name;  ///< Of the tissue.
+  std::string name;  ///< Name of the tissue.
   std::vector<TissueParameter> parameters;
 };
 

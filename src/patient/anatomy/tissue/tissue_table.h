@@ -32,7 +32,7 @@ struct TissueParams {
   double viscosity_ns_per_mm = 0.0;   ///< nu of the friction law. Range 0..1.
   double friction_mu = 0.0;           ///< Coefficient of kinetic friction mu. Range 0..2.
   double roughness_n = 0.0;           ///< delta: the friction fluctuates within +-delta*mu. Range 0..5.
-  double stick_n_per_mm = 0.0;        ///< Karnopp holding force a mm of inserted shaft. Range 0..0.1.
+  double stick_n_per_mm = 0.0;        ///< Karnopp holding force per mm of inserted shaft. Range 0..0.1.
   double cutting_n = 0.0;             ///< F_c while fresh tissue is cut. Range 0..10.
   std::optional<std::uint8_t> layer;  ///< Index into TissueTable::layers of the surface to pierce before this tissue.
   double young_kpa = 10.0;            ///< Young's modulus under slow load: bed of the shaft, palpation. Range 0..1e6.
@@ -52,7 +52,7 @@ struct TissueTable {
   std::map<std::string, Provenance> provenance;  ///< "tissues.liver.friction_mu", "layers.skin.delta_x_mm" -> source.
   double skin_thickness_mm = 2.0;  ///< The skin is a shell of the distance field, not voxels. Range 0.5..6.
   std::uint8_t skin = 0;           ///< Tissue index of the skin.
-  HuTransfer transfer;             ///< Of unlabelled tissue, over HU.
+  HuTransfer transfer;             ///< Transfer functions of unlabelled tissue, over HU.
 
   std::optional<std::uint8_t> find_tissue(std::string_view name) const noexcept;
   std::optional<std::uint8_t> find_layer(std::string_view name) const noexcept;
@@ -60,13 +60,13 @@ struct TissueTable {
   std::string to_toml() const;
 };
 
-/// Reads a tissue file and applies one of its profiles ("paper-a" when empty). A table that to_toml wrote has its
-/// profile in it already. Errors name the line: a number out of range or without source, an unknown key, layer or
+/// Reads a tissue file and applies one of its profiles ("paper-a" when empty). A table that to_toml wrote already
+/// contains its profile. Errors name the line: a number out of range or without source, an unknown key, layer or
 /// profile.
 Result<TissueTable> load_tissue_table(const std::filesystem::path& path, std::string_view profile = {});
 Result<TissueTable> parse_tissue_table(std::string_view toml_text, const std::string& name,
                                        std::string_view profile = {});
-/// Profiles that a tissue file offers.
+/// Profiles of a tissue file.
 Result<std::vector<std::string>> tissue_profiles(const std::filesystem::path& path);
 
 /// Applies one override "liver.k=0.5": TISSUE.KEY=VALUE or LAYER.KEY=VALUE, KEY a field name or its short form (k, nu,
@@ -75,7 +75,7 @@ Result<std::vector<std::string>> tissue_profiles(const std::filesystem::path& pa
 /// layer's key given on a tissue changes that tissue's layer. nu given on the first tissue that carries a layer changes
 /// the layer too: paper A's table has one nu for both laws. tissues.NAME.KEY and layers.NAME.KEY mean that row alone.
 /// transfer.tn_factor=1.2 (k, tn, tt, r0, c, shaft, nu, young) multiplies the whole curve over HU as it stands by
-/// 0.1..10, each value kept in its field's range. Out of range or unknown: exit status 2, the table stays as it was.
+/// 0.1..10, each value kept in its field's range. Out of range or unknown: exit status 2, the table is unchanged.
 Status apply_override(TissueTable& table, std::string_view assignment);
 
 }  // namespace trocar::anatomy

@@ -4,7 +4,7 @@
 
 namespace trocar::surface::detail {
 
-/// How much of each voxel a mask fills, 0..255, on a grid made coarser by whole factors until its spacing is about
+/// Fill level of each voxel by a mask, 0..255, on a grid made coarser by whole factors until its spacing is about
 /// `spacing_mm` (0: the mask's own grid).
 volume::Grid<std::uint8_t> occupancy(const volume::MaskGrid& mask, double spacing_mm);
 
@@ -12,8 +12,8 @@ volume::Grid<std::uint8_t> occupancy(const volume::MaskGrid& mask, double spacin
 /// triangles for each.
 std::size_t count_faces(const volume::Grid<std::uint8_t>& occupancy);
 
-/// The occupancy at about `spacing_mm`, or so much coarser that it has at most `max_faces`. Smoothing and decimation
-/// take minutes for the millions of triangles of noise.
+/// The occupancy at about `spacing_mm`, or on a grid so much coarser that it has at most `max_faces`. Smoothing and
+/// decimation take minutes for the millions of triangles of noise.
 volume::Grid<std::uint8_t> bounded_occupancy(const volume::MaskGrid& mask, double spacing_mm, std::size_t max_faces);
 
 /// Contour of a half filled voxel, smoothed and decimated with VTK's filters; in mm along the grid's axes from voxel

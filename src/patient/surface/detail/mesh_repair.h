@@ -8,8 +8,8 @@ namespace trocar::surface::detail {
 /// in the other. For the few triangles that a decimation loses.
 void close_holes(TriangleMesh& mesh);
 
-/// Moves all vertices along their normals by one distance, at most `max_shift_mm`, so that the mesh encloses the
-/// volume again that rounding off its corners took.
+/// Moves all vertices along their normals by one distance, at most `max_shift_mm`, to restore the enclosed volume that
+/// was lost when its corners were rounded off.
 void restore_volume(TriangleMesh& mesh, double volume_mm3, double max_shift_mm);
 
 }  // namespace trocar::surface::detail

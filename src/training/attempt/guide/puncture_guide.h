@@ -7,14 +7,14 @@
 
 namespace trocar::attempt {
 
-/// Advice of a teacher about the virtual needle and the planned path; at most one sentence, or empty. Priority:
+/// Advice to the trainee about the virtual needle and the planned path; at most one sentence, or empty. Priority:
 /// structures at risk ahead of the tip, depth, offset from the path, direction. Distances are measured in the resting
-/// anatomy. After the shot only "withdraw the needle" remains.
+/// anatomy. After the shot the only advice is "withdraw the needle".
 std::string guide_puncture(const cases::Case& the_case, const telemetry::TickSample& sample, bool has_fired = false);
 
 inline constexpr double kGuideAhead_mm = 12.0;  ///< Distance ahead of the tip that is checked.
-inline constexpr double kGuideBeside_mm = 2.0;  ///< Beside the path; less is not worth a word. [assumed]
+inline constexpr double kGuideBeside_mm = 2.0;  ///< Offset from the path; smaller offsets give no advice. [assumed]
 inline constexpr double kGuideTilt_deg = 2.0;   ///< [assumed]
-inline constexpr double kGuideDepth_mm = 1.5;   ///< At the target. [assumed]
+inline constexpr double kGuideDepth_mm = 1.5;   ///< Tolerance of the depth at the target. [assumed]
 
 }  // namespace trocar::attempt

@@ -37,32 +37,32 @@ struct AttemptRequests {
   bool begins = false, fires = false, finishes = false, has_drawn = false;
 };
 
-/// What the loop publishes after each poll.
+/// Data that the loop publishes after each poll.
 struct AttemptUpdate {
   AttemptView view;
-  std::vector<ForcePoint> forces;    ///< Since the last one.
-  std::vector<AttemptEvent> events;  ///< Since the last one.
+  std::vector<ForcePoint> forces;    ///< Since the last update.
+  std::vector<AttemptEvent> events;  ///< Since the last update.
   std::optional<Result<RunResult>> result;
   std::shared_ptr<HapticServers> servers;
 };
 
-/// Requests in, updates out: all that a client and the loop of an attempt share. Both may be on threads of their own; a
-/// mutex is held for copies only.
+/// Requests and updates: the only data that a client and the loop of an attempt share. Each may run on its own thread;
+/// the mutex is held for copies only.
 class AttemptExchange {
  public:
   explicit AttemptExchange(std::shared_ptr<const Clock> clock) : clock_(std::move(clock)) {}
 
-  // The client's side. One thread.
+  // Client side; one thread.
   AttemptView view() const;
-  /// Of the recorded session since the last call, thinned to the resolution of a plot; no peak is lost.
+  /// Forces of the recorded session since the last call, thinned to the resolution of a plot; all peaks are kept.
   std::vector<ForcePoint> take_forces();
   std::vector<AttemptEvent> take_events();
-  /// Once, in kFinished or kFailed.
+  /// Returns the result once, in kFinished or kFailed.
   std::optional<Result<RunResult>> take_result();
-  /// For the next attempt; null before they were started.
+  /// Servers for the next attempt; null before they were started.
   std::shared_ptr<HapticServers> servers() const;
 
-  /// The window has drawn a picture. Once called, the servers receive the age of the last one.
+  /// Call after the window has drawn a frame. After the first call the servers receive the age of the last frame.
   void frame_drawn();
   /// Target pose and velocity (mm/s of tip or face, rad/s) of a hand. A hand without an update for 50 ms stops; a jump
   /// is slowed down to possible hand motion. While there are no data from the needle (kServerLost), targets are
@@ -71,19 +71,19 @@ class AttemptExchange {
   /// Clamped: the tool stays in place and ignores set_goal.
   void clamp(Tool tool, bool is_clamped);
   void begin();  ///< See AttemptOptions::waits_for_begin.
-  void fire();   ///< The biopsy gun; counts once.
+  void fire();   ///< Fires the biopsy gun; only the first call counts.
   void stop_forces();
   void resume_forces();
-  /// To the servers while they run; the insertion continues. The loaded table is the case's. The server's reply is the
-  /// view's message.
+  /// Sends parameters to the servers while they run; the insertion continues. The loaded table is the case's. The
+  /// view's message is the server's reply.
   void set_parameters(link::SetParameters parameters);
-  /// A scripted operator moves the needle, after the hand has gone to its start; the view's is_performing tells how
-  /// long.
+  /// A scripted operator moves the needle after the hand has moved to the operator's start. The view's is_performing is
+  /// true until the operator has finished.
   void perform(std::unique_ptr<tasks::Operator> the_operator);
-  /// Ends the attempt and scores it. Without a single tick it fails.
+  /// Ends the attempt and scores it. Fails without any tick.
   void finish();
 
-  // The loop's side.
+  // Loop side.
   AttemptRequests take_requests();
   void publish(AttemptUpdate update);
 

@@ -18,17 +18,17 @@
 
 namespace trocar::attempt {
 
-/// The case of an attempt as the loop needs it.
+/// Case of an attempt, for the loop.
 struct AttemptCase {
   std::shared_ptr<const cases::Case> the_case;
-  std::string patient_source;  ///< As the user named it; recorded.
-  std::string server_source;   ///< As a server of this machine opens it.
+  std::string patient_source;  ///< As given by the user; recorded.
+  std::string server_source;   ///< Source for a server of this machine.
   std::uint64_t patient_seed = 1;
 };
 
-/// Who moves the tools.
+/// Operators that move the tools.
 struct AttemptOperators {
-  /// Its operator performs from the first tick; null: the client leads the needle. Its parameters are sent at their
+  /// The operator performs from the first tick; null: the client leads the needle. Its parameters are sent at their
   /// ticks.
   Performer needle;
   bool ends_with_operator = false;
@@ -40,24 +40,25 @@ struct LoopOptions {
   std::string operator_name;      ///< Recorded.
   std::string level;              ///< Recorded.
   std::uint64_t seed = 1;
-  Pose X_PN_start;  ///< Of a needle that the client leads.
-  Pose X_PT_start;  ///< Of a transducer that the client leads.
+  Pose X_PN_start;  ///< Start pose of a needle that the client leads.
+  Pose X_PT_start;  ///< Start pose of a transducer that the client leads.
   bool waits_for_begin = false;
-  bool is_guided = false;      ///< Hints are given.
-  bool has_view = true;        ///< false: phase, progress and time alone are published.
-  double longest_s = 900.0;    ///< Every tick is kept in memory until it is scored. [assumed]
-  bool scores_unsaved = true;  ///< A session that cannot be written is scored all the same; false: it is an error.
-  bool is_transducer_optional = true;  ///< The attempt begins also without a transducer's server.
-  /// A failure of the needle's server ends the attempt also after it began, and notes do not list recoveries.
+  bool is_guided = false;  ///< Hints are given.
+  bool has_view = true;    ///< false: only phase, progress and time are published.
+  /// Limit of the duration: every tick stays in memory until the attempt is scored. [assumed]
+  double longest_s = 900.0;
+  bool scores_unsaved = true;  ///< true: a session that cannot be written is still scored; false: it is an error.
+  bool is_transducer_optional = true;  ///< The attempt also begins without a server of the transducer.
+  /// A failure of the needle's server ends the attempt even after its begin; notes do not list recoveries.
   bool ends_with_needle_server = false;
-  /// Asked about the session's folder once a second while it is recorded; empty: the disk is not watched.
+  /// Called with the session's folder once a second during recording; empty: the disk is not monitored.
   std::function<std::optional<std::uintmax_t>(const std::filesystem::path&)> free_bytes;
 };
 
 /// An attempt through live haptic servers, one step at a time: records every needle tick, responds to it, supervises
-/// the servers, and scores at the end. The only live loop: a window runs it on a thread of its own (LiveAttempt), the
-/// command line on its caller's (run_realtime_session). One thread; only restarting a server's process and the end
-/// block.
+/// the servers, and scores at the end. This is the only live loop: a window runs it on a separate thread (LiveAttempt),
+/// the command line on the caller's thread (run_realtime_session). Single-threaded. Only the restart of a server's
+/// process and the end of the attempt block.
 class AttemptLoop {
  public:
   /// Clock and exchange must outlive it.
@@ -65,9 +66,9 @@ class AttemptLoop {
               std::shared_ptr<HapticServers> servers, ToolSupervisors supervisors, Clock& clock,
               AttemptExchange& exchange);
 
-  /// One step; call it every 1 to 2 ms. false: the attempt has ended, its result is in the exchange.
+  /// Performs one step; call it every 1 to 2 ms. false: the attempt has ended, its result is in the exchange.
   bool poll();
-  /// Switches the forces off and ends it without a score; the session stays, incomplete.
+  /// Switches the forces off and ends the attempt without a score; the incomplete session is kept.
   void abandon();
 
  private:
@@ -111,17 +112,18 @@ class AttemptLoop {
   NeedleSteering* steering_ = nullptr;  ///< The performer's operator.
   LedTransducer led_transducer_;
   std::unique_ptr<TransducerMotion> own_motion_;
-  TransducerMotion* transducer_motion_ = nullptr;  ///< One of these two.
+  TransducerMotion* transducer_motion_ = nullptr;  ///< Points to one of these two.
   std::optional<AttemptRecord> record_;
   std::optional<LiveOperator> live_;
-  tasks::HandCommand command_;       ///< Of the needle's hand.
-  std::size_t next_parameters_ = 1;  ///< Of the performer's; the first ones are the scene's.
+  tasks::HandCommand command_;       ///< Command of the needle's hand.
+  std::size_t next_parameters_ = 1;  ///< Index into the performer's parameters; the first ones are part of the scene.
   std::optional<telemetry::TickSample> last_needle_, last_transducer_;
-  double needle_time_s_ = 0.0, transducer_time_s_ = 0.0;     ///< Of the servers' last ticks.
-  double transducer_on_s_ = 0.0;                             ///< When its forces came on.
-  int needle_activations_ = 0, transducer_activations_ = 0;  ///< When their ticks last began to come.
+  double needle_time_s_ = 0.0, transducer_time_s_ = 0.0;  ///< Times of the servers' last ticks.
+  double transducer_on_s_ = 0.0;                          ///< Time at which the transducer's forces were switched on.
+  /// ServerSupervisor::activations() when their ticks last began to arrive.
+  int needle_activations_ = 0, transducer_activations_ = 0;
   bool was_needle_on_ = false, was_transducer_on_ = false;
-  bool is_transducer_given_up_ = false;  ///< And noted.
+  bool is_transducer_given_up_ = false;  ///< The transducer was given up, with a note.
   bool begins_ = false, finishes_ = false, is_stopped_ = false;
   bool has_ever_been_on_ = false, has_ended_ = false;
   std::optional<double> contact_s_;

@@ -18,27 +18,28 @@ enum class AttemptPhase : std::uint8_t {
   kReady,       ///< Forces are on, the needle is outside the skin.
   kInBody,      ///< The skin was pierced, the needle is inside.
   kServerLost,  ///< No data from the needle: its server or this machine is too slow or has failed; see `banner`.
-  kStopped,     ///< Forces were stopped by the trainee; resume_forces() goes on.
-  kFinishing,   ///< Being scored.
-  kFinished,    ///< result() has the score.
-  kFailed,      ///< result() has the error. What was recorded is in the session file.
+  kStopped,     ///< The trainee stopped the forces; resume_forces() switches them on again.
+  kFinishing,   ///< The attempt is being scored.
+  kFinished,    ///< take_result() returns the score.
+  kFailed,      ///< take_result() returns the error. The session file contains the recorded part.
 };
 const char* to_string(AttemptPhase phase) noexcept;
 
 /// State of the virtual needle. Frame P.
 struct NeedleView {
-  bool is_known = false;      ///< A tick has come.
-  double time_s = 0.0;        ///< Of the session; 0 until it is recorded.
-  Pose X_PN;                  ///< Felt: tip and axis of the virtual needle, the device's roll.
+  bool is_known = false;      ///< A tick has arrived.
+  double time_s = 0.0;        ///< Session time; 0 before recording.
+  Pose X_PN;                  ///< Felt pose: tip and axis of the virtual needle, roll of the device.
   std::vector<Vec3> shaft_P;  ///< Hub to tip, see needle_shaft.h.
   Pose X_PN_device;           ///< Needle pose of the device: ahead of the virtual needle by the deformation of the
                               ///< tissue.
   Pose X_PN_goal;             ///< Target pose of the hand.
-  double resistance_n = 0.0;  ///< Along the needle; positive pushes it out.
+  double resistance_n = 0.0;  ///< Resistance along the needle; positive pushes it out.
   double lag_mm = 0.0;        ///< Distance of the virtual tip behind the hand's, along the axis.
-  double depth_mm = 0.0;      ///< Of the tip below the skin.
-  double speed_mm_s = 0.0;    ///< Along the axis; positive inward.
-  std::string tissue;         ///< At the tip: a label's name where one lies there, else the tissue's; empty outside.
+  double depth_mm = 0.0;      ///< Depth of the tip below the skin.
+  double speed_mm_s = 0.0;    ///< Speed along the axis; positive inward.
+  /// Tissue at the tip: the label's name if there is a label, otherwise the tissue's; empty outside.
+  std::string tissue;
   telemetry::InsertionPhase phase = telemetry::InsertionPhase::kOutside;
   bool is_clamped = false;
 };
@@ -46,10 +47,10 @@ struct NeedleView {
 /// State of the virtual transducer. Frame P.
 struct TransducerView {
   bool is_known = false;
-  Pose X_PT;                ///< Felt: it does not pass through the skin.
-  Pose X_PT_goal;           ///< Where the hand wants it.
-  double contact_n = 0.0;   ///< Of skin and face.
-  double pressed_mm = 0.0;  ///< Deepest dent of the skin.
+  Pose X_PT;                ///< Felt pose: does not pass through the skin.
+  Pose X_PT_goal;           ///< Target pose of the hand.
+  double contact_n = 0.0;   ///< Contact force of skin and face.
+  double pressed_mm = 0.0;  ///< Largest indentation of the skin.
   bool is_clamped = false;
 };
 
@@ -60,39 +61,40 @@ struct ServerView {
   bool is_connected = false;
   bool is_on = false;                     ///< Its forces are on, and the hand moves it.
   std::string device;                     ///< "virtual:premium"
-  double rate_hz = 0.0, wanted_hz = 0.0;  ///< Served, wished for.
+  double rate_hz = 0.0, wanted_hz = 0.0;  ///< Achieved and requested tick rate.
   double p99_us = 0.0;                    ///< Lateness of its periods.
-  std::uint64_t ticks_missing = 0;        ///< Made there, never received here.
+  std::uint64_t ticks_missing = 0;        ///< Ticks that the server made and this program did not receive.
   telemetry::GateMode gate = telemetry::GateMode::kOff;
-  telemetry::GateFault fault = telemetry::GateFault::kNone;  ///< Of the safety gate.
-  std::string grant;                                         ///< What real time the system granted.
-  std::string warning;                                       ///< The server's own.
-  bool waits_for_resume = false;  ///< It has no forces until resume_forces(), though nobody stopped them.
-  int restarts = 0;               ///< How often it was started again or seated again.
+  telemetry::GateFault fault = telemetry::GateFault::kNone;  ///< Fault of the safety gate.
+  std::string grant;                                         ///< Real-time scheduling granted by the system.
+  std::string warning;                                       ///< Warning of the server.
+  bool waits_for_resume = false;  ///< Its forces are off until resume_forces(), although the user did not stop them.
+  int restarts = 0;               ///< Number of restarts of the process and of recoveries without a restart.
 };
 
 /// All data of an attempt displayed by a page at one time.
 struct AttemptView {
   AttemptPhase phase = AttemptPhase::kStarting;
-  std::string progress;            ///< What is being done in kStarting and kFinishing.
+  std::string progress;            ///< Current activity in kStarting and kFinishing.
   double progress_fraction = 0.0;  ///< 0..1
   std::string banner;              ///< One line of high importance; empty: no problem.
-  std::string recovered;           ///< What the last recovery of a server was, in a sentence.
+  std::string recovered;           ///< Description of the last recovery of a server, one sentence.
   int recoveries = 0;              ///< Number of times that forces returned after a server ended or was unavailable.
-  std::string message;             ///< What came of the last set_parameters(), or of a command.
+  std::string message;             ///< Result of the last set_parameters(), or of a command.
   std::string hint;                ///< Instruction for the trainee (guided attempts only); may be empty.
   NeedleView needle;
   TransducerView probe;
   bool has_probe = false;
   std::array<ServerView, 2> servers;  ///< Needle, probe.
-  double session_s = 0.0;             ///< Recorded so far, without interruptions.
-  double since_contact_s = 0.0;       ///< Since the needle first touched the skin, likewise; 0 before.
-  bool are_forces_stopped = false;    ///< By stop_forces(), or a server waits: resume_forces() turns them on again.
+  double session_s = 0.0;             ///< Recorded time so far, without interruptions.
+  double since_contact_s = 0.0;  ///< Time since the needle first touched the skin, without interruptions; 0 before.
+  /// Stopped by stop_forces(), or a server waits; resume_forces() switches them on again.
+  bool are_forces_stopped = false;
   bool has_fired = false;
-  std::shared_ptr<const GunShot> shot;  ///< With the first tick after it.
+  std::shared_ptr<const GunShot> shot;  ///< Set with the first tick after the shot.
   double since_shot_s = 0.0;            ///< Session time; stops while there are no data from the needle.
   bool is_performing = false;           ///< A scripted operator moves the needle.
-  std::vector<std::string> notes;       ///< What went wrong on the way, in order.
+  std::vector<std::string> notes;       ///< Problems during the attempt, in order.
 };
 
 /// The view with its age taken into account: without an update for 250 ms, the state of a moving needle is unknown.
@@ -110,7 +112,7 @@ struct AttemptEvent {
   double time_s = 0.0;
   double depth_mm = 0.0;
   telemetry::EventKind kind = telemetry::EventKind::kNone;
-  std::string name;  ///< Of the layer or label.
+  std::string name;  ///< Name of the layer or label.
   std::string text;  ///< "through the liver capsule at 1.9 N"
 };
 

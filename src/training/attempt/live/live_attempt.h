@@ -18,24 +18,25 @@ namespace trocar::attempt {
 struct AttemptOptions {
   std::filesystem::path session;    ///< Written here; must not exist. Its folder must.
   std::string trainee = "trainee";  ///< Recorded as the operator's name.
-  /// As trocar-hapticd --device takes them, see DeviceControl.
+  /// In the form of trocar-hapticd --device, see DeviceControl.
   std::string device_needle = "virtual:premium";
   std::string device_probe = "virtual:premium";
   double rate_hz = 1000.0;  ///< 250..4000.
-  int priority = 80;        ///< Of the servers' real-time threads; 0: ordinary scheduling.
+  int priority = 80;        ///< Priority of the servers' real-time threads; 0: ordinary scheduling.
   std::string force_model;  ///< Empty: the case's.
   std::uint64_t seed = 1;
-  std::string level;             ///< Of help, recorded: "guided", "assisted", "exam".
-  bool is_guided = false;        ///< Hints are given.
-  bool waits_for_begin = false;  ///< Recording starts at begin(): a briefing may go before it. Else when all is ready.
-  bool has_probe = true;         ///< false: one server alone.
+  std::string level;       ///< Level of help, recorded: "guided", "assisted", "exam".
+  bool is_guided = false;  ///< Hints are given.
+  /// true: recording starts at begin(), for example after a briefing; false: when all is ready.
+  bool waits_for_begin = false;
+  bool has_probe = true;           ///< false: only the needle's server is used.
   std::optional<Pose> X_PN_start;  ///< Empty: 20 mm before the entry on the planned path.
   std::optional<Pose> X_PT_start;  ///< Empty: the case's.
   /// Timeout after which a server is restarted; four times as long if it gets no processor time.
   std::chrono::milliseconds timeout{8000};
-  /// Asked about the session's folder once a second while it is recorded; tests put another disk in its place.
+  /// Called with the session's folder once a second during recording; tests replace it.
   std::function<std::optional<std::uintmax_t>(const std::filesystem::path&)> free_bytes = find_free_bytes;
-  std::shared_ptr<Clock> clock = std::make_shared<SteadyClock>();  ///< Of supervision and recording.
+  std::shared_ptr<Clock> clock = std::make_shared<SteadyClock>();  ///< Clock of supervision and recording.
 };
 
 /// A running attempt on a thread of its own: the window's client of AttemptLoop. Starts the haptic servers. No member
@@ -43,7 +44,7 @@ struct AttemptOptions {
 /// the recording; it waits for the thread and for servers that are not shared (about 10 ms).
 class LiveAttempt : private AttemptExchange {
  public:
-  /// Starts; errors are published as kFailed. `servers` that do not fit the options are not used.
+  /// Starts the attempt; errors are published as kFailed. `servers` that do not fit the options are not used.
   LiveAttempt(std::shared_ptr<const cases::OpenCase> open_case, AttemptOptions options,
               std::shared_ptr<HapticServers> servers = nullptr);
   ~LiveAttempt();
@@ -68,7 +69,7 @@ class LiveAttempt : private AttemptExchange {
   using AttemptExchange::take_events;
   using AttemptExchange::take_forces;
   using AttemptExchange::view;
-  /// Its warnings contain the gaps of the session.
+  /// Returns the result once. Its warnings contain the gaps of the session.
   std::optional<Result<RunResult>> take_result();
 
  private:
@@ -84,7 +85,7 @@ class LiveAttempt : private AttemptExchange {
 LoopOptions loop_options(const cases::OpenCase& open_case, const AttemptOptions& options);
 /// The case of a loop. The loop keeps the open case.
 AttemptCase attempt_case(std::shared_ptr<const cases::OpenCase> open_case);
-/// A loop's operators where a trainee leads both tools.
+/// Operators of a loop if a trainee leads both tools.
 AttemptOperators trainee_operators(const cases::OpenCase& open_case, const AttemptOptions& options);
 
 }  // namespace trocar::attempt

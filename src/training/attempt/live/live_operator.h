@@ -14,39 +14,40 @@ namespace trocar::attempt {
 /// operator, and sends the next hand target.
 class LiveOperator {
  public:
-  /// Performer and record must outlive it. The operator's first command, made by the caller, placed the hand.
-  /// After `longest_s` of active time it is done, whatever it says.
+  /// Performer and record must outlive it. `first`: the operator's first command, requested by the caller; it placed
+  /// the hand. After `longest_s` of active time the attempt is done, even if the operator is not.
   LiveOperator(const Performer& performer, AttemptRecord& record, const tasks::HandCommand& first,
                double longest_s = kLongestAttempt_s);
 
   /// Call when ticks arrive for the first time, or again after a gap. `clock_offset_s`: the server's clock minus ours.
   /// `is_placed_anew`: the server reloaded the scene and its insertion restarted; otherwise only messages were missing.
   void begin(double clock_offset_s, bool is_placed_anew = true) noexcept;
-  /// A tick of the server; its time becomes the session's. false: the operator is done.
+  /// Takes a tick of the server and converts its time to session time. false: the operator is done.
   Result<bool> take(const telemetry::TickSample& tick);
-  /// A tick too late for a reply because this program was not scheduled: recorded; the operator's time does not
+  /// Records a tick that is too late for a reply because this program was not scheduled. The operator's time does not
   /// advance.
   Status take_unseen(const telemetry::TickSample& tick);
-  /// Ticks of the transducer's server, whose clock is so far ahead of ours: recorded in the session's time. Before the
-  /// needle's first tick there is no session yet.
+  /// Records ticks of the transducer's server in session time. `clock_offset_s`: that server's clock minus ours. No
+  /// effect before the needle's first tick, which begins the session.
   Status note_transducer(std::span<const link::NumberedSample> ticks, double clock_offset_s);
-  /// The answer to the last tick.
+  /// Target of the hand in reply to the last tick.
   link::HandTarget hand() const noexcept;
 
-  double time_s() const noexcept { return time_s_; }  ///< Of the session.
+  double time_s() const noexcept { return time_s_; }  ///< Session time.
   /// Active time: without server outages, lost ticks and ticks too late for a reply.
   double active_s() const noexcept { return time_s_ - interrupted_s_; }
-  double paused_s() const noexcept { return paused_s_; }  ///< Of it, while there was no server; and
-  double unseen_s() const noexcept { return unseen_s_; }  ///< while the operator did not look.
-  /// Pose at which the needle resumes after a server returns: the last virtual pose, which is in its channel.
+  double paused_s() const noexcept { return paused_s_; }  ///< Part of time_s() without a server.
+  /// Part of time_s() whose ticks the operator did not process.
+  double unseen_s() const noexcept { return unseen_s_; }
+  /// Pose at which the needle resumes after a server returns: the last virtual pose, which lies in its channel.
   Pose X_PN_to_resume() const noexcept { return telemetry::felt_needle(view_.last); }
-  const telemetry::TickSample& last() const noexcept { return view_.last; }  ///< With the session's time.
-  const tasks::HandCommand& command() const noexcept { return command_; }    ///< The answer to it.
+  const telemetry::TickSample& last() const noexcept { return view_.last; }  ///< Last tick, in session time.
+  const tasks::HandCommand& command() const noexcept { return command_; }    ///< Command in reply to the last tick.
 
  private:
-  /// Records a tick; gives the time since the last one. Unseen: the operator does not answer it.
+  /// Records a tick and returns the time since the last one. Unseen: the operator does not reply to it.
   Result<double> record(const telemetry::TickSample& tick, bool is_seen);
-  /// Records an interruption that ends with the tick under way.
+  /// Records an interruption that ends with the current tick.
   Status note_interruption(double step_s, bool is_seen);
 
   const Performer* performer_;
@@ -61,14 +62,14 @@ class LiveOperator {
   double paused_s_ = 0.0;
   double unseen_s_ = 0.0;
   double interrupted_s_ = 0.0;
-  std::optional<tasks::Interruption> idle_;  ///< Under way.
+  std::optional<tasks::Interruption> idle_;  ///< The current interruption.
   double server_time_s_ = 0.0;
   bool has_begun_ = false;
   bool has_new_servers_ = false, is_placed_anew_ = false;
 };
 
-/// A command as a server's hand takes it: the in-process hand (tasks/hand.h), which holds the tip. `server_time_s`:
-/// when it is meant for.
+/// Converts a command to a target for a server's hand: the in-process hand (tasks/hand.h), which holds the tip.
+/// `server_time_s`: server time for which the target is meant.
 link::HandTarget hand_target(const tasks::HandCommand& command, double server_time_s) noexcept;
 
 }  // namespace trocar::attempt

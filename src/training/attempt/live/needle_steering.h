@@ -9,7 +9,7 @@
 namespace trocar::attempt {
 
 /// The operator of every live attempt: the trainee's hand, led by the window, or a scripted operator. A scripted
-/// operator of the attempt's options begins at its first pose; one that is given later begins after the hand has gone
+/// operator of the attempt's options begins at its first pose; one that is given later begins after the hand has moved
 /// to its first pose, and the trainee continues after it.
 class NeedleSteering final : public tasks::Operator {
  public:
@@ -21,8 +21,8 @@ class NeedleSteering final : public tasks::Operator {
   /// The performer is that of the attempt's options: the attempt begins with its first command.
   bool is_scripted() const noexcept { return is_scripted_; }
 
-  /// The hand begins at the performer's first command, which it returns. `dt_s`: period of the ticks. The attempt ends
-  /// with the performer where `ends_with_it`.
+  /// Places the hand at the performer's first command and returns that command. `dt_s`: period of the ticks.
+  /// `ends_with_it`: the attempt ends with the performer.
   tasks::HandCommand begin_with(std::unique_ptr<tasks::Operator> performer, double dt_s, bool ends_with_it) {
     performer_ = std::move(performer);
     is_scripted_ = is_at_start_ = true;
@@ -34,7 +34,7 @@ class NeedleSteering final : public tasks::Operator {
     return first_;
   }
 
-  /// The hand goes to the performer's first pose, then the performer moves it. Null: the trainee does.
+  /// The hand moves to the performer's first pose; then the performer moves it. Null: the trainee moves the hand.
   void perform(std::unique_ptr<tasks::Operator> performer) noexcept {
     performer_ = std::move(performer);
     is_scripted_ = is_at_start_ = false;
@@ -45,7 +45,7 @@ class NeedleSteering final : public tasks::Operator {
     hand_.lead(first_.X_PN, Vec3::Zero(), Vec3::Zero());
   }
 
-  /// The server put the needle there.
+  /// Call after the server has placed the needle at this pose.
   void resume_at(const Pose& X_PN) noexcept {
     if (is_performing()) return;  // its hand goes on by itself
     const Pose goal = hand_.goal_P();

@@ -13,20 +13,20 @@
 
 namespace trocar::attempt {
 
-/// Who performs the attempt, how, and where it is written.
+/// Operator, settings and output file of an attempt.
 struct RunOptions {
   std::string operator_name = "expert";  ///< expert | novice | constant-velocity:MM_PER_S | replay:SESSION
   std::string force_model;  ///< insertion | proxy | combined; empty: the task's, or that of the replayed session.
-  std::string device = "premium";  ///< Of data/devices.toml: its limits and coupling, simulated.
-  double rate_hz = 1000.0;         ///< 250..4000. A replay takes its session's rate.
-  std::uint64_t seed = 1;          ///< Of operator, friction and plan.
-  std::string patient_source;      ///< As the user named it: a folder, or an embedded patient's name.
+  std::string device = "premium";  ///< Name in data/devices.toml; its limits and coupling are simulated.
+  double rate_hz = 1000.0;         ///< 250..4000. A replay uses its session's rate.
+  std::uint64_t seed = 1;          ///< Seed of operator, friction and plan.
+  std::string patient_source;      ///< As given by the user: a folder, or an embedded patient's name.
   std::uint64_t patient_seed = 1;
   std::filesystem::path session;  ///< Written here; must not exist.
-  // Of a replay alone. Seeds, rate and device are its session's, whatever stands above.
-  std::shared_ptr<const storage::Session> replayed;  ///< What the operator's name names, where it is loaded already.
+  // Replay only. It uses seeds, rate and device of its session; the values above are ignored.
+  std::shared_ptr<const storage::Session> replayed;  ///< Session of the operator's name, if it is already loaded.
   ReplayChanges replay_changes;
-  bool is_other_patient_meant = false;  ///< A patient with another content hash is not refused.
+  bool is_other_patient_meant = false;  ///< A patient with another content hash is accepted.
 };
 
 /// Checks the options before a patient is opened (exit status 2); run_session calls it, too.

@@ -13,7 +13,7 @@
 
 namespace trocar::attempt {
 
-/// A moment of a recorded attempt that is worth a look.
+/// A notable moment of a recorded attempt.
 struct ReplayMoment {
   enum class Kind { kPuncture, kEnter, kRisk, kFired, kChange, kInterruption, kWorst };
   double time_s = 0.0;
@@ -24,30 +24,30 @@ struct ReplayMoment {
 /// A recorded attempt for replay. Immutable. Frame P.
 class AttemptReplay {
  public:
-  /// Reads a session and, where a crash has kept it from its score, scores it against the case. Errors: the file; a
-  /// session of another patient; no ticks.
+  /// Reads a session. If a crash left it without a score, scores it against the case. Errors: file errors; a session of
+  /// another patient; no ticks.
   static Result<AttemptReplay> load(const std::filesystem::path& session, std::shared_ptr<const cases::OpenCase> open);
 
-  /// The same of a session in memory, whose file could not be written to the end.
+  /// The same for a session in memory whose file could not be written completely.
   static Result<AttemptReplay> of(storage::Session session, std::shared_ptr<const cases::OpenCase> open);
 
   const storage::Session& session() const noexcept { return session_; }
   const tasks::Outcome& outcome() const noexcept { return *session_.outcome; }
   bool was_cut_off() const noexcept { return was_cut_off_; }
   double duration_s() const noexcept { return session_.samples.back().time_s; }
-  /// The tick under way at a time; the ends beyond them.
+  /// The tick at a time; before the first or after the last tick, that tick.
   const telemetry::TickSample& at(double time_s) const noexcept;
   std::vector<Vec3> shaft_at(double time_s) const;
-  /// X_PT between the recorded moments; across a gap of more than kTransducerGap_s it stays where it was. Empty: the
-  /// session tells nothing of a transducer.
+  /// X_PT, interpolated between the recorded samples; constant in a gap of more than kTransducerGap_s. Empty: the
+  /// session has no transducer samples.
   std::optional<Pose> transducer_at(double time_s) const noexcept;
   static constexpr double kTransducerGap_s = 0.1;
 
-  /// The gun's; empty: it was not fired.
+  /// Shot of the gun; empty: it was not fired.
   const std::optional<GunShot>& shot() const noexcept { return shot_; }
-  /// By time, the worst among them where there is one.
+  /// Ordered by time; includes the worst one if there is one.
   const std::vector<ReplayMoment>& moments() const noexcept { return moments_; }
-  /// Empty: the needle met nothing.
+  /// Empty: the needle touched nothing.
   const std::optional<ReplayMoment>& worst() const noexcept { return worst_; }
 
  private:

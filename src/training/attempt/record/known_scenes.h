@@ -23,7 +23,7 @@ class KnownScenes {
     newest_ = reply.scene;
     scenes_[newest_] = {reply.options, reply.tissues_toml};
   }
-  /// The server was started again and numbers its scenes from 1.
+  /// Call after a restart of the server: it numbers its scenes from 1 again.
   void clear() noexcept {
     scenes_.clear();
     newest_ = 0;

@@ -13,8 +13,8 @@ namespace trocar::attempt {
 
 /// Intended differences of a replay: other tissue. Empty: as recorded.
 struct ReplayChanges {
-  std::vector<std::string> overrides;  ///< On top of every table of the session: "liver.k=0.5".
-  std::string tissue_file, profile;    ///< Instead of every table of the session; empty: none.
+  std::vector<std::string> overrides;  ///< Applied to every table of the session: "liver.k=0.5".
+  std::string tissue_file, profile;    ///< Replaces every table of the session; empty: none.
   std::string force_model;             ///< Empty: as recorded.
 
   bool is_any() const noexcept {
@@ -23,17 +23,17 @@ struct ReplayChanges {
 };
 
 /// The parameters of a replay: those of the session with the changes, by tick; the first at tick 0. Errors: a number
-/// that a table does not take, a session with a damaged table or option.
+/// that a table rejects, a session with a damaged table or option.
 Result<std::vector<storage::SessionParameters>> replay_parameters(const storage::Session& session,
                                                                   const ReplayChanges& changes);
 
 /// The case of a session: its task, needle, plan, and the tissues in force at its first tick. Errors: another patient
-/// (exit status 2) unless that is meant, a task or needle that this program does not know.
+/// (exit status 2) unless is_other_patient_meant, a task or needle that is unknown to this program.
 Result<cases::Case> restore_case(std::shared_ptr<const anatomy::VirtualPatient> patient,
                                  const storage::Session& session, const storage::SessionParameters& first,
                                  bool is_other_patient_meant = false);
 
-/// Whether the session was recorded in that patient. Error (exit status 2): it was not.
+/// Checks that the session was recorded in that patient (exit status 2 if not).
 Status check_patient(const storage::Session& session, const anatomy::VirtualPatient& patient);
 
 /// SetParameters message that gives a loaded scene these parameters.

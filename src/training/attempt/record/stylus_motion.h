@@ -6,8 +6,8 @@
 
 namespace trocar::attempt {
 
-/// The motion of the stylus that led the needle of a session, in the room where its own plan places the patient: for a
-/// replay device. Errors: no ticks, an unknown needle.
+/// Motion of the stylus that led the needle of a session, for a replay device. Frame: the room in which the session's
+/// own plan places the patient. Errors: no ticks, an unknown needle.
 Result<devices::RecordedMotion> stylus_motion(const storage::Session& session);
 
 }  // namespace trocar::attempt

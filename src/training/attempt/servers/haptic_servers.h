@@ -15,7 +15,7 @@ struct ToolSupervisors {
   std::unique_ptr<ServerSupervisor> needle, transducer;  ///< No transducer: null.
 };
 
-/// The haptic servers of an attempt: the needle's, and perhaps the transducer's. If they are kept between attempts,
+/// The haptic servers of an attempt: the needle's, and optionally the transducer's. If they are kept between attempts,
 /// they need not reopen the patient. Only one attempt uses them at a time.
 class HapticServers {
  public:
@@ -25,24 +25,25 @@ class HapticServers {
   /// Starts processes. Errors: no trocar-hapticd, it cannot be started.
   static Result<std::shared_ptr<HapticServers>> start(const LocalServerOptions& needle,
                                                       const std::optional<LocalServerOptions>& transducer);
-  /// Whether start() with these options would make such servers.
+  /// True if start() with these options would create equivalent servers.
   bool fits(const LocalServerOptions& needle, const std::optional<LocalServerOptions>& transducer) const;
 
   ToolSupervisors supervise(const SupervisionOptions& options, Clock& clock);
 
  private:
   std::unique_ptr<ServerHost> needle_, transducer_;
-  std::optional<LocalServerOptions> needle_options_, transducer_options_;  ///< Of processes that start() made.
+  /// Options of the processes that start() created.
+  std::optional<LocalServerOptions> needle_options_, transducer_options_;
 };
 
-/// Servers that were found by what they answer, connected and idle.
+/// Servers that were identified by their replies, connected and idle.
 struct IdentifiedServers {
   std::shared_ptr<HapticServers> servers;
   ToolSupervisors supervisors;
 };
 
-/// Connects to servers in any order and tells them apart by their tool; polls them until each is idle. Errors: a server
-/// that fails, a second one of a tool, none of the needle, an interruption of the program.
+/// Connects to servers in any order and identifies them by their tool; polls them until each is idle. Errors: a server
+/// that fails, two servers of one tool, no needle server, an interruption of the program.
 Result<IdentifiedServers> identify_servers(std::vector<std::unique_ptr<ServerHost>> hosts,
                                            const SupervisionOptions& options, Clock& clock, const Progress& progress);
 

@@ -15,9 +15,9 @@ namespace trocar::attempt {
 /// Options of a trocar-hapticd that this program starts.
 struct LocalServerOptions {
   std::string tool = "needle";             ///< needle | probe
-  std::string device = "virtual:premium";  ///< As trocar-hapticd --device takes it.
+  std::string device = "virtual:premium";  ///< In the form of trocar-hapticd --device.
   double rate_hz = 1000.0;
-  int priority = 80;  ///< Of SCHED_FIFO; 0: ordinary scheduling.
+  int priority = 80;  ///< Priority of SCHED_FIFO; 0: ordinary scheduling.
   std::filesystem::path flight_folder = ".";
 };
 
@@ -27,7 +27,7 @@ std::optional<Error> error_of_line(std::string_view line);
 /// A haptic server started by this program, with a socket in a private folder. The destructor ends it.
 class LocalServer final : public ServerHost {
  public:
-  /// Returns at once; check() tells whether the process still runs. Errors: no trocar-hapticd, it cannot be started.
+  /// Returns at once; check() reports whether the process still runs. Errors: no trocar-hapticd, it cannot be started.
   static Result<std::unique_ptr<LocalServer>> start(const LocalServerOptions& options);
 
   const LocalServerOptions& options() const noexcept { return options_; }

@@ -29,7 +29,8 @@ enum class ServerState : std::uint8_t {
   kStarting,     ///< The forces are being switched on.
   kSettling,     ///< The tool comes to rest under forces.
   kOn,           ///< The attempt moves the tool.
-  kDeviceLost,   ///< The server responds, its device is disconnected: the server is asked to open it again.
+  kDeviceLost,   ///< The server responds, its device is disconnected: the supervisor requests the server to open it
+                 ///< again.
   kRestartDue,   ///< Announced; the next poll() starts the process, which blocks, after the banner was displayed.
   kStopped,      ///< The user stopped the forces, and the server has to be prepared again; idle until resume_forces().
   kNeedsResume,  ///< The forces of a device in a person's hand were switched off by a fault; idle until
@@ -38,30 +39,30 @@ enum class ServerState : std::uint8_t {
 };
 const char* to_string(ServerState state) noexcept;
 
-/// What a supervisor does about a server that fails.
+/// Reaction of a supervisor to a failure of its server.
 enum class Recovery : std::uint8_t {
-  kReturnsOnly,  ///< Prepares a server again that reconnects or whose loop stalled; all else is a failure (command
-                 ///< line).
+  kReturnsOnly,  ///< Prepares a server again after a reconnection or a stall of its loop; all other cases are failures
+                 ///< (command line).
   kAll,          ///< Also restarts processes, resets faults, reopens devices and waits for slow servers (window).
 };
 
 struct SupervisionOptions {
   Recovery recovery = Recovery::kAll;
-  /// Without messages; also of placing, switching on, and a reset.
+  /// Timeout without messages; also of placing, switching on, and a reset.
   std::chrono::milliseconds timeout{8000};
   std::string client_name = "trocar";
   bool has_window = false;  ///< See link::ClientOptions.
 };
 
-/// What a server is prepared with.
+/// Scene and start pose of a server's preparation.
 struct PreparationRequest {
   link::LoadScene scene;
   link::HandTarget place;  ///< Start pose; at rest, and rigid until the forces are on.
 };
 
-/// Brings one haptic server to the state in which its forces are on, and back to it after an interruption: the one
-/// state machine of supervision (README.md). Nothing blocks but restarting a process and end(): call poll() every 1 to
-/// 2 ms; time without calls does not count as a timeout. A server that is only slow is waited for while its process is
+/// Brings one haptic server to the state in which its forces are on, and back to it after an interruption. It is the
+/// only state machine of supervision (README.md). Only restarting a process and end() block. Call poll() every 1 to 2
+/// ms; time without calls does not count as a timeout. The supervisor waits for a slow server while its process is
 /// stopped or waits for a processor, up to four timeouts. A device in a person's hand gets no forces again after a
 /// fault before resume_forces().
 class ServerSupervisor {
@@ -69,11 +70,11 @@ class ServerSupervisor {
   /// Connects. Host and clock must outlive it.
   ServerSupervisor(ServerHost& host, SupervisionOptions options, Clock& clock);
 
-  /// Before that, a connected server stays in kIdle.
+  /// Sets scene and start pose. Before this call, a connected server stays in kIdle.
   void prepare(const PreparationRequest& request);
-  /// Where the tool is put when the server is prepared again.
+  /// Sets the pose at which the tool is placed when the server is prepared again.
   void place_at(const Pose& X_PTool);
-  /// One step. Returns an event that is worth a note; empty: none.
+  /// Performs one step. Returns the text of a note; empty: none.
   std::string poll();
 
   ServerState state() const noexcept { return state_; }
@@ -81,17 +82,18 @@ class ServerSupervisor {
   bool is_fresh() const noexcept;
   const Error& failure() const noexcept { return failure_; }  ///< In kFailed.
   const std::string& banner() const noexcept { return banner_; }
-  /// Once, when the forces are on again after an interruption: a sentence with its cause. Empty: nothing new.
+  /// Returns, once after the forces are on again, a sentence with the cause of the interruption. Empty: nothing new.
   std::string take_recovery() { return std::exchange(recovery_, {}); }
   /// Replies to set_parameters().
   std::vector<std::string> take_messages() { return std::exchange(messages_, {}); }
   double loading() const noexcept { return client_.status.loading; }  ///< 0..1
   std::string activity() const;                                       ///< For a progress line.
 
-  /// Ticks since the forces were on, or since the last call. Only in kOn; none of a server that came back.
+  /// Ticks since the forces were on, or since the last call. Only in kOn; without ticks of a server that has
+  /// reconnected.
   std::vector<link::NumberedSample> take_samples();
-  const KnownScenes& scenes() const noexcept { return scenes_; }  ///< Of the present server process.
-  int activations() const noexcept { return activations_; }       ///< How often kOn was reached.
+  const KnownScenes& scenes() const noexcept { return scenes_; }  ///< Scenes of the present server process.
+  int activations() const noexcept { return activations_; }       ///< Number of times that kOn was reached.
   /// Ignored unless is_fresh().
   void set_target(const link::HandTarget& target);
   /// Sent now in kOn, and again whenever the server is prepared.
@@ -125,7 +127,7 @@ class ServerSupervisor {
   bool has_person() const noexcept { return control_ == DeviceControl::kPersonsHand; }
   bool is_device_lost() const;
   bool is_slow() const;
-  /// A stall whose fault may be reset without asking.
+  /// A stall whose fault may be reset without the user's consent.
   bool is_forgivable_stall() const;
 
   // server_preparation.cpp: from kConnecting to kOn.
@@ -155,42 +157,42 @@ class ServerSupervisor {
   SupervisionOptions options_;
   Clock* clock_;
   DeviceControl control_;
-  std::unique_ptr<ServerConnection> connection_;  ///< Null: it could not be made.
+  std::unique_ptr<ServerConnection> connection_;  ///< Null: the connection failed.
   std::optional<PreparationRequest> request_;
   link::ClientView client_;  ///< At the last poll.
   ServerState state_ = ServerState::kConnecting;
   Error failure_;
   std::string banner_, recovery_;
-  std::string interrupted_by_;  ///< Since the forces were last on; empty: nothing.
-  bool is_stopped_ = false;     ///< By the user.
-  bool was_heard_ = false;      ///< Ever.
+  std::string interrupted_by_;  ///< Cause of the interruption since the forces were last on; empty: none.
+  bool is_stopped_ = false;     ///< Stopped by the user.
+  bool was_heard_ = false;      ///< The server has sent a welcome at least once.
 
   // Timers.
   Clock::TimePoint polled_;
   double in_state_s_ = 0.0;         ///< Without the time in which poll() was not called.
   double without_control_s_ = 0.0;  ///< in_state_s_ when control was first refused; 0: it was not.
   Clock::TimePoint placed_, reset_;
-  Clock::TimePoint ticked_;               ///< When a tick was last taken.
-  Clock::TimePoint held_up_;              ///< When the server was last heard, or its process had no processor.
-  std::deque<Clock::TimePoint> returns_;  ///< Of the last minute.
+  Clock::TimePoint ticked_;   ///< Time at which a tick was last taken.
+  Clock::TimePoint held_up_;  ///< Last time at which the server was connected, or its process had no processor.
+  std::deque<Clock::TimePoint> returns_;  ///< Times of the recoveries within the last minute.
 
-  // Of the present connection.
-  std::uint64_t session_ = 0;  ///< Of the server that has our scene.
+  // State of the present connection.
+  std::uint64_t session_ = 0;  ///< Session of the server that has our scene.
   std::optional<std::uint64_t> last_tick_;
   std::uint32_t asked_ = 0;        ///< Number of the last command of the preparation.
-  bool was_placed_ = false;        ///< In kPlacing.
+  bool was_placed_ = false;        ///< The tool was placed, in kPlacing.
   double placed_newest_s_ = 0.0;   ///< Server's time of the newest tick when the tool was put to its pose.
   double started_server_s_ = 0.0;  ///< Server's time when it accepted kStart; 0: not yet.
   KnownScenes scenes_;
   struct Reopening {
-    std::optional<std::uint32_t> asked;  ///< Not answered yet.
+    std::optional<std::uint32_t> asked;  ///< Number of a command without a reply yet.
     Clock::TimePoint refused;
   } reopening_;
 
   // Parameters.
   ParameterMemory memory_;
   link::SetParameters adjusted_;                         ///< Sent with the scene.
-  std::map<std::uint32_t, ParameterMemory> unanswered_;  ///< Memory before a message that was not answered yet.
+  std::map<std::uint32_t, ParameterMemory> unanswered_;  ///< Memory before a message without a reply yet.
   std::vector<std::string> messages_;
 
   // Counters.

@@ -4,14 +4,14 @@
 
 namespace trocar::attempt {
 
-/// How fast a hand moves a tool, at most. [assumed]
+/// Speed limits of a hand that moves a tool. [assumed]
 struct SpeedLimits {
-  double most_mm_per_s = 60.0;  ///< Of the tool's origin. Range 1..1000.
+  double most_mm_per_s = 60.0;  ///< Speed of the tool's origin. Range 1..1000.
   double most_rad_per_s = 1.5;  ///< Range 0.1..20.
 };
 
-/// A pose on the way from one to another: its origin at most `most_mm` further, turned by at most `most_rad` the
-/// shortest way. Poses that are not finite move nothing.
+/// Pose between `from` and `to`: the origin moved by at most `most_mm`, the rotation turned by at most `most_rad` the
+/// shortest way. Poses that are not finite cause no motion.
 Pose moved_towards(const Pose& from, const Pose& to, double most_mm, double most_rad) noexcept;
 
 /// Axis times angle (rad) from one rotation to another, in the frame they are given in.
@@ -28,8 +28,8 @@ class LedPose {
 
   explicit LedPose(const SpeedLimits& limits = {}) noexcept : limits_(limits) {}
 
-  void put(const Pose& X_P) noexcept;                                     ///< At once, at rest.
-  void lead(const Pose& X_P, const Vec3& v_P, const Vec3& w_P) noexcept;  ///< Ignored where it is not finite.
+  void put(const Pose& X_P) noexcept;                                     ///< Takes effect at once, at rest.
+  void lead(const Pose& X_P, const Vec3& v_P, const Vec3& w_P) noexcept;  ///< Ignored if not finite.
   void clamp(bool is_clamped) noexcept { is_clamped_ = is_clamped; }
   void step(double dt_s) noexcept;
 

@@ -7,34 +7,35 @@
 namespace trocar::attempt {
 
 /// Hands moved by mouse, wheel and keys: each gesture is a small change of the hand's target pose. Contains no time;
-/// hand_motion.h limits the speed. Frame P.
+/// led_pose.h limits the speed. Frame P.
 
-/// The needle's hand. It knows the entry E, where the needle's axis meets the resting skin, the direction d and how far
-/// the tip is past E. Before the skin (not past E) the entry glides over the skin; in the body the needle turns about E
-/// and nothing else, as the hole holds it.
+/// The needle's hand. Its state is the entry E, where the needle's axis meets the resting skin, the direction d, and
+/// the distance of the tip past E. Before the skin (not past E) the entry glides over the skin. In the body the needle
+/// only turns about E, because the hole holds it.
 class PointerNeedle {
  public:
-  static constexpr double kAbove_mm = 20.0;      ///< Where aiming puts the tip before the skin.
-  static constexpr double kFarthest_mm = 80.0;   ///< Above the skin.
-  static constexpr double kFlattest_rad = 1.35;  ///< Between needle and the skin's inward normal.
+  static constexpr double kAbove_mm = 20.0;      ///< Distance before the skin at which aiming places the tip.
+  static constexpr double kFarthest_mm = 80.0;   ///< Largest distance above the skin.
+  static constexpr double kFlattest_rad = 1.35;  ///< Largest angle between needle and the skin's inward normal.
 
-  /// Over the entry of a path, along it. The patient must outlive it.
+  /// Starts over the entry of a path, along the path. The patient must outlive it.
   PointerNeedle(const anatomy::VirtualPatient& patient, const Segment& path_P, double length_mm);
 
   const Pose& X_PN() const noexcept { return X_PN_; }
   bool is_past_skin() const noexcept { return past_mm_ > 0.0; }
-  double past_mm() const noexcept { return past_mm_; }  ///< Of the tip, along the needle.
+  double past_mm() const noexcept { return past_mm_; }  ///< Distance of the tip past the skin, along the needle.
   const Vec3& entry_P() const noexcept { return entry_P_; }
 
   void aim_at(const Segment& path_P);
   /// Takes over from the needle's pose after another hand moved it.
   void put(const Pose& X_PN);
-  /// A shift of the hand, mm: over the skin, or of the hub about the entry.
+  /// Shifts the hand (mm): over the skin, or in the body the hub about the entry.
   void glide(const Vec3& shift_P);
-  /// The hub goes by so many rad towards `right_P` and `down_P` (unit, a view's), about the entry.
+  /// Turns the hub about the entry by `right_rad` towards `right_P` and by `down_rad` towards `down_P` (unit vectors of
+  /// a view).
   void tilt(const Vec3& right_P, const Vec3& down_P, double right_rad, double down_rad);
-  void turn(double rad);  ///< About its axis: where the bevel looks.
-  void push(double mm);   ///< Along its axis, inward positive.
+  void turn(double rad);  ///< Turns the needle about its axis: direction of the bevel.
+  void push(double mm);   ///< Moves the needle along its axis, inward positive.
 
  private:
   void lean(const Vec3& axis_P);
@@ -49,24 +50,24 @@ class PointerNeedle {
   Pose X_PN_;
 };
 
-/// The transducer's hand: a point of the skin under the middle of the face, how the face is turned there, and how deep
-/// it is pressed in.
+/// The transducer's hand. Its state is a point of the skin under the middle of the face, the rotation of the face
+/// there, and the depth to which it is pressed in.
 class PointerProbe {
  public:
   static constexpr double kDeepest_mm = 12.0;
-  static constexpr double kFarthest_mm = 40.0;  ///< Off the skin.
-  static constexpr double kFlattest_rad = 0.9;  ///< Between beam and the skin's inward normal.
+  static constexpr double kFarthest_mm = 40.0;  ///< Largest distance off the skin.
+  static constexpr double kFlattest_rad = 0.9;  ///< Largest angle between beam and the skin's inward normal.
 
-  /// Begins there; the patient must outlive it.
+  /// Begins at X_PT; the patient must outlive it.
   PointerProbe(const anatomy::VirtualPatient& patient, const Pose& X_PT);
 
   Pose X_PT() const noexcept;
   double pressed_mm() const noexcept { return pressed_mm_; }  ///< Negative: off the skin.
 
   void put(const Pose& X_PT);
-  void glide(const Vec3& shift_P);  ///< Over the skin; the face turns with it.
+  void glide(const Vec3& shift_P);  ///< Moves over the skin; the face turns with it.
   void tilt(const Vec3& right_P, const Vec3& down_P, double right_rad, double down_rad);
-  void turn(double rad);  ///< About the beam: the picture's plane.
+  void turn(double rad);  ///< Turns about the beam: the image plane.
   void push(double mm);
 
  private:
@@ -78,7 +79,7 @@ class PointerProbe {
 
 /// The point of the resting skin nearest to a point that lies within some cm of it.
 Vec3 nearest_skin_point(const anatomy::VirtualPatient& patient, const Vec3& p_P) noexcept;
-/// Unit normal of the skin there, into the body.
+/// Unit normal of the skin at a point, into the body.
 Vec3 skin_inward(const anatomy::VirtualPatient& patient, const Vec3& p_P) noexcept;
 
 }  // namespace trocar::attempt

@@ -19,15 +19,16 @@ class RestingTransducer final : public TransducerMotion {
   Pose X_PT_start() const override { return at(0.0).X_PN; }
   Pose X_PT_room() const override { return X_PT_skin_; }
   link::HandTarget next(double time_s, double) override { return at(time_s); }
-  /// It is lowered again.
+  /// The transducer is lowered again from its start pose.
   Pose X_PT_to_resume(const telemetry::TickSample&) const override { return X_PT_start(); }
 
-  static constexpr double kBeside_mm = 40.0;  ///< From the entry, along the skin's tangent; a needle needs its place.
-  static constexpr double kPress_mm = 4.0;    ///< Beyond the resting skin. [assumed] 2.4 N at the hand's 0.6 N/mm
-  static constexpr double kAbove_mm = 10.0;   ///< Where it begins.
+  /// Distance from the entry along the skin's tangent, which leaves space for the needle.
+  static constexpr double kBeside_mm = 40.0;
+  static constexpr double kPress_mm = 4.0;   ///< Depth beyond the resting skin: 2.4 N at the hand's 0.6 N/mm. [assumed]
+  static constexpr double kAbove_mm = 10.0;  ///< Height of the start pose above the skin.
 
  private:
-  Pose X_PT_skin_;  ///< On the resting skin.
+  Pose X_PT_skin_;  ///< Pose on the resting skin.
 };
 
 }  // namespace trocar::attempt

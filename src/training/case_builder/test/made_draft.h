@@ -9,7 +9,7 @@
 
 namespace trocar::testing {
 
-/// A draft of the patient made of shapes, as an import would give it, without surfaces.
+/// A draft of the patient made of shapes, as an import would return it, without surfaces.
 inline case_builder::CaseDraft made_draft(const BoxPatient& box = {}) {
   auto imported = std::make_shared<case_builder::ImportedPatient>();
   imported->patient = box.make();

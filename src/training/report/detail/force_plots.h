@@ -8,7 +8,7 @@ namespace trocar::report::detail {
 
 /// Resistance against needle depth of each insertion, tissues as stripes, punctures marked (paper A, figure 4b).
 std::string force_depth_figure(const storage::Session& session);
-/// Table of the layers that gave way.
+/// Table of the punctured layers.
 std::string puncture_table(const storage::Session& session);
 /// The components of the force over time, phases shaded.
 std::string force_time_figure(const storage::Session& session);

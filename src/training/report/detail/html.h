@@ -11,14 +11,14 @@ std::string escape(std::string_view text);
 /// A number with fixed decimals and a real minus sign; "–" when it is not finite.
 std::string number_text(double value, int decimals);
 
-/// A name of a table in words: "liver-biopsy" -> "liver biopsy", "rib_right_10" -> "right rib 10".
+/// Display text of a table's name: "liver-biopsy" -> "liver biopsy", "rib_right_10" -> "right rib 10".
 std::string words(std::string_view name);
 /// The same with a capital first letter.
 std::string title_words(std::string_view name);
 
 std::string base64(std::string_view bytes);
 
-/// About how wide a text is (px) at a font size: enough to place labels.
+/// Approximate width of a text (px) at a font size, sufficient to place labels.
 double text_width(std::string_view text, double font_px);
 
 }  // namespace trocar::report::detail

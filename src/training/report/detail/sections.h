@@ -7,7 +7,7 @@
 namespace trocar::report::detail {
 
 std::string page_header(const storage::Session& session);
-/// Score and its parts; says so when the session has no outcome.
+/// Score and its parts; a text if the session has no outcome.
 std::string result_section(const storage::Session& session);
 std::string hints_section(const storage::Session& session);
 /// The tissue along the specimen notch; empty without a core.

@@ -4,9 +4,9 @@
 
 namespace trocar::report::detail {
 
-/// The style sheet of the report: screen and A4 print, curves told apart by dashes as well as by colour.
+/// The style sheet of the report: screen and A4 print, curves differ in dashes as well as in colour.
 std::string style_sheet();
-/// The part of it that a plot alone needs.
+/// The part of the style sheet that a plot needs.
 std::string plot_style();
 
 }  // namespace trocar::report::detail

@@ -18,9 +18,9 @@ namespace trocar::storage::detail {
 std::vector<std::string> checksum_schema();
 
 /// Digest of ticks with their events, over the values as a session keeps them (NaN is one value, -0.0 is 0.0).
-/// Over the columns that the session's table has; nullptr: all.
+/// `present`: the columns of the session's table; nullptr: all.
 std::string digest_of(std::span<const telemetry::TickSample> samples, const std::set<std::string>* present = nullptr);
-/// Adds them to the hash of a whole session.
+/// Adds ticks to the hash of a whole session.
 void add_ticks(ContentHash& hash, std::span<const telemetry::TickSample> samples,
                const std::set<std::string>* present = nullptr);
 
@@ -36,7 +36,7 @@ struct TickBlock {
   std::string digest;  ///< Empty in sessions of older programs.
 };
 void write_block(soci::session& database, const TickBlock& block);
-/// In the order of ticks. Throws soci::soci_error; `blocks` then holds those before the damage.
+/// In the order of ticks. Throws soci::soci_error; `blocks` then contains those before the damage.
 void read_blocks(soci::session& database, std::vector<TickBlock>& blocks);
 
 struct RowsDigest {
@@ -44,7 +44,7 @@ struct RowsDigest {
   std::string digest;
   bool operator==(const RowsDigest&) const = default;
 };
-/// Rows and digest of what a query gives: every value with its type, bit by bit. Throws soci::soci_error.
+/// Rows and digest of a query's result: every value with its type, bit by bit. Throws soci::soci_error.
 RowsDigest digest_of_rows(soci::session& database, const std::string& query);
 
 /// Sets of rows with a checksum of their own in the table `checksums`.
@@ -65,7 +65,7 @@ inline constexpr CheckedRows kBlockRows{"tick_blocks", "SELECT * FROM tick_block
 
 /// Computes a checksum and writes it. Throws soci::soci_error.
 void write_checksum(soci::session& database, const CheckedRows& rows);
-/// The one that was written; nothing where there is none. Throws soci::soci_error.
+/// Reads a stored checksum; empty if there is none. Throws soci::soci_error.
 std::optional<RowsDigest> read_checksum(soci::session& database, const CheckedRows& rows);
 
 }  // namespace trocar::storage::detail

@@ -25,7 +25,7 @@ void visit_stored_columns(Sample& sample, Visitor&& visit) {
       });
 }
 
-/// Whether a visited field is kept as a real number (else as an integer).
+/// True if a visited field is kept as a real number (else as an integer).
 template <class Field>
 inline constexpr bool kIsReal = std::is_same_v<std::remove_const_t<Field>, double>;
 

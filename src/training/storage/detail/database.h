@@ -11,10 +11,10 @@
 
 namespace trocar::storage::detail {
 
-/// "trcr": PRAGMA application_id of a session, by which `file` and we know one.
+/// "trcr": PRAGMA application_id of a session, which identifies it for `file` and for this program.
 inline constexpr int kApplicationId = 0x74726372;
 
-/// Opens the SQLite file (made where it is missing). Throws soci::soci_error.
+/// Opens the SQLite file (created if it is missing). Throws soci::soci_error.
 void open_database(soci::session& database, const std::filesystem::path& path);
 
 /// The statements that give a new session its identity, tables and view.
@@ -23,10 +23,10 @@ std::vector<std::string> schema_statements();
 /// A PRAGMA's integer value. Throws soci::soci_error.
 int pragma_integer(soci::session& database, const std::string& name);
 
-/// What SQLite says, without SOCI's function names.
+/// SQLite's message, without SOCI's function names.
 std::string reason_of(const std::exception& error);
 
-/// Runs `work` and turns what SOCI throws into an Error.
+/// Runs `work` and converts SOCI's exceptions into an Error.
 template <class Work>
 Status guarded(const char* what, const std::filesystem::path& path, const char* advice, const Work& work) {
   try {

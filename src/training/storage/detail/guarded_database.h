@@ -9,19 +9,19 @@ namespace trocar::storage::detail {
 
 /// Longest text or row that is read from a session; a longer one is an error before it is loaded.
 inline constexpr int kMaxTextBytes = 4 << 20;
-/// Most text in all that is read from the table `info`.
+/// Limit of all text together that is read from the table `info`.
 inline constexpr std::size_t kMaxInfoBytes = std::size_t{16} << 20;
 inline constexpr std::size_t kMaxInfoRows = 1024;
-inline constexpr std::size_t kMaxNames = 1024;  ///< Of tissues, layers, labels.
+inline constexpr std::size_t kMaxNames = 1024;  ///< Names of tissues, layers, labels.
 inline constexpr std::size_t kMaxNameBytes = 4096;
 inline constexpr std::size_t kMaxTransducerRows = 1'000'000;               ///< 2.8 hours at 100 Hz.
 inline constexpr std::size_t kMaxParameterBytes = std::size_t{256} << 20;  ///< Each change holds a tissue table.
-inline constexpr std::size_t kMaxChanges = 100'000;                        ///< Of parameters, and interruptions.
-inline constexpr std::size_t kMaxBlocks = 50'000;                          ///< Of ticks; 7 hours of half seconds.
+inline constexpr std::size_t kMaxChanges = 100'000;  ///< Changes of parameters, and interruptions.
+inline constexpr std::size_t kMaxBlocks = 50'000;    ///< Blocks of ticks; 7 hours of half seconds.
 
-/// A session that is opened to be read, without trust in what it holds: nothing can be changed, views, triggers and the
-/// schema's own functions are off, texts are bounded by kMaxTextBytes, and the work in all by a number of SQLite's
-/// virtual machine steps that grows with the size of the file. Beyond them a statement fails.
+/// A session that is opened for reading; its contents are not trusted. Nothing can be changed. Views, triggers and the
+/// schema's own functions are off. Texts are bounded by kMaxTextBytes. The total work is bounded by a number of
+/// SQLite's virtual machine steps that grows with the size of the file. A statement beyond these bounds fails.
 class GuardedDatabase {
  public:
   /// Throws soci::soci_error.
@@ -33,7 +33,7 @@ class GuardedDatabase {
   /// Throws unless the name is an ordinary table: no view, no virtual table, no computed column.
   void require_table(const std::string& name);
   bool has_table(const std::string& name);
-  bool is_exhausted() const noexcept { return steps_left_ <= 0; }  ///< The bound of work was hit.
+  bool is_exhausted() const noexcept { return steps_left_ <= 0; }  ///< The bound of work was reached.
 
  private:
   static int count_steps(void* self) noexcept;

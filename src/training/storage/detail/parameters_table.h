@@ -11,10 +11,10 @@ namespace trocar::storage::detail {
 /// The tables `parameters` (settings joined by `;`, options and tissue table line by line) and `interruptions`.
 /// Sessions of older programs do not have them.
 std::vector<std::string> parameters_schema();
-/// What the view's column `event` shows of a tick `t` from these tables: SELECTs of one text each, for a UNION ALL.
+/// SQL for the view's column `event` of a tick `t` from these tables: SELECTs of one text each, for a UNION ALL.
 std::string parameters_events_sql();
 
-/// Rows on their way into the tables.
+/// Buffered rows of the tables.
 class ParametersBuffer {
  public:
   void add(const SessionParameters& parameters) { parameters_.push_back(parameters); }
@@ -29,13 +29,13 @@ class ParametersBuffer {
  private:
   struct InterruptedTick {
     tasks::Interruption interruption;
-    std::size_t tick;  ///< The first one after it.
+    std::size_t tick;  ///< The first tick after the interruption.
   };
   std::vector<SessionParameters> parameters_;
   std::vector<InterruptedTick> interruptions_;
 };
 
-/// All of them; none where there is no such table. Throws soci::soci_error, also for a tick that is none of
+/// Reads all rows; empty if there is no such table. Throws soci::soci_error, also for a tick that is not below
 /// `tick_count`, or a time that is not finite.
 std::vector<SessionParameters> read_parameters(soci::session& database, std::size_t tick_count);
 std::vector<tasks::Interruption> read_interruptions(soci::session& database);

@@ -5,8 +5,9 @@
 
 namespace trocar::storage::detail {
 
-/// Reads all of a session that can be read and fits its checksums; what does not is noted in `session.damage` and left
-/// out. Gives the outcome's JSON, empty where there is none. Throws soci::soci_error where a table is none.
+/// Reads all parts of a session that are readable and match their checksums. Other parts are listed in `session.damage`
+/// and left out. Returns the outcome's JSON, empty if there is none. Throws soci::soci_error if a table is not an
+/// ordinary table.
 std::string salvage(GuardedDatabase& database, Session& session);
 
 }  // namespace trocar::storage::detail

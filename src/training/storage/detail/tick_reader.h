@@ -9,14 +9,13 @@
 
 namespace trocar::storage::detail {
 
-/// Reads ticks with their events. Columns that a session of an older program lacks have the value of a sample that was
-/// never filled.
+/// Reads ticks with their events. Columns that a session of an older program lacks have the default values of a sample.
 class TickReader {
  public:
   explicit TickReader(soci::session& database) : database_(&database) {}
 
-  /// The ticks of a block. Throws soci::soci_error (or what SOCI lets through) where one cannot be read, is missing, or
-  /// is not what was written.
+  /// The ticks of a block. Throws soci::soci_error (or what SOCI lets through) if one cannot be read, is missing, or
+  /// differs from the written tick.
   std::vector<telemetry::TickSample> read(const TickBlock& block);
 
  private:

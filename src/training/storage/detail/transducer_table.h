@@ -16,10 +16,10 @@ inline constexpr std::array kTransducerColumns{"time_s", "x_mm", "y_mm", "z_mm",
 
 std::string transducer_schema();
 
-/// Samples on their way into the table. Invariant: columns of one length; time rises.
+/// Buffered samples of the table. Invariant: columns of one length; time rises.
 class TransducerBuffer {
  public:
-  /// One that is not later than the last one, or not finite, is left out.
+  /// Leaves out a sample that is not later than the last one, or not finite.
   void add(const TransducerSample& sample);
   bool is_empty() const noexcept { return columns_[0].empty(); }
   double span_s() const noexcept { return is_empty() ? 0.0 : columns_[0].back() - columns_[0].front(); }
@@ -32,7 +32,7 @@ class TransducerBuffer {
   double last_s_ = -std::numeric_limits<double>::infinity();
 };
 
-/// All of them by time; none where there is no such table. Throws soci::soci_error, also for what is no pose.
+/// Reads all samples by time; empty if there is no such table. Throws soci::soci_error, also for an invalid pose.
 std::vector<TransducerSample> read_transducer(soci::session& database);
 
 }  // namespace trocar::storage::detail

@@ -23,7 +23,7 @@ IndexBox clipped(const IndexBox& box, const volume::GridGeometry& geometry) noex
 /// The voxels within `radius_mm` of a point along each axis.
 IndexBox box_around(const volume::GridGeometry& geometry, const Vec3& p_P, double radius_mm) noexcept;
 
-/// Where each label lies and how many voxels it has.
+/// Bounding box and number of voxels of each label.
 struct LabelBoxes {
   std::array<IndexBox, 256> boxes{};
   std::array<std::size_t, 256> voxels{};
@@ -32,9 +32,9 @@ LabelBoxes find_label_boxes(const volume::LabelGrid& labels);
 
 /// A coarse grid whose cells are whole blocks of voxels of a finer one.
 struct BlockGrid {
-  volume::GridGeometry geometry;  ///< Of the cells.
+  volume::GridGeometry geometry;  ///< Geometry of the cells.
   volume::Index3 first{};         ///< Voxel at the corner of cell (0,0,0).
-  volume::Index3 factor{};        ///< Voxels a cell along each axis.
+  volume::Index3 factor{};        ///< Voxels per cell along each axis.
   double half_diagonal_mm = 0.0;
 
   Vec3 centre(std::size_t cell) const noexcept {

@@ -28,25 +28,26 @@ class Tremor {
   std::array<std::array<Sine, kSines>, 3> axes_;
 };
 
-/// What expert and novice share: a hand that moves its wanted pose along a straight line with smooth speed, looks at
-/// the tip and feels the push of the device. Positions along the line are mm from its start, positive inward.
+/// Common part of expert and novice: a hand that moves its wanted pose along a straight line with smooth speed, and
+/// reads the tip's position and the device's force. Positions along the line are mm from its start, positive inward.
 class GuidedHand {
  public:
   GuidedHand(const Segment& line_P, double start_mm, const Tremor& tremor) noexcept;
 
-  /// Looks and feels; call once a tick, first.
+  /// Reads tip and force; call it once per tick, first.
   void sense(const OperatorView& view) noexcept;
-  /// Moves the wanted pose with a speed that follows `speed_mm_s` smoothly, pushing no further ahead of the device than
-  /// the hand is willing to.
+  /// Moves the wanted pose with a speed that follows `speed_mm_s` smoothly. The lead of the wanted pose over the device
+  /// is limited.
   void move(double speed_mm_s, double dt_s) noexcept;
   HandCommand command() const noexcept;
 
   double elapsed_s() const noexcept { return elapsed_s_; }
   double wanted_mm() const noexcept { return wanted_mm_; }
-  double tip_mm() const noexcept { return tip_mm_; }  ///< Of the needle as seen, along the line.
-  double push_n() const noexcept { return push_n_; }  ///< Felt against the insertion, smoothed as a hand does.
+  double tip_mm() const noexcept { return tip_mm_; }  ///< Tip of the virtual needle, along the line.
+  /// Force against the insertion, smoothed like a hand's perception.
+  double push_n() const noexcept { return push_n_; }
   bool is_touching() const noexcept { return is_touching_; }
-  /// The resistance has just given way: a drop of the felt force. True for one tick.
+  /// The felt force has just dropped: the resistance gave way. True for one tick.
   bool has_felt_drop() const noexcept { return has_felt_drop_; }
 
  private:
@@ -68,10 +69,10 @@ class GuidedHand {
   bool has_felt_drop_ = false;
 };
 
-/// Notices that a needle gains no ground.
+/// Detects a needle that does not advance.
 class StallWatch {
  public:
-  /// Seconds since the tip last gained a millimetre, or since `from_s` where that is later.
+  /// Seconds since the tip last gained a millimetre, or since `from_s` if that is later.
   double stalled_s(const GuidedHand& hand, double from_s) noexcept {
     constexpr double kGain_mm = 1.0;
     if (hand.tip_mm() > deepest_mm_ + kGain_mm) {

@@ -10,20 +10,20 @@
 
 namespace trocar::tasks {
 
-/// All that a hint may speak of.
+/// Data that hints use.
 struct HintSubject {
   const Task& task;
   const Needle& needle;
   const PlannedPath& plan;
   const AttemptMetrics& metrics;
   const std::optional<BiopsyCore>& core;
-  std::span<const RiskTouch> stylet_risks;  ///< What only the stylet touched.
-  double possible_core_mm;                  ///< Of the target tissue at the planned place.
+  std::span<const RiskTouch> stylet_risks;  ///< Structures that only the stylet touched.
+  double possible_core_mm;                  ///< Possible length of target tissue at the planned place.
   bool is_parenchymal;
   std::span<const ScorePart> parts;
 };
 
-/// What to do better, as an instructor would say it, the costliest first; praise where nothing matters.
+/// Advice for improvement in the words of an instructor, the costliest first; praise if there is nothing to improve.
 std::vector<std::string> make_hints(const HintSubject& subject);
 
 }  // namespace trocar::tasks

@@ -8,23 +8,23 @@
 
 namespace trocar::tasks::detail {
 
-/// What a label means to a needle on its way.
+/// Role of a label for a needle on its path.
 enum class Role : std::uint8_t { kPassable, kMuscle, kOrgan, kTarget, kForbidden };
 
-/// Labels of a patient as a task sees them, and how far the risk structures are. References the task and the patient.
+/// Roles of a patient's labels in a task, and distances to the risk structures. References the task and the patient.
 struct PlanningMap {
   const Task& task;
   const anatomy::VirtualPatient& patient;
   std::array<Role, 256> roles{};
   std::array<const RiskStructure*, 256> risks{};  ///< By label id; nullptr: none.
-  double largest_margin_mm = 0.0;                 ///< Of the risks that the patient shows.
+  double largest_margin_mm = 0.0;                 ///< Largest margin of the risks that exist in the patient.
   volume::FloatGrid clearance_mm{};               ///< Coarse: distance to the nearest risk cell minus its margin.
   double slack_mm = 0.0;  ///< The coarse clearance may err by this (half the diagonal of a cell).
 
   Role role_at(const Vec3& p_P) const noexcept;
 };
 
-/// Points that the middle of the notch (or the tip) shall reach.
+/// Target points of the middle of the notch (or the tip).
 struct PlanTargets {
   std::vector<Vec3> points_P;
   bool is_parenchymal = false;

@@ -8,7 +8,7 @@
 
 namespace trocar::tasks {
 
-/// What each label of a patient means to a task.
+/// Role of each label of a patient in a task.
 class TaskLabels {
  public:
   TaskLabels(const Task& task, const anatomy::VirtualPatient& patient);

@@ -9,7 +9,7 @@
 namespace trocar::testing {
 
 /// A patient made of shapes: a body box (|x| < 100, |y| < 70 mm, running through the volume along z) with 12 mm of fat,
-/// 10 mm of muscle and a liver in the right half; lesion, ribs and a vessel as asked for. Skin distance is exact.
+/// 10 mm of muscle and a liver in the right half; lesion, ribs and a vessel as requested. Skin distance is exact.
 struct BoxPatient {
   double spacing_mm = 2.0;
   Vec3 half_volume_mm{120.0, 90.0, 80.0};

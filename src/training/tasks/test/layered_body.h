@@ -9,8 +9,8 @@
 namespace trocar::testing {
 
 /// A body of flat layers for closed-loop tests: a device of 0.1 kg in the operator's hand, a massless needle coupled to
-/// it, springs that give way, friction and cutting. Much coarser than haptics/, but the same signs and the same delay
-/// of one tick.
+/// it, springs that can be punctured, friction and cutting. Much coarser than haptics/, but the same signs and the same
+/// delay of one tick.
 class LayeredBody {
  public:
   struct Layer {
@@ -22,7 +22,7 @@ class LayeredBody {
   LayeredBody(const Segment& path_P, std::vector<Layer> layers, double dt_s)
       : path_P_(path_P), layers_(std::move(layers)), dt_s_(dt_s) {}
 
-  /// Lets the operator puncture until it is done or the time is over.
+  /// Runs the operator until it is done or the time is over.
   void run(tasks::Operator& the_operator, double limit_s) {
     for (double time_s = 0.0; time_s < limit_s && !is_done; time_s += dt_s_) {
       const tasks::HandCommand command =

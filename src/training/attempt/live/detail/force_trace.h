@@ -7,8 +7,8 @@
 
 namespace trocar::attempt {
 
-/// Ticks thinned to what a plot shows: of each stretch of time the lowest and the highest force, in their order. So no
-/// peak is lost, and a second has 150 points at most.
+/// Thins ticks to the resolution of a plot: keeps the lowest and the highest force of each time interval (kStretch_s),
+/// in their order. All peaks are kept, and a second has 150 points at most.
 class ForceTrace {
  public:
   static constexpr double kStretch_s = 0.02;
@@ -23,9 +23,9 @@ class ForceTrace {
     last_ = point;
     if (point.time_s - from_s_ >= kStretch_s) flush();
   }
-  /// What is there; the stretch that has not ended stays.
+  /// Returns the points of the finished intervals; the current interval stays.
   std::vector<ForcePoint> take() { return std::exchange(points_, {}); }
-  /// Ends the stretch that has not.
+  /// Ends the current interval.
   void flush() {
     if (!has_any_) return;
     const bool is_low_first = low_.time_s <= high_.time_s;

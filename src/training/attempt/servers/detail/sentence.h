@@ -6,7 +6,7 @@
 
 namespace trocar::attempt::detail {
 
-/// A message as the beginning of a sentence: with a capital.
+/// A message with a capital first letter, for the beginning of a sentence.
 inline std::string sentence(std::string text) {
   if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
   return text;

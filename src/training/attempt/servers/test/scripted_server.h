@@ -14,8 +14,8 @@
 
 namespace trocar::testing {
 
-/// A haptic server without forces, in a test's own time: it answers every command, its device is where it was put, and
-/// the test decides when it ends, falls silent or has a fault.
+/// A haptic server without forces, in a test's own time: it replies to every command, its device is at the pose where
+/// it was placed, and the test sets when it ends, stops sending or has a fault.
 class ScriptedServer final : public attempt::ServerHost {
  public:
   explicit ScriptedServer(FakeClock& clock, std::string device = "virtual:premium", std::string tool = "needle")
@@ -24,7 +24,7 @@ class ScriptedServer final : public attempt::ServerHost {
   }
 
   // Set by the test.
-  bool is_silent = false;           ///< No message arrives any more.
+  bool is_silent = false;           ///< No message arrives.
   bool has_no_processor = false;    ///< is_held_up() of its process.
   bool is_device_gone = false;      ///< kReconnect fails.
   bool is_device_fixed = false;     ///< A person holds it: it does not follow targets.
@@ -34,7 +34,7 @@ class ScriptedServer final : public attempt::ServerHost {
   std::string refuses_parameters;  ///< The reply to SetParameters; empty: done.
   std::string refuses_scene;
   void end(const std::string& why) { alive_ = fail(why, "trocar-hapticd", "its log"); }
-  /// Another process answers at the endpoint; this program did not start it.
+  /// Simulates another process at the endpoint; this program did not start it.
   void come_back() {
     ++session_;
     gate_ = telemetry::GateMode::kOff;
@@ -45,10 +45,10 @@ class ScriptedServer final : public attempt::ServerHost {
     gate_ = telemetry::GateMode::kFault;
   }
 
-  // What it was asked for.
+  // Received commands.
   int restarts = 0, connections = 0, scenes = 0;
   std::vector<link::ServerCommand> commands;
-  std::vector<link::SetParameters> parameters;  ///< All that came.
+  std::vector<link::SetParameters> parameters;  ///< All received messages.
   std::optional<link::HandTarget> target;
   int count(link::ServerCommand command) const {
     return static_cast<int>(std::count(commands.begin(), commands.end(), command));
@@ -89,7 +89,7 @@ class ScriptedServer final : public attempt::ServerHost {
   telemetry::GateMode gate_ = telemetry::GateMode::kOff;
   telemetry::GateFault fault_ = telemetry::GateFault::kNone;
   std::shared_ptr<const void> participation_;
-  Pose X_P_;  ///< Of the device's tool.
+  Pose X_P_;  ///< Pose of the device's tool.
 };
 
 class ScriptedServer::Connection final : public attempt::ServerConnection {
