@@ -4,8 +4,8 @@
 
 namespace trocar::bench {
 
-/// Counts what all threads take with operator new while one lives; the program that links this counts in its own
-/// operator new, at the price of a look at a flag.
+/// Counts the allocations of all threads with operator new during the lifetime of an object. The program that links
+/// this file replaces operator new; outside of that lifetime, the cost is one test of a flag.
 class AllocationCount {
  public:
   AllocationCount() noexcept;

@@ -4,38 +4,38 @@
 
 #include "bench/harness.h"
 
-/// What the benchmarks' files offer to registry.cpp, a line each.
+/// Functions of the benchmark files for registry.cpp, one line per benchmark.
 namespace trocar::bench {
 
 /// Slices and points of a volume, against vtkImageReslice.
 Result<std::vector<CaseResult>> run_slice_benchmark();
-/// One haptic tick beside a fixed piece of arithmetic.
+/// One haptic tick, compared with a fixed arithmetic calculation.
 Result<std::vector<CaseResult>> run_haptics_benchmark();
 /// A whole attempt of 30 simulated seconds, and the whole process.
 Result<std::vector<CaseResult>> run_session_benchmark();
 /// Forces of an insertion into the embedded patient: peaks, drops, second insertion.
 Result<std::vector<CaseResult>> run_insertion_benchmark();
-/// Partly against fully segmented data along planned paths: the study of the Luebeck group.
+/// Partly segmented data compared with fully segmented data along planned paths: the study of the Luebeck group.
 Result<std::vector<CaseResult>> run_paths_benchmark(const Options& options);
 /// Novices with many seeds on the embedded patient and on the real CTs: scores, and the path constraint tick by tick.
 Result<std::vector<CaseResult>> run_cohort_benchmark(const Options& options);
 /// Force along one needle path as a curve, by each force model.
 Result<std::vector<CaseResult>> run_curves_benchmark(const Options& options);
-/// Every tissue, force model, device and holder in closed loop: comes to rest, gives no energy.
+/// Every tissue, force model, device and holder in closed loop: the loop comes to rest and generates no energy.
 Result<std::vector<CaseResult>> run_stability_benchmark(const Options& options);
-/// A hand pushes the needle on bone and through the ligamentum flavum, by device and force model.
+/// Needle pushed on bone and through the ligamentum flavum, by device and force model.
 Result<std::vector<CaseResult>> run_contact_benchmark(const Options& options);
 /// Slow loops on every simulated device with a moving hand: time to zero force, force, travel.
 Result<std::vector<CaseResult>> run_faults_benchmark(const Options& options);
-/// Fingertip and transducer on the embedded patient: newtons a place, and what a tick costs.
+/// Fingertip and transducer on the embedded patient: force (N) per place, and time of a tick.
 Result<std::vector<CaseResult>> run_palpation_benchmark();
-/// Batches of ticks to bytes and back.
+/// Encoding and decoding of batches of ticks.
 Result<std::vector<CaseResult>> run_link_benchmark();
 /// Two live servers, a drawing client and a busy process: rate, lateness, ticks, missed deadlines.
 Result<std::vector<CaseResult>> run_servers_benchmark(const Options& options);
-/// Volumes from tracked freehand sweeps; with the test data against PLUS' own volume.
+/// Volumes from tracked freehand sweeps; with the test data, compared with the volume of PLUS.
 Result<std::vector<CaseResult>> run_reconstruct_benchmark();
-/// Simulated ultrasound beside a recorded sweep: gray levels, size of the speckle, a picture of both.
+/// Simulated ultrasound compared with a recorded sweep: gray levels, speckle size, an image of both.
 Result<std::vector<CaseResult>> run_likeness_benchmark(const Options& options);
 /// Ultrasound frames of the embedded patient while the transducer moves.
 Result<std::vector<CaseResult>> run_ultrasound_benchmark(const Options& options);

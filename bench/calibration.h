@@ -12,8 +12,8 @@ double time_us(Work&& work) {
   return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// A chain of multiplications and additions that nothing can shorten: about 8 us, the same on every call. Interleaved
-/// with a tick it tells what the machine was worth at the time.
+/// A chain of dependent multiplications and additions that the compiler cannot shorten: about 8 us, the same on every
+/// call. Interleaved with a tick, its time measures the speed of the machine at that moment.
 inline double calibration_arithmetic(double x) noexcept {
   constexpr int kSteps = 5000;
   for (int i = 0; i < kSteps; ++i) x = x * 0.999 + 0.001;

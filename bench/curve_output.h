@@ -9,7 +9,7 @@
 
 namespace trocar::bench {
 
-/// One of the curves that are held against each other: of a force model, or of a patient.
+/// One of the compared curves: the curve of a force model or of a patient.
 struct NamedCurve {
   std::string name;  ///< "proxy".
   std::vector<cases::CurvePoint> points;
@@ -18,17 +18,17 @@ struct NamedCurve {
 
 /// One path with its curves: the same motion for each.
 struct PathCurves {
-  std::string name;   ///< "lumbar": of files and cases.
-  std::string title;  ///< Patient, needle, speed: above the plot.
+  std::string name;   ///< "lumbar": name in files and cases.
+  std::string title;  ///< Patient, needle, speed: title of the plot.
   std::vector<cases::PathPiece> pieces;
   std::vector<NamedCurve> curves;
 };
 
-/// The curves side by side, a row of bars every few millimetres of depth: the largest force in that row. An asterisk
-/// marks a row in which a layer gave way.
+/// The curves side by side as text: a row of bars every few millimetres of depth, with the largest force in that row.
+/// An asterisk marks a row with a puncture of a layer.
 std::string curves_text(const PathCurves& path);
 
-/// NAME.csv: a row a tick, NAME.svg: the curves over the layers. The folder is there.
+/// Writes NAME.csv with one row per tick and NAME.svg with the curves over the layers. The folder must exist.
 Status write_curves(const PathCurves& path, const anatomy::TissueTable& tissues, const std::filesystem::path& folder);
 
 }  // namespace trocar::bench

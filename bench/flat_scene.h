@@ -10,7 +10,7 @@
 
 namespace trocar::bench {
 
-/// From this depth (mm) under the skin on there is this tissue.
+/// A layer of tissue that begins at this depth (mm) below the skin.
 struct FlatLayer {
   double from_mm;
   std::string tissue;

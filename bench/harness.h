@@ -38,25 +38,25 @@ struct CaseResult {
 
 /// Calls `work` `rounds` times after `warm_up` calls and returns the times in milliseconds.
 Figures time_ms(int warm_up, int rounds, const std::function<void()>& work);
-/// Median, p99, p99.9 and maximum of any numbers, by nearest rank. A tail is left empty where fewer values than
-/// resolve it were taken: p99 below 100, p99.9 below 1000.
+/// Median, p99, p99.9 and maximum of any numbers, by nearest rank. A tail is empty if there are too few values to
+/// resolve it: p99 below 100, p99.9 below 1000.
 Figures figures_of(std::vector<double> values);
 /// A single number: the median.
 Figures figure_of(double value);
 
-/// What a user may ask of a benchmark. An option that a benchmark does not name in Benchmark::options is refused.
+/// Options of benchmarks. An option that is not in Benchmark::options is an error.
 struct Options {
-  std::shared_ptr<const anatomy::VirtualPatient> patient;  ///< Empty: the benchmark's own.
+  std::shared_ptr<const anatomy::VirtualPatient> patient;  ///< Empty: the benchmark's default patient.
   std::string task = "liver-biopsy";
   int paths = 2000;
   std::optional<haptics::ForceModel> force_model;
   std::uint64_t seed = 1;
-  double seconds = 10.0;  ///< How long live servers are watched.
+  double seconds = 10.0;  ///< Duration of the measurement of live servers.
   std::vector<double> rates_hz{1000.0, 4000.0};
-  std::filesystem::path sequence;  ///< Tracked sequence to be held against; empty: none.
+  std::filesystem::path sequence;  ///< Tracked sequence for comparison; empty: none.
   std::filesystem::path out;       ///< Folder for files; empty: none are written.
   Progress progress;
-  std::function<void(std::string_view)> print;  ///< For people, beside the figures; empty with --json.
+  std::function<void(std::string_view)> print;  ///< Prints text in addition to the figures; empty with --json.
 };
 
 /// The work of a benchmark: a function with options or without.
@@ -73,16 +73,16 @@ class Work {
   std::function<Result<std::vector<CaseResult>>(const Options&)> call_;
 };
 
-/// A benchmark: a name and what it measures. All of them are listed in registry.cpp.
+/// A benchmark: its name and its measurements. registry.cpp lists all benchmarks.
 struct Benchmark {
   std::string_view name;  ///< "slice", "session".
   std::string_view description;
   Work run;
-  std::vector<std::string_view> options{};  ///< Those of the command line that it can use: "--patient".
+  std::vector<std::string_view> options{};  ///< Command-line options that it uses: "--patient".
 };
 const std::vector<Benchmark>& all_benchmarks();
 
-/// CPU, cores, compiler, build: what the figures were taken on.
+/// The machine of the measurements: CPU, cores, compiler, build.
 config::Json machine_json();
 config::Json to_json(std::string_view bench, const std::vector<CaseResult>& results);
 

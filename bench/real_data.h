@@ -8,10 +8,10 @@
 
 namespace trocar::bench {
 
-/// Real data for benchmarks: $TROCAR_TEST_DATA, else beside the checkout. May not exist.
+/// Folder of real data for benchmarks: $TROCAR_TEST_DATA, else a folder beside the checkout. It may not exist.
 std::filesystem::path real_data();
 
-/// Runs a program of the PATH without its output and waits for it. Error: it could not be started, or failed.
+/// Runs a program of the PATH, discards its output and waits for it. Errors: it could not be started, or it failed.
 Status run_quietly(const std::vector<std::string>& arguments);
 
 }  // namespace trocar::bench

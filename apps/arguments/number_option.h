@@ -7,11 +7,11 @@
 
 namespace trocar::arguments {
 
-// Every option that takes a number is made with one of these. Each value of the option must be written in decimal and
-// fill the whole text: "", "nan", "inf", "0x10", "3x" and numbers outside the range are usage errors. The help shows
-// the range. They return the option.
+// Every option that takes a number uses one of these functions, which return the option. Each value must be a decimal
+// number without other text: "", "nan", "inf", "0x10", "3x" and numbers outside the range are usage errors. The help
+// shows the range.
 
-/// A number from `low` to `high`. `unit` as people write it ("mm", "Hz"); empty for a pure number.
+/// A number from `low` to `high`. `unit` is the usual symbol ("mm", "Hz"); empty for a dimensionless number.
 CLI::Option* number_within(CLI::Option* option, double low, double high, std::string_view unit);
 /// A whole number from `low` to `high`; a leading zero does not make it octal.
 CLI::Option* whole_number_within(CLI::Option* option, std::int64_t low, std::int64_t high);

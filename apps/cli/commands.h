@@ -6,9 +6,9 @@
 
 namespace trocar::cli {
 
-// Each adds its command with sub-commands to the program; a parsed one sets `action`.
+// Each function adds its command with sub-commands to the program; parsing the command sets `action`.
 void add_patient_commands(CLI::App& program, Action& action);
-void add_patient_report_commands(CLI::App& patient, Action& action);  ///< show, check and render of `patient`.
+void add_patient_report_commands(CLI::App& patient, Action& action);  ///< Adds show, check and render to `patient`.
 void add_plan_command(CLI::App& program, Action& action);
 void add_task_commands(CLI::App& program, Action& action);
 void add_run_command(CLI::App& program, Action& action);
@@ -16,7 +16,7 @@ void add_session_commands(CLI::App& program, Action& action);
 void add_device_commands(CLI::App& program, Action& action);
 void add_link_commands(CLI::App& program, Action& action);
 void add_ultrasound_commands(CLI::App& program, Action& action);
-// Of `ultrasound`: image; sweep; reconstruct; views and transducers.
+// Sub-commands of `ultrasound`: image; sweep; reconstruct; views and transducers.
 void add_ultrasound_image_command(CLI::App& ultrasound, Action& action);
 void add_ultrasound_sweep_command(CLI::App& ultrasound, Action& action);
 void add_ultrasound_reconstruct_command(CLI::App& ultrasound, Action& action);

@@ -13,32 +13,32 @@
 
 namespace trocar::cli {
 
-/// What the command line asks for, bound to its arguments: set while it is parsed, called by main.
+/// The requested command, bound to its arguments: set while the command line is parsed, called by main.
 using Action = std::function<Status()>;
 
 void print_warning(std::string_view text);
-/// Results go to standard output, as one JSON object.
+/// Prints results to standard output, as one JSON object.
 void print_json(const config::Json& json);
 
-/// Progress of long work on standard error: a bar on a terminal, one plain line a step otherwise.
+/// Prints progress of a long task to standard error: a bar on a terminal, else one plain line per step.
 class ProgressPrinter {
  public:
   ProgressPrinter();
-  ~ProgressPrinter();  ///< Leaves a clean line.
+  ~ProgressPrinter();  ///< Clears the bar's line.
   ProgressPrinter(const ProgressPrinter&) = delete;
   ProgressPrinter& operator=(const ProgressPrinter&) = delete;
 
-  Progress callback() const;  ///< Valid while the printer lives.
+  Progress callback() const;  ///< Valid during the lifetime of the printer.
 
  private:
   struct State;
   std::unique_ptr<State> state_;
 };
 
-/// Before long work: `out` is not empty, nothing lies there yet (exit status 2 both), and it can be written.
+/// Call before a long task. Errors: `out` is empty or exists (exit status 2 for both), or it cannot be written.
 Status check_new(const std::filesystem::path& out, const char* option = "--out");
 
-/// A shipped table: "tasks", "needles.toml". An error where the data folder is missing.
+/// Path of a shipped table: "tasks", "needles.toml". Error: the data folder is missing.
 Result<std::filesystem::path> find_data(std::string_view name);
 
 }  // namespace trocar::cli

@@ -6,8 +6,8 @@
 
 namespace trocar::cli {
 
-/// Adds --no-cache; without it `source` uses the user's cache folder for embedded patients. `source` lives as long as
-/// the command.
+/// Adds --no-cache; without it `source` uses the user's cache folder for embedded patients. `source` must outlive the
+/// command.
 void add_cache_option(CLI::App& command, io::PatientSource& source);
 
 }  // namespace trocar::cli

@@ -10,21 +10,21 @@
 
 namespace trocar::cli {
 
-// Parts of the JSON that `patient` prints about a patient.
+// Parts of the JSON output of `patient`.
 config::Json to_json(const Vec3& v);
 config::Json grid_json(const volume::GridGeometry& geometry);
 config::Json label_json(const anatomy::VirtualPatient& patient, const anatomy::LabelStatistics& statistics);
 config::Json mesh_json(const anatomy::NamedMesh& mesh);
 config::Json readiness_json(const tasks::Task& task, const tasks::TaskReadiness& readiness);
 
-/// What `patient build` reports about the patient that it has made.
+/// Report of `patient build` about the new patient.
 struct BuildSummary {
   std::string folder;
   std::vector<anatomy::LabelStatistics> labels;
   double body_ml = 0.0;
   std::vector<std::string> warnings, doubts;
   std::vector<tasks::Task> tasks;
-  std::vector<tasks::TaskReadiness> readiness;  ///< Of each task.
+  std::vector<tasks::TaskReadiness> readiness;  ///< One element per task.
 };
 BuildSummary summarize_build(const anatomy::VirtualPatient& patient, const std::vector<tasks::Task>& tasks,
                              std::vector<std::string> warnings, const std::string& folder);

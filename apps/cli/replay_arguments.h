@@ -21,8 +21,8 @@ class NamedOptions {
 };
 
 /// Fills the arguments of `trocar run` from the session that `--operator replay:SESSION` names, and refuses (exit
-/// status 2) those that contradict it. --set, --profile, --tissues and --force-model change the replay on purpose.
-/// Nothing for another operator, which needs a patient.
+/// status 2) those that contradict it. --set, --profile, --tissues and --force-model change the replay on purpose. Has
+/// no effect for another operator, which needs a patient.
 Status restore_arguments(const NamedOptions& named, cases::CaseOptions& the_case, attempt::RunOptions& run,
                          io::PatientSource& source);
 

@@ -27,43 +27,43 @@ struct ScanArguments {
   std::vector<double> tgc_db;
   std::string gray_map;
   std::vector<std::string> off;
-  std::uint64_t seed = 1;  ///< Of the receiver's noise.
+  std::uint64_t seed = 1;  ///< Seed of the receiver's noise.
   bool needs_flow = false;
 };
 
-/// Adds the options; `arguments` lives as long as the command.
+/// Adds the options; `arguments` must outlive the command.
 void add_scan_options(CLI::App& command, ScanArguments& arguments);
 
-/// Arguments put together and held against their ranges, and the patient as sound meets him.
+/// Arguments that were combined and checked against their ranges, and the acoustic scene of the patient.
 struct Scan {
   ultrasound::Transducer transducer;
   ultrasound::Acquisition acquisition;
   ultrasound::DisplaySettings display;
   std::optional<ultrasound::ProbeView> view;
   Pose X_PT;
-  std::optional<ultrasound::ViewVisibility> visibility;  ///< Of the view's subject.
-  double unscanned_share = 0.0;                          ///< Of the picture, beyond the ends of the CT.
+  std::optional<ultrasound::ViewVisibility> visibility;  ///< Visibility of the view's subject.
+  double unscanned_share = 0.0;                          ///< Share of the image beyond the ends of the CT.
   std::string patient_name;
   std::shared_ptr<const ultrasound::AcousticScene> scene;
-  std::shared_ptr<const ultrasound::VesselFlow> flow;  ///< Where it was asked for.
+  std::shared_ptr<const ultrasound::VesselFlow> flow;  ///< Null unless needs_flow.
 };
 
-/// What is wrong in the arguments is said before the patient is opened. `default_transducer`: where neither the
-/// arguments nor the view name one.
+/// Errors of the arguments are returned before the patient is opened. `default_transducer` is used if neither the
+/// arguments nor the view name a transducer.
 Result<Scan> prepare_scan(const ScanArguments& arguments, const std::string& default_transducer,
                           const Progress& progress);
 
-/// Outputs can be written: nothing lies there yet, their folders exist, and no two are the same. Empty ones are left
-/// out.
+/// Checks that outputs can be written: they do not exist, their folders exist, and all are different. Empty ones are
+/// ignored.
 Status check_outputs(const std::vector<std::string>& outputs);
 
 /// Warns if the transducer face has no or only partial contact. `coupled`: the share of scanlines on the skin, 0..1.
 void warn_of_contact(double coupled);
 
-/// Warns where the view shows little of its subject, and where the picture reaches beyond the CT.
+/// Warns if the view shows little of its subject, and if the image extends beyond the CT.
 void warn_of_visibility(const Scan& scan);
 
-/// Writes X_PT with the settings that --pose reads again.
+/// Writes X_PT with the settings that --pose reads.
 Status save_pose(const Scan& scan, const std::string& path);
 
 config::Json to_json(const Pose& X);

@@ -7,8 +7,9 @@
 
 namespace trocar {
 
-/// The motion of a file that a replay device names: CSV (devices/simulated/replay_file.h), or a session, which the
-/// program `trocar` converts: the server itself reads no sessions. Errors: the file, or `trocar` is not installed.
+/// Loads the motion of a replay device's file: CSV (devices/simulated/replay_file.h), or a session. The program
+/// `trocar` converts a session, because the server does not read sessions. Errors: an unusable file, or `trocar` is not
+/// installed.
 Result<devices::RecordedMotion> load_motion(const std::filesystem::path& path);
 
 }  // namespace trocar

@@ -15,8 +15,8 @@ struct TypeDefinition {
   int line = 0;
 };
 
-/// All types that a C++ source defines. Reads text, without a preprocessor: only the first branch of each #if counts.
-/// Specialisations of templates are left out.
+/// All types that a C++ source defines. Reads text without a preprocessor: only the first branch of each #if is read.
+/// Specialisations of templates are ignored.
 std::vector<TypeDefinition> find_type_definitions(std::string_view source);
 
 /// One line for each name that several files, or several places of one file, define. `sources`: path and text.

@@ -10,21 +10,22 @@ namespace trocar::architecture {
 
 /// A line of src/modules.txt.
 struct Module {
-  std::string tier;  ///< Folder in src/ that it lies in.
-  int level = 0;     ///< Of its tier, counted from the lowest.
+  std::string tier;  ///< Folder in src/ that contains it.
+  int level = 0;     ///< Level of its tier, counted from the lowest.
   std::string name;
   std::set<std::string> uses;       ///< Modules it may include directly.
   std::set<std::string> libraries;  ///< Third-party libraries it may include.
 };
 using Modules = std::map<std::string, Module>;
 
-/// Reads "[tier]" and "name : uses : libraries" lines; what is malformed or named twice is told in `complaints`.
+/// Reads "[tier]" and "name : uses : libraries" lines; `complaints` lists malformed lines and repeated names.
 Modules parse_modules(std::string_view text, std::vector<std::string>& complaints);
 
-/// Modules that `name` may include: itself and all that its dependencies may use. Ends also where there is a cycle.
+/// Modules that `name` may include: itself and all that its dependencies may use. Also terminates for a cycle.
 std::set<std::string> reachable(const Modules& modules, const std::string& name);
 
-/// Unknown dependencies, cycles and arrows to a higher tier, one line each; empty when the arrows only go down.
+/// Unknown dependencies, cycles and dependencies on a higher tier, one line each; empty if all dependencies are on
+/// lower tiers.
 std::vector<std::string> check_arrows(const Modules& modules);
 
 struct Include {
@@ -34,8 +35,8 @@ struct Include {
 };
 std::vector<Include> parse_includes(std::string_view source);
 
-/// Includes of one file that its place does not allow, one line each. `path` is relative to the repository:
-/// src/TIER/MODULE/..., apps/NAME/..., bench/... or tests/....
+/// Forbidden includes of one file, one line each. `path` is relative to the repository: src/TIER/MODULE/...,
+/// apps/NAME/..., bench/... or tests/....
 std::vector<std::string> check_includes(const Modules& modules, const std::string& path, std::string_view source);
 
 /// The same for the folders of one program: includes of a file in `top`/FOLDER/... of a folder that `folders` (a list
@@ -44,10 +45,10 @@ std::vector<std::string> check_includes(const Modules& modules, const std::strin
 std::vector<std::string> check_folder_includes(const Modules& folders, const std::string& top, const std::string& path,
                                                std::string_view source);
 
-/// What is wrong with a module's README.md: it has 10 to 25 lines.
+/// Errors of a module's README.md, which must have 10 to 25 lines.
 std::vector<std::string> check_module_readme(const std::string& module, std::string_view text);
 
-/// A file that asks to be split.
+/// Maximum number of lines of a file; a longer file must be split.
 inline constexpr int kMaxLines = 450;
 int count_lines(std::string_view text);
 

@@ -13,10 +13,10 @@ struct Call {
   std::vector<std::string> arguments;
 };
 
-/// The calls of fail() and fail_usage() in a C++ source; strings and nested brackets are stepped over.
+/// The calls of fail() and fail_usage() in a C++ source; strings and nested brackets are skipped.
 std::vector<Call> find_fail_calls(std::string_view source);
 
-/// "path:line: ..." for every error that does not say what went wrong, where, and what to do.
+/// "path:line: ..." for every error without the failure, the place, and the advice.
 std::vector<std::string> check_messages(const std::string& path, std::string_view source);
 
 }  // namespace trocar::architecture

@@ -6,10 +6,10 @@
 
 namespace trocar::architecture {
 
-/// All C++ files of some folders of the repository, by their path in it, with their text.
+/// Text of all C++ files in some folders of the repository, by their path in it.
 std::map<std::string, std::string> source_files(const std::vector<std::string>& folders);
 
-/// Complaints, a line each.
+/// Joins complaints, one line each.
 std::string joined(const std::vector<std::string>& complaints);
 
 }  // namespace trocar::architecture

@@ -8,14 +8,14 @@
 
 namespace trocar::cli_test {
 
-/// What a run of the real program gave.
+/// Result of a run of the real program.
 struct Outcome {
-  int exit_status = -1;  ///< 128 + signal when it was killed.
+  int exit_status = -1;  ///< 128 + signal if it was killed.
   std::string out;
   std::string err;
 };
 
-/// Runs `trocar ARGUMENTS` (a shell line); `before` stands in front of it ("env -u DISPLAY").
+/// Runs `trocar ARGUMENTS` (a shell line); `before` is a prefix of the line ("env -u DISPLAY").
 Outcome trocar(const std::string& arguments, const std::string& before = {});
 
 /// The same for another program of the build: trocar-hapticd.
@@ -24,14 +24,14 @@ Outcome run_program(const std::string& program, const std::string& arguments, co
 /// Runs a line of the shell.
 Outcome run_shell(const std::string& line);
 
-/// Standard output as JSON; a test failure and null where it is none.
+/// Standard output as JSON; a test failure and null if it is not JSON.
 config::Json json_of(const Outcome& outcome);
 
 int line_count(const std::string& text);
-/// A file's text; empty where it cannot be read.
+/// A file's text; empty if it cannot be read.
 std::string read_text(const std::string& file);
 
-/// A folder of its own, removed at the end, that names its files as text for command lines.
+/// A temporary folder, removed by the destructor, that returns the paths of its files as text for command lines.
 class TemporaryFolder {
  public:
   const std::filesystem::path& path() const { return folder_.path(); }

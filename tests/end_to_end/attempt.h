@@ -11,7 +11,7 @@
 
 namespace trocar::testing {
 
-/// A finished attempt: what was returned and what was recorded.
+/// A finished attempt: its result and its recorded session.
 struct Attempt {
   attempt::RunResult result;
   storage::Session session;
@@ -46,7 +46,7 @@ inline std::vector<std::string> layers_of(const Attempt& attempt) {
 
 /// Mean resistance while the needle advances, from one puncture (by number) to the next loading.
 inline double mean_resistance_after_n(const Attempt& attempt, std::size_t puncture) {
-  const double from_s = attempt.result.punctures.at(puncture).time_s + 0.1;  // the spring of the coupling has relaxed
+  const double from_s = attempt.result.punctures.at(puncture).time_s + 0.1;  // the coupling spring has relaxed
   double sum = 0.0;
   int count = 0;
   for (const telemetry::TickSample& sample : attempt.session.samples) {
@@ -58,7 +58,7 @@ inline double mean_resistance_after_n(const Attempt& attempt, std::size_t punctu
   return count > 0 ? sum / count : 0.0;
 }
 
-/// The paper's observations on one expert attempt: three peaks in order, a drop after each, more force behind the
+/// The paper's observations on one expert attempt: three peaks in order, a drop after each, a larger force behind the
 /// capsule than behind the skin.
 inline void expect_three_peaks(const Attempt& attempt) {
   ASSERT_EQ(layers_of(attempt), (std::vector<std::string>{"skin", "muscle", "liver_capsule"}));

@@ -14,8 +14,8 @@
 
 namespace trocar::testing {
 
-/// A haptic server of this process with a simulated device, at ordinary priority: what is tested is what arrives, not
-/// when.
+/// A haptic server in this process with a simulated device, at ordinary priority: the tests check the received data,
+/// not its timing.
 class LiveServer {
  public:
   LiveServer(const cases::Case& the_case, const std::string& tool, const TemporaryFolder& folder)
@@ -42,7 +42,7 @@ class LiveServer {
     ASSERT_TRUE(server.has_value()) << server.error().text();
     server_.emplace(*std::move(server));
   }
-  /// Gone: not even a socket is left.
+  /// Destroys the server and its socket.
   void end() { server_.reset(); }
 
  private:

@@ -23,8 +23,8 @@ inline std::shared_ptr<const cases::OpenCase> layered_case() {
   return kOpen;
 }
 
-/// Its way to the liver is slanted: a stylus that sags leaves the needle's channel. The patient is kept, so that the
-/// servers need not generate it again.
+/// The path to the liver is oblique: a stylus that sags leaves the needle's channel. The patient is cached, so that the
+/// servers do not generate it again.
 inline std::shared_ptr<const cases::OpenCase> abdomen_case() {
   static const std::shared_ptr<const cases::OpenCase> kOpen = [] {
     auto made = testing::open_cached_case();

@@ -11,13 +11,13 @@
 
 namespace trocar::servers_test {
 
-/// Long enough for a loaded machine; nothing is measured by it.
+/// Long enough for a loaded machine; no measurement uses it.
 inline constexpr std::chrono::milliseconds kPatience{60'000};
 
 bool wait_for(const std::function<bool()>& is_so);
 
-/// A trocar-hapticd with a simulated device on an endpoint of its own; ordinary scheduling, so that it takes no core
-/// from other tests.
+/// A trocar-hapticd with a simulated device on its own endpoint; ordinary scheduling, so that it does not block a core
+/// for other tests.
 class LiveServer {
  public:
   explicit LiveServer(std::vector<std::string> more = {});
@@ -35,12 +35,12 @@ class LiveServer {
 };
 
 link::HapticClient connect(const std::string& url, bool wants_control = true);
-/// The layered liver patient, entered straight down; the hand can be told by depth below the skin.
+/// The layered liver patient, entered vertically; the hand can be set by its depth below the skin.
 link::LoadScene layers_scene();
 link::HandTarget hand_at_depth(double depth_mm);
-/// Scene, hand pressed on the skin, forces on and past the safe start.
+/// Loads the scene, presses the hand on the skin, turns the forces on and waits for the end of the safe start.
 void press_on_skin(link::HapticClient& client);
-/// Newtons of tissue on the device (without the stylus' weight).
+/// Tissue force on the device (N), without the weight of the stylus.
 double felt_n(const telemetry::TickSample& sample);
 bool has_limit(const telemetry::TickSample& sample, telemetry::LimitReason reason);
 

@@ -17,7 +17,7 @@
 
 namespace trocar::servers_test {
 
-/// A case with all that an attempt needs, without display data; made once. The abdomen's path to the liver is slanted:
+/// A case with all data for an attempt, without display data; created once. The abdomen's path to the liver is oblique:
 /// a stylus that sags leaves the needle's channel.
 inline std::shared_ptr<const cases::OpenCase> prepared_case(const std::string& patient_name) {
   static std::map<std::string, std::shared_ptr<const cases::OpenCase>> kMade;
@@ -34,7 +34,7 @@ inline std::shared_ptr<const cases::OpenCase> prepared_case(const std::string& p
   return made = std::make_shared<const cases::OpenCase>(std::move(open));
 }
 
-/// An attempt of the window with two simulated haptic servers, in a test's own time: no real second passes.
+/// An attempt of the window with two simulated haptic servers in simulated time.
 class SimulatedAttemptTest : public ::testing::Test {
  protected:
   static constexpr std::chrono::milliseconds kPoll{2};
@@ -58,7 +58,7 @@ class SimulatedAttemptTest : public ::testing::Test {
                   attempt::trainee_operators(*open, options), servers_, servers_->supervise(supervision, *clock),
                   *clock, *attempt);
   }
-  /// One poll of the attempt, then the time until the next.
+  /// Polls the attempt, then advances the time to the next poll, for `seconds`.
   void run_for(double seconds) {
     const int polls = static_cast<int>(seconds / 0.002 + 0.5);
     for (int i = 0; i < polls; ++i) {
@@ -79,7 +79,7 @@ class SimulatedAttemptTest : public ::testing::Test {
   bool run_until_deeper(double depth_mm) {
     return run_until([&] { return attempt->view().needle.depth_mm > depth_mm; });
   }
-  /// This program gets no processor: neither the attempt nor the threads of its connections run; servers do.
+  /// Simulates a client without processor time: the attempt and the threads of its connections do not run; servers do.
   void stall_client(double seconds) {
     needle->stall_client(true);
     if (probe) probe->stall_client(true);
@@ -91,7 +91,7 @@ class SimulatedAttemptTest : public ::testing::Test {
     const cases::Case& the_case = open->the_case;
     return tasks::make_expert({the_case.plan.line_P, the_case.needle.is_biopsy, 1});
   }
-  /// Ends the attempt without a score, as a window that is closed.
+  /// Ends the attempt without a score, like closing the window.
   void leave() { loop_.reset(); }
   attempt::RunResult finished() {
     attempt->finish();

@@ -18,16 +18,16 @@
 
 namespace trocar::servers_test {
 
-/// A haptic server in a test's own time and thread: the real servo, safety gate, scenes, devices, sessions and client;
-/// simulated are the threads' turns, the socket and the process. Of trocar-hapticd it repeats the order of a link
-/// thread's and a real-time thread's work.
+/// A haptic server in simulated time and in the test's thread. Servo, safety gate, scenes, devices, sessions and client
+/// are the real ones; thread scheduling, socket and process are simulated. It runs the work of a link thread and of a
+/// real-time thread in the order of trocar-hapticd.
 class SimulatedServer {
  public:
   struct Options {
     std::string tool = "needle";
     std::string device = "virtual:premium";  ///< virtual:PRESET | mouse
-    double start_s = 0.3;                    ///< From the start of the process to its first message.
-    double load_s = 0.1;                     ///< Of a scene.
+    double start_s = 0.3;                    ///< Time from the start of the process to its first message.
+    double load_s = 0.1;                     ///< Time to load a scene.
   };
   SimulatedServer(testing::FakeClock& clock, std::shared_ptr<const anatomy::VirtualPatient> patient, Options options);
   ~SimulatedServer();
@@ -38,14 +38,14 @@ class SimulatedServer {
   std::unique_ptr<attempt::ServerHost> host();
 
   // The process.
-  void pause() { is_paused_ = true; }  ///< SIGSTOP: it gets no processor,
+  void pause() { is_paused_ = true; }  ///< SIGSTOP: it gets no processor time.
   void go_on() { is_paused_ = false; }
-  void hang() { is_hung_ = true; }  ///< It sleeps and does nothing more.
+  void hang() { is_hung_ = true; }  ///< It sleeps without further work.
   void kill();                      ///< SIGKILL.
   Status restart();
   int pid() const { return pid_; }
   int restarts() const { return pid_ - kFirstPid; }
-  /// The client's program gets no processor: its thread neither reads nor beats.
+  /// The client's program gets no processor time: its thread neither reads nor sends heartbeats.
   void stall_client(bool is_stalled) { is_client_stalled_ = is_stalled; }
 
   // The device.
@@ -63,7 +63,7 @@ class SimulatedServer {
     decltype(link::Command::what) what;
     double due_s = 0.0;
   };
-  /// What ends with a process.
+  /// State that ends with a process.
   struct Process;
 
   void step();
@@ -87,7 +87,7 @@ class SimulatedServer {
   testing::InProcessServerEnd link_;
   std::vector<testing::InProcessClient*> clients_;
   std::unique_ptr<Process> process_;           ///< Null: it was killed.
-  std::shared_ptr<const void> participation_;  ///< In the clock.
+  std::shared_ptr<const void> participation_;  ///< Handle of its participation in the clock.
   int pid_ = kFirstPid;
   bool is_paused_ = false, is_hung_ = false, is_client_stalled_ = false, is_plugged_ = true;
 };

@@ -12,9 +12,10 @@ class QPushButton;
 
 namespace trocar::trainer {
 
-/// The landmarks of a case: a name of the field's or any other, a tool that places it by a click, and the list of those
-/// that are there. Object names: case-landmark-name, case-landmark-pick, case-landmarks, case-landmark-rename,
-/// case-landmark-remove. Keys: Ctrl+L the tool; in the list F2 renames, Delete removes, Enter jumps to the place.
+/// The landmarks of a case: a name from the list or any other, a tool that places the landmark by a click, and a list
+/// of all landmarks. Object names: case-landmark-name, case-landmark-pick, case-landmarks, case-landmark-rename,
+/// case-landmark-remove. Keys: Ctrl+L selects the tool; in the list F2 renames, Delete removes, Enter shows the
+/// landmark's position.
 class CaseLandmarks : public QWidget {
   Q_OBJECT
 
@@ -23,12 +24,12 @@ class CaseLandmarks : public QWidget {
 
   void refresh();
   void show_picking(bool is_on);
-  /// Of what the tool places.
+  /// Name of the landmark that the tool places.
   std::string name() const;
 
  Q_SIGNALS:
   void picking_requested(bool is_on);
-  /// The name that the tool places is another one.
+  /// name() has changed.
   void name_changed();
   void place_requested(const trocar::Vec3& p_P);
 

@@ -9,26 +9,27 @@ class QVBoxLayout;
 
 namespace trocar::trainer {
 
-/// What a click into a picture means to the case builder.
+/// Click tool of the case builder in an image.
 enum class CaseClick { kLook, kTarget, kZone, kEntry, kTip, kLandmark };
 
-/// One step of making a case: shows the editor's draft and asks it for changes. Keeps nothing of the draft itself.
+/// Panel of one step of the case builder: shows the editor's draft and requests changes of it. Stores no part of the
+/// draft.
 class CasePanel : public QWidget {
   Q_OBJECT
 
  public:
   CasePanel(case_builder::CaseEditor& editor, QWidget* parent);
-  /// The editor has something new; fields that a person types in keep their text.
+  /// Called when the editor has changed; fields with keyboard input keep their text.
   virtual void refresh() = 0;
-  /// The click tool that is on, so that its button shows it.
+  /// Marks the button of the active click tool.
   virtual void show_click(CaseClick click);
-  /// Of what a click places; empty: of nothing that has a name.
+  /// Name of the item that a click places; empty for an item without a name.
   virtual std::string click_name() const;
 
  Q_SIGNALS:
-  /// A tool was chosen, or put away (kLook).
+  /// A tool was selected, or deselected (kLook).
   void click_requested(trocar::trainer::CaseClick click);
-  /// click_name() is another one.
+  /// click_name() has changed.
   void click_name_changed();
   void place_requested(const trocar::Vec3& p_P);
   void label_visible_changed(const QString& name, bool is_visible);
@@ -37,7 +38,7 @@ class CasePanel : public QWidget {
 
  protected:
   QVBoxLayout* content() const noexcept { return content_; }
-  /// True while refresh() sets widgets: their signals are no wishes then.
+  /// True while refresh() sets widgets: their signals are not user input then.
   bool is_refreshing_ = false;
   case_builder::CaseEditor& editor_;
 

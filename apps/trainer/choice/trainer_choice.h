@@ -7,16 +7,18 @@
 
 namespace trocar::trainer {
 
-/// What is chosen on the start page.
+/// Selection on the start page.
 struct TrainerChoice {
   std::string task = "liver-biopsy";
-  std::string patient = "abdomen";  ///< Embedded patient's name, or a folder.
+  std::string patient = "abdomen";  ///< Name of an embedded patient, or a folder.
   std::uint64_t patient_seed = 1;
-  std::string needle;       ///< Empty: the task's own.
-  std::string force_model;  ///< Empty: the task's own.
+  std::string needle;       ///< Empty: the default of the task.
+  std::string force_model;  ///< Empty: the default of the task.
   Difficulty difficulty = Difficulty::kGuided;
-  std::string needle_device = "mouse";  ///< As trocar-hapticd --device takes it; likewise of the transducer. "mouse"
-  std::string probe_device = "mouse";   ///< is the simulated device with room for a whole body.
+  /// Devices of needle and transducer: values of trocar-hapticd --device. "mouse" is the simulated device with a
+  /// workspace for a whole body.
+  std::string needle_device = "mouse";
+  std::string probe_device = "mouse";
 };
 
 }  // namespace trocar::trainer

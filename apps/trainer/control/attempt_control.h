@@ -24,18 +24,18 @@ class AttemptControl : public QObject {
                  attempt::AttemptOptions options, std::shared_ptr<attempt::HapticServers> servers, WorkPage& page);
   ~AttemptControl() override;
 
-  /// Once a frame.
+  /// Call once per frame.
   void advance(double dt_s);
-  const attempt::AttemptView& view() const noexcept { return view_; }  ///< Of the last frame.
+  const attempt::AttemptView& view() const noexcept { return view_; }  ///< State of the last frame.
   attempt::LiveAttempt& attempt() noexcept { return attempt_; }
-  /// Stops the forces, or turns stopped ones on again; at any time, also while a server is silent or starts.
+  /// Stops the forces, or restores them after a stop; works at any time, also while a server does not answer or starts.
   void toggle_forces();
-  /// Asks for confirmation to end and score the attempt, which continues meanwhile.
+  /// Requests confirmation to end and score the attempt, which continues in the meantime.
   void ask_to_end();
-  /// Asks whether to close the program; close_confirmed says yes.
+  /// Requests confirmation to close the program; the answer yes emits close_confirmed.
   void ask_to_close();
   void end_server(const QString& tool);
-  /// In the hint's place, for some seconds.
+  /// Shows the text instead of the hint for some seconds.
   void show_notice(const QString& text);
   QVariantMap facts() const;
 
@@ -73,15 +73,15 @@ class AttemptControl : public QObject {
   ToolGestures gestures_;
   attempt::PointerNeedle needle_;
   attempt::PointerProbe probe_;
-  bool is_led_[2];  ///< By Tool: moved by mouse and keys; else its device moves itself.
+  bool is_led_[2];  ///< By Tool: mouse and keys move the tool; else its device does.
   PageKeys keys_;
-  bool is_clamped_[2] = {false, false};  ///< By Tool.
+  bool is_clamped_[2] = {false, false};  ///< Indexed by Tool.
   attempt::AttemptView view_;
   bool has_shown_shot_ = false;
   double still_s_ = 0.0;
-  Question question_ = Question::kEnd;  ///< Asked last.
+  Question question_ = Question::kEnd;  ///< The last question.
   QString notice_;
-  double notice_s_ = 0.0;  ///< So long it is still shown.
+  double notice_s_ = 0.0;  ///< Remaining time of notice_.
   std::size_t frame_ = 0;
 };
 

@@ -10,7 +10,7 @@ namespace trocar::trainer {
 
 /// Tissues along the planned path, in their labels' colours.
 std::vector<ForcePlot::Band> force_bands(const cases::OpenCase& open);
-/// What the planned path feels like: depth (mm), resistance (N).
+/// Predicted resistance along the planned path: depth (mm), resistance (N).
 std::vector<QPointF> predicted_curve(const cases::OpenCase& open);
 
 }  // namespace trocar::trainer

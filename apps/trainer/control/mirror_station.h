@@ -12,8 +12,8 @@ namespace trocar::trainer {
 
 class PatientView;
 
-/// The mirror of the window (paper B's workstation): turned over by F8 or the menu, settings kept, and the camera of a
-/// 3D view fixed to the device.
+/// Support of a mirror workstation (paper B): mirrors the window by F8 or the menu, stores the settings, and fixes the
+/// camera of a 3D view to the device.
 class MirrorStation : public QObject {
   Q_OBJECT
 
@@ -23,9 +23,9 @@ class MirrorStation : public QObject {
   void fill_menu(QMenu& menu);
   const MirrorSettings& settings() const noexcept { return settings_; }
   void set(const MirrorSettings& settings);
-  /// F8: over, and back.
+  /// F8: mirrors the window, or restores it.
   void toggle();
-  /// Before the view draws: its camera, where it is fixed. X_PW: the room about the device in the patient.
+  /// Sets the view's camera before it draws, if the camera is fixed. X_PW: pose of W, the frame of the room, in P.
   void update_camera(PatientView& view, const Pose& X_PW) const;
 
  private:
@@ -34,7 +34,7 @@ class MirrorStation : public QObject {
   QMainWindow& window_;
   WindowMirror mirror_;
   MirrorSettings settings_;
-  MirrorAxis last_axis_ = MirrorAxis::kLeftRight;  ///< That F8 takes.
+  MirrorAxis last_axis_ = MirrorAxis::kLeftRight;  ///< Axis that F8 uses.
 };
 
 }  // namespace trocar::trainer

@@ -11,15 +11,16 @@ namespace trocar::trainer {
 
 /// The widget with the focus when a key is pressed.
 struct KeyPlace {
-  bool is_text = false;               ///< A text field or a number.
+  bool is_text = false;               ///< A text field or a number field.
   bool is_aside = false;              ///< A menu, an open list or a dialog.
   bool takes_space = false;           ///< A button, a list or a choice.
-  bool is_unclaimed = false;          ///< No widget has used the key.
-  QAbstractButton* button = nullptr;  ///< Null where it is none.
+  bool is_unclaimed = false;          ///< No widget has handled the key.
+  QAbstractButton* button = nullptr;  ///< Null if it is not a button.
 };
 
 /// Receives each key of a window and its floating views before the focused widget, so that page keys work with any
-/// focus. `take` returns true if it used the key; it is called again with is_unclaimed for a key that no widget used.
+/// focus. `take` returns true if it has handled the key; it is called again with is_unclaimed for a key that no widget
+/// has handled.
 class PageKeys : public QObject {
   Q_OBJECT
 

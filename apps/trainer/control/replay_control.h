@@ -14,16 +14,16 @@ namespace trocar::trainer {
 
 class WorkPage;
 
-/// A recorded attempt in the workspace: the time line moves the needle in all views, score and hints stand beside it.
+/// A recorded attempt in the workspace: the time line moves the needle in all views, with score and hints beside them.
 class ReplayControl : public QObject {
   Q_OBJECT
 
  public:
-  /// `warnings`: of the attempt that has just ended, see RunResult.
+  /// `warnings`: those of the attempt that has just ended, see RunResult.
   ReplayControl(attempt::AttemptReplay replay, std::shared_ptr<const cases::OpenCase> open, WorkPage& page,
                 const std::vector<std::string>& warnings = {});
 
-  /// Once a frame.
+  /// Call once per frame.
   void advance(double dt_s);
   void go_to_worst();
   Status save_report(const std::filesystem::path& file) const;
@@ -41,7 +41,7 @@ class ReplayControl : public QObject {
   WorkPage& page_;
   PageKeys keys_;
   double shown_s_ = -1.0;
-  double still_s_ = 1.0;  ///< Since the time last changed.
+  double still_s_ = 1.0;  ///< Time since the replay time last changed.
 };
 
 }  // namespace trocar::trainer

@@ -17,19 +17,19 @@ class QWidget;
 
 namespace trocar::trainer {
 
-/// How a view sees the patient where the tools are.
+/// Directions and scale of a view at the tools.
 struct ViewScale {
-  Vec3 right_P = Vec3::UnitX(), down_P = -Vec3::UnitZ();  ///< Unit, of the view.
-  double mm_per_px = 0.0;                                 ///< 0: the view keeps its mouse.
+  Vec3 right_P = Vec3::UnitX(), down_P = -Vec3::UnitZ();  ///< Unit vectors of the view.
+  double mm_per_px = 0.0;                                 ///< 0: the view handles the mouse.
 };
 
 /// A user's gesture, converted to a tool motion.
 struct Gesture {
   enum class Kind {
-    kGlide,  ///< Over the skin; right, down in mm of the view.
+    kGlide,  ///< Motion on the skin; right, down in mm of the view.
     kTilt,   ///< right, down in rad.
-    kTurn,   ///< About the own axis, rad in `right`.
-    kPush,   ///< Along the own axis, mm in `right`: needle inward, transducer harder.
+    kTurn,   ///< About the tool's axis, rad in `right`.
+    kPush,   ///< Along the tool's axis, mm in `right`: needle inward, transducer onto the skin.
   };
   Kind kind = Kind::kGlide;
   double right = 0.0, down = 0.0;
@@ -44,11 +44,11 @@ class ToolGestures : public QObject {
  public:
   explicit ToolGestures(QObject* parent = nullptr);
 
-  /// Also of the widgets within. Keys take the first view's directions.
+  /// Includes child widgets. Keys use the directions of the first view.
   void watch(QWidget& view, std::function<ViewScale()> scale);
   void unwatch();
-  /// A, S and V take a tool, arrows and page keys move it, H, X, E and Enter are signalled. False: the key is none of
-  /// these, or the widget with the focus uses it.
+  /// A, S and V select a tool, arrows and page keys move it, H, X, E and Enter emit key_pressed. False for other keys,
+  /// or if the widget with the focus uses the key.
   bool handle_key(const QKeyEvent& event, const KeyPlace& place);
   ActiveTool active_tool() const noexcept { return active_tool_; }
   void take(ActiveTool tool);
@@ -58,7 +58,7 @@ class ToolGestures : public QObject {
  Q_SIGNALS:
   void gestured(const trocar::trainer::Gesture& gesture);
   void taken(trocar::trainer::ActiveTool tool);
-  /// Keys that mean something for the attempt: H aim, X clamp, Enter fire, E end.
+  /// Keys of the attempt: H aim, X clamp, Enter fire, E end.
   void key_pressed(int key);
 
  private:

@@ -40,7 +40,7 @@ class BriefingPage : public QWidget {
   QLabel* counts_ = nullptr;
   QLabel* controls_ = nullptr;
   QLabel* axial_ = nullptr;
-  QLabel* second_ = nullptr;  ///< A slice across the first.
+  QLabel* second_ = nullptr;  ///< A slice perpendicular to the first.
   QLabel* state_ = nullptr;
   QProgressBar* progress_ = nullptr;
   QPushButton* begin_ = nullptr;

@@ -24,10 +24,10 @@ class SliceMarks;
 class SliceView;
 
 /// The case builder for instructors: six steps at the left (import, labels, target and risks, entry and path, forces,
-/// save), three slices and a 3D view, and a list of what is right and wrong. Clicks into the pictures set what the
-/// chosen tool is for; a left drag moves it. Landmarks are shown in slices and in 3D (M there).
+/// save), three slices and a 3D view, and a list of checks. A click in an image sets the item of the selected tool; a
+/// left drag moves it. Landmarks are shown in slices and in 3D (key M).
 /// Keys: Ctrl+Z undo, Ctrl+Shift+Z redo, Alt+1..6 steps, Ctrl+T target, Ctrl+L landmark, Ctrl+E entry zone, Ctrl+P
-/// plan, Ctrl+1 entry, Ctrl+2 tip, Ctrl+S save, Esc puts the tool away.
+/// plan, Ctrl+1 entry, Ctrl+2 tip, Ctrl+S save, Esc deselects the tool.
 class CasePage : public QWidget {
   Q_OBJECT
 
@@ -35,12 +35,12 @@ class CasePage : public QWidget {
   explicit CasePage(QWidget* parent = nullptr);
   ~CasePage() override;
 
-  /// Once a frame.
+  /// Call once per frame.
   void advance();
   case_builder::CaseEditor& editor() noexcept { return *editor_; }
 
  Q_SIGNALS:
-  /// "Open this case" was pressed: the patient folder with its own task.
+  /// "Open this case" was pressed: the patient folder with its task.
   void case_saved(QString patient_folder);
 
  protected:
@@ -82,7 +82,7 @@ class CasePage : public QWidget {
   std::shared_ptr<const anatomy::VirtualPatient> shown_patient_;
   std::shared_ptr<const std::vector<anatomy::NamedMesh>> shown_meshes_;
   std::shared_ptr<const case_builder::ImportedPatient> placed_import_;
-  /// What the panels show; empty at first.
+  /// State displayed by the panels; initially empty.
   struct Shown {
     std::uint64_t version = ~std::uint64_t{0};
     bool is_reviewed = false;

@@ -25,9 +25,9 @@ class StartPage : public QWidget {
 
   void choose(const TrainerChoice& choice);
   TrainerChoice choice() const;
-  /// Offers to go on with an attempt that a crash has cut off; empty: nothing to offer.
+  /// Offers to recover an attempt that was interrupted by a crash; empty: no offer.
   void offer_recovery(const QString& text);
-  /// Adds a patient folder to the list and chooses it.
+  /// Adds a patient folder to the list and selects it.
   void add_patient(const QString& folder);
 
  Q_SIGNALS:

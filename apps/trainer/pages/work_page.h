@@ -15,8 +15,7 @@ class TimeLine;
 class UltrasoundView;
 class Workspace;
 
-/// The views, and beside them what belongs to the moment: figures and tools while the puncture goes on, score and
-/// replay afterwards.
+/// The views, with a side panel: figures and tools during the puncture, score and replay afterwards.
 class WorkPage : public QWidget {
   Q_OBJECT
 
@@ -24,7 +23,7 @@ class WorkPage : public QWidget {
   explicit WorkPage(QWidget* parent = nullptr);
 
   Workspace& workspace() noexcept { return *workspace_; }
-  /// Views that attempt and replay work with.
+  /// Views for attempt and replay.
   PatientView& view_3d() noexcept { return *view_3d_; }
   UltrasoundView& ultrasound() noexcept { return *ultrasound_; }
   ForcePlot& forces() noexcept { return *forces_; }
@@ -37,11 +36,11 @@ class WorkPage : public QWidget {
   void show_feedback();
   /// Locked: the parameter panel stays closed and has no effect.
   void set_parameters_locked(bool are_locked);
-  /// False: it is locked.
+  /// False if it is locked.
   bool toggle_parameters();
   bool are_parameters_shown() const;
   bool are_parameters_locked() const noexcept { return are_parameters_locked_; }
-  /// False: a wrapped text in a panel must not claim height from the bars above and below the page.
+  /// Returns false, so that a wrapped text in a panel does not reduce the height of the bars above and below the page.
   bool hasHeightForWidth() const override { return false; }
 
  protected:

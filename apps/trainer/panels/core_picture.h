@@ -7,7 +7,7 @@
 
 namespace trocar::trainer {
 
-/// The core that a shot took, to scale: target tissue, organ, vessel and other tissue by colour, with their lengths.
+/// The core of a biopsy shot, to scale: target tissue, organ, vessel and other tissue by colour, with their lengths.
 class CorePicture : public QWidget {
   Q_OBJECT
 
@@ -31,7 +31,7 @@ class CorePicture : public QWidget {
   int bar_height() const;
 
   std::vector<attempt::ShotPiece> pieces_;
-  std::vector<Entry> legend_;  ///< Of the parts that the core has.
+  std::vector<Entry> legend_;  ///< Entries of the parts in the core.
 };
 
 }  // namespace trocar::trainer

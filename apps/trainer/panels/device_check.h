@@ -8,20 +8,20 @@
 
 namespace trocar::trainer {
 
-/// What is known of a device that is being tried out.
+/// State of a device under test.
 struct DeviceCheckView {
   enum class State { kStarting, kAnswers, kUnplugged, kFailed };
   State state = State::kStarting;
-  QString text;     ///< The device's title, or the reason why it does not answer, as a sentence.
+  QString text;     ///< Device title, or the reason why it does not respond, as a sentence.
   QString details;  ///< The whole error.
   bool has_force = false;
-  double push_n = 0.0;  ///< Size of the force that push() gives.
+  double push_n = 0.0;  ///< Magnitude of the force of push().
   bool has_pose = false;
   Vec3 p_D = Vec3::Zero(), axis_D = Vec3::UnitZ();  ///< Grip (mm) and direction of the stylus.
-  double moved_mm = 0.0;                            ///< The furthest from where it was first seen.
+  double moved_mm = 0.0;                            ///< Largest distance from its first position.
   unsigned buttons = 0;
-  double force_n = 0.0;      ///< Given now.
-  double strongest_n = 0.0;  ///< Since the start.
+  double force_n = 0.0;      ///< Present force.
+  double strongest_n = 0.0;  ///< Largest force since the start.
 };
 
 /// Tests a device without a patient with a separate trocar-hapticd --test: connection, pose, a small force on request.
@@ -30,7 +30,7 @@ class DeviceCheck : public QObject {
   Q_OBJECT
 
  public:
-  /// `is_calibrating`: the device is calibrated first; somebody holds it where that is right.
+  /// `is_calibrating`: the device is calibrated first; a person must hold it in the calibration position.
   DeviceCheck(const QString& spec, bool is_calibrating, QObject* parent = nullptr);
   ~DeviceCheck() override;
 

@@ -8,15 +8,15 @@ class QComboBox;
 
 namespace trocar::trainer {
 
-/// Which device moves the needle and which the transducer, by name. A device that one tool has cannot be chosen for the
-/// other. Each can be tested; a name that is not listed can be added and is remembered.
+/// Selection of the devices for needle and transducer, by name. One device cannot be selected for both tools. Each
+/// device can be tested; a name that is not listed can be added and is stored.
 class DeviceChoice : public QWidget {
   Q_OBJECT
 
  public:
   explicit DeviceChoice(QWidget* parent = nullptr);
 
-  /// As trocar-hapticd --device takes them; one that is not listed is added.
+  /// Values of trocar-hapticd --device; a value that is not listed is added.
   void choose(const std::string& needle, const std::string& probe);
   std::string needle() const;
   std::string probe() const;

@@ -12,15 +12,15 @@ namespace trocar::trainer {
 class DeviceCheck;
 class PosePicture;
 
-/// Says in plain words whether a device answers, shows its pose moving, gives a small force on request, and calibrates
-/// it where its driver can. Holds the device while it is open.
+/// Displays whether a device responds and its moving pose, applies a small force on request, and calibrates the device
+/// if its driver supports it. Keeps the device open while the dialog is open.
 class DeviceTestDialog : public QDialog {
   Q_OBJECT
 
  public:
   DeviceTestDialog(const QString& spec, const QString& title, QWidget* parent = nullptr);
   ~DeviceTestDialog() override;
-  /// What it says, for scripts: device_answer, device_pose, device_force.
+  /// Displayed texts, for scripts: device_answer, device_pose, device_force.
   QVariantMap facts() const;
 
  private:

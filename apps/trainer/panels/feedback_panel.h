@@ -26,11 +26,11 @@ class FeedbackPanel : public QWidget {
  public:
   explicit FeedbackPanel(QWidget* parent = nullptr);
 
-  /// From the top. `worst_moment`: empty where there is none.
+  /// Shows the outcome, scrolled to the top. `worst_moment`: empty if there is none.
   void show_outcome(const tasks::Outcome& outcome, const QString& worst_moment);
-  /// The level of help that it was made at, beside the score; empty: not known.
+  /// Shows the level of help of the attempt beside the score; empty: unknown.
   void show_level(const QString& level);
-  /// Its picture; null: the gun was not fired.
+  /// Shows the image of the core; null: the gun was not fired.
   void show_core(const attempt::GunShot* shot);
   /// Events during the attempt: warnings, interruptions, changed parameters. One line each.
   void show_notes(const QStringList& notes);

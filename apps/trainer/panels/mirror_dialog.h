@@ -11,7 +11,7 @@ class QFormLayout;
 
 namespace trocar::trainer {
 
-/// Settings of a workstation with a mirror. Each change acts at once.
+/// Settings of a workstation with a mirror. Each change takes effect at once.
 class MirrorDialog : public QDialog {
   Q_OBJECT
 

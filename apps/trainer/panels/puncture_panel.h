@@ -27,34 +27,34 @@ struct PunctureFigures {
   QString phase;
   QString tissue;
   QString hint;
-  std::optional<double> depth_mm;      ///< Nothing: not to be told.
-  std::optional<double> to_target_mm;  ///< Only where help is given.
+  std::optional<double> depth_mm;      ///< Empty: hidden.
+  std::optional<double> to_target_mm;  ///< Empty without help.
   double force_n = 0.0;
-  double lag_mm = 0.0;           ///< Of the tool behind the hand.
-  double time_s = 0.0;           ///< Of the session.
-  double since_contact_s = 0.0;  ///< With the skin.
+  double lag_mm = 0.0;           ///< Lag of the tool behind the hand.
+  double time_s = 0.0;           ///< Time of the session.
+  double since_contact_s = 0.0;  ///< Since contact with the skin.
   bool can_fire = false;
   bool is_clamped[2] = {false, false};  ///< Needle, transducer.
 };
 
 /// Panel during the puncture: active tool, needle position, resistance, next step. Keys: A and S select a tool, V none,
-/// X locks the active tool, Enter fires, E ends. A question replaces the last two buttons and stops nothing; Enter and
-/// Escape answer it.
+/// X locks the active tool, Enter fires, E ends. A question replaces the last two buttons and does not pause the
+/// attempt; Enter and Escape answer it.
 class PuncturePanel : public QWidget {
   Q_OBJECT
 
  public:
   explicit PuncturePanel(QWidget* parent = nullptr);
 
-  /// `can_aim`: the tools may be put where the plan has them.
+  /// `can_aim`: the tools may be moved to their planned poses.
   void begin(double most_force_n, bool can_aim);
   void show_figures(const PunctureFigures& figures);
   void show_active_tool(ActiveTool tool);
-  /// A bad one is in the colour of what is wrong.
+  /// A bad event has the colour of errors.
   void add_event(const QString& text, bool is_bad = false);
-  /// The core that the gun took, until the next begin().
+  /// Shows the core of the biopsy gun until the next begin().
   void show_core(const attempt::GunShot& shot);
-  /// Asks whether the attempt is to be ended. One question at a time: a second one replaces the first.
+  /// Shows a question. There is one question at a time: a second one replaces the first.
   void ask(const QString& question, const QString& yes);
   bool is_asking() const;
 
@@ -91,7 +91,7 @@ class PuncturePanel : public QWidget {
   QFrame* question_ = nullptr;
   QLabel* question_text_ = nullptr;
   QPushButton* yes_ = nullptr;
-  std::vector<QShortcut*> answers_;  ///< Keys, while a question is open.
+  std::vector<QShortcut*> answers_;  ///< Keys that are active while a question is open.
 };
 
 }  // namespace trocar::trainer

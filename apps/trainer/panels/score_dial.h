@@ -4,7 +4,7 @@
 
 namespace trocar::trainer {
 
-/// A share of a whole as a ring with its number, coloured by how good it is.
+/// A score as a ring with its number, coloured by its value.
 class ScoreDial : public QWidget {
   Q_OBJECT
 

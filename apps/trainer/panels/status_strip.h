@@ -11,7 +11,7 @@ class QPushButton;
 
 namespace trocar::trainer {
 
-/// What the strip tells of one haptic server.
+/// Figures of one haptic server in the strip.
 struct ServerLine {
   QString tool;  ///< "Needle"
   bool is_connected = false;
@@ -20,14 +20,14 @@ struct ServerLine {
   double lateness_p99_us = 0.0;
   std::uint64_t ticks_missing = 0;
   QString fault;  ///< Empty: none.
-  QString grant;  ///< What the system has granted, in words.
+  QString grant;  ///< Granted real-time privileges, as text.
   bool is_real_time = false;
 
   bool operator==(const ServerLine&) const = default;
 };
 
-/// The strip at the foot of the window: figures of the haptic servers and of the window, and the force stop, always in
-/// sight. A narrow window has fewer figures; tooltips have all of them.
+/// Status bar of the window: figures of the haptic servers and of the window, and the force stop button, which is
+/// always visible. A narrow window has fewer figures; tooltips have all of them.
 class StatusStrip : public QFrame {
   Q_OBJECT
 
@@ -35,13 +35,13 @@ class StatusStrip : public QFrame {
   explicit StatusStrip(QWidget* parent = nullptr);
 
   void show_servers(const std::vector<ServerLine>& servers);
-  /// Of the window.
+  /// Figures of the window.
   void show_frames(const FrameFigures& frames);
-  /// Whether an attempt goes on, and whether its forces are stopped; the button stops them or turns them on again.
+  /// Sets whether an attempt is running and whether its forces are stopped; the button stops or restores them.
   void show_forces(bool is_attempt, bool are_stopped);
 
  Q_SIGNALS:
-  /// The button was pressed; Space acts alike.
+  /// The button or Space was pressed.
   void toggle_requested();
 
  protected:
@@ -49,7 +49,7 @@ class StatusStrip : public QFrame {
   void changeEvent(QEvent* event) override;
 
  private:
-  /// The most detail that has room beside the button.
+  /// Selects the most detailed texts that fit beside the button.
   void fit_texts();
   void set_texts(int detail);
 

@@ -8,9 +8,10 @@
 
 namespace trocar::trainer {
 
-/// A haptic server as the status strip shows it.
+/// Figures of a haptic server for the status strip.
 ServerLine line_of(const attempt::ServerView& server, const QString& tool);
-/// "No gamepad is connected: plug one in."; a file or folder is named: "Cannot write (/disk/a): choose another folder."
+/// "No gamepad is connected: plug one in."; the sentence names a file or folder: "Cannot write (/disk/a): choose
+/// another folder."
 QString sentence_of(const Error& error);
 
 }  // namespace trocar::trainer

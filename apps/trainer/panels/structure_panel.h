@@ -21,24 +21,24 @@ namespace trocar::trainer {
 
 class PatientView;
 
-/// What a 3D view shows: a row a structure (colour, name, opacity, eye), presets, the CT cloud, planes along the
-/// needle, guidance, landmarks, camera and stereo. Opacities can be undone, a slider's drag as one step. Object names:
-/// structure-eye-NAME, structure-opacity-NAME (with '-' for '_'), preset-all, preset-skin, preset-bones,
-/// preset-vessels, preset-target, volume-preset, plane-long, plane-cross, plane-tip, show-guidance, show-landmarks,
-/// camera-menu, stereo-menu, structure-undo, structure-redo.
+/// Structures and display options of a 3D view: one row per structure (colour, name, opacity, eye), presets, volume
+/// rendering of the CT, planes along the needle, guidance, landmarks, camera and stereo. Changes of opacity can be
+/// undone; the drag of a slider is one step. Object names: structure-eye-NAME, structure-opacity-NAME (with '-' for
+/// '_'), preset-all, preset-skin, preset-bones, preset-vessels, preset-target, volume-preset, plane-long, plane-cross,
+/// plane-tip, show-guidance, show-landmarks, camera-menu, stereo-menu, structure-undo, structure-redo.
 ///
-/// Keys: Tab walks through all controls; arrows move a slider, Space flips an eye; Ctrl+Z and Ctrl+Shift+Z while the
-/// focus is in the panel.
+/// Keys: Tab moves through all controls; arrows move a slider, Space toggles an eye; Ctrl+Z and Ctrl+Shift+Z undo and
+/// redo while the focus is in the panel.
 class StructurePanel : public QWidget {
   Q_OBJECT
 
  public:
-  /// The view outlives the panel.
+  /// The view must outlive the panel.
   explicit StructurePanel(PatientView& view, QWidget* parent = nullptr);
 
-  /// After show_patient: rows for the structures of the view.
+  /// Call after show_patient: creates the rows for the structures of the view.
   void rebuild();
-  /// Takes over what the view shows (a key may have changed it). Cheap.
+  /// Displays the present settings of the view (a key may have changed them). Cheap.
   void refresh();
 
  private:
@@ -51,7 +51,7 @@ class StructurePanel : public QWidget {
 
   using Opacities = std::map<std::string, double>;
   Opacities opacities() const;
-  /// One step of undo; `slider`: of this row, whose drag is one step.
+  /// Adds an undo step; the drag of `slider` is one step.
   void note_change(const QSlider* slider = nullptr);
   void show_step();
 
@@ -70,7 +70,7 @@ class StructurePanel : public QWidget {
   QToolButton* landmarks_ = nullptr;
   std::vector<Row> rows_;
   StepHistory<Opacities> steps_;
-  const QSlider* dragged_ = nullptr;  ///< Has made the last step and is still held.
+  const QSlider* dragged_ = nullptr;  ///< Slider of the last step, while it is held.
   std::optional<UndoButtons> undo_buttons_;
 };
 

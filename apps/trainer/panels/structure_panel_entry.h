@@ -4,7 +4,7 @@
 
 namespace trocar::trainer {
 
-/// The structures of the main 3D view, which comes before it in the registry.
+/// Structure panel of the main 3D view, which must precede it in the registry.
 ViewDescription structure_panel_entry();
 
 }  // namespace trocar::trainer

@@ -19,9 +19,9 @@ namespace trocar::trainer {
 
 class ForcePlot;
 
-/// The force that a model predicts along the planned path: the default's faint, with changed numbers strong. Computed
-/// in the background; of several changes only the newest counts. Object names: parameter-model (choice), force-plot,
-/// parameter-preview-error.
+/// The force that a model predicts along the planned path: faint for the default numbers, strong for the changed
+/// numbers. Computed in the background; of several changes only the newest is used. Object names: parameter-model
+/// (choice), force-plot, parameter-preview-error.
 class ForcePreview : public QWidget {
   Q_OBJECT
 
@@ -29,25 +29,25 @@ class ForcePreview : public QWidget {
   explicit ForcePreview(QWidget* parent = nullptr);
   ~ForcePreview() override;
 
-  /// Null: nothing to show. Chooses the case's force model.
+  /// Selects the case's force model. Null: no case.
   void show_case(std::shared_ptr<const cases::OpenCase> open_case);
-  /// What differs from the case's numbers; the curve follows.
+  /// Sets the differences from the case's numbers; the curve is updated.
   void show_settings(std::vector<std::string> settings);
-  /// Looks at the work in the background; once a frame.
+  /// Polls the background work; call once per frame.
   void advance();
 
   QString model() const;
   bool offers(const QString& model) const;
-  /// One that it offers, chosen by the program: model_changed is not told.
+  /// Selects one of the offered models without emitting model_changed.
   void choose_model(const QString& model);
-  /// Whether the curves are those of what was last asked for.
+  /// True if the curves are those of the last request.
   bool is_settled() const noexcept { return !is_wanted_ && !job_.has_work() && !default_job_.has_work(); }
-  /// As shown; empty until it is there.
+  /// The displayed curve; empty until it is computed.
   const std::vector<cases::CurvePoint>& changed_curve() const noexcept { return changed_; }
   const std::vector<cases::CurvePoint>& default_curve() const;
 
  Q_SIGNALS:
-  /// A person has chosen another.
+  /// The user has selected another model.
   void model_changed(QString model);
 
  private:
@@ -61,11 +61,11 @@ class ForcePreview : public QWidget {
 
   std::shared_ptr<const cases::OpenCase> case_;
   std::vector<std::string> settings_;
-  std::map<std::string, std::vector<cases::CurvePoint>> defaults_;  ///< By model.
+  std::map<std::string, std::vector<cases::CurvePoint>> defaults_;  ///< Key: model.
   std::vector<cases::CurvePoint> changed_;
-  bool is_wanted_ = false;  ///< Work that has not been started yet.
+  bool is_wanted_ = false;  ///< A request that has not been started yet.
   BackgroundJob<std::vector<cases::CurvePoint>> job_, default_job_;
-  std::string default_model_;  ///< Of default_job_.
+  std::string default_model_;  ///< Model of default_job_.
   RetiredJobs retired_;
   QComboBox* model_;
   ForcePlot* plot_;

@@ -13,13 +13,13 @@
 
 namespace trocar::trainer {
 
-/// The numbers of a tissue table that a person has changed, the force model they are meant for and the profile they
-/// began with, with undo. Invariant: every number is in its range, differs from the default, and all of them together
-/// can be applied to the default table.
+/// User changes of the numbers of a tissue table, with their force model, the profile they started from, and undo.
+/// Invariant: every number is in its range and differs from the default, and all numbers together can be applied to the
+/// default table.
 class ParameterEdits {
  public:
-  /// Another table of defaults with its force model. Changes are kept where they still fit and still differ; what can
-  /// be undone is forgotten.
+  /// Sets another table of defaults with its force model. Changes that are still valid and still differ are kept; the
+  /// undo steps are cleared.
   void start(anatomy::TissueTable defaults, std::string model);
 
   const std::vector<anatomy::TissueParameterGroup>& groups() const noexcept { return groups_; }
@@ -30,26 +30,26 @@ class ParameterEdits {
   bool is_changed() const noexcept { return !now().values.empty(); }
 
   /// `joins`: one step of undo together with the last change (a slider that is still held). Errors: an unknown setting,
-  /// a number out of range or against another one; nothing is changed then.
+  /// a number out of range or in conflict with another one; an error changes nothing.
   Status set(const std::string& setting, double value, bool joins = false);
   void reset(const std::string& setting);
   void reset(const anatomy::TissueParameterGroup& group);
   void reset_all();
-  /// All changes at once, as a profile has them: "liver.k=0.5". Errors name the setting; nothing is changed then.
+  /// Replaces all changes by those of a profile: "liver.k=0.5". Errors name the setting; an error changes nothing.
   Status replace(const std::vector<std::string>& settings);
   const std::string& model() const noexcept { return now().model; }
   void set_model(const std::string& model);
 
-  /// The profile that was chosen last, by its file; empty: the defaults.
+  /// File of the profile that was selected last; empty: the defaults.
   const std::string& profile() const noexcept { return now().profile; }
-  /// Whether numbers or model are other than that profile's.
+  /// True if numbers or model differ from that profile.
   bool differs_from_profile() const noexcept { return now().values != now().base || now().model != now().base_model; }
-  /// Numbers and model of a profile as one step; "" with no settings and the defaults' model: the defaults. Errors as
-  /// replace().
+  /// Sets numbers and model of a profile as one step; "" with no settings and the defaults' model selects the defaults.
+  /// Errors: as replace().
   Status choose_profile(const std::string& profile, const std::vector<std::string>& settings, const std::string& model);
-  /// All is now as saved in that profile.
+  /// Marks the present numbers and model as those of that profile.
   void call_profile(const std::string& profile);
-  /// There is no such profile any more; numbers that came from it stay.
+  /// Removes a profile that no longer exists; numbers from it remain.
   void forget_profile(const std::string& profile);
 
   bool can_undo() const noexcept { return steps_.can_undo(); }
@@ -57,17 +57,18 @@ class ParameterEdits {
   void undo() { steps_.undo(); }
   void redo() { steps_.redo(); }
 
-  /// What differs from the defaults, in an order that can be applied one after the other; settings() as "liver.k=0.5".
+  /// Differences from the defaults, in an order in which they can be applied one by one; settings() returns them as
+  /// "liver.k=0.5".
   std::vector<anatomy::TissueSetting> changes() const { return changes_of(now().values); }
   std::vector<std::string> settings() const;
 
  private:
   using Values = std::map<std::string, double, std::less<>>;
-  /// All that one step of undo gives back.
+  /// State that one undo step restores.
   struct Step {
     Values values;
     std::string model, profile;
-    Values base;  ///< Of the profile, and its model.
+    Values base;  ///< Values of the profile; base_model is its model.
     std::string base_model;
   };
 

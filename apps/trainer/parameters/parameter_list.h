@@ -15,7 +15,7 @@ class QVBoxLayout;
 
 namespace trocar::trainer {
 
-/// The tissues, those along the planned path first, and under the chosen one its numbers. Object names:
+/// List of tissues, those along the planned path first, with the numbers of the selected one below it. Object names:
 /// "parameter-tissue-liver" (header; Space or Enter opens and closes), "parameter-liver-k" … (rows, see ParameterRow),
 /// "parameter-liver-reset-all".
 class ParameterList : public QWidget {
@@ -23,25 +23,25 @@ class ParameterList : public QWidget {
 
  public:
   explicit ParameterList(QWidget* parent = nullptr);
-  /// Another table; the first tissue on the path is chosen, or the last chosen one where it is still there.
+  /// Sets another table; selects the first tissue on the path, or the previously selected tissue if it still exists.
   void show_tissues(const std::vector<anatomy::TissueParameterGroup>& groups,
                     const std::vector<cases::PathPiece>& pieces);
-  /// Numbers as they are now.
+  /// Displays the present numbers.
   void show_values(const ParameterEdits& edits);
   void show_model(const QString& force_model);
-  /// Empty closes all.
+  /// Selects a tissue; empty closes all.
   void choose(const std::string& tissue);
   const std::string& chosen() const noexcept { return chosen_; }
-  /// Header and rows of the chosen tissue, in this widget; null: none is.
+  /// Rectangle of header and rows of the selected tissue, in this widget; null if none is selected.
   QRect chosen_rect() const;
-  /// The row of the chosen tissue with this setting says why a number was refused.
+  /// Shows the reason for a refused number in the row of this setting of the selected tissue.
   void show_refusal(const std::string& setting, const QString& text);
 
  Q_SIGNALS:
   void edited(const std::string& setting, double value, bool joins);
   void reset_asked(const std::string& setting);
   void reset_tissue_asked(const std::string& tissue);
-  /// The chosen tissue's rows have been made.
+  /// The rows of the selected tissue were created.
   void opened(QWidget* header);
 
  private:
@@ -60,7 +60,7 @@ class ParameterList : public QWidget {
   std::vector<Section> sections_;
   std::string chosen_, model_;
   QWidget* page_ = nullptr;  ///< All sections.
-  QWidget* body_ = nullptr;  ///< Of the chosen section.
+  QWidget* body_ = nullptr;  ///< Rows of the selected section.
   QPushButton* reset_tissue_ = nullptr;
   std::vector<ParameterRow*> rows_;
 };

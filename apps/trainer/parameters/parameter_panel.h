@@ -24,37 +24,37 @@ class ParameterList;
 class ParameterProfiles;
 
 /// Fits the mechanical numbers of the tissues to the patient (paper A: "an interface to facilitate users in adaptively
-/// adjusting these parameters"), both force models, with the predicted force beside them. The defaults are the case's
-/// own numbers; what is changed stays changed when another case with the same tissues is shown.
+/// adjusting these parameters"), for both force models, with the predicted force. The defaults are the case's numbers;
+/// changes persist when another case with the same tissues is shown.
 ///
 /// Keys while the focus is in the panel: Ctrl+Z undo, Ctrl+Shift+Z redo. Object names: parameter-panel, parameter-undo,
-/// parameter-redo, parameter-reset-all; of its parts see ForcePreview, ParameterList, ParameterRow, ParameterProfiles.
+/// parameter-redo, parameter-reset-all; for its parts see ForcePreview, ParameterList, ParameterRow, ParameterProfiles.
 class ParameterPanel : public QWidget {
   Q_OBJECT
 
  public:
   explicit ParameterPanel(QWidget* parent = nullptr);
 
-  /// Null: nothing to adjust.
+  /// Null: no case, nothing to adjust.
   void show_case(std::shared_ptr<const cases::OpenCase> open_case);
-  /// Where profiles are kept; else in the user's folder of settings.
+  /// Folder of the profiles; by default in the user's configuration folder.
   void set_profile_folder(const std::filesystem::path& folder);
-  /// Once a frame: sends what has changed, looks at the work in the background.
+  /// Call once per frame: sends changes and polls the background work.
   void advance();
 
-  /// What differs from the case's numbers now: "liver.k=0.5".
+  /// Present differences from the case's numbers: "liver.k=0.5".
   QStringList settings() const;
   std::vector<anatomy::TissueSetting> changes() const { return edits_.changes(); }
-  /// All changes at once, as one step of undo. Errors: a name that the tissues have not, a number out of range.
+  /// Applies all changes as one undo step. Errors: an unknown name, a number out of range.
   Status apply_settings(const QStringList& settings);
   const ForcePreview& preview() const noexcept { return *preview_; }
-  /// Every change has been sent and predicted.
+  /// True if every change was sent and predicted.
   bool is_settled() const noexcept;
 
   QSize sizeHint() const override;
 
  Q_SIGNALS:
-  /// All that differs from the case's numbers, a moment after the last change; empty when all are as they were.
+  /// All differences from the case's numbers, with a short delay after the last change; empty without differences.
   void parameters_changed(QStringList settings);
   void model_changed(QString model);
 
@@ -63,7 +63,7 @@ class ParameterPanel : public QWidget {
   void edit(const std::string& setting, double value, bool joins);
   void undo();
   void redo();
-  /// Shows the numbers as they are now; what differs is sent a moment later.
+  /// Shows the present numbers; sends the differences after a short delay.
   void show_changes();
   void show_values();
   void show_model();
@@ -74,7 +74,7 @@ class ParameterPanel : public QWidget {
   std::shared_ptr<const cases::OpenCase> case_;
   ParameterEdits edits_;
   QStringList sent_;
-  std::optional<std::chrono::steady_clock::time_point> changed_at_;  ///< Of a change that is not sent yet.
+  std::optional<std::chrono::steady_clock::time_point> changed_at_;  ///< Time of a change that was not sent yet.
   std::optional<UndoButtons> undo_buttons_;
   QToolButton* reset_ = nullptr;
   QLabel* empty_;

@@ -16,11 +16,11 @@ class QToolButton;
 
 namespace trocar::trainer {
 
-/// The profiles of a folder: one is chosen, the numbers are saved under a name, one is deleted. Names and questions are
-/// asked below the choice, never in a window of their own.
+/// Selects, saves and deletes the profiles of a folder. Input of names and questions appear below the combo box, never
+/// in a separate window.
 ///
-/// Keys: Up and Down choose, Enter in the name saves, Escape closes the question. Object names: parameter-profile
-/// (choice; its first entry is the case's own numbers), parameter-profile-save-as, parameter-profile-delete,
+/// Keys: Up and Down select, Enter in the name field saves, Escape closes the question. Object names: parameter-profile
+/// (combo box; its first entry is the case's numbers), parameter-profile-save-as, parameter-profile-delete,
 /// parameter-profile-name, parameter-profile-question, parameter-profile-yes, parameter-profile-no,
 /// parameter-profile-problem.
 class ParameterProfiles : public QWidget {
@@ -31,23 +31,24 @@ class ParameterProfiles : public QWidget {
 
   void set_folder(const std::filesystem::path& folder);
   const std::filesystem::path& folder() const noexcept { return folder_; }
-  /// Looks at the folder again; it may be another program's, too.
+  /// Reads the folder again; other programs may also use it.
   void read_folder();
-  /// Nullptr: there is none of that file.
+  /// nullptr if no profile has that file.
   const cases::TissueProfile* find(const std::string& file) const noexcept;
-  /// The profile of that file stands in the choice; empty: the case's own. A dot says that numbers or model differ.
+  /// Shows the profile of that file in the combo box; empty: the case's numbers. A dot marks that numbers or model
+  /// differ.
   void show_chosen(const std::string& file, bool differs);
-  /// What went wrong; empty hides it.
+  /// Shows an error; empty hides it.
   void show_problem(const QString& text);
-  /// What was asked to be saved has been saved.
+  /// Call after the requested profile was saved.
   void finish_saving(const cases::TissueProfile& saved);
 
  Q_SIGNALS:
-  /// By its file; empty: the case's own.
+  /// File of the selected profile; empty: the case's numbers.
   void chosen(const std::string& file);
-  /// With name and note; the numbers are the listener's.
+  /// Request to save; `profile` has name and note, and the receiver adds the numbers.
   void save_asked(const cases::TissueProfile& profile, bool may_replace);
-  /// Profiles have come or gone.
+  /// Profiles were added or removed.
   void listed();
 
  protected:
@@ -67,7 +68,7 @@ class ParameterProfiles : public QWidget {
   void remove();
   void list_entries();
   void show_message(const QString& text, bool is_problem);
-  /// The profile that saving under this name would replace: one of that name, or one in that name's file.
+  /// The profile that a save under this name would replace: one of that name, or one in the file of that name.
   const cases::TissueProfile* find_same(const std::string& name) const noexcept;
   const cases::TissueProfile* current() const noexcept;
 

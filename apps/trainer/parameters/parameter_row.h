@@ -13,8 +13,8 @@ class QToolButton;
 
 namespace trocar::trainer {
 
-/// A slider whose groove marks the default and the range that its source thinks possible. The wheel turns it only
-/// while it has the focus, so that a list of sliders can be scrolled.
+/// A slider whose groove marks the default and the plausible range of its source. The wheel moves it only while it has
+/// the focus, so that a list of sliders can be scrolled.
 class MarkedSlider : public QSlider {
   Q_OBJECT
 
@@ -32,8 +32,8 @@ class MarkedSlider : public QSlider {
   int default_ = 0, low_ = 0, high_ = 0;
 };
 
-/// A field for a number. Ctrl+Z undoes typing while something is typed, else it is the panel's. Escape gives back what
-/// was there.
+/// A field for a number. Ctrl+Z undoes unfinished input; without such input, the panel handles it. Escape restores the
+/// previous text.
 class NumberField : public QLineEdit {
   Q_OBJECT
 
@@ -49,24 +49,24 @@ class NumberField : public QLineEdit {
   QString shown_;
 };
 
-/// One number: name, field, unit, reset, and a slider below. Object names, with NAME = "parameter-liver-k": NAME
-/// (field), NAME-slider, NAME-reset, NAME-refused. Keys: Enter takes the number, Escape gives the last one back, arrows
+/// Row of one number: name, field, unit, reset, and a slider below. Object names, with NAME = "parameter-liver-k": NAME
+/// (field), NAME-slider, NAME-reset, NAME-refused. Keys: Enter applies the number, Escape restores the last one, arrows
 /// and page keys move the slider.
 class ParameterRow : public QWidget {
   Q_OBJECT
 
  public:
-  /// `parameter`: with its default.
+  /// `parameter` includes its default.
   ParameterRow(const anatomy::TissueParameter& parameter, const QString& name, QWidget* parent = nullptr);
   const anatomy::TissueParameter& parameter() const noexcept { return parameter_; }
   void show_value(double value);
-  /// Dimmed: the chosen force model does not feel it.
+  /// False dims the row: the selected force model does not use the parameter.
   void set_felt(bool is_felt);
-  /// Under the field; empty hides it.
+  /// Shows the reason below the field; empty hides it.
   void show_refusal(const QString& text);
 
  Q_SIGNALS:
-  /// `joins`: with the last one, while the slider is held.
+  /// `joins`: true for further changes while the slider is held.
   void edited(double value, bool joins);
   void reset_asked();
 
@@ -79,7 +79,7 @@ class ParameterRow : public QWidget {
   anatomy::TissueParameter parameter_;
   ParameterScale scale_;
   double value_;
-  bool is_held_ = false;  ///< The slider has moved since it was pressed.
+  bool is_held_ = false;  ///< The slider was moved since it was pressed.
   QLabel* caption_;
   NumberField* field_;
   MarkedSlider* slider_;

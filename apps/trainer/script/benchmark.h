@@ -7,8 +7,8 @@
 
 namespace trocar::trainer {
 
-/// The steps behind --benchmark: a guided puncture of the embedded patient in these layouts, in every one if `layouts`
-/// is empty; frame times are printed for each. Errors: no layout of this name.
+/// The steps of --benchmark: a guided puncture of the embedded patient in these layouts, in every one if `layouts` is
+/// empty; frame times are printed for each. Errors: no layout of this name.
 Result<std::vector<ScriptStep>> benchmark_steps(const std::vector<std::string>& layouts = {});
 
 }  // namespace trocar::trainer

@@ -13,7 +13,7 @@ class QWidget;
 
 namespace trocar::trainer {
 
-/// What a player needs of the window, so that it can be tried on any widget.
+/// Interface of the window for a player; allows tests with any widget.
 struct Stage {
   QWidget* window = nullptr;
   std::function<QVariantMap()> facts;
@@ -32,7 +32,7 @@ class ScriptPlayer : public QObject {
   void start();
 
  Q_SIGNALS:
-  /// Empty: all steps were played. Else "line 12: …".
+  /// `error` is empty if all steps were played, else "line 12: …".
   void finished(const QString& error);
 
  private:
@@ -42,14 +42,14 @@ class ScriptPlayer : public QObject {
   Result<Progress> play(const ScriptStep& step);
   Result<Progress> play_pointer(const ScriptStep& step, QWidget& widget);
   Result<Progress> play_drag(const ScriptStep& step, QWidget& widget);
-  /// Acts so often a second until the fact is there.
+  /// Calls `act` at the step's rate per second until the fact is true.
   Result<Progress> play_until(const ScriptStep& step, const std::function<Status()>& act);
   Result<Progress> play_waiting(const ScriptStep& step);
   Result<Progress> expect_whole() const;
   Result<Progress> play_looking(const ScriptStep& step);
-  /// Null: not to be seen yet.
+  /// Null if the widget is not visible yet.
   Result<QWidget*> find(const QString& name) const;
-  /// Null: not to be seen, or disabled, yet.
+  /// Null if the widget is not visible or not enabled yet.
   Result<QWidget*> find_usable(const QString& name) const;
   Result<Progress> click_menu_entry(QAction& entry) const;
   bool holds(const QString& fact, const QString& op, const QString& value) const;
@@ -61,8 +61,8 @@ class ScriptPlayer : public QObject {
   Stage stage_;
   std::size_t at_ = 0;
   QTimer timer_;
-  QElapsedTimer clock_;  ///< Since the step began.
-  int sent_ = 0;         ///< Events of this step so far.
+  QElapsedTimer clock_;  ///< Time since the step began.
+  int sent_ = 0;         ///< Events sent in this step.
 };
 
 }  // namespace trocar::trainer

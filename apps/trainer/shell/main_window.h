@@ -22,14 +22,14 @@ class StartPage;
 class StatusStrip;
 class WorkPage;
 
-/// The window: the pages, the bar above and the strip at the foot. What happens from page to page is the flow's.
+/// The window: the pages, the bar above and the status strip below. TrainerFlow controls the transitions between pages.
 class MainWindow : public QMainWindow {
   Q_OBJECT
 
  public:
-  /// `state_folder`: sessions, profiles and what survives a crash are kept here.
+  /// `state_folder`: folder of sessions, profiles and crash recovery data.
   explicit MainWindow(const std::filesystem::path& state_folder, QWidget* parent = nullptr);
-  ~MainWindow() override;  ///< Ends what goes on before the views go.
+  ~MainWindow() override;  ///< Ends running work before the views are destroyed.
 
   StartPage& start() noexcept { return *start_; }
   BriefingPage& briefing() noexcept { return *briefing_; }
@@ -42,12 +42,12 @@ class MainWindow : public QMainWindow {
   /// "start", "briefing", "puncture", "feedback", "case-builder".
   void show_page(const QString& name);
   QString page() const { return page_; }
-  /// Over the pages, until it is empty again or replaced.
+  /// Shows a banner over the pages until an empty or another text replaces it.
   void show_banner(const QString& text, BannerKind kind = BannerKind::kWarning);
-  /// Likewise for some seconds.
+  /// Shows a message over the pages for some seconds.
   void show_message(const QString& text, BannerKind kind);
-  bool has_sound() const;  ///< As the user has set it; on at first.
-  /// What the window shows and knows, for scripts.
+  bool has_sound() const;  ///< User setting; on by default.
+  /// State of the window, for scripts.
   QVariantMap facts() const;
 
  protected:

@@ -39,13 +39,13 @@ class TrainerFlow : public QObject {
   void begin_attempt();
   void try_again();
   void save_report();
-  /// False: an attempt runs; the trainee is asked, and the window is closed when the answer is yes.
+  /// False while an attempt runs: the trainee must confirm, and the answer yes closes the window.
   bool may_close();
   void close();
   QVariantMap facts() const;
-  /// Kills a haptic server, for scripts that try what happens.
+  /// Kills a haptic server, for scripts that test its loss.
   void end_server(const QString& tool);
-  /// Frame times and slow handlers count from now on.
+  /// Restarts the recording of frame times and slow handlers.
   void reset_watch();
 
  private:
@@ -73,21 +73,21 @@ class TrainerFlow : public QObject {
   RetiredJobs retired_;
   devices::Speaker speaker_;
   std::vector<float> gun_click_ = devices::make_gun_click();
-  std::optional<attempt::JournalEntry> offered_;   ///< Was cut off; offered on the start page.
-  std::optional<attempt::JournalEntry> cut_off_;   ///< Being opened, to be scored and shown.
-  std::shared_ptr<const cases::OpenCase> opened_;  ///< Being shown, a part a frame; open_ when all is shown.
+  std::optional<attempt::JournalEntry> offered_;   ///< Interrupted attempt, offered on the start page.
+  std::optional<attempt::JournalEntry> cut_off_;   ///< Interrupted attempt being opened, to be scored and shown.
+  std::shared_ptr<const cases::OpenCase> opened_;  ///< Case being shown, one part per frame; reset when complete.
   std::shared_ptr<const cases::OpenCase> open_;
   std::shared_ptr<attempt::HapticServers> servers_;  ///< Kept from one attempt to the next.
   std::unique_ptr<AttemptControl> attempt_;
   std::unique_ptr<ReplayControl> replay_;
   bool is_close_confirmed_ = false;
-  int recoveries_ = 0;                 ///< Of the attempt's servers, as far as they were told.
-  std::string cut_short_;              ///< See RunResult; of the same attempt.
-  std::vector<std::string> warnings_;  ///< Of the attempt whose replay is being loaded.
+  int recoveries_ = 0;                 ///< Reported recoveries of the attempt's servers.
+  std::string cut_short_;              ///< See RunResult; for the same attempt.
+  std::vector<std::string> warnings_;  ///< Warnings of the attempt whose replay is being loaded.
   QTimer timer_;
   QElapsedTimer clock_;
   FrameCount frames_;
-  std::vector<double> frame_ms_;  ///< Since the last reset, of an attempt or replay; kMostFrames at most.
+  std::vector<double> frame_ms_;  ///< Frames of attempt or replay since the last reset; kMostFrames at most.
 };
 
 }  // namespace trocar::trainer

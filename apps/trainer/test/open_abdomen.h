@@ -8,7 +8,7 @@
 
 namespace trocar::trainer {
 
-/// The embedded patient's liver biopsy, opened once for all tests of a program.
+/// The case "liver biopsy" of the embedded patient, opened once for all tests of a program.
 inline const std::shared_ptr<const cases::OpenCase>& open_abdomen() {
   static const std::shared_ptr<const cases::OpenCase> open = [] {
     auto result = testing::open_cached_case();

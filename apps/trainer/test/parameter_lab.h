@@ -44,7 +44,7 @@ class ParameterLab : public ::testing::Test {
     return found;
   }
 
-  /// Frames until every change has been sent and predicted.
+  /// Runs frames until every change was sent and predicted.
   void settle() {
     const auto begin = std::chrono::steady_clock::now();
     do {
@@ -76,7 +76,7 @@ class ParameterLab : public ::testing::Test {
     key(*field, Qt::Key_Return);
   }
 
-  /// Where the device is when a layer gives way.
+  /// Device travel at which a layer is punctured.
   double way_mm(const char* layer) const {
     const auto& curve = panel.preview().changed_curve();
     for (const cases::CurveEvent& event : cases::find_curve_events(curve, opened->the_case.tissues))

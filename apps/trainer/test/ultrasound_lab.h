@@ -47,7 +47,7 @@ inline const ultrasound::Transducer& transducer(const std::string& name) {
   return abdomen().transducers.front();
 }
 
-/// A standard view's place, and its depth; "portal-vein" looks at that vein through the liver.
+/// Pose and depth of a standard view; "portal-vein" shows that vein through the liver.
 struct Place {
   Pose X_PT;
   double depth_mm;
@@ -61,7 +61,7 @@ inline Place place(const std::string& name, const ultrasound::Transducer& probe)
   return {ultrasound::place_probe(*abdomen().patient, view, probe).value().X_PT, view.depth_mm};
 }
 
-/// Views of the embedded patient, with a frame loop, a mouse and keys; controls are kept in a folder of the test's own.
+/// Views of the embedded patient, with a frame loop, a mouse and keys; the settings are stored in a temporary folder.
 class UltrasoundViewTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() { abdomen(); }
@@ -84,7 +84,7 @@ class UltrasoundViewTest : public ::testing::Test {
     view.set_transducer_pose(X_PT_);
   }
 
-  /// As the frame loop does, until it is as it should be; false after a long time.
+  /// Runs the frame loop until `is_ready` returns true; false after a timeout of 60 s.
   template <class Ready>
   bool run_until(UltrasoundView& view, const Ready& is_ready) {
     QElapsedTimer timer;
@@ -98,7 +98,7 @@ class UltrasoundViewTest : public ::testing::Test {
     return false;
   }
 
-  /// A picture of now at full detail.
+  /// Waits for a new image at full detail.
   bool settle(UltrasoundView& view) {
     const std::uint64_t before = view.picture() ? view.picture()->number : 0;
     const ultrasound::Acquisition& a = view.settings().acquisition;
@@ -109,7 +109,7 @@ class UltrasoundViewTest : public ::testing::Test {
     });
   }
 
-  /// The widget as it is shown; kept where TROCAR_TEST_PICTURES says.
+  /// Image of the displayed widget; saved in the folder TROCAR_TEST_PICTURES.
   QImage look(UltrasoundView& view, const char* name) {
     view.advance(now_s_ += kFrame_s);
     const QImage image = view.grab().toImage();

@@ -8,7 +8,7 @@
 #include <QWidget>
 #include <cstdlib>
 
-/// What a hand does to one widget, sent to it as events. Places are points of the widget.
+/// User input to one widget, sent as events. Positions are points of the widget.
 namespace trocar::trainer {
 
 inline void mouse(QWidget& widget, QEvent::Type type, const QPointF& at, Qt::MouseButton button,
@@ -37,7 +37,7 @@ inline void press_key(QWidget& widget, int key, Qt::KeyboardModifiers modifiers 
   QCoreApplication::sendEvent(&widget, &event);
 }
 
-/// Saves the picture for people to look at, where TROCAR_SAVE_PICTURES names a prefix.
+/// Saves an image of the widget for visual inspection if TROCAR_SAVE_PICTURES names a prefix.
 inline void save(QWidget& widget, const char* name) {
   if (const char* prefix = std::getenv("TROCAR_SAVE_PICTURES"))
     widget.grab().save(QString::fromLocal8Bit(prefix) + QString::fromLatin1(name));

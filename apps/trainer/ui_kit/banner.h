@@ -13,14 +13,14 @@ class Banner : public QLabel {
   Q_OBJECT
 
  public:
-  /// Lies over `area`.
+  /// Creates a banner on top of `area`.
   explicit Banner(QWidget& area);
 
-  /// Empty: none.
+  /// An empty text removes the state.
   void set_state(const QString& text, BannerKind kind);
-  /// For kMessage_ms, instead of the state; a new state ends it.
+  /// Shows the message instead of the state for kMessage_ms; a new state ends it.
   void show_message(const QString& text, BannerKind kind);
-  /// Looks for its place again: after the page has changed.
+  /// Recomputes its position; call it after a change of page.
   void place();
 
   static constexpr int kMessage_ms = 5000;

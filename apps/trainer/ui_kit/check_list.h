@@ -9,10 +9,10 @@
 
 namespace trocar::trainer {
 
-/// A tick, an exclamation mark or a cross in the level's colour; nothing: not looked at yet.
+/// A tick, an exclamation mark or a cross in the level's colour; empty `level`: not checked yet.
 QIcon level_icon(std::optional<case_builder::CheckLevel> level);
 
-/// What is right, doubtful and wrong with a case, worst first. A click or Enter jumps to the place and the step.
+/// Checks of a case: passed, warnings and errors, worst first. A click or Enter shows the position and the step.
 /// Object name: case-checks.
 class CheckList : public QListWidget {
   Q_OBJECT

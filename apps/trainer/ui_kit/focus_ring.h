@@ -7,8 +7,8 @@ class QWidget;
 
 namespace trocar::trainer {
 
-/// Draws a ring within the edge of the widget that has the keyboard focus. A page as a whole has none. The ring is
-/// transparent for the mouse.
+/// Draws a ring inside the edge of the widget that has the keyboard focus. A focused page has no ring. The ring is
+/// transparent to the mouse.
 class FocusRing : public QObject {
   Q_OBJECT
 

@@ -16,16 +16,16 @@ class QWidget;
 /// Common widgets of all pages, for a uniform look.
 namespace trocar::trainer {
 
-/// A role of the style sheet: "title", "heading", "dim", "badge"; empty: plain text.
+/// `role` of the style sheet: "title", "heading", "dim", "badge"; empty: plain text.
 QLabel* make_label(const QString& text, const char* role = "", QWidget* parent = nullptr);
-/// `name` is the object name that scripts use; a shortcut ("Ctrl+R") acts in the whole window and is told in the
+/// `name` is the object name that scripts use; a shortcut ("Ctrl+R") is active in the whole window and appears in the
 /// tooltip.
 QPushButton* make_button(const char* name, const QString& text, const QString& tooltip, const QString& shortcut = {});
 QToolButton* make_tool_button(const char* name, const QString& text, const QString& tooltip,
                               const QString& shortcut = {});
 /// A rounded panel with a heading.
 QFrame* make_card(const QString& heading, QBoxLayout*& content);
-/// The content in a frameless scroll area that scrolls it where there is less room than it needs.
+/// Puts the content in a frameless scroll area, which scrolls if there is not enough space.
 QScrollArea* make_scrolled(QWidget& content);
 /// Sets a property used by the style sheet and updates the style.
 void set_style(QWidget& widget, const char* property, const QVariant& value);

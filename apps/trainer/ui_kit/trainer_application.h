@@ -26,7 +26,7 @@ class TrainerApplication : public QApplication {
   const std::vector<SlowHandler>& slowest() const noexcept { return slowest_; }
   void reset_watch();
 
-  /// Time spent in here is drawing and not the handler's own.
+  /// Time within this scope counts as drawing, not as time of the handler.
   class DrawingScope {
    public:
     DrawingScope();
@@ -39,7 +39,7 @@ class TrainerApplication : public QApplication {
   };
 
  private:
-  std::int64_t drawn_ns_ = 0;  ///< Within the outermost handler under way.
+  std::int64_t drawn_ns_ = 0;  ///< Drawing time within the outermost running handler.
   int depth_ = 0;
   std::vector<SlowHandler> slowest_;
 };

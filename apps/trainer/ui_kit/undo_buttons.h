@@ -8,8 +8,8 @@ class QWidget;
 
 namespace trocar::trainer {
 
-/// The buttons of a panel that has its own undo, with their keys while the focus is in the panel: Ctrl+Z, Ctrl+Shift+Z.
-/// Object names: PREFIX-undo, PREFIX-redo.
+/// Undo and redo buttons of a panel, with their keys while the focus is in the panel: Ctrl+Z, Ctrl+Shift+Z. Object
+/// names: PREFIX-undo, PREFIX-redo.
 class UndoButtons {
  public:
   UndoButtons(const char* prefix, QWidget& panel, const std::function<void()>& undo, const std::function<void()>& redo);

@@ -4,8 +4,8 @@
 
 namespace trocar::trainer {
 
-/// The wheel changes a slider, choice or number only while it has the focus, by a click or the Tab key; over others it
-/// scrolls the area around them.
+/// Event filter: the wheel changes a slider, combo box or number field only while the widget has the focus by a click
+/// or the Tab key; otherwise it scrolls the surrounding area.
 class WheelGuard : public QObject {
   Q_OBJECT
 

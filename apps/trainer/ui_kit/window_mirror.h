@@ -12,28 +12,28 @@ class QWindow;
 
 namespace trocar::trainer {
 
-/// How a monitor is turned over for who sees it in a mirror.
+/// Mirror axis of a monitor's image that is viewed in a mirror.
 enum class MirrorAxis {
   kNone,
   kLeftRight,
   kUpDown,
 };
 
-/// Turns over everything that the program shows, so that it is right in a mirror: the window, its menus, lists, tips
-/// and dialogs, each in itself and in its place about the middle of the window. Events of the pointer are turned over
-/// before widgets get them, so that a click meets what is drawn under the pointer. A line that is not turned over says
-/// which key leads back.
+/// Mirrors everything that the program displays, so that it is correct in a mirror: the window, its menus, lists,
+/// tooltips and dialogs. Both their contents and their positions about the centre of the window are mirrored. Pointer
+/// events are mirrored before widgets receive them, so that a click reaches the item drawn under the pointer. A line of
+/// text that is not mirrored names the key that restores the window.
 class WindowMirror : public QObject {
   Q_OBJECT
 
  public:
-  /// `back_text`: that line.
+  /// `back_text`: the text of that line.
   WindowMirror(QMainWindow& window, QString back_text);
   ~WindowMirror() override;
 
   void set_axis(MirrorAxis axis);
   MirrorAxis axis() const noexcept { return axis_; }
-  /// Where a row of pixels of the screen is after turning over; rows of a widget as it is drawn.
+  /// Screen row of a widget's row after mirroring, both in pixels.
   int row_on_screen(int global_row) const;
 
  protected:

@@ -4,8 +4,8 @@ class QListView;
 
 namespace trocar::trainer {
 
-/// Rows whose text breaks into lines, each as high as its lines: a list keeps room for a scroll bar when it counts
-/// them, and would draw without that room where there is no bar.
+/// Wraps the text of rows and sets row heights to their lines. Without it, a list reserves space for a scroll bar when
+/// it computes heights, but draws without that space if there is no scroll bar.
 void wrap_rows(QListView& list);
 
 }  // namespace trocar::trainer

@@ -23,41 +23,41 @@ class PatientView;
 /// The opened case, for views.
 struct CaseContext {
   std::shared_ptr<const cases::OpenCase> open;
-  tasks::EntryZone entry_zone;  ///< Of the task, else the skin around the planned entry.
+  tasks::EntryZone entry_zone;  ///< Entry zone of the task, else the skin around the planned entry.
 };
 
 /// Tools that have moved.
 struct ToolContext {
-  const ToolsShown& tools;    ///< For simulated imaging, which shows what a scanner would show.
-  const ToolsShown& visible;  ///< For all other views: without what an exam hides.
+  const ToolsShown& tools;    ///< For simulated imaging, which shows the same as a real scanner.
+  const ToolsShown& visible;  ///< For all other views: without the parts that an exam hides.
   const cases::OpenCase& open;
 };
 
 /// One frame of the window.
 struct FrameContext {
-  double now_s = 0.0;  ///< Any steady clock.
+  double now_s = 0.0;  ///< Time of any steady clock.
   std::size_t number = 0;
   bool are_tools_moving = false;
 };
 
-/// What the views of one workspace share. It lives longer than they do.
+/// Shared state of the views of one workspace. It outlives them.
 class ViewContext : public QObject {
   Q_OBJECT
 
  public:
-  PatientView* main_3d_view = nullptr;  ///< Of the structure panel. Set by the 3D view.
+  PatientView* main_3d_view = nullptr;  ///< View of the structure panel. Set by the 3D view.
   std::vector<const PatientView*> all_3d_views;
-  /// The newest image, which the 3D views show in space; nullptr before the first. Set by the ultrasound view.
+  /// Returns the newest image, which the 3D views show; nullptr before the first. Set by the ultrasound view.
   std::function<std::shared_ptr<const ultrasound::ScanPicture>()> ultrasound_picture = [] { return nullptr; };
 
  Q_SIGNALS:
-  /// A person has moved the crosshairs or the HU window of a slice: all slices follow.
+  /// The user has changed the crosshairs or the HU window of a slice: all slices follow.
   void focus_moved(const trocar::Vec3& p_P);
   void window_changed(double centre_hu, double width_hu);
 };
 
-/// A view of the workspace: a widget of a case and its connection to what happens. The workspace calls open() for each
-/// case, the others for changes and once per frame. Its dock owns the widget.
+/// A view of the workspace: a widget of a case and its callbacks. The workspace calls open() for each case, the other
+/// functions for changes and once per frame. Its dock owns the widget.
 class View {
  public:
   View() = default;
@@ -66,20 +66,20 @@ class View {
   View& operator=(const View&) = delete;
 
   virtual QWidget& widget() = 0;
-  /// A line with name and figures, which the dock takes into its title; nullptr: the title's text.
+  /// A line with name and figures for the title of the dock; nullptr: the title's text.
   virtual QWidget* title_line() { return nullptr; }
   /// A button in the dock's title; nullptr: none.
   virtual QWidget* title_button() { return nullptr; }
 
-  /// False: it took no time, so the next view can open in the same frame.
+  /// Returns false if it took no time, so that the next view can open in the same frame.
   virtual bool open(const CaseContext&) { return false; }
-  /// Guidance that the difficulty permits.
+  /// Shows the guidance that the difficulty permits.
   virtual void show_help(Difficulty) {}
-  /// In an exam: nothing may show how deep the tip is.
+  /// In an exam, the view must not show the depth of the tip.
   virtual void set_tip_hidden(bool /*is_hidden*/) {}
-  /// After a visible movement only.
+  /// Called only after a visible movement.
   virtual void show_tools(const ToolContext&) {}
-  /// Once per frame, all views before the first draw().
+  /// Called once per frame, for all views before the first draw().
   virtual void update(const FrameContext&) {}
   virtual void draw(const FrameContext&) {}
 };

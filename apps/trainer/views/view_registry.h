@@ -9,32 +9,32 @@
 
 namespace trocar::trainer {
 
-/// A row at the foot of a column of a layout. A layout that does not exist yet is added with this view alone.
+/// A row at the bottom of a column of a layout. A layout that does not exist is added with only this view.
 struct LayoutPlace {
   QString layout;  ///< Name of the layout, "Ultrasound".
   int column = 0;  ///< From the left; one beyond the last adds a column.
-  int share = 1;   ///< Of the column's height, beside the shares of its other rows (or of the width: a new column).
+  int share = 1;   ///< Of the column's height, relative to its other rows (or of the width for a new column).
 };
 
-/// A line of the page of keys.
+/// A line of the keys dialog.
 struct ViewKeys {
   QString keys;    ///< "T, L, B"
   QString action;  ///< "3D view: follow the tip, along, beside the needle"
 };
 
-/// All that a workspace needs to build a view and to list it in menus, layouts and help.
+/// Data for a workspace to create a view and to list it in menus, layouts and help.
 struct ViewDescription {
   QString id;     ///< "ultrasound": names of the dock ("dock-ultrasound"), of the menu entry ("show-ultrasound") and in
                   ///< layouts.
   QString title;  ///< In the dock's title and in the menu Views.
   QString shortcut;                 ///< Shows or hides the view, "Ctrl+Shift+X"; empty: none.
-  bool is_panel = false;            ///< A panel of controls keeps the least size of its own.
+  bool is_panel = false;            ///< A panel of controls keeps its minimum size.
   std::vector<LayoutPlace> places;  ///< In layouts, in addition to built_in_layouts().
-  std::vector<ViewKeys> keys;       ///< For the page of keys.
+  std::vector<ViewKeys> keys;       ///< For the keys dialog.
   std::function<std::unique_ptr<View>(ViewContext&)> make;
 };
 
-/// The list of views. A view that uses another one through ViewContext comes after it.
+/// The list of views. A view that uses another one through ViewContext must come after it.
 class ViewRegistry {
  public:
   /// The id must be new.

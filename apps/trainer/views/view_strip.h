@@ -9,17 +9,17 @@ namespace trocar::trainer {
 /// The line above a view with its name and numbers. It is at the top of the view, or in the title of its dock.
 class ViewStrip : public QWidget {
  public:
-  /// Paints into the room that buttons leave.
+  /// Paints in the space beside the buttons.
   using Paint = std::function<void(QPainter& painter, const QRectF& room)>;
   ViewStrip(QWidget& view, Paint paint);
 
-  /// At the right end.
+  /// Adds a button at the right end.
   void add_button(QWidget& button);
-  /// What the view has to leave free at its top: nothing once the strip is elsewhere.
+  /// Height that the view must leave free at its top: 0 if the strip is elsewhere.
   double height_in_view() const;
-  /// The view has another size.
+  /// Call after the view was resized.
   void follow_view();
-  /// Paints again if `shown`, all that it depends on, is not what it was.
+  /// Paints again if `shown`, the text of all its inputs, has changed.
   void refresh(const QString& shown);
 
   QSize sizeHint() const override;

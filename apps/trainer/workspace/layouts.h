@@ -8,8 +8,8 @@
 
 namespace trocar::trainer {
 
-/// A layout as columns of views, each with its share of the width; a column's rows with their shares of its height.
-/// Views in one cell lie side by side.
+/// A layout consists of columns, each with its share of the width; the rows of a column have shares of its height.
+/// Views in one cell are side by side.
 struct LayoutCell {
   std::vector<QString> views;  ///< Dock names, side by side.
   int share = 1;
@@ -23,10 +23,11 @@ struct Layout {
   std::vector<LayoutColumn> columns;
 };
 
-/// The built-in layouts, the first one is where a task begins.
+/// The built-in layouts; a task starts with the first one.
 const std::vector<Layout>& built_in_layouts();
 
-/// The same with the places of registered views: rows at the foot of columns, new columns and new layouts.
+/// The built-in layouts with the places of registered views: rows at the bottom of columns, new columns and new
+/// layouts.
 std::vector<Layout> layouts_of(const ViewRegistry& registry);
 
 }  // namespace trocar::trainer

@@ -5,8 +5,8 @@
 
 namespace trocar::trainer {
 
-/// Moves the needle, whose tip is felt at `depth_mm`, forward as so long after a shot, and marks where its core came
-/// from.
+/// Moves the needle, whose tip is at `depth_mm`, forward to its position `since_s` after a shot, and marks the place of
+/// the core.
 void show_shot(ToolsShown& tools, const attempt::GunShot& shot, double since_s, double depth_mm);
 
 }  // namespace trocar::trainer

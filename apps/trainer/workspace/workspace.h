@@ -19,8 +19,8 @@ class QMenu;
 
 namespace trocar::trainer {
 
-/// All views of a case in dockable layouts, which are stored. It knows views by their ViewDescription only: the
-/// registry is the one place that names them. Keys: Ctrl+1 .. Ctrl+4 select a layout.
+/// All views of a case in dockable layouts, which are stored. It accesses views only through their ViewDescription:
+/// only the registry names them. Keys: Ctrl+1 .. Ctrl+4 select a layout.
 class Workspace : public QMainWindow {
   Q_OBJECT
 
@@ -29,19 +29,20 @@ class Workspace : public QMainWindow {
   ~Workspace() override;
 
   void show_case(std::shared_ptr<const cases::OpenCase> open);
-  /// The same in parts, each short enough for one frame: show_part() shows the next one; returns false when complete.
+  /// Shows a case in parts, each short enough for one frame: show_part() shows the next one; returns false when
+  /// complete.
   void begin_case(std::shared_ptr<const cases::OpenCase> open);
   bool show_part();
-  /// Of the plan, in all views; panels and keys of the views show no more than that.
+  /// Sets the guidance in all views; panels and keys of the views cannot show more.
   void show_help(Difficulty difficulty);
   /// Hidden: slices and 3D show the needle up to the skin only, slices do not follow it, and the plot has no depth. The
-  /// ultrasound shows what a scanner shows. The crosshairs are moved to the middle of the body.
+  /// ultrasound is not changed, as in a real scanner. The crosshairs are moved to the middle of the body.
   void set_tip_hidden(bool is_hidden);
   void show_tools(const ToolsShown& tools);
-  /// Draws what has changed; once a frame. `now_s`: any steady clock.
+  /// Draws the changed views; call once per frame. `now_s`: time of any steady clock.
   void draw(double now_s);
 
-  /// The widget of a view, or a part of it, by its type: find<ForcePlot>("forces"); nullptr: there is none.
+  /// The widget of a view, or a part of it, by its type: find<ForcePlot>("forces"); nullptr if there is none.
   template <class Widget>
   Widget* find(const char* id) const {
     QWidget* widget = find_widget(QString::fromLatin1(id));
@@ -57,7 +58,7 @@ class Workspace : public QMainWindow {
   void save_layout() const;
   /// Layouts and views to show or hide.
   void fill_menu(QMenu& menu);
-  /// Least width (pixels) of the views that are shown.
+  /// Minimum width (pixels) of the visible views.
   int needed_width() const;
 
  Q_SIGNALS:
@@ -79,14 +80,14 @@ class Workspace : public QMainWindow {
   ViewRegistry registry_;
   std::vector<Layout> layouts_;
   ViewContext context_;
-  std::vector<std::unique_ptr<View>> views_;  ///< As in the registry.
+  std::vector<std::unique_ptr<View>> views_;  ///< In the order of the registry.
   std::map<QString, QDockWidget*> docks_;
   QString layout_;
-  std::map<QString, QSizeF> shares_;  ///< Of the workspace's size, by view; of a hidden view the last one.
-  bool is_arranging_ = false;         ///< The program moves the docks, not a person.
+  std::map<QString, QSizeF> shares_;  ///< Shares of the workspace's size, by view; the last value for a hidden view.
+  bool is_arranging_ = false;         ///< The program moves the docks, not the user.
   CaseContext case_;
   bool is_tip_hidden_ = false;
-  std::optional<ToolsShown> tools_;  ///< Of the last frame.
+  std::optional<ToolsShown> tools_;  ///< Tools of the last frame.
   FrameContext frame_;
   std::size_t parts_shown_ = 0;  ///< Views that have opened the case.
 };

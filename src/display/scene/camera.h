@@ -7,7 +7,7 @@
 
 namespace trocar::scene {
 
-/// A camera position around the patient. The head is up; seen from the head or from the feet, the front is up.
+/// A camera position around the patient. The head is up; in views from the head or from the feet, the front is up.
 enum class CameraPreset {
   kAnterior,
   kRightAnteriorOblique,
@@ -17,10 +17,10 @@ enum class CameraPreset {
   kCranial,  ///< From above the head.
 };
 
-/// What the camera of a live view does when the needle moves.
+/// Camera motion of a live view when the needle moves.
 enum class FollowMode {
-  kFree,         ///< Nothing.
-  kTip,          ///< Keeps the tip in the middle, its direction and distance stay.
+  kFree,         ///< No motion.
+  kTip,          ///< Keeps the tip in the middle; direction and distance are constant.
   kAlongNeedle,  ///< View from the hub along the shaft.
   kSide,         ///< View of the tip perpendicular to the shaft, at close range; structures in front of the needle are
                  ///< clipped.
@@ -38,22 +38,22 @@ struct CameraView {
   Vec3 forward_P() const noexcept { return (focus_P - eye_P).normalized(); }
   Vec3 right_P() const noexcept { return forward_P().cross(up_P).normalized(); }
   double distance_mm() const noexcept { return (focus_P - eye_P).norm(); }
-  /// Size of a pixel at a point, in a picture of `rows` rows.
+  /// Size of a pixel at a point, in an image of `rows` rows.
   double mm_per_pixel(const Vec3& p_P, int rows) const noexcept;
 };
 
-/// Looks at the middle of the points (at least one) as near as all of them stay in a picture of `aspect` (columns over
-/// rows), with a margin.
+/// Camera towards the middle of the points (at least one), at the smallest distance at which an image of `aspect`
+/// (columns over rows) contains all points with a margin.
 CameraView fit_camera(std::span<const Vec3> points_P, CameraPreset preset, double aspect);
 
-/// Turned about the focus: to the right and upward as a hand drags the patient (rad). Stops short of the poles.
+/// Orbits about the focus: a mouse drag moves the patient to the right and up (rad). The view stops before the poles.
 CameraView orbited(const CameraView& view, double right_rad, double up_rad) noexcept;
-/// Moved across, so that what lies at the focus goes `right` and `down` by shares of the picture's height.
+/// Pans the view: the point at the focus moves `right` and `down` in the image, as shares of the image height.
 CameraView panned(const CameraView& view, double right, double down) noexcept;
-/// Nearer by a factor (above 1), or farther; between 20 mm and 5 m from the focus.
+/// Divides the distance to the focus by `factor` (above 1: nearer); limited to 20 mm .. 5 m.
 CameraView zoomed(const CameraView& view, double factor) noexcept;
-/// The view in a mode for a needle (hub to tip); kFree gives it back as it is. `is_new`: the mode has just been chosen,
-/// so that it also sets its distance.
+/// The view in a mode for a needle (hub to tip); kFree returns it unchanged. `is_new`: the mode was just selected and
+/// also sets its distance.
 CameraView following(const CameraView& view, FollowMode mode, const Segment& needle_P, bool is_new) noexcept;
 
 }  // namespace trocar::scene

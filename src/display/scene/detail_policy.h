@@ -6,43 +6,43 @@ namespace trocar::scene {
 
 /// Level of detail of a frame.
 struct Detail {
-  int mesh_level = 0;       ///< 0: all triangles; 1, 2: fewer, in simpler light.
-  bool is_peeled = true;    ///< Translucent surfaces in their right order, pixel by pixel.
-  bool is_smooth = true;    ///< Edges smoothed.
+  int mesh_level = 0;       ///< 0: all triangles; 1, 2: fewer, with simpler lighting.
+  bool is_peeled = true;    ///< Depth peeling: translucent surfaces in depth order per pixel.
+  bool is_smooth = true;    ///< Anti-aliased edges.
   bool has_volume = true;   ///< Volume rendering of the CT, if selected; otherwise surfaces replace it.
-  double resolution = 1.0;  ///< Of the picture against the window, 0.25..1.
+  double resolution = 1.0;  ///< Of the image relative to the window, 0.25..1.
   bool operator==(const Detail&) const = default;
 };
 
 inline constexpr int kMeshLevels = 3;
 
 struct DetailPolicyParams {
-  double target_ms = 32.0;                        ///< A frame while something moves. Range 5..500.
-  double comfort = 0.55;                          ///< Below this share of the target more detail is tried.
-  int patience_frames = 20;                       ///< So many comfortable frames in a row. Range 1..1000.
-  std::chrono::milliseconds still_after{300};     ///< Without motion for so long: full quality.
-  std::chrono::milliseconds retry_after{10'000};  ///< A level that was too slow is not tried again before.
+  double target_ms = 32.0;                        ///< Frame time during motion. Range 5..500.
+  double comfort = 0.55;                          ///< Below this share of the target, more detail is tried.
+  int patience_frames = 20;                       ///< Consecutive frames below that share before. Range 1..1000.
+  std::chrono::milliseconds still_after{300};     ///< Full quality after this time without motion.
+  std::chrono::milliseconds retry_after{10'000};  ///< A level that was too slow is retried after it.
 };
 
-/// Chooses the detail of the next frame from what frames have cost. With a graphics card every frame is drawn in full.
-/// Without one the full quality waits until nothing has moved for a while; what moves is drawn at a level that keeps
-/// the frame time. Time is an argument.
+/// Selects the detail of the next frame from measured frame times. With a graphics card, every frame has full detail.
+/// Without one, frames have full detail only after a time without motion; during motion, the level keeps the frame
+/// time. Time is an argument.
 class DetailPolicy {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
   explicit DetailPolicy(bool has_gpu, const DetailPolicyParams& params = {});
 
-  /// Another frame time to keep, ms, 5..500.
+  /// Sets the target frame time, ms, 5..500.
   void set_target(double target_ms) noexcept { params_.target_ms = target_ms; }
-  /// Something was moved at this time: tool, camera, opacity.
+  /// Reports a motion or change at this time: tool, camera, opacity.
   void note_motion(Time now) noexcept;
   /// Reports the duration of a frame of this detail. Cancelled frames are not reported.
   void note_frame(const Detail& detail, double frame_ms, Time now) noexcept;
   /// Detail of a frame that begins now.
   Detail next(Time now) const noexcept;
   bool is_moving(Time now) const noexcept;
-  /// Level in use while things move: 0 is the finest.
+  /// Level in use during motion: 0 is the finest.
   int moving_level() const noexcept { return level_; }
 
   static Detail full() noexcept { return {}; }

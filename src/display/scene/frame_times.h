@@ -5,13 +5,13 @@
 
 namespace trocar::scene {
 
-/// Frame times of late, ms.
+/// Recent frame times, ms.
 class FrameTimes {
  public:
   void add(double frame_ms) noexcept;
-  std::size_t count() const noexcept { return count_; }  ///< Of all frames ever.
+  std::size_t count() const noexcept { return count_; }  ///< Number of all frames.
   double last_ms() const noexcept { return last_ms_; }
-  /// Of the last kKept frames; `share` in 0..1 (0.5 the median). 0 without any.
+  /// Percentile of the last kKept frames; `share` in 0..1 (0.5: median). 0 without frames.
   double percentile_ms(double share) const noexcept;
   double p50_ms() const noexcept { return percentile_ms(0.5); }
   double p99_ms() const noexcept { return percentile_ms(0.99); }

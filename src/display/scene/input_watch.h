@@ -13,9 +13,9 @@ class InputWatch {
   InputWatch(const InputWatch&) = delete;
   InputWatch& operator=(const InputWatch&) = delete;
 
-  /// From now on.
+  /// Starts the detection.
   void start();
-  /// Pointer, a button or a key are not as they were at `start`. About 0.1 ms.
+  /// True if the pointer, a button or a key has changed since `start`. Takes about 0.1 ms.
   bool has_happened();
 
  private:

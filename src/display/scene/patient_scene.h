@@ -24,45 +24,45 @@
 
 namespace trocar::scene {
 
-/// A patient with tools and guidance, drawn off-screen as often as one likes. Everything is in P (mm). All calls from
-/// one thread; surfaces and volume are prepared on threads of their own and appear when they are ready.
+/// A patient with tools and guidance, drawn off-screen. All coordinates are in P (mm). All calls must come from one
+/// thread; background threads prepare surfaces and volume, which are drawn when they are ready.
 class PatientScene {
  public:
-  /// An error without an X server.
+  /// Error: no X server.
   static Result<std::unique_ptr<PatientScene>> make(int columns, int rows);
   ~PatientScene();
   PatientScene(const PatientScene&) = delete;
   PatientScene& operator=(const PatientScene&) = delete;
 
-  /// `target_P` is what is aimed at; without it the end of the patient's first path is, if there is one.
+  /// `target_P` is the target; if it is empty, the target is the end of the patient's first path, if there is one.
   void show_patient(std::shared_ptr<const anatomy::VirtualPatient> patient,
                     std::shared_ptr<const std::vector<anatomy::NamedMesh>> meshes, std::optional<Vec3> target_P = {});
-  bool is_ready() const noexcept;  ///< The surfaces are there.
+  bool is_ready() const noexcept;  ///< The surfaces are loaded.
   void finish_loading();           ///< Waits for surfaces and volume.
 
   const std::vector<StructureInfo>& structures() const noexcept;
   void set_opacity(std::string_view name, double opacity);
   void apply_preset(StructurePreset preset);
 
-  /// The path with its target at the end, and an entry zone about its begin.
+  /// Sets the path with its target at the end, and an entry zone about its start.
   void set_path(const std::optional<Segment>& line_P, double entry_radius_mm);
-  /// A zone about another point than the path's begin; empty: that again.
+  /// Sets the centre of the entry zone; empty: the path's start.
   void set_entry_centre(const std::optional<Vec3>& centre_P);
-  /// What the guidance consists of, and whether it is shown. Guidance::kNone withholds lesions, too.
+  /// Amount of guidance and its visibility. Guidance::kNone also withholds lesions.
   void set_guidance(Guidance guidance);
   Guidance guidance() const noexcept;
   void set_guidance_visible(bool is_visible);
-  /// Others than the patient's own, until another patient is shown.
+  /// Replaces the patient's landmarks until another patient is shown.
   void set_landmarks(const std::vector<anatomy::Landmark>& landmarks);
   void set_landmarks_visible(bool are_visible);
-  /// Fewer than two points: no needle.
+  /// With fewer than two points, there is no needle.
   void set_needle(std::span<const Vec3> shaft_P, double diameter_mm, NeedleModel model);
   void set_needle_goal(const std::optional<Segment>& ghost_P);
-  /// A gun's stylet ahead of the needle, and the place that a core was taken from.
+  /// A biopsy gun's stylet ahead of the needle, and the place of the last core.
   void set_shot(const std::optional<Segment>& stylet_P, const std::optional<Segment>& core_P);
   void set_transducer(const std::optional<Pose>& X_PT, const TransducerFace& face);
-  /// A picture in space; corners of its outline: top left, top right, bottom left. `alpha`, one byte a pixel or empty
-  /// (all shown), is 0 where nothing is to be seen.
+  /// An image in 3D; corners of its outline: top left, top right, bottom left. `alpha` has one byte per pixel (0: not
+  /// drawn) or is empty (all drawn).
   void set_ultrasound(const volume::RgbImage& picture, std::span<const std::uint8_t> alpha,
                       const std::array<Vec3, 3>& corners_P);
   void hide_ultrasound();
@@ -80,25 +80,26 @@ class PatientScene {
   void set_stereo(const StereoOptions& options);
   const StereoOptions& stereo() const noexcept;
 
-  /// Size of the pictures from the next frame on.
+  /// Size of the image from the next frame on.
   void set_size(int columns, int rows);
-  /// How large names are written: pixels of the picture for one of an ordinary window. Range 0.1..8.
+  /// Scale of text: pixels of the image per pixel of an ordinary window. Range 0.1..8.
   void set_text_scale(double scale);
-  /// Row of the screen that the picture's first row falls on: in interlaced stereo the screen's even rows are the left
-  /// eye's, wherever the picture stands and however it is mirrored.
+  /// Screen row of the image's first row: in interlaced stereo the screen's even rows belong to the left eye, for any
+  /// position and mirroring of the image.
   void set_first_row(int row);
   /// Applies surfaces and volume that have finished loading.
   void poll();
-  /// Something was set, or has become ready, since the last whole frame.
+  /// True if something was set or has become ready since the last complete frame.
   bool has_changed() const noexcept;
   /// Renders a frame. `wants_break` (may be empty) is polled; if it returns true the frame is cancelled and false is
   /// returned. Quad-buffer stereo renders one frame per eye; the other modes render both into one and ignore `eye`.
   bool render(const Detail& detail, const std::function<bool()>& wants_break = {}, Eye eye = Eye::kLeft);
-  /// The picture after `render`, as a mirror wants it where one is set: 0xffRRGGBB, rows from the top. `pixels` has a
-  /// place for each.
+  /// Copies the image after `render`, mirrored if the stereo options request it: 0xffRRGGBB, top row first. `pixels`
+  /// has one element per pixel.
   void copy_picture(std::span<std::uint32_t> pixels) const;
 
-  /// First surface, tool or plane at a place of the picture (shares of its width and height from the top left), in P.
+  /// Point in P on the first surface, tool or plane at an image position (shares of width and height from the top
+  /// left).
   std::optional<Vec3> pick(double right, double down);
 
   /// Name of the OpenGL renderer ("llvmpipe (LLVM 15.0.6, 256 bits)"); known after the first frame.

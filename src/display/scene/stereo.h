@@ -4,7 +4,7 @@ namespace trocar::scene {
 
 enum class StereoMode {
   kOff,
-  kQuadBuffer,  ///< Shutter glasses: a picture for each eye, for a screen that shows them in turns.
+  kQuadBuffer,  ///< Shutter glasses: one image per eye, for a screen that alternates them.
   kAnaglyph,    ///< Red-cyan glasses.
   kSideBySide,
   kInterlaced,  ///< Even rows to one eye, odd ones to the other.
@@ -18,7 +18,7 @@ struct StereoOptions {
   double focus_shift = 0.0;    ///< Moves the plane without parallax nearer (below 0) or farther, share of the distance.
                                ///< Range -0.5..1.
   bool swaps_eyes = false;
-  bool is_mirrored_left_right = false;  ///< For a monitor that is seen in a mirror.
+  bool is_mirrored_left_right = false;  ///< For a monitor that is viewed through a mirror.
   bool is_mirrored_up_down = false;
   bool operator==(const StereoOptions&) const = default;
 };

@@ -4,9 +4,8 @@
 
 namespace trocar::slices {
 
-/// Draws the patient's directions (R L A P H F) at the four edges of a slice picture, as radiologists write them, and a
-/// scale bar with its length in mm at the lower left. Text has a dark outline. Pictures below 96 pixels stay as they
-/// are.
+/// Draws the orientation letters (R L A P H F) at the four edges of a slice image, as in radiology, and a scale bar
+/// with its length in mm at the lower left. Text has a dark outline. Images below 96 pixels are not changed.
 void draw_slice_legend(SlicePicture& picture);
 
 /// Length of a scale bar: the largest 1, 2 or 5 x 10^n mm that fits into `most_mm` (> 0).

@@ -8,9 +8,9 @@
 
 namespace trocar::io {
 
-/// 3D Slicer markups (.mrk.json, schema 1.0.x), LPS or RAS inside, LPS mm in memory. Landmarks are the control points
-/// of fiducial markups; points that were never placed are left out. Errors: other units or frames, no usable position;
-/// with `inside`, a file outside of that folder.
+/// 3D Slicer markups (.mrk.json, schema 1.0.x), LPS or RAS in the file, LPS mm in memory. Landmarks are the control
+/// points of fiducial markups; points without a position are skipped. Errors: other units or frames, no usable
+/// position; with `inside`, a file outside of that folder.
 Result<std::vector<anatomy::Landmark>> read_landmarks(const std::filesystem::path& path,
                                                       const std::filesystem::path& inside = {});
 Status write_landmarks(const std::vector<anatomy::Landmark>& landmarks, const std::filesystem::path& path);

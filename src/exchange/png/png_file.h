@@ -8,7 +8,7 @@
 
 namespace trocar::png {
 
-/// The picture as PNG bytes.
+/// Encodes an image as PNG.
 std::string encode_png(const volume::RgbImage& image);
 Status write_png(const volume::RgbImage& image, const std::filesystem::path& path);
 

@@ -15,7 +15,7 @@ using Json = nlohmann::ordered_json;
 Result<Json> parse_json(std::string_view text, const std::string& name);
 Result<Json> load_json(const std::filesystem::path& path);
 
-/// The document as text; bytes that are not UTF-8 are replaced instead of thrown at the caller. indent < 0: one line.
+/// The document as text; bytes that are not UTF-8 are replaced; they do not throw. indent < 0: one line.
 std::string json_text(const Json& json, int indent = 2);
 
 }  // namespace trocar::config

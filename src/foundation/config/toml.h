@@ -23,8 +23,8 @@ struct Range {
   double high;
 };
 
-/// A table of a TOML document. Getters name file, key and what was expected when they fail. Cheap to copy; keeps the
-/// document alive.
+/// A table of a TOML document. The error of a getter names the file, the key and the expected value. Cheap to copy;
+/// keeps the document alive.
 class TomlTable {
  public:
   /// Every key that is present, in the file's order of lines.
@@ -34,7 +34,7 @@ class TomlTable {
   /// silently.
   Status check_keys(const std::vector<std::string_view>& known) const;
 
-  /// Finite number inside the range, or an error. An integer in the file is a number too.
+  /// Finite number inside the range, or an error. An integer in the file is also accepted.
   Result<double> number(std::string_view key, Range range) const;
   Result<double> number_or(std::string_view key, Range range, double fallback) const;
   Result<std::int64_t> integer(std::string_view key, Range range) const;

@@ -9,8 +9,8 @@
 
 namespace trocar::config {
 
-/// The text of one value of a TOML document: a string, a number, a truth value, a list or an inline table. Numbers
-/// return from the text to the bit. Malformed UTF-8 in a string is replaced by U+FFFD.
+/// The text of one value of a TOML document: a string, a number, a truth value, a list or an inline table. A number
+/// that is parsed from the text is bit-identical to the original. Malformed UTF-8 in a string is replaced by U+FFFD.
 class TomlValue {
  public:
   struct Entry;  ///< Key and value of an inline table.
@@ -52,7 +52,7 @@ class TomlWriter {
   void begin_table(std::initializer_list<std::string_view> path);
   /// Starts the next table of the list [[name]].
   void begin_row(std::string_view name);
-  /// A key of the table that was started last; of the document if none was.
+  /// Sets a key of the table that was started last, or of the document if no table was started.
   void set(std::string_view key, const TomlValue& value);
 
   const std::string& text() const noexcept { return text_; }

@@ -20,22 +20,22 @@
 namespace trocar {
 inline namespace core {
 
-/// How far work in the background is.
+/// Progress of a background job.
 struct JobView {
-  std::string step;       ///< What it does now.
+  std::string step;       ///< Name of the present step.
   double fraction = 0.0;  ///< Progress, 0..1.
   bool is_done = false;   ///< The result is ready.
 };
 
-/// Work on a thread of its own, polled by a window once per frame. Only the destructor blocks (see RetiredJobs). One
-/// thread owns the job; the work has only its Progress and its stop token.
+/// Work on a separate thread, polled by a window once per frame. Only the destructor blocks (see RetiredJobs). One
+/// thread owns the job; the work accesses only its Progress and its stop token.
 template <class T>
 class BackgroundJob {
  public:
-  /// No work: view() is not done, take() gives nothing.
+  /// No work: view().is_done is false and take() returns nothing.
   BackgroundJob() = default;
-  /// Starts. `work` is `Result<T>(const Progress&)`, or `Result<T>(const Progress&, std::stop_token)` where it can stop
-  /// on the way: its result is then dropped, whatever it is.
+  /// Starts the work. `work` is `Result<T>(const Progress&)`, or `Result<T>(const Progress&, std::stop_token)` if it
+  /// can stop early. The result of a stopped job is always dropped.
   template <class Work>
   requires(!std::is_same_v<std::remove_cvref_t<Work>, BackgroundJob>) explicit BackgroundJob(Work work)
       : state_(std::make_shared<State>()) {

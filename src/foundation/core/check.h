@@ -9,11 +9,11 @@ namespace detail {
 }  // namespace core
 }  // namespace trocar
 
-/// A programmer's error at a module border: always tested, aborts.
+/// Aborts on a programming error at a module boundary; tested in all builds.
 #define TROCAR_CHECK(condition) \
   ((condition) ? static_cast<void>(0) : ::trocar::detail::check_failed(#condition, __FILE__, __LINE__))
 
-/// The same inside a module, tested in debug builds only.
+/// The same check inside a module; tested in debug builds only.
 #ifdef NDEBUG
 #define TROCAR_ASSERT(condition) static_cast<void>(sizeof(condition))
 #else

@@ -17,7 +17,7 @@ bool is_interrupted() noexcept;
 Error interruption_error(const std::string& where);
 
 /// While an object exists, an interrupted program has 5 s to end with its own error; the work polls is_interrupted(). A
-/// second signal ends it at once.
+/// second signal ends the program at once.
 class InterruptibleWork {
  public:
   InterruptibleWork() noexcept;

@@ -11,11 +11,11 @@ inline namespace core {
 void parallel_for(std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t first, std::size_t last)>& body);
 
-/// Calls body(); what it does in parallel uses at most so many threads, the calling one among them (>= 1). With 1
-/// everything stays on the calling thread, whose priority then holds for all of it.
+/// Calls body(), whose parallel work uses at most `most` threads (>= 1), including the calling thread. With 1, all work
+/// runs on the calling thread, at the priority of that thread.
 void run_on_threads(int most, const std::function<void()>& body);
 
-/// Runs the functions side by side and waits for all of them.
+/// Runs the functions in parallel and waits for all of them.
 void parallel_invoke(const std::function<void()>& a, const std::function<void()>& b);
 void parallel_invoke(const std::function<void()>& a, const std::function<void()>& b, const std::function<void()>& c);
 

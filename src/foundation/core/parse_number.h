@@ -30,7 +30,7 @@ std::optional<LeadingNumber<Number>> find_leading_number(std::string_view text) 
   return LeadingNumber<Number>{value, text.substr(static_cast<std::size_t>(end - text.data()))};
 }
 
-/// The finite number that the whole text is; empty under the conditions above, and if anything follows the number.
+/// Parses the whole text as one finite number. Empty under the conditions above, and if text follows the number.
 /// Real-time safe.
 template <class Number>
 std::optional<Number> parse_number(std::string_view text) noexcept {

@@ -5,7 +5,7 @@
 namespace trocar {
 inline namespace core {
 
-/// The part of a longer work that lies between two fractions of it, as its own progress.
+/// Progress of one part of a longer task: maps 0..1 of the part to from..to of the whole.
 inline Progress part_of(const Progress& whole, double from, double to) {
   return [=](std::string_view step, double fraction) { report(whole, step, from + (to - from) * fraction); };
 }

@@ -6,10 +6,10 @@
 namespace trocar {
 inline namespace core {
 
-/// Callback of long work: present step, and progress in 0..1. May be empty.
+/// Callback of a long task: present step, and progress in 0..1. May be empty.
 using Progress = std::function<void(std::string_view step, double fraction)>;
 
-/// Calls progress where there is one.
+/// Calls `progress` unless it is empty.
 inline void report(const Progress& progress, std::string_view step, double fraction) {
   if (progress) progress(step, fraction);
 }

@@ -10,15 +10,15 @@ inline namespace core {
 /// An error of the outside world (file, device, user input) with the advice to fix it. Printed as "error: what — where
 /// — what to do"; empty parts are omitted.
 struct Error {
-  std::string what;     ///< What is wrong: "the image ends before its last voxel".
-  std::string where;    ///< Where: a file, a line, an option.
-  std::string advice;   ///< What to do about it.
-  int exit_status = 1;  ///< 1: failed at work (file, device, data). 2: unusable arguments.
+  std::string what;     ///< The failure: "the image ends before its last voxel".
+  std::string where;    ///< Place of the failure: a file, a line, an option.
+  std::string advice;   ///< Advice to the user.
+  int exit_status = 1;  ///< 1: failure at run time (file, device, data). 2: unusable arguments.
 
   std::string text() const;  ///< "what — where — what to do", one line, control characters replaced.
 };
 
-/// A value or an Error. Our own code never throws; a library's exception is caught in the module that calls it.
+/// A value or an Error. The project's code never throws; the module that calls a library catches its exceptions.
 template <class T>
 using Result = tl::expected<T, Error>;
 using Status = Result<void>;

@@ -8,7 +8,7 @@
 namespace trocar {
 inline namespace core {
 
-/// A value with its steps back and forth. Whole values are kept: they should share what is large.
+/// A value with undo and redo steps. Each step stores a whole value: large parts of values should be shared.
 template <class State>
 class StepHistory {
  public:
@@ -17,7 +17,7 @@ class StepHistory {
 
   const State& now() const noexcept { return now_; }
 
-  /// Another value, with no steps.
+  /// Sets another value and clears all steps.
   void begin(State state) {
     now_ = std::move(state);
     before_.clear();
@@ -33,7 +33,7 @@ class StepHistory {
   }
   /// Replaces the present value without a step.
   void put(State state) { now_ = std::move(state); }
-  /// Changes this value and all that undo and redo lead to.
+  /// Changes the present value and all values of the undo and redo steps.
   template <class Change>
   void change_all(const Change& change) {
     change(now_);
@@ -43,9 +43,9 @@ class StepHistory {
 
   bool can_undo() const noexcept { return !before_.empty(); }
   bool can_redo() const noexcept { return !after_.empty(); }
-  /// What redo() leads to; can_redo() only.
+  /// The value after redo(). Requires can_redo().
   const State& next() const noexcept { return after_.back(); }
-  void undo() {  ///< Nothing where there is nothing to undo.
+  void undo() {  ///< No effect if can_undo() is false.
     if (!can_undo()) return;
     after_.push_back(std::exchange(now_, std::move(before_.back())));
     before_.pop_back();

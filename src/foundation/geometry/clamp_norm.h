@@ -6,7 +6,7 @@ namespace trocar {
 inline namespace geometry {
 
 /// Scales `v` to the length `most` if it is longer, and returns whether it was longer. A vector that contains NaN is
-/// left as it is. Real-time safe.
+/// not changed. Real-time safe.
 inline bool clamp_norm(Vec3& v, double most) noexcept {
   const double norm = v.norm();
   if (!(norm > most)) return false;

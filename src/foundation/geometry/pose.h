@@ -30,8 +30,8 @@ class Pose {
 /// The shortest rotation that turns the unit vector `from` into the unit vector `to`.
 Mat3 rotation_between(const Vec3& from, const Vec3& to) noexcept;
 
-/// Pose X_AN of a needle with its tip at `tip_A` and its axis (hub to tip, unit) along `axis_A`; the roll is the one
-/// that turns +z to the axis by the shortest way.
+/// Pose X_AN of a needle with its tip at `tip_A` and its axis (hub to tip, unit) along `axis_A`; the roll is that of
+/// the shortest rotation from +z to the axis.
 Pose needle_pose(const Vec3& tip_A, const Vec3& axis_A) noexcept;
 
 /// Angle between two directions, 0..pi rad.

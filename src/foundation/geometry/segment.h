@@ -5,7 +5,7 @@
 namespace trocar {
 inline namespace geometry {
 
-/// A straight piece from a to b.
+/// A line segment from a to b.
 struct Segment {
   Vec3 a;
   Vec3 b;

@@ -8,11 +8,11 @@
 namespace trocar {
 inline namespace geometry {
 
-using Vec3 = Eigen::Vector3d;   ///< Point (mm), direction, force (N) or torque (N mm); the name tells frame and kind.
+using Vec3 = Eigen::Vector3d;   ///< Point (mm), direction, force (N) or torque (N mm); the name states frame and kind.
 using Vec3f = Eigen::Vector3f;  ///< The same in bulk data (meshes).
 using Mat3 = Eigen::Matrix3d;
 
-/// N zero vectors. `std::array<Vec3, N> x{}` is not zero: Eigen leaves its numbers as they lie in memory.
+/// N zero vectors. `std::array<Vec3, N> x{}` is not zero: Eigen does not initialise its components.
 template <std::size_t N>
 std::array<Vec3, N> zero_vectors() noexcept {
   std::array<Vec3, N> vectors;

@@ -15,7 +15,7 @@ class Handover {
   Handover(const Handover&) = delete;
   Handover& operator=(const Handover&) = delete;
 
-  /// By the maker: the object for all later acquires; null: none.
+  /// Called by the builder: sets the object for all later acquires. null: no object.
   void publish(std::shared_ptr<const T> object) {
     offered_.store(object.get(), std::memory_order_seq_cst);
     kept_.push_back(std::move(object));
@@ -30,7 +30,7 @@ class Handover {
       return object.get() != offered && object.get() != used && object.get() != trying;
     });
   }
-  /// By the user, once a period: valid until its next acquire. Real-time safe.
+  /// Called by the user once per period: the object is valid until the next acquire. Real-time safe.
   const T* acquire() noexcept {
     // Announces the candidate before checking again that it is still offered, so that collect() cannot free it in
     // between.
@@ -51,7 +51,7 @@ class Handover {
   std::atomic<const T*> offered_{nullptr};
   std::atomic<const T*> used_{nullptr};
   std::atomic<const T*> trying_{nullptr};
-  const T* current_ = nullptr;  ///< Of the user.
+  const T* current_ = nullptr;  ///< Accessed by the user only.
   std::vector<std::shared_ptr<const T>> kept_;
 };
 

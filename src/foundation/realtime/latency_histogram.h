@@ -6,8 +6,8 @@
 
 namespace trocar::realtime {
 
-/// Counts durations in bins whose width is at most 1/32 of them: percentiles to within 3 % from 1 ns to an hour. Fixed
-/// size, copyable, real-time safe.
+/// Counts durations in bins whose width is at most 1/32 of the duration: percentiles within 3 % from 1 ns to an hour.
+/// Fixed size, copyable, real-time safe.
 class LatencyHistogram {
  public:
   void add(std::int64_t ns) noexcept {
@@ -19,8 +19,8 @@ class LatencyHistogram {
   std::uint64_t count() const noexcept { return count_; }
   std::int64_t max_ns() const noexcept { return static_cast<std::int64_t>(max_ns_); }
 
-  /// The duration that a share (0..1) of all does not exceed, ns: the middle of its bin, at most the maximum; 0 without
-  /// any.
+  /// Quantile in ns: a share (0..1) of all durations does not exceed it. The middle of its bin, at most the maximum; 0
+  /// for an empty histogram.
   std::int64_t quantile_ns(double share) const noexcept {
     if (count_ == 0) return 0;
     const double wanted = share * static_cast<double>(count_);
@@ -36,7 +36,7 @@ class LatencyHistogram {
 
  private:
   static constexpr int kSubBits = 5;
-  static constexpr std::uint64_t kSub = 1U << kSubBits;  // bins an octave
+  static constexpr std::uint64_t kSub = 1U << kSubBits;  // bins per octave
   static constexpr std::size_t kBins = 38 * kSub;
 
   static std::size_t bin_of(std::uint64_t value) noexcept {

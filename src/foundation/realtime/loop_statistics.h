@@ -6,7 +6,7 @@
 
 namespace trocar::realtime {
 
-/// A duration's distribution, microseconds.
+/// Distribution of a duration, microseconds.
 struct LatencySummary {
   double p50_us = 0.0, p99_us = 0.0, p999_us = 0.0, max_us = 0.0;
 };
@@ -15,22 +15,22 @@ LatencySummary summarise(const LatencyHistogram& histogram) noexcept;
 /// Statistics of a periodic loop since its start.
 struct LoopSummary {
   double wanted_hz = 0.0;
-  double achieved_hz = 0.0;   ///< Ticks over the time they took.
-  std::uint64_t periods = 0;  ///< That have begun, skipped ones too.
+  double achieved_hz = 0.0;   ///< Ticks divided by the elapsed time.
+  std::uint64_t periods = 0;  ///< Periods that have begun, including skipped ones.
   std::uint64_t missed = 0;   ///< Periods whose tick was not finished before the next period, including skipped ones.
-  std::uint64_t skipped = 0;  ///< That got no tick at all.
-  LatencySummary lateness;    ///< Of the wake-up after the period's begin.
+  std::uint64_t skipped = 0;  ///< Periods without a tick.
+  LatencySummary lateness;    ///< Delay of the wake-up after the period's begin.
   LatencySummary tick;        ///< From wake-up to the end of the tick.
   double served() const noexcept {
     return periods == 0 ? 1.0 : 1.0 - static_cast<double>(missed) / static_cast<double>(periods);
   }
 };
 
-/// Kept by the loop's thread. Fixed size, real-time safe; summary() is not for the loop.
+/// Updated by the loop's thread. Fixed size, real-time safe; do not call summary() in the loop.
 class LoopStatistics {
  public:
   explicit LoopStatistics(std::int64_t period_ns = 1'000'000) noexcept : period_ns_(period_ns) {}
-  /// One tick: when its period began, when it woke and when it was done, and the periods that were skipped before it.
+  /// Adds one tick: begin of its period, wake-up, end, and number of periods skipped before it.
   void add(std::int64_t begin_ns, std::int64_t woke_ns, std::int64_t done_ns, std::uint64_t skipped) noexcept;
   LoopSummary summary() const noexcept;
 

@@ -18,19 +18,19 @@ inline std::int64_t now_ns() noexcept {
 inline double seconds(std::int64_t ns) noexcept {
   return static_cast<double>(ns) * 1e-9;
 }
-/// Sleeps until then; on the way through signals.
+/// Sleeps until `then_ns`; continues to sleep after a signal.
 inline void sleep_until_ns(std::int64_t then_ns) noexcept {
   const timespec then{then_ns / 1'000'000'000, then_ns % 1'000'000'000};
   while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &then, nullptr) != 0) {
   }
 }
 
-/// One period as the loop's body sees it.
+/// One period, passed to the body of the loop.
 struct Period {
-  std::int64_t begin_ns = 0;  ///< When it was due.
-  double now_s = 0.0;         ///< The same, in seconds of the steady clock.
-  double dt_s = 0.0;          ///< Since the last tick's: one period, more where some were skipped.
-  std::uint64_t number = 0;   ///< Of the period, skipped ones counted.
+  std::int64_t begin_ns = 0;  ///< Due time, ns of the steady clock.
+  double now_s = 0.0;         ///< Due time, seconds of the steady clock.
+  double dt_s = 0.0;          ///< From the last tick's period: one period, more if some were skipped.
+  std::uint64_t number = 0;   ///< Number of the period, counting skipped ones.
 };
 
 /// Calls `body(const Period&, const LoopStatistics&)` at absolute times until `is_stopping`. A late period is counted
@@ -51,7 +51,7 @@ void run_periodic(std::int64_t period_ns, const std::atomic<bool>& is_stopping, 
     const std::int64_t done_ns = now_ns();
     statistics.add(period.begin_ns, woke_ns, done_ns, skipped);
 
-    // The first begin that is still to come; the one that passed while the tick ran is skipped with the others.
+    // The first begin in the future. All begins that passed while the tick ran are skipped.
     const std::int64_t late_ns = done_ns - period.begin_ns;
     const std::int64_t steps = late_ns < period_ns ? 1 : late_ns / period_ns + 1;
     skipped = static_cast<std::uint64_t>(steps - 1);

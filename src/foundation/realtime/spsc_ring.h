@@ -7,8 +7,8 @@
 
 namespace trocar::realtime {
 
-/// Every value, in order, from one writing thread to one reading thread. Memory is taken (and touched) when it is
-/// built. Invariant: head - tail is at most the capacity.
+/// Queue that passes every value, in order, from one writing thread to one reading thread. The constructor allocates
+/// (and touches) its memory. Invariant: head - tail is at most the capacity.
 template <class T>
 class SpscRing {
  public:
@@ -22,7 +22,7 @@ class SpscRing {
     return head_.load(std::memory_order_acquire) - tail_.load(std::memory_order_acquire);
   }
 
-  /// By the writer alone; false: full, the value was not taken.
+  /// Called by the writer only. False: the ring is full and the value was not stored.
   bool push(const T& value) noexcept {
     const std::size_t head = head_.load(std::memory_order_relaxed);
     if (head - tail_.load(std::memory_order_acquire) == slots_.size()) return false;
@@ -30,7 +30,7 @@ class SpscRing {
     head_.store(head + 1, std::memory_order_release);
     return true;
   }
-  /// By the reader alone; false: empty.
+  /// Called by the reader only. False: the ring is empty.
   bool pop(T& value) noexcept {
     const std::size_t tail = tail_.load(std::memory_order_relaxed);
     if (tail == head_.load(std::memory_order_acquire)) return false;

@@ -6,8 +6,8 @@
 
 namespace trocar::realtime {
 
-/// The newest value from one writing thread to one reading thread, neither of which ever waits. T is copied; for
-/// real-time use it must not allocate. Invariant: writer, reader and the place between them are three different slots.
+/// Passes the newest value from one writing thread to one reading thread without blocking. T is copied; for real-time
+/// use its copy must not allocate. Invariant: writing_, reading_ and between_ are three different slots.
 template <class T>
 class TripleBuffer {
  public:
@@ -16,19 +16,19 @@ class TripleBuffer {
   TripleBuffer(const TripleBuffer&) = delete;
   TripleBuffer& operator=(const TripleBuffer&) = delete;
 
-  /// By the writer alone.
+  /// Called by the writer only.
   void write(const T& value) noexcept {
     slots_[writing_].value = value;
     writing_ = between_.exchange(static_cast<std::uint8_t>(writing_ | kIsNew), std::memory_order_acq_rel) & kSlot;
   }
 
-  /// By the reader alone: true when a value came since the last call.
+  /// Called by the reader only: true if a value was written since the last call.
   bool update() noexcept {
     if ((between_.load(std::memory_order_relaxed) & kIsNew) == 0) return false;
     reading_ = between_.exchange(reading_, std::memory_order_acq_rel) & kSlot;
     return true;
   }
-  /// The value of the last update; what it was built with before.
+  /// The value of the last update; the initial value before the first one.
   const T& value() const noexcept { return slots_[reading_].value; }
   const T& newest() noexcept {
     update();

@@ -11,21 +11,21 @@ enum class GateFault : std::uint8_t {
   kDeviceLost,        ///< Unplugged, or a write was refused.
   kDeviceSilent,      ///< No fresh reading for longer than max_unread_s.
   kRunaway,           ///< Faster than brake_mm_per_s for longer than max_runaway_s.
-  kEncoderStuck,      ///< Force without motion of a single count, for longer than the caller allows.
+  kEncoderStuck,      ///< Force without motion by a single encoder count for longer than the caller allows.
   kLoopStalled,       ///< One period was longer than the caller allows.
   kRequested,         ///< The stop button was pressed.
   kLoopSlow,          ///< The periods were longer than the coupling allows, for max_slow_s together.
-  kImpossibleMotion,  ///< The reading moved further in one period than a hand can.
+  kImpossibleMotion,  ///< The reading moved further in one period than a hand can move.
   kVibration,         ///< The device vibrated under the gate's force.
 };
 inline constexpr GateFault kLastGateFault = GateFault::kVibration;
 const char* to_string(GateFault fault) noexcept;
 
-/// The state of the safety gate on its way to full force.
+/// The mode of the safety gate.
 enum class GateMode : std::uint8_t {
   kOff,      ///< No forces requested: zero.
-  kWaiting,  ///< Waits for a small requested force: zero.
-  kRising,   ///< Ramps up.
+  kWaiting,  ///< Zero force until the requested force is small.
+  kRising,   ///< The force ramps up.
   kOn,
   kFading,  ///< Client timeout, or forces no longer requested: ramps to zero, or is at zero.
   kFault,   ///< Latched; ramps to zero within fault_ramp_s, then zero.

@@ -9,15 +9,15 @@
 
 namespace trocar::telemetry {
 
-/// Values of a field that the link accepts; link/detail/inspection.h has the numbers.
+/// Values of a field that the link accepts; link/detail/inspection.h defines the limits.
 enum class TickLimit : std::uint8_t {
-  kNone,      ///< Any, NaN included: the record of a fault must show it.
-  kTime,      ///< Finite, of a clock.
+  kNone,      ///< Any value, including NaN: the record of a fault must contain it.
+  kTime,      ///< Finite, within the range of a clock.
   kPosition,  ///< Finite, within a room.
   kAxis,      ///< Finite, a unit vector or zero.
 };
 
-/// Records that show a field beside the session file and the link, which have every field.
+/// Records that contain a field, apart from the session file and the link, which contain every field.
 struct TickUse {
   bool is_in_csv = true;             ///< `trocar session export --csv`.
   bool is_in_flight_record = false;  ///< The file that a server writes after a fault.
@@ -25,7 +25,7 @@ struct TickUse {
 inline constexpr TickUse kInFlightRecord{true, true};
 inline constexpr TickUse kSessionOnly{false, false};
 
-/// Columns of a field in tables: three of a vector, four of a quaternion, else one.
+/// Columns of a field in tables: three for a vector, four for a quaternion, else one.
 template <class Value>
 inline constexpr std::size_t kColumnCount = 1;
 template <>
@@ -40,13 +40,14 @@ struct TickField {
   static constexpr TickUse kUse = tick_use;
 
   Value TickSample::*member;
-  const char* name;  ///< Of the member, and of the field of `struct Sample` in link/messages.fbs.
-  std::array<const char*, kColumnCount<Value>> columns;  ///< Names in tables, with their unit.
+  const char* name;  ///< Name of the member, and of the field of `struct Sample` in link/messages.fbs.
+  std::array<const char*, kColumnCount<Value>> columns;  ///< Column names in tables, with their unit.
   TickLimit limit = TickLimit::kNone;
 };
 
-/// The one description of a TickSample: wire format, columns of session files, CSV and flight record follow it. In the
-/// order of the CSV's columns, which scripts rely on; then the fields that only session files have.
+/// Description of all fields of TickSample. Wire format, columns of session files, CSV and flight record are derived
+/// from it. The fields have the order of the CSV's columns, on which scripts depend; the fields of session files only
+/// follow.
 inline constexpr std::tuple kTickFields{
     TickField<double, kInFlightRecord>{&TickSample::time_s, "time_s", {"time_s"}, TickLimit::kTime},
     TickField<Vec3, kInFlightRecord>{

@@ -8,23 +8,22 @@
 
 namespace trocar::telemetry {
 
-/// Where the needle is in its insertion.
+/// Phase of the needle's insertion.
 enum class InsertionPhase : std::uint8_t { kOutside, kLoading, kInserted, kRetracting };
 inline constexpr InsertionPhase kLastInsertionPhase = InsertionPhase::kRetracting;
 const char* to_string(InsertionPhase phase) noexcept;
 
-/// Something that happened at a tick. `id` is a layer id (TissueTable) for kPuncture, a label id for kEnter, a
-/// LimitReason for kLimit.
+/// An event of a tick. `id` is a layer id (TissueTable) for kPuncture, a label id for kEnter, a LimitReason for kLimit.
 enum class EventKind : std::uint8_t { kNone, kPuncture, kEnter, kLimit };
 inline constexpr EventKind kLastEventKind = EventKind::kLimit;
 struct TickEvent {
   EventKind kind = EventKind::kNone;
   std::uint8_t id = 0;
 };
-using TickEvents = std::array<TickEvent, 4>;  ///< Of one tick, filled from the front.
+using TickEvents = std::array<TickEvent, 4>;  ///< Events of one tick, filled from the front.
 using Quaternion = std::array<double, 4>;     ///< w, x, y, z.
 
-/// Why the haptic side changed or refused something.
+/// The reason why the haptic server limited a force or rejected an input.
 enum class LimitReason : std::uint8_t {
   kForceClamped,
   kTorqueClamped,
@@ -32,7 +31,7 @@ enum class LimitReason : std::uint8_t {
   kSolverBound,
   kEventsDropped,
   kResumedInside,  ///< The needle was inside the body at the start: no force step, treated as inserted.
-  kJumped,         ///< The device moved further in one tick than a hand can: restarted at its present pose.
+  kJumped,         ///< The device moved further in one tick than a hand can move: restarted at its present pose.
   kPassivity,      ///< The gate began to dissipate energy.
   kContinuous,     ///< The gate began to limit the force because the motors are warm.
   kSlew,           ///< The gate began to limit a rise.
@@ -43,8 +42,8 @@ enum class LimitReason : std::uint8_t {
 };
 const char* to_string(LimitReason reason) noexcept;
 
-/// The record of one haptic tick: made by `haptics`, carried by `link`, scored by `training`, kept by `storage`.
-/// Vectors in P. tick_fields.h describes the fields for all records of them.
+/// The record of one haptic tick: `haptics` creates it, `link` transmits it, `training` scores it, `storage` stores it.
+/// Vectors in P. tick_fields.h describes the fields for all record formats.
 struct TickSample {
   double time_s = 0.0;
   Vec3 tip_mm = Vec3::Zero();        ///< Tip of the virtual needle.
@@ -66,24 +65,25 @@ struct TickSample {
   double breathing = 0.0;  ///< Phase 0..1, 0 = end-expiration.
   Vec3 f_tip_proxy_n = Vec3::Zero();  ///< Volume proxy of paper B; zero with the insertion model.
   double f_body_axial_n = 0.0;        ///< Shaft friction of the body proxies; zero with the insertion model.
-  double f_stick_n = 0.0;             ///< Karnopp holding force along the axis, apart from the paper's terms.
-  Vec3 device_mm = Vec3::Zero();      ///< Needle tip as the device has it (before the coupling).
-  Vec3 device_f_n = Vec3::Zero();     ///< What went to the device.
-  /// R_PN of the device's needle: with device_mm and time_s all that a replay needs. Stored, not in the CSV.
+  double f_stick_n = 0.0;             ///< Karnopp holding force along the axis; not a term of the paper.
+  Vec3 device_mm = Vec3::Zero();      ///< Needle tip of the device (before the coupling).
+  Vec3 device_f_n = Vec3::Zero();     ///< Force sent to the device.
+  /// R_PN of the device's needle: with device_mm and time_s sufficient for a replay. Stored in sessions, not in the
+  /// CSV.
   Quaternion device_rotation_wxyz{1, 0, 0, 0};
   /// PX_p of paper A: from the first contact with the skin to its puncture; zero before. Stored, not in the CSV.
   Vec3 contact_to_puncture_mm = Vec3::Zero();
-  Vec3 device_tau_nmm = Vec3::Zero();      ///< Torque that went to the device, about S; zero where it has no motors.
-  GateMode gate_mode = GateMode::kAbsent;  ///< Of the server's safety gate after this tick.
+  Vec3 device_tau_nmm = Vec3::Zero();      ///< Torque sent to the device, about S; zero if it has no torque motors.
+  GateMode gate_mode = GateMode::kAbsent;  ///< Mode of the server's safety gate after this tick.
   GateFault gate_fault = GateFault::kNone;
-  double gate_scale = 1.0;      ///< 0..1, of safe start, fading and faults (physics.md G7); 1 without a gate.
+  double gate_scale = 1.0;      ///< 0..1, scale of safe start, fading and faults (physics.md G7); 1 without a gate.
   double coupling_share = 1.0;  ///< 0..1, share of the coupling that the loop's period permits (physics.md G11).
 };
 
-/// Resistance (N) along the needle of tip and shaft together, whatever force model made it: positive pushes the needle
-/// out. Without path constraint, weight and stick.
+/// Resistance (N) of tip and shaft along the needle, for any force model: positive pushes the needle out. Excludes path
+/// constraint, weight and stick.
 double axial_resistance_n(const TickSample& sample) noexcept;
-/// The part that loads the tip: the load of a layer before its puncture.
+/// The part of the resistance that acts on the tip: the load of a layer before its puncture.
 double tip_load_n(const TickSample& sample) noexcept;
 
 }  // namespace trocar::telemetry

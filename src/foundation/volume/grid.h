@@ -16,8 +16,8 @@ inline Vec3 to_vec3(const Index3& ijk) noexcept {
   return {static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])};
 }
 
-/// Where a grid of voxels lies in the patient frame P (LPS, mm), as in ITK: voxel centres at integer indices.
-/// Invariant kept by the readers: spacing > 0, direction orthonormal (a mirrored grid is re-ordered when read).
+/// Position of a voxel grid in the patient frame P (LPS, mm), as in ITK: voxel centres at integer indices.
+/// Invariant kept by the readers: spacing > 0, direction orthonormal (a mirrored grid is re-ordered while it is read).
 struct GridGeometry {
   std::array<std::int64_t, 3> size{0, 0, 0};  ///< Voxels along i, j, k.
   Vec3 spacing_mm{1.0, 1.0, 1.0};

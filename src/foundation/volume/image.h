@@ -9,7 +9,7 @@ namespace trocar::volume {
 
 using Rgb = std::array<std::uint8_t, 3>;
 
-/// A picture, row by row from the top left.
+/// An image, row by row from the top left.
 struct RgbImage {
   int columns = 0;
   int rows = 0;

@@ -5,7 +5,7 @@
 namespace trocar::volume {
 
 /// Order of the axes of a grid that runs along P: `axis[n]` is the axis of the source that becomes axis n, and
-/// `is_turned[n]` says that it is traversed from its far end.
+/// `is_turned[n]` is true if it is traversed from its far end.
 struct AxisOrder {
   std::array<std::size_t, 3> axis{0, 1, 2};
   std::array<bool, 3> is_turned{false, false, false};
@@ -15,15 +15,15 @@ struct AxisOrder {
   }
 };
 
-/// The order in which i, j and k lie nearest to +x, +y and +z of P (left, back, head). Of equally near orders the
-/// first.
+/// The order in which i, j and k lie nearest to +x, +y and +z of P (left, back, head). If several orders are equally
+/// near, the first one.
 AxisOrder order_along_P(const GridGeometry& geometry) noexcept;
 
 /// The geometry with its axes in this order: the same voxel centres in P.
 GridGeometry reordered(const GridGeometry& geometry, const AxisOrder& order) noexcept;
 
-/// The same voxels at the same places in P with i, j and k nearest to +x, +y and +z: k runs from feet to head, whatever
-/// the order in which the volume was stored. Copies values, interpolates nothing. A right-handed grid results.
+/// The same voxels at the same places in P with i, j and k nearest to +x, +y and +z: k runs from feet to head for any
+/// stored order of the volume. Copies values without interpolation. The result is a right-handed grid.
 CtGrid along_P(CtGrid grid);
 LabelGrid along_P(LabelGrid grid);
 

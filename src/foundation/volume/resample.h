@@ -4,10 +4,11 @@
 
 namespace trocar::volume {
 
-/// The volume on another grid, trilinear and rounded; `outside` beyond its own box, whose edge values continue for the
-/// outer half voxel (as in sample_slice). Averages nothing: smooth before going to a much coarser grid. Parallel.
+/// Resamples the volume on another grid, trilinear and rounded; `outside` beyond the box of the source, whose edge
+/// values continue for the outer half voxel (as in sample_slice). No averaging: smooth the source first if the target
+/// is much coarser. Parallel.
 CtGrid resample_linear(const CtGrid& source, const GridGeometry& target, std::int16_t outside);
-/// The same for labels, by nearest neighbour.
+/// Resamples labels by nearest neighbour.
 LabelGrid resample_nearest(const LabelGrid& source, const GridGeometry& target, std::uint8_t outside);
 
 /// The grid that covers the same box with about isotropic spacing: as near to spacing_mm (> 0) as whole voxels allow.

@@ -47,7 +47,7 @@ double sample_linear(const Grid<T>& grid, const Vec3& p_P) noexcept {
   return sample_linear_at_index(grid, grid.geometry.to_index(p_P));
 }
 
-/// Gradient per mm in P of the trilinear field, by central differences of half a voxel to each side at a point of P.
+/// Gradient per mm in P of the trilinear field, at a point of P, by central differences of half a voxel to each side.
 /// Real-time safe.
 template <class T>
 Vec3 gradient_per_mm(const Grid<T>& grid, const Vec3& p_P) noexcept {
@@ -62,26 +62,26 @@ Vec3 gradient_per_mm(const Grid<T>& grid, const Vec3& p_P) noexcept {
   return grid.geometry.R_PV * slope_V;
 }
 
-/// Rows and columns of sample points on a plane of P: (column u, row v) lies at origin_P + u*step_u_P + v*step_v_P.
+/// Sample points in rows and columns on a plane in P: (column u, row v) lies at origin_P + u*step_u_P + v*step_v_P.
 struct SlicePlane {
   Vec3 origin_P{0, 0, 0};
-  Vec3 step_u_P{1, 0, 0};  ///< mm a column.
-  Vec3 step_v_P{0, 1, 0};  ///< mm a row.
+  Vec3 step_u_P{1, 0, 0};  ///< mm per column.
+  Vec3 step_v_P{0, 1, 0};  ///< mm per row.
   int columns = 512;
   int rows = 512;
 };
 
 /// Trilinear samples on a plane, written row by row into `out` (columns*rows, checked). The grid's box reaches half a
 /// voxel beyond the outermost voxel centres: in that rim the edge values continue, as in sample_linear; beyond it, and
-/// where the plane is not finite, stands `outside`. The box is the one of sample_nearest. One thread, floats: positions
-/// are good to 1e-5 of a voxel. SIMD, chosen at run time for the processor. No allocation.
+/// if the plane is not finite, the value is `outside`. The box is the one of sample_nearest. One thread, floats:
+/// positions are accurate to 1e-5 of a voxel. SIMD, selected at run time for the processor. No allocation.
 void sample_slice(const CtGrid& grid, const SlicePlane& plane, float outside, std::span<float> out) noexcept;
-/// The value of the nearest voxel at each point of a plane, `outside` beyond the grid's box, as sample_nearest has it
+/// The value of the nearest voxel at each point of a plane, `outside` beyond the grid's box, as in sample_nearest
 /// (positions on the border of two voxels may fall to either side). One thread, no allocation.
 void sample_slice_nearest(const Grid<std::uint8_t>& grid, const SlicePlane& plane, std::uint8_t outside,
                           std::span<std::uint8_t> out) noexcept;
-/// As sample_slice, at any points of P; `out` is as long as they are (checked). Points within 1e-4 of a voxel of the
-/// box's faces may fall to either side.
+/// As sample_slice, at arbitrary points of P; `out` has the length of `points_P` (checked). Points within 1e-4 of a
+/// voxel of the box's faces may fall to either side.
 void sample_points(const CtGrid& grid, std::span<const Vec3f> points_P, float outside, std::span<float> out) noexcept;
 
 }  // namespace trocar::volume

@@ -17,13 +17,13 @@
 
 namespace trocar::trainer {
 
-/// The patient in 3D with tools and guidance. Setters are cheap and may be called every frame; `draw()` renders when
-/// something has changed or the picture's quality is to rise. Drawn off-screen and painted as an image: a widget that
-/// OpenGL draws on makes Qt put the whole window together by OpenGL, which costs a processor more than the patient.
+/// The patient in 3D with tools and guidance. Setters are cheap and may be called every frame; `draw()` renders if
+/// something has changed or the image quality must increase. The view is drawn off-screen and painted as an image: with
+/// an OpenGL widget, Qt composes the whole window by OpenGL, which costs more processor time than drawing the patient.
 ///
-/// Mouse: left drag turns, middle drag or Shift + left drag moves, right drag or wheel zooms, double click picks.
-/// Keys: 1..6 views (anterior, oblique, right, left, posterior, cranial), T follow the needle's tip, L look along the
-/// needle, B beside the needle, Home resets, arrows turn, + and - zoom, O guidance, I landmarks.
+/// Mouse: left drag rotates, middle drag or Shift + left drag pans, right drag or wheel zooms, double click picks.
+/// Keys: 1..6 views (anterior, oblique, right, left, posterior, cranial), T follow the needle's tip, L view along the
+/// needle, B view beside the needle, Home resets, arrows rotate, + and - zoom, O guidance, I landmarks.
 class PatientView : public QWidget {
   Q_OBJECT
 
@@ -38,7 +38,7 @@ class PatientView : public QWidget {
   bool is_ready() const;
 
   void set_path(const std::optional<Segment>& line_P, double entry_radius_mm);
-  /// What the guidance consists of; set_guidance_visible and the key O show and hide that.
+  /// Sets the amount of guidance; set_guidance_visible and the key O show and hide it.
   void set_guidance(scene::Guidance guidance);
   void set_guidance_visible(bool is_visible);
   bool is_guidance_visible() const noexcept { return is_guidance_visible_; }
@@ -47,12 +47,12 @@ class PatientView : public QWidget {
 
   /// From the hub to the tip; fewer than two points: no needle.
   void set_needle(std::span<const Vec3> shaft_P, double diameter_mm, scene::NeedleModel model);
-  /// Where the hand holds the needle, hub to tip; nothing when it is where the needle is.
+  /// Needle pose of the hand, hub to tip; empty if it equals the pose of the needle.
   void set_needle_goal(const std::optional<Segment>& ghost_P);
   void set_shot(const std::optional<Segment>& stylet_P, const std::optional<Segment>& core_P);
   void set_transducer(const std::optional<Pose>& X_PT, const ultrasound::ScanGeometry& scan);
-  /// Corners of the picture's outline in P: top left, top right, bottom left. What lies outside of the scan of the last
-  /// set_transducer is transparent; without a transducer nothing is. An empty picture hides it.
+  /// Corners of the image outline in P: top left, top right, bottom left. Pixels outside of the scan of the last
+  /// set_transducer are transparent; without a transducer, no pixel is. An empty image hides it.
   void set_ultrasound(const volume::RgbImage& picture, const std::array<Vec3, 3>& corners_P);
   void hide_ultrasound();
 
@@ -69,35 +69,35 @@ class PatientView : public QWidget {
   const scene::CameraView& view() const;
   void set_follow(scene::FollowMode mode);
   scene::FollowMode follow() const;
-  /// The view that the last patient began with.
+  /// Restores the initial view of the last patient.
   void reset_camera();
 
   void set_stereo(const scene::StereoOptions& options);
   const scene::StereoOptions& stereo() const;
-  /// Which row of the screen a global row is drawn at; for pictures of interlaced rows in a window that is turned over.
-  /// Without it: the same.
+  /// Sets the function that maps a global row to its screen row, for interlaced stereo in a mirrored window. Without
+  /// it, both rows are equal.
   void set_row_on_screen(std::function<int(int)> row_on_screen);
-  /// Whether the screen can show quad-buffer stereo.
+  /// True if the screen supports quad-buffer stereo.
   static bool has_quad_buffer();
 
   /// Tools move without user input (haptic device, replay): keeps the image at low detail.
   void set_tools_moving(bool are_moving);
-  /// What a frame may take while things move, ms, 5..500, without a graphics card.
+  /// Target frame time during motion without a graphics card, ms, 5..500.
   void set_frame_target(double target_ms);
   /// Polled while a full-quality image is rendered, which is slow without a graphics card: true cancels it. Pointer and
   /// keys are always checked. Called in the GUI thread.
   void set_interrupt(std::function<bool()> wants_break);
   void draw();
-  /// Draws now in full quality, without a break (screenshots).
+  /// Draws at once in full quality, without interruption (screenshots).
   void draw_whole();
 
-  /// Of the frames while things moved, and of those in full quality.
+  /// Times of frames during motion; still_frame_times() are those in full quality.
   const scene::FrameTimes& moving_frame_times() const noexcept;
   const scene::FrameTimes& still_frame_times() const noexcept;
-  /// Times for which a picture of full quality did not look for input: it is given up so long after the hand moves.
+  /// Intervals without a check for input while a full-quality image is rendered: the latency of its cancellation.
   const scene::FrameTimes& unwatched_times() const noexcept;
   void clear_frame_times() noexcept;
-  /// The last frame was drawn in full quality.
+  /// True if the last frame was drawn in full quality.
   bool is_still() const noexcept;
   int broken_frames() const noexcept;
   scene::PatientScene& scene() noexcept;
@@ -108,7 +108,7 @@ class PatientView : public QWidget {
  Q_SIGNALS:
   /// Double click on a surface, with the point in P (mm).
   void picked(const trocar::Vec3& p_P);
-  /// The user has changed something with mouse or keys that a panel shows: opacity, camera, guidance.
+  /// The user has changed a setting of a panel with mouse or keys: opacity, camera, guidance.
   void changed();
 
  protected:
@@ -126,17 +126,17 @@ class PatientView : public QWidget {
   struct Impl;
   void note_motion();
   void render(const scene::Detail& detail, bool may_break);
-  /// In pixels of the screen.
+  /// Size in screen pixels.
   QSize picture_size(const scene::Detail& detail) const;
   bool render_eye(const scene::Detail& detail, bool may_break, scene::Eye eye, QImage& image);
-  /// Places of events as the unmirrored picture has them.
+  /// Event position in the unmirrored image.
   QPointF unmirrored(const QPointF& place) const;
 
   std::unique_ptr<Impl> impl_;
   bool is_guidance_visible_ = true;
   bool are_landmarks_visible_ = false;
   Qt::MouseButton drag_ = Qt::NoButton;
-  QPointF last_place_;  ///< Of the pointer in a drag, unmirrored.
+  QPointF last_place_;  ///< Pointer position during a drag, unmirrored.
 };
 
 }  // namespace trocar::trainer

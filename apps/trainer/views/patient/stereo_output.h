@@ -6,9 +6,8 @@
 
 namespace trocar::trainer {
 
-/// A surface with a picture for each eye, for a screen and glasses that show them in turns (quad-buffer stereo). It
-/// lies over a widget, which gets its mouse, wheel and key events. Without such a screen both eyes see the left
-/// picture.
+/// A surface with one image per eye, for a screen and glasses that alternate them (quad-buffer stereo). It covers a
+/// widget, which receives its mouse, wheel and key events. Without such a screen both eyes see the left image.
 class StereoOutput : public QWindow {
   Q_OBJECT
 
@@ -16,10 +15,10 @@ class StereoOutput : public QWindow {
   explicit StereoOutput(QWidget& beneath);
   ~StereoOutput() override;
 
-  /// Whether the screen has buffers for two eyes. Asked of OpenGL once.
+  /// True if the screen has buffers for two eyes. Queried from OpenGL once.
   static bool is_offered();
 
-  /// Pictures of the same size, stretched over the surface.
+  /// Images of the same size, scaled to the surface.
   void show_eyes(const QImage& left, const QImage& right);
 
  protected:

@@ -6,18 +6,18 @@
 
 namespace trocar::trainer {
 
-/// A curve that grows point by point and is thinned for a picture as it grows: of every run of points that stays within
-/// one column's width only the first, lowest, highest and last are drawn, so that no peak is lost and a hand that
-/// trembles in place adds nothing. Appending costs the same however long the curve is.
+/// A curve to which points are appended and that is decimated for drawing. Of every run of points within one column's
+/// width, only the first, lowest, highest and last are drawn: no peak is lost, and tremor in place adds no points.
+/// Appending takes constant time.
 class CurveTrace {
  public:
   void append(const QPointF& point);
   void clear();
-  /// In the unit of x; thins everything anew where it has changed. > 0.
+  /// In the unit of x; > 0. A change decimates all points again.
   void set_column_width(double width);
 
   const std::vector<QPointF>& points() const noexcept { return points_; }
-  /// Indices of points() to be drawn, rising, of the first `count` points; the last of these is among them.
+  /// Rising indices of the points to draw, of the first `count` points, including the last of these.
   std::vector<std::size_t> drawn(std::size_t count) const;
 
  private:

@@ -19,13 +19,13 @@ class ViewStrip;
 
 struct ForcePoint {
   double time_s = 0.0;
-  double depth_mm = 0.0;  ///< Of the tip; 0 at the skin.
+  double depth_mm = 0.0;  ///< Depth of the tip; 0 at the skin.
   double resistance_n = 0.0;
 };
 
-/// Resistance against the depth of the tip, as it is felt (paper A, figure 4b), or against time: the live curve, the
-/// predicted and the expert's curve behind it, the tissues along the expert path as coloured bands, punctures as marked
-/// lines. Axes have round numbers and only grow, so that nothing jitters. Object name: force-plot.
+/// Felt resistance against the depth of the tip (paper A, figure 4b), or against time: the live curve, the predicted
+/// and the expert's curve behind it, the tissues along the expert path as coloured bands, punctures as marked lines.
+/// Axes have round numbers and only grow, so that the plot does not jitter. Object name: force-plot.
 /// Key: T depth or time (button: force-plot-axis).
 class ForcePlot : public QWidget {
   Q_OBJECT
@@ -41,36 +41,36 @@ class ForcePlot : public QWidget {
 
   explicit ForcePlot(QWidget* parent = nullptr);
 
-  /// Tissues along the expert path, from the skin on; the depth axis reaches to the last one's end.
+  /// Tissues along the expert path, from the skin on; the depth axis extends to the end of the last one.
   void set_bands(std::vector<Band> bands);
   /// Depth (mm) and resistance (N) by rising depth; empty hides the curve.
   void set_predicted(std::vector<QPointF> curve);
   void set_reference(std::vector<QPointF> curve);
-  /// What the two are called in the picture; "predicted" and "expert" if nothing is said.
+  /// Names of the two curves in the plot; by default "predicted" and "expert".
   void set_curve_names(const QString& predicted, const QString& reference);
-  /// By rising time. Points that are not finite are left out.
+  /// Points by rising time; points that are not finite are ignored.
   void append(std::span<const ForcePoint> points);
   void add_event(double depth_mm, double time_s, const QString& text);
   /// Clears curve and events, and resets the axes; bands and the other curves stay.
   void clear();
-  /// Replay: the curve up to this time is bright, the rest faint. Nothing: the newest point is the current one.
+  /// Replay: the curve up to this time is bright, the rest faint. Empty: the newest point is the current one.
   void set_cursor(std::optional<double> time_s);
   void set_axis(Axis axis);
-  /// Without depth there is only the time axis, and nothing shows the depth of the tip.
+  /// If false, there is only the time axis, and the depth of the tip is hidden.
   void set_depth_shown(bool is_shown);
 
   Axis axis() const noexcept { return axis_; }
-  /// Where values lie in the widget now.
+  /// Present mapping from values to the widget.
   PlotFrame frame() const;
-  /// Force, and depth where that is shown; as in the strip.
+  /// Text of the strip: force, and depth if shown.
   QString figures_text() const;
-  /// The point that the mark stands on.
+  /// The point of the marker.
   std::optional<ForcePoint> current() const;
 
-  /// Name, force and axis; a dock may take it into its title.
+  /// Name, force and axis; a dock may show it in its title.
   ViewStrip& strip() noexcept { return *strip_; }
 
-  /// What the tool tip says at a place.
+  /// Text of the tooltip at a position.
   QString text_at(const QPoint& position) const;
 
   QSize sizeHint() const override;
@@ -89,7 +89,7 @@ class ForcePlot : public QWidget {
   };
 
   double band_height() const;
-  /// How many of the points lie before the cursor.
+  /// Number of points before the cursor.
   std::size_t shown_count() const;
   QPointF value_at(std::size_t index) const;
   double place_of(const Event& event) const { return axis_ == Axis::kDepth ? event.depth_mm : event.time_s; }
@@ -112,8 +112,8 @@ class ForcePlot : public QWidget {
   CurveTrace by_depth_, by_time_;
   std::vector<Event> events_;
   std::optional<double> cursor_s_;
-  double far_mm_, low_n_, high_n_;  ///< What the axes must hold.
-  QPixmap ground_;                  ///< All that stands still: axes, bands, curves behind.
+  double far_mm_, low_n_, high_n_;  ///< Limits that the axes must contain.
+  QPixmap ground_;                  ///< Static parts: axes, bands, curves behind.
   report::AxisRange ground_x_, ground_y_;
   QToolButton* axis_button_;
   ViewStrip* strip_;

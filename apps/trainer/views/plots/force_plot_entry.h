@@ -4,7 +4,7 @@
 
 namespace trocar::trainer {
 
-/// The plot of the resistance. The attempt and the replay fill it.
+/// The plot of the resistance. Attempt and replay set its contents.
 ViewDescription force_plot_entry();
 
 }  // namespace trocar::trainer

@@ -6,7 +6,7 @@ namespace trocar::trainer {
 
 enum class PlayerIcon { kPlay, kPause, kPrevious, kNext };
 
-/// The signs of a player, painted: many fonts have none.
+/// Painted icons of a player: many fonts lack them.
 QIcon player_icon(PlayerIcon icon);
 
 }  // namespace trocar::trainer

@@ -8,7 +8,7 @@
 
 namespace trocar::trainer {
 
-/// The ground of a plot: where it lies in its widget and what its axes span.
+/// Frame of a plot: its area in the widget and the ranges of its axes.
 struct PlotFrame {
   QRectF area;  ///< Points of the widget.
   report::AxisRange x, y;
@@ -20,7 +20,7 @@ struct PlotFrame {
   void draw_axes(QPainter& painter, const QString& x_unit, const QString& y_unit, double below) const;
 };
 
-/// A range with round ends that holds another one, for an axis that has room for `at_most` steps.
+/// A range with round ends that contains another one, for an axis with space for `at_most` steps.
 report::AxisRange rounded_out(const report::AxisRange& range, int at_most);
 
 }  // namespace trocar::trainer

@@ -12,11 +12,11 @@ class QToolButton;
 
 namespace trocar::trainer {
 
-/// The time line of a replay: play and pause, scrubbing, speed, events, the way to the worst moment. It has no clock:
-/// the page calls advance() once a frame. Object names: time-line, time-play, time-previous, time-next, time-worst,
+/// The time line of a replay: play and pause, scrubbing, speed, events, jump to the worst moment. It has no clock: the
+/// page calls advance() once per frame. Object names: time-line, time-play, time-previous, time-next, time-worst,
 /// time-speed, time-track.
 ///
-/// Keys: Space play and pause, Left/Right steps of 0.1 s (Shift: 1 s), Home/End, N/P next and previous event, W worst
+/// Keys: Space plays and pauses, Left/Right steps of 0.1 s (Shift: 1 s), Home/End, N/P next and previous event, W worst
 /// moment, < > slower and faster. Mouse: click or drag on the track.
 class TimeLine : public QWidget {
   Q_OBJECT
@@ -27,22 +27,22 @@ class TimeLine : public QWidget {
 
   explicit TimeLine(QWidget* parent = nullptr);
 
-  /// Length (s); the time goes to the beginning and stands.
+  /// Length (s); resets the time to 0 and pauses.
   void set_duration(double duration_s);
   void set_events(std::vector<Event> events);
   void set_phases(std::vector<Phase> phases);
   void set_curve(std::vector<QPointF> curve);
-  /// Clamped to 0..duration; signals where it changes.
+  /// Clamped to 0..duration; emits time_changed if it changes.
   void set_time(double time_s);
   /// Playing at the end starts from the beginning.
   void set_playing(bool is_playing);
-  /// One of speeds(); another one is taken to the nearest.
+  /// One of speeds(); another value is rounded to the nearest.
   void set_speed(double factor);
-  /// While playing, moves on by so much time of the wall; stops at the end.
+  /// While playing, advances by dt_s of wall-clock time; stops at the end.
   void advance(double dt_s);
   void go_to_next_event();
   void go_to_previous_event();
-  /// Nothing happens without such an event.
+  /// No effect without such an event.
   void go_to_worst();
 
   double time_s() const noexcept;

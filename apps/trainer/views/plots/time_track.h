@@ -7,11 +7,11 @@
 
 namespace trocar::trainer {
 
-/// What stands out in a session, and how it is marked: kRisk over all others, in the colour of what is wrong.
+/// Kind of a session event and of its mark: kRisk is drawn over all others, in the colour of errors.
 enum class TimeMark { kEnter, kPuncture, kRisk, kFire, kOther, kWorst };
 
-/// The painted part of a time line: phases as a coloured strip, the force as a small curve, events as marks, the time
-/// now as a handle that follows the mouse. Its values are set by TimeLine. Object name: time-track.
+/// The painted part of a time line: phases as a coloured strip, the force as a small curve, events as marks, the
+/// present time as a handle that follows the mouse. TimeLine sets its values. Object name: time-track.
 class TimeTrack : public QWidget {
   Q_OBJECT
 
@@ -40,7 +40,7 @@ class TimeTrack : public QWidget {
   double duration_s() const noexcept { return duration_s_; }
   double time_s() const noexcept { return time_s_; }
   const std::vector<Event>& events() const noexcept { return events_; }
-  /// In points of the widget, and back.
+  /// Position in points of the widget; time_at() is the inverse.
   double x_of(double time_s) const;
   double time_at(double x) const;
 
@@ -48,7 +48,7 @@ class TimeTrack : public QWidget {
   QSize minimumSizeHint() const override;
 
  Q_SIGNALS:
-  /// A person asks for a time.
+  /// The user has selected a time.
   void scrubbed(double time_s);
 
  protected:

@@ -10,11 +10,11 @@ namespace trocar::trainer {
 
 enum class BriefingPlane { kAxial, kSagittal, kAlongPath };
 
-/// A slice through the target with labels, and as much of the planned path as is to be shown: a ring at its end, where
-/// the tip is put; without a path at the target itself, which every attempt tells.
+/// A slice through the target with labels and the planned path, as far as `guidance` shows it. A ring marks the end of
+/// the path, the goal of the tip; without a path it marks the target, which every attempt shows.
 QImage briefing_picture(const cases::OpenCase& open, BriefingPlane plane, const QSize& size, scene::Guidance guidance);
 
-/// A picture of ours as Qt's, copied.
+/// Converts to a Qt image; copies the pixels.
 QImage to_qimage(const volume::RgbImage& picture);
 
 }  // namespace trocar::trainer

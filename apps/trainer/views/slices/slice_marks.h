@@ -30,7 +30,7 @@ class SliceMarks : public QWidget {
   void paintEvent(QPaintEvent* event) override;
 
  private:
-  /// Away from the slice's plane, mm.
+  /// Distance from the slice's plane, mm.
   double away_mm(const Vec3& p_P) const;
   void draw_piece(QPainter& painter, const Segment& piece_P, const QColor& color, double width) const;
 

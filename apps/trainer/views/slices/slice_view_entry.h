@@ -5,8 +5,8 @@
 
 namespace trocar::trainer {
 
-/// A slice of the CT that follows the needle; its crosshairs and HU window are those of all slices of the workspace.
-/// `id`: "axial".
+/// A slice of the CT that follows the needle; all slices of the workspace share its crosshairs and HU window. `id`:
+/// "axial".
 ViewDescription slice_view_entry(SliceKind kind, const char* id, const QString& title);
 
 }  // namespace trocar::trainer

@@ -9,13 +9,13 @@
 
 namespace trocar::trainer {
 
-/// One mark of one measurement, by their numbers.
+/// Indices of a measurement and of one of its marks.
 struct CaliperMark {
   std::size_t item = 0;
   std::size_t mark = 0;
 };
 
-/// The nearest mark within 8 points of a place of the view.
+/// The nearest mark within 8 points of a position in the view.
 std::optional<CaliperMark> find_mark(const PictureMap& map, std::span<const ultrasound::Measurement> measurements,
                                      const QPointF& place);
 

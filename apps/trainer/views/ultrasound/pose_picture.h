@@ -6,7 +6,7 @@
 
 namespace trocar::trainer {
 
-/// Where a device's grip is and where its stylus points, from above and from the front, as who sits at it sees it.
+/// Position of a device's grip and direction of its stylus, from above and from the front, as seen by its user.
 class PosePicture : public QWidget {
   Q_OBJECT
 

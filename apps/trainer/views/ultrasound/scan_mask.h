@@ -10,9 +10,9 @@
 
 namespace trocar::trainer {
 
-/// One byte a pixel of an ultrasound picture in space: 255 within the scan (scanlines and depths that are sampled), 0
-/// outside. Keeps its last answers, each until size, scan or the picture's place against the transducer change: a live
-/// scanner goes back and forth between a few numbers of scanlines.
+/// Mask of an ultrasound image in 3D, one byte per pixel: 255 within the scan (sampled scanlines and depths), 0
+/// outside. Caches its last results by size, scan and image pose relative to the transducer, because a live scanner
+/// alternates between a few numbers of scanlines.
 class ScanMask {
  public:
   const std::vector<std::uint8_t>& of(int columns, int rows, const std::array<Vec3, 3>& corners_P, const Pose& X_PT,
@@ -34,7 +34,7 @@ class ScanMask {
   static constexpr std::size_t kMostAnswers = 6;
   static bool are_near(const Key& a, const Key& b);
   static std::vector<std::uint8_t> painted(const Key& key, const ultrasound::ScanGeometry& scan);
-  std::deque<Answer> answers_;  ///< The newest in front.
+  std::deque<Answer> answers_;  ///< Newest first.
 };
 
 }  // namespace trocar::trainer

@@ -9,8 +9,8 @@ namespace trocar::trainer {
 class UltrasoundControls;
 class UltrasoundView;
 
-/// An ultrasound view and its controls, hidden at first: beside the picture, or below it where the picture would become
-/// too narrow.
+/// An ultrasound view and its controls, which are initially hidden: beside the image, or below it if the image would
+/// become too narrow.
 class ScannerView : public QWidget {
   Q_OBJECT
 

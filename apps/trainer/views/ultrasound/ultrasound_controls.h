@@ -27,7 +27,7 @@ class UltrasoundControls : public QWidget {
   QSize sizeHint() const override { return {288, 640}; }
 
  private:
-  /// A slider over one number of the settings.
+  /// A slider for one number of the settings.
   struct Control {
     QSlider* slider = nullptr;
     QLabel* value = nullptr;

@@ -8,32 +8,32 @@
 
 namespace trocar::trainer {
 
-/// Room that texts and bars need beside the scan, in the widget's own pixels.
+/// Space for texts and bars beside the scan, in the widget's pixels.
 struct MarginSpace {
   QSizeF caption;             ///< At the top left.
   QSizeF bars;                ///< At the right, below the orientation marker; beside the depth scale.
   double scale_width = 34.0;  ///< Depth scale and its numbers, at the right edge.
   double margin = 8.0;
-  double marker = 14.0;  ///< Margin of a linear array's picture above and at both sides, for its marker.
+  double marker = 14.0;  ///< Margin of a linear array's image above and at both sides, for its marker.
 };
 
-/// Where things stand in an ultrasound view, so that nothing lies on the scan: the picture is as large as fits beside
-/// them, and may reach between them where the fan leaves its corners empty.
+/// Layout of an ultrasound view without items on the scan: the image is as large as fits beside them, and extends
+/// between them if the fan leaves its corners empty.
 struct UltrasoundLayout {
-  QRectF picture;  ///< Of the whole raster.
+  QRectF picture;  ///< Rectangle of the whole raster.
   QRectF caption;
   QRectF bars;
-  double scale_x = 0.0;  ///< Of the depth scale's line.
+  double scale_x = 0.0;  ///< x of the depth scale's line.
 };
 UltrasoundLayout lay_out(const QSizeF& view, const ultrasound::ScanGeometry& scan, const MarginSpace& room);
 
-/// From a picture's pixels to the widget's and back: the raster as large as fits into the layout's picture.
+/// Maps image pixels to widget pixels and back: the raster is as large as fits into the layout's picture rectangle.
 class PictureMap {
  public:
   PictureMap(const QRectF& target, const ultrasound::RasterGeometry& raster) noexcept;
   QPointF to_view(const ultrasound::Vec2& p_T) const noexcept;
   ultrasound::Vec2 to_T(const QPointF& place) const noexcept;
-  /// A place in the raster's pixels.
+  /// Maps a position in raster pixels.
   QPointF pixel_to_view(const ultrasound::Vec2& pixel) const noexcept;
   QRectF rect() const noexcept { return rect_; }
   double pixels_per_mm() const noexcept { return scale_ / raster_.mm_per_pixel; }
@@ -41,7 +41,7 @@ class PictureMap {
  private:
   ultrasound::RasterGeometry raster_;
   QRectF rect_;
-  double scale_ = 1.0;  ///< The widget's pixels for each of the raster.
+  double scale_ = 1.0;  ///< Widget pixels per raster pixel.
 };
 
 }  // namespace trocar::trainer

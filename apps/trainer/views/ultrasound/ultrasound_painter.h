@@ -24,7 +24,7 @@ struct CaptionLine {
   Kind kind = Kind::kPlain;
 };
 
-/// What is said beside a picture. A small view says less.
+/// Data for the caption of an image. A small view has a shorter caption.
 struct CaptionFacts {
   QString transducer;
   double frames_per_s = 0.0;
@@ -35,16 +35,16 @@ struct CaptionFacts {
 std::vector<CaptionLine> caption_of(const ultrasound::ScanPicture& picture, const CaptionFacts& facts);
 QFont caption_font(bool is_small);
 QSizeF caption_size(const std::vector<CaptionLine>& lines, const QFont& font);
-/// Of the gray wedge, and the colour bar beside it.
+/// Size of the gray wedge and the colour bar beside it.
 QSizeF bars_size(const QFont& font, double view_height, bool has_doppler);
 
-/// On a dark ground at the top of the picture.
+/// Draws a message on a dark background at the top of the image.
 void draw_message(QPainter& painter, const QRectF& picture, const QString& text, const QFont& font);
 void draw_caption(QPainter& painter, const QRectF& place, const std::vector<CaptionLine>& lines, const QFont& font);
 /// Radius of the orientation marker.
 inline constexpr double kMarker_px = 4.0;
-/// Middle of the orientation marker: beside the face's marked end, and never farther from the picture than the layout
-/// has room for.
+/// Centre of the orientation marker: beside the marked end of the face, within the space that the layout reserves
+/// around the image.
 QPointF marker_place(const PictureMap& map, const ultrasound::ScanAnnotation& annotation);
 /// Depth ticks and numbers, focus, orientation marker.
 void draw_depth_scale(QPainter& painter, const PictureMap& map, double scale_x,
@@ -52,16 +52,17 @@ void draw_depth_scale(QPainter& painter, const PictureMap& map, double scale_x,
 void draw_bars(QPainter& painter, const QRectF& place, const ultrasound::ScanAnnotation& annotation,
                const ultrasound::ScanPicture& picture, const QFont& font);
 
-/// Calipers with their numbers, rings about the marks of the chosen one; `marks_T` of one in the making, whose next
-/// mark is at hover_T.
+/// Draws calipers with their numbers, and rings about the marks of the selected one. draw_unfinished draws an
+/// unfinished measurement with `marks_T`, whose next mark is at hover_T.
 void draw_measurements(QPainter& painter, const PictureMap& map, std::span<const ultrasound::Measurement> measurements,
                        std::optional<std::size_t> chosen);
 void draw_unfinished(QPainter& painter, const PictureMap& map, std::span<const ultrasound::Vec2> marks_T,
                      const ultrasound::Vec2& hover_T, bool is_ellipse, bool is_angle);
 
-/// Dots along a line in the picture, a longer one each centimetre.
+/// Dots along a line in the image, with a longer one per centimetre.
 void draw_guide(QPainter& painter, const PictureMap& map, std::span<const ultrasound::Vec2> line_T);
-/// Where the axis of a needle lies within `near_mm` of the plane (dotted), and where it pierces it (cross).
+/// Draws the part of a needle's axis within `near_mm` of the plane (dotted) and its intersection with the plane
+/// (cross).
 void draw_needle_axis(QPainter& painter, const PictureMap& map, const ultrasound::ScanPicture& picture,
                       std::span<const Vec3> shaft_P);
 

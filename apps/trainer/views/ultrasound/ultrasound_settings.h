@@ -6,10 +6,10 @@
 
 namespace trocar::trainer {
 
-/// A bracket on the transducer that leads a needle into the picture's plane.
+/// A bracket on the transducer that guides a needle in the image plane.
 struct NeedleGuide {
   bool is_shown = false;
-  double angle_deg = 45.0;  ///< Between the guide and the middle of the beam. Range 10..80.
+  double angle_deg = 45.0;  ///< Angle between the guide and the central beam. Range 10..80.
   bool is_on_marked_side = true;
 
   bool operator==(const NeedleGuide&) const = default;
@@ -27,11 +27,11 @@ struct UltrasoundSettings {
 };
 
 UltrasoundSettings default_settings(const ultrasound::Transducer& transducer);
-/// Every control in its range.
+/// Clamps every control to its range.
 UltrasoundSettings within_ranges(const UltrasoundSettings& settings, const ultrasound::Transducer& transducer);
 
-/// As they were left for that transducer (QSettings, group "ultrasound"); the defaults where nothing was kept. Doppler
-/// begins switched off.
+/// The stored settings of that transducer (QSettings, group "ultrasound"); the defaults if nothing is stored. Doppler
+/// is initially off.
 UltrasoundSettings load_settings(const ultrasound::Transducer& transducer);
 void save_settings(const ultrasound::Transducer& transducer, const UltrasoundSettings& settings);
 

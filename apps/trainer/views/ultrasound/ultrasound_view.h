@@ -20,48 +20,48 @@ namespace trocar::trainer {
 
 enum class MeasuringTool { kNone, kDistance, kEllipse, kAngle };
 
-/// An ultrasound scanner's screen: the picture with depth scale, focus, orientation marker, gray wedge, colour bar and
-/// captions, calipers and needle guide. Pictures come from a thread of their own; nothing here waits.
+/// Screen of an ultrasound scanner: the image with depth scale, focus, orientation marker, gray wedge, colour bar and
+/// captions, calipers and needle guide. A separate thread computes the images; no function blocks.
 ///
 /// Keys, in the whole window: F freezes, G / Shift+G gain, D / Shift+D depth, C colour Doppler, M measures a distance.
-/// With the focus here: Esc leaves the tool, Delete takes the chosen measurement away, else the last, Ctrl+Z and
-/// Ctrl+Shift+Z undo and redo; of a frozen loop Left and Right step, P plays. Mouse: clicks set marks, a drag sets two;
-/// without a tool a mark is picked up and moved, which chooses its measurement, and the Doppler box is dragged, or
-/// sized by its edges; the wheel steps the frozen loop.
+/// With the focus in the view: Esc leaves the tool, Delete removes the selected or else the last measurement, Ctrl+Z
+/// and Ctrl+Shift+Z undo and redo; in a frozen loop, Left and Right step, P plays. Mouse: clicks set marks, a drag sets
+/// two. Without a tool, a drag moves a mark and selects its measurement, moves the Doppler box, or resizes it by its
+/// edges. The wheel steps the frozen loop.
 class UltrasoundView : public QWidget {
   Q_OBJECT
  public:
   explicit UltrasoundView(QWidget* parent = nullptr);
   ~UltrasoundView() override;
 
-  /// Begins with another patient; `flow` may be nullptr. The controls are those that were kept for the transducer.
+  /// Opens another patient; `flow` may be nullptr. The controls are those stored for the transducer.
   void show_patient(std::shared_ptr<const ultrasound::AcousticScene> scene,
                     std::shared_ptr<ultrasound::FlowOnDemand> flow, const ultrasound::Transducer& transducer);
   void set_transducer_pose(const Pose& X_PT);
-  /// From the hub to the tip; empty: none. `bore_share` and `tip_shift_mm` as in ScanRequest.
+  /// Shaft from the hub to the tip; empty: no needle. `bore_share` and `tip_shift_mm` as in ScanRequest.
   void set_needle(std::span<const Vec3> shaft_P, double diameter_mm, double bore_share = 0.0,
                   double tip_shift_mm = 0.0);
-  /// Called once per frame: requests an image, takes the newest, repaints if necessary. now_s: any steady time; defines
-  /// the cardiac phase.
+  /// Called once per frame: requests an image, takes the newest, repaints if necessary. now_s: time of any steady
+  /// clock; defines the cardiac phase.
   void advance(double now_s);
-  /// The newest; nullptr before the first.
+  /// The newest image; nullptr before the first.
   std::shared_ptr<const ultrasound::ScanPicture> picture() const { return picture_; }
 
-  /// Whether there is a guide at all; none is shown, whatever is set, where it is not offered.
+  /// Sets whether a guide is available; if not, none is shown with any setting.
   void set_guide_offered(bool is_offered);
   bool is_guide_offered() const noexcept { return is_guide_offered_; }
-  /// Where the needle's axis goes in the picture, and the bracket's line if it is mounted.
+  /// Shows the needle's axis in the image, and the bracket's line if it is mounted.
   void set_guide_visible(bool is_visible);
   bool is_guide_visible() const noexcept { return is_guide_visible_; }
 
   bool has_patient() const noexcept { return scene_ != nullptr; }
   bool has_flow() const noexcept { return flow_ && flow_->is_possible(); }
   const ultrasound::Transducer& transducer() const noexcept { return transducer_; }
-  /// Another array on the same patient, with its own controls; the patient's view begins anew.
+  /// Selects another array for the same patient, with its stored controls; the patient's view restarts.
   void choose_transducer(const ultrasound::Transducer& transducer);
 
   const UltrasoundSettings& settings() const noexcept { return settings_; }
-  /// Controls beyond their range are held in it. Kept for the next time.
+  /// Clamps controls to their ranges. The settings are stored.
   void set_settings(const UltrasoundSettings& settings);
   void change_settings(const std::function<void(UltrasoundSettings&)>& change);
   void reset_settings();
@@ -78,22 +78,22 @@ class UltrasoundView : public QWidget {
   const ultrasound::Measurements& measurements() const noexcept { return measurements_; }
   void undo_measurement();
   void redo_measurement();
-  /// The one whose mark was picked up last; nothing after a click beside all marks.
+  /// The measurement whose mark was moved last; empty after a click beside all marks.
   std::optional<std::size_t> chosen_measurement() const noexcept { return chosen_; }
-  /// The pointer can pick up a mark, or holds one.
+  /// True if the pointer is over a mark or drags one.
   bool is_over_mark() const noexcept { return is_over_mark_ || grip_.has_value(); }
-  /// The chosen one, else the last.
+  /// Removes the selected measurement, else the last one.
   void remove_measurement();
   void clear_measurements();
 
-  /// Between the image plane and the widget, for the newest picture.
+  /// Mapping between the image plane and the widget, for the newest image.
   std::optional<PictureMap> picture_map() const;
   double frames_per_s() const noexcept { return frames_per_s_; }
   QSize sizeHint() const override { return {640, 560}; }
   QSize minimumSizeHint() const override { return {240, 180}; }
 
  Q_SIGNALS:
-  /// Controls, tool, measurements, freezing or the transducer are not what they were.
+  /// Controls, tool, measurements, freeze state or transducer have changed.
   void changed();
 
  protected:
@@ -106,17 +106,17 @@ class UltrasoundView : public QWidget {
   bool event(QEvent* event) override;
 
  private:
-  /// A colour box between the mouse's press and its release.
+  /// A drag of the colour box.
   struct BoxDrag {
     BoxPart part = BoxPart::kWhole;
     ultrasound::DopplerBox begun;
     ultrasound::Vec2 from{0.0, 0.0};
   };
 
-  /// A mark between the mouse's press and its release.
+  /// A drag of a mark.
   struct Grip {
     CaliperMark mark;
-    ultrasound::Vec2 beside_T{0.0, 0.0};  ///< Of the mark from where it was picked up.
+    ultrasound::Vec2 beside_T{0.0, 0.0};  ///< Offset of the mark from the point at which the drag began.
     bool has_moved = false;
   };
 
@@ -157,14 +157,14 @@ class UltrasoundView : public QWidget {
   bool is_guide_visible_ = false, is_guide_offered_ = true;
 
   std::shared_ptr<const ultrasound::ScanPicture> picture_;
-  QImage image_;  ///< Of the picture's pixels, which it does not own.
+  QImage image_;  ///< Refers to the pixels of picture_, which it does not own.
   double frames_per_s_ = 0.0, counting_since_s_ = -1.0;
   int counted_ = 0;
   ultrasound::CineState shown_cine_;
 
   MeasuringTool tool_ = MeasuringTool::kNone;
   ultrasound::Measurements measurements_;
-  std::vector<ultrasound::Vec2> marks_T_;  ///< Of a measurement in the making.
+  std::vector<ultrasound::Vec2> marks_T_;  ///< Marks of an unfinished measurement.
   ultrasound::Vec2 hover_T_{0.0, 0.0};
   QPointF pressed_at_;
   bool is_pressed_ = false;

@@ -9,17 +9,17 @@ namespace trocar::scene::detail {
 
 inline constexpr double kOrganAroundTargetOpacity = 0.42;
 
-/// How a surface looks.
+/// Appearance of a surface.
 struct Appearance {
   volume::Rgb color;
   double opacity = 1.0;   ///< 0..1
   double specular = 0.2;  ///< 0..1
-  double ambient = 0.14;  ///< 0..1, the share of its own glow
+  double ambient = 0.14;  ///< 0..1, ambient coefficient
   StructureKind kind = StructureKind::kOrgan;
 };
 
-/// Looks of the surface named `name`, a label of the table or "skin"; nothing for an unknown name. What would hide all
-/// else (fat, muscle) has opacity 0.
+/// Appearance of the surface `name`, a label of the table or "skin"; empty for an unknown name. Structures that would
+/// hide the others (fat, muscle) have opacity 0.
 std::optional<Appearance> find_appearance(const anatomy::LabelTable& table, std::string_view name);
 
 }  // namespace trocar::scene::detail

@@ -20,40 +20,43 @@ class vtkRenderWindow;
 
 namespace trocar::scene::detail {
 
-/// The mesh with normals, one a vertex; without them they are those of the mesh.
+/// The mesh with one normal per vertex; the second overload computes the normals from the mesh.
 vtkSmartPointer<vtkPolyData> to_polydata(const TriangleMesh& mesh, const std::vector<Vec3f>& normals);
 vtkSmartPointer<vtkPolyData> to_polydata(const TriangleMesh& mesh);
 vtkSmartPointer<vtkPolyDataMapper> make_mapper(vtkPolyData* data);
 
-/// Colour, opacity and shine of a surface.
+/// Sets colour, opacity and specular coefficient of a surface.
 void apply(const Appearance& look, vtkActor& actor);
-/// Clear where it is seen face on, denser towards its outline, like glass. Of a translucent surface the front alone is
-/// drawn: its far side would veil what lies inside. Once for an actor; has an effect while its opacity is below 1.
+/// Opacity increases from surface parts perpendicular to the view direction to the outline, as in glass. Only the front
+/// side of a translucent surface is drawn, because its back side would cover the structures inside. Call once per
+/// actor; has an effect while the opacity is below 1.
 void make_translucent(vtkActor& actor);
-/// Drawn in its own colour, whatever the light.
+/// Draws the actor in its own colour, without lighting.
 void make_unlit(vtkActor& actor);
 
-/// Translucent, and yet drawn in its turn among the opaque ones: over what has been drawn before it. Costs no pass of
-/// its own.
+/// Draws a translucent actor in the pass of the opaque actors: it is blended over the actors drawn before it. Needs no
+/// additional pass.
 void blend_at_once(vtkActor& actor);
 
-/// Key from the upper left, a weak fill from the right, a cool rim from behind; a dark gradient behind all.
+/// Adds a key light from the upper left, a weak fill light from the right, a cool rim light from behind, and a dark
+/// background gradient.
 void add_studio(vtkRenderer& renderer);
 void apply(const CameraView& view, vtkRenderer& renderer);
 
-/// A flat picture in space: the pixels' RGBA on a rectangle. Where alpha is 0 nothing is drawn; elsewhere it is opaque.
+/// A textured rectangle in 3D: RGBA pixels. Pixels with alpha 0 are not drawn; all others are opaque.
 class PictureQuad {
  public:
   PictureQuad();
   vtkActor* actor() const noexcept { return actor_; }
-  /// RGBA, `columns` x `rows`, top row first, to be written and then `show`n.
+  /// Pixel buffer to write before `show`: RGBA, `columns` x `rows`, top row first.
   std::span<std::uint8_t> resize(int columns, int rows);
-  /// Corners of the picture's outline in P: top left, top right, bottom left.
+  /// Corners of the image outline in P: top left, top right, bottom left.
   void show(const std::array<Vec3, 3>& corners_P);
-  /// Both at once for a picture with its alpha (one byte a pixel; empty: all shown); tells whether anything is new.
+  /// Sets the pixels of an image with its alpha (one byte per pixel; empty: all opaque) and shows it. True if it
+  /// changed something.
   bool show_picture(const volume::RgbImage& picture, std::span<const std::uint8_t> alpha,
                     const std::array<Vec3, 3>& corners_P);
-  /// Tells whether it was shown.
+  /// Returns true if it was visible.
   bool hide();
 
  private:
@@ -63,8 +66,8 @@ class PictureQuad {
   vtkSmartPointer<vtkActor> actor_;
 };
 
-/// The window's pixels, averaged over blocks of `supersampling`^2 and turned to run from the top. The window has
-/// columns*supersampling x rows*supersampling pixels.
+/// The window's pixels, averaged over blocks of `supersampling`^2, top row first. The window has columns*supersampling
+/// x rows*supersampling pixels.
 volume::RgbImage read_picture(vtkRenderWindow& window, int columns, int rows, int supersampling);
 
 }  // namespace trocar::scene::detail

@@ -11,7 +11,7 @@
 
 namespace trocar::scene::detail {
 
-/// Where the needle may enter: the skin within a ball. Frame P, mm.
+/// Entry zone of the needle: the skin within a ball. Frame P, mm.
 struct EntryMark {
   Vec3 centre_P = Vec3::Zero();
   double radius_mm = 0.0;
@@ -22,16 +22,16 @@ class GuideLayer {
  public:
   explicit GuideLayer(vtkRenderer& renderer) : renderer_(renderer) {}
 
-  /// Draws path, zone and target anew. `skin_distance_mm` lays the zone on the skin; may be empty.
+  /// Replaces path, zone and target. `skin_distance_mm` is used to project the zone on the skin; may be empty.
   void set_path(const std::optional<Segment>& line_P, const EntryMark& entry,
                 const volume::FloatGrid& skin_distance_mm);
   void set_landmarks(const std::vector<anatomy::Landmark>& landmarks);
-  // True when it changed something.
+  // Return true if they changed something.
   bool set_guidance(Guidance guidance);
   bool set_guidance_visible(bool is_visible);
   bool set_landmarks_visible(bool is_visible);
   bool set_text_scale(double scale);
-  /// Names of landmarks on the far side of what is looked at are faint.
+  /// Names of landmarks far behind the focal point of the view become faint.
   void look_from(const CameraView& view);
   Guidance guidance() const noexcept { return guidance_; }
   bool are_landmarks_visible() const noexcept { return are_landmarks_visible_; }
@@ -50,7 +50,7 @@ class GuideLayer {
   void show_guidance();
 
   vtkRenderer& renderer_;
-  Props line_;   ///< The way from before the skin to the target.
+  Props line_;   ///< The path from a point in front of the skin to the target.
   Props marks_;  ///< Target and entry zone.
   Props landmarks_;
   std::vector<Text> texts_;

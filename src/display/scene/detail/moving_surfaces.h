@@ -8,31 +8,31 @@
 
 namespace trocar::scene::detail {
 
-/// A surface as it is drawn while things move.
+/// A surface that is drawn during motion.
 struct MovingPart {
   vtkSmartPointer<vtkPolyData> data;  ///< With normals.
   volume::Rgb color;
   double opacity = 1.0;
 };
 
-/// The surfaces for a processor without a graphics card: all opaque ones in one piece, the translucent ones blended
-/// over it from the smallest to the largest, in a single pass and a light of one line.
+/// Surfaces for rendering on the processor: all opaque surfaces are one mesh, and the translucent ones are blended over
+/// it from the smallest to the largest, in a single pass with a one-line lighting model.
 class MovingSurfaces {
  public:
   explicit MovingSurfaces(vtkRenderer& renderer) : renderer_(renderer) {}
 
   void set_parts(const std::vector<MovingPart>& parts);
   void set_visible(bool is_visible);
-  /// Leaves out what the plane cuts off; nullptr: nothing.
+  /// Clips the surfaces with the plane; nullptr: no clipping.
   void set_cut(vtkPlane* cut);
-  /// Puts them behind all others in the order of drawing, as blending needs it.
+  /// Moves them to the end of the drawing order, as required for blending.
   void draw_last();
 
  private:
   void add(vtkPolyData* data, const volume::Rgb& color, double opacity, bool has_colors);
 
   vtkRenderer& renderer_;
-  std::vector<vtkSmartPointer<vtkActor>> actors_;  ///< In the order of drawing.
+  std::vector<vtkSmartPointer<vtkActor>> actors_;  ///< In drawing order.
   vtkSmartPointer<vtkPlane> cut_;
   bool is_visible_ = false;
 };

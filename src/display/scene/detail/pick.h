@@ -6,8 +6,8 @@
 
 namespace trocar::scene::detail {
 
-/// Distance (mm) from `origin` to the first triangle that a ray along the unit vector `direction` meets, from whichever
-/// side; nothing where it meets none.
+/// Distance (mm) from `origin` to the first triangle that a ray along the unit vector `direction` intersects, from
+/// either side; empty if there is none.
 std::optional<double> first_hit_mm(const TriangleMesh& mesh, const Vec3& origin, const Vec3& direction);
 
 }  // namespace trocar::scene::detail

@@ -10,16 +10,16 @@
 
 namespace trocar::scene::detail {
 
-/// The CT on planes along the needle.
+/// CT planes along the needle.
 class PlaneLayer {
  public:
   explicit PlaneLayer(vtkRenderer& renderer);
 
-  /// CT and the distance to the skin (may be empty) of this patient are kept, not copied; nullptr: none.
+  /// Stores a reference to CT and skin distance (may be empty) of the patient, without a copy; nullptr: no patient.
   void set_patient(const anatomy::VirtualPatient* patient) noexcept;
   bool set_options(const MprOptions& options);
   const MprOptions& options() const noexcept { return options_; }
-  /// Samples the planes anew where the needle or the options have changed; `pixels` along an edge.
+  /// Samples the planes again if the needle or the options have changed; `pixels` along an edge.
   void update(const std::optional<Segment>& needle_P, int pixels);
 
  private:

@@ -16,15 +16,15 @@
 
 namespace trocar::scene::detail {
 
-/// Whether the frame being drawn is to be given up; asked before every surface.
+/// Cancels the frame being drawn; polled before every surface.
 class FrameBreak {
  public:
   virtual ~FrameBreak() = default;
   virtual bool is_wanted() = 0;
 };
 
-/// The patient's surfaces. Their drawable forms at all levels are made on a thread of their own; they appear when they
-/// are ready. All calls from the one thread that draws.
+/// The patient's surfaces. A background thread prepares their meshes at all levels; they are drawn when they are ready.
+/// All calls must come from the drawing thread.
 class SurfaceLayer {
  public:
   SurfaceLayer(vtkRenderer& renderer, FrameBreak& frame_break);
@@ -34,23 +34,23 @@ class SurfaceLayer {
 
   void show(std::vector<StructureInfo> structures, std::shared_ptr<const std::vector<anatomy::NamedMesh>> meshes,
             const anatomy::LabelTable& table);
-  /// Puts surfaces in the picture that have become ready; true when all are there and some are new.
+  /// Adds surfaces that have become ready; true if all are present and some are new.
   bool poll();
   void wait();
   bool is_ready() const noexcept { return !loading_.valid(); }
 
   const std::vector<StructureInfo>& structures() const noexcept { return structures_; }
-  /// True when it changed something; an unknown name changes nothing.
+  /// True if it changed something; an unknown name changes nothing.
   bool set_opacity(std::string_view name, double opacity);
-  /// True when it changed something. Holds for later patients, too.
+  /// True if it changed something. Also applies to later patients.
   bool withhold_lesions(bool are_withheld);
-  /// Level 0 are the single surfaces; coarser ones are for what moves (MovingSurfaces).
+  /// Level 0 has separate surfaces; coarser levels are for motion (MovingSurfaces).
   void set_level(int level);
   void set_visible(bool is_visible);
-  /// Leaves out what lies before the plane through p_P, on the side of `normal_P`; nothing: all is whole.
+  /// Clips the half-space on the side of `normal_P` of the plane through p_P; empty: no clipping.
   void set_cut(const std::optional<std::pair<Vec3, Vec3>>& plane_P);
 
-  /// Vertices of the shown surfaces, coarse; of all where none is shown.
+  /// Vertices of the visible surfaces at a coarse level; of all surfaces if none is visible.
   std::vector<Vec3> outline_P() const;
   std::size_t triangle_count(int level) const;
   void draw_moving_last() { moving_.draw_last(); }
@@ -62,7 +62,7 @@ class SurfaceLayer {
     std::string name;
     Appearance look;
     std::array<vtkSmartPointer<vtkPolyData>, kMeshLevels> levels;
-    vtkSmartPointer<vtkPolyDataMapper> mapper;  ///< Of level 0.
+    vtkSmartPointer<vtkPolyDataMapper> mapper;  ///< Mapper of level 0.
     vtkSmartPointer<vtkActor> actor;
   };
 
@@ -72,7 +72,7 @@ class SurfaceLayer {
   void update_moving();
   StructureInfo* find(std::string_view name);
   void note_withheld();
-  /// Of what is drawn: 0 of what is withheld.
+  /// Opacity for drawing: 0 for withheld surfaces.
   double shown_opacity(const Surface& surface) const;
   bool is_shown(const Surface& surface) const { return shown_opacity(surface) > kLeastOpacity; }
 
@@ -83,7 +83,7 @@ class SurfaceLayer {
   std::future<std::vector<Surface>> loading_;
   MovingSurfaces moving_;
   bool is_moving_stale_ = true;
-  int moving_level_ = 0;  ///< That the moving pieces are made of.
+  int moving_level_ = 0;  ///< Level of the meshes in moving_.
   vtkNew<vtkPlane> cut_;
   bool is_cut_ = false;
   bool is_visible_ = true;

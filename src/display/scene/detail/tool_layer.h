@@ -10,26 +10,26 @@
 
 namespace trocar::scene::detail {
 
-/// Parts of one tool as one surface, each in its own colour.
+/// One surface of all parts of a tool, each in its own colour.
 vtkSmartPointer<vtkPolyData> to_colored_polydata(std::span<const ShapePart> parts);
 
-/// Needle, ghost of the hand, and transducer with its picture.
+/// Needle, ghost needle at the hand's pose, and transducer with its image.
 class ToolLayer {
  public:
   explicit ToolLayer(vtkRenderer& renderer);
 
-  // Each tells whether it changed the picture.
+  // Each returns true if it changed something.
   bool set_needle(std::span<const Vec3> shaft_P, double diameter_mm, NeedleModel model);
   bool set_needle_goal(const std::optional<Segment>& ghost_P);
   bool set_shot(const std::optional<Segment>& stylet_P, const std::optional<Segment>& core_P);
   bool set_transducer(const std::optional<Pose>& X_PT, const TransducerFace& face);
-  /// What stands behind the transducer is seen through it.
+  /// Draws the transducer translucent.
   void set_transducer_translucent(bool is_translucent);
-  /// Draws the needle no thinner than this.
+  /// Smallest diameter of the drawn needle.
   void set_least_thickness(double least_mm);
 
   PictureQuad& ultrasound() noexcept { return ultrasound_; }
-  /// Hub to tip, straight; nothing without a needle.
+  /// Straight segment from hub to tip; empty without a needle.
   std::optional<Segment> needle_P() const noexcept;
   const std::optional<Pose>& X_PT() const noexcept { return X_PT_; }
 

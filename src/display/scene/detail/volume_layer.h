@@ -16,8 +16,8 @@
 
 namespace trocar::scene::detail {
 
-/// The CT inside the skin as a cloud: by the graphics card, or without one by casting rays on the processor through a
-/// coarser copy, which ends early when the window asks for it. The copy is made on a thread of its own.
+/// Volume rendering of the CT inside the skin: by the graphics card, or by ray casting on the processor through a
+/// coarser copy. Ray casting ends early at the window's request. A background thread makes the copy.
 class VolumeLayer {
  public:
   explicit VolumeLayer(vtkRenderer& renderer) : renderer_(renderer) {}
@@ -28,11 +28,11 @@ class VolumeLayer {
   void set_patient(std::shared_ptr<const anatomy::VirtualPatient> patient);
   bool set_preset(VolumePreset preset, bool has_gpu);
   VolumePreset preset() const noexcept { return preset_; }
-  /// Whether the cloud can be drawn: a preset is chosen and its copy is ready.
+  /// True if the volume can be drawn: a preset is selected and its copy is ready.
   bool is_ready() const noexcept;
-  /// True when a copy has just become ready.
+  /// True if a copy has just become ready.
   bool poll();
-  /// Until the copy that the preset wants is there.
+  /// Blocks until the copy for the preset is ready.
   void wait();
   void set_visible(bool is_visible);
 

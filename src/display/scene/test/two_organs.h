@@ -10,7 +10,7 @@ namespace trocar::scene {
 inline constexpr volume::Rgb kRed = {220, 30, 30};
 inline constexpr volume::Rgb kGreen = {30, 200, 60};
 
-/// A closed ball of latitude and longitude triangles, facing outward.
+/// A closed sphere of latitude and longitude triangles, facing outward.
 inline TriangleMesh ball(const Vec3& center_P, double radius_mm) {
   constexpr int kRings = 24;
   constexpr int kSectors = 48;
@@ -33,7 +33,7 @@ inline TriangleMesh ball(const Vec3& center_P, double radius_mm) {
   return mesh;
 }
 
-/// A red organ on the patient's right and a green one towards the head, in a skin.
+/// A red organ on the patient's right and a green one towards the head, inside a skin.
 struct Scene {
   anatomy::VirtualPatient patient;
   std::vector<anatomy::NamedMesh> meshes;
@@ -58,7 +58,7 @@ inline bool is_bluish(const volume::Rgb& c) {
   return c[2] > 90 && c[2] > c[1] && 2 * c[2] > 5 * c[0];
 }
 
-/// Mean position of the pixels that pass, in pixels; NaN when none does.
+/// Mean position of the pixels that pass, in pixels; NaN if none passes.
 inline Eigen::Vector2d middle_of(const volume::RgbImage& image, bool (*passes)(const volume::Rgb&)) {
   Eigen::Vector2d sum(0, 0);
   int count = 0;

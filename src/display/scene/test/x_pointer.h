@@ -2,7 +2,7 @@
 
 namespace trocar::scene {
 
-/// Puts the X server's pointer at a place of the screen, as a hand does.
+/// Moves the X server's pointer to a screen position.
 void move_pointer(int x, int y);
 
 }  // namespace trocar::scene

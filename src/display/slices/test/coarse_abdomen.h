@@ -4,7 +4,7 @@
 
 namespace trocar::slices {
 
-/// The embedded abdomen on a grid coarse enough to be made in a moment.
+/// The embedded abdomen on a coarse grid, for fast generation.
 inline const anatomy::VirtualPatient& coarse_abdomen() {
   static const anatomy::VirtualPatient patient = anatomy::generate_phantom("abdomen", 1, {{90, 72, 64}}).value();
   return patient;

@@ -12,14 +12,14 @@ namespace trocar::io::detail {
 struct AffineMap {
   std::array<std::array<double, 3>, 3> matrix{};
   std::array<double, 3> offset_mm{};
-  std::size_t parameters = 0;        ///< How many numbers the transform's type has in a file,
-  std::size_t fixed_parameters = 0;  ///< and how many fixed ones (the centre of rotation).
+  std::size_t parameters = 0;        ///< Number of parameters of the transform's type in a file.
+  std::size_t fixed_parameters = 0;  ///< Number of fixed parameters (the centre of rotation).
 };
 
-/// Reads the one linear transform of an ITK .tfm file; its centre of rotation is worked into the offset. Never throws.
+/// Reads the one linear transform of an ITK .tfm file; its centre of rotation is included in the offset. Never throws.
 Result<AffineMap> read_transform_with_itk(const InputFile& file);
 
-/// The map as an ITK affine transform in text, the kind that 3D Slicer writes itself.
+/// Writes the map as an ITK affine transform in text, the type that 3D Slicer writes.
 Status write_transform_with_itk(const AffineMap& map, const std::filesystem::path& path);
 
 }  // namespace trocar::io::detail

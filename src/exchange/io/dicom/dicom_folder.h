@@ -13,8 +13,8 @@ struct DicomSeriesInfo {
   std::string uid;
   std::string description;
   std::string modality;          ///< "CT", "MR", "SEG".
-  std::size_t images = 0;        ///< With pixels.
-  std::filesystem::path folder;  ///< Of its first file.
+  std::size_t images = 0;        ///< Number of images with pixels.
+  std::filesystem::path folder;  ///< Folder of its first file.
 };
 
 /// The series with images, in the order of their numbers (the first is number 1, see read_ct). Errors: no folder, no

@@ -12,41 +12,42 @@
 namespace trocar::io {
 
 /// Reads a 3D CT: NIfTI, NRRD, MHA/MHD, or one DICOM series of a folder and its sub-folders (uncompressed, RLE, JPEG,
-/// JPEG-LS, JPEG 2000; the slice step comes from the positions; files that are no DICOM image are ignored). Result in
-/// LPS mm, HU rounded to int16; RAS files are turned, mirrored grids re-ordered along k; values below -32768 are
-/// padding and become -32768. Refused with a clear message: no image, truncated, damaged or of an impossible size, a
-/// single slice, 4D, NaN or infinite voxels, values above 32767, sheared axes; in a folder more than one CT series,
-/// uneven slice steps, two slices in one place, gantry tilt above 0.3 degrees, multi-frame, colour or deflated files;
-/// one DICOM file by itself. `series` chooses among several DICOM series by number (list_dicom_series) or UID; when it
-/// is empty, the only series or the only CT series with more than one image is taken. Giving it for a file is an error.
+/// JPEG-LS, JPEG 2000; the slice step comes from the positions; files that are not DICOM images are ignored). Result in
+/// LPS mm, HU rounded to int16; RAS files are converted, mirrored grids re-ordered along k; values below -32768 are
+/// padding and become -32768. Errors: no image, truncated, damaged or of an impossible size, a single slice, 4D, NaN or
+/// infinite voxels, values above 32767, sheared axes; in a folder more than one CT series, uneven slice steps, two
+/// slices at one position, gantry tilt above 0.3 degrees, multi-frame, colour or deflated files; a single DICOM file.
+/// `series` selects one of several DICOM series by number (list_dicom_series) or UID; if it is empty, the only series
+/// or the only CT series with more than one image is read. A non-empty `series` for a file is an error.
 Result<volume::CtGrid> read_ct(const std::filesystem::path& path, const std::string& series = {});
 
 /// Reads a label volume or a mask: the same formats, .seg.nrrd without overlaps and DICOM mask series included. Values
 /// are whole numbers 0..255, anything else is refused.
 Result<volume::LabelGrid> read_labels(const std::filesystem::path& path);
 
-/// Endings of image files in lower case, for choosers of files: ".nii", ".nii.gz" …
+/// Endings of image files in lower case, for file dialogs: ".nii", ".nii.gz" …
 std::vector<std::string_view> image_endings();
 
-/// A float volume (distance fields, float NIfTI). NaN and infinity are refused.
+/// Reads a float volume (distance fields, float NIfTI). NaN and infinity are errors.
 Result<volume::FloatGrid> read_float(const std::filesystem::path& path);
 
-/// Writes by ending: .nrrd .nii .nii.gz .mha; compressed where the format can; whole or not at all. Needs free
-/// disk space for the image without compression.
+/// Writes the format of the ending: .nrrd .nii .nii.gz .mha; compressed if the format supports it; completely or not at
+/// all. Requires free disk space for the uncompressed image.
 Status write_image(const volume::CtGrid& grid, const std::filesystem::path& path);
 Status write_image(const volume::LabelGrid& grid, const std::filesystem::path& path);
 Status write_image(const volume::FloatGrid& grid, const std::filesystem::path& path);
 
-/// Texts in the header of an image: what a volume is beside its voxels, such as the fan of an ultrasound sweep.
+/// Texts in the header of an image: properties of a volume apart from its voxels, such as the fan of an ultrasound
+/// sweep.
 using ImageFields = std::map<std::string, std::string>;
 
-/// The same with fields, in .nrrd only ("key:=value"). Keys of letters, digits, "_", "-" and "."; values of printable
-/// text in one line, else exit status 2.
+/// Writes an image with fields, in .nrrd only ("key:=value"). Keys of letters, digits, "_", "-" and "."; values of
+/// printable text in one line, else exit status 2.
 Status write_image(const volume::CtGrid& grid, const std::filesystem::path& path, const ImageFields& fields);
 Status write_image(const volume::LabelGrid& grid, const std::filesystem::path& path, const ImageFields& fields);
 Status write_image(const volume::FloatGrid& grid, const std::filesystem::path& path, const ImageFields& fields);
 
-/// The fields of a .nrrd; none for other formats. Values are whatever somebody wrote: check them.
+/// The fields of a .nrrd; none for other formats. The values are untrusted: check them.
 Result<ImageFields> read_image_fields(const std::filesystem::path& path);
 
 }  // namespace trocar::io

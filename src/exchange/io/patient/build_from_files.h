@@ -13,23 +13,23 @@
 
 namespace trocar::io {
 
-/// The files of which a patient is made.
+/// The input files of a patient.
 struct PatientFiles {
   std::filesystem::path ct;                    ///< NIfTI, NRRD, MHA, or a folder of DICOM files.
   std::vector<std::filesystem::path> labels;   ///< Label volumes, masks, folders of masks or of DICOM mask series.
   std::string label_map = "totalsegmentator";  ///< See read_label_sources.
-  std::string name;                            ///< Of the patient.
-  std::string series{};                        ///< Of several DICOM series, see read_ct.
-  std::optional<anatomy::Rescale> rescale{};   ///< For a CT whose file lacks the scale of its numbers.
+  std::string name;                            ///< Name of the patient.
+  std::string series{};                        ///< Selects one of several DICOM series, see read_ct.
+  std::optional<anatomy::Rescale> rescale{};   ///< Rescale for a CT whose file lacks it.
 };
 
-/// Reads the files and builds the patient; it says in its provenance of what, without paths of this machine. Between
-/// the steps, the CT, the labels, the patient, a stop is obeyed (error "stopped"). Errors: those of read_ct,
+/// Reads the files and builds the patient; its provenance names the files without paths of this machine. A stop request
+/// takes effect between the steps (CT, labels, patient) with the error "stopped". Errors: those of read_ct,
 /// read_label_sources and build_patient.
 Result<anatomy::VirtualPatient> build_from_files(const PatientFiles& files, std::vector<std::string>& warnings,
                                                  const Progress& progress = {}, const std::stop_token& stop = {});
 
-/// The last part of a path, without a slash at its end: "liver.nii.gz", "dicom_folder".
+/// The last part of a path, without a trailing slash: "liver.nii.gz", "dicom_folder".
 std::string last_name(const std::filesystem::path& path);
 
 }  // namespace trocar::io

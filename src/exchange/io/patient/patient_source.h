@@ -11,29 +11,30 @@
 
 namespace trocar::io {
 
-/// How a command names its patient: a patient folder, or else an embedded patient by name.
+/// Patient argument of a command: a patient folder, or the name of an embedded patient.
 struct PatientSource {
   std::string folder_or_name;
-  std::uint64_t seed = 1;  ///< Of an embedded patient.
-  /// Embedded patients are kept there (PatientCache); empty: they are generated each time.
+  std::uint64_t seed = 1;  ///< Seed of an embedded patient.
+  /// Folder of PatientCache for embedded patients; if empty, they are generated each time.
   std::filesystem::path cache_folder = {};
 };
 
-/// A folder by its absolute path, so that it is found from another working folder, too; a name as it is.
+/// Makes the path of a folder absolute, so that it is valid in another working folder; returns a name unchanged.
 std::string absolute_source(const std::string& folder_or_name);
 
-/// Where a recorded patient lies now: the folder that was recorded, the same path from `beside` (the folder of the
-/// record), or a folder in `beside`; the first whose content hash is `hash`. A recorded folder with another hash is
-/// given where there is no better one; an embedded patient's name is given as it is. Error: nothing of these is there.
+/// Finds a recorded patient. Candidates are the recorded folder, the same path relative to `beside` (the folder of the
+/// record), and folders in `beside`; the result is the first whose content hash is `hash`. Without such a folder, the
+/// result is a recorded folder with another hash. The name of an embedded patient is returned unchanged. Error: none of
+/// these exists.
 Result<std::string> find_recorded_patient(const std::string& recorded, const std::string& hash,
                                           const std::filesystem::path& beside);
 
-/// Whether a source names a folder; else it is an embedded patient's name.
+/// True if a source names a folder; else it is the name of an embedded patient.
 bool is_path(const std::string& folder_or_name);
 
-/// The patient behind a source: read from its folder, or generated. A folder wins over an embedded patient of the same
-/// name; a name that is neither is an error that lists the embedded patients (exit status 2). Ignores the cache: for
-/// programs that only read (open_patient.h for the others).
+/// Loads the patient of a source: reads its folder or generates it. A folder has precedence over an embedded patient of
+/// the same name. For any other name, the error lists the embedded patients (exit status 2). Ignores the cache: for
+/// programs that only read (others use open_patient.h).
 Result<anatomy::VirtualPatient> load_source(const PatientSource& source, const Progress& progress = {});
 
 }  // namespace trocar::io

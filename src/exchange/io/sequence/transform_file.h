@@ -9,14 +9,14 @@
 
 namespace trocar::io {
 
-/// A rigid ITK transform (.tfm, LPS mm): points of the frame named first to the frame named second, so that X_PT as a
-/// file maps points of the tool T to P. Any linear ITK type is read, its centre of rotation worked in; written as an
-/// affine one. A file that is no transform, several, not finite, or not rigid within 1e-4 is an error.
+/// Reads a rigid ITK transform (.tfm, LPS mm). A file of X_AB maps points of B to A; for example, X_PT maps points of
+/// the tool T to P. Any linear ITK type is read, including its centre of rotation; the writer writes an affine
+/// transform. Errors: no transform, several transforms, not finite, not rigid within 1e-4.
 Result<Pose> read_transform(const std::filesystem::path& path);
-/// What a transform file says beside its pose, by name; readers of ITK skip these comment lines.
+/// Named notes of a transform file in addition to its pose; readers of ITK skip these comment lines.
 using TransformNotes = std::map<std::string, std::string>;
 Status write_transform(const Pose& X_AB, const std::filesystem::path& path, const TransformNotes& notes = {});
-/// The notes of a file that write_transform wrote ("# trocar depth_mm = 150"); none in files of others.
+/// The notes of a file that write_transform wrote ("# trocar depth_mm = 150"); empty for files of other programs.
 Result<TransformNotes> read_transform_notes(const std::filesystem::path& path);
 
 }  // namespace trocar::io

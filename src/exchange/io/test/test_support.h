@@ -21,7 +21,7 @@ inline void write_bytes(const std::filesystem::path& path, std::string_view byte
   std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 }
 
-/// A turned grid with three different spacings and sizes.
+/// A rotated grid with three different spacings and sizes.
 inline volume::GridGeometry oblique_geometry() {
   volume::GridGeometry g;
   g.size = {7, 5, 4};
@@ -31,7 +31,7 @@ inline volume::GridGeometry oblique_geometry() {
   return g;
 }
 
-/// Every voxel different: a swapped or mirrored axis shows.
+/// A grid whose voxels all differ: detects a swapped or mirrored axis.
 template <class T>
 volume::Grid<T> numbered_grid(const volume::GridGeometry& geometry) {
   volume::Grid<T> grid(geometry);

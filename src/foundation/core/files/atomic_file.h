@@ -14,11 +14,11 @@ inline namespace core {
 Status write_atomically(const std::filesystem::path& target,
                         const std::function<Status(const std::filesystem::path& temporary)>& write);
 
-/// Writes the bytes of a text or binary file whole or not at all. A full disk is an error that says so.
+/// Writes the bytes of a text or binary file completely or not at all. The error message names a full disk.
 Status write_file_atomically(const std::filesystem::path& target, std::string_view bytes);
 
 /// The same for a folder: `write` fills an empty temporary folder beside `target`, which is then renamed to it. An
-/// existing target is an error (exit status 2) unless it is an empty folder: nothing of the user's is ever overwritten.
+/// existing target is an error (exit status 2) unless it is an empty folder: user data is never overwritten.
 Status write_folder_atomically(const std::filesystem::path& target,
                                const std::function<Status(const std::filesystem::path& temporary)>& write);
 

@@ -7,11 +7,11 @@
 namespace trocar {
 inline namespace core {
 
-/// The folder of the shipped tables (tissues, needles, tasks): $TROCAR_DATA_DIR, else data/ found upwards from the
-/// program's own place or share/trocar beside it. Empty when there is none.
+/// The folder of the shipped tables (tissues, needles, tasks): $TROCAR_DATA_DIR, else data/ in a parent folder of the
+/// program, or share/trocar beside it. Empty if none exists.
 std::filesystem::path data_dir();
 
-/// data_dir(), or an error that says how to name the folder where there is none.
+/// data_dir(); if it is empty, an error that explains how to set the folder.
 Result<std::filesystem::path> checked_data_dir();
 
 }  // namespace core

@@ -17,15 +17,15 @@ enum class FileKind { kToml, kJson, kMarkups, kTransform, kXml, kMesh, kVolume, 
 struct FileLimit {
   FileKind kind;
   std::string_view name;    ///< For messages: "TOML file".
-  std::uint64_t max_bytes;  ///< A larger file is refused before anything of it is read.
+  std::uint64_t max_bytes;  ///< A larger file is refused before it is read.
 };
 
 /// The one table of size limits; docs/user_guide.md lists the same numbers.
 std::span<const FileLimit> file_limits() noexcept;
 const FileLimit& limit_of(FileKind kind) noexcept;
 
-/// An open regular file. Opening never waits and never has a side effect on what the path names: a FIFO, socket, device
-/// or folder is refused, whether named directly or through a symbolic link.
+/// An open regular file. Opening never blocks and never has a side effect on the named file: a FIFO, socket, device or
+/// folder is refused, whether named directly or through a symbolic link.
 class InputFile {
  public:
   /// With `inside`, the file must lie in that folder or below it after all symbolic links are resolved. This is checked
@@ -40,14 +40,14 @@ class InputFile {
   InputFile& operator=(InputFile&& other) noexcept;
   ~InputFile();
 
-  const std::filesystem::path& path() const noexcept { return path_; }  ///< As it was named, for messages.
-  std::uint64_t size() const noexcept { return size_; }                 ///< In bytes, when it was opened.
+  const std::filesystem::path& path() const noexcept { return path_; }  ///< The path passed to open(), for messages.
+  std::uint64_t size() const noexcept { return size_; }                 ///< In bytes, at the time of open().
 
   /// A path that refers to the open file during the lifetime of this object ("/proc/self/fd/5"), for libraries that
   /// open files by name. It has no ending.
   std::filesystem::path pinned_path() const;
 
-  /// The whole file. Errors: it cannot be read, it has grown above the limit.
+  /// Reads the whole file. Errors: the file cannot be read, or it has grown above the limit.
   Result<std::string> read_all() const;
 
  private:
@@ -58,7 +58,7 @@ class InputFile {
   FileLimit limit_;
 };
 
-/// The whole file of a kind; errors of InputFile.
+/// Reads the whole file of a kind. Errors: those of InputFile.
 Result<std::string> read_input(const std::filesystem::path& path, FileKind kind,
                                const std::filesystem::path& inside = {});
 

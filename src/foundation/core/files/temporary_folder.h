@@ -6,8 +6,8 @@
 namespace trocar {
 inline namespace core {
 
-/// An empty folder of its own in the system's place for temporary files, removed with all it holds at the end. Aborts
-/// where none can be made.
+/// A new empty folder in the system's folder for temporary files. The destructor removes it with its contents. Aborts
+/// if the folder cannot be created.
 class TemporaryFolder {
  public:
   TemporaryFolder();

@@ -7,7 +7,7 @@ inline namespace core {
 
 /// $XDG_STATE_HOME/trocar, else ~/.local/state/trocar: data that must survive a crash.
 std::filesystem::path user_state_folder();
-/// $XDG_CONFIG_HOME/trocar, else ~/.config/trocar: what the user saves to have it again.
+/// $XDG_CONFIG_HOME/trocar, else ~/.config/trocar: data that the user saved for later use.
 std::filesystem::path user_config_folder();
 /// $XDG_CACHE_HOME/trocar, else ~/.cache/trocar: data that can be regenerated.
 std::filesystem::path user_cache_folder();

@@ -15,9 +15,9 @@ class FrameCost {
  public:
   explicit FrameCost(std::size_t levels) : corrections_(levels, 1.0) {}
 
-  /// Expected time of a frame, ms; nothing before the first measurement.
+  /// Expected time of a frame, ms; empty before the first measurement.
   std::optional<double> expected_ms(std::size_t level, double work) const noexcept;
-  /// A frame of that level and work took `took_ms`. Times <= 0 are ignored.
+  /// Records that a frame of that level and work took `took_ms`. Times <= 0 are ignored.
   void note(std::size_t level, double work, double took_ms) noexcept;
   /// The finest level whose expected time is at most `target_ms`, the coarsest before the first measurement. `work` has
   /// one value per level. Hysteresis: a level finer than the one selected last must leave a fifth of the time unused.

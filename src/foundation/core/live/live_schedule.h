@@ -13,13 +13,13 @@ inline namespace core {
 /// Times of a live image.
 struct LivePace {
   double moving_ms = 55.0;  ///< Longest frame while requests change: 15 frames a second leave 66 ms. Range 10..500.
-  double still_s = 0.3;     ///< Requests that stay the same for so long get full detail. Range 0..5.
+  double still_s = 0.3;     ///< A request that is unchanged for this time gets full detail. Range 0..5.
   double busy_share = 0.5;  ///< Greatest share of the time for frames of an unchanged request. Range 0.05..1.
 };
 
 /// Decides when a frame is due and at which level of detail, from requests and measured times. It reads no clock: time
-/// is an argument. While requests change, the finest level whose time stays within the pace; full detail once they stay
-/// the same; then a frame at each refresh time.
+/// is an argument. While requests change, it selects the finest level whose time stays within the pace. An unchanged
+/// request gets full detail, then a frame at each refresh time.
 ///
 /// `Traits` describes requests and levels:
 ///   using Request, using Level (an enum from 0, the coarsest), static constexpr std::size_t kLevels;
@@ -36,7 +36,7 @@ class LiveSchedule {
 
   explicit LiveSchedule(Traits traits = {}) : traits_(std::move(traits)) {}
 
-  /// The level of the frame that is due for a request; nothing: no frame yet. now_s does not decrease.
+  /// The level of the frame that is due for a request; empty if no frame is due. now_s must not decrease.
   std::optional<Level> due(const Request& request, double now_s) {
     if (!anchor_ || !traits_.is_same(*anchor_, request)) {
       anchor_ = request;
@@ -53,7 +53,7 @@ class LiveSchedule {
     return is_still ? kFinest : level_while_moving(request, pace.moving_ms);
   }
 
-  /// A frame of that request is done: begun at begun_s, its computation took took_ms.
+  /// Records a finished frame of that request: it began at begun_s and its computation took took_ms.
   void note_frame(const Request& request, Level level, double begun_s, double took_ms) {
     shown_ = request;
     shown_level_ = level;
@@ -62,7 +62,7 @@ class LiveSchedule {
     cost_.note(static_cast<std::size_t>(level), traits_.work(request, level), took_ms);
   }
 
-  /// Another subject: a frame is due for the next request. Learned costs are kept.
+  /// Starts with another subject: a frame is due for the next request. Learned costs are kept.
   void restart() noexcept {
     anchor_.reset();
     shown_.reset();
@@ -78,7 +78,7 @@ class LiveSchedule {
 
   Traits traits_;
   FrameCost cost_{Traits::kLevels};
-  std::optional<Request> anchor_;  ///< The first of the requests that are still the same.
+  std::optional<Request> anchor_;  ///< First request of the present unchanged series.
   double moved_s_ = 0.0;           ///< Time of the anchor.
   std::optional<Request> shown_;
   Level shown_level_{};

@@ -3,7 +3,7 @@
 namespace trocar {
 inline namespace core {
 
-/// Adds to the niceness of the calling thread, where the system has one per thread (Linux). A refusal is ignored.
+/// Adds to the niceness of the calling thread, if the system has one per thread (Linux). A failure is ignored.
 void lower_priority(int nice) noexcept;
 
 }  // namespace core

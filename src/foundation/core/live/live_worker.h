@@ -20,13 +20,13 @@
 namespace trocar {
 inline namespace core {
 
-/// What a renderer is told about the frame to be made.
+/// Parameters of the frame that a renderer makes.
 template <class Level>
 struct LiveFrame {
-  Level level{};             ///< Of detail; not for a held image.
-  std::uint64_t number = 1;  ///< Of the image, counted by the worker over all its renderers.
-  double begun_s = 0.0;      ///< By the worker's clock.
-  std::stop_token stop;  ///< Requested when nobody will see the image: a long render may end early, with any result.
+  Level level{};             ///< Level of detail; not used for a held image.
+  std::uint64_t number = 1;  ///< Image number, counted by the worker over all its renderers.
+  double begun_s = 0.0;      ///< Start time on the worker's clock.
+  std::stop_token stop;      ///< Stop is requested if the image will not be used: a long render may end early.
 };
 
 /// Makes the images of one subject (a patient with a transducer, a C-arm), on the worker's thread only.
@@ -39,23 +39,23 @@ class LiveRenderer {
 
   virtual ~LiveRenderer() = default;
   virtual Result<Image> render(const Request& request, const Frame& frame) = 0;
-  /// Asked before each request: true while a kept image stands (a frozen cine loop, a last-image hold), which needs no
-  /// schedule.
+  /// Called before each request: true while a held image is displayed (a frozen cine loop, a last-image hold), which
+  /// needs no schedule.
   virtual bool is_held() { return false; }
-  /// The kept image as the request displays it; nothing where it has not changed.
+  /// The held image, displayed as in the request; empty if it has not changed.
   virtual Result<std::optional<Image>> render_held(const Request&, const Frame&) { return std::optional<Image>{}; }
 };
 
 struct LiveWorkerOptions {
-  int threads = 1;  ///< Of one frame. Range 1..64.
+  int threads = 1;  ///< Threads of one frame. Range 1..64.
   int nice = 5;     ///< Added to the niceness of the worker's thread. Range 0..19.
   std::shared_ptr<const Clock> clock = std::make_shared<SteadyClock>();  ///< Read on the worker's thread.
 };
 
 /// A thread that makes live images. It takes the newest request and drops older ones; LiveSchedule decides from
-/// measured times whether a frame is due and at which level of detail. It works only when requests come: a request that
-/// is not due is dropped, so a client repeats its request, for example once per displayed frame. A failed render keeps
-/// the last image; the next request tries again. All calls are for one client thread; only the destructor and
+/// measured times whether a frame is due and at which level of detail. It works only on request: a request that is not
+/// due is dropped, so a client repeats its request, for example once per displayed frame. A failed render keeps the
+/// last image; the next request tries again. All calls are for one client thread; only the destructor and
 /// wait_until_idle() wait for a frame.
 ///
 /// `Traits`: as for LiveSchedule, and
@@ -82,7 +82,7 @@ class LiveWorker {
   LiveWorker(const LiveWorker&) = delete;
   LiveWorker& operator=(const LiveWorker&) = delete;
 
-  /// Another subject: the waiting request, the newest image and a frame in work are dropped. The worker's thread
+  /// Opens another subject: the waiting request, the newest image and a frame in work are dropped. The worker's thread
   /// destroys the former renderer.
   void open(std::unique_ptr<Renderer> renderer) {
     std::shared_ptr<const Image> old;  // freed after the lock, like the renderer that was never used
@@ -108,7 +108,7 @@ class LiveWorker {
     const std::lock_guard lock(mutex_);
     return newest_;
   }
-  /// Of the last frame, if its render failed.
+  /// The error of the last frame, if its render failed.
   std::optional<Error> error() const {
     const std::lock_guard lock(mutex_);
     return error_;
@@ -159,7 +159,7 @@ class LiveWorker {
       if (was_held_ && !is_held) schedule_.restart();
       was_held_ = is_held;
       is_held ? work_held(job) : work_live(job);
-    } catch (const std::exception& error) {  // of a library, or no memory: this thread has no caller to tell
+    } catch (const std::exception& error) {  // a library error or out of memory: this thread has no caller
       publish(job, fail("an image could not be computed", error.what(), "close other programs if memory is short"));
     }
   }
@@ -207,12 +207,12 @@ class LiveWorker {
   bool is_working_ = false;
   std::uint64_t opened_ = 0;
   std::stop_source stop_;
-  std::unique_ptr<Renderer> fresh_;  ///< Of the subject opened last, until the worker takes it.
+  std::unique_ptr<Renderer> fresh_;  ///< Renderer of the subject opened last, until the worker takes it.
   std::optional<Request> request_;
   std::shared_ptr<const Image> newest_;
   std::optional<Error> error_;
 
-  // The worker's own.
+  // Used by the worker's thread only.
   LiveWorkerOptions options_;
   LiveSchedule<Traits> schedule_;
   std::unique_ptr<Renderer> renderer_;

@@ -4,8 +4,8 @@
 
 namespace trocar::testing {
 
-/// Counts what this thread allocates and frees while it lives. Include allocation_guard.inc.h once in a test program's
-/// translation unit (it replaces operator new and delete there):
+/// Counts the allocations and frees of this thread during the lifetime of this object. Include allocation_guard.inc.h
+/// once in a test program's translation unit (it replaces operator new and delete there):
 ///   AllocationGuard guard; tick(...); EXPECT_EQ(guard.count(), 0u);
 class AllocationGuard {
  public:

@@ -12,7 +12,7 @@
 
 namespace trocar::testing {
 
-/// What `load` makes of a copy of a file in which the text `from` is replaced at its first place.
+/// Result of `load` for a copy of a file in which the first occurrence of `from` is replaced by `to`.
 template <class Load>
 auto load_changed(const std::filesystem::path& file, std::string_view from, std::string_view to, const Load& load) {
   std::string text = *read_file(file);

@@ -13,7 +13,7 @@
 
 namespace trocar::testing {
 
-/// A copy of the data folder that data_dir() returns during the lifetime of this object. For tests of one thread.
+/// A copy of the data folder that data_dir() returns during the lifetime of this object. For single-threaded tests.
 class OwnDataFolder {
  public:
   OwnDataFolder() : before_(data_dir()) {
@@ -24,7 +24,7 @@ class OwnDataFolder {
   OwnDataFolder(const OwnDataFolder&) = delete;
   OwnDataFolder& operator=(const OwnDataFolder&) = delete;
 
-  /// Replaces `from` at its first place in a file.
+  /// Replaces the first occurrence of `from` in a file.
   void change(std::string_view file, std::string_view from, std::string_view to) const {
     std::string text = *read_file(folder_ / file);
     const std::size_t at = text.find(from);

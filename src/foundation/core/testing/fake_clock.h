@@ -10,7 +10,7 @@
 
 namespace trocar::testing {
 
-/// A clock that stands still until it is advanced. Sleeping advances it. It advances in steps of 1 ms and calls each
+/// A clock whose time changes only by advance() and sleep_for(). It advances in steps of 1 ms and calls each
 /// participant after every step, so that simulated peers act in the same time. One thread.
 class FakeClock final : public Clock {
  public:
@@ -36,7 +36,7 @@ class FakeClock final : public Clock {
   }
 
  private:
-  TimePoint now_{std::chrono::hours(1)};  // a clock of 0 would hide what was never set
+  TimePoint now_{std::chrono::hours(1)};  // with a start at 0, a time point that was never set would not be detected
   std::vector<std::weak_ptr<const std::function<void()>>> participants_;
 };
 

@@ -15,7 +15,7 @@ struct ColumnRange {
 bool is_inside(const GridGeometry& geometry, const Vec3& index) noexcept;
 
 /// The columns u of 0..columns-1 whose index start + u*step lies inside the grid's box. They are consecutive, so a row
-/// needs no test a sample. Empty where start or step is not finite.
+/// needs no test per sample. Empty if start or step is not finite.
 ColumnRange columns_inside(const GridGeometry& geometry, const Vec3& start, const Vec3& step, int columns) noexcept;
 
 }  // namespace trocar::volume::detail

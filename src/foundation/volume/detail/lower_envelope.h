@@ -9,15 +9,15 @@
 namespace trocar::volume::detail {
 
 /// Lower envelope of the parabolas (x - position)^2 + value, added in order of rising position (Felzenszwalb &
-/// Huttenlocher 2012, doi 10.4086/toc.2012.v008a019); here at any positions, evaluated at multiples of a spacing, and
-/// without the divisions that the places of the intersections would cost.
+/// Huttenlocher 2012, doi 10.4086/toc.2012.v008a019); here at arbitrary positions, evaluated at multiples of a spacing,
+/// and without the divisions that compute the intersections.
 class LowerEnvelope {
  public:
   explicit LowerEnvelope(std::size_t capacity) : parabolas_(capacity) {}
 
   void clear() noexcept { count_ = 0; }
 
-  /// A parabola of infinite value is none. At most `capacity` may be added; positions rise strictly.
+  /// Adds a parabola; one of infinite value is ignored. At most `capacity` may be added; positions rise strictly.
   void add(double position, double value) noexcept {
     if (value == std::numeric_limits<double>::infinity()) return;
     const Parabola added{position, value};
@@ -25,7 +25,7 @@ class LowerEnvelope {
     parabolas_[count_++] = added;
   }
 
-  /// out[n] = the envelope at n * spacing; infinity where nothing was added.
+  /// out[n] = the envelope at n * spacing; infinity if no parabola was added.
   void evaluate(double spacing, std::span<float> out) const noexcept {
     if (count_ == 0) {
       std::fill(out.begin(), out.end(), std::numeric_limits<float>::infinity());
@@ -51,7 +51,7 @@ class LowerEnvelope {
     double at(double x) const noexcept { return (x - position) * (x - position) + value; }
   };
 
-  /// True where b is nowhere below both a and c: c meets a before b does.
+  /// True if b is nowhere below both a and c: c intersects a before b does.
   static bool is_hidden(const Parabola& a, const Parabola& b, const Parabola& c) noexcept {
     const double ab = b.position - a.position;
     const double bc = c.position - b.position;

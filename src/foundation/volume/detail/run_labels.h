@@ -14,7 +14,7 @@ struct Block {
   std::size_t planes = 0;   ///< Along k.
 };
 
-/// A stretch of equal voxels along i.
+/// A run of equal voxels along i.
 struct Run {
   std::uint32_t first;
   std::uint32_t last;       ///< Inclusive.
@@ -23,7 +23,7 @@ struct Run {
   std::size_t length() const noexcept { return std::size_t{last} - first + 1; }
 };
 
-/// The 6-connected components of a block as runs: much fewer than voxels.
+/// The 6-connected components of a block as runs, which are much fewer than voxels.
 struct RunLabels {
   Block block;
   std::vector<Run> runs;               ///< Row by row.
@@ -35,7 +35,7 @@ struct RunLabels {
   }
 };
 
-/// Labels the voxels that are set (`of_set`) or those that are not.
+/// Labels the voxels that are set (`of_set`) or the voxels that are not set.
 RunLabels label_runs(std::span<const std::uint8_t> voxels, const Block& block, bool of_set);
 
 }  // namespace trocar::volume::detail

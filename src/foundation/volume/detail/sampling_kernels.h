@@ -6,11 +6,11 @@
 #include "geometry/vec.h"
 
 /// The steps of trilinear sampling, a chunk of samples at a time: find the cells, read their voxels, interpolate. The
-/// first and last are compiled for every instruction set and chosen at run time.
+/// first and the last step are compiled for every instruction set and selected at run time.
 namespace trocar::volume::detail {
 
-/// Samples handled together: their intermediate results stay in the first-level cache, and what one step stores has
-/// left the store buffer before the next step reads it in wider pieces.
+/// Samples of one chunk. Their intermediate results stay in the first-level cache. The data that one step stores have
+/// left the store buffer before the next step reads them in wider loads.
 inline constexpr std::size_t kChunk = 128;
 
 /// One axis of the grid as voxel numbers counted from a voxel near the samples, so that a float resolves them to better
@@ -25,7 +25,7 @@ struct AxisLimits {
 struct CellGrid {
   const std::int16_t* voxels;  ///< The voxel that positions count from.
   AxisLimits axes[3];
-  std::int32_t stride_j;  ///< Voxels to the next row; 0 where the grid has one row.
+  std::int32_t stride_j;  ///< Voxels to the next row; 0 if the grid has one row.
   std::int32_t stride_k;
 };
 
@@ -38,13 +38,13 @@ struct RowWalk {
 /// Index (counted from the grid's anchor voxel) = offset + matrix * (point - near_P).
 struct PointMap {
   float matrix[3][3];
-  float near_P[3];  ///< The anchor voxel's centre, as near as floats come.
-  float offset[3];  ///< Of near_P from that centre.
+  float near_P[3];  ///< The anchor voxel's centre, rounded to floats.
+  float offset[3];  ///< Offset of near_P from that centre.
 };
 
-/// Where samples lie and what surrounds them.
+/// Cells that contain the samples, with their voxels.
 struct alignas(64) Cells {
-  std::int32_t offset[kChunk];   ///< Of the cell's first voxel.
+  std::int32_t offset[kChunk];   ///< Offset of the cell's first voxel.
   float fraction[3][kChunk];     ///< Place in the cell, 0..1; [0] is NaN for a point beyond the grid.
   std::int32_t pair[4][kChunk];  ///< Neighbours along i (low half: the lower one) at (j,k) (j+1,k) (j,k+1) (j+1,k+1).
 };
@@ -59,7 +59,8 @@ void locate_points(const CellGrid& grid, const PointMap& map, const Vec3f* point
 /// Reads the pairs of the first n cells.
 void load_pairs(const CellGrid& grid, std::size_t n, Cells& cells) noexcept;
 
-/// Trilinear values of the first n cells, `outside` for those that are. Writes whole vectors, at most kChunk values.
+/// Trilinear values of the first n cells; `outside` for points outside of the grid. Writes whole vectors, at most
+/// kChunk values.
 void interpolate(const Cells& cells, std::size_t n, float outside, float* values) noexcept;
 
 }  // namespace trocar::volume::detail

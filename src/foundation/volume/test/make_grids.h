@@ -23,7 +23,7 @@ inline Mat3 random_rotation(Random& random) {
   return Eigen::AngleAxisd(random.uniform(0.0, 3.14), random_direction(random)).toRotationMatrix();
 }
 
-/// A turned, shifted grid of unequal spacing.
+/// A rotated, shifted grid of unequal spacing.
 inline GridGeometry oblique_geometry(const Index3& size, Random& random) {
   GridGeometry geometry;
   geometry.size = size;
@@ -40,8 +40,8 @@ inline GridGeometry plain_geometry(const Index3& size, const Vec3& spacing_mm = 
   return geometry;
 }
 
-/// The same voxels at the same places, stored in another order: axis n of the result is `axis[n]` of the source, from
-/// its far end where `is_turned[n]`.
+/// The same voxels at the same places, stored in another order: axis n of the result is `axis[n]` of the source,
+/// traversed from its far end if `is_turned[n]`.
 template <class T>
 Grid<T> stored_in_order(const Grid<T>& grid, const std::array<std::size_t, 3>& axis,
                         const std::array<bool, 3>& is_turned) {
@@ -75,7 +75,7 @@ void for_each_storage_order(const auto& visit) {
   } while (std::next_permutation(axis.begin(), axis.end()));
 }
 
-/// Every voxel different from its neighbours, over the whole range of CT values.
+/// Noise: every voxel differs from its neighbours, over the whole range of CT values.
 inline CtGrid noise_ct(const GridGeometry& geometry, Random& random) {
   CtGrid ct(geometry);
   for (auto& voxel : ct.voxels) voxel = static_cast<std::int16_t>(static_cast<int>(random.next() % 4096) - 1024);

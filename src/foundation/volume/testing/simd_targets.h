@@ -4,8 +4,8 @@
 
 namespace trocar::volume::testing {
 
-/// While it exists, all kernels run as on a processor with the baseline's instruction set only (SSE2 on x86), not with
-/// the best one of this processor. Not for kernels that run in other threads at its beginning or end.
+/// During the lifetime of this object, all kernels use the baseline's instruction set only (SSE2 on x86), not the best
+/// one of this processor. No kernel may run in another thread during construction or destruction.
 class BaselineSimd {
  public:
   BaselineSimd() { hwy::SetSupportedTargetsForTest(HWY_STATIC_TARGET); }

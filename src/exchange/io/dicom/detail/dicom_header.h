@@ -18,7 +18,7 @@ constexpr std::uint32_t dicom_tag(std::uint16_t group, std::uint16_t element) {
   return (static_cast<std::uint32_t>(group) << 16) | element;
 }
 
-/// The elements that are read. A file may have millions of others: these are not kept.
+/// The elements that are read. A file may have millions of other elements: these are not stored.
 namespace dicom_tags {
 inline constexpr std::uint32_t kTransferSyntax = dicom_tag(0x0002, 0x0010);
 inline constexpr std::uint32_t kModality = dicom_tag(0x0008, 0x0060);
@@ -47,22 +47,23 @@ inline constexpr std::array kAll{
     kRescaleIntercept, kRescaleSlope};
 }  // namespace dicom_tags
 
-/// One DICOM file taken apart: short elements of the top level and where the pixels lie. Every length is held against
-/// the file before it is used: GDCM as Debian builds it aborts the program on cut or damaged files, so it never sees
-/// their structure, only the compressed pixels. Elements as in DICOM PS3.5, section 7.
+/// Parsed header of one DICOM file: short elements of the top level and the position of the pixels. Every length is
+/// checked against the file size before use: Debian's GDCM aborts the program on truncated or damaged files, so GDCM
+/// receives only the compressed pixels. Elements as in DICOM PS3.5, section 7.
 class DicomHeader {
  public:
-  /// Nothing where the file is no DICOM; an error where it is one, but damaged or cut.
+  /// Empty if the file is not DICOM; an error if it is a damaged or truncated DICOM file.
   static Result<std::optional<DicomHeader>> read(const std::filesystem::path& path);
 
-  /// Text of an element without its padding; empty where it is missing.
+  /// Text of an element without its padding; empty if the element is missing.
   std::string text(std::uint32_t tag) const;
   /// Unsigned short (US).
   std::optional<int> number(std::uint32_t tag) const;
   const std::string& transfer_syntax() const noexcept { return transfer_syntax_; }
   bool is_big_endian() const noexcept { return is_big_endian_; }
   bool is_compressed() const noexcept { return is_compressed_; }
-  /// One piece where the pixels are not compressed, else the fragments without the offset table. Empty: no pixels.
+  /// One span if the pixels are not compressed, else the fragments without the offset table. Empty if there are no
+  /// pixels.
   std::vector<std::span<const char>> pixels() const;
 
  private:

@@ -17,12 +17,12 @@ struct DicomSeries {
   std::vector<DicomSlice> slices;  ///< k = 0, 1, 2 …
 };
 
-/// Orders slices and finds their geometry; the slice step comes from the positions. Errors: no slice or only one,
-/// several frames, colour, slices of different size or direction, no position, two slices in one place, uneven steps,
-/// gantry tilt (the stack leans by more than 0.3 degrees against the slices' normal).
+/// Orders slices and computes their geometry; the slice step comes from the positions. Errors: no slice or only one,
+/// several frames, colour, slices of different size or direction, no position, two slices at one position, uneven
+/// steps, gantry tilt (the stack deviates by more than 0.3 degrees from the slices' normal).
 Result<DicomSeries> order_slices(std::vector<DicomSlice> slices, const std::filesystem::path& folder);
 
-/// Reads one DICOM series of a folder and its sub-folders; files that are no DICOM images are ignored. `wanted`: see
+/// Reads one DICOM series of a folder and its sub-folders; files that are not DICOM images are ignored. `wanted`: see
 /// choose_series.
 template <class T>
 Result<volume::Grid<T>> read_dicom_folder(const std::filesystem::path& folder, Converter<T> convert,

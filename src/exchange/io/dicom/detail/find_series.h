@@ -12,15 +12,15 @@ namespace trocar::io::detail {
 /// The images of one series, ordered by file; at least one.
 using SeriesImages = std::vector<DicomSlice>;
 
-/// True where a folder holds at least one DICOM image, be it damaged; its sub-folders are not searched.
+/// True if a folder contains at least one DICOM image, even a damaged one; its sub-folders are not searched.
 bool has_dicom_images(const std::filesystem::path& folder);
 
-/// The series with images in a folder and its sub-folders, in the order of their first files. Files that are no DICOM
+/// The series with images in a folder and its sub-folders, in the order of their first files. Files that are not DICOM
 /// images are ignored; symbolic links to folders are not followed. Errors: a damaged DICOM file, no image at all.
 Result<std::vector<SeriesImages>> find_series(const std::filesystem::path& folder);
 
-/// One of several series. `wanted`: its number (from 1) or its UID. Empty: the only one, or the only CT series of at
-/// least two images beside others. The error (exit status 2) lists the series.
+/// Selects one of several series. `wanted`: its number (from 1) or its UID. If empty: the only series, or the only CT
+/// series with at least two images. The error (exit status 2) lists the series.
 Result<SeriesImages> choose_series(std::vector<SeriesImages> series, const std::filesystem::path& folder,
                                    const std::string& wanted);
 

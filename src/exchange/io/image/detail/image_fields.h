@@ -4,7 +4,7 @@
 
 namespace trocar::io::detail {
 
-/// Whether ITK adds an entry of this key to the fields of an image by itself.
+/// True if ITK itself adds an entry of this key to the fields of an image.
 inline bool is_library_field(std::string_view key) noexcept {
   return key.starts_with("NRRD_") || key.starts_with("ITK_");
 }

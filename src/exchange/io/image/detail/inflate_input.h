@@ -11,7 +11,7 @@
 
 namespace trocar::io::detail {
 
-inline constexpr std::uint64_t kMaxDeflateRatio = 1'032;  ///< Upper limit of deflate.
+inline constexpr std::uint64_t kMaxDeflateRatio = 1'032;  ///< Upper limit of the compression ratio of deflate.
 
 /// A gzip or zlib stream that starts at the file's position and has at most `packed` bytes.
 class InflateInput {
@@ -29,7 +29,7 @@ class InflateInput {
   bool is_ready() const noexcept { return is_ready_; }
   z_stream& stream() noexcept { return stream_; }
 
-  /// Reads on if the stream has used up its input; false at the end of the bytes.
+  /// Reads more bytes if the stream has consumed its input; false at the end of the bytes.
   bool refill() {
     if (stream_.avail_in > 0) return true;
     file_.read(reinterpret_cast<char*>(bytes_.data()),

@@ -6,7 +6,7 @@
 
 namespace trocar::io::detail {
 
-/// ITK's reader and writer of a file format. May throw exceptions of ITK, as all below.
+/// ITK's reader and writer of a file format. This function and those below may throw ITK exceptions.
 itk::ImageIOBase::Pointer make_image_io(ImageFormat format);
 
 /// Selects the whole image as the region to read or write.

@@ -19,8 +19,8 @@ namespace trocar::io::detail {
 /// Key and value texts of a header.
 using TextFields = std::vector<std::pair<std::string, std::string>>;
 
-/// A 3D image as ITK gives it, LPS mm. Plain data: ITK brings an Eigen of its own that must not meet ours, so nothing
-/// that ITK's headers reach includes Eigen.
+/// A 3D image from ITK, LPS mm. Plain data: ITK bundles another Eigen that must not be mixed with ours, so code that
+/// includes ITK headers does not include Eigen.
 struct ItkImage {
   std::array<std::int64_t, 3> size{};
   std::array<double, 3> spacing_mm{};
@@ -35,13 +35,13 @@ struct ItkImage {
 /// Reads through ITK; never throws, prints nothing.
 Result<ItkImage> read_with_itk(const CheckedImage& checked, ImageFormat format);
 
-/// The fields of the header alone, with ITK's own notes ("NRRD_...", "ITK_...") among them.
+/// Reads only the fields of the header, including those added by ITK ("NRRD_...", "ITK_...").
 Result<TextFields> read_fields_with_itk(const CheckedImage& checked, ImageFormat format);
 
 enum class Packing { kCompressed, kPlain };
 
-/// Writes through ITK one number a voxel (int16, uint8 or float), compressed where asked and the format can. A full
-/// disk is not always noticed by the libraries: check the file afterwards.
+/// Writes one number per voxel (int16, uint8 or float) through ITK, compressed if requested and supported by the
+/// format. The libraries do not always report a full disk: check the file afterwards.
 Status write_with_itk(const ItkImage& image, std::span<const std::byte> bytes, const std::filesystem::path& path,
                       ImageFormat format, Packing packing);
 

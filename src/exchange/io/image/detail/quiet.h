@@ -2,13 +2,13 @@
 
 namespace trocar::io::detail {
 
-/// Stops ITK and its NIfTI library from writing to the terminal: what is wrong with a file is said once, by our error.
-/// Cheap after the first call; safe from any thread.
+/// Stops ITK and its NIfTI library from writing to the terminal: a defect of a file is reported once, by our error.
+/// Cheap after the first call. Thread-safe.
 void silence_itk();
 
-/// While one lives, standard error of the whole process goes nowhere: the JPEG codecs inside GDCM print there, even for
-/// sound 12-bit files, as do MetaIO and VNL for damaged headers, and cannot be told not to. Only around such calls of
-/// milliseconds; safe from several threads at once.
+/// Discards standard error of the whole process during the lifetime of this object. The JPEG codecs of GDCM print
+/// there, even for valid 12-bit files, as do MetaIO and VNL for damaged headers, and have no option to disable it. Use
+/// it only around such calls of milliseconds. Thread-safe.
 class MutedStandardError {
  public:
   MutedStandardError();

@@ -14,7 +14,7 @@
 
 namespace trocar::io::detail {
 
-/// Numbers as a file stores them, in this machine's byte order.
+/// Stored numbers of a file, in this machine's byte order.
 struct RawVoxels {
   VoxelType type = VoxelType::kUInt8;
   std::span<const std::byte> bytes;
@@ -22,9 +22,9 @@ struct RawVoxels {
   double intercept = 0.0;
 };
 
-/// A volume as its file has it.
+/// A volume as stored in its file.
 struct RawVolume {
-  volume::GridGeometry geometry;  ///< R_PV may still be mirrored or slightly off: see tidy_geometry().
+  volume::GridGeometry geometry;  ///< R_PV may be mirrored or not exactly orthonormal: see tidy_geometry().
   VoxelType type = VoxelType::kUInt8;
   int components = 1;  ///< Numbers per voxel, running fastest.
   std::unique_ptr<std::byte[]> bytes;
@@ -35,40 +35,40 @@ struct RawVolume {
   }
 };
 
-/// Largest deviation of R^T R from identity that passes as rounding in a file: 1e-3, 0.06 degrees.
+/// Largest deviation of R^T R from identity that is accepted as rounding in a file: 1e-3, 0.06 degrees.
 inline constexpr double kMaxShear = 1e-3;
 
 /// Checks a geometry as read and makes its direction exactly orthonormal. Errors (without a place): a spacing that is
-/// zero or no number, a sheared direction. A mirrored direction is kept.
+/// zero or not a number, a sheared direction. A mirrored direction is kept.
 Status tidy_geometry(volume::GridGeometry& geometry);
 /// Rounds the spacing to 15 significant digits, and axes parallel to those of P to exactly these. NRRD stores spacing
-/// times direction, and its reader divides them again: what was rounded before it was written is read back to the same
-/// bits.
+/// times direction, and its reader divides them again: a geometry that was rounded before writing is read back
+/// bit-identically.
 void round_geometry(volume::GridGeometry& geometry);
 
 /// One of the functions below: turns stored numbers into voxels.
 template <class T>
 using Converter = Status (*)(const RawVoxels&, std::span<T>);
 
-/// The volume as a grid that keeps GridGeometry's invariant. Errors, at `where`: what tidy_geometry() and the converter
-/// refuse, more than one number a voxel.
+/// The volume as a grid that keeps GridGeometry's invariant. Errors, at `where`: those of tidy_geometry() and of the
+/// converter, more than one number per voxel.
 template <class T>
 Result<volume::Grid<T>> to_grid(const RawVolume& raw, const std::string& where, Converter<T> convert);
 
-/// Re-orders a mirrored grid (determinant < 0) by reversing its k axis, so that R_PV is a rotation. No voxel moves in
-/// P.
+/// Re-orders a mirrored grid (determinant < 0) by reversing its k axis, so that R_PV is a rotation. The voxel positions
+/// in P do not change.
 template <class T>
 void make_right_handed(volume::Grid<T>& grid);
 
-/// Converts numbers of a file; `out` has one element for each stored number. The error says what is wrong with the
-/// values, without a place.
+/// Converts numbers of a file; `out` has one element for each stored number. The error names the defect of the values,
+/// without a place.
 /// CT: rounded to int16; below -32768 is padding and becomes -32768; NaN, infinity and values above 32767 are errors.
 Status convert_voxels(const RawVoxels& in, std::span<std::int16_t> out);
 /// Labels: whole numbers 0..255, anything else is an error.
 Status convert_voxels(const RawVoxels& in, std::span<std::uint8_t> out);
 /// Floats: NaN and infinity are errors.
 Status convert_voxels(const RawVoxels& in, std::span<float> out);
-/// A mask: 1 where the value is above zero. NaN is an error.
+/// A mask: 1 if the value is above zero. NaN is an error.
 Status convert_mask(const RawVoxels& in, std::span<std::uint8_t> out);
 
 }  // namespace trocar::io::detail

@@ -9,10 +9,10 @@
 
 namespace trocar::io::detail {
 
-/// A path that must name an image file or a folder; a single DICOM file is refused with advice.
+/// Checks that a path names an image file or a folder; a single DICOM file is an error with advice.
 Status check_image_path(const std::filesystem::path& path);
 
-/// Any image the project reads: a file or the folder of a DICOM series.
+/// Reads any supported image: a file or the folder of a DICOM series.
 template <class T>
 Result<volume::Grid<T>> read_grid(const std::filesystem::path& path, Converter<T> convert) {
   TROCAR_TRY_STATUS(check_image_path(path));

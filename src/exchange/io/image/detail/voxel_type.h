@@ -5,7 +5,7 @@
 
 namespace trocar::io::detail {
 
-/// How a file stores one number.
+/// Type of the numbers that a file stores.
 enum class VoxelType { kUInt8, kInt8, kUInt16, kInt16, kUInt32, kInt32, kUInt64, kInt64, kFloat, kDouble };
 
 std::size_t bytes_per_voxel(VoxelType type) noexcept;

@@ -19,10 +19,10 @@ inline constexpr const char* kPathFile = "paths.mrk.json";
 
 inline constexpr const char* kBuildAgain = "build the patient again";
 
-/// Reads patient.toml. Errors: no patient folder, a newer version, a damaged file.
+/// Reads patient.toml. Errors: not a patient folder, a newer version, a damaged file.
 Result<PatientDescription> load_description(const std::filesystem::path& folder);
 
-/// The distance to the skin in hundredths of a mm, clamped at 327 mm, as skin_distance.nrrd stores it.
+/// The distance to the skin in hundredths of a mm, clamped at 327 mm, as stored in skin_distance.nrrd.
 volume::CtGrid to_hundredths(const volume::FloatGrid& distance_mm);
 volume::FloatGrid from_hundredths(const volume::CtGrid& hundredths);
 

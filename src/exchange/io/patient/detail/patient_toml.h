@@ -14,7 +14,7 @@ struct PatientMeshEntry {
   std::string file;  ///< Below the patient folder: "meshes/liver.vtp".
 };
 
-/// What patient.toml says.
+/// Content of patient.toml.
 struct PatientDescription {
   std::string name;
   std::string description;

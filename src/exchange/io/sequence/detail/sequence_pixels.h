@@ -10,12 +10,12 @@
 
 namespace trocar::io::detail {
 
-/// The pixels of all frames as the file that has them stores them; errors name the file `where`. Nothing is allocated
-/// for pixels that the file cannot hold.
+/// Reads the pixels of all frames in the order of the file; errors name the file `where`. No memory is allocated for
+/// more pixels than the file can contain.
 Result<std::vector<std::uint8_t>> read_pixels(const SequenceHeader& header, const InputFile& file,
                                               const std::string& where);
 
-/// A zlib stream of the bytes.
+/// Compresses the bytes to a zlib stream.
 Result<std::string> pack(std::span<const std::uint8_t> bytes);
 
 }  // namespace trocar::io::detail

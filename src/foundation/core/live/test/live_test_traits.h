@@ -8,7 +8,7 @@ namespace trocar::testing {
 
 enum class TestLevel { kCoarse, kMiddle, kFine };
 
-/// Requests that differ by their place; levels whose work is 1, 2 and 4.
+/// Requests are compared by `place`; the work of the levels is 1, 2 and 4.
 struct TestTraits {
   struct Request {
     int place = 0;
