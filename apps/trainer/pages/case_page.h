@@ -25,7 +25,7 @@ class SliceView;
 
 /// The case builder for instructors: six steps at the left (import, labels, target and risks, entry and path, forces,
 /// save), three slices and a 3D view, and a list of checks. A click in an image sets the item of the selected tool; a
-/// left drag moves it. Landmarks are shown in slices and in 3D (key M).
+/// left drag moves it. Landmarks are shown in slices and in 3D (key I).
 /// Keys: Ctrl+Z undo, Ctrl+Shift+Z redo, Alt+1..6 steps, Ctrl+T target, Ctrl+L landmark, Ctrl+E entry zone, Ctrl+P
 /// plan, Ctrl+1 entry, Ctrl+2 tip, Ctrl+S save, Esc deselects the tool.
 class CasePage : public QWidget {

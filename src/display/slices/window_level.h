@@ -21,7 +21,7 @@ struct WindowPreset {
 };
 /// The windows of keys and menus, in this order. Sources: abdomen, lung, bone and spine as in Radiopaedia, "Windowing
 /// (CT)" (abdomen 350..400 / 20..60, lung 1500 / -600, bone 1800 / 400, soft tissue of the spine 250 / 50, width /
-/// centre). Liver assumed: narrow, like Radiopaedia's 150 HU, centred such that both the plain (about 60 HU) and the
+/// centre). Liver assumed: narrow (Radiopaedia: 150 HU wide), centred such that both the plain (about 60 HU) and the
 /// contrasted liver (about 100 HU) are gray.
 inline constexpr std::array<WindowPreset, 5> kWindowPresets{{{"Abdomen", {40.0, 400.0}},
                                                              {"Liver", {60.0, 160.0}},

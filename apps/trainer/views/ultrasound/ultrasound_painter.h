@@ -61,7 +61,7 @@ void draw_unfinished(QPainter& painter, const PictureMap& map, std::span<const u
 
 /// Dots along a line in the image, with a longer one per centimetre.
 void draw_guide(QPainter& painter, const PictureMap& map, std::span<const ultrasound::Vec2> line_T);
-/// Draws the part of a needle's axis within `near_mm` of the plane (dotted) and its intersection with the plane
+/// Draws the part of a needle's axis near the plane and ahead of the tip (dotted) and its intersection with the plane
 /// (cross).
 void draw_needle_axis(QPainter& painter, const PictureMap& map, const ultrasound::ScanPicture& picture,
                       std::span<const Vec3> shaft_P);
