@@ -2,20 +2,27 @@
 
 #include <algorithm>
 
+#include "ui_kit/parts.h"
 #include "workspace/layouts.h"
 
 namespace trocar::trainer {
 namespace {
+
+QStringList names_of(const std::vector<Layout>& layouts) {
+  QStringList names;
+  for (const Layout& layout : layouts) names << layout.name;
+  return names;
+}
 
 /// The layouts' places in the list, from 1: the key that selects them.
 Result<std::vector<std::size_t>> find_layouts(const std::vector<std::string>& names) {
   const std::vector<Layout>& all = built_in_layouts();
   std::vector<std::size_t> numbers;
   for (std::size_t n = 0; n < all.size(); ++n)
-    if (names.empty() || std::ranges::find(names, all[n].name.toStdString()) != names.end()) numbers.push_back(n + 1);
+    if (names.empty() || std::ranges::find(names, to_std(all[n].name)) != names.end()) numbers.push_back(n + 1);
   for (const std::string& name : names)
-    if (std::ranges::none_of(all, [&](const Layout& layout) { return layout.name.toStdString() == name; }))
-      return fail_usage("no such layout", name, "the view menu lists the layouts");
+    if (!names_of(all).contains(to_qt(name)))
+      return fail_usage("no such layout", name, "use " + to_std(names_of(all).join(QStringLiteral(", "))));
   return numbers;
 }
 

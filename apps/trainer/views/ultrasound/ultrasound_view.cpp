@@ -146,8 +146,11 @@ ultrasound::ScanRequest UltrasoundView::make_request(double now_s) {
 std::shared_ptr<const ultrasound::VesselFlow> UltrasoundView::poll_flow() {
   if (!has_flow()) return nullptr;
   std::shared_ptr<const ultrasound::VesselFlow> flow = flow_->poll();
-  if (std::exchange(is_flow_computing_, flow_->is_computing()) != flow_->is_computing()) update();
-  if (!has_flow()) Q_EMIT changed();
+  if (flow_->is_computing() && !std::exchange(is_flow_awaited_, true)) update();
+  if (!has_flow()) {
+    update();
+    Q_EMIT changed();
+  }
   return flow;
 }
 
@@ -155,7 +158,7 @@ std::shared_ptr<const ultrasound::VesselFlow> UltrasoundView::poll_flow() {
 QString UltrasoundView::flow_message() const {
   if (!settings_.has_doppler) return {};
   if (!has_flow()) return tr("No blood flow in this patient's vessels");
-  return is_flow_computing_ ? tr("Computing the blood flow") : QString();
+  return is_flow_awaited_ ? tr("Computing the blood flow") : QString();
 }
 
 void UltrasoundView::take_picture(double now_s) {
@@ -168,6 +171,7 @@ void UltrasoundView::take_picture(double now_s) {
     count_picture(now_s, !newest->is_frozen);
     picture_ = std::move(newest);
     const ultrasound::ScanPicture& p = *picture_;
+    if (!p.colour.pixels.empty()) is_flow_awaited_ = false;
     if (p.colour.pixels.empty()) {
       image_ = QImage(p.gray.pixels.data(), p.gray.columns, p.gray.rows, p.gray.columns, QImage::Format_Grayscale8);
     } else {

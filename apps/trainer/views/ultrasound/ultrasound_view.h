@@ -145,7 +145,7 @@ class UltrasoundView : public QWidget {
   ultrasound::LiveScanner scanner_;
   std::shared_ptr<const ultrasound::AcousticScene> scene_;
   std::shared_ptr<ultrasound::FlowOnDemand> flow_;
-  bool is_flow_computing_ = false;
+  bool is_flow_awaited_ = false;  ///< Until the first image with colour after the computation.
   ultrasound::Transducer transducer_;
   UltrasoundSettings settings_;
   bool is_saving_wanted_ = false;
