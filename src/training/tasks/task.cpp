@@ -121,11 +121,10 @@ TaskReadiness check_task(const Task& task, const anatomy::VirtualPatient& patien
   readiness.is_parenchymal = is_parenchymal(task, patient);
   note(!task.target_label.empty() && !found.has_target,
        fmt::format("the target \"{}\" is not labelled", task.target_label));
-  note(
-      readiness.is_parenchymal && !task.target_P && task.target_label.empty(),
-      fmt::format("{}: the target is in healthy {}, at least {} mm below its surface and {} mm from vessels",
-                  task.target_tissues.empty() ? "the task has no target tissue" : "no lesion is labelled", task.organ,
-                  task.parenchymal_depth_mm, task.parenchymal_vessel_mm));
+  note(readiness.is_parenchymal && !task.target_P && task.target_label.empty(),
+       fmt::format("{}: the target is in healthy {}, at least {} mm below its surface and {} mm from vessels",
+                   task.target_tissues.empty() ? "the task has no target tissue" : "no lesion is labelled", task.organ,
+                   task.parenchymal_depth_mm, task.parenchymal_vessel_mm));
   note(found.is_organ_cut, fmt::format("the {} is cut by the border of the volume", task.organ));
   note(!found.has_vessel, "doubtful: vessels are not labelled, so paths do not avoid them");
   std::vector<std::string> missing = unlabelled_risks(task, patient, counts);
