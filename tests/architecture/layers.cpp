@@ -90,7 +90,7 @@ bool is_system(std::string_view header) {
                                                    "unistd.h", "semaphore.h", "time.h",   "immintrin.h"};
   const bool is_standard = header.find_first_of("/.") == std::string_view::npos;
   return is_standard || header.starts_with("sys/") || header.starts_with("netinet/") || header.starts_with("arpa/") ||
-         posix.contains(header);
+         header.starts_with("sanitizer/") || posix.contains(header);
 }
 
 /// Qt's classes and its bridge to VTK.
