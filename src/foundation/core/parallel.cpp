@@ -7,27 +7,71 @@
 
 #include <algorithm>
 
+#ifdef TROCAR_THREAD_SANITIZER
+#include <sanitizer/tsan_interface.h>
+#endif
+
 namespace trocar {
 inline namespace core {
+
+namespace {
+
+#ifdef TROCAR_THREAD_SANITIZER
+// The thread sanitizer does not see how TBB, which is compiled without it, hands work to threads and back. So it is
+// told: work starts after the call and ends before the call returns. This file itself is compiled without it
+// (cmake/compiler.cmake), because TBB's templates are.
+class HandOver {
+ public:
+  HandOver() { __tsan_release(&given_); }
+  ~HandOver() { __tsan_acquire(&done_); }
+
+  template <class Work>
+  void run(const Work& work) {
+    struct Done {
+      char& done;
+      ~Done() { __tsan_release(&done); }
+    } at_end{done_};
+    __tsan_acquire(&given_);
+    work();
+  }
+
+ private:
+  char given_ = 0;
+  char done_ = 0;
+};
+#else
+struct HandOver {
+  template <class Work>
+  void run(const Work& work) {
+    work();
+  }
+};
+#endif
+
+}  // namespace
 
 void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
   if (count == 0) return;
   using Range = oneapi::tbb::blocked_range<std::size_t>;
+  HandOver hand_over;
   oneapi::tbb::parallel_for(Range(0, count, std::max<std::size_t>(grain, 1)),
-                            [&](const Range& part) { body(part.begin(), part.end()); });
+                            [&](const Range& part) { hand_over.run([&] { body(part.begin(), part.end()); }); });
 }
 
 void run_on_threads(int most, const std::function<void()>& body) {
   oneapi::tbb::task_arena arena(std::max(most, 1));
-  arena.execute([&] { body(); });
+  HandOver hand_over;
+  arena.execute([&] { hand_over.run(body); });
 }
 
 void parallel_invoke(const std::function<void()>& a, const std::function<void()>& b) {
-  oneapi::tbb::parallel_invoke(a, b);
+  HandOver hand_over;
+  oneapi::tbb::parallel_invoke([&] { hand_over.run(a); }, [&] { hand_over.run(b); });
 }
 
 void parallel_invoke(const std::function<void()>& a, const std::function<void()>& b, const std::function<void()>& c) {
-  oneapi::tbb::parallel_invoke(a, b, c);
+  HandOver hand_over;
+  oneapi::tbb::parallel_invoke([&] { hand_over.run(a); }, [&] { hand_over.run(b); }, [&] { hand_over.run(c); });
 }
 
 }  // namespace core
