@@ -2,6 +2,7 @@
 
 #include <itkMetaDataObject.h>
 
+#include <mutex>
 #include <optional>
 
 #include "core/available_memory.h"
@@ -59,14 +60,20 @@ TextFields text_fields(const itk::ImageIOBase& io) {
   return fields;
 }
 
+/// Reads the header, one file at a time: ITK's NIfTI reader keeps the name of the last file in a variable of all
+/// threads.
+void read_header(itk::ImageIOBase& io) {
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
+  const MutedStandardError muted;
+  io.ReadImageInformation();
+}
+
 /// May throw exceptions of ITK.
 Result<ItkImage> read_throwing(itk::ImageIOBase& io, const CheckedImage& checked, ImageFormat format) {
   const std::string where = checked.file.path().string();
   io.SetFileName(checked.library_path.string());
-  {
-    const MutedStandardError muted;
-    io.ReadImageInformation();
-  }
+  read_header(io);
   if (io.GetNumberOfDimensions() < 3) return fail("not a 3D image", where, "give a volume, not a picture");
   for (unsigned axis = 3; axis < io.GetNumberOfDimensions(); ++axis)
     if (io.GetDimensions(axis) > 1) return fail("is a 4D image", where, "extract one volume and give that");
@@ -108,8 +115,7 @@ Result<TextFields> read_fields_with_itk(const CheckedImage& checked, ImageFormat
   try {
     const auto io = make_image_io(format);
     io->SetFileName(checked.library_path.string());
-    const MutedStandardError muted;
-    io->ReadImageInformation();
+    read_header(*io);
     return text_fields(*io);
   } catch (const std::exception&) {
     return fail("the header cannot be read", checked.file.path().string(), "open it in 3D Slicer and save it as .nrrd");
