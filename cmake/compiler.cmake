@@ -19,7 +19,7 @@ function(trocar_optimise_little target)
   endif()
 endfunction()
 
-# TBB's templates, like TBB itself, are compiled without the thread sanitizer, which takes its hand-over of work for a race.
+# TBB's templates, like TBB itself, are compiled without the thread sanitizer, which would report their synchronisation as races.
 if(CMAKE_CXX_FLAGS MATCHES "fsanitize=thread")
   set_source_files_properties(${PROJECT_SOURCE_DIR}/src/foundation/core/parallel.cpp PROPERTIES
     SKIP_PRECOMPILE_HEADERS ON COMPILE_OPTIONS "-fno-sanitize=thread;-DTROCAR_THREAD_SANITIZER")

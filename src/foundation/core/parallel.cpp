@@ -17,9 +17,9 @@ inline namespace core {
 namespace {
 
 #ifdef TROCAR_THREAD_SANITIZER
-// The thread sanitizer does not see how TBB, which is compiled without it, hands work to threads and back. So it is
-// told: work starts after the call and ends before the call returns. This file itself is compiled without it
-// (cmake/compiler.cmake), because TBB's templates are.
+// TBB is compiled without the thread sanitizer, which therefore cannot know that work starts after the call and ends
+// before the call returns. These calls declare it. This file with TBB's templates is compiled without the sanitizer,
+// too (cmake/compiler.cmake).
 class HandOver {
  public:
   HandOver() { __tsan_release(&given_); }

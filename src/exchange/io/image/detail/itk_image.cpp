@@ -60,7 +60,7 @@ TextFields text_fields(const itk::ImageIOBase& io) {
   return fields;
 }
 
-/// Reads the header, one file at a time: ITK's NIfTI reader keeps the name of the last file in a variable of all
+/// Reads the header, one file at a time: ITK's NIfTI reader keeps the last file's name in a variable shared by all
 /// threads.
 void read_header(itk::ImageIOBase& io) {
   static std::mutex mutex;
