@@ -17,7 +17,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr const char* kQuickOperator = "constant-velocity:60";
-constexpr milliseconds kShort{700};    // longer than a server takes to be started again, shorter than a test's patience
+constexpr milliseconds kShort{1'500};  // longer than a server takes to be started again, shorter than a test's patience
 constexpr milliseconds kLong{20'000};  // a machine under load
 
 bool has_event(const storage::Session& session, telemetry::LimitReason reason) {
