@@ -105,9 +105,9 @@ double distance_mm(const Position& a, const Position& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
-/// Where a replaying server has its stylus in the first tenths of a second, in its test mode.
+/// Where a replaying server has its stylus at first, in its test mode.
 Position shown_position(const std::string& file) {
-  const Outcome outcome = run_program("trocar-hapticd", "--device 'replay:" + file + "' --test", "sleep 0.3 | ");
+  const Outcome outcome = run_program("trocar-hapticd", "--device 'replay:" + file + "' --test", "sleep 1 | ");
   EXPECT_EQ(outcome.exit_status, 0) << outcome.err;
   const auto first = outcome.out.find("state\t");
   Position p{};
