@@ -2,6 +2,8 @@
 
 #include "attempt/live/realtime_session.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -157,8 +159,9 @@ TEST_F(RealtimeSession, GoesOnWithoutTheProbeWhenItsServerIsGone) {
   ASSERT_TRUE(live.has_value()) << live.error().text();
   EXPECT_TRUE(live->outcome.target_reached);
   EXPECT_EQ(live->servers.size(), 2u);
-  ASSERT_FALSE(live->warnings.empty());
-  EXPECT_NE(live->warnings.front().find("without the probe"), std::string::npos) << live->warnings.front();
+  EXPECT_TRUE(std::ranges::any_of(live->warnings, [](const std::string& warning) {  // a busy machine adds one
+    return warning.find("without the probe") != std::string::npos;
+  })) << fmt::format("{}", fmt::join(live->warnings, "; "));
 }
 
 TEST_F(RealtimeSession, KeepsWhatWasRecordedWhenTheNeedlesServerStaysAway) {
