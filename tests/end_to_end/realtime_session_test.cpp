@@ -19,8 +19,9 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr const char* kQuickOperator = "constant-velocity:60";
-constexpr milliseconds kShort{1'500};  // longer than a server takes to be started again, shorter than a test's patience
-constexpr milliseconds kLong{20'000};  // a machine under load
+constexpr milliseconds kShort{700};     // ends before a quick attempt does
+constexpr milliseconds kMedium{1'500};  // a slow build's server answers within it
+constexpr milliseconds kLong{20'000};   // a machine under load
 
 bool has_event(const storage::Session& session, telemetry::LimitReason reason) {
   return std::any_of(session.samples.begin(), session.samples.end(), [reason](const telemetry::TickSample& sample) {
@@ -166,7 +167,7 @@ TEST_F(RealtimeSession, GoesOnWithoutTheProbeWhenItsServerIsGone) {
 
 TEST_F(RealtimeSession, KeepsWhatWasRecordedWhenTheNeedlesServerStaysAway) {
   LiveServer needle(*the_case, "needle", folder_);
-  const auto live = perform_live(kQuickOperator, {needle.url()}, kShort, once_after(1.0, [&] { needle.end(); }));
+  const auto live = perform_live(kQuickOperator, {needle.url()}, kMedium, once_after(1.0, [&] { needle.end(); }));
   ASSERT_FALSE(live.has_value());
   EXPECT_EQ(live.error().exit_status, 1);
   EXPECT_NE(live.error().text().find(needle.url()), std::string::npos) << live.error().text();
