@@ -76,11 +76,13 @@ TEST(SlowClient, LosesItsSessionWhereItDoesNotReadReplies) {
   // The client's thread may still take what waits in the system's buffers, which are larger than the queue.
   const Reply large{1, true, std::string(kMostTextBytes, 'x')};
   constexpr std::size_t kMostUnread = 64 << 20;
-  for (std::size_t bytes = 0; server.controller_heard_s(); bytes += kMostTextBytes) {
+  std::size_t bytes = 0;
+  for (; server.controller_heard_s(); bytes += kMostTextBytes) {
     ASSERT_LT(bytes, kMostUnread);
     server.send_reply(slow.session(), large);
     server.drop_lost(kNow_s);
   }
+  EXPECT_GE(bytes, kMostReplyBytesOut);
   slow.send(Heartbeat{});
   const auto refusal = next_while_served<Refusal>(server, slow);
   ASSERT_TRUE(refusal);
