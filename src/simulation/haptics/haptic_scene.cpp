@@ -59,24 +59,35 @@ Status fill_laws(HapticScene& scene, const anatomy::TissueTable& table) {
   for (std::size_t i = 0; i < table.layers.size(); ++i) {
     const anatomy::LayerParams& layer = table.layers[i];
     const LoadingLaw loading{layer.stiffness_n_per_mm, layer.viscosity_ns_per_mm, layer.delta_x_mm};
-    scene.layers[i] = {loading, layer.puncture_force_n, indentation_stiffness(loading, layer.puncture_force_n),
-                       layer.is_wall};
+    const double puncture_force_n =
+        layer.puncture_force_n * needle_size_factor(table.needle_size, layer.for_diameter_mm, scene.needle);
+    scene.layers[i] = {loading, puncture_force_n, indentation_stiffness(loading, puncture_force_n), layer.is_wall,
+                       layer.load_spread_mm};
     if (!(layer.delta_x_mm > 0.0) || !(layer.puncture_force_n > 0.0))
       return fail_usage(fmt::format("layer {} needs positive dx and puncture force", layer.name), "tissue table",
                         "set delta_x_mm and fp above 0");
   }
+  const double size = needle_size_factor(table.needle_size, 0.0, scene.needle);
+  const double girth = table.needle_size.diameter_mm > 0.0 ? 2.0 * scene.needle.radius_mm / table.needle_size.diameter_mm : 1.0;
   for (std::size_t i = 0; i < table.tissues.size(); ++i) {
     const anatomy::TissueParams& tissue = table.tissues[i];
     scene.tissues[i] = {tissue.viscosity_ns_per_mm,
                         tissue.roughness_n * tissue.friction_mu,
-                        tissue.stick_n_per_mm,
-                        tissue.cutting_n,
+                        tissue.stick_n_per_mm * girth,
+                        tissue.cutting_n * size,
                         tissue.young_kpa,
                         tissue.friction_mu,
                         tissue.layer.value_or(kNoLayer)};
   }
   scene.skin = table.skin;
   scene.transfer = table.transfer;
+  for (std::size_t i = 0; i < scene.transfer.knot_count; ++i) {
+    anatomy::HuLaw& law = scene.transfer.laws[i];
+    law.normal_n *= size;
+    law.tangential_n *= size;
+    law.resistance_n *= size;
+    law.shaft_n_per_mm *= girth;
+  }
   scene.skin_thickness_mm = table.skin_thickness_mm;
   return {};
 }

@@ -78,6 +78,7 @@ struct LayerLaw {
   /// Puncture force divided by the static indentation at that force; bone: its stiffness.
   double indent_n_per_mm = 1.0;
   bool is_wall = false;  ///< Proxy models: the layer is punctured at a label's border.
+  double load_spread_mm = 0.0;  ///< Above 0: the tissue below gives way (physics.md P6).
 };
 
 /// Constant data of the tick. Built off-line, shared, read by many threads.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "anatomy/tissue/tissue_table.h"
+
 namespace trocar::haptics {
 
 inline constexpr int kMaxBodyProxies = 32;
@@ -15,5 +17,11 @@ struct NeedleGeometry {
   double bevel_share = 0.1;       ///< Sideways force of the bevel as a share of the tip's axial force. Range 0..1.
   int body_proxies = 16;          ///< Range 1..kMaxBodyProxies.
 };
+
+/// Force of a needle as a multiple of that of the law's needle with `reference_mm` (0: law.diameter_mm), which is 1
+/// (physics.md P7). The bevel's influence is that of kSteepestBevel_rad for steeper ones: a blunt tip punches, which the
+/// law does not describe.
+double needle_size_factor(const anatomy::NeedleSizeLaw& law, double reference_mm, const NeedleGeometry& needle) noexcept;
+inline constexpr double kSteepestBevel_rad = 1.2217;  ///< 70 degrees.
 
 }  // namespace trocar::haptics

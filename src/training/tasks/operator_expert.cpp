@@ -24,8 +24,10 @@ constexpr double kFineZone_mm = 10.0;    // before the target
 constexpr double kFine_mm_s = 5.0;
 constexpr double kHoming_per_s = 2.0;  // the last millimetres: speed per remaining distance
 constexpr double kArrived_mm = 0.3;
-constexpr double kCreepBack_mm_s = 3.0;  // yields if the relaxing tissue lets the tip creep past the target
+constexpr double kCreepBack_mm_s = 6.0;  // yields if the recoiling tissue lets the tip creep past the target
+constexpr double kSettled_mm = 0.5;
 constexpr double kHold_s = 0.5;
+constexpr double kMostHold_s = 3.0;
 constexpr double kAfterFire_s = 0.5;
 constexpr double kWithdraw_mm_s = 30.0;
 constexpr double kStuck_s = 4.0;  // without a millimetre of progress: stop
@@ -58,7 +60,7 @@ class Expert final : public Operator {
         break;
       case Step::kHold:
         speed_mm_s = holding_speed_mm_s();
-        if (in_step_s() > kHold_s) {
+        if ((in_step_s() > kHold_s && target_left_mm() > -kSettled_mm) || in_step_s() > kMostHold_s) {
           fires = fires_biopsy_;
           enter(Step::kAfterFire);
         }

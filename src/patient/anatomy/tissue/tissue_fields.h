@@ -39,6 +39,21 @@ inline constexpr std::array<TissueField<TissueParams>, 6> kTissueFields{{
     {kYoung, "young", &TissueParams::young_kpa, {0.0, 1e6}},
 }};
 
+/// Fields of a layer that a file may omit: zero.
+inline constexpr std::array<TissueField<LayerParams>, 2> kOptionalLayerFields{{
+    {"for_diameter_mm", "", &LayerParams::for_diameter_mm, {0.0, 5.0}},
+    {"load_spread_mm", "", &LayerParams::load_spread_mm, {0.0, 10.0}},
+}};
+
+inline constexpr std::string_view kNeedleSize = "needle_size";
+inline constexpr std::array<TissueField<NeedleSizeLaw>, 5> kNeedleSizeFields{{
+    {"diameter_mm", "", &NeedleSizeLaw::diameter_mm, {0.3, 5.0}},
+    {"bevel_deg", "", &NeedleSizeLaw::bevel_deg, {5.0, 70.0}},
+    {"tearing", "", &NeedleSizeLaw::tearing, {0.0, 100.0}},
+    {"spreading", "", &NeedleSizeLaw::spreading, {0.0, 100.0}},
+    {"face_friction", "", &NeedleSizeLaw::face_friction, {0.0, 0.35}},
+}};
+
 inline constexpr std::string_view kSkinThickness = "thickness_mm";
 inline constexpr config::Range kSkinThicknessRange{0.5, 6.0};
 

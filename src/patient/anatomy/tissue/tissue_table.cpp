@@ -92,11 +92,13 @@ Status read_layers(const config::TomlTable& document, TissueTable& table) {
     TROCAR_TRY(const config::TomlTable row, rows.table(name));
     std::vector<std::string_view> known = field_names<LayerParams>(kLayerFields);
     known.push_back(kWall);
+    for (const auto& field : kOptionalLayerFields) known.push_back(field.name);
     TROCAR_TRY_STATUS(row.check_keys(known));
     LayerParams layer;
     layer.name = name;
     TROCAR_TRY(layer.is_wall, row.boolean_or(kWall, false));
     TROCAR_TRY_STATUS(read_fields<LayerParams>(row, kLayerFields, "layers." + name, true, layer, table));
+    TROCAR_TRY_STATUS(read_fields<LayerParams>(row, kOptionalLayerFields, "layers." + name, false, layer, table));
     table.layers.push_back(std::move(layer));
   }
   return {};
@@ -166,8 +168,20 @@ Status apply_profile(const config::TomlTable& document, std::string_view wanted,
   return apply_profile_part<TissueParams>(profile, "tissues", kTissueFields, table.tissues, table);
 }
 
+/// Tables stored before there was such a law keep their forces for every needle.
+Status read_needle_size(const config::TomlTable& document, TissueTable& table) {
+  if (!document.has(kNeedleSize)) return {};
+  TROCAR_TRY(const config::TomlTable row, document.table(kNeedleSize));
+  TROCAR_TRY_STATUS(row.check_keys(field_names<NeedleSizeLaw>(kNeedleSizeFields)));
+  TROCAR_TRY_STATUS(read_fields<NeedleSizeLaw>(row, kNeedleSizeFields, std::string(kNeedleSize), true,
+                                               table.needle_size, table));
+  if (table.needle_size.tearing + table.needle_size.spreading > 0.0) return {};
+  return fail("tearing and spreading are both zero", row.where(), "give at least one of them a share");
+}
+
 Result<TissueTable> read_table(const config::TomlTable& document, std::string_view profile) {
-  TROCAR_TRY_STATUS(document.check_keys({"skin", "layers", "tissues", "profiles", "applied_profile", kTransfer}));
+  TROCAR_TRY_STATUS(
+      document.check_keys({"skin", "layers", "tissues", "profiles", "applied_profile", kTransfer, kNeedleSize}));
   TissueTable table;
   TROCAR_TRY(const config::TomlTable skin, document.table("skin"));
   TROCAR_TRY_STATUS(skin.check_keys({kSkinThickness}));
@@ -182,6 +196,7 @@ Result<TissueTable> read_table(const config::TomlTable& document, std::string_vi
     return fail("a tissue \"skin\" with a layer is needed", document.where(), "add [tissues.skin]");
   table.skin = *skin_index;
   TROCAR_TRY_STATUS(read_hu_transfer(document, table));
+  TROCAR_TRY_STATUS(read_needle_size(document, table));
   TROCAR_TRY_STATUS(apply_profile(document, profile, table));
   return table;
 }

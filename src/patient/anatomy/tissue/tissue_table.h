@@ -24,6 +24,20 @@ struct LayerParams {
   double puncture_force_n =
       std::numeric_limits<double>::infinity();  ///< Puncture force. Range 0.01..100; infinite: never (bone).
   bool is_wall = false;  ///< Volume proxy: must be pierced at a label's border, because the CT does not show it.
+  /// Outer diameter of the needle that the puncture force is for; 0: that of the table. Range 0..5.
+  double for_diameter_mm = 0.0;
+  /// The layer spreads the load of the tip over this distance around it onto the tissue below, which gives way (physics.md
+  /// P6). 0: the layer is held from the side and the tissue below does not matter. Range 0..10.
+  double load_spread_mm = 0.0;
+};
+
+/// How puncture and cutting forces depend on the needle (physics.md P7). The default is no dependence.
+struct NeedleSizeLaw {
+  double diameter_mm = 0.0;    ///< Outer diameter of the needle that the table's forces are for; 0: any. Range 0.3..5.
+  double bevel_deg = 20.0;     ///< Bevel of that needle, between face and axis. Range 5..70.
+  double tearing = 61.0;       ///< Share of the force that tears the tissue; grows with the diameter. Range 0..100.
+  double spreading = 18.0;     ///< Share that spreads the tissue; grows with the diameter squared. Range 0..100.
+  double face_friction = 0.0;  ///< Coefficient of friction between the bevel's face and the tissue. Range 0..0.35.
 };
 
 /// Friction and cutting of shaft and tip inside a tissue (paper A; physics.md F1, C1).
@@ -53,6 +67,7 @@ struct TissueTable {
   double skin_thickness_mm = 2.0;  ///< The skin is a shell of the distance field, not voxels. Range 0.5..6.
   std::uint8_t skin = 0;           ///< Tissue index of the skin.
   HuTransfer transfer;             ///< Transfer functions of unlabelled tissue, over HU.
+  NeedleSizeLaw needle_size;
 
   std::optional<std::uint8_t> find_tissue(std::string_view name) const noexcept;
   std::optional<std::uint8_t> find_layer(std::string_view name) const noexcept;

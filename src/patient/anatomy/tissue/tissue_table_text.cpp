@@ -193,6 +193,11 @@ std::string TissueTable::to_toml() const {
     writer.begin_table({"layers", layer.name});
     if (layer.is_wall) writer.set(kWall, true);
     write_fields<LayerParams>(writer, layer, kLayerFields, "layers", provenance);
+    for (const auto& field : kOptionalLayerFields) {
+      if (layer.*field.member == 0.0) continue;
+      write_number(writer, field.name, layer.*field.member, fmt::format("layers.{}.{}", layer.name, field.name),
+                   provenance);
+    }
   }
   for (std::size_t n = 1; n < tissues.size(); ++n) {
     const TissueParams& tissue = tissues[n];
@@ -201,6 +206,12 @@ std::string TissueTable::to_toml() const {
     write_fields<TissueParams>(writer, tissue, kTissueFields, "tissues", provenance);
   }
   write_hu_transfer(writer, *this);
+  if (needle_size.diameter_mm > 0.0) {
+    writer.begin_table({std::string(kNeedleSize)});
+    for (const auto& field : kNeedleSizeFields)
+      write_number(writer, field.name, needle_size.*field.member, fmt::format("{}.{}", kNeedleSize, field.name),
+                   provenance);
+  }
   return writer.text();
 }
 

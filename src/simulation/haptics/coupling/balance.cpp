@@ -16,12 +16,21 @@ double AxialBalance::friction_n(double s_mm) const noexcept {
 
 double AxialBalance::cutting_force_n(double s_mm) const noexcept {
   const double v = velocity(s_mm);
-  return s_mm > cut_to_mm && v > 0.0 ? cutting_n * motion_fade(v) : 0.0;
+  if (!(cutting_n > 0.0) || !(s_mm > cut_to_mm) || !(v > 0.0)) return 0.0;
+  return std::max(0.0, cutting_n * motion_fade(v) - prepuncture_n(s_mm));
+}
+
+double AxialBalance::yielding_mm(double s_mm) const noexcept {
+  const double rest_mm = below != nullptr ? below->depression_mm(prepuncture_n(s_mm)) : 0.0;
+  if (rest_mm >= yielded_mm) return rest_mm;  // quasi-static under load
+  return yielded_mm + dt_s / (kTissueRecoil_s + dt_s) * (rest_mm - yielded_mm);
 }
 
 double AxialBalance::coupling_n(double s_mm) const noexcept {
-  return coupling.stiffness_n_per_mm * (s_device_mm - s_mm) +
-         coupling.damping_ns_per_mm * (v_device_mm_per_s - velocity(s_mm));
+  const double yields_mm = yielding_mm(s_mm);
+  const double v = velocity(s_mm) + (yields_mm - yielded_mm) / dt_s;
+  return coupling.stiffness_n_per_mm * (s_device_mm - yields_mm - s_mm) +
+         coupling.damping_ns_per_mm * (v_device_mm_per_s - v);
 }
 
 double AxialBalance::unbalance_n(double s_mm) const noexcept {

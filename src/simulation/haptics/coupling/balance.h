@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "haptics/haptic_scene.h"
+#include "haptics/insertion/soft_column.h"
 
 namespace trocar::haptics {
 
@@ -20,14 +21,19 @@ struct AxialBalance {
   double viscous_ns_per_mm = 0.0;                               ///< Sum of nu_i A_i over the inserted shaft.
   double noise_n = 0.0;                                         ///< Fluctuation of the friction in this step.
   double dry_n = 0.0;  ///< Dry friction of the body proxies, against the motion.
-  double cutting_n = 0.0;
+  double cutting_n = 0.0;  ///< F_c of the tissue in front of the tip and of the layer that it presses on.
   double cut_to_mm = 0.0;  ///< Start of uncut tissue.
+  const SoftColumn* below = nullptr;  ///< Tissue below the layer ahead, which gives way; nullptr: rigid.
+  double yielded_mm = 0.0;            ///< Depression of that tissue at the start of the step.
 
   double velocity(double s_mm) const noexcept { return (s_mm - s_previous_mm) / dt_s; }
   double displacement(double s_mm) const noexcept { return s_mm > surface_mm ? s_mm - surface_mm : 0.0; }
   double prepuncture_n(double s_mm) const noexcept;
   double friction_n(double s_mm) const noexcept;
+  /// The share of F_c that the layer ahead does not yet bear: the tip's resistance is the larger of both.
   double cutting_force_n(double s_mm) const noexcept;
+  /// Depression of the tissue below at the end of the step.
+  double yielding_mm(double s_mm) const noexcept;
   double coupling_n(double s_mm) const noexcept;
   /// Resistance minus coupling; increases with s.
   double unbalance_n(double s_mm) const noexcept;

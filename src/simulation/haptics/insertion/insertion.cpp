@@ -25,6 +25,7 @@ void stop_loading(InsertionState& state) noexcept {
   state.loading = kNoLayer;
   state.is_stuck = false;
   state.pending_s = 0.0;
+  state.pressed_to_mm = state.yielded_mm = state.front_n = 0.0;
 }
 
 /// Projects needle and device onto the line of this step: the path after the skin puncture, before that the needle's
@@ -47,6 +48,7 @@ std::optional<LineStep> place_on_line(InsertionState& state, InsertionPath& path
     }
     if (state.loading == kNoLayer) {  // no contact yet: needle and device coincided
       state.s_mm = state.s_device_mm = path.channel.direction_P.dot(state.device_tip_P - path.channel.origin_P);
+      state.yielded_mm = 0.0;
     }
   }
   const Channel& line = path.channel;
@@ -77,6 +79,20 @@ void add_friction(AxialBalance& balance, const InsertionState& state, const Inse
   }
 }
 
+/// Force that the tip needs to advance through the tissue in front of it (C1, or the tip proxy's threshold), also while it
+/// presses on the layer behind that tissue.
+void set_front(InsertionState& state, const InsertionPath& path, const HapticScene& scene,
+               const ProxyShare* share) noexcept {
+  if (!path.is_open) {
+    state.front_n = 0.0;
+    return;
+  }
+  if (state.loading != kNoLayer) return;
+  state.is_front_proxy = share != nullptr && share->tip_n > 0.0;
+  const auto tip_bin = static_cast<std::size_t>(bin_of(path.rest_mm));
+  state.front_n = state.is_front_proxy ? share->tip_n : scene.tissues[path.channel.tissue[tip_bin]].cutting_n;
+}
+
 AxialBalance make_balance(const InsertionState& state, const InsertionPath& path, const HapticScene& scene,
                           const LineStep& line, double dt_s, const LayerAhead& ahead,
                           const ProxyShare* share) noexcept {
@@ -86,24 +102,21 @@ AxialBalance make_balance(const InsertionState& state, const InsertionPath& path
   balance.v_device_mm_per_s = (line.s_device_mm - line.s_device_previous_mm) / dt_s;
   balance.dt_s = dt_s;
   balance.coupling = scene.options.coupling;
+  balance.yielded_mm = state.yielded_mm;
   if (ahead.layer != kNoLayer) {
     balance.loading = scene.layers[ahead.layer].loading;
     balance.surface_mm = ahead.surface_mm;
+    if (state.loading != kNoLayer && state.below.cells > 0) balance.below = &state.below;
   }
-  const bool is_cutting = path.is_open && state.loading == kNoLayer;
-  if (is_cutting) {
-    const auto tip_bin = static_cast<std::size_t>(bin_of(path.rest_mm));
-    balance.cutting_n = scene.tissues[path.channel.tissue[tip_bin]].cutting_n;
-    balance.cut_to_mm = path.channel.cut_to_mm;
-  }
+  balance.cutting_n = state.front_n;
+  balance.cut_to_mm = std::max(path.channel.cut_to_mm, state.pressed_to_mm);
   if (share == nullptr) {
     add_friction(balance, state, path, scene);
     return balance;
   }
   balance.viscous_ns_per_mm = share->shaft.viscous_ns_per_mm;
   balance.dry_n = share->shaft.dry_n;
-  if (is_cutting && share->tip_n > 0.0) balance.cutting_n = share->tip_n;
-  if (is_cutting) balance.viscous_ns_per_mm += share->tip_viscous_ns_per_mm;
+  if (path.is_open && state.loading == kNoLayer) balance.viscous_ns_per_mm += share->tip_viscous_ns_per_mm;
   return balance;
 }
 
@@ -125,7 +138,9 @@ bool is_held(const InsertionState& state, const InsertionPath& path, const Hapti
   const double s = balance.s_previous_mm;
   const double push = balance.coupling_n(s) - balance.prepuncture_n(s);
   const double holding = holding_force_n(path, scene, balance);
-  const double uncut = s >= balance.cut_to_mm ? balance.cutting_n : 0.0;  // uncut tissue holds until it is cut
+  // Uncut tissue holds until it is cut, except the share that the layer behind it bears.
+  const double uncut =
+      s >= balance.cut_to_mm ? std::max(0.0, balance.cutting_n - balance.prepuncture_n(s)) : 0.0;
   return push <= holding + uncut && push >= -holding;
 }
 
@@ -166,13 +181,25 @@ telemetry::InsertionPhase next_phase(const InsertionState& state, const Insertio
                                                                : telemetry::InsertionPhase::kInserted;
 }
 
+/// The tissue below a layer, if it gives way under the load of the tip.
+SoftColumn tissue_below(const InsertionPath& path, const HapticScene& scene, const LayerAhead& layer) noexcept {
+  const double spread_mm = scene.layers[layer.layer].load_spread_mm;
+  if (!(spread_mm > 0.0)) return {};
+  const Channel& line = path.channel;
+  return soft_column(scene, line.origin_P + layer.surface_mm * line.direction_P, line.direction_P,
+                     scene.needle.radius_mm + spread_mm);
+}
+
 /// Contact with hysteresis: starts at the resting surface, ends slightly above it.
-void update_contact(InsertionState& state, const InsertionPath& path, const LayerAhead& ahead) noexcept {
+void update_contact(InsertionState& state, const InsertionPath& path, const HapticScene& scene,
+                    const LayerAhead& ahead) noexcept {
   if (ahead.layer == kNoLayer) return;
   if (state.s_mm > ahead.surface_mm) {
     if (!path.is_open && state.loading == kNoLayer) state.contact_P = path.channel.origin_P;
+    if (state.loading == kNoLayer) state.below = tissue_below(path, scene, ahead);
     state.loading = ahead.layer;
     state.surface_mm = ahead.surface_mm;
+    if (path.is_open) state.pressed_to_mm = std::max(state.pressed_to_mm, state.s_mm);
   } else if (state.s_mm < ahead.surface_mm - kContactHysteresis_mm) {
     state.loading = kNoLayer;
   }
@@ -205,8 +232,9 @@ InsertionStep step_in_air(InsertionState& state, InsertionPath& path, const Vec3
 }
 
 /// Values of the laws at the end of the step, as recorded.
-void record_forces(const AxialBalance& balance, double s_mm, bool is_stuck, const ProxyShare* share,
+void record_forces(const InsertionState& state, const AxialBalance& balance, double s_mm, const ProxyShare* share,
                    InsertionStep& step) noexcept {
+  const bool is_stuck = state.is_stuck;
   step.velocity_mm_per_s = is_stuck ? 0.0 : balance.velocity(s_mm);
   step.displacement_mm = balance.displacement(s_mm);
   step.prepuncture_n = balance.prepuncture_n(s_mm);
@@ -215,9 +243,14 @@ void record_forces(const AxialBalance& balance, double s_mm, bool is_stuck, cons
     return;
   }
   const double friction_n = balance.friction_n(s_mm);
-  const double cutting_n = balance.cutting_force_n(s_mm);
   (share != nullptr ? step.body_axial_n : step.friction_n) = friction_n;
-  (share != nullptr && share->tip_n > 0.0 ? step.tip_proxy_n : step.cutting_n) = cutting_n;
+  // At the border of uncut tissue F_c begins with a step: the tissue carries what the balance needs of it.
+  const double tip_n = balance.cutting_force_n(s_mm);
+  const double missing_n = -balance.unbalance_n(s_mm);
+  constexpr double kBalanced_n = 1e-6;
+  const double carried_n =
+      std::abs(missing_n) < kBalanced_n ? tip_n : std::clamp(tip_n + missing_n, 0.0, balance.cutting_n);
+  (state.is_front_proxy ? step.tip_proxy_n : step.cutting_n) = carried_n;
 }
 
 std::uint8_t tissue_at_tip(const InsertionState& state, const InsertionPath& path, const HapticScene& scene) noexcept {
@@ -260,13 +293,14 @@ InsertionStep step_insertion(InsertionState& state, InsertionPath& path, const H
 
   // Balance of the virtual needle over the tick and the remaining time of the last puncture.
   const LayerAhead ahead = layer_in_front(state, path, scene);
+  set_front(state, path, scene, share);
   AxialBalance balance = make_balance(state, path, scene, *line, dt_s + state.pending_s, ahead, share);
   const double smoothing = dt_s / (dt_s + kSpeedSmoothing_s);
   state.device_speed_mm_per_s += smoothing * (std::abs(balance.v_device_mm_per_s) - state.device_speed_mm_per_s);
   state.is_stuck = is_held(state, path, scene, balance);
   InsertionStep step;
   const double s_mm = solve_step(state, scene, *line, ahead, balance, step);
-  record_forces(balance, s_mm, state.is_stuck, share, step);
+  record_forces(state, balance, s_mm, share, step);
 
   // The tip stays at the resting surface of the indented layer until its puncture.
   state.s_mm = s_mm;
@@ -274,7 +308,8 @@ InsertionStep step_insertion(InsertionState& state, InsertionPath& path, const H
   state.velocity_mm_per_s = step.velocity_mm_per_s;
   state.device_velocity_mm_per_s = balance.v_device_mm_per_s;
   state.device_tip_P = device_tip_P;
-  update_contact(state, path, ahead);
+  state.yielded_mm = balance.yielding_mm(s_mm);
+  update_contact(state, path, scene, ahead);
   if (path.is_open) {
     const double rest_mm = state.loading != kNoLayer ? std::min(s_mm, state.surface_mm) : s_mm;
     step.entered = move_tip(path, scene, std::max(0.0, rest_mm), state.loading);

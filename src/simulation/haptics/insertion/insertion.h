@@ -5,6 +5,7 @@
 
 #include "haptics/haptic_scene.h"
 #include "haptics/insertion/insertion_path.h"
+#include "haptics/insertion/soft_column.h"
 #include "haptics/proxy/body_proxies.h"
 #include "telemetry/tick_sample.h"
 
@@ -24,6 +25,11 @@ struct InsertionState {
 
   std::uint8_t loading = kNoLayer;  ///< Layer under load.
   double surface_mm = 0.0;          ///< s of its resting surface.
+  double front_n = 0.0;             ///< Cutting force of the tissue in front of it.
+  bool is_front_proxy = false;      ///< That force is the tip proxy's (combined model).
+  double pressed_to_mm = 0.0;       ///< Deepest s under the load of layers: the tissue in front is cut so far.
+  SoftColumn below;                 ///< Tissue below it, which gives way.
+  double yielded_mm = 0.0;          ///< Depression of that tissue: the device is that much further along the path.
   bool is_stuck = false;
   telemetry::InsertionPhase phase = telemetry::InsertionPhase::kOutside;
 };

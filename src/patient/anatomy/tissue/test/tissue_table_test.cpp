@@ -58,6 +58,8 @@ void expect_same(const TissueTable& a, const TissueTable& b) {
   EXPECT_EQ(a.profile, b.profile);
   EXPECT_EQ(a.skin_thickness_mm, b.skin_thickness_mm);
   EXPECT_EQ(a.skin, b.skin);
+  for (const auto& field : kNeedleSizeFields)
+    EXPECT_EQ(a.needle_size.*field.member, b.needle_size.*field.member) << field.name;
   ASSERT_EQ(a.layers.size(), b.layers.size());
   ASSERT_EQ(a.tissues.size(), b.tissues.size());
   for (std::size_t n = 0; n < a.layers.size(); ++n) {
@@ -67,6 +69,8 @@ void expect_same(const TissueTable& a, const TissueTable& b) {
     EXPECT_EQ(a.layers[n].delta_x_mm, b.layers[n].delta_x_mm);
     EXPECT_EQ(a.layers[n].puncture_force_n, b.layers[n].puncture_force_n);
     EXPECT_EQ(a.layers[n].is_wall, b.layers[n].is_wall);
+    EXPECT_EQ(a.layers[n].for_diameter_mm, b.layers[n].for_diameter_mm);
+    EXPECT_EQ(a.layers[n].load_spread_mm, b.layers[n].load_spread_mm);
   }
   for (std::size_t n = 0; n < a.tissues.size(); ++n) {
     EXPECT_EQ(a.tissues[n].name, b.tissues[n].name);

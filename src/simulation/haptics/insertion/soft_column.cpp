@@ -1,0 +1,51 @@
+#include "haptics/insertion/soft_column.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "haptics/contact/contact_column.h"
+#include "volume/sampling.h"
+
+namespace trocar::haptics {
+namespace {
+
+double young_kpa(const HapticScene& scene, const Vec3& p_P) noexcept {
+  const TissueAt here = tissue_at(scene, p_P);
+  const bool is_unlabelled = here.label == 0 && here.tissue != scene.skin;
+  if (is_unlabelled && scene.transfer.knot_count > 0 && !scene.patient->ct.empty())
+    return scene.transfer.at(volume::sample_linear(scene.patient->ct, p_P)).young_kpa;
+  return scene.tissues[here.tissue].young_kpa;
+}
+
+}  // namespace
+
+double SoftColumn::depression_mm(double force_n) const noexcept {
+  if (!(force_n > 0.0)) return 0.0;
+  const double pressure = force_n / area_mm2;
+  double depression_mm = 0.0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(cells); ++i) {
+    const double load = pressure * share[i];
+    depression_mm += thickness_mm[i] * load / (plane_n_per_mm2[i] + load);
+  }
+  return depression_mm;
+}
+
+SoftColumn soft_column(const HapticScene& scene, const Vec3& surface_P, const Vec3& inward_P,
+                       double radius_mm) noexcept {
+  constexpr double kNPerMm2PerKpa = 1e-3;
+  SoftColumn column;
+  column.area_mm2 = std::numbers::pi * radius_mm * radius_mm;
+  for (std::size_t i = 0; i < kColumnCells; ++i) {
+    const double from_mm = kCellBorder_mm[i];
+    const double to_mm = kCellBorder_mm[i + 1];
+    const double young = young_kpa(scene, surface_P + 0.5 * (from_mm + to_mm) * inward_P);
+    if (young >= kRigid_kpa || !(young > 0.0)) break;
+    column.thickness_mm[i] = to_mm - from_mm;
+    column.share[i] = (settlement_mm(to_mm, radius_mm) - settlement_mm(from_mm, radius_mm)) / (to_mm - from_mm);
+    column.plane_n_per_mm2[i] = kNPerMm2PerKpa * std::max(young, kSoftest_kpa) / (1.0 - kPoisson * kPoisson);
+    ++column.cells;
+  }
+  return column;
+}
+
+}  // namespace trocar::haptics

@@ -1,0 +1,27 @@
+#include "haptics/needle_geometry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace trocar::haptics {
+namespace {
+
+/// Axial force on a wedge that spreads the tissue, over that without friction.
+double wedge_factor(double bevel_rad, double friction) noexcept {
+  const double slope = std::tan(std::min(bevel_rad, kSteepestBevel_rad));
+  return (1.0 + friction / slope) / (1.0 - friction * slope);
+}
+
+}  // namespace
+
+double needle_size_factor(const anatomy::NeedleSizeLaw& law, double reference_mm,
+                          const NeedleGeometry& needle) noexcept {
+  if (!(law.diameter_mm > 0.0)) return 1.0;
+  const double d = 2.0 * needle.radius_mm / (reference_mm > 0.0 ? reference_mm : law.diameter_mm);
+  const double wedge = wedge_factor(needle.bevel_rad, law.face_friction) /
+                       wedge_factor(law.bevel_deg * std::numbers::pi / 180.0, law.face_friction);
+  return (law.tearing * d + law.spreading * wedge * d * d) / (law.tearing + law.spreading);
+}
+
+}  // namespace trocar::haptics
