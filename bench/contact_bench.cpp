@@ -19,7 +19,7 @@ constexpr double kBone_mm = 25.0;
 constexpr double kPastBone_mm = 10.0;  // final target depth of the tip
 constexpr double kFlavum_mm = 30.0;
 constexpr double kFlavumThickness_mm = 4.0;  // [assumed] 3..5
-constexpr double kPastFlavum_mm = 25.0;
+constexpr double kPastFlavum_mm = 45.0;
 
 struct Setting {
   const anatomy::TissueTable& table;

@@ -191,4 +191,12 @@ TissueAt tissue_at(const HapticScene& scene, const Vec3& p_P) noexcept {
   return {scene.tissue_of_label[label], label};
 }
 
+bool is_read_from_ct(const HapticScene& scene, const TissueAt& here) noexcept {
+  if (here.tissue == 0 || here.tissue == scene.skin) return false;
+  if (here.label == 0) return true;
+  if (scene.options.force_model != ForceModel::kCombined) return false;
+  const std::uint8_t layer = scene.tissues[here.tissue].layer;
+  return layer == kNoLayer || !scene.layers[layer].is_wall;
+}
+
 }  // namespace trocar::haptics

@@ -122,4 +122,8 @@ struct TissueAt {
 };
 TissueAt tissue_at(const HapticScene& scene, const Vec3& p_P) noexcept;
 
+/// True for tissue that the model reads from the CT rather than from its label (physics.md T2): unlabelled tissue, and in
+/// the combined model all but the skin and structures with walls. Real-time safe.
+bool is_read_from_ct(const HapticScene& scene, const TissueAt& here) noexcept;
+
 }  // namespace trocar::haptics

@@ -11,7 +11,8 @@ double AxialBalance::prepuncture_n(double s_mm) const noexcept {
 
 double AxialBalance::friction_n(double s_mm) const noexcept {
   const double v = velocity(s_mm);
-  return viscous_ns_per_mm * v + noise_n + std::copysign(dry_n * motion_fade(v), v);
+  const double thinning = is_thinning ? shear_thinning(v) : 1.0;
+  return viscous_ns_per_mm * thinning * v + noise_n + std::copysign(dry_n * motion_fade(v), v);
 }
 
 double AxialBalance::cutting_force_n(double s_mm) const noexcept {

@@ -21,6 +21,7 @@ struct AxialBalance {
   double viscous_ns_per_mm = 0.0;                               ///< Sum of nu_i A_i over the inserted shaft.
   double noise_n = 0.0;                                         ///< Fluctuation of the friction in this step.
   double dry_n = 0.0;  ///< Dry friction of the body proxies, against the motion.
+  bool is_thinning = false;  ///< The viscous friction is that of the body proxies, less than linear (physics.md B6).
   double cutting_n = 0.0;  ///< F_c of the tissue in front of the tip and of the layer that it presses on.
   double cut_to_mm = 0.0;  ///< Start of uncut tissue.
   const SoftColumn* below = nullptr;  ///< Tissue below the layer ahead, which gives way; nullptr: rigid.

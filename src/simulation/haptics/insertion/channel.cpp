@@ -14,12 +14,14 @@ int bin_of(double s_mm) noexcept {
 namespace {
 
 /// The wall at the border into a structure. Moving from a walled structure back into the one around it (a vessel in the
-/// liver) pierces nothing.
-std::uint8_t wall_at_next_bin(Channel& channel, std::uint8_t layer) noexcept {
+/// liver), or back after a short gap in its label, pierces nothing.
+std::uint8_t wall_at_next_bin(Channel& channel, std::uint8_t layer, int bin) noexcept {
   if (layer == channel.wall_here) return kNoLayer;
-  const bool is_return = layer == channel.wall_before && channel.wall_here != kNoLayer;
+  const bool is_gap = (bin - channel.wall_since) * Channel::kBin_mm < kSameStructure_mm;
+  const bool is_return = layer == channel.wall_before && (channel.wall_here != kNoLayer || is_gap);
   channel.wall_before = channel.wall_here;
   channel.wall_here = layer;
+  channel.wall_since = bin;
   return is_return ? kNoLayer : layer;
 }
 
@@ -42,7 +44,7 @@ void look_ahead(Channel& channel, const HapticScene& scene, double s_mm, double 
     const auto index = static_cast<std::size_t>(bin);
     channel.tissue[index] = here.tissue;
     channel.label[index] = here.label;
-    channel.wall[index] = wall_at_next_bin(channel, walled_layer(scene, here.tissue));
+    channel.wall[index] = wall_at_next_bin(channel, walled_layer(scene, here.tissue), bin);
     if (reads_ct)
       channel.hu[index] = static_cast<std::int16_t>(std::lround(volume::sample_linear(scene.patient->ct, middle_P)));
   }
@@ -50,10 +52,12 @@ void look_ahead(Channel& channel, const HapticScene& scene, double s_mm, double 
 }
 
 LayerAhead next_layer(const Channel& channel, const HapticScene& scene, double from_mm, double to_mm) noexcept {
+  const bool only_walls = scene.options.force_model == ForceModel::kCombined;
   const int end = std::min(channel.known_bins, bin_of(to_mm) + 1);
   for (int bin = bin_of(from_mm); bin < end; ++bin) {
     const std::uint8_t layer = scene.tissues[channel.tissue[static_cast<std::size_t>(bin)]].layer;
-    if (layer != kNoLayer && !channel.is_pierced(layer)) return {layer, std::max(from_mm, bin * Channel::kBin_mm)};
+    if (layer == kNoLayer || channel.is_pierced(layer) || (only_walls && !scene.layers[layer].is_wall)) continue;
+    return {layer, std::max(from_mm, bin * Channel::kBin_mm)};
   }
   return {};
 }
@@ -63,7 +67,8 @@ LayerAhead next_wall(const Channel& channel, double from_mm, double to_mm) noexc
   for (int bin = bin_of(std::max(from_mm, channel.cut_to_mm)); bin < end; ++bin) {
     const std::uint8_t layer = channel.wall[static_cast<std::size_t>(bin)];
     const double surface_mm = bin * Channel::kBin_mm;
-    if (layer != kNoLayer && surface_mm >= channel.cut_to_mm) return {layer, surface_mm};
+    // A tip that touched a wall may have come a rounding error further; a punctured one is half a bin further.
+    if (layer != kNoLayer && surface_mm > channel.cut_to_mm - 0.25 * Channel::kBin_mm) return {layer, surface_mm};
   }
   return {};
 }

@@ -27,9 +27,10 @@ struct Channel {
   std::array<std::uint8_t, kBins> wall{};
   std::uint8_t wall_here = kNoLayer;    ///< Walled structure of the last known bin.
   std::uint8_t wall_before = kNoLayer;  ///< Walled structure of the section before it.
+  int wall_since = 0;                   ///< First bin of the section of wall_here.
 
   void forget_bins() noexcept {
-    known_bins = 0;
+    known_bins = wall_since = 0;
     wall_here = wall_before = kNoLayer;
   }
   bool is_pierced(std::uint8_t layer) const noexcept { return ((pierced >> layer) & 1U) != 0; }
@@ -41,9 +42,12 @@ int bin_of(double s_mm) noexcept;
 
 /// Fills the bins up to `ahead_mm` past s along the line, at most kMaxBinsPerLook new bins per call. Real-time safe.
 inline constexpr int kMaxBinsPerLook = 200;
+/// A structure that the line leaves for less than this is not left: corners of voxels. [assumed: a voxel's diagonal]
+inline constexpr double kSameStructure_mm = 2.0;
 void look_ahead(Channel& channel, const HapticScene& scene, double s_mm, double ahead_mm) noexcept;
 
-/// The first unpierced layer that begins between `from_mm` and `to_mm` within the known bins.
+/// The first unpierced layer that begins between `from_mm` and `to_mm` within the known bins. In the combined model a layer
+/// that is no wall (muscle) is a border of the CT, labelled or not, and no layer (physics.md T2).
 struct LayerAhead {
   std::uint8_t layer = kNoLayer;
   double surface_mm = 0.0;  ///< s of its resting surface.

@@ -49,7 +49,7 @@ std::optional<LineStep> place_on_line(InsertionState& state, InsertionPath& path
     if (state.loading == kNoLayer) {  // no contact yet: needle and device coincided
       state.s_mm = state.s_device_mm = path.channel.direction_P.dot(state.device_tip_P - path.channel.origin_P);
       state.yielded_mm = 0.0;
-    }
+        }
   }
   const Channel& line = path.channel;
   return LineStep{state.s_mm, state.s_device_mm, line.direction_P.dot(tip_P - line.origin_P)};
@@ -116,6 +116,7 @@ AxialBalance make_balance(const InsertionState& state, const InsertionPath& path
   }
   balance.viscous_ns_per_mm = share->shaft.viscous_ns_per_mm;
   balance.dry_n = share->shaft.dry_n;
+  balance.is_thinning = true;
   if (path.is_open && state.loading == kNoLayer) balance.viscous_ns_per_mm += share->tip_viscous_ns_per_mm;
   return balance;
 }

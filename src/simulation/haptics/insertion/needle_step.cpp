@@ -70,15 +70,15 @@ void hold_body(NeedleState& state, const HapticScene& scene, const Pose& X_PN_ah
   step.held_P.torque_nmm += axial_torque_nmm(scene, X_PN_ahead, axial.axis_P, along_n);
 }
 
-/// Contribution of model B along the path in the combined model: the shaft's friction, and the tip in unlabelled
-/// tissue, which model A does not include.
+/// Contribution of model B along the path in the combined model: the shaft's friction, and the tip in tissue that model A
+/// does not include.
 ProxyShare proxy_share(const InsertionPath& path, const HapticScene& scene) noexcept {
   ProxyShare share;
   if (!path.is_open) return share;
   share.shaft = shaft_resistance(path.channel, scene, path.rest_mm);
   const auto bin = static_cast<std::size_t>(bin_of(path.rest_mm));
   const TissueAt here{path.channel.tissue[bin], path.channel.label[bin]};
-  if (!(path.rest_mm > 0.0) || here.label != 0 || here.tissue == scene.skin) return share;
+  if (!(path.rest_mm > 0.0) || !is_read_from_ct(scene, here)) return share;
   const Vec3& u = path.channel.direction_P;
   const TipLaw law = tip_law_at(scene, path.channel.origin_P + path.rest_mm * u, here);
   share.tip_n = threshold_along_n(law, u);

@@ -11,8 +11,7 @@ namespace {
 
 double young_kpa(const HapticScene& scene, const Vec3& p_P) noexcept {
   const TissueAt here = tissue_at(scene, p_P);
-  const bool is_unlabelled = here.label == 0 && here.tissue != scene.skin;
-  if (is_unlabelled && scene.transfer.knot_count > 0 && !scene.patient->ct.empty())
+  if (is_read_from_ct(scene, here) && scene.transfer.knot_count > 0 && !scene.patient->ct.empty())
     return scene.transfer.at(volume::sample_linear(scene.patient->ct, p_P)).young_kpa;
   return scene.tissues[here.tissue].young_kpa;
 }

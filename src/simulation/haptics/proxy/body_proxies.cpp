@@ -34,7 +34,7 @@ struct ShaftTissue {
 ShaftTissue tissue_at_bin(const Channel& channel, const HapticScene& scene, std::size_t bin) noexcept {
   const std::uint8_t tissue = channel.tissue[bin];
   if (tissue == 0) return {};  // Outside the body.
-  if (channel.label[bin] == 0 && tissue != scene.skin && scene.transfer.knot_count > 0) {
+  if (scene.transfer.knot_count > 0 && is_read_from_ct(scene, {tissue, channel.label[bin]})) {
     const anatomy::HuLaw law = scene.transfer.at(channel.hu[bin]);
     return {law.shaft_n_per_mm, law.shaft_viscosity_ns_per_mm, law.young_kpa};
   }

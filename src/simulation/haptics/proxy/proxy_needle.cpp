@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "haptics/insertion/insertion_law.h"
 #include "haptics/proxy/tip_proxy.h"
 #include "volume/sampling.h"
 
@@ -220,7 +221,7 @@ ProxyNeedleStep in_body(ProxyNeedleState& state, InsertionPath& path, const Hapt
   const Vec3 u = path.channel.direction_P;
   const ShaftResistance resistance = shaft_resistance(path.channel, scene, path.rest_mm);
   const NeedleDrive drive{scene.options.coupling,
-                          {resistance.dry_n, resistance.viscous_ns_per_mm},
+                          {resistance.dry_n, shear_thinning(state.velocity_mm_per_s) * resistance.viscous_ns_per_mm},
                           u.dot(X_PN_ahead.p() - path.channel.origin_P),
                           state.needle_mm,
                           dt_s};

@@ -21,8 +21,7 @@ Vec3 gradient_at_scale(const volume::CtGrid& ct, const Vec3& p_P, double scale_m
   return slope;
 }
 
-std::uint8_t wall_of(const HapticScene& scene, const Vec3& p_P) noexcept {
-  const TissueAt there = tissue_at(scene, p_P);
+std::uint8_t wall_of(const HapticScene& scene, const TissueAt& there) noexcept {
   const std::uint8_t layer = scene.tissues[there.tissue].layer;
   return layer != kNoLayer && scene.layers[layer].is_wall ? layer : kNoLayer;
 }
@@ -36,7 +35,8 @@ bool is_under_skin(const HapticScene& scene, const Vec3& p_P) noexcept {
 /// True if the border at a point belongs to a walled structure, which has its own threshold.
 bool is_wall_border(const HapticScene& scene, const Vec3& p_P, const Vec3& normal_P) noexcept {
   const double reach_mm = 2.0 * scene.transfer.gradient_scale_mm;
-  return wall_of(scene, p_P + reach_mm * normal_P) != wall_of(scene, p_P - reach_mm * normal_P);
+  return wall_of(scene, tissue_at(scene, p_P + reach_mm * normal_P)) !=
+         wall_of(scene, tissue_at(scene, p_P - reach_mm * normal_P));
 }
 
 }  // namespace
@@ -48,8 +48,11 @@ TipLaw tip_law_at(const HapticScene& scene, const Vec3& p_P, const TissueAt& her
     return tip;
   }
   tip.law = scene.transfer.at(volume::sample_linear(scene.patient->ct, p_P));
-  const bool is_labelled = here.label != 0 || here.tissue == scene.skin;
-  if (is_labelled) tip.law.resistance_n = scene.tissues[here.tissue].cutting_n;
+  const double labelled_n = scene.tissues[here.tissue].cutting_n;
+  if (here.tissue == scene.skin || wall_of(scene, here) != kNoLayer)
+    tip.law.resistance_n = labelled_n;
+  else if (here.label != 0)  // a label without a wall may cover the edge of a bone or a calcification
+    tip.law.resistance_n = std::max(labelled_n, tip.law.resistance_n);
   if (here.tissue == scene.skin) return tip;  // its border is the body's surface
 
   const anatomy::HuTransfer& transfer = scene.transfer;
