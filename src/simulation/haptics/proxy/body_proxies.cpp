@@ -32,14 +32,13 @@ struct ShaftTissue {
 };
 
 ShaftTissue tissue_at_bin(const Channel& channel, const HapticScene& scene, std::size_t bin) noexcept {
-  const std::uint8_t tissue = channel.tissue[bin];
-  if (tissue == 0) return {};  // Outside the body.
-  if (scene.transfer.knot_count > 0 && is_read_from_ct(scene, {tissue, channel.label[bin]})) {
-    const anatomy::HuLaw law = scene.transfer.at(channel.hu[bin]);
-    return {law.shaft_n_per_mm, law.shaft_viscosity_ns_per_mm, law.young_kpa};
-  }
-  const TissueLaw& law = scene.tissues[tissue];
-  return {law.stick_n_per_mm, law.viscosity_ns_per_mm, law.young_kpa};
+  const TissueAt here{channel.tissue[bin], channel.label[bin]};
+  if (here.tissue == 0) return {};  // Outside the body.
+  const TissueLaw& labelled = scene.tissues[here.tissue];
+  if (scene.transfer.knot_count == 0 || !is_read_from_ct(scene, here))
+    return {labelled.stick_n_per_mm, labelled.viscosity_ns_per_mm, labelled.young_kpa};
+  const anatomy::HuLaw law = scene.transfer.at(channel.hu[bin]);
+  return {law.shaft_n_per_mm, law.shaft_viscosity_ns_per_mm, here.label != 0 ? labelled.young_kpa : law.young_kpa};
 }
 
 /// Part of the channel of one proxy, within the body.

@@ -163,6 +163,7 @@ Front find_front(ProxyNeedleState& state, const Channel& channel, const HapticSc
   const auto bin = static_cast<std::size_t>(bin_of(front.mm));
   const TissueAt here = front.mm > 0.0 ? TissueAt{channel.tissue[bin], channel.label[bin]} : TissueAt{};
   front.law = tip_law_at(scene, state.proxy_P, here);
+  front.law.law.viscosity_ns_per_mm *= shear_thinning(state.velocity_mm_per_s);
   if (front.mm < channel.cut_to_mm - kHole_mm) {  // in its own channel the tip cuts nothing and meets no border
     front.law.border = 0.0;
     front.law.law.resistance_n = 0.0;
