@@ -74,7 +74,12 @@ Status add_flavum(std::vector<CaseResult>& results, const Setting& setting,
   }
   add(results, name, "n", loss.peak_n, "peak on the device");
   add(results, name + "/drop", "n", loss.drop_n);
-  add(results, name + "/drop-time", "ms", 1000.0 * loss.drop_time_s, "10 to 90 %");
+  add(results, name + "/drop-time", "ms", 1000.0 * loss.drop_time_s,
+      fmt::format("10 to 90 %; lowest force {:.2f} N", loss.lowest_n));
+  trial.is_rigid = true;
+  TROCAR_TRY(const auto without_hand, push(setting, patient, trial));
+  add(results, name + "/drop-time-model", "ms",
+      1000.0 * haptics::judge_loss_of_resistance(without_hand, layer).drop_time_s, "the same, without a hand");
   add(results, name + "/jump", "mm", loss.jump_mm, "needle travel beyond the hand within 0.3 s");
   return {};
 }

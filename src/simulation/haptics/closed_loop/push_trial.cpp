@@ -10,7 +10,7 @@ std::vector<PushSample> run_push_trial(std::shared_ptr<const HapticScene> scene,
                                        const PushTrial& trial) {
   const auto loop = std::make_unique<ClosedLoop>(scene, preset, Holder::kHand);
   loop->carry({0.0, 0.0, trial.from_mm}, Vec3::UnitZ());
-  StylusHold hold = make_hand();
+  StylusHold hold = make_guiding_hand(scene->needle.length_mm);
   const double push_s = (trial.to_mm - trial.from_mm) / trial.speed_mm_per_s;
   const auto ticks = static_cast<int>((push_s + trial.hold_s) / loop->dt_s());
   const double length_mm = scene->needle.length_mm;
@@ -22,7 +22,8 @@ std::vector<PushSample> run_push_trial(std::shared_ptr<const HapticScene> scene,
     const double hand_mm = is_pushing ? trial.from_mm + trial.speed_mm_per_s * t : trial.to_mm;
     hold.X_PS = Pose::translation({0.0, 0.0, hand_mm - length_mm});
     hold.velocity_P = Vec3(0.0, 0.0, is_pushing ? trial.speed_mm_per_s : 0.0);
-    const telemetry::TickSample& tick = loop->run(hold);
+    const telemetry::TickSample& tick =
+        trial.is_rigid ? loop->carry({0.0, 0.0, hand_mm}, Vec3::UnitZ()) : loop->run(hold);
     PushSample sample{t,     hand_mm, loop->tip_P().z(), -(loop->wrench_P().force_n - tick.f_weight_n).z(),
                       false, kNoLayer};
     for (const telemetry::TickEvent& event : tick.events) {
@@ -89,6 +90,7 @@ BoneContact judge_bone_contact(const std::vector<PushSample>& samples, const Pus
 LossOfResistance judge_loss_of_resistance(const std::vector<PushSample>& samples, std::uint8_t layer) noexcept {
   constexpr double kBefore_s = 0.05;
   constexpr double kAfter_s = 0.3;
+  constexpr double kSettled_s = 0.2;
   LossOfResistance loss;
   const auto puncture = std::find_if(samples.begin(), samples.end(),
                                      [&](const PushSample& s) { return s.is_puncture && s.layer == layer; });
@@ -99,16 +101,20 @@ LossOfResistance judge_loss_of_resistance(const std::vector<PushSample>& samples
     if (it->resistance_n > peak->resistance_n) peak = it;
     if (it == samples.begin()) break;
   }
-  auto lowest = puncture;
+  loss.peak_n = loss.lowest_n = peak->resistance_n;
   auto last = puncture;
+  double sum = 0.0;
+  int count = 0;
   for (auto it = puncture; it != samples.end() && it->time_s < puncture->time_s + kAfter_s; ++it) {
-    if (it->resistance_n < lowest->resistance_n) lowest = it;
+    loss.lowest_n = std::min(loss.lowest_n, it->resistance_n);
     last = it;
+    if (it->time_s < puncture->time_s + kSettled_s) continue;
+    sum += it->resistance_n;
+    ++count;
   }
-  loss.peak_n = peak->resistance_n;
-  loss.drop_n = peak->resistance_n - lowest->resistance_n;
+  loss.drop_n = peak->resistance_n - sum / std::max(count, 1);
   const auto falls_to = [&](double share) {
-    return std::find_if(peak, lowest,
+    return std::find_if(peak, last,
                         [&](const PushSample& s) { return s.resistance_n <= loss.peak_n - share * loss.drop_n; });
   };
   loss.drop_time_s = falls_to(0.9)->time_s - falls_to(0.1)->time_s;

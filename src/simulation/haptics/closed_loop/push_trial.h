@@ -6,9 +6,10 @@
 
 namespace trocar::haptics {
 
-/// A hand pushes the device's needle straight down (+z) at constant speed and then holds it; records the force on the
-/// device tick by tick (docs/validation.md, Bone and loss of resistance).
+/// A hand that also guides the needle at its tip pushes the device's needle straight down (+z) at constant speed and then
+/// holds it; records the force on the device tick by tick (docs/validation.md, Bone and loss of resistance).
 struct PushTrial {
+  bool is_rigid = false;  ///< The device is moved, whatever the force: what the model does without a hand.
   double from_mm = -5.0;         ///< Start of the hand's target position of the tip; the skin lies at z = 0.
   double to_mm = 40.0;           ///< End of the hand's target position of the tip.
   double speed_mm_per_s = 10.0;  ///< Range 1..200.
@@ -43,7 +44,8 @@ BoneContact judge_bone_contact(const std::vector<PushSample>& samples, const Pus
 /// Metrics of the puncture of one layer; all zero without a puncture.
 struct LossOfResistance {
   double peak_n = 0.0;       ///< Largest force on the device within 50 ms before the puncture.
-  double drop_n = 0.0;       ///< Decrease to the lowest force within 0.3 s.
+  double drop_n = 0.0;       ///< Decrease to the mean force from 0.2 to 0.3 s after the puncture.
+  double lowest_n = 0.0;     ///< Lowest force within 0.3 s: the hand swings.
   double drop_time_s = 0.0;  ///< Time from a tenth to nine tenths of the drop.
   double jump_mm = 0.0;      ///< Largest advance of the needle beyond the hand's target within 0.3 s.
   bool has_given_way = false;
