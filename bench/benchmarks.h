@@ -14,7 +14,7 @@ Result<std::vector<CaseResult>> run_haptics_benchmark();
 /// A whole attempt of 30 simulated seconds, and the whole process.
 Result<std::vector<CaseResult>> run_session_benchmark();
 /// Forces of an insertion into the embedded patient: peaks, drops, second insertion.
-Result<std::vector<CaseResult>> run_insertion_benchmark();
+Result<std::vector<CaseResult>> run_insertion_benchmark(const Options& options);
 /// Partly segmented data compared with fully segmented data along planned paths: the study of the Luebeck group.
 Result<std::vector<CaseResult>> run_paths_benchmark(const Options& options);
 /// Novices with many seeds on the embedded patient and on the real CTs: scores, and the path constraint tick by tick.
@@ -24,6 +24,7 @@ Result<std::vector<CaseResult>> run_curves_benchmark(const Options& options);
 /// Every tissue, force model, device and holder in closed loop: the loop comes to rest and generates no energy.
 Result<std::vector<CaseResult>> run_stability_benchmark(const Options& options);
 /// Needle pushed on bone and through the ligamentum flavum, by device and force model.
+Result<std::vector<CaseResult>> run_coupling_benchmark(const Options& options);
 Result<std::vector<CaseResult>> run_contact_benchmark(const Options& options);
 /// Slow loops on every simulated device with a moving hand: time to zero force, force, travel.
 Result<std::vector<CaseResult>> run_faults_benchmark(const Options& options);

@@ -21,15 +21,16 @@ constexpr double kAfter_mm = 10.0;  ///< Maximum time for the tip to arrive.
 constexpr haptics::ForceModel kModels[] = {haptics::ForceModel::kInsertion, haptics::ForceModel::kProxy,
                                            haptics::ForceModel::kCombined};
 
-/// A patient and its needle.
+/// A patient and its needles: the usual one, and others for comparison.
 struct Way {
   std::string patient;
-  std::string needle;
+  std::vector<std::string> needles;
 };
 constexpr const char* kOtherNeedle = "chiba-22g";
 const std::vector<Way>& layered_ways() {
-  static const std::vector<Way> ways{
-      {"layers-lumbar", "quincke-22g"}, {"layers-ascites", "paracentesis-14g"}, {"layers-liver", kOtherNeedle}};
+  static const std::vector<Way> ways{{"layers-lumbar", {"quincke-22g", "tuohy-18g"}},
+                                     {"layers-ascites", {"paracentesis-14g"}},
+                                     {"layers-liver", {kOtherNeedle, "biopsy-18g"}}};
   return ways;
 }
 
@@ -49,10 +50,10 @@ std::string short_name(std::string name) {
   return name;
 }
 
-std::string needle_for(const std::string& patient) {
+std::vector<std::string> needles_for(const std::string& patient) {
   for (const Way& way : layered_ways())
-    if (way.patient == patient) return way.needle;
-  return kOtherNeedle;
+    if (way.patient == patient) return way.needles;
+  return {kOtherNeedle};
 }
 
 struct Tables {
@@ -68,11 +69,10 @@ Result<Tables> load_tables_of_curves() {
   return tables;
 }
 
-Result<PathCurves> curves_of(std::shared_ptr<const anatomy::VirtualPatient> patient, const Tables& tables,
-                             const Options& options) {
+Result<PathCurves> curves_of(std::shared_ptr<const anatomy::VirtualPatient> patient, const std::string& needle_name,
+                             bool is_usual_needle, const Tables& tables, const Options& options) {
   if (patient->paths.empty())
     return fail_usage("the patient has no needle path of its own", patient->name, "use an embedded patient");
-  const std::string needle_name = needle_for(patient->name);
   const auto needle = std::find_if(tables.needles.begin(), tables.needles.end(),
                                    [&](const tasks::Needle& candidate) { return candidate.name == needle_name; });
   if (needle == tables.needles.end())
@@ -85,6 +85,7 @@ Result<PathCurves> curves_of(std::shared_ptr<const anatomy::VirtualPatient> pati
   const Segment with_rest{motion.line_P.a, motion.line_P.b + kAfter_mm * motion.line_P.direction()};
   PathCurves path;
   path.name = short_name(patient->name);
+  if (!is_usual_needle) path.name += "-" + needle_name;
   path.title = fmt::format("{}, {}, {:.0f} mm/s", patient->name, needle_name, kSpeed_mm_per_s);
   for (const haptics::ForceModel model : kModels) {
     if (options.force_model && *options.force_model != model) continue;
@@ -99,6 +100,17 @@ Result<PathCurves> curves_of(std::shared_ptr<const anatomy::VirtualPatient> pati
     path.curves.push_back(std::move(curve));
   }
   return path;
+}
+
+/// Borders without a wall at which the force has a peak: where the needle's tip is at the peak.
+void add_borders(std::vector<CaseResult>& results, const PathCurves& path) {
+  for (const NamedCurve& curve : path.curves)
+    for (const cases::CurveBorder& border : cases::find_curve_borders(curve.points, path.pieces))
+      results.push_back({fmt::format("curves/{}/{}/border-of-{}", path.name, curve.name, border.name),
+                         "mm",
+                         figure_of(border.tip_mm - border.at_mm),
+                         {},
+                         fmt::format("tip behind the border at its peak of {:.2f} N", border.peak_n)});
 }
 
 /// One line per puncture, in order; repeated punctures are numbered. In JSON, drop and drop time are separate cases; in
@@ -153,13 +165,17 @@ Result<std::vector<CaseResult>> run_curves_benchmark(const Options& options) {
   TROCAR_TRY(const auto patients, patients_of(options));
   std::vector<PathCurves> paths;
   for (const auto& patient : patients) {
-    TROCAR_TRY(PathCurves path, curves_of(patient, tables, options));
-    paths.push_back(std::move(path));
+    const std::vector<std::string> needles = needles_for(patient->name);
+    for (const std::string& needle : needles) {
+      TROCAR_TRY(PathCurves path, curves_of(patient, needle, needle == needles.front(), tables, options));
+      paths.push_back(std::move(path));
+    }
   }
   std::vector<CaseResult> results;
   for (const PathCurves& path : paths) {
     if (options.print && options.out.empty()) options.print(curves_text(path));
     add_cases(results, path, static_cast<bool>(options.print));
+    add_borders(results, path);
   }
   if (!options.out.empty()) TROCAR_TRY_STATUS(write_all(paths, tables.tissues, options.out));
   return results;

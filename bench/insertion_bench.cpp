@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "anatomy/phantom/phantom.h"
+#include "bench/benchmarks.h"
 #include "bench/harness.h"
 #include "cases/needle_geometry.h"
 #include "cases/prepare_case.h"
@@ -16,6 +17,7 @@ namespace trocar::bench {
 namespace {
 
 constexpr double kDt_s = 0.001;
+constexpr double kBeyond_mm = 10.0;  ///< The device moves past the target: the tip lags it while a layer is loaded.
 
 std::shared_ptr<const haptics::HapticScene> make_scene(const cases::Case& the_case) {
   const haptics::NeedleGeometry needle = cases::needle_geometry(the_case.needle);
@@ -68,6 +70,33 @@ void add_punctures(std::vector<CaseResult>& results, const anatomy::TissueTable&
   }
 }
 
+/// Force against displacement of the device before the skin is punctured: the slope of a straight line through the first
+/// 5 mm, as in a test of indentation, and the mean slope up to the puncture.
+void add_skin_slope(std::vector<CaseResult>& results, const std::vector<telemetry::TickSample>& samples, double step_mm,
+                    const std::string& name) {
+  constexpr double kFirst_mm = 5.0;
+  double indentation_mm = 0.0;
+  double square = 0.0;
+  double product = 0.0;
+  for (const telemetry::TickSample& sample : samples) {
+    const double force_n = axial_resistance_n(sample);
+    if (sample.phase != telemetry::InsertionPhase::kLoading && indentation_mm == 0.0) continue;
+    indentation_mm += step_mm;
+    if (indentation_mm <= kFirst_mm) {
+      square += indentation_mm * indentation_mm;
+      product += indentation_mm * force_n;
+    }
+    if (sample.events[0].kind != telemetry::EventKind::kPuncture) continue;
+    results.push_back({fmt::format("insertion/{}/skin-slope", name),
+                       "n_per_mm",
+                       figure_of(product / square),
+                       {},
+                       fmt::format("over the first {:.0f} mm; up to the puncture, after {:.1f} mm, mean {:.3f} N/mm",
+                                   kFirst_mm, indentation_mm, force_n / indentation_mm)});
+    return;
+  }
+}
+
 double mean_resistance_n(const std::vector<telemetry::TickSample>& samples, double from_mm, double to_mm) {
   double sum = 0.0;
   int count = 0;
@@ -94,7 +123,7 @@ void add_second_insertion(std::vector<CaseResult>& results, const cases::Case& t
                           const haptics::HapticScene& scene) {
   haptics::HapticState state;
   const Segment& path = the_case.plan.line_P;
-  const double length = path.length_mm();
+  const double length = path.length_mm() + kBeyond_mm;
   const auto first = drive(state, scene, path, -10.0, length, 10.0);
   drive(state, scene, path, length, -10.0, 20.0);
   const auto second = drive(state, scene, path, -10.0, length, 10.0);
@@ -114,9 +143,12 @@ void add_second_insertion(std::vector<CaseResult>& results, const cases::Case& t
 
 }  // namespace
 
-Result<std::vector<CaseResult>> run_insertion_benchmark() {
-  TROCAR_TRY(anatomy::VirtualPatient generated, anatomy::generate_phantom("abdomen"));
-  const auto patient = std::make_shared<const anatomy::VirtualPatient>(std::move(generated));
+Result<std::vector<CaseResult>> run_insertion_benchmark(const Options& options) {
+  std::shared_ptr<const anatomy::VirtualPatient> patient = options.patient;
+  if (!patient) {
+    TROCAR_TRY(anatomy::VirtualPatient generated, anatomy::generate_phantom("abdomen"));
+    patient = std::make_shared<const anatomy::VirtualPatient>(std::move(generated));
+  }
   std::vector<CaseResult> results;
   for (const char* profile : {"paper-a", "tented"}) {
     cases::CaseOptions options;
@@ -126,8 +158,11 @@ Result<std::vector<CaseResult>> run_insertion_benchmark() {
     if (!scene) return fail("the scene could not be built", "bench insertion", "check data/tissues.toml");
     for (const double speed : {2.0, 10.0, 50.0}) {
       haptics::HapticState state;
-      const auto samples = drive(state, *scene, the_case.plan.line_P, -10.0, the_case.plan.length_mm, speed);
-      add_punctures(results, the_case.tissues, samples, fmt::format("{}-{:.0f}mm_s", profile, speed));
+      const auto samples = drive(state, *scene, the_case.plan.line_P, -10.0,
+                                 the_case.plan.length_mm + kBeyond_mm, speed);
+      const std::string name = fmt::format("{}-{:.0f}mm_s", profile, speed);
+      add_skin_slope(results, samples, speed * kDt_s, name);
+      add_punctures(results, the_case.tissues, samples, name);
     }
     if (std::string_view(profile) == "paper-a") add_second_insertion(results, the_case, *scene);
   }

@@ -17,8 +17,8 @@
 namespace trocar::bench {
 namespace {
 
-constexpr double kSurface_mm = 10.0;  // adipose tissue above it, under the skin
-constexpr double kDeep_mm = 40.0;
+constexpr double kSurface_mm = 22.0;  // adipose tissue above it, under the skin, which gives way for 18 mm
+constexpr double kDeep_mm = 52.0;
 constexpr double kAtWall_mm = 0.5;  // position below the wall's resting surface: no wall is punctured
 constexpr double kIntoBone_mm = 2.0;
 constexpr std::array kModels{haptics::ForceModel::kInsertion, haptics::ForceModel::kProxy,

@@ -83,6 +83,7 @@ Status fill_laws(HapticScene& scene, const anatomy::TissueTable& table) {
   scene.transfer = table.transfer;
   for (std::size_t i = 0; i < scene.transfer.knot_count; ++i) {
     anatomy::HuLaw& law = scene.transfer.laws[i];
+    law.stiffness_n_per_mm *= size;  // a thicker needle indents no further before the border gives way
     law.normal_n *= size;
     law.tangential_n *= size;
     law.resistance_n *= size;

@@ -62,6 +62,30 @@ std::vector<CurveEvent> find_curve_events(const std::vector<CurvePoint>& curve, 
   return events;
 }
 
+std::vector<CurveBorder> find_curve_borders(const std::vector<CurvePoint>& curve, const std::vector<PathPiece>& pieces) {
+  constexpr double kBefore_mm = 3.0;
+  constexpr double kBehind_mm = 10.0;
+  constexpr double kStandsOut_n = 0.2;
+  std::vector<CurveBorder> borders;
+  for (std::size_t i = 1; i < pieces.size(); ++i) {
+    const double at_mm = pieces[i].from_mm;
+    const double to_mm = std::min(at_mm + kBehind_mm, pieces[i].to_mm);
+    const CurvePoint* peak = nullptr;
+    double before_n = 0.0, after_n = 0.0;
+    bool has_puncture = false;
+    for (const CurvePoint& point : curve) {
+      if (point.tip_mm < at_mm - kBefore_mm || point.tip_mm > to_mm) continue;
+      has_puncture = has_puncture || point.layer != haptics::kNoLayer;
+      if (peak == nullptr) before_n = point.force_n;
+      if (peak == nullptr || point.force_n > peak->force_n) peak = &point;
+      after_n = point.force_n;
+    }
+    if (peak == nullptr || has_puncture || peak->force_n < std::max(before_n, after_n) + kStandsOut_n) continue;
+    borders.push_back({pieces[i].name, at_mm, peak->tip_mm, peak->force_n});
+  }
+  return borders;
+}
+
 std::vector<PathPiece> pieces_along(const haptics::HapticScene& scene, const anatomy::TissueTable& tissues,
                                     const Segment& line_P) {
   constexpr double kStep_mm = 0.05;

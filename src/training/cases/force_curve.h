@@ -43,6 +43,16 @@ struct PathPiece {
   std::string tissue;  ///< Name in the tissue table.
 };
 
+/// A border between tissues at which the force has a peak without a puncture: a border of the CT.
+struct CurveBorder {
+  std::string name;       ///< Label or tissue behind it.
+  double at_mm = 0.0;     ///< Its place on the path at rest.
+  double tip_mm = 0.0;    ///< Place of the needle's tip at the peak.
+  double peak_n = 0.0;
+};
+/// From 3 mm before a border to 10 mm behind it, or to the next; a peak stands out by a fifth of a newton.
+std::vector<CurveBorder> find_curve_borders(const std::vector<CurvePoint>& curve, const std::vector<PathPiece>& pieces);
+
 /// Moves the device along the path and beyond its end (after_mm) until the needle's tip reaches it: the tip lags
 /// because of the compliance of tissue and coupling. Excludes the stylus' weight if the scene does.
 std::vector<CurvePoint> force_curve(const haptics::HapticScene& scene, const PrescribedMotion& motion);

@@ -32,11 +32,14 @@ bool is_under_skin(const HapticScene& scene, const Vec3& p_P) noexcept {
   return volume::sample_linear(scene.patient->skin_distance_mm, p_P) > -(scene.transfer.gradient_scale_mm + kBlur_mm);
 }
 
-/// True if the border at a point belongs to a walled structure, which has its own threshold.
-bool is_wall_border(const HapticScene& scene, const Vec3& p_P, const Vec3& normal_P) noexcept {
+/// True if the labels decide on the border at a point: it belongs to a walled structure, which has its own threshold, or
+/// to a labelled tissue that is cut and has no surface to pierce (a ligament).
+bool is_border_of_label(const HapticScene& scene, const Vec3& p_P, const Vec3& normal_P) noexcept {
   const double reach_mm = 2.0 * scene.transfer.gradient_scale_mm;
-  return wall_of(scene, tissue_at(scene, p_P + reach_mm * normal_P)) !=
-         wall_of(scene, tissue_at(scene, p_P - reach_mm * normal_P));
+  const TissueAt denser = tissue_at(scene, p_P + reach_mm * normal_P);
+  if (wall_of(scene, denser) != wall_of(scene, tissue_at(scene, p_P - reach_mm * normal_P))) return true;
+  const TissueLaw& law = scene.tissues[denser.tissue];
+  return denser.label != 0 && denser.tissue != scene.skin && law.layer == kNoLayer && law.cutting_n > 0.0;
 }
 
 }  // namespace
@@ -60,7 +63,7 @@ TipLaw tip_law_at(const HapticScene& scene, const Vec3& p_P, const TissueAt& her
   const double strength = gradient.norm();
   if (!(strength > transfer.gradient_none_hu_per_mm)) return tip;
   const Vec3 normal_P = gradient / strength;
-  if (is_under_skin(scene, p_P) || is_wall_border(scene, p_P, normal_P)) return tip;
+  if (is_under_skin(scene, p_P) || is_border_of_label(scene, p_P, normal_P)) return tip;
   const double t = std::min(1.0, (strength - transfer.gradient_none_hu_per_mm) /
                                      (transfer.gradient_full_hu_per_mm - transfer.gradient_none_hu_per_mm));
   tip.normal_P = normal_P;
