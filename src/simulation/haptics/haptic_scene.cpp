@@ -31,6 +31,7 @@ Status check_numbers(const NeedleGeometry& needle, const DeviceCapability& devic
   TROCAR_TRY_STATUS(check_range(device.max_stiffness_n_per_mm, 0.1, 20.0, "device stiffness (N/mm)"));
   TROCAR_TRY_STATUS(check_range(device.peak_force_n, 0.1, 200.0, "device peak force (N)"));
   TROCAR_TRY_STATUS(check_range(device.peak_torque_nmm, 0.0, 5000.0, "device peak torque (N mm)"));
+  TROCAR_TRY_STATUS(check_range(device.peak_roll_nmm, 0.0, 5000.0, "device peak roll torque (N mm)"));
   TROCAR_TRY_STATUS(check_range(device.stylus_weight_n, 0.0, 5.0, "stylus weight (N)"));
   const auto& constraint = options.constraint;
   TROCAR_TRY_STATUS(check_range(constraint.linear_mm, 0.5, 20.0, "path constraint d0 (mm)"));

@@ -32,6 +32,7 @@ Result<ForceModel> parse_force_model(std::string_view name);
 struct DeviceCapability {
   double peak_force_n = 37.5;
   double peak_torque_nmm = 515.0;       ///< 0: senses rotation but has no torque.
+  double peak_roll_nmm = 170.0;         ///< Torque about the stylus' own axis; 0: as the peak torque.
   double max_stiffness_n_per_mm = 3.5;  ///< Range 0.1..20. Source: vendor's nominal figure, references.md.
   double stylus_weight_n = 0.5;         ///< Weight of links and stylus on the hand. Range 0..5. [assumed]
   double stylus_lever_mm = 20.0;        ///< Centre of that weight behind the stylus origin, along -z of S. [assumed]

@@ -28,6 +28,7 @@ void visit_numbers(Options& options, Device& device, Visitor&& visit) {
   visit("bending", options.has_bending);
   visit("device.peak_force", device.peak_force_n);
   visit("device.peak_torque", device.peak_torque_nmm);
+  visit("device.peak_roll", device.peak_roll_nmm);
   visit("device.stiffness", device.max_stiffness_n_per_mm);
   visit("device.weight", device.stylus_weight_n);
   visit("device.lever", device.stylus_lever_mm);

@@ -87,7 +87,7 @@ HapticOutput tick(HapticState& state, const HapticInput& input, const HapticScen
 
   // The device receives the coupling's force: the balance of the laws and the holding force.
   sample.device_f_n = sample.f_total_n + sample.axis * sample.f_stick_n;
-  limit_to_device(output, weight, events, scene);
+  limit_to_device(output, weight, X_PS.R().col(2), events, scene);
   state.last = sample;
   return output;
 }

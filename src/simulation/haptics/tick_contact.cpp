@@ -40,7 +40,7 @@ HapticOutput tick_contact(HapticState& state, const HapticInput& input, const Ha
   if (step.has_jumped) events.add(telemetry::LimitReason::kJumped);
   if (step.started_inside) events.add(telemetry::LimitReason::kResumedInside);
   if (step.is_bound) events.add(telemetry::LimitReason::kSolverBound);
-  limit_to_device(output, weight, events, scene);
+  limit_to_device(output, weight, X_PS.R().col(2), events, scene);
   state.last = sample;
   return output;
 }

@@ -82,9 +82,12 @@ Status read_forces(const config::TomlTable& row, DevicePreset& preset) {
   TROCAR_TRY_STATUS(read_given(row, "max_damping_ns_per_mm", {0.0, 0.1}, preset.max_damping_ns_per_mm));
   if (const Status fits = check(preset.coupling, limits_of(preset)); !fits)
     return fail(fits.error().what, row.where(), fits.error().advice);
-  capability.peak_torque_nmm = 0.0;
+  capability.peak_torque_nmm = capability.peak_roll_nmm = 0.0;
   if (preset.actuated_dof != 6) return {};
   TROCAR_TRY_STATUS(read_value(row, "peak_torque_nmm", {1.0, 5000.0}, capability.peak_torque_nmm));
+  TROCAR_TRY_STATUS(read_given(row, "peak_roll_nmm", {1.0, capability.peak_torque_nmm}, capability.peak_roll_nmm));
+  const double most_roll_nmm = capability.peak_roll_nmm > 0.0 ? capability.peak_roll_nmm : capability.peak_torque_nmm;
+  TROCAR_TRY_STATUS(read_optional(row, "continuous_roll_nmm", {0.1, most_roll_nmm}, preset.continuous_roll_nmm));
   return read_optional(row, "continuous_torque_nmm", {0.1, capability.peak_torque_nmm}, preset.continuous_torque_nmm);
 }
 
@@ -137,7 +140,7 @@ Result<DevicePreset> read_preset(const config::TomlTable& row, const std::string
                                          "base_mm",
                                          "base_deg"};
   if (preset.sensed_dof == 6) known.push_back("angle_count_deg");
-  if (preset.actuated_dof == 6) known.insert(known.end(), {"peak_torque_nmm", "continuous_torque_nmm"});
+  if (preset.actuated_dof == 6) known.insert(known.end(), {"peak_torque_nmm", "continuous_torque_nmm", "peak_roll_nmm", "continuous_roll_nmm"});
   TROCAR_TRY_STATUS(row.check_keys(known));
   return preset;
 }
@@ -171,6 +174,7 @@ DeviceCapability scene_capability(const DevicePreset& preset) noexcept {
   DeviceCapability capability = preset.capability;
   capability.peak_force_n /= preset.force_scale;
   capability.peak_torque_nmm /= preset.force_scale;
+  capability.peak_roll_nmm /= preset.force_scale;
   capability.stylus_weight_n /= preset.force_scale;
   capability.max_stiffness_n_per_mm /= preset.motion_scale * preset.force_scale;
   return capability;

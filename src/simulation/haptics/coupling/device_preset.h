@@ -23,6 +23,7 @@ struct DevicePreset {
   DeviceCapability capability;               ///< Peak values; peak torque 0 without torque.
   std::optional<double> continuous_force_n;  ///< Absent where no value is known. Range 0.1..200.
   std::optional<double> continuous_torque_nmm;
+  std::optional<double> continuous_roll_nmm;  ///< About the stylus' own axis.
   EncoderParams encoder;
   double apparent_mass_kg = 0.1;        ///< Apparent mass at the stylus. Range 0.01..2.
   double friction_n = 0.1;              ///< Coulomb friction of the joints, at the stylus. Range 0..2.

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "geometry/clamp_norm.h"
 #include "haptics/tick.h"
 #include "telemetry/tick_events.h"
@@ -30,15 +33,22 @@ inline Wrench weight_compensation(const HapticScene& scene, const Mat3& R_PS) no
   return {lift_P, arm_P.cross(lift_P)};
 }
 
-/// Last step of every tick. Limits `device_f_n` and the torque to the device's peaks and adds limit events. Transforms
+/// Last step of every tick. Limits `device_f_n`, the torque and its part about the stylus to the device's peaks and adds
+/// limit events. Transforms
 /// both, and the weight's part of them, to D.
-inline void limit_to_device(HapticOutput& output, const Wrench& weight_P, EventList& events,
+inline void limit_to_device(HapticOutput& output, const Wrench& weight_P, const Vec3& stylus_axis_P, EventList& events,
                             const HapticScene& scene) noexcept {
   telemetry::TickSample& sample = output.sample;
   Vec3 torque_P = sample.tau_nmm;
   const bool force_limited = clamp_norm(sample.device_f_n, scene.device.peak_force_n);
   const bool has_torque = scene.device.has_torque();
-  const bool torque_limited = has_torque && clamp_norm(torque_P, scene.device.peak_torque_nmm);
+  bool torque_limited = has_torque && clamp_norm(torque_P, scene.device.peak_torque_nmm);
+  const double roll_nmm = torque_P.dot(stylus_axis_P);
+  const double most_nmm = scene.device.peak_roll_nmm;
+  if (has_torque && most_nmm > 0.0 && std::abs(roll_nmm) > most_nmm) {
+    torque_P += (std::clamp(roll_nmm, -most_nmm, most_nmm) - roll_nmm) * stylus_axis_P;
+    torque_limited = true;
+  }
   if (force_limited) events.add(telemetry::LimitReason::kForceClamped);
   if (torque_limited) events.add(telemetry::LimitReason::kTorqueClamped);
   sample.limited = force_limited || torque_limited;

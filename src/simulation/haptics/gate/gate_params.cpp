@@ -17,11 +17,13 @@ struct FieldRange {
   double careful;
 };
 
-constexpr std::array<FieldRange, 33> kRanges{{
+constexpr std::array<FieldRange, 35> kRanges{{
     {"peak_force_n", &GateParams::peak_force_n, 0.1, 200.0, 0.0},
     {"peak_torque_nmm", &GateParams::peak_torque_nmm, 0.0, 5000.0, 0.0},
     {"continuous_force_n", &GateParams::continuous_force_n, 0.05, 200.0, 0.0},
     {"continuous_torque_nmm", &GateParams::continuous_torque_nmm, 0.0, 5000.0, 0.0},
+    {"peak_roll_nmm", &GateParams::peak_roll_nmm, 0.0, 5000.0, 1e-3},
+    {"continuous_roll_nmm", &GateParams::continuous_roll_nmm, 0.0, 5000.0, 0.0},
     {"thermal_time_s", &GateParams::thermal_time_s, 0.5, 600.0, 0.5},
     {"max_damping_ns_per_mm", &GateParams::max_damping_ns_per_mm, 0.0, 0.1, 0.0},
     {"passivity_margin_mj", &GateParams::passivity_margin_mj, 0.0, 50.0, 0.0},
@@ -67,6 +69,8 @@ Status check(const GateParams& params) {
     return fail(fmt::format("{} is {}", range.name, params.*range.field), kWhere,
                 fmt::format("give a number from {} to {}", range.low, range.high));
   }
+  if (params.peak_roll_nmm > 0.0 && params.continuous_roll_nmm > params.peak_roll_nmm)
+    return fail("a continuous limit is above its peak", kWhere, "give the device's continuous roll torque");
   if (params.continuous_force_n > params.peak_force_n || params.continuous_torque_nmm > params.peak_torque_nmm) {
     if (params.peak_torque_nmm > 0.0 || params.continuous_force_n > params.peak_force_n)
       return fail("a continuous limit is above its peak", kWhere, "give the device's continuous force and torque");
@@ -83,6 +87,7 @@ GateParams made_safe(const GateParams& params) noexcept {
   }
   safe.continuous_force_n = std::min(safe.continuous_force_n, safe.peak_force_n);
   safe.continuous_torque_nmm = std::min(safe.continuous_torque_nmm, safe.peak_torque_nmm);
+  safe.continuous_roll_nmm = std::min(safe.continuous_roll_nmm, safe.peak_roll_nmm);
   safe.brake_ns_per_mm = std::min(safe.brake_ns_per_mm, safe.max_damping_ns_per_mm);
   return safe;
 }

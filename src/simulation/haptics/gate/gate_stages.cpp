@@ -92,7 +92,8 @@ bool restore(GateState& state) noexcept {
   const bool is_state_valid =
       is_watch_valid && is_valid(state.last) && is_valid(state.watched) && state.scale >= 0.0 && state.scale <= 1.0 &&
       std::isfinite(state.energy_mj) && state.force_heat >= 0.0 && std::isfinite(state.force_heat) &&
-      state.torque_heat >= 0.0 && std::isfinite(state.torque_heat) && is_valid(state.runaway_s) &&
+      state.torque_heat >= 0.0 && std::isfinite(state.torque_heat) && state.roll_heat >= 0.0 &&
+      std::isfinite(state.roll_heat) && is_valid(state.runaway_s) &&
       is_valid(state.quiet_s) && is_valid(state.drop_from_n) && is_valid(state.drop_s) &&
       state.mode <= telemetry::GateMode::kFault && state.fault <= telemetry::kLastGateFault &&
       (state.mode == telemetry::GateMode::kFault) == (state.fault != telemetry::GateFault::kNone);
@@ -102,7 +103,7 @@ bool restore(GateState& state) noexcept {
   state = GateState{};
   state.fault = fault;
   state.mode = fault == telemetry::GateFault::kNone ? telemetry::GateMode::kOff : telemetry::GateMode::kFault;
-  state.force_heat = state.torque_heat = 1.0;  // unknown motor temperature: the maximum is assumed
+  state.force_heat = state.torque_heat = state.roll_heat = 1.0;  // unknown motor temperature: the maximum is assumed
   return false;
 }
 
@@ -142,15 +143,18 @@ GateLimits warm_limits(const GateState& state, const GateParams& params) noexcep
   GateLimits limits;
   limits.force_n = warm_limit(state.force_heat, params.peak_force_n, params.continuous_force_n);
   limits.torque_nmm = warm_limit(state.torque_heat, params.peak_torque_nmm, params.continuous_torque_nmm);
+  limits.roll_nmm = warm_limit(state.roll_heat, params.peak_roll_nmm, params.continuous_roll_nmm);
   limits.is_force_warm = limits.force_n < params.peak_force_n;
   limits.is_torque_warm = limits.torque_nmm < params.peak_torque_nmm;
   return limits;
 }
 
-void warm(GateState& state, double dt_s, const GateParams& params) noexcept {
+void warm(GateState& state, const Vec3& axis, double dt_s, const GateParams& params) noexcept {
   const double share = -std::expm1(-dt_s / params.thermal_time_s);
   state.force_heat = warmed(state.force_heat, state.last.force_n.norm(), params.continuous_force_n, share);
   state.torque_heat = warmed(state.torque_heat, state.last.torque_nmm.norm(), params.continuous_torque_nmm, share);
+  const double roll_nmm = std::abs(roll_of(state.last.torque_nmm, axis));
+  state.roll_heat = warmed(state.roll_heat, roll_nmm, params.continuous_roll_nmm, share);
 }
 
 Vec3 slew_limited(const Vec3& last, const Vec3& target, double most) noexcept {
@@ -181,6 +185,17 @@ Wrench limited(const Wrench& wrench, const Vec3& axis, double force_n, double to
     result.torque_nmm = factor * wrench.torque_nmm;
   }
   return {clipped(result.force_n, force_n), clipped(result.torque_nmm, torque_nmm)};
+}
+
+double roll_of(const Vec3& torque_nmm, const Vec3& axis) noexcept {
+  const double length = axis.norm();
+  return length > kLeastAxis ? torque_nmm.dot(axis) / length : 0.0;
+}
+
+Vec3 roll_limited(const Vec3& torque_nmm, const Vec3& axis, double most) noexcept {
+  const double roll_nmm = roll_of(torque_nmm, axis);
+  if (!(most > 0.0) || std::abs(roll_nmm) <= most) return torque_nmm;
+  return torque_nmm + (std::clamp(roll_nmm, -most, most) - roll_nmm) / axis.norm() * axis;
 }
 
 }  // namespace trocar::haptics::detail

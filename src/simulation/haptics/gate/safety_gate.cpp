@@ -135,6 +135,9 @@ Wrench pass_stages(GateState& state, const GateInput& input, const GateParams& p
   if (wanted.torque_nmm.norm() > limits.torque_nmm && params.peak_torque_nmm > 0.0)
     actions |= limits.is_torque_warm ? kGateContinuous : kGateClamp;
   wanted = detail::limited(wanted, input.axis, limits.force_n, limits.torque_nmm);
+  const Vec3 rolled_nmm = detail::roll_limited(wanted.torque_nmm, input.axis, limits.roll_nmm);
+  if (rolled_nmm != wanted.torque_nmm) actions |= limits.roll_nmm < params.peak_roll_nmm ? kGateContinuous : kGateClamp;
+  wanted.torque_nmm = rolled_nmm;
   const Wrench target{state.scale * wanted.force_n, state.scale * wanted.torque_nmm};
   const Wrench out{
       detail::slew_limited(state.last.force_n, target.force_n, params.slew_n_per_s * period.rise_s),
@@ -186,6 +189,7 @@ void restart_gate(GateState& state) noexcept {
   fresh.mode = state.fault == telemetry::GateFault::kNone ? telemetry::GateMode::kOff : telemetry::GateMode::kFault;
   fresh.force_heat = state.force_heat;
   fresh.torque_heat = state.torque_heat;
+  fresh.roll_heat = state.roll_heat;
   fresh.slow_s = state.fault == telemetry::GateFault::kLoopSlow ? state.slow_s : 0.0;
   state = fresh;
 }
@@ -220,12 +224,14 @@ GateOutput step_gate(GateState& state, const GateInput& input, const GateParams&
     if (state.coupling_share < 1.0) output.actions |= kGateSlowLoop;
   }
   output.wrench = detail::limited(out, Vec3::Zero(), params.peak_force_n, params.peak_torque_nmm);
+  if (is_input_valid)
+    output.wrench.torque_nmm = detail::roll_limited(output.wrench.torque_nmm, input.axis, params.peak_roll_nmm);
   output.actions |= mode_actions(state.mode);
   if (is_client_silent(input, params)) output.actions |= kGateStale;
   follow_drop(state, output.wrench.force_n.norm(), period.dt_s, output);
   state.last = output.wrench;
   state.last_v_mm_per_s = is_input_valid ? input.v_mm_per_s : Vec3(Vec3::Zero());
-  detail::warm(state, period.dt_s, params);
+  detail::warm(state, is_input_valid ? input.axis : Vec3(Vec3::Zero()), period.dt_s, params);
   return output;
 }
 

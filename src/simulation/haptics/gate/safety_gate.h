@@ -29,6 +29,8 @@ struct GateParams {
   double peak_torque_nmm = 515;  ///< 0: the device gives no torque.
   double continuous_force_n = 6.2;
   double continuous_torque_nmm = 188;
+  double peak_roll_nmm = 170;  ///< Torque about GateInput::axis; 0: only the whole torque is limited. Range 0..5000.
+  double continuous_roll_nmm = 48;
   double thermal_time_s = 10.0;         ///< Time constant of the motors' first-order warming. Range 0.5..600.
   double max_damping_ns_per_mm = 0.01;  ///< Upper limit of passivity damping: what the device permits at 1 kHz.
   double passivity_margin_mj = 2.0;     ///< Energy margin before damping starts (counts, delay). Range 0..50.
@@ -99,6 +101,7 @@ struct GateState {
   double quiet_s = 0.0;     ///< Time since more than a small force was requested.
   double force_heat = 0.0;  ///< Mean square of the force divided by the square of the continuous force: 1 = warm.
   double torque_heat = 0.0;
+  double roll_heat = 0.0;
   double runaway_s = 0.0;
   double drop_from_n = 0.0;  ///< Force at the start of the present drop.
   double drop_s = 0.0;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "core/random.h"
 #include "core/testing/allocation_guard.inc.h"
@@ -193,6 +194,35 @@ TEST_P(ClosedLoop, ComesToRestInEveryTissue) {
   }
 }
 INSTANTIATE_TEST_SUITE_P(BareMasses, ClosedLoop, ::testing::Values(0.045, 0.15));
+
+TEST(Tick, LimitsTheTorqueAboutTheStylusToItsOwnPeak) {
+  // A transducer pressed into the skin and turned about its own long axis; gel leaves little friction.
+  haptics::HapticOptions options;
+  options.tool = haptics::Tool::kTransducer;
+  options.has_weight_compensation = false;
+  haptics::DeviceCapability device;
+  for (const double most_nmm : {0.0, 0.5}) {
+    device.peak_roll_nmm = most_nmm;
+    const auto scene = haptics::make_haptic_scene(layered_patient({{0, kFat}}), paper_tissues(), {}, device, options);
+    ASSERT_TRUE(scene.has_value());
+    haptics::HapticState state;
+    double roll_nmm = 0.0;
+    for (int i = 0; i < 3000; ++i) {
+      const double depth_mm = std::min(8.0, -5.0 + 0.01 * i);
+      const double turn_rad = std::max(0.0, 0.0005 * (i - 1500));
+      const Mat3 R_PT = (Eigen::AngleAxisd(turn_rad, Vec3::UnitZ()) * Eigen::AngleAxisd(std::numbers::pi / 2, Vec3::UnitX()))
+                            .toRotationMatrix();
+      const haptics::HapticOutput output = haptics::tick(
+          state, {0.001 * i, 0.001, telemetry::to_tool_pose(Pose(R_PT, {0.0, 0.0, depth_mm}))}, **scene);
+      const Vec3 stylus_P = (Pose(R_PT, Vec3::Zero()) * (*scene)->X_SN.inverse()).R().col(2);
+      roll_nmm = std::max(roll_nmm, std::abs(output.tau_D.dot(stylus_P)));
+    }
+    if (most_nmm > 0.0)
+      EXPECT_NEAR(roll_nmm, most_nmm, 1e-9);
+    else
+      EXPECT_GT(roll_nmm, 1.0);
+  }
+}
 
 }  // namespace
 }  // namespace trocar::testing

@@ -11,6 +11,7 @@ namespace trocar::haptics::detail {
 struct GateLimits {
   double force_n = 0.0;
   double torque_nmm = 0.0;
+  double roll_nmm = 0.0;  ///< About the axis; 0: no limit of its own.
   bool is_force_warm = false;   ///< The force's limit is below its peak.
   bool is_torque_warm = false;  ///< The torque's limit is below its peak.
 };
@@ -49,7 +50,7 @@ bool is_vibrating(const GateState& state) noexcept;
 
 /// Present limits of the motors, and their warming under the output (physics.md G5).
 GateLimits warm_limits(const GateState& state, const GateParams& params) noexcept;
-void warm(GateState& state, double dt_s, const GateParams& params) noexcept;
+void warm(GateState& state, const Vec3& axis, double dt_s, const GateParams& params) noexcept;
 
 /// `target`, with its rise over `last` limited to `most` (physics.md G6). Decreases towards zero pass at once.
 Vec3 slew_limited(const Vec3& last, const Vec3& target, double most) noexcept;
@@ -57,5 +58,9 @@ Vec3 slew_limited(const Vec3& last, const Vec3& target, double most) noexcept;
 /// Limits a wrench. If the force is too large, its part along `axis` is kept, and one factor scales the lateral part
 /// and the torque (physics.md G8). With an axis of zero length, the factor scales the whole force and the torque.
 Wrench limited(const Wrench& wrench, const Vec3& axis, double force_n, double torque_nmm) noexcept;
+/// The torque with its part about `axis` limited to `most`; unchanged if `most` is 0 or the axis has no direction.
+Vec3 roll_limited(const Vec3& torque_nmm, const Vec3& axis, double most) noexcept;
+/// Part of the torque about the axis; 0 for an axis without direction.
+double roll_of(const Vec3& torque_nmm, const Vec3& axis) noexcept;
 
 }  // namespace trocar::haptics::detail

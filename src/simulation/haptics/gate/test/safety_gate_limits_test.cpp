@@ -148,6 +148,42 @@ TEST(GateWarmth, LetsAContinuousForcePassForEver) {
   }
 }
 
+TEST(GateRoll, LimitsTheTorqueAboutTheAxisToItsOwnPeak) {
+  const GateParams params;  // the Premium: 515 N mm, 170 about the stylus
+  for (const Vec3& axis : {Vec3(0, 0, 1), Vec3(0, 0, -2), Vec3(0.6, 0, 0.8)}) {
+    GateState state = open_gate();
+    const Vec3 along = axis.normalized();
+    const Vec3 across = along.cross(Vec3::UnitY()).normalized();
+    GateInput input = wanting(Vec3::Zero(), 300.0 * along + 300.0 * across);
+    input.axis = axis;
+    GateOutput output;
+    for (int i = 0; i < 50; ++i) output = step_gate(state, input, params);
+    EXPECT_NEAR(output.wrench.torque_nmm.dot(along), 170.0, 1e-9);
+    EXPECT_NEAR(output.wrench.torque_nmm.dot(across), 300.0, 1e-9);
+    EXPECT_NE(output.actions & kGateClamp, 0);
+  }
+}
+
+TEST(GateRoll, SettlesAtTheContinuousTorqueOfItsMotor) {
+  const GateParams params;
+  GateState state = open_gate();
+  GateOutput output;
+  for (int i = 0; i < 100000; ++i) output = step_gate(state, wanting(Vec3::Zero(), {0, 0, 170.0}), params);
+  EXPECT_NEAR(output.wrench.torque_nmm.z(), params.continuous_roll_nmm, 0.01 * params.continuous_roll_nmm);
+  EXPECT_NE(output.actions & kGateContinuous, 0);
+  for (int i = 0; i < 100; ++i) output = step_gate(state, wanting(Vec3::Zero(), {170.0, 0, 0}), params);
+  EXPECT_NEAR(output.wrench.torque_nmm.x(), 170.0, 1e-9);  // the other motors are cool
+}
+
+TEST(GateRoll, HasNoLimitOfItsOwnForADeviceWithoutOne) {
+  GateParams params;
+  params.peak_roll_nmm = params.continuous_roll_nmm = 0.0;
+  GateState state = open_gate(params);
+  GateOutput output;
+  for (int i = 0; i < 50; ++i) output = step_gate(state, wanting(Vec3::Zero(), {0, 0, 400.0}), params);
+  EXPECT_NEAR(output.wrench.torque_nmm.z(), 400.0, 1e-9);
+}
+
 // --- energy ---
 
 /// A mass with a little dry friction on a spring whose force comes late.

@@ -1,0 +1,110 @@
+// The tissue below a layer that gives way: docs/physics.md P6.
+#include "haptics/insertion/soft_column.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "haptics/test/layered_patient.h"
+
+namespace trocar::testing {
+namespace {
+
+constexpr double kRadius_mm = 2.6;
+
+haptics::SoftColumn column_on_skin(const std::vector<Slab>& slabs) {
+  return haptics::soft_column(*make_scene(slabs), Vec3::Zero(), Vec3::UnitZ(), kRadius_mm);
+}
+
+double length_mm(const haptics::SoftColumn& column) {
+  return std::accumulate(column.thickness_mm.begin(), column.thickness_mm.begin() + column.cells, 0.0);
+}
+
+TEST(SoftColumn, HomogeneousTissueIsARigidPunchOnAHalfSpaceAtFirst) {
+  const haptics::SoftColumn column = column_on_skin({{0, kFat}});
+  constexpr double kPlane_n_per_mm2 = 0.01 / 0.75;  // 10 kPa, the table's default
+  constexpr double kForce_n = 1e-5;
+  // 2 A E*: the closed form; 40 mm of tissue carry all but a few percent of it.
+  EXPECT_NEAR(kForce_n / column.depression_mm(kForce_n), 2.0 * kRadius_mm * kPlane_n_per_mm2, 0.06 * 0.07);
+}
+
+TEST(SoftColumn, IsNeverCompressedToLessThanNothing) {
+  const haptics::SoftColumn column = column_on_skin(liver_way());
+  EXPECT_EQ(column.depression_mm(0.0), 0.0);
+  EXPECT_EQ(column.depression_mm(-1.0), 0.0);
+  double before_mm = 0.0;
+  double slope = std::numeric_limits<double>::infinity();
+  for (double force_n = 0.1; force_n < 50.0; force_n += 0.1) {
+    const double now_mm = column.depression_mm(force_n);
+    EXPECT_GT(now_mm, before_mm);
+    EXPECT_LT(now_mm - before_mm, slope);  // stiffens
+    slope = now_mm - before_mm;
+    before_mm = now_mm;
+  }
+  EXPECT_LT(column.depression_mm(1e9), length_mm(column));
+}
+
+TEST(SoftColumn, EndsAtBoneAndAtFluid) {
+  EXPECT_EQ(length_mm(column_on_skin({{0, kFat}})), haptics::kColumn_mm);
+  anatomy::TissueTable tissues = paper_tissues();
+  for (const auto& [name, young_kpa] : {std::pair{"bone", 1e6}, std::pair{"bone", 0.0}}) {
+    tissues.tissues[*tissues.find_tissue(name)].young_kpa = young_kpa;
+    const auto scene = make_scene({{0, kFat}, {12, kBone}}, haptics::HapticOptions{}, tissues);
+    EXPECT_EQ(length_mm(haptics::soft_column(*scene, Vec3::Zero(), Vec3::UnitZ(), kRadius_mm)), 12.0) << young_kpa;
+  }
+}
+
+anatomy::TissueTable yielding_tissues() {
+  anatomy::TissueTable table = paper_tissues();
+  table.layers[0].load_spread_mm = table.layers[1].load_spread_mm = 2.0;
+  for (anatomy::TissueParams& tissue : table.tissues) tissue.roughness_n = 0.0;
+  return table;
+}
+
+/// Displacement of the device at the first puncture.
+double puncture_at_mm(const anatomy::TissueTable& table, double rate_hz = 1000.0) {
+  Driver driver(make_scene(liver_way(), haptics::HapticOptions{}, table), rate_hz);
+  for (const telemetry::TickSample& sample : driver.move(40.0, 5.0))
+    if (sample.events[0].kind == telemetry::EventKind::kPuncture) return sample.device_mm.z();
+  return 0.0;
+}
+
+TEST(YieldingWall, AddsItsDepressionToTheDevicesWayAndNothingToThePeak) {
+  const anatomy::TissueTable table = yielding_tissues();
+  const auto scene = make_scene(liver_way(), haptics::HapticOptions{}, table);
+  const haptics::SoftColumn column = haptics::soft_column(*scene, Vec3::Zero(), Vec3::UnitZ(), 0.635 + 2.0);
+  EXPECT_NEAR(puncture_at_mm(table) - puncture_at_mm(paper_tissues()), column.depression_mm(2.8), 0.05);
+  EXPECT_NEAR(puncture_at_mm(table, 4000.0), puncture_at_mm(table), 0.05);
+  Driver driver(scene);
+  for (const telemetry::TickSample& sample : driver.move(60.0, 5.0)) {
+    if (sample.events[0].kind != telemetry::EventKind::kPuncture) continue;
+    const double peaks_n[] = {2.8, 2.5, 1.5};
+    EXPECT_NEAR(-sample.f_prepuncture_n, peaks_n[sample.events[0].id], 0.001);
+  }
+}
+
+TEST(YieldingWall, ReturnsNoMoreWorkThanItWasGiven) {
+  Driver driver(make_scene(liver_way(), haptics::HapticOptions{}, yielding_tissues()));
+  driver.move(0.0, 10.0);
+  double work_mj = 0.0;
+  double before_mm = 0.0;
+  double before_n = 0.0;
+  const auto add = [&](const std::vector<telemetry::TickSample>& samples) {
+    for (const telemetry::TickSample& sample : samples) {
+      const double force_n = -(sample.device_f_n - sample.f_weight_n).z();
+      work_mj += 0.5 * (force_n + before_n) * (sample.device_mm.z() - before_mm);
+      before_mm = sample.device_mm.z();
+      before_n = force_n;
+    }
+  };
+  for (const double speed_mm_per_s : {1.0, 10.0, 50.0}) {
+    work_mj = 0.0;
+    add(driver.move(10.0, speed_mm_per_s));
+    EXPECT_GT(work_mj, 1.0);
+    add(driver.move(0.0, speed_mm_per_s));
+    EXPECT_GT(work_mj, 0.0) << speed_mm_per_s;
+  }
+}
+
+}  // namespace
+}  // namespace trocar::testing
