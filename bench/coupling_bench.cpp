@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::array kSprings{0.125, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 5.0};  // N/mm
 constexpr std::array kDampings_ms{1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 9.0};            // b_c as a time: b_c/k_c
-constexpr double kSurface_mm = 22.0;
+constexpr double kSurface_mm = 30.0;
 constexpr double kSeconds = 20.0;
 
 /// Tissue and depth of a run: pressed on a wall, on bone, deep in tissue that holds the needle well or hardly.
@@ -102,11 +102,17 @@ Status add_device(std::vector<CaseResult>& results, const haptics::DevicePreset&
                return is_stable(with_coupling(device, k, value), patients, table);
              }));
   const std::string name = "coupling/" + device.name;
-  results.push_back({name + "/spring", "n_per_mm", figure_of(k), {},
+  results.push_back({name + "/spring",
+                     "n_per_mm",
+                     figure_of(k),
+                     {},
                      fmt::format("{}; stable from {:.3f} to {:.3f} N/mm, the device's limit is {:.1f}",
                                  is_chosen_stable ? "stable" : "NOT STABLE", spring.low, spring.high,
                                  device.capability.max_stiffness_n_per_mm)});
-  results.push_back({name + "/damping", "ms", figure_of(damping_ms), {},
+  results.push_back({name + "/damping",
+                     "ms",
+                     figure_of(damping_ms),
+                     {},
                      fmt::format("as a time; stable from {:.1f} to {:.1f} ms", damping.low, damping.high)});
   return {};
 }

@@ -70,8 +70,8 @@ void add_punctures(std::vector<CaseResult>& results, const anatomy::TissueTable&
   }
 }
 
-/// Force against displacement of the device before the skin is punctured: the slope of a straight line through the first
-/// 5 mm, as in a test of indentation, and the mean slope up to the puncture.
+/// Force against displacement of the device before the skin is punctured: the slope of a straight line through the
+/// first 5 mm, as in a test of indentation, and the mean slope up to the puncture.
 void add_skin_slope(std::vector<CaseResult>& results, const std::vector<telemetry::TickSample>& samples, double step_mm,
                     const std::string& name) {
   constexpr double kFirst_mm = 5.0;
@@ -158,8 +158,8 @@ Result<std::vector<CaseResult>> run_insertion_benchmark(const Options& options) 
     if (!scene) return fail("the scene could not be built", "bench insertion", "check data/tissues.toml");
     for (const double speed : {2.0, 10.0, 50.0}) {
       haptics::HapticState state;
-      const auto samples = drive(state, *scene, the_case.plan.line_P, -10.0,
-                                 the_case.plan.length_mm + kBeyond_mm, speed);
+      const auto samples =
+          drive(state, *scene, the_case.plan.line_P, -10.0, the_case.plan.length_mm + kBeyond_mm, speed);
       const std::string name = fmt::format("{}-{:.0f}mm_s", profile, speed);
       add_skin_slope(results, samples, speed * kDt_s, name);
       add_punctures(results, the_case.tissues, samples, name);

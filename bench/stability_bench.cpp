@@ -17,8 +17,8 @@
 namespace trocar::bench {
 namespace {
 
-constexpr double kSurface_mm = 22.0;  // adipose tissue above it, under the skin, which gives way for 18 mm
-constexpr double kDeep_mm = 52.0;
+constexpr double kSurface_mm = 30.0;  // adipose tissue above it, under the skin, which gives way for up to 25 mm
+constexpr double kDeep_mm = 60.0;
 constexpr double kAtWall_mm = 0.5;  // position below the wall's resting surface: no wall is punctured
 constexpr double kIntoBone_mm = 2.0;
 constexpr std::array kModels{haptics::ForceModel::kInsertion, haptics::ForceModel::kProxy,

@@ -69,7 +69,8 @@ Status fill_laws(HapticScene& scene, const anatomy::TissueTable& table) {
                         "set delta_x_mm and fp above 0");
   }
   const double size = needle_size_factor(table.needle_size, 0.0, scene.needle);
-  const double girth = table.needle_size.diameter_mm > 0.0 ? 2.0 * scene.needle.radius_mm / table.needle_size.diameter_mm : 1.0;
+  const double girth =
+      table.needle_size.diameter_mm > 0.0 ? 2.0 * scene.needle.radius_mm / table.needle_size.diameter_mm : 1.0;
   for (std::size_t i = 0; i < table.tissues.size(); ++i) {
     const anatomy::TissueParams& tissue = table.tissues[i];
     scene.tissues[i] = {tissue.viscosity_ns_per_mm,

@@ -78,7 +78,7 @@ struct LayerLaw {
   double puncture_force_n = std::numeric_limits<double>::infinity();
   /// Puncture force divided by the static indentation at that force; bone: its stiffness.
   double indent_n_per_mm = 1.0;
-  bool is_wall = false;  ///< Proxy models: the layer is punctured at a label's border.
+  bool is_wall = false;         ///< Proxy models: the layer is punctured at a label's border.
   double load_spread_mm = 0.0;  ///< Above 0: the tissue below gives way (physics.md P6).
 };
 
@@ -123,8 +123,8 @@ struct TissueAt {
 };
 TissueAt tissue_at(const HapticScene& scene, const Vec3& p_P) noexcept;
 
-/// True for tissue that the model reads from the CT rather than from its label (physics.md T2): unlabelled tissue, and in
-/// the combined model all but the skin and structures with walls. Real-time safe.
+/// True for tissue that the model reads from the CT rather than from its label (physics.md T2): unlabelled tissue, and
+/// in the combined model all but the skin and structures with walls. Real-time safe.
 bool is_read_from_ct(const HapticScene& scene, const TissueAt& here) noexcept;
 
 }  // namespace trocar::haptics

@@ -19,9 +19,10 @@ struct NeedleGeometry {
 };
 
 /// Force of a needle as a multiple of that of the law's needle with `reference_mm` (0: law.diameter_mm), which is 1
-/// (physics.md P7). The bevel's influence is that of kSteepestBevel_rad for steeper ones: a blunt tip punches, which the
-/// law does not describe.
-double needle_size_factor(const anatomy::NeedleSizeLaw& law, double reference_mm, const NeedleGeometry& needle) noexcept;
+/// (physics.md P7). The bevel's influence is that of kSteepestBevel_rad for steeper ones: a blunt tip punches, which
+/// the law does not describe.
+double needle_size_factor(const anatomy::NeedleSizeLaw& law, double reference_mm,
+                          const NeedleGeometry& needle) noexcept;
 inline constexpr double kSteepestBevel_rad = 1.2217;  ///< 70 degrees.
 
 }  // namespace trocar::haptics

@@ -62,7 +62,8 @@ std::vector<CurveEvent> find_curve_events(const std::vector<CurvePoint>& curve, 
   return events;
 }
 
-std::vector<CurveBorder> find_curve_borders(const std::vector<CurvePoint>& curve, const std::vector<PathPiece>& pieces) {
+std::vector<CurveBorder> find_curve_borders(const std::vector<CurvePoint>& curve,
+                                            const std::vector<PathPiece>& pieces) {
   constexpr double kBefore_mm = 3.0;
   constexpr double kBehind_mm = 10.0;
   constexpr double kStandsOut_n = 0.2;

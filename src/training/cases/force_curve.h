@@ -45,9 +45,9 @@ struct PathPiece {
 
 /// A border between tissues at which the force has a peak without a puncture: a border of the CT.
 struct CurveBorder {
-  std::string name;       ///< Label or tissue behind it.
-  double at_mm = 0.0;     ///< Its place on the path at rest.
-  double tip_mm = 0.0;    ///< Place of the needle's tip at the peak.
+  std::string name;     ///< Label or tissue behind it.
+  double at_mm = 0.0;   ///< Its place on the path at rest.
+  double tip_mm = 0.0;  ///< Place of the needle's tip at the peak.
   double peak_n = 0.0;
 };
 /// From 3 mm before a border to 10 mm behind it, or to the next; a peak stands out by a fifth of a newton.

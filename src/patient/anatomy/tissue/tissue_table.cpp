@@ -173,8 +173,8 @@ Status read_needle_size(const config::TomlTable& document, TissueTable& table) {
   if (!document.has(kNeedleSize)) return {};
   TROCAR_TRY(const config::TomlTable row, document.table(kNeedleSize));
   TROCAR_TRY_STATUS(row.check_keys(field_names<NeedleSizeLaw>(kNeedleSizeFields)));
-  TROCAR_TRY_STATUS(read_fields<NeedleSizeLaw>(row, kNeedleSizeFields, std::string(kNeedleSize), true,
-                                               table.needle_size, table));
+  TROCAR_TRY_STATUS(
+      read_fields<NeedleSizeLaw>(row, kNeedleSizeFields, std::string(kNeedleSize), true, table.needle_size, table));
   if (table.needle_size.tearing + table.needle_size.spreading > 0.0) return {};
   return fail("tearing and spreading are both zero", row.where(), "give at least one of them a share");
 }

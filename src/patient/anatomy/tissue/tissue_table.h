@@ -26,8 +26,8 @@ struct LayerParams {
   bool is_wall = false;  ///< Volume proxy: must be pierced at a label's border, because the CT does not show it.
   /// Outer diameter of the needle that the puncture force is for; 0: that of the table. Range 0..5.
   double for_diameter_mm = 0.0;
-  /// The layer spreads the load of the tip over this distance around it onto the tissue below, which gives way (physics.md
-  /// P6). 0: the layer is held from the side and the tissue below does not matter. Range 0..10.
+  /// The layer spreads the load of the tip over this distance around it onto the tissue below, which gives way
+  /// (physics.md P6). 0: the layer is held from the side and the tissue below does not matter. Range 0..10.
   double load_spread_mm = 0.0;
 };
 

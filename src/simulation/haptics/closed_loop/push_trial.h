@@ -6,10 +6,10 @@
 
 namespace trocar::haptics {
 
-/// A hand that also guides the needle at its tip pushes the device's needle straight down (+z) at constant speed and then
-/// holds it; records the force on the device tick by tick (docs/validation.md, Bone and loss of resistance).
+/// A hand that also guides the needle at its tip pushes the device's needle straight down (+z) at constant speed and
+/// then holds it; records the force on the device tick by tick (docs/validation.md, Bone and loss of resistance).
 struct PushTrial {
-  bool is_rigid = false;  ///< The device is moved, whatever the force: what the model does without a hand.
+  bool is_rigid = false;         ///< The device is moved, whatever the force: what the model does without a hand.
   double from_mm = -5.0;         ///< Start of the hand's target position of the tip; the skin lies at z = 0.
   double to_mm = 40.0;           ///< End of the hand's target position of the tip.
   double speed_mm_per_s = 10.0;  ///< Range 1..200.

@@ -22,9 +22,8 @@ double AxialBalance::cutting_force_n(double s_mm) const noexcept {
 }
 
 double AxialBalance::yielding_mm(double s_mm) const noexcept {
-  const double rest_mm = below != nullptr ? below->depression_mm(prepuncture_n(s_mm)) : 0.0;
-  if (rest_mm >= yielded_mm) return rest_mm;  // quasi-static under load
-  return yielded_mm + dt_s / (kTissueRecoil_s + dt_s) * (rest_mm - yielded_mm);
+  const double under_load_mm = below != nullptr ? below->depression_mm(prepuncture_n(s_mm)) : 0.0;
+  return std::max(under_load_mm, recoiling_mm());
 }
 
 double AxialBalance::coupling_n(double s_mm) const noexcept {

@@ -20,12 +20,13 @@ struct AxialBalance {
   double surface_mm = std::numeric_limits<double>::infinity();  ///< Resting surface of the layer ahead.
   double viscous_ns_per_mm = 0.0;                               ///< Sum of nu_i A_i over the inserted shaft.
   double noise_n = 0.0;                                         ///< Fluctuation of the friction in this step.
-  double dry_n = 0.0;  ///< Dry friction of the body proxies, against the motion.
+  double dry_n = 0.0;        ///< Dry friction of the body proxies, against the motion.
   bool is_thinning = false;  ///< The viscous friction is that of the body proxies, less than linear (physics.md B6).
-  double cutting_n = 0.0;  ///< F_c of the tissue in front of the tip and of the layer that it presses on.
-  double cut_to_mm = 0.0;  ///< Start of uncut tissue.
+  double cutting_n = 0.0;    ///< F_c of the tissue in front of the tip and of the layer that it presses on.
+  double cut_to_mm = 0.0;    ///< Start of uncut tissue.
   const SoftColumn* below = nullptr;  ///< Tissue below the layer ahead, which gives way; nullptr: rigid.
   double yielded_mm = 0.0;            ///< Depression of that tissue at the start of the step.
+  double recoil_mm = 0.0;             ///< Depression that remains of the last puncture, at the start of the step.
 
   double velocity(double s_mm) const noexcept { return (s_mm - s_previous_mm) / dt_s; }
   double displacement(double s_mm) const noexcept { return s_mm > surface_mm ? s_mm - surface_mm : 0.0; }
@@ -33,8 +34,9 @@ struct AxialBalance {
   double friction_n(double s_mm) const noexcept;
   /// The share of F_c that the layer ahead does not yet bear: the tip's resistance is the larger of both.
   double cutting_force_n(double s_mm) const noexcept;
-  /// Depression of the tissue below at the end of the step.
+  /// Depression of the tissue below at the end of the step; what remains of the last puncture's.
   double yielding_mm(double s_mm) const noexcept;
+  double recoiling_mm() const noexcept { return recoil_mm * kTissueRecoil_s / (kTissueRecoil_s + dt_s); }
   double coupling_n(double s_mm) const noexcept;
   /// Resistance minus coupling; increases with s.
   double unbalance_n(double s_mm) const noexcept;

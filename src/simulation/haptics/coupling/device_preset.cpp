@@ -140,7 +140,8 @@ Result<DevicePreset> read_preset(const config::TomlTable& row, const std::string
                                          "base_mm",
                                          "base_deg"};
   if (preset.sensed_dof == 6) known.push_back("angle_count_deg");
-  if (preset.actuated_dof == 6) known.insert(known.end(), {"peak_torque_nmm", "continuous_torque_nmm", "peak_roll_nmm", "continuous_roll_nmm"});
+  if (preset.actuated_dof == 6)
+    known.insert(known.end(), {"peak_torque_nmm", "continuous_torque_nmm", "peak_roll_nmm", "continuous_roll_nmm"});
   TROCAR_TRY_STATUS(row.check_keys(known));
   return preset;
 }

@@ -33,9 +33,8 @@ inline Wrench weight_compensation(const HapticScene& scene, const Mat3& R_PS) no
   return {lift_P, arm_P.cross(lift_P)};
 }
 
-/// Last step of every tick. Limits `device_f_n`, the torque and its part about the stylus to the device's peaks and adds
-/// limit events. Transforms
-/// both, and the weight's part of them, to D.
+/// Last step of every tick. Limits `device_f_n`, the torque and its part about the stylus to the device's peaks and
+/// adds limit events. Transforms both, and the weight's part of them, to D.
 inline void limit_to_device(HapticOutput& output, const Wrench& weight_P, const Vec3& stylus_axis_P, EventList& events,
                             const HapticScene& scene) noexcept {
   telemetry::TickSample& sample = output.sample;

@@ -24,8 +24,8 @@ GateParams gate_params(const DevicePreset& preset) noexcept {
   params.continuous_torque_nmm = std::min(
       device.peak_torque_nmm, preset.continuous_torque_nmm.value_or(kContinuousTorqueShare * device.peak_torque_nmm));
   params.peak_roll_nmm = device.peak_roll_nmm;
-  params.continuous_roll_nmm =
-      std::min(device.peak_roll_nmm, preset.continuous_roll_nmm.value_or(kContinuousTorqueShare * device.peak_roll_nmm));
+  params.continuous_roll_nmm = std::min(
+      device.peak_roll_nmm, preset.continuous_roll_nmm.value_or(kContinuousTorqueShare * device.peak_roll_nmm));
   params.max_damping_ns_per_mm = preset.max_damping_ns_per_mm;
   params.brake_ns_per_mm = std::min(params.brake_ns_per_mm, params.max_damping_ns_per_mm);
   // Stiffness of the patient's springs at the device; never stiffer, which would limit more.

@@ -93,9 +93,9 @@ bool restore(GateState& state) noexcept {
       is_watch_valid && is_valid(state.last) && is_valid(state.watched) && state.scale >= 0.0 && state.scale <= 1.0 &&
       std::isfinite(state.energy_mj) && state.force_heat >= 0.0 && std::isfinite(state.force_heat) &&
       state.torque_heat >= 0.0 && std::isfinite(state.torque_heat) && state.roll_heat >= 0.0 &&
-      std::isfinite(state.roll_heat) && is_valid(state.runaway_s) &&
-      is_valid(state.quiet_s) && is_valid(state.drop_from_n) && is_valid(state.drop_s) &&
-      state.mode <= telemetry::GateMode::kFault && state.fault <= telemetry::kLastGateFault &&
+      std::isfinite(state.roll_heat) && is_valid(state.runaway_s) && is_valid(state.quiet_s) &&
+      is_valid(state.drop_from_n) && is_valid(state.drop_s) && state.mode <= telemetry::GateMode::kFault &&
+      state.fault <= telemetry::kLastGateFault &&
       (state.mode == telemetry::GateMode::kFault) == (state.fault != telemetry::GateFault::kNone);
   if (is_state_valid) return true;
   const telemetry::GateFault fault =

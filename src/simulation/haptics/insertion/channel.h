@@ -46,8 +46,8 @@ inline constexpr int kMaxBinsPerLook = 200;
 inline constexpr double kSameStructure_mm = 2.0;
 void look_ahead(Channel& channel, const HapticScene& scene, double s_mm, double ahead_mm) noexcept;
 
-/// The first unpierced layer that begins between `from_mm` and `to_mm` within the known bins. In the combined model a layer
-/// that is no wall (muscle) is a border of the CT, labelled or not, and no layer (physics.md T2).
+/// The first unpierced layer that begins between `from_mm` and `to_mm` within the known bins. In the combined model a
+/// layer that is no wall (muscle) is a border of the CT, labelled or not, and no layer (physics.md T2).
 struct LayerAhead {
   std::uint8_t layer = kNoLayer;
   double surface_mm = 0.0;  ///< s of its resting surface.

@@ -25,7 +25,7 @@ void stop_loading(InsertionState& state) noexcept {
   state.loading = kNoLayer;
   state.is_stuck = false;
   state.pending_s = 0.0;
-  state.pressed_to_mm = state.yielded_mm = state.front_n = 0.0;
+  state.pressed_to_mm = state.front_n = 0.0;
 }
 
 /// Projects needle and device onto the line of this step: the path after the skin puncture, before that the needle's
@@ -37,7 +37,7 @@ std::optional<LineStep> place_on_line(InsertionState& state, InsertionPath& path
     if (!to_skin) return std::nullopt;
     const Vec3 entry_P = tip_P + *to_skin * axis_P;
     if (const Channel* hole =
-            state.loading == kNoLayer && *to_skin < 0.0 ? path.memory.find(entry_P, axis_P) : nullptr) {
+            state.loading == kNoLayer && *to_skin < -state.recoil_mm ? path.memory.find(entry_P, axis_P) : nullptr) {
       path.channel = *hole;
       path.is_open = true;
     } else if (state.loading == kNoLayer) {
@@ -49,7 +49,7 @@ std::optional<LineStep> place_on_line(InsertionState& state, InsertionPath& path
     if (state.loading == kNoLayer) {  // no contact yet: needle and device coincided
       state.s_mm = state.s_device_mm = path.channel.direction_P.dot(state.device_tip_P - path.channel.origin_P);
       state.yielded_mm = 0.0;
-        }
+    }
   }
   const Channel& line = path.channel;
   return LineStep{state.s_mm, state.s_device_mm, line.direction_P.dot(tip_P - line.origin_P)};
@@ -79,8 +79,8 @@ void add_friction(AxialBalance& balance, const InsertionState& state, const Inse
   }
 }
 
-/// Force that the tip needs to advance through the tissue in front of it (C1, or the tip proxy's threshold), also while it
-/// presses on the layer behind that tissue.
+/// Force that the tip needs to advance through the tissue in front of it (C1, or the tip proxy's threshold), also while
+/// it presses on the layer behind that tissue.
 void set_front(InsertionState& state, const InsertionPath& path, const HapticScene& scene,
                const ProxyShare* share) noexcept {
   if (!path.is_open) {
@@ -103,6 +103,7 @@ AxialBalance make_balance(const InsertionState& state, const InsertionPath& path
   balance.dt_s = dt_s;
   balance.coupling = scene.options.coupling;
   balance.yielded_mm = state.yielded_mm;
+  balance.recoil_mm = state.recoil_mm;
   if (ahead.layer != kNoLayer) {
     balance.loading = scene.layers[ahead.layer].loading;
     balance.surface_mm = ahead.surface_mm;
@@ -140,8 +141,7 @@ bool is_held(const InsertionState& state, const InsertionPath& path, const Hapti
   const double push = balance.coupling_n(s) - balance.prepuncture_n(s);
   const double holding = holding_force_n(path, scene, balance);
   // Uncut tissue holds until it is cut, except the share that the layer behind it bears.
-  const double uncut =
-      s >= balance.cut_to_mm ? std::max(0.0, balance.cutting_n - balance.prepuncture_n(s)) : 0.0;
+  const double uncut = s >= balance.cut_to_mm ? std::max(0.0, balance.cutting_n - balance.prepuncture_n(s)) : 0.0;
   return push <= holding + uncut && push >= -holding;
 }
 
@@ -222,6 +222,7 @@ InsertionStep step_in_air(InsertionState& state, InsertionPath& path, const Vec3
                           double dt_s) noexcept {
   leave_body(path);
   stop_loading(state);
+  state.yielded_mm = state.recoil_mm = 0.0;
   InsertionStep step;
   step.tip_P = tip_P;
   step.axis_P = axis_P;
@@ -310,6 +311,7 @@ InsertionStep step_insertion(InsertionState& state, InsertionPath& path, const H
   state.device_velocity_mm_per_s = balance.v_device_mm_per_s;
   state.device_tip_P = device_tip_P;
   state.yielded_mm = balance.yielding_mm(s_mm);
+  state.recoil_mm = step.punctured != kNoLayer ? state.yielded_mm : balance.recoiling_mm();
   update_contact(state, path, scene, ahead);
   if (path.is_open) {
     const double rest_mm = state.loading != kNoLayer ? std::min(s_mm, state.surface_mm) : s_mm;

@@ -30,6 +30,7 @@ struct InsertionState {
   double pressed_to_mm = 0.0;       ///< Deepest s under the load of layers: the tissue in front is cut so far.
   SoftColumn below;                 ///< Tissue below it, which gives way.
   double yielded_mm = 0.0;          ///< Depression of that tissue: the device is that much further along the path.
+  double recoil_mm = 0.0;           ///< What remains of it since the last puncture.
   bool is_stuck = false;
   telemetry::InsertionPhase phase = telemetry::InsertionPhase::kOutside;
 };

@@ -35,7 +35,8 @@ double friction_noise(std::uint64_t seed, std::uint32_t tissue, double travel_mm
 /// Fades out a force as the needle comes to rest: 0 at rest, 1 from 0.5 mm/s (physics.md F2).
 double motion_fade(double speed_mm_per_s) noexcept;
 
-/// Viscous friction of the body proxies as a share of the linear one (physics.md B6): 1 at rest, 1/2 at kThinning_mm_per_s.
+/// Viscous friction of the body proxies as a share of the linear one (physics.md B6): 1 at rest, 1/2 at
+/// kThinning_mm_per_s.
 double shear_thinning(double speed_mm_per_s) noexcept;
 inline constexpr double kThinning_mm_per_s = 20.0;  ///< Range 10..100. [assumed]
 

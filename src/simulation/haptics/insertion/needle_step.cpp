@@ -70,8 +70,8 @@ void hold_body(NeedleState& state, const HapticScene& scene, const Pose& X_PN_ah
   step.held_P.torque_nmm += axial_torque_nmm(scene, X_PN_ahead, axial.axis_P, along_n);
 }
 
-/// Contribution of model B along the path in the combined model: the shaft's friction, and the tip in tissue that model A
-/// does not include.
+/// Contribution of model B along the path in the combined model: the shaft's friction, and the tip in tissue that model
+/// A does not include.
 ProxyShare proxy_share(const InsertionPath& path, const HapticScene& scene) noexcept {
   ProxyShare share;
   if (!path.is_open) return share;

@@ -12,7 +12,7 @@ struct SoftColumn {
   int cells = 0;
   double area_mm2 = 1.0;  ///< Of the disc that carries the load.
   std::array<double, kColumnCells> thickness_mm{};
-  std::array<double, kColumnCells> share{};           ///< Share of the load at the cell's depth, 0..1.
+  std::array<double, kColumnCells> share{};            ///< Share of the load at the cell's depth, 0..1.
   std::array<double, kColumnCells> plane_n_per_mm2{};  ///< E/(1 - nu^2) > 0.
 
   /// Depression (mm) of the column's surface under a force (N); 0 for a force <= 0. Concave and bounded by the column's
@@ -25,7 +25,7 @@ struct SoftColumn {
 SoftColumn soft_column(const HapticScene& scene, const Vec3& surface_P, const Vec3& inward_P,
                        double radius_mm) noexcept;
 
-/// Time constant with which the compressed tissue recoils when the load falls. Range 0.05..0.5. [assumed]
+/// Time constant with which the compressed tissue recoils after a puncture. Range 0.05..0.5. [assumed]
 inline constexpr double kTissueRecoil_s = 0.2;
 
 }  // namespace trocar::haptics

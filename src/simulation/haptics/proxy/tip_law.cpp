@@ -32,8 +32,8 @@ bool is_under_skin(const HapticScene& scene, const Vec3& p_P) noexcept {
   return volume::sample_linear(scene.patient->skin_distance_mm, p_P) > -(scene.transfer.gradient_scale_mm + kBlur_mm);
 }
 
-/// True if the labels decide on the border at a point: it belongs to a walled structure, which has its own threshold, or
-/// to a labelled tissue that is cut and has no surface to pierce (a ligament).
+/// True if the labels decide on the border at a point: it belongs to a walled structure, which has its own threshold,
+/// or to a labelled tissue that is cut and has no surface to pierce (a ligament).
 bool is_border_of_label(const HapticScene& scene, const Vec3& p_P, const Vec3& normal_P) noexcept {
   const double reach_mm = 2.0 * scene.transfer.gradient_scale_mm;
   const TissueAt denser = tissue_at(scene, p_P + reach_mm * normal_P);

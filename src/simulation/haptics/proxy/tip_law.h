@@ -13,8 +13,8 @@ struct TipLaw {
 };
 
 /// Law at a point of the resting anatomy. `here`: tissue and label at the point (from tissue_at or the channel). Labels
-/// override the intensities: labelled tissue has at least its own resistance, at the border of a walled structure only the
-/// wall's law applies, and a labelled tissue that is cut and has no layer has no border. Real-time safe.
+/// override the intensities: labelled tissue has at least its own resistance, at the border of a walled structure only
+/// the wall's law applies, and a labelled tissue that is cut and has no layer has no border. Real-time safe.
 TipLaw tip_law_at(const HapticScene& scene, const Vec3& p_P, const TissueAt& here) noexcept;
 
 /// Force (N) needed to move the tip along the unit vector u, without viscosity: the largest F.u that the law permits

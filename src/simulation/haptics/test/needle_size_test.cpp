@@ -52,9 +52,9 @@ TEST(NeedleSize, FineNeedlesNeedThePublishedForceOfTheSkin) {
 TEST(NeedleSize, HardlyDependsOnTheBevelOverThePublishedRange) {
   // 15 to 60 degrees: "the insertion force does not vary too much" (PMID 32791488).
   for (const double bevel_deg : {15.0, 30.0, 45.0, 60.0}) EXPECT_NEAR(factor(1.27, bevel_deg), 1.0, 0.05) << bevel_deg;
-  EXPECT_GT(factor(1.27, 70.0), 1.1);                    // towards a blunt tip
-  EXPECT_EQ(factor(1.27, 90.0), factor(1.27, 70.0));     // beyond the law
-  EXPECT_GT(factor(1.27, 5.0), factor(1.27, 20.0));      // a long face rubs
+  EXPECT_GT(factor(1.27, 70.0), 1.1);                 // towards a blunt tip
+  EXPECT_EQ(factor(1.27, 90.0), factor(1.27, 70.0));  // beyond the law
+  EXPECT_GT(factor(1.27, 5.0), factor(1.27, 20.0));   // a long face rubs
 }
 
 TEST(NeedleSize, ScalesPuncturesAndCutting) {

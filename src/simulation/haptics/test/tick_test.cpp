@@ -210,10 +210,11 @@ TEST(Tick, LimitsTheTorqueAboutTheStylusToItsOwnPeak) {
     for (int i = 0; i < 3000; ++i) {
       const double depth_mm = std::min(8.0, -5.0 + 0.01 * i);
       const double turn_rad = std::max(0.0, 0.0005 * (i - 1500));
-      const Mat3 R_PT = (Eigen::AngleAxisd(turn_rad, Vec3::UnitZ()) * Eigen::AngleAxisd(std::numbers::pi / 2, Vec3::UnitX()))
-                            .toRotationMatrix();
-      const haptics::HapticOutput output = haptics::tick(
-          state, {0.001 * i, 0.001, telemetry::to_tool_pose(Pose(R_PT, {0.0, 0.0, depth_mm}))}, **scene);
+      const Mat3 R_PT =
+          (Eigen::AngleAxisd(turn_rad, Vec3::UnitZ()) * Eigen::AngleAxisd(std::numbers::pi / 2, Vec3::UnitX()))
+              .toRotationMatrix();
+      const haptics::HapticOutput output =
+          haptics::tick(state, {0.001 * i, 0.001, telemetry::to_tool_pose(Pose(R_PT, {0.0, 0.0, depth_mm}))}, **scene);
       const Vec3 stylus_P = (Pose(R_PT, Vec3::Zero()) * (*scene)->X_SN.inverse()).R().col(2);
       roll_nmm = std::max(roll_nmm, std::abs(output.tau_D.dot(stylus_P)));
     }

@@ -11,7 +11,7 @@ namespace trocar::haptics::detail {
 struct GateLimits {
   double force_n = 0.0;
   double torque_nmm = 0.0;
-  double roll_nmm = 0.0;  ///< About the axis; 0: no limit of its own.
+  double roll_nmm = 0.0;        ///< About the axis; 0: no limit of its own.
   bool is_force_warm = false;   ///< The force's limit is below its peak.
   bool is_torque_warm = false;  ///< The torque's limit is below its peak.
 };

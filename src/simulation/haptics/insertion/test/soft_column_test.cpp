@@ -54,6 +54,10 @@ TEST(SoftColumn, EndsAtBoneAndAtFluid) {
   }
 }
 
+double resistance_n(const telemetry::TickSample& sample) {
+  return -(sample.device_f_n - sample.f_weight_n).z();
+}
+
 anatomy::TissueTable yielding_tissues() {
   anatomy::TissueTable table = paper_tissues();
   table.layers[0].load_spread_mm = table.layers[1].load_spread_mm = 2.0;
@@ -91,7 +95,7 @@ TEST(YieldingWall, ReturnsNoMoreWorkThanItWasGiven) {
   double before_n = 0.0;
   const auto add = [&](const std::vector<telemetry::TickSample>& samples) {
     for (const telemetry::TickSample& sample : samples) {
-      const double force_n = -(sample.device_f_n - sample.f_weight_n).z();
+      const double force_n = resistance_n(sample);
       work_mj += 0.5 * (force_n + before_n) * (sample.device_mm.z() - before_mm);
       before_mm = sample.device_mm.z();
       before_n = force_n;
@@ -103,6 +107,28 @@ TEST(YieldingWall, ReturnsNoMoreWorkThanItWasGiven) {
     EXPECT_GT(work_mj, 1.0);
     add(driver.move(0.0, speed_mm_per_s));
     EXPECT_GT(work_mj, 0.0) << speed_mm_per_s;
+  }
+}
+
+TEST(YieldingWall, FollowsANeedleThatIsPulledBackAtAnySpeed) {
+  for (const double speed_mm_per_s : {20.0, 100.0, 400.0}) {
+    // Pressed in without a puncture, and back.
+    Driver driver(make_scene(liver_way(), haptics::HapticOptions{}, yielding_tissues()));
+    driver.move(12.0, 20.0);
+    double before_n = resistance_n(driver.hold(0.1).back());
+    EXPECT_GT(before_n, 0.5);
+    for (const telemetry::TickSample& sample : driver.move(-5.0, speed_mm_per_s)) {
+      ASSERT_LE(resistance_n(sample), before_n + 1e-6);
+      before_n = resistance_n(sample);
+    }
+    EXPECT_EQ(driver.state().needle.insertion.yielded_mm, 0.0);
+    // Out of the body while the wall still recoils from the puncture.
+    driver.move(19.0, 20.0);
+    EXPECT_TRUE(driver.state().needle.path.is_open);
+    EXPECT_GT(driver.state().needle.insertion.yielded_mm, 3.0);
+    const auto out = driver.move(-5.0, speed_mm_per_s);
+    EXPECT_TRUE(punctures(out).empty());
+    for (const telemetry::TickSample& sample : out) ASSERT_LT(resistance_n(sample), 2.8);
   }
 }
 
