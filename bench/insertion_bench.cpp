@@ -151,9 +151,9 @@ Result<std::vector<CaseResult>> run_insertion_benchmark(const Options& options) 
   }
   std::vector<CaseResult> results;
   for (const char* profile : {"paper-a", "tented"}) {
-    cases::CaseOptions options;
-    options.profile = profile;
-    TROCAR_TRY(const cases::Case the_case, cases::prepare_case(patient, options));
+    cases::CaseOptions case_options;
+    case_options.profile = profile;
+    TROCAR_TRY(const cases::Case the_case, cases::prepare_case(patient, case_options));
     const auto scene = make_scene(the_case);
     if (!scene) return fail("the scene could not be built", "bench insertion", "check data/tissues.toml");
     for (const double speed : {2.0, 10.0, 50.0}) {

@@ -46,7 +46,7 @@ struct LoadScene {
   double needle_inner_radius_mm = 0.0;
   double needle_stylet_radius_mm = 0.0;  ///< 0: no stylet.
   double needle_young_gpa = 200.0;
-  double needle_bevel_rad = 0.35;
+  double needle_bevel_rad = 0.3490658503988659;
   double needle_bevel_share = 0.1;
   std::string force_model = "insertion";
   std::string tissues_toml;  ///< The whole table; empty: the server's table.

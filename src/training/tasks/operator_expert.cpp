@@ -30,7 +30,7 @@ constexpr double kHold_s = 0.5;
 constexpr double kMostHold_s = 3.0;
 constexpr double kAfterFire_s = 0.5;
 constexpr double kWithdraw_mm_s = 30.0;
-constexpr double kStuck_s = 4.0;  // without a millimetre of progress: stop
+constexpr double kStuck_s = 6.0;  // without a millimetre of progress: stop
 constexpr double kGiveUp_s = 45.0;
 constexpr double kOutOfTime_s = 58.0;
 

@@ -27,7 +27,7 @@ constexpr double kPullback_mm_s = 15.0;
 constexpr double kBeforeFire_s[] = {0.3, 1.5};
 constexpr double kAfterFire_s = 0.5;
 constexpr double kWithdraw_mm_s = 50.0;
-constexpr double kStuck_s = 3.0;
+constexpr double kStuck_s = 5.0;
 constexpr double kStop_s = 40.0;  // in any case: fire and withdraw
 constexpr double kOutOfTime_s = 58.0;
 

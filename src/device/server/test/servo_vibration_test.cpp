@@ -88,11 +88,19 @@ ServoScene with_damping(const ServoScene& scene, double damping_ns_per_mm) {
   return {changed, scene.number, scene.continues};
 }
 
-// 1 N s/mm is 200 times what the device bears. In the insertion model the needle slides along with the device and
-// nothing vibrates; the proxy holds it.
+SceneBuilder builder_with_bone(const haptics::DevicePreset& preset) {
+  return {
+      [](const std::string&, std::uint64_t, const Progress&) -> Result<std::shared_ptr<const anatomy::VirtualPatient>> {
+        return testing::layered_patient({{0, testing::kFat}, {12, testing::kMuscle}, {16, testing::kBone}});
+      },
+      testing::data_file("tissues.toml"), preset};
+}
+
+// 1 N s/mm is 200 times what the device bears. In soft tissue the needle slides along with the device and nothing
+// vibrates; bone holds it.
 TEST(ServoVibration, ADamperThatTheDeviceDoesNotBearIsAFault) {
   const haptics::DevicePreset preset = testing::device_preset();
-  SceneBuilder builder = builder_for(preset);
+  SceneBuilder builder = builder_with_bone(preset);
   const ServoScene good = load(builder, "proxy");
   const ServoScene bad = with_damping(good, 1.0);
   const Motion hold = [](double t) { return at({0.0, 0.0, std::min(20.0, -10.0 + 20.0 * t)}); };

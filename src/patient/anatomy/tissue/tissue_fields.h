@@ -41,8 +41,8 @@ inline constexpr std::array<TissueField<TissueParams>, 6> kTissueFields{{
 
 /// Fields of a layer that a file may omit: zero.
 inline constexpr std::array<TissueField<LayerParams>, 2> kOptionalLayerFields{{
-    {"for_diameter_mm", "", &LayerParams::for_diameter_mm, {0.0, 5.0}},
-    {"load_spread_mm", "", &LayerParams::load_spread_mm, {0.0, 10.0}},
+    {"for_diameter_mm", "diameter", &LayerParams::for_diameter_mm, {0.0, 5.0}},
+    {"load_spread_mm", "spread", &LayerParams::load_spread_mm, {0.0, 10.0}},
 }};
 
 inline constexpr std::string_view kNeedleSize = "needle_size";

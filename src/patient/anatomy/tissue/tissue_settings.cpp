@@ -35,6 +35,7 @@ void append_numbers(std::vector<NamedNumber>& numbers, const std::vector<T>& row
 std::vector<NamedNumber> numbers_of(const TissueTable& table) {
   std::vector<NamedNumber> numbers;
   append_numbers<LayerParams>(numbers, table.layers, kLayerFields, "layers");
+  append_numbers<LayerParams>(numbers, table.layers, kOptionalLayerFields, "layers");
   for (const LayerParams& layer : table.layers)
     numbers.push_back({fmt::format("{}.{}", layer.name, kWall), fmt::format("layers.{}.{}", layer.name, kWall),
                        layer.is_wall ? 1.0 : 0.0});

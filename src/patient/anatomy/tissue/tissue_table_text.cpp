@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "anatomy/tissue/hu_transfer_text.h"
 #include "anatomy/tissue/tissue_fields.h"
@@ -36,6 +37,11 @@ Status check_range(const Assignment& assignment, std::string_view field, config:
                     "give a number in this range");
 }
 
+const TissueField<LayerParams>* find_layer_field(std::string_view key) noexcept {
+  const auto* field = find_field<LayerParams>(kLayerFields, key);
+  return field ? field : find_field<LayerParams>(kOptionalLayerFields, key);
+}
+
 /// Sets the fields of an override.
 class Override {
  public:
@@ -57,7 +63,7 @@ class Override {
     if (tissue && *tissue == 0) return fail_usage("air has no parameters", std::string(text_), "name another tissue");
     if (layer && assignment_.key == kWall) return set_wall(table_.layers[*layer]);
     const auto* tissue_field = find_field<TissueParams>(kTissueFields, assignment_.key);
-    const auto* layer_field = find_field<LayerParams>(kLayerFields, assignment_.key);
+    const auto* layer_field = find_layer_field(assignment_.key);
     if (tissue && tissue_field) {
       TROCAR_TRY_STATUS(set(table_.tissues[*tissue], *tissue_field, "tissues"));
       const auto own_layer = table_.tissues[*tissue].layer;
@@ -93,6 +99,7 @@ class Override {
       return fail_usage(fmt::format("there is no \"{}\"", assignment_.name), std::string(text_),
                         "use a row of the tissue table");
     const TissueField<T>* field = find_field<T>(fields, assignment_.key);
+    if constexpr (std::is_same_v<T, LayerParams>) field = find_layer_field(assignment_.key);
     if (!field)
       return fail_usage(fmt::format("\"{}\" has no \"{}\"", assignment_.name, assignment_.key), std::string(text_),
                         "use a column of this row");
