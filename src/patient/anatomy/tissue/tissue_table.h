@@ -85,12 +85,13 @@ Result<TissueTable> parse_tissue_table(std::string_view toml_text, const std::st
 Result<std::vector<std::string>> tissue_profiles(const std::filesystem::path& path);
 
 /// Applies one override "liver.k=0.5": TISSUE.KEY=VALUE or LAYER.KEY=VALUE, KEY a field name or its short form (k, nu,
-/// mu, dx, delta, stick, fc, fp, young, spread, diameter); fp may be "never"; skin.thickness_mm is the shell's; LAYER.wall is 0 or 1;
-/// transfer.gradient_scale_mm, _none_hu_per_mm and _full_hu_per_mm (scale, none, full) are the transfer functions'. A
-/// layer's key given on a tissue changes that tissue's layer. nu given on the first tissue that carries a layer changes
-/// the layer too: paper A's table has one nu for both laws. tissues.NAME.KEY and layers.NAME.KEY mean that row alone.
-/// transfer.tn_factor=1.2 (k, tn, tt, r0, c, shaft, nu, young) multiplies the whole curve over HU as it stands by
-/// 0.1..10, each value kept in its field's range. Out of range or unknown: exit status 2, the table is unchanged.
+/// mu, dx, delta, stick, fc, fp, young, spread, diameter); fp may be "never"; skin.thickness_mm is the shell's;
+/// LAYER.wall is 0 or 1; transfer.gradient_scale_mm, _none_hu_per_mm and _full_hu_per_mm (scale, none, full) are the
+/// transfer functions'. A layer's key given on a tissue changes that tissue's layer. nu given on the first tissue that
+/// carries a layer changes the layer too: paper A's table has one nu for both laws. tissues.NAME.KEY and
+/// layers.NAME.KEY mean that row alone. transfer.tn_factor=1.2 (k, tn, tt, r0, c, shaft, nu, young) multiplies the
+/// whole curve over HU as it stands by 0.1..10, each value kept in its field's range. Out of range or unknown: exit
+/// status 2, the table is unchanged.
 Status apply_override(TissueTable& table, std::string_view assignment);
 
 }  // namespace trocar::anatomy

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "haptics/coupling/balance.h"
+#include "volume/sampling.h"
 
 namespace trocar::haptics {
 namespace {
@@ -28,13 +29,26 @@ void stop_loading(InsertionState& state) noexcept {
   state.pressed_to_mm = state.front_n = 0.0;
 }
 
+/// Distance along the axis from the device's tip to the skin. Skin that is pressed in does not get lost where it is too
+/// uneven for the search: it stays where it was.
+std::optional<double> way_to_skin(const InsertionState& state, const HapticScene& scene, const Vec3& tip_P,
+                                  const Vec3& axis_P) noexcept {
+  if (state.loading == kNoLayer) return distance_to_skin_along(scene, tip_P, axis_P);
+  const double near_mm = state.to_skin_mm - axis_P.dot(tip_P - state.device_tip_P);
+  const auto found = distance_to_skin_along(scene, tip_P, axis_P, near_mm);
+  constexpr double kSameSkin_mm = 2.0;
+  if (found && std::abs(*found - near_mm) < kSameSkin_mm) return found;
+  return volume::sample_linear(scene.patient->skin_distance_mm, tip_P) < 0.0 ? std::optional(near_mm) : found;
+}
+
 /// Projects needle and device onto the line of this step: the path after the skin puncture, before that the needle's
 /// axis from its intersection with the skin. Empty: no skin ahead.
 std::optional<LineStep> place_on_line(InsertionState& state, InsertionPath& path, const HapticScene& scene,
                                       const Vec3& tip_P, const Vec3& axis_P) noexcept {
   if (!path.is_open) {
-    const auto to_skin = distance_to_skin_along(scene, tip_P, axis_P);
+    const auto to_skin = way_to_skin(state, scene, tip_P, axis_P);
     if (!to_skin) return std::nullopt;
+    state.to_skin_mm = *to_skin;
     const Vec3 entry_P = tip_P + *to_skin * axis_P;
     if (const Channel* hole =
             state.loading == kNoLayer && *to_skin < -state.recoil_mm ? path.memory.find(entry_P, axis_P) : nullptr) {

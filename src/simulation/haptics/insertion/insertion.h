@@ -25,6 +25,7 @@ struct InsertionState {
 
   std::uint8_t loading = kNoLayer;  ///< Layer under load.
   double surface_mm = 0.0;          ///< s of its resting surface.
+  double to_skin_mm = 0.0;          ///< From the device's tip to the skin that it presses, along the axis; <= 0.
   double front_n = 0.0;             ///< Cutting force of the tissue in front of it.
   bool is_front_proxy = false;      ///< That force is the tip proxy's (combined model).
   double pressed_to_mm = 0.0;       ///< Deepest s under the load of layers: the tissue in front is cut so far.

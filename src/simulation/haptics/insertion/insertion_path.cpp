@@ -7,12 +7,13 @@
 
 namespace trocar::haptics {
 
-std::optional<double> distance_to_skin_along(const HapticScene& scene, const Vec3& tip_P, const Vec3& axis_P) noexcept {
+std::optional<double> distance_to_skin_along(const HapticScene& scene, const Vec3& tip_P, const Vec3& axis_P,
+                                             double near_mm) noexcept {
   const volume::FloatGrid& distance = scene.patient->skin_distance_mm;
   constexpr double kReach_mm = 60.0;  // more than the skin gives way
   constexpr double kGrazing = 0.17;  // cosine of 80 degrees
   constexpr int kMaxSteps = 12;
-  double t = 0.0;
+  double t = near_mm;
   for (int i = 0; i < kMaxSteps; ++i) {
     const Vec3 here_P = tip_P + t * axis_P;
     const double d = volume::sample_linear(distance, here_P);

@@ -29,8 +29,10 @@ struct InsertionPath {
 };
 
 /// Distance (mm) along the axis from the tip to the resting skin; negative if the tip is below it. Empty if the skin is
-/// far away or nearly parallel to the axis. Real-time safe.
-std::optional<double> distance_to_skin_along(const HapticScene& scene, const Vec3& tip_P, const Vec3& axis_P) noexcept;
+/// far away or nearly parallel to the axis. The search starts at `near_mm`, where the skin was: a tip that presses the
+/// skin in may be closer to another part of it. Real-time safe.
+std::optional<double> distance_to_skin_along(const HapticScene& scene, const Vec3& tip_P, const Vec3& axis_P,
+                                             double near_mm = 0.0) noexcept;
 
 /// Starts a new channel on a line. Real-time safe.
 void start_channel(InsertionPath& path, const Vec3& origin_P, const Vec3& direction_P) noexcept;
