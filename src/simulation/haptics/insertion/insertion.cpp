@@ -60,9 +60,10 @@ std::optional<LineStep> place_on_line(InsertionState& state, InsertionPath& path
       path.channel.origin_P = entry_P;
       path.channel.direction_P = axis_P;
     }
-    if (state.loading == kNoLayer) {  // no contact yet: needle and device coincided
-      state.s_mm = state.s_device_mm = path.channel.direction_P.dot(state.device_tip_P - path.channel.origin_P);
-      state.yielded_mm = 0.0;
+    if (state.loading == kNoLayer) {  // no contact yet: needle and device coincided, above skin that may still recoil
+      state.s_device_mm = path.channel.direction_P.dot(state.device_tip_P - path.channel.origin_P);
+      state.yielded_mm = state.recoil_mm;
+      state.s_mm = state.s_device_mm - state.yielded_mm;
     }
   }
   const Channel& line = path.channel;
