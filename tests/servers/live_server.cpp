@@ -86,8 +86,8 @@ void press_on_skin(link::HapticClient& client) {
     reset_slow_loop(client);
     return client.view().status.gate_mode == telemetry::GateMode::kOn;
   })) << to_string(client.view().status.gate_mode);
-  // Slowly: a hand that is thrown at the skin goes through it.
-  constexpr double kStep_mm = 0.02, kDeepest_mm = 3.5;
+  // Slowly: a hand that is thrown at the skin goes through it. The wall gives way under the needle.
+  constexpr double kStep_mm = 0.02, kDeepest_mm = 15.0;
   double depth_mm = -5.0;
   ASSERT_TRUE(wait_for([&] {
     reset_slow_loop(client);
