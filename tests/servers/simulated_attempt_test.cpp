@@ -69,6 +69,46 @@ TEST_F(SimulatedAttemptTest, TheHandLeadsTheNeedleAndAClampedOneDoesNot) {
   EXPECT_LT((attempt->view().needle.X_PN.p() - aside.p()).norm(), 1.0);
 }
 
+/// Largest distance of a shaft's points from the line through its hub in the direction of its first span.
+double bend_mm(const std::vector<Vec3>& shaft_P) {
+  const Vec3 along = (shaft_P[1] - shaft_P[0]).normalized();
+  double most = 0.0;
+  for (const Vec3& point_P : shaft_P) most = std::max(most, (point_P - shaft_P[0]).cross(along).norm());
+  return most;
+}
+
+TEST_F(SimulatedAttemptTest, ShowsAndReplaysTheShapeThatTheServerComputes) {
+  start(options());
+  ASSERT_TRUE(run_until_phase(attempt::AttemptPhase::kReady)) << where();
+  ASSERT_TRUE(run_until([&] { return attempt->view().needle.is_known; })) << where();
+  EXPECT_EQ(attempt->view().needle.shaft_P.size(), 2u) << "straight outside the body";
+  const Segment& path_P = open->the_case.plan.line_P;
+  const Pose hand = needle_pose(path_P.a + 40.0 * path_P.direction(), path_P.direction());
+  ASSERT_TRUE(run_until([&] {
+    attempt->set_goal(attempt::Tool::kNeedle, hand);
+    return attempt->view().needle.depth_mm > 35.0;
+  })) << where();
+  // The hand moves aside: the shaft outside follows it, that inside stays in its channel.
+  const Pose aside = attempt::moved(hand, 5.0 * path_P.direction().unitOrthogonal(), Vec3::Zero());
+  double since_s = attempt->view().session_s;
+  ASSERT_TRUE(run_until([&] {
+    attempt->set_goal(attempt::Tool::kNeedle, aside);
+    return attempt->view().session_s > since_s + 1.0;
+  })) << where();
+  const attempt::NeedleView bent = attempt->view().needle;
+  EXPECT_GT(bent.shaft_P.size(), 10u);
+  EXPECT_GT(bend_mm(bent.shaft_P), 1.0);
+  EXPECT_EQ(bent.shaft_P.back(), bent.X_PN.p());
+  finished();
+  const auto replay = attempt::AttemptReplay::load(this->options().session, open);
+  ASSERT_TRUE(replay) << replay.error().text();
+  const std::vector<Vec3> replayed_P = replay->shaft_at(bent.time_s);
+  ASSERT_EQ(replayed_P.size(), bent.shaft_P.size());
+  for (std::size_t i = 0; i < replayed_P.size(); ++i) EXPECT_LT((replayed_P[i] - bent.shaft_P[i]).norm(), 0.1) << i;
+  EXPECT_LT(replay->session().shapes.size(), replay->session().samples.size() / 9) << "at most every 10 ms";
+  EXPECT_EQ(replay->shaft_at(0.0).size(), 2u);
+}
+
 TEST_F(SimulatedAttemptTest, TheReplayMovesTheTransducerAsItWasMoved) {
   start(options());
   ASSERT_TRUE(run_until_phase(attempt::AttemptPhase::kReady)) << where();

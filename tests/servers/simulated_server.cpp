@@ -283,6 +283,7 @@ void SimulatedServer::add(const server::ServoRecord& record) {
   if (batch.samples.empty()) batch.first_tick = record.tick;
   batch.scene = record.scene;
   batch.samples.push_back(record.sample);
+  if (record.shape) batch.shape = record.shape;
   process_->newest = record;
 }
 
@@ -291,6 +292,7 @@ void SimulatedServer::flush() {
   if (batch.samples.empty() && !batch.status) return;
   link_.send_batch(batch);
   batch.samples.clear();
+  batch.shape.reset();
   batch.status.reset();
 }
 

@@ -11,11 +11,12 @@
 #include "link/limits.h"
 #include "link/server_state.h"
 #include "realtime/loop_statistics.h"
+#include "telemetry/needle_shape.h"
 #include "telemetry/tick_sample.h"
 
 namespace trocar::link {
 
-inline constexpr std::uint32_t kLinkVersion = 3;  ///< Both sides must have the same version.
+inline constexpr std::uint32_t kLinkVersion = 4;  ///< Both sides must have the same version.
 
 // From a client.
 
@@ -181,6 +182,8 @@ struct StateBatch {
   std::vector<telemetry::TickSample> samples;
   std::optional<ServerStatus> status;  ///< Not in every batch: at most 20 times per second.
   std::uint64_t scene = 0;             ///< See Reply::scene; 0: none.
+  /// Shape of the needle at the tick of its time; not in every batch.
+  std::optional<telemetry::NeedleShape> shape = {};
 };
 inline constexpr std::size_t kMostSamples = 512;
 

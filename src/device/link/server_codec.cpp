@@ -48,14 +48,24 @@ flatbuffers::Offset<wire::ServerStatus> build_status(Builder& b, const ServerSta
                                   status.is_device_connected, status.has_controller, status.coupling_share);
 }
 
+flatbuffers::Offset<wire::NeedleShape> build_shape(Builder& b, const telemetry::NeedleShape& shape) {
+  TROCAR_CHECK(shape.spans <= telemetry::NeedleShape::kMostSpans);
+  const auto points = b.CreateVectorOfStructs<wire::Beside>(shape.spans, [&](std::size_t i, wire::Beside* packed) {
+    *packed = {shape.beside_mm[i][0], shape.beside_mm[i][1]};
+  });
+  return wire::CreateNeedleShape(b, shape.time_s, points);
+}
+
 ServerMember build_body(Builder& b, const StateBatch& batch) {
   TROCAR_CHECK(batch.samples.size() <= kMostSamples);
   const auto samples = b.CreateVectorOfStructs<wire::Sample>(
       batch.samples.size(), [&](std::size_t i, wire::Sample* packed) { write_sample(batch.samples[i], *packed); });
   flatbuffers::Offset<wire::ServerStatus> status;
   if (batch.status) status = build_status(b, *batch.status);
+  flatbuffers::Offset<wire::NeedleShape> shape;
+  if (batch.shape) shape = build_shape(b, *batch.shape);
   return {wire::ServerBody::StateBatch,
-          wire::CreateStateBatch(b, batch.first_tick, samples, status, batch.scene).Union()};
+          wire::CreateStateBatch(b, batch.first_tick, samples, status, batch.scene, shape).Union()};
 }
 
 ServerMember build_body(Builder& b, const Reply& reply) {
@@ -157,12 +167,33 @@ void read_samples(const flatbuffers::Vector<const wire::Sample*>& samples, Inspe
   }
 }
 
+telemetry::NeedleShape read(const wire::NeedleShape& table, Inspection& in) {
+  telemetry::NeedleShape shape;
+  shape.time_s = in.number(table.time_s(), kTimes_s, "time_s");
+  if (table.beside_mm() == nullptr || table.beside_mm()->size() == 0) return shape;
+  const auto& points = *table.beside_mm();
+  constexpr std::size_t kMost = telemetry::NeedleShape::kMostSpans;
+  const bool is_aligned = reinterpret_cast<std::uintptr_t>(points.Data()) % alignof(wire::Beside) == 0;
+  if (points.size() > kMost || !is_aligned) {
+    in.refuse(is_aligned ? "more points than a shaft may have" : "misaligned points", "beside_mm");
+    return shape;
+  }
+  constexpr Range kBeside_mm = {-telemetry::kMostBeside_mm, telemetry::kMostBeside_mm};
+  for (const wire::Beside* point : points) {
+    const double x = in.number(point->x_mm(), kBeside_mm, "beside_mm"),
+                 y = in.number(point->y_mm(), kBeside_mm, "beside_mm");
+    shape.beside_mm[shape.spans++] = {static_cast<float>(x), static_cast<float>(y)};
+  }
+  return shape;
+}
+
 StateBatch read(const wire::StateBatch& table, Inspection& in) {
   StateBatch batch;
   batch.first_tick = table.first_tick();
   batch.scene = table.scene();
   if (table.samples() != nullptr) read_samples(*table.samples(), in, batch.samples);
   if (table.status() != nullptr) batch.status = read(*table.status(), in);
+  if (table.shape() != nullptr) batch.shape = read(*table.shape(), in);
   return batch;
 }
 

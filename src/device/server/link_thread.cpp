@@ -73,6 +73,7 @@ void LinkThread::drain() {
     if (batch_.samples.empty()) batch_.first_tick = record.tick;
     batch_.scene = record.scene;
     batch_.samples.push_back(record.sample);
+    if (record.shape) batch_.shape = record.shape;
     if (batch_.samples.size() >= kSendAt) flush();
     if (record.drop_n > 0.0) {
       drop_n_ = record.drop_n;
@@ -93,6 +94,7 @@ void LinkThread::flush() {
   if (batch_.samples.empty() && !batch_.status) return;
   socket_.send_batch(batch_);
   batch_.samples.clear();
+  batch_.shape.reset();
   batch_.status.reset();
 }
 

@@ -169,6 +169,15 @@ void Servo::note_gate(const haptics::GateOutput& output, const ServoInput& input
   sample.device_tau_nmm = R_PD * output.wrench.torque_nmm;
 }
 
+void Servo::note_shape(const ServoInput& input, ServoRecord& record) noexcept {
+  constexpr double kRounding_s = 1e-6;
+  if (input.scene == nullptr || input.scene->scene->options.tool != haptics::Tool::kNeedle) return;
+  if (input.now_s >= shape_s_ && input.now_s < shape_s_ + kShapeEvery_s - kRounding_s) return;
+  shape_s_ = input.now_s;
+  record.shape = haptics::needle_shape(tick_.needle, *input.scene->scene, input.is_stylet_in);
+  record.shape->time_s = record.sample.time_s;
+}
+
 void Servo::begin_anew() noexcept {
   tick_ = {};
   if (gate_.fault == telemetry::GateFault::kNone) gate_.mode = telemetry::GateMode::kOff;  // through the safe start
@@ -204,6 +213,7 @@ ServoRecord Servo::step(const ServoInput& input) noexcept {
     device_.hold(hand_in_device(*input.hand, scene));
   }
   const Wanted wanted = feel(sensed, input, record.sample);
+  note_shape(input, record);
 
   haptics::GateInput gate;
   gate.wanted = wanted.wrench_D;

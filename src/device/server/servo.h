@@ -46,6 +46,10 @@ struct ServoInput {
   bool is_stylet_in = true;
 };
 
+/// Interval between the shapes of the needle that are sent: the shaft bends with the hand, and a screen shows 60 frames a
+/// second.
+inline constexpr double kShapeEvery_s = 0.01;
+
 /// Output of a period: for clients, recorder and flight recorder. Fixed size.
 struct ServoRecord {
   std::uint64_t tick = 0;
@@ -57,6 +61,7 @@ struct ServoRecord {
   std::uint16_t actions = 0;
   double scale = 0.0;  ///< Scale of the gate, 0..1.
   double drop_n = 0.0, drop_s = 0.0;
+  std::optional<telemetry::NeedleShape> shape;  ///< Of a needle, every kShapeEvery_s.
   haptics::Wrench wanted_D, written_D;
   Pose X_DS;
   std::uint32_t buttons = 0;
@@ -93,6 +98,7 @@ class Servo {
   Wanted feel(const Sensed& sensed, const ServoInput& input, telemetry::TickSample& sample) noexcept;
   devices::DeviceHand hand_in_device(const link::HandTarget& target, const haptics::HapticScene& scene) const noexcept;
   haptics::CouplingParams coupling_in_device(const ServoScene* scene) const noexcept;
+  void note_shape(const ServoInput& input, ServoRecord& record) noexcept;
   void note_gate(const haptics::GateOutput& output, const ServoInput& input, telemetry::TickSample& sample) noexcept;
 
   devices::HapticDevice& device_;
@@ -103,6 +109,7 @@ class Servo {
   haptics::HapticState tick_;
   std::uint64_t scene_number_ = 0;
   std::uint64_t ticks_ = 0;
+  double shape_s_ = 0.0;  ///< Time of the last shape.
   bool has_read_ = false;
   bool was_placed_ = false;            ///< The hand target of the last period had is_placed.
   devices::DeviceReading last_;        ///< Last fresh reading with a valid pose.

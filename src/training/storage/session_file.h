@@ -12,6 +12,7 @@
 #include "geometry/pose.h"
 #include "tasks/active_time.h"
 #include "tasks/score.h"
+#include "telemetry/needle_shape.h"
 #include "telemetry/tick_sample.h"
 
 namespace trocar::storage {
@@ -81,6 +82,8 @@ class SessionWriter {
   Status append(const telemetry::TickSample& sample);
   /// In the order of time. A sample that is not later than the last one, or not finite, is left out.
   Status append(const TransducerSample& sample);
+  /// The same. Kept in micrometres.
+  Status append(const telemetry::NeedleShape& shape);
   /// Parameters of a sample that was appended already, in the order of ticks, one per tick.
   Status append(const SessionParameters& parameters);
   /// In the order of time.
@@ -109,7 +112,9 @@ struct SessionDamage {
 struct Session {
   SessionInfo info;
   std::vector<telemetry::TickSample> samples;
-  std::vector<TransducerSample> transducer;        ///< By time; empty: there was none, or an older program recorded it.
+  std::vector<TransducerSample> transducer;  ///< By time; empty: there was none, or an older program recorded it.
+  /// By time, each until the next one; straight before the first. Empty: never bent, or an older program recorded it.
+  std::vector<telemetry::NeedleShape> shapes;
   std::vector<SessionParameters> parameters;       ///< By tick; empty: an older program wrote the session.
   std::vector<tasks::Interruption> interruptions;  ///< By time.
   std::optional<tasks::Outcome> outcome;           ///< Missing when the program was killed before the end.

@@ -16,6 +16,7 @@
 #include "storage/detail/info_table.h"
 #include "storage/detail/outcome_json.h"
 #include "storage/detail/parameters_table.h"
+#include "storage/detail/shape_table.h"
 #include "storage/detail/transducer_table.h"
 #include "storage/session_file.h"
 
@@ -75,6 +76,7 @@ struct SessionWriter::Impl {
     std::vector<std::string> text;
   } events;
   TransducerBuffer transducer;
+  ShapeBuffer shapes;
   ParametersBuffer parameters;
 
   ContentHash all_ticks;
@@ -184,7 +186,7 @@ void SessionWriter::Impl::buffer(const telemetry::TickSample& sample) {
 }
 
 Status SessionWriter::Impl::flush() {
-  if (tick_column.empty() && transducer.is_empty() && parameters.is_empty()) return {};
+  if (tick_column.empty() && transducer.is_empty() && shapes.is_empty() && parameters.is_empty()) return {};
   Status status = guarded("the session cannot be written", path, kWriteAdvice, [&] {
     database << "BEGIN IMMEDIATE";
     if (!tick_column.empty()) {
@@ -193,6 +195,7 @@ Status SessionWriter::Impl::flush() {
     }
     if (!events.tick.empty()) insert_events->execute(true);
     transducer.write(database);
+    shapes.write(database);
     parameters.write(database);
     database << "COMMIT";
   });
@@ -212,6 +215,7 @@ void SessionWriter::Impl::clear() {
   for (auto* column : {&events.tick, &events.slot, &events.kind, &events.id}) column->clear();
   events.text.clear();
   transducer.clear();
+  shapes.clear();
   parameters.clear();
 }
 
@@ -264,6 +268,13 @@ Status SessionWriter::append(const TransducerSample& sample) {
   return impl_->transducer.span_s() >= kBatchSeconds ? impl_->flush() : Status{};  // it moves without the needle
 }
 
+Status SessionWriter::append(const telemetry::NeedleShape& shape) {
+  TROCAR_CHECK(impl_ != nullptr && !impl_->is_finished);
+  if (impl_->failure) return tl::unexpected(*impl_->failure);
+  impl_->shapes.add(shape);  // written with its tick
+  return {};
+}
+
 Status SessionWriter::append(const SessionParameters& parameters) {
   TROCAR_CHECK(impl_ != nullptr && !impl_->is_finished);
   TROCAR_CHECK(parameters.tick < static_cast<std::size_t>(impl_->next_tick));
@@ -303,7 +314,7 @@ Status SessionWriter::finish(const tasks::Outcome& outcome, std::optional<std::s
     impl_->database << "INSERT INTO outcome (score, target_reached, fired_tick, json) VALUES (:s, :t, :f, :j)",
         soci::use(score, score_indicator), soci::use(target_reached), soci::use(fired_tick, fired_indicator),
         soci::use(json);
-    for (const CheckedRows& rows : {kTransducerRows, kParameterRows, kInterruptionRows, kOutcomeRows, kBlockRows})
+    for (const CheckedRows& rows : {kTransducerRows, kShapeRows, kParameterRows, kInterruptionRows, kOutcomeRows, kBlockRows})
       write_checksum(impl_->database, rows);
     impl_->ticks_hash = impl_->all_ticks.digest();
     write_ticks_hash(impl_->database, impl_->saved_ticks, impl_->ticks_hash);

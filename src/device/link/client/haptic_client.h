@@ -48,6 +48,8 @@ struct NumberedSample {
   std::uint64_t tick = 0;
   telemetry::TickSample sample;
   std::uint64_t scene = 0;  ///< Number of the scene of this tick, see Reply::scene; 0: none.
+  /// Shape of the needle at this tick, if it was sent (every 10 ms).
+  std::shared_ptr<const telemetry::NeedleShape> shape = {};
 };
 
 /// The client's side of the link, in a thread that sends heartbeats at 100 Hz independent of the caller. Connects and

@@ -57,6 +57,7 @@ TEST(Codec, LargestBatchAndLongestTextFit) {
   batch.samples.resize(kMostSamples);
   for (telemetry::TickSample& sample : batch.samples) sample = random.some<telemetry::TickSample>();
   batch.status = random.some<ServerStatus>();
+  batch.shape = random.some<telemetry::NeedleShape>();
   const ServerMessage many{1, 1, batch};
   ASSERT_LE(encode(many).size(), kMostMessageBytes);
   const auto decoded = decode_server_message(encode(many));

@@ -24,6 +24,7 @@ class Fingerprint {
  private:
   void add(const std::string& text) { text_ += text + '|'; }
   void add(double value) { add(std::bit_cast<std::uint64_t>(value)); }
+  void add(float value) { add(static_cast<double>(value)); }
   void add(const Vec3& v) { add(v.x()), add(v.y()), add(v.z()); }
   void add(const Pose& pose) {
     for (const double entry : pose.R().reshaped()) add(entry);

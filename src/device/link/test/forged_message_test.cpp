@@ -120,6 +120,20 @@ TEST(ForgedMessage, TooManyTicksAreRefused) {
   }
 }
 
+TEST(ForgedMessage, AShaftOfTooManyPointsOrOfNoNumbersIsRefused) {
+  constexpr std::size_t kMost = telemetry::NeedleShape::kMostSpans;
+  const auto forge = [](std::size_t points, float mm) {
+    Builder b;
+    const auto beside = b.CreateVectorOfStructs(std::vector(points, wire::Beside(mm, mm)));
+    const auto batch = wire::CreateStateBatch(b, 1, {}, {}, 0, wire::CreateNeedleShape(b, 1.0, beside)).Union();
+    return decode_server_message(finish_server(b, wire::ServerBody::StateBatch, batch));
+  };
+  EXPECT_TRUE(forge(0, 0.0F));
+  EXPECT_TRUE(forge(kMost, -5.0F));
+  expect_says(complaint(forge(kMost + 1, 0.0F)), "more points");
+  for (const float bad : {std::nanf(""), std::numeric_limits<float>::infinity(), 2000.0F}) EXPECT_FALSE(forge(3, bad));
+}
+
 /// A batch of one tick that lies `shift` bytes before where it would be aligned.
 Bytes forge_misaligned_batch(const telemetry::TickSample& sample, std::size_t shift) {
   Builder b;

@@ -64,8 +64,12 @@ void each_field(T& value, Visit&& visit) {
   } else if constexpr (std::is_same_v<Plain, telemetry::TickSample>) {
     telemetry::for_each_tick_field([&](const auto& field) { visit(value.*field.member); });
   } else if constexpr (std::is_same_v<Plain, StateBatch>) {
-    auto& [a, b, c, d] = value;
-    all(a, b, c, d);
+    auto& [a, b, c, d, e] = value;
+    all(a, b, c, d, e);
+  } else if constexpr (std::is_same_v<Plain, telemetry::NeedleShape>) {
+    visit(value.time_s);
+    visit(value.spans);
+    for (auto& [x, y] : value.beside_mm) all(x, y);
   } else {
     static_assert(std::is_same_v<Plain, Goodbye>);
   }

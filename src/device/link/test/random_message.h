@@ -96,6 +96,12 @@ class RandomMessages {
     sample.device_f_n.y() = odd[below(odd.size())];
     sample.device_rotation_wxyz[3] = odd[below(odd.size())];
   }
+  void fill(telemetry::NeedleShape& shape) {
+    fill(shape.time_s);
+    shape.spans = static_cast<std::uint8_t>(below(telemetry::NeedleShape::kMostSpans + 1));
+    for (std::size_t i = 0; i < shape.spans; ++i)
+      shape.beside_mm[i] = {static_cast<float>(random_.normal()), static_cast<float>(random_.normal())};
+  }
   template <class T>
   void fill(std::optional<T>& value) {
     if (random_.next() % 2 == 0) value = some<T>();

@@ -1,6 +1,7 @@
 #include "haptics/insertion/needle_step.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "haptics/proxy/tip_law.h"
 
@@ -57,6 +58,7 @@ Vec3 axial_torque_nmm(const HapticScene& scene, const Pose& X_PN, const Vec3& di
 /// forces (paper B, eq. 6): those along the path act at the tip, from whose motion they are computed.
 void hold_body(NeedleState& state, const HapticScene& scene, const Pose& X_PN_ahead, bool is_stylet_in,
                double cutting_mm_per_s, NeedleStep& step) noexcept {
+  state.bent.node_count = 0;
   if (!state.path.is_open) return;
   const HeldShaft shaft = hold_shaft(state.path.channel, scene, X_PN_ahead, state.path.rest_mm, is_stylet_in);
   const InsertionStep& axial = step.axial;
@@ -64,7 +66,7 @@ void hold_body(NeedleState& state, const HapticScene& scene, const Pose& X_PN_ah
   // The bevel deflects only while it cuts: at rest its force would have no potential.
   const double cuts = cutting_mm_per_s > 0.0 ? motion_fade(cutting_mm_per_s) : 0.0;
   const ShaftReaction reaction = react(shaft, scene, bevel_force_P(scene.needle, X_PN_ahead, cuts * on_tip_n));
-  state.shape = reaction.needle;
+  state.bent = reaction.bent;
   step.held_P = reaction.wrench_P;
   const double along_n = on_tip_n + axial.body_axial_n + axial.stick_n;
   step.held_P.torque_nmm += axial_torque_nmm(scene, X_PN_ahead, axial.axis_P, along_n);
@@ -93,12 +95,10 @@ void step_insertion_model(NeedleState& state, const HapticScene& scene, const Po
   const InsertionStep& axial = step.axial;
   const double along_n = axial.prepuncture_n + axial.friction_n + axial.cutting_n + axial.stick_n;
   step.held_P.torque_nmm += axial_torque_nmm(scene, X_PN, axial.axis_P, along_n);
-  state.shape = straight_needle(X_PN, scene);
 }
 
 void step_proxy_model(NeedleState& state, const HapticScene& scene, const Pose& X_PN, const Pose& X_PN_ahead,
                       bool is_stylet_in, double dt_s, NeedleStep& step) noexcept {
-  state.shape = straight_needle(X_PN, scene);
   const Vec3 proxy_before_P = state.proxy.proxy_P;
   const ProxyNeedleStep moved = step_proxy_needle(state.proxy, state.path, scene, X_PN, X_PN_ahead, dt_s);
   step.axial = moved.axial;
@@ -109,14 +109,37 @@ void step_proxy_model(NeedleState& state, const HapticScene& scene, const Pose& 
 
 void step_combined_model(NeedleState& state, const HapticScene& scene, const Pose& X_PN, const Pose& X_PN_ahead,
                          bool is_stylet_in, double dt_s, NeedleStep& step) noexcept {
-  state.shape = straight_needle(X_PN, scene);
   const ProxyShare share = proxy_share(state.path, scene);
   step.axial = step_insertion(state.insertion, state.path, scene, X_PN.p(), X_PN.R().col(2), dt_s, &share);
   step.tip_proxy_P = -step.axial.tip_proxy_n * step.axial.axis_P;
   hold_body(state, scene, X_PN_ahead, is_stylet_in, step.axial.velocity_mm_per_s, step);
 }
 
+/// A tick without any bend that can be seen is sent as straight.
+constexpr double kStraight_mm = 0.02;
+static_assert(kMaxBeamNodes <= telemetry::NeedleShape::kMostSpans);
+
 }  // namespace
+
+telemetry::NeedleShape needle_shape(const NeedleState& state, const HapticScene& scene, bool is_stylet_in) noexcept {
+  telemetry::NeedleShape shape;
+  if (!state.path.is_open) return shape;
+  BentShaft bent = state.bent;
+  if (scene.options.force_model == ForceModel::kInsertion) {
+    const HeldShaft shaft = hold_shaft(state.path.channel, scene, state.X_PN, state.path.rest_mm, is_stylet_in);
+    bent = react(shaft, scene, Vec3::Zero()).bent;
+  }
+  const Mat3& R_PN = state.X_PN.R();
+  double largest_mm = 0.0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(bent.node_count); ++i) {
+    const double x = R_PN.col(0).dot(bent.deflection_mm[i]), y = R_PN.col(1).dot(bent.deflection_mm[i]);
+    shape.beside_mm[i] = {static_cast<float>(x), static_cast<float>(y)};
+    largest_mm = std::max(largest_mm, std::hypot(x, y));
+  }
+  if (largest_mm > kStraight_mm && largest_mm < telemetry::kMostBeside_mm)
+    shape.spans = static_cast<std::uint8_t>(bent.node_count);
+  return shape;
+}
 
 NeedleStep step_needle(NeedleState& state, const HapticScene& scene, const Pose& X_PN, bool is_stylet_in,
                        double dt_s) noexcept {

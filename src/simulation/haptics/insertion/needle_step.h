@@ -4,6 +4,7 @@
 #include "haptics/insertion/insertion_path.h"
 #include "haptics/proxy/body_proxies.h"
 #include "haptics/proxy/proxy_needle.h"
+#include "telemetry/needle_shape.h"
 
 namespace trocar::haptics {
 
@@ -17,7 +18,7 @@ struct NeedleState {
   InsertionPath path;
   InsertionState insertion;  ///< Used by the insertion and combined models.
   ProxyNeedleState proxy;    ///< Used by the proxy model.
-  BentNeedle shape;          ///< Shape for display, ultrasound and X-ray.
+  BentShaft bent;            ///< Used by the proxy and combined models; see needle_shape.
 };
 
 /// Result of a step of the needle, in P, before weight and limits (physics.md T1, T2).
@@ -32,5 +33,10 @@ struct NeedleStep {
 /// One step of the needle at the pose X_PN (resting anatomy) under the scene's force model. Real-time safe.
 NeedleStep step_needle(NeedleState& state, const HapticScene& scene, const Pose& X_PN, bool is_stylet_in,
                        double dt_s) noexcept;
+
+/// Shape of the shaft after a step, for display, ultrasound and X-ray, without its time. The insertion model has no
+/// bending and gives no force for it: its shaft has the shape of the same beam, held by the same tissue along its
+/// channel, without a force on the bevel. Real-time safe; cheap enough for 100 Hz.
+telemetry::NeedleShape needle_shape(const NeedleState& state, const HapticScene& scene, bool is_stylet_in) noexcept;
 
 }  // namespace trocar::haptics

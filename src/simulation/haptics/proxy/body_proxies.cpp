@@ -171,10 +171,9 @@ ShaftReaction react(const HeldShaft& shaft, const HapticScene& scene, const Vec3
   const Vec3 tip_P = within(across(within(tip_force_P, kMostTipForce_n), axis_P), kMostTipForce_n);
   const double spacing_mm = scene.beam_with_stylet.spacing_mm;
   const double most_mm = kMaxDeflection * scene.needle.length_mm;
-  const Vec3 grip_P = shaft.X_PN.p() - axis_P * scene.needle.length_mm;
   ShaftReaction reaction;
-  const int nodes = shaft.beam.node_count;
-  std::array<Vec3, kMaxBeamNodes> deflection_P;
+  const int nodes = reaction.bent.node_count = shaft.beam.node_count;
+  std::array<Vec3, kMaxBeamNodes>& deflection_P = reaction.bent.deflection_mm;
   double largest_mm = 0.0;
   for (int i = 0; i < nodes; ++i) {
     const auto index = static_cast<std::size_t>(i);
@@ -182,24 +181,15 @@ ShaftReaction react(const HeldShaft& shaft, const HapticScene& scene, const Vec3
     largest_mm = std::max(largest_mm, deflection_P[index].norm());
   }
   const double scale = largest_mm > most_mm ? most_mm / largest_mm : 1.0;
-  reaction.needle.count = nodes + 1;
-  reaction.needle.points_P[0] = grip_P;
-  Vec3 before_P = Vec3::Zero();
   for (int i = 0; i < nodes; ++i) {
     const auto index = static_cast<std::size_t>(i);
-    const Vec3 bent_P = scale * deflection_P[index];
+    deflection_P[index] *= scale;
     const Vec3 lever_P = axis_P * (spacing_mm * (i + 1));
-    Vec3 force_P = shaft.bed.stiffness_n_per_mm[index] * (shaft.bed.offset_mm[index] - bent_P);
+    Vec3 force_P = shaft.bed.stiffness_n_per_mm[index] * (shaft.bed.offset_mm[index] - deflection_P[index]);
     if (i == nodes - 1) force_P += tip_P;
     force_P *= shaft.share;
     reaction.wrench_P.force_n += force_P;
     reaction.wrench_P.torque_nmm += lever_P.cross(force_P);
-    // The shaft does not stretch: spans keep their length and take their direction from the beam.
-    const Vec3 span_P = axis_P * spacing_mm + bent_P - before_P;
-    const double drawn_mm = span_P.stableNorm();
-    const double kept = drawn_mm > 0.0 ? spacing_mm / drawn_mm : 0.0;
-    reaction.needle.points_P[index + 1] = reaction.needle.points_P[index] + span_P * kept;
-    before_P = bent_P;
   }
   return reaction;
 }
@@ -208,15 +198,6 @@ Vec3 bevel_force_P(const NeedleGeometry& needle, const Pose& X_PN, double axial_
   if (!std::isfinite(axial_resistance_n) || !X_PN.is_finite()) return Vec3::Zero();
   const double sideways_n = needle.bevel_share * std::max(0.0, axial_resistance_n);
   return -std::min(sideways_n, kMostTipForce_n) * X_PN.R().col(1);
-}
-
-BentNeedle straight_needle(const Pose& X_PN, const HapticScene& scene) noexcept {
-  const NeedleBeam& beam = scene.beam_with_stylet;
-  BentNeedle needle;
-  needle.count = beam.node_count + 1;
-  for (int i = 0; i < needle.count; ++i)
-    needle.points_P[static_cast<std::size_t>(i)] = X_PN * Vec3(0.0, 0.0, beam.spacing_mm * (i - beam.node_count));
-  return needle;
 }
 
 }  // namespace trocar::haptics

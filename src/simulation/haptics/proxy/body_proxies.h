@@ -36,11 +36,10 @@ inline constexpr double kMostTurning_nmm_per_rad = 1500.0;
 HeldShaft hold_shaft(const Channel& channel, const HapticScene& scene, const Pose& X_PN, double tip_mm,
                      bool is_stylet_in) noexcept;
 
-/// Points of the bent shaft in P, grip first, tip last, same length as the straight shaft; for display, ultrasound and
-/// X-ray.
-struct BentNeedle {
-  int count = 0;
-  std::array<Vec3, kMaxBeamNodes + 1> points_P = zero_vectors<kMaxBeamNodes + 1>();
+/// Deflections of the beam's nodes from the straight shaft, across it, in P (mm); node_count 0: straight.
+struct BentShaft {
+  int node_count = 0;
+  std::array<Vec3, kMaxBeamNodes> deflection_mm = zero_vectors<kMaxBeamNodes>();
 };
 
 /// Reaction of the shaft on the hand under `tip_force_P`, the tissue's force on the tip. Only the part of that force
@@ -49,7 +48,7 @@ struct BentNeedle {
 /// shaft's own axis: the needle rolls freely. Real-time safe.
 struct ShaftReaction {
   Wrench wrench_P;  ///< Wrench of the body proxies and the tip on the needle, about the grip (stylus origin).
-  BentNeedle needle;
+  BentShaft bent;
 };
 ShaftReaction react(const HeldShaft& shaft, const HapticScene& scene, const Vec3& tip_force_P) noexcept;
 
@@ -57,8 +56,5 @@ ShaftReaction react(const HeldShaft& shaft, const HapticScene& scene, const Vec3
 /// -y of N, opposite to the side that the bevel's face points to; zero on retreat. Add it to the tip force of `react`.
 /// Real-time safe.
 Vec3 bevel_force_P(const NeedleGeometry& needle, const Pose& X_PN, double axial_resistance_n) noexcept;
-
-/// A straight needle, for models without bending.
-BentNeedle straight_needle(const Pose& X_PN, const HapticScene& scene) noexcept;
 
 }  // namespace trocar::haptics

@@ -2,16 +2,15 @@
 
 #include <vector>
 
+#include "telemetry/needle_shape.h"
 #include "telemetry/tick_sample.h"
 
 namespace trocar::attempt {
 
-/// Points of the shaft in P, hub first, tip last; two points for a straight shaft. A tick contains the tip, the
-/// direction there, and the pose of the grip. The curve between them is that of a slender beam clamped at both ends (a
-/// cubic). The hub lies on the grip's axis, behind the device's own hub by the lag of the felt tip. The curve does not
-/// model the bed of the beam. A shaft within kShaftBends_mm of the straight line between hub and tip is drawn straight.
-std::vector<Vec3> needle_shaft(const telemetry::TickSample& sample, double length_mm);
-inline constexpr double kShaftBends_mm = 0.05;
+/// Points of the shaft in P, hub first, tip last; two points for a straight shaft. The shape of the haptic tick on the
+/// pose of the device's needle, moved so that its tip is the tick's: behind the device by the lag of the felt tip.
+std::vector<Vec3> needle_shaft(const telemetry::TickSample& sample, const telemetry::NeedleShape& shape,
+                               double length_mm);
 
 /// Returns the shaft without its last `inside_mm`, the part in the body. Empty if the whole shaft is in the body.
 std::vector<Vec3> shaft_outside(std::vector<Vec3> shaft_P, double inside_mm);

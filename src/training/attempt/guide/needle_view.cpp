@@ -6,12 +6,13 @@
 
 namespace trocar::attempt {
 
-NeedleView needle_view(const cases::Case& the_case, const telemetry::TickSample& sample, const Pose& X_PN_goal) {
+NeedleView needle_view(const cases::Case& the_case, const telemetry::TickSample& sample,
+                       const telemetry::NeedleShape& shape, const Pose& X_PN_goal) {
   NeedleView view;
   view.is_known = true;
   view.time_s = sample.time_s;
   view.X_PN = telemetry::felt_needle(sample);
-  view.shaft_P = needle_shaft(sample, the_case.needle.length_mm);
+  view.shaft_P = needle_shaft(sample, shape, the_case.needle.length_mm);
   view.X_PN_device = telemetry::device_pose(sample);
   view.X_PN_goal = X_PN_goal;
   view.resistance_n = telemetry::axial_resistance_n(sample);

@@ -89,6 +89,7 @@ class AttemptLoop {
   Status step_needle();
   void answer_unrecorded(const std::vector<link::NumberedSample>& samples);
   Status record(const std::vector<link::NumberedSample>& samples);
+  Status note_shape(const link::NumberedSample& numbered);
   void note_tick(const telemetry::TickSample& sample);
   void note_shot();
   void send_scheduled_parameters();
@@ -118,6 +119,7 @@ class AttemptLoop {
   tasks::HandCommand command_;       ///< Command of the needle's hand.
   std::size_t next_parameters_ = 1;  ///< Index into the performer's parameters; the first ones are part of the scene.
   std::optional<telemetry::TickSample> last_needle_, last_transducer_;
+  telemetry::NeedleShape needle_shape_;                   ///< The newest one.
   double needle_time_s_ = 0.0, transducer_time_s_ = 0.0;  ///< Times of the servers' last ticks.
   double transducer_on_s_ = 0.0;                          ///< Time at which the transducer's forces were switched on.
   /// ServerSupervisor::activations() when their ticks last began to arrive.

@@ -52,6 +52,7 @@ void AttemptLoop::answer_unrecorded(const std::vector<link::NumberedSample>& sam
     view.dt_s = std::clamp(numbered.sample.time_s - needle_time_s_, 0.0, kLongestStep_s);
     view.X_PN_device = telemetry::device_pose(numbered.sample);
     needle_time_s_ = numbered.sample.time_s;
+    if (numbered.shape) needle_shape_ = *numbered.shape;
     if (!is_resting) command_ = performer_.the_operator->next(view);
   }
   last_needle_ = samples.back().sample;
@@ -68,6 +69,7 @@ Status AttemptLoop::record(const std::vector<link::NumberedSample>& samples) {
       TROCAR_TRY(goes_on, live_->take(numbered.sample));
     }
     TROCAR_TRY_STATUS(record_->note_scene(numbered.scene, needle_->scenes()));
+    TROCAR_TRY_STATUS(note_shape(numbered));
     note_tick(live_->last());
     finishes_ = finishes_ || !goes_on;
     if (!goes_on) break;
@@ -76,6 +78,13 @@ Status AttemptLoop::record(const std::vector<link::NumberedSample>& samples) {
   command_ = live_->command();
   last_needle_ = live_->last();
   return {};
+}
+
+Status AttemptLoop::note_shape(const link::NumberedSample& numbered) {
+  if (!numbered.shape) return {};
+  needle_shape_ = *numbered.shape;
+  needle_shape_.time_s = live_->last().time_s;
+  return record_->append(needle_shape_);
 }
 
 void AttemptLoop::note_tick(const telemetry::TickSample& sample) {

@@ -53,7 +53,8 @@ NeedleView AttemptLoop::needle_now() const {
   NeedleView view;
   if (last_needle_) {
     const bool is_led = follows_targets(needle_->host().device());
-    view = needle_view(*case_.the_case, *last_needle_, is_led ? command_.X_PN : telemetry::device_pose(*last_needle_));
+    view = needle_view(*case_.the_case, *last_needle_, needle_shape_,
+                       is_led ? command_.X_PN : telemetry::device_pose(*last_needle_));
   } else {
     view.X_PN = view.X_PN_device = view.X_PN_goal = command_.X_PN;
   }

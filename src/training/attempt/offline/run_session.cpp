@@ -157,6 +157,8 @@ Result<std::size_t> perform(const Performer& performer, SceneSchedule& scenes, d
   haptics::VirtualDeviceState device;
   haptics::HapticState state;
   tasks::OperatorView view;
+  constexpr double kShapeEvery_s = 0.01;  // as a server
+  double next_shape_s = 0.0;
   for (std::size_t i = 0; i < most_ticks; ++i) {
     view.time_s = recorded.time_s(i);
     view.dt_s = recorded.dt_s(i);
@@ -180,6 +182,12 @@ Result<std::size_t> perform(const Performer& performer, SceneSchedule& scenes, d
     view.last = output.sample;
     record.note(command);
     TROCAR_TRY_STATUS(record.append(output.sample));
+    if (view.time_s >= next_shape_s) {
+      telemetry::NeedleShape shape = haptics::needle_shape(state.needle, scene, true);
+      shape.time_s = view.time_s;
+      next_shape_s = view.time_s + kShapeEvery_s;
+      TROCAR_TRY_STATUS(record.append(shape));
+    }
     if (before != &now) TROCAR_TRY_STATUS(record.note_parameters(now.parameters));
     before = &now;
     if (i % 2000 == 0) report(progress, "performing", static_cast<double>(i) / static_cast<double>(most_ticks));

@@ -147,6 +147,13 @@ Status AttemptRecord::append(const storage::TransducerSample& sample) {
   return written(writer_.append(sample));
 }
 
+Status AttemptRecord::append(const telemetry::NeedleShape& shape) {
+  const telemetry::NeedleShape& last = shapes_.empty() ? telemetry::NeedleShape{} : shapes_.back();
+  if (telemetry::largest_difference_mm(shape, last) <= kShapeStep_mm) return {};
+  shapes_.push_back(shape);
+  return written(writer_.append(shape));
+}
+
 RunResult AttemptRecord::score() {
   RunResult result;
   result.outcome = tasks::score_attempt(the_case_->task, *the_case_->patient, the_case_->tissues, the_case_->needle,
@@ -183,6 +190,7 @@ RunResult AttemptRecord::finish_unsaved() {
   session.info = std::move(info_);
   session.samples = std::move(samples_);
   session.transducer = std::move(transducer_);
+  session.shapes = std::move(shapes_);
   session.parameters = std::move(parameter_rows_);
   session.interruptions = interruptions_;
   session.outcome = result.outcome;

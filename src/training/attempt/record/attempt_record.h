@@ -62,6 +62,10 @@ class AttemptRecord {
   /// Call before the first sample after the interruption.
   Status append(const tasks::Interruption& interruption);
   const std::vector<tasks::Interruption>& interruptions() const noexcept { return interruptions_; }
+  /// Shape of the needle, in session time. Kept if it differs from the last one by more than kShapeStep_mm. The score
+  /// does not depend on it.
+  Status append(const telemetry::NeedleShape& shape);
+  static constexpr double kShapeStep_mm = 0.02;
   /// At most one sample per kTransducerEvery_s is kept. The score does not depend on it.
   Status append(const storage::TransducerSample& sample);
   const storage::SessionInfo& info() const noexcept { return info_; }
@@ -94,6 +98,7 @@ class AttemptRecord {
   std::vector<telemetry::TickSample> samples_;
   std::optional<std::size_t> fired_;
   std::vector<storage::TransducerSample> transducer_;  ///< Kept samples.
+  std::vector<telemetry::NeedleShape> shapes_;         ///< Kept shapes.
   std::vector<storage::SessionParameters> parameter_rows_;
   std::optional<Error> write_failure_;
   SceneParameters parameters_;                   ///< Last recorded parameters.

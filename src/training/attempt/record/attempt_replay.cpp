@@ -61,7 +61,10 @@ const telemetry::TickSample& AttemptReplay::at(double time_s) const noexcept {
 }
 
 std::vector<Vec3> AttemptReplay::shaft_at(double time_s) const {
-  return needle_shaft(at(time_s), open_->the_case.needle.length_mm);
+  const auto& shapes = session_.shapes;
+  const auto next = std::ranges::upper_bound(shapes, time_s, {}, &telemetry::NeedleShape::time_s);
+  const telemetry::NeedleShape& shape = next == shapes.begin() ? telemetry::NeedleShape{} : *(next - 1);
+  return needle_shaft(at(time_s), shape, open_->the_case.needle.length_mm);
 }
 
 std::optional<Pose> AttemptReplay::transducer_at(double time_s) const noexcept {

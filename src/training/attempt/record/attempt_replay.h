@@ -37,6 +37,7 @@ class AttemptReplay {
   double duration_s() const noexcept { return session_.samples.back().time_s; }
   /// The tick at a time; before the first or after the last tick, that tick.
   const telemetry::TickSample& at(double time_s) const noexcept;
+  /// See needle_shaft.h; straight in a session of an older program.
   std::vector<Vec3> shaft_at(double time_s) const;
   /// X_PT, interpolated between the recorded samples; constant in a gap of more than kTransducerGap_s. Empty: the
   /// session has no transducer samples.

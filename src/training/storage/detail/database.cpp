@@ -5,6 +5,7 @@
 #include "storage/detail/checksums.h"
 #include "storage/detail/columns.h"
 #include "storage/detail/parameters_table.h"
+#include "storage/detail/shape_table.h"
 #include "storage/detail/transducer_table.h"
 #include "storage/session_file.h"
 
@@ -69,6 +70,7 @@ std::vector<std::string> schema_statements() {
       "CREATE TABLE events (tick INTEGER NOT NULL, slot INTEGER NOT NULL, kind INTEGER NOT NULL, id INTEGER NOT NULL, "
       "text TEXT NOT NULL, PRIMARY KEY (tick, slot)) WITHOUT ROWID");
   statements.push_back(transducer_schema());
+  statements.push_back(shape_schema());
   for (std::string& statement : checksum_schema()) statements.push_back(std::move(statement));
   for (std::string& statement : parameters_schema()) statements.push_back(std::move(statement));
   statements.emplace_back(

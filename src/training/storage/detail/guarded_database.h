@@ -14,6 +14,7 @@ inline constexpr std::size_t kMaxInfoBytes = std::size_t{16} << 20;
 inline constexpr std::size_t kMaxInfoRows = 1024;
 inline constexpr std::size_t kMaxNames = 1024;  ///< Names of tissues, layers, labels.
 inline constexpr std::size_t kMaxNameBytes = 4096;
+inline constexpr std::size_t kMaxShapeRows = 1'000'000;
 inline constexpr std::size_t kMaxTransducerRows = 1'000'000;               ///< 2.8 hours at 100 Hz.
 inline constexpr std::size_t kMaxParameterBytes = std::size_t{256} << 20;  ///< Each change holds a tissue table.
 inline constexpr std::size_t kMaxChanges = 100'000;  ///< Changes of parameters, and interruptions.

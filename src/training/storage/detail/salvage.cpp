@@ -7,6 +7,7 @@
 #include "storage/detail/checksums.h"
 #include "storage/detail/info_table.h"
 #include "storage/detail/parameters_table.h"
+#include "storage/detail/shape_table.h"
 #include "storage/detail/tick_reader.h"
 #include "storage/detail/transducer_table.h"
 
@@ -20,6 +21,7 @@ constexpr const char* kInfoPart = "facts of the case (table info)";
 constexpr const char* kNamesPart = "names of tissues, layers, labels or phases";
 constexpr const char* kBlocksPart = "list of tick blocks (table tick_blocks)";
 constexpr const char* kTransducerPart = "poses of the transducer";
+constexpr const char* kShapesPart = "shapes of the needle";
 constexpr const char* kParametersPart = "changes of parameters";
 constexpr const char* kInterruptionsPart = "interruptions";
 constexpr const char* kTicksHashPart = "hash of all ticks";
@@ -40,6 +42,7 @@ class Salvage {
     read_samples();
     const bool is_read = attempt(kTransducerPart, [&] { session_.transducer = read_transducer(database_.session()); });
     if (!is_read || !check(kTransducerPart, kTransducerRows, is_finished_)) session_.transducer.clear();
+    read_added(kShapesPart, kShapeRows, session_.shapes, [&] { session_.shapes = read_shapes(database_.session()); });
     read_parameters_and_interruptions();
     if (is_finished_ && session_.has_checksums)
       attempt(kTicksHashPart, [&] { session_.ticks_hash = read_ticks_hash(database_.session()); });
@@ -51,7 +54,7 @@ class Salvage {
   void check_tables() {
     for (const char* table : {"info", "tissues", "layers", "labels", "phases", "ticks", "events", "outcome"})
       database_.require_table(table);
-    for (const char* table : {"transducer", "parameters", "interruptions", "tick_blocks", "checksums"})
+    for (const char* table : {"transducer", "needle_shape", "parameters", "interruptions", "tick_blocks", "checksums"})
       if (database_.has_table(table)) database_.require_table(table);
   }
 

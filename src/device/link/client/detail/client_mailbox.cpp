@@ -52,7 +52,11 @@ std::vector<NumberedSample> ClientMailbox::take_samples() {
   samples.reserve(count);
   for (const StateBatch& batch : batches) {
     std::uint64_t tick = batch.first_tick;
-    for (const telemetry::TickSample& sample : batch.samples) samples.push_back({tick++, sample, batch.scene});
+    for (const telemetry::TickSample& sample : batch.samples) {
+      samples.push_back({tick++, sample, batch.scene});
+      if (batch.shape && batch.shape->time_s == sample.time_s)
+        samples.back().shape = std::make_shared<const telemetry::NeedleShape>(*batch.shape);
+    }
   }
   return samples;
 }

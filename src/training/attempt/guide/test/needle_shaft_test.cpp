@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "geometry/pose.h"
 #include "telemetry/testing/sample_at.h"
 
@@ -33,7 +35,7 @@ TEST(NeedleShaft, OutsideIsWhatIsLeftOfItsLength) {
 }
 
 TEST(NeedleShaft, IsStraightFromHubToTipWhileNothingBendsIt) {
-  const std::vector<Vec3> shaft = needle_shaft(sample_at(kHeld), kLength_mm);
+  const std::vector<Vec3> shaft = needle_shaft(sample_at(kHeld), {}, kLength_mm);
   ASSERT_EQ(shaft.size(), 2u);
   EXPECT_EQ(shaft.back(), kHeld.p());
   EXPECT_NEAR((shaft.front() - (kHeld.p() - kLength_mm * kHeld.R().col(2))).norm(), 0.0, 1e-9);
@@ -42,23 +44,29 @@ TEST(NeedleShaft, IsStraightFromHubToTipWhileNothingBendsIt) {
 TEST(NeedleShaft, KeepsItsLengthWhenTheTipLagsBehindTheHand) {
   telemetry::TickSample sample = sample_at(kHeld);
   sample.tip_mm -= 5.0 * sample.axis;
-  const std::vector<Vec3> shaft = needle_shaft(sample, kLength_mm);
+  const std::vector<Vec3> shaft = needle_shaft(sample, {}, kLength_mm);
   EXPECT_NEAR(length_of(shaft), kLength_mm, 1e-9);
   EXPECT_EQ(shaft.back(), sample.tip_mm);
 }
 
-TEST(NeedleShaft, BendsFromTheGripsDirectionToTheTips) {
+TEST(NeedleShaft, HasTheShapeOfTheTickAndItsTip) {
   telemetry::TickSample sample = sample_at(kHeld);
-  const Vec3 aside = sample.axis.unitOrthogonal();
-  sample.tip_mm += 6.0 * aside;
-  sample.axis = (sample.axis + 0.1 * aside).normalized();
-  const std::vector<Vec3> shaft = needle_shaft(sample, kLength_mm);
-  ASSERT_GT(shaft.size(), 8u);
+  const Vec3 aside = kHeld.R().col(0);
+  sample.tip_mm += 6.0 * aside - 3.0 * sample.axis;
+  telemetry::NeedleShape shape;
+  shape.spans = 10;
+  for (std::size_t i = 0; i < 10; ++i)  // a parabola: clamped in the grip, 6 mm aside at the tip
+    shape.beside_mm[i][0] = static_cast<float>(6.0 * std::pow((static_cast<double>(i) + 1.0) / 10.0, 2.0));
+  const std::vector<Vec3> shaft = needle_shaft(sample, shape, kLength_mm);
+  ASSERT_EQ(shaft.size(), 11u);
   EXPECT_EQ(shaft.back(), sample.tip_mm);
-  EXPECT_NEAR(length_of(shaft), kLength_mm, 1.0);
-  const Vec3 first = (shaft[1] - shaft[0]).normalized(), last = (shaft.back() - shaft[shaft.size() - 2]).normalized();
-  EXPECT_LT(angle_between_rad(first, kHeld.R().col(2)), 0.02);
-  EXPECT_LT(angle_between_rad(last, sample.axis), 0.02);
+  EXPECT_NEAR(length_of(shaft), kLength_mm, 1e-9);
+  const Vec3 hub_lag = shaft.front() - (kHeld.p() - kLength_mm * kHeld.R().col(2));
+  EXPECT_NEAR(hub_lag.dot(aside), 0.0, 1e-6) << "the hub stays on the grip's axis";
+  EXPECT_NEAR(hub_lag.dot(kHeld.R().col(2)), -3.0, 0.2) << "it lags with the tip, and the bent shaft is shorter";
+  const Vec3 first = (shaft[1] - shaft[0]).normalized();
+  EXPECT_LT(angle_between_rad(first, kHeld.R().col(2)), 0.005);
+  EXPECT_NEAR((shaft[5] - shaft[0]).dot(aside), 1.5, 1e-6);
 }
 
 }  // namespace
