@@ -1,5 +1,7 @@
 #include "haptics/closed_loop/closed_loop.h"
 
+#include <utility>
+
 namespace trocar::haptics {
 
 const char* to_string(Holder holder) noexcept {
@@ -59,7 +61,8 @@ const telemetry::TickSample& ClosedLoop::carry(const Vec3& tip_P, const Vec3& ax
 
 const telemetry::TickSample& ClosedLoop::run(const StylusHold& hold) noexcept {
   const StylusMotion motion = step_stylus(stylus_, params_, hold, acting_P_, scene_->gravity_P, dt_s_);
-  observer_.add(acting_P_, motion.v_P, motion.w_P, dt_s_);
+  observer_.add({acting_P_.force_n - weight_P_.force_n, acting_P_.torque_nmm - weight_P_.torque_nmm}, motion.v_P,
+                motion.w_P, dt_s_);
   return sense();
 }
 
@@ -73,8 +76,9 @@ const telemetry::TickSample& ClosedLoop::sense() noexcept {
   input.tool = tool_pose(*scene_, X_DS);
   const HapticOutput output = tick(state_, input, *scene_);
   sample_ = output.sample;
-  acting_P_ = wrench_P_;
-  wrench_P_ = {scene_->X_PD.R() * output.f_D, scene_->X_PD.R() * output.tau_D};
+  const Mat3& R_PD = scene_->X_PD.R();
+  acting_P_ = std::exchange(wrench_P_, {R_PD * output.f_D, R_PD * output.tau_D});
+  weight_P_ = std::exchange(next_weight_P_, {R_PD * output.weight_D.force_n, R_PD * output.weight_D.torque_nmm});
   return sample_;
 }
 

@@ -56,6 +56,7 @@ class ClosedLoop {
   Mat3 R_PS_told_ = Mat3::Identity();  ///< Orientation reported for a device that senses no rotation.
   Wrench wrench_P_;                    ///< About S: wrench of the last tick; acts during the tick after the next.
   Wrench acting_P_;                    ///< About S: wrench that acts during the next tick.
+  Wrench next_weight_P_, weight_P_;    ///< Parts of these that carry the weight: not energy of the tissue.
   HapticState state_;
   telemetry::TickSample sample_;
   PassivityObserver observer_;

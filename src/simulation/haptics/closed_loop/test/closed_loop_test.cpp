@@ -57,6 +57,23 @@ TEST(Rest, ComesToABareMassOnThePath) {
   }
 }
 
+TEST(PassivityObserver, DoesNotCountTheWorkAgainstTheWeightThatIsCarried) {
+  const DevicePreset preset = device("premium");
+  ClosedLoop loop(scene_for(preset, liver_way()), preset, Holder::kBare150g);
+  for (int i = 0; i < 10; ++i) loop.carry({0.0, 0.0, -40.0}, Vec3::UnitZ());
+  loop.restart_observer();
+  loop.stylus().v_P = Vec3(0.0, -100.0, 100.0);
+  double risen_mm = 0.0;
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 before_P = loop.tip_P();
+    loop.run(StylusHold{});
+    risen_mm = std::max(risen_mm, (loop.tip_P() - before_P).norm());
+  }
+  EXPECT_GT(risen_mm, 0.05) << "it moves";
+  EXPECT_GT(loop.wrench_P().force_n.norm(), 0.4) << "its weight is carried";
+  EXPECT_LT(loop.observer().growth_mj(), 1e-9);
+}
+
 class RestOnThePath : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(RestOnThePath, ComesToABareMassOnADeviceWithTorque) {
