@@ -95,6 +95,15 @@ Status fill_laws(HapticScene& scene, const anatomy::TissueTable& table) {
   return {};
 }
 
+/// The combined model reads labelled tissue without a wall from the CT.
+void mark_read_from_ct(HapticScene& scene) {
+  if (scene.options.force_model != ForceModel::kCombined) return;
+  for (std::size_t i = 1; i < static_cast<std::size_t>(scene.tissue_count); ++i) {
+    const std::uint8_t layer = scene.tissues[i].layer;
+    scene.tissues[i].is_read_from_ct = i != scene.skin && (layer == kNoLayer || !scene.layers[layer].is_wall);
+  }
+}
+
 Status fill_label_tissues(HapticScene& scene, const anatomy::TissueTable& table) {
   const auto unlabelled = table.find_tissue("soft_tissue");
   if (!unlabelled) return fail("has no tissue named soft_tissue", "tissue table", "add it");
@@ -181,6 +190,7 @@ Result<std::shared_ptr<const HapticScene>> make_haptic_scene(std::shared_ptr<con
   scene->X_SN =
       options.tool == Tool::kNeedle ? Pose::translation({0.0, 0.0, needle.length_mm}) : tool_in_stylus(scene->face);
   TROCAR_TRY_STATUS(fill_laws(*scene, tissues));
+  mark_read_from_ct(*scene);
   TROCAR_TRY_STATUS(fill_label_tissues(*scene, tissues));
   return scene;
 }
@@ -192,14 +202,6 @@ TissueAt tissue_at(const HapticScene& scene, const Vec3& p_P) noexcept {
   const std::uint8_t label = labels.empty() ? std::uint8_t{0} : volume::sample_nearest(labels, p_P, std::uint8_t{0});
   if (distance_mm > -scene.skin_thickness_mm) return {scene.skin, label};
   return {scene.tissue_of_label[label], label};
-}
-
-bool is_read_from_ct(const HapticScene& scene, const TissueAt& here) noexcept {
-  if (here.tissue == 0 || here.tissue == scene.skin) return false;
-  if (here.label == 0) return true;
-  if (scene.options.force_model != ForceModel::kCombined) return false;
-  const std::uint8_t layer = scene.tissues[here.tissue].layer;
-  return layer == kNoLayer || !scene.layers[layer].is_wall;
 }
 
 }  // namespace trocar::haptics

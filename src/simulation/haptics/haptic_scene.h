@@ -72,6 +72,7 @@ struct TissueLaw {
   double young_kpa = 0.0;
   double friction_mu = 0.0;
   std::uint8_t layer = kNoLayer;
+  bool is_read_from_ct = false;  ///< Where it has a label; see is_read_from_ct().
 };
 struct LayerLaw {
   LoadingLaw loading;
@@ -125,6 +126,9 @@ TissueAt tissue_at(const HapticScene& scene, const Vec3& p_P) noexcept;
 
 /// True for tissue that the model reads from the CT rather than from its label (physics.md T2): unlabelled tissue, and
 /// in the combined model all but the skin and structures with walls. Real-time safe.
-bool is_read_from_ct(const HapticScene& scene, const TissueAt& here) noexcept;
+inline bool is_read_from_ct(const HapticScene& scene, const TissueAt& here) noexcept {
+  if (here.label == 0) return here.tissue != 0 && here.tissue != scene.skin;
+  return scene.tissues[here.tissue].is_read_from_ct;
+}
 
 }  // namespace trocar::haptics

@@ -55,8 +55,4 @@ double motion_fade(double speed_mm_per_s) noexcept {
   return std::clamp(std::abs(speed_mm_per_s) / kRestSpeed_mm_per_s, 0.0, 1.0);
 }
 
-double shear_thinning(double speed_mm_per_s) noexcept {
-  return 1.0 / (1.0 + std::abs(speed_mm_per_s) / kThinning_mm_per_s);
-}
-
 }  // namespace trocar::haptics

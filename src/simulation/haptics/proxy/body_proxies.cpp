@@ -15,6 +15,7 @@ constexpr double kMostTipForce_n = 1000.0;  // Beyond any device: keeps the numb
 
 /// A vector clamped to a length; zero if it is not finite.
 Vec3 within(const Vec3& v, double most) noexcept {
+  if (v.squaredNorm() <= most * most) return v;
   const double length = v.stableNorm();
   if (!std::isfinite(length)) return Vec3::Zero();
   return length > most ? Vec3(v * (most / length)) : v;
