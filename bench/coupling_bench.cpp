@@ -1,10 +1,12 @@
-// How far the coupling of every device is from its limits of stability: spring and damping varied in turn
-// (docs/validation.md, Stability).
+// How far the coupling of every device is from its limits of stability: spring and damping varied together by the
+// stated margin, and in turn until runs are no longer stable (docs/validation.md, Stability).
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <array>
 #include <atomic>
+#include <functional>
 
 #include "bench/benchmarks.h"
 #include "bench/flat_scene.h"
@@ -15,8 +17,9 @@
 namespace trocar::bench {
 namespace {
 
-constexpr std::array kSprings{0.125, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 5.0};  // N/mm
-constexpr std::array kDampings_ms{1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 9.0};            // b_c as a time: b_c/k_c
+/// Every coupling within this factor of a device's k_c and b_c must be stable, up to the device's limit.
+constexpr double kMargin = 1.25;
+constexpr std::array kFactors{1.25, 1.6, 2.0, 2.5, 3.2, 4.0, 5.0};  // of the values varied in turn
 constexpr double kSurface_mm = 30.0;
 constexpr double kSeconds = 20.0;
 
@@ -65,55 +68,76 @@ haptics::DevicePreset with_coupling(haptics::DevicePreset device, double k_n_per
   return device;
 }
 
-/// The values on both sides of the chosen one up to which all runs are stable.
+using IsStable = std::function<Result<bool>(double factor)>;
+
+/// The factors below and above 1 up to which all runs are stable.
 struct Range {
-  double low = 0.0, high = 0.0;
+  double low = 1.0, high = 1.0;
 };
-template <class IsStable>
-Result<Range> stable_range(std::span<const double> values, double chosen, const IsStable& holds) {
-  Range range{chosen, chosen};
-  for (const double value : values) {
-    if (value <= chosen) continue;
-    TROCAR_TRY(const bool is_fine, holds(value));
+Result<Range> stable_range(const IsStable& holds) {
+  Range range;
+  for (const double factor : kFactors) {
+    TROCAR_TRY(const bool is_fine, holds(factor));
     if (!is_fine) break;
-    range.high = value;
+    range.high = factor;
   }
-  for (auto value = values.rbegin(); value != values.rend(); ++value) {
-    if (*value >= chosen) continue;
-    TROCAR_TRY(const bool is_fine, holds(*value));
+  for (const double factor : kFactors) {
+    TROCAR_TRY(const bool is_fine, holds(1.0 / factor));
     if (!is_fine) break;
-    range.low = *value;
+    range.low = 1.0 / factor;
   }
   return range;
+}
+
+/// k_c and b_c both as chosen, or by kMargin more or less: the couplings that are not stable.
+Result<std::vector<std::string>> unstable_in_margin(const haptics::DevicePreset& device, double damping_ms,
+                                                    const Patients& patients, const anatomy::TissueTable& table) {
+  const double k = device.coupling.stiffness_n_per_mm;
+  std::vector<std::string> unstable;
+  for (const double spring : {1.0 / kMargin, 1.0, kMargin}) {
+    for (const double damping : {1.0 / kMargin, 1.0, kMargin}) {
+      const double k_here = std::min(spring * k, device.capability.max_stiffness_n_per_mm);
+      const double ms = damping * damping_ms;
+      TROCAR_TRY(const bool is_fine, is_stable(with_coupling(device, k_here, ms), patients, table));
+      if (!is_fine) unstable.push_back(fmt::format("{:.3f} N/mm with {:.2f} ms", k_here, ms));
+    }
+  }
+  return unstable;
 }
 
 Status add_device(std::vector<CaseResult>& results, const haptics::DevicePreset& device, const Patients& patients,
                   const anatomy::TissueTable& table) {
   const double k = device.coupling.stiffness_n_per_mm;
   const double damping_ms = 1e3 * device.coupling.damping_ns_per_mm / k;
-  TROCAR_TRY(const bool is_chosen_stable, is_stable(device, patients, table));
-  std::vector<double> springs;
-  for (const double value : kSprings)
-    if (value <= device.capability.max_stiffness_n_per_mm) springs.push_back(value);
-  TROCAR_TRY(const Range spring, stable_range(springs, k, [&](double value) {
-               return is_stable(with_coupling(device, value, damping_ms), patients, table);
+  const double most_n_per_mm = device.capability.max_stiffness_n_per_mm;
+  TROCAR_TRY(const auto unstable, unstable_in_margin(device, damping_ms, patients, table));
+  TROCAR_TRY(const Range spring, stable_range([&](double factor) -> Result<bool> {
+               if (factor * k > most_n_per_mm) return false;
+               return is_stable(with_coupling(device, factor * k, damping_ms), patients, table);
              }));
-  TROCAR_TRY(const Range damping, stable_range(kDampings_ms, damping_ms, [&](double value) {
-               return is_stable(with_coupling(device, k, value), patients, table);
+  TROCAR_TRY(const Range damping, stable_range([&](double factor) {
+               return is_stable(with_coupling(device, k, factor * damping_ms), patients, table);
              }));
   const std::string name = "coupling/" + device.name;
+  const std::string margin = fmt::format("both within a factor of {}", kMargin);
+  results.push_back({name + "/margin",
+                     "unstable",
+                     figure_of(static_cast<double>(unstable.size())),
+                     {},
+                     unstable.empty() ? "of 9 couplings, " + margin
+                                      : fmt::format("of 9 couplings, {}: {}", margin, fmt::join(unstable, ", "))});
   results.push_back({name + "/spring",
                      "n_per_mm",
                      figure_of(k),
                      {},
-                     fmt::format("{}; stable from {:.3f} to {:.3f} N/mm, the device's limit is {:.1f}",
-                                 is_chosen_stable ? "stable" : "NOT STABLE", spring.low, spring.high,
-                                 device.capability.max_stiffness_n_per_mm)});
+                     fmt::format("alone stable from {:.3f} to {:.3f}; the device's limit is {:.1f}", spring.low * k,
+                                 spring.high * k, most_n_per_mm)});
   results.push_back({name + "/damping",
                      "ms",
                      figure_of(damping_ms),
                      {},
-                     fmt::format("as a time; stable from {:.1f} to {:.1f} ms", damping.low, damping.high)});
+                     fmt::format("as the time b_c/k_c, alone stable from {:.1f} to {:.1f}", damping.low * damping_ms,
+                                 damping.high * damping_ms)});
   return {};
 }
 
