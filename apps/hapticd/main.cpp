@@ -11,6 +11,7 @@
 
 #include "cases/scene_request.h"
 #include "core/files/data_dir.h"
+#include "core/files/user_folders.h"
 #include "core/log.h"
 #include "core/version.h"
 #include "devices/device_spec.h"
@@ -57,12 +58,18 @@ class Patients {
   std::shared_ptr<const anatomy::VirtualPatient> patient_;
 };
 
+std::filesystem::path stylus_folder() {
+  return user_config_folder() / "styluses";
+}
+
 Result<std::unique_ptr<devices::HapticDevice>> open_named_device(const Arguments& arguments) {
   TROCAR_TRY(const devices::DeviceSpec spec, devices::parse_device_spec(arguments.device));
   devices::DeviceOptions options;
   options.devices_file = data_dir() / "devices.toml";
   options.preset = arguments.preset;
   options.is_calibrating = arguments.is_calibrating;
+  // A test weighs anew, also if the saved weight is broken.
+  if (!arguments.is_test) options.stylus_folder = stylus_folder();
   for (const std::string& text : arguments.faults) {
     TROCAR_TRY(const devices::ScheduledFault fault, devices::parse_fault(text));
     options.faults.push_back(fault);
@@ -159,7 +166,8 @@ Status serve(Arguments& arguments) {
   TROCAR_TRY(const std::filesystem::path data, checked_data_dir());
   if (arguments.is_test) {
     TROCAR_TRY(const std::unique_ptr<devices::HapticDevice> device, open_named_device(arguments));
-    test_device(*device, arguments.rate_hz);
+    // A device with injected faults has no weight of its own.
+    test_device(*device, arguments.rate_hz, arguments.faults.empty() ? stylus_folder() : std::filesystem::path());
     return {};
   }
   server::ServerOptions options;
@@ -232,7 +240,8 @@ void add_options(CLI::App& program, Arguments& a) {
       ->allow_extra_args(false);
   program.add_flag("--test", a.is_test,
                    "Test mode without clients: print the device's pose 30 times a second; the line \"push\" on "
-                   "standard input applies a small upward force; end of input ends the test");
+                   "standard input applies a small upward force, \"weigh\" weighs the stylus and saves its weight, "
+                   "\"forget\" deletes the saved weight; end of input ends the test");
   program.add_flag("--calibrate", a.is_calibrating,
                    "OpenHaptics: calibrate first; hold the stylus in its inkwell, or the arm in its reset position");
   program.add_flag("-v,--verbose", a.is_verbose, "Print details to stderr");

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 
 #include "cli/program.h"
 
@@ -31,6 +33,23 @@ TEST(ServerProgram, ContainsNoCodeOfItsClients) {
   for (const char* code : {"trocar::storage::", "trocar::surface::", "trocar::attempt::", "trocar::io::save_patient(",
                            "trocar::io::write_image(", "trocar::io::detail::write_with_itk("})
     EXPECT_FALSE(has(symbols, code)) << code;
+}
+
+TEST(ServerProgram, ABrokenSavedWeightIsOneLineAndCanBeForgotten) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "trocar/styluses/virtual%3Aomni.toml";
+  std::filesystem::create_directories(file.parent_path());
+  std::ofstream(file) << "device = \"virtual:omni\"\npreset = \"omni\"\nstylus_weight_n = nan\n";
+  const std::string home = "XDG_CONFIG_HOME='" + folder.path().string() + "'";
+  const std::string endpoint = " --endpoint 'ipc://" + (folder / "server") + "'";
+  const Outcome refused = run_program("trocar-hapticd", "--device virtual:omni" + endpoint, home);
+  EXPECT_EQ(refused.exit_status, 1);
+  EXPECT_EQ(line_count(refused.err), 1) << refused.err;
+  EXPECT_TRUE(has(refused.err, file.c_str())) << refused.err;
+  const Outcome forgot = run_program("trocar-hapticd", "--device virtual:omni --test", "echo forget | " + home);
+  EXPECT_EQ(forgot.exit_status, 0) << forgot.err;
+  EXPECT_TRUE(has(forgot.out, "forgot\t")) << forgot.out;
+  EXPECT_FALSE(std::filesystem::exists(file));
 }
 
 }  // namespace

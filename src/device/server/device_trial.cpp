@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "haptics/closed_loop/closed_loop.h"
 #include "haptics/closed_loop/rotation.h"
 #include "haptics/gate/device_gate.h"
 
@@ -13,10 +14,13 @@ namespace {
 constexpr double kMostPush_n = 1.0;   ///< Noticeable, but does not push the hand away. [assumed]
 constexpr double kShare = 0.6;        ///< Share of the continuous force. [assumed]
 constexpr double kShownPush_n = 3.0;  ///< For a gamepad, half of its rumble.
+/// A trial has no stiff spring; more damping of single encoder counts would be felt as clicks. [assumed]
+constexpr double kMostDamping_ns_per_mm = 0.005;
 
 haptics::GateParams trial_gate(const haptics::DevicePreset& preset, double rate_hz) noexcept {
   haptics::GateParams params = haptics::gate_params(preset);
   params.period_s = 1.0 / rate_hz;
+  params.max_damping_ns_per_mm = std::min(params.max_damping_ns_per_mm, kMostDamping_ns_per_mm);
   return params;
 }
 
@@ -27,20 +31,30 @@ double push_of(const haptics::DevicePreset& preset, const haptics::GateParams& g
 }  // namespace
 
 DeviceTrial::DeviceTrial(devices::HapticDevice& device, double rate_hz) noexcept
-    : device_(device), gate_(trial_gate(device.preset(), rate_hz)), push_n_(push_of(device.preset(), gate_)) {}
+    : device_(device),
+      gate_(trial_gate(device.preset(), rate_hz)),
+      push_n_(push_of(device.preset(), gate_)),
+      weighing_(device.preset(), gate_) {}
 
 void DeviceTrial::push() noexcept {
+  if (weighing_.is_running()) return;
   pushing_s_ = 0.0;
   is_reset_ = true;
 }
 
-DeviceTrialRecord DeviceTrial::step(double now_s, double dt_s) noexcept {
-  DeviceTrialRecord record;
-  record.reading = device_.read(now_s);
-  const devices::DeviceReading& now = record.reading;
+void DeviceTrial::weigh(const std::optional<Pose>& placed_X_DS) noexcept {
+  if (weighing_.is_running()) return;
+  pushing_s_.reset();
+  placed_X_DS_ = placed_X_DS;
+  is_placed_ = false;
+  is_reset_ = true;
+  weighing_.start();
+}
+
+/// Faults and velocities of a reading.
+haptics::GateInput DeviceTrial::sense(const devices::DeviceReading& now, double dt_s) noexcept {
   const double since_fresh_s = unread_s_ + dt_s;
   unread_s_ = now.status == devices::DeviceStatus::kFresh ? 0.0 : since_fresh_s;
-
   haptics::GateInput input;
   input.dt_s = dt_s;
   input.unread_s = unread_s_;
@@ -56,19 +70,74 @@ DeviceTrialRecord DeviceTrial::step(double now_s, double dt_s) noexcept {
     }
     last_X_DS_ = now.X_DS;
   }
-  input.is_wanted = pushing_s_.has_value();
-  if (pushing_s_) {
-    if (state_.mode == telemetry::GateMode::kOn) *pushing_s_ += dt_s;  // not during the safe start
-    const double share = std::sin(std::numbers::pi * std::min(*pushing_s_ / kPush_s, 1.0));
-    input.wanted.force_n = push_n_ * share * share * Vec3::UnitZ();
-    if (*pushing_s_ >= kPush_s) pushing_s_.reset();
-  }
+  return input;
+}
+
+void DeviceTrial::ask_push(haptics::GateInput& input) noexcept {
+  input.is_wanted = true;
+  if (state_.mode == telemetry::GateMode::kOn) *pushing_s_ += input.dt_s;  // not during the safe start
+  const double share = std::sin(std::numbers::pi * std::min(*pushing_s_ / kPush_s, 1.0));
+  input.wanted.force_n = push_n_ * share * share * Vec3::UnitZ();
+  if (*pushing_s_ >= kPush_s) pushing_s_.reset();
+}
+
+void DeviceTrial::ask_weighing(const devices::DeviceReading& now, haptics::GateInput& input) noexcept {
+  StylusWeighing::Input period;
+  if (now.status == devices::DeviceStatus::kFresh && now.X_DS.is_finite()) period.X_DS = now.X_DS;
+  period.written_D = state_.last;
+  period.mode = state_.mode;
+  period.dt_s = input.dt_s;
+  const StylusWeighing::Demand demand = weighing_.step(period);
+  input.wanted = demand.wanted_D;
+  input.weight = demand.weight_D;
+  input.is_wanted = demand.is_wanted;
+  input.coupling = weighing_.coupling();
+  if (last_X_DS_) input.axis = last_X_DS_->R().col(2);
+}
+
+/// Places the stylus, holds it, and lets go. Devices that a person holds ignore it.
+void DeviceTrial::move_simulated_hand(double now_s) noexcept {
+  if (!weighing_.is_running() && !is_placed_) placed_X_DS_.reset();  // refused at once
+  if (!placed_X_DS_ || device_.is_in_real_hand()) return;
+  const bool is_held = weighing_.needs_hand();
+  if (is_held && (is_placed_ || state_.mode != telemetry::GateMode::kOff)) return;
+  const haptics::StylusHold made = haptics::make_hand();
+  devices::DeviceHand hand;
+  hand.X_DS = *placed_X_DS_;
+  hand.time_s = now_s;
+  hand.stiffness_n_per_mm = made.stiffness_n_per_mm;
+  hand.damping_ns_per_mm = made.damping_ns_per_mm;
+  hand.mass_kg = made.mass_kg;
+  hand.turning_nmm_per_rad = made.turning_nmm_per_rad;
+  hand.turning_damping_nmms_per_rad = made.turning_damping_nmms_per_rad;
+  hand.inertia_kg_mm2 = made.inertia_kg_mm2;
+  hand.is_held = is_held;
+  hand.is_placed = !is_placed_;
+  device_.hold(hand);
+  is_placed_ = true;
+  if (!is_held) placed_X_DS_.reset();
+}
+
+DeviceTrialRecord DeviceTrial::step(double now_s, double dt_s) noexcept {
+  DeviceTrialRecord record;
+  record.reading = device_.read(now_s);
+  move_simulated_hand(now_s);
+  haptics::GateInput input = sense(record.reading, dt_s);
+  if (pushing_s_) ask_push(input);
+  if (weighing_.is_running()) ask_weighing(record.reading, input);
+  const bool is_plugged_in = record.reading.status != devices::DeviceStatus::kDisconnected;
+  const bool is_off = has_refused_ && is_plugged_in;
   const haptics::GateOutput output = haptics::step_gate(state_, input, gate_);
-  if (state_.fault != telemetry::GateFault::kNone) pushing_s_.reset();
+  if (state_.fault != telemetry::GateFault::kNone) {
+    pushing_s_.reset();
+    if (weighing_.is_running()) weighing_.abort(is_off ? WeighRefusal::kForcesOff : WeighRefusal::kFault, state_.fault);
+  }
   has_refused_ = !device_.write(output.wrench);
   record.written_D = output.wrench;
   record.fault = state_.fault;
   record.is_pushing = pushing_s_.has_value();
+  record.is_weighing = weighing_.is_running();
+  record.weighed = weighing_.take_result();
   return record;
 }
 

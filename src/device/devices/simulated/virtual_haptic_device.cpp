@@ -5,6 +5,7 @@
 
 #include "devices/detail/factories.h"
 #include "devices/simulated/detail/hand_motion.h"
+#include "devices/stylus_profile.h"
 #include "geometry/clamp_norm.h"
 #include "haptics/closed_loop/rotation.h"
 
@@ -123,9 +124,10 @@ haptics::VirtualStylusParams VirtualHapticDevice::stylus_params() const noexcept
   haptics::VirtualStylusParams params;
   params.mass_kg = preset_.apparent_mass_kg;
   params.inertia_kg_mm2 = params_.inertia_kg_mm2;
-  params.weight_n = preset_.capability.stylus_weight_n;
+  const haptics::DeviceCapability& capability = preset_.capability;
+  params.weight_n = params_.weight_n.value_or(capability.stylus_weight_n);
   // A gimbal without motors has no lever: it is balanced, and the weight acts at S.
-  params.weight_lever_mm = preset_.has_torque() ? preset_.capability.stylus_lever_mm : 0.0;
+  params.weight_lever_mm = preset_.has_torque() ? params_.weight_lever_mm.value_or(capability.stylus_lever_mm) : 0.0;
   params.viscosity_ns_per_mm = preset_.viscosity_ns_per_mm;
   params.turning_viscosity_nmms = params_.gimbal_viscosity_nmms;
   params.friction_n = preset_.friction_n;
@@ -148,7 +150,12 @@ OpenedDevice open_virtual(const DeviceSpec& spec, const DeviceOptions& options) 
   const std::string& named = spec.argument.empty() ? options.preset : spec.argument;
   TROCAR_TRY(haptics::DevicePreset preset,
              haptics::load_device_preset(options.devices_file, named.empty() ? "premium" : named));
-  return std::make_unique<VirtualHapticDevice>(std::move(preset), SimulatedDeviceParams{});
+  SimulatedDeviceParams params;  // the stylus keeps its weight, also if another one is compensated
+  params.weight_n = preset.capability.stylus_weight_n;
+  params.weight_lever_mm = preset.capability.stylus_lever_mm;
+  const std::string name = "virtual:" + preset.name;
+  TROCAR_TRY(preset, with_stylus_profile(std::move(preset), options.stylus_folder, name));
+  return std::make_unique<VirtualHapticDevice>(std::move(preset), params);
 }
 
 }  // namespace trocar::devices

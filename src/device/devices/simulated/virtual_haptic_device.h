@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "devices/haptic_device.h"
 #include "devices/simulated/detail/hand_motion.h"
@@ -18,6 +19,9 @@ struct SimulatedDeviceParams {
   double gimbal_friction_nmm = 0.5;      ///< Coulomb friction of the gimbal. Range 0..20. [assumed]
   double gimbal_viscosity_nmms = 0.02;   ///< Range 0..1. [assumed]
   double wall_stiffness_n_per_mm = 5.0;  ///< Stiffness of the arm's end stops at the radius of the workspace. [assumed]
+  /// Weight of the stylus with its attachment, and its lever as in DeviceCapability; absent: those of the preset, which
+  /// the compensation uses. Without torque there is no lever.
+  std::optional<double> weight_n, weight_lever_mm;
 };
 
 /// A simulated device in a simulated hand: a rigid stylus with the mass, weight, friction, encoders and limits of a

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "devices/detail/factories.h"
+#include "devices/stylus_profile.h"
 #include "devices/vendor/detail/haply_messages.h"
 #include "devices/vendor/detail/websocket.h"
 #include "realtime/periodic_loop.h"
@@ -189,8 +190,11 @@ Status HaplyDevice::reconnect() {
 }
 
 OpenedDevice open_haply(const DeviceSpec& spec, const DeviceOptions& options) {
-  TROCAR_TRY(const haptics::DevicePreset preset, load_preset_of(options, "inverse3"));
-  return HaplyDevice::open(preset, spec.argument.empty() ? kHaplyAddress : spec.argument);
+  const std::string address = spec.argument.empty() ? kHaplyAddress : spec.argument;
+  TROCAR_TRY(haptics::DevicePreset row, load_preset_of(options, "inverse3"));
+  TROCAR_TRY(const haptics::DevicePreset preset,
+             with_stylus_profile(std::move(row), options.stylus_folder, HaplyDevice::name_of(address)));
+  return HaplyDevice::open(preset, address);
 }
 
 }  // namespace trocar::devices

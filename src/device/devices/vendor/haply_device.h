@@ -35,7 +35,8 @@ class HaplyDevice final : public HapticDevice {
   ~HaplyDevice() override;
 
   const haptics::DevicePreset& preset() const noexcept override { return preset_; }
-  std::string name() const override { return "haply:" + address_; }
+  std::string name() const override { return name_of(address_); }
+  static std::string name_of(const std::string& address) { return "haply:" + address; }
   DeviceReading read(double now_s) noexcept override;
   bool write(const haptics::Wrench& wrench_D) noexcept override;
   Status reconnect() override;

@@ -7,6 +7,7 @@
 #include <cctype>
 
 #include "devices/detail/factories.h"
+#include "devices/stylus_profile.h"
 #include "devices/vendor/detail/hd_connection.h"
 #include "realtime/periodic_loop.h"
 
@@ -66,6 +67,10 @@ haptics::DevicePreset tightened(haptics::DevicePreset preset, const hd::Descript
   return preset;
 }
 
+std::string name_of(const OpenHapticsOptions& options) {
+  return options.device.empty() ? "openhaptics" : fmt::format("openhaptics:{}", options.device);
+}
+
 /// Invariant: connection_ is set, except after a failed reconnect.
 class OpenHapticsDevice final : public HapticDevice {
  public:
@@ -77,9 +82,7 @@ class OpenHapticsDevice final : public HapticDevice {
         connection_(std::move(connection)) {}
 
   const haptics::DevicePreset& preset() const noexcept override { return preset_; }
-  std::string name() const override {
-    return options_.device.empty() ? "openhaptics" : fmt::format("openhaptics:{}", options_.device);
-  }
+  std::string name() const override { return name_of(options_); }
   DeviceReading read(double now_s) noexcept override {
     if (connection_) last_ = connection_->exchange().read(now_s);
     if (!connection_) last_.status = DeviceStatus::kDisconnected;
@@ -125,7 +128,8 @@ Result<std::unique_ptr<HapticDevice>> open_openhaptics_device(const OpenHapticsO
     TROCAR_TRY(options.preset, preset_of_model(said.model));
   }
   TROCAR_TRY(const haptics::DevicePreset row, haptics::load_device_preset(options.devices_file, options.preset));
-  haptics::DevicePreset preset = tightened(row, said);
+  TROCAR_TRY(haptics::DevicePreset preset,
+             with_stylus_profile(tightened(row, said), options.stylus_folder, name_of(options)));
   return std::make_unique<OpenHapticsDevice>(std::move(options), std::move(preset), std::move(connection));
 }
 
@@ -135,6 +139,7 @@ OpenedDevice open_openhaptics(const DeviceSpec& spec, const DeviceOptions& optio
   own.devices_file = options.devices_file;
   own.preset = options.preset;
   own.is_calibrating = options.is_calibrating;
+  own.stylus_folder = options.stylus_folder;
   return open_openhaptics_device(own);
 }
 

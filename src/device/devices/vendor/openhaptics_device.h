@@ -16,6 +16,7 @@ struct OpenHapticsOptions {
   /// A person holds the device in its calibration position: it is calibrated again while it is opened; an encoder
   /// reset is allowed.
   bool is_calibrating = false;
+  std::filesystem::path stylus_folder;     ///< As in DeviceOptions.
   double (*clock_s)() noexcept = nullptr;  ///< Steady clock of the callback; nullptr: the system's clock.
 };
 

@@ -6,8 +6,10 @@
 #include <limits>
 
 #include "core/files/data_dir.h"
+#include "core/files/temporary_folder.h"
 #include "core/testing/allocation_guard.h"
 #include "devices/device_spec.h"
+#include "devices/stylus_profile.h"
 #include "devices/test/bounded_wait.h"
 #include "devices/vendor/detail/haply_messages.h"
 #include "devices/vendor/detail/websocket.h"
@@ -376,6 +378,18 @@ TEST(HaplyDevice, IsOpenedByItsName) {
   const auto device = open_device(*spec, options);
   ASSERT_TRUE(device.has_value()) << device.error().text();
   EXPECT_EQ((*device)->preset().name, "inverse3");
+}
+
+TEST(HaplyDevice, ASavedWeightReplacesThePresets) {
+  const HaplyService service;
+  const TemporaryFolder folder;
+  DeviceOptions options;
+  options.devices_file = data_dir() / "devices.toml";
+  options.stylus_folder = folder.path();
+  ASSERT_TRUE(save_stylus_profile({"haply:" + service.address(), "inverse3", 0.7, std::nullopt}, folder.path()));
+  const auto device = open_device({"haply", service.address()}, options);
+  ASSERT_TRUE(device.has_value()) << device.error().text();
+  EXPECT_EQ((*device)->preset().capability.stylus_weight_n, 0.7);
 }
 
 }  // namespace

@@ -7,9 +7,11 @@
 #include <numbers>
 #include <thread>
 
+#include "core/files/temporary_folder.h"
 #include "core/testing/allocation_guard.h"
 #include "core/testing/source_dir.h"
 #include "devices/device_spec.h"
+#include "devices/stylus_profile.h"
 #include "devices/test/standin/hd_stand_in.h"
 #include "devices/vendor/detail/hd_api.h"
 #include "devices/vendor/detail/servo_exchange.h"
@@ -46,6 +48,7 @@ class OpenHaptics : public ::testing::Test {
     options.is_calibrating = is_calibrating;
     options.devices_file = testing::source_dir() / "data/devices.toml";
     options.clock_s = &callback_clock_s;
+    options.stylus_folder = stylus_folder;
     auto opened = open_openhaptics_device(options);
     if (!opened) return tl::unexpected(opened.error());
     device = *std::move(opened);
@@ -67,6 +70,7 @@ class OpenHaptics : public ::testing::Test {
 
   HdStandIn* vendor = nullptr;
   std::unique_ptr<HapticDevice> device;
+  std::filesystem::path stylus_folder;
   double now_s = 50.0;
 };
 
@@ -156,6 +160,20 @@ TEST_F(OpenHaptics, ModelChoosesThePreset) {
   const Status unknown = open();
   ASSERT_FALSE(unknown);
   EXPECT_NE(unknown.error().text().find("Falcon"), std::string::npos);
+}
+
+TEST_F(OpenHaptics, ASavedWeightReplacesThePresets) {
+  const TemporaryFolder folder;
+  stylus_folder = folder.path();
+  vendor->set_model("PHANTOM Omni", 3);
+  ASSERT_TRUE(save_stylus_profile({"openhaptics", "omni", 0.7, std::nullopt}, stylus_folder));
+  open_or_fail();
+  EXPECT_EQ(device->preset().capability.stylus_weight_n, 0.7);
+  device.reset();
+  vendor->set_model("PHANTOM Premium 1.5 6DOF", 6);
+  const Status other = open();
+  ASSERT_FALSE(other) << "the default device is another one now";
+  EXPECT_NE(other.error().text().find("premium"), std::string::npos);
 }
 
 TEST_F(OpenHaptics, WhatTheDeviceBearsTightensThePreset) {
