@@ -115,9 +115,8 @@ class Weighing {
     trial_.weigh(Pose(rotation_between(Vec3::UnitZ(), Vec3::UnitY()), Vec3::Zero()));
     if (!trial_.is_weighing()) return;  // refused
     print_line(
-        "weighing\tHold the stylus level in the middle of the workspace. Let it go after 2 s, keep your hand below it, "
-        "and "
-        "wait 20 s; it sinks at the end.");
+        "weighing\tHold the stylus level in the middle of the workspace. Let it go after 2 s, keep your hand below "
+        "it, and wait 20 s; it sinks at the end.");
   }
   void take(const server::DeviceTrialRecord& record, Wishes& wishes) {
     if (record.weighed) ended_ = record.weighed;
