@@ -63,7 +63,7 @@ std::unique_ptr<devices::HapticDevice> make_device(const Kind& kind, const hapti
   // A recorded hand: down onto the skin within 3 s, then trembling there.
   std::vector<Pose> poses;
   for (int i = 0; i < 20'000; ++i) {
-    const double depth_mm = std::min(2.0, -10.0 + 0.005 * i) + kTremor_mm * std::sin(0.012 * i);
+    const double depth_mm = std::min(3.0, -10.0 + 0.005 * i) + kTremor_mm * std::sin(0.012 * i);
     poses.push_back(needle_at_depth(depth_mm));
   }
   return std::make_unique<devices::ReplayDevice>(preset, "recorded", std::move(poses), 1000.0);

@@ -21,14 +21,14 @@ inline haptics::DevicePreset device_preset(const char* name = "premium") {
   return *preset;
 }
 
-/// A request for the flat layered patient below the room: z of W is up; the tip of a needle that points down from the
-/// origin of W is 20 mm below the skin.
 /// The shipped tissues on a firm wall: a small indentation of the skin gives a force.
 inline std::string firm_tissues() {
   anatomy::TissueTable table = anatomy::load_tissue_table(data_file("tissues.toml")).value();
   for (anatomy::LayerParams& layer : table.layers) layer.load_spread_mm = 0.0;
   return table.to_toml();
 }
+/// A request for the flat layered patient below the room: z of W is up; the tip of a needle that points down from the
+/// origin of W is 20 mm below the skin.
 inline link::LoadScene layered_request(const std::string& force_model = "insertion") {
   static const std::string tissues = firm_tissues();
   link::LoadScene request;

@@ -144,11 +144,13 @@ TEST(BoneContact, IsTheCouplingInSeriesWithTheBone) {
   trial.to_mm = 20.0;
   const auto samples = run_push_trial(scene_for(preset, {{0, kFat}, {12, kBone}}), preset, trial);
   const BoneContact contact = judge_bone_contact(samples, trial, 12.0, preset.capability.peak_force_n);
-  // 1 N/mm before a bone of 20 N/mm and more: at most the coupling's own.
-  EXPECT_GT(contact.slope_n_per_mm, 0.8);
-  EXPECT_LE(contact.slope_n_per_mm, 1.05);
-  // Hand and coupling share the way that the hand wants to go on: 8 mm of 0.6 and 0.95 N/mm in series.
-  EXPECT_NEAR(contact.steady_n, 8.0 * 0.6 * 0.95 / 1.55, 0.3);
+  // The coupling before a bone of 20 N/mm and more: at most its own stiffness.
+  const double k_c = preset.coupling.stiffness_n_per_mm;
+  EXPECT_GT(contact.slope_n_per_mm, 0.8 * k_c);
+  EXPECT_LE(contact.slope_n_per_mm, 1.05 * k_c);
+  // Hand and coupling share the way that the hand wants to go on: 8 mm of 0.6 N/mm and coupling on bone in series.
+  const double stiff = 0.95 * k_c;
+  EXPECT_NEAR(contact.steady_n, 8.0 * 0.6 * stiff / (0.6 + stiff), 0.3);
   EXPECT_LT(contact.overshoot, 0.2);
   EXPECT_FALSE(contact.is_limited);
 }

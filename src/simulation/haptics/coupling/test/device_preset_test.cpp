@@ -17,7 +17,7 @@ namespace {
 
 const std::filesystem::path kFile = data_dir() / "devices.toml";
 
-TEST(DevicePreset, DefaultOfASceneIsThePremium) {
+TEST(DevicePreset, LimitsOfASceneAreThePremiumsByDefault) {
   const auto premium = load_device_preset(kFile, "premium");
   ASSERT_TRUE(premium) << premium.error().text();
   constexpr DeviceCapability kDefault;
@@ -27,12 +27,19 @@ TEST(DevicePreset, DefaultOfASceneIsThePremium) {
   EXPECT_EQ(premium->capability.stylus_weight_n, kDefault.stylus_weight_n);
   EXPECT_EQ(premium->capability.stylus_lever_mm, kDefault.stylus_lever_mm);
   EXPECT_NEAR(premium->encoder.count_mm, 25.4 / 860.0, 5e-5);
-  HapticOptions options;
-  apply_device_preset(*premium, options);
-  constexpr HapticOptions kOptions;
-  EXPECT_EQ(options.coupling.stiffness_n_per_mm, kOptions.coupling.stiffness_n_per_mm);
-  EXPECT_EQ(options.coupling.damping_ns_per_mm, kOptions.coupling.damping_ns_per_mm);
-  EXPECT_EQ(options.constraint.force_n, kOptions.constraint.force_n);
+}
+
+TEST(DevicePreset, ItsCouplingIsUsedAndLimitsThePathsSpring) {
+  for (const char* name : {"premium", "omega6", "falcon"}) {
+    const auto preset = load_device_preset(kFile, name);
+    ASSERT_TRUE(preset) << preset.error().text();
+    HapticOptions options;
+    apply_device_preset(*preset, options);
+    EXPECT_EQ(options.coupling.stiffness_n_per_mm, preset->coupling.stiffness_n_per_mm);
+    EXPECT_EQ(options.coupling.damping_ns_per_mm, preset->coupling.damping_ns_per_mm);
+    EXPECT_LE(options.constraint.force_n / options.constraint.linear_mm, preset->coupling.stiffness_n_per_mm);
+    EXPECT_LE(options.constraint.force_n, HapticOptions{}.constraint.force_n);
+  }
 }
 
 TEST(DevicePreset, EveryDeviceMakesAScene) {

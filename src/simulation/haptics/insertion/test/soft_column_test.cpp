@@ -137,5 +137,47 @@ TEST(YieldingWall, FollowsANeedleThatIsPulledBackAtAnySpeed) {
   }
 }
 
+/// The flat patient with a fold of skin on it: 6 mm thick across x, 12 mm high, fat inside.
+std::shared_ptr<anatomy::VirtualPatient> folded_patient() {
+  auto patient = layered_patient({{0, kFat}});
+  for (std::size_t n = 0; n < patient->labels.voxels.size(); ++n) {
+    const Vec3 p_P = patient->labels.geometry.centre_mm(patient->labels.geometry.index_of(n));
+    const double beside_mm = std::max(std::abs(p_P.x()) - 3.0, -12.0 - p_P.z());  // of the fold's box
+    float& distance = patient->skin_distance_mm.voxels[n];
+    distance = std::min(distance, static_cast<float>(beside_mm));
+    if (distance < 0.0F) {
+      patient->labels.voxels[n] = kFat;
+      patient->ct.voxels[n] = kHuOfLabel[kFat];
+    }
+  }
+  return patient;
+}
+
+TEST(SoftWall, IsNotLostWhereTheSkinIsUneven) {
+  // The needle presses on the side of the fold and moves on behind its other side: the skin that it presses stays that
+  // of the near side until it gives way.
+  anatomy::TissueTable tissues = paper_tissues();
+  tissues.layers[0].load_spread_mm = 2.0;
+  auto made = haptics::make_haptic_scene(folded_patient(), tissues, {}, {}, {});
+  ASSERT_TRUE(made) << made.error().text();
+  Driver driver(*made);
+  double before_n = 0.0, furthest_mm = -10.0;
+  bool has_punctured = false, has_pressed = false;
+  for (double x_mm = -10.0; x_mm < 20.0 && !has_punctured; x_mm += 0.01) {
+    const telemetry::TickSample sample = driver.to({x_mm, 0.0, -6.0}, Vec3::UnitX());
+    const double force_n = -(sample.device_f_n - sample.f_weight_n).x();
+    has_punctured = sample.events[0].kind == telemetry::EventKind::kPuncture;
+    ASSERT_GT(force_n, before_n - 0.01) << "at " << x_mm;
+    ASSERT_LT(force_n, before_n + 0.1) << "at " << x_mm;
+    before_n = force_n;
+    furthest_mm = x_mm;
+    has_pressed = has_pressed || sample.phase == telemetry::InsertionPhase::kLoading;
+    ASSERT_EQ(sample.phase == telemetry::InsertionPhase::kOutside, !has_pressed) << "at " << x_mm;
+  }
+  EXPECT_TRUE(has_punctured);
+  EXPECT_GT(furthest_mm, 3.0) << "the device is behind the fold when its skin gives way";
+  EXPECT_NEAR(before_n, 2.8, 0.01);
+}
+
 }  // namespace
 }  // namespace trocar::testing
