@@ -76,8 +76,8 @@ TEST_F(EmbeddedBiopsy, RecordsTheForceLawsOwnValues) {
 
 TEST_F(EmbeddedBiopsy, EveryForceModelLeadsTheExpertToTheLesion) {
   using Layers = std::vector<std::string>;
-  const std::vector<std::pair<std::string, Layers>> models{{"proxy", {"skin", "liver_capsule"}},
-                                                           {"combined", {"skin", "liver_capsule"}}};  // muscle: from the CT
+  const std::vector<std::pair<std::string, Layers>> models{
+      {"proxy", {"skin", "liver_capsule"}}, {"combined", {"skin", "liver_capsule"}}};  // muscle: from the CT
   for (const auto& [model, layers] : models) {
     const Attempt attempt = perform(*the_case, "expert", 1, model);
     EXPECT_EQ(attempt.session.info.force_model, model);

@@ -46,8 +46,8 @@ struct ServoInput {
   bool is_stylet_in = true;
 };
 
-/// Interval between the shapes of the needle that are sent: the shaft bends with the hand, and a screen shows 60 frames a
-/// second.
+/// Interval between the shapes of the needle that are sent: the shaft bends with the hand, and a screen shows 60 frames
+/// a second.
 inline constexpr double kShapeEvery_s = 0.01;
 
 /// Output of a period: for clients, recorder and flight recorder. Fixed size.

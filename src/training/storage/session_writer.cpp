@@ -314,7 +314,8 @@ Status SessionWriter::finish(const tasks::Outcome& outcome, std::optional<std::s
     impl_->database << "INSERT INTO outcome (score, target_reached, fired_tick, json) VALUES (:s, :t, :f, :j)",
         soci::use(score, score_indicator), soci::use(target_reached), soci::use(fired_tick, fired_indicator),
         soci::use(json);
-    for (const CheckedRows& rows : {kTransducerRows, kShapeRows, kParameterRows, kInterruptionRows, kOutcomeRows, kBlockRows})
+    for (const CheckedRows& rows :
+         {kTransducerRows, kShapeRows, kParameterRows, kInterruptionRows, kOutcomeRows, kBlockRows})
       write_checksum(impl_->database, rows);
     impl_->ticks_hash = impl_->all_ticks.digest();
     write_ticks_hash(impl_->database, impl_->saved_ticks, impl_->ticks_hash);

@@ -11,7 +11,7 @@ std::optional<double> distance_to_skin_along(const HapticScene& scene, const Vec
                                              double near_mm) noexcept {
   const volume::FloatGrid& distance = scene.patient->skin_distance_mm;
   constexpr double kReach_mm = 60.0;  // more than the skin gives way
-  constexpr double kGrazing = 0.17;  // cosine of 80 degrees
+  constexpr double kGrazing = 0.17;   // cosine of 80 degrees
   constexpr int kMaxSteps = 12;
   double t = near_mm;
   for (int i = 0; i < kMaxSteps; ++i) {

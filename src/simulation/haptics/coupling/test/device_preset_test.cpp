@@ -37,7 +37,7 @@ TEST(DevicePreset, ItsCouplingIsUsedAndLimitsThePathsSpring) {
     apply_device_preset(*preset, options);
     EXPECT_EQ(options.coupling.stiffness_n_per_mm, preset->coupling.stiffness_n_per_mm);
     EXPECT_EQ(options.coupling.damping_ns_per_mm, preset->coupling.damping_ns_per_mm);
-    EXPECT_LE(options.constraint.force_n / options.constraint.linear_mm, preset->coupling.stiffness_n_per_mm);
+    EXPECT_LE(options.constraint.force_n, preset->coupling.stiffness_n_per_mm * options.constraint.linear_mm);
     EXPECT_LE(options.constraint.force_n, HapticOptions{}.constraint.force_n);
   }
 }

@@ -167,7 +167,7 @@ TEST(SoftWall, IsNotLostWhereTheSkinIsUneven) {
     const telemetry::TickSample sample = driver.to({x_mm, 0.0, -6.0}, Vec3::UnitX());
     const double force_n = -(sample.device_f_n - sample.f_weight_n).x();
     has_punctured = sample.events[0].kind == telemetry::EventKind::kPuncture;
-    ASSERT_GT(force_n, before_n - 0.01) << "at " << x_mm;
+    ASSERT_GT(force_n, before_n - 0.05) << "at " << x_mm;  // the damper of the coupling at the first touch
     ASSERT_LT(force_n, before_n + 0.1) << "at " << x_mm;
     before_n = force_n;
     furthest_mm = x_mm;
