@@ -9,32 +9,49 @@ double AxialBalance::prepuncture_n(double s_mm) const noexcept {
   return prepuncture_force_n(displacement(s_mm), velocity(s_mm), loading);
 }
 
-double AxialBalance::friction_n(double s_mm) const noexcept {
-  const double v = velocity(s_mm);
+double AxialBalance::friction_at(double v) const noexcept {
   const double thinning = is_thinning ? shear_thinning(v) : 1.0;
   return viscous_ns_per_mm * thinning * v + noise_n + std::copysign(dry_n * motion_fade(v), v);
 }
 
-double AxialBalance::cutting_force_n(double s_mm) const noexcept {
-  const double v = velocity(s_mm);
+double AxialBalance::cutting_at(double s_mm, double v, double prepuncture) const noexcept {
   if (!(cutting_n > 0.0) || !(s_mm > cut_to_mm) || !(v > 0.0)) return 0.0;
-  return std::max(0.0, cutting_n * motion_fade(v) - prepuncture_n(s_mm));
+  return std::max(0.0, cutting_n * motion_fade(v) - prepuncture);
 }
 
-double AxialBalance::yielding_mm(double s_mm) const noexcept {
-  const double under_load_mm = below != nullptr ? below->depression_mm(prepuncture_n(s_mm)) : 0.0;
+double AxialBalance::yielding_under(double prepuncture) const noexcept {
+  const double under_load_mm = below != nullptr ? below->depression_mm(prepuncture) : 0.0;
   return std::max(under_load_mm, recoiling_mm());
 }
 
-double AxialBalance::coupling_n(double s_mm) const noexcept {
-  const double yields_mm = yielding_mm(s_mm);
-  const double v = velocity(s_mm) + (yields_mm - yielded_mm) / dt_s;
+double AxialBalance::coupling_at(double s_mm, double v, double prepuncture) const noexcept {
+  const double yields_mm = yielding_under(prepuncture);
+  const double v_tip = v + (yields_mm - yielded_mm) / dt_s;
   return coupling.stiffness_n_per_mm * (s_device_mm - yields_mm - s_mm) +
-         coupling.damping_ns_per_mm * (v_device_mm_per_s - v);
+         coupling.damping_ns_per_mm * (v_device_mm_per_s - v_tip);
+}
+
+double AxialBalance::friction_n(double s_mm) const noexcept {
+  return friction_at(velocity(s_mm));
+}
+
+double AxialBalance::cutting_force_n(double s_mm) const noexcept {
+  return cutting_at(s_mm, velocity(s_mm), prepuncture_n(s_mm));
+}
+
+double AxialBalance::yielding_mm(double s_mm) const noexcept {
+  return yielding_under(prepuncture_n(s_mm));
+}
+
+double AxialBalance::coupling_n(double s_mm) const noexcept {
+  return coupling_at(s_mm, velocity(s_mm), prepuncture_n(s_mm));
 }
 
 double AxialBalance::unbalance_n(double s_mm) const noexcept {
-  return prepuncture_n(s_mm) + friction_n(s_mm) + cutting_force_n(s_mm) - coupling_n(s_mm);
+  const double v = velocity(s_mm);
+  const double x_mm = displacement(s_mm);
+  const double prepuncture = x_mm > 0.0 ? prepuncture_force_n(x_mm, v, loading) : 0.0;
+  return prepuncture + friction_at(v) + cutting_at(s_mm, v, prepuncture) - coupling_at(s_mm, v, prepuncture);
 }
 
 AxialSolution solve(const AxialBalance& balance) noexcept {

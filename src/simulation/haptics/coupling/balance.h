@@ -10,7 +10,8 @@ namespace trocar::haptics {
 /// The force balance of the virtual needle along its axis for one step (physics.md V1): resistance of the tissue
 /// against the coupling to the device. The needle has no mass; its speed is (s - s_previous)/dt, so the step is
 /// implicit. Monotone in s, hence one solution. All s in mm along the path, forces in N, resistance positive.
-struct AxialBalance {
+class AxialBalance {
+ public:
   double s_previous_mm = 0.0;
   double s_device_mm = 0.0;
   double v_device_mm_per_s = 0.0;
@@ -40,6 +41,13 @@ struct AxialBalance {
   double coupling_n(double s_mm) const noexcept;
   /// Resistance minus coupling; increases with s.
   double unbalance_n(double s_mm) const noexcept;
+
+ private:
+  // The same for a speed and a force of the layer ahead that are known already.
+  double friction_at(double v) const noexcept;
+  double cutting_at(double s_mm, double v, double prepuncture) const noexcept;
+  double yielding_under(double prepuncture) const noexcept;
+  double coupling_at(double s_mm, double v, double prepuncture) const noexcept;
 };
 
 struct AxialSolution {

@@ -51,8 +51,4 @@ double friction_noise(std::uint64_t seed, std::uint32_t tissue, double travel_mm
   return a + (b - a) * t * t * (3.0 - 2.0 * t);
 }
 
-double motion_fade(double speed_mm_per_s) noexcept {
-  return std::clamp(std::abs(speed_mm_per_s) / kRestSpeed_mm_per_s, 0.0, 1.0);
-}
-
 }  // namespace trocar::haptics

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -34,7 +35,10 @@ double contact_area_cm2(double radius_mm, double inserted_mm) noexcept;
 double friction_noise(std::uint64_t seed, std::uint32_t tissue, double travel_mm) noexcept;
 
 /// Fades out a force as the needle comes to rest: 0 at rest, 1 from 0.5 mm/s (physics.md F2).
-double motion_fade(double speed_mm_per_s) noexcept;
+inline constexpr double kRestSpeed_mm_per_s = 0.5;
+inline double motion_fade(double speed_mm_per_s) noexcept {
+  return std::clamp(std::abs(speed_mm_per_s) / kRestSpeed_mm_per_s, 0.0, 1.0);
+}
 
 /// Viscous friction of the body proxies as a share of the linear one (physics.md B6): 1 at rest, 1/2 at
 /// kThinning_mm_per_s.
@@ -44,6 +48,5 @@ inline double shear_thinning(double speed_mm_per_s) noexcept {
 }
 
 inline constexpr double kNoiseCorrelation_mm = 0.2;
-inline constexpr double kRestSpeed_mm_per_s = 0.5;
 
 }  // namespace trocar::haptics

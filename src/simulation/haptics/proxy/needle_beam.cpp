@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 namespace trocar::haptics {
 namespace {
@@ -44,6 +45,10 @@ double longest(const BeamSolution& solution) noexcept {
 }
 
 void limit(BeamSolution& solution, double most_mm) noexcept {
+  const auto deflections = std::span(solution.deflection_mm).first(static_cast<std::size_t>(solution.node_count));
+  const bool is_within =
+      std::ranges::all_of(deflections, [&](const Vec3& v) { return v.squaredNorm() <= most_mm * most_mm; });
+  if (is_within) return;
   const double most = longest(solution);
   if (most <= most_mm) return;
   solution.is_bound = true;
