@@ -69,7 +69,7 @@ void BMode::Impl::walk(int group, int first, int last) noexcept {
   const auto samples = static_cast<std::size_t>(plan.samples);
   const auto row = static_cast<std::ptrdiff_t>(plan.echo_row(first) - kPad);
   for (auto* echoes : {&frame.re, &frame.im}) std::fill_n(echoes->begin() + row, (last - first) * plan.stride, 0.0F);
-  const int central = plan.planes / 2;
+  const int central = plan.central();
   for (int line = first; line < last; ++line) {
     const LineWalk& path = frame.walks[static_cast<std::size_t>(line)];
     const float* bend = frame.bend_mm.data() + static_cast<std::size_t>(line) * plan.coarse_samples();
@@ -84,29 +84,28 @@ void BMode::Impl::walk(int group, int first, int last) noexcept {
     for (int order = 0; order < plan.planes; ++order) {
       // The central plane first: the others use its layers and delays.
       const int plane = order == 0 ? central : (order <= central ? order - 1 : order);
+      if (plan.walked_line(plane, line) != line) continue;
       const float zeta = static_cast<float>(plane - central) * plan.plane_step;
       float* delay = plane == central ? frame.delay.data() + static_cast<std::size_t>(line) * samples : nullptr;
       walk_line(plan, frame, path, zeta, s.walk, delay);
       make_texture(plan, frame, s.walk, line, plane == central, s.texture);
-      const std::size_t at =
-          (static_cast<std::size_t>(plane) * static_cast<std::size_t>(plan.lines) + static_cast<std::size_t>(line)) *
-          samples;
+      const int to = plan.row_of(plane, line);
       pack_gains(s.walk.log_gain.data(), s.texture.added.data(), s.walk.share.data(), plan.samples,
-                 frame.gain.data() + at);
+                 frame.gain.data() + static_cast<std::size_t>(to) * samples);
       if (plane == central) {
         std::fill_n(s.texture.added.begin(), samples, 0.0F);
         to_gain(s.walk.log_way.data(), s.texture.added.data(), plan.samples,
                 frame.way_gain.data() + static_cast<std::size_t>(line) * samples);
       }
       audible = std::max(audible, s.walk.audible);
-      store_borders(plan, frame, s.walk, plane, line);
+      store_borders(frame, s.walk, to);
     }
   }
 }
 
 void BMode::Impl::echo(int group, int first, int last) noexcept {
   for (int line = first; line < last; ++line) {
-    for (int plane = 0; plane < plan.planes; ++plane) add_surface_echoes(plan, frame, line, plane);
+    add_surface_echoes(plan, frame, line);
     if (plan.acquisition.artefacts.reverberation) add_ring_down(plan, frame, line);
   }
   add_needles(plan, frame, needles, first, last);
@@ -200,6 +199,9 @@ const BasebandFrame& BMode::render(const BModeInput& input) noexcept {
   impl.for_groups([&](int group, int first, int last) { impl.walk(group, first, last); });
   impl.for_groups([&](int group, int first, int last) { impl.echo(group, first, last); });
   add_points(plan, frame);
+  impl.for_groups([&](int, int first, int last) {
+    for (int line = first; line < last; ++line) find_loudest(plan, frame, line);
+  });
   impl.for_groups([&](int group, int first, int last) { impl.spread(group, first, last); });
   for (std::size_t line = 0; line < frame.contact.size(); ++line) impl.out.contact[line] = frame.walks[line].coupling;
   return impl.out;

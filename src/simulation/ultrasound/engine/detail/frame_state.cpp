@@ -19,16 +19,18 @@ void fit_frame(FrameState& frame, const ScanPlan& plan) {
   frame.pressed_samples.assign(lines, 0.0F);
   frame.reflectors.resize(lines);
   frame.gas.resize(lines);
-  frame.borders.resize(static_cast<std::size_t>(plan.planes) * lines * kMaxBorders);
+  const auto rows = static_cast<std::size_t>(plan.walked_rows());
+  frame.borders.resize(rows * kMaxBorders);
   frame.border_keys.resize(frame.borders.size());
-  frame.border_counts.assign(static_cast<std::size_t>(plan.planes) * lines, 0);
+  frame.border_counts.assign(rows, 0);
   frame.contact_shape.assign(samples + 16, 0.0F);
   for (auto* coarse : {&frame.bend_mm, &frame.focus_log, &frame.slowness, &frame.smooth_slowness, &frame.probed_way})
     coarse->assign(lines * plan.coarse_samples(), 0.0F);
   frame.delay.assign(lines * samples + 16, 0.0F);
   frame.way_gain.assign(lines * samples + 16, 0.0F);
-  frame.gain.assign(static_cast<std::size_t>(plan.planes) * lines * samples + 2, 0);
+  frame.gain.assign(rows * samples + 2, 0);
   for (auto* echoes : {&frame.re, &frame.im}) echoes->assign(plan.echo_row(plan.lines + plan.lateral_reach), 0.0F);
+  frame.loudest.assign(plan.lobe_blocks() * (lines + 2 * static_cast<std::size_t>(plan.lateral_reach)), 0.0F);
 }
 
 void clear_borders(FrameState& frame) noexcept {

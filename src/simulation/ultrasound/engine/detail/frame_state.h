@@ -91,9 +91,9 @@ struct FrameState {
   std::vector<float> contact_shape;  ///< Per sample of `walk`: share of the dent that tissue there follows.
   std::vector<LineWalk> walks;
   std::vector<int> audible;     ///< Per scanline: samples in front of the depth from which no plane receives an echo.
-  std::vector<Border> borders;  ///< (plane * lines + line) * kMaxBorders.
+  std::vector<Border> borders;  ///< ScanPlan::row_of(plane, line) * kMaxBorders.
   std::vector<BorderKey> border_keys;       ///< Indexed like `borders`.
-  std::vector<std::uint8_t> border_counts;  ///< plane * lines + line.
+  std::vector<std::uint8_t> border_counts;  ///< Per walked row.
   std::vector<float> pressed_samples;       ///< Per scanline: depth of the dent that the face makes in the skin.
   std::vector<GasBorder> gas;
   std::vector<Reflector> reflectors;
@@ -107,9 +107,12 @@ struct FrameState {
   std::vector<float> delay;            ///< line * samples: shown - walk, samples.
   /// line * samples: amplitude of an echo from there after losses, without its own strength.
   std::vector<float> way_gain;
-  /// (plane * lines + line) * samples: gain of a scatterer there; two more values at the end.
+  /// ScanPlan::row_of(plane, line) * samples: gain of a scatterer there; two more values at the end.
   std::vector<ScattererGain> gain;
   std::vector<float> re, im;  ///< ScanPlan::echo_row(line) + sample: echoes before the point spread.
+  /// block * (lines + 2 * lateral_reach) + lateral_reach + line: largest |re| or |im| in kLobeBlock samples; 0 beyond
+  /// the scanlines.
+  std::vector<float> loudest;
 };
 
 FrameState make_frame_state(const AcousticScene& scene);

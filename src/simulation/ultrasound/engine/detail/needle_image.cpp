@@ -138,9 +138,8 @@ void darken(const ScanPlan& plan, FrameState& frame, int line, const Cover& cove
     };
     const float neper = -std::log(std::max(left, 1e-6F));
     for (int plane = 0; plane < plan.planes; ++plane) {
-      ScattererGain* gains =
-          frame.gain.data() +
-          (static_cast<std::size_t>(plane) * static_cast<std::size_t>(plan.lines) + at_line) * samples + at;
+      if (plan.walked_line(plane, line) != line) continue;
+      ScattererGain* gains = frame.gain.data() + static_cast<std::size_t>(plan.row_of(plane, line)) * samples + at;
       for (std::size_t k = 0; k < n; ++k) gains[k] = attenuate(gains[k], neper);
     }
     fade(frame.way_gain.data() + at_line * samples + at);

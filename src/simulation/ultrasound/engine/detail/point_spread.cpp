@@ -18,6 +18,42 @@ namespace hn = hwy::HWY_NAMESPACE;
 using F = hn::ScalableTag<float>;
 using VF = hn::Vec<F>;
 
+void loudest(const ScanPlan& plan, FrameState& frame, int line) {
+  const F f;
+  const auto lanes = static_cast<int>(hn::Lanes(f));
+  const float* const re = frame.re.data() + plan.echo_row(line);
+  const float* const im = frame.im.data() + plan.echo_row(line);
+  const std::size_t row = static_cast<std::size_t>(plan.lines + 2 * plan.lateral_reach);
+  float* to = frame.loudest.data() + plan.lateral_reach + line;
+  for (int begin = 0; begin < plan.samples; begin += kLobeBlock, to += row) {
+    VF most = hn::Zero(f);
+    for (int s = begin; s < begin + kLobeBlock; s += lanes)
+      most = hn::Max(most, hn::Max(hn::Abs(hn::LoadU(f, re + s)), hn::Abs(hn::LoadU(f, im + s))));
+    *to = hn::GetLane(hn::MaxOfLanes(f, most));
+  }
+}
+
+/// Whether the side lobes of neighbours contribute to a block of a scanline: a lobe is 40 dB below its main lobe, and
+/// without a much louder neighbour its share is below 2 % of the scanline's own echoes.
+HWY_INLINE bool lobes_show(const ScanPlan& plan, const FrameState& frame, int line, std::size_t block) {
+  constexpr float kLouder = 5.0F;
+  const F f;
+  const auto lanes = static_cast<int>(hn::Lanes(f));
+  const std::size_t row = static_cast<std::size_t>(plan.lines + 2 * plan.lateral_reach);
+  const float* const middle = frame.loudest.data() + block * row + plan.lateral_reach + line;
+  const int reach = plan.lateral_reach_at[block], main_lobe = std::min(plan.main_lobe_reach_at[block], reach);
+  const auto most_in = [&](int first, int last) {
+    VF most = hn::Zero(f);
+    for (int k = first; k <= last; k += lanes) {
+      const auto n = static_cast<std::size_t>(std::min(lanes, last - k + 1));
+      most = hn::Max(most, hn::MaskedLoad(hn::FirstN(f, n), f, middle + k));
+    }
+    return hn::GetLane(hn::MaxOfLanes(f, most));
+  };
+  return std::max(most_in(-reach, -main_lobe - 1), most_in(main_lobe + 1, reach)) >
+         kLouder * most_in(-main_lobe, main_lobe);
+}
+
 /// The lateral point spread of one scanline, for the central angle and `kSides` steering angles to each side.
 template <std::size_t kSides>
 HWY_INLINE void spread_laterally(const ScanPlan& plan, const FrameState& frame, int line, SteeringRows& rows) {
@@ -56,7 +92,8 @@ HWY_INLINE void spread_laterally(const ScanPlan& plan, const FrameState& frame, 
         apart_im[side] = hn::MulAdd(sine, difference_re, apart_im[side]);
       }
     }
-    for (int k = main_lobe + 1; k <= reach; ++k) {
+    const bool has_lobes = reach > main_lobe && lobes_show(plan, frame, line, block);
+    for (int k = main_lobe + 1; has_lobes && k <= reach; ++k) {
       const VF weight = hn::LoadU(f, weights + k * samples);
       re = hn::MulAdd(weight, hn::Add(hn::LoadU(f, at_re - k * stride), hn::LoadU(f, at_re + k * stride)), re);
       im = hn::MulAdd(weight, hn::Add(hn::LoadU(f, at_im - k * stride), hn::LoadU(f, at_im + k * stride)), im);
@@ -135,6 +172,7 @@ namespace trocar::ultrasound::detail {
 
 HWY_EXPORT(spread);
 HWY_EXPORT(gains);
+HWY_EXPORT(loudest);
 
 SteeringRows::SteeringRows(const ScanPlan& plan)
     : stride_(static_cast<std::size_t>(plan.stride)), samples_(static_cast<std::size_t>(plan.samples)) {
@@ -152,6 +190,10 @@ void SteeringRows::clear_padding() noexcept {
 void spread_echoes(const ScanPlan& plan, const FrameState& frame, int line, SteeringRows& rows,
                    BasebandFrame& out) noexcept {
   HWY_DYNAMIC_DISPATCH(spread)(plan, frame, line, rows, out);
+}
+
+void find_loudest(const ScanPlan& plan, FrameState& frame, int line) noexcept {
+  HWY_DYNAMIC_DISPATCH(loudest)(plan, frame, line);
 }
 
 void to_gain(const float* log_gain, const float* added, int n, float* gain) noexcept {

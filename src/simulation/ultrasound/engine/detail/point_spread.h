@@ -26,6 +26,9 @@ class SteeringRows {
   std::vector<float> values_;
 };
 
+/// Finds FrameState::loudest of a scanline. Call after all echoes.
+void find_loudest(const ScanPlan& plan, FrameState& frame, int line) noexcept;
+
 /// Spreads the echoes `re` and `im` of all scanlines, laterally and along the pulse, to one scanline's samples of every
 /// angle.
 void spread_echoes(const ScanPlan& plan, const FrameState& frame, int line, SteeringRows& rows,

@@ -173,6 +173,13 @@ ScanPlan make_scan_plan(const AcousticScene& scene, const Transducer& transducer
     plan.elevation_sigma_mm.push_back(static_cast<float>(sigma_mm));
     plan.inverse_elevation_sigma.push_back(static_cast<float>(1.0 / sigma_mm));
   }
+  for (std::size_t c = 0; c < plan.coarse_samples(); ++c) {
+    constexpr double kLeast_mm = 0.02;
+    const double depth_mm = static_cast<double>(c * kCoarse) * plan.geometry.sample_mm();
+    const double spacing_mm = std::max(plan.geometry.line_spacing_mm(depth_mm), kLeast_mm);
+    plan.coarse_spacing_mm.push_back(static_cast<float>(spacing_mm));
+    plan.inverse_coarse_spacing.push_back(static_cast<float>(1.0 / spacing_mm));
+  }
   // Padding, because kernels read whole vectors.
   plan.elevation_sigma_mm.resize(n + 16, plan.elevation_sigma_mm.back());
   fill_rows(plan, scene.table);

@@ -20,6 +20,9 @@ inline constexpr int kTissues = 128;
 inline constexpr std::uint8_t kNoData = 127;  ///< Tissue outside the volume.
 inline constexpr float kBeamEdge = 2.2F;      ///< Limit in elevation, in sigmas; echoes beyond it are ignored.
 inline constexpr float kOutermostPlane = 1.8F;
+/// Outer planes are walked on every second scanline: tissue varies little over the distance of two.
+inline constexpr int kOuterStride = 2;
+inline constexpr int kLobeBlock = 16;  ///< Samples per value of lateral_reach_at and FrameState::loudest.
 
 /// Properties of a tissue along a scanline, at the scan's frequency.
 struct alignas(16) TissueRow {
@@ -51,6 +54,9 @@ struct ScanPlan {
 
   // One value per sample of `walk` or `shown`; their difference is too small to matter here.
   std::vector<float> elevation_sigma_mm, inverse_elevation_sigma;
+  /// Distance of adjacent scanlines every kCoarse samples, and its reciprocal. Those of a phased array start at one
+  /// point: there it is at least 0.02 mm, because smaller distances contain no information about lateral differences.
+  std::vector<float> coarse_spacing_mm, inverse_coarse_spacing;
   std::vector<float> speckle_scale;  ///< Scales fully developed speckle of unit scatterers to a root mean square of 1.
   std::vector<float> most_rank;  ///< Share of the scatterers that is sufficient there; resolution cells differ in size.
   /// Makes a plane reflector's echo independent of the number of scanlines that receive it.
@@ -72,6 +78,20 @@ struct ScanPlan {
   float cycles_per_sample = 0.0F;  ///< Phase of the echo.
   float brick_mm = 2.5F;           ///< Side of the cube that holds kBrickScatterers.
 
+  int central() const noexcept { return planes / 2; }
+  int outer_rows() const noexcept { return (lines + kOuterStride - 1) / kOuterStride; }
+  /// Number of walks of a frame: all scanlines of the central plane, some of the others.
+  int walked_rows() const noexcept { return lines + (planes - 1) * outer_rows(); }
+  /// Walk that a scanline of a plane uses, 0 <= row < walked_rows(): rows of borders and gains.
+  int row_of(int plane, int line) const noexcept {
+    if (plane == central()) return line;
+    return lines + (plane < central() ? plane : plane - 1) * outer_rows() + line / kOuterStride;
+  }
+  /// Scanline of that walk.
+  int walked_line(int plane, int line) const noexcept {
+    return plane == central() ? line : line / kOuterStride * kOuterStride;
+  }
+  std::size_t lobe_blocks() const noexcept { return static_cast<std::size_t>(samples / kLobeBlock) + 1; }
   /// Offset in side_cosine and side_sine of the weights for scanlines at distance k, 1 <= k <= main_lobe_reach.
   std::size_t side_row(std::size_t side, int k) const noexcept {
     return (side * static_cast<std::size_t>(main_lobe_reach) + static_cast<std::size_t>(k - 1)) *

@@ -41,24 +41,24 @@ void set_lines(const ScanPlan& plan, const FrameState& frame, std::size_t near, 
 
 }  // namespace
 
-Cell make_cell(const ScanPlan& plan, const FrameState& frame, int first, int last, float first_rest,
-               float last_rest) noexcept {
+Cell make_cell(const ScanPlan& plan, const FrameState& frame, int first, int last, float first_rest, float last_rest,
+               float reach) noexcept {
   Cell cell{};
   cell.first_line = first;
   cell.last_line = last;
-  cell.first_rest = first_rest;
-  cell.last_rest = last_rest;
-  const std::size_t near = sample_near(plan, first_rest), far = sample_near(plan, last_rest);
+  cell.near_rest = first_rest - reach;
+  cell.far_rest = last_rest + reach;
+  const std::size_t near = sample_near(plan, cell.near_rest), far = sample_near(plan, cell.far_rest);
   cell.half_thickness_mm = kBeamEdge * std::max(plan.elevation_sigma_mm[near], plan.elevation_sigma_mm[far]);
   cell.most_rank = std::max(plan.most_rank[near], plan.most_rank[far]);
-  cell.yields = frame.deepest_dent_mm > 0.0F && first_rest < frame.dent_reach;
+  cell.yields = frame.deepest_dent_mm > 0.0F && cell.near_rest < frame.dent_reach;
   fit_parabola(plan.speckle_scale, near, far, cell.speckle_scale);
   fit_parabola(plan.most_rank, near, far, cell.rank);
   fit_parabola(plan.inverse_elevation_sigma, near, far, cell.inverse_elevation_sigma);
   const ScanGeometry& g = plan.geometry;
   set_lines(plan, frame, near, far, cell);
-  const double low_mm = (static_cast<double>(first_rest) + 0.4) * g.sample_mm(),
-               high_mm = (static_cast<double>(last_rest) + 0.6) * g.sample_mm();
+  const double low_mm = (static_cast<double>(first_rest) + 0.5) * g.sample_mm(),
+               high_mm = (static_cast<double>(last_rest) + 0.5) * g.sample_mm();
   const double lines[2] = {cell.low_line, cell.high_line};
   for (int side = 0; side < 2; ++side) {
     const double outwards = side == 0 ? -1.0 : 1.0;
@@ -72,8 +72,6 @@ Cell make_cell(const ScanPlan& plan, const FrameState& frame, int first, int las
   };
   cell.low = bound(low_mm);
   cell.high = bound(high_mm);
-  cell.near_mm = g.is_fan ? std::sqrt(cell.low) : cell.low;
-  cell.far_mm = g.is_fan ? std::sqrt(cell.high) : cell.high;
   return cell;
 }
 
@@ -81,7 +79,7 @@ CellBox box_of(const ScanPlan& plan, const FrameState& frame, const Cell& cell) 
   CellBox box{};
   Eigen::AlignedBox3d bounds_P;
   for (const double line : {cell.low_line, 0.5 * (cell.low_line + cell.high_line), cell.high_line}) {
-    for (const float rest : {cell.first_rest, cell.last_rest}) {
+    for (const float rest : {cell.near_rest, cell.far_rest}) {
       const Vec2 p = plan.geometry.to_cartesian({line, (static_cast<double>(rest) + 0.5) * plan.geometry.sample_mm()});
       for (const float z : {-cell.half_thickness_mm, cell.half_thickness_mm}) {
         bounds_P.extend(frame.X_PT * Vec3(p.x(), p.y(), static_cast<double>(z)));
@@ -122,24 +120,24 @@ float from_apex(const ScanPlan& plan, float y) noexcept {
 
 }  // namespace
 
-void stay_in_cell(const ScanPlan& plan, const Cell& cell, const Vec3f& start_T, const Vec3f& step_T, float radius_mm,
-                  int& first, int& last) noexcept {
-  const float half_mm = cell.half_thickness_mm + radius_mm;
+void stay_in_cell(const ScanPlan& plan, const Cell& cell, const Vec3f& start_T, const Vec3f& step_T,
+                  const Eigen::Matrix3f& side_T, float more_mm, int& first, int& last) noexcept {
+  const float half_mm = cell.half_thickness_mm + 0.5F * side_T.row(2).lpNorm<1>() + more_mm;
   stay_below(start_T.z(), step_T.z(), half_mm, first, last);
   stay_below(-start_T.z(), -step_T.z(), half_mm, first, last);
   const float y = from_apex(plan, start_T.y());
   for (int side = 0; side < 2; ++side) {
-    stay_below(start_T.x() * cell.side_x[side] + y * cell.side_y[side] + cell.side_d[side],
-               step_T.x() * cell.side_x[side] + step_T.y() * cell.side_y[side], radius_mm, first, last);
+    const float x_part = cell.side_x[side], y_part = cell.side_y[side];
+    const float reach_mm = 0.5F * (x_part * side_T.row(0) + y_part * side_T.row(1)).lpNorm<1>() + more_mm;
+    stay_below(start_T.x() * x_part + y * y_part + cell.side_d[side], step_T.x() * x_part + step_T.y() * y_part,
+               reach_mm, first, last);
   }
 }
 
-bool is_at_depth(const ScanPlan& plan, const Cell& cell, const Vec3f& middle_T, float radius_mm) noexcept {
+bool is_at_depth(const ScanPlan& plan, const Cell& cell, const Vec3f& middle_T) noexcept {
   const float y = from_apex(plan, middle_T.y());
-  const float low = cell.near_mm - radius_mm, high = cell.far_mm + radius_mm;
-  if (!plan.geometry.is_fan) return y > low && y < high;
-  const float far2 = middle_T.x() * middle_T.x() + y * y;
-  return (low < 0.0F || far2 > low * low) && far2 < high * high;
+  const float far = plan.geometry.is_fan ? middle_T.x() * middle_T.x() + y * y : y;
+  return far >= cell.low && far < cell.high;
 }
 
 }  // namespace trocar::ultrasound::detail

@@ -127,13 +127,13 @@ void take_near(const ScanPlan& plan, const Drag* drag, const Cell& cell, const P
                                 hn::MulAdd(from_apex, hn::Set(f, cell.side_y[side]), hn::Set(f, cell.side_d[side])));
       near_by = hn::And(near_by, hn::Le(out, hn::Zero(f)));
     }
-    const VF far = plan.geometry.is_fan ? hn::MulAdd(x, x, hn::Mul(from_apex, from_apex)) : y;
-    near_by = hn::And(near_by, hn::And(hn::Ge(far, hn::Set(f, cell.low)), hn::Lt(far, hn::Set(f, cell.high))));
     if (hn::AllFalse(f, near_by)) continue;
-    hn::CompressStore(x, near_by, f, near.x + near.count);
-    hn::CompressStore(y, near_by, f, near.y + near.count);
-    hn::CompressStore(z, near_by, f, near.z + near.count);
-    near.count += static_cast<int>(hn::CompressStore(rank, near_by, f, near.rank + near.count));
+    // CompressStore is slow: it compresses in memory on some processors.
+    hn::StoreU(hn::Compress(x, near_by), f, near.x + near.count);
+    hn::StoreU(hn::Compress(y, near_by), f, near.y + near.count);
+    hn::StoreU(hn::Compress(z, near_by), f, near.z + near.count);
+    hn::StoreU(hn::Compress(rank, near_by), f, near.rank + near.count);
+    near.count += static_cast<int>(hn::CountTrue(f, near_by));
   }
 }
 
@@ -162,6 +162,17 @@ HWY_INLINE VF bent_line(const ScanPlan& plan, const FrameState& frame, VF line, 
     bent = hn::NegMulAdd(hn::GatherIndex(f, frame.bend_mm.data(), at), lines_per_mm, line);
   }
   return bent;
+}
+
+/// ScanPlan::row_of.
+HWY_INLINE VI gain_row(const ScanPlan& plan, VI plane, VI line) {
+  const I d;
+  static_assert(kOuterStride == 2);
+  const VI central = hn::Set(d, plan.central());
+  const VI outer = hn::IfThenElse(hn::Gt(plane, central), hn::Sub(plane, hn::Set(d, 1)), plane);
+  const VI row =
+      hn::Add(hn::Mul(outer, hn::Set(d, plan.outer_rows())), hn::Add(hn::ShiftRight<1>(line), hn::Set(d, plan.lines)));
+  return hn::IfThenElse(hn::Eq(plane, central), line, row);
 }
 
 /// Echoes of the candidates on the cell's scanlines; returns their number.
@@ -194,8 +205,6 @@ int accumulate_echoes(const ScanPlan& plan, const FrameState& frame, const Cell&
     // Depths start at the face, samples half a step before it.
     VF walk = hn::Sub(rest, half);
     auto contributes = hn::FirstN(f, static_cast<std::size_t>(near.count - s));
-    contributes = hn::And(contributes,
-                          hn::And(hn::Ge(walk, hn::Set(f, cell.first_rest)), hn::Lt(walk, hn::Set(f, cell.last_rest))));
     if (cell.yields) {
       const VI near_line = nearest_index(line, hn::Set(f, static_cast<float>(plan.lines - 1)));
       walk = hn::Sub(walk_of_rest(frame, rest, hn::GatherIndex(f, frame.pressed_samples.data(), near_line)), half);
@@ -220,11 +229,15 @@ int accumulate_echoes(const ScanPlan& plan, const FrameState& frame, const Cell&
     // Of the task's own scanlines: the gains of adjacent tasks may not be computed yet.
     const VI own_line = hn::NearestInt(hn::Min(hn::Max(line, hn::Set(f, static_cast<float>(cell.first_line))),
                                                hn::Set(f, static_cast<float>(cell.last_line - 1))));
-    const VF plane =
-        hn::MulAdd(zeta, hn::Set(f, 1.0F / plan.plane_step), hn::Set(f, static_cast<float>(plan.planes / 2)));
+    // One of the two nearest planes, the nearer with the larger share of scatterers: tissue changes gradually between
+    // planes.
+    const VF scaled_rank = hn::Mul(rank, hn::Set(f, static_cast<float>(kBrickScatterers)));
+    const VF chance = hn::Sub(scaled_rank, hn::Floor(scaled_rank));
+    const VF plane = hn::MulAdd(zeta, hn::Set(f, 1.0F / plan.plane_step),
+                                hn::Add(chance, hn::Set(f, static_cast<float>(plan.central()) - 0.5F)));
     const VI plane_index = nearest_index(plane, hn::Set(f, static_cast<float>(plan.planes - 1)));
     const VI in_line = hn::Add(hn::Mul(own_line, hn::Set(d, plan.samples)), at);
-    const VI place = hn::Add(in_line, hn::Mul(plane_index, hn::Set(d, plan.lines * plan.samples)));
+    const VI place = hn::Add(hn::Mul(gain_row(plan, plane_index, own_line), hn::Set(d, plan.samples)), at);
     const VF shown = hn::Add(walk, hn::GatherIndex(f, frame.delay.data(), in_line));
     const VI packed =
         hn::And(hn::GatherOffset(d, reinterpret_cast<const std::int32_t*>(frame.gain.data()), hn::Add(place, place)),
@@ -313,8 +326,10 @@ void add_scatterers(const ScanPlan& plan, const std::vector<Brick>& library, Fra
   const Pose X_TP = frame.X_PT.inverse();
   const Eigen::Matrix3f side_T = (X_TP.R() * static_cast<double>(plan.brick_mm)).cast<float>();
   const bool has_drag = frame.drag.reach_mm > 0.0F;
-  const float radius_mm = 0.87F * plan.brick_mm + (has_drag ? frame.drag.shift_T.norm() : 0.0F);
-  constexpr int kSegments = 14;  // per depth: the variation along one is nearly a parabola
+  const float drag_mm = has_drag ? frame.drag.shift_T.norm() : 0.0F;
+  const float radius_mm = 0.5F * std::sqrt(3.0F) * plan.brick_mm;
+  const float radius = radius_mm / plan.sample_mm;
+  constexpr int kSegments = 16;  // per depth: the variation along one is nearly a parabola
   const float segment = static_cast<float>(plan.samples) / kSegments;
   const auto take = HWY_DYNAMIC_DISPATCH(take_near);
   Candidates near;
@@ -322,9 +337,8 @@ void add_scatterers(const ScanPlan& plan, const std::vector<Brick>& library, Fra
   std::fill(field.begin(), field.end(), 0.0F);
   const auto audible =
       static_cast<float>(*std::max_element(frame.audible.begin() + first, frame.audible.begin() + last));
-  for (float rest = -frame.deepest_dent_mm / plan.sample_mm - 1.0F; rest < audible; rest += segment) {
-    const Cell cell =
-        make_cell(plan, frame, first, last, rest, std::min(rest + segment, static_cast<float>(plan.samples)));
+  for (float rest = -frame.deepest_dent_mm / plan.sample_mm - radius; rest < audible + radius; rest += segment) {
+    const Cell cell = make_cell(plan, frame, first, last, rest, rest + segment, radius);
     const CellBox box = box_of(plan, frame, cell);
     BrickIndex b{};
     for (b[2] = box.low[2]; b[2] <= box.high[2]; ++b[2]) {
@@ -332,11 +346,12 @@ void add_scatterers(const ScanPlan& plan, const std::vector<Brick>& library, Fra
         const Vec3 row_P = (Vec3(box.low[0], b[1], b[2]) + Vec3::Constant(0.5)) * static_cast<double>(plan.brick_mm);
         const Vec3f row_T = (X_TP * row_P).cast<float>();
         int first_i = 0, last_i = box.high[0] - box.low[0];
-        stay_in_cell(plan, cell, row_T, side_T.col(0), radius_mm, first_i, last_i);
+        stay_in_cell(plan, cell, row_T, side_T.col(0), side_T, drag_mm, first_i, last_i);
         for (int i = first_i; i <= last_i; ++i) {
           const Vec3f middle_T = row_T + static_cast<float>(i) * side_T.col(0);
-          if (!is_at_depth(plan, cell, middle_T, radius_mm)) continue;
-          const bool is_dragged = has_drag && (middle_T - frame.drag.tip_T).norm() < frame.drag.reach_mm + radius_mm;
+          if (!is_at_depth(plan, cell, middle_T)) continue;
+          const bool is_dragged =
+              has_drag && (middle_T - frame.drag.tip_T).norm() < frame.drag.reach_mm + radius_mm + drag_mm;
           b[0] = box.low[0] + i;
           take(plan, is_dragged ? &frame.drag : nullptr, cell, place_brick(b, library, middle_T, side_T), near);
           if (near.count > Candidates::kMost - kBrickScatterers) flush(plan, frame, cell, near, echoes, field.data());

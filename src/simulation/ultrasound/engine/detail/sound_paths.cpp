@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
+#include "core/parallel.h"
 #include "ultrasound/engine/detail/border_fit.h"
 
 namespace trocar::ultrasound::detail {
@@ -36,7 +38,7 @@ float slope_across(const ScanPlan& plan, const FrameState& frame, int line) noex
 void set_mirror(const ScanPlan& plan, FrameState& frame, int l) noexcept {
   LineWalk& line = frame.walks[static_cast<std::size_t>(l)];
   const Border& border = frame.gas[static_cast<std::size_t>(l)].border;
-  const SurfaceFit fit = fit_in_plane(plan, frame, plan.planes / 2, l, border);
+  const SurfaceFit fit = fit_in_plane(plan, frame, plan.central(), l, border);
   const Vec3 spacing = frame.scene->geometry.spacing_mm;
   const auto in_mm = [&](const std::array<float, 3>& v) { return Vec3(Vec3(v[0], v[1], v[2]).cwiseProduct(spacing)); };
   const Vec3 along = in_mm(line.along), lateral = in_mm(line.lateral), elevation = in_mm(frame.elevation);
@@ -122,7 +124,7 @@ void probe_lines(const ScanPlan& plan, FrameState& frame, WalkResult& scratch, i
       const float slow = plan.slowness[scratch.tissue[s]];
       slowness[c] = std::abs(slow) < kBendable ? slow : 0.0F;
     }
-    store_borders(plan, frame, scratch, plan.planes / 2, l);
+    store_borders(frame, scratch, plan.row_of(plan.central(), l));
     note_gas(plan, frame, scratch, l);
   }
 }
@@ -135,24 +137,15 @@ void place_mirrors(const ScanPlan& plan, FrameState& frame) noexcept {
 
 namespace {
 
-double depth_mm_of(const ScanPlan& plan, std::size_t c) noexcept {
-  return static_cast<double>(c) * kCoarse * static_cast<double>(plan.sample_mm);
-}
-
-/// Distance of adjacent scanlines. Those of a phased array start at one point: there it is at least kLeast_mm, because
-/// smaller distances contain no information about lateral differences.
-double spacing_mm(const ScanPlan& plan, std::size_t c) noexcept {
-  constexpr double kLeast_mm = 0.02;
-  return std::max(plan.geometry.line_spacing_mm(depth_mm_of(plan, c)), kLeast_mm);
-}
-
 /// A beam is as wide as its aperture near the face and narrow at its focus: smaller structures hardly refract or shadow
 /// it. Scanlines to each side over which a depth is averaged; `share` of the beam's width there.
 int half_width(const ScanPlan& plan, std::size_t c, double share) noexcept {
-  const double depth_mm = depth_mm_of(plan, c);
+  const double depth_mm = static_cast<double>(c) * kCoarse * static_cast<double>(plan.sample_mm);
   const double width_mm = share * plan.beam.aperture_mm * std::abs(1.0 - depth_mm / plan.beam.focus_mm);
   constexpr double kLeast_mm = 1.2, kMost_mm = 10.0;
-  return std::clamp(static_cast<int>(std::clamp(width_mm, kLeast_mm, kMost_mm) / spacing_mm(plan, c)), 1, 64);
+  return std::clamp(
+      static_cast<int>(std::clamp(width_mm, kLeast_mm, kMost_mm) / static_cast<double>(plan.coarse_spacing_mm[c])), 1,
+      64);
 }
 constexpr double kBendingShare = 0.5;
 constexpr double kShadingShare = 0.2;  // the echo's own aperture is apodised (assumed)
@@ -171,56 +164,123 @@ void average_lines(const ScanPlan& plan, int half, const Value& value, const Tak
   }
 }
 
-/// Shadows have soft edges: sound passes around a small obstacle. Adds to focus_log.
-void soften_shadows(const ScanPlan& plan, FrameState& frame) noexcept {
+/// The sound that reaches each depth of scanline `l`; stored in bend_mm until bend_at needs that.
+void note_transmission(const ScanPlan& plan, FrameState& frame, std::size_t l) noexcept {
+  const auto coarse = plan.coarse_samples();
+  for (std::size_t at = l * coarse; at < (l + 1) * coarse; ++at)
+    frame.bend_mm[at] = std::exp(std::max(frame.probed_way[at], -40.0F));
+}
+
+/// Shadows have soft edges: sound passes around a small obstacle. Adds to focus_log at one depth.
+void soften_shadows(const ScanPlan& plan, FrameState& frame, std::size_t c) noexcept {
   const auto coarse = plan.coarse_samples();
   constexpr float kMostChange = 1.5F;  // neper
-  for (std::size_t c = 0; c < coarse; ++c) {
-    const auto way = [&](int l) { return frame.probed_way[static_cast<std::size_t>(l) * coarse + c]; };
-    average_lines(
-        plan, half_width(plan, c, kShadingShare), [&](int l) { return std::exp(std::max(way(l), -40.0F)); },
-        [&](int l, float mean) {
-          const LineWalk& line = frame.walks[static_cast<std::size_t>(l)];
-          const float depth_mm = static_cast<float>(c) * kCoarse * plan.sample_mm;
-          if (depth_mm > line.mirror_depth_mm) return;
-          const float change = std::log(std::max(mean, 1e-18F)) - std::max(way(l), -40.0F);
-          frame.focus_log[static_cast<std::size_t>(l) * coarse + c] += std::clamp(change, -kMostChange, kMostChange);
-        });
-  }
+  const float depth_mm = static_cast<float>(c) * kCoarse * plan.sample_mm;
+  const auto at = [&](int l) { return static_cast<std::size_t>(l) * coarse + c; };
+  average_lines(
+      plan, half_width(plan, c, kShadingShare), [&](int l) { return frame.bend_mm[at(l)]; },
+      [&](int l, float mean) {
+        if (depth_mm > frame.walks[static_cast<std::size_t>(l)].mirror_depth_mm) return;
+        const float change = std::log(std::max(mean, 1e-18F)) - std::max(frame.probed_way[at(l)], -40.0F);
+        frame.focus_log[at(l)] += std::clamp(change, -kMostChange, kMostChange);
+      });
 }
 
 /// Edge shadows: a scanline nearly tangential to a border between tissues of different speed is deflected by (n - 1)
 /// tan(tilt); a deflection beyond the beam's opening returns no echo. The tilt is that in the image plane: the other
-/// planes are not computed yet. Adds to focus_log, behind the border.
-void shade_edges(const ScanPlan& plan, FrameState& frame) noexcept {
+/// planes are not computed yet. Losses behind the borders of scanline `l`; stored in smooth_slowness until bend_at
+/// needs that.
+void note_edges(const ScanPlan& plan, FrameState& frame, int l) noexcept {
   constexpr float kOpening_rad = 0.13F;  // assumed, about 1 / (2 f-number)
   constexpr float kMostTangent = 3.0F, kMostLoss = 2.3F, kBendable = 0.15F;
   const auto coarse = plan.coarse_samples();
-  const int central = plan.planes / 2;
-  for (int line = 0; line < plan.lines; ++line) {
-    const auto first = static_cast<std::size_t>(central * plan.lines + line);
-    float loss = 0.0F;
-    std::size_t c = 0;
-    float* losses = frame.smooth_slowness.data() + static_cast<std::size_t>(line) * coarse;  // unused until later
-    for (std::size_t b = 0; b < frame.border_counts[first]; ++b) {
-      const Border& border = frame.borders[first * kMaxBorders + b];
-      const float before = plan.slowness[border.before & 127U], behind = plan.slowness[border.behind & 127U];
-      if (std::abs(before) > kBendable || std::abs(behind) > kBendable || std::abs(before - behind) < 2e-3F) continue;
-      const SurfaceFit fit = fit_in_plane(plan, frame, central, line, border);
-      const float tangent = std::min(std::abs(fit.lateral), kMostTangent);
-      const float turned = (before - behind) * tangent / kOpening_rad;
-      for (const auto end = static_cast<std::size_t>(std::max(border.walk, 0.0F)) / kCoarse; c <= end && c < coarse;
-           ++c)
-        losses[c] = loss;
-      loss = std::min(loss + turned * turned, kMostLoss);  // half of its square, for both ways
-    }
-    for (; c < coarse; ++c) losses[c] = loss;
+  const auto first = static_cast<std::size_t>(plan.row_of(plan.central(), l));
+  float loss = 0.0F;
+  std::size_t c = 0;
+  float* losses = frame.smooth_slowness.data() + static_cast<std::size_t>(l) * coarse;
+  for (std::size_t b = 0; b < frame.border_counts[first]; ++b) {
+    const Border& border = frame.borders[first * kMaxBorders + b];
+    const float before = plan.slowness[border.before & 127U], behind = plan.slowness[border.behind & 127U];
+    if (std::abs(before) > kBendable || std::abs(behind) > kBendable || std::abs(before - behind) < 2e-3F) continue;
+    const SurfaceFit fit = fit_in_plane(plan, frame, plan.central(), l, border);
+    const float tangent = std::min(std::abs(fit.lateral), kMostTangent);
+    const float turned = (before - behind) * tangent / kOpening_rad;
+    for (const auto end = static_cast<std::size_t>(std::max(border.walk, 0.0F)) / kCoarse; c <= end && c < coarse; ++c)
+      losses[c] = loss;
+    loss = std::min(loss + turned * turned, kMostLoss);  // half of its square, for both ways
   }
-  for (std::size_t c = 0; c < coarse; ++c)
-    average_lines(
-        plan, half_width(plan, c, kShadingShare),
-        [&](int l) { return frame.smooth_slowness[static_cast<std::size_t>(l) * coarse + c]; },
-        [&](int l, float mean) { frame.focus_log[static_cast<std::size_t>(l) * coarse + c] -= mean; });
+  for (; c < coarse; ++c) losses[c] = loss;
+}
+
+/// Averages the losses at edges over the beam; adds to focus_log at one depth.
+void shade_edges(const ScanPlan& plan, FrameState& frame, std::size_t c) noexcept {
+  const auto coarse = plan.coarse_samples();
+  const auto at = [&](int l) { return static_cast<std::size_t>(l) * coarse + c; };
+  average_lines(
+      plan, half_width(plan, c, kShadingShare), [&](int l) { return frame.smooth_slowness[at(l)]; },
+      [&](int l, float mean) { frame.focus_log[at(l)] -= mean; });
+}
+
+/// A ray bends towards the slower side: slope += -d(ln c)/dx * dr; ln c = -ln(1 + slowness). Stores the change of slope
+/// at one depth in bend_mm.
+void bend_at(const ScanPlan& plan, FrameState& frame, std::size_t c) noexcept {
+  const auto coarse = plan.coarse_samples();
+  const int half = half_width(plan, c, kBendingShare);
+  const auto at = [&](int l) { return static_cast<std::size_t>(l) * coarse + c; };
+  average_lines(
+      plan, half, [&](int l) { return frame.slowness[at(l)]; },
+      [&](int l, float mean) { frame.smooth_slowness[at(l)] = mean; });
+  const float per_spacing = kCoarse * plan.sample_mm / plan.coarse_spacing_mm[c];
+  float before = 0.0F;
+  average_lines(
+      plan, half, [&](int l) { return frame.smooth_slowness[at(l)]; },
+      [&](int l, float mean) {
+        frame.bend_mm[at(l)] = l > 0 ? (mean - before) * per_spacing : 0.0F;
+        before = mean;
+      });
+}
+
+/// Follows the ray of scanline `l`: displacement from the changes of its slope.
+void follow_ray(const ScanPlan& plan, FrameState& frame, std::size_t l) noexcept {
+  const auto coarse = plan.coarse_samples();
+  const float step_mm = kCoarse * plan.sample_mm;
+  float slope = 0.0F, bend = 0.0F;
+  for (std::size_t at = l * coarse; at < (l + 1) * coarse; ++at) {
+    slope = std::clamp(slope + frame.bend_mm[at], -0.15F, 0.15F);
+    bend += slope * step_mm;
+    frame.bend_mm[at] = bend;
+  }
+}
+
+/// Intensity is inversely proportional to the width of the ray tube, both ways.
+void focus_ray(const ScanPlan& plan, FrameState& frame, std::size_t l) noexcept {
+  const auto coarse = plan.coarse_samples();
+  const std::size_t low = l >= 2 ? l - 2 : 0, high = std::min(l + 2, static_cast<std::size_t>(plan.lines - 1));
+  for (std::size_t c = 0; c < coarse; ++c) {
+    const float parting = (frame.bend_mm[high * coarse + c] - frame.bend_mm[low * coarse + c]) /
+                          (static_cast<float>(high - low) * plan.coarse_spacing_mm[c]);
+    frame.focus_log[l * coarse + c] -= std::log(std::clamp(1.0F + parting, 0.4F, 2.5F));
+  }
+}
+
+float widest_warp(const ScanPlan& plan, const FrameState& frame) noexcept {
+  constexpr float kMostLines = 12.0F;
+  const auto coarse = plan.coarse_samples();
+  float most = 0.0F;
+  for (std::size_t l = 0; l < static_cast<std::size_t>(plan.lines); ++l)
+    for (std::size_t c = 0; c < coarse; ++c)
+      most = std::max(most, std::abs(frame.bend_mm[l * coarse + c]) * plan.inverse_coarse_spacing[c]);
+  return std::min(most, kMostLines);
+}
+
+/// Calls body(n) for 0 <= n < count on several threads, without allocation.
+template <class Body>
+void for_each(std::size_t count, const Body& body) noexcept {
+  const auto part = [&](std::size_t first, std::size_t last) {
+    for (std::size_t n = first; n < last; ++n) body(n);
+  };
+  constexpr std::size_t kGrain = 16;
+  parallel_for(count, kGrain, std::ref(part));
 }
 
 }  // namespace
@@ -228,52 +288,25 @@ void shade_edges(const ScanPlan& plan, FrameState& frame) noexcept {
 void refract_lines(const ScanPlan& plan, FrameState& frame) noexcept {
   const auto coarse = plan.coarse_samples();
   const auto lines = static_cast<std::size_t>(plan.lines);
-  frame.widest_warp = 0.0F;
-  std::fill(frame.bend_mm.begin(), frame.bend_mm.end(), 0.0F);
+  const bool attenuates = plan.acquisition.artefacts.attenuation, refracts = plan.acquisition.artefacts.refraction;
   std::fill(frame.focus_log.begin(), frame.focus_log.end(), 0.0F);
-  if (plan.acquisition.artefacts.attenuation) soften_shadows(plan, frame);
-  if (!plan.acquisition.artefacts.refraction) return;
-  shade_edges(plan, frame);
-  const float step_mm = kCoarse * plan.sample_mm;
-  // A ray bends towards the slower side: slope += -d(ln c)/dx * dr; ln c = -ln(1 + slowness). The change is first
-  // stored in bend_mm.
-  for (std::size_t c = 0; c < coarse; ++c) {
-    const int half = half_width(plan, c, kBendingShare);
-    const auto spacing = static_cast<float>(spacing_mm(plan, c));
-    const auto at = [&](int l) { return static_cast<std::size_t>(l) * coarse + c; };
-    average_lines(
-        plan, half, [&](int l) { return frame.slowness[at(l)]; },
-        [&](int l, float mean) { frame.smooth_slowness[at(l)] = mean; });
-    float before = 0.0F;
-    average_lines(
-        plan, half, [&](int l) { return frame.smooth_slowness[at(l)]; },
-        [&](int l, float mean) {
-          frame.bend_mm[at(l)] = l > 0 ? (mean - before) / spacing * step_mm : 0.0F;
-          before = mean;
-        });
+  for_each(lines, [&](std::size_t l) {
+    if (attenuates) note_transmission(plan, frame, l);
+    if (refracts) note_edges(plan, frame, static_cast<int>(l));
+  });
+  for_each(coarse, [&](std::size_t c) {
+    if (attenuates) soften_shadows(plan, frame, c);
+    if (!refracts) return;
+    shade_edges(plan, frame, c);
+    bend_at(plan, frame, c);
+  });
+  if (refracts) {
+    for_each(lines, [&](std::size_t l) { follow_ray(plan, frame, l); });
+    for_each(lines, [&](std::size_t l) { focus_ray(plan, frame, l); });
+  } else {
+    std::fill(frame.bend_mm.begin(), frame.bend_mm.end(), 0.0F);
   }
-  for (std::size_t l = 0; l < lines; ++l) {
-    float slope = 0.0F, bend = 0.0F;
-    for (std::size_t c = 0; c < coarse; ++c) {
-      const auto spacing = static_cast<float>(spacing_mm(plan, c));
-      slope = std::clamp(slope + frame.bend_mm[l * coarse + c], -0.15F, 0.15F);
-      bend += slope * step_mm;
-      frame.bend_mm[l * coarse + c] = bend;
-      frame.widest_warp = std::max(frame.widest_warp, std::abs(bend) / spacing);
-    }
-  }
-  for (std::size_t l = 0; l < lines; ++l) {
-    const std::size_t low = l >= 2 ? l - 2 : 0, high = std::min(l + 2, lines - 1);
-    for (std::size_t c = 0; c < coarse; ++c) {
-      const auto spacing = static_cast<float>(spacing_mm(plan, c));
-      const float parting = (frame.bend_mm[high * coarse + c] - frame.bend_mm[low * coarse + c]) /
-                            (static_cast<float>(high - low) * spacing);
-      // Intensity is inversely proportional to the width of the ray tube, both ways.
-      frame.focus_log[l * coarse + c] -= std::log(std::clamp(1.0F + parting, 0.4F, 2.5F));
-    }
-  }
-  constexpr float kMostLines = 12.0F;
-  frame.widest_warp = std::min(frame.widest_warp, kMostLines);
+  frame.widest_warp = widest_warp(plan, frame);
 }
 
 }  // namespace trocar::ultrasound::detail

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "core/random.h"
 #include "ultrasound/engine/detail/border_fit.h"
@@ -51,39 +52,140 @@ void note_reflector(Reflector& reflector, const Border& border, float shown, flo
   reflector = {shown, strength * smooth_share, strength * std::max(0.0F, rough - kBubbly), is_gas, key};
 }
 
-}  // namespace
+/// A surface that the central plane crosses on a scanline.
+struct CentralSurface {
+  std::uint16_t tissues = 0;
+  SurfaceFit fit;
+  float tilt = 0.0F;
+};
 
-void add_surface_echoes(const ScanPlan& plan, FrameState& frame, int line, int plane) noexcept {
-  const auto at_line = static_cast<std::size_t>(line);
-  const float* delay = frame.delay.data() + at_line * static_cast<std::size_t>(plan.samples);
-  const auto first = static_cast<std::size_t>(plane * plan.lines + line);
-  const bool is_central = plane == plan.planes / 2;
-  if (is_central) frame.reflectors[at_line] = {};
-  for (std::size_t b = 0; b < frame.border_counts[first]; ++b) {
-    const Border& border = frame.borders[first * kMaxBorders + b];
-    const float strength = std::abs(border.reflection) * std::exp(std::max(border.log_gain, -60.0F));
-    constexpr float kInaudible = 1e-4F;  // about 30 dB below liver's speckle
-    if (strength < kInaudible) continue;
-    const SurfaceFit fit = fit_surface(plan, frame, plane, line, border);
-    const auto at = static_cast<std::size_t>(std::clamp(fit.walk, 0.0F, static_cast<float>(plan.samples - 1)));
-    const float shown = fit.walk + delay[at];
-    const int sample = static_cast<int>(shown + 0.5F);
-    if (shown < 0.0F || sample >= plan.samples) continue;
-    const float tilt = tilt_of(plan, frame, line, border, fit);
-    const float rough = std::max(plan.roughness[border.before & 127U], plan.roughness[border.behind & 127U]);
+/// Paints the surface echoes of one scanline. A surface is fitted once, on the central plane, and followed to the
+/// others; outer planes fit only surfaces that the central one does not cross.
+class EchoPainter {
+ public:
+  EchoPainter(const ScanPlan& plan, FrameState& frame, int line) noexcept
+      : plan_(plan),
+        frame_(frame),
+        line_(line),
+        reflector_(frame.reflectors[static_cast<std::size_t>(line)]),
+        delay_(frame.delay.data() + static_cast<std::size_t>(line) * static_cast<std::size_t>(plan.samples)) {
+    reflector_ = {};
+  }
+
+  void paint_central() noexcept {
+    for (const Border& border : borders_of(plan_.central())) {
+      const float strength = strength_of(border);
+      if (strength < kInaudible) continue;
+      CentralSurface& surface = surfaces_[count_++];
+      surface.tissues = tissues_of(border);
+      surface.fit = fit_surface(plan_, frame_, plan_.central(), line_, border);
+      surface.tilt = tilt_of(plan_, frame_, line_, border, surface.fit);
+      paint(border, strength, surface.fit, surface.tilt, plan_.central(), 0.0F);
+    }
+  }
+
+  void paint_outer(int plane) noexcept {
+    for (const Border& border : borders_of(plane)) {
+      const float strength = strength_of(border);
+      if (strength < kInaudible) continue;
+      const float z_mm = static_cast<float>(plane - plan_.central()) * plane_mm(border.walk);
+      if (const CentralSurface* same = find_central(border, plane, z_mm)) {
+        paint(border, strength, same->fit, same->tilt, plane, z_mm);
+      } else {
+        const SurfaceFit fit = fit_surface(plan_, frame_, plane, line_, border);
+        paint(border, strength, fit, tilt_of(plan_, frame_, line_, border, fit), plane, 0.0F);
+      }
+    }
+  }
+
+ private:
+  static constexpr float kInaudible = 1e-4F;  // about 30 dB below liver's speckle
+
+  std::span<const Border> borders_of(int plane) const noexcept {
+    const auto row = static_cast<std::size_t>(plan_.row_of(plane, line_));
+    return {frame_.borders.data() + row * kMaxBorders, frame_.border_counts[row]};
+  }
+  static float strength_of(const Border& border) noexcept {
+    return std::abs(border.reflection) * std::exp(std::max(border.log_gain, -60.0F));
+  }
+  std::size_t sample_at(float walk) const noexcept {
+    return static_cast<std::size_t>(std::clamp(walk, 0.0F, static_cast<float>(plan_.samples - 1)));
+  }
+  float plane_mm(float walk) const noexcept { return plan_.plane_step * plan_.elevation_sigma_mm[sample_at(walk)]; }
+
+  /// The central surface that continues to a border of an outer plane, `z_mm` across the image; nullptr: none.
+  const CentralSurface* find_central(const Border& border, int plane, float z_mm) const noexcept {
+    const std::uint16_t tissues = tissues_of(border);
+    const double depth_mm = (static_cast<double>(border.walk) + 0.5) * static_cast<double>(plan_.sample_mm);
+    const auto aside_mm = static_cast<float>((plan_.walked_line(plane, line_) - line_) *
+                                             plan_.geometry.line_spacing_mm(std::max(depth_mm, 0.1)));
+    float least_mm = 1.2F;  // a voxel's step
+    const CentralSurface* found = nullptr;
+    for (std::size_t n = 0; n < count_; ++n) {
+      const SurfaceFit& fit = surfaces_[n].fit;
+      if (surfaces_[n].tissues != tissues) continue;
+      const float off_mm =
+          std::abs((border.walk - fit.walk) * plan_.sample_mm - fit.deeper_mm(z_mm) - fit.lateral * aside_mm);
+      if (off_mm >= least_mm) continue;
+      least_mm = off_mm;
+      found = &surfaces_[n];
+    }
+    return found;
+  }
+
+  /// The echo of a border on one plane, `z_mm` across the image from where `fit` and `tilt` were determined. A surface
+  /// that runs across the image returns it from several depths.
+  void paint(const Border& border, float strength, const SurfaceFit& fit, float tilt, int plane, float z_mm) noexcept {
+    const float step_mm = plane_mm(fit.walk);
+    const float run_mm = std::abs(fit.elevation + 2.0F * fit.bow_per_mm * z_mm) * step_mm;
+    constexpr float kMostParts = 6.0F;
+    const float part_mm = 2.0F * static_cast<float>(plan_.beam.axial_sigma_mm);
+    const auto parts = static_cast<int>(std::clamp(std::ceil(run_mm / part_mm), 1.0F, kMostParts));
+    const float rough = std::max(plan_.roughness[border.before & 127U], plan_.roughness[border.behind & 127U]);
     const float smooth_share = (1.0F - rough) * std::exp(-0.5F * (tilt / kTilt_rad) * (tilt / kTilt_rad));
-    const float amplitude =
-        kPerfect * strength * plan.plane_weight[static_cast<std::size_t>(plane)] * plan.surface_scale[at];
+    const float weight = plan_.plane_weight[static_cast<std::size_t>(plane)] / static_cast<float>(parts);
     const std::uint32_t key = key_of(border.index);
+    for (int part = 0; part < parts; ++part) {
+      const float off = (static_cast<float>(part) + 0.5F) / static_cast<float>(parts) - 0.5F;
+      const float walk = fit.walk + fit.deeper_mm(z_mm + off * step_mm) / plan_.sample_mm;
+      const std::size_t at = sample_at(walk);
+      const float shown = walk + delay_[at];
+      if (shown < 0.0F || shown + 0.5F >= static_cast<float>(plan_.samples)) continue;
+      // Rough echoes of adjacent scanlines, planes and parts add up incoherently: each needs more amplitude for the
+      // same level.
+      const float rough_part =
+          rough * kRoughShare * std::cos(tilt) * std::sqrt(static_cast<float>(parts) / plan_.surface_scale[at]);
+      add(kPerfect * strength * weight * plan_.surface_scale[at], smooth_share, rough_part,
+          key + static_cast<std::uint32_t>(part) * 0x9e3779b9U, static_cast<int>(shown + 0.5F));
+      if (plane == plan_.central() && part == parts / 2)
+        note_reflector(reflector_, border, shown, strength, smooth_share, rough, key);
+    }
+  }
+
+  void add(float amplitude, float smooth_share, float rough_part, std::uint32_t key, int sample) noexcept {
     const float turn = 2.0F * std::numbers::pi_v<float> * static_cast<float>(key & 0xffffU) / 65536.0F;
     const float size_of_rough = std::sqrt(-std::log(std::max(static_cast<float>(key >> 16) / 65536.0F, 1e-4F)));
-    // Rough echoes of adjacent scanlines and planes add up incoherently: each needs more amplitude for the same level.
-    const float rough_part = rough * kRoughShare * std::cos(tilt) * size_of_rough / std::sqrt(plan.surface_scale[at]);
-    const std::size_t to = plan.echo_row(line) + static_cast<std::size_t>(sample);
-    frame.re[to] += amplitude * (smooth_share + rough_part * std::cos(turn));
-    frame.im[to] += amplitude * rough_part * std::sin(turn);
-    if (is_central) note_reflector(frame.reflectors[at_line], border, shown, strength, smooth_share, rough, key);
+    const std::size_t to = plan_.echo_row(line_) + static_cast<std::size_t>(sample);
+    frame_.re[to] += amplitude * (smooth_share + rough_part * size_of_rough * std::cos(turn));
+    frame_.im[to] += amplitude * rough_part * size_of_rough * std::sin(turn);
   }
+
+  const ScanPlan& plan_;
+  FrameState& frame_;
+  int line_;
+  Reflector& reflector_;
+  const float* delay_;
+  std::array<CentralSurface, kMaxBorders> surfaces_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace
+
+void add_surface_echoes(const ScanPlan& plan, FrameState& frame, int line) noexcept {
+  EchoPainter painter(plan, frame, line);
+  painter.paint_central();
+  for (int plane = 0; plane < plan.planes; ++plane)
+    if (plane != plan.central()) painter.paint_outer(plane);
 }
 
 }  // namespace trocar::ultrasound::detail

@@ -392,8 +392,8 @@ void walk_line(const ScanPlan& plan, const FrameState& frame, const LineWalk& li
   Walk(plan, frame, line, zeta, result, delay).run();
 }
 
-void store_borders(const ScanPlan& plan, FrameState& frame, const WalkResult& result, int plane, int line) noexcept {
-  const auto at = static_cast<std::size_t>(plane * plan.lines + line);
+void store_borders(FrameState& frame, const WalkResult& result, int row) noexcept {
+  const auto at = static_cast<std::size_t>(row);
   for (std::size_t b = 0; b < static_cast<std::size_t>(result.border_count); ++b) {
     const Border& border = result.borders[b];
     frame.borders[at * kMaxBorders + b] = border;

@@ -31,8 +31,8 @@ struct alignas(64) WalkResult {
 void walk_line(const ScanPlan& plan, const FrameState& frame, const LineWalk& line, float zeta, WalkResult& result,
                float* delay) noexcept;
 
-/// Stores a walk's borders in the frame.
-void store_borders(const ScanPlan& plan, FrameState& frame, const WalkResult& result, int plane, int line) noexcept;
+/// Stores a walk's borders as row `row` of the frame (ScanPlan::row_of).
+void store_borders(FrameState& frame, const WalkResult& result, int row) noexcept;
 
 /// Computes only the positions of the samples (index, cell).
 void place_line(const ScanPlan& plan, const FrameState& frame, const LineWalk& line, float zeta,
