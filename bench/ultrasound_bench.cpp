@@ -29,6 +29,7 @@ struct Setting {
   std::string name;
   std::string transducer;
   int steering_angles = 3;
+  double renewed_share = 1.0;  ///< Share of the scanlines that a picture renews.
 };
 
 struct Round {
@@ -44,7 +45,16 @@ double cpu_ms() {
   return static_cast<double>(now.tv_sec) * kMsPerS + static_cast<double>(now.tv_nsec) * 1e-6;
 }
 
-Round measure_round(ultrasound::BMode& engine, ultrasound::Scanner& scanner, const Pose& X_PT, int first_frame) {
+/// Scanlines of picture n of a rolling acquisition.
+ultrasound::LineRange lines_of(int n, int lines, double share) {
+  if (share >= 1.0) return {};
+  const int count = static_cast<int>(share * lines), pictures = lines / count,
+            part = ((n % pictures) + pictures) % pictures;
+  return {part * count, (part + 1) * count};
+}
+
+Round measure_round(ultrasound::BMode& engine, ultrasound::Scanner& scanner, const Pose& X_PT, double renewed_share,
+                    int first_frame) {
   Round round;
   for (auto* list : {&round.frame_ms, &round.engine_ms, &round.scanner_ms, &round.calibration_us})
     list->reserve(kFrames);
@@ -54,7 +64,9 @@ Round measure_round(ultrasound::BMode& engine, ultrasound::Scanner& scanner, con
   for (int n = first_frame; n < first_frame + kFrames; ++n) {
     const Pose X_PT_now = ultrasound::sway(X_PT, n);
     const ultrasound::BasebandFrame* echoes = nullptr;
-    const double engine_us = time_us([&] { echoes = &engine.render({X_PT_now, {}, n / 60.0}); });
+    const double engine_us = time_us([&] {
+      echoes = &engine.render({X_PT_now, {}, n / 60.0, lines_of(n, engine.geometry().lines, renewed_share)});
+    });
     const double scanner_us = time_us([&] { scanner.show(*echoes, static_cast<std::uint64_t>(n)); });
     round.calibration_us.push_back(time_us([&] { sink = calibration_arithmetic(sink); }));
     round.engine_ms.push_back(engine_us / kMsPerS);
@@ -73,13 +85,13 @@ struct Best {
   double cpu_ms_a_frame = 0.0;  ///< Over all rounds.
 };
 Best measure(const std::shared_ptr<const ultrasound::AcousticScene>& scene, const ultrasound::Transducer& transducer,
-             const Pose& X_PT, const ultrasound::Acquisition& acquisition) {
+             const Pose& X_PT, const ultrasound::Acquisition& acquisition, double renewed_share) {
   ultrasound::BMode engine(scene, transducer, acquisition);
   ultrasound::Scanner scanner(kColumns, kRows);
   for (int n = 0; n < kWarmUp; ++n) scanner.show(engine.render({ultrasound::sway(X_PT, -n), {}, 0.0}), 1);
   Best best;
   for (int round = 0; round < kRounds; ++round) {
-    Round taken = measure_round(engine, scanner, X_PT, round * kFrames);
+    Round taken = measure_round(engine, scanner, X_PT, renewed_share, round * kFrames);
     best.allocations_a_frame = std::max(best.allocations_a_frame, taken.allocations_a_frame);
     best.cpu_ms_a_frame = round == 0 ? taken.cpu_ms_a_frame : std::min(best.cpu_ms_a_frame, taken.cpu_ms_a_frame);
     const Figures frame = figures_of(std::move(taken.frame_ms));
@@ -149,21 +161,26 @@ Result<std::vector<CaseResult>> run_ultrasound_benchmark(const Options& options)
   const Setting settings[] = {{"raycast/256x1024x5", "C5-2", 3},
                               {"raycast/256x1024x5-one-look", "C5-2", 1},
                               {"raycast/liver-sweep", "liver-sweep", 3},
-                              {"raycast/linear", "L14-5", 3}};
+                              {"raycast/linear", "L14-5", 3},
+                              {"raycast/rolling-quarter", "C5-2", 3, 0.25},
+                              {"raycast/rolling-eighth", "C5-2", 3, 0.125}};
   double fraction = 0.2;
   for (const Setting& setting : settings) {
     report(options.progress, setting.name, fraction);
-    fraction += 0.2;
+    fraction += 0.8 / static_cast<double>(std::size(settings));
     TROCAR_TRY(const ultrasound::Transducer transducer,
                ultrasound::load_transducer(data_dir() / "transducers.toml", setting.transducer));
     TROCAR_TRY(const ultrasound::ProbePlacement placed, ultrasound::place_probe(patient, view, transducer));
     const Pose& X_PT = placed.X_PT;
     ultrasound::Acquisition acquisition = ultrasound::default_acquisition(transducer);
     acquisition.steering_angles = setting.steering_angles;
-    const Best best = measure(scene, transducer, X_PT, acquisition);
+    const Best best = measure(scene, transducer, X_PT, acquisition, setting.renewed_share);
     if (&setting == settings)
       results.push_back({"calibration/arithmetic", "us", best.calibration, {}, "a fixed loop, after each frame"});
     append(setting.name, best, results);
+    Figures lines;
+    lines.median = setting.renewed_share * acquisition.lines * kMsPerS / *best.frame.median;
+    results.push_back({setting.name + "/lines", "1/s", lines, {}, "renewed scanlines"});
   }
   return results;
 }

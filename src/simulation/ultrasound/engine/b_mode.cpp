@@ -44,19 +44,26 @@ struct BMode::Impl {
   std::vector<Brick> bricks = make_brick_library();
   std::vector<Scratch> scratch;  ///< One per group of scanlines.
 
-  int groups() const noexcept { return (plan.lines + kGroup - 1) / kGroup; }
+  bool has_frame = false;  ///< Of this acquisition.
 
+  static int groups(int lines) noexcept { return (lines + kGroup - 1) / kGroup; }
+
+  /// Calls body(number of the group, first, last) for groups of scanlines of a range on several threads.
   template <class Body>
-  void for_groups(const Body& body) noexcept {
+  void for_groups(const LineRange& lines, const Body& body) noexcept {
     const auto part = [&](std::size_t first, std::size_t last) {
       for (std::size_t g = first; g < last; ++g) {
-        const int begin = static_cast<int>(g) * kGroup;
-        body(static_cast<int>(g), begin, std::min(begin + kGroup, plan.lines));
+        const int begin = lines.first + static_cast<int>(g) * kGroup;
+        body(static_cast<int>(g), begin, std::min(begin + kGroup, lines.last));
       }
     };
-    parallel_for(static_cast<std::size_t>(groups()), 1, std::ref(part));
+    parallel_for(static_cast<std::size_t>(groups(lines.count())), 1, std::ref(part));
   }
 
+  /// The range of BModeInput::renewed, and `margin` scanlines on either side.
+  LineRange range_of(const LineRange& renewed, int margin) const noexcept;
+  /// Contact, losses, mirrors and refraction of scanlines.
+  void find_paths(const BModeInput& input, const LineRange& lines) noexcept;
   void walk(int group, int first, int last) noexcept;
   /// Call after walking all scanlines: a scanline receives echoes from the space up to the next one.
   void echo(int group, int first, int last) noexcept;
@@ -155,7 +162,8 @@ void BMode::set_acquisition(const Acquisition& acquisition) {
   impl.plan = make_scan_plan(*impl.scene, impl.transducer, acquisition);
   fit_frame(impl.frame, impl.plan);
   impl.needles = make_needle_image(impl.plan);
-  impl.scratch.resize(static_cast<std::size_t>(impl.groups()));
+  impl.has_frame = false;
+  impl.scratch.resize(static_cast<std::size_t>(impl.groups(impl.plan.lines)));
   for (Scratch& scratch : impl.scratch) {
     scratch.scatterers = make_scatterer_field(impl.plan);
     scratch.rows = SteeringRows(impl.plan);
@@ -177,33 +185,52 @@ const ScanGeometry& BMode::geometry() const noexcept {
   return impl_->plan.geometry;
 }
 
+LineRange BMode::Impl::range_of(const LineRange& renewed, int margin) const noexcept {
+  if (renewed.is_empty() || !has_frame) return {0, plan.lines};
+  const int first = std::clamp(renewed.first - margin, 0, plan.lines - 1) / kOuterStride * kOuterStride;
+  const int last = std::clamp(renewed.last + margin, first + 1, plan.lines);
+  return {first, std::min(first + (last - first + kOuterStride - 1) / kOuterStride * kOuterStride, plan.lines)};
+}
+
+void BMode::Impl::find_paths(const BModeInput& input, const LineRange& lines) noexcept {
+  clear_borders(plan, frame, lines.first, lines.last);
+  const auto first = static_cast<std::size_t>(lines.first), count = static_cast<std::size_t>(lines.count());
+  find_contact(scene->skin_distance_mm, plan.geometry, input.X_PT, std::span(frame.contact).subspan(first, count),
+               lines.first);
+  const double reach_mm = find_dent_reach_mm(*scene, plan.geometry, input.X_PT);
+  frame.dent_reach = static_cast<float>(reach_mm / plan.geometry.sample_mm());
+  for (std::size_t s = 0; s < static_cast<std::size_t>(plan.samples); ++s)
+    frame.contact_shape[s] =
+        static_cast<float>(dent_share((static_cast<double>(s) + 0.5) * plan.geometry.sample_mm(), reach_mm));
+  aim_lines(plan, frame, lines.first, lines.last);
+  for_groups(lines, [&](int group, int begin, int end) {
+    probe_lines(plan, frame, scratch[static_cast<std::size_t>(group)].walk, begin, end);
+  });
+  place_mirrors(plan, frame, lines.first, lines.last);
+  refract_lines(plan, frame, lines.first, lines.last);
+}
+
 const BasebandFrame& BMode::render(const BModeInput& input) noexcept {
   Impl& impl = *impl_;
   ScanPlan& plan = impl.plan;
   FrameState& frame = impl.frame;
   frame.X_PT = input.X_PT;
-  clear_borders(frame);
-  find_contact(impl.scene->skin_distance_mm, plan.geometry, input.X_PT, frame.contact);
-  const double reach_mm = find_dent_reach_mm(*impl.scene, plan.geometry, input.X_PT);
-  frame.dent_reach = static_cast<float>(reach_mm / plan.geometry.sample_mm());
-  for (std::size_t s = 0; s < static_cast<std::size_t>(plan.samples); ++s)
-    frame.contact_shape[s] =
-        static_cast<float>(dent_share((static_cast<double>(s) + 0.5) * plan.geometry.sample_mm(), reach_mm));
-  aim_lines(plan, frame);
-  impl.for_groups([&](int group, int first, int last) {
-    probe_lines(plan, frame, impl.scratch[static_cast<std::size_t>(group)].walk, first, last);
-  });
-  place_mirrors(plan, frame);
-  refract_lines(plan, frame);
+  // Fits of surfaces and refraction read the neighbours of a scanline.
+  constexpr int kNeighbours = 16;
+  const LineRange lines = impl.range_of(input.renewed, 0);
+  impl.find_paths(input, impl.range_of(input.renewed, kNeighbours));
   lay_out_needles(plan, frame, input.needles, impl.needles);
-  impl.for_groups([&](int group, int first, int last) { impl.walk(group, first, last); });
-  impl.for_groups([&](int group, int first, int last) { impl.echo(group, first, last); });
-  add_points(plan, frame);
-  impl.for_groups([&](int, int first, int last) {
+  impl.for_groups(lines, [&](int group, int first, int last) { impl.walk(group, first, last); });
+  impl.for_groups(lines, [&](int group, int first, int last) { impl.echo(group, first, last); });
+  add_points(plan, frame, lines.first, lines.last);
+  impl.for_groups(lines, [&](int, int first, int last) {
     for (int line = first; line < last; ++line) find_loudest(plan, frame, line);
   });
-  impl.for_groups([&](int group, int first, int last) { impl.spread(group, first, last); });
-  for (std::size_t line = 0; line < frame.contact.size(); ++line) impl.out.contact[line] = frame.walks[line].coupling;
+  impl.for_groups(lines, [&](int group, int first, int last) { impl.spread(group, first, last); });
+  for (int line = lines.first; line < lines.last; ++line)
+    impl.out.contact[static_cast<std::size_t>(line)] = frame.walks[static_cast<std::size_t>(line)].coupling;
+  impl.out.renewed = lines;
+  impl.has_frame = true;
   return impl.out;
 }
 

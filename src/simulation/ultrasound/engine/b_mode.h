@@ -31,11 +31,25 @@ struct Acquisition {
 /// The transducer's own defaults.
 Acquisition default_acquisition(const Transducer& transducer);
 
+/// Scanlines first, first + 1 … last - 1.
+struct LineRange {
+  int first = 0;
+  int last = 0;
+
+  bool is_empty() const noexcept { return last <= first; }
+  int count() const noexcept { return is_empty() ? 0 : last - first; }
+  bool operator==(const LineRange&) const = default;
+};
+
 /// Input of one frame.
 struct BModeInput {
   Pose X_PT;  ///< Transducer in the (resting) patient.
   std::span<const NeedleEcho> needles;
   double time_s = 0.0;
+  /// Scanlines to renew, widened to an even first one and an even number; empty: all. The others keep their echoes, as
+  /// in a scanner that shows its picture while scanlines still return (rolling acquisition). Echoes across the seam are
+  /// mixed within the beam's main lobe. The first frame after set_acquisition() renews all.
+  LineRange renewed{};
 };
 
 /// Echoes of one frame, beamformed, demodulated and not yet amplified: complex baseband, scanline by scanline (sample
@@ -46,6 +60,7 @@ struct BasebandFrame {
   int steering_angles = 1;
   std::vector<float> re, im;   ///< steering_angles * lines * samples.
   std::vector<float> contact;  ///< Per scanline: 1 where the face is coupled to the skin, 0 in air.
+  LineRange renewed;           ///< Scanlines that differ from the frame before; empty: all.
 };
 
 /// Share of the scanlines that are coupled to the skin, 0..1.

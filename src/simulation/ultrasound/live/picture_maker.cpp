@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "core/check.h"
@@ -15,6 +16,8 @@ namespace {
 /// Objects that render one level of detail.
 struct Stage {
   BMode engine;
+  int next_line = 0;                       ///< First scanline of the next picture, if it renews a part.
+  std::optional<ScanRequest> last;         ///< Of its last picture.
   std::shared_ptr<const VesselFlow> flow;  ///< Of `doppler`.
   std::optional<ColourDoppler> doppler;
 };
@@ -76,7 +79,7 @@ Stage& PictureMaker::Impl::stage(const Acquisition& full, ScanDetail detail) {
   std::optional<Stage>& place = stages[static_cast<std::size_t>(detail)];
   const Acquisition wanted = with_detail(full, detail);
   if (!place) {
-    place.emplace(Stage{BMode(scene, transducer, wanted), nullptr, std::nullopt});
+    place.emplace(Stage{BMode(scene, transducer, wanted), 0, std::nullopt, nullptr, std::nullopt});
   } else if (!(place->engine.acquisition() == wanted)) {
     place->engine.set_acquisition(wanted);
   }
@@ -89,6 +92,23 @@ Scanner& PictureMaker::Impl::scanner(std::optional<Scanner>& place, const ScanRe
   place->settings = request.display;
   place->artefacts = request.acquisition.artefacts;
   return *place;
+}
+
+/// The scanlines that a picture renews; empty: all. The first picture at rest is whole.
+LineRange next_lines(Stage& stage, const ScanRequest& request, bool is_other_detail) {
+  constexpr double kRest_mm = 0.02;
+  const int lines = stage.engine.geometry().lines;
+  const bool is_whole = request.renewed_share >= 1.0 || is_other_detail || request.flow != nullptr || !stage.last ||
+                        is_equivalent(*stage.last, request, kRest_mm);
+  stage.last = request;
+  if (is_whole) {
+    stage.next_line = 0;
+    return {};
+  }
+  if (stage.next_line >= lines) stage.next_line = 0;
+  const int first = stage.next_line;
+  stage.next_line += std::max(2, static_cast<int>(std::ceil(request.renewed_share * lines)));
+  return {first, std::min(stage.next_line, lines)};
 }
 
 void PictureMaker::Impl::add_colour(const ScanRequest& request, Stage& stage, const BasebandFrame& echoes,
@@ -156,7 +176,8 @@ ScanPicture PictureMaker::make(const ScanRequest& asked, ScanDetail detail, std:
     needle.bore_share = request.needle_bore_share;
     needles.push_back(needle);
   }
-  const BasebandFrame& echoes = stage.engine.render({request.X_PT, needles, request.time_s});
+  const BasebandFrame& echoes =
+      stage.engine.render({request.X_PT, needles, request.time_s, next_lines(stage, request, is_other_detail)});
 
   ScanPicture picture;
   picture.gray = scanner.show(echoes, seed);

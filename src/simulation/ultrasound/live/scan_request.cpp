@@ -42,6 +42,7 @@ ScanRequest within_ranges(const ScanRequest& request, const Transducer& transduc
   r.needle_diameter_mm = held(request.needle_diameter_mm, 0.2, 5.0, 1.2);
   r.needle_bore_share = held(request.needle_bore_share, 0.0, 0.9, 0.0);
   r.tip_shift_mm = held(request.tip_shift_mm, -10.0, 10.0, 0.0);
+  r.renewed_share = held(request.renewed_share, 0.05, 1.0, 1.0);
   r.columns = std::clamp(request.columns, kLeastSide, kMostSide);
   r.rows = std::clamp(request.rows, kLeastSide, kMostSide);
   return r;

@@ -20,6 +20,9 @@ struct ScanRequest {
   double needle_bore_share = 0.0;    ///< See NeedleEcho::bore_share.
   double tip_shift_mm = 0.0;         ///< See NeedleEcho::displacement_mm.
   Acquisition acquisition;           ///< At full detail.
+  /// Share of the scanlines that a picture renews while transducer or needle move, from one side to the other as in a
+  /// scanner; 1: whole pictures. Range 0.05..1.
+  double renewed_share = 1.0;
   DisplaySettings display;
   std::shared_ptr<const VesselFlow> flow;  ///< nullptr: no colour Doppler.
   DopplerSettings doppler;

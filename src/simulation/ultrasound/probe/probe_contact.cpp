@@ -78,14 +78,15 @@ float gap_coupling(float gap_mm) noexcept {
 }
 
 void find_contact(const volume::FloatGrid& skin_distance_mm, const ScanGeometry& geometry, const Pose& X_PT,
-                  std::span<LineContact> contact) noexcept {
+                  std::span<LineContact> contact, int first_line) noexcept {
   const bool has_skin = !skin_distance_mm.empty() && X_PT.is_finite();
-  const std::size_t lines = std::min(contact.size(), static_cast<std::size_t>(std::max(geometry.lines, 0)));
+  const std::size_t lines =
+      std::min(contact.size(), static_cast<std::size_t>(std::max(geometry.lines - first_line, 0)));
   for (std::size_t n = 0; n < lines; ++n) {
     LineContact& line_contact = contact[n];
     line_contact = {};
     if (!has_skin) continue;
-    const Scanline line = scanline(geometry, X_PT, static_cast<double>(n));
+    const Scanline line = scanline(geometry, X_PT, static_cast<double>(n) + first_line);
     if (sample_linear(skin_distance_mm, line.origin_P) < 0.0) {
       line_contact.pressed_mm =
           static_cast<float>(way_to_skin_mm(skin_distance_mm, line.origin_P, -line.direction_P, -1.0, kDeepestDent_mm));

@@ -28,10 +28,10 @@ inline constexpr double kGelEnds_mm = 2.0;
 /// Amplitude transmitted through a gap: 1 up to kGelFills_mm, smoothly to 0 at kGelEnds_mm. physics.md U8.
 float gap_coupling(float gap_mm) noexcept;
 
-/// Finds the contact of every scanline of a face at X_PT. `contact` is as long as the geometry has lines (fewer: the
-/// first ones). Searches the skin along the scanline, forwards or backwards, to 0.02 mm. Real-time safe. physics.md U8.
+/// Finds the contact of scanlines of a face at X_PT: `contact` is that of `first_line` and the following ones. Searches
+/// the skin along the scanline, forwards or backwards, to 0.02 mm. Real-time safe. physics.md U8.
 void find_contact(const volume::FloatGrid& skin_distance_mm, const ScanGeometry& geometry, const Pose& X_PT,
-                  std::span<LineContact> contact) noexcept;
+                  std::span<LineContact> contact, int first_line = 0) noexcept;
 
 /// Default depth below which tissue does not yield. Half of a dent is left at 12 mm, as under a rigid disc as large as
 /// the face in B9. Range 12..60.

@@ -42,8 +42,8 @@ struct Scanner::Impl {
 
   void set_scan(const ScanGeometry& new_scan, bool is_mirrored);
   void set_receiver(const Beam& beam);
-  void set_settings(const DisplaySettings& wanted, double frequency_mhz);
-  void set_lookup(const DisplaySettings& wanted);
+  bool set_settings(const DisplaySettings& wanted, double frequency_mhz);  ///< True if they have changed.
+  bool set_lookup(const DisplaySettings& wanted);
   void receive_line(const BasebandFrame& frame, std::size_t line, std::uint64_t seed, const Artefacts& artefacts);
   void map_line(std::size_t line);
   void convert();
@@ -100,8 +100,8 @@ void Scanner::Impl::set_receiver(const Beam& beam) {
   receiver.set_geometry(scan, beam);
 }
 
-void Scanner::Impl::set_settings(const DisplaySettings& wanted, double frequency_mhz) {
-  if (applied == wanted && applied_mhz == frequency_mhz) return;
+bool Scanner::Impl::set_settings(const DisplaySettings& wanted, double frequency_mhz) {
+  if (applied == wanted && applied_mhz == frequency_mhz) return false;
   applied = wanted;
   applied_mhz = frequency_mhz;
   for (std::size_t s = 0; s < samples(); ++s) {
@@ -109,10 +109,11 @@ void Scanner::Impl::set_settings(const DisplaySettings& wanted, double frequency
     const double above_floor_db = tgc_gain_db(wanted, depth_mm, scan.depth_mm, frequency_mhz) - kLevelFloor_db;
     offset[s] = static_cast<float>(above_floor_db * detail::kFineLevels_per_db);
   }
+  return true;
 }
 
-void Scanner::Impl::set_lookup(const DisplaySettings& wanted) {
-  if (looked_up == wanted) return;
+bool Scanner::Impl::set_lookup(const DisplaySettings& wanted) {
+  if (looked_up == wanted) return false;
   looked_up = wanted;
   for (std::size_t i = 0; i < kLookupSize; ++i) {
     const double fine = static_cast<double>((i << kLookupShift) + (std::size_t{1} << kLookupShift) / 2);
@@ -123,6 +124,7 @@ void Scanner::Impl::set_lookup(const DisplaySettings& wanted) {
   }
   // Zero and non-finite values stay black at any gain.
   gray_of_fine[0] = gray_of_level_of[0] = 0;
+  return true;
 }
 
 void Scanner::Impl::receive_line(const BasebandFrame& frame, std::size_t line, std::uint64_t seed,
@@ -185,16 +187,20 @@ const GrayImage& Scanner::show(const BasebandFrame& frame, std::uint64_t seed) n
   const std::size_t echoes = count * static_cast<std::size_t>(frame.steering_angles);
   TROCAR_CHECK(frame.re.size() == echoes && frame.im.size() == echoes);
   impl_->set_receiver(frame.beam);
-  impl_->set_settings(held, frame.beam.frequency_mhz);
-  impl_->set_lookup(held);
+  const bool has_new_settings = impl_->set_settings(held, frame.beam.frequency_mhz);
+  const bool has_new_grays = impl_->set_lookup(held);
+  // Scanlines that were not renewed stay as they are shown, their noise included.
+  const bool keeps = impl_->has_state && !has_new_settings && !has_new_grays && !frame.renewed.is_empty();
+  const LineRange lines = keeps ? frame.renewed : LineRange{0, frame.geometry.lines};
 
   auto lines_part = [&](std::size_t first, std::size_t last) {
-    for (std::size_t line = first; line < last; ++line) {
+    for (std::size_t n = first; n < last; ++n) {
+      const std::size_t line = static_cast<std::size_t>(lines.first) + n;
       impl_->receive_line(frame, line, seed, artefacts);
       impl_->map_line(line);
     }
   };
-  parallel_for(impl_->lines(), kLinesTogether, std::ref(lines_part));
+  parallel_for(static_cast<std::size_t>(lines.count()), kLinesTogether, std::ref(lines_part));
   impl_->has_state = true;
   impl_->convert();
   return impl_->image;

@@ -33,8 +33,9 @@ class Scanner {
   DisplaySettings settings;  ///< Controls out of range are clamped.
   Artefacts artefacts;       ///< The scanner uses clutter and noise.
 
-  /// Picture of a frame; `seed` is the seed of its noise. Valid until the next call. Non-finite samples and pixels
-  /// beyond the scan are black. The result does not depend on the number of threads.
+  /// Picture of a frame; `seed` is the seed of its noise. Of a frame that renewed some scanlines only, the others stay
+  /// as they are, unless settings change. Valid until the next call. Non-finite samples and pixels beyond the scan are
+  /// black. The result does not depend on the number of threads.
   const GrayImage& show(const BasebandFrame& frame, std::uint64_t seed) noexcept;
   /// Displays stored levels of a cine loop (see levels()) with the present gain, dynamic range and gray map. Does not
   /// change persistence.

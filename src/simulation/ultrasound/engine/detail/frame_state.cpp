@@ -24,7 +24,8 @@ void fit_frame(FrameState& frame, const ScanPlan& plan) {
   frame.border_keys.resize(frame.borders.size());
   frame.border_counts.assign(rows, 0);
   frame.contact_shape.assign(samples + 16, 0.0F);
-  for (auto* coarse : {&frame.bend_mm, &frame.focus_log, &frame.slowness, &frame.smooth_slowness, &frame.probed_way})
+  for (auto* coarse : {&frame.bend_mm, &frame.focus_log, &frame.slowness, &frame.smooth_slowness, &frame.probed_way,
+                       &frame.transmitted, &frame.edge_loss})
     coarse->assign(lines * plan.coarse_samples(), 0.0F);
   frame.delay.assign(lines * samples + 16, 0.0F);
   frame.way_gain.assign(lines * samples + 16, 0.0F);
@@ -33,8 +34,10 @@ void fit_frame(FrameState& frame, const ScanPlan& plan) {
   frame.loudest.assign(plan.lobe_blocks() * (lines + 2 * static_cast<std::size_t>(plan.lateral_reach)), 0.0F);
 }
 
-void clear_borders(FrameState& frame) noexcept {
-  std::fill(frame.border_counts.begin(), frame.border_counts.end(), std::uint8_t{0});
+void clear_borders(const ScanPlan& plan, FrameState& frame, int first, int last) noexcept {
+  for (int plane = 0; plane < plan.planes; ++plane)
+    for (int line = first; line < last; ++line)
+      frame.border_counts[static_cast<std::size_t>(plan.row_of(plane, line))] = 0;
 }
 
 }  // namespace trocar::ultrasound::detail

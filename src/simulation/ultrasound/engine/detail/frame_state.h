@@ -102,6 +102,8 @@ struct FrameState {
   std::vector<float> probed_way;
   /// line * coarse_samples: change of amplitude by diverging or converging beams, neper.
   std::vector<float> focus_log;
+  std::vector<float> transmitted;      ///< line * coarse_samples: exp(probed_way).
+  std::vector<float> edge_loss;        ///< line * coarse_samples: at the edges of surfaces, neper.
   std::vector<float> smooth_slowness;  ///< line * coarse_samples: slowness, averaged over the beam's width.
   std::vector<float> slowness;         ///< line * coarse_samples: c0/c - 1 on the central plane.
   std::vector<float> delay;            ///< line * samples: shown - walk, samples.
@@ -118,7 +120,8 @@ struct FrameState {
 FrameState make_frame_state(const AcousticScene& scene);
 /// Sizes the buffers for a plan.
 void fit_frame(FrameState& frame, const ScanPlan& plan);
-/// Clears the border counts of all planes. Call before a frame, so that no border of the last frame is read.
-void clear_borders(FrameState& frame) noexcept;
+/// Clears the border counts of scanlines [first, last) on all planes. Call before a frame, so that no border of the
+/// last frame is read.
+void clear_borders(const ScanPlan& plan, FrameState& frame, int first, int last) noexcept;
 
 }  // namespace trocar::ultrasound::detail

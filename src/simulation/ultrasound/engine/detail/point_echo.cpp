@@ -36,7 +36,7 @@ ImagedPoint image_point(const ScanPlan& plan, const FrameState& frame, const Vec
 
 }  // namespace
 
-void add_points(const ScanPlan& plan, FrameState& frame) noexcept {
+void add_points(const ScanPlan& plan, FrameState& frame, int first, int last) noexcept {
   const Pose X_TP = frame.X_PT.inverse();
   const double thickest_mm = static_cast<double>(
       kBeamEdge * *std::max_element(plan.elevation_sigma_mm.begin(), plan.elevation_sigma_mm.end()));
@@ -56,7 +56,7 @@ void add_points(const ScanPlan& plan, FrameState& frame) noexcept {
     if (sample < 0 || sample >= plan.samples) continue;
     const double turn = 2.0 * std::numbers::pi * shown * static_cast<double>(plan.cycles_per_sample);
     for (int side = 0; side < 2; ++side) {
-      if (line + side < 0 || line + side >= plan.lines) continue;
+      if (line + side < first || line + side >= last) continue;
       const double part = side == 0 ? 1.0 - (imaged.line - line) : imaged.line - line;
       const auto to = plan.echo_row(line + side) + static_cast<std::size_t>(sample);
       frame.re[to] += static_cast<float>(part * amplitude * std::cos(turn));

@@ -6,7 +6,7 @@
 namespace trocar::ultrasound::detail {
 
 /// Adds the echoes of the scene's single points. The points follow the tissue: pressure, refraction and delay apply to
-/// them.
-void add_points(const ScanPlan& plan, FrameState& frame) noexcept;
+/// them. On scanlines [first, last).
+void add_points(const ScanPlan& plan, FrameState& frame, int first, int last) noexcept;
 
 }  // namespace trocar::ultrasound::detail

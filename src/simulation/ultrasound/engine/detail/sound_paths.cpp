@@ -87,13 +87,12 @@ void note_gas(const ScanPlan& plan, FrameState& frame, const WalkResult& walk, i
 
 }  // namespace
 
-void aim_lines(const ScanPlan& plan, FrameState& frame) noexcept {
+void aim_lines(const ScanPlan& plan, FrameState& frame, int first, int last) noexcept {
   const volume::GridGeometry& grid = frame.scene->geometry;
   const Mat3 index_of_T = grid.spacing_mm.cwiseInverse().asDiagonal() * Mat3(grid.R_PV.transpose() * frame.X_PT.R());
   const Vec3 index_of_origin = grid.to_index(frame.X_PT.p());
   frame.elevation = floats(index_of_T.col(2));
-  frame.deepest_dent_mm = 0.0F;
-  for (int l = 0; l < plan.lines; ++l) {
+  for (int l = first; l < last; ++l) {
     const Vec2 origin = plan.geometry.line_origin(l), along = plan.geometry.line_direction(l);
     const auto at = static_cast<std::size_t>(l);
     const LineContact& contact = frame.contact[at];
@@ -105,8 +104,9 @@ void aim_lines(const ScanPlan& plan, FrameState& frame) noexcept {
     line.coupling = plan.acquisition.artefacts.contact_loss ? contact.coupling : 1.0F;
     frame.walks[at] = line;
     frame.pressed_samples[at] = contact.pressed_mm / plan.sample_mm;
-    frame.deepest_dent_mm = std::max(frame.deepest_dent_mm, contact.pressed_mm);
   }
+  frame.deepest_dent_mm =
+      plan.sample_mm * *std::max_element(frame.pressed_samples.begin(), frame.pressed_samples.end());
 }
 
 void probe_lines(const ScanPlan& plan, FrameState& frame, WalkResult& scratch, int first, int last) noexcept {
@@ -129,9 +129,9 @@ void probe_lines(const ScanPlan& plan, FrameState& frame, WalkResult& scratch, i
   }
 }
 
-void place_mirrors(const ScanPlan& plan, FrameState& frame) noexcept {
+void place_mirrors(const ScanPlan& plan, FrameState& frame, int first, int last) noexcept {
   if (!plan.acquisition.artefacts.mirror) return;
-  for (int l = 0; l < plan.lines; ++l)
+  for (int l = first; l < last; ++l)
     if (frame.gas[static_cast<std::size_t>(l)].is_there) set_mirror(plan, frame, l);
 }
 
@@ -150,13 +150,14 @@ int half_width(const ScanPlan& plan, std::size_t c, double share) noexcept {
 constexpr double kBendingShare = 0.5;
 constexpr double kShadingShare = 0.2;  // the echo's own aperture is apodised (assumed)
 
-/// Means over scanlines l - half .. l + half at one depth, from running sums.
+/// Means over scanlines l - half .. l + half at one depth, from running sums, for each l of a range.
 template <class Value, class Take>
-void average_lines(const ScanPlan& plan, int half, const Value& value, const Take& take) noexcept {
+void average_lines(const ScanPlan& plan, const LineRange& range, int half, const Value& value,
+                   const Take& take) noexcept {
   const int lines = plan.lines;
   float sum = 0.0F;
-  for (int l = 0; l < std::min(half, lines); ++l) sum += value(l);
-  for (int l = 0; l < lines; ++l) {
+  for (int l = std::max(range.first - half - 1, 0); l < std::min(range.first + half, lines); ++l) sum += value(l);
+  for (int l = range.first; l < range.last; ++l) {
     if (l + half < lines) sum += value(l + half);
     if (l - half - 1 >= 0) sum -= value(l - half - 1);
     const int count = std::min(l + half, lines - 1) - std::max(l - half, 0) + 1;
@@ -164,21 +165,21 @@ void average_lines(const ScanPlan& plan, int half, const Value& value, const Tak
   }
 }
 
-/// The sound that reaches each depth of scanline `l`; stored in bend_mm until bend_at needs that.
+/// The sound that reaches each depth of scanline `l`.
 void note_transmission(const ScanPlan& plan, FrameState& frame, std::size_t l) noexcept {
   const auto coarse = plan.coarse_samples();
   for (std::size_t at = l * coarse; at < (l + 1) * coarse; ++at)
-    frame.bend_mm[at] = std::exp(std::max(frame.probed_way[at], -40.0F));
+    frame.transmitted[at] = std::exp(std::max(frame.probed_way[at], -40.0F));
 }
 
 /// Shadows have soft edges: sound passes around a small obstacle. Adds to focus_log at one depth.
-void soften_shadows(const ScanPlan& plan, FrameState& frame, std::size_t c) noexcept {
+void soften_shadows(const ScanPlan& plan, FrameState& frame, const LineRange& lines, std::size_t c) noexcept {
   const auto coarse = plan.coarse_samples();
   constexpr float kMostChange = 1.5F;  // neper
   const float depth_mm = static_cast<float>(c) * kCoarse * plan.sample_mm;
   const auto at = [&](int l) { return static_cast<std::size_t>(l) * coarse + c; };
   average_lines(
-      plan, half_width(plan, c, kShadingShare), [&](int l) { return frame.bend_mm[at(l)]; },
+      plan, lines, half_width(plan, c, kShadingShare), [&](int l) { return frame.transmitted[at(l)]; },
       [&](int l, float mean) {
         if (depth_mm > frame.walks[static_cast<std::size_t>(l)].mirror_depth_mm) return;
         const float change = std::log(std::max(mean, 1e-18F)) - std::max(frame.probed_way[at(l)], -40.0F);
@@ -188,8 +189,7 @@ void soften_shadows(const ScanPlan& plan, FrameState& frame, std::size_t c) noex
 
 /// Edge shadows: a scanline nearly tangential to a border between tissues of different speed is deflected by (n - 1)
 /// tan(tilt); a deflection beyond the beam's opening returns no echo. The tilt is that in the image plane: the other
-/// planes are not computed yet. Losses behind the borders of scanline `l`; stored in smooth_slowness until bend_at
-/// needs that.
+/// planes are not computed yet. Losses behind the borders of scanline `l`.
 void note_edges(const ScanPlan& plan, FrameState& frame, int l) noexcept {
   constexpr float kOpening_rad = 0.13F;  // assumed, about 1 / (2 f-number)
   constexpr float kMostTangent = 3.0F, kMostLoss = 2.3F, kBendable = 0.15F;
@@ -197,7 +197,7 @@ void note_edges(const ScanPlan& plan, FrameState& frame, int l) noexcept {
   const auto first = static_cast<std::size_t>(plan.row_of(plan.central(), l));
   float loss = 0.0F;
   std::size_t c = 0;
-  float* losses = frame.smooth_slowness.data() + static_cast<std::size_t>(l) * coarse;
+  float* losses = frame.edge_loss.data() + static_cast<std::size_t>(l) * coarse;
   for (std::size_t b = 0; b < frame.border_counts[first]; ++b) {
     const Border& border = frame.borders[first * kMaxBorders + b];
     const float before = plan.slowness[border.before & 127U], behind = plan.slowness[border.behind & 127U];
@@ -213,27 +213,27 @@ void note_edges(const ScanPlan& plan, FrameState& frame, int l) noexcept {
 }
 
 /// Averages the losses at edges over the beam; adds to focus_log at one depth.
-void shade_edges(const ScanPlan& plan, FrameState& frame, std::size_t c) noexcept {
+void shade_edges(const ScanPlan& plan, FrameState& frame, const LineRange& lines, std::size_t c) noexcept {
   const auto coarse = plan.coarse_samples();
   const auto at = [&](int l) { return static_cast<std::size_t>(l) * coarse + c; };
   average_lines(
-      plan, half_width(plan, c, kShadingShare), [&](int l) { return frame.smooth_slowness[at(l)]; },
+      plan, lines, half_width(plan, c, kShadingShare), [&](int l) { return frame.edge_loss[at(l)]; },
       [&](int l, float mean) { frame.focus_log[at(l)] -= mean; });
 }
 
 /// A ray bends towards the slower side: slope += -d(ln c)/dx * dr; ln c = -ln(1 + slowness). Stores the change of slope
 /// at one depth in bend_mm.
-void bend_at(const ScanPlan& plan, FrameState& frame, std::size_t c) noexcept {
+void bend_at(const ScanPlan& plan, FrameState& frame, const LineRange& lines, std::size_t c) noexcept {
   const auto coarse = plan.coarse_samples();
   const int half = half_width(plan, c, kBendingShare);
   const auto at = [&](int l) { return static_cast<std::size_t>(l) * coarse + c; };
   average_lines(
-      plan, half, [&](int l) { return frame.slowness[at(l)]; },
+      plan, lines, half, [&](int l) { return frame.slowness[at(l)]; },
       [&](int l, float mean) { frame.smooth_slowness[at(l)] = mean; });
   const float per_spacing = kCoarse * plan.sample_mm / plan.coarse_spacing_mm[c];
-  float before = 0.0F;
+  float before = lines.first > 0 ? frame.smooth_slowness[at(lines.first - 1)] : 0.0F;
   average_lines(
-      plan, half, [&](int l) { return frame.smooth_slowness[at(l)]; },
+      plan, lines, half, [&](int l) { return frame.smooth_slowness[at(l)]; },
       [&](int l, float mean) {
         frame.bend_mm[at(l)] = l > 0 ? (mean - before) * per_spacing : 0.0F;
         before = mean;
@@ -273,38 +273,37 @@ float widest_warp(const ScanPlan& plan, const FrameState& frame) noexcept {
   return std::min(most, kMostLines);
 }
 
-/// Calls body(n) for 0 <= n < count on several threads, without allocation.
+/// Calls body(n) for first <= n < last on several threads, without allocation.
 template <class Body>
-void for_each(std::size_t count, const Body& body) noexcept {
-  const auto part = [&](std::size_t first, std::size_t last) {
-    for (std::size_t n = first; n < last; ++n) body(n);
+void for_each(std::size_t first, std::size_t last, const Body& body) noexcept {
+  const auto part = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) body(first + n);
   };
   constexpr std::size_t kGrain = 16;
-  parallel_for(count, kGrain, std::ref(part));
+  parallel_for(last - first, kGrain, std::ref(part));
 }
 
 }  // namespace
 
-void refract_lines(const ScanPlan& plan, FrameState& frame) noexcept {
+void refract_lines(const ScanPlan& plan, FrameState& frame, int first, int last) noexcept {
   const auto coarse = plan.coarse_samples();
-  const auto lines = static_cast<std::size_t>(plan.lines);
+  const LineRange lines{first, last};
+  const auto begin = static_cast<std::size_t>(first), end = static_cast<std::size_t>(last);
   const bool attenuates = plan.acquisition.artefacts.attenuation, refracts = plan.acquisition.artefacts.refraction;
-  std::fill(frame.focus_log.begin(), frame.focus_log.end(), 0.0F);
-  for_each(lines, [&](std::size_t l) {
+  for_each(begin, end, [&](std::size_t l) {
+    std::fill_n(frame.focus_log.begin() + static_cast<std::ptrdiff_t>(l * coarse), coarse, 0.0F);
     if (attenuates) note_transmission(plan, frame, l);
     if (refracts) note_edges(plan, frame, static_cast<int>(l));
   });
-  for_each(coarse, [&](std::size_t c) {
-    if (attenuates) soften_shadows(plan, frame, c);
+  for_each(0, coarse, [&](std::size_t c) {
+    if (attenuates) soften_shadows(plan, frame, lines, c);
     if (!refracts) return;
-    shade_edges(plan, frame, c);
-    bend_at(plan, frame, c);
+    shade_edges(plan, frame, lines, c);
+    bend_at(plan, frame, lines, c);
   });
   if (refracts) {
-    for_each(lines, [&](std::size_t l) { follow_ray(plan, frame, l); });
-    for_each(lines, [&](std::size_t l) { focus_ray(plan, frame, l); });
-  } else {
-    std::fill(frame.bend_mm.begin(), frame.bend_mm.end(), 0.0F);
+    for_each(begin, end, [&](std::size_t l) { follow_ray(plan, frame, l); });
+    for_each(begin, end, [&](std::size_t l) { focus_ray(plan, frame, l); });
   }
   frame.widest_warp = widest_warp(plan, frame);
 }

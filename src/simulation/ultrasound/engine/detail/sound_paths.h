@@ -8,17 +8,17 @@
 /// steps (docs/physics.md U7, U8).
 namespace trocar::ultrasound::detail {
 
-/// Computes the frame's transforms and each scanline's straight walk.
-void aim_lines(const ScanPlan& plan, FrameState& frame) noexcept;
+/// Computes the frame's transforms and the straight walks of scanlines [first, last).
+void aim_lines(const ScanPlan& plan, FrameState& frame, int first, int last) noexcept;
 
 /// Computes slowness, losses and gas of scanlines [first, last).
 void probe_lines(const ScanPlan& plan, FrameState& frame, WalkResult& scratch, int first, int last) noexcept;
 
-/// Places the mirrors. Call after all lines were probed.
-void place_mirrors(const ScanPlan& plan, FrameState& frame) noexcept;
+/// Places the mirrors of scanlines [first, last). Call after they were probed.
+void place_mirrors(const ScanPlan& plan, FrameState& frame, int first, int last) noexcept;
 
-/// Computes displacement and focusing by refraction, from the lateral change of slowness. Call after all lines were
-/// probed.
-void refract_lines(const ScanPlan& plan, FrameState& frame) noexcept;
+/// Computes displacement and focusing of scanlines [first, last) by refraction, from the lateral change of slowness.
+/// Call after they were probed; their neighbours may be those of an earlier frame.
+void refract_lines(const ScanPlan& plan, FrameState& frame, int first, int last) noexcept;
 
 }  // namespace trocar::ultrasound::detail
