@@ -7,33 +7,21 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
-#include <atomic>
 #include <chrono>
-#include <cmath>
 #include <fstream>
-#include <numbers>
 #include <thread>
 
 #include "anatomy/phantom/phantom.h"
-#include "attempt/tools/resting_transducer.h"
 #include "bench/benchmarks.h"
-#include "cases/scene_request.h"
-#include "core/files/temporary_folder.h"
-#include "link/client/haptic_client.h"
-#include "link/client/server_process.h"
+#include "bench/stations.h"
 #include "realtime/periodic_loop.h"
-#include "volume/sampling.h"
 
 namespace trocar::bench {
 namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kPatience = 60s;
 constexpr auto kFrame = 16ms;  // a client draws at most 60 frames per second
-constexpr int kSlicePixels = 512;
-constexpr double kSlice_mm = 200.0;
 
 /// A process that only calculates until it is ended.
 class BusyProcess {
@@ -55,63 +43,6 @@ class BusyProcess {
  private:
   pid_t pid_;
 };
-
-/// A server process and its client.
-struct Station {
-  std::string tool;
-  link::ServerProcess process;
-  link::HapticClient client;
-  double resident_mib = 0.0;  ///< Time of the start of the measurement.
-};
-
-Result<Station> open_station(const std::filesystem::path& program, const TemporaryFolder& folder,
-                             const std::string& tool, double rate_hz) {
-  const std::string url = "ipc://" + (folder / tool).string();
-  const std::vector<std::string> arguments{"--device",         "virtual:premium",
-                                           "--tool",           tool,
-                                           "--rate",           fmt::format("{:.0f}", rate_hz),
-                                           "--endpoint",       url,
-                                           "--flight-records", folder.path().string()};
-  TROCAR_TRY(link::ServerProcess process, link::ServerProcess::start(program, arguments, folder / (tool + ".log")));
-  link::ClientOptions options;
-  options.endpoint = url;
-  options.name = "trocar bench";
-  options.has_window = true;
-  TROCAR_TRY(link::HapticClient client, link::HapticClient::connect(options));
-  TROCAR_TRY_STATUS(client.wait_connected(std::chrono::duration_cast<std::chrono::milliseconds>(kPatience)));
-  return Station{tool, std::move(process), std::move(client), 0.0};
-}
-
-/// In and out along the path, 12 s per cycle, with a small tremor.
-link::HandTarget needle_hand(const Segment& line_P, double time_s) {
-  constexpr double kCycle_s = 12.0, kTremor_hz = 9.0, kTremor_mm = 0.1, kOutside_mm = 10.0;
-  const double swing = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * time_s / kCycle_s);
-  const double way_mm = -kOutside_mm + (line_P.length_mm() + kOutside_mm) * swing;
-  const Vec3 u = line_P.direction();
-  const Vec3 side = u.unitOrthogonal() * kTremor_mm * std::sin(2.0 * std::numbers::pi * kTremor_hz * time_s);
-  link::HandTarget hand;
-  hand.X_PN = needle_pose(line_P.a + u * way_mm + side, u);
-  hand.holds_tip = true;
-  return hand;
-}
-
-/// Computes three slices through the tip, as in a window with slice viewers. Returns their sum, so that the compiler
-/// keeps the work.
-double draw_frame(const volume::CtGrid& ct, const Vec3& tip_P, const Vec3& axis_P) {
-  const Vec3 across = axis_P.unitOrthogonal();
-  const std::array<std::pair<Vec3, Vec3>, 3> planes{
-      std::pair<Vec3, Vec3>{axis_P, across}, {axis_P, axis_P.cross(across)}, {across, axis_P.cross(across)}};
-  double sum = 0.0;
-  constexpr double kStep_mm = kSlice_mm / kSlicePixels;
-  for (const auto& [a, b] : planes) {
-    for (int row = 0; row < kSlicePixels; ++row) {
-      const Vec3 start = tip_P + (row - kSlicePixels / 2) * kStep_mm * a - 0.5 * kSlice_mm * b;
-      for (int column = 0; column < kSlicePixels; ++column)
-        sum += volume::sample_linear(ct, Vec3(start + column * kStep_mm * b));
-    }
-  }
-  return sum;
-}
 
 /// Resident memory of a process, MiB; 0 if it cannot be read.
 double resident_mib(int pid) {
@@ -190,73 +121,43 @@ CaseResult machine_holes(double rate_hz) {
   return result;
 }
 
-/// Draws and moves the hands until the end time; returns the number of frames.
-int play(std::array<Station*, 2> stations, const cases::Case& the_case, double seconds, const Progress& progress) {
-  const attempt::RestingTransducer probe(*the_case.patient, the_case.plan.line_P);
+/// Draws until the end time; returns the number of frames.
+int play(Stations& stations, const cases::Case& the_case, double seconds, const Progress& progress) {
   const Segment& line_P = the_case.plan.line_P;
   const auto start = std::chrono::steady_clock::now();
-  const auto time_s = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
-  // A separate thread moves the hands 200 times per second, as a scripted operator would.
-  std::atomic<bool> is_done{false};
-  std::thread hands([&] {
-    while (!is_done) {
-      const double now_s = time_s();
-      for (Station* station : stations) {
-        link::HandTarget hand = station->tool == "needle" ? needle_hand(line_P, now_s) : probe.at(now_s);
-        station->client.set_hand(hand);
-      }
-      std::this_thread::sleep_for(5ms);
-    }
-  });
+  const MovingHands hands(stations, the_case);
   int frames = 0;
-  double shown = 0.0;
-  for (double now_s = 0.0; now_s < seconds; now_s = time_s()) {
+  volatile double shown = 0.0;
+  for (double now_s = 0.0; now_s < seconds;
+       now_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()) {
     const auto begun = std::chrono::steady_clock::now();
-    const auto newest = stations[0]->client.newest();
-    shown += draw_frame(the_case.patient->ct, newest ? newest->tip_mm : line_P.a,
-                        newest ? newest->axis : line_P.direction());
-    for (Station* station : stations) {
-      station->client.take_samples();
-      station->client.frame_drawn();
+    const auto newest = stations[0].client.newest();
+    shown = shown + draw_slices(the_case.patient->ct, newest ? newest->tip_mm : line_P.a,
+                                newest ? newest->axis : line_P.direction());
+    for (Station& station : stations) {
+      station.client.take_samples();
+      station.client.frame_drawn();
     }
     ++frames;
     report(progress, "servers are running", now_s / seconds);
     std::this_thread::sleep_until(begun + kFrame);
   }
-  is_done = true;
-  hands.join();
   return frames;
 }
 
 Status measure(const cases::Case& the_case, const Options& options, double rate_hz, std::vector<CaseResult>& results) {
   results.push_back(machine_holes(rate_hz));
-  TROCAR_TRY(const std::filesystem::path program, link::find_server_program());
   const TemporaryFolder folder;
-  TROCAR_TRY(Station needle, open_station(program, folder, "needle", rate_hz));
-  TROCAR_TRY(Station probe_station, open_station(program, folder, "probe", rate_hz));
-  const attempt::RestingTransducer probe(*the_case.patient, the_case.plan.line_P);
-  const auto patience = std::chrono::duration_cast<std::chrono::milliseconds>(kPatience);
-  for (Station* station : {&needle, &probe_station}) {
-    cases::SceneChoice choice;
-    choice.tool = station->tool;
-    choice.force_model = to_string(options.force_model.value_or(haptics::ForceModel::kProxy));
-    choice.patient_source = "abdomen";
-    link::LoadScene request = cases::scene_request(the_case, choice);
-    request.patient_hash.clear();
-    if (station->tool == "probe") request.X_PW = attempt::transducer_room(request.X_PW, probe.X_PT_room());
-    TROCAR_TRY_STATUS(station->client.ask(request, patience));
-    link::HandTarget hand = station->tool == "needle" ? needle_hand(the_case.plan.line_P, 0.0) : probe.at(0.0);
-    hand.is_placed = true;
-    station->client.set_hand(hand);
-    TROCAR_TRY_STATUS(station->client.ask(link::ServerCommand::kStart, patience));
-  }
+  TROCAR_TRY(Stations stations,
+             start_stations(folder, the_case, rate_hz, options.force_model.value_or(haptics::ForceModel::kProxy)));
+  Station &needle = stations[0], &probe_station = stations[1];
   const BusyProcess busy;
   std::this_thread::sleep_for(1s);  // past the safe start
   for (Station* station : {&needle, &probe_station}) {
-    TROCAR_TRY_STATUS(station->client.ask(link::ServerCommand::kRestartStatistics, patience));
+    TROCAR_TRY_STATUS(station->client.ask(link::ServerCommand::kRestartStatistics, kPatience));
     station->resident_mib = resident_mib(station->process.pid());
   }
-  const int frames = play({&needle, &probe_station}, the_case, options.seconds, options.progress);
+  const int frames = play(stations, the_case, options.seconds, options.progress);
   for (Station* station : {&needle, &probe_station}) add_results(*station, rate_hz, results);
   results.push_back(number_case(fmt::format("servers/client-{:.0f}hz/frames", rate_hz), "fps", frames / options.seconds,
                                 "three 512 x 512 slices a frame, at most 60"));

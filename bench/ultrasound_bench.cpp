@@ -1,7 +1,6 @@
 // Ultrasound frames of the embedded patient with a moving transducer: time and allocations of engine and scanner.
 #include <fmt/format.h>
 #include <stdlib.h>
-#include <time.h>
 
 #include <algorithm>
 
@@ -9,6 +8,7 @@
 #include "bench/allocation_count.h"
 #include "bench/benchmarks.h"
 #include "bench/calibration.h"
+#include "bench/processor_time.h"
 #include "core/files/data_dir.h"
 #include "ultrasound/engine/b_mode.h"
 #include "ultrasound/probe/probe_placement.h"
@@ -38,13 +38,6 @@ struct Round {
   double cpu_ms_a_frame = 0.0;  ///< Of all threads.
 };
 
-/// Processor time of this process, all threads.
-double cpu_ms() {
-  timespec now{};
-  ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) * kMsPerS + static_cast<double>(now.tv_nsec) * 1e-6;
-}
-
 /// Scanlines of picture n of a rolling acquisition.
 ultrasound::LineRange lines_of(int n, int lines, double share) {
   if (share >= 1.0) return {};
@@ -60,7 +53,7 @@ Round measure_round(ultrasound::BMode& engine, ultrasound::Scanner& scanner, con
     list->reserve(kFrames);
   volatile double sink = 0.5;
   const AllocationCount allocations;
-  const double cpu_before_ms = cpu_ms();
+  const double cpu_before_ms = processor_time_ms();
   for (int n = first_frame; n < first_frame + kFrames; ++n) {
     const Pose X_PT_now = ultrasound::sway(X_PT, n);
     const ultrasound::BasebandFrame* echoes = nullptr;
@@ -74,7 +67,7 @@ Round measure_round(ultrasound::BMode& engine, ultrasound::Scanner& scanner, con
     round.frame_ms.push_back((engine_us + scanner_us) / kMsPerS);
   }
   round.allocations_a_frame = static_cast<double>(allocations.count()) / kFrames;
-  round.cpu_ms_a_frame = (cpu_ms() - cpu_before_ms) / kFrames;
+  round.cpu_ms_a_frame = (processor_time_ms() - cpu_before_ms) / kFrames;
   return round;
 }
 

@@ -48,6 +48,7 @@ Result<std::vector<ScriptStep>> benchmark_steps(const std::vector<std::string>& 
                 "reset-watch\n"
                 "wheel-until view-3d %2 depth_mm %3 within 60\n"
                 "print layout frame_p50_ms frame_p99_ms render_p50_ms render_p99_ms slowest\n"
+                "print ultrasound_per_s ultrasound_p50_ms ultrasound_p99_ms ultrasound_lines\n"
                 "wait 3\n"  // at rest: full quality
                 "print still_p50_ms unwatched_ms\n")
                 .arg(number)

@@ -350,6 +350,9 @@ void TrainerFlow::frame() {
 void TrainerFlow::measure_frame(double now) {
   const double frame_s = frames_.since_last_s(now);
   if (frame_s > 0.0 && (attempt_ || replay_) && frame_ms_.size() < kMostFrames) frame_ms_.push_back(1e3 * frame_s);
+  const auto picture = window_.work().ultrasound().picture();
+  if (picture && std::exchange(last_scan_, picture->number) != picture->number && scan_ms_.size() < kMostFrames)
+    scan_ms_.push_back(picture->took_ms);
   frames_.add(now, attempt_ != nullptr);
   if (const auto figures = frames_.figures()) window_.strip().show_frames(*figures);
 }
@@ -387,6 +390,12 @@ QVariantMap TrainerFlow::facts() const {
     facts[QStringLiteral("picture_from_plan_mm")] = (picture->X_PT.p() - open_->X_PT_start.p()).norm();
   facts[QStringLiteral("frame_p50_ms")] = quantile(frame_ms_, 0.5);
   facts[QStringLiteral("frame_p99_ms")] = quantile(frame_ms_, 0.99);
+  const double watched_s = now_s() - watched_since_s_;
+  facts[QStringLiteral("ultrasound_per_s")] = static_cast<double>(scan_ms_.size()) / std::max(watched_s, 1e-3);
+  facts[QStringLiteral("ultrasound_p50_ms")] = quantile(scan_ms_, 0.5);
+  facts[QStringLiteral("ultrasound_p99_ms")] = quantile(scan_ms_, 0.99);
+  if (const auto picture = window_.work().ultrasound().picture())
+    facts[QStringLiteral("ultrasound_lines")] = picture->scan.lines;
   const scene::FrameTimes& renders = window_.work().view_3d().moving_frame_times();
   facts[QStringLiteral("render_p50_ms")] = renders.p50_ms();
   facts[QStringLiteral("render_p99_ms")] = renders.p99_ms();
@@ -406,6 +415,8 @@ QVariantMap TrainerFlow::facts() const {
 void TrainerFlow::reset_watch() {
   window_.work().view_3d().clear_frame_times();
   frame_ms_.clear();
+  scan_ms_.clear();
+  watched_since_s_ = now_s();
   if (auto* application = qobject_cast<TrainerApplication*>(QCoreApplication::instance())) application->reset_watch();
 }
 

@@ -88,6 +88,9 @@ class TrainerFlow : public QObject {
   QElapsedTimer clock_;
   FrameCount frames_;
   std::vector<double> frame_ms_;  ///< Frames of attempt or replay since the last reset; kMostFrames at most.
+  std::vector<double> scan_ms_;   ///< Computation times of ultrasound pictures since then; kMostFrames at most.
+  std::uint64_t last_scan_ = 0;   ///< Number of the last of them.
+  double watched_since_s_ = 0.0;
 };
 
 }  // namespace trocar::trainer

@@ -158,6 +158,7 @@ void BMode::set_acquisition(const Acquisition& acquisition) {
   Impl& impl = *impl_;
   TROCAR_CHECK(acquisition.samples >= 16 && acquisition.samples <= kMaxSamples && acquisition.lines >= 2);
   TROCAR_CHECK(acquisition.steering_angles >= 1 && acquisition.steering_angles <= 5);
+  TROCAR_CHECK(acquisition.scatterers >= 1.0 && acquisition.scatterers <= 4.0);
   TROCAR_CHECK(acquisition.planes >= 1 && acquisition.planes <= kMaxPlanes && acquisition.planes % 2 == 1);
   impl.plan = make_scan_plan(*impl.scene, impl.transducer, acquisition);
   fit_frame(impl.frame, impl.plan);

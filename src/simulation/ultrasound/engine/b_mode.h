@@ -24,6 +24,9 @@ struct Acquisition {
   int samples = 1024;       ///< Samples per scanline. Range 16..4096.
   int steering_angles = 3;  ///< Number of compounding angles whose images are averaged. Range 1..5; 1: full speckle.
   int planes = 5;           ///< Planes across the beam's thickness. 1, 3, 5, 7 or 9.
+  /// Scatterers in the smallest resolution cell: a share of the same ones, so that fewer keep the speckle's pattern.
+  /// Four give fully developed speckle. Range 1..4.
+  double scatterers = 4.0;
   Artefacts artefacts;
 
   bool operator==(const Acquisition&) const = default;

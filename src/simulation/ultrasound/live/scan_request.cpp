@@ -25,6 +25,7 @@ Acquisition within_ranges(const Acquisition& wanted, const Transducer& transduce
   a.samples = std::clamp(wanted.samples, 64, 4096);
   a.steering_angles = std::clamp(wanted.steering_angles, 1, 5);
   a.planes = std::clamp(wanted.planes, 1, 9) | 1;
+  a.scatterers = held(wanted.scatterers, 1.0, 4.0, 4.0);
   return a;
 }
 

@@ -6,8 +6,8 @@ namespace trocar::ultrasound {
 namespace {
 
 /// Nominal work of a frame, in samples: constant work (contact, scan conversion), and work for every sample, elevation
-/// plane and steering angle. Measured with frames of the embedded abdomen; FrameCost learns the difference.
-constexpr double kWorkOfFrame = 1.3e6, kWorkOfSample = 1.0, kWorkOfPlane = 1.0, kWorkOfAngle = 0.6;
+/// plane and steering angle. Measured with `trocar bench ultrasound-cost`; FrameCost learns the difference.
+constexpr double kWorkOfFrame = 0.8e6, kWorkOfSample = 1.0, kWorkOfPlane = 1.0, kWorkOfAngle = 0.6;
 
 }  // namespace
 
@@ -21,7 +21,8 @@ Acquisition with_detail(const Acquisition& full, ScanDetail detail) noexcept {
   a.samples = std::min(a.samples, full.samples);
   // A single plane makes borders too bright and sharp, and saves little time.
   a.planes = std::min(full.planes, 3);
-  a.steering_angles = std::min(full.steering_angles, is_middle ? 2 : 1);
+  a.steering_angles = is_middle ? full.steering_angles : 1;
+  a.scatterers = std::min(full.scatterers, is_middle ? 3.0 : 2.0);
   return a;
 }
 

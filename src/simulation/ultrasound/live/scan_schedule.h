@@ -9,16 +9,16 @@ namespace trocar::ultrasound {
 enum class ScanDetail { kFast, kMiddle, kFull };
 inline constexpr std::size_t kScanDetails = 3;
 
-/// Reduces scanlines, samples, elevation planes and steering angles to a level; never finer than `full`. Other settings
-/// stay the same.
+/// Reduces scanlines, samples, elevation planes, steering angles and scatterers to a level; never finer than `full`.
+/// Other settings stay the same, and so does the pattern of the speckle.
 Acquisition with_detail(const Acquisition& full, ScanDetail detail) noexcept;
 
 /// Times of a live ultrasound image.
 struct ScanPace {
-  LivePace live;
-  double refresh_s = 0.1;   ///< Time between frames in which only noise changes. Range 0.02..2.
-  double doppler_s = 0.05;  ///< The same with colour Doppler, whose picture follows the pulse.
-  double tremor_mm = 0.05;  ///< Smaller movements of transducer and needle count as rest. Range 0..1.
+  LivePace live{.moving_ms = 40.0};  ///< 25 pictures a second, as a scanner.
+  double refresh_s = 0.1;            ///< Time between frames in which only noise changes. Range 0.02..2.
+  double doppler_s = 0.05;           ///< The same with colour Doppler, whose picture follows the pulse.
+  double tremor_mm = 0.05;           ///< Smaller movements of transducer and needle count as rest. Range 0..1.
 };
 
 /// Requests and levels of detail of ultrasound for LiveSchedule.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "ultrasound/engine/detail/scatterer_bricks.h"
@@ -126,10 +127,46 @@ void fill_axial(ScanPlan& plan) {
     plan.axial.push_back(static_cast<float>(std::exp(-0.5 * k * k / (sigma * sigma))));
 }
 
+/// Smallest product of the beam's three widths within the picture.
+double smallest_cell_mm3(const Beam& beam, double depth_mm) noexcept {
+  constexpr int kDepths = 1024;
+  double smallest_mm3 = std::numeric_limits<double>::infinity();
+  for (int n = 0; n < kDepths; ++n) {
+    const double at_mm = (n + 0.5) / kDepths * depth_mm;
+    smallest_mm3 =
+        std::min(smallest_mm3, beam.axial_sigma_mm * beam.lateral_sigma_mm(at_mm) * beam.elevation_sigma_mm(at_mm));
+  }
+  return smallest_mm3;
+}
+
+/// Length whose scatterers contribute to a sample along the pulse: integral of its square, as sampled; root of pi times
+/// sigma for samples that are short enough.
+double pulse_mm(const ScanPlan& plan) noexcept {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < plan.axial.size(); ++k)
+    sum += (k == 0 ? 1.0 : 2.0) * std::pow(static_cast<double>(plan.axial[k]), 2);
+  return sum * plan.geometry.sample_mm();
+}
+
+/// The same across scanlines, for scatterers that are split between two of them.
+double main_lobe_mm(const ScanPlan& plan, std::size_t sample) noexcept {
+  const auto weight = [&](int k) {
+    return k > plan.main_lobe_reach
+               ? 0.0
+               : static_cast<double>(
+                     plan.lateral[static_cast<std::size_t>(k) * static_cast<std::size_t>(plan.samples) + sample]);
+  };
+  double squares = weight(0) * weight(0), neighbours = 0.0;
+  for (int k = 1; k <= plan.main_lobe_reach; ++k) squares += 2.0 * weight(k) * weight(k);
+  for (int k = 0; k <= plan.main_lobe_reach; ++k) neighbours += 2.0 * weight(k) * weight(k + 1);
+  const double depth_mm = (static_cast<double>(sample) + 0.5) * plan.geometry.sample_mm();
+  return plan.geometry.line_spacing_mm(depth_mm) * (2.0 / 3.0 * squares + 1.0 / 3.0 * neighbours);
+}
+
 /// Number of scatterers that the smallest resolution cell needs for fully developed speckle, and the factor that makes
-/// its mean independent of the cell's size: n E[a^2] pi^1.5 sx sy sz is the mean intensity of a Gaussian point spread.
+/// its mean independent of the cell's size, scanlines and samples.
 void fill_scatterers(ScanPlan& plan) {
-  constexpr double kWantedPerCell = 4.0;
+  constexpr double kMostPerCell = 4.0;
   constexpr double kEffectiveVolume = 15.75;  // (2 pi)^1.5, of sx sy sz: (sum w^2)^2 / sum w^4
   const auto n = static_cast<std::size_t>(plan.samples);
   std::vector<double> volume_mm3(n);
@@ -138,16 +175,20 @@ void fill_scatterers(ScanPlan& plan) {
     const double lateral_mm = plan.beam.lateral_sigma_mm(depth_mm);
     volume_mm3[s] = plan.beam.axial_sigma_mm * lateral_mm * plan.elevation_sigma_mm[s];
   }
-  const double smallest_mm3 = *std::min_element(volume_mm3.begin(), volume_mm3.end());
-  const double per_mm3 = kWantedPerCell / (kEffectiveVolume * smallest_mm3);
+  // The lattice of bricks depends on the beam alone, not on samples or scanlines: other details have the same pattern.
+  const double smallest_mm3 = smallest_cell_mm3(plan.beam, plan.geometry.depth_mm);
+  const double per_mm3 = kMostPerCell / (kEffectiveVolume * smallest_mm3);
+  const double wanted = plan.acquisition.scatterers / kMostPerCell;
   plan.brick_mm = static_cast<float>(std::cbrt(kBrickScatterers / per_mm3));
   plan.speckle_scale.resize(n);
   plan.most_rank.resize(n);
   for (std::size_t s = 0; s < n; ++s) {
     // A small part of a stratified brick is less uniform than the whole: fewer scatterers in larger resolution cells.
-    const double share = std::clamp(1.6 * std::pow(smallest_mm3 / volume_mm3[s], 0.7), 0.1, 1.0);
+    const double share = wanted * std::clamp(1.6 * std::pow(smallest_mm3 / volume_mm3[s], 0.7), 0.1, 1.0);
     plan.most_rank[s] = static_cast<float>(share);
-    const double mean = share * per_mm3 * kMeanSquareScatterer * std::pow(std::numbers::pi, 1.5) * volume_mm3[s];
+    const double heard_mm3 = pulse_mm(plan) * main_lobe_mm(plan, s) * std::sqrt(std::numbers::pi) *
+                             static_cast<double>(plan.elevation_sigma_mm[s]);
+    const double mean = share * per_mm3 * kMeanSquareScatterer * heard_mm3;
     plan.speckle_scale[s] = static_cast<float>(1.0 / std::sqrt(mean));
   }
 }

@@ -82,6 +82,27 @@ TEST(Speckle, ScattersFollowsBackscatterAndStaysRayleigh) {
   EXPECT_NEAR(normalised_correlation(a.values, b.values), 1.0, 1e-4);
 }
 
+TEST(Speckle, OfLessDetailKeepsItsPattern) {
+  const Transducer transducer = convex();
+  const ScenePtr scene = homogeneous_scene(thick_box(transducer), TestTissue::kLossless);
+  const Acquisition full = plain(transducer);
+  Acquisition fewer = full, coarse = full;
+  fewer.scatterers = 2.0;
+  coarse.samples = full.samples / 2;
+  coarse.lines = full.lines / 2;
+  BMode engine(scene, transducer, full);
+  const EchoPatch a = envelope_patch(engine.render({}), {20, 236, 60, 90});
+  const SpeckleMoments moments = speckle_moments(a.values);
+  EXPECT_GT(moments.snr, 1.86);
+  engine.set_acquisition(fewer);
+  const EchoPatch b = envelope_patch(engine.render({}), {20, 236, 60, 90});
+  EXPECT_NEAR(level_db(b), level_db(a), 0.5);
+  EXPECT_GT(normalised_correlation(a.values, b.values), 0.45) << "half of the same scatterers";
+  engine.set_acquisition(coarse);
+  const EchoPatch c = envelope_patch(engine.render({}), {10, 118, 60, 90});
+  EXPECT_NEAR(level_db(c), level_db(a), 0.5);
+}
+
 TEST(Speckle, OfFewScatterersIsNotFullyDeveloped) {
   const Transducer transducer = convex();
   const ScenePtr scene = homogeneous_scene(thick_box(transducer), TestTissue::kLossless);
