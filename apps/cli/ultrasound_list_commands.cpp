@@ -22,13 +22,15 @@ struct Arguments {
   bool is_json = false;
 };
 
-config::Json view_json(const ultrasound::ProbeView& view, const std::optional<bool>& is_possible,
+/// `missing`: why the patient does not offer it; empty if he does; nothing without a patient.
+config::Json view_json(const ultrasound::ProbeView& view, const std::optional<std::string>& missing,
                        const anatomy::Label* target) {
   return {{"name", view.name},
           {"title", view.title},
           {"transducer", view.transducer},
           {"depth_mm", view.depth_mm},
-          {"possible", is_possible ? config::Json(*is_possible) : config::Json(nullptr)},
+          {"possible", missing ? config::Json(missing->empty()) : config::Json(nullptr)},
+          {"reason", missing && !missing->empty() ? config::Json(*missing) : config::Json(nullptr)},
           {"target", target != nullptr ? config::Json(target->name) : config::Json(nullptr)}};
 }
 
@@ -41,16 +43,17 @@ Status list_views(const Arguments& arguments) {
     const ProgressPrinter printer;
     TROCAR_TRY(patient, io::open_patient(arguments.source, printer.callback()));
   }
-  const auto possible = has_patient ? ultrasound::possible_views(patient, views) : std::vector<std::string>{};
   config::Json list = config::Json::array();
   for (const ultrasound::ProbeView& view : views) {
-    const bool is_possible = std::find(possible.begin(), possible.end(), view.name) != possible.end();
+    std::optional<std::string> missing;
+    if (has_patient) missing = ultrasound::missing_label(patient, view);
+    const bool is_possible = missing && missing->empty();
     const anatomy::Label* target = is_possible ? ultrasound::find_target(patient, view.targets) : nullptr;
     if (arguments.is_json) {
-      list.push_back(view_json(view, has_patient ? std::optional(is_possible) : std::nullopt, target));
+      list.push_back(view_json(view, missing, target));
       continue;
     }
-    const std::string what = !has_patient ? "" : target != nullptr ? target->name : "not in this patient";
+    const std::string what = !missing ? "" : target != nullptr ? target->name : "not offered: " + *missing;
     fmt::print("{:<20} {:<6} {:>3.0f} mm  {}{}\n", view.name, view.transducer, view.depth_mm, view.title,
                what.empty() ? "" : fmt::format(" ({})", what));
   }

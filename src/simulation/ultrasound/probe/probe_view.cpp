@@ -139,6 +139,11 @@ const anatomy::Label* find_target(const anatomy::VirtualPatient& patient, std::s
   return find_counted(patient.label_table, count_voxels(patient.labels), patterns);
 }
 
+std::string missing_label(const anatomy::VirtualPatient& patient, const ProbeView& view) {
+  const auto* missing = find_missing(patient.label_table, count_voxels(patient.labels), view);
+  return missing == nullptr ? std::string() : fmt::format("no label {}", fmt::join(*missing, ", "));
+}
+
 Status check_view(const anatomy::VirtualPatient& patient, const ProbeView& view) {
   const auto* missing = find_missing(patient.label_table, count_voxels(patient.labels), view);
   if (missing == nullptr) return {};

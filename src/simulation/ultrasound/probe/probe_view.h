@@ -58,6 +58,9 @@ Result<std::vector<ProbeView>> load_probe_views(const std::filesystem::path& pat
 /// are ignored. Case and separators are ignored.
 const anatomy::Label* find_target(const anatomy::VirtualPatient& patient, std::span<const std::string> patterns);
 
+/// Why a patient does not offer a view: "no label liver"; empty: it does.
+std::string missing_label(const anatomy::VirtualPatient& patient, const ProbeView& view);
+
 /// Error (exit status 2): the patient lacks a label that the view needs; it names the label.
 Status check_view(const anatomy::VirtualPatient& patient, const ProbeView& view);
 
