@@ -102,6 +102,11 @@ void add_cases(std::vector<CaseResult>& results, const std::string& name, const 
   for (const int percent : {10, 25, 50, 75, 90, 99})
     add(fmt::format("gray-p{}", percent), "gray", ultrasound::gray_percentile(figures.histogram, percent / 100.0));
   add("gray-mean", "gray", ultrasound::mean_gray(figures.histogram));
+  add("organ-skewness", "ratio", figures.texture.skewness);
+  add("organ-kurtosis", "ratio", figures.texture.kurtosis);
+  add("organ-bright-permille", "n", figures.texture.bright_permille);
+  add("border-above", "gray", figures.border.above_gray);
+  add("border-thickness", "mm", figures.border.thickness_mm);
   for (const auto& level : figures.levels) add(fmt::format("level-{:.0f}mm", level.depth_mm), "gray", level.mean);
   for (const auto& speckle : figures.speckle) {
     const auto at = fmt::format("{:.0f}mm", speckle.depth_mm);
@@ -147,6 +152,16 @@ std::string table_of(const ultrasound::PictureFigures& real, const ultrasound::P
     };
     text += fmt::format("  {:>4.0f}  {} | {}\n", depth_mm, cells(a), cells(b));
   }
+  const auto more = [](const ultrasound::PictureFigures& f) {
+    return fmt::format("{:.2f} {:.2f} {:.2f}", f.texture.skewness, f.texture.kurtosis, f.texture.bright_permille);
+  };
+  text += fmt::format("\norgan at 40 to 100 mm: skewness, kurtosis, permille beyond 4 sd: {} | {}\n", more(real),
+                      more(simulated));
+  const auto edge = [](const ultrasound::PictureFigures& f) {
+    return fmt::format("{:.0f} gray above, {:.1f} mm thick ({} scanlines)", f.border.above_gray, f.border.thickness_mm,
+                       f.border.scanlines);
+  };
+  text += fmt::format("brightest border at 25 to 45 degrees: {} | {}\n", edge(real), edge(simulated));
   return text + "\n";
 }
 

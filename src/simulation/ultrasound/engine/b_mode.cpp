@@ -18,6 +18,7 @@
 #include "ultrasound/engine/detail/surface_echo.h"
 #include "ultrasound/engine/detail/tissue_texture.h"
 #include "ultrasound/engine/detail/tissue_walk.h"
+#include "ultrasound/engine/detail/tissue_walls.h"
 
 namespace trocar::ultrasound {
 namespace {
@@ -96,6 +97,7 @@ void BMode::Impl::walk(int group, int first, int last) noexcept {
       float* delay = plane == central ? frame.delay.data() + static_cast<std::size_t>(line) * samples : nullptr;
       walk_line(plan, frame, path, zeta, s.walk, delay);
       make_texture(plan, frame, s.walk, line, plane == central, s.texture);
+      add_walls(plan, frame, path, s.walk, s.texture);
       const int to = plan.row_of(plane, line);
       pack_gains(s.walk.log_gain.data(), s.texture.added.data(), s.walk.share.data(), plan.samples,
                  frame.gain.data() + static_cast<std::size_t>(to) * samples);

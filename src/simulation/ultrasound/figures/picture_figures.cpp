@@ -118,6 +118,14 @@ void PictureStatistics::add(const FanPicture& picture) {
       if (is_middle && band < bands) ++band_counts_[band][gray];
     }
   add_patches(polar, picture.scan);
+  for (const ObliqueBorder& border : find_oblique_borders(polar, picture.scan)) borders_.push_back(border);
+}
+
+void PictureStatistics::add_texture(const EchoPatch& patch, const EchoPatch& flat) {
+  const auto band = static_cast<std::size_t>((patch.depth_mm + 0.5 * kPatchDepth_mm) / kSpeckleBand_mm);
+  if (textures_.size() <= band) textures_.resize(band + 1);
+  const auto mean = static_cast<float>(shape_of(flat.values).mean);
+  for (const float value : flat.values) textures_[band].push_back(value - mean);
 }
 
 void PictureStatistics::add_patches(const EchoPatch& polar, const ScanGeometry& scan) {
@@ -137,6 +145,11 @@ void PictureStatistics::add_patches(const EchoPatch& polar, const ScanGeometry& 
         lowest = std::min(lowest, trend);
         highest = std::max(highest, trend);
       }
+      constexpr double kFirstTexture_mm = 40.0, kLastTexture_mm = 100.0;
+      const bool is_middle = line >= polar.lines / 4 && line + width <= polar.lines - polar.lines / 4;
+      if (is_middle && depth_mm > kFirstTexture_mm && depth_mm < kLastTexture_mm && shape.mean >= kLeastGray &&
+          highest - lowest < kMostTrend * shape.mean)
+        add_texture(patch, flat);
       const bool is_homogeneous = shape.mean >= kLeastGray && shape.standard_deviation > kLeastDeviation &&
                                   shape.kurtosis < kMostKurtosis && highest - lowest < kMostTrend * shape.mean;
       if (!is_homogeneous) continue;
@@ -147,6 +160,41 @@ void PictureStatistics::add_patches(const EchoPatch& polar, const ScanGeometry& 
     }
   }
 }
+
+namespace {
+
+PictureFigures::Texture texture_of(const std::vector<std::vector<float>>& bands) {
+  std::vector<float> all;
+  for (const std::vector<float>& band : bands) {
+    if (band.empty()) continue;
+    const auto deviation = static_cast<float>(shape_of(band).standard_deviation);
+    for (const float value : band) all.push_back(value / std::max(deviation, 1e-3F));
+  }
+  PictureFigures::Texture texture;
+  texture.pixels = all.size();
+  if (all.empty()) return texture;
+  const Shape shape = shape_of(all);
+  texture.skewness = shape.skewness;
+  texture.kurtosis = shape.kurtosis;
+  constexpr float kBright = 4.0F;
+  const auto bright = std::count_if(all.begin(), all.end(), [](float value) { return value > kBright; });
+  texture.bright_permille = 1e3 * static_cast<double>(bright) / static_cast<double>(all.size());
+  return texture;
+}
+
+PictureFigures::Border border_of(const std::vector<ObliqueBorder>& borders) {
+  constexpr double kLeast_rad = 0.436, kMost_rad = 0.785;  // 25 to 45 degrees
+  std::vector<double> above, thickness_mm;
+  for (const ObliqueBorder& border : borders) {
+    if (border.incidence_rad < kLeast_rad || border.incidence_rad > kMost_rad) continue;
+    above.push_back(border.above_gray);
+    thickness_mm.push_back(border.thickness_mm);
+  }
+  if (above.empty()) return {};
+  return {static_cast<int>(above.size()), median_of(above), median_of(thickness_mm)};
+}
+
+}  // namespace
 
 PictureFigures PictureStatistics::figures() const {
   PictureFigures figures;
@@ -173,6 +221,8 @@ PictureFigures PictureStatistics::figures() const {
                                median(&Patch::standard_deviation), median(&Patch::axial_fwhm_mm),
                                median(&Patch::lateral_fwhm_mm), median(&Patch::skewness)});
   }
+  figures.texture = texture_of(textures_);
+  figures.border = border_of(borders_);
   return figures;
 }
 

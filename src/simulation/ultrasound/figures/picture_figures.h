@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ultrasound/figures/image_statistics.h"
+#include "ultrasound/figures/oblique_border.h"
 #include "ultrasound/figures/speckle_statistics.h"
 #include "ultrasound/probe/scan_geometry.h"
 
@@ -36,6 +37,22 @@ struct PictureFigures {
     double skewness = 0.0;
   };
   std::vector<Speckle> speckle;  ///< Speckle of homogeneous patches; bands with too few patches are left out.
+  /// Gray values of the organ in the middle of the fan, 40 to 100 mm deep, without trend, in units of the standard
+  /// deviation of their depth: vessels, walls and streaks included, organ borders excluded.
+  struct Texture {
+    std::size_t pixels = 0;
+    double skewness = 0.0, kurtosis = 0.0;
+    double bright_permille = 0.0;  ///< Share beyond four standard deviations.
+  };
+  Texture texture;
+  /// The brightest oblique border deeper than 60 mm (the diaphragm in a liver sweep): medians over scanlines where it
+  /// is met at 25 to 45 degrees.
+  struct Border {
+    int scanlines = 0;
+    double above_gray = 0.0;    ///< Above the organ in front of it.
+    double thickness_mm = 0.0;  ///< Across the border, at half of that.
+  };
+  Border border;
 };
 
 /// Accumulates statistics over pictures of one kind.
@@ -49,10 +66,13 @@ class PictureStatistics {
     double depth_mm, mean, standard_deviation, skewness, axial_fwhm_mm, lateral_fwhm_mm;
   };
   void add_patches(const EchoPatch& polar, const ScanGeometry& scan);
+  void add_texture(const EchoPatch& patch, const EchoPatch& flat);
 
   std::array<std::size_t, 256> counts_{};
   std::vector<std::array<std::size_t, 256>> band_counts_;
   std::vector<Patch> patches_;
+  std::vector<std::vector<float>> textures_;  ///< Per band of depth: gray values without trend.
+  std::vector<ObliqueBorder> borders_;
 };
 
 }  // namespace trocar::ultrasound

@@ -23,7 +23,7 @@ constexpr std::array<std::pair<GrayMap, std::string_view>, 3> kNames = {
     {{GrayMap::kLinear, "linear"}, {GrayMap::kSoft, "soft"}, {GrayMap::kHighContrast, "high-contrast"}}};
 
 /// Sharpness of the transition of the automatic TGC to its limit. Assumed, range 1..6.
-constexpr double kLimitBend_db = 3.0;
+constexpr double kLimitBend_db = 5.0;
 
 /// Gray maps, fitted to the sweep of docs/validation.md: mean and spread of liver, and the gray of tissue without
 /// echoes.
@@ -44,9 +44,11 @@ double held(double value, Range range, double fallback) noexcept {
 
 double automatic_db(const DisplaySettings& settings, double depth_mm, double frequency_mhz) noexcept {
   const double loss_db = 2.0 * settings.automatic_tgc_db_per_cm_mhz * frequency_mhz * 0.1 * std::max(depth_mm, 0.0);
-  const double beyond = (loss_db - settings.automatic_tgc_limit_db) / kLimitBend_db;
-  if (beyond > 30.0) return settings.automatic_tgc_limit_db;  // limits the exponential
-  return loss_db - kLimitBend_db * std::log1p(std::exp(beyond));
+  const double limit = settings.automatic_tgc_limit_db / kLimitBend_db, at_face = std::log1p(std::exp(-limit));
+  const double beyond = loss_db / kLimitBend_db - limit;
+  // The logarithm of 1 + exp(beyond), without its overflow.
+  const double bend = beyond > 30.0 ? beyond : std::log1p(std::exp(beyond));
+  return loss_db - kLimitBend_db * (bend - at_face);
 }
 
 /// Slope of the slider curve at a slider, dB per slider. Zero at an extremum and the harmonic mean elsewhere, so that

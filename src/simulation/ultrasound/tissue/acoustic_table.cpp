@@ -49,6 +49,36 @@ Result<AcousticTissue> read_tissue(const config::TomlTable& row, const std::stri
   return tissue;
 }
 
+/// Rows of the tissues of that names.
+Result<std::vector<std::uint8_t>> read_tissues(const config::TomlTable& row, std::string_view key,
+                                               const AcousticTable& table) {
+  TROCAR_TRY(const std::vector<std::string> names, row.strings(key));
+  if (names.empty()) return fail(fmt::format("the wall has no \"{}\"", key), row.where(), "name at least one tissue");
+  std::vector<std::uint8_t> tissues;
+  for (const std::string& name : names) {
+    const auto tissue = table.find(name);
+    if (!tissue)
+      return fail(fmt::format("{} has the unknown tissue \"{}\"", key, name), row.where(),
+                  "name a tissue of this file");
+    tissues.push_back(*tissue);
+  }
+  return tissues;
+}
+
+Result<AcousticWall> read_wall(const config::TomlTable& row, const std::string& name, const AcousticTable& table) {
+  AcousticWall wall;
+  wall.name = name;
+  TROCAR_TRY_STATUS(row.check_keys({"of", "against", "thickness_mm", "backscatter_db"}));
+  TROCAR_TRY(wall.of, read_tissues(row, "of", table));
+  TROCAR_TRY(wall.against, read_tissues(row, "against", table));
+  TROCAR_TRY(const config::SourcedNumber thickness, config::read_sourced_number(row, "thickness_mm", {0.1, 10.0}));
+  TROCAR_TRY(const config::SourcedNumber backscatter,
+             config::read_sourced_number(row, "backscatter_db", {-40.0, 40.0}));
+  wall.thickness_mm = thickness.value;
+  wall.backscatter_db = backscatter.value;
+  return wall;
+}
+
 }  // namespace
 
 double AcousticTissue::attenuation_db_per_cm(double frequency_mhz) const noexcept {
@@ -68,7 +98,7 @@ std::optional<std::uint8_t> AcousticTable::find(std::string_view name) const noe
 
 Result<AcousticTable> load_acoustic_table(const std::filesystem::path& path) {
   TROCAR_TRY(const config::TomlTable document, config::load_toml(path));
-  TROCAR_TRY_STATUS(document.check_keys({"tissues"}));
+  TROCAR_TRY_STATUS(document.check_keys({"tissues", "walls"}));
   TROCAR_TRY(const config::TomlTable rows, document.table("tissues"));
   const std::vector<std::string> names = rows.keys();
   if (names.empty() || names.front() != "air")
@@ -80,6 +110,13 @@ Result<AcousticTable> load_acoustic_table(const std::filesystem::path& path) {
     TROCAR_TRY(const config::TomlTable row, rows.table(name));
     TROCAR_TRY(AcousticTissue tissue, read_tissue(row, name));
     table.tissues.push_back(std::move(tissue));
+  }
+  if (!document.has("walls")) return table;
+  TROCAR_TRY(const config::TomlTable walls, document.table("walls"));
+  for (const std::string& name : walls.keys()) {
+    TROCAR_TRY(const config::TomlTable row, walls.table(name));
+    TROCAR_TRY(AcousticWall wall, read_wall(row, name, table));
+    table.walls.push_back(std::move(wall));
   }
   return table;
 }

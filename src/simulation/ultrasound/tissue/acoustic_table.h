@@ -37,8 +37,18 @@ struct AcousticTissue {
 /// 15..40.
 inline constexpr double kMostTexture_db = 28.0;
 
+/// A sheet too thin for CT and labels, on the borders of some tissues with others: it scatters sound to all sides.
+struct AcousticWall {
+  std::string name;
+  std::vector<std::uint8_t> of;       ///< Tissues that it encloses: it lies outside them,
+  std::vector<std::uint8_t> against;  ///< within these.
+  double thickness_mm = 1.0;          ///< Range 0.1..10.
+  double backscatter_db = 0.0;        ///< As AcousticTissue::backscatter_db.
+};
+
 struct AcousticTable {
   std::vector<AcousticTissue> tissues;  ///< [0] is air. At most 127.
+  std::vector<AcousticWall> walls;
 
   std::optional<std::uint8_t> find(std::string_view name) const noexcept;
 };

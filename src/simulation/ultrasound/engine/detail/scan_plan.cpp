@@ -45,6 +45,26 @@ void fill_rows(ScanPlan& plan, const AcousticTable& table) {
                         kSilent, 0.0F};
 }
 
+void fill_walls(ScanPlan& plan, const AcousticTable& table) {
+  plan.wall_at.assign(static_cast<std::size_t>(kTissues) * kTissues, 0);
+  for (const AcousticWall& wall : table.walls) {
+    const WallRow row{static_cast<float>(wall.thickness_mm), static_cast<float>(wall.backscatter_db * kNeperPerDb),
+                      false};
+    WallRow back = row;
+    back.is_behind = true;
+    plan.walls.push_back(row);
+    plan.walls.push_back(back);
+    const auto front_number = static_cast<std::uint8_t>(plan.walls.size() - 1);
+    for (const std::uint8_t inside : wall.of) {
+      for (const std::uint8_t outside : wall.against) {
+        plan.wall_at[static_cast<std::size_t>(outside) * kTissues + inside] = front_number;
+        plan.wall_at[static_cast<std::size_t>(inside) * kTissues + outside] =
+            static_cast<std::uint8_t>(front_number + 1);
+      }
+    }
+  }
+}
+
 void fill_planes(ScanPlan& plan) {
   plan.plane_step = plan.planes > 1 ? 2.0F * kOutermostPlane / static_cast<float>(plan.planes - 1) : 1.0F;
   float sum = 0.0F;
@@ -224,6 +244,7 @@ ScanPlan make_scan_plan(const AcousticScene& scene, const Transducer& transducer
   // Padding, because kernels read whole vectors.
   plan.elevation_sigma_mm.resize(n + 16, plan.elevation_sigma_mm.back());
   fill_rows(plan, scene.table);
+  fill_walls(plan, scene.table);
   fill_planes(plan);
   fill_lateral(plan);
   fill_axial(plan);

@@ -32,6 +32,13 @@ struct alignas(16) TissueRow {
   float delay;  ///< Delay of an echo in samples, per sample.
 };
 
+/// A sheet beside a border (AcousticWall), seen along a scanline.
+struct WallRow {
+  float thickness_mm = 0.0F;
+  float log_b = 0.0F;      ///< As TissueRow::log_b.
+  bool is_behind = false;  ///< It lies behind the border, not in front of it.
+};
+
 struct ScanPlan {
   ScanGeometry geometry;
   Beam beam;
@@ -45,6 +52,8 @@ struct ScanPlan {
   std::array<TissueRow, kTissues> rows{};
   /// The same with coupling gel in place of air: for a scanline before it enters the body.
   std::array<TissueRow, kTissues> entry_rows{};
+  std::vector<WallRow> walls;
+  std::vector<std::uint8_t> wall_at;       ///< Tissue before a border * kTissues + behind: 1 + index of its wall, or 0.
   std::array<float, kTissues> slowness{};  ///< c0 / c - 1.
   std::array<std::uint8_t, kTissues> has_texture{};
   std::array<std::array<float, 256>, kTissues> texture_gain{};  ///< Neper, by texture step + 128.

@@ -120,24 +120,27 @@ float from_apex(const ScanPlan& plan, float y) noexcept {
 
 }  // namespace
 
-void stay_in_cell(const ScanPlan& plan, const Cell& cell, const Vec3f& start_T, const Vec3f& step_T,
-                  const Eigen::Matrix3f& side_T, float more_mm, int& first, int& last) noexcept {
-  const float half_mm = cell.half_thickness_mm + 0.5F * side_T.row(2).lpNorm<1>() + more_mm;
+BrickReach reach_of(const Cell& cell, const Eigen::Matrix3f& side_T, float more_mm) noexcept {
+  BrickReach reach{};
+  reach.across_mm = 0.5F * side_T.row(2).lpNorm<1>() + more_mm;
+  for (int side = 0; side < 2; ++side)
+    reach.side_mm[side] =
+        0.5F * (cell.side_x[side] * side_T.row(0) + cell.side_y[side] * side_T.row(1)).lpNorm<1>() + more_mm;
+  return reach;
+}
+
+void stay_in_cell(const ScanPlan& plan, const Cell& cell, const BrickReach& reach, const Vec3f& start_T,
+                  const Vec3f& step_T, int& first, int& last) noexcept {
+  const float half_mm = cell.half_thickness_mm + reach.across_mm;
   stay_below(start_T.z(), step_T.z(), half_mm, first, last);
   stay_below(-start_T.z(), -step_T.z(), half_mm, first, last);
+  if (first > last) return;
   const float y = from_apex(plan, start_T.y());
   for (int side = 0; side < 2; ++side) {
     const float x_part = cell.side_x[side], y_part = cell.side_y[side];
-    const float reach_mm = 0.5F * (x_part * side_T.row(0) + y_part * side_T.row(1)).lpNorm<1>() + more_mm;
     stay_below(start_T.x() * x_part + y * y_part + cell.side_d[side], step_T.x() * x_part + step_T.y() * y_part,
-               reach_mm, first, last);
+               reach.side_mm[side], first, last);
   }
-}
-
-bool is_at_depth(const ScanPlan& plan, const Cell& cell, const Vec3f& middle_T) noexcept {
-  const float y = from_apex(plan, middle_T.y());
-  const float far = plan.geometry.is_fan ? middle_T.x() * middle_T.x() + y * y : y;
-  return far >= cell.low && far < cell.high;
 }
 
 }  // namespace trocar::ultrasound::detail

@@ -37,12 +37,24 @@ struct CellBox {
 };
 CellBox box_of(const ScanPlan& plan, const FrameState& frame, const Cell& cell) noexcept;
 
+/// How far the tissue of a brick reaches from its middle, mm: across the image, and across the cell's sides.
+struct BrickReach {
+  float across_mm;
+  float side_mm[2];
+};
+/// `side_T`: the sides of a brick, columns; `more_mm`: displacement of the tissue by a needle.
+BrickReach reach_of(const Cell& cell, const Eigen::Matrix3f& side_T, float more_mm) noexcept;
+
 /// Narrows first..last to those bricks of a row that intersect the cell's sides and the beam's thickness. Their middles
-/// are start_T + step_T * n; `side_T`: the sides of a brick, columns. `more_mm`: displacement of the tissue by a
-/// needle.
-void stay_in_cell(const ScanPlan& plan, const Cell& cell, const Vec3f& start_T, const Vec3f& step_T,
-                  const Eigen::Matrix3f& side_T, float more_mm, int& first, int& last) noexcept;
-/// True if a brick with that middle belongs to the cell's depths.
-bool is_at_depth(const ScanPlan& plan, const Cell& cell, const Vec3f& middle_T) noexcept;
+/// are start_T + step_T * n.
+void stay_in_cell(const ScanPlan& plan, const Cell& cell, const BrickReach& reach, const Vec3f& start_T,
+                  const Vec3f& step_T, int& first, int& last) noexcept;
+
+/// True if a brick with that middle belongs to the cell's depths. `radius_mm`: of the face of a fan.
+inline bool is_at_depth(const Cell& cell, bool is_fan, float radius_mm, const Vec3f& middle_T) noexcept {
+  const float y = middle_T.y() + (is_fan ? radius_mm : 0.0F);
+  const float far = is_fan ? middle_T.x() * middle_T.x() + y * y : y;
+  return far >= cell.low && far < cell.high;
+}
 
 }  // namespace trocar::ultrasound::detail

@@ -329,6 +329,7 @@ void add_scatterers(const ScanPlan& plan, const std::vector<Brick>& library, Fra
   const float drag_mm = has_drag ? frame.drag.shift_T.norm() : 0.0F;
   const float radius_mm = 0.5F * std::sqrt(3.0F) * plan.brick_mm;
   const float radius = radius_mm / plan.sample_mm;
+  const auto face_mm = static_cast<float>(plan.geometry.radius_mm);
   constexpr int kSegments = 16;  // per depth: the variation along one is nearly a parabola
   const float segment = static_cast<float>(plan.samples) / kSegments;
   const auto take = HWY_DYNAMIC_DISPATCH(take_near);
@@ -340,16 +341,17 @@ void add_scatterers(const ScanPlan& plan, const std::vector<Brick>& library, Fra
   for (float rest = -frame.deepest_dent_mm / plan.sample_mm - radius; rest < audible + radius; rest += segment) {
     const Cell cell = make_cell(plan, frame, first, last, rest, rest + segment, radius);
     const CellBox box = box_of(plan, frame, cell);
+    const BrickReach reach = reach_of(cell, side_T, drag_mm);
     BrickIndex b{};
     for (b[2] = box.low[2]; b[2] <= box.high[2]; ++b[2]) {
       for (b[1] = box.low[1]; b[1] <= box.high[1]; ++b[1]) {
         const Vec3 row_P = (Vec3(box.low[0], b[1], b[2]) + Vec3::Constant(0.5)) * static_cast<double>(plan.brick_mm);
         const Vec3f row_T = (X_TP * row_P).cast<float>();
         int first_i = 0, last_i = box.high[0] - box.low[0];
-        stay_in_cell(plan, cell, row_T, side_T.col(0), side_T, drag_mm, first_i, last_i);
+        stay_in_cell(plan, cell, reach, row_T, side_T.col(0), first_i, last_i);
         for (int i = first_i; i <= last_i; ++i) {
           const Vec3f middle_T = row_T + static_cast<float>(i) * side_T.col(0);
-          if (!is_at_depth(plan, cell, middle_T)) continue;
+          if (!is_at_depth(cell, plan.geometry.is_fan, face_mm, middle_T)) continue;
           const bool is_dragged =
               has_drag && (middle_T - frame.drag.tip_T).norm() < frame.drag.reach_mm + radius_mm + drag_mm;
           b[0] = box.low[0] + i;

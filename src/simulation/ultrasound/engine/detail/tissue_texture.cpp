@@ -73,7 +73,7 @@ class LayerProfile {
 /// Layers along the central plane: phase in coarse steps, sheets sample by sample.
 void make_fibres(const ScanPlan& plan, const FrameState& frame, const WalkResult& walk, Texture& texture) noexcept {
   static const LayerProfile profile;
-  constexpr int kLayering = 2 * kCoarse;  // samples; the phase varies over centimetres
+  constexpr int kLayering = 3 * kCoarse;  // samples; the phase varies over centimetres
   const AcousticScene& scene = *frame.scene;
   Layering last;
   bool was_in = false;

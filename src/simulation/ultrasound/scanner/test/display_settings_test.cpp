@@ -77,7 +77,8 @@ TEST(Tgc, AutomaticPartMakesGoodTheWayThereAndBack) {
 
 TEST(Tgc, AutomaticPartEndsAtItsLimitWithoutAKink) {
   const DisplaySettings settings;
-  EXPECT_NEAR(tgc_gain_db(settings, 300.0, 300.0, 15.0), settings.automatic_tgc_limit_db, 1e-6);
+  EXPECT_NEAR(tgc_gain_db(settings, 300.0, 300.0, 15.0), settings.automatic_tgc_limit_db, 0.02);
+  EXPECT_NEAR(tgc_gain_db(settings, 0.0, 300.0, 15.0), 0.0, 1e-9);
   double last_slope = 2.0 * 0.5 * kFrequency_mhz * 0.1;
   for (double depth_mm = 1.0; depth_mm < kDepth_mm; depth_mm += 1.0) {
     const double slope = tgc_gain_db(settings, depth_mm, kDepth_mm, kFrequency_mhz) -

@@ -121,6 +121,27 @@ TEST(AcousticTable, WrongEntryNamesFileTissueAndKey) {
   }
 }
 
+TEST(AcousticTable, ReadsWalls) {
+  const AcousticTable table = shipped();
+  ASSERT_FALSE(table.walls.empty());
+  const AcousticWall& diaphragm = table.walls.front();
+  EXPECT_EQ(diaphragm.name, "diaphragm");
+  EXPECT_EQ(diaphragm.of, std::vector<std::uint8_t>{*table.find("lung")});
+  EXPECT_GT(diaphragm.thickness_mm, 1.0);
+}
+
+TEST(AcousticTable, NamesTheWallThatIsWrong) {
+  const std::pair<std::string, std::string> changes[] = {{"of = [\"lung\"]", "of = [\"lungs\"]"},
+                                                         {"of = [\"lung\"]", "of = []"},
+                                                         {"of = [\"lung\"]", "off = [\"lung\"]"},
+                                                         {"thickness_mm = {value = 5,", "thickness_mm = {value = 50,"}};
+  for (const auto& [from, to] : changes) {
+    const auto table = load_changed(from, to);
+    ASSERT_FALSE(table) << to;
+    EXPECT_NE(table.error().text().find("walls.diaphragm"), std::string::npos) << table.error().text();
+  }
+}
+
 TEST(AcousticTable, AirMustComeFirst) {
   const auto table = load_changed("[tissues.air]", "[tissues.vacuum]");
   ASSERT_FALSE(table);
