@@ -16,7 +16,7 @@ struct Artefacts {
   bool range_distortion = true;  ///< Depth follows from time; the speed of sound differs between tissues.
   bool side_lobes = true;        ///< Side lobes and grating lobes.
   bool contact_loss = true;      ///< Air where the face has no contact with the skin.
-  bool clutter = true;           ///< Haze of the near field.
+  bool clutter = true;           ///< Haze of the near field, and of what is beside the beam.
   bool noise = true;             ///< Noise of the receiver; increases with depth because the gain does.
 
   bool operator==(const Artefacts&) const = default;

@@ -7,6 +7,7 @@
 
 #include "core/check.h"
 #include "core/parallel.h"
+#include "ultrasound/engine/detail/clutter.h"
 #include "ultrasound/engine/detail/frame_state.h"
 #include "ultrasound/engine/detail/multiple_echoes.h"
 #include "ultrasound/engine/detail/needle_image.h"
@@ -226,7 +227,14 @@ const BasebandFrame& BMode::render(const BModeInput& input) noexcept {
   impl.for_groups(lines, [&](int group, int first, int last) { impl.walk(group, first, last); });
   impl.for_groups(lines, [&](int group, int first, int last) { impl.echo(group, first, last); });
   add_points(plan, frame, lines.first, lines.last);
+  if (plan.acquisition.artefacts.clutter) {
+    impl.for_groups(lines, [&](int, int first, int last) {
+      for (int line = first; line < last; ++line) measure_echoes(plan, frame, line);
+    });
+    sum_powers(plan, frame);
+  }
   impl.for_groups(lines, [&](int, int first, int last) {
+    if (plan.acquisition.artefacts.clutter) add_clutter(plan, frame, first, last);
     for (int line = first; line < last; ++line) find_loudest(plan, frame, line);
   });
   impl.for_groups(lines, [&](int group, int first, int last) { impl.spread(group, first, last); });

@@ -31,6 +31,8 @@ void fit_frame(FrameState& frame, const ScanPlan& plan) {
   frame.way_gain.assign(lines * samples + 16, 0.0F);
   frame.gain.assign(rows * samples + 2, 0);
   for (auto* echoes : {&frame.re, &frame.im}) echoes->assign(plan.echo_row(plan.lines + plan.lateral_reach), 0.0F);
+  frame.power.assign(plan.lobe_blocks() * lines, 0.0F);
+  frame.power_sums.assign(plan.lobe_blocks() * (lines + 1), 0.0F);
   frame.loudest.assign(plan.lobe_blocks() * (lines + 2 * static_cast<std::size_t>(plan.lateral_reach)), 0.0F);
 }
 

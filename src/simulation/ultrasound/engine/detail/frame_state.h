@@ -111,7 +111,9 @@ struct FrameState {
   std::vector<float> way_gain;
   /// ScanPlan::row_of(plane, line) * samples: gain of a scatterer there; two more values at the end.
   std::vector<ScattererGain> gain;
-  std::vector<float> re, im;  ///< ScanPlan::echo_row(line) + sample: echoes before the point spread.
+  std::vector<float> re, im;      ///< ScanPlan::echo_row(line) + sample: echoes before the point spread.
+  std::vector<float> power;       ///< block * lines + line: mean power of the echoes in kLobeBlock samples.
+  std::vector<float> power_sums;  ///< block * (lines + 1) + line: sum of `power` before that scanline.
   /// block * (lines + 2 * lateral_reach) + lateral_reach + line: largest |re| or |im| in kLobeBlock samples; 0 beyond
   /// the scanlines.
   std::vector<float> loudest;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/random.h"
 #include "ultrasound/engine/detail/scatterer_bricks.h"
 #include "ultrasound/engine/detail/scatterer_gain.h"
 
@@ -202,6 +203,7 @@ void fill_scatterers(ScanPlan& plan) {
   plan.brick_mm = static_cast<float>(std::cbrt(kBrickScatterers / per_mm3));
   plan.speckle_scale.resize(n);
   plan.most_rank.resize(n);
+  plan.echo_power.resize(n);
   for (std::size_t s = 0; s < n; ++s) {
     // A small part of a stratified brick is less uniform than the whole: fewer scatterers in larger resolution cells.
     const double share = wanted * std::clamp(1.6 * std::pow(smallest_mm3 / volume_mm3[s], 0.7), 0.1, 1.0);
@@ -210,7 +212,18 @@ void fill_scatterers(ScanPlan& plan) {
                              static_cast<double>(plan.elevation_sigma_mm[s]);
     const double mean = share * per_mm3 * kMeanSquareScatterer * heard_mm3;
     plan.speckle_scale[s] = static_cast<float>(1.0 / std::sqrt(mean));
+    // Two thirds: each is split between two scanlines.
+    const double cell_mm2 =
+        plan.geometry.sample_mm() * plan.geometry.line_spacing_mm((static_cast<double>(s) + 0.5) * plan.sample_mm);
+    plan.echo_power[s] = static_cast<float>(2.0 / 3.0 * cell_mm2 / (pulse_mm(plan) * main_lobe_mm(plan, s)));
   }
+}
+
+void fill_clutter(ScanPlan& plan) {
+  constexpr std::uint64_t kSeed = 0x636c;
+  Random random(kSeed);
+  plan.clutter_noise.resize(ScanPlan::kNoise);
+  for (float& value : plan.clutter_noise) value = static_cast<float>(random.normal());
 }
 
 }  // namespace
@@ -249,6 +262,7 @@ ScanPlan make_scan_plan(const AcousticScene& scene, const Transducer& transducer
   fill_lateral(plan);
   fill_axial(plan);
   fill_scatterers(plan);
+  fill_clutter(plan);
   return plan;
 }
 

@@ -66,6 +66,10 @@ struct ScanPlan {
   /// Distance of adjacent scanlines every kCoarse samples, and its reciprocal. Those of a phased array start at one
   /// point: there it is at least 0.02 mm, because smaller distances contain no information about lateral differences.
   std::vector<float> coarse_spacing_mm, inverse_coarse_spacing;
+  /// Mean power of liver's echoes without losses, before the point spread.
+  std::vector<float> echo_power;
+  static constexpr std::size_t kNoise = 32768;
+  std::vector<float> clutter_noise;  ///< kNoise Gaussian numbers of variance 1.
   std::vector<float> speckle_scale;  ///< Scales fully developed speckle of unit scatterers to a root mean square of 1.
   std::vector<float> most_rank;  ///< Share of the scatterers that is sufficient there; resolution cells differ in size.
   /// Makes a plane reflector's echo independent of the number of scanlines that receive it.

@@ -1,0 +1,93 @@
+#include "ultrasound/engine/detail/clutter.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trocar::ultrasound::detail {
+namespace {
+
+/// Echoes brighter than this, relative to liver's speckle after the losses of their way, count as that: the beam is
+/// built against strong reflectors (assumed).
+constexpr float kBrightest = 2.0F;  // power
+/// Scanlines to each side from which clutter comes: the opening of the elements (assumed).
+constexpr double kReach_mm = 25.0;
+/// Share of the clutter that arrives later, over this depth (assumed).
+constexpr float kLater = 0.5F;
+constexpr double kLater_mm = 8.0;
+
+std::size_t block_samples(const ScanPlan& plan, std::size_t block) noexcept {
+  const std::size_t begin = block * kLobeBlock;
+  return std::min<std::size_t>(kLobeBlock, static_cast<std::size_t>(plan.samples) - begin);
+}
+
+int reach_at(const ScanPlan& plan, std::size_t block) noexcept {
+  const double depth_mm = (static_cast<double>(block) + 0.5) * kLobeBlock * plan.geometry.sample_mm();
+  const double spacing_mm = std::max(plan.geometry.line_spacing_mm(depth_mm), 0.02);
+  return std::clamp(static_cast<int>(kReach_mm / spacing_mm), 1, plan.lines);
+}
+
+/// Mean power around a block of the echoes of all scanlines within reach.
+float mean_around(const ScanPlan& plan, const FrameState& frame, int line, std::size_t block) noexcept {
+  const int reach = reach_at(plan, block);
+  const int first = std::max(line - reach, 0), last = std::min(line + reach, plan.lines - 1);
+  // Running sums along the scanlines.
+  const float* const sums = frame.power_sums.data() + block * static_cast<std::size_t>(plan.lines + 1);
+  return (sums[last + 1] - sums[first]) / static_cast<float>(last - first + 1);
+}
+
+}  // namespace
+
+void measure_echoes(const ScanPlan& plan, FrameState& frame, int line) noexcept {
+  const std::size_t row = plan.echo_row(line);
+  const float* const way =
+      frame.way_gain.data() + static_cast<std::size_t>(line) * static_cast<std::size_t>(plan.samples);
+  for (std::size_t block = 0; block * kLobeBlock < static_cast<std::size_t>(plan.samples); ++block) {
+    const std::size_t begin = block * kLobeBlock, n = block_samples(plan, block);
+    float power = 0.0F, most = 0.0F;
+    for (std::size_t s = begin; s < begin + n; ++s) {
+      const float re = frame.re[row + s], im = frame.im[row + s];
+      power += re * re + im * im;
+      most += way[s] * way[s] * plan.echo_power[s];
+    }
+    frame.power[block * static_cast<std::size_t>(plan.lines) + static_cast<std::size_t>(line)] =
+        std::min(power, kBrightest * most) / static_cast<float>(n);
+  }
+}
+
+void sum_powers(const ScanPlan& plan, FrameState& frame) noexcept {
+  const auto lines = static_cast<std::size_t>(plan.lines);
+  for (std::size_t block = 0; block < plan.lobe_blocks(); ++block) {
+    float* const sums = frame.power_sums.data() + block * (lines + 1);
+    float sum = 0.0F;
+    for (std::size_t line = 0; line < lines; ++line) {
+      sums[line] = sum;
+      sum += frame.power[block * lines + line];
+    }
+    sums[lines] = sum;
+  }
+}
+
+void add_clutter(const ScanPlan& plan, FrameState& frame, int first, int last) noexcept {
+  // Noise of every sample is spread by two thirds of the factor that applies to scatterers between scanlines.
+  const float share = 1.5F * std::pow(10.0F, kClutter_db / 10.0F);
+  const float keeps = std::exp(-static_cast<float>(kLobeBlock * plan.geometry.sample_mm() / kLater_mm));
+  for (int line = first; line < last; ++line) {
+    const std::size_t row = plan.echo_row(line);
+    // The pattern belongs to the transducer: scanlines begin at different places of one list of noise.
+    const std::size_t place = (static_cast<std::size_t>(line) * 2654435761U) % (ScanPlan::kNoise / 2);
+    float later = 0.0F;
+    for (std::size_t block = 0; block * kLobeBlock < static_cast<std::size_t>(plan.samples); ++block) {
+      const float here = mean_around(plan, frame, line, block);
+      later = keeps * later + (1.0F - keeps) * here;
+      const float amplitude = std::sqrt(0.5F * share * std::max((1.0F - kLater) * here + kLater * later, 0.0F));
+      const std::size_t begin = block * kLobeBlock, n = block_samples(plan, block);
+      const float* const noise = plan.clutter_noise.data() + (place + 2 * begin) % (ScanPlan::kNoise / 2);
+      for (std::size_t s = 0; s < n; ++s) {
+        frame.re[row + begin + s] += amplitude * noise[s];
+        frame.im[row + begin + s] += amplitude * noise[kLobeBlock + s];
+      }
+    }
+  }
+}
+
+}  // namespace trocar::ultrasound::detail

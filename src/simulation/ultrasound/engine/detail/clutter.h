@@ -1,0 +1,22 @@
+#pragma once
+
+#include "ultrasound/engine/detail/frame_state.h"
+#include "ultrasound/engine/detail/scan_plan.h"
+
+/// Clutter: sound from beside the beam and from detours returns with the echoes of its depth (docs/physics.md U9). It
+/// fills cysts, vessels and shadows with haze.
+namespace trocar::ultrasound::detail {
+
+/// Level of clutter relative to the mean echoes around. Assumed: -25 to -30 dB in anechoic cysts in vivo.
+inline constexpr float kClutter_db = -28.0F;
+
+/// Measures the echoes of a scanline. Call after all echoes.
+void measure_echoes(const ScanPlan& plan, FrameState& frame, int line) noexcept;
+
+/// Sums what was measured. Call before add_clutter.
+void sum_powers(const ScanPlan& plan, FrameState& frame) noexcept;
+
+/// Adds clutter to scanlines [first, last).
+void add_clutter(const ScanPlan& plan, FrameState& frame, int first, int last) noexcept;
+
+}  // namespace trocar::ultrasound::detail
