@@ -197,7 +197,6 @@ LineRange BMode::Impl::range_of(const LineRange& renewed, int margin) const noex
 }
 
 void BMode::Impl::find_paths(const BModeInput& input, const LineRange& lines) noexcept {
-  clear_borders(plan, frame, lines.first, lines.last);
   const auto first = static_cast<std::size_t>(lines.first), count = static_cast<std::size_t>(lines.count());
   find_contact(scene->skin_distance_mm, plan.geometry, input.X_PT, std::span(frame.contact).subspan(first, count),
                lines.first);
@@ -222,6 +221,8 @@ const BasebandFrame& BMode::render(const BModeInput& input) noexcept {
   // Fits of surfaces and refraction read the neighbours of a scanline.
   constexpr int kNeighbours = 16;
   const LineRange lines = impl.range_of(input.renewed, 0);
+  // Not the neighbours' borders on the other planes: those are not walked again.
+  clear_borders(plan, frame, lines.first, lines.last);
   impl.find_paths(input, impl.range_of(input.renewed, kNeighbours));
   lay_out_needles(plan, frame, input.needles, impl.needles);
   impl.for_groups(lines, [&](int group, int first, int last) { impl.walk(group, first, last); });

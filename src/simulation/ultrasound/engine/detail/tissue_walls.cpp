@@ -49,7 +49,7 @@ float log_profile(float share) noexcept {
 }  // namespace
 
 void add_walls(const ScanPlan& plan, const FrameState& frame, const LineWalk& line, WalkResult& walk,
-               Texture& texture) noexcept {
+               const Texture& texture) noexcept {
   for (int b = 0; b < walk.border_count; ++b) {
     const Border& border = walk.borders[static_cast<std::size_t>(b)];
     const std::uint8_t number =

@@ -10,6 +10,6 @@ namespace trocar::ultrasound::detail {
 
 /// Raises the scatterers' gain of a walk in the walls beside its borders. Call after make_texture.
 void add_walls(const ScanPlan& plan, const FrameState& frame, const LineWalk& line, WalkResult& walk,
-               Texture& texture) noexcept;
+               const Texture& texture) noexcept;
 
 }  // namespace trocar::ultrasound::detail
