@@ -9,8 +9,9 @@
 namespace trocar::ultrasound {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, bool Artefacts::*>, 9> kNames = {{
+constexpr std::array<std::pair<std::string_view, bool Artefacts::*>, 10> kNames = {{
     {"attenuation", &Artefacts::attenuation},
+    {"downshift", &Artefacts::downshift},
     {"reverberation", &Artefacts::reverberation},
     {"mirror", &Artefacts::mirror},
     {"refraction", &Artefacts::refraction},

@@ -10,6 +10,7 @@ namespace trocar::ultrasound {
 /// Deviations from straight propagation and single reflection; each can be switched off.
 struct Artefacts {
   bool attenuation = true;       ///< Shadow behind bone and gas, enhancement behind fluid.
+  bool downshift = true;         ///< Attenuation lowers the centre frequency: deeper echoes are wider and louder.
   bool reverberation = true;     ///< A-lines, ring-down at gas.
   bool mirror = true;            ///< Mirror image at a strong, smooth reflector (the diaphragm).
   bool refraction = true;        ///< Edge shadows, bent scanlines.
@@ -22,8 +23,8 @@ struct Artefacts {
   bool operator==(const Artefacts&) const = default;
 };
 
-/// "attenuation", "reverberation", "mirror", "refraction", "range-distortion", "side-lobes", "contact-loss", "clutter",
-/// "noise".
+/// "attenuation", "downshift", "reverberation", "mirror", "refraction", "range-distortion", "side-lobes",
+/// "contact-loss", "clutter", "noise".
 std::vector<std::string_view> artefact_names();
 /// Switches one off, or "all". An unknown name is an error that lists the names (exit status 2).
 Status switch_off(Artefacts& artefacts, std::string_view name);

@@ -7,6 +7,7 @@
 
 #include "core/check.h"
 #include "core/parallel.h"
+#include "ultrasound/engine/detail/aperture_paths.h"
 #include "ultrasound/engine/detail/clutter.h"
 #include "ultrasound/engine/detail/frame_state.h"
 #include "ultrasound/engine/detail/multiple_echoes.h"
@@ -44,7 +45,8 @@ struct BMode::Impl {
   BasebandFrame out;
   NeedleImage needles;
   std::vector<Brick> bricks = make_brick_library();
-  std::vector<Scratch> scratch;  ///< One per group of scanlines.
+  std::vector<Scratch> scratch;      ///< One per group of scanlines.
+  std::vector<float> aperture_rows;  ///< Of open_aperture.
 
   bool has_frame = false;  ///< Of this acquisition.
 
@@ -96,8 +98,9 @@ void BMode::Impl::walk(int group, int first, int last) noexcept {
       if (plan.walked_line(plane, line) != line) continue;
       const float zeta = static_cast<float>(plane - central) * plan.plane_step;
       float* delay = plane == central ? frame.delay.data() + static_cast<std::size_t>(line) * samples : nullptr;
-      walk_line(plan, frame, path, zeta, s.walk, delay);
-      make_texture(plan, frame, s.walk, line, plane == central, s.texture);
+      walk_line(plan, frame, path, zeta, frame.reach[static_cast<std::size_t>(line)], s.walk, delay);
+      apply_paths(plan, frame, line, s.walk);
+      make_texture(plan, frame, s.walk, plane == central, s.texture);
       add_walls(plan, frame, path, s.walk, s.texture);
       const int to = plan.row_of(plane, line);
       pack_gains(s.walk.log_gain.data(), s.texture.added.data(), s.walk.share.data(), plan.samples,
@@ -167,6 +170,7 @@ void BMode::set_acquisition(const Acquisition& acquisition) {
   fit_frame(impl.frame, impl.plan);
   impl.needles = make_needle_image(impl.plan);
   impl.has_frame = false;
+  impl.aperture_rows.assign(aperture_floats(impl.plan), 0.0F);
   impl.scratch.resize(static_cast<std::size_t>(impl.groups(impl.plan.lines)));
   for (Scratch& scratch : impl.scratch) {
     scratch.scatterers = make_scatterer_field(impl.plan);
@@ -211,6 +215,7 @@ void BMode::Impl::find_paths(const BModeInput& input, const LineRange& lines) no
   });
   place_mirrors(plan, frame, lines.first, lines.last);
   refract_lines(plan, frame, lines.first, lines.last);
+  open_aperture(plan, frame, lines.first, lines.last, aperture_rows);
 }
 
 const BasebandFrame& BMode::render(const BModeInput& input) noexcept {

@@ -23,25 +23,42 @@ double one_way_sigma_mm(double depth_mm, double aperture_mm, double focus_mm, do
 
 }  // namespace
 
+double Beam::spectrum_sigma() const noexcept {
+  return 0.5 * bandwidth / std::sqrt(2.0 * std::numbers::ln2);
+}
+
+double Beam::wavelength_at_mm(double depth_mm) const noexcept {
+  return wavelength_mm / (1.0 - std::min(downshift_per_mm * std::max(depth_mm, 0.0), kMostDownshift));
+}
+
+double nominal_downshift_per_mm(const Beam& beam) noexcept {
+  constexpr double kNeperPerDb = std::numbers::ln10 / 20.0, kPerCm = 0.1;
+  const double loss = 2.0 * kNominalLoss_db_per_cm_mhz * kPerCm * beam.frequency_mhz * kNeperPerDb;
+  return beam.spectrum_sigma() * beam.spectrum_sigma() * loss;
+}
+
 double Beam::lateral_sigma_mm(double depth_mm) const noexcept {
+  const double here_mm = wavelength_at_mm(depth_mm);
   const double transmit_aperture_mm = std::min(focus_mm / f_number, aperture_mm);
-  const double transmit_mm = one_way_sigma_mm(depth_mm, transmit_aperture_mm, focus_mm, wavelength_mm);
+  const double transmit_mm = one_way_sigma_mm(depth_mm, transmit_aperture_mm, focus_mm, here_mm);
   // Receiving is focused at every depth with an aperture that grows with the depth up to its full size: hence the
   // diffraction limit of the larger of two f-numbers.
   const double receive_f_number = std::max(f_number, depth_mm / aperture_mm);
-  const double receive_mm = wavelength_mm * receive_f_number / (2.0 * std::numbers::pi * kGaussianAperture);
+  const double receive_mm = here_mm * receive_f_number / (2.0 * std::numbers::pi * kGaussianAperture);
   return transmit_mm * receive_mm / std::hypot(transmit_mm, receive_mm);
 }
 
 double Beam::elevation_sigma_mm(double depth_mm) const noexcept {
   // The lens focuses transmission and reception equally.
-  return one_way_sigma_mm(depth_mm, elevation_aperture_mm, elevation_focus_mm, wavelength_mm) / std::numbers::sqrt2;
+  return one_way_sigma_mm(depth_mm, elevation_aperture_mm, elevation_focus_mm, wavelength_at_mm(depth_mm)) /
+         std::numbers::sqrt2;
 }
 
 Beam make_beam(const Transducer& transducer, double frequency_mhz, double focus_mm) {
   TROCAR_CHECK(frequency_mhz > 0.0 && focus_mm > 0.0);
   Beam beam;
   beam.frequency_mhz = frequency_mhz;
+  beam.bandwidth = transducer.bandwidth;
   beam.wavelength_mm = kScannerSpeed_mm_per_us / frequency_mhz;
   // Half the amplitude at half the bandwidth from the centre; the depth is half the sound path (docs/physics.md U2).
   beam.axial_sigma_mm =

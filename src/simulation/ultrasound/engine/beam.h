@@ -8,22 +8,37 @@ namespace trocar::ultrasound {
 /// profiles; the full width at half maximum of the amplitude, the -6 dB width of the echo, is 2.355 times the standard
 /// deviation.
 struct Beam {
-  double frequency_mhz = 3.5;
-  double wavelength_mm = 0.44;  ///< In tissue with 1540 m/s.
+  double frequency_mhz = 3.5;   ///< Centre of the spectrum at the face.
+  double bandwidth = 0.4;       ///< -6 dB, a fraction of `frequency_mhz`.
+  double wavelength_mm = 0.44;  ///< In tissue with 1540 m/s, at `frequency_mhz`.
   double axial_sigma_mm = 0.2;
   double focus_mm = 80.0;  ///< Lateral transmit focus.
   double f_number = 3.0;
   double aperture_mm = 40.0;
   double elevation_aperture_mm = 12.0;
   double elevation_focus_mm = 70.0;
+  /// Decrease of the echo's centre frequency with depth, as a share of `frequency_mhz`, up to kMostDownshift: tissue
+  /// attenuates high frequencies more (docs/physics.md U4). 0: none.
+  double downshift_per_mm = 0.0;
 
+  /// Standard deviation of the amplitude spectrum, as a share of `frequency_mhz`.
+  double spectrum_sigma() const noexcept;
+  /// Wavelength of the centre frequency of echoes from a depth.
+  double wavelength_at_mm(double depth_mm) const noexcept;
   double lateral_sigma_mm(double depth_mm) const noexcept;
   double elevation_sigma_mm(double depth_mm) const noexcept;
 };
 
+/// Attenuation by which scanners calculate, one way (IEC 61391-2).
+inline constexpr double kNominalLoss_db_per_cm_mhz = 0.5;
+/// Limit of the downshift: the spectrum has no negative frequencies (assumed).
+inline constexpr double kMostDownshift = 0.4;
+
 inline constexpr double kScannerSpeed_mm_per_us = 1.540;  ///< Speed of sound that every scanner assumes, IEC 61391-1.
 
-/// The beam at a frequency (MHz, within the transducer's band) and a transmit focus.
+/// The beam at a frequency (MHz, within the transducer's band) and a transmit focus, without attenuation.
 Beam make_beam(const Transducer& transducer, double frequency_mhz, double focus_mm);
+/// Beam::downshift_per_mm in tissue with the nominal attenuation.
+double nominal_downshift_per_mm(const Beam& beam) noexcept;
 
 }  // namespace trocar::ultrasound

@@ -31,8 +31,8 @@ inline ultrasound::Transducer linear() {
 
 inline ultrasound::Artefacts no_artefacts() {
   ultrasound::Artefacts none;
-  none.attenuation = none.reverberation = none.mirror = none.refraction = none.range_distortion = none.side_lobes =
-      none.contact_loss = none.clutter = none.noise = false;
+  none.attenuation = none.downshift = none.reverberation = none.mirror = none.refraction = none.range_distortion =
+      none.side_lobes = none.contact_loss = none.clutter = none.noise = false;
   return none;
 }
 

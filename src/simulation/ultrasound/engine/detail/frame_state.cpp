@@ -16,6 +16,7 @@ void fit_frame(FrameState& frame, const ScanPlan& plan) {
   frame.contact.resize(lines);
   frame.walks.resize(lines);
   frame.audible.assign(lines, plan.samples);
+  frame.reach.assign(lines, 0);
   frame.pressed_samples.assign(lines, 0.0F);
   frame.reflectors.resize(lines);
   frame.gas.resize(lines);
@@ -24,8 +25,8 @@ void fit_frame(FrameState& frame, const ScanPlan& plan) {
   frame.border_keys.resize(frame.borders.size());
   frame.border_counts.assign(rows, 0);
   frame.contact_shape.assign(samples + 16, 0.0F);
-  for (auto* coarse : {&frame.bend_mm, &frame.focus_log, &frame.slowness, &frame.smooth_slowness, &frame.probed_way,
-                       &frame.transmitted, &frame.edge_loss})
+  for (auto* coarse : {&frame.bend_mm, &frame.path_log, &frame.slowness, &frame.smooth_slowness, &frame.probed_way,
+                       &frame.open_way, &frame.absorbed, &frame.edge_loss})
     coarse->assign(lines * plan.coarse_samples(), 0.0F);
   frame.delay.assign(lines * samples + 16, 0.0F);
   frame.way_gain.assign(lines * samples + 16, 0.0F);

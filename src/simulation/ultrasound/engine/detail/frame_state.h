@@ -98,11 +98,14 @@ struct FrameState {
   std::vector<GasBorder> gas;
   std::vector<Reflector> reflectors;
   std::vector<float> bend_mm;  ///< line * coarse_samples: sideways displacement by refraction.
-  /// line * coarse_samples: amplitude of an echo after losses, neper, without its own strength.
+  /// line * coarse_samples: amplitude of an echo after losses along the straight scanline, neper, without its own
+  /// strength.
   std::vector<float> probed_way;
-  /// line * coarse_samples: change of amplitude by diverging or converging beams, neper.
-  std::vector<float> focus_log;
-  std::vector<float> transmitted;      ///< line * coarse_samples: exp(probed_way).
+  std::vector<float> open_way;  ///< The same for sound from the whole aperture.
+  std::vector<int> reach;       ///< Per scanline: samples in front of the depth from which open_way is inaudible.
+  std::vector<float> absorbed;  ///< line * coarse_samples: the part of probed_way that grows with frequency, neper.
+  /// line * coarse_samples: change of amplitude by diverging or converging beams, edges and spectrum, neper.
+  std::vector<float> path_log;
   std::vector<float> edge_loss;        ///< line * coarse_samples: at the edges of surfaces, neper.
   std::vector<float> smooth_slowness;  ///< line * coarse_samples: slowness, averaged over the beam's width.
   std::vector<float> slowness;         ///< line * coarse_samples: c0/c - 1 on the central plane.

@@ -30,6 +30,7 @@ void fill_rows(ScanPlan& plan, const AcousticTable& table) {
     row.loss = static_cast<float>(2.0 * loss_db_per_mm * kNeperPerDb * plan.sample_mm);
     row.log_b = static_cast<float>(tissue.backscatter_db * kNeperPerDb - 0.5 * std::log(share));
     plan.slowness[t] = static_cast<float>(assumed_m_per_s / std::clamp(tissue.speed_m_per_s, 1300.0, 4500.0) - 1.0);
+    plan.loss_exponent[t] = static_cast<float>(tissue.attenuation_exponent);
     row.delay = plan.acquisition.artefacts.range_distortion ? plan.slowness[t] : 0.0F;
     for (int step = -128; step < 128; ++step)
       plan.texture_gain[t][static_cast<std::size_t>(step + 128)] =
@@ -233,6 +234,8 @@ ScanPlan make_scan_plan(const AcousticScene& scene, const Transducer& transducer
   plan.acquisition = acquisition;
   plan.geometry = make_scan_geometry(transducer, acquisition.depth_mm, acquisition.lines, acquisition.samples);
   plan.beam = make_beam(transducer, acquisition.frequency_mhz, acquisition.focus_mm);
+  if (acquisition.artefacts.downshift && acquisition.artefacts.attenuation)
+    plan.beam.downshift_per_mm = nominal_downshift_per_mm(plan.beam);
   plan.lines = acquisition.lines;
   plan.samples = acquisition.samples;
   plan.planes = acquisition.planes;

@@ -55,6 +55,7 @@ struct ScanPlan {
   std::vector<WallRow> walls;
   std::vector<std::uint8_t> wall_at;       ///< Tissue before a border * kTissues + behind: 1 + index of its wall, or 0.
   std::array<float, kTissues> slowness{};  ///< c0 / c - 1.
+  std::array<float, kTissues> loss_exponent{};  ///< Of the loss over frequency.
   std::array<std::uint8_t, kTissues> has_texture{};
   std::array<std::array<float, 256>, kTissues> texture_gain{};  ///< Neper, by texture step + 128.
   std::array<float, kTissues> fibre_gain{};                     ///< Neper.

@@ -114,14 +114,20 @@ void probe_lines(const ScanPlan& plan, FrameState& frame, WalkResult& scratch, i
   std::fill_n(scratch.sideways_mm.begin(), plan.samples + kCoarse, 0.0F);
   for (int l = first; l < last; ++l) {
     LineWalk& line = frame.walks[static_cast<std::size_t>(l)];
-    walk_line(plan, frame, line, 0.0F, scratch, frame.delay.data() + static_cast<std::ptrdiff_t>(l) * plan.samples);
+    walk_line(plan, frame, line, 0.0F, plan.samples, scratch,
+              frame.delay.data() + static_cast<std::ptrdiff_t>(l) * plan.samples);
     float* way = frame.probed_way.data() + static_cast<std::size_t>(l) * coarse;
     float* slowness = frame.slowness.data() + static_cast<std::size_t>(l) * coarse;
+    float* absorbed = frame.absorbed.data() + static_cast<std::size_t>(l) * coarse;
     for (std::size_t c = 0; c < coarse; ++c) {
       const std::size_t s = std::min(c * kCoarse, static_cast<std::size_t>(plan.samples - 1));
       constexpr float kBendable = 0.15F;  // nothing behind gas and bone is visible
       way[c] = scratch.log_way[s];
-      const float slow = plan.slowness[scratch.tissue[s]];
+      // Not the gel at the face and the losses at borders.
+      const std::uint8_t tissue = scratch.tissue[s];
+      const float loss = c == 0 ? 0.0F : std::clamp(way[c - 1] - way[c], 0.0F, kCoarse * plan.rows[tissue].loss);
+      absorbed[c] = (c == 0 ? 0.0F : absorbed[c - 1]) + plan.loss_exponent[tissue] * loss;
+      const float slow = plan.slowness[tissue];
       slowness[c] = std::abs(slow) < kBendable ? slow : 0.0F;
     }
     store_borders(frame, scratch, plan.row_of(plan.central(), l));
@@ -165,28 +171,6 @@ void average_lines(const ScanPlan& plan, const LineRange& range, int half, const
   }
 }
 
-/// The sound that reaches each depth of scanline `l`.
-void note_transmission(const ScanPlan& plan, FrameState& frame, std::size_t l) noexcept {
-  const auto coarse = plan.coarse_samples();
-  for (std::size_t at = l * coarse; at < (l + 1) * coarse; ++at)
-    frame.transmitted[at] = std::exp(std::max(frame.probed_way[at], -40.0F));
-}
-
-/// Shadows have soft edges: sound passes around a small obstacle. Adds to focus_log at one depth.
-void soften_shadows(const ScanPlan& plan, FrameState& frame, const LineRange& lines, std::size_t c) noexcept {
-  const auto coarse = plan.coarse_samples();
-  constexpr float kMostChange = 1.5F;  // neper
-  const float depth_mm = static_cast<float>(c) * kCoarse * plan.sample_mm;
-  const auto at = [&](int l) { return static_cast<std::size_t>(l) * coarse + c; };
-  average_lines(
-      plan, lines, half_width(plan, c, kShadingShare), [&](int l) { return frame.transmitted[at(l)]; },
-      [&](int l, float mean) {
-        if (depth_mm > frame.walks[static_cast<std::size_t>(l)].mirror_depth_mm) return;
-        const float change = std::log(std::max(mean, 1e-18F)) - std::max(frame.probed_way[at(l)], -40.0F);
-        frame.focus_log[at(l)] += std::clamp(change, -kMostChange, kMostChange);
-      });
-}
-
 /// Edge shadows: a scanline nearly tangential to a border between tissues of different speed is deflected by (n - 1)
 /// tan(tilt); a deflection beyond the beam's opening returns no echo. The tilt is that in the image plane: the other
 /// planes are not computed yet. Losses behind the borders of scanline `l`.
@@ -212,13 +196,13 @@ void note_edges(const ScanPlan& plan, FrameState& frame, int l) noexcept {
   for (; c < coarse; ++c) losses[c] = loss;
 }
 
-/// Averages the losses at edges over the beam; adds to focus_log at one depth.
+/// Averages the losses at edges over the beam; adds to path_log at one depth.
 void shade_edges(const ScanPlan& plan, FrameState& frame, const LineRange& lines, std::size_t c) noexcept {
   const auto coarse = plan.coarse_samples();
   const auto at = [&](int l) { return static_cast<std::size_t>(l) * coarse + c; };
   average_lines(
       plan, lines, half_width(plan, c, kShadingShare), [&](int l) { return frame.edge_loss[at(l)]; },
-      [&](int l, float mean) { frame.focus_log[at(l)] -= mean; });
+      [&](int l, float mean) { frame.path_log[at(l)] -= mean; });
 }
 
 /// A ray bends towards the slower side: slope += -d(ln c)/dx * dr; ln c = -ln(1 + slowness). Stores the change of slope
@@ -259,7 +243,7 @@ void focus_ray(const ScanPlan& plan, FrameState& frame, std::size_t l) noexcept 
   for (std::size_t c = 0; c < coarse; ++c) {
     const float parting = (frame.bend_mm[high * coarse + c] - frame.bend_mm[low * coarse + c]) /
                           (static_cast<float>(high - low) * plan.coarse_spacing_mm[c]);
-    frame.focus_log[l * coarse + c] -= std::log(std::clamp(1.0F + parting, 0.4F, 2.5F));
+    frame.path_log[l * coarse + c] -= std::log(std::clamp(1.0F + parting, 0.4F, 2.5F));
   }
 }
 
@@ -289,19 +273,16 @@ void refract_lines(const ScanPlan& plan, FrameState& frame, int first, int last)
   const auto coarse = plan.coarse_samples();
   const LineRange lines{first, last};
   const auto begin = static_cast<std::size_t>(first), end = static_cast<std::size_t>(last);
-  const bool attenuates = plan.acquisition.artefacts.attenuation, refracts = plan.acquisition.artefacts.refraction;
+  const bool refracts = plan.acquisition.artefacts.refraction;
   for_each(begin, end, [&](std::size_t l) {
-    std::fill_n(frame.focus_log.begin() + static_cast<std::ptrdiff_t>(l * coarse), coarse, 0.0F);
-    if (attenuates) note_transmission(plan, frame, l);
+    std::fill_n(frame.path_log.begin() + static_cast<std::ptrdiff_t>(l * coarse), coarse, 0.0F);
     if (refracts) note_edges(plan, frame, static_cast<int>(l));
   });
-  for_each(0, coarse, [&](std::size_t c) {
-    if (attenuates) soften_shadows(plan, frame, lines, c);
-    if (!refracts) return;
-    shade_edges(plan, frame, lines, c);
-    bend_at(plan, frame, lines, c);
-  });
   if (refracts) {
+    for_each(0, coarse, [&](std::size_t c) {
+      shade_edges(plan, frame, lines, c);
+      bend_at(plan, frame, lines, c);
+    });
     for_each(begin, end, [&](std::size_t l) { follow_ray(plan, frame, l); });
     for_each(begin, end, [&](std::size_t l) { focus_ray(plan, frame, l); });
   }

@@ -75,7 +75,7 @@ class EchoPainter {
   void paint_central() noexcept {
     for (const Border& border : borders_of(plan_.central())) {
       const float strength = strength_of(border);
-      if (strength < kInaudible) continue;
+      if (strength < kLeast) continue;
       CentralSurface& surface = surfaces_[count_++];
       surface.tissues = tissues_of(border);
       surface.fit = fit_surface(plan_, frame_, plan_.central(), line_, border);
@@ -87,7 +87,7 @@ class EchoPainter {
   void paint_outer(int plane) noexcept {
     for (const Border& border : borders_of(plane)) {
       const float strength = strength_of(border);
-      if (strength < kInaudible) continue;
+      if (strength < kLeast) continue;
       const float z_mm = static_cast<float>(plane - plan_.central()) * plane_mm(border.walk);
       if (const CentralSurface* same = find_central(border, plane, z_mm)) {
         paint(border, strength, same->fit, same->tilt, plane, z_mm);
@@ -99,7 +99,7 @@ class EchoPainter {
   }
 
  private:
-  static constexpr float kInaudible = 1e-4F;  // about 30 dB below liver's speckle
+  static constexpr float kLeast = 1e-4F;  // about 30 dB below liver's speckle
 
   std::span<const Border> borders_of(int plane) const noexcept {
     const auto row = static_cast<std::size_t>(plan_.row_of(plane, line_));

@@ -110,20 +110,17 @@ void make_fibres(const ScanPlan& plan, const FrameState& frame, const WalkResult
 
 }  // namespace
 
-void make_texture(const ScanPlan& plan, const FrameState& frame, const WalkResult& walk, int line, bool is_central,
+void make_texture(const ScanPlan& plan, const FrameState& frame, const WalkResult& walk, bool is_central,
                   Texture& texture) noexcept {
   if (is_central) make_fibres(plan, frame, walk, texture);
-  const float* focus = frame.focus_log.data() + static_cast<std::size_t>(line) * plan.coarse_samples();
   // The CT's texture is smoothed over more than a millimetre.
   constexpr float kTextureStep_mm = 1.5F;
   const int step = plan.sample_mm * kCoarse < kTextureStep_mm ? kCoarse : kCoarse / 2;
   const auto value_at = [&](int s) {
-    const float log_focus =
-        (s % kCoarse) == 0 ? focus[s / kCoarse] : 0.5F * (focus[s / kCoarse] + focus[s / kCoarse + 1]);
     const auto at = static_cast<std::size_t>(std::min(s, plan.samples - 1));
     const std::uint8_t tissue = walk.tissue[at];
-    if (walk.cell[at] < 0 || plan.has_texture[tissue] == 0 || !frame.tiles.has_texture()) return log_focus;
-    return log_focus + plan.texture_gain[tissue][static_cast<std::size_t>(frame.tiles.texture(walk.cell[at]) + 128)];
+    if (walk.cell[at] < 0 || plan.has_texture[tissue] == 0 || !frame.tiles.has_texture()) return 0.0F;
+    return plan.texture_gain[tissue][static_cast<std::size_t>(frame.tiles.texture(walk.cell[at]) + 128)];
   };
   float last = value_at(0);
   for (int begin = 0; begin < plan.samples; begin += step) {

@@ -7,13 +7,13 @@
 /// Variation of the scatterers' brightness within one tissue (docs/physics.md U5).
 namespace trocar::ultrasound::detail {
 
-/// Values added to a walk's log_gain, neper, one per sample: the CT's texture, layers of muscle and fat, focusing by
-/// refraction. `fibres` is made on the central plane and read on the others.
+/// Values added to a walk's log_gain, neper, one per sample: the CT's texture, layers of muscle and fat.
+/// `fibres` is made on the central plane and read on the others.
 struct alignas(64) Texture {
   std::array<float, kMaxSamples + 16> added;
   std::array<float, kMaxSamples + 16> fibres;
 };
-void make_texture(const ScanPlan& plan, const FrameState& frame, const WalkResult& walk, int line, bool is_central,
+void make_texture(const ScanPlan& plan, const FrameState& frame, const WalkResult& walk, bool is_central,
                   Texture& texture) noexcept;
 
 }  // namespace trocar::ultrasound::detail

@@ -112,9 +112,6 @@ constexpr int kBlock = 16;
 /// Centres of a block's samples.
 constexpr std::array<float, kBlock> kSteps{0.5F, 1.5F, 2.5F,  3.5F,  4.5F,  5.5F,  6.5F,  7.5F,
                                            8.5F, 9.5F, 10.5F, 11.5F, 12.5F, 13.5F, 14.5F, 15.5F};
-/// 131 dB: beyond it even a perfect reflector, 48 dB above liver's speckle, is 20 dB below the receiver's noise (-63
-/// dB).
-constexpr float kInaudible = -15.1F;
 constexpr float kSilence = -60.0F;  // neper
 /// Organs have capsules: minimum reflection of a border, even between tissues of equal impedance (assumed).
 constexpr float kWrapping = 0.03F;
@@ -139,11 +136,12 @@ float log_passed(float reflection) noexcept {
 /// Computes the walk along one scanline.
 class Walk {
  public:
-  Walk(const ScanPlan& plan, const FrameState& frame, const LineWalk& line, float zeta, WalkResult& result,
+  Walk(const ScanPlan& plan, const FrameState& frame, const LineWalk& line, float zeta, int reach, WalkResult& result,
        float* delay) noexcept
       : plan_(plan), frame_(frame), line_(line), result_(result), delay_(delay) {
     log_gain_ = 2.0F * std::log(std::max(line.coupling, 1e-6F));
     entry_samples_ = static_cast<int>(kEntry_mm / plan.sample_mm);
+    reach_ = std::max(reach, entry_samples_);
     if (line.has_mirror()) stand_mirror(zeta);
   }
 
@@ -152,7 +150,7 @@ class Walk {
     result_.audible = plan_.samples;
     int s = 0;
     while (s < plan_.samples) {
-      if (log_gain_ < kInaudible && s >= entry_samples_) return fall_silent(s);
+      if (log_gain_ < kInaudible && s >= reach_) return fall_silent(s);
       const int same = s >= entry_samples_ ? same_tissue(s) : 0;
       if (same == kBlock) {
         step_same<kBlock>(s, kBlock);
@@ -173,10 +171,8 @@ class Walk {
     std::fill_n(result_.log_gain.begin() + s, left, kSilence);
     std::fill_n(result_.tissue.begin() + s, left, kNoData);
     std::fill_n(result_.share.begin() + s, left, plan_.share[kNoData]);
-    if (delay_ != nullptr) {
-      std::fill_n(result_.log_way.begin() + s, left, kSilence);
-      std::fill_n(delay_ + s, left, late_);
-    }
+    std::fill_n(result_.log_way.begin() + s, left, kSilence);
+    if (delay_ != nullptr) std::fill_n(delay_ + s, left, late_);
     result_.audible = s;
   }
 
@@ -239,8 +235,8 @@ class Walk {
     std::fill_n(result_.tissue.begin() + s, n, tissue_);
     std::fill_n(result_.share.begin() + s, n, plan_.share[tissue_]);
     log_gain_ -= row.loss * static_cast<float>(n);
-    if (delay_ == nullptr) return;
     Eigen::Map<Samples>(result_.log_way.data() + at, n) = way - row.loss * steps;
+    if (delay_ == nullptr) return;
     Eigen::Map<Samples>(delay_ + s, n) = late_ + row.delay * steps;
     late_ += row.delay * static_cast<float>(n);
   }
@@ -253,8 +249,8 @@ class Walk {
     result_.share[at] = plan_.share[tissue];
     result_.log_gain[at] = row.log_b + way;
     log_gain_ -= row.loss;
-    if (delay_ == nullptr) return;
     result_.log_way[at] = way;
+    if (delay_ == nullptr) return;
     delay_[s] = late_ + 0.5F * row.delay;
     late_ += row.delay;
   }
@@ -369,7 +365,7 @@ class Walk {
   float log_gain_ = 0.0F;
   int mirror_from_ = kMaxSamples * 4, mirror_at_ = -1, mirror_to_ = -1;
   float late_ = 0.0F;
-  int entry_samples_ = 0;
+  int entry_samples_ = 0, reach_ = 0;
   bool is_entered_ = false;
   bool was_blended_ = false;
   Blend blend_{};
@@ -386,10 +382,10 @@ class Walk {
 
 }  // namespace
 
-void walk_line(const ScanPlan& plan, const FrameState& frame, const LineWalk& line, float zeta, WalkResult& result,
-               float* delay) noexcept {
+void walk_line(const ScanPlan& plan, const FrameState& frame, const LineWalk& line, float zeta, int reach,
+               WalkResult& result, float* delay) noexcept {
   place_line(plan, frame, line, zeta, result);
-  Walk(plan, frame, line, zeta, result, delay).run();
+  Walk(plan, frame, line, zeta, reach, result, delay).run();
 }
 
 void store_borders(FrameState& frame, const WalkResult& result, int row) noexcept {

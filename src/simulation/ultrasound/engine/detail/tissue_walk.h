@@ -10,6 +10,9 @@
 namespace trocar::ultrasound::detail {
 
 inline constexpr int kMaxSamples = 4096;
+/// Neper, 131 dB: beyond it even a perfect reflector, 48 dB above liver's speckle, is 20 dB below the receiver's noise
+/// (-63 dB).
+inline constexpr float kInaudible = -15.1F;
 
 /// Result of a walk. About 120 KiB, one per thread.
 struct alignas(64) WalkResult {
@@ -27,9 +30,10 @@ struct alignas(64) WalkResult {
 };
 
 /// Walks one scanline; fills all fields except `sideways_mm`, which it reads. For the central plane, `delay` (as many
-/// values as samples) receives the delays of echoes in samples; else it is nullptr.
-void walk_line(const ScanPlan& plan, const FrameState& frame, const LineWalk& line, float zeta, WalkResult& result,
-               float* delay) noexcept;
+/// values as samples) receives the delays of echoes in samples; else it is nullptr. In front of sample `reach` the walk
+/// continues through shadows, into which sound may come from the sides.
+void walk_line(const ScanPlan& plan, const FrameState& frame, const LineWalk& line, float zeta, int reach,
+               WalkResult& result, float* delay) noexcept;
 
 /// Stores a walk's borders as row `row` of the frame (ScanPlan::row_of).
 void store_borders(FrameState& frame, const WalkResult& result, int row) noexcept;

@@ -8,7 +8,7 @@ namespace trocar::ultrasound {
 namespace {
 
 int count_on(const Artefacts& a) {
-  return a.attenuation + a.reverberation + a.mirror + a.refraction + a.range_distortion + a.side_lobes +
+  return a.attenuation + a.downshift + a.reverberation + a.mirror + a.refraction + a.range_distortion + a.side_lobes +
          a.contact_loss + a.clutter + a.noise;
 }
 

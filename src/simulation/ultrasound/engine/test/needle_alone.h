@@ -30,6 +30,7 @@ inline ultrasound::Acquisition shallow(int lines = 128, int samples = 640) {
   acquisition.lines = lines;
   acquisition.samples = samples;
   acquisition.steering_angles = 1;
+  acquisition.artefacts.downshift = false;  // the beam's width as at the face
   return acquisition;
 }
 
