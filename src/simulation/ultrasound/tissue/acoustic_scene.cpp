@@ -8,6 +8,7 @@
 
 #include "core/check.h"
 #include "core/parallel.h"
+#include "ultrasound/tissue/detail/kidney_parts.h"
 #include "ultrasound/tissue/detail/slice_blend.h"
 #include "ultrasound/tissue/detail/strands.h"
 #include "ultrasound/tissue/detail/tissue_volume.h"
@@ -252,6 +253,7 @@ Result<std::shared_ptr<const AcousticScene>> make_acoustic_scene(const anatomy::
     SceneSlices slices(source, scene->skin_distance_mm, *skin_tissue, *inner_tissue, *scene);
     for (std::size_t k = first; k < last; ++k) slices.fill(static_cast<std::int64_t>(k));
   });
+  detail::add_kidney_parts(*scene);
   report(progress, "borders", 0.9);
   mark_mixed_cells(*scene);
   detail::add_strands(*scene);

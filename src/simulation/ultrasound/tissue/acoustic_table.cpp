@@ -68,14 +68,16 @@ Result<std::vector<std::uint8_t>> read_tissues(const config::TomlTable& row, std
 Result<AcousticWall> read_wall(const config::TomlTable& row, const std::string& name, const AcousticTable& table) {
   AcousticWall wall;
   wall.name = name;
-  TROCAR_TRY_STATUS(row.check_keys({"of", "against", "thickness_mm", "backscatter_db"}));
+  TROCAR_TRY_STATUS(row.check_keys({"of", "against", "thickness_mm", "backscatter_db", "even_db"}));
   TROCAR_TRY(wall.of, read_tissues(row, "of", table));
   TROCAR_TRY(wall.against, read_tissues(row, "against", table));
   TROCAR_TRY(const config::SourcedNumber thickness, config::read_sourced_number(row, "thickness_mm", {0.1, 10.0}));
   TROCAR_TRY(const config::SourcedNumber backscatter,
              config::read_sourced_number(row, "backscatter_db", {-40.0, 40.0}));
   wall.thickness_mm = thickness.value;
+  TROCAR_TRY(const config::SourcedNumber even, config::read_sourced_number(row, "even_db", {-80.0, 40.0}));
   wall.backscatter_db = backscatter.value;
+  wall.even_db = even.value;
   return wall;
 }
 

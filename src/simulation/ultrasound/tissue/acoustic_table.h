@@ -13,9 +13,9 @@ namespace trocar::ultrasound {
 
 /// Acoustic properties of a tissue (data/acoustics.toml, with the source of each number).
 struct AcousticTissue {
-  std::string name;                        ///< A tissue of data/tissues.toml, or "air", "gel", "water".
-  double speed_m_per_s = 1540.0;           ///< Range 300..4500.
-  double density_kg_per_m3 = 1050.0;       ///< Range 1..2500.
+  std::string name;                   ///< A tissue of data/tissues.toml, or one of this table alone: "air", "gel", …
+  double speed_m_per_s = 1540.0;      ///< Range 300..4500.
+  double density_kg_per_m3 = 1050.0;  ///< Range 1..2500.
   double attenuation_db_per_cm_mhz = 0.5;  ///< One way, at 1 MHz. Range 0..100.
   double attenuation_exponent = 1.0;       ///< Exponent of the frequency in MHz. Range 0.5..2.
   double backscatter_db = 0.0;   ///< Mean level of its speckle relative to liver's, without attenuation. Range -80..30.
@@ -37,13 +37,17 @@ struct AcousticTissue {
 /// 15..40.
 inline constexpr double kMostTexture_db = 28.0;
 
-/// A sheet too thin for CT and labels, on the borders of some tissues with others: it scatters sound to all sides.
+/// A sheet too thin for CT and labels, on the borders of some tissues with others: it scatters sound to all sides, in
+/// proportion to the cosine of the angle, partly as speckle, partly as an even band.
 struct AcousticWall {
   std::string name;
   std::vector<std::uint8_t> of;       ///< Tissues that it encloses: it lies outside them,
   std::vector<std::uint8_t> against;  ///< within these.
   double thickness_mm = 1.0;          ///< Range 0.1..10.
   double backscatter_db = 0.0;        ///< As AcousticTissue::backscatter_db.
+  /// Level of its even part: sheets that echo in phase over the whole surface, relative to liver's speckle. Range
+  /// -80..40.
+  double even_db = -80.0;
 };
 
 struct AcousticTable {

@@ -11,24 +11,28 @@ namespace {
 constexpr float kBrightest = 2.0F;  // power
 /// Scanlines to each side from which clutter comes: the opening of the elements (assumed).
 constexpr double kReach_mm = 25.0;
-/// Share of the clutter that arrives later, over this depth (assumed).
-constexpr float kLater = 0.5F;
-constexpr double kLater_mm = 8.0;
+/// Detours in the layers in front, which arrive later: from this far beside the scanline, with this level relative to
+/// the echoes at the face, falling by e with this depth of the layers, and over this distance behind them (assumed).
+/// They are the haze in the near part of a bladder or gallbladder.
+constexpr double kDetourReach_mm = 3.0;
+constexpr float kDetour_db = -14.0F;
+constexpr double kDetourDepth_mm = 25.0, kDetour_mm = 8.0;
 
 std::size_t block_samples(const ScanPlan& plan, std::size_t block) noexcept {
   const std::size_t begin = block * kLobeBlock;
   return std::min<std::size_t>(kLobeBlock, static_cast<std::size_t>(plan.samples) - begin);
 }
 
-int reach_at(const ScanPlan& plan, std::size_t block) noexcept {
+int reach_at(const ScanPlan& plan, std::size_t block, double reach_mm) noexcept {
   const double depth_mm = (static_cast<double>(block) + 0.5) * kLobeBlock * plan.geometry.sample_mm();
   const double spacing_mm = std::max(plan.geometry.line_spacing_mm(depth_mm), 0.02);
-  return std::clamp(static_cast<int>(kReach_mm / spacing_mm), 1, plan.lines);
+  return std::clamp(static_cast<int>(reach_mm / spacing_mm), 1, plan.lines);
 }
 
 /// Mean power around a block of the echoes of all scanlines within reach.
-float mean_around(const ScanPlan& plan, const FrameState& frame, int line, std::size_t block) noexcept {
-  const int reach = reach_at(plan, block);
+float mean_around(const ScanPlan& plan, const FrameState& frame, int line, std::size_t block,
+                  double reach_mm) noexcept {
+  const int reach = reach_at(plan, block, reach_mm);
   const int first = std::max(line - reach, 0), last = std::min(line + reach, plan.lines - 1);
   // Running sums along the scanlines.
   const float* const sums = frame.power_sums.data() + block * static_cast<std::size_t>(plan.lines + 1);
@@ -70,16 +74,19 @@ void sum_powers(const ScanPlan& plan, FrameState& frame) noexcept {
 void add_clutter(const ScanPlan& plan, FrameState& frame, int first, int last) noexcept {
   // Noise of every sample is spread by two thirds of the factor that applies to scatterers between scanlines.
   const float share = 1.5F * std::pow(10.0F, kClutter_db / 10.0F);
-  const float keeps = std::exp(-static_cast<float>(kLobeBlock * plan.geometry.sample_mm() / kLater_mm));
+  const float detour_share = 1.5F * std::pow(10.0F, kDetour_db / 10.0F);
+  const float keeps = std::exp(-static_cast<float>(kLobeBlock * plan.geometry.sample_mm() / kDetour_mm));
   for (int line = first; line < last; ++line) {
     const std::size_t row = plan.echo_row(line);
     // The pattern belongs to the transducer: scanlines begin at different places of one list of noise.
     const std::size_t place = (static_cast<std::size_t>(line) * 2654435761U) % (ScanPlan::kNoise / 2);
-    float later = 0.0F;
+    float detour = 0.0F;
     for (std::size_t block = 0; block * kLobeBlock < static_cast<std::size_t>(plan.samples); ++block) {
-      const float here = mean_around(plan, frame, line, block);
-      later = keeps * later + (1.0F - keeps) * here;
-      const float amplitude = std::sqrt(0.5F * share * std::max((1.0F - kLater) * here + kLater * later, 0.0F));
+      const float around = mean_around(plan, frame, line, block, kReach_mm);
+      const double depth_mm = static_cast<double>(block * kLobeBlock) * plan.geometry.sample_mm();
+      detour = keeps * detour + (1.0F - keeps) * mean_around(plan, frame, line, block, kDetourReach_mm) *
+                                    static_cast<float>(std::exp(-depth_mm / kDetourDepth_mm));
+      const float amplitude = std::sqrt(0.5F * std::max(share * around + detour_share * detour, 0.0F));
       const std::size_t begin = block * kLobeBlock, n = block_samples(plan, block);
       const float* const noise = plan.clutter_noise.data() + (place + 2 * begin) % (ScanPlan::kNoise / 2);
       for (std::size_t s = 0; s < n; ++s) {

@@ -64,7 +64,7 @@ struct Reflector {
   float amplitude = 0.0F;  ///< Amplitude of the returned sound, 0..1, including the losses on the path.
   float rough_amplitude = 0.0F;
   bool is_gas = false;
-  std::uint32_t key = 0;  ///< Key of its position in P.
+  float bubbles = 0.0F;  ///< Of gas: whether its bubbles ring, -1..1; the same over some millimetres.
 };
 
 /// Displacement of tissue by a needle.

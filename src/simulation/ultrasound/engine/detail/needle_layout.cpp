@@ -4,6 +4,7 @@
 
 #include "core/random.h"
 #include "ultrasound/engine/detail/needle_image.h"
+#include "ultrasound/engine/detail/smooth_noise.h"
 
 namespace trocar::ultrasound::detail {
 namespace {
@@ -17,6 +18,42 @@ constexpr int kMostSegments = 1024;
 float amplitude(double level_db, double diameter_mm) noexcept {
   return static_cast<float>(std::pow(10.0, level_db / 20.0) * std::sqrt(diameter_mm / kNeedleReference_mm));
 }
+
+/// Gaps in an oblique shaft: tissue beside it deflects its weak echo over some millimetres (assumed; docs/physics.md
+/// U13). The mean power over a long shaft stays the same.
+class Dropouts {
+ public:
+  /// Amplitude at a place of the shaft tilted by `tilt_rad` from perpendicular to the beam.
+  float at(float from_tip_mm, float seed, float tilt_rad) const noexcept {
+    constexpr float kFrom_rad = 0.35F, kFull_rad = 0.8F, kDeepest = 0.9F;  // 20 to 45 degrees; 20 dB deep
+    const float depth = kDeepest * std::clamp((tilt_rad - kFrom_rad) / (kFull_rad - kFrom_rad), 0.0F, 1.0F);
+    const float left = 1.0F - depth * gap(from_tip_mm, seed);
+    return left / std::sqrt(1.0F - 2.0F * depth * mean_ + depth * depth * mean_square_);
+  }
+
+  static const Dropouts& instance() noexcept {
+    static const Dropouts dropouts;
+    return dropouts;
+  }
+
+ private:
+  Dropouts() noexcept {
+    constexpr int kPlaces = 20000;
+    for (int n = 0; n < kPlaces; ++n) {
+      const float here = gap(0.37F * static_cast<float>(n), static_cast<float>(n / 1000));
+      mean_ += here / kPlaces;
+      mean_square_ += here * here / kPlaces;
+    }
+  }
+  /// 0: none, 1: the middle of a gap.
+  static float gap(float from_tip_mm, float seed) noexcept {
+    constexpr float kLength_mm = 6.0F, kFrom = 0.05F, kTo = 0.4F;
+    const float noise = smooth_noise(from_tip_mm / kLength_mm, 17.0F * seed + 0.5F, 0.5F);
+    return std::clamp((noise - kFrom) / (kTo - kFrom), 0.0F, 1.0F);
+  }
+
+  float mean_ = 0.0F, mean_square_ = 0.0F;
+};
 
 /// A point of a shaft in the beam.
 struct Spot {
@@ -138,7 +175,7 @@ class Layer {
     piece.line = spot.line;
     piece.walk = spot.walk;
     piece.echo = smooth_ * lobe * std::exp(-0.5F * spot.zeta * spot.zeta) * length_mm / spot.run_mm;
-    if (from_tip_mm < tip_mm_) piece.echo *= static_cast<float>(kTipSmoothShare);
+    piece.echo *= from_tip_mm < tip_mm_ ? static_cast<float>(kTipSmoothShare) : dropout(from_tip_mm, tilt);
     piece.ring = lobe;
     piece.level = spot.level;
     piece.half_lines = 0.5F * length_mm * std::abs(spot.sideways) / spot.spacing_mm;
@@ -155,6 +192,10 @@ class Layer {
     image_.pieces[part_.last_piece++] = piece;
   }
 
+  float dropout(float from_tip_mm, float tilt_rad) const noexcept {
+    return Dropouts::instance().at(from_tip_mm, static_cast<float>(seed_ & 0xffU), tilt_rad);
+  }
+
   /// Grains have fixed positions on the needle, independent of the visible part.
   void lay_grains(const Vec3f& near_T, const Vec3f& back, float from, float to) noexcept {
     const float first = std::ceil((from_tip_mm_ + from) / kGrain_mm - 0.5F);
@@ -164,7 +205,8 @@ class Layer {
       if (from_tip_mm >= from_tip_mm_ + to) return;
       if (!find_spot(plan_, frame_, near_T + back * (from_tip_mm - from_tip_mm_), back, spot)) continue;
       const float facing = std::sqrt(std::max(0.0F, 1.0F - spot.along * spot.along));
-      const float level = from_tip_mm < tip_mm_ ? tip_rough_ : rough_ * facing;
+      const float tilt = std::asin(std::min(std::abs(spot.along), 1.0F));
+      const float level = from_tip_mm < tip_mm_ ? tip_rough_ : rough_ * facing * dropout(from_tip_mm, tilt);
       // Grains add up incoherently: their mean square is that of the resolution cell.
       const float share = std::sqrt(kGrain_mm * std::numbers::sqrt2_v<float> / spot.run_mm);
       const std::uint64_t bits = mix64(seed_ + static_cast<std::uint64_t>(n));

@@ -51,7 +51,7 @@ void fill_walls(ScanPlan& plan, const AcousticTable& table) {
   plan.wall_at.assign(static_cast<std::size_t>(kTissues) * kTissues, 0);
   for (const AcousticWall& wall : table.walls) {
     const WallRow row{static_cast<float>(wall.thickness_mm), static_cast<float>(wall.backscatter_db * kNeperPerDb),
-                      false};
+                      static_cast<float>(std::exp(wall.even_db * kNeperPerDb)), false};
     WallRow back = row;
     back.is_behind = true;
     plan.walls.push_back(row);
@@ -145,8 +145,13 @@ void fill_axial(ScanPlan& plan) {
   const double sigma = plan.beam.axial_sigma_mm / plan.sample_mm;
   plan.axial_reach = std::clamp(static_cast<int>(std::ceil(3.5 * sigma)), 1, kPad);
   plan.axial.clear();
-  for (int k = 0; k <= plan.axial_reach; ++k)
-    plan.axial.push_back(static_cast<float>(std::exp(-0.5 * k * k / (sigma * sigma))));
+  double sum = -1.0;
+  for (int k = 0; k <= plan.axial_reach; ++k) {
+    const double weight = std::exp(-0.5 * k * k / (sigma * sigma));
+    plan.axial.push_back(static_cast<float>(weight));
+    sum += 2.0 * weight;
+  }
+  plan.band_scale = static_cast<float>(1.0 / sum);
 }
 
 /// Smallest product of the beam's three widths within the picture.

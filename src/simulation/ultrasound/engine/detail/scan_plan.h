@@ -36,6 +36,7 @@ struct alignas(16) TissueRow {
 struct WallRow {
   float thickness_mm = 0.0F;
   float log_b = 0.0F;      ///< As TissueRow::log_b.
+  float even = 0.0F;       ///< Amplitude of its even part.
   bool is_behind = false;  ///< It lies behind the border, not in front of it.
 };
 
@@ -88,6 +89,7 @@ struct ScanPlan {
   std::vector<int> lateral_reach_at;  ///< lateral_reach for each 16 samples; a fan's scanlines diverge with depth.
   std::vector<float> axial;           ///< axial_reach + 1 weights: half of the symmetric pulse.
   int axial_reach = 0;
+  float band_scale = 1.0F;  ///< Equal samples along a scanline, times this, keep their amplitude behind the pulse.
 
   float cycles_per_sample = 0.0F;  ///< Phase of the echo.
   float brick_mm = 2.5F;           ///< Side of the cube that holds kBrickScatterers.

@@ -7,6 +7,7 @@
 
 #include "core/random.h"
 #include "ultrasound/engine/detail/border_fit.h"
+#include "ultrasound/engine/detail/smooth_noise.h"
 #include "ultrasound/engine/detail/tissue_walk.h"
 
 namespace trocar::ultrasound::detail {
@@ -42,14 +43,22 @@ float tilt_of(const ScanPlan& plan, const FrameState& frame, int line, const Bor
   return size > 1e-6 ? static_cast<float>(std::acos(std::min(1.0, std::abs(slope.dot(along)) / size))) : 0.8F;
 }
 
-void note_reflector(Reflector& reflector, const Border& border, float shown, float strength, float smooth_share,
-                    float rough, std::uint32_t key) noexcept {
+/// Smooth noise at the place of a border, -1..1, varying over `wave_mm`.
+float noise_at(const FrameState& frame, const Border& border, float wave_mm) noexcept {
+  const Vec3f spacing_mm = frame.scene->geometry.spacing_mm.cast<float>();
+  const Vec3f at = Vec3f(border.index[0], border.index[1], border.index[2]).cwiseProduct(spacing_mm) / wave_mm;
+  return smooth_noise(at.x(), at.y(), at.z());
+}
+
+void note_reflector(const FrameState& frame, Reflector& reflector, const Border& border, float shown, float strength,
+                    float smooth_share, float rough) noexcept {
   constexpr float kGas = -0.6F;
   const bool is_gas = border.reflection < kGas;
   if (is_gas ? reflector.is_gas : reflector.is_gas || strength * smooth_share <= reflector.amplitude) return;
   // Bubbles are rough gas; the smooth surface of the lung has no ring-down.
-  constexpr float kBubbly = 0.35F;
-  reflector = {shown, strength * smooth_share, strength * std::max(0.0F, rough - kBubbly), is_gas, key};
+  constexpr float kBubbly = 0.35F, kCluster_mm = 6.0F;
+  reflector = {shown, strength * smooth_share, strength * std::max(0.0F, rough - kBubbly), is_gas,
+               is_gas ? noise_at(frame, border, kCluster_mm) : 0.0F};
 }
 
 /// A surface that the central plane crosses on a scanline.
@@ -145,6 +154,9 @@ class EchoPainter {
     const float smooth_share = (1.0F - rough) * std::exp(-0.5F * (tilt / kTilt_rad) * (tilt / kTilt_rad));
     const float weight = plan_.plane_weight[static_cast<std::size_t>(plane)] / static_cast<float>(parts);
     const std::uint32_t key = key_of(border.index);
+    const std::uint8_t wall =
+        plan_.wall_at[static_cast<std::size_t>(border.before & 127U) * kTissues + (border.behind & 127U)];
+    if (wall != 0) paint_wall(border, plan_.walls[wall - 1U], fit, tilt, plane, z_mm);
     for (int part = 0; part < parts; ++part) {
       const float off = (static_cast<float>(part) + 0.5F) / static_cast<float>(parts) - 0.5F;
       const float walk = fit.walk + fit.deeper_mm(z_mm + off * step_mm) / plan_.sample_mm;
@@ -158,7 +170,33 @@ class EchoPainter {
       add(kPerfect * strength * weight * plan_.surface_scale[at], smooth_share, rough_part,
           key + static_cast<std::uint32_t>(part) * 0x9e3779b9U, static_cast<int>(shown + 0.5F));
       if (plane == plan_.central() && part == parts / 2)
-        note_reflector(reflector_, border, shown, strength, smooth_share, rough, key);
+        note_reflector(frame_, reflector_, border, shown, strength, smooth_share, rough);
+    }
+  }
+
+  /// The even band of a wall along a border: sheets that echo in phase, as the border's smooth part, at any tilt.
+  void paint_wall(const Border& border, const WallRow& wall, const SurfaceFit& fit, float tilt, int plane,
+                  float z_mm) noexcept {
+    constexpr float kLeastEven = 0.05F, kLeastCosine = 0.35F;
+    constexpr float kUneven = 0.4F, kUneven_mm = 12.0F;  // up to 3.5 dB along the surface (assumed)
+    const float run_mm = std::abs(fit.elevation + 2.0F * fit.bow_per_mm * z_mm) * plane_mm(fit.walk);
+    const float cosine = std::max(std::cos(tilt), kLeastCosine);
+    const float length = std::hypot(wall.thickness_mm / cosine, run_mm) / plan_.sample_mm;
+    const float at_border = fit.walk + fit.deeper_mm(z_mm) / plan_.sample_mm;
+    const float begin = wall.is_behind ? at_border : at_border - length;
+    const float level = wall.even * std::sqrt(cosine) * std::exp(std::max(border.log_gain, -60.0F));
+    if (wall.even < kLeastEven || level < kLeast) return;
+    const std::size_t at = sample_at(at_border);
+    // A band of equal samples adds up over the pulse, and over the scanlines.
+    const float amplitude = level * plan_.plane_weight[static_cast<std::size_t>(plane)] * plan_.surface_scale[at] *
+                            plan_.band_scale * std::exp(kUneven * noise_at(frame_, border, kUneven_mm));
+    const float delayed = begin + delay_[at];
+    const int first = std::max(0, static_cast<int>(std::ceil(delayed)));
+    const int last = std::min(plan_.samples - 1, static_cast<int>(std::floor(delayed + length)));
+    const std::size_t row = plan_.echo_row(line_);
+    for (int s = first; s <= last; ++s) {
+      const float off = 2.0F * (static_cast<float>(s) - delayed) / length - 1.0F;
+      frame_.re[row + static_cast<std::size_t>(s)] += amplitude * (1.0F - off * off);
     }
   }
 

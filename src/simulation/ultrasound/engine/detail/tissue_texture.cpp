@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/random.h"
+#include "ultrasound/engine/detail/smooth_noise.h"
 #include "volume/sampling.h"
 
 namespace trocar::ultrasound::detail {
@@ -14,29 +14,6 @@ constexpr float kLayer_mm = 2.2F;
 /// Length scale of their waviness.
 constexpr float kWave_mm = 9.0F;
 
-float value_at(std::int32_t x, std::int32_t y, std::int32_t z) noexcept {
-  auto h = static_cast<std::uint32_t>(x) * 0x9e3779b1U ^ static_cast<std::uint32_t>(y) * 0x85ebca77U ^
-           static_cast<std::uint32_t>(z) * 0xc2b2ae3dU;
-  h = (h ^ (h >> 15)) * 0x2c1b3c6dU;
-  h = (h ^ (h >> 12)) * 0x297a2d39U;
-  return static_cast<float>((h ^ (h >> 15)) & 0xffffU) / 32767.5F - 1.0F;
-}
-
-float ease(float t) noexcept {
-  return t * t * (3.0F - 2.0F * t);
-}
-
-/// Smooth noise, -1..1, with a lattice unit of 1.
-float noise(float x, float y, float z) noexcept {
-  const float fx = std::floor(x), fy = std::floor(y), fz = std::floor(z);
-  const auto i = static_cast<std::int32_t>(fx), j = static_cast<std::int32_t>(fy), k = static_cast<std::int32_t>(fz);
-  const float u = ease(x - fx), v = ease(y - fy), w = ease(z - fz);
-  const auto row = [&](std::int32_t b, std::int32_t c) {
-    return std::lerp(value_at(i, b, c), value_at(i + 1, b, c), u);
-  };
-  return std::lerp(std::lerp(row(j, k), row(j + 1, k), v), std::lerp(row(j, k + 1), row(j + 1, k + 1), v), w);
-}
-
 /// Phase of a position in the layers, and their strength there.
 struct Layering {
   float phase = 0.0F;
@@ -45,8 +22,8 @@ struct Layering {
 
 Layering layering_at(float below_skin_mm, const Vec3& p_mm) noexcept {
   const auto x = static_cast<float>(p_mm.x()), y = static_cast<float>(p_mm.y()), z = static_cast<float>(p_mm.z());
-  const float wave = noise(x / kWave_mm, y / kWave_mm, z / kWave_mm);
-  return {below_skin_mm / kLayer_mm + 0.9F * wave, 0.6F + 0.4F * noise(x / 5.0F + 31.0F, y / 5.0F, z / 5.0F)};
+  const float wave = smooth_noise(x / kWave_mm, y / kWave_mm, z / kWave_mm);
+  return {below_skin_mm / kLayer_mm + 0.9F * wave, 0.6F + 0.4F * smooth_noise(x / 5.0F + 31.0F, y / 5.0F, z / 5.0F)};
 }
 
 /// Profile of the layers along their phase: -0.5 between them, up to 1 on a bright sheet; the sheets are irregular.
@@ -54,7 +31,7 @@ class LayerProfile {
  public:
   LayerProfile() {
     for (std::size_t n = 0; n < steps; ++n) {
-      const float part = noise(static_cast<float>(n) / stepsAUnit, 7.3F, 0.0F);
+      const float part = smooth_noise(static_cast<float>(n) / stepsAUnit, 7.3F, 0.0F);
       values_[n] = std::exp(-part * part / 0.03F);
     }
   }

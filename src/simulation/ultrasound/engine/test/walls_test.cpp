@@ -55,6 +55,38 @@ TEST(Walls, ScatterInProportionToTheCosine) {
   }
 }
 
+TEST(Walls, EvenPartIsABandWithoutSpeckle) {
+  const Transducer transducer = linear();
+  constexpr double kTilt_rad = 0.5, kEven_db = 18.0;
+  const ScenePtr scene = with_table(
+      plane_scene(thick_box(transducer), TestTissue::kWater, TestPlane{kPlane_mm, kTilt_rad, TestTissue::kLossless}),
+      [&](AcousticTable& table) {
+        table.tissues[index_of(TestTissue::kLossless)].backscatter_db = -60.0;
+        table.walls.push_back({"wall",
+                               {index_of(TestTissue::kLossless)},
+                               {index_of(TestTissue::kWater)},
+                               kThickness_mm,
+                               -40.0,
+                               kEven_db});
+      });
+  BMode engine(scene, transducer, plain(transducer));
+  const BasebandFrame& frame = engine.render({});
+  // Its middle, along the border.
+  std::vector<double> levels_db;
+  for (double x_mm = -8.0; x_mm <= 8.0; x_mm += 0.5) {
+    const double border_mm = kPlane_mm - x_mm * std::tan(kTilt_rad);
+    const double along_mm = kThickness_mm / std::cos(kTilt_rad);
+    levels_db.push_back(level_db(patch_at(frame, x_mm, 0.2, border_mm - 0.6 * along_mm, border_mm - 0.4 * along_mm)));
+  }
+  double mean_db = 0.0, spread_db = 0.0;
+  for (const double level : levels_db) mean_db += level / static_cast<double>(levels_db.size());
+  for (const double level : levels_db)
+    spread_db += std::pow(level - mean_db, 2) / static_cast<double>(levels_db.size());
+  // The level varies slowly along the surface by up to 3.5 dB.
+  EXPECT_NEAR(mean_db, kEven_db + 10.0 * std::log10(std::cos(kTilt_rad)), 4.0);
+  EXPECT_LT(std::sqrt(spread_db), 2.5) << "speckle has 5.6";
+}
+
 TEST(Walls, LieOutsideWhatTheyEnclose) {
   const Transducer transducer = linear();
   constexpr double kTilt_rad = 0.5;
