@@ -2,106 +2,182 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "ultrasound/engine/detail/aperture_paths.cpp"
+#include <hwy/foreach_target.h>
+// After foreach_target.h, which sets the instruction set that these headers compile for.
+#include <hwy/contrib/math/math-inl.h>
+#include <hwy/highway.h>
+
+#ifndef TROCAR_ULTRASOUND_APERTURE_TYPES
+#define TROCAR_ULTRASOUND_APERTURE_TYPES
 namespace trocar::ultrasound::detail {
-namespace {
 
 /// Rays of a depth, on either side of the scanline's own.
-constexpr int kSideRays = 4;
-constexpr int kRays = 2 * kSideRays + 1;
+inline constexpr int kSideRays = 4;
+inline constexpr int kRays = 2 * kSideRays + 1;
+inline constexpr int kMargin = 16;       ///< Values beside a row of scanlines, equal to the outermost.
+inline constexpr int kDepths = 16;       ///< Coarse depths that are transposed together.
+inline constexpr float kOpaque = 60.0F;  // neper
+
+/// Rows of a value per scanline, with margins.
+class LineRows {
+ public:
+  LineRows(std::vector<float>& floats, int lines) noexcept
+      : first_(floats.data()), width_((lines + kMargin + 15) / 16 * 16 + kMargin) {}
+  float* row(int n) const noexcept { return first_ + n * width_ + kMargin; }
+  static constexpr int kRowCount = 2 * kRays + 2 * kDepths + 1;
+  static std::size_t floats(int lines) noexcept {
+    return static_cast<std::size_t>(kRowCount) * static_cast<std::size_t>((lines + kMargin + 15) / 16 * 16 + kMargin) +
+           kMargin;
+  }
+
+ private:
+  float* first_;
+  int width_;
+};
+
+/// Where the losses of a ray come from: scanlines aside at the depth before.
+struct RayStep {
+  int shift = 0;
+  float part = 0.0F;    ///< 0..1, between scanlines `shift` and `shift + 1` aside.
+  float weight = 0.0F;  ///< Of the ray at that depth.
+};
+
+}  // namespace trocar::ultrasound::detail
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace trocar::ultrasound::detail {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// The sound that reaches one depth of each scanline. `from`: losses of a ray up to the depth before; `to`: up to this.
+void add_ray(const float* from, const float* loss, const RayStep& step, int lines, float* to, float* sum) {
+  const hn::ScalableTag<float> f;
+  const auto part = hn::Set(f, step.part), weight = hn::Set(f, step.weight);
+  for (int l = 0; l < lines; l += static_cast<int>(hn::Lanes(f))) {
+    const auto left = hn::LoadU(f, from + l + step.shift), right = hn::LoadU(f, from + l + step.shift + 1);
+    const auto aside = hn::MulAdd(part, hn::Sub(right, left), left);
+    const auto whole = hn::Min(hn::Add(aside, hn::LoadU(f, loss + l)), hn::Set(f, kOpaque));
+    hn::StoreU(whole, f, to + l);
+    // One way; the echo returns through the same aperture.
+    const auto passed = hn::Exp(f, hn::Mul(whole, hn::Set(f, -0.5F)));
+    hn::StoreU(hn::MulAdd(weight, passed, hn::LoadU(f, sum + l)), f, sum + l);
+  }
+}
+
+/// Both ways, neper.
+void to_log(int lines, float* sum) {
+  const hn::ScalableTag<float> f;
+  for (int l = 0; l < lines; l += static_cast<int>(hn::Lanes(f))) {
+    const auto least = hn::Set(f, 1e-13F);
+    const auto log = hn::Log(f, hn::Max(hn::LoadU(f, sum + l), least));
+    hn::StoreU(hn::Add(log, log), f, sum + l);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace trocar::ultrasound::detail
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace trocar::ultrasound::detail {
+
+HWY_EXPORT(add_ray);
+HWY_EXPORT(to_log);
+
+namespace {
+
 /// Share of the receive aperture whose sound is coherent behind an obstacle (assumed, range 0.3..1).
 constexpr double kCoherentShare = 0.5;
 /// Width of a Gaussian that replaces a uniform aperture (docs/physics.md U3).
 constexpr double kGaussianAperture = 0.2991;
-constexpr float kOpaque = 60.0F;  // neper
 
-using Row = Eigen::Map<Eigen::ArrayXf>;
-
-/// Slope of the outermost ray: sideways over depth.
-double steepest(const ScanPlan& plan) noexcept {
-  return 0.5 * kCoherentShare / plan.beam.f_number;
-}
-
-/// Weights of the rays at a depth; the sum is 1. Beyond aperture * f-number the aperture no longer grows.
-std::array<float, kRays> weights_at(const ScanPlan& plan, double depth_mm) noexcept {
-  const double f_number = std::max(plan.beam.f_number, depth_mm / plan.beam.aperture_mm);
+/// The rays of a depth. Beyond aperture * f-number the aperture no longer grows. The sum of the weights is 1.
+std::array<RayStep, kRays> rays_at(const ScanPlan& plan, std::size_t c) noexcept {
+  const double step_mm = kCoarse * static_cast<double>(plan.sample_mm);
+  const double f_number = std::max(plan.beam.f_number, static_cast<double>(c) * step_mm / plan.beam.aperture_mm);
   const double sigma = kGaussianAperture * kCoherentShare / f_number;
-  std::array<float, kRays> weights{};
+  const double steepest = 0.5 * kCoherentShare / plan.beam.f_number;  // sideways over depth
+  std::array<RayStep, kRays> rays{};
   float sum = 0.0F;
-  for (int ray = 0; ray < kRays; ++ray) {
-    const double u = steepest(plan) * (ray - kSideRays) / kSideRays / sigma;
-    sum += weights[static_cast<std::size_t>(ray)] = static_cast<float>(std::exp(-0.5 * u * u));
+  for (int n = 0; n < kRays; ++n) {
+    const double slope = steepest * (n - kSideRays) / kSideRays;
+    const double lines =
+        std::clamp(slope * step_mm / static_cast<double>(plan.coarse_spacing_mm[c]), 1.0 - kMargin, kMargin - 2.0);
+    RayStep& ray = rays[static_cast<std::size_t>(n)];
+    ray.shift = static_cast<int>(std::floor(lines));
+    ray.part = static_cast<float>(lines - ray.shift);
+    ray.weight = static_cast<float>(std::exp(-0.5 * std::pow(slope / sigma, 2)));
+    sum += ray.weight;
   }
-  for (float& weight : weights) weight /= sum;
-  return weights;
+  for (RayStep& ray : rays) ray.weight /= sum;
+  return rays;
 }
 
-/// The losses of a ray one step before, `lines` scanlines aside: linear between them, the outermost beyond them.
-void step_aside(Row from, float lines, Row to) noexcept {
-  const auto n = from.size();
-  const float whole = std::floor(lines);
-  const float part = lines - whole;
-  const auto shift = static_cast<Eigen::Index>(whole);
-  const auto at = [&](Eigen::Index l) { return std::clamp<Eigen::Index>(l, 0, n - 1); };
-  // The part of `to` whose two neighbours exist.
-  const Eigen::Index low = std::clamp<Eigen::Index>(-shift, 0, n),
-                     high = std::clamp<Eigen::Index>(n - 1 - shift, low, n);
-  for (Eigen::Index l = 0; l < low; ++l) to[l] = from[at(l + shift)];
-  to.segment(low, high - low) =
-      (1.0F - part) * from.segment(low + shift, high - low) + part * from.segment(low + shift + 1, high - low);
-  for (Eigen::Index l = high; l < n; ++l) to[l] = from[at(l + shift)];
+void extend(float* row, int lines) noexcept {
+  std::fill_n(row - kMargin, kMargin, row[0]);
+  std::fill_n(row + lines, kMargin, row[lines - 1]);
+}
+
+/// Samples from which no sound returns, per scanline.
+void note_reach(const ScanPlan& plan, FrameState& frame, int line) noexcept {
+  const auto coarse = plan.coarse_samples();
+  const float* const open = frame.open_way.data() + static_cast<std::size_t>(line) * coarse;
+  auto heard = static_cast<int>(coarse);
+  while (heard > 0 && open[heard - 1] < kInaudible) --heard;
+  const float heard_mm = static_cast<float>((heard + 1) * kCoarse) * plan.sample_mm;
+  const bool is_mirrored = frame.walks[static_cast<std::size_t>(line)].mirror_depth_mm < heard_mm;
+  frame.reach[static_cast<std::size_t>(line)] = is_mirrored ? plan.samples : std::min(heard * kCoarse, plan.samples);
 }
 
 }  // namespace
 
 std::size_t aperture_floats(const ScanPlan& plan) noexcept {
-  return static_cast<std::size_t>(kRays + 4) * static_cast<std::size_t>(plan.lines);
+  return LineRows::floats(plan.lines);
 }
 
-void open_aperture(const ScanPlan& plan, FrameState& frame, int first, int last, std::vector<float>& rows) noexcept {
+void open_aperture(const ScanPlan& plan, FrameState& frame, int first, int last, std::vector<float>& floats) noexcept {
   const auto coarse = plan.coarse_samples();
-  const auto lines = static_cast<Eigen::Index>(plan.lines);
-  const auto row = [&](int n) { return Row(rows.data() + n * lines, lines); };
-  Row loss = row(kRays), last_way = row(kRays + 1), aside = row(kRays + 2), sum = row(kRays + 3);
-  for (int ray = 0; ray < kRays; ++ray) row(ray).setZero();
-  last_way.setZero();
-  const float step_mm = kCoarse * plan.sample_mm;
-  using Strided = Eigen::Map<Eigen::ArrayXf, 0, Eigen::InnerStride<>>;
-  const auto column = [&](std::vector<float>& values, std::size_t c) {
-    return Strided(values.data() + c, lines, Eigen::InnerStride<>(static_cast<Eigen::Index>(coarse)));
-  };
-  for (std::size_t c = 0; c < coarse; ++c) {
-    const Strided way = column(frame.probed_way, c);
-    loss = (last_way - way).max(0.0F);
-    last_way = way;
-    const auto weights = weights_at(plan, static_cast<double>(c) * static_cast<double>(step_mm));
-    sum.setZero();
-    for (int ray = 0; ray < kRays; ++ray) {
-      const double slope = steepest(plan) * (ray - kSideRays) / kSideRays;
-      const auto sideways = static_cast<float>(slope) * step_mm / plan.coarse_spacing_mm[c];
-      Row ray_loss = row(ray);
-      if (ray != kSideRays) {
-        step_aside(ray_loss, sideways, aside);
-        ray_loss = (aside + loss).min(kOpaque);
-      } else {
-        ray_loss = (ray_loss + loss).min(kOpaque);
+  const LineRows rows(floats, plan.lines);
+  const auto ways = [&](int depth) { return rows.row(2 * kRays + depth); };
+  const auto opened = [&](int depth) { return rows.row(2 * kRays + kDepths + depth); };
+  float* const loss = rows.row(2 * kRays + 2 * kDepths);
+  std::array<float*, kRays> now{}, next{};
+  for (int ray = 0; ray < kRays; ++ray) {
+    now[static_cast<std::size_t>(ray)] = rows.row(ray);
+    next[static_cast<std::size_t>(ray)] = rows.row(kRays + ray);
+    std::fill_n(now[static_cast<std::size_t>(ray)] - kMargin, plan.lines + 2 * kMargin, 0.0F);
+  }
+  std::fill_n(ways(kDepths - 1), plan.lines, 0.0F);
+  for (std::size_t begin = 0; begin < coarse; begin += kDepths) {
+    const auto depths = static_cast<int>(std::min<std::size_t>(kDepths, coarse - begin));
+    std::copy_n(ways(kDepths - 1), plan.lines, loss);  // the depth before, until its difference is taken
+    for (int l = 0; l < plan.lines; ++l)
+      for (int d = 0; d < depths; ++d)
+        ways(d)[l] = frame.probed_way[static_cast<std::size_t>(l) * coarse + begin + static_cast<std::size_t>(d)];
+    for (int d = 0; d < depths; ++d) {
+      const float* const before = d == 0 ? loss : ways(d - 1);
+      for (int l = 0; l < plan.lines; ++l) loss[l] = std::max(before[l] - ways(d)[l], 0.0F);
+      std::fill_n(opened(d), plan.lines, 0.0F);
+      const auto rays = rays_at(plan, begin + static_cast<std::size_t>(d));
+      for (std::size_t ray = 0; ray < kRays; ++ray) {
+        HWY_DYNAMIC_DISPATCH(add_ray)(now[ray], loss, rays[ray], plan.lines, next[ray], opened(d));
+        extend(next[ray], plan.lines);
       }
-      // One way; the echo returns through the same aperture.
-      sum += weights[static_cast<std::size_t>(ray)] * (-0.5F * ray_loss).exp();
+      std::swap(now, next);
+      HWY_DYNAMIC_DISPATCH(to_log)(plan.lines, opened(d));
     }
-    sum = 2.0F * sum.max(1e-13F).log();
-    column(frame.open_way, c).segment(first, last - first) = sum.segment(first, last - first);
+    for (int l = first; l < last; ++l)
+      for (int d = 0; d < depths; ++d)
+        frame.open_way[static_cast<std::size_t>(l) * coarse + begin + static_cast<std::size_t>(d)] = opened(d)[l];
   }
-  for (int l = first; l < last; ++l) {
-    const float* const open = frame.open_way.data() + static_cast<std::size_t>(l) * coarse;
-    auto heard = static_cast<int>(coarse);
-    while (heard > 0 && open[heard - 1] < kInaudible) --heard;
-    const LineWalk& walk = frame.walks[static_cast<std::size_t>(l)];
-    const bool is_mirrored = walk.mirror_depth_mm < static_cast<float>(heard + 1) * step_mm;
-    frame.reach[static_cast<std::size_t>(l)] = is_mirrored ? plan.samples : std::min(heard * kCoarse, plan.samples);
-  }
+  for (int l = first; l < last; ++l) note_reach(plan, frame, l);
 }
 
 namespace {
@@ -171,16 +247,15 @@ void apply_paths(const ScanPlan& plan, const FrameState& frame, int line, WalkRe
       if (!(next.walk < static_cast<float>(s + kCoarse))) break;
       next.log_gain += is_straight ? opened(c, next.log_gain) + before : held;
     }
-    const auto n = std::min(kCoarse, plan.samples - s);
-    using Part = Eigen::Array<float, Eigen::Dynamic, 1, 0, kCoarse, 1>;
-    Eigen::Map<Part> way(walk.log_way.data() + s, n), gain(walk.log_gain.data() + s, n);
-    Part added = Part::Constant(n, held);
+    using Part = Eigen::Array<float, kCoarse, 1>;  // the last one may end behind the samples
+    Eigen::Map<Part> way(walk.log_way.data() + s), gain(walk.log_gain.data() + s);
+    Part added = Part::Constant(held);
     if (is_straight) {
       const float after =
           changed(c + 1, walk.log_way[static_cast<std::size_t>(std::min(s + kCoarse, plan.samples - 1))]);
-      added = Ends{open[c] - own[c], open[c + 1] - own[c + 1]}.between().head(n).min(
-                  (Ends{open[c], open[c + 1]}.between().head(n) - way).max(0.0F)) +
-              Ends{before, after}.between().head(n);
+      added = Ends{open[c] - own[c], open[c + 1] - own[c + 1]}.between().min(
+                  (Ends{open[c], open[c + 1]}.between() - way).max(0.0F)) +
+              Ends{before, after}.between();
       before = after;
     }
     way += added;
@@ -189,3 +264,4 @@ void apply_paths(const ScanPlan& plan, const FrameState& frame, int line, WalkRe
 }
 
 }  // namespace trocar::ultrasound::detail
+#endif
