@@ -100,7 +100,7 @@ void BMode::Impl::walk(int group, int first, int last) noexcept {
       float* delay = plane == central ? frame.delay.data() + static_cast<std::size_t>(line) * samples : nullptr;
       walk_line(plan, frame, path, zeta, frame.reach[static_cast<std::size_t>(line)], s.walk, delay);
       apply_paths(plan, frame, line, s.walk);
-      make_texture(plan, frame, s.walk, plane == central, s.texture);
+      make_texture(plan, frame, s.walk, line, plane == central, s.texture);
       add_walls(plan, frame, path, s.walk, s.texture);
       const int to = plan.row_of(plane, line);
       pack_gains(s.walk.log_gain.data(), s.texture.added.data(), s.walk.share.data(), plan.samples,
@@ -195,9 +195,9 @@ const ScanGeometry& BMode::geometry() const noexcept {
 
 LineRange BMode::Impl::range_of(const LineRange& renewed, int margin) const noexcept {
   if (renewed.is_empty() || !has_frame) return {0, plan.lines};
-  const int first = std::clamp(renewed.first - margin, 0, plan.lines - 1) / kOuterStride * kOuterStride;
+  const int first = std::clamp(renewed.first - margin, 0, plan.lines - 1) / kMostStride * kMostStride;
   const int last = std::clamp(renewed.last + margin, first + 1, plan.lines);
-  return {first, std::min(first + (last - first + kOuterStride - 1) / kOuterStride * kOuterStride, plan.lines)};
+  return {first, std::min(first + (last - first + kMostStride - 1) / kMostStride * kMostStride, plan.lines)};
 }
 
 void BMode::Impl::find_paths(const BModeInput& input, const LineRange& lines) noexcept {

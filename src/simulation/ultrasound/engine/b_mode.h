@@ -49,9 +49,9 @@ struct BModeInput {
   Pose X_PT;  ///< Transducer in the (resting) patient.
   std::span<const NeedleEcho> needles;
   double time_s = 0.0;
-  /// Scanlines to renew, widened to an even first one and an even number; empty: all. The others keep their echoes, as
-  /// in a scanner that shows its picture while scanlines still return (rolling acquisition). Echoes across the seam are
-  /// mixed within the beam's main lobe. The first frame after set_acquisition() renews all.
+  /// Scanlines to renew, widened to multiples of four; empty: all. The others keep their echoes, as in a scanner that
+  /// shows its picture while scanlines still return (rolling acquisition). Echoes across the seam are mixed within the
+  /// beam's main lobe. The first frame after set_acquisition() renews all.
   LineRange renewed{};
 };
 

@@ -80,7 +80,8 @@ SurfaceFit fit_in_plane(const ScanPlan& plan, const FrameState& frame, int plane
   const float spacing_mm = spacing_at(plan, border);
   const int wanted = std::max(1, static_cast<int>(kReach_mm / (kMostSteps * static_cast<double>(spacing_mm))));
   // Outer planes are not walked on every scanline.
-  const int stride = plane == plan.central() ? wanted : (wanted + kOuterStride - 1) / kOuterStride * kOuterStride;
+  const int shift = plan.shift_of(plane);
+  const int stride = (wanted + (1 << shift) - 1) >> shift << shift;
   const int walked = plan.walked_line(plane, line);
   const float step = (kSteepest * static_cast<float>(stride) * spacing_mm + kStep_mm) / plan.sample_mm;
   const std::uint16_t tissues = tissues_of(border);

@@ -28,6 +28,7 @@ void fit_frame(FrameState& frame, const ScanPlan& plan) {
   for (auto* coarse : {&frame.bend_mm, &frame.path_log, &frame.slowness, &frame.smooth_slowness, &frame.probed_way,
                        &frame.open_way, &frame.absorbed, &frame.edge_loss})
     coarse->assign(lines * plan.coarse_samples(), 0.0F);
+  frame.layers.assign(lines * plan.layer_steps(), {});
   frame.delay.assign(lines * samples + 16, 0.0F);
   frame.way_gain.assign(lines * samples + 16, 0.0F);
   frame.gain.assign(rows * samples + 2, 0);

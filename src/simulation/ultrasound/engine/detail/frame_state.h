@@ -67,6 +67,12 @@ struct Reflector {
   float bubbles = 0.0F;  ///< Of gas: whether its bubbles ring, -1..1; the same over some millimetres.
 };
 
+/// Phase of a position in the layers of muscle and fat, and their strength there.
+struct Layering {
+  float phase = 0.0F;
+  float strength = -1.0F;  ///< Negative: not computed, for tissue without layers.
+};
+
 /// Displacement of tissue by a needle.
 struct Drag {
   Vec3f tip_T = Vec3f::Zero();
@@ -108,6 +114,7 @@ struct FrameState {
   std::vector<float> path_log;
   std::vector<float> edge_loss;        ///< line * coarse_samples: at the edges of surfaces, neper.
   std::vector<float> smooth_slowness;  ///< line * coarse_samples: slowness, averaged over the beam's width.
+  std::vector<Layering> layers;        ///< line * layer_steps, behind each kLayering samples of the straight scanline.
   std::vector<float> slowness;         ///< line * coarse_samples: c0/c - 1 on the central plane.
   std::vector<float> delay;            ///< line * samples: shown - walk, samples.
   /// line * samples: amplitude of an echo from there after losses, without its own strength.

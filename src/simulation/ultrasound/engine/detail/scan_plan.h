@@ -14,14 +14,17 @@ namespace trocar::ultrasound::detail {
 
 inline constexpr int kPad = 96;    ///< Zero samples before and behind a scanline, for the length of the pulse.
 inline constexpr int kCoarse = 8;  ///< Samples per step of slowly varying quantities.
-inline constexpr int kGroup = 32;  ///< Scanlines that one task handles.
+inline constexpr int kLayering = 3 * kCoarse;  ///< The same for the layers of muscle, which vary over centimetres.
+inline constexpr int kGroup = 32;              ///< Scanlines that one task handles.
 inline constexpr int kMaxPlanes = 9;
 inline constexpr int kTissues = 128;
 inline constexpr std::uint8_t kNoData = 127;  ///< Tissue outside the volume.
 inline constexpr float kBeamEdge = 2.2F;      ///< Limit in elevation, in sigmas; echoes beyond it are ignored.
 inline constexpr float kOutermostPlane = 1.8F;
-/// Outer planes are walked on every second scanline: tissue varies little over the distance of two.
-inline constexpr int kOuterStride = 2;
+/// Outer planes are walked on every second scanline, the two outermost of five and more on every fourth, as sums of
+/// shifts: tissue varies little over that distance, and their echoes are weak.
+inline constexpr int kOuterShift = 1, kOutermostShift = 2;
+inline constexpr int kMostStride = 1 << kOutermostShift;
 inline constexpr int kLobeBlock = 16;  ///< Samples per value of lateral_reach_at and FrameState::loudest.
 
 /// Properties of a tissue along a scanline, at the scan's frequency.
@@ -95,18 +98,29 @@ struct ScanPlan {
   float brick_mm = 2.5F;           ///< Side of the cube that holds kBrickScatterers.
 
   int central() const noexcept { return planes / 2; }
-  int outer_rows() const noexcept { return (lines + kOuterStride - 1) / kOuterStride; }
+  bool is_outermost(int plane) const noexcept { return planes >= 5 && (plane == 0 || plane == planes - 1); }
+  /// A plane is walked on scanlines that are multiples of 1 << shift.
+  int shift_of(int plane) const noexcept {
+    if (plane == central()) return 0;
+    return is_outermost(plane) ? kOutermostShift : kOuterShift;
+  }
+  int rows_of_shift(int shift) const noexcept { return (lines + (1 << shift) - 1) >> shift; }
+  /// Number of planes besides the central and the outermost ones.
+  int inner_planes() const noexcept { return planes >= 5 ? planes - 3 : planes - 1; }
+  /// First row of the outermost planes: behind the central plane and the inner ones.
+  int outermost_row() const noexcept { return lines + inner_planes() * rows_of_shift(kOuterShift); }
   /// Number of walks of a frame: all scanlines of the central plane, some of the others.
-  int walked_rows() const noexcept { return lines + (planes - 1) * outer_rows(); }
+  int walked_rows() const noexcept { return outermost_row() + (planes >= 5 ? 2 * rows_of_shift(kOutermostShift) : 0); }
   /// Walk that a scanline of a plane uses, 0 <= row < walked_rows(): rows of borders and gains.
   int row_of(int plane, int line) const noexcept {
     if (plane == central()) return line;
-    return lines + (plane < central() ? plane : plane - 1) * outer_rows() + line / kOuterStride;
+    if (is_outermost(plane))
+      return outermost_row() + (plane == 0 ? 0 : rows_of_shift(kOutermostShift)) + (line >> kOutermostShift);
+    const int inner = plane - (planes >= 5 ? 1 : 0) - (plane > central() ? 1 : 0);
+    return lines + inner * rows_of_shift(kOuterShift) + (line >> kOuterShift);
   }
   /// Scanline of that walk.
-  int walked_line(int plane, int line) const noexcept {
-    return plane == central() ? line : line / kOuterStride * kOuterStride;
-  }
+  int walked_line(int plane, int line) const noexcept { return line >> shift_of(plane) << shift_of(plane); }
   std::size_t lobe_blocks() const noexcept { return static_cast<std::size_t>(samples / kLobeBlock) + 1; }
   /// Offset in side_cosine and side_sine of the weights for scanlines at distance k, 1 <= k <= main_lobe_reach.
   std::size_t side_row(std::size_t side, int k) const noexcept {
@@ -117,6 +131,7 @@ struct ScanPlan {
   std::size_t echo_row(int line) const noexcept {
     return static_cast<std::size_t>(line + lateral_reach) * static_cast<std::size_t>(stride) + kPad;
   }
+  std::size_t layer_steps() const noexcept { return static_cast<std::size_t>((samples + kLayering - 1) / kLayering); }
   std::size_t coarse_samples() const noexcept { return static_cast<std::size_t>(samples / kCoarse) + 2; }
 };
 

@@ -167,12 +167,21 @@ HWY_INLINE VF bent_line(const ScanPlan& plan, const FrameState& frame, VF line, 
 /// ScanPlan::row_of.
 HWY_INLINE VI gain_row(const ScanPlan& plan, VI plane, VI line) {
   const I d;
-  static_assert(kOuterStride == 2);
-  const VI central = hn::Set(d, plan.central());
-  const VI outer = hn::IfThenElse(hn::Gt(plane, central), hn::Sub(plane, hn::Set(d, 1)), plane);
-  const VI row =
-      hn::Add(hn::Mul(outer, hn::Set(d, plan.outer_rows())), hn::Add(hn::ShiftRight<1>(line), hn::Set(d, plan.lines)));
-  return hn::IfThenElse(hn::Eq(plane, central), line, row);
+  const bool has_outermost = plan.planes >= 5;
+  const VI central = hn::Set(d, plan.central()), zero = hn::Zero(d);
+  const VI behind = hn::IfThenElseZero(hn::Gt(plane, central), hn::Set(d, 1));
+  const VI inner = hn::Sub(hn::Sub(plane, behind), hn::Set(d, has_outermost ? 1 : 0));
+  const VI inner_row = hn::Add(hn::Mul(inner, hn::Set(d, plan.rows_of_shift(kOuterShift))),
+                               hn::Add(hn::ShiftRight<kOuterShift>(line), hn::Set(d, plan.lines)));
+  VI row = hn::IfThenElse(hn::Eq(plane, central), line, inner_row);
+  if (has_outermost) {
+    const auto is_last = hn::Eq(plane, hn::Set(d, plan.planes - 1));
+    const VI last = hn::IfThenElseZero(is_last, hn::Set(d, plan.rows_of_shift(kOutermostShift)));
+    const VI outermost =
+        hn::Add(hn::Add(hn::ShiftRight<kOutermostShift>(line), hn::Set(d, plan.outermost_row())), last);
+    row = hn::IfThenElse(hn::Or(is_last, hn::Eq(plane, zero)), outermost, row);
+  }
+  return row;
 }
 
 /// Echoes of the candidates on the cell's scanlines; returns their number.

@@ -6,6 +6,7 @@
 
 #include "core/parallel.h"
 #include "ultrasound/engine/detail/border_fit.h"
+#include "ultrasound/engine/detail/tissue_texture.h"
 
 namespace trocar::ultrasound::detail {
 namespace {
@@ -109,30 +110,53 @@ void aim_lines(const ScanPlan& plan, FrameState& frame, int first, int last) noe
       plan.sample_mm * *std::max_element(frame.pressed_samples.begin(), frame.pressed_samples.end());
 }
 
-void probe_lines(const ScanPlan& plan, FrameState& frame, WalkResult& scratch, int first, int last) noexcept {
+namespace {
+
+/// Slowness, losses, borders and gas of one scanline.
+void probe_line(const ScanPlan& plan, FrameState& frame, WalkResult& scratch, int l) noexcept {
   const auto coarse = plan.coarse_samples();
-  std::fill_n(scratch.sideways_mm.begin(), plan.samples + kCoarse, 0.0F);
-  for (int l = first; l < last; ++l) {
-    LineWalk& line = frame.walks[static_cast<std::size_t>(l)];
-    walk_line(plan, frame, line, 0.0F, plan.samples, scratch,
-              frame.delay.data() + static_cast<std::ptrdiff_t>(l) * plan.samples);
-    float* way = frame.probed_way.data() + static_cast<std::size_t>(l) * coarse;
-    float* slowness = frame.slowness.data() + static_cast<std::size_t>(l) * coarse;
-    float* absorbed = frame.absorbed.data() + static_cast<std::size_t>(l) * coarse;
-    for (std::size_t c = 0; c < coarse; ++c) {
-      const std::size_t s = std::min(c * kCoarse, static_cast<std::size_t>(plan.samples - 1));
-      constexpr float kBendable = 0.15F;  // nothing behind gas and bone is visible
-      way[c] = scratch.log_way[s];
-      // Not the gel at the face and the losses at borders.
-      const std::uint8_t tissue = scratch.tissue[s];
-      const float loss = c == 0 ? 0.0F : std::clamp(way[c - 1] - way[c], 0.0F, kCoarse * plan.rows[tissue].loss);
-      absorbed[c] = (c == 0 ? 0.0F : absorbed[c - 1]) + plan.loss_exponent[tissue] * loss;
-      const float slow = plan.slowness[tissue];
-      slowness[c] = std::abs(slow) < kBendable ? slow : 0.0F;
-    }
-    store_borders(frame, scratch, plan.row_of(plan.central(), l));
-    note_gas(plan, frame, scratch, l);
+  LineWalk& line = frame.walks[static_cast<std::size_t>(l)];
+  walk_line(plan, frame, line, 0.0F, plan.samples, scratch,
+            frame.delay.data() + static_cast<std::ptrdiff_t>(l) * plan.samples);
+  float* way = frame.probed_way.data() + static_cast<std::size_t>(l) * coarse;
+  float* slowness = frame.slowness.data() + static_cast<std::size_t>(l) * coarse;
+  float* absorbed = frame.absorbed.data() + static_cast<std::size_t>(l) * coarse;
+  for (std::size_t c = 0; c < coarse; ++c) {
+    const std::size_t s = std::min(c * kCoarse, static_cast<std::size_t>(plan.samples - 1));
+    constexpr float kBendable = 0.15F;  // nothing behind gas and bone is visible
+    way[c] = scratch.log_way[s];
+    // Not the gel at the face and the losses at borders.
+    const std::uint8_t tissue = scratch.tissue[s];
+    const float loss = c == 0 ? 0.0F : std::clamp(way[c - 1] - way[c], 0.0F, kCoarse * plan.rows[tissue].loss);
+    absorbed[c] = (c == 0 ? 0.0F : absorbed[c - 1]) + plan.loss_exponent[tissue] * loss;
+    const float slow = plan.slowness[tissue];
+    slowness[c] = std::abs(slow) < kBendable ? slow : 0.0F;
   }
+  store_borders(frame, scratch, plan.row_of(plan.central(), l));
+  note_gas(plan, frame, scratch, l);
+  note_layers(plan, frame, scratch, l);
+}
+
+/// A scanline between two probed ones: their mean.
+void fill_between(const ScanPlan& plan, FrameState& frame, int l, int last) noexcept {
+  const auto coarse = plan.coarse_samples();
+  const std::size_t row = static_cast<std::size_t>(l) * coarse, before = row - coarse;
+  const int next = l + 1 < last ? l + 1 : l - 1;
+  const std::size_t after = static_cast<std::size_t>(next) * coarse;
+  for (auto* values : {&frame.probed_way, &frame.slowness, &frame.absorbed})
+    for (std::size_t c = 0; c < coarse; ++c) (*values)[row + c] = 0.5F * ((*values)[before + c] + (*values)[after + c]);
+  fill_layers_between(plan, frame, l, next);
+  store_borders_between(frame, plan.row_of(plan.central(), l - 1), plan.row_of(plan.central(), next),
+                        plan.row_of(plan.central(), l));
+  frame.gas[static_cast<std::size_t>(l)] = frame.gas[static_cast<std::size_t>(l - 1)];
+}
+
+}  // namespace
+
+void probe_lines(const ScanPlan& plan, FrameState& frame, WalkResult& scratch, int first, int last) noexcept {
+  std::fill_n(scratch.sideways_mm.begin(), plan.samples + kCoarse, 0.0F);
+  for (int l = first; l < last; l += 2) probe_line(plan, frame, scratch, l);
+  for (int l = first + 1; l < last; l += 2) fill_between(plan, frame, l, last);
 }
 
 void place_mirrors(const ScanPlan& plan, FrameState& frame, int first, int last) noexcept {
@@ -194,6 +218,15 @@ void note_edges(const ScanPlan& plan, FrameState& frame, int l) noexcept {
     loss = std::min(loss + turned * turned, kMostLoss);  // half of its square, for both ways
   }
   for (; c < coarse; ++c) losses[c] = loss;
+}
+
+/// The losses at edges of scanlines between two probed ones, at one depth.
+void fill_between_edges(const ScanPlan& plan, FrameState& frame, const LineRange& lines, std::size_t c) noexcept {
+  const auto at = [&](int l) -> float& {
+    return frame.edge_loss[static_cast<std::size_t>(l) * plan.coarse_samples() + c];
+  };
+  for (int l = lines.first + 1; l < lines.last; l += 2)
+    at(l) = l + 1 < lines.last ? 0.5F * (at(l - 1) + at(l + 1)) : at(l - 1);
 }
 
 /// Averages the losses at edges over the beam; adds to path_log at one depth.
@@ -276,10 +309,11 @@ void refract_lines(const ScanPlan& plan, FrameState& frame, int first, int last)
   const bool refracts = plan.acquisition.artefacts.refraction;
   for_each(begin, end, [&](std::size_t l) {
     std::fill_n(frame.path_log.begin() + static_cast<std::ptrdiff_t>(l * coarse), coarse, 0.0F);
-    if (refracts) note_edges(plan, frame, static_cast<int>(l));
+    if (refracts && (l - begin) % 2 == 0) note_edges(plan, frame, static_cast<int>(l));
   });
   if (refracts) {
     for_each(0, coarse, [&](std::size_t c) {
+      fill_between_edges(plan, frame, lines, c);
       shade_edges(plan, frame, lines, c);
       bend_at(plan, frame, lines, c);
     });

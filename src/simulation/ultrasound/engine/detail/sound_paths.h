@@ -11,7 +11,8 @@ namespace trocar::ultrasound::detail {
 /// Computes the frame's transforms and the straight walks of scanlines [first, last).
 void aim_lines(const ScanPlan& plan, FrameState& frame, int first, int last) noexcept;
 
-/// Computes slowness, losses and gas of scanlines [first, last).
+/// Computes slowness, losses, gas and layers of scanlines [first, last); of every second one, and between them the
+/// mean.
 void probe_lines(const ScanPlan& plan, FrameState& frame, WalkResult& scratch, int first, int last) noexcept;
 
 /// Places the mirrors of scanlines [first, last). Call after they were probed.

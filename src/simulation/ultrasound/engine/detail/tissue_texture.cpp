@@ -14,12 +14,6 @@ constexpr float kLayer_mm = 2.2F;
 /// Length scale of their waviness.
 constexpr float kWave_mm = 9.0F;
 
-/// Phase of a position in the layers, and their strength there.
-struct Layering {
-  float phase = 0.0F;
-  float strength = 0.0F;
-};
-
 Layering layering_at(float below_skin_mm, const Vec3& p_mm) noexcept {
   const auto x = static_cast<float>(p_mm.x()), y = static_cast<float>(p_mm.y()), z = static_cast<float>(p_mm.z());
   const float wave = smooth_noise(x / kWave_mm, y / kWave_mm, z / kWave_mm);
@@ -47,24 +41,40 @@ class LayerProfile {
   std::array<float, steps> values_;
 };
 
-/// Layers along the central plane: phase in coarse steps, sheets sample by sample.
-void make_fibres(const ScanPlan& plan, const FrameState& frame, const WalkResult& walk, Texture& texture) noexcept {
-  static const LayerProfile profile;
-  constexpr int kLayering = 3 * kCoarse;  // samples; the phase varies over centimetres
+Layering layers_at(const FrameState& frame, const WalkResult& walk, std::size_t sample) noexcept {
   const AcousticScene& scene = *frame.scene;
+  const Vec3 p_mm =
+      Vec3(walk.index[0][sample], walk.index[1][sample], walk.index[2][sample]).cwiseProduct(scene.geometry.spacing_mm);
+  const Vec3 p_P = scene.geometry.origin_P + scene.geometry.R_PV * p_mm;
+  const double skin_mm =
+      scene.skin_distance_mm.empty() ? -p_mm.y() : volume::sample_linear(scene.skin_distance_mm, p_P);
+  return layering_at(static_cast<float>(-skin_mm), p_mm);
+}
+
+/// Samples from the face to the n-th value of FrameState::layers.
+std::size_t layer_sample(const ScanPlan& plan, std::size_t n) noexcept {
+  return std::min((n + 1) * kLayering, static_cast<std::size_t>(plan.samples - 1));
+}
+
+bool is_layered(const ScanPlan& plan, const WalkResult& walk, std::size_t sample) noexcept {
+  return plan.fibre_gain[walk.tissue[sample]] > 0.0F && walk.cell[sample] >= 0;
+}
+
+/// Layers along the central plane: phase in coarse steps, sheets sample by sample.
+void make_fibres(const ScanPlan& plan, const FrameState& frame, const WalkResult& walk, int line,
+                 Texture& texture) noexcept {
+  static const LayerProfile profile;
+  const Layering* const noted = frame.layers.data() + static_cast<std::size_t>(line) * plan.layer_steps();
+  const float mirror = frame.walks[static_cast<std::size_t>(line)].mirror_depth_mm / plan.sample_mm;
   Layering last;
   bool was_in = false;
-  for (int begin = 0; begin < plan.samples; begin += kLayering) {
-    const auto at = static_cast<std::size_t>(std::min(begin + kLayering, plan.samples - 1));
-    const bool is_in = plan.fibre_gain[walk.tissue[at]] > 0.0F && walk.cell[at] >= 0;
+  for (std::size_t step = 0; step < plan.layer_steps(); ++step) {
+    const std::size_t at = layer_sample(plan, step), begin = step * kLayering;
+    const bool is_in = is_layered(plan, walk, at);
     Layering next;
     if (is_in) {
-      const Vec3 p_mm =
-          Vec3(walk.index[0][at], walk.index[1][at], walk.index[2][at]).cwiseProduct(scene.geometry.spacing_mm);
-      const Vec3 p_P = scene.geometry.origin_P + scene.geometry.R_PV * p_mm;
-      const double skin_mm =
-          scene.skin_distance_mm.empty() ? -p_mm.y() : volume::sample_linear(scene.skin_distance_mm, p_P);
-      next = layering_at(static_cast<float>(-skin_mm), p_mm);
+      const bool is_noted = noted[step].strength >= 0.0F && static_cast<float>(at) < mirror;
+      next = is_noted ? noted[step] : layers_at(frame, walk, at);
     }
     if (is_in && !was_in) last = next;
     if (!is_in && was_in) next = last;
@@ -73,7 +83,7 @@ void make_fibres(const ScanPlan& plan, const FrameState& frame, const WalkResult
       const float phase_step = (next.phase - last.phase) / kLayering;
       const float strength_step = (next.strength - last.strength) / kLayering;
       for (int n = 0; n < kLayering; ++n) {
-        const float gain = plan.fibre_gain[walk.tissue[static_cast<std::size_t>(begin + n)]];
+        const float gain = plan.fibre_gain[walk.tissue[begin + static_cast<std::size_t>(n)]];
         const auto part = static_cast<float>(n);
         fibres[n] = gain * profile.at(last.phase + part * phase_step, last.strength + part * strength_step);
       }
@@ -87,9 +97,30 @@ void make_fibres(const ScanPlan& plan, const FrameState& frame, const WalkResult
 
 }  // namespace
 
-void make_texture(const ScanPlan& plan, const FrameState& frame, const WalkResult& walk, bool is_central,
+void note_layers(const ScanPlan& plan, FrameState& frame, const WalkResult& walk, int line) noexcept {
+  Layering* const noted = frame.layers.data() + static_cast<std::size_t>(line) * plan.layer_steps();
+  for (std::size_t step = 0; step < plan.layer_steps(); ++step) {
+    const std::size_t at = layer_sample(plan, step);
+    noted[step] = is_layered(plan, walk, at) ? layers_at(frame, walk, at) : Layering{};
+  }
+}
+
+void fill_layers_between(const ScanPlan& plan, FrameState& frame, int line, int after) noexcept {
+  const std::size_t steps = plan.layer_steps();
+  Layering* const noted = frame.layers.data() + static_cast<std::size_t>(line) * steps;
+  const Layering *const left = noted - steps, *const right =
+                                                  frame.layers.data() + static_cast<std::size_t>(after) * steps;
+  for (std::size_t step = 0; step < steps; ++step) {
+    const bool has_both = left[step].strength >= 0.0F && right[step].strength >= 0.0F;
+    noted[step] = has_both ? Layering{0.5F * (left[step].phase + right[step].phase),
+                                      0.5F * (left[step].strength + right[step].strength)}
+                           : Layering{};
+  }
+}
+
+void make_texture(const ScanPlan& plan, const FrameState& frame, const WalkResult& walk, int line, bool is_central,
                   Texture& texture) noexcept {
-  if (is_central) make_fibres(plan, frame, walk, texture);
+  if (is_central) make_fibres(plan, frame, walk, line, texture);
   // The CT's texture is smoothed over more than a millimetre.
   constexpr float kTextureStep_mm = 1.5F;
   const int step = plan.sample_mm * kCoarse < kTextureStep_mm ? kCoarse : kCoarse / 2;

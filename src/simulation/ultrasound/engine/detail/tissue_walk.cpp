@@ -398,5 +398,30 @@ void store_borders(FrameState& frame, const WalkResult& result, int row) noexcep
   frame.border_counts[at] = static_cast<std::uint8_t>(result.border_count);
 }
 
+void store_borders_between(FrameState& frame, int from, int other, int row) noexcept {
+  constexpr float kReach = 16.0F;  // samples
+  const auto borders_of = [&](int of) { return frame.borders.data() + static_cast<std::size_t>(of) * kMaxBorders; };
+  const auto count_of = [&](int of) -> std::uint8_t& { return frame.border_counts[static_cast<std::size_t>(of)]; };
+  count_of(row) = count_of(from);
+  for (std::size_t b = 0; b < count_of(row); ++b) {
+    Border border = borders_of(from)[b];
+    const Border* same = nullptr;
+    float nearest = kReach;
+    for (std::size_t n = 0; n < count_of(other); ++n) {
+      const Border& next = borders_of(other)[n];
+      const float far = std::abs(next.walk - border.walk);
+      if (far >= nearest || tissues_of(next) != tissues_of(border)) continue;
+      nearest = far;
+      same = &next;
+    }
+    if (same != nullptr) {
+      border.walk = 0.5F * (border.walk + same->walk);
+      for (std::size_t a = 0; a < 3; ++a) border.index[a] = 0.5F * (border.index[a] + same->index[a]);
+    }
+    borders_of(row)[b] = border;
+    frame.border_keys[static_cast<std::size_t>(row) * kMaxBorders + b] = {border.walk, tissues_of(border)};
+  }
+}
+
 }  // namespace trocar::ultrasound::detail
 #endif

@@ -37,6 +37,8 @@ void walk_line(const ScanPlan& plan, const FrameState& frame, const LineWalk& li
 
 /// Stores a walk's borders as row `row` of the frame (ScanPlan::row_of).
 void store_borders(FrameState& frame, const WalkResult& result, int row) noexcept;
+/// Stores the borders of row `from` as those of a row half way to `other`, where that has the same borders.
+void store_borders_between(FrameState& frame, int from, int other, int row) noexcept;
 
 /// Computes only the positions of the samples (index, cell).
 void place_line(const ScanPlan& plan, const FrameState& frame, const LineWalk& line, float zeta,

@@ -143,8 +143,8 @@ TEST(Refraction, DarkensBehindTheEdgesOfACylinder) {
     };
     double middle = 0.0;
     for (int x = -4; x <= 4; ++x) middle += on[static_cast<std::size_t>(25 + x)] / 9.0;
-    EXPECT_LT(lowest(on, -18, -9), middle - 3.0);
-    EXPECT_LT(lowest(on, 10, 19), middle - 3.0);
+    EXPECT_LT(lowest(on, -18, -9), middle - 2.5);
+    EXPECT_LT(lowest(on, 10, 19), middle - 2.5);
     EXPECT_GT(lowest(on, 21, 25), -2.0) << "beside";
     for (const double value : profile_behind(tissue, no_artefacts())) ASSERT_NEAR(value, 0.0, 0.2) << "off";
   }

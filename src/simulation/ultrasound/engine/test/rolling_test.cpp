@@ -70,13 +70,14 @@ TEST(Rolling, RenewedScanlinesAreThoseOfAWholeFrame) {
   const BasebandFrame wanted = whole.render(renewing(kNow, {}));
   engine.render(renewing(kBefore, {}));
   const BasebandFrame& now = engine.render(renewing(kNow, {30, 96}));
-  // Old echoes of the neighbours are in the main lobe of the scanlines at the seams, and in refraction's averages.
-  EXPECT_LT(difference(now, wanted, {50, 76}), 0.05);
+  // Old echoes of the neighbours are in the main lobe of the scanlines at the seams, their losses in the aperture's sound
+  // and in refraction's averages.
+  EXPECT_LT(difference(now, wanted, {50, 76}), 0.08);
   EXPECT_GT(difference(now, wanted, {0, 30}), 0.3);
   for (int round = 0; round < 2; ++round)
     for (int first = 0; first < kLines; first += 31) engine.render(renewing(kNow, {first, first + 31}));
   // Groups of scanlines begin elsewhere: at their edges a scatterer reads the gain of the scanline beside it.
-  EXPECT_LT(difference(now, wanted, {0, kLines}), 0.05);
+  EXPECT_LT(difference(now, wanted, {0, kLines}), 0.08);
 }
 
 TEST(Rolling, FirstFrameIsWhole) {
