@@ -61,11 +61,12 @@ void note_reflector(const FrameState& frame, Reflector& reflector, const Border&
                is_gas ? noise_at(frame, border, kCluster_mm) : 0.0F};
 }
 
-/// A surface that the central plane crosses on a scanline.
-struct CentralSurface {
+/// A surface that a plane crosses on a scanline.
+struct Surface {
   std::uint16_t tissues = 0;
   SurfaceFit fit;
   float tilt = 0.0F;
+  float unevenness = 1.0F;  ///< Of its wall's amplitude there.
 };
 
 /// Paints the surface echoes of one scanline. A surface is fitted once, on the central plane, and followed to the
@@ -85,11 +86,12 @@ class EchoPainter {
     for (const Border& border : borders_of(plan_.central())) {
       const float strength = strength_of(border);
       if (strength < kLeast) continue;
-      CentralSurface& surface = surfaces_[count_++];
+      Surface& surface = surfaces_[count_++];
       surface.tissues = tissues_of(border);
       surface.fit = fit_surface(plan_, frame_, plan_.central(), line_, border);
       surface.tilt = tilt_of(plan_, frame_, line_, border, surface.fit);
-      paint(border, strength, surface.fit, surface.tilt, plan_.central(), 0.0F);
+      surface.unevenness = unevenness_at(border);
+      paint(border, strength, surface, plan_.central(), 0.0F);
     }
   }
 
@@ -98,17 +100,19 @@ class EchoPainter {
       const float strength = strength_of(border);
       if (strength < kLeast) continue;
       const float z_mm = static_cast<float>(plane - plan_.central()) * plane_mm(border.walk);
-      if (const CentralSurface* same = find_central(border, plane, z_mm)) {
-        paint(border, strength, same->fit, same->tilt, plane, z_mm);
+      if (const Surface* same = find_central(border, plane, z_mm)) {
+        paint(border, strength, *same, plane, z_mm);
       } else {
         const SurfaceFit fit = fit_surface(plan_, frame_, plane, line_, border);
-        paint(border, strength, fit, tilt_of(plan_, frame_, line_, border, fit), plane, 0.0F);
+        const float tilt = tilt_of(plan_, frame_, line_, border, fit);
+        paint(border, strength, {tissues_of(border), fit, tilt, unevenness_at(border)}, plane, 0.0F);
       }
     }
   }
 
  private:
   static constexpr float kLeast = 1e-4F;  // about 30 dB below liver's speckle
+  static constexpr float kLeastEven = 0.05F;
 
   std::span<const Border> borders_of(int plane) const noexcept {
     const auto row = static_cast<std::size_t>(plan_.row_of(plane, line_));
@@ -123,13 +127,13 @@ class EchoPainter {
   float plane_mm(float walk) const noexcept { return plan_.plane_step * plan_.elevation_sigma_mm[sample_at(walk)]; }
 
   /// The central surface that continues to a border of an outer plane, `z_mm` across the image; nullptr: none.
-  const CentralSurface* find_central(const Border& border, int plane, float z_mm) const noexcept {
+  const Surface* find_central(const Border& border, int plane, float z_mm) const noexcept {
     const std::uint16_t tissues = tissues_of(border);
     const double depth_mm = (static_cast<double>(border.walk) + 0.5) * static_cast<double>(plan_.sample_mm);
     const auto aside_mm = static_cast<float>((plan_.walked_line(plane, line_) - line_) *
                                              plan_.geometry.line_spacing_mm(std::max(depth_mm, 0.1)));
     float least_mm = 1.2F;  // a voxel's step
-    const CentralSurface* found = nullptr;
+    const Surface* found = nullptr;
     for (std::size_t n = 0; n < count_; ++n) {
       const SurfaceFit& fit = surfaces_[n].fit;
       if (surfaces_[n].tissues != tissues) continue;
@@ -142,9 +146,24 @@ class EchoPainter {
     return found;
   }
 
-  /// The echo of a border on one plane, `z_mm` across the image from where `fit` and `tilt` were determined. A surface
-  /// that runs across the image returns it from several depths.
-  void paint(const Border& border, float strength, const SurfaceFit& fit, float tilt, int plane, float z_mm) noexcept {
+  /// Slow variation of a wall along its surface.
+  float unevenness_at(const Border& border) const noexcept {
+    constexpr float kDepth = 0.4F, kWave_mm = 12.0F;  // up to 3.5 dB (assumed)
+    const WallRow* wall = wall_of(border);
+    return wall == nullptr || wall->even < kLeastEven ? 1.0F : std::exp(kDepth * noise_at(frame_, border, kWave_mm));
+  }
+  /// nullptr: none.
+  const WallRow* wall_of(const Border& border) const noexcept {
+    const std::uint8_t wall =
+        plan_.wall_at[static_cast<std::size_t>(border.before & 127U) * kTissues + (border.behind & 127U)];
+    return wall == 0 ? nullptr : &plan_.walls[wall - 1U];
+  }
+
+  /// The echo of a border on one plane, `z_mm` across the image from where `surface` was fitted. A surface that runs
+  /// across the image returns it from several depths.
+  void paint(const Border& border, float strength, const Surface& surface, int plane, float z_mm) noexcept {
+    const SurfaceFit& fit = surface.fit;
+    const float tilt = surface.tilt;
     const float step_mm = plane_mm(fit.walk);
     const float run_mm = std::abs(fit.elevation + 2.0F * fit.bow_per_mm * z_mm) * step_mm;
     constexpr float kMostParts = 6.0F;
@@ -154,9 +173,7 @@ class EchoPainter {
     const float smooth_share = (1.0F - rough) * std::exp(-0.5F * (tilt / kTilt_rad) * (tilt / kTilt_rad));
     const float weight = plan_.plane_weight[static_cast<std::size_t>(plane)] / static_cast<float>(parts);
     const std::uint32_t key = key_of(border.index);
-    const std::uint8_t wall =
-        plan_.wall_at[static_cast<std::size_t>(border.before & 127U) * kTissues + (border.behind & 127U)];
-    if (wall != 0) paint_wall(border, plan_.walls[wall - 1U], fit, tilt, plane, z_mm);
+    if (const WallRow* wall = wall_of(border)) paint_wall(border, *wall, surface, plane, z_mm);
     for (int part = 0; part < parts; ++part) {
       const float off = (static_cast<float>(part) + 0.5F) / static_cast<float>(parts) - 0.5F;
       const float walk = fit.walk + fit.deeper_mm(z_mm + off * step_mm) / plan_.sample_mm;
@@ -175,12 +192,11 @@ class EchoPainter {
   }
 
   /// The even band of a wall along a border: sheets that echo in phase, as the border's smooth part, at any tilt.
-  void paint_wall(const Border& border, const WallRow& wall, const SurfaceFit& fit, float tilt, int plane,
-                  float z_mm) noexcept {
-    constexpr float kLeastEven = 0.05F, kLeastCosine = 0.35F;
-    constexpr float kUneven = 0.4F, kUneven_mm = 12.0F;  // up to 3.5 dB along the surface (assumed)
+  void paint_wall(const Border& border, const WallRow& wall, const Surface& surface, int plane, float z_mm) noexcept {
+    constexpr float kLeastCosine = 0.35F;
+    const SurfaceFit& fit = surface.fit;
     const float run_mm = std::abs(fit.elevation + 2.0F * fit.bow_per_mm * z_mm) * plane_mm(fit.walk);
-    const float cosine = std::max(std::cos(tilt), kLeastCosine);
+    const float cosine = std::max(std::cos(surface.tilt), kLeastCosine);
     const float length = std::hypot(wall.thickness_mm / cosine, run_mm) / plan_.sample_mm;
     const float at_border = fit.walk + fit.deeper_mm(z_mm) / plan_.sample_mm;
     const float begin = wall.is_behind ? at_border : at_border - length;
@@ -189,7 +205,7 @@ class EchoPainter {
     const std::size_t at = sample_at(at_border);
     // A band of equal samples adds up over the pulse, and over the scanlines.
     const float amplitude = level * plan_.plane_weight[static_cast<std::size_t>(plane)] * plan_.surface_scale[at] *
-                            plan_.band_scale * std::exp(kUneven * noise_at(frame_, border, kUneven_mm));
+                            plan_.band_scale * surface.unevenness;
     const float delayed = begin + delay_[at];
     const int first = std::max(0, static_cast<int>(std::ceil(delayed)));
     const int last = std::min(plan_.samples - 1, static_cast<int>(std::floor(delayed + length)));
@@ -213,7 +229,7 @@ class EchoPainter {
   int line_;
   Reflector& reflector_;
   const float* delay_;
-  std::array<CentralSurface, kMaxBorders> surfaces_;
+  std::array<Surface, kMaxBorders> surfaces_;
   std::size_t count_ = 0;
 };
 

@@ -62,6 +62,19 @@ void place_samples(const ScanPlan& plan, const FrameState& frame, const LineWalk
   }
 }
 
+/// Values that change evenly: first + step / 2, first + 3 step / 2 …
+void fill_evenly(float first, float step, int n, float* to) {
+  const F f;
+  const auto lanes = static_cast<int>(hn::Lanes(f));
+  for (int s = 0; s < n; s += lanes) {
+    const VF value = hn::MulAdd(hn::Iota(f, static_cast<float>(s) + 0.5F), hn::Set(f, step), hn::Set(f, first));
+    if (n - s >= lanes)
+      hn::StoreU(value, f, to + s);
+    else
+      hn::BlendedStore(value, hn::FirstN(f, static_cast<std::size_t>(n - s)), f, to + s);
+  }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace trocar::ultrasound::detail
 HWY_AFTER_NAMESPACE();
@@ -70,6 +83,7 @@ HWY_AFTER_NAMESPACE();
 namespace trocar::ultrasound::detail {
 
 HWY_EXPORT(place_samples);
+HWY_EXPORT(fill_evenly);
 
 void place_line(const ScanPlan& plan, const FrameState& frame, const LineWalk& line, float zeta,
                 WalkResult& result) noexcept {
@@ -109,9 +123,6 @@ Vec3 impedance_slope(const FrameState& frame, const std::array<TissueRow, kTissu
 namespace {
 
 constexpr int kBlock = 16;
-/// Centres of a block's samples.
-constexpr std::array<float, kBlock> kSteps{0.5F, 1.5F, 2.5F,  3.5F,  4.5F,  5.5F,  6.5F,  7.5F,
-                                           8.5F, 9.5F, 10.5F, 11.5F, 12.5F, 13.5F, 14.5F, 15.5F};
 constexpr float kSilence = -60.0F;  // neper
 /// Organs have capsules: minimum reflection of a border, even between tissues of equal impedance (assumed).
 constexpr float kWrapping = 0.03F;
@@ -142,6 +153,10 @@ class Walk {
     log_gain_ = 2.0F * std::log(std::max(line.coupling, 1e-6F));
     entry_samples_ = static_cast<int>(kEntry_mm / plan.sample_mm);
     reach_ = std::max(reach, entry_samples_);
+    constexpr double kBlends = 2.5;  // per voxel
+    const double voxel_samples =
+        frame.scene->geometry.spacing_mm.minCoeff() / static_cast<double>(plan.sample_mm) / kBlends;
+    blend_step_ = std::clamp(static_cast<int>(voxel_samples + 0.5), 1, 8);
     if (line.has_mirror()) stand_mirror(zeta);
   }
 
@@ -152,13 +167,10 @@ class Walk {
     while (s < plan_.samples) {
       if (log_gain_ < kInaudible && s >= reach_) return fall_silent(s);
       const int same = s >= entry_samples_ ? same_tissue(s) : 0;
-      if (same == kBlock) {
-        step_same<kBlock>(s, kBlock);
-      } else if (same > 0) {
-        step_same<Eigen::Dynamic>(s, same);
-      } else {
+      if (same > 0)
+        step_same(s, same);
+      else
         step(s);
-      }
       s += std::max(same, 1);
     }
     finish_ramp();
@@ -208,36 +220,40 @@ class Walk {
     log_gain_ += std::log(std::max(line_.mirror_gain, 1e-6F));
   }
 
-  /// Number of the next samples, at most a block, in whole cells of the present tissue.
+  /// Number of the next samples in whole cells of the present tissue, up to where the scanline falls silent.
   int same_tissue(int s) const noexcept {
     if (is_in_ramp_ || tissue_ == kNoData) return 0;
-    const int most = std::min(kBlock, (s < mirror_from_ ? std::min(mirror_from_, plan_.samples) : plan_.samples) - s);
     if (s >= mirror_from_ && s < mirror_to_) return 0;
+    const int end = std::min(s < mirror_from_ ? std::min(mirror_from_, plan_.samples) : plan_.samples, silence(s));
     // A tile is as wide as several blocks: mostly a single-tissue tile contains the whole block.
-    static_assert(kBlock == 16);
-    const std::int32_t* cells = result_.cell.data() + s;
+    const std::int32_t* const cells = result_.cell.data();
     const auto is_whole = [&](int n) { return cells[n] >= 0 && frame_.tiles.tile_tissue(cells[n]) == tissue_; };
-    if (most == kBlock && is_whole(0) && is_whole(5) && is_whole(10) && is_whole(15)) return kBlock;
-    int n = 0;
-    while (n < most && cells[n] >= 0 && frame_.tiles.tissue(cells[n]) == tissue_) ++n;
-    return n;
+    int n = s;
+    while (n + kBlock <= end && is_whole(n) && is_whole(n + 5) && is_whole(n + 10) && is_whole(n + 15)) n += kBlock;
+    while (n < end && cells[n] >= 0 && frame_.tiles.tissue(cells[n]) == tissue_) ++n;
+    return n - s;
   }
 
-  /// `n` samples of the present tissue; `kCount` is the same, or Eigen::Dynamic.
-  template <int kCount>
+  /// Sample from which on the present tissue leaves nothing that returns, behind the reach of sound from the sides.
+  int silence(int s) const noexcept {
+    const float loss = plan_.rows[tissue_].loss;
+    const float left = log_gain_ - kInaudible;
+    if (!(left < loss * static_cast<float>(plan_.samples))) return plan_.samples;
+    return std::max(reach_, s + 1 + static_cast<int>(left / loss));
+  }
+
+  /// `n` samples of the present tissue.
   void step_same(int s, int n) noexcept {
-    using Samples = Eigen::Array<float, kCount, 1>;
     const TissueRow& row = plan_.rows[tissue_];
     const auto at = static_cast<std::size_t>(s);
-    const auto steps = Eigen::Map<const Samples>(kSteps.data(), n);
-    const float way = log_gain_;
-    Eigen::Map<Samples>(result_.log_gain.data() + at, n) = (way + row.log_b) - row.loss * steps;
+    const auto fill = HWY_DYNAMIC_DISPATCH(fill_evenly);
+    fill(log_gain_ + row.log_b, -row.loss, n, result_.log_gain.data() + at);
+    fill(log_gain_, -row.loss, n, result_.log_way.data() + at);
     std::fill_n(result_.tissue.begin() + s, n, tissue_);
     std::fill_n(result_.share.begin() + s, n, plan_.share[tissue_]);
     log_gain_ -= row.loss * static_cast<float>(n);
-    Eigen::Map<Samples>(result_.log_way.data() + at, n) = way - row.loss * steps;
     if (delay_ == nullptr) return;
-    Eigen::Map<Samples>(delay_ + s, n) = late_ + row.delay * steps;
+    fill(late_, row.delay, n, delay_ + s);
     late_ += row.delay * static_cast<float>(n);
   }
 
@@ -269,8 +285,8 @@ class Walk {
         tissue = voxel;
         row = rows[tissue];
       } else {
-        // A voxel is several samples long: within a border every second sample suffices.
-        if (!was_blended_ || (s & 1) == 0)
+        // A voxel is several samples long: within a border every second or third sample suffices.
+        if (!was_blended_ || s % blend_step_ == 0)
           blend_ = blend_at(frame_, rows, result_.index[0][at], result_.index[1][at], result_.index[2][at]);
         tissue = blend_.tissue;
         row = blend_.row;
@@ -365,7 +381,7 @@ class Walk {
   float log_gain_ = 0.0F;
   int mirror_from_ = kMaxSamples * 4, mirror_at_ = -1, mirror_to_ = -1;
   float late_ = 0.0F;
-  int entry_samples_ = 0, reach_ = 0;
+  int entry_samples_ = 0, reach_ = 0, blend_step_ = 1;
   bool is_entered_ = false;
   bool was_blended_ = false;
   Blend blend_{};
