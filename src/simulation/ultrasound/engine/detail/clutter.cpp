@@ -88,7 +88,7 @@ void add_clutter(const ScanPlan& plan, FrameState& frame, int first, int last) n
                                     static_cast<float>(std::exp(-depth_mm / kDetourDepth_mm));
       const float amplitude = std::sqrt(0.5F * std::max(share * around + detour_share * detour, 0.0F));
       const std::size_t begin = block * kLobeBlock, n = block_samples(plan, block);
-      const float* const noise = plan.clutter_noise.data() + (place + 2 * begin) % (ScanPlan::kNoise / 2);
+      const float* const noise = plan.noise.data() + (place + 2 * begin) % (ScanPlan::kNoise / 2);
       for (std::size_t s = 0; s < n; ++s) {
         frame.re[row + begin + s] += amplitude * noise[s];
         frame.im[row + begin + s] += amplitude * noise[kLobeBlock + s];

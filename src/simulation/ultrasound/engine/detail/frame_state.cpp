@@ -2,12 +2,15 @@
 
 #include <algorithm>
 
+#include "ultrasound/engine/detail/point_echo.h"
+
 namespace trocar::ultrasound::detail {
 
 FrameState make_frame_state(const AcousticScene& scene) {
   FrameState frame;
   frame.scene = &scene;
   frame.tiles = TiledTissue(scene);
+  frame.point_groups = group_points(scene);
   return frame;
 }
 

@@ -80,10 +80,18 @@ struct Drag {
   float reach_mm = 0.0F;  ///< 0: none.
 };
 
+/// Points of a scene and a ball around them.
+struct PointGroup {
+  std::size_t first = 0, last = 0;  ///< Of AcousticScene::points, without `last`.
+  Vec3 centre_P = Vec3::Zero();
+  double radius_mm = 0.0;
+};
+
 /// State of one frame during its computation. fit_frame sizes the buffers.
 struct FrameState {
   const AcousticScene* scene = nullptr;
   TiledTissue tiles;
+  std::vector<PointGroup> point_groups;
   Pose X_PT;
   std::array<std::array<float, 3>, 3> index_of_T{};  ///< Columns: voxel index per mm of x, y, z of T.
   std::array<float, 3> index_of_origin{};

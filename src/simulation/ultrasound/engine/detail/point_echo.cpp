@@ -36,31 +36,60 @@ ImagedPoint image_point(const ScanPlan& plan, const FrameState& frame, const Vec
 
 }  // namespace
 
+std::vector<PointGroup> group_points(const AcousticScene& scene) {
+  constexpr std::size_t kTogether = 32;  // neighbours in the list are neighbours in space
+  std::vector<PointGroup> groups;
+  for (std::size_t first = 0; first < scene.points.size(); first += kTogether) {
+    PointGroup group{first, std::min(first + kTogether, scene.points.size()), Vec3::Zero(), 0.0};
+    Eigen::AlignedBox3d box;
+    for (std::size_t n = group.first; n < group.last; ++n) box.extend(scene.points[n].p_P);
+    group.centre_P = box.center();
+    group.radius_mm = 0.5 * box.diagonal().norm();
+    groups.push_back(group);
+  }
+  return groups;
+}
+
+namespace {
+
+void add_point(const ScanPlan& plan, FrameState& frame, const AcousticPoint& point, const Pose& X_TP, int first,
+               int last) noexcept {
+  const ImagedPoint imaged = image_point(plan, frame, X_TP * point.p_P);
+  if (imaged.line < -1.0 || std::abs(imaged.zeta) > static_cast<double>(kBeamEdge)) return;
+  const auto line = static_cast<int>(std::floor(imaged.line));
+  const auto nearest = std::clamp(static_cast<int>(std::lround(imaged.line)), 0, plan.lines - 1);
+  const std::size_t place = static_cast<std::size_t>(nearest) * static_cast<std::size_t>(plan.samples) +
+                            static_cast<std::size_t>(imaged.walk);
+  // Its own strength and the losses of the path, without the tissue's backscatter.
+  const double amplitude = std::pow(10.0, point.amplitude_db / 20.0) * std::exp(-0.5 * imaged.zeta * imaged.zeta) *
+                           static_cast<double>(frame.way_gain[place]);
+  const double shown = imaged.walk + static_cast<double>(frame.delay[place]);
+  const auto sample = static_cast<std::ptrdiff_t>(std::lround(shown));
+  if (sample < 0 || sample >= plan.samples) return;
+  const double turn = 2.0 * std::numbers::pi * shown * static_cast<double>(plan.cycles_per_sample);
+  for (int side = 0; side < 2; ++side) {
+    if (line + side < first || line + side >= last) continue;
+    const double part = side == 0 ? 1.0 - (imaged.line - line) : imaged.line - line;
+    const auto to = plan.echo_row(line + side) + static_cast<std::size_t>(sample);
+    frame.re[to] += static_cast<float>(part * amplitude * std::cos(turn));
+    frame.im[to] -= static_cast<float>(part * amplitude * std::sin(turn));
+  }
+}
+
+}  // namespace
+
 void add_points(const ScanPlan& plan, FrameState& frame, int first, int last) noexcept {
   const Pose X_TP = frame.X_PT.inverse();
   const double thickest_mm = static_cast<double>(
       kBeamEdge * *std::max_element(plan.elevation_sigma_mm.begin(), plan.elevation_sigma_mm.end()));
-  for (const AcousticPoint& point : frame.scene->points) {
-    if (std::abs(X_TP.R().row(2).dot(point.p_P) + X_TP.p().z()) > thickest_mm) continue;
-    const ImagedPoint imaged = image_point(plan, frame, X_TP * point.p_P);
-    if (imaged.line < -1.0 || std::abs(imaged.zeta) > static_cast<double>(kBeamEdge)) continue;
-    const auto line = static_cast<int>(std::floor(imaged.line));
-    const auto nearest = std::clamp(static_cast<int>(std::lround(imaged.line)), 0, plan.lines - 1);
-    const std::size_t place = static_cast<std::size_t>(nearest) * static_cast<std::size_t>(plan.samples) +
-                              static_cast<std::size_t>(imaged.walk);
-    // Its own strength and the losses of the path, without the tissue's backscatter.
-    const double amplitude = std::pow(10.0, point.amplitude_db / 20.0) * std::exp(-0.5 * imaged.zeta * imaged.zeta) *
-                             static_cast<double>(frame.way_gain[place]);
-    const double shown = imaged.walk + static_cast<double>(frame.delay[place]);
-    const auto sample = static_cast<std::ptrdiff_t>(std::lround(shown));
-    if (sample < 0 || sample >= plan.samples) continue;
-    const double turn = 2.0 * std::numbers::pi * shown * static_cast<double>(plan.cycles_per_sample);
-    for (int side = 0; side < 2; ++side) {
-      if (line + side < first || line + side >= last) continue;
-      const double part = side == 0 ? 1.0 - (imaged.line - line) : imaged.line - line;
-      const auto to = plan.echo_row(line + side) + static_cast<std::size_t>(sample);
-      frame.re[to] += static_cast<float>(part * amplitude * std::cos(turn));
-      frame.im[to] -= static_cast<float>(part * amplitude * std::sin(turn));
+  const double deepest_mm = plan.geometry.depth_mm;
+  for (const PointGroup& group : frame.point_groups) {
+    const Vec3 centre_T = X_TP * group.centre_P;
+    if (std::abs(centre_T.z()) > thickest_mm + group.radius_mm || centre_T.y() > deepest_mm + group.radius_mm) continue;
+    for (std::size_t n = group.first; n < group.last; ++n) {
+      const AcousticPoint& point = frame.scene->points[n];
+      if (std::abs(X_TP.R().row(2).dot(point.p_P) + X_TP.p().z()) > thickest_mm) continue;
+      add_point(plan, frame, point, X_TP, first, last);
     }
   }
 }

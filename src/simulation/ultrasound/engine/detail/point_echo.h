@@ -5,6 +5,9 @@
 
 namespace trocar::ultrasound::detail {
 
+/// Groups of the scene's points that are close to each other.
+std::vector<PointGroup> group_points(const AcousticScene& scene);
+
 /// Adds the echoes of the scene's single points. The points follow the tissue: pressure, refraction and delay apply to
 /// them. On scanlines [first, last).
 void add_points(const ScanPlan& plan, FrameState& frame, int first, int last) noexcept;

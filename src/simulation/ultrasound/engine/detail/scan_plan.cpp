@@ -225,11 +225,11 @@ void fill_scatterers(ScanPlan& plan) {
   }
 }
 
-void fill_clutter(ScanPlan& plan) {
+void fill_noise(ScanPlan& plan) {
   constexpr std::uint64_t kSeed = 0x636c;
   Random random(kSeed);
-  plan.clutter_noise.resize(ScanPlan::kNoise);
-  for (float& value : plan.clutter_noise) value = static_cast<float>(random.normal());
+  plan.noise.resize(ScanPlan::kNoise);
+  for (float& value : plan.noise) value = static_cast<float>(random.normal());
 }
 
 }  // namespace
@@ -270,7 +270,7 @@ ScanPlan make_scan_plan(const AcousticScene& scene, const Transducer& transducer
   fill_lateral(plan);
   fill_axial(plan);
   fill_scatterers(plan);
-  fill_clutter(plan);
+  fill_noise(plan);
   return plan;
 }
 

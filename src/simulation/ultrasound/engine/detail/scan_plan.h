@@ -74,7 +74,7 @@ struct ScanPlan {
   /// Mean power of liver's echoes without losses, before the point spread.
   std::vector<float> echo_power;
   static constexpr std::size_t kNoise = 32768;
-  std::vector<float> clutter_noise;  ///< kNoise Gaussian numbers of variance 1.
+  std::vector<float> noise;          ///< kNoise Gaussian numbers of variance 1.
   std::vector<float> speckle_scale;  ///< Scales fully developed speckle of unit scatterers to a root mean square of 1.
   std::vector<float> most_rank;  ///< Share of the scatterers that is sufficient there; resolution cells differ in size.
   /// Makes a plane reflector's echo independent of the number of scanlines that receive it.

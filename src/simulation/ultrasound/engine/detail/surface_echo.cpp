@@ -105,7 +105,7 @@ class EchoPainter {
       } else {
         const SurfaceFit fit = fit_surface(plan_, frame_, plane, line_, border);
         const float tilt = tilt_of(plan_, frame_, line_, border, fit);
-        paint(border, strength, {tissues_of(border), fit, tilt, unevenness_at(border)}, plane, 0.0F);
+        paint(border, strength, {tissues_of(border), fit, tilt, 1.0F}, plane, 0.0F);
       }
     }
   }
@@ -217,11 +217,11 @@ class EchoPainter {
   }
 
   void add(float amplitude, float smooth_share, float rough_part, std::uint32_t key, int sample) noexcept {
-    const float turn = 2.0F * std::numbers::pi_v<float> * static_cast<float>(key & 0xffffU) / 65536.0F;
-    const float size_of_rough = std::sqrt(-std::log(std::max(static_cast<float>(key >> 16) / 65536.0F, 1e-4F)));
+    const float* const gaussian = plan_.noise.data() + 2U * (key % (ScanPlan::kNoise / 2));
+    const float rough = amplitude * rough_part / std::numbers::sqrt2_v<float>;
     const std::size_t to = plan_.echo_row(line_) + static_cast<std::size_t>(sample);
-    frame_.re[to] += amplitude * (smooth_share + rough_part * size_of_rough * std::cos(turn));
-    frame_.im[to] += amplitude * rough_part * size_of_rough * std::sin(turn);
+    frame_.re[to] += amplitude * smooth_share + rough * gaussian[0];
+    frame_.im[to] += rough * gaussian[1];
   }
 
   const ScanPlan& plan_;

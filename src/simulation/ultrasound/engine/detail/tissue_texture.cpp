@@ -101,7 +101,8 @@ void note_layers(const ScanPlan& plan, FrameState& frame, const WalkResult& walk
   Layering* const noted = frame.layers.data() + static_cast<std::size_t>(line) * plan.layer_steps();
   for (std::size_t step = 0; step < plan.layer_steps(); ++step) {
     const std::size_t at = layer_sample(plan, step);
-    noted[step] = is_layered(plan, walk, at) ? layers_at(frame, walk, at) : Layering{};
+    const bool is_heard = walk.log_way[at] > kInaudible;
+    noted[step] = is_heard && is_layered(plan, walk, at) ? layers_at(frame, walk, at) : Layering{};
   }
 }
 
