@@ -129,7 +129,8 @@ void BMode::Impl::spread(int group, int first, int last) noexcept {
   for (int line = first; line < last; ++line) {
     spread_echoes(plan, frame, line, scratch[static_cast<std::size_t>(group)].rows, out);
     if (!plan.acquisition.artefacts.reverberation) continue;
-    for (int angle = 0; angle < plan.steering_angles; ++angle) add_reverberation(plan, frame, angle, line, out);
+    for (int angle = 0; angle < plan.steering_angles + plan.near_angles; ++angle)
+      add_reverberation(plan, frame, angle, line, out);
   }
 }
 
@@ -180,8 +181,12 @@ void BMode::set_acquisition(const Acquisition& acquisition) {
   impl.out.beam = impl.plan.beam;
   const auto lines = static_cast<std::size_t>(impl.plan.lines);
   impl.out.steering_angles = impl.plan.steering_angles;
-  impl.out.re.assign(
-      static_cast<std::size_t>(impl.plan.steering_angles) * lines * static_cast<std::size_t>(impl.plan.samples), 0.0F);
+  impl.out.near_angles = impl.plan.near_angles;
+  impl.out.near_full = impl.plan.near_full;
+  impl.out.near_samples = impl.plan.near_samples;
+  impl.out.re.assign(static_cast<std::size_t>(impl.plan.steering_angles + impl.plan.near_angles) * lines *
+                         static_cast<std::size_t>(impl.plan.samples),
+                     0.0F);
   impl.out.im = impl.out.re;
   impl.out.contact.assign(lines, 1.0F);
 }

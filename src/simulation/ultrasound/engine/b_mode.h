@@ -61,7 +61,10 @@ struct BasebandFrame {
   ScanGeometry geometry;
   Beam beam;
   int steering_angles = 1;
-  std::vector<float> re, im;   ///< steering_angles * lines * samples.
+  /// Further angles, behind the others in `re` and `im`, whose sound overlaps near the face only. Their share of an
+  /// average falls from 1 in front of near_full to 0 at near_samples; their deeper samples are 0.
+  int near_angles = 0, near_full = 0, near_samples = 0;
+  std::vector<float> re, im;   ///< (steering_angles + near_angles) * lines * samples.
   std::vector<float> contact;  ///< Per scanline: 1 where the face is coupled to the skin, 0 in air.
   LineRange renewed;           ///< Scanlines that differ from the frame before; empty: all.
 };

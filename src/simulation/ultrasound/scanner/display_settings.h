@@ -24,7 +24,7 @@ struct DisplaySettings {
   double automatic_tgc_db_per_cm_mhz = 0.5;  ///< Two-way loss that the gain compensates. Range 0..1.5 (one way).
   /// Upper limit of the automatic part, so that the receiver's noise stays darker than tissue. Range 0..120. Assumed
   /// from the sweep of docs/validation.md: its liver fades below 11 cm, and the depth below it stays black.
-  double automatic_tgc_limit_db = 30.0;
+  double automatic_tgc_limit_db = 28.0;
   double dynamic_range_db = 60.0;  ///< Range 20..100.
   double persistence = 0.0;        ///< Share of the last picture that remains. Range 0..0.95.
   GrayMap gray_map = GrayMap::kSoft;

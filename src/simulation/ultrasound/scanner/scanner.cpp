@@ -1,5 +1,6 @@
 #include "ultrasound/scanner/scanner.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -42,6 +43,7 @@ struct Scanner::Impl {
 
   void set_scan(const ScanGeometry& new_scan, bool is_mirrored);
   void set_receiver(const Beam& beam);
+  void set_near_angles(const BasebandFrame& frame);
   bool set_settings(const DisplaySettings& wanted, double frequency_mhz);  ///< True if they have changed.
   bool set_lookup(const DisplaySettings& wanted);
   void receive_line(const BasebandFrame& frame, std::size_t line, std::uint64_t seed, const Artefacts& artefacts);
@@ -57,11 +59,13 @@ struct Scanner::Impl {
   detail::Receiver receiver;
   detail::ScanConversion conversion;
   const float noise_amplitude = static_cast<float>(std::pow(10.0, detail::kReceiverNoise_db / 20.0));
+  int near_full = -1;
   double receiver_sigma_mm = -1.0;  ///< Pulse length for which `receiver` was made.
   std::optional<DisplaySettings> applied;
   std::optional<DisplaySettings> looked_up;
   double applied_mhz = 0.0;
 
+  std::vector<float> near_share;                       ///< Of the angles near the face, per sample.
   std::vector<float> offset;                           ///< TGC minus the floor of each sample, in levels of 1/32 dB.
   std::array<std::uint8_t, kLookupSize> gray_of_fine;  ///< Indexed by level >> kLookupShift.
   std::array<std::uint8_t, 256> gray_of_level_of;      ///< Indexed by level.
@@ -98,6 +102,17 @@ void Scanner::Impl::set_receiver(const Beam& beam) {
   if (receiver_sigma_mm == beam.axial_sigma_mm) return;
   receiver_sigma_mm = beam.axial_sigma_mm;
   receiver.set_geometry(scan, beam);
+}
+
+void Scanner::Impl::set_near_angles(const BasebandFrame& frame) {
+  if (near_full == frame.near_full && near_share.size() == samples()) return;
+  near_full = frame.near_full;
+  near_share.assign(samples(), 0.0F);
+  for (std::size_t s = 0; s < samples(); ++s) {
+    const auto behind = static_cast<float>(static_cast<int>(s) - frame.near_full);
+    const auto fade = static_cast<float>(std::max(frame.near_samples - frame.near_full, 1));
+    near_share[s] = std::clamp(1.0F - behind / fade, 0.0F, 1.0F);
+  }
 }
 
 bool Scanner::Impl::set_settings(const DisplaySettings& wanted, double frequency_mhz) {
@@ -143,18 +158,22 @@ void Scanner::Impl::receive_line(const BasebandFrame& frame, std::size_t line, s
   std::uint16_t* const kept = state.data() + line * stride;
   std::uint16_t* const target = persists ? fresh.data() : kept;
 
-  const std::size_t near = artefacts.clutter ? receiver.clutter_samples() : 0;
-  if (near > 0) {
-    const detail::Receiver::Noise clutter = receiver.clutter(line);
-    detail::detect({re, im, noise.re, noise.im, level, clutter.re, clutter.im, steering_angles, angle_step, kNoiseStep,
-                    offset.data(), near},
-                   target);
-  }
-  if (near < n) {
-    detail::detect({re + near, im + near, noise.re + near, noise.im + near, level, nullptr, nullptr, steering_angles,
-                    angle_step, kNoiseStep, offset.data() + near, n - near},
-                   target + near);
-  }
+  const std::size_t hazy = artefacts.clutter ? receiver.clutter_samples() : 0;
+  auto shared = frame.near_angles > 0 ? static_cast<std::size_t>(frame.near_samples) : 0;
+  if (shared < hazy + kMostLanes && hazy < shared + kMostLanes) shared = hazy;  // no section below a vector
+  const detail::Receiver::Noise clutter = receiver.clutter(line);
+  const auto detect = [&](std::size_t first, std::size_t last) {
+    if (first >= last) return;
+    const bool is_hazy = first < hazy;
+    detail::detect({re + first, im + first, noise.re + first, noise.im + first, level,
+                    is_hazy ? clutter.re + first : nullptr, is_hazy ? clutter.im + first : nullptr, steering_angles,
+                    angle_step, kNoiseStep, static_cast<std::size_t>(frame.near_angles),
+                    first < shared ? near_share.data() + first : nullptr, offset.data() + first, last - first},
+                   target + first);
+  };
+  detect(0, std::min(hazy, shared));
+  detect(std::min(hazy, shared), std::max(hazy, shared));
+  detect(std::max(hazy, shared), n);
   if (persists) detail::persist(fresh.data(), static_cast<float>(applied->persistence), n, kept);
 }
 
@@ -184,9 +203,10 @@ const GrayImage& Scanner::show(const BasebandFrame& frame, std::uint64_t seed) n
   const DisplaySettings held = within_ranges(settings);
   impl_->set_scan(frame.geometry, held.is_mirrored);
   const std::size_t count = impl_->lines() * impl_->samples();
-  const std::size_t echoes = count * static_cast<std::size_t>(frame.steering_angles);
+  const std::size_t echoes = count * static_cast<std::size_t>(frame.steering_angles + frame.near_angles);
   TROCAR_CHECK(frame.re.size() == echoes && frame.im.size() == echoes);
   impl_->set_receiver(frame.beam);
+  impl_->set_near_angles(frame);
   const bool has_new_settings = impl_->set_settings(held, frame.beam.frequency_mhz);
   const bool has_new_grays = impl_->set_lookup(held);
   // Scanlines that were not renewed stay as they are shown, their noise included.

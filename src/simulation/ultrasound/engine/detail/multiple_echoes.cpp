@@ -59,7 +59,8 @@ void add_reverberation(const ScanPlan& plan, const FrameState& frame, int angle,
   if (again < kLeastReverberation || lag < 8) return;
   const std::size_t row = static_cast<std::size_t>(angle * plan.lines + line) * static_cast<std::size_t>(plan.samples);
   // From near to far, so that repeated echoes repeat again: A-lines at 2, 3, 4 … times the depth.
-  for (int s = lag; s < plan.samples; ++s) {
+  const int samples = angle < plan.steering_angles ? plan.samples : plan.near_samples;
+  for (int s = lag; s < samples; ++s) {
     out.re[row + static_cast<std::size_t>(s)] += again * out.re[row + static_cast<std::size_t>(s - lag)];
     out.im[row + static_cast<std::size_t>(s)] += again * out.im[row + static_cast<std::size_t>(s - lag)];
   }

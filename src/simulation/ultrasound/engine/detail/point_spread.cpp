@@ -54,13 +54,15 @@ HWY_INLINE bool lobes_show(const ScanPlan& plan, const FrameState& frame, int li
          kLouder * most_in(-main_lobe, main_lobe);
 }
 
-/// The lateral point spread of one scanline, for the central angle and `kSides` steering angles to each side.
+/// The lateral point spread of samples of one scanline, for the central angle and `kSides` steering angles to each
+/// side.
 template <std::size_t kSides>
-HWY_INLINE void spread_laterally(const ScanPlan& plan, const FrameState& frame, int line, SteeringRows& rows) {
+HWY_INLINE void spread_laterally(const ScanPlan& plan, const FrameState& frame, int line, int first, int last,
+                                 SteeringRows& rows) {
   const F f;
   const auto lanes = static_cast<int>(hn::Lanes(f));
   const std::ptrdiff_t stride = plan.stride, samples = plan.samples;
-  for (int s = 0; s < plan.samples; s += lanes) {
+  for (int s = first; s < last; s += lanes) {
     const float* const at_re = frame.re.data() + plan.echo_row(line) + s;
     const float* const at_im = frame.im.data() + plan.echo_row(line) + s;
     const float* weights = plan.lateral.data() + s;
@@ -110,16 +112,16 @@ HWY_INLINE void spread_laterally(const ScanPlan& plan, const FrameState& frame, 
 }
 
 /// The pulse along one scanline; `from` is zero-padded at both ends.
-HWY_INLINE void spread_axially(const ScanPlan& plan, const float* from, float* to) {
+HWY_INLINE void spread_axially(const ScanPlan& plan, const float* from, int samples, float* to) {
   const F f;
   const auto lanes = static_cast<int>(hn::Lanes(f));
-  for (int s = 0; s < plan.samples; s += lanes) {
+  for (int s = 0; s < samples; s += lanes) {
     VF sum = hn::Mul(hn::Set(f, plan.axial[0]), hn::LoadU(f, from + s));
     for (int k = 1; k <= plan.axial_reach; ++k) {
       const VF sides = hn::Add(hn::LoadU(f, from + s - k), hn::LoadU(f, from + s + k));
       sum = hn::MulAdd(hn::Set(f, plan.axial[static_cast<std::size_t>(k)]), sides, sum);
     }
-    const auto n = static_cast<std::size_t>(std::min(lanes, plan.samples - s));
+    const auto n = static_cast<std::size_t>(std::min(lanes, samples - s));
     if (n == static_cast<std::size_t>(lanes))
       hn::StoreU(sum, f, to + s);
     else
@@ -128,23 +130,26 @@ HWY_INLINE void spread_axially(const ScanPlan& plan, const float* from, float* t
 }
 
 void spread(const ScanPlan& plan, const FrameState& frame, int line, SteeringRows& rows, BasebandFrame& out) {
+  // Beyond near_samples the pulse still reaches back.
+  const int near_end = plan.near_angles > 0 ? std::min(plan.near_samples + kPad, plan.samples) : 0;
   switch (plan.steering_angles / 2) {
     case 0:
-      spread_laterally<0>(plan, frame, line, rows);
+      spread_laterally<0>(plan, frame, line, 0, plan.samples, rows);
       break;
     case 1:
-      spread_laterally<1>(plan, frame, line, rows);
+      spread_laterally<2>(plan, frame, line, 0, near_end, rows);
+      spread_laterally<1>(plan, frame, line, near_end, plan.samples, rows);
       break;
     default:
-      spread_laterally<2>(plan, frame, line, rows);
+      spread_laterally<2>(plan, frame, line, 0, plan.samples, rows);
       break;
   }
   rows.clear_padding();
-  for (std::size_t angle = 0; angle < static_cast<std::size_t>(plan.steering_angles); ++angle) {
-    const std::size_t to = (angle * static_cast<std::size_t>(plan.lines) + static_cast<std::size_t>(line)) *
-                           static_cast<std::size_t>(plan.samples);
-    spread_axially(plan, rows.re(angle), out.re.data() + to);
-    spread_axially(plan, rows.im(angle), out.im.data() + to);
+  for (int angle = 0; angle < plan.steering_angles + plan.near_angles; ++angle) {
+    const std::size_t to = static_cast<std::size_t>(angle * plan.lines + line) * static_cast<std::size_t>(plan.samples);
+    const int samples = angle < plan.steering_angles ? plan.samples : plan.near_samples;
+    spread_axially(plan, rows.re(static_cast<std::size_t>(angle)), samples, out.re.data() + to);
+    spread_axially(plan, rows.im(static_cast<std::size_t>(angle)), samples, out.im.data() + to);
   }
 }
 
@@ -177,7 +182,7 @@ HWY_EXPORT(loudest);
 SteeringRows::SteeringRows(const ScanPlan& plan)
     : stride_(static_cast<std::size_t>(plan.stride)), samples_(static_cast<std::size_t>(plan.samples)) {
   // Steering angles come in pairs in addition to the central one.
-  angles_ = static_cast<std::size_t>(plan.steering_angles / 2 * 2 + 1);
+  angles_ = static_cast<std::size_t>((plan.steering_angles + plan.near_angles) / 2 * 2 + 1);
   values_.assign(2 * angles_ * stride_, 0.0F);
 }
 

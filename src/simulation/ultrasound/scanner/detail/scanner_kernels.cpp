@@ -36,12 +36,13 @@ HWY_INLINE VF log2_of(VF x) {
   return hn::Add(exponent, hn::MulAdd(bend, inner, m));
 }
 
+/// Sum of the powers of some angles.
 template <bool kWithClutter>
-HWY_INLINE void detect_at(const ReceivedLine& line, std::size_t s, std::uint16_t* HWY_RESTRICT level) {
+HWY_INLINE VF power_of(const ReceivedLine& line, std::size_t s, std::size_t first, std::size_t last) {
   const F f;
   const VF noise = hn::Set(f, line.noise);
   VF power = hn::Zero(f);
-  for (std::size_t angle = 0; angle < line.steering_angles; ++angle) {
+  for (std::size_t angle = first; angle < last; ++angle) {
     const std::size_t at = s + angle * line.angle_step, noise_at = s + angle * line.noise_step;
     VF re = hn::MulAdd(noise, hn::LoadU(f, line.noise_re + noise_at), hn::LoadU(f, line.re + at));
     VF im = hn::MulAdd(noise, hn::LoadU(f, line.noise_im + noise_at), hn::LoadU(f, line.im + at));
@@ -51,9 +52,24 @@ HWY_INLINE void detect_at(const ReceivedLine& line, std::size_t s, std::uint16_t
     }
     power = hn::MulAdd(re, re, hn::MulAdd(im, im, power));
   }
+  return power;
+}
+
+template <bool kWithClutter, bool kWithNear>
+HWY_INLINE void detect_at(const ReceivedLine& line, std::size_t s, std::uint16_t* HWY_RESTRICT level) {
+  const F f;
+  VF power = power_of<kWithClutter>(line, s, 0, line.steering_angles);
+  if constexpr (kWithNear) {
+    const std::size_t all = line.steering_angles + line.near_angles;
+    const VF share = hn::LoadU(f, line.near_share + s);
+    const VF weights = hn::MulAdd(share, hn::Set(f, static_cast<float>(line.near_angles)),
+                                  hn::Set(f, static_cast<float>(line.steering_angles)));
+    power = hn::Div(hn::MulAdd(share, power_of<kWithClutter>(line, s, line.steering_angles, all), power), weights);
+  } else {
+    power = hn::Mul(power, hn::Set(f, 1.0F / static_cast<float>(line.steering_angles)));
+  }
   // Far outside the displayed range; the comparison is false for NaN.
   const VF least = hn::Set(f, 1e-30F);
-  power = hn::Mul(power, hn::Set(f, 1.0F / static_cast<float>(line.steering_angles)));
   const VF clean = hn::Max(hn::IfThenElse(hn::Lt(power, hn::Set(f, 1e38F)), power, least), least);
   constexpr auto kScale = static_cast<float>(3.01029995663981 * kFineLevels_per_db);
   const VF fine = hn::MulAdd(log2_of(clean), hn::Set(f, kScale), hn::LoadU(f, line.offset + s));
@@ -61,19 +77,20 @@ HWY_INLINE void detect_at(const ReceivedLine& line, std::size_t s, std::uint16_t
   hn::StoreU(hn::DemoteTo(U16(), hn::NearestInt(shown)), U16(), level + s);
 }
 
-template <bool kWithClutter>
+template <bool kWithClutter, bool kWithNear>
 HWY_INLINE void detect_all(const ReceivedLine& line, std::uint16_t* HWY_RESTRICT level) {
   const std::size_t lanes = hn::Lanes(F());
   std::size_t s = 0;
-  for (; s + lanes <= line.n; s += lanes) detect_at<kWithClutter>(line, s, level);
-  if (s < line.n) detect_at<kWithClutter>(line, line.n - lanes, level);
+  for (; s + lanes <= line.n; s += lanes) detect_at<kWithClutter, kWithNear>(line, s, level);
+  if (s < line.n) detect_at<kWithClutter, kWithNear>(line, line.n - lanes, level);
 }
 
 void detect(const ReceivedLine& line, std::uint16_t* HWY_RESTRICT level) {
+  const bool has_near = line.near_share != nullptr;
   if (line.clutter_re != nullptr) {
-    detect_all<true>(line, level);
+    has_near ? detect_all<true, true>(line, level) : detect_all<true, false>(line, level);
   } else {
-    detect_all<false>(line, level);
+    has_near ? detect_all<false, true>(line, level) : detect_all<false, false>(line, level);
   }
 }
 

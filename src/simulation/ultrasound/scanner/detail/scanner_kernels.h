@@ -29,11 +29,13 @@ struct ReceivedLine {
   std::size_t steering_angles;  ///< Steering angles of a compound; their powers are averaged.
   std::size_t angle_step;       ///< Floats of re and im between angles.
   std::size_t noise_step;       ///< Floats of the noise between angles.
+  std::size_t near_angles;      ///< Further angles behind them,
+  const float* near_share;      ///< with this weight per sample; nullptr: none here.
   const float* offset;          ///< TGC of each sample minus the floor, fine levels.
   std::size_t n;
 };
 
-/// Level after TGC: mean of |echo + noise + clutter|^2 over the steering_angles, in fine levels.
+/// Level after TGC: mean of |echo + noise + clutter|^2 over the steering angles, in fine levels.
 void detect(const ReceivedLine& line, std::uint16_t* level) noexcept;
 
 /// state += (fresh - state) * (1 - kept). Processes n values, rounded up to a multiple of kMostLanes.

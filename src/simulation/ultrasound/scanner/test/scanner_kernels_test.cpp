@@ -16,7 +16,8 @@ std::vector<std::uint16_t> detected(const std::vector<float>& re, const std::vec
   const std::vector<float> zero(re.size(), 0.0F);
   const std::vector<float> offset(re.size(), static_cast<float>(-kLevelFloor_db * kFineLevels_per_db));
   std::vector<std::uint16_t> level(re.size());
-  detect({re.data(), im.data(), zero.data(), zero.data(), 0.0F, nullptr, nullptr, 1, 0, 0, offset.data(), re.size()},
+  detect({re.data(), im.data(), zero.data(), zero.data(), 0.0F, nullptr, nullptr, 1, 0, 0, 0, nullptr, offset.data(),
+          re.size()},
          level.data());
   return level;
 }
@@ -76,7 +77,7 @@ TEST(Detect, SumsEchoNoiseAndClutter) {
   const std::vector<float> echo(kCount, 1.0F), noise(kCount, 10.0F), clutter(kCount, 2.0F), zero(kCount, 0.0F);
   const std::vector<float> offset(kCount, static_cast<float>(-kLevelFloor_db * kFineLevels_per_db));
   std::vector<std::uint16_t> level(kCount);
-  detect({echo.data(), zero.data(), noise.data(), zero.data(), 0.1F, zero.data(), clutter.data(), 1, 0, 0,
+  detect({echo.data(), zero.data(), noise.data(), zero.data(), 0.1F, zero.data(), clutter.data(), 1, 0, 0, 0, nullptr,
           offset.data(), kCount},
          level.data());
   EXPECT_NEAR(db_of(level[kCount - 1]), 20.0 * std::log10(std::hypot(2.0, 2.0)), kLogError_db);
@@ -96,6 +97,24 @@ TEST(Persist, ReachesAStandingPicture) {
   for (int i = 0; i < 300; ++i) persist(fresh.data(), 0.95F, kMostLanes, state.data());
   // Rounding stops it half a fine level / (1 - 0.95) short: 0.02 dB.
   EXPECT_NEAR(state[0], 20000, 10);
+}
+
+TEST(Detect, WeighsTheAnglesNearTheFace) {
+  constexpr std::size_t kCount = 40;
+  std::vector<float> re(3 * kCount, 1.0F);  // one angle of power 1, two more of power 9
+  std::fill(re.begin() + kCount, re.end(), 3.0F);
+  const std::vector<float> zero(3 * kCount, 0.0F), offset(kCount, 30000.0F);
+  std::vector<float> share(kCount, 0.0F);
+  share[3] = 1.0F;
+  share[4] = 0.5F;
+  std::vector<std::uint16_t> level(kCount);
+  detect({re.data(), zero.data(), zero.data(), zero.data(), 0.0F, nullptr, nullptr, 1, kCount, 0, 2, share.data(),
+          offset.data(), kCount},
+         level.data());
+  const auto power = [&](std::size_t s) { return std::pow(10.0, 0.1 * (level[s] - 30000.0) / kFineLevels_per_db); };
+  EXPECT_NEAR(power(2), 1.0, 0.001);
+  EXPECT_NEAR(power(3), 19.0 / 3.0, 0.005);
+  EXPECT_NEAR(power(4), 5.0, 0.005);
 }
 
 }  // namespace
