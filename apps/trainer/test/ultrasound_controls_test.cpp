@@ -32,6 +32,8 @@ TEST_F(UltrasoundControlsTest, ControlsAndViewShowTheSame) {
   EXPECT_EQ(view.settings().display.tgc_db[7], -4.0);
   view.change_settings([](UltrasoundSettings& s) { s.acquisition.depth_mm = 120.0; });
   EXPECT_EQ(find<QSlider>(controls, "ultrasound-depth").value(), 24);
+  find<QCheckBox>(controls, "ultrasound-rolling").click();
+  EXPECT_TRUE(view.settings().is_rolling);
   find<QCheckBox>(controls, "ultrasound-doppler").click();
   EXPECT_TRUE(view.settings().has_doppler);
   find<QPushButton>(controls, "ultrasound-distance").click();

@@ -304,6 +304,29 @@ TEST_F(UltrasoundViewTest, DopplerColoursTheVessel) {
   }
 }
 
+TEST_F(UltrasoundViewTest, RollingPicturesEndWithAWholeOne) {
+  UltrasoundView view;
+  open(view, "liver-right-kidney", {480, 420});
+  view.change_settings([](UltrasoundSettings& s) { s.is_rolling = true; });
+  ASSERT_TRUE(settle(view));
+  for (int step = 0; step < 12; ++step) {
+    X_PT_ = X_PT_ * Pose::translation(Vec3(0.0, 0.0, 0.5));
+    view.set_transducer_pose(X_PT_);
+    const std::uint64_t before = view.picture()->number;
+    ASSERT_TRUE(run_until(view, [&](const ultrasound::ScanPicture& p) { return p.number > before; }));
+  }
+  ASSERT_TRUE(settle(view));
+  const std::vector<std::uint8_t> rolled = view.picture()->levels;
+  view.change_settings([](UltrasoundSettings& s) { s.is_rolling = false; });
+  ASSERT_TRUE(settle(view));
+  const std::vector<std::uint8_t> whole = view.picture()->levels;
+  ASSERT_EQ(rolled.size(), whole.size());
+  // Only the receiver's noise differs.
+  std::size_t different = 0;
+  for (std::size_t n = 0; n < whole.size(); ++n) different += std::abs(rolled[n] - whole[n]) > 6 ? 1U : 0U;
+  EXPECT_LT(different, whole.size() / 5);
+}
+
 TEST_F(UltrasoundViewTest, ColourBoxIsDraggedWithTheMouse) {
   UltrasoundView view;
   open(view, "aorta", {900, 700});
@@ -396,6 +419,7 @@ TEST_F(UltrasoundViewTest, ControlsAreKeptForEachTransducer) {
       s.display.gain_db = 7.0;
       s.display.tgc_db[3] = -5.0;
       s.acquisition.depth_mm = 110.0;
+      s.is_rolling = true;
       s.display.gray_map = ultrasound::GrayMap::kLinear;
     });
     view.choose_transducer(transducer("L14-5"));
@@ -407,6 +431,7 @@ TEST_F(UltrasoundViewTest, ControlsAreKeptForEachTransducer) {
   EXPECT_EQ(view.settings().display.gain_db, 7.0);
   EXPECT_EQ(view.settings().display.tgc_db[3], -5.0);
   EXPECT_EQ(view.settings().acquisition.depth_mm, 110.0);
+  EXPECT_TRUE(view.settings().is_rolling);
   EXPECT_EQ(view.settings().display.gray_map, ultrasound::GrayMap::kLinear);
   view.reset_settings();
   EXPECT_EQ(view.settings(), default_settings(transducer("C5-2")));

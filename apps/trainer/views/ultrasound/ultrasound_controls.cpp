@@ -238,6 +238,9 @@ QWidget* UltrasoundControls::make_picture() {
   add_check(*box, "ultrasound-mirror", tr("Marker on the left"),
             tr("Off: the image is mirrored; the green dot moves to the other side"),
             [](S& s) -> bool& { return s.display.is_mirrored; });
+  add_check(*box, "ultrasound-rolling", tr("Rolling frame update"),
+            tr("While you move, each image renews a quarter of the scanlines, as in a scanner; off: whole frames"),
+            [](S& s) -> bool& { return s.is_rolling; });
   return widget;
 }
 

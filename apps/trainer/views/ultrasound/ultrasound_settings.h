@@ -19,6 +19,8 @@ struct NeedleGuide {
 struct UltrasoundSettings {
   ultrasound::Acquisition acquisition;
   ultrasound::DisplaySettings display;
+  /// While transducer or needle moves, a picture renews a part of the scanlines, as in a scanner.
+  bool is_rolling = false;
   bool has_doppler = false;
   ultrasound::DopplerSettings doppler;
   NeedleGuide guide;

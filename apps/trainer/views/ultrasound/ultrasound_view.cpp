@@ -130,6 +130,8 @@ ultrasound::ScanRequest UltrasoundView::make_request(double now_s) {
   request.needle_bore_share = needle_bore_share_;
   request.tip_shift_mm = tip_shift_mm_;
   request.acquisition = settings_.acquisition;
+  constexpr double kRollingShare = 0.25;
+  request.renewed_share = settings_.is_rolling ? kRollingShare : 1.0;
   request.display = settings_.display;
   if (settings_.has_doppler) request.flow = poll_flow();
   request.doppler = settings_.doppler;
