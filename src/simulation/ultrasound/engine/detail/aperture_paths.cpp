@@ -245,7 +245,7 @@ void apply_paths(const ScanPlan& plan, const FrameState& frame, int line, WalkRe
     for (; border < walk.border_count; ++border) {
       Border& next = walk.borders[static_cast<std::size_t>(border)];
       if (!(next.walk < static_cast<float>(s + kCoarse))) break;
-      next.log_gain += is_straight ? opened(c, next.log_gain) + before : held;
+      next.log_gain += is_straight ? opened(c, next.log_gain) + changed(c, next.log_gain) : held;
     }
     using Part = Eigen::Array<float, kCoarse, 1>;  // the last one may end behind the samples
     Eigen::Map<Part> way(walk.log_way.data() + s), gain(walk.log_gain.data() + s);

@@ -193,14 +193,15 @@ class EchoPainter {
 
   /// The even band of a wall along a border: sheets that echo in phase, as the border's smooth part, at any tilt.
   void paint_wall(const Border& border, const WallRow& wall, const Surface& surface, int plane, float z_mm) noexcept {
-    constexpr float kLeastCosine = 0.35F;
+    constexpr float kLeastCosine = 0.35F;  // limits the length along the scanline; less is a glancing beam
     const SurfaceFit& fit = surface.fit;
     const float run_mm = std::abs(fit.elevation + 2.0F * fit.bow_per_mm * z_mm) * plane_mm(fit.walk);
-    const float cosine = std::max(std::cos(surface.tilt), kLeastCosine);
+    const float facing = std::cos(surface.tilt), cosine = std::max(facing, kLeastCosine);
     const float length = std::hypot(wall.thickness_mm / cosine, run_mm) / plan_.sample_mm;
     const float at_border = fit.walk + fit.deeper_mm(z_mm) / plan_.sample_mm;
     const float begin = wall.is_behind ? at_border : at_border - length;
-    const float level = wall.even * std::sqrt(cosine) * std::exp(std::max(border.log_gain, -60.0F));
+    const float level = wall.even * std::sqrt(cosine) * std::clamp(facing / kLeastCosine, 0.0F, 1.0F) *
+                        std::exp(std::max(border.log_gain, -60.0F));
     if (wall.even < kLeastEven || level < kLeast) return;
     const std::size_t at = sample_at(at_border);
     // A band of equal samples adds up over the pulse, and over the scanlines.
