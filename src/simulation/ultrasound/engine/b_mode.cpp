@@ -117,10 +117,9 @@ void BMode::Impl::walk(int group, int first, int last) noexcept {
 }
 
 void BMode::Impl::echo(int group, int first, int last) noexcept {
-  for (int line = first; line < last; ++line) {
-    add_surface_echoes(plan, frame, line);
-    if (plan.acquisition.artefacts.reverberation) add_ring_down(plan, frame, line);
-  }
+  add_surface_echoes(plan, frame, first, last);
+  for (int line = first; line < last && plan.acquisition.artefacts.reverberation; ++line)
+    add_ring_down(plan, frame, line);
   add_needles(plan, frame, needles, first, last);
   add_scatterers(plan, bricks, frame, first, last, scratch[static_cast<std::size_t>(group)].scatterers);
 }

@@ -69,28 +69,39 @@ struct Surface {
   float unevenness = 1.0F;  ///< Of its wall's amplitude there.
 };
 
-/// Paints the surface echoes of one scanline. A surface is fitted once, on the central plane, and followed to the
-/// others; outer planes fit only surfaces that the central one does not cross.
+/// The surfaces that one scanline crosses on the central plane.
+struct CentralSurfaces {
+  std::array<Surface, kMaxBorders> all;
+  std::size_t count = 0;
+};
+
+/// Paints the surface echoes of one scanline. A surface is fitted once, on the central plane of every second scanline,
+/// and followed to the next scanline and to the other planes; those fit only surfaces that cannot be followed.
 class EchoPainter {
  public:
-  EchoPainter(const ScanPlan& plan, FrameState& frame, int line) noexcept
+  EchoPainter(const ScanPlan& plan, FrameState& frame, int line, CentralSurfaces& surfaces) noexcept
       : plan_(plan),
         frame_(frame),
         line_(line),
+        surfaces_(surfaces),
         reflector_(frame.reflectors[static_cast<std::size_t>(line)]),
         delay_(frame.delay.data() + static_cast<std::size_t>(line) * static_cast<std::size_t>(plan.samples)) {
     reflector_ = {};
+    surfaces_.count = 0;
   }
 
-  void paint_central() noexcept {
+  /// `beside`: those of the scanline before; nullptr: none.
+  void paint_central(const CentralSurfaces* beside) noexcept {
     for (const Border& border : borders_of(plan_.central())) {
       const float strength = strength_of(border);
       if (strength < kLeast) continue;
-      Surface& surface = surfaces_[count_++];
-      surface.tissues = tissues_of(border);
-      surface.fit = fit_surface(plan_, frame_, plan_.central(), line_, border);
-      surface.tilt = tilt_of(plan_, frame_, line_, border, surface.fit);
-      surface.unevenness = unevenness_at(border);
+      Surface& surface = surfaces_.all[surfaces_.count++];
+      if (beside == nullptr || !follow(*beside, border, surface)) {
+        surface.tissues = tissues_of(border);
+        surface.fit = fit_surface(plan_, frame_, plan_.central(), line_, border);
+        surface.tilt = tilt_of(plan_, frame_, line_, border, surface.fit);
+        surface.unevenness = unevenness_at(border);
+      }
       paint(border, strength, surface, plan_.central(), 0.0F);
     }
   }
@@ -126,22 +137,43 @@ class EchoPainter {
   }
   float plane_mm(float walk) const noexcept { return plan_.plane_step * plan_.elevation_sigma_mm[sample_at(walk)]; }
 
+  float spacing_mm(const Border& border) const noexcept {
+    const double depth_mm = (static_cast<double>(border.walk) + 0.5) * static_cast<double>(plan_.sample_mm);
+    return static_cast<float>(plan_.geometry.line_spacing_mm(std::max(depth_mm, 0.1)));
+  }
+
+  /// The surface of the scanline before that continues to a border; false: none.
+  bool follow(const CentralSurfaces& beside, const Border& border, Surface& surface) const noexcept {
+    constexpr float kStep_mm = 0.7F;  // a voxel's step, and less than the distance of two surfaces
+    constexpr int kEnough = 4;
+    const std::uint16_t tissues = tissues_of(border);
+    const float aside_mm = spacing_mm(border);
+    for (std::size_t n = 0; n < beside.count; ++n) {
+      const Surface& before = beside.all[n];
+      if (before.tissues != tissues || before.fit.neighbours < kEnough) continue;
+      const float walk = before.fit.walk + before.fit.lateral * aside_mm / plan_.sample_mm;
+      if (std::abs(border.walk - walk) * plan_.sample_mm > kStep_mm) continue;
+      surface = before;
+      surface.fit.walk = walk;
+      return true;
+    }
+    return false;
+  }
+
   /// The central surface that continues to a border of an outer plane, `z_mm` across the image; nullptr: none.
   const Surface* find_central(const Border& border, int plane, float z_mm) const noexcept {
     const std::uint16_t tissues = tissues_of(border);
-    const double depth_mm = (static_cast<double>(border.walk) + 0.5) * static_cast<double>(plan_.sample_mm);
-    const auto aside_mm = static_cast<float>((plan_.walked_line(plane, line_) - line_) *
-                                             plan_.geometry.line_spacing_mm(std::max(depth_mm, 0.1)));
+    const float aside_mm = static_cast<float>(plan_.walked_line(plane, line_) - line_) * spacing_mm(border);
     float least_mm = 1.2F;  // a voxel's step
     const Surface* found = nullptr;
-    for (std::size_t n = 0; n < count_; ++n) {
-      const SurfaceFit& fit = surfaces_[n].fit;
-      if (surfaces_[n].tissues != tissues) continue;
+    for (std::size_t n = 0; n < surfaces_.count; ++n) {
+      const SurfaceFit& fit = surfaces_.all[n].fit;
+      if (surfaces_.all[n].tissues != tissues) continue;
       const float off_mm =
           std::abs((border.walk - fit.walk) * plan_.sample_mm - fit.deeper_mm(z_mm) - fit.lateral * aside_mm);
       if (off_mm >= least_mm) continue;
       least_mm = off_mm;
-      found = &surfaces_[n];
+      found = &surfaces_.all[n];
     }
     return found;
   }
@@ -228,19 +260,22 @@ class EchoPainter {
   const ScanPlan& plan_;
   FrameState& frame_;
   int line_;
+  CentralSurfaces& surfaces_;
   Reflector& reflector_;
   const float* delay_;
-  std::array<Surface, kMaxBorders> surfaces_;
-  std::size_t count_ = 0;
 };
 
 }  // namespace
 
-void add_surface_echoes(const ScanPlan& plan, FrameState& frame, int line) noexcept {
-  EchoPainter painter(plan, frame, line);
-  painter.paint_central();
-  for (int plane = 0; plane < plan.planes; ++plane)
-    if (plane != plan.central()) painter.paint_outer(plane);
+void add_surface_echoes(const ScanPlan& plan, FrameState& frame, int first, int last) noexcept {
+  CentralSurfaces fitted, followed;
+  for (int line = first; line < last; ++line) {
+    const bool follows = (line - first) % 2 == 1;
+    EchoPainter painter(plan, frame, line, follows ? followed : fitted);
+    painter.paint_central(follows ? &fitted : nullptr);
+    for (int plane = 0; plane < plan.planes; ++plane)
+      if (plane != plan.central()) painter.paint_outer(plane);
+  }
 }
 
 }  // namespace trocar::ultrasound::detail

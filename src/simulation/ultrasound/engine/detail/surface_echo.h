@@ -6,8 +6,8 @@
 /// Echoes of the borders that a scanline crosses (docs/physics.md U6).
 namespace trocar::ultrasound::detail {
 
-/// Adds the surface echoes of all planes to the scanline, and stores its reflector. Call after all scanlines were
-/// walked.
-void add_surface_echoes(const ScanPlan& plan, FrameState& frame, int line) noexcept;
+/// Adds the surface echoes of all planes to scanlines [first, last), and stores their reflectors. Call after all
+/// scanlines were walked.
+void add_surface_echoes(const ScanPlan& plan, FrameState& frame, int first, int last) noexcept;
 
 }  // namespace trocar::ultrasound::detail

@@ -25,6 +25,10 @@ class TiledTissue {
   std::uint8_t tissue(std::int32_t offset) const noexcept {
     return tissue_.data()->voxels.data()[offset];  // tiles lie end to end
   }
+  /// Loads the tile of an offset, which may be negative, into the cache.
+  void prefetch(std::int32_t offset) const noexcept {
+    if (offset >= 0) __builtin_prefetch(tissue_.data()->voxels.data() + offset);
+  }
   /// Texture in the middle of the cell from that voxel to the next.
   std::int8_t texture(std::int32_t offset) const noexcept {
     return static_cast<std::int8_t>(texture_.data()->voxels.data()[offset]);

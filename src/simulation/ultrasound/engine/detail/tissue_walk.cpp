@@ -226,11 +226,13 @@ class Walk {
     if (s >= mirror_from_ && s < mirror_to_) return 0;
     const int end = std::min(s < mirror_from_ ? std::min(mirror_from_, plan_.samples) : plan_.samples, silence(s));
     // A tile is as wide as several blocks: mostly a single-tissue tile contains the whole block.
+    constexpr int kAhead = 16;  // samples: a part of a tile
     const std::int32_t* const cells = result_.cell.data();
     const auto is_whole = [&](int n) { return cells[n] >= 0 && frame_.tiles.tile_tissue(cells[n]) == tissue_; };
     int n = s;
     while (n + kBlock <= end && is_whole(n) && is_whole(n + 5) && is_whole(n + 10) && is_whole(n + 15)) n += kBlock;
-    while (n < end && cells[n] >= 0 && frame_.tiles.tissue(cells[n]) == tissue_) ++n;
+    for (; n < end && cells[n] >= 0 && frame_.tiles.tissue(cells[n]) == tissue_; ++n)
+      if (n % kAhead == 0) frame_.tiles.prefetch(cells[n + kAhead]);
     return n - s;
   }
 
