@@ -15,7 +15,7 @@ struct Artefacts {
   bool mirror = true;            ///< Mirror image at a strong, smooth reflector (the diaphragm).
   bool refraction = true;        ///< Edge shadows, bent scanlines.
   bool range_distortion = true;  ///< Depth follows from time; the speed of sound differs between tissues.
-  bool side_lobes = true;        ///< Side lobes and grating lobes.
+  bool side_lobes = true;        ///< Side lobes.
   bool contact_loss = true;      ///< Air where the face has no contact with the skin.
   bool clutter = true;           ///< Haze of the near field, and of what is beside the beam.
   bool noise = true;             ///< Noise of the receiver; increases with depth because the gain does.
