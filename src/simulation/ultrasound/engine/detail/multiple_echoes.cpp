@@ -1,5 +1,6 @@
 #include "ultrasound/engine/detail/multiple_echoes.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -58,11 +59,16 @@ void add_reverberation(const ScanPlan& plan, const FrameState& frame, int angle,
   const auto lag = static_cast<int>(reflector.shown + 0.5F);
   if (again < kLeastReverberation || lag < 8) return;
   const std::size_t row = static_cast<std::size_t>(angle * plan.lines + line) * static_cast<std::size_t>(plan.samples);
-  // From near to far, so that repeated echoes repeat again: A-lines at 2, 3, 4 … times the depth.
+  // From near to far, so that repeated echoes repeat again: A-lines at 2, 3, 4 … times the depth. Blocks as long as the
+  // lag do not overlap with what they read.
   const int samples = angle < plan.steering_angles ? plan.samples : plan.near_samples;
-  for (int s = lag; s < samples; ++s) {
-    out.re[row + static_cast<std::size_t>(s)] += again * out.re[row + static_cast<std::size_t>(s - lag)];
-    out.im[row + static_cast<std::size_t>(s)] += again * out.im[row + static_cast<std::size_t>(s - lag)];
+  for (auto* values : {&out.re, &out.im}) {
+    float* const line_values = values->data() + row;
+    for (int s = lag; s < samples; s += lag) {
+      const int n = std::min(lag, samples - s);
+      Eigen::Map<Eigen::ArrayXf>(line_values + s, n) +=
+          again * Eigen::Map<const Eigen::ArrayXf>(line_values + s - lag, n);
+    }
   }
 }
 

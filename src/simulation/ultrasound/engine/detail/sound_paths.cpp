@@ -112,7 +112,10 @@ void aim_lines(const ScanPlan& plan, FrameState& frame, int first, int last) noe
 
 namespace {
 
-/// Slowness, losses, borders and gas of one scanline.
+/// Layers are computed on every fourth scanline: they vary over centimetres.
+constexpr int kLayerLines = 4;
+
+/// Slowness, losses, borders, gas and layers of one scanline.
 void probe_line(const ScanPlan& plan, FrameState& frame, WalkResult& scratch, int l) noexcept {
   const auto coarse = plan.coarse_samples();
   LineWalk& line = frame.walks[static_cast<std::size_t>(l)];
@@ -134,7 +137,7 @@ void probe_line(const ScanPlan& plan, FrameState& frame, WalkResult& scratch, in
   }
   store_borders(frame, scratch, plan.row_of(plan.central(), l));
   note_gas(plan, frame, scratch, l);
-  note_layers(plan, frame, scratch, l);
+  if (l % kLayerLines == 0) note_layers(plan, frame, scratch, l);
 }
 
 /// A scanline between two probed ones: their mean.
@@ -145,7 +148,7 @@ void fill_between(const ScanPlan& plan, FrameState& frame, int l, int last) noex
   const std::size_t after = static_cast<std::size_t>(next) * coarse;
   for (auto* values : {&frame.probed_way, &frame.slowness, &frame.absorbed})
     for (std::size_t c = 0; c < coarse; ++c) (*values)[row + c] = 0.5F * ((*values)[before + c] + (*values)[after + c]);
-  fill_layers_between(plan, frame, l, next);
+  fill_layers_between(plan, frame, l, l - 1, next);
   store_borders_between(frame, plan.row_of(plan.central(), l - 1), plan.row_of(plan.central(), next),
                         plan.row_of(plan.central(), l));
   frame.gas[static_cast<std::size_t>(l)] = frame.gas[static_cast<std::size_t>(l - 1)];
@@ -156,6 +159,9 @@ void fill_between(const ScanPlan& plan, FrameState& frame, int l, int last) noex
 void probe_lines(const ScanPlan& plan, FrameState& frame, WalkResult& scratch, int first, int last) noexcept {
   std::fill_n(scratch.sideways_mm.begin(), plan.samples + kCoarse, 0.0F);
   for (int l = first; l < last; l += 2) probe_line(plan, frame, scratch, l);
+  const int begin = (first + kLayerLines - 1) / kLayerLines * kLayerLines;
+  for (int l = begin + 2; l < last; l += kLayerLines)
+    fill_layers_between(plan, frame, l, l - 2, l + 2 < last ? l + 2 : l - 2);
   for (int l = first + 1; l < last; l += 2) fill_between(plan, frame, l, last);
 }
 

@@ -1,5 +1,6 @@
 #include "ultrasound/engine/detail/tissue_texture.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
@@ -106,11 +107,11 @@ void note_layers(const ScanPlan& plan, FrameState& frame, const WalkResult& walk
   }
 }
 
-void fill_layers_between(const ScanPlan& plan, FrameState& frame, int line, int after) noexcept {
+void fill_layers_between(const ScanPlan& plan, FrameState& frame, int line, int before, int after) noexcept {
   const std::size_t steps = plan.layer_steps();
-  Layering* const noted = frame.layers.data() + static_cast<std::size_t>(line) * steps;
-  const Layering *const left = noted - steps, *const right =
-                                                  frame.layers.data() + static_cast<std::size_t>(after) * steps;
+  const auto row = [&](int of) { return frame.layers.data() + static_cast<std::size_t>(of) * steps; };
+  Layering* const noted = row(line);
+  const Layering *const left = row(before), *const right = row(after);
   for (std::size_t step = 0; step < steps; ++step) {
     const bool has_both = left[step].strength >= 0.0F && right[step].strength >= 0.0F;
     noted[step] = has_both ? Layering{0.5F * (left[step].phase + right[step].phase),
@@ -134,9 +135,12 @@ void make_texture(const ScanPlan& plan, const FrameState& frame, const WalkResul
   float last = value_at(0);
   for (int begin = 0; begin < plan.samples; begin += step) {
     const float next = value_at(begin + step), slope = (next - last) / static_cast<float>(step);
-    for (int n = 0; n < step; ++n) {
-      const auto s = static_cast<std::size_t>(begin + n);
-      texture.added[s] = last + slope * static_cast<float>(n) + texture.fibres[s];
+    static_assert(kCoarse % 8 == 0);
+    for (int s = begin; s < begin + step; s += 4) {
+      const float here = last + slope * static_cast<float>(s - begin);
+      Eigen::Map<Eigen::Array4f>(texture.added.data() + s) =
+          here + slope * Eigen::Array4f(0.0F, 1.0F, 2.0F, 3.0F) +
+          Eigen::Map<const Eigen::Array4f>(texture.fibres.data() + s);
     }
     last = next;
   }

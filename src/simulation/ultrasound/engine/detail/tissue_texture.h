@@ -15,8 +15,8 @@ struct alignas(64) Texture {
 };
 /// Layers of muscle and fat along a probed scanline, for FrameState::layers.
 void note_layers(const ScanPlan& plan, FrameState& frame, const WalkResult& walk, int line) noexcept;
-/// Those of a scanline between the one before it and `after`.
-void fill_layers_between(const ScanPlan& plan, FrameState& frame, int line, int after) noexcept;
+/// Those of a scanline half way between two others.
+void fill_layers_between(const ScanPlan& plan, FrameState& frame, int line, int before, int after) noexcept;
 
 void make_texture(const ScanPlan& plan, const FrameState& frame, const WalkResult& walk, int line, bool is_central,
                   Texture& texture) noexcept;
