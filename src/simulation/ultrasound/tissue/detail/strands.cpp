@@ -12,7 +12,7 @@ namespace {
 constexpr double kCell_mm = 8.0;  ///< Each cube of P contains at most one strand.
 constexpr double kShortest_mm = 3.0, kLongest_mm = 9.0;
 constexpr double kSpacing_mm = 0.35;                        ///< Distance of its points: below half the beam's width.
-constexpr double kWeakest_db = -10.0, kStrongest_db = 2.0;  ///< Level of a point (assumed); several add up.
+constexpr double kWeakest_db = -10.0, kStrongest_db = 4.0;  ///< Level of a point (assumed); several add up.
 
 /// Tissue at a point of P; 127 outside and in mixed cells.
 std::uint8_t plain_tissue(const AcousticScene& scene, const Vec3& p_P) {
