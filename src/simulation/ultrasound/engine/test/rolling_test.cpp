@@ -70,8 +70,8 @@ TEST(Rolling, RenewedScanlinesAreThoseOfAWholeFrame) {
   const BasebandFrame wanted = whole.render(renewing(kNow, {}));
   engine.render(renewing(kBefore, {}));
   const BasebandFrame& now = engine.render(renewing(kNow, {30, 96}));
-  // Old echoes of the neighbours are in the main lobe of the scanlines at the seams, their losses in the aperture's sound
-  // and in refraction's averages.
+  // Old echoes of the neighbours are in the main lobe of the scanlines at the seams, their losses in the aperture's
+  // sound and in refraction's averages.
   EXPECT_LT(difference(now, wanted, {50, 76}), 0.08);
   EXPECT_GT(difference(now, wanted, {0, 30}), 0.3);
   for (int round = 0; round < 2; ++round)
