@@ -129,11 +129,11 @@ void extend(float* row, int lines) noexcept {
 void note_reach(const ScanPlan& plan, FrameState& frame, int line) noexcept {
   const auto coarse = plan.coarse_samples();
   const float* const open = frame.open_way.data() + static_cast<std::size_t>(line) * coarse;
-  auto heard = static_cast<int>(coarse);
-  while (heard > 0 && open[heard - 1] < kInaudible) --heard;
-  const float heard_mm = static_cast<float>((heard + 1) * kCoarse) * plan.sample_mm;
-  const bool is_mirrored = frame.walks[static_cast<std::size_t>(line)].mirror_depth_mm < heard_mm;
-  frame.reach[static_cast<std::size_t>(line)] = is_mirrored ? plan.samples : std::min(heard * kCoarse, plan.samples);
+  auto reached = static_cast<int>(coarse);
+  while (reached > 0 && open[reached - 1] < kInaudible) --reached;
+  const float reached_mm = static_cast<float>((reached + 1) * kCoarse) * plan.sample_mm;
+  const bool is_mirrored = frame.walks[static_cast<std::size_t>(line)].mirror_depth_mm < reached_mm;
+  frame.reach[static_cast<std::size_t>(line)] = is_mirrored ? plan.samples : std::min(reached * kCoarse, plan.samples);
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ constexpr float kHaze = 0.7F;
 constexpr float kHazeFade_mm = 35.0F;
 constexpr float kRing = 1.4F;
 constexpr float kRingFade_mm = 28.0F;
-constexpr float kRingingFrom = 0.45F;  ///< Of Reflector::bubbles: about every sixth cluster.
+constexpr float kRingingFrom = 0.45F;  ///< Of Reflector::bubbles (assumed).
 constexpr float kBand_mm = 1.6F, kBandSpread_mm = 0.8F, kBandDepth = 0.3F;
 
 }  // namespace
