@@ -342,7 +342,7 @@ void add_scatterers(const ScanPlan& plan, const std::vector<Brick>& library, Fra
   constexpr int kSegments = 16;  // per depth: the variation along one is nearly a parabola
   const float segment = static_cast<float>(plan.samples) / kSegments;
   const auto take = HWY_DYNAMIC_DISPATCH(take_near);
-  Candidates near;
+  Candidates near{};  // vectors also read behind the last candidate
   Echoes echoes;
   std::fill(field.begin(), field.end(), 0.0F);
   const auto audible =
