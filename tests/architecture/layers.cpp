@@ -44,7 +44,7 @@ const std::vector<HeaderRule>& header_rules() {
         {"toml", {"toml++"}},
         {"nlohmann/", {"json"}},
         {"hwy/", {"highway"}},
-        {"itk", {"itk"}},
+        {"itk", {"itk", "itk-registration"}},
         {"gdcm", {"itk"}},
         {"nifti1_io.h", {"itk"}},
         {"png.h", {"png"}},
