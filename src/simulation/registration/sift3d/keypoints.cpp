@@ -21,27 +21,31 @@ Status check(const KeypointOptions& options) {
   if (!(options.least_contrast >= 0.0 && options.least_contrast <= 10.0))
     return fail_usage("the least contrast is out of range", fmt::format("{:g}", options.least_contrast),
                       "give 0 to 10");
+  if (!(options.scale_exponent >= 0.0 && options.scale_exponent <= 1.5))
+    return fail_usage("the exponent of the scale is out of range", fmt::format("{:g}", options.scale_exponent),
+                      "give 0 to 1.5");
   if (!(options.largest_ratio >= 1.0 && options.largest_ratio <= 1000.0))
     return fail_usage("the largest ratio of eigenvalues is out of range", fmt::format("{:g}", options.largest_ratio),
                       "give 1 to 1000");
   if (options.most < 1 || options.most > 1000000)
-    return fail_usage("the number of keypoints is out of range", fmt::format("{}", options.most),
-                      "give 1 to 1000000");
+    return fail_usage("the number of keypoints is out of range", fmt::format("{}", options.most), "give 1 to 1000000");
   return {};
 }
 
-/// Difference of Gaussians of an octave.
+/// Weighted difference of Gaussians of an octave.
 class Differences {
  public:
-  explicit Differences(const Octave& octave) : octave_(octave) {}
+  Differences(const Octave& octave, double exponent_per_level) : octave_(octave), per_level_(exponent_per_level) {}
   double at(const volume::Index3& ijk, int level) const {
     const auto n = octave_.geometry.offset(ijk);
     const auto l = static_cast<std::size_t>(level);
-    return static_cast<double>(octave_.levels[l + 1].voxels[n] - octave_.levels[l].voxels[n]);
+    return std::exp2(per_level_ * level) *
+           static_cast<double>(octave_.levels[l + 1].voxels[n] - octave_.levels[l].voxels[n]);
   }
 
  private:
   const Octave& octave_;
+  double per_level_;
 };
 
 /// Second-order expansion about a voxel, in voxels and levels.
@@ -71,8 +75,7 @@ Expansion expand(const Differences& d, const volume::Index3& at, int level) {
     e.gradient[a] = 0.5 * (up - down);
     e.hessian(a, a) = up + down - 2.0 * e.value;
     for (int b = 0; b < a; ++b) {
-      e.hessian(a, b) =
-          0.25 * (value(a, 1, b, 1) - value(a, 1, b, -1) - value(a, -1, b, 1) + value(a, -1, b, -1));
+      e.hessian(a, b) = 0.25 * (value(a, 1, b, 1) - value(a, 1, b, -1) - value(a, -1, b, 1) + value(a, -1, b, -1));
       e.hessian(b, a) = e.hessian(a, b);
     }
   }
@@ -96,7 +99,7 @@ bool has_neighbours(const volume::GridGeometry& geometry, const volume::Index3& 
 std::optional<Keypoint> refine(const ScaleSpace& space, std::size_t octave, const detail::Extremum& candidate,
                                const KeypointOptions& options) {
   const Octave& o = space.octaves[octave];
-  const Differences differences(o);
+  const Differences differences(o, options.scale_exponent / space.options.scales);
   volume::Index3 at = candidate.ijk;
   int level = candidate.level;
   for (int move = 0; move < kMostMoves; ++move) {
@@ -132,7 +135,7 @@ Result<std::vector<Keypoint>> find_keypoints(const ScaleSpace& space, const Keyp
   constexpr double kBeforeRefinement = 0.8;  // refinement raises the contrast by up to a quarter
   std::vector<Keypoint> keypoints;
   for (std::size_t octave = 0; octave < space.octaves.size(); ++octave) {
-    const auto extrema = detail::find_extrema(space.octaves[octave], space.options.scales,
+    const auto extrema = detail::find_extrema(space.octaves[octave], space.options.scales, options.scale_exponent,
                                               static_cast<float>(kBeforeRefinement * options.least_contrast));
     for (const detail::Extremum& candidate : extrema)
       if (const auto keypoint = refine(space, octave, candidate, options)) keypoints.push_back(*keypoint);

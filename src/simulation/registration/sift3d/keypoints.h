@@ -8,7 +8,10 @@
 namespace trocar::registration {
 
 struct KeypointOptions {
-  double least_contrast = 0.08;  ///< Of the difference of Gaussians, standard deviations of gray. Range 0..10.
+  double least_contrast = 0.1;  ///< Of the difference of Gaussians, local standard deviations of gray. Range 0..10.
+  /// Differences are multiplied by (sigma / first sigma)^scale_exponent, because speckle falls with the scale. Range
+  /// 0..1.5; 0: plain differences, 1.5: speckle is equal at all scales.
+  double scale_exponent = 1.0;
   double largest_ratio = 15.0;  ///< Largest |lambda_3| / |lambda_1| of the Hessian (paper A). Range 1..1000.
   std::size_t most = 20000;     ///< The keypoints of the highest contrast are kept. Range 1..1,000,000.
 };
@@ -17,7 +20,7 @@ struct KeypointOptions {
 struct Keypoint {
   Vec3 p_P{0, 0, 0};      ///< mm.
   double sigma_mm = 0.0;  ///< Scale.
-  double contrast = 0.0;  ///< Value of the difference of Gaussians; negative at bright places.
+  double contrast = 0.0;  ///< Difference of Gaussians as compared, so weighted; negative at bright places.
   double ratio = 1.0;     ///< |lambda_3| / |lambda_1|.
   std::size_t octave = 0;
   double level = 0.0;  ///< Within the octave.

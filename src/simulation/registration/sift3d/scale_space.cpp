@@ -17,8 +17,8 @@ namespace {
 
 constexpr double kSourceSigma_voxels = 0.5;  ///< Blur of a sampled volume (Lowe 2004).
 constexpr float kLeastWeight = 0.4F;
-constexpr std::int64_t kLeastSize = 12;       ///< Voxels along the shortest axis of an octave.
-constexpr double kSameSpacing = 0.01;         ///< Relative.
+constexpr std::int64_t kLeastSize = 12;  ///< Voxels along the shortest axis of an octave.
+constexpr double kSameSpacing = 0.01;    ///< Relative.
 
 /// Sum of usable gray levels and of weights near a voxel: their quotient is the mean of the usable ones.
 struct WeightedMean {
@@ -31,8 +31,7 @@ Status check(const ScaleSpaceOptions& options) {
   };
   if (!(options.first_sigma >= 0.8 && options.first_sigma <= 4.0))
     return fail_at("the first sigma", options.first_sigma, "give 0.8 to 4 voxels");
-  if (options.scales < 1 || options.scales > 8)
-    return fail_at("the number of scales", options.scales, "give 1 to 8");
+  if (options.scales < 1 || options.scales > 8) return fail_at("the number of scales", options.scales, "give 1 to 8");
   if (options.octaves < 1 || options.octaves > 8)
     return fail_at("the number of octaves", options.octaves, "give 1 to 8");
   if (!(options.spacing_mm == 0.0 || (options.spacing_mm >= 0.01 && options.spacing_mm <= 100.0)))
@@ -40,27 +39,12 @@ Status check(const ScaleSpaceOptions& options) {
   return {};
 }
 
-/// The usable gray levels with mean 0 and standard deviation 1.
-Result<WeightedMean> normalise(const volume::LabelGrid& gray, const volume::MaskGrid& usable) {
-  double count = 0.0, sum = 0.0, squares = 0.0;
-  for (std::size_t n = 0; n < gray.voxels.size(); ++n) {
-    if (usable.voxels[n] == 0) continue;
-    const double g = gray.voxels[n];
-    count += 1.0;
-    sum += g;
-    squares += g * g;
-  }
-  if (count == 0.0)
-    return fail("no voxel is usable: all are in shadow or outside of the fan", {},
-                "check the beam axis and the shadow threshold");
-  const double mean = sum / count;
-  const double deviation = std::sqrt(std::max(0.0, squares / count - mean * mean));
-  if (deviation < 1e-6) return fail("all usable voxels have the same gray level", {}, "give a volume with an image");
-  WeightedMean result{volume::FloatGrid(gray.geometry), volume::FloatGrid(gray.geometry)};
-  parallel_for(gray.voxels.size(), 1 << 16, [&](std::size_t first, std::size_t last) {
+WeightedMean weigh(const volume::FloatGrid& flat, const volume::MaskGrid& usable) {
+  WeightedMean result{volume::FloatGrid(flat.geometry), volume::FloatGrid(flat.geometry)};
+  parallel_for(flat.voxels.size(), 1 << 16, [&](std::size_t first, std::size_t last) {
     for (std::size_t n = first; n < last; ++n) {
       if (usable.voxels[n] == 0) continue;
-      result.sum.voxels[n] = static_cast<float>((gray.voxels[n] - mean) / deviation);
+      result.sum.voxels[n] = flat.voxels[n];
       result.weight.voxels[n] = 1.0F;
     }
   });
@@ -149,15 +133,13 @@ double ScaleSpace::sigma_mm(std::size_t octave, double level) const noexcept {
   return octaves[octave].geometry.spacing_mm.x() * options.first_sigma * std::exp2(level / options.scales);
 }
 
-Result<ScaleSpace> build_scale_space(const volume::LabelGrid& gray, const volume::MaskGrid& usable,
+Result<ScaleSpace> build_scale_space(const volume::FloatGrid& flat, const volume::MaskGrid& usable,
                                      const ScaleSpaceOptions& options) {
-  TROCAR_CHECK(usable.voxels.size() == gray.voxels.size());
+  TROCAR_CHECK(usable.voxels.size() == flat.voxels.size());
   TROCAR_TRY_STATUS(check(options));
-  TROCAR_TRY(WeightedMean mean, normalise(gray, usable));
-  const double spacing_mm =
-      options.spacing_mm > 0.0 ? options.spacing_mm : std::cbrt(gray.geometry.voxel_volume_mm3());
+  const double spacing_mm = options.spacing_mm > 0.0 ? options.spacing_mm : std::cbrt(flat.geometry.voxel_volume_mm3());
   volume::MaskGrid mask;
-  mean = make_base(std::move(mean), usable, spacing_mm, options.first_sigma, mask);
+  WeightedMean mean = make_base(weigh(flat, usable), usable, spacing_mm, options.first_sigma, mask);
   ScaleSpace space;
   space.options = options;
   for (int octave = 0; octave < options.octaves; ++octave) {

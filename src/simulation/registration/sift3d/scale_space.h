@@ -8,7 +8,7 @@
 namespace trocar::registration {
 
 struct ScaleSpaceOptions {
-  double spacing_mm = 0.0;  ///< Of the first octave's isotropic grid; 0: the cube root of a voxel's volume.
+  double spacing_mm = 0.0;   ///< Of the first octave's isotropic grid; 0: the cube root of a voxel's volume.
   double first_sigma = 1.6;  ///< Of the first level, voxels of the octave (Lowe 2004). Range 0.8..4.
   int scales = 3;            ///< Per octave. Range 1..8.
   int octaves = 4;           ///< Fewer if the volume is small. Range 1..8.
@@ -18,7 +18,7 @@ struct ScaleSpaceOptions {
 struct Octave {
   volume::GridGeometry geometry;  ///< Isotropic.
   /// Means of the usable gray levels near a voxel, Gaussian weights; NaN at unusable voxels, and where less than 0.4 of
-  /// the weight is usable. Unit: standard deviations of the usable gray levels.
+  /// the weight is usable. Unit: local standard deviations of gray.
   std::vector<volume::FloatGrid> levels;
 };
 
@@ -31,9 +31,9 @@ struct ScaleSpace {
   double sigma_mm(std::size_t octave, double level) const noexcept;
 };
 
-/// `usable` lies on the grid of `gray` (checked). The blur is isotropic in mm for any voxel size. Errors: options out of
-/// range (exit status 2), no usable voxel, or all of one gray level.
-Result<ScaleSpace> build_scale_space(const volume::LabelGrid& gray, const volume::MaskGrid& usable,
+/// Of flattened gray levels (intensity/flatten.h); `usable` lies on the same grid (checked). The blur is isotropic in
+/// mm for any voxel size. Errors (exit status 2): options out of range.
+Result<ScaleSpace> build_scale_space(const volume::FloatGrid& flat, const volume::MaskGrid& usable,
                                      const ScaleSpaceOptions& options = {});
 
 }  // namespace trocar::registration

@@ -11,8 +11,9 @@ namespace {
 /// Difference of two levels, of three neighbouring k planes.
 class DifferencePlanes {
  public:
-  DifferencePlanes(const Octave& octave, int level)
-      : low_(octave.levels[static_cast<std::size_t>(level)].voxels.data()),
+  DifferencePlanes(const Octave& octave, int level, float gain)
+      : gain_(gain),
+        low_(octave.levels[static_cast<std::size_t>(level)].voxels.data()),
         high_(octave.levels[static_cast<std::size_t>(level) + 1].voxels.data()),
         plane_(static_cast<std::size_t>(octave.geometry.size[0] * octave.geometry.size[1])) {
     for (auto& plane : planes_) plane.resize(plane_);
@@ -20,11 +21,12 @@ class DifferencePlanes {
   void load(std::int64_t k) {
     const std::size_t begin = static_cast<std::size_t>(k) * plane_;
     std::vector<float>& plane = planes_[static_cast<std::size_t>(k % 3)];
-    for (std::size_t n = 0; n < plane_; ++n) plane[n] = high_[begin + n] - low_[begin + n];
+    for (std::size_t n = 0; n < plane_; ++n) plane[n] = gain_ * (high_[begin + n] - low_[begin + n]);
   }
   const float* plane(std::int64_t k) const { return planes_[static_cast<std::size_t>(k % 3)].data(); }
 
  private:
+  float gain_;
   const float* low_;
   const float* high_;
   std::size_t plane_;
@@ -49,8 +51,10 @@ bool exceeds(const DifferencePlanes& planes, std::int64_t k, std::size_t at, std
 
 class Search {
  public:
-  Search(const Octave& octave, int scales, float least) : octave_(octave), scales_(scales), least_(least) {
-    for (int level = 0; level < scales + 2; ++level) differences_.emplace_back(octave, level);
+  Search(const Octave& octave, int scales, double scale_exponent, float least)
+      : octave_(octave), scales_(scales), least_(least) {
+    for (int level = 0; level < scales + 2; ++level)
+      differences_.emplace_back(octave, level, static_cast<float>(std::exp2(scale_exponent * level / scales)));
   }
 
   void search(std::int64_t first_k, std::int64_t last_k, std::vector<Extremum>& found) {
@@ -98,14 +102,14 @@ class Search {
 
 }  // namespace
 
-std::vector<Extremum> find_extrema(const Octave& octave, int scales, float least) {
+std::vector<Extremum> find_extrema(const Octave& octave, int scales, double scale_exponent, float least) {
   const std::int64_t planes = octave.geometry.size[2] - 2;
   if (planes <= 0) return {};
   constexpr std::int64_t kPlanesTogether = 8;
   const auto parts = static_cast<std::size_t>((planes + kPlanesTogether - 1) / kPlanesTogether);
   std::vector<std::vector<Extremum>> found(parts);
   parallel_for(parts, 1, [&](std::size_t first, std::size_t last) {
-    Search search(octave, scales, least);
+    Search search(octave, scales, scale_exponent, least);
     for (std::size_t part = first; part < last; ++part) {
       const std::int64_t begin = 1 + static_cast<std::int64_t>(part) * kPlanesTogether;
       search.search(begin, std::min(begin + kPlanesTogether, planes + 1), found[part]);

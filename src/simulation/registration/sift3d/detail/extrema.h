@@ -15,6 +15,7 @@ struct Extremum {
 
 /// Extrema of an octave of absolute value `least` or more, in the order of voxels in memory, levels within. Voxels with
 /// a neighbour that is not usable are no extrema. Parallel.
-std::vector<Extremum> find_extrema(const Octave& octave, int scales, float least);
+/// `scale_exponent`: differences are multiplied by 2^(scale_exponent * level / scales) before they are compared.
+std::vector<Extremum> find_extrema(const Octave& octave, int scales, double scale_exponent, float least);
 
 }  // namespace trocar::registration::detail

@@ -1,0 +1,99 @@
+#include "registration/intensity/flatten.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/check.h"
+#include "core/parallel.h"
+#include "volume/gaussian_blur.h"
+#include "volume/sampling.h"
+
+namespace trocar::registration {
+namespace {
+
+constexpr std::int64_t kBlock = 4;  ///< Voxels along an edge of a block of the coarse grid.
+constexpr float kLeastWeight = 1e-6F;
+constexpr double kLeastDeviation = 0.25;  ///< Of that of the whole volume: plain regions are not amplified further.
+
+/// Sums over blocks of voxels: weights, gray levels and their squares.
+struct Moments {
+  volume::FloatGrid weight, sum, squares;
+};
+
+volume::GridGeometry block_geometry(const volume::GridGeometry& fine) {
+  volume::GridGeometry coarse = fine;
+  for (auto& size : coarse.size) size = (size + kBlock - 1) / kBlock;
+  coarse.spacing_mm = fine.spacing_mm * static_cast<double>(kBlock);
+  coarse.origin_P = fine.to_mm(Vec3::Constant(0.5 * static_cast<double>(kBlock - 1)));
+  return coarse;
+}
+
+Moments sum_blocks(const volume::LabelGrid& gray, const volume::MaskGrid& usable) {
+  const volume::GridGeometry coarse = block_geometry(gray.geometry);
+  Moments moments{volume::FloatGrid(coarse), volume::FloatGrid(coarse), volume::FloatGrid(coarse)};
+  const auto& size = gray.geometry.size;
+  parallel_for(static_cast<std::size_t>(coarse.size[2]), 1, [&](std::size_t first, std::size_t last) {
+    const std::int64_t end = std::min(size[2], static_cast<std::int64_t>(last) * kBlock);
+    for (std::int64_t k = static_cast<std::int64_t>(first) * kBlock; k < end; ++k) {
+      for (std::int64_t j = 0; j < size[1]; ++j) {
+        for (std::int64_t i = 0; i < size[0]; ++i) {
+          const std::size_t n = gray.geometry.offset({i, j, k});
+          if (usable.voxels[n] == 0) continue;
+          const std::size_t block = coarse.offset({i / kBlock, j / kBlock, k / kBlock});
+          const auto g = static_cast<float>(gray.voxels[n]);
+          moments.weight.voxels[block] += 1.0F;
+          moments.sum.voxels[block] += g;
+          moments.squares.voxels[block] += g * g;
+        }
+      }
+    }
+  });
+  return moments;
+}
+
+double deviation_of(const Moments& moments, double& count) {
+  double sum = 0.0, squares = 0.0;
+  count = 0.0;
+  for (std::size_t n = 0; n < moments.sum.voxels.size(); ++n) {
+    count += static_cast<double>(moments.weight.voxels[n]);
+    sum += static_cast<double>(moments.sum.voxels[n]);
+    squares += static_cast<double>(moments.squares.voxels[n]);
+  }
+  return count > 0.0 ? std::sqrt(std::max(0.0, squares / count - sum * sum / (count * count))) : 0.0;
+}
+
+}  // namespace
+
+Result<volume::FloatGrid> flatten(const volume::LabelGrid& gray, const volume::MaskGrid& usable, double sigma_mm) {
+  TROCAR_CHECK(usable.voxels.size() == gray.voxels.size());
+  Moments moments = sum_blocks(gray, usable);
+  double count = 0.0;
+  const double deviation = deviation_of(moments, count);
+  if (count == 0.0)
+    return fail("no voxel is usable: all are in shadow or outside of the fan", {},
+                "check the beam axis and the shadow threshold");
+  if (deviation < 1e-3) return fail("all usable voxels have the same gray level", {}, "give a volume with an image");
+  const Vec3 sigma = sigma_mm * moments.sum.geometry.spacing_mm.cwiseInverse();
+  for (volume::FloatGrid* grid : {&moments.weight, &moments.sum, &moments.squares}) volume::gaussian_blur(*grid, sigma);
+  volume::FloatGrid mean(moments.sum.geometry), scale(moments.sum.geometry);
+  for (std::size_t n = 0; n < mean.voxels.size(); ++n) {
+    const float weight = std::max(moments.weight.voxels[n], kLeastWeight);
+    mean.voxels[n] = moments.sum.voxels[n] / weight;
+    const float variance = moments.squares.voxels[n] / weight - mean.voxels[n] * mean.voxels[n];
+    const double local = std::sqrt(std::max(0.0, static_cast<double>(variance)));
+    scale.voxels[n] = static_cast<float>(1.0 / std::max(local, kLeastDeviation * deviation));
+  }
+  volume::FloatGrid flat(gray.geometry);
+  parallel_for(flat.voxels.size(), 4096, [&](std::size_t first, std::size_t last) {
+    for (std::size_t n = first; n < last; ++n) {
+      if (usable.voxels[n] == 0) continue;
+      const Vec3 at = (volume::to_vec3(gray.geometry.index_of(n)).array() - 0.5 * static_cast<double>(kBlock - 1)) /
+                      static_cast<double>(kBlock);
+      flat.voxels[n] = static_cast<float>((gray.voxels[n] - volume::sample_linear_at_index(mean, at)) *
+                                          volume::sample_linear_at_index(scale, at));
+    }
+  });
+  return flat;
+}
+
+}  // namespace trocar::registration

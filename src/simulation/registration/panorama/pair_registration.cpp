@@ -1,0 +1,180 @@
+#include "registration/panorama/pair_registration.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/parallel.h"
+
+namespace trocar::registration {
+namespace {
+
+constexpr std::size_t kMotionsOfThree = 40;
+constexpr std::size_t kMotionsOfOne = 400;
+constexpr std::size_t kAligned = 60;       ///< Motions that are aligned at the coarse detail.
+constexpr std::size_t kRefined = 6;        ///< Of those, that are aligned at the middle detail.
+constexpr double kSameMotion_mm = 5.0;     ///< Motions nearer than this at the corners are one.
+
+/// Significance of a correlation: the larger the overlap and the correlation, the larger. Speckle smoothed by sigma is
+/// independent at points about 2 sqrt(pi) sigma apart.
+double significance(const Alignment& alignment, const DetailLevel& level) {
+  if (alignment.ncc <= 0.0) return 0.0;
+  const double ncc = std::min(alignment.ncc, 0.9999);
+  const double voxel_mm = level.values.geometry.spacing_mm.x();
+  const double points = alignment.overlap * static_cast<double>(level.points.size());
+  const double apart_mm = 2.0 * std::sqrt(std::numbers::pi) * level.sigma_mm;
+  const double stride_mm = voxel_mm * std::cbrt(static_cast<double>(level.values.voxels.size()) /
+                                                static_cast<double>(std::max<std::size_t>(level.points.size(), 1)));
+  const double independent = points * std::min(1.0, std::pow(stride_mm / apart_mm, 3.0));
+  return std::atanh(ncc) * std::sqrt(std::max(independent - 3.0, 0.0));
+}
+
+struct Candidate {
+  Alignment alignment;
+  double significance = 0.0;
+};
+
+void sort_best_first(std::vector<Candidate>& candidates) {
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& x, const Candidate& y) { return x.significance > y.significance; });
+}
+
+std::vector<PointPair> point_pairs(const PreparedVolume& a, const PreparedVolume& b,
+                                   const std::vector<Match>& matches) {
+  std::vector<PointPair> pairs;
+  for (const Match& m : matches)
+    pairs.push_back({a.keypoints.keypoints[m.a].p_P, b.keypoints.keypoints[m.b].p_P});
+  return pairs;
+}
+
+/// Motions to try: of three matches, and of single ones by their orientations.
+Result<std::vector<Pose>> propose(const PreparedVolume& a, const PreparedVolume& b, const std::vector<Match>& matches,
+                                  const std::vector<PointPair>& pairs, const RansacOptions& options) {
+  TROCAR_TRY(const std::vector<RigidMotion> motions,
+             find_motions(pairs, std::max(a.extent_mm(), b.extent_mm()), options, kMotionsOfThree));
+  std::vector<Pose> proposals;
+  for (const RigidMotion& motion : motions) proposals.push_back(motion.X_AB);
+  for (std::size_t n = 0; n < std::min(matches.size(), kMotionsOfOne); ++n) {
+    const Mat3 R_AB = a.keypoints.features.features[matches[n].feature_a].R_PK *
+                      b.keypoints.features.features[matches[n].feature_b].R_PK.transpose();
+    proposals.emplace_back(R_AB, pairs[n].a - R_AB * pairs[n].b);
+  }
+  return proposals;
+}
+
+/// The largest distance between places of points of B after either motion.
+double difference_mm(const PreparedVolume& b, const Pose& X, const Pose& Y) {
+  double largest = 0.0;
+  const auto& geometry = b.gray.geometry;
+  for (int corner = 0; corner < 8; ++corner) {
+    Vec3 index;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto last = static_cast<double>(geometry.size[static_cast<std::size_t>(axis)] - 1);
+      index[axis] = ((corner >> axis) & 1) != 0 ? 0.8 * last : 0.2 * last;
+    }
+    const Vec3 p = geometry.to_mm(index);
+    largest = std::max(largest, (X * p - Y * p).norm());
+  }
+  return largest;
+}
+
+/// Keeps the best of motions that are about the same.
+void remove_repeats(const PreparedVolume& b, std::vector<Candidate>& candidates) {
+  std::vector<Candidate> kept;
+  for (const Candidate& c : candidates) {
+    const bool is_new = std::all_of(kept.begin(), kept.end(), [&](const Candidate& other) {
+      return difference_mm(b, c.alignment.X_AB, other.alignment.X_AB) > kSameMotion_mm;
+    });
+    if (is_new) kept.push_back(c);
+  }
+  candidates = std::move(kept);
+}
+
+std::vector<Candidate> align_at(const PreparedVolume& a, const PreparedVolume& b, std::size_t detail,
+                                const std::vector<Pose>& poses) {
+  std::vector<Candidate> candidates(poses.size());
+  parallel_for(poses.size(), 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t n = first; n < last; ++n) {
+      const DetailLevel& level = a.details[detail];
+      candidates[n].alignment = align(level.points, b.details[detail].values, poses[n]);
+      candidates[n].significance = significance(candidates[n].alignment, level);
+    }
+  });
+  sort_best_first(candidates);
+  remove_repeats(b, candidates);
+  return candidates;
+}
+
+std::vector<Pose> best_poses(const std::vector<Candidate>& candidates, std::size_t most) {
+  std::vector<Pose> poses;
+  for (std::size_t n = 0; n < std::min(most, candidates.size()); ++n) poses.push_back(candidates[n].alignment.X_AB);
+  return poses;
+}
+
+/// Proposals of the highest correlation at the coarse detail.
+std::vector<Pose> screen(const PreparedVolume& a, const PreparedVolume& b, const std::vector<Pose>& proposals) {
+  std::vector<Candidate> candidates(proposals.size());
+  parallel_for(proposals.size(), 4, [&](std::size_t first, std::size_t last) {
+    for (std::size_t n = first; n < last; ++n) {
+      const DetailLevel& level = a.details.front();
+      candidates[n].alignment = correlate(level.points, b.details.front().values, proposals[n]);
+      candidates[n].significance = significance(candidates[n].alignment, level);
+    }
+  });
+  sort_best_first(candidates);
+  return best_poses(candidates, kAligned);
+}
+
+double logistic(double x) { return 1.0 / (1.0 + std::exp(-x)); }
+
+/// 0..1 from the significance of the best motion, and its distance to the best other one. Volumes of different places:
+/// up to 15, less than 2 apart; half-overlapping volumes: 30 to 50, 13 or more apart (docs/validation.md).
+double confidence_of(const std::vector<Candidate>& candidates) {
+  if (candidates.empty()) return 0.0;
+  constexpr double kSignificance = 17.0, kApart = 5.0, kWidth = 1.0;
+  const double best = candidates.front().significance;
+  const double other = candidates.size() > 1 ? candidates[1].significance : 0.0;
+  return logistic((best - kSignificance) / kWidth) * logistic((best - other - kApart) / kWidth);
+}
+
+}  // namespace
+
+Alignment refine_pair(const PreparedVolume& a, const PreparedVolume& b, const Pose& X_AB) {
+  return align(a.details.back().points, b.details.back().values, X_AB);
+}
+
+Result<PairRegistration> register_pair(const PreparedVolume& a, const PreparedVolume& b, const PairOptions& options) {
+  if (!(options.least_confidence >= 0.0 && options.least_confidence <= 1.0))
+    return fail_usage("the least confidence is out of range", fmt::format("{:g}", options.least_confidence),
+                      "give 0 to 1");
+  PairRegistration result;
+  TROCAR_TRY(result.matches, match(a.keypoints, b.keypoints, options.match));
+  const std::vector<PointPair> pairs = point_pairs(a, b, result.matches);
+  TROCAR_TRY(const std::vector<Pose> proposals, propose(a, b, result.matches, pairs, options.ransac));
+  const std::vector<Candidate> coarse = align_at(a, b, 0, screen(a, b, proposals));
+  const std::vector<Candidate> middle = align_at(a, b, 1, best_poses(coarse, kRefined));
+  result.confidence = confidence_of(middle);
+  result.significance = middle.empty() ? 0.0 : middle.front().significance;
+  if (middle.empty()) return result;
+  const Alignment fine = refine_pair(a, b, middle.front().alignment.X_AB);
+  result.X_AB = fine.X_AB;
+  result.ncc = fine.ncc;
+  result.overlap = fine.overlap;
+  result.information = fine.information;
+  result.middle_A = fine.middle_A;
+  double squares = 0.0;
+  for (std::size_t n = 0; n < pairs.size(); ++n) {
+    const double apart_mm = (fine.X_AB * pairs[n].b - pairs[n].a).norm();
+    if (apart_mm > options.ransac.inlier_mm) continue;
+    result.inliers.push_back(n);
+    squares += apart_mm * apart_mm;
+  }
+  if (!result.inliers.empty())
+    result.keypoint_rms_mm = std::sqrt(squares / static_cast<double>(result.inliers.size()));
+  result.is_found = result.confidence >= options.least_confidence;
+  return result;
+}
+
+}  // namespace trocar::registration

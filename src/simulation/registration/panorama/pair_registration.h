@@ -1,0 +1,42 @@
+#pragma once
+
+#include <vector>
+
+#include "core/result.h"
+#include "registration/matching/ransac.h"
+#include "registration/panorama/prepared_volume.h"
+
+namespace trocar::registration {
+
+struct PairOptions {
+  MatchOptions match;
+  RansacOptions ransac;
+  double least_confidence = 0.5;  ///< A pair below is refused. Range 0..1.
+};
+
+/// Motion between two volumes, found from keypoints and refined by gray levels.
+struct PairRegistration {
+  std::size_t a = 0, b = 0;  ///< Indices of the volumes.
+  Pose X_AB;
+  std::vector<Match> matches;
+  std::vector<std::size_t> inliers;  ///< Of the matches: those that X_AB brings together.
+  double keypoint_rms_mm = 0.0;
+  double ncc = -1.0;        ///< After the refinement, -1..1.
+  double overlap = 0.0;     ///< Share of A's points that meet B.
+  double significance = 0.0;  ///< Of the correlation, in standard deviations of that of independent speckle.
+  double confidence = 0.0;  ///< 0..1: that no other motion explains both volumes (docs/physics.md R9).
+  Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
+  Vec3 middle_A{0, 0, 0};
+  bool is_found = false;  ///< The confidence reaches the least one.
+};
+
+/// Registers B to A (docs/physics.md R9): motions of three matches (RANSAC) and of single matches with their
+/// orientations are compared by the correlation of smoothed gray levels; the best is refined at full detail. Errors
+/// (exit status 2): options out of range.
+Result<PairRegistration> register_pair(const PreparedVolume& a, const PreparedVolume& b,
+                                       const PairOptions& options = {});
+
+/// Refines a known motion at the finest detail.
+Alignment refine_pair(const PreparedVolume& a, const PreparedVolume& b, const Pose& X_AB);
+
+}  // namespace trocar::registration
