@@ -16,10 +16,12 @@ void add_session_commands(CLI::App& program, Action& action);
 void add_device_commands(CLI::App& program, Action& action);
 void add_link_commands(CLI::App& program, Action& action);
 void add_ultrasound_commands(CLI::App& program, Action& action);
-// Sub-commands of `ultrasound`: image; sweep; reconstruct; views and transducers.
+// Sub-commands of `ultrasound`: image; sweep; reconstruct; stitch; keypoints; views and transducers.
 void add_ultrasound_image_command(CLI::App& ultrasound, Action& action);
 void add_ultrasound_sweep_command(CLI::App& ultrasound, Action& action);
 void add_ultrasound_reconstruct_command(CLI::App& ultrasound, Action& action);
+void add_ultrasound_stitch_command(CLI::App& ultrasound, Action& action);
+void add_ultrasound_keypoints_command(CLI::App& ultrasound, Action& action);
 void add_ultrasound_list_commands(CLI::App& ultrasound, Action& action);
 void add_bench_command(CLI::App& program, Action& action);
 /// Describes all commands of `program`, which must outlive `action`.

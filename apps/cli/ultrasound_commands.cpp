@@ -10,10 +10,13 @@ void add_ultrasound_commands(CLI::App& program, Action& action) {
   ultrasound->require_subcommand(1);
   ultrasound->footer(
       "Examples:\n  trocar ultrasound image --patient abdomen --view liver-right-kidney --out kidney.png\n"
-      "  trocar ultrasound reconstruct sweep.igs.mha --spacing 0.5 --out volume.nrrd\n");
+      "  trocar ultrasound reconstruct sweep.igs.mha --spacing 0.5 --out volume.nrrd\n"
+      "  trocar ultrasound stitch left.nrrd middle.nrrd right.nrrd --out panorama.nrrd --transforms poses\n");
   add_ultrasound_image_command(*ultrasound, action);
   add_ultrasound_sweep_command(*ultrasound, action);
   add_ultrasound_reconstruct_command(*ultrasound, action);
+  add_ultrasound_stitch_command(*ultrasound, action);
+  add_ultrasound_keypoints_command(*ultrasound, action);
   add_ultrasound_list_commands(*ultrasound, action);
 }
 

@@ -55,8 +55,7 @@ Layer make_layer(const PlacedVolume& placed, const std::array<float, 256>& level
   layer.X_N0 = placed.X_0N.inverse();
   const PreparedVolume& volume = *placed.volume;
   layer.gray = volume::FloatGrid(volume.gray.geometry);
-  for (std::size_t n = 0; n < layer.gray.voxels.size(); ++n)
-    layer.gray.voxels[n] = levels[volume.gray.voxels[n]];
+  for (std::size_t n = 0; n < layer.gray.voxels.size(); ++n) layer.gray.voxels[n] = levels[volume.gray.voxels[n]];
   const double sigma_mm = kSmoothing_voxels * volume.gray.geometry.spacing_mm.minCoeff();
   layer.smooth = smooth_usable(layer.gray, volume.region.usable, sigma_mm);
   layer.weight = weights_of(volume, margin_mm);
@@ -106,7 +105,7 @@ bool is_within(const volume::GridGeometry& geometry, const Vec3& index) {
 struct Mixed {
   double gray = 0.0;
   std::size_t source = 0;
-  double seam = 0.0;         ///< Difference of the two main volumes' slow parts.
+  double seam = 0.0;  ///< Difference of the two main volumes' slow parts.
   bool is_seam = false;
 };
 
@@ -163,8 +162,7 @@ Mixed mix(const std::vector<Layer>& layers, const Vec3& p_0, double sharpness) {
 Result<Panorama> blend(const std::vector<PlacedVolume>& volumes, const BlendOptions& options,
                        const Progress& progress) {
   if (!(options.sharpness >= 1.0 && options.sharpness <= 20.0))
-    return fail_usage("the sharpness of seams is out of range", fmt::format("{:g}", options.sharpness),
-                      "give 1 to 20");
+    return fail_usage("the sharpness of seams is out of range", fmt::format("{:g}", options.sharpness), "give 1 to 20");
   if (!(options.margin_mm >= 0.1 && options.margin_mm <= 100.0))
     return fail_usage("the margin of volumes is out of range", fmt::format("{:g}", options.margin_mm),
                       "give 0.1 to 100 mm");

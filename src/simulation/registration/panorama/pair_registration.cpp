@@ -13,9 +13,9 @@ namespace {
 
 constexpr std::size_t kMotionsOfThree = 40;
 constexpr std::size_t kMotionsOfOne = 400;
-constexpr std::size_t kAligned = 60;       ///< Motions that are aligned at the coarse detail.
-constexpr std::size_t kRefined = 6;        ///< Of those, that are aligned at the middle detail.
-constexpr double kSameMotion_mm = 5.0;     ///< Motions nearer than this at the corners are one.
+constexpr std::size_t kAligned = 60;    ///< Motions that are aligned at the coarse detail.
+constexpr std::size_t kRefined = 6;     ///< Of those, that are aligned at the middle detail.
+constexpr double kSameMotion_mm = 5.0;  ///< Motions nearer than this at the corners are one.
 
 /// Significance of a correlation: the larger the overlap and the correlation, the larger. Speckle smoothed by sigma is
 /// independent at points about 2 sqrt(pi) sigma apart.
@@ -44,8 +44,7 @@ void sort_best_first(std::vector<Candidate>& candidates) {
 std::vector<PointPair> point_pairs(const PreparedVolume& a, const PreparedVolume& b,
                                    const std::vector<Match>& matches) {
   std::vector<PointPair> pairs;
-  for (const Match& m : matches)
-    pairs.push_back({a.keypoints.keypoints[m.a].p_P, b.keypoints.keypoints[m.b].p_P});
+  for (const Match& m : matches) pairs.push_back({a.keypoints.keypoints[m.a].p_P, b.keypoints.keypoints[m.b].p_P});
   return pairs;
 }
 
@@ -127,7 +126,9 @@ std::vector<Pose> screen(const PreparedVolume& a, const PreparedVolume& b, const
   return best_poses(candidates, kAligned);
 }
 
-double logistic(double x) { return 1.0 / (1.0 + std::exp(-x)); }
+double logistic(double x) {
+  return 1.0 / (1.0 + std::exp(-x));
+}
 
 /// 0..1 from the significance of the best motion, and its distance to the best other one. Volumes of different places:
 /// up to 15, less than 2 apart; half-overlapping volumes: 30 to 50, 13 or more apart (docs/validation.md).
@@ -171,8 +172,7 @@ Result<PairRegistration> register_pair(const PreparedVolume& a, const PreparedVo
     result.inliers.push_back(n);
     squares += apart_mm * apart_mm;
   }
-  if (!result.inliers.empty())
-    result.keypoint_rms_mm = std::sqrt(squares / static_cast<double>(result.inliers.size()));
+  if (!result.inliers.empty()) result.keypoint_rms_mm = std::sqrt(squares / static_cast<double>(result.inliers.size()));
   result.is_found = result.confidence >= options.least_confidence;
   return result;
 }

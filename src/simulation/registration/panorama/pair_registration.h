@@ -21,10 +21,10 @@ struct PairRegistration {
   std::vector<Match> matches;
   std::vector<std::size_t> inliers;  ///< Of the matches: those that X_AB brings together.
   double keypoint_rms_mm = 0.0;
-  double ncc = -1.0;        ///< After the refinement, -1..1.
-  double overlap = 0.0;     ///< Share of A's points that meet B.
+  double ncc = -1.0;          ///< After the refinement, -1..1.
+  double overlap = 0.0;       ///< Share of A's points that meet B.
   double significance = 0.0;  ///< Of the correlation, in standard deviations of that of independent speckle.
-  double confidence = 0.0;  ///< 0..1: that no other motion explains both volumes (docs/physics.md R9).
+  double confidence = 0.0;    ///< 0..1: that no other motion explains both volumes (docs/physics.md R9).
   Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
   Vec3 middle_A{0, 0, 0};
   bool is_found = false;  ///< The confidence reaches the least one.

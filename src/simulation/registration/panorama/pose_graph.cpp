@@ -79,8 +79,8 @@ class Solver {
     for (std::size_t n = 0; n < free.size(); ++n) column[free[n]] = static_cast<Eigen::Index>(6 * n);
     double damping = 1e-4, cost = cost_of(X_);
     for (int iteration = 0; iteration < kIterations && damping < 1e8; ++iteration) {
-      Eigen::MatrixXd H = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(6 * free.size()),
-                                                static_cast<Eigen::Index>(6 * free.size()));
+      Eigen::MatrixXd H =
+          Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(6 * free.size()), static_cast<Eigen::Index>(6 * free.size()));
       Eigen::VectorXd g = Eigen::VectorXd::Zero(H.rows());
       for (std::size_t e = 0; e < edges_.size(); ++e)
         if (is_active(e)) add_edge(e, column, H, g);

@@ -18,21 +18,20 @@ struct PoseEdge {
 };
 
 struct PoseGraphOptions {
-  double arm_mm = 40.0;       ///< Half the size of a volume: length at which a rotation counts as a distance.
-  double largest_mm = 3.0;    ///< Largest contradiction of an edge with the others.
-  double robust_mm = 0.5;     ///< Contradictions above this count less (Cauchy).
+  double arm_mm = 40.0;     ///< Half the size of a volume: length at which a rotation counts as a distance.
+  double largest_mm = 3.0;  ///< Largest contradiction of an edge with the others.
+  double robust_mm = 0.5;   ///< Contradictions above this count less (Cauchy).
 };
 
 struct PoseGraph {
-  std::vector<std::optional<Pose>> X_0N;   ///< Pose of each node in the first; empty: not connected with it.
-  std::vector<std::size_t> removed;        ///< Indices of contradicting edges.
-  std::vector<double> contradiction_mm;    ///< Of each edge, after the solution; 0 if one of its nodes has no pose.
+  std::vector<std::optional<Pose>> X_0N;  ///< Pose of each node in the first; empty: not connected with it.
+  std::vector<std::size_t> removed;       ///< Indices of contradicting edges.
+  std::vector<double> contradiction_mm;   ///< Of each edge, after the solution; 0 if one of its nodes has no pose.
 };
 
 /// Poses that fit all edges best (docs/physics.md R11): least squares on SE(3) by Levenberg-Marquardt with Cauchy's
 /// weights, from the tree of the strongest edges. Edges that contradict the others by more than `largest_mm` are
 /// removed one by one. Deterministic.
-PoseGraph solve_pose_graph(std::size_t nodes, const std::vector<PoseEdge>& edges,
-                           const PoseGraphOptions& options = {});
+PoseGraph solve_pose_graph(std::size_t nodes, const std::vector<PoseEdge>& edges, const PoseGraphOptions& options = {});
 
 }  // namespace trocar::registration

@@ -32,10 +32,25 @@ Result<double> threshold_of(const PreparedVolume& volume, const PreparationOptio
   return estimate_shadow_threshold(std::span(&volume.gray, 1), std::span(&inside, 1));
 }
 
+/// Voxels for the comparison of gray levels: away from shadows, and not in the near part of a fan.
+volume::MaskGrid comparable_voxels(const PreparedVolume& volume, const PreparationOptions& options, double voxel_mm) {
+  volume::MaskGrid usable = volume.region.usable;
+  if (volume.beams.is_fan()) {
+    for (std::size_t n = 0; n < usable.voxels.size(); ++n) {
+      if (usable.voxels[n] == 0) continue;
+      const Vec3 p = usable.geometry.centre_mm(usable.geometry.index_of(n));
+      if (volume.beams.to_place(p).depth_mm < options.near_part_mm) usable.voxels[n] = 0;
+    }
+  }
+  return volume::erode(usable, options.widening_voxels * voxel_mm);
+}
+
 Status prepare_steps(PreparedVolume& volume, const PreparationOptions& options, const Progress& progress) {
   if (!(options.widening_voxels >= 0.0 && options.widening_voxels <= 20.0))
     return fail_usage("the widening of shadows is out of range", fmt::format("{:g}", options.widening_voxels),
                       "give 0 to 20 voxels");
+  if (!(options.near_part_mm >= 0.0 && options.near_part_mm <= 200.0))
+    return fail_usage("the near part is out of range", fmt::format("{:g}", options.near_part_mm), "give 0 to 200 mm");
   report(progress, "finding shadows", 0.0);
   TROCAR_TRY(volume.shadow_threshold, threshold_of(volume, options));
   TROCAR_TRY(volume.region, find_shadows(volume.gray, volume.beams, volume.shadow_threshold));
@@ -50,8 +65,9 @@ Status prepare_steps(PreparedVolume& volume, const PreparationOptions& options, 
   TROCAR_TRY(volume.keypoints.features, describe(space, volume.keypoints.keypoints, options.descriptors));
   volume.keypoints.gray = gray_histograms(volume.gray, volume.region.usable, volume.keypoints.keypoints);
   report(progress, "smoothing", 0.8);
-  const double voxel_mm = std::cbrt(volume.gray.geometry.voxel_volume_mm3());
-  const volume::MaskGrid narrowed = volume::erode(volume.region.usable, options.widening_voxels * voxel_mm);
+  const double spacing_mm = options.scale_space.spacing_mm;
+  const double voxel_mm = spacing_mm > 0.0 ? spacing_mm : std::cbrt(volume.gray.geometry.voxel_volume_mm3());
+  const volume::MaskGrid narrowed = comparable_voxels(volume, options, voxel_mm);
   for (const Detail& detail : kDetails) {
     DetailLevel level;
     level.sigma_mm = detail.sigma_voxels * voxel_mm;

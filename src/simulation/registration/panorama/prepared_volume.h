@@ -17,6 +17,9 @@ struct PreparationOptions {
   ScaleSpaceOptions scale_space;
   KeypointOptions keypoints;
   DescriptorOptions descriptors;
+  /// Of a fan: tissue nearer to the face is pressed out of shape by it, so that it is not compared. Assumed; range
+  /// 0..200.
+  double near_part_mm = 25.0;
   double widening_voxels = 3.0;  ///< Of shadows, for the comparison of gray levels. Range 0..20.
 };
 

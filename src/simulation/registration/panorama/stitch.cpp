@@ -6,8 +6,8 @@
 namespace trocar::registration {
 namespace {
 
-constexpr double kFarthest_mm = 3.0;      ///< A refinement that moves a pair farther found another maximum.
-constexpr double kLeastOverlap = 0.05;    ///< Of a pair that is refined by its poses in the graph.
+constexpr double kFarthest_mm = 3.0;    ///< A refinement that moves a pair farther found another maximum.
+constexpr double kLeastOverlap = 0.05;  ///< Of a pair that is refined by its poses in the graph.
 
 PoseEdge to_edge(const PairRegistration& pair) {
   PoseEdge edge;

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "registration/shadow/beams.h"
+#include "volume/grid.h"
+
+namespace trocar::cli {
+
+/// An ultrasound volume of a file.
+struct UltrasoundVolume {
+  std::string name;  ///< File name without ending.
+  volume::LabelGrid gray;
+  registration::Beams beams;
+};
+
+/// Reads a volume of gray levels 0..255. `beam_axis`: parallel beams along it; empty: the beams of the header, or
+/// parallel along +y.
+Result<UltrasoundVolume> read_ultrasound_volume(const std::string& path, const std::string& beam_axis);
+
+/// File name without folder and image ending: "liver" of "a/liver.nii.gz".
+std::string name_without_ending(const std::string& path);
+
+}  // namespace trocar::cli
