@@ -36,6 +36,10 @@ Result<std::vector<CaseResult>> run_link_benchmark();
 Result<std::vector<CaseResult>> run_servers_benchmark(const Options& options);
 /// Volumes from tracked freehand sweeps; with the test data, compared with the volume of PLUS.
 Result<std::vector<CaseResult>> run_reconstruct_benchmark();
+/// 3D SIFT: keypoints, descriptors, matches of 13,500 by 13,500.
+Result<std::vector<CaseResult>> run_sift_benchmark();
+/// Stitched volumes with known poses: generated ones, sweeps of the embedded patient, parts of recorded sweeps.
+Result<std::vector<CaseResult>> run_stitch_benchmark(const Options& options);
 /// Simulated ultrasound compared with a recorded sweep: gray levels, speckle size, an image of both.
 Result<std::vector<CaseResult>> run_likeness_benchmark(const Options& options);
 /// Ultrasound frames of the embedded patient while the transducer moves.

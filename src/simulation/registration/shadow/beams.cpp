@@ -41,10 +41,13 @@ Result<std::vector<double>> numbers(const HeaderFields& fields, const std::strin
   std::vector<double> values;
   for (std::string word; stream >> word;) {
     const auto value = parse_number<double>(word);
-    if (!value || !std::isfinite(*value)) return fail(fmt::format("{} is not a number", key), found->second, "correct the header, or give --beam-axis");
+    if (!value || !std::isfinite(*value))
+      return fail(fmt::format("{} is not a number", key), found->second, "correct the header, or give --beam-axis");
     values.push_back(*value);
   }
-  if (values.size() != count) return fail(fmt::format("{} has {} numbers, not {}", key, values.size(), count));
+  if (values.size() != count)
+    return fail(fmt::format("{} has {} numbers, not {}", key, values.size(), count), found->second,
+                "correct the header, or give --beam-axis");
   return values;
 }
 
@@ -81,7 +84,9 @@ Result<Beams> Beams::from_header(const HeaderFields& fields, const volume::GridG
   const std::string axis_name = axis_text == fields.end() ? "+y" : axis_text->second;
   if (!fields.contains("trocar_apex_mm")) return along_axis(axis_name, geometry);
   const std::optional<Axis> axis = parse_axis(axis_name);
-  if (!axis) return fail("trocar_beam_axis is not a direction along an axis of the volume", axis_name);
+  if (!axis)
+    return fail("trocar_beam_axis is not a direction along an axis of the volume", axis_name,
+                "correct the header, or give --beam-axis");
   Beams beams;
   beams.is_fan_ = true;
   beams.R_PB_ = beam_axes(geometry.R_PV, *axis);

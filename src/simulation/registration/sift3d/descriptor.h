@@ -24,10 +24,10 @@ inline constexpr int kDescriptorNorm = 1 << 14;
 using Descriptor = std::array<std::int16_t, kDescriptorSize>;
 
 struct DescriptorOptions {
-  double sample_sigma = 0.75;  ///< Distance between samples, in units of the keypoint's scale. Range 0.1..4.
-  double least_usable = 0.3;   ///< Share of usable samples; less: no descriptor. Range 0..1.
+  double sample_sigma = 0.75;     ///< Distance between samples, in units of the keypoint's scale. Range 0.1..4.
+  double least_usable = 0.3;      ///< Share of usable samples; less: no descriptor. Range 0..1.
   double largest_element = 0.06;  ///< Of the unit vector, then it is scaled to unit length again. Range 0.02..1.
-  OrientationOptions orientation;
+  OrientationOptions orientation{};
 };
 
 /// A keypoint in one of its orientations.
