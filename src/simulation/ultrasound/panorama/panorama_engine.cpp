@@ -1,0 +1,408 @@
+#include "ultrasound/panorama/panorama_engine.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "core/check.h"
+#include "core/random.h"
+#include "ultrasound/engine/b_mode.h"
+#include "ultrasound/engine/detail/aperture_paths.h"
+#include "ultrasound/engine/detail/clutter.h"
+#include "ultrasound/engine/detail/line_groups.h"
+#include "ultrasound/engine/detail/needle_image.h"
+#include "ultrasound/engine/detail/point_spread.h"
+#include "ultrasound/panorama/detail/hard_shadows.h"
+#include "ultrasound/panorama/detail/panorama_blend.h"
+#include "ultrasound/panorama/detail/panorama_sampler.h"
+#include "ultrasound/scanner/display_settings.h"
+
+namespace trocar::ultrasound {
+namespace {
+
+using namespace detail;
+
+constexpr std::uint64_t kHazeSeed = 0x68617a65;
+
+/// Buffers of one task besides the frame.
+struct Scratch {
+  SteeringRows rows;
+  std::vector<float> logs, rest_mm;
+  PanoramaSamples samples;
+};
+
+/// The scanlines on which needles have echoes or shadows; empty: none.
+LineRange needle_lines(const ScanPlan& plan, const NeedleImage& image) noexcept {
+  constexpr float kShadowReach = 3.0F;  // sigmas
+  float low = static_cast<float>(plan.lines), high = -1.0F;
+  const auto include = [&](float line, float reach) {
+    low = std::min(low, line - reach);
+    high = std::max(high, line + reach);
+  };
+  for (std::size_t n = 0; n < image.count; ++n) {
+    const NeedleImage::Part& part = image.parts[n];
+    for (std::size_t p = part.first_piece; p < part.last_piece; ++p)
+      include(image.pieces[p].line, std::max(kShadowReach / image.pieces[p].line_sigmas, 2.0F));
+    for (std::size_t g = part.first_grain; g < part.last_grain; ++g) include(image.grains[g].line, 2.0F);
+  }
+  const auto lines = static_cast<float>(plan.lines);
+  if (!(low <= high) || high < 0.0F || low >= lines) return {};
+  return {static_cast<int>(std::max(low, 0.0F)), static_cast<int>(std::min(high + 1.0F, lines - 1.0F)) + 1};
+}
+
+/// Separate ranges of scanlines.
+struct Runs {
+  static constexpr int kMost = 4;
+  /// Neighbouring runs are joined: each has a margin that is probed again.
+  static constexpr int kLeastGap = 32;
+  std::array<LineRange, kMost> runs{};
+  int count = 0;
+
+  void include(int line) noexcept {
+    if (count > 0 && (line < runs[static_cast<std::size_t>(count - 1)].last + kLeastGap || count == kMost))
+      runs[static_cast<std::size_t>(count - 1)].last = line + 1;
+    else
+      runs[static_cast<std::size_t>(count++)] = {line, line + 1};
+  }
+};
+
+LineRange both(const LineRange& a, const LineRange& b) noexcept {
+  return {std::max(a.first, b.first), std::min(a.last, b.last)};
+}
+
+}  // namespace
+
+struct PanoramaEngine::Impl {
+  Impl(std::shared_ptr<const AcousticScene> scene_of, std::shared_ptr<const Panorama> panorama_of,
+       Transducer transducer_of, const Acquisition& acquisition)
+      : scene(std::move(scene_of)),
+        panorama(std::move(panorama_of)),
+        transducer(std::move(transducer_of)),
+        ray_cast(scene, transducer, acquisition),
+        frame(make_frame_state(*scene)) {
+    fit(acquisition);
+  }
+
+  void fit(const Acquisition& acquisition);
+  void make_haze();
+  void sample(int group, int first, int last) noexcept;
+  /// Scanlines of a range that need BMode.
+  Runs uncovered(const LineRange& lines) const noexcept;
+  /// Adds needles to `frame`: echoes before the point spread, and shadows in way_gain.
+  void draw_needles(std::span<const NeedleEcho> list, const LineRange& lines) noexcept;
+  /// Amplitudes of the panorama, and their powers for the clutter.
+  void measure(int line) noexcept;
+  /// Needles and clutter over the panorama: the samples of all angles.
+  void begin_line(int group, int line) noexcept;
+  /// Joins the panorama's echoes with those of BMode, or of none (nullptr).
+  void join(int line, const BasebandFrame* casting) noexcept;
+  std::size_t row(int angle, int line) const noexcept {
+    return static_cast<std::size_t>(angle * plan.lines + line) * static_cast<std::size_t>(plan.samples);
+  }
+
+  std::shared_ptr<const AcousticScene> scene;
+  std::shared_ptr<const Panorama> panorama;
+  Transducer transducer;
+  BMode ray_cast;
+  ScanPlan plan;  ///< Of hard tissues alone.
+  FrameState frame;
+  NeedleImage needles;
+  BeamPlanes planes;
+  PanoramaMap map;
+  BasebandFrame out;
+  std::vector<Scratch> scratch;  ///< One per group of scanlines.
+  std::vector<WalkResult> walks;
+  std::vector<float> aperture_rows;
+  std::vector<float> gain;               ///< Per sample, neper: what the scanner's TGC adds to the panorama's levels.
+  std::vector<float> area;               ///< Per sample: its share of the picture's area, times scanlines.
+  std::vector<float> amplitude, weight;  ///< line * samples.
+  std::vector<float> power;              ///< line * samples.
+  std::vector<float> least_weight, most_weight, share;  ///< Per scanline.
+  std::vector<float> haze_re, haze_im;                  ///< line * samples: pattern of the clutter.
+  std::vector<float> most_power;                        ///< Per block of kLobeBlock samples: power of liver's echoes.
+  LineRange needled;                                    ///< Scanlines with needles in the last frame.
+  bool has_frame = false;
+  int cast_lines = 0;
+};
+
+void PanoramaEngine::Impl::fit(const Acquisition& acquisition) {
+  plan = make_shadow_plan(*scene, transducer, acquisition);
+  fit_frame(frame, plan);
+  needles = make_needle_image(plan);
+  planes = make_beam_planes(plan.planes);
+  const BasebandFrame& like = ray_cast.render({Pose::translation(Vec3::Zero()), {}, 0.0, {0, kMostStride}, true});
+  out = like;
+  std::fill(out.re.begin(), out.re.end(), 0.0F);
+  std::fill(out.im.begin(), out.im.end(), 0.0F);
+  const auto lines = static_cast<std::size_t>(plan.lines), samples = static_cast<std::size_t>(plan.samples);
+  aperture_rows.assign(aperture_floats(plan), 0.0F);
+  walks.resize(static_cast<std::size_t>(group_count(plan.lines)) + 1);
+  scratch.resize(walks.size());
+  for (Scratch& s : scratch) {
+    s.rows = SteeringRows(plan);
+    s.logs.assign(samples + kReadAhead, 0.0F);
+    s.rest_mm.assign(samples + kReadAhead, 0.0F);
+    s.samples.fit(plan.samples);
+  }
+  plan.elevation_sigma_mm.resize(samples + kReadAhead, plan.elevation_sigma_mm.back());
+  gain.assign(samples + kReadAhead, 0.0F);
+  area.assign(samples, 0.0F);
+  most_power.clear();
+  double sum_mm = 0.0;
+  for (std::size_t s = 0; s < samples; ++s) {
+    constexpr double kNeperPerDb = std::numbers::ln10 / 20.0;
+    const double depth_mm = (static_cast<double>(s) + 0.5) * plan.geometry.sample_mm();
+    gain[s] = static_cast<float>(
+        -kNeperPerDb * tgc_gain_db(DisplaySettings{}, depth_mm, plan.geometry.depth_mm, plan.beam.frequency_mhz));
+    sum_mm += plan.geometry.line_spacing_mm(depth_mm);
+  }
+  for (std::size_t s = 0; s < samples; ++s)
+    area[s] = static_cast<float>(
+        plan.geometry.line_spacing_mm((static_cast<double>(s) + 0.5) * plan.geometry.sample_mm()) / sum_mm);
+  for (auto* values : {&amplitude, &weight, &power}) values->assign(lines * samples, 0.0F);
+  for (auto* values : {&least_weight, &most_weight, &share}) values->assign(lines, 0.0F);
+  for (std::size_t block = 0; block < plan.lobe_blocks(); ++block) {
+    const float loss = gain[std::min(block * kLobeBlock + kLobeBlock / 2, samples - 1)];
+    most_power.push_back(std::exp(2.0F * loss));
+  }
+  if (plan.acquisition.artefacts.clutter) make_haze();
+  has_frame = false;
+  needled = {};
+}
+
+/// Slices, shadows and weights of scanlines.
+void PanoramaEngine::Impl::sample(int group, int first, int last) noexcept {
+  Scratch& s = scratch[static_cast<std::size_t>(group)];
+  const auto samples = static_cast<std::size_t>(plan.samples);
+  for (int l = first; l < last; ++l) {
+    const auto at = static_cast<std::size_t>(l);
+    fill_way_gain(plan, frame, l, gain, s.logs);
+    const LineWalk& walk = frame.walks[at];
+    for (std::size_t n = 0; n < samples; ++n)
+      s.rest_mm[n] = (static_cast<float>(n) + 0.5F) * plan.sample_mm - walk.pressed_mm * frame.contact_shape[n];
+    const Vec2 origin = plan.geometry.line_origin(l), along = plan.geometry.line_direction(l);
+    PanoramaLine line;
+    line.origin_T = {static_cast<float>(origin.x()), static_cast<float>(origin.y())};
+    line.along_T = {static_cast<float>(along.x()), static_cast<float>(along.y())};
+    line.rest_mm = s.rest_mm.data();
+    line.sigma_mm = plan.elevation_sigma_mm.data();
+    line.samples = plan.samples;
+    line.near_samples = std::min(static_cast<int>(kNearGap_mm / plan.geometry.sample_mm()), plan.samples);
+    line.weight_step = weight_step(plan.geometry.sample_mm());
+    sample_panorama(map, planes, line, s.samples);
+    std::copy_n(s.samples.power.data(), samples, power.data() + at * samples);
+    std::copy_n(s.samples.weight.data(), samples, weight.data() + at * samples);
+    least_weight[at] = walk.coupling * s.samples.least_weight;
+    most_weight[at] = walk.coupling * s.samples.most_weight;
+    out.contact[at] = walk.coupling;
+  }
+}
+
+Runs PanoramaEngine::Impl::uncovered(const LineRange& lines) const noexcept {
+  Runs found;
+  for (int l = lines.first; l < lines.last; ++l)
+    if (least_weight[static_cast<std::size_t>(l)] < kWholeWeight) found.include(l);
+  for (int n = 0; n < found.count; ++n) {
+    LineRange& run = found.runs[static_cast<std::size_t>(n)];
+    run = widened(run, 0, plan.lines);
+  }
+  return found;
+}
+
+void PanoramaEngine::Impl::draw_needles(std::span<const NeedleEcho> list, const LineRange& lines) noexcept {
+  const LineRange before = needled;
+  lay_out_needles(plan, frame, list, needles);
+  const LineRange touched = needle_lines(plan, needles);
+  needled = touched.is_empty() ? LineRange{} : widened(touched, plan.lateral_reach, plan.lines);
+  const LineRange old = both(before, lines), drawn = both(needled, lines);
+  for (const LineRange& range : {old, drawn})
+    for (int l = range.first; l < range.last; ++l)
+      for (auto* echoes : {&frame.re, &frame.im})
+        std::fill_n(echoes->data() + plan.echo_row(l) - kPad, plan.stride, 0.0F);
+  for_groups(drawn, [&](int, int first, int last) { add_needles(plan, frame, needles, first, last); });
+  for (const LineRange& range : {old, drawn})
+    for (int l = range.first; l < range.last; ++l) find_loudest(plan, frame, l);
+}
+
+void PanoramaEngine::Impl::measure(int line) noexcept {
+  const auto at = static_cast<std::size_t>(line), samples = static_cast<std::size_t>(plan.samples);
+  float* const echo = amplitude.data() + at * samples;
+  const float* const its_weight = weight.data() + at * samples;
+  to_amplitude(power.data() + at * samples, frame.way_gain.data() + at * samples, out.contact[at], plan.samples, echo,
+               weight.data() + at * samples);
+  float sum = 0.0F;
+  for (std::size_t s = 0; s < samples; ++s) sum += its_weight[s] * area[s];
+  share[at] = sum;
+  if (!plan.acquisition.artefacts.clutter) return;
+  for (std::size_t block = 0; block < plan.lobe_blocks(); ++block) {
+    float squares = 0.0F;
+    const std::size_t begin = block * kLobeBlock, end = std::min(begin + kLobeBlock, samples);
+    for (std::size_t s = begin; s < end; ++s) squares += echo[s] * echo[s];
+    // A reflector counts as liver: the beam is built against strong reflectors.
+    frame.power[block * static_cast<std::size_t>(plan.lines) + at] =
+        std::min(squares / static_cast<float>(kLobeBlock), most_power[block]);
+  }
+}
+
+void PanoramaEngine::Impl::begin_line(int group, int line) noexcept {
+  const auto at = static_cast<std::size_t>(line), samples = static_cast<std::size_t>(plan.samples);
+  const int angles = plan.steering_angles + plan.near_angles;
+  if (line >= needled.first && line < needled.last) {
+    spread_echoes(plan, frame, line, scratch[static_cast<std::size_t>(group)].rows, out);
+  } else {
+    for (int angle = 0; angle < angles; ++angle)
+      for (auto* values : {&out.re, &out.im}) std::fill_n(values->data() + row(angle, line), plan.samples, 0.0F);
+  }
+  if (!plan.acquisition.artefacts.clutter) return;
+  for (std::size_t block = 0; block * kLobeBlock < samples; ++block) {
+    const float level = std::sqrt(clutter_power(plan, frame, line, block));
+    const std::size_t begin = block * kLobeBlock, end = std::min(begin + kLobeBlock, samples);
+    const float *const re = haze_re.data() + at * samples, *const im = haze_im.data() + at * samples;
+    for (int angle = 0; angle < angles; ++angle) {
+      if (angle >= plan.steering_angles && begin >= static_cast<std::size_t>(plan.near_samples)) continue;
+      float *const to_re = out.re.data() + row(angle, line), *const to_im = out.im.data() + row(angle, line);
+      for (std::size_t s = begin; s < end; ++s) to_re[s] += level * re[s];
+      for (std::size_t s = begin; s < end; ++s) to_im[s] += level * im[s];
+    }
+  }
+}
+
+void PanoramaEngine::Impl::join(int l, const BasebandFrame* casting) noexcept {
+  const auto at = static_cast<std::size_t>(l), samples = static_cast<std::size_t>(plan.samples);
+  for (int angle = 0; angle < plan.steering_angles + plan.near_angles; ++angle) {
+    const std::size_t to = row(angle, l);
+    BlendLine line;
+    line.amplitude = amplitude.data() + at * samples;
+    line.weight = weight.data() + at * samples;
+    line.re = out.re.data() + to;
+    line.im = out.im.data() + to;
+    line.samples = angle < plan.steering_angles ? plan.samples : plan.near_samples;
+    if (casting != nullptr) {
+      line.cast_re = casting->re.data() + to;
+      line.cast_im = casting->im.data() + to;
+    }
+    if (casting == nullptr || most_weight[at] > 0.0F) {
+      blend(line);
+    } else {
+      std::copy_n(line.cast_re, line.samples, line.re);
+      std::copy_n(line.cast_im, line.samples, line.im);
+    }
+  }
+}
+
+/// The pattern of clutter: noise, spread as echoes are, with a mean power of 1 at each depth.
+void PanoramaEngine::Impl::make_haze() {
+  const auto lines = static_cast<std::size_t>(plan.lines), samples = static_cast<std::size_t>(plan.samples);
+  Random random(kHazeSeed);
+  for (int l = 0; l < plan.lines; ++l) {
+    for (std::size_t s = 0; s < samples; ++s) {
+      frame.re[plan.echo_row(l) + s] = static_cast<float>(random.normal());
+      frame.im[plan.echo_row(l) + s] = static_cast<float>(random.normal());
+    }
+    find_loudest(plan, frame, l);
+  }
+  for (int l = 0; l < plan.lines; ++l) spread_echoes(plan, frame, l, scratch[0].rows, out);
+  haze_re.assign(out.re.begin(), out.re.begin() + static_cast<std::ptrdiff_t>(lines * samples));
+  haze_im.assign(out.im.begin(), out.im.begin() + static_cast<std::ptrdiff_t>(lines * samples));
+  for (std::size_t s = 0; s < samples; ++s) {
+    float sum = 0.0F;
+    for (std::size_t l = 0; l < lines; ++l) {
+      const float re = haze_re[l * samples + s], im = haze_im[l * samples + s];
+      sum += re * re + im * im;
+    }
+    const float scale = std::sqrt(static_cast<float>(lines) / std::max(sum, 1e-12F));
+    for (std::size_t l = 0; l < lines; ++l) {
+      haze_re[l * samples + s] *= scale;
+      haze_im[l * samples + s] *= scale;
+    }
+  }
+  fit_frame(frame, plan);  // without the noise
+  std::fill(out.re.begin(), out.re.end(), 0.0F);
+  std::fill(out.im.begin(), out.im.end(), 0.0F);
+}
+
+PanoramaEngine::PanoramaEngine(std::shared_ptr<const AcousticScene> scene, std::shared_ptr<const Panorama> panorama,
+                               Transducer transducer, const Acquisition& acquisition) {
+  TROCAR_CHECK(scene != nullptr && panorama != nullptr);
+  impl_ = std::make_unique<Impl>(std::move(scene), std::move(panorama), std::move(transducer), acquisition);
+}
+PanoramaEngine::~PanoramaEngine() = default;
+PanoramaEngine::PanoramaEngine(PanoramaEngine&&) noexcept = default;
+PanoramaEngine& PanoramaEngine::operator=(PanoramaEngine&&) noexcept = default;
+
+void PanoramaEngine::set_acquisition(const Acquisition& acquisition) {
+  impl_->ray_cast.set_acquisition(acquisition);
+  impl_->fit(acquisition);
+}
+const Acquisition& PanoramaEngine::acquisition() const noexcept {
+  return impl_->plan.acquisition;
+}
+const ScanGeometry& PanoramaEngine::geometry() const noexcept {
+  return impl_->plan.geometry;
+}
+
+const BasebandFrame& PanoramaEngine::render(const BModeInput& input) noexcept {
+  Impl& impl = *impl_;
+  constexpr int kNeighbours = 16;
+  const LineRange wanted = impl.has_frame || input.is_alone ? input.renewed : LineRange{};
+  const LineRange lines = widened(wanted, 0, impl.plan.lines), probed = widened(wanted, kNeighbours, impl.plan.lines);
+  impl.frame.X_PT = input.X_PT;
+  if (input.is_alone) silence_outside(impl.plan, impl.frame, lines, probed);
+  impl.map = make_panorama_map(*impl.panorama, input.X_PT);
+  find_hard_shadows(*impl.scene, impl.plan, impl.frame, probed, lines, impl.walks, impl.aperture_rows);
+  for_groups(lines, [&](int group, int first, int last) { impl.sample(group, first, last); });
+
+  impl.draw_needles(input.needles, lines);
+  for_groups(lines, [&](int, int first, int last) {
+    for (int l = first; l < last; ++l) impl.measure(l);
+  });
+  if (impl.plan.acquisition.artefacts.clutter) sum_powers(impl.plan, impl.frame);
+  const Runs cast = impl.uncovered(lines);
+  const auto is_cast = [&](int line) {
+    return std::any_of(cast.runs.begin(), cast.runs.begin() + cast.count,
+                       [&](const LineRange& run) { return line >= run.first && line < run.last; });
+  };
+  for_groups(lines, [&](int group, int first, int last) {
+    for (int l = first; l < last; ++l) {
+      impl.begin_line(group, l);
+      if (!is_cast(l)) impl.join(l, nullptr);
+    }
+  });
+  impl.cast_lines = 0;
+  for (int n = 0; n < cast.count; ++n) {
+    const LineRange& run = cast.runs[static_cast<std::size_t>(n)];
+    const bool is_part = run.count() < impl.plan.lines;
+    const BasebandFrame& casting = impl.ray_cast.render({input.X_PT, input.needles, input.time_s, run, is_part});
+    for_groups(run, [&](int, int first, int last) {
+      for (int l = first; l < last; ++l) impl.join(l, &casting);
+    });
+    impl.cast_lines += run.count();
+  }
+  impl.out.renewed = lines;
+  impl.has_frame = !input.is_alone || lines.count() == impl.plan.lines;
+  return impl.out;
+}
+
+SoundPath PanoramaEngine::sound_path(int line) const noexcept {
+  const Impl& impl = *impl_;
+  TROCAR_CHECK(line >= 0 && line < impl.plan.lines);
+  const auto samples = static_cast<std::size_t>(impl.plan.samples), at = static_cast<std::size_t>(line);
+  SoundPath path;
+  path.gain = {impl.frame.way_gain.data() + at * samples, samples};
+  path.pressed_mm = impl.frame.walks[at].pressed_mm;
+  path.dent_share = {impl.frame.contact_shape.data(), samples};
+  return path;
+}
+
+double PanoramaEngine::panorama_share() const noexcept {
+  double sum = 0.0;
+  for (const float share : impl_->share) sum += static_cast<double>(share);
+  return sum / static_cast<double>(impl_->share.size());
+}
+
+int PanoramaEngine::ray_cast_lines() const noexcept {
+  return impl_->cast_lines;
+}
+
+}  // namespace trocar::ultrasound
