@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "core/parallel.h"
 #include "ultrasound/panorama/detail/panorama_sampler.h"
@@ -41,6 +42,20 @@ std::array<std::uint8_t, 256> make_levels(const PanoramaOptions& options, const 
         std::clamp(1 + static_cast<int>(std::lround(above_db / panorama.step_db)), 1, kLevels));
   }
   return levels;
+}
+
+/// Median level of the voxels that are not black.
+double find_tissue_db(const Panorama& panorama) {
+  constexpr double kBlack = 0.25;  // of the dynamic range (assumed)
+  constexpr double kLowest_db = -30.0;
+  std::array<std::size_t, 256> counts{};
+  for (const std::uint8_t level : panorama.levels) ++counts[level];
+  const auto first = static_cast<std::size_t>(kBlack * kLevels);
+  const std::size_t all =
+      std::accumulate(counts.begin() + static_cast<std::ptrdiff_t>(first), counts.end(), std::size_t{0});
+  std::size_t sum = 0, median = first;
+  while (median < kLevels && 2 * (sum += counts[median]) < all) ++median;
+  return all == 0 ? 0.0 : std::max(panorama.level_db(static_cast<std::uint8_t>(median)), kLowest_db);
 }
 
 /// Weights by the distance to the nearest voxel that was never imaged or lies outside the grid.
@@ -105,6 +120,7 @@ Result<std::shared_ptr<const Panorama>> make_panorama(const volume::LabelGrid& g
   panorama->levels.assign(gray_U.voxels.size() + detail::kReadBeyond, 0);
   std::transform(gray_U.voxels.begin(), gray_U.voxels.end(), panorama->levels.begin(),
                  [&](std::uint8_t gray) { return levels[gray]; });
+  panorama->tissue_db = find_tissue_db(*panorama);
   panorama->weights = make_weights(gray_U, options.fade_mm);
   return panorama;
 }

@@ -29,6 +29,9 @@ struct Panorama {
   Pose X_PU;
   double floor_db = -45.0;  ///< Level of the darkest imaged voxel.
   double step_db = 0.25;    ///< Between levels.
+  /// Level of soft tissue: median of the imaged voxels with echoes. A needle is drawn relative to it, because the gain
+  /// of the acquisition is unknown. Range -30..15.
+  double tissue_db = 0.0;
 
   /// dB after TGC relative to liver's speckle. level >= 1.
   double level_db(std::uint8_t level) const noexcept { return floor_db + (level - 1) * step_db; }

@@ -97,6 +97,9 @@ struct PanoramaEngine::Impl {
   void begin_line(int group, int line) noexcept;
   /// Joins the panorama's echoes with those of BMode, or of none (nullptr).
   void join(int line, const BasebandFrame* casting) noexcept;
+  int angles() const noexcept { return plan.steering_angles + plan.near_angles; }
+  int samples_of(int angle) const noexcept { return angle < plan.steering_angles ? plan.samples : plan.near_samples; }
+  bool has_needle(int line) const noexcept { return line >= needled.first && line < needled.last; }
   std::size_t row(int angle, int line) const noexcept {
     return static_cast<std::size_t>(angle * plan.lines + line) * static_cast<std::size_t>(plan.samples);
   }
@@ -114,6 +117,9 @@ struct PanoramaEngine::Impl {
   std::vector<Scratch> scratch;  ///< One per group of scanlines.
   std::vector<WalkResult> walks;
   std::vector<float> aperture_rows;
+  int stride = 1;                        ///< Samples per sample of the panorama.
+  double step_mm = 0.0;                  ///< Their distance.
+  std::vector<float> sigma_mm;           ///< Thickness of the beam at these.
   std::vector<float> gain;               ///< Per sample, neper: what the scanner's TGC adds to the panorama's levels.
   std::vector<float> area;               ///< Per sample: its share of the picture's area, times scanlines.
   std::vector<float> amplitude, weight;  ///< line * samples.
@@ -145,7 +151,11 @@ void PanoramaEngine::Impl::fit(const Acquisition& acquisition) {
     s.rest_mm.assign(samples + kReadAhead, 0.0F);
     s.samples.fit(plan.samples);
   }
-  plan.elevation_sigma_mm.resize(samples + kReadAhead, plan.elevation_sigma_mm.back());
+  stride = sample_stride(*panorama, plan.geometry.sample_mm());
+  step_mm = stride * plan.geometry.sample_mm();
+  sigma_mm.assign(samples + kReadAhead, plan.elevation_sigma_mm[samples - 1]);
+  for (std::size_t n = 0; n * static_cast<std::size_t>(stride) < samples; ++n)
+    sigma_mm[n] = plan.elevation_sigma_mm[n * static_cast<std::size_t>(stride)];
   gain.assign(samples + kReadAhead, 0.0F);
   area.assign(samples, 0.0F);
   most_power.clear();
@@ -154,7 +164,8 @@ void PanoramaEngine::Impl::fit(const Acquisition& acquisition) {
     constexpr double kNeperPerDb = std::numbers::ln10 / 20.0;
     const double depth_mm = (static_cast<double>(s) + 0.5) * plan.geometry.sample_mm();
     gain[s] = static_cast<float>(
-        -kNeperPerDb * tgc_gain_db(DisplaySettings{}, depth_mm, plan.geometry.depth_mm, plan.beam.frequency_mhz));
+        kNeperPerDb * (panorama->tissue_db -
+                       tgc_gain_db(DisplaySettings{}, depth_mm, plan.geometry.depth_mm, plan.beam.frequency_mhz)));
     sum_mm += plan.geometry.line_spacing_mm(depth_mm);
   }
   for (std::size_t s = 0; s < samples; ++s)
@@ -179,20 +190,22 @@ void PanoramaEngine::Impl::sample(int group, int first, int last) noexcept {
     const auto at = static_cast<std::size_t>(l);
     fill_way_gain(plan, frame, l, gain, s.logs);
     const LineWalk& walk = frame.walks[at];
-    for (std::size_t n = 0; n < samples; ++n)
-      s.rest_mm[n] = (static_cast<float>(n) + 0.5F) * plan.sample_mm - walk.pressed_mm * frame.contact_shape[n];
+    const auto step = static_cast<std::size_t>(stride);
+    for (std::size_t n = 0, from = 0; from < samples + step; ++n, from += step)
+      s.rest_mm[n] = (static_cast<float>(from) + 0.5F) * plan.sample_mm -
+                     walk.pressed_mm * frame.contact_shape[std::min(from, samples - 1)];
     const Vec2 origin = plan.geometry.line_origin(l), along = plan.geometry.line_direction(l);
     PanoramaLine line;
     line.origin_T = {static_cast<float>(origin.x()), static_cast<float>(origin.y())};
     line.along_T = {static_cast<float>(along.x()), static_cast<float>(along.y())};
     line.rest_mm = s.rest_mm.data();
-    line.sigma_mm = plan.elevation_sigma_mm.data();
-    line.samples = plan.samples;
-    line.near_samples = std::min(static_cast<int>(kNearGap_mm / plan.geometry.sample_mm()), plan.samples);
-    line.weight_step = weight_step(plan.geometry.sample_mm());
+    line.sigma_mm = sigma_mm.data();
+    line.samples = plan.samples / stride + 1;
+    line.near_samples = std::min(static_cast<int>(kNearGap_mm / step_mm), line.samples);
+    line.weight_step = weight_step(step_mm);
     sample_panorama(map, planes, line, s.samples);
-    std::copy_n(s.samples.power.data(), samples, power.data() + at * samples);
-    std::copy_n(s.samples.weight.data(), samples, weight.data() + at * samples);
+    expand_samples(s.samples.power, stride, plan.samples, power.data() + at * samples);
+    expand_samples(s.samples.weight, stride, plan.samples, weight.data() + at * samples);
     least_weight[at] = walk.coupling * s.samples.least_weight;
     most_weight[at] = walk.coupling * s.samples.most_weight;
     out.contact[at] = walk.coupling;
@@ -246,49 +259,60 @@ void PanoramaEngine::Impl::measure(int line) noexcept {
 }
 
 void PanoramaEngine::Impl::begin_line(int group, int line) noexcept {
-  const auto at = static_cast<std::size_t>(line), samples = static_cast<std::size_t>(plan.samples);
-  const int angles = plan.steering_angles + plan.near_angles;
-  if (line >= needled.first && line < needled.last) {
+  if (has_needle(line)) {
     spread_echoes(plan, frame, line, scratch[static_cast<std::size_t>(group)].rows, out);
   } else {
-    for (int angle = 0; angle < angles; ++angle)
-      for (auto* values : {&out.re, &out.im}) std::fill_n(values->data() + row(angle, line), plan.samples, 0.0F);
+    for (auto* values : {&out.re, &out.im}) std::fill_n(values->data() + row(0, line), plan.samples, 0.0F);
   }
   if (!plan.acquisition.artefacts.clutter) return;
-  for (std::size_t block = 0; block * kLobeBlock < samples; ++block) {
-    const float level = std::sqrt(clutter_power(plan, frame, line, block));
-    const std::size_t begin = block * kLobeBlock, end = std::min(begin + kLobeBlock, samples);
-    const float *const re = haze_re.data() + at * samples, *const im = haze_im.data() + at * samples;
-    for (int angle = 0; angle < angles; ++angle) {
-      if (angle >= plan.steering_angles && begin >= static_cast<std::size_t>(plan.near_samples)) continue;
-      float *const to_re = out.re.data() + row(angle, line), *const to_im = out.im.data() + row(angle, line);
-      for (std::size_t s = begin; s < end; ++s) to_re[s] += level * re[s];
-      for (std::size_t s = begin; s < end; ++s) to_im[s] += level * im[s];
+  const auto at = static_cast<std::size_t>(line), samples = static_cast<std::size_t>(plan.samples);
+  const float *const re = haze_re.data() + at * samples, *const im = haze_im.data() + at * samples;
+  for (int angle = 0; angle < (has_needle(line) ? angles() : 1); ++angle) {
+    float *const to_re = out.re.data() + row(angle, line), *const to_im = out.im.data() + row(angle, line);
+    const auto end = static_cast<std::size_t>(samples_of(angle));
+    for (std::size_t begin = 0; begin < end; begin += kLobeBlock) {
+      const float level = std::sqrt(clutter_power(plan, frame, line, begin / kLobeBlock));
+      const std::size_t stop = std::min(begin + kLobeBlock, end);
+      for (std::size_t s = begin; s < stop; ++s) to_re[s] += level * re[s];
+      for (std::size_t s = begin; s < stop; ++s) to_im[s] += level * im[s];
     }
   }
 }
 
-void PanoramaEngine::Impl::join(int l, const BasebandFrame* casting) noexcept {
-  const auto at = static_cast<std::size_t>(l), samples = static_cast<std::size_t>(plan.samples);
-  for (int angle = 0; angle < plan.steering_angles + plan.near_angles; ++angle) {
-    const std::size_t to = row(angle, l);
-    BlendLine line;
-    line.amplitude = amplitude.data() + at * samples;
-    line.weight = weight.data() + at * samples;
-    line.re = out.re.data() + to;
-    line.im = out.im.data() + to;
-    line.samples = angle < plan.steering_angles ? plan.samples : plan.near_samples;
-    if (casting != nullptr) {
-      line.cast_re = casting->re.data() + to;
-      line.cast_im = casting->im.data() + to;
-    }
-    if (casting == nullptr || most_weight[at] > 0.0F) {
-      blend(line);
-    } else {
-      std::copy_n(line.cast_re, line.samples, line.re);
-      std::copy_n(line.cast_im, line.samples, line.im);
-    }
+void PanoramaEngine::Impl::join(int line, const BasebandFrame* casting) noexcept {
+  const auto at = static_cast<std::size_t>(line), samples = static_cast<std::size_t>(plan.samples);
+  const auto copy = [&](const BasebandFrame& frame_of, int from, int to) {
+    const std::size_t source = row(from, line), target = row(to, line);
+    std::copy_n(frame_of.re.data() + source, samples_of(to), out.re.data() + target);
+    std::copy_n(frame_of.im.data() + source, samples_of(to), out.im.data() + target);
+  };
+  if (casting != nullptr && most_weight[at] == 0.0F) {
+    for (int angle = 0; angle < angles(); ++angle) copy(*casting, angle, angle);
+    return;
   }
+  const auto blend_angle = [&](int angle) {
+    const std::size_t to = row(angle, line);
+    BlendLine part;
+    part.amplitude = amplitude.data() + at * samples;
+    part.weight = weight.data() + at * samples;
+    part.re = out.re.data() + to;
+    part.im = out.im.data() + to;
+    part.samples = samples_of(angle);
+    if (casting != nullptr) {
+      part.cast_re = casting->re.data() + to;
+      part.cast_im = casting->im.data() + to;
+    }
+    blend(part);
+  };
+  // The panorama is the same on all angles, ray-cast echoes and needles are not.
+  if (casting == nullptr && !has_needle(line)) {
+    blend_angle(0);
+    for (int angle = 1; angle < angles(); ++angle) copy(out, 0, angle);
+    return;
+  }
+  if (!has_needle(line))
+    for (int angle = 1; angle < angles(); ++angle) copy(out, 0, angle);
+  for (int angle = 0; angle < angles(); ++angle) blend_angle(angle);
 }
 
 /// The pattern of clutter: noise, spread as echoes are, with a mean power of 1 at each depth.

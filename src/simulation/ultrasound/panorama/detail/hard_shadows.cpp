@@ -61,13 +61,20 @@ void fill_way_gain(const ScanPlan& plan, FrameState& frame, int line, const std:
   const GasBorder& gas = frame.gas[at];
   const float gas_at = gas.is_there ? gas.border.walk : static_cast<float>(plan.samples);
   const auto most_gas = static_cast<float>(-kGasShadow_db * std::numbers::ln10 / 20.0);
-  const auto deepest = static_cast<float>(plan.coarse_samples() - 1) - 1e-3F;
-  for (std::size_t s = 0; s < samples; ++s) {
-    const float place = std::clamp((static_cast<float>(s) - shift) / kCoarse, 0.0F, deepest);
-    const auto c = static_cast<std::size_t>(place);
-    logs[s] = std::lerp(open[c], open[c + 1], place - static_cast<float>(c));
-    if (static_cast<float>(s) >= gas_at) logs[s] = std::max(logs[s], most_gas);
+  const auto last = static_cast<int>(plan.coarse_samples()) - 1;
+  const auto at_coarse = [&](int c) {
+    const float place = std::clamp(static_cast<float>(c) - shift / kCoarse, 0.0F, static_cast<float>(last) - 1e-3F);
+    const auto below = static_cast<std::size_t>(place);
+    return std::lerp(open[below], open[below + 1], place - static_cast<float>(below));
+  };
+  float from = at_coarse(0);
+  for (int s = 0, c = 0; s < plan.samples; s += kCoarse, ++c) {
+    const float to = at_coarse(c + 1), step = (to - from) / kCoarse;
+    for (int k = 0; k < kCoarse; ++k) logs[static_cast<std::size_t>(s + k)] = from + static_cast<float>(k) * step;
+    from = to;
   }
+  for (auto s = static_cast<std::size_t>(std::max(gas_at, 0.0F)); s < samples; ++s)
+    logs[s] = std::max(logs[s], most_gas);
   to_gain(logs.data(), gain.data(), plan.samples, frame.way_gain.data() + at * samples);
 }
 

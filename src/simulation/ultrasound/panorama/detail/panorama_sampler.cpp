@@ -33,7 +33,7 @@ namespace trocar::ultrasound::detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using F = hn::CappedTag<float, 16>;
+using F = hn::CappedTag<float, kWeightSteps>;
 using I = hn::RebindToSigned<F>;
 using VF = hn::Vec<F>;
 using VI = hn::Vec<I>;
@@ -172,7 +172,8 @@ PlaneLine plane_line(const PanoramaMap& map, const PanoramaLine& line, float zet
   plane.share = share;
   constexpr double kPowerPerDb = std::numbers::ln10 / 10.0;
   plane.log_step = static_cast<float>(map.panorama->step_db * kPowerPerDb);
-  plane.log_floor = static_cast<float>((map.panorama->floor_db - map.panorama->step_db) * kPowerPerDb);
+  plane.log_floor =
+      static_cast<float>((map.panorama->floor_db - map.panorama->step_db - map.panorama->tissue_db) * kPowerPerDb);
   return plane;
 }
 
@@ -223,6 +224,25 @@ PanoramaMap make_panorama_map(const Panorama& panorama, const Pose& X_PT) noexce
 
 int weight_step(double sample_mm) noexcept {
   return std::clamp(static_cast<int>(kWeightStep_mm / sample_mm), 1, kWeightSteps);
+}
+
+int sample_stride(const Panorama& panorama, double sample_mm) noexcept {
+  constexpr double kPerVoxel = 2.0;
+  return panorama.geometry.spacing_mm.minCoeff() >= 2.0 * kPerVoxel * sample_mm * (1.0 - 1e-9) ? 2 : 1;
+}
+
+void expand_samples(const std::vector<float>& from, int stride, int samples, float* to) noexcept {
+  if (stride == 1) {
+    std::copy_n(from.begin(), samples, to);
+    return;
+  }
+  const int pairs = samples / 2;
+  const float* const values = from.data();
+  for (int n = 0; n < pairs; ++n) {
+    to[2 * n] = values[n];
+    to[2 * n + 1] = 0.5F * (values[n] + values[n + 1]);
+  }
+  if (samples % 2 != 0) to[samples - 1] = values[pairs];
 }
 
 void PanoramaSamples::fit(int samples) {

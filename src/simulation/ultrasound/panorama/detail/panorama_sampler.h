@@ -49,10 +49,14 @@ inline constexpr double kNearGap_mm = 20.0;
 
 /// Samples per step of the weights.
 int weight_step(double sample_mm) noexcept;
+/// Of how many samples of a scanline one is taken from the panorama, 1 or 2: its voxels are longer.
+int sample_stride(const Panorama& panorama, double sample_mm) noexcept;
+/// Fills `samples` values between those of every stride-th one.
+void expand_samples(const std::vector<float>& from, int stride, int samples, float* to) noexcept;
 
 /// Power and weight of a scanline's samples.
 struct PanoramaSamples {
-  std::vector<float> power;   ///< Mean of 10^(level/10) over the thickness, weighted; 0 where `weight` is 0.
+  std::vector<float> power;   ///< Mean of 10^((level - tissue_db)/10) over the thickness; 0 where `weight` is 0.
   std::vector<float> weight;  ///< 0..1: share of the panorama.
   float least_weight = 1.0F, most_weight = 0.0F;
 
