@@ -25,6 +25,10 @@ struct PlaneLine {
   float log_floor = 0.0F, log_step = 0.0F;  ///< Logarithm of the power of level 0, and of a level.
 };
 
+struct WeightRange {
+  float least = 0.0F, most = 0.0F;
+};
+
 }  // namespace trocar::ultrasound::detail
 #endif
 
@@ -33,7 +37,7 @@ namespace trocar::ultrasound::detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using F = hn::CappedTag<float, kWeightSteps>;
+using F = hn::CappedTag<float, 16>;
 using I = hn::RebindToSigned<F>;
 using VF = hn::Vec<F>;
 using VI = hn::Vec<I>;
@@ -77,11 +81,11 @@ HWY_INLINE VF trilinear(const PlaneLine& plane, const std::uint8_t* voxels, VF r
 }
 
 /// Weights of `count` samples whose places are gathered from every weight_step-th of the line.
-float sample_weights(const PlaneLine& plane, const std::uint8_t* weights, const PanoramaLine& line, int count,
-                     float* HWY_RESTRICT to) {
+WeightRange sample_weights(const PlaneLine& plane, const std::uint8_t* weights, const PanoramaLine& line, int count,
+                           float* HWY_RESTRICT to) {
   const F f;
   const I d;
-  VF most = hn::Zero(f);
+  VF least = hn::Set(f, 1.0F), most = hn::Zero(f);
   for (int n = 0; n < count; n += static_cast<int>(hn::Lanes(f))) {
     const VI at = hn::Min(hn::Mul(hn::Iota(d, n), hn::Set(d, line.weight_step)), hn::Set(d, line.samples - 1));
     hn::Mask<F> is_inside;
@@ -89,37 +93,36 @@ float sample_weights(const PlaneLine& plane, const std::uint8_t* weights, const 
                                hn::GatherIndex(f, line.sigma_mm, at), is_inside);
     const VF weight = hn::IfThenElseZero(is_inside, hn::Mul(value, hn::Set(f, 1.0F / 255.0F)));
     hn::StoreU(weight, f, to + n);
+    least = hn::Min(least, weight);
     most = hn::Max(most, weight);
   }
-  return hn::GetLane(hn::MaxOfLanes(f, most));
+  return {hn::GetLane(hn::MinOfLanes(f, least)), hn::GetLane(hn::MaxOfLanes(f, most))};
 }
 
-/// Adds a plane's power and weights to samples [first, last) between two weights.
-void add_step(const PlaneLine& plane, const std::uint8_t* levels, const PanoramaLine& line, int first, float from,
-              float slope, float* HWY_RESTRICT power, float* HWY_RESTRICT weight) {
+/// Adds a plane's power and weights; `weights`: its own at each step, `is_whole` if all are 1.
+void add_plane(const PlaneLine& plane, const std::uint8_t* levels, const PanoramaLine& line, const float* weights,
+               bool is_whole, float* HWY_RESTRICT power, float* HWY_RESTRICT weight) {
   const F f;
-  for (int s = first; s < first + line.weight_step; s += static_cast<int>(hn::Lanes(f))) {
-    const VF at = hn::Iota(f, static_cast<float>(s - first));
-    // Beyond the step: zero, so that a longer vector changes nothing there.
-    const VF own =
-        hn::IfThenElseZero(hn::Lt(at, hn::Set(f, static_cast<float>(line.weight_step))),
-                           hn::Mul(hn::Set(f, plane.share), hn::MulAdd(at, hn::Set(f, slope), hn::Set(f, from))));
+  const I d;
+  const VF share = hn::Set(f, plane.share), step = hn::Set(f, static_cast<float>(line.weight_step));
+  const VF steps = hn::Set(f, 1.0F / static_cast<float>(line.weight_step));
+  for (int s = 0; s < line.samples; s += static_cast<int>(hn::Lanes(f))) {
+    VF own = share;
+    if (!is_whole) {
+      const VF at = hn::Iota(f, static_cast<float>(s));
+      // Half a sample keeps the quotient off whole numbers, where it would be rounded down.
+      const VI before = hn::ConvertTo(d, hn::Mul(hn::Add(at, hn::Set(f, 0.5F)), steps));
+      const VF part = hn::Mul(hn::NegMulAdd(hn::ConvertTo(f, before), step, at), steps);
+      const VF from = hn::GatherIndex(f, weights, before), to = hn::GatherIndex(f, weights + 1, before);
+      own = hn::Mul(share, hn::MulAdd(hn::Sub(to, from), part, from));
+      if (hn::AllTrue(f, hn::Eq(own, hn::Zero(f)))) continue;
+    }
     hn::Mask<F> is_inside;
     const VF level =
         trilinear(plane, levels, hn::LoadU(f, line.rest_mm + s), hn::LoadU(f, line.sigma_mm + s), is_inside);
     const VF value = hn::Exp(f, hn::MulAdd(level, hn::Set(f, plane.log_step), hn::Set(f, plane.log_floor)));
     hn::StoreU(hn::MulAdd(own, value, hn::LoadU(f, power + s)), f, power + s);
     hn::StoreU(hn::Add(own, hn::LoadU(f, weight + s)), f, weight + s);
-  }
-}
-
-/// Adds a plane; `weights`: its own at each step.
-void add_plane(const PlaneLine& plane, const std::uint8_t* levels, const PanoramaLine& line, const float* weights,
-               float* HWY_RESTRICT power, float* HWY_RESTRICT weight) {
-  for (int s = 0, n = 0; s < line.samples; s += line.weight_step, ++n) {
-    if (weights[n] == 0.0F && weights[n + 1] == 0.0F) continue;
-    add_step(plane, levels, line, s, weights[n], (weights[n + 1] - weights[n]) / static_cast<float>(line.weight_step),
-             power, weight);
   }
 }
 
@@ -151,7 +154,8 @@ HWY_EXPORT(finish);
 
 namespace {
 
-constexpr std::size_t kMostWeights = 4096 + 2 + 16;
+constexpr std::size_t kMostWeights = 4096 + 2 + 48;
+constexpr float kWhole = 1.0F - 1e-6F;
 
 std::array<float, 3> floats(const Vec3& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
@@ -180,9 +184,9 @@ PlaneLine plane_line(const PanoramaMap& map, const PanoramaLine& line, float zet
 /// Continues a scanline that is whole behind its first samples to the face.
 void continue_to_face(const PanoramaLine& line, PanoramaSamples& samples) noexcept {
   // The near field of the acquisition is bright: only what lies behind its first millimetres is continued.
-  constexpr float kWhole = 0.99F, kKnown = 0.4F;
+  constexpr float kRisen = 0.99F, kKnown = 0.4F;
   int whole = 0;
-  while (whole < line.near_samples && samples.weight[static_cast<std::size_t>(whole)] < kWhole) ++whole;
+  while (whole < line.near_samples && samples.weight[static_cast<std::size_t>(whole)] < kRisen) ++whole;
   if (whole == 0 || whole >= line.near_samples) return;
   int known = whole;
   while (known > 0 && samples.weight[static_cast<std::size_t>(known - 1)] > kKnown) --known;
@@ -259,10 +263,12 @@ void sample_panorama(const PanoramaMap& map, const BeamPlanes& planes, const Pan
   for (int n = 0; n < planes.count; ++n) {
     const auto at = static_cast<std::size_t>(n);
     const PlaneLine plane = plane_line(map, line, planes.zeta[at], planes.share[at]);
-    if (HWY_DYNAMIC_DISPATCH(sample_weights)(plane, map.panorama->weights.data(), line, count, weights.data()) == 0.0F)
-      continue;
+    const WeightRange range =
+        HWY_DYNAMIC_DISPATCH(sample_weights)(plane, map.panorama->weights.data(), line, count, weights.data());
+    if (range.most == 0.0F) continue;
     HWY_DYNAMIC_DISPATCH(add_plane)
-    (plane, map.panorama->levels.data(), line, weights.data(), samples.power.data(), samples.weight.data());
+    (plane, map.panorama->levels.data(), line, weights.data(), range.least >= kWhole, samples.power.data(),
+     samples.weight.data());
   }
   HWY_DYNAMIC_DISPATCH(finish)(line.samples, samples);
   continue_to_face(line, samples);
