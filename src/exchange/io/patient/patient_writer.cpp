@@ -73,7 +73,9 @@ Status copy_panorama(const fs::path& from, const fs::path& to) {
     if (!fs::is_regular_file(from / file, error)) continue;
     fs::create_directories((to / file).parent_path(), error);
     if (!error) fs::copy_file(from / file, to / file, error);
-    if (error) return fail("the panorama cannot be copied: " + error.message(), (from / file).string());
+    if (error)
+      return fail("the panorama cannot be copied: " + error.message(), (from / file).string(),
+                  "check the disk and permissions");
   }
   return {};
 }
