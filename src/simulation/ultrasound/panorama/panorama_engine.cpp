@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "core/check.h"
-#include "core/random.h"
 #include "ultrasound/engine/b_mode.h"
 #include "ultrasound/engine/detail/aperture_paths.h"
 #include "ultrasound/engine/detail/clutter.h"
@@ -14,6 +13,7 @@
 #include "ultrasound/engine/detail/needle_image.h"
 #include "ultrasound/engine/detail/point_spread.h"
 #include "ultrasound/panorama/detail/hard_shadows.h"
+#include "ultrasound/panorama/detail/haze_pattern.h"
 #include "ultrasound/panorama/detail/panorama_blend.h"
 #include "ultrasound/panorama/detail/panorama_sampler.h"
 #include "ultrasound/scanner/display_settings.h"
@@ -22,8 +22,6 @@ namespace trocar::ultrasound {
 namespace {
 
 using namespace detail;
-
-constexpr std::uint64_t kHazeSeed = 0x68617a65;
 
 /// Buffers of one task besides the frame.
 struct Scratch {
@@ -85,7 +83,6 @@ struct PanoramaEngine::Impl {
   }
 
   void fit(const Acquisition& acquisition);
-  void make_haze();
   void sample(int group, int first, int last) noexcept;
   /// Scanlines of a range that need BMode.
   Runs uncovered(const LineRange& lines) const noexcept;
@@ -125,9 +122,12 @@ struct PanoramaEngine::Impl {
   std::vector<float> amplitude, weight;  ///< line * samples.
   std::vector<float> power;              ///< line * samples.
   std::vector<float> least_weight, most_weight, share;  ///< Per scanline.
-  std::vector<float> haze_re, haze_im;                  ///< line * samples: pattern of the clutter.
-  std::vector<float> most_power;                        ///< Per block of kLobeBlock samples: power of liver's echoes.
-  LineRange needled;                                    ///< Scanlines with needles in the last frame.
+  int share_reach = 1;                                  ///< Scanlines of kShareReach_mm near the face.
+  std::vector<NearEnd> near_ends;                       ///< Per scanline.
+  std::vector<float> near_shares, near_working;         ///< Per scanline.
+  HazePattern haze;
+  std::vector<float> most_power;  ///< Per block of kLobeBlock samples: power of liver's echoes.
+  LineRange needled;              ///< Scanlines with needles in the last frame.
   bool has_frame = false;
   int cast_lines = 0;
 };
@@ -172,12 +172,15 @@ void PanoramaEngine::Impl::fit(const Acquisition& acquisition) {
     area[s] = static_cast<float>(
         plan.geometry.line_spacing_mm((static_cast<double>(s) + 0.5) * plan.geometry.sample_mm()) / sum_mm);
   for (auto* values : {&amplitude, &weight, &power}) values->assign(lines * samples, 0.0F);
-  for (auto* values : {&least_weight, &most_weight, &share}) values->assign(lines, 0.0F);
+  for (auto* values : {&least_weight, &most_weight, &share, &near_shares, &near_working}) values->assign(lines, 0.0F);
+  near_ends.assign(lines, {});
+  share_reach =
+      std::clamp(static_cast<int>(kShareReach_mm / plan.geometry.line_spacing_mm(kNearGap_mm)), 1, plan.lines);
   for (std::size_t block = 0; block < plan.lobe_blocks(); ++block) {
     const float loss = gain[std::min(block * kLobeBlock + kLobeBlock / 2, samples - 1)];
     most_power.push_back(std::exp(2.0F * loss));
   }
-  if (plan.acquisition.artefacts.clutter) make_haze();
+  haze = make_haze_pattern(plan, frame, scratch[0].rows, out);
   has_frame = false;
   needled = {};
 }
@@ -201,13 +204,14 @@ void PanoramaEngine::Impl::sample(int group, int first, int last) noexcept {
     line.rest_mm = s.rest_mm.data();
     line.sigma_mm = sigma_mm.data();
     line.samples = plan.samples / stride + 1;
-    line.near_samples = std::min(static_cast<int>(kNearGap_mm / step_mm), line.samples);
     line.weight_step = weight_step(step_mm);
     sample_panorama(map, planes, line, s.samples);
     expand_samples(s.samples.power, stride, plan.samples, power.data() + at * samples);
     expand_samples(s.samples.weight, stride, plan.samples, weight.data() + at * samples);
-    least_weight[at] = walk.coupling * s.samples.least_weight;
-    most_weight[at] = walk.coupling * s.samples.most_weight;
+    const double sample_mm = plan.geometry.sample_mm();
+    near_ends[at] =
+        find_near_end(weight.data() + at * samples, std::min(static_cast<int>(kNearGap_mm / sample_mm), plan.samples),
+                      std::min(static_cast<int>(kFarGap_mm / sample_mm), plan.samples));
     out.contact[at] = walk.coupling;
   }
 }
@@ -242,16 +246,21 @@ void PanoramaEngine::Impl::measure(int line) noexcept {
   const auto at = static_cast<std::size_t>(line), samples = static_cast<std::size_t>(plan.samples);
   float* const echo = amplitude.data() + at * samples;
   const float* const its_weight = weight.data() + at * samples;
+  continue_to_face(near_ends[at], near_shares[at], plan.samples, power.data() + at * samples,
+                   weight.data() + at * samples);
   to_amplitude(power.data() + at * samples, frame.way_gain.data() + at * samples, out.contact[at], plan.samples, echo,
                weight.data() + at * samples);
   float sum = 0.0F;
   for (std::size_t s = 0; s < samples; ++s) sum += its_weight[s] * area[s];
   share[at] = sum;
+  const auto [least, most] = std::minmax_element(its_weight, its_weight + samples);
+  least_weight[at] = *least;
+  most_weight[at] = *most;
   if (!plan.acquisition.artefacts.clutter) return;
   for (std::size_t block = 0; block < plan.lobe_blocks(); ++block) {
     float squares = 0.0F;
     const std::size_t begin = block * kLobeBlock, end = std::min(begin + kLobeBlock, samples);
-    for (std::size_t s = begin; s < end; ++s) squares += echo[s] * echo[s];
+    for (std::size_t s = begin; s < end; ++s) squares += its_weight[s] * echo[s] * echo[s];
     // A reflector counts as liver: the beam is built against strong reflectors.
     frame.power[block * static_cast<std::size_t>(plan.lines) + at] =
         std::min(squares / static_cast<float>(kLobeBlock), most_power[block]);
@@ -266,7 +275,7 @@ void PanoramaEngine::Impl::begin_line(int group, int line) noexcept {
   }
   if (!plan.acquisition.artefacts.clutter) return;
   const auto at = static_cast<std::size_t>(line), samples = static_cast<std::size_t>(plan.samples);
-  const float *const re = haze_re.data() + at * samples, *const im = haze_im.data() + at * samples;
+  const float *const re = haze.re.data() + at * samples, *const im = haze.im.data() + at * samples;
   for (int angle = 0; angle < (has_needle(line) ? angles() : 1); ++angle) {
     float *const to_re = out.re.data() + row(angle, line), *const to_im = out.im.data() + row(angle, line);
     const auto end = static_cast<std::size_t>(samples_of(angle));
@@ -295,6 +304,8 @@ void PanoramaEngine::Impl::join(int line, const BasebandFrame* casting) noexcept
     BlendLine part;
     part.amplitude = amplitude.data() + at * samples;
     part.weight = weight.data() + at * samples;
+    part.phase_re = haze.phase_re.data() + at * samples;
+    part.phase_im = haze.phase_im.data() + at * samples;
     part.re = out.re.data() + to;
     part.im = out.im.data() + to;
     part.samples = samples_of(angle);
@@ -313,37 +324,6 @@ void PanoramaEngine::Impl::join(int line, const BasebandFrame* casting) noexcept
   if (!has_needle(line))
     for (int angle = 1; angle < angles(); ++angle) copy(out, 0, angle);
   for (int angle = 0; angle < angles(); ++angle) blend_angle(angle);
-}
-
-/// The pattern of clutter: noise, spread as echoes are, with a mean power of 1 at each depth.
-void PanoramaEngine::Impl::make_haze() {
-  const auto lines = static_cast<std::size_t>(plan.lines), samples = static_cast<std::size_t>(plan.samples);
-  Random random(kHazeSeed);
-  for (int l = 0; l < plan.lines; ++l) {
-    for (std::size_t s = 0; s < samples; ++s) {
-      frame.re[plan.echo_row(l) + s] = static_cast<float>(random.normal());
-      frame.im[plan.echo_row(l) + s] = static_cast<float>(random.normal());
-    }
-    find_loudest(plan, frame, l);
-  }
-  for (int l = 0; l < plan.lines; ++l) spread_echoes(plan, frame, l, scratch[0].rows, out);
-  haze_re.assign(out.re.begin(), out.re.begin() + static_cast<std::ptrdiff_t>(lines * samples));
-  haze_im.assign(out.im.begin(), out.im.begin() + static_cast<std::ptrdiff_t>(lines * samples));
-  for (std::size_t s = 0; s < samples; ++s) {
-    float sum = 0.0F;
-    for (std::size_t l = 0; l < lines; ++l) {
-      const float re = haze_re[l * samples + s], im = haze_im[l * samples + s];
-      sum += re * re + im * im;
-    }
-    const float scale = std::sqrt(static_cast<float>(lines) / std::max(sum, 1e-12F));
-    for (std::size_t l = 0; l < lines; ++l) {
-      haze_re[l * samples + s] *= scale;
-      haze_im[l * samples + s] *= scale;
-    }
-  }
-  fit_frame(frame, plan);  // without the noise
-  std::fill(out.re.begin(), out.re.end(), 0.0F);
-  std::fill(out.im.begin(), out.im.end(), 0.0F);
 }
 
 PanoramaEngine::PanoramaEngine(std::shared_ptr<const AcousticScene> scene, std::shared_ptr<const Panorama> panorama,
@@ -372,11 +352,15 @@ const BasebandFrame& PanoramaEngine::render(const BModeInput& input) noexcept {
   const LineRange wanted = impl.has_frame || input.is_alone ? input.renewed : LineRange{};
   const LineRange lines = widened(wanted, 0, impl.plan.lines), probed = widened(wanted, kNeighbours, impl.plan.lines);
   impl.frame.X_PT = input.X_PT;
-  if (input.is_alone) silence_outside(impl.plan, impl.frame, lines, probed);
+  if (input.is_alone) {
+    silence_outside(impl.plan, impl.frame, lines, probed);
+    std::fill(impl.near_ends.begin(), impl.near_ends.end(), NearEnd{});
+  }
   impl.map = make_panorama_map(*impl.panorama, input.X_PT);
   find_hard_shadows(*impl.scene, impl.plan, impl.frame, probed, lines, impl.walks, impl.aperture_rows);
   for_groups(lines, [&](int group, int first, int last) { impl.sample(group, first, last); });
 
+  smooth_shares(impl.near_ends, impl.share_reach, impl.near_working, impl.near_shares);
   impl.draw_needles(input.needles, lines);
   for_groups(lines, [&](int, int first, int last) {
     for (int l = first; l < last; ++l) impl.measure(l);

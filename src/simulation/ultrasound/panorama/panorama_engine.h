@@ -12,7 +12,7 @@ namespace trocar::ultrasound {
 /// shadows behind bone and gas of the acoustic scene, and with needles as in BMode. Where the panorama's weight falls
 /// to 0, and on scanlines without contact, the frame fades to that of BMode, which computes only the scanlines that
 /// need it. Without coverage the frame is that of BMode, bit by bit.
-/// The echoes of the panorama have one phase, and are the same on all steering angles. Tissue that a needle displaces
+/// The echoes of the panorama are the same on all steering angles. Tissue that a needle displaces
 /// is not moved in the panorama.
 class PanoramaEngine final : public EchoEngine {
  public:

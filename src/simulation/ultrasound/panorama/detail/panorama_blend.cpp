@@ -34,7 +34,8 @@ void blend_line(const BlendLine& line) {
     const auto amplitude = load(f, left, line.amplitude + s);
     const auto needle_re = load(f, left, line.re + s), needle_im = load(f, left, line.im + s);
     if (line.cast_re == nullptr) {
-      store(hn::Add(needle_im, amplitude), f, left, line.im + s);
+      store(hn::MulAdd(amplitude, load(f, left, line.phase_re + s), needle_re), f, left, line.re + s);
+      store(hn::MulAdd(amplitude, load(f, left, line.phase_im + s), needle_im), f, left, line.im + s);
       continue;
     }
     const auto weight = load(f, left, line.weight + s);

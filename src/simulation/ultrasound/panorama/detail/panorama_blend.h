@@ -7,7 +7,9 @@ namespace trocar::ultrasound::detail {
 struct BlendLine {
   const float* amplitude = nullptr;  ///< Of the panorama.
   const float* weight = nullptr;     ///< Of the panorama, 0..1.
-  const float* cast_re = nullptr;    ///< Of the ray-cast engine; nullptr: the panorama alone.
+  const float* phase_re = nullptr;   ///< Phase of the panorama's echoes, of modulus 1.
+  const float* phase_im = nullptr;
+  const float* cast_re = nullptr;  ///< Of the ray-cast engine; nullptr: the panorama alone.
   const float* cast_im = nullptr;
   float* re = nullptr;  ///< Needles in the panorama; receives the result.
   float* im = nullptr;
@@ -15,7 +17,7 @@ struct BlendLine {
 };
 
 /// (1 - w) b + w (a u + n): b ray-cast echo, u its phase (b / |b|), a amplitude of the panorama, n needle. Without a
-/// ray-cast echo w = 1 and u = i.
+/// ray-cast echo w = 1 and u is the phase of the line.
 void blend(const BlendLine& line) noexcept;
 
 /// amplitude[s] = sqrt(power[s]) * gain[s]; weight[s] *= coupling, and 1 from kWholeWeight on.

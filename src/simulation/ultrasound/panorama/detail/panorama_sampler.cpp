@@ -181,21 +181,6 @@ PlaneLine plane_line(const PanoramaMap& map, const PanoramaLine& line, float zet
   return plane;
 }
 
-/// Continues a scanline that is whole behind its first samples to the face.
-void continue_to_face(const PanoramaLine& line, PanoramaSamples& samples) noexcept {
-  // The near field of the acquisition is bright: only what lies behind its first millimetres is continued.
-  constexpr float kRisen = 0.99F, kKnown = 0.4F;
-  int whole = 0;
-  while (whole < line.near_samples && samples.weight[static_cast<std::size_t>(whole)] < kRisen) ++whole;
-  if (whole == 0 || whole >= line.near_samples) return;
-  int known = whole;
-  while (known > 0 && samples.weight[static_cast<std::size_t>(known - 1)] > kKnown) --known;
-  std::fill_n(samples.weight.begin(), whole, 1.0F);
-  for (int s = 0; s < known; ++s)
-    samples.power[static_cast<std::size_t>(s)] =
-        samples.power[static_cast<std::size_t>(std::min(2 * known - s, line.samples - 1))];
-}
-
 }  // namespace
 
 BeamPlanes make_beam_planes(int count) noexcept {
@@ -271,10 +256,50 @@ void sample_panorama(const PanoramaMap& map, const BeamPlanes& planes, const Pan
      samples.weight.data());
   }
   HWY_DYNAMIC_DISPATCH(finish)(line.samples, samples);
-  continue_to_face(line, samples);
-  const auto [least, most] = std::minmax_element(samples.weight.begin(), samples.weight.begin() + line.samples);
-  samples.least_weight = *least;
-  samples.most_weight = *most;
+}
+
+NearEnd find_near_end(const float* weight, int near_samples, int far_samples) noexcept {
+  // The near field of the acquisition is bright: only what lies behind its first millimetres is continued.
+  constexpr float kRisen = 0.99F, kKnown = 0.4F;
+  NearEnd end;
+  while (end.whole < far_samples && weight[end.whole] < kRisen) ++end.whole;
+  if (end.whole >= far_samples) return {0, 0, 0.0F};
+  end.known = end.whole;
+  while (end.known > 0 && weight[end.known - 1] > kKnown) --end.known;
+  const auto beyond = static_cast<float>(end.whole - near_samples);
+  end.share = std::clamp(1.0F - beyond / static_cast<float>(std::max(far_samples - near_samples, 1)), 0.0F, 1.0F);
+  return end;
+}
+
+void smooth_shares(const std::vector<NearEnd>& ends, int reach, std::vector<float>& working,
+                   std::vector<float>& shares) noexcept {
+  const auto lines = static_cast<int>(ends.size());
+  const auto over = [&](int line, const auto& take) {
+    for (int l = std::max(line - reach, 0); l <= std::min(line + reach, lines - 1); ++l)
+      take(static_cast<std::size_t>(l));
+  };
+  for (int line = 0; line < lines; ++line) {
+    float least = 1.0F;
+    over(line, [&](std::size_t l) { least = std::min(least, ends[l].share); });
+    working[static_cast<std::size_t>(line)] = least;
+  }
+  for (int line = 0; line < lines; ++line) {
+    float sum = 0.0F;
+    int count = 0;
+    over(line, [&](std::size_t l) {
+      sum += working[l];
+      ++count;
+    });
+    shares[static_cast<std::size_t>(line)] = sum / static_cast<float>(count);
+  }
+}
+
+void continue_to_face(const NearEnd& end, float share, int samples, float* power, float* weight) noexcept {
+  for (int s = 0; s < end.whole; ++s) {
+    const float own = weight[s], mirrored = power[std::clamp(2 * end.known - s, s, samples - 1)];
+    weight[s] = std::lerp(own, 1.0F, share);
+    if (weight[s] > 0.0F) power[s] = std::lerp(mirrored, power[s], own / weight[s]);
+  }
 }
 
 }  // namespace trocar::ultrasound::detail

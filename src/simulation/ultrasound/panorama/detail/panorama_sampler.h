@@ -39,13 +39,12 @@ struct PanoramaLine {
   const float* rest_mm = nullptr;              ///< Distance from the origin in the resting tissue.
   const float* sigma_mm = nullptr;             ///< Of the beam's thickness.
   int samples = 0;
-  int near_samples = 0;  ///< In front of kNearGap_mm.
-  int weight_step = 1;   ///< Samples per step of the weights: 1..kWeightSteps.
+  int weight_step = 1;  ///< Samples per step of the weights: 1..kWeightSteps.
 };
 
-/// The panorama is whole from this depth on, or it is not continued to the face. Assumed: dents differ by some
-/// millimetres. Range 10..30.
-inline constexpr double kNearGap_mm = 20.0;
+/// A panorama that is whole from the first depth on is continued to the face, one from the second on is not, with a
+/// smooth transition. Assumed: dents of different faces differ by some millimetres. Range 8..40.
+inline constexpr double kNearGap_mm = 17.0, kFarGap_mm = 24.0;
 
 /// Samples per step of the weights.
 int weight_step(double sample_mm) noexcept;
@@ -58,14 +57,27 @@ void expand_samples(const std::vector<float>& from, int stride, int samples, flo
 struct PanoramaSamples {
   std::vector<float> power;   ///< Mean of 10^((level - tissue_db)/10) over the thickness; 0 where `weight` is 0.
   std::vector<float> weight;  ///< 0..1: share of the panorama.
-  float least_weight = 1.0F, most_weight = 0.0F;
 
   void fit(int samples);
 };
 
-/// Fills `samples`. Allocates nothing. Where the panorama begins near the face, its first samples continue to the face,
-/// mirrored: the volume ends at the face of the transducer that acquired it, which has another shape.
+/// Fills `samples`. Allocates nothing.
 void sample_panorama(const PanoramaMap& map, const BeamPlanes& planes, const PanoramaLine& line,
                      PanoramaSamples& samples) noexcept;
+
+/// Where a panorama begins near the face: it ends at the face of the transducer that acquired it, which has another
+/// shape.
+struct NearEnd {
+  int whole = 0;       ///< First sample that is whole.
+  int known = 0;       ///< First sample in front of it that can be continued to the face, mirrored.
+  float share = 1.0F;  ///< How much it is continued: by kNearGap_mm and kFarGap_mm.
+};
+NearEnd find_near_end(const float* weight, int near_samples, int far_samples) noexcept;
+/// Shares that change over 2 * reach scanlines and are at most those of the ends. All of one size.
+inline constexpr double kShareReach_mm = 5.0;  ///< Assumed, range 2..10.
+void smooth_shares(const std::vector<NearEnd>& ends, int reach, std::vector<float>& working,
+                   std::vector<float>& shares) noexcept;
+/// Raises the weights in front of an end, and mirrors the power there.
+void continue_to_face(const NearEnd& end, float share, int samples, float* power, float* weight) noexcept;
 
 }  // namespace trocar::ultrasound::detail
