@@ -1,5 +1,6 @@
 #include "ultrasound/panorama/panorama_engine.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -250,17 +251,16 @@ void PanoramaEngine::Impl::measure(int line) noexcept {
                    weight.data() + at * samples);
   to_amplitude(power.data() + at * samples, frame.way_gain.data() + at * samples, out.contact[at], plan.samples, echo,
                weight.data() + at * samples);
-  float sum = 0.0F;
-  for (std::size_t s = 0; s < samples; ++s) sum += its_weight[s] * area[s];
-  share[at] = sum;
-  const auto [least, most] = std::minmax_element(its_weight, its_weight + samples);
-  least_weight[at] = *least;
-  most_weight[at] = *most;
+  using Values = Eigen::Map<const Eigen::ArrayXf>;
+  const Values weights(its_weight, plan.samples);
+  share[at] = (weights * Values(area.data(), plan.samples)).sum();
+  least_weight[at] = weights.minCoeff();
+  most_weight[at] = weights.maxCoeff();
   if (!plan.acquisition.artefacts.clutter) return;
   for (std::size_t block = 0; block < plan.lobe_blocks(); ++block) {
-    float squares = 0.0F;
     const std::size_t begin = block * kLobeBlock, end = std::min(begin + kLobeBlock, samples);
-    for (std::size_t s = begin; s < end; ++s) squares += its_weight[s] * echo[s] * echo[s];
+    const auto count = static_cast<Eigen::Index>(end - std::min(begin, end));
+    const float squares = (Values(its_weight + begin, count) * Values(echo + begin, count).square()).sum();
     // A reflector counts as liver: the beam is built against strong reflectors.
     frame.power[block * static_cast<std::size_t>(plan.lines) + at] =
         std::min(squares / static_cast<float>(kLobeBlock), most_power[block]);

@@ -245,11 +245,16 @@ void sample_panorama(const PanoramaMap& map, const BeamPlanes& planes, const Pan
   std::fill(samples.weight.begin(), samples.weight.end(), 0.0F);
   std::array<float, kMostWeights> weights;
   const int count = (line.samples + line.weight_step - 1) / line.weight_step + 1;
-  for (int n = 0; n < planes.count; ++n) {
+  // The outermost planes first: between two that are whole, the others are.
+  bool is_within = planes.count > 2;
+  for (int order = 0; order < planes.count; ++order) {
+    const int n = order == 1 ? planes.count - 1 : std::max(order - 1, 0);
     const auto at = static_cast<std::size_t>(n);
     const PlaneLine plane = plane_line(map, line, planes.zeta[at], planes.share[at]);
-    const WeightRange range =
-        HWY_DYNAMIC_DISPATCH(sample_weights)(plane, map.panorama->weights.data(), line, count, weights.data());
+    WeightRange range{1.0F, 1.0F};
+    if (order < 2 || !is_within)
+      range = HWY_DYNAMIC_DISPATCH(sample_weights)(plane, map.panorama->weights.data(), line, count, weights.data());
+    if (order < 2) is_within = is_within && range.least >= kWhole;
     if (range.most == 0.0F) continue;
     HWY_DYNAMIC_DISPATCH(add_plane)
     (plane, map.panorama->levels.data(), line, weights.data(), range.least >= kWhole, samples.power.data(),
