@@ -1,6 +1,7 @@
 // Shadows, transitions and needles of the panorama engine, and what its frames depend on.
 
 #include <array>
+#include <limits>
 
 #include "core/parallel.h"
 #include "core/testing/allocation_guard.h"
@@ -223,6 +224,20 @@ TEST(PanoramaFrame, AllocatesNothingAfterTheFirst) {
       EXPECT_EQ(guard.count(), 0U);
     });
   }
+}
+
+TEST(PanoramaFrame, ImpossiblePosesGiveAFrameWithoutThePanorama) {
+  const Transducer transducer = linear();
+  PanoramaEngine engine(rib_scene(transducer, TestTissue::kBone), even(), transducer, with_artefacts(transducer));
+  const std::vector<float> usual = engine.render({Pose(), {}, 0.0}).re;
+  const std::array<Vec3, 2> shaft = {Vec3::Constant(std::nan("")), Vec3::Constant(1e300)};
+  NeedleEcho needle;
+  needle.shaft_P = shaft;
+  for (const double mm : {1e5, -1e30, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    engine.render({Pose::translation(Vec3::Constant(mm)), {&needle, 1}, 0.0});
+    EXPECT_EQ(engine.panorama_share(), 0.0) << mm;
+  }
+  EXPECT_TRUE(engine.render({Pose(), {}, 0.0}).re == usual);
 }
 
 TEST(PanoramaFrame, RollingRenewsOnlyItsScanlines) {
