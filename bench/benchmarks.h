@@ -44,6 +44,8 @@ Result<std::vector<CaseResult>> run_stitch_benchmark(const Options& options);
 Result<std::vector<CaseResult>> run_likeness_benchmark(const Options& options);
 /// Ultrasound frames of the embedded patient while the transducer moves.
 Result<std::vector<CaseResult>> run_ultrasound_benchmark(const Options& options);
+/// Frames of the panorama engine while the transducer moves: fully covered, half covered, with a needle.
+Result<std::vector<CaseResult>> run_panorama_benchmark(const Options& options);
 /// Cost of an ultrasound frame against scanlines, depth, planes, threads and level of detail.
 Result<std::vector<CaseResult>> run_ultrasound_cost_benchmark(const Options& options);
 /// Live ultrasound beside two live servers and a drawing thread: renewed pictures a second.

@@ -46,6 +46,8 @@ const std::vector<Benchmark>& all_benchmarks() {
        run_ultrasound_benchmark},
       {"ultrasound-cost", "a B-mode frame by scanlines, depth, planes, threads and level of detail",
        run_ultrasound_cost_benchmark},
+      {"panorama", "pictures sliced from a panorama while the transducer moves: covered, half covered, with a needle",
+       run_panorama_benchmark},
       {"live",
        "live ultrasound of a moving transducer beside two 1 kHz servers and a drawing thread: pictures a second",
        run_live_benchmark,

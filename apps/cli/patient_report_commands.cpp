@@ -14,6 +14,7 @@
 #include "core/files/atomic_file.h"
 #include "io/markups_file.h"
 #include "io/patient/open_patient.h"
+#include "io/patient/patient_panorama.h"
 #include "number_option.h"
 #include "patient_option.h"
 #include "patient_summary.h"
@@ -38,7 +39,8 @@ struct Arguments {
 constexpr double kMm2PerCm2 = 100.0;
 constexpr double kMm3PerMl = 1000.0;
 
-config::Json patient_json(const anatomy::VirtualPatient& patient, const std::vector<anatomy::NamedMesh>& meshes) {
+config::Json patient_json(const anatomy::VirtualPatient& patient, const std::vector<anatomy::NamedMesh>& meshes,
+                          bool has_panorama) {
   config::Json labels = config::Json::array();
   for (const anatomy::LabelStatistics& s : anatomy::label_statistics(patient)) labels.push_back(label_json(patient, s));
   config::Json surfaces = config::Json::array();
@@ -61,10 +63,12 @@ config::Json patient_json(const anatomy::VirtualPatient& patient, const std::vec
           {"labels", labels},
           {"meshes", surfaces},
           {"landmarks", landmarks},
-          {"paths", paths}};
+          {"paths", paths},
+          {"panorama", has_panorama}};
 }
 
-void print_patient(const anatomy::VirtualPatient& patient, const std::vector<anatomy::NamedMesh>& meshes) {
+void print_patient(const anatomy::VirtualPatient& patient, const std::vector<anatomy::NamedMesh>& meshes,
+                   bool has_panorama) {
   fmt::print("{}{}{}\n", patient.name, patient.description.empty() ? "" : ": ", patient.description);
   for (const std::string& line : patient.provenance) fmt::print("  from {}\n", line);
   fmt::print("  content {}\n\n", patient.content_hash);
@@ -96,16 +100,18 @@ void print_patient(const anatomy::VirtualPatient& patient, const std::vector<ana
   }
   for (const anatomy::NeedlePath& p : patient.paths)
     fmt::print("path {:<30} {:.1f} mm\n", p.name, p.line_P.length_mm());
+  if (has_panorama) fmt::print("\nultrasound panorama {}\n", io::kPanoramaFile);
 }
 
 Status show(const Arguments& arguments) {
   const ProgressPrinter printer;
   TROCAR_TRY(const anatomy::VirtualPatient patient, io::open_patient(arguments.source, printer.callback()));
   TROCAR_TRY(const auto meshes, io::open_meshes(arguments.source, patient, printer.callback()));
+  const bool has_panorama = io::has_panorama(arguments.source);
   if (arguments.is_json) {
-    print_json(patient_json(patient, meshes));
+    print_json(patient_json(patient, meshes, has_panorama));
   } else {
-    print_patient(patient, meshes);
+    print_patient(patient, meshes, has_panorama);
   }
   return {};
 }
@@ -143,12 +149,15 @@ Status check(const Arguments& arguments) {
   TROCAR_TRY(const auto tasks, checked_tasks(arguments, patient, printer.callback()));
   auto doubts = anatomy::find_doubts(patient, anatomy::label_statistics(patient));
   if (patient.paths.empty()) doubts.push_back("no expert path is stored; trocar run plans one");
+  const bool has_panorama = io::has_panorama(arguments.source);
+  if (has_panorama)
+    if (const auto panorama = io::load_panorama(arguments.source); !panorama) doubts.push_back(panorama.error().text());
   if (arguments.is_json) {
     config::Json list = config::Json::array();
     for (const auto& [task, readiness] : tasks) {
       list.push_back(readiness_json(task, readiness));
     }
-    print_json({{"name", patient.name}, {"tasks", list}, {"doubtful", doubts}});
+    print_json({{"name", patient.name}, {"tasks", list}, {"panorama", has_panorama}, {"doubtful", doubts}});
     return {};
   }
   for (const auto& [task, readiness] : tasks) {
@@ -156,6 +165,7 @@ Status check(const Arguments& arguments) {
                readiness.is_parenchymal ? " (parenchymal)" : "");
     for (const std::string& reason : readiness.reasons) fmt::print("  {}\n", reason);
   }
+  if (has_panorama) fmt::print("{:<16} {}\n", "panorama", io::kPanoramaFile);
   if (!doubts.empty()) fmt::print("doubtful\n");
   for (const std::string& doubt : doubts) fmt::print("  {}\n", doubt);
   return {};

@@ -68,9 +68,9 @@ Result<ultrasound::DopplerSettings> gather_doppler(const DopplerArguments& a) {
 
 ColourPicture colour_picture(std::shared_ptr<const ultrasound::VesselFlow> flow,
                              const ultrasound::DopplerSettings& settings, double time_s,
-                             const ultrasound::BMode& engine, const ultrasound::BasebandFrame& echoes, const Pose& X_PT,
-                             const ultrasound::GrayImage& picture, const ultrasound::RasterGeometry& raster,
-                             std::uint64_t seed) {
+                             const ultrasound::EchoEngine& engine, const ultrasound::BasebandFrame& echoes,
+                             const Pose& X_PT, const ultrasound::GrayImage& picture,
+                             const ultrasound::RasterGeometry& raster, std::uint64_t seed) {
   ultrasound::ColourDoppler doppler(std::move(flow));
   doppler.settings = settings;
   ColourPicture colour;

@@ -7,7 +7,7 @@
 
 #include "output.h"
 #include "ultrasound/doppler/colour_doppler.h"
-#include "ultrasound/engine/b_mode.h"
+#include "ultrasound/engine/echo_engine.h"
 
 namespace trocar::cli {
 
@@ -32,9 +32,9 @@ struct ColourPicture {
 /// Requires that `engine` has rendered that frame; `picture` is its image.
 ColourPicture colour_picture(std::shared_ptr<const ultrasound::VesselFlow> flow,
                              const ultrasound::DopplerSettings& settings, double time_s,
-                             const ultrasound::BMode& engine, const ultrasound::BasebandFrame& echoes, const Pose& X_PT,
-                             const ultrasound::GrayImage& picture, const ultrasound::RasterGeometry& raster,
-                             std::uint64_t seed);
+                             const ultrasound::EchoEngine& engine, const ultrasound::BasebandFrame& echoes,
+                             const Pose& X_PT, const ultrasound::GrayImage& picture,
+                             const ultrasound::RasterGeometry& raster, std::uint64_t seed);
 /// Draws the colour bar beside the gray wedge.
 void draw_colour_bar(volume::RgbImage& image, const ColourPicture& picture);
 

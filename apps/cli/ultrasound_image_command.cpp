@@ -7,15 +7,19 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <span>
 
 #include "bench/harness.h"
 #include "commands.h"
 #include "io/image/image_file.h"
+#include "io/patient/patient_panorama.h"
 #include "io/sequence/transform_file.h"
 #include "number_option.h"
 #include "png/png_file.h"
+#include "ultrasound/engine/b_mode.h"
+#include "ultrasound/panorama/panorama_engine.h"
 #include "ultrasound/scanner/scan_annotation.h"
 #include "ultrasound/scanner/scanner.h"
 #include "ultrasound/sweep/freehand_sweep.h"
@@ -26,8 +30,12 @@ namespace trocar::cli {
 namespace {
 namespace fs = std::filesystem;
 
+// Engines.
+constexpr const char* kRaycast = "raycast";
+constexpr const char* kPanorama = "panorama";
 constexpr double kNeedleLength_mm = 200.0;
 constexpr int kMostFrames = 100000;
+constexpr double kHardlyAny = 0.01;  ///< Share of the image from the panorama that causes a warning.
 /// Range of the needle gauges below.
 constexpr int kThickestGauge = 14, kThinnestGauge = 25;
 /// Number of frames after which persistence has converged to one or two gray values.
@@ -38,7 +46,7 @@ struct Arguments {
   DopplerArguments doppler;
   std::string needle;
   int needle_gauge = 18;
-  std::string engine = "raycast";
+  std::string engine = kRaycast;
   std::string out;
   std::string size = "640x480";
   int frames = 0;
@@ -89,8 +97,6 @@ struct Request {
   ultrasound::DopplerSettings doppler;
 };
 Result<Request> check_arguments(const Arguments& arguments) {
-  if (arguments.engine == "panorama")
-    return fail_usage("engine panorama is not implemented", "--engine panorama", "use --engine raycast");
   const std::string ending = fs::path(arguments.out).extension().string();
   if (ending != ".png" && ending != ".nrrd")
     return fail_usage("the file name must end in .png or .nrrd", arguments.out, "rename the output");
@@ -102,6 +108,19 @@ Result<Request> check_arguments(const Arguments& arguments) {
   if (arguments.doppler.is_wanted && ending != ".png")
     return fail_usage("colour Doppler cannot be written as .nrrd", arguments.out, "write a .png, or omit --doppler");
   return request;
+}
+
+/// The engine of the arguments, with the panorama's own interface if it is that one.
+struct Engine {
+  std::unique_ptr<ultrasound::EchoEngine> echoes;
+  const ultrasound::PanoramaEngine* panorama = nullptr;
+};
+Engine make_engine(const Scan& scan, std::shared_ptr<const ultrasound::Panorama> panorama) {
+  if (!panorama) return {std::make_unique<ultrasound::BMode>(scan.scene, scan.transducer, scan.acquisition), nullptr};
+  auto engine =
+      std::make_unique<ultrasound::PanoramaEngine>(scan.scene, std::move(panorama), scan.transducer, scan.acquisition);
+  const ultrasound::PanoramaEngine* const own = engine.get();
+  return {std::move(engine), own};
 }
 
 /// The image as a thin volume at the position of its plane in the patient: two equal slices, since readers cannot
@@ -128,7 +147,7 @@ struct Timing {
   double frames_per_s = 0.0;  ///< Of all consecutive frames.
   bench::Figures frame_ms, engine_ms, scanner_ms;
 };
-Timing time_frames(ultrasound::BMode& engine, ultrasound::Scanner& scanner, const Scan& scan,
+Timing time_frames(ultrasound::EchoEngine& engine, ultrasound::Scanner& scanner, const Scan& scan,
                    std::span<const ultrasound::NeedleEcho> needles, int frames, std::uint64_t seed,
                    const Progress& progress) {
   using Clock = std::chrono::steady_clock;
@@ -200,10 +219,15 @@ Status make_image(const Arguments& arguments) {
   const ProgressPrinter printer;
   ScanArguments wanted = arguments.scan;
   wanted.needs_flow = arguments.doppler.is_wanted;
+  std::shared_ptr<const ultrasound::Panorama> panorama;
+  if (arguments.engine == kPanorama) {
+    TROCAR_TRY(panorama, io::load_panorama(wanted.source));
+  }
   TROCAR_TRY(Scan scan, prepare_scan(wanted, {}, printer.callback()));
   if (arguments.is_unmirrored) scan.display.is_mirrored = false;
 
-  ultrasound::BMode engine(scan.scene, scan.transducer, scan.acquisition);
+  const Engine made = make_engine(scan, panorama);
+  ultrasound::EchoEngine& engine = *made.echoes;
   ultrasound::Scanner scanner(request.size.columns, request.size.rows);
   scanner.settings = scan.display;
   scanner.artefacts = scan.acquisition.artefacts;
@@ -213,6 +237,8 @@ Status make_image(const Arguments& arguments) {
   const std::span<const ultrasound::NeedleEcho> needles(&needle, needle.shaft_P.empty() ? 0 : 1);
   const ultrasound::BasebandFrame& echoes = engine.render({scan.X_PT, needles, 0.0});
   const double coupled = ultrasound::coupled_share(echoes);
+  const double panorama_share = made.panorama != nullptr ? made.panorama->panorama_share() : 0.0;
+  const int ray_cast_lines = made.panorama != nullptr ? made.panorama->ray_cast_lines() : 0;
   const int pictures = scan.display.persistence > 0.0 ? kPersistingPictures : 1;
   ultrasound::GrayImage picture;
   for (int n = 0; n < pictures; ++n)
@@ -231,9 +257,14 @@ Status make_image(const Arguments& arguments) {
 
   warn_of_contact(coupled);
   warn_of_visibility(scan);
+  if (panorama && panorama_share < kHardlyAny)
+    print_warning("the panorama does not cover the image: all of it is ray cast");
   if (arguments.is_json) {
     config::Json json = to_json(scan);
     json["out"] = arguments.out;
+    json["engine"] = arguments.engine;
+    json["panorama_share"] = panorama ? config::Json(panorama_share) : config::Json(nullptr);
+    json["ray_cast_lines"] = panorama ? config::Json(ray_cast_lines) : config::Json(nullptr);
     json["columns"] = picture.columns;
     json["rows"] = picture.rows;
     json["mm_per_pixel"] = raster.mm_per_pixel;
@@ -258,6 +289,7 @@ void add_ultrasound_image_command(CLI::App& ultrasound, Action& action) {
       "Examples:\n  trocar ultrasound image --patient abdomen --view liver-right-kidney --out kidney.png\n"
       "  trocar ultrasound image --patient abdomen --view aorta --doppler --doppler-scale 60 --out aorta.png\n"
       "  trocar ultrasound image --patient my_patient --pose probe.tfm --needle needle.tfm --out needle.png\n"
+      "  trocar ultrasound image --patient my_patient --pose probe.tfm --engine panorama --out slice.png\n"
       "  trocar ultrasound image --patient abdomen --pose probe.tfm --frames 300 --out frame.png\n");
   const auto a = std::make_shared<Arguments>();
   add_scan_options(*command, a->scan);
@@ -274,8 +306,8 @@ void add_ultrasound_image_command(CLI::App& ultrasound, Action& action) {
       ->capture_default_str();
   command
       ->add_option("--engine", a->engine,
-                   "raycast (from CT and labels) or panorama (from stitched volumes, not implemented)")
-      ->check(CLI::IsMember({"raycast", "panorama"}))
+                   "raycast (from CT and labels) or panorama (from the stitched volumes in the patient folder)")
+      ->check(CLI::IsMember({kRaycast, kPanorama}))
       ->capture_default_str();
   command
       ->add_option("--out", a->out,

@@ -101,6 +101,85 @@ TEST(UltrasoundImage, NeedleAndSwitchedArtefactsChangeThePicture) {
   EXPECT_NE(pictures[0], pictures[2]);
 }
 
+/// A patient folder of the scene; the panorama is a sweep from the pose, in P.
+std::string make_patient_with_panorama(const TemporaryFolder& folder) {
+  const std::string patient = folder / "patient";
+  const std::string pose = place_on_scene(folder);
+  for (const std::string& line :
+       {"patient generate layers-liver --out " + patient,
+        "ultrasound sweep" + kScene + kQuick + " --transducer 4DC7-3 --angle-deg 40 --step-deg 2 --spacing 1" +
+            " --in-patient --pose " + pose + " --out " + (folder / "sweep.nrrd")}) {
+    const Outcome outcome = trocar(line);
+    EXPECT_EQ(outcome.exit_status, 0) << outcome.err;
+  }
+  std::filesystem::create_directory(patient + "/us");
+  std::filesystem::copy_file(folder / "sweep.nrrd", patient + "/us/panorama.nrrd");
+  EXPECT_TRUE(io::write_transform(Pose(), patient + "/us_to_ct.tfm"));
+  return patient;
+}
+
+TEST(UltrasoundImage, PanoramaOfThePatientFolderIsShown) {
+  const TemporaryFolder folder;
+  const std::string patient = make_patient_with_panorama(folder);
+  const std::string line = "ultrasound image --json" + kQuick + " --transducer 4DC7-3 --patient " + patient +
+                           " --pose " + place_on_scene(folder) + " --out ";
+  const config::Json sliced = json_of(trocar(line + (folder / "panorama.nrrd") + " --engine panorama"));
+  EXPECT_EQ(sliced["engine"], "panorama");
+  EXPECT_GT(sliced["panorama_share"], 0.6);
+  const config::Json cast = json_of(trocar(line + (folder / "cast.nrrd")));
+  EXPECT_EQ(cast["engine"], "raycast");
+  EXPECT_EQ(cast["panorama_share"], nullptr);
+  const auto a = io::read_labels(folder / "panorama.nrrd"), b = io::read_labels(folder / "cast.nrrd");
+  ASSERT_TRUE(a && b);
+  EXPECT_NE(a->voxels, b->voxels);
+  // The same tissue at the same place: layers, not speckle.
+  EXPECT_GT(volume::correlation(a->voxels, b->voxels, volume::ComparedVoxels::kBothAboveZero), 0.4);
+}
+
+TEST(UltrasoundImage, FarFromThePanoramaTheImageIsTheRayCastOne) {
+  const TemporaryFolder folder;
+  const std::string patient = make_patient_with_panorama(folder);
+  std::filesystem::remove(patient + "/us_to_ct.tfm");
+  ASSERT_TRUE(io::write_transform(Pose::translation(Vec3(0.0, 0.0, 900.0)), patient + "/us_to_ct.tfm"));
+  const std::string line =
+      "ultrasound image --plain" + kQuick + " --patient " + patient + " --pose " + place_on_scene(folder) + " --out ";
+  const Outcome outcome = trocar(line + (folder / "a.png") + " --engine panorama");
+  EXPECT_EQ(outcome.exit_status, 0);
+  EXPECT_NE(outcome.err.find("does not cover"), std::string::npos) << outcome.err;
+  EXPECT_EQ(trocar(line + (folder / "b.png")).exit_status, 0);
+  EXPECT_EQ(text_of_file(folder / "a.png"), text_of_file(folder / "b.png"));
+}
+
+TEST(UltrasoundImage, DamagedPanoramaIsOneLine) {
+  const TemporaryFolder folder;
+  const std::string patient = make_patient_with_panorama(folder);
+  const std::string line = "ultrasound image" + kQuick + " --engine panorama --patient " + patient + " --pose " +
+                           place_on_scene(folder) + " --out " + (folder / "x.png");
+  const auto expect_refused = [&](const char* named) {
+    const Outcome outcome = trocar(line);
+    EXPECT_EQ(outcome.exit_status, 1) << outcome.err;
+    EXPECT_EQ(line_count(outcome.err), 1) << outcome.err;
+    EXPECT_NE(outcome.err.find(named), std::string::npos) << outcome.err;
+  };
+  std::ofstream(patient + "/us_to_ct.tfm") << "#Insight Transform File V1.0\n#Transform 0\nTransform: "
+                                              "AffineTransform_double_3_3\nParameters: nan 0 0 0 1 0 0 0 1 0 0 0\n"
+                                              "FixedParameters: 0 0 0\n";
+  expect_refused("us_to_ct.tfm");
+  std::filesystem::remove(patient + "/us_to_ct.tfm");
+  expect_refused("trocar register");
+  ASSERT_TRUE(io::write_transform(Pose(), patient + "/us_to_ct.tfm"));
+  std::filesystem::resize_file(patient + "/us/panorama.nrrd", 900);
+  expect_refused("panorama.nrrd");
+  std::filesystem::remove(patient + "/us/panorama.nrrd");
+  volume::LabelGrid black(volume::GridGeometry{{4, 4, 4}, Vec3::Ones(), Vec3::Zero(), Mat3::Identity()});
+  ASSERT_TRUE(io::write_image(black, patient + "/us/panorama.nrrd"));
+  expect_refused("no imaged voxel");
+  black.voxels[0] = 5;
+  std::filesystem::remove(patient + "/us/panorama.nrrd");
+  ASSERT_TRUE(io::write_image(black, patient + "/us/panorama.nrrd", {{"trocar_dynamic_range_db", "inf"}}));
+  expect_refused("dynamic");
+}
+
 TEST(UltrasoundImage, SavedPoseKeepsTransducerDepthFrequencyAndFocus) {
   const TemporaryFolder folder;
   const std::string line = "ultrasound image" + kScene + " --lines 32 --samples 128 --planes 1 --looks 1 --json";
@@ -229,7 +308,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"image --patient layers-liver --view bladder --out x.png", 2, "bladder"},
         Refused{"image --patient layers-liver --view spleen --pose pose8.tfm --out x.png", 2, "--view"},
         Refused{"image --patient layers-liver --pose pose8.tfm --transducer C9 --out x.png", 2, "C5-2"},
-        Refused{"image --patient layers-liver --pose pose8.tfm --engine panorama --out x.png", 2, "panorama"},
+        Refused{"image --patient layers-liver --pose pose8.tfm --engine panorama --out x.png", 1, "us/panorama.nrrd"},
+        Refused{"image --patient layers-liver --pose pose8.tfm --engine mirror --out x.png", 2, "panorama"},
         Refused{"image --patient layers-liver --pose pose8.tfm --off ghosts --out x.png", 2, "side-lobes"},
         Refused{"image --patient layers-liver --pose pose8.tfm --depth-mm nan --out x.png", 2, "--depth-mm"},
         Refused{"image --patient layers-liver --pose pose8.tfm --frequency-mhz 50 --out x.png", 2, "2 to 5 MHz"},

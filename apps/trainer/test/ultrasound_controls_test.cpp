@@ -67,5 +67,38 @@ TEST_F(UltrasoundControlsTest, ControlsAndViewShowTheSame) {
   EXPECT_EQ(view.settings(), default_settings(transducer("L14-5")));
 }
 
+/// An even panorama around the face of a pose.
+std::shared_ptr<ultrasound::PanoramaOnDemand> panorama_at(const Pose& X_PT) {
+  return std::make_shared<ultrasound::PanoramaOnDemand>([X_PT] {
+    volume::GridGeometry geometry;
+    geometry.size = {120, 120, 40};
+    geometry.spacing_mm = Vec3::Constant(2.0);
+    geometry.origin_P = Vec3(-120.0, -40.0, -40.0);
+    return ultrasound::make_panorama(volume::LabelGrid(geometry, 90), X_PT);
+  });
+}
+
+TEST_F(UltrasoundControlsTest, EngineIsOfferedOnlyForAPatientWithAPanorama) {
+  UltrasoundView view;
+  open(view, "aorta", {320, 280});
+  UltrasoundControls controls(view);
+  auto& engine = find<QComboBox>(controls, "ultrasound-engine");
+  EXPECT_FALSE(engine.isEnabled());
+  EXPECT_EQ(engine.currentIndex(), 0);
+  view.show_patient(abdomen().scene, abdomen().flow, transducer("C5-2"), panorama_at(X_PT_));
+  ASSERT_TRUE(engine.isEnabled());
+  EXPECT_EQ(engine.currentIndex(), 0) << "a case begins with its own engine";
+  engine.setCurrentIndex(1);
+  Q_EMIT engine.activated(1);
+  EXPECT_TRUE(view.settings().is_panorama);
+  ASSERT_TRUE(run_until(view, [](const ultrasound::ScanPicture& p) { return p.panorama_share > 0.5; }));
+  view.reset_settings();
+  view.choose_transducer(transducer("P4-2"));
+  EXPECT_EQ(engine.currentIndex(), 1) << "the engine belongs to the case, not to the transducer";
+  engine.setCurrentIndex(0);
+  Q_EMIT engine.activated(0);
+  EXPECT_TRUE(run_until(view, [](const ultrasound::ScanPicture& p) { return p.panorama_share == 0.0; }));
+}
+
 }  // namespace
 }  // namespace trocar::trainer

@@ -62,10 +62,10 @@ Status save_case(const CaseDraft& draft, DraftPatient& patients, const SaveOptio
   std::error_code ignored;
   fs::create_directories(target.parent_path(), ignored);  // an error is reported when writing
   if (!fs::exists(target / "patient.toml", ignored))
-    return io::save_patient(patient, *draft_meshes(draft), target, progress, extras);
+    return io::save_patient(patient, *draft_meshes(draft), target, progress, extras, draft.imported->source);
   const fs::path fresh = target.parent_path() / fmt::format(".{}.new", target.filename().string());
   fs::remove_all(fresh, ignored);
-  TROCAR_TRY_STATUS(io::save_patient(patient, *draft_meshes(draft), fresh, progress, extras));
+  TROCAR_TRY_STATUS(io::save_patient(patient, *draft_meshes(draft), fresh, progress, extras, draft.imported->source));
   return replace(fresh, target);
 }
 

@@ -13,6 +13,7 @@
 #include "core/parallel.h"
 #include "io/patient/open_patient.h"
 #include "io/patient/patient_cache.h"
+#include "io/patient/patient_panorama.h"
 
 namespace trocar::cases {
 namespace {
@@ -84,6 +85,18 @@ Status add_acoustics(OpenCase& made, const std::shared_ptr<const anatomy::Virtua
   TROCAR_TRY(ultrasound::FlowTable flows, ultrasound::load_flow_table(data_dir() / "flow.toml"));
   made.flow = std::make_shared<ultrasound::FlowOnDemand>(patient, std::move(flows));
   return {};
+}
+
+/// Only notes where the panorama is: it is loaded when an image uses it.
+void add_panorama(OpenCase& made, const OpenCase* previous) {
+  const io::PatientSource source = source_of(made.choice);
+  if (previous != nullptr) {
+    made.panorama = previous->panorama;
+  } else if (io::has_panorama(source)) {
+    made.panorama = std::make_shared<ultrasound::PanoramaOnDemand>([source] { return io::load_panorama(source); });
+  }
+  if (!made.panorama && made.the_case.task.ultrasound_engine == "panorama")
+    made.notes.push_back("ultrasound is ray cast: the patient has no panorama — stitch and register one");
 }
 
 Status add_case(OpenCase& made, std::shared_ptr<const anatomy::VirtualPatient> patient, const Progress& progress) {
@@ -165,6 +178,7 @@ Result<std::shared_ptr<const OpenCase>> make_open_case(const CaseChoice& choice,
     made->acoustic = std::move(acoustics.acoustic);
     made->flow = std::move(acoustics.flow);
   }
+  add_panorama(*made, previous.get());
   if (!made->flow->is_possible())
     made->notes.push_back(
         "no colour Doppler: no vessel of this patient has flow — label some, or add rows to flow.toml");

@@ -14,6 +14,7 @@
 #include "core/background_job.h"
 #include "geometry/pose.h"
 #include "ultrasound/doppler/flow_on_demand.h"
+#include "ultrasound/panorama/panorama_on_demand.h"
 #include "ultrasound/probe/transducer.h"
 #include "ultrasound/tissue/acoustic_scene.h"
 
@@ -39,6 +40,8 @@ struct OpenCase {
   std::shared_ptr<const std::vector<anatomy::NamedMesh>> meshes;
   std::shared_ptr<const ultrasound::AcousticScene> acoustic;
   std::shared_ptr<ultrasound::FlowOnDemand> flow;  ///< `notes` reports it if no vessel of this patient has flow.
+  /// nullptr: the patient has no panorama. The task says if the case begins with it.
+  std::shared_ptr<ultrasound::PanoramaOnDemand> panorama;
   ultrasound::Transducer transducer;
   double probe_depth_mm = 160.0;  ///< Image depth that includes the target and the tissue behind it.
   /// Start pose of the transducer: pressed lightly onto the skin, with the planned path in its plane and the face

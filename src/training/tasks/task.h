@@ -40,6 +40,8 @@ struct Task {
   std::vector<std::string> target_tissues;  ///< "liver_lesion"; where the patient has none: parenchyma of the organ.
   std::string needle;                       ///< Name in data/needles.toml.
   std::string force_model = "insertion";    ///< insertion, proxy or combined; see docs/physics.md T2.
+  /// Engine of the ultrasound image: raycast, or panorama if the patient has one (docs/physics.md U17).
+  std::string ultrasound_engine = "raycast";
   std::vector<RiskStructure> risks;
   // Settings that only a patient's own task has: they refer to places and structures of this patient.
   std::string target_label;             ///< The one label that is the target; empty: all of target_tissues.

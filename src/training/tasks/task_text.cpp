@@ -19,13 +19,17 @@ class TaskReader {
   TaskReader(const config::TomlTable& document, bool is_whole) : document_(document), is_whole_(is_whole) {}
 
   Status read(Task& task) const {
-    TROCAR_TRY_STATUS(
-        document_.check_keys({"base", "title", "organ", "target_tissues", "needle", "force_model", "path",
-                              "parenchymal", "scoring", "risks", "target", "entry_zone", "expert_path", "exam"}));
+    TROCAR_TRY_STATUS(document_.check_keys({"base", "title", "organ", "target_tissues", "needle", "force_model",
+                                            "ultrasound_engine", "path", "parenchymal", "scoring", "risks", "target",
+                                            "entry_zone", "expert_path", "exam"}));
     TROCAR_TRY_STATUS(text(document_, "title", task.title));
     TROCAR_TRY_STATUS(text(document_, "organ", task.organ));
     TROCAR_TRY_STATUS(text(document_, "needle", task.needle));
     TROCAR_TRY(task.force_model, document_.string_or("force_model", task.force_model));
+    TROCAR_TRY(task.ultrasound_engine, document_.string_or("ultrasound_engine", task.ultrasound_engine));
+    if (task.ultrasound_engine != "raycast" && task.ultrasound_engine != "panorama")
+      return fail(fmt::format("there is no ultrasound engine \"{}\"", task.ultrasound_engine), document_.where(),
+                  "write raycast or panorama");
     TROCAR_TRY(task.expert_path, document_.string_or("expert_path", task.expert_path));
     if (is_whole_ || document_.has("target_tissues")) {
       TROCAR_TRY(task.target_tissues, document_.strings("target_tissues"));
@@ -242,6 +246,7 @@ std::string task_to_toml(const Task& task, const Task& base) {
   keys.set_changed("organ", task.organ, base.organ);
   keys.set_changed("needle", task.needle, base.needle);
   keys.set_changed("force_model", task.force_model, base.force_model);
+  keys.set_changed("ultrasound_engine", task.ultrasound_engine, base.ultrasound_engine);
   keys.set_changed("expert_path", task.expert_path, base.expert_path);
   keys.set_changed("target_tissues", task.target_tissues, base.target_tissues);
   const bool has_same_risks = task.risks == base.risks;

@@ -116,7 +116,12 @@ QWidget* UltrasoundControls::make_source() {
   preset_ = combo(1, "ultrasound-preset", tr("Preset"), tr("Transducer and image settings for an examination"));
   preset_->addItem(tr("choose"));
   for (const ultrasound::ScanPreset& preset : presets_) preset_->addItem(to_qt(preset.title));
+  engine_ = combo(2, "ultrasound-engine", tr("Engine"),
+                  tr("Ray cast: from CT and labels; panorama: from the patient's stitched ultrasound volumes"));
+  engine_->addItems({tr("Ray cast"), tr("Panorama")});
   box->addLayout(grid);
+  connect(engine_, qOverload<int>(&QComboBox::activated), this,
+          [this](int index) { view_.change_settings([&](UltrasoundSettings& s) { s.is_panorama = index == 1; }); });
   connect(transducer_, qOverload<int>(&QComboBox::activated), this, [this](int index) {
     if (index >= 0) view_.choose_transducer(transducers_[static_cast<std::size_t>(index)]);
   });
@@ -371,6 +376,8 @@ void UltrasoundControls::show_view() {
   for (Check& check : checks_) check.box->setChecked(check.flag(settings));
   gray_map_->setCurrentIndex(gray_map_->findText(to_qt(ultrasound::name_of(settings.display.gray_map))));
   transducer_->setCurrentIndex(transducer_->findText(to_qt(view_.transducer().name)));
+  engine_->setEnabled(view_.has_panorama());
+  engine_->setCurrentIndex(settings.is_panorama && view_.has_panorama() ? 1 : 0);
   // A preset belongs to one transducer.
   const int preset = preset_->currentIndex();
   if (preset > 0 && presets_[static_cast<std::size_t>(preset - 1)].transducer != view_.transducer().name)

@@ -67,7 +67,7 @@ class UltrasoundControls : public QWidget {
   std::vector<ultrasound::ScanPreset> presets_;
   std::vector<Control> controls_;
   std::vector<Check> checks_;
-  QComboBox* transducer_ = nullptr;
+  QComboBox *transducer_ = nullptr, *engine_ = nullptr;
   QComboBox* preset_ = nullptr;
   QComboBox* gray_map_ = nullptr;
   QPushButton* freeze_ = nullptr;

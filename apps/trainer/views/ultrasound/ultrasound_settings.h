@@ -1,7 +1,7 @@
 #pragma once
 
 #include "ultrasound/doppler/doppler_settings.h"
-#include "ultrasound/engine/b_mode.h"
+#include "ultrasound/engine/echo_engine.h"
 #include "ultrasound/scanner/display_settings.h"
 
 namespace trocar::trainer {
@@ -21,6 +21,8 @@ struct UltrasoundSettings {
   ultrasound::DisplaySettings display;
   /// While transducer or needle moves, a picture renews a part of the scanlines, as in a scanner.
   bool is_rolling = false;
+  /// The image is sliced from the patient's panorama; not stored: it belongs to the case.
+  bool is_panorama = false;
   bool has_doppler = false;
   ultrasound::DopplerSettings doppler;
   NeedleGuide guide;

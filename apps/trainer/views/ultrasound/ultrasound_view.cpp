@@ -77,10 +77,12 @@ UltrasoundView::~UltrasoundView() {
 
 void UltrasoundView::show_patient(std::shared_ptr<const ultrasound::AcousticScene> scene,
                                   std::shared_ptr<ultrasound::FlowOnDemand> flow,
-                                  const ultrasound::Transducer& transducer) {
+                                  const ultrasound::Transducer& transducer,
+                                  std::shared_ptr<ultrasound::PanoramaOnDemand> panorama) {
   save_now();
   scene_ = std::move(scene);
   flow_ = std::move(flow);
+  panorama_ = std::move(panorama);
   transducer_ = transducer;
   settings_ = load_settings(transducer_);
   picture_.reset();
@@ -97,7 +99,10 @@ void UltrasoundView::show_patient(std::shared_ptr<const ultrasound::AcousticScen
 }
 
 void UltrasoundView::choose_transducer(const ultrasound::Transducer& transducer) {
-  if (scene_ && transducer.name != transducer_.name) show_patient(scene_, flow_, transducer);
+  if (!scene_ || transducer.name == transducer_.name) return;
+  const bool is_panorama = settings_.is_panorama;
+  show_patient(scene_, flow_, transducer, panorama_);
+  change_settings([&](UltrasoundSettings& s) { s.is_panorama = is_panorama; });
 }
 
 void UltrasoundView::set_transducer_pose(const Pose& X_PT) {
@@ -134,6 +139,7 @@ ultrasound::ScanRequest UltrasoundView::make_request(double now_s) {
   request.renewed_share = settings_.is_rolling ? kRollingShare : 1.0;
   request.display = settings_.display;
   if (settings_.has_doppler) request.flow = poll_flow();
+  if (settings_.is_panorama) request.panorama = poll_panorama();
   request.doppler = settings_.doppler;
   request.time_s = now_s;
   const QSizeF size = layout_for(picture_ && is_frozen() ? picture_->scan : requested_scan()).picture.size();
@@ -154,6 +160,14 @@ std::shared_ptr<const ultrasound::VesselFlow> UltrasoundView::poll_flow() {
     Q_EMIT changed();
   }
   return flow;
+}
+
+/// Null while it is loaded, and if that has failed: the image is ray cast then.
+std::shared_ptr<const ultrasound::Panorama> UltrasoundView::poll_panorama() {
+  if (!has_panorama()) return nullptr;
+  std::shared_ptr<const ultrasound::Panorama> panorama = panorama_->poll();
+  if (!has_panorama()) Q_EMIT changed();
+  return panorama;
 }
 
 /// Why there is no colour although it is switched on; empty: there is.
@@ -227,7 +241,9 @@ void UltrasoundView::change_settings(const std::function<void(UltrasoundSettings
 }
 
 void UltrasoundView::reset_settings() {
-  set_settings(default_settings(transducer_));
+  UltrasoundSettings settings = default_settings(transducer_);
+  settings.is_panorama = settings_.is_panorama;
+  set_settings(settings);
 }
 
 void UltrasoundView::save_now() {

@@ -10,6 +10,7 @@
 
 #include "ultrasound/doppler/flow_on_demand.h"
 #include "ultrasound/live/live_scanner.h"
+#include "ultrasound/panorama/panorama_on_demand.h"
 #include "ultrasound/scanner/measurements.h"
 #include "views/ultrasound/caliper_marks.h"
 #include "views/ultrasound/ultrasound_box.h"
@@ -34,9 +35,11 @@ class UltrasoundView : public QWidget {
   explicit UltrasoundView(QWidget* parent = nullptr);
   ~UltrasoundView() override;
 
-  /// Opens another patient; `flow` may be nullptr. The controls are those stored for the transducer.
+  /// Opens another patient; `flow` and `panorama` may be nullptr. The controls are those stored for the transducer; the
+  /// image is ray cast until the settings select the panorama.
   void show_patient(std::shared_ptr<const ultrasound::AcousticScene> scene,
-                    std::shared_ptr<ultrasound::FlowOnDemand> flow, const ultrasound::Transducer& transducer);
+                    std::shared_ptr<ultrasound::FlowOnDemand> flow, const ultrasound::Transducer& transducer,
+                    std::shared_ptr<ultrasound::PanoramaOnDemand> panorama = nullptr);
   void set_transducer_pose(const Pose& X_PT);
   /// Shaft from the hub to the tip; empty: no needle. `bore_share` and `tip_shift_mm` as in ScanRequest.
   void set_needle(std::span<const Vec3> shaft_P, double diameter_mm, double bore_share = 0.0,
@@ -55,6 +58,7 @@ class UltrasoundView : public QWidget {
   bool is_guide_visible() const noexcept { return is_guide_visible_; }
 
   bool has_patient() const noexcept { return scene_ != nullptr; }
+  bool has_panorama() const noexcept { return panorama_ && panorama_->is_possible(); }
   bool has_flow() const noexcept { return flow_ && flow_->is_possible(); }
   const ultrasound::Transducer& transducer() const noexcept { return transducer_; }
   /// Selects another array for the same patient, with its stored controls; the patient's view restarts.
@@ -123,6 +127,7 @@ class UltrasoundView : public QWidget {
   void make_shortcuts();
   ultrasound::ScanRequest make_request(double now_s);
   std::shared_ptr<const ultrasound::VesselFlow> poll_flow();
+  std::shared_ptr<const ultrasound::Panorama> poll_panorama();
   QString flow_message() const;
   void take_picture(double now_s);
   void count_picture(double now_s, bool is_live);
@@ -145,6 +150,7 @@ class UltrasoundView : public QWidget {
   ultrasound::LiveScanner scanner_;
   std::shared_ptr<const ultrasound::AcousticScene> scene_;
   std::shared_ptr<ultrasound::FlowOnDemand> flow_;
+  std::shared_ptr<ultrasound::PanoramaOnDemand> panorama_;
   bool is_flow_awaited_ = false;  ///< Until the first image with colour after the computation.
   ultrasound::Transducer transducer_;
   UltrasoundSettings settings_;

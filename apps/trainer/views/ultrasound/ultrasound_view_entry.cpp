@@ -37,8 +37,11 @@ class UltrasoundViewEntry final : public View {
 
   bool open(const CaseContext& context) override {
     const cases::OpenCase& open = *context.open;
-    view_->show_patient(open.acoustic, open.flow, open.transducer);
-    view_->change_settings([&](UltrasoundSettings& s) { s.acquisition.depth_mm = open.probe_depth_mm; });
+    view_->show_patient(open.acoustic, open.flow, open.transducer, open.panorama);
+    view_->change_settings([&](UltrasoundSettings& s) {
+      s.acquisition.depth_mm = open.probe_depth_mm;
+      s.is_panorama = open.panorama != nullptr && open.the_case.task.ultrasound_engine == "panorama";
+    });
     return true;
   }
 

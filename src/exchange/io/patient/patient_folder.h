@@ -20,10 +20,11 @@ struct PatientExtra {
 
 /// Writes a patient folder completely or not at all: patient.toml, ct.nrrd, labels.nrrd, skin_distance.nrrd,
 /// meshes/NAME.vtp, landmarks.mrk.json, paths.mrk.json. An existing folder is never overwritten. The skin distance is
-/// stored in hundredths of a mm, up to 327 mm.
+/// stored in hundredths of a mm, up to 327 mm. The files of a panorama (patient_panorama.h) in `panorama_from`, the
+/// folder from which the patient was read, are copied if they exist.
 Status save_patient(const anatomy::VirtualPatient& patient, const std::vector<anatomy::NamedMesh>& meshes,
                     const std::filesystem::path& folder, const Progress& progress = {},
-                    const std::vector<PatientExtra>& extras = {});
+                    const std::vector<PatientExtra>& extras = {}, const std::filesystem::path& panorama_from = {});
 /// Reads a patient folder without the meshes; reads the volumes in parallel. Errors: not a patient folder, a newer
 /// version, a missing or damaged file, volumes on different grids, a label without a name, a content hash that does not
 /// match.

@@ -12,6 +12,7 @@
 #include "io/mesh_file.h"
 #include "io/patient/detail/patient_layout.h"
 #include "io/patient/patient_folder.h"
+#include "io/patient/patient_panorama.h"
 
 namespace trocar::io {
 namespace fs = std::filesystem;
@@ -66,10 +67,24 @@ Status write_contents(const anatomy::VirtualPatient& patient, const std::vector<
   return {};
 }
 
+Status copy_panorama(const fs::path& from, const fs::path& to) {
+  for (const char* file : {kPanoramaFile, kPanoramaTransformFile}) {
+    std::error_code error;
+    if (!fs::is_regular_file(from / file, error)) continue;
+    fs::create_directories((to / file).parent_path(), error);
+    if (!error) fs::copy_file(from / file, to / file, error);
+    if (error)
+      return fail("the panorama cannot be copied: " + error.message(), (from / file).string(),
+                  "check the disk and permissions");
+  }
+  return {};
+}
+
 }  // namespace
 
 Status save_patient(const anatomy::VirtualPatient& patient, const std::vector<anatomy::NamedMesh>& meshes,
-                    const fs::path& folder, const Progress& progress, const std::vector<PatientExtra>& extras) {
+                    const fs::path& folder, const Progress& progress, const std::vector<PatientExtra>& extras,
+                    const fs::path& panorama_from) {
   TROCAR_TRY_STATUS(detail::check_geometry(patient, folder.string()));
   TROCAR_TRY_STATUS(detail::check_label_ids(patient, folder.string()));
   return write_folder_atomically(folder, [&](const fs::path& temporary) -> Status {
@@ -78,6 +93,7 @@ Status save_patient(const anatomy::VirtualPatient& patient, const std::vector<an
       TROCAR_CHECK(!fs::exists(temporary / extra.name));
       TROCAR_TRY_STATUS(write_file_atomically(temporary / extra.name, extra.text));
     }
+    if (!panorama_from.empty()) TROCAR_TRY_STATUS(copy_panorama(panorama_from, temporary));
     return {};
   });
 }

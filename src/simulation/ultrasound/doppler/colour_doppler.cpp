@@ -10,7 +10,7 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "ultrasound/doppler/detail/colour_conversion.h"
-#include "ultrasound/engine/b_mode.h"
+#include "ultrasound/engine/echo_engine.h"
 #include "ultrasound/scanner/detail/receiver.h"
 
 namespace trocar::ultrasound {

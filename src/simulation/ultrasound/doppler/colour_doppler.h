@@ -14,7 +14,7 @@
 
 namespace trocar::ultrasound {
 
-class BMode;
+class EchoEngine;
 
 /// Input of one colour frame.
 struct DopplerInput {
@@ -25,7 +25,7 @@ struct DopplerInput {
   std::uint64_t seed = 0;  ///< Seed of the noise; differs from frame to frame.
   /// The engine that rendered this frame: losses along the path, and the indentation under the face. nullptr: only
   /// kPlainLoss_db_per_cm_mhz, no indentation.
-  const BMode* engine = nullptr;
+  const EchoEngine* engine = nullptr;
 };
 inline constexpr double kPlainLoss_db_per_cm_mhz = 0.5;
 

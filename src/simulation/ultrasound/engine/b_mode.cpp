@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numbers>
 
 #include "core/check.h"
-#include "core/parallel.h"
 #include "ultrasound/engine/detail/aperture_paths.h"
 #include "ultrasound/engine/detail/clutter.h"
 #include "ultrasound/engine/detail/frame_state.h"
+#include "ultrasound/engine/detail/line_groups.h"
 #include "ultrasound/engine/detail/multiple_echoes.h"
 #include "ultrasound/engine/detail/needle_image.h"
 #include "ultrasound/engine/detail/point_echo.h"
@@ -50,22 +49,6 @@ struct BMode::Impl {
 
   bool has_frame = false;  ///< Of this acquisition.
 
-  static int groups(int lines) noexcept { return (lines + kGroup - 1) / kGroup; }
-
-  /// Calls body(number of the group, first, last) for groups of scanlines of a range on several threads.
-  template <class Body>
-  void for_groups(const LineRange& lines, const Body& body) noexcept {
-    const auto part = [&](std::size_t first, std::size_t last) {
-      for (std::size_t g = first; g < last; ++g) {
-        const int begin = lines.first + static_cast<int>(g) * kGroup;
-        body(static_cast<int>(g), begin, std::min(begin + kGroup, lines.last));
-      }
-    };
-    parallel_for(static_cast<std::size_t>(groups(lines.count())), 1, std::ref(part));
-  }
-
-  /// The range of BModeInput::renewed, and `margin` scanlines on either side.
-  LineRange range_of(const LineRange& renewed, int margin) const noexcept;
   /// Contact, losses, mirrors and refraction of scanlines.
   void find_paths(const BModeInput& input, const LineRange& lines) noexcept;
   void walk(int group, int first, int last) noexcept;
@@ -133,22 +116,6 @@ void BMode::Impl::spread(int group, int first, int last) noexcept {
   }
 }
 
-Acquisition default_acquisition(const Transducer& transducer) {
-  Acquisition acquisition;
-  acquisition.depth_mm = transducer.depth_mm;
-  acquisition.frequency_mhz = transducer.frequency_mhz;
-  acquisition.focus_mm = transducer.focus_mm;
-  acquisition.lines = transducer.scanlines;
-  return acquisition;
-}
-
-double coupled_share(const BasebandFrame& frame) noexcept {
-  constexpr float kMost = 0.5F;
-  const auto coupled =
-      std::count_if(frame.contact.begin(), frame.contact.end(), [](float part) { return part > kMost; });
-  return static_cast<double>(coupled) / static_cast<double>(frame.contact.size());
-}
-
 BMode::BMode(std::shared_ptr<const AcousticScene> scene, Transducer transducer, const Acquisition& acquisition)
     : impl_(std::make_unique<Impl>()) {
   impl_->scene = std::move(scene);
@@ -171,7 +138,7 @@ void BMode::set_acquisition(const Acquisition& acquisition) {
   impl.needles = make_needle_image(impl.plan);
   impl.has_frame = false;
   impl.aperture_rows.assign(aperture_floats(impl.plan), 0.0F);
-  impl.scratch.resize(static_cast<std::size_t>(impl.groups(impl.plan.lines)));
+  impl.scratch.resize(static_cast<std::size_t>(group_count(impl.plan.lines)));
   for (Scratch& scratch : impl.scratch) {
     scratch.scatterers = make_scatterer_field(impl.plan);
     scratch.rows = SteeringRows(impl.plan);
@@ -197,22 +164,11 @@ const ScanGeometry& BMode::geometry() const noexcept {
   return impl_->plan.geometry;
 }
 
-LineRange BMode::Impl::range_of(const LineRange& renewed, int margin) const noexcept {
-  if (renewed.is_empty() || !has_frame) return {0, plan.lines};
-  const int first = std::clamp(renewed.first - margin, 0, plan.lines - 1) / kMostStride * kMostStride;
-  const int last = std::clamp(renewed.last + margin, first + 1, plan.lines);
-  return {first, std::min(first + (last - first + kMostStride - 1) / kMostStride * kMostStride, plan.lines)};
-}
-
 void BMode::Impl::find_paths(const BModeInput& input, const LineRange& lines) noexcept {
   const auto first = static_cast<std::size_t>(lines.first), count = static_cast<std::size_t>(lines.count());
   find_contact(scene->skin_distance_mm, plan.geometry, input.X_PT, std::span(frame.contact).subspan(first, count),
                lines.first);
-  const double reach_mm = find_dent_reach_mm(*scene, plan.geometry, input.X_PT);
-  frame.dent_reach = static_cast<float>(reach_mm / plan.geometry.sample_mm());
-  for (std::size_t s = 0; s < static_cast<std::size_t>(plan.samples); ++s)
-    frame.contact_shape[s] =
-        static_cast<float>(dent_share((static_cast<double>(s) + 0.5) * plan.geometry.sample_mm(), reach_mm));
+  fit_dent(*scene, plan, frame);
   aim_lines(plan, frame, lines.first, lines.last);
   for_groups(lines, [&](int group, int begin, int end) {
     probe_lines(plan, frame, scratch[static_cast<std::size_t>(group)].walk, begin, end);
@@ -229,29 +185,31 @@ const BasebandFrame& BMode::render(const BModeInput& input) noexcept {
   frame.X_PT = input.X_PT;
   // Fits of surfaces and refraction read the neighbours of a scanline.
   constexpr int kNeighbours = 16;
-  const LineRange lines = impl.range_of(input.renewed, 0);
+  const LineRange wanted = impl.has_frame || input.is_alone ? input.renewed : LineRange{};
+  const LineRange lines = widened(wanted, 0, plan.lines), near = widened(wanted, kNeighbours, plan.lines);
+  if (input.is_alone) silence_outside(plan, frame, lines, near);
   // Not the neighbours' borders on the other planes: those are not walked again.
   clear_borders(plan, frame, lines.first, lines.last);
-  impl.find_paths(input, impl.range_of(input.renewed, kNeighbours));
+  impl.find_paths(input, near);
   lay_out_needles(plan, frame, input.needles, impl.needles);
-  impl.for_groups(lines, [&](int group, int first, int last) { impl.walk(group, first, last); });
-  impl.for_groups(lines, [&](int group, int first, int last) { impl.echo(group, first, last); });
+  for_groups(lines, [&](int group, int first, int last) { impl.walk(group, first, last); });
+  for_groups(lines, [&](int group, int first, int last) { impl.echo(group, first, last); });
   add_points(plan, frame, lines.first, lines.last);
   if (plan.acquisition.artefacts.clutter) {
-    impl.for_groups(lines, [&](int, int first, int last) {
+    for_groups(lines, [&](int, int first, int last) {
       for (int line = first; line < last; ++line) measure_echoes(plan, frame, line);
     });
     sum_powers(plan, frame);
   }
-  impl.for_groups(lines, [&](int, int first, int last) {
+  for_groups(lines, [&](int, int first, int last) {
     if (plan.acquisition.artefacts.clutter) add_clutter(plan, frame, first, last);
     for (int line = first; line < last; ++line) find_loudest(plan, frame, line);
   });
-  impl.for_groups(lines, [&](int group, int first, int last) { impl.spread(group, first, last); });
+  for_groups(lines, [&](int group, int first, int last) { impl.spread(group, first, last); });
   for (int line = lines.first; line < lines.last; ++line)
     impl.out.contact[static_cast<std::size_t>(line)] = frame.walks[static_cast<std::size_t>(line)].coupling;
   impl.out.renewed = lines;
-  impl.has_frame = true;
+  impl.has_frame = !input.is_alone || lines.count() == plan.lines;
   return impl.out;
 }
 

@@ -8,6 +8,8 @@
 #include "core/check.h"
 #include "ultrasound/doppler/colour_doppler.h"
 #include "ultrasound/doppler/detail/colour_conversion.h"
+#include "ultrasound/engine/b_mode.h"
+#include "ultrasound/panorama/panorama_engine.h"
 #include "ultrasound/probe/probe_contact.h"
 
 namespace trocar::ultrasound {
@@ -15,10 +17,11 @@ namespace {
 
 /// Objects that render one level of detail.
 struct Stage {
-  BMode engine;
-  int next_line = 0;                       ///< First scanline of the next picture, if it renews a part.
-  std::optional<ScanRequest> last;         ///< Of its last picture.
-  std::shared_ptr<const VesselFlow> flow;  ///< Of `doppler`.
+  std::unique_ptr<EchoEngine> engine;
+  std::shared_ptr<const Panorama> panorama;  ///< Of `engine`; nullptr: ray cast.
+  int next_line = 0;                         ///< First scanline of the next picture, if it renews a part.
+  std::optional<ScanRequest> last;           ///< Of its last picture.
+  std::shared_ptr<const VesselFlow> flow;    ///< Of `doppler`.
   std::optional<ColourDoppler> doppler;
 };
 
@@ -64,7 +67,9 @@ struct PictureMaker::Impl {
   std::vector<std::uint8_t> full_levels;
   detail::ColourConversion kept_colours;
 
-  Stage& stage(const Acquisition& full, ScanDetail detail);
+  std::unique_ptr<EchoEngine> make_engine(const std::shared_ptr<const Panorama>& panorama,
+                                          const Acquisition& acquisition) const;
+  Stage& stage(const ScanRequest& request, ScanDetail detail);
   Scanner& scanner(std::optional<Scanner>& place, const ScanRequest& request);
   void add_colour(const ScanRequest& request, Stage& stage, const BasebandFrame& echoes, std::uint64_t seed,
                   ScanPicture& picture, Companion& companion);
@@ -75,15 +80,26 @@ struct PictureMaker::Impl {
   }
 };
 
-Stage& PictureMaker::Impl::stage(const Acquisition& full, ScanDetail detail) {
+std::unique_ptr<EchoEngine> PictureMaker::Impl::make_engine(const std::shared_ptr<const Panorama>& panorama,
+                                                            const Acquisition& acquisition) const {
+  if (!panorama) return std::make_unique<BMode>(scene, transducer, acquisition);
+  return std::make_unique<PanoramaEngine>(scene, panorama, transducer, acquisition);
+}
+
+Stage& PictureMaker::Impl::stage(const ScanRequest& request, ScanDetail detail) {
   std::optional<Stage>& place = stages[static_cast<std::size_t>(detail)];
-  const Acquisition wanted = with_detail(full, detail);
-  if (!place) {
-    place.emplace(Stage{BMode(scene, transducer, wanted), 0, std::nullopt, nullptr, std::nullopt});
-  } else if (!(place->engine.acquisition() == wanted)) {
-    place->engine.set_acquisition(wanted);
+  const Acquisition wanted = with_detail(request.acquisition, detail);
+  if (!place || place->panorama != request.panorama) {
+    place.emplace(Stage{make_engine(request.panorama, wanted), request.panorama, 0, std::nullopt, nullptr, {}});
+  } else if (!(place->engine->acquisition() == wanted)) {
+    place->engine->set_acquisition(wanted);
   }
   return *place;
+}
+
+/// Share of the engine's last frame that comes from its panorama.
+double panorama_share(const Stage& stage) noexcept {
+  return stage.panorama ? static_cast<const PanoramaEngine&>(*stage.engine).panorama_share() : 0.0;
 }
 
 Scanner& PictureMaker::Impl::scanner(std::optional<Scanner>& place, const ScanRequest& request) {
@@ -97,7 +113,7 @@ Scanner& PictureMaker::Impl::scanner(std::optional<Scanner>& place, const ScanRe
 /// The scanlines that a picture renews; empty: all. The first picture at rest is whole.
 LineRange next_lines(Stage& stage, const ScanRequest& request, bool is_other_detail) {
   constexpr double kRest_mm = 0.02;
-  const int lines = stage.engine.geometry().lines;
+  const int lines = stage.engine->geometry().lines;
   const bool is_whole = request.renewed_share >= 1.0 || is_other_detail || request.flow != nullptr || !stage.last ||
                         is_equivalent(*stage.last, request, kRest_mm);
   stage.last = request;
@@ -119,7 +135,7 @@ void PictureMaker::Impl::add_colour(const ScanRequest& request, Stage& stage, co
   companion.doppler_scan = echoes.geometry;
   companion.doppler_settings = request.doppler;
   companion.doppler =
-      stage.doppler->render({request.X_PT, echoes.geometry, echoes.beam, request.time_s, seed, &stage.engine});
+      stage.doppler->render({request.X_PT, echoes.geometry, echoes.beam, request.time_s, seed, stage.engine.get()});
   picture.colour = stage.doppler->overlay(picture.gray, picture.raster);
   picture.doppler = request.doppler;
   picture.doppler_scale_cm_per_s = companion.doppler.scale_cm_per_s;
@@ -157,7 +173,7 @@ const Transducer& PictureMaker::transducer() const noexcept {
 ScanPicture PictureMaker::make(const ScanRequest& asked, ScanDetail detail, std::uint64_t seed) {
   Impl& impl = *impl_;
   const ScanRequest request = within_ranges(asked, impl.transducer);
-  Stage& stage = impl.stage(request.acquisition, detail);
+  Stage& stage = impl.stage(request, detail);
   Scanner& scanner = impl.scanner(impl.scanners[static_cast<std::size_t>(detail)], request);
   // Persistence combines frames of the same kind only: not those of another detail or without colour.
   const bool is_other_detail = impl.last_detail != detail;
@@ -177,7 +193,7 @@ ScanPicture PictureMaker::make(const ScanRequest& asked, ScanDetail detail, std:
     needles.push_back(needle);
   }
   const BasebandFrame& echoes =
-      stage.engine.render({request.X_PT, needles, request.time_s, next_lines(stage, request, is_other_detail)});
+      stage.engine->render({request.X_PT, needles, request.time_s, next_lines(stage, request, is_other_detail)});
 
   ScanPicture picture;
   picture.gray = scanner.show(echoes, seed);
@@ -191,9 +207,10 @@ ScanPicture PictureMaker::make(const ScanRequest& asked, ScanDetail detail, std:
   picture.display = request.display;
   picture.detail = detail;
   picture.coupled_share = trocar::ultrasound::coupled_share(echoes);
+  picture.panorama_share = panorama_share(stage);
   set_unscanned(*impl.scene, picture);
   for (int line = 0; line < echoes.geometry.lines; ++line)
-    picture.pressed_mm.push_back(stage.engine.sound_path(line).pressed_mm);
+    picture.pressed_mm.push_back(stage.engine->sound_path(line).pressed_mm);
   picture.dent_reach_mm = find_dent_reach_mm(*impl.scene, echoes.geometry, request.X_PT);
 
   Companion companion{detail, picture.coupled_share, picture.pressed_mm, picture.dent_reach_mm, false, {}, {}, {}};

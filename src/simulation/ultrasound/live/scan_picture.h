@@ -30,6 +30,7 @@ struct ScanPicture {
   ScanDetail detail = ScanDetail::kFull;
   double took_ms = 0.0;                 ///< Computation time.
   double coupled_share = 1.0;           ///< Coupled share of the face, 0..1.
+  double panorama_share = 0.0;          ///< Share of the picture that comes from a panorama, 0..1; 0: ray cast.
   double doppler_scale_cm_per_s = 0.0;  ///< Scale in use; 0 without Doppler.
   DopplerSettings doppler;
   bool is_frozen = false;        ///< True for a picture from the cine loop.

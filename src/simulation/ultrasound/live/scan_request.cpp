@@ -50,7 +50,7 @@ ScanRequest within_ranges(const ScanRequest& request, const Transducer& transduc
 }
 
 bool has_same_settings(const ScanRequest& a, const ScanRequest& b) noexcept {
-  return a.acquisition == b.acquisition && a.display == b.display && a.flow == b.flow &&
+  return a.acquisition == b.acquisition && a.panorama == b.panorama && a.display == b.display && a.flow == b.flow &&
          (!a.flow || a.doppler == b.doppler) && a.columns == b.columns && a.rows == b.rows;
 }
 

@@ -6,7 +6,8 @@
 #include "geometry/pose.h"
 #include "ultrasound/doppler/doppler_settings.h"
 #include "ultrasound/doppler/vessel_flow.h"
-#include "ultrasound/engine/b_mode.h"
+#include "ultrasound/engine/echo_engine.h"
+#include "ultrasound/panorama/panorama.h"
 #include "ultrasound/probe/transducer.h"
 #include "ultrasound/scanner/display_settings.h"
 
@@ -14,12 +15,13 @@ namespace trocar::ultrasound {
 
 /// Request to a live scanner: present poses of transducer and needle, and settings.
 struct ScanRequest {
-  Pose X_PT;                         ///< Transducer in the (resting) patient.
-  std::vector<Vec3> needle_shaft_P;  ///< From the hub to the tip; fewer than two points: no needle.
-  double needle_diameter_mm = 1.2;   ///< Range 0.2..5.
-  double needle_bore_share = 0.0;    ///< See NeedleEcho::bore_share.
-  double tip_shift_mm = 0.0;         ///< See NeedleEcho::displacement_mm.
-  Acquisition acquisition;           ///< At full detail.
+  Pose X_PT;                                 ///< Transducer in the (resting) patient.
+  std::vector<Vec3> needle_shaft_P;          ///< From the hub to the tip; fewer than two points: no needle.
+  double needle_diameter_mm = 1.2;           ///< Range 0.2..5.
+  double needle_bore_share = 0.0;            ///< See NeedleEcho::bore_share.
+  double tip_shift_mm = 0.0;                 ///< See NeedleEcho::displacement_mm.
+  Acquisition acquisition;                   ///< At full detail.
+  std::shared_ptr<const Panorama> panorama;  ///< Engine: that of the panorama; nullptr: ray cast.
   /// Share of the scanlines that a picture renews while transducer or needle move, from one side to the other as in a
   /// scanner; 1: whole pictures. Range 0.05..1.
   double renewed_share = 1.0;

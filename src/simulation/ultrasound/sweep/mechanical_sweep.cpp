@@ -85,6 +85,9 @@ bool find_between(double at, int count, Between& between) {
   return true;
 }
 
+/// Gray of a voxel without echoes: 0 means that a voxel was not imaged.
+constexpr long kDarkest = 1;
+
 /// Trilinear between frames, scanlines and samples.
 std::uint8_t gray_at(const Frames& frames, const SweepGeometry& geometry, const Vec3& p_T) {
   const SweepGeometry::Place place = geometry.to_place(p_T);
@@ -104,7 +107,7 @@ std::uint8_t gray_at(const Frames& frames, const SweepGeometry& geometry, const 
     return std::lerp(along_sample(gray), along_sample(gray + line.step * samples), line.part);
   };
   const float value = std::lerp(along_line(corner), along_line(corner + frame.step * lines * samples), frame.part);
-  return static_cast<std::uint8_t>(std::lround(value));
+  return static_cast<std::uint8_t>(std::max(std::lround(value), kDarkest));
 }
 
 Result<SweepGeometry> plan_sweep(const Transducer& transducer, const MechanicalSweepOptions& options) {

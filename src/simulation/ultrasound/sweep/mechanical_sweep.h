@@ -52,7 +52,7 @@ struct MechanicalSweepOptions {
 
 /// A volume of a mechanical 3D transducer.
 struct SweepVolume {
-  volume::LabelGrid gray;  ///< Gray 0..255; 0 also beside the fan. Its axes are those of T in the middle of the swing.
+  volume::LabelGrid gray;  ///< Gray 1..255; 0 beside the fan. Its axes are those of T in the middle of the swing.
   SweepGeometry geometry;
   double mean_contact = 1.0;  ///< Share of all frames' scanlines that are coupled to the skin.
 };

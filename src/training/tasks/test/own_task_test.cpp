@@ -32,6 +32,7 @@ Task changed_task() {
   task.entry_zone = EntryZone{{-100.0, 0.0, 0.0}, 25.0};
   task.expert_path = "expert";
   task.exam_shows_needle = true;
+  task.ultrasound_engine = "panorama";
   return task;
 }
 

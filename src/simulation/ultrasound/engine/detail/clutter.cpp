@@ -71,6 +71,11 @@ void sum_powers(const ScanPlan& plan, FrameState& frame) noexcept {
   }
 }
 
+float clutter_power(const ScanPlan& plan, const FrameState& frame, int line, std::size_t block) noexcept {
+  const float share = std::pow(10.0F, kClutter_db / 10.0F);
+  return share * std::max(mean_around(plan, frame, line, block, kReach_mm), 0.0F);
+}
+
 void add_clutter(const ScanPlan& plan, FrameState& frame, int first, int last) noexcept {
   // Noise of every sample is spread by two thirds of the factor that applies to scatterers between scanlines.
   const float share = 1.5F * std::pow(10.0F, kClutter_db / 10.0F);

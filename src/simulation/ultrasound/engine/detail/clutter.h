@@ -16,6 +16,10 @@ void measure_echoes(const ScanPlan& plan, FrameState& frame, int line) noexcept;
 /// Sums what was measured. Call before add_clutter.
 void sum_powers(const ScanPlan& plan, FrameState& frame) noexcept;
 
+/// Mean power, over real and imaginary part, of the clutter from beside a scanline in a block of kLobeBlock samples.
+/// Call after sum_powers.
+float clutter_power(const ScanPlan& plan, const FrameState& frame, int line, std::size_t block) noexcept;
+
 /// Adds clutter to scanlines [first, last).
 void add_clutter(const ScanPlan& plan, FrameState& frame, int first, int last) noexcept;
 

@@ -143,5 +143,8 @@ void fit_frame(FrameState& frame, const ScanPlan& plan);
 /// Clears the border counts of scanlines [first, last) on all planes. Call before a frame, so that no border of the
 /// last frame is read.
 void clear_borders(const ScanPlan& plan, FrameState& frame, int first, int last) noexcept;
+/// Clears the scanlines that are not in `lines`, so that a frame of these depends on no earlier frame; the paths of
+/// those in `probed`, a range around `lines`, are computed again.
+void silence_outside(const ScanPlan& plan, FrameState& frame, const LineRange& lines, const LineRange& probed) noexcept;
 
 }  // namespace trocar::ultrasound::detail

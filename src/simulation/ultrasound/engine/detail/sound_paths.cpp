@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "ultrasound/engine/detail/border_fit.h"
 #include "ultrasound/engine/detail/tissue_texture.h"
+#include "ultrasound/probe/probe_contact.h"
 
 namespace trocar::ultrasound::detail {
 namespace {
@@ -87,6 +88,14 @@ void note_gas(const ScanPlan& plan, FrameState& frame, const WalkResult& walk, i
 }
 
 }  // namespace
+
+void fit_dent(const AcousticScene& scene, const ScanPlan& plan, FrameState& frame) noexcept {
+  const double sample_mm = plan.geometry.sample_mm();
+  const double reach_mm = find_dent_reach_mm(scene, plan.geometry, frame.X_PT);
+  frame.dent_reach = static_cast<float>(reach_mm / sample_mm);
+  for (std::size_t s = 0; s < static_cast<std::size_t>(plan.samples); ++s)
+    frame.contact_shape[s] = static_cast<float>(dent_share((static_cast<double>(s) + 0.5) * sample_mm, reach_mm));
+}
 
 void aim_lines(const ScanPlan& plan, FrameState& frame, int first, int last) noexcept {
   const volume::GridGeometry& grid = frame.scene->geometry;

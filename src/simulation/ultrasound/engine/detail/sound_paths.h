@@ -8,6 +8,9 @@
 /// steps (docs/physics.md U7, U8).
 namespace trocar::ultrasound::detail {
 
+/// Computes to which depth tissue yields under the face: FrameState::dent_reach and contact_shape.
+void fit_dent(const AcousticScene& scene, const ScanPlan& plan, FrameState& frame) noexcept;
+
 /// Computes the frame's transforms and the straight walks of scanlines [first, last).
 void aim_lines(const ScanPlan& plan, FrameState& frame, int first, int last) noexcept;
 

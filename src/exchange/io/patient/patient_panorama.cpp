@@ -1,0 +1,64 @@
+#include "io/patient/patient_panorama.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <string>
+#include <vector>
+
+#include "core/parse_number.h"
+#include "io/image/image_file.h"
+#include "io/sequence/transform_file.h"
+
+namespace trocar::io {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kDynamicRange = "trocar_dynamic_range_db";
+constexpr const char* kMakeIt = "make them with trocar ultrasound stitch and trocar register";
+
+bool is_file(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored);
+}
+
+Status check_files(const PatientSource& source) {
+  if (!is_path(source.folder_or_name))
+    return fail("an embedded patient has no panorama", source.folder_or_name,
+                fmt::format("use a patient folder with {} and {}: {}", kPanoramaFile, kPanoramaTransformFile, kMakeIt));
+  std::vector<std::string> missing;
+  for (const char* file : {kPanoramaFile, kPanoramaTransformFile})
+    if (!is_file(fs::path(source.folder_or_name) / file)) missing.emplace_back(file);
+  if (missing.empty()) return {};
+  return fail(fmt::format("the patient has no panorama: {} missing", fmt::join(missing, " and ")),
+              source.folder_or_name, kMakeIt);
+}
+
+}  // namespace
+
+bool has_panorama(const PatientSource& source) {
+  if (!is_path(source.folder_or_name)) return false;
+  const fs::path folder = source.folder_or_name;
+  return is_file(folder / kPanoramaFile) && is_file(folder / kPanoramaTransformFile);
+}
+
+Result<std::shared_ptr<const ultrasound::Panorama>> load_panorama(const PatientSource& source) {
+  TROCAR_TRY_STATUS(check_files(source));
+  const fs::path volume = fs::path(source.folder_or_name) / kPanoramaFile;
+  TROCAR_TRY(const Pose X_PU, read_transform(fs::path(source.folder_or_name) / kPanoramaTransformFile));
+  TROCAR_TRY(const ImageFields fields, read_image_fields(volume));
+  ultrasound::PanoramaOptions options;
+  if (const auto field = fields.find(kDynamicRange); field != fields.end()) {
+    const auto number = parse_number<double>(field->second);
+    if (!number)
+      return fail(fmt::format("{} is not a number: \"{}\"", kDynamicRange, field->second), volume.string(),
+                  "correct the header, or stitch the panorama again");
+    options.dynamic_range_db = *number;
+  }
+  TROCAR_TRY(const volume::LabelGrid gray_U, read_labels(volume));
+  auto panorama = ultrasound::make_panorama(gray_U, X_PU, options);
+  if (!panorama) return fail(panorama.error().what, volume.string(), panorama.error().advice);
+  return panorama;
+}
+
+}  // namespace trocar::io

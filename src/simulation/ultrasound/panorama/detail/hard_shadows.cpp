@@ -1,0 +1,81 @@
+#include "ultrasound/panorama/detail/hard_shadows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "ultrasound/engine/detail/aperture_paths.h"
+#include "ultrasound/engine/detail/line_groups.h"
+#include "ultrasound/engine/detail/point_spread.h"
+#include "ultrasound/engine/detail/sound_paths.h"
+#include "ultrasound/probe/probe_contact.h"
+
+namespace trocar::ultrasound::detail {
+namespace {
+
+constexpr double kSoftImpedance_mrayl = 1.63;
+
+bool is_hard(const AcousticTissue& tissue) {
+  return std::abs(reflection(kSoftImpedance_mrayl, tissue.impedance_mrayl())) > kHardReflection ||
+         tissue.attenuation_db_per_cm_mhz > kHardLoss_db_per_cm_mhz;
+}
+
+}  // namespace
+
+ScanPlan make_shadow_plan(const AcousticScene& scene, const Transducer& transducer, const Acquisition& acquisition) {
+  ScanPlan plan = make_scan_plan(scene, transducer, acquisition);
+  const auto soft_log_z = static_cast<float>(std::log(kSoftImpedance_mrayl));
+  for (std::size_t t = 0; t < scene.table.tissues.size(); ++t) {
+    plan.rows[t].delay = 0.0F;
+    if (is_hard(scene.table.tissues[t])) continue;
+    plan.rows[t].log_z = soft_log_z;
+    plan.rows[t].loss = 0.0F;
+  }
+  plan.slowness.fill(0.0F);
+  plan.entry_rows = plan.rows;
+  plan.entry_rows[0].log_z = soft_log_z;
+  plan.entry_rows[0].loss = 0.0F;
+  std::fill(plan.wall_at.begin(), plan.wall_at.end(), std::uint8_t{0});
+  return plan;
+}
+
+void find_hard_shadows(const AcousticScene& scene, const ScanPlan& plan, FrameState& frame, const LineRange& probed,
+                       const LineRange& lines, std::vector<WalkResult>& scratch,
+                       std::vector<float>& aperture_rows) noexcept {
+  const auto first = static_cast<std::size_t>(probed.first), count = static_cast<std::size_t>(probed.count());
+  find_contact(scene.skin_distance_mm, plan.geometry, frame.X_PT, std::span(frame.contact).subspan(first, count),
+               probed.first);
+  fit_dent(scene, plan, frame);
+  aim_lines(plan, frame, probed.first, probed.last);
+  for_groups(probed, [&](int group, int begin, int end) {
+    probe_lines(plan, frame, scratch[static_cast<std::size_t>(group)], begin, end);
+  });
+  open_aperture(plan, frame, lines.first, lines.last, aperture_rows);
+}
+
+void fill_way_gain(const ScanPlan& plan, FrameState& frame, int line, const std::vector<float>& gain,
+                   std::vector<float>& logs) noexcept {
+  const auto at = static_cast<std::size_t>(line), samples = static_cast<std::size_t>(plan.samples);
+  const float* const open = frame.open_way.data() + at * plan.coarse_samples();
+  const auto shift = static_cast<float>(kSurfaceEcho_mm) / plan.sample_mm;
+  const GasBorder& gas = frame.gas[at];
+  const float gas_at = gas.is_there ? gas.border.walk : static_cast<float>(plan.samples);
+  const auto most_gas = static_cast<float>(-kGasShadow_db * std::numbers::ln10 / 20.0);
+  const auto last = static_cast<int>(plan.coarse_samples()) - 1;
+  const auto at_coarse = [&](int c) {
+    const float place = std::clamp(static_cast<float>(c) - shift / kCoarse, 0.0F, static_cast<float>(last) - 1e-3F);
+    const auto below = static_cast<std::size_t>(place);
+    return std::lerp(open[below], open[below + 1], place - static_cast<float>(below));
+  };
+  float from = at_coarse(0);
+  for (int s = 0, c = 0; s < plan.samples; s += kCoarse, ++c) {
+    const float to = at_coarse(c + 1), step = (to - from) / kCoarse;
+    for (int k = 0; k < kCoarse; ++k) logs[static_cast<std::size_t>(s + k)] = from + static_cast<float>(k) * step;
+    from = to;
+  }
+  for (auto s = static_cast<std::size_t>(std::max(gas_at, 0.0F)); s < samples; ++s)
+    logs[s] = std::max(logs[s], most_gas);
+  to_gain(logs.data(), gain.data(), plan.samples, frame.way_gain.data() + at * samples);
+}
+
+}  // namespace trocar::ultrasound::detail
