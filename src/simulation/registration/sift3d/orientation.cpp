@@ -10,11 +10,11 @@
 namespace trocar::registration {
 namespace {
 
-constexpr int kDirections = 320;             ///< About 11 degrees apart.
-constexpr double kNeighbour_rad = 0.33;      ///< Directions nearer than this are neighbours.
-constexpr double kWindow_sigma = 3.0;        ///< Deviation of the weight of a gradient, in units of the scale.
-constexpr double kReach_sigma = 6.0;         ///< Radius of the gradients in use, the same.
-constexpr double kLattice_sigma = 0.9;       ///< Distance between gradients, the same.
+constexpr int kDirections = 320;         ///< About 11 degrees apart.
+constexpr double kNeighbour_rad = 0.33;  ///< Directions nearer than this are neighbours.
+constexpr double kWindow_sigma = 3.0;    ///< Deviation of the weight of a gradient, in units of the scale.
+constexpr double kReach_sigma = 6.0;     ///< Radius of the gradients in use, the same.
+constexpr double kLattice_sigma = 1.1;   ///< Distance between gradients, the same.
 constexpr std::size_t kLeastGradients = 60;
 constexpr int kRollBins = 36;
 constexpr int kRefinements = 4;
@@ -48,8 +48,8 @@ double closeness(double cosine) {
 std::vector<Gradient> gather_gradients(const ScaleSpace& space, const Keypoint& keypoint) {
   const Octave& octave = space.octaves[keypoint.octave];
   const auto& geometry = octave.geometry;
-  const auto level = static_cast<std::size_t>(std::clamp<long>(std::lround(keypoint.level), 0,
-                                                               static_cast<long>(octave.levels.size()) - 1));
+  const auto level = static_cast<std::size_t>(
+      std::clamp<long>(std::lround(keypoint.level), 0, static_cast<long>(octave.levels.size()) - 1));
   const volume::FloatGrid& gray = octave.levels[level];
   const double sigma = keypoint.sigma_mm / geometry.spacing_mm.x();  // voxels
   const std::int64_t stride = std::max<std::int64_t>(1, std::llround(kLattice_sigma * sigma));
@@ -84,6 +84,28 @@ std::vector<Gradient> gather_gradients(const ScaleSpace& space, const Keypoint& 
   return gradients;
 }
 
+/// Sum of the gradients near each direction. Loops over directions, one coordinate after the other, for the compiler's
+/// vectors.
+std::vector<float> density_of(const std::vector<Gradient>& gradients, const std::vector<Vec3>& directions) {
+  const std::size_t count = directions.size();
+  std::vector<float> x(count), y(count), z(count), density(count, 0.0F);
+  for (std::size_t d = 0; d < count; ++d) {
+    x[d] = static_cast<float>(directions[d].x());
+    y[d] = static_cast<float>(directions[d].y());
+    z[d] = static_cast<float>(directions[d].z());
+  }
+  for (const Gradient& g : gradients) {
+    const Vec3f direction = g.direction_P.cast<float>();
+    const auto weight = static_cast<float>(g.weight);
+    for (std::size_t d = 0; d < count; ++d) {
+      const float cosine = std::max(0.0F, direction[0] * x[d] + direction[1] * y[d] + direction[2] * z[d]);
+      const float square = cosine * cosine, fourth = square * square;
+      density[d] += weight * fourth * fourth;
+    }
+  }
+  return density;
+}
+
 struct Peak {
   double height = 0.0;
   Vec3 direction{1, 0, 0};
@@ -93,8 +115,7 @@ struct Peak {
 Vec3 refine(const std::vector<Gradient>& gradients, Vec3 direction) {
   for (int n = 0; n < kRefinements; ++n) {
     Vec3 sum = Vec3::Zero();
-    for (const Gradient& g : gradients)
-      sum += g.weight * closeness(direction.dot(g.direction_P)) * g.direction_P;
+    for (const Gradient& g : gradients) sum += g.weight * closeness(direction.dot(g.direction_P)) * g.direction_P;
     if (sum.norm() > 0.0) direction = sum.normalized();
   }
   return direction;
@@ -111,16 +132,17 @@ void keep_highest(std::vector<Peak>& peaks, double least_share, std::size_t most
 /// Dominant directions of the parts of the gradients across x.
 std::vector<Peak> find_rolls(const std::vector<Gradient>& gradients, const Vec3& x, double least_share) {
   const Vec3 u = x.unitOrthogonal(), v = x.cross(u);
-  std::array<double, kRollBins> density{};
+  std::array<double, kRollBins> density{}, cosines{}, sines{};
+  for (std::size_t bin = 0; bin < kRollBins; ++bin) {
+    cosines[bin] = std::cos(2.0 * std::numbers::pi * static_cast<double>(bin) / kRollBins);
+    sines[bin] = std::sin(2.0 * std::numbers::pi * static_cast<double>(bin) / kRollBins);
+  }
   for (const Gradient& g : gradients) {
     const double gu = g.direction_P.dot(u), gv = g.direction_P.dot(v);
     const double across = std::hypot(gu, gv);
     if (across < kSmallestAcross) continue;
-    for (int bin = 0; bin < kRollBins; ++bin) {
-      const double angle = 2.0 * std::numbers::pi * bin / kRollBins;
-      const double cosine = (gu * std::cos(angle) + gv * std::sin(angle)) / across;
-      density[static_cast<std::size_t>(bin)] += g.weight * across * closeness(cosine);
-    }
+    for (std::size_t bin = 0; bin < kRollBins; ++bin)
+      density[bin] += g.weight * across * closeness((gu * cosines[bin] + gv * sines[bin]) / across);
   }
   std::vector<Peak> peaks;
   for (int bin = 0; bin < kRollBins; ++bin) {
@@ -159,16 +181,12 @@ Result<OrientationFinder> OrientationFinder::make(const OrientationOptions& opti
 std::vector<Mat3> OrientationFinder::find(const ScaleSpace& space, const Keypoint& keypoint) const {
   const std::vector<Gradient> gradients = gather_gradients(space, keypoint);
   if (gradients.size() < kLeastGradients) return {};
-  std::vector<double> density(directions_.size(), 0.0);
-  for (const Gradient& g : gradients)
-    for (std::size_t d = 0; d < directions_.size(); ++d)
-      density[d] += g.weight * closeness(directions_[d].dot(g.direction_P));
+  const std::vector<float> density = density_of(gradients, directions_);
   std::vector<Peak> peaks;
   for (std::size_t d = 0; d < directions_.size(); ++d) {
-    const bool is_peak = std::all_of(neighbours_[d].begin(), neighbours_[d].end(), [&](int other) {
-      return density[d] >= density[static_cast<std::size_t>(other)];
-    });
-    if (is_peak && density[d] > 0.0) peaks.push_back({density[d], directions_[d]});
+    const bool is_peak = std::all_of(neighbours_[d].begin(), neighbours_[d].end(),
+                                     [&](int other) { return density[d] >= density[static_cast<std::size_t>(other)]; });
+    if (is_peak && density[d] > 0.0F) peaks.push_back({static_cast<double>(density[d]), directions_[d]});
   }
   if (peaks.empty()) return {};
   keep_highest(peaks, options_.least_peak, static_cast<std::size_t>(options_.most));
