@@ -78,7 +78,7 @@ Result<Outcome> stitch_series(const registration::SeriesOptions& options, std::u
 }
 
 Status measure_generated(const Progress& progress, std::vector<CaseResult>& results) {
-  constexpr int kSeeds = 4;
+  constexpr int kSeeds = 3;
   registration::SeriesOptions options;
   const auto measure = [&](const std::string& name, const std::string& what) -> Status {
     report(progress, name, 0.0);

@@ -57,7 +57,7 @@ std::string graph_figure(const Volumes& volumes, const registration::Stitching& 
   for (const StitchEdge& edge : stitching.edges) {
     const bool is_drawn = edge.is_used || edge.pair.is_found || edge.pair.confidence > 0.05;
     if (!is_drawn) continue;
-    const Vec3 a = place(edge.pair.a), b = place(edge.pair.b), middle = 0.5 * (a + b);
+    const Vec3 a = place(edge.pair.a), b = place(edge.pair.b), label = a + 0.36 * (b - a);
     const double width = 1.5 + std::min(8.0, 0.4 * static_cast<double>(edge.pair.inliers.size()));
     svg += fmt::format(
         "<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\" stroke-width=\"{:.1f}\"{}/>",
@@ -65,8 +65,8 @@ std::string graph_figure(const Volumes& volumes, const registration::Stitching& 
         edge.is_used ? "" : " stroke-dasharray=\"6 4\"");
     svg += fmt::format(
         "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\" stroke=\"#fff\" stroke-width=\"4\" "
-        "paint-order=\"stroke\">{} inliers, correlation {:.2f}</text>",
-        middle.x(), middle.y(), edge.pair.inliers.size(), edge.pair.ncc);
+        "paint-order=\"stroke\">{}</text>",
+        label.x(), label.y() + 4.0, edge.pair.inliers.size());
   }
   for (std::size_t n = 0; n < volumes.size(); ++n) {
     const Vec3 p = place(n);
@@ -78,7 +78,8 @@ std::string graph_figure(const Volumes& volumes, const registration::Stitching& 
         escape(volumes[n].name));
   }
   return svg +
-         "</svg><figcaption>Pairs of volumes. Solid: used. Dashed: too little confidence, or in contradiction with the "
+         "</svg><figcaption>Pairs of volumes, with the number of matches that agree. Solid: used. Dashed: too little "
+         "confidence, or in contradiction with the "
          "other pairs. Wide lines: many matches that agree.</figcaption></figure>";
 }
 

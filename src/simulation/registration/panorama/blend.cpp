@@ -10,6 +10,7 @@
 #include "registration/intensity/smooth_volume.h"
 #include "registration/panorama/detail/gray_matching.h"
 #include "volume/distance.h"
+#include "volume/morphology.h"
 #include "volume/sampling.h"
 
 namespace trocar::registration {
@@ -157,6 +158,53 @@ Mixed mix(const std::vector<Layer>& layers, const Vec3& p_0, double sharpness) {
   return mixed;
 }
 
+/// Islands of imaged voxels between shadows, too small to show anything.
+void remove_islands(Panorama& panorama) {
+  constexpr std::size_t kLeast = 1000;  // voxels
+  volume::MaskGrid imaged(panorama.gray.geometry);
+  for (std::size_t n = 0; n < imaged.voxels.size(); ++n) imaged.voxels[n] = panorama.gray.voxels[n] != 0 ? 1 : 0;
+  const volume::Components components = volume::connected_components(imaged);
+  for (std::size_t n = 0; n < imaged.voxels.size(); ++n) {
+    const std::int32_t id = components.ids.voxels[n];
+    if (id == 0 || id == 1 || components.voxel_counts[static_cast<std::size_t>(id - 1)] >= kLeast) continue;
+    panorama.gray.voxels[n] = 0;
+    panorama.source.voxels[n] = 0;
+  }
+}
+
+volume::LabelGrid crop(const volume::LabelGrid& grid, const volume::Index3& first, const volume::Index3& last) {
+  volume::GridGeometry geometry = grid.geometry;
+  for (std::size_t a = 0; a < 3; ++a) geometry.size[a] = last[a] - first[a] + 1;
+  geometry.origin_P = grid.geometry.centre_mm(first);
+  volume::LabelGrid cropped(geometry);
+  for (std::size_t n = 0; n < cropped.voxels.size(); ++n) {
+    const volume::Index3 ijk = geometry.index_of(n);
+    cropped.voxels[n] = grid[{ijk[0] + first[0], ijk[1] + first[1], ijk[2] + first[2]}];
+  }
+  return cropped;
+}
+
+/// Cuts the grid to the imaged voxels and a margin of one.
+void crop_to_imaged(Panorama& panorama) {
+  const auto& size = panorama.gray.geometry.size;
+  volume::Index3 first = size, last{0, 0, 0};
+  for (std::size_t n = 0; n < panorama.gray.voxels.size(); ++n) {
+    if (panorama.gray.voxels[n] == 0) continue;
+    const volume::Index3 ijk = panorama.gray.geometry.index_of(n);
+    for (std::size_t a = 0; a < 3; ++a) {
+      first[a] = std::min(first[a], ijk[a]);
+      last[a] = std::max(last[a], ijk[a]);
+    }
+  }
+  if (first[0] > last[0]) return;
+  for (std::size_t a = 0; a < 3; ++a) {
+    first[a] = std::max<std::int64_t>(0, first[a] - 1);
+    last[a] = std::min(size[a] - 1, last[a] + 1);
+  }
+  panorama.gray = crop(panorama.gray, first, last);
+  panorama.source = crop(panorama.source, first, last);
+}
+
 }  // namespace
 
 Result<Panorama> blend(const std::vector<PlacedVolume>& volumes, const BlendOptions& options,
@@ -196,6 +244,8 @@ Result<Panorama> blend(const std::vector<PlacedVolume>& volumes, const BlendOpti
     count += seam_count[n];
   }
   panorama.seam_difference = count > 0.0 ? sum / count : 0.0;
+  remove_islands(panorama);
+  crop_to_imaged(panorama);
   report(progress, "done", 1.0);
   return panorama;
 }

@@ -13,8 +13,8 @@ namespace {
 
 constexpr std::size_t kMotionsOfThree = 40;
 constexpr std::size_t kMotionsOfOne = 400;
-constexpr std::size_t kAligned = 60;    ///< Motions that are aligned at the coarse detail.
-constexpr std::size_t kRefined = 6;     ///< Of those, that are aligned at the middle detail.
+constexpr std::size_t kAligned = 160;   ///< Motions that are aligned at the coarse detail.
+constexpr std::size_t kRefined = 12;    ///< Of those, that are aligned at the middle detail.
 constexpr double kSameMotion_mm = 5.0;  ///< Motions nearer than this at the corners are one.
 
 /// Significance of a correlation: the larger the overlap and the correlation, the larger. Speckle smoothed by sigma is
@@ -48,18 +48,28 @@ std::vector<PointPair> point_pairs(const PreparedVolume& a, const PreparedVolume
   return pairs;
 }
 
-/// Motions to try: of three matches, and of single ones by their orientations.
-Result<std::vector<Pose>> propose(const PreparedVolume& a, const PreparedVolume& b, const std::vector<Match>& matches,
-                                  const std::vector<PointPair>& pairs, const RansacOptions& options) {
+/// The motion that brings the places and orientations of a match together.
+Pose motion_of(const PreparedVolume& a, const PreparedVolume& b, const Match& m) {
+  const Mat3 R_AB =
+      a.keypoints.features.features[m.feature_a].R_PK * b.keypoints.features.features[m.feature_b].R_PK.transpose();
+  return {R_AB, a.keypoints.keypoints[m.a].p_P - R_AB * b.keypoints.keypoints[m.b].p_P};
+}
+
+/// Motions to try: of three matches, and of every keypoint with the nearest of the other volume, in both directions.
+Result<std::vector<Pose>> propose(const PreparedVolume& a, const PreparedVolume& b, const std::vector<PointPair>& pairs,
+                                  const PairOptions& options) {
   TROCAR_TRY(const std::vector<RigidMotion> motions,
-             find_motions(pairs, std::max(a.extent_mm(), b.extent_mm()), options, kMotionsOfThree));
+             find_motions(pairs, std::max(a.extent_mm(), b.extent_mm()), options.ransac, kMotionsOfThree));
   std::vector<Pose> proposals;
   for (const RigidMotion& motion : motions) proposals.push_back(motion.X_AB);
-  for (std::size_t n = 0; n < std::min(matches.size(), kMotionsOfOne); ++n) {
-    const Mat3 R_AB = a.keypoints.features.features[matches[n].feature_a].R_PK *
-                      b.keypoints.features.features[matches[n].feature_b].R_PK.transpose();
-    proposals.emplace_back(R_AB, pairs[n].a - R_AB * pairs[n].b);
-  }
+  MatchOptions all = options.match;
+  all.largest_ratio = 1.0;
+  all.is_mutual = false;
+  TROCAR_TRY(const std::vector<Match> of_a, match(a.keypoints, b.keypoints, all));
+  TROCAR_TRY(const std::vector<Match> of_b, match(b.keypoints, a.keypoints, all));
+  for (std::size_t n = 0; n < std::min(of_a.size(), kMotionsOfOne); ++n) proposals.push_back(motion_of(a, b, of_a[n]));
+  for (std::size_t n = 0; n < std::min(of_b.size(), kMotionsOfOne); ++n)
+    proposals.push_back(motion_of(b, a, of_b[n]).inverse());
   return proposals;
 }
 
@@ -153,7 +163,7 @@ Result<PairRegistration> register_pair(const PreparedVolume& a, const PreparedVo
   PairRegistration result;
   TROCAR_TRY(result.matches, match(a.keypoints, b.keypoints, options.match));
   const std::vector<PointPair> pairs = point_pairs(a, b, result.matches);
-  TROCAR_TRY(const std::vector<Pose> proposals, propose(a, b, result.matches, pairs, options.ransac));
+  TROCAR_TRY(const std::vector<Pose> proposals, propose(a, b, pairs, options));
   const std::vector<Candidate> coarse = align_at(a, b, 0, screen(a, b, proposals));
   const std::vector<Candidate> middle = align_at(a, b, 1, best_poses(coarse, kRefined));
   result.confidence = confidence_of(middle);

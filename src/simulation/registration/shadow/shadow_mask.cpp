@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
 #include "core/check.h"
 #include "core/parallel.h"
@@ -149,28 +148,32 @@ volume::MaskGrid shadows_of_lines(const volume::LabelGrid& gray, const Beams& be
 Result<double> estimate_shadow_threshold(std::span<const volume::LabelGrid> scans,
                                          std::span<const volume::MaskGrid> inside) {
   TROCAR_CHECK(scans.size() == inside.size());
-  std::array<double, 256> counts{};
+  std::array<double, 257> count{}, sum{};  // of the levels below
   for (std::size_t s = 0; s < scans.size(); ++s) {
     for (std::size_t n = 0; n < scans[s].voxels.size(); ++n)
-      if (inside[s].voxels[n] != 0) counts[scans[s].voxels[n]] += 1.0;
+      if (inside[s].voxels[n] != 0) count[scans[s].voxels[n] + 1U] += 1.0;
   }
-  const double total = std::accumulate(counts.begin(), counts.end(), 0.0);
-  double sum = 0.0;
-  for (std::size_t g = 0; g < counts.size(); ++g) sum += static_cast<double>(g) * counts[g];
-  double below = 0.0, below_sum = 0.0, best = 0.0, threshold = -1.0;
-  for (std::size_t g = 0; g + 1 < counts.size(); ++g) {
-    below += counts[g];
-    below_sum += static_cast<double>(g) * counts[g];
-    if (below == 0.0 || below == total) continue;
-    const double apart = below_sum / below - (sum - below_sum) / (total - below);
-    const double between = below * (total - below) * apart * apart;
-    if (between > best) {
+  for (std::size_t g = 1; g < count.size(); ++g) {
+    sum[g] = sum[g - 1] + static_cast<double>(g - 1) * count[g];
+    count[g] += count[g - 1];
+  }
+  // The variance between classes is the sum of (sum of a class)^2 / (its count), less a constant.
+  const auto part = [&](std::size_t low, std::size_t high) {
+    const double n = count[high] - count[low], total = sum[high] - sum[low];
+    return n > 0.0 ? total * total / n : 0.0;
+  };
+  double best = part(0, 256) * (1.0 + 1e-9);
+  std::size_t threshold = 0;
+  for (std::size_t low = 1; low < 255; ++low) {
+    for (std::size_t high = low + 1; high < 256; ++high) {
+      const double between = part(0, low) + part(low, high) + part(high, 256);
+      if (between <= best) continue;
       best = between;
-      threshold = static_cast<double>(g) + 1.0;
+      threshold = low;
     }
   }
-  if (threshold < 0.0) return fail("all voxels have the same gray level", {}, "give a volume with an image");
-  return threshold;
+  if (threshold == 0) return fail("all voxels have the same gray level", {}, "give a volume with an image");
+  return static_cast<double>(threshold);
 }
 
 volume::MaskGrid imaged_voxels(const volume::LabelGrid& gray, const Beams& beams) {

@@ -16,9 +16,10 @@ struct ImagedRegion {
   double shadow_share = 0.0;  ///< Shadowed share of the inside, 0..1.
 };
 
-/// Gray level that separates shadows from tissue: between two classes of the least variance within (Otsu, IEEE Trans
-/// Syst Man Cybern 9:62, 1979), over the voxels inside. Shadow is darker than the threshold. `scans` and `inside` have
-/// the same length (checked). Error: all voxels have the same gray level.
+/// Gray level that separates shadows from tissue: the lower of the two thresholds of three classes (shadow, tissue,
+/// bright echoes) with the least variance within, over the voxels inside (Otsu, IEEE Trans Syst Man Cybern 9:62, 1979).
+/// Shadow is darker than it. `scans` and `inside` have the same length (checked). Error: all voxels have the same gray
+/// level.
 Result<double> estimate_shadow_threshold(std::span<const volume::LabelGrid> scans,
                                          std::span<const volume::MaskGrid> inside);
 
