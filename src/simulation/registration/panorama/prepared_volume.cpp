@@ -17,7 +17,7 @@ struct Detail {
   int stride;
 };
 /// Wide maxima first, then accuracy.
-constexpr std::array<Detail, 3> kDetails = {{{4.0, 4}, {2.0, 2}, {1.0, 1}}};
+constexpr std::array<Detail, 3> kDetails = {{{4.0, 6}, {2.0, 3}, {1.0, 1}}};
 constexpr std::size_t kLeastUsable = 1000;  ///< Voxels.
 
 std::size_t count_usable(const volume::MaskGrid& usable) {
