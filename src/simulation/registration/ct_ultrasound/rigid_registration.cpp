@@ -18,17 +18,19 @@ using detail::Motion;
 using detail::Summit;
 
 /// docs/physics.md R12; all assumed, chosen on simulated sweeps.
-constexpr std::size_t kCoarseSamples = 3500, kMiddleSamples = 10000, kFineSamples = 40000;
+constexpr std::size_t kCoarseSamples = 5000, kMiddleSamples = 10000, kFineSamples = 40000;
 constexpr double kCoarse_mm = 3.5, kUsFine_mm = 1.2, kCtFine_mm = 0.5;  ///< Smoothing.
-constexpr int kStarts = 15;                                             ///< The first estimate and displaced ones.
-constexpr double kStartSpread_mm = 8.0;  ///< Displacement of starts, by translation and by rotation.
-constexpr std::size_t kRefined = 4;      ///< Summits of the coarse level that the next level refines.
-constexpr double kSame_mm = 2.5;         ///< Summits this near are one.
+constexpr int kFewStarts = 5;                                           ///< Enough if most of them agree.
+constexpr double kEnoughAgreement = 0.75;
+constexpr int kStarts = 15;                                ///< The first estimate and displaced ones.
+constexpr double kStartSpread_mm = 8.0;                    ///< Displacement of starts, by translation and by rotation.
+constexpr std::size_t kRefined = 8, kRefinedIfAgreed = 2;  ///< Coarse summits that the next level refines.
+constexpr double kSame_mm = 2.5;                           ///< Summits this near are one.
 constexpr double kLeastOverlap = 0.3;
 constexpr int kDisplaced = 48;                     ///< Poses that the metric is compared with.
 constexpr double kAgreementWeight = 1.2;           ///< Against the distinction.
-constexpr double kDoubtful = 2.5, kCertain = 6.5;  ///< Their sum at confidence 0 and 1.
-constexpr double kDisplacedNear_mm = 8.0, kDisplacedFar_mm = 25.0;
+constexpr double kDoubtful = 3.2, kCertain = 9.2;  ///< Their sum at confidence 0 and 1.
+constexpr double kDisplacedNear_mm = 15.0, kDisplacedFar_mm = 30.0;
 constexpr std::uint64_t kCoarseSeed = 11, kMiddleSeed = 12, kFineSeed = 13, kStartSeed = 14, kDisplacedSeed = 15;
 
 /// Volumes and samples of one registration.
@@ -110,6 +112,27 @@ std::vector<Summit> best_distinct(std::vector<Summit> summits, const Work& work,
   return best;
 }
 
+/// Share of the summits at `motion`.
+double agreement_at(const Motion& motion, const std::vector<Summit>& summits, const Work& work) {
+  const auto near = std::count_if(summits.begin(), summits.end(), [&](const Summit& other) {
+    return work.distance_mm(other.motion, motion) < 2.0 * kSame_mm;
+  });
+  return static_cast<double>(near) / static_cast<double>(summits.size());
+}
+
+/// Summits of the coarse level, from few starts if those agree.
+std::vector<Summit> coarse_summits(const Work& work, const detail::ClimbOptions& options, std::uint64_t seed) {
+  std::vector<Motion> starts = starts_near(Motion::Zero(), work.us.radius_mm, seed);
+  const std::vector<Motion> others(starts.begin() + kFewStarts, starts.end());
+  starts.resize(kFewStarts);
+  std::vector<Summit> summits = climb_all(work.coarse, work.coarse_points, work, starts, options);
+  const Summit best = best_distinct(summits, work, 1).front();
+  if (agreement_at(best.motion, summits, work) >= kEnoughAgreement) return summits;
+  const std::vector<Summit> more = climb_all(work.coarse, work.coarse_points, work, others, options);
+  summits.insert(summits.end(), more.begin(), more.end());
+  return summits;
+}
+
 std::vector<Motion> motions_of(const std::vector<Summit>& summits) {
   std::vector<Motion> motions;
   for (const Summit& summit : summits) motions.push_back(summit.motion);
@@ -177,13 +200,13 @@ Result<RigidRegistration> register_rigid(const volume::CtGrid& ct, const volume:
 
   report(progress, "coarse registration", 0.3);
   detail::ClimbOptions climb{work.us.radius_mm, 4.0, 0.4, 40};
-  const std::vector<Motion> starts = starts_near(Motion::Zero(), work.us.radius_mm, options.seed);
-  const std::vector<Summit> coarse = climb_all(work.coarse, work.coarse_points, work, starts, climb);
+  const std::vector<Summit> coarse = coarse_summits(work, climb, options.seed);
   if (cancelled()) return cancellation();
   report(progress, "refining", 0.6);
+  const std::size_t refined = coarse.size() == static_cast<std::size_t>(kFewStarts) ? kRefinedIfAgreed : kRefined;
   climb = {work.us.radius_mm, 1.5, 0.1, 30};
   std::vector<Summit> middle =
-      climb_all(work.fine, work.middle_points, work, motions_of(best_distinct(coarse, work, kRefined)), climb);
+      climb_all(work.fine, work.middle_points, work, motions_of(best_distinct(coarse, work, refined)), climb);
   std::erase_if(middle, [&](const Summit& summit) {
     return !options.is_search && work.distance_mm(summit.motion, Motion::Zero()) > options.reach_mm;
   });
@@ -204,10 +227,7 @@ Result<RigidRegistration> register_rigid(const volume::CtGrid& ct, const volume:
   result.shadow_share = work.us.shadow_share;
   detail::PoseMetric middle_metric(work.fine, work.middle_points, work.us.centre);
   result.distinction = distinction_of(middle_metric, work, summit, options.seed);
-  const auto near = std::count_if(coarse.begin(), coarse.end(), [&](const Summit& other) {
-    return work.distance_mm(other.motion, summit.motion) < 2.0 * kSame_mm;
-  });
-  result.agreement = static_cast<double>(near) / static_cast<double>(coarse.size());
+  result.agreement = agreement_at(summit.motion, coarse, work);
   result.confidence = ramp(result.distinction + kAgreementWeight * result.agreement, kDoubtful, kCertain);
   if (result.overlap < kLeastOverlap) result.confidence = 0.0;
   report(progress, "done", 1.0);
@@ -220,6 +240,11 @@ Result<double> mean_distance_mm(const volume::LabelGrid& us, const Beams& beams,
   double sum = 0.0;
   for (const Vec3& p : points) sum += (X_a * p - X_b * p).norm();
   return sum / static_cast<double>(points.size());
+}
+
+Result<volume::MaskGrid> usable_voxels(const volume::LabelGrid& us, const Beams& beams) {
+  TROCAR_TRY(detail::WorkingUltrasound prepared, detail::prepare_ultrasound(us, beams));
+  return std::move(prepared.usable);
 }
 
 }  // namespace trocar::registration

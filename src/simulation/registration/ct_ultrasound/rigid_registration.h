@@ -43,4 +43,8 @@ Result<RigidRegistration> register_rigid(const volume::CtGrid& ct, const volume:
 /// Mean distance (mm) between two poses over the usable voxels of an ultrasound volume.
 Result<double> mean_distance_mm(const volume::LabelGrid& us, const Beams& beams, const Pose& X_a, const Pose& X_b);
 
+/// Voxels whose gray levels are compared: imaged, and neither shadow nor near one. On the grid of the ultrasound if its
+/// voxels are larger than 0.8 mm, else on blocks of it.
+Result<volume::MaskGrid> usable_voxels(const volume::LabelGrid& us, const Beams& beams);
+
 }  // namespace trocar::registration

@@ -25,6 +25,10 @@ volume::FloatGrid block_means(const volume::Grid<T>& grid, const volume::Index3&
   }
   geometry.origin_P = grid.geometry.to_mm(middle);
   volume::FloatGrid means(geometry);
+  if (factors == volume::Index3{1, 1, 1} && size == grid.geometry.size) {
+    std::copy(grid.voxels.begin(), grid.voxels.end(), means.voxels.begin());
+    return means;
+  }
   const float weight = 1.0F / static_cast<float>(factors[0] * factors[1] * factors[2]);
   parallel_for(static_cast<std::size_t>(geometry.size[2]), 1, [&](std::size_t begin, std::size_t end) {
     for (auto k = static_cast<std::int64_t>(begin); k < static_cast<std::int64_t>(end); ++k)

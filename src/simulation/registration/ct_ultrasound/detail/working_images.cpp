@@ -9,7 +9,6 @@
 #include "registration/ct_ultrasound/detail/smoothing.h"
 #include "registration/shadow/shadow_mask.h"
 #include "volume/morphology.h"
-#include "volume/sampling.h"
 
 namespace trocar::registration::detail {
 namespace {
@@ -19,7 +18,7 @@ constexpr double kWorking_mm = 1.6;         ///< Blocks of voxels are at most th
 constexpr double kShadowShareOfOtsu = 0.4;  ///< Deep tissue is darker than Otsu's threshold; shadow is darker still.
 constexpr double kWidening_mm = 3.5;        ///< Of shadows and edges.
 constexpr double kContrast_mm = 12.0;       ///< Standard deviation of the surroundings of local contrast.
-constexpr double kFurthestContrast = 3.0;   ///< Local contrast is limited to this many standard deviations.
+constexpr float kFurthestContrast = 3.0F;   ///< Local contrast is limited to this many standard deviations.
 constexpr float kGrayFloor = 3.0F;          ///< Added to the local deviation: gray levels, HU.
 constexpr float kHuFloor = 15.0F;
 constexpr float kLowest_hu = -150.0F, kHighest_hu = 250.0F;
@@ -39,30 +38,83 @@ volume::FloatGrid every_block(const volume::FloatGrid& grid, std::int64_t factor
   return block_means(grid, {0, 0, 0}, grid.geometry.size, {factor, factor, factor});
 }
 
-/// Local contrast (R11): deviation from the weighted mean of the surroundings over their standard deviation.
-void to_local_contrast(volume::FloatGrid& grid, const volume::FloatGrid& weight, float floor) {
-  const auto few = factors_of(grid.geometry.spacing_mm, 0.5 * kContrast_mm);
+/// Position of a voxel in a grid of blocks, along one axis.
+struct BlockPosition {
+  std::int64_t low = 0, high = 0;
+  float share = 0.0F;  ///< Of `high`.
+};
+
+BlockPosition block_position(std::int64_t n, std::int64_t factor, std::int64_t count) {
+  const double at = (static_cast<double>(n) - 0.5 * static_cast<double>(factor - 1)) / static_cast<double>(factor);
+  const double inside = std::clamp(at, 0.0, static_cast<double>(count - 1));
+  const auto low = static_cast<std::int64_t>(inside);
+  return {low, std::min(low + 1, count - 1), static_cast<float>(inside - static_cast<double>(low))};
+}
+
+/// Trilinear values of a grid of blocks along a row of its voxels.
+void interpolate_row(const volume::FloatGrid& blocks, const BlockPosition& j, const BlockPosition& k,
+                     std::int64_t factor, std::vector<float>& line, std::vector<float>& row) {
+  const std::int64_t count = blocks.geometry.size[0];
+  line.resize(static_cast<std::size_t>(count));
+  for (std::int64_t i = 0; i < count; ++i) {
+    const float low = blocks[{i, j.low, k.low}] * (1.0F - j.share) + blocks[{i, j.high, k.low}] * j.share;
+    const float high = blocks[{i, j.low, k.high}] * (1.0F - j.share) + blocks[{i, j.high, k.high}] * j.share;
+    line[static_cast<std::size_t>(i)] = low * (1.0F - k.share) + high * k.share;
+  }
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    const BlockPosition at = block_position(static_cast<std::int64_t>(i), factor, count);
+    row[i] =
+        line[static_cast<std::size_t>(at.low)] * (1.0F - at.share) + line[static_cast<std::size_t>(at.high)] * at.share;
+  }
+}
+
+/// Mean of the surroundings, and what a deviation from it is divided by; on a grid of blocks.
+struct Surroundings {
+  volume::Index3 factors{};
+  volume::FloatGrid mean, deviation;
+};
+
+Surroundings find_surroundings(const volume::FloatGrid& grid, const volume::FloatGrid& weight, float floor) {
+  Surroundings around;
+  around.factors = factors_of(grid.geometry.spacing_mm, 0.5 * kContrast_mm);
   volume::FloatGrid first(grid.geometry), second(grid.geometry);
   for (std::size_t n = 0; n < grid.voxels.size(); ++n) {
     first.voxels[n] = weight.voxels[n] * grid.voxels[n];
     second.voxels[n] = first.voxels[n] * grid.voxels[n];
   }
   const auto spread = [&](const volume::FloatGrid& g) {
-    volume::FloatGrid means = block_means(g, {0, 0, 0}, g.geometry.size, few);
+    volume::FloatGrid means = block_means(g, {0, 0, 0}, g.geometry.size, around.factors);
     smooth(means, kContrast_mm);
     return means;
   };
-  const volume::FloatGrid sums = spread(weight), firsts = spread(first), seconds = spread(second);
-  parallel_for(static_cast<std::size_t>(grid.geometry.size[2]), 1, [&](std::size_t begin, std::size_t end) {
-    const auto plane = static_cast<std::size_t>(grid.geometry.size[0] * grid.geometry.size[1]);
-    for (std::size_t n = begin * plane; n < end * plane; ++n) {
-      const Vec3 at = sums.geometry.to_index(grid.geometry.centre_mm(grid.geometry.index_of(n)));
-      const double sum = std::max(volume::sample_linear_at_index(sums, at), 1e-3);
-      const double mean = volume::sample_linear_at_index(firsts, at) / sum;
-      const double variance = volume::sample_linear_at_index(seconds, at) / sum - mean * mean;
-      const double contrast = (static_cast<double>(grid.voxels[n]) - mean) /
-                              (std::sqrt(std::max(variance, 0.0)) + static_cast<double>(floor));
-      grid.voxels[n] = static_cast<float>(std::clamp(contrast, -kFurthestContrast, kFurthestContrast));
+  const volume::FloatGrid sums = spread(weight), squares = spread(second);
+  around.mean = spread(first);
+  around.deviation = volume::FloatGrid(sums.geometry);
+  for (std::size_t n = 0; n < sums.voxels.size(); ++n) {
+    const float sum = std::max(sums.voxels[n], 1e-3F);
+    around.mean.voxels[n] /= sum;
+    const float mean = around.mean.voxels[n];
+    around.deviation.voxels[n] = std::sqrt(std::max(squares.voxels[n] / sum - mean * mean, 0.0F)) + floor;
+  }
+  return around;
+}
+
+/// Local contrast (R11).
+void to_local_contrast(volume::FloatGrid& grid, const volume::FloatGrid& weight, float floor) {
+  const Surroundings around = find_surroundings(grid, weight, floor);
+  const auto& size = grid.geometry.size;
+  const auto& few = around.mean.geometry.size;
+  parallel_for(static_cast<std::size_t>(size[1] * size[2]), 32, [&](std::size_t begin, std::size_t end) {
+    std::vector<float> line, mean(static_cast<std::size_t>(size[0])), deviation(static_cast<std::size_t>(size[0]));
+    for (std::size_t r = begin; r < end; ++r) {
+      const auto row = static_cast<std::int64_t>(r);
+      const BlockPosition j = block_position(row % size[1], around.factors[1], few[1]);
+      const BlockPosition k = block_position(row / size[1], around.factors[2], few[2]);
+      interpolate_row(around.mean, j, k, around.factors[0], line, mean);
+      interpolate_row(around.deviation, j, k, around.factors[0], line, deviation);
+      float* out = grid.voxels.data() + row * size[0];
+      for (std::size_t i = 0; i < mean.size(); ++i)
+        out[i] = std::clamp((out[i] - mean[i]) / deviation[i], -kFurthestContrast, kFurthestContrast);
     }
   });
 }
