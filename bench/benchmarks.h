@@ -35,6 +35,7 @@ Result<std::vector<CaseResult>> run_link_benchmark();
 /// Two live servers, a drawing client and a busy process: rate, lateness, ticks, missed deadlines.
 Result<std::vector<CaseResult>> run_servers_benchmark(const Options& options);
 /// Volumes from tracked freehand sweeps; with the test data, compared with the volume of PLUS.
+Result<std::vector<CaseResult>> run_ct_us_benchmark(const Options& options);
 Result<std::vector<CaseResult>> run_reconstruct_benchmark();
 /// 3D SIFT: keypoints, descriptors, matches of 13,500 by 13,500.
 Result<std::vector<CaseResult>> run_sift_benchmark();

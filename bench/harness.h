@@ -25,7 +25,7 @@ struct Figures {
 /// One line of `trocar bench`.
 struct CaseResult {
   std::string name;  ///< "slice/512-oblique".
-  std::string unit;  ///< us, ms, fps, mm, n, nmm (N mm), mj, mib, ratio, gray, points.
+  std::string unit;  ///< us, ms, s, fps, mm, n, nmm (N mm), mj, mib, ratio, gray, points.
   Figures figures;
   struct Peer {
     std::string name;

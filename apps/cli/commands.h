@@ -10,6 +10,7 @@ namespace trocar::cli {
 void add_patient_commands(CLI::App& program, Action& action);
 void add_patient_report_commands(CLI::App& patient, Action& action);  ///< Adds show, check and render to `patient`.
 void add_plan_command(CLI::App& program, Action& action);
+void add_register_command(CLI::App& program, Action& action);
 void add_task_commands(CLI::App& program, Action& action);
 void add_run_command(CLI::App& program, Action& action);
 void add_session_commands(CLI::App& program, Action& action);

@@ -25,7 +25,7 @@ struct Panorama {
   double seam_difference = 0.0;  ///< Mean absolute difference of the smoothed gray levels of the two volumes at seams.
 };
 
-/// One volume of all, in the frame and along the axes of the first (docs/physics.md R12). A voxel's weights: distance
+/// One volume of all, in the frame and along the axes of the first (docs/physics.md R19). A voxel's weights: distance
 /// to shadow and to the edge of the fan, and the angle between the beam and the nearest fan's middle; gray levels are
 /// matched to the first volume by their ranks in the overlaps. Errors (exit status 2): options out of range, a panorama
 /// above 512 million voxels.

@@ -29,7 +29,7 @@ struct PoseGraph {
   std::vector<double> contradiction_mm;   ///< Of each edge, after the solution; 0 if one of its nodes has no pose.
 };
 
-/// Poses that fit all edges best (docs/physics.md R11): least squares on SE(3) by Levenberg-Marquardt with Cauchy's
+/// Poses that fit all edges best (docs/physics.md R18): least squares on SE(3) by Levenberg-Marquardt with Cauchy's
 /// weights, from the tree of the strongest edges. Edges that contradict the others by more than `largest_mm` are
 /// removed one by one. Deterministic.
 PoseGraph solve_pose_graph(std::size_t nodes, const std::vector<PoseEdge>& edges, const PoseGraphOptions& options = {});

@@ -28,7 +28,7 @@ struct Stitching {
   std::vector<StitchEdge> edges;          ///< All pairs that were tried.
 };
 
-/// Finds the pose of every volume in the first (docs/physics.md R11): all pairs, the graph of the found ones, then
+/// Finds the pose of every volume in the first (docs/physics.md R18): all pairs, the graph of the found ones, then
 /// again with every overlapping pair refined at full detail. Volumes without a trustworthy connection to the first have
 /// no pose. Errors (exit status 2): options out of range, fewer than two volumes.
 Result<Stitching> stitch(const std::vector<PreparedVolume>& volumes, const StitchOptions& options = {},

@@ -1,0 +1,198 @@
+// trocar register: the pose of an ultrasound volume in a CT.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <filesystem>
+#include <optional>
+
+#include "commands.h"
+#include "core/interruption.h"
+#include "io/image/image_file.h"
+#include "io/markups_file.h"
+#include "io/sequence/transform_file.h"
+#include "png/png_file.h"
+#include "registration/ct_ultrasound/landmark_fit.h"
+#include "registration/ct_ultrasound/overlay_picture.h"
+#include "registration/ct_ultrasound/rigid_registration.h"
+
+namespace trocar::cli {
+namespace {
+namespace fs = std::filesystem;
+
+constexpr double kLandmarkReach_mm = 15.0;  ///< From the fit of landmarks.
+
+struct Arguments {
+  std::string ct, us, out, checkerboard;
+  std::vector<std::string> landmarks;
+  std::string init = "header";
+  std::string beam_axis;  ///< Empty: that of the header, else +y.
+  std::uint64_t seed = 1;
+  bool is_json = false;
+};
+
+struct Inputs {
+  volume::CtGrid ct;
+  volume::LabelGrid us;
+  registration::Beams beams;
+  std::optional<registration::LandmarkFit> landmarks;
+};
+
+Status check_arguments(const Arguments& arguments) {
+  if (fs::path(arguments.out).extension() != ".tfm")
+    return fail_usage("the file name must end in .tfm", arguments.out, "rename the output");
+  TROCAR_TRY_STATUS(check_new(arguments.out));
+  if (arguments.checkerboard.empty()) return {};
+  if (fs::path(arguments.checkerboard).extension() != ".png")
+    return fail_usage("the file name must end in .png", arguments.checkerboard, "rename the output");
+  return check_new(arguments.checkerboard, "--checkerboard");
+}
+
+Result<std::vector<registration::NamedPoint>> read_points(const std::string& path) {
+  TROCAR_TRY(const std::vector<anatomy::Landmark> landmarks, io::read_landmarks(path));
+  std::vector<registration::NamedPoint> points;
+  for (const anatomy::Landmark& landmark : landmarks) points.push_back({landmark.name, landmark.p_P});
+  return points;
+}
+
+/// The error of a file, with its name.
+tl::unexpected<Error> of_file(Error error, const std::string& path) {
+  error.where = error.where.empty() ? path : fmt::format("{}: {}", path, error.where);
+  return tl::unexpected(std::move(error));
+}
+
+Result<Inputs> read_inputs(const Arguments& arguments) {
+  Inputs inputs;
+  if (!arguments.landmarks.empty()) {
+    TROCAR_TRY(const auto ct, read_points(arguments.landmarks[0]));
+    TROCAR_TRY(const auto us, read_points(arguments.landmarks[1]));
+    auto fit = registration::fit_landmarks(ct, us);
+    if (!fit) return of_file(fit.error(), arguments.landmarks[1]);
+    inputs.landmarks = *std::move(fit);
+  }
+  TROCAR_TRY(inputs.us, io::read_labels(arguments.us));
+  if (arguments.beam_axis.empty()) {
+    TROCAR_TRY(const io::ImageFields fields, io::read_image_fields(arguments.us));
+    auto beams = registration::Beams::from_header(fields, inputs.us.geometry);
+    if (!beams) return of_file(beams.error(), arguments.us);
+    inputs.beams = *beams;
+  } else {
+    TROCAR_TRY(inputs.beams, registration::Beams::along_axis(arguments.beam_axis, inputs.us.geometry));
+  }
+  TROCAR_TRY(inputs.ct, io::read_ct(arguments.ct));
+  return inputs;
+}
+
+void warn_of_landmarks(const std::optional<registration::LandmarkFit>& landmarks) {
+  if (!landmarks) return;
+  if (!landmarks->unmatched.empty())
+    print_warning(fmt::format("landmarks without a partner are ignored: {}", fmt::join(landmarks->unmatched, ", ")));
+  if (!landmarks->doubt.empty()) print_warning(landmarks->doubt);
+}
+
+/// A result that may be wrong is not written.
+Status check_result(const registration::RigidRegistration& found, const std::string& us) {
+  if (found.confidence >= registration::kLeastConfidence) return {};
+  return fail(fmt::format("no reliable registration: confidence {:.2f}, at least {:.2f} is needed (overlap {:.2f}, "
+                          "shadow {:.0f} %); nothing was written",
+                          found.confidence, registration::kLeastConfidence, found.overlap, 100.0 * found.shadow_share),
+              us, "give --landmarks, check orientation and --beam-axis, or try another --init");
+}
+
+config::Json to_json(const registration::RigidRegistration& found, const Inputs& inputs, double seconds) {
+  config::Json json;
+  json["metric"] = found.metric;
+  json["overlap"] = found.overlap;
+  json["confidence"] = found.confidence;
+  json["agreement"] = found.agreement;
+  json["distinction"] = found.distinction;
+  json["shadow"] = found.shadow_share;
+  json["seconds"] = seconds;
+  if (inputs.landmarks) {
+    json["landmarks"] = {{"pairs", inputs.landmarks->names.size()},
+                         {"rms_mm", inputs.landmarks->fit.rms_mm},
+                         {"scale", inputs.landmarks->fit.scale},
+                         {"worst", inputs.landmarks->worst},
+                         {"worst_mm", inputs.landmarks->worst_mm}};
+  }
+  return json;
+}
+
+Status register_volumes(const Arguments& arguments) {
+  TROCAR_TRY_STATUS(check_arguments(arguments));
+  const InterruptibleWork interruptible;
+  const ProgressPrinter printer;
+  const Progress progress = printer.callback();
+  report(progress, "reading the volumes", 0.0);
+  const auto start = std::chrono::steady_clock::now();
+  TROCAR_TRY(const Inputs inputs, read_inputs(arguments));
+  warn_of_landmarks(inputs.landmarks);
+  registration::RigidOptions options;
+  options.seed = arguments.seed;
+  options.is_search = arguments.init == "search" && !inputs.landmarks;
+  options.is_cancelled = [] { return is_interrupted(); };
+  if (inputs.landmarks) {
+    options.X_CU = inputs.landmarks->fit.X_AB;
+    options.reach_mm = kLandmarkReach_mm;
+  }
+  const auto found = registration::register_rigid(
+      inputs.ct, inputs.us, inputs.beams, options,
+      [&](std::string_view step, double fraction) { report(progress, step, 0.2 + 0.7 * fraction); });
+  if (is_interrupted()) return tl::unexpected(interruption_error(arguments.out));
+  if (!found) return of_file(found.error(), arguments.us);
+  TROCAR_TRY_STATUS(check_result(*found, arguments.us));
+  if (!arguments.checkerboard.empty()) {
+    TROCAR_TRY(const volume::RgbImage picture,
+               registration::overlay_picture(inputs.ct, inputs.us, inputs.beams, found->X_CU));
+    TROCAR_TRY_STATUS(png::write_png(picture, arguments.checkerboard));
+  }
+  TROCAR_TRY_STATUS(io::write_transform(found->X_CU, arguments.out));
+  report(progress, "done", 1.0);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (arguments.is_json) {
+    print_json(to_json(*found, inputs, seconds));
+  } else {
+    fmt::print("registered in {:.1f} s: mutual information {:.3f}, overlap {:.2f}, confidence {:.2f}\n", seconds,
+               found->metric, found->overlap, found->confidence);
+    if (inputs.landmarks)
+      fmt::print("{} landmark pairs: rms {:.1f} mm, scale {:.3f}, worst \"{}\" {:.1f} mm\n",
+                 inputs.landmarks->names.size(), inputs.landmarks->fit.rms_mm, inputs.landmarks->fit.scale,
+                 inputs.landmarks->worst, inputs.landmarks->worst_mm);
+  }
+  return {};
+}
+
+}  // namespace
+
+void add_register_command(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand("register", "Register an ultrasound volume to a CT");
+  command->footer(
+      "The transform maps points of the ultrasound to points of the CT (ITK, LPS mm). A result of low confidence is\n"
+      "refused: exit status 1, nothing is written.\n"
+      "Examples:\n  trocar register --ct ct.nrrd --us liver.nrrd --out us_to_ct.tfm --checkerboard check.png\n"
+      "  trocar register --ct ct.nrrd --us liver.nrrd --landmarks ct.mrk.json us.mrk.json --out us_to_ct.tfm\n");
+  const auto a = std::make_shared<Arguments>();
+  command->add_option("--ct", a->ct, "CT: .nii .nii.gz .nrrd .mha .mhd, or a DICOM folder")->required();
+  command->add_option("--us", a->us, "Ultrasound volume, one byte per voxel: the same formats")->required();
+  command
+      ->add_option("--landmarks", a->landmarks,
+                   "Start: landmarks of CT and ultrasound, two Slicer markups (.mrk.json), paired by label")
+      ->expected(2)
+      ->type_name("CT US");
+  command
+      ->add_option(
+          "--init", a->init,
+          "Start without landmarks: header (the volumes share a frame) or search (transducer anywhere on the skin)")
+      ->check(CLI::IsMember({"header", "search"}))
+      ->capture_default_str();
+  command->add_option("--beam-axis", a->beam_axis,
+                      "Direction of sound along the index axes: +x, -x, … -z; default: the header's, else +y");
+  command->add_option("--out", a->out, "Output transform: .tfm")->required();
+  command->add_option("--checkerboard", a->checkerboard, "Picture of both volumes to judge the result by: .png");
+  command->add_option("--seed", a->seed, "Random seed of samples and starts")->capture_default_str();
+  command->add_flag("--json", a->is_json, "Print one JSON object");
+  command->callback([&action, a] { action = [a] { return register_volumes(*a); }; });
+}
+
+}  // namespace trocar::cli
