@@ -62,6 +62,14 @@ tl::unexpected<Error> of_file(Error error, const std::string& path) {
   return tl::unexpected(std::move(error));
 }
 
+Result<volume::LabelGrid> read_ultrasound(const std::string& path) {
+  auto us = io::read_labels(path);
+  if (!us && us.error().what.find("label") != std::string::npos)
+    return fail("the ultrasound has values that are not whole gray levels from 0 to 255", path,
+                "export it with one byte per voxel");
+  return us;
+}
+
 Result<Inputs> read_inputs(const Arguments& arguments) {
   Inputs inputs;
   if (!arguments.landmarks.empty()) {
@@ -71,7 +79,7 @@ Result<Inputs> read_inputs(const Arguments& arguments) {
     if (!fit) return of_file(fit.error(), arguments.landmarks[1]);
     inputs.landmarks = *std::move(fit);
   }
-  TROCAR_TRY(inputs.us, io::read_labels(arguments.us));
+  TROCAR_TRY(inputs.us, read_ultrasound(arguments.us));
   if (arguments.beam_axis.empty()) {
     TROCAR_TRY(const io::ImageFields fields, io::read_image_fields(arguments.us));
     auto beams = registration::Beams::from_header(fields, inputs.us.geometry);
