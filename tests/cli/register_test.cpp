@@ -52,6 +52,17 @@ TEST(Register, WritesTransformPictureAndFigures) {
   EXPECT_EQ(read_text(folder / "x.png").substr(1, 3), "PNG");
 }
 
+TEST(Register, WritesADeformationBesideTheRigidTransform) {
+  const TemporaryFolder folder;
+  write_pair(folder, 3.0, 0.03);
+  const config::Json json = json_of(trocar(volumes(folder) + " --deformable --json --out " + (folder / "x.tfm")));
+  EXPECT_TRUE(json["deformable"]["least_jacobian"].is_number());
+  EXPECT_TRUE(io::read_transform(folder / "x.tfm"));
+  const std::string text = read_text(folder / "x.deformable.tfm");
+  EXPECT_LT(text.find("CompositeTransform"), text.find("AffineTransform"));
+  EXPECT_LT(text.find("AffineTransform"), text.find("BSplineTransform"));
+}
+
 TEST(Register, StartsFromLandmarks) {
   const TemporaryFolder folder;
   const testing::GeneratedPair pair = write_pair(folder, 120.0, 2.0);  // far beyond the reach of the headers

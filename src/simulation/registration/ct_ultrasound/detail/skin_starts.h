@@ -3,7 +3,6 @@
 #include <cstdint>
 
 #include "geometry/pose.h"
-
 #include "registration/ct_ultrasound/detail/working_images.h"
 
 namespace trocar::registration::detail {
