@@ -94,7 +94,7 @@ Result<Pose> run_plastimatch(const PairFiles& files, const fs::path& folder) {
                  fmt::format("[GLOBAL]\nfixed={}\nmoving={}\nfixed_roi={}\nxform_out={}\n"
                              "[STAGE]\nxform=rigid\noptim=versor\nimpl=itk\nmetric=mattes\nmi_histogram_bins=32\n"
                              "res=4 4 4\nmax_its=60\nmax_step=4\nmin_step=0.2\nnum_samples=20000\n"
-                             "[STAGE]\nres=2 2 2\nmax_its=60\nmax_step=1\nmin_step=0.02\nnum_samples=40000\n",
+                             "[STAGE]\nres=1 1 1\nmax_its=60\nmax_step=1\nmin_step=0.02\nnum_samples=100000\n",
                              files.us.string(), files.ct.string(), files.us_mask.string(), out.string())));
   TROCAR_TRY_STATUS(run_quietly({"plastimatch", "register", (folder / "command.txt").string()}));
   return io::read_transform(out);

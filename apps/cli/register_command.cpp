@@ -13,6 +13,7 @@
 #include "io/markups_file.h"
 #include "io/sequence/transform_file.h"
 #include "png/png_file.h"
+#include "registration/ct_ultrasound/deformable_registration.h"
 #include "registration/ct_ultrasound/landmark_fit.h"
 #include "registration/ct_ultrasound/overlay_picture.h"
 #include "registration/ct_ultrasound/rigid_registration.h"
@@ -29,7 +30,17 @@ struct Arguments {
   std::string init = "header";
   std::string beam_axis;  ///< Empty: that of the header, else +y.
   std::uint64_t seed = 1;
+  bool is_deformable = false;
   bool is_json = false;
+
+  /// "us_to_ct.deformable.tfm" beside "us_to_ct.tfm".
+  fs::path deformation() const { return fs::path(out).replace_extension(".deformable.tfm"); }
+};
+
+/// Results of the command.
+struct Found {
+  registration::RigidRegistration rigid;
+  std::optional<registration::DeformableRegistration> deformable;
 };
 
 struct Inputs {
@@ -43,6 +54,7 @@ Status check_arguments(const Arguments& arguments) {
   if (fs::path(arguments.out).extension() != ".tfm")
     return fail_usage("the file name must end in .tfm", arguments.out, "rename the output");
   TROCAR_TRY_STATUS(check_new(arguments.out));
+  if (arguments.is_deformable) TROCAR_TRY_STATUS(check_new(arguments.deformation(), "--deformable"));
   if (arguments.checkerboard.empty()) return {};
   if (fs::path(arguments.checkerboard).extension() != ".png")
     return fail_usage("the file name must end in .png", arguments.checkerboard, "rename the output");
@@ -62,6 +74,14 @@ tl::unexpected<Error> of_file(Error error, const std::string& path) {
   return tl::unexpected(std::move(error));
 }
 
+Result<volume::LabelGrid> read_ultrasound(const std::string& path) {
+  auto us = io::read_labels(path);
+  if (!us && us.error().what.find("label") != std::string::npos)
+    return fail("the ultrasound has values that are not whole gray levels from 0 to 255", path,
+                "export it with one byte per voxel");
+  return us;
+}
+
 Result<Inputs> read_inputs(const Arguments& arguments) {
   Inputs inputs;
   if (!arguments.landmarks.empty()) {
@@ -71,7 +91,7 @@ Result<Inputs> read_inputs(const Arguments& arguments) {
     if (!fit) return of_file(fit.error(), arguments.landmarks[1]);
     inputs.landmarks = *std::move(fit);
   }
-  TROCAR_TRY(inputs.us, io::read_labels(arguments.us));
+  TROCAR_TRY(inputs.us, read_ultrasound(arguments.us));
   if (arguments.beam_axis.empty()) {
     TROCAR_TRY(const io::ImageFields fields, io::read_image_fields(arguments.us));
     auto beams = registration::Beams::from_header(fields, inputs.us.geometry);
@@ -92,15 +112,16 @@ void warn_of_landmarks(const std::optional<registration::LandmarkFit>& landmarks
 }
 
 /// A result that may be wrong is not written.
-Status check_result(const registration::RigidRegistration& found, const std::string& us) {
+Status check_result(const registration::RigidRegistration& found) {
   if (found.confidence >= registration::kLeastConfidence) return {};
   return fail(fmt::format("no reliable registration: confidence {:.2f}, at least {:.2f} is needed (overlap {:.2f}, "
                           "shadow {:.0f} %); nothing was written",
                           found.confidence, registration::kLeastConfidence, found.overlap, 100.0 * found.shadow_share),
-              us, "give --landmarks, check orientation and --beam-axis, or try another --init");
+              {}, "give --landmarks, check orientation and --beam-axis, or try another --init");
 }
 
-config::Json to_json(const registration::RigidRegistration& found, const Inputs& inputs, double seconds) {
+config::Json to_json(const Found& result, const Inputs& inputs, double seconds) {
+  const registration::RigidRegistration& found = result.rigid;
   config::Json json;
   json["metric"] = found.metric;
   json["overlap"] = found.overlap;
@@ -116,7 +137,57 @@ config::Json to_json(const registration::RigidRegistration& found, const Inputs&
                          {"worst", inputs.landmarks->worst},
                          {"worst_mm", inputs.landmarks->worst_mm}};
   }
+  if (const auto& deformable = result.deformable) {
+    json["deformable"] = {{"metric_before", deformable->metric_before},
+                          {"metric", deformable->metric},
+                          {"mean_mm", deformable->mean_mm},
+                          {"largest_mm", deformable->largest_mm},
+                          {"least_jacobian", deformable->least_jacobian}};
+  }
   return json;
+}
+
+void print_summary(const Found& found, const Inputs& inputs, double seconds) {
+  fmt::print("registered in {:.1f} s: mutual information {:.3f}, overlap {:.2f}, confidence {:.2f}\n", seconds,
+             found.rigid.metric, found.rigid.overlap, found.rigid.confidence);
+  if (const auto& landmarks = inputs.landmarks)
+    fmt::print("{} landmark pairs: rms {:.1f} mm, scale {:.3f}, worst \"{}\" {:.1f} mm\n", landmarks->names.size(),
+               landmarks->fit.rms_mm, landmarks->fit.scale, landmarks->worst, landmarks->worst_mm);
+  if (const auto& deformable = found.deformable)
+    fmt::print("deformed by {:.1f} mm on average, {:.1f} mm at most: mutual information {:.3f} to {:.3f}\n",
+               deformable->mean_mm, deformable->largest_mm, deformable->metric_before, deformable->metric);
+}
+
+Result<Found> find_poses(const Arguments& arguments, const Inputs& inputs, const Progress& progress) {
+  registration::RigidOptions options;
+  options.seed = arguments.seed;
+  options.is_search = arguments.init == "search" && !inputs.landmarks;
+  options.is_cancelled = [] { return is_interrupted(); };
+  if (inputs.landmarks) {
+    options.X_CU = inputs.landmarks->fit.X_AB;
+    options.reach_mm = kLandmarkReach_mm;
+  }
+  Found found;
+  TROCAR_TRY(found.rigid, registration::register_rigid(
+                              inputs.ct, inputs.us, inputs.beams, options,
+                              [&](std::string_view step, double part) { report(progress, step, 0.2 + 0.5 * part); }));
+  TROCAR_TRY_STATUS(check_result(found.rigid));
+  if (!arguments.is_deformable) return found;
+  registration::DeformableOptions deformable;
+  deformable.seed = arguments.seed;
+  deformable.is_cancelled = options.is_cancelled;
+  TROCAR_TRY(found.deformable, registration::register_deformable(inputs.ct, inputs.us, inputs.beams, found.rigid.X_CU,
+                                                                 deformable, [&](std::string_view step, double part) {
+                                                                   report(progress, step, 0.7 + 0.2 * part);
+                                                                 }));
+  return found;
+}
+
+/// The transforms; the deformation first, so that a file at --out means that all was written.
+Status write_transforms(const Arguments& arguments, const Found& found) {
+  if (found.deformable)
+    TROCAR_TRY_STATUS(io::write_deformation(found.rigid.X_CU, found.deformable->field_U, arguments.deformation()));
+  return io::write_transform(found.rigid.X_CU, arguments.out);
 }
 
 Status register_volumes(const Arguments& arguments) {
@@ -128,37 +199,21 @@ Status register_volumes(const Arguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   TROCAR_TRY(const Inputs inputs, read_inputs(arguments));
   warn_of_landmarks(inputs.landmarks);
-  registration::RigidOptions options;
-  options.seed = arguments.seed;
-  options.is_search = arguments.init == "search" && !inputs.landmarks;
-  options.is_cancelled = [] { return is_interrupted(); };
-  if (inputs.landmarks) {
-    options.X_CU = inputs.landmarks->fit.X_AB;
-    options.reach_mm = kLandmarkReach_mm;
-  }
-  const auto found = registration::register_rigid(
-      inputs.ct, inputs.us, inputs.beams, options,
-      [&](std::string_view step, double fraction) { report(progress, step, 0.2 + 0.7 * fraction); });
+  const auto found = find_poses(arguments, inputs, progress);
   if (is_interrupted()) return tl::unexpected(interruption_error(arguments.out));
   if (!found) return of_file(found.error(), arguments.us);
-  TROCAR_TRY_STATUS(check_result(*found, arguments.us));
   if (!arguments.checkerboard.empty()) {
     TROCAR_TRY(const volume::RgbImage picture,
-               registration::overlay_picture(inputs.ct, inputs.us, inputs.beams, found->X_CU));
+               registration::overlay_picture(inputs.ct, inputs.us, inputs.beams, found->rigid.X_CU));
     TROCAR_TRY_STATUS(png::write_png(picture, arguments.checkerboard));
   }
-  TROCAR_TRY_STATUS(io::write_transform(found->X_CU, arguments.out));
+  TROCAR_TRY_STATUS(write_transforms(arguments, *found));
   report(progress, "done", 1.0);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (arguments.is_json) {
     print_json(to_json(*found, inputs, seconds));
   } else {
-    fmt::print("registered in {:.1f} s: mutual information {:.3f}, overlap {:.2f}, confidence {:.2f}\n", seconds,
-               found->metric, found->overlap, found->confidence);
-    if (inputs.landmarks)
-      fmt::print("{} landmark pairs: rms {:.1f} mm, scale {:.3f}, worst \"{}\" {:.1f} mm\n",
-                 inputs.landmarks->names.size(), inputs.landmarks->fit.rms_mm, inputs.landmarks->fit.scale,
-                 inputs.landmarks->worst, inputs.landmarks->worst_mm);
+    print_summary(*found, inputs, seconds);
   }
   return {};
 }
@@ -188,7 +243,10 @@ void add_register_command(CLI::App& program, Action& action) {
       ->capture_default_str();
   command->add_option("--beam-axis", a->beam_axis,
                       "Direction of sound along the index axes: +x, -x, … -z; default: the header's, else +y");
-  command->add_option("--out", a->out, "Output transform: .tfm")->required();
+  command->add_option("--out", a->out, "Output: rigid transform, .tfm")->required();
+  command->add_flag(
+      "--deformable", a->is_deformable,
+      "Also deform by a B-spline: written beside the rigid transform as NAME.deformable.tfm (ITK composite)");
   command->add_option("--checkerboard", a->checkerboard, "Picture of both volumes to judge the result by: .png");
   command->add_option("--seed", a->seed, "Random seed of samples and starts")->capture_default_str();
   command->add_flag("--json", a->is_json, "Print one JSON object");

@@ -1,12 +1,15 @@
 #include "io/detail/itk_transform.h"
 
 #include <itkAffineTransform.h>
+#include <itkBSplineTransform.h>
+#include <itkCompositeTransform.h>
 #include <itkTransformFactory.h>
 #include <itkTransformFactoryBase.h>
 #include <itkTransformFileReader.h>
 #include <itkTransformFileWriter.h>
 #include <itkTxtTransformIO.h>
 
+#include <algorithm>
 #include <mutex>
 
 #include "io/image/detail/quiet.h"
@@ -56,8 +59,11 @@ Result<AffineMap> read_throwing(const InputFile& file) {
   return map;
 }
 
-/// May throw exceptions of ITK.
-void write_throwing(const AffineMap& map, const fs::path& path) {
+using Composite = itk::CompositeTransform<double, 3>;
+using Spline = itk::BSplineTransform<double, 3, 3>;
+using Affine = itk::AffineTransform<double, 3>;
+
+Affine::Pointer affine_of(const AffineMap& map) {
   const auto affine = itk::AffineTransform<double, 3>::New();
   itk::Matrix<double, 3, 3> matrix;
   itk::Vector<double, 3> offset;
@@ -67,11 +73,39 @@ void write_throwing(const AffineMap& map, const fs::path& path) {
   }
   affine->SetMatrix(matrix);
   affine->SetOffset(offset);
+  return affine;
+}
+
+Spline::Pointer spline_of(const SplineNumbers& numbers) {
+  const auto spline = Spline::New();
+  Spline::FixedParametersType fixed(18);
+  for (unsigned a = 0; a < 3; ++a) {
+    fixed[a] = numbers.size[a];
+    fixed[3 + a] = numbers.origin_mm[a];
+    fixed[6 + a] = numbers.spacing_mm[a];
+    for (unsigned b = 0; b < 3; ++b) fixed[9 + 3 * a + b] = numbers.direction[a][b];
+  }
+  spline->SetFixedParameters(fixed);
+  const std::size_t count = numbers.coefficients_mm.size();
+  Spline::ParametersType parameters(static_cast<itk::SizeValueType>(3 * count));
+  for (std::size_t n = 0; n < count; ++n)
+    for (std::size_t a = 0; a < 3; ++a)
+      parameters[static_cast<itk::SizeValueType>(a * count + n)] = numbers.coefficients_mm[n][a];
+  spline->SetParametersByValue(parameters);
+  return spline;
+}
+
+/// May throw exceptions of ITK.
+void write_throwing(const itk::Object* transform, const fs::path& path) {
   const auto writer = itk::TransformFileWriterTemplate<double>::New();
   writer->SetFileName(path.string());
   writer->SetTransformIO(itk::TxtTransformIOTemplate<double>::New());
-  writer->SetInput(affine);
+  writer->SetInput(transform);
   writer->Update();
+}
+
+Status unwritten(const fs::path& path) {
+  return fail("the transform cannot be written", path.string(), "check the disk space and the permissions");
 }
 
 }  // namespace
@@ -89,10 +123,48 @@ Result<AffineMap> read_transform_with_itk(const InputFile& file) {
 Status write_transform_with_itk(const AffineMap& map, const fs::path& path) {
   silence_itk();
   try {
-    write_throwing(map, path);
+    write_throwing(affine_of(map), path);
     return {};
   } catch (const std::exception&) {
-    return fail("the transform cannot be written", path.string(), "check the disk space and the permissions");
+    return unwritten(path);
+  }
+}
+
+Status write_composite_with_itk(const AffineMap& map, const SplineNumbers& spline, const fs::path& path) {
+  silence_itk();
+  try {
+    const auto composite = Composite::New();
+    composite->AddTransform(affine_of(map));
+    composite->AddTransform(spline_of(spline));  // the last one is applied first
+    write_throwing(composite, path);
+    return {};
+  } catch (const std::exception&) {
+    return unwritten(path);
+  }
+}
+
+Result<std::vector<std::array<double, 3>>> map_points_with_itk(const fs::path& path,
+                                                               std::span<const std::array<double, 3>> points) {
+  silence_itk();
+  try {
+    register_transforms();
+    const auto reader = itk::TransformFileReaderTemplate<double>::New();
+    reader->SetFileName(path.string());
+    reader->SetTransformIO(itk::TxtTransformIOTemplate<double>::New());
+    reader->Update();
+    const auto* transform =
+        dynamic_cast<const itk::Transform<double, 3, 3>*>(reader->GetTransformList()->front().GetPointer());
+    if (transform == nullptr) return fail("not a transform of points in 3D", path.string(), "give an ITK transform");
+    std::vector<std::array<double, 3>> mapped;
+    for (const auto& point : points) {
+      itk::Point<double, 3> p;
+      std::copy(point.begin(), point.end(), p.Begin());
+      p = transform->TransformPoint(p);
+      mapped.push_back({p[0], p[1], p[2]});
+    }
+    return mapped;
+  } catch (const std::exception&) {
+    return fail("not an ITK transform file", path.string(), "give an ITK transform in text (.tfm)");
   }
 }
 

@@ -3,6 +3,8 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
+#include <span>
+#include <vector>
 
 #include "core/files/input_file.h"
 
@@ -21,5 +23,18 @@ Result<AffineMap> read_transform_with_itk(const InputFile& file);
 
 /// Writes the map as an ITK affine transform in text, the type that 3D Slicer writes.
 Status write_transform_with_itk(const AffineMap& map, const std::filesystem::path& path);
+
+/// A cubic B-spline as itk::BSplineTransform has it: nodes of the lattice with i fastest, displacements in mm.
+struct SplineNumbers {
+  std::array<double, 3> size{}, origin_mm{}, spacing_mm{};
+  std::array<std::array<double, 3>, 3> direction{};  ///< direction[row][column].
+  std::vector<std::array<double, 3>> coefficients_mm;
+};
+/// Writes a composite transform: first the spline, then the map.
+Status write_composite_with_itk(const AffineMap& map, const SplineNumbers& spline, const std::filesystem::path& path);
+
+/// Points mapped by all transforms of a file, in ITK's order. Never throws.
+Result<std::vector<std::array<double, 3>>> map_points_with_itk(const std::filesystem::path& path,
+                                                               std::span<const std::array<double, 3>> points);
 
 }  // namespace trocar::io::detail

@@ -75,6 +75,16 @@ Status check_counts(const ParameterCounts& counts, const detail::AffineMap& map,
   return check("fixed parameters", *counts.fixed_parameters, map.fixed_parameters);
 }
 
+detail::AffineMap map_of(const Pose& X_AB) {
+  detail::AffineMap map;
+  for (int row = 0; row < 3; ++row) {
+    const auto r = static_cast<std::size_t>(row);
+    for (int column = 0; column < 3; ++column) map.matrix[r][static_cast<std::size_t>(column)] = X_AB.R()(row, column);
+    map.offset_mm[r] = X_AB.p()[row];
+  }
+  return map;
+}
+
 }  // namespace
 
 Result<Pose> read_transform(const fs::path& path) {
@@ -112,12 +122,7 @@ Result<TransformNotes> read_transform_notes(const fs::path& path) {
 
 Status write_transform(const Pose& X_AB, const fs::path& path, const TransformNotes& notes) {
   if (!X_AB.is_finite()) return fail("the pose has a value that is not a number", path.string(), "give finite numbers");
-  detail::AffineMap map;
-  for (int row = 0; row < 3; ++row) {
-    const auto r = static_cast<std::size_t>(row);
-    for (int column = 0; column < 3; ++column) map.matrix[r][static_cast<std::size_t>(column)] = X_AB.R()(row, column);
-    map.offset_mm[r] = X_AB.p()[row];
-  }
+  const detail::AffineMap map = map_of(X_AB);
   return write_atomically(path, [&](const fs::path& temporary) -> Status {
     TROCAR_TRY_STATUS(detail::write_transform_with_itk(map, temporary));
     std::ofstream file(temporary, std::ios::app | std::ios::binary);
@@ -125,6 +130,26 @@ Status write_transform(const Pose& X_AB, const fs::path& path, const TransformNo
     file.flush();
     if (!file) return fail("the comments cannot be written", path.string(), "free some disk space");
     return {};
+  });
+}
+
+Status write_deformation(const Pose& X_AB, const volume::SplineField& field_B, const fs::path& path) {
+  detail::SplineNumbers numbers;
+  bool is_finite = X_AB.is_finite();
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto row = static_cast<int>(a);
+    numbers.size[a] = static_cast<double>(field_B.lattice.size[a]);
+    numbers.origin_mm[a] = field_B.lattice.origin_P[row];
+    numbers.spacing_mm[a] = field_B.lattice.spacing_mm[row];
+    for (std::size_t b = 0; b < 3; ++b) numbers.direction[a][b] = field_B.lattice.R_PV(row, static_cast<int>(b));
+  }
+  for (const Vec3& c : field_B.coefficients_mm) {
+    is_finite = is_finite && c.allFinite();
+    numbers.coefficients_mm.push_back({c.x(), c.y(), c.z()});
+  }
+  if (!is_finite) return fail("the deformation has a value that is not a number", path.string(), "give finite numbers");
+  return write_atomically(path, [&](const fs::path& temporary) {
+    return detail::write_composite_with_itk(map_of(X_AB), numbers, temporary);
   });
 }
 

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/random.h"
+#include "io/detail/itk_transform.h"
 #include "io/test/test_support.h"
 
 namespace trocar::io {
@@ -30,6 +32,37 @@ TEST(TransformFile, ComesBackAsItWas) {
   EXPECT_LT((read->R() - X_PT.R()).norm(), 1e-12);
   EXPECT_LT((read->p() - X_PT.p()).norm(), 1e-12);
   EXPECT_TRUE(read_bytes(folder / "probe.tfm").starts_with("#Insight Transform File V1.0"));
+}
+
+TEST(TransformFile, DeformationIsWhatItkReads) {
+  TemporaryFolder folder;
+  const Pose X_AB((Eigen::AngleAxisd(0.8, Vec3(1, 2, 3).normalized())).toRotationMatrix(), {40.0, -20.0, 7.0});
+  volume::SplineField field;
+  field.lattice.size = {7, 6, 8};
+  field.lattice.spacing_mm = Vec3(20, 25, 30);
+  field.lattice.origin_P = Vec3(-50, 12, 3);
+  field.lattice.R_PV = Eigen::AngleAxisd(0.5, Vec3(2, 1, 2) / 3.0).toRotationMatrix();
+  Random random(3);
+  for (std::size_t n = 0; n < field.lattice.voxel_count(); ++n)
+    field.coefficients_mm.emplace_back(random.normal(), random.normal(), random.normal());
+  ASSERT_TRUE(write_deformation(X_AB, field, folder / "x.tfm"));
+  std::vector<Vec3> points;
+  std::vector<std::array<double, 3>> numbers;
+  for (int n = 0; n < 30; ++n) {
+    points.push_back(
+        field.lattice.to_mm(Vec3(random.uniform(1.1, 4.9), random.uniform(1.1, 3.9), random.uniform(1.1, 5.9))));
+    numbers.push_back({points.back().x(), points.back().y(), points.back().z()});
+  }
+  const auto mapped = detail::map_points_with_itk(folder / "x.tfm", numbers);
+  ASSERT_TRUE(mapped) << mapped.error().text();
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    const Vec3 expected = X_AB * (points[n] + volume::displacement_at(field, points[n]));
+    EXPECT_LT((expected - Vec3((*mapped)[n].data())).norm(), 1e-6);
+  }
+  EXPECT_FALSE(read_transform(folder / "x.tfm"));  // not one linear transform
+  field.coefficients_mm[0].x() = std::nan("");
+  EXPECT_FALSE(write_deformation(X_AB, field, folder / "y.tfm"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "y.tfm"));
 }
 
 TEST(TransformFile, KeepsNotesAsComments) {

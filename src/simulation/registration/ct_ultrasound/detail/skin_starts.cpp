@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "core/parallel.h"
 #include "registration/ct_ultrasound/detail/pose_metric.h"
@@ -20,39 +21,48 @@ constexpr double kBetween_mm = 22.0;     ///< Distance between places on the ski
 constexpr int kRolls = 16;
 constexpr double kTilt_rad = 0.3;
 constexpr double kCoarse_mm = 4.0;  ///< Smoothing of the volumes.
-constexpr std::size_t kSamples = 2000;
-constexpr std::size_t kClimbed = 64, kFinal = 8;
+constexpr std::size_t kSamples = 2000, kRefinedSamples = 8000, kBodySamples = 150;
+constexpr double kUsFine_mm = 1.2, kCtFine_mm = 0.5;
+constexpr std::size_t kClimbed = 300, kRefined = 80, kFinal = 20;
+constexpr double kLeastInBody = 0.9;  ///< Usable voxels show tissue, not air.
 
 struct SkinPlace {
   Vec3 p_C;
   Vec3 inward_C;
 };
 
-/// Places about kBetween_mm apart on the border of the largest body, with the direction of rising HU.
-std::vector<SkinPlace> find_skin(const volume::CtGrid& ct) {
+/// The body on voxels of about kSkinSpacing_mm: 1 where it is not outside air.
+volume::MaskGrid find_body(const volume::CtGrid& ct) {
   volume::Index3 factors{};
   for (std::size_t a = 0; a < 3; ++a)
     factors[a] = std::clamp<std::int64_t>(std::llround(kSkinSpacing_mm / ct.geometry.spacing_mm[static_cast<int>(a)]),
                                           1, ct.geometry.size[a]);
-  volume::FloatGrid means = block_means(ct, {0, 0, 0}, ct.geometry.size, factors);
-  volume::MaskGrid air(means.geometry);
-  for (std::size_t n = 0; n < air.voxels.size(); ++n) air.voxels[n] = means.voxels[n] < kBody_hu ? 1 : 0;
-  const volume::MaskGrid outside = volume::largest_component(air);
-  volume::FloatGrid body(means.geometry);
-  for (std::size_t n = 0; n < body.voxels.size(); ++n) body.voxels[n] = outside.voxels[n] != 0 ? 0.0F : 1.0F;
-  volume::FloatGrid smooth_body = body;
+  const volume::FloatGrid means = block_means(ct, {0, 0, 0}, ct.geometry.size, factors);
+  volume::MaskGrid body(means.geometry);
+  for (std::size_t n = 0; n < body.voxels.size(); ++n) body.voxels[n] = means.voxels[n] > kBody_hu ? 1 : 0;
+  return volume::fill_holes_in_slices(volume::largest_component(body));
+}
+
+/// Places about kBetween_mm apart on the border of the body, with the direction into it.
+std::vector<SkinPlace> find_skin(const volume::MaskGrid& body) {
+  volume::FloatGrid smooth_body(body.geometry);
+  std::copy(body.voxels.begin(), body.voxels.end(), smooth_body.voxels.begin());
   smooth(smooth_body, 1.5 * kSkinSpacing_mm);
   std::vector<SkinPlace> places;
   const auto& size = body.geometry.size;
   for (std::size_t n = 0; n < body.voxels.size(); ++n) {
     const volume::Index3 ijk = body.geometry.index_of(n);
-    if (body.voxels[n] == 0.0F || smooth_body.voxels[n] > 0.75F) continue;
-    bool is_rim = false;
-    for (std::size_t a = 0; a < 3; ++a) is_rim = is_rim || ijk[a] == 0 || ijk[a] == size[a] - 1;
-    if (is_rim) continue;
+    if (body.voxels[n] == 0) continue;
+    bool is_border = false;
+    for (std::size_t a = 0; a < 3; ++a)
+      for (const std::int64_t step : {-1, 1}) {
+        volume::Index3 next = ijk;
+        next[a] += step;
+        is_border = is_border || (next[a] >= 0 && next[a] < size[a] && body[next] == 0);
+      }
     const Vec3 p = body.geometry.centre_mm(ijk);
-    if (std::any_of(places.begin(), places.end(),
-                    [&](const SkinPlace& other) { return (other.p_C - p).norm() < kBetween_mm; }))
+    if (!is_border || std::any_of(places.begin(), places.end(),
+                                  [&](const SkinPlace& other) { return (other.p_C - p).norm() < kBetween_mm; }))
       continue;
     const Vec3 slope = volume::gradient_per_mm(smooth_body, p);
     if (slope.norm() > 1e-4) places.push_back({p, slope.normalized()});
@@ -66,8 +76,11 @@ struct Candidate {
 };
 
 /// Poses with the middle of the face at a place on the skin.
-std::vector<Candidate> candidates_at(const std::vector<SkinPlace>& places, const Beams& beams) {
-  const Vec3 face_U = beams.to_point(beams.is_fan() ? Beams::Place{} : Beams::Place{});
+std::vector<Candidate> candidates_at(const std::vector<SkinPlace>& places, const Beams& beams, const Vec3& centre_U) {
+  Beams::Place face = beams.to_place(centre_U);
+  if (beams.is_fan()) face = {};
+  face.depth_mm = 0.0;
+  const Vec3 face_U = beams.to_point(face);
   const Vec3 beam_U = beams.direction(face_U);
   std::vector<Candidate> candidates;
   for (const SkinPlace& place : places) {
@@ -88,42 +101,67 @@ std::vector<Candidate> candidates_at(const std::vector<SkinPlace>& places, const
   return candidates;
 }
 
+/// Drops poses that put much of the ultrasound into air or beside the CT.
+void keep_in_body(std::vector<Candidate>& candidates, const volume::MaskGrid& body, const std::vector<Vec3>& points) {
+  std::erase_if(candidates, [&](const Candidate& candidate) {
+    const auto inside = std::count_if(points.begin(), points.end(), [&](const Vec3& p) {
+      return volume::sample_nearest(body, candidate.X_CU * p, std::uint8_t{0}) != 0;
+    });
+    return static_cast<double>(inside) < kLeastInBody * static_cast<double>(points.size());
+  });
+}
+
 void keep_best(std::vector<Candidate>& candidates, std::size_t most) {
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.value > b.value; });
   if (candidates.size() > most) candidates.resize(most);
 }
 
+/// Values of the candidates, or with options the tops of the climbs from them; on two halves at the same time.
+void evaluate(std::vector<Candidate>& candidates, const Level& level, const std::vector<Vec3>& points,
+              const WorkingUltrasound& us, const std::optional<ClimbOptions>& options) {
+  const auto some = [&](std::size_t first) {
+    PoseMetric metric(level, points, us.centre);
+    for (std::size_t n = first; n < candidates.size(); n += 2) {
+      const Motion motion = motion_of(candidates[n].X_CU, us.centre);
+      if (!options) {
+        candidates[n].value = metric.value(motion);
+        continue;
+      }
+      const Summit summit = climb(metric, motion, *options);
+      candidates[n] = {pose_of(summit.motion, us.centre), summit.value};
+    }
+  };
+  parallel_invoke([&] { some(0); }, [&] { some(1); });
+}
+
 }  // namespace
 
 Result<Pose> search_from_skin(const volume::CtGrid& ct, const WorkingUltrasound& us, const Beams& beams,
                               std::uint64_t seed) {
-  std::vector<Candidate> candidates = candidates_at(find_skin(ct), beams);
-  if (candidates.empty()) return fail("the CT shows no skin to search from", {}, "give --landmarks");
-  const Vec3 whole = Vec3::Constant(1e4);
-  volume::FloatGrid ct_C = prepare_ct(ct, ct.geometry.to_mm(Vec3::Zero()), whole.x());
-  // ITK's Euler angles cover all rotations, so that one metric serves all candidates; only climbs start afresh.
-  const Level level = make_level(us, ct_C, kCoarse_mm, kCoarse_mm, 2);
-  const std::vector<Vec3> points = sample_usable(us, kSamples, seed);
-  const auto evaluate = [&](bool is_climb) {
-    const auto some = [&](std::size_t first) {
-      PoseMetric metric(level, points, us.centre);
-      for (std::size_t n = first; n < candidates.size(); n += 2) {
-        Motion motion = motion_of(candidates[n].X_CU, us.centre);
-        if (is_climb) {
-          const Summit summit = climb(metric, motion, {us.radius_mm, 5.0, 0.7, 30});
-          candidates[n] = {pose_of(summit.motion, us.centre), summit.value};
-        } else {
-          candidates[n].value = metric.value(motion);
-        }
-      }
-    };
-    parallel_invoke([&] { some(0); }, [&] { some(1); });
-  };
-  evaluate(false);
+  const volume::MaskGrid body = find_body(ct);
+  std::vector<Candidate> candidates = candidates_at(find_skin(body), beams, us.centre);
+  const std::vector<Vec3> few_points = sample_usable(us, kBodySamples, seed);
+  keep_in_body(candidates, body, few_points);
+  if (candidates.empty())
+    return fail("no place on the skin of the CT has room for the ultrasound", {},
+                "give --landmarks, or a CT of the region");
+  constexpr double kWhole_mm = 1e4;
+  const volume::FloatGrid ct_C = prepare_ct(ct, ct.geometry.to_mm(Vec3::Zero()), kWhole_mm);
+  const Level coarse = make_level(us, ct_C, kCoarse_mm, kCoarse_mm, 2);
+  evaluate(candidates, coarse, sample_usable(us, kSamples, seed), us, std::nullopt);
   keep_best(candidates, kClimbed);
-  evaluate(true);
+  evaluate(candidates, coarse, sample_usable(us, kSamples, seed), us, ClimbOptions{us.radius_mm, 5.0, 0.7, 30});
+  keep_in_body(candidates, body, few_points);
+  keep_best(candidates, kRefined);
+  evaluate(candidates, coarse, sample_usable(us, kRefinedSamples, seed), us, ClimbOptions{us.radius_mm, 2.0, 0.4, 30});
+  keep_in_body(candidates, body, few_points);
   keep_best(candidates, kFinal);
+  const Level fine = make_level(us, ct_C, kUsFine_mm, kCtFine_mm, 1);
+  evaluate(candidates, fine, sample_usable(us, kRefinedSamples, seed), us, ClimbOptions{us.radius_mm, 1.5, 0.2, 30});
+  if (candidates.empty())
+    return fail("no pose with the transducer on the skin matches", {}, "give --landmarks, or a CT of the region");
+  keep_best(candidates, 1);
   return candidates.front().X_CU;
 }
 

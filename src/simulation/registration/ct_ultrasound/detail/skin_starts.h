@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "geometry/pose.h"
 #include "registration/ct_ultrasound/detail/working_images.h"
 
 namespace trocar::registration::detail {
