@@ -17,6 +17,7 @@
 #include "registration/ct_ultrasound/landmark_fit.h"
 #include "registration/ct_ultrasound/overlay_picture.h"
 #include "registration/ct_ultrasound/rigid_registration.h"
+#include "ultrasound_volume.h"
 
 namespace trocar::cli {
 namespace {
@@ -74,14 +75,6 @@ tl::unexpected<Error> of_file(Error error, const std::string& path) {
   return tl::unexpected(std::move(error));
 }
 
-Result<volume::LabelGrid> read_ultrasound(const std::string& path) {
-  auto us = io::read_labels(path);
-  if (!us && us.error().what.find("label") != std::string::npos)
-    return fail("the ultrasound has values that are not whole gray levels from 0 to 255", path,
-                "export it with one byte per voxel");
-  return us;
-}
-
 Result<Inputs> read_inputs(const Arguments& arguments) {
   Inputs inputs;
   if (!arguments.landmarks.empty()) {
@@ -91,7 +84,7 @@ Result<Inputs> read_inputs(const Arguments& arguments) {
     if (!fit) return of_file(fit.error(), arguments.landmarks[1]);
     inputs.landmarks = *std::move(fit);
   }
-  TROCAR_TRY(inputs.us, read_ultrasound(arguments.us));
+  TROCAR_TRY(inputs.us, read_gray_levels(arguments.us));
   if (arguments.beam_axis.empty()) {
     TROCAR_TRY(const io::ImageFields fields, io::read_image_fields(arguments.us));
     auto beams = registration::Beams::from_header(fields, inputs.us.geometry);

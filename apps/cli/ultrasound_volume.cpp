@@ -16,10 +16,18 @@ std::string name_without_ending(const std::string& path) {
   return name;
 }
 
+Result<volume::LabelGrid> read_gray_levels(const std::string& path) {
+  auto gray = io::read_labels(path);
+  if (!gray && gray.error().what.find("label") != std::string::npos)
+    return fail("the ultrasound has values that are not whole gray levels from 0 to 255", path,
+                "export it with one byte per voxel");
+  return gray;
+}
+
 Result<UltrasoundVolume> read_ultrasound_volume(const std::string& path, const std::string& beam_axis) {
   UltrasoundVolume volume;
   volume.name = name_without_ending(path);
-  TROCAR_TRY(volume.gray, io::read_labels(path));
+  TROCAR_TRY(volume.gray, read_gray_levels(path));
   if (!beam_axis.empty()) {
     TROCAR_TRY(volume.beams, registration::Beams::along_axis(beam_axis, volume.gray.geometry));
     return volume;

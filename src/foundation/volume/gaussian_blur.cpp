@@ -25,7 +25,9 @@ std::vector<float> gaussian(double sigma) {
 }
 
 /// Row of voxels along i.
-std::size_t row_length(const FloatGrid& grid) { return static_cast<std::size_t>(grid.geometry.size[0]); }
+std::size_t row_length(const FloatGrid& grid) {
+  return static_cast<std::size_t>(grid.geometry.size[0]);
+}
 
 void blur_along_i(FloatGrid& grid, const std::vector<float>& weights) {
   const std::size_t length = row_length(grid);
