@@ -52,7 +52,9 @@ class Cost {
  public:
   Cost(const detail::Level& level, const volume::GridGeometry& lattice, const std::vector<Vec3>& points,
        double bending_per_mm2)
-      : level_(level), bending_per_mm2_(bending_per_mm2 / static_cast<double>(lattice.voxel_count())), information_(contrasts(level.us, points)) {
+      : level_(level),
+        bending_per_mm2_(bending_per_mm2 / static_cast<double>(lattice.voxel_count())),
+        information_(contrasts(level.us, points)) {
     field_.lattice = lattice;
     field_.coefficients_mm.assign(lattice.voxel_count(), Vec3::Zero());
     for (const Vec3& p : points) samples_.push_back({p, volume::spline_weights(lattice, p)});
