@@ -10,16 +10,16 @@
 namespace trocar::registration {
 
 struct MatchOptions {
-  double largest_ratio = 0.95;      ///< Of the distances to the nearest and second-nearest. Range 0.1..1.
+  double largest_ratio = 0.95;         ///< Of the distances to the nearest and second-nearest. Range 0.1..1.
   double largest_gray_distance = 0.6;  ///< Between gray histograms, 0..1. Range 0..1.
-  bool is_mutual = true;            ///< Each is the other's nearest.
+  bool is_mutual = true;               ///< Each is the other's nearest.
 };
 
 /// A pair of keypoints of two volumes.
 struct Match {
   std::uint32_t a = 0, b = 0;  ///< Indices of keypoints.
   std::uint32_t feature_a = 0, feature_b = 0;
-  double distance = 0.0;       ///< Between descriptors, 0..2.
+  double distance = 0.0;  ///< Between descriptors, 0..2.
   double ratio = 1.0;
   double gray_distance = 0.0;
 };

@@ -14,8 +14,8 @@ struct OrientationOptions {
 
 /// Orientations R_PK of a keypoint (docs/physics.md R4): the x axis (theta = phi = 0) of K is the dominant direction of
 /// the gray gradients near the keypoint, and the y axis is the dominant direction of their parts across x, so that the
-/// roll about x is determined. The highest peaks of either first; empty where too few gradients are usable. Errors (exit
-/// status 2): options out of range.
+/// roll about x is determined. The highest peaks of either first; empty where too few gradients are usable. Errors
+/// (exit status 2): options out of range.
 class OrientationFinder {
  public:
   static Result<OrientationFinder> make(const OrientationOptions& options = {});
@@ -23,7 +23,7 @@ class OrientationFinder {
 
  private:
   OrientationOptions options_;
-  std::vector<Vec3> directions_;             ///< Evenly over the sphere.
+  std::vector<Vec3> directions_;              ///< Evenly over the sphere.
   std::vector<std::vector<int>> neighbours_;  ///< Of each direction.
 };
 

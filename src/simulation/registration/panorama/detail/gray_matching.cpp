@@ -8,8 +8,8 @@
 namespace trocar::registration::detail {
 namespace {
 
-constexpr std::int64_t kStride = 2;       ///< Voxels between compared ones.
-constexpr double kLeastCommon = 2000.0;   ///< Compared voxels.
+constexpr std::int64_t kStride = 2;      ///< Voxels between compared ones.
+constexpr double kLeastCommon = 2000.0;  ///< Compared voxels.
 
 using Counts = std::array<double, 256>;
 

@@ -87,8 +87,8 @@ void GradientHistogram::sample(const volume::FloatGrid& gray, const Vec3& first,
 double GradientHistogram::fill(const ScaleSpace& space, const Keypoint& keypoint, const Mat3& R_PK) {
   elements_.fill(0.0F);
   const Octave& octave = space.octaves[keypoint.octave];
-  const auto level = static_cast<std::size_t>(std::clamp<long>(std::lround(keypoint.level), 0,
-                                                               static_cast<long>(octave.levels.size()) - 1));
+  const auto level = static_cast<std::size_t>(
+      std::clamp<long>(std::lround(keypoint.level), 0, static_cast<long>(octave.levels.size()) - 1));
   const auto& geometry = octave.geometry;
   const Mat3 steps = geometry.R_PV.transpose() * R_PK * (sample_sigma_ * keypoint.sigma_mm / geometry.spacing_mm.x());
   const Vec3 first = geometry.to_index(keypoint.p_P) - steps * Vec3::Constant(0.5 * (kPadded - 1));
