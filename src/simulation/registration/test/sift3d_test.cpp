@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/random.h"
+#include "geometry/pose.h"
 #include "registration/matching/match.h"
 #include "registration/sift3d/descriptor.h"
 #include "registration/sift3d/keypoints.h"
