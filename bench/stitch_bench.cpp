@@ -43,9 +43,9 @@ Result<Outcome> stitch_known(std::vector<KnownVolume> known, Outcome outcome) {
     if (!stitching.X_0N[n]) continue;
     ++outcome.placed;
     if (!stitching.X_0N[n - 1]) continue;
-    const registration::TargetError error =
-        usable_target_error(volumes[n - 1], volumes[n], X_WU[n - 1].inverse() * X_WU[n],
-                            stitching.X_0N[n - 1]->inverse() * *stitching.X_0N[n]);
+    const registration::TargetError error = registration::target_error(
+        volumes[n - 1].region.usable, volumes[n].region.usable, X_WU[n - 1].inverse() * X_WU[n],
+        stitching.X_0N[n - 1]->inverse() * *stitching.X_0N[n]);
     outcome.mean_mm.push_back(error.mean_mm);
     outcome.max_mm.push_back(error.max_mm);
   }

@@ -12,7 +12,6 @@
 #include "ultrasound/sweep/mechanical_sweep.h"
 #include "ultrasound/sweep/transform_graph.h"
 #include "ultrasound/tissue/acoustic_scene.h"
-#include "volume/sampling.h"
 
 namespace trocar::bench {
 namespace {
@@ -98,30 +97,6 @@ Result<MainDirections> main_directions(const ultrasound::TrackedSequence& sequen
   beam_V.cwiseAbs().maxCoeff(&axis);
   directions.beam = fmt::format("{}{}", beam_V[axis] > 0.0 ? '+' : '-', static_cast<char>('x' + axis));
   return directions;
-}
-
-registration::TargetError usable_target_error(const registration::PreparedVolume& a,
-                                              const registration::PreparedVolume& b, const Pose& X_AB_true,
-                                              const Pose& X_AB) {
-  constexpr std::int64_t kStep_voxels = 6;
-  registration::TargetError error;
-  const auto& geometry = b.gray.geometry;
-  for (std::int64_t k = 0; k < geometry.size[2]; k += kStep_voxels) {
-    for (std::int64_t j = 0; j < geometry.size[1]; j += kStep_voxels) {
-      for (std::int64_t i = 0; i < geometry.size[0]; i += kStep_voxels) {
-        if (b.region.usable[{i, j, k}] == 0) continue;
-        const Vec3 p_B = geometry.centre_mm({i, j, k});
-        const Vec3 p_A = X_AB_true * p_B;
-        if (volume::sample_nearest(a.region.usable, p_A, std::uint8_t{0}) == 0) continue;
-        const double apart_mm = (X_AB * p_B - p_A).norm();
-        error.mean_mm += apart_mm;
-        error.max_mm = std::max(error.max_mm, apart_mm);
-        ++error.targets;
-      }
-    }
-  }
-  if (error.targets > 0) error.mean_mm /= static_cast<double>(error.targets);
-  return error;
 }
 
 }  // namespace trocar::bench

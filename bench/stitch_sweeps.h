@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/result.h"
-#include "registration/panorama/prepared_volume.h"
-#include "registration/phantom/volume_series.h"
+#include "geometry/pose.h"
+#include "registration/shadow/beams.h"
 #include "ultrasound/engine/b_mode.h"
 #include "ultrasound/probe/transducer.h"
 #include "ultrasound/sweep/tracked_sequence.h"
@@ -39,10 +39,5 @@ struct MainDirections {
 };
 Result<MainDirections> main_directions(const ultrasound::TrackedSequence& sequence,
                                        const volume::GridGeometry& geometry);
-
-/// As registration::target_error, at targets that both volumes show.
-registration::TargetError usable_target_error(const registration::PreparedVolume& a,
-                                              const registration::PreparedVolume& b, const Pose& X_AB_true,
-                                              const Pose& X_AB);
 
 }  // namespace trocar::bench

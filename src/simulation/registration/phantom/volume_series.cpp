@@ -2,11 +2,13 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
 #include "core/check.h"
 #include "core/random.h"
+#include "volume/sampling.h"
 
 namespace trocar::registration {
 namespace {
@@ -58,8 +60,9 @@ std::vector<GeneratedVolume> make_volume_series(const SeriesOptions& options, st
   return series;
 }
 
-TargetError target_error(const volume::GridGeometry& a, const volume::GridGeometry& b, const Pose& X_AB_true,
+TargetError target_error(const volume::MaskGrid& shown_a, const volume::MaskGrid& shown_b, const Pose& X_AB_true,
                          const Pose& X_AB) {
+  const volume::GridGeometry& b = shown_b.geometry;
   TargetError error;
   std::array<std::int64_t, 3> step;
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -67,14 +70,10 @@ TargetError target_error(const volume::GridGeometry& a, const volume::GridGeomet
   for (std::int64_t k = 0; k < b.size[2]; k += step[2]) {
     for (std::int64_t j = 0; j < b.size[1]; j += step[1]) {
       for (std::int64_t i = 0; i < b.size[0]; i += step[0]) {
+        if (shown_b[{i, j, k}] == 0) continue;
         const Vec3 p_B = b.centre_mm({i, j, k});
         const Vec3 p_A = X_AB_true * p_B;
-        const Vec3 index = a.to_index(p_A);
-        bool is_inside = true;
-        for (int axis = 0; axis < 3; ++axis)
-          is_inside = is_inside && index[axis] >= 0.0 &&
-                      index[axis] <= static_cast<double>(a.size[static_cast<std::size_t>(axis)] - 1);
-        if (!is_inside) continue;
+        if (volume::sample_nearest(shown_a, p_A, std::uint8_t{0}) == 0) continue;
         const double apart_mm = (X_AB * p_B - p_A).norm();
         error.mean_mm += apart_mm;
         error.max_mm = std::max(error.max_mm, apart_mm);
@@ -84,6 +83,11 @@ TargetError target_error(const volume::GridGeometry& a, const volume::GridGeomet
   }
   if (error.targets > 0) error.mean_mm /= static_cast<double>(error.targets);
   return error;
+}
+
+TargetError target_error(const volume::GridGeometry& a, const volume::GridGeometry& b, const Pose& X_AB_true,
+                         const Pose& X_AB) {
+  return target_error(volume::MaskGrid(a, 1), volume::MaskGrid(b, 1), X_AB_true, X_AB);
 }
 
 }  // namespace trocar::registration

@@ -34,7 +34,11 @@ struct TargetError {
   std::size_t targets = 0;
 };
 
-/// Distances between true and estimated places of a lattice of points (about every 6 mm) in the overlap of two volumes.
+/// Distances between true and estimated places of a lattice of points (about every 6 mm) that both volumes show: voxels
+/// of the masks that are not 0.
+TargetError target_error(const volume::MaskGrid& shown_a, const volume::MaskGrid& shown_b, const Pose& X_AB_true,
+                         const Pose& X_AB);
+/// The same for volumes that show every voxel.
 TargetError target_error(const volume::GridGeometry& a, const volume::GridGeometry& b, const Pose& X_AB_true,
                          const Pose& X_AB);
 
