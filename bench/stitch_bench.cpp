@@ -184,7 +184,7 @@ Status measure_recorded(const Progress& progress, std::vector<CaseResult>& resul
   const fs::path spine = real_data() / "us-spine-phantom" / "vtkVolumeReconstructorTestNNMEANvolumeRef.mha";
   if (fs::exists(spine)) {
     report(progress, "spine phantom", 0.0);
-    TROCAR_TRY(const volume::LabelGrid volume, io::read_labels(spine));
+    TROCAR_TRY(const volume::LabelGrid volume, io::read_gray_levels(spine));
     TROCAR_TRY(std::vector<KnownVolume> parts, cut_parts(volume, 0, "+y"));
     TROCAR_TRY(const Outcome outcome, stitch_known(std::move(parts), Outcome()));
     add(results, "recorded-spine-phantom", outcome, "three half-overlapping parts at 0.5 mm, turned by 10 degrees");

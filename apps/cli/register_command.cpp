@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "commands.h"
+#include "core/fail_at.h"
 #include "core/interruption.h"
 #include "io/image/image_file.h"
 #include "io/markups_file.h"
@@ -46,8 +47,7 @@ struct Found {
 
 struct Inputs {
   volume::CtGrid ct;
-  volume::LabelGrid us;
-  registration::Beams beams;
+  UltrasoundVolume us;
   std::optional<registration::LandmarkFit> landmarks;
 };
 
@@ -69,30 +69,16 @@ Result<std::vector<registration::NamedPoint>> read_points(const std::string& pat
   return points;
 }
 
-/// The error of a file, with its name.
-tl::unexpected<Error> of_file(Error error, const std::string& path) {
-  error.where = error.where.empty() ? path : fmt::format("{}: {}", path, error.where);
-  return tl::unexpected(std::move(error));
-}
-
 Result<Inputs> read_inputs(const Arguments& arguments) {
   Inputs inputs;
   if (!arguments.landmarks.empty()) {
     TROCAR_TRY(const auto ct, read_points(arguments.landmarks[0]));
     TROCAR_TRY(const auto us, read_points(arguments.landmarks[1]));
     auto fit = registration::fit_landmarks(ct, us);
-    if (!fit) return of_file(fit.error(), arguments.landmarks[1]);
+    if (!fit) return fail_at(arguments.landmarks[1], fit.error());
     inputs.landmarks = *std::move(fit);
   }
-  TROCAR_TRY(inputs.us, read_gray_levels(arguments.us));
-  if (arguments.beam_axis.empty()) {
-    TROCAR_TRY(const io::ImageFields fields, io::read_image_fields(arguments.us));
-    auto beams = registration::Beams::from_header(fields, inputs.us.geometry);
-    if (!beams) return of_file(beams.error(), arguments.us);
-    inputs.beams = *beams;
-  } else {
-    TROCAR_TRY(inputs.beams, registration::Beams::along_axis(arguments.beam_axis, inputs.us.geometry));
-  }
+  TROCAR_TRY(inputs.us, read_ultrasound_volume(arguments.us, arguments.beam_axis));
   TROCAR_TRY(inputs.ct, io::read_ct(arguments.ct));
   return inputs;
 }
@@ -102,15 +88,6 @@ void warn_of_landmarks(const std::optional<registration::LandmarkFit>& landmarks
   if (!landmarks->unmatched.empty())
     print_warning(fmt::format("landmarks without a partner are ignored: {}", fmt::join(landmarks->unmatched, ", ")));
   if (!landmarks->doubt.empty()) print_warning(landmarks->doubt);
-}
-
-/// A result that may be wrong is not written.
-Status check_result(const registration::RigidRegistration& found) {
-  if (found.confidence >= registration::kLeastConfidence) return {};
-  return fail(fmt::format("no reliable registration: confidence {:.2f}, at least {:.2f} is needed (overlap {:.2f}, "
-                          "shadow {:.0f} %); nothing was written",
-                          found.confidence, registration::kLeastConfidence, found.overlap, 100.0 * found.shadow_share),
-              {}, "give --landmarks, check orientation and --beam-axis, or try another --init");
 }
 
 config::Json to_json(const Found& result, const Inputs& inputs, double seconds) {
@@ -162,17 +139,17 @@ Result<Found> find_poses(const Arguments& arguments, const Inputs& inputs, const
   }
   Found found;
   TROCAR_TRY(found.rigid, registration::register_rigid(
-                              inputs.ct, inputs.us, inputs.beams, options,
+                              inputs.ct, inputs.us.gray, inputs.us.beams, options,
                               [&](std::string_view step, double part) { report(progress, step, 0.2 + 0.5 * part); }));
-  TROCAR_TRY_STATUS(check_result(found.rigid));
+  TROCAR_TRY_STATUS(registration::check_confidence(found.rigid, "nothing was written"));
   if (!arguments.is_deformable) return found;
   registration::DeformableOptions deformable;
   deformable.seed = arguments.seed;
   deformable.is_cancelled = options.is_cancelled;
-  TROCAR_TRY(found.deformable, registration::register_deformable(inputs.ct, inputs.us, inputs.beams, found.rigid.X_CU,
-                                                                 deformable, [&](std::string_view step, double part) {
-                                                                   report(progress, step, 0.7 + 0.2 * part);
-                                                                 }));
+  TROCAR_TRY(found.deformable,
+             registration::register_deformable(
+                 inputs.ct, inputs.us.gray, inputs.us.beams, found.rigid.X_CU, deformable,
+                 [&](std::string_view step, double part) { report(progress, step, 0.7 + 0.2 * part); }));
   return found;
 }
 
@@ -194,10 +171,10 @@ Status register_volumes(const Arguments& arguments) {
   warn_of_landmarks(inputs.landmarks);
   const auto found = find_poses(arguments, inputs, progress);
   if (is_interrupted()) return tl::unexpected(interruption_error(arguments.out));
-  if (!found) return of_file(found.error(), arguments.us);
+  if (!found) return fail_at(arguments.us, found.error());
   if (!arguments.checkerboard.empty()) {
     TROCAR_TRY(const volume::RgbImage picture,
-               registration::overlay_picture(inputs.ct, inputs.us, inputs.beams, found->rigid.X_CU));
+               registration::overlay_picture(inputs.ct, inputs.us.gray, inputs.us.beams, found->rigid.X_CU));
     TROCAR_TRY_STATUS(png::write_png(picture, arguments.checkerboard));
   }
   TROCAR_TRY_STATUS(write_transforms(arguments, *found));

@@ -40,7 +40,7 @@ Status check_arguments(const Arguments& arguments) {
   if (!arguments.report.empty()) TROCAR_TRY_STATUS(check_new(arguments.report, "--report"));
   std::set<std::string> names;
   for (const std::string& path : arguments.volumes)
-    if (!names.insert(name_without_ending(path)).second)
+    if (!names.insert(io::name_without_ending(path)).second)
       return fail_usage("two volumes have the same file name", path, "rename one: transforms are named after them");
   return {};
 }
@@ -63,7 +63,7 @@ Status check_spacing(const Arguments& arguments, const UltrasoundVolume& first, 
 Result<std::vector<registration::PreparedVolume>> prepare_all(const Arguments& arguments, const Progress& progress) {
   std::vector<UltrasoundVolume> read;
   for (const std::string& path : arguments.volumes) {
-    core::report(progress, "reading " + name_without_ending(path), 0.0);
+    core::report(progress, "reading " + io::name_without_ending(path), 0.0);
     TROCAR_TRY(UltrasoundVolume volume, read_ultrasound_volume(path, arguments.beam_axis));
     if (!read.empty()) TROCAR_TRY_STATUS(check_spacing(arguments, read.front(), volume));
     read.push_back(std::move(volume));

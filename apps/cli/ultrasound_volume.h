@@ -16,14 +16,8 @@ struct UltrasoundVolume {
   registration::Beams beams;
 };
 
-/// Reads gray levels, whole numbers 0..255; anything else is an error.
-Result<volume::LabelGrid> read_gray_levels(const std::string& path);
-
 /// Reads a volume of gray levels. `beam_axis`: parallel beams along it; empty: the beams of the header, or
 /// parallel along +y.
 Result<UltrasoundVolume> read_ultrasound_volume(const std::string& path, const std::string& beam_axis);
-
-/// File name without folder and image ending: "liver" of "a/liver.nii.gz".
-std::string name_without_ending(const std::string& path);
 
 }  // namespace trocar::cli

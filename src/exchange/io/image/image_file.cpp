@@ -1,5 +1,6 @@
 #include "io/image/image_file.h"
 
+#include <algorithm>
 #include <string>
 
 #include "io/image/detail/image_fields.h"
@@ -24,10 +25,23 @@ Result<volume::LabelGrid> read_labels(const fs::path& path) {
   return detail::read_grid<std::uint8_t>(path, detail::convert_voxels);
 }
 
+Result<volume::LabelGrid> read_gray_levels(const fs::path& path) {
+  return detail::read_grid<std::uint8_t>(path, detail::convert_gray);
+}
+
 std::vector<std::string_view> image_endings() {
   std::vector<std::string_view> endings;
   for (const detail::ImageEnding& ending : detail::kImageEndings) endings.push_back(ending.text);
   return endings;
+}
+
+std::string name_without_ending(const fs::path& path) {
+  std::string name = path.filename().string();
+  std::size_t longest = 0;
+  for (const std::string_view ending : image_endings())
+    if (name.size() > ending.size() && name.ends_with(ending)) longest = std::max(longest, ending.size());
+  name.resize(name.size() - longest);
+  return name;
 }
 
 Result<volume::FloatGrid> read_float(const fs::path& path) {

@@ -25,8 +25,13 @@ Result<volume::CtGrid> read_ct(const std::filesystem::path& path, const std::str
 /// are whole numbers 0..255, anything else is refused.
 Result<volume::LabelGrid> read_labels(const std::filesystem::path& path);
 
+/// Reads an ultrasound volume: the same formats and values, with errors that name gray levels.
+Result<volume::LabelGrid> read_gray_levels(const std::filesystem::path& path);
+
 /// Endings of image files in lower case, for file dialogs: ".nii", ".nii.gz" …
 std::vector<std::string_view> image_endings();
+/// File name without folder and image ending: "liver" of "a/liver.nii.gz".
+std::string name_without_ending(const std::filesystem::path& path);
 
 /// Reads a float volume (distance fields, float NIfTI). NaN and infinity are errors.
 Result<volume::FloatGrid> read_float(const std::filesystem::path& path);

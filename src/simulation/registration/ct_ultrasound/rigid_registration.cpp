@@ -247,4 +247,14 @@ Result<volume::MaskGrid> usable_voxels(const volume::LabelGrid& us, const Beams&
   return std::move(prepared.usable);
 }
 
+Status check_confidence(const RigidRegistration& found, std::string_view unchanged) {
+  if (found.confidence >= kLeastConfidence) return {};
+  return fail(
+      fmt::format(
+          "no reliable registration: confidence {:.2f}, at least {:.2f} is needed (overlap {:.2f}, shadow {:.0f} "
+          "%); {}",
+          found.confidence, kLeastConfidence, found.overlap, 100.0 * found.shadow_share, unchanged),
+      {}, "give landmarks, check orientation and beam axis, or try another start");
+}
+
 }  // namespace trocar::registration

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <string_view>
 
 #include "core/progress.h"
 #include "core/result.h"
@@ -32,10 +33,12 @@ struct RigidRegistration {
 
 /// Results below it are not to be used.
 inline constexpr double kLeastConfidence = 0.5;
+/// Error: a confidence below it. `unchanged`: what the caller left as it was, for the text.
+Status check_confidence(const RigidRegistration& found, std::string_view unchanged);
 
 /// Finds the pose of an ultrasound volume in a CT by mutual information of local contrasts, on samples that are neither
 /// shadow nor beside the image (docs/physics.md R11 to R13). The result may have a low confidence: compare it with
-/// kLeastConfidence. Bitwise independent of the number of threads. Errors: a constant or shadowed ultrasound, volumes
+/// check_confidence(). Bitwise independent of the number of threads. Errors: a constant or shadowed ultrasound, volumes
 /// that do not overlap, cancelled.
 Result<RigidRegistration> register_rigid(const volume::CtGrid& ct, const volume::LabelGrid& us, const Beams& beams,
                                          const RigidOptions& options, const Progress& progress = {});

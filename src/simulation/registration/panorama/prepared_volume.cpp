@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/fail_at.h"
 #include "registration/intensity/flatten.h"
 #include "registration/intensity/smooth_volume.h"
 #include "volume/morphology.h"
@@ -90,11 +91,8 @@ Result<PreparedVolume> prepare(std::string name, volume::LabelGrid gray, const B
   volume.name = std::move(name);
   volume.gray = std::move(gray);
   volume.beams = beams;
-  if (Status done = prepare_steps(volume, options, progress); !done) {
-    Error error = std::move(done).error();
-    error.where = error.where.empty() ? volume.name : fmt::format("{}: {}", volume.name, error.where);
-    return tl::unexpected(std::move(error));
-  }
+  if (Status done = prepare_steps(volume, options, progress); !done)
+    return fail_at(volume.name, std::move(done).error());
   report(progress, "done", 1.0);
   return volume;
 }

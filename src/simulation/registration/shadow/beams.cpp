@@ -79,6 +79,10 @@ Result<Beams> Beams::along_axis(std::string_view text, const volume::GridGeometr
   return beams;
 }
 
+Result<Beams> Beams::choose(std::string_view axis, const HeaderFields& fields, const volume::GridGeometry& geometry) {
+  return axis.empty() ? from_header(fields, geometry) : along_axis(axis, geometry);
+}
+
 Result<Beams> Beams::from_header(const HeaderFields& fields, const volume::GridGeometry& geometry) {
   const auto axis_text = fields.find("trocar_beam_axis");
   const std::string axis_name = axis_text == fields.end() ? "+y" : axis_text->second;

@@ -31,6 +31,9 @@ class Beams {
   /// along +y. Errors: an incomplete fan, text that is no number, values out of range.
   static Result<Beams> from_header(const HeaderFields& fields, const volume::GridGeometry& geometry);
 
+  /// along_axis() if `axis` is not empty, else from_header().
+  static Result<Beams> choose(std::string_view axis, const HeaderFields& fields, const volume::GridGeometry& geometry);
+
   Place to_place(const Vec3& p) const noexcept;
   /// Inverse of to_place within the fan.
   Vec3 to_point(const Place& place) const noexcept;

@@ -96,6 +96,21 @@ void copy_plain(const RawVoxels& in, std::span<T> out) {
   std::memcpy(out.data(), in.bytes.data(), in.bytes.size());
 }
 
+/// Whole numbers 0..255; returns the first value that is none.
+std::optional<double> convert_whole(const RawVoxels& in, std::span<std::uint8_t> out) {
+  if (is_plain(in, VoxelType::kUInt8)) {
+    copy_plain(in, out);
+    return std::nullopt;
+  }
+  return convert_all(in, out, [](double value, std::uint8_t& voxel) {
+    if (!(value > -0.5 && value < 255.5)) return false;
+    const double whole = std::round(value);
+    voxel = static_cast<std::uint8_t>(whole);
+    // Numbers stored with a float scaling are whole only up to its rounding.
+    return std::abs(value - whole) <= 1e-3;
+  });
+}
+
 }  // namespace
 
 std::size_t bytes_per_voxel(VoxelType type) noexcept {
@@ -185,23 +200,21 @@ Status convert_voxels(const RawVoxels& in, std::span<std::int16_t> out) {
 }
 
 Status convert_voxels(const RawVoxels& in, std::span<std::uint8_t> out) {
-  if (is_plain(in, VoxelType::kUInt8)) {
-    copy_plain(in, out);
-    return {};
-  }
-  const auto bad = convert_all(in, out, [](double value, std::uint8_t& voxel) {
-    if (!(value > -0.5 && value < 255.5)) return false;
-    const double whole = std::round(value);
-    voxel = static_cast<std::uint8_t>(whole);
-    // Labels stored with a float scaling are integers only up to its rounding.
-    return std::abs(value - whole) <= 1e-3;
-  });
+  const auto bad = convert_whole(in, out);
   if (!bad) return {};
   if (const std::vector<int> above = labels_above_255(in, out.size()); !above.empty())
     return fail(fmt::format("the segmentation has label numbers above 255: {}", fmt::join(above, ", ")), {},
                 "give its structures numbers from 1 to 255");
   return fail(fmt::format("the image contains the value {:g}, which is not a label (whole numbers 0 to 255)", *bad), {},
               "give a segmentation, not an image of intensities");
+}
+
+Status convert_gray(const RawVoxels& in, std::span<std::uint8_t> out) {
+  const auto bad = convert_whole(in, out);
+  if (!bad) return {};
+  return fail(
+      fmt::format("the image contains the value {:g}, which is not a gray level (whole numbers 0 to 255)", *bad), {},
+      "export the ultrasound with one byte per voxel");
 }
 
 Status convert_voxels(const RawVoxels& in, std::span<float> out) {

@@ -66,6 +66,8 @@ void make_right_handed(volume::Grid<T>& grid);
 Status convert_voxels(const RawVoxels& in, std::span<std::int16_t> out);
 /// Labels: whole numbers 0..255, anything else is an error.
 Status convert_voxels(const RawVoxels& in, std::span<std::uint8_t> out);
+/// Gray levels: as labels, with an error that names gray levels.
+Status convert_gray(const RawVoxels& in, std::span<std::uint8_t> out);
 /// Floats: NaN and infinity are errors.
 Status convert_voxels(const RawVoxels& in, std::span<float> out);
 /// A mask: 1 if the value is above zero. NaN is an error.

@@ -55,6 +55,16 @@ TEST_P(EveryFormat, KeepsLabels) {
   EXPECT_TRUE(read->geometry.matches(labels.geometry));
 }
 
+TEST_P(EveryFormat, KeepsGrayLevelsAndItsNameWithoutEnding) {
+  const volume::LabelGrid gray = numbered_grid<std::uint8_t>(oblique_geometry());
+  const auto path = folder_ / (std::string("sweep.1") + GetParam());
+  ASSERT_TRUE(write_image(gray, path));
+  const auto read = read_gray_levels(path);
+  ASSERT_TRUE(read) << read.error().text();
+  EXPECT_EQ(read->voxels, gray.voxels);
+  EXPECT_EQ(name_without_ending(path), "sweep.1");
+}
+
 TEST_P(EveryFormat, KeepsFloats) {
   volume::FloatGrid distance = numbered_grid<float>(oblique_geometry());
   distance.voxels[5] = -12.375F;

@@ -153,6 +153,11 @@ TEST(Nifti, RefusesIntensitiesAsLabels) {
     values[7] = bad;
     write_bytes(folder / "bad.nii", small_nifti(kNiftiFloat, values).bytes);
     EXPECT_FALSE(read_labels(folder / "bad.nii")) << bad;
+    const auto gray = read_gray_levels(folder / "bad.nii");
+    ASSERT_FALSE(gray) << bad;
+    const char* told = std::isfinite(bad) ? "gray level" : "not a number";
+    EXPECT_NE(gray.error().text().find(told), std::string::npos) << gray.error().text();
+    EXPECT_EQ(gray.error().text().find("label"), std::string::npos) << gray.error().text();
   }
 }
 
