@@ -10,7 +10,6 @@
 #include <QVBoxLayout>
 
 #include "case_panels/case_panel.h"
-#include "io/image/image_file.h"
 #include "ui_kit/parts.h"
 
 namespace trocar::trainer {
@@ -18,13 +17,6 @@ namespace {
 
 constexpr int kMostRecent = 6;
 const char* const kRecentKey = "case/recent";
-
-/// "*.nii *.nii.gz …"
-QString volume_patterns() {
-  QStringList patterns;
-  for (const std::string_view ending : io::image_endings()) patterns << QStringLiteral("*") + to_qt(ending);
-  return patterns.join(QStringLiteral(" "));
-}
 
 QString first_line(const QString& entry) {
   return entry.section(QLatin1Char('\n'), 0, 0);

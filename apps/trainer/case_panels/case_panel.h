@@ -4,13 +4,14 @@
 #include <string>
 
 #include "case_builder/case_editor.h"
+#include "slices/fuse_ultrasound.h"
 
 class QVBoxLayout;
 
 namespace trocar::trainer {
 
 /// Click tool of the case builder in an image.
-enum class CaseClick { kLook, kTarget, kZone, kEntry, kTip, kLandmark };
+enum class CaseClick { kLook, kTarget, kZone, kEntry, kTip, kLandmark, kPair };
 
 /// Panel of one step of the case builder: shows the editor's draft and requests changes of it. Stores no part of the
 /// draft.
@@ -32,6 +33,8 @@ class CasePanel : public QWidget {
   /// click_name() has changed.
   void click_name_changed();
   void place_requested(const trocar::Vec3& p_P);
+  void ultrasound_place_requested(const trocar::Vec3& p_U);
+  void fusion_changed(const trocar::slices::FusionStyle& style);
   void label_visible_changed(const QString& name, bool is_visible);
   void label_opacity_changed(double opacity);
   void case_opened(const QString& folder);
@@ -46,11 +49,15 @@ class CasePanel : public QWidget {
   QVBoxLayout* content_;
 };
 
+/// Endings of image files for a file dialog: "*.nii *.nii.gz …".
+QString volume_patterns();
+
 CasePanel* make_import_panel(case_builder::CaseEditor& editor, QWidget* parent);
 CasePanel* make_labels_panel(case_builder::CaseEditor& editor, QWidget* parent);
 CasePanel* make_target_panel(case_builder::CaseEditor& editor, QWidget* parent);
 CasePanel* make_path_panel(case_builder::CaseEditor& editor, QWidget* parent);
 CasePanel* make_force_panel(case_builder::CaseEditor& editor, QWidget* parent);
+CasePanel* make_ultrasound_panel(case_builder::CaseEditor& editor, QWidget* parent);
 CasePanel* make_save_panel(case_builder::CaseEditor& editor, QWidget* parent);
 
 }  // namespace trocar::trainer

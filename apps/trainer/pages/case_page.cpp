@@ -1,9 +1,7 @@
 #include "pages/case_page.h"
 
-#include <QApplication>
 #include <QButtonGroup>
 #include <QGridLayout>
-#include <QInputDialog>
 #include <QKeyEvent>
 #include <QLabel>
 #include <QProgressBar>
@@ -13,19 +11,19 @@
 #include <QVBoxLayout>
 
 #include "case_builder/case_edits.h"
+#include "case_builder/ultrasound.h"
+#include "pages/case_views.h"
 #include "tasks/assess_path.h"
 #include "ui_kit/check_list.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
-#include "views/patient/patient_view.h"
-#include "views/slices/slice_marks.h"
-#include "views/slices/slice_view.h"
 
 namespace trocar::trainer {
 namespace {
 
-constexpr int kPanelWidth = 312;
+constexpr int kPanelWidth = 340;
 constexpr int kChecksHeight = 132;
+constexpr int kFootHeight = 36;
 
 const char* hint_of(CaseClick click) {
   switch (click) {
@@ -41,6 +39,8 @@ const char* hint_of(CaseClick click) {
       return "Click the end position of the tip. Esc: done.";
     case CaseClick::kLandmark:
       return "Click the position of “%1”: in a slice, or double-click in 3D. Esc: done.";
+    case CaseClick::kPair:
+      return "Click “%1” in a slice of the CT, and in one of the ultrasound. Esc: done.";
   }
   return "";
 }
@@ -68,7 +68,7 @@ CasePage::CasePage(QWidget* parent) : QWidget(parent), editor_(std::make_unique<
   page->addWidget(make_foot());
   connect(checks_, &CheckList::check_chosen, this, [this](const case_builder::CaseCheck& check) {
     go_to(static_cast<int>(check.step));
-    if (check.where_P) show_place(*check.where_P);
+    if (check.where_P) views_->show_place(*check.where_P);
   });
   go_to(0);
   refresh();
@@ -104,7 +104,8 @@ QWidget* CasePage::make_steps() {
   auto* buttons = new QGridLayout;
   buttons->setSpacing(4);
   content->addLayout(buttons);
-  const QStringList titles{tr("Import"), tr("Labels"), tr("Target"), tr("Path"), tr("Forces"), tr("Save")};
+  const QStringList titles{tr("Import"), tr("Labels"),     tr("Target"), tr("Path"),
+                           tr("Forces"), tr("Ultrasound"), tr("Save")};
   auto* group = new QButtonGroup(this);
   for (int step = 0; step < case_builder::kCaseSteps; ++step) {
     QPushButton* button = make_button(qPrintable(QStringLiteral("case-step-%1").arg(step + 1)),
@@ -128,6 +129,7 @@ QWidget* CasePage::make_steps() {
   add_panel(make_target_panel(*editor_, this), tr("Target and risks"));
   add_panel(make_path_panel(*editor_, this), tr("Entry and path"));
   add_panel(make_force_panel(*editor_, this), tr("Forces along the path"));
+  add_panel(make_ultrasound_panel(*editor_, this), tr("Recorded ultrasound"));
   add_panel(make_save_panel(*editor_, this), tr("Name and save"));
   return card;
 }
@@ -140,54 +142,27 @@ void CasePage::add_panel(CasePanel* panel, const QString& title) {
   panels_.push_back(panel);
   connect(panel, &CasePanel::click_requested, this, &CasePage::set_click);
   connect(panel, &CasePanel::click_name_changed, this, &CasePage::show_hint);
-  connect(panel, &CasePanel::place_requested, this, &CasePage::show_place);
-  connect(panel, &CasePanel::label_opacity_changed, this, [this](double opacity) {
-    for (SliceView* slice : slices_) slice->set_label_opacity(opacity);
-  });
+  connect(panel, &CasePanel::place_requested, this, [this](const Vec3& p_P) { views_->show_place(p_P); });
+  connect(panel, &CasePanel::ultrasound_place_requested, this,
+          [this](const Vec3& p_U) { views_->show_ultrasound_place(p_U); });
+  connect(panel, &CasePanel::fusion_changed, this,
+          [this](const slices::FusionStyle& style) { views_->set_fusion(style); });
+  connect(panel, &CasePanel::label_opacity_changed, this,
+          [this](double opacity) { views_->set_label_opacity(opacity); });
   connect(panel, &CasePanel::label_visible_changed, this,
-          [this](const QString& name, bool is_visible) { view_->set_opacity(to_std(name), is_visible ? 1.0 : 0.0); });
+          [this](const QString& name, bool is_visible) { views_->set_label_visible(to_std(name), is_visible); });
   connect(panel, &CasePanel::case_opened, this, &CasePage::case_saved);
 }
 
 QWidget* CasePage::make_views() {
-  auto* views = new QWidget;
-  auto* grid = new QGridLayout(views);
-  grid->setContentsMargins(0, 0, 0, 0);
-  grid->setSpacing(4);
-  const SliceKind kinds[] = {SliceKind::kAxial, SliceKind::kCoronal, SliceKind::kSagittal};
-  for (std::size_t n = 0; n < slices_.size(); ++n) {
-    auto* slice = new SliceView(kinds[n]);
-    slices_[n] = slice;
-    marks_[n] = new SliceMarks(slice);
-    connect(slice, &SliceView::focus_moved, this, [this, n](const Vec3& p_P) {
-      for (std::size_t other = 0; other < slices_.size(); ++other)
-        if (other != n) slices_[other]->set_focus(p_P);
-      // The wheel scrolls through slices without a change; a drag changes the draft.
-      if (QApplication::mouseButtons().testFlag(Qt::LeftButton)) click_at(p_P, true);
-    });
-    connect(slice, &SliceView::clicked, this, [this](const Vec3& p_P) { click_at(p_P, false); });
-  }
-  view_ = new PatientView;
-  view_->setObjectName(QStringLiteral("case-3d"));
-  view_->set_landmarks_visible(true);
-  connect(view_, &PatientView::picked, this, [this](const Vec3& p_P) {
-    show_place(p_P);
-    click_at(p_P, false);
-  });
-  grid->addWidget(slices_[0], 0, 0);
-  grid->addWidget(view_, 0, 1);
-  grid->addWidget(slices_[1], 1, 0);
-  grid->addWidget(slices_[2], 1, 1);
-  for (int n = 0; n < 2; ++n) {
-    grid->setRowStretch(n, 1);
-    grid->setColumnStretch(n, 1);
-  }
-  return views;
+  views_ = new CaseViews(*editor_);
+  connect(views_, &CaseViews::placed, this, &CasePage::click_at);
+  connect(views_, &CaseViews::placed_in_ultrasound, this, &CasePage::click_ultrasound_at);
+  return views_;
 }
 
 QWidget* CasePage::make_foot() {
   auto* foot = new QWidget;
-  foot->setFixedHeight(36);
   auto* row = new QHBoxLayout(foot);
   row->setContentsMargins(0, 0, 0, 0);
   message_ = make_label({}, "");
@@ -204,13 +179,20 @@ QWidget* CasePage::make_foot() {
   cancel_ = make_button("case-cancel", tr("Cancel"), tr("Cancel the running work; the case is unchanged"));
   row->addWidget(cancel_);
   connect(cancel_, &QPushButton::clicked, this, [this] { editor_->cancel(); });
-  return foot;
+  // A wrapped text would give the page a height that depends on its width, and thus the views' preferred heights
+  // instead of those of the window; a scroll area prevents this.
+  QScrollArea* area = make_scrolled(*foot);
+  area->setFixedHeight(kFootHeight);
+  area->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  area->setVerticalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  return area;
 }
 
 void CasePage::go_to(int step) {
   steps_[static_cast<std::size_t>(step)]->setChecked(true);
   stack_->setCurrentIndex(step);
   step_title_->setText(panels_[static_cast<std::size_t>(step)]->property("title").toString());
+  views_->set_ultrasound_shown(step == static_cast<int>(case_builder::CaseStep::kUltrasound));
   set_click(CaseClick::kLook);
 }
 
@@ -228,17 +210,13 @@ void CasePage::set_click(CaseClick click) {
 
 void CasePage::show_hint() {
   QString text = tr(hint_of(click_));
-  if (click_ == CaseClick::kLandmark) text = text.arg(to_qt(click_name()));
+  if (click_ == CaseClick::kLandmark || click_ == CaseClick::kPair) text = text.arg(to_qt(click_name()));
   click_text_->setText(text);
 }
 
 /// Of the visible panel.
 std::string CasePage::click_name() const {
   return panels_[static_cast<std::size_t>(stack_->currentIndex())]->click_name();
-}
-
-void CasePage::show_place(const Vec3& p_P) {
-  for (SliceView* slice : slices_) slice->set_focus(p_P);
 }
 
 Result<case_builder::CaseDraft> CasePage::clicked_draft(const Vec3& p_P) const {
@@ -265,6 +243,7 @@ Result<case_builder::CaseDraft> CasePage::clicked_draft(const Vec3& p_P) const {
         return fail("the path has no entry point yet", {}, "set the entry, or let the program plan it");
       return case_builder::set_expert_path(draft, {path->line_P.a, p_P});
     case CaseClick::kLandmark:
+    case CaseClick::kPair:
       return case_builder::set_landmark(draft, click_name(), p_P);
     case CaseClick::kLook:
       break;
@@ -274,58 +253,25 @@ Result<case_builder::CaseDraft> CasePage::clicked_draft(const Vec3& p_P) const {
 
 void CasePage::click_at(const Vec3& p_P, bool is_drag) {
   if (click_ == CaseClick::kLook || !editor_->patient()) return;
-  const char* const words[] = {
-      "", "set the target", "set the entry zone", "set the entry", "set the tip", "place a landmark"};
+  const char* const words[] = {"",
+                               "set the target",
+                               "set the entry zone",
+                               "set the entry",
+                               "set the tip",
+                               "place a landmark",
+                               "place a landmark"};
   const std::string what = words[static_cast<std::size_t>(click_)];
   // Press and drag are one step; the release ends it.
   editor_->edit(clicked_draft(p_P), what, what + std::to_string(clicks_));
   if (!is_drag) ++clicks_;
 }
 
-void CasePage::refresh_views() {
-  if (editor_->patient() != shown_patient_ || editor_->meshes() != shown_meshes_) {
-    shown_patient_ = editor_->patient();
-    shown_meshes_ = editor_->meshes();
-    for (SliceView* slice : slices_) slice->show_patient(shown_patient_);
-    const bool is_known = placed_import_ == editor_->draft().imported && view_->is_ready();
-    const scene::CameraView before = view_->view();
-    if (shown_patient_ && shown_meshes_) view_->show_patient(shown_patient_, shown_meshes_);
-    if (is_known) view_->set_view(before);  // a new name or tissue does not change the camera
-    shown_landmarks_.reset();
-  }
-  const case_builder::CaseDraft& draft = editor_->draft();
-  const auto target_P = case_builder::find_target_point(draft);
-  if (placed_import_ != draft.imported && shown_patient_) {
-    placed_import_ = draft.imported;
-    for (SliceView* slice : slices_) slice->reset();
-    if (target_P) show_place(*target_P);
-  }
-  const anatomy::NeedlePath* path = case_builder::find_expert_path(draft);
-  const std::optional<Segment> line_P = path != nullptr ? std::optional(path->line_P) : std::nullopt;
-  if (line_P && !shown_path_ && click_ == CaseClick::kLook) show_place(line_P->b);
-  shown_path_ = line_P;
-  const std::optional<tasks::EntryZone>& zone = draft.task.entry_zone;
-  view_->set_path(line_P, zone ? zone->radius_mm : 0.0);
-  view_->scene().set_entry_centre(zone ? std::optional(zone->centre_P) : std::nullopt);
-  show_landmarks();
-  for (std::size_t n = 0; n < slices_.size(); ++n) {
-    slices_[n]->set_path(line_P);
-    slices_[n]->set_entry_zone(draft.task.entry_zone);
-    marks_[n]->set_target(target_P);
-  }
-}
-
-void CasePage::show_landmarks() {
-  const std::vector<anatomy::Landmark>& landmarks = editor_->draft().landmarks;
-  const auto is_same = [](const anatomy::Landmark& a, const anatomy::Landmark& b) {
-    return a.name == b.name && a.p_P == b.p_P;
-  };
-  if (shown_landmarks_ &&
-      std::equal(landmarks.begin(), landmarks.end(), shown_landmarks_->begin(), shown_landmarks_->end(), is_same))
-    return;
-  shown_landmarks_ = landmarks;
-  view_->scene().set_landmarks(landmarks);
-  for (SliceMarks* marks : marks_) marks->set_landmarks(landmarks);
+void CasePage::click_ultrasound_at(const Vec3& p_U, bool is_drag) {
+  if (click_ != CaseClick::kPair) return;
+  const std::string what = "place a landmark in the ultrasound";
+  editor_->edit(case_builder::set_ultrasound_landmark(editor_->draft(), click_name(), p_U), what,
+                what + std::to_string(clicks_));
+  if (!is_drag) ++clicks_;
 }
 
 void CasePage::refresh_foot() {
@@ -361,12 +307,12 @@ void CasePage::refresh() {
   redo_->setEnabled(history.can_redo());
   undo_->setToolTip(tr("Undo: %1  (Ctrl+Z)").arg(to_qt(history.undo_text())));
   redo_->setToolTip(tr("Redo: %1  (Ctrl+Shift+Z)").arg(to_qt(history.redo_text())));
-  refresh_views();
+  views_->refresh(click_ == CaseClick::kLook);
 }
 
 void CasePage::advance() {
   if (editor_->advance()) refresh();
-  if (isVisible()) view_->draw();
+  if (isVisible()) views_->draw();
 }
 
 }  // namespace trocar::trainer

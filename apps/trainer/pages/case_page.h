@@ -1,9 +1,7 @@
 #pragma once
 
 #include <QWidget>
-#include <array>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,15 +17,13 @@ class QVBoxLayout;
 namespace trocar::trainer {
 
 class CheckList;
-class PatientView;
-class SliceMarks;
-class SliceView;
+class CaseViews;
 
-/// The case builder for instructors: six steps at the left (import, labels, target and risks, entry and path, forces,
-/// save), three slices and a 3D view, and a list of checks. A click in an image sets the item of the selected tool; a
-/// left drag moves it. Landmarks are shown in slices and in 3D (key I).
-/// Keys: Ctrl+Z undo, Ctrl+Shift+Z redo, Alt+1..6 steps, Ctrl+T target, Ctrl+L landmark, Ctrl+E entry zone, Ctrl+P
-/// plan, Ctrl+1 entry, Ctrl+2 tip, Ctrl+S save, Esc deselects the tool.
+/// The case builder for instructors: seven steps at the left (import, labels, target and risks, entry and path, forces,
+/// recorded ultrasound, save), images (CaseViews), and a list of checks. A click in an image sets the item of the
+/// selected tool; a left drag moves it. Landmarks are shown in slices and in 3D (key I).
+/// Keys: Ctrl+Z undo, Ctrl+Shift+Z redo, Alt+1..7 steps, Ctrl+T target, Ctrl+L landmark, Ctrl+E entry zone, Ctrl+P
+/// plan, Ctrl+1 entry, Ctrl+2 tip, Ctrl+U landmark pair, Ctrl+S save, Esc deselects the tool.
 class CasePage : public QWidget {
   Q_OBJECT
 
@@ -55,13 +51,11 @@ class CasePage : public QWidget {
   void go_to(int step);
   void refresh();
   void refresh_foot();
-  void refresh_views();
-  void show_landmarks();
-  void show_place(const Vec3& p_P);
   void set_click(CaseClick click);
   void show_hint();
   std::string click_name() const;
   void click_at(const Vec3& p_P, bool is_drag);
+  void click_ultrasound_at(const Vec3& p_U, bool is_drag);
   Result<case_builder::CaseDraft> clicked_draft(const Vec3& p_P) const;
 
   std::unique_ptr<case_builder::CaseEditor> editor_;
@@ -76,12 +70,7 @@ class CasePage : public QWidget {
   QProgressBar* progress_ = nullptr;
   QPushButton* cancel_ = nullptr;
   CheckList* checks_ = nullptr;
-  std::array<SliceView*, 3> slices_{};
-  std::array<SliceMarks*, 3> marks_{};
-  PatientView* view_ = nullptr;
-  std::shared_ptr<const anatomy::VirtualPatient> shown_patient_;
-  std::shared_ptr<const std::vector<anatomy::NamedMesh>> shown_meshes_;
-  std::shared_ptr<const case_builder::ImportedPatient> placed_import_;
+  CaseViews* views_ = nullptr;
   /// State displayed by the panels; initially empty.
   struct Shown {
     std::uint64_t version = ~std::uint64_t{0};
@@ -92,8 +81,6 @@ class CasePage : public QWidget {
     bool operator==(const Shown&) const = default;
   };
   Shown shown_;
-  std::optional<Segment> shown_path_;
-  std::optional<std::vector<anatomy::Landmark>> shown_landmarks_;
   CaseClick click_ = CaseClick::kLook;
   int clicks_ = 0;
 };

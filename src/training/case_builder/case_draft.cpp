@@ -15,6 +15,19 @@ bool is_same_path(const anatomy::NeedlePath& a, const anatomy::NeedlePath& b) {
   return a.name == b.name && a.line_P.a == b.line_P.a && a.line_P.b == b.line_P.b;
 }
 
+bool is_same_point(const registration::NamedPoint& a, const registration::NamedPoint& b) {
+  return a.name == b.name && a.p == b.p;
+}
+bool is_same_ultrasound(const CaseDraft& a, const CaseDraft& b) {
+  const bool is_same_pose =
+      a.placement.has_value() == b.placement.has_value() &&
+      (!a.placement || (a.placement->X_PU.p() == b.placement->X_PU.p() &&
+                        a.placement->X_PU.R() == b.placement->X_PU.R() && a.placement->origin == b.placement->origin));
+  return a.ultrasound == b.ultrasound && is_same_pose &&
+         std::equal(a.ultrasound_landmarks.begin(), a.ultrasound_landmarks.end(), b.ultrasound_landmarks.begin(),
+                    b.ultrasound_landmarks.end(), is_same_point);
+}
+
 }  // namespace
 
 bool is_same_draft(const CaseDraft& a, const CaseDraft& b) {
@@ -24,7 +37,7 @@ bool is_same_draft(const CaseDraft& a, const CaseDraft& b) {
                     b.label_table.labels.end(), is_same_label) &&
          std::equal(a.landmarks.begin(), a.landmarks.end(), b.landmarks.begin(), b.landmarks.end(), is_same_landmark) &&
          std::equal(a.paths.begin(), a.paths.end(), b.paths.begin(), b.paths.end(), is_same_path) &&
-         task_to_toml(a.task, tasks::Task{}) == task_to_toml(b.task, tasks::Task{});
+         is_same_ultrasound(a, b) && task_to_toml(a.task, tasks::Task{}) == task_to_toml(b.task, tasks::Task{});
 }
 
 const anatomy::NeedlePath* find_expert_path(const CaseDraft& draft) noexcept {

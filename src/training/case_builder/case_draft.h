@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -7,6 +8,10 @@
 
 #include "anatomy/build_patient.h"
 #include "anatomy/patient.h"
+#include "geometry/pose.h"
+#include "io/image/image_file.h"
+#include "registration/ct_ultrasound/landmark_fit.h"
+#include "registration/shadow/beams.h"
 #include "tasks/task.h"
 
 namespace trocar::case_builder {
@@ -20,6 +25,29 @@ struct ImportedPatient {
   std::string source;                                ///< As given by the user: a file, a folder, an embedded patient.
 };
 
+/// A recorded ultrasound volume: immutable, shared by all drafts. Frame U: that of the volume.
+struct ImportedUltrasound {
+  volume::LabelGrid gray_U;
+  volume::MaskGrid imaged_U;  ///< 1 where it shows the body.
+  double white = 255.0;       ///< Gray level to show white.
+  io::ImageFields fields;     ///< Of its header.
+  registration::Beams beams;
+  std::string source;  ///< File.
+};
+
+enum class PlacementOrigin : std::uint8_t {
+  kSaved,      ///< Read with the patient.
+  kLandmarks,  ///< Fit of landmark pairs.
+  kOptimised   ///< Mutual information.
+};
+
+/// Pose of the recorded ultrasound in the CT.
+struct UltrasoundPlacement {
+  Pose X_PU;
+  PlacementOrigin origin = PlacementOrigin::kSaved;
+  double confidence = 0.0;  ///< 0..1, of kOptimised (docs/physics.md R13).
+};
+
 /// A case that is being built, as a value. Copies share the volumes, so that a copy costs some kilobytes. Frame P.
 struct CaseDraft {
   std::shared_ptr<const ImportedPatient> imported;  ///< Null: nothing was imported yet.
@@ -28,9 +56,12 @@ struct CaseDraft {
   std::vector<std::string> provenance;
   anatomy::LabelTable label_table;  ///< Current names, tissues and colours.
   std::vector<anatomy::Landmark> landmarks;
-  std::vector<anatomy::NeedlePath> paths;  ///< The task's expert_path is the name of one of them.
-  tasks::Task base;                        ///< The template.
-  tasks::Task task;                        ///< The template with its changes.
+  std::vector<anatomy::NeedlePath> paths;                      ///< The task's expert_path is the name of one of them.
+  std::shared_ptr<const ImportedUltrasound> ultrasound;        ///< Null: none.
+  std::vector<registration::NamedPoint> ultrasound_landmarks;  ///< Frame U; paired by name with `landmarks`.
+  std::optional<UltrasoundPlacement> placement;                ///< Empty: not yet placed in the CT.
+  tasks::Task base;                                            ///< The template.
+  tasks::Task task;                                            ///< The template with its changes.
 };
 
 /// True if two drafts of the same import are equal.

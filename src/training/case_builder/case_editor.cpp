@@ -84,6 +84,31 @@ void CaseEditor::plan_path() {
   say({});
 }
 
+void CaseEditor::read_ultrasound(UltrasoundRequest request) {
+  if (work_ != Work::kNone) return say("another job is running; wait a moment", true);
+  if (!has_patient()) return say("there is no patient yet: import a CT with its labels first", true);
+  ultrasound_ = BackgroundJob<std::shared_ptr<const ImportedUltrasound>>(
+      [request = std::move(request)](const Progress& progress) {
+        report(progress, "reading the ultrasound", 0.0);
+        return case_builder::read_ultrasound(request);
+      });
+  work_ = Work::kReadingUltrasound;
+  say({});
+}
+
+void CaseEditor::register_ultrasound(RegistrationStart start) {
+  if (work_ != Work::kNone) return say("another job is running; wait a moment", true);
+  if (!has_patient() || !draft().ultrasound) return say("there is no ultrasound yet: read a volume first", true);
+  registered_ = draft().ultrasound;
+  placement_ = BackgroundJob<UltrasoundPlacement>(
+      [draft = draft(), start](const Progress& progress, const std::stop_token& stop) {
+        report(progress, "registering the ultrasound", 0.0);
+        return find_placement(draft, start, progress, stop);
+      });
+  work_ = Work::kRegistering;
+  say({});
+}
+
 void CaseEditor::save(SaveOptions options) {
   if (work_ != Work::kNone) return say("another job is running; wait a moment", true);
   save_version_ = history_.version();
@@ -100,6 +125,8 @@ void CaseEditor::cancel() {
   if (work_ == Work::kNone || work_ == Work::kSaving) return;
   retired_.retire(std::exchange(import_, {}));
   retired_.retire(std::exchange(plan_, {}));
+  retired_.retire(std::exchange(ultrasound_, {}));
+  retired_.retire(std::exchange(placement_, {}));
   work_ = Work::kNone;
   say("Cancelled; nothing was changed.");
 }
@@ -110,6 +137,10 @@ JobView CaseEditor::work_view() const {
       return import_.view();
     case Work::kPlanning:
       return plan_.view();
+    case Work::kReadingUltrasound:
+      return ultrasound_.view();
+    case Work::kRegistering:
+      return placement_.view();
     case Work::kSaving:
       return save_.view();
     case Work::kNone:
@@ -147,6 +178,44 @@ bool CaseEditor::take_plan() {
   } else if (edit(set_expert_path(draft(), **line_P), "planned path")) {
     say(fmt::format("Planned: a path of {:.0f} mm.", (*line_P)->length_mm()));
   }
+  return true;
+}
+
+bool CaseEditor::take_ultrasound() {
+  auto read = ultrasound_.take();
+  if (!read) return false;
+  work_ = Work::kNone;
+  ultrasound_ = {};
+  if (!*read) {
+    say(read->error().text(), true);
+    return true;
+  }
+  const volume::GridGeometry& grid = (**read)->gray_U.geometry;
+  const Vec3 size_mm = grid.spacing_mm.cwiseProduct(volume::to_vec3(grid.size));
+  const std::string source = (**read)->source;
+  edit(set_ultrasound(draft(), *std::move(*read)), "read an ultrasound");
+  say(fmt::format("{} is read: {:.0f} x {:.0f} x {:.0f} mm.", fs::path(source).filename().string(), size_mm.x(),
+                  size_mm.y(), size_mm.z()));
+  return true;
+}
+
+bool CaseEditor::take_placement() {
+  const auto placement = placement_.take();
+  if (!placement) return false;
+  work_ = Work::kNone;
+  placement_ = {};
+  if (!*placement) {
+    say(placement->error().text(), true);
+  } else if (registered_ != draft().ultrasound) {
+    say("The ultrasound changed during the registration: register it again.", true);
+  } else {
+    CaseDraft next = draft();
+    next.placement = **placement;
+    edit(std::move(next), "register the ultrasound");
+    say(fmt::format("Registered with a confidence of {:.2f}: compare ultrasound and CT in the slices.",
+                    (*placement)->confidence));
+  }
+  registered_.reset();
   return true;
 }
 
@@ -209,6 +278,8 @@ bool CaseEditor::advance() {
   bool is_new = std::exchange(has_news_, false);
   is_new |= take_import();
   is_new |= take_plan();
+  is_new |= take_ultrasound();
+  is_new |= take_placement();
   is_new |= take_save();
   is_new |= take_review();
   if (has_patient() && !is_reviewing_ && !is_reviewed()) start_review();

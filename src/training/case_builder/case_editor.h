@@ -13,6 +13,7 @@
 #include "case_builder/force_preview.h"
 #include "case_builder/import_case.h"
 #include "case_builder/save_case.h"
+#include "case_builder/ultrasound.h"
 #include "core/background_job.h"
 
 namespace trocar::case_builder {
@@ -22,7 +23,7 @@ namespace trocar::case_builder {
 /// line each.
 class CaseEditor {
  public:
-  enum class Work : std::uint8_t { kNone, kImporting, kPlanning, kSaving };
+  enum class Work : std::uint8_t { kNone, kImporting, kPlanning, kReadingUltrasound, kRegistering, kSaving };
 
   /// Reads the tables of the data folder; message() returns their errors.
   CaseEditor();
@@ -49,6 +50,10 @@ class CaseEditor {
   void import_patient(ImportRequest request);
   /// Starts the planner for the expert's path, from target, entry zone and risks.
   void plan_path();
+  /// Reads an ultrasound volume; it replaces that of the draft.
+  void read_ultrasound(UltrasoundRequest request);
+  /// Starts the registration of the ultrasound with the CT.
+  void register_ultrasound(RegistrationStart start);
   void save(SaveOptions options);
   /// Cancels the running work. Saving is not cancelled: a case is written completely.
   void cancel();
@@ -87,6 +92,8 @@ class CaseEditor {
   Status load_tables();
   bool take_import();
   bool take_plan();
+  bool take_ultrasound();
+  bool take_placement();
   bool take_save();
   bool take_review();
   void start_review();
@@ -105,11 +112,14 @@ class CaseEditor {
   Work work_ = Work::kNone;
   BackgroundJob<CaseDraft> import_;
   BackgroundJob<Segment> plan_;
+  BackgroundJob<std::shared_ptr<const ImportedUltrasound>> ultrasound_;
+  BackgroundJob<UltrasoundPlacement> placement_;
   BackgroundJob<std::filesystem::path> save_;
   BackgroundJob<Review> review_;
   bool is_reviewing_ = false;
   RetiredJobs retired_;
   std::uint64_t plan_version_ = 0;
+  std::shared_ptr<const ImportedUltrasound> registered_;  ///< Ultrasound of the running registration.
   std::uint64_t save_version_ = 0;
 
   std::vector<CaseCheck> checks_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "case_builder/detail/in_volume.h"
 #include "tasks/assess_path.h"
 
 namespace trocar::case_builder {
@@ -18,13 +19,7 @@ Status check_imported(const CaseDraft& draft) {
 
 Status check_in_volume(const CaseDraft& draft, const Vec3& p_P, const char* what) {
   TROCAR_TRY_STATUS(check_imported(draft));
-  const volume::GridGeometry& geometry = draft.imported->patient.labels.geometry;
-  const Vec3 index = geometry.to_index(p_P);
-  for (int a = 0; a < 3; ++a)
-    if (!(index[a] >= -0.5 && index[a] <= static_cast<double>(geometry.size[static_cast<std::size_t>(a)]) - 0.5))
-      return fail(fmt::format("the {} is outside the volume", what),
-                  fmt::format("({:.0f}, {:.0f}, {:.0f}) mm", p_P.x(), p_P.y(), p_P.z()), "move it into the patient");
-  return {};
+  return detail::check_in_volume(draft.imported->patient.labels.geometry, p_P, what, "move it into the patient");
 }
 
 Result<anatomy::Label*> find_label(CaseDraft& draft, std::uint8_t id) {
@@ -176,6 +171,8 @@ Result<CaseDraft> rename_landmark(CaseDraft draft, std::size_t row, const std::s
   if (name.empty()) return fail("a landmark needs a name", landmark.name, "type one");
   if (name != landmark.name && find_landmark(draft, name) != draft.landmarks.end())
     return fail(fmt::format("another landmark is called \"{}\" already", name), landmark.name, "choose another name");
+  for (registration::NamedPoint& partner : draft.ultrasound_landmarks)
+    if (partner.name == landmark.name) partner.name = name;
   landmark.name = name;
   return draft;
 }

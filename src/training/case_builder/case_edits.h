@@ -39,7 +39,7 @@ CaseDraft clear_expert_path(CaseDraft draft);
 
 /// Adds a landmark inside the volume, or moves the one of that name.
 Result<CaseDraft> set_landmark(CaseDraft draft, const std::string& name, const Vec3& p_P);
-/// Names are unique and not empty.
+/// Names are unique and not empty. The landmark of that name in the ultrasound is renamed, too.
 Result<CaseDraft> rename_landmark(CaseDraft draft, std::size_t row, const std::string& name);
 Result<CaseDraft> remove_landmark(CaseDraft draft, std::size_t row);
 

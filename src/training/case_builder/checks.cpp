@@ -7,6 +7,8 @@
 #include <array>
 
 #include "anatomy/patient_doubts.h"
+#include "case_builder/detail/in_volume.h"
+#include "case_builder/ultrasound.h"
 #include "tasks/assess_path.h"
 #include "volume/sampling.h"
 
@@ -46,6 +48,7 @@ class Checks {
     check_risks();
     check_zone();
     check_path();
+    check_ultrasound();
     check_texts();
     std::stable_sort(lines_.begin(), lines_.end(), [](const CaseCheck& a, const CaseCheck& b) {
       return std::pair(a.step, -static_cast<int>(a.level)) < std::pair(b.step, -static_cast<int>(b.level));
@@ -202,6 +205,38 @@ class Checks {
                         : fmt::format("{} is {:.1f} mm beyond its margin", assessment.path.nearest_risk,
                                       assessment.path.spare_margin_mm)),
         path->line_P.a);
+  }
+
+  void check_ultrasound() {
+    if (!draft_.ultrasound)
+      return add(CheckLevel::kOk, CaseStep::kUltrasound, "no recorded ultrasound: trainees get the simulated one");
+    if (draft_.ultrasound_landmarks.size() >= 3) {
+      const auto fit = fit_of_landmarks(draft_);
+      if (!fit) warn(CaseStep::kUltrasound, fit.error().text());
+      if (fit && !fit->doubt.empty()) warn(CaseStep::kUltrasound, fit->doubt, place_of(fit->worst));
+    }
+    if (!draft_.placement)
+      return warn(CaseStep::kUltrasound, "the recorded ultrasound has no pose in the CT: it cannot be shown");
+    const Vec3 middle_P = draft_.placement->X_PU * middle_of(*draft_.ultrasound);
+    if (!detail::check_in_volume(patient_.ct.geometry, middle_P, "middle", ""))
+      return refuse(CaseStep::kUltrasound, "the middle of the recorded ultrasound is outside the CT");
+    if (draft_.placement->origin == PlacementOrigin::kLandmarks)
+      return warn(CaseStep::kUltrasound, "the ultrasound is placed by landmarks only: optimise it, or compare by eye",
+                  middle_P);
+    const std::string how = draft_.placement->origin == PlacementOrigin::kOptimised
+                                ? fmt::format(", confidence {:.2f}", draft_.placement->confidence)
+                                : std::string(" when the case was saved");
+    add(CheckLevel::kOk, CaseStep::kUltrasound,
+        fmt::format("the ultrasound is registered{}; trainees get {}", how,
+                    uses_recorded_ultrasound(draft_) ? "it" : "the simulated one"),
+        middle_P);
+  }
+
+  /// Place of a landmark in the CT.
+  std::optional<Vec3> place_of(const std::string& name) const {
+    for (const anatomy::Landmark& landmark : draft_.landmarks)
+      if (landmark.name == name) return landmark.p_P;
+    return std::nullopt;
   }
 
   void check_texts() {

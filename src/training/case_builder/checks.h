@@ -14,8 +14,8 @@ namespace trocar::case_builder {
 enum class CheckLevel : std::uint8_t { kOk, kWarning, kError };
 
 /// Step of building a case to which a check belongs.
-enum class CaseStep : std::uint8_t { kImport, kLabels, kTarget, kPath, kForces, kSave };
-inline constexpr int kCaseSteps = 6;
+enum class CaseStep : std::uint8_t { kImport, kLabels, kTarget, kPath, kForces, kUltrasound, kSave };
+inline constexpr int kCaseSteps = 7;
 
 /// Result of a check of a draft, one line.
 struct CaseCheck {
@@ -26,8 +26,9 @@ struct CaseCheck {
 };
 
 /// Runs all checks of a draft: labels (outside the body, implausible HU, volume or extent, cut off, unknown tissue),
-/// task, target, entry zone and path. Errors come first within a step; a correct step has one line. `patient`: that of
-/// the draft. Takes about 100 ms for a CT of 30 million voxels: do not call it on the GUI thread.
+/// task, target, entry zone, path and recorded ultrasound. Errors come first within a step; a correct step has one
+/// line. `patient`: that of the draft. Takes about 100 ms for a CT of 30 million voxels: do not call it on the GUI
+/// thread.
 std::vector<CaseCheck> check_draft(const CaseDraft& draft, const anatomy::VirtualPatient& patient,
                                    const tasks::Needle& needle, const anatomy::TissueTable& tissues);
 

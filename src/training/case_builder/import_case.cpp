@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "anatomy/phantom/phantom.h"
+#include "case_builder/ultrasound.h"
 #include "cases/prepare_case.h"
 #include "core/files/data_dir.h"
 #include "core/part_of_progress.h"
@@ -85,6 +86,15 @@ Result<CaseDraft> import_case(const ImportRequest& request, const Progress& prog
     options.task = own.task.name;
     TROCAR_TRY(const cases::Case base, cases::load_tables(options));
     draft.base = base.task;
+  }
+  if (is_patient_folder(request.ct)) {
+    // A damaged panorama does not prevent the import of the patient.
+    if (auto with_ultrasound = add_saved_ultrasound(draft, request.ct)) {
+      draft = *std::move(with_ultrasound);
+    } else {
+      imported->warnings.push_back("the recorded ultrasound cannot be read and is left out: " +
+                                   with_ultrasound.error().text());
+    }
   }
   draft.imported = std::move(imported);
   return draft;

@@ -19,6 +19,15 @@ anatomy::VirtualPatient patient_of(const CaseDraft& draft, DraftPatient& patient
   return patient;
 }
 
+std::optional<io::RecordedUltrasound> ultrasound_of(const CaseDraft& draft) {
+  if (!draft.ultrasound) return std::nullopt;
+  io::RecordedUltrasound ultrasound{draft.ultrasound->gray_U, draft.ultrasound->fields, {}, {}};
+  if (draft.placement) ultrasound.X_PU = draft.placement->X_PU;
+  for (const registration::NamedPoint& point : draft.ultrasound_landmarks)
+    ultrasound.landmarks_U.push_back({point.name, point.p});
+  return ultrasound;
+}
+
 Status check_target(const SaveOptions& options) {
   const fs::path& folder = options.folder;
   if (folder.empty()) return fail_usage("no folder given", {}, "choose a folder for the case");
@@ -57,15 +66,18 @@ Status save_case(const CaseDraft& draft, DraftPatient& patients, const SaveOptio
   TROCAR_TRY_STATUS(check_target(options));
   const anatomy::VirtualPatient patient = patient_of(draft, patients);
   const std::vector<io::PatientExtra> extras{{tasks::kOwnTaskFile, tasks::task_to_toml(draft.task, draft.base)}};
+  const std::optional<io::RecordedUltrasound> ultrasound = ultrasound_of(draft);
+  const auto write = [&](const fs::path& to) {
+    return io::save_patient(patient, *draft_meshes(draft), to, progress, extras, ultrasound ? &*ultrasound : nullptr);
+  };
   const fs::path folder = fs::absolute(options.folder).lexically_normal();
   const fs::path target = folder.has_filename() ? folder : folder.parent_path();
   std::error_code ignored;
   fs::create_directories(target.parent_path(), ignored);  // an error is reported when writing
-  if (!fs::exists(target / "patient.toml", ignored))
-    return io::save_patient(patient, *draft_meshes(draft), target, progress, extras, draft.imported->source);
+  if (!fs::exists(target / "patient.toml", ignored)) return write(target);
   const fs::path fresh = target.parent_path() / fmt::format(".{}.new", target.filename().string());
   fs::remove_all(fresh, ignored);
-  TROCAR_TRY_STATUS(io::save_patient(patient, *draft_meshes(draft), fresh, progress, extras, draft.imported->source));
+  TROCAR_TRY_STATUS(write(fresh));
   return replace(fresh, target);
 }
 

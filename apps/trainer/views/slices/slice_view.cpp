@@ -36,12 +36,18 @@ KindInfo info_of(SliceKind kind) {
     case SliceKind::kAlongNeedleTurned:
       return {"slice-along-turned", "Along, turned", t.turned_needle, {t.along_needle, t.across_needle}};
     case SliceKind::kAcrossNeedle:
+      return {"slice-across-needle", "Across needle", t.across_needle, {t.turned_needle, t.along_needle}};
+    case SliceKind::kLateral:
+      return {"us-lateral", "Ultrasound, lateral", t.along_needle, {t.turned_needle, t.across_needle}};
+    case SliceKind::kElevation:
+      return {"us-elevation", "Ultrasound, elevation", t.turned_needle, {t.along_needle, t.across_needle}};
+    case SliceKind::kAcrossBeams:
       break;
   }
-  return {"slice-across-needle", "Across needle", t.across_needle, {t.turned_needle, t.along_needle}};
+  return {"us-across-beams", "Ultrasound, C-plane", t.across_needle, {t.turned_needle, t.along_needle}};
 }
 
-slices::SliceAxes axes_of(SliceKind kind, const Vec3& needle_P) {
+slices::SliceAxes axes_of(SliceKind kind, const Vec3& needle_P, const Mat3& R_UB) {
   switch (kind) {
     case SliceKind::kAxial:
       return slices::slice_axes(slices::SliceOrientation::kAxial);
@@ -54,15 +60,24 @@ slices::SliceAxes axes_of(SliceKind kind, const Vec3& needle_P) {
     case SliceKind::kAlongNeedleTurned:
       return slices::needle_axes(needle_P, slices::NeedlePlane::kAlongTurned);
     case SliceKind::kAcrossNeedle:
+      return slices::needle_axes(needle_P, slices::NeedlePlane::kAcross);
+    case SliceKind::kLateral:
+      return {R_UB.col(0), R_UB.col(1)};
+    case SliceKind::kElevation:
+      return {R_UB.col(2), R_UB.col(1)};
+    case SliceKind::kAcrossBeams:
       break;
   }
-  return slices::needle_axes(needle_P, slices::NeedlePlane::kAcross);
+  return {R_UB.col(0), R_UB.col(2)};
 }
 
 const char* const kHelp =
     "Left drag: move the cross-hairs (arrow keys) · wheel: scroll (Page Up, Page Down) · Ctrl + wheel: zoom (+, −)\n"
     "Right drag: window (1–5: presets) · middle or Shift + left drag: pan · double click: centre\n"
     "R: reset · L: labels on and off";
+const char* const kUltrasoundHelp =
+    "Left drag: move the cross-hairs (arrow keys) · wheel: scroll (Page Up, Page Down) · Ctrl + wheel: zoom (+, −)\n"
+    "Right drag: brightness and contrast · middle or Shift + left drag: pan · double click: centre · R: reset";
 
 }  // namespace
 
@@ -73,7 +88,8 @@ SliceView::SliceView(SliceKind kind, QWidget* parent)
   const KindInfo info = info_of(kind);
   setObjectName(QString::fromLatin1(info.object_name));
   setAccessibleName(QString::fromLatin1(info.title) + QStringLiteral(" slice"));
-  setToolTip(QString::fromUtf8(kHelp));
+  setToolTip(QString::fromUtf8(is_ultrasound() ? kUltrasoundHelp : kHelp));
+  style_.window = first_window();
   strip_->setToolTip(toolTip());
   setFocusPolicy(Qt::StrongFocus);
   setAttribute(Qt::WA_OpaquePaintEvent);
@@ -84,6 +100,23 @@ SliceView::SliceView(SliceKind kind, QWidget* parent)
 }
 
 SliceView::~SliceView() = default;
+
+slices::Window SliceView::first_window() const {
+  return is_ultrasound() ? slices::Window{127.5, 255.0} : slices::Window{};
+}
+
+void SliceView::set_beam_frame(const Mat3& R_UB) {
+  R_UB_ = R_UB;
+  update_axes();
+  move_plane_to_anchor();
+  update();
+}
+
+void SliceView::set_overlay(Overlay overlay) {
+  overlay_ = std::move(overlay);
+  is_stale_ = true;
+  update();
+}
 
 void SliceView::show_patient(std::shared_ptr<const anatomy::VirtualPatient> patient) {
   const slices::Box body_P = patient ? slices::body_box(*patient) : slices::Box();
@@ -174,7 +207,7 @@ void SliceView::set_labels_visible(bool is_visible) {
 void SliceView::reset() {
   offset_mm_ = 0.0;
   fit();
-  change_window(slices::Window{});
+  change_window(first_window());
 }
 
 QRectF SliceView::picture_rect() const {
@@ -201,7 +234,7 @@ Vec3 SliceView::anchor_P() const {
 }
 
 void SliceView::update_axes() {
-  geometry_.axes = axes_of(kind_, X_PN_.R().col(2));
+  geometry_.axes = axes_of(kind_, X_PN_.R().col(2), R_UB_);
   is_stale_ = true;
 }
 
@@ -260,6 +293,7 @@ void SliceView::redraw_picture() {
     style.has_outlines = false;
   }
   slices::paint_slice(*patient_, geometry_.plane(), style, buffers_, picture_);
+  if (overlay_) overlay_(geometry_.plane(), picture_);
   is_stale_ = false;
 }
 
@@ -277,7 +311,7 @@ void SliceView::paintEvent(QPaintEvent* /*event*/) {
   } else {
     painter.setPen(theme().dim);
     painter.setFont(scaled_font(1.0));
-    painter.drawText(area, Qt::AlignCenter, tr("No patient"));
+    painter.drawText(area, Qt::AlignCenter, is_ultrasound() ? tr("No ultrasound") : tr("No patient"));
   }
   strip_->refresh(place_text() + window_text() + (hasFocus() ? QLatin1String("*") : QLatin1String()) +
                   (has_labels_ ? QLatin1String() : QLatin1String("-")));
@@ -300,7 +334,7 @@ void SliceView::paint_overlay(QPainter& painter) const {
   draw_crosshair(canvas, anchor_P(), info_of(kind_).cross, follows_needle());
   draw_plan(canvas);
   draw_needle(canvas, shaft_P_);
-  draw_letters(canvas);
+  if (!is_ultrasound()) draw_letters(canvas);
   draw_scale_bar(canvas);
   painter.restore();
 }
@@ -314,7 +348,7 @@ QString SliceView::place_text() const {
   // Direction letters of P: the LPS axes point to the left, to the back and to the head.
   const auto beyond = [](double mm, const char* positive, const char* negative) {
     const double shown_mm = std::abs(mm) < 0.05 ? 0.0 : std::abs(mm);
-    return QStringLiteral("%1 %2 mm").arg(QLatin1String(mm < 0.0 ? negative : positive)).arg(shown_mm, 0, 'f', 1);
+    return QStringLiteral("%1 %2 mm").arg(QString::fromUtf8(mm < 0.0 ? negative : positive)).arg(shown_mm, 0, 'f', 1);
   };
   switch (kind_) {
     case SliceKind::kAxial:
@@ -323,6 +357,10 @@ QString SliceView::place_text() const {
       return beyond(focus_P_.y(), "P", "A");
     case SliceKind::kSagittal:
       return beyond(focus_P_.x(), "L", "R");
+    case SliceKind::kLateral:
+    case SliceKind::kElevation:
+    case SliceKind::kAcrossBeams:
+      return beyond((focus_P_ - body_P_.center()).dot(geometry_.axes.normal_P()), "+", "−");
     default:
       if (offset_mm_ == 0.0) return is_frame_at_skin_ ? tr("at the skin") : tr("at the tip");
       return beyond(offset_mm_, "+", "−");
@@ -359,7 +397,8 @@ void SliceView::paint_strip(QPainter& painter, QRectF room) const {
   put(place_text(), 0.9, false, t.text, false);
   put(window_text(), 0.85, false, t.dim, true);
   if (!has_labels_) put(tr("no labels"), 0.85, false, t.warning, true);
-  put(QString::fromStdString(std::string(slices::window_name(style_.window))), 0.85, false, t.dim, true);
+  if (!is_ultrasound())
+    put(QString::fromStdString(std::string(slices::window_name(style_.window))), 0.85, false, t.dim, true);
 }
 
 QSize SliceView::sizeHint() const {

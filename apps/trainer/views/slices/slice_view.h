@@ -1,6 +1,7 @@
 #pragma once
 
 #include <QWidget>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -18,15 +19,29 @@ namespace trocar::trainer {
 
 struct SliceCanvas;
 
-/// Three radiological slices through the focus, and three planes of the needle through its tip (NeedlePlane).
-enum class SliceKind { kAxial, kCoronal, kSagittal, kAlongNeedle, kAlongNeedleTurned, kAcrossNeedle };
+/// Three radiological slices through the focus, three planes of the needle through its tip (NeedlePlane), and three
+/// planes of an ultrasound volume: along the beams, along the beams and the elevation, across the beams (C-plane).
+enum class SliceKind {
+  kAxial,
+  kCoronal,
+  kSagittal,
+  kAlongNeedle,
+  kAlongNeedleTurned,
+  kAcrossNeedle,
+  kLateral,
+  kElevation,
+  kAcrossBeams
+};
 
 class ViewStrip;
 
 /// One slice viewer: CT with labels in a plane, under a strip with name, position and window; cross-hairs in the
 /// colours of the planes they represent, orientation letters, a scale bar, the needle, and the plan as far as the
 /// guidance shows it. Points are in P (LPS, mm). Object names: slice-axial, slice-coronal, slice-sagittal,
-/// slice-along-needle, slice-along-turned, slice-across-needle.
+/// slice-along-needle, slice-along-turned, slice-across-needle, us-lateral, us-elevation, us-across-beams.
+///
+/// A view of an ultrasound volume shows gray levels as "HU", in the frame U of the volume instead of P, without
+/// orientation letters and labels.
 ///
 /// Mouse: left drag moves the cross-hairs; right drag changes the window (right: wider, up: brighter); middle drag or
 /// Shift + left drag pans; wheel scrolls through slices, Ctrl + wheel zooms at the pointer; double click centres the
@@ -43,6 +58,11 @@ class SliceView : public QWidget {
   void show_patient(std::shared_ptr<const anatomy::VirtualPatient> patient);
   /// The same with the known body_box() of the patient.
   void show_patient(std::shared_ptr<const anatomy::VirtualPatient> patient, const slices::Box& body_P);
+  /// Directions in U of an ultrasound volume: lateral, beam, elevation (columns); for the planes of an ultrasound.
+  void set_beam_frame(const Mat3& R_UB);
+  /// Draws over the image of the CT, below lines and marks; for example a fused volume. Empty: nothing.
+  using Overlay = std::function<void(const volume::SlicePlane&, volume::RgbImage&)>;
+  void set_overlay(Overlay overlay);
   /// Moves the slice to a point; pans if the point leaves the central part of the image.
   void set_focus(const Vec3& p_P);
   /// From hub to tip; empty hides the needle.
@@ -104,7 +124,9 @@ class SliceView : public QWidget {
  private:
   enum class Drag { kNone, kFocus, kWindow, kPan };
 
-  bool follows_needle() const noexcept { return kind_ >= SliceKind::kAlongNeedle; }
+  bool is_ultrasound() const noexcept { return kind_ >= SliceKind::kLateral; }
+  bool follows_needle() const noexcept { return kind_ >= SliceKind::kAlongNeedle && !is_ultrasound(); }
+  slices::Window first_window() const;
   /// Point of the plane and of the cross-hairs.
   Vec3 anchor_P() const;
   void update_axes();
@@ -134,6 +156,8 @@ class SliceView : public QWidget {
   slices::Box body_P_;
   Vec3 focus_P_ = Vec3::Zero();
   Pose X_PN_;
+  Mat3 R_UB_ = Mat3::Identity();
+  Overlay overlay_;
   bool is_frame_at_skin_ = false;
   double offset_mm_ = 0.0;  ///< Offset of a needle plane from the tip, along the plane's normal.
   std::vector<Vec3> shaft_P_;

@@ -158,6 +158,8 @@ void SliceView::keyPressEvent(QKeyEvent* event) {
     follow_anchor();
   };
   const int key = event->key();
+  const bool is_of_ct = (key >= Qt::Key_1 && key <= Qt::Key_5) || key == Qt::Key_L;
+  if (is_ultrasound() && is_of_ct) return QWidget::keyPressEvent(event);
   if (key >= Qt::Key_1 && key < Qt::Key_1 + static_cast<int>(slices::kWindowPresets.size()))
     return change_window(slices::kWindowPresets[static_cast<std::size_t>(key - Qt::Key_1)].window);
   switch (key) {

@@ -1,12 +1,15 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "anatomy/patient.h"
 #include "core/progress.h"
 #include "core/result.h"
+#include "geometry/pose.h"
+#include "io/image/image_file.h"
 
 namespace trocar::io {
 
@@ -18,13 +21,20 @@ struct PatientExtra {
   std::string text;
 };
 
+/// A recorded ultrasound to write with a patient (patient_panorama.h).
+struct RecordedUltrasound {
+  const volume::LabelGrid& gray_U;
+  const ImageFields& fields;
+  std::optional<Pose> X_PU;                    ///< Empty: not yet registered; no transform is written.
+  std::vector<anatomy::Landmark> landmarks_U;  ///< Positions in U.
+};
+
 /// Writes a patient folder completely or not at all: patient.toml, ct.nrrd, labels.nrrd, skin_distance.nrrd,
 /// meshes/NAME.vtp, landmarks.mrk.json, paths.mrk.json. An existing folder is never overwritten. The skin distance is
-/// stored in hundredths of a mm, up to 327 mm. The files of a panorama (patient_panorama.h) in `panorama_from`, the
-/// folder from which the patient was read, are copied if they exist.
+/// stored in hundredths of a mm, up to 327 mm. `ultrasound` may be null.
 Status save_patient(const anatomy::VirtualPatient& patient, const std::vector<anatomy::NamedMesh>& meshes,
                     const std::filesystem::path& folder, const Progress& progress = {},
-                    const std::vector<PatientExtra>& extras = {}, const std::filesystem::path& panorama_from = {});
+                    const std::vector<PatientExtra>& extras = {}, const RecordedUltrasound* ultrasound = nullptr);
 /// Reads a patient folder without the meshes; reads the volumes in parallel. Errors: not a patient folder, a newer
 /// version, a missing or damaged file, volumes on different grids, a label without a name, a content hash that does not
 /// match.

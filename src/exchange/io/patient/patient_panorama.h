@@ -13,6 +13,7 @@ namespace trocar::io {
 // which maps its points to P.
 inline constexpr const char* kPanoramaFile = "us/panorama.nrrd";
 inline constexpr const char* kPanoramaTransformFile = "us_to_ct.tfm";
+inline constexpr const char* kPanoramaLandmarkFile = "us/landmarks.mrk.json";  ///< Optional; places in U.
 
 /// True if the patient is a folder with both files of a panorama; reads none of them.
 bool has_panorama(const PatientSource& source);

@@ -13,6 +13,7 @@
 #include "io/patient/detail/patient_layout.h"
 #include "io/patient/patient_folder.h"
 #include "io/patient/patient_panorama.h"
+#include "io/sequence/transform_file.h"
 
 namespace trocar::io {
 namespace fs = std::filesystem;
@@ -67,24 +68,21 @@ Status write_contents(const anatomy::VirtualPatient& patient, const std::vector<
   return {};
 }
 
-Status copy_panorama(const fs::path& from, const fs::path& to) {
-  for (const char* file : {kPanoramaFile, kPanoramaTransformFile}) {
-    std::error_code error;
-    if (!fs::is_regular_file(from / file, error)) continue;
-    fs::create_directories((to / file).parent_path(), error);
-    if (!error) fs::copy_file(from / file, to / file, error);
-    if (error)
-      return fail("the panorama cannot be copied: " + error.message(), (from / file).string(),
-                  "check the disk and permissions");
-  }
-  return {};
+Status write_ultrasound(const RecordedUltrasound& ultrasound, const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories((folder / kPanoramaFile).parent_path(), error);  // an error is reported when writing
+  TROCAR_TRY_STATUS(write_image(ultrasound.gray_U, folder / kPanoramaFile, ultrasound.fields));
+  if (!ultrasound.landmarks_U.empty())
+    TROCAR_TRY_STATUS(write_landmarks(ultrasound.landmarks_U, folder / kPanoramaLandmarkFile));
+  if (!ultrasound.X_PU) return {};
+  return write_transform(*ultrasound.X_PU, folder / kPanoramaTransformFile);
 }
 
 }  // namespace
 
 Status save_patient(const anatomy::VirtualPatient& patient, const std::vector<anatomy::NamedMesh>& meshes,
                     const fs::path& folder, const Progress& progress, const std::vector<PatientExtra>& extras,
-                    const fs::path& panorama_from) {
+                    const RecordedUltrasound* ultrasound) {
   TROCAR_TRY_STATUS(detail::check_geometry(patient, folder.string()));
   TROCAR_TRY_STATUS(detail::check_label_ids(patient, folder.string()));
   return write_folder_atomically(folder, [&](const fs::path& temporary) -> Status {
@@ -93,7 +91,7 @@ Status save_patient(const anatomy::VirtualPatient& patient, const std::vector<an
       TROCAR_CHECK(!fs::exists(temporary / extra.name));
       TROCAR_TRY_STATUS(write_file_atomically(temporary / extra.name, extra.text));
     }
-    if (!panorama_from.empty()) TROCAR_TRY_STATUS(copy_panorama(panorama_from, temporary));
+    if (ultrasound != nullptr) TROCAR_TRY_STATUS(write_ultrasound(*ultrasound, temporary));
     return {};
   });
 }

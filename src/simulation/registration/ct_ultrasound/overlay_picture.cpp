@@ -6,6 +6,7 @@
 
 #include "core/parallel.h"
 #include "registration/ct_ultrasound/detail/working_images.h"
+#include "registration/intensity/bright_gray.h"
 #include "volume/bitmap_font.h"
 #include "volume/sampling.h"
 
@@ -17,7 +18,6 @@ constexpr double kField_mm = 20.0;
 constexpr double kLowest_hu = -150.0, kHighest_hu = 250.0;
 constexpr int kMost = 600;  ///< Pixels of a panel's side.
 constexpr int kGap = 4, kTitle = 16;
-constexpr double kBrightGray = 0.995;  ///< Quantile of the gray levels that is shown white.
 
 /// Two directions of the ultrasound's grid in a picture, through a point.
 struct Plane {
@@ -83,19 +83,6 @@ class Painter {
   }
 
  private:
-  static double bright_gray(const volume::LabelGrid& us) {
-    std::array<std::size_t, 256> counts{};
-    std::size_t total = 0;
-    for (const std::uint8_t gray : us.voxels)
-      if (gray > 0) ++counts[gray], ++total;
-    std::size_t below = 0;
-    for (std::size_t gray = 0; gray < counts.size(); ++gray) {
-      below += counts[gray];
-      if (static_cast<double>(below) >= kBrightGray * static_cast<double>(total))
-        return std::max(32.0, static_cast<double>(gray));
-    }
-    return 255.0;
-  }
   const volume::CtGrid& ct_;
   const volume::LabelGrid& us_;
   const volume::MaskGrid& inside_;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "registration/intensity/bright_gray.h"
 #include "registration/shadow/shadow_mask.h"
 
 namespace trocar::registration {
@@ -130,6 +131,15 @@ TEST(ShadowThreshold, SeparatesTwoClasses) {
   const volume::LabelGrid plain(cube(8), 50);
   const volume::MaskGrid all(plain.geometry, 1);
   EXPECT_FALSE(estimate_shadow_threshold(std::span(&plain, 1), std::span(&all, 1)));
+}
+
+TEST(BrightGray, IsTheUpperEndOfTheImagedLevels) {
+  volume::LabelGrid gray(volume::GridGeometry{{100, 10, 2}, Vec3::Ones(), Vec3::Zero(), Mat3::Identity()});
+  EXPECT_DOUBLE_EQ(bright_gray(gray), 255.0) << "empty";
+  for (std::size_t n = 0; n < 1000; ++n) gray.voxels[n] = n < 998 ? 120 : 250;
+  EXPECT_DOUBLE_EQ(bright_gray(gray), 120.0) << "zeros and single bright voxels do not count";
+  gray.voxels.assign(gray.voxels.size(), 5);
+  EXPECT_DOUBLE_EQ(bright_gray(gray), 32.0);
 }
 
 }  // namespace

@@ -1,16 +1,15 @@
 #include "io/patient/patient_panorama.h"
 
 #include "anatomy/phantom/phantom.h"
+#include "core/files/temporary_folder.h"
 #include "io/image/image_file.h"
+#include "io/markups_file.h"
 #include "io/patient/patient_folder.h"
 #include "io/sequence/transform_file.h"
-#include "io/test/test_support.h"
 
 namespace trocar::io {
 namespace {
 namespace fs = std::filesystem;
-
-using testing::read_bytes;
 
 /// A folder with the two files of a panorama.
 void write_panorama(const fs::path& folder, const Pose& X_PU, const ImageFields& fields = {}) {
@@ -48,19 +47,31 @@ TEST(PatientPanorama, MissingFilesAreNamedWithTheCommandsThatMakeThem) {
   EXPECT_FALSE(load_panorama({"abdomen"}));
 }
 
-TEST(PatientPanorama, StaysWithAPatientThatIsSavedAgain) {
+TEST(PatientPanorama, IsWrittenWithAPatient) {
   const TemporaryFolder folder;
-  const fs::path first = folder.path() / "first", again = folder.path() / "again", other = folder.path() / "other";
   auto patient = anatomy::generate_phantom("layers-liver", 1);
   ASSERT_TRUE(patient);
-  ASSERT_TRUE(save_patient(*patient, {}, first));
-  write_panorama(first, Pose());
-  ASSERT_TRUE(save_patient(*patient, {}, again, {}, {}, first));
-  for (const char* file : {kPanoramaFile, kPanoramaTransformFile})
-    EXPECT_EQ(read_bytes(again / file), read_bytes(first / file)) << file;
-  EXPECT_TRUE(load_patient(again));
-  ASSERT_TRUE(save_patient(*patient, {}, other, {}, {}, "abdomen"));
-  EXPECT_FALSE(has_panorama({other.string()}));
+  const volume::LabelGrid gray(volume::GridGeometry{{20, 20, 20}, Vec3::Ones(), Vec3(1, 2, 3), Mat3::Identity()}, 77);
+  const ImageFields fields{{"trocar_dynamic_range_db", "48"}};
+  const Pose X_PU = Pose::translation(Vec3(5.0, -6.0, 7.0));
+  RecordedUltrasound ultrasound{gray, fields, X_PU, {{"rib 9", Vec3(4.0, 5.0, 6.0)}}};
+  const fs::path whole = folder.path() / "whole", unplaced = folder.path() / "unplaced";
+  ASSERT_TRUE(save_patient(*patient, {}, whole, {}, {}, &ultrasound));
+  const auto panorama = load_panorama({whole.string()});
+  ASSERT_TRUE(panorama) << panorama.error().text();
+  EXPECT_LT(((*panorama)->X_PU.p() - X_PU.p()).norm(), 1e-9);
+  EXPECT_DOUBLE_EQ((*panorama)->floor_db, ultrasound::kWhite_db - 48.0);
+  const auto landmarks = read_landmarks(whole / kPanoramaLandmarkFile);
+  ASSERT_TRUE(landmarks) << landmarks.error().text();
+  ASSERT_EQ(landmarks->size(), 1U);
+  EXPECT_EQ(landmarks->front().name, "rib 9");
+  EXPECT_LT((landmarks->front().p_P - Vec3(4.0, 5.0, 6.0)).norm(), 1e-6);
+  EXPECT_TRUE(load_patient(whole));
+
+  ultrasound.X_PU.reset();
+  ASSERT_TRUE(save_patient(*patient, {}, unplaced, {}, {}, &ultrasound));
+  EXPECT_FALSE(has_panorama({unplaced.string()}));
+  EXPECT_TRUE(fs::exists(unplaced / kPanoramaFile)) << "work of the user";
 }
 
 }  // namespace
