@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "png/png_file.h"
+#include "registration/intensity/bright_gray.h"
 #include "report/detail/html.h"
 
 namespace trocar::report::detail {
@@ -63,11 +64,12 @@ VolumeSlice cut_slice(const volume::LabelGrid& gray, const registration::ImagedR
   slice.axes = axes;
   slice.image = volume::RgbImage(static_cast<int>(size[static_cast<std::size_t>(axes.column)]),
                                  static_cast<int>(size[static_cast<std::size_t>(axes.along)]));
+  const double white = registration::bright_gray(gray);
   index = std::clamp<std::int64_t>(index, 0, size[static_cast<std::size_t>(axes.across)] - 1);
   for (int row = 0; row < slice.image.rows; ++row) {
     for (int column = 0; column < slice.image.columns; ++column) {
       const volume::Index3 ijk = voxel_of(axes, column, row, index);
-      const std::uint8_t g = gray[ijk];
+      const auto g = static_cast<std::uint8_t>(std::min(255.0, 255.0 * gray[ijk] / white));
       slice.image.at(column, row) = {g, g, g};
       if (region && region->inside[ijk] != 0 && region->usable[ijk] == 0)
         slice.image.at(column, row) = {static_cast<std::uint8_t>(g / 2), static_cast<std::uint8_t>(g / 2 + 30),

@@ -29,7 +29,7 @@ struct VolumeSlice {
   std::string svg(double x) const;
 };
 
-/// `region`: shadows are drawn bluish; may be null.
+/// Gray levels as far as the volume uses them. `region`: shadows are drawn bluish; may be null.
 VolumeSlice cut_slice(const volume::LabelGrid& gray, const registration::ImagedRegion* region, const SliceAxes& axes,
                       std::int64_t index);
 /// With lines where `source` changes.
