@@ -148,8 +148,14 @@ Status write_panorama(const Arguments& arguments, const std::vector<registration
         write_file_atomically(arguments.report, report::stitch_report(volumes, stitching, placed, panorama)));
   }
   core::report(progress, "writing the panorama", 0.97);
-  TROCAR_TRY_STATUS(write_transforms(volumes, stitching, arguments.transforms));
-  return io::write_image(panorama.gray, arguments.out);
+  // The panorama last: its file means that all was written. Without it, nothing stays.
+  Status written = write_transforms(volumes, stitching, arguments.transforms);
+  if (written) written = io::write_image(panorama.gray, arguments.out);
+  if (written) return {};
+  std::error_code ignored;
+  fs::remove_all(arguments.transforms, ignored);
+  if (!arguments.report.empty()) fs::remove(arguments.report, ignored);
+  return written;
 }
 
 Status stitch(const Arguments& arguments) {

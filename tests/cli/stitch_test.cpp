@@ -54,6 +54,17 @@ TEST(Stitch, WritesPanoramaTransformsAndReport) {
   EXPECT_NE(report->find("matches agree"), std::string::npos);
 }
 
+TEST(Stitch, LeavesNothingWhereThePanoramaCannotBeWritten) {
+  const Files files;
+  const Outcome outcome =
+      trocar("ultrasound stitch first.nrrd second.nrrd --beam-axis +z --out pan.nrrd --transforms poses",
+             "cd '" + files.folder.path().string() + "' && trap '' XFSZ && ulimit -f 64 &&");
+  EXPECT_EQ(outcome.exit_status, 1);
+  EXPECT_NE(outcome.err.find("pan.nrrd"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(fs::exists(files.folder / "pan.nrrd"));
+  EXPECT_FALSE(fs::exists(files.folder / "poses"));
+}
+
 TEST(Stitch, NamesAnUnconnectedVolume) {
   const Files files;
   const Outcome outcome =
