@@ -6,6 +6,8 @@
 #include "case_builder/case_editor.h"
 #include "slices/fuse_ultrasound.h"
 
+class QComboBox;
+class QLabel;
 class QVBoxLayout;
 
 namespace trocar::trainer {
@@ -41,6 +43,10 @@ class CasePanel : public QWidget {
 
  protected:
   QVBoxLayout* content() const noexcept { return content_; }
+  /// Adds an empty, wrapped text below the content so far.
+  QLabel* add_text(const char* object_name);
+  /// A box as wide as the panel, however long its entries are.
+  static QComboBox* make_wide_box(const char* object_name, const QString& title, const QString& tooltip);
   /// True while refresh() sets widgets: their signals are not user input then.
   bool is_refreshing_ = false;
   case_builder::CaseEditor& editor_;

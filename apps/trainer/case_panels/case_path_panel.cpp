@@ -56,14 +56,6 @@ class PathPanel final : public CasePanel {
     return button;
   }
 
-  QLabel* add_text(const char* name) {
-    QLabel* label = make_label({}, "dim");
-    label->setObjectName(QString::fromLatin1(name));
-    label->setWordWrap(true);
-    content()->addWidget(label);
-    return label;
-  }
-
   void add_zone() {
     zone_text_ = add_text("case-zone-text");
     auto* row = new QHBoxLayout;

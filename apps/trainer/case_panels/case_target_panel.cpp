@@ -63,12 +63,7 @@ class TargetPanel final : public CasePanel {
 
   QComboBox* add_box(const char* name, const QString& title, const QString& tooltip) {
     content()->addWidget(make_label(title, "dim"));
-    auto* box = new QComboBox;
-    box->setObjectName(QString::fromLatin1(name));
-    box->setAccessibleName(title);
-    box->setToolTip(tooltip);
-    box->setMinimumContentsLength(8);
-    box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+    QComboBox* box = make_wide_box(name, title, tooltip);
     content()->addWidget(box);
     return box;
   }

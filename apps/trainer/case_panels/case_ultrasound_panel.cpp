@@ -55,24 +55,6 @@ class UltrasoundPanel final : public CasePanel {
   std::string click_name() const override { return pairs_->name(); }
 
  private:
-  QComboBox* make_box(const char* name, const QString& title, const QString& tooltip) {
-    auto* box = new QComboBox;
-    box->setObjectName(QString::fromLatin1(name));
-    box->setAccessibleName(title);
-    box->setToolTip(tooltip);
-    box->setMinimumContentsLength(8);
-    box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-    return box;
-  }
-
-  QLabel* add_text(const char* name) {
-    QLabel* label = make_label({}, "dim");
-    label->setObjectName(QString::fromLatin1(name));
-    label->setWordWrap(true);
-    content()->addWidget(label);
-    return label;
-  }
-
   void add_file() {
     content()->addWidget(make_label(tr("A sweep or a stitched panorama"), "dim"));
     file_ = new QLineEdit;
@@ -82,8 +64,8 @@ class UltrasoundPanel final : public CasePanel {
     file_->setPlaceholderText(QStringLiteral("panorama.nrrd"));
     QPushButton* choose = make_button("case-us-choose", tr("File…"), tr("Select the file"));
     content()->addWidget(file_);
-    axis_ = make_box("case-us-axis", tr("Beam direction"),
-                     tr("Direction of sound along the volume's axes; the header's beams are used by default"));
+    axis_ = make_wide_box("case-us-axis", tr("Beam direction"),
+                          tr("Direction of sound along the volume's axes; the header's beams are used by default"));
     axis_->addItem(tr("Beams of the header, or along +y"), QString());
     for (const char* axis : {"+x", "-x", "+y", "-y", "+z", "-z"})
       axis_->addItem(tr("Beams along %1").arg(QLatin1String(axis)), QString::fromLatin1(axis));
@@ -123,7 +105,7 @@ class UltrasoundPanel final : public CasePanel {
   RegistrationStart start() const { return static_cast<RegistrationStart>(start_->currentData().toInt()); }
 
   void add_registration() {
-    start_ = make_box("case-us-start", tr("Start of the registration"), tr("First pose of the optimisation"));
+    start_ = make_wide_box("case-us-start", tr("Start of the registration"), tr("First pose of the optimisation"));
     start_->addItem(tr("Start: present pose"), static_cast<int>(RegistrationStart::kCurrent));
     start_->addItem(tr("Start: the volumes share a frame"), static_cast<int>(RegistrationStart::kHeader));
     start_->addItem(tr("Start: search on the skin"), static_cast<int>(RegistrationStart::kSearch));
@@ -141,7 +123,8 @@ class UltrasoundPanel final : public CasePanel {
 
   void add_comparison() {
     auto* row = new QHBoxLayout;
-    fusion_ = make_box("case-us-fusion", tr("Comparison"), tr("How the ultrasound is drawn in the slices of the CT"));
+    fusion_ =
+        make_wide_box("case-us-fusion", tr("Comparison"), tr("How the ultrasound is drawn in the slices of the CT"));
     fusion_->addItem(tr("Blend"), static_cast<int>(slices::FusionKind::kBlend));
     fusion_->addItem(tr("Checkerboard"), static_cast<int>(slices::FusionKind::kCheckerboard));
     fusion_->addItem(tr("Off"), static_cast<int>(slices::FusionKind::kOff));
