@@ -87,15 +87,14 @@ std::vector<Motion> starts_near(const Motion& centre, double radius_mm, std::uin
   return starts;
 }
 
-/// Climbs from all starts, on two halves at the same time: each half has a metric of its own.
+/// Climbs from all starts, in parallel.
 std::vector<Summit> climb_all(const detail::Level& level, const std::vector<Vec3>& points, const Work& work,
                               const std::vector<Motion>& starts, const detail::ClimbOptions& options) {
   std::vector<Summit> summits(starts.size());
-  const auto climb_some = [&](std::size_t first) {
+  parallel_for(starts.size(), 1, [&](std::size_t first, std::size_t last) {
     detail::PoseMetric metric(level, points, work.us.centre);
-    for (std::size_t n = first; n < starts.size(); n += 2) summits[n] = detail::climb(metric, starts[n], options);
-  };
-  parallel_invoke([&] { climb_some(0); }, [&] { climb_some(1); });
+    for (std::size_t n = first; n < last; ++n) summits[n] = detail::climb(metric, starts[n], options);
+  });
   return summits;
 }
 

@@ -5,14 +5,20 @@
 #include <cmath>
 
 #include "core/check.h"
+#include "core/parallel.h"
 
 namespace trocar::registration::detail {
 namespace {
 
 constexpr std::size_t kBins = 32;
 constexpr std::size_t kPadding = 2;  ///< Bins beside the values, for the window of the CT.
-constexpr double kLargest = 3.0;     ///< Local contrast.
+constexpr std::size_t kLastUsBin = kBins - kPadding - 1;
+constexpr double kLargest = 3.0;  ///< Local contrast.
 constexpr double kWidth = 2.0 * kLargest / static_cast<double>(kBins - 2 * kPadding);
+constexpr std::size_t kPart = 4096;  ///< Samples of one histogram.
+
+/// Rows: bins of the ultrasound.
+using Joint = std::array<std::array<double, kBins>, kBins>;
 
 double to_bin(double contrast) {
   return static_cast<double>(kPadding) + (std::clamp(contrast, -kLargest, kLargest) + kLargest) / kWidth;
@@ -36,44 +42,84 @@ Window window_of(double contrast) {
   return window;
 }
 
-}  // namespace
-
-SampledInformation::SampledInformation(std::span<const float> us) {
-  us_bins_.reserve(us.size());
-  for (const float contrast : us)
-    us_bins_.push_back(std::min(static_cast<std::size_t>(to_bin(static_cast<double>(contrast))), kBins - 1));
+/// Sums of the samples' windows, not divided by the number of samples.
+Joint joint_of(std::span<const std::uint8_t> us_bins, std::span<const double> ct) {
+  std::vector<Joint> parts((ct.size() + kPart - 1) / kPart);
+  parallel_for(parts.size(), 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t part = first; part < last; ++part) {
+      parts[part] = {};
+      for (std::size_t n = part * kPart; n < std::min(ct.size(), (part + 1) * kPart); ++n) {
+        if (std::isnan(ct[n])) continue;
+        const Window window = window_of(ct[n]);
+        double* bins = parts[part][us_bins[n]].data() + window.first;
+        for (std::size_t b = 0; b < 4; ++b) bins[b] += window.weight[b];
+      }
+    }
+  });
+  Joint joint{};
+  for (const Joint& part : parts)
+    for (std::size_t u = 0; u < kBins; ++u)
+      for (std::size_t c = 0; c < kBins; ++c) joint[u][c] += part[u][c];
+  return joint;
 }
 
-double SampledInformation::evaluate(std::span<const double> ct, std::vector<double>& slopes) {
-  TROCAR_CHECK(ct.size() == us_bins_.size());
-  std::array<std::array<double, kBins>, kBins> joint{};
-  const double share = 1.0 / static_cast<double>(ct.size());
-  for (std::size_t n = 0; n < ct.size(); ++n) {
-    const Window window = window_of(ct[n]);
-    for (std::size_t b = 0; b < 4; ++b) joint[us_bins_[n]][window.first + b] += share * window.weight[b];
-  }
+/// Information of a joint histogram, and ln(p(u, c) / p(c)).
+struct Information {
+  double nats = 0.0;
+  double count = 0.0;  ///< Samples.
+  Joint log_ratio{};
+};
+
+Information information_of(const Joint& joint) {
+  Information result;
   std::array<double, kBins> us_share{}, ct_share{};
   for (std::size_t u = 0; u < kBins; ++u)
     for (std::size_t c = 0; c < kBins; ++c) {
       us_share[u] += joint[u][c];
       ct_share[c] += joint[u][c];
+      result.count += joint[u][c];
     }
-  double information = 0.0;
-  std::array<std::array<double, kBins>, kBins> log_ratio{};
+  if (result.count <= 0.0) return result;
   for (std::size_t u = 0; u < kBins; ++u)
     for (std::size_t c = 0; c < kBins; ++c) {
       if (joint[u][c] <= 0.0) continue;
-      log_ratio[u][c] = std::log(joint[u][c] / ct_share[c]);
-      information += joint[u][c] * (log_ratio[u][c] - std::log(us_share[u]));
+      result.log_ratio[u][c] = std::log(joint[u][c] / ct_share[c]);
+      result.nats += joint[u][c] / result.count * (result.log_ratio[u][c] - std::log(us_share[u] / result.count));
     }
+  return result;
+}
+
+}  // namespace
+
+SampledInformation::SampledInformation(std::span<const float> us) {
+  us_bins_.reserve(us.size());
+  for (const float contrast : us)
+    us_bins_.push_back(static_cast<std::uint8_t>(
+        std::min(static_cast<std::size_t>(to_bin(static_cast<double>(contrast))), kLastUsBin)));
+}
+
+double SampledInformation::value(std::span<const double> ct) const {
+  TROCAR_CHECK(ct.size() == us_bins_.size());
+  return information_of(joint_of(us_bins_, ct)).nats;
+}
+
+double SampledInformation::evaluate(std::span<const double> ct, std::vector<double>& slopes) const {
+  TROCAR_CHECK(ct.size() == us_bins_.size());
+  const Information information = information_of(joint_of(us_bins_, ct));
   slopes.assign(ct.size(), 0.0);
-  for (std::size_t n = 0; n < ct.size(); ++n) {
-    if (std::abs(ct[n]) >= kLargest) continue;
-    const Window window = window_of(ct[n]);
-    for (std::size_t b = 0; b < 4; ++b)
-      slopes[n] += share / kWidth * window.slope[b] * log_ratio[us_bins_[n]][window.first + b];
-  }
-  return information;
+  if (information.count <= 0.0) return 0.0;
+  const double scale = 1.0 / (information.count * kWidth);
+  parallel_for(ct.size(), kPart, [&](std::size_t first, std::size_t last) {
+    for (std::size_t n = first; n < last; ++n) {
+      if (!(std::abs(ct[n]) < kLargest)) continue;  // also NaN
+      const Window window = window_of(ct[n]);
+      const double* ratios = information.log_ratio[us_bins_[n]].data() + window.first;
+      double sum = 0.0;
+      for (std::size_t b = 0; b < 4; ++b) sum += window.slope[b] * ratios[b];
+      slopes[n] = scale * sum;
+    }
+  });
+  return information.nats;
 }
 
 }  // namespace trocar::registration::detail
