@@ -24,22 +24,28 @@ double to_bin(double contrast) {
   return static_cast<double>(kPadding) + (std::clamp(contrast, -kLargest, kLargest) + kLargest) / kWidth;
 }
 
-/// The four bins under a sample's cubic window.
+/// Place of a sample's cubic window: four bins, and the sample's share of the way from the second to the third.
 struct Window {
   std::size_t first = 0;
-  std::array<double, 4> weight{}, slope{};
+  double t = 0.0;
 };
 
 Window window_of(double contrast) {
   const double x = std::min(to_bin(contrast), static_cast<double>(kBins - kPadding) - 1e-9);
-  const double cell = std::floor(x);
-  const double t = x - cell, s = 1.0 - t;
-  Window window;
-  window.first = static_cast<std::size_t>(cell) - 1;
-  window.weight = {s * s * s / 6.0, (3.0 * t * t * t - 6.0 * t * t + 4.0) / 6.0,
-                   (3.0 * s * s * s - 6.0 * s * s + 4.0) / 6.0, t * t * t / 6.0};
-  window.slope = {-0.5 * s * s, 1.5 * t * t - 2.0 * t, -1.5 * s * s + 2.0 * s, 0.5 * t * t};
-  return window;
+  const auto cell = static_cast<std::size_t>(x);
+  return {cell - 1, x - static_cast<double>(cell)};
+}
+
+std::array<double, 4> weights_at(double t) {
+  const double s = 1.0 - t, tt = t * t, ss = s * s;
+  constexpr double kSixth = 1.0 / 6.0, kMiddle = 2.0 / 3.0;
+  return {kSixth * ss * s, kMiddle - tt + 0.5 * tt * t, kMiddle - ss + 0.5 * ss * s, kSixth * tt * t};
+}
+
+/// Derivatives of the weights by t.
+std::array<double, 4> slopes_at(double t) {
+  const double s = 1.0 - t;
+  return {-0.5 * s * s, (1.5 * t - 2.0) * t, (2.0 - 1.5 * s) * s, 0.5 * t * t};
 }
 
 /// Sums of the samples' windows, not divided by the number of samples.
@@ -52,7 +58,8 @@ Joint joint_of(std::span<const std::uint8_t> us_bins, std::span<const double> ct
         if (std::isnan(ct[n])) continue;
         const Window window = window_of(ct[n]);
         double* bins = parts[part][us_bins[n]].data() + window.first;
-        for (std::size_t b = 0; b < 4; ++b) bins[b] += window.weight[b];
+        const std::array<double, 4> weights = weights_at(window.t);
+        for (std::size_t b = 0; b < 4; ++b) bins[b] += weights[b];
       }
     }
   });
@@ -114,8 +121,9 @@ double SampledInformation::evaluate(std::span<const double> ct, std::vector<doub
       if (!(std::abs(ct[n]) < kLargest)) continue;  // also NaN
       const Window window = window_of(ct[n]);
       const double* ratios = information.log_ratio[us_bins_[n]].data() + window.first;
+      const std::array<double, 4> weight_slopes = slopes_at(window.t);
       double sum = 0.0;
-      for (std::size_t b = 0; b < 4; ++b) sum += window.slope[b] * ratios[b];
+      for (std::size_t b = 0; b < 4; ++b) sum += weight_slopes[b] * ratios[b];
       slopes[n] = scale * sum;
     }
   });
