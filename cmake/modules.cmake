@@ -72,7 +72,7 @@ function(trocar_add_module tier name uses libraries)
     set(scope PUBLIC)
     target_link_libraries(${target} PUBLIC ${links} PRIVATE $<BUILD_INTERFACE:trocar_warnings>)
     trocar_use_precompiled(${target} trocar_precompiled)
-    foreach(source IN LISTS sources)
+    foreach(source IN LISTS sources tests)
       if(EXISTS ${source})
         file(STRINGS ${source} itk_include REGEX "^#include <(itk|gdcm)" LIMIT_COUNT 1)
         if(itk_include)  # ITK brings an Eigen of its own

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/parallel.h"
+#include "volume/detail/near_rows.h"
 #include "volume/detail/run_labels.h"
 #include "volume/distance.h"
 
@@ -110,18 +111,27 @@ MaskGrid cut_out(const MaskGrid& mask, const Box& box, bool of_set) {
   return part;
 }
 
+/// 1 where the distance to the mask is at most `limit_mm`.
+MaskGrid nearer_than(const MaskGrid& mask, float limit_mm) {
+  const FloatGrid distance = distance_to_mask_mm(mask);
+  MaskGrid near(mask.geometry);
+  for (std::size_t n = 0; n < near.voxels.size(); ++n) near.voxels[n] = distance.voxels[n] <= limit_mm ? 1 : 0;
+  return near;
+}
+
 /// Sets the voxels of the box to `value` within the radius of a voxel of `part`, the mask of that box.
 void paint_near(const MaskGrid& part, const Box& box, double radius_mm, std::uint8_t value, MaskGrid& result) {
   // A ball of whole voxels must include its outermost ones despite rounding.
   constexpr double kRounding = 1e-6;
-  const auto limit = static_cast<float>(radius_mm * (1.0 + kRounding));
-  const FloatGrid distance = distance_to_mask_mm(part);
+  const double limit_mm = radius_mm * (1.0 + kRounding);
+  std::optional<MaskGrid> near = detail::find_near(part, limit_mm);
+  if (!near) near = nearer_than(part, static_cast<float>(limit_mm));
   for (std::int64_t k = box.first[2]; k <= box.last[2]; ++k)
     for (std::int64_t j = box.first[1]; j <= box.last[1]; ++j) {
-      const auto from = distance.geometry.offset({0, j - box.first[1], k - box.first[2]});
+      const auto from = near->geometry.offset({0, j - box.first[1], k - box.first[2]});
       const auto to = result.geometry.offset({box.first[0], j, k});
-      for (std::size_t i = 0; i < static_cast<std::size_t>(distance.geometry.size[0]); ++i)
-        if (distance.voxels[from + i] <= limit) result.voxels[to + i] = value;
+      for (std::size_t i = 0; i < static_cast<std::size_t>(near->geometry.size[0]); ++i)
+        if (near->voxels[from + i] != 0) result.voxels[to + i] = value;
     }
 }
 

@@ -18,7 +18,7 @@ using detail::Motion;
 using detail::Summit;
 
 /// docs/physics.md R12; all assumed, chosen on simulated sweeps.
-constexpr std::size_t kCoarseSamples = 5000, kMiddleSamples = 10000, kFineSamples = 40000;
+constexpr std::size_t kCoarseSamples = 5000, kMiddleSamples = 10000, kFineSamples = 40000, kFinestSamples = 100000;
 constexpr double kCoarse_mm = 3.5, kUsFine_mm = 1.2, kCtFine_mm = 0.5;  ///< Smoothing.
 constexpr int kFewStarts = 5;                                           ///< Enough if most of them agree.
 constexpr double kEnoughAgreement = 0.75;
@@ -31,14 +31,15 @@ constexpr int kDisplaced = 48;                     ///< Poses that the metric is
 constexpr double kAgreementWeight = 1.2;           ///< Against the distinction.
 constexpr double kDoubtful = 3.2, kCertain = 9.2;  ///< Their sum at confidence 0 and 1.
 constexpr double kDisplacedNear_mm = 15.0, kDisplacedFar_mm = 30.0;
-constexpr std::uint64_t kCoarseSeed = 11, kMiddleSeed = 12, kFineSeed = 13, kStartSeed = 14, kDisplacedSeed = 15;
+constexpr std::uint64_t kCoarseSeed = 11, kMiddleSeed = 12, kFineSeed = 13, kStartSeed = 14, kDisplacedSeed = 15,
+                        kFinestSeed = 16;
 
 /// Volumes and samples of one registration.
 struct Work {
   detail::WorkingUltrasound us;
   volume::FloatGrid ct_U;  ///< CT in the frame of the ultrasound at the first estimate.
   detail::Level coarse, fine;
-  std::vector<Vec3> coarse_points, middle_points, fine_points;
+  std::vector<Vec3> coarse_points, middle_points, fine_points, finest_points;
   std::vector<Vec3> probes;  ///< Some usable points: distances between motions are means over them.
 
   Pose pose(const Motion& motion) const { return detail::pose_of(motion, us.centre); }
@@ -87,15 +88,14 @@ std::vector<Motion> starts_near(const Motion& centre, double radius_mm, std::uin
   return starts;
 }
 
-/// Climbs from all starts, on two halves at the same time: each half has a metric of its own.
+/// Climbs from all starts, in parallel.
 std::vector<Summit> climb_all(const detail::Level& level, const std::vector<Vec3>& points, const Work& work,
                               const std::vector<Motion>& starts, const detail::ClimbOptions& options) {
   std::vector<Summit> summits(starts.size());
-  const auto climb_some = [&](std::size_t first) {
+  parallel_for(starts.size(), 1, [&](std::size_t first, std::size_t last) {
     detail::PoseMetric metric(level, points, work.us.centre);
-    for (std::size_t n = first; n < starts.size(); n += 2) summits[n] = detail::climb(metric, starts[n], options);
-  };
-  parallel_invoke([&] { climb_some(0); }, [&] { climb_some(1); });
+    for (std::size_t n = first; n < last; ++n) summits[n] = detail::climb(metric, starts[n], options);
+  });
   return summits;
 }
 
@@ -131,6 +131,14 @@ std::vector<Summit> coarse_summits(const Work& work, const detail::ClimbOptions&
   const std::vector<Summit> more = climb_all(work.coarse, work.coarse_points, work, others, options);
   summits.insert(summits.end(), more.begin(), more.end());
   return summits;
+}
+
+/// The top of the fine level from a motion near it.
+Summit refine(const Work& work, const Motion& start) {
+  detail::PoseMetric fine(work.fine, work.fine_points, work.us.centre);
+  const Summit near = detail::climb(fine, start, {work.us.radius_mm, 0.4, 0.08, 30});
+  detail::PoseMetric finest(work.fine, work.finest_points, work.us.centre);
+  return detail::climb(finest, near.motion, {work.us.radius_mm, 0.1, 0.02, 15});
 }
 
 std::vector<Motion> motions_of(const std::vector<Summit>& summits) {
@@ -173,6 +181,7 @@ Work make_work(detail::WorkingUltrasound us, const volume::FloatGrid& ct_U, std:
   work.coarse_points = detail::sample_usable(work.us, kCoarseSamples, seed ^ kCoarseSeed);
   work.middle_points = detail::sample_usable(work.us, kMiddleSamples, seed ^ kMiddleSeed);
   work.fine_points = detail::sample_usable(work.us, kFineSamples, seed ^ kFineSeed);
+  work.finest_points = detail::sample_usable(work.us, kFinestSamples, seed ^ kFinestSeed);
   work.probes = detail::sample_usable(work.us, 300, seed);
   return work;
 }
@@ -214,11 +223,7 @@ Result<RigidRegistration> register_rigid(const volume::CtGrid& ct, const volume:
     return fail(fmt::format("no pose within {:g} mm of the start matches", options.reach_mm), {},
                 "give --landmarks, or --init search");
   if (cancelled()) return cancellation();
-  const Summit best = best_distinct(middle, work, 1).front();
-
-  detail::PoseMetric metric(work.fine, work.fine_points, work.us.centre);
-  climb = {work.us.radius_mm, 0.4, 0.02, 30};
-  const Summit summit = detail::climb(metric, best.motion, climb);
+  const Summit summit = refine(work, best_distinct(middle, work, 1).front().motion);
   report(progress, "checking the result", 0.9);
   RigidRegistration result;
   result.X_CU = X_CU * work.pose(summit.motion);

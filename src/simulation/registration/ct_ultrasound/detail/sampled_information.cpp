@@ -5,35 +5,95 @@
 #include <cmath>
 
 #include "core/check.h"
+#include "core/parallel.h"
 
 namespace trocar::registration::detail {
 namespace {
 
 constexpr std::size_t kBins = 32;
 constexpr std::size_t kPadding = 2;  ///< Bins beside the values, for the window of the CT.
-constexpr double kLargest = 3.0;     ///< Local contrast.
+constexpr std::size_t kLastUsBin = kBins - kPadding - 1;
+constexpr double kLargest = 3.0;  ///< Local contrast.
 constexpr double kWidth = 2.0 * kLargest / static_cast<double>(kBins - 2 * kPadding);
+constexpr std::size_t kPart = 4096;  ///< Samples of one histogram.
+
+/// Rows: bins of the ultrasound.
+using Joint = std::array<std::array<double, kBins>, kBins>;
 
 double to_bin(double contrast) {
   return static_cast<double>(kPadding) + (std::clamp(contrast, -kLargest, kLargest) + kLargest) / kWidth;
 }
 
-/// The four bins under a sample's cubic window.
+/// Place of a sample's cubic window: four bins, and the sample's share of the way from the second to the third.
 struct Window {
   std::size_t first = 0;
-  std::array<double, 4> weight{}, slope{};
+  double t = 0.0;
 };
 
 Window window_of(double contrast) {
   const double x = std::min(to_bin(contrast), static_cast<double>(kBins - kPadding) - 1e-9);
-  const double cell = std::floor(x);
-  const double t = x - cell, s = 1.0 - t;
-  Window window;
-  window.first = static_cast<std::size_t>(cell) - 1;
-  window.weight = {s * s * s / 6.0, (3.0 * t * t * t - 6.0 * t * t + 4.0) / 6.0,
-                   (3.0 * s * s * s - 6.0 * s * s + 4.0) / 6.0, t * t * t / 6.0};
-  window.slope = {-0.5 * s * s, 1.5 * t * t - 2.0 * t, -1.5 * s * s + 2.0 * s, 0.5 * t * t};
-  return window;
+  const auto cell = static_cast<std::size_t>(x);
+  return {cell - 1, x - static_cast<double>(cell)};
+}
+
+std::array<double, 4> weights_at(double t) {
+  const double s = 1.0 - t, tt = t * t, ss = s * s;
+  constexpr double kSixth = 1.0 / 6.0, kMiddle = 2.0 / 3.0;
+  return {kSixth * ss * s, kMiddle - tt + 0.5 * tt * t, kMiddle - ss + 0.5 * ss * s, kSixth * tt * t};
+}
+
+/// Derivatives of the weights by t.
+std::array<double, 4> slopes_at(double t) {
+  const double s = 1.0 - t;
+  return {-0.5 * s * s, (1.5 * t - 2.0) * t, (2.0 - 1.5 * s) * s, 0.5 * t * t};
+}
+
+/// Sums of the samples' windows, not divided by the number of samples.
+Joint joint_of(std::span<const std::uint8_t> us_bins, std::span<const double> ct) {
+  std::vector<Joint> parts((ct.size() + kPart - 1) / kPart);
+  parallel_for(parts.size(), 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t part = first; part < last; ++part) {
+      parts[part] = {};
+      for (std::size_t n = part * kPart; n < std::min(ct.size(), (part + 1) * kPart); ++n) {
+        if (std::isnan(ct[n])) continue;
+        const Window window = window_of(ct[n]);
+        double* bins = parts[part][us_bins[n]].data() + window.first;
+        const std::array<double, 4> weights = weights_at(window.t);
+        for (std::size_t b = 0; b < 4; ++b) bins[b] += weights[b];
+      }
+    }
+  });
+  Joint joint{};
+  for (const Joint& part : parts)
+    for (std::size_t u = 0; u < kBins; ++u)
+      for (std::size_t c = 0; c < kBins; ++c) joint[u][c] += part[u][c];
+  return joint;
+}
+
+/// Information of a joint histogram, and ln(p(u, c) / p(c)).
+struct Information {
+  double nats = 0.0;
+  double count = 0.0;  ///< Samples.
+  Joint log_ratio{};
+};
+
+Information information_of(const Joint& joint) {
+  Information result;
+  std::array<double, kBins> us_share{}, ct_share{};
+  for (std::size_t u = 0; u < kBins; ++u)
+    for (std::size_t c = 0; c < kBins; ++c) {
+      us_share[u] += joint[u][c];
+      ct_share[c] += joint[u][c];
+      result.count += joint[u][c];
+    }
+  if (result.count <= 0.0) return result;
+  for (std::size_t u = 0; u < kBins; ++u)
+    for (std::size_t c = 0; c < kBins; ++c) {
+      if (joint[u][c] <= 0.0) continue;
+      result.log_ratio[u][c] = std::log(joint[u][c] / ct_share[c]);
+      result.nats += joint[u][c] / result.count * (result.log_ratio[u][c] - std::log(us_share[u] / result.count));
+    }
+  return result;
 }
 
 }  // namespace
@@ -41,39 +101,33 @@ Window window_of(double contrast) {
 SampledInformation::SampledInformation(std::span<const float> us) {
   us_bins_.reserve(us.size());
   for (const float contrast : us)
-    us_bins_.push_back(std::min(static_cast<std::size_t>(to_bin(static_cast<double>(contrast))), kBins - 1));
+    us_bins_.push_back(static_cast<std::uint8_t>(
+        std::min(static_cast<std::size_t>(to_bin(static_cast<double>(contrast))), kLastUsBin)));
 }
 
-double SampledInformation::evaluate(std::span<const double> ct, std::vector<double>& slopes) {
+double SampledInformation::value(std::span<const double> ct) const {
   TROCAR_CHECK(ct.size() == us_bins_.size());
-  std::array<std::array<double, kBins>, kBins> joint{};
-  const double share = 1.0 / static_cast<double>(ct.size());
-  for (std::size_t n = 0; n < ct.size(); ++n) {
-    const Window window = window_of(ct[n]);
-    for (std::size_t b = 0; b < 4; ++b) joint[us_bins_[n]][window.first + b] += share * window.weight[b];
-  }
-  std::array<double, kBins> us_share{}, ct_share{};
-  for (std::size_t u = 0; u < kBins; ++u)
-    for (std::size_t c = 0; c < kBins; ++c) {
-      us_share[u] += joint[u][c];
-      ct_share[c] += joint[u][c];
-    }
-  double information = 0.0;
-  std::array<std::array<double, kBins>, kBins> log_ratio{};
-  for (std::size_t u = 0; u < kBins; ++u)
-    for (std::size_t c = 0; c < kBins; ++c) {
-      if (joint[u][c] <= 0.0) continue;
-      log_ratio[u][c] = std::log(joint[u][c] / ct_share[c]);
-      information += joint[u][c] * (log_ratio[u][c] - std::log(us_share[u]));
-    }
+  return information_of(joint_of(us_bins_, ct)).nats;
+}
+
+double SampledInformation::evaluate(std::span<const double> ct, std::vector<double>& slopes) const {
+  TROCAR_CHECK(ct.size() == us_bins_.size());
+  const Information information = information_of(joint_of(us_bins_, ct));
   slopes.assign(ct.size(), 0.0);
-  for (std::size_t n = 0; n < ct.size(); ++n) {
-    if (std::abs(ct[n]) >= kLargest) continue;
-    const Window window = window_of(ct[n]);
-    for (std::size_t b = 0; b < 4; ++b)
-      slopes[n] += share / kWidth * window.slope[b] * log_ratio[us_bins_[n]][window.first + b];
-  }
-  return information;
+  if (information.count <= 0.0) return 0.0;
+  const double scale = 1.0 / (information.count * kWidth);
+  parallel_for(ct.size(), kPart, [&](std::size_t first, std::size_t last) {
+    for (std::size_t n = first; n < last; ++n) {
+      if (!(std::abs(ct[n]) < kLargest)) continue;  // also NaN
+      const Window window = window_of(ct[n]);
+      const double* ratios = information.log_ratio[us_bins_[n]].data() + window.first;
+      const std::array<double, 4> weight_slopes = slopes_at(window.t);
+      double sum = 0.0;
+      for (std::size_t b = 0; b < 4; ++b) sum += weight_slopes[b] * ratios[b];
+      slopes[n] = scale * sum;
+    }
+  });
+  return information.nats;
 }
 
 }  // namespace trocar::registration::detail

@@ -117,12 +117,13 @@ void keep_best(std::vector<Candidate>& candidates, std::size_t most) {
   if (candidates.size() > most) candidates.resize(most);
 }
 
-/// Values of the candidates, or with options the tops of the climbs from them; on two halves at the same time.
+/// Values of the candidates, or with options the tops of the climbs from them; in parallel.
 void evaluate(std::vector<Candidate>& candidates, const Level& level, const std::vector<Vec3>& points,
               const WorkingUltrasound& us, const std::optional<ClimbOptions>& options) {
-  const auto some = [&](std::size_t first) {
+  constexpr std::size_t kGrain = 4;
+  parallel_for(candidates.size(), kGrain, [&](std::size_t first, std::size_t last) {
     PoseMetric metric(level, points, us.centre);
-    for (std::size_t n = first; n < candidates.size(); n += 2) {
+    for (std::size_t n = first; n < last; ++n) {
       const Motion motion = motion_of(candidates[n].X_CU, us.centre);
       if (!options) {
         candidates[n].value = metric.value(motion);
@@ -131,8 +132,7 @@ void evaluate(std::vector<Candidate>& candidates, const Level& level, const std:
       const Summit summit = climb(metric, motion, *options);
       candidates[n] = {pose_of(summit.motion, us.centre), summit.value};
     }
-  };
-  parallel_invoke([&] { some(0); }, [&] { some(1); });
+  });
 }
 
 }  // namespace

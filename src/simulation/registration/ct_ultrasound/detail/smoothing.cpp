@@ -23,6 +23,18 @@ std::vector<float> kernel_of(double sigma_voxels) {
   return kernel;
 }
 
+/// Weighted sums of values `stride` apart, for each of the `count` values from `in`. Values at equal distances have
+/// equal weights.
+void add_taps(const float* in, std::int64_t stride, std::int64_t count, const std::vector<float>& kernel, float* out) {
+  const auto reach = static_cast<std::int64_t>(kernel.size() / 2);
+  const float* weights = kernel.data() + reach;
+  for (std::int64_t n = 0; n < count; ++n) out[n] = weights[0] * in[n];
+  for (std::int64_t t = 1; t <= reach; ++t) {
+    const float *before = in - t * stride, *after = in + t * stride;
+    for (std::int64_t n = 0; n < count; ++n) out[n] += weights[t] * (before[n] + after[n]);
+  }
+}
+
 /// `columns` neighbouring lines of `count` samples, `stride` apart.
 void filter_lines(float* first, std::int64_t columns, std::int64_t count, std::int64_t stride,
                   const std::vector<float>& kernel, std::vector<float>& copy) {
@@ -33,12 +45,7 @@ void filter_lines(float* first, std::int64_t columns, std::int64_t count, std::i
     std::copy(line, line + columns, copy.begin() + (n + reach) * columns);
   }
   for (std::int64_t n = 0; n < count; ++n) {
-    float* out = first + n * stride;
-    std::fill(out, out + columns, 0.0F);
-    for (std::size_t t = 0; t < kernel.size(); ++t) {
-      const float* in = copy.data() + (n + static_cast<std::int64_t>(t)) * columns;
-      for (std::int64_t c = 0; c < columns; ++c) out[c] += kernel[t] * in[c];
-    }
+    add_taps(copy.data() + (n + reach) * columns, columns, columns, kernel, first + n * stride);
   }
 }
 
@@ -52,9 +59,7 @@ void filter_rows(volume::FloatGrid& grid, const std::vector<float>& kernel) {
       float* row = grid.voxels.data() + static_cast<std::ptrdiff_t>(r) * count;
       for (std::int64_t n = -reach; n < count + reach; ++n)
         copy[static_cast<std::size_t>(n + reach)] = row[std::clamp<std::int64_t>(n, 0, count - 1)];
-      std::fill(row, row + count, 0.0F);
-      for (std::size_t t = 0; t < kernel.size(); ++t)
-        for (std::int64_t n = 0; n < count; ++n) row[n] += kernel[t] * copy[static_cast<std::size_t>(n) + t];
+      add_taps(copy.data() + reach, 1, count, kernel, row);
     }
   });
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <span>
 
@@ -33,112 +34,171 @@ volume::Index3 factors_of(const Vec3& spacing_mm, double target_mm) {
   return factors;
 }
 
-volume::FloatGrid every_block(const volume::FloatGrid& grid, std::int64_t factor) {
-  if (factor == 1) return grid;
+template <class T>
+volume::FloatGrid every_block(const volume::Grid<T>& grid, std::int64_t factor) {
   return block_means(grid, {0, 0, 0}, grid.geometry.size, {factor, factor, factor});
 }
 
 /// Position of a voxel in a grid of blocks, along one axis.
 struct BlockPosition {
-  std::int64_t low = 0, high = 0;
+  std::size_t low = 0, high = 0;
   float share = 0.0F;  ///< Of `high`.
 };
 
-BlockPosition block_position(std::int64_t n, std::int64_t factor, std::int64_t count) {
-  const double at = (static_cast<double>(n) - 0.5 * static_cast<double>(factor - 1)) / static_cast<double>(factor);
-  const double inside = std::clamp(at, 0.0, static_cast<double>(count - 1));
-  const auto low = static_cast<std::int64_t>(inside);
-  return {low, std::min(low + 1, count - 1), static_cast<float>(inside - static_cast<double>(low))};
+/// Positions of all voxels of an axis.
+std::vector<BlockPosition> block_positions(std::int64_t voxels, std::int64_t factor, std::int64_t blocks) {
+  std::vector<BlockPosition> positions;
+  for (std::int64_t n = 0; n < voxels; ++n) {
+    const double at = (static_cast<double>(n) - 0.5 * static_cast<double>(factor - 1)) / static_cast<double>(factor);
+    const double inside = std::clamp(at, 0.0, static_cast<double>(blocks - 1));
+    const auto low = static_cast<std::int64_t>(inside);
+    positions.push_back({static_cast<std::size_t>(low), static_cast<std::size_t>(std::min(low + 1, blocks - 1)),
+                         static_cast<float>(inside - static_cast<double>(low))});
+  }
+  return positions;
 }
 
-/// Trilinear values of a grid of blocks along a row of its voxels.
+float mix(float a, float b, float share) {
+  return a + share * (b - a);
+}
+
+/// Values of a grid of blocks along i, bilinear between its rows.
 void interpolate_row(const volume::FloatGrid& blocks, const BlockPosition& j, const BlockPosition& k,
-                     std::int64_t factor, std::vector<float>& line, std::vector<float>& row) {
-  const std::int64_t count = blocks.geometry.size[0];
-  line.resize(static_cast<std::size_t>(count));
-  for (std::int64_t i = 0; i < count; ++i) {
-    const float low = blocks[{i, j.low, k.low}] * (1.0F - j.share) + blocks[{i, j.high, k.low}] * j.share;
-    const float high = blocks[{i, j.low, k.high}] * (1.0F - j.share) + blocks[{i, j.high, k.high}] * j.share;
-    line[static_cast<std::size_t>(i)] = low * (1.0F - k.share) + high * k.share;
-  }
-  for (std::size_t i = 0; i < row.size(); ++i) {
-    const BlockPosition at = block_position(static_cast<std::int64_t>(i), factor, count);
-    row[i] =
-        line[static_cast<std::size_t>(at.low)] * (1.0F - at.share) + line[static_cast<std::size_t>(at.high)] * at.share;
-  }
+                     std::span<float> line) {
+  const auto row = [&](std::size_t at_j, std::size_t at_k) {
+    return &blocks[{0, static_cast<std::int64_t>(at_j), static_cast<std::int64_t>(at_k)}];
+  };
+  const float *near_low = row(j.low, k.low), *near_high = row(j.high, k.low);
+  const float *far_low = row(j.low, k.high), *far_high = row(j.high, k.high);
+  for (std::size_t i = 0; i < line.size(); ++i)
+    line[i] = mix(mix(near_low[i], near_high[i], j.share), mix(far_low[i], far_high[i], j.share), k.share);
 }
 
-/// Mean of the surroundings, and what a deviation from it is divided by; on a grid of blocks.
+/// Mean of the surroundings, and 1 over what a deviation from it is divided by; on a grid of blocks.
 struct Surroundings {
   volume::Index3 factors{};
-  volume::FloatGrid mean, deviation;
+  volume::FloatGrid mean, scale;
 };
 
-Surroundings find_surroundings(const volume::FloatGrid& grid, const volume::FloatGrid& weight, float floor) {
+/// Sums of weights, of weighted values and of their squares over blocks.
+template <class Weight>
+std::array<volume::FloatGrid, 3> sum_blocks(const volume::FloatGrid& grid, const Weight& weight,
+                                            const volume::Index3& factors) {
+  volume::GridGeometry geometry = grid.geometry;
+  for (std::size_t a = 0; a < 3; ++a) {
+    geometry.size[a] /= factors[a];
+    geometry.spacing_mm[static_cast<int>(a)] *= static_cast<double>(factors[a]);
+  }
+  std::array<volume::FloatGrid, 3> sums{volume::FloatGrid(geometry), volume::FloatGrid(geometry),
+                                        volume::FloatGrid(geometry)};
+  const auto width = static_cast<std::size_t>(factors[0]);
+  parallel_for(static_cast<std::size_t>(geometry.size[2]), 1, [&](std::size_t begin, std::size_t end) {
+    const auto last_k = static_cast<std::int64_t>(end) * factors[2];
+    for (std::int64_t k = static_cast<std::int64_t>(begin) * factors[2]; k < last_k; ++k)
+      for (std::int64_t j = 0; j < geometry.size[1] * factors[1]; ++j) {
+        std::size_t n = grid.geometry.offset({0, j, k});
+        const std::size_t row = geometry.offset({0, j / factors[1], k / factors[2]});
+        for (std::size_t block = row; block < row + static_cast<std::size_t>(geometry.size[0]); ++block) {
+          float weights = 0.0F, values = 0.0F, squares = 0.0F;
+          for (const std::size_t stop = n + width; n < stop; ++n) {
+            const float w = weight(n), v = grid.voxels[n];
+            weights += w;
+            values += w * v;
+            squares += w * v * v;
+          }
+          sums[0].voxels[block] += weights;
+          sums[1].voxels[block] += values;
+          sums[2].voxels[block] += squares;
+        }
+      }
+  });
+  return sums;
+}
+
+template <class Weight>
+Surroundings find_surroundings(const volume::FloatGrid& grid, const Weight& weight, float floor) {
   Surroundings around;
   around.factors = factors_of(grid.geometry.spacing_mm, 0.5 * kContrast_mm);
-  volume::FloatGrid first(grid.geometry), second(grid.geometry);
-  for (std::size_t n = 0; n < grid.voxels.size(); ++n) {
-    first.voxels[n] = weight.voxels[n] * grid.voxels[n];
-    second.voxels[n] = first.voxels[n] * grid.voxels[n];
-  }
-  const auto spread = [&](const volume::FloatGrid& g) {
-    volume::FloatGrid means = block_means(g, {0, 0, 0}, g.geometry.size, around.factors);
-    smooth(means, kContrast_mm);
-    return means;
-  };
-  const volume::FloatGrid sums = spread(weight), squares = spread(second);
-  around.mean = spread(first);
-  around.deviation = volume::FloatGrid(sums.geometry);
-  for (std::size_t n = 0; n < sums.voxels.size(); ++n) {
-    const float sum = std::max(sums.voxels[n], 1e-3F);
-    around.mean.voxels[n] /= sum;
-    const float mean = around.mean.voxels[n];
-    around.deviation.voxels[n] = std::sqrt(std::max(squares.voxels[n] / sum - mean * mean, 0.0F)) + floor;
+  for (std::size_t a = 0; a < 3; ++a) around.factors[a] = std::min(around.factors[a], grid.geometry.size[a]);
+  auto [weights, values, squares] = sum_blocks(grid, weight, around.factors);
+  for (volume::FloatGrid* sums : {&weights, &values, &squares}) smooth(*sums, kContrast_mm);
+  const auto per_block = static_cast<float>(around.factors[0] * around.factors[1] * around.factors[2]);
+  around.mean = volume::FloatGrid(weights.geometry);
+  around.scale = volume::FloatGrid(weights.geometry);
+  for (std::size_t n = 0; n < weights.voxels.size(); ++n) {
+    const float sum = std::max(weights.voxels[n], 1e-3F * per_block);
+    const float mean = values.voxels[n] / sum;
+    around.mean.voxels[n] = mean;
+    around.scale.voxels[n] = 1.0F / (std::sqrt(std::max(squares.voxels[n] / sum - mean * mean, 0.0F)) + floor);
   }
   return around;
 }
 
-/// Local contrast (R11).
-void to_local_contrast(volume::FloatGrid& grid, const volume::FloatGrid& weight, float floor) {
+/// Local contrast (R11). `weight(n)`: of voxel n.
+template <class Weight>
+void to_local_contrast(volume::FloatGrid& grid, const Weight& weight, float floor) {
   const Surroundings around = find_surroundings(grid, weight, floor);
   const auto& size = grid.geometry.size;
   const auto& few = around.mean.geometry.size;
+  std::array<std::vector<BlockPosition>, 3> positions;
+  for (std::size_t a = 0; a < 3; ++a) positions[a] = block_positions(size[a], around.factors[a], few[a]);
   parallel_for(static_cast<std::size_t>(size[1] * size[2]), 32, [&](std::size_t begin, std::size_t end) {
-    std::vector<float> line, mean(static_cast<std::size_t>(size[0])), deviation(static_cast<std::size_t>(size[0]));
-    for (std::size_t r = begin; r < end; ++r) {
-      const auto row = static_cast<std::int64_t>(r);
-      const BlockPosition j = block_position(row % size[1], around.factors[1], few[1]);
-      const BlockPosition k = block_position(row / size[1], around.factors[2], few[2]);
-      interpolate_row(around.mean, j, k, around.factors[0], line, mean);
-      interpolate_row(around.deviation, j, k, around.factors[0], line, deviation);
-      float* out = grid.voxels.data() + row * size[0];
-      for (std::size_t i = 0; i < mean.size(); ++i)
-        out[i] = std::clamp((out[i] - mean[i]) / deviation[i], -kFurthestContrast, kFurthestContrast);
+    std::vector<float> mean(static_cast<std::size_t>(few[0])), scale(static_cast<std::size_t>(few[0]));
+    for (std::size_t row = begin; row < end; ++row) {
+      const BlockPosition& j = positions[1][row % positions[1].size()];
+      const BlockPosition& k = positions[2][row / positions[1].size()];
+      interpolate_row(around.mean, j, k, mean);
+      interpolate_row(around.scale, j, k, scale);
+      float* out = grid.voxels.data() + row * positions[0].size();
+      for (const BlockPosition& i : positions[0]) {
+        const float contrast =
+            (*out - mix(mean[i.low], mean[i.high], i.share)) * mix(scale[i.low], scale[i.high], i.share);
+        *out++ = std::clamp(contrast, -kFurthestContrast, kFurthestContrast);
+      }
     }
   });
 }
 
-volume::FloatGrid to_float(const volume::MaskGrid& mask) {
-  volume::FloatGrid result(mask.geometry);
-  std::copy(mask.voxels.begin(), mask.voxels.end(), result.voxels.begin());
-  return result;
+std::uint32_t count_of_row(std::span<const std::uint8_t> row) {
+  std::uint32_t count = 0;
+  for (const std::uint8_t voxel : row) count += voxel;
+  return count;
+}
+
+/// Count, sum and sum of squares of the indices i of a row's usable voxels.
+struct RowSums {
+  std::uint32_t count = 0, sum = 0;
+  std::uint64_t squares = 0;
+};
+
+RowSums sums_of_row(std::span<const std::uint8_t> row) {
+  RowSums sums;
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    const std::uint32_t here = row[i] != 0 ? static_cast<std::uint32_t>(i) : 0U;
+    sums.count += row[i] != 0 ? 1U : 0U;
+    sums.sum += here;
+    sums.squares += static_cast<std::uint64_t>(here) * here;
+  }
+  return sums;
 }
 
 void find_centre(WorkingUltrasound& us) {
   const volume::GridGeometry& geometry = us.usable.geometry;
-  Vec3 sum = Vec3::Zero();
-  double squares = 0.0;
-  for (std::size_t n = 0; n < us.usable.voxels.size(); ++n) {
-    if (us.usable.voxels[n] == 0) continue;
-    const Vec3 p = geometry.centre_mm(geometry.index_of(n));
-    sum += p;
-    squares += p.squaredNorm();
-    ++us.usable_count;
+  const auto length = static_cast<std::size_t>(geometry.size[0]);
+  Vec3 sum = Vec3::Zero(), squares = Vec3::Zero();  // of indices
+  for (std::size_t row = 0; row * length < us.usable.voxels.size(); ++row) {
+    const RowSums sums = sums_of_row(std::span(us.usable.voxels).subspan(row * length, length));
+    const auto count = static_cast<double>(sums.count);
+    const Vec3 at = volume::to_vec3(geometry.index_of(row * length));
+    us.usable_count += sums.count;
+    sum += Vec3(static_cast<double>(sums.sum), count * at[1], count * at[2]);
+    squares += Vec3(static_cast<double>(sums.squares), count * at[1] * at[1], count * at[2] * at[2]);
   }
   if (us.usable_count == 0) return;
-  us.centre = sum / static_cast<double>(us.usable_count);
-  us.radius_mm = std::sqrt(std::max(1.0, squares / static_cast<double>(us.usable_count) - us.centre.squaredNorm()));
+  const Vec3 mean = sum / static_cast<double>(us.usable_count);
+  const Vec3 variance = squares / static_cast<double>(us.usable_count) - mean.cwiseAbs2();
+  us.centre = geometry.to_mm(mean);
+  us.radius_mm = std::sqrt(std::max(1.0, variance.dot(geometry.spacing_mm.cwiseAbs2())));
 }
 
 }  // namespace
@@ -184,31 +244,43 @@ volume::FloatGrid prepare_ct(const volume::CtGrid& ct, const Vec3& centre_C, dou
 Level make_level(const WorkingUltrasound& us, const volume::FloatGrid& ct_U, double us_sigma_mm, double ct_sigma_mm,
                  std::int64_t factor) {
   // Gray levels beside the image do not count: both sums are smoothed and divided.
-  volume::FloatGrid weight = to_float(us.inside);
   volume::FloatGrid sum = us.gray;
-  for (std::size_t n = 0; n < sum.voxels.size(); ++n) sum.voxels[n] *= weight.voxels[n];
+  for (std::size_t n = 0; n < sum.voxels.size(); ++n) sum.voxels[n] *= static_cast<float>(us.inside.voxels[n]);
   Level level{every_block(sum, factor), every_block(ct_U, factor)};
-  volume::FloatGrid weights = every_block(weight, factor);
+  volume::FloatGrid weights = every_block(us.inside, factor);
   smooth(level.us, us_sigma_mm);
   smooth(weights, us_sigma_mm);
   for (std::size_t n = 0; n < level.us.voxels.size(); ++n) level.us.voxels[n] /= std::max(weights.voxels[n], 1e-3F);
-  to_local_contrast(level.us, every_block(to_float(us.lit), factor), kGrayFloor);
+  const volume::FloatGrid lit = every_block(us.lit, factor);
+  to_local_contrast(
+      level.us, [&](std::size_t n) { return lit.voxels[n]; }, kGrayFloor);
   smooth(level.ct, ct_sigma_mm);
-  to_local_contrast(level.ct, volume::FloatGrid(level.ct.geometry, 1.0F), kHuFloor);
+  to_local_contrast(
+      level.ct, [](std::size_t) { return 1.0F; }, kHuFloor);
   return level;
 }
 
 std::vector<Vec3> sample_usable(const WorkingUltrasound& us, std::size_t count, std::uint64_t seed) {
   const volume::GridGeometry& geometry = us.usable.geometry;
+  const auto length = static_cast<std::size_t>(geometry.size[0]);
+  const double stride = std::max(1.0, static_cast<double>(us.usable_count) / static_cast<double>(count));
   Random random(seed);
-  const double share = static_cast<double>(count) / static_cast<double>(us.usable_count);
   std::vector<Vec3> points;
-  points.reserve(count + count / 8);
-  for (std::size_t n = 0; n < us.usable.voxels.size(); ++n) {
-    if (us.usable.voxels[n] == 0 || random.uniform() >= share) continue;
-    Vec3 index = volume::to_vec3(geometry.index_of(n));
-    for (int a = 0; a < 3; ++a) index[a] += random.uniform() - 0.5;
-    points.push_back(geometry.to_mm(index));
+  points.reserve(count + 1);
+  std::size_t before = 0;  // usable voxels of the rows before
+  auto next = static_cast<std::size_t>(stride * random.uniform());
+  for (std::size_t row = 0; row * length < us.usable.voxels.size(); ++row) {
+    const auto voxels = std::span(us.usable.voxels).subspan(row * length, length);
+    const std::size_t after = before + count_of_row(voxels);
+    const Vec3 start = volume::to_vec3(geometry.index_of(row * length));
+    for (std::size_t i = 0; next < after; ++i) {
+      if (voxels[i] == 0 || before++ < next) continue;
+      const Vec3 within(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5);
+      points.push_back(geometry.to_mm(start + Vec3(static_cast<double>(i), 0.0, 0.0) + within));
+      next =
+          std::max(before, static_cast<std::size_t>(stride * (static_cast<double>(points.size()) + random.uniform())));
+    }
+    before = after;
   }
   return points;
 }

@@ -37,7 +37,8 @@ struct Level {
 Level make_level(const WorkingUltrasound& us, const volume::FloatGrid& ct_U, double us_sigma_mm, double ct_sigma_mm,
                  std::int64_t factor);
 
-/// About `count` seeded points in the usable voxels, each anywhere within its voxel.
+/// About `count` seeded points, each anywhere within a usable voxel of its own, spread evenly over these in the order
+/// of memory.
 std::vector<Vec3> sample_usable(const WorkingUltrasound& us, std::size_t count, std::uint64_t seed);
 
 }  // namespace trocar::registration::detail

@@ -5,8 +5,9 @@
 #include <memory>
 #include <span>
 
-/// ITK's metric behind plain types: ITK brings an Eigen of its own, so a file that includes ITK must not include ours.
-namespace trocar::registration::detail {
+/// ITK's metric behind plain types, the reference of PoseMetric: ITK brings an Eigen of its own, so a file that
+/// includes ITK must not include ours.
+namespace trocar::registration::testing {
 
 /// A volume of floats in LPS mm, i running fastest; the owner keeps the voxels alive.
 struct ImageView {
@@ -43,4 +44,4 @@ class MattesItk {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace trocar::registration::detail
+}  // namespace trocar::registration::testing

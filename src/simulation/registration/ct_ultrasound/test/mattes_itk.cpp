@@ -1,4 +1,4 @@
-#include "registration/ct_ultrasound/detail/mattes_itk.h"
+#include "mattes_itk.h"
 
 #include <itkEuler3DTransform.h>
 #include <itkImage.h>
@@ -9,7 +9,7 @@
 #include <exception>
 #include <mutex>
 
-namespace trocar::registration::detail {
+namespace trocar::registration::testing {
 namespace {
 
 using Image = itk::Image<float, 3>;
@@ -124,4 +124,4 @@ MattesItk::Slope MattesItk::value_and_gradient(const MotionNumbers& motion) {
   }
 }
 
-}  // namespace trocar::registration::detail
+}  // namespace trocar::registration::testing
