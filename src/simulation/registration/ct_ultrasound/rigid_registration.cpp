@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "core/parallel.h"
+#include "core/part_of_progress.h"
 #include "core/random.h"
 #include "registration/ct_ultrasound/detail/pose_metric.h"
 #include "registration/ct_ultrasound/detail/skin_starts.h"
@@ -190,14 +191,14 @@ Work make_work(detail::WorkingUltrasound us, const volume::FloatGrid& ct_U, std:
 
 Result<RigidRegistration> register_rigid(const volume::CtGrid& ct, const volume::LabelGrid& us, const Beams& beams,
                                          const RigidOptions& options, const Progress& progress) {
-  const auto cancelled = [&] { return options.is_cancelled && options.is_cancelled(); };
+  const std::function<bool()> cancelled = [&] { return options.is_cancelled && options.is_cancelled(); };
   report(progress, "preparing the volumes", 0.0);
   TROCAR_TRY(detail::WorkingUltrasound prepared, detail::prepare_ultrasound(us, beams));
   const std::vector<Vec3> probes = detail::sample_usable(prepared, 1000, options.seed);
   Pose X_CU = options.X_CU;
   if (options.is_search) {
-    report(progress, "searching from the skin", 0.1);
-    TROCAR_TRY(X_CU, detail::search_from_skin(ct, prepared, beams, options.seed));
+    TROCAR_TRY(X_CU,
+               detail::search_from_skin(ct, prepared, beams, options.seed, cancelled, part_of(progress, 0.1, 0.3)));
   } else if (overlap_of(ct.geometry, probes, X_CU) < kLeastOverlap) {
     return fail("the ultrasound and the CT do not overlap at the start", {},
                 "give --landmarks, or --init search if the headers do not share a frame");

@@ -118,12 +118,14 @@ void keep_best(std::vector<Candidate>& candidates, std::size_t most) {
 }
 
 /// Values of the candidates, or with options the tops of the climbs from them; in parallel.
+/// `is_cancelled` is polled for each; the values are incomplete then.
 void evaluate(std::vector<Candidate>& candidates, const Level& level, const std::vector<Vec3>& points,
-              const WorkingUltrasound& us, const std::optional<ClimbOptions>& options) {
+              const WorkingUltrasound& us, const std::optional<ClimbOptions>& options,
+              const std::function<bool()>& is_cancelled) {
   constexpr std::size_t kGrain = 4;
   parallel_for(candidates.size(), kGrain, [&](std::size_t first, std::size_t last) {
     PoseMetric metric(level, points, us.centre);
-    for (std::size_t n = first; n < last; ++n) {
+    for (std::size_t n = first; n < last && !is_cancelled(); ++n) {
       const Motion motion = motion_of(candidates[n].X_CU, us.centre);
       if (!options) {
         candidates[n].value = metric.value(motion);
@@ -138,7 +140,7 @@ void evaluate(std::vector<Candidate>& candidates, const Level& level, const std:
 }  // namespace
 
 Result<Pose> search_from_skin(const volume::CtGrid& ct, const WorkingUltrasound& us, const Beams& beams,
-                              std::uint64_t seed) {
+                              std::uint64_t seed, const std::function<bool()>& is_cancelled, const Progress& progress) {
   const volume::MaskGrid body = find_body(ct);
   std::vector<Candidate> candidates = candidates_at(find_skin(body), beams, us.centre);
   const std::vector<Vec3> few_points = sample_usable(us, kBodySamples, seed);
@@ -149,19 +151,29 @@ Result<Pose> search_from_skin(const volume::CtGrid& ct, const WorkingUltrasound&
   constexpr double kWhole_mm = 1e4;
   const volume::FloatGrid ct_C = prepare_ct(ct, ct.geometry.to_mm(Vec3::Zero()), kWhole_mm);
   const Level coarse = make_level(us, ct_C, kCoarse_mm, kCoarse_mm, 2);
-  evaluate(candidates, coarse, sample_usable(us, kSamples, seed), us, std::nullopt);
-  keep_best(candidates, kClimbed);
-  evaluate(candidates, coarse, sample_usable(us, kSamples, seed), us, ClimbOptions{us.radius_mm, 5.0, 0.7, 30});
-  keep_in_body(candidates, body, few_points);
-  keep_best(candidates, kRefined);
-  evaluate(candidates, coarse, sample_usable(us, kRefinedSamples, seed), us, ClimbOptions{us.radius_mm, 2.0, 0.4, 30});
-  keep_in_body(candidates, body, few_points);
-  keep_best(candidates, kFinal);
   const Level fine = make_level(us, ct_C, kUsFine_mm, kCtFine_mm, 1);
-  evaluate(candidates, fine, sample_usable(us, kRefinedSamples, seed), us, ClimbOptions{us.radius_mm, 1.5, 0.2, 30});
+  /// Values of the candidates at a level, or climbs from them; the best are kept.
+  struct Stage {
+    const Level& level;
+    std::size_t samples;
+    std::optional<ClimbOptions> climb;
+    std::size_t kept;
+  };
+  const Stage stages[] = {{coarse, kSamples, {}, kClimbed},
+                          {coarse, kSamples, ClimbOptions{us.radius_mm, 5.0, 0.7, 30}, kRefined},
+                          {coarse, kRefinedSamples, ClimbOptions{us.radius_mm, 2.0, 0.4, 30}, kFinal},
+                          {fine, kRefinedSamples, ClimbOptions{us.radius_mm, 1.5, 0.2, 30}, 1}};
+  double done = 0.2;
+  for (const Stage& stage : stages) {
+    report(progress, "searching from the skin", done);
+    done += 0.2;
+    evaluate(candidates, stage.level, sample_usable(us, stage.samples, seed), us, stage.climb, is_cancelled);
+    if (is_cancelled()) return fail("the search was cancelled", {}, "start it again");
+    if (stage.climb) keep_in_body(candidates, body, few_points);
+    keep_best(candidates, stage.kept);
+  }
   if (candidates.empty())
     return fail("no pose with the transducer on the skin matches", {}, "give --landmarks, or a CT of the region");
-  keep_best(candidates, 1);
   return candidates.front().X_CU;
 }
 
