@@ -65,8 +65,9 @@ TEST(KidneyParts, CortexIsOutside) {
     const Vec3 p = volume::to_vec3(scene.geometry.index_of(at)) - Vec3(45.0, 40.0, 70.0);
     // 5 mm below the surface everywhere: the ellipsoid whose axes are shorter by that.
     const bool is_outer = p.cwiseQuotient(Vec3(21.0, 17.0, 49.0)).squaredNorm() > 1.0;
-    if (is_outer) ASSERT_EQ(scene.tissue[at], before.tissue[at]);
-    if (before.tissue[at] != kKidney) ASSERT_EQ(scene.tissue[at], before.tissue[at]);
+    if (is_outer || before.tissue[at] != kKidney) {
+      ASSERT_EQ(scene.tissue[at], before.tissue[at]);
+    }
   }
 }
 
