@@ -13,8 +13,8 @@ namespace {
 
 constexpr std::size_t kMotionsOfThree = 40;
 constexpr std::size_t kMotionsOfOne = 400;
-constexpr std::size_t kAligned = 160;   ///< Motions that are aligned at the coarse detail.
-constexpr std::size_t kRefined = 12;    ///< Of those, that are aligned at the middle detail.
+constexpr std::size_t kAligned = 40;  ///< Motions that are aligned at the coarse detail, after all were at the widest.
+constexpr std::size_t kRefined = 12;  ///< Of those, that are aligned at the middle detail.
 constexpr double kSameMotion_mm = 5.0;  ///< Motions nearer than this at the corners are one.
 
 /// Significance of a correlation: the larger the overlap and the correlation, the larger. Speckle smoothed by sigma is
@@ -122,20 +122,6 @@ std::vector<Pose> best_poses(const std::vector<Candidate>& candidates, std::size
   return poses;
 }
 
-/// Proposals of the highest correlation at the coarse detail.
-std::vector<Pose> screen(const PreparedVolume& a, const PreparedVolume& b, const std::vector<Pose>& proposals) {
-  std::vector<Candidate> candidates(proposals.size());
-  parallel_for(proposals.size(), 4, [&](std::size_t first, std::size_t last) {
-    for (std::size_t n = first; n < last; ++n) {
-      const DetailLevel& level = a.details.front();
-      candidates[n].alignment = correlate(level.points, b.details.front().values, proposals[n]);
-      candidates[n].significance = significance(candidates[n].alignment, level);
-    }
-  });
-  sort_best_first(candidates);
-  return best_poses(candidates, kAligned);
-}
-
 double logistic(double x) {
   return 1.0 / (1.0 + std::exp(-x));
 }
@@ -164,8 +150,9 @@ Result<PairRegistration> register_pair(const PreparedVolume& a, const PreparedVo
   TROCAR_TRY(result.matches, match(a.keypoints, b.keypoints, options.match));
   const std::vector<PointPair> pairs = point_pairs(a, b, result.matches);
   TROCAR_TRY(const std::vector<Pose> proposals, propose(a, b, pairs, options));
-  const std::vector<Candidate> coarse = align_at(a, b, 0, screen(a, b, proposals));
-  const std::vector<Candidate> middle = align_at(a, b, 1, best_poses(coarse, kRefined));
+  const std::vector<Candidate> widest = align_at(a, b, 0, proposals);
+  const std::vector<Candidate> coarse = align_at(a, b, 1, best_poses(widest, kAligned));
+  const std::vector<Candidate> middle = align_at(a, b, 2, best_poses(coarse, kRefined));
   result.confidence = confidence_of(middle);
   result.significance = middle.empty() ? 0.0 : middle.front().significance;
   if (middle.empty()) return result;

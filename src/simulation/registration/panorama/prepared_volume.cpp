@@ -18,7 +18,7 @@ struct Detail {
   int stride;
 };
 /// Wide maxima first, then accuracy.
-constexpr std::array<Detail, 3> kDetails = {{{4.0, 6}, {2.0, 3}, {1.0, 1}}};
+constexpr std::array<Detail, 4> kDetails = {{{6.0, 9}, {4.0, 6}, {2.0, 3}, {1.0, 1}}};
 constexpr std::size_t kLeastUsable = 1000;  ///< Voxels.
 
 std::size_t count_usable(const volume::MaskGrid& usable) {
@@ -46,6 +46,20 @@ volume::MaskGrid comparable_voxels(const PreparedVolume& volume, const Preparati
   return volume::erode(usable, options.widening_voxels * voxel_mm);
 }
 
+/// Smoothed gray levels for comparisons.
+void add_details(PreparedVolume& volume, const volume::FloatGrid& flat, const PreparationOptions& options) {
+  const double spacing_mm = options.scale_space.spacing_mm;
+  const double voxel_mm = spacing_mm > 0.0 ? spacing_mm : std::cbrt(volume.gray.geometry.voxel_volume_mm3());
+  const volume::MaskGrid narrowed = comparable_voxels(volume, options, voxel_mm);
+  for (const Detail& detail : kDetails) {
+    DetailLevel level;
+    level.sigma_mm = detail.sigma_voxels * voxel_mm;
+    level.values = smooth_usable(flat, narrowed, level.sigma_mm);
+    level.points = alignment_points(level.values, detail.stride);
+    volume.details.push_back(std::move(level));
+  }
+}
+
 Status prepare_steps(PreparedVolume& volume, const PreparationOptions& options, const Progress& progress) {
   if (!(options.widening_voxels >= 0.0 && options.widening_voxels <= 20.0))
     return fail_usage("the widening of shadows is out of range", fmt::format("{:g}", options.widening_voxels),
@@ -66,16 +80,7 @@ Status prepare_steps(PreparedVolume& volume, const PreparationOptions& options, 
   TROCAR_TRY(volume.keypoints.features, describe(space, volume.keypoints.keypoints, options.descriptors));
   volume.keypoints.gray = gray_histograms(volume.gray, volume.region.usable, volume.keypoints.keypoints);
   report(progress, "smoothing", 0.8);
-  const double spacing_mm = options.scale_space.spacing_mm;
-  const double voxel_mm = spacing_mm > 0.0 ? spacing_mm : std::cbrt(volume.gray.geometry.voxel_volume_mm3());
-  const volume::MaskGrid narrowed = comparable_voxels(volume, options, voxel_mm);
-  for (const Detail& detail : kDetails) {
-    DetailLevel level;
-    level.sigma_mm = detail.sigma_voxels * voxel_mm;
-    level.values = smooth_usable(flat, narrowed, level.sigma_mm);
-    level.points = alignment_points(level.values, detail.stride);
-    volume.details.push_back(std::move(level));
-  }
+  add_details(volume, flat, options);
   return {};
 }
 
