@@ -201,7 +201,7 @@ Result<RigidRegistration> register_rigid(const volume::CtGrid& ct, const volume:
                detail::search_from_skin(ct, prepared, beams, options.seed, cancelled, part_of(progress, 0.1, 0.3)));
   } else if (overlap_of(ct.geometry, probes, X_CU) < kLeastOverlap) {
     return fail("the ultrasound and the CT do not overlap at the start", {},
-                "give --landmarks, or --init search if the headers do not share a frame");
+                "give landmarks, or search from the skin if the headers do not share a frame");
   }
   if (cancelled()) return cancellation();
   const volume::FloatGrid ct_C = detail::prepare_ct(ct, X_CU * prepared.centre, prepared.radius_mm);
@@ -222,7 +222,7 @@ Result<RigidRegistration> register_rigid(const volume::CtGrid& ct, const volume:
   });
   if (middle.empty())
     return fail(fmt::format("no pose within {:g} mm of the start matches", options.reach_mm), {},
-                "give --landmarks, or --init search");
+                "give landmarks, or search from the skin");
   if (cancelled()) return cancellation();
   const Summit summit = refine(work, best_distinct(middle, work, 1).front().motion);
   report(progress, "checking the result", 0.9);

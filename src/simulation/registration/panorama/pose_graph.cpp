@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/check.h"
+
 namespace trocar::registration {
 namespace {
 
@@ -182,6 +184,7 @@ class Solver {
 }  // namespace
 
 PoseGraph solve_pose_graph(std::size_t nodes, const std::vector<PoseEdge>& edges, const PoseGraphOptions& options) {
+  TROCAR_CHECK(options.arm_mm > 0.0 && options.largest_mm > 0.0 && options.robust_mm > 0.0);
   Solver solver(nodes, edges, options);
   do {
     solver.grow_tree();

@@ -17,6 +17,7 @@ struct PoseEdge {
   double strength = 1.0;  ///< Of two contradicting edges, the weaker one is removed.
 };
 
+/// All above 0 (checked).
 struct PoseGraphOptions {
   double arm_mm = 40.0;     ///< Half the size of a volume: length at which a rotation counts as a distance.
   double largest_mm = 3.0;  ///< Largest contradiction of an edge with the others.

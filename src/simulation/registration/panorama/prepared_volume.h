@@ -15,8 +15,7 @@ namespace trocar::registration {
 struct PreparationOptions {
   std::optional<double> shadow_threshold;  ///< Gray level; estimated from the volume if empty.
   ScaleSpaceOptions scale_space;
-  /// More keypoints than the default: volumes with little structure have few in common.
-  KeypointOptions keypoints{.least_contrast = 0.07};
+  KeypointOptions keypoints;
   DescriptorOptions descriptors;
   /// Of a fan: tissue nearer to the face is pressed out of shape by it, so that it is not compared. Assumed; range
   /// 0..200.

@@ -36,18 +36,18 @@ Mat3 beam_axes(const Mat3& R_PV, const Axis& axis) {
 Result<std::vector<double>> numbers(const HeaderFields& fields, const std::string& key, std::size_t count) {
   const auto found = fields.find(key);
   if (found == fields.end())
-    return fail(fmt::format("the header of the fan has no {}", key), {}, "give --beam-axis, or complete the header");
+    return fail(fmt::format("the header of the fan has no {}", key), {}, "give a beam axis, or complete the header");
   std::istringstream stream(found->second);
   std::vector<double> values;
   for (std::string word; stream >> word;) {
     const auto value = parse_number<double>(word);
     if (!value || !std::isfinite(*value))
-      return fail(fmt::format("{} is not a number", key), found->second, "correct the header, or give --beam-axis");
+      return fail(fmt::format("{} is not a number", key), found->second, "correct the header, or give a beam axis");
     values.push_back(*value);
   }
   if (values.size() != count)
     return fail(fmt::format("{} has {} numbers, not {}", key, values.size(), count), found->second,
-                "correct the header, or give --beam-axis");
+                "correct the header, or give a beam axis");
   return values;
 }
 
@@ -55,7 +55,7 @@ Result<double> number_between(const HeaderFields& fields, const std::string& key
   TROCAR_TRY(const std::vector<double> value, numbers(fields, key, 1));
   if (value[0] < low || value[0] > high)
     return fail(fmt::format("{} is not within {:g}..{:g}", key, low, high), fmt::format("{:g}", value[0]),
-                "correct the header, or give --beam-axis");
+                "correct the header, or give a beam axis");
   return value[0];
 }
 
@@ -90,7 +90,7 @@ Result<Beams> Beams::from_header(const HeaderFields& fields, const volume::GridG
   const std::optional<Axis> axis = parse_axis(axis_name);
   if (!axis)
     return fail("trocar_beam_axis is not a direction along an axis of the volume", axis_name,
-                "correct the header, or give --beam-axis");
+                "correct the header, or give a beam axis");
   Beams beams;
   beams.is_fan_ = true;
   beams.R_PB_ = beam_axes(geometry.R_PV, *axis);

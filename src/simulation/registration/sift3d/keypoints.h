@@ -8,7 +8,7 @@
 namespace trocar::registration {
 
 struct KeypointOptions {
-  double least_contrast = 0.1;  ///< Of the difference of Gaussians, local standard deviations of gray. Range 0..10.
+  double least_contrast = 0.07;  ///< Of the difference of Gaussians, local standard deviations of gray. Range 0..10.
   /// Differences are multiplied by (sigma / first sigma)^scale_exponent, because speckle falls with the scale. Range
   /// 0..1.5; 0: plain differences, 1.5: speckle is equal at all scales.
   double scale_exponent = 1.0;

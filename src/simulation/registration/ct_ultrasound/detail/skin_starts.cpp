@@ -147,7 +147,7 @@ Result<Pose> search_from_skin(const volume::CtGrid& ct, const WorkingUltrasound&
   keep_in_body(candidates, body, few_points);
   if (candidates.empty())
     return fail("no place on the skin of the CT has room for the ultrasound", {},
-                "give --landmarks, or a CT of the region");
+                "give landmarks, or a CT of the region");
   constexpr double kWhole_mm = 1e4;
   const volume::FloatGrid ct_C = prepare_ct(ct, ct.geometry.to_mm(Vec3::Zero()), kWhole_mm);
   const Level coarse = make_level(us, ct_C, kCoarse_mm, kCoarse_mm, 2);
@@ -173,7 +173,7 @@ Result<Pose> search_from_skin(const volume::CtGrid& ct, const WorkingUltrasound&
     keep_best(candidates, stage.kept);
   }
   if (candidates.empty())
-    return fail("no pose with the transducer on the skin matches", {}, "give --landmarks, or a CT of the region");
+    return fail("no pose with the transducer on the skin matches", {}, "give landmarks, or a CT of the region");
   return candidates.front().X_CU;
 }
 

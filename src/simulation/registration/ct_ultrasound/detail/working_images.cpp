@@ -221,7 +221,7 @@ Result<WorkingUltrasound> prepare_ultrasound(const volume::LabelGrid& gray, cons
   if (us.usable_count < std::min(kFewestUsable, std::max<std::size_t>(fewest, 500)))
     return fail(fmt::format("{} of {} voxels of the ultrasound show tissue: the rest is shadow or not imaged",
                             us.usable_count, us.usable.voxels.size()),
-                {}, "check --beam-axis, or give a volume with more tissue");
+                {}, "check the beam axis, or give a volume with more tissue");
   return us;
 }
 
