@@ -59,6 +59,8 @@ const std::vector<HeaderRule>& header_rules() {
         {"SDL", {"sdl2"}},
         {"spnav.h", {"spnav"}},
         {"boost/", {"boost"}},
+        {"dcmtk/", {"dcmtk"}},
+        {"httplib.h", {"httplib"}},
     };
     for (const std::string_view rendering :
          {"vtkActor", "vtkCamera", "vtkLight", "vtkOpenGL", "vtkPolyDataMapper", "vtkProp", "vtkRender", "vtkShader",
