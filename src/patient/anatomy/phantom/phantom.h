@@ -17,6 +17,8 @@ struct PhantomInfo {
   std::string name;  ///< "abdomen".
   std::string description;
   std::vector<std::string> tasks;  ///< Names of the tasks that it supports.
+  int difficulty = 0;              ///< 1 (easiest) to 5; 0: a test scene.
+  std::string briefing = {};       ///< What the trainee is told of the patient; empty: the description says it all.
 };
 const std::vector<PhantomInfo>& embedded_patients();
 
