@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "anatomy/label_table.h"
+#include "anatomy/posture.h"
 #include "geometry/segment.h"
 #include "geometry/triangle_mesh.h"
 #include "volume/grid.h"
@@ -36,6 +37,7 @@ struct VirtualPatient {
   volume::LabelGrid labels;             ///< Structures, and inside the body fat and muscle found from HU.
   LabelTable label_table;
   volume::FloatGrid skin_distance_mm;  ///< Signed distance to the skin, negative inside the body.
+  Posture posture = Posture::kSupine;  ///< How the patient lay in the scanner, and lies for the puncture.
   std::vector<Landmark> landmarks;
   std::vector<NeedlePath> paths;  ///< Expert paths.
   std::string content_hash;       ///< Hash of CT, labels and label table (hash_patient).

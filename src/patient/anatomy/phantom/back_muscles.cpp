@@ -9,16 +9,18 @@
 namespace trocar::anatomy::phantom {
 namespace {
 
+constexpr float kAcrossMm = 45.0F;  ///< A crooked spine brings the muscles of a side over the midline.
+
 /// Multifidus next to the spinous processes, longissimus and iliocostalis outside it, with a cleft of fat in between.
 void add_erector_spinae(Anatomy& anatomy, float sign) {
   const std::uint8_t fat = anatomy.label("fat");
   const auto& noise = anatomy.noise;
   const std::string side = side_of(sign);
   const std::uint8_t erector = anatomy.label("autochthon" + side);
-  const auto bellies = [sign, &data = anatomy.data.back_muscles, &spine = anatomy.data.spine](const Place& place) {
-    const float x = sign * place.p.x();
-    const float thoracic = data.chest_z.share(place.p.z());
-    const float y = place.p.y() - spine.y(place.p.z());
+  const auto bellies = [sign, &data = anatomy.data.back_muscles](const Place& place) {
+    const float x = sign * place.spine.x();
+    const float thoracic = data.chest_z.share(place.spine.z());
+    const float y = place.spine.y();
     const Ellipse& inner = data.multifidus;
     const Ellipse& low = data.outer_lumbar;
     const Ellipse& high = data.outer_thoracic;
@@ -28,8 +30,9 @@ void add_erector_spinae(Anatomy& anatomy, float sign) {
                           mix(low.radius_x, high.radius_x, thoracic), mix(low.radius_y, high.radius_y, thoracic));
     return std::pair{multifidus, outer};
   };
-  const Box back{Vec3f(sign < 0.0F ? -75.0F : 0.0F, 40.0F, -kHalfHeight - 5.0F),
-                 Vec3f(sign < 0.0F ? 0.0F : 75.0F, 130.0F, kHalfHeight + 5.0F)};
+  Box back = whole_box();
+  (sign < 0.0F ? back.high : back.low).x() = -sign * kAcrossMm;
+  back.low.y() = 20.0F;
   anatomy.add({"autochthon" + side, back,
                [=](const Place& place) {
                  const auto [multifidus, outer] = bellies(place);
@@ -58,7 +61,7 @@ void add_quadratus_lumborum(Anatomy& anatomy, float sign) {
   const BackMuscleData::QuadratusLumborum& data = anatomy.data.back_muscles.quadratus_lumborum;
   const Vec3f quadratus(sign * data.x_mm, data.y_mm, 0.0F);
   anatomy.add_plain(
-      "muscle", warped(Box{Vec3f(quadratus.x() - 28.0F, 40.0F, -125.0F), Vec3f(quadratus.x() + 28.0F, 80.0F, 28.0F)}),
+      "muscle", warped(Box{Vec3f(quadratus.x() - 28.0F, 40.0F, -140.0F), Vec3f(quadratus.x() + 28.0F, 80.0F, 28.0F)}),
       [=, &data](const Place& place) {
         const float widening = data.wider_z.share(place.p.z());
         const Vec3f u = place.q - quadratus;

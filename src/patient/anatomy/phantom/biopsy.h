@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "anatomy/patient.h"
+#include "anatomy/phantom/bile_ducts.h"
 #include "anatomy/phantom/structure.h"
 #include "core/result.h"
 
@@ -38,7 +39,8 @@ Result<BiopsyPlan> plan_biopsy(const Anatomy& anatomy, const PathMargins& margin
 
 void add_lesions(Anatomy& anatomy, const BiopsyPlan& plan);
 
-/// Portal and hepatic veins inside the liver, grown by rule around lesions and path.
-void add_liver_vessels(Anatomy& anatomy, const BiopsyPlan& plan);
+/// Portal and hepatic veins inside the liver, grown by rule around lesions and path, with bile ducts and arteries beside
+/// the portal veins. Returns the ducts.
+DuctTree add_liver_vessels(Anatomy& anatomy, const BiopsyPlan& plan);
 
 }  // namespace trocar::anatomy::phantom

@@ -48,9 +48,13 @@ void add_loop(Anatomy& anatomy, const std::string& name, std::vector<Cone> cones
     const float d = hit.distance + folds.depth_mm * (1.0F - fold) + 1.5F * noise(place.p / 14.0F);
     return smooth_max(d, place.cavity + 4.0F, 4.0F);
   };
-  // Fat around the loop separates it from its neighbours.
+  // Fat around the loop separates it from its neighbours; in free fluid only where it hangs on its mesentery.
+  const bool has_fluid = anatomy.body.ascites_ml > 0.0;
   anatomy.add({"bowel_fat", warped(tube.bounds()),
-               [=](const Place& place) { return smooth_max(tube.distance(place.q) - 1.5F, place.cavity + 3.0F, 3.0F); },
+               [=, &anatomy](const Place& place) {
+                 const float around = smooth_max(tube.distance(place.q) - 1.5F, place.cavity + 3.0F, 3.0F);
+                 return has_fluid ? std::max(around, mesentery_distance(anatomy, place)) : around;
+               },
                [=](const Place&, float, const Brush&) {
                  return Paint{-92.0F, fat};
                }});
@@ -84,11 +88,20 @@ Course small_bowel_course(const SmallBowelData& data, Random& random) {
   return knots;
 }
 
+/// Loops gather about the root of the mesentery and float up in free fluid.
+Course floating(const Anatomy& anatomy, Course course) {
+  const float share = floating_share(anatomy.body);
+  const Vec3f middle(6.0F, -38.0F, -98.0F);
+  const Vec3f up = floating_mm(anatomy.body) * floating_direction(anatomy);
+  for (Knot& knot : course) knot.p = middle + (1.0F - 0.2F * share) * (knot.p - middle) + up;
+  return course;
+}
+
 void add_small_bowel(Anatomy& anatomy) {
   Random random = anatomy.random("small_bowel");
   const ValueNoise content(anatomy.seed ^ 0x626f776cU);
   const SmallBowelData& data = anatomy.data.small_bowel;
-  add_loop(anatomy, "small_bowel", chain(small_bowel_course(data, random), 5), data.folds,
+  add_loop(anatomy, "small_bowel", chain(floating(anatomy, small_bowel_course(data, random)), 5), data.folds,
            [content](const TubeHit& hit) {
              const float along = content(Vec3f(hit.arc_mm / 70.0F, 3.5F, 8.5F));
              return Lumen{2.1F, 98.0F, 30.0F + 22.0F * content(Vec3f(hit.arc_mm / 40.0F, 9.5F, 1.5F)),
@@ -109,10 +122,10 @@ void add_colon(Anatomy& anatomy) {
   const auto jitter = [&](float mm) { return static_cast<float>(random.uniform(-mm, mm)); };
   const float dip = jitter(data.hanging_spread_mm);
   Course course = data.course;
-  for (std::size_t n = data.hanging_knots[0]; n <= data.hanging_knots[1]; ++n) course[n].p.z() += dip;
+  for (std::size_t n = data.hanging_knots[0]; n <= data.hanging_knots[1]; ++n) course[n].p += Vec3f(0.0F, -belly_bulge_mm(anatomy.body.ascites_ml), dip);
   for (Knot& knot : course) knot.p += Vec3f(jitter(data.spread.x()), jitter(data.spread.y()), jitter(data.spread.z()));
   add_loop(anatomy, "colon", chain(course), data.folds, [](const TubeHit& hit) {
-    const float stool = 1.0F - smooth_step(120.0F, 170.0F, hit.arc_mm) + smooth_step(430.0F, 470.0F, hit.arc_mm);
+    const float stool = 1.0F - smooth_step(170.0F, 220.0F, hit.arc_mm) + smooth_step(480.0F, 520.0F, hit.arc_mm);
     return Lumen{2.2F, 78.0F, 30.0F, mix(0.45F, -0.6F, clamp01(stool)), clamp01(stool)};
   });
 }

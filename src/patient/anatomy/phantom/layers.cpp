@@ -1,9 +1,11 @@
 #include "anatomy/phantom/layers.h"
 
+
 #include <algorithm>
 #include <cmath>
 
 #include "anatomy/known_structures.h"
+#include "anatomy/phantom/body_parameters.h"
 #include "anatomy/phantom/layer_scene.h"
 #include "anatomy/phantom/texture.h"
 #include "core/files/data_dir.h"
@@ -152,7 +154,7 @@ Result<VirtualPatient> make_layered_scene(std::string_view name, std::uint64_t s
   patient.ct = volume::CtGrid(geometry);
   std::transform(hu.voxels.begin(), hu.voxels.end(), patient.ct.voxels.begin(),
                  [](float value) { return static_cast<std::int16_t>(std::lround(value)); });
-  add_scanner_noise(patient.ct, patient.skin_distance_mm, mixed_seed);
+  add_scanner_noise(patient.ct, patient.skin_distance_mm, mixed_seed, BodyParameters{}.noise_hu);
 
   const double inwards = scene.is_from_back ? -1.0 : 1.0;
   const Vec3 entry_P(0.0, -inwards * static_cast<double>(kSkinY), 0.0);

@@ -102,6 +102,7 @@ void add_spleen(Anatomy& anatomy) {
   const Vec3f centre = varied(random, data.centre, data.spread_mm);
   const Vec3f radii = data.radii_mm * data.size.draw(random);
   const auto& noise = anatomy.noise;
+  const float fluid_mm = 6.0F * floating_share(anatomy.body);  // free fluid between spleen and wall
   anatomy.add_plain(
       "spleen", warped(Box::around(centre, radii)),
       [=, &noise, &data](const Place& place) {
@@ -111,7 +112,7 @@ void add_spleen(Anatomy& anatomy) {
         const float hollow = ellipsoid(u - data.hollow_centre, data.hollow_radii_mm);
         const float carved = smooth_max(bulk, -hollow, 14.0F);
         const float under = smooth_max(carved, place.diaphragm + 3.6F, 5.0F);
-        return smooth_max(under, place.cavity + 3.2F, 5.0F) + 1.6F * noise(place.p / 24.0F);
+        return smooth_max(under, place.cavity + 3.2F + fluid_mm, 5.0F) + 1.6F * noise(place.p / 24.0F);
       },
       118.0F, 4.0F, 9.0F);
 }

@@ -5,6 +5,9 @@
 #include <numbers>
 
 #include "anatomy/phantom/abdomen.h"
+#include "anatomy/phantom/cases.h"
+#include "anatomy/phantom/landmarks.h"
+#include "anatomy/phantom/torso_patient.h"
 #include "anatomy/phantom/layer_data.h"
 #include "anatomy/phantom/layers.h"
 #include "anatomy/phantom/render.h"
@@ -16,20 +19,34 @@ namespace {
 using namespace phantom;
 
 constexpr volume::Index3 kDefaultSize{380, 300, 240};
+constexpr std::uint64_t kSeedStep = 7919;
+constexpr std::string_view kVariant = "variant";
 constexpr std::int64_t kLeastSize = 16;
 constexpr std::int64_t kGreatestSize = 1024;
 
-/// The phantom's box divided into voxels; the box is the same for every resolution.
-volume::GridGeometry box_geometry(const PhantomResolution& resolution) {
+/// A box of the reference body, in a patient of another size, divided into voxels; the box is the same for every
+/// resolution.
+volume::GridGeometry box_geometry(const Box& box, double scale, const volume::Index3& default_size,
+                                  const PhantomResolution& resolution) {
   volume::GridGeometry geometry;
-  const Vec3 extent = 2.0 * Vec3(kHalfWidth, kHalfDepth, kHalfHeight);
+  const Vec3 extent = scale * (box.high - box.low).cast<double>();
   for (std::size_t n = 0; n < 3; ++n) {
     const auto a = static_cast<Eigen::Index>(n);
-    geometry.size[n] = resolution.size[n] > 0 ? resolution.size[n] : kDefaultSize[n];
+    geometry.size[n] = resolution.size[n] > 0 ? resolution.size[n] : default_size[n];
     geometry.spacing_mm[a] = extent[a] / static_cast<double>(geometry.size[n]);
-    geometry.origin_P[a] = 0.5 * (geometry.spacing_mm[a] - extent[a]);
+    geometry.origin_P[a] = scale * static_cast<double>(box.low[a]) + 0.5 * geometry.spacing_mm[a];
   }
   return geometry;
+}
+
+/// Voxels of about 1 mm.
+volume::Index3 torso_size(const Box& box, double scale) {
+  volume::Index3 size;
+  for (std::size_t n = 0; n < 3; ++n) {
+    const auto a = static_cast<Eigen::Index>(n);
+    size[n] = std::lround(scale * static_cast<double>(box.high[a] - box.low[a]));
+  }
+  return size;
 }
 
 Status check_resolution(const PhantomResolution& resolution) {
@@ -41,34 +58,20 @@ Status check_resolution(const PhantomResolution& resolution) {
   return {};
 }
 
-std::vector<Landmark> landmarks(const Anatomy& anatomy) {
-  const auto& contours = anatomy.torso.contours();
-  const LandmarkData& data = anatomy.data.landmarks;
-  const SpineData& spine = anatomy.data.spine;
-  const auto on_skin = [&](float phi, float z) -> Vec3 {
-    const double r = contours.skin_radius(phi, z);
-    return {r * std::sin(phi), r * std::cos(phi), z};
-  };
-  constexpr int kT10 = 5, kT12 = 7, kL3 = 10;
-  constexpr float kFront = std::numbers::pi_v<float>;
-  return {{"xiphoid", on_skin(kFront, data.xiphoid_z_mm)},
-          {"umbilicus", on_skin(kFront, anatomy.data.torso.umbilicus_z_mm)},
-          {"spinous process T12", on_skin(0.0F, spine.height(kT12) - data.t12_spinous_below_mm)},
-          {"spinous process L3", on_skin(0.0F, spine.height(kL3) - data.l3_spinous_below_mm)},
-          {"right mid-axillary line, tenth rib",
-           on_skin(-0.5F * kFront, spine.height(kT10) - data.tenth_rib_below_t10_mm)}};
-}
+struct Sources {
+  KnownStructures known;
+  AbdomenData data;
+};
 
-Result<VirtualPatient> generate_abdomen(const PhantomInfo& info, std::uint64_t seed,
-                                        const PhantomResolution& resolution, const Progress& progress) {
-  const volume::GridGeometry geometry = box_geometry(resolution);
-  report(progress, "generating the anatomy", 0.0);
+Result<Sources> load_sources() {
   TROCAR_TRY(const std::filesystem::path data_folder, checked_data_dir());
   TROCAR_TRY(KnownStructures known, KnownStructures::load(data_folder));
   TROCAR_TRY(AbdomenData data, load_abdomen_data(data_folder / kAbdomenFile));
-  Anatomy anatomy(seed, std::move(data), std::move(known));
-  TROCAR_TRY(BiopsyPlan plan, build_abdomen(anatomy));
+  return Sources{std::move(known), std::move(data)};
+}
 
+VirtualPatient render_patient(const PhantomInfo& info, std::uint64_t seed, Anatomy& anatomy,
+                              const volume::GridGeometry& geometry, const Progress& progress) {
   Rendering rendering = render(anatomy, geometry, progress);
   VirtualPatient patient;
   patient.name = info.name;
@@ -78,10 +81,51 @@ Result<VirtualPatient> generate_abdomen(const PhantomInfo& info, std::uint64_t s
   patient.labels = std::move(rendering.labels);
   patient.skin_distance_mm = std::move(rendering.skin_distance_mm);
   patient.label_table = std::move(anatomy.label_table);
-  patient.landmarks = landmarks(anatomy);
+  return patient;
+}
+
+Result<VirtualPatient> generate_abdomen(const PhantomInfo& info, std::uint64_t seed,
+                                        const PhantomResolution& resolution, const Progress& progress) {
+  report(progress, "generating the anatomy", 0.0);
+  TROCAR_TRY(Sources sources, load_sources());
+  Anatomy anatomy(seed, std::move(sources.data), std::move(sources.known));
+  TROCAR_TRY(BiopsyPlan plan, build_abdomen(anatomy));
+  const volume::GridGeometry geometry = box_geometry(anatomy.torso.box(), anatomy.scale(), kDefaultSize, resolution);
+  VirtualPatient patient = render_patient(info, seed, anatomy, geometry, progress);
+  patient.landmarks = find_landmarks(anatomy);
   patient.paths = {std::move(plan.path)};
   patient.content_hash = hash_patient(patient);
   return patient;
+}
+
+Result<VirtualPatient> generate_case(const PhantomInfo& info, const CaseDescription& description, std::uint64_t seed,
+                                     const PhantomResolution& resolution, const Progress& progress) {
+  report(progress, "generating the anatomy", 0.0);
+  TROCAR_TRY(Sources sources, load_sources());
+  // Seed 1 is the named case; others vary it.
+  const std::uint64_t own_seed = description.seed + (seed - 1) * kSeedStep;
+  const Box box = torso_box(sources.data, description.body, own_seed);
+  Anatomy anatomy(own_seed, std::move(sources.data), std::move(sources.known), description.body, box);
+  anatomy.posture = description.posture;
+  TROCAR_TRY(TorsoPlan plan, build_torso(anatomy, description));
+  const volume::GridGeometry geometry =
+      box_geometry(box, anatomy.scale(), torso_size(box, anatomy.scale()), resolution);
+  VirtualPatient patient = render_patient(info, seed, anatomy, geometry, progress);
+  patient.posture = description.posture;
+  patient.landmarks = std::move(plan.landmarks);
+  patient.paths = std::move(plan.paths);
+  patient.content_hash = hash_patient(patient);
+  return patient;
+}
+
+PhantomInfo info_of(const CaseDescription& description) {
+  return {description.name, description.description, {description.task}, description.difficulty, description.briefing};
+}
+
+/// The named cases; empty if their file is missing or broken, which generate_phantom reports.
+const Result<std::vector<CaseDescription>>& named_cases() {
+  static const Result<std::vector<CaseDescription>> kCases = load_cases(data_dir() / kCasesFile);
+  return kCases;
 }
 
 }  // namespace
@@ -90,6 +134,8 @@ const std::vector<PhantomInfo>& embedded_patients() {
   static const std::vector<PhantomInfo> kPatients = [] {
     std::vector<PhantomInfo> patients{
         {"abdomen", "upper abdomen in the portal-venous phase with three liver lesions, generated", {"liver-biopsy"}}};
+    if (const auto& cases = named_cases())
+      for (const CaseDescription& description : *cases) patients.push_back(info_of(description));
     patients.insert(patients.end(), layered_scenes().begin(), layered_scenes().end());
     return patients;
   }();
@@ -98,11 +144,19 @@ const std::vector<PhantomInfo>& embedded_patients() {
 
 std::vector<std::filesystem::path> phantom_data_files() {
   const std::filesystem::path folder = data_dir();
-  return {folder / kStructuresFile, folder / kAbdomenFile, folder / kLayersFile};
+  return {folder / kStructuresFile, folder / kAbdomenFile, folder / kCasesFile, folder / kLayersFile};
 }
 
 Result<VirtualPatient> generate_phantom(std::string_view name, std::uint64_t seed, const PhantomResolution& resolution,
                                         const Progress& progress) {
+  TROCAR_TRY_STATUS(check_resolution(resolution));
+  if (name == kVariant) {
+    const CaseDescription description = draw_case(seed);
+    return generate_case(info_of(description), description, 1, resolution, progress);
+  }
+  if (!named_cases()) return tl::make_unexpected(named_cases().error());
+  for (const CaseDescription& description : *named_cases())
+    if (description.name == name) return generate_case(info_of(description), description, seed, resolution, progress);
   const auto& patients = embedded_patients();
   const auto found =
       std::find_if(patients.begin(), patients.end(), [&](const PhantomInfo& i) { return i.name == name; });
@@ -111,7 +165,6 @@ Result<VirtualPatient> generate_phantom(std::string_view name, std::uint64_t see
     for (const PhantomInfo& patient : patients) names += (names.empty() ? "" : ", ") + patient.name;
     return fail_usage("unknown embedded patient \"" + std::string(name) + "\"", {}, "there are: " + names);
   }
-  TROCAR_TRY_STATUS(check_resolution(resolution));
   if (found != patients.begin()) return make_layered_scene(name, seed, resolution);
   return generate_abdomen(*found, seed, resolution, progress);
 }

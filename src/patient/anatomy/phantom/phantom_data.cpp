@@ -1,6 +1,7 @@
 #include "anatomy/phantom/phantom_data.h"
 
 #include <algorithm>
+#include <numbers>
 
 #include "anatomy/phantom/section_reader.h"
 
@@ -11,6 +12,7 @@ TorsoData read_torso(SectionReader torso, SectionReader diaphragm) {
   SectionReader skin = torso.section("skin");
   SectionReader fat = torso.section("fat");
   SectionReader muscle = torso.section("muscle");
+  SectionReader pelvis = torso.section("pelvis");
   return {.half_width_mm = torso.size("half_width_mm"),
           .half_depth_mm = torso.size("half_depth_mm"),
           .back_depth_mm = torso.length("back_depth_mm"),
@@ -43,6 +45,19 @@ TorsoData read_torso(SectionReader torso, SectionReader diaphragm) {
                      .lateral = muscle.unit_hill_deg("lateral_deg"),
                      .linea_alba_mm = muscle.number("linea_alba_mm"),
                      .linea_alba_width = muscle.degrees("linea_alba_width_deg")},
+          .pelvis = {.hip_z = pelvis.hill("hip_z"),
+                     .lower_belly_z = pelvis.rise("lower_belly_z"),
+                     .buttock_z = pelvis.hill("buttock_z"),
+                     .buttock = pelvis.unit_hill_deg("buttock_deg"),
+                     .cleft_z = pelvis.rise("cleft_z"),
+                     .hip_fat_z = pelvis.hill("hip_fat_z"),
+                     .upper_wall_z = pelvis.rise("upper_wall_z"),
+                     .lower_wall_z = pelvis.rise("lower_wall_z"),
+                     .wall = pelvis.unit_hill_deg("wall_deg"),
+                     .back_wall_z = pelvis.rise("back_wall_z"),
+                     .back_wall_width = pelvis.degrees("back_wall_width_deg"),
+                     .bulge = pelvis.unit_hill_deg("bulge_deg"),
+                     .bulge_z = pelvis.unit_hill("bulge_z")},
           .diaphragm = {.rim_back_mm = diaphragm.number("rim_back_mm"),
                         .rim_side = diaphragm.rise_deg("rim_side_deg"),
                         .rim_front = diaphragm.rise_deg("rim_front_deg"),
@@ -62,11 +77,23 @@ LandmarkData read_landmarks(SectionReader landmarks) {
           .tenth_rib_below_t10_mm = landmarks.number("tenth_rib_below_t10_mm")};
 }
 
+std::vector<SpineInclination> read_inclinations(SectionReader& spine) {
+  constexpr float kDegree = std::numbers::pi_v<float> / 180.0F;
+  std::vector<SpineInclination> inclinations;
+  for (const std::vector<double>& row : spine.rows("inclinations", 3)) {
+    const auto number = [&](std::size_t n) { return static_cast<float>(row[n]); };
+    inclinations.push_back({number(0), number(1) * kDegree, number(2) * kDegree});
+  }
+  const auto is_above = [](const SpineInclination& a, const SpineInclination& b) { return a.s_mm > b.s_mm; };
+  if (!std::is_sorted(inclinations.begin(), inclinations.end(), is_above))
+    spine.refuse("inclinations", "the rows do not go down", "order them from the head to the feet");
+  return inclinations;
+}
+
 SpineData read_spine(SectionReader spine) {
   const SpineData data{.heights_mm = spine.numbers<SpineData::kLevels>("heights_mm"),
-                       .y_mm = spine.number("y_mm"),
-                       .lordosis_z = spine.hill("lordosis_z"),
-                       .kyphosis_z = spine.rise("kyphosis_z"),
+                       .anchor_y_mm = spine.number("anchor_y_mm"),
+                       .inclinations = read_inclinations(spine),
                        .body_half_width_mm = spine.length("body_half_width_mm"),
                        .body_half_depth_mm = spine.length("body_half_depth_mm"),
                        .body_waist_mm = spine.number("body_waist_mm"),
@@ -293,6 +320,25 @@ LesionData read_lesions(SectionReader lesions) {
           .longest_path_mm = lesions.length("longest_path_mm")};
 }
 
+EpigastricData read_epigastric(SectionReader vessels) {
+  EpigastricData data{
+      .course = {}, .radius_mm = vessels.length("radius_mm"), .outward_mm = vessels.number("outward_mm")};
+  for (const std::vector<double>& row : vessels.rows("course", 2))
+    data.course.push_back({static_cast<float>(row[0]), static_cast<float>(row[1])});
+  return data;
+}
+
+BileDuctData read_bile_duct(SectionReader duct) {
+  BileDuctData data{.course = {},
+                    .beside = duct.point("beside").normalized(),
+                    .artery_beside = duct.point("artery_beside").normalized(),
+                    .narrow_radius_mm = duct.length("narrow_radius_mm"),
+                    .tumour_radius_mm = duct.length("tumour_radius_mm")};
+  for (const std::vector<double>& row : duct.rows("course", 3))
+    data.course.push_back(Vec3(row[0], row[1], row[2]).cast<float>());
+  return data;
+}
+
 AbdomenData read_abdomen(SectionReader file) {
   SectionReader vertebrae = file.section("vertebrae");
   SectionReader oesophagus = file.section("oesophagus");
@@ -300,6 +346,8 @@ AbdomenData read_abdomen(SectionReader file) {
   SectionReader pancreas = file.section("pancreas");
   SectionReader adrenal_glands = file.section("adrenal_glands");
   SectionReader gallbladder = file.section("gallbladder");
+  SectionReader bladder = file.section("bladder");
+  SectionReader uterus = file.section("uterus");
   const LiverData liver = read_liver(file.section("liver"));
   return {.torso = read_torso(file.section("torso"), file.section("diaphragm")),
           .landmarks = read_landmarks(file.section("landmarks")),
@@ -324,9 +372,15 @@ AbdomenData read_abdomen(SectionReader file) {
           .gallbladder = {.x_mm = gallbladder.range("x_mm"), .course = gallbladder.course("course")},
           .aorta = read_aorta(file.section("aorta")),
           .vena_cava = read_vein(file.section("vena_cava")),
+          .epigastric = read_epigastric(file.section("epigastric_vessels")),
+          .bladder = {.centre = bladder.point("centre"), .radii_mm = bladder.radii("radii_mm"), .size = bladder.size("size")},
+          .uterus = {.centre = uterus.point("centre"),
+                     .radii_mm = uterus.radii("radii_mm"),
+                     .spread_mm = uterus.number("spread_mm")},
           .portal_vein = read_portal_vein(file.section("portal_vein"), liver.hilum),
           .portal_tree = read_tree(file.section("portal_tree")),
           .hepatic_tree = read_tree(file.section("hepatic_tree")),
+          .bile_duct = read_bile_duct(file.section("bile_duct")),
           .lesions = read_lesions(file.section("lesions"))};
 }
 

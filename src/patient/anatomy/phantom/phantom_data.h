@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "anatomy/phantom/shapes.h"
+#include "anatomy/phantom/spine_curve.h"
 #include "core/result.h"
 
 // The numbers of data/phantoms/abdomen.toml: sizes and places of the anatomy in P (mm; angles in rad, in the file in
@@ -82,6 +83,19 @@ struct TorsoData {
     Hill right_dome_x, right_dome_y, left_dome_x, left_dome_y;  ///< The heights of y are 1.
     float rise_mm;
   };
+  /// Changes below the belly. Walls are added to the thickness of the muscles.
+  struct Pelvis {
+    Hill hip_z;
+    Rise lower_belly_z;
+    Hill buttock_z, buttock;  ///< The height of the second is 1.
+    Rise cleft_z;
+    Hill hip_fat_z;
+    Rise upper_wall_z, lower_wall_z;
+    Hill wall;  ///< Height 1.
+    Rise back_wall_z;
+    float back_wall_width;
+    Hill bulge, bulge_z;  ///< Of the belly by free fluid; heights 1.
+  };
   SeedRange half_width_mm, half_depth_mm;
   float back_depth_mm;
   float umbilicus_z_mm;
@@ -89,6 +103,7 @@ struct TorsoData {
   Skin skin;
   Fat fat;
   Muscle muscle;
+  Pelvis pelvis;
   Diaphragm diaphragm;
 };
 
@@ -99,9 +114,8 @@ struct LandmarkData {
 struct SpineData {
   static constexpr std::size_t kLevels = 13;  ///< T5 … L5.
   std::array<float, kLevels> heights_mm;
-  float y_mm;
-  Hill lordosis_z;
-  Rise kyphosis_z;
+  float anchor_y_mm;  ///< y of the middle of L3, from where the spine's curve goes up and down.
+  std::vector<SpineInclination> inclinations;
   float body_half_width_mm, body_half_depth_mm, body_waist_mm;
   std::array<float, 2> body_hollow;
   float canal_y_mm;
@@ -111,11 +125,9 @@ struct SpineData {
   Transition cord_end_z;
   float disc_half_height_mm;
 
-  /// Height (z, mm) of the centre of a vertebral body; level 0 is T5, 7 is T12, 12 is L5. Levels beyond these give the
-  /// nearest one.
+  /// Position along the spine (mm) of the centre of a vertebral body; level 0 is T5, 7 is T12, 12 is L5. Levels beyond
+  /// these give the nearest one.
   float height(int level) const;
-  /// y of the centre of the vertebral bodies at a height.
-  float y(float z) const { return y_mm - lordosis_z.at(z) + kyphosis_z.at(z); }
 };
 
 struct VertebraData {
@@ -271,6 +283,21 @@ struct AortaData {
   std::vector<Course> branches;
 };
 
+struct EpigastricData {
+  std::vector<std::array<float, 2>> course;  ///< Distance from the midline and z, from the groin upwards.
+  float radius_mm, outward_mm;
+};
+
+struct BladderData {
+  Vec3f centre, radii_mm;
+  SeedRange size;
+};
+
+struct UterusData {
+  Vec3f centre, radii_mm;
+  float spread_mm;
+};
+
 /// A vein and its branches.
 struct VeinData {
   Course course;
@@ -280,6 +307,12 @@ struct VeinData {
 struct TreeData {
   Vec3f direction;
   float root_radius_mm, root_share, least_radius_mm;
+};
+
+struct BileDuctData {
+  std::vector<Vec3f> course;
+  Vec3f beside, artery_beside;
+  float narrow_radius_mm, tumour_radius_mm;
 };
 
 struct LesionData {
@@ -313,8 +346,12 @@ struct AbdomenData {
   GallbladderData gallbladder;
   AortaData aorta;
   VeinData vena_cava;
+  EpigastricData epigastric;
+  BladderData bladder;
+  UterusData uterus;
   VeinData portal_vein;  ///< The main course ends at the hilum.
   TreeData portal_tree, hepatic_tree;
+  BileDuctData bile_duct;
   LesionData lesions;
 };
 

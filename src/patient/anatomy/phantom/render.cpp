@@ -21,7 +21,8 @@ class Painter {
  public:
   Painter(const Anatomy& anatomy, const volume::GridGeometry& geometry, Culling culling, Rendering& out)
       : anatomy_(anatomy), geometry_(geometry), culling_(culling), out_(out) {
-    brush_.blur_mm = static_cast<float>(std::cbrt(geometry.voxel_volume_mm3()));
+    scale_ = anatomy.scale();
+    brush_.blur_mm = static_cast<float>(std::cbrt(geometry.voxel_volume_mm3())) / scale_;
     for (std::size_t a = 0; a < 3; ++a) {
       block_size_[a] = std::max<std::int64_t>(1, std::lround(kBlockMm / geometry.spacing_mm[static_cast<int>(a)]));
       blocks_[a] = (geometry.size[a] + block_size_[a] - 1) / block_size_[a];
@@ -50,8 +51,10 @@ class Painter {
     return block;
   }
 
+  /// In the reference body.
   Vec3f voxel_centre(std::int64_t i, std::int64_t j, std::int64_t k) const {
-    return geometry_.to_mm(Vec3(static_cast<double>(i), static_cast<double>(j), static_cast<double>(k))).cast<float>();
+    const Vec3 p_P = geometry_.to_mm(Vec3(static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)));
+    return p_P.cast<float>() / scale_;
   }
 
   /// The structures that can be visible in a block, in painting order, without those outside it and those covered
@@ -88,7 +91,7 @@ class Painter {
           const std::size_t offset = geometry_.offset({i, j, k});
           out_.ct.voxels[offset] = static_cast<std::int16_t>(std::lround(paint.hu));
           out_.labels.voxels[offset] = paint.label;
-          out_.skin_distance_mm.voxels[offset] = place.skin;
+          out_.skin_distance_mm.voxels[offset] = place.skin * scale_;
         }
   }
 
@@ -113,6 +116,7 @@ class Painter {
   Culling culling_;
   Rendering& out_;
   Brush brush_;
+  float scale_ = 1.0F;  ///< Size of the patient, 1 for the reference body.
   volume::Index3 block_size_{1, 1, 1};
   volume::Index3 blocks_{0, 0, 0};
 };
@@ -133,7 +137,7 @@ Rendering render(const Anatomy& anatomy, const volume::GridGeometry& geometry, c
     });
   }
   report(progress, "adding noise", 1.0);
-  add_scanner_noise(out.ct, out.skin_distance_mm, anatomy.seed);
+  add_scanner_noise(out.ct, out.skin_distance_mm, anatomy.seed, anatomy.body.noise_hu);
   return out;
 }
 

@@ -1,16 +1,55 @@
 #include "anatomy/phantom/structure.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "core/check.h"
 
 namespace trocar::anatomy::phantom {
 
-Anatomy::Anatomy(std::uint64_t seed_, AbdomenData data_, KnownStructures known_)
+namespace {
+
+constexpr float kReach = 1000.0F;  ///< Farther than every box, mm.
+constexpr float kTorsoTop = 154.0F, kTorsoBottom = -266.0F;
+constexpr float kAirMm = 12.0F;  ///< Around the body.
+constexpr int kL3 = 10;
+
+SpineCurve spine_of(const SpineData& spine, const BodyParameters& body) {
+  constexpr float kDegree = std::numbers::pi_v<float> / 180.0F;
+  return {Vec3f(0.0F, spine.anchor_y_mm, spine.height(kL3)), spine.inclinations,
+          SpineBend{static_cast<float>(body.flexion), static_cast<float>(body.scoliosis_deg) * kDegree}};
+}
+
+}  // namespace
+
+Box upper_abdomen_box() {
+  return Box::around(Vec3f::Zero(), Vec3f(180.5F, 142.5F, 114.0F));
+}
+
+Box torso_box(const AbdomenData& data, const BodyParameters& body, std::uint64_t seed) {
+  const TorsoContours contours(mix64(seed), data.torso, body);
+  Box box;
+  constexpr int kAngles = 120;
+  for (float z = kTorsoBottom; z <= kTorsoTop; z += 6.0F)
+    for (int n = 0; n < kAngles; ++n) {
+      const float phi = std::numbers::pi_v<float> * (2.0F * static_cast<float>(n) / kAngles - 1.0F);
+      const float r = contours.skin_radius(phi, z);
+      box.add(Vec3f(r * std::sin(phi), r * std::cos(phi), z), 0.0F);
+    }
+  box = box.grown(kAirMm);
+  box.low.z() = kTorsoBottom;
+  box.high.z() = kTorsoTop;
+  return box;
+}
+
+Anatomy::Anatomy(std::uint64_t seed_, AbdomenData data_, KnownStructures known_, const BodyParameters& body_,
+                 const Box& box)
     : data(std::move(data_)),
       known(std::move(known_)),
+      body(body_),
       seed(mix64(seed_)),
-      torso(seed, data.torso),
+      torso(seed, data.torso, body, spine_of(data.spine, body), box),
       noise(seed ^ 0x6e6f6973U) {}
 
 std::uint8_t Anatomy::label(std::string_view name) {
@@ -44,6 +83,16 @@ const Structure& Anatomy::find(std::string_view name) const {
   return *found;
 }
 
+std::uint8_t Anatomy::label_at(const Place& place) const {
+  if (place.skin >= 0.0F) return 0;
+  const Box here{place.p, place.p};
+  for (auto s = structures.rbegin(); s != structures.rend(); ++s) {
+    if (!s->bounds.overlaps(here)) continue;
+    if (const float distance = s->distance(place); distance < 0.0F) return s->paint(place, distance, Brush{}).label;
+  }
+  return 0;
+}
+
 Vec3f Anatomy::unwarped(const Vec3f& q) const {
   Vec3f p = q;
   for (int n = 0; n < 20; ++n) p += q - torso.at(p).q;  // the warp's slope is below 1: converges
@@ -71,7 +120,7 @@ Vec3f varied(Random& random, const Vec3f& centre, float spread_mm) {
 }
 
 Box whole_box() {
-  return Box::around(Vec3f::Zero(), Vec3f(kHalfWidth + 5.0F, kHalfDepth + 5.0F, kHalfHeight + 5.0F));
+  return Box::around(Vec3f::Zero(), Vec3f::Constant(kReach));
 }
 
 Box warped(const Box& box) {

@@ -11,8 +11,7 @@
 namespace trocar::anatomy::phantom {
 namespace {
 
-constexpr float kSigmaSkinHu = 9.0F;
-constexpr float kSigmaMiddleHu = 13.0F;
+constexpr float kSkinShare = 0.82F, kMiddleShare = 1.18F;  ///< Of the noise half way.
 constexpr float kMiddleMm = 90.0F;
 /// A Gaussian of 0.75 voxels in the slice, a weaker one across slices.
 constexpr std::array<float, 5> kInPlane{0.0152F, 0.2186F, 0.5324F, 0.2186F, 0.0152F};
@@ -85,7 +84,9 @@ class SliceNoise {
 
 }  // namespace
 
-void add_scanner_noise(volume::CtGrid& ct, const volume::FloatGrid& skin_distance_mm, std::uint64_t seed) {
+void add_scanner_noise(volume::CtGrid& ct, const volume::FloatGrid& skin_distance_mm, std::uint64_t seed,
+                       double sigma_hu) {
+  const auto half_way_hu = static_cast<float>(sigma_hu);
   const auto plane = static_cast<std::size_t>(ct.geometry.size[0] * ct.geometry.size[1]);
   parallel_for(static_cast<std::size_t>(ct.geometry.size[2]), 4, [&](std::size_t first, std::size_t last) {
     SliceNoise noise(ct.geometry, mix64(seed ^ 0x6e6f697365U));
@@ -94,7 +95,7 @@ void add_scanner_noise(volume::CtGrid& ct, const volume::FloatGrid& skin_distanc
       for (std::size_t n = 0; n < plane; ++n) {
         const std::size_t offset = k * plane + n;
         const float depth = std::clamp(-skin_distance_mm.voxels[offset] / kMiddleMm, 0.0F, 1.0F);
-        const float sigma = kSigmaSkinHu + (kSigmaMiddleHu - kSigmaSkinHu) * depth;
+        const float sigma = half_way_hu * (kSkinShare + (kMiddleShare - kSkinShare) * depth);
         const float hu = static_cast<float>(ct.voxels[offset]) + sigma * values[n];
         ct.voxels[offset] = static_cast<std::int16_t>(std::clamp(std::lround(hu), -1024L, 3071L));
       }

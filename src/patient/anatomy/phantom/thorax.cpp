@@ -8,7 +8,9 @@ namespace {
 
 /// Bounds of all structures above the diaphragm.
 Box upper_box() {
-  return {Vec3f(-kHalfWidth, -kHalfDepth, -20.0F), Vec3f(kHalfWidth, kHalfDepth, kHalfHeight + 5.0F)};
+  Box box = whole_box();
+  box.low.z() = -20.0F;
+  return box;
 }
 
 void add_lungs(Anatomy& anatomy) {

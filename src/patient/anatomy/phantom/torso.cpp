@@ -21,7 +21,28 @@ constexpr float kAnteriorExponent = 2.25F;
 constexpr float kPosteriorExponent = 2.6F;
 constexpr SeedRange kWavePhases{-3.14, 3.14};
 constexpr float kWaveTwistPerMm = 0.012F;  ///< rad.
+constexpr float kFlexedFurrow = 0.8F;      ///< Share of the furrow that is gone when the back is bent.
 constexpr float kNavelRadiusMm = 110.0F;   ///< Of the body there: mm a rad.
+
+// Subcutaneous fat grows with the body mass index: about 12 % of the reference for each kg/m^2 [assumed].
+constexpr double kReferenceIndex = 24.3;
+constexpr double kFatPerIndex = 0.12;
+constexpr float kLeastFatness = 0.35F, kMostFatness = 3.4F;
+constexpr float kLeastFatMm = 3.0F;  ///< With the skin.
+constexpr float kFemaleFat = 0.2F;    ///< Women have more of it.
+constexpr float kFemaleHipMm = 7.0F;  ///< Wider on each side.
+/// Where the reference has hardly any fat, in the middle of the back, a heavier body still has some.
+constexpr float kBackFatMm = 5.0F;
+
+float body_fat(const BodyParameters& body) {
+  const auto by_weight = static_cast<float>(kFatPerIndex * (body.body_mass_index() - kReferenceIndex));
+  return by_weight + (body.sex == Sex::kFemale ? kFemaleFat : 0.0F);
+}
+
+// Free fluid lifts the belly's front. Above the first half litre, which finds room between the organs, the front of
+// about 0.075 m^2 moves outwards.
+constexpr double kRoomMl = 500.0;
+constexpr double kFrontMm2 = 75000.0;
 
 /// Radius of a superellipse |x/a|^n + |y/b|^n = 1 at the angle phi.
 float superellipse(float phi, float a, float b, float exponent) {
@@ -81,11 +102,18 @@ struct SliceContour {
 
 }  // namespace
 
-TorsoContours::TorsoContours(std::uint64_t seed, const TorsoData& data) : data_(data) {
+float belly_bulge_mm(double ascites_ml) {
+  return static_cast<float>(std::max(0.0, ascites_ml - kRoomMl) * 1000.0 / kFrontMm2);
+}
+
+TorsoContours::TorsoContours(std::uint64_t seed, const TorsoData& data, const BodyParameters& body) : data_(data) {
   Random random(seed ^ 0x7072736fU);
   half_width_ = data.half_width_mm.draw(random);
   half_depth_ = data.half_depth_mm.draw(random);
-  fatness_ = data.fat.factor.draw(random);
+  fatness_ = std::clamp(data.fat.factor.draw(random) + body_fat(body), kLeastFatness, kMostFatness);
+  flexion_ = static_cast<float>(body.flexion);
+  hip_mm_ = body.sex == Sex::kFemale ? kFemaleHipMm : 0.0F;
+  bulge_mm_ = belly_bulge_mm(body.ascites_ml);
   dome_mm_ = data.diaphragm.dome_spread_mm.draw(random);
   for (std::size_t n = 0; n < 3; ++n) {
     wave_mm_[n] = data.waves_mm.draw(random) / static_cast<float>(n + 1);
@@ -93,26 +121,39 @@ TorsoContours::TorsoContours(std::uint64_t seed, const TorsoData& data) : data_(
   }
 }
 
-float TorsoContours::skin_radius(float phi, float z) const {
+float TorsoContours::reference_radius(float phi, float z) const {
   const TorsoData::Skin& skin = data_.skin;
+  const TorsoData::Pelvis& pelvis = data_.pelvis;
   const float side = std::abs(phi);
-  const float a = half_width_ - (skin.waist_z.at(z) + skin.chest_taper_z.at(z));
-  const float belly = half_depth_ - skin.chest_depth_z.at(z) + skin.belly_z.at(z);
+  const float a = half_width_ - (skin.waist_z.at(z) + skin.chest_taper_z.at(z)) + pelvis.hip_z.at(z) +
+                  hip_mm_ * pelvis.hip_z.shape(z);
+  const float belly = half_depth_ - skin.chest_depth_z.at(z) + skin.belly_z.at(z) - pelvis.lower_belly_z.at(z);
   const float anterior = superellipse(phi, a, belly, kAnteriorExponent);
   const float posterior = superellipse(phi, a, data_.back_depth_mm, kPosteriorExponent);
   float r = side > 0.5F * kPi ? anterior : posterior;
   const float x = r * std::sin(side);
   // The furrow over the spine between the erector muscles, and shallow furrows beside the rectus.
-  r -= (skin.spinal_furrow.height - skin.spinal_furrow_chest_z.at(z)) *
-       (side < 0.5F * kPi ? skin.spinal_furrow.shape(x) : 0.0F);
-  r += skin.erector.at(side);
+  const float furrow = (skin.spinal_furrow.height - skin.spinal_furrow_chest_z.at(z)) * (1.0F - kFlexedFurrow * flexion_);
+  r -= (furrow + pelvis.cleft_z.at(z)) * (side < 0.5F * kPi ? skin.spinal_furrow.shape(x) : 0.0F);
+  r += skin.erector.at(side) + pelvis.buttock_z.at(z) * pelvis.buttock.shape(side);
   if (side > 0.5F * kPi) {
     r -= skin.linea_alba.at(x);
     r -= skin.umbilicus.at(std::hypot(x, z - data_.umbilicus_z_mm));
   }
   for (std::size_t n = 0; n < 3; ++n)
     r += wave_mm_[n] * std::sin(static_cast<float>(n + 2) * phi + wave_phase_[n] + kWaveTwistPerMm * z);
-  return r;
+  return r + bulge_mm(phi, z);
+}
+
+float TorsoContours::bulge_mm(float phi, float z) const {
+  if (bulge_mm_ == 0.0F) return 0.0F;
+  const TorsoData::Pelvis& pelvis = data_.pelvis;
+  return bulge_mm_ * pelvis.bulge.shape(std::abs(phi)) * pelvis.bulge_z.shape(z);
+}
+
+float TorsoContours::skin_radius(float phi, float z) const {
+  const float back = kBackFatMm * bump(phi, 0.0F, 0.8F);
+  return reference_radius(phi, z) + (fatness_ - 1.0F) * (fat_mm(phi, z) + back);
 }
 
 float TorsoContours::fat_mm(float phi, float z) const {
@@ -123,7 +164,8 @@ float TorsoContours::fat_mm(float phi, float z) const {
   const float loin = fat.loin.at(side) * (1.0F - fat.loin_z.share(z));
   const float front = mix(fat.front_mm[0], fat.front_mm[1], chest) * fat.front.shape(side);
   const float navel = fat.umbilicus.at(std::hypot((kPi - side) * kNavelRadiusMm, z - data_.umbilicus_z_mm));
-  return fatness_ * (fat.least_mm + flank + loin + front) + navel;
+  const float hip = data_.pelvis.hip_fat_z.at(z) * bump(side, 0.5F * kPi, 0.9F);
+  return std::max(fat.least_mm + flank + loin + front + hip + navel, kLeastFatMm);
 }
 
 float TorsoContours::muscle_mm(float phi, float z) const {
@@ -133,11 +175,15 @@ float TorsoContours::muscle_mm(float phi, float z) const {
   const float back = mix(muscle.back_mm[0], muscle.back_mm[1], chest) * bump(side, 0.0F, muscle.back_width);
   const float lateral = mix(muscle.lateral_mm[0], muscle.lateral_mm[1], chest) * muscle.lateral.shape(side);
   const float median = muscle.linea_alba_mm * bump(side, kPi, muscle.linea_alba_width);
-  return muscle.least_mm + back + lateral + median;
+  // The wall of the pelvis: gluteal muscles, bone, iliacus and the muscles of the pelvic wall.
+  const TorsoData::Pelvis& pelvis = data_.pelvis;
+  const float hips = pelvis.upper_wall_z.at(z) + pelvis.lower_wall_z.at(z);
+  const float seat = pelvis.back_wall_z.at(z) * bump(side, 0.0F, pelvis.back_wall_width);
+  return muscle.least_mm + back + lateral + median + hips * pelvis.wall.shape(side) + seat;
 }
 
 float TorsoContours::wall_radius(float phi, float z) const {
-  return skin_radius(phi, z) - fat_mm(phi, z);
+  return reference_radius(phi, z) - fat_mm(phi, z);
 }
 
 float TorsoContours::cavity_radius(float phi, float z) const {
@@ -160,11 +206,14 @@ Vec3f TorsoContours::on_cavity(float phi, float z, float outward_mm) const {
   return {r * std::sin(phi), r * std::cos(phi), z};
 }
 
-Torso::Torso(std::uint64_t seed, const TorsoData& data) : contours_(seed, data) {
-  const auto nodes = [](float half) {
-    return static_cast<std::int64_t>(std::ceil(2.0F * (half + kMargin) / kLatticeMm)) + 1;
-  };
-  size_ = {nodes(kHalfWidth), nodes(kHalfDepth), nodes(kHalfHeight)};
+Torso::Torso(std::uint64_t seed, const TorsoData& data, const BodyParameters& body, SpineCurve spine, const Box& box)
+    : contours_(seed, data, body),
+      spine_(std::move(spine)),
+      box_(box),
+      corner_(box.low - Vec3f::Constant(kMargin)) {
+  const Vec3f extent = box.high - box.low + Vec3f::Constant(2.0F * kMargin);
+  for (int a = 0; a < 3; ++a)
+    size_[static_cast<std::size_t>(a)] = static_cast<std::int64_t>(std::ceil(extent[a] / kLatticeMm)) + 1;
   nodes_.resize(static_cast<std::size_t>(size_[0] * size_[1] * size_[2]));
   const ValueNoise warp(seed ^ 0x77617270U);
   parallel_for(static_cast<std::size_t>(size_[2]), 1, [&](std::size_t first, std::size_t last) {
@@ -173,7 +222,7 @@ Torso::Torso(std::uint64_t seed, const TorsoData& data) : contours_(seed, data) 
 }
 
 void Torso::fill_slice(std::int64_t k, const ValueNoise& warp) {
-  const float z = static_cast<float>(k) * kLatticeMm - kHalfHeight - kMargin;
+  const float z = corner_.z() + static_cast<float>(k) * kLatticeMm;
   const SliceContour skin([&](float phi, float height) { return contours_.skin_radius(phi, height); }, z);
   const SliceContour wall([&](float phi, float height) { return contours_.wall_radius(phi, height); }, z);
   const SliceContour cavity([&](float phi, float height) { return contours_.cavity_radius(phi, height); }, z);
@@ -183,10 +232,12 @@ void Torso::fill_slice(std::int64_t k, const ValueNoise& warp) {
   std::vector<float> height(columns * rows);
   for (std::size_t j = 0; j < rows; ++j)
     for (std::size_t i = 0; i < columns; ++i) {
-      const float x = static_cast<float>(i) * kLatticeMm - kHalfWidth - kMargin;
-      const float y = static_cast<float>(j) * kLatticeMm - kHalfDepth - kMargin;
+      const float x = corner_.x() + static_cast<float>(i) * kLatticeMm;
+      const float y = corner_.y() + static_cast<float>(j) * kLatticeMm;
       Node& node = slice[j * columns + i];
-      node << skin.distance(x, y), wall.distance(x, y), cavity.distance(x, y), 0, 0, 0, 0, 0;
+      node.setZero();
+      node.head<3>() << skin.distance(x, y), wall.distance(x, y), cavity.distance(x, y);
+      node.segment<3>(7) = spine_.straighten(Vec3f(x, y, z)).array();
       height[j * columns + i] = contours_.diaphragm_height(x, y, node[2]);
       const Vec3f cell = Vec3f(x, y, z) / kWarpSizeMm;
       for (int a = 0; a < 3; ++a) node[4 + a] = kWarpMm * warp(cell + Vec3f::Constant(7.3F * static_cast<float>(a)));
@@ -208,7 +259,7 @@ void Torso::fill_slice(std::int64_t k, const ValueNoise& warp) {
 }
 
 Place Torso::at(const Vec3f& p) const {
-  const Vec3f index = (p + Vec3f(kHalfWidth + kMargin, kHalfDepth + kMargin, kHalfHeight + kMargin)) / kLatticeMm;
+  const Vec3f index = (p - corner_) / kLatticeMm;
   std::array<std::int64_t, 3> low;
   std::array<float, 3> t;
   for (int a = 0; a < 3; ++a) {
@@ -224,7 +275,7 @@ Place Torso::at(const Vec3f& p) const {
   };
   const Node below = plane(corner);
   const Node v = below + (plane(corner + size_[0] * size_[1]) - below) * t[2];
-  return {p, p + Vec3f(v[4], v[5], v[6]), v[0], v[1], v[2], v[3]};
+  return {p, p + Vec3f(v[4], v[5], v[6]), v[0], v[1], v[2], v[3], Vec3f(v[7], v[8], v[9])};
 }
 
 }  // namespace trocar::anatomy::phantom

@@ -86,9 +86,9 @@ void add_wall(Anatomy& anatomy) {
                  return Paint{hu, planes < 0.0F ? fat : muscle};
                }});
   // The linea alba is tendon between the two recti.
-  anatomy.add({"linea_alba", Box{Vec3f(-14.0F, -kHalfDepth, -kHalfHeight - 5.0F), Vec3f(14.0F, -50.0F, 88.0F)},
+  anatomy.add({"linea_alba", Box{Vec3f(-14.0F, -250.0F, -255.0F), Vec3f(14.0F, -50.0F, 88.0F)},
                [](const Place& place) {
-                 return std::max({std::abs(place.p.x()) - 4.5F - 0.02F * (place.p.z() + 114.0F), place.wall + 2.5F,
+                 return std::max({std::abs(place.p.x()) - 4.5F - 0.02F * std::max(place.p.z() + 114.0F, -100.0F), place.wall + 2.5F,
                                   -(place.cavity + kLiningMm) + 1.5F});
                },
                [=](const Place& place, float, const Brush& brush) {

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "anatomy/phantom/bile_ducts.h"
 #include "anatomy/phantom/biopsy.h"
 #include "anatomy/phantom/structure.h"
 #include "anatomy/phantom/vessel_tree.h"
@@ -28,13 +30,38 @@ std::vector<Cone> with_branches(const Course& course, const std::vector<Course>&
   return all;
 }
 
-Course aorta_course(const AortaData& aorta, const SpineData& spine) {
+Course aorta_course(const AortaData& aorta, const SpineCurve& spine) {
   Course course = aorta.chest;
   for (Knot knot : aorta.before_spine) {
-    knot.p.y() = spine.y(knot.p.z()) - aorta.spine_front_mm - knot.p.y();
+    knot.p.y() = spine.y_at(knot.p.z()) - aorta.spine_front_mm - knot.p.y();
     course.push_back(knot);
   }
   return course;
+}
+
+/// The angle at which the cavity's surface is this far from the midline, in front.
+float front_angle(const TorsoContours& contours, float x, float z) {
+  float low = 0.5F * std::numbers::pi_v<float>, high = std::numbers::pi_v<float>;
+  for (int n = 0; n < 24; ++n) {
+    const float middle = 0.5F * (low + high);
+    (contours.cavity_radius(middle, z) * std::sin(middle) > x ? low : high) = middle;
+  }
+  return low;
+}
+
+void add_epigastric_vessels(Anatomy& anatomy) {
+  if (anatomy.torso.box().low.z() > anatomy.data.epigastric.course.front()[1]) return;
+  const EpigastricData& data = anatomy.data.epigastric;
+  const TorsoContours& contours = anatomy.torso.contours();
+  for (const float sign : {-1.0F, 1.0F}) {
+    Course course;
+    for (const auto& [x, z] : data.course)
+      course.push_back({contours.on_cavity(sign * front_angle(contours, x, z), z, data.outward_mm), data.radius_mm});
+    const Tube tube(chain(course));
+    anatomy.add_plain(
+        "epigastric_vessels", tube.bounds(), [=](const Place& place) { return tube.distance(place.p); }, kVeinHu, 3.0F,
+        5.0F);
+  }
 }
 
 /// Points distributed evenly in the liver: the territory of a vessel tree.
@@ -69,13 +96,14 @@ void add_tree(Anatomy& anatomy, const std::string& name, const Tube& tree, float
 
 void add_great_vessels(Anatomy& anatomy) {
   const AbdomenData& data = anatomy.data;
-  add_vessel(anatomy, "aorta", with_branches(aorta_course(data.aorta, data.spine), data.aorta.branches), kArteryHu);
+  add_vessel(anatomy, "aorta", with_branches(aorta_course(data.aorta, anatomy.torso.spine()), data.aorta.branches), kArteryHu);
   add_vessel(anatomy, "inferior_vena_cava", with_branches(data.vena_cava.course, data.vena_cava.branches), kVeinHu);
   add_vessel(anatomy, "portal_vein_and_splenic_vein", with_branches(data.portal_vein.course, data.portal_vein.branches),
              kPortalHu);
+  add_epigastric_vessels(anatomy);
 }
 
-void add_liver_vessels(Anatomy& anatomy, const BiopsyPlan& plan) {
+DuctTree add_liver_vessels(Anatomy& anatomy, const BiopsyPlan& plan) {
   const Structure& liver = anatomy.find("liver");
   const Structure& gallbladder = anatomy.find("gallbladder");
   const auto is_free = [&](const Vec3f& p, float radius) {
@@ -91,15 +119,17 @@ void add_liver_vessels(Anatomy& anatomy, const BiopsyPlan& plan) {
   const Tube portal(grow_tree({anatomy.unwarped(gates.hilum), portal_data.direction.normalized()}, territory,
                               growth_rule(portal_data, is_free), portal_random));
   add_tree(anatomy, "portal_vein", portal, kPortalHu);
+  const DuctTree ducts = add_bile_ducts(anatomy, portal.cones());
 
   Random hepatic_random = anatomy.random("hepatic_veins");
   const TreeData& hepatic_data = anatomy.data.hepatic_tree;
   const auto is_beside_portal = [&](const Vec3f& p, float radius) {
-    return is_free(p, radius) && portal.distance(p) > radius + 0.8F;
+    return is_free(p, radius) && portal.distance(p) > radius + 0.8F && ducts.inside.distance(p) > radius + 0.8F;
   };
   const Tube hepatic(grow_tree({anatomy.unwarped(gates.venous_confluence), hepatic_data.direction.normalized()},
                                territory, growth_rule(hepatic_data, is_beside_portal), hepatic_random));
   add_tree(anatomy, "hepatic_veins", hepatic, kVeinHu);
+  return ducts;
 }
 
 }  // namespace trocar::anatomy::phantom

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "anatomy/phantom/body_parameters.h"
+#include "anatomy/posture.h"
+#include "core/result.h"
+
+namespace trocar::anatomy::phantom {
+
+/// A named procedural patient of data/phantoms/cases.toml: one body, made for one task.
+struct CaseDescription {
+  std::string name;         ///< "lumbar-1".
+  std::string task;         ///< "lumbar-puncture".
+  int difficulty = 1;       ///< 1 (easiest) to 5.
+  std::string description;  ///< One line.
+  std::string briefing;     ///< The referral: indication, findings.
+  std::uint64_t seed = 1;
+  Posture posture = Posture::kSupine;
+  BodyParameters body;
+};
+
+/// File in the data folder.
+inline constexpr std::string_view kCasesFile = "phantoms/cases.toml";
+
+/// Reads data/phantoms/cases.toml. Errors name file and key: a missing or unknown key, a number out of range, a name that
+/// occurs twice.
+Result<std::vector<CaseDescription>> load_cases(const std::filesystem::path& path);
+
+/// A body drawn from the whole range of bodies, for one of the four tasks.
+CaseDescription draw_case(std::uint64_t seed);
+
+}  // namespace trocar::anatomy::phantom

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <vector>
+
+#include "anatomy/patient.h"
+#include "anatomy/phantom/structure.h"
+
+namespace trocar::anatomy::phantom {
+
+/// Points of the body that can be seen or felt, inside the anatomy's box (P of the patient, mm).
+std::vector<Landmark> find_landmarks(const Anatomy& anatomy);
+
+}  // namespace trocar::anatomy::phantom

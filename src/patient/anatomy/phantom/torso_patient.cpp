@@ -1,0 +1,34 @@
+#include "anatomy/phantom/torso_patient.h"
+
+#include "anatomy/phantom/biopsy.h"
+#include "anatomy/phantom/free_fluid.h"
+#include "anatomy/phantom/landmarks.h"
+
+namespace trocar::anatomy::phantom {
+
+Result<TorsoPlan> build_torso(Anatomy& anatomy, const CaseDescription& description) {
+  add_trunk(anatomy);
+  add_thorax(anatomy);
+  FreeFluid fluid(anatomy);
+  add_bowel(anatomy);
+  add_stomach(anatomy);
+  add_spleen(anatomy);
+  add_pancreas(anatomy);
+  add_pelvic_organs(anatomy);
+  add_back_muscles(anatomy);
+  add_kidneys(anatomy);
+  add_liver(anatomy);
+  add_great_vessels(anatomy);
+  add_skeleton(anatomy);
+  TROCAR_TRY(BiopsyPlan biopsy, plan_biopsy(anatomy));
+  add_liver_vessels(anatomy, biopsy);
+  add_lesions(anatomy, biopsy);
+  TROCAR_TRY_STATUS(anatomy.check_labels());
+  const double fluid_ml = fluid.settle(anatomy); std::printf("fluid %g\n", fluid_ml);
+  TorsoPlan plan;
+  plan.landmarks = find_landmarks(anatomy);
+  if (description.task == "liver-biopsy") plan.paths = {biopsy.path};
+  return plan;
+}
+
+}  // namespace trocar::anatomy::phantom
