@@ -17,7 +17,8 @@ struct Landmark {
   Vec3 p_P;
 };
 
-/// A straight needle path from the skin to a target: an expert path or a planned one.
+/// A straight needle path from the skin to a target: an expert path or a planned one. Paths that a patient brings for a
+/// task are named "TASK: place".
 struct NeedlePath {
   std::string name;
   Segment line_P;  ///< a: entry on the skin, b: target.

@@ -53,6 +53,15 @@ Result<tasks::PlannedPath> find_expert_path(const Case& the_case, const anatomy:
               "draw it again in the case builder, or take expert_path out of the task");
 }
 
+/// The first path that the patient brings for the task (NeedlePath::name); nullptr: none. A biopsy needle is fired
+/// before the target, so that its path is planned for the needle.
+const anatomy::NeedlePath* path_for(const Case& the_case, const anatomy::VirtualPatient& patient) {
+  if (the_case.needle.is_biopsy) return nullptr;
+  for (const anatomy::NeedlePath& path : patient.paths)
+    if (path.name.starts_with(the_case.task.name + ": ")) return &path;
+  return nullptr;
+}
+
 }  // namespace
 
 bool has_own_task(const std::string& patient_folder) {
@@ -83,6 +92,8 @@ Result<Case> prepare_case(std::shared_ptr<const anatomy::VirtualPatient> patient
         fmt::format("the patient does not support the task {}: {}", made.task.name, fmt::join(readiness.reasons, "; ")),
         patient->name, "see trocar patient check");
   made.is_parenchymal = readiness.is_parenchymal;
+  const anatomy::NeedlePath* brought = path_for(made, *patient);
+  if (made.task.expert_path.empty() && brought != nullptr) made.task.expert_path = brought->name;
   if (!made.task.expert_path.empty()) {
     TROCAR_TRY(made.plan, find_expert_path(made, *patient));
   } else {

@@ -70,8 +70,11 @@ class Assessor {
       add(PathFault::kGlancing, entry_P,
           fmt::format("the needle is {:.0f}° from the skin's normal; the limit is {:.0f}°", made_.entry_angle_deg,
                       task_.max_entry_angle_deg));
-    if (normal.y() > std::sin(task_.max_posterior_deg * std::numbers::pi / 180.0))
-      add(PathFault::kOutOfReach, entry_P, "the entry is on the patient's back and not accessible");
+    const double down = normal.dot(anatomy::gravity_P(patient_.posture));
+    if (down > std::sin(task_.max_posterior_deg * std::numbers::pi / 180.0))
+      add(PathFault::kOutOfReach, entry_P,
+          fmt::format("the patient is {}: the entry faces down and is not accessible",
+                      anatomy::posture_words(patient_.posture)));
     if (!task_.entry_zone) return;
     const double outside_mm = task_.entry_zone->distance_outside_mm(entry_P);
     if (outside_mm > 0.0)

@@ -197,7 +197,8 @@ std::string reason_of(const PlanningMap& map, const Needle& needle, const PathCa
     case Verdict::kCutFace:
       return "leave the volume before the skin";
     case Verdict::kOutOfReach:
-      return "start at the patient's back and are not accessible";
+      return fmt::format("start where the skin faces down, with the patient {}",
+                         anatomy::posture_words(map.patient.posture));
     case Verdict::kOutsideZone:
       return "start outside the entry zone";
     case Verdict::kGlancing:

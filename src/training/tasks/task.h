@@ -53,7 +53,12 @@ struct Task {
   double parenchymal_vessel_mm = 10.0;  ///< Target at least this far from large vessels without a lesion.
   double max_path_mm = 150.0;           ///< Skin to the tip when it is at the target. Range 10..300.
   double max_entry_angle_deg = 60.0;    ///< Between the needle and the skin's normal. Range 5..85.
-  double max_posterior_deg = 30.0;      ///< Supine patient: largest downward angle of the skin's normal. Range 0..90.
+  double max_posterior_deg = 30.0;      ///< Largest angle by which the skin may face down in the posture. Range 0..90.
+  std::vector<std::string> passes;      ///< Tissues that a path may pass besides skin, fat, muscle and fluid.
+  /// Long targets (a dural sac, bile ducts): a target point every so many mm, range 0..100; 0: the middle of each
+  /// target.
+  double target_step_mm = 0.0;
+  std::string target_below;  ///< Name of a structure: target points lie below its lowest point (z); empty: anywhere.
   // Scoring: deviation at which a part gives half its points, and time at which it gives none.
   double target_tolerance_mm = 5.0;
   double entry_tolerance_mm = 10.0;

@@ -58,8 +58,13 @@ class TaskReader {
   Status read_path(Task& task) const {
     if (!lacks("path")) {
       TROCAR_TRY(const config::TomlTable path, document_.table("path"));
-      TROCAR_TRY_STATUS(
-          path.check_keys({"min_organ_path_mm", "max_path_mm", "max_entry_angle_deg", "max_posterior_deg"}));
+      TROCAR_TRY_STATUS(path.check_keys({"min_organ_path_mm", "max_path_mm", "max_entry_angle_deg", "max_posterior_deg",
+                                         "passes", "target_step_mm", "target_below"}));
+      if (path.has("passes")) {
+        TROCAR_TRY(task.passes, path.strings("passes"));
+      }
+      TROCAR_TRY(task.target_step_mm, path.number_or("target_step_mm", {0.0, 100.0}, task.target_step_mm));
+      TROCAR_TRY(task.target_below, path.string_or("target_below", task.target_below));
       TROCAR_TRY_STATUS(number(path, "min_organ_path_mm", {0.0, 50.0}, task.min_organ_path_mm));
       TROCAR_TRY_STATUS(number(path, "max_path_mm", {10.0, 300.0}, task.max_path_mm));
       TROCAR_TRY_STATUS(number(path, "max_entry_angle_deg", {5.0, 85.0}, task.max_entry_angle_deg));
@@ -256,6 +261,9 @@ std::string task_to_toml(const Task& task, const Task& base) {
   keys.set_changed("max_path_mm", task.max_path_mm, base.max_path_mm);
   keys.set_changed("max_entry_angle_deg", task.max_entry_angle_deg, base.max_entry_angle_deg);
   keys.set_changed("max_posterior_deg", task.max_posterior_deg, base.max_posterior_deg);
+  keys.set_changed("passes", task.passes, base.passes);
+  keys.set_changed("target_step_mm", task.target_step_mm, base.target_step_mm);
+  keys.set_changed("target_below", task.target_below, base.target_below);
   keys.begin_table("parenchymal");
   keys.set_changed("depth_mm", task.parenchymal_depth_mm, base.parenchymal_depth_mm);
   keys.set_changed("vessel_mm", task.parenchymal_vessel_mm, base.parenchymal_vessel_mm);

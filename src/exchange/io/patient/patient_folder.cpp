@@ -59,6 +59,7 @@ Result<anatomy::VirtualPatient> load_patient(const fs::path& folder) {
   patient.name = std::move(description.name);
   patient.description = std::move(description.description);
   patient.provenance = std::move(description.provenance);
+  patient.posture = description.posture;
   patient.label_table = std::move(description.label_table);
   TROCAR_TRY_STATUS(load_volumes(folder, patient));
   TROCAR_TRY_STATUS(detail::check_geometry(patient, folder.string()));

@@ -53,8 +53,13 @@ Status write_contents(const anatomy::VirtualPatient& patient, const std::vector<
                       const fs::path& folder, const Progress& progress) {
   report(progress, "volumes", 0.0);
   TROCAR_TRY_STATUS(write_volumes(patient, folder));
-  detail::PatientDescription description{
-      patient.name, patient.description, patient.provenance, anatomy::hash_patient(patient), patient.label_table, {}};
+  detail::PatientDescription description{patient.name,
+                                         patient.description,
+                                         patient.provenance,
+                                         patient.posture,
+                                         anatomy::hash_patient(patient),
+                                         patient.label_table,
+                                         {}};
   std::set<std::string> taken;
   for (const anatomy::NamedMesh& mesh : meshes) {
     report(progress, "surfaces", 0.8 + 0.2 * static_cast<double>(taken.size()) / static_cast<double>(meshes.size()));

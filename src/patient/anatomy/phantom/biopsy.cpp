@@ -6,7 +6,9 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <string_view>
 
+#include "anatomy/phantom/path_search.h"
 #include "anatomy/phantom/skeleton.h"
 
 namespace trocar::anatomy::phantom {
@@ -14,34 +16,23 @@ namespace {
 
 constexpr float kDegree = std::numbers::pi_v<float> / 180.0F;
 constexpr int kTries = 20000;
+constexpr float kLiverHu = 106.0F;
 constexpr std::size_t kLesions = 3;
+
+constexpr std::array<std::string_view, 10> kOrgans{"lung",        "portal_vein_and_splenic_vein",
+                                                   "aorta",       "inferior_vena_cava",
+                                                   "gallbladder", "kidney_right",
+                                                   "colon",       "small_bowel",
+                                                   "duodenum",    "stomach"};
 
 /// Structures that a path avoids.
 struct Risks {
-  std::vector<const Structure*> bones;
-  std::vector<const Structure*> organs;
+  Obstacles bones;
+  Obstacles organs;
   const Structure* liver;
 
-  explicit Risks(const Anatomy& anatomy) : liver(&anatomy.find("liver")) {
-    for (const Structure& s : anatomy.structures) {
-      constexpr std::array kOrgans{"lung",        "portal_vein_and_splenic_vein",
-                                   "aorta",       "inferior_vena_cava",
-                                   "gallbladder", "kidney_right",
-                                   "colon",       "small_bowel",
-                                   "duodenum",    "stomach"};
-      if (s.name.starts_with("rib_") || s.name.starts_with("vertebrae") || s.name == "costal_cartilages" ||
-          s.name == "sternum")
-        bones.push_back(&s);
-      else if (std::find(kOrgans.begin(), kOrgans.end(), s.name) != kOrgans.end())
-        organs.push_back(&s);
-    }
-  }
-
-  static bool all_farther(const std::vector<const Structure*>& structures, const Place& place, float mm) {
-    const Box reach = Box::around(place.p, Vec3f::Constant(mm));
-    return std::all_of(structures.begin(), structures.end(),
-                       [&](const Structure* s) { return !s->bounds.overlaps(reach) || s->distance(place) > mm; });
-  }
+  explicit Risks(const Anatomy& anatomy)
+      : bones(bones_of(anatomy)), organs(anatomy, kOrgans), liver(&anatomy.find("liver")) {}
 };
 
 float bone_margin(const PathMargins& m) {
@@ -51,24 +42,13 @@ float organ_margin(const PathMargins& m) {
   return static_cast<float>(m.organ_mm + m.reserve_mm);
 }
 
-/// Intersection of a ray from inside with the body surface.
-Vec3f leave_body(const Anatomy& anatomy, Vec3f inside, const Vec3f& direction) {
-  float low = 0.0F;
-  float high = anatomy.data.lesions.longest_path_mm + 150.0F;
-  for (int n = 0; n < 40; ++n) {
-    const float middle = 0.5F * (low + high);
-    (anatomy.torso.at(inside + middle * direction).skin < 0.0F ? low : high) = middle;
-  }
-  return inside + low * direction;
-}
-
 /// True if a lesion can be here: covered by liver, and without a significant vessel.
 bool has_room(const Anatomy& anatomy, const Risks& risks, const Lesion& lesion, float cover_mm, float vessel_mm) {
   const Place place = anatomy.torso.at(lesion.centre);
   for (const Vec3f& gate : {anatomy.data.liver.hilum, anatomy.data.liver.venous_confluence})
     if ((lesion.centre - gate).norm() < lesion.radius_mm + anatomy.data.lesions.from_hilum_mm) return false;
   return risks.liver->distance(place) < -(lesion.radius_mm + cover_mm) &&
-         Risks::all_farther(risks.organs, place, lesion.radius_mm + vessel_mm);
+         risks.organs.all_farther(place, lesion.radius_mm + vessel_mm);
 }
 
 /// Checks the path from the skin to the target and slightly beyond.
@@ -81,13 +61,20 @@ bool is_safe(const Anatomy& anatomy, const Risks& risks, const Vec3f& entry, con
   constexpr float kStepMm = 0.5F;
   for (float along = 0.0F; along < length + 5.0F; along += kStepMm) {
     const Place place = anatomy.torso.at(entry + along * direction);
-    if (!Risks::all_farther(risks.bones, place, bone_margin(margins))) return false;
-    if (!Risks::all_farther(risks.organs, place, organ_margin(margins))) return false;
+    if (!risks.bones.all_farther(place, bone_margin(margins))) return false;
+    if (!risks.organs.all_farther(place, organ_margin(margins))) return false;
     const bool in_liver = risks.liver->distance(place) < 0.0F;
     if (in_liver && along < length - lesion.radius_mm - 1.5F) liver_mm += kStepMm;
     if (!in_liver && liver_mm > 0.0F) return false;
   }
   return liver_mm >= margins.liver_mm + margins.reserve_mm;
+}
+
+/// Of the body's parameters, varied by the seed.
+float lesion_radius(const Anatomy& anatomy, Random& random) {
+  const float drawn = anatomy.data.lesions.radius_mm.draw(random);
+  if (anatomy.body.lesion_diameter_mm == BodyParameters{}.lesion_diameter_mm) return drawn;
+  return static_cast<float>(0.5 * anatomy.body.lesion_diameter_mm) / anatomy.scale();
 }
 
 struct Case {
@@ -108,9 +95,9 @@ std::optional<Case> find_case(const Anatomy& anatomy, const Risks& risks, const 
     const Vec3f direction = (inward + Vec3f(off(0), off(1), off(2))).normalized();
     const Place at_gate = anatomy.torso.at(gate);
     if (!intercostal_space(anatomy.data, at_gate)) continue;
-    if (!Risks::all_farther(risks.bones, at_gate, bone_margin(margins))) continue;
-    if (!Risks::all_farther(risks.organs, at_gate, organ_margin(margins))) continue;
-    const Lesion lesion{gate + data.depth_mm.draw(random) * direction, data.radius_mm.draw(random)};
+    if (!risks.bones.all_farther(at_gate, bone_margin(margins))) continue;
+    if (!risks.organs.all_farther(at_gate, organ_margin(margins))) continue;
+    const Lesion lesion{gate + data.depth_mm.draw(random) * direction, lesion_radius(anatomy, random)};
     if (!has_room(anatomy, risks, lesion, 6.0F, 1.5F)) continue;
     const Vec3f entry = leave_body(anatomy, gate, -direction);
     if (is_safe(anatomy, risks, entry, lesion, margins)) return Case{lesion, entry};
@@ -143,15 +130,19 @@ void paint_lesion(Anatomy& anatomy, const Lesion& lesion, int number, Random& ra
   const float b = stretch();
   const Vec3f radii = lesion.radius_mm * Vec3f(a, b, stretch());
   const std::string name = "liver_lesion_" + std::to_string(number);
+  const auto contrast_hu =
+      static_cast<float>(number == 1 ? anatomy.body.lesion_contrast_hu : BodyParameters{}.lesion_contrast_hu);
+  const float rim_hu = kLiverHu + 0.85F * contrast_hu;
   const std::uint8_t label = anatomy.label(name);
-  anatomy.add({name, Box::around(lesion.centre, radii + Vec3f::Constant(3.0F)),
-               [=, &noise](const Place& place) {
-                 return ellipsoid(place.p - lesion.centre, radii) + 1.0F * noise(place.p / 7.0F);
-               },
-               [=, &noise](const Place& place, float distance, const Brush&) {
-                 const float core = clamp01(-distance / (0.8F * lesion.radius_mm));
-                 return Paint{mix(72.0F, 52.0F, core) + 4.0F * noise(place.p / 5.0F), label};
-               }});
+  anatomy.add(
+      {name, Box::around(lesion.centre, radii + Vec3f::Constant(3.0F)),
+       [=, &noise](const Place& place) {
+         return ellipsoid(place.p - lesion.centre, radii) + 1.0F * noise(place.p / 7.0F);
+       },
+       [=, &noise](const Place& place, float distance, const Brush&) {
+         const float core = clamp01(-distance / (0.8F * lesion.radius_mm));
+         return Paint{mix(rim_hu, rim_hu - 0.5F * std::abs(contrast_hu), core) + 4.0F * noise(place.p / 5.0F), label};
+       }});
 }
 
 }  // namespace

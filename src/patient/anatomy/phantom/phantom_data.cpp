@@ -72,8 +72,6 @@ TorsoData read_torso(SectionReader torso, SectionReader diaphragm) {
 
 LandmarkData read_landmarks(SectionReader landmarks) {
   return {.xiphoid_z_mm = landmarks.number("xiphoid_z_mm"),
-          .t12_spinous_below_mm = landmarks.number("t12_spinous_below_mm"),
-          .l3_spinous_below_mm = landmarks.number("l3_spinous_below_mm"),
           .tenth_rib_below_t10_mm = landmarks.number("tenth_rib_below_t10_mm")};
 }
 
@@ -373,7 +371,9 @@ AbdomenData read_abdomen(SectionReader file) {
           .aorta = read_aorta(file.section("aorta")),
           .vena_cava = read_vein(file.section("vena_cava")),
           .epigastric = read_epigastric(file.section("epigastric_vessels")),
-          .bladder = {.centre = bladder.point("centre"), .radii_mm = bladder.radii("radii_mm"), .size = bladder.size("size")},
+          .bladder = {.centre = bladder.point("centre"),
+                      .radii_mm = bladder.radii("radii_mm"),
+                      .size = bladder.size("size")},
           .uterus = {.centre = uterus.point("centre"),
                      .radii_mm = uterus.radii("radii_mm"),
                      .spread_mm = uterus.number("spread_mm")},

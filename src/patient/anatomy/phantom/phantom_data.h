@@ -108,7 +108,7 @@ struct TorsoData {
 };
 
 struct LandmarkData {
-  float xiphoid_z_mm, t12_spinous_below_mm, l3_spinous_below_mm, tenth_rib_below_t10_mm;
+  float xiphoid_z_mm, tenth_rib_below_t10_mm;
 };
 
 struct SpineData {

@@ -7,8 +7,9 @@
 namespace trocar::anatomy::phantom {
 namespace {
 
-// Thickness of the ligamentum flavum at L3/4: 3.5 to 4 mm in adults without stenosis (CT of 40 to 60 year old: Fukuyama et
-// al., J Spinal Disord 8:344, 1995). The fat behind the sac is 4 to 6 mm between two laminae and vanishes under them.
+// Thickness of the ligamentum flavum at L3/4: 3.5 to 4 mm in adults without stenosis (CT of 40 to 60 year old: Fukuyama
+// et al., J Spinal Disord 8:344, 1995). The fat behind the sac is 4 to 6 mm between two laminae and vanishes under
+// them.
 constexpr float kFlavumMm = 3.7F;
 constexpr float kFlavumHalfWidth = 13.0F;
 constexpr float kFatBehindMm = 4.2F, kFatLeastMm = 0.9F, kFatInFrontMm = 1.4F;
@@ -43,7 +44,8 @@ float cord(const SpineData& spine, const Vec3f& u) {
                            std::max(spine.cord_radii_mm[0] * rest, 0.5F) + 0.6F);
 }
 
-/// Roots of the cauda equina. Lying on the back they sink to the back and sides of the sac; they leave the midline free.
+/// Roots of the cauda equina. Lying on the back they sink to the back and sides of the sac; they leave the midline
+/// free.
 Tube cauda_equina(const SpineData& spine) {
   std::vector<Cone> cones;
   constexpr float kFrom = -2.0F, kStepMm = 8.0F;
@@ -84,6 +86,15 @@ void add_ligaments(Anatomy& anatomy) {
   anatomy.add_plain(
       "interspinous_ligament", canal_box(3.0F), [=](const Place& place) { return between_processes(place.spine); },
       kLigamentHu, 22.0F, 5.0F);
+  // Behind the tips of the spinous processes there is no muscle, only fat between the two halves of the back.
+  anatomy.add_plain(
+      "fat", canal_box(18.0F),
+      [tip](const Place& place) {
+        const Vec3f& u = place.spine;
+        const float width = 7.0F + 0.45F * std::max(u.y() - tip, 0.0F);
+        return smooth_max(0.85F * (std::abs(u.x()) - width), tip - 1.0F - u.y(), 3.0F);
+      },
+      kFatHu - 6.0F, 10.0F, 6.0F);
   anatomy.add_plain(
       "supraspinous_ligament", canal_box(4.0F),
       [tip](const Place& place) {
@@ -105,8 +116,8 @@ void add_ligaments(Anatomy& anatomy) {
 void add_canal_content(Anatomy& anatomy) {
   const SpineData& spine = anatomy.data.spine;
   anatomy.add_plain(
-      "epidural_fat", canal_box(18.0F), [&spine](const Place& place) { return canal(spine, place.spine); }, kFatHu, 12.0F,
-      4.0F);
+      "epidural_fat", canal_box(18.0F), [&spine](const Place& place) { return canal(spine, place.spine); }, kFatHu,
+      12.0F, 4.0F);
   const std::uint8_t fluid = anatomy.label("dural_sac");
   const std::uint8_t nerve = anatomy.label("spinal_cord");
   const std::uint8_t roots = anatomy.label("cauda_equina");

@@ -1,6 +1,7 @@
 #include "anatomy/phantom/torso_patient.h"
 
 #include "anatomy/phantom/biopsy.h"
+#include "anatomy/phantom/expert_paths.h"
 #include "anatomy/phantom/free_fluid.h"
 #include "anatomy/phantom/landmarks.h"
 
@@ -21,13 +22,22 @@ Result<TorsoPlan> build_torso(Anatomy& anatomy, const CaseDescription& descripti
   add_great_vessels(anatomy);
   add_skeleton(anatomy);
   TROCAR_TRY(BiopsyPlan biopsy, plan_biopsy(anatomy));
-  add_liver_vessels(anatomy, biopsy);
+  const DuctTree ducts = add_liver_vessels(anatomy, biopsy);
   add_lesions(anatomy, biopsy);
   TROCAR_TRY_STATUS(anatomy.check_labels());
-  const double fluid_ml = fluid.settle(anatomy); std::printf("fluid %g\n", fluid_ml);
+  fluid.settle(anatomy);
   TorsoPlan plan;
   plan.landmarks = find_landmarks(anatomy);
-  if (description.task == "liver-biopsy") plan.paths = {biopsy.path};
+  if (description.task == "liver-biopsy") {
+    plan.paths = {biopsy.path};
+    for (Vec3* end : {&plan.paths.front().line_P.a, &plan.paths.front().line_P.b}) *end *= anatomy.scale();
+  } else if (description.task == "lumbar-puncture") {
+    TROCAR_TRY(plan.paths, plan_lumbar_paths(anatomy));
+  } else if (description.task == "ascites-puncture") {
+    TROCAR_TRY(plan.paths, plan_ascites_paths(anatomy));
+  } else if (description.task == "ptcd") {
+    TROCAR_TRY(plan.paths, plan_bile_duct_paths(anatomy, ducts));
+  }
   return plan;
 }
 

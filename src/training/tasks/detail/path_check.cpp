@@ -205,7 +205,8 @@ PathCandidate trace_path(const PlanningMap& map, const Needle& needle, const Vec
   if (map.task.entry_zone && map.task.entry_zone->distance_outside_mm(path.line_P.a) > 0.0)
     return reject(PathVerdict::kOutsideZone);
   const Vec3 normal = skin_normal(skin_distance, path.line_P.a);
-  if (normal.y() > std::sin(map.task.max_posterior_deg * kDegree)) return reject(PathVerdict::kOutOfReach);  // +y: back
+  const double down = normal.dot(anatomy::gravity_P(map.patient.posture));
+  if (down > std::sin(map.task.max_posterior_deg * kDegree)) return reject(PathVerdict::kOutOfReach);
   if (normal.dot(outward) < std::cos(map.task.max_entry_angle_deg * kDegree)) return reject(PathVerdict::kGlancing);
 
   const double whole = path.length_mm + needle.throw_mm;

@@ -28,7 +28,44 @@ Role role_of(const Task& task, const anatomy::Label& label) {
   if (label.tissue == "muscle") return Role::kMuscle;
   for (const char* tissue : {"skin", "adipose", "soft_tissue", "fluid", "ascites", "peritoneum"})
     if (label.tissue == tissue) return Role::kPassable;
-  return Role::kForbidden;
+  const bool passes = std::find(task.passes.begin(), task.passes.end(), label.tissue) != task.passes.end();
+  return passes ? Role::kMuscle : Role::kForbidden;
+}
+
+/// Points on the middle line of a long target, at least `step_mm` apart, the thickest parts first.
+std::vector<Vec3> points_along(const volume::LabelGrid& labels, std::uint8_t id, const IndexBox& box, double step_mm,
+                               double highest_z_mm) {
+  const volume::MaskGrid mask = cut_mask(labels, grown(box, 1), [&](std::uint8_t label) { return label == id; });
+  const volume::FloatGrid distance = volume::signed_distance_mm(mask);
+  std::vector<std::pair<float, std::size_t>> order;
+  for (std::size_t n = 0; n < distance.voxels.size(); ++n)
+    if (distance.voxels[n] < 0.0F) order.emplace_back(distance.voxels[n], n);
+  std::sort(order.begin(), order.end());
+  std::vector<Vec3> points;
+  for (const auto& [depth, n] : order) {
+    const Vec3 p_P = mask.geometry.centre_mm(mask.geometry.index_of(n));
+    const bool is_free = p_P.z() <= highest_z_mm && std::none_of(points.begin(), points.end(), [&](const Vec3& other) {
+                           return (other - p_P).norm() < step_mm;
+                         });
+    if (is_free) points.push_back(p_P);
+    if (points.size() == kMaxTargets) break;
+  }
+  return points;
+}
+
+/// Height (z) of the lowest voxel of a structure; infinity without a name. Error: the patient lacks it.
+Result<double> lowest_of(const PlanningMap& map, const LabelBoxes& boxes, const std::string& name) {
+  if (name.empty()) return std::numeric_limits<double>::infinity();
+  const anatomy::Label* label = map.patient.label_table.find(name);
+  if (label == nullptr || boxes.voxels[label->id] == 0)
+    return fail("has no " + name + ", below which the target lies", map.patient.name,
+                "label it, or take target_below out of the task");
+  const volume::LabelGrid& labels = map.patient.labels;
+  double lowest = std::numeric_limits<double>::infinity();
+  for (std::size_t n = 0; n < labels.voxels.size(); ++n)
+    if (labels.voxels[n] == label->id)
+      lowest = std::min(lowest, labels.geometry.centre_mm(labels.geometry.index_of(n)).z());
+  return lowest;
 }
 
 /// The centre of one lesion: that of its deepest part, or its deepest voxel if the part is curved.
@@ -128,10 +165,18 @@ Result<PlanTargets> find_targets(const PlanningMap& map) {
   for (const anatomy::Label& label : map.patient.label_table.labels) {
     if (boxes.voxels[label.id] == 0) continue;
     if (map.roles[label.id] == Role::kTarget) lesions.emplace_back(boxes.voxels[label.id], label.id);
-    if (map.roles[label.id] == Role::kOrgan) organ_box = united(organ_box, boxes.boxes[label.id]);
+    if (map.roles[label.id] == Role::kOrgan || map.roles[label.id] == Role::kTarget)
+      organ_box = united(organ_box, boxes.boxes[label.id]);
   }
   if (organ_box.is_empty()) return fail("has no " + map.task.organ, map.patient.name, "choose another task");
   std::sort(lesions.begin(), lesions.end(), std::greater<>());
+  TROCAR_TRY(const double highest_z_mm, lowest_of(map, boxes, map.task.target_below));
+  for (const auto& [voxels, id] : lesions) {
+    if (map.task.target_step_mm <= 0.0) break;
+    const auto points = points_along(labels, id, boxes.boxes[id], map.task.target_step_mm, highest_z_mm);
+    targets.points_P.insert(targets.points_P.end(), points.begin(), points.end());
+  }
+  if (!targets.points_P.empty()) return targets;
   for (const auto& [voxels, id] : lesions)
     if (targets.points_P.size() < kMaxLesions) targets.points_P.push_back(lesion_middle(labels, id, boxes.boxes[id]));
   if (!targets.points_P.empty()) return targets;

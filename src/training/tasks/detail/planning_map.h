@@ -8,7 +8,7 @@
 
 namespace trocar::tasks::detail {
 
-/// Role of a label for a needle on its path.
+/// Role of a label for a needle on its path. Tissues that the task lets pass count as muscle: both are the wall.
 enum class Role : std::uint8_t { kPassable, kMuscle, kOrgan, kTarget, kForbidden };
 
 /// Roles of a patient's labels in a task, and distances to the risk structures. References the task and the patient.

@@ -71,6 +71,7 @@ std::string to_toml(const PatientDescription& patient) {
   writer.set("name", patient.name);
   writer.set("description", patient.description);
   writer.set("provenance", patient.provenance);
+  writer.set("posture", std::string(anatomy::posture_name(patient.posture)));
   writer.set("content_hash", patient.content_hash);
   for (const anatomy::Label& label : patient.label_table.labels) {
     writer.begin_row("labels");
@@ -91,13 +92,19 @@ Result<PatientDescription> load_patient_toml(const fs::path& path, const fs::pat
   TROCAR_TRY(const std::string text, read_input(path, FileKind::kToml, folder));
   TROCAR_TRY(const config::TomlTable file, config::parse_toml(text, path.string()));
   TROCAR_TRY_STATUS(check_version(file, path));
-  TROCAR_TRY_STATUS(
-      file.check_keys({"format_version", "name", "description", "provenance", "content_hash", "labels", "meshes"}));
+  TROCAR_TRY_STATUS(file.check_keys(
+      {"format_version", "name", "description", "provenance", "posture", "content_hash", "labels", "meshes"}));
   PatientDescription patient;
   TROCAR_TRY(patient.name, file.string("name"));
   TROCAR_TRY(patient.description, file.string_or("description", ""));
   TROCAR_TRY(patient.provenance, file.strings("provenance"));
   TROCAR_TRY(patient.content_hash, file.string("content_hash"));
+  TROCAR_TRY(const std::string posture, file.string_or("posture", "supine"));
+  const auto known_posture = anatomy::find_posture(posture);
+  if (!known_posture)
+    return fail("\"" + posture + "\" is no posture", path.string(),
+                "write supine, prone, left-lateral, right-lateral or sitting");
+  patient.posture = *known_posture;
   TROCAR_TRY(patient.label_table, labels_of(file));
   TROCAR_TRY(const std::vector<config::TomlTable> meshes, file.tables("meshes"));
   for (const config::TomlTable& mesh : meshes) {

@@ -19,6 +19,7 @@ struct PatientDescription {
   std::string name;
   std::string description;
   std::vector<std::string> provenance;
+  anatomy::Posture posture = anatomy::Posture::kSupine;
   std::string content_hash;
   anatomy::LabelTable label_table;
   std::vector<PatientMeshEntry> meshes;

@@ -1,0 +1,248 @@
+#include "anatomy/phantom/expert_paths.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <string>
+
+#include "anatomy/phantom/bone.h"
+#include "anatomy/phantom/path_search.h"
+#include "anatomy/phantom/skeleton.h"
+
+namespace trocar::anatomy::phantom {
+namespace {
+
+constexpr float kPi = std::numbers::pi_v<float>;
+constexpr float kDegree = kPi / 180.0F;
+
+NeedlePath path_of(const Anatomy& anatomy, std::string name, const Vec3f& entry, const Vec3f& target) {
+  const auto scale = static_cast<double>(anatomy.scale());
+  return {std::move(name), {scale * entry.cast<double>(), scale * target.cast<double>()}};
+}
+
+/// The places of a straight line, each half millimetre, from `entry` to `beyond_mm` behind the target.
+template <class Visit>
+bool all_along(const Anatomy& anatomy, const Vec3f& entry, const Vec3f& target, float beyond_mm, const Visit& visit) {
+  constexpr float kStepMm = 0.5F;
+  const float length = (target - entry).norm();
+  const Vec3f direction = (target - entry) / length;
+  for (float along = 0.0F; along < length + beyond_mm; along += kStepMm)
+    if (!visit(anatomy.torso.at(entry + along * direction), length - along)) return false;
+  return true;
+}
+
+// Lumbar puncture.
+
+constexpr float kNeedleClearanceMm = 1.2F;  ///< Axis of the needle to bone: a 22 G needle and a reserve of 0.8 mm.
+constexpr float kMostClearanceMm = 6.0F;
+
+struct Interspace {
+  Vec3f entry, target;
+  float clearance = 0.0F;
+};
+
+/// The best line in the midline through the space below a vertebra: the one farthest from bone.
+Interspace best_line(const Anatomy& anatomy, const Obstacles& bones, int above) {
+  const SpineCurve& spine = anatomy.torso.spine();
+  const float disc = disc_position(anatomy.data.spine, above);
+  Interspace best;
+  for (float s = disc - 14.0F; s <= disc + 6.0F; s += 1.0F) {
+    const CanalSection canal = canal_section(anatomy.data.spine, s);
+    const Vec3f target = spine.bend(Vec3f(0.0F, canal.y - 0.5F, s));
+    for (float cranial_deg = -8.0F; cranial_deg <= 24.0F; cranial_deg += 2.0F) {
+      const float angle = cranial_deg * kDegree;
+      const Vec3f outwards = spine.direction(Vec3f(0.0F, std::cos(angle), -std::sin(angle)), s).normalized();
+      const Vec3f entry = leave_body(anatomy, target, outwards);
+      float clearance = best.clearance;  // a better line has more everywhere
+      const auto is_free = [&](float mm) {
+        return all_along(anatomy, entry, target, 2.0F,
+                         [&](const Place& place, float) { return bones.all_farther(place, mm); });
+      };
+      if (!is_free(clearance + 0.25F)) continue;
+      while (clearance < kMostClearanceMm && is_free(clearance + 0.25F)) clearance += 0.25F;
+      best = {entry, target, clearance};
+    }
+  }
+  return best;
+}
+
+// Ascites puncture.
+
+constexpr float kInwardMm = 12.0F;  ///< The tip in the fluid, behind the peritoneum.
+constexpr float kBowelClearanceMm = 8.0F, kEpigastricClearanceMm = 10.0F;
+constexpr float kFluidBeyondMm = 6.0F;
+
+struct FluidRisks {
+  explicit FluidRisks(const Anatomy& anatomy)
+      : bones(bones_of(anatomy)), bowel(anatomy, kBowel), vessels(anatomy, kVessels) {}
+  static constexpr std::array<std::string_view, 8> kBowel{"small_bowel", "colon",  "stomach",         "duodenum",
+                                                          "liver",       "spleen", "urinary_bladder", "kidney"};
+  static constexpr std::array<std::string_view, 4> kVessels{"epigastric_vessels", "aorta", "inferior_vena_cava",
+                                                            "portal_vein"};
+  Obstacles bones, bowel, vessels;
+};
+
+/// A path straight into the skin at an entry, if fluid lies behind the wall and all risks keep their distance.
+std::optional<Vec3f> fluid_target(const Anatomy& anatomy, const FluidRisks& risks, const Vec3f& entry) {
+  constexpr float kStepMm = 0.5F, kDeepest = 110.0F;
+  const float h = 1.5F;
+  const auto skin = [&](const Vec3f& p) { return anatomy.torso.at(p).skin; };
+  const Vec3f outward = Vec3f(skin(entry + Vec3f(h, 0, 0)) - skin(entry - Vec3f(h, 0, 0)),
+                              skin(entry + Vec3f(0, h, 0)) - skin(entry - Vec3f(0, h, 0)),
+                              skin(entry + Vec3f(0, 0, h)) - skin(entry - Vec3f(0, 0, h)))
+                            .normalized();
+  const auto* fluid = anatomy.label_table.find("ascites");
+  if (fluid == nullptr) return std::nullopt;
+  float fluid_begin = -1.0F;
+  for (float depth = 1.0F; depth < kDeepest; depth += kStepMm) {
+    const Place place = anatomy.torso.at(entry - depth * outward);
+    if (!risks.bones.all_farther(place, 4.0F) || !risks.bowel.all_farther(place, kBowelClearanceMm) ||
+        !risks.vessels.all_farther(place, kEpigastricClearanceMm))
+      return std::nullopt;
+    const bool in_fluid = anatomy.label_at(place) == fluid->id;
+    if (in_fluid && fluid_begin < 0.0F) fluid_begin = depth;
+    if (!in_fluid && fluid_begin >= 0.0F) return std::nullopt;
+    if (fluid_begin >= 0.0F && depth >= fluid_begin + kInwardMm + kFluidBeyondMm)
+      return entry - (fluid_begin + kInwardMm) * outward;
+  }
+  return std::nullopt;
+}
+
+/// On the skin: `medial` and `cranial` mm from the iliac spine.
+Vec3f beside_iliac_spine(const Anatomy& anatomy, float sign, float medial_mm, float cranial_mm) {
+  const Vec3f spine = iliac_spine_on_skin(anatomy, sign);
+  const float z = spine.z() + cranial_mm;
+  const float phi = std::atan2(std::abs(spine.x()), spine.y()) + medial_mm / std::hypot(spine.x(), spine.y());
+  const float r = anatomy.torso.contours().skin_radius(sign * phi, z);
+  return {r * std::sin(sign * phi), r * std::cos(phi), z};
+}
+
+// Bile duct puncture.
+
+constexpr float kDuctMarginMm = 1.2F;  ///< Of the needle's axis from vessels.
+constexpr float kOrganMarginMm = 6.0F, kBoneMarginMm = 4.0F;
+constexpr float kLongestMm = 135.0F, kFromHilumMm = 28.0F;
+constexpr float kLeastDuctMm = 1.1F;
+
+struct LiverRisks {
+  explicit LiverRisks(const Anatomy& anatomy)
+      : bones(bones_of(anatomy)),
+        organs(anatomy, kOrgans),
+        vessels(anatomy, kVessels),
+        lesions(anatomy, kLesions),
+        liver(anatomy.find("liver")) {}
+  static constexpr std::array<std::string_view, 8> kOrgans{"lung",        "gallbladder", "kidney_right", "colon",
+                                                           "small_bowel", "duodenum",    "stomach",      "aorta"};
+  static constexpr std::array<std::string_view, 4> kVessels{"portal_vein", "hepatic_veins", "inferior_vena_cava",
+                                                            "hepatic_artery"};
+  static constexpr std::array<std::string_view, 2> kLesions{"liver_lesion", "tumor"};
+  Obstacles bones, organs, vessels, lesions;
+  const Structure& liver;
+};
+
+bool is_safe(const Anatomy& anatomy, const LiverRisks& risks, const Vec3f& entry, const Vec3f& target) {
+  if ((target - entry).norm() > kLongestMm) return false;
+  bool was_in_liver = false;
+  return all_along(anatomy, entry, target, 1.0F, [&](const Place& place, float) {
+    const bool in_liver = risks.liver.distance(place) < 0.0F;
+    if (was_in_liver && !in_liver) return false;
+    was_in_liver = in_liver;
+    return risks.bones.all_farther(place, kBoneMarginMm) && risks.organs.all_farther(place, kOrganMarginMm) &&
+           risks.vessels.all_farther(place, kDuctMarginMm) && risks.lesions.all_farther(place, 2.0F);
+  });
+}
+
+std::optional<NeedlePath> find_duct_path(const Anatomy& anatomy, const LiverRisks& risks, const Tube& ducts,
+                                         Random& random, const std::string& name) {
+  constexpr int kTries = 12000;
+  const LesionData& gates = anatomy.data.lesions;
+  const Vec3f hilum = anatomy.unwarped(anatomy.data.liver.hilum);
+  for (int n = 0; n < kTries; ++n) {
+    const auto pick = static_cast<std::size_t>(random.uniform(0.0, static_cast<double>(ducts.cones().size())));
+    const Cone& duct = ducts.cones()[std::min(pick, ducts.cones().size() - 1)];
+    const Vec3f target = 0.5F * (duct.a + duct.b);
+    if (duct.radius_a < kLeastDuctMm || (target - hilum).norm() < kFromHilumMm) continue;
+    const float side = gates.gate_deg.draw(random) * kDegree;
+    const Vec3f gate = anatomy.torso.contours().on_cavity(-side, gates.gate_z_mm.draw(random), gates.gate_outward_mm);
+    if (!intercostal_space(anatomy.data, anatomy.torso.at(gate))) continue;
+    const Vec3f outwards = (gate - target).normalized();
+    const Vec3f along = (duct.b - duct.a).normalized();
+    constexpr float kMostParallel = 0.9F;  // a needle along the duct would miss it
+    if (std::abs(outwards.dot(along)) > kMostParallel) continue;
+    const Vec3f entry = leave_body(anatomy, gate, outwards);
+    if (is_safe(anatomy, risks, entry, target)) return path_of(anatomy, name, entry, target);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Vec3f iliac_spine_on_skin(const Anatomy& anatomy, float sign) {
+  constexpr float kAngle = 111.0F * kDegree, kHeight = -148.0F;
+  const float r = anatomy.torso.contours().skin_radius(sign * kAngle, kHeight);
+  return {sign * r * std::sin(kAngle), r * std::cos(kAngle), kHeight};
+}
+
+Result<std::vector<NeedlePath>> plan_lumbar_paths(const Anatomy& anatomy) {
+  constexpr std::array<std::string_view, 2> kBones{"vertebrae", "sacrum"};
+  const Obstacles bones(anatomy, kBones);
+  std::vector<std::pair<float, NeedlePath>> found;
+  for (const int above : {kL3, kL3 + 1, kL5}) {
+    const Interspace space = best_line(anatomy, bones, above);
+    if (space.clearance < kNeedleClearanceMm) continue;
+    const int number = above - kT12;
+    const std::string name = above == kL5 ? "lumbar-puncture: midline L5/S1"
+                                          : fmt::format("lumbar-puncture: midline L{}/L{}", number, number + 1);
+    found.emplace_back(space.clearance, path_of(anatomy, name, space.entry, space.target));
+  }
+  if (found.empty())
+    return fail("no needle fits between the spinous processes of this body", "phantom", "choose another seed");
+  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<NeedlePath> paths;
+  for (auto& [clearance, path] : found) paths.push_back(std::move(path));
+  return paths;
+}
+
+Result<std::vector<NeedlePath>> plan_ascites_paths(const Anatomy& anatomy) {
+  const FluidRisks risks(anatomy);
+  std::vector<NeedlePath> paths;
+  // Nearest to the usual point first: 3 cm medial and 3 cm cranial of the iliac spine.
+  constexpr float kUsualMm = 30.0F;
+  std::vector<std::array<float, 3>> offsets;
+  for (float medial = 5.0F; medial <= 62.0F; medial += 4.0F)
+    for (float cranial = -10.0F; cranial <= 70.0F; cranial += 5.0F)
+      offsets.push_back({std::hypot(medial - kUsualMm, cranial - kUsualMm), medial, cranial});
+  std::sort(offsets.begin(), offsets.end());
+  for (const float sign : {1.0F, -1.0F})
+    for (const auto& [off, medial, cranial] : offsets) {
+      const Vec3f entry = beside_iliac_spine(anatomy, sign, medial, cranial);
+      const auto target = fluid_target(anatomy, risks, entry);
+      if (!target) continue;
+      paths.push_back(path_of(
+          anatomy, sign > 0.0F ? "ascites-puncture: left lower quadrant" : "ascites-puncture: right lower quadrant",
+          entry, *target));
+      break;
+    }
+  if (paths.empty())
+    return fail("no safe way to the free fluid of this body", "phantom", "choose another seed or more ascites");
+  return paths;
+}
+
+Result<std::vector<NeedlePath>> plan_bile_duct_paths(const Anatomy& anatomy, const DuctTree& ducts) {
+  const LiverRisks risks(anatomy);
+  Random random = anatomy.random("bile duct paths");
+  std::vector<NeedlePath> paths;
+  constexpr int kPaths = 3;
+  for (int n = 1; n <= kPaths && !ducts.inside.empty(); ++n)
+    if (auto path = find_duct_path(anatomy, risks, ducts.inside, random, fmt::format("ptcd: right flank {}", n)))
+      paths.push_back(*std::move(path));
+  if (paths.empty())
+    return fail("no safe way to a bile duct of this body", "phantom", "choose another seed or wider ducts");
+  return paths;
+}
+
+}  // namespace trocar::anatomy::phantom

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <vector>
+
+#include "anatomy/patient.h"
+#include "anatomy/phantom/bile_ducts.h"
+#include "anatomy/phantom/structure.h"
+#include "core/result.h"
+
+namespace trocar::anatomy::phantom {
+
+/// Expert paths of the punctures whose target exists in every body, in P of the patient (mm). Distances to bone,
+/// vessels, bowel and lung are measured to the anatomy's surfaces. Error of each: this body has no safe path.
+
+/// In the midline between two spinous processes below L2, into the middle of the dural sac: one path for each
+/// interspace through which a needle fits, the widest first.
+Result<std::vector<NeedlePath>> plan_lumbar_paths(const Anatomy& anatomy);
+/// Into free fluid of the left and the right lower quadrant, lateral to the epigastric vessels, away from bowel.
+Result<std::vector<NeedlePath>> plan_ascites_paths(const Anatomy& anatomy);
+/// Between two ribs of the right flank, below the lung, into a peripheral bile duct.
+Result<std::vector<NeedlePath>> plan_bile_duct_paths(const Anatomy& anatomy, const DuctTree& ducts);
+
+/// Skin over the anterior superior iliac spine; sign -1 right, 1 left. Reference body.
+Vec3f iliac_spine_on_skin(const Anatomy& anatomy, float sign);
+
+}  // namespace trocar::anatomy::phantom
