@@ -2,47 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
+#include <utility>
 
 namespace trocar::anatomy::phantom {
 
 void Box::add(const Vec3f& p, float radius) {
   low = low.cwiseMin(p - Vec3f::Constant(radius));
   high = high.cwiseMax(p + Vec3f::Constant(radius));
-}
-
-float smooth_step(float low, float high, float x) {
-  const float t = clamp01((x - low) / (high - low));
-  return t * t * (3.0F - 2.0F * t);
-}
-
-float bump(float x, float centre, float width) {
-  const float t = (x - centre) / width;
-  return std::exp(-t * t);
-}
-
-float smooth_min(float a, float b, float radius) {
-  const float h = std::max(radius - std::abs(a - b), 0.0F) / radius;
-  return std::min(a, b) - 0.25F * h * h * radius;
-}
-
-float smooth_max(float a, float b, float radius) {
-  return -smooth_min(-a, -b, radius);
-}
-
-float ellipsoid(const Vec3f& p, const Vec3f& radii) {
-  const Vec3f scaled = p.cwiseQuotient(radii);
-  const float k0 = scaled.norm();
-  const float k1 = scaled.cwiseQuotient(radii).norm();
-  return k1 < 1e-6F ? -radii.minCoeff() : k0 * (k0 - 1.0F) / k1;
-}
-
-float elliptic_cylinder(float x, float y, float a, float b) {
-  const float u = x / a;
-  const float v = y / b;
-  const float k0 = std::sqrt(u * u + v * v);
-  const float k1 = std::sqrt(u * u / (a * a) + v * v / (b * b));
-  return k1 < 1e-6F ? -std::min(a, b) : k0 * (k0 - 1.0F) / k1;
 }
 
 ValueNoise::ValueNoise(std::uint64_t seed) : values_(static_cast<std::size_t>(kCells * kCells * kCells)) {
@@ -74,67 +42,142 @@ float ValueNoise::fractal(const Vec3f& p, float size_mm) const {
 
 float thread(const ValueNoise& noise, const Vec3f& cell, float thickness) {
   const float a = noise(cell) / thickness;
+  if (std::abs(a) >= 1.0F) return 0.0F;
   const float b = noise(cell + Vec3f(11.5F, 3.7F, 6.1F)) / thickness;
   return std::max(0.0F, 1.0F - a * a - b * b);
 }
 
-Tube::Tube(std::vector<Cone> cones) : cones_(std::move(cones)) {
-  float arc = 0.0F;
-  for (const Cone& cone : cones_) {
-    arc_begin_.push_back(arc);
-    arc += (cone.b - cone.a).norm();
-    bounds_.add(cone.a, cone.radius_a);
-    bounds_.add(cone.b, cone.radius_b);
-  }
-  if (!cones_.empty()) build_cells();
-}
-
 namespace {
-constexpr float kCellMm = 10.0F;
+
+constexpr float kCellMm = 8.0F;
+
+/// A cone prepared for distances.
+struct Piece {
+  Vec3f a, along;
+  float inverse_square;  ///< 1 / length^2.
+  float radius, widening;
+  float arc_begin, length;
+
+  explicit Piece(const Cone& cone, float arc)
+      : a(cone.a),
+        along(cone.b - cone.a),
+        inverse_square(1.0F / std::max(along.squaredNorm(), 1e-6F)),
+        radius(cone.radius_a),
+        widening(cone.radius_b - cone.radius_a),
+        arc_begin(arc),
+        length(along.norm()) {}
+  float share(const Vec3f& p) const { return clamp01((p - a).dot(along) * inverse_square); }
+};
+
+}  // namespace
+
+struct Tube::Data {
+  std::uint64_t number = next_number();  ///< No other tube has it.
+  std::vector<Cone> cones;
+  std::vector<Piece> pieces;
+  Box bounds;
+  std::array<int, 3> cells{0, 0, 0};
+  std::vector<std::uint32_t> cell_begin;
+  std::vector<std::uint16_t> members;  ///< Of each cell, those nearest to its centre first.
+
+  explicit Data(std::vector<Cone> cones_) : cones(std::move(cones_)) {
+    float arc = 0.0F;
+    for (const Cone& cone : cones) {
+      pieces.emplace_back(cone, arc);
+      arc += pieces.back().length;
+      bounds.add(cone.a, cone.radius_a);
+      bounds.add(cone.b, cone.radius_b);
+    }
+    build_cells();
+  }
+
+  static std::uint64_t next_number() {
+    static std::atomic<std::uint64_t> count{0};
+    return ++count;
+  }
+
+  void build_cells() {
+    const Box outer = bounds.grown(kReach);
+    const Vec3f extent = (outer.high - outer.low) / kCellMm;
+    for (int a = 0; a < 3; ++a) cells[static_cast<std::size_t>(a)] = static_cast<int>(std::ceil(extent[a])) + 1;
+    cell_begin.push_back(0);
+    std::vector<std::pair<float, std::uint16_t>> near;
+    for (int k = 0; k < cells[2]; ++k)
+      for (int j = 0; j < cells[1]; ++j)
+        for (int i = 0; i < cells[0]; ++i) {
+          const Vec3f cell(static_cast<float>(i), static_cast<float>(j), static_cast<float>(k));
+          find_near(outer.low + kCellMm * (cell + Vec3f::Constant(0.5F)), near);
+          for (const auto& [distance, n] : near) members.push_back(n);
+          cell_begin.push_back(static_cast<std::uint32_t>(members.size()));
+        }
+  }
+
+  /// The pieces that can be the nearest one, within reach, of a point of the cell.
+  void find_near(const Vec3f& centre, std::vector<std::pair<float, std::uint16_t>>& near) const {
+    const float half_diagonal = 0.5F * kCellMm * std::sqrt(3.0F);
+    near.clear();
+    float nearest = std::numeric_limits<float>::infinity();
+    for (std::size_t n = 0; n < pieces.size(); ++n) {
+      const Piece& piece = pieces[n];
+      const float t = piece.share(centre);
+      const float axis = (centre - piece.a - t * piece.along).norm();
+      const float distance = axis - piece.radius - t * piece.widening;
+      if (axis - std::max(piece.radius, piece.radius + piece.widening) > kReach + half_diagonal) continue;
+      near.emplace_back(distance, static_cast<std::uint16_t>(n));
+      nearest = std::min(nearest, distance);
+    }
+    // A distance changes by at most the slope of a cone's surface times the way.
+    constexpr float kSlope = 1.5F;
+    std::erase_if(near, [&](const auto& piece) { return piece.first > nearest + 2.0F * kSlope * half_diagonal; });
+    std::sort(near.begin(), near.end());
+  }
+
+  TubeHit nearest(const Vec3f& p) const {
+    TubeHit hit{kReach, 0.0F, 0.0F, p};
+    const Vec3f index = (p - bounds.low + Vec3f::Constant(kReach)) / kCellMm;
+    const std::array<int, 3> cell{static_cast<int>(std::floor(index.x())), static_cast<int>(std::floor(index.y())),
+                                  static_cast<int>(std::floor(index.z()))};
+    for (std::size_t a = 0; a < 3; ++a)
+      if (cell[a] < 0 || cell[a] >= cells[a]) return hit;
+    const auto offset = static_cast<std::size_t>((cell[2] * cells[1] + cell[1]) * cells[0] + cell[0]);
+    for (std::uint32_t m = cell_begin[offset]; m < cell_begin[offset + 1]; ++m) {
+      const Piece& piece = pieces[members[m]];
+      const float t = piece.share(p);
+      const Vec3f centre = piece.a + t * piece.along;
+      const float radius = piece.radius + t * piece.widening;
+      const float square = (p - centre).squaredNorm();
+      const float limit = hit.distance + radius;
+      if (limit <= 0.0F || square >= limit * limit) continue;
+      hit = {std::sqrt(square) - radius, piece.arc_begin + t * piece.length, radius, centre};
+    }
+    return hit;
+  }
+};
+
+Tube::Tube(std::vector<Cone> cones) {
+  if (!cones.empty()) data_ = std::make_shared<const Data>(std::move(cones));
 }
 
-void Tube::build_cells() {
-  const Box outer = bounds_.grown(kReach);
-  const Vec3f extent = (outer.high - outer.low) / kCellMm;
-  for (int a = 0; a < 3; ++a) cells_[static_cast<std::size_t>(a)] = static_cast<int>(std::ceil(extent[a])) + 1;
-  const float half_diagonal = 0.5F * kCellMm * std::sqrt(3.0F);
-  cell_begin_.push_back(0);
-  for (int k = 0; k < cells_[2]; ++k)
-    for (int j = 0; j < cells_[1]; ++j)
-      for (int i = 0; i < cells_[0]; ++i) {
-        const Vec3f centre =
-            outer.low + kCellMm * (Vec3f(static_cast<float>(i), static_cast<float>(j), static_cast<float>(k)) +
-                                   Vec3f::Constant(0.5F));
-        for (std::size_t n = 0; n < cones_.size(); ++n) {
-          const Cone& cone = cones_[n];
-          const Vec3f along = cone.b - cone.a;
-          const float t = clamp01((centre - cone.a).dot(along) / std::max(along.squaredNorm(), 1e-6F));
-          const float reach = kReach + half_diagonal + std::max(cone.radius_a, cone.radius_b);
-          if ((centre - cone.a - t * along).squaredNorm() < reach * reach)
-            members_.push_back(static_cast<std::uint16_t>(n));
-        }
-        cell_begin_.push_back(static_cast<std::uint32_t>(members_.size()));
-      }
+const Box& Tube::bounds() const {
+  static const Box kNone;
+  return data_ ? data_->bounds : kNone;
+}
+
+const std::vector<Cone>& Tube::cones() const {
+  static const std::vector<Cone> kNone;
+  return data_ ? data_->cones : kNone;
 }
 
 TubeHit Tube::nearest(const Vec3f& p) const {
-  TubeHit hit{kReach, 0.0F, 0.0F, p};
-  const Vec3f index = (p - bounds_.low + Vec3f::Constant(kReach)) / kCellMm;
-  const std::array<int, 3> cell{static_cast<int>(std::floor(index.x())), static_cast<int>(std::floor(index.y())),
-                                static_cast<int>(std::floor(index.z()))};
-  for (std::size_t a = 0; a < 3; ++a)
-    if (cell[a] < 0 || cell[a] >= cells_[a]) return hit;
-  const auto offset = static_cast<std::size_t>((cell[2] * cells_[1] + cell[1]) * cells_[0] + cell[0]);
-  for (std::uint32_t m = cell_begin_[offset]; m < cell_begin_[offset + 1]; ++m) {
-    const Cone& cone = cones_[members_[m]];
-    const Vec3f along = cone.b - cone.a;
-    const float t = clamp01((p - cone.a).dot(along) / std::max(along.squaredNorm(), 1e-6F));
-    const Vec3f centre = cone.a + t * along;
-    const float radius = mix(cone.radius_a, cone.radius_b, t);
-    const float distance = (p - centre).norm() - radius;
-    if (distance < hit.distance) hit = {distance, arc_begin_[members_[m]] + t * along.norm(), radius, centre};
-  }
-  return hit;
+  struct Last {
+    std::uint64_t tube = 0;
+    Vec3f p;
+    TubeHit hit;
+  };
+  thread_local Last last;
+  if (!data_) return {kReach, 0.0F, 0.0F, p};
+  if (last.tube != data_->number || last.p != p) last = {data_->number, p, data_->nearest(p)};
+  return last.hit;
 }
 
 std::vector<Cone> chain(const std::vector<Knot>& knots, int pieces_per_span) {

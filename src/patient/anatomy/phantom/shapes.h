@@ -1,8 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "core/random.h"
@@ -36,17 +39,39 @@ inline float clamp01(float t) {
   return t < 0.0F ? 0.0F : (t > 1.0F ? 1.0F : t);
 }
 /// 0 below `low`, 1 above `high`, smooth between.
-float smooth_step(float low, float high, float x);
+inline float smooth_step(float low, float high, float x) {
+  const float t = clamp01((x - low) / (high - low));
+  return t * t * (3.0F - 2.0F * t);
+}
 /// exp(-((x - centre) / width)^2).
-float bump(float x, float centre, float width);
+inline float bump(float x, float centre, float width) {
+  const float t = (x - centre) / width;
+  return std::exp(-t * t);
+}
 /// Union and intersection with a fillet of about `radius` mm.
-float smooth_min(float a, float b, float radius);
-float smooth_max(float a, float b, float radius);
+inline float smooth_min(float a, float b, float radius) {
+  const float h = std::max(radius - std::abs(a - b), 0.0F) / radius;
+  return std::min(a, b) - 0.25F * h * h * radius;
+}
+inline float smooth_max(float a, float b, float radius) {
+  return -smooth_min(-a, -b, radius);
+}
 
 /// Ellipsoid around the origin.
-float ellipsoid(const Vec3f& p, const Vec3f& radii);
+inline float ellipsoid(const Vec3f& p, const Vec3f& radii) {
+  const Vec3f scaled = p.cwiseQuotient(radii);
+  const float k0 = scaled.norm();
+  const float k1 = scaled.cwiseQuotient(radii).norm();
+  return k1 < 1e-6F ? -radii.minCoeff() : k0 * (k0 - 1.0F) / k1;
+}
 /// Elliptic cylinder along z around the origin; a and b are its half axes along x and y.
-float elliptic_cylinder(float x, float y, float a, float b);
+inline float elliptic_cylinder(float x, float y, float a, float b) {
+  const float u = x / a;
+  const float v = y / b;
+  const float k0 = std::sqrt(u * u + v * v);
+  const float k1 = std::sqrt(u * u / (a * a) + v * v / (b * b));
+  return k1 < 1e-6F ? -std::min(a, b) : k0 * (k0 - 1.0F) / k1;
+}
 
 /// Smooth random function of position, periodic far away, values about -1..1; one unit of the argument is one cell.
 class ValueNoise {
@@ -78,27 +103,23 @@ struct TubeHit {
   Vec3f centre;
 };
 
-/// Many cones (a vessel tree, a bowel loop, a bone's process), found through a grid of cells.
+/// Many cones (a vessel tree, a bowel loop, a bone's process), found through a grid of cells. Copies share their data.
 class Tube {
  public:
   static constexpr float kReach = 14.0F;  ///< Larger distances are not distinguished.
 
   Tube() = default;
   explicit Tube(std::vector<Cone> cones);
-  bool empty() const { return cones_.empty(); }
-  const Box& bounds() const { return bounds_; }
-  const std::vector<Cone>& cones() const { return cones_; }
+  bool empty() const { return !data_; }
+  const Box& bounds() const;
+  const std::vector<Cone>& cones() const;
+  /// The result of the last point is kept per thread: structures ask for the same point several times.
   TubeHit nearest(const Vec3f& p) const;
   float distance(const Vec3f& p) const { return nearest(p).distance; }
 
  private:
-  void build_cells();
-  std::vector<Cone> cones_;
-  std::vector<float> arc_begin_;
-  Box bounds_;
-  std::array<int, 3> cells_{0, 0, 0};
-  std::vector<std::uint32_t> cell_begin_;
-  std::vector<std::uint16_t> members_;
+  struct Data;
+  std::shared_ptr<const Data> data_;
 };
 
 /// A point with the tube's radius there.

@@ -92,7 +92,8 @@ void add_ligaments(Anatomy& anatomy) {
       [tip](const Place& place) {
         const Vec3f& u = place.spine;
         const float width = 7.0F + 0.45F * std::max(u.y() - tip, 0.0F);
-        return smooth_max(0.85F * (std::abs(u.x()) - width), tip - 1.0F - u.y(), 3.0F);
+        const float wedge = smooth_max(0.85F * (std::abs(u.x()) - width), tip - 1.0F - u.y(), 3.0F);
+        return std::max(wedge, place.skin + 2.5F);
       },
       kFatHu - 6.0F, 10.0F, 6.0F);
   anatomy.add_plain(
