@@ -11,14 +11,27 @@
 namespace trocar::io {
 namespace fs = std::filesystem;
 
-Result<volume::CtGrid> read_ct(const fs::path& path, const std::string& series) {
-  if (!series.empty()) {
-    std::error_code error;
-    if (!fs::is_directory(path, error))
-      return fail_usage("a series can only be chosen in a folder of DICOM files", path.string(), "omit --series");
-    return detail::read_dicom_folder<std::int16_t>(path, detail::convert_voxels, series);
+Result<CtScan> read_ct_scan(const fs::path& path, const std::string& series) {
+  std::error_code error;
+  CtScan scan;
+  if (fs::is_directory(path, error)) {
+    TROCAR_TRY(auto volume, detail::read_dicom_folder<std::int16_t>(path, detail::convert_voxels, series));
+    scan.grid = std::move(volume.grid);
+    scan.series_uid = std::move(volume.series_uid);
+    scan.frame_of_reference = std::move(volume.frame_of_reference);
+    scan.slices_P = std::move(volume.slices_P);
+    scan.warnings = std::move(volume.warnings);
+    return scan;
   }
-  return detail::read_grid<std::int16_t>(path, detail::convert_voxels);
+  if (!series.empty())
+    return fail_usage("a series can only be chosen in a folder of DICOM files", path.string(), "omit --series");
+  TROCAR_TRY(scan.grid, detail::read_grid<std::int16_t>(path, detail::convert_voxels));
+  return scan;
+}
+
+Result<volume::CtGrid> read_ct(const fs::path& path, const std::string& series) {
+  TROCAR_TRY(CtScan scan, read_ct_scan(path, series));
+  return std::move(scan.grid);
 }
 
 Result<volume::LabelGrid> read_labels(const fs::path& path) {

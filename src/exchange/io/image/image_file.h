@@ -11,14 +11,27 @@
 
 namespace trocar::io {
 
+/// A CT and what its files say about it.
+struct CtScan {
+  volume::CtGrid grid;
+  std::string series_uid;             ///< Empty if the CT is not DICOM, as the next two.
+  std::string frame_of_reference;     ///< UID.
+  std::vector<Vec3> slices_P;         ///< Centres of the first pixels of the slices in the files, along their normal.
+  std::vector<std::string> warnings;  ///< Images that were left out, slices that were resampled.
+};
+
 /// Reads a 3D CT: NIfTI, NRRD, MHA/MHD, or one DICOM series of a folder and its sub-folders (uncompressed, RLE, JPEG,
 /// JPEG-LS, JPEG 2000; the slice step comes from the positions; files that are not DICOM images are ignored). Result in
 /// LPS mm, HU rounded to int16; RAS files are converted, mirrored grids re-ordered along k; values below -32768 are
-/// padding and become -32768. Errors: no image, truncated, damaged or of an impossible size, a single slice, 4D, NaN or
-/// infinite voxels, values above 32767, sheared axes; in a folder more than one CT series, uneven slice steps, two
-/// slices at one position, gantry tilt above 0.3 degrees, multi-frame, colour or deflated files; a single DICOM file.
-/// `series` selects one of several DICOM series by number (list_dicom_series) or UID; if it is empty, the only series
-/// or the only CT series with more than one image is read. A non-empty `series` for a file is an error.
+/// padding and become -32768. DICOM slices with gantry tilt (above 0.3 degrees) or uneven steps are resampled linearly
+/// onto a straight, even grid; overview images and copies of slices are left out; each with a warning. Errors: no
+/// image, truncated, damaged or of an impossible size, a single slice, 4D, NaN or infinite voxels, values above 32767,
+/// sheared axes; in a folder more than one CT series, a gap above 10 mm or three times the usual distance in uneven
+/// slices, two slices at one position, multi-frame, colour or deflated files; a single DICOM file. `series` selects one
+/// of several DICOM series by number (list_dicom_series) or UID; if it is empty, the only series or the only CT series
+/// with more than one slice is read. A non-empty `series` for a file is an error.
+Result<CtScan> read_ct_scan(const std::filesystem::path& path, const std::string& series = {});
+/// The same without what the files say; warnings are lost.
 Result<volume::CtGrid> read_ct(const std::filesystem::path& path, const std::string& series = {});
 
 /// Reads a label volume or a mask: the same formats, .seg.nrrd without overlaps and DICOM mask series included. Values

@@ -209,8 +209,8 @@ Result<std::vector<anatomy::LabelSource>> read_mask_files(const std::vector<fs::
 }
 
 Result<anatomy::LabelSource> read_dicom_mask(const fs::path& folder, const LabelMap& map) {
-  TROCAR_TRY(volume::MaskGrid mask, detail::read_dicom_folder<std::uint8_t>(folder, detail::convert_mask));
-  return anatomy::LabelSource{folder.string(), std::move(mask), {{1, map.name_of(folder.filename().string())}}};
+  TROCAR_TRY(auto mask, detail::read_dicom_folder<std::uint8_t>(folder, detail::convert_mask));
+  return anatomy::LabelSource{folder.string(), std::move(mask.grid), {{1, map.name_of(folder.filename().string())}}};
 }
 
 Result<std::vector<anatomy::LabelSource>> read_label_folder(const fs::path& folder, const LabelMap& map) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/result.h"
+#include "dicom/stack/slice_stack.h"
 #include "io/dicom/detail/dicom_slice.h"
 #include "io/image/detail/raw_volume.h"
 #include "volume/grid.h"
@@ -13,19 +14,31 @@ namespace trocar::io::detail {
 
 /// One series in the order of its slices along their normal.
 struct DicomSeries {
-  volume::GridGeometry geometry;
-  std::vector<DicomSlice> slices;  ///< k = 0, 1, 2 …
+  std::vector<DicomSlice> slices;
+  dicom::SliceStack stack;  ///< The places of the slices.
+  dicom::StackPlan plan;    ///< The grid that they fill.
 };
 
-/// Orders slices and computes their geometry; the slice step comes from the positions. Errors: no slice or only one,
-/// several frames, colour, slices of different size or direction, no position, two slices at one position, uneven
-/// steps, gantry tilt (the stack deviates by more than 0.3 degrees from the slices' normal).
+/// Orders slices and plans their grid; the slice step comes from the positions. Errors: no slice or only one, several
+/// frames, colour, slices of different size or direction, no position, two slices at one position, a gap above 10 mm or
+/// three times the usual distance in an uneven stack, a stack that leans by more than 45 degrees.
 Result<DicomSeries> order_slices(std::vector<DicomSlice> slices, const std::filesystem::path& folder);
 
-/// Reads one DICOM series of a folder and its sub-folders; files that are not DICOM images are ignored. `wanted`: see
+/// A volume that was read from a folder.
+template <class T>
+struct DicomVolume {
+  volume::Grid<T> grid;
+  std::string series_uid;
+  std::string frame_of_reference;
+  std::vector<Vec3> slices_P;         ///< Centres of the first pixels of the slices in the files, along their normal.
+  std::vector<std::string> warnings;  ///< Images left out; a tilted or uneven stack that was resampled.
+};
+
+/// Reads one DICOM series of a folder and its sub-folders; files that are not DICOM images are ignored. A tilted stack
+/// is straightened, an uneven one gets even steps: numbers linearly, bytes by the nearest slice. `wanted`: see
 /// choose_series.
 template <class T>
-Result<volume::Grid<T>> read_dicom_folder(const std::filesystem::path& folder, Converter<T> convert,
-                                          const std::string& wanted = {});
+Result<DicomVolume<T>> read_dicom_folder(const std::filesystem::path& folder, Converter<T> convert,
+                                         const std::string& wanted = {});
 
 }  // namespace trocar::io::detail

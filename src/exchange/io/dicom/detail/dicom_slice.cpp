@@ -46,6 +46,8 @@ std::optional<std::array<double, N>> decimals_of(const DicomHeader& header, std:
 DicomSlice slice_of(const DicomHeader& header) {
   DicomSlice slice;
   slice.series_uid = header.text(dicom_tags::kSeriesUid);
+  slice.instance_uid = header.text(dicom_tags::kInstanceUid);
+  slice.is_localizer = header.text(dicom_tags::kImageType).find("LOCALIZER") != std::string::npos;
   slice.series_description = header.text(dicom_tags::kSeriesDescription);
   slice.modality = header.text(dicom_tags::kModality);
   slice.patient_id = header.text(dicom_tags::kPatientId);

@@ -16,6 +16,7 @@ namespace trocar::io::detail {
 struct DicomSlice {
   std::filesystem::path file;
   std::string series_uid;
+  std::string instance_uid;  ///< Of this image; a copy of the file has the same.
   std::string series_description;
   std::string modality;            ///< "CT", "MR" …; empty if the file has none.
   std::string patient_id;          ///< Compared among slices, never displayed.
@@ -28,6 +29,7 @@ struct DicomSlice {
   std::optional<std::array<Vec3, 2>> directions_P;  ///< Along a row (growing column), along a column.
   std::optional<std::array<double, 2>> spacing_mm;  ///< Between columns, between rows.
   std::size_t declared_bytes = 0;                   ///< Size of the unpacked pixels.
+  bool is_localizer = false;                        ///< An overview image (scout, topogram), no slice.
   bool is_cut = false;                              ///< The pixels are uncompressed and fewer than declared.
   double slope = 1.0;
   double intercept = 0.0;

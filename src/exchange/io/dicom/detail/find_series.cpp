@@ -31,20 +31,25 @@ std::vector<fs::path> regular_files(Iterator entry) {
 
 constexpr auto kSkip = fs::directory_options::skip_permission_denied;
 
-/// "1: 'Abdomen 3.0' CT, 119 images, UID 1.2.3; 2: 'Topogram' CT, 1 image, UID 1.2.4".
+/// "1: 'Abdomen 3.0' CT, 119 images of 512x512, UID 1.2.3; 2: 'Topogram' CT, 1 image of 512x600, UID 1.2.4".
 std::string list_of(const std::vector<SeriesImages>& series) {
   std::string list;
   for (std::size_t n = 0; n < series.size(); ++n) {
     if (n == kMaxListed) return list + fmt::format("; and {} more", series.size() - n);
     const DicomSlice& first = series[n].front();
-    list += fmt::format("{}{}: '{}' {}, {} {}, UID {}", n == 0 ? "" : "; ", n + 1, first.series_description,
-                        first.modality, series[n].size(), series[n].size() == 1 ? "image" : "images", first.series_uid);
+    list += fmt::format("{}{}: '{}' {}, {} {} of {}x{}, UID {}", n == 0 ? "" : "; ", n + 1, first.series_description,
+                        first.modality, series[n].size(), series[n].size() == 1 ? "image" : "images", first.columns,
+                        first.rows, first.series_uid);
   }
   return list;
 }
 
+/// Overview images, and dose reports without a place, are no volume.
 bool is_ct_volume(const SeriesImages& images) {
-  return images.front().modality == "CT" && images.size() > 1;
+  const auto slices = std::count_if(images.begin(), images.end(), [](const DicomSlice& image) {
+    return image.modality == "CT" && !image.is_localizer && image.position_P && image.directions_P;
+  });
+  return slices > 1;
 }
 
 /// Index of the series given by `wanted`: a number from 1, or a UID.

@@ -74,8 +74,9 @@ TEST(FindSeries, SeveralAreListedAndChosenByNumberOrUid) {
   const auto refused = read_ct(folder.path());
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().exit_status, 2);
-  EXPECT_NE(refused.error().what.find("1: 'series of CT' CT, 3 images, UID 1.2.3; 2: 'series of CT' CT, 2 images"),
-            std::string::npos)
+  EXPECT_NE(
+      refused.error().what.find("1: 'series of CT' CT, 3 images of 4x3, UID 1.2.3; 2: 'series of CT' CT, 2 images"),
+      std::string::npos)
       << refused.error().text();
   EXPECT_EQ(first_voxel(read_ct(folder.path(), "1")), 10);
   EXPECT_EQ(first_voxel(read_ct(folder.path(), "2")), 20);

@@ -17,7 +17,10 @@ template <class T>
 Result<volume::Grid<T>> read_grid(const std::filesystem::path& path, Converter<T> convert) {
   TROCAR_TRY_STATUS(check_image_path(path));
   std::error_code error;
-  if (std::filesystem::is_directory(path, error)) return read_dicom_folder<T>(path, convert);
+  if (std::filesystem::is_directory(path, error)) {
+    TROCAR_TRY(DicomVolume<T> volume, read_dicom_folder<T>(path, convert));
+    return std::move(volume.grid);
+  }
   TROCAR_TRY(const RawVolume raw, read_volume_file(path));
   return to_grid<T>(raw, path.string(), convert);
 }

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "geometry/vec.h"
+#include "volume/grid.h"
+
+namespace trocar::dicom {
+
+/// Parallel slices of one size, at the places that their files state. Frame P, mm.
+struct SliceStack {
+  Vec3 row_P = Vec3::UnitX();     ///< Along a row (growing column); unit vector.
+  Vec3 column_P = Vec3::UnitY();  ///< Along a column; unit vector at a right angle to row_P.
+  double column_step_mm = 1.0;    ///< Between columns.
+  double row_step_mm = 1.0;       ///< Between rows.
+  std::int64_t columns = 0;
+  std::int64_t rows = 0;
+  std::vector<Vec3> origins_P;  ///< Centre of the first pixel of each slice, ascending along row x column.
+
+  Vec3 normal_P() const noexcept { return row_P.cross(column_P).normalized(); }
+  double along_mm(std::size_t slice) const noexcept { return normal_P().dot(origins_P[slice]); }
+};
+
+/// Source of one plane of a grid: two neighbouring slices and the weight 0..1 of the upper one.
+struct StackLayer {
+  std::size_t below = 0;
+  std::size_t above = 0;
+  double weight_above = 0.0;
+};
+
+/// How the slices of a stack fill a grid with right angles and even steps.
+struct StackPlan {
+  volume::GridGeometry geometry;  ///< i along rows, j along columns, k along the normal.
+  bool is_plain = true;           ///< Plane k of the grid is slice k, unchanged.
+  bool is_uneven = false;         ///< The distances of the slices differ.
+  double tilt_deg = 0.0;          ///< Angle between the stack and the normal of its slices (gantry tilt).
+  double shift_mm = 0.0;          ///< Largest sideways shift of a slice, where the stack is tilted.
+  std::vector<StackLayer> layers;
+  std::vector<Eigen::Vector2d> offsets_px;  ///< For each slice: where its first pixel lies in the grid (i, j).
+};
+
+/// The widest gap of a stack, and the usual distance of its slices (median).
+struct StackGap {
+  std::size_t below = 0;  ///< The gap is between this slice and the next.
+  double gap_mm = 0.0;
+  double median_mm = 0.0;
+};
+StackGap widest_gap(const SliceStack& stack);
+
+/// Distances that differ by at most 5 % of their mean, or 0.06 mm, are even (positions may be rounded); a tilt up to
+/// 0.3 degrees is none. An uneven stack gets the smallest distance of two slices as its step, but at least half of the
+/// usual one. `stack` has at least one slice, in order, no two at one place; `single_step_mm` > 0 is the step of a
+/// single one. The geometry is as exact as the file: the directions may be skewed by rounding.
+StackPlan plan_stack(const SliceStack& stack, double single_step_mm = 1.0);
+
+/// Fills the plan's grid from the slices (i fastest, then j, then slice; `slices` has all their pixels). Numbers are
+/// interpolated linearly, labels (bytes) take the nearest slice and pixel; beyond the slices the value is `outside`.
+template <class T>
+volume::Grid<T> fill_from_stack(const StackPlan& plan, const SliceStack& stack, std::vector<T> slices, T outside);
+
+}  // namespace trocar::dicom
