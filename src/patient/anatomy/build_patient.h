@@ -16,6 +16,9 @@ struct LabelSource {
   std::string file;                                ///< For messages.
   volume::LabelGrid labels;                        ///< Values as in the file.
   std::vector<std::pair<int, std::string>> names;  ///< Value in the file -> structure name, or kIgnoredStructure.
+  /// It names its structures itself (DICOM SEG, RT structure set, .seg.nrrd): beyond its grid there are none, and the
+  /// values mean nothing to a user.
+  bool is_described = false;
 };
 
 /// Name in a label map of label values that are left out. Background names are left out, too.
@@ -31,8 +34,9 @@ struct BuildOptions {
 /// volumes have their axes in the order of P (volume/orientation.h), whatever the order in the files. The structures
 /// are those of data_dir(), loaded once (KnownStructures). Errors: no such data, impossible HU (check_hounsfield), a
 /// segmentation that does not overlap the CT, unknown structure names and values without a name (all of them in one
-/// line), no body in the CT, all masks empty. Warnings (an empty mask, a structure cut by the volume's border) are
-/// appended to `warnings`.
+/// line), no body in the CT, all masks empty. Warnings (an empty mask, a structure cut by the volume's border, a
+/// segmentation of a part of the CT, labels of one name, which become one structure, regions) are appended to
+/// `warnings`.
 Result<VirtualPatient> build_patient(const volume::CtGrid& ct, std::vector<LabelSource> sources,
                                      const BuildOptions& options, std::vector<std::string>& warnings,
                                      const Progress& progress = {});

@@ -33,6 +33,10 @@ bool KnownStructures::is_background(std::string_view name) const {
   return std::find(background_.begin(), background_.end(), detail::plain_name(name)) != background_.end();
 }
 
+bool KnownStructures::is_region(std::string_view name) const {
+  return std::find(regions_.begin(), regions_.end(), detail::plain_name(name)) != regions_.end();
+}
+
 std::vector<std::string> KnownStructures::similar_names(std::string_view name, std::size_t count) const {
   const std::string wanted = detail::plain_name(name);
   std::vector<std::pair<std::size_t, std::string>> candidates;

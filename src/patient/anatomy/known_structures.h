@@ -37,6 +37,10 @@ class KnownStructures {
   /// Names of background labels ("background", "air", "Clear Label"), independent of case and separators.
   bool is_background(std::string_view name) const;
 
+  /// Names of regions that hold several structures, but are none ("abdominal_cavity"), independent of case and
+  /// separators.
+  bool is_region(std::string_view name) const;
+
   /// The known names most similar to an unknown one, best first; only those within a few letters of it (edit distance
   /// at most a quarter of the longer name).
   std::vector<std::string> similar_names(std::string_view name, std::size_t count = 3) const;
@@ -57,6 +61,7 @@ class KnownStructures {
   std::vector<KnownStructure> structures_;
   std::vector<Row> rows_;  ///< The first matching row is used.
   std::vector<std::string> background_;
+  std::vector<std::string> regions_;
   std::vector<std::string> totalsegmentator_;
 };
 

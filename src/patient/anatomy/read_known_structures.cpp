@@ -42,10 +42,12 @@ Result<T> named(const std::map<std::string, T>& values, const config::TomlTable&
 class StructureReader {
  public:
   Status read_structures(const config::TomlTable& document) {
-    TROCAR_TRY_STATUS(document.check_keys({"background", "priorities", "colours", "structures"}));
+    TROCAR_TRY_STATUS(document.check_keys({"background", "regions", "priorities", "colours", "structures"}));
     known_.file_ = document.where();
     TROCAR_TRY(const std::vector<std::string> background, document.strings("background"));
     for (const std::string& name : background) known_.background_.push_back(detail::plain_name(name));
+    TROCAR_TRY(const std::vector<std::string> regions, document.strings("regions"));
+    for (const std::string& name : regions) known_.regions_.push_back(detail::plain_name(name));
     TROCAR_TRY(const config::TomlTable priorities, document.table("priorities"));
     for (const std::string& name : priorities.keys()) {
       TROCAR_TRY(const std::int64_t priority, priorities.integer(name, kPriorities));

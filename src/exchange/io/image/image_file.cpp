@@ -11,11 +11,12 @@
 namespace trocar::io {
 namespace fs = std::filesystem;
 
-Result<CtScan> read_ct_scan(const fs::path& path, const std::string& series) {
+Result<CtScan> read_ct_scan(const fs::path& path, const std::string& series,
+                            const std::vector<std::string>& preferred) {
   std::error_code error;
   CtScan scan;
   if (fs::is_directory(path, error)) {
-    TROCAR_TRY(auto volume, detail::read_dicom_folder<std::int16_t>(path, detail::convert_voxels, series));
+    TROCAR_TRY(auto volume, detail::read_dicom_folder<std::int16_t>(path, detail::convert_voxels, series, preferred));
     scan.grid = std::move(volume.grid);
     scan.series_uid = std::move(volume.series_uid);
     scan.frame_of_reference = std::move(volume.frame_of_reference);

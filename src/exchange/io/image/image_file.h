@@ -30,7 +30,8 @@ struct CtScan {
 /// slices, two slices at one position, multi-frame, colour or deflated files; a single DICOM file. `series` selects one
 /// of several DICOM series by number (list_dicom_series) or UID; if it is empty, the only series or the only CT series
 /// with more than one slice is read. A non-empty `series` for a file is an error.
-Result<CtScan> read_ct_scan(const std::filesystem::path& path, const std::string& series = {});
+Result<CtScan> read_ct_scan(const std::filesystem::path& path, const std::string& series = {},
+                            const std::vector<std::string>& preferred = {});
 /// The same without what the files say; warnings are lost.
 Result<volume::CtGrid> read_ct(const std::filesystem::path& path, const std::string& series = {});
 

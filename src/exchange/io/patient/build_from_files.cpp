@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <iterator>
+
 #include "anatomy/build_patient.h"
 #include "core/part_of_progress.h"
 #include "core/version.h"
@@ -25,13 +27,17 @@ std::string last_name(const std::filesystem::path& path) {
 Result<anatomy::VirtualPatient> build_from_files(const PatientFiles& files, std::vector<std::string>& warnings,
                                                  const Progress& progress, const std::stop_token& stop) {
   report(progress, "reading the CT", 0.0);
-  TROCAR_TRY(volume::CtGrid ct, read_ct(files.ct, files.series));
+  const auto preferred = files.series.empty() ? series_of_labels(files.labels) : std::vector<std::string>();
+  TROCAR_TRY(CtScan scan, read_ct_scan(files.ct, files.series, preferred));
+  volume::CtGrid& ct = scan.grid;
+  std::move(scan.warnings.begin(), scan.warnings.end(), std::back_inserter(warnings));
   if (files.rescale) TROCAR_TRY_STATUS(anatomy::apply_rescale(*files.rescale, ct));
   if (auto status = anatomy::check_hounsfield(ct); !status)
     return fail(status.error().what, files.ct.string(), status.error().advice);
   TROCAR_TRY_STATUS(check_stop(stop, files));
   report(progress, "reading the labels", 0.2);
-  TROCAR_TRY(auto sources, read_label_sources(files.labels, files.label_map));
+  const dicom::CtReference reference{ct.geometry, scan.series_uid, scan.frame_of_reference, scan.slices_P};
+  TROCAR_TRY(auto sources, read_label_sources(files.labels, files.label_map, reference, warnings));
   TROCAR_TRY_STATUS(check_stop(stop, files));
 
   anatomy::BuildOptions options;

@@ -1,6 +1,10 @@
 #include "io/patient/label_map.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
 
 #include "anatomy/build_patient.h"
 #include "config/toml.h"
@@ -12,13 +16,48 @@ namespace {
 
 constexpr int kMaxLabel = 255;
 constexpr std::string_view kTotalSegmentator = "totalsegmentator";
+constexpr std::string_view kTask = "totalsegmentator:";
 constexpr std::string_view kRest = "*";
+constexpr const char* kTasksFile = "totalsegmentator_tasks.toml";
+constexpr const char* kCodesFile = "structure_codes.toml";
 
 std::map<int, std::string> totalsegmentator_names(const anatomy::KnownStructures& structures) {
   std::map<int, std::string> names;
   for (const std::string& name : structures.totalsegmentator_names())
     names.emplace(static_cast<int>(names.size() + 1), name);
   return names;
+}
+
+/// Numbers and names of a task: [tasks.NAME] of totalsegmentator_tasks.toml.
+Result<std::map<int, std::string>> task_names(const std::string& task, const std::string& where) {
+  TROCAR_TRY(const std::filesystem::path data_folder, checked_data_dir());
+  TROCAR_TRY(const config::TomlTable file, config::load_toml(data_folder / kTasksFile));
+  TROCAR_TRY(const config::TomlTable tasks, file.table("tasks"));
+  if (!tasks.has(task))
+    return fail_usage(fmt::format("TotalSegmentator has no task \"{}\" with own numbers; there are {}", task,
+                                  fmt::join(tasks.keys(), ", ")),
+                      where, "write totalsegmentator:TASK, or totalsegmentator for the task total");
+  TROCAR_TRY(const config::TomlTable table, tasks.table(task));
+  std::map<int, std::string> names;
+  for (const std::string& key : table.keys()) {
+    const auto number = parse_number<int>(key);
+    if (!number || *number < 1 || *number > kMaxLabel)
+      return fail(fmt::format("\"{}\" is not a label number from 1 to {}", key, kMaxLabel), table.where(),
+                  "write lines such as 5 = \"liver\"");
+    TROCAR_TRY(names[*number], table.string(key));
+  }
+  return names;
+}
+
+/// "Kidney left" as a structure name: "kidney_left".
+std::string structure_name(std::string_view meaning) {
+  std::string name;
+  for (const char letter : meaning) {
+    const bool is_separator = letter == ' ' || letter == '-' || letter == ',';
+    if (is_separator && (name.empty() || name.back() == '_')) continue;
+    name += is_separator ? '_' : static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  }
+  return name;
 }
 
 /// The list as texts; its TOML entries can be numbers or texts.
@@ -34,7 +73,51 @@ Result<std::vector<std::string>> ignored_labels(const config::TomlTable& file) {
   return names;
 }
 
+/// "Lt Lung", "Kidney_L" as "Lung left", "Kidney left": how structure sets abbreviate sides (AAPM TG-263: "_L", "_R").
+std::string with_whole_side(const std::string& name) {
+  std::string rest;
+  std::string side;
+  for (std::size_t begin = 0; begin <= name.size();) {
+    const std::size_t end = std::min(name.find_first_of(" _", begin), name.size());
+    const std::string word = name.substr(begin, end - begin);
+    const bool is_last = end == name.size();
+    if (word == "Lt" || word == "lt" || word == "LT" || (is_last && (word == "L" || word == "l")))
+      side = " left";
+    else if (word == "Rt" || word == "rt" || word == "RT" || (is_last && (word == "R" || word == "r")))
+      side = " right";
+    else
+      rest += (rest.empty() ? "" : " ") + word;
+    begin = end + 1;
+  }
+  return rest + side;
+}
+
 }  // namespace
+
+Status LabelMap::read_base(const std::string& base, const std::string& where) {
+  if (base == kTotalSegmentator) {
+    by_number_ = totalsegmentator_names(structures_);
+    return {};
+  }
+  if (!base.starts_with(kTask))
+    return fail(fmt::format("unknown base \"{}\"", base), where, "write base = \"totalsegmentator\"");
+  TROCAR_TRY(by_number_, task_names(base.substr(kTask.size()), where));
+  return {};
+}
+
+Status LabelMap::read_codes(const std::filesystem::path& data_folder) {
+  TROCAR_TRY(const config::TomlTable file, config::load_toml(data_folder / kCodesFile));
+  for (const std::string& scheme : file.keys()) {
+    TROCAR_TRY(const config::TomlTable codes, file.table(scheme));
+    for (const std::string& code : codes.keys()) {
+      TROCAR_TRY(std::string name, codes.string(code));
+      if (!is_known(name))
+        return fail(fmt::format("\"{}\" is no known structure", name), codes.where(), "use a name of structures.toml");
+      by_code_[scheme + ":" + code] = std::move(name);
+    }
+  }
+  return {};
+}
 
 Status LabelMap::read_entry(const std::string& key, std::string name, const std::string& where) {
   if (key == kRest) {
@@ -54,17 +137,16 @@ Result<LabelMap> LabelMap::load(const std::string& label_map) {
   LabelMap map;
   TROCAR_TRY(const std::filesystem::path data_folder, checked_data_dir());
   TROCAR_TRY(map.structures_, anatomy::KnownStructures::load(data_folder));
+  TROCAR_TRY_STATUS(map.read_codes(data_folder));
   if (label_map.empty()) return map;
-  if (label_map == kTotalSegmentator) {
-    map.by_number_ = totalsegmentator_names(map.structures_);
+  if (label_map == kTotalSegmentator || label_map.starts_with(kTask)) {
+    TROCAR_TRY_STATUS(map.read_base(label_map, "--label-map"));
     return map;
   }
   TROCAR_TRY(const config::TomlTable file, config::load_toml(label_map));
   TROCAR_TRY_STATUS(file.check_keys({"base", "ignore", "labels"}));
   TROCAR_TRY(const std::string base, file.string_or("base", ""));
-  if (!base.empty() && base != kTotalSegmentator)
-    return fail(fmt::format("unknown base \"{}\"", base), file.where(), "write base = \"totalsegmentator\"");
-  if (!base.empty()) map.by_number_ = totalsegmentator_names(map.structures_);
+  if (!base.empty()) TROCAR_TRY_STATUS(map.read_base(base, file.where()));
   TROCAR_TRY(const std::vector<std::string> ignored, ignored_labels(file));
   for (const std::string& key : ignored)
     TROCAR_TRY_STATUS(map.read_entry(key, std::string(anatomy::kIgnoredStructure), file.where() + ": ignore"));
@@ -84,7 +166,25 @@ std::optional<std::string> LabelMap::name_of(int number) const {
 
 std::string LabelMap::name_of(const std::string& name) const {
   if (const auto found = by_name_.find(name); found != by_name_.end()) return found->second;
-  return rest_ && structures_.find(name) == nullptr && !structures_.is_background(name) ? *rest_ : name;
+  return rest_ && structures_.find(name) == nullptr && !structures_.is_background(name) && !structures_.is_region(name)
+             ? *rest_
+             : name;
+}
+
+std::string LabelMap::name_of(const DescribedSegment& segment) const {
+  for (const std::string& key : {segment.name, std::to_string(segment.number)})
+    if (const auto found = by_name_.find(key); found != by_name_.end()) return found->second;
+  if (is_known(segment.name) || structures_.is_background(segment.name) || structures_.is_region(segment.name))
+    return segment.name;
+  if (const std::string name = with_whole_side(segment.name); is_known(name)) return structure_name(name);
+  for (const std::string& meaning : segment.meanings)
+    if (is_known(meaning)) return structure_name(meaning);
+  for (const std::string& code : segment.codes) {
+    const std::size_t end = std::min(code.find(' '), code.size());
+    if (const auto found = by_code_.find(code.substr(0, end)); found != by_code_.end())
+      return structure_name(found->second + code.substr(end));
+  }
+  return rest_.value_or(segment.name);
 }
 
 }  // namespace trocar::io

@@ -4,14 +4,23 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "anatomy/known_structures.h"
 #include "core/result.h"
 
 namespace trocar::io {
 
+/// A structure of a segmentation that describes itself (DICOM SEG, RT structure set, .seg.nrrd).
+struct DescribedSegment {
+  std::string name;                   ///< Its label.
+  int number = 0;                     ///< Its number in the file.
+  std::vector<std::string> meanings;  ///< Names by its property type, best first: "Kidney left".
+  std::vector<std::string> codes;     ///< The same as codes: "SCT:64033007 left".
+};
+
 /// Names that a user gives to the labels of segmentations, and the structures of data_dir().
-///   base = "totalsegmentator"     names of numbers that are not in [labels]
+///   base = "totalsegmentator"     names of numbers that are not in [labels]; also "totalsegmentator:TASK"
 ///   ignore = [13, 14]             or ignore = ["13", "my_roi"]: labels that are ignored
 ///   [labels]
 ///   1 = "liver"                   a number in a file
@@ -20,7 +29,8 @@ namespace trocar::io {
 ///   "*" = "ignore"                every label without another entry
 class LabelMap {
  public:
-  /// "totalsegmentator", a TOML file, or empty for no names. Errors: an unusable file, no data folder.
+  /// "totalsegmentator", "totalsegmentator:TASK" (a task of totalsegmentator_tasks.toml), a TOML file, or empty for no
+  /// names. Errors: an unusable file, an unknown task, no data folder.
   static Result<LabelMap> load(const std::string& label_map);
 
   bool is_empty() const noexcept { return by_number_.empty() && !rest_; }
@@ -30,14 +40,23 @@ class LabelMap {
   std::optional<std::string> name_of(int number) const;
   /// Structure of a name in a file: the name itself, unless the map has an entry for it.
   std::string name_of(const std::string& name) const;
+  /// Structure of a segment: the map's entry for its name or its number, else the first known one of its name (also
+  /// with an abbreviated side: "Kidney_L", "Lt Lung"), the meanings and the codes of its property type
+  /// (structure_codes.toml), else its name.
+  std::string name_of(const DescribedSegment& segment) const;
+  /// True for a structure of structures.toml.
+  bool is_known(const std::string& name) const { return structures_.find(name) != nullptr; }
   const anatomy::KnownStructures& structures() const noexcept { return structures_; }
 
  private:
+  Status read_base(const std::string& base, const std::string& where);
+  Status read_codes(const std::filesystem::path& data_folder);
   Status read_entry(const std::string& key, std::string name, const std::string& where);
   anatomy::KnownStructures structures_;
   std::map<int, std::string> by_number_;
   std::map<std::string, std::string, std::less<>> by_name_;
   std::optional<std::string> rest_;
+  std::map<std::string, std::string, std::less<>> by_code_;  ///< "SCT:10200004" -> "liver".
 };
 
 }  // namespace trocar::io

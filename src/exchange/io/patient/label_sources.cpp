@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <map>
 
 #include "core/parallel.h"
@@ -11,6 +10,8 @@
 #include "io/dicom/detail/find_series.h"
 #include "io/image/detail/payload.h"
 #include "io/image/detail/read_grid.h"
+#include "io/patient/detail/dicom_labels.h"
+#include "io/patient/detail/mask_folder.h"
 #include "io/patient/label_map.h"
 
 namespace trocar::io {
@@ -19,16 +20,6 @@ namespace {
 
 constexpr int kMaxLabel = 255;
 constexpr std::size_t kFilesAtOnce = 8;  ///< Masks unpacked at a time: limits the memory.
-
-/// The values other than 0 in the image.
-std::vector<int> values_in(const volume::LabelGrid& labels) {
-  std::array<bool, 256> occurs{};
-  for (const std::uint8_t value : labels.voxels) occurs[value] = true;
-  std::vector<int> values;
-  for (int value = 1; value <= kMaxLabel; ++value)
-    if (occurs[static_cast<std::size_t>(value)]) values.push_back(value);
-  return values;
-}
 
 enum class Place { kNamedByUser, kInFolder };
 
@@ -41,14 +32,19 @@ bool is_mask(const std::vector<int>& values, const std::string& stem, const Labe
 
 /// Values without a name are reported by build_patient, which lists those of all files.
 Result<anatomy::LabelSource> name_labels(volume::LabelGrid labels, const fs::path& path, const LabelMap& map,
-                                         Place place) {
+                                         Place place, std::vector<std::string>& warnings) {
   anatomy::LabelSource source{path.string(), std::move(labels), {}};
-  const std::vector<int> values = values_in(source.labels);
+  const std::vector<int> values = detail::values_in(source.labels);
   const std::string stem = detail::image_stem(path);
   if (is_mask(values, stem, map, place)) {
     source.names = {{values.empty() ? 1 : values.front(), map.name_of(stem)}};
     return source;
   }
+  if (values.size() == 1 && place == Place::kNamedByUser)
+    warnings.push_back(
+        fmt::format("the only label of {}, {}, is \"{}\" by the label map: if this is wrong, name the file "
+                    "after its structure",
+                    path.filename().string(), values.front(), map.name_of(values.front()).value_or("")));
   if (map.is_empty())
     return fail(fmt::format("has {} label values but no names for them", values.size()), path.string(),
                 "name them: --label-map totalsegmentator, or a TOML file with [labels] 1 = \"liver\" …");
@@ -60,10 +56,38 @@ Result<anatomy::LabelSource> name_labels(volume::LabelGrid labels, const fs::pat
 // .seg.nrrd files of 3D Slicer.
 
 struct Segment3dSlicer {
-  std::string name;
+  DescribedSegment description;
   int value = 1;
   int layer = 0;
 };
+
+/// Splits "a~b~c" at `separator`.
+std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(separator, begin), text.size());
+    parts.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return parts;
+}
+
+/// Its tags contain "TerminologyEntry:CONTEXT~CATEGORY~TYPE~MODIFIER~…", with SCHEME^CODE^MEANING for each.
+DescribedSegment describe(const std::string& name, int value, std::string_view tags) {
+  DescribedSegment segment{name, value, {}, {}};
+  constexpr std::string_view kEntry = "TerminologyEntry:";
+  const std::size_t at = tags.find(kEntry);
+  if (at == std::string_view::npos) return segment;
+  const auto parts = split(tags.substr(at + kEntry.size(), tags.find('|', at) - at - kEntry.size()), '~');
+  const auto type = parts.size() > 2 ? split(parts[2], '^') : std::vector<std::string_view>();
+  if (type.size() != 3) return segment;
+  const auto modifier = parts.size() > 3 ? split(parts[3], '^') : std::vector<std::string_view>();
+  std::string side;
+  if (modifier.size() == 3 && (modifier[2] == "Left" || modifier[2] == "Right")) side = fmt::format(" {}", modifier[2]);
+  segment.meanings.push_back(fmt::format("{}{}", type[2], side));
+  segment.codes.push_back(fmt::format("{}:{}{}", type[0], type[1], side));
+  return segment;
+}
 
 /// Segments described in the header: Segment{N}_Name, _LabelValue, _Layer. Empty for an ordinary file.
 std::vector<Segment3dSlicer> segments_in(const detail::RawVolume& raw) {
@@ -78,7 +102,10 @@ std::vector<Segment3dSlicer> segments_in(const detail::RawVolume& raw) {
     const std::string prefix = fmt::format("Segment{}_", n);
     const auto name = fields.find(prefix + "Name");
     if (name == fields.end()) return segments;
-    segments.push_back({name->second, number(prefix + "LabelValue", n + 1), number(prefix + "Layer", 0)});
+    const int value = number(prefix + "LabelValue", n + 1);
+    const auto tags = fields.find(prefix + "Tags");
+    segments.push_back({describe(name->second, value, tags == fields.end() ? std::string() : tags->second), value,
+                        number(prefix + "Layer", 0)});
   }
 }
 
@@ -97,11 +124,12 @@ Result<std::vector<anatomy::LabelSource>> read_segments(const detail::RawVolume&
     for (std::size_t n = 0; n < raw.geometry.voxel_count(); ++n)
       std::copy_n(raw.bytes.get() + (n * count + layer) * voxel_bytes, voxel_bytes,
                   single.bytes.get() + n * voxel_bytes);
-    anatomy::LabelSource source{path.string(), {}, {}};
+    anatomy::LabelSource source{path.string(), {}, {}, true};
     TROCAR_TRY(source.labels, detail::to_grid<std::uint8_t>(single, path.string(), detail::convert_voxels));
     for (const Segment3dSlicer& segment : segments)
-      if (segment.layer == static_cast<int>(layer)) source.names.emplace_back(segment.value, map.name_of(segment.name));
-    for (const int value : values_in(source.labels))
+      if (segment.layer == static_cast<int>(layer))
+        source.names.emplace_back(segment.value, map.name_of(segment.description));
+    for (const int value : detail::values_in(source.labels))
       if (std::none_of(source.names.begin(), source.names.end(), [&](const auto& n) { return n.first == value; }))
         return fail(fmt::format("label value {} belongs to no segment", value), path.string(),
                     "save the segmentation again in 3D Slicer");
@@ -110,75 +138,19 @@ Result<std::vector<anatomy::LabelSource>> read_segments(const detail::RawVolume&
   return sources;
 }
 
-Result<std::vector<anatomy::LabelSource>> read_label_file(const fs::path& path, const LabelMap& map, Place place) {
+Result<std::vector<anatomy::LabelSource>> read_label_file(const fs::path& path, const LabelMap& map, Place place,
+                                                          std::vector<std::string>& warnings) {
   TROCAR_TRY_STATUS(detail::check_image_path(path));
   TROCAR_TRY(const detail::RawVolume raw, detail::read_volume_file(path));
   if (const auto segments = segments_in(raw); !segments.empty()) return read_segments(raw, segments, map, path);
   TROCAR_TRY(volume::LabelGrid labels, detail::to_grid<std::uint8_t>(raw, path.string(), detail::convert_voxels));
-  TROCAR_TRY(anatomy::LabelSource source, name_labels(std::move(labels), path, map, place));
+  TROCAR_TRY(anatomy::LabelSource source, name_labels(std::move(labels), path, map, place, warnings));
   std::vector<anatomy::LabelSource> sources;
   sources.push_back(std::move(source));
   return sources;
 }
 
 // Folders of masks.
-
-/// An empty mask needs no voxels: a coarse grid over the same box gives its position.
-volume::LabelGrid empty_over(const volume::GridGeometry& g) {
-  volume::GridGeometry coarse = g;
-  coarse.size = {2, 2, 2};
-  for (int axis = 0; axis < 3; ++axis)
-    coarse.spacing_mm[axis] *= 0.5 * static_cast<double>(g.size[static_cast<std::size_t>(axis)]);
-  const Vec3 corner_P = g.to_mm(Vec3::Constant(-0.5));
-  coarse.origin_P = corner_P + g.R_PV * (0.5 * coarse.spacing_mm);
-  return volume::LabelGrid(coarse);
-}
-
-/// Merges a mask into a source on the same grid if they do not overlap. A hundred such masks take the memory of one.
-bool try_join(const anatomy::LabelSource& mask, anatomy::LabelSource& into) {
-  const auto value = static_cast<std::uint8_t>(into.names.size() + 1);
-  if (value == 0 || mask.names.size() != 1 || !mask.labels.geometry.matches(into.labels.geometry)) return false;
-  const std::vector<std::uint8_t>& from = mask.labels.voxels;
-  std::vector<std::uint8_t>& to = into.labels.voxels;
-  for (std::size_t n = 0; n < from.size(); ++n)
-    if (from[n] != 0 && to[n] != 0) return false;
-  for (std::size_t n = 0; n < from.size(); ++n)
-    if (from[n] != 0) to[n] = value;
-  into.names.emplace_back(value, mask.names.front().second);
-  into.file = fs::path(mask.file).parent_path().string();  // The folder of the masks.
-  return true;
-}
-
-/// Collects the masks of a folder.
-class MaskFolder {
- public:
-  void add(anatomy::LabelSource source) {
-    if (source.names.size() == 1 && source.names.front().second == anatomy::kIgnoredStructure) return;
-    if (source.names.size() != 1) {
-      others_.push_back(std::move(source));
-      return;
-    }
-    if (values_in(source.labels).empty()) {
-      source.labels = empty_over(source.labels.geometry);
-      others_.push_back(std::move(source));
-      return;
-    }
-    if (std::any_of(joined_.begin(), joined_.end(), [&](anatomy::LabelSource& into) { return try_join(source, into); }))
-      return;
-    for (std::uint8_t& voxel : source.labels.voxels) voxel = voxel != 0 ? 1 : 0;
-    source.names.front().first = 1;
-    joined_.push_back(std::move(source));
-  }
-
-  std::vector<anatomy::LabelSource> take() {
-    std::move(others_.begin(), others_.end(), std::back_inserter(joined_));
-    return std::move(joined_);
-  }
-
- private:
-  std::vector<anatomy::LabelSource> joined_;
-  std::vector<anatomy::LabelSource> others_;  ///< Empty masks and files of several labels.
-};
 
 std::vector<fs::path> sorted_entries(const fs::path& folder, bool want_folders) {
   std::vector<fs::path> paths;
@@ -193,12 +165,14 @@ std::vector<fs::path> sorted_entries(const fs::path& folder, bool want_folders) 
 }
 
 Result<std::vector<anatomy::LabelSource>> read_mask_files(const std::vector<fs::path>& files, const LabelMap& map) {
-  MaskFolder folder;
+  detail::MaskFolder folder;
   for (std::size_t begin = 0; begin < files.size(); begin += kFilesAtOnce) {
     const std::size_t count = std::min(kFilesAtOnce, files.size() - begin);
     std::vector<Result<std::vector<anatomy::LabelSource>>> read(count);
     parallel_for(count, 1, [&](std::size_t first, std::size_t last) {
-      for (std::size_t n = first; n < last; ++n) read[n] = read_label_file(files[begin + n], map, Place::kInFolder);
+      std::vector<std::string> none;  // only of files that the user named
+      for (std::size_t n = first; n < last; ++n)
+        read[n] = read_label_file(files[begin + n], map, Place::kInFolder, none);
     });
     for (auto& result : read) {
       TROCAR_TRY(std::vector<anatomy::LabelSource> sources, std::move(result));
@@ -218,7 +192,7 @@ Result<std::vector<anatomy::LabelSource>> read_label_folder(const fs::path& fold
   std::erase_if(files, [](const fs::path& file) { return !detail::find_image_format(file); });
   if (!files.empty()) return read_mask_files(files, map);
 
-  MaskFolder masks;
+  detail::MaskFolder masks;
   // A path with a trailing slash has no file name.
   const fs::path self = fs::absolute(folder / ".").lexically_normal().parent_path();
   if (detail::has_dicom_images(self)) {
@@ -235,24 +209,51 @@ Result<std::vector<anatomy::LabelSource>> read_label_folder(const fs::path& fold
   }
   if (any) return masks.take();
   return fail("no mask in the folder", folder.string(),
-              "give a folder of .nii.gz, .nrrd or .mha masks, or of DICOM mask series, one sub-folder a structure");
+              "give a folder of .nii.gz, .nrrd or .mha masks, of DICOM mask series (one sub-folder a structure), or of "
+              "DICOM SEG or RTSTRUCT files");
+}
+
+Result<std::vector<anatomy::LabelSource>> read_path(const fs::path& path, const LabelMap& map,
+                                                    const dicom::CtReference& ct, std::vector<std::string>& warnings) {
+  std::error_code error;
+  const bool is_folder = fs::is_directory(path, error);
+  TROCAR_TRY(const std::vector<fs::path> objects, detail::find_dicom_labels(path));
+  if (objects.empty())
+    return is_folder ? read_label_folder(path, map) : read_label_file(path, map, Place::kNamedByUser, warnings);
+  std::vector<anatomy::LabelSource> all;
+  for (const fs::path& object : objects) {
+    TROCAR_TRY(std::vector<anatomy::LabelSource> sources, detail::read_dicom_labels(object, map, ct, warnings));
+    std::move(sources.begin(), sources.end(), std::back_inserter(all));
+  }
+  return all;
 }
 
 }  // namespace
 
 Result<std::vector<anatomy::LabelSource>> read_label_sources(const std::vector<fs::path>& paths,
-                                                             const std::string& label_map) {
+                                                             const std::string& label_map, const dicom::CtReference& ct,
+                                                             std::vector<std::string>& warnings) {
   TROCAR_TRY(const LabelMap map, LabelMap::load(label_map));
   std::vector<anatomy::LabelSource> all;
   for (const fs::path& path : paths) {
-    std::error_code error;
-    TROCAR_TRY(std::vector<anatomy::LabelSource> sources, fs::is_directory(path, error)
-                                                              ? read_label_folder(path, map)
-                                                              : read_label_file(path, map, Place::kNamedByUser));
+    TROCAR_TRY(std::vector<anatomy::LabelSource> sources, read_path(path, map, ct, warnings));
     std::move(sources.begin(), sources.end(), std::back_inserter(all));
   }
   if (all.empty() && !paths.empty())
     return fail("the label map leaves out every label", label_map, "name at least one structure in [labels]");
+  return all;
+}
+
+std::vector<std::string> series_of_labels(const std::vector<fs::path>& paths) {
+  std::vector<std::string> all;
+  for (const fs::path& path : paths) {
+    const auto files = detail::find_dicom_labels(path);
+    if (!files) continue;
+    for (const fs::path& file : *files) {
+      const auto series = dicom::referenced_series(file);
+      if (series) all.insert(all.end(), series->begin(), series->end());
+    }
+  }
   return all;
 }
 

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
+#include <set>
 #include <string_view>
 
 #include "core/check.h"
@@ -16,6 +18,7 @@ namespace trocar::anatomy::detail {
 namespace {
 
 constexpr double kMinOverlap = 0.05;         // of the smaller grid; below, the files belong to different scans
+constexpr double kMostlyCovered = 0.99;      // share of the CT, above which nothing is missing but a rim
 constexpr std::size_t kMaxStructures = 245;  // of 255 label values; the others are for labels from HU
 constexpr std::size_t kBlock = 1 << 16;
 
@@ -26,7 +29,7 @@ std::array<std::size_t, 256> count_values(const volume::LabelGrid& labels) {
 }
 
 bool is_left_out(std::string_view name, const KnownStructures& known) {
-  return name == kIgnoredStructure || known.is_background(name);
+  return name == kIgnoredStructure || known.is_background(name) || known.is_region(name);
 }
 
 /// "my_roi" (label 3), "livr" (label 5, perhaps liver); label values 7, 9 without a name.
@@ -40,14 +43,17 @@ struct UnknownLabels {
     for (const auto& [value, name] : source.names) {
       if (value >= 0 && value <= 255) is_named[static_cast<std::size_t>(value)] = true;
       if (is_left_out(name, known) || known.find(name) != nullptr) continue;
-      const std::vector<std::string> similar = known.similar_names(name);
-      names.push_back(similar.empty() ? fmt::format("\"{}\" (label {})", name, value)
-                                      : fmt::format("\"{}\" (label {}, perhaps {})", name, value, similar.front()));
+      std::vector<std::string> notes;
+      if (!source.is_described) notes.push_back(fmt::format("label {}", value));
+      for (const std::string& similar : known.similar_names(name, 1)) notes.push_back("perhaps " + similar);
+      names.push_back(notes.empty() ? fmt::format("\"{}\"", name)
+                                    : fmt::format("\"{}\" ({})", name, fmt::join(notes, ", ")));
     }
     const auto counts = count_values(source.labels);
     for (std::size_t value = 1; value < counts.size(); ++value)
       if (counts[value] > 0 && !is_named[value]) values.push_back(static_cast<int>(value));
-    if (names.size() + values.size() > before) files.push_back(source.file);
+    const bool is_new = files.empty() || files.back() != source.file;
+    if (names.size() + values.size() > before && is_new) files.push_back(source.file);
   }
 
   Status status() const {
@@ -68,14 +74,45 @@ Status check_names(const std::vector<LabelSource>& sources, const KnownStructure
   return unknown.status();
 }
 
-Status check_overlap(const LabelSource& source, const volume::GridGeometry& grid) {
+Status check_overlap(const LabelSource& source, const volume::GridGeometry& grid, std::vector<std::string>& warnings) {
   if (source.labels.empty())
     return fail("the segmentation has no voxels", source.file, "export the segmentation again");
-  const double overlap = std::max(volume::overlap_fraction(source.labels.geometry, grid),
-                                  volume::overlap_fraction(grid, source.labels.geometry));
-  if (overlap >= kMinOverlap) return {};
-  return fail(fmt::format("the segmentation does not overlap the CT ({:.1f} % common)", 100.0 * overlap), source.file,
-              "give the segmentation that was made from this CT");
+  const double covered = volume::overlap_fraction(source.labels.geometry, grid);
+  const double overlap = std::max(covered, volume::overlap_fraction(grid, source.labels.geometry));
+  if (overlap < kMinOverlap)
+    return fail(fmt::format("the segmentation does not overlap the CT ({:.1f} % common)", 100.0 * overlap), source.file,
+                "give the segmentation that was made from this CT");
+  if (!source.is_described && covered < kMostlyCovered)
+    warnings.push_back(
+        fmt::format("the segmentation covers {:.0f} % of the CT; beyond it, structures have no label: {}",
+                    100.0 * covered, source.file));
+  return {};
+}
+
+/// Structures that occur more than once become one: "liver" of liver.nii.gz and of seg.nii.gz.
+void warn_of_repeated_names(const std::vector<LabelSource>& sources, const KnownStructures& known,
+                            std::vector<std::string>& warnings) {
+  std::map<std::string, std::vector<std::string>> places;  // by plain name
+  std::map<std::string, std::string> first_name;
+  std::set<std::string> regions;
+  for (const LabelSource& source : sources) {
+    const auto counts = count_values(source.labels);
+    for (const auto& [value, name] : source.names) {
+      if (known.is_region(name)) regions.insert(name);
+      const KnownStructure* structure = is_left_out(name, known) ? nullptr : known.find(name);
+      const bool occurs = value > 0 && value <= 255 && counts[static_cast<std::size_t>(value)] > 0;
+      if (structure == nullptr || structure->tissue == "skin" || !occurs) continue;
+      places[plain_name(name)].push_back(source.is_described ? source.file
+                                                             : fmt::format("label {} of {}", value, source.file));
+      first_name.emplace(plain_name(name), name);
+    }
+  }
+  for (const auto& [plain, labels] : places)
+    if (labels.size() > 1)
+      warnings.push_back(fmt::format("{} labels are named \"{}\" and become one structure: {}", labels.size(),
+                                     first_name[plain], fmt::join(labels, ", ")));
+  if (!regions.empty())
+    warnings.push_back(fmt::format("regions that hold several structures were left out: {}", fmt::join(regions, ", ")));
 }
 
 /// Merges one source after the other. Their names are known or left out (check_names).
@@ -121,7 +158,8 @@ class Merger {
 
  private:
   std::uint8_t find_or_add(const std::string& name, const KnownStructure& structure) {
-    if (const Label* label = merged_.table.find(name)) return label->id;
+    for (const Label& label : merged_.table.labels)
+      if (plain_name(label.name) == plain_name(name)) return label.id;
     const auto id = static_cast<std::uint8_t>(merged_.table.labels.size() + 1);
     merged_.table.labels.push_back({id, name, structure.tissue, structure.color});
     priority_[id] = structure.priority;
@@ -154,7 +192,8 @@ Result<MergedLabels> merge_sources(std::vector<LabelSource> sources, const volum
                                    const KnownStructures& known, std::vector<std::string>& warnings) {
   if (sources.empty()) return fail_usage("no segmentation given", "--labels", "give at least one label file");
   TROCAR_TRY_STATUS(check_names(sources, known));
-  for (const LabelSource& source : sources) TROCAR_TRY_STATUS(check_overlap(source, grid));
+  for (const LabelSource& source : sources) TROCAR_TRY_STATUS(check_overlap(source, grid, warnings));
+  warn_of_repeated_names(sources, known, warnings);
   const std::string where = sources.size() == 1 ? sources.front().file : fmt::format("{} files", sources.size());
   Merger merger(grid, known);
   std::vector<std::string> empty_masks;

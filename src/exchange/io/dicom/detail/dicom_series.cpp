@@ -160,9 +160,10 @@ Result<DicomSeries> order_slices(std::vector<DicomSlice> slices, const fs::path&
 }
 
 template <class T>
-Result<DicomVolume<T>> read_dicom_folder(const fs::path& folder, Converter<T> convert, const std::string& wanted) {
+Result<DicomVolume<T>> read_dicom_folder(const fs::path& folder, Converter<T> convert, const std::string& wanted,
+                                         const std::vector<std::string>& preferred) {
   TROCAR_TRY(std::vector<SeriesImages> found, find_series(folder));
-  TROCAR_TRY(SeriesImages images, choose_series(std::move(found), folder, wanted));
+  TROCAR_TRY(SeriesImages images, choose_series(std::move(found), folder, wanted, preferred));
   DicomVolume<T> result;
   TROCAR_TRY(const DicomSeries series, order_slices(leave_out_others(std::move(images), result.warnings), folder));
   if constexpr (std::is_same_v<T, std::int16_t>) TROCAR_TRY_STATUS(check_modality(series.slices.front(), folder));
@@ -179,9 +180,10 @@ Result<DicomVolume<T>> read_dicom_folder(const fs::path& folder, Converter<T> co
 }
 
 template Result<DicomVolume<std::int16_t>> read_dicom_folder(const fs::path&, Converter<std::int16_t>,
-                                                             const std::string&);
+                                                             const std::string&, const std::vector<std::string>&);
 template Result<DicomVolume<std::uint8_t>> read_dicom_folder(const fs::path&, Converter<std::uint8_t>,
-                                                             const std::string&);
-template Result<DicomVolume<float>> read_dicom_folder(const fs::path&, Converter<float>, const std::string&);
+                                                             const std::string&, const std::vector<std::string>&);
+template Result<DicomVolume<float>> read_dicom_folder(const fs::path&, Converter<float>, const std::string&,
+                                                      const std::vector<std::string>&);
 
 }  // namespace trocar::io::detail

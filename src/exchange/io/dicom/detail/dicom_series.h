@@ -35,10 +35,11 @@ struct DicomVolume {
 };
 
 /// Reads one DICOM series of a folder and its sub-folders; files that are not DICOM images are ignored. A tilted stack
-/// is straightened, an uneven one gets even steps: numbers linearly, bytes by the nearest slice. `wanted`: see
-/// choose_series.
+/// is straightened, an uneven one gets even steps: numbers linearly, bytes by the nearest slice. `wanted` and
+/// `preferred`: see choose_series.
 template <class T>
 Result<DicomVolume<T>> read_dicom_folder(const std::filesystem::path& folder, Converter<T> convert,
-                                         const std::string& wanted = {});
+                                         const std::string& wanted = {},
+                                         const std::vector<std::string>& preferred = {});
 
 }  // namespace trocar::io::detail

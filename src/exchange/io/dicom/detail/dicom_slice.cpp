@@ -148,11 +148,19 @@ bool unpack_rle_plane(std::span<const char> in, std::span<std::byte> out, std::s
   return true;
 }
 
+/// Compressed pixels of one image, and the image that they should be.
+struct CompressedImage {
+  std::vector<std::span<const char>> pieces;
+  std::string transfer_syntax;
+  int columns = 0;
+  int rows = 0;
+};
+
 /// Run-length coded pixels, the high bytes first. GDCM is not used: a damaged file ends the program there.
-bool unpack_rle(const DicomHeader& header, const PixelLayout& layout, std::span<std::byte> out) {
+bool unpack_rle(const CompressedImage& image, const PixelLayout& layout, std::span<std::byte> out) {
   constexpr std::size_t kRleHeader = 64;
   std::vector<char> bytes;
-  for (const std::span<const char> piece : header.pixels()) bytes.insert(bytes.end(), piece.begin(), piece.end());
+  for (const std::span<const char> piece : image.pieces) bytes.insert(bytes.end(), piece.begin(), piece.end());
   const auto planes = static_cast<std::size_t>(layout.bits_allocated / 8);
   if (bytes.size() < kRleHeader || little_endian_32(bytes, 0) != planes) return false;
   for (std::size_t plane = 0; plane < planes; ++plane) {
@@ -164,26 +172,25 @@ bool unpack_rle(const DicomHeader& header, const PixelLayout& layout, std::span<
 }
 
 /// Whether the stream holds the image that the header describes; GDCM ends the program where it holds more components.
-bool is_as_described(const DicomHeader& header, const DicomSlice& slice) {
+bool is_as_described(const CompressedImage& image) {
   std::vector<char> start;
   constexpr std::size_t kLongestStart = 1 << 20;  // comments and tables may come before the size
-  for (const std::span<const char> piece : header.pixels()) {
+  for (const std::span<const char> piece : image.pieces) {
     if (start.size() >= kLongestStart) break;
     start.insert(start.end(), piece.begin(),
                  piece.begin() + static_cast<std::ptrdiff_t>(std::min(piece.size(), kLongestStart)));
   }
   const auto size = codestream_size(start);
-  return size && size->components == 1 && size->columns == slice.columns && size->rows == slice.rows;
+  return size && size->components == 1 && size->columns == image.columns && size->rows == image.rows;
 }
 
 /// Unpacks the fragments with GDCM's codecs. May throw exceptions of GDCM.
-bool unpack_compressed(const DicomHeader& header, const DicomSlice& slice, const PixelLayout& layout,
-                       std::span<std::byte> out) {
-  if (header.transfer_syntax() == kRle) return unpack_rle(header, layout, out);
-  const auto syntax = gdcm::TransferSyntax::GetTSType(header.transfer_syntax().c_str());
-  if (syntax == gdcm::TransferSyntax::TS_END || !is_as_described(header, slice)) return false;
+bool unpack_compressed(const CompressedImage& packed, const PixelLayout& layout, std::span<std::byte> out) {
+  if (packed.transfer_syntax == kRle) return unpack_rle(packed, layout, out);
+  const auto syntax = gdcm::TransferSyntax::GetTSType(packed.transfer_syntax.c_str());
+  if (syntax == gdcm::TransferSyntax::TS_END || !is_as_described(packed)) return false;
   gdcm::SmartPointer<gdcm::SequenceOfFragments> fragments = new gdcm::SequenceOfFragments;
-  for (const std::span<const char> piece : header.pixels()) {
+  for (const std::span<const char> piece : packed.pieces) {
     gdcm::Fragment fragment;
     fragment.SetByteValue(piece.data(), gdcm::VL(static_cast<std::uint32_t>(piece.size())));
     fragments->AddFragment(fragment);
@@ -194,8 +201,8 @@ bool unpack_compressed(const DicomHeader& header, const DicomSlice& slice, const
 
   gdcm::Image image;
   image.SetNumberOfDimensions(2);
-  image.SetDimension(0, static_cast<unsigned>(slice.columns));
-  image.SetDimension(1, static_cast<unsigned>(slice.rows));
+  image.SetDimension(0, static_cast<unsigned>(packed.columns));
+  image.SetDimension(1, static_cast<unsigned>(packed.rows));
   image.SetPixelFormat(gdcm::PixelFormat(1, static_cast<unsigned short>(layout.bits_allocated),
                                          static_cast<unsigned short>(layout.bits_stored),
                                          static_cast<unsigned short>(layout.high_bit), layout.is_signed ? 1 : 0));
@@ -212,11 +219,11 @@ Status decode_throwing(const DicomSlice& slice, const std::function<Status(const
   TROCAR_TRY(const std::optional<DicomHeader> header, DicomHeader::read(slice.file));
   if (!header) return fail("not a DICOM image any more", where, kExportAgain);
   TROCAR_TRY(const PixelLayout layout, layout_of(*header, slice));
-  const auto pieces = header->pixels();
+  const std::vector<std::span<const char>> pieces = header->pixels();
   if (pieces.empty()) return fail("has no pixels that could be read", where, kExportAgain);
   std::vector<std::byte> pixels(layout.bytes());
   if (header->is_compressed()) {
-    if (!unpack_compressed(*header, slice, layout, pixels))
+    if (!unpack_compressed({pieces, header->transfer_syntax(), slice.columns, slice.rows}, layout, pixels))
       return fail("the DICOM image cannot be unpacked", where, kExportAgain);
   } else if (pieces.front().size() < pixels.size()) {
     return fail("the DICOM image ends before its last pixel", where, kExportAgain);
@@ -257,6 +264,23 @@ Status decode_slice(const DicomSlice& slice, const std::function<Status(const Ra
   } catch (const std::exception&) {
     return fail("the DICOM image is damaged", slice.file.string(), kExportAgain);
   }
+}
+
+Status decode_frame(const dicom::CompressedFrame& frame, std::span<std::byte> out) {
+  silence_gdcm();
+  PixelLayout layout;
+  layout.bits_allocated = layout.bits_stored = frame.bits;
+  layout.high_bit = frame.bits - 1;
+  layout.count = static_cast<std::size_t>(frame.columns) * static_cast<std::size_t>(frame.rows);
+  const char* reason = "cannot be unpacked";
+  try {
+    if (layout.bytes() == out.size() &&
+        unpack_compressed({{frame.bytes}, frame.transfer_syntax, frame.columns, frame.rows}, layout, out))
+      return {};
+  } catch (const std::exception&) {
+    reason = "is damaged";
+  }
+  return fail(reason, frame.transfer_syntax, kExportAgain);
 }
 
 }  // namespace trocar::io::detail

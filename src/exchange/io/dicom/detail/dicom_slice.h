@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/result.h"
+#include "dicom/segmentation/segmentation.h"
 #include "geometry/vec.h"
 #include "io/image/detail/raw_volume.h"
 
@@ -41,5 +42,8 @@ Result<std::optional<DicomSlice>> find_dicom_slice(const std::filesystem::path& 
 
 /// Unpacks the pixels of one slice (uncompressed, JPEG, JPEG-LS, JPEG 2000, RLE) and passes them to `use`.
 Status decode_slice(const DicomSlice& slice, const std::function<Status(const RawVoxels&)>& use);
+
+/// Unpacks one frame of a DICOM SEG by the same codecs. Error (without a file): it cannot be unpacked.
+Status decode_frame(const dicom::CompressedFrame& frame, std::span<std::byte> out);
 
 }  // namespace trocar::io::detail

@@ -63,7 +63,24 @@ std::optional<std::size_t> find_wanted(const std::vector<SeriesImages>& series, 
   return static_cast<std::size_t>(found - series.begin());
 }
 
+/// Index of the only CT volume among the series with these UIDs.
+std::optional<std::size_t> find_preferred(const std::vector<SeriesImages>& series,
+                                          const std::vector<std::string>& preferred) {
+  std::optional<std::size_t> found;
+  for (std::size_t n = 0; n < series.size(); ++n) {
+    if (!is_ct_volume(series[n]) || !std::ranges::count(preferred, series[n].front().series_uid)) continue;
+    if (found) return std::nullopt;
+    found = n;
+  }
+  return found;
+}
+
 }  // namespace
+
+std::vector<fs::path> files_below(const fs::path& folder) {
+  std::error_code error;
+  return regular_files(fs::recursive_directory_iterator(folder, kSkip, error));
+}
 
 bool has_dicom_images(const fs::path& folder) {
   std::error_code error;
@@ -73,8 +90,7 @@ bool has_dicom_images(const fs::path& folder) {
 }
 
 Result<std::vector<SeriesImages>> find_series(const fs::path& folder) {
-  std::error_code error;
-  const std::vector<fs::path> files = regular_files(fs::recursive_directory_iterator(folder, kSkip, error));
+  const std::vector<fs::path> files = files_below(folder);
   std::vector<Result<std::optional<DicomSlice>>> found(files.size());
   parallel_for(files.size(), 8, [&](std::size_t first, std::size_t last) {
     for (std::size_t n = first; n < last; ++n) found[n] = find_dicom_slice(files[n]);
@@ -94,14 +110,15 @@ Result<std::vector<SeriesImages>> find_series(const fs::path& folder) {
   return series;
 }
 
-Result<SeriesImages> choose_series(std::vector<SeriesImages> series, const fs::path& folder,
-                                   const std::string& wanted) {
+Result<SeriesImages> choose_series(std::vector<SeriesImages> series, const fs::path& folder, const std::string& wanted,
+                                   const std::vector<std::string>& preferred) {
   if (!wanted.empty()) {
     if (const auto index = find_wanted(series, wanted)) return std::move(series[*index]);
     return fail_usage(fmt::format("there is no DICOM series \"{}\"; found are {}", wanted, list_of(series)),
                       folder.string(), "choose one by its number or UID");
   }
   if (series.size() == 1) return std::move(series.front());
+  if (const auto index = find_preferred(series, preferred)) return std::move(series[*index]);
   if (std::count_if(series.begin(), series.end(), is_ct_volume) == 1)
     return std::move(*std::find_if(series.begin(), series.end(), is_ct_volume));
   return fail_usage(fmt::format("the folder holds {} DICOM series: {}", series.size(), list_of(series)),

@@ -12,6 +12,9 @@ namespace trocar::io::detail {
 /// The images of one series, ordered by file; at least one.
 using SeriesImages = std::vector<DicomSlice>;
 
+/// The regular files in a folder and its sub-folders, sorted. Symbolic links to folders are not followed.
+std::vector<std::filesystem::path> files_below(const std::filesystem::path& folder);
+
 /// True if a folder contains at least one DICOM image, even a damaged one; its sub-folders are not searched.
 bool has_dicom_images(const std::filesystem::path& folder);
 
@@ -19,9 +22,10 @@ bool has_dicom_images(const std::filesystem::path& folder);
 /// images are ignored; symbolic links to folders are not followed. Errors: a damaged DICOM file, no image at all.
 Result<std::vector<SeriesImages>> find_series(const std::filesystem::path& folder);
 
-/// Selects one of several series. `wanted`: its number (from 1) or its UID. If empty: the only series, or the only CT
-/// series with at least two images. The error (exit status 2) lists the series.
+/// Selects one of several series. `wanted`: its number (from 1) or its UID. If empty: the only series, else the only CT
+/// volume among those with a UID in `preferred` (which the labels refer to), else the only CT volume: a series with at
+/// least two slices that are no overview images. The error (exit status 2) lists the series.
 Result<SeriesImages> choose_series(std::vector<SeriesImages> series, const std::filesystem::path& folder,
-                                   const std::string& wanted);
+                                   const std::string& wanted, const std::vector<std::string>& preferred = {});
 
 }  // namespace trocar::io::detail

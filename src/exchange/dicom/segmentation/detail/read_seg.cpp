@@ -1,0 +1,143 @@
+#include "dicom/segmentation/detail/read_seg.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "core/available_memory.h"
+#include "dicom/segmentation/detail/label_layers.h"
+#include "dicom/segmentation/detail/plane_places.h"
+#include "dicom/segmentation/detail/seg_pixels.h"
+
+namespace trocar::dicom::detail {
+namespace {
+
+/// The frames of a SEG on their planes.
+class SegPainter {
+ public:
+  SegPainter(const SegHeader& header, const SegPlanes& planes, const SegPixels& pixels, std::string where)
+      : header_(header),
+        planes_(planes),
+        pixels_(pixels),
+        layers_({header.columns, header.rows, static_cast<std::int64_t>(planes.stack.origins_P.size())},
+                std::move(where)) {}
+
+  /// One segment of a binary or fractional SEG.
+  Status add_segment(std::size_t index, int number) {
+    std::vector<std::size_t> frames;
+    for (std::size_t n = 0; n < header_.frames.size(); ++n)
+      if (header_.frames[n].segment == number) frames.push_back(n);
+    return add_frames(index, frames);
+  }
+
+  std::vector<LabelLayers::Layer> take() { return layers_.take(); }
+
+ private:
+  /// Half of the maximum, or more; 1 bit is all or nothing.
+  bool is_inside(std::uint16_t value) const {
+    if (header_.type != SegmentationType::kFractional) return value != 0;
+    return 2 * static_cast<int>(value) >= header_.maximum_fractional;
+  }
+
+  Status add_frames(std::size_t index, const std::vector<std::size_t>& frames) {
+    if (frames.empty()) return {};
+    const auto [low, high] = std::minmax_element(frames.begin(), frames.end(), [&](std::size_t a, std::size_t b) {
+      return planes_.plane_of_frame[a] < planes_.plane_of_frame[b];
+    });
+    const std::size_t first = planes_.plane_of_frame[*low];
+    const std::size_t count = planes_.plane_of_frame[*high] - first + 1;
+    const auto plane_size = static_cast<std::size_t>(header_.columns) * static_cast<std::size_t>(header_.rows);
+    std::vector<std::uint8_t> mask(count * plane_size, 0);
+    for (const std::size_t frame : frames) {
+      TROCAR_TRY_STATUS(pixels_.read(frame, numbers_));
+      std::uint8_t* out = mask.data() + (planes_.plane_of_frame[frame] - first) * plane_size;
+      for (std::size_t n = 0; n < plane_size; ++n)
+        if (is_inside(numbers_[n])) out[n] = 1;
+    }
+    return layers_.add(index, static_cast<std::int64_t>(first), mask);
+  }
+
+  const SegHeader& header_;
+  const SegPlanes& planes_;
+  const SegPixels& pixels_;
+  LabelLayers layers_;
+  std::vector<std::uint16_t> numbers_;
+};
+
+/// The wanted segments of a label map in volumes of at most 255; they cannot overlap. Reads the frames twice: to find
+/// the segments that occur, and to paint them.
+Result<std::vector<LabelLayers::Layer>> read_label_map(const SegHeader& header, const SegPlanes& planes,
+                                                       const SegPixels& pixels, const std::vector<Segment>& segments,
+                                                       const std::string& where) {
+  constexpr std::size_t kNumbers = 1 << 16;
+  constexpr std::size_t kMostValues = 255;
+  std::vector<bool> occurs(kNumbers, false);
+  std::vector<std::uint16_t> numbers;
+  for (std::size_t frame = 0; frame < header.frames.size(); ++frame) {
+    TROCAR_TRY_STATUS(pixels.read(frame, numbers));
+    for (const std::uint16_t number : numbers) occurs[number] = true;
+  }
+  const auto plane_size = static_cast<std::size_t>(header.columns) * static_cast<std::size_t>(header.rows);
+  const std::size_t voxels = plane_size * planes.stack.origins_P.size();
+  std::vector<LabelLayers::Layer> layers;
+  for (std::size_t next = 0; next < segments.size();) {
+    TROCAR_TRY_STATUS(check_memory_for_image(voxels, available_memory_bytes(), where));
+    LabelLayers::Layer layer{std::vector<std::uint8_t>(voxels, 0), {}};
+    std::vector<std::uint8_t> value_of(kNumbers, 0);
+    for (; next < segments.size() && layer.segments.size() < kMostValues; ++next) {
+      const auto number = static_cast<std::size_t>(segments[next].number);
+      if (!occurs[number]) continue;
+      layer.segments.push_back(next);
+      value_of[number] = static_cast<std::uint8_t>(layer.segments.size());
+    }
+    for (std::size_t frame = 0; frame < header.frames.size(); ++frame) {
+      TROCAR_TRY_STATUS(pixels.read(frame, numbers));
+      std::uint8_t* out = layer.voxels.data() + planes.plane_of_frame[frame] * plane_size;
+      for (std::size_t n = 0; n < plane_size; ++n)
+        if (const std::uint8_t value = value_of[numbers[n]]; value != 0) out[n] = value;
+    }
+    if (!layer.segments.empty()) layers.push_back(std::move(layer));
+  }
+  return layers;
+}
+
+void warn_of_planes(const StackPlan& plan, std::vector<std::string>& warnings) {
+  if (plan.is_plain) return;
+  warnings.push_back(fmt::format("the planes of the segmentation are {}: resampled by the nearest plane",
+                                 plan.is_uneven ? "at uneven distances" : "tilted"));
+}
+
+Result<std::vector<LabelLayers::Layer>> read_layers(const SegHeader& header, const SegPlanes& planes,
+                                                    const SegPixels& pixels, const std::vector<Segment>& segments,
+                                                    const std::string& where) {
+  if (header.type == SegmentationType::kLabelMap) return read_label_map(header, planes, pixels, segments, where);
+  SegPainter painter(header, planes, pixels, where);
+  for (std::size_t index = 0; index < segments.size(); ++index)
+    TROCAR_TRY_STATUS(painter.add_segment(index, segments[index].number));
+  return painter.take();
+}
+
+}  // namespace
+
+Result<Segmentation> read_seg(const DicomFile& file, const std::string& where, const CtReference& ct,
+                              const std::function<bool(const Segment&)>& is_wanted, const FrameDecoder& decode) {
+  TROCAR_TRY(const SegHeader header, read_seg_header(file, where));
+  TROCAR_TRY(const SegPixels pixels, SegPixels::open(file, header, decode, where));
+  TROCAR_TRY(const SegPlanes planes, place_planes(header, ct, where));
+  const StackPlan plan = plan_stack(planes.stack, planes.single_step_mm);
+  // The pixels are there, so that only empty planes between distant frames can be many.
+  const auto bytes = static_cast<std::uint64_t>(plan.geometry.voxel_count());
+  TROCAR_TRY_STATUS(check_memory_for_image(bytes, available_memory_bytes(), where));
+
+  Segmentation result;
+  std::copy_if(header.segments.begin(), header.segments.end(), std::back_inserter(result.segments), is_wanted);
+  TROCAR_TRY(std::vector<LabelLayers::Layer> layers, read_layers(header, planes, pixels, result.segments, where));
+  for (LabelLayers::Layer& layer : layers)
+    result.volumes.push_back(
+        {fill_from_stack<std::uint8_t>(plan, planes.stack, std::move(layer.voxels), 0), std::move(layer.segments)});
+  warn_of_planes(plan, result.warnings);
+  return result;
+}
+
+}  // namespace trocar::dicom::detail

@@ -1,0 +1,61 @@
+#include "dicom/segmentation/detail/read_structure_set.h"
+
+#include <fmt/format.h>
+
+#include "core/available_memory.h"
+#include "dicom/segmentation/detail/contour_raster.h"
+#include "dicom/segmentation/detail/contours.h"
+#include "dicom/segmentation/detail/label_layers.h"
+
+namespace trocar::dicom::detail {
+namespace {
+
+void warn_of(const ContourStructure& structure, const RasterResult& raster, std::vector<std::string>& warnings) {
+  const std::string& name = structure.segment.name;
+  if (structure.degenerate > 0)
+    warnings.push_back(fmt::format("\"{}\": {} contours of one or two points left out", name, structure.degenerate));
+  if (raster.repeated > 0)
+    warnings.push_back(fmt::format("\"{}\": {} contours that repeat another one left out", name, raster.repeated));
+  if (raster.filled_gaps > 0)
+    warnings.push_back(
+        fmt::format("\"{}\": {} planes without a contour between two with one were filled", name, raster.filled_gaps));
+}
+
+}  // namespace
+
+Result<Segmentation> read_structure_set(const DicomFile& file, const std::string& where, const CtReference& ct,
+                                        const std::function<bool(const Segment&)>& is_wanted) {
+  TROCAR_TRY(const std::vector<ContourStructure> structures, read_contours(file, where, is_wanted));
+  TROCAR_TRY_STATUS(check_memory_for_image(ct.grid.voxel_count(), available_memory_bytes(), where));
+  Segmentation result;
+  LabelLayers on_ct(ct.grid.size, where);
+  for (const ContourStructure& structure : structures) {
+    const std::size_t index = result.segments.size();
+    result.segments.push_back(structure.segment);
+    if (structure.contours.empty()) continue;
+    TROCAR_TRY(const ContourGrid grid, choose_grid(structure, ct.grid, where));
+    const RasterResult raster = rasterise(structure, grid);
+    warn_of(structure, raster, result.warnings);
+    if (grid.geometry.matches(ct.grid)) {
+      TROCAR_TRY_STATUS(on_ct.add(index, 0, raster.mask));
+      continue;
+    }
+    LabelLayers own(grid.geometry.size, where);
+    TROCAR_TRY_STATUS(own.add(index, 0, raster.mask));
+    for (LabelLayers::Layer& layer : own.take()) {
+      volume::LabelGrid labels;
+      labels.geometry = grid.geometry;
+      labels.voxels = std::move(layer.voxels);
+      result.volumes.push_back({std::move(labels), std::move(layer.segments)});
+    }
+  }
+  for (LabelLayers::Layer& layer : on_ct.take()) {
+    volume::LabelGrid labels;
+    labels.geometry = ct.grid;
+    labels.voxels = std::move(layer.voxels);
+    result.volumes.push_back({std::move(labels), std::move(layer.segments)});
+  }
+  return result;
+}
+
+}  // namespace trocar::dicom::detail

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/result.h"
+#include "volume/grid.h"
+
+namespace trocar::dicom {
+
+/// The CT that a segmentation has to belong to.
+struct CtReference {
+  volume::GridGeometry grid;
+  std::string series_uid{};          ///< Empty if it is not known (a CT of another format), as the next two.
+  std::string frame_of_reference{};  ///< UID.
+  std::vector<Vec3> slices_P{};      ///< Centres of the first pixels of its slices in the files, along their normal.
+};
+
+/// One structure of a segmentation, as its file describes it. Texts are UTF-8.
+struct Segment {
+  int number = 0;                       ///< SegmentNumber or ROINumber.
+  std::string name;                     ///< SegmentLabel or ROIName.
+  std::vector<std::string> meanings{};  ///< Names by the property type and the region, best first: "Kidney left".
+  std::vector<std::string> codes{};     ///< The same as codes: "SCT:64033007 left".
+};
+
+/// Structures that do not overlap.
+struct SegmentVolume {
+  volume::LabelGrid labels;           ///< 0, or n for the structure segments[n - 1].
+  std::vector<std::size_t> segments;  ///< Indices into Segmentation::segments.
+};
+
+/// Structures with at least one voxel are in exactly one volume, others in none.
+struct Segmentation {
+  std::vector<Segment> segments;  ///< Those that are wanted.
+  std::vector<SegmentVolume> volumes;
+  std::vector<std::string> warnings;
+};
+
+enum class ObjectKind {
+  kOther,         ///< No DICOM file, or another object.
+  kSegmentation,  ///< DICOM SEG: binary, fractional or label map.
+  kContours,      ///< RT structure set.
+};
+
+/// Tells by the SOP class what a file is. A damaged DICOM file is an error.
+Result<ObjectKind> find_object_kind(const std::filesystem::path& path);
+
+/// UIDs of the series that a segmentation or structure set refers to; none if it does not tell.
+Result<std::vector<std::string>> referenced_series(const std::filesystem::path& path);
+
+/// Unpacks one compressed frame of `rows` x `columns` pixels of 8 or 16 bits (unsigned) into `out`, little endian.
+struct CompressedFrame {
+  std::span<const char> bytes;
+  const std::string& transfer_syntax;
+  int columns;
+  int rows;
+  int bits;
+};
+using FrameDecoder = std::function<Status(const CompressedFrame& frame, std::span<std::byte> out)>;
+
+/// Reads a DICOM SEG or RT structure set; structures that are not wanted are left out, even unusable ones.
+///
+/// SEG: frames in any order and of any orientation, missing frames are empty planes, overlapping segments come in
+/// several volumes. A fractional pixel is inside from half of the maximum on. The volumes are in the places of the
+/// frames, not on the CT's grid. RT structure set: closed planar contours, on the CT's grid if they are parallel to one
+/// of its planes. Contours of one plane count by even-odd: a contour inside another is a hole. A contour reaches
+/// half-way to its neighbours, over gaps of at most twice the smallest distance.
+///
+/// Errors: another series or frame of reference than the CT's, where both are known; open contours, not planar ones;
+/// frames without a place; an unknown kind of pixels; a damaged file; not enough memory.
+Result<Segmentation> read_segmentation(const std::filesystem::path& path, const CtReference& ct,
+                                       const std::function<bool(const Segment&)>& is_wanted,
+                                       const FrameDecoder& decode = {});
+
+}  // namespace trocar::dicom
