@@ -1,0 +1,311 @@
+#include <gtest/gtest.h>
+
+#include "core/files/temporary_folder.h"
+#include "dicom/segmentation/segmentation.h"
+#include "dicom/testing/segmentation_writer.h"
+
+namespace trocar::dicom {
+namespace {
+
+using testing::Length;
+using testing::segment_item;
+using testing::TestSeg;
+
+/// A CT of 8 x 6 x 5 voxels of 1 x 1 x 2 mm.
+CtReference ct_of(const std::vector<double>& slices_mm = {0, 2, 4, 6, 8}) {
+  CtReference ct;
+  ct.grid.size = {8, 6, 5};
+  ct.grid.spacing_mm = {1, 1, 2};
+  ct.grid.origin_P = {-4, 10, 100};
+  ct.series_uid = "1.2.3";
+  ct.frame_of_reference = "1.2.9";
+  for (const double z : slices_mm) ct.slices_P.push_back(ct.grid.origin_P + z * Vec3::UnitZ());
+  return ct;
+}
+
+Vec3 at_z(double z_mm) {
+  return Vec3(-4, 10, 100 + z_mm);
+}
+
+std::function<int(int, int)> block(int first_column, int last_column, int value = 1) {
+  return [=](int i, int) { return i >= first_column && i <= last_column ? value : 0; };
+}
+
+bool all(const Segment&) {
+  return true;
+}
+
+class Seg : public ::testing::Test {
+ protected:
+  Result<Segmentation> read(const std::string& elements, const CtReference& ct = ct_of()) {
+    testing::write_dicom(folder_ / "label.seg", elements);
+    return read_segmentation(folder_ / "label.seg", ct, all);
+  }
+  Result<Segmentation> read(const TestSeg& seg, const CtReference& ct = ct_of()) {
+    return read(testing::seg_elements(seg), ct);
+  }
+  std::string error_of(const TestSeg& seg, const CtReference& ct = ct_of()) {
+    const auto segmentation = read(seg, ct);
+    return segmentation ? "read" : segmentation.error().text();
+  }
+  TemporaryFolder folder_;
+};
+
+/// Voxel indices (z in mm from the first slice) of a segment, in any volume.
+std::vector<std::array<double, 3>> voxels_of(const Segmentation& segmentation, std::size_t segment) {
+  std::vector<std::array<double, 3>> voxels;
+  for (const SegmentVolume& volume : segmentation.volumes)
+    for (std::size_t n = 0; n < volume.labels.voxels.size(); ++n) {
+      const std::uint8_t value = volume.labels.voxels[n];
+      if (value == 0 || volume.segments.at(value - 1U) != segment) continue;
+      const Vec3 p_P = volume.labels.geometry.centre_mm(volume.labels.geometry.index_of(n)) - at_z(0);
+      voxels.push_back({p_P.x(), p_P.y(), p_P.z()});
+    }
+  return voxels;
+}
+
+std::size_t count_at(const std::vector<std::array<double, 3>>& voxels, double z_mm) {
+  return static_cast<std::size_t>(
+      std::count_if(voxels.begin(), voxels.end(), [&](const auto& v) { return std::abs(v[2] - z_mm) < 1e-6; }));
+}
+
+TEST_F(Seg, FramesInAnyOrderLandOnTheirPlaces) {
+  for (const Length length : {Length::kDefined, Length::kUndefined}) {
+    TestSeg seg;
+    seg.length = length;
+    seg.segments = {segment_item(1, "Liver"), segment_item(2, "Spleen")};
+    seg.frames = {
+        {2, at_z(4), block(6, 7)}, {1, at_z(6), block(0, 0)}, {1, at_z(2), block(0, 2)}, {2, at_z(2), block(5, 5)}};
+    const auto read_seg = read(seg);
+    ASSERT_TRUE(read_seg) << read_seg.error().text();
+    ASSERT_EQ(read_seg->volumes.size(), 1U);  // they do not overlap
+    ASSERT_EQ(read_seg->segments.size(), 2U);
+    EXPECT_EQ(read_seg->segments[0].name, "Liver");
+    const auto liver = voxels_of(*read_seg, 0);
+    EXPECT_EQ(count_at(liver, 2), 3U * 6);
+    EXPECT_EQ(count_at(liver, 4), 0U);  // no frame: empty
+    EXPECT_EQ(count_at(liver, 6), 1U * 6);
+    const auto spleen = voxels_of(*read_seg, 1);
+    EXPECT_EQ(count_at(spleen, 2), 1U * 6);
+    EXPECT_EQ(count_at(spleen, 4), 2U * 6);
+    EXPECT_EQ(spleen.size(), 3U * 6);
+  }
+}
+
+TEST_F(Seg, OverlappingSegmentsComeInSeveralVolumes) {
+  TestSeg seg;
+  seg.segments = {segment_item(1, "Liver"), segment_item(2, "Tumor"), segment_item(3, "Spleen")};
+  seg.frames = {{1, at_z(0), block(0, 4)}, {2, at_z(0), block(2, 3)}, {3, at_z(0), block(6, 7)}};
+  const auto read_seg = read(seg);
+  ASSERT_TRUE(read_seg) << read_seg.error().text();
+  EXPECT_EQ(read_seg->volumes.size(), 2U);
+  EXPECT_EQ(voxels_of(*read_seg, 0).size(), 5U * 6);
+  EXPECT_EQ(voxels_of(*read_seg, 1).size(), 2U * 6);
+  EXPECT_EQ(voxels_of(*read_seg, 2).size(), 2U * 6);
+}
+
+TEST_F(Seg, FractionIsInsideFromHalfOfTheMaximum) {
+  for (const int maximum : {255, 100}) {
+    TestSeg seg;
+    seg.type = "FRACTIONAL";
+    seg.bits = 8;
+    seg.maximum_fractional = maximum;
+    seg.segments = {segment_item(1, "Liver")};
+    // Columns 0 to 7: 0, 1/7 … of the maximum.
+    seg.frames = {{1, at_z(0), [&](int i, int) { return maximum * i / 7; }}};
+    const auto read_seg = read(seg);
+    ASSERT_TRUE(read_seg) << read_seg.error().text();
+    EXPECT_EQ(voxels_of(*read_seg, 0).size(), 4U * 6) << maximum;  // 4/7 to 7/7
+  }
+  TestSeg half;
+  half.type = "FRACTIONAL";
+  half.bits = 8;
+  half.maximum_fractional = 100;
+  half.segments = {segment_item(1, "Liver")};
+  half.frames = {{1, at_z(0), [](int i, int) { return i < 4 ? 49 : 50; }}};
+  EXPECT_EQ(voxels_of(*read(half), 0).size(), 4U * 6);
+}
+
+TEST_F(Seg, LabelMapHasNumbersOfSegments) {
+  for (const int bits : {8, 16}) {
+    TestSeg seg;
+    seg.type = "LABELMAP";
+    seg.sop_class = "1.2.840.10008.5.1.4.1.1.66.7";
+    seg.bits = bits;
+    const int high = bits == 8 ? 200 : 4711;
+    seg.segments = {segment_item(0, "Background"), segment_item(3, "Liver"), segment_item(high, "Spleen"),
+                    segment_item(5, "Kidney")};
+    seg.frames = {{0, at_z(4), [=](int i, int) { return i < 2 ? 3 : i > 6 ? high : 0; }}, {0, at_z(0), block(1, 1, 3)}};
+    const auto read_seg = read(seg);
+    ASSERT_TRUE(read_seg) << read_seg.error().text();
+    ASSERT_EQ(read_seg->segments.size(), 3U);  // without the background
+    EXPECT_EQ(voxels_of(*read_seg, 0).size(), 3U * 6);
+    EXPECT_EQ(voxels_of(*read_seg, 1).size(), 1U * 6);
+    EXPECT_TRUE(voxels_of(*read_seg, 2).empty());
+    ASSERT_EQ(read_seg->volumes.size(), 1U);
+    EXPECT_EQ(read_seg->volumes[0].segments, (std::vector<std::size_t>{0, 1}));
+  }
+}
+
+TEST_F(Seg, OtherThanWantedSegmentsAreLeftOut) {
+  TestSeg seg;
+  seg.segments = {segment_item(1, "Liver"), segment_item(2, "Spleen")};
+  seg.frames = {{1, at_z(0), block(0, 4)}, {2, at_z(0), block(2, 3)}};
+  testing::write_dicom(folder_ / "label.seg", testing::seg_elements(seg));
+  const auto read_seg =
+      read_segmentation(folder_ / "label.seg", ct_of(), [](const Segment& s) { return s.number == 2; });
+  ASSERT_TRUE(read_seg) << read_seg.error().text();
+  ASSERT_EQ(read_seg->segments.size(), 1U);
+  EXPECT_EQ(read_seg->segments[0].name, "Spleen");
+  EXPECT_EQ(voxels_of(*read_seg, 0).size(), 2U * 6);
+}
+
+TEST_F(Seg, WithoutSlicesOfTheCtStepsComeFromTheFile) {
+  TestSeg seg;
+  seg.segments = {segment_item(1, "Liver")};
+  seg.frames = {{1, at_z(0), block(0, 4)}, {1, at_z(6), block(0, 4)}};
+  const CtReference other_format = ct_of({});
+  // Two frames 6 mm apart without a step are two thick planes; with a step of 2 mm, two planes between them are empty.
+  EXPECT_EQ(read(seg, other_format)->volumes[0].labels.geometry.size[2], 2);
+  seg.slice_step_mm = 2.0;
+  const auto stepped = read(seg, other_format);
+  ASSERT_TRUE(stepped) << stepped.error().text();
+  EXPECT_EQ(stepped->volumes[0].labels.geometry.size[2], 4);
+  EXPECT_EQ(count_at(voxels_of(*stepped, 0), 2), 0U);
+  // A single frame is as thick as a slice of the CT.
+  seg.slice_step_mm = 0.0;
+  seg.frames.resize(1);
+  EXPECT_EQ(read(seg, other_format)->volumes[0].labels.geometry.spacing_mm.z(), 2.0);
+}
+
+TEST_F(Seg, OnUnevenSlicesKeepsEachSlicesReach) {
+  // Slices at 0, 2, 4, 8, 12: the plane at 8 reaches from 6 to 10.
+  TestSeg seg;
+  seg.segments = {segment_item(1, "Liver")};
+  seg.frames = {{1, at_z(2), block(0, 0)}, {1, at_z(8), block(0, 0)}};
+  const auto read_seg = read(seg, ct_of({0, 2, 4, 8, 12}));
+  ASSERT_TRUE(read_seg) << read_seg.error().text();
+  EXPECT_EQ(read_seg->warnings.size(), 1U);
+  const auto voxels = voxels_of(*read_seg, 0);
+  EXPECT_EQ(count_at(voxels, 2), 6U);
+  EXPECT_EQ(count_at(voxels, 4), 0U);
+  EXPECT_EQ(count_at(voxels, 6), 6U);
+  EXPECT_EQ(count_at(voxels, 8), 6U);
+}
+
+TEST_F(Seg, ObliqueFramesKeepTheirDirections) {
+  TestSeg seg;
+  seg.R_PV = (Eigen::AngleAxisd(0.4, Vec3::UnitX()) * Eigen::AngleAxisd(0.2, Vec3::UnitZ())).toRotationMatrix();
+  seg.segments = {segment_item(1, "Liver")};
+  for (const double along_mm : {3.0, 0.0, 1.5})
+    seg.frames.push_back({1, Vec3(1, 2, 3) + along_mm * seg.R_PV.col(2), block(0, 4)});
+  const auto read_seg = read(seg);
+  ASSERT_TRUE(read_seg) << read_seg.error().text();
+  const volume::GridGeometry& g = read_seg->volumes.at(0).labels.geometry;
+  EXPECT_LT((g.R_PV - seg.R_PV).norm(), 1e-6);
+  EXPECT_LT((g.origin_P - Vec3(1, 2, 3)).norm(), 1e-6);
+  EXPECT_NEAR(g.spacing_mm.z(), 1.5, 1e-6);
+  EXPECT_EQ(g.size[2], 3);
+}
+
+TEST_F(Seg, NamesComeFromLabelTypeAndRegion) {
+  TestSeg seg;
+  const std::string left = testing::dicom_code(0x0062, 0x0011, "7771000", "SCT", "Left");
+  seg.segments = {
+      segment_item(1, "Segment_1",
+                   testing::dicom_sequence(0x0062, 0x000f,
+                                           {testing::dicom_element(0x0008, 0x0100, "SH", "64033007") +
+                                            testing::dicom_element(0x0008, 0x0102, "SH", "SCT") +
+                                            testing::dicom_element(0x0008, 0x0104, "LO", "Kidney") + left})),
+      segment_item(2, "Segment_2",
+                   testing::dicom_code(0x0008, 0x2218, "10200004", "SCT", "Liver") +
+                       testing::dicom_code(0x0062, 0x0003, "49755003", "SCT", "Morphologically Altered Structure") +
+                       testing::dicom_code(0x0062, 0x000f, "108369006", "SCT", "Neoplasm"))};
+  seg.frames = {{1, at_z(0), block(0, 4)}};
+  const auto read_seg = read(seg);
+  ASSERT_TRUE(read_seg) << read_seg.error().text();
+  EXPECT_EQ(read_seg->segments[0].meanings, (std::vector<std::string>{"Kidney left"}));
+  EXPECT_EQ(read_seg->segments[0].codes, (std::vector<std::string>{"SCT:64033007 left"}));
+  // A lesion is no part of its organ: the region alone is no name for it.
+  EXPECT_EQ(read_seg->segments[1].meanings, (std::vector<std::string>{"Liver Neoplasm", "Neoplasm"}));
+}
+
+TEST_F(Seg, OfAnotherSeriesIsRefused) {
+  TestSeg seg;
+  seg.segments = {segment_item(1, "Liver")};
+  seg.frames = {{1, at_z(0), block(0, 4)}};
+  EXPECT_EQ(error_of(seg), "read");
+  seg.series_uid = "1.2.4";
+  EXPECT_NE(error_of(seg).find("another series (1.2.4)"), std::string::npos) << error_of(seg);
+  CtReference other_format = ct_of();
+  other_format.series_uid.clear();
+  other_format.frame_of_reference.clear();
+  EXPECT_EQ(error_of(seg, other_format), "read");
+  seg.series_uid.clear();
+  EXPECT_EQ(error_of(seg), "read");
+  seg.frame_of_reference = "1.2.8";
+  EXPECT_NE(error_of(seg).find("another frame of reference"), std::string::npos) << error_of(seg);
+}
+
+TEST_F(Seg, ThatCannotBeReadIsRefusedByItsDefect) {
+  const auto changed = [&](const std::function<void(TestSeg&)>& change) {
+    TestSeg seg;
+    seg.segments = {segment_item(1, "Liver")};
+    seg.frames = {{1, at_z(0), block(0, 4)}, {1, at_z(2), block(0, 4)}};
+    change(seg);
+    return error_of(seg);
+  };
+  EXPECT_EQ(changed([](TestSeg&) {}), "read");
+  EXPECT_NE(changed([](TestSeg& s) { s.segments.clear(); }).find("names no segment"), std::string::npos);
+  EXPECT_NE(changed([](TestSeg& s) { s.segments.push_back(s.segments[0]); }).find("two segments have the number 1"),
+            std::string::npos);
+  EXPECT_NE(changed([](TestSeg& s) { s.type = "SURFACE"; }).find("unknown type \"SURFACE\""), std::string::npos);
+  EXPECT_NE(changed([](TestSeg& s) { s.bits = 16; }).find("16 bits"), std::string::npos);
+  EXPECT_NE(changed([](TestSeg& s) { s.sop_class = "1.2.840.10008.5.1.4.1.1.66.5"; }).find("surface"),
+            std::string::npos);
+  EXPECT_NE(changed([](TestSeg& s) { s.frames[1].origin_P = at_z(0) + 3 * Vec3::UnitX(); }).find("shifted sideways"),
+            std::string::npos);
+  EXPECT_NE(changed([](TestSeg& s) {
+              s.frames.push_back({1, at_z(4), block(0, 4)});
+              s.frames.push_back({1, at_z(1e6), block(0, 4)});
+            }).find("too far apart"),
+            std::string::npos);
+  EXPECT_NE(changed([](TestSeg& s) { s.R_PV.col(0) = s.R_PV.col(1); }).find("directions"), std::string::npos);
+}
+
+TEST_F(Seg, ThatIsCutShortOrChangedIsReadOrRefusedInOneLine) {
+  // Every length of the file, and every byte with other values: no crash, no exception, no line without a file.
+  TestSeg seg;
+  seg.columns = 4;
+  seg.rows = 2;
+  seg.segments = {segment_item(1, "Liver", testing::dicom_code(0x0062, 0x000f, "10200004", "SCT", "Liver"))};
+  seg.frames = {{1, at_z(0), block(0, 4)}, {1, at_z(4), block(0, 4)}};
+  std::size_t refused = 0;
+  std::size_t accepted = 0;
+  for (const Length length : {Length::kDefined, Length::kUndefined}) {
+    seg.length = length;
+    const std::string whole = testing::dicom_file(testing::seg_elements(seg));
+    const auto expect_verdict = [&](const std::string& bytes) {
+      std::ofstream(folder_ / "label.seg", std::ios::binary)
+          .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+      const auto result = read_segmentation(folder_ / "label.seg", ct_of(), all);
+      ++(result ? accepted : refused);
+      if (result) return;
+      ASSERT_NE(result.error().where.find("label.seg"), std::string::npos) << result.error().text();
+      ASSERT_FALSE(result.error().advice.empty()) << result.error().text();
+      ASSERT_EQ(result.error().text().find('\n'), std::string::npos);
+    };
+    for (std::size_t size = 1; size < whole.size(); ++size) expect_verdict(whole.substr(0, size));
+    for (std::size_t at = 132; at < whole.size(); ++at)
+      for (const int value : {0x00, 0x01, 0x7f, 0xff, whole[at] ^ 0x20}) {
+        std::string bytes = whole;
+        bytes[at] = static_cast<char>(value);
+        expect_verdict(bytes);
+      }
+  }
+  EXPECT_GT(refused, 2000U);
+  EXPECT_GT(accepted, 2000U);
+}
+
+}  // namespace
+}  // namespace trocar::dicom
