@@ -170,19 +170,25 @@ void add_patient_commands(CLI::App& program, Action& action) {
   build_command->footer(
       "Examples:\n  trocar patient build --ct ct.nii.gz --labels segmentation.nii.gz --out case_1\n"
       "  trocar patient build --ct dicom_folder --labels masks_folder --label-map names.toml --out case_2\n"
-      "  trocar patient build --ct dicom_disc --series 2 --labels segmentation.nii.gz --out case_3\n");
+      "  trocar patient build --ct dicom_disc --series 2 --labels segmentation.nii.gz --out case_3\n"
+      "  trocar patient build --ct dicom_disc --labels dicom_disc/RTSTRUCT --out case_4\n");
   const auto b = std::make_shared<BuildArguments>();
   build_command->add_option("--ct", b->ct, "CT: NIfTI, NRRD, MHA, or a folder of DICOM files with its sub-folders")
       ->required();
   build_command->add_option("--series", b->series,
                             "Number or UID of the DICOM series of the CT, see trocar patient series; required if the "
-                            "folder contains several CT series");
+                            "folder contains several CT series and the labels refer to none of them");
   build_command
-      ->add_option("--labels", b->labels, "Label volumes, single masks, folders of masks or of DICOM mask series")
+      ->add_option(
+          "--labels", b->labels,
+          "Label volumes, .seg.nrrd, single masks, folders of masks or of DICOM mask series, DICOM SEG and RTSTRUCT "
+          "files or their folder")
       ->required();
   build_command
-      ->add_option("--label-map", b->label_map,
-                   "Names of labels: totalsegmentator, or a TOML file with [labels] and ignore (see the user guide)")
+      ->add_option(
+          "--label-map", b->label_map,
+          "Names of labels: totalsegmentator, totalsegmentator:TASK (liver_vessels, tissue_types ...), or a TOML file "
+          "with [labels] and ignore (see the user guide)")
       ->capture_default_str();
   build_command->add_option("--rescale", b->rescale,
                             "SLOPE,INTERCEPT of a CT whose file lacks them: HU = SLOPE * stored number + INTERCEPT");

@@ -23,10 +23,11 @@ struct CtReference {
 
 /// One structure of a segmentation, as its file describes it. Texts are UTF-8.
 struct Segment {
-  int number = 0;                       ///< SegmentNumber or ROINumber.
-  std::string name;                     ///< SegmentLabel or ROIName.
-  std::vector<std::string> meanings{};  ///< Names by the property type and the region, best first: "Kidney left".
-  std::vector<std::string> codes{};     ///< The same as codes: "SCT:64033007 left".
+  int number = 0;                    ///< SegmentNumber or ROINumber.
+  std::string name;                  ///< SegmentLabel or ROIName.
+  std::string type_in_region{};      ///< Region and property type together: "Liver Neoplasm". Empty without a region.
+  std::vector<std::string> codes{};  ///< Of the type and the region: "SCT:64033007 left".
+  std::vector<std::string> meanings{};  ///< The same in words: "Kidney left".
 };
 
 /// Structures that do not overlap.

@@ -54,7 +54,7 @@ std::string structure_name(std::string_view meaning) {
   std::string name;
   for (const char letter : meaning) {
     const bool is_separator = letter == ' ' || letter == '-' || letter == ',';
-    if (is_separator && (name.empty() || name.back() == '_')) continue;
+    if (is_separator && !name.empty() && name.back() == '_') continue;
     name += is_separator ? '_' : static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
   }
   return name;
@@ -177,13 +177,14 @@ std::string LabelMap::name_of(const DescribedSegment& segment) const {
   if (is_known(segment.name) || structures_.is_background(segment.name) || structures_.is_region(segment.name))
     return segment.name;
   if (const std::string name = with_whole_side(segment.name); is_known(name)) return structure_name(name);
-  for (const std::string& meaning : segment.meanings)
-    if (is_known(meaning)) return structure_name(meaning);
+  if (is_known(segment.type_in_region)) return structure_name(segment.type_in_region);
   for (const std::string& code : segment.codes) {
     const std::size_t end = std::min(code.find(' '), code.size());
     if (const auto found = by_code_.find(code.substr(0, end)); found != by_code_.end())
-      return structure_name(found->second + code.substr(end));
+      return found->second + structure_name(code.substr(end));
   }
+  for (const std::string& meaning : segment.meanings)
+    if (is_known(meaning)) return structure_name(meaning);
   return rest_.value_or(segment.name);
 }
 

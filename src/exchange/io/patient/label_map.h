@@ -15,8 +15,9 @@ namespace trocar::io {
 struct DescribedSegment {
   std::string name;                   ///< Its label.
   int number = 0;                     ///< Its number in the file.
-  std::vector<std::string> meanings;  ///< Names by its property type, best first: "Kidney left".
-  std::vector<std::string> codes;     ///< The same as codes: "SCT:64033007 left".
+  std::string type_in_region;         ///< Its region and property type together: "Liver Neoplasm".
+  std::vector<std::string> codes;     ///< Of the type and the region: "SCT:64033007 left".
+  std::vector<std::string> meanings;  ///< The same in words: "Kidney left".
 };
 
 /// Names that a user gives to the labels of segmentations, and the structures of data_dir().

@@ -74,7 +74,7 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
 
 /// Its tags contain "TerminologyEntry:CONTEXT~CATEGORY~TYPE~MODIFIER~…", with SCHEME^CODE^MEANING for each.
 DescribedSegment describe(const std::string& name, int value, std::string_view tags) {
-  DescribedSegment segment{name, value, {}, {}};
+  DescribedSegment segment{name, value, {}, {}, {}};
   constexpr std::string_view kEntry = "TerminologyEntry:";
   const std::size_t at = tags.find(kEntry);
   if (at == std::string_view::npos) return segment;

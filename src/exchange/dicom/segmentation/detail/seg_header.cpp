@@ -81,7 +81,7 @@ Segment read_segment(const DicomItem& item, std::string_view character_set) {
   const auto category = coded_name(item, kCategory, 0, character_set);
   // A lesion in an organ is no part of the organ: SCT 49755003, SRT M-01000 (morphologically altered structure).
   const bool is_altered = category && (category->code == "SCT:49755003" || category->code == "SRT:M-01000");
-  if (type && region) segment.meanings.push_back(region->meaning + " " + type->meaning);
+  if (type && region) segment.type_in_region = region->meaning + " " + type->meaning;
   if (type) segment.meanings.push_back(type->meaning);
   if (region && !is_altered) segment.meanings.push_back(region->meaning);
   if (type) segment.codes.push_back(type->code);

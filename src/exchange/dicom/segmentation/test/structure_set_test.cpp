@@ -263,7 +263,7 @@ TEST_F(StructureSet, ThatIsCutShortOrChangedIsReadOrRefusedInOneLine) {
     };
     for (std::size_t size = 1; size < whole.size(); ++size) expect_verdict(whole.substr(0, size));
     for (std::size_t at = 132; at < whole.size(); ++at)
-      for (const int value : {0x00, 0x7f, 0xff, static_cast<int>('9'), whole[at] ^ 0x20}) {
+      for (const int value : {0x00, 0xff, whole[at] ^ 0x20}) {
         std::string bytes = whole;
         bytes[at] = static_cast<char>(value);
         expect_verdict(bytes);

@@ -14,7 +14,8 @@ namespace {
 
 /// Name of a structure. `stem` is that of the file if it holds only this structure.
 std::string name_of(const dicom::Segment& segment, const LabelMap& map, const std::string& stem) {
-  const std::string name = map.name_of({segment.name, segment.number, segment.meanings, segment.codes});
+  const std::string name = map.name_of(
+      DescribedSegment{segment.name, segment.number, segment.type_in_region, segment.codes, segment.meanings});
   if (name == anatomy::kIgnoredStructure || map.is_known(name) || !map.is_known(stem)) return name;
   return map.name_of(stem);
 }
