@@ -12,6 +12,11 @@ namespace trocar::dicom {
 namespace {
 
 constexpr double kMaxTilt_deg = 0.3;
+constexpr double kMostTilt_deg = 45.0;   ///< Gantries tilt up to 30 degrees; more is another defect.
+constexpr std::size_t kMostPlanes = 16;  ///< For each slice.
+constexpr double kFarthest_mm = 1e5;
+constexpr double kSmallestPixel_mm = 1e-3;
+constexpr double kLargestPixel_mm = 1e3;
 /// Stored positions may be rounded (0.625 mm steps as 0.6, 1.3, 1.9): maximum deviation of a slice from an even step.
 constexpr double kMaxStepDeviation = 0.05;     ///< Fraction of the step.
 constexpr double kMaxStepDeviation_mm = 0.06;  ///< At least this much for small steps.
@@ -170,7 +175,26 @@ StackGap widest_gap(const SliceStack& stack) {
   return widest;
 }
 
-StackPlan plan_stack(const SliceStack& stack, double single_step_mm) {
+double tilt_deg(const SliceStack& stack) {
+  const std::size_t last = stack.origins_P.size() - 1;
+  const double extent_mm = stack.along_mm(last) - stack.along_mm(0);
+  return std::atan2(sideways_mm(stack, last).norm(), extent_mm) * 180.0 / std::numbers::pi;
+}
+
+bool is_uneven(const SliceStack& stack) {
+  if (stack.origins_P.size() < 2) return false;
+  const std::size_t last = stack.origins_P.size() - 1;
+  return !has_even_steps(stack, (stack.along_mm(last) - stack.along_mm(0)) / static_cast<double>(last));
+}
+
+bool is_sane(const SliceStack& stack) {
+  const auto is_pixel = [](double mm) { return mm >= kSmallestPixel_mm && mm <= kLargestPixel_mm; };
+  const auto is_near = [](const Vec3& p_P) { return p_P.allFinite() && p_P.cwiseAbs().maxCoeff() <= kFarthest_mm; };
+  return is_pixel(stack.column_step_mm) && is_pixel(stack.row_step_mm) &&
+         std::all_of(stack.origins_P.begin(), stack.origins_P.end(), is_near);
+}
+
+std::optional<StackPlan> plan_stack(const SliceStack& stack, double single_step_mm) {
   TROCAR_CHECK(!stack.origins_P.empty() && single_step_mm > 0.0);
   const std::size_t count = stack.origins_P.size();
   StackPlan plan;
@@ -181,22 +205,24 @@ StackPlan plan_stack(const SliceStack& stack, double single_step_mm) {
   if (count == 1) return plan;
 
   const double extent_mm = stack.along_mm(count - 1) - stack.along_mm(0);
-  const double mean_mm = extent_mm / static_cast<double>(count - 1);
-  plan.geometry.spacing_mm.z() = mean_mm;
-  plan.tilt_deg = std::atan2(sideways_mm(stack, count - 1).norm(), extent_mm) * 180.0 / std::numbers::pi;
-  plan.is_uneven = !has_even_steps(stack, mean_mm);
-  plan.is_plain = !plan.is_uneven && !is_sheared(stack, plan.tilt_deg, extent_mm);
+  plan.geometry.spacing_mm.z() = extent_mm / static_cast<double>(count - 1);
+  plan.tilt_deg = tilt_deg(stack);
+  plan.is_uneven = is_uneven(stack);
+  const bool has_shear = is_sheared(stack, plan.tilt_deg, extent_mm);
+  plan.is_plain = !plan.is_uneven && !has_shear;
   if (plan.is_plain) return plan;
+  if (plan.tilt_deg > kMostTilt_deg) return std::nullopt;
 
   if (plan.is_uneven) {
-    const std::int64_t planes = std::max<std::int64_t>(std::llround(extent_mm / even_step_mm(stack)), 1) + 1;
-    plan.geometry.size[2] = planes;
-    plan.geometry.spacing_mm.z() = extent_mm / static_cast<double>(planes - 1);
-    plan.layers = even_layers(stack, planes, plan.geometry.spacing_mm.z());
+    const double planes = std::max(std::round(extent_mm / even_step_mm(stack)), 1.0) + 1.0;
+    if (planes > static_cast<double>(kMostPlanes * count)) return std::nullopt;
+    plan.geometry.size[2] = static_cast<std::int64_t>(planes);
+    plan.geometry.spacing_mm.z() = extent_mm / (planes - 1.0);
+    plan.layers = even_layers(stack, plan.geometry.size[2], plan.geometry.spacing_mm.z());
   } else {
     plan.layers = plain_layers(count);
   }
-  if (is_sheared(stack, plan.tilt_deg, extent_mm))
+  if (has_shear)
     straighten(stack, plan);
   else
     plan.offsets_px.assign(count, Eigen::Vector2d::Zero());

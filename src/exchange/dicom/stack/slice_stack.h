@@ -51,12 +51,19 @@ struct StackGap {
   double median_mm = 0.0;
 };
 StackGap widest_gap(const SliceStack& stack);
+/// Angle in degrees between the stack, from its first to its last slice, and the normal of its slices.
+double tilt_deg(const SliceStack& stack);
+/// True if the distances differ by more than 5 % of their mean and 0.06 mm (positions may be rounded).
+bool is_uneven(const SliceStack& stack);
+/// True for numbers that a scanner can have: places within 100 m, pixels of 1 um to 1 m. To be checked before a plan.
+bool is_sane(const SliceStack& stack);
 
-/// Distances that differ by at most 5 % of their mean, or 0.06 mm, are even (positions may be rounded); a tilt up to
-/// 0.3 degrees is none. An uneven stack gets the smallest distance of two slices as its step, but at least half of the
-/// usual one. `stack` has at least one slice, in order, no two at one place; `single_step_mm` > 0 is the step of a
-/// single one. The geometry is as exact as the file: the directions may be skewed by rounding.
-StackPlan plan_stack(const SliceStack& stack, double single_step_mm = 1.0);
+/// An uneven stack gets the smallest distance of two slices as its step, but at least half of the usual one; a stack
+/// that leans by more than 0.3 degrees becomes straight. `stack` is sane and has at least one slice, in order, no two
+/// at one place; `single_step_mm` > 0 is the step of a single one. The geometry is as exact as the file: the directions
+/// may be skewed by rounding. Empty if the stack leans by more than 45 degrees, or has so wide a gap that its grid
+/// would need more than 16 planes for each slice.
+std::optional<StackPlan> plan_stack(const SliceStack& stack, double single_step_mm = 1.0);
 
 /// Fills the plan's grid from the slices (i fastest, then j, then slice; `slices` has all their pixels). Numbers are
 /// interpolated linearly, labels (bytes) take the nearest slice and pixel; beyond the slices the value is `outside`.

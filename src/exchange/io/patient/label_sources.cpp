@@ -244,6 +244,12 @@ Result<std::vector<anatomy::LabelSource>> read_label_sources(const std::vector<f
   return all;
 }
 
+Result<std::vector<anatomy::LabelSource>> read_label_sources(const std::vector<fs::path>& paths,
+                                                             const std::string& label_map) {
+  std::vector<std::string> warnings;
+  return read_label_sources(paths, label_map, {}, warnings);
+}
+
 std::vector<std::string> series_of_labels(const std::vector<fs::path>& paths) {
   std::vector<std::string> all;
   for (const fs::path& path : paths) {

