@@ -61,6 +61,7 @@ const std::vector<HeaderRule>& header_rules() {
         {"boost/", {"boost"}},
         {"dcmtk/", {"dcmtk"}},
         {"httplib.h", {"httplib"}},
+        {"openssl/", {"httplib"}},
     };
     for (const std::string_view rendering :
          {"vtkActor", "vtkCamera", "vtkLight", "vtkOpenGL", "vtkPolyDataMapper", "vtkProp", "vtkRender", "vtkShader",

@@ -1,0 +1,92 @@
+#include "dicom/pacs/detail/data_set.h"
+
+#include <algorithm>
+
+#include "core/parse_number.h"
+#include "dicom/pacs/detail/pseudonyms.h"
+
+namespace trocar::dicom::detail {
+namespace {
+
+constexpr std::string_view kImplicitLittle = "1.2.840.10008.1.2";
+constexpr std::string_view kExplicitBig = "1.2.840.10008.1.2.2";
+constexpr std::string_view kDeflated = "1.2.840.10008.1.2.1.99";
+constexpr std::size_t kPreamble = 128;
+constexpr std::string_view kMark = "DICM";
+constexpr std::size_t kMaxText = 4096;  ///< A longer value is no name and no UID.
+constexpr const char* kAskAdministrator = "ask the administrator of the PACS to check this study";
+
+constexpr std::uint32_t kTransferSyntax = tag(0x0002, 0x0010);
+constexpr std::uint32_t kImageType = tag(0x0008, 0x0008);
+constexpr std::uint32_t kBurnedIn = tag(0x0028, 0x0301);
+
+/// Kinds of images whose pixels usually contain the patient's name.
+bool usually_shows_text(std::string_view modality) {
+  return modality == "US" || modality == "SC" || modality == "OT" || modality == "XC" || modality == "ES";
+}
+
+tl::unexpected<Error> damaged() {
+  return fail("the PACS sent an object that is damaged or ends too early", "", kAskAdministrator);
+}
+
+}  // namespace
+
+std::string_view trimmed(std::string_view value) noexcept {
+  constexpr std::string_view kPadding(" \0", 2);
+  const auto first = value.find_first_not_of(kPadding);
+  if (first == std::string_view::npos) return {};
+  return value.substr(first, value.find_last_not_of(kPadding) + 1 - first);
+}
+
+Result<Encoding> encoding_of(std::string_view transfer_syntax) {
+  if (transfer_syntax == kDeflated)
+    return fail("the PACS sent a deflated object", "", "ask its administrator to send uncompressed or JPEG objects");
+  return Encoding{transfer_syntax == kExplicitBig, transfer_syntax == kImplicitLittle};
+}
+
+Result<DataSet> find_data_set(std::string_view object, const std::string& transfer_syntax) {
+  DataSet found{object, {}, transfer_syntax};
+  if (transfer_syntax.empty()) {
+    if (object.size() < kPreamble + kMark.size() || object.substr(kPreamble, kMark.size()) != kMark)
+      return fail("the PACS sent an object that is not DICOM", "", kAskAdministrator);
+    ElementWalk meta(object, Encoding{}, kPreamble + kMark.size());
+    Element element;
+    while (meta.next_group() == 0x0002 && meta.next(element) == ElementWalk::Step::kElement)
+      if (element.tag == kTransferSyntax && element.size <= kMaxText)
+        found.transfer_syntax = trimmed(object.substr(element.begin, element.size));
+    found.bytes = object.substr(meta.at());
+  }
+  if (!is_uid(found.transfer_syntax)) return damaged();
+  TROCAR_TRY(found.encoding, encoding_of(found.transfer_syntax));
+  return found;
+}
+
+Result<ObjectSummary> summarize(const DataSet& data_set) {
+  ObjectSummary summary;
+  std::string burned_in, image_type;
+  const auto keep = [&](std::uint32_t tag, std::string_view text) {
+    if (is_identifying(tag)) summary.words.add(text);
+    if (tag == 0x00080016) summary.sop_class = text;
+    if (tag == 0x00080018) summary.sop_instance = text;
+    if (tag == 0x0020000d) summary.study = text;
+    if (tag == 0x0020000e) summary.series = text;
+    if (tag == 0x00100020) summary.patient_id = text;
+    if (tag == 0x00080060) summary.modality = text;
+    if (tag == 0x00200013) summary.instance_number = parse_number<int>(text);
+    if (tag == kBurnedIn) burned_in = text;
+    if (tag == kImageType) image_type = text;
+  };
+  ElementWalk walk(data_set.bytes, data_set.encoding);
+  Element element;
+  auto step = ElementWalk::Step::kEnd;
+  while ((step = walk.next(element)) == ElementWalk::Step::kElement)
+    if (element.size <= kMaxText) keep(element.tag, trimmed(data_set.bytes.substr(element.begin, element.size)));
+  if (step == ElementWalk::Step::kDamaged) return damaged();
+  for (const std::string* uid : {&summary.sop_class, &summary.sop_instance, &summary.study, &summary.series})
+    if (!is_uid(*uid)) return damaged();
+  summary.may_show_text = burned_in == "YES" || (burned_in != "NO" && usually_shows_text(summary.modality)) ||
+                          (burned_in != "NO" && image_type.find("SCREEN SAVE") != std::string::npos);
+  return summary;
+}
+
+}  // namespace trocar::dicom::detail

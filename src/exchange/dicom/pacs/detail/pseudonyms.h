@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+
+namespace trocar::dicom::detail {
+
+/// Replacements of UIDs and patients: a SHA-256 hash with a random salt. The same original has the same replacement as
+/// long as the salt exists, so that references between the objects of one fetch stay valid; without the salt, nobody
+/// can find or verify an original.
+class Pseudonyms {
+ public:
+  using Salt = std::array<unsigned char, 32>;
+
+  explicit Pseudonyms(const Salt& salt) noexcept : salt_(salt) {}
+  /// With a salt of the system's random numbers.
+  static Pseudonyms with_random_salt();
+
+  /// A UID below 2.25 (PS3.5, B.2: a UUID as a decimal number). UIDs that DICOM itself defines stay as they are.
+  std::string uid(std::string_view original) const;
+  /// "ANON-" and 12 hexadecimal digits.
+  std::string patient(std::string_view id) const;
+
+ private:
+  using Digest = std::array<unsigned char, 32>;
+  Digest digest(char domain, std::string_view original) const;
+
+  Salt salt_;
+};
+
+/// Up to 64 digits and dots, as every UID (PS3.5, 9.1).
+bool is_uid(std::string_view text) noexcept;
+
+}  // namespace trocar::dicom::detail
