@@ -204,6 +204,7 @@ void add_patient_commands(CLI::App& program, Action& action) {
   series_command->add_flag("--json", s->is_json, "Print one JSON object");
   series_command->callback([&action, s] { action = [s] { return list_series(*s); }; });
 
+  add_patient_fetch_command(*patient, action);
   add_patient_report_commands(*patient, action);
 }
 
