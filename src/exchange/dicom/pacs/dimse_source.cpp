@@ -63,6 +63,7 @@ class DimseSource final : public PacsSource {
 
   Status retrieve(const std::string& study_uid, const std::string& series_uid, ObjectSink& sink) override {
     const BrokenPipesIgnored guard;
+    senders_.clear();
     if (!network_) {
       TROCAR_TRY(network_, Network::open(options_.uses_get ? 0 : options_.listen_port, options_.timeout_s));
     }
@@ -70,6 +71,7 @@ class DimseSource final : public PacsSource {
     TROCAR_TRY(Association pacs,
                Association::request(*network_, options_, offer(model),
                                     options_.uses_get ? storage_offers() : std::vector<ContextOffer>()));
+    pacs.cancel_by([&sink] { return sink.is_cancelled(); });
     const auto context = pacs.find_context(model);
     if (!context)
       return fail(fmt::format("the PACS does not offer {}", options_.uses_get ? "C-GET" : "C-MOVE"), place_of(options_),
@@ -196,6 +198,7 @@ class DimseSource final : public PacsSource {
     if (!options_.uses_get && sockets[1].revents != 0) {
       auto sender = Association::accept(*network_, options_);
       has_data |= sender.has_value();
+      if (sender) sender->cancel_by([&sink] { return sink.is_cancelled(); });
       if (sender && senders_.size() < kMaxSenders) senders_.push_back(*std::move(sender));
     }
     return has_data;
@@ -216,6 +219,7 @@ class DimseSource final : public PacsSource {
     const auto until = std::chrono::steady_clock::now() + kGrace;
     while (!senders_.empty() && std::chrono::steady_clock::now() < until)
       TROCAR_TRY_STATUS(serve_senders(pacs, sink).map([](bool) {}));
+    senders_.clear();
     return {};
   }
 

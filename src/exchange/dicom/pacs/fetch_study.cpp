@@ -81,7 +81,8 @@ class Fetch {
     TROCAR_TRY(const std::vector<NumberedSeries> chosen, choose_series(all, options_, fetched_.warnings));
     for (const NumberedSeries& series : chosen) announced_ += series.entry.images.value_or(0);
     TROCAR_TRY_STATUS(write_folder_atomically(out, [&](const fs::path& temporary) -> Status {
-      for (const NumberedSeries& series : chosen) TROCAR_TRY_STATUS(fetch_series(series, temporary));
+      for (const NumberedSeries& series : chosen)
+        if (auto status = fetch_series(series, temporary); !status) return at_output(status.error(), temporary, out);
       if (fetched_.series.empty())
         return fail("the PACS sent no object that can be anonymised", options_.study_uid,
                     "choose series of images, or keep the identity");
@@ -116,6 +117,12 @@ class Fetch {
     const std::string uid = options_.keeps_identity ? series.entry.uid : pseudonyms_.uid(series.entry.uid);
     fetched_.series.push_back({series.number, uid, safe_name(series.entry.modality), count, name});
     return {};
+  }
+
+  /// An error of a file, with the folder that the user named in place of the temporary one.
+  static Status at_output(Error error, const fs::path& temporary, const fs::path& out) {
+    if (error.where.starts_with(temporary.string())) error.where = out.string();
+    return tl::unexpected(std::move(error));
   }
 
   /// An error that arose from an object, with its series in place of a file.

@@ -4,9 +4,13 @@
 #include <fmt/format.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
+#include <poll.h>
 #include <sys/socket.h>
 
 #include <algorithm>
+#include <array>
+#include <chrono>
+#include <utility>
 
 // DCMTK's headers need this one first.
 #include <dcmtk/config/osconfig.h>
@@ -20,7 +24,9 @@ namespace {
 
 constexpr long kMaxPdu = 1 << 17;                          ///< Bytes of one protocol unit that we accept.
 constexpr std::size_t kMaxCommand = std::size_t{1} << 16;  ///< A command holds a few UIDs and numbers.
-constexpr int kGreeting_s = 5;                             ///< A caller that says nothing must not hold up the others.
+constexpr std::array<unsigned char, 10> kAbort{7, 0, 0, 0, 0, 4, 0, 0, 0, 0};  ///< A-ABORT (PS3.8, 9.3.8).
+constexpr int kPoll_ms = 200;
+constexpr int kGreeting_s = 5;  ///< A caller that says nothing must not hold up the others.
 constexpr const char* kVerification = "1.2.840.10008.1.1";
 
 std::string place_of(const DimseOptions& options) {
@@ -131,14 +137,17 @@ struct Association::Handle {
   std::shared_ptr<void> network;  ///< Outlives its associations.
   T_ASC_Association* association = nullptr;
   DimseOptions options;
-  std::optional<DUL_PDV> next;  ///< Arrived, not yet used.
+  std::function<bool()> is_cancelled;  ///< May be empty.
+  std::optional<DUL_PDV> next;         ///< Arrived, not yet used.
 
   Handle() = default;
   Handle(const Handle&) = delete;
   Handle& operator=(const Handle&) = delete;
   ~Handle() {
     if (association == nullptr) return;
-    ASC_abortAssociation(association);
+    // ASC_abortAssociation would wait for the other end, which may be the one that does not answer.
+    if (association->DULassociation != nullptr)
+      ::send(socket(), kAbort.data(), kAbort.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
     ASC_destroyAssociation(&association);
   }
 
@@ -153,16 +162,32 @@ struct Association::Handle {
     if (condition == DUL_READTIMEOUT)
       return fail(fmt::format("the PACS sent nothing for {} s", options.timeout_s), place,
                   "try again, or allow more time with --timeout");
-    if (condition == DUL_PEERABORTEDASSOCIATION)
-      return fail("the PACS has aborted the transfer", place, "try again, or ask its administrator for the reason");
-    if (condition == DUL_NETWORKCLOSED)
-      return fail("the PACS has closed the connection in the middle", place, "try again");
+    // DCMTK does not tell an abort from a closed connection.
+    if (condition == DUL_PEERABORTEDASSOCIATION || condition == DUL_NETWORKCLOSED)
+      return fail("the PACS has ended the connection in the middle", place, "try again");
     return fail("the PACS sent something that is no DICOM message", place, "check that this is its DICOM port");
+  }
+
+  int socket() const {
+    DcmTransportConnection* connection = DUL_getTransportConnection(association->DULassociation);
+    return connection == nullptr ? -1 : (connection->*&SocketAccess::getSocket)();
+  }
+
+  /// DCMTK itself cannot be cancelled.
+  Status wait_for_data() const {
+    const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(options.timeout_s);
+    while (std::chrono::steady_clock::now() < until) {
+      if (is_cancelled && is_cancelled()) return fail("cancelled", place_of(options), "fetch it again");
+      pollfd one{socket(), POLLIN, 0};
+      if (::poll(&one, 1, kPoll_ms) > 0) return {};
+    }
+    return broken(DUL_READTIMEOUT);
   }
 
   /// Reads one part. Empty: the association was released.
   Result<std::optional<DUL_PDV>> receive_part() {
     if (!take_buffered()) {
+      TROCAR_TRY_STATUS(wait_for_data());
       const OFCondition condition = DUL_ReadPDVs(&association->DULassociation, nullptr, DUL_NOBLOCK, options.timeout_s);
       if (condition == DUL_PEERREQUESTEDRELEASE) {
         ASC_acknowledgeRelease(association);
@@ -273,9 +298,12 @@ Association::Association(Association&&) noexcept = default;
 Association& Association::operator=(Association&&) noexcept = default;
 Association::~Association() = default;
 
+void Association::cancel_by(std::function<bool()> is_cancelled) {
+  handle_->is_cancelled = std::move(is_cancelled);
+}
+
 int Association::socket() const {
-  DcmTransportConnection* connection = DUL_getTransportConnection(handle_->association->DULassociation);
-  return connection == nullptr ? -1 : (connection->*&SocketAccess::getSocket)();
+  return handle_->socket();
 }
 
 std::string Association::local_address() const {

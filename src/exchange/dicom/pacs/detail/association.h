@@ -45,6 +45,8 @@ class Association {
   /// for another AE title.
   static std::optional<Association> accept(const Network& network, const DimseOptions& options);
 
+  /// Polled while waiting for a message: true ends the waiting with an error.
+  void cancel_by(std::function<bool()> is_cancelled);
   int socket() const;
   std::string local_address() const;  ///< Of our end: "192.168.1.7".
   /// True if a message has arrived already, so that the socket need not become readable.

@@ -56,7 +56,7 @@ class MadeObject {
   std::map<std::uint32_t, std::string> elements_;
 };
 
-// The study of the tests: a CT of 6 slices with 16 x 16 pixels of 0.5 mm, a segmentation and a structure set of it.
+// The study of the tests: a CT of 6 slices with 64 x 64 pixels of 0.5 mm, a segmentation and a structure set of it.
 inline constexpr const char* kStudyUid = "1.3.6.1.4.1.99999.1.2023051701";
 inline constexpr const char* kCtSeriesUid = "1.3.6.1.4.1.99999.1.2023051701.2";
 inline constexpr const char* kSegSeriesUid = "1.3.6.1.4.1.99999.1.2023051701.3";
@@ -66,7 +66,7 @@ inline constexpr const char* kCtClass = "1.2.840.10008.5.1.4.1.1.2";
 inline constexpr const char* kSegClass = "1.2.840.10008.5.1.4.1.1.66.4";
 inline constexpr const char* kRtClass = "1.2.840.10008.5.1.4.1.1.481.3";
 inline constexpr int kSlices = 6;
-inline constexpr int kColumns = 16;
+inline constexpr int kColumns = 64;
 inline constexpr double kStep_mm = 2.5;
 
 inline std::string ct_instance(int slice) {
