@@ -20,10 +20,10 @@ TEST_P(Help, ExitsZeroWithAnExample) {
 
 INSTANTIATE_TEST_SUITE_P(EveryCommand, Help,
                          testing::Values("", "patient", "patient list", "patient generate", "patient build",
-                                         "patient series", "patient show", "patient check", "patient render", "plan",
-                                         "task", "task list", "device", "device list", "link", "link keygen", "run",
-                                         "session", "session export", "session report", "ultrasound",
-                                         "ultrasound image", "ultrasound sweep", "ultrasound reconstruct",
+                                         "patient series", "patient fetch", "patient show", "patient check",
+                                         "patient render", "plan", "task", "task list", "device", "device list", "link",
+                                         "link keygen", "run", "session", "session export", "session report",
+                                         "ultrasound", "ultrasound image", "ultrasound sweep", "ultrasound reconstruct",
                                          "ultrasound views", "ultrasound transducers", "bench", "completion",
                                          "completion bash"));
 
@@ -44,7 +44,11 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         "", "nonsense", "patient", "patient nonsense", "patient show", "patient list --nonsense",
         "patient generate abdomen", "patient generate nobody --out x", "patient generate abdomen --seed many --out x",
-        "patient build --ct a.nii", "patient series", "patient build --ct a.nii --labels a.nii --out ''",
+        "patient build --ct a.nii", "patient series", "patient fetch --study 1.2 --out x",
+        "patient fetch --pacs A@b:104 --out x", "patient fetch --pacs nonsense --study 1.2 --out x",
+        "patient fetch --dicomweb ftp://b --study 1.2 --out x", "patient fetch --pacs A@b:104 --study x/y --list",
+        "patient fetch --pacs A@b:104 --study 1.2 --timeout 0 --out x",
+        "patient build --ct a.nii --labels a.nii --out ''",
         "patient build --ct a.nii --labels a.nii --rescale nan,0 --out x",
         "patient build --ct a.nii --labels a.nii --rescale 0,5 --out x", "plan liver-biopsy --patient abdomen --out ''",
         "run liver-biopsy --patient abdomen --operator expert --out ''",

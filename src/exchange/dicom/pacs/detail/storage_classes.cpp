@@ -26,6 +26,7 @@ constexpr auto kClasses = std::to_array<std::string_view>({
     "1.2.840.10008.5.1.4.1.1.12.2",   // fluoroscopy
     "1.2.840.10008.5.1.4.1.1.20",     // nuclear medicine
     "1.2.840.10008.5.1.4.1.1.66.4",   // segmentation
+    "1.2.840.10008.5.1.4.1.1.66.7",   // label map
     "1.2.840.10008.5.1.4.1.1.128",    // PET
     "1.2.840.10008.5.1.4.1.1.481.3",  // structure set
 });
