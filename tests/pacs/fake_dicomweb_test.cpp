@@ -47,14 +47,14 @@ std::string part(const std::string& file) {
 
 class FromFakeServer : public ::testing::Test {
  protected:
-  std::string arguments(int port) const {
-    return fmt::format("patient fetch --dicomweb http://127.0.0.1:{}/web --timeout 1 --study {} --out '{}'", port,
-                       made::kStudyUid, folder_ / "a");
+  std::string arguments(int port, int timeout_s = 20) const {
+    return fmt::format("patient fetch --dicomweb http://127.0.0.1:{}/web --timeout {} --study {} --out '{}'", port,
+                       timeout_s, made::kStudyUid, folder_ / "a");
   }
 
-  void expect_refused(std::vector<FakeServer::Serve> serve, const std::string& message) {
+  void expect_refused(std::vector<FakeServer::Serve> serve, const std::string& message, int timeout_s = 20) {
     const FakeServer server(std::move(serve));
-    const Outcome outcome = cli_test::trocar(arguments(server.port()));
+    const Outcome outcome = cli_test::trocar(arguments(server.port(), timeout_s));
     EXPECT_EQ(outcome.exit_status, 1) << outcome.err;
     EXPECT_NE(outcome.err.find(message), std::string::npos) << outcome.err;
     EXPECT_EQ(cli_test::line_count(outcome.err), 1) << outcome.err;
@@ -173,7 +173,7 @@ TEST_F(FromFakeServer, EndlessHeadersAreRefused) {
 
 TEST_F(FromFakeServer, SilenceEndsAfterTheTimeLimit) {
   const std::string message = "sent nothing for 1 s";
-  expect_refused({wait_for_close}, message);
+  expect_refused({wait_for_close}, message, 1);
   const std::string whole = answer(kMultipart, two_);
   expect_refused({lists(2),
                   [&](int socket) {
@@ -181,7 +181,7 @@ TEST_F(FromFakeServer, SilenceEndsAfterTheTimeLimit) {
                     send_all(socket, whole.substr(0, whole.size() / 2));
                     wait_for_close(socket);
                   }},
-                 message);
+                 message, 1);
 }
 
 TEST_F(FromFakeServer, ContentThatEndsEarlyIsRefused) {

@@ -20,17 +20,20 @@ namespace made = dicom::testing;
 
 using cli_test::Outcome;
 
+constexpr int kPatient_s = 20;   ///< Longer than a busy machine needs.
+constexpr int kImpatient_s = 1;  ///< For servers that never answer.
+
 class FromFakePacs : public ::testing::Test {
  protected:
-  std::string arguments(int port) const {
-    return fmt::format("patient fetch --pacs FAKE@127.0.0.1:{} --via get --timeout 1 --study {} --out '{}'", port,
-                       made::kStudyUid, folder_ / "a");
+  std::string arguments(int port, int timeout_s = kPatient_s) const {
+    return fmt::format("patient fetch --pacs FAKE@127.0.0.1:{} --via get --timeout {} --study {} --out '{}'", port,
+                       timeout_s, made::kStudyUid, folder_ / "a");
   }
 
   /// One line that contains `message`, exit status 1, nothing written.
-  void expect_refused(std::vector<FakeServer::Serve> serve, const std::string& message) {
+  void expect_refused(std::vector<FakeServer::Serve> serve, const std::string& message, int timeout_s = kPatient_s) {
     const FakeServer server(std::move(serve));
-    const Outcome outcome = cli_test::trocar(arguments(server.port()));
+    const Outcome outcome = cli_test::trocar(arguments(server.port(), timeout_s));
     EXPECT_EQ(outcome.exit_status, 1) << outcome.err;
     EXPECT_NE(outcome.err.find(message), std::string::npos) << outcome.err;
     EXPECT_EQ(cli_test::line_count(outcome.err), 1) << outcome.err;
@@ -38,8 +41,9 @@ class FromFakePacs : public ::testing::Test {
   }
 
   /// The same for what follows a request to send a CT of `announced` images.
-  void expect_get_refused(std::function<void(int, int, int)> then, const std::string& message, int announced = 2) {
-    expect_refused({lists_series(announced), answers_get(std::move(then))}, message);
+  void expect_get_refused(std::function<void(int, int, int)> then, const std::string& message, int announced = 2,
+                          int timeout_s = kPatient_s) {
+    expect_refused({lists_series(announced), answers_get(std::move(then))}, message, timeout_s);
   }
 
   cli_test::TemporaryFolder folder_;
@@ -104,20 +108,20 @@ TEST_F(FromFakePacs, OtherBytesThanAnAnswerAreRefused) {
 
 TEST_F(FromFakePacs, SilenceEndsAfterTheTimeLimit) {
   const std::string message = "sent nothing for 1 s";
-  expect_refused({wait_for_close}, message);
-  expect_get_refused([](int socket, int, int) { wait_for_close(socket); }, message);
+  expect_refused({wait_for_close}, message, kImpatient_s);
+  expect_get_refused([](int socket, int, int) { wait_for_close(socket); }, message, 2, kImpatient_s);
   expect_get_refused(
       [](int socket, int, int ct) {  // in the middle of an object
         send_all(socket, part(ct, true, true, store_request().bytes()) + part(ct, false, false, "half an obj"));
         wait_for_close(socket);
       },
-      message);
+      message, 2, kImpatient_s);
   expect_get_refused(
       [](int socket, int, int ct) {  // in the middle of a protocol unit
         send_all(socket, part(ct, true, true, store_request().bytes()).substr(0, 40));
         wait_for_close(socket);
       },
-      "the PACS");
+      "the PACS", 2, kImpatient_s);
 }
 
 TEST_F(FromFakePacs, ClosingInTheMiddleIsNamed) {
@@ -142,12 +146,13 @@ TEST_F(FromFakePacs, WrongProtocolUnitsAreRefused) {
     };
   };
   const std::string message = "the PACS";
-  expect_get_refused(send(std::string(5000, '\xff')), message);
-  expect_get_refused(send(std::string("\x04\x00\xff\xff\xff\xf0", 6) + std::string(5000, 'x')), message);
-  expect_get_refused(send(pdu(4, std::string("\xff\xff\xff\xff\x01\x03", 6))), message);
-  expect_get_refused(send(pdu(4, std::string("\0\0\0\0", 4))), message);
-  expect_get_refused(send(pdu(4, std::string("\0\0\0\1\1", 5))), message);
-  expect_get_refused(send(pdu(4, "")), message);
+  expect_get_refused(send(std::string(5000, '\xff')), message, 2, kImpatient_s);
+  expect_get_refused(send(std::string("\x04\x00\xff\xff\xff\xf0", 6) + std::string(5000, 'x')), message, 2,
+                     kImpatient_s);
+  expect_get_refused(send(pdu(4, std::string("\xff\xff\xff\xff\x01\x03", 6))), message, 2, kImpatient_s);
+  expect_get_refused(send(pdu(4, std::string("\0\0\0\0", 4))), message, 2, kImpatient_s);
+  expect_get_refused(send(pdu(4, std::string("\0\0\0\1\1", 5))), message, 2, kImpatient_s);
+  expect_get_refused(send(pdu(4, "")), message, 2, kImpatient_s);
   expect_get_refused(send(part(1, true, true, "no command")), "no DICOM message");
   expect_get_refused(send(part(1, false, true, "a data set first")), "no DICOM message");
 }
@@ -241,7 +246,6 @@ class Listening : public FromFakePacs {
     const FakeServer server({lists_series(1), answers_move(std::move(then))});
     std::string line = arguments(server.port());
     line.replace(line.find("--via get"), 9, fmt::format("--listen-port {}", port_));
-    line.replace(line.find("--timeout 1"), 11, "--timeout 5");
     return cli_test::trocar(line);
   }
 
@@ -313,7 +317,7 @@ TEST_F(Listening, UsedPortIsNamed) {
       << outcome.err;
 }
 
-/// Starts the program, and sends it a signal as soon as `has_sent` the first object.
+/// The program gets a signal in the middle of the second object.
 class Interrupted : public FromFakePacs {
  protected:
   Outcome run_with_signal(const std::string& signal) {
@@ -324,16 +328,14 @@ class Interrupted : public FromFakePacs {
                                cli_test::run_shell("kill -" + signal + " $(cat '" + (pid_ / "pid") + "')");
                                wait_for_close(socket);
                              })});
-    std::string line = arguments(server.port());
-    line.replace(line.find("--timeout 1"), 11, "--timeout 20");
-    return cli_test::trocar(line, "echo $$ > '" + (pid_ / "pid") + "'; exec");
+    return cli_test::trocar(arguments(server.port()), "echo $$ > '" + (pid_ / "pid") + "'; exec");
   }
 
   cli_test::TemporaryFolder pid_;
 };
 
-TEST_F(Interrupted, ByControlCLeavesNothing) {
-  const Outcome outcome = run_with_signal("INT");
+TEST_F(Interrupted, ProgramLeavesNothing) {
+  const Outcome outcome = run_with_signal("TERM");  // a shell's job in the background ignores INT
   EXPECT_EQ(outcome.exit_status, 1) << outcome.err;
   EXPECT_NE(outcome.err.find("interrupted: nothing was written"), std::string::npos) << outcome.err;
   EXPECT_TRUE(folder_.is_empty());
