@@ -8,6 +8,8 @@ const std::vector<Benchmark>& all_benchmarks() {
       {"slice", "trilinear slices of a CT volume on one core, compared with VTK on two cores", run_slice_benchmark},
       {"haptics", "one haptic tick, call by call, with a fixed calculation for comparison", run_haptics_benchmark},
       {"session", "30 simulated seconds at 1 kHz with recording, and the whole process", run_session_benchmark},
+      {"open", "opening an embedded patient in the trainer, the first time and again, at two resolutions: a minute",
+       run_open_benchmark},
       {"insertion",
        "forces along the planned path: skin under the needle, peaks by speed, drops, second insertion",
        run_insertion_benchmark,

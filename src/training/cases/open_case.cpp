@@ -53,6 +53,7 @@ io::PatientSource source_of(const CaseChoice& choice) {
 
 /// The patient, from the cache if possible; `made.server_source` is its source for servers.
 Result<std::shared_ptr<const anatomy::VirtualPatient>> patient_of(OpenCase& made, const io::PatientCache& cache,
+                                                                  const OpenOptions& options,
                                                                   const Progress& progress) {
   made.server_source = made.choice.patient_source;
   if (const auto kept = cache.find(source_of(made.choice))) {
@@ -62,17 +63,19 @@ Result<std::shared_ptr<const anatomy::VirtualPatient>> patient_of(OpenCase& made
     }
     cache.forget(source_of(made.choice));
   }
-  TROCAR_TRY(anatomy::VirtualPatient patient, io::open_patient(source_of(made.choice), progress));
+  TROCAR_TRY(anatomy::VirtualPatient patient, options.load ? options.load(source_of(made.choice), progress)
+                                                           : io::open_patient(source_of(made.choice), progress));
   return std::make_shared<const anatomy::VirtualPatient>(std::move(patient));
 }
 
 Status add_surfaces(OpenCase& made, const anatomy::VirtualPatient& patient, const io::PatientCache& cache,
-                    const Progress& progress) {
+                    const Progress& progress, OpenParts& parts) {
   TROCAR_TRY(auto meshes, io::open_meshes({made.server_source, made.choice.patient_seed}, patient, progress));
   const bool is_kept = made.server_source != made.choice.patient_source;
   if (!is_kept) {
     // If it cannot be cached, it is generated again next time.
-    if (const auto kept = cache.keep(source_of(made.choice), patient, meshes)) made.server_source = kept->string();
+    const auto kept = parts.measure("cache", [&] { return cache.keep(source_of(made.choice), patient, meshes); });
+    if (kept) made.server_source = kept->string();
   }
   made.meshes = std::make_shared<const std::vector<anatomy::NamedMesh>>(std::move(meshes));
   return {};
@@ -156,6 +159,7 @@ Result<std::shared_ptr<const OpenCase>> make_open_case(const CaseChoice& choice,
   // Errors of the tables are reported before a patient is opened.
   TROCAR_TRY_STATUS(load_tables(made->choice.options));
   SharedProgress shared(progress);
+  OpenParts parts;
   std::shared_ptr<const anatomy::VirtualPatient> patient;
   if (previous) {
     patient = previous->the_case.patient;
@@ -165,15 +169,20 @@ Result<std::shared_ptr<const OpenCase>> make_open_case(const CaseChoice& choice,
     made->flow = previous->flow;
     TROCAR_TRY_STATUS(add_case(*made, patient, shared.part(0.8)));
   } else {
-    TROCAR_TRY(patient, patient_of(*made, cache, shared.part(0.3)));
+    TROCAR_TRY(patient, parts.measure("patient", [&] { return patient_of(*made, cache, options, shared.part(0.3)); }));
     if (stop.stop_requested()) return fail("the case was not opened: cancelled", "case", "open it again");
     std::array<Status, 3> done;
     const Progress of_case = shared.part(0.2), of_surfaces = shared.part(0.2), of_acoustics = shared.part(0.25);
     OpenCase acoustics;
     acoustics.choice = choice;
-    parallel_invoke([&] { done[0] = add_case(*made, patient, of_case); },
-                    [&] { done[1] = add_surfaces(*made, *patient, cache, of_surfaces); },
-                    [&] { done[2] = add_acoustics(acoustics, patient, of_acoustics); });
+    parallel_invoke(
+        [&] { done[0] = parts.measure("plan", [&] { return add_case(*made, patient, of_case); }); },
+        [&] {
+          done[1] = parts.measure("surfaces", [&] { return add_surfaces(*made, *patient, cache, of_surfaces, parts); });
+        },
+        [&] {
+          done[2] = parts.measure("acoustic scene", [&] { return add_acoustics(acoustics, patient, of_acoustics); });
+        });
     for (Status& status : done) TROCAR_TRY_STATUS(std::move(status));
     made->acoustic = std::move(acoustics.acoustic);
     made->flow = std::move(acoustics.flow);
@@ -184,7 +193,8 @@ Result<std::shared_ptr<const OpenCase>> make_open_case(const CaseChoice& choice,
         "no colour Doppler: no vessel of this patient has flow — label some, or add rows to flow.toml");
   if (stop.stop_requested()) return fail("the case was not opened: cancelled", "case", "open it again");
   report(progress, "predicting the force", 0.95);
-  TROCAR_TRY_STATUS(add_prediction(*made));
+  TROCAR_TRY_STATUS(parts.measure("predicted force", [&] { return add_prediction(*made); }));
+  made->parts = parts.take();
   made->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   report(progress, "open", 1.0);
   return std::shared_ptr<const OpenCase>(std::move(made));

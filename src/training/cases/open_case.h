@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <stop_token>
 #include <string>
@@ -10,9 +11,11 @@
 #include "anatomy/patient.h"
 #include "cases/force_curve.h"
 #include "cases/neutral_start.h"
+#include "cases/open_parts.h"
 #include "cases/prepare_case.h"
 #include "core/background_job.h"
 #include "geometry/pose.h"
+#include "io/patient/patient_source.h"
 #include "ultrasound/doppler/flow_on_demand.h"
 #include "ultrasound/panorama/panorama_on_demand.h"
 #include "ultrasound/probe/transducer.h"
@@ -53,6 +56,7 @@ struct OpenCase {
   std::vector<CurvePoint> predicted;  ///< Force along it at 10 mm/s, without the stylus' weight.
   std::vector<std::string> notes;     ///< Missing or doubtful data, one line each.
   double seconds = 0.0;               ///< Duration of opening.
+  std::vector<OpenPart> parts;        ///< Durations of its parts.
 };
 
 struct OpenOptions {
@@ -62,6 +66,8 @@ struct OpenOptions {
   /// time. Empty: they are generated each time, which takes half a minute. The usual folder is
   /// `io::patient_cache_folder()`.
   std::filesystem::path cache_folder;
+  /// Makes or reads a patient that is not in the cache; empty: io::load_source. Benchmarks generate finer patients.
+  std::function<Result<anatomy::VirtualPatient>(const io::PatientSource&, const Progress&)> load = nullptr;
 };
 
 /// Opens a case; slow parts run in parallel. `stop` is checked between the parts. Errors: the patient, the tables, no
