@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "anatomy/patient.h"
@@ -21,8 +22,15 @@ struct SurfaceOptions {
 /// (lesions_as_organs), which also have their own surfaces. Structures are processed in parallel.
 std::vector<anatomy::NamedMesh> extract_surfaces(const anatomy::VirtualPatient& patient,
                                                  const SurfaceOptions& options = {}, const Progress& progress = {});
+/// Receives a surface (without triangles if the structure has none), the number of surfaces received so far and the
+/// number of all. Returns false to stop.
+using SurfaceReceiver = std::function<bool(anatomy::NamedMesh mesh, std::size_t done, std::size_t count)>;
+/// The same surfaces one after the other, the skin first, then from small structures to large ones: for a view that
+/// shows them as they arrive. `receive` is called on several threads, but only by one at a time.
+void extract_each_surface(const anatomy::VirtualPatient& patient, const SurfaceOptions& options,
+                          const SurfaceReceiver& receive);
 /// Surface of one mask, closed also where the grid cuts the mask; empty for an empty mask. It encloses the volume of
-/// the mask's voxels. A mask of more than a million faces is made coarser first.
+/// the mask's voxels. A mask of more than 40,000 faces is made coarser first.
 TriangleMesh extract_surface(const volume::MaskGrid& mask, const SurfaceOptions& options = {});
 
 }  // namespace trocar::surface
