@@ -103,8 +103,8 @@ struct PatientScene::Impl {
   unsigned long abort_tag = 0;
   CallersBreak frame_break;
   std::shared_ptr<const anatomy::VirtualPatient> patient;
-  std::shared_ptr<const std::vector<anatomy::NamedMesh>> meshes;
-  std::string around_name;
+  std::string target_name, around_name;
+  std::optional<StructurePreset> structure_preset;
   std::optional<Segment> path_P;
   double entry_radius_mm = 0.0;
   std::optional<Vec3> entry_centre_P;
@@ -126,7 +126,7 @@ struct PatientScene::Impl {
 void PatientScene::Impl::poll() {
   if (surfaces.poll()) has_changed = true;
   if (volume.poll()) has_changed = true;
-  if (wanted_preset && surfaces.is_ready()) {
+  if (wanted_preset) {
     const std::vector<Vec3> outline_P = surfaces.outline_P();
     if (outline_P.empty()) return;
     view = fit_camera(outline_P, *wanted_preset, aspect());
@@ -200,17 +200,27 @@ void PatientScene::show_patient(std::shared_ptr<const anatomy::VirtualPatient> p
   Impl& s = *impl_;
   if (!target_P && !patient->paths.empty()) target_P = patient->paths.front().line_P.b;
   const Aim aim = target_P ? find_aim(*patient, *target_P) : Aim{};
+  s.target_name = aim.target_name;
   s.around_name = aim.around_name;
-  s.surfaces.show(describe_structures(patient->label_table, *meshes, aim.target_name, aim.around_name), meshes,
-                  patient->label_table);
+  s.structure_preset.reset();
+  s.surfaces.clear();
   s.planes.set_patient(patient.get());
   s.guides.set_landmarks(patient->landmarks);
   s.volume.set_patient(patient);
   s.patient = std::move(patient);
-  s.meshes = std::move(meshes);
+  add_surfaces(std::move(meshes));
   s.lay_path();
   s.wanted_preset = CameraPreset::kRightAnteriorOblique;
   s.has_changed = true;
+}
+
+void PatientScene::add_surfaces(std::shared_ptr<const std::vector<anatomy::NamedMesh>> meshes) {
+  Impl& s = *impl_;
+  const anatomy::LabelTable& table = s.patient->label_table;
+  std::vector<StructureInfo> structures = describe_structures(table, *meshes, s.target_name, s.around_name);
+  if (s.structure_preset)
+    for (StructureInfo& info : structures) info.opacity = preset_opacity(info, *s.structure_preset, s.around_name);
+  s.surfaces.add(std::move(structures), std::move(meshes), table);
 }
 
 bool PatientScene::is_ready() const noexcept {
@@ -218,9 +228,11 @@ bool PatientScene::is_ready() const noexcept {
 }
 
 void PatientScene::finish_loading() {
-  impl_->surfaces.wait();
   impl_->volume.wait();
-  impl_->poll();
+  do {
+    impl_->surfaces.wait();
+    impl_->poll();
+  } while (!impl_->surfaces.is_ready());
 }
 
 const std::vector<StructureInfo>& PatientScene::structures() const noexcept {
@@ -232,6 +244,7 @@ void PatientScene::set_opacity(std::string_view name, double opacity) {
 }
 
 void PatientScene::apply_preset(StructurePreset preset) {
+  impl_->structure_preset = preset;
   const std::vector<StructureInfo> structures = impl_->surfaces.structures();
   for (const StructureInfo& structure : structures) {
     set_opacity(structure.name, preset_opacity(structure, preset, impl_->around_name));
@@ -402,7 +415,6 @@ void PatientScene::copy_picture(std::span<std::uint32_t> pixels) const {
 
 std::optional<Vec3> PatientScene::pick(double right, double down) {
   Impl& s = *impl_;
-  if (s.meshes == nullptr) return std::nullopt;
   const CameraView& view = s.view;
   const double half_height = std::tan(0.5 * view.view_angle_rad);
   const Vec3 ray_P = (view.forward_P() + (1.0 - 2.0 * down) * half_height * view.up_P +
@@ -411,9 +423,7 @@ std::optional<Vec3> PatientScene::pick(double right, double down) {
   std::optional<double> nearest_mm;
   for (const StructureInfo& structure : s.surfaces.structures()) {
     if (structure.opacity <= 0.0 || structure.is_withheld) continue;
-    const auto mesh = std::find_if(s.meshes->begin(), s.meshes->end(),
-                                   [&](const anatomy::NamedMesh& m) { return m.name == structure.name; });
-    const auto hit_mm = detail::first_hit_mm(mesh->mesh_P, view.eye_P, ray_P);
+    const auto hit_mm = detail::first_hit_mm(s.surfaces.mesh_P(structure.name), view.eye_P, ray_P);
     if (hit_mm && (!nearest_mm || *hit_mm < *nearest_mm)) nearest_mm = hit_mm;
   }
   if (!nearest_mm) return std::nullopt;

@@ -34,9 +34,12 @@ class PatientScene {
   PatientScene(const PatientScene&) = delete;
   PatientScene& operator=(const PatientScene&) = delete;
 
-  /// `target_P` is the target; if it is empty, the target is the end of the patient's first path, if there is one.
+  /// `target_P` is the target; if it is empty, the target is the end of the patient's first path, if there is one. The
+  /// camera shows the patient as soon as a surface is ready: let the skin be among the first.
   void show_patient(std::shared_ptr<const anatomy::VirtualPatient> patient,
                     std::shared_ptr<const std::vector<anatomy::NamedMesh>> meshes, std::optional<Vec3> target_P = {});
+  /// More surfaces of the same patient, with new names. They get the opacity of the last preset.
+  void add_surfaces(std::shared_ptr<const std::vector<anatomy::NamedMesh>> meshes);
   bool is_ready() const noexcept;  ///< The surfaces are loaded.
   void finish_loading();           ///< Waits for surfaces and volume.
 

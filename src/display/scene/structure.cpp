@@ -84,11 +84,13 @@ std::vector<StructureInfo> describe_structures(const anatomy::LabelTable& table,
     }
     structures.push_back(std::move(info));
   }
-  std::sort(structures.begin(), structures.end(), [](const StructureInfo& a, const StructureInfo& b) {
-    if (a.kind != b.kind) return order_of(a.kind) < order_of(b.kind);
-    return anatomy::is_name_before(a.name, b.name);
-  });
+  std::sort(structures.begin(), structures.end(), is_listed_before);
   return structures;
+}
+
+bool is_listed_before(const StructureInfo& a, const StructureInfo& b) {
+  if (a.kind != b.kind) return order_of(a.kind) < order_of(b.kind);
+  return anatomy::is_name_before(a.name, b.name);
 }
 
 double preset_opacity(const StructureInfo& structure, StructurePreset preset, std::string_view around_name) noexcept {

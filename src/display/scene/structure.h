@@ -36,6 +36,8 @@ enum class StructurePreset {
 std::vector<StructureInfo> describe_structures(const anatomy::LabelTable& table,
                                                const std::vector<anatomy::NamedMesh>& meshes,
                                                std::string_view target_name, std::string_view around_name);
+/// Order of a list of structures: by kind, then by name.
+bool is_listed_before(const StructureInfo& a, const StructureInfo& b);
 /// Opacity of a structure in a preset, 0..1.
 double preset_opacity(const StructureInfo& structure, StructurePreset preset, std::string_view around_name) noexcept;
 

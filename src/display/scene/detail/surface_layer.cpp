@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/check.h"
 #include "core/parallel.h"
 #include "scene/detail/simplify.h"
 
@@ -43,16 +44,14 @@ SurfaceLayer::~SurfaceLayer() {
   if (loading_.valid()) loading_.wait();
 }
 
-std::vector<SurfaceLayer::Surface> SurfaceLayer::build(const std::vector<std::pair<std::string, Appearance>>& looks,
-                                                       const std::vector<anatomy::NamedMesh>& meshes) {
-  std::vector<Surface> surfaces(looks.size());
-  parallel_for(looks.size(), 1, [&](std::size_t first, std::size_t last) {
+std::vector<SurfaceLayer::Surface> SurfaceLayer::build(const std::vector<Order>& orders) {
+  std::vector<Surface> surfaces(orders.size());
+  parallel_for(orders.size(), 1, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
-      const auto mesh = std::find_if(meshes.begin(), meshes.end(),
-                                     [&](const anatomy::NamedMesh& m) { return m.name == looks[i].first; });
+      const anatomy::NamedMesh* mesh = orders[i].mesh;
       Surface& surface = surfaces[i];
       surface.name = mesh->name;
-      surface.look = looks[i].second;
+      surface.look = orders[i].look;
       const std::vector<Vec3f> normals = vertex_normals(mesh->mesh_P);
       surface.levels[0] = to_polydata(mesh->mesh_P, normals);
       const bool has_few = mesh->mesh_P.triangles.size() < kFewTriangles;
@@ -71,20 +70,42 @@ std::vector<SurfaceLayer::Surface> SurfaceLayer::build(const std::vector<std::pa
   return surfaces;
 }
 
-void SurfaceLayer::show(std::vector<StructureInfo> structures,
-                        std::shared_ptr<const std::vector<anatomy::NamedMesh>> meshes,
-                        const anatomy::LabelTable& table) {
+void SurfaceLayer::clear() {
+  all_.clear();
+  begun_ = 0;
   if (loading_.valid()) loading_.get();
   for (Surface& surface : surfaces_) renderer_.RemoveActor(surface.actor);
   surfaces_.clear();
+  structures_.clear();
   moving_.set_parts({});
-  structures_ = std::move(structures);
-  note_withheld();
-  std::vector<std::pair<std::string, Appearance>> looks;
-  for (const StructureInfo& info : structures_) {
-    looks.emplace_back(info.name, find_appearance(table, info.name).value_or(Appearance{info.color}));
+}
+
+void SurfaceLayer::add(std::vector<StructureInfo> structures,
+                       std::shared_ptr<const std::vector<anatomy::NamedMesh>> meshes,
+                       const anatomy::LabelTable& table) {
+  for (StructureInfo& info : structures) {
+    const auto mesh =
+        std::find_if(meshes->begin(), meshes->end(), [&](const anatomy::NamedMesh& m) { return m.name == info.name; });
+    all_.push_back({meshes, &*mesh, find_appearance(table, info.name).value_or(Appearance{info.color})});
+    structures_.push_back(std::move(info));
   }
-  loading_ = std::async(std::launch::async, [looks = std::move(looks), meshes] { return build(looks, *meshes); });
+  std::sort(structures_.begin(), structures_.end(), is_listed_before);
+  note_withheld();
+  if (!loading_.valid()) build_waiting();
+}
+
+void SurfaceLayer::build_waiting() {
+  if (begun_ == all_.size()) return;
+  std::vector<Order> orders(all_.begin() + static_cast<std::ptrdiff_t>(begun_), all_.end());
+  begun_ = all_.size();
+  loading_ = std::async(std::launch::async, [orders = std::move(orders)] { return build(orders); });
+}
+
+const TriangleMesh& SurfaceLayer::mesh_P(std::string_view name) const {
+  const auto found =
+      std::find_if(all_.begin(), all_.end(), [&](const Order& order) { return order.mesh->name == name; });
+  TROCAR_CHECK(found != all_.end());
+  return found->mesh->mesh_P;
 }
 
 void SurfaceLayer::wait() {
@@ -93,8 +114,7 @@ void SurfaceLayer::wait() {
 
 bool SurfaceLayer::poll() {
   if (!loading_.valid() || loading_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
-  surfaces_ = loading_.get();
-  for (Surface& surface : surfaces_) {
+  for (Surface& surface : loading_.get()) {
     auto actor = vtkSmartPointer<BreakableActor>::New();
     actor->frame_break = &frame_break_;
     surface.actor = actor;
@@ -103,7 +123,9 @@ bool SurfaceLayer::poll() {
     if (is_cut_) surface.mapper->AddClippingPlane(cut_);
     update(surface);
     renderer_.AddActor(actor);
+    surfaces_.push_back(std::move(surface));
   }
+  build_waiting();
   is_moving_stale_ = true;
   update_moving();
   return true;

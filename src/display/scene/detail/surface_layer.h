@@ -32,14 +32,20 @@ class SurfaceLayer {
   SurfaceLayer(const SurfaceLayer&) = delete;
   SurfaceLayer& operator=(const SurfaceLayer&) = delete;
 
-  void show(std::vector<StructureInfo> structures, std::shared_ptr<const std::vector<anatomy::NamedMesh>> meshes,
-            const anatomy::LabelTable& table);
-  /// Adds surfaces that have become ready; true if all are present and some are new.
+  /// Removes all surfaces.
+  void clear();
+  /// Adds surfaces; `structures` describes them (in any order) and has new names only.
+  void add(std::vector<StructureInfo> structures, std::shared_ptr<const std::vector<anatomy::NamedMesh>> meshes,
+           const anatomy::LabelTable& table);
+  /// Shows surfaces that have become ready; true if some are new.
   bool poll();
+  /// Waits for the surfaces in preparation; others may follow after poll().
   void wait();
-  bool is_ready() const noexcept { return !loading_.valid(); }
+  bool is_ready() const noexcept { return !loading_.valid() && begun_ == all_.size(); }
 
   const std::vector<StructureInfo>& structures() const noexcept { return structures_; }
+  /// Mesh of one of the structures.
+  const TriangleMesh& mesh_P(std::string_view name) const;
   /// True if it changed something; an unknown name changes nothing.
   bool set_opacity(std::string_view name, double opacity);
   /// True if it changed something. Also applies to later patients.
@@ -66,8 +72,15 @@ class SurfaceLayer {
     vtkSmartPointer<vtkActor> actor;
   };
 
-  static std::vector<Surface> build(const std::vector<std::pair<std::string, Appearance>>& looks,
-                                    const std::vector<anatomy::NamedMesh>& meshes);
+  /// A surface to prepare.
+  struct Order {
+    std::shared_ptr<const std::vector<anatomy::NamedMesh>> owner;  ///< Of `mesh`.
+    const anatomy::NamedMesh* mesh = nullptr;
+    Appearance look;
+  };
+
+  static std::vector<Surface> build(const std::vector<Order>& orders);
+  void build_waiting();
   void update(Surface& surface);
   void update_moving();
   StructureInfo* find(std::string_view name);
@@ -81,6 +94,8 @@ class SurfaceLayer {
   std::vector<StructureInfo> structures_;
   std::vector<Surface> surfaces_;
   std::future<std::vector<Surface>> loading_;
+  std::vector<Order> all_;
+  std::size_t begun_ = 0;  ///< Surfaces of all_ that are prepared or in preparation.
   MovingSurfaces moving_;
   bool is_moving_stale_ = true;
   int moving_level_ = 0;  ///< Level of the meshes in moving_.
