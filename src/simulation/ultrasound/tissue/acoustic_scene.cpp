@@ -219,19 +219,30 @@ class SceneSlices {
   std::vector<std::uint8_t> tissue_;
 };
 
+Status check_table(const AcousticTable& table) {
+  if (table.tissues.size() > 127)
+    return fail(fmt::format("{} tissues exceed the limit of a scene", table.tissues.size()), "acoustic table",
+                "use at most 127");
+  if (!table.find("skin") || !table.find("adipose"))
+    return fail("the acoustic table has no tissue \"skin\" or \"adipose\"", "acoustic table", "add it to the table");
+  return {};
+}
+
 }  // namespace
+
+Status check_acoustic_scene(const anatomy::VirtualPatient& patient, const AcousticTable& table) {
+  TROCAR_TRY_STATUS(check_table(table));
+  TROCAR_TRY_STATUS(detail::find_body_window(patient, kMargin_mm));
+  return detail::check_tissues(patient.label_table, table);
+}
 
 Result<std::shared_ptr<const AcousticScene>> make_acoustic_scene(const anatomy::VirtualPatient& patient,
                                                                  AcousticTable table,
                                                                  const AcousticSceneOptions& options,
                                                                  const Progress& progress) {
-  if (table.tissues.size() > 127)
-    return fail(fmt::format("{} tissues exceed the limit of a scene", table.tissues.size()), "acoustic table",
-                "use at most 127");
+  TROCAR_TRY_STATUS(check_table(table));
   const auto skin_tissue = table.find("skin");
   const auto inner_tissue = table.find("adipose");
-  if (!skin_tissue || !inner_tissue)
-    return fail("the acoustic table has no tissue \"skin\" or \"adipose\"", "acoustic table", "add it to the table");
 
   report(progress, "acoustic tissues", 0.0);
   TROCAR_TRY(const detail::BodyWindow window, detail::find_body_window(patient, kMargin_mm));

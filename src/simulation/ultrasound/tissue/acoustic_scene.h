@@ -44,8 +44,11 @@ struct AcousticSceneOptions {
   double spacing_mm = 1.0;  ///< Range 0.3..3.
 };
 
-/// Errors: a label whose tissue has no row in the table (the message names it), more than 127 tissues. All voxels
-/// outside the body are air; the HU value determines the tissue of unlabelled voxels inside.
+/// The errors of make_acoustic_scene(), without making the scene.
+Status check_acoustic_scene(const anatomy::VirtualPatient& patient, const AcousticTable& table);
+
+/// Errors: a label whose tissue has no row in the table (the message names it), more than 127 tissues, no body. All
+/// voxels outside the body are air; the HU value determines the tissue of unlabelled voxels inside.
 Result<std::shared_ptr<const AcousticScene>> make_acoustic_scene(const anatomy::VirtualPatient& patient,
                                                                  AcousticTable table,
                                                                  const AcousticSceneOptions& options = {},

@@ -138,6 +138,11 @@ Result<BodyWindow> find_body_window(const anatomy::VirtualPatient& patient, doub
   return window;
 }
 
+Status check_tissues(const anatomy::LabelTable& labels, const AcousticTable& table) {
+  TROCAR_TRY_STATUS(make_codes(labels, table));
+  return {};
+}
+
 Result<TissueVolume> make_tissue_volume(const anatomy::VirtualPatient& patient, const BodyWindow& window,
                                         const AcousticTable& table) {
   TROCAR_TRY(const TissueCodes codes, make_codes(patient.label_table, table));

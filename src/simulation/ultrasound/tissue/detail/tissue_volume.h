@@ -44,6 +44,9 @@ struct TissueVolume {
   }
 };
 
+/// Error: a label whose tissue has no row.
+Status check_tissues(const anatomy::LabelTable& labels, const AcousticTable& table);
+
 /// Maps labels to tissues by their name in the table. Gas in bowel and unlabelled voxels are classified by their HU.
 /// Errors: a tissue without a row.
 Result<TissueVolume> make_tissue_volume(const anatomy::VirtualPatient& patient, const BodyWindow& window,
