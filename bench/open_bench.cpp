@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <fstream>
 #include <map>
 
@@ -42,11 +43,19 @@ double peak_mib() {
   return 0.0;
 }
 
+double seconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+/// Until an attempt can begin, and until all pictures are there ("later data").
 Status open_once(const cases::OpenOptions& options, Opening& opening) {
   reset_peak();
+  const auto begin = std::chrono::steady_clock::now();
   TROCAR_TRY(const auto opened, cases::make_open_case({}, options));
   opening.seconds.push_back(opened->seconds);
   for (const cases::OpenPart& part : opened->parts) opening.parts[part.name].push_back(part.seconds);
+  opened->later->wait();
+  opening.parts["later data"].push_back(seconds_since(begin) - opened->seconds);
   opening.peak_mib.push_back(peak_mib());
   return {};
 }

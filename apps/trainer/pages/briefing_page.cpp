@@ -231,4 +231,8 @@ void BriefingPage::show_case(const cases::OpenCase& open, Difficulty difficulty)
   begin_->setFocus();
 }
 
+void BriefingPage::show_later(const QString& step) {
+  state_->setText(step.isEmpty() ? tr("Ready") : tr("Ready. Being prepared: %1").arg(step));
+}
+
 }  // namespace trocar::trainer

@@ -24,6 +24,8 @@ class BriefingPage : public QWidget {
   void show_progress(const QString& step, double fraction);
   void show_error(const QString& text);
   void show_case(const cases::OpenCase& open, Difficulty difficulty);
+  /// Pictures of the case that are still prepared, after show_case; empty: none.
+  void show_later(const QString& step);
 
  Q_SIGNALS:
   void begin_requested();

@@ -145,6 +145,10 @@ void StructurePanel::rebuild() {
   refresh();
 }
 
+bool StructurePanel::is_outdated() const {
+  return view_.structures().size() != rows_.size();
+}
+
 StructurePanel::Opacities StructurePanel::opacities() const {
   Opacities all;
   for (const scene::StructureInfo& info : view_.structures()) all[info.name] = info.opacity;
@@ -210,7 +214,7 @@ void StructurePanel::add_row(const scene::StructureInfo& info) {
 
 void StructurePanel::refresh() {
   const std::vector<scene::StructureInfo> structures = view_.structures();
-  for (std::size_t i = 0; i < rows_.size() && i < structures.size(); ++i) {
+  for (std::size_t i = 0; i < rows_.size() && !is_outdated(); ++i) {
     const QSignalBlocker quiet_slider(rows_[i].slider);
     const QSignalBlocker quiet_eye(rows_[i].eye);
     rows_[i].slider->setValue(qRound(100.0 * structures[i].opacity));

@@ -38,6 +38,8 @@ class StructurePanel : public QWidget {
 
   /// Call after show_patient: creates the rows for the structures of the view.
   void rebuild();
+  /// True if the view has other structures than the list: call rebuild().
+  bool is_outdated() const;
   /// Displays the present settings of the view (a key may have changed them). Cheap.
   void refresh();
 

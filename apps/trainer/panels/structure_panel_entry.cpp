@@ -1,5 +1,7 @@
 #include "panels/structure_panel_entry.h"
 
+#include <QGuiApplication>
+
 #include "core/check.h"
 #include "panels/structure_panel.h"
 
@@ -16,11 +18,18 @@ class StructurePanelEntry final : public View {
     return true;
   }
   void show_help(Difficulty) override { panel_->refresh(); }
-  void update(const FrameContext&) override {
-    if (panel_->isVisible()) panel_->refresh();
+  void update(const FrameContext& frame) override {
+    if (!panel_->isVisible()) return;
+    if (!panel_->is_outdated()) return panel_->refresh();
+    // Surfaces arrive one by one. A list that is being clicked stays.
+    if (frame.now_s - rebuilt_s_ < kRebuildAfter_s || QGuiApplication::mouseButtons() != Qt::NoButton) return;
+    rebuilt_s_ = frame.now_s;
+    panel_->rebuild();
   }
 
  private:
+  static constexpr double kRebuildAfter_s = 0.5;
+  double rebuilt_s_ = 0.0;
   StructurePanel* panel_;
 };
 

@@ -155,12 +155,29 @@ void TrainerFlow::poll_opening() {
   window_.work().workspace().begin_case(opened_);
 }
 
+/// The thread of a previous patient's pictures may need a second to stop: the window does not wait for it.
+void TrainerFlow::leave(std::shared_ptr<const cases::OpenCase> previous) {
+  if (!previous || previous->later == open_->later) return;
+  previous->later->cancel();
+  left_.push_back(std::move(previous));
+}
+
+/// Reports the preparation of the case's pictures on the briefing, and its errors once.
+void TrainerFlow::show_later() {
+  if (!open_ || opened_ || opening_.has_work() || complete_ == open_->later) return;
+  const JobView view = open_->later->view();
+  window_.briefing().show_later(view.is_done ? QString() : to_qt(view.step));
+  if (!view.is_done) return;
+  complete_ = open_->later;
+  for (const std::string& error : complete_->errors()) window_.show_message(to_qt(error), BannerKind::kWarning);
+}
+
 /// The briefing is last: it enables the start.
 void TrainerFlow::show_opened() {
   if (!opened_) return;
   if (window_.work().workspace().show_part()) return;
   if (open_ != opened_) {
-    open_ = opened_;
+    leave(std::exchange(open_, opened_));
     window_.work().parameters().show_case(open_);
     return;
   }
@@ -328,7 +345,9 @@ void TrainerFlow::save_report() {
 void TrainerFlow::frame() {
   const double now = now_s();
   retired_.sweep();
+  std::erase_if(left_, [](const auto& open) { return open->later->view().is_done; });
   show_opened();
+  show_later();
   poll_opening();
   poll_attempt();
   poll_replay();
@@ -378,6 +397,8 @@ void TrainerFlow::end_server(const QString& tool) {
 QVariantMap TrainerFlow::facts() const {
   QVariantMap facts;
   facts[QStringLiteral("case")] = open_ ? to_qt(open_->the_case.patient->name) : QString();
+  facts[QStringLiteral("is_complete")] =
+      open_ != nullptr && open_->later->view().is_done && window_.work().view_3d().is_ready();
   facts[QStringLiteral("is_open")] = open_ != nullptr && !opening_.has_work() && !opened_;
   constexpr double kBytesPerMiB = 1024.0 * 1024.0;
   facts[QStringLiteral("memory_mb")] = static_cast<double>(resident_memory_bytes()) / kBytesPerMiB;

@@ -53,6 +53,8 @@ class TrainerFlow : public QObject {
   void frame();
   void poll_opening();
   void show_opened();
+  void leave(std::shared_ptr<const cases::OpenCase> previous);
+  void show_later();
   bool is_exam() const noexcept { return choice_.difficulty == Difficulty::kExam; }
   bool can_record();
   void poll_attempt();
@@ -77,7 +79,9 @@ class TrainerFlow : public QObject {
   std::optional<attempt::JournalEntry> cut_off_;   ///< Interrupted attempt being opened, to be scored and shown.
   std::shared_ptr<const cases::OpenCase> opened_;  ///< Case being shown, one part per frame; reset when complete.
   std::shared_ptr<const cases::OpenCase> open_;
-  std::shared_ptr<attempt::HapticServers> servers_;  ///< Kept from one attempt to the next.
+  std::vector<std::shared_ptr<const cases::OpenCase>> left_;  ///< Previous cases whose threads still run.
+  std::shared_ptr<const cases::LaterData> complete_;          ///< Display data whose errors were reported.
+  std::shared_ptr<attempt::HapticServers> servers_;           ///< Kept from one attempt to the next.
   std::unique_ptr<AttemptControl> attempt_;
   std::unique_ptr<ReplayControl> replay_;
   bool is_close_confirmed_ = false;

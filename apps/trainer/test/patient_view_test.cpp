@@ -24,7 +24,9 @@ class PatientViewTest : public ::testing::Test {
     view.resize(480, 360);
     view.show();
     QApplication::processEvents();
-    view.show_patient(open_abdomen()->the_case.patient, open_abdomen()->meshes);
+    open_abdomen()->later->wait();
+    view.show_patient(open_abdomen()->the_case.patient, std::make_shared<const std::vector<anatomy::NamedMesh>>());
+    for (const auto& meshes : open_abdomen()->later->surfaces_after(0)) view.add_surfaces(meshes);
     view.scene().finish_loading();
   }
   /// What a user sees once the picture is whole.

@@ -32,7 +32,8 @@ inline const Patient& abdomen() {
     Patient p;
     const cases::OpenCase& open = *open_abdomen();
     p.patient = open.the_case.patient;
-    p.scene = open.acoustic;
+    open.later->wait();
+    p.scene = open.later->acoustic();
     p.flow = open.flow;
     p.transducers = ultrasound::load_transducers(data_dir() / "transducers.toml").value();
     return p;

@@ -52,9 +52,9 @@ io::PatientSource source_of(const CaseChoice& choice) {
 }
 
 /// The patient, from the cache if possible; `made.server_source` is its source for servers.
-Result<std::shared_ptr<const anatomy::VirtualPatient>> patient_of(OpenCase& made, const io::PatientCache& cache,
-                                                                  const OpenOptions& options,
+Result<std::shared_ptr<const anatomy::VirtualPatient>> patient_of(OpenCase& made, const OpenOptions& options,
                                                                   const Progress& progress) {
+  const io::PatientCache cache(options.cache_folder);
   made.server_source = made.choice.patient_source;
   if (const auto kept = cache.find(source_of(made.choice))) {
     if (auto patient = io::open_patient({kept->string(), 1}, progress)) {
@@ -64,30 +64,31 @@ Result<std::shared_ptr<const anatomy::VirtualPatient>> patient_of(OpenCase& made
     cache.forget(source_of(made.choice));
   }
   TROCAR_TRY(anatomy::VirtualPatient patient, options.load ? options.load(source_of(made.choice), progress)
-                                                           : io::open_patient(source_of(made.choice), progress));
+                                                           : io::load_source(source_of(made.choice), progress));
   return std::make_shared<const anatomy::VirtualPatient>(std::move(patient));
 }
 
-Status add_surfaces(OpenCase& made, const anatomy::VirtualPatient& patient, const io::PatientCache& cache,
-                    const Progress& progress, OpenParts& parts) {
-  TROCAR_TRY(auto meshes, io::open_meshes({made.server_source, made.choice.patient_seed}, patient, progress));
-  const bool is_kept = made.server_source != made.choice.patient_source;
-  if (!is_kept) {
-    // If it cannot be cached, it is generated again next time.
-    const auto kept = parts.measure("cache", [&] { return cache.keep(source_of(made.choice), patient, meshes); });
-    if (kept) made.server_source = kept->string();
-  }
-  made.meshes = std::make_shared<const std::vector<anatomy::NamedMesh>>(std::move(meshes));
-  return {};
+/// Keeps a new patient, from where the servers read it; returns their source. If it cannot be kept, they make it again.
+std::string keep_patient(const OpenCase& made, const anatomy::VirtualPatient& patient, const io::PatientCache& cache) {
+  const bool is_new = made.server_source == made.choice.patient_source;
+  if (!is_new || io::is_path(made.choice.patient_source)) return made.server_source;
+  const auto kept = cache.keep(source_of(made.choice), patient);
+  return kept ? kept->string() : made.server_source;
 }
 
-Status add_acoustics(OpenCase& made, const std::shared_ptr<const anatomy::VirtualPatient>& patient,
-                     const Progress& progress) {
+Result<std::shared_ptr<LaterData>> begin_later(const CaseChoice& choice,
+                                               std::shared_ptr<const anatomy::VirtualPatient> patient,
+                                               const OpenOptions& options) {
   TROCAR_TRY(ultrasound::AcousticTable acoustics, ultrasound::load_acoustic_table(data_dir() / "acoustics.toml"));
-  TROCAR_TRY(made.acoustic, ultrasound::make_acoustic_scene(*patient, std::move(acoustics), {}, progress));
+  TROCAR_TRY_STATUS(ultrasound::check_acoustic_scene(*patient, acoustics));
+  io::PatientSource source = source_of(choice);
+  source.cache_folder = options.cache_folder;
+  return std::make_shared<LaterData>(std::move(patient), std::move(acoustics), std::move(source));
+}
+
+Result<std::shared_ptr<ultrasound::FlowOnDemand>> flow_of(std::shared_ptr<const anatomy::VirtualPatient> patient) {
   TROCAR_TRY(ultrasound::FlowTable flows, ultrasound::load_flow_table(data_dir() / "flow.toml"));
-  made.flow = std::make_shared<ultrasound::FlowOnDemand>(patient, std::move(flows));
-  return {};
+  return std::make_shared<ultrasound::FlowOnDemand>(std::move(patient), std::move(flows));
 }
 
 /// Only notes where the panorama is: it is loaded when an image uses it.
@@ -153,7 +154,6 @@ Result<std::shared_ptr<const OpenCase>> make_open_case(const CaseChoice& choice,
   auto made = std::make_shared<OpenCase>();
   made->choice = choice;
   made->choice.options.patient_folder = choice.patient_source;  // path of the patient's own task, if any
-  const io::PatientCache cache(options.cache_folder);
   std::shared_ptr<const OpenCase> previous = options.previous;
   if (previous && !is_same_patient(previous->choice, choice)) previous.reset();
   // Errors of the tables are reported before a patient is opened.
@@ -164,28 +164,23 @@ Result<std::shared_ptr<const OpenCase>> make_open_case(const CaseChoice& choice,
   if (previous) {
     patient = previous->the_case.patient;
     made->server_source = previous->server_source;
-    made->meshes = previous->meshes;
-    made->acoustic = previous->acoustic;
+    made->later = previous->later;
     made->flow = previous->flow;
-    TROCAR_TRY_STATUS(add_case(*made, patient, shared.part(0.8)));
+    TROCAR_TRY_STATUS(add_case(*made, patient, shared.part(0.9)));
   } else {
-    TROCAR_TRY(patient, parts.measure("patient", [&] { return patient_of(*made, cache, options, shared.part(0.3)); }));
+    TROCAR_TRY(patient, parts.measure("patient", [&] { return patient_of(*made, options, shared.part(0.6)); }));
     if (stop.stop_requested()) return fail("the case was not opened: cancelled", "case", "open it again");
-    std::array<Status, 3> done;
-    const Progress of_case = shared.part(0.2), of_surfaces = shared.part(0.2), of_acoustics = shared.part(0.25);
-    OpenCase acoustics;
-    acoustics.choice = choice;
+    Status has_case;
+    const Progress of_case = shared.part(0.3);
+    std::string server_source;
+    const io::PatientCache cache(options.cache_folder);
     parallel_invoke(
-        [&] { done[0] = parts.measure("plan", [&] { return add_case(*made, patient, of_case); }); },
-        [&] {
-          done[1] = parts.measure("surfaces", [&] { return add_surfaces(*made, *patient, cache, of_surfaces, parts); });
-        },
-        [&] {
-          done[2] = parts.measure("acoustic scene", [&] { return add_acoustics(acoustics, patient, of_acoustics); });
-        });
-    for (Status& status : done) TROCAR_TRY_STATUS(std::move(status));
-    made->acoustic = std::move(acoustics.acoustic);
-    made->flow = std::move(acoustics.flow);
+        [&] { has_case = parts.measure("plan", [&] { return add_case(*made, patient, of_case); }); },
+        [&] { server_source = parts.measure("cache", [&] { return keep_patient(*made, *patient, cache); }); });
+    TROCAR_TRY_STATUS(std::move(has_case));
+    made->server_source = std::move(server_source);
+    TROCAR_TRY(made->flow, flow_of(patient));
+    TROCAR_TRY(made->later, begin_later(choice, patient, options));
   }
   add_panorama(*made, previous.get());
   if (!made->flow->is_possible())

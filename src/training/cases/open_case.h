@@ -10,6 +10,7 @@
 
 #include "anatomy/patient.h"
 #include "cases/force_curve.h"
+#include "cases/later_data.h"
 #include "cases/neutral_start.h"
 #include "cases/open_parts.h"
 #include "cases/prepare_case.h"
@@ -19,7 +20,6 @@
 #include "ultrasound/doppler/flow_on_demand.h"
 #include "ultrasound/panorama/panorama_on_demand.h"
 #include "ultrasound/probe/transducer.h"
-#include "ultrasound/tissue/acoustic_scene.h"
 
 namespace trocar::cases {
 
@@ -32,7 +32,7 @@ struct CaseChoice {
 };
 bool operator==(const CaseChoice& a, const CaseChoice& b);
 
-/// A case with all its displayed data. Immutable, shared by all views. Frame P.
+/// A case with its displayed data. Immutable but for `later`, shared by all views. Frame P.
 struct OpenCase {
   CaseChoice choice;
   Case the_case;
@@ -40,8 +40,7 @@ struct OpenCase {
   /// Source from which a haptic server of this machine opens the patient: the choice's source, or the folder where it
   /// is kept.
   std::string server_source;
-  std::shared_ptr<const std::vector<anatomy::NamedMesh>> meshes;
-  std::shared_ptr<const ultrasound::AcousticScene> acoustic;
+  std::shared_ptr<LaterData> later;                ///< Acoustic scene and surfaces, which a thread still prepares.
   std::shared_ptr<ultrasound::FlowOnDemand> flow;  ///< `notes` reports it if no vessel of this patient has flow.
   /// nullptr: the patient has no panorama. The task says if the case begins with it.
   std::shared_ptr<ultrasound::PanoramaOnDemand> panorama;
@@ -60,18 +59,18 @@ struct OpenCase {
 };
 
 struct OpenOptions {
-  /// A previous case; its patient, surfaces and acoustic scene are reused if they are the same.
+  /// A previous case; its patient and its display data are reused if the patient is the same.
   std::shared_ptr<const OpenCase> previous;
-  /// Cache of embedded patients (PatientCache): they and the servers' scenes then open in a second or two the next
-  /// time. Empty: they are generated each time, which takes half a minute. The usual folder is
-  /// `io::patient_cache_folder()`.
+  /// Cache of embedded patients (PatientCache), from which they and the servers' scenes open faster the next time.
+  /// Empty: they are generated each time. The usual folder is `io::patient_cache_folder()`.
   std::filesystem::path cache_folder;
   /// Makes or reads a patient that is not in the cache; empty: io::load_source. Benchmarks generate finer patients.
   std::function<Result<anatomy::VirtualPatient>(const io::PatientSource&, const Progress&)> load = nullptr;
 };
 
-/// Opens a case; slow parts run in parallel. `stop` is checked between the parts. Errors: the patient, the tables, no
-/// path for this task (with the obstacle).
+/// Opens a case; slow parts run in parallel, and those that an attempt does not need later (OpenCase::later). `stop` is
+/// checked between the parts, and in the patient's generation if that reports progress. Errors: the patient, the
+/// tables, no path for this task (with the obstacle).
 Result<std::shared_ptr<const OpenCase>> make_open_case(const CaseChoice& choice, const OpenOptions& options = {},
                                                        const Progress& progress = {}, const std::stop_token& stop = {});
 /// The same in the background.

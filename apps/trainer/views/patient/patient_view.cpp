@@ -57,6 +57,7 @@ struct PatientView::Impl {
   scene::FrameTimes still_times;
   scene::FrameTimes unwatched_times;
   int broken_frames = 0;
+  QString note;
   scene::InputWatch watch;
   Clock::time_point last_watch{};
   std::function<bool()> interrupt;
@@ -89,6 +90,14 @@ void PatientView::show_patient(std::shared_ptr<const anatomy::VirtualPatient> pa
                                std::shared_ptr<const std::vector<anatomy::NamedMesh>> meshes,
                                const std::optional<Vec3>& target_P) {
   impl_->scene->show_patient(std::move(patient), std::move(meshes), target_P);
+}
+
+void PatientView::add_surfaces(std::shared_ptr<const std::vector<anatomy::NamedMesh>> meshes) {
+  impl_->scene->add_surfaces(std::move(meshes));
+}
+
+void PatientView::set_note(const QString& note) {
+  if (std::exchange(impl_->note, note) != note) update();
 }
 
 bool PatientView::is_ready() const {
@@ -318,6 +327,10 @@ void PatientView::paintEvent(QPaintEvent* /*event*/) {
   if (impl_->image.isNull()) return painter.fillRect(rect(), theme().view);
   painter.setRenderHint(QPainter::SmoothPixmapTransform);
   painter.drawImage(rect(), impl_->image);
+  if (impl_->note.isEmpty()) return;
+  constexpr int kMargin = 8;
+  painter.setPen(theme().dim);
+  painter.drawText(rect().adjusted(kMargin, kMargin, -kMargin, -kMargin), Qt::AlignLeft | Qt::AlignBottom, impl_->note);
 }
 
 void PatientView::resizeEvent(QResizeEvent* /*event*/) {

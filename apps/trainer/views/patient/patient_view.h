@@ -34,6 +34,10 @@ class PatientView : public QWidget {
   void show_patient(std::shared_ptr<const anatomy::VirtualPatient> patient,
                     std::shared_ptr<const std::vector<anatomy::NamedMesh>> meshes,
                     const std::optional<Vec3>& target_P = {});
+  /// More surfaces of the same patient, with new names.
+  void add_surfaces(std::shared_ptr<const std::vector<anatomy::NamedMesh>> meshes);
+  /// A line at the bottom of the view while surfaces are missing; empty: none.
+  void set_note(const QString& note);
   /// Surfaces are prepared in the background after show_patient.
   bool is_ready() const;
 

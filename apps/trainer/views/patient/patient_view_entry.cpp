@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "ui_kit/parts.h"
 #include "ui_kit/trainer_application.h"
 #include "ultrasound/live/scan_picture.h"
 #include "ultrasound/scanner/scan_annotation.h"
@@ -49,7 +50,10 @@ class PatientViewEntry final : public View {
     has_whole_picture_ = false;
   }
 
-  void update(const FrameContext& frame) override { view_->set_tools_moving(frame.are_tools_moving); }
+  void update(const FrameContext& frame) override {
+    view_->set_tools_moving(frame.are_tools_moving);
+    if (has_patient_) add_new_surfaces();
+  }
 
   void draw(const FrameContext& frame) override {
     if (!view_->isVisible()) return;
@@ -68,10 +72,22 @@ class PatientViewEntry final : public View {
  private:
   void show_patient() {
     const cases::Case& the_case = case_.open->the_case;
-    view_->show_patient(the_case.patient, case_.open->meshes, the_case.plan.line_P.b);
+    view_->show_patient(the_case.patient, std::make_shared<const std::vector<anatomy::NamedMesh>>(),
+                        the_case.plan.line_P.b);
+    surface_groups_ = 0;
+    add_new_surfaces();
     view_->set_path(the_case.plan.line_P, case_.entry_zone.radius_mm);
     view_->scene().set_entry_centre(case_.entry_zone.centre_P);
     has_patient_ = true;
+  }
+
+  void add_new_surfaces() {
+    for (const auto& meshes : case_.open->later->surfaces_after(surface_groups_)) {
+      view_->add_surfaces(meshes);
+      ++surface_groups_;
+    }
+    const JobView later = case_.open->later->view();
+    view_->set_note(later.is_done ? QString() : PatientView::tr("Being prepared: %1").arg(to_qt(later.step)));
   }
 
   /// The newest ultrasound image as a plane. With the tools at rest one in full detail stays there: its noise alone is
@@ -91,6 +107,7 @@ class PatientViewEntry final : public View {
   PatientView* view_;
   CaseContext case_;
   bool has_patient_ = false;
+  std::size_t surface_groups_ = 0;  ///< Groups of the case's surfaces that the view has.
   std::uint64_t picture_number_ = 0;
   bool has_whole_picture_ = false;  ///< The picture has full detail.
 };

@@ -98,6 +98,13 @@ void UltrasoundView::show_patient(std::shared_ptr<const ultrasound::AcousticScen
   Q_EMIT changed();
 }
 
+void UltrasoundView::set_scene(std::shared_ptr<const ultrasound::AcousticScene> scene) {
+  if (!scene) return;
+  scene_ = std::move(scene);
+  scanner_.open(scene_, transducer_);
+  update();
+}
+
 void UltrasoundView::choose_transducer(const ultrasound::Transducer& transducer) {
   if (!scene_ || transducer.name == transducer_.name) return;
   const bool is_panorama = settings_.is_panorama;
@@ -333,6 +340,11 @@ std::vector<ultrasound::Vec2> UltrasoundView::guide_line_T() const {
   return line_T;
 }
 
+QString UltrasoundView::waiting_text() const {
+  if (scene_) return tr("Waiting for the first image");
+  return transducer_.name.empty() ? tr("No patient") : tr("Preparing the ultrasound");
+}
+
 void UltrasoundView::paintEvent(QPaintEvent*) {
   QPainter painter(this);
   painter.fillRect(rect(), Qt::black);
@@ -341,7 +353,7 @@ void UltrasoundView::paintEvent(QPaintEvent*) {
   if (!picture_) {
     painter.setFont(caption_font(is_small));
     painter.setPen(theme().dim);
-    painter.drawText(rect(), Qt::AlignCenter, scene_ ? tr("Waiting for the first image") : tr("No patient"));
+    painter.drawText(rect(), Qt::AlignCenter, waiting_text());
     return;
   }
   const UltrasoundLayout& layout = layout_for(picture_->scan);

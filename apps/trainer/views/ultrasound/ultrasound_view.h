@@ -35,11 +35,13 @@ class UltrasoundView : public QWidget {
   explicit UltrasoundView(QWidget* parent = nullptr);
   ~UltrasoundView() override;
 
-  /// Opens another patient; `flow` and `panorama` may be nullptr. The controls are those stored for the transducer; the
-  /// image is ray cast until the settings select the panorama.
+  /// Opens another patient; `scene` may follow by set_scene(), `flow` and `panorama` may be nullptr. The controls are
+  /// those stored for the transducer; the image is ray cast until the settings select the panorama.
   void show_patient(std::shared_ptr<const ultrasound::AcousticScene> scene,
                     std::shared_ptr<ultrasound::FlowOnDemand> flow, const ultrasound::Transducer& transducer,
                     std::shared_ptr<ultrasound::PanoramaOnDemand> panorama = nullptr);
+  /// The scene of the patient that show_patient() opened without one; nullptr changes nothing.
+  void set_scene(std::shared_ptr<const ultrasound::AcousticScene> scene);
   void set_transducer_pose(const Pose& X_PT);
   /// Shaft from the hub to the tip; empty: no needle. `bore_share` and `tip_shift_mm` as in ScanRequest.
   void set_needle(std::span<const Vec3> shaft_P, double diameter_mm, double bore_share = 0.0,
@@ -57,7 +59,7 @@ class UltrasoundView : public QWidget {
   void set_guide_visible(bool is_visible);
   bool is_guide_visible() const noexcept { return is_guide_visible_; }
 
-  bool has_patient() const noexcept { return scene_ != nullptr; }
+  bool has_scene() const noexcept { return scene_ != nullptr; }
   bool has_panorama() const noexcept { return panorama_ && panorama_->is_possible(); }
   bool has_flow() const noexcept { return flow_ && flow_->is_possible(); }
   const ultrasound::Transducer& transducer() const noexcept { return transducer_; }
@@ -129,6 +131,7 @@ class UltrasoundView : public QWidget {
   std::shared_ptr<const ultrasound::VesselFlow> poll_flow();
   std::shared_ptr<const ultrasound::Panorama> poll_panorama();
   QString flow_message() const;
+  QString waiting_text() const;
   void take_picture(double now_s);
   void count_picture(double now_s, bool is_live);
   void save_now();

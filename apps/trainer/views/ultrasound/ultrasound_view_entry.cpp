@@ -37,7 +37,8 @@ class UltrasoundViewEntry final : public View {
 
   bool open(const CaseContext& context) override {
     const cases::OpenCase& open = *context.open;
-    view_->show_patient(open.acoustic, open.flow, open.transducer, open.panorama);
+    later_ = open.later;
+    view_->show_patient(open.later->acoustic(), open.flow, open.transducer, open.panorama);
     view_->change_settings([&](UltrasoundSettings& s) {
       s.acquisition.depth_mm = open.probe_depth_mm;
       s.is_panorama = open.panorama != nullptr && open.the_case.task.ultrasound_engine == "panorama";
@@ -57,13 +58,17 @@ class UltrasoundViewEntry final : public View {
     if (context.tools.X_PT) view_->set_transducer_pose(*context.tools.X_PT);
   }
 
-  void update(const FrameContext& frame) override { view_->advance(frame.now_s); }
+  void update(const FrameContext& frame) override {
+    if (later_ && !view_->has_scene()) view_->set_scene(later_->acoustic());
+    view_->advance(frame.now_s);
+  }
 
  private:
   UltrasoundView* view_;
   UltrasoundControls* controls_;
   ScannerView* scanner_;
   QToolButton* button_;
+  std::shared_ptr<cases::LaterData> later_;
 };
 
 }  // namespace

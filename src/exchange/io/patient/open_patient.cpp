@@ -6,11 +6,11 @@
 #include "surface/extract_surface.h"
 
 namespace trocar::io {
-namespace fs = std::filesystem;
 namespace {
 
 /// If the cache cannot be written, the command continues more slowly.
-void log_if_failed(const Result<fs::path>& kept) {
+template <class Kept>
+void log_if_failed(const Kept& kept) {
   if (!kept) log_info("the patient is not cached: {}", kept.error().text());
 }
 
@@ -19,12 +19,12 @@ void log_if_failed(const Result<fs::path>& kept) {
 Result<anatomy::VirtualPatient> open_patient(const PatientSource& source, const Progress& progress) {
   if (source.cache_folder.empty() || is_path(source.folder_or_name)) return load_source(source, progress);
   const PatientCache cache(source.cache_folder);
-  if (const auto kept = cache.find_volumes(source)) {
+  if (const auto kept = cache.find(source)) {
     if (auto patient = load_patient(*kept)) return patient;
     cache.forget(source);
   }
   TROCAR_TRY(anatomy::VirtualPatient patient, load_source(source, progress));
-  log_if_failed(cache.keep(source, patient, {}));
+  log_if_failed(cache.keep(source, patient));
   return patient;
 }
 
@@ -32,11 +32,18 @@ Result<std::vector<anatomy::NamedMesh>> open_meshes(const PatientSource& source,
                                                     const Progress& progress) {
   if (is_path(source.folder_or_name)) return load_patient_meshes(source.folder_or_name);
   const PatientCache cache(source.cache_folder);
-  if (const auto kept = cache.find(source))
-    if (auto meshes = load_patient_meshes(*kept)) return meshes;
+  if (auto kept = find_kept_meshes(source)) return *std::move(kept);
   auto meshes = surface::extract_surfaces(patient, {}, progress);
-  if (!source.cache_folder.empty()) log_if_failed(cache.keep(source, patient, meshes));
+  log_if_failed(cache.keep_surfaces(source, meshes));
   return meshes;
+}
+
+std::optional<std::vector<anatomy::NamedMesh>> find_kept_meshes(const PatientSource& source) {
+  const auto kept = PatientCache(source.cache_folder).find(source);
+  if (!kept) return std::nullopt;
+  auto meshes = load_patient_meshes(*kept);
+  if (!meshes || meshes->empty()) return std::nullopt;
+  return *std::move(meshes);
 }
 
 }  // namespace trocar::io

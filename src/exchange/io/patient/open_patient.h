@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "anatomy/patient.h"
@@ -15,5 +16,8 @@ Result<anatomy::VirtualPatient> open_patient(const PatientSource& source, const 
 /// Surfaces of the patient: read from its folder, or extracted from the labels of an embedded patient.
 Result<std::vector<anatomy::NamedMesh>> open_meshes(const PatientSource& source, const anatomy::VirtualPatient& patient,
                                                     const Progress& progress = {});
+
+/// Surfaces of an embedded patient in its cache; empty if it has none there.
+std::optional<std::vector<anatomy::NamedMesh>> find_kept_meshes(const PatientSource& source);
 
 }  // namespace trocar::io

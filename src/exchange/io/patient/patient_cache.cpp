@@ -76,22 +76,15 @@ bool PatientCache::is_valid(const PatientSource& source) const {
   return !folder_.empty() && is_embedded(source);
 }
 
-fs::path PatientCache::folder_of(const PatientSource& source, bool has_surfaces) const {
-  return folder_ /
-         fmt::format("{}-{}-{}{}", source.folder_or_name, source.seed, maker_hash(), has_surfaces ? "" : "-volumes");
+fs::path PatientCache::folder_of(const PatientSource& source) const {
+  return folder_ / fmt::format("{}-{}-{}", source.folder_or_name, source.seed, maker_hash());
 }
 
 std::optional<fs::path> PatientCache::find(const PatientSource& source) const {
-  return is_valid(source) ? use(folder_of(source, true)) : std::nullopt;
+  return is_valid(source) ? use(folder_of(source)) : std::nullopt;
 }
 
-std::optional<fs::path> PatientCache::find_volumes(const PatientSource& source) const {
-  if (auto entry = find(source)) return entry;
-  return is_valid(source) ? use(folder_of(source, false)) : std::nullopt;
-}
-
-Result<fs::path> PatientCache::keep(const PatientSource& source, const anatomy::VirtualPatient& patient,
-                                    const std::vector<anatomy::NamedMesh>& meshes) const {
+Result<fs::path> PatientCache::keep(const PatientSource& source, const anatomy::VirtualPatient& patient) const {
   if (!is_valid(source))
     return fail("the patient is not cached", source.folder_or_name, "name an embedded patient and a cache folder");
   std::error_code error;
@@ -99,18 +92,26 @@ Result<fs::path> PatientCache::keep(const PatientSource& source, const anatomy::
   if (error)
     return fail("cannot create the cache folder: " + error.message(), folder_.string(),
                 "check the permissions of the folder above it");
-  fs::path entry = folder_of(source, !meshes.empty());
-  TROCAR_TRY_STATUS(save_patient(patient, meshes, entry));
+  fs::path entry = folder_of(source);
+  if (const Status saved = save_patient(patient, {}, entry, {}, {}, nullptr, VolumePacking::kFast); !saved) {
+    if (use(entry)) return entry;  // written by another process
+    return tl::unexpected(saved.error());
+  }
   forget_finished_output(entry);
-  if (!meshes.empty()) fs::remove_all(folder_of(source, false), error);
   drop_oldest(folder_);
   return entry;
+}
+
+Status PatientCache::keep_surfaces(const PatientSource& source, const std::vector<anatomy::NamedMesh>& meshes) const {
+  const auto entry = find(source);
+  if (!entry) return fail("the patient is not in the cache", source.folder_or_name, "open the patient again");
+  return add_patient_meshes(*entry, meshes);
 }
 
 void PatientCache::forget(const PatientSource& source) const noexcept {
   if (!is_valid(source)) return;
   std::error_code ignored;
-  for (const bool has_surfaces : {true, false}) fs::remove_all(folder_of(source, has_surfaces), ignored);
+  fs::remove_all(folder_of(source), ignored);
 }
 
 }  // namespace trocar::io

@@ -15,10 +15,10 @@ namespace trocar::io {
 
 inline constexpr int kPatientFormatVersion = 1;  ///< A folder of a newer version is refused.
 
-/// An additional small file in the patient folder: task.toml.
+/// An additional small file in the patient folder: task.toml, thumbnail.png.
 struct PatientExtra {
   std::string name;  ///< File name without a folder; not the name of a patient file.
-  std::string text;
+  std::string text;  ///< Its bytes.
 };
 
 /// A recorded ultrasound to write with a patient (patient_panorama.h).
@@ -29,12 +29,22 @@ struct RecordedUltrasound {
   std::vector<anatomy::Landmark> landmarks_U;  ///< Positions in U.
 };
 
+/// Compression of CT and labels in their files.
+enum class VolumePacking {
+  kSmall,  ///< gzip.
+  kFast    ///< None: for files that are read again soon.
+};
+
 /// Writes a patient folder completely or not at all: patient.toml, ct.nrrd, labels.nrrd, skin_distance.nrrd,
 /// meshes/NAME.vtp, landmarks.mrk.json, paths.mrk.json. An existing folder is never overwritten. The skin distance is
 /// stored in hundredths of a mm, up to 327 mm. `ultrasound` may be null.
 Status save_patient(const anatomy::VirtualPatient& patient, const std::vector<anatomy::NamedMesh>& meshes,
                     const std::filesystem::path& folder, const Progress& progress = {},
-                    const std::vector<PatientExtra>& extras = {}, const RecordedUltrasound* ultrasound = nullptr);
+                    const std::vector<PatientExtra>& extras = {}, const RecordedUltrasound* ultrasound = nullptr,
+                    VolumePacking packing = VolumePacking::kSmall);
+/// Writes surfaces into a patient folder that has none; a folder that has surfaces stays as it is. A reader of the
+/// folder finds either no surfaces or all. Errors: disk error, not a patient folder.
+Status add_patient_meshes(const std::filesystem::path& folder, const std::vector<anatomy::NamedMesh>& meshes);
 /// Reads a patient folder without the meshes; reads the volumes in parallel. Errors: not a patient folder, a newer
 /// version, a missing or damaged file, volumes on different grids, a label without a name, a content hash that does not
 /// match.

@@ -6,6 +6,7 @@
 #include "core/check.h"
 #include "core/files/atomic_file.h"
 #include "core/parallel.h"
+#include "core/part_of_progress.h"
 #include "io/image/detail/volume_file.h"
 #include "io/image/image_file.h"
 #include "io/markups_file.h"
@@ -39,33 +40,47 @@ Status write_distance(const volume::FloatGrid& distance_mm, const fs::path& path
                                    hundredths.geometry, path, detail::Packing::kPlain);
 }
 
-Status write_volumes(const anatomy::VirtualPatient& patient, const fs::path& folder) {
+/// CT or labels.
+template <class T>
+Status write_voxels(const volume::Grid<T>& grid, detail::VoxelType type, const fs::path& path, VolumePacking packing) {
+  if (packing == VolumePacking::kSmall) return write_image(grid, path);
+  return detail::write_volume_file({type, std::as_bytes(std::span(grid.voxels))}, grid.geometry, path,
+                                   detail::Packing::kPlain);
+}
+
+Status write_volumes(const anatomy::VirtualPatient& patient, const fs::path& folder, VolumePacking packing) {
+  using detail::VoxelType;
   Status ct, labels, distance;
-  parallel_invoke([&] { ct = write_image(patient.ct, folder / detail::kCtFile); },
-                  [&] { labels = write_image(patient.labels, folder / detail::kLabelFile); },
-                  [&] { distance = write_distance(patient.skin_distance_mm, folder / detail::kDistanceFile); });
+  parallel_invoke(
+      [&] { ct = write_voxels(patient.ct, VoxelType::kInt16, folder / detail::kCtFile, packing); },
+      [&] { labels = write_voxels(patient.labels, VoxelType::kUInt8, folder / detail::kLabelFile, packing); },
+      [&] { distance = write_distance(patient.skin_distance_mm, folder / detail::kDistanceFile); });
   TROCAR_TRY_STATUS(ct);
   TROCAR_TRY_STATUS(labels);
   return distance;
 }
 
-Status write_contents(const anatomy::VirtualPatient& patient, const std::vector<anatomy::NamedMesh>& meshes,
-                      const fs::path& folder, const Progress& progress) {
-  report(progress, "volumes", 0.0);
-  TROCAR_TRY_STATUS(write_volumes(patient, folder));
-  detail::PatientDescription description{patient.name,
-                                         patient.description,
-                                         patient.provenance,
-                                         patient.posture,
-                                         anatomy::hash_patient(patient),
-                                         patient.label_table,
-                                         {}};
+Result<std::vector<detail::PatientMeshEntry>> write_meshes(const std::vector<anatomy::NamedMesh>& meshes,
+                                                           const fs::path& folder, const Progress& progress) {
+  std::vector<detail::PatientMeshEntry> entries;
   std::set<std::string> taken;
   for (const anatomy::NamedMesh& mesh : meshes) {
-    report(progress, "surfaces", 0.8 + 0.2 * static_cast<double>(taken.size()) / static_cast<double>(meshes.size()));
-    description.meshes.push_back({mesh.name, mesh_file_name(mesh.name, taken)});
-    TROCAR_TRY_STATUS(write_mesh(mesh.mesh_P, folder / description.meshes.back().file));
+    report(progress, "surfaces", static_cast<double>(taken.size()) / static_cast<double>(meshes.size()));
+    entries.push_back({mesh.name, mesh_file_name(mesh.name, taken)});
+    TROCAR_TRY_STATUS(write_mesh(mesh.mesh_P, folder / entries.back().file));
   }
+  return entries;
+}
+
+Status write_contents(const anatomy::VirtualPatient& patient, const std::vector<anatomy::NamedMesh>& meshes,
+                      const fs::path& folder, const Progress& progress, VolumePacking packing) {
+  report(progress, "volumes", 0.0);
+  TROCAR_TRY_STATUS(write_volumes(patient, folder, packing));
+  detail::PatientDescription description{
+      patient.name,    patient.description,            patient.provenance,
+      patient.posture, anatomy::hash_patient(patient), patient.label_table,
+      {}};
+  TROCAR_TRY(description.meshes, write_meshes(meshes, folder, part_of(progress, 0.8, 1.0)));
   TROCAR_TRY_STATUS(write_landmarks(patient.landmarks, folder / detail::kLandmarkFile));
   TROCAR_TRY_STATUS(write_paths(patient.paths, folder / detail::kPathFile));
   TROCAR_TRY_STATUS(write_file_atomically(folder / detail::kDescriptionFile, detail::to_toml(description)));
@@ -87,11 +102,11 @@ Status write_ultrasound(const RecordedUltrasound& ultrasound, const fs::path& fo
 
 Status save_patient(const anatomy::VirtualPatient& patient, const std::vector<anatomy::NamedMesh>& meshes,
                     const fs::path& folder, const Progress& progress, const std::vector<PatientExtra>& extras,
-                    const RecordedUltrasound* ultrasound) {
+                    const RecordedUltrasound* ultrasound, VolumePacking packing) {
   TROCAR_TRY_STATUS(detail::check_geometry(patient, folder.string()));
   TROCAR_TRY_STATUS(detail::check_label_ids(patient, folder.string()));
   return write_folder_atomically(folder, [&](const fs::path& temporary) -> Status {
-    TROCAR_TRY_STATUS(write_contents(patient, meshes, temporary, progress));
+    TROCAR_TRY_STATUS(write_contents(patient, meshes, temporary, progress, packing));
     for (const PatientExtra& extra : extras) {
       TROCAR_CHECK(!fs::exists(temporary / extra.name));
       TROCAR_TRY_STATUS(write_file_atomically(temporary / extra.name, extra.text));
@@ -99,6 +114,13 @@ Status save_patient(const anatomy::VirtualPatient& patient, const std::vector<an
     if (ultrasound != nullptr) TROCAR_TRY_STATUS(write_ultrasound(*ultrasound, temporary));
     return {};
   });
+}
+
+Status add_patient_meshes(const fs::path& folder, const std::vector<anatomy::NamedMesh>& meshes) {
+  TROCAR_TRY(detail::PatientDescription description, detail::load_description(folder));
+  if (!description.meshes.empty()) return {};
+  TROCAR_TRY(description.meshes, write_meshes(meshes, folder, {}));
+  return write_file_atomically(folder / detail::kDescriptionFile, detail::to_toml(description));
 }
 
 }  // namespace trocar::io

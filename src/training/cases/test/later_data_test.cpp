@@ -1,0 +1,100 @@
+#include "cases/later_data.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "anatomy/phantom/phantom.h"
+#include "core/files/data_dir.h"
+#include "core/files/temporary_folder.h"
+#include "io/patient/patient_cache.h"
+#include "io/patient/patient_folder.h"
+#include "surface/extract_surface.h"
+
+namespace trocar::cases {
+namespace {
+
+std::shared_ptr<const anatomy::VirtualPatient> coarse() {
+  auto patient = anatomy::generate_phantom("abdomen", 3, {{60, 48, 48}});
+  EXPECT_TRUE(patient) << patient.error().text();
+  return std::make_shared<const anatomy::VirtualPatient>(*std::move(patient));
+}
+
+ultrasound::AcousticTable acoustics() {
+  auto table = ultrasound::load_acoustic_table(data_dir() / "acoustics.toml");
+  EXPECT_TRUE(table) << table.error().text();
+  return *std::move(table);
+}
+
+std::set<std::string> names_of(const LaterData& later) {
+  std::set<std::string> names;
+  for (const auto& group : later.surfaces_after(0))
+    for (const anatomy::NamedMesh& mesh : *group) names.insert(mesh.name);
+  return names;
+}
+
+TEST(LaterData, BringsTheSceneAndEverySurfaceOneByOne) {
+  const auto patient = coarse();
+  const LaterData later(patient, acoustics(), {"abdomen", 3});
+  later.wait();
+  ASSERT_TRUE(later.acoustic());
+  EXPECT_TRUE(later.errors().empty());
+  std::set<std::string> expected;
+  for (const anatomy::NamedMesh& mesh : surface::extract_surfaces(*patient)) expected.insert(mesh.name);
+  EXPECT_EQ(names_of(later), expected);
+  const auto groups = later.surfaces_after(0);
+  ASSERT_EQ(groups.size(), expected.size());
+  EXPECT_EQ(groups.front()->front().name, "skin");
+  EXPECT_EQ(later.surfaces_after(groups.size() - 1).size(), 1u);
+  EXPECT_TRUE(later.surfaces_after(groups.size() + 5).empty());
+}
+
+TEST(LaterData, KeepsSurfacesForTheNextTime) {
+  const TemporaryFolder folder;
+  const auto patient = coarse();
+  const io::PatientSource source{"abdomen", 3, folder / "patients"};
+  const auto kept = io::PatientCache(source.cache_folder).keep(source, *patient);
+  ASSERT_TRUE(kept) << kept.error().text();
+  const LaterData first(patient, acoustics(), source);
+  first.wait();
+  const auto meshes = io::load_patient_meshes(*kept);
+  ASSERT_TRUE(meshes) << meshes.error().text();
+  const auto extracted = surface::extract_surfaces(*patient);
+  ASSERT_EQ(meshes->size(), extracted.size());
+  for (std::size_t n = 0; n < extracted.size(); ++n) {
+    EXPECT_EQ((*meshes)[n].name, extracted[n].name) << "in the order of the labels";
+    EXPECT_EQ((*meshes)[n].mesh_P.triangles, extracted[n].mesh_P.triangles);
+  }
+  const LaterData second(patient, acoustics(), source);
+  second.wait();
+  EXPECT_EQ(second.surfaces_after(0).size(), 1u) << "one group, read from the cache";
+  EXPECT_EQ(names_of(second), names_of(first));
+}
+
+TEST(LaterData, CancelledKeepsNothingIncomplete) {
+  const TemporaryFolder folder;
+  const auto patient = coarse();
+  const io::PatientSource source{"abdomen", 3, folder / "patients"};
+  const auto kept = io::PatientCache(source.cache_folder).keep(source, *patient);
+  ASSERT_TRUE(kept) << kept.error().text();
+  LaterData later(patient, acoustics(), source);
+  later.cancel();
+  later.wait();
+  const auto meshes = io::load_patient_meshes(*kept);
+  ASSERT_TRUE(meshes) << meshes.error().text();
+  const std::size_t all = surface::extract_surfaces(*patient).size();
+  EXPECT_TRUE(meshes->empty() || meshes->size() == all) << meshes->size();
+}
+
+TEST(LaterData, SaysWhyAPictureIsMissing) {
+  ultrasound::AcousticTable none;
+  const LaterData later(coarse(), std::move(none), {"abdomen", 3});
+  later.wait();
+  EXPECT_FALSE(later.acoustic());
+  ASSERT_EQ(later.errors().size(), 1u);
+  EXPECT_NE(later.errors().front().find("acoustic table"), std::string::npos);
+  EXPECT_FALSE(later.surfaces_after(0).empty());
+}
+
+}  // namespace
+}  // namespace trocar::cases
