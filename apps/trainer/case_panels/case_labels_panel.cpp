@@ -148,6 +148,10 @@ class LabelsPanel final : public CasePanel {
       name->setData(Qt::UserRole, label.id);
       name->setData(Qt::DecorationRole, QColor(label.color[0], label.color[1], label.color[2]));
       name->setCheckState(hidden_.count(label.id) != 0 ? Qt::Unchecked : Qt::Checked);
+      name->setToolTip(label.is_derived ? tr("Derived: made by the program, not in the segmentation") : QString());
+      QFont font = name->font();
+      font.setItalic(label.is_derived);
+      name->setFont(font);
       item(row, kTissue)->setText(to_qt(label.tissue));
       QTableWidgetItem* volume = item(row, kVolume);
       volume->setText(QString::number(volumes[label.id], 'f', volumes[label.id] < 10.0 ? 1 : 0));

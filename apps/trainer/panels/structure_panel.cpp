@@ -186,8 +186,8 @@ void StructurePanel::add_row(const scene::StructureInfo& info) {
   row.eye->setChecked(info.opacity > 0.0);
   row.eye->setToolTip(tr("Show or hide %1 (Space)").arg(name));
   row.eye->setAccessibleName(tr("Show %1").arg(name));
-  auto* label = make_label(name, "", line);
-  label->setToolTip(name);
+  auto* label = make_label(info.is_derived ? tr("%1 (derived)").arg(name) : name, "", line);
+  label->setToolTip(info.is_derived ? tr("%1: made by the program, not in the segmentation").arg(name) : name);
   label->setMinimumWidth(60);
   label->setWordWrap(true);
   row.slider->setObjectName(widget_name("structure-opacity-", info.name));

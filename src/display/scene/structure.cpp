@@ -77,7 +77,10 @@ std::vector<StructureInfo> describe_structures(const anatomy::LabelTable& table,
     const auto look = detail::find_appearance(table, mesh.name);
     if (!look) continue;
     StructureInfo info{mesh.name, look->kind, look->color, look->opacity, look->opacity};
-    if (const anatomy::Label* label = table.find(mesh.name)) info.is_lesion = organ_of[label->id] != label->id;
+    if (const anatomy::Label* label = table.find(mesh.name)) {
+      info.is_lesion = organ_of[label->id] != label->id;
+      info.is_derived = label->is_derived;
+    }
     if (mesh.name == target_name) info.kind = StructureKind::kTarget;
     if (mesh.name == around_name && info.opacity > detail::kOrganAroundTargetOpacity) {
       info.opacity = info.default_opacity = detail::kOrganAroundTargetOpacity;

@@ -19,6 +19,7 @@ struct StructureInfo {
   double opacity = 1.0;          ///< 0 (not drawn) .. 1.
   double default_opacity = 1.0;  ///< Initial opacity.
   bool is_lesion = false;        ///< Lesion of an organ (lesions_as_organs).
+  bool is_derived = false;       ///< Made by the program, not in the segmentation.
   bool is_withheld = false;      ///< Not drawn at any opacity, and its name must not be displayed.
 };
 

@@ -16,6 +16,7 @@ struct Label {
   std::string name;  ///< As in the segmentation, else one of those found from HU: "rib_right_9", "livertumor1", "fat".
   std::string tissue;  ///< Tissue class (TissueTable): "bone", "liver".
   volume::Rgb color{200, 200, 200};
+  bool is_derived = false;  ///< Made by the program from HU or from other labels; not in the segmentation.
 };
 
 /// All structures of a patient, ordered by id; ids and names are unique.

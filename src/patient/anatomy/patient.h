@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,13 @@ struct NamedMesh {
   TriangleMesh mesh_P;
 };
 
+/// Something about a segmentation that a person should look at, or a fault in it that was repaired.
+struct Finding {
+  std::string text;             ///< One line without the place.
+  std::string label;            ///< The structure; may be empty.
+  std::optional<Vec3> place_P;  ///< Where to look; empty: it has no place.
+};
+
 /// The virtual patient: immutable once built. All volumes share one geometry; frame P (LPS, mm).
 struct VirtualPatient {
   std::string name;
@@ -41,6 +49,7 @@ struct VirtualPatient {
   Posture posture = Posture::kSupine;  ///< How the patient lay in the scanner, and lies for the puncture.
   std::vector<Landmark> landmarks;
   std::vector<NeedlePath> paths;  ///< Expert paths.
+  std::vector<Finding> repairs;   ///< What the build repaired in the segmentation.
   std::string content_hash;       ///< Hash of CT, labels and label table (hash_patient).
 };
 

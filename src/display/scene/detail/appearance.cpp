@@ -33,7 +33,7 @@ std::optional<Appearance> find_appearance(const anatomy::LabelTable& table, std:
   if (tissue == "liver") {
     return Appearance{label->color, kOrganAroundTargetOpacity, 0.35, 0.25, StructureKind::kOrgan};
   }
-  if (is_one_of(tissue, {"ascites", "fluid", "peritoneum"})) {
+  if (is_one_of(tissue, {"ascites", "fluid", "peritoneum", "pleura"})) {
     return Appearance{label->color, kFluidOpacity, 0.3, 0.3, StructureKind::kOrgan};
   }
   if (is_one_of(tissue, {"vessel", "bile_duct"}))

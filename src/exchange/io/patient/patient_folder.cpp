@@ -61,6 +61,7 @@ Result<anatomy::VirtualPatient> load_patient(const fs::path& folder) {
   patient.provenance = std::move(description.provenance);
   patient.posture = description.posture;
   patient.label_table = std::move(description.label_table);
+  patient.repairs = std::move(description.repairs);
   TROCAR_TRY_STATUS(load_volumes(folder, patient));
   TROCAR_TRY_STATUS(detail::check_geometry(patient, folder.string()));
   TROCAR_TRY_STATUS(detail::check_label_ids(patient, folder.string()));

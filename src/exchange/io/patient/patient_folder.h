@@ -13,9 +13,9 @@
 
 namespace trocar::io {
 
-inline constexpr int kPatientFormatVersion = 1;  ///< A folder of a newer version is refused.
+inline constexpr int kPatientFormatVersion = 2;  ///< 2: derived labels, repairs. A newer one is refused.
 
-/// An additional small file in the patient folder: task.toml, thumbnail.png.
+/// An additional small file in the patient folder: task.toml, tissues.toml, thumbnail.png.
 struct PatientExtra {
   std::string name;  ///< File name without a folder; not the name of a patient file.
   std::string text;  ///< Its bytes.

@@ -79,7 +79,7 @@ Status write_contents(const anatomy::VirtualPatient& patient, const std::vector<
   detail::PatientDescription description{
       patient.name,    patient.description,            patient.provenance,
       patient.posture, anatomy::hash_patient(patient), patient.label_table,
-      {}};
+      {},              patient.repairs};
   TROCAR_TRY(description.meshes, write_meshes(meshes, folder, part_of(progress, 0.8, 1.0)));
   TROCAR_TRY_STATUS(write_landmarks(patient.landmarks, folder / detail::kLandmarkFile));
   TROCAR_TRY_STATUS(write_paths(patient.paths, folder / detail::kPathFile));

@@ -156,7 +156,7 @@ void add_used(const FillIds& ids, const volume::LabelGrid& labels, const KnownSt
     if (!used[id] || table.find(id) != nullptr) continue;
     const KnownStructure* structure = known.find(kFillNames[n]);
     TROCAR_ASSERT(structure != nullptr);
-    table.labels.push_back({id, std::string(kFillNames[n]), structure->tissue, structure->color});
+    table.labels.push_back({id, std::string(kFillNames[n]), structure->tissue, structure->color, true});
   }
 }
 

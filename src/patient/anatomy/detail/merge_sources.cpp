@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kMinOverlap = 0.05;         // of the smaller grid; below, the files belong to different scans
 constexpr double kMostlyCovered = 0.99;      // share of the CT, above which nothing is missing but a rim
-constexpr std::size_t kMaxStructures = 245;  // of 255 label values; the others are for labels from HU
+constexpr std::size_t kMaxStructures = 230;  // of 255 label values; the others are for derived labels
 constexpr std::size_t kBlock = 1 << 16;
 
 std::array<std::size_t, 256> count_values(const volume::LabelGrid& labels) {

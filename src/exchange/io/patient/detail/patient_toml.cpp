@@ -14,8 +14,10 @@ namespace trocar::io::detail {
 namespace fs = std::filesystem;
 namespace {
 
+constexpr double kFarthest_mm = 1e5;
+
 Result<anatomy::Label> label_of(const config::TomlTable& table) {
-  TROCAR_TRY_STATUS(table.check_keys({"id", "name", "tissue", "color"}));
+  TROCAR_TRY_STATUS(table.check_keys({"id", "name", "tissue", "color", "derived"}));
   anatomy::Label label;
   TROCAR_TRY(const std::int64_t id, table.integer("id", {1, 255}));
   label.id = static_cast<std::uint8_t>(id);
@@ -24,6 +26,7 @@ Result<anatomy::Label> label_of(const config::TomlTable& table) {
   TROCAR_TRY(const std::vector<double> color, table.numbers("color", {0, 255}));
   if (color.size() != 3) return fail("a colour is three numbers from 0 to 255", table.where(), "write [r, g, b]");
   for (std::size_t n = 0; n < 3; ++n) label.color[n] = static_cast<std::uint8_t>(color[n]);
+  TROCAR_TRY(label.is_derived, table.boolean_or("derived", false));  // folders of format 1 lack it
   return label;
 }
 
@@ -54,6 +57,18 @@ Result<PatientMeshEntry> mesh_of(const config::TomlTable& table) {
   return entry;
 }
 
+Result<anatomy::Finding> repair_of(const config::TomlTable& table) {
+  TROCAR_TRY_STATUS(table.check_keys({"text", "label", "position"}));
+  anatomy::Finding repair;
+  TROCAR_TRY(repair.text, table.string("text"));
+  TROCAR_TRY(repair.label, table.string_or("label", ""));
+  if (!table.has("position")) return repair;
+  TROCAR_TRY(const std::vector<double> p, table.numbers("position", {-kFarthest_mm, kFarthest_mm}));
+  if (p.size() != 3) return fail("a position is three numbers in mm", table.where(), "write [x, y, z]");
+  repair.place_P = Vec3(p[0], p[1], p[2]);
+  return repair;
+}
+
 Status check_version(const config::TomlTable& file, const fs::path& path) {
   TROCAR_TRY(const std::int64_t version, file.integer("format_version", {1, 1e6}));
   if (version <= kPatientFormatVersion) return {};
@@ -79,11 +94,18 @@ std::string to_toml(const PatientDescription& patient) {
     writer.set("name", label.name);
     writer.set("tissue", label.tissue);
     writer.set("color", std::vector<int>(label.color.begin(), label.color.end()));
+    if (label.is_derived) writer.set("derived", true);
   }
   for (const PatientMeshEntry& mesh : patient.meshes) {
     writer.begin_row("meshes");
     writer.set("name", mesh.name);
     writer.set("file", mesh.file);
+  }
+  for (const anatomy::Finding& repair : patient.repairs) {
+    writer.begin_row("repairs");
+    writer.set("text", repair.text);
+    if (!repair.label.empty()) writer.set("label", repair.label);
+    if (const auto& p = repair.place_P) writer.set("position", std::vector<double>{p->x(), p->y(), p->z()});
   }
   return writer.text();
 }
@@ -93,7 +115,7 @@ Result<PatientDescription> load_patient_toml(const fs::path& path, const fs::pat
   TROCAR_TRY(const config::TomlTable file, config::parse_toml(text, path.string()));
   TROCAR_TRY_STATUS(check_version(file, path));
   TROCAR_TRY_STATUS(file.check_keys(
-      {"format_version", "name", "description", "provenance", "posture", "content_hash", "labels", "meshes"}));
+      {"format_version", "name", "description", "provenance", "posture", "content_hash", "labels", "meshes", "repairs"}));
   PatientDescription patient;
   TROCAR_TRY(patient.name, file.string("name"));
   TROCAR_TRY(patient.description, file.string_or("description", ""));
@@ -110,6 +132,11 @@ Result<PatientDescription> load_patient_toml(const fs::path& path, const fs::pat
   for (const config::TomlTable& mesh : meshes) {
     TROCAR_TRY(PatientMeshEntry entry, mesh_of(mesh));
     patient.meshes.push_back(std::move(entry));
+  }
+  TROCAR_TRY(const std::vector<config::TomlTable> repairs, file.tables("repairs"));
+  for (const config::TomlTable& row : repairs) {
+    TROCAR_TRY(anatomy::Finding repair, repair_of(row));
+    patient.repairs.push_back(std::move(repair));
   }
   return patient;
 }

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "anatomy/label_table.h"
+#include "anatomy/patient.h"
 #include "core/result.h"
 
 namespace trocar::io::detail {
@@ -23,6 +23,7 @@ struct PatientDescription {
   std::string content_hash;
   anatomy::LabelTable label_table;
   std::vector<PatientMeshEntry> meshes;
+  std::vector<anatomy::Finding> repairs;
 };
 
 /// The file's text, format version kPatientFormatVersion.

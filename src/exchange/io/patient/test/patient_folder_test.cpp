@@ -31,7 +31,8 @@ anatomy::VirtualPatient small_patient() {
     patient.labels.voxels[n] = n % 3 == 0 ? 7 : n % 3 == 1 ? 200 : 0;
     patient.skin_distance_mm.voxels[n] = 0.37F * static_cast<float>(n) - 20.0F;
   }
-  patient.label_table.labels = {{7, "liver", "liver", {1, 2, 3}}, {200, "odd/name", "bone", {255, 254, 0}}};
+  patient.label_table.labels = {{7, "liver", "liver", {1, 2, 3}}, {200, "odd/name", "bone", {255, 254, 0}, true}};
+  patient.repairs = {{"filled 1 hole (0.1 ml) in liver", "liver", Vec3(1.5, -2.25, 30.0)}, {"left \"out\"", "", {}}};
   patient.landmarks = {{"xiphoid", {1.5, -2.25, 1e3}}};
   patient.paths = {{"path 1", {{0, 0, 0}, {10, 20, 30}}}};
   patient.content_hash = anatomy::hash_patient(patient);
@@ -79,6 +80,14 @@ TEST_F(PatientFolder, ComesBackAsItWas) {
   EXPECT_EQ(loaded->label_table.labels[1].name, "odd/name");
   EXPECT_EQ(loaded->label_table.labels[1].tissue, "bone");
   EXPECT_EQ(loaded->label_table.labels[1].color, (volume::Rgb{255, 254, 0}));
+  EXPECT_FALSE(loaded->label_table.labels[0].is_derived);
+  EXPECT_TRUE(loaded->label_table.labels[1].is_derived);
+  ASSERT_EQ(loaded->repairs.size(), 2U);
+  EXPECT_EQ(loaded->repairs[0].text, patient_.repairs[0].text);
+  EXPECT_EQ(loaded->repairs[0].label, "liver");
+  EXPECT_EQ(loaded->repairs[0].place_P, patient_.repairs[0].place_P);
+  EXPECT_EQ(loaded->repairs[1].text, "left \"out\"");
+  EXPECT_FALSE(loaded->repairs[1].place_P);
   ASSERT_EQ(loaded->landmarks.size(), 1U);
   EXPECT_EQ(loaded->landmarks[0].p_P, patient_.landmarks[0].p_P);
   ASSERT_EQ(loaded->paths.size(), 1U);
@@ -102,8 +111,22 @@ TEST_F(PatientFolder, IsNeverOverwritten) {
 }
 
 TEST_F(PatientFolder, OfANewerVersionIsRefused) {
-  replace_in_description("format_version = 1", "format_version = 2");
+  replace_in_description("format_version = 2", "format_version = 3");
   EXPECT_NE(load_error().find("newer version"), std::string::npos) << load_error();
+}
+
+TEST_F(PatientFolder, OfFormat1HasNoDerivedLabels) {
+  replace_in_description("format_version = 2", "format_version = 1");
+  replace_in_description("derived = true\n", "");
+  const auto loaded = load_patient(path_);
+  ASSERT_TRUE(loaded) << loaded.error().text();
+  EXPECT_FALSE(loaded->label_table.labels[1].is_derived);
+  EXPECT_EQ(loaded->content_hash, patient_.content_hash);
+}
+
+TEST_F(PatientFolder, WithABadRepairIsRefused) {
+  replace_in_description("position = [1.5, ", "position = [");
+  EXPECT_NE(load_error().find("three numbers"), std::string::npos) << load_error();
 }
 
 TEST_F(PatientFolder, WithAMissingFileIsRefused) {
