@@ -7,8 +7,8 @@
 
 namespace trocar::anatomy {
 
-/// Warnings about the quality of a patient, one line each: coarse voxels, labels with implausible HU, listed labels
-/// without voxels, structures cut off at the edge of the scan.
-std::vector<std::string> find_doubts(const VirtualPatient& patient, const std::vector<LabelStatistics>& statistics);
+/// Doubts about the quality of a patient, one line each: coarse voxels, labels with implausible HU, listed labels
+/// without voxels, structures cut off at the edge of the scan, and those of find_segmentation_doubts.
+std::vector<Finding> find_doubts(const VirtualPatient& patient, const std::vector<LabelStatistics>& statistics);
 
 }  // namespace trocar::anatomy

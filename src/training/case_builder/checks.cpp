@@ -71,10 +71,11 @@ class Checks {
   }
 
   void check_labels() {
-    const std::vector<std::string> doubts = anatomy::find_doubts(patient_, statistics_);
-    for (const std::string& doubt : doubts) warn(CaseStep::kLabels, doubt);
+    const std::vector<anatomy::Finding> doubts = anatomy::find_doubts(patient_, statistics_);
+    for (const anatomy::Finding& doubt : doubts) warn(CaseStep::kLabels, doubt.text, doubt.place_P);
     for (const std::string& warning : draft_.imported->warnings) {
-      const bool is_told = std::find(doubts.begin(), doubts.end(), warning) != doubts.end() ||
+      const auto is_same = [&](const anatomy::Finding& doubt) { return doubt.text == warning; };
+      const bool is_told = std::any_of(doubts.begin(), doubts.end(), is_same) ||
                            warning.starts_with("cut off by the border of the CT");  // the same doubt in different words
       if (!is_told) warn(CaseStep::kImport, warning);
     }

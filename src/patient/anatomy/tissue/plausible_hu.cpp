@@ -25,26 +25,29 @@ constexpr double kSmallestJudged_ml = 1.0;
 
 }  // namespace
 
-std::vector<std::string> find_implausible_hu(const VirtualPatient& patient,
-                                             const std::vector<LabelStatistics>& statistics) {
-  std::vector<std::string> doubts;
+std::vector<Finding> find_implausible_hu(const VirtualPatient& patient,
+                                         const std::vector<LabelStatistics>& statistics) {
+  std::vector<Finding> doubts;
   std::size_t judged = 0;
   for (const LabelStatistics& s : statistics) {
     const Label* label = patient.label_table.find(s.id);
-    if (label == nullptr || s.volume_ml < kSmallestJudged_ml) continue;
+    if (label == nullptr || label->is_derived || s.volume_ml < kSmallestJudged_ml) continue;
     const auto range =
         std::find_if(kRanges.begin(), kRanges.end(), [&](const HuRange& r) { return r.tissue == label->tissue; });
     if (range == kRanges.end()) continue;
     ++judged;
     if (s.mean_hu >= range->low && s.mean_hu <= range->high) continue;
     doubts.push_back(
-        fmt::format("{}: mean {:.0f} HU, expected {:.0f} to {:.0f}", label->name, s.mean_hu, range->low, range->high));
+        {fmt::format("{}: mean {:.0f} HU, expected {:.0f} to {:.0f}", label->name, s.mean_hu, range->low, range->high),
+         label->name, s.centroid_P});
   }
   constexpr std::size_t kMany = 4;
   if (doubts.size() >= kMany && doubts.size() * 5 >= judged) {
     doubts.insert(doubts.begin(),
-                  fmt::format("{} of {} structures have implausible HU: does the segmentation belong to this CT?",
-                              doubts.size(), judged));
+                  {fmt::format("{} of {} structures have implausible HU: does the segmentation belong to this CT?",
+                               doubts.size(), judged),
+                   {},
+                   {}});
   }
   return doubts;
 }

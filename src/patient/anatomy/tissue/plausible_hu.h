@@ -1,15 +1,13 @@
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "anatomy/build_patient.h"
 
 namespace trocar::anatomy {
 
-/// Labels with a mean HU that is implausible for their tissue, one line each. If many labels fail, the first line warns
+/// Labels with a mean HU that is implausible for their tissue. If many labels fail, the first line warns
 /// that the segmentation may belong to another CT. Ranges are wide; small labels are not checked.
-std::vector<std::string> find_implausible_hu(const VirtualPatient& patient,
-                                             const std::vector<LabelStatistics>& statistics);
+std::vector<Finding> find_implausible_hu(const VirtualPatient& patient, const std::vector<LabelStatistics>& statistics);
 
 }  // namespace trocar::anatomy

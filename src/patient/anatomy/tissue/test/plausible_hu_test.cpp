@@ -19,7 +19,9 @@ std::vector<std::string> doubts_of(const std::vector<std::pair<std::string, doub
     s.mean_hu = hu;
     statistics.push_back(s);
   }
-  return find_implausible_hu(patient, statistics);
+  std::vector<std::string> texts;
+  for (const Finding& doubt : find_implausible_hu(patient, statistics)) texts.push_back(doubt.text);
+  return texts;
 }
 
 TEST(ImplausibleHu, IsQuietAboutAnOrdinaryPatient) {

@@ -1,0 +1,131 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "anatomy/derive/detail/spine_labels.h"
+#include "anatomy/repair/detail/label_parts.h"
+#include "anatomy/repair/detail/repairs.h"
+#include "anatomy/repair/repair_segmentation.h"
+
+namespace trocar::anatomy {
+namespace {
+using namespace detail;
+
+// Assumed limits. Neighbouring vertebrae differ by less than a fifth; mixed labels are known of 1 to 2 % of
+// segmentations (TotalSegmentator, issue 291).
+constexpr double kLargestRatio = 1.6;
+constexpr double kSmallestRatio = 0.55;
+constexpr double kLeastStepMm = 8.0;  // between the middles of neighbouring vertebrae
+constexpr double kLargestStepMm = 60.0;
+constexpr double kSecondPartShare = 0.05;
+constexpr double kSecondPartMl = 1.0;
+
+bool touches_border(const IndexBox& box, const volume::GridGeometry& g) {
+  for (std::size_t a = 0; a < 3; ++a)
+    if (box.low[a] == 0 || box.high[a] == g.size[a] - 1) return true;
+  return false;
+}
+
+class DoubtFinder {
+ public:
+  explicit DoubtFinder(const VirtualPatient& patient)
+      : patient_(patient), table_(patient.label_table), boxes_(find_label_boxes(patient.labels)) {}
+
+  std::vector<Finding> find() {
+    check_sides();
+    check_vertebrae();
+    check_parts();
+    check_ribs();
+    return std::move(doubts_);
+  }
+
+ private:
+  Vec3 middle_P(std::uint8_t id) const {
+    const LabelParts parts = find_parts(patient_.labels, id, boxes_.box[id]);
+    return patient_.labels.geometry.centre_mm(parts.middle.front());
+  }
+
+  void check_sides() {
+    const SideCount sides = count_sides(patient_.labels, table_);
+    if (sides.is_mirrored())
+      doubts_.push_back({fmt::format("left and right are exchanged in {} of {} pairs: the image may be mirrored",
+                                     sides.wrong, sides.wrong + sides.right),
+                         {},
+                         {}});
+  }
+
+  void check_vertebrae() {
+    const SpineLabels spine = find_spine_labels(table_, boxes_);
+    std::vector<std::uint8_t> order;  // from head to feet, without the sacrum
+    for (std::uint8_t place = 1; place < kSacrum; ++place)
+      if (spine.id_of[place] != 0) order.push_back(spine.id_of[place]);
+    std::vector<Vec3> middles;
+    for (const std::uint8_t id : order) middles.push_back(middle_P(id));
+    for (std::size_t n = 0; n < order.size(); ++n) check_volume(order, n, middles[n]);
+    for (std::size_t n = 1; n < order.size(); ++n) {
+      const int places = spine.place[order[n]] - spine.place[order[n - 1]];
+      const double down_mm = middles[n - 1].z() - middles[n].z();
+      const std::string &upper = table_.find(order[n - 1])->name, &lower = table_.find(order[n])->name;
+      if (down_mm <= 0.0)
+        doubts_.push_back({fmt::format("{} lies above {}", lower, upper), lower, middles[n]});
+      else if (places == 1 && spine.place[order[n]] < kS1 && (down_mm < kLeastStepMm || down_mm > kLargestStepMm))
+        doubts_.push_back({fmt::format("{} is {:.0f} mm below {}", lower, down_mm, upper), lower, middles[n]});
+    }
+  }
+
+  /// Compares the vertebra with its neighbours in the list.
+  void check_volume(const std::vector<std::uint8_t>& order, std::size_t n, const Vec3& middle_P) {
+    const volume::GridGeometry& g = patient_.labels.geometry;
+    double sum = 0.0, count = 0.0;
+    for (const std::size_t other : {n - 1, n + 1}) {
+      if (other >= order.size() || touches_border(boxes_.box[order[other]], g)) continue;
+      sum += static_cast<double>(boxes_.voxels[order[other]]);
+      count += 1.0;
+    }
+    const Label& label = *table_.find(order[n]);
+    // S1 is often a part of the sacrum.
+    if (count == 0.0 || touches_border(boxes_.box[order[n]], g) || vertebra_place(label.name) >= kS1) return;
+    const double ratio = static_cast<double>(boxes_.voxels[order[n]]) * count / sum;
+    if (ratio <= kLargestRatio && ratio >= kSmallestRatio) return;
+    doubts_.push_back({fmt::format("{} has {:.0f} % of the volume of its neighbours: labels of vertebrae may be mixed",
+                                   label.name, 100.0 * ratio),
+                       label.name, middle_P});
+  }
+
+  void check_parts() {
+    for (const Label& label : table_.labels) {
+      if (!is_one_part(label) || rib_number(label) != 0 || boxes_.voxels[label.id] == 0) continue;
+      const LabelParts parts = find_parts(patient_.labels, label.id, boxes_.box[label.id]);
+      if (parts.count() < 2) continue;
+      const double least_ml = std::min(kSecondPartMl, kSecondPartShare * parts.volume_ml(0));
+      if (parts.volume_ml(1) < least_ml) continue;
+      doubts_.push_back(
+          {fmt::format("{} has {} parts, the second of {:.1f} ml", label.name, parts.count(), parts.volume_ml(1)),
+           label.name, patient_.labels.geometry.centre_mm(parts.middle[1])});
+    }
+  }
+
+  void check_ribs() {
+    const volume::GridGeometry& g = patient_.labels.geometry;
+    for (const RibGap& gap : find_rib_gaps(patient_.labels, table_, boxes_)) {
+      if (touches_border(boxes_.box[gap.rib], g) || touches_border(boxes_.box[gap.vertebra], g)) continue;
+      doubts_.push_back({fmt::format("{} ends {:.0f} mm from {}", table_.find(gap.rib)->name, gap.length_mm,
+                                     table_.find(gap.vertebra)->name),
+                         table_.find(gap.rib)->name, g.centre_mm(gap.from)});
+    }
+  }
+
+  const VirtualPatient& patient_;
+  const LabelTable& table_;
+  LabelBoxes boxes_;
+  std::vector<Finding> doubts_;
+};
+
+}  // namespace
+
+std::vector<Finding> find_segmentation_doubts(const VirtualPatient& patient) {
+  return DoubtFinder(patient).find();
+}
+
+}  // namespace trocar::anatomy
