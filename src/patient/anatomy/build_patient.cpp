@@ -7,12 +7,15 @@
 #include <array>
 #include <utility>
 
+#include "anatomy/derive/derive_structures.h"
 #include "anatomy/detail/fill_unlabelled.h"
 #include "anatomy/detail/merge_sources.h"
 #include "anatomy/known_structures.h"
+#include "anatomy/repair/repair_segmentation.h"
 #include "anatomy/tissue/hounsfield.h"
 #include "anatomy/tissue/plausible_hu.h"
 #include "core/files/data_dir.h"
+#include "core/part_of_progress.h"
 #include "volume/distance.h"
 #include "volume/morphology.h"
 #include "volume/orientation.h"
@@ -71,7 +74,7 @@ void clear_outside(const volume::MaskGrid& body, volume::LabelGrid& labels, cons
 void warn_of_doubtful_structures(const VirtualPatient& patient, std::size_t known_count,
                                  std::vector<std::string>& warnings) {
   const auto statistics = label_statistics(patient);
-  for (std::string& doubt : find_implausible_hu(patient, statistics)) warnings.push_back(std::move(doubt));
+  for (Finding& doubt : find_implausible_hu(patient, statistics)) warnings.push_back(std::move(doubt.text));
   std::vector<std::string> cut;
   for (const LabelStatistics& label : statistics) {
     if (label.touches_border && label.id <= known_count) cut.push_back(patient.label_table.find(label.id)->name);
@@ -89,6 +92,7 @@ Result<VirtualPatient> build_patient(const volume::CtGrid& ct, std::vector<Label
   TROCAR_TRY(const std::filesystem::path data_folder, checked_data_dir());
   TROCAR_TRY(const KnownStructures known, KnownStructures::load(data_folder));
   TROCAR_TRY_STATUS(detail::check_fill_names(known));
+  TROCAR_TRY_STATUS(check_derived_names(known));
   VirtualPatient patient;
   patient.name = options.name;
   patient.provenance = options.provenance;
@@ -107,10 +111,16 @@ Result<VirtualPatient> build_patient(const volume::CtGrid& ct, std::vector<Label
   patient.skin_distance_mm = volume::signed_distance_mm(body);
   patient.labels = std::move(merged.labels);
   patient.label_table = std::move(merged.table);
+  report(progress, "errors of the segmentation", 0.6);
+  patient.repairs = repair_segmentation(patient.ct, patient.labels, patient.label_table);
+  for (const Finding& repair : patient.repairs) warnings.push_back(repair.text);
 
   report(progress, "fat and muscle", 0.7);
   const std::size_t known_count = patient.label_table.labels.size();
   detail::fill_unlabelled(patient.ct, patient.skin_distance_mm, patient.labels, patient.label_table, known);
+  const std::vector<std::string> derived =
+      derive_structures(patient, known, options.derive, part_of(progress, 0.8, 0.95));
+  if (!derived.empty()) patient.provenance.push_back(fmt::format("derived: {}", fmt::join(derived, ", ")));
   warn_of_doubtful_structures(patient, known_count, warnings);
   patient.content_hash = hash_patient(patient);
   report(progress, "patient", 1.0);

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "anatomy/derive/derive_choice.h"
 #include "anatomy/patient.h"
 #include "core/progress.h"
 #include "core/result.h"
@@ -27,6 +28,7 @@ inline constexpr std::string_view kIgnoredStructure = "ignore";
 struct BuildOptions {
   std::string name;
   std::vector<std::string> provenance;
+  DeriveChoice derive{};  ///< Thin structures to add (derive/derive_structures.h).
 };
 
 /// A patient from a CT and segmentations: the body without table and clothing, labels resampled onto the CT's grid with

@@ -90,7 +90,9 @@ volume::MaskGrid cut_out(const volume::LabelGrid& labels, const Body& body) {
 }
 
 bool fills_the_space_between(const anatomy::Label& label) {
-  return label.tissue == "adipose" || label.tissue == "gas" || label.tissue == "soft_tissue" || label.name == "muscle";
+  const bool is_membrane = label.is_derived && (label.tissue == "peritoneum" || label.tissue == "pleura");
+  return is_membrane || label.tissue == "adipose" || label.tissue == "gas" || label.tissue == "soft_tissue" ||
+         label.name == "muscle";
 }
 
 volume::MaskGrid body_mask(const volume::FloatGrid& skin_distance_mm) {

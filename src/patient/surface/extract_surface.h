@@ -18,8 +18,9 @@ struct SurfaceOptions {
 };
 
 /// Smoothed, decimated, closed surface of every structure and of the skin ("skin"), in P. The tissue between structures
-/// (fat, the muscle found from HU, gas, soft tissue) has no surface. An organ's surface encloses its lesions
-/// (lesions_as_organs), which also have their own surfaces. Structures are processed in parallel.
+/// (fat, the muscle found from HU, gas, soft tissue) and derived membranes (peritoneum, pleura) have no surface. An
+/// organ's surface encloses its lesions (lesions_as_organs), which also have their own surfaces. Structures are
+/// processed in parallel.
 std::vector<anatomy::NamedMesh> extract_surfaces(const anatomy::VirtualPatient& patient,
                                                  const SurfaceOptions& options = {}, const Progress& progress = {});
 /// Receives a surface (without triangles if the structure has none), the number of surfaces received so far and the

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "anatomy/derive/derive_choice.h"
 #include "anatomy/patient.h"
 #include "anatomy/tissue/hounsfield.h"
 #include "core/progress.h"
@@ -21,6 +22,7 @@ struct PatientFiles {
   std::string name;                            ///< Name of the patient.
   std::string series{};                        ///< Selects one of several DICOM series, see read_ct.
   std::optional<anatomy::Rescale> rescale{};   ///< Rescale for a CT whose file lacks it.
+  anatomy::DeriveChoice derive{};              ///< Thin structures to add.
 };
 
 /// Reads the files and builds the patient; its provenance names the files without paths of this machine. A stop request

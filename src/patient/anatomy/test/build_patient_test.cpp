@@ -54,7 +54,7 @@ TEST(BuildPatient, ARayFromTheFlankCrossesFatMuscleAndLiverInOrder) {
     if (crossed.empty() || crossed.back() != name) crossed.push_back(name);
   }
   // Between wall and liver the torso has visceral fat.
-  EXPECT_EQ(crossed, (std::vector<std::string>{"", "fat", "muscle", "fat", "liver"}));
+  EXPECT_EQ(crossed, (std::vector<std::string>{"", "fat", "muscle", "fat", "peritoneum", "liver"}));
 }
 
 TEST(BuildPatient, EveryVoxelOfTheBodyHasALabelAndNoneOutside) {

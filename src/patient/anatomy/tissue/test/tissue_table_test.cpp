@@ -159,12 +159,13 @@ TEST(TissueTable, CoversTheVocabularyAndTheLayersItCarries) {
                                                        {"csf", "dura"},
                                                        {"ascites", "peritoneum"},
                                                        {"peritoneum", "peritoneum"},
-                                                       {"bile_duct", "bile_duct"}};
+                                                       {"bile_duct", "bile_duct"},
+                                                       {"pleura", "pleura"}};
   const std::set<std::string> vocabulary = {
       "air",       "skin",    "adipose",    "muscle",      "liver",  "liver_lesion", "bone",
       "cartilage", "vessel",  "bowel",      "lung",        "kidney", "spleen",       "gallbladder",
       "organ",     "nerve",   "fluid",      "soft_tissue", "gas",    "ligament",     "ligamentum_flavum",
-      "csf",       "ascites", "peritoneum", "bile_duct"};
+      "csf",       "ascites", "peritoneum", "bile_duct",   "pleura"};
   std::set<std::string> names;
   for (const TissueParams& entry : table.tissues) {
     names.insert(entry.name);
@@ -178,6 +179,37 @@ TEST(TissueTable, CoversTheVocabularyAndTheLayersItCarries) {
   EXPECT_EQ(table.tissues[0].name, "air");
   EXPECT_EQ(table.tissues[table.skin].name, "skin");
   EXPECT_TRUE(std::isinf(layer(table, "bone").puncture_force_n));
+}
+
+TEST(TissueTable, KeepsOriginAndPathConstraintOfAFittedTable) {
+  TissueTable table = shipped_tissues("paper-a");
+  EXPECT_FALSE(table.path_constraint.is_given);
+  EXPECT_EQ(table.to_toml().find("path_constraint"), std::string::npos);
+  table.origin = "fitted to six \"punctures\"";
+  ASSERT_TRUE(apply_override(table, "path_constraint.m0=2.5"));
+  ASSERT_TRUE(apply_override(table, "path_constraint.n0=60"));
+  const auto read = parse_tissue_table(table.to_toml(), "test");
+  ASSERT_TRUE(read) << read.error().text();
+  EXPECT_EQ(read->origin, table.origin);
+  EXPECT_TRUE(read->path_constraint.is_given);
+  EXPECT_EQ(read->path_constraint.force_n, 2.5);
+  EXPECT_EQ(read->path_constraint.torque_nmm, 60.0);
+  EXPECT_EQ(read->to_toml(), table.to_toml());
+}
+
+TEST(TissueTable, RefusesAPathConstraintOutOfRange) {
+  TissueTable table = shipped_tissues("paper-a");
+  for (const char* bad : {"path_constraint.m0=21", "path_constraint.n0=-1", "path_constraint.d0=3"})
+    EXPECT_FALSE(apply_override(table, bad)) << bad;
+  EXPECT_FALSE(table.path_constraint.is_given);
+  ASSERT_TRUE(apply_override(table, "path_constraint.m0=20"));
+  std::string text = table.to_toml();
+  const std::size_t number = text.find("20", text.find("[path_constraint]"));
+  ASSERT_NE(number, std::string::npos);
+  text.replace(number, 2, "25");
+  const auto read = parse_tissue_table(text, "test");
+  ASSERT_FALSE(read);
+  EXPECT_NE(read.error().text().find("path_constraint"), std::string::npos) << read.error().text();
 }
 
 // Depths and slopes that were computed from Table 1 outside of this program (static, 18 G).

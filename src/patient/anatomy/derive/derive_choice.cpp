@@ -1,0 +1,31 @@
+#include "anatomy/derive/derive_choice.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace trocar::anatomy {
+
+bool DeriveChoice::has(std::string_view name) const noexcept {
+  return is_all || std::find(names.begin(), names.end(), name) != names.end();
+}
+
+Result<DeriveChoice> parse_derive_choice(std::string_view text) {
+  if (text == "all") return DeriveChoice{};
+  DeriveChoice choice{false, {}};
+  if (text == "none") return choice;
+  std::string_view rest = text;
+  while (true) {
+    const std::size_t comma = rest.find(',');
+    const std::string_view name = rest.substr(0, comma);
+    if (std::find(std::begin(kDerivable), std::end(kDerivable), name) == std::end(kDerivable))
+      return fail_usage(fmt::format("\"{}\" is no structure that can be derived", name), std::string(text),
+                        fmt::format("give all, none, or some of: {}", fmt::join(kDerivable, ",")));
+    if (!choice.has(name)) choice.names.emplace_back(name);
+    if (comma == std::string_view::npos) return choice;
+    rest = rest.substr(comma + 1);
+  }
+}
+
+}  // namespace trocar::anatomy

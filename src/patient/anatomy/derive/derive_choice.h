@@ -1,0 +1,35 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/result.h"
+
+namespace trocar::anatomy {
+
+/// Structures that a build can add, in the order in which they are made. A name without its side is one entry.
+inline constexpr std::string_view kDerivable[] = {"dural_sac",
+                                                  "ligamentum_flavum",
+                                                  "epidural_fat",
+                                                  "interspinous_ligament",
+                                                  "supraspinous_ligament",
+                                                  "bile_ducts",
+                                                  "pleural_recess",
+                                                  "inferior_epigastric_zone",
+                                                  "neurovascular_bundle",
+                                                  "peritoneum"};
+
+/// Which of them a build adds. The default is all.
+struct DeriveChoice {
+  bool is_all = true;
+  std::vector<std::string> names;  ///< Without `is_all`: these.
+
+  bool has(std::string_view name) const noexcept;
+};
+
+/// "all", "none", or names separated by commas. Error (exit status 2): an unknown name.
+Result<DeriveChoice> parse_derive_choice(std::string_view text);
+
+}  // namespace trocar::anatomy

@@ -1,0 +1,62 @@
+#include "anatomy/derive/derive_structures.h"
+
+#include <chrono>
+#include <functional>
+
+#include "anatomy/derive/detail/spine_parts.h"
+#include "anatomy/derive/detail/trunk_parts.h"
+#include "core/log.h"
+
+namespace trocar::anatomy {
+namespace {
+using namespace detail;
+
+void derive_spine(DerivedLabels& labels, const DeriveChoice& choice) {
+  const SpineLabels spine = find_spine_labels(labels.patient().label_table, labels.boxes());
+  const std::optional<Canal> canal = find_canal(labels, spine);
+  if (!canal) return;
+  const PosteriorWall wall(labels, spine, *canal);
+  derive_canal_contents(labels, spine, *canal, wall, choice);
+  derive_spinous_ligaments(labels, spine, *canal, wall, choice);
+}
+
+/// Logs the duration of a step.
+void timed(const char* name, const std::function<void()>& step) {
+  const auto start = std::chrono::steady_clock::now();
+  step();
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  log_info("derived {} in {:.2f} s", name, seconds.count());
+}
+
+}  // namespace
+
+Status check_derived_names(const KnownStructures& known) {
+  for (const std::string_view name : kDerivable)
+    if (known.find(name) == nullptr)
+      return fail("the structure \"" + std::string(name) + "\", which is derived, is not known", known.file(),
+                  "add the name to an entry [[structures]]");
+  return {};
+}
+
+std::vector<std::string> derive_structures(VirtualPatient& patient, const KnownStructures& known,
+                                           const DeriveChoice& choice, const Progress& progress) {
+  if (!choice.is_all && choice.names.empty()) return {};
+  const std::size_t before = patient.label_table.labels.size();
+  DerivedLabels labels(patient, known);
+  report(progress, "thin structures", 0.0);
+  timed("structures of the spine", [&] { derive_spine(labels, choice); });
+  report(progress, "thin structures", 0.3);
+  timed("bile ducts", [&] { derive_bile_ducts(labels, choice); });
+  report(progress, "thin structures", 0.5);
+  timed("structures of the trunk's wall", [&] { derive_wall_structures(labels, choice); });
+  std::vector<std::string> added;
+  std::vector<std::uint8_t> ids;
+  for (std::size_t n = before; n < patient.label_table.labels.size(); ++n)
+    ids.push_back(patient.label_table.labels[n].id);
+  labels.finish();
+  for (const std::uint8_t id : ids)
+    if (const Label* label = patient.label_table.find(id)) added.push_back(label->name);
+  return added;
+}
+
+}  // namespace trocar::anatomy

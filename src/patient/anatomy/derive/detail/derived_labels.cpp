@@ -1,0 +1,38 @@
+#include "anatomy/derive/detail/derived_labels.h"
+
+#include <algorithm>
+
+#include "core/check.h"
+
+namespace trocar::anatomy::detail {
+
+DerivedLabels::DerivedLabels(VirtualPatient& patient, const KnownStructures& known)
+    : patient_(patient), known_(known), boxes_(find_label_boxes(patient.labels)) {
+  for (const Label& label : patient.label_table.labels)
+    is_soft_[label.id] = label.tissue == "adipose" || label.tissue == "muscle" || label.tissue == "soft_tissue";
+}
+
+std::uint8_t DerivedLabels::add(std::string_view name) {
+  const KnownStructure* structure = known_.find(name);
+  TROCAR_ASSERT(structure != nullptr && !is_labelled(name));
+  std::vector<Label>& labels = patient_.label_table.labels;
+  const int id = labels.empty() ? 1 : labels.back().id + 1;
+  if (id > 255) return 0;
+  labels.push_back({static_cast<std::uint8_t>(id), std::string(name), structure->tissue, structure->color, true});
+  return static_cast<std::uint8_t>(id);
+}
+
+bool DerivedLabels::has_tissue(std::uint8_t id, std::string_view tissue) const noexcept {
+  const Label* label = patient_.label_table.find(id);
+  return label != nullptr && label->tissue == tissue;
+}
+
+void DerivedLabels::finish() {
+  const LabelBoxes now = find_label_boxes(patient_.labels);
+  std::erase_if(patient_.label_table.labels, [&](const Label& label) {
+    const bool was_empty = boxes_.voxels[label.id] == 0 && !label.is_derived;
+    return now.voxels[label.id] == 0 && !was_empty;
+  });
+}
+
+}  // namespace trocar::anatomy::detail

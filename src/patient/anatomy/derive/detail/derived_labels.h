@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "anatomy/detail/label_boxes.h"
+#include "anatomy/known_structures.h"
+#include "anatomy/patient.h"
+
+namespace trocar::anatomy::detail {
+
+/// Adds derived labels to a patient that is being built. Only fat, muscle and other soft tissue are overwritten, unless
+/// a function says otherwise. Precondition: the structures that are added are known.
+class DerivedLabels {
+ public:
+  DerivedLabels(VirtualPatient& patient, const KnownStructures& known);
+
+  const VirtualPatient& patient() const noexcept { return patient_; }
+  const volume::GridGeometry& geometry() const noexcept { return patient_.labels.geometry; }
+  const LabelBoxes& boxes() const noexcept { return boxes_; }  ///< Of the labels before the derivations.
+  std::uint8_t at(std::size_t offset) const noexcept { return patient_.labels.voxels[offset]; }
+
+  /// True if the segmentation has this structure: then it is not derived.
+  bool is_labelled(std::string_view name) const noexcept { return patient_.label_table.find(name) != nullptr; }
+  /// The id of a new derived label, 0 if all ids are used. The row is removed by finish() if it stays empty.
+  std::uint8_t add(std::string_view name);
+  /// True if a label can give its voxel to a derived one: fat, muscle, soft tissue.
+  bool is_soft(std::uint8_t id) const noexcept { return is_soft_[id]; }
+  bool has_tissue(std::uint8_t id, std::string_view tissue) const noexcept;
+  /// Sets a voxel of soft tissue; other voxels stay. Id 0 changes nothing.
+  void paint(std::size_t offset, std::uint8_t id) noexcept {
+    if (id != 0 && is_soft_[at(offset)]) patient_.labels.voxels[offset] = id;
+  }
+  /// Sets a voxel of any label.
+  void replace(std::size_t offset, std::uint8_t id) noexcept {
+    if (id != 0) patient_.labels.voxels[offset] = id;
+  }
+  /// Removes rows of the label table without voxels that were added here or emptied here.
+  void finish();
+
+ private:
+  VirtualPatient& patient_;
+  const KnownStructures& known_;
+  LabelBoxes boxes_;
+  std::array<bool, 256> is_soft_{};
+};
+
+}  // namespace trocar::anatomy::detail
