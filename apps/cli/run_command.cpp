@@ -124,6 +124,7 @@ void print_result(const Arguments& arguments, const cases::Case& the_case, const
   const tasks::Outcome& outcome = result.outcome;
   fmt::print("{} on {} by {}: {:.1f} s, {} ticks\n", the_case.task.title, the_case.patient->name,
              arguments.run.operator_name, result.simulated_s, result.ticks);
+  if (!the_case.tissues.origin.empty()) fmt::print("tissues: {}\n", the_case.tissues.origin);
   if (the_case.is_parenchymal) fmt::print("no lesion in this patient: the target is in healthy tissue\n");
   for (const attempt::PunctureRecord& p : result.punctures) {
     fmt::print("  puncture of {:<16} at {:6.2f} s, {:5.1f} mm deep, {:.2f} N\n", p.layer, p.time_s, p.depth_mm,

@@ -45,6 +45,15 @@ Status check_numbers(const NeedleGeometry& needle, const DeviceCapability& devic
                      "path constraint m0/d0 (N/mm, at most the device's)");
 }
 
+/// The constraint with the numbers of a table that was fitted to a patient, as far as the device can render them.
+PathConstraintParams fitted(PathConstraintParams constraint, const anatomy::PathConstraintLaw& law,
+                            const DeviceCapability& device) noexcept {
+  if (!law.is_given) return constraint;
+  constraint.force_n = std::min(law.force_n, device.max_stiffness_n_per_mm * constraint.linear_mm);
+  constraint.torque_nmm = law.torque_nmm;
+  return constraint;
+}
+
 /// A spring with the puncture force at the same indentation as the loading law.
 double indentation_stiffness(const LoadingLaw& law, double puncture_force_n) noexcept {
   if (!std::isfinite(puncture_force_n)) return law.stiffness_n_per_mm;
@@ -180,10 +189,12 @@ Result<std::shared_ptr<const HapticScene>> make_haptic_scene(std::shared_ptr<con
   scene->needle = needle;
   scene->device = device;
   scene->options = options;
-  if (device.has_torque())
-    scene->options.constraint = renderable(options.constraint);
-  else
+  const PathConstraintParams constraint = fitted(options.constraint, tissues.path_constraint, device);
+  scene->options.constraint = renderable(constraint);
+  if (!device.has_torque()) {
+    scene->options.constraint = constraint;
     scene->options.constraint.torque_nmm = 0.0;
+  }
   scene->beam_with_stylet = make_needle_beam(needle, true);
   scene->beam_without_stylet = make_needle_beam(needle, false);
   scene->face = make_face(options.tool);

@@ -23,6 +23,7 @@ struct ImportedPatient {
   std::vector<anatomy::LabelStatistics> statistics;  ///< Statistics of the patient's labels.
   std::vector<std::string> warnings;                 ///< Warnings of the import, one line each.
   std::string source;                                ///< As given by the user: a file, a folder, an embedded patient.
+  std::string own_tissues;                           ///< Text of the patient's own tissue table; empty: none.
 };
 
 /// A recorded ultrasound volume: immutable, shared by all drafts. Frame U: that of the volume.

@@ -5,6 +5,7 @@
 #include "anatomy/phantom/phantom.h"
 #include "case_builder/ultrasound.h"
 #include "cases/prepare_case.h"
+#include "core/files/atomic_file.h"
 #include "core/files/data_dir.h"
 #include "core/part_of_progress.h"
 #include "io/patient/build_from_files.h"
@@ -86,6 +87,10 @@ Result<CaseDraft> import_case(const ImportRequest& request, const Progress& prog
     options.task = own.task.name;
     TROCAR_TRY(const cases::Case base, cases::load_tables(options));
     draft.base = base.task;
+  }
+  if (cases::has_own_tissues(request.ct)) {
+    TROCAR_TRY_STATUS(cases::load_own_tissues(request.ct));
+    TROCAR_TRY(imported->own_tissues, read_file(fs::path(request.ct) / cases::kOwnTissueFile));
   }
   if (is_patient_folder(request.ct)) {
     // A damaged panorama does not prevent the import of the patient.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "cases/prepare_case.h"
 #include "io/patient/patient_folder.h"
 
 namespace trocar::case_builder {
@@ -65,7 +66,8 @@ Status save_case(const CaseDraft& draft, DraftPatient& patients, const SaveOptio
   if (draft.name.empty()) return fail_usage("the case has no name", {}, "give it one");
   TROCAR_TRY_STATUS(check_target(options));
   const anatomy::VirtualPatient patient = patient_of(draft, patients);
-  const std::vector<io::PatientExtra> extras{{tasks::kOwnTaskFile, tasks::task_to_toml(draft.task, draft.base)}};
+  std::vector<io::PatientExtra> extras{{tasks::kOwnTaskFile, tasks::task_to_toml(draft.task, draft.base)}};
+  if (!draft.imported->own_tissues.empty()) extras.push_back({cases::kOwnTissueFile, draft.imported->own_tissues});
   const std::optional<io::RecordedUltrasound> ultrasound = ultrasound_of(draft);
   const auto write = [&](const fs::path& to) {
     return io::save_patient(patient, *draft_meshes(draft), to, progress, extras, ultrasound ? &*ultrasound : nullptr);

@@ -69,15 +69,27 @@ bool has_own_task(const std::string& patient_folder) {
   return !patient_folder.empty() && fs::is_regular_file(fs::path(patient_folder) / tasks::kOwnTaskFile, ignored);
 }
 
+bool has_own_tissues(const std::string& patient_folder) {
+  std::error_code ignored;
+  return !patient_folder.empty() && fs::is_regular_file(fs::path(patient_folder) / kOwnTissueFile, ignored);
+}
+
+Result<anatomy::TissueTable> load_own_tissues(const std::string& patient_folder) {
+  TROCAR_TRY(anatomy::TissueTable table, anatomy::load_tissue_table(fs::path(patient_folder) / kOwnTissueFile));
+  table.origin = table.origin.empty() ? "the patient's own table" : "the patient's own table: " + table.origin;
+  return table;
+}
+
 Result<Case> load_tables(const CaseOptions& options) {
   TROCAR_TRY(const std::filesystem::path data, checked_data_dir());
   Case made;
   TROCAR_TRY_STATUS(find_task(made, options, data / "tasks"));
   const std::string needle = options.needle.empty() ? made.task.needle : options.needle;
   TROCAR_TRY(made.needle, tasks::load_needle(data / "needles.toml", needle));
-  const std::filesystem::path tissues =
-      options.tissue_file.empty() ? data / "tissues.toml" : std::filesystem::path(options.tissue_file);
-  TROCAR_TRY(made.tissues, anatomy::load_tissue_table(tissues, options.profile));
+  const bool is_own = options.tissue_file.empty() && options.profile.empty() && has_own_tissues(options.patient_folder);
+  const fs::path tissues = options.tissue_file.empty() ? data / "tissues.toml" : fs::path(options.tissue_file);
+  TROCAR_TRY(made.tissues,
+             is_own ? load_own_tissues(options.patient_folder) : anatomy::load_tissue_table(tissues, options.profile));
   for (const std::string& assignment : options.overrides)
     TROCAR_TRY_STATUS(anatomy::apply_override(made.tissues, assignment));
   return made;

@@ -18,10 +18,10 @@ namespace trocar::cases {
 struct CaseOptions {
   /// Name of a task of the data folder, or a task file (ends in .toml); empty: the patient's own task.
   std::string task = "liver-biopsy";
-  std::string patient_folder;          ///< Folder of the patient's own task; an embedded patient has none.
-  std::string needle;                  ///< Name in data/needles.toml; empty: the task's needle.
-  std::string tissue_file;             ///< Empty: data/tissues.toml.
-  std::string profile;                 ///< Profile of the tissue file.
+  std::string patient_folder;  ///< Folder of the patient's own task and tissues; empty or an embedded one: none.
+  std::string needle;          ///< Name in data/needles.toml; empty: the task's needle.
+  std::string tissue_file;     ///< Empty: the patient's own table, else data/tissues.toml.
+  std::string profile;         ///< Profile of the tissue file; without a file, of data/tissues.toml.
   std::vector<std::string> overrides;  ///< "liver.k=0.5"
   std::uint64_t seed = 1;
 };
@@ -42,6 +42,13 @@ Result<Case> load_tables(const CaseOptions& options);
 
 /// True if a patient has its own task: a folder with task.toml in it.
 bool has_own_task(const std::string& patient_folder);
+
+/// File in a patient's folder: the tissue table that was fitted to it.
+inline constexpr const char* kOwnTissueFile = "tissues.toml";
+/// True if a patient has its own tissue table.
+bool has_own_tissues(const std::string& patient_folder);
+/// That table. Its origin names the patient's file. Errors: those of load_tissue_table.
+Result<anatomy::TissueTable> load_own_tissues(const std::string& patient_folder);
 
 /// Loads tables and task, checks that the patient can serve the task, and plans the expert path, or uses the one that
 /// the task names. Errors name the missing structure or the margin that leaves no path.

@@ -54,6 +54,15 @@ inline constexpr std::array<TissueField<NeedleSizeLaw>, 5> kNeedleSizeFields{{
     {"face_friction", "", &NeedleSizeLaw::face_friction, {0.0, 0.35}},
 }};
 
+inline constexpr std::string_view kPathConstraint = "path_constraint";
+inline constexpr std::array<TissueField<PathConstraintLaw>, 2> kPathConstraintFields{{
+    {"force_n", "m0", &PathConstraintLaw::force_n, {0.0, 20.0}},
+    {"torque_nmm", "n0", &PathConstraintLaw::torque_nmm, {0.0, 500.0}},
+}};
+
+inline constexpr std::string_view kOrigin = "origin";
+inline constexpr std::size_t kLongestOrigin = 200;
+
 inline constexpr std::string_view kSkinThickness = "thickness_mm";
 inline constexpr config::Range kSkinThicknessRange{0.5, 6.0};
 

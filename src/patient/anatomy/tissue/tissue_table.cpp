@@ -179,9 +179,25 @@ Status read_needle_size(const config::TomlTable& document, TissueTable& table) {
   return fail("tearing and spreading are both zero", row.where(), "give at least one of them a share");
 }
 
+/// Only tables that were fitted to a patient have it.
+Status read_path_constraint(const config::TomlTable& document, TissueTable& table) {
+  if (!document.has(kPathConstraint)) return {};
+  TROCAR_TRY(const config::TomlTable row, document.table(kPathConstraint));
+  TROCAR_TRY_STATUS(row.check_keys(field_names<PathConstraintLaw>(kPathConstraintFields)));
+  table.path_constraint.is_given = true;
+  return read_fields<PathConstraintLaw>(row, kPathConstraintFields, std::string(kPathConstraint), true,
+                                        table.path_constraint, table);
+}
+
+Status read_origin(const config::TomlTable& document, TissueTable& table) {
+  TROCAR_TRY(table.origin, document.string_or(kOrigin, ""));
+  if (table.origin.size() <= kLongestOrigin) return {};
+  return fail(fmt::format("origin has more than {} characters", kLongestOrigin), document.where(), "shorten it");
+}
+
 Result<TissueTable> read_table(const config::TomlTable& document, std::string_view profile) {
-  TROCAR_TRY_STATUS(
-      document.check_keys({"skin", "layers", "tissues", "profiles", "applied_profile", kTransfer, kNeedleSize}));
+  TROCAR_TRY_STATUS(document.check_keys(
+      {"skin", "layers", "tissues", "profiles", "applied_profile", kTransfer, kNeedleSize, kPathConstraint, kOrigin}));
   TissueTable table;
   TROCAR_TRY(const config::TomlTable skin, document.table("skin"));
   TROCAR_TRY_STATUS(skin.check_keys({kSkinThickness}));
@@ -197,6 +213,8 @@ Result<TissueTable> read_table(const config::TomlTable& document, std::string_vi
   table.skin = *skin_index;
   TROCAR_TRY_STATUS(read_hu_transfer(document, table));
   TROCAR_TRY_STATUS(read_needle_size(document, table));
+  TROCAR_TRY_STATUS(read_path_constraint(document, table));
+  TROCAR_TRY_STATUS(read_origin(document, table));
   TROCAR_TRY_STATUS(apply_profile(document, profile, table));
   return table;
 }

@@ -40,6 +40,13 @@ struct NeedleSizeLaw {
   double face_friction = 0.0;  ///< Coefficient of friction between the bevel's face and the tissue. Range 0..0.35.
 };
 
+/// Strength of the path constraint that was fitted to a patient (paper A; physics.md C3, C4).
+struct PathConstraintLaw {
+  bool is_given = false;     ///< Else the program's own values are used.
+  double force_n = 3.0;      ///< m_0. Range 0..20. A device may render less.
+  double torque_nmm = 80.0;  ///< n_0. Range 0..500.
+};
+
 /// Friction and cutting of shaft and tip inside a tissue (paper A; physics.md F1, C1).
 struct TissueParams {
   std::string name;                   ///< "liver", "adipose", "bone" …; index 0 is "air".
@@ -68,6 +75,8 @@ struct TissueTable {
   std::uint8_t skin = 0;           ///< Tissue index of the skin.
   HuTransfer transfer;             ///< Transfer functions of unlabelled tissue, over HU.
   NeedleSizeLaw needle_size;
+  PathConstraintLaw path_constraint;
+  std::string origin;  ///< Where a table comes from that is not the program's: "fitted to ..."; at most 200 bytes.
 
   std::optional<std::uint8_t> find_tissue(std::string_view name) const noexcept;
   std::optional<std::uint8_t> find_layer(std::string_view name) const noexcept;
@@ -87,11 +96,11 @@ Result<std::vector<std::string>> tissue_profiles(const std::filesystem::path& pa
 /// Applies one override "liver.k=0.5": TISSUE.KEY=VALUE or LAYER.KEY=VALUE, KEY a field name or its short form (k, nu,
 /// mu, dx, delta, stick, fc, fp, young, spread, diameter); fp may be "never"; skin.thickness_mm is the shell's;
 /// LAYER.wall is 0 or 1; transfer.gradient_scale_mm, _none_hu_per_mm and _full_hu_per_mm (scale, none, full) are the
-/// transfer functions'. A layer's key given on a tissue changes that tissue's layer. nu given on the first tissue that
-/// carries a layer changes the layer too: paper A's table has one nu for both laws. tissues.NAME.KEY and
-/// layers.NAME.KEY mean that row alone. transfer.tn_factor=1.2 (k, tn, tt, r0, c, shaft, nu, young) multiplies the
-/// whole curve over HU as it stands by 0.1..10, each value kept in its field's range. Out of range or unknown: exit
-/// status 2, the table is unchanged.
+/// transfer functions'; path_constraint.m0 and .n0 are the path constraint's. A layer's key given on a tissue changes
+/// that tissue's layer. nu given on the first tissue that carries a layer changes the layer too: paper A's table has
+/// one nu for both laws. tissues.NAME.KEY and layers.NAME.KEY mean that row alone. transfer.tn_factor=1.2 (k, tn, tt,
+/// r0, c, shaft, nu, young) multiplies the whole curve over HU as it stands by 0.1..10, each value kept in its field's
+/// range. Out of range or unknown: exit status 2, the table is unchanged.
 Status apply_override(TissueTable& table, std::string_view assignment);
 
 }  // namespace trocar::anatomy

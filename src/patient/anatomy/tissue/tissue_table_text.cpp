@@ -50,6 +50,7 @@ class Override {
 
   Status apply() {
     if (assignment_.name == "skin" && (assignment_.key == kSkinThickness)) return set_skin_thickness();
+    if (assignment_.name == kPathConstraint) return set_path_constraint();
     if (assignment_.name == kTransfer)
       return assignment_.key.ends_with(kFactorEnding) ? scale_curve() : set_gradient_number();
     if (assignment_.name.starts_with(kOfLayers)) return set_row<LayerParams>(table_.layers, kLayerFields, kOfLayers);
@@ -110,6 +111,18 @@ class Override {
     TROCAR_TRY_STATUS(check_range(assignment_, kSkinThickness, kSkinThicknessRange, text_));
     table_.skin_thickness_mm = assignment_.value;
     table_.provenance["skin.thickness_mm"] = {std::string(kOverrideSource), {}, {}};
+    return {};
+  }
+
+  Status set_path_constraint() {
+    const auto* field = find_field<PathConstraintLaw>(kPathConstraintFields, assignment_.key);
+    if (!field)
+      return fail_usage(fmt::format("{} has no \"{}\"", kPathConstraint, assignment_.key), std::string(text_),
+                        "known are: m0, n0");
+    TROCAR_TRY_STATUS(check_range(assignment_, field->name, field->range, text_));
+    table_.path_constraint.is_given = true;
+    table_.path_constraint.*field->member = assignment_.value;
+    table_.provenance[fmt::format("{}.{}", kPathConstraint, field->name)] = {std::string(kOverrideSource), {}, {}};
     return {};
   }
 
@@ -194,6 +207,7 @@ void write_number(config::TomlWriter& writer, std::string_view key, double value
 std::string TissueTable::to_toml() const {
   config::TomlWriter writer;
   writer.set("applied_profile", profile);
+  if (!origin.empty()) writer.set(kOrigin, origin);
   writer.begin_table({"skin"});
   write_number(writer, kSkinThickness, skin_thickness_mm, "skin.thickness_mm", provenance);
   for (const LayerParams& layer : layers) {
@@ -217,6 +231,12 @@ std::string TissueTable::to_toml() const {
     writer.begin_table({std::string(kNeedleSize)});
     for (const auto& field : kNeedleSizeFields)
       write_number(writer, field.name, needle_size.*field.member, fmt::format("{}.{}", kNeedleSize, field.name),
+                   provenance);
+  }
+  if (path_constraint.is_given) {
+    writer.begin_table({std::string(kPathConstraint)});
+    for (const auto& field : kPathConstraintFields)
+      write_number(writer, field.name, path_constraint.*field.member, fmt::format("{}.{}", kPathConstraint, field.name),
                    provenance);
   }
   return writer.text();

@@ -41,6 +41,28 @@ TEST(SceneOptions, RefuseWhatTheyDoNotKnow) {
   }
 }
 
+TEST(HapticScene, HasThePathConstraintOfATableThatWasFittedToThePatient) {
+  const auto patient = testing::layered_patient(testing::liver_way());
+  anatomy::TissueTable tissues = testing::paper_tissues();
+  const auto of_program = make_haptic_scene(patient, tissues, {}, {}, {});
+  ASSERT_TRUE(of_program);
+  EXPECT_EQ((*of_program)->options.constraint.force_n, PathConstraintParams{}.force_n);
+  tissues.path_constraint = {true, 1.5, 40.0};
+  const auto fitted = make_haptic_scene(patient, tissues, {}, {}, {});
+  ASSERT_TRUE(fitted) << fitted.error().text();
+  EXPECT_EQ((*fitted)->options.constraint.force_n, 1.5);
+  EXPECT_EQ((*fitted)->options.constraint.torque_nmm, 40.0);
+  // No more than the device renders: 1 N/mm over d_0 = 3 mm, and no torque without motors for it.
+  tissues.path_constraint = {true, 20.0, 40.0};
+  DeviceCapability weak;
+  weak.max_stiffness_n_per_mm = 1.0;
+  weak.peak_torque_nmm = 0.0;
+  const auto limited = make_haptic_scene(patient, tissues, {}, weak, {});
+  ASSERT_TRUE(limited) << limited.error().text();
+  EXPECT_EQ((*limited)->options.constraint.force_n, 1.0 * PathConstraintParams{}.linear_mm);
+  EXPECT_EQ((*limited)->options.constraint.torque_nmm, 0.0);
+}
+
 TEST(HapticScene, LabelsOfUnknownTissuesCountAsSoftTissueAndAreAllNamed) {
   auto patient = testing::layered_patient(testing::liver_way());
   patient->label_table.labels[0].tissue = "blubber";

@@ -67,6 +67,49 @@ TEST(SaveCase, SavedCaseIsReadyForAnAttemptWithItsOwnTask) {
   EXPECT_FALSE(cases::load_tables(options));
 }
 
+TEST(SaveCase, KeepsThePatientsOwnTissueTable) {
+  const TemporaryFolder folder;
+  DraftPatient patients;
+  ASSERT_TRUE(save_case(full_draft(), patients, {folder.path() / "case", false}));
+  EXPECT_FALSE(cases::has_own_tissues((folder.path() / "case").string()));
+  anatomy::TissueTable table = trocar::testing::shipped_tissues("paper-a");
+  ASSERT_TRUE(anatomy::apply_override(table, "path_constraint.m0=1.5"));
+  const std::string text = table.to_toml();
+  ASSERT_TRUE(write_file_atomically(folder.path() / "case" / cases::kOwnTissueFile, text));
+
+  const auto opened = import_case({(folder.path() / "case").string(), {}});
+  ASSERT_TRUE(opened) << opened.error().text();
+  ASSERT_TRUE(save_case(*opened, patients, {folder.path() / "again", false}));
+  const auto kept = read_file(folder.path() / "again" / cases::kOwnTissueFile);
+  ASSERT_TRUE(kept) << kept.error().text();
+  EXPECT_EQ(*kept, text);
+
+  // Attempts use it, unless another table or a profile is named.
+  cases::CaseOptions options;
+  options.task.clear();
+  options.patient_folder = (folder.path() / "again").string();
+  const auto own = cases::load_tables(options);
+  ASSERT_TRUE(own) << own.error().text();
+  EXPECT_EQ(own->tissues.path_constraint.force_n, 1.5);
+  EXPECT_EQ(own->tissues.origin, "the patient's own table");
+  options.profile = "tented";
+  EXPECT_FALSE(cases::load_tables(options)->tissues.path_constraint.is_given);
+  options.profile.clear();
+  options.tissue_file = (data_dir() / "tissues.toml").string();
+  EXPECT_TRUE(cases::load_tables(options)->tissues.origin.empty());
+
+  // A bad value is one line that names the file and the key.
+  std::string bad = text;
+  bad.replace(bad.find("1.5", bad.find("[path_constraint]")), 3, "1e3");
+  ASSERT_TRUE(write_file_atomically(folder.path() / "again" / cases::kOwnTissueFile, bad));
+  options.tissue_file.clear();
+  const auto refused = cases::load_tables(options);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().text().find("tissues.toml"), std::string::npos) << refused.error().text();
+  EXPECT_NE(refused.error().text().find("path_constraint.force_n"), std::string::npos) << refused.error().text();
+  EXPECT_FALSE(import_case({(folder.path() / "again").string(), {}}));
+}
+
 TEST(SaveCase, NothingIsOverwrittenWithoutBeingTold) {
   const TemporaryFolder folder;
   DraftPatient patients;

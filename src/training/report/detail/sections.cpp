@@ -226,6 +226,9 @@ std::string case_section(const storage::Session& session) {
   out += case_row("Operator, seed", fmt::format("{}, {}", info.operator_name, info.seed));
   out += case_row("Level of help", info.level);
   out += case_row("Force model", info.force_model);
+  if (const auto table = anatomy::parse_tissue_table(info.tissue_table_toml, "session");
+      table && !table->origin.empty())
+    out += case_row("Tissue table", table->origin);
   out += case_row("Needle", info.needle);
   out += case_row("Device", info.device);
   out += case_row("Recorded", fmt::format("{} ticks, {} s at {:g} Hz", session.samples.size(),
