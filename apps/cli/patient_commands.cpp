@@ -7,7 +7,10 @@
 #include <optional>
 
 #include "anatomy/phantom/phantom.h"
+#include "anatomy/tissue/tissue_table.h"
+#include "cases/prepare_case.h"
 #include "commands.h"
+#include "core/files/atomic_file.h"
 #include "core/parse_number.h"
 #include "core/part_of_progress.h"
 #include "io/dicom/dicom_folder.h"
@@ -47,9 +50,10 @@ Status list_patients(bool is_json) {
 
 /// Writes the folder and returns the surfaces in it.
 Result<std::vector<anatomy::NamedMesh>> save_with_surfaces(const anatomy::VirtualPatient& patient, const fs::path& out,
-                                                           const Progress& progress) {
+                                                           const Progress& progress,
+                                                           const std::vector<io::PatientExtra>& extras = {}) {
   auto meshes = surface::extract_surfaces(patient, {}, part_of(progress, 0.0, 0.6));
-  TROCAR_TRY_STATUS(io::save_patient(patient, meshes, out, part_of(progress, 0.6, 1.0)));
+  TROCAR_TRY_STATUS(io::save_patient(patient, meshes, out, part_of(progress, 0.6, 1.0), extras));
   return meshes;
 }
 
@@ -70,6 +74,8 @@ struct BuildArguments {
   std::string name;
   std::string series;
   std::string rescale;  ///< "SLOPE,INTERCEPT", or empty.
+  std::string derive = "all";
+  std::string tissues;  ///< Tissue table to put into the folder; empty: none.
   std::string out;
   bool is_json = false;
 };
@@ -84,6 +90,14 @@ Result<std::optional<anatomy::Rescale>> parse_rescale(const std::string& text) {
                     "write SLOPE,INTERCEPT such as 1,-1024");
 }
 
+/// The patient's own tissue table as a file of its folder.
+Result<std::vector<io::PatientExtra>> read_tissues(const std::string& file) {
+  if (file.empty()) return std::vector<io::PatientExtra>{};
+  TROCAR_TRY_STATUS(anatomy::load_tissue_table(file));
+  TROCAR_TRY(std::string text, read_file(file));
+  return std::vector<io::PatientExtra>{{cases::kOwnTissueFile, std::move(text)}};
+}
+
 Status build(const BuildArguments& arguments) {
   TROCAR_TRY_STATUS(check_new(arguments.out));
   TROCAR_TRY(const fs::path tasks_folder, find_data("tasks"));
@@ -94,6 +108,8 @@ Status build(const BuildArguments& arguments) {
   files.label_map = arguments.label_map;
   files.series = arguments.series;
   TROCAR_TRY(files.rescale, parse_rescale(arguments.rescale));
+  TROCAR_TRY(const auto extras, read_tissues(arguments.tissues));
+  TROCAR_TRY(files.derive, anatomy::parse_derive_choice(arguments.derive));
   files.name = arguments.name.empty() ? io::last_name(arguments.out) : arguments.name;
   std::vector<std::string> warnings;
   std::vector<anatomy::NamedMesh> meshes;
@@ -102,7 +118,7 @@ Status build(const BuildArguments& arguments) {
     const ProgressPrinter printer;
     const Progress progress = printer.callback();
     TROCAR_TRY(patient, io::build_from_files(files, warnings, part_of(progress, 0.0, 0.5)));
-    TROCAR_TRY(meshes, save_with_surfaces(patient, arguments.out, part_of(progress, 0.5, 1.0)));
+    TROCAR_TRY(meshes, save_with_surfaces(patient, arguments.out, part_of(progress, 0.5, 1.0), extras));
   }
   for (const std::string& warning : warnings) print_warning(warning);
   const BuildSummary summary = summarize_build(patient, tasks, std::move(warnings), arguments.out);
@@ -192,6 +208,14 @@ void add_patient_commands(CLI::App& program, Action& action) {
       ->capture_default_str();
   build_command->add_option("--rescale", b->rescale,
                             "SLOPE,INTERCEPT of a CT whose file lacks them: HU = SLOPE * stored number + INTERCEPT");
+  build_command
+      ->add_option(
+          "--derive", b->derive,
+          "Thin structures to add where their neighbours are labelled: all, none, or names separated by commas")
+      ->capture_default_str();
+  build_command->add_option(
+      "--tissues", b->tissues,
+      "Tissue table (TOML) fitted to this patient: stored in the folder and used by its attempts");
   build_command->add_option("--name", b->name, "Name of the patient; default: the folder's name");
   build_command->add_option("--out", b->out, "Folder to create")->required();
   build_command->add_flag("--json", b->is_json, "Print the summary as one JSON object");

@@ -19,6 +19,7 @@
 #include "patient_option.h"
 #include "patient_summary.h"
 #include "png/png_file.h"
+#include "report/patient_report.h"
 #include "scene/render_patient.h"
 #include "slices/slice_legend.h"
 #include "tasks/needle.h"
@@ -34,13 +35,47 @@ struct Arguments {
   bool is_json = false;
   std::string paths;  ///< Markups file with needle paths to draw; empty: those of the patient.
   std::string out;
+  std::string pictures, report;  ///< Of `check`; empty: none.
 };
 
 constexpr double kMm2PerCm2 = 100.0;
 constexpr double kMm3PerMl = 1000.0;
 
+/// Contents of a patient's folder besides the patient.
+struct OwnFiles {
+  bool has_panorama = false;
+  std::optional<anatomy::TissueTable> tissues;  ///< The table that was fitted to it.
+};
+
+Result<OwnFiles> own_files(const Arguments& arguments) {
+  OwnFiles own;
+  own.has_panorama = io::has_panorama(arguments.source);
+  if (!cases::has_own_tissues(arguments.source.folder_or_name)) return own;
+  TROCAR_TRY(own.tissues, cases::load_own_tissues(arguments.source.folder_or_name));
+  return own;
+}
+
+config::Json tissues_json(const OwnFiles& own) {
+  if (!own.tissues) return {};
+  const anatomy::PathConstraintLaw& constraint = own.tissues->path_constraint;
+  config::Json json = {{"origin", own.tissues->origin}};
+  json["path_constraint"] = constraint.is_given
+                                ? config::Json{{"m0_n", constraint.force_n}, {"n0_nmm", constraint.torque_nmm}}
+                                : config::Json();
+  return json;
+}
+
+void print_own_files(const OwnFiles& own) {
+  if (own.has_panorama) fmt::print("\nultrasound panorama {}\n", io::kPanoramaFile);
+  if (!own.tissues) return;
+  fmt::print("\ntissues from {}\n", own.tissues->origin);
+  const anatomy::PathConstraintLaw& constraint = own.tissues->path_constraint;
+  if (constraint.is_given)
+    fmt::print("path constraint m0 {:g} N, n0 {:g} N mm\n", constraint.force_n, constraint.torque_nmm);
+}
+
 config::Json patient_json(const anatomy::VirtualPatient& patient, const std::vector<anatomy::NamedMesh>& meshes,
-                          bool has_panorama) {
+                          const OwnFiles& own) {
   config::Json labels = config::Json::array();
   for (const anatomy::LabelStatistics& s : anatomy::label_statistics(patient)) labels.push_back(label_json(patient, s));
   config::Json surfaces = config::Json::array();
@@ -64,11 +99,12 @@ config::Json patient_json(const anatomy::VirtualPatient& patient, const std::vec
           {"meshes", surfaces},
           {"landmarks", landmarks},
           {"paths", paths},
-          {"panorama", has_panorama}};
+          {"panorama", own.has_panorama},
+          {"tissues", tissues_json(own)}};
 }
 
 void print_patient(const anatomy::VirtualPatient& patient, const std::vector<anatomy::NamedMesh>& meshes,
-                   bool has_panorama) {
+                   const OwnFiles& own) {
   fmt::print("{}{}{}\n", patient.name, patient.description.empty() ? "" : ": ", patient.description);
   for (const std::string& line : patient.provenance) fmt::print("  from {}\n", line);
   fmt::print("  content {}\n\n", patient.content_hash);
@@ -86,8 +122,8 @@ void print_patient(const anatomy::VirtualPatient& patient, const std::vector<ana
   for (const anatomy::LabelStatistics& s : anatomy::label_statistics(patient)) {
     const anatomy::Label* label = patient.label_table.find(s.id);
     if (label == nullptr) continue;
-    fmt::print("{:>3}  {:<30} {:<16} {:>8.1f} ml {:>6.0f} HU\n", s.id, label->name, label->tissue, s.volume_ml,
-               s.mean_hu);
+    fmt::print("{:>3}  {:<30} {:<16} {:>8.1f} ml {:>6.0f} HU{}\n", s.id, label->name, label->tissue, s.volume_ml,
+               s.mean_hu, label->is_derived ? "  derived" : "");
   }
   fmt::print("\n{:<35} {:>10} {:>15} {:>11}\n", "mesh", "triangles", "area", "volume");
   for (const anatomy::NamedMesh& m : meshes) {
@@ -100,18 +136,18 @@ void print_patient(const anatomy::VirtualPatient& patient, const std::vector<ana
   }
   for (const anatomy::NeedlePath& p : patient.paths)
     fmt::print("path {:<30} {:.1f} mm\n", p.name, p.line_P.length_mm());
-  if (has_panorama) fmt::print("\nultrasound panorama {}\n", io::kPanoramaFile);
+  print_own_files(own);
 }
 
 Status show(const Arguments& arguments) {
   const ProgressPrinter printer;
+  TROCAR_TRY(const OwnFiles own, own_files(arguments));
   TROCAR_TRY(const anatomy::VirtualPatient patient, io::open_patient(arguments.source, printer.callback()));
   TROCAR_TRY(const auto meshes, io::open_meshes(arguments.source, patient, printer.callback()));
-  const bool has_panorama = io::has_panorama(arguments.source);
   if (arguments.is_json) {
-    print_json(patient_json(patient, meshes, has_panorama));
+    print_json(patient_json(patient, meshes, own));
   } else {
-    print_patient(patient, meshes, has_panorama);
+    print_patient(patient, meshes, own);
   }
   return {};
 }
@@ -143,31 +179,101 @@ Result<std::vector<CheckedTask>> checked_tasks(const Arguments& arguments, const
   return checked;
 }
 
+struct CheckResult {
+  std::vector<CheckedTask> tasks;
+  std::vector<anatomy::Finding> doubts;
+  bool has_panorama = false;
+};
+
+Result<CheckResult> check_patient(const Arguments& arguments, const anatomy::VirtualPatient& patient,
+                                  const Progress& progress) {
+  CheckResult result;
+  TROCAR_TRY(result.tasks, checked_tasks(arguments, patient, progress));
+  result.doubts = anatomy::find_doubts(patient, anatomy::label_statistics(patient));
+  if (patient.paths.empty()) result.doubts.push_back({"no expert path is stored; trocar run plans one", {}, {}});
+  if (cases::has_own_tissues(arguments.source.folder_or_name))
+    if (const auto own = cases::load_own_tissues(arguments.source.folder_or_name); !own)
+      result.doubts.push_back({own.error().text(), {}, {}});
+  result.has_panorama = io::has_panorama(arguments.source);
+  if (!result.has_panorama) return result;
+  if (const auto panorama = io::load_panorama(arguments.source); !panorama)
+    result.doubts.push_back({panorama.error().text(), {}, {}});
+  return result;
+}
+
+std::vector<std::string> task_lines(const std::vector<CheckedTask>& tasks) {
+  std::vector<std::string> lines;
+  for (const auto& [task, readiness] : tasks) {
+    lines.push_back(fmt::format("{:<16} {}{}", task.name, readiness.is_possible ? "possible" : "not possible",
+                                readiness.is_parenchymal ? " (parenchymal)" : ""));
+    for (const std::string& reason : readiness.reasons) lines.push_back("  " + reason);
+  }
+  return lines;
+}
+
+config::Json findings_json(const std::vector<anatomy::Finding>& findings) {
+  config::Json list = config::Json::array();
+  for (const anatomy::Finding& finding : findings)
+    list.push_back({{"text", finding.text},
+                    {"label", finding.label},
+                    {"position_mm", finding.place_P ? to_json(*finding.place_P) : config::Json()}});
+  return list;
+}
+
+void print_check(const anatomy::VirtualPatient& patient, const CheckResult& result, bool is_json) {
+  if (is_json) {
+    config::Json list = config::Json::array(), texts = config::Json::array(), derived = config::Json::array();
+    for (const auto& [task, readiness] : result.tasks) list.push_back(readiness_json(task, readiness));
+    for (const anatomy::Finding& doubt : result.doubts) texts.push_back(doubt.text);
+    for (const anatomy::Label& label : patient.label_table.labels)
+      if (label.is_derived) derived.push_back(label.name);
+    print_json({{"name", patient.name},
+                {"tasks", list},
+                {"panorama", result.has_panorama},
+                {"doubtful", texts},
+                {"doubts", findings_json(result.doubts)},
+                {"repairs", findings_json(patient.repairs)},
+                {"derived", derived}});
+    return;
+  }
+  for (const std::string& line : task_lines(result.tasks)) fmt::print("{}\n", line);
+  if (result.has_panorama) fmt::print("{:<16} {}\n", "panorama", io::kPanoramaFile);
+  if (!result.doubts.empty()) fmt::print("doubtful\n");
+  for (const anatomy::Finding& doubt : result.doubts) fmt::print("  {}\n", doubt.text);
+  if (!patient.repairs.empty()) fmt::print("repaired\n");
+  for (const anatomy::Finding& repair : patient.repairs) fmt::print("  {}\n", repair.text);
+  std::vector<std::string> derived;
+  for (const anatomy::Label& label : patient.label_table.labels)
+    if (label.is_derived) derived.push_back(label.name);
+  if (!derived.empty()) fmt::print("derived\n  {}\n", fmt::join(derived, ", "));
+}
+
+/// One picture for each place: doubt_1.png, repair_1.png …
+Status write_pictures(const anatomy::VirtualPatient& patient, const CheckResult& result, const fs::path& folder) {
+  return write_folder_atomically(folder, [&](const fs::path& temporary) -> Status {
+    const auto write = [&](const std::vector<anatomy::Finding>& findings, const char* kind) -> Status {
+      for (std::size_t n = 0; n < findings.size(); ++n)
+        if (findings[n].place_P)
+          TROCAR_TRY_STATUS(png::write_png(report::finding_picture(patient, findings[n]),
+                                           temporary / fmt::format("{}_{}.png", kind, n + 1)));
+      return {};
+    };
+    TROCAR_TRY_STATUS(write(result.doubts, "doubt"));
+    return write(patient.repairs, "repair");
+  });
+}
+
 Status check(const Arguments& arguments) {
+  for (const std::string& out : {arguments.pictures, arguments.report})
+    if (!out.empty()) TROCAR_TRY_STATUS(check_new(out));
   const ProgressPrinter printer;
   TROCAR_TRY(const anatomy::VirtualPatient patient, io::open_patient(arguments.source, printer.callback()));
-  TROCAR_TRY(const auto tasks, checked_tasks(arguments, patient, printer.callback()));
-  auto doubts = anatomy::find_doubts(patient, anatomy::label_statistics(patient));
-  if (patient.paths.empty()) doubts.push_back("no expert path is stored; trocar run plans one");
-  const bool has_panorama = io::has_panorama(arguments.source);
-  if (has_panorama)
-    if (const auto panorama = io::load_panorama(arguments.source); !panorama) doubts.push_back(panorama.error().text());
-  if (arguments.is_json) {
-    config::Json list = config::Json::array();
-    for (const auto& [task, readiness] : tasks) {
-      list.push_back(readiness_json(task, readiness));
-    }
-    print_json({{"name", patient.name}, {"tasks", list}, {"panorama", has_panorama}, {"doubtful", doubts}});
-    return {};
-  }
-  for (const auto& [task, readiness] : tasks) {
-    fmt::print("{:<16} {}{}\n", task.name, readiness.is_possible ? "possible" : "not possible",
-               readiness.is_parenchymal ? " (parenchymal)" : "");
-    for (const std::string& reason : readiness.reasons) fmt::print("  {}\n", reason);
-  }
-  if (has_panorama) fmt::print("{:<16} {}\n", "panorama", io::kPanoramaFile);
-  if (!doubts.empty()) fmt::print("doubtful\n");
-  for (const std::string& doubt : doubts) fmt::print("  {}\n", doubt);
+  TROCAR_TRY(const CheckResult result, check_patient(arguments, patient, printer.callback()));
+  if (!arguments.pictures.empty()) TROCAR_TRY_STATUS(write_pictures(patient, result, arguments.pictures));
+  if (!arguments.report.empty())
+    TROCAR_TRY_STATUS(write_file_atomically(
+        arguments.report, report::patient_report(patient, {task_lines(result.tasks), result.doubts})));
+  print_check(patient, result, arguments.is_json);
   return {};
 }
 
@@ -216,7 +322,7 @@ Status write_views(const anatomy::VirtualPatient& patient, const std::vector<ana
        {scene::CameraPreset::kPosterior, "posterior"}}};
   double fraction = 0.5;
   for (const auto& [camera, name] : kCameras) {
-    report(progress, "drawing 3D pictures", fraction);
+    core::report(progress, "drawing 3D pictures", fraction);
     fraction += 0.1;
     scene::SceneOptions options;
     options.camera = camera;
@@ -238,7 +344,7 @@ Status render(const Arguments& arguments) {
   TROCAR_TRY(const auto meshes, io::open_meshes(arguments.source, patient, progress));
   const bool can_draw = scene::can_render();
   const auto draw = [&](const fs::path& folder) -> Status {
-    report(progress, "drawing slices", 0.4);
+    core::report(progress, "drawing slices", 0.4);
     TROCAR_TRY_STATUS(write_slices(patient, folder));
     return can_draw ? write_views(patient, meshes, folder, progress) : Status{};
   };
@@ -273,7 +379,10 @@ void add_patient_report_commands(CLI::App& patient, Action& action) {
   CLI::App* check_command = add_command(
       patient, action, "check", "List the tasks that a patient supports, and doubtful results", check, arguments);
   check_command->add_flag("--json", arguments->is_json, "Print one JSON object");
-  check_command->footer("Example:\n  trocar patient check my_patient\n");
+  check_command->add_option("--pictures", arguments->pictures,
+                            "Folder to create, with a picture of each doubtful place");
+  check_command->add_option("--report", arguments->report, "HTML page to write, with these pictures");
+  check_command->footer("Example:\n  trocar patient check my_patient --report check.html\n");
 
   CLI::App* render_command = add_command(
       patient, action, "render", "Render CT slices, and 3D images if an X server is available", render, arguments);

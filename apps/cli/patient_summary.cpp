@@ -52,6 +52,7 @@ config::Json label_json(const anatomy::VirtualPatient& patient, const anatomy::L
           {"tissue", label != nullptr ? label->tissue : ""},
           {"volume_ml", s.volume_ml},
           {"mean_hu", s.mean_hu},
+          {"derived", label != nullptr && label->is_derived},
           {"voxels", s.voxels},
           {"centroid_mm", to_json(s.centroid_P)},
           {"touches_border", s.touches_border}};
@@ -79,7 +80,8 @@ BuildSummary summarize_build(const anatomy::VirtualPatient& patient, const std::
   summary.labels = anatomy::label_statistics(patient);
   summary.body_ml = body_volume_ml(patient.skin_distance_mm);
   summary.warnings = std::move(warnings);
-  summary.doubts = anatomy::find_doubts(patient, summary.labels);
+  for (const anatomy::Finding& doubt : anatomy::find_doubts(patient, summary.labels))
+    summary.doubts.push_back(doubt.text);
   summary.tasks = tasks;
   for (const tasks::Task& task : tasks) {
     const auto needle = tasks::load_needle(data_dir() / "needles.toml", task.needle);
@@ -121,7 +123,8 @@ void print_summary(const BuildSummary& summary, const anatomy::VirtualPatient& p
   fmt::print("labels    {}\n", summary.labels.size());
   for (const anatomy::LabelStatistics& s : summary.labels)
     if (const anatomy::Label* label = patient.label_table.find(s.id))
-      fmt::print("  {:<30} {:>9.1f} ml {:>6.0f} HU\n", label->name, s.volume_ml, s.mean_hu);
+      fmt::print("  {:<30} {:>9.1f} ml {:>6.0f} HU{}\n", label->name, s.volume_ml, s.mean_hu,
+                 label->is_derived ? "  derived" : "");
   std::vector<std::string> possible;
   for (std::size_t n = 0; n < summary.tasks.size(); ++n)
     if (summary.readiness[n].is_possible) possible.push_back(summary.tasks[n].name);

@@ -1,8 +1,13 @@
 // What patient build prints about the patient that it has made.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
 #include "anatomy/phantom/phantom.h"
 #include "cli/program.h"
+#include "core/files/data_dir.h"
 #include "io/image/image_file.h"
 
 namespace trocar::cli_test {
@@ -52,6 +57,55 @@ TEST_F(BuildSummary, IsPrintedForPeople) {
   ASSERT_EQ(outcome.exit_status, 0) << outcome.err;
   for (const char* text : {"90 x 72 x 64 voxels", "liver", " ml", "body", "surfaces", "tasks", "doubtful"})
     EXPECT_NE(outcome.out.find(text), std::string::npos) << text << "\n" << outcome.out;
+}
+
+TEST_F(BuildSummary, MarksDerivedStructures) {
+  const config::Json json = json_of(build("--json"));
+  std::map<std::string, bool> derived;
+  for (const config::Json& label : json["labels"]) derived[label["name"]] = label["derived"];
+  EXPECT_FALSE(derived.at("liver"));
+  EXPECT_TRUE(derived.at("fat"));
+  EXPECT_TRUE(derived.at("peritoneum"));
+  const Outcome shown = trocar("patient show '" + (folder_ / "made") + "'");
+  EXPECT_NE(shown.out.find("HU  derived"), std::string::npos) << shown.out;
+  const config::Json check = json_of(trocar("patient check '" + (folder_ / "made") + "' --json"));
+  EXPECT_NE(std::find(check["derived"].begin(), check["derived"].end(), "peritoneum"), check["derived"].end());
+}
+
+TEST_F(BuildSummary, DerivesOnlyWhatIsAskedFor) {
+  const config::Json json = json_of(build("--derive none --json"));
+  for (const config::Json& label : json["labels"]) EXPECT_NE(label["name"], "peritoneum");
+  const Outcome bad = trocar("patient build --ct a --labels b --out '" + (folder_ / "bad") + "' --derive liver");
+  EXPECT_EQ(bad.exit_status, 2);
+  EXPECT_EQ(line_count(bad.err), 1) << bad.err;
+}
+
+TEST_F(BuildSummary, DoubtfulPlacesAreDrawn) {
+  ASSERT_EQ(build("").exit_status, 0);
+  const Outcome outcome = trocar("patient check '" + (folder_ / "made") + "' --pictures '" + (folder_ / "pictures") +
+                                 "' --report '" + (folder_ / "check.html") + "'");
+  ASSERT_EQ(outcome.exit_status, 0) << outcome.err;
+  EXPECT_TRUE(std::filesystem::is_directory(folder_ / "pictures"));
+  const std::string page = read_text(folder_ / "check.html");
+  EXPECT_NE(page.find("liver-biopsy"), std::string::npos);
+  EXPECT_NE(page.find("Derived structures"), std::string::npos);
+  EXPECT_EQ(page.find("http"), std::string::npos);  // self-contained
+  const Outcome again =
+      trocar("patient check '" + (folder_ / "made") + "' --report '" + (folder_ / "check.html") + "'");
+  EXPECT_EQ(again.exit_status, 2) << again.err;
+}
+
+TEST_F(BuildSummary, PutsATissueTableIntoTheFolder) {
+  const std::string table = "'" + trocar::data_dir().string() + "/tissues.toml'";
+  ASSERT_EQ(build("--tissues " + table).exit_status, 0);
+  EXPECT_EQ(read_text((folder_ / "made") + "/tissues.toml"), read_text((trocar::data_dir() / "tissues.toml").string()));
+  const config::Json shown = json_of(trocar("patient show '" + (folder_ / "made") + "' --json"));
+  EXPECT_EQ(shown["tissues"]["origin"], "the patient's own table");
+  const Outcome missing =
+      trocar("patient build --ct a --labels b --out '" + (folder_ / "bad") + "' --tissues nowhere.toml");
+  EXPECT_EQ(missing.exit_status, 1);
+  EXPECT_EQ(line_count(missing.err), 1) << missing.err;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "bad"));
 }
 
 TEST_F(BuildSummary, SeriesOfAFileIsRefused) {
