@@ -8,8 +8,9 @@ namespace trocar::cli {
 
 // Each function adds its command with sub-commands to the program; parsing the command sets `action`.
 void add_patient_commands(CLI::App& program, Action& action);
-void add_patient_report_commands(CLI::App& patient, Action& action);  ///< Adds show, check and render to `patient`.
-void add_patient_fetch_command(CLI::App& patient, Action& action);    ///< Adds fetch to `patient`.
+void add_patient_report_commands(CLI::App& patient, Action& action);   ///< Adds show, check and render to `patient`.
+void add_patient_fetch_command(CLI::App& patient, Action& action);     ///< Adds fetch to `patient`.
+void add_patient_variants_command(CLI::App& patient, Action& action);  ///< Adds variants to `patient`.
 void add_plan_command(CLI::App& program, Action& action);
 void add_register_command(CLI::App& program, Action& action);
 void add_task_commands(CLI::App& program, Action& action);

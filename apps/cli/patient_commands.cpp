@@ -57,12 +57,12 @@ Result<std::vector<anatomy::NamedMesh>> save_with_surfaces(const anatomy::Virtua
   return meshes;
 }
 
-Status generate_patient(const std::string& name, std::uint64_t seed, const fs::path& out) {
+Status generate_patient(const std::string& name, std::uint64_t seed, double voxel_mm, const fs::path& out) {
   TROCAR_TRY_STATUS(check_new(out));
   const ProgressPrinter printer;
   const Progress progress = printer.callback();
   TROCAR_TRY(const anatomy::VirtualPatient patient,
-             anatomy::generate_phantom(name, seed, {}, part_of(progress, 0.0, 0.5)));
+             anatomy::generate_phantom(name, seed, {{0, 0, 0}, voxel_mm}, part_of(progress, 0.0, 0.5)));
   TROCAR_TRY_STATUS(save_with_surfaces(patient, out, part_of(progress, 0.5, 1.0)).map([](const auto&) {}));
   return {};
 }
@@ -169,18 +169,26 @@ void add_patient_commands(CLI::App& program, Action& action) {
   list->callback([&action, is_json] { action = [is_json] { return list_patients(*is_json); }; });
 
   struct GenerateArguments {
-    std::string name;
+    std::string name = std::string(anatomy::kVariantPatient);
     std::uint64_t seed = 1;
+    double voxel_mm = 0.0;
     std::string out;
   };
   CLI::App* generate = patient->add_subcommand("generate", "Write an embedded patient to a folder");
   generate->footer("Example:\n  trocar patient generate abdomen --seed 7 --out abdomen_7\n");
   const auto g = std::make_shared<GenerateArguments>();
-  generate->add_option("NAME", g->name, "Embedded patient: see trocar patient list")->required();
+  generate
+      ->add_option("NAME", g->name,
+                   "Embedded patient: see trocar patient list; \"variant\" is a body drawn by the seed from the whole "
+                   "range of bodies")
+      ->capture_default_str();
   generate->add_option("--out", g->out, "Folder to create")->required();
   arguments::seed_number(generate->add_option("--seed", g->seed, "Random seed; each seed gives a different individual"))
       ->capture_default_str();
-  generate->callback([&action, g] { action = [g] { return generate_patient(g->name, g->seed, g->out); }; });
+  arguments::number_within(
+      generate->add_option("--voxel-mm", g->voxel_mm, "Edge of the voxels; without it 1 mm or finer"), 0.5, 10.0, "mm");
+  generate->callback(
+      [&action, g] { action = [g] { return generate_patient(g->name, g->seed, g->voxel_mm, g->out); }; });
 
   CLI::App* build_command = patient->add_subcommand("build", "Build a patient from a CT and its segmentation");
   build_command->footer(
@@ -229,6 +237,7 @@ void add_patient_commands(CLI::App& program, Action& action) {
   series_command->callback([&action, s] { action = [s] { return list_series(*s); }; });
 
   add_patient_fetch_command(*patient, action);
+  add_patient_variants_command(*patient, action);
   add_patient_report_commands(*patient, action);
 }
 

@@ -15,8 +15,8 @@ constexpr float kCysticDuctShare = 0.35F, kCysticRadius = 1.6F;
 constexpr double kNormalDiameter = 4.0;
 
 struct Companion {
-  Vec3f beside;                          ///< Direction from the vein.
-  std::function<float(float)> radius;    ///< Of the vein's radius.
+  Vec3f beside;                        ///< Direction from the vein.
+  std::function<float(float)> radius;  ///< Of the vein's radius.
 };
 
 /// A tree that runs beside another one. Pieces whose radius differs are joined where the veins join.
@@ -81,8 +81,7 @@ OutsideDuct outside_duct(const Anatomy& anatomy) {
 void add_duct_structure(Anatomy& anatomy, const std::string& name, const Tube& tube,
                         std::function<float(const Place&)> distance) {
   const std::uint8_t label = anatomy.label("bile_ducts");
-  anatomy.add({name, warped(tube.bounds()), std::move(distance),
-               [=](const Place&, float d, const Brush& brush) {
+  anatomy.add({name, warped(tube.bounds()), std::move(distance), [=](const Place&, float d, const Brush& brush) {
                  return Paint{mix(kWallHu, kBileHu, brush.cover(d + 0.5F)), label};
                }});
 }

@@ -12,10 +12,10 @@ struct DuctTree {
   Tube outside;  ///< From the hilum to the papilla, with the cystic duct.
 };
 
-/// Adds bile ducts and hepatic arteries beside the portal veins, and where the body has one the tumour that closes the bile
-/// duct. Ducts have a share of their portal vein's radius, 0.3 normally and more when dilated; those thinner than half a
-/// millimetre are left out. A normal intrahepatic duct is at most 2 mm wide and at most 40 % of the portal vein beside it
-/// (Bressler et al., Radiology 164:21, 1987).
+/// Adds bile ducts and hepatic arteries beside the portal veins, and where the body has one the tumour that closes the
+/// bile duct. Ducts have a share of their portal vein's radius, 0.3 normally and more when dilated; those thinner than
+/// half a millimetre are left out. A normal intrahepatic duct is at most 2 mm wide and at most 40 % of the portal vein
+/// beside it (Bressler et al., Radiology 164:21, 1987).
 DuctTree add_bile_ducts(Anatomy& anatomy, const std::vector<Cone>& portal_veins);
 
 }  // namespace trocar::anatomy::phantom

@@ -15,7 +15,7 @@ namespace trocar::anatomy::phantom {
 namespace {
 
 constexpr float kDegree = std::numbers::pi_v<float> / 180.0F;
-constexpr int kTries = 20000;
+constexpr int kTries = 60000;
 constexpr float kLiverHu = 106.0F;
 constexpr std::size_t kLesions = 3;
 

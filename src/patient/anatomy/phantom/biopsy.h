@@ -34,13 +34,13 @@ struct BiopsyPlan {
 
 /// Selects positions for three lesions; a needle can reach the first one between two ribs of the right flank. Called
 /// before the liver's vessels grow, which avoid lesions and path. Margins are measured to the anatomy's surfaces.
-/// Error: no position in 20,000 tries.
+/// Error: no position in 60,000 tries.
 Result<BiopsyPlan> plan_biopsy(const Anatomy& anatomy, const PathMargins& margins = {});
 
 void add_lesions(Anatomy& anatomy, const BiopsyPlan& plan);
 
-/// Portal and hepatic veins inside the liver, grown by rule around lesions and path, with bile ducts and arteries beside
-/// the portal veins. Returns the ducts.
+/// Portal and hepatic veins inside the liver, grown by rule around lesions and path, with bile ducts and arteries
+/// beside the portal veins. Returns the ducts.
 DuctTree add_liver_vessels(Anatomy& anatomy, const BiopsyPlan& plan);
 
 }  // namespace trocar::anatomy::phantom

@@ -122,7 +122,8 @@ void add_colon(Anatomy& anatomy) {
   const auto jitter = [&](float mm) { return static_cast<float>(random.uniform(-mm, mm)); };
   const float dip = jitter(data.hanging_spread_mm);
   Course course = data.course;
-  for (std::size_t n = data.hanging_knots[0]; n <= data.hanging_knots[1]; ++n) course[n].p += Vec3f(0.0F, -belly_bulge_mm(anatomy.body.ascites_ml), dip);
+  for (std::size_t n = data.hanging_knots[0]; n <= data.hanging_knots[1]; ++n)
+    course[n].p += Vec3f(0.0F, -belly_bulge_mm(anatomy.body.ascites_ml), dip);
   for (Knot& knot : course) knot.p += Vec3f(jitter(data.spread.x()), jitter(data.spread.y()), jitter(data.spread.z()));
   add_loop(anatomy, "colon", chain(course), data.folds, [](const TubeHit& hit) {
     const float stool = 1.0F - smooth_step(170.0F, 220.0F, hit.arc_mm) + smooth_step(480.0F, 520.0F, hit.arc_mm);

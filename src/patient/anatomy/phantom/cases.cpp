@@ -90,7 +90,8 @@ Result<std::vector<CaseDescription>> load_cases(const std::filesystem::path& pat
     TROCAR_TRY(CaseDescription description, read_case(table));
     for (const CaseDescription& other : cases)
       if (other.name == description.name)
-        return fail("the name \"" + description.name + "\" occurs twice", table.where(), "give every case its own name");
+        return fail("the name \"" + description.name + "\" occurs twice", table.where(),
+                    "give every case its own name");
     cases.push_back(std::move(description));
   }
   return cases;

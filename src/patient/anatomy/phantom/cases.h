@@ -27,8 +27,8 @@ struct CaseDescription {
 /// File in the data folder.
 inline constexpr std::string_view kCasesFile = "phantoms/cases.toml";
 
-/// Reads data/phantoms/cases.toml. Errors name file and key: a missing or unknown key, a number out of range, a name that
-/// occurs twice.
+/// Reads data/phantoms/cases.toml. Errors name file and key: a missing or unknown key, a number out of range, a name
+/// that occurs twice.
 Result<std::vector<CaseDescription>> load_cases(const std::filesystem::path& path);
 
 /// A body drawn from the whole range of bodies, for one of the four tasks.

@@ -35,6 +35,18 @@ bool all_along(const Anatomy& anatomy, const Vec3f& entry, const Vec3f& target, 
   return true;
 }
 
+/// Outward normal of the skin.
+Vec3f skin_normal(const Anatomy& anatomy, const Vec3f& p) {
+  constexpr float kStepMm = 1.5F;
+  const auto skin = [&](const Vec3f& at) { return anatomy.torso.at(at).skin; };
+  Vec3f slope;
+  for (int a = 0; a < 3; ++a) {
+    const Vec3f step = kStepMm * Vec3f::Unit(a);
+    slope[a] = skin(p + step) - skin(p - step);
+  }
+  return slope.normalized();
+}
+
 // Lumbar puncture.
 
 constexpr float kNeedleClearanceMm = 1.2F;  ///< Axis of the needle to bone: a 22 G needle and a reserve of 0.8 mm.
@@ -72,7 +84,8 @@ Interspace best_line(const Anatomy& anatomy, const Obstacles& bones, int above) 
 
 // Ascites puncture.
 
-constexpr float kInwardMm = 12.0F;  ///< The tip in the fluid, behind the peritoneum.
+constexpr float kInwardMm = 10.0F;       ///< The tip in the fluid, behind the peritoneum.
+constexpr float kUsualNeedleMm = 68.0F;  ///< Reach of the usual needle; a thick wall takes a longer one.
 constexpr float kBowelClearanceMm = 8.0F, kEpigastricClearanceMm = 10.0F;
 constexpr float kFluidBeyondMm = 6.0F;
 
@@ -89,12 +102,7 @@ struct FluidRisks {
 /// A path straight into the skin at an entry, if fluid lies behind the wall and all risks keep their distance.
 std::optional<Vec3f> fluid_target(const Anatomy& anatomy, const FluidRisks& risks, const Vec3f& entry) {
   constexpr float kStepMm = 0.5F, kDeepest = 110.0F;
-  const float h = 1.5F;
-  const auto skin = [&](const Vec3f& p) { return anatomy.torso.at(p).skin; };
-  const Vec3f outward = Vec3f(skin(entry + Vec3f(h, 0, 0)) - skin(entry - Vec3f(h, 0, 0)),
-                              skin(entry + Vec3f(0, h, 0)) - skin(entry - Vec3f(0, h, 0)),
-                              skin(entry + Vec3f(0, 0, h)) - skin(entry - Vec3f(0, 0, h)))
-                            .normalized();
+  const Vec3f outward = skin_normal(anatomy, entry);
   const auto* fluid = anatomy.label_table.find("ascites");
   if (fluid == nullptr) return std::nullopt;
   float fluid_begin = -1.0F;
@@ -121,11 +129,29 @@ Vec3f beside_iliac_spine(const Anatomy& anatomy, float sign, float medial_mm, fl
   return {r * std::sin(sign * phi), r * std::cos(phi), z};
 }
 
+/// The first place that the usual needle reaches, else the first place.
+std::optional<NeedlePath> ascites_path(const Anatomy& anatomy, const FluidRisks& risks, float sign,
+                                       const std::vector<std::array<float, 3>>& offsets) {
+  const std::string name =
+      sign > 0.0F ? "ascites-puncture: left lower quadrant" : "ascites-puncture: right lower quadrant";
+  std::optional<NeedlePath> first;
+  for (const auto& [off, medial, cranial] : offsets) {
+    const Vec3f entry = beside_iliac_spine(anatomy, sign, medial, cranial);
+    const auto target = fluid_target(anatomy, risks, entry);
+    if (!target) continue;
+    NeedlePath path = path_of(anatomy, name, entry, *target);
+    if (path.line_P.length_mm() < kUsualNeedleMm) return path;
+    if (!first) first = std::move(path);
+  }
+  return first;
+}
+
 // Bile duct puncture.
 
 constexpr float kDuctMarginMm = 1.2F;  ///< Of the needle's axis from vessels.
 constexpr float kOrganMarginMm = 6.0F, kBoneMarginMm = 4.0F;
 constexpr float kLongestMm = 135.0F, kFromHilumMm = 28.0F;
+constexpr float kMostPosterior = 0.42F;  ///< The skin may face backwards by 25 degrees.
 constexpr float kLeastDuctMm = 1.1F;
 
 struct LiverRisks {
@@ -145,7 +171,7 @@ struct LiverRisks {
 };
 
 bool is_safe(const Anatomy& anatomy, const LiverRisks& risks, const Vec3f& entry, const Vec3f& target) {
-  if ((target - entry).norm() > kLongestMm) return false;
+  if ((target - entry).norm() * anatomy.scale() > kLongestMm) return false;
   bool was_in_liver = false;
   return all_along(anatomy, entry, target, 1.0F, [&](const Place& place, float) {
     const bool in_liver = risks.liver.distance(place) < 0.0F;
@@ -174,6 +200,7 @@ std::optional<NeedlePath> find_duct_path(const Anatomy& anatomy, const LiverRisk
     constexpr float kMostParallel = 0.9F;  // a needle along the duct would miss it
     if (std::abs(outwards.dot(along)) > kMostParallel) continue;
     const Vec3f entry = leave_body(anatomy, gate, outwards);
+    if (skin_normal(anatomy, entry).y() > kMostPosterior) continue;
     if (is_safe(anatomy, risks, entry, target)) return path_of(anatomy, name, entry, target);
   }
   return std::nullopt;
@@ -218,15 +245,7 @@ Result<std::vector<NeedlePath>> plan_ascites_paths(const Anatomy& anatomy) {
       offsets.push_back({std::hypot(medial - kUsualMm, cranial - kUsualMm), medial, cranial});
   std::sort(offsets.begin(), offsets.end());
   for (const float sign : {1.0F, -1.0F})
-    for (const auto& [off, medial, cranial] : offsets) {
-      const Vec3f entry = beside_iliac_spine(anatomy, sign, medial, cranial);
-      const auto target = fluid_target(anatomy, risks, entry);
-      if (!target) continue;
-      paths.push_back(path_of(
-          anatomy, sign > 0.0F ? "ascites-puncture: left lower quadrant" : "ascites-puncture: right lower quadrant",
-          entry, *target));
-      break;
-    }
+    if (auto path = ascites_path(anatomy, risks, sign, offsets)) paths.push_back(*std::move(path));
   if (paths.empty())
     return fail("no safe way to the free fluid of this body", "phantom", "choose another seed or more ascites");
   return paths;

@@ -6,8 +6,8 @@
 
 namespace trocar::anatomy::phantom {
 
-/// Free fluid in the abdomen: fills the lowest space of the peritoneal cavity for the patient's posture, and surrounds the
-/// bowel on its mesentery, which floats up.
+/// Free fluid in the abdomen: fills the lowest space of the peritoneal cavity for the patient's posture, and surrounds
+/// the bowel on its mesentery, which floats up.
 class FreeFluid {
  public:
   /// Adds the fluid before the organs, which cover it. Nothing if the body has no ascites.

@@ -37,7 +37,7 @@ class Landmarks {
     const VertebraData& data = lumbar ? anatomy_.data.lumbar_vertebra : anatomy_.data.thoracic_vertebra;
     const Cone& upper = data.spinous.front();
     const Cone& lower = data.spinous.back();
-    const float s = anatomy_.data.spine.height(level) + 0.5F * (upper.b.z() + lower.b.z());
+    const float s = anatomy_.data.spine.height(level) + 0.25F * (upper.a.z() + upper.b.z() + lower.a.z() + lower.b.z());
     const SpineCurve& spine = anatomy_.torso.spine();
     const Vec3f tip = spine.bend(Vec3f(0.0F, upper.b.y(), s));
     add("spinous process " + vertebra, leave_body(anatomy_, tip, spine.direction(Vec3f::UnitY(), s).normalized()));

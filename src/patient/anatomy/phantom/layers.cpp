@@ -1,6 +1,5 @@
 #include "anatomy/phantom/layers.h"
 
-
 #include <algorithm>
 #include <cmath>
 

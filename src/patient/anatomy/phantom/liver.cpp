@@ -57,7 +57,8 @@ Vec3f gallbladder_neck(const Anatomy& anatomy) {
 void add_liver(Anatomy& anatomy) {
   Random random = anatomy.random("liver");
   const LiverData& data = anatomy.data.liver;
-  const LiverShape shape{data, data.size.draw(random) * static_cast<float>(anatomy.body.liver_size), data.left_reach_mm.draw(random), data.tip_z_mm.draw(random),
+  const LiverShape shape{data, data.size.draw(random) * static_cast<float>(anatomy.body.liver_size),
+                         data.left_reach_mm.draw(random), data.tip_z_mm.draw(random),
                          kFluidMm * floating_share(anatomy.body)};
   const auto& noise = anatomy.noise;
   const auto kidney = anatomy.find("kidney_right").distance;  // makes the renal impression

@@ -13,13 +13,13 @@ constexpr float kDegree = std::numbers::pi_v<float> / 180.0F;
 /// The border of the iliac wing: height (mm) by the angle from the back's midline (deg). The crest is highest at the
 /// level of L4; it ends behind at the posterior superior iliac spine and in front at the anterior one.
 constexpr std::array<std::array<float, 2>, 8> kCrest{{{34.0F, -168.0F},
-                                                       {40.0F, -148.0F},
-                                                       {54.0F, -118.0F},
-                                                       {74.0F, -99.0F},
-                                                       {90.0F, -101.0F},
-                                                       {104.0F, -122.0F},
-                                                       {112.0F, -146.0F},
-                                                       {114.0F, -172.0F}}};
+                                                      {40.0F, -148.0F},
+                                                      {54.0F, -118.0F},
+                                                      {74.0F, -99.0F},
+                                                      {90.0F, -101.0F},
+                                                      {104.0F, -122.0F},
+                                                      {112.0F, -146.0F},
+                                                      {114.0F, -172.0F}}};
 constexpr float kWingBottom = -226.0F;
 constexpr float kOutwardMm = 17.0F;  ///< From the pelvic cavity, with the iliacus between.
 
@@ -57,11 +57,11 @@ float iliac_wing(const Place& place) {
 Tube lower_bones(float sign) {
   const auto at = [sign](float x, float y, float z) { return Vec3f(sign * x, y, z); };
   return Tube({{at(76, -20, -216), at(48, -46, -230), 9.0F, 6.5F},
-               {at(48, -46, -230), at(15, -62, -246), 6.5F, 8.5F},
-               {at(15, -62, -246), at(11, -60, -268), 9.0F, 7.5F},
+               {at(48, -46, -230), at(12, -62, -246), 6.5F, 8.5F},
+               {at(12, -62, -246), at(10, -60, -268), 9.0F, 7.5F},
                {at(90, 22, -226), at(80, 32, -262), 13.0F, 13.0F},
                {at(80, 32, -262), at(62, 26, -292), 14.0F, 14.0F},
-               {at(11, -60, -268), at(40, -20, -292), 6.5F, 7.0F}});
+               {at(10, -60, -268), at(40, -20, -292), 6.5F, 7.0F}});
 }
 
 Tube femur(float sign) {
@@ -86,7 +86,8 @@ void add_side(Anatomy& anatomy, float sign) {
                [=](const Place& place) {
                  const float head = (place.p - hip).norm();
                  const float socket = std::max(head - kSocketMm - 6.0F, 0.6F * (place.p.x() - hip.x()) * sign - 6.0F);
-                 const float solid = smooth_min(iliac_wing(place), smooth_min(lower.distance(place.p), socket, 6.0F), 7.0F);
+                 const float solid =
+                     smooth_min(iliac_wing(place), smooth_min(lower.distance(place.p), socket, 6.0F), 7.0F);
                  return smooth_max(solid, kHeadMm + 2.6F - head, 2.0F);
                },
                [=, &noise](const Place& place, float distance, const Brush& brush) {

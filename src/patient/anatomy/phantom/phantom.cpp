@@ -1,5 +1,7 @@
 #include "anatomy/phantom/phantom.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -7,10 +9,10 @@
 #include "anatomy/phantom/abdomen.h"
 #include "anatomy/phantom/cases.h"
 #include "anatomy/phantom/landmarks.h"
-#include "anatomy/phantom/torso_patient.h"
 #include "anatomy/phantom/layer_data.h"
 #include "anatomy/phantom/layers.h"
 #include "anatomy/phantom/render.h"
+#include "anatomy/phantom/torso_patient.h"
 #include "core/files/data_dir.h"
 
 namespace trocar::anatomy {
@@ -20,7 +22,7 @@ using namespace phantom;
 
 constexpr volume::Index3 kDefaultSize{380, 300, 240};
 constexpr std::uint64_t kSeedStep = 7919;
-constexpr std::string_view kVariant = "variant";
+constexpr double kLeastVoxel_mm = 0.5, kLargestVoxel_mm = 10.0;
 constexpr std::int64_t kLeastSize = 16;
 constexpr std::int64_t kGreatestSize = 1024;
 
@@ -32,7 +34,9 @@ volume::GridGeometry box_geometry(const Box& box, double scale, const volume::In
   const Vec3 extent = scale * (box.high - box.low).cast<double>();
   for (std::size_t n = 0; n < 3; ++n) {
     const auto a = static_cast<Eigen::Index>(n);
-    geometry.size[n] = resolution.size[n] > 0 ? resolution.size[n] : default_size[n];
+    const std::int64_t usual =
+        resolution.voxel_mm > 0.0 ? std::lround(extent[a] / resolution.voxel_mm) : default_size[n];
+    geometry.size[n] = resolution.size[n] > 0 ? resolution.size[n] : usual;
     geometry.spacing_mm[a] = extent[a] / static_cast<double>(geometry.size[n]);
     geometry.origin_P[a] = scale * static_cast<double>(box.low[a]) + 0.5 * geometry.spacing_mm[a];
   }
@@ -55,6 +59,9 @@ Status check_resolution(const PhantomResolution& resolution) {
       return fail_usage("a phantom of " + std::to_string(size) + " voxels along one axis cannot be made", "resolution",
                         "choose 16 to 1024 voxels, or 0 for the default");
   }
+  if (resolution.voxel_mm != 0.0 && !(resolution.voxel_mm >= kLeastVoxel_mm && resolution.voxel_mm <= kLargestVoxel_mm))
+    return fail_usage(fmt::format("a phantom with voxels of {} mm cannot be made", resolution.voxel_mm), "resolution",
+                      fmt::format("choose {} to {} mm", kLeastVoxel_mm, kLargestVoxel_mm));
   return {};
 }
 
@@ -142,6 +149,10 @@ const std::vector<PhantomInfo>& embedded_patients() {
   return kPatients;
 }
 
+std::string variant_task(std::uint64_t seed) {
+  return draw_case(seed).task;
+}
+
 std::vector<std::filesystem::path> phantom_data_files() {
   const std::filesystem::path folder = data_dir();
   return {folder / kStructuresFile, folder / kAbdomenFile, folder / kCasesFile, folder / kLayersFile};
@@ -150,7 +161,7 @@ std::vector<std::filesystem::path> phantom_data_files() {
 Result<VirtualPatient> generate_phantom(std::string_view name, std::uint64_t seed, const PhantomResolution& resolution,
                                         const Progress& progress) {
   TROCAR_TRY_STATUS(check_resolution(resolution));
-  if (name == kVariant) {
+  if (name == kVariantPatient) {
     const CaseDescription description = draw_case(seed);
     return generate_case(info_of(description), description, 1, resolution, progress);
   }

@@ -12,6 +12,12 @@
 
 namespace trocar::anatomy {
 
+/// Name of the procedural patient whose body is drawn from the whole range of bodies by its seed. Its task is the
+/// seed's: seed modulo 4 gives liver-biopsy, lumbar-puncture, ascites-puncture, ptcd.
+inline constexpr std::string_view kVariantPatient = "variant";
+/// Task of that patient.
+std::string variant_task(std::uint64_t seed);
+
 /// An embedded patient that the program generates itself.
 struct PhantomInfo {
   std::string name;  ///< "abdomen".
@@ -27,7 +33,8 @@ std::vector<std::filesystem::path> phantom_data_files();
 
 /// Sampling resolution of the phantom. The anatomy does not depend on it.
 struct PhantomResolution {
-  std::array<std::int64_t, 3> size{0, 0, 0};  ///< 0: the default grid (1 mm or finer).
+  std::array<std::int64_t, 3> size{0, 0, 0};  ///< 0: by voxel_mm.
+  double voxel_mm = 0.0;  ///< Edge of the voxels, about, 0.5..10; 0: the default grid (1 mm or finer).
 };
 
 /// Generates an embedded patient; bit-identical for the same name, seed and resolution, for any number of threads.

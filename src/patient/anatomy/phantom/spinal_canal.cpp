@@ -76,12 +76,19 @@ Box canal_box(float half_width) {
   return box;
 }
 
+/// How far the tips of the spinous processes, and below them the crest of the sacrum, lie behind the middle line.
+float process_tip(float s_mm) {
+  constexpr float kLumbar = 60.5F, kFirstSacral = 40.0F, kLastSacral = 22.0F;
+  const float upper = mix(kLumbar, kFirstSacral, smooth_step(-142.0F, -166.0F, s_mm));
+  return mix(upper, kLastSacral, smooth_step(-170.0F, -240.0F, s_mm));
+}
+
 void add_ligaments(Anatomy& anatomy) {
   const SpineData& spine = anatomy.data.spine;
-  const float tip = 60.5F;
-  const auto between_processes = [tip, &spine](const Vec3f& u) {
+  const auto between_processes = [&spine](const Vec3f& u) {
+    const float tip = process_tip(u.z());
     const float from = canal_section(spine, u.z()).y + canal_section(spine, u.z()).radius_y + 1.0F;
-    return std::max({std::abs(u.x()) - 2.6F, from - u.y(), u.y() - tip + 3.0F, -150.0F - u.z()});
+    return std::max({std::abs(u.x()) - 2.6F, from - u.y(), u.y() - tip + 3.0F, -166.0F - u.z()});
   };
   anatomy.add_plain(
       "interspinous_ligament", canal_box(3.0F), [=](const Place& place) { return between_processes(place.spine); },
@@ -89,8 +96,9 @@ void add_ligaments(Anatomy& anatomy) {
   // Behind the tips of the spinous processes there is no muscle, only fat between the two halves of the back.
   anatomy.add_plain(
       "fat", canal_box(18.0F),
-      [tip](const Place& place) {
+      [](const Place& place) {
         const Vec3f& u = place.spine;
+        const float tip = process_tip(u.z());
         const float width = 7.0F + 0.45F * std::max(u.y() - tip, 0.0F);
         const float wedge = smooth_max(0.85F * (std::abs(u.x()) - width), tip - 1.0F - u.y(), 3.0F);
         return std::max(wedge, place.skin + 2.5F);
@@ -98,9 +106,9 @@ void add_ligaments(Anatomy& anatomy) {
       kFatHu - 6.0F, 10.0F, 6.0F);
   anatomy.add_plain(
       "supraspinous_ligament", canal_box(4.0F),
-      [tip](const Place& place) {
+      [](const Place& place) {
         const Vec3f& u = place.spine;
-        return std::max(elliptic_cylinder(u.x(), u.y() - tip + 0.5F, 3.6F, 3.2F), -148.0F - u.z());
+        return std::max(elliptic_cylinder(u.x(), u.y() - process_tip(u.z()) + 0.5F, 3.6F, 3.2F), -166.0F - u.z());
       },
       kLigamentHu + 10.0F, 6.0F, 6.0F);
   anatomy.add_plain(

@@ -192,6 +192,7 @@ void add_vertebrae(Anatomy& anatomy) {
 }
 
 void add_sacrum(Anatomy& anatomy) {
+  if (anatomy.torso.box().low.z() > kSacrumTop + 20.0F) return;
   const Sacrum sacrum(anatomy.data.spine);
   const auto& noise = anatomy.noise;
   const std::uint8_t label = anatomy.label("sacrum");

@@ -41,7 +41,8 @@ float inclination(const std::vector<SpineInclination>& knots, float s, float fle
 
 }  // namespace
 
-SpineCurve::SpineCurve(const Vec3f& anchor_P, const std::vector<SpineInclination>& inclinations, const SpineBend& bend) {
+SpineCurve::SpineCurve(const Vec3f& anchor_P, const std::vector<SpineInclination>& inclinations,
+                       const SpineBend& bend) {
   const auto count = static_cast<std::size_t>(std::lround((kHighest - kLowest) / kStep)) + 1;
   frames_.resize(count);
   const auto s_of = [](std::size_t n) { return kLowest + kStep * static_cast<float>(n); };
@@ -98,8 +99,8 @@ Vec3f SpineCurve::direction(const Vec3f& along, float s_mm) const {
 }
 
 float SpineCurve::y_at(float z) const {
-  const auto above =
-      std::lower_bound(frames_.begin(), frames_.end(), z, [](const Frame& f, float height) { return f.origin.z() < height; });
+  const auto above = std::lower_bound(frames_.begin(), frames_.end(), z,
+                                      [](const Frame& f, float height) { return f.origin.z() < height; });
   if (above == frames_.begin()) return frames_.front().origin.y();
   if (above == frames_.end()) return frames_.back().origin.y();
   const Frame &a = *(above - 1), &b = *above;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -8,10 +9,10 @@
 
 #include "anatomy/known_structures.h"
 #include "anatomy/label_table.h"
-#include "anatomy/posture.h"
 #include "anatomy/phantom/phantom_data.h"
 #include "anatomy/phantom/shapes.h"
 #include "anatomy/phantom/torso.h"
+#include "anatomy/posture.h"
 #include "core/result.h"
 
 namespace trocar::anatomy::phantom {
@@ -56,7 +57,7 @@ struct Anatomy {
   std::uint64_t seed;
   Torso torso;
   ValueNoise noise;
-  std::vector<Structure> structures;
+  std::deque<Structure> structures;  ///< References to them stay valid when others are added.
   LabelTable label_table;
 
   /// Size of the patient, 1 for the reference body in whose coordinates the structures are given.

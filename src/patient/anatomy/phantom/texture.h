@@ -6,9 +6,9 @@
 
 namespace trocar::anatomy::phantom {
 
-/// Adds the quantum noise of a scanner: Gaussian with sigma_hu half way to the middle of the body, a fifth less at the skin
-/// and a fifth more in the middle, correlated over about 1.3 voxels [assumed: a soft kernel]. HU stay within -1024..3071.
-/// Parallel; a pure function of seed and voxel index.
+/// Adds the quantum noise of a scanner: Gaussian with sigma_hu half way to the middle of the body, a fifth less at the
+/// skin and a fifth more in the middle, correlated over about 1.3 voxels [assumed: a soft kernel]. HU stay within
+/// -1024..3071. Parallel; a pure function of seed and voxel index.
 void add_scanner_noise(volume::CtGrid& ct, const volume::FloatGrid& skin_distance_mm, std::uint64_t seed,
                        double sigma_hu);
 

@@ -22,13 +22,14 @@ constexpr float kPosteriorExponent = 2.6F;
 constexpr SeedRange kWavePhases{-3.14, 3.14};
 constexpr float kWaveTwistPerMm = 0.012F;  ///< rad.
 constexpr float kFlexedFurrow = 0.8F;      ///< Share of the furrow that is gone when the back is bent.
+constexpr float kLeastCavityMm = 30.0F;    ///< Radius of the cavity; the pelvis is narrow.
 constexpr float kNavelRadiusMm = 110.0F;   ///< Of the body there: mm a rad.
 
 // Subcutaneous fat grows with the body mass index: about 12 % of the reference for each kg/m^2 [assumed].
 constexpr double kReferenceIndex = 24.3;
 constexpr double kFatPerIndex = 0.12;
 constexpr float kLeastFatness = 0.35F, kMostFatness = 3.4F;
-constexpr float kLeastFatMm = 3.0F;  ///< With the skin.
+constexpr float kLeastFatMm = 3.0F;   ///< With the skin.
 constexpr float kFemaleFat = 0.2F;    ///< Women have more of it.
 constexpr float kFemaleHipMm = 7.0F;  ///< Wider on each side.
 /// Where the reference has hardly any fat, in the middle of the back, a heavier body still has some.
@@ -133,7 +134,8 @@ float TorsoContours::reference_radius(float phi, float z) const {
   float r = side > 0.5F * kPi ? anterior : posterior;
   const float x = r * std::sin(side);
   // The furrow over the spine between the erector muscles, and shallow furrows beside the rectus.
-  const float furrow = (skin.spinal_furrow.height - skin.spinal_furrow_chest_z.at(z)) * (1.0F - kFlexedFurrow * flexion_);
+  const float furrow =
+      (skin.spinal_furrow.height - skin.spinal_furrow_chest_z.at(z)) * (1.0F - kFlexedFurrow * flexion_);
   r -= (furrow + pelvis.cleft_z.at(z)) * (side < 0.5F * kPi ? skin.spinal_furrow.shape(x) : 0.0F);
   r += skin.erector.at(side) + pelvis.buttock_z.at(z) * pelvis.buttock.shape(side);
   if (side > 0.5F * kPi) {
@@ -187,7 +189,7 @@ float TorsoContours::wall_radius(float phi, float z) const {
 }
 
 float TorsoContours::cavity_radius(float phi, float z) const {
-  return wall_radius(phi, z) - muscle_mm(phi, z);
+  return smooth_max(wall_radius(phi, z) - muscle_mm(phi, z), kLeastCavityMm, 24.0F);
 }
 
 float TorsoContours::diaphragm_height(float x, float y, float cavity) const {
@@ -207,10 +209,7 @@ Vec3f TorsoContours::on_cavity(float phi, float z, float outward_mm) const {
 }
 
 Torso::Torso(std::uint64_t seed, const TorsoData& data, const BodyParameters& body, SpineCurve spine, const Box& box)
-    : contours_(seed, data, body),
-      spine_(std::move(spine)),
-      box_(box),
-      corner_(box.low - Vec3f::Constant(kMargin)) {
+    : contours_(seed, data, body), spine_(std::move(spine)), box_(box), corner_(box.low - Vec3f::Constant(kMargin)) {
   const Vec3f extent = box.high - box.low + Vec3f::Constant(2.0F * kMargin);
   for (int a = 0; a < 3; ++a)
     size_[static_cast<std::size_t>(a)] = static_cast<std::int64_t>(std::ceil(extent[a] / kLatticeMm)) + 1;

@@ -7,6 +7,23 @@
 
 namespace trocar::anatomy::phantom {
 
+namespace {
+
+constexpr float kLongestBiopsyMm = 132.0F;  ///< In the patient's size; the task allows 140.
+
+/// Lesions and the way to the first, where the case is a biopsy; otherwise none, and a path that is in nobody's way.
+Result<BiopsyPlan> lesions_of(Anatomy& anatomy, const CaseDescription& description) {
+  if (description.task == "liver-biopsy") {
+    anatomy.data.lesions.longest_path_mm = kLongestBiopsyMm / anatomy.scale();
+    return plan_biopsy(anatomy);
+  }
+  BiopsyPlan none;
+  none.path.line_P = {Vec3::Constant(1e5), Vec3::Constant(1e5 + 1.0)};
+  return none;
+}
+
+}  // namespace
+
 Result<TorsoPlan> build_torso(Anatomy& anatomy, const CaseDescription& description) {
   add_trunk(anatomy);
   add_thorax(anatomy);
@@ -21,7 +38,7 @@ Result<TorsoPlan> build_torso(Anatomy& anatomy, const CaseDescription& descripti
   add_liver(anatomy);
   add_great_vessels(anatomy);
   add_skeleton(anatomy);
-  TROCAR_TRY(BiopsyPlan biopsy, plan_biopsy(anatomy));
+  TROCAR_TRY(const BiopsyPlan biopsy, lesions_of(anatomy, description));
   const DuctTree ducts = add_liver_vessels(anatomy, biopsy);
   add_lesions(anatomy, biopsy);
   TROCAR_TRY_STATUS(anatomy.check_labels());

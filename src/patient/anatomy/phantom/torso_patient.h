@@ -15,8 +15,8 @@ struct TorsoPlan {
   std::vector<NeedlePath> paths;  ///< Expert paths of the case's task.
 };
 
-/// Fills an empty anatomy with a torso from T8 to the sacrum for a case. Errors: no safe path for the task in this body;
-/// an unknown structure name.
+/// Fills an empty anatomy with a torso from T8 to the sacrum for a case. Errors: no safe path for the task in this
+/// body; an unknown structure name.
 Result<TorsoPlan> build_torso(Anatomy& anatomy, const CaseDescription& description);
 
 }  // namespace trocar::anatomy::phantom

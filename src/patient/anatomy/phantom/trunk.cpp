@@ -88,8 +88,8 @@ void add_wall(Anatomy& anatomy) {
   // The linea alba is tendon between the two recti.
   anatomy.add({"linea_alba", Box{Vec3f(-14.0F, -250.0F, -255.0F), Vec3f(14.0F, -50.0F, 88.0F)},
                [](const Place& place) {
-                 return std::max({std::abs(place.p.x()) - 4.5F - 0.02F * std::max(place.p.z() + 114.0F, -100.0F), place.wall + 2.5F,
-                                  -(place.cavity + kLiningMm) + 1.5F});
+                 return std::max({std::abs(place.p.x()) - 4.5F - 0.02F * std::max(place.p.z() + 114.0F, -100.0F),
+                                  place.wall + 2.5F, -(place.cavity + kLiningMm) + 1.5F});
                },
                [=](const Place& place, float, const Brush& brush) {
                  const float middle = std::abs(place.wall + 5.0F) - 1.4F;

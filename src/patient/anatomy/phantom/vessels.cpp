@@ -96,7 +96,8 @@ void add_tree(Anatomy& anatomy, const std::string& name, const Tube& tree, float
 
 void add_great_vessels(Anatomy& anatomy) {
   const AbdomenData& data = anatomy.data;
-  add_vessel(anatomy, "aorta", with_branches(aorta_course(data.aorta, anatomy.torso.spine()), data.aorta.branches), kArteryHu);
+  add_vessel(anatomy, "aorta", with_branches(aorta_course(data.aorta, anatomy.torso.spine()), data.aorta.branches),
+             kArteryHu);
   add_vessel(anatomy, "inferior_vena_cava", with_branches(data.vena_cava.course, data.vena_cava.branches), kVeinHu);
   add_vessel(anatomy, "portal_vein_and_splenic_vein", with_branches(data.portal_vein.course, data.portal_vein.branches),
              kPortalHu);

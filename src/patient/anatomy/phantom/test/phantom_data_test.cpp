@@ -41,9 +41,9 @@ TEST(AbdomenData, HasTheNumbersOfTheFile) {
   EXPECT_EQ(data->ribs.end_deg(5), 140.0F);
   EXPECT_EQ(data->ribs.end_deg(12), 50.0F);
   EXPECT_EQ(data->ribs.outward_mm, 6.3F);
-  EXPECT_EQ(data->colon.course.size(), 15U);
-  EXPECT_EQ(data->colon.hanging_knots, (std::array<std::size_t, 2>{4, 7}));
-  EXPECT_EQ(data->aorta.branches.size(), 5U);
+  EXPECT_EQ(data->colon.course.size(), 27U);
+  EXPECT_EQ(data->colon.hanging_knots, (std::array<std::size_t, 2>{6, 9}));
+  EXPECT_EQ(data->aorta.branches.size(), 9U);
   EXPECT_EQ(data->portal_vein.course.back().p, data->liver.hilum);
   EXPECT_EQ(data->gallbladder.x_mm.low, -54.0);
   EXPECT_EQ(data->lumbar_vertebra.spinous.size(), 4U);
@@ -87,8 +87,8 @@ TEST(AbdomenData, WrongNumbersAreRefusedWithTheirPlace) {
            {"[62.0, 18.0, 56.0, 26.0]", "[62.0, 18.0, 56.0]", "row 1 is not"},
            {"[62.0, 18.0, 56.0, 26.0]", "[62.0, 18.0, 56.0, -26.0]", "stomach.course"},
            {"[6.0, 152.0, 84.0, 173.0, 112.0]", "[4.0, 152.0, 84.0, 173.0, 112.0]", "no such rib"},
-           {"hanging_knots = [5, 8]", "hanging_knots = [5, 16]", "no such knots"},
-           {"hanging_knots = [5, 8]", "hanging_knots = [0, 8]", "no such knots"},
+           {"hanging_knots = [7, 10]", "hanging_knots = [7, 28]", "no such knots"},
+           {"hanging_knots = [7, 10]", "hanging_knots = [0, 10]", "no such knots"},
            {"columns = 6", "columns = 6.5", "a whole number"},
            {"columns = 6", "columns = 3", "too short"},
            {"radius_spread_mm = 2.8", "radius_spread_mm = 11.0", "thinner than nothing"},

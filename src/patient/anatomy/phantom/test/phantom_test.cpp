@@ -136,7 +136,8 @@ TEST(Phantom, HidesLesionsAndVesselsInsideTheLiver) {
     for (const std::string& neighbour : neighbours_of(medium_patient(), name))
       EXPECT_TRUE(inside.contains(neighbour)) << name << " touches " << neighbour;
   std::set<std::string> around_vessels = inside;
-  around_vessels.insert({"inferior_vena_cava", "portal_vein_and_splenic_vein", "fat", "aorta"});  // at the gates
+  around_vessels.insert({"bile_ducts", "hepatic_artery", "inferior_vena_cava", "portal_vein_and_splenic_vein", "fat",
+                         "aorta"});  // at the gates
   for (const std::string name : {"portal_vein", "hepatic_veins"})
     for (const std::string& neighbour : neighbours_of(medium_patient(), name))
       EXPECT_TRUE(around_vessels.contains(neighbour)) << name << " touches " << neighbour;
