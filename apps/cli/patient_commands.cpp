@@ -16,21 +16,41 @@
 #include "io/dicom/dicom_folder.h"
 #include "io/patient/build_from_files.h"
 #include "io/patient/patient_folder.h"
+#include "io/patient/patient_thumbnail.h"
 #include "number_option.h"
 #include "patient_summary.h"
+#include "patient_thumbnail.h"
+#include "png/png_file.h"
 #include "surface/extract_surface.h"
 
 namespace trocar::cli {
 namespace {
 namespace fs = std::filesystem;
 
+config::Json list_json() {
+  config::Json patients = config::Json::array();
+  for (const anatomy::PhantomInfo& info : anatomy::embedded_patients()) {
+    const auto thumbnail = io::find_thumbnail(info.name);
+    patients.push_back({{"name", info.name},
+                        {"description", info.description},
+                        {"briefing", info.briefing},
+                        {"tasks", info.tasks},
+                        {"difficulty", info.difficulty > 0 ? config::Json(info.difficulty) : config::Json()},
+                        {"thumbnail", thumbnail ? config::Json(thumbnail->string()) : config::Json()}});
+  }
+  return {{"patients", patients}};
+}
+
+void print_listed(const anatomy::PhantomInfo& info) {
+  const std::string difficulty = info.difficulty > 0 ? fmt::format("{} of 5", info.difficulty) : "-";
+  fmt::print("  {:<14} {:<7} {}\n", info.name, difficulty, info.description);
+  if (const auto thumbnail = io::find_thumbnail(info.name))
+    fmt::print("  {:<14} {:<7} {}\n", "", "", thumbnail->string());
+}
+
 Status list_patients(bool is_json) {
   if (is_json) {
-    config::Json patients = config::Json::array();
-    for (const anatomy::PhantomInfo& info : anatomy::embedded_patients()) {
-      patients.push_back({{"name", info.name}, {"description", info.description}, {"tasks", info.tasks}});
-    }
-    print_json({{"patients", patients}});
+    print_json(list_json());
     return {};
   }
   std::map<std::string, std::vector<const anatomy::PhantomInfo*>> by_task;
@@ -38,12 +58,12 @@ Status list_patients(bool is_json) {
     for (const std::string& task : info.tasks) by_task[task].push_back(&info);
   }
   for (const auto& [task, patients] : by_task) {
-    fmt::print("{}\n", task);
-    for (const anatomy::PhantomInfo* info : patients) fmt::print("  {:<14} {}\n", info->name, info->description);
+    fmt::print("{}: name, difficulty, description, thumbnail\n", task);
+    for (const anatomy::PhantomInfo* info : patients) print_listed(*info);
   }
   fmt::print("without a task\n");
   for (const anatomy::PhantomInfo& info : anatomy::embedded_patients()) {
-    if (info.tasks.empty()) fmt::print("  {:<14} {}\n", info.name, info.description);
+    if (info.tasks.empty()) print_listed(info);
   }
   return {};
 }
@@ -51,8 +71,11 @@ Status list_patients(bool is_json) {
 /// Writes the folder and returns the surfaces in it.
 Result<std::vector<anatomy::NamedMesh>> save_with_surfaces(const anatomy::VirtualPatient& patient, const fs::path& out,
                                                            const Progress& progress,
-                                                           const std::vector<io::PatientExtra>& extras = {}) {
-  auto meshes = surface::extract_surfaces(patient, {}, part_of(progress, 0.0, 0.6));
+                                                           std::vector<io::PatientExtra> extras = {}) {
+  auto meshes = surface::extract_surfaces(patient, {}, part_of(progress, 0.0, 0.5));
+  report(progress, "drawing the thumbnail", 0.5);
+  TROCAR_TRY(const volume::RgbImage thumbnail, make_thumbnail(patient, meshes, slices::find_thumbnail_region(patient)));
+  extras.push_back({io::kThumbnailFile, png::encode_png(thumbnail)});
   TROCAR_TRY_STATUS(io::save_patient(patient, meshes, out, part_of(progress, 0.6, 1.0), extras));
   return meshes;
 }
@@ -162,7 +185,7 @@ void add_patient_commands(CLI::App& program, Action& action) {
   patient->require_subcommand(1);
   patient->footer("Example:\n  trocar patient generate abdomen --out my_patient\n");
 
-  CLI::App* list = patient->add_subcommand("list", "List embedded patients and their tasks");
+  CLI::App* list = patient->add_subcommand("list", "List embedded patients: task, difficulty from 1 to 5, thumbnail");
   list->footer("Example:\n  trocar patient list\n");
   const auto is_json = std::make_shared<bool>(false);
   list->add_flag("--json", *is_json, "Print one JSON object");
@@ -238,6 +261,7 @@ void add_patient_commands(CLI::App& program, Action& action) {
 
   add_patient_fetch_command(*patient, action);
   add_patient_variants_command(*patient, action);
+  add_thumbnail_command(*patient, action);
   add_patient_report_commands(*patient, action);
 }
 

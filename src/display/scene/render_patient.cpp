@@ -72,7 +72,8 @@ Result<volume::RgbImage> render_patient(const anatomy::VirtualPatient& patient,
   }
   for (const anatomy::NeedlePath& path : options.paths) add_needle(*renderer, path.line_P, points_P);
   if (points_P.empty()) return fail("the patient has no surfaces", patient.name, "see trocar patient check");
-  detail::apply(fit_camera(points_P, options.camera, static_cast<double>(options.columns) / options.rows), *renderer);
+  const double aspect = static_cast<double>(options.columns) / options.rows;
+  detail::apply(options.view ? *options.view : fit_camera(points_P, options.camera, aspect), *renderer);
   renderer->SetUseDepthPeeling(1);
   renderer->SetMaximumNumberOfPeels(kPeels);
   renderer->SetOcclusionRatio(0.01);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "anatomy/patient.h"
@@ -13,6 +14,7 @@ struct SceneOptions {
   int columns = 1000;  ///< Range 16..8192.
   int rows = 900;      ///< Range 16..8192.
   CameraPreset camera = CameraPreset::kRightAnteriorOblique;
+  std::optional<CameraView> view = {};     ///< Instead of `camera`, which shows all surfaces.
   double skin_opacity = 0.15;              ///< Range 0..1; at 0 the skin is not drawn.
   std::vector<anatomy::NeedlePath> paths;  ///< Drawn as needles that end at their targets.
 };

@@ -4,6 +4,9 @@
 
 #include "cases/prepare_case.h"
 #include "io/patient/patient_folder.h"
+#include "io/patient/patient_thumbnail.h"
+#include "png/png_file.h"
+#include "slices/thumbnail.h"
 
 namespace trocar::case_builder {
 namespace {
@@ -66,7 +69,9 @@ Status save_case(const CaseDraft& draft, DraftPatient& patients, const SaveOptio
   if (draft.name.empty()) return fail_usage("the case has no name", {}, "give it one");
   TROCAR_TRY_STATUS(check_target(options));
   const anatomy::VirtualPatient patient = patient_of(draft, patients);
-  std::vector<io::PatientExtra> extras{{tasks::kOwnTaskFile, tasks::task_to_toml(draft.task, draft.base)}};
+  const volume::RgbImage thumbnail = slices::make_slice_thumbnail(patient, slices::find_thumbnail_region(patient));
+  std::vector<io::PatientExtra> extras{{tasks::kOwnTaskFile, tasks::task_to_toml(draft.task, draft.base)},
+                                       {io::kThumbnailFile, png::encode_png(thumbnail)}};
   if (!draft.imported->own_tissues.empty()) extras.push_back({cases::kOwnTissueFile, draft.imported->own_tissues});
   const std::optional<io::RecordedUltrasound> ultrasound = ultrasound_of(draft);
   const auto write = [&](const fs::path& to) {

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <vector>
+
+#include "anatomy/patient.h"
+#include "commands.h"
+#include "core/result.h"
+#include "slices/thumbnail.h"
+#include "volume/image.h"
+
+namespace trocar::cli {
+
+/// Small picture of a patient: the region in 3D from the side of the needle path, the skin translucent, with a coronal
+/// slice in the corner. Without an X server: slices.
+Result<volume::RgbImage> make_thumbnail(const anatomy::VirtualPatient& patient,
+                                        const std::vector<anatomy::NamedMesh>& meshes,
+                                        const slices::ThumbnailRegion& region);
+
+/// trocar patient thumbnail.
+void add_thumbnail_command(CLI::App& patient, Action& action);
+
+}  // namespace trocar::cli
