@@ -13,9 +13,8 @@
 #include <QVBoxLayout>
 #include <algorithm>
 
-#include "anatomy/phantom/phantom.h"
 #include "core/files/data_dir.h"
-#include "io/patient/patient_folder.h"
+#include "pages/patient_cards.h"
 #include "panels/device_choice.h"
 #include "tasks/needle.h"
 #include "tasks/task.h"
@@ -25,7 +24,6 @@ namespace trocar::trainer {
 namespace {
 
 constexpr int kSource = Qt::UserRole;
-constexpr int kText = Qt::UserRole + 1;
 constexpr int kMostFolders = 8;
 
 constexpr std::pair<Difficulty, const char*> kHelpLevels[] = {
@@ -43,16 +41,7 @@ QListWidgetItem* find_item(const QListWidget& list, const QString& source) {
 void add_item(QListWidget& list, const QString& title, const QString& source, const QString& text) {
   auto* item = new QListWidgetItem(title, &list);
   item->setData(kSource, source);
-  item->setData(kText, text);
   item->setToolTip(text);
-}
-
-/// Adds a patient folder with the name stored in it.
-void add_folder(QListWidget& list, const QString& folder) {
-  const auto title = io::load_patient_title(to_std(folder));
-  if (!title) return add_item(list, folder.section('/', -1), folder, folder);
-  const QString text = to_qt(title->description);
-  add_item(list, to_qt(title->name), folder, text.isEmpty() ? folder : text + QLatin1Char('\n') + folder);
 }
 
 QListWidget* make_list(const char* name, const QString& title) {
@@ -69,12 +58,12 @@ StartPage::StartPage(QWidget* parent) : QWidget(parent) {
   auto* page = new QVBoxLayout(this);
   page->setContentsMargins(40, 24, 40, 24);
   page->setSpacing(16);
-  page->addWidget(make_label(tr("Select a task"), "title"));
+  page->addWidget(make_label(tr("Select a task and a patient"), "title"));
   page->addWidget(make_recovery());
   auto* columns = new QHBoxLayout;
   columns->setSpacing(16);
-  columns->addWidget(make_tasks(), 4);
-  columns->addWidget(make_patients(), 5);
+  columns->addWidget(make_tasks(), 3);
+  columns->addWidget(make_patients(), 8);
   columns->addWidget(make_help_choice(), 4);
   page->addLayout(columns, 1);
 
@@ -94,6 +83,7 @@ StartPage::StartPage(QWidget* parent) : QWidget(parent) {
     fill_needles();
   });
   connect(patients_, &QListWidget::currentRowChanged, this, [this] { show_patient_details(); });
+  connect(patients_, &QListWidget::itemDoubleClicked, start_, &QPushButton::click);
 
   const QSettings settings;
   const auto text = [&](const char* key, const std::string& otherwise) {
@@ -129,11 +119,13 @@ QWidget* StartPage::make_tasks() {
 QWidget* StartPage::make_patients() {
   QBoxLayout* content = nullptr;
   QFrame* card = make_card(tr("Patient"), content);
-  patients_ = make_list("patients", tr("Patient"));
+  patients_ = new PatientCards;
+  patients_->setObjectName(QStringLiteral("patients"));
+  patients_->setAccessibleName(tr("Patient"));
   content->addWidget(patients_, 1);
   patient_text_ = make_label({}, "dim");
   patient_text_->setWordWrap(true);
-  patient_text_->setMinimumHeight(patient_text_->fontMetrics().lineSpacing() * 3);
+  patient_text_->setMinimumHeight(patient_text_->fontMetrics().lineSpacing() * 2);
   patient_text_->setAlignment(Qt::AlignTop);
   content->addWidget(patient_text_);
   auto* open =
@@ -241,29 +233,24 @@ void StartPage::fill_needles() {
 /// Embedded patients that support the selected task, and folders opened earlier.
 void StartPage::fill_patients() {
   const QListWidgetItem* task = tasks_->currentItem();
-  const QListWidgetItem* before = patients_->currentItem();
-  const QString chosen = before == nullptr ? QString() : before->data(kSource).toString();
+  std::vector<PatientEntry> entries;
+  if (task != nullptr) entries = embedded_entries(task->data(kSource).toString(), task->text());
+  const QSettings settings;
+  for (const QString& folder : settings.value(QStringLiteral("start/folders")).toStringList())
+    entries.push_back(folder_entry(folder));
   {
     const QSignalBlocker blocked(patients_);
-    patients_->clear();
-    const std::string name = task == nullptr ? std::string() : to_std(task->data(kSource).toString());
-    for (const anatomy::PhantomInfo& info : anatomy::embedded_patients()) {
-      if (std::find(info.tasks.begin(), info.tasks.end(), name) == info.tasks.end()) continue;
-      add_item(*patients_, to_qt(info.name) + tr("  · embedded"), to_qt(info.name), to_qt(info.description));
-    }
-    const QSettings settings;
-    for (const QString& folder : settings.value(QStringLiteral("start/folders")).toStringList())
-      add_folder(*patients_, folder);
-    QListWidgetItem* again = find_item(*patients_, chosen);
-    patients_->setCurrentItem(again != nullptr ? again : patients_->item(0));
+    patients_->show_patients(entries);
   }
   show_patient_details();
 }
 
 void StartPage::show_patient_details() {
-  const QListWidgetItem* patient = patients_->currentItem();
-  patient_text_->setText(patient == nullptr ? tr("No patient for this task yet: open a folder.")
-                                            : patient->data(kText).toString());
+  const PatientEntry* patient = patients_->chosen();
+  QStringList lines{tr("No patient for this task yet: open a folder.")};
+  if (patient != nullptr) lines = QStringList{patient->description, patient->details};
+  lines.removeAll(QString());
+  patient_text_->setText(lines.join(QLatin1Char('\n')));
   start_->setEnabled(patient != nullptr && tasks_->currentItem() != nullptr);
 }
 
@@ -280,7 +267,7 @@ void StartPage::add_patient(const QString& folder) {
   while (folders.size() > kMostFolders) folders.removeLast();
   settings.setValue(QStringLiteral("start/folders"), folders);
   fill_patients();
-  patients_->setCurrentItem(find_item(*patients_, folder));
+  patients_->choose(folder);
 }
 
 void StartPage::choose(const TrainerChoice& choice) {
@@ -288,12 +275,11 @@ void StartPage::choose(const TrainerChoice& choice) {
   tasks_->setCurrentItem(task != nullptr ? task : tasks_->item(0));
   fill_patients();
   fill_needles();
-  QListWidgetItem* patient = find_item(*patients_, to_qt(choice.patient));
-  if (patient == nullptr && choice.patient.find('/') != std::string::npos) {
-    add_folder(*patients_, to_qt(choice.patient));
-    patient = patients_->item(patients_->count() - 1);
+  const QString patient = to_qt(choice.patient);
+  if (!patients_->choose(patient) && patient.contains(QLatin1Char('/'))) {
+    patients_->add_patient(folder_entry(patient));
+    patients_->choose(patient);
   }
-  if (patient != nullptr) patients_->setCurrentItem(patient);
   if (auto* button = difficulty_->button(static_cast<int>(choice.difficulty))) button->setChecked(true);
   const auto select = [](QComboBox& box, const std::string& value) {
     box.setCurrentIndex(std::max(0, box.findData(to_qt(value))));
@@ -307,7 +293,7 @@ void StartPage::choose(const TrainerChoice& choice) {
 TrainerChoice StartPage::choice() const {
   TrainerChoice choice;
   if (const auto* task = tasks_->currentItem()) choice.task = to_std(task->data(kSource).toString());
-  if (const auto* patient = patients_->currentItem()) choice.patient = to_std(patient->data(kSource).toString());
+  if (const PatientEntry* patient = patients_->chosen()) choice.patient = to_std(patient->source);
   choice.needle_device = devices_->needle();
   choice.probe_device = devices_->probe();
   choice.difficulty = static_cast<Difficulty>(difficulty_->checkedId());

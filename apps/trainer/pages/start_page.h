@@ -14,9 +14,10 @@ class QPushButton;
 namespace trocar::trainer {
 
 class DeviceChoice;
+class PatientCards;
 
-/// Start page: task, patient, level of help, device of each tool. Keys: Enter starts, Ctrl+O opens a patient folder.
-/// The last selection is stored.
+/// Start page: task, patients of the task as cards, level of help, device of each tool. Keys: Enter starts, Ctrl+O
+/// opens a patient folder. The last selection is stored.
 class StartPage : public QWidget {
   Q_OBJECT
 
@@ -48,7 +49,7 @@ class StartPage : public QWidget {
   void save() const;
 
   QListWidget* tasks_ = nullptr;
-  QListWidget* patients_ = nullptr;
+  PatientCards* patients_ = nullptr;
   QLabel* patient_text_ = nullptr;
   QButtonGroup* difficulty_ = nullptr;
   DeviceChoice* devices_ = nullptr;

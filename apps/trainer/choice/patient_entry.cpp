@@ -1,0 +1,79 @@
+#include "choice/patient_entry.h"
+
+#include <QCoreApplication>
+#include <algorithm>
+
+#include "anatomy/phantom/phantom.h"
+#include "cases/prepare_case.h"
+#include "core/files/data_dir.h"
+#include "io/patient/patient_folder.h"
+#include "io/patient/patient_thumbnail.h"
+#include "tasks/task.h"
+
+namespace trocar::trainer {
+namespace {
+
+QString text_of(const std::string& text) {
+  return QString::fromStdString(text);
+}
+
+QString tr(const char* text) {
+  return QCoreApplication::translate("PatientEntry", text);
+}
+
+QString thumbnail_of(const std::string& source) {
+  const auto file = io::find_thumbnail(source);
+  return file ? text_of(file->string()) : QString();
+}
+
+/// Title of a folder's own task; empty if it has none.
+QString own_task_title(const std::string& folder) {
+  if (!cases::has_own_task(folder)) return {};
+  const auto task = tasks::load_task_file(std::filesystem::path(folder) / tasks::kOwnTaskFile, data_dir() / "tasks");
+  return task ? text_of(task->title) : QString();
+}
+
+}  // namespace
+
+std::vector<PatientEntry> embedded_entries(const QString& task, const QString& task_title) {
+  std::vector<PatientEntry> entries;
+  const std::string name = task.toStdString();
+  for (const anatomy::PhantomInfo& info : anatomy::embedded_patients()) {
+    if (std::find(info.tasks.begin(), info.tasks.end(), name) == info.tasks.end()) continue;
+    entries.push_back({text_of(info.name), text_of(info.name), task_title, text_of(info.description),
+                       text_of(info.briefing), thumbnail_of(info.name), info.difficulty});
+  }
+  std::stable_sort(entries.begin(), entries.end(),
+                   [](const PatientEntry& a, const PatientEntry& b) { return a.difficulty < b.difficulty; });
+  return entries;
+}
+
+PatientEntry folder_entry(const QString& folder) {
+  PatientEntry entry;
+  entry.source = folder;
+  entry.name = folder.section(QLatin1Char('/'), -1);
+  entry.details = folder;
+  const std::string path = folder.toStdString();
+  const auto title = io::load_patient_title(path);
+  if (!title) {
+    entry.description = tr("This folder cannot be read");
+    return entry;
+  }
+  entry.name = text_of(title->name);
+  entry.description = text_of(title->description);
+  entry.task = own_task_title(path);
+  entry.thumbnail = thumbnail_of(path);
+  return entry;
+}
+
+QString difficulty_text(int difficulty) {
+  return difficulty > 0 ? tr("difficulty %1 of 5").arg(difficulty) : QString();
+}
+
+QString spoken_text(const PatientEntry& entry) {
+  QStringList parts{entry.name, entry.task, difficulty_text(entry.difficulty), entry.description};
+  parts.removeAll(QString());
+  return parts.join(QStringLiteral(", "));
+}
+
+}  // namespace trocar::trainer
