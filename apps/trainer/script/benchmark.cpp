@@ -35,6 +35,7 @@ Result<std::vector<ScriptStep>> benchmark_steps(const std::vector<std::string>& 
       "click difficulty-guided\n"  // the previous run may have selected another
       "click start\n"
       "wait-for is_open is true within 120\n"
+      "wait-for is_complete is true within 120\n"
       "click begin\n"
       "wait-for phase is ready within 120\n"
       "key H\n"

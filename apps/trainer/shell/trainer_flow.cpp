@@ -164,11 +164,14 @@ void TrainerFlow::leave(std::shared_ptr<const cases::OpenCase> previous) {
 
 /// Reports the preparation of the case's pictures on the briefing, and its errors once.
 void TrainerFlow::show_later() {
-  if (!open_ || opened_ || opening_.has_work() || complete_ == open_->later) return;
+  if (!open_ || opened_ || opening_.has_work()) return;
+  window_.work().workspace().take_later_data();
+  if (complete_ == open_->later) return;
   const JobView view = open_->later->view();
   window_.briefing().show_later(view.is_done ? QString() : to_qt(view.step));
   if (!view.is_done) return;
   complete_ = open_->later;
+  release_freed_memory();
   for (const std::string& error : complete_->errors()) window_.show_message(to_qt(error), BannerKind::kWarning);
 }
 
@@ -388,6 +391,7 @@ void TrainerFlow::close() {
   replay_.reset();
   servers_.reset();
   retired_.retire(std::exchange(opening_, {}));
+  if (open_) open_->later->cancel();
 }
 
 void TrainerFlow::end_server(const QString& tool) {

@@ -73,6 +73,8 @@ class View {
 
   /// Returns false if it took no time, so that the next view can open in the same frame.
   virtual bool open(const CaseContext&) { return false; }
+  /// Called once per frame while a case is open, also before an attempt: takes data that have become ready.
+  virtual void take_later_data() {}
   /// Shows the guidance that the difficulty permits.
   virtual void show_help(Difficulty) {}
   /// In an exam, the view must not show the depth of the tip.

@@ -105,6 +105,10 @@ bool Workspace::show_part() {
   return false;
 }
 
+void Workspace::take_later_data() {
+  for (const auto& view : views_) view->take_later_data();
+}
+
 void Workspace::show_help(Difficulty difficulty) {
   for (const auto& view : views_) view->show_help(difficulty);
 }
@@ -124,6 +128,7 @@ void Workspace::show_tools(const ToolsShown& tools) {
 }
 
 void Workspace::draw(double now_s) {
+  take_later_data();
   frame_.now_s = now_s;
   ++frame_.number;
   for (const auto& view : views_) view->update(frame_);

@@ -33,6 +33,8 @@ class Workspace : public QMainWindow {
   /// complete.
   void begin_case(std::shared_ptr<const cases::OpenCase> open);
   bool show_part();
+  /// Called once per frame while a case is open: the views take data that have become ready.
+  void take_later_data();
   /// Sets the guidance in all views; panels and keys of the views cannot show more.
   void show_help(Difficulty difficulty);
   /// Hidden: slices and 3D show the needle up to the skin only, slices do not follow it, and the plot has no depth. The

@@ -69,8 +69,7 @@ struct OpenOptions {
 };
 
 /// Opens a case; slow parts run in parallel, and those that an attempt does not need later (OpenCase::later). `stop` is
-/// checked between the parts, and in the patient's generation if that reports progress. Errors: the patient, the
-/// tables, no path for this task (with the obstacle).
+/// checked between the parts. Errors: the patient, the tables, no path for this task (with the obstacle).
 Result<std::shared_ptr<const OpenCase>> make_open_case(const CaseChoice& choice, const OpenOptions& options = {},
                                                        const Progress& progress = {}, const std::stop_token& stop = {});
 /// The same in the background.

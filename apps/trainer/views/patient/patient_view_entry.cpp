@@ -50,10 +50,13 @@ class PatientViewEntry final : public View {
     has_whole_picture_ = false;
   }
 
-  void update(const FrameContext& frame) override {
-    view_->set_tools_moving(frame.are_tools_moving);
-    if (has_patient_) add_new_surfaces();
+  void take_later_data() override {
+    if (!has_patient_) return;
+    add_new_surfaces();
+    view_->scene().poll();
   }
+
+  void update(const FrameContext& frame) override { view_->set_tools_moving(frame.are_tools_moving); }
 
   void draw(const FrameContext& frame) override {
     if (!view_->isVisible()) return;

@@ -58,10 +58,11 @@ class UltrasoundViewEntry final : public View {
     if (context.tools.X_PT) view_->set_transducer_pose(*context.tools.X_PT);
   }
 
-  void update(const FrameContext& frame) override {
+  void take_later_data() override {
     if (later_ && !view_->has_scene()) view_->set_scene(later_->acoustic());
-    view_->advance(frame.now_s);
   }
+
+  void update(const FrameContext& frame) override { view_->advance(frame.now_s); }
 
  private:
   UltrasoundView* view_;
