@@ -20,7 +20,9 @@ constexpr std::size_t kManyVoxels = 300'000;
 constexpr double kCoarseMm = 1.5;
 // Assumed: enough for the shape of one structure in a picture; an organ at 1 mm has 20,000 to 60,000, the skin of a
 // trunk 500,000. Decimation takes 5 microseconds per face.
-constexpr std::size_t kMaxFaces = 40'000;
+constexpr std::size_t kWantedFaces = 40'000;
+// Assumed: the skin of a whole trunk has a third of this at 1.5 mm, noise in a whole CT a hundred times as many.
+constexpr std::size_t kMaxFaces = 1'000'000;
 
 /// The voxels of one structure and the box around them.
 struct Box {
@@ -139,7 +141,7 @@ TriangleMesh extract_surface(const volume::MaskGrid& mask, const SurfaceOptions&
   const auto voxels = static_cast<std::size_t>(std::count(mask.voxels.begin(), mask.voxels.end(), 1));
   if (voxels == 0) return {};
   const volume::Grid<std::uint8_t> occupancy =
-      detail::bounded_occupancy(mask, voxels > kManyVoxels ? kCoarseMm : 0.0, kMaxFaces);
+      detail::bounded_occupancy(mask, voxels > kManyVoxels ? kCoarseMm : 0.0, kWantedFaces, kMaxFaces);
   TriangleMesh mesh = detail::contour(occupancy, options);
   detail::restore_volume(mesh, static_cast<double>(voxels) * mask.geometry.voxel_volume_mm3(),
                          0.5 * mask.geometry.spacing_mm.maxCoeff());

@@ -31,7 +31,8 @@ using SurfaceReceiver = std::function<bool(anatomy::NamedMesh mesh, std::size_t 
 void extract_each_surface(const anatomy::VirtualPatient& patient, const SurfaceOptions& options,
                           const SurfaceReceiver& receive);
 /// Surface of one mask, closed also where the grid cuts the mask; empty for an empty mask. It encloses the volume of
-/// the mask's voxels. A mask of more than 40,000 faces is made coarser first.
+/// the mask's voxels. A mask of more than 40,000 faces is made coarser first if that
+/// does not lose thin walls.
 TriangleMesh extract_surface(const volume::MaskGrid& mask, const SurfaceOptions& options = {});
 
 }  // namespace trocar::surface

@@ -72,8 +72,9 @@ void LaterData::wait() const {
 
 void LaterData::work(const std::stop_token& stop) {
   try {
-    make_acoustics();
-    if (!stop.stop_requested()) make_surfaces(stop);
+    const bool has_surfaces = read_surfaces();
+    if (!stop.stop_requested()) make_acoustics();
+    if (!has_surfaces && !stop.stop_requested()) extract_surfaces(stop);
   } catch (const std::bad_alloc&) {
     note({"not enough memory for the pictures of the case", patient_->name, "close other programs"});
   }
@@ -92,17 +93,20 @@ void LaterData::make_acoustics() {
   acoustic_ = *std::move(scene);
 }
 
-void LaterData::make_surfaces(const std::stop_token& stop) {
-  show("3D surfaces", kAcousticShare);
+bool LaterData::read_surfaces() {
+  show("3D surfaces", 0.0);
   if (io::is_path(source_.folder_or_name)) {
     auto meshes = io::open_meshes(source_, *patient_);
-    return meshes ? add(*std::move(meshes)) : note(meshes.error());
+    meshes ? add(*std::move(meshes)) : note(meshes.error());
+    return true;
   }
-  if (auto kept = io::find_kept_meshes(source_)) return add(*std::move(kept));
-  extract_surfaces(stop);
+  auto kept = io::find_kept_meshes(source_);
+  if (kept) add(*std::move(kept));
+  return kept.has_value();
 }
 
 void LaterData::extract_surfaces(const std::stop_token& stop) {
+  show("3D surfaces", kAcousticShare);
   lower_priority(kNice);
   std::vector<anatomy::NamedMesh> all;
   const auto receive = [&](anatomy::NamedMesh mesh, std::size_t done, std::size_t count) {

@@ -16,10 +16,11 @@
 
 namespace trocar::cases {
 
-/// Display data that a thread prepares after a case can be used: the acoustic scene, then the surfaces, small
-/// structures first. Surfaces come from the patient folder or the cache if they are there; otherwise they are extracted
-/// on one thread of low priority, because haptic servers and the window run at the same time, and kept in the cache.
-/// Any thread may ask; only wait() and the destructor block, the latter until the present step ends.
+/// Display data that a thread prepares after a case can be used: the acoustic scene and the surfaces. Surfaces come
+/// first if they are in the patient folder or in the cache. Otherwise they are extracted after the scene, the skin
+/// first, then from small structures to large ones, on one thread of low priority, because haptic servers and the
+/// window run at the same time, and kept in the cache. Any thread may ask; only wait() and the destructor block, the
+/// latter until the present step ends.
 class LaterData {
  public:
   using Surfaces = std::shared_ptr<const std::vector<anatomy::NamedMesh>>;
@@ -47,7 +48,8 @@ class LaterData {
  private:
   void work(const std::stop_token& stop);
   void make_acoustics();
-  void make_surfaces(const std::stop_token& stop);
+  /// From the patient folder or the cache; false: they must be extracted.
+  bool read_surfaces();
   void extract_surfaces(const std::stop_token& stop);
   void add(std::vector<anatomy::NamedMesh> meshes);
   void show(std::string step, double fraction);

@@ -111,6 +111,18 @@ vtkSmartPointer<vtkPolyData> smoothed(vtkPolyData& surface, const SurfaceOptions
   return result;
 }
 
+/// False if a coarser grid would lose thin walls: too much of the mask lies in voxels that are partly filled, which a
+/// contour at one half takes as full or as empty.
+bool keeps_shape(const volume::Grid<std::uint8_t>& occupancy) {
+  constexpr double kMostWrong = 0.10;  // assumed: organs of 1 l at 4 mm have 8 %, a bowel's wall of 3 mm at 2 mm 13 %
+  double wrong = 0.0, filled = 0.0;
+  for (const std::uint8_t value : occupancy.voxels) {
+    filled += value;
+    wrong += std::min<int>(value, kFull - value);
+  }
+  return wrong <= kMostWrong * filled;
+}
+
 }  // namespace
 
 volume::Grid<std::uint8_t> occupancy(const volume::MaskGrid& mask, double spacing_mm) {
@@ -158,11 +170,13 @@ std::size_t count_faces(const volume::Grid<std::uint8_t>& occupancy) {
   return faces;
 }
 
-volume::Grid<std::uint8_t> bounded_occupancy(const volume::MaskGrid& mask, double spacing_mm, std::size_t max_faces) {
+volume::Grid<std::uint8_t> bounded_occupancy(const volume::MaskGrid& mask, double spacing_mm, std::size_t wanted_faces,
+                                             std::size_t max_faces) {
   volume::Grid<std::uint8_t> grid = occupancy(mask, spacing_mm);
-  while (count_faces(grid) > max_faces) {
-    const double finest_mm = grid.geometry.spacing_mm.minCoeff();
-    grid = occupancy(mask, 2.0 * finest_mm);
+  for (std::size_t faces = count_faces(grid); faces > wanted_faces; faces = count_faces(grid)) {
+    volume::Grid<std::uint8_t> coarser = occupancy(mask, 2.0 * grid.geometry.spacing_mm.minCoeff());
+    if (faces <= max_faces && !keeps_shape(coarser)) break;
+    grid = std::move(coarser);
   }
   return grid;
 }

@@ -12,9 +12,11 @@ volume::Grid<std::uint8_t> occupancy(const volume::MaskGrid& mask, double spacin
 /// triangles for each.
 std::size_t count_faces(const volume::Grid<std::uint8_t>& occupancy);
 
-/// The occupancy at about `spacing_mm`, or on a grid so much coarser that it has at most `max_faces`. Smoothing and
-/// decimation take minutes for the millions of triangles of noise.
-volume::Grid<std::uint8_t> bounded_occupancy(const volume::MaskGrid& mask, double spacing_mm, std::size_t max_faces);
+/// The occupancy at about `spacing_mm`, or on a coarser grid: with at most `wanted_faces` unless that loses thin walls,
+/// and with at most `max_faces` in any case. Smoothing and decimation take minutes for the millions of triangles of
+/// noise.
+volume::Grid<std::uint8_t> bounded_occupancy(const volume::MaskGrid& mask, double spacing_mm, std::size_t wanted_faces,
+                                             std::size_t max_faces);
 
 /// Contour of a half filled voxel, smoothed and decimated with VTK's filters; in mm along the grid's axes from voxel
 /// (0,0,0), closed, triangles outward.

@@ -143,10 +143,10 @@ TEST(BoundedOccupancy, NoiseIsMadeCoarserUntilItsSurfaceIsBounded) {
   const volume::MaskGrid noise = fill(grid, [&](const Vec3&) { return uniform01(7, n++) < 0.5; });
   ASSERT_GT(detail::count_faces(detail::occupancy(noise, 0.0)), 300'000u);
   for (const std::size_t most : {100'000u, 10'000u, 100u})
-    EXPECT_LE(detail::count_faces(detail::bounded_occupancy(noise, 0.0, most)), most);
+    EXPECT_LE(detail::count_faces(detail::bounded_occupancy(noise, 0.0, most, most)), most);
   // An organ is left as it is.
   const volume::MaskGrid organ = ball(grid, {22, 22, 60}, 18.0);
-  EXPECT_EQ(detail::bounded_occupancy(organ, 0.0, 100'000u).voxels, detail::occupancy(organ, 0.0).voxels);
+  EXPECT_EQ(detail::bounded_occupancy(organ, 0.0, 100'000u, 100'000u).voxels, detail::occupancy(organ, 0.0).voxels);
 }
 
 TEST(ExtractSurface, SmoothingDoesNotStretch) {
