@@ -125,7 +125,9 @@ QWidget* StartPage::make_patients() {
   content->addWidget(patients_, 1);
   patient_text_ = make_label({}, "dim");
   patient_text_->setWordWrap(true);
-  patient_text_->setMinimumHeight(patient_text_->fontMetrics().lineSpacing() * 2);
+  // Of one height for all patients: the cards above stay where they are.
+  constexpr int kLines = 5;
+  patient_text_->setFixedHeight(patient_text_->fontMetrics().lineSpacing() * kLines);
   patient_text_->setAlignment(Qt::AlignTop);
   content->addWidget(patient_text_);
   auto* open =
