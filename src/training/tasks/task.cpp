@@ -68,6 +68,25 @@ std::vector<std::string> unlabelled_risks(const Task& task, const anatomy::Virtu
   return missing;
 }
 
+/// The organ is not in the scan, or its segmentation lacks it; the largest labels tell which part of the body it is.
+std::string lacks_organ(const Task& task, const anatomy::VirtualPatient& patient, const LabelCounts& counts) {
+  constexpr std::size_t kMostNamed = 5;
+  std::vector<const anatomy::Label*> labels;
+  for (const anatomy::Label& label : patient.label_table.labels) {
+    // These are found everywhere from the HU.
+    const bool is_everywhere = label.tissue == "adipose" || label.tissue == "muscle" || label.tissue == "soft_tissue" ||
+                               label.tissue == "gas" || label.tissue == "skin";
+    if (counts.voxels[label.id] > 0 && !is_everywhere) labels.push_back(&label);
+  }
+  std::stable_sort(labels.begin(), labels.end(),
+                   [&](const auto* a, const auto* b) { return counts.voxels[a->id] > counts.voxels[b->id]; });
+  std::vector<std::string> names;
+  for (const anatomy::Label* label : labels)
+    if (names.size() < kMostNamed) names.push_back(label->name);
+  return fmt::format("the {} is not labelled: the scan does not show it, or the segmentation lacks it (labelled: {})",
+                     task.organ, names.empty() ? "no organ" : fmt::format("{}", fmt::join(names, ", ")));
+}
+
 }  // namespace
 
 double EntryZone::distance_outside_mm(const Vec3& p_P) const noexcept {
@@ -113,7 +132,7 @@ TaskReadiness check_task(const Task& task, const anatomy::VirtualPatient& patien
   const bool has_skin = std::any_of(patient.skin_distance_mm.voxels.begin(), patient.skin_distance_mm.voxels.end(),
                                     [](float distance) { return distance > 0.0F; });
   readiness.is_possible = found.has_organ && found.has_muscle && has_skin;
-  note(!found.has_organ, fmt::format("the {} is not labelled", task.organ));
+  if (!found.has_organ) note(true, lacks_organ(task, patient, counts));
   note(!found.has_muscle, "no muscle between skin and organ is labelled");
   note(!has_skin, "the skin's surface is not inside the volume");
   if (!readiness.is_possible) return readiness;

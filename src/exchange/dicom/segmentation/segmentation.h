@@ -55,7 +55,8 @@ Result<ObjectKind> find_object_kind(const std::filesystem::path& path);
 /// UIDs of the series that a segmentation or structure set refers to; none if it does not tell.
 Result<std::vector<std::string>> referenced_series(const std::filesystem::path& path);
 
-/// Unpacks one compressed frame of `rows` x `columns` pixels of 8 or 16 bits (unsigned) into `out`, little endian.
+/// One compressed frame of `rows` x `columns` pixels of 8 or 16 bits (unsigned), or of one bit: then run-length coded,
+/// eight pixels a byte. A decoder unpacks it into `out`, little endian.
 struct CompressedFrame {
   std::span<const char> bytes;
   const std::string& transfer_syntax;

@@ -267,6 +267,50 @@ TEST(BuildPatient, ASegmentationOfAnotherPlaceIsRefused) {
   EXPECT_NE(built.patient.error().text().find("does not overlap"), std::string::npos);
 }
 
+TEST(BuildPatient, ASegmentationOfAPartOfTheCtWorksAndNamesItsShare) {
+  volume::GridGeometry half = Torso::grid(kSpacingMm);
+  half.size[2] /= 2;
+  const volume::LabelGrid mask = Torso::mask(half, Torso::is_liver);
+  const Built built = build({source("liver", mask)});
+  ASSERT_TRUE(built.patient) << built.patient.error().text();
+  EXPECT_EQ(name_at(*built.patient, {-50.0, -10.0, -30.0}), "liver");
+  EXPECT_NE(name_at(*built.patient, {-50.0, -10.0, 30.0}), "liver");
+  EXPECT_TRUE(has_warning(built, "covers 50 % of the CT; beyond it, structures have no label: liver.nii.gz"));
+  // A segmentation object is as small as its structures: nothing is missing beyond it.
+  LabelSource object = source("liver", mask);
+  object.is_described = true;
+  EXPECT_FALSE(has_warning(build({object}), "% of the CT"));
+  EXPECT_FALSE(has_warning(build({liver()}), "% of the CT"));
+}
+
+TEST(BuildPatient, LabelsOfOneNameBecomeOneStructureWithAWarning) {
+  const auto is_left_half = [](const Vec3& p_P) { return Torso::is_liver(p_P) && p_P.x() > -50.0; };
+  LabelSource both = liver();
+  for (std::size_t n = 0; n < both.labels.voxels.size(); ++n)
+    if (both.labels.voxels[n] != 0 && is_left_half(both.labels.geometry.centre_mm(both.labels.geometry.index_of(n))))
+      both.labels.voxels[n] = 7;
+  both.names = {{1, "liver"}, {7, "Liver"}};
+  const Built built = build({both});
+  ASSERT_TRUE(built.patient) << built.patient.error().text();
+  EXPECT_EQ(built.patient->labels.voxels, build({liver()}).patient->labels.voxels);
+  EXPECT_TRUE(has_warning(
+      built,
+      "2 labels are named \"liver\" and become one structure: label 1 of liver.nii.gz, label 7 of liver.nii.gz"));
+  // In two files, and not for labels that do not occur.
+  EXPECT_TRUE(has_warning(build({liver(), liver()}), "2 labels are named"));
+  LabelSource unused = liver();
+  unused.names.emplace_back(9, "liver");
+  EXPECT_FALSE(has_warning(build({unused}), "labels are named"));
+}
+
+TEST(BuildPatient, RegionsOfSeveralStructuresAreLeftOutWithAWarning) {
+  const Built built =
+      build({liver(), source("abdominal_cavity", Torso::mask(Torso::grid(kSpacingMm), Torso::is_inside))});
+  ASSERT_TRUE(built.patient) << built.patient.error().text();
+  EXPECT_EQ(name_at(*built.patient, {-50.0, -10.0, 0.0}), "liver");
+  EXPECT_TRUE(has_warning(built, "regions that hold several structures were left out: abdominal_cavity"));
+}
+
 TEST(BuildPatient, NamesWhatTheScanCuts) {
   const Built built = build({liver()});  // a cylinder through the whole scan
   ASSERT_TRUE(built.patient);

@@ -118,12 +118,23 @@ TEST(TaskReadiness, ATaskWithoutTargetTissueIsParenchymalBesideALesion) {
   EXPECT_TRUE(mentions(readiness, "the task has no target tissue"));
 }
 
+TEST(TaskReadiness, OfAnotherPartOfTheBodyNamesWhatTheScanShows) {
+  BoxPatient head;
+  head.special = [](const Vec3& p) {
+    const double depth_mm = -BoxPatient::skin_distance(p);
+    return depth_mm > 30.0 ? "gallbladder" : depth_mm >= 22.0 ? "bone" : "";
+  };
+  const auto readiness = check_task(liver_biopsy(), head.make());
+  EXPECT_FALSE(readiness.is_possible);
+  EXPECT_TRUE(mentions(readiness, "(labelled: gallbladder, rib)")) << readiness.reasons.front();
+}
+
 TEST(TaskReadiness, NamesWhatMakesTheTaskImpossible) {
   BoxPatient no_liver;
   no_liver.special = [](const Vec3& p) { return BoxPatient::skin_distance(p) <= -22.0 ? "soft_tissue" : ""; };
   const auto readiness = check_task(liver_biopsy(), no_liver.make());
   EXPECT_FALSE(readiness.is_possible);
-  EXPECT_TRUE(mentions(readiness, "the liver is not labelled"));
+  EXPECT_TRUE(mentions(readiness, "the liver is not labelled: the scan does not show it"));
 
   BoxPatient no_muscle;
   no_muscle.special = [](const Vec3& p) { return BoxPatient::skin_distance(p) > -22.0 ? "adipose" : ""; };

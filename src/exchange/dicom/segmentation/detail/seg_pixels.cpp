@@ -5,6 +5,7 @@
 namespace trocar::dicom::detail {
 namespace {
 
+constexpr std::string_view kRunLength = "1.2.840.10008.1.2.5";  ///< DICOM PS3.5, annex A.
 constexpr const char* kUncompressed = "export the segmentation again, uncompressed (Explicit VR Little Endian)";
 
 }  // namespace
@@ -14,7 +15,7 @@ Result<SegPixels> SegPixels::open(const DicomFile& file, const SegHeader& header
   SegPixels pixels(file, header, decode, where);
   pixels.pieces_ = file.pixels();
   if (file.is_compressed()) {
-    if (!decode || header.bits == 1)
+    if (!decode || (header.bits == 1 && file.transfer_syntax() != kRunLength))
       return fail(fmt::format("the pixels of the DICOM segmentation are compressed (transfer syntax {})",
                               to_utf8(file.transfer_syntax(), "none")),
                   where, kUncompressed);
@@ -32,9 +33,8 @@ Result<SegPixels> SegPixels::open(const DicomFile& file, const SegHeader& header
   return pixels;
 }
 
-void SegPixels::read_bits(std::size_t frame, std::vector<std::uint16_t>& pixels) const {
-  const char* bytes = pieces_.front().data();
-  std::size_t bit = frame * pixels.size();
+void SegPixels::read_bits(std::span<const char> bytes, std::size_t first_bit, std::vector<std::uint16_t>& pixels) {
+  std::size_t bit = first_bit;
   for (std::uint16_t& pixel : pixels) {
     pixel = static_cast<std::uint16_t>(static_cast<unsigned char>(bytes[bit / 8]) >> bit % 8 & 1);
     ++bit;
@@ -55,13 +55,13 @@ void SegPixels::read_numbers(std::span<const char> bytes, bool is_big_endian,
 
 Status SegPixels::read(std::size_t frame, std::vector<std::uint16_t>& pixels) const {
   pixels.resize(pixel_count());
-  if (header_->bits == 1) {
-    read_bits(frame, pixels);
-    return {};
-  }
-  const std::size_t frame_bytes = pixels.size() * static_cast<std::size_t>(header_->bits / 8);
+  const std::size_t frame_bytes = (pixels.size() * static_cast<std::size_t>(header_->bits) + 7) / 8;
   if (!file_->is_compressed()) {
-    read_numbers(pieces_.front().subspan(frame * frame_bytes, frame_bytes), file_->is_big_endian(), pixels);
+    // One bit a pixel: frames follow each other without a gap, also within a byte.
+    if (header_->bits == 1)
+      read_bits(pieces_.front(), frame * pixels.size(), pixels);
+    else
+      read_numbers(pieces_.front().subspan(frame * frame_bytes, frame_bytes), file_->is_big_endian(), pixels);
     return {};
   }
   std::vector<char> bytes(frame_bytes);
@@ -69,7 +69,10 @@ Status SegPixels::read(std::size_t frame, std::vector<std::uint16_t>& pixels) co
                                    header_->bits};
   if (const Status unpacked = (*decode_)(compressed, std::as_writable_bytes(std::span(bytes))); !unpacked)
     return fail(fmt::format("frame {}: {}", frame + 1, unpacked.error().what), where_, kUncompressed);
-  read_numbers(bytes, false, pixels);
+  if (header_->bits == 1)
+    read_bits(bytes, 0, pixels);
+  else
+    read_numbers(bytes, false, pixels);
   return {};
 }
 

@@ -26,7 +26,7 @@ class SegPixels {
  private:
   SegPixels(const DicomFile& file, const SegHeader& header, const FrameDecoder& decode, std::string where)
       : file_(&file), header_(&header), decode_(&decode), where_(std::move(where)) {}
-  void read_bits(std::size_t frame, std::vector<std::uint16_t>& pixels) const;
+  static void read_bits(std::span<const char> bytes, std::size_t first_bit, std::vector<std::uint16_t>& pixels);
   void read_numbers(std::span<const char> bytes, bool is_big_endian, std::vector<std::uint16_t>& pixels) const;
   std::size_t pixel_count() const {
     return static_cast<std::size_t>(header_->columns) * static_cast<std::size_t>(header_->rows);

@@ -269,9 +269,10 @@ Status decode_slice(const DicomSlice& slice, const std::function<Status(const Ra
 Status decode_frame(const dicom::CompressedFrame& frame, std::span<std::byte> out) {
   silence_gdcm();
   PixelLayout layout;
-  layout.bits_allocated = layout.bits_stored = frame.bits;
-  layout.high_bit = frame.bits - 1;
+  layout.bits_allocated = layout.bits_stored = std::max(frame.bits, 8);  // single bits are packed into bytes
+  layout.high_bit = layout.bits_stored - 1;
   layout.count = static_cast<std::size_t>(frame.columns) * static_cast<std::size_t>(frame.rows);
+  if (frame.bits == 1) layout.count = (layout.count + 7) / 8;
   const char* reason = "cannot be unpacked";
   try {
     if (layout.bytes() == out.size() &&

@@ -247,5 +247,25 @@ TEST_F(RealSegmentation, OfAnotherSeriesIsRefused) {
   EXPECT_NE(sources.error().what.find("another series"), std::string::npos) << sources.error().text();
 }
 
+TEST(RealCompressedSegmentation, IsTheUncompressedOne) {
+  const fs::path data = test_data() / "bad-input/dicom";
+  if (!fs::exists(data)) GTEST_SKIP() << "no real data at " << data;
+  const auto read = [&](const char* file) {
+    auto sources = read_label_sources({data / file}, "");
+    EXPECT_TRUE(sources) << sources.error().text();
+    return sources ? *std::move(sources) : std::vector<anatomy::LabelSource>();
+  };
+  const auto plain = read("pydata_liver.dcm");
+  const auto run_length = read("pydata_liver_rle.dcm");
+  ASSERT_EQ(plain.size(), 1U);
+  ASSERT_EQ(run_length.size(), 1U);
+  EXPECT_EQ(run_length[0].labels.voxels, plain[0].labels.voxels);
+  for (const char* file : {"pydata_liver_deflate.dcm", "pydata_liver_j2k.dcm"}) {
+    const auto refused = read_label_sources({data / file}, "");
+    ASSERT_FALSE(refused) << file;
+    EXPECT_NE(refused.error().what.find("compressed (transfer syntax"), std::string::npos) << refused.error().text();
+  }
+}
+
 }  // namespace
 }  // namespace trocar::io
