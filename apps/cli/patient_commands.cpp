@@ -162,16 +162,19 @@ Status list_series(const SeriesArguments& arguments) {
   TROCAR_TRY(const auto series, io::list_dicom_series(arguments.folder));
   config::Json list = config::Json::array();
   if (!arguments.is_json)
-    fmt::print("{:>6} {:<8} {:>6}  {:<32} {}\n", "number", "modality", "images", "description", "UID");
+    fmt::print("{:>6} {:<8} {:>6} {:>9}  {:<32} {}\n", "number", "modality", "images", "pixels", "description", "UID");
   for (std::size_t n = 0; n < series.size(); ++n) {
     const io::DicomSeriesInfo& s = series[n];
     if (!arguments.is_json)
-      fmt::print("{:>6} {:<8} {:>6}  {:<32} {}\n", n + 1, s.modality, s.images, s.description, s.uid);
+      fmt::print("{:>6} {:<8} {:>6} {:>9}  {:<32} {}\n", n + 1, s.modality, s.images,
+                 fmt::format("{}x{}", s.columns, s.rows), s.description, s.uid);
     list.push_back({{"number", n + 1},
                     {"uid", s.uid},
                     {"description", s.description},
                     {"modality", s.modality},
                     {"images", s.images},
+                    {"columns", s.columns},
+                    {"rows", s.rows},
                     {"folder", s.folder.string()}});
   }
   if (arguments.is_json) print_json({{"series", list}});

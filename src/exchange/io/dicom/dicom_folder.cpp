@@ -12,8 +12,8 @@ Result<std::vector<DicomSeriesInfo>> list_dicom_series(const fs::path& folder) {
   std::vector<DicomSeriesInfo> series;
   for (const detail::SeriesImages& images : found) {
     const detail::DicomSlice& first = images.front();
-    series.push_back(
-        {first.series_uid, first.series_description, first.modality, images.size(), first.file.parent_path()});
+    series.push_back({first.series_uid, first.series_description, first.modality, images.size(), first.columns,
+                      first.rows, first.file.parent_path()});
   }
   return series;
 }

@@ -14,6 +14,8 @@ struct DicomSeriesInfo {
   std::string description;
   std::string modality;          ///< "CT", "MR", "SEG".
   std::size_t images = 0;        ///< Number of images with pixels.
+  int columns = 0;               ///< Pixels of the first image.
+  int rows = 0;
   std::filesystem::path folder;  ///< Folder of its first file.
 };
 

@@ -4,6 +4,7 @@
 
 #include "io/image/image_file.h"
 #include "io/test/test_support.h"
+#include "volume/resample.h"
 
 namespace trocar::io {
 namespace {
@@ -210,6 +211,55 @@ TEST(LabelSources, SegNrrdLayersMayOverlap) {
   ASSERT_EQ(sources->size(), 2U);
   EXPECT_EQ(voxels_of(*sources, "liver"), (std::vector<std::size_t>{0, 1}));
   EXPECT_EQ(voxels_of(*sources, "tumor"), (std::vector<std::size_t>{1, 7}));
+}
+
+TEST(LabelSources, SegNrrdSegmentsTakeNamesFromTheirTerminologyOrTheMap) {
+  const TemporaryFolder folder;
+  const std::string kidney =
+      "TerminologyEntry:Segmentation category and type - DICOM master list~SCT^123037004^Anatomical Structure~"
+      "SCT^64033007^Kidney~SCT^7771000^Left~Anatomic codes - DICOM master list~^^~^^|Segmentation.Status:completed";
+  write_bytes(folder / "a.seg.nrrd",
+              seg_nrrd("dimension: 3\nsizes: 2 2 2\nspace directions: (1,0,0) (0,1,0) (0,0,1)\n",
+                       "Segment0_LabelValue:=1\nSegment0_Layer:=0\nSegment0_Name:=Segment_1\nSegment0_Tags:=" + kidney +
+                           "\nSegment1_LabelValue:=2\nSegment1_Layer:=0\nSegment1_Name:=my roi\n",
+                       std::string("\1\1\2\0\0\0\0\0", 8)));
+  write_bytes(folder / "map.toml", "[labels]\n\"my roi\" = \"liver_tumor\"\n");
+  const auto sources = read_label_sources({folder / "a.seg.nrrd"}, (folder / "map.toml").string());
+  ASSERT_TRUE(sources) << error_of(sources);
+  EXPECT_EQ(voxels_of(*sources, "kidney_left"), (std::vector<std::size_t>{0, 1}));
+  EXPECT_EQ(voxels_of(*sources, "liver_tumor"), (std::vector<std::size_t>{2}));
+}
+
+TEST(LabelSources, SegNrrdOfASmallerExtentKeepsItsPlace) {
+  // 3D Slicer saves only the box of the segments: 2 x 2 x 2 voxels within the CT, from voxel (4, 3, 2) on, in two
+  // layers.
+  const TemporaryFolder folder;
+  std::string text = seg_nrrd(
+      "dimension: 4\nsizes: 2 2 2 2\nspace directions: none (2,0,0) (0,2,0) (0,0,3)\n"
+      "kinds: list domain domain domain\n",
+      "Segment0_LabelValue:=1\nSegment0_Layer:=0\nSegment0_Name:=liver\n"
+      "Segment1_LabelValue:=1\nSegment1_Layer:=1\nSegment1_Name:=tumor\n"
+      "Segmentation_ReferenceImageExtentOffset:=4 3 2\n",
+      std::string("\1\0\1\1\0\0\0\0\0\0\0\0\0\0\0\1", 16));
+  const std::size_t origin = text.find("space origin: (0,0,0)");
+  ASSERT_NE(origin, std::string::npos);
+  text.replace(origin, 21, "space origin: (8,6,6)");
+  write_bytes(folder / "a.seg.nrrd", text);
+  const auto sources = read_label_sources({folder / "a.seg.nrrd"}, "");
+  ASSERT_TRUE(sources) << error_of(sources);
+  volume::GridGeometry ct;
+  ct.size = {10, 10, 10};
+  ct.spacing_mm = {2, 2, 3};
+  ASSERT_EQ(sources->size(), 2U);
+  for (const anatomy::LabelSource& source : *sources) EXPECT_TRUE(source.is_described);
+  const volume::LabelGrid liver = volume::resample_nearest((*sources)[0].labels, ct, 0);
+  const volume::LabelGrid tumor = volume::resample_nearest((*sources)[1].labels, ct, 0);
+  EXPECT_EQ(std::count(liver.voxels.begin(), liver.voxels.end(), 1), 2);
+  EXPECT_EQ((liver[{4, 3, 2}]), 1);
+  EXPECT_EQ((liver[{5, 3, 2}]), 1);
+  EXPECT_EQ(std::count(tumor.voxels.begin(), tumor.voxels.end(), 1), 2);
+  EXPECT_EQ((tumor[{5, 3, 2}]), 1);
+  EXPECT_EQ((tumor[{5, 4, 3}]), 1);
 }
 
 TEST(LabelSources, FoldersWithoutMasksAreRefused) {
