@@ -24,7 +24,7 @@ struct BodyParameters {
   bool has_obstruction = false;         ///< A tumour closes the bile duct at `obstruction_share` of its length.
   double obstruction_share = 0.8;       ///< 0 at the hilum .. 1 at the papilla.
   std::string phase = "portal-venous";  ///< Contrast phase: native, arterial or portal-venous.
-  double noise_hu = 11.0;               ///< Noise in the middle of the body, 3..40: the dose.
+  double noise_hu = 14.0;               ///< Noise in the middle of the body, 3..40: the dose.
 
   double body_mass_index() const { return weight_kg / (height_cm * height_cm * 1e-4); }
 };

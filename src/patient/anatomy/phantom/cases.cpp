@@ -117,7 +117,8 @@ CaseDescription draw_case(std::uint64_t seed) {
   body.liver_size = draw(0.9, 1.06);
   body.lesion_diameter_mm = draw(10, 32);
   body.lesion_contrast_hu = draw(-55, -12);
-  body.noise_hu = draw(7, 20);
+  body.noise_hu = draw(8, 24);
+  body.phase = draw(0, 1) < 0.75 ? "portal-venous" : (draw(0, 1) < 0.5 ? "arterial" : "native");
   const bool is_lumbar = drawn.task == "lumbar-puncture";
   if (is_lumbar) {
     body.flexion = draw(0.5, 1.0);

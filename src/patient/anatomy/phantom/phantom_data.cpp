@@ -337,6 +337,12 @@ BileDuctData read_bile_duct(SectionReader duct) {
   return data;
 }
 
+PhaseData read_phase(SectionReader phase) {
+  PhaseData shifts;
+  for (const std::string& label : phase.keys()) shifts.emplace_back(label, phase.number(label));
+  return shifts;
+}
+
 AbdomenData read_abdomen(SectionReader file) {
   SectionReader vertebrae = file.section("vertebrae");
   SectionReader oesophagus = file.section("oesophagus");
@@ -346,6 +352,7 @@ AbdomenData read_abdomen(SectionReader file) {
   SectionReader gallbladder = file.section("gallbladder");
   SectionReader bladder = file.section("bladder");
   SectionReader uterus = file.section("uterus");
+  SectionReader phases = file.section("phases");
   const LiverData liver = read_liver(file.section("liver"));
   return {.torso = read_torso(file.section("torso"), file.section("diaphragm")),
           .landmarks = read_landmarks(file.section("landmarks")),
@@ -381,7 +388,9 @@ AbdomenData read_abdomen(SectionReader file) {
           .portal_tree = read_tree(file.section("portal_tree")),
           .hepatic_tree = read_tree(file.section("hepatic_tree")),
           .bile_duct = read_bile_duct(file.section("bile_duct")),
-          .lesions = read_lesions(file.section("lesions"))};
+          .lesions = read_lesions(file.section("lesions")),
+          .native = read_phase(phases.section("native")),
+          .arterial = read_phase(phases.section("arterial"))};
 }
 
 }  // namespace

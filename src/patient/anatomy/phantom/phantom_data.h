@@ -2,7 +2,9 @@
 
 #include <array>
 #include <filesystem>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "anatomy/phantom/shapes.h"
@@ -315,6 +317,9 @@ struct BileDuctData {
   float narrow_radius_mm, tumour_radius_mm;
 };
 
+/// HU added in a contrast phase, by the beginning of a label's name; the first match counts.
+using PhaseData = std::vector<std::pair<std::string, float>>;
+
 struct LesionData {
   SeedRange gate_deg, gate_z_mm;
   float gate_outward_mm;
@@ -353,6 +358,7 @@ struct AbdomenData {
   TreeData portal_tree, hepatic_tree;
   BileDuctData bile_duct;
   LesionData lesions;
+  PhaseData native, arterial;
 };
 
 /// File in the data folder.

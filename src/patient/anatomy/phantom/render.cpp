@@ -22,6 +22,7 @@ class Painter {
   Painter(const Anatomy& anatomy, const volume::GridGeometry& geometry, Culling culling, Rendering& out)
       : anatomy_(anatomy), geometry_(geometry), culling_(culling), out_(out) {
     scale_ = anatomy.scale();
+    for (const Label& label : anatomy.label_table.labels) phase_hu_[label.id] = anatomy.phase_hu(label.name);
     brush_.blur_mm = static_cast<float>(std::cbrt(geometry.voxel_volume_mm3())) / scale_;
     for (std::size_t a = 0; a < 3; ++a) {
       block_size_[a] = std::max<std::int64_t>(1, std::lround(kBlockMm / geometry.spacing_mm[static_cast<int>(a)]));
@@ -103,7 +104,8 @@ class Painter {
       const float distance = structure->distance(place);
       const float cover = brush_.cover(distance);
       if (cover <= 0.0F) continue;
-      const Paint paint = structure->paint(place, distance, brush_);
+      Paint paint = structure->paint(place, distance, brush_);
+      paint.hu += phase_hu_[paint.label];
       result.hu = cover < 1.0F ? mix(result.hu, paint.hu, cover) : paint.hu;
       if (distance < 0.0F) result.label = paint.label;
     }
@@ -116,6 +118,7 @@ class Painter {
   Culling culling_;
   Rendering& out_;
   Brush brush_;
+  std::array<float, 256> phase_hu_{};
   float scale_ = 1.0F;  ///< Size of the patient, 1 for the reference body.
   volume::Index3 block_size_{1, 1, 1};
   volume::Index3 blocks_{0, 0, 0};

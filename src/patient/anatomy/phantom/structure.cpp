@@ -83,6 +83,13 @@ const Structure& Anatomy::find(std::string_view name) const {
   return *found;
 }
 
+float Anatomy::phase_hu(std::string_view label_name) const {
+  if (body.phase == "portal-venous") return 0.0F;
+  for (const auto& [prefix, hu] : body.phase == "native" ? data.native : data.arterial)
+    if (label_name.starts_with(prefix)) return hu;
+  return 0.0F;
+}
+
 std::uint8_t Anatomy::label_at(const Place& place) const {
   if (place.skin >= 0.0F) return 0;
   const Box here{place.p, place.p};

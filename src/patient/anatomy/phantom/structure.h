@@ -69,6 +69,8 @@ struct Anatomy {
   /// Random numbers of one organ: a change in one organ does not change the others.
   Random random(std::string_view organ) const;
   const Structure& find(std::string_view name) const;
+  /// HU that the body's contrast phase adds to a label's.
+  float phase_hu(std::string_view label) const;
   /// Label of the structure that is visible at a place of the reference body; 0 outside.
   std::uint8_t label_at(const Place& place) const;
   /// Point of P that the warp maps to q.
