@@ -86,7 +86,7 @@ Interspace best_line(const Anatomy& anatomy, const Obstacles& bones, int above) 
 
 constexpr float kInwardMm = 10.0F;       ///< The tip in the fluid, behind the peritoneum.
 constexpr float kUsualNeedleMm = 68.0F;  ///< Reach of the usual needle; a thick wall takes a longer one.
-constexpr float kBowelClearanceMm = 8.0F, kEpigastricClearanceMm = 10.0F;
+constexpr float kBowelClearanceMm = 8.0F, kLeastBowelClearanceMm = 5.0F, kEpigastricClearanceMm = 10.0F;
 constexpr float kFluidBeyondMm = 6.0F;
 
 struct FluidRisks {
@@ -100,7 +100,8 @@ struct FluidRisks {
 };
 
 /// A path straight into the skin at an entry, if fluid lies behind the wall and all risks keep their distance.
-std::optional<Vec3f> fluid_target(const Anatomy& anatomy, const FluidRisks& risks, const Vec3f& entry) {
+std::optional<Vec3f> fluid_target(const Anatomy& anatomy, const FluidRisks& risks, const Vec3f& entry,
+                                  float from_bowel_mm) {
   constexpr float kStepMm = 0.5F, kDeepest = 110.0F;
   const Vec3f outward = skin_normal(anatomy, entry);
   const auto* fluid = anatomy.label_table.find("ascites");
@@ -108,7 +109,7 @@ std::optional<Vec3f> fluid_target(const Anatomy& anatomy, const FluidRisks& risk
   float fluid_begin = -1.0F;
   for (float depth = 1.0F; depth < kDeepest; depth += kStepMm) {
     const Place place = anatomy.torso.at(entry - depth * outward);
-    if (!risks.bones.all_farther(place, 4.0F) || !risks.bowel.all_farther(place, kBowelClearanceMm) ||
+    if (!risks.bones.all_farther(place, 4.0F) || !risks.bowel.all_farther(place, from_bowel_mm) ||
         !risks.vessels.all_farther(place, kEpigastricClearanceMm))
       return std::nullopt;
     const bool in_fluid = anatomy.label_at(place) == fluid->id;
@@ -131,13 +132,13 @@ Vec3f beside_iliac_spine(const Anatomy& anatomy, float sign, float medial_mm, fl
 
 /// The first place that the usual needle reaches, else the first place.
 std::optional<NeedlePath> ascites_path(const Anatomy& anatomy, const FluidRisks& risks, float sign,
-                                       const std::vector<std::array<float, 3>>& offsets) {
+                                       const std::vector<std::array<float, 3>>& offsets, float from_bowel_mm) {
   const std::string name =
       sign > 0.0F ? "ascites-puncture: left lower quadrant" : "ascites-puncture: right lower quadrant";
   std::optional<NeedlePath> first;
   for (const auto& [off, medial, cranial] : offsets) {
     const Vec3f entry = beside_iliac_spine(anatomy, sign, medial, cranial);
-    const auto target = fluid_target(anatomy, risks, entry);
+    const auto target = fluid_target(anatomy, risks, entry, from_bowel_mm);
     if (!target) continue;
     NeedlePath path = path_of(anatomy, name, entry, *target);
     if (path.line_P.length_mm() < kUsualNeedleMm) return path;
@@ -244,8 +245,10 @@ Result<std::vector<NeedlePath>> plan_ascites_paths(const Anatomy& anatomy) {
     for (float cranial = -10.0F; cranial <= 70.0F; cranial += 5.0F)
       offsets.push_back({std::hypot(medial - kUsualMm, cranial - kUsualMm), medial, cranial});
   std::sort(offsets.begin(), offsets.end());
-  for (const float sign : {1.0F, -1.0F})
-    if (auto path = ascites_path(anatomy, risks, sign, offsets)) paths.push_back(*std::move(path));
+  for (const float from_bowel_mm : {kBowelClearanceMm, kLeastBowelClearanceMm})
+    for (const float sign : {1.0F, -1.0F})
+      if (paths.empty() || from_bowel_mm == kBowelClearanceMm)
+        if (auto path = ascites_path(anatomy, risks, sign, offsets, from_bowel_mm)) paths.push_back(*std::move(path));
   if (paths.empty())
     return fail("no safe way to the free fluid of this body", "phantom", "choose another seed or more ascites");
   return paths;

@@ -15,7 +15,12 @@ constexpr float kLongestBiopsyMm = 132.0F;  ///< In the patient's size; the task
 Result<BiopsyPlan> lesions_of(Anatomy& anatomy, const CaseDescription& description) {
   if (description.task == "liver-biopsy") {
     anatomy.data.lesions.longest_path_mm = kLongestBiopsyMm / anatomy.scale();
-    return plan_biopsy(anatomy);
+    // A lesion that finds no room with a safe way to it is made smaller.
+    for (const double share : {1.0, 0.8, 0.6}) {
+      anatomy.body.lesion_diameter_mm = share * description.body.lesion_diameter_mm;
+      auto plan = plan_biopsy(anatomy);
+      if (plan || share == 0.6) return plan;
+    }
   }
   BiopsyPlan none;
   none.path.line_P = {Vec3::Constant(1e5), Vec3::Constant(1e5 + 1.0)};
