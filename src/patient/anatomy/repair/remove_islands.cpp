@@ -27,8 +27,9 @@ int kind_of(const Label& label) {
 
 /// What a part touches.
 struct Surroundings {
-  std::uint8_t same_kind = 0;     ///< Label of the same kind at enough of its surface; 0: none.
-  bool is_in_structures = false;  ///< Most of its surface lies at other structures: a rest between vessels, no island.
+  std::uint8_t same_kind = 0;  ///< Label of the same kind at enough of its surface; 0: none.
+  /// A rest beside a lesion or vessel that is cut out of the structure, or between other structures: no island.
+  bool is_rest = false;
 };
 
 Surroundings find_surroundings(const volume::LabelGrid& labels, const LabelTable& table, const LabelParts& parts,
@@ -46,9 +47,11 @@ Surroundings find_surroundings(const volume::LabelGrid& labels, const LabelTable
       }
   });
   Surroundings around;
-  around.is_in_structures = 2 * faces[0] < all;
+  around.is_rest = 2 * faces[0] < all;
   std::size_t most = 0;
   for (const Label& label : table.labels) {
+    const bool is_inside = label.tissue.ends_with("_lesion") || label.tissue == "vessel" || label.tissue == "bile_duct";
+    around.is_rest = around.is_rest || (is_inside && faces[label.id] > 0);
     if (kind == 0 || kind_of(label) != kind || faces[label.id] <= most) continue;
     most = faces[label.id];
     if (static_cast<double>(most) >= kContact * static_cast<double>(all)) around.same_kind = label.id;
@@ -87,7 +90,7 @@ void remove_islands_of(const Label& label, const IndexBox& box, volume::LabelGri
     const Surroundings around = find_surroundings(labels, table, parts, part, kind_of(label));
     const std::uint8_t other = around.same_kind;
     const double stays_within_mm = ml >= kSpeckMl ? near_mm : touching_mm;
-    if (other == 0 && (around.is_in_structures || distance_mm[part] <= stays_within_mm)) continue;
+    if (other == 0 && (around.is_rest || distance_mm[part] <= stays_within_mm)) continue;
     const Vec3 place_P = labels.geometry.centre_mm(parts.middle[part]);
     (other != 0 ? relabelled[other] : removed).add(ml, distance_mm[part], place_P);
     parts.for_each(labels.geometry, part, [&](std::size_t n, const volume::Index3&) { labels.voxels[n] = other; });

@@ -84,6 +84,17 @@ TEST(Repair, RemovesIslandsFarFromTheStructure) {
   EXPECT_EQ(box.count("spleen"), spleen);
 }
 
+// A tumour at the surface of its liver leaves specks of the liver's mask on its far side.
+TEST(Repair, KeepsTheRimOfALesion) {
+  LabelledBox box = make_segmentation();
+  box.paint("liver", ball({0.0, 0.0, 0.0}, 20.0));
+  box.paint("liver_tumor", ball({20.0, 0.0, 0.0}, 12.0));
+  box.paint("liver", ball({34.0, 0.0, 0.0}, 2.0));
+  const std::size_t liver = box.count("liver");
+  EXPECT_EQ(repair(box), Texts{});
+  EXPECT_EQ(box.count("liver"), liver);
+}
+
 TEST(Repair, GivesAVertebrasIslandToTheVertebraItLiesIn) {
   LabelledBox box = make_segmentation();
   box.paint("vertebrae_L3", ball({0.0, 0.0, 25.0}, 15.0));
