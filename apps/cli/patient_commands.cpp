@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "anatomy/phantom/phantom.h"
+#include "anatomy/posture.h"
 #include "anatomy/tissue/tissue_table.h"
 #include "cases/prepare_case.h"
 #include "commands.h"
@@ -98,6 +99,7 @@ struct BuildArguments {
   std::string series;
   std::string rescale;  ///< "SLOPE,INTERCEPT", or empty.
   std::string derive = "all";
+  std::string posture = "supine";
   std::string tissues;  ///< Tissue table to put into the folder; empty: none.
   std::string out;
   bool is_json = false;
@@ -121,6 +123,11 @@ Result<std::vector<io::PatientExtra>> read_tissues(const std::string& file) {
   return std::vector<io::PatientExtra>{{cases::kOwnTissueFile, std::move(text)}};
 }
 
+Result<anatomy::Posture> parse_posture(const std::string& name) {
+  if (const auto posture = anatomy::find_posture(name)) return *posture;
+  return fail_usage("there is no such posture", name, "give supine, prone, left-lateral, right-lateral or sitting");
+}
+
 Status build(const BuildArguments& arguments) {
   TROCAR_TRY_STATUS(check_new(arguments.out));
   TROCAR_TRY(const fs::path tasks_folder, find_data("tasks"));
@@ -131,6 +138,7 @@ Status build(const BuildArguments& arguments) {
   files.label_map = arguments.label_map;
   files.series = arguments.series;
   TROCAR_TRY(files.rescale, parse_rescale(arguments.rescale));
+  TROCAR_TRY(const anatomy::Posture posture, parse_posture(arguments.posture));
   TROCAR_TRY(const auto extras, read_tissues(arguments.tissues));
   TROCAR_TRY(files.derive, anatomy::parse_derive_choice(arguments.derive));
   files.name = arguments.name.empty() ? io::last_name(arguments.out) : arguments.name;
@@ -141,6 +149,7 @@ Status build(const BuildArguments& arguments) {
     const ProgressPrinter printer;
     const Progress progress = printer.callback();
     TROCAR_TRY(patient, io::build_from_files(files, warnings, part_of(progress, 0.0, 0.5)));
+    patient.posture = posture;
     TROCAR_TRY(meshes, save_with_surfaces(patient, arguments.out, part_of(progress, 0.5, 1.0), extras));
   }
   for (const std::string& warning : warnings) print_warning(warning);
@@ -221,7 +230,8 @@ void add_patient_commands(CLI::App& program, Action& action) {
       "Examples:\n  trocar patient build --ct ct.nii.gz --labels segmentation.nii.gz --out case_1\n"
       "  trocar patient build --ct dicom_folder --labels masks_folder --label-map names.toml --out case_2\n"
       "  trocar patient build --ct dicom_disc --series 2 --labels segmentation.nii.gz --out case_3\n"
-      "  trocar patient build --ct dicom_disc --labels dicom_disc/RTSTRUCT --out case_4\n");
+      "  trocar patient build --ct dicom_disc --labels dicom_disc/RTSTRUCT --out case_4\n"
+      "  trocar patient build --ct ct.nii.gz --labels segmentation.nii.gz --posture left-lateral --out lumbar_1\n");
   const auto b = std::make_shared<BuildArguments>();
   build_command->add_option("--ct", b->ct, "CT: NIfTI, NRRD, MHA, or a folder of DICOM files with its sub-folders")
       ->required();
@@ -246,6 +256,10 @@ void add_patient_commands(CLI::App& program, Action& action) {
       ->add_option(
           "--derive", b->derive,
           "Thin structures to add where their neighbours are labelled: all, none, or names separated by commas")
+      ->capture_default_str();
+  build_command
+      ->add_option("--posture", b->posture,
+                   "How the patient lies for the puncture: supine, prone, left-lateral, right-lateral, sitting")
       ->capture_default_str();
   build_command->add_option(
       "--tissues", b->tissues,

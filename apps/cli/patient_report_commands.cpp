@@ -189,7 +189,7 @@ Result<CheckResult> check_patient(const Arguments& arguments, const anatomy::Vir
                                   const Progress& progress) {
   CheckResult result;
   TROCAR_TRY(result.tasks, checked_tasks(arguments, patient, progress));
-  result.doubts = anatomy::find_doubts(patient, anatomy::label_statistics(patient));
+  result.doubts = anatomy::find_all_doubts(patient, anatomy::label_statistics(patient));
   if (patient.paths.empty()) result.doubts.push_back({"no expert path is stored; trocar run plans one", {}, {}});
   if (cases::has_own_tissues(arguments.source.folder_or_name))
     if (const auto own = cases::load_own_tissues(arguments.source.folder_or_name); !own)

@@ -80,7 +80,7 @@ BuildSummary summarize_build(const anatomy::VirtualPatient& patient, const std::
   summary.labels = anatomy::label_statistics(patient);
   summary.body_ml = body_volume_ml(patient.skin_distance_mm);
   summary.warnings = std::move(warnings);
-  for (const anatomy::Finding& doubt : anatomy::find_doubts(patient, summary.labels))
+  for (const anatomy::Finding& doubt : anatomy::find_all_doubts(patient, summary.labels))
     summary.doubts.push_back(doubt.text);
   summary.tasks = tasks;
   for (const tasks::Task& task : tasks) {

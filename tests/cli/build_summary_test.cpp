@@ -108,6 +108,14 @@ TEST_F(BuildSummary, PutsATissueTableIntoTheFolder) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "bad"));
 }
 
+TEST_F(BuildSummary, KnowsThePosture) {
+  ASSERT_EQ(build("--posture left-lateral").exit_status, 0);
+  EXPECT_NE(read_text((folder_ / "made") + "/patient.toml").find("left-lateral"), std::string::npos);
+  const Outcome bad = trocar("patient build --ct a --labels b --out '" + (folder_ / "bad") + "' --posture standing");
+  EXPECT_EQ(bad.exit_status, 2);
+  EXPECT_EQ(line_count(bad.err), 1) << bad.err;
+}
+
 TEST_F(BuildSummary, SeriesOfAFileIsRefused) {
   const Outcome outcome = build("--series 2");
   EXPECT_EQ(outcome.exit_status, 2) << outcome.err;

@@ -29,6 +29,11 @@ std::vector<Finding> find_doubts(const VirtualPatient& patient, const std::vecto
   }
   if (!cut_off.empty())
     doubts.push_back({fmt::format("cut off by the edge of the scan: {}", fmt::join(cut_off, ", ")), {}, {}});
+  return doubts;
+}
+
+std::vector<Finding> find_all_doubts(const VirtualPatient& patient, const std::vector<LabelStatistics>& statistics) {
+  std::vector<Finding> doubts = find_doubts(patient, statistics);
   for (Finding& doubt : find_segmentation_doubts(patient)) doubts.push_back(std::move(doubt));
   return doubts;
 }

@@ -72,6 +72,7 @@ class Checks {
 
   void check_labels() {
     const std::vector<anatomy::Finding> doubts = anatomy::find_doubts(patient_, statistics_);
+    for (const anatomy::Finding& doubt : draft_.imported->doubts) warn(CaseStep::kLabels, doubt.text, doubt.place_P);
     for (const anatomy::Finding& doubt : doubts) warn(CaseStep::kLabels, doubt.text, doubt.place_P);
     for (const std::string& warning : draft_.imported->warnings) {
       const auto is_same = [&](const anatomy::Finding& doubt) { return doubt.text == warning; };

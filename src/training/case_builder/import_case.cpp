@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "anatomy/phantom/phantom.h"
+#include "anatomy/repair/repair_segmentation.h"
 #include "case_builder/ultrasound.h"
 #include "cases/prepare_case.h"
 #include "core/files/atomic_file.h"
@@ -70,6 +71,7 @@ Result<CaseDraft> import_case(const ImportRequest& request, const Progress& prog
     imported->meshes = surface::extract_surfaces(imported->patient, {}, surfaces);
   }
   imported->statistics = anatomy::label_statistics(imported->patient);
+  imported->doubts = anatomy::find_segmentation_doubts(imported->patient);
 
   CaseDraft draft;
   draft.name = imported->patient.name;
