@@ -59,17 +59,21 @@ inline double mean_resistance_after_n(const Attempt& attempt, std::size_t punctu
 }
 
 /// The paper's observations on one expert attempt: three peaks in order, a drop after each, a larger force behind the
-/// capsule than behind the skin.
+/// capsule than behind the skin. A patient from a CT has a peritoneum as well, just in front of the capsule.
 inline void expect_three_peaks(const Attempt& attempt) {
-  ASSERT_EQ(layers_of(attempt), (std::vector<std::string>{"skin", "muscle", "liver_capsule"}));
+  const auto is_peritoneum = [](const auto& layer) { return layer == "peritoneum"; };
+  std::vector<std::string> layers = layers_of(attempt);
+  std::erase_if(layers, is_peritoneum);
+  ASSERT_EQ(layers, (std::vector<std::string>{"skin", "muscle", "liver_capsule"}));
   const auto& samples = attempt.session.samples;
   for (const attempt::PunctureRecord& puncture : attempt.result.punctures) {
+    if (is_peritoneum(puncture.layer)) continue;  // the capsule behind it is loaded at once
     const auto at = static_cast<std::size_t>(puncture.time_s * attempt.session.info.rate_hz + 0.5);
     constexpr std::size_t kSoon = 150;  // ms
     ASSERT_LT(at + kSoon, samples.size());
     EXPECT_LT(axial_resistance_n(samples[at + kSoon]), 0.75 * axial_resistance_n(samples[at])) << puncture.layer;
   }
-  EXPECT_GT(mean_resistance_after_n(attempt, 2), mean_resistance_after_n(attempt, 0));
+  EXPECT_GT(mean_resistance_after_n(attempt, attempt.result.punctures.size() - 1), mean_resistance_after_n(attempt, 0));
 }
 
 }  // namespace trocar::testing
