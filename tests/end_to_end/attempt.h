@@ -70,8 +70,9 @@ inline void expect_three_peaks(const Attempt& attempt) {
     if (is_peritoneum(puncture.layer)) continue;  // the capsule behind it is loaded at once
     const auto at = static_cast<std::size_t>(puncture.time_s * attempt.session.info.rate_hz + 0.5);
     constexpr std::size_t kSoon = 150;  // ms
+    constexpr double kLeft = 0.8;       // of the peak: behind a wall of 45 mm the shaft's friction stays
     ASSERT_LT(at + kSoon, samples.size());
-    EXPECT_LT(axial_resistance_n(samples[at + kSoon]), 0.75 * axial_resistance_n(samples[at])) << puncture.layer;
+    EXPECT_LT(axial_resistance_n(samples[at + kSoon]), kLeft * axial_resistance_n(samples[at])) << puncture.layer;
   }
   EXPECT_GT(mean_resistance_after_n(attempt, attempt.result.punctures.size() - 1), mean_resistance_after_n(attempt, 0));
 }

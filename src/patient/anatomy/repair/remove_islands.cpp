@@ -50,8 +50,9 @@ Surroundings find_surroundings(const volume::LabelGrid& labels, const LabelTable
   around.is_rest = 2 * faces[0] < all;
   std::size_t most = 0;
   for (const Label& label : table.labels) {
-    const bool is_inside = label.tissue.ends_with("_lesion") || label.tissue == "vessel" || label.tissue == "bile_duct";
-    around.is_rest = around.is_rest || (is_inside && faces[label.id] > 0);
+    const auto share = static_cast<double>(faces[label.id]) / static_cast<double>(std::max<std::size_t>(all, 1));
+    if (label.tissue.ends_with("_lesion")) around.is_rest = around.is_rest || share > 0.0;
+    if (label.tissue == "vessel" || label.tissue == "bile_duct") around.is_rest = around.is_rest || share >= kContact;
     if (kind == 0 || kind_of(label) != kind || faces[label.id] <= most) continue;
     most = faces[label.id];
     if (static_cast<double>(most) >= kContact * static_cast<double>(all)) around.same_kind = label.id;
