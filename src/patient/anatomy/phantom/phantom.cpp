@@ -118,6 +118,7 @@ Result<VirtualPatient> generate_case(const PhantomInfo& info, const CaseDescript
   const volume::GridGeometry geometry =
       box_geometry(box, anatomy.scale(), torso_size(box, anatomy.scale()), resolution);
   VirtualPatient patient = render_patient(info, seed, anatomy, geometry, progress);
+  if (!plan.finding.empty()) patient.description += "; " + plan.finding;
   patient.posture = description.posture;
   patient.landmarks = std::move(plan.landmarks);
   patient.paths = std::move(plan.paths);

@@ -1,9 +1,12 @@
 #include "anatomy/phantom/torso_patient.h"
 
+#include <fmt/format.h>
+
 #include "anatomy/phantom/biopsy.h"
 #include "anatomy/phantom/expert_paths.h"
 #include "anatomy/phantom/free_fluid.h"
 #include "anatomy/phantom/landmarks.h"
+#include "anatomy/phantom/liver_segment.h"
 
 namespace trocar::anatomy::phantom {
 
@@ -25,6 +28,11 @@ Result<BiopsyPlan> lesions_of(Anatomy& anatomy, const CaseDescription& descripti
   BiopsyPlan none;
   none.path.line_P = {Vec3::Constant(1e5), Vec3::Constant(1e5 + 1.0)};
   return none;
+}
+
+std::string finding_of(const Anatomy& anatomy, const Lesion& lesion) {
+  return fmt::format("lesion of {:.0f} mm in segment {} of the liver", 2.0F * lesion.radius_mm * anatomy.scale(),
+                     liver_segment(anatomy, anatomy.torso.at(lesion.centre)));
 }
 
 }  // namespace
@@ -52,6 +60,7 @@ Result<TorsoPlan> build_torso(Anatomy& anatomy, const CaseDescription& descripti
   plan.landmarks = find_landmarks(anatomy);
   if (description.task == "liver-biopsy") {
     plan.paths = {biopsy.path};
+    plan.finding = finding_of(anatomy, biopsy.lesions.front());
     for (Vec3* end : {&plan.paths.front().line_P.a, &plan.paths.front().line_P.b}) *end *= anatomy.scale();
   } else if (description.task == "lumbar-puncture") {
     TROCAR_TRY(plan.paths, plan_lumbar_paths(anatomy));

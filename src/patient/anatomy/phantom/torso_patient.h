@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "anatomy/patient.h"
@@ -13,6 +14,7 @@ namespace trocar::anatomy::phantom {
 struct TorsoPlan {
   std::vector<Landmark> landmarks;
   std::vector<NeedlePath> paths;  ///< Expert paths of the case's task.
+  std::string finding;            ///< "lesion of 24 mm in segment VI of the liver"; may be empty.
 };
 
 /// Fills an empty anatomy with a torso from T8 to the sacrum for a case. Errors: no safe path for the task in this

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "anatomy/phantom/consistency.h"
+#include "anatomy/phantom/liver_segment.h"
 #include "anatomy/phantom/phantom.h"
 #include "anatomy/testing/shipped_structures.h"
 #include "core/files/data_dir.h"
@@ -221,6 +222,34 @@ TEST(NamedCases, HaveLumbarDistancesOfPublishedSize) {
     EXPECT_GT(length_mm["epidural_fat"], 2.0) << name;
     EXPECT_LT(length_mm["epidural_fat"], 7.5) << name;
   }
+}
+
+// Shares of the whole liver: right lobe (V to VIII) 55 to 75 %, lateral left (II, III) 10 to 25 %, IV 8 to 24 %,
+// caudate below 6 % (CT volumetry of healthy livers: Leelaudomlipi et al., Liver Transpl 8:1136, 2002; Abdalla et al.,
+// Surgery 135:404, 2004).
+TEST(LiverSegment, HasSegmentsOfPublishedSize) {
+  const Built& the_case = built("biopsy-2");
+  const Structure& liver = the_case.anatomy->find("liver");
+  std::map<std::string_view, double> count;
+  double all = 0.0;
+  for (float z = -110.0F; z < 112.0F; z += 5.0F)
+    for (float y = -140.0F; y < 115.0F; y += 5.0F)
+      for (float x = -170.0F; x < 90.0F; x += 5.0F) {
+        const Place place = the_case.anatomy->torso.at(Vec3f(x, y, z));
+        if (liver.distance(place) >= 0.0F) continue;
+        count[liver_segment(*the_case.anatomy, place)] += 1.0;
+        all += 1.0;
+      }
+  EXPECT_EQ(count.size(), 8U);
+  const double right = (count["V"] + count["VI"] + count["VII"] + count["VIII"]) / all;
+  EXPECT_GT(right, 0.55);
+  EXPECT_LT(right, 0.75);
+  EXPECT_GT((count["II"] + count["III"]) / all, 0.10);
+  EXPECT_LT((count["II"] + count["III"]) / all, 0.25);
+  EXPECT_GT(count["IV"] / all, 0.08);
+  EXPECT_LT(count["IV"] / all, 0.24);
+  EXPECT_LT(count["I"] / all, 0.06);
+  for (const std::string_view segment : {"V", "VI", "VII", "VIII"}) EXPECT_GT(count[segment] / all, 0.06) << segment;
 }
 
 TEST(FreeFluid, FillsTheLowestSpaceForThePosture) {
