@@ -18,8 +18,9 @@ TEST(Needle, DiametersFollowTheGauge) {
   const auto needles = load_needles(kFile);
   ASSERT_TRUE(needles) << needles.error().text();
   // Needle gauge comparison chart (Birmingham wire gauge), mm.
-  const std::map<double, double> chart = {{14, 2.108}, {16, 1.651}, {17, 1.473}, {18, 1.270}, {22, 0.7176}};
-  const std::map<double, double> bore = {{14, 1.600}, {16, 1.194}, {17, 1.067}, {18, 0.838}, {22, 0.413}};
+  const std::map<double, double> chart = {{14, 2.108}, {15, 1.829}, {16, 1.651},
+                                          {17, 1.473}, {18, 1.270}, {22, 0.7176}};
+  const std::map<double, double> bore = {{14, 1.600}, {15, 1.372}, {16, 1.194}, {17, 1.067}, {18, 0.838}, {22, 0.413}};
   EXPECT_GE(needles->size(), 7u);
   for (const Needle& needle : *needles) {
     ASSERT_TRUE(chart.contains(needle.gauge)) << needle.name;
