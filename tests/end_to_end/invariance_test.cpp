@@ -42,6 +42,7 @@ const Scan& scan() {
 /// What the user gets from a patient.
 struct Outcome {
   std::map<std::string, double> volumes_ml;
+  std::set<std::string> derived;
   std::set<std::string> cut;  ///< Structures at the border of the volume.
   Segment path_P{Vec3::Zero(), Vec3::Zero()};
   std::shared_ptr<const haptics::HapticScene> scene;
@@ -56,6 +57,7 @@ Result<Outcome> outcome_of(const fs::path& ct, const fs::path& labels, const fs:
   for (const anatomy::LabelStatistics& label : anatomy::label_statistics(built)) {
     const std::string& name = built.label_table.find(label.id)->name;
     outcome.volumes_ml[name] = label.volume_ml;
+    if (built.label_table.find(label.id)->is_derived) outcome.derived.insert(name);
     if (label.touches_border) outcome.cut.insert(name);
   }
   const auto patient = std::make_shared<const anatomy::VirtualPatient>(std::move(built));
@@ -103,7 +105,7 @@ class Invariance : public ::testing::Test {
     motion.after_mm = 10.0;
     const auto want = cases::find_curve_events(cases::force_curve(*expected->scene, motion), expected->tissues);
     const auto got = cases::find_curve_events(cases::force_curve(*outcome.scene, motion), outcome.tissues);
-    ASSERT_EQ(want.size(), 3U);
+    ASSERT_GE(want.size(), 3U);  // skin, muscle, capsule; a derived peritoneum before it
     ASSERT_EQ(got.size(), want.size());
     for (std::size_t n = 0; n < want.size(); ++n) {
       EXPECT_EQ(got[n].layer, want[n].layer);
@@ -118,7 +120,9 @@ class Invariance : public ::testing::Test {
     constexpr double kFloat_mm = 1e-3;
     for (const auto& [name, ml] : expected->volumes_ml) {
       ASSERT_TRUE(outcome->volumes_ml.contains(name)) << name;
-      EXPECT_NEAR(outcome->volumes_ml.at(name), ml, 1e-3 * ml) << name;
+      // Derived structures end at distances in mm: rounding moves their ends by a voxel.
+      const double share = outcome->derived.contains(name) ? 0.04 : 1e-3;
+      EXPECT_NEAR(outcome->volumes_ml.at(name), ml, share * ml) << name;
     }
     EXPECT_LT((outcome->path_P.a - expected->path_P.a).norm(), kFloat_mm);
     EXPECT_LT((outcome->path_P.b - expected->path_P.b).norm(), kFloat_mm);
