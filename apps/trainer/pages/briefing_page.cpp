@@ -5,8 +5,10 @@
 #include <QProgressBar>
 #include <QPushButton>
 #include <QVBoxLayout>
+#include <algorithm>
 #include <span>
 
+#include "anatomy/phantom/phantom.h"
 #include "attempt/live/live_attempt.h"
 #include "attempt/servers/device_control.h"
 #include "attempt/servers/tool_devices.h"
@@ -80,18 +82,39 @@ QString risks_text(const tasks::Task& task) {
   return risks.join(QStringLiteral(", "));
 }
 
-QString counts_text(const tasks::Task& task) {
-  return BriefingPage::
-      tr("Scoring: tip at the target (half of the points at %1 mm), entry point (half at %2 mm) and angle (half at "
-         "%3°) compared with the expert's, target tissue in the core, a short path, less than %4 s. Do not touch: %5.")
-          .arg(task.target_tolerance_mm, 0, 'f', 0)
-          .arg(task.entry_tolerance_mm, 0, 'f', 0)
-          .arg(task.angle_tolerance_deg, 0, 'f', 0)
-          .arg(task.time_limit_s, 0, 'f', 0)
-          .arg(risks_text(task));
+QString counts_text(const cases::Case& the_case) {
+  const tasks::Task& task = the_case.task;
+  return BriefingPage::tr(
+             "Scoring: tip at the target (half of the points at %1 mm), entry point (half at %2 mm) and angle (half at "
+             "%3°) compared with the expert's, %6a short path, less than %4 s. Do not touch: %5.")
+      .arg(task.target_tolerance_mm, 0, 'f', 0)
+      .arg(task.entry_tolerance_mm, 0, 'f', 0)
+      .arg(task.angle_tolerance_deg, 0, 'f', 0)
+      .arg(task.time_limit_s, 0, 'f', 0)
+      .arg(risks_text(task), the_case.needle.is_biopsy ? BriefingPage::tr("target tissue in the core, ") : QString());
+}
+
+/// The referral of an embedded patient; empty for others.
+QString referral_text(const cases::Case& the_case) {
+  for (const anatomy::PhantomInfo& info : anatomy::embedded_patients())
+    if (info.name == the_case.patient->name && !info.briefing.empty())
+      return to_qt(info.briefing) + QStringLiteral("\n\n");
+  return {};
+}
+
+/// Targets that are no lesion.
+QString fluid_goal_text(const tasks::Task& task) {
+  const auto is_target = [&](const char* tissue) {
+    return std::find(task.target_tissues.begin(), task.target_tissues.end(), tissue) != task.target_tissues.end();
+  };
+  if (is_target("csf")) return BriefingPage::tr("Bring the needle's tip into the spinal fluid of the dural sac.");
+  if (is_target("ascites")) return BriefingPage::tr("Bring the needle's tip into the free fluid of the abdomen.");
+  if (is_target("bile_duct")) return BriefingPage::tr("Bring the needle's tip into a bile duct of the liver.");
+  return {};
 }
 
 QString goal_text(const cases::Case& the_case) {
+  if (const QString text = fluid_goal_text(the_case.task); !text.isEmpty()) return text;
   return BriefingPage::tr("Bring the needle's tip to the %1 %2, under ultrasound.")
       .arg(the_case.is_parenchymal ? BriefingPage::tr("healthy tissue of the") : BriefingPage::tr("lesion of the"),
            to_qt(the_case.task.organ));
@@ -217,8 +240,9 @@ void BriefingPage::show_case(const cases::OpenCase& open, Difficulty difficulty)
   subtitle_->setText(tr("Patient %1 · %2 · %3: %4")
                          .arg(to_qt(the_case.patient->name), to_qt(the_case.needle.title), tr(title_of(difficulty)),
                               tr(help_text_of(difficulty))));
-  goal_->setText(difficulty == Difficulty::kExam ? goal_text(the_case) : goal_text(the_case) + way_text(the_case));
-  counts_->setText(counts_text(the_case.task));
+  const QString goal = referral_text(the_case) + goal_text(the_case);
+  goal_->setText(difficulty == Difficulty::kExam ? goal : goal + way_text(the_case));
+  counts_->setText(counts_text(the_case));
   const QSize side(qMax(240, axial_->width()), qMax(160, axial_->height()));
   // A plane along the path would reveal the path.
   const BriefingPlane second =
