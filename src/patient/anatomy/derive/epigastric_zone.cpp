@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -18,97 +19,125 @@ constexpr double kUmbilicusMm = 20.0;
 constexpr double kThinnestMuscleMm = 2.5;
 constexpr double kDeepestMm = 80.0;  // the muscle begins within this distance of the skin
 constexpr double kSmoothingMm = 9.0;
-constexpr double kRectusMm = 25.0;      // from the midline: the rectus is here at every level
-constexpr double kFromRectusMm = 25.0;  // a muscle this much farther back or in front is another one
+constexpr double kDeeperMm = 25.0;    // a muscle this much deeper below the skin than the rectus is another one
+constexpr double kLeastFound = 0.25;  // share of a slice's columns in which the muscle must be found
 
-/// Index j of the last voxel of the first muscle from the front in a column; -1: none.
-std::int64_t muscle_end(const DerivedLabels& labels, const std::array<bool, 256>& is_muscle, std::int64_t i,
-                        std::int64_t k) {
+/// A column from the front: its first voxel below the skin, and the depth of the muscle's last voxel below that one.
+struct Column {
+  std::int64_t skin_j = -1;
+  std::int64_t depth = -1;  ///< -1: no muscle was found.
+};
+
+/// Looks for the first muscle from the front.
+Column find_muscle(const DerivedLabels& labels, const std::array<bool, 256>& is_muscle,
+                   const std::array<bool, 256>& is_membrane, std::int64_t i, std::int64_t k) {
   const volume::GridGeometry& g = labels.geometry();
   const double spacing_mm = g.spacing_mm.y();
   const volume::FloatGrid& skin_mm = labels.patient().skin_distance_mm;
-  std::int64_t skin_j = -1, first = -1;
+  Column column;
+  std::int64_t first = -1;
   for (std::int64_t j = 0; j < g.size[1]; ++j) {
     const std::size_t n = g.offset({i, j, k});
-    if (skin_j < 0 && skin_mm.voxels[n] < 0.0F) skin_j = j;
-    if (skin_j < 0) continue;
-    if (first < 0 && static_cast<double>(j - skin_j) * spacing_mm > kDeepestMm) return -1;
-    const bool is_here = is_muscle[labels.at(n)];
-    if (is_here && first < 0) first = j;
-    if (is_here || first < 0) continue;
-    if (static_cast<double>(j - first) * spacing_mm >= kThinnestMuscleMm) return j - 1;
+    if (column.skin_j < 0 && skin_mm.voxels[n] < 0.0F) column.skin_j = j;
+    if (column.skin_j < 0) continue;
+    if (first < 0 && static_cast<double>(j - column.skin_j) * spacing_mm > kDeepestMm) return column;
+    const std::uint8_t id = labels.at(n);
+    if (is_muscle[id] && first < 0) first = j;
+    if (is_muscle[id] || first < 0) continue;
+    // A thin muscle can be followed by the peritoneum that was made of its last voxels.
+    if (is_membrane[id] || static_cast<double>(j - first) * spacing_mm >= kThinnestMuscleMm) {
+      column.depth = j - 1 - column.skin_j;
+      return column;
+    }
     first = -1;
   }
-  return -1;
+  return column;
 }
 
-/// Median of the found values in a window of a row-major map; -1 if most are not found.
-std::int64_t window_median(const std::vector<std::int64_t>& map, std::int64_t columns, std::int64_t rows,
-                           std::int64_t column, std::int64_t row, std::int64_t half_c, std::int64_t half_r) {
-  std::vector<std::int64_t> values;
-  std::size_t all = 0;
-  for (std::int64_t r = std::max<std::int64_t>(0, row - half_r); r <= std::min(rows - 1, row + half_r); ++r)
-    for (std::int64_t c = std::max<std::int64_t>(0, column - half_c); c <= std::min(columns - 1, column + half_c);
-         ++c) {
-      ++all;
-      const std::int64_t value = map[static_cast<std::size_t>(r * columns + c)];
-      if (value >= 0) values.push_back(value);
-    }
-  if (2 * values.size() < all) return -1;
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
+/// The value at a share of sorted values, 0 the least, 0.5 the median. Precondition: not empty.
+std::int64_t quantile(std::vector<std::int64_t> values, double share) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
 }
 
 class EpigastricZone {
  public:
   explicit EpigastricZone(DerivedLabels& labels) : labels_(labels) {
-    for (const Label& label : labels.patient().label_table.labels) is_muscle_[label.id] = label.tissue == "muscle";
+    for (const Label& label : labels.patient().label_table.labels) {
+      is_muscle_[label.id] = label.tissue == "muscle";
+      is_membrane_[label.id] = label.tissue == "peritoneum";
+    }
   }
 
   /// Paints one side: columns first_i to last_i, slices first_k to last_k.
-  void paint(const char* name, std::int64_t rectus_i, std::int64_t first_i, std::int64_t last_i, std::int64_t first_k,
-             std::int64_t last_k) {
+  void paint(const char* name, std::int64_t first_i, std::int64_t last_i, std::int64_t first_k, std::int64_t last_k) {
     const volume::GridGeometry& g = labels_.geometry();
-    first_i = std::max<std::int64_t>(0, first_i);
-    last_i = std::min(g.size[0] - 1, last_i);
-    const std::int64_t columns = last_i - first_i + 1, rows = last_k - first_k + 1;
-    if (columns <= 0 || rows <= 0) return;
-    std::vector<std::int64_t> ends(static_cast<std::size_t>(columns * rows));
-    const double reach = kFromRectusMm / g.spacing_mm.y();
-    for (std::int64_t r = 0; r < rows; ++r) {
-      const std::int64_t rectus = rectus_end(rectus_i, first_k + r);
-      for (std::int64_t c = 0; c < columns; ++c) {
-        const std::int64_t end = muscle_end(labels_, is_muscle_, first_i + c, first_k + r);
-        const bool is_rectus = rectus >= 0 && end >= 0 && std::abs(static_cast<double>(end - rectus)) <= reach;
-        ends[static_cast<std::size_t>(r * columns + c)] = is_rectus ? end : -1;
-      }
-    }
+    first_i_ = std::max<std::int64_t>(0, first_i);
+    columns_ = std::min(g.size[0] - 1, last_i) - first_i_ + 1;
+    rows_ = last_k - first_k + 1;
+    if (columns_ <= 0 || rows_ <= 0) return;
+    map_.clear();
+    for (std::int64_t r = 0; r < rows_; ++r) add_slice(first_k + r);
     const std::uint8_t id = labels_.add(name);
-    const auto half = [&](double spacing_mm) { return std::lround(0.5 * kSmoothingMm / spacing_mm); };
     const auto thickness = std::max<std::int64_t>(1, std::lround(kThicknessMm / g.spacing_mm.y()));
-    for (std::int64_t r = 0; r < rows; ++r)
-      for (std::int64_t c = 0; c < columns; ++c) {
-        const std::int64_t end =
-            window_median(ends, columns, rows, c, r, half(g.spacing_mm.x()), half(g.spacing_mm.z()));
-        for (std::int64_t j = end; end >= 0 && j > std::max<std::int64_t>(-1, end - thickness); --j)
-          labels_.paint(g.offset({first_i + c, j, first_k + r}), id);
+    for (std::int64_t r = 0; r < rows_; ++r)
+      for (std::int64_t c = 0; c < columns_; ++c) {
+        const std::int64_t depth = smooth_depth(c, r);
+        const std::int64_t skin_j = at(c, r).skin_j;
+        if (depth < 0 || skin_j < 0) continue;
+        for (std::int64_t j = skin_j + depth; j > std::max<std::int64_t>(-1, skin_j + depth - thickness); --j)
+          if (g.contains({first_i_ + c, j, first_k + r})) labels_.paint(g.offset({first_i_ + c, j, first_k + r}), id);
       }
   }
 
  private:
-  /// Median of the rectus' posterior surface in five columns; -1: not found.
-  std::int64_t rectus_end(std::int64_t i, std::int64_t k) const {
-    std::vector<std::int64_t> ends;
-    for (std::int64_t column = i - 2; column <= i + 2; ++column)
-      if (labels_.geometry().contains({column, 0, k}))
-        if (const std::int64_t end = muscle_end(labels_, is_muscle_, column, k); end >= 0) ends.push_back(end);
-    if (ends.empty()) return -1;
-    std::nth_element(ends.begin(), ends.begin() + static_cast<std::ptrdiff_t>(ends.size() / 2), ends.end());
-    return ends[ends.size() / 2];
+  const Column& at(std::int64_t c, std::int64_t r) const { return map_[static_cast<std::size_t>(r * columns_ + c)]; }
+
+  /// Adds the columns of a slice. The rectus is the shallow muscle; where it is not found, it continues at its median
+  /// depth, because the vessels do. No depth at all if it is found nearly nowhere.
+  void add_slice(std::int64_t k) {
+    std::vector<Column> slice;
+    for (std::int64_t c = 0; c < columns_; ++c)
+      slice.push_back(find_muscle(labels_, is_muscle_, is_membrane_, first_i_ + c, k));
+    std::vector<std::int64_t> depths = found_depths(slice);
+    if (!depths.empty()) {
+      const auto deepest = quantile(depths, 0.25) + std::lround(kDeeperMm / labels_.geometry().spacing_mm.y());
+      for (Column& column : slice)
+        if (column.depth > deepest) column.depth = -1;
+      depths = found_depths(slice);
+    }
+    const bool is_enough = static_cast<double>(depths.size()) >= kLeastFound * static_cast<double>(slice.size());
+    for (Column& column : slice)
+      if (column.depth < 0 || !is_enough) column.depth = is_enough ? quantile(depths, 0.5) : -1;
+    map_.insert(map_.end(), slice.begin(), slice.end());
+  }
+
+  static std::vector<std::int64_t> found_depths(const std::vector<Column>& columns) {
+    std::vector<std::int64_t> depths;
+    for (const Column& column : columns)
+      if (column.depth >= 0) depths.push_back(column.depth);
+    return depths;
+  }
+
+  /// Median depth of the neighbourhood; -1 if there is none.
+  std::int64_t smooth_depth(std::int64_t column, std::int64_t row) const {
+    const Vec3& spacing = labels_.geometry().spacing_mm;
+    const std::int64_t half_c = std::lround(0.5 * kSmoothingMm / spacing.x());
+    const std::int64_t half_r = std::lround(0.5 * kSmoothingMm / spacing.z());
+    if (at(column, row).depth < 0) return -1;
+    std::vector<std::int64_t> depths;
+    for (std::int64_t r = std::max<std::int64_t>(0, row - half_r); r <= std::min(rows_ - 1, row + half_r); ++r)
+      for (std::int64_t c = std::max<std::int64_t>(0, column - half_c); c <= std::min(columns_ - 1, column + half_c);
+           ++c)
+        if (at(c, r).depth >= 0) depths.push_back(at(c, r).depth);
+    return quantile(std::move(depths), 0.5);
   }
 
   DerivedLabels& labels_;
-  std::array<bool, 256> is_muscle_{};
+  std::array<bool, 256> is_muscle_{}, is_membrane_{};
+  std::int64_t first_i_ = 0, columns_ = 0, rows_ = 0;
+  std::vector<Column> map_;  ///< By slice and column.
 };
 
 }  // namespace
@@ -126,13 +155,12 @@ void derive_epigastric_zone(DerivedLabels& labels) {
   };
   const double middle = 0.5 * static_cast<double>(hips.low[0] + hips.high[0]);
   const std::int64_t near = steps(kNearMm, g.spacing_mm.x()), far = steps(kFarMm, g.spacing_mm.x());
-  const std::int64_t rectus = steps(kRectusMm, g.spacing_mm.x());
   const std::int64_t first_k = hips.low[2] + steps(kSymphysisMm, g.spacing_mm.z());
   const std::int64_t last_k = std::min(g.size[2] - 1, hips.high[2] + steps(kUmbilicusMm, g.spacing_mm.z()));
   const auto centre = static_cast<std::int64_t>(std::lround(middle));
   EpigastricZone zone(labels);
-  zone.paint("inferior_epigastric_zone_left", centre + rectus, centre + near, centre + far, first_k, last_k);
-  zone.paint("inferior_epigastric_zone_right", centre - rectus, centre - far, centre - near, first_k, last_k);
+  zone.paint("inferior_epigastric_zone_left", centre + near, centre + far, first_k, last_k);
+  zone.paint("inferior_epigastric_zone_right", centre - far, centre - near, first_k, last_k);
 }
 
 }  // namespace trocar::anatomy::detail
