@@ -33,7 +33,11 @@ TEST(Workspace, ShowsOfThePlanWhatTheHelpAllows) {
   ASSERT_NE(axial, nullptr);
   axial->resize(480, 400);
   const auto share_of = [&](const QColor& color) { return share_near(axial->grab().toImage(), color, 40); };
-  const volume::Rgb& green = open_abdomen()->the_case.patient->label_table.find("liver_lesion_1")->color;
+  const cases::Case& the_case = open_abdomen()->the_case;
+  const anatomy::Label* target = anatomy::find_label(
+      *the_case.patient, the_case.plan.line_P.b + the_case.needle.notch_middle_mm() * the_case.plan.line_P.direction());
+  ASSERT_NE(target, nullptr);
+  const volume::Rgb& green = target->color;
   const QColor lesion(green[0], green[1], green[2]);
   auto* lesion_eye = workspace.findChild<QToolButton*>(QStringLiteral("structure-eye-liver-lesion-1"));
   ASSERT_NE(lesion_eye, nullptr);
