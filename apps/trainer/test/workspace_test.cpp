@@ -56,11 +56,11 @@ TEST(Workspace, ShowsOfThePlanWhatTheHelpAllows) {
     EXPECT_EQ(workspace.find<UltrasoundView>("ultrasound")->is_guide_visible(), e.is_guide_shown);
     EXPECT_EQ(workspace.findChild<QToolButton*>(QStringLiteral("show-guidance"))->isEnabled(),
               e.in_space != scene::Guidance::kNone);
-    EXPECT_EQ(share_of(theme().target) > 0.0002, e.has_target) << title_of(e.difficulty);
+    EXPECT_EQ(share_near(axial->grab().toImage(), theme().target, 8) > 0.0002, e.has_target) << title_of(e.difficulty);
     EXPECT_EQ(share_near(axial->grab().toImage(), lesion, 12) > 0.0001, e.has_target) << title_of(e.difficulty);
     EXPECT_EQ(!lesion_eye->parentWidget()->isHidden(), e.has_target) << title_of(e.difficulty);
     const double path = share_of(theme().path);  // the entry zone's circle has its colour too
-    EXPECT_LT(path, last_path) << title_of(e.difficulty);
+    EXPECT_LE(path, last_path) << title_of(e.difficulty);
     last_path = path;
   }
 }
