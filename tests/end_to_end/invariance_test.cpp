@@ -109,7 +109,8 @@ class Invariance : public ::testing::Test {
     ASSERT_EQ(got.size(), want.size());
     for (std::size_t n = 0; n < want.size(); ++n) {
       EXPECT_EQ(got[n].layer, want[n].layer);
-      EXPECT_NEAR(got[n].way_mm, want[n].way_mm, depth_mm) << want[n].layer;
+      const double layer_mm = want[n].layer == "peritoneum" ? 2.0 * depth_mm : depth_mm;  // derived: one voxel thick
+      EXPECT_NEAR(got[n].way_mm, want[n].way_mm, layer_mm) << want[n].layer;
       EXPECT_NEAR(got[n].peak_n, want[n].peak_n, share * want[n].peak_n) << want[n].layer;
     }
   }
@@ -120,8 +121,8 @@ class Invariance : public ::testing::Test {
     constexpr double kFloat_mm = 1e-3;
     for (const auto& [name, ml] : expected->volumes_ml) {
       ASSERT_TRUE(outcome->volumes_ml.contains(name)) << name;
-      // Derived structures end at distances in mm: rounding moves their ends by a voxel.
-      const double share = outcome->derived.contains(name) ? 0.04 : 1e-3;
+      // Derived structures end at distances in mm: rounding moves some voxels of their ends.
+      const double share = outcome->derived.contains(name) ? 0.01 : 1e-3;
       EXPECT_NEAR(outcome->volumes_ml.at(name), ml, share * ml) << name;
     }
     EXPECT_LT((outcome->path_P.a - expected->path_P.a).norm(), kFloat_mm);
@@ -213,7 +214,8 @@ TEST_F(Invariance, AnObliqueVolumeGivesThePatientWithinInterpolation) {
   EXPECT_LT((outcome->path_P.b - expected->path_P.b).norm(), 2.0);
   EXPECT_LT((outcome->path_P.a - expected->path_P.a).norm(), 8.0);
   EXPECT_NEAR(outcome->path_P.length_mm(), expected->path_P.length_mm(), 2.0);
-  // Half a voxel of the scan in depth; the peaks have 5 % of friction in them, which depends on the depth.
+  // Half a voxel of the scan in depth, a whole one where a derived layer of one voxel begins; the peaks have 5 % of
+  // friction in them, which depends on the depth.
   expect_same_forces(*outcome, 1.5, 0.05);
 }
 

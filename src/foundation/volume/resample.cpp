@@ -56,7 +56,11 @@ LabelGrid resample_nearest(const LabelGrid& source, const GridGeometry& target, 
   LabelGrid result(target, outside);
   const auto columns = static_cast<int>(target.size[0]);
   const auto rows = static_cast<std::size_t>(target.size[1] * target.size[2]);
-  const auto round = [](double v) { return static_cast<std::int64_t>(std::floor(v + 0.5)); };
+  // Half-way places go up, and so do those that a file's rounding has put just below.
+  constexpr double kRounding = 1e-4;
+  const auto round = [&](double v, std::size_t axis) {
+    return std::min(static_cast<std::int64_t>(std::floor(v + 0.5 + kRounding)), source.geometry.size[axis] - 1);
+  };
   parallel_for(rows, 64, [&](std::size_t first, std::size_t last) {
     for (std::size_t r = first; r < last; ++r) {
       const auto n = static_cast<std::int64_t>(r);
@@ -65,7 +69,7 @@ LabelGrid resample_nearest(const LabelGrid& source, const GridGeometry& target, 
       std::uint8_t* out = result.voxels.data() + r * static_cast<std::size_t>(columns);
       for (int u = range.first; u < range.last; ++u) {
         const Vec3 index = row.start + static_cast<double>(u) * row.step;
-        out[u] = source[{round(index.x()), round(index.y()), round(index.z())}];
+        out[u] = source[{round(index.x(), 0), round(index.y(), 1), round(index.z(), 2)}];
       }
     }
   });

@@ -8,7 +8,7 @@ namespace trocar::volume {
 /// values continue for the outer half voxel (as in sample_slice). No averaging: smooth the source first if the target
 /// is much coarser. Parallel.
 CtGrid resample_linear(const CtGrid& source, const GridGeometry& target, std::int16_t outside);
-/// Resamples labels by nearest neighbour.
+/// Resamples labels by nearest neighbour; of two that are equally near (to 1e-4 voxels), the one with the higher index.
 LabelGrid resample_nearest(const LabelGrid& source, const GridGeometry& target, std::uint8_t outside);
 
 /// The grid that covers the same box with about isotropic spacing: as near to spacing_mm (> 0) as whole voxels allow.

@@ -54,9 +54,28 @@ TEST(ResampleNearest, TakesTheNearestLabel) {
   for (auto& voxel : labels.voxels) voxel = static_cast<std::uint8_t>(1 + random.next() % 100);
   const GridGeometry target = turned(labels.geometry, {23, 11, 14}, random);
   const LabelGrid result = resample_nearest(labels, target, 0);
-  for (std::size_t n = 0; n < result.voxels.size(); ++n)
-    ASSERT_EQ(result.voxels[n], sample_nearest<std::uint8_t>(labels, centre_mm(target, n), 0));
+  for (std::size_t n = 0; n < result.voxels.size(); ++n) {
+    const Vec3 at = labels.geometry.to_index(centre_mm(target, n)) + Vec3::Constant(1e-4);  // half-way places go up
+    ASSERT_EQ(result.voxels[n], sample_nearest<std::uint8_t>(labels, labels.geometry.to_mm(at), 0));
+  }
   EXPECT_EQ(resample_nearest(labels, labels.geometry, 0).voxels, labels.voxels);
+}
+
+TEST(ResampleNearest, OfTwoVoxelsDoesNotDependOnRounding) {
+  GridGeometry geometry;
+  geometry.size = {1, 1, 40};
+  geometry.spacing_mm = {1.0, 1.0, 2.0 / 3.0};
+  LabelGrid labels(geometry);
+  for (std::size_t n = 0; n < labels.voxels.size(); ++n) labels.voxels[n] = static_cast<std::uint8_t>(n);
+  GridGeometry target = geometry;
+  target.size[2] = 26;
+  target.spacing_mm.z() = 1.0;  // every second voxel lies half-way between two
+  const LabelGrid expected = resample_nearest(labels, target, 0);
+  EXPECT_EQ(expected.voxels[1], 2);
+  for (const double rounding : {-1e-6, 1e-6}) {
+    target.spacing_mm.z() = 1.0 + rounding;
+    EXPECT_EQ(resample_nearest(labels, target, 0).voxels, expected.voxels) << rounding;
+  }
 }
 
 TEST(IsotropicGeometry, CoversTheSameBox) {
