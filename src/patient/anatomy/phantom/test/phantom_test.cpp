@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "core/random.h"
 #include "volume/morphology.h"
@@ -178,20 +179,24 @@ TEST(Phantom, LooksTheSameAtAnotherResolution) {
 
 TEST(Phantom, HasTheHounsfieldUnitsOfThePortalVenousPhase) {
   const VirtualPatient& patient = medium_patient();
-  std::map<std::string, std::pair<double, double>> sums;
+  std::map<std::string, std::vector<std::int16_t>> values;
   for (std::size_t n = 0; n < patient.labels.voxels.size(); ++n)
-    if (const Label* label = patient.label_table.find(patient.labels.voxels[n])) {
-      sums[label->name].first += patient.ct.voxels[n];
-      sums[label->name].second += 1.0;
-    }
-  const auto mean = [&](const std::string& name) { return sums[name].first / sums[name].second; };
-  EXPECT_NEAR(mean("liver"), 105.0, 6.0);
-  EXPECT_NEAR(mean("spleen"), 115.0, 8.0);
-  EXPECT_NEAR(mean("fat"), -95.0, 12.0);
-  EXPECT_NEAR(mean("aorta"), 150.0, 15.0);
-  EXPECT_NEAR(mean("lung_lower_lobe_right"), -840.0, 40.0);
-  EXPECT_GT(mean("vertebrae_L2"), 200.0);
-  EXPECT_LT(mean("liver_lesion_1"), mean("liver") - 30.0);
+    if (const Label* label = patient.label_table.find(patient.labels.voxels[n]))
+      values[label->name].push_back(patient.ct.voxels[n]);
+  // The median: borders mix two tissues in a voxel, and fat lies in thin layers.
+  const auto median = [&](const std::string& name) {
+    std::vector<std::int16_t>& of_label = values[name];
+    const auto middle = of_label.begin() + static_cast<std::ptrdiff_t>(of_label.size() / 2);
+    std::nth_element(of_label.begin(), middle, of_label.end());
+    return static_cast<double>(*middle);
+  };
+  EXPECT_NEAR(median("liver"), 105.0, 6.0);
+  EXPECT_NEAR(median("spleen"), 115.0, 8.0);
+  EXPECT_NEAR(median("fat"), -95.0, 12.0);
+  EXPECT_NEAR(median("aorta"), 150.0, 15.0);
+  EXPECT_NEAR(median("lung_lower_lobe_right"), -840.0, 40.0);
+  EXPECT_GT(median("vertebrae_L2"), 200.0);
+  EXPECT_LT(median("liver_lesion_1"), median("liver") - 30.0);
 }
 
 TEST(Phantom, RefusesAnUnknownNameAndAnImpossibleSize) {
