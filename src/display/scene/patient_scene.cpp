@@ -16,6 +16,7 @@
 #include "scene/detail/output.h"
 #include "scene/detail/pick.h"
 #include "scene/detail/plane_layer.h"
+#include "scene/detail/skin_points.h"
 #include "scene/detail/surface_layer.h"
 #include "scene/detail/tool_layer.h"
 #include "scene/detail/volume_layer.h"
@@ -127,7 +128,9 @@ void PatientScene::Impl::poll() {
   if (surfaces.poll()) has_changed = true;
   if (volume.poll()) has_changed = true;
   if (wanted_preset) {
-    const std::vector<Vec3> outline_P = surfaces.outline_P();
+    std::vector<Vec3> outline_P = surfaces.outline_P();
+    if (outline_P.empty() && patient)
+      outline_P = detail::skin_points(*patient);  // the first surfaces are still being made
     if (outline_P.empty()) return;
     view = fit_camera(outline_P, *wanted_preset, aspect());
     wanted_preset.reset();

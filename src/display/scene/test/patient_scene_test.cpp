@@ -68,6 +68,30 @@ TEST_F(PatientSceneTest, AnteriorViewHasPatientsRightOnTheLeftAndHeadUpAtEveryDe
   }
 }
 
+TEST_F(PatientSceneTest, TheBodyIsInViewBeforeItsSurfacesAreMade) {
+  anatomy::VirtualPatient ball;
+  ball.skin_distance_mm.geometry.size = {40, 40, 40};
+  ball.skin_distance_mm.geometry.spacing_mm = {5.0, 5.0, 5.0};
+  ball.skin_distance_mm.geometry.origin_P = {-47.5, -97.5, -197.5};  // about (50, 0, -100)
+  ball.skin_distance_mm = volume::FloatGrid(ball.skin_distance_mm.geometry);
+  const Vec3 middle_P(50.0, 0.0, -100.0);
+  for (std::size_t n = 0; n < ball.skin_distance_mm.voxels.size(); ++n) {
+    const volume::GridGeometry& geometry = ball.skin_distance_mm.geometry;
+    ball.skin_distance_mm.voxels[n] =
+        static_cast<float>((geometry.centre_mm(geometry.index_of(n)) - middle_P).norm() - 80.0);
+  }
+  scene->show_patient(std::make_shared<const anatomy::VirtualPatient>(std::move(ball)),
+                      std::make_shared<const std::vector<anatomy::NamedMesh>>());
+  EXPECT_TRUE(scene->render(DetailPolicy::full()));
+  const CameraView view = scene->view();
+  EXPECT_LT((view.focus_P - middle_P).norm(), 5.0) << view.focus_P.transpose();
+  EXPECT_GT(view.forward_P().x(), 0.5) << "from the right";
+  EXPECT_GT(view.forward_P().y(), 0.5) << "from the front";
+  const double half_height_mm = view.distance_mm() * std::tan(0.5 * view.view_angle_rad);
+  EXPECT_GT(half_height_mm, 80.0);
+  EXPECT_LT(half_height_mm, 150.0);
+}
+
 TEST_F(PatientSceneTest, OpacityHidesAndShowsOneStructure) {
   scene->set_opacity("right", 0.0);
   EXPECT_EQ(count_of(draw(), is_reddish), 0);
