@@ -58,6 +58,7 @@ std::vector<std::string> unlabelled_risks(const Task& task, const anatomy::Virtu
                                           const LabelCounts& counts) {
   std::vector<std::string> missing;
   for (const RiskStructure& risk : task.risks) {
+    if (risk.is_optional) continue;
     const bool is_there = std::any_of(
         patient.label_table.labels.begin(), patient.label_table.labels.end(), [&](const anatomy::Label& label) {
           return counts.voxels[label.id] > 0 &&

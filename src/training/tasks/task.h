@@ -14,10 +14,11 @@ namespace trocar::tasks {
 
 /// A structure that must not be touched, and the margin of a planned path to it.
 struct RiskStructure {
-  std::string tissue;      ///< Tissue class ("vessel", "bowel", "lung", "bone" …); empty: `label` is used.
-  std::string label;       ///< A label's name; used when tissue is empty.
-  double margin_mm = 5.0;  ///< Range 0..50.
-  double penalty = 20.0;   ///< Points lost when touched. Range 0..100.
+  std::string tissue;        ///< Tissue class ("vessel", "bowel", "lung", "bone" …); empty: `label` is used.
+  std::string label;         ///< A label's name; used when tissue is empty.
+  double margin_mm = 5.0;    ///< Range 0..50.
+  double penalty = 20.0;     ///< Points lost when touched. Range 0..100.
+  bool is_optional = false;  ///< A patient without it is not doubtful: it stands in for what others have labelled.
 
   bool operator==(const RiskStructure&) const = default;
 };

@@ -93,7 +93,7 @@ class TaskReader {
     TROCAR_TRY(const std::vector<config::TomlTable> rows, document_.tables("risks"));
     task.risks.clear();
     for (const config::TomlTable& row : rows) {
-      TROCAR_TRY_STATUS(row.check_keys({"tissue", "label", "margin_mm", "penalty"}));
+      TROCAR_TRY_STATUS(row.check_keys({"tissue", "label", "margin_mm", "penalty", "optional"}));
       RiskStructure risk;
       TROCAR_TRY(risk.tissue, row.string_or("tissue", ""));
       TROCAR_TRY(risk.label, row.string_or("label", ""));
@@ -101,6 +101,7 @@ class TaskReader {
         return fail("a risk structure is named by its tissue or its label", row.where(), "give one of the two");
       TROCAR_TRY(risk.margin_mm, row.number("margin_mm", {0.0, 50.0}));
       TROCAR_TRY(risk.penalty, row.number("penalty", {0.0, 100.0}));
+      TROCAR_TRY(risk.is_optional, row.boolean_or("optional", false));
       task.risks.push_back(std::move(risk));
     }
     return {};
@@ -207,6 +208,7 @@ void write_risk(config::TomlWriter& writer, const RiskStructure& risk) {
   writer.set(risk.tissue.empty() ? "label" : "tissue", risk.tissue.empty() ? risk.label : risk.tissue);
   writer.set("margin_mm", risk.margin_mm);
   writer.set("penalty", risk.penalty);
+  if (risk.is_optional) writer.set("optional", true);
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ Task changed_task() {
   task.title = "A \"hard\" case";
   task.max_path_mm = 123.456789012345;
   task.time_limit_s = 60.0;
-  task.risks = {{"", "rib_right_9", 4.0, 12.5}, {"vessel", "", 2.0, 30.0}};
+  task.risks = {{"", "rib_right_9", 4.0, 12.5}, {"vessel", "", 2.0, 30.0, true}};
   task.target_label = "lesion";
   task.target_P = Vec3(-30.1, -15.2, 1.0 / 3.0);
   task.entry_zone = EntryZone{{-100.0, 0.0, 0.0}, 25.0};

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "anatomy/known_structures.h"
 #include "core/files/atomic_file.h"
 #include "core/files/data_dir.h"
 #include "core/files/temporary_folder.h"
@@ -29,10 +30,16 @@ TEST(Task, ShippedTasksAreReadableAndNameKnownTissuesAndNeedles) {
   ASSERT_FALSE(tasks->empty());
   const auto table = anatomy::load_tissue_table(data_dir() / "tissues.toml");
   ASSERT_TRUE(table);
+  const auto known = anatomy::KnownStructures::load(data_dir());
+  ASSERT_TRUE(known) << known.error().text();
   for (const Task& task : *tasks) {
     EXPECT_TRUE(load_needle(data_dir() / "needles.toml", task.needle)) << task.name;
     EXPECT_FALSE(task.title.empty());
-    for (const RiskStructure& risk : task.risks) EXPECT_TRUE(table->find_tissue(risk.tissue)) << risk.tissue;
+    for (const RiskStructure& risk : task.risks) {
+      const bool is_known =
+          risk.tissue.empty() ? known->find(risk.label) != nullptr : table->find_tissue(risk.tissue).has_value();
+      EXPECT_TRUE(is_known) << risk.tissue << risk.label;
+    }
     for (const std::string& tissue : task.target_tissues) EXPECT_TRUE(table->find_tissue(tissue)) << tissue;
   }
 }
@@ -143,6 +150,14 @@ TEST(TaskReadiness, NamesWhatMakesTheTaskImpossible) {
   BoxPatient inside_only;  // a volume that nowhere reaches the skin
   inside_only.half_volume_mm = {60.0, 60.0, 50.0};
   EXPECT_TRUE(mentions(check_task(liver_biopsy(), inside_only.make()), "skin's surface"));
+}
+
+TEST(TaskReadiness, ARiskThatIsOptionalIsNotMissed) {
+  Task task = liver_biopsy();
+  task.risks.push_back({"", "epigastric_zone", 2.0, 10.0});
+  EXPECT_TRUE(mentions(check_task(task, BoxPatient{}.make()), "epigastric_zone"));
+  task.risks.back().is_optional = true;
+  EXPECT_FALSE(mentions(check_task(task, BoxPatient{}.make()), "epigastric_zone"));
 }
 
 TEST(TaskReadiness, TellsWhenTheOrganIsCut) {
