@@ -221,18 +221,20 @@ TEST_F(WindowTest, TwoHapticDevicesAreNamedTestedAndMoveATool) {
   trocar::testing::HdControls& premium = devices.add_premium("Left Device");
   trocar::testing::HdControls& omni = devices.add_omni("Right Device");
   const auto played_in = [&](const QString& pictures) {
-    place(premium, {0.0, 50.0, 80.0});  // beside the patient's right flank, at the height of the planned entry
+    place(premium, {-29.0, 33.0, 80.0});  // beside the patient's right flank, at the height of the planned entry
     place(omni, {0.0, 40.0, 0.0});
     omni.is_present = 1;
+    for (trocar::testing::HdControls* device : {&premium, &omni})
+      device->tremor_mm = 0.03;  // no hand is as still as an encoder that is stuck
     const auto at_picture = [&](const char* name) { return QFile::exists(pictures + QString::fromUtf8(name)); };
     Person person({{[&] { return at_picture("/needle.png"); },
                     [&] {
-                      glide(premium, {20.0, 50.0, 80.0}, 40.0);
-                      glide(premium, {0.0, 50.0, 80.0}, 40.0);
+                      glide(premium, {-9.0, 33.0, 80.0}, 40.0);
+                      glide(premium, {-29.0, 33.0, 80.0}, 40.0);
                     }},
                    {[&] { return at_picture("/ready.png"); },
                     [&] {
-                      glide(premium, {0.0, 50.0, 0.0}, 15.0);
+                      glide(premium, {-29.0, 33.0, 0.0}, 15.0);
                     }},
                    {[&] { return at_picture("/inside.png"); },
                     [&] {

@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <numbers>
 
 namespace trocar::testing {
 namespace {
@@ -66,6 +68,9 @@ void HdSimulatedDevice::take_controls() {
   if (arm.force_n.norm() > controls_->strongest_n) controls_->strongest_n = arm.force_n.norm();
   arm.v_mm_per_s.setZero();
   for (int i = 0; i < 3; ++i) arm.p_mm[i] = controls_->p_mm[static_cast<std::size_t>(i)];
+  constexpr double kTremor_rad = 2.0 * std::numbers::pi * 9.0 * kPeriod_s;  // 9 Hz
+  tremor_rad_ = std::fmod(tremor_rad_ + kTremor_rad, 2.0 * std::numbers::pi);
+  arm.p_mm.y() += controls_->tremor_mm * std::sin(tremor_rad_);
   for (int i = 0; i < 9; ++i) arm.R(i / 3, i % 3) = controls_->R[static_cast<std::size_t>(i)];
 }
 

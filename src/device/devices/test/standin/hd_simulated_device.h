@@ -175,6 +175,7 @@ class HdSimulatedDevice final : public HdStandIn {
   std::thread thread_;
   std::thread::id thread_id_;
   HdControls* controls_ = nullptr;
+  double tremor_rad_ = 0.0;
   bool is_running_ = false;
   int granted_ = 0;
   devices::hd::SchedulerHandle next_handle_ = 1;

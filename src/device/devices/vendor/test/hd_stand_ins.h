@@ -16,7 +16,7 @@ namespace trocar::testing {
 inline constexpr const char* kHdVariable = "TROCAR_STANDIN_HD";
 
 /// State of an OpenHaptics device, in memory shared by a test and the program that has opened the device. The hand that
-/// holds the device is rigid.
+/// holds the device gives way to no force.
 struct HdControls {
   std::array<char, 64> model{};
   int output_dof = 3;
@@ -28,6 +28,7 @@ struct HdControls {
   std::atomic<int> buttons{0};
   std::array<std::atomic<double>, 9> R{};     ///< Row-major, in the vendor's axes.
   std::array<std::atomic<double>, 3> p_mm{};  ///< In the vendor's axes.
+  std::atomic<double> tremor_mm{0.0};         ///< Amplitude of the hand's tremor along the vendor's y; 0: a vice.
   std::atomic<double> strongest_n{0.0};       ///< Largest force of the motors since the beginning.
   std::atomic<int> openings{0};               ///< Number of times that it was opened.
 };
