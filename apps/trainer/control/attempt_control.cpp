@@ -165,7 +165,7 @@ void AttemptControl::gesture(const Gesture& gesture) {
   const auto move = [&](auto& hand) {
     switch (gesture.kind) {
       case Gesture::Kind::kGlide:
-        return hand.glide(gesture.right * v.right_P + gesture.down * v.down_P);
+        return hand.glide(gesture.right * v.right_P + gesture.down * v.down_P, v.right_P.cross(v.down_P));
       case Gesture::Kind::kTilt:
         return hand.tilt(v.right_P, v.down_P, gesture.right, gesture.down);
       case Gesture::Kind::kTurn:

@@ -16,10 +16,15 @@ Vec3 bounded(const Vec3& shift_P) {
   return shift_P.allFinite() ? clamped_norm(shift_P, kLongestStep_mm) : Vec3(Vec3::Zero());
 }
 
-/// Moves a point along the skin: the tangential part of the shift, then projection onto the skin.
-Vec3 moved_on_skin(const anatomy::VirtualPatient& patient, const Vec3& skin_P, const Vec3& shift_P) {
+/// Moves a point along the skin, then projects it onto the skin. The shift is brought onto the skin's plane along the
+/// view, so that the point follows a pointer; along the normal where the view grazes the skin.
+Vec3 moved_on_skin(const anatomy::VirtualPatient& patient, const Vec3& skin_P, const Vec3& shift_P,
+                   const Vec3& seen_along_P) {
+  constexpr double kGrazing = 0.3;  // cosine between view and normal
   const Vec3 inward_P = skin_inward(patient, skin_P);
-  return nearest_skin_point(patient, skin_P + shift_P - inward_P.dot(shift_P) * inward_P);
+  const bool is_seen = std::abs(inward_P.dot(seen_along_P)) > kGrazing;
+  const Vec3& along_P = is_seen ? seen_along_P : inward_P;
+  return nearest_skin_point(patient, skin_P + shift_P - inward_P.dot(shift_P) / inward_P.dot(along_P) * along_P);
 }
 
 /// The direction, turned towards the skin's normal if it is flatter than allowed.
@@ -90,10 +95,10 @@ void PointerNeedle::put(const Pose& X_PN) {
   update();
 }
 
-void PointerNeedle::glide(const Vec3& shift_P) {
+void PointerNeedle::glide(const Vec3& shift_P, const Vec3& seen_along_P) {
   const Vec3 shift = bounded(shift_P);
   if (!is_past_skin()) {
-    entry_P_ = moved_on_skin(*patient_, entry_P_, shift);
+    entry_P_ = moved_on_skin(*patient_, entry_P_, shift, seen_along_P);
     return lean(axis_P_);
   }
   const double outside_mm = std::max(10.0, length_mm_ - past_mm_);
@@ -139,9 +144,9 @@ Pose PointerProbe::X_PT() const noexcept {
   return {R_PT_, skin_P_ + pressed_mm_ * R_PT_.col(1)};
 }
 
-void PointerProbe::glide(const Vec3& shift_P) {
+void PointerProbe::glide(const Vec3& shift_P, const Vec3& seen_along_P) {
   const Vec3 before_P = skin_inward(*patient_, skin_P_);
-  skin_P_ = moved_on_skin(*patient_, skin_P_, bounded(shift_P));
+  skin_P_ = moved_on_skin(*patient_, skin_P_, bounded(shift_P), seen_along_P);
   R_PT_ = rotation_between(before_P, skin_inward(*patient_, skin_P_)) * R_PT_;
 }
 

@@ -29,8 +29,9 @@ class PointerNeedle {
   void aim_at(const Segment& path_P);
   /// Takes over from the needle's pose after another hand moved it.
   void put(const Pose& X_PN);
-  /// Shifts the hand (mm): over the skin, or in the body the hub about the entry.
-  void glide(const Vec3& shift_P);
+  /// Shifts the hand (mm): over the skin, or in the body the hub about the entry. `seen_along_P`: unit direction of the
+  /// view in which the shift was drawn; the entry then moves by the shift as this view shows it. Zero: no view.
+  void glide(const Vec3& shift_P, const Vec3& seen_along_P = Vec3::Zero());
   /// Turns the hub about the entry by `right_rad` towards `right_P` and by `down_rad` towards `down_P` (unit vectors of
   /// a view).
   void tilt(const Vec3& right_P, const Vec3& down_P, double right_rad, double down_rad);
@@ -65,7 +66,8 @@ class PointerProbe {
   double pressed_mm() const noexcept { return pressed_mm_; }  ///< Negative: off the skin.
 
   void put(const Pose& X_PT);
-  void glide(const Vec3& shift_P);  ///< Moves over the skin; the face turns with it.
+  /// Moves over the skin, as PointerNeedle::glide does; the face turns with it.
+  void glide(const Vec3& shift_P, const Vec3& seen_along_P = Vec3::Zero());
   void tilt(const Vec3& right_P, const Vec3& down_P, double right_rad, double down_rad);
   void turn(double rad);  ///< Turns about the beam: the image plane.
   void push(double mm);

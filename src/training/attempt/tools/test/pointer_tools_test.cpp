@@ -46,6 +46,24 @@ TEST(PointerNeedle, GlidesOverTheSkinAndKeepsItsHeight) {
   EXPECT_GT((hand.entry_P() - path().a).norm(), 10.0);
 }
 
+TEST(PointerNeedle, FollowsThePointerInAnObliqueView) {
+  const Vec3 inward_P = path().direction();
+  const Vec3 across_P = inward_P.unitOrthogonal();
+  for (const double oblique_rad : {0.0, 0.5, -1.0}) {
+    const Vec3 seen_along_P = Eigen::AngleAxisd(oblique_rad, across_P) * inward_P;
+    const Vec3 right_P = across_P.cross(seen_along_P);
+    PointerNeedle hand = needle();
+    for (int step = 0; step < 10; ++step) hand.glide(0.5 * right_P, seen_along_P);
+    const Vec3 way_P = hand.entry_P() - path().a;
+    EXPECT_NEAR(way_P.dot(right_P), 5.0, 0.3) << oblique_rad;
+    EXPECT_NEAR(way_P.dot(across_P), 0.0, 0.3) << oblique_rad;
+  }
+  // A view that grazes the skin does not throw the needle far.
+  PointerNeedle hand = needle();
+  hand.glide(2.0 * inward_P, across_P);
+  EXPECT_LT((hand.entry_P() - path().a).norm(), 0.5);
+}
+
 TEST(PointerNeedle, TurnsAboutItsEntryInTheBody) {
   PointerNeedle hand = needle();
   hand.push(PointerNeedle::kAbove_mm + 40.0);
