@@ -2,8 +2,8 @@
 drag() { xdotool mousemove "$1" "$2" mousedown 1 && sleep 0.2 && xdotool mousemove "$3" "$4" && sleep 0.2 && xdotool mouseup 1; }
 
 shot start
-click 240 183 # the task
-click 640 183 # the patient
+click 150 208 # the task
+click 403 260 # the patient
 click 955 186 # guided
 shot chosen
 click 1194 711 # Start
