@@ -12,9 +12,9 @@ namespace trocar::io {
 struct DicomSeriesInfo {
   std::string uid;
   std::string description;
-  std::string modality;          ///< "CT", "MR", "SEG".
-  std::size_t images = 0;        ///< Number of images with pixels.
-  int columns = 0;               ///< Pixels of the first image.
+  std::string modality;    ///< "CT", "MR", "SEG".
+  std::size_t images = 0;  ///< Number of images with pixels.
+  int columns = 0;         ///< Pixels of the first image.
   int rows = 0;
   std::filesystem::path folder;  ///< Folder of its first file.
 };

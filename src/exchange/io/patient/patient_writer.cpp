@@ -76,10 +76,14 @@ Status write_contents(const anatomy::VirtualPatient& patient, const std::vector<
                       const fs::path& folder, const Progress& progress, VolumePacking packing) {
   report(progress, "volumes", 0.0);
   TROCAR_TRY_STATUS(write_volumes(patient, folder, packing));
-  detail::PatientDescription description{
-      patient.name,    patient.description,            patient.provenance,
-      patient.posture, anatomy::hash_patient(patient), patient.label_table,
-      {},              patient.repairs};
+  detail::PatientDescription description{patient.name,
+                                         patient.description,
+                                         patient.provenance,
+                                         patient.posture,
+                                         anatomy::hash_patient(patient),
+                                         patient.label_table,
+                                         {},
+                                         patient.repairs};
   TROCAR_TRY(description.meshes, write_meshes(meshes, folder, part_of(progress, 0.8, 1.0)));
   TROCAR_TRY_STATUS(write_landmarks(patient.landmarks, folder / detail::kLandmarkFile));
   TROCAR_TRY_STATUS(write_paths(patient.paths, folder / detail::kPathFile));

@@ -114,8 +114,8 @@ Result<PatientDescription> load_patient_toml(const fs::path& path, const fs::pat
   TROCAR_TRY(const std::string text, read_input(path, FileKind::kToml, folder));
   TROCAR_TRY(const config::TomlTable file, config::parse_toml(text, path.string()));
   TROCAR_TRY_STATUS(check_version(file, path));
-  TROCAR_TRY_STATUS(file.check_keys(
-      {"format_version", "name", "description", "provenance", "posture", "content_hash", "labels", "meshes", "repairs"}));
+  TROCAR_TRY_STATUS(file.check_keys({"format_version", "name", "description", "provenance", "posture", "content_hash",
+                                     "labels", "meshes", "repairs"}));
   PatientDescription patient;
   TROCAR_TRY(patient.name, file.string("name"));
   TROCAR_TRY(patient.description, file.string_or("description", ""));
