@@ -27,10 +27,12 @@
 
 namespace trocar::trainer {
 
-/// A small made patient as an instructor gets patients: a CT and a segmentation with a list of names.
-inline void write_case_files(const std::filesystem::path& folder) {
+/// A small made patient as an instructor gets patients: a CT and a segmentation with a list of names. `reachable_P`: a
+/// target with a safe path to it.
+inline void write_case_files(const std::filesystem::path& folder, Vec3& reachable_P) {
   const auto patient = anatomy::generate_phantom("abdomen", 1, {{144, 116, 104}});
   ASSERT_TRUE(patient) << patient.error().text();
+  reachable_P = patient->paths.front().line_P.b;
   volume::LabelGrid labels = patient->labels;
   std::string names = "[labels]\n";
   for (const anatomy::Label& label : patient->label_table.labels) {
@@ -49,7 +51,7 @@ class CasePageTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     files_ = std::make_unique<TemporaryFolder>();
-    write_case_files(files_->path());
+    write_case_files(files_->path(), reachable_P_);
   }
   static void TearDownTestSuite() { files_.reset(); }
   void SetUp() override {
@@ -146,6 +148,7 @@ class CasePageTest : public ::testing::Test {
   }
 
   static inline std::unique_ptr<TemporaryFolder> files_;
+  static inline Vec3 reachable_P_ = Vec3::Zero();
   CasePage page_;
 };
 
