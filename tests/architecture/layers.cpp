@@ -48,6 +48,7 @@ const std::vector<HeaderRule>& header_rules() {
         {"gdcm", {"itk"}},
         {"nifti1_io.h", {"itk"}},
         {"png.h", {"png"}},
+        {"xraylib", {"xraylib"}},
         {"soci/", {"soci"}},
         {"sqlite3.h", {"soci"}},
         {"X11/", {"vtk-rendering"}},

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+
+#include "core/result.h"
+#include "geometry/pose.h"
+
+namespace trocar::xray {
+
+/// Position and optics of a C-arm. Angles 0, 0: the detector is in front of the patient (anterior), the source behind.
+/// All lengths in mm at their place, unless stated.
+struct CArm {
+  double lao_deg = 0.0;                ///< Detector towards the patient's left, right (RAO) negative. Range -180..180.
+  double cranial_deg = 0.0;            ///< Detector towards the head, feet (caudal) negative. Range -90..90.
+  Vec3 isocentre_P = Vec3::Zero();     ///< The point that stays in the middle of the image.
+  double source_isocentre_mm = 700.0;  ///< Range 300..1500.
+  double source_detector_mm = 1100.0;  ///< Range 400..2000, greater than source_isocentre_mm + 50.
+  double field_mm = 300.0;  ///< Edge of the square part of the detector that is read (magnification). 50..500.
+  int pixels = 512;         ///< Along each edge. Range 16..2048.
+  /// Collimation: the irradiated share of the field, about its middle, along the columns and the rows. Range 0.05..1.
+  std::array<double, 2> collimation{1.0, 1.0};
+
+  bool operator==(const CArm&) const = default;
+};
+
+/// One clear line if a value is out of its range.
+Status check_c_arm(const CArm& arm);
+
+/// Rays of a C-arm: from the source to the middles of the pixels. Pixel (0, 0) is the upper left one of the image as it
+/// is shown: seen from the detector's side (a viewer before the patient), the head up.
+struct XrayRays {
+  Vec3 source_P = Vec3::Zero();
+  Vec3 first_pixel_P = Vec3::Zero();  ///< Middle of pixel (0, 0).
+  Vec3 column_P = Vec3::UnitX();      ///< From a pixel to the next one of its row.
+  Vec3 row_P = -Vec3::UnitZ();        ///< From a pixel to the next one of its column.
+  int columns = 0, rows = 0;
+
+  Vec3 pixel_P(double column, double row) const noexcept { return first_pixel_P + column * column_P + row * row_P; }
+  /// Pixel (column, row), not rounded, on which a point falls; not finite for points beside or behind the source.
+  std::array<double, 2> project(const Vec3& p_P) const noexcept;
+};
+XrayRays rays_of(const CArm& arm) noexcept;
+
+/// Unit vector from the isocentre to the detector, in P.
+Vec3 towards_detector_P(const CArm& arm) noexcept;
+
+/// Magnification of what lies at the isocentre.
+double magnification(const CArm& arm) noexcept;
+
+}  // namespace trocar::xray

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+
+#include "xray/physics/spectrum.h"
+#include "xray/projection/mass_image.h"
+
+namespace trocar::xray {
+
+/// What a beam becomes behind masses of the basis materials, as a detector of caesium iodide measures it: the signal is
+/// the energy that it absorbs, 1 without anything in the beam (Beer's law, summed over the spectrum).
+class Beam {
+ public:
+  /// `detector_mm`: thickness of caesium iodide. Range 0.1..2.
+  static Result<Beam> make(const Spectrum& spectrum, double detector_mm = 0.6);
+
+  /// Signal behind masses (g/cm², in the order of Basis). Exact.
+  double signal(const std::array<double, kBases>& g_per_cm2) const noexcept;
+  /// The same for each pixel, from a table: within 1e-3 of the exact logarithm. All cores, no allocation.
+  void signals(const MassImage& masses, std::span<float> signal) const;
+
+  /// Photons per mm² (at 1 m, per mAs) that the detector counts in the open beam.
+  double detected_photons() const noexcept;
+  /// Variance of the open beam's signal from one photon per pixel: 1 for one energy, above for a spectrum (Swank).
+  double noise_factor() const noexcept;
+  double air_kerma_mgy() const noexcept;  ///< At 1 m per mAs.
+
+ private:
+  struct Impl;
+  std::shared_ptr<const Impl> impl_;
+};
+
+}  // namespace trocar::xray
