@@ -1,0 +1,18 @@
+#pragma once
+
+#include <vector>
+
+#include "xray/contrast/iodine.h"
+#include "xray/geometry/c_arm.h"
+
+namespace trocar::xray {
+
+/// Adds the mass of iodine (g/cm²) in ducts and vessels along each ray, averaged over the pixel. Each piece has the
+/// mass of its truncated cone; its ends fade into the next piece. Negative concentrations and non-finite pieces are
+/// ignored. `rays` are in the frame of the pieces; an empty image is made. All cores.
+void add_iodine(const std::vector<IodinePiece>& pieces, const XrayRays& rays, std::vector<float>& iodine_g_per_cm2);
+
+/// The same rays, seen from a body that moved by X_PM.
+XrayRays rays_in_body(const XrayRays& rays, const Pose& X_PM) noexcept;
+
+}  // namespace trocar::xray
