@@ -18,7 +18,8 @@ class Beam {
 
   /// Signal behind masses (g/cm², in the order of Basis). Exact.
   double signal(const std::array<double, kBases>& g_per_cm2) const noexcept;
-  /// The same for each pixel, from a table: within 1e-3 of the exact logarithm. All cores, no allocation.
+  /// The same for each pixel, in floats: within 1e-4 of the logarithm down to a signal of 1e-20. SIMD, all cores. Each
+  /// mass image is empty (none) or has all pixels.
   void signals(const MassImage& masses, std::span<float> signal) const;
 
   /// Photons per mm² (at 1 m, per mAs) that the detector counts in the open beam.
