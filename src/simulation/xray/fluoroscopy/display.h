@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "xray/geometry/c_arm.h"
+
+namespace trocar::xray {
+
+/// Gray image, row by row from the upper left.
+struct GrayImage {
+  int columns = 0, rows = 0;
+  std::vector<std::uint8_t> pixels;
+};
+
+/// Values that are shown between black and white.
+struct GrayWindow {
+  float low = 0.0F, high = 1.0F;
+};
+
+struct DisplaySettings {
+  bool is_logarithmic = true;        ///< Shown is the attenuation -ln(signal); otherwise the signal.
+  bool is_inverted = false;          ///< Dense things are white, as in a radiograph; otherwise dark, as in fluoroscopy.
+  double edge_gain = 0.6;            ///< Of unsharp masking. Range 0..4; 0: off.
+  double edge_sigma_px = 2.0;        ///< Standard deviation of its Gaussian. Range 0.7..20.
+  std::optional<GrayWindow> window;  ///< In shown values; empty: from the image.
+
+  bool operator==(const DisplaySettings& other) const noexcept;
+};
+
+/// Pixels in the collimated field: [first, last) of columns and rows.
+struct FieldPixels {
+  int first_column = 0, last_column = 0, first_row = 0, last_row = 0;
+};
+FieldPixels field_pixels(const CArm& arm) noexcept;
+
+/// Shown values: attenuation or its negative (signal), so that greater is denser, with enhanced edges.
+std::vector<float> shown_values(std::span<const float> signal, int columns, int rows, const DisplaySettings& settings);
+
+/// Window of the values in the field: from the 1st to the 99th percentile, at least `least_width` wide. Direct
+/// radiation
+/// (`signal` > 0.5) is left out if the rest covers a twentieth of the field.
+GrayWindow window_of(std::span<const float> values, std::span<const float> signal, int columns,
+                     const FieldPixels& field, float least_width = 0.1F);
+
+/// Eight bits; outside of the field (shutters) black.
+GrayImage to_gray(std::span<const float> values, int columns, int rows, const GrayWindow& window, bool is_inverted,
+                  const FieldPixels& field);
+
+}  // namespace trocar::xray

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <functional>
+#include <map>
+
+#include "xray/geometry/c_arm.h"
+#include "xray/physics/beam.h"
+#include "xray/projection/mass_image.h"
+
+namespace trocar::xray {
+
+/// Dose of fluoroscopy: half, normal and double air kerma at the detector.
+enum class DoseMode { kLow, kNormal, kHigh };
+
+/// Limits of the automatic exposure control.
+struct ExposureLimits {
+  /// Air kerma at the detector per pulse behind the grid's place. At 15 pulses per s 0.5 µGy/s, a third of the greatest
+  /// that Belgian law permits for fluoroscopy (FANC, 1.5 µGy/s). Range 5..500.
+  double detector_ngy = 33.0;
+  double least_kv = 60.0;  ///< Range 40..150.
+  double most_kv = 120.0;  ///< Range least_kv..150.
+  double least_mas = 0.002;
+  double most_mas = 1.5;  ///< 150 mA for 10 ms; assumed.
+  /// Greatest air kerma rate at the reference point: 88 mGy/min (21 CFR 1020.32 (d)).
+  double most_mgy_per_min = 88.0;
+};
+
+/// One pulse of the tube.
+struct Exposure {
+  Tube tube;
+  double mas = 0.1;
+  bool is_limited = false;  ///< The detector has less than its dose: a limit is reached.
+
+  bool operator==(const Exposure&) const = default;
+};
+
+/// Beams by tube. Making one takes milliseconds; exposure control steps the voltage by 2 kV and comes back to the same.
+class BeamCache {
+ public:
+  Result<Beam> beam(const Tube& tube);
+
+ private:
+  std::map<std::array<double, 3>, Beam> beams_;
+};
+
+/// Voltage behind a mass of body (g/cm²), in steps of 2 kV: 60 kV to 8 g/cm², 2.5 kV per g/cm² above; assumed.
+double kv_of_body(double g_per_cm2, const ExposureLimits& limits) noexcept;
+
+/// Exposure of a pulse that gives the detector its dose behind the patient, in the middle half of the collimated field.
+/// The voltage follows the thickness; if the dose needs more current than the limits permit, the voltage rises too.
+/// `filters`: aluminium and copper of the tube. Errors: those of the spectrum.
+Result<Exposure> control_exposure(const MassImage& patient, const CArm& arm, const Tube& filters, DoseMode mode,
+                                  double pulses_per_s, const ExposureLimits& limits, BeamCache& beams);
+
+}  // namespace trocar::xray

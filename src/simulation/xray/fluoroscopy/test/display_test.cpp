@@ -1,0 +1,140 @@
+#include "xray/fluoroscopy/display.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "xray/fluoroscopy/subtraction.h"
+
+namespace trocar::xray {
+namespace {
+
+constexpr int kPixels = 64;
+constexpr std::size_t kCount = static_cast<std::size_t>(kPixels) * kPixels;
+
+std::size_t at(int column, int row) {
+  return static_cast<std::size_t>(row * kPixels + column);
+}
+
+CArm small_arm(double columns = 1.0, double rows = 1.0) {
+  CArm arm;
+  arm.pixels = kPixels;
+  arm.collimation = {columns, rows};
+  return arm;
+}
+
+DisplaySettings without_edges() {
+  DisplaySettings settings;
+  settings.edge_gain = 0.0;
+  return settings;
+}
+
+/// Attenuation that rises evenly from 1 to 3 along the columns.
+std::vector<float> ramp() {
+  std::vector<float> signal(kCount);
+  for (int row = 0; row < kPixels; ++row)
+    for (int column = 0; column < kPixels; ++column)
+      signal[at(column, row)] = static_cast<float>(std::exp(-1.0 - 2.0 * column / (kPixels - 1.0)));
+  return signal;
+}
+
+TEST(Display, ShowsAttenuationEvenlyAndDenseThingsDark) {
+  const auto signal = ramp();
+  const auto values = shown_values(signal, kPixels, kPixels, without_edges());
+  const GrayImage image = to_gray(values, kPixels, kPixels, {1.0F, 3.0F}, false, field_pixels(small_arm()));
+  EXPECT_EQ(image.pixels[at(0, 5)], 255);
+  EXPECT_EQ(image.pixels[at(63, 5)], 0);
+  for (int column = 0; column < kPixels; ++column)
+    EXPECT_NEAR(image.pixels[at(column, 9)], 255.0 - 255.0 * column / 63.0, 1.0);
+  const GrayImage inverted = to_gray(values, kPixels, kPixels, {1.0F, 3.0F}, true, field_pixels(small_arm()));
+  for (std::size_t n = 0; n < kCount; ++n) EXPECT_NEAR(inverted.pixels[n] + image.pixels[n], 255, 1);
+}
+
+TEST(Display, ShowsTheSignalIfLinear) {
+  DisplaySettings settings = without_edges();
+  settings.is_logarithmic = false;
+  std::vector<float> signal(kCount, 0.25F);
+  signal[at(3, 3)] = 0.5F;
+  const auto values = shown_values(signal, kPixels, kPixels, settings);
+  const GrayImage image = to_gray(values, kPixels, kPixels, {-0.5F, 0.0F}, false, field_pixels(small_arm()));
+  EXPECT_EQ(image.pixels[at(3, 3)], 255);
+  EXPECT_NEAR(image.pixels[at(9, 9)], 127.5, 1.0);
+}
+
+TEST(Display, FindsTheWindowInTheFieldWithoutDirectRadiation) {
+  auto signal = ramp();
+  const CArm arm = small_arm(0.5, 0.5);
+  const FieldPixels field = field_pixels(arm);
+  for (int row = 0; row < kPixels; ++row)
+    for (int column = 0; column < kPixels; ++column) {
+      const bool is_inside =
+          column >= field.first_column && column < field.last_column && row >= field.first_row && row < field.last_row;
+      if (!is_inside) signal[at(column, row)] = 1e-5F;
+    }
+  for (int row = field.first_row; row < field.last_row; ++row) signal[at(field.first_column, row)] = 0.99F;
+  const auto values = shown_values(signal, kPixels, kPixels, without_edges());
+  const GrayWindow window = window_of(values, signal, kPixels, field);
+  EXPECT_NEAR(window.low, 1.0 + 2.0 * (field.first_column + 1) / 63.0, 0.07);
+  EXPECT_NEAR(window.high, 1.0 + 2.0 * (field.last_column - 1) / 63.0, 0.07);
+}
+
+TEST(Display, BlackensTheShutters) {
+  const std::vector<float> values(kCount, 1.0F);
+  const GrayImage image = to_gray(values, kPixels, kPixels, {1.0F, 2.0F}, false, field_pixels(small_arm(0.5, 0.25)));
+  int lit = 0;
+  for (int row = 0; row < kPixels; ++row)
+    for (int column = 0; column < kPixels; ++column) {
+      const bool is_inside = column >= 16 && column < 48 && row >= 24 && row < 40;
+      EXPECT_EQ(image.pixels[at(column, row)], is_inside ? 255 : 0);
+      lit += is_inside ? 1 : 0;
+    }
+  EXPECT_EQ(lit, 32 * 16);
+}
+
+TEST(Display, EnhancesEdgesAndLeavesEvenPartsAlone) {
+  std::vector<float> signal(kCount, std::exp(-1.0F));
+  for (int row = 0; row < kPixels; ++row)
+    for (int column = 32; column < kPixels; ++column) signal[at(column, row)] = std::exp(-2.0F);
+  DisplaySettings settings = without_edges();
+  settings.edge_gain = 1.0;
+  const auto values = shown_values(signal, kPixels, kPixels, settings);
+  EXPECT_NEAR(values[at(3, 32)], 1.0, 1e-3);
+  EXPECT_NEAR(values[at(60, 32)], 2.0, 1e-3);
+  EXPECT_GT(values[at(32, 32)], 2.3);
+  EXPECT_LT(values[at(31, 32)], 0.7);
+}
+
+TEST(MaskSubtraction, ShowsTheAttenuationThatWasAdded) {
+  MaskSubtraction subtraction;
+  auto signal = ramp();
+  EXPECT_EQ(subtraction.difference(signal)[7], 0.0F);
+  for (int n = 0; n < 4; ++n) {
+    auto mask = signal;
+    for (float& value : mask) value *= n % 2 == 0 ? 1.1F : 0.9F;  // the mean is the signal
+    subtraction.add_mask(mask);
+  }
+  EXPECT_EQ(subtraction.mask_frames(), 4);
+  signal[at(20, 20)] *= std::exp(-0.3F);
+  const auto difference = subtraction.difference(signal);
+  for (std::size_t n = 0; n < kCount; ++n) EXPECT_NEAR(difference[n], n == at(20, 20) ? 0.3 : 0.0, 1e-5);
+}
+
+TEST(RoadMap, KeepsTheGreatestOpacificationAndLightensIt) {
+  RoadMap map;
+  std::vector<float> difference(kCount, 0.0F);
+  difference[at(5, 5)] = 0.4F;
+  map.add(difference);
+  difference[at(5, 5)] = 0.1F;
+  difference[at(6, 5)] = 0.2F;
+  map.add(difference);
+  EXPECT_FLOAT_EQ(map.greatest()[at(5, 5)], 0.4F);
+  EXPECT_FLOAT_EQ(map.greatest()[at(6, 5)], 0.2F);
+  GrayImage image{kPixels, kPixels, std::vector<std::uint8_t>(kCount, 100)};
+  map.overlay(0.05F, 0.4F, image);
+  EXPECT_GT(image.pixels[at(5, 5)], image.pixels[at(6, 5)]);
+  EXPECT_GT(image.pixels[at(6, 5)], 100);
+  EXPECT_EQ(image.pixels[at(9, 9)], 100);
+}
+
+}  // namespace
+}  // namespace trocar::xray

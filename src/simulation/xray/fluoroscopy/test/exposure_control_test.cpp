@@ -1,0 +1,74 @@
+#include "xray/fluoroscopy/exposure_control.h"
+
+#include <gtest/gtest.h>
+
+#include "xray/fluoroscopy/dose.h"
+
+namespace trocar::xray {
+namespace {
+
+MassImage body(double g_per_cm2) {
+  MassImage masses;
+  masses.columns = masses.rows = 32;
+  masses.of(Basis::kWater).assign(masses.size(), static_cast<float>(g_per_cm2));
+  return masses;
+}
+
+/// Air kerma at the detector (nGy) behind the body.
+double detector_ngy(const Exposure& exposure, double g_per_cm2, const CArm& arm) {
+  const Beam beam = Beam::make(tube_spectrum(exposure.tube).value()).value();
+  return 1e6 * exposure.mas * at_distance(beam.air_kerma_mgy(), arm.source_detector_mm) *
+         beam.signal({g_per_cm2, 0.0, 0.0, 0.0});
+}
+
+double reference_mgy_per_min(const Exposure& exposure, double pulses_per_s, const CArm& arm) {
+  const Beam beam = Beam::make(tube_spectrum(exposure.tube).value()).value();
+  return 60.0 * pulses_per_s * exposure.mas * at_distance(beam.air_kerma_mgy(), reference_distance_mm(arm));
+}
+
+TEST(ExposureControl, HoldsTheDetectorsDoseForAllBodies) {
+  const CArm arm;
+  const ExposureLimits limits;
+  BeamCache beams;
+  double former_kv = 0.0;
+  for (const double mass : {5.0, 10.0, 15.0, 20.0}) {
+    const Exposure exposure = control_exposure(body(mass), arm, Tube{}, DoseMode::kNormal, 15.0, limits, beams).value();
+    EXPECT_FALSE(exposure.is_limited) << mass;
+    EXPECT_NEAR(detector_ngy(exposure, mass, arm), limits.detector_ngy, 0.01 * limits.detector_ngy) << mass;
+    EXPECT_GE(exposure.tube.kv, former_kv) << "thicker bodies need a higher voltage";
+    former_kv = exposure.tube.kv;
+  }
+  EXPECT_GT(former_kv, 80.0);
+}
+
+TEST(ExposureControl, FollowsTheDoseMode) {
+  const CArm arm;
+  BeamCache beams;
+  const auto mas = [&](DoseMode mode) {
+    return control_exposure(body(15.0), arm, Tube{}, mode, 7.5, {}, beams).value().mas;
+  };
+  EXPECT_NEAR(mas(DoseMode::kLow) / mas(DoseMode::kNormal), 0.5, 1e-9);
+  EXPECT_NEAR(mas(DoseMode::kHigh) / mas(DoseMode::kNormal), 2.0, 1e-9);
+}
+
+TEST(ExposureControl, StaysWithinItsLimits) {
+  const CArm arm;
+  const ExposureLimits limits;
+  BeamCache beams;
+  const Exposure exposure = control_exposure(body(60.0), arm, Tube{}, DoseMode::kHigh, 30.0, limits, beams).value();
+  EXPECT_TRUE(exposure.is_limited);
+  EXPECT_EQ(exposure.tube.kv, limits.most_kv);
+  EXPECT_LE(exposure.mas, limits.most_mas);
+  EXPECT_LE(reference_mgy_per_min(exposure, 30.0, arm), 1.001 * limits.most_mgy_per_min);
+  EXPECT_LT(detector_ngy(exposure, 60.0, arm), 2.0 * limits.detector_ngy);
+}
+
+TEST(ExposureControl, NamesATubeThatCannotBe) {
+  BeamCache beams;
+  Tube tube;
+  tube.aluminium_mm = -1.0;
+  EXPECT_FALSE(control_exposure(body(10.0), CArm{}, tube, DoseMode::kNormal, 15.0, {}, beams).has_value());
+}
+
+}  // namespace
+}  // namespace trocar::xray
