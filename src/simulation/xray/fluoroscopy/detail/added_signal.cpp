@@ -1,0 +1,67 @@
+#include "xray/fluoroscopy/detail/added_signal.h"
+
+#include <algorithm>
+
+#include "xray/projection/project.h"
+#include "xray/tools/iodine_pieces.h"
+
+namespace trocar::xray::detail {
+namespace {
+
+constexpr float kG_per_mg = 1e-3F;
+
+}  // namespace
+
+void AddedSignal::update_iodine(const FluoroscopyRequest& request, const PatientImage& patient) {
+  const bool is_same =
+      iodine_ == request.iodine && arm_ && has_same_rays(*arm_, request.arm) && is_same_pose(X_PM_, request.X_PM);
+  if (is_same) return;
+  iodine_ = request.iodine;
+  arm_ = request.arm;
+  X_PM_ = request.X_PM;
+  iodine_g_per_cm2_.clear();
+  if (!iodine_) return;
+  if (iodine_->grid_mg_per_ml && !iodine_->grid_mg_per_ml->empty()) {
+    project(*iodine_->grid_mg_per_ml, patient.rays(), request.X_PM, iodine_g_per_cm2_);
+    for (float& value : iodine_g_per_cm2_) value *= kG_per_mg;
+  }
+  if (!iodine_->pieces.empty())
+    add_iodine(iodine_->pieces, rays_in_body(patient.rays(), request.X_PM), iodine_g_per_cm2_);
+}
+
+void AddedSignal::apply(const FluoroscopyRequest& request, const PatientImage& patient, std::vector<float>& signal) {
+  update_iodine(request, patient);
+  signal = patient.primary();
+  for (std::vector<float>& image : added_.g_per_cm2) std::fill(image.begin(), image.end(), 0.0F);
+  if (added_.size() != patient.masses().size()) added_ = {};
+  added_.columns = patient.masses().columns;
+  added_.rows = patient.masses().rows;
+  if (!iodine_g_per_cm2_.empty()) added_.of(Basis::kIodine) = iodine_g_per_cm2_;
+  add_tools(request.tools, patient.rays(), added_);
+
+  std::vector<const float*> images;
+  for (const std::vector<float>& image : added_.g_per_cm2)
+    if (!image.empty()) images.push_back(image.data());
+  places_.clear();
+  for (std::size_t n = 0; n < signal.size(); ++n)
+    if (signal[n] > 0.0F &&
+        std::any_of(images.begin(), images.end(), [&](const float* image) { return image[n] != 0.0F; }))
+      places_.push_back(n);
+  if (places_.empty()) return;
+  few_.columns = static_cast<int>(places_.size());
+  few_.rows = 1;
+  few_signal_.resize(places_.size());
+  for (std::size_t basis = 0; basis < kBases; ++basis) {
+    const std::vector<float>& body = patient.masses().g_per_cm2[basis];
+    const std::vector<float>& added = added_.g_per_cm2[basis];
+    std::vector<float>& few = few_.g_per_cm2[basis];
+    few.clear();
+    if (body.empty() && added.empty()) continue;
+    for (const std::size_t n : places_)
+      few.push_back(std::max(0.0F, (body.empty() ? 0.0F : body[n]) + (added.empty() ? 0.0F : added[n])));
+  }
+  patient.beam().signals(few_, few_signal_);
+  for (std::size_t n = 0; n < places_.size(); ++n) signal[places_[n]] = few_signal_[n];
+}
+
+}  // namespace trocar::xray::detail

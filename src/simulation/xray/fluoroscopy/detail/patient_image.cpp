@@ -1,0 +1,141 @@
+#include "xray/fluoroscopy/detail/patient_image.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "xray/projection/project.h"
+
+namespace trocar::xray::detail {
+namespace {
+
+constexpr std::size_t kGrainRows = 32;
+
+/// Sets the pixels behind the shutters to 0.
+void close_shutters(const FieldPixels& field, int columns, std::vector<float>& signal) {
+  const int rows = static_cast<int>(signal.size()) / std::max(columns, 1);
+  for (int row = 0; row < rows; ++row) {
+    const auto line = signal.begin() + static_cast<std::ptrdiff_t>(row) * columns;
+    const bool is_open = row >= field.first_row && row < field.last_row;
+    std::fill(line, line + (is_open ? field.first_column : columns), 0.0F);
+    if (is_open) std::fill(line + field.last_column, line + columns, 0.0F);
+  }
+}
+
+}  // namespace
+
+std::vector<float> resample_image(const std::vector<float>& image, int columns, int rows, int new_columns,
+                                  int new_rows) {
+  struct Place {
+    std::size_t first, second;
+    float weight;
+  };
+  const auto place = [](int n, int fine, int coarse) {
+    const double x = std::clamp((n + 0.5) * coarse / fine - 0.5, 0.0, coarse - 1.0);
+    const auto first = static_cast<std::size_t>(x);
+    return Place{first, std::min(first + 1, static_cast<std::size_t>(coarse - 1)),
+                 static_cast<float>(x - static_cast<double>(first))};
+  };
+  std::vector<Place> across;
+  for (int n = 0; n < new_columns; ++n) across.push_back(place(n, new_columns, columns));
+  std::vector<float> made(static_cast<std::size_t>(new_columns) * static_cast<std::size_t>(new_rows));
+  parallel_for(static_cast<std::size_t>(new_rows), kGrainRows, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t row = begin; row < end; ++row) {
+      const Place y = place(static_cast<int>(row), new_rows, rows);
+      const float* const above = image.data() + y.first * static_cast<std::size_t>(columns);
+      const float* const below = image.data() + y.second * static_cast<std::size_t>(columns);
+      float* const to = made.data() + row * static_cast<std::size_t>(new_columns);
+      for (std::size_t n = 0; n < across.size(); ++n) {
+        const Place& x = across[n];
+        const float left = above[x.first] + y.weight * (below[x.first] - above[x.first]);
+        const float right = above[x.second] + y.weight * (below[x.second] - above[x.second]);
+        to[n] = left + x.weight * (right - left);
+      }
+    }
+  });
+  return made;
+}
+
+int projected_pixels(int pixels, XrayDetail detail) noexcept {
+  if (detail == XrayDetail::kFull) return pixels;
+  return std::max(16, detail == XrayDetail::kMiddle ? pixels * 2 / 3 : pixels / 3);
+}
+
+bool has_same_rays(const CArm& a, const CArm& b) noexcept {
+  CArm other = b;
+  other.collimation = a.collimation;
+  return a == other;
+}
+
+bool is_same_pose(const Pose& a, const Pose& b) noexcept {
+  return a.p() == b.p() && a.R() == b.R();
+}
+
+Status check_clearance(const CArm& arm, const volume::GridGeometry& volume, const Pose& X_PM) {
+  const Pose X_MP = X_PM.inverse();
+  const auto is_inside = [&](const Vec3& p_P) {
+    const Vec3 index = volume.to_index(X_MP * p_P);
+    bool inside = true;
+    for (int axis = 0; axis < 3; ++axis)
+      inside = inside && index[axis] >= 0.0 &&
+               index[axis] <= static_cast<double>(volume.size[static_cast<std::size_t>(axis)] - 1);
+    return inside;
+  };
+  const Vec3 up_P = towards_detector_P(arm);
+  if (is_inside(arm.isocentre_P - arm.source_isocentre_mm * up_P))
+    return fail_usage("the X-ray source lies inside the patient's volume", "C-arm",
+                      "increase the distance from source to isocentre, or move the isocentre into the patient");
+  if (is_inside(arm.isocentre_P + (arm.source_detector_mm - arm.source_isocentre_mm) * up_P))
+    return fail_usage("the detector lies inside the patient's volume", "C-arm",
+                      "increase the distance from source to detector, or move the isocentre into the patient");
+  return {};
+}
+
+void PatientImage::project_masses(const FluoroscopyRequest& request, XrayDetail detail) {
+  CArm coarse = request.arm;
+  coarse.pixels = projected_pixels(request.arm.pixels, detail);
+  if (coarse.pixels == request.arm.pixels) {
+    project(*volume_, rays_, request.X_PM, masses_);
+  } else {
+    MassImage small;
+    project(*volume_, rays_of(coarse), request.X_PM, small);
+    masses_.columns = masses_.rows = request.arm.pixels;
+    for (std::size_t basis = 0; basis < kBases; ++basis) {
+      std::vector<float>& image = masses_.g_per_cm2[basis];
+      image.clear();
+      if (!small.g_per_cm2[basis].empty())
+        image = resample_image(small.g_per_cm2[basis], small.columns, small.rows, masses_.columns, masses_.rows);
+    }
+  }
+  key_ = Key{request.arm, request.X_PM};
+  detail_ = detail;
+}
+
+void PatientImage::expose(const FluoroscopyRequest& request) {
+  primary_.resize(masses_.size());
+  beam_->signals(masses_, primary_);
+  close_shutters(field_pixels(request.arm), masses_.columns, primary_);
+  scatter_ = estimate_scatter(masses_, primary_, request.arm, params_);
+}
+
+Status PatientImage::update(const FluoroscopyRequest& request, XrayDetail detail, const ExposureLimits& limits) {
+  const bool is_placed = key_ && has_same_rays(key_->arm, request.arm) && is_same_pose(key_->X_PM, request.X_PM);
+  const bool is_projected = is_placed && detail_ >= detail;
+  if (!is_placed) {
+    TROCAR_TRY_STATUS(check_c_arm(request.arm));
+    TROCAR_TRY_STATUS(check_clearance(request.arm, volume_->geometry(), request.X_PM));
+    rays_ = rays_of(request.arm);
+  }
+  if (!is_projected) project_masses(request, detail);
+  const ExposureKey wanted{request.arm.collimation, request.filters, request.dose_mode, request.pulses_per_s};
+  if (is_projected && exposure_key_ == wanted) return {};
+  exposure_key_.reset();
+  TROCAR_TRY(exposure_, control_exposure(masses_, request.arm, request.filters, request.dose_mode, request.pulses_per_s,
+                                         limits, beams_));
+  TROCAR_TRY(beam_, beams_.beam(exposure_.tube));
+  expose(request);
+  exposure_key_ = wanted;
+  return {};
+}
+
+}  // namespace trocar::xray::detail

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "xray/detector/scatter.h"
+#include "xray/fluoroscopy/fluoroscopy_frame.h"
+#include "xray/projection/xray_volume.h"
+
+namespace trocar::xray::detail {
+
+/// Bilinear values of an image on another raster over the same area.
+std::vector<float> resample_image(const std::vector<float>& image, int columns, int rows, int new_columns,
+                                  int new_rows);
+
+/// Pixels along each edge of the patient's projection at a level of detail.
+int projected_pixels(int pixels, XrayDetail detail) noexcept;
+
+/// The part of an image that stays the same while C-arm, body and exposure do: primary signal and scatter of the
+/// patient without tools and contrast agent.
+class PatientImage {
+ public:
+  PatientImage(std::shared_ptr<const XrayVolume> volume, const DetectorParams& params)
+      : volume_(std::move(volume)), params_(params) {}
+
+  /// Brings all up to date for a request; a finer projection than asked for is kept. Errors: the C-arm's or the
+  /// spectrum's.
+  Status update(const FluoroscopyRequest& request, XrayDetail detail, const ExposureLimits& limits);
+
+  const MassImage& masses() const noexcept { return masses_; }
+  const std::vector<float>& primary() const noexcept { return primary_; }  ///< 0 behind the shutters.
+  const Scatter& scatter() const noexcept { return scatter_; }
+  const Exposure& exposure() const noexcept { return exposure_; }
+  const Beam& beam() const noexcept { return *beam_; }
+  const XrayRays& rays() const noexcept { return rays_; }
+  XrayDetail detail() const noexcept { return detail_; }
+
+ private:
+  struct Key {
+    CArm arm;
+    Pose X_PM;
+  };
+  struct ExposureKey {
+    std::array<double, 2> collimation;
+    Tube filters;
+    DoseMode mode;
+    double pulses_per_s;
+    bool operator==(const ExposureKey&) const = default;
+  };
+  void project_masses(const FluoroscopyRequest& request, XrayDetail detail);
+  void expose(const FluoroscopyRequest& request);
+
+  std::shared_ptr<const XrayVolume> volume_;
+  DetectorParams params_;
+  BeamCache beams_;
+  std::optional<Key> key_;
+  std::optional<ExposureKey> exposure_key_;
+  XrayDetail detail_ = XrayDetail::kFast;
+  XrayRays rays_;
+  MassImage masses_;
+  std::vector<float> primary_;
+  Scatter scatter_;
+  Exposure exposure_;
+  std::optional<Beam> beam_;
+};
+
+/// One clear line if the source or the detector lies within the patient's volume.
+Status check_clearance(const CArm& arm, const volume::GridGeometry& volume, const Pose& X_PM);
+
+/// True if both C-arms have the same rays.
+bool has_same_rays(const CArm& a, const CArm& b) noexcept;
+bool is_same_pose(const Pose& a, const Pose& b) noexcept;
+
+}  // namespace trocar::xray::detail

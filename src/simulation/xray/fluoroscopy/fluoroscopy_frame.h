@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "geometry/pose.h"
+#include "xray/contrast/iodine.h"
+#include "xray/fluoroscopy/display.h"
+#include "xray/fluoroscopy/dose.h"
+#include "xray/fluoroscopy/exposure_control.h"
+#include "xray/tools/tool_shape.h"
+
+namespace trocar::xray {
+
+/// What the screen shows.
+enum class ImageMode {
+  kLive,
+  /// Digital subtraction: the first frames make the mask, later ones show what was added.
+  kSubtraction,
+  /// Live, with the greatest opacification of the last subtraction.
+  kRoadMap
+};
+
+/// Level of detail of the patient's projection; tools, contrast agent and noise always have full detail.
+enum class XrayDetail { kFast, kMiddle, kFull };
+inline constexpr std::size_t kXrayDetails = 3;
+
+/// Request to a fluoroscope: present state of room and patient, and settings.
+struct FluoroscopyRequest {
+  CArm arm;
+  Tube filters;  ///< Filtration; exposure control selects the voltage.
+  DoseMode dose_mode = DoseMode::kNormal;
+  double pulses_per_s = 15.0;            ///< One of kPulseRates_per_s.
+  std::vector<ToolShape> tools;          ///< In P, not moved by X_PM.
+  std::shared_ptr<const Iodine> iodine;  ///< In the body at rest; nullptr: none. Another pointer: changed.
+  Pose X_PM;                             ///< Pose of the moved body in P; identity at rest.
+  bool is_pedal_down = false;
+  double time_s = 0.0;  ///< Must not decrease while one patient is examined.
+  ImageMode mode = ImageMode::kLive;
+  DisplaySettings display;
+};
+
+/// One image of a fluoroscope.
+struct FluoroscopyFrame {
+  GrayImage gray;       ///< Black before the first pulse.
+  bool is_held = true;  ///< The pedal is up: last-image hold.
+  bool is_subtracted = false;
+  int mask_frames = 0;  ///< Frames in the mask of the subtraction.
+  CArm arm;             ///< At the time of the pulse, as the next five.
+  Pose X_PM;
+  Exposure exposure;
+  XrayDetail detail = XrayDetail::kFull;
+  double time_s = 0.0;
+  GrayWindow window;
+  Dose dose;  ///< Of the examination so far.
+  std::uint64_t number = 0;
+  double took_ms = 0.0;
+};
+
+}  // namespace trocar::xray
