@@ -12,6 +12,7 @@
 #include "geometry/pose.h"
 #include "tasks/active_time.h"
 #include "tasks/score.h"
+#include "tasks/xray_use.h"
 #include "telemetry/needle_shape.h"
 #include "telemetry/tick_sample.h"
 
@@ -82,6 +83,8 @@ class SessionWriter {
   Status append(const telemetry::TickSample& sample);
   /// In the order of time. A sample that is not later than the last one, or not finite, is left out.
   Status append(const TransducerSample& sample);
+  /// The same.
+  Status append(const tasks::XrayUse& use);
   /// The same. Kept in micrometres.
   Status append(const telemetry::NeedleShape& shape);
   /// Parameters of a sample that was appended already, in the order of ticks, one per tick.
@@ -113,6 +116,7 @@ struct Session {
   SessionInfo info;
   std::vector<telemetry::TickSample> samples;
   std::vector<TransducerSample> transducer;  ///< By time; empty: there was none, or an older program recorded it.
+  std::vector<tasks::XrayUse> xray;          ///< By time, each until the next one; empty: no X-ray was used.
   /// By time, each until the next one; straight before the first. Empty: never bent, or an older program recorded it.
   std::vector<telemetry::NeedleShape> shapes;
   std::vector<SessionParameters> parameters;       ///< By tick; empty: an older program wrote the session.

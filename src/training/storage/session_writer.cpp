@@ -18,6 +18,7 @@
 #include "storage/detail/parameters_table.h"
 #include "storage/detail/shape_table.h"
 #include "storage/detail/transducer_table.h"
+#include "storage/detail/xray_table.h"
 #include "storage/session_file.h"
 
 namespace trocar::storage {
@@ -75,7 +76,8 @@ struct SessionWriter::Impl {
     std::vector<int> tick, slot, kind, id;
     std::vector<std::string> text;
   } events;
-  TransducerBuffer transducer;
+  TimedBuffer transducer{transducer_table()};
+  TimedBuffer xray{xray_table()};
   ShapeBuffer shapes;
   ParametersBuffer parameters;
 
@@ -186,7 +188,8 @@ void SessionWriter::Impl::buffer(const telemetry::TickSample& sample) {
 }
 
 Status SessionWriter::Impl::flush() {
-  if (tick_column.empty() && transducer.is_empty() && shapes.is_empty() && parameters.is_empty()) return {};
+  if (tick_column.empty() && transducer.is_empty() && xray.is_empty() && shapes.is_empty() && parameters.is_empty())
+    return {};
   Status status = guarded("the session cannot be written", path, kWriteAdvice, [&] {
     database << "BEGIN IMMEDIATE";
     if (!tick_column.empty()) {
@@ -195,6 +198,7 @@ Status SessionWriter::Impl::flush() {
     }
     if (!events.tick.empty()) insert_events->execute(true);
     transducer.write(database);
+    xray.write(database);
     shapes.write(database);
     parameters.write(database);
     database << "COMMIT";
@@ -215,6 +219,7 @@ void SessionWriter::Impl::clear() {
   for (auto* column : {&events.tick, &events.slot, &events.kind, &events.id}) column->clear();
   events.text.clear();
   transducer.clear();
+  xray.clear();
   shapes.clear();
   parameters.clear();
 }
@@ -264,8 +269,15 @@ Status SessionWriter::append(const telemetry::TickSample& sample) {
 Status SessionWriter::append(const TransducerSample& sample) {
   TROCAR_CHECK(impl_ != nullptr && !impl_->is_finished);
   if (impl_->failure) return tl::unexpected(*impl_->failure);
-  impl_->transducer.add(sample);
+  add(impl_->transducer, sample);
   return impl_->transducer.span_s() >= kBatchSeconds ? impl_->flush() : Status{};  // it moves without the needle
+}
+
+Status SessionWriter::append(const tasks::XrayUse& use) {
+  TROCAR_CHECK(impl_ != nullptr && !impl_->is_finished);
+  if (impl_->failure) return tl::unexpected(*impl_->failure);
+  add(impl_->xray, use);  // written with the next ticks
+  return {};
 }
 
 Status SessionWriter::append(const telemetry::NeedleShape& shape) {
@@ -315,7 +327,7 @@ Status SessionWriter::finish(const tasks::Outcome& outcome, std::optional<std::s
         soci::use(score, score_indicator), soci::use(target_reached), soci::use(fired_tick, fired_indicator),
         soci::use(json);
     for (const CheckedRows& rows :
-         {kTransducerRows, kShapeRows, kParameterRows, kInterruptionRows, kOutcomeRows, kBlockRows})
+         {kTransducerRows, kXrayRows, kShapeRows, kParameterRows, kInterruptionRows, kOutcomeRows, kBlockRows})
       write_checksum(impl_->database, rows);
     impl_->ticks_hash = impl_->all_ticks.digest();
     write_ticks_hash(impl_->database, impl_->saved_ticks, impl_->ticks_hash);

@@ -7,6 +7,7 @@
 #include "storage/detail/parameters_table.h"
 #include "storage/detail/shape_table.h"
 #include "storage/detail/transducer_table.h"
+#include "storage/detail/xray_table.h"
 #include "storage/session_file.h"
 
 namespace trocar::storage::detail {
@@ -69,7 +70,8 @@ std::vector<std::string> schema_statements() {
   statements.emplace_back(
       "CREATE TABLE events (tick INTEGER NOT NULL, slot INTEGER NOT NULL, kind INTEGER NOT NULL, id INTEGER NOT NULL, "
       "text TEXT NOT NULL, PRIMARY KEY (tick, slot)) WITHOUT ROWID");
-  statements.push_back(transducer_schema());
+  statements.push_back(schema_of(transducer_table()));
+  statements.push_back(schema_of(xray_table()));
   statements.push_back(shape_schema());
   for (std::string& statement : checksum_schema()) statements.push_back(std::move(statement));
   for (std::string& statement : parameters_schema()) statements.push_back(std::move(statement));

@@ -10,6 +10,7 @@
 #include "storage/detail/shape_table.h"
 #include "storage/detail/tick_reader.h"
 #include "storage/detail/transducer_table.h"
+#include "storage/detail/xray_table.h"
 
 namespace trocar::storage::detail {
 namespace {
@@ -21,6 +22,7 @@ constexpr const char* kInfoPart = "facts of the case (table info)";
 constexpr const char* kNamesPart = "names of tissues, layers, labels or phases";
 constexpr const char* kBlocksPart = "list of tick blocks (table tick_blocks)";
 constexpr const char* kTransducerPart = "poses of the transducer";
+constexpr const char* kXrayPart = "use of the X-ray";
 constexpr const char* kShapesPart = "shapes of the needle";
 constexpr const char* kParametersPart = "changes of parameters";
 constexpr const char* kInterruptionsPart = "interruptions";
@@ -42,6 +44,7 @@ class Salvage {
     read_samples();
     const bool is_read = attempt(kTransducerPart, [&] { session_.transducer = read_transducer(database_.session()); });
     if (!is_read || !check(kTransducerPart, kTransducerRows, is_finished_)) session_.transducer.clear();
+    read_added(kXrayPart, kXrayRows, session_.xray, [&] { session_.xray = read_xray(database_.session()); });
     read_added(kShapesPart, kShapeRows, session_.shapes, [&] { session_.shapes = read_shapes(database_.session()); });
     read_parameters_and_interruptions();
     if (is_finished_ && session_.has_checksums)
@@ -54,7 +57,8 @@ class Salvage {
   void check_tables() {
     for (const char* table : {"info", "tissues", "layers", "labels", "phases", "ticks", "events", "outcome"})
       database_.require_table(table);
-    for (const char* table : {"transducer", "needle_shape", "parameters", "interruptions", "tick_blocks", "checksums"})
+    for (const char* table :
+         {"transducer", "xray", "needle_shape", "parameters", "interruptions", "tick_blocks", "checksums"})
       if (database_.has_table(table)) database_.require_table(table);
   }
 
