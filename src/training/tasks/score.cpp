@@ -12,10 +12,11 @@ namespace {
 
 // Weights of the parts; their sum is 100.
 struct Weights {
-  double target, core, risk, entry, angle, length, time;
+  double target, core, risk, entry, angle, length, time, dose;
 };
-constexpr Weights kBiopsy{25, 25, 20, 10, 10, 5, 5};
-constexpr Weights kPuncture{50, 0, 20, 10, 10, 5, 5};
+constexpr Weights kBiopsy{25, 25, 20, 10, 10, 5, 5, 0};
+constexpr Weights kPuncture{50, 0, 20, 10, 10, 5, 5, 0};
+constexpr Weights kPunctureByXray{40, 0, 20, 10, 10, 5, 5, 10};
 
 constexpr double kEnoughCore = 0.5;  // share of the maximum that counts as having reached the target
 
@@ -56,13 +57,18 @@ double entry_miss_mm(const Task& task, const PlannedPath& plan, const AttemptMet
   return metrics.entry_offset_P.norm();
 }
 
+const Weights& weights_of(const Task& task, const Needle& needle) noexcept {
+  if (needle.is_biopsy) return kBiopsy;
+  return task.dose_limit_gycm2 > 0.0 ? kPunctureByXray : kPuncture;
+}
+
 struct Worth {
-  double target = 0.0, core = 0.0, entry = 0.0, angle = 0.0, length = 0.0, time = 0.0;  // shares 0..1
+  double target = 0.0, core = 0.0, entry = 0.0, angle = 0.0, length = 0.0, time = 0.0, dose = 0.0;  // shares 0..1
   double risk_penalty = 0.0;
 };
 
 Worth worth_of(const Task& task, const Needle& needle, const PlannedPath& plan, const AttemptMetrics& metrics,
-               const std::optional<BiopsyCore>& core, double possible_mm) noexcept {
+               const std::optional<BiopsyCore>& core, double possible_mm, const XrayUse& xray) noexcept {
   const double length_mm = plan.line_P.length_mm();
   const bool is_finished = core || !needle.is_biopsy;
   Worth worth;
@@ -72,12 +78,17 @@ Worth worth_of(const Task& task, const Needle& needle, const PlannedPath& plan, 
   worth.angle = share_at(metrics.angle_deg, task.angle_tolerance_deg);
   worth.length = share_below(std::max(0.0, metrics.travel_mm - length_mm), length_mm);
   worth.time = is_finished ? share_below(metrics.time_s, task.time_limit_s) : 0.0;
+  worth.dose = is_finished ? share_below(xray.dose_area_gycm2, task.dose_limit_gycm2) : 0.0;
   return worth;
 }
 
+struct PartFigures {
+  double entry_mm = 0.0, dose_gycm2 = 0.0;
+  std::size_t risks = 0;
+};
+
 std::vector<ScorePart> parts_of(const Worth& worth, const Weights& weights, const AttemptMetrics& metrics,
-                                double entry_mm, const std::optional<BiopsyCore>& core, std::size_t risks,
-                                bool is_biopsy) {
+                                const PartFigures& figures, const std::optional<BiopsyCore>& core) {
   const double safe = metrics.has_entered ? std::max(0.0, weights.risk - worth.risk_penalty) : 0.0;
   const double scale = metrics.has_entered ? 1.0 : 0.0;
   const auto part = [&](const char* name, const char* title, double value, const char* unit, double share, double max) {
@@ -85,12 +96,15 @@ std::vector<ScorePart> parts_of(const Worth& worth, const Weights& weights, cons
   };
   std::vector<ScorePart> parts{
       part("target", "Distance to the target", metrics.target_offset_P.norm(), "mm", worth.target, weights.target),
-      part("entry", "Insertion point", entry_mm, "mm", worth.entry, weights.entry),
+      part("entry", "Insertion point", figures.entry_mm, "mm", worth.entry, weights.entry),
       part("angle", "Needle direction", metrics.angle_deg, "°", worth.angle, weights.angle),
-      ScorePart{"risk", "Structures at risk touched", static_cast<double>(risks), "", safe, weights.risk},
+      ScorePart{"risk", "Structures at risk touched", static_cast<double>(figures.risks), "", safe, weights.risk},
       part("length", "Needle travel inside the body", metrics.travel_mm, "mm", worth.length, weights.length),
       part("time", "Time from the skin to the target", metrics.time_s, "s", worth.time, weights.time)};
-  if (is_biopsy)
+  if (weights.dose > 0.0)
+    parts.push_back(
+        part("dose", "Radiation dose (dose-area product)", figures.dose_gycm2, "Gy cm²", worth.dose, weights.dose));
+  if (weights.core > 0.0)
     parts.push_back(
         part("core", "Target tissue in the core", core ? core->target_mm : 0.0, "mm", worth.core, weights.core));
   if (const double beyond = worth.risk_penalty - weights.risk; metrics.has_entered && beyond > 0.0)
@@ -121,7 +135,8 @@ std::string why_not_scored(const Needle& needle, const AttemptMetrics& metrics, 
 
 Outcome score_attempt(const Task& task, const anatomy::VirtualPatient& patient, const anatomy::TissueTable& tissues,
                       const Needle& needle, const PlannedPath& plan, std::span<const telemetry::TickSample> samples,
-                      std::optional<std::size_t> fired, std::span<const Interruption> interruptions) {
+                      std::optional<std::size_t> fired, std::span<const Interruption> interruptions,
+                      const XrayUse& xray) {
   if (fired && *fired >= samples.size()) fired.reset();
   const AttemptMetrics metrics = measure_attempt(task, patient, tissues, plan, samples, fired, interruptions);
 
@@ -134,7 +149,7 @@ Outcome score_attempt(const Task& task, const anatomy::VirtualPatient& patient, 
     if (fired && metrics.has_entered) outcome.core = take_core(task, patient, needle, metrics.tip_P, metrics.axis_P);
   }
 
-  Worth worth = worth_of(task, needle, plan, metrics, outcome.core, possible_mm);
+  Worth worth = worth_of(task, needle, plan, metrics, outcome.core, possible_mm, xray);
   const TaskLabels labels(task, patient);
   const std::vector<RiskTouch> stylet_risks = find_stylet_risks(labels, patient, metrics, outcome.core);
   for (const auto* touches : {&metrics.risks, &stylet_risks})
@@ -142,9 +157,9 @@ Outcome score_attempt(const Task& task, const anatomy::VirtualPatient& patient, 
       outcome.risks_touched.push_back(touch.label);
       worth.risk_penalty += touch.penalty;
     }
-  outcome.parts = parts_of(worth, needle.is_biopsy ? kBiopsy : kPuncture, metrics,
-                           metrics.has_entered ? entry_miss_mm(task, plan, metrics) : 0.0, outcome.core,
-                           outcome.risks_touched.size(), needle.is_biopsy);
+  const PartFigures figures{metrics.has_entered ? entry_miss_mm(task, plan, metrics) : 0.0, xray.dose_area_gycm2,
+                            outcome.risks_touched.size()};
+  outcome.parts = parts_of(worth, weights_of(task, needle), metrics, figures, outcome.core);
   if (outcome.is_scored())
     for (const ScorePart& part : outcome.parts) outcome.score += part.points;
   outcome.score = std::clamp(outcome.score, 0.0, 100.0);

@@ -11,6 +11,7 @@
 #include "tasks/needle.h"
 #include "tasks/plan.h"
 #include "tasks/task.h"
+#include "tasks/xray_use.h"
 #include "telemetry/tick_sample.h"
 
 namespace trocar::tasks {
@@ -36,7 +37,7 @@ struct BiopsyCore {
 };
 
 struct ScorePart {
-  std::string name;   ///< "target", "entry", "angle", "risk", "length", "time", "core", "deduction".
+  std::string name;   ///< "target", "entry", "angle", "risk", "length", "time", "core", "dose", "deduction".
   std::string title;  ///< Display text.
   double value = 0.0;
   std::string unit;
@@ -75,9 +76,10 @@ BiopsyCore take_core(const Task& task, const anatomy::VirtualPatient& patient, c
                      const Vec3& axis_P);
 
 /// Scores a whole attempt. `fired` is the index of the sample at which the biopsy gun was fired. Time in an
-/// interruption is not counted.
+/// interruption is not counted. `xray`: use of X-ray at the end of the attempt.
 Outcome score_attempt(const Task& task, const anatomy::VirtualPatient& patient, const anatomy::TissueTable& tissues,
                       const Needle& needle, const PlannedPath& plan, std::span<const telemetry::TickSample> samples,
-                      std::optional<std::size_t> fired, std::span<const Interruption> interruptions = {});
+                      std::optional<std::size_t> fired, std::span<const Interruption> interruptions = {},
+                      const XrayUse& xray = {});
 
 }  // namespace trocar::tasks

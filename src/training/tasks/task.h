@@ -65,6 +65,7 @@ struct Task {
   double entry_tolerance_mm = 10.0;
   double angle_tolerance_deg = 10.0;
   double time_limit_s = 120.0;
+  double dose_limit_gycm2 = 0.0;   ///< Dose–area product of X-ray that gives no points for it; 0: not scored.
   bool exam_shows_needle = false;  ///< In an exam slices and 3D show the needle inside the body, too.
 
   bool operator==(const Task&) const = default;

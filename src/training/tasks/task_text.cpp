@@ -80,11 +80,12 @@ class TaskReader {
   Status read_scoring(Task& task) const {
     if (lacks("scoring")) return {};
     TROCAR_TRY(const config::TomlTable scoring, document_.table("scoring"));
-    TROCAR_TRY_STATUS(
-        scoring.check_keys({"target_tolerance_mm", "entry_tolerance_mm", "angle_tolerance_deg", "time_limit_s"}));
+    TROCAR_TRY_STATUS(scoring.check_keys(
+        {"target_tolerance_mm", "entry_tolerance_mm", "angle_tolerance_deg", "time_limit_s", "dose_limit_gycm2"}));
     TROCAR_TRY_STATUS(number(scoring, "target_tolerance_mm", {0.1, 100.0}, task.target_tolerance_mm));
     TROCAR_TRY_STATUS(number(scoring, "entry_tolerance_mm", {0.1, 200.0}, task.entry_tolerance_mm));
     TROCAR_TRY_STATUS(number(scoring, "angle_tolerance_deg", {0.1, 90.0}, task.angle_tolerance_deg));
+    TROCAR_TRY(task.dose_limit_gycm2, scoring.number_or("dose_limit_gycm2", {0.0, 1000.0}, task.dose_limit_gycm2));
     return number(scoring, "time_limit_s", {1.0, 3600.0}, task.time_limit_s);
   }
 
@@ -274,6 +275,7 @@ std::string task_to_toml(const Task& task, const Task& base) {
   keys.set_changed("entry_tolerance_mm", task.entry_tolerance_mm, base.entry_tolerance_mm);
   keys.set_changed("angle_tolerance_deg", task.angle_tolerance_deg, base.angle_tolerance_deg);
   keys.set_changed("time_limit_s", task.time_limit_s, base.time_limit_s);
+  keys.set_changed("dose_limit_gycm2", task.dose_limit_gycm2, base.dose_limit_gycm2);
   keys.begin_table("exam");
   keys.set_changed("shows_needle", task.exam_shows_needle, base.exam_shows_needle);
   keys.begin_table("target");

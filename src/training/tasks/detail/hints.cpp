@@ -146,6 +146,12 @@ void add_economy_hints(const HintSubject& subject, std::vector<Hint>& hints) {
     hints.push_back({points, fmt::format("It took {:.0f} s from the skin to the target: plan the path first, then go "
                                          "on without stopping.",
                                          metrics.time_s)});
+  const auto dose = std::find_if(subject.parts.begin(), subject.parts.end(),
+                                 [](const ScorePart& part) { return part.name == "dose"; });
+  if (const double points = lost(subject, "dose"); points > 0.0 && dose != subject.parts.end())
+    hints.push_back({points, fmt::format("The dose-area product was {:.1f} Gy cm²: press the pedal briefly, with few "
+                                         "pulses a second, collimate, and work with the last image.",
+                                         dose->value)});
 }
 
 std::string praise(const HintSubject& subject) {

@@ -67,6 +67,34 @@ TEST(Score, PartsAddUpToAHundredAndToTheScore) {
   }
 }
 
+TEST(Score, DoseCostsPointsOnlyWhereTheTaskLimitsIt) {
+  Needle needle = make_gun();
+  needle.is_biopsy = false;
+  Task task = make_box_task();
+  const Attempt attempt = make_attempt(make_box_plan().line_P);
+  const auto score_with = [&](double dose_gycm2) {
+    XrayUse use;
+    use.dose_area_gycm2 = dose_gycm2;
+    return score_attempt(task, patient(), make_box_tissues(), needle, make_box_plan(), attempt.samples, attempt.fired,
+                         {}, use);
+  };
+  EXPECT_EQ(score_with(100.0).score, score_with(0.0).score);
+  task.dose_limit_gycm2 = 8.0;
+  double before = score_with(0.0).score;
+  EXPECT_GT(before, 99.5);
+  EXPECT_FALSE(has_hint(score_with(0.0), "dose"));
+  for (const double dose_gycm2 : {1.0, 4.0, 7.9}) {
+    const Outcome now = score_with(dose_gycm2);
+    EXPECT_LT(now.score, before);
+    EXPECT_EQ(has_hint(now, "dose-area product"), dose_gycm2 > 2.0) << dose_gycm2;
+    double max_points = 0.0;
+    for (const ScorePart& one : now.parts) max_points += one.max_points;
+    EXPECT_NEAR(max_points, 100.0, 1e-9);
+    before = now.score;
+  }
+  EXPECT_NEAR(score_with(80.0).score, score_with(0.0).score - 10.0, 1e-9);
+}
+
 TEST(Score, CloserIsNeverWorse) {
   const Vec3 ways[] = {Vec3::UnitX(), -Vec3::UnitX(), Vec3::UnitZ(), Vec3(0.6, 0.0, -0.8)};
   for (const Vec3& way_P : ways) {
