@@ -57,6 +57,11 @@ void AttemptExchange::fire() {
   requests_.fires = true;
 }
 
+void AttemptExchange::note_xray(const tasks::XrayUse& use) {
+  const std::lock_guard lock(mutex_);
+  requests_.xray.push_back(use);
+}
+
 void AttemptExchange::stop_forces() {
   const std::lock_guard lock(mutex_);
   requests_.stopped = true;

@@ -15,6 +15,7 @@
 #include "geometry/pose.h"
 #include "link/messages.h"
 #include "tasks/operator.h"
+#include "tasks/xray_use.h"
 
 namespace trocar::attempt {
 
@@ -34,6 +35,7 @@ struct AttemptRequests {
   std::optional<bool> stopped;
   std::vector<link::SetParameters> parameters;  ///< Messages, in order.
   std::unique_ptr<tasks::Operator> performer;
+  std::vector<tasks::XrayUse> xray;  ///< In order.
   bool begins = false, fires = false, finishes = false, has_drawn = false;
 };
 
@@ -74,6 +76,8 @@ class AttemptExchange {
   void fire();   ///< Fires the biopsy gun; only the first call counts.
   void stop_forces();
   void resume_forces();
+  /// Use of the fluoroscope, which the recording keeps; its time is set by the attempt.
+  void note_xray(const tasks::XrayUse& use);
   /// Sends parameters to the servers while they run; the insertion continues. The loaded table is the case's. The
   /// view's message is the server's reply.
   void set_parameters(link::SetParameters parameters);

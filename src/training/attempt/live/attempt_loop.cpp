@@ -83,7 +83,7 @@ void AttemptLoop::abandon() {
 }
 
 Status AttemptLoop::step() {
-  take_requests();
+  TROCAR_TRY_STATUS(take_requests());
   // Ticks first: when a poll finds the server changed, all ticks of the old one were taken.
   TROCAR_TRY_STATUS(step_needle());
   if (transducer_) TROCAR_TRY_STATUS(step_transducer());
@@ -100,7 +100,7 @@ Status AttemptLoop::step() {
   return {};
 }
 
-void AttemptLoop::take_requests() {
+Status AttemptLoop::take_requests() {
   AttemptRequests requests = exchange_.take_requests();
   lead(requests);
   if (requests.begins) begins_ = true;
@@ -116,6 +116,12 @@ void AttemptLoop::take_requests() {
     if (transducer_) transducer_->frame_drawn();
   }
   finishes_ = finishes_ || requests.finishes;
+  for (tasks::XrayUse& use : requests.xray) {
+    if (!record_ || record_->samples().empty()) continue;  // before the attempt
+    use.time_s = live_->time_s();
+    TROCAR_TRY_STATUS(record_->append(use));
+  }
+  return {};
 }
 
 void AttemptLoop::lead(const AttemptRequests& requests) {

@@ -75,7 +75,7 @@ class AttemptLoop {
   // attempt_loop.cpp
   void prepare();
   Status step();
-  void take_requests();
+  Status take_requests();
   void lead(const AttemptRequests& requests);
   void stop_or_resume(bool is_stopped);
   void poll_server(ServerSupervisor& server);

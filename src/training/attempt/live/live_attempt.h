@@ -60,6 +60,7 @@ class LiveAttempt : private AttemptExchange {
   using AttemptExchange::finish;
   using AttemptExchange::fire;
   using AttemptExchange::frame_drawn;
+  using AttemptExchange::note_xray;
   using AttemptExchange::perform;
   using AttemptExchange::resume_forces;
   using AttemptExchange::servers;

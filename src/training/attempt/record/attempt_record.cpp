@@ -154,10 +154,18 @@ Status AttemptRecord::append(const telemetry::NeedleShape& shape) {
   return written(writer_.append(shape));
 }
 
+Status AttemptRecord::append(const tasks::XrayUse& use) {
+  tasks::XrayUse last = xray_;
+  last.time_s = use.time_s;
+  if (use == last) return {};
+  xray_ = use;
+  return written(writer_.append(use));
+}
+
 RunResult AttemptRecord::score() {
   RunResult result;
   result.outcome = tasks::score_attempt(the_case_->task, *the_case_->patient, the_case_->tissues, the_case_->needle,
-                                        the_case_->plan, samples_, fired_, interruptions_);
+                                        the_case_->plan, samples_, fired_, interruptions_, xray_);
   result.punctures = find_punctures(info_, samples_);
   result.force_model = info_.force_model;
   result.ticks = samples_.size();

@@ -68,6 +68,8 @@ class AttemptRecord {
   static constexpr double kShapeStep_mm = 0.02;
   /// At most one sample per kTransducerEvery_s is kept. The score does not depend on it.
   Status append(const storage::TransducerSample& sample);
+  /// Kept if it differs from the last one. The score depends on the last one's dose.
+  Status append(const tasks::XrayUse& use);
   const storage::SessionInfo& info() const noexcept { return info_; }
   const std::vector<telemetry::TickSample>& samples() const noexcept { return samples_; }  ///< Samples so far.
   /// Index of the sample at which the gun was fired; this sample may not be appended yet.
@@ -100,6 +102,7 @@ class AttemptRecord {
   std::vector<storage::TransducerSample> transducer_;  ///< Kept samples.
   std::vector<telemetry::NeedleShape> shapes_;         ///< Kept shapes.
   std::vector<storage::SessionParameters> parameter_rows_;
+  tasks::XrayUse xray_;  ///< The last one.
   std::optional<Error> write_failure_;
   SceneParameters parameters_;                   ///< Last recorded parameters.
   std::optional<anatomy::TissueTable> tissues_;  ///< Table of parameters_; none: nothing was recorded yet.
