@@ -17,9 +17,9 @@ struct Reach {
 
 /// Distances of the tips from the nearest voxel of the labels in `near`.
 Reach find_reach(const anatomy::VirtualPatient& patient, std::uint8_t label, const FlowRule& rule,
-                 const std::vector<CentrelineTree>& trees) {
+                 const std::vector<volume::CentrelineTree>& trees) {
   Reach reach;
-  for (const CentrelineTree& tree : trees)
+  for (const volume::CentrelineTree& tree : trees)
     reach.distance_mm.emplace_back(tree.tips.size(), std::numeric_limits<double>::infinity());
   std::array<bool, 256> is_near{};
   for (const anatomy::Label& other : patient.label_table.labels)
@@ -42,11 +42,11 @@ Reach find_reach(const anatomy::VirtualPatient& patient, std::uint8_t label, con
 }
 
 /// Length of the path between two nodes through their common ancestor.
-double way_mm(const CentrelineTree& tree, int from, int to) {
+double way_mm(const volume::CentrelineTree& tree, int from, int to) {
   double sum = 0.0;
   while (from != to) {
     int& later = from > to ? from : to;
-    const CentrelineNode& node = tree.nodes[static_cast<std::size_t>(later)];
+    const volume::CentrelineNode& node = tree.nodes[static_cast<std::size_t>(later)];
     sum += (node.p_P - tree.nodes[static_cast<std::size_t>(node.parent)].p_P).norm();
     later = node.parent;
   }
@@ -56,11 +56,13 @@ double way_mm(const CentrelineTree& tree, int from, int to) {
 /// The tip at the head: the one farthest from the most caudal one, with the sum of distance along the vessels and
 /// height, so that the arch of the aorta has no influence; wide tips have a larger weight, to exclude winding branches.
 /// At the feet: reversed.
-std::vector<bool> tip_at(const CentrelineTree& tree, FlowRule::At at) {
+std::vector<bool> tip_at(const volume::CentrelineTree& tree, FlowRule::At at) {
   const double sign = at == FlowRule::At::kHead ? 1.0 : -1.0;
-  const auto opposite = std::min_element(
-      tree.tips.begin(), tree.tips.end(),
-      [&](const CentrelineTree::Tip& a, const CentrelineTree::Tip& b) { return sign * a.p_P.z() < sign * b.p_P.z(); });
+  const auto opposite =
+      std::min_element(tree.tips.begin(), tree.tips.end(),
+                       [&](const volume::CentrelineTree::Tip& a, const volume::CentrelineTree::Tip& b) {
+                         return sign * a.p_P.z() < sign * b.p_P.z();
+                       });
   std::size_t farthest = 0;
   double best = -1.0;
   for (std::size_t e = 0; e < tree.tips.size(); ++e) {
@@ -77,7 +79,7 @@ std::vector<bool> tip_at(const CentrelineTree& tree, FlowRule::At at) {
 }
 
 /// Tips that touch the named labels; otherwise the nearest; if all touch, all but the widest.
-std::vector<bool> tips_near(const CentrelineTree& tree, const std::vector<double>& distance_mm) {
+std::vector<bool> tips_near(const volume::CentrelineTree& tree, const std::vector<double>& distance_mm) {
   std::vector<bool> is_named_end;
   for (const double distance : distance_mm) is_named_end.push_back(distance <= kTouches_mm);
   const auto count = std::count(is_named_end.begin(), is_named_end.end(), true);
@@ -86,9 +88,11 @@ std::vector<bool> tips_near(const CentrelineTree& tree, const std::vector<double
     is_named_end[static_cast<std::size_t>(nearest - distance_mm.begin())] = true;
   }
   if (count == static_cast<std::ptrdiff_t>(tree.tips.size())) {
-    const auto widest = std::max_element(
-        tree.tips.begin(), tree.tips.end(),
-        [](const CentrelineTree::Tip& a, const CentrelineTree::Tip& b) { return a.radius_mm < b.radius_mm; });
+    const auto widest =
+        std::max_element(tree.tips.begin(), tree.tips.end(),
+                         [](const volume::CentrelineTree::Tip& a, const volume::CentrelineTree::Tip& b) {
+                           return a.radius_mm < b.radius_mm;
+                         });
     is_named_end[static_cast<std::size_t>(widest - tree.tips.begin())] = false;
   }
   return is_named_end;
@@ -97,7 +101,7 @@ std::vector<bool> tips_near(const CentrelineTree& tree, const std::vector<double
 }  // namespace
 
 std::vector<std::vector<bool>> find_sources(const anatomy::VirtualPatient& patient, std::uint8_t label,
-                                            const FlowRule& rule, const std::vector<CentrelineTree>& trees) {
+                                            const FlowRule& rule, const std::vector<volume::CentrelineTree>& trees) {
   const Reach reach = find_reach(patient, label, rule, trees);
   const bool named_are_sources = rule.ends == FlowRule::End::kSources;
   std::vector<std::vector<bool>> sources;
@@ -109,7 +113,7 @@ std::vector<std::vector<bool>> find_sources(const anatomy::VirtualPatient& patie
   return sources;
 }
 
-std::vector<bool> flows_from_root(const CentrelineTree& tree, const std::vector<bool>& is_source) {
+std::vector<bool> flows_from_root(const volume::CentrelineTree& tree, const std::vector<bool>& is_source) {
   double given = 0.0;
   double taken = 0.0;
   for (std::size_t e = 0; e < tree.tips.size(); ++e)

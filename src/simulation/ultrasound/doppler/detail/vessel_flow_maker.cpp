@@ -190,16 +190,16 @@ VesselFlowMaker::Lumen VesselFlowMaker::find_lumen(const anatomy::Label& label) 
 void VesselFlowMaker::add(const anatomy::Label& label) {
   const FlowRule* rule = flow_->table_.find(label.name, patient_.label_table);
   const Lumen lumen = rule != nullptr ? find_lumen(label) : Lumen{};
-  const std::vector<detail::CentrelineTree> trees =
-      lumen.own.empty() ? std::vector<detail::CentrelineTree>{}
-                        : detail::find_centrelines(lumen.joined, options_.least_vessel_mm3);
+  const std::vector<volume::CentrelineTree> trees =
+      lumen.own.empty() ? std::vector<volume::CentrelineTree>{}
+                        : volume::find_centrelines(lumen.joined, options_.least_vessel_mm3);
   if (trees.empty()) {
     flow_->without_flow_.push_back(label.name);
     return;
   }
   double widest_mm = 0.0;
-  for (const detail::CentrelineTree& tree : trees)
-    for (const detail::CentrelineNode& node : tree.nodes) widest_mm = std::max(widest_mm, node.radius_mm);
+  for (const volume::CentrelineTree& tree : trees)
+    for (const volume::CentrelineNode& node : tree.nodes) widest_mm = std::max(widest_mm, node.radius_mm);
   const auto sources = detail::find_sources(patient_, label.id, *rule, trees);
   const std::size_t first_branch = flow_->branches_.size();
   for (std::size_t t = 0; t < trees.size(); ++t)
@@ -207,10 +207,10 @@ void VesselFlowMaker::add(const anatomy::Label& label) {
   fill(lumen, first_branch);
 }
 
-void VesselFlowMaker::add_tree(const detail::CentrelineTree& tree, const std::vector<bool>& from_root,
+void VesselFlowMaker::add_tree(const volume::CentrelineTree& tree, const std::vector<bool>& from_root,
                                const anatomy::Label& label, const FlowRule& rule, double widest_mm) {
   for (std::size_t n = 0; n < tree.nodes.size(); ++n) {
-    const detail::CentrelineNode& node = tree.nodes[n];
+    const volume::CentrelineNode& node = tree.nodes[n];
     if (n == 0 || node.parent != static_cast<int>(n) - 1)
       flow_->branches_.push_back({label.id, rule.name, rule.waveform, rule.profile_exponent, {}});
     const double narrowed = std::pow(node.radius_mm / widest_mm, rule.narrowing_exponent);

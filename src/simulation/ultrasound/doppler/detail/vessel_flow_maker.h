@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "ultrasound/doppler/detail/centreline.h"
 #include "ultrasound/doppler/vessel_flow.h"
+#include "volume/centreline.h"
 
 namespace trocar::ultrasound {
 
@@ -40,7 +40,7 @@ class VesselFlowMaker {
   volume::GridGeometry flow_grid_over(const Box& box) const;
   volume::FloatGrid depth_of(const volume::MaskGrid& mask, const volume::GridGeometry& target) const;
   Lumen find_lumen(const anatomy::Label& label) const;
-  void add_tree(const detail::CentrelineTree& tree, const std::vector<bool>& from_root, const anatomy::Label& label,
+  void add_tree(const volume::CentrelineTree& tree, const std::vector<bool>& from_root, const anatomy::Label& label,
                 const FlowRule& rule, double widest_mm);
   void fill(const Lumen& lumen, std::size_t first_branch);
   VesselFlow::Cell& cell(std::int64_t brick, std::int64_t offset);

@@ -4,7 +4,7 @@
 
 #include "volume/grid.h"
 
-namespace trocar::ultrasound::detail {
+namespace trocar::volume {
 
 /// A point on the centreline of a tube.
 struct CentrelineNode {
@@ -32,6 +32,6 @@ struct CentrelineTree {
 /// `least_mm3`. Paths have the least cost from the root, with a cost of 1/depth³ per mm, so that they stay in the
 /// middle. The farthest point that no path passes starts the next path (after Sato et al., TEASAR, Pacific Graphics
 /// 2000, doi 10.1109/PCCGA.2000.883951). Paths are smoothed by least-squares lines. Voxels must be about isotropic.
-std::vector<CentrelineTree> find_centrelines(const volume::FloatGrid& depth_mm, double least_mm3 = 100.0);
+std::vector<CentrelineTree> find_centrelines(const FloatGrid& depth_mm, double least_mm3 = 100.0);
 
-}  // namespace trocar::ultrasound::detail
+}  // namespace trocar::volume

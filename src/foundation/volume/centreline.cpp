@@ -1,4 +1,4 @@
-#include "ultrasound/doppler/detail/centreline.h"
+#include "volume/centreline.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include <unordered_map>
 #include <utility>
 
-namespace trocar::ultrasound::detail {
+namespace trocar::volume {
 namespace {
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
@@ -32,7 +32,7 @@ struct Step {
   float length_mm;
 };
 
-std::vector<Step> make_steps(const volume::GridGeometry& geometry) {
+std::vector<Step> make_steps(const GridGeometry& geometry) {
   std::vector<Step> steps;
   for (std::int64_t k = -1; k <= 1; ++k)
     for (std::int64_t j = -1; j <= 1; ++j)
@@ -58,7 +58,7 @@ struct Branch {
 
 class Finder {
  public:
-  explicit Finder(const volume::FloatGrid& depth_mm)
+  explicit Finder(const FloatGrid& depth_mm)
       : depth_(depth_mm), geometry_(depth_mm.geometry), steps_(make_steps(geometry_)) {
     const std::size_t n = depth_.voxels.size();
     way_.assign(n, kFar);
@@ -99,7 +99,7 @@ class Finder {
       queue.pop();
       if (so_far > distance[v]) continue;
       order.push_back(v);
-      const volume::Index3 at = geometry_.index_of(v);
+      const Index3 at = geometry_.index_of(v);
       for (const Step& step : steps_) {
         if (!geometry_.contains({at[0] + step.di, at[1] + step.dj, at[2] + step.dk})) continue;
         const auto to = static_cast<std::size_t>(static_cast<std::int64_t>(v) + step.offset);
@@ -170,7 +170,7 @@ class Finder {
 
   double depth_mm(std::size_t v) const { return static_cast<double>(depth_.voxels[v]); }
   Vec3 place(std::size_t v) const {
-    const volume::Index3 at = geometry_.index_of(v);
+    const Index3 at = geometry_.index_of(v);
     return geometry_.centre_mm(at);
   }
   /// True if a point is clearly outside the balls around all nodes.
@@ -184,8 +184,8 @@ class Finder {
   /// Voxels near a path need no separate path.
   void cover(std::size_t middle, double radius_mm) {
     const double reach_mm = kCovers * radius_mm + kCoversMore_mm;
-    const volume::Index3 at = geometry_.index_of(middle);
-    volume::Index3 low, high;
+    const Index3 at = geometry_.index_of(middle);
+    Index3 low, high;
     for (std::size_t a = 0; a < 3; ++a) {
       const auto reach = static_cast<std::int64_t>(reach_mm / geometry_.spacing_mm[static_cast<Eigen::Index>(a)]);
       low[a] = std::max<std::int64_t>(at[a] - reach, 0);
@@ -316,8 +316,8 @@ class Finder {
     return node;
   }
 
-  const volume::FloatGrid& depth_;
-  const volume::GridGeometry& geometry_;
+  const FloatGrid& depth_;
+  const GridGeometry& geometry_;
   std::vector<Step> steps_;
   std::vector<float> way_, cost_;
   std::vector<std::size_t> before_;
@@ -329,8 +329,8 @@ class Finder {
 
 }  // namespace
 
-std::vector<CentrelineTree> find_centrelines(const volume::FloatGrid& depth_mm, double least_mm3) {
+std::vector<CentrelineTree> find_centrelines(const FloatGrid& depth_mm, double least_mm3) {
   return Finder(depth_mm).run(least_mm3);
 }
 
-}  // namespace trocar::ultrasound::detail
+}  // namespace trocar::volume
