@@ -1,0 +1,131 @@
+#include "xray/contrast/contrast_flow.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+#include "core/check.h"
+
+namespace trocar::xray {
+namespace {
+
+constexpr double kLongestStep_s = 0.01;
+constexpr double kLongestFrame_s = 1.0;
+constexpr double kMostRate_ml_per_s = 50.0;  ///< A power injector's.
+constexpr double kMostIodine_mg_per_ml = 500.0;
+constexpr double kDuctReach_mm = 3.0;      ///< From a voxel of a duct's label to the tree.
+constexpr double kShown_mg_per_ml = 0.05;  ///< Thinner pieces are not given to the projector.
+
+std::string point_text(const Vec3& p_P) {
+  return fmt::format("tip at {:g}, {:g}, {:g} mm", p_P.x(), p_P.y(), p_P.z());
+}
+
+}  // namespace
+
+ContrastFlow::ContrastFlow(std::shared_ptr<const anatomy::VirtualPatient> patient, const ContrastTable& table,
+                           BloodVelocity blood)
+    : patient_(std::move(patient)),
+      ducts_(make_duct_tree(*patient_, {.bridge_mm = table.duct.bridge_mm}), table.duct),
+      vessels_(patient_, table.vessel, std::move(blood)),
+      tissue_(patient_, table) {}
+
+Result<ContrastFlow> ContrastFlow::make(std::shared_ptr<const anatomy::VirtualPatient> patient,
+                                        const ContrastTable& table, BloodVelocity blood) {
+  TROCAR_CHECK(patient != nullptr && !table.media.empty());
+  if (patient->labels.empty())
+    return fail("contrast agent needs labels, and the patient has none", patient->name,
+                "build the patient with a segmentation");
+  return ContrastFlow(std::move(patient), table, std::move(blood));
+}
+
+Status ContrastFlow::inject(const Vec3& tip_P, double ml_per_s, double iodine_mg_per_ml) {
+  stop_injection();
+  if (!tip_P.allFinite())
+    return fail_usage("the injection's place is not a finite point", point_text(tip_P), "give three numbers in mm");
+  if (!(ml_per_s >= 0.0 && ml_per_s <= kMostRate_ml_per_s))
+    return fail_usage(fmt::format("a rate of {:g} ml/s cannot be injected", ml_per_s), point_text(tip_P),
+                      fmt::format("use 0 to {:g}", kMostRate_ml_per_s));
+  if (!(iodine_mg_per_ml >= 0.0 && iodine_mg_per_ml <= kMostIodine_mg_per_ml))
+    return fail_usage(fmt::format("no contrast agent has {:g} mg iodine per ml", iodine_mg_per_ml), point_text(tip_P),
+                      fmt::format("use 0 to {:g}", kMostIodine_mg_per_ml));
+  tip_P_ = tip_P;
+  target_ = find_target(tip_P);
+  ml_per_s_ = ml_per_s;
+  iodine_mg_per_ml_ = iodine_mg_per_ml;
+  return {};
+}
+
+ContrastFlow::Target ContrastFlow::find_target(const Vec3& tip_P) const {
+  if (!tip_P.allFinite()) return {};
+  const anatomy::Label* label = anatomy::find_label(*patient_, tip_P);
+  if (label != nullptr && label->tissue == "vessel") return {ContrastPlace::kVessel, -1};
+  if (label != nullptr && label->tissue == "bile_duct") {
+    const int cell = ducts_.tree().find_cell(tip_P, kDuctReach_mm);
+    // A speck of the label that belongs to no duct is like its surroundings.
+    return {cell >= 0 ? ContrastPlace::kDuct : ContrastPlace::kTissue, cell};
+  }
+  const ContrastMedium* medium = tissue_.medium_at(tip_P);
+  return {medium != nullptr ? medium->place : ContrastPlace::kOutside, -1};
+}
+
+ContrastPlace ContrastFlow::place(const Vec3& tip_P) const {
+  return find_target(tip_P).place;
+}
+
+void ContrastFlow::inject_for(double dt_s) {
+  const double ml = dt_s * ml_per_s_;
+  const double mg = ml * iodine_mg_per_ml_;
+  injected_ml_ += ml;
+  injected_mg_ += mg;
+  switch (target_.place) {
+    case ContrastPlace::kDuct:
+      return;  // with the ducts' own step
+    case ContrastPlace::kVessel:
+      vessels_.inject(tip_P_, dt_s, ml, iodine_mg_per_ml_);
+      return;
+    case ContrastPlace::kOutside:
+      spilled_mg_ += mg;
+      return;
+    default:
+      tissue_.inject(tip_P_, ml, iodine_mg_per_ml_);
+  }
+}
+
+void ContrastFlow::step(double dt_s) {
+  TROCAR_CHECK(dt_s >= 0.0 && dt_s <= kLongestFrame_s);
+  const auto count = static_cast<int>(std::ceil(dt_s / kLongestStep_s - 1e-9));
+  const bool injects = ml_per_s_ > 0.0;
+  for (int n = 0; n < count; ++n) {
+    const double part_s = dt_s / count;
+    vessels_.step(part_s);
+    if (injects) inject_for(part_s);
+    const bool is_duct = injects && target_.place == ContrastPlace::kDuct;
+    ducts_.step(part_s, is_duct ? target_.cell : -1, ml_per_s_, iodine_mg_per_ml_);
+  }
+  if (count > 0) tissue_.step(dt_s);
+}
+
+Iodine ContrastFlow::iodine() const {
+  Iodine iodine;
+  if (ducts_.has_iodine()) ducts_.add_pieces(kShown_mg_per_ml, iodine.pieces);
+  vessels_.add_pieces(kShown_mg_per_ml, iodine.pieces);
+  iodine.grid_mg_per_ml = tissue_.grid_mg_per_ml();
+  return iodine;
+}
+
+ContrastTotals ContrastFlow::totals() const {
+  ContrastTotals totals;
+  totals.injected_ml = injected_ml_;
+  totals.injected_mg = injected_mg_;
+  totals.ducts_mg = ducts_.iodine_mg();
+  totals.vessels_mg = vessels_.iodine_mg();
+  totals.tissue_mg = tissue_.iodine_mg();
+  totals.drained_mg = ducts_.drained_mg();
+  totals.washed_away_mg = ducts_.refluxed_mg() + vessels_.washed_away_mg() + tissue_.washed_away_mg();
+  totals.spilled_mg = spilled_mg_;
+  totals.ducts_ml = ducts_.contrast_ml();
+  return totals;
+}
+
+}  // namespace trocar::xray

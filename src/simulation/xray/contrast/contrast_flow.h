@@ -1,0 +1,74 @@
+#pragma once
+
+#include <memory>
+
+#include "anatomy/patient.h"
+#include "core/result.h"
+#include "xray/contrast/contrast_table.h"
+#include "xray/contrast/duct_fill.h"
+#include "xray/contrast/iodine.h"
+#include "xray/contrast/tissue_cloud.h"
+#include "xray/contrast/vessel_streak.h"
+
+namespace trocar::xray {
+
+/// Contrast agent since the beginning. in_body + drained + washed_away + spilled = injected, of iodine.
+struct ContrastTotals {
+  double injected_ml = 0.0;
+  double injected_mg = 0.0;
+  double ducts_mg = 0.0, vessels_mg = 0.0, tissue_mg = 0.0;  ///< tissue: also fluid, bowel, parenchyma.
+  double drained_mg = 0.0;                                   ///< Through the papilla.
+  double washed_away_mg = 0.0;  ///< By blood: out of vessels, parenchyma, and over-filled ducts.
+  double spilled_mg = 0.0;      ///< Injected outside of the body.
+  double ducts_ml = 0.0;        ///< Contrast agent in the ducts.
+
+  double in_body_mg() const { return ducts_mg + vessels_mg + tissue_mg; }
+};
+
+/// Contrast agent in a patient: injected at the needle's tip, carried on by what is there. Frame P of the patient at
+/// rest: a tip in a moving patient is mapped back first. Not real-time safe; one thread.
+class ContrastFlow {
+ public:
+  /// Follows the bile ducts (takes up to some seconds). `blood` gives the flow in vessels, for example
+  /// ultrasound::VesselFlow::velocity_P; without it contrast agent in a vessel fades where it is. Errors: a patient
+  /// without labels.
+  static Result<ContrastFlow> make(std::shared_ptr<const anatomy::VirtualPatient> patient, const ContrastTable& table,
+                                   BloodVelocity blood = {});
+
+  /// Injects at a point from now on. Errors (exit status 2), and the injection stops: a tip that is not finite, a rate
+  /// outside of 0..50 ml/s, a concentration outside of 0..500 mg/ml.
+  Status inject(const Vec3& tip_P, double ml_per_s, double iodine_mg_per_ml);
+  void stop_injection() { ml_per_s_ = 0.0; }
+  /// Advances by `dt_s`, 0..1 s (checked), in equal steps of at most 10 ms.
+  void step(double dt_s);
+
+  Iodine iodine() const;
+  /// Outside for a point that is not finite.
+  ContrastPlace place(const Vec3& tip_P) const;
+  ContrastTotals totals() const;
+  const DuctFill& ducts() const { return ducts_; }
+  const TissueCloud& tissue() const { return tissue_; }
+
+ private:
+  ContrastFlow(std::shared_ptr<const anatomy::VirtualPatient> patient, const ContrastTable& table, BloodVelocity blood);
+
+  /// What an injection meets at its tip.
+  struct Target {
+    ContrastPlace place = ContrastPlace::kOutside;
+    int cell = -1;  ///< Of the ducts.
+  };
+  Target find_target(const Vec3& tip_P) const;
+  void inject_for(double dt_s);
+
+  std::shared_ptr<const anatomy::VirtualPatient> patient_;
+  DuctFill ducts_;
+  VesselStreak vessels_;
+  TissueCloud tissue_;
+  Vec3 tip_P_ = Vec3::Zero();
+  Target target_;
+  double ml_per_s_ = 0.0;
+  double iodine_mg_per_ml_ = 0.0;
+  double injected_ml_ = 0.0, injected_mg_ = 0.0, spilled_mg_ = 0.0;
+};
+
+}  // namespace trocar::xray

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+
+namespace trocar::xray {
+
+/// Where a tip is, as contrast agent shows it.
+enum class ContrastPlace : unsigned char { kOutside, kDuct, kVessel, kParenchyma, kFluid, kBowel, kTissue };
+
+/// "bile duct", "vessel", "parenchyma", "fluid", "bowel", "tissue", "outside".
+std::string contrast_place_words(ContrastPlace place);
+
+/// How bile ducts take contrast agent. Sources: data/contrast.toml.
+struct DuctParams {
+  double dispersivity_mm = 1.5;   ///< Mixing at a moving front. Range 0..10.
+  double mixing_mm2_per_s = 0.5;  ///< Mixing at rest. Range 0..10.
+  double papilla_share = 0.3;     ///< Part of an injection that leaves at once through an open papilla. Range 0..0.9.
+  double drain_s = 600.0;         ///< Time constant of emptying through an open papilla. Range 10..1e5.
+  double distension = 0.25;       ///< Most gain of volume of a full tree without outlet. Range 0..1.
+  double bridge_mm = 4.0;         ///< Widest gap within a duct's label. Range 0..20.
+};
+
+/// How a vessel washes contrast agent away.
+struct VesselParams {
+  double washout_s = 0.4;         ///< Time constant of dilution. Range 0.05..5.
+  double longest_s = 1.2;         ///< Range 0.1..10.
+  double spread_mm2_per_s = 8.0;  ///< Growth of the square of the streak's radius. Range 0..200.
+};
+
+/// How a kind of tissue takes contrast agent.
+struct ContrastMedium {
+  ContrastPlace place = ContrastPlace::kTissue;  ///< Parenchyma, fluid, bowel or tissue.
+  std::vector<std::string> tissues;
+  double space = 0.12;            ///< Parenchyma and tissue: share of the volume that is filled. Range 0.01..1.
+  double fade_s = 0.0;            ///< Parenchyma and tissue: time constant; 0: no fading. Range 0..1e5.
+  double mixing_mm2_per_s = 0.0;  ///< Fluid and bowel. Range 0.01..200.
+};
+
+struct ContrastTable {
+  double iodine_mg_per_ml = 300.0;  ///< Usual agent. Range 1..500.
+  DuctParams duct;
+  VesselParams vessel;
+  std::vector<ContrastMedium> media;  ///< The last one is for the tissues of no list.
+
+  /// Index of the medium of a tissue.
+  std::size_t medium_of(const std::string& tissue) const;
+};
+
+/// Reads data/contrast.toml. Errors name file and key: unknown or missing key, out of range, no source, a tissue in two
+/// lists.
+Result<ContrastTable> load_contrast_table(const std::filesystem::path& path);
+
+}  // namespace trocar::xray

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "anatomy/patient.h"
+#include "xray/contrast/duct_tree.h"
+
+namespace trocar::xray::detail {
+
+/// Sets the ends of the ducts and their obstructions: in each stretch of a duct that a lesion encases, the narrowest
+/// place is closed if it is narrower than the duct beside it, and else the ends close to it. The papilla is the widest
+/// end that touches bowel and is not closed; all other ends are peripheral.
+void find_duct_ends(const anatomy::VirtualPatient& patient, double encased_share, DuctTree& tree);
+
+}  // namespace trocar::xray::detail

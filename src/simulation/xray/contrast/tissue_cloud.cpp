@@ -1,0 +1,401 @@
+#include "xray/contrast/tissue_cloud.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/check.h"
+#include "volume/resample.h"
+#include "volume/sampling.h"
+
+namespace trocar::xray {
+namespace {
+
+constexpr double kMm3PerMl = 1000.0;
+constexpr std::int64_t kGrowth = 8;        ///< Voxels by which the window grows at a time.
+constexpr double kShown_mg_per_ml = 1e-3;  ///< Less at the border of the active box does not widen it.
+constexpr double kStability = 0.16;        ///< Largest mixing * step / spacing² of explicit diffusion (limit: 1/6).
+constexpr double kSameTip_mm = 0.5;        ///< A tip that moves less fills the same place.
+constexpr std::int64_t kSeedReach = 2;     ///< Voxels around the tip in which the organ's nearest voxel is looked for.
+constexpr std::array<volume::Index3, 6> kNeighbours{
+    {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
+
+volume::Index3 sum(const volume::Index3& a, const volume::Index3& b) {
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+
+bool is_fluid(const ContrastMedium& medium) {
+  return medium.place == ContrastPlace::kFluid || medium.place == ContrastPlace::kBowel;
+}
+
+volume::Index3 nearest_index(const volume::GridGeometry& g, const Vec3& p_P) {
+  const Vec3 index = g.to_index(p_P);
+  volume::Index3 at;
+  for (std::size_t a = 0; a < 3; ++a)
+    at[a] = std::clamp<std::int64_t>(std::llround(index[static_cast<Eigen::Index>(a)]), 0, g.size[a] - 1);
+  return at;
+}
+
+}  // namespace
+
+TissueCloud::TissueCloud(std::shared_ptr<const anatomy::VirtualPatient> patient, const ContrastTable& table,
+                         double spacing_mm)
+    : patient_(std::move(patient)),
+      media_(table.media),
+      lattice_(volume::isotropic_geometry(patient_->labels.geometry, spacing_mm)) {
+  TROCAR_CHECK(spacing_mm >= 1.0 && spacing_mm <= 5.0);
+  organ_of_label_ = anatomy::lesions_as_organs(patient_->label_table);
+  medium_of_organ_.fill(static_cast<std::uint8_t>(media_.size() - 1));
+  has_medium_.fill(true);
+  for (const anatomy::Label& label : patient_->label_table.labels) {
+    medium_of_organ_[label.id] = static_cast<std::uint8_t>(table.medium_of(label.tissue));
+    has_medium_[label.id] = label.tissue != "bile_duct" && label.tissue != "vessel";
+  }
+}
+
+TissueCloud::Organ TissueCloud::organ_at(const Vec3& p_P) const {
+  const std::uint8_t label = volume::sample_nearest<std::uint8_t>(patient_->labels, p_P, 0);
+  if (label != 0) return has_medium_[label] ? Organ{organ_of_label_[label]} : kNoOrgan;
+  const bool is_inside = !patient_->skin_distance_mm.empty() &&
+                         volume::sample_nearest<float>(patient_->skin_distance_mm, p_P, 1.0F) < 0.0F;
+  return is_inside ? Organ{0} : kNoOrgan;
+}
+
+/// At a speck of a label without medium: the organ of the nearest point of a small cube that has one.
+TissueCloud::Organ TissueCloud::organ_near(const Vec3& p_P) const {
+  Organ best = organ_at(p_P);
+  double best_mm = std::numeric_limits<double>::infinity();
+  if (best != kNoOrgan) return best;
+  for (std::int64_t k = -kSeedReach; k <= kSeedReach; ++k)
+    for (std::int64_t j = -kSeedReach; j <= kSeedReach; ++j)
+      for (std::int64_t i = -kSeedReach; i <= kSeedReach; ++i) {
+        const Vec3 away = volume::to_vec3({i, j, k}).cwiseProduct(lattice_.spacing_mm);
+        const Organ organ = organ_at(p_P + away);
+        if (organ == kNoOrgan || away.norm() >= best_mm) continue;
+        best_mm = away.norm();
+        best = organ;
+      }
+  return best;
+}
+
+const ContrastMedium* TissueCloud::medium_at(const Vec3& p_P) const {
+  const Organ organ = p_P.allFinite() ? organ_at(p_P) : kNoOrgan;
+  return organ == kNoOrgan ? nullptr : &medium_of(static_cast<std::uint8_t>(organ));
+}
+
+std::size_t TissueCloud::offset_in(const Box& box, const volume::Index3& at) {
+  const volume::Index3& low = box[0];
+  const std::int64_t nx = box[1][0] - low[0] + 1, ny = box[1][1] - low[1] + 1;
+  return static_cast<std::size_t>(((at[2] - low[2]) * ny + at[1] - low[1]) * nx + at[0] - low[0]);
+}
+
+/// Grows the window so that it contains a voxel and its neighbours (within the lattice).
+void TissueCloud::include(const volume::Index3& at) {
+  Box wanted = is_used_ ? window_ : Box{at, at};
+  bool is_enough = is_used_;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::int64_t low = std::max<std::int64_t>(at[a] - 1, 0);
+    const std::int64_t high = std::min(at[a] + 1, lattice_.size[a] - 1);
+    if (low < wanted[0][a]) wanted[0][a] = std::max<std::int64_t>(low - kGrowth, 0);
+    if (high > wanted[1][a]) wanted[1][a] = std::min(high + kGrowth, lattice_.size[a] - 1);
+    is_enough = is_enough && wanted[0][a] == window_[0][a] && wanted[1][a] == window_[1][a];
+  }
+  if (is_enough) return;
+  const Box old_window = std::exchange(window_, wanted);
+  const std::vector<double> old_mg = std::move(iodine_mg_), old_ml = std::move(fluid_ml_);
+  const std::vector<Organ> old_organ = std::move(organ_);
+  std::size_t count = 1;
+  for (std::size_t a = 0; a < 3; ++a) count *= static_cast<std::size_t>(window_[1][a] - window_[0][a] + 1);
+  iodine_mg_.assign(count, 0.0);
+  fluid_ml_.assign(count, 0.0);
+  change_mg_.assign(count, 0.0);
+  organ_.assign(count, kNoOrgan);
+  std::size_t n = 0;
+  for (std::int64_t k = window_[0][2]; k <= window_[1][2]; ++k)
+    for (std::int64_t j = window_[0][1]; j <= window_[1][1]; ++j)
+      for (std::int64_t i = window_[0][0]; i <= window_[1][0]; ++i, ++n) {
+        const volume::Index3 voxel{i, j, k};
+        bool was_inside = is_used_;
+        for (std::size_t a = 0; a < 3; ++a)
+          was_inside = was_inside && voxel[a] >= old_window[0][a] && voxel[a] <= old_window[1][a];
+        if (was_inside) {
+          const std::size_t m = offset_in(old_window, voxel);
+          iodine_mg_[n] = old_mg[m];
+          fluid_ml_[n] = old_ml[m];
+          organ_[n] = old_organ[m];
+        } else {
+          organ_[n] = organ_at(lattice_.centre_mm(voxel));
+        }
+      }
+  if (!is_used_) active_ = {at, at};
+  is_used_ = true;
+}
+
+/// The active box contains a voxel from now on.
+void TissueCloud::activate(const volume::Index3& at) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    active_[0][a] = std::min(active_[0][a], at[a]);
+    active_[1][a] = std::max(active_[1][a], at[a]);
+  }
+}
+
+/// The organ's voxel nearest to the tip; a structure thinner than the voxels gets the tip's own voxel.
+volume::Index3 TissueCloud::seed_of(const Vec3& tip_P, Organ organ) {
+  const volume::Index3 middle = nearest_index(lattice_, tip_P);
+  volume::Index3 best = middle;
+  double best_mm = std::numeric_limits<double>::infinity();
+  for (std::int64_t k = -kSeedReach; k <= kSeedReach; ++k)
+    for (std::int64_t j = -kSeedReach; j <= kSeedReach; ++j)
+      for (std::int64_t i = -kSeedReach; i <= kSeedReach; ++i) {
+        const volume::Index3 at = sum(middle, {i, j, k});
+        if (!lattice_.contains(at)) continue;
+        include(at);
+        const double mm = (lattice_.centre_mm(at) - tip_P).norm();
+        if (organ_[offset(at)] != organ || mm >= best_mm) continue;
+        best_mm = mm;
+        best = at;
+      }
+  include(best);
+  organ_[offset(best)] = organ;
+  return best;
+}
+
+void TissueCloud::start_site(const Vec3& tip_P, Organ organ) {
+  if (site_.organ == organ && !site_.order.empty() && (site_.tip_P - tip_P).norm() < kSameTip_mm) return;
+  site_ = {tip_P, organ, {}, {}};
+  const volume::Index3 seed = seed_of(tip_P, organ);
+  seen_.assign(organ_.size(), 0);
+  seen_window_ = window_;
+  seen_[offset(seed)] = 1;
+  site_.frontier.emplace_back(0.0F, seed);
+  expand_site();
+}
+
+/// Appends the next voxel of the site's organ; false if the organ has no more.
+bool TissueCloud::expand_site() {
+  if (site_.frontier.empty()) return false;
+  std::pop_heap(site_.frontier.begin(), site_.frontier.end(), std::greater<>());
+  const volume::Index3 at = site_.frontier.back().second;
+  site_.frontier.pop_back();
+  site_.order.push_back(at);
+  include(at);
+  keep_seen();
+  for (const volume::Index3& step : kNeighbours) {
+    const volume::Index3 to = sum(at, step);
+    if (!lattice_.contains(to)) continue;
+    const std::size_t n = offset(to);
+    if (seen_[n] != 0 || organ_[n] != site_.organ) continue;
+    seen_[n] = 1;
+    site_.frontier.emplace_back(static_cast<float>((lattice_.centre_mm(to) - site_.tip_P).norm()), to);
+    std::push_heap(site_.frontier.begin(), site_.frontier.end(), std::greater<>());
+  }
+  return true;
+}
+
+/// Marks the site's voxels again after the window has grown.
+void TissueCloud::keep_seen() {
+  if (seen_window_ == window_) return;
+  seen_.assign(organ_.size(), 0);
+  seen_window_ = window_;
+  for (const volume::Index3& at : site_.order) seen_[offset(at)] = 1;
+  for (const auto& waiting : site_.frontier) seen_[offset(waiting.second)] = 1;
+}
+
+void TissueCloud::inject(const Vec3& tip_P, double ml, double iodine_mg_per_ml) {
+  const Organ organ = organ_near(tip_P);
+  if (organ == kNoOrgan) {
+    washed_away_mg_ += ml * iodine_mg_per_ml;
+    return;
+  }
+  if (is_fluid(medium_of(static_cast<std::uint8_t>(organ)))) {
+    pour(tip_P, organ, ml * iodine_mg_per_ml);
+  } else {
+    fill(tip_P, organ, ml, iodine_mg_per_ml);
+  }
+}
+
+/// Fills the room of the voxels, the nearest first.
+void TissueCloud::fill(const Vec3& tip_P, Organ organ, double ml, double iodine_mg_per_ml) {
+  start_site(tip_P, organ);
+  const double room_ml = medium_of(static_cast<std::uint8_t>(organ)).space * lattice_.voxel_volume_mm3() / kMm3PerMl;
+  for (std::size_t n = 0; ml > 0.0; ++n) {
+    if (n == site_.order.size() && !expand_site()) break;
+    const volume::Index3 at = site_.order[n];
+    const std::size_t v = offset(at);
+    const double part_ml = std::min(room_ml - fluid_ml_[v], ml);
+    if (part_ml <= 0.0) continue;
+    fluid_ml_[v] += part_ml;
+    iodine_mg_[v] += part_ml * iodine_mg_per_ml;
+    ml -= part_ml;
+    activate(at);
+  }
+  washed_away_mg_ += ml * iodine_mg_per_ml;
+}
+
+/// Puts iodine into the fluid at the tip.
+void TissueCloud::pour(const Vec3& tip_P, Organ organ, double iodine_mg) {
+  const volume::Index3 seed = seed_of(tip_P, organ);
+  iodine_mg_[offset(seed)] += iodine_mg;
+  activate(seed);
+}
+
+void TissueCloud::step(double dt_s) {
+  if (!is_used_) return;
+  fade(dt_s);
+  diffuse(dt_s);
+}
+
+void TissueCloud::fade(double dt_s) {
+  std::array<double, kNoOrgan + 1> kept{};
+  kept.fill(1.0);
+  bool fades = false;
+  for (std::size_t organ = 0; organ < 256; ++organ) {
+    const ContrastMedium& medium = media_[medium_of_organ_[organ]];
+    if (is_fluid(medium) || medium.fade_s <= 0.0) continue;
+    kept[organ] = std::exp(-dt_s / medium.fade_s);
+    fades = true;
+  }
+  if (!fades) return;
+  for (std::int64_t k = active_[0][2]; k <= active_[1][2]; ++k)
+    for (std::int64_t j = active_[0][1]; j <= active_[1][1]; ++j) {
+      std::size_t n = offset({active_[0][0], j, k});
+      for (std::int64_t i = active_[0][0]; i <= active_[1][0]; ++i, ++n) {
+        const double rest_mg = iodine_mg_[n] * kept[organ_[n]];
+        washed_away_mg_ += iodine_mg_[n] - rest_mg;
+        iodine_mg_[n] = rest_mg;
+        fluid_ml_[n] *= kept[organ_[n]];
+      }
+    }
+}
+
+void TissueCloud::diffuse(double dt_s) {
+  double most = 0.0;
+  for (std::size_t organ = 0; organ < 256; ++organ) {
+    const ContrastMedium& medium = media_[medium_of_organ_[organ]];
+    if (is_fluid(medium)) most = std::max(most, medium.mixing_mm2_per_s);
+  }
+  if (!has_fluid()) return;
+  const double spacing_mm = lattice_.spacing_mm.minCoeff();
+  const double longest_s = kStability * spacing_mm * spacing_mm / most;
+  const auto steps = static_cast<int>(std::ceil(dt_s / longest_s));
+  for (int n = 0; n < steps; ++n) {
+    widen_active();
+    diffuse_once(dt_s / steps);
+  }
+}
+
+/// True if an organ of the window with iodine is fluid.
+bool TissueCloud::has_fluid() const {
+  for (std::int64_t k = active_[0][2]; k <= active_[1][2]; ++k)
+    for (std::int64_t j = active_[0][1]; j <= active_[1][1]; ++j) {
+      std::size_t n = offset({active_[0][0], j, k});
+      for (std::int64_t i = active_[0][0]; i <= active_[1][0]; ++i, ++n)
+        if (iodine_mg_[n] > 0.0 && mixing_of(organ_[n]) > 0.0) return true;
+    }
+  return false;
+}
+
+double TissueCloud::mixing_of(Organ organ) const {
+  if (organ == kNoOrgan) return 0.0;
+  return medium_of(static_cast<std::uint8_t>(organ)).mixing_mm2_per_s;
+}
+
+/// Widens the active box by one voxel on the sides where iodine has arrived.
+void TissueCloud::widen_active() {
+  const double least_mg = kShown_mg_per_ml * lattice_.voxel_volume_mm3() / kMm3PerMl;
+  Box widened = active_;
+  for (std::int64_t k = active_[0][2]; k <= active_[1][2]; ++k)
+    for (std::int64_t j = active_[0][1]; j <= active_[1][1]; ++j) {
+      const bool is_edge = k == active_[0][2] || k == active_[1][2] || j == active_[0][1] || j == active_[1][1];
+      const std::int64_t step = is_edge ? 1 : std::max<std::int64_t>(active_[1][0] - active_[0][0], 1);
+      for (std::int64_t i = active_[0][0]; i <= active_[1][0]; i += step) {
+        const volume::Index3 at{i, j, k};
+        const std::size_t n = offset(at);
+        if (iodine_mg_[n] < least_mg || mixing_of(organ_[n]) <= 0.0) continue;
+        for (std::size_t a = 0; a < 3; ++a) {
+          if (at[a] == active_[0][a]) widened[0][a] = std::max<std::int64_t>(at[a] - 1, 0);
+          if (at[a] == active_[1][a]) widened[1][a] = std::min(at[a] + 1, lattice_.size[a] - 1);
+        }
+      }
+    }
+  if (widened == active_) return;
+  active_ = widened;
+  include(active_[0]);
+  include(active_[1]);
+}
+
+/// One explicit step in flux form: each voxel gives to its neighbour what the neighbour gets.
+void TissueCloud::diffuse_once(double dt_s) {
+  const std::int64_t row = window_[1][0] - window_[0][0] + 1;
+  const std::array<std::int64_t, 3> strides{1, row, row * (window_[1][1] - window_[0][1] + 1)};
+  std::array<double, kNoOrgan + 1> share{};
+  const double spacing_mm = lattice_.spacing_mm.minCoeff();
+  for (std::size_t organ = 0; organ < 256; ++organ)
+    share[organ] = mixing_of(static_cast<Organ>(organ)) * dt_s / (spacing_mm * spacing_mm);
+  for (std::int64_t k = active_[0][2]; k <= active_[1][2]; ++k)
+    for (std::int64_t j = active_[0][1]; j <= active_[1][1]; ++j) {
+      std::size_t n = offset({active_[0][0], j, k});
+      const std::array<bool, 3> has_next{true, j < active_[1][1], k < active_[1][2]};
+      for (std::int64_t i = active_[0][0]; i <= active_[1][0]; ++i, ++n)
+        for (std::size_t a = 0; a < 3; ++a) {
+          if (!has_next[a] || (a == 0 && i == active_[1][0])) continue;
+          const std::size_t m = n + static_cast<std::size_t>(strides[a]);
+          if (organ_[n] != organ_[m]) continue;
+          const double moved_mg = share[organ_[n]] * (iodine_mg_[n] - iodine_mg_[m]);
+          change_mg_[n] -= moved_mg;
+          change_mg_[m] += moved_mg;
+        }
+    }
+  for (std::int64_t k = active_[0][2]; k <= active_[1][2]; ++k)
+    for (std::int64_t j = active_[0][1]; j <= active_[1][1]; ++j) {
+      std::size_t n = offset({active_[0][0], j, k});
+      for (std::int64_t i = active_[0][0]; i <= active_[1][0]; ++i, ++n) {
+        iodine_mg_[n] += change_mg_[n];
+        change_mg_[n] = 0.0;
+      }
+    }
+}
+
+double TissueCloud::iodine_mg() const {
+  double total = 0.0;
+  for (const double mg : iodine_mg_) total += mg;
+  return total;
+}
+
+double TissueCloud::fluid_ml() const {
+  double total = 0.0;
+  for (const double ml : fluid_ml_) total += ml;
+  return total;
+}
+
+double TissueCloud::iodine_mg_in(std::uint8_t label) const {
+  double total = 0.0;
+  for (std::size_t n = 0; n < organ_.size(); ++n)
+    if (organ_[n] == organ_of_label_[label]) total += iodine_mg_[n];
+  return total;
+}
+
+std::shared_ptr<const volume::FloatGrid> TissueCloud::grid_mg_per_ml() const {
+  if (!is_used_) return nullptr;
+  volume::GridGeometry geometry = lattice_;
+  // One empty voxel around it, so that the grid ends at 0.
+  for (std::size_t a = 0; a < 3; ++a) geometry.size[a] = active_[1][a] - active_[0][a] + 3;
+  geometry.origin_P = lattice_.to_mm(volume::to_vec3(active_[0]) - Vec3::Ones());
+  auto grid = std::make_shared<volume::FloatGrid>(geometry, 0.0F);
+  const double ml = lattice_.voxel_volume_mm3() / kMm3PerMl;
+  float most = 0.0F;
+  for (std::int64_t k = active_[0][2]; k <= active_[1][2]; ++k)
+    for (std::int64_t j = active_[0][1]; j <= active_[1][1]; ++j) {
+      std::size_t n = offset({active_[0][0], j, k});
+      const volume::Index3 first{1, j - active_[0][1] + 1, k - active_[0][2] + 1};
+      float* out = grid->voxels.data() + geometry.offset(first);
+      for (std::int64_t i = active_[0][0]; i <= active_[1][0]; ++i, ++n, ++out) {
+        *out = static_cast<float>(iodine_mg_[n] / ml);
+        most = std::max(most, *out);
+      }
+    }
+  return static_cast<double>(most) < kShown_mg_per_ml ? nullptr : grid;
+}
+
+}  // namespace trocar::xray

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "anatomy/patient.h"
+#include "volume/grid.h"
+#include "xray/contrast/contrast_table.h"
+
+namespace trocar::xray {
+
+/// Contrast agent outside of ducts and vessels, on an isotropic grid that grows with it. Each voxel belongs to the
+/// organ at its centre (a lesion to its organ); nothing passes from one organ to another. In parenchyma and other
+/// tissue the injected volume fills the medium's share of the voxels, the nearest to the tip first, and fades; in fluid
+/// and bowel iodine diffuses.
+class TissueCloud {
+ public:
+  /// `spacing_mm`: range 1..5.
+  TissueCloud(std::shared_ptr<const anatomy::VirtualPatient> patient, const ContrastTable& table,
+              double spacing_mm = 2.5);
+
+  /// Medium of the tissue at a point; nullptr outside of the body and in ducts and vessels.
+  const ContrastMedium* medium_at(const Vec3& p_P) const;
+  /// Injects into the organ at a point or, if it has no medium there, within 5 mm. The volume for which the organ has
+  /// no room is washed away.
+  void inject(const Vec3& tip_P, double ml, double iodine_mg_per_ml);
+  /// Fading and diffusion.
+  void step(double dt_s);
+
+  double iodine_mg() const;
+  double fluid_ml() const;  ///< Contrast agent in parenchyma and tissue.
+  double washed_away_mg() const { return washed_away_mg_; }
+  /// Iodine of the organ with a label (of lesions: their organ).
+  double iodine_mg_in(std::uint8_t label) const;
+  /// mg/ml, on the part of the grid in which iodine was; nullptr if there is none.
+  std::shared_ptr<const volume::FloatGrid> grid_mg_per_ml() const;
+
+ private:
+  using Organ = std::uint16_t;  ///< Id of its label, 0: without label, kNoOrgan: no medium.
+  static constexpr Organ kNoOrgan = 256;
+  using Box = std::array<volume::Index3, 2>;  ///< Both corners are in the box.
+
+  /// Voxels in the order in which an injection at one place fills them.
+  struct Site {
+    Vec3 tip_P = Vec3::Zero();
+    Organ organ = 0;
+    std::vector<std::pair<float, volume::Index3>> frontier;  ///< Heap: distance from the tip.
+    std::vector<volume::Index3> order;
+  };
+
+  Organ organ_at(const Vec3& p_P) const;
+  Organ organ_near(const Vec3& p_P) const;
+  const ContrastMedium& medium_of(Organ organ) const { return media_[medium_of_organ_[organ]]; }
+  volume::Index3 seed_of(const Vec3& tip_P, Organ organ);
+  void include(const volume::Index3& at);
+  void activate(const volume::Index3& at);
+  static std::size_t offset_in(const Box& box, const volume::Index3& at);
+  std::size_t offset(const volume::Index3& at) const { return offset_in(window_, at); }
+  bool expand_site();
+  void keep_seen();
+  bool has_fluid() const;
+  double mixing_of(Organ organ) const;
+  void start_site(const Vec3& tip_P, Organ organ);
+  void fill(const Vec3& tip_P, Organ organ, double ml, double iodine_mg_per_ml);
+  void pour(const Vec3& tip_P, Organ organ, double iodine_mg);
+  void fade(double dt_s);
+  void diffuse(double dt_s);
+  void diffuse_once(double dt_s);
+  void widen_active();
+
+  std::shared_ptr<const anatomy::VirtualPatient> patient_;
+  std::vector<ContrastMedium> media_;
+  std::array<std::uint8_t, 256> organ_of_label_{};
+  std::array<std::uint8_t, 256> medium_of_organ_{};
+  std::array<bool, 256> has_medium_{};  ///< Of labels.
+  volume::GridGeometry lattice_;        ///< The whole body.
+  Box window_{};                        ///< Part of the lattice that is stored.
+  Box active_{};                        ///< Part of the window with iodine.
+  std::vector<double> iodine_mg_, fluid_ml_, change_mg_;
+  std::vector<Organ> organ_;
+  Site site_;
+  std::vector<std::uint8_t> seen_;  ///< Voxels of the window that are in the site's order or frontier.
+  Box seen_window_{};
+  bool is_used_ = false;
+  double washed_away_mg_ = 0.0;
+};
+
+}  // namespace trocar::xray
