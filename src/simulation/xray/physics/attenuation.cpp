@@ -84,4 +84,8 @@ std::span<const ElementShare> aluminium() noexcept {
   return kAluminiumElements;
 }
 
+int atomic_number_of(const std::string& symbol) noexcept {
+  return SymbolToAtomicNumber(symbol.c_str(), nullptr);
+}
+
 }  // namespace trocar::xray

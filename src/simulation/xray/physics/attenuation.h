@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "xray/projection/mass_image.h"
@@ -24,6 +25,9 @@ double air_energy_absorption_cm2_per_g(double kev) noexcept;
 /// (iron with 18 % chromium and 10 % nickel).
 std::span<const ElementShare> composition_of(Basis basis) noexcept;
 std::span<const ElementShare> aluminium() noexcept;
+
+/// Atomic number of a chemical symbol ("Ca"); 0 if there is none.
+int atomic_number_of(const std::string& symbol) noexcept;
 
 inline constexpr double kAluminium_g_per_cm3 = 2.699, kCopper_g_per_cm3 = 8.96;
 
