@@ -32,6 +32,7 @@ void add_iodine(const std::vector<IodinePiece>& pieces, const XrayRays& rays, st
     cone.radius_a_mm = piece.radius_a_mm;
     cone.radius_b_mm = piece.radius_b_mm;
     cone.end_softness_mm = kSoftness * std::min(piece.radius_a_mm, piece.radius_b_mm);
+    cone.has_free_end = true;
     cone.density_g_per_cm3 = piece.iodine_mg_per_ml / kMg_per_g;
     cones.push_back(cone);
   }

@@ -39,14 +39,12 @@ void AddedSignal::apply(const FluoroscopyRequest& request, const PatientImage& p
   if (!iodine_g_per_cm2_.empty()) added_.of(Basis::kIodine) = iodine_g_per_cm2_;
   add_tools(request.tools, patient.rays(), added_);
 
-  std::vector<const float*> images;
+  is_changed_.assign(signal.size(), 0);
   for (const std::vector<float>& image : added_.g_per_cm2)
-    if (!image.empty()) images.push_back(image.data());
+    for (std::size_t n = 0; n < image.size(); ++n) is_changed_[n] |= static_cast<std::uint8_t>(image[n] != 0.0F);
   places_.clear();
   for (std::size_t n = 0; n < signal.size(); ++n)
-    if (signal[n] > 0.0F &&
-        std::any_of(images.begin(), images.end(), [&](const float* image) { return image[n] != 0.0F; }))
-      places_.push_back(n);
+    if (is_changed_[n] != 0 && signal[n] > 0.0F) places_.push_back(n);
   if (places_.empty()) return;
   few_.columns = static_cast<int>(places_.size());
   few_.rows = 1;

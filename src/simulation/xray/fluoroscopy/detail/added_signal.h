@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -23,6 +24,7 @@ class AddedSignal {
   std::vector<float> iodine_g_per_cm2_;  ///< Empty without contrast agent.
   MassImage added_;
   MassImage few_;  ///< Masses of the changed pixels, in one row.
+  std::vector<std::uint8_t> is_changed_;
   std::vector<std::size_t> places_;
   std::vector<float> few_signal_;
 };

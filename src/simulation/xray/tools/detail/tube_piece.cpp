@@ -201,9 +201,10 @@ class StripPainter {
     slope_ = (is_upright_ ? columns : rows) / along;
     shadow_ = std::abs(along);
     half_ = reach.half_width * std::hypot(1.0, slope_);
-    // Short pieces need finer sampling to keep their mass, wide ones with soft ends do not.
+    // At a joint two pieces complement each other. The free ends of a short piece need finer sampling.
     const bool is_soft = piece.end_softness_mm > 0.0 && reach.half_width > 3.0;
-    samples_ = is_soft ? 1 : std::clamp(static_cast<int>(std::ceil(40.0 / std::max(shadow_, 1.0))), 3, 12);
+    const int fine = std::clamp(static_cast<int>(std::ceil(40.0 / std::max(shadow_, 1.0))), 3, 12);
+    samples_ = is_soft ? 1 : piece.has_free_end ? fine : 3;
   }
 
   void paint() const {
@@ -233,11 +234,14 @@ class StripPainter {
     const double here = place_on_axis_mm(piece_, pixels_.rays, ray(along, centre));
     const double step_mm = std::abs(next - here);
     const double scale = piece_.density_g_per_cm3 * kCm_per_mm / samples_;
-    Strip strip{0.0, ray(along, first - 1.0).distance_mm, ray(along, first).distance_mm};
+    RayAtAxis before = ray(along, first - 1.0), middle = ray(along, first);
     for (int m = first; m <= last; ++m) {
-      strip = {strip.middle_mm, strip.after_mm, ray(along, m + 1.0).distance_mm};
-      const double chord = strip_chord_mm(piece_, pixels_.rays, ray(along, m), strip, step_mm);
+      const RayAtAxis after = ray(along, m + 1.0);
+      const Strip strip{before.distance_mm, middle.distance_mm, after.distance_mm};
+      const double chord = strip_chord_mm(piece_, pixels_.rays, middle, strip, step_mm);
       (is_upright_ ? pixels_.at(m, n) : pixels_.at(n, m)) += static_cast<float>(chord * scale);
+      before = middle;
+      middle = after;
     }
   }
 
@@ -297,6 +301,7 @@ std::vector<TubePiece> pieces_along(const std::vector<Vec3>& line_P, double radi
     piece.density_g_per_cm3 = density_g_per_cm3;
     pieces.push_back(piece);
   }
+  if (!pieces.empty()) pieces.front().has_free_end = pieces.back().has_free_end = true;
   for (std::size_t n = 0; n + 1 < pieces.size(); ++n) {
     pieces[n].end_tilt = tilt_between(pieces[n].axis_P, pieces[n + 1].axis_P);
     pieces[n + 1].start_tilt = tilt_between(pieces[n + 1].axis_P, pieces[n].axis_P);

@@ -16,6 +16,7 @@ struct TubePiece {
   Vec3 start_tilt = Vec3::Zero();  ///< At the offset q from the axis, the piece begins at -q · start_tilt and
   Vec3 end_tilt = Vec3::Zero();    ///< ends at length_mm - q · end_tilt. Both vectors are perpendicular to the axis.
   double end_softness_mm = 0.0;    ///< Width over which an end fades, the same on both sides of it. 0: sharp.
+  bool has_free_end = false;       ///< An end does not meet another piece.
   double density_g_per_cm3 = 0.0;  ///< May be negative: a bore is subtracted from its tube.
 };
 
