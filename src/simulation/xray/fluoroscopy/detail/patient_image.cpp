@@ -71,26 +71,6 @@ bool is_same_pose(const Pose& a, const Pose& b) noexcept {
   return a.p() == b.p() && a.R() == b.R();
 }
 
-Status check_clearance(const CArm& arm, const volume::GridGeometry& volume, const Pose& X_PM) {
-  const Pose X_MP = X_PM.inverse();
-  const auto is_inside = [&](const Vec3& p_P) {
-    const Vec3 index = volume.to_index(X_MP * p_P);
-    bool inside = true;
-    for (int axis = 0; axis < 3; ++axis)
-      inside = inside && index[axis] >= 0.0 &&
-               index[axis] <= static_cast<double>(volume.size[static_cast<std::size_t>(axis)] - 1);
-    return inside;
-  };
-  const Vec3 up_P = towards_detector_P(arm);
-  if (is_inside(arm.isocentre_P - arm.source_isocentre_mm * up_P))
-    return fail_usage("the X-ray source lies inside the patient's volume", "C-arm",
-                      "increase the distance from source to isocentre, or move the isocentre into the patient");
-  if (is_inside(arm.isocentre_P + (arm.source_detector_mm - arm.source_isocentre_mm) * up_P))
-    return fail_usage("the detector lies inside the patient's volume", "C-arm",
-                      "increase the distance from source to detector, or move the isocentre into the patient");
-  return {};
-}
-
 void PatientImage::project_masses(const FluoroscopyRequest& request, XrayDetail detail) {
   CArm coarse = request.arm;
   coarse.pixels = projected_pixels(request.arm.pixels, detail);
@@ -122,8 +102,9 @@ Status PatientImage::update(const FluoroscopyRequest& request, XrayDetail detail
   const bool is_placed = key_ && has_same_rays(key_->arm, request.arm) && is_same_pose(key_->X_PM, request.X_PM);
   const bool is_projected = is_placed && detail_ >= detail;
   if (!is_placed) {
-    TROCAR_TRY_STATUS(check_c_arm(request.arm));
-    TROCAR_TRY_STATUS(check_clearance(request.arm, volume_->geometry(), request.X_PM));
+    CArm relative = request.arm;  // to the moved body
+    relative.isocentre_P = request.X_PM.inverse() * request.arm.isocentre_P;
+    TROCAR_TRY_STATUS(check_source(*volume_, relative));
     rays_ = rays_of(request.arm);
   }
   if (!is_projected) project_masses(request, detail);

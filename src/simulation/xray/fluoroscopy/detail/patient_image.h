@@ -65,9 +65,6 @@ class PatientImage {
   std::optional<Beam> beam_;
 };
 
-/// One clear line if the source or the detector lies within the patient's volume.
-Status check_clearance(const CArm& arm, const volume::GridGeometry& volume, const Pose& X_PM);
-
 /// True if both C-arms have the same rays.
 bool has_same_rays(const CArm& a, const CArm& b) noexcept;
 bool is_same_pose(const Pose& a, const Pose& b) noexcept;

@@ -264,10 +264,10 @@ TEST(Fluoroscope, NamesImpossibleRequests) {
   EXPECT_NE(what(request).find("pulse rate"), std::string::npos);
   request = small_request();
   request.arm.isocentre_P = Vec3(0, -request.arm.source_isocentre_mm, 0);  // AP: the source is behind
-  EXPECT_NE(what(request).find("source lies inside"), std::string::npos);
+  EXPECT_NE(what(request).find("source is inside"), std::string::npos);
   request = small_request();
   request.arm.isocentre_P = Vec3(0, request.arm.source_detector_mm - request.arm.source_isocentre_mm, 0);
-  EXPECT_NE(what(request).find("detector lies inside"), std::string::npos);
+  EXPECT_NE(what(request).find("detector is inside"), std::string::npos);
   request = small_request();
   request.filters.copper_mm = 7.0;
   EXPECT_FALSE(what(request).empty());
