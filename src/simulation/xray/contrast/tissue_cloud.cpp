@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kMm3PerMl = 1000.0;
 constexpr std::int64_t kGrowth = 8;        ///< Voxels by which the window grows at a time.
-constexpr double kShown_mg_per_ml = 1e-3;  ///< Less at the border of the active box does not widen it.
+constexpr double kShown_mg_per_ml = 5e-3;  ///< Less does not spread: 0.1 mg/cm² in 20 cm, below the noise.
 constexpr double kStability = 0.16;        ///< Largest mixing * step / spacing² of explicit diffusion (limit: 1/6).
 constexpr double kSameTip_mm = 0.5;        ///< A tip that moves less fills the same place.
 constexpr std::int64_t kSeedReach = 2;     ///< Voxels around the tip in which the organ's nearest voxel is looked for.
@@ -130,6 +130,31 @@ void TissueCloud::include(const volume::Index3& at) {
       }
   if (!is_used_) active_ = {at, at};
   is_used_ = true;
+  is_mixed_.assign(count, 0);
+  faces_.clear();
+  for (const Mixed& voxel : mixed_) link(voxel.at);
+}
+
+/// Marks a voxel of fluid and adds its faces to the neighbours that are marked.
+void TissueCloud::link(const volume::Index3& at) {
+  const std::size_t n = offset(at);
+  is_mixed_[n] = 1;
+  for (const volume::Index3& step : kNeighbours) {
+    const volume::Index3 to = sum(at, step);
+    if (!lattice_.contains(to)) continue;
+    const std::size_t m = offset(to);
+    if (is_mixed_[m] != 0 && organ_[m] == organ_[n])
+      faces_.push_back({static_cast<std::uint32_t>(n), static_cast<std::uint32_t>(m)});
+  }
+}
+
+/// A voxel of fluid takes part in the diffusion from now on.
+void TissueCloud::add_mixed(const volume::Index3& at) {
+  include(at);
+  if (is_mixed_[offset(at)] != 0) return;
+  mixed_.push_back({at, false});
+  link(at);
+  activate(at);
 }
 
 /// The active box contains a voxel from now on.
@@ -225,6 +250,7 @@ void TissueCloud::fill(const Vec3& tip_P, Organ organ, double ml, double iodine_
     const std::size_t v = offset(at);
     const double part_ml = std::min(room_ml - fluid_ml_[v], ml);
     if (part_ml <= 0.0) continue;
+    if (fluid_ml_[v] <= 0.0) filled_.push_back(at);
     fluid_ml_[v] += part_ml;
     iodine_mg_[v] += part_ml * iodine_mg_per_ml;
     ml -= part_ml;
@@ -236,8 +262,8 @@ void TissueCloud::fill(const Vec3& tip_P, Organ organ, double ml, double iodine_
 /// Puts iodine into the fluid at the tip.
 void TissueCloud::pour(const Vec3& tip_P, Organ organ, double iodine_mg) {
   const volume::Index3 seed = seed_of(tip_P, organ);
+  add_mixed(seed);
   iodine_mg_[offset(seed)] += iodine_mg;
-  activate(seed);
 }
 
 void TissueCloud::step(double dt_s) {
@@ -247,114 +273,64 @@ void TissueCloud::step(double dt_s) {
 }
 
 void TissueCloud::fade(double dt_s) {
-  std::array<double, kNoOrgan + 1> kept{};
-  kept.fill(1.0);
-  bool fades = false;
-  for (std::size_t organ = 0; organ < 256; ++organ) {
+  std::array<double, 256> kept{};
+  for (std::size_t organ = 0; organ < kept.size(); ++organ) {
     const ContrastMedium& medium = media_[medium_of_organ_[organ]];
-    if (is_fluid(medium) || medium.fade_s <= 0.0) continue;
-    kept[organ] = std::exp(-dt_s / medium.fade_s);
-    fades = true;
+    kept[organ] = medium.fade_s > 0.0 ? std::exp(-dt_s / medium.fade_s) : 1.0;
   }
-  if (!fades) return;
-  for (std::int64_t k = active_[0][2]; k <= active_[1][2]; ++k)
-    for (std::int64_t j = active_[0][1]; j <= active_[1][1]; ++j) {
-      std::size_t n = offset({active_[0][0], j, k});
-      for (std::int64_t i = active_[0][0]; i <= active_[1][0]; ++i, ++n) {
-        const double rest_mg = iodine_mg_[n] * kept[organ_[n]];
-        washed_away_mg_ += iodine_mg_[n] - rest_mg;
-        iodine_mg_[n] = rest_mg;
-        fluid_ml_[n] *= kept[organ_[n]];
-      }
-    }
+  for (const volume::Index3& at : filled_) {
+    const std::size_t n = offset(at);
+    const double rest_mg = iodine_mg_[n] * kept[organ_[n]];
+    washed_away_mg_ += iodine_mg_[n] - rest_mg;
+    iodine_mg_[n] = rest_mg;
+    fluid_ml_[n] *= kept[organ_[n]];
+  }
 }
 
 void TissueCloud::diffuse(double dt_s) {
+  if (mixed_.empty()) return;
   double most = 0.0;
-  for (std::size_t organ = 0; organ < 256; ++organ) {
-    const ContrastMedium& medium = media_[medium_of_organ_[organ]];
-    if (is_fluid(medium)) most = std::max(most, medium.mixing_mm2_per_s);
-  }
-  if (!has_fluid()) return;
+  for (const ContrastMedium& medium : media_) most = std::max(most, medium.mixing_mm2_per_s);
   const double spacing_mm = lattice_.spacing_mm.minCoeff();
   const double longest_s = kStability * spacing_mm * spacing_mm / most;
   const auto steps = static_cast<int>(std::ceil(dt_s / longest_s));
   for (int n = 0; n < steps; ++n) {
-    widen_active();
     diffuse_once(dt_s / steps);
+    spread();
   }
-}
-
-/// True if an organ of the window with iodine is fluid.
-bool TissueCloud::has_fluid() const {
-  for (std::int64_t k = active_[0][2]; k <= active_[1][2]; ++k)
-    for (std::int64_t j = active_[0][1]; j <= active_[1][1]; ++j) {
-      std::size_t n = offset({active_[0][0], j, k});
-      for (std::int64_t i = active_[0][0]; i <= active_[1][0]; ++i, ++n)
-        if (iodine_mg_[n] > 0.0 && mixing_of(organ_[n]) > 0.0) return true;
-    }
-  return false;
-}
-
-double TissueCloud::mixing_of(Organ organ) const {
-  if (organ == kNoOrgan) return 0.0;
-  return medium_of(static_cast<std::uint8_t>(organ)).mixing_mm2_per_s;
-}
-
-/// Widens the active box by one voxel on the sides where iodine has arrived.
-void TissueCloud::widen_active() {
-  const double least_mg = kShown_mg_per_ml * lattice_.voxel_volume_mm3() / kMm3PerMl;
-  Box widened = active_;
-  for (std::int64_t k = active_[0][2]; k <= active_[1][2]; ++k)
-    for (std::int64_t j = active_[0][1]; j <= active_[1][1]; ++j) {
-      const bool is_edge = k == active_[0][2] || k == active_[1][2] || j == active_[0][1] || j == active_[1][1];
-      const std::int64_t step = is_edge ? 1 : std::max<std::int64_t>(active_[1][0] - active_[0][0], 1);
-      for (std::int64_t i = active_[0][0]; i <= active_[1][0]; i += step) {
-        const volume::Index3 at{i, j, k};
-        const std::size_t n = offset(at);
-        if (iodine_mg_[n] < least_mg || mixing_of(organ_[n]) <= 0.0) continue;
-        for (std::size_t a = 0; a < 3; ++a) {
-          if (at[a] == active_[0][a]) widened[0][a] = std::max<std::int64_t>(at[a] - 1, 0);
-          if (at[a] == active_[1][a]) widened[1][a] = std::min(at[a] + 1, lattice_.size[a] - 1);
-        }
-      }
-    }
-  if (widened == active_) return;
-  active_ = widened;
-  include(active_[0]);
-  include(active_[1]);
 }
 
 /// One explicit step in flux form: each voxel gives to its neighbour what the neighbour gets.
 void TissueCloud::diffuse_once(double dt_s) {
-  const std::int64_t row = window_[1][0] - window_[0][0] + 1;
-  const std::array<std::int64_t, 3> strides{1, row, row * (window_[1][1] - window_[0][1] + 1)};
-  std::array<double, kNoOrgan + 1> share{};
   const double spacing_mm = lattice_.spacing_mm.minCoeff();
-  for (std::size_t organ = 0; organ < 256; ++organ)
-    share[organ] = mixing_of(static_cast<Organ>(organ)) * dt_s / (spacing_mm * spacing_mm);
-  for (std::int64_t k = active_[0][2]; k <= active_[1][2]; ++k)
-    for (std::int64_t j = active_[0][1]; j <= active_[1][1]; ++j) {
-      std::size_t n = offset({active_[0][0], j, k});
-      const std::array<bool, 3> has_next{true, j < active_[1][1], k < active_[1][2]};
-      for (std::int64_t i = active_[0][0]; i <= active_[1][0]; ++i, ++n)
-        for (std::size_t a = 0; a < 3; ++a) {
-          if (!has_next[a] || (a == 0 && i == active_[1][0])) continue;
-          const std::size_t m = n + static_cast<std::size_t>(strides[a]);
-          if (organ_[n] != organ_[m]) continue;
-          const double moved_mg = share[organ_[n]] * (iodine_mg_[n] - iodine_mg_[m]);
-          change_mg_[n] -= moved_mg;
-          change_mg_[m] += moved_mg;
-        }
+  std::array<double, 256> share{};
+  for (std::size_t organ = 0; organ < share.size(); ++organ)
+    share[organ] = media_[medium_of_organ_[organ]].mixing_mm2_per_s * dt_s / (spacing_mm * spacing_mm);
+  for (const auto& [n, m] : faces_) {
+    const double moved_mg = share[organ_[n]] * (iodine_mg_[n] - iodine_mg_[m]);
+    change_mg_[n] -= moved_mg;
+    change_mg_[m] += moved_mg;
+  }
+  for (const Mixed& voxel : mixed_) {
+    const std::size_t n = offset(voxel.at);
+    iodine_mg_[n] += change_mg_[n];
+    change_mg_[n] = 0.0;
+  }
+}
+
+/// Takes in the neighbours of the voxels at which iodine has arrived.
+void TissueCloud::spread() {
+  const double least_mg = kShown_mg_per_ml * lattice_.voxel_volume_mm3() / kMm3PerMl;
+  const std::size_t count = mixed_.size();
+  for (std::size_t v = 0; v < count; ++v) {
+    const volume::Index3 at = mixed_[v].at;
+    if (mixed_[v].has_spread || iodine_mg_[offset(at)] < least_mg) continue;
+    mixed_[v].has_spread = true;
+    for (const volume::Index3& step : kNeighbours) {
+      const volume::Index3 to = sum(at, step);
+      if (lattice_.contains(to) && organ_[offset(to)] == organ_[offset(at)]) add_mixed(to);
     }
-  for (std::int64_t k = active_[0][2]; k <= active_[1][2]; ++k)
-    for (std::int64_t j = active_[0][1]; j <= active_[1][1]; ++j) {
-      std::size_t n = offset({active_[0][0], j, k});
-      for (std::int64_t i = active_[0][0]; i <= active_[1][0]; ++i, ++n) {
-        iodine_mg_[n] += change_mg_[n];
-        change_mg_[n] = 0.0;
-      }
-    }
+  }
 }
 
 double TissueCloud::iodine_mg() const {

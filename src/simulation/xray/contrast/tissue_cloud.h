@@ -50,6 +50,12 @@ class TissueCloud {
     std::vector<volume::Index3> order;
   };
 
+  /// A voxel of fluid that may contain iodine.
+  struct Mixed {
+    volume::Index3 at;
+    bool has_spread;  ///< Its neighbours take part, too.
+  };
+
   Organ organ_at(const Vec3& p_P) const;
   Organ organ_near(const Vec3& p_P) const;
   const ContrastMedium& medium_of(Organ organ) const { return media_[medium_of_organ_[organ]]; }
@@ -60,15 +66,15 @@ class TissueCloud {
   std::size_t offset(const volume::Index3& at) const { return offset_in(window_, at); }
   bool expand_site();
   void keep_seen();
-  bool has_fluid() const;
-  double mixing_of(Organ organ) const;
+  void link(const volume::Index3& at);
+  void add_mixed(const volume::Index3& at);
+  void spread();
   void start_site(const Vec3& tip_P, Organ organ);
   void fill(const Vec3& tip_P, Organ organ, double ml, double iodine_mg_per_ml);
   void pour(const Vec3& tip_P, Organ organ, double iodine_mg);
   void fade(double dt_s);
   void diffuse(double dt_s);
   void diffuse_once(double dt_s);
-  void widen_active();
 
   std::shared_ptr<const anatomy::VirtualPatient> patient_;
   std::vector<ContrastMedium> media_;
@@ -80,6 +86,10 @@ class TissueCloud {
   Box active_{};                        ///< Part of the window with iodine.
   std::vector<double> iodine_mg_, fluid_ml_, change_mg_;
   std::vector<Organ> organ_;
+  std::vector<volume::Index3> filled_;  ///< Voxels of parenchyma and tissue with contrast agent.
+  std::vector<Mixed> mixed_;
+  std::vector<std::uint8_t> is_mixed_;
+  std::vector<std::array<std::uint32_t, 2>> faces_;  ///< Offsets of neighbours in `mixed_`.
   Site site_;
   std::vector<std::uint8_t> seen_;  ///< Voxels of the window that are in the site's order or frontier.
   Box seen_window_{};

@@ -1,0 +1,280 @@
+#include "xray/contrast/contrast_flow.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/files/data_dir.h"
+#include "duct_patient.h"
+
+namespace trocar::xray {
+namespace {
+
+using testing::ball;
+using testing::everywhere;
+using testing::make_labelled_patient;
+using testing::tube;
+
+constexpr double kIodine = 300.0;
+constexpr double kFrame_s = 1.0 / 30.0;
+
+ContrastTable shipped_table() {
+  auto table = load_contrast_table(data_dir() / "contrast.toml");
+  EXPECT_TRUE(table) << table.error().text();
+  return table.value_or(ContrastTable{});
+}
+
+ContrastFlow make_flow(std::shared_ptr<const anatomy::VirtualPatient> patient, BloodVelocity blood = {},
+                       const ContrastTable& table = shipped_table()) {
+  auto flow = ContrastFlow::make(std::move(patient), table, std::move(blood));
+  EXPECT_TRUE(flow) << flow.error().text();
+  return *std::move(flow);
+}
+
+/// Duct, vessel, ascites and bowel in a liver, in muscle; nothing at the sides.
+std::shared_ptr<anatomy::VirtualPatient> make_patient() {
+  return make_labelled_patient({160, 120, 120}, {2, 2, 2},
+                               {{"muscle", "muscle", [](const Vec3& p) { return std::abs(p.x()) < 70; }},
+                                {"liver", "liver", [](const Vec3& p) { return std::abs(p.x()) < 40; }},
+                                {"ascites", "ascites", [](const Vec3& p) { return p.x() > 40 && p.x() < 60; }},
+                                {"bowel", "bowel", [](const Vec3& p) { return p.z() < -50 && p.x() < 40; }},
+                                {"vein", "vessel", tube({-20, -40, 20}, {-20, 40, 20}, 5.0)},
+                                {"duct", "bile_duct", tube({0, 0, -47}, {0, 0, 40}, 3.0)}});
+}
+
+void run(ContrastFlow& flow, double seconds, double dt_s = kFrame_s) {
+  const auto steps = static_cast<int>(std::lround(seconds / dt_s));
+  for (int n = 0; n < steps; ++n) flow.step(dt_s);
+}
+
+double balance_mg(const ContrastTotals& totals) {
+  return totals.in_body_mg() + totals.drained_mg + totals.washed_away_mg + totals.spilled_mg;
+}
+
+double grid_mg(const Iodine& iodine) {
+  if (!iodine.grid_mg_per_ml) return 0.0;
+  double sum = 0.0;
+  for (const float value : iodine.grid_mg_per_ml->voxels) sum += static_cast<double>(value);
+  return sum * iodine.grid_mg_per_ml->geometry.voxel_volume_mm3() / 1000.0;
+}
+
+/// Mean of the squared distance from a point along one axis.
+double spread_mm2(const volume::FloatGrid& grid, const Vec3& from_P, Eigen::Index axis) {
+  double sum = 0.0, second = 0.0;
+  for (std::size_t n = 0; n < grid.voxels.size(); ++n) {
+    const double away = grid.geometry.centre_mm(grid.geometry.index_of(n))[axis] - from_P[axis];
+    sum += static_cast<double>(grid.voxels[n]);
+    second += static_cast<double>(grid.voxels[n]) * away * away;
+  }
+  return second / sum;
+}
+
+TEST(ContrastFlow, NamesThePlaceOfTheTip) {
+  const ContrastFlow flow = make_flow(make_patient());
+  EXPECT_EQ(flow.place({0, 0, 10}), ContrastPlace::kDuct);
+  EXPECT_EQ(flow.place({-20, 0, 20}), ContrastPlace::kVessel);
+  EXPECT_EQ(flow.place({20, 20, 0}), ContrastPlace::kParenchyma);
+  EXPECT_EQ(flow.place({50, 0, 0}), ContrastPlace::kFluid);
+  EXPECT_EQ(flow.place({0, 0, -55}), ContrastPlace::kBowel);
+  EXPECT_EQ(flow.place({65, 0, 0}), ContrastPlace::kTissue);
+  EXPECT_EQ(flow.place({75, 0, 0}), ContrastPlace::kOutside);
+  EXPECT_EQ(flow.place({1e9, 0, 0}), ContrastPlace::kOutside);
+  EXPECT_EQ(flow.place({std::numeric_limits<double>::quiet_NaN(), 0, 0}), ContrastPlace::kOutside);
+}
+
+TEST(ContrastFlow, ConservesIodineWithChangingTips) {
+  ContrastFlow flow = make_flow(make_patient(), [](const Vec3&, double) { return Vec3(0, 150, 0); });
+  const std::vector<Vec3> tips{{0, 0, 10},   {-20, 0, 20}, {20, 20, 0}, {50, 0, 0},  {0, 0, -55},
+                               {65, 10, 10}, {75, 0, 0},   {0, 0, -20}, {39.5, 0, 0}};
+  for (int round = 0; round < 36; ++round) {
+    const Vec3& tip = tips[static_cast<std::size_t>(round) % tips.size()];
+    ASSERT_TRUE(flow.inject(tip, round % 4 == 3 ? 0.0 : 0.5, 200.0 + round));
+    run(flow, 0.5, round % 2 == 0 ? 0.02 : 0.1);
+    const ContrastTotals totals = flow.totals();
+    EXPECT_NEAR(balance_mg(totals), totals.injected_mg, 1e-6 * totals.injected_mg);
+  }
+  const ContrastTotals totals = flow.totals();
+  EXPECT_GT(totals.ducts_mg, 0.0);
+  EXPECT_GT(totals.tissue_mg, 0.0);
+  EXPECT_GT(totals.washed_away_mg, 0.0);
+  EXPECT_GT(totals.drained_mg, 0.0);
+  EXPECT_GT(totals.spilled_mg, 0.0);
+  // The picture has all of it, to a float's rounding and what is too thin to be shown.
+  EXPECT_NEAR(grid_mg(flow.iodine()), totals.tissue_mg, 1e-3 * totals.tissue_mg);
+}
+
+TEST(ContrastFlow, DoesNotDependOnTheStep) {
+  const std::vector<Vec3> tips{{0, 0, 10}, {-20, 0, 20}, {20, 20, 0}, {50, 0, 0}};
+  for (const Vec3& tip : tips) {
+    ContrastFlow fine = make_flow(make_patient()), coarse = make_flow(make_patient());
+    ASSERT_TRUE(fine.inject(tip, 0.5, kIodine) && coarse.inject(tip, 0.5, kIodine));
+    run(fine, 2.0, 0.02);
+    run(coarse, 2.0, 0.1);
+    const ContrastTotals a = fine.totals(), b = coarse.totals();
+    EXPECT_NEAR(a.injected_ml, 1.0, 1e-9);
+    EXPECT_NEAR(a.in_body_mg(), b.in_body_mg(), 0.002 * a.injected_mg);
+    EXPECT_NEAR(a.drained_mg, b.drained_mg, 0.002 * a.injected_mg);
+    EXPECT_EQ(fine.iodine().pieces.size(), coarse.iodine().pieces.size());
+  }
+}
+
+TEST(ContrastFlow, BlushGrowsAsTheVolumeThatItFills) {
+  ContrastTable table = shipped_table();
+  for (ContrastMedium& medium : table.media) medium.fade_s = 0.0;
+  const auto patient = make_labelled_patient({120, 120, 120}, {2, 2, 2}, {{"liver", "liver", everywhere()}});
+  ContrastFlow flow = make_flow(patient, {}, table);
+  const double space = table.media[table.medium_of("liver")].space;
+  const Vec3 tip(3, -2, 1);
+  ASSERT_TRUE(flow.inject(tip, 0.5, kIodine));
+  for (const double ml : {1.0, 2.0, 4.0}) {
+    run(flow, (ml - flow.totals().injected_ml) / 0.5);
+    const double radius_mm = std::cbrt(3.0 * ml * 1000.0 / (4.0 * std::numbers::pi * space));
+    const Iodine iodine = flow.iodine();
+    ASSERT_NE(iodine.grid_mg_per_ml, nullptr);
+    for (Eigen::Index axis = 0; axis < 3; ++axis)  // a ball's mean of x² is r²/5
+      EXPECT_NEAR(spread_mm2(*iodine.grid_mg_per_ml, tip, axis), radius_mm * radius_mm / 5.0,
+                  0.08 * radius_mm * radius_mm / 5.0);
+    float most = 0.0F;
+    for (const float value : iodine.grid_mg_per_ml->voxels) most = std::max(most, value);
+    EXPECT_NEAR(static_cast<double>(most), space * kIodine, 1e-3 * kIodine);
+  }
+}
+
+TEST(ContrastFlow, BlushFadesWithItsTimeConstant) {
+  const ContrastTable table = shipped_table();
+  ContrastFlow flow = make_flow(make_patient());
+  ASSERT_TRUE(flow.inject({20, 20, 0}, 1.0, kIodine));
+  run(flow, 1.0);
+  flow.stop_injection();
+  const double before = flow.totals().tissue_mg;
+  run(flow, 60.0);
+  EXPECT_NEAR(flow.totals().tissue_mg / before, std::exp(-60.0 / table.media[table.medium_of("liver")].fade_s), 1e-3);
+}
+
+TEST(ContrastFlow, BlushStaysInItsOrgan) {
+  const auto patient = make_patient();
+  ContrastFlow flow = make_flow(patient);
+  ASSERT_TRUE(flow.inject({38, 0, 0}, 2.0, kIodine));  // 2 mm below the capsule
+  run(flow, 5.0);
+  const ContrastTotals totals = flow.totals();
+  EXPECT_GT(totals.tissue_mg, 2000.0);
+  EXPECT_NEAR(flow.tissue().iodine_mg_in(patient->label_table.find("liver")->id), totals.tissue_mg, 1e-9);
+  EXPECT_EQ(totals.ducts_mg, 0.0);
+}
+
+TEST(ContrastFlow, SmallOrganTakesWhatItHolds) {
+  ContrastTable table = shipped_table();
+  for (ContrastMedium& medium : table.media) medium.fade_s = 0.0;
+  const auto patient = make_labelled_patient(
+      {80, 80, 80}, {2, 2, 2}, {{"muscle", "muscle", everywhere()}, {"gland", "organ", ball({0, 0, 0}, 10.0)}});
+  ContrastFlow flow = make_flow(patient, {}, table);
+  ASSERT_TRUE(flow.inject({0, 0, 0}, 1.0, kIodine));
+  run(flow, 5.0);
+  const double holds_ml = table.media[table.medium_of("organ")].space * 4.0 / 3.0 * std::numbers::pi;
+  EXPECT_NEAR(flow.totals().tissue_mg, holds_ml * kIodine, 0.1 * holds_ml * kIodine);  // voxels of 2.5 mm
+  EXPECT_GT(flow.totals().washed_away_mg, 3.0 * kIodine);
+}
+
+TEST(ContrastFlow, CloudInFluidSpreadsAsDiffusionDoes) {
+  const ContrastTable table = shipped_table();
+  const auto patient = make_labelled_patient({240, 240, 240}, {4, 4, 4}, {{"ascites", "ascites", everywhere()}});
+  ContrastFlow flow = make_flow(patient);
+  const Vec3 tip(1, 2, 3);
+  ASSERT_TRUE(flow.inject(tip, 2.0, kIodine));
+  run(flow, 0.2);
+  flow.stop_injection();
+  const double mixing = table.media[table.medium_of("ascites")].mixing_mm2_per_s;
+  const double before = spread_mm2(*flow.iodine().grid_mg_per_ml, tip, 0);
+  run(flow, 10.0);
+  EXPECT_NEAR(spread_mm2(*flow.iodine().grid_mg_per_ml, tip, 0) - before, 2.0 * mixing * 10.0,
+              0.02 * 2.0 * mixing * 10.0);
+  EXPECT_NEAR(flow.totals().tissue_mg, flow.totals().injected_mg, 1e-9 * flow.totals().injected_mg);
+}
+
+TEST(ContrastFlow, BloodCarriesAStreakAwayAlongTheVessel) {
+  ContrastFlow flow = make_flow(make_patient(), [](const Vec3&, double) { return Vec3(0, 100, 0); });
+  ASSERT_TRUE(flow.inject({-20, -20, 20}, 1.0, kIodine));
+  run(flow, 0.3);
+  const Iodine iodine = flow.iodine();
+  ASSERT_FALSE(iodine.pieces.empty());
+  double farthest = -1e9, nearest = 1e9;
+  for (const IodinePiece& piece : iodine.pieces) {
+    farthest = std::max(farthest, piece.b_P.y());
+    nearest = std::min(nearest, piece.a_P.y());
+    EXPECT_LE(piece.iodine_mg_per_ml, kIodine + 1e-9);
+    EXPECT_LE(piece.radius_a_mm, 6.5);  // the vein, to a voxel
+  }
+  EXPECT_NEAR(farthest, -20.0 + 100.0 * 0.3, 2.0);
+  EXPECT_NEAR(nearest, -20.0, 2.0);
+  run(flow, 2.0);
+  flow.stop_injection();
+  const double injected = flow.totals().injected_mg;
+  EXPECT_LT(flow.totals().vessels_mg, 0.2 * injected);
+  run(flow, 1.3);
+  EXPECT_EQ(flow.totals().vessels_mg, 0.0);
+  EXPECT_TRUE(flow.iodine().pieces.empty());
+  EXPECT_NEAR(flow.totals().washed_away_mg, injected, 1e-9 * injected);
+}
+
+TEST(ContrastFlow, WithoutBloodFlowAVesselStillFades) {
+  ContrastFlow flow = make_flow(make_patient());
+  ASSERT_TRUE(flow.inject({-20, 0, 20}, 1.0, kIodine));
+  run(flow, 1.0);
+  EXPECT_FALSE(flow.iodine().pieces.empty());
+  flow.stop_injection();
+  run(flow, 1.5);
+  EXPECT_EQ(flow.totals().vessels_mg, 0.0);
+}
+
+TEST(ContrastFlow, OutsideTheBodyNothingIsInThePicture) {
+  ContrastFlow flow = make_flow(make_patient());
+  ASSERT_TRUE(flow.inject({500, 0, 0}, 5.0, kIodine));
+  run(flow, 1.0);
+  EXPECT_TRUE(flow.iodine().pieces.empty());
+  EXPECT_EQ(flow.iodine().grid_mg_per_ml, nullptr);
+  EXPECT_NEAR(flow.totals().spilled_mg, 5.0 * kIodine, 1e-6);
+}
+
+TEST(ContrastFlow, DepotInMuscleStays) {
+  ContrastFlow flow = make_flow(make_patient());
+  ASSERT_TRUE(flow.inject({65, 0, 0}, 0.5, kIodine));
+  run(flow, 1.0);
+  flow.stop_injection();
+  run(flow, 60.0);
+  EXPECT_NEAR(flow.totals().tissue_mg, 0.5 * kIodine, 1e-6);
+}
+
+TEST(ContrastFlow, RefusesImpossibleInjectionsAndStops) {
+  ContrastFlow flow = make_flow(make_patient());
+  const double nan = std::numeric_limits<double>::quiet_NaN(), huge = std::numeric_limits<double>::infinity();
+  ASSERT_TRUE(flow.inject({0, 0, 10}, 1.0, kIodine));
+  for (const auto& refused :
+       {flow.inject({nan, 0, 0}, 1.0, kIodine), flow.inject({0, huge, 0}, 1.0, kIodine),
+        flow.inject({0, 0, 10}, -1.0, kIodine), flow.inject({0, 0, 10}, 1e9, kIodine),
+        flow.inject({0, 0, 10}, nan, kIodine), flow.inject({0, 0, 10}, 1.0, -5.0), flow.inject({0, 0, 10}, 1.0, nan)}) {
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().exit_status, 2);
+    EXPECT_FALSE(refused.error().advice.empty());
+  }
+  run(flow, 1.0);
+  EXPECT_EQ(flow.totals().injected_mg, 0.0);
+}
+
+TEST(ContrastFlow, NeedsLabels) {
+  const auto flow = ContrastFlow::make(std::make_shared<anatomy::VirtualPatient>(), shipped_table());
+  ASSERT_FALSE(flow);
+  EXPECT_NE(flow.error().text().find("labels"), std::string::npos);
+}
+
+TEST(ContrastTable, TakesTissuesOfNoListAsOther) {
+  const ContrastTable table = shipped_table();
+  ASSERT_GE(table.media.size(), 2u);
+  EXPECT_EQ(table.media[table.medium_of("muscle")].place, ContrastPlace::kTissue);
+  EXPECT_EQ(table.media[table.medium_of("liver")].place, ContrastPlace::kParenchyma);
+  EXPECT_EQ(table.media[table.medium_of("ascites")].place, ContrastPlace::kFluid);
+}
+
+}  // namespace
+}  // namespace trocar::xray
