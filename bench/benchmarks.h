@@ -51,6 +51,8 @@ Result<std::vector<CaseResult>> run_ultrasound_benchmark(const Options& options)
 Result<std::vector<CaseResult>> run_panorama_benchmark(const Options& options);
 /// Cost of an ultrasound frame against scanlines, depth, planes, threads and level of detail.
 Result<std::vector<CaseResult>> run_ultrasound_cost_benchmark(const Options& options);
+/// X-ray projections beside plastimatch's, the polyenergetic signal, frames of a turning C-arm.
+Result<std::vector<CaseResult>> run_xray_benchmark(const Options& options);
 /// Live ultrasound beside two live servers and a drawing thread: renewed pictures a second.
 Result<std::vector<CaseResult>> run_live_benchmark(const Options& options);
 
