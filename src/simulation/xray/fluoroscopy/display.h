@@ -21,8 +21,10 @@ struct GrayWindow {
 };
 
 struct DisplaySettings {
-  bool is_logarithmic = true;        ///< Shown is the attenuation -ln(signal); otherwise the signal.
-  bool is_inverted = false;          ///< Dense things are white, as in a radiograph; otherwise dark, as in fluoroscopy.
+  bool is_logarithmic = true;  ///< Shown is the attenuation -ln(signal); otherwise the signal.
+  bool is_inverted = false;    ///< Dense things are white, as in a radiograph; otherwise dark, as in fluoroscopy.
+  /// Share of slow differences (lung against abdomen) that is taken off, so that both fit the window. Range 0..0.9.
+  double range_compression = 0.6;
   double edge_gain = 0.6;            ///< Of unsharp masking. Range 0..4; 0: off.
   double edge_sigma_px = 2.0;        ///< Standard deviation of its Gaussian. Range 0.7..20.
   std::optional<GrayWindow> window;  ///< In shown values; empty: from the image.
@@ -36,8 +38,10 @@ struct FieldPixels {
 };
 FieldPixels field_pixels(const CArm& arm) noexcept;
 
-/// Shown values: attenuation or its negative (signal), so that greater is denser, with enhanced edges.
-std::vector<float> shown_values(std::span<const float> signal, int columns, int rows, const DisplaySettings& settings);
+/// Shown values: attenuation or the negative of the signal, so that greater is denser, with compressed range and
+/// enhanced edges. Outside of the field: the values at its edge.
+std::vector<float> shown_values(std::span<const float> signal, int columns, int rows, const DisplaySettings& settings,
+                                const FieldPixels& field);
 
 /// Window of the values in the field: from the 1st to the 99th percentile, at least `least_width` wide. Direct
 /// radiation

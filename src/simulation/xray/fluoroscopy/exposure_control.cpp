@@ -49,8 +49,18 @@ double mean_signal(const RayMasses& rays, const Beam& beam) {
   return sum / static_cast<double>(rays.size());
 }
 
-double factor_of(DoseMode mode) noexcept {
-  return mode == DoseMode::kLow ? 0.5 : mode == DoseMode::kHigh ? 2.0 : 1.0;
+double wanted_ngy(DoseMode mode, const CArm& arm, const ExposureLimits& limits) noexcept {
+  constexpr double kMost = 3.0;
+  const double magnified = std::clamp(limits.field_mm / arm.field_mm, 1.0 / kMost, kMost);
+  if (mode == DoseMode::kAcquisition) return magnified * limits.acquisition_ngy;
+  return magnified * limits.detector_ngy * (mode == DoseMode::kLow ? 0.5 : mode == DoseMode::kHigh ? 2.0 : 1.0);
+}
+
+/// Most mAs of a pulse.
+double most_mas(DoseMode mode, double kerma_mgy_per_mas, double pulses_per_s, const ExposureLimits& limits) noexcept {
+  if (mode == DoseMode::kAcquisition) return limits.most_acquisition_mas;
+  const double by_rate = limits.most_mgy_per_min / (kSeconds_per_min * pulses_per_s * kerma_mgy_per_mas);
+  return std::max(limits.least_mas, std::min(limits.most_mas, by_rate));
 }
 
 }  // namespace
@@ -78,11 +88,8 @@ Result<Exposure> control_exposure(const MassImage& patient, const CArm& arm, con
     TROCAR_TRY(const Beam beam, beams.beam(exposure.tube));
     const double kerma_mgy = beam.air_kerma_mgy();
     const double per_mas_ngy = kNgy_per_mgy * at_distance(kerma_mgy, arm.source_detector_mm) * mean_signal(rays, beam);
-    const double wanted = limits.detector_ngy * factor_of(mode) / std::max(per_mas_ngy, 1e-12);
-    const double rate_mgy_per_min =
-        kSeconds_per_min * pulses_per_s * at_distance(kerma_mgy, reference_distance_mm(arm));
-    const double most =
-        std::max(limits.least_mas, std::min(limits.most_mas, limits.most_mgy_per_min / rate_mgy_per_min));
+    const double wanted = wanted_ngy(mode, arm, limits) / std::max(per_mas_ngy, 1e-12);
+    const double most = most_mas(mode, at_distance(kerma_mgy, reference_distance_mm(arm)), pulses_per_s, limits);
     exposure.mas = std::clamp(wanted, limits.least_mas, most);
     exposure.is_limited = wanted > most;
     if (!exposure.is_limited || exposure.tube.kv >= limits.most_kv) return exposure;

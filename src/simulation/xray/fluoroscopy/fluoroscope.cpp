@@ -135,7 +135,7 @@ FluoroscopyFrame Fluoroscope::Impl::show(const FluoroscopyRequest& request, bool
     frame.gray = to_gray(difference, pixels, pixels, frame.window, request.display.is_inverted, field);
     return frame;
   }
-  const std::vector<float> values = shown_values(signal, pixels, pixels, request.display);
+  const std::vector<float> values = shown_values(signal, pixels, pixels, request.display, field);
   const bool is_other_kind = request.display.is_logarithmic != window_is_logarithmic;
   if (is_other_kind) window.reset();
   window_is_logarithmic = request.display.is_logarithmic;

@@ -10,10 +10,6 @@
 
 namespace trocar::xray::detail {
 
-/// Bilinear values of an image on another raster over the same area.
-std::vector<float> resample_image(const std::vector<float>& image, int columns, int rows, int new_columns,
-                                  int new_rows);
-
 /// Pixels along each edge of the patient's projection at a level of detail.
 int projected_pixels(int pixels, XrayDetail detail) noexcept;
 

@@ -23,9 +23,10 @@ CArm small_arm(double columns = 1.0, double rows = 1.0) {
   return arm;
 }
 
-DisplaySettings without_edges() {
+DisplaySettings plain() {
   DisplaySettings settings;
   settings.edge_gain = 0.0;
+  settings.range_compression = 0.0;
   return settings;
 }
 
@@ -40,7 +41,7 @@ std::vector<float> ramp() {
 
 TEST(Display, ShowsAttenuationEvenlyAndDenseThingsDark) {
   const auto signal = ramp();
-  const auto values = shown_values(signal, kPixels, kPixels, without_edges());
+  const auto values = shown_values(signal, kPixels, kPixels, plain(), field_pixels(small_arm()));
   const GrayImage image = to_gray(values, kPixels, kPixels, {1.0F, 3.0F}, false, field_pixels(small_arm()));
   EXPECT_EQ(image.pixels[at(0, 5)], 255);
   EXPECT_EQ(image.pixels[at(63, 5)], 0);
@@ -51,11 +52,11 @@ TEST(Display, ShowsAttenuationEvenlyAndDenseThingsDark) {
 }
 
 TEST(Display, ShowsTheSignalIfLinear) {
-  DisplaySettings settings = without_edges();
+  DisplaySettings settings = plain();
   settings.is_logarithmic = false;
   std::vector<float> signal(kCount, 0.25F);
   signal[at(3, 3)] = 0.5F;
-  const auto values = shown_values(signal, kPixels, kPixels, settings);
+  const auto values = shown_values(signal, kPixels, kPixels, settings, field_pixels(small_arm()));
   const GrayImage image = to_gray(values, kPixels, kPixels, {-0.5F, 0.0F}, false, field_pixels(small_arm()));
   EXPECT_EQ(image.pixels[at(3, 3)], 255);
   EXPECT_NEAR(image.pixels[at(9, 9)], 127.5, 1.0);
@@ -72,7 +73,7 @@ TEST(Display, FindsTheWindowInTheFieldWithoutDirectRadiation) {
       if (!is_inside) signal[at(column, row)] = 1e-5F;
     }
   for (int row = field.first_row; row < field.last_row; ++row) signal[at(field.first_column, row)] = 0.99F;
-  const auto values = shown_values(signal, kPixels, kPixels, without_edges());
+  const auto values = shown_values(signal, kPixels, kPixels, plain(), field_pixels(small_arm()));
   const GrayWindow window = window_of(values, signal, kPixels, field);
   EXPECT_NEAR(window.low, 1.0 + 2.0 * (field.first_column + 1) / 63.0, 0.07);
   EXPECT_NEAR(window.high, 1.0 + 2.0 * (field.last_column - 1) / 63.0, 0.07);
@@ -95,13 +96,34 @@ TEST(Display, EnhancesEdgesAndLeavesEvenPartsAlone) {
   std::vector<float> signal(kCount, std::exp(-1.0F));
   for (int row = 0; row < kPixels; ++row)
     for (int column = 32; column < kPixels; ++column) signal[at(column, row)] = std::exp(-2.0F);
-  DisplaySettings settings = without_edges();
+  DisplaySettings settings = plain();
   settings.edge_gain = 1.0;
-  const auto values = shown_values(signal, kPixels, kPixels, settings);
+  const auto values = shown_values(signal, kPixels, kPixels, settings, field_pixels(small_arm()));
   EXPECT_NEAR(values[at(3, 32)], 1.0, 1e-3);
   EXPECT_NEAR(values[at(60, 32)], 2.0, 1e-3);
   EXPECT_GT(values[at(32, 32)], 2.3);
   EXPECT_LT(values[at(31, 32)], 0.7);
+}
+
+TEST(Display, CompressesSlowDifferencesAndKeepsSmallThings) {
+  auto signal = ramp();
+  signal[at(40, 20)] *= std::exp(-0.2F);
+  DisplaySettings settings = plain();
+  const auto before = shown_values(signal, kPixels, kPixels, settings, field_pixels(small_arm()));
+  settings.range_compression = 0.6;
+  const auto after = shown_values(signal, kPixels, kPixels, settings, field_pixels(small_arm()));
+  const double slope = before[at(44, 32)] - before[at(20, 32)];
+  EXPECT_NEAR(after[at(44, 32)] - after[at(20, 32)], 0.4 * slope, 0.04 * slope);
+  EXPECT_NEAR(after[at(40, 20)] - after[at(40, 21)], 0.2, 0.01);
+}
+
+TEST(Display, HasNoSeamAtTheShutters) {
+  std::vector<float> signal(kCount, 0.0F);
+  const FieldPixels field = field_pixels(small_arm(0.5, 0.5));
+  for (int row = field.first_row; row < field.last_row; ++row)
+    for (int column = field.first_column; column < field.last_column; ++column) signal[at(column, row)] = 0.1F;
+  const auto values = shown_values(signal, kPixels, kPixels, DisplaySettings{}, field);
+  for (const float value : values) EXPECT_NEAR(value, -std::log(0.1), 1e-4);
 }
 
 TEST(MaskSubtraction, ShowsTheAttenuationThatWasAdded) {

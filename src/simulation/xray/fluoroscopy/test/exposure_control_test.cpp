@@ -51,6 +51,18 @@ TEST(ExposureControl, FollowsTheDoseMode) {
   EXPECT_NEAR(mas(DoseMode::kHigh) / mas(DoseMode::kNormal), 2.0, 1e-9);
 }
 
+TEST(ExposureControl, GivesSmallFieldsAndAcquisitionsMore) {
+  CArm arm;
+  const ExposureLimits limits;
+  BeamCache beams;
+  const auto dose = [&](DoseMode mode) {
+    return detector_ngy(control_exposure(body(15.0), arm, Tube{}, mode, 7.5, limits, beams).value(), 15.0, arm);
+  };
+  EXPECT_NEAR(dose(DoseMode::kAcquisition), limits.acquisition_ngy, 0.01 * limits.acquisition_ngy);
+  arm.field_mm = 150.0;
+  EXPECT_NEAR(dose(DoseMode::kNormal), 2.0 * limits.detector_ngy, 0.02 * limits.detector_ngy);
+}
+
 TEST(ExposureControl, StaysWithinItsLimits) {
   const CArm arm;
   const ExposureLimits limits;

@@ -191,6 +191,7 @@ TEST(Fluoroscope, SubtractsAllButTheContrastAgent) {
   // The map of this run lightens the duct over a live image.
   request.iodine.reset();
   request.mode = ImageMode::kRoadMap;
+  request.display.window = GrayWindow{1.0F, 4.0F};  // the duct's place is gray
   const std::size_t pixel = pixel_of(request.arm, {25, 0, 0});
   const FluoroscopyFrame road = run(fluoroscope, request, 0.5);
   request.mode = ImageMode::kLive;
