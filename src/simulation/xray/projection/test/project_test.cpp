@@ -8,6 +8,7 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "volume/sampling.h"
+#include "volume/testing/simd_targets.h"
 #include "xray/physics/beam.h"
 
 namespace trocar::xray {
@@ -228,6 +229,30 @@ TEST(Project, CoversSteepRaysOfAWideBeamWithoutSeams) {
       const double found = static_cast<double>(integrals[static_cast<std::size_t>(row * 128 + column)]);
       ASSERT_NEAR(found, expected, expected > 4.0 ? 0.01 * expected : 0.7);
     }
+}
+
+TEST(Project, AgreesBetweenInstructionSets) {
+  const volume::FloatGrid grid = sphere(cube(64, 1.4));
+  volume::CtGrid ct(grid.geometry);
+  for (std::size_t n = 0; n < ct.voxels.size(); ++n)
+    ct.voxels[n] = static_cast<std::int16_t>(std::lround(1300.0F * grid.voxels[n] - 1000.0F));
+  const auto volume = *XrayVolume::from_ct(ct);
+  const XrayRays rays = rays_of({.lao_deg = 71.0, .cranial_deg = 9.0, .field_mm = 180.0, .pixels = 101});
+  MassImage best, baseline;
+  std::vector<float> best_integrals, baseline_integrals;
+  project(*volume, rays, {}, best);
+  project(grid, rays, {}, best_integrals);
+  {
+    const volume::testing::BaselineSimd only_baseline;
+    project(*volume, rays, {}, baseline);
+    project(grid, rays, {}, baseline_integrals);
+  }
+  EXPECT_GT(best.of(Basis::kBone)[50 * 101 + 50], 0.5F);
+  for (std::size_t n = 0; n < best.size(); ++n) {  // of 6: rounding of positions and sums in floats
+    ASSERT_NEAR(best.of(Basis::kWater)[n], baseline.of(Basis::kWater)[n], 1e-3F);
+    ASSERT_NEAR(best.of(Basis::kBone)[n], baseline.of(Basis::kBone)[n], 1e-3F);
+    ASSERT_NEAR(best_integrals[n], baseline_integrals[n], 1e-3F);
+  }
 }
 
 TEST(Project, IsTheSameForAnyNumberOfThreads) {
