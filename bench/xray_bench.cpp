@@ -16,6 +16,7 @@
 #include "anatomy/phantom/phantom.h"
 #include "bench/benchmarks.h"
 #include "bench/real_data.h"
+#include "bench/xray_fluoroscopy_bench.h"
 #include "core/files/temporary_folder.h"
 #include "io/image/image_file.h"
 #include "xray/physics/attenuation.h"
@@ -217,6 +218,9 @@ Result<std::vector<CaseResult>> run_xray_benchmark(const Options& options) {
                      {},
                      fmt::format("{}x{}x{} voxels of 1 mm, masses and signal, C-arm turning: {:.0f} frames/s; bar 15",
                                  size[0], size[1], size[2], 1e3 / *figures.median)});
+  report(options.progress, "fluoroscopy", 0.9);
+  TROCAR_TRY(const auto fluoroscopy, fluoroscopy_cases());
+  results.insert(results.end(), fluoroscopy.begin(), fluoroscopy.end());
   return results;
 }
 
