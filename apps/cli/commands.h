@@ -26,6 +26,7 @@ void add_ultrasound_reconstruct_command(CLI::App& ultrasound, Action& action);
 void add_ultrasound_stitch_command(CLI::App& ultrasound, Action& action);
 void add_ultrasound_keypoints_command(CLI::App& ultrasound, Action& action);
 void add_ultrasound_list_commands(CLI::App& ultrasound, Action& action);
+void add_xray_command(CLI::App& program, Action& action);
 void add_bench_command(CLI::App& program, Action& action);
 /// Describes all commands of `program`, which must outlive `action`.
 void add_completion_command(CLI::App& program, Action& action);

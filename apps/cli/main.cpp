@@ -50,6 +50,7 @@ int run(int argc, char** argv) {
   add_device_commands(program, action);
   add_link_commands(program, action);
   add_ultrasound_commands(program, action);
+  add_xray_command(program, action);
   add_register_command(program, action);
   add_bench_command(program, action);
   add_completion_command(program, action);

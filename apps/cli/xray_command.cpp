@@ -1,0 +1,241 @@
+// trocar xray: an X-ray image of a patient, with needle and contrast agent.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "commands.h"
+#include "core/files/data_dir.h"
+#include "dicom/xa/xa_file.h"
+#include "io/image/image_file.h"
+#include "io/patient/open_patient.h"
+#include "io/sequence/transform_file.h"
+#include "number_option.h"
+#include "patient_option.h"
+#include "png/png_file.h"
+#include "ultrasound_scan.h"
+#include "xray/contrast/contrast_flow.h"
+#include "xray/fluoroscopy/fluoroscope.h"
+#include "xray/geometry/c_arm_presets.h"
+#include "xray_arguments.h"
+
+namespace trocar::cli {
+namespace {
+namespace fs = std::filesystem;
+
+constexpr double kNeedleLength_mm = 200.0;
+constexpr double kStep_s = 0.05;  // of the contrast agent
+constexpr int kMaskFrames = xray::Fluoroscope::kMaskFrames;
+constexpr double kPulses_per_s = 15.0;
+
+/// The room before the first pulse.
+struct Room {
+  std::shared_ptr<const anatomy::VirtualPatient> patient;
+  std::optional<xray::Fluoroscope> fluoroscope;
+  xray::FluoroscopyRequest request;
+  std::optional<xray::ContrastFlow> flow;
+  std::optional<Injection> injection;
+};
+
+/// Where the arm looks without --at: the needle's tip, the injection, or the middle of the body.
+Vec3 middle_P(const Room& room, const std::optional<Pose>& X_PN) {
+  if (X_PN) return X_PN->p();
+  if (room.injection) return room.injection->place_P;
+  const volume::FloatGrid& skin = room.patient->skin_distance_mm;
+  const auto deepest = std::min_element(skin.voxels.begin(), skin.voxels.end());
+  return skin.geometry.centre_mm(skin.geometry.index_of(static_cast<std::size_t>(deepest - skin.voxels.begin())));
+}
+
+xray::ToolShape needle_of(const Pose& X_PN, double diameter_mm) {
+  xray::ToolShape needle;
+  needle.name = "needle";
+  needle.line_P = {X_PN * Vec3(0.0, 0.0, -kNeedleLength_mm), X_PN.p()};
+  needle.outer_radius_mm = 0.5 * diameter_mm;
+  return needle;
+}
+
+Result<Room> prepare_room(const XrayArguments& a, const Progress& progress) {
+  Room room;
+  std::optional<Pose> X_PN;
+  if (!a.needle.empty()) {
+    TROCAR_TRY(X_PN, io::read_transform(a.needle));
+  }
+  TROCAR_TRY(room.injection, parse_injection(a.contrast, a.rate_ml_per_s));
+  TROCAR_TRY(room.request, parse_request(a));
+  TROCAR_TRY(anatomy::VirtualPatient patient, io::open_patient(a.source, progress));
+  room.patient = std::make_shared<const anatomy::VirtualPatient>(std::move(patient));
+  if (a.at.empty()) room.request.arm.isocentre_P = middle_P(room, X_PN);
+  if (X_PN) room.request.tools.push_back(needle_of(*X_PN, a.needle_mm));
+  report(progress, "preparing the X-ray", 0.5);
+  TROCAR_TRY(auto volume, xray::XrayVolume::make(room.patient));
+  room.fluoroscope.emplace(std::move(volume));
+  if (room.injection) {
+    TROCAR_TRY(const xray::ContrastTable table, xray::load_contrast_table(data_dir() / "contrast.toml"));
+    report(progress, "following the ducts", 0.8);
+    TROCAR_TRY(room.flow, xray::ContrastFlow::make(room.patient, table));
+  }
+  return room;
+}
+
+/// Carries the contrast agent on, from `from_s` to `to_s` since the injection began.
+Status advance(Room& room, double from_s, double to_s) {
+  const double lasts_s = room.injection->ml / room.injection->ml_per_s;
+  for (double at_s = from_s; at_s < to_s - 1e-9;) {
+    // A step ends where the injection does.
+    double next_s = std::min(at_s + kStep_s, to_s);
+    if (at_s < lasts_s - 1e-9) next_s = std::min(next_s, lasts_s);
+    if (at_s < lasts_s - 1e-9) {
+      TROCAR_TRY_STATUS(
+          room.flow->inject(room.injection->place_P, room.injection->ml_per_s, room.injection->iodine_mg_per_ml));
+    } else {
+      room.flow->stop_injection();
+    }
+    room.flow->step(next_s - at_s);
+    at_s = next_s;
+  }
+  room.request.iodine = std::make_shared<const xray::Iodine>(room.flow->iodine());
+  return {};
+}
+
+/// The images: for a subtraction the mask's first, which are not returned.
+Result<std::vector<xray::FluoroscopyFrame>> make_frames(Room& room, const XrayArguments& a, const Progress& progress) {
+  std::vector<xray::FluoroscopyFrame> frames;
+  room.request.is_pedal_down = true;
+  const int before = room.request.mode == xray::ImageMode::kSubtraction ? kMaskFrames : 0;
+  double contrast_s = 0.0;
+  const double end_s = a.time_s >= 0.0  ? a.time_s
+                       : room.injection ? room.injection->ml / room.injection->ml_per_s
+                                        : 0.0;
+  for (int n = 0; n < before + a.frames; ++n) {
+    report(progress, "making images", static_cast<double>(n) / (before + a.frames));
+    if (room.injection && n >= before) {
+      const double to_s = a.frames > 1 ? end_s * (n - before) / (a.frames - 1) : end_s;
+      TROCAR_TRY_STATUS(advance(room, contrast_s, to_s));
+      contrast_s = to_s;
+    }
+    room.request.time_s = n / kPulses_per_s;
+    TROCAR_TRY(auto frame,
+               room.fluoroscope->frame(room.request, xray::XrayDetail::kFull, a.seed + static_cast<std::uint64_t>(n)));
+    if (n >= before) frames.push_back(std::move(frame));
+  }
+  return frames;
+}
+
+volume::RgbImage to_rgb(const xray::GrayImage& gray) {
+  volume::RgbImage image(gray.columns, gray.rows);
+  std::transform(gray.pixels.begin(), gray.pixels.end(), image.pixels.begin(), [](std::uint8_t v) {
+    return volume::Rgb{v, v, v};
+  });
+  return image;
+}
+
+/// The attenuation -ln(signal) at the place of the detector, as two equal slices of 1 mm.
+Status write_attenuation(const std::vector<float>& signal, const xray::XrayRays& rays, const fs::path& path) {
+  volume::GridGeometry geometry;
+  geometry.size = {rays.columns, rays.rows, 2};
+  geometry.spacing_mm = {rays.column_P.norm(), rays.row_P.norm(), 1.0};
+  geometry.R_PV.col(0) = rays.column_P.normalized();
+  geometry.R_PV.col(1) = rays.row_P.normalized();
+  geometry.R_PV.col(2) = geometry.R_PV.col(0).cross(geometry.R_PV.col(1));
+  geometry.origin_P = rays.first_pixel_P;
+  volume::FloatGrid slab(geometry);
+  for (std::size_t n = 0; n < slab.voxels.size(); ++n)
+    slab.voxels[n] = -std::log(std::max(signal[n % signal.size()], 1e-9F));
+  return io::write_image(slab, path);
+}
+
+dicom::XaImage to_xa(const std::vector<xray::FluoroscopyFrame>& frames) {
+  const xray::FluoroscopyFrame& last = frames.back();
+  dicom::XaImage image;
+  image.columns = last.gray.columns;
+  image.rows = last.gray.rows;
+  for (const xray::FluoroscopyFrame& frame : frames) {
+    image.frames.push_back(frame.gray.pixels);
+    if (frames.size() > 1) image.time_s.push_back(frame.time_s - frames.front().time_s);
+  }
+  const xray::FieldPixels field = xray::field_pixels(last.arm);
+  image.shutters = {field.first_column, image.columns - field.last_column, field.first_row,
+                    image.rows - field.last_row};
+  image.geometry = {last.arm.lao_deg, last.arm.cranial_deg, last.arm.source_detector_mm, last.arm.source_isocentre_mm,
+                    last.arm.field_mm / last.arm.pixels};
+  constexpr double kPulse_ms = 8.0;  // assumed
+  image.exposure = {last.exposure.tube.kv,
+                    last.exposure.mas / (1e-3 * kPulse_ms),
+                    kPulse_ms,
+                    last.exposure.mas * static_cast<double>(frames.size()),
+                    last.dose.area_product_mgy_cm2,
+                    true};
+  return image;
+}
+
+Status write_result(const std::vector<xray::FluoroscopyFrame>& frames, const xray::Fluoroscope& fluoroscope,
+                    const fs::path& out) {
+  if (out.extension() == ".dcm") return dicom::write_xa_file(to_xa(frames), out);
+  if (out.extension() == ".nrrd") return write_attenuation(fluoroscope.signal(), xray::rays_of(frames.back().arm), out);
+  return png::write_png(to_rgb(frames.back().gray), out);
+}
+
+config::Json to_json(const Room& room, const xray::FluoroscopyFrame& frame) {
+  const xray::CArm& arm = frame.arm;
+  config::Json json{{"lao_deg", arm.lao_deg},
+                    {"cranial_deg", arm.cranial_deg},
+                    {"isocentre_mm", {arm.isocentre_P.x(), arm.isocentre_P.y(), arm.isocentre_P.z()}},
+                    {"field_mm", arm.field_mm},
+                    {"magnification", xray::magnification(arm)},
+                    {"kv", frame.exposure.tube.kv},
+                    {"mas", frame.exposure.mas},
+                    {"is_exposure_limited", frame.exposure.is_limited},
+                    {"air_kerma_mgy", frame.dose.air_kerma_mgy},
+                    {"dose_area_gycm2", 1e-3 * frame.dose.area_product_mgy_cm2},
+                    {"contrast", nullptr}};
+  if (!room.flow) return json;
+  const xray::ContrastTotals totals = room.flow->totals();
+  json["contrast"] = {{"place", xray::contrast_place_words(room.flow->place(room.injection->place_P))},
+                      {"injected_ml", totals.injected_ml},
+                      {"in_body_mg", totals.in_body_mg()},
+                      {"ducts_mg", totals.ducts_mg},
+                      {"drained_mg", totals.drained_mg},
+                      {"washed_away_mg", totals.washed_away_mg}};
+  return json;
+}
+
+Status make_xray(const XrayArguments& a) {
+  TROCAR_TRY_STATUS(check_xray_output(a));
+  TROCAR_TRY_STATUS(check_outputs({a.out}));
+  const ProgressPrinter printer;
+  TROCAR_TRY(Room room, prepare_room(a, printer.callback()));
+  TROCAR_TRY(const auto frames, make_frames(room, a, printer.callback()));
+  TROCAR_TRY_STATUS(write_result(frames, *room.fluoroscope, a.out));
+  if (a.is_json) {
+    config::Json json = to_json(room, frames.back());
+    json["out"] = a.out;
+    json["frames"] = frames.size();
+    print_json(json);
+  } else if (room.flow) {
+    fmt::print("{:.1f} ml of contrast agent, {}\n", room.flow->totals().injected_ml,
+               xray::contrast_place_words(room.flow->place(room.injection->place_P)));
+  }
+  return {};
+}
+
+}  // namespace
+
+void add_xray_command(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand("xray", "Create an X-ray image of a patient");
+  command->footer(
+      "Examples:\n  trocar xray --patient ptcd-1 --out ap.png\n"
+      "  trocar xray --patient ptcd-1 --carm -30,10 --needle needle.tfm --out oblique.png\n"
+      "  trocar xray --patient ptcd-1 --contrast 10@-41,-12,25 --time 12 --subtract --out ducts.png\n"
+      "  trocar xray --patient ptcd-1 --contrast 10@-41,-12,25 --time 12 --frames 30 --out run.dcm\n");
+  const auto a = std::make_shared<XrayArguments>();
+  add_cache_option(*command, a->source);
+  add_xray_options(*command, *a);
+  command->callback([&action, a] { action = [a] { return make_xray(*a); }; });
+}
+
+}  // namespace trocar::cli
