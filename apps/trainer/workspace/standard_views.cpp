@@ -5,6 +5,7 @@
 #include "views/plots/force_plot_entry.h"
 #include "views/slices/slice_view_entry.h"
 #include "views/ultrasound/ultrasound_view_entry.h"
+#include "views/xray/xray_view_entry.h"
 
 namespace trocar::trainer {
 
@@ -13,6 +14,7 @@ ViewRegistry standard_views() {
   registry.add(patient_view_entry());
   registry.add(side_view_entry());
   registry.add(ultrasound_view_entry());
+  registry.add(xray_view_entry());
   registry.add(force_plot_entry());
   registry.add(structure_panel_entry());
   registry.add(slice_view_entry(SliceKind::kAxial, "axial", SliceView::tr("Axial")));

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "xray/fluoroscopy/fluoroscopy_frame.h"
+
+namespace trocar::trainer {
+
+/// What a user sets at the fluoroscope. C-arm: angles, table (isocentre), field and collimation.
+struct XraySettings {
+  xray::CArm arm;
+  xray::Tube filters;
+  xray::DoseMode dose_mode = xray::DoseMode::kNormal;
+  double pulses_per_s = 15.0;
+  xray::ImageMode mode = xray::ImageMode::kLive;
+  bool is_inverted = false;
+  double injection_ml_per_s = 1.0;  ///< While contrast agent is injected. Range 0.1..10.
+};
+
+}  // namespace trocar::trainer

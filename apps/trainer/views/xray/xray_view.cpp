@@ -1,0 +1,265 @@
+#include "views/xray/xray_view.h"
+
+#include <QCoreApplication>
+#include <QMouseEvent>
+#include <QPainter>
+#include <QWheelEvent>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/files/data_dir.h"
+#include "core/log.h"
+#include "ui_kit/parts.h"
+#include "ui_kit/theme.h"
+
+namespace trocar::trainer {
+namespace {
+
+constexpr const char* kUnit = "angiography";
+constexpr double kTurn_deg_per_px = 0.3;
+constexpr double kMargin_px = 10.0;
+constexpr double kLeastCollimation = 0.1;
+constexpr double kIodine_mg_per_ml = 300.0;
+
+xray::CArmPreset load_unit() {
+  auto unit = xray::load_c_arm(data_dir() / "carms.toml", kUnit);
+  if (unit) return *std::move(unit);
+  log_warning("{}", unit.error().text());
+  xray::CArmPreset plain;
+  plain.fields_mm = {plain.arm.field_mm};
+  return plain;
+}
+
+QString angle_text(double degrees, const QString& positive, const QString& negative) {
+  return QStringLiteral("%1 %2°").arg(degrees < 0.0 ? negative : positive).arg(std::abs(degrees), 0, 'f', 0);
+}
+
+}  // namespace
+
+XrayView::XrayView(QWidget* parent) : QWidget(parent), unit_(load_unit()) {
+  setObjectName(QStringLiteral("xray-view"));
+  setAccessibleName(tr("X-ray picture"));
+  setToolTip(tr("Left button: moves the table; right button: turns the C-arm; wheel: field"));
+  setAttribute(Qt::WA_OpaquePaintEvent);
+  setFocusPolicy(Qt::StrongFocus);
+  settings_.arm = unit_.arm;
+  settings_.filters = {unit_.kv, unit_.aluminium_mm, unit_.copper_mm};
+  QCoreApplication::instance()->installEventFilter(this);  // for the keys that are held
+}
+
+XrayView::~XrayView() = default;
+
+void XrayView::show_patient(std::shared_ptr<const anatomy::VirtualPatient> patient, const tasks::Needle& needle,
+                            std::function<Vec3()> find_middle_P) {
+  needle_ = needle;
+  patient_ = std::move(patient);
+  find_middle_P_ = std::move(find_middle_P);
+  preparing_ = {};
+  has_volume_ = false;
+  failure_.clear();
+  fluoroscope_.reset();
+  contrast_.close();
+  frame_.reset();
+  image_ = {};
+  shaft_P_.clear();
+  set_pedal(false);
+  set_injecting(false);
+  opened_s_ = -1.0;
+  change_settings([&](XraySettings& s) {
+    s.arm = unit_.arm;
+    s.mode = xray::ImageMode::kLive;
+  });
+  update();
+}
+
+void XrayView::prepare() {
+  if (has_volume_ || !failure_.isEmpty() || !patient_) return;
+  if (!preparing_.has_work()) {
+    preparing_ =
+        BackgroundJob<Prepared>([patient = patient_, middle_P = find_middle_P_](const Progress&) -> Result<Prepared> {
+          TROCAR_TRY(auto volume, xray::XrayVolume::make(patient));
+          return Prepared{std::move(volume), middle_P()};
+        });
+    return;
+  }
+  auto made = preparing_.take();
+  if (!made) return;
+  if (*made) {
+    fluoroscope_ = std::make_unique<xray::LiveFluoroscope>();
+    fluoroscope_->open((*made)->volume);
+    change_settings([&](XraySettings& s) { s.arm.isocentre_P = (*made)->middle_P; });
+    contrast_.open(patient_);
+    has_volume_ = true;
+  } else {
+    failure_ = to_qt(made->error().text());
+  }
+  update();
+}
+
+void XrayView::advance(double now_s) {
+  if (!isVisible() || !patient_) return;
+  if (opened_s_ < 0.0) opened_s_ = now_s;
+  prepare();
+  if (!fluoroscope_) return;
+  contrast_.request({shaft_P_.empty() ? Vec3(Vec3::Constant(NAN)) : shaft_P_.back(),
+                     is_injecting_ && !shaft_P_.empty() ? settings_.injection_ml_per_s : 0.0, kIodine_mg_per_ml});
+  fluoroscope_->request(make_request(now_s - opened_s_));
+  auto newest = fluoroscope_->newest();
+  const QString failure = fluoroscope_->error() ? to_qt(fluoroscope_->error()->text()) : QString();
+  const bool is_new = newest && (!frame_ || newest->number != frame_->number);
+  if (is_new) {
+    frame_ = std::move(newest);
+    const xray::GrayImage& gray = frame_->gray;
+    image_ = QImage(gray.pixels.data(), gray.columns, gray.rows, gray.columns, QImage::Format_Grayscale8);
+  }
+  if (is_new || std::exchange(failure_, failure) != failure) update();
+}
+
+xray::FluoroscopyRequest XrayView::make_request(double now_s) const {
+  xray::FluoroscopyRequest request;
+  request.arm = settings_.arm;
+  request.filters = settings_.filters;
+  request.dose_mode = settings_.dose_mode;
+  request.pulses_per_s = settings_.pulses_per_s;
+  if (shaft_P_.size() > 1) {
+    xray::ToolShape needle;
+    needle.name = needle_.name;
+    needle.line_P = shaft_P_;
+    needle.outer_radius_mm = 0.5 * needle_.outer_diameter_mm;
+    // Without its stylet the bore is full of bile, blood or contrast agent.
+    const bool is_open = needle_.stylet_diameter_mm <= 0.0 || is_injecting_;
+    needle.inner_radius_mm = is_open ? 0.5 * needle_.inner_diameter_mm : 0.0;
+    needle.filling_iodine_mg_per_ml = is_injecting_ ? kIodine_mg_per_ml : 0.0;
+    request.tools.push_back(std::move(needle));
+  }
+  if (const auto state = contrast_.newest()) request.iodine = state->iodine;
+  request.is_pedal_down = is_pedal_down_;
+  request.time_s = now_s;
+  request.mode = settings_.mode;
+  request.display.is_inverted = settings_.is_inverted;
+  return request;
+}
+
+void XrayView::change_settings(const std::function<void(XraySettings&)>& change) {
+  change(settings_);
+  xray::CArm& arm = settings_.arm;
+  arm.lao_deg = std::clamp(arm.lao_deg, -unit_.largest_lao_deg, unit_.largest_lao_deg);
+  arm.cranial_deg = std::clamp(arm.cranial_deg, -unit_.largest_cranial_deg, unit_.largest_cranial_deg);
+  for (double& share : arm.collimation) share = std::clamp(share, kLeastCollimation, 1.0);
+  update();
+  Q_EMIT changed();
+}
+
+void XrayView::set_pedal(bool is_down) {
+  if (std::exchange(is_pedal_down_, is_down) != is_down) Q_EMIT changed();
+  update();
+}
+
+void XrayView::set_injecting(bool is_injecting) {
+  if (std::exchange(is_injecting_, is_injecting) != is_injecting) Q_EMIT changed();
+}
+
+tasks::XrayUse XrayView::use() const {
+  tasks::XrayUse use;
+  const xray::CArm& arm = settings_.arm;
+  use.lao_deg = arm.lao_deg;
+  use.cranial_deg = arm.cranial_deg;
+  use.isocentre_P = arm.isocentre_P;
+  use.field_mm = arm.field_mm;
+  use.is_beam_on = frame_ != nullptr && !frame_->is_held;
+  if (const auto state = contrast_.newest()) use.contrast_ml = state->injected_ml;
+  if (!frame_) return use;
+  use.beam_s = frame_->dose.beam_on_s;
+  use.air_kerma_mgy = frame_->dose.air_kerma_mgy;
+  use.dose_area_gycm2 = 1e-3 * frame_->dose.area_product_mgy_cm2;
+  return use;
+}
+
+QRectF XrayView::image_rect() const {
+  const double edge = std::min(width(), height());
+  return {0.5 * (width() - edge), 0.5 * (height() - edge), edge, edge};
+}
+
+QString XrayView::message() const {
+  if (!failure_.isEmpty()) return failure_;
+  if (!patient_) return tr("No patient");
+  if (!has_volume_) return tr("Preparing the X-ray");
+  return frame_ ? QString() : tr("Hold Z or the pedal for fluoroscopy");
+}
+
+void XrayView::paintEvent(QPaintEvent*) {
+  QPainter painter(this);
+  painter.fillRect(rect(), Qt::black);
+  painter.setRenderHint(QPainter::SmoothPixmapTransform);
+  if (!image_.isNull() && frame_) painter.drawImage(image_rect(), image_);
+  draw_texts(painter);
+}
+
+void XrayView::draw_texts(QPainter& painter) const {
+  const QRectF area = QRectF(rect()).marginsRemoved({kMargin_px, kMargin_px, kMargin_px, kMargin_px});
+  painter.setPen(QColor(214, 222, 230));
+  if (const QString text = message(); !text.isEmpty())
+    painter.drawText(area, static_cast<int>(Qt::AlignCenter) | Qt::TextWordWrap, text);
+  const xray::CArm& arm = settings_.arm;
+  const QString position = angle_text(arm.lao_deg, tr("LAO"), tr("RAO")) + QLatin1Char('\n') +
+                           angle_text(arm.cranial_deg, tr("CRAN"), tr("CAUD")) + QLatin1Char('\n') +
+                           tr("Field %1 cm").arg(arm.field_mm / 10.0, 0, 'f', 0);
+  painter.drawText(area, Qt::AlignLeft | Qt::AlignBottom, position);
+  if (!frame_) return;
+  const xray::Exposure& exposure = frame_->exposure;
+  painter.drawText(area, Qt::AlignLeft | Qt::AlignTop,
+                   tr("%1 kV\n%2 mAs\n%3 pulses/s")
+                       .arg(exposure.tube.kv, 0, 'f', 0)
+                       .arg(exposure.mas, 0, 'f', 2)
+                       .arg(settings_.pulses_per_s));
+  painter.drawText(area, Qt::AlignRight | Qt::AlignBottom,
+                   tr("%1 s\n%2 mGy\n%3 Gy cm²")
+                       .arg(frame_->dose.beam_on_s, 0, 'f', 1)
+                       .arg(frame_->dose.air_kerma_mgy, 0, 'f', 2)
+                       .arg(1e-3 * frame_->dose.area_product_mgy_cm2, 0, 'f', 2));
+  painter.setPen(frame_->is_held ? QColor(150, 160, 172) : QColor(255, 196, 60));
+  painter.drawText(area, Qt::AlignRight | Qt::AlignTop, frame_->is_held ? tr("Last image") : tr("● X-rays on"));
+}
+
+void XrayView::mousePressEvent(QMouseEvent* event) {
+  dragged_from_ = event->localPos();
+}
+
+void XrayView::mouseMoveEvent(QMouseEvent* event) {
+  const QPointF by = event->localPos() - std::exchange(dragged_from_, event->localPos());
+  if (event->buttons() & Qt::RightButton) {
+    change_settings([&](XraySettings& s) {
+      s.arm.lao_deg += kTurn_deg_per_px * by.x();
+      s.arm.cranial_deg -= kTurn_deg_per_px * by.y();
+    });
+  } else if (event->buttons() & Qt::LeftButton) {
+    const xray::CArm& arm = settings_.arm;
+    const xray::XrayRays rays = xray::rays_of(arm);
+    // The patient follows the pointer: the isocentre moves the other way.
+    const double mm_per_px = arm.field_mm / xray::magnification(arm) / image_rect().width();
+    const Vec3 shift_P = mm_per_px * (by.x() * rays.column_P.normalized() + by.y() * rays.row_P.normalized());
+    change_settings([&](XraySettings& s) { s.arm.isocentre_P -= shift_P; });
+  }
+}
+
+void XrayView::mouseReleaseEvent(QMouseEvent*) {}
+
+void XrayView::wheelEvent(QWheelEvent* event) {
+  const auto& fields = unit_.fields_mm;  // falling
+  const auto at = std::min_element(fields.begin(), fields.end(), [&](double a, double b) {
+    return std::abs(a - settings_.arm.field_mm) < std::abs(b - settings_.arm.field_mm);
+  });
+  const auto next = std::clamp<std::ptrdiff_t>(at - fields.begin() + (event->angleDelta().y() > 0 ? 1 : -1), 0,
+                                               static_cast<std::ptrdiff_t>(fields.size()) - 1);
+  change_settings([&](XraySettings& s) { s.arm.field_mm = fields[static_cast<std::size_t>(next)]; });
+  event->accept();
+}
+
+void XrayView::hideEvent(QHideEvent* event) {
+  QWidget::hideEvent(event);
+  set_pedal(false);
+  set_injecting(false);
+}
+
+}  // namespace trocar::trainer
