@@ -53,7 +53,7 @@ const std::vector<Benchmark>& all_benchmarks() {
        run_ultrasound_cost_benchmark},
       {"panorama", "pictures sliced from a panorama while the transducer moves: covered, half covered, with a needle",
        run_panorama_benchmark},
-      {"xray", "X-ray projections beside plastimatch, the polyenergetic signal, frames of a turning C-arm",
+      {"xray", "X-ray projections beside plastimatch, frames of a still and a turning C-arm, contrast agent",
        run_xray_benchmark},
       {"live",
        "live ultrasound of a moving transducer beside two 1 kHz servers and a drawing thread: pictures a second",

@@ -1,4 +1,5 @@
-// X-ray projections: plastimatch's DRR of the same CT and geometry, the polyenergetic signal, and a turning C-arm.
+// X-ray projections: plastimatch's DRR of the same CT and geometry, the polyenergetic signal, a turning C-arm; then the
+// cases of fluoroscopy and of contrast agent.
 
 #include <fmt/format.h>
 
@@ -16,6 +17,7 @@
 #include "anatomy/phantom/phantom.h"
 #include "bench/benchmarks.h"
 #include "bench/real_data.h"
+#include "bench/xray_contrast_bench.h"
 #include "bench/xray_fluoroscopy_bench.h"
 #include "core/files/temporary_folder.h"
 #include "io/image/image_file.h"
@@ -221,6 +223,8 @@ Result<std::vector<CaseResult>> run_xray_benchmark(const Options& options) {
   report(options.progress, "fluoroscopy", 0.9);
   TROCAR_TRY(const auto fluoroscopy, fluoroscopy_cases());
   results.insert(results.end(), fluoroscopy.begin(), fluoroscopy.end());
+  TROCAR_TRY(const auto contrast, contrast_cases(options.progress));
+  results.insert(results.end(), contrast.begin(), contrast.end());
   return results;
 }
 

@@ -12,7 +12,8 @@
 
 namespace trocar::xray {
 
-/// Contrast agent since the beginning. in_body + drained + washed_away + spilled = injected, of iodine.
+/// Contrast agent since the beginning. Of iodine: in_body + drained + washed_away + spilled = injected
+/// (docs/physics.md, X17).
 struct ContrastTotals {
   double injected_ml = 0.0;
   double injected_mg = 0.0;
@@ -25,8 +26,9 @@ struct ContrastTotals {
   double in_body_mg() const { return ducts_mg + vessels_mg + tissue_mg; }
 };
 
-/// Contrast agent in a patient: injected at the needle's tip, carried on by what is there. Frame P of the patient at
-/// rest: a tip in a moving patient is mapped back first. Not real-time safe; one thread.
+/// Contrast agent in a patient: injected at the needle's tip into a duct, a vessel, a fluid or tissue, which carries it
+/// on (docs/physics.md, X13 to X17). Frame P of the patient at rest: a tip in a moving patient is mapped back first.
+/// Not real-time safe; one thread.
 class ContrastFlow {
  public:
   /// Follows the bile ducts (takes up to some seconds). `blood` gives the flow in vessels, for example
@@ -52,7 +54,7 @@ class ContrastFlow {
  private:
   ContrastFlow(std::shared_ptr<const anatomy::VirtualPatient> patient, const ContrastTable& table, BloodVelocity blood);
 
-  /// What an injection meets at its tip.
+  /// The place of an injection.
   struct Target {
     ContrastPlace place = ContrastPlace::kOutside;
     int cell = -1;  ///< Of the ducts.

@@ -8,13 +8,13 @@
 
 namespace trocar::xray {
 
-/// Where a tip is, as contrast agent shows it.
+/// Place of a tip, as contrast agent shows it.
 enum class ContrastPlace : unsigned char { kOutside, kDuct, kVessel, kParenchyma, kFluid, kBowel, kTissue };
 
 /// "bile duct", "vessel", "parenchyma", "fluid", "bowel", "tissue", "outside".
 std::string contrast_place_words(ContrastPlace place);
 
-/// How bile ducts take contrast agent. Sources: data/contrast.toml.
+/// Parameters of contrast agent in bile ducts. Sources: data/contrast.toml. docs/physics.md, X13.
 struct DuctParams {
   double dispersivity_mm = 1.5;   ///< Mixing at a moving front. Range 0..10.
   double mixing_mm2_per_s = 0.5;  ///< Mixing at rest. Range 0..10.
@@ -24,14 +24,14 @@ struct DuctParams {
   double bridge_mm = 4.0;         ///< Widest gap within a duct's label. Range 0..20.
 };
 
-/// How a vessel washes contrast agent away.
+/// Parameters of contrast agent in vessels. docs/physics.md, X16.
 struct VesselParams {
   double washout_s = 0.4;         ///< Time constant of dilution. Range 0.05..5.
   double longest_s = 1.2;         ///< Range 0.1..10.
   double spread_mm2_per_s = 8.0;  ///< Growth of the square of the streak's radius. Range 0..200.
 };
 
-/// How a kind of tissue takes contrast agent.
+/// Parameters of contrast agent in a kind of tissue. docs/physics.md, X14, X15.
 struct ContrastMedium {
   ContrastPlace place = ContrastPlace::kTissue;  ///< Parenchyma, fluid, bowel or tissue.
   std::vector<std::string> tissues;

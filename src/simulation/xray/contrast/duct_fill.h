@@ -15,7 +15,7 @@ namespace trocar::xray {
 /// time. An open papilla lets a share of the injection out, later everything that the tree cannot hold; bile is
 /// secreted into all ducts and empties them through it. A full tree without outlet is distended, then loses the rest
 /// (reflux into the veins). Fluxes are upwind and implicit, with dispersion: iodine is conserved and never negative for
-/// any step.
+/// any step. docs/physics.md, X13.
 class DuctFill {
  public:
   DuctFill(DuctTree tree, const DuctParams& params);

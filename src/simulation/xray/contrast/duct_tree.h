@@ -21,7 +21,7 @@ struct DuctCell {
   double radius_a_mm = 1.0, radius_b_mm = 1.0;
   int parent = -1;               ///< Cell at a; smaller than the cell's own index; -1: the first cell of a tree.
   bool is_closed = false;        ///< Nothing flows between this cell and its parent: an obstruction.
-  DuctEnd end = DuctEnd::kNone;  ///< What is at b; for a cell without parent see `root_end`.
+  DuctEnd end = DuctEnd::kNone;  ///< Kind of the end at b; that at a of a cell without parent: `root_end`.
   DuctEnd root_end = DuctEnd::kNone;
 
   double length_mm() const { return (b_P - a_P).norm(); }

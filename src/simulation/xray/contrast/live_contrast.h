@@ -6,7 +6,7 @@
 
 namespace trocar::xray {
 
-/// What the hand does: injects at the tip. No injection at a tip that is not finite.
+/// An injection at the needle's tip; none at a tip that is not finite.
 struct InjectionRequest {
   Vec3 tip_P = Vec3::Zero();
   double ml_per_s = 0.0;  ///< Range 0..50.

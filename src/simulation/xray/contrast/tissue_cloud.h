@@ -14,7 +14,7 @@ namespace trocar::xray {
 /// Contrast agent outside of ducts and vessels, on an isotropic grid that grows with it. Each voxel belongs to the
 /// organ at its centre (a lesion to its organ); nothing passes from one organ to another. In parenchyma and other
 /// tissue the injected volume fills the medium's share of the voxels, the nearest to the tip first, and fades; in fluid
-/// and bowel iodine diffuses.
+/// and bowel iodine diffuses. docs/physics.md, X14, X15.
 class TissueCloud {
  public:
   /// `spacing_mm`: range 1..5.

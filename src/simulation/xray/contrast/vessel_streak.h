@@ -15,7 +15,7 @@ using BloodVelocity = std::function<Vec3(const Vec3& p_P, double time_s)>;
 
 /// Contrast agent in flowing blood: portions that the blood carries away, that spread over the vessel's section and are
 /// diluted with a time constant. A portion that reaches the vessel's end or its greatest age is washed away. Without
-/// flow at the tip portions stay there and are diluted all the same.
+/// flow at the tip portions stay there and are diluted all the same. docs/physics.md, X16.
 class VesselStreak {
  public:
   VesselStreak(std::shared_ptr<const anatomy::VirtualPatient> patient, const VesselParams& params, BloodVelocity blood);

@@ -13,7 +13,7 @@ namespace trocar::xray {
 void blur_image(std::vector<float>& pixels, int columns, int rows, double sigma_px);
 
 /// Standard deviations of Gaussian blur at the detector, mm: light in the scintillator, from the modulation transfer at
-/// one half, and the focal spot's shadow of things at the isocentre.
+/// one half, and the focal spot's shadow of objects at the isocentre. docs/physics.md, X10.
 double scintillator_sigma_mm(const DetectorParams& params) noexcept;
 double focal_spot_sigma_mm(const DetectorParams& params, const CArm& arm) noexcept;
 

@@ -5,7 +5,7 @@
 
 namespace trocar::xray {
 
-/// First-order lag of the detector: a share of the former signal is left in the next image.
+/// First-order lag of the detector: a share of the former signal is left in the next image. docs/physics.md, X10.
 class Lag {
  public:
   /// Mixes the former images into a signal that is read `elapsed_s` after the former one, and keeps it. `share`:

@@ -18,7 +18,7 @@ struct Scatter {
   double mean() const noexcept;
 };
 
-/// Scatter behind the patient (docs/physics.md, scatter): each part of the primary beam scatters in proportion to the
+/// Scatter behind the patient (docs/physics.md, X8): each part of the primary beam scatters in proportion to the
 /// mass on its ray; a Gaussian spreads it, so that it falls towards the edges of the irradiated field and with the size
 /// of the field. `primary`: signal of each pixel, 0 where the beam is collimated. The raster of `patient` may be
 /// coarser.

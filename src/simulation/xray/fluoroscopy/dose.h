@@ -18,7 +18,7 @@ double reference_distance_mm(const CArm& arm) noexcept;
 /// Irradiated area (cm²) of the collimated beam at a distance from the source.
 double irradiated_area_cm2(const CArm& arm, double distance_mm) noexcept;
 
-/// Dose indicators of an examination, summed over its pulses.
+/// Dose indicators of an examination, summed over its pulses (docs/physics.md, X11).
 struct Dose {
   double beam_on_s = 0.0;             ///< Time with the pedal down.
   double air_kerma_mgy = 0.0;         ///< At the reference point, without backscatter.

@@ -12,7 +12,7 @@ namespace trocar::xray {
 /// Dose: half, normal and double air kerma at the detector for fluoroscopy; kAcquisition for runs that are subtracted.
 enum class DoseMode { kLow, kNormal, kHigh, kAcquisition };
 
-/// Limits of the automatic exposure control.
+/// Limits of the automatic exposure control (docs/physics.md, X11).
 struct ExposureLimits {
   /// Air kerma at the detector per pulse, without the grid. At 15 pulses per s 0.5 µGy/s, a third of the greatest
   /// that Belgian law permits for fluoroscopy (FANC, 1.5 µGy/s). Range 5..500.
@@ -21,13 +21,12 @@ struct ExposureLimits {
   /// Edge of the field for which these doses hold; a smaller field has the more, in proportion to 1 / edge, at most
   /// three times as much; assumed. Range 50..500.
   double field_mm = 300.0;
-  double least_kv = 60.0;  ///< Range 40..150.
-  double most_kv = 120.0;  ///< Range least_kv..150.
-  double least_mas = 0.002;
+  double least_kv = 60.0;              ///< Range 40..150.
+  double most_kv = 120.0;              ///< Range least_kv..150.
+  double least_mas = 0.002;            ///< Of a pulse, as the next two. Range 0.0001..most_mas; assumed.
   double most_mas = 1.5;               ///< 150 mA for 10 ms; assumed.
   double most_acquisition_mas = 30.0;  ///< 600 mA for 50 ms; assumed.
-  /// Greatest air kerma rate at the reference point: 88 mGy/min (21 CFR 1020.32 (d)); not for
-  /// acquisitions.
+  /// Greatest air kerma rate at the reference point (21 CFR 1020.32 (d)); not for acquisitions. Range 1..500.
   double most_mgy_per_min = 88.0;
 };
 

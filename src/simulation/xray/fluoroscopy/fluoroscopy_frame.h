@@ -13,7 +13,7 @@
 
 namespace trocar::xray {
 
-/// What the screen shows.
+/// Kind of the displayed image.
 enum class ImageMode {
   kLive,
   /// Digital subtraction: the first frames make the mask, later ones show what was added.

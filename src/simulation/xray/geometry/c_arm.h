@@ -7,8 +7,8 @@
 
 namespace trocar::xray {
 
-/// Position and optics of a C-arm. Angles 0, 0: the detector is in front of the patient (anterior), the source behind.
-/// All lengths in mm at their place, unless stated.
+/// Position and optics of a C-arm (docs/physics.md, X1). Angles 0, 0: the detector is in front of the patient
+/// (anterior), the source behind. All lengths in mm at their place, unless stated.
 struct CArm {
   double lao_deg = 0.0;                ///< Detector towards the patient's left, right (RAO) negative. Range -180..180.
   double cranial_deg = 0.0;            ///< Detector towards the head, feet (caudal) negative. Range -90..90.
@@ -44,7 +44,7 @@ XrayRays rays_of(const CArm& arm) noexcept;
 /// Unit vector from the isocentre to the detector, in P.
 Vec3 towards_detector_P(const CArm& arm) noexcept;
 
-/// Magnification of what lies at the isocentre.
+/// Magnification of objects at the isocentre.
 double magnification(const CArm& arm) noexcept;
 
 }  // namespace trocar::xray

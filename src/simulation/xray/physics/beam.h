@@ -9,11 +9,11 @@
 
 namespace trocar::xray {
 
-/// What a beam becomes behind masses of the basis materials, as a detector of caesium iodide measures it: the signal is
-/// the energy that it absorbs, 1 without anything in the beam (Beer's law, summed over the spectrum).
+/// Signal of a detector of caesium iodide behind masses of the basis materials: the energy that it absorbs, 1 without
+/// anything in the beam (Beer's law, summed over the spectrum; docs/physics.md, X4).
 class Beam {
  public:
-  /// `detector_mm`: thickness of caesium iodide. Range 0.1..2.
+  /// `detector_mm`: thickness of caesium iodide. Range 0.1..2. Errors: out of range, an empty spectrum.
   static Result<Beam> make(const Spectrum& spectrum, double detector_mm = 0.6);
 
   /// Signal behind masses (g/cm², in the order of Basis). Exact.

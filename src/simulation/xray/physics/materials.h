@@ -53,7 +53,7 @@ struct XrayMaterial {
   double hu = 0.0;  ///< Of the material in a CT.
 };
 
-/// Materials, and the curve of each tissue (docs/physics.md).
+/// Materials, and the curve of each tissue (docs/physics.md, X5).
 struct XrayMaterials {
   std::vector<XrayMaterial> materials;
   std::map<std::string, HuCurve, std::less<>> tissues;

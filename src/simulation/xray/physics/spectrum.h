@@ -21,12 +21,12 @@ struct Spectrum {
   std::vector<double> photons;     ///< Per mm² at 1 m from the source and mAs, by bin.
 };
 
-/// Spectrum behind the filters. Error: a value out of its range.
+/// Spectrum behind the filters (docs/physics.md, X2). Error: a value out of its range.
 Result<Spectrum> tube_spectrum(const Tube& tube);
-/// All photons have one energy (keV, 10..150): for tests and comparisons.
+/// A beam of one energy (keV): for tests and comparisons. Error: not 10..150 keV.
 Result<Spectrum> one_energy(double kev);
 
-/// Air kerma (mGy) at 1 m per mAs.
+/// Air kerma (mGy) at 1 m per mAs (docs/physics.md, X3).
 double air_kerma_mgy(const Spectrum& spectrum);
 /// Thickness (mm) of aluminium that halves the air kerma.
 double half_value_layer_mm(const Spectrum& spectrum);

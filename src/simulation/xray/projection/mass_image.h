@@ -7,7 +7,7 @@
 
 namespace trocar::xray {
 
-/// Basis materials: what lies on a ray is a mass per area of each. Body tissues are mixtures of the first two, which
+/// Basis materials: the matter on a ray is a mass per area of each. Body tissues are mixtures of the first two, which
 /// have the same attenuation at all energies of a tube (no body tissue has an edge there).
 enum class Basis : std::uint8_t { kWater, kBone, kIodine, kSteel };
 inline constexpr std::size_t kBases = 4;

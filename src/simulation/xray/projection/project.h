@@ -8,7 +8,7 @@
 namespace trocar::xray {
 
 /// Masses of water and bone along each ray (a digitally reconstructed radiograph before the physics of the beam). All
-/// cores. `X_PM`: the patient's motion, pose of the moved body in P (identity at rest).
+/// cores. `X_PM`: the patient's motion, pose of the moved body in P (identity at rest). docs/physics.md, X6.
 void project(const XrayVolume& volume, const XrayRays& rays, const Pose& X_PM, MassImage& masses);
 
 /// Integrals of a grid along each ray, in units of the grid times cm: for agents in a small part of the body.

@@ -9,7 +9,7 @@
 namespace trocar::xray {
 
 /// A patient as a volume of basis materials: density of water and of bone (g/cm³) in each voxel, from HU and, where the
-/// label says what it is, from the tissue's composition (data/xray_materials.toml). Only the body: a table in the CT is
+/// voxel has a label, from the tissue's composition (data/xray_materials.toml). Only the body: a table in the CT is
 /// left out. Immutable, for all threads. Eight bytes a voxel of the body.
 class XrayVolume {
  public:

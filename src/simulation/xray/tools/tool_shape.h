@@ -23,6 +23,7 @@ struct ToolShape {
 /// Adds the tools' masses along each ray: the exact chord through each piece, averaged over the pixel with
 /// weights that fall linearly to the neighbours, so that a thin wire keeps its mass and its place (to 0.1 pixel) at any
 /// magnification. The ends are flat. Tools behind the source, not finite or without a radius are left out.
+/// docs/physics.md, X7.
 void add_tools(const std::vector<ToolShape>& tools, const XrayRays& rays, MassImage& masses);
 
 }  // namespace trocar::xray
