@@ -83,7 +83,7 @@ Result<std::optional<Injection>> parse_injection(const std::string& text, double
   Injection injection;
   int read = 0;
   if (std::sscanf(text.c_str(), "%lf@%n", &injection.ml, &read) != 1 || read == 0 || !std::isfinite(injection.ml))
-    return fail_usage("--contrast is not ML@x,y,z", text, "write it as 10@-41,-12,25");
+    return fail_usage("--contrast is not ML@x,y,z", text, "write it as 10@-36.8,-62.9,16.1");
   if (injection.ml <= 0.0 || injection.ml > kMost_ml)
     return fail_usage(fmt::format("--contrast is not from 0 to {} ml", kMost_ml), text, "give the volume of a syringe");
   TROCAR_TRY(injection.place_P, parse_place("--contrast", text.substr(static_cast<std::size_t>(read))));

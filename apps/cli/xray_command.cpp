@@ -230,8 +230,8 @@ void add_xray_command(CLI::App& program, Action& action) {
   command->footer(
       "Examples:\n  trocar xray --patient ptcd-1 --out ap.png\n"
       "  trocar xray --patient ptcd-1 --carm -30,10 --needle needle.tfm --out oblique.png\n"
-      "  trocar xray --patient ptcd-1 --contrast 10@-41,-12,25 --time 12 --subtract --out ducts.png\n"
-      "  trocar xray --patient ptcd-1 --contrast 10@-41,-12,25 --time 12 --frames 30 --out run.dcm\n");
+      "  trocar xray --patient ptcd-1 --contrast 10@-36.8,-62.9,16.1 --time 12 --subtract --out ducts.png\n"
+      "  trocar xray --patient ptcd-1 --contrast 10@-36.8,-62.9,16.1 --time 12 --frames 30 --out run.dcm\n");
   const auto a = std::make_shared<XrayArguments>();
   add_cache_option(*command, a->source);
   add_xray_options(*command, *a);
