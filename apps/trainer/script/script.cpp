@@ -17,12 +17,13 @@ struct Arity {
 };
 const std::map<QString, Arity>& verbs() {
   static const std::map<QString, Arity> all = {
-      {"click", {1, 3}},       {"double-click", {1, 3}}, {"right-click", {1, 3}},   {"drag", {5, 7}},
-      {"wheel", {2, 4}},       {"wheel-until", {5, 7}},  {"key", {1, 2}},           {"key-until", {5, 7}},
-      {"type", {1, 1}},        {"choose", {2, 2}},       {"set", {2, 2}},           {"wait", {1, 1}},
-      {"wait-for", {3, 5}},    {"expect", {3, 5}},       {"expect-pixels", {4, 6}}, {"resize", {2, 2}},
-      {"screenshot", {1, 2}},  {"end-server", {1, 1}},   {"end-window", {0, 0}},    {"close-window", {0, 0}},
-      {"reset-watch", {0, 0}}, {"print", {1, 16}},       {"expect-whole", {0, 0}},
+      {"click", {1, 3}},         {"double-click", {1, 3}}, {"right-click", {1, 3}}, {"drag", {5, 7}},
+      {"wheel", {2, 4}},         {"wheel-until", {5, 7}},  {"key", {1, 2}},         {"key-until", {5, 7}},
+      {"hold", {1, 1}},          {"release", {1, 1}},      {"type", {1, 1}},        {"choose", {2, 2}},
+      {"set", {2, 2}},           {"wait", {1, 1}},         {"wait-for", {3, 5}},    {"expect", {3, 5}},
+      {"expect-pixels", {4, 6}}, {"resize", {2, 2}},       {"screenshot", {1, 2}},  {"end-server", {1, 1}},
+      {"end-window", {0, 0}},    {"close-window", {0, 0}}, {"reset-watch", {0, 0}}, {"print", {1, 16}},
+      {"expect-whole", {0, 0}},
   };
   return all;
 }

@@ -25,6 +25,7 @@ struct ScriptStep {
 ///   wheel-until NAME STEPS_PER_S FACT OP VALUE [within SECONDS]
 ///   key KEYS [TIMES]            "Ctrl+Z", "Space", to the focused widget
 ///   key-until KEYS A_SECOND FACT OP VALUE [within SECONDS]
+///   hold KEY, release KEY       a pedal
 ///   type TEXT                   to the focused widget
 ///   choose NAME TEXT            an entry of a list, box or tab
 ///   set NAME VALUE              a slider, number, check box or text field

@@ -143,6 +143,11 @@ Result<ScriptPlayer::Progress> ScriptPlayer::play(const ScriptStep& step) {
     return ++sent_ >= (a.size() > 1 ? a[1].toInt() : 1) ? Progress::kDone : Progress::kAgain;
   }
   if (verb == QLatin1String("key-until")) return play_until(step, [&] { return press_keys(*stage_.window, a[0]); });
+  if (verb == QLatin1String("hold") || verb == QLatin1String("release")) {
+    const bool is_down = verb == QLatin1String("hold");
+    TROCAR_TRY_STATUS(send_keys(*stage_.window, a[0], is_down ? KeyMotion::kDown : KeyMotion::kUp));
+    return Progress::kDone;
+  }
   if (verb == QLatin1String("type")) {
     type_text(*stage_.window, a[0]);
     return Progress::kDone;

@@ -109,7 +109,7 @@ void turn_wheel(QWidget& widget, const QPointF& place, int notches) {
   QCoreApplication::sendEvent(&target, &event);
 }
 
-Status press_keys(QWidget& window, const QString& keys) {
+Status send_keys(QWidget& window, const QString& keys, KeyMotion motion) {
   const QKeySequence sequence(keys, QKeySequence::PortableText);
   if (sequence.count() != 1 || sequence.toString().isEmpty())
     return fail("there is no key \"" + to_std(keys) + "\"", {}, "write Ctrl+Z, Space, F5 …");
@@ -122,6 +122,11 @@ Status press_keys(QWidget& window, const QString& keys) {
 #endif
   QWidget* target = &focused(window);
   const QString text = modifiers == Qt::NoModifier && key < 0x100 ? QString(QChar(key)).toLower() : QString();
+  QKeyEvent up(QEvent::KeyRelease, key, modifiers, text);
+  if (motion == KeyMotion::kUp) {
+    QCoreApplication::sendEvent(target, &up);
+    return {};
+  }
   // An override event first, as from the window system: text fields keep their keys.
   QKeyEvent override_event(QEvent::ShortcutOverride, key, modifiers, text);
   override_event.ignore();
@@ -131,8 +136,7 @@ Status press_keys(QWidget& window, const QString& keys) {
   }
   QKeyEvent down(QEvent::KeyPress, key, modifiers, text);
   QCoreApplication::sendEvent(target, &down);
-  QKeyEvent up(QEvent::KeyRelease, key, modifiers, text);
-  QCoreApplication::sendEvent(target, &up);
+  if (motion == KeyMotion::kPress) QCoreApplication::sendEvent(target, &up);
   return {};
 }
 

@@ -21,7 +21,11 @@ void double_click(QWidget& widget, const QPointF& place);
 void turn_wheel(QWidget& widget, const QPointF& place, int notches);
 /// Sends a key or chord by its name, "Ctrl+Z", to the focused widget of the active window, including shortcuts. Error:
 /// no such key.
-Status press_keys(QWidget& window, const QString& keys);
+enum class KeyMotion { kPress, kDown, kUp };
+Status send_keys(QWidget& window, const QString& keys, KeyMotion motion);
+inline Status press_keys(QWidget& window, const QString& keys) {
+  return send_keys(window, keys, KeyMotion::kPress);
+}
 void type_text(QWidget& window, const QString& text);
 /// Selects an entry of a list, box or tab bar by its text; set_value sets a slider, number, check box or text field.
 /// Error: the widget has no such entry or value.
