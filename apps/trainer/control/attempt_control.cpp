@@ -14,6 +14,7 @@
 #include "views/patient/patient_view.h"
 #include "views/plots/force_plot.h"
 #include "views/ultrasound/ultrasound_view.h"
+#include "views/xray/xray_view.h"
 #include "workspace/shot_display.h"
 #include "workspace/workspace.h"
 
@@ -75,6 +76,7 @@ AttemptControl::AttemptControl(std::shared_ptr<const cases::OpenCase> open, cons
   if (const auto& X_PN_start = attempt_.options().X_PN_start) needle_.put(*X_PN_start);
   page_.workspace().show_help(choice_.difficulty);  // the replay of the last attempt showed all
   page_.workspace().set_tip_hidden(is_tip_hidden());
+  choose_layout();
   connect_panel();
   ForcePlot& plot = page_.forces();
   plot.clear();
@@ -87,7 +89,7 @@ AttemptControl::AttemptControl(std::shared_ptr<const cases::OpenCase> open, cons
     constexpr double kMoved_mm = 0.5;
     return (attempt_.view().needle.X_PN.p() - view_.needle.X_PN.p()).norm() > kMoved_mm;
   });
-  page_.puncture().begin(kFullForce_n, choice_.difficulty == Difficulty::kGuided);
+  page_.puncture().begin(kFullForce_n, choice_.difficulty == Difficulty::kGuided, open_->the_case.needle.is_biopsy);
   take(ActiveTool::kNeedle);
 }
 
@@ -95,6 +97,15 @@ AttemptControl::~AttemptControl() {
   page_.view_3d().set_interrupt({});
   page_.workspace().set_tip_hidden(false);
   gestures_.unwatch();
+}
+
+/// A task that limits the dose is done under fluoroscopy.
+void AttemptControl::choose_layout() {
+  Workspace& workspace = page_.workspace();
+  const QString xray = QStringLiteral("X-ray"), usual = QStringLiteral("Puncture");
+  const bool is_by_xray = open_->the_case.task.dose_limit_gycm2 > 0.0;
+  if (is_by_xray && workspace.layout_name() == usual) workspace.choose_layout(xray);
+  if (!is_by_xray && workspace.layout_name() == xray) workspace.choose_layout(usual);
 }
 
 void AttemptControl::connect_panel() {
@@ -283,6 +294,7 @@ void AttemptControl::show_tools(double dt_s) {
   tools.are_moving = still_s_ < kStill_s;
   if (view_.shot) show_shot(tools, *view_.shot, view_.since_shot_s, needle.depth_mm);
   page_.workspace().show_tools(tools);
+  if (tasks::XrayUse use = page_.xray().use(); use != xray_) attempt_.note_xray(xray_ = use);
 }
 
 double AttemptControl::distance_mm() const {
@@ -339,6 +351,9 @@ QVariantMap AttemptControl::facts() const {
   facts[QStringLiteral("probe_up_mm")] = -view_.probe.X_PT.p().y();
   facts[QStringLiteral("is_asking")] = page_.puncture().is_asking();
   facts[QStringLiteral("restarts")] = view_.servers[0].restarts;
+  facts[QStringLiteral("xray_beam_s")] = xray_.beam_s;
+  facts[QStringLiteral("xray_dose_gycm2")] = xray_.dose_area_gycm2;
+  facts[QStringLiteral("contrast_ml")] = xray_.contrast_ml;
   facts[QStringLiteral("session")] = to_qt(attempt_.session_path().string());
   return facts;
 }

@@ -45,6 +45,7 @@ class AttemptControl : public QObject {
 
  private:
   enum class Question { kEnd, kClose };
+  void choose_layout();
   void connect_panel();
   void gesture(const Gesture& gesture);
   bool take_key(const QKeyEvent& key, const KeyPlace& place);
@@ -77,6 +78,7 @@ class AttemptControl : public QObject {
   PageKeys keys_;
   bool is_clamped_[2] = {false, false};  ///< Indexed by Tool.
   attempt::AttemptView view_;
+  tasks::XrayUse xray_;  ///< As noted last.
   bool has_shown_shot_ = false;
   double still_s_ = 0.0;
   Question question_ = Question::kEnd;  ///< The last question.

@@ -14,6 +14,7 @@
 #include "views/plots/force_plot.h"
 #include "views/plots/time_line.h"
 #include "views/ultrasound/ultrasound_view.h"
+#include "views/xray/xray_view.h"
 #include "workspace/workspace.h"
 
 namespace trocar::trainer {
@@ -38,8 +39,9 @@ WorkPage::WorkPage(QWidget* parent) : QWidget(parent) {
   workspace_ = new Workspace;
   view_3d_ = workspace_->find<PatientView>("3d");
   ultrasound_ = workspace_->find<UltrasoundView>("ultrasound");
+  xray_ = workspace_->find<XrayView>("xray");
   forces_ = workspace_->find<ForcePlot>("forces");
-  TROCAR_CHECK(view_3d_ != nullptr && ultrasound_ != nullptr && forces_ != nullptr);
+  TROCAR_CHECK(view_3d_ != nullptr && ultrasound_ != nullptr && xray_ != nullptr && forces_ != nullptr);
   time_line_ = new TimeLine;
   time_line_->setObjectName(QStringLiteral("time-line"));
   time_line_->hide();

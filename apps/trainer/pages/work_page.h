@@ -14,6 +14,7 @@ class PuncturePanel;
 class TimeLine;
 class UltrasoundView;
 class Workspace;
+class XrayView;
 
 /// The views, with a side panel: figures and tools during the puncture, score and replay afterwards.
 class WorkPage : public QWidget {
@@ -26,6 +27,7 @@ class WorkPage : public QWidget {
   /// Views for attempt and replay.
   PatientView& view_3d() noexcept { return *view_3d_; }
   UltrasoundView& ultrasound() noexcept { return *ultrasound_; }
+  XrayView& xray() noexcept { return *xray_; }
   ForcePlot& forces() noexcept { return *forces_; }
   PuncturePanel& puncture() noexcept { return *puncture_; }
   FeedbackPanel& feedback() noexcept { return *feedback_; }
@@ -53,6 +55,7 @@ class WorkPage : public QWidget {
   Workspace* workspace_ = nullptr;
   PatientView* view_3d_ = nullptr;
   UltrasoundView* ultrasound_ = nullptr;
+  XrayView* xray_ = nullptr;
   ForcePlot* forces_ = nullptr;
   QStackedWidget* side_ = nullptr;
   PuncturePanel* puncture_ = nullptr;

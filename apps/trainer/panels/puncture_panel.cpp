@@ -165,7 +165,8 @@ bool PuncturePanel::is_asking() const {
 void PuncturePanel::answer(bool is_yes) {
   for (QShortcut* shortcut : answers_) shortcut->setEnabled(false);
   question_->hide();
-  for (QWidget* covered : {fire_, end_}) covered->show();
+  fire_->setVisible(has_gun_);
+  end_->show();
   if (is_yes) Q_EMIT confirmed();
 }
 
@@ -183,7 +184,8 @@ QWidget* PuncturePanel::make_figures() {
   return box;
 }
 
-void PuncturePanel::begin(double most_force_n, bool can_aim) {
+void PuncturePanel::begin(double most_force_n, bool can_aim, bool has_gun) {
+  has_gun_ = has_gun;
   aim_->setEnabled(can_aim);
   aim_->setToolTip(can_aim ? tr("Move needle or transducer to its planned position (H)")
                            : tr("The planned position is available in guided attempts only"));

@@ -46,8 +46,8 @@ class PuncturePanel : public QWidget {
  public:
   explicit PuncturePanel(QWidget* parent = nullptr);
 
-  /// `can_aim`: the tools may be moved to their planned poses.
-  void begin(double most_force_n, bool can_aim);
+  /// `can_aim`: the tools may be moved to their planned poses. `has_gun`: the needle is that of a biopsy gun.
+  void begin(double most_force_n, bool can_aim, bool has_gun = true);
   void show_figures(const PunctureFigures& figures);
   void show_active_tool(ActiveTool tool);
   /// A bad event has the colour of errors.
@@ -87,6 +87,7 @@ class PuncturePanel : public QWidget {
   CorePicture* core_ = nullptr;
   QListWidget* events_ = nullptr;
   QPushButton* fire_ = nullptr;
+  bool has_gun_ = true;
   QPushButton* end_ = nullptr;
   QFrame* question_ = nullptr;
   QLabel* question_text_ = nullptr;

@@ -262,6 +262,12 @@ TEST_F(WindowTest, TwoHapticDevicesAreNamedTestedAndMoveATool) {
   EXPECT_GT(premium.strongest_n, 0.3) << "the tissue was felt";
 }
 
+TEST_F(WindowTest, ABileDuctIsPuncturedUnderFluoroscopy) {
+  const QStringList choice{QStringLiteral("--task"), QStringLiteral("ptcd"), QStringLiteral("--patient"),
+                           QStringLiteral("ptcd-1")};
+  expect_played(run(choice + QStringList{QStringLiteral("--script"), script_named("fluoroscopy.txt")}));
+}
+
 TEST_F(WindowTest, AnAttemptThatACrashCutOffCanBeSeenAgain) {
   // The window is killed in mid-puncture by its own script's host.
   const QString script = write("cut.txt",

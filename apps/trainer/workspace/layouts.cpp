@@ -43,7 +43,7 @@ const std::vector<Layout>& built_in_layouts() {
         {{cell({"coronal"}, 1), cell({"across"}, 1)}, 1},
         {{cell({"sagittal"}, 1), cell({"3d"}, 1)}, 1}}},
       {QStringLiteral("X-ray"),
-       {{{cell({"xray"}, 1)}, 58}, {{cell({"3d"}, 44), cell({"ultrasound"}, 32), cell({"forces"}, 24)}, 42}}},
+       {{{cell({"xray"}, 1)}, 64}, {{cell({"3d"}, 44), cell({"ultrasound"}, 32), cell({"forces"}, 24)}, 36}}},
   };
   return layouts;
 }

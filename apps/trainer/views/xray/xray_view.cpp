@@ -31,6 +31,16 @@ xray::CArmPreset load_unit() {
   return plain;
 }
 
+/// With a dark edge, so that it can be read on bright parts of the image.
+void draw_text(QPainter& painter, const QRectF& area, int flags, const QString& text) {
+  const QPen pen = painter.pen();
+  painter.setPen(Qt::black);
+  for (const QPointF by : {QPointF(-1, 0), QPointF(1, 0), QPointF(0, -1), QPointF(0, 1)})
+    painter.drawText(area.translated(by), flags, text);
+  painter.setPen(pen);
+  painter.drawText(area, flags, text);
+}
+
 QString angle_text(double degrees, const QString& positive, const QString& negative) {
   return QStringLiteral("%1 %2°").arg(degrees < 0.0 ? negative : positive).arg(std::abs(degrees), 0, 'f', 0);
 }
@@ -200,26 +210,26 @@ void XrayView::draw_texts(QPainter& painter) const {
   const QRectF area = QRectF(rect()).marginsRemoved({kMargin_px, kMargin_px, kMargin_px, kMargin_px});
   painter.setPen(QColor(214, 222, 230));
   if (const QString text = message(); !text.isEmpty())
-    painter.drawText(area, static_cast<int>(Qt::AlignCenter) | Qt::TextWordWrap, text);
+    draw_text(painter, area, static_cast<int>(Qt::AlignCenter) | Qt::TextWordWrap, text);
   const xray::CArm& arm = settings_.arm;
   const QString position = angle_text(arm.lao_deg, tr("LAO"), tr("RAO")) + QLatin1Char('\n') +
                            angle_text(arm.cranial_deg, tr("CRAN"), tr("CAUD")) + QLatin1Char('\n') +
                            tr("Field %1 cm").arg(arm.field_mm / 10.0, 0, 'f', 0);
-  painter.drawText(area, Qt::AlignLeft | Qt::AlignBottom, position);
+  draw_text(painter, area, Qt::AlignLeft | Qt::AlignBottom, position);
   if (!frame_) return;
   const xray::Exposure& exposure = frame_->exposure;
-  painter.drawText(area, Qt::AlignLeft | Qt::AlignTop,
-                   tr("%1 kV\n%2 mAs\n%3 pulses/s")
-                       .arg(exposure.tube.kv, 0, 'f', 0)
-                       .arg(exposure.mas, 0, 'f', 2)
-                       .arg(settings_.pulses_per_s));
-  painter.drawText(area, Qt::AlignRight | Qt::AlignBottom,
-                   tr("%1 s\n%2 mGy\n%3 Gy cm²")
-                       .arg(frame_->dose.beam_on_s, 0, 'f', 1)
-                       .arg(frame_->dose.air_kerma_mgy, 0, 'f', 2)
-                       .arg(1e-3 * frame_->dose.area_product_mgy_cm2, 0, 'f', 2));
+  draw_text(painter, area, Qt::AlignLeft | Qt::AlignTop,
+            tr("%1 kV\n%2 mAs\n%3 pulses/s")
+                .arg(exposure.tube.kv, 0, 'f', 0)
+                .arg(exposure.mas, 0, 'f', 2)
+                .arg(settings_.pulses_per_s));
+  draw_text(painter, area, Qt::AlignRight | Qt::AlignBottom,
+            tr("%1 s\n%2 mGy\n%3 Gy cm²")
+                .arg(frame_->dose.beam_on_s, 0, 'f', 1)
+                .arg(frame_->dose.air_kerma_mgy, 0, 'f', 2)
+                .arg(1e-3 * frame_->dose.area_product_mgy_cm2, 0, 'f', 2));
   painter.setPen(frame_->is_held ? QColor(150, 160, 172) : QColor(255, 196, 60));
-  painter.drawText(area, Qt::AlignRight | Qt::AlignTop, frame_->is_held ? tr("Last image") : tr("● X-rays on"));
+  draw_text(painter, area, Qt::AlignRight | Qt::AlignTop, frame_->is_held ? tr("Last image") : tr("● X-rays on"));
 }
 
 void XrayView::mousePressEvent(QMouseEvent* event) {
