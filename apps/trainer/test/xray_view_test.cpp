@@ -93,6 +93,9 @@ TEST_F(XrayViewTest, MouseMovesTableArmAndField) {
   drag(view, {200, 200}, {300, 150}, Qt::RightButton);
   EXPECT_NEAR(view.settings().arm.lao_deg, 30.0, 1.0);
   EXPECT_NEAR(view.settings().arm.cranial_deg, 15.0, 1.0);
+  const Vec3 low_P = view.settings().arm.isocentre_P;
+  view.change_settings([](XraySettings& s) { s.table_mm = 50.0; });
+  EXPECT_NEAR(view.settings().arm.isocentre_P.y(), low_P.y() + 50.0, 1e-9) << "supine: the table raises him";
   const double field_mm = view.settings().arm.field_mm;
   wheel(view, {200, 200}, 120);
   EXPECT_LT(view.settings().arm.field_mm, field_mm);

@@ -137,6 +137,10 @@ QWidget* XrayControls::make_c_arm() {
           [this](int v) { view_.change_settings([=](XraySettings& s) { s.arm.lao_deg = v; }); });
   connect(cranial_, &QSlider::valueChanged, this,
           [this](int v) { view_.change_settings([=](XraySettings& s) { s.arm.cranial_deg = v; }); });
+  table_ = add_slider(*grid, "xray-table", tr("Table"), tr("Height of the table: nearer to the detector is smaller"),
+                      -150, 150, table_value_);
+  connect(table_, &QSlider::valueChanged, this,
+          [this](int v) { view_.change_settings([=](XraySettings& s) { s.table_mm = v; }); });
   field_ = add_choice(*grid, "xray-field", tr("Field"), tr("Edge of the field: a smaller one magnifies"));
   for (const double field_mm : view_.unit().fields_mm)
     field_->addItem(tr("%1 cm").arg(field_mm / 10.0, 0, 'f', 0), field_mm);
@@ -203,6 +207,7 @@ void XrayControls::show_view() {
   };
   show(*lao_, *lao_value_, s.arm.lao_deg, QStringLiteral("°"));
   show(*cranial_, *cranial_value_, s.arm.cranial_deg, QStringLiteral("°"));
+  show(*table_, *table_value_, s.table_mm, QStringLiteral(" mm"));
   show(*across_, *across_value_, 100.0 * s.arm.collimation[0], QStringLiteral(" %"));
   show(*along_, *along_value_, 100.0 * s.arm.collimation[1], QStringLiteral(" %"));
   field_->setCurrentIndex(field_->findData(s.arm.field_mm));

@@ -34,8 +34,9 @@ class XrayControls : public QWidget {
 
   XrayView& view_;
   QPushButton *pedal_ = nullptr, *inject_ = nullptr;
-  QSlider *lao_ = nullptr, *cranial_ = nullptr, *across_ = nullptr, *along_ = nullptr;
-  QLabel *lao_value_ = nullptr, *cranial_value_ = nullptr, *across_value_ = nullptr, *along_value_ = nullptr;
+  QSlider *lao_ = nullptr, *cranial_ = nullptr, *across_ = nullptr, *along_ = nullptr, *table_ = nullptr;
+  QLabel *lao_value_ = nullptr, *cranial_value_ = nullptr, *across_value_ = nullptr, *along_value_ = nullptr,
+         *table_value_ = nullptr;
   QComboBox *field_ = nullptr, *pulses_ = nullptr, *dose_ = nullptr, *mode_ = nullptr;
   QCheckBox* inverted_ = nullptr;
 };

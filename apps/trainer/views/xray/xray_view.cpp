@@ -20,6 +20,7 @@ constexpr const char* kUnit = "angiography";
 constexpr double kTurn_deg_per_px = 0.3;
 constexpr double kMargin_px = 10.0;
 constexpr double kLeastCollimation = 0.1;
+constexpr double kMostTable_mm = 150.0;
 constexpr double kIodine_mg_per_ml = 300.0;
 
 xray::CArmPreset load_unit() {
@@ -77,6 +78,7 @@ void XrayView::show_patient(std::shared_ptr<const anatomy::VirtualPatient> patie
   set_injecting(false);
   opened_s_ = -1.0;
   change_settings([&](XraySettings& s) {
+    s.table_mm = 0.0;
     s.arm = unit_.arm;
     s.mode = xray::ImageMode::kLive;
   });
@@ -130,7 +132,9 @@ xray::FluoroscopyRequest XrayView::make_request(double now_s) const {
   xray::FluoroscopyRequest request;
   request.arm = settings_.arm;
   request.filters = settings_.filters;
-  request.dose_mode = settings_.dose_mode;
+  // At the dose of fluoroscopy a subtraction is mostly noise.
+  request.dose_mode =
+      settings_.mode == xray::ImageMode::kSubtraction ? xray::DoseMode::kAcquisition : settings_.dose_mode;
   request.pulses_per_s = settings_.pulses_per_s;
   if (shaft_P_.size() > 1) {
     xray::ToolShape needle;
@@ -152,7 +156,12 @@ xray::FluoroscopyRequest XrayView::make_request(double now_s) const {
 }
 
 void XrayView::change_settings(const std::function<void(XraySettings&)>& change) {
+  const double table_mm = settings_.table_mm;
   change(settings_);
+  settings_.table_mm = std::clamp(settings_.table_mm, -kMostTable_mm, kMostTable_mm);
+  // The patient goes up with the table: the isocentre goes towards what is below in him.
+  settings_.arm.isocentre_P +=
+      (settings_.table_mm - table_mm) * (patient_ ? anatomy::gravity_P(patient_->posture) : Vec3(Vec3::UnitY()));
   xray::CArm& arm = settings_.arm;
   arm.lao_deg = std::clamp(arm.lao_deg, -unit_.largest_lao_deg, unit_.largest_lao_deg);
   arm.cranial_deg = std::clamp(arm.cranial_deg, -unit_.largest_cranial_deg, unit_.largest_cranial_deg);
