@@ -12,6 +12,8 @@
 #include "core/log.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
+#include "ultrasound/doppler/flow_table.h"
+#include "ultrasound/doppler/vessel_flow.h"
 
 namespace trocar::trainer {
 namespace {
@@ -40,6 +42,15 @@ void draw_text(QPainter& painter, const QRectF& area, int flags, const QString& 
     painter.drawText(area.translated(by), flags, text);
   painter.setPen(pen);
   painter.drawText(area, flags, text);
+}
+
+/// Blood in the patient's vessels, which carries contrast agent away.
+xray::BloodVelocity blood_of(const anatomy::VirtualPatient& patient) {
+  auto table = ultrasound::load_flow_table(data_dir() / "flow.toml");
+  if (!table) return {};
+  auto flow = ultrasound::make_vessel_flow(patient, *std::move(table), {}, {});
+  if (!flow) return {};
+  return [flow = *std::move(flow)](const Vec3& p_P, double time_s) { return flow->velocity_P(p_P, time_s); };
 }
 
 QString angle_text(double degrees, const QString& positive, const QString& negative) {
@@ -91,17 +102,19 @@ void XrayView::prepare() {
     preparing_ =
         BackgroundJob<Prepared>([patient = patient_, middle_P = find_middle_P_](const Progress&) -> Result<Prepared> {
           TROCAR_TRY(auto volume, xray::XrayVolume::make(patient));
-          return Prepared{std::move(volume), middle_P()};
+          return Prepared{std::move(volume), middle_P(), blood_of(*patient)};
         });
     return;
   }
   auto made = preparing_.take();
   if (!made) return;
   if (*made) {
-    fluoroscope_ = std::make_unique<xray::LiveFluoroscope>();
+    xray::LiveFluoroscopeOptions options = xray::default_live_fluoroscope_options();
+    options.detector.scintillator_mm = unit_.detector_mm;
+    fluoroscope_ = std::make_unique<xray::LiveFluoroscope>(options);
     fluoroscope_->open((*made)->volume);
     change_settings([&](XraySettings& s) { s.arm.isocentre_P = (*made)->middle_P; });
-    contrast_.open(patient_);
+    contrast_.open(patient_, (*made)->blood);
     has_volume_ = true;
   } else {
     failure_ = to_qt(made->error().text());

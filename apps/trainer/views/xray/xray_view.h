@@ -77,6 +77,7 @@ class XrayView : public QWidget {
   struct Prepared {
     std::shared_ptr<const xray::XrayVolume> volume;
     Vec3 middle_P;
+    xray::BloodVelocity blood;  ///< Empty: no vessel has flow.
   };
   void prepare();
   xray::FluoroscopyRequest make_request(double now_s) const;

@@ -4,6 +4,7 @@ namespace trocar::xray {
 
 /// A flat-panel detector of caesium iodide with an anti-scatter grid.
 struct DetectorParams {
+  double scintillator_mm = 0.6;  ///< Thickness of the caesium iodide. Range 0.1..2.
   /// Scatter-to-primary ratio before the grid per g/cm² on the ray, in a field much wider than scatter_spread_mm: 3
   /// behind 20 cm of water, as in a field of 30 x 30 cm (Bushberg et al., The Essential Physics of Medical Imaging,
   /// chapter on radiography). Range 0..0.5.

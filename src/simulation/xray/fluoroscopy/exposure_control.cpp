@@ -69,7 +69,7 @@ Result<Beam> BeamCache::beam(const Tube& tube) {
   const std::array<double, 3> key{tube.kv, tube.aluminium_mm, tube.copper_mm};
   if (const auto found = beams_.find(key); found != beams_.end()) return found->second;
   TROCAR_TRY(const Spectrum spectrum, tube_spectrum(tube));
-  TROCAR_TRY(Beam beam, Beam::make(spectrum));
+  TROCAR_TRY(Beam beam, Beam::make(spectrum, scintillator_mm_));
   return beams_.emplace(key, std::move(beam)).first->second;
 }
 

@@ -42,9 +42,12 @@ struct Exposure {
 /// Beams by tube. Making one takes milliseconds; exposure control steps the voltage by 2 kV and comes back to the same.
 class BeamCache {
  public:
+  /// `scintillator_mm`: thickness of the detector's caesium iodide.
+  explicit BeamCache(double scintillator_mm = 0.6) : scintillator_mm_(scintillator_mm) {}
   Result<Beam> beam(const Tube& tube);
 
  private:
+  double scintillator_mm_;
   std::map<std::array<double, 3>, Beam> beams_;
 };
 

@@ -18,7 +18,7 @@ int projected_pixels(int pixels, XrayDetail detail) noexcept;
 class PatientImage {
  public:
   PatientImage(std::shared_ptr<const XrayVolume> volume, const DetectorParams& params)
-      : volume_(std::move(volume)), params_(params) {}
+      : volume_(std::move(volume)), params_(params), beams_(params.scintillator_mm) {}
 
   /// Brings all up to date for a request; a finer projection than asked for is kept. Errors: the C-arm's or the
   /// spectrum's.
