@@ -8,12 +8,11 @@
 #include <cmath>
 #include <utility>
 
+#include "cases/contrast_blood.h"
 #include "core/files/data_dir.h"
 #include "core/log.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
-#include "ultrasound/doppler/flow_table.h"
-#include "ultrasound/doppler/vessel_flow.h"
 
 namespace trocar::trainer {
 namespace {
@@ -42,15 +41,6 @@ void draw_text(QPainter& painter, const QRectF& area, int flags, const QString& 
     painter.drawText(area.translated(by), flags, text);
   painter.setPen(pen);
   painter.drawText(area, flags, text);
-}
-
-/// Blood in the patient's vessels, which carries contrast agent away.
-xray::BloodVelocity blood_of(const anatomy::VirtualPatient& patient) {
-  auto table = ultrasound::load_flow_table(data_dir() / "flow.toml");
-  if (!table) return {};
-  auto flow = ultrasound::make_vessel_flow(patient, *std::move(table), {}, {});
-  if (!flow) return {};
-  return [flow = *std::move(flow)](const Vec3& p_P, double time_s) { return flow->velocity_P(p_P, time_s); };
 }
 
 QString angle_text(double degrees, const QString& positive, const QString& negative) {
@@ -102,7 +92,7 @@ void XrayView::prepare() {
     preparing_ =
         BackgroundJob<Prepared>([patient = patient_, middle_P = find_middle_P_](const Progress&) -> Result<Prepared> {
           TROCAR_TRY(auto volume, xray::XrayVolume::make(patient));
-          return Prepared{std::move(volume), middle_P(), blood_of(*patient)};
+          return Prepared{std::move(volume), middle_P(), cases::contrast_blood(*patient)};
         });
     return;
   }
