@@ -4,10 +4,12 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
+#include <string_view>
+#include <vector>
 
 #include "core/files/data_dir.h"
+#include "core/parse_number.h"
 #include "number_option.h"
 #include "xray/geometry/c_arm_presets.h"
 
@@ -17,24 +19,47 @@ namespace {
 constexpr double kMost_ml = 200.0;
 constexpr double kFarthest_mm = 2000.0;
 
-/// Two numbers, "30,-10".
+/// "30,-10": `count` finite decimal numbers with commas between; empty if the text is anything else.
+std::optional<std::vector<double>> parse_numbers(std::string_view text, std::size_t count) {
+  std::vector<double> numbers;
+  for (std::size_t n = 0; n < count; ++n) {
+    if (n > 0) {
+      if (!text.starts_with(',')) return std::nullopt;
+      text.remove_prefix(1);
+    }
+    const auto number = find_leading_number<double>(text);
+    if (!number) return std::nullopt;
+    numbers.push_back(number->value);
+    text = number->rest;
+  }
+  if (!text.empty()) return std::nullopt;
+  return numbers;
+}
+
 Result<std::array<double, 2>> parse_pair(const char* option, const std::string& text) {
-  std::array<double, 2> pair{};
-  int read = 0;
-  const bool is_read = std::sscanf(text.c_str(), "%lf,%lf%n", &pair[0], &pair[1], &read) == 2 &&
-                       static_cast<std::size_t>(read) == text.size();
-  if (is_read && std::isfinite(pair[0]) && std::isfinite(pair[1])) return pair;
+  if (const auto pair = parse_numbers(text, 2)) return std::array{(*pair)[0], (*pair)[1]};
   return fail_usage(fmt::format("{} is not two numbers with a comma between", option), text, "write it as 30,-10");
 }
 
 Result<Vec3> parse_place(const char* option, const std::string& text) {
-  Vec3 p;
-  int read = 0;
-  const bool is_read = std::sscanf(text.c_str(), "%lf,%lf,%lf%n", &p.x(), &p.y(), &p.z(), &read) == 3 &&
-                       static_cast<std::size_t>(read) == text.size();
-  if (is_read && p.allFinite() && p.norm() < kFarthest_mm) return p;
+  if (const auto numbers = parse_numbers(text, 3)) {
+    const Vec3 p((*numbers)[0], (*numbers)[1], (*numbers)[2]);
+    if (p.norm() < kFarthest_mm) return p;
+  }
   return fail_usage(fmt::format("{} is not a place x,y,z in mm (LPS), within 2 m", option), text,
                     "write it as -41,-12.5,25");
+}
+
+/// Angles and field that the unit has.
+Status check_reach(const XrayArguments& a, const xray::CArmPreset& unit, const xray::CArm& arm) {
+  const double lao_deg = unit.largest_lao_deg, cranial_deg = unit.largest_cranial_deg;
+  if (std::abs(arm.lao_deg) > lao_deg || std::abs(arm.cranial_deg) > cranial_deg)
+    return fail_usage(fmt::format("--carm is beyond the reach of the unit \"{}\"", unit.name), a.carm,
+                      fmt::format("LAO or RAO to {:g}, cranial or caudal to {:g} degrees", lao_deg, cranial_deg));
+  if (arm.field_mm > unit.arm.field_mm)
+    return fail_usage(fmt::format("--field is larger than that of the unit \"{}\"", unit.name),
+                      fmt::format("{:g} mm", arm.field_mm), fmt::format("at most {:g} mm", unit.arm.field_mm));
+  return {};
 }
 
 }  // namespace
@@ -56,21 +81,26 @@ void add_xray_options(CLI::App& command, XrayArguments& a) {
   command.add_option("--dose", a.dose, "Dose at the detector")
       ->check(CLI::IsMember({"low", "normal", "high"}))
       ->capture_default_str();
-  command.add_option("--needle", a.needle,
-                     "X_PN: transform from the needle (tip at 0, +z towards the tip) to the patient (.tfm)");
+  CLI::Option* const needle = command.add_option(
+      "--needle", a.needle, "X_PN: transform from the needle (tip at 0, +z towards the tip) to the patient (.tfm)");
   arguments::number_within(command.add_option("--needle-diameter", a.needle_mm, "Outer diameter of the needle"), 0.2,
                            5.0, "mm")
+      ->needs(needle)
       ->capture_default_str();
-  command.add_option("--contrast", a.contrast, "Contrast agent, ML@x,y,z: volume (ml) and place of the tip (mm, LPS)");
+  CLI::Option* const contrast = command.add_option(
+      "--contrast", a.contrast, "Contrast agent, ML@x,y,z: volume (ml) and place of the tip (mm, LPS)");
   arguments::number_within(command.add_option("--rate", a.rate_ml_per_s, "Rate of the injection"), 0.05, 20.0, "ml/s")
+      ->needs(contrast)
       ->capture_default_str();
   arguments::number_within(
       command.add_option("--time", a.time_s, "Time since the injection began; without it: when it ends"), 0.0, 3600.0,
-      "s");
+      "s")
+      ->needs(contrast);
   arguments::whole_number_within(command.add_option("--frames", a.frames, "Images over that time, as one .dcm"), 1,
                                  1000)
       ->capture_default_str();
-  command.add_flag("--subtract", a.is_subtracted, "Digital subtraction: only what the contrast agent adds");
+  command.add_flag("--subtract", a.is_subtracted, "Digital subtraction: only what the contrast agent adds")
+      ->needs(contrast);
   command.add_flag("--inverted", a.is_inverted, "Bones white, as in a radiograph");
   arguments::seed_number(command.add_option("--seed", a.seed, "Seed of the noise"))->capture_default_str();
   command.add_option("--out", a.out, "Output: .png, .nrrd (attenuation -ln of the signal) or .dcm (DICOM XA)")
@@ -81,12 +111,14 @@ void add_xray_options(CLI::App& command, XrayArguments& a) {
 Result<std::optional<Injection>> parse_injection(const std::string& text, double ml_per_s) {
   if (text.empty()) return std::optional<Injection>();
   Injection injection;
-  int read = 0;
-  if (std::sscanf(text.c_str(), "%lf@%n", &injection.ml, &read) != 1 || read == 0 || !std::isfinite(injection.ml))
+  const auto ml = find_leading_number<double>(text);
+  if (!ml || !ml->rest.starts_with('@'))
     return fail_usage("--contrast is not ML@x,y,z", text, "write it as 10@-36.8,-62.9,16.1");
+  injection.ml = ml->value;
   if (injection.ml <= 0.0 || injection.ml > kMost_ml)
-    return fail_usage(fmt::format("--contrast is not from 0 to {} ml", kMost_ml), text, "give the volume of a syringe");
-  TROCAR_TRY(injection.place_P, parse_place("--contrast", text.substr(static_cast<std::size_t>(read))));
+    return fail_usage("--contrast has a volume that cannot be injected", text,
+                      fmt::format("give more than 0 and at most {:g} ml", kMost_ml));
+  TROCAR_TRY(injection.place_P, parse_place("--contrast", std::string(ml->rest.substr(1))));
   injection.ml_per_s = ml_per_s;
   return std::optional<Injection>(injection);
 }
@@ -105,6 +137,7 @@ Result<xray::FluoroscopyRequest> parse_request(const XrayArguments& a) {
   request.arm.pixels = a.pixels;
   TROCAR_TRY(request.arm.collimation, parse_pair("--collimate", a.collimate));
   TROCAR_TRY_STATUS(xray::check_c_arm(request.arm));
+  TROCAR_TRY_STATUS(check_reach(a, unit, request.arm));
   request.filters = {unit.kv, unit.aluminium_mm, unit.copper_mm};
   request.dose_mode = a.dose == "low"    ? xray::DoseMode::kLow
                       : a.dose == "high" ? xray::DoseMode::kHigh

@@ -32,14 +32,15 @@ struct XrayArguments {
 
 /// ML@x,y,z of --contrast.
 struct Injection {
-  double ml = 0.0, ml_per_s = 1.0, iodine_mg_per_ml = 300.0;
+  double ml = 0.0, ml_per_s = 1.0;
   Vec3 place_P = Vec3::Zero();
 };
 
 void add_xray_options(CLI::App& command, XrayArguments& a);
-/// Empty without a text. Usage errors (exit status 2): not ML@x,y,z, less than 0 or more than 200 ml.
+/// Empty without a text. Usage errors (exit status 2): not ML@x,y,z, a volume that is not above 0 and up to 200 ml.
 Result<std::optional<Injection>> parse_injection(const std::string& text, double ml_per_s);
-/// C-arm, exposure and display; the isocentre is --at, or 0.
+/// C-arm, exposure and display; the isocentre is --at, or 0. Usage errors: an unknown unit, angles or a field that it
+/// does not have.
 Result<xray::FluoroscopyRequest> parse_request(const XrayArguments& a);
 /// The ending, and --frames with it.
 Status check_xray_output(const XrayArguments& a);

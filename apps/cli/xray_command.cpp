@@ -21,7 +21,6 @@
 #include "ultrasound_scan.h"
 #include "xray/contrast/contrast_flow.h"
 #include "xray/fluoroscopy/fluoroscope.h"
-#include "xray/geometry/c_arm_presets.h"
 #include "xray_arguments.h"
 
 namespace trocar::cli {
@@ -40,6 +39,7 @@ struct Room {
   xray::FluoroscopyRequest request;
   std::optional<xray::ContrastFlow> flow;
   std::optional<Injection> injection;
+  double iodine_mg_per_ml = 0.0;  ///< Of the contrast agent.
 };
 
 /// Where the arm looks without --at: the needle's tip, the injection, or the middle of the body.
@@ -59,6 +59,57 @@ xray::ToolShape needle_of(const Pose& X_PN, double diameter_mm) {
   return needle;
 }
 
+/// Whether a ray meets the body between source and detector.
+bool is_body_in_beam(const xray::XrayVolume& volume, const xray::CArm& arm) {
+  constexpr int kPlaces = 17;  // along each edge of the detector
+  constexpr double kApart_mm = 5.0;
+  const xray::XrayRays rays = xray::rays_of(arm);
+  const double share = (arm.pixels - 1.0) / (kPlaces - 1), step = kApart_mm / arm.source_detector_mm;
+  for (int row = 0; row < kPlaces; ++row)
+    for (int column = 0; column < kPlaces; ++column) {
+      const Vec3 ray_P = rays.pixel_P(column * share, row * share) - rays.source_P;
+      for (double at = 0.0; at < 1.0; at += step)
+        if (volume.is_inside_body(rays.source_P + at * ray_P)) return true;
+    }
+  return false;
+}
+
+/// Usage errors: source or detector inside the body, no ray meets the body.
+Status check_beam(const xray::XrayVolume& volume, const xray::CArm& arm) {
+  TROCAR_TRY_STATUS(xray::check_source(volume, arm));
+  if (is_body_in_beam(volume, arm)) return {};
+  const Vec3& p = arm.isocentre_P;
+  return fail_usage("the X-ray beam misses the patient", fmt::format("C-arm at {:g},{:g},{:g}", p.x(), p.y(), p.z()),
+                    "give a place in the patient with --at");
+}
+
+/// Warns of a needle that the image does not show as it lies in the patient.
+void warn_of_needle(const Room& room, const Vec3& tip_P) {
+  const volume::GridGeometry& ct = room.patient->ct.geometry;
+  const Vec3 index = ct.to_index(tip_P);
+  const bool is_in_ct = (index.array() >= -0.5).all() && index.x() <= static_cast<double>(ct.size[0]) - 0.5 &&
+                        index.y() <= static_cast<double>(ct.size[1]) - 0.5 &&
+                        index.z() <= static_cast<double>(ct.size[2]) - 0.5;
+  const auto [column, row] = xray::rays_of(room.request.arm).project(tip_P);
+  const xray::FieldPixels field = xray::field_pixels(room.request.arm);
+  const bool is_shown =
+      column > field.first_column && column < field.last_column && row > field.first_row && row < field.last_row;
+  const std::string place = fmt::format("{:g},{:g},{:g}", tip_P.x(), tip_P.y(), tip_P.z());
+  if (!is_in_ct) print_warning(fmt::format("the needle's tip is outside of the patient's CT — {}", place));
+  if (is_in_ct && !is_shown)
+    print_warning(fmt::format("the needle's tip is outside of the image — {} — give it with --at", place));
+}
+
+/// The contrast agent's flow. Usage error: the injection is outside of the body.
+Status prepare_contrast(const XrayArguments& a, Room& room) {
+  TROCAR_TRY(const xray::ContrastTable table, xray::load_contrast_table(data_dir() / "contrast.toml"));
+  room.iodine_mg_per_ml = table.iodine_mg_per_ml;
+  TROCAR_TRY(room.flow, xray::ContrastFlow::make(room.patient, table));
+  if (room.flow->place(room.injection->place_P) == xray::ContrastPlace::kOutside)
+    return fail_usage("--contrast is outside of the patient", a.contrast, "give a place in the body");
+  return {};
+}
+
 Result<Room> prepare_room(const XrayArguments& a, const Progress& progress) {
   Room room;
   std::optional<Pose> X_PN;
@@ -73,12 +124,13 @@ Result<Room> prepare_room(const XrayArguments& a, const Progress& progress) {
   if (X_PN) room.request.tools.push_back(needle_of(*X_PN, a.needle_mm));
   report(progress, "preparing the X-ray", 0.5);
   TROCAR_TRY(auto volume, xray::XrayVolume::make(room.patient));
+  TROCAR_TRY_STATUS(check_beam(*volume, room.request.arm));
   room.fluoroscope.emplace(std::move(volume));
   if (room.injection) {
-    TROCAR_TRY(const xray::ContrastTable table, xray::load_contrast_table(data_dir() / "contrast.toml"));
     report(progress, "following the ducts", 0.8);
-    TROCAR_TRY(room.flow, xray::ContrastFlow::make(room.patient, table));
+    TROCAR_TRY_STATUS(prepare_contrast(a, room));
   }
+  if (X_PN) warn_of_needle(room, X_PN->p());
   return room;
 }
 
@@ -90,8 +142,7 @@ Status advance(Room& room, double from_s, double to_s) {
     double next_s = std::min(at_s + kStep_s, to_s);
     if (at_s < lasts_s - 1e-9) next_s = std::min(next_s, lasts_s);
     if (at_s < lasts_s - 1e-9) {
-      TROCAR_TRY_STATUS(
-          room.flow->inject(room.injection->place_P, room.injection->ml_per_s, room.injection->iodine_mg_per_ml));
+      TROCAR_TRY_STATUS(room.flow->inject(room.injection->place_P, room.injection->ml_per_s, room.iodine_mg_per_ml));
     } else {
       room.flow->stop_injection();
     }
@@ -102,7 +153,8 @@ Status advance(Room& room, double from_s, double to_s) {
   return {};
 }
 
-/// The images: for a subtraction the mask's first, which are not returned.
+/// The images: for a subtraction the mask's first, which are not returned. time_s of those with contrast agent is the
+/// time since the injection began.
 Result<std::vector<xray::FluoroscopyFrame>> make_frames(Room& room, const XrayArguments& a, const Progress& progress) {
   std::vector<xray::FluoroscopyFrame> frames;
   room.request.is_pedal_down = true;
@@ -121,6 +173,7 @@ Result<std::vector<xray::FluoroscopyFrame>> make_frames(Room& room, const XrayAr
     room.request.time_s = n / kPulses_per_s;
     TROCAR_TRY(auto frame,
                room.fluoroscope->frame(room.request, xray::XrayDetail::kFull, a.seed + static_cast<std::uint64_t>(n)));
+    if (room.injection && (end_s > 0.0 || a.frames == 1)) frame.time_s = contrast_s;
     if (n >= before) frames.push_back(std::move(frame));
   }
   return frames;
@@ -195,7 +248,8 @@ config::Json to_json(const Room& room, const xray::FluoroscopyFrame& frame) {
                     {"contrast", nullptr}};
   if (!room.flow) return json;
   const xray::ContrastTotals totals = room.flow->totals();
-  json["contrast"] = {{"place", xray::contrast_place_words(room.flow->place(room.injection->place_P))},
+  json["contrast"] = {{"time_s", frame.time_s},
+                      {"place", xray::contrast_place_words(room.flow->place(room.injection->place_P))},
                       {"injected_ml", totals.injected_ml},
                       {"in_body_mg", totals.in_body_mg()},
                       {"ducts_mg", totals.ducts_mg},

@@ -28,6 +28,7 @@ constexpr Command kCommands[] = {
     {"trocar", "ultrasound image", "--patient abdomen --view aorta --out x.png"},
     {"trocar", "ultrasound sweep", "--patient abdomen --view aorta --out x.nrrd"},
     {"trocar", "ultrasound reconstruct", "x.igs.mha --out x.nrrd"},
+    {"trocar", "xray", "--patient abdomen --out x.png"},
     {"trocar", "bench", "slice"},
     {"trocar-hapticd", "", ""},
 };
