@@ -14,6 +14,7 @@ namespace {
 
 constexpr float kLeastSignal = 1e-6F;
 constexpr float kDirect = 0.5F;
+constexpr float kBrightSide = 1.5F;  ///< Widest part of a window above the median's brightness, in that below it.
 constexpr std::size_t kGrain = 16384;
 
 std::size_t percentile(std::size_t count, double share) {
@@ -119,6 +120,8 @@ GrayWindow window_of(std::span<const float> values, std::span<const float> signa
     return *place;
   };
   GrayWindow window{value_at(0.01), value_at(0.99)};
+  const float median = value_at(0.5);
+  window.low = std::max(window.low, median - kBrightSide * (window.high - median));
   if (const float missing = least_width - (window.high - window.low); missing > 0.0F) {
     window.low -= 0.5F * missing;
     window.high += 0.5F * missing;

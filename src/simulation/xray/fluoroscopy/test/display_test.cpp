@@ -79,6 +79,20 @@ TEST(Display, FindsTheWindowInTheFieldWithoutDirectRadiation) {
   EXPECT_NEAR(window.high, 1.0 + 2.0 * (field.last_column - 1) / 63.0, 0.07);
 }
 
+TEST(Display, LungsAtTheEdgeDoNotDarkenTheAbdomen) {
+  // Abdomen with attenuations from 4 to 5, and a lung of 1 in a quarter of the field.
+  std::vector<float> signal(kCount);
+  for (int row = 0; row < kPixels; ++row)
+    for (int column = 0; column < kPixels; ++column)
+      signal[at(column, row)] = row < 16 ? std::exp(-1.0F) : std::exp(-4.0F - static_cast<float>(column) / 63.0F);
+  const FieldPixels field = field_pixels(small_arm());
+  const auto values = shown_values(signal, kPixels, kPixels, plain(), field);
+  const GrayImage image = to_gray(values, kPixels, kPixels, window_of(values, signal, kPixels, field), false, field);
+  EXPECT_EQ(image.pixels[at(32, 8)], 255);
+  EXPECT_GT(image.pixels[at(0, 40)], 140);  // the thinnest part of the abdomen
+  EXPECT_LT(image.pixels[at(63, 40)], 10);
+}
+
 TEST(Display, BlackensTheShutters) {
   const std::vector<float> values(kCount, 1.0F);
   const GrayImage image = to_gray(values, kPixels, kPixels, {1.0F, 2.0F}, false, field_pixels(small_arm(0.5, 0.25)));
