@@ -78,7 +78,7 @@ void add_xray_options(CLI::App& command, XrayArguments& a) {
       ->capture_default_str();
   command.add_option("--collimate", a.collimate, "Irradiated share of width and height, 0.05 to 1")
       ->capture_default_str();
-  command.add_option("--dose", a.dose, "Dose at the detector")
+  command.add_option("--dose", a.dose, "Dose at the detector; --subtract takes that of acquisitions")
       ->check(CLI::IsMember({"low", "normal", "high"}))
       ->capture_default_str();
   CLI::Option* const needle = command.add_option(
@@ -142,7 +142,10 @@ Result<xray::FluoroscopyRequest> parse_request(const XrayArguments& a) {
   request.dose_mode = a.dose == "low"    ? xray::DoseMode::kLow
                       : a.dose == "high" ? xray::DoseMode::kHigh
                                          : xray::DoseMode::kNormal;
-  if (a.is_subtracted) request.mode = xray::ImageMode::kSubtraction;
+  if (a.is_subtracted) {  // at the dose of fluoroscopy it is mostly noise
+    request.mode = xray::ImageMode::kSubtraction;
+    request.dose_mode = xray::DoseMode::kAcquisition;
+  }
   request.display.is_inverted = a.is_inverted;
   return request;
 }

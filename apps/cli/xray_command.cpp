@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 
+#include "cases/contrast_blood.h"
 #include "commands.h"
 #include "core/files/data_dir.h"
 #include "dicom/xa/xa_file.h"
@@ -101,22 +102,18 @@ void warn_of_needle(const Room& room, const Vec3& tip_P) {
     print_warning(fmt::format("the needle's tip is outside of the image — {} — give it with --at", place));
 }
 
-/// Flow of the blood that carries an injection into a vessel; empty if the place is no vessel.
-Result<xray::BloodVelocity> blood_velocity(const Room& room) {
+/// Blood that carries an injection away; followed only for an injection into a vessel.
+xray::BloodVelocity blood_of(const Room& room) {
   const anatomy::Label* const label = anatomy::find_label(*room.patient, room.injection->place_P);
-  if (label == nullptr || !ultrasound::is_vessel(*label)) return xray::BloodVelocity();
-  TROCAR_TRY(const fs::path file, find_data("flow.toml"));
-  TROCAR_TRY(ultrasound::FlowTable table, ultrasound::load_flow_table(file));
-  TROCAR_TRY(const auto flow, ultrasound::make_vessel_flow(*room.patient, std::move(table)));
-  return xray::BloodVelocity([flow](const Vec3& p_P, double time_s) { return flow->velocity_P(p_P, time_s); });
+  const bool is_vessel = label != nullptr && ultrasound::is_vessel(*label);
+  return is_vessel ? cases::contrast_blood(*room.patient) : xray::BloodVelocity();
 }
 
 /// The contrast agent's flow. Usage error: the injection is outside of the body.
 Status prepare_contrast(const XrayArguments& a, Room& room) {
   TROCAR_TRY(const xray::ContrastTable table, xray::load_contrast_table(data_dir() / "contrast.toml"));
   room.iodine_mg_per_ml = table.iodine_mg_per_ml;
-  TROCAR_TRY(xray::BloodVelocity blood, blood_velocity(room));
-  TROCAR_TRY(room.flow, xray::ContrastFlow::make(room.patient, table, std::move(blood)));
+  TROCAR_TRY(room.flow, xray::ContrastFlow::make(room.patient, table, blood_of(room)));
   if (room.flow->place(room.injection->place_P) == xray::ContrastPlace::kOutside)
     return fail_usage("--contrast is outside of the patient", a.contrast, "give a place in the body");
   return {};
