@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <numbers>
 #include <regex>
 #include <vector>
 
@@ -126,6 +127,17 @@ TEST_F(XrayCommand, NrrdLiesAtTheDetector) {
   // More than 10 cm and less than 35 cm of tissue in the beam's middle.
   EXPECT_GT(at(image, 48, 48), 1.5F);
   EXPECT_LT(at(image, 48, 48), 8.0F);
+}
+
+TEST_F(XrayCommand, RightAnteriorObliqueAndCranialMoveTheDetectorThere) {
+  const auto middle_P = [&](const std::string& angles, const std::string& out) -> Vec3 {
+    return attenuation("--at 0,0,0 --carm " + angles, out).geometry.centre_mm({48, 48, 0});
+  };
+  const Vec3 rao_P = middle_P("-30,0", "rao.nrrd"), cranial_P = middle_P("0,20", "cranial.nrrd");
+  // 335 mm from the isocentre; a pixel is 3.1 mm. P is LPS: the right is -x, the front -y, the head +z.
+  EXPECT_LT((rao_P - Vec3(-335.0 * 0.5, -335.0 * std::sqrt(0.75), 0.0)).norm(), 3.2);
+  EXPECT_NEAR(cranial_P.z(), 335.0 * std::sin(std::numbers::pi / 9.0), 3.2);
+  EXPECT_LT(cranial_P.y(), -300.0);
 }
 
 TEST_F(XrayCommand, JsonNamesGeometryExposureAndContrast) {
