@@ -16,6 +16,7 @@
 
 #include "core/files/data_dir.h"
 #include "core/log.h"
+#include "ui_kit/control_section.h"
 #include "ui_kit/parts.h"
 
 namespace trocar::trainer {
@@ -23,23 +24,6 @@ namespace {
 
 constexpr ultrasound::GrayMap kMaps[] = {ultrasound::GrayMap::kSoft, ultrasound::GrayMap::kLinear,
                                          ultrasound::GrayMap::kHighContrast};
-
-QVBoxLayout* section(QWidget*& widget, const QString& heading) {
-  widget = new QWidget;
-  auto* box = new QVBoxLayout(widget);
-  box->setContentsMargins(0, 0, 0, 0);
-  box->setSpacing(6);
-  if (!heading.isEmpty()) box->addWidget(make_label(heading, "dim"));
-  return box;
-}
-
-QGridLayout* control_grid() {
-  auto* grid = new QGridLayout;
-  grid->setHorizontalSpacing(8);
-  grid->setVerticalSpacing(5);
-  grid->setColumnStretch(1, 1);
-  return grid;
-}
 
 /// Small enough for three side by side in the panel.
 QPushButton* small_button(const char* name, const QString& text, const QString& tooltip) {
@@ -97,8 +81,8 @@ void UltrasoundControls::load_tables() {
 
 QWidget* UltrasoundControls::make_source() {
   QWidget* widget = nullptr;
-  QVBoxLayout* box = section(widget, {});
-  auto* grid = control_grid();
+  QVBoxLayout* box = make_section(widget, {});
+  auto* grid = make_control_grid();
   const auto combo = [&](int row, const char* name, const QString& label, const QString& tooltip) {
     auto* made = new QComboBox;
     made->setObjectName(QString::fromLatin1(name));
@@ -147,7 +131,7 @@ void UltrasoundControls::apply_preset(int index) {
 
 QWidget* UltrasoundControls::make_freeze() {
   QWidget* widget = nullptr;
-  QVBoxLayout* box = section(widget, {});
+  QVBoxLayout* box = make_section(widget, {});
   freeze_ = make_button("ultrasound-freeze", tr("Freeze"), tr("Freezes the image  (F)"));
   freeze_->setCheckable(true);
   connect(freeze_, &QPushButton::clicked, this, [this](bool is_on) { view_.set_frozen(is_on); });
@@ -212,8 +196,8 @@ QCheckBox* UltrasoundControls::add_check(QBoxLayout& box, const char* name, cons
 
 QWidget* UltrasoundControls::make_picture() {
   QWidget* widget = nullptr;
-  QVBoxLayout* box = section(widget, tr("Picture"));
-  auto* grid = control_grid();
+  QVBoxLayout* box = make_section(widget, tr("Picture"));
+  auto* grid = make_control_grid();
   using S = UltrasoundSettings;
   add_control(*grid, {"ultrasound-gain", tr("Gain"), tr("Gain of all echoes  (G, Shift+G)"), -40, 40, 1,
                       [](S& s) -> double& { return s.display.gain_db; }, decibels()});
@@ -251,8 +235,8 @@ QWidget* UltrasoundControls::make_picture() {
 
 QWidget* UltrasoundControls::make_tgc() {
   QWidget* widget = nullptr;
-  QVBoxLayout* box = section(widget, tr("Gain over depth (TGC)"));
-  auto* grid = control_grid();
+  QVBoxLayout* box = make_section(widget, tr("Gain over depth (TGC)"));
+  auto* grid = make_control_grid();
   grid->setVerticalSpacing(2);
   for (std::size_t n = 0; n < ultrasound::kTgcSliders; ++n) {
     const QByteArray name = QStringLiteral("ultrasound-tgc-%1").arg(n + 1).toLatin1();
@@ -266,7 +250,7 @@ QWidget* UltrasoundControls::make_tgc() {
 
 QWidget* UltrasoundControls::make_measuring() {
   QWidget* widget = nullptr;
-  QVBoxLayout* box = section(widget, tr("Measure"));
+  QVBoxLayout* box = make_section(widget, tr("Measure"));
   auto* grid = new QGridLayout;
   grid->setSpacing(6);
   const auto add = [&](int row, int column, const char* name, const QString& text, const QString& tooltip, auto act) {
@@ -297,7 +281,7 @@ QWidget* UltrasoundControls::make_measuring() {
 
 QWidget* UltrasoundControls::make_guide() {
   QWidget* widget = nullptr;
-  QVBoxLayout* box = section(widget, tr("Needle"));
+  QVBoxLayout* box = make_section(widget, tr("Needle"));
   axis_ = new QCheckBox(tr("Show the needle's path"));
   axis_->setObjectName(QStringLiteral("ultrasound-axis"));
   axis_->setAccessibleName(axis_->text());
@@ -313,7 +297,7 @@ QWidget* UltrasoundControls::make_guide() {
   });
   add_check(*box, "ultrasound-guide-side", tr("Guide on the marked side"), tr("The side of the green dot"),
             [](S& s) -> bool& { return s.guide.is_on_marked_side; });
-  auto* grid = control_grid();
+  auto* grid = make_control_grid();
   add_control(
       *grid, {"ultrasound-guide-angle", tr("Angle"), tr("Angle between the guide and the central axis of the beam"), 10,
               80, 1, [](S& s) -> double& { return s.guide.angle_deg; },
@@ -325,7 +309,7 @@ QWidget* UltrasoundControls::make_guide() {
 
 QWidget* UltrasoundControls::make_doppler() {
   QWidget* widget = nullptr;
-  QVBoxLayout* box = section(widget, tr("Colour Doppler"));
+  QVBoxLayout* box = make_section(widget, tr("Colour Doppler"));
   using S = UltrasoundSettings;
   doppler_ = add_check(*box, "ultrasound-doppler", tr("Show flow"), tr("Colour Doppler  (C); drag the box"),
                        [](S& s) -> bool& { return s.has_doppler; });
@@ -333,7 +317,7 @@ QWidget* UltrasoundControls::make_doppler() {
   auto* controls = new QVBoxLayout(doppler_controls_);
   controls->setContentsMargins(0, 0, 0, 0);
   controls->setSpacing(6);
-  auto* grid = control_grid();
+  auto* grid = make_control_grid();
   add_control(*grid, {"ultrasound-doppler-scale", tr("Scale"), tr("Velocity limit before aliasing (PRF)"), 2, 200, 1,
                       [](S& s) -> double& { return s.doppler.scale_cm_per_s; },
                       [](double cm_per_s) { return QStringLiteral("%1 cm/s").arg(cm_per_s, 0, 'f', 0); }});

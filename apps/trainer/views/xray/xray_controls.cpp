@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 
+#include "ui_kit/control_section.h"
 #include "ui_kit/parts.h"
 #include "views/xray/xray_view.h"
 
@@ -27,23 +28,6 @@ constexpr std::array<Projection, 4> kProjections{
      {"xray-rao30", QT_TRANSLATE_NOOP("XrayControls", "RAO 30"), -30.0, 0.0},
      {"xray-lao30", QT_TRANSLATE_NOOP("XrayControls", "LAO 30"), 30.0, 0.0},
      {"xray-lateral", QT_TRANSLATE_NOOP("XrayControls", "Lateral"), 90.0, 0.0}}};
-
-QVBoxLayout* section(QWidget*& widget, const QString& heading) {
-  widget = new QWidget;
-  auto* box = new QVBoxLayout(widget);
-  box->setContentsMargins(0, 0, 0, 0);
-  box->setSpacing(6);
-  if (!heading.isEmpty()) box->addWidget(make_label(heading, "dim"));
-  return box;
-}
-
-QGridLayout* control_grid() {
-  auto* grid = new QGridLayout;
-  grid->setHorizontalSpacing(8);
-  grid->setVerticalSpacing(5);
-  grid->setColumnStretch(1, 1);
-  return grid;
-}
 
 }  // namespace
 
@@ -70,7 +54,7 @@ XrayControls::XrayControls(XrayView& view, QWidget* parent) : QWidget(parent), v
 
 QWidget* XrayControls::make_pedals() {
   QWidget* widget = nullptr;
-  QVBoxLayout* box = section(widget, {});
+  QVBoxLayout* box = make_section(widget, {});
   pedal_ = make_button("xray-pedal", tr("Fluoroscopy (hold)"), tr("X-rays while it is held, with the key Z held, too"));
   inject_ = make_button("xray-inject", tr("Inject contrast (hold)"),
                         tr("Contrast agent through the needle while it is held, with the key J held, too"));
@@ -111,7 +95,7 @@ QComboBox* XrayControls::add_choice(QGridLayout& grid, const char* name, const Q
 
 QWidget* XrayControls::make_c_arm() {
   QWidget* widget = nullptr;
-  QVBoxLayout* box = section(widget, tr("C-arm"));
+  QVBoxLayout* box = make_section(widget, tr("C-arm"));
   auto* buttons = new QGridLayout;
   for (std::size_t n = 0; n < kProjections.size(); ++n) {
     const Projection& p = kProjections[n];
@@ -126,7 +110,7 @@ QWidget* XrayControls::make_c_arm() {
     buttons->addWidget(button, static_cast<int>(n) / 2, static_cast<int>(n) % 2);
   }
   box->addLayout(buttons);
-  auto* grid = control_grid();
+  auto* grid = make_control_grid();
   const auto reach = [](double degrees) { return static_cast<int>(std::lround(degrees)); };
   const int side = reach(view_.unit().largest_lao_deg), head = reach(view_.unit().largest_cranial_deg);
   lao_ = add_slider(*grid, "xray-lao", tr("RAO–LAO"), tr("Detector to the patient's right or left"), -side, side,
@@ -161,8 +145,8 @@ QWidget* XrayControls::make_c_arm() {
 
 QWidget* XrayControls::make_exposure() {
   QWidget* widget = nullptr;
-  QVBoxLayout* box = section(widget, tr("Exposure"));
-  auto* grid = control_grid();
+  QVBoxLayout* box = make_section(widget, tr("Exposure"));
+  auto* grid = make_control_grid();
   pulses_ = add_choice(*grid, "xray-pulses", tr("Pulses"), tr("Pulses a second: fewer give less dose"));
   for (const double rate : xray::kPulseRates_per_s) pulses_->addItem(tr("%1 per s").arg(rate), rate);
   connect(pulses_, qOverload<int>(&QComboBox::activated), this, [this] {
@@ -179,8 +163,8 @@ QWidget* XrayControls::make_exposure() {
 
 QWidget* XrayControls::make_image() {
   QWidget* widget = nullptr;
-  QVBoxLayout* box = section(widget, tr("Image"));
-  auto* grid = control_grid();
+  QVBoxLayout* box = make_section(widget, tr("Image"));
+  auto* grid = make_control_grid();
   mode_ = add_choice(
       *grid, "xray-mode", tr("Mode"),
       tr("Subtraction: the first images are the mask, later ones show what was added. Road map: live, with the "

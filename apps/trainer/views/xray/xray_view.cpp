@@ -22,7 +22,6 @@ constexpr double kTurn_deg_per_px = 0.3;
 constexpr double kMargin_px = 10.0;
 constexpr double kLeastCollimation = 0.1;
 constexpr double kMostTable_mm = 150.0;
-constexpr double kIodine_mg_per_ml = 300.0;
 
 xray::CArmPreset load_unit() {
   auto unit = xray::load_c_arm(data_dir() / "carms.toml", kUnit);
@@ -118,7 +117,7 @@ void XrayView::advance(double now_s) {
   prepare();
   if (!fluoroscope_) return;
   contrast_.request({shaft_P_.empty() ? Vec3(Vec3::Constant(NAN)) : shaft_P_.back(),
-                     is_injecting_ && !shaft_P_.empty() ? settings_.injection_ml_per_s : 0.0, kIodine_mg_per_ml});
+                     is_injecting_ && !shaft_P_.empty() ? settings_.injection_ml_per_s : 0.0});
   fluoroscope_->request(make_request(now_s - opened_s_));
   auto newest = fluoroscope_->newest();
   const QString failure = fluoroscope_->error() ? to_qt(fluoroscope_->error()->text()) : QString();
@@ -147,7 +146,8 @@ xray::FluoroscopyRequest XrayView::make_request(double now_s) const {
     // Without its stylet the bore is full of bile, blood or contrast agent.
     const bool is_open = needle_.stylet_diameter_mm <= 0.0 || is_injecting_;
     needle.inner_radius_mm = is_open ? 0.5 * needle_.inner_diameter_mm : 0.0;
-    needle.filling_iodine_mg_per_ml = is_injecting_ ? kIodine_mg_per_ml : 0.0;
+    const auto agent = contrast_.newest();
+    needle.filling_iodine_mg_per_ml = is_injecting_ && agent ? agent->iodine_mg_per_ml : 0.0;
     request.tools.push_back(std::move(needle));
   }
   if (const auto state = contrast_.newest()) request.iodine = state->iodine;
@@ -264,8 +264,6 @@ void XrayView::mouseMoveEvent(QMouseEvent* event) {
     change_settings([&](XraySettings& s) { s.arm.isocentre_P -= shift_P; });
   }
 }
-
-void XrayView::mouseReleaseEvent(QMouseEvent*) {}
 
 void XrayView::wheelEvent(QWheelEvent* event) {
   const auto& fields = unit_.fields_mm;  // falling

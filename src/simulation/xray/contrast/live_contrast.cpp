@@ -20,7 +20,7 @@ constexpr int kNice = 5;
 
 struct LiveContrast::Impl {
   void run(const std::stop_token& stop, std::shared_ptr<const anatomy::VirtualPatient> patient, BloodVelocity blood);
-  void advance(ContrastFlow& flow, double dt_s);
+  void advance(ContrastFlow& flow, double iodine_mg_per_ml, double dt_s);
 
   mutable std::mutex mutex;
   InjectionRequest wanted;
@@ -38,12 +38,13 @@ void LiveContrast::Impl::run(const std::stop_token& stop, std::shared_ptr<const 
   auto last = std::chrono::steady_clock::now();
   while (!stop.stop_requested()) {
     const auto now = std::chrono::steady_clock::now();
-    advance(*flow, std::min(kLongestStep_s, std::chrono::duration<double>(now - std::exchange(last, now)).count()));
+    advance(*flow, table->iodine_mg_per_ml,
+            std::min(kLongestStep_s, std::chrono::duration<double>(now - std::exchange(last, now)).count()));
     std::this_thread::sleep_until(now + kPeriod);
   }
 }
 
-void LiveContrast::Impl::advance(ContrastFlow& flow, double dt_s) {
+void LiveContrast::Impl::advance(ContrastFlow& flow, double iodine_mg_per_ml, double dt_s) {
   InjectionRequest request;
   std::shared_ptr<const ContrastState> before;
   {
@@ -53,13 +54,14 @@ void LiveContrast::Impl::advance(ContrastFlow& flow, double dt_s) {
   }
   if (request.ml_per_s <= 0.0 || !request.tip_P.allFinite()) {
     flow.stop_injection();
-  } else if (const Status status = flow.inject(request.tip_P, request.ml_per_s, request.iodine_mg_per_ml); !status) {
+  } else if (const Status status = flow.inject(request.tip_P, request.ml_per_s, iodine_mg_per_ml); !status) {
     log_warning("{}", status.error().text());
   }
   flow.step(dt_s);
   auto state = std::make_shared<ContrastState>();
   state->place = flow.place(request.tip_P);
   state->injected_ml = flow.totals().injected_ml;
+  state->iodine_mg_per_ml = iodine_mg_per_ml;
   // Without agent in the body the pointer stays the same: nothing changes in the image.
   state->iodine =
       flow.totals().in_body_mg() > 0.0 || !before ? std::make_shared<const Iodine>(flow.iodine()) : before->iodine;

@@ -10,7 +10,6 @@ namespace trocar::xray {
 struct InjectionRequest {
   Vec3 tip_P = Vec3::Zero();
   double ml_per_s = 0.0;  ///< Range 0..50.
-  double iodine_mg_per_ml = 300.0;
 };
 
 /// Contrast agent at one moment.
@@ -18,6 +17,7 @@ struct ContrastState {
   std::shared_ptr<const Iodine> iodine;
   ContrastPlace place = ContrastPlace::kOutside;  ///< Of the tip.
   double injected_ml = 0.0;
+  double iodine_mg_per_ml = 0.0;  ///< Of the agent in the syringe (data/contrast.toml).
 };
 
 /// Contrast agent of a patient in real time, on a thread of its own that follows the ducts first. One thread, e.g. that
