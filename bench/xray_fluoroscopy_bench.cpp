@@ -70,28 +70,22 @@ Result<std::vector<CaseResult>> fluoroscopy_cases() {
   std::optional<Error> error;
   xray::Fluoroscope fluoroscope(volume);
   int frame = 0;
-  const auto render = [&](xray::XrayDetail detail) {
+  const auto render = [&] {
     set_frame(frame, request);
-    const auto made = fluoroscope.frame(request, detail, static_cast<std::uint64_t>(frame));
+    const auto made = fluoroscope.frame(request, static_cast<std::uint64_t>(frame));
     ++frame;
     if (!made) error = made.error();
   };
   std::vector<CaseResult> results;
-  results.push_back(make_case("fluoroscopy/512-static",
-                              time_ms(kWarmUp, kRounds, [&] { render(xray::XrayDetail::kFull); }),
+  results.push_back(make_case("fluoroscopy/512-static", time_ms(kWarmUp, kRounds, render),
                               "256^3 CT, static C-arm, needle, wire of 60 and tree of 200 pieces change, all cores"));
-  constexpr std::pair<const char*, xray::XrayDetail> kDetails[] = {
-      {"fluoroscopy/512-moving-fast", xray::XrayDetail::kFast},
-      {"fluoroscopy/512-moving-middle", xray::XrayDetail::kMiddle},
-      {"fluoroscopy/512-moving-full", xray::XrayDetail::kFull}};
-  for (const auto& [name, detail] : kDetails)
-    results.push_back(make_case(name,
-                                time_ms(kWarmUp, kMovingRounds,
-                                        [&] {
-                                          request.arm.lao_deg = 30.0 * std::sin(0.05 * frame);
-                                          render(detail);
-                                        }),
-                                "the same with a C-arm that turns at each frame"));
+  results.push_back(make_case("fluoroscopy/512-moving",
+                              time_ms(kWarmUp, kMovingRounds,
+                                      [&] {
+                                        request.arm.lao_deg = 30.0 * std::sin(0.05 * frame);
+                                        render();
+                                      }),
+                              "the same with a C-arm that turns at each frame"));
   if (error) return tl::unexpected(*error);
   return results;
 }

@@ -180,8 +180,7 @@ Result<std::vector<xray::FluoroscopyFrame>> make_frames(Room& room, const XrayAr
       contrast_s = to_s;
     }
     room.request.time_s = n / kPulses_per_s;
-    TROCAR_TRY(auto frame,
-               room.fluoroscope->frame(room.request, xray::XrayDetail::kFull, a.seed + static_cast<std::uint64_t>(n)));
+    TROCAR_TRY(auto frame, room.fluoroscope->frame(room.request, a.seed + static_cast<std::uint64_t>(n)));
     if (room.injection && (end_s > 0.0 || a.frames == 1)) frame.time_s = contrast_s;
     if (n >= before) frames.push_back(std::move(frame));
   }

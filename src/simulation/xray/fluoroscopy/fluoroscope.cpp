@@ -55,7 +55,7 @@ struct Fluoroscope::Impl {
       : detector(params), limits(exposure), patient(std::move(volume), params) {}
 
   int pulses_due(const FluoroscopyRequest& request) const;
-  Status expose(const FluoroscopyRequest& request, XrayDetail detail, int pulses, std::uint64_t seed);
+  Status expose(const FluoroscopyRequest& request, int pulses, std::uint64_t seed);
   void make_signal(const FluoroscopyRequest& request, double elapsed_s, std::uint64_t seed);
   void subtract(const FluoroscopyRequest& request, bool is_new_run);
   FluoroscopyFrame show(const FluoroscopyRequest& request, bool is_new);
@@ -101,8 +101,8 @@ void Fluoroscope::Impl::subtract(const FluoroscopyRequest& request, bool is_new_
   if (mask.mask_frames() == kMaskFrames) road_map.add(difference);
 }
 
-Status Fluoroscope::Impl::expose(const FluoroscopyRequest& request, XrayDetail detail, int pulses, std::uint64_t seed) {
-  TROCAR_TRY_STATUS(patient.update(request, detail, limits));
+Status Fluoroscope::Impl::expose(const FluoroscopyRequest& request, int pulses, std::uint64_t seed) {
+  TROCAR_TRY_STATUS(patient.update(request, limits));
   const bool is_new_run = !was_pedal_down || !last || request.time_s < last->time_s;
   make_signal(request, is_new_run ? 0.0 : request.time_s - last->time_s, seed);
   subtract(request, is_new_run);
@@ -112,7 +112,6 @@ Status Fluoroscope::Impl::expose(const FluoroscopyRequest& request, XrayDetail d
   made.arm = request.arm;
   made.X_PM = request.X_PM;
   made.exposure = patient.exposure();
-  made.detail = patient.detail();
   made.time_s = request.time_s;
   made.is_subtracted = !difference.empty();
   made.mask_frames = mask.mask_frames();
@@ -158,13 +157,13 @@ Fluoroscope::~Fluoroscope() = default;
 Fluoroscope::Fluoroscope(Fluoroscope&&) noexcept = default;
 Fluoroscope& Fluoroscope::operator=(Fluoroscope&&) noexcept = default;
 
-Result<FluoroscopyFrame> Fluoroscope::frame(const FluoroscopyRequest& request, XrayDetail detail, std::uint64_t seed) {
+Result<FluoroscopyFrame> Fluoroscope::frame(const FluoroscopyRequest& request, std::uint64_t seed) {
   Impl& impl = *impl_;
   TROCAR_TRY_STATUS(check_request(request));
   const int pulses = impl.pulses_due(request);
   if (pulses > 0) {
     if (!impl.was_pedal_down || (impl.last && !(impl.last->arm == request.arm))) impl.window.reset();
-    TROCAR_TRY_STATUS(impl.expose(request, detail, pulses, seed));
+    TROCAR_TRY_STATUS(impl.expose(request, pulses, seed));
   }
   impl.was_pedal_down = request.is_pedal_down;
   if (impl.last) return impl.show(request, pulses > 0);

@@ -24,7 +24,7 @@ class Fluoroscope {
   /// with the pedal up, the last image as the request displays it. The patient's masses are kept while C-arm and motion
   /// stay. The noise follows `seed`. Dose counts all pulses since the last request. Errors: an impossible C-arm or
   /// tube, source or detector inside the patient, an unknown pulse rate.
-  Result<FluoroscopyFrame> frame(const FluoroscopyRequest& request, XrayDetail detail, std::uint64_t seed);
+  Result<FluoroscopyFrame> frame(const FluoroscopyRequest& request, std::uint64_t seed);
 
   const Dose& dose() const noexcept;
   void reset_dose() noexcept;

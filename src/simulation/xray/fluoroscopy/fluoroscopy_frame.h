@@ -22,10 +22,6 @@ enum class ImageMode {
   kRoadMap
 };
 
-/// Level of detail of the patient's projection; tools, contrast agent and noise always have full detail.
-enum class XrayDetail { kFast, kMiddle, kFull };
-inline constexpr std::size_t kXrayDetails = 3;
-
 /// Request to a fluoroscope: present state of room and patient, and settings.
 struct FluoroscopyRequest {
   CArm arm;
@@ -50,7 +46,6 @@ struct FluoroscopyFrame {
   CArm arm;             ///< At the time of the pulse, as the next five.
   Pose X_PM;
   Exposure exposure;
-  XrayDetail detail = XrayDetail::kFull;
   double time_s = 0.0;
   GrayWindow window;
   Dose dose;  ///< Of the examination so far.

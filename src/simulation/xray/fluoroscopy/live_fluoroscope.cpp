@@ -16,12 +16,9 @@ namespace {
 /// Cores for two servers' loops, the window and the drawing.
 constexpr int kCoresOfOthers = 3;
 
-/// Nominal work besides the patient's rays, in rays: detector, display and tools. Measured: `trocar bench xray`.
-constexpr double kWorkOfPixel = 0.3;
-
 /// How LiveWorker makes X-ray images.
-struct FluoroscopyTraits : FluoroscopyLevels {
-  using FluoroscopyLevels::FluoroscopyLevels;
+struct FluoroscopyTraits : FluoroscopySchedule {
+  using FluoroscopySchedule::FluoroscopySchedule;
   using Image = FluoroscopyFrame;
   static void stamp(FluoroscopyFrame& frame, std::uint64_t number, double took_ms) noexcept {
     frame.number = number;
@@ -39,14 +36,14 @@ class FluoroscopyRenderer final : public LiveRenderer<FluoroscopyTraits> {
 
   Result<FluoroscopyFrame> render(const FluoroscopyRequest& request, const Frame& frame) override {
     held_.reset();
-    return fluoroscope_.frame(request, frame.level, mix64(frame.number));
+    return fluoroscope_.frame(request, mix64(frame.number));
   }
 
   Result<std::optional<FluoroscopyFrame>> render_held(const FluoroscopyRequest& request, const Frame& frame) override {
     if (held_ && held_->display == request.display && held_->mode == request.mode) return std::nullopt;
     FluoroscopyRequest hold = request;
     hold.is_pedal_down = false;
-    TROCAR_TRY(FluoroscopyFrame image, fluoroscope_.frame(hold, XrayDetail::kFull, mix64(frame.number)));
+    TROCAR_TRY(FluoroscopyFrame image, fluoroscope_.frame(hold, mix64(frame.number)));
     held_ = std::move(hold);
     if (image.dose.pulses == 0) return std::nullopt;
     return std::optional<FluoroscopyFrame>(std::move(image));
@@ -60,14 +57,14 @@ class FluoroscopyRenderer final : public LiveRenderer<FluoroscopyTraits> {
 
 }  // namespace
 
-bool FluoroscopyLevels::is_same(const FluoroscopyRequest& a, const FluoroscopyRequest& b) const noexcept {
+bool FluoroscopySchedule::is_same(const FluoroscopyRequest& a, const FluoroscopyRequest& b) const noexcept {
   return a.arm == b.arm && a.filters == b.filters && a.dose_mode == b.dose_mode && a.pulses_per_s == b.pulses_per_s &&
          a.mode == b.mode && a.display == b.display && detail::is_same_pose(a.X_PM, b.X_PM);
 }
 
-double FluoroscopyLevels::work(const FluoroscopyRequest& request, XrayDetail detail) const noexcept {
-  const double rays = detail::projected_pixels(request.arm.pixels, detail), pixels = request.arm.pixels;
-  return rays * rays + kWorkOfPixel * pixels * pixels;
+double FluoroscopySchedule::work(const FluoroscopyRequest& request, Level) const noexcept {
+  const double pixels = request.arm.pixels;
+  return pixels * pixels;
 }
 
 struct LiveFluoroscope::Impl {

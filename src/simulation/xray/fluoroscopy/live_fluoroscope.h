@@ -13,21 +13,22 @@ struct FluoroscopyPace {
   LivePace live{.moving_ms = 55.0, .still_s = 0.2, .busy_share = 0.9};
 };
 
-/// Requests and levels of detail of fluoroscopy for LiveSchedule.
-class FluoroscopyLevels {
+/// Fluoroscopy for LiveSchedule. It has one level of detail: a coarser projection of the patient saved no time
+/// (docs/validation.md).
+class FluoroscopySchedule {
  public:
   using Request = FluoroscopyRequest;
-  using Level = XrayDetail;
-  static constexpr std::size_t kLevels = kXrayDetails;
+  enum class Level { kFull };
+  static constexpr std::size_t kLevels = 1;
 
-  FluoroscopyLevels() = default;
-  explicit FluoroscopyLevels(const FluoroscopyPace& pace) : pace_(pace) {}
+  FluoroscopySchedule() = default;
+  explicit FluoroscopySchedule(const FluoroscopyPace& pace) : pace_(pace) {}
 
   LivePace pace() const noexcept { return pace_.live; }
   /// Tools, contrast agent and noise are drawn at each pulse: only C-arm, motion, exposure and display decide.
   bool is_same(const FluoroscopyRequest& a, const FluoroscopyRequest& b) const noexcept;
-  /// Work of a frame in rays of the patient's projection.
-  double work(const FluoroscopyRequest& request, XrayDetail detail) const noexcept;
+  /// Work of a frame: its pixels.
+  double work(const FluoroscopyRequest& request, Level) const noexcept;
   /// One frame a pulse.
   double refresh_s(const FluoroscopyRequest& request) const noexcept { return 1.0 / request.pulses_per_s; }
 
@@ -46,9 +47,9 @@ struct LiveFluoroscopeOptions {
 /// One thread on small machines; more on machines where two servers, the window and the drawing still have a core each.
 LiveFluoroscopeOptions default_live_fluoroscope_options();
 
-/// A live fluoroscope: a thread renders the newest request (older ones are dropped) at the detail that the time budget
-/// permits. With the pedal up it holds the last image and renders only if its display changes. One thread, e.g. that of
-/// the window, makes all calls; only the destructor waits for a frame.
+/// A live fluoroscope: a thread renders the newest request (older ones are dropped). With the pedal up it holds the
+/// last image and renders only if its display changes. One thread, e.g. that of the window, makes all calls; only the
+/// destructor waits for a frame.
 class LiveFluoroscope {
  public:
   explicit LiveFluoroscope(const LiveFluoroscopeOptions& options = default_live_fluoroscope_options());

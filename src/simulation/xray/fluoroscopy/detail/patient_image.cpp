@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "xray/fluoroscopy/detail/resample_image.h"
 #include "xray/projection/project.h"
 
 namespace trocar::xray::detail {
@@ -22,11 +21,6 @@ void close_shutters(const FieldPixels& field, int columns, std::vector<float>& s
 
 }  // namespace
 
-int projected_pixels(int pixels, XrayDetail detail) noexcept {
-  if (detail == XrayDetail::kFull) return pixels;
-  return std::max(16, detail == XrayDetail::kMiddle ? pixels * 2 / 3 : pixels / 3);
-}
-
 bool has_same_rays(const CArm& a, const CArm& b) noexcept {
   CArm other = b;
   other.collimation = a.collimation;
@@ -37,26 +31,6 @@ bool is_same_pose(const Pose& a, const Pose& b) noexcept {
   return a.p() == b.p() && a.R() == b.R();
 }
 
-void PatientImage::project_masses(const FluoroscopyRequest& request, XrayDetail detail) {
-  CArm coarse = request.arm;
-  coarse.pixels = projected_pixels(request.arm.pixels, detail);
-  if (coarse.pixels == request.arm.pixels) {
-    project(*volume_, rays_, request.X_PM, masses_);
-  } else {
-    MassImage small;
-    project(*volume_, rays_of(coarse), request.X_PM, small);
-    masses_.columns = masses_.rows = request.arm.pixels;
-    for (std::size_t basis = 0; basis < kBases; ++basis) {
-      std::vector<float>& image = masses_.g_per_cm2[basis];
-      image.clear();
-      if (!small.g_per_cm2[basis].empty())
-        image = resample_image(small.g_per_cm2[basis], small.columns, small.rows, masses_.columns, masses_.rows);
-    }
-  }
-  key_ = Key{request.arm, request.X_PM};
-  detail_ = detail;
-}
-
 void PatientImage::expose(const FluoroscopyRequest& request) {
   primary_.resize(masses_.size());
   beam_->signals(masses_, primary_);
@@ -64,16 +38,16 @@ void PatientImage::expose(const FluoroscopyRequest& request) {
   scatter_ = estimate_scatter(masses_, primary_, request.arm, params_);
 }
 
-Status PatientImage::update(const FluoroscopyRequest& request, XrayDetail detail, const ExposureLimits& limits) {
-  const bool is_placed = key_ && has_same_rays(key_->arm, request.arm) && is_same_pose(key_->X_PM, request.X_PM);
-  const bool is_projected = is_placed && detail_ >= detail;
-  if (!is_placed) {
+Status PatientImage::update(const FluoroscopyRequest& request, const ExposureLimits& limits) {
+  const bool is_projected = key_ && has_same_rays(key_->arm, request.arm) && is_same_pose(key_->X_PM, request.X_PM);
+  if (!is_projected) {
     CArm relative = request.arm;  // to the moved body
     relative.isocentre_P = request.X_PM.inverse() * request.arm.isocentre_P;
     TROCAR_TRY_STATUS(check_source(*volume_, relative));
     rays_ = rays_of(request.arm);
+    project(*volume_, rays_, request.X_PM, masses_);
+    key_ = Key{request.arm, request.X_PM};
   }
-  if (!is_projected) project_masses(request, detail);
   const ExposureKey wanted{request.arm.collimation, request.filters, request.dose_mode, request.pulses_per_s};
   if (is_projected && exposure_key_ == wanted) return {};
   exposure_key_.reset();

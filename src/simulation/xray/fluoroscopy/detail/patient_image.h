@@ -10,9 +10,6 @@
 
 namespace trocar::xray::detail {
 
-/// Pixels along each edge of the patient's projection at a level of detail.
-int projected_pixels(int pixels, XrayDetail detail) noexcept;
-
 /// The part of an image that stays the same while C-arm, body and exposure do: primary signal and scatter of the
 /// patient without tools and contrast agent.
 class PatientImage {
@@ -20,9 +17,9 @@ class PatientImage {
   PatientImage(std::shared_ptr<const XrayVolume> volume, const DetectorParams& params)
       : volume_(std::move(volume)), params_(params), beams_(params.scintillator_mm) {}
 
-  /// Brings all up to date for a request; a finer projection than asked for is kept. Errors: the C-arm's or the
+  /// Brings all up to date for a request. Errors: the C-arm's or the
   /// spectrum's.
-  Status update(const FluoroscopyRequest& request, XrayDetail detail, const ExposureLimits& limits);
+  Status update(const FluoroscopyRequest& request, const ExposureLimits& limits);
 
   const MassImage& masses() const noexcept { return masses_; }
   const std::vector<float>& primary() const noexcept { return primary_; }  ///< 0 behind the shutters.
@@ -30,7 +27,6 @@ class PatientImage {
   const Exposure& exposure() const noexcept { return exposure_; }
   const Beam& beam() const noexcept { return *beam_; }
   const XrayRays& rays() const noexcept { return rays_; }
-  XrayDetail detail() const noexcept { return detail_; }
 
  private:
   struct Key {
@@ -44,7 +40,6 @@ class PatientImage {
     double pulses_per_s;
     bool operator==(const ExposureKey&) const = default;
   };
-  void project_masses(const FluoroscopyRequest& request, XrayDetail detail);
   void expose(const FluoroscopyRequest& request);
 
   std::shared_ptr<const XrayVolume> volume_;
@@ -52,7 +47,6 @@ class PatientImage {
   BeamCache beams_;
   std::optional<Key> key_;
   std::optional<ExposureKey> exposure_key_;
-  XrayDetail detail_ = XrayDetail::kFast;
   XrayRays rays_;
   MassImage masses_;
   std::vector<float> primary_;

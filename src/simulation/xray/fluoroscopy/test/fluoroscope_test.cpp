@@ -45,7 +45,7 @@ FluoroscopyFrame run(Fluoroscope& fluoroscope, FluoroscopyRequest& request, doub
   FluoroscopyFrame frame;
   for (int n = 0; n <= static_cast<int>(std::lround(60.0 * seconds)); ++n) {
     request.time_s = begun_s + n / 60.0;
-    frame = fluoroscope.frame(request, XrayDetail::kFull, static_cast<std::uint64_t>(n)).value();
+    frame = fluoroscope.frame(request, static_cast<std::uint64_t>(n)).value();
   }
   return frame;
 }
@@ -85,7 +85,7 @@ TEST(Fluoroscope, HoldsTheLastImage) {
   FluoroscopyRequest request = small_request();
   FluoroscopyRequest up = request;
   up.is_pedal_down = false;
-  const FluoroscopyFrame dark = fluoroscope.frame(up, XrayDetail::kFull, 1).value();
+  const FluoroscopyFrame dark = fluoroscope.frame(up, 1).value();
   EXPECT_EQ(*std::max_element(dark.gray.pixels.begin(), dark.gray.pixels.end()), 0) << "before the first pulse";
   const FluoroscopyFrame live = run(fluoroscope, request, 0.5);
   EXPECT_FALSE(live.is_held);
@@ -224,20 +224,6 @@ TEST(Fluoroscope, IsDarkBehindTheShuttersAndNeedsLessAreaProduct) {
   EXPECT_LT(narrow.clean_signal()[at(64, 40)], open.clean_signal()[at(64, 40)]) << "less scatter";
 }
 
-TEST(Fluoroscope, ResemblesTheFullImageAtEveryDetail) {
-  Fluoroscope full(testing::trunk());
-  FluoroscopyRequest request = small_request();
-  EXPECT_EQ(full.frame(request, XrayDetail::kFull, 1).value().detail, XrayDetail::kFull);
-  for (const XrayDetail detail : {XrayDetail::kFast, XrayDetail::kMiddle}) {
-    Fluoroscope coarse(testing::trunk());
-    EXPECT_EQ(coarse.frame(request, detail, 1).value().detail, detail);
-    for (int row = 4; row < kPixels - 4; ++row)
-      for (int column = 4; column < kPixels - 4; ++column)
-        EXPECT_NEAR(std::log(coarse.clean_signal()[at(column, row)] / full.clean_signal()[at(column, row)]), 0.0, 0.3);
-    EXPECT_EQ(coarse.frame(request, XrayDetail::kFull, 1).value().detail, detail) << "no pulse is due";
-  }
-}
-
 TEST(Fluoroscope, IsTheSameOnAnyNumberOfThreads) {
   FluoroscopyRequest request = small_request();
   request.tools = {needle()};
@@ -257,7 +243,7 @@ TEST(Fluoroscope, IsTheSameOnAnyNumberOfThreads) {
 TEST(Fluoroscope, NamesImpossibleRequests) {
   Fluoroscope fluoroscope(testing::trunk());
   const auto what = [&](const FluoroscopyRequest& request) {
-    const auto frame = fluoroscope.frame(request, XrayDetail::kFull, 1);
+    const auto frame = fluoroscope.frame(request, 1);
     return frame ? std::string() : frame.error().text();
   };
   FluoroscopyRequest request = small_request();
