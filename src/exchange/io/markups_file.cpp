@@ -157,6 +157,23 @@ Result<std::vector<anatomy::NeedlePath>> read_paths(const fs::path& path, const 
   return paths;
 }
 
+Result<std::vector<MarkupPoints>> read_markup_points(const fs::path& path) {
+  TROCAR_TRY(const std::vector<Markup> markups, read_markups(path, {}));
+  std::vector<MarkupPoints> all;
+  for (const Markup& markup : markups) {
+    const bool is_list = markup.type == "Fiducial";
+    if (!is_list && markup.type != "Curve" && markup.type != "Line") continue;
+    if (!is_list && markup.points.size() < 2)
+      return fail(fmt::format("curve \"{}\" has {} placed points", markup.name, markup.points.size()), path.string(),
+                  "place two or more");
+    MarkupPoints drawn{markup.name, is_list, {}};
+    for (const ControlPoint& point : markup.points) drawn.points_P.push_back(point.p_P);
+    all.push_back(std::move(drawn));
+  }
+  if (all.empty()) return fail("the markups have no curve, line or point list", path.string(), "draw one in 3D Slicer");
+  return all;
+}
+
 Status write_paths(const std::vector<anatomy::NeedlePath>& paths, const fs::path& path) {
   std::vector<Markup> markups;
   for (const anatomy::NeedlePath& needle_path : paths)

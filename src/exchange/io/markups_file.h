@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "anatomy/patient.h"
@@ -17,6 +18,15 @@ Status write_landmarks(const std::vector<anatomy::Landmark>& landmarks, const st
 /// Paths are line markups: control point 1 the entry, 2 the target.
 Result<std::vector<anatomy::NeedlePath>> read_paths(const std::filesystem::path& path,
                                                     const std::filesystem::path& inside = {});
+/// A curve or list of points, as drawn.
+struct MarkupPoints {
+  std::string name;      ///< The markup's.
+  bool is_list = false;  ///< Fiducials: each point stands for itself.
+  std::vector<Vec3> points_P;
+};
+/// Open curves, lines and fiducials with their control points, in the file's order. Errors: those of the file; a curve
+/// or line with fewer than two placed points; nothing of the three kinds.
+Result<std::vector<MarkupPoints>> read_markup_points(const std::filesystem::path& path);
 Status write_paths(const std::vector<anatomy::NeedlePath>& paths, const std::filesystem::path& path);
 
 }  // namespace trocar::io

@@ -48,6 +48,25 @@ TEST_F(Markups, PathsComeBackAsTheyWere) {
   EXPECT_EQ((*read)[0].line_P.b, paths[0].line_P.b);
 }
 
+TEST_F(Markups, CurvesComeWithTheirPoints) {
+  const auto read = [&](const std::string& text) {
+    write_bytes(folder_ / "c.mrk.json", text);
+    return read_markup_points(folder_ / "c.mrk.json");
+  };
+  const std::string points = R"("controlPoints": [{"position": [1, 2, 3]}, {"position": [4, 5, 6]}])";
+  const auto both = read(R"({"markups": [{"type": "Curve", "name": "catheter", "coordinateSystem": "RAS", )" + points +
+                         R"(}, {"type": "Plane"}, {"type": "Fiducial", "name": "marker", )" + points + "}]}");
+  ASSERT_TRUE(both) << both.error().text();
+  ASSERT_EQ(both->size(), 2U);
+  EXPECT_EQ((*both)[0].name, "catheter");
+  EXPECT_FALSE((*both)[0].is_list);
+  EXPECT_EQ((*both)[0].points_P[1], Vec3(-4, -5, 6));
+  EXPECT_TRUE((*both)[1].is_list);
+  EXPECT_EQ((*both)[1].points_P.size(), 2U);
+  EXPECT_FALSE(read(R"({"markups": [{"type": "Curve", "controlPoints": [{"position": [1, 2, 3]}]}]})"));
+  EXPECT_FALSE(read(R"({"markups": [{"type": "Plane"}]})"));
+}
+
 TEST_F(Markups, TurnsRasIntoLps) {
   const std::string points = R"("controlPoints": [{"label": "a", "position": [1, 2, 3]}])";
   const auto ras = landmarks_of(markups(R"("type": "Fiducial", "coordinateSystem": "RAS", )" + points));
