@@ -10,8 +10,10 @@
 
 #include "core/files/data_dir.h"
 #include "core/parse_number.h"
+#include "io/markups_file.h"
 #include "number_option.h"
 #include "xray/geometry/c_arm_presets.h"
+#include "xray/tools/tool_table.h"
 
 namespace trocar::cli {
 namespace {
@@ -87,6 +89,10 @@ void add_xray_options(CLI::App& command, XrayArguments& a) {
                            5.0, "mm")
       ->needs(needle)
       ->capture_default_str();
+  command.add_option(
+      "--tools", a.tools,
+      "Guide wire, catheter, markers: curves and point lists of 3D Slicer (.mrk.json), each named after a "
+      "tool of data/xray_tools.toml");
   CLI::Option* const contrast = command.add_option(
       "--contrast", a.contrast, "Contrast agent, ML@x,y,z: volume (ml) and place of the tip (mm, LPS)");
   arguments::number_within(command.add_option("--rate", a.rate_ml_per_s, "Rate of the injection"), 0.05, 20.0, "ml/s")
@@ -121,6 +127,21 @@ Result<std::optional<Injection>> parse_injection(const std::string& text, double
   TROCAR_TRY(injection.place_P, parse_place("--contrast", std::string(ml->rest.substr(1))));
   injection.ml_per_s = ml_per_s;
   return std::optional<Injection>(injection);
+}
+
+Result<std::vector<xray::ToolShape>> read_tools(const std::string& file) {
+  std::vector<xray::ToolShape> tools;
+  if (file.empty()) return tools;
+  TROCAR_TRY(const std::vector<io::MarkupPoints> markups, io::read_markup_points(file));
+  for (const io::MarkupPoints& drawn : markups) {
+    TROCAR_TRY(const xray::ToolKind kind, xray::load_tool_kind(data_dir() / "xray_tools.toml", drawn.name));
+    if (!drawn.is_list) {
+      tools.push_back(xray::tool_along(kind, drawn.points_P));
+      continue;
+    }
+    for (const Vec3& p_P : drawn.points_P) tools.push_back(xray::tool_along(kind, {&p_P, 1}));
+  }
+  return tools;
 }
 
 Result<xray::FluoroscopyRequest> parse_request(const XrayArguments& a) {

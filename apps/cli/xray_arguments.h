@@ -3,6 +3,7 @@
 #include <CLI/App.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "io/patient/patient_source.h"
 #include "xray/fluoroscopy/fluoroscopy_frame.h"
@@ -21,6 +22,7 @@ struct XrayArguments {
   std::string dose = "normal";
   std::string needle;
   double needle_mm = 0.7;  ///< Outer diameter: 22 gauge.
+  std::string tools;       ///< .mrk.json
   std::string contrast;
   double rate_ml_per_s = 1.0;
   double time_s = -1.0;  ///< Below 0: when the injection ends.
@@ -39,6 +41,9 @@ struct Injection {
 void add_xray_options(CLI::App& command, XrayArguments& a);
 /// Empty without a text. Usage errors (exit status 2): not ML@x,y,z, a volume that is not above 0 and up to 200 ml.
 Result<std::optional<Injection>> parse_injection(const std::string& text, double ml_per_s);
+/// Guide wires, catheters and markers of --tools; none without a file. Errors: the file's; a name that is no tool of
+/// data/xray_tools.toml.
+Result<std::vector<xray::ToolShape>> read_tools(const std::string& file);
 /// C-arm, exposure and display; the isocentre is --at, or 0. Usage errors: an unknown unit, angles or a field that it
 /// does not have.
 Result<xray::FluoroscopyRequest> parse_request(const XrayArguments& a);

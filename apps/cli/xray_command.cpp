@@ -127,6 +127,7 @@ Result<Room> prepare_room(const XrayArguments& a, const Progress& progress) {
   }
   TROCAR_TRY(room.injection, parse_injection(a.contrast, a.rate_ml_per_s));
   TROCAR_TRY(room.request, parse_request(a));
+  TROCAR_TRY(room.request.tools, read_tools(a.tools));
   TROCAR_TRY(anatomy::VirtualPatient patient, io::open_patient(a.source, progress));
   room.patient = std::make_shared<const anatomy::VirtualPatient>(std::move(patient));
   if (a.at.empty()) room.request.arm.isocentre_P = middle_P(room, X_PN);
@@ -293,7 +294,8 @@ void add_xray_command(CLI::App& program, Action& action) {
       "Examples:\n  trocar xray --patient ptcd-1 --out ap.png\n"
       "  trocar xray --patient ptcd-1 --carm -30,10 --needle needle.tfm --out oblique.png\n"
       "  trocar xray --patient ptcd-1 --contrast 10@-36.8,-62.9,16.1 --time 12 --subtract --out ducts.png\n"
-      "  trocar xray --patient ptcd-1 --contrast 10@-36.8,-62.9,16.1 --time 12 --frames 30 --out run.dcm\n");
+      "  trocar xray --patient ptcd-1 --contrast 10@-36.8,-62.9,16.1 --time 12 --frames 30 --out run.dcm\n"
+      "  trocar xray --patient ptcd-1 --tools drainage.mrk.json --out drainage.png\n");
   const auto a = std::make_shared<XrayArguments>();
   add_cache_option(*command, a->source);
   add_xray_options(*command, *a);

@@ -247,6 +247,40 @@ TEST_F(XrayCommand, BadInjectionIsRefused) {
   for (const std::string option : {"--time 3", "--rate 2", "--subtract"}) expect_usage_error(option);
 }
 
+TEST_F(XrayCommand, CatheterAndMarkersAreDrawn) {
+  const std::string file = folder_ / "tools.mrk.json";
+  std::ofstream(file) << R"({"markups": [
+    {"type": "Curve", "name": "catheter", "controlPoints": [{"position": [-140, -63, 16]}, {"position": [-60, -63, 16]},
+      {"position": [-37, -63, 0]}]},
+    {"type": "Fiducial", "name": "marker", "controlPoints": [{"position": [-37, -63, 40]}]}]})";
+  const std::string at = "--at " + kDuct + " --field 160 ";
+  const volume::FloatGrid without = attenuation(at, "without.nrrd");
+  const volume::FloatGrid with = attenuation(at + "--tools '" + file + "'", "with.nrrd");
+  // Pixels of 1.67 mm, foot side down: the catheter from the left edge to the middle and down, the marker above it.
+  float catheter = 0.0F, marker = 0.0F, elsewhere = 0.0F;
+  for (std::size_t n = 0; n < 96UL * 96UL; ++n) {
+    const std::size_t row = n / 96, column = n % 96;
+    const float added = with.voxels[n] - without.voxels[n];
+    if (row > 44 && row < 52 && column < 40) catheter = std::max(catheter, added);
+    if (row > 25 && row < 40 && column > 42 && column < 54) marker = std::max(marker, added);
+    if (column > 60) elsewhere = std::max(elsewhere, std::abs(added));
+  }
+  EXPECT_GT(catheter, 0.07F);  // 0.015 g/cm² of iodine, 7 cm²/g
+  EXPECT_GT(marker, 0.05F);
+  EXPECT_LT(elsewhere, 0.05F);
+}
+
+TEST_F(XrayCommand, BadToolsAreRefused) {
+  const std::string begin = "--patient '" + patient() + "' --tools '";
+  expect_refused(begin + (folder_ / "missing.mrk.json") + "'", 1);
+  std::ofstream(folder_ / "stent.mrk.json")
+      << R"({"markups": [{"type": "Line", "name": "stent", "controlPoints": [{"position": [0, 0, 0]},
+          {"position": [0, 0, 9]}]}]})";
+  expect_refused(begin + (folder_ / "stent.mrk.json") + "'", 2);
+  std::ofstream(folder_ / "short.mrk.json") << R"({"markups": [{"type": "Curve", "name": "catheter"}]})";
+  expect_refused(begin + (folder_ / "short.mrk.json") + "'", 1);
+}
+
 TEST_F(XrayCommand, BadNeedleIsRefused) {
   const std::string begin = "--patient '" + patient() + "' --needle '";
   expect_refused(begin + (folder_ / "missing.tfm") + "'", 1);
