@@ -56,7 +56,7 @@ void AddedSignal::apply(const FluoroscopyRequest& request, const PatientImage& p
     few.clear();
     if (body.empty() && added.empty()) continue;
     for (const std::size_t n : places_)
-      few.push_back(std::max(0.0F, (body.empty() ? 0.0F : body[n]) + (added.empty() ? 0.0F : added[n])));
+      few.push_back((body.empty() ? 0.0F : body[n]) + (added.empty() ? 0.0F : std::max(0.0F, added[n])));
   }
   patient.beam().signals(few_, few_signal_);
   for (std::size_t n = 0; n < places_.size(); ++n) signal[places_[n]] = few_signal_[n];

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "anatomy/patient.h"
 #include "core/parallel.h"
 #include "xray/detector/image_blur.h"
 #include "xray/fluoroscopy/testing/trunk_phantom.h"
@@ -100,6 +101,37 @@ TEST(Fluoroscope, HoldsTheLastImage) {
   EXPECT_NE(run(fluoroscope, request, 0.1).gray.pixels, live.gray.pixels) << "its display may change";
   request.is_pedal_down = true;
   EXPECT_NE(run(fluoroscope, request, 0.1).gray.pixels, live.gray.pixels);
+}
+
+/// A box of fat (a material with a negative share of bone), 120 x 80 x 120 mm.
+std::shared_ptr<const XrayVolume> fat() {
+  auto patient = std::make_shared<anatomy::VirtualPatient>();
+  patient->name = "fat";
+  volume::GridGeometry geometry;
+  geometry.size = {40, 30, 40};
+  geometry.spacing_mm = Vec3::Constant(4.0);
+  geometry.origin_P = -2.0 * Vec3(39, 29, 39);
+  patient->ct = volume::CtGrid(geometry, -1000);
+  patient->labels = volume::LabelGrid(geometry);
+  patient->label_table.labels.push_back({1, "fat", "adipose", {}});
+  for (std::size_t n = 0; n < geometry.voxel_count(); ++n) {
+    const Vec3 p_P = geometry.centre_mm(geometry.index_of(n));
+    if ((p_P.array().abs() >= Eigen::Array3d(60, 40, 60)).any()) continue;
+    patient->ct.voxels[n] = -100;
+    patient->labels.voxels[n] = 1;
+  }
+  return XrayVolume::make(patient).value();
+}
+
+TEST(Fluoroscope, ATraceOfContrastAgentDoesNotShow) {
+  FluoroscopyRequest request = small_request();
+  request.arm.field_mm = 100.0;
+  auto iodine = std::make_shared<Iodine>();
+  iodine->pieces.push_back({{0.0, 0.0, -20.0}, {0.0, 0.0, 20.0}, 10.0, 10.0, 1e-6});
+  Fluoroscope without(fat()), with(fat());
+  const GrayImage expected = without.frame(request, 1).value().gray;
+  request.iodine = iodine;
+  EXPECT_EQ(with.frame(request, 1).value().gray.pixels, expected.pixels);
 }
 
 TEST(Fluoroscope, ShowsATubeOfSteelByBeersLaw) {
