@@ -20,6 +20,7 @@ namespace {
 constexpr double kMm3PerMl = 1000.0;
 constexpr double kLeastTree_mm3 = 5.0;
 constexpr double kShortest_mm = 0.3;  ///< Shorter pieces are left out.
+constexpr double kLongest_mm = 2.6;   ///< Longer ends are several cells: a front in a cell is not resolved.
 constexpr double kThinnest_mm = 0.2;  ///< Radius.
 constexpr double kMostScaling = 2.5;  ///< Of a branch's radii.
 
@@ -38,8 +39,7 @@ class CellMaker {
     cell_at_.assign(tree_.nodes.size(), -1);
     const volume::CentrelineNode& root = tree_.nodes.front();
     const double before_mm = end_length_mm(tree_, tree_.tips.front(), -1.0);
-    if (before_mm > kShortest_mm)
-      add_cell(root.p_P - before_mm * root.tangent_P, root.p_P, root.radius_mm, root.radius_mm, -1);
+    if (before_mm > kShortest_mm) add_end(root.p_P - before_mm * root.tangent_P, root.p_P, root.radius_mm, -1);
     cell_at_[0] = before_mm > kShortest_mm ? last() : -1;
     for (std::size_t n = 1; n < tree_.nodes.size(); ++n) add_node(n);
     for (std::size_t t = 1; t < tree_.tips.size(); ++t) add_tip(tree_.tips[t]);
@@ -56,6 +56,15 @@ class CellMaker {
     cell.radius_b_mm = std::max(radius_b_mm, kThinnest_mm);
     cell.parent = parent;
     cells_.push_back(cell);
+  }
+
+  /// The straight part at an end.
+  void add_end(const Vec3& a_P, const Vec3& b_P, double radius_mm, int parent) {
+    const auto count = static_cast<int>(std::ceil((b_P - a_P).norm() / kLongest_mm));
+    for (int n = 0; n < count; ++n) {
+      const Vec3 from_P = a_P + (b_P - a_P) * n / count, to_P = a_P + (b_P - a_P) * (n + 1) / count;
+      add_cell(from_P, to_P, radius_mm, radius_mm, n == 0 ? parent : last());
+    }
   }
 
   void add_node(std::size_t n) {
@@ -80,7 +89,7 @@ class CellMaker {
     const double after_mm = end_length_mm(tree_, tip, 1.0);
     const int parent = cell_at_[static_cast<std::size_t>(tip.node)];
     if (after_mm <= kShortest_mm || parent < 0 || node.is_within_parent) return;
-    add_cell(node.p_P, node.p_P + after_mm * node.tangent_P, node.radius_mm, node.radius_mm, parent);
+    add_end(node.p_P, node.p_P + after_mm * node.tangent_P, node.radius_mm, parent);
   }
 
   const volume::CentrelineTree& tree_;

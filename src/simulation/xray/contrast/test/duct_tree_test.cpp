@@ -59,6 +59,16 @@ TEST(DuctTree, FollowsAStraightTubeWithItsVolume) {
   EXPECT_EQ(ends_of(tree, DuctEnd::kPeripheral).size(), 2u);
 }
 
+TEST(DuctTree, ResolvesTheEndsOfAWideDuct) {
+  const auto patient = make_labelled_patient(
+      {30, 30, 80}, {1, 1, 1},
+      {{"liver", "liver", everywhere()}, {"duct", "bile_duct", tube({0, 0, -25}, {0, 0, 25}, 7.0)}});
+  const DuctTree tree = make_duct_tree(*patient);
+  ASSERT_FALSE(tree.cells.empty());
+  for (const DuctCell& cell : tree.cells) EXPECT_LT(cell.length_mm(), 3.0);
+  EXPECT_EQ(ends_of(tree, DuctEnd::kPeripheral).size(), 2u);
+}
+
 TEST(DuctTree, ScalesTheRadiiOfEachBranch) {
   const auto patient = make_labelled_patient({80, 30, 90}, {1, 1, 1},
                                              {{"liver", "liver", everywhere()},
