@@ -13,7 +13,7 @@ constexpr double kShortest_mm = 0.1;  ///< Between the middles of two cells.
 
 }  // namespace
 
-DuctFill::DuctFill(DuctTree tree, const DuctParams& params) : tree_(std::move(tree)), params_(params) {
+DuctFill::DuctFill(DuctTree tree, const DuctParams& params) : tree_(std::move(tree)), outline_(tree_), params_(params) {
   const std::size_t count = tree_.cells.size();
   part_of_.assign(count, 0);
   exchange_.assign(count, 0.0);
@@ -183,13 +183,7 @@ double DuctFill::reachable_ml(std::size_t cell) const {
 }
 
 void DuctFill::add_pieces(double least_mg_per_ml, std::vector<IodinePiece>& pieces) const {
-  for (std::size_t n = 0; n < volume_ml_.size(); ++n) {
-    if (iodine_mg_per_ml_[n] < least_mg_per_ml) continue;
-    const DuctCell& cell = tree_.cells[n];
-    const double widened = std::sqrt(volume_ml_[n] / cell.volume_ml());
-    pieces.push_back(
-        {cell.a_P, cell.b_P, widened * cell.radius_a_mm, widened * cell.radius_b_mm, iodine_mg_per_ml_[n]});
-  }
+  outline_.add_pieces(tree_, volume_ml_, iodine_mg_per_ml_, least_mg_per_ml, pieces);
 }
 
 }  // namespace trocar::xray

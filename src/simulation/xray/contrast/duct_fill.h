@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "xray/contrast/contrast_table.h"
+#include "xray/contrast/detail/duct_outline.h"
 #include "xray/contrast/duct_tree.h"
 #include "xray/contrast/iodine.h"
 
@@ -38,7 +39,7 @@ class DuctFill {
   /// Volume of the ducts that a cell reaches without passing an obstruction.
   double reachable_ml(std::size_t cell) const;
   bool has_iodine() const { return is_used_; }
-  /// Adds the cells with at least this concentration.
+  /// Adds the agent in the cells with at least this concentration, with rounded fronts and ends.
   void add_pieces(double least_mg_per_ml, std::vector<IodinePiece>& pieces) const;
 
  private:
@@ -59,6 +60,7 @@ class DuctFill {
   void solve(double dt_s, int cell, double ml_per_s, double iodine_mg_per_ml);
 
   DuctTree tree_;
+  detail::DuctOutline outline_;
   DuctParams params_;
   std::vector<int> part_of_;
   std::vector<Part> parts_;

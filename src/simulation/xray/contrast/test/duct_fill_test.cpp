@@ -203,5 +203,89 @@ TEST(DuctFill, PiecesHaveTheMassOfTheTree) {
   EXPECT_NEAR(mg, fill.iodine_mg(), 1e-9 * mg);
 }
 
+/// A closed tube of radius 7 mm along z, 120 mm long, in cells of 1.5 mm.
+DuctTree wide_duct() {
+  DuctTree tree;
+  append(tree, -1, {0, 0, 0}, {0, 0, 120}, 7.0, 80);
+  tree.cells.front().root_end = tree.cells.back().end = DuctEnd::kPeripheral;
+  return tree;
+}
+
+double piece_ml(const IodinePiece& piece) {
+  const double a = piece.radius_a_mm, b = piece.radius_b_mm;
+  return std::numbers::pi / 3.0 * (a * a + a * b + b * b) * (piece.b_P - piece.a_P).norm() / 1000.0;
+}
+
+/// Of the pieces with their middle in [z, z + 3): iodine per length (mg/mm) and the mean radius, weighted by iodine.
+struct Slab {
+  double mg_per_mm = 0.0, radius_mm = 0.0;
+};
+Slab slab_at(const std::vector<IodinePiece>& pieces, double z) {
+  double mg = 0.0, radius = 0.0;
+  for (const IodinePiece& piece : pieces) {
+    const double middle = 0.5 * (piece.a_P.z() + piece.b_P.z());
+    if (middle < z || middle >= z + 3.0) continue;
+    const double part_mg = piece_ml(piece) * piece.iodine_mg_per_ml;
+    mg += part_mg;
+    radius += part_mg * 0.5 * (piece.radius_a_mm + piece.radius_b_mm);
+  }
+  return {mg / 3.0, mg > 0.0 ? radius / mg : 0.0};
+}
+
+TEST(DuctFill, FrontInAWideDuctFallsOffOverOneToTwoDiameters) {
+  DuctFill fill(wide_duct(), DuctParams{});
+  inject(fill, 0, 1.0, 5.0);
+  std::vector<IodinePiece> pieces;
+  fill.add_pieces(0.05, pieces);
+  const double full = slab_at(pieces, 15.0).mg_per_mm;
+  double at_90 = 0.0, at_10 = 0.0;
+  for (double z = 15.0; z < 117.0; z += 3.0) {
+    const double mg_per_mm = slab_at(pieces, z).mg_per_mm;
+    EXPECT_GE(slab_at(pieces, z - 3.0).mg_per_mm, mg_per_mm - 1e-9 * full) << "at " << z << " mm";
+    if (mg_per_mm > 0.9 * full) at_90 = z;
+    if (mg_per_mm > 0.1 * full) at_10 = z;
+  }
+  EXPECT_GE(at_10 - at_90, 14.0);
+  EXPECT_LE(at_10 - at_90, 28.0);
+}
+
+TEST(DuctFill, FrontInAWideDuctIsARoundNose) {
+  DuctFill fill(wide_duct(), DuctParams{});
+  inject(fill, 0, 1.0, 10.0);
+  std::vector<IodinePiece> pieces;
+  fill.add_pieces(0.05, pieces);
+  EXPECT_NEAR(slab_at(pieces, 15.0).radius_mm, 7.0, 1e-6) << "the full duct";
+  const double middle_mm = 10000.0 / (std::numbers::pi * 49.0);
+  double before_mm = 7.0;
+  for (double z = 15.0; z < middle_mm + 30.0; z += 3.0) {
+    EXPECT_LE(slab_at(pieces, z).radius_mm, before_mm + 1e-9);
+    before_mm = slab_at(pieces, z).radius_mm;
+  }
+  EXPECT_LT(before_mm, 0.6 * 7.0);
+  for (const IodinePiece& piece : pieces) {
+    EXPECT_LE(piece.radius_a_mm, 7.0 + 1e-9);
+    EXPECT_LE(piece.iodine_mg_per_ml, 1.05 * kIodine) << "not denser than the agent, but for cones in a round end";
+  }
+}
+
+TEST(DuctFill, AClosedEndIsHalfABallOfTheSameVolume) {
+  DuctFill fill(wide_duct(), DuctParams{});
+  inject(fill, 40, 2.0, 20.0);
+  std::vector<IodinePiece> pieces;
+  fill.add_pieces(0.05, pieces);
+  double low_z = 0.0, ml = 0.0;
+  for (const IodinePiece& piece : pieces) {
+    low_z = std::min({low_z, piece.a_P.z(), piece.b_P.z()});
+    ml += piece_ml(piece);
+    // The half ball around z = 14/3 mm: its flat volume of 2/3 of the radius and a third of it beyond the end.
+    const double height = 14.0 / 3.0 - piece.b_P.z();
+    if (height > 0.0 && height < 6.9) {
+      EXPECT_NEAR(piece.radius_b_mm / std::sqrt(49.0 - height * height), std::sqrt(1.25), 0.02) << "distended";
+    }
+  }
+  EXPECT_NEAR(low_z, -7.0 / 3.0, 1e-9);
+  EXPECT_NEAR(ml, fill.volume_ml(), 0.01 * ml);
+}
+
 }  // namespace
 }  // namespace trocar::xray
