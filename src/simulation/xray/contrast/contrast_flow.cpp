@@ -14,8 +14,9 @@ constexpr double kLongestStep_s = 0.01;
 constexpr double kLongestFrame_s = 1.0;
 constexpr double kMostRate_ml_per_s = 50.0;  ///< A power injector's.
 constexpr double kMostIodine_mg_per_ml = 500.0;
-constexpr double kDuctReach_mm = 3.0;      ///< From a voxel of a duct's label to the tree.
-constexpr double kShown_mg_per_ml = 0.05;  ///< Thinner pieces are not given to the projector.
+constexpr double kTissue_mm = 1.5, kFluid_mm = 2.5;  ///< Voxels.
+constexpr double kDuctReach_mm = 3.0;                ///< From a voxel of a duct's label to the tree.
+constexpr double kShown_mg_per_ml = 0.05;            ///< Thinner pieces are not given to the projector.
 
 std::string point_text(const Vec3& p_P) {
   return fmt::format("tip at {:g}, {:g}, {:g} mm", p_P.x(), p_P.y(), p_P.z());
@@ -28,7 +29,8 @@ ContrastFlow::ContrastFlow(std::shared_ptr<const anatomy::VirtualPatient> patien
     : patient_(std::move(patient)),
       ducts_(make_duct_tree(*patient_, {.bridge_mm = table.duct.bridge_mm}), table.duct),
       vessels_(patient_, table.vessel, std::move(blood)),
-      tissue_(patient_, table) {}
+      tissue_(patient_, table, kTissue_mm),
+      fluid_(patient_, table, kFluid_mm) {}
 
 Result<ContrastFlow> ContrastFlow::make(std::shared_ptr<const anatomy::VirtualPatient> patient,
                                         const ContrastTable& table, BloodVelocity blood) {
@@ -88,7 +90,7 @@ void ContrastFlow::inject_for(double dt_s) {
       spilled_mg_ += mg;
       return;
     default:
-      tissue_.inject(tip_P_, ml, iodine_mg_per_ml_);
+      (fluid_.is_fluid_near(tip_P_) ? fluid_ : tissue_).inject(tip_P_, ml, iodine_mg_per_ml_);
   }
 }
 
@@ -96,21 +98,26 @@ void ContrastFlow::step(double dt_s) {
   TROCAR_CHECK(dt_s >= 0.0 && dt_s <= kLongestFrame_s);
   const auto count = static_cast<int>(std::ceil(dt_s / kLongestStep_s - 1e-9));
   const bool injects = ml_per_s_ > 0.0;
+  const bool is_moving = target_.place == ContrastPlace::kVessel || target_.place == ContrastPlace::kDuct;
   for (int n = 0; n < count; ++n) {
     const double part_s = dt_s / count;
     vessels_.step(part_s);
-    if (injects) inject_for(part_s);
+    if (injects && is_moving) inject_for(part_s);
     const bool is_duct = injects && target_.place == ContrastPlace::kDuct;
     ducts_.step(part_s, is_duct ? target_.cell : -1, ml_per_s_, iodine_mg_per_ml_);
   }
-  if (count > 0) tissue_.step(dt_s);
+  if (count == 0) return;
+  if (injects && !is_moving) inject_for(dt_s);
+  tissue_.step(dt_s);
+  fluid_.step(dt_s);
 }
 
 Iodine ContrastFlow::iodine() const {
   Iodine iodine;
   if (ducts_.has_iodine()) ducts_.add_pieces(kShown_mg_per_ml, iodine.pieces);
   vessels_.add_pieces(kShown_mg_per_ml, iodine.pieces);
-  iodine.grid_mg_per_ml = tissue_.grid_mg_per_ml();
+  for (const TissueCloud* cloud : {&tissue_, &fluid_})
+    if (auto grid = cloud->grid_mg_per_ml()) iodine.grids_mg_per_ml.push_back(std::move(grid));
   return iodine;
 }
 
@@ -120,9 +127,10 @@ ContrastTotals ContrastFlow::totals() const {
   totals.injected_mg = injected_mg_;
   totals.ducts_mg = ducts_.iodine_mg();
   totals.vessels_mg = vessels_.iodine_mg();
-  totals.tissue_mg = tissue_.iodine_mg();
+  totals.tissue_mg = tissue_.iodine_mg() + fluid_.iodine_mg();
   totals.drained_mg = ducts_.drained_mg();
-  totals.washed_away_mg = ducts_.refluxed_mg() + vessels_.washed_away_mg() + tissue_.washed_away_mg();
+  totals.washed_away_mg =
+      ducts_.refluxed_mg() + vessels_.washed_away_mg() + tissue_.washed_away_mg() + fluid_.washed_away_mg();
   totals.spilled_mg = spilled_mg_;
   totals.ducts_ml = ducts_.contrast_ml();
   return totals;

@@ -49,7 +49,8 @@ class ContrastFlow {
   ContrastPlace place(const Vec3& tip_P) const;
   ContrastTotals totals() const;
   const DuctFill& ducts() const { return ducts_; }
-  const TissueCloud& tissue() const { return tissue_; }
+  const TissueCloud& tissue() const { return tissue_; }  ///< Parenchyma and other tissue.
+  const TissueCloud& fluid() const { return fluid_; }    ///< Fluid and bowel.
 
  private:
   ContrastFlow(std::shared_ptr<const anatomy::VirtualPatient> patient, const ContrastTable& table, BloodVelocity blood);
@@ -65,7 +66,7 @@ class ContrastFlow {
   std::shared_ptr<const anatomy::VirtualPatient> patient_;
   DuctFill ducts_;
   VesselStreak vessels_;
-  TissueCloud tissue_;
+  TissueCloud tissue_, fluid_;
   Vec3 tip_P_ = Vec3::Zero();
   Target target_;
   double ml_per_s_ = 0.0;

@@ -57,7 +57,10 @@ Result<ContrastMedium> read_medium(const config::TomlTable& row, bool has_tissue
   if (is_fluid) {
     numbers = {{"mixing_mm2_per_s", {0.01, 200.0}, &medium.mixing_mm2_per_s}};
   } else {
-    numbers = {{"space", {0.01, 1.0}, &medium.space}, {"fade_s", {0.0, 1e5}, &medium.fade_s}};
+    numbers = {{"space", {0.01, 1.0}, &medium.space},
+               {"fade_s", {0.0, 1e5}, &medium.fade_s},
+               {"heterogeneity", {0.0, 2.0}, &medium.heterogeneity},
+               {"correlation_mm", {2.0, 20.0}, &medium.correlation_mm}};
   }
   for (const Number& number : numbers) keys.push_back(number.key);
   if (has_tissues) keys.emplace_back("tissues");

@@ -35,8 +35,11 @@ struct VesselParams {
 struct ContrastMedium {
   ContrastPlace place = ContrastPlace::kTissue;  ///< Parenchyma, fluid, bowel or tissue.
   std::vector<std::string> tissues;
-  double space = 0.12;            ///< Parenchyma and tissue: share of the volume that is filled. Range 0.01..1.
-  double fade_s = 0.0;            ///< Parenchyma and tissue: time constant; 0: no fading. Range 0..1e5.
+  double space = 0.12;  ///< Parenchyma and tissue: share of the volume that is filled. Range 0.01..1.
+  double fade_s = 0.0;  ///< Parenchyma and tissue: time constant; 0: no fading. Range 0..1e5.
+  double heterogeneity =
+      0.0;  ///< Parenchyma and tissue: standard deviation of the logarithm of the uptake. Range 0..2.
+  double correlation_mm = 5.0;    ///< Parenchyma and tissue: size of its parts. Range 2..20.
   double mixing_mm2_per_s = 0.0;  ///< Fluid and bowel. Range 0.01..200.
 };
 

@@ -15,11 +15,11 @@ struct IodinePiece {
   double iodine_mg_per_ml = 0.0;
 };
 
-/// Contrast agent in the body at one moment: in ducts and vessels as pieces, elsewhere as a grid (mg iodine per ml)
-/// that covers only where it is. Both may be empty.
+/// Contrast agent in the body at one moment: in ducts and vessels as pieces, elsewhere as grids (mg iodine per ml)
+/// that cover only where it is and add up: one of tissue, one of fluid. All may be empty.
 struct Iodine {
   std::vector<IodinePiece> pieces;
-  std::shared_ptr<const volume::FloatGrid> grid_mg_per_ml;
+  std::vector<std::shared_ptr<const volume::FloatGrid>> grids_mg_per_ml;
 };
 
 }  // namespace trocar::xray

@@ -17,7 +17,8 @@ constexpr std::int64_t kGrowth = 8;        ///< Voxels by which the window grows
 constexpr double kShown_mg_per_ml = 5e-3;  ///< Less does not spread: 0.1 mg/cm² in 20 cm, below the noise.
 constexpr double kStability = 0.16;        ///< Largest mixing * step / spacing² of explicit diffusion (limit: 1/6).
 constexpr double kSameTip_mm = 0.5;        ///< A tip that moves less fills the same place.
-constexpr std::int64_t kSeedReach = 2;     ///< Voxels around the tip in which the organ's nearest voxel is looked for.
+constexpr double kSeedReach_mm = 5.0;      ///< Around the tip, in which the organ's nearest voxel is looked for.
+constexpr double kFarFront_mm = 1e5;       ///< A front from which all voxels are full.
 constexpr std::array<volume::Index3, 6> kNeighbours{
     {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
 
@@ -27,6 +28,11 @@ volume::Index3 sum(const volume::Index3& a, const volume::Index3& b) {
 
 bool is_fluid(const ContrastMedium& medium) {
   return medium.place == ContrastPlace::kFluid || medium.place == ContrastPlace::kBowel;
+}
+
+/// Voxels of the lattice within kSeedReach_mm along an axis.
+std::int64_t seed_reach(const volume::GridGeometry& lattice) {
+  return static_cast<std::int64_t>(kSeedReach_mm / lattice.spacing_mm[0]);
 }
 
 volume::Index3 nearest_index(const volume::GridGeometry& g, const Vec3& p_P) {
@@ -67,9 +73,10 @@ TissueCloud::Organ TissueCloud::organ_near(const Vec3& p_P) const {
   Organ best = organ_at(p_P);
   double best_mm = std::numeric_limits<double>::infinity();
   if (best != kNoOrgan) return best;
-  for (std::int64_t k = -kSeedReach; k <= kSeedReach; ++k)
-    for (std::int64_t j = -kSeedReach; j <= kSeedReach; ++j)
-      for (std::int64_t i = -kSeedReach; i <= kSeedReach; ++i) {
+  const std::int64_t reach = seed_reach(lattice_);
+  for (std::int64_t k = -reach; k <= reach; ++k)
+    for (std::int64_t j = -reach; j <= reach; ++j)
+      for (std::int64_t i = -reach; i <= reach; ++i) {
         const Vec3 away = volume::to_vec3({i, j, k}).cwiseProduct(lattice_.spacing_mm);
         const Organ organ = organ_at(p_P + away);
         if (organ == kNoOrgan || away.norm() >= best_mm) continue;
@@ -174,9 +181,10 @@ volume::Index3 TissueCloud::seed_of(const Vec3& tip_P, Organ organ) {
   const volume::Index3 middle = nearest_index(lattice_, tip_P);
   volume::Index3 best = middle;
   double best_mm = std::numeric_limits<double>::infinity();
-  for (std::int64_t k = -kSeedReach; k <= kSeedReach; ++k)
-    for (std::int64_t j = -kSeedReach; j <= kSeedReach; ++j)
-      for (std::int64_t i = -kSeedReach; i <= kSeedReach; ++i) {
+  const std::int64_t reach = seed_reach(lattice_);
+  for (std::int64_t k = -reach; k <= reach; ++k)
+    for (std::int64_t j = -reach; j <= reach; ++j)
+      for (std::int64_t i = -reach; i <= reach; ++i) {
         const volume::Index3 at = sum(middle, {i, j, k});
         if (!lattice_.contains(at)) continue;
         include(at);
@@ -191,44 +199,28 @@ volume::Index3 TissueCloud::seed_of(const Vec3& tip_P, Organ organ) {
 }
 
 void TissueCloud::start_site(const Vec3& tip_P, Organ organ) {
-  if (site_.organ == organ && !site_.order.empty() && (site_.tip_P - tip_P).norm() < kSameTip_mm) return;
-  site_ = {tip_P, organ, {}, {}};
+  if (site_.organ == organ && site_.front_mm > 0.0 && (site_.tip_P - tip_P).norm() < kSameTip_mm) return;
+  const ContrastMedium& medium = medium_of(static_cast<std::uint8_t>(organ));
   const volume::Index3 seed = seed_of(tip_P, organ);
-  seen_.assign(organ_.size(), 0);
-  seen_window_ = window_;
-  seen_[offset(seed)] = 1;
-  site_.frontier.emplace_back(0.0F, seed);
-  expand_site();
+  site_ = {tip_P, organ, lattice_.spacing_mm[0], detail::StainSite(lattice_, tip_P, seed, medium)};
 }
 
 /// Appends the next voxel of the site's organ; false if the organ has no more.
 bool TissueCloud::expand_site() {
-  if (site_.frontier.empty()) return false;
-  std::pop_heap(site_.frontier.begin(), site_.frontier.end(), std::greater<>());
-  const volume::Index3 at = site_.frontier.back().second;
-  site_.frontier.pop_back();
-  site_.order.push_back(at);
-  include(at);
-  keep_seen();
-  for (const volume::Index3& step : kNeighbours) {
-    const volume::Index3 to = sum(at, step);
-    if (!lattice_.contains(to)) continue;
-    const std::size_t n = offset(to);
-    if (seen_[n] != 0 || organ_[n] != site_.organ) continue;
-    seen_[n] = 1;
-    site_.frontier.emplace_back(static_cast<float>((lattice_.centre_mm(to) - site_.tip_P).norm()), to);
-    std::push_heap(site_.frontier.begin(), site_.frontier.end(), std::greater<>());
-  }
-  return true;
+  const auto is_same_organ = [this](const volume::Index3& at) {
+    include(at);
+    return organ_[offset(at)] == site_.organ;
+  };
+  return site_.way.expand(is_same_organ, [this](const volume::Index3& at) { return is_tract(at); });
 }
 
-/// Marks the site's voxels again after the window has grown.
-void TissueCloud::keep_seen() {
-  if (seen_window_ == window_) return;
-  seen_.assign(organ_.size(), 0);
-  seen_window_ = window_;
-  for (const volume::Index3& at : site_.order) seen_[offset(at)] = 1;
-  for (const auto& waiting : site_.frontier) seen_[offset(waiting.second)] = 1;
+/// Whether a voxel borders on a vessel or duct.
+bool TissueCloud::is_tract(const volume::Index3& at) {
+  for (const volume::Index3& step : kNeighbours) {
+    const volume::Index3 to = sum(at, step);
+    if (lattice_.contains(to) && organ_[offset(to)] == kNoOrgan) return true;
+  }
+  return false;
 }
 
 void TissueCloud::inject(const Vec3& tip_P, double ml, double iodine_mg_per_ml) {
@@ -244,23 +236,61 @@ void TissueCloud::inject(const Vec3& tip_P, double ml, double iodine_mg_per_ml) 
   }
 }
 
-/// Fills the room of the voxels, the nearest first.
+bool TissueCloud::is_fluid_near(const Vec3& p_P) const {
+  const Organ organ = organ_near(p_P);
+  return organ != kNoOrgan && is_fluid(medium_of(static_cast<std::uint8_t>(organ)));
+}
+
+/// Volume that the site's voxels lack for the present front, and its growth with the front.
+double TissueCloud::wanted_ml(double room_ml, double& ml_per_mm) const {
+  double ml = 0.0;
+  ml_per_mm = 0.0;
+  for (const detail::StainSite::Voxel& voxel : site_.way.voxels()) {
+    if (voxel.reach_mm >= site_.front_mm) break;
+    const double share = detail::StainSite::share(voxel, site_.front_mm);
+    const double lack_ml = room_ml * share - fluid_ml_[offset(voxel.at)];
+    if (lack_ml <= 0.0) continue;
+    ml += lack_ml;
+    ml_per_mm += room_ml * (1.0 - share) * voxel.uptake / voxel.reach_mm;
+  }
+  return ml;
+}
+
+/// Moves the site's front until its voxels lack the volume; returns what they lack, less if the organ is full.
+double TissueCloud::move_front(double room_ml, double ml) {
+  for (;;) {
+    bool has_more = true;
+    while (has_more && (site_.way.voxels().empty() || site_.way.voxels().back().reach_mm < site_.front_mm))
+      has_more = expand_site();
+    double ml_per_mm = 0.0;
+    const double wanted = wanted_ml(room_ml, ml_per_mm);
+    if (wanted >= ml || (!has_more && site_.front_mm > kFarFront_mm)) return wanted;
+    const double least_mm = site_.front_mm * (has_more ? 1e-3 : 1.0), most_mm = std::max(site_.front_mm, least_mm);
+    site_.front_mm += std::clamp((ml - wanted) / std::max(ml_per_mm, 1e-12), least_mm, most_mm);
+  }
+}
+
+/// Fills the room of the voxels, the more the nearer they are to the tip.
 void TissueCloud::fill(const Vec3& tip_P, Organ organ, double ml, double iodine_mg_per_ml) {
   start_site(tip_P, organ);
   const double room_ml = medium_of(static_cast<std::uint8_t>(organ)).space * lattice_.voxel_volume_mm3() / kMm3PerMl;
-  for (std::size_t n = 0; ml > 0.0; ++n) {
-    if (n == site_.order.size() && !expand_site()) break;
-    const volume::Index3 at = site_.order[n];
-    const std::size_t v = offset(at);
-    const double part_ml = std::min(room_ml - fluid_ml_[v], ml);
+  const double wanted = move_front(room_ml, ml);
+  const double part = wanted > ml ? ml / wanted : 1.0;
+  double left_ml = ml;
+  for (const detail::StainSite::Voxel& voxel : site_.way.voxels()) {
+    if (voxel.reach_mm >= site_.front_mm) break;
+    const std::size_t v = offset(voxel.at);
+    const double lack_ml = room_ml * detail::StainSite::share(voxel, site_.front_mm) - fluid_ml_[v];
+    const double part_ml = std::min(part * lack_ml, left_ml);
     if (part_ml <= 0.0) continue;
-    if (fluid_ml_[v] <= 0.0) filled_.push_back(at);
+    if (fluid_ml_[v] <= 0.0) filled_.push_back(voxel.at);
     fluid_ml_[v] += part_ml;
     iodine_mg_[v] += part_ml * iodine_mg_per_ml;
-    ml -= part_ml;
-    activate(at);
+    left_ml -= part_ml;
+    activate(voxel.at);
   }
-  washed_away_mg_ += ml * iodine_mg_per_ml;
+  // Without room: into the blood. Otherwise only rounding is left.
+  washed_away_mg_ += left_ml * iodine_mg_per_ml;
 }
 
 /// Puts iodine into the fluid at the tip.

@@ -8,21 +8,24 @@
 #include "anatomy/patient.h"
 #include "volume/grid.h"
 #include "xray/contrast/contrast_table.h"
+#include "xray/contrast/detail/stain_site.h"
 
 namespace trocar::xray {
 
 /// Contrast agent outside of ducts and vessels, on an isotropic grid that grows with it. Each voxel belongs to the
 /// organ at its centre (a lesion to its organ); nothing passes from one organ to another. In parenchyma and other
-/// tissue the injected volume fills the medium's share of the voxels, the nearest to the tip first, and fades; in fluid
-/// and bowel iodine diffuses. docs/physics.md, X14, X15.
+/// tissue the injected volume makes a stain: it takes up a share of the medium's room that falls from the tip to an
+/// irregular front (detail/stain_site.h), and fades; in fluid and bowel iodine diffuses. docs/physics.md, X14, X15.
 class TissueCloud {
  public:
-  /// `spacing_mm`: range 1..5.
+  /// `spacing_mm`: range 1..5; a stain's texture needs 1.5 mm.
   TissueCloud(std::shared_ptr<const anatomy::VirtualPatient> patient, const ContrastTable& table,
               double spacing_mm = 2.5);
 
   /// Medium of the tissue at a point; nullptr outside of the body and in ducts and vessels.
   const ContrastMedium* medium_at(const Vec3& p_P) const;
+  /// True if the organ at a point (or within 5 mm, as for an injection) is fluid or bowel.
+  bool is_fluid_near(const Vec3& p_P) const;
   /// Injects into the organ at a point or, if it has no medium there, within 5 mm. The volume for which the organ has
   /// no room is washed away.
   void inject(const Vec3& tip_P, double ml, double iodine_mg_per_ml);
@@ -42,12 +45,12 @@ class TissueCloud {
   static constexpr Organ kNoOrgan = 256;
   using Box = std::array<volume::Index3, 2>;  ///< Both corners are in the box.
 
-  /// Voxels in the order in which an injection at one place fills them.
+  /// The last injection into tissue.
   struct Site {
     Vec3 tip_P = Vec3::Zero();
     Organ organ = 0;
-    std::vector<std::pair<float, volume::Index3>> frontier;  ///< Heap: distance from the tip.
-    std::vector<volume::Index3> order;
+    double front_mm = 0.0;  ///< Reach of the front.
+    detail::StainSite way;
   };
 
   /// A voxel of fluid that may contain iodine.
@@ -65,7 +68,9 @@ class TissueCloud {
   static std::size_t offset_in(const Box& box, const volume::Index3& at);
   std::size_t offset(const volume::Index3& at) const { return offset_in(window_, at); }
   bool expand_site();
-  void keep_seen();
+  bool is_tract(const volume::Index3& at);
+  double wanted_ml(double room_ml, double& ml_per_mm) const;
+  double move_front(double room_ml, double ml);
   void link(const volume::Index3& at);
   void add_mixed(const volume::Index3& at);
   void spread();
@@ -91,8 +96,6 @@ class TissueCloud {
   std::vector<std::uint8_t> is_mixed_;
   std::vector<std::array<std::uint32_t, 2>> faces_;  ///< Offsets of neighbours in `mixed_`.
   Site site_;
-  std::vector<std::uint8_t> seen_;  ///< Voxels of the window that are in the site's order or frontier.
-  Box seen_window_{};
   bool is_used_ = false;
   double washed_away_mg_ = 0.0;
 };

@@ -21,9 +21,10 @@ void AddedSignal::update_iodine(const FluoroscopyRequest& request, const Patient
   X_PM_ = request.X_PM;
   iodine_g_per_cm2_.clear();
   if (!iodine_) return;
-  if (iodine_->grid_mg_per_ml && !iodine_->grid_mg_per_ml->empty()) {
-    project(*iodine_->grid_mg_per_ml, patient.rays(), request.X_PM, iodine_g_per_cm2_);
-    for (float& value : iodine_g_per_cm2_) value *= kG_per_mg;
+  for (const auto& grid : iodine_->grids_mg_per_ml) {
+    project(*grid, patient.rays(), request.X_PM, integrals_);
+    iodine_g_per_cm2_.resize(integrals_.size(), 0.0F);
+    for (std::size_t n = 0; n < integrals_.size(); ++n) iodine_g_per_cm2_[n] += kG_per_mg * integrals_[n];
   }
   if (!iodine_->pieces.empty())
     add_iodine(iodine_->pieces, rays_in_body(patient.rays(), request.X_PM), iodine_g_per_cm2_);

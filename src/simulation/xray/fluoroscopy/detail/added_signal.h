@@ -22,6 +22,7 @@ class AddedSignal {
   std::optional<CArm> arm_;
   Pose X_PM_;
   std::vector<float> iodine_g_per_cm2_;  ///< Empty without contrast agent.
+  std::vector<float> integrals_;         ///< Of one grid.
   MassImage added_;
   MassImage few_;  ///< Masses of the changed pixels, in one row.
   std::vector<std::uint8_t> is_changed_;
