@@ -82,6 +82,10 @@ std::optional<Pose> AttemptReplay::transducer_at(double time_s) const noexcept {
   return Pose(from.slerp(share, to).toRotationMatrix(), before.X_PT.p() + share * (next->X_PT.p() - before.X_PT.p()));
 }
 
+InjectionSteps AttemptReplay::injections() const {
+  return injection_steps(session_.xray, [this](double time_s) { return at(time_s).tip_mm; });
+}
+
 void AttemptReplay::find_moments() {
   using Kind = ReplayMoment::Kind;
   for (const telemetry::TickSample& sample : session_.samples) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "attempt/guide/gun_shot.h"
+#include "attempt/record/xray_replay.h"
 #include "cases/open_case.h"
 #include "core/result.h"
 #include "storage/session_file.h"
@@ -43,6 +44,11 @@ class AttemptReplay {
   /// session has no transducer samples.
   std::optional<Pose> transducer_at(double time_s) const noexcept;
   static constexpr double kTransducerGap_s = 0.1;
+
+  /// The fluoroscope at a time; empty: not used before.
+  std::optional<XrayMoment> xray_at(double time_s) const { return xray_moment(session_.xray, time_s); }
+  /// At the recorded tips of the needle.
+  InjectionSteps injections() const;
 
   /// Shot of the gun; empty: it was not fired.
   const std::optional<GunShot>& shot() const noexcept { return shot_; }
