@@ -8,6 +8,7 @@
 #include "anatomy/structure_words.h"
 #include "attempt/guide/gun_shot.h"
 #include "control/force_bands.h"
+#include "control/task_layout.h"
 #include "pages/work_page.h"
 #include "panels/puncture_panel.h"
 #include "ui_kit/parts.h"
@@ -76,7 +77,8 @@ AttemptControl::AttemptControl(std::shared_ptr<const cases::OpenCase> open, cons
   if (const auto& X_PN_start = attempt_.options().X_PN_start) needle_.put(*X_PN_start);
   page_.workspace().show_help(choice_.difficulty);  // the replay of the last attempt showed all
   page_.workspace().set_tip_hidden(is_tip_hidden());
-  choose_layout();
+  choose_layout(open_->the_case.task, page_.workspace());
+  page_.xray().begin();
   connect_panel();
   ForcePlot& plot = page_.forces();
   plot.clear();
@@ -97,15 +99,6 @@ AttemptControl::~AttemptControl() {
   page_.view_3d().set_interrupt({});
   page_.workspace().set_tip_hidden(false);
   gestures_.unwatch();
-}
-
-/// A task that limits the dose is done under fluoroscopy.
-void AttemptControl::choose_layout() {
-  Workspace& workspace = page_.workspace();
-  const QString xray = QStringLiteral("X-ray"), usual = QStringLiteral("Puncture");
-  const bool is_by_xray = open_->the_case.task.dose_limit_gycm2 > 0.0;
-  if (is_by_xray && workspace.layout_name() == usual) workspace.choose_layout(xray);
-  if (!is_by_xray && workspace.layout_name() == xray) workspace.choose_layout(usual);
 }
 
 void AttemptControl::connect_panel() {

@@ -45,7 +45,6 @@ class AttemptControl : public QObject {
 
  private:
   enum class Question { kEnd, kClose };
-  void choose_layout();
   void connect_panel();
   void gesture(const Gesture& gesture);
   bool take_key(const QKeyEvent& key, const KeyPlace& place);

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "control/force_bands.h"
+#include "control/task_layout.h"
 #include "core/files/atomic_file.h"
 #include "pages/work_page.h"
 #include "panels/feedback_panel.h"
@@ -14,6 +15,7 @@
 #include "views/plots/force_plot.h"
 #include "views/plots/time_line.h"
 #include "views/ultrasound/ultrasound_view.h"
+#include "views/xray/xray_view.h"
 #include "workspace/shot_display.h"
 #include "workspace/workspace.h"
 
@@ -85,6 +87,8 @@ ReplayControl::ReplayControl(attempt::AttemptReplay replay, std::shared_ptr<cons
       open_(std::move(open)),
       page_(page),
       keys_(page, [this](const QKeyEvent& key, const KeyPlace& place) { return take_key(key, place); }) {
+  choose_layout(open_->the_case.task, page_.workspace());
+  page_.xray().begin_replay(std::make_shared<const attempt::InjectionSteps>(replay_.injections()));
   fill_plot();
   fill_time_line();
   QString worst;
@@ -192,8 +196,19 @@ void ReplayControl::show_at(double time_s, bool is_moving) {
   if (const auto& shot = replay_.shot(); shot && time_s >= shot->time_s)
     show_shot(tools, *shot, time_s - shot->time_s, sample.depth_mm);
   page_.workspace().show_tools(tools);
+  show_xray(time_s);
   page_.forces().set_cursor(time_s);
   shown_s_ = time_s;
+}
+
+void ReplayControl::show_xray(double time_s) {
+  auto moment = replay_.xray_at(time_s);
+  std::vector<Vec3> shaft_P;
+  if (moment && moment->image_s) {
+    if (!moment->is_held()) moment->image_s = page_.xray().pulse_s(*moment->image_s);
+    shaft_P = replay_.shaft_at(*moment->image_s);
+  }
+  page_.xray().show_moment(moment, std::move(shaft_P));
 }
 
 void ReplayControl::go_to_worst() {
@@ -216,6 +231,16 @@ QVariantMap ReplayControl::facts() const {
   facts[QStringLiteral("probe_from_plan_mm")] = (transducer_at(shown_s_).p() - open_->X_PT_start.p()).norm();
   facts[QStringLiteral("was_cut_off")] = replay_.was_cut_off();
   facts[QStringLiteral("parameter_changes")] = static_cast<int>(replay_.session().parameters.size());
+  const XrayView& xray = page_.xray();
+  const auto image = xray.frame();
+  const tasks::XrayUse use = xray.use();
+  facts[QStringLiteral("xray_beam_s")] = use.beam_s;
+  facts[QStringLiteral("xray_dose_gycm2")] = use.dose_area_gycm2;
+  facts[QStringLiteral("xray_is_on")] = use.is_beam_on;
+  facts[QStringLiteral("xray_lao_deg")] = use.lao_deg;
+  facts[QStringLiteral("contrast_ml")] = use.contrast_ml;
+  facts[QStringLiteral("xray_image_s")] = image ? image->time_s : -1.0;
+  facts[QStringLiteral("xray_is_complete")] = xray.is_complete();
   return facts;
 }
 

@@ -34,6 +34,7 @@ class ReplayControl : public QObject {
   void fill_plot();
   void fill_time_line();
   void show_at(double time_s, bool is_moving);
+  void show_xray(double time_s);
   Pose transducer_at(double time_s) const;
 
   attempt::AttemptReplay replay_;

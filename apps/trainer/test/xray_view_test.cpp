@@ -132,5 +132,102 @@ TEST_F(XrayViewTest, ControlsShowTheSettings) {
   EXPECT_NEAR(view.settings().arm.collimation[0], 0.6, 1e-9);
 }
 
+/// An exposure at LAO 20 at 2 s, held at LAO 40 from 3 s on; 1 ml of contrast agent into the liver up to 2 s.
+struct XrayViewReplayTest : XrayViewTest {
+  void SetUp() override {
+    XrayViewTest::SetUp();
+    tasks::XrayUse on;
+    on.time_s = 2.0;
+    on.lao_deg = 20.0;
+    on.isocentre_P = Vec3(-40.0, 0.0, 0.0);
+    on.field_mm = view.unit().fields_mm.front();
+    on.is_beam_on = true;
+    on.contrast_ml = 1.0;
+    on.beam_s = 0.5;
+    on.dose_area_gycm2 = 7.0;
+    tasks::XrayUse off = on;
+    off.time_s = 3.0;
+    off.lao_deg = 40.0;
+    off.is_beam_on = false;
+    uses = {on, off};
+    attempt::InjectionSteps steps;
+    steps.start_s = 1.0;
+    steps.steps.assign(30, {tip_P, 1.0});
+    injections = std::make_shared<const attempt::InjectionSteps>(std::move(steps));
+  }
+  void show(double time_s) {
+    view.show_moment(attempt::xray_moment(uses, time_s), {tip_P + Vec3(-100.0, 0.0, 0.0), tip_P});
+  }
+
+  const Vec3 tip_P{-80.0, 0.0, 20.0};
+  std::vector<tasks::XrayUse> uses;
+  std::shared_ptr<const attempt::InjectionSteps> injections;
+};
+
+TEST_F(XrayViewReplayTest, ShowsTheRecordedMomentsForwardsAndBackwards) {
+  view.begin_replay(injections);
+  show(1.0);
+  EXPECT_TRUE(view.is_complete());
+  EXPECT_FALSE(view.frame());
+  show(5.0);
+  EXPECT_FALSE(view.is_complete());
+  ASSERT_TRUE(run_until([&] { return view.is_complete(); }));
+  EXPECT_EQ(view.frame()->time_s, 2.0);
+  EXPECT_EQ(view.frame()->arm.lao_deg, 20.0) << "the projection of the exposure";
+  EXPECT_EQ(view.settings().arm.lao_deg, 40.0) << "the C-arm now";
+  EXPECT_EQ(view.use().dose_area_gycm2, 7.0);
+  const xray::GrayImage first = view.frame()->gray;
+  show(1.0);
+  EXPECT_FALSE(view.frame()) << "black before the first pulse";
+  show(2.5);
+  ASSERT_TRUE(run_until([&] { return view.is_complete(); }));
+  EXPECT_EQ(view.frame()->time_s, 2.5);
+  show(5.0);
+  ASSERT_TRUE(run_until([&] { return view.is_complete(); }));
+  EXPECT_EQ(view.frame()->gray.pixels, first.pixels) << "a moment has one image";
+}
+
+TEST_F(XrayViewReplayTest, ContrastAgentIsInTheImage) {
+  const auto mean_at_end = [&](const std::shared_ptr<const attempt::InjectionSteps>& given) {
+    view.begin_replay(given);
+    show(5.0);
+    EXPECT_TRUE(run_until([&] { return view.is_complete(); }));
+    double sum = 0.0;
+    for (const std::uint8_t gray : view.frame()->gray.pixels) sum += gray;
+    return sum / static_cast<double>(view.frame()->gray.pixels.size());
+  };
+  const double without = mean_at_end(std::make_shared<const attempt::InjectionSteps>());
+  EXPECT_LT(mean_at_end(injections), without - 0.2) << "dark where it is";
+}
+
+TEST_F(XrayViewReplayTest, NothingActsInAReplayAndAllActsAfterwards) {
+  XrayControls controls(view);
+  const auto* pedal = controls.findChild<QPushButton*>(QStringLiteral("xray-pedal"));
+  const auto* lao = controls.findChild<QSlider*>(QStringLiteral("xray-lao"));
+  view.set_pedal(true);
+  ASSERT_TRUE(shows_exposure());
+  view.begin_replay(injections);
+  show(5.0);
+  EXPECT_FALSE(view.is_pedal_down());
+  EXPECT_FALSE(pedal->isEnabled() || lao->isEnabled());
+  EXPECT_EQ(lao->value(), 40) << "the recorded angle";
+  QKeyEvent down(QEvent::KeyPress, Qt::Key_Z, Qt::NoModifier);
+  QCoreApplication::sendEvent(&view, &down);
+  view.set_injecting(true);
+  drag(view, {200, 200}, {300, 150}, Qt::RightButton);
+  const double field_mm = view.settings().arm.field_mm;
+  wheel(view, {200, 200}, 120);
+  EXPECT_FALSE(view.is_pedal_down() || view.is_injecting());
+  EXPECT_EQ(view.settings().arm.lao_deg, 40.0);
+  EXPECT_EQ(view.settings().arm.field_mm, field_mm);
+  view.begin();
+  EXPECT_TRUE(pedal->isEnabled() && lao->isEnabled());
+  EXPECT_EQ(view.settings().arm.lao_deg, view.unit().arm.lao_deg);
+  EXPECT_EQ(view.use().beam_s, 0.0) << "a new examination";
+  view.set_pedal(true);
+  ASSERT_TRUE(shows_exposure());
+  EXPECT_LT(view.use().dose_area_gycm2, 7.0);
+}
+
 }  // namespace
 }  // namespace trocar::trainer

@@ -37,7 +37,10 @@ XrayControls::XrayControls(XrayView& view, QWidget* parent) : QWidget(parent), v
   auto* column = new QVBoxLayout(content);
   column->setContentsMargins(12, 10, 12, 12);
   column->setSpacing(12);
-  for (QWidget* part : {make_pedals(), make_c_arm(), make_exposure(), make_image()}) column->addWidget(part);
+  live_ = {make_pedals(), make_c_arm(), make_exposure()};
+  for (QWidget* part : live_) column->addWidget(part);
+  column->addWidget(make_image());
+  live_.push_back(mode_);
   column->addStretch(1);
   auto* scroll = new QScrollArea(this);
   scroll->setWidget(content);
@@ -192,12 +195,14 @@ void XrayControls::show_view() {
   show(*lao_, *lao_value_, s.arm.lao_deg, QStringLiteral("°"));
   show(*cranial_, *cranial_value_, s.arm.cranial_deg, QStringLiteral("°"));
   show(*table_, *table_value_, s.table_mm, QStringLiteral(" mm"));
+  if (view_.is_replay()) table_value_->setText(QStringLiteral("–"));  // only the isocentre is recorded
   show(*across_, *across_value_, 100.0 * s.arm.collimation[0], QStringLiteral(" %"));
   show(*along_, *along_value_, 100.0 * s.arm.collimation[1], QStringLiteral(" %"));
   field_->setCurrentIndex(field_->findData(s.arm.field_mm));
   pulses_->setCurrentIndex(pulses_->findData(s.pulses_per_s));
   dose_->setCurrentIndex(static_cast<int>(s.dose_mode));
   mode_->setCurrentIndex(static_cast<int>(s.mode));
+  for (QWidget* part : live_) part->setEnabled(!view_.is_replay());
   const QSignalBlocker blocker(*inverted_);
   inverted_->setChecked(s.is_inverted);
   set_style(*pedal_, "is_on", view_.is_pedal_down());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <QWidget>
+#include <vector>
 
 class QCheckBox;
 class QComboBox;
@@ -14,7 +15,8 @@ namespace trocar::trainer {
 class XrayView;
 
 /// Controls of an X-ray view: pedal, contrast agent, C-arm, field and collimation, pulses and dose, subtraction and
-/// road map. Always displays the settings of the view. Scrolls if there is not enough space.
+/// road map. Always displays the settings of the view. Scrolls if there is not enough space. In a replay only the
+/// display of the image can be changed.
 class XrayControls : public QWidget {
   Q_OBJECT
  public:
@@ -33,6 +35,7 @@ class XrayControls : public QWidget {
   void show_view();
 
   XrayView& view_;
+  std::vector<QWidget*> live_;  ///< Disabled in a replay.
   QPushButton *pedal_ = nullptr, *inject_ = nullptr;
   QSlider *lao_ = nullptr, *cranial_ = nullptr, *across_ = nullptr, *along_ = nullptr, *table_ = nullptr;
   QLabel *lao_value_ = nullptr, *cranial_value_ = nullptr, *across_value_ = nullptr, *along_value_ = nullptr,

@@ -51,7 +51,6 @@ QString angle_text(double degrees, const QString& positive, const QString& negat
 XrayView::XrayView(QWidget* parent) : QWidget(parent), unit_(load_unit()) {
   setObjectName(QStringLiteral("xray-view"));
   setAccessibleName(tr("X-ray picture"));
-  setToolTip(tr("Left button: moves the table; right button: turns the C-arm; wheel: field"));
   setAttribute(Qt::WA_OpaquePaintEvent);
   setFocusPolicy(Qt::StrongFocus);
   settings_.arm = unit_.arm;
@@ -67,26 +66,53 @@ void XrayView::show_patient(std::shared_ptr<const anatomy::VirtualPatient> patie
   patient_ = std::move(patient);
   find_middle_P_ = std::move(find_middle_P);
   preparing_ = {};
-  has_volume_ = false;
+  prepared_.reset();
   failure_.clear();
   fluoroscope_.reset();
   contrast_.close();
+  is_contrast_open_ = false;
+  shaft_P_.clear();
+  clear_examination();
+}
+
+void XrayView::clear_examination() {
+  end_replay();
   frame_.reset();
   image_ = {};
-  shaft_P_.clear();
   set_pedal(false);
   set_injecting(false);
   opened_s_ = -1.0;
   change_settings([&](XraySettings& s) {
     s.table_mm = 0.0;
     s.arm = unit_.arm;
+    if (prepared_) s.arm.isocentre_P = prepared_->middle_P;
     s.mode = xray::ImageMode::kLive;
   });
+  setToolTip(tr("Left button: moves the table; right button: turns the C-arm; wheel: field"));
   update();
 }
 
+void XrayView::begin() {
+  clear_examination();
+  if (!prepared_) return;
+  fluoroscope_->open(prepared_->volume);
+  const auto agent = contrast_.newest();
+  if (!is_contrast_open_ || (agent && agent->injected_ml > 0.0)) open_contrast();
+}
+
+void XrayView::open_contrast() {
+  contrast_.open(patient_, prepared_->blood);
+  is_contrast_open_ = true;
+}
+
+xray::LiveFluoroscopeOptions XrayView::fluoroscope_options() const {
+  xray::LiveFluoroscopeOptions options = xray::default_live_fluoroscope_options();
+  options.detector.scintillator_mm = unit_.detector_mm;
+  return options;
+}
+
 void XrayView::prepare() {
-  if (has_volume_ || !failure_.isEmpty() || !patient_) return;
+  if (prepared_ || !failure_.isEmpty() || !patient_) return;
   if (!preparing_.has_work()) {
     preparing_ =
         BackgroundJob<Prepared>([patient = patient_, middle_P = find_middle_P_](const Progress&) -> Result<Prepared> {
@@ -98,13 +124,12 @@ void XrayView::prepare() {
   auto made = preparing_.take();
   if (!made) return;
   if (*made) {
-    xray::LiveFluoroscopeOptions options = xray::default_live_fluoroscope_options();
-    options.detector.scintillator_mm = unit_.detector_mm;
-    fluoroscope_ = std::make_unique<xray::LiveFluoroscope>(options);
-    fluoroscope_->open((*made)->volume);
-    change_settings([&](XraySettings& s) { s.arm.isocentre_P = (*made)->middle_P; });
-    contrast_.open(patient_, (*made)->blood);
-    has_volume_ = true;
+    prepared_ = **std::move(made);
+    fluoroscope_ = std::make_unique<xray::LiveFluoroscope>(fluoroscope_options());
+    fluoroscope_->open(prepared_->volume);
+    if (!replay_ || !replay_->moment)
+      change_settings([&](XraySettings& s) { s.arm.isocentre_P = prepared_->middle_P; });
+    if (!replay_) open_contrast();
   } else {
     failure_ = to_qt(made->error().text());
   }
@@ -112,15 +137,30 @@ void XrayView::prepare() {
 }
 
 void XrayView::advance(double now_s) {
+  retired_.sweep();
   if (!isVisible() || !patient_) return;
   if (opened_s_ < 0.0) opened_s_ = now_s;
   prepare();
-  if (!fluoroscope_) return;
+  if (prepared_) replay_ ? advance_replay() : advance_live(now_s - opened_s_);
+}
+
+void XrayView::advance_live(double now_s) {
   contrast_.request({shaft_P_.empty() ? Vec3(Vec3::Constant(NAN)) : shaft_P_.back(),
                      is_injecting_ && !shaft_P_.empty() ? settings_.injection_ml_per_s : 0.0});
-  fluoroscope_->request(make_request(now_s - opened_s_));
-  auto newest = fluoroscope_->newest();
-  const QString failure = fluoroscope_->error() ? to_qt(fluoroscope_->error()->text()) : QString();
+  xray::FluoroscopyRequest request = make_request(shaft_P_, is_injecting_);
+  if (const auto agent = contrast_.newest()) {
+    request.iodine = agent->iodine;
+    if (is_injecting_ && !request.tools.empty())
+      request.tools.front().filling_iodine_mg_per_ml = agent->iodine_mg_per_ml;
+  }
+  request.is_pedal_down = is_pedal_down_;
+  request.time_s = now_s;
+  fluoroscope_->request(std::move(request));
+  take(fluoroscope_->newest(), fluoroscope_->error());
+}
+
+void XrayView::take(std::shared_ptr<const xray::FluoroscopyFrame> newest, const std::optional<Error>& error) {
+  const QString failure = error ? to_qt(error->text()) : QString();
   const bool is_new = newest && (!frame_ || newest->number != frame_->number);
   if (is_new) {
     frame_ = std::move(newest);
@@ -130,7 +170,7 @@ void XrayView::advance(double now_s) {
   if (is_new || std::exchange(failure_, failure) != failure) update();
 }
 
-xray::FluoroscopyRequest XrayView::make_request(double now_s) const {
+xray::FluoroscopyRequest XrayView::make_request(std::span<const Vec3> shaft_P, bool is_injecting) const {
   xray::FluoroscopyRequest request;
   request.arm = settings_.arm;
   request.filters = settings_.filters;
@@ -138,21 +178,16 @@ xray::FluoroscopyRequest XrayView::make_request(double now_s) const {
   request.dose_mode =
       settings_.mode == xray::ImageMode::kSubtraction ? xray::DoseMode::kAcquisition : settings_.dose_mode;
   request.pulses_per_s = settings_.pulses_per_s;
-  if (shaft_P_.size() > 1) {
+  if (shaft_P.size() > 1) {
     xray::ToolShape needle;
     needle.name = needle_.name;
-    needle.line_P = shaft_P_;
+    needle.line_P.assign(shaft_P.begin(), shaft_P.end());
     needle.outer_radius_mm = 0.5 * needle_.outer_diameter_mm;
     // Without its stylet the bore is full of bile, blood or contrast agent.
-    const bool is_open = needle_.stylet_diameter_mm <= 0.0 || is_injecting_;
+    const bool is_open = needle_.stylet_diameter_mm <= 0.0 || is_injecting;
     needle.inner_radius_mm = is_open ? 0.5 * needle_.inner_diameter_mm : 0.0;
-    const auto agent = contrast_.newest();
-    needle.filling_iodine_mg_per_ml = is_injecting_ && agent ? agent->iodine_mg_per_ml : 0.0;
     request.tools.push_back(std::move(needle));
   }
-  if (const auto state = contrast_.newest()) request.iodine = state->iodine;
-  request.is_pedal_down = is_pedal_down_;
-  request.time_s = now_s;
   request.mode = settings_.mode;
   request.display.is_inverted = settings_.is_inverted;
   return request;
@@ -174,15 +209,18 @@ void XrayView::change_settings(const std::function<void(XraySettings&)>& change)
 }
 
 void XrayView::set_pedal(bool is_down) {
+  is_down = is_down && !replay_;
   if (std::exchange(is_pedal_down_, is_down) != is_down) Q_EMIT changed();
   update();
 }
 
 void XrayView::set_injecting(bool is_injecting) {
+  is_injecting = is_injecting && !replay_;
   if (std::exchange(is_injecting_, is_injecting) != is_injecting) Q_EMIT changed();
 }
 
 tasks::XrayUse XrayView::use() const {
+  if (replay_) return replay_->moment ? replay_->moment->use : tasks::XrayUse{};
   tasks::XrayUse use;
   const xray::CArm& arm = settings_.arm;
   use.lao_deg = arm.lao_deg;
@@ -206,7 +244,8 @@ QRectF XrayView::image_rect() const {
 QString XrayView::message() const {
   if (!failure_.isEmpty()) return failure_;
   if (!patient_) return tr("No patient");
-  if (!has_volume_) return tr("Preparing the X-ray");
+  if (!prepared_) return tr("Preparing the X-ray");
+  if (replay_) return replay_message();
   return frame_ ? QString() : tr("Hold Z or the pedal for fluoroscopy");
 }
 
@@ -228,7 +267,8 @@ void XrayView::draw_texts(QPainter& painter) const {
                            angle_text(arm.cranial_deg, tr("CRAN"), tr("CAUD")) + QLatin1Char('\n') +
                            tr("Field %1 cm").arg(arm.field_mm / 10.0, 0, 'f', 0);
   draw_text(painter, area, Qt::AlignLeft | Qt::AlignBottom, position);
-  if (!frame_) return;
+  if (!frame_ || (replay_ && !replay_->moment)) return;
+  const tasks::XrayUse shown = use();
   const xray::Exposure& exposure = frame_->exposure;
   draw_text(painter, area, Qt::AlignLeft | Qt::AlignTop,
             tr("%1 kV\n%2 mAs\n%3 pulses/s")
@@ -237,11 +277,11 @@ void XrayView::draw_texts(QPainter& painter) const {
                 .arg(settings_.pulses_per_s));
   draw_text(painter, area, Qt::AlignRight | Qt::AlignBottom,
             tr("%1 s\n%2 mGy\n%3 Gy cm²")
-                .arg(frame_->dose.beam_on_s, 0, 'f', 1)
-                .arg(frame_->dose.air_kerma_mgy, 0, 'f', 2)
-                .arg(1e-3 * frame_->dose.area_product_mgy_cm2, 0, 'f', 2));
-  painter.setPen(frame_->is_held ? QColor(150, 160, 172) : QColor(255, 196, 60));
-  draw_text(painter, area, Qt::AlignRight | Qt::AlignTop, frame_->is_held ? tr("Last image") : tr("● X-rays on"));
+                .arg(shown.beam_s, 0, 'f', 1)
+                .arg(shown.air_kerma_mgy, 0, 'f', 2)
+                .arg(shown.dose_area_gycm2, 0, 'f', 2));
+  painter.setPen(is_held() ? QColor(150, 160, 172) : QColor(255, 196, 60));
+  draw_text(painter, area, Qt::AlignRight | Qt::AlignTop, is_held() ? tr("Last image") : tr("● X-rays on"));
 }
 
 void XrayView::mousePressEvent(QMouseEvent* event) {
@@ -250,6 +290,7 @@ void XrayView::mousePressEvent(QMouseEvent* event) {
 
 void XrayView::mouseMoveEvent(QMouseEvent* event) {
   const QPointF by = event->localPos() - std::exchange(dragged_from_, event->localPos());
+  if (replay_) return;
   if (event->buttons() & Qt::RightButton) {
     change_settings([&](XraySettings& s) {
       s.arm.lao_deg += kTurn_deg_per_px * by.x();
@@ -266,6 +307,7 @@ void XrayView::mouseMoveEvent(QMouseEvent* event) {
 }
 
 void XrayView::wheelEvent(QWheelEvent* event) {
+  if (replay_) return event->ignore();
   const auto& fields = unit_.fields_mm;  // falling
   const auto at = std::min_element(fields.begin(), fields.end(), [&](double a, double b) {
     return std::abs(a - settings_.arm.field_mm) < std::abs(b - settings_.arm.field_mm);

@@ -5,13 +5,16 @@
 #include <QWidget>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "anatomy/patient.h"
+#include "attempt/record/xray_replay.h"
 #include "core/background_job.h"
 #include "tasks/needle.h"
 #include "tasks/xray_use.h"
+#include "views/xray/replay_fluoroscope.h"
 #include "views/xray/xray_settings.h"
 #include "xray/contrast/live_contrast.h"
 #include "xray/fluoroscopy/live_fluoroscope.h"
@@ -21,7 +24,8 @@ namespace trocar::trainer {
 
 /// Screen of a fluoroscope: the live image while the pedal is down, otherwise the last one, with dose and position of
 /// the C-arm. Separate threads prepare the patient (when the view is first visible), compute the images and move the
-/// contrast agent; no function blocks.
+/// contrast agent; no function blocks. In the replay of an attempt it shows the recorded use: the images of each moment
+/// are computed again, and keys, mouse and controls do not act.
 ///
 /// Keys, in the whole window while the view is visible: Z held is the pedal, J held injects contrast agent at the
 /// needle's tip. Mouse: the left button moves the table, the right button turns the C-arm, the wheel changes the field.
@@ -35,7 +39,21 @@ class XrayView : public QWidget {
   /// called on a thread.
   void show_patient(std::shared_ptr<const anatomy::VirtualPatient> patient, const tasks::Needle& needle,
                     std::function<Vec3()> find_middle_P);
-  /// Shaft from the hub to the tip; empty: no needle.
+  /// A new examination of the same patient: without images, dose and contrast agent, C-arm and table as at first. Ends
+  /// a replay.
+  void begin();
+  /// Shows the moments of a recorded attempt of this patient from now on. Pulse rate, dose mode and collimation are not
+  /// recorded: they stay as they are.
+  void begin_replay(std::shared_ptr<const attempt::InjectionSteps> injections);
+  /// In a replay. Empty: before the first use. `shaft_P`: the needle at the time of the image.
+  void show_moment(const std::optional<attempt::XrayMoment>& moment, std::vector<Vec3> shaft_P);
+  bool is_replay() const noexcept { return replay_.has_value(); }
+  /// In a replay: true if the image of the moment is displayed, or the moment has none.
+  bool is_complete() const;
+  /// The pulse that is displayed at a time: the last one of the pulse rate.
+  double pulse_s(double time_s) const;
+
+  /// Shaft from the hub to the tip; empty: no needle. Not used in a replay.
   void set_needle(std::span<const Vec3> shaft_P) { shaft_P_.assign(shaft_P.begin(), shaft_P.end()); }
   /// Called once per frame: requests an image, takes the newest, repaints if necessary. now_s: time of any steady
   /// clock.
@@ -51,9 +69,10 @@ class XrayView : public QWidget {
   void set_injecting(bool is_injecting);
   bool is_injecting() const noexcept { return is_injecting_; }
 
-  /// The newest image; nullptr before the first.
+  /// The newest image; nullptr before the first. In a replay, time_s is its session time, and its dose is of no
+  /// examination.
   std::shared_ptr<const xray::FluoroscopyFrame> frame() const { return frame_; }
-  /// State of the examination; its time is not set.
+  /// State of the examination, without its time; in a replay the recorded one.
   tasks::XrayUse use() const;
   /// What the tip is in, as far as contrast agent matters.
   std::shared_ptr<const xray::ContrastState> contrast() const { return contrast_.newest(); }
@@ -78,11 +97,28 @@ class XrayView : public QWidget {
     Vec3 middle_P;
     xray::BloodVelocity blood;  ///< Empty: no vessel has flow.
   };
+  /// A replay and its present moment.
+  struct Replay {
+    std::shared_ptr<const attempt::InjectionSteps> injections;
+    std::optional<attempt::XrayMoment> moment;
+    std::vector<Vec3> shaft_P;
+    std::unique_ptr<ReplayFluoroscope> fluoroscope;  ///< nullptr before the patient is prepared.
+  };
+
   void prepare();
-  xray::FluoroscopyRequest make_request(double now_s) const;
+  void clear_examination();
+  void open_contrast();
+  void end_replay();
+  void advance_live(double now_s);
+  void advance_replay();
+  void take(std::shared_ptr<const xray::FluoroscopyFrame> newest, const std::optional<Error>& error);
+  xray::LiveFluoroscopeOptions fluoroscope_options() const;
+  xray::FluoroscopyRequest make_request(std::span<const Vec3> shaft_P, bool is_injecting) const;
+  bool is_held() const;
   QRectF image_rect() const;
   void draw_texts(QPainter& painter) const;
   QString message() const;
+  QString replay_message() const;
 
   xray::CArmPreset unit_;
   XraySettings settings_;
@@ -90,10 +126,13 @@ class XrayView : public QWidget {
   std::shared_ptr<const anatomy::VirtualPatient> patient_;
   std::function<Vec3()> find_middle_P_;
   BackgroundJob<Prepared> preparing_;
-  bool has_volume_ = false;
+  std::optional<Prepared> prepared_;
   QString failure_;
   std::unique_ptr<xray::LiveFluoroscope> fluoroscope_;
   xray::LiveContrast contrast_;
+  bool is_contrast_open_ = false;
+  std::optional<Replay> replay_;
+  RetiredJobs retired_;  ///< The ends of former replays, which may wait for an image.
   std::vector<Vec3> shaft_P_;
   bool is_pedal_down_ = false, is_injecting_ = false;
   double opened_s_ = -1.0;

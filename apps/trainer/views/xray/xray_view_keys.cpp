@@ -27,7 +27,7 @@ bool XrayView::eventFilter(QObject* watched, QEvent* event) {
   if (!is_press && event->type() != QEvent::KeyRelease) return QWidget::eventFilter(watched, event);
   const auto* key = static_cast<const QKeyEvent*>(event);
   const bool is_ours = (key->key() == Qt::Key_Z || key->key() == Qt::Key_J) && key->modifiers() == Qt::NoModifier;
-  if (!is_ours || !isVisible() || (is_press && is_typing())) return QWidget::eventFilter(watched, event);
+  if (!is_ours || !isVisible() || replay_ || (is_press && is_typing())) return QWidget::eventFilter(watched, event);
   if (key->isAutoRepeat()) return true;
   if (event->type() == QEvent::ShortcutOverride) {
     event->accept();
