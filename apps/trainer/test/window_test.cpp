@@ -262,10 +262,42 @@ TEST_F(WindowTest, TwoHapticDevicesAreNamedTestedAndMoveATool) {
   EXPECT_GT(premium.strongest_n, 0.3) << "the tissue was felt";
 }
 
+/// The image in a picture of the X-ray view: the square in its middle, coarse enough that noise is averaged.
+QImage xray_in(const QString& file) {
+  const QImage picture(file);
+  const int edge = std::min(picture.width(), picture.height());
+  constexpr int kPixels = 128;
+  return picture.copy((picture.width() - edge) / 2, (picture.height() - edge) / 2, edge, edge)
+      .scaled(kPixels, kPixels, Qt::IgnoreAspectRatio, Qt::SmoothTransformation)
+      .convertToFormat(QImage::Format_Grayscale8);
+}
+
+/// Share of the pixels that are darker in `b` than in `a` by at least some gray levels; without the texts at the edges.
+double darker_share(const QImage& a, const QImage& b, int least) {
+  int darker = 0, all = 0;
+  for (int y = a.height() / 5; y < 4 * a.height() / 5; ++y)
+    for (int x = 0; x < a.width(); ++x, ++all) darker += qGray(a.pixel(x, y)) - qGray(b.pixel(x, y)) >= least ? 1 : 0;
+  return static_cast<double>(darker) / all;
+}
+
 TEST_F(WindowTest, ABileDuctIsPuncturedUnderFluoroscopy) {
-  const QStringList choice{QStringLiteral("--task"), QStringLiteral("ptcd"), QStringLiteral("--patient"),
-                           QStringLiteral("ptcd-1")};
-  expect_played(run(choice + QStringList{QStringLiteral("--script"), script_named("fluoroscopy.txt")}));
+  QFile script(script_named("fluoroscopy.txt"));
+  ASSERT_TRUE(script.open(QIODevice::ReadOnly));
+  const QString here = QString::fromUtf8(script.readAll()).replace(QStringLiteral("FOLDER"), folder.path());
+  expect_played(
+      run({QStringLiteral("--task"), QStringLiteral("ptcd"), QStringLiteral("--patient"), QStringLiteral("ptcd-1"),
+           QStringLiteral("--script"), write("fluoroscopy.txt", here.toUtf8().constData())}));
+  const auto image = [this](const char* name) { return xray_in(folder.filePath(QString::fromUtf8(name))); };
+  const QImage live = image("live.png"), filled = image("filled.png"), empty = image("empty.png"),
+               none = image("none.png"), again = image("filled_again.png");
+  ASSERT_FALSE(live.isNull() || filled.isNull() || empty.isNull() || none.isNull() || again.isNull());
+  constexpr int kDark = 40;  // gray levels
+  EXPECT_GT(darker_share(empty, filled, kDark), 0.005) << "the ducts are filled";
+  EXPECT_LT(darker_share(filled, empty, kDark), 0.001);
+  // The replay shows what the trainee saw.
+  EXPECT_LT(darker_share(live, filled, kDark) + darker_share(filled, live, kDark), 0.003);
+  EXPECT_EQ(darker_share(again, filled, 1) + darker_share(filled, again, 1), 0.0) << "a moment has one image";
+  EXPECT_GT(darker_share(empty, none, kDark), 0.5) << "black before the first pulse";
 }
 
 TEST_F(WindowTest, AnAttemptThatACrashCutOffCanBeSeenAgain) {
