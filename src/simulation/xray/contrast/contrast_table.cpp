@@ -136,7 +136,7 @@ Result<ContrastTable> load_contrast_table(const std::filesystem::path& path) {
   TROCAR_TRY_STATUS(read_section(document, "vessel",
                                  {{"washout_s", {0.05, 5.0}, &vessel.washout_s},
                                   {"longest_s", {0.1, 10.0}, &vessel.longest_s},
-                                  {"spread_mm2_per_s", {0.0, 200.0}, &vessel.spread_mm2_per_s}}));
+                                  {"fan_slope", {0.02, 1.0}, &vessel.fan_slope}}));
   TROCAR_TRY_STATUS(read_media(document, table));
   return table;
 }

@@ -26,9 +26,9 @@ struct DuctParams {
 
 /// Parameters of contrast agent in vessels. docs/physics.md, X16.
 struct VesselParams {
-  double washout_s = 0.4;         ///< Time constant of dilution. Range 0.05..5.
-  double longest_s = 1.2;         ///< Range 0.1..10.
-  double spread_mm2_per_s = 8.0;  ///< Growth of the square of the streak's radius. Range 0..200.
+  double washout_s = 0.4;  ///< Time constant of dilution. Range 0.05..5.
+  double longest_s = 1.2;  ///< Range 0.1..10.
+  double fan_slope = 0.2;  ///< Growth of the stream's radius per length, from the tip to the wall. Range 0.02..1.
 };
 
 /// Parameters of contrast agent in a kind of tissue. docs/physics.md, X14, X15.

@@ -295,10 +295,16 @@ TEST(ContrastFlow, BloodCarriesAStreakAwayAlongTheVessel) {
   for (const IodinePiece& piece : iodine.pieces) {
     farthest = std::max(farthest, piece.b_P.y());
     nearest = std::min(nearest, piece.a_P.y());
-    EXPECT_LE(piece.iodine_mg_per_ml, kIodine + 1e-9);
-    EXPECT_LE(piece.radius_a_mm, 6.5);  // the vein, to a voxel
+    EXPECT_LE(piece.iodine_mg_per_ml, 1.02 * kIodine);  // steps of 1 mm
+    EXPECT_LE(piece.radius_a_mm, 6.5);                  // the vein, to a voxel
   }
-  EXPECT_NEAR(farthest, -20.0 + 100.0 * 0.3, 2.0);
+  // The injected volume adds to the flow. Where the stream is thinner than 1.7 mm, it moves by its own volume: the time
+  // to there is the volume of this cone at 1000 mm³/s.
+  const double flow_mm_per_s = 100.0 + 1000.0 / (std::numbers::pi * 25.0);
+  const double thin_mm = std::sqrt(1000.0 / (std::numbers::pi * flow_mm_per_s)), start_mm = 0.35, slope = 0.2;
+  const double cone_s = std::numbers::pi / (3.0 * slope) * (std::pow(thin_mm, 3) - std::pow(start_mm, 3)) / 1000.0;
+  const double front_mm = (thin_mm - start_mm) / slope + (0.3 - cone_s) * flow_mm_per_s;
+  EXPECT_NEAR(farthest, -20.0 + front_mm, 3.0);  // voxels of 2 mm, steps of 1 mm
   EXPECT_NEAR(nearest, -20.0, 2.0);
   run(flow, 2.0);
   flow.stop_injection();
@@ -308,6 +314,76 @@ TEST(ContrastFlow, BloodCarriesAStreakAwayAlongTheVessel) {
   EXPECT_EQ(flow.totals().vessels_mg, 0.0);
   EXPECT_TRUE(flow.iodine().pieces.empty());
   EXPECT_NEAR(flow.totals().washed_away_mg, injected, 1e-9 * injected);
+}
+
+/// Iodine of the pieces with their middle at y within [low, high).
+double pieces_mg(const std::vector<IodinePiece>& pieces, double low = -1e9, double high = 1e9) {
+  double mg = 0.0;
+  for (const IodinePiece& piece : pieces) {
+    const double y = 0.5 * (piece.a_P.y() + piece.b_P.y()), a = piece.radius_a_mm, b = piece.radius_b_mm;
+    if (y < low || y >= high) continue;
+    mg += std::numbers::pi / 3.0 * (a * a + a * b + b * b) * (piece.b_P - piece.a_P).norm() / 1000.0 *
+          piece.iodine_mg_per_ml;
+  }
+  return mg;
+}
+
+/// Laminar flow in the vein of make_patient, 200 mm/s in its middle.
+Vec3 laminar(const Vec3& p_P, double) {
+  const double square = (p_P - Vec3(-20.0, p_P.y(), 20.0)).squaredNorm() / 25.0;
+  return {0.0, 200.0 * std::max(1.0 - square, 0.0), 0.0};
+}
+
+TEST(ContrastFlow, StreakFansFromTheTipToTheWallsAndStaysInside) {
+  const auto patient = make_patient();
+  ContrastFlow flow = make_flow(patient, laminar);
+  const Vec3 tip(-18, -30, 19);
+  ASSERT_TRUE(flow.inject(tip, 1.0, kIodine));
+  run(flow, 0.6);
+  const Iodine iodine = flow.iodine();
+  ASSERT_FALSE(iodine.pieces.empty());
+  EXPECT_NEAR(pieces_mg(iodine.pieces), flow.totals().vessels_mg, 0.002 * flow.totals().vessels_mg);
+  double widest_mm = 0.0;
+  for (const IodinePiece& piece : iodine.pieces) {
+    const Vec3 along = (piece.b_P - piece.a_P).normalized();
+    const Vec3 u = along.unitOrthogonal(), w = along.cross(u);
+    for (int n = 0; n < 12; ++n) {
+      const double angle = n * std::numbers::pi / 6.0;
+      const Vec3 rim_P = piece.b_P + piece.radius_b_mm * (std::cos(angle) * u + std::sin(angle) * w);
+      const Vec3 across(rim_P.x() + 20.0, 0.0, rim_P.z() - 20.0);
+      EXPECT_LE(across.norm(), 5.0 + 1.0) << "half a voxel outside of the vein";
+      if (piece.b_P.y() > -5.0) widest_mm = std::max(widest_mm, across.norm());
+      if (piece.b_P.y() < tip.y() + 10.0) {
+        // Fanning by a fifth of the way, about a line that moves to the middle by a third of it.
+        EXPECT_LE((rim_P - tip - Vec3(0, rim_P.y() - tip.y(), 0)).norm(),
+                  1.0 + 0.7 * std::abs(piece.b_P.y() - tip.y()));
+      }
+    }
+  }
+  EXPECT_GT(widest_mm, 0.75 * 5.0) << "it reaches the walls 25 mm down the flow";
+}
+
+TEST(ContrastFlow, StreakWashesOutInWispsWhereFlowIsLaminar) {
+  /// Length over which the iodine per length rises from a tenth to nine tenths, behind the tail.
+  const auto tail_mm = [](const BloodVelocity& blood) {
+    ContrastFlow flow = make_flow(make_patient(), blood);
+    EXPECT_TRUE(flow.inject({-20, -38, 20}, 2.0, kIodine));
+    run(flow, 0.4, 0.02);
+    flow.stop_injection();
+    run(flow, 0.2, 0.02);
+    const std::vector<IodinePiece> pieces = flow.iodine().pieces;
+    double most = 0.0;
+    for (double y = -44.0; y < 40.0; y += 2.0) most = std::max(most, pieces_mg(pieces, y, y + 2.0));
+    double from = 40.0, to = 40.0;
+    for (double y = 36.0; y >= -44.0; y -= 2.0) {
+      const double mg = pieces_mg(pieces, y, y + 2.0);
+      if (mg > 0.1 * most) from = y;
+      if (mg > 0.9 * most) to = y;
+    }
+    return to - from;
+  };
+  EXPECT_GE(tail_mm(laminar), 10.0) << "a diameter or more";
+  EXPECT_LE(tail_mm([](const Vec3&, double) { return Vec3(0, 150, 0); }), 8.0) << "a plug";
 }
 
 TEST(ContrastFlow, WithoutBloodFlowAVesselStillFades) {
