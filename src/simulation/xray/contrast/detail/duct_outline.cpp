@@ -20,7 +20,6 @@ constexpr double kWhole = 0.97;   ///< A cell of a higher relative concentration
 /// A front is drawn as cores within each other, with parts of equal iodine: the radius falls as these powers of the
 /// relative concentration, so that the edge of the whole is soft.
 constexpr std::array<double, 3> kCorePowers{0.15, 0.3, 0.5};
-constexpr double kThinPower = 0.3;  ///< Of the one core of a thin duct.
 constexpr double kSteep = 0.1;      ///< Growth of the radius per length.
 constexpr double kThinnest = 0.02;  ///< Of the cell's radius.
 constexpr double kFar_mm = std::numeric_limits<double>::infinity();
@@ -123,8 +122,9 @@ void DuctOutline::add_pieces(const DuctTree& tree, const std::vector<double>& vo
     const double mg = iodine_mg_per_ml[n] * volume_ml[n];
     const bool is_wide = std::max(cell.radius_a_mm, cell.radius_b_mm) > kWide_mm;
     if (relative[n] > kWhole || !is_wide) {
-      const double power = is_wide ? 0.0 : kThinPower;
-      add_core(cell, n, {widened * std::pow(at_a, power), widened * std::pow(at_b[n], power)}, mg, pieces);
+      // Of a thin duct one core: the fourth root is near the mean of the powers.
+      const auto factor = [&](double at) { return is_wide ? widened : widened * std::sqrt(std::sqrt(at)); };
+      add_core(cell, n, {factor(at_a), factor(at_b[n])}, mg, pieces);
       continue;
     }
     for (const double power : kCorePowers)
