@@ -121,9 +121,13 @@ void DuctOutline::add_pieces(const DuctTree& tree, const std::vector<double>& vo
     const double widened = std::sqrt(volume_ml[n] / cell.volume_ml());
     const double mg = iodine_mg_per_ml[n] * volume_ml[n];
     const bool is_wide = std::max(cell.radius_a_mm, cell.radius_b_mm) > kWide_mm;
-    if (relative[n] > kWhole || !is_wide) {
+    if (relative[n] > kWhole) {
+      add_core(cell, n, {widened, widened}, mg, pieces);
+      continue;
+    }
+    if (!is_wide) {
       // Of a thin duct one core: the fourth root is near the mean of the powers.
-      const auto factor = [&](double at) { return is_wide ? widened : widened * std::sqrt(std::sqrt(at)); };
+      const auto factor = [&](double at) { return widened * std::sqrt(std::sqrt(at)); };
       add_core(cell, n, {factor(at_a), factor(at_b[n])}, mg, pieces);
       continue;
     }
@@ -136,12 +140,19 @@ void DuctOutline::add_pieces(const DuctTree& tree, const std::vector<double>& vo
 /// A cell's cone with its radii times factors. A closed end is half a ball of the volume of the flat end.
 void DuctOutline::add_core(const DuctCell& cell, std::size_t n, const std::array<double, 2>& factors, double mg,
                            std::vector<IodinePiece>& pieces) const {
-  const double widest_mm = std::max(cell.radius_a_mm, cell.radius_b_mm), length_mm = cell.length_mm();
-  const Vec3 along = (cell.b_P - cell.a_P) / length_mm;
+  const double widest_mm = std::max(cell.radius_a_mm, cell.radius_b_mm);
   const bool is_cap = std::min(to_end_a_[n], to_end_b_[n]) < widest_mm;
+  if (!is_cap) {
+    pieces.push_back(
+        piece_between({cell.a_P, factors[0] * cell.radius_a_mm}, {cell.b_P, factors[1] * cell.radius_b_mm}));
+    pieces.back().iodine_mg_per_ml = mg / cone_ml(pieces.back());
+    return;
+  }
+  const double length_mm = cell.length_mm();
+  const Vec3 along = (cell.b_P - cell.a_P) / length_mm;
   const bool is_end = to_end_a_[n] == 0.0 || to_end_b_[n] == 0.0;
   const bool is_wide = widest_mm > kWide_mm;
-  const int count = is_end ? (is_wide ? kEndPieces : 2) : is_cap && is_wide ? kCapPieces : 1;
+  const int count = is_end ? (is_wide ? kEndPieces : 2) : is_wide ? kCapPieces : 1;
   const auto face_at = [&](double f) {
     const double radius_mm = std::lerp(factors[0] * cell.radius_a_mm, factors[1] * cell.radius_b_mm, f);
     const double to_a_mm = to_end_a_[n] + f * length_mm, to_b_mm = to_end_b_[n] + (1.0 - f) * length_mm;
