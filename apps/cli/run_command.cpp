@@ -71,7 +71,7 @@ std::optional<bool> has_same_ticks(const attempt::RunOptions& run, const attempt
 }
 
 config::Json result_json(const Arguments& arguments, const cases::Case& the_case, const attempt::RunResult& result) {
-  const tasks::Outcome& outcome = result.outcome;
+  const scoring::Outcome& outcome = result.outcome;
   config::Json punctures = config::Json::array();
   for (const attempt::PunctureRecord& puncture : result.punctures) {
     punctures.push_back({{"layer", puncture.layer},
@@ -111,8 +111,8 @@ config::Json result_json(const Arguments& arguments, const cases::Case& the_case
   return json;
 }
 
-void print_part(const tasks::ScorePart& part) {
-  if (tasks::is_deduction(part)) {
+void print_part(const scoring::ScorePart& part) {
+  if (scoring::is_deduction(part)) {
     fmt::print("  {:<44} {:>13} {:>6.1f} points\n", part.title, "", part.points);
   } else {
     fmt::print("  {:<44} {:>8.2f} {:<4} {:>6.1f} of {:.0f} points\n", part.title, part.value, part.unit, part.points,
@@ -121,7 +121,7 @@ void print_part(const tasks::ScorePart& part) {
 }
 
 void print_result(const Arguments& arguments, const cases::Case& the_case, const attempt::RunResult& result) {
-  const tasks::Outcome& outcome = result.outcome;
+  const scoring::Outcome& outcome = result.outcome;
   fmt::print("{} on {} by {}: {:.1f} s, {} ticks\n", the_case.task.title, the_case.patient->name,
              arguments.run.operator_name, result.simulated_s, result.ticks);
   if (!the_case.tissues.origin.empty()) fmt::print("tissues: {}\n", the_case.tissues.origin);
@@ -131,7 +131,7 @@ void print_result(const Arguments& arguments, const cases::Case& the_case, const
                p.peak_n);
   }
   if (outcome.core) {
-    const tasks::BiopsyCore& core = *outcome.core;
+    const scoring::BiopsyCore& core = *outcome.core;
     fmt::print("  core: {:.1f} mm target, {:.1f} mm organ, {:.1f} mm vessel, {:.1f} mm other\n", core.target_mm,
                core.organ_mm, core.vessel_mm, core.other_mm);
   }
@@ -145,7 +145,7 @@ void print_result(const Arguments& arguments, const cases::Case& the_case, const
     for (const std::string& name : outcome.risks_touched) names.push_back(anatomy::structure_words(name));
     fmt::print("structures at risk touched: {}\n", fmt::join(names, ", "));
   }
-  for (const tasks::ScorePart& part : outcome.parts) print_part(part);
+  for (const scoring::ScorePart& part : outcome.parts) print_part(part);
   for (const std::string& hint : outcome.hints) fmt::print("hint: {}\n", hint);
   if (const auto same = has_same_ticks(arguments.run, result))
     fmt::print("{}\n",

@@ -7,18 +7,18 @@
 namespace trocar::trainer {
 namespace {
 
-constexpr tasks::CorePart kParts[] = {tasks::CorePart::kTarget, tasks::CorePart::kOrgan, tasks::CorePart::kVessel,
-                                      tasks::CorePart::kOther};
+constexpr scoring::CorePart kParts[] = {scoring::CorePart::kTarget, scoring::CorePart::kOrgan,
+                                        scoring::CorePart::kVessel, scoring::CorePart::kOther};
 
-QString title_of(tasks::CorePart part) {
+QString title_of(scoring::CorePart part) {
   switch (part) {
-    case tasks::CorePart::kTarget:
+    case scoring::CorePart::kTarget:
       return CorePicture::tr("target tissue");
-    case tasks::CorePart::kOrgan:
+    case scoring::CorePart::kOrgan:
       return CorePicture::tr("organ");
-    case tasks::CorePart::kVessel:
+    case scoring::CorePart::kVessel:
       return CorePicture::tr("vessel");
-    case tasks::CorePart::kOther:
+    case scoring::CorePart::kOther:
       break;
   }
   return CorePicture::tr("other tissue");
@@ -26,15 +26,15 @@ QString title_of(tasks::CorePart part) {
 
 }  // namespace
 
-QColor CorePicture::color_of(tasks::CorePart part) {
+QColor CorePicture::color_of(scoring::CorePart part) {
   switch (part) {
-    case tasks::CorePart::kTarget:
+    case scoring::CorePart::kTarget:
       return theme().target;
-    case tasks::CorePart::kOrgan:
+    case scoring::CorePart::kOrgan:
       return {0xb5, 0x6a, 0x55};
-    case tasks::CorePart::kVessel:
+    case scoring::CorePart::kVessel:
       return {0x5b, 0x8d, 0xef};
-    case tasks::CorePart::kOther:
+    case scoring::CorePart::kOther:
       break;
   }
   return {0xd9, 0xc7, 0x8a};
@@ -48,13 +48,13 @@ CorePicture::CorePicture(QWidget* parent) : QWidget(parent) {
 void CorePicture::set_shot(const attempt::GunShot& shot) {
   pieces_ = shot.pieces;
   legend_.clear();
-  for (const tasks::CorePart part : kParts) {
+  for (const scoring::CorePart part : kParts) {
     double length_mm = 0.0;
     for (const attempt::ShotPiece& piece : pieces_)
       if (piece.part == part) length_mm += piece.to_mm - piece.from_mm;
     if (length_mm > 0.0) legend_.push_back({part, tr("%1 mm %2").arg(length_mm, 0, 'f', 1).arg(title_of(part))});
   }
-  if (legend_.empty()) legend_.push_back({tasks::CorePart::kOther, tr("No tissue in the notch")});
+  if (legend_.empty()) legend_.push_back({scoring::CorePart::kOther, tr("No tissue in the notch")});
   QStringList texts;
   for (const Entry& entry : legend_) texts << entry.text;
   setAccessibleName(tr("Core: %1").arg(texts.join(QStringLiteral(", "))));

@@ -18,14 +18,14 @@ class CorePicture : public QWidget {
   QSize sizeHint() const override;
   QSize minimumSizeHint() const override { return sizeHint(); }
 
-  static QColor color_of(tasks::CorePart part);
+  static QColor color_of(scoring::CorePart part);
 
  protected:
   void paintEvent(QPaintEvent* event) override;
 
  private:
   struct Entry {
-    tasks::CorePart part;
+    scoring::CorePart part;
     QString text;
   };
   int bar_height() const;

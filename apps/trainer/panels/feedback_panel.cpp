@@ -16,7 +16,7 @@
 namespace trocar::trainer {
 namespace {
 
-QString verdict_of(const tasks::Outcome& outcome) {
+QString verdict_of(const scoring::Outcome& outcome) {
   constexpr double kExcellent = 90.0, kGood = 75.0, kFair = 50.0;
   if (!outcome.is_scored()) return FeedbackPanel::tr("Not scored: %1").arg(to_qt(outcome.not_scored));
   if (!outcome.risks_touched.empty()) return FeedbackPanel::tr("A structure at risk was touched");
@@ -27,7 +27,7 @@ QString verdict_of(const tasks::Outcome& outcome) {
                                 : FeedbackPanel::tr("Target reached, with a low score");
 }
 
-QString core_text(const tasks::BiopsyCore& core) {
+QString core_text(const scoring::BiopsyCore& core) {
   return FeedbackPanel::tr("Core: %1 mm of target, %2 mm of organ, %3 mm of vessel, %4 mm of other tissue")
       .arg(core.target_mm, 0, 'f', 1)
       .arg(core.organ_mm, 0, 'f', 1)
@@ -124,20 +124,20 @@ QWidget* FeedbackPanel::make_buttons() {
   return bar;
 }
 
-void FeedbackPanel::show_parts(const std::vector<tasks::ScorePart>& parts) {
+void FeedbackPanel::show_parts(const std::vector<scoring::ScorePart>& parts) {
   clear(*parts_);
   int row = 0;
-  for (const tasks::ScorePart& part : parts) {
+  for (const scoring::ScorePart& part : parts) {
     auto* title = make_label(to_qt(part.title));
     title->setWordWrap(true);
     parts_->addWidget(title, row, 0);
     auto* value =
         make_label(tr("%1 %2").arg(part.value, 0, 'f', part.value < 100.0 ? 1 : 0).arg(to_qt(part.unit)), "dim");
     value->setAlignment(Qt::AlignRight | Qt::AlignBottom);
-    value->setVisible(!tasks::is_deduction(part));
+    value->setVisible(!scoring::is_deduction(part));
     parts_->addWidget(value, row, 1);
-    if (!tasks::is_deduction(part)) parts_->addWidget(new PointsBar(part.points, part.max_points), row + 1, 0);
-    auto* points = make_label(tasks::is_deduction(part)
+    if (!scoring::is_deduction(part)) parts_->addWidget(new PointsBar(part.points, part.max_points), row + 1, 0);
+    auto* points = make_label(scoring::is_deduction(part)
                                   ? tr("%1").arg(part.points, 0, 'f', 0)
                                   : tr("%1 / %2").arg(part.points, 0, 'f', 0).arg(part.max_points, 0, 'f', 0),
                               "dim");
@@ -147,7 +147,7 @@ void FeedbackPanel::show_parts(const std::vector<tasks::ScorePart>& parts) {
   }
 }
 
-void FeedbackPanel::show_outcome(const tasks::Outcome& outcome, const QString& worst_moment) {
+void FeedbackPanel::show_outcome(const scoring::Outcome& outcome, const QString& worst_moment) {
   dial_->setVisible(outcome.is_scored());
   dial_->set_score(outcome.score);
   verdict_->setText(verdict_of(outcome));

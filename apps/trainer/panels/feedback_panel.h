@@ -2,7 +2,7 @@
 
 #include <QWidget>
 
-#include "tasks/score.h"
+#include "scoring/score.h"
 
 class QGridLayout;
 class QLabel;
@@ -27,7 +27,7 @@ class FeedbackPanel : public QWidget {
   explicit FeedbackPanel(QWidget* parent = nullptr);
 
   /// Shows the outcome, scrolled to the top. `worst_moment`: empty if there is none.
-  void show_outcome(const tasks::Outcome& outcome, const QString& worst_moment);
+  void show_outcome(const scoring::Outcome& outcome, const QString& worst_moment);
   /// Shows the level of help of the attempt beside the score; empty: unknown.
   void show_level(const QString& level);
   /// Shows the image of the core; null: the gun was not fired.
@@ -43,7 +43,7 @@ class FeedbackPanel : public QWidget {
 
  private:
   QWidget* make_buttons();
-  void show_parts(const std::vector<tasks::ScorePart>& parts);
+  void show_parts(const std::vector<scoring::ScorePart>& parts);
 
   QScrollArea* scroll_ = nullptr;
   QPushButton* worst_button_ = nullptr;

@@ -25,8 +25,8 @@ TEST(FeedbackPanelTest, ShowsWhatHappenedBesideTheTrainee) {
   EXPECT_TRUE(notes->isHidden());
 }
 
-tasks::Outcome long_outcome() {
-  tasks::Outcome outcome;
+scoring::Outcome long_outcome() {
+  scoring::Outcome outcome;
   outcome.score = 42.0;
   for (int n = 0; n < 8; ++n) outcome.parts.push_back({"target", "Distance to the target", 12.0, "mm", 3.0, 25.0});
   for (int n = 0; n < 6; ++n) outcome.hints.push_back("Bring the tip to the target, hold it still and fire the gun.");
@@ -70,7 +70,7 @@ TEST(FeedbackPanelTest, TheLevelStandsBesideTheScore) {
 
 TEST(FeedbackPanelTest, SaysWhyAnAttemptIsNotScored) {
   FeedbackPanel panel;
-  tasks::Outcome outcome;
+  scoring::Outcome outcome;
   outcome.not_scored = "the needle never touched the skin";
   outcome.hints = {"The needle never reached the skin: bring its tip to the planned insertion point."};
   panel.show_outcome(outcome, {});

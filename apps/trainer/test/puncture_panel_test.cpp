@@ -75,7 +75,8 @@ TEST(PuncturePanel, TheNewestEventStaysInSightWhenTheCoreIsShown) {
   QCoreApplication::processEvents();
   attempt::GunShot shot;
   shot.depth_mm = 52.0;
-  shot.pieces = {{tasks::CorePart::kOrgan, "liver", 0.0, 4.0}, {tasks::CorePart::kTarget, "liver_lesion", 4.0, 18.0}};
+  shot.pieces = {{scoring::CorePart::kOrgan, "liver", 0.0, 4.0},
+                 {scoring::CorePart::kTarget, "liver_lesion", 4.0, 18.0}};
   shown.panel.show_core(shot);
   QCoreApplication::processEvents();
   EXPECT_TRUE(shown.events().viewport()->rect().contains(shown.place_of(12)));

@@ -9,9 +9,9 @@ config::Json vector_json(const Vec3& v) {
 
 }  // namespace
 
-config::Json parts_json(const std::vector<tasks::ScorePart>& parts) {
+config::Json parts_json(const std::vector<scoring::ScorePart>& parts) {
   config::Json all = config::Json::array();
-  for (const tasks::ScorePart& part : parts)
+  for (const scoring::ScorePart& part : parts)
     all.push_back({{"name", part.name},
                    {"title", part.title},
                    {"value", part.value},
@@ -21,9 +21,9 @@ config::Json parts_json(const std::vector<tasks::ScorePart>& parts) {
   return all;
 }
 
-config::Json core_json(const tasks::BiopsyCore& core) {
+config::Json core_json(const scoring::BiopsyCore& core) {
   config::Json pieces = config::Json::array();
-  for (const tasks::CorePiece& piece : core.pieces)
+  for (const scoring::CorePiece& piece : core.pieces)
     pieces.push_back(
         {{"label", piece.label}, {"tissue", piece.tissue}, {"from_mm", piece.from_mm}, {"to_mm", piece.to_mm}});
   return {{"tip_P", vector_json(core.tip_P)}, {"axis_P", vector_json(core.axis_P)},

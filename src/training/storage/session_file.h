@@ -10,8 +10,8 @@
 #include "anatomy/patient.h"
 #include "core/result.h"
 #include "geometry/pose.h"
+#include "scoring/score.h"
 #include "tasks/active_time.h"
-#include "tasks/score.h"
 #include "tasks/xray_use.h"
 #include "telemetry/needle_shape.h"
 #include "telemetry/tick_sample.h"
@@ -93,7 +93,7 @@ class SessionWriter {
   Status append(const tasks::Interruption& interruption);
   /// Writes the buffered data, then the outcome, and makes it a single file again. `fired` is a sample's index. Nothing
   /// can be appended afterwards.
-  Status finish(const tasks::Outcome& outcome, std::optional<std::size_t> fired);
+  Status finish(const scoring::Outcome& outcome, std::optional<std::size_t> fired);
   std::size_t saved_ticks() const noexcept;  ///< Ticks committed so far.
   /// Hash of all ticks, see Session; empty before finish().
   const std::string& ticks_hash() const noexcept;
@@ -121,7 +121,7 @@ struct Session {
   std::vector<telemetry::NeedleShape> shapes;
   std::vector<SessionParameters> parameters;       ///< By tick; empty: an older program wrote the session.
   std::vector<tasks::Interruption> interruptions;  ///< By time.
-  std::optional<tasks::Outcome> outcome;           ///< Missing when the program was killed before the end.
+  std::optional<scoring::Outcome> outcome;         ///< Missing when the program was killed before the end.
   std::optional<std::size_t> fired;                ///< Sample at which the biopsy gun was fired.
   bool is_incomplete = false;                      ///< The program ended before the attempt did.
   /// XXH3 (128 bits, hexadecimal) of all values of all ticks: two sessions have the same hash if and only if their

@@ -310,7 +310,7 @@ const std::string& SessionWriter::ticks_hash() const noexcept {
   return impl_->ticks_hash;
 }
 
-Status SessionWriter::finish(const tasks::Outcome& outcome, std::optional<std::size_t> fired) {
+Status SessionWriter::finish(const scoring::Outcome& outcome, std::optional<std::size_t> fired) {
   TROCAR_CHECK(impl_ != nullptr && !impl_->is_finished);
   TROCAR_CHECK(!fired || *fired < static_cast<std::size_t>(impl_->next_tick));
   if (impl_->failure) return tl::unexpected(*impl_->failure);

@@ -14,9 +14,9 @@ GunShot make_gun_shot(const cases::Case& the_case, const telemetry::TickSample& 
   shot.depth_mm = fired.depth_mm;
   shot.throw_mm = needle.throw_mm;
   if (shot.is_in_body()) {
-    shot.throw_mm = tasks::stylet_throw_mm(the_case.task, patient, needle, fired.tip_mm, fired.axis);
-    shot.core = tasks::take_core(the_case.task, patient, needle, fired.tip_mm, fired.axis);
-    for (const tasks::CorePiece& piece : shot.core.pieces)
+    shot.throw_mm = scoring::stylet_throw_mm(the_case.task, patient, needle, fired.tip_mm, fired.axis);
+    shot.core = scoring::take_core(the_case.task, patient, needle, fired.tip_mm, fired.axis);
+    for (const scoring::CorePiece& piece : shot.core.pieces)
       shot.pieces.push_back({part_of(the_case.task, patient, piece), piece.label, piece.from_mm, piece.to_mm});
   }
   const double end_mm = std::max(0.0, shot.throw_mm - needle.dead_space_mm);

@@ -5,14 +5,14 @@
 
 #include "cases/prepare_case.h"
 #include "geometry/segment.h"
-#include "tasks/core_sample.h"
+#include "scoring/core_sample.h"
 #include "telemetry/tick_sample.h"
 
 namespace trocar::attempt {
 
 /// A displayed piece of the core.
 struct ShotPiece {
-  tasks::CorePart part = tasks::CorePart::kOther;
+  scoring::CorePart part = scoring::CorePart::kOther;
   std::string label;
   double from_mm = 0.0, to_mm = 0.0;  ///< Distances as in CorePiece.
 };
@@ -23,7 +23,7 @@ struct GunShot {
   double depth_mm = 0.0;  ///< Depth of the tip below the skin before the shot.
   double throw_mm = 0.0;  ///< Distance that the stylet moved.
   Segment core_P;         ///< Position of the core.
-  tasks::BiopsyCore core;
+  scoring::BiopsyCore core;
   std::vector<ShotPiece> pieces;
 
   bool is_in_body() const noexcept { return depth_mm > 0.0; }

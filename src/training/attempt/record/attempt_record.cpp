@@ -164,8 +164,8 @@ Status AttemptRecord::append(const tasks::XrayUse& use) {
 
 RunResult AttemptRecord::score() {
   RunResult result;
-  result.outcome = tasks::score_attempt(the_case_->task, *the_case_->patient, the_case_->tissues, the_case_->needle,
-                                        the_case_->plan, samples_, fired_, interruptions_, xray_);
+  result.outcome = scoring::score_attempt(the_case_->task, *the_case_->patient, the_case_->tissues, the_case_->needle,
+                                          the_case_->plan, samples_, fired_, interruptions_, xray_);
   result.punctures = find_punctures(info_, samples_);
   result.force_model = info_.force_model;
   result.ticks = samples_.size();

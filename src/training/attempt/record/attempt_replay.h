@@ -33,7 +33,7 @@ class AttemptReplay {
   static Result<AttemptReplay> of(storage::Session session, std::shared_ptr<const cases::OpenCase> open);
 
   const storage::Session& session() const noexcept { return session_; }
-  const tasks::Outcome& outcome() const noexcept { return *session_.outcome; }
+  const scoring::Outcome& outcome() const noexcept { return *session_.outcome; }
   bool was_cut_off() const noexcept { return was_cut_off_; }
   double duration_s() const noexcept { return session_.samples.back().time_s; }
   /// The tick at a time; before the first or after the last tick, that tick.

@@ -32,7 +32,7 @@ struct ServerFigures {
 };
 
 struct RunResult {
-  tasks::Outcome outcome;
+  scoring::Outcome outcome;
   std::vector<PunctureRecord> punctures;
   std::string force_model;  ///< Force model at the first tick.
   std::size_t ticks = 0;

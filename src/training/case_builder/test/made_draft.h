@@ -4,7 +4,7 @@
 #include "case_builder/case_draft.h"
 #include "core/files/data_dir.h"
 #include "tasks/needle.h"
-#include "tasks/test/box_patient.h"
+#include "tasks/testing/box_patient.h"
 #include "tasks/testing/shipped_task.h"
 
 namespace trocar::testing {

@@ -55,8 +55,8 @@ std::string with_unit(double value, const std::string& unit) {
   return short_number(value) + (is_attached ? "" : " ") + escape(unit);
 }
 
-std::string part_row(const tasks::ScorePart& part) {
-  if (tasks::is_deduction(part))
+std::string part_row(const scoring::ScorePart& part) {
+  if (scoring::is_deduction(part))
     return fmt::format("<tr><td>{}</td><td></td><td></td><td class=\"number\"><b>{}</b></td></tr>", escape(part.title),
                        number_text(part.points, std::abs(part.points - std::round(part.points)) < 0.05 ? 0 : 1));
   const double share =
@@ -69,16 +69,16 @@ std::string part_row(const tasks::ScorePart& part) {
 }
 
 /// The notch as a bar with its pieces to scale.
-std::string core_bar(const tasks::BiopsyCore& core) {
+std::string core_bar(const scoring::BiopsyCore& core) {
   constexpr double kWidth = 760.0;
   constexpr double kMargin = 14.0;
   constexpr double kTickStep_mm = 5.0;
   double length_mm = 0.0;
-  for (const tasks::CorePiece& piece : core.pieces) length_mm = std::max(length_mm, piece.to_mm);
+  for (const scoring::CorePiece& piece : core.pieces) length_mm = std::max(length_mm, piece.to_mm);
   if (!(length_mm > 0.0)) return "<p>The core is empty.</p>";
   const auto x_of = [&](double mm) { return kMargin + mm / length_mm * (kWidth - 2.0 * kMargin); };
   std::string out = "<svg viewBox=\"0 0 760 78\" role=\"img\" aria-label=\"Tissue along the specimen notch\">";
-  for (const tasks::CorePiece& piece : core.pieces) {
+  for (const scoring::CorePiece& piece : core.pieces) {
     const double x = x_of(piece.from_mm);
     const double width = x_of(piece.to_mm) - x;
     out += fmt::format(
@@ -163,7 +163,7 @@ std::string damage_note(const storage::Session& session) {
 
 /// "Target reached", with the level of help of the attempt.
 std::string verdict_of(const storage::Session& session) {
-  const tasks::Outcome& outcome = *session.outcome;
+  const scoring::Outcome& outcome = *session.outcome;
   std::string verdict = outcome.target_reached ? "Target reached" : "Target missed";
   if (!outcome.is_scored()) verdict = "Not scored: " + escape(outcome.not_scored);
   if (!session.info.level.empty())
@@ -177,14 +177,14 @@ std::string result_section(const storage::Session& session) {
     return "<p class=\"warning\"><b>This session is incomplete.</b> The program ended during the attempt: there is no "
            "score. The recorded ticks "
            "are shown below.</p>";
-  const tasks::Outcome& outcome = *session.outcome;
+  const scoring::Outcome& outcome = *session.outcome;
   std::string out =
       damage_note(session) + fmt::format(
                                  "<section class=\"together\"><h2>Result</h2><div class=\"result\"><div "
                                  "class=\"ring\">{}<div class=\"verdict\">{}"
                                  "</div></div><table class=\"parts\"><tbody>",
                                  outcome.is_scored() ? score_ring(outcome.score) : std::string(), verdict_of(session));
-  for (const tasks::ScorePart& part : outcome.parts) out += part_row(part);
+  for (const scoring::ScorePart& part : outcome.parts) out += part_row(part);
   out += "</tbody></table></div>";
   if (!outcome.risks_touched.empty())
     out += fmt::format("<p class=\"warning\">Structures at risk touched: <b>{}</b>.</p>", join(outcome.risks_touched));
@@ -200,7 +200,7 @@ std::string hints_section(const storage::Session& session) {
 
 std::string core_section(const storage::Session& session) {
   if (!session.outcome || !session.outcome->core) return {};
-  const tasks::BiopsyCore& core = *session.outcome->core;
+  const scoring::BiopsyCore& core = *session.outcome->core;
   std::string out = "<section class=\"together\"><h2>The core</h2><figure>" + core_bar(core) +
                     fmt::format(
                         "<figcaption>Target tissue {} mm, organ {} mm, vessel {} mm, other {} mm.</figcaption>"

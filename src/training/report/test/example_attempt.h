@@ -75,12 +75,12 @@ inline storage::Session example_attempt() {
     session.samples.push_back(s);
   }
   session.fired = 6000;
-  tasks::Outcome outcome;
+  scoring::Outcome outcome;
   outcome.score = 83.2;
   outcome.target_reached = true;
   outcome.parts = {{"target", "Distance to the target", 0.4, "mm", 24, 25}, {"risk", "Risks", 1, "", 0, 20}};
   outcome.hints = {"Hold the needle flatter."};
-  outcome.core = tasks::BiopsyCore{};
+  outcome.core = scoring::BiopsyCore{};
   outcome.core->pieces = {{"liver", "liver", 0.0, 8.0}, {"lesion", "liver_lesion", 8.0, 19.0}};
   outcome.core->target_mm = 11.0;
   outcome.core->organ_mm = 8.0;

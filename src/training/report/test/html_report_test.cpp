@@ -128,8 +128,8 @@ TEST(HtmlReport, EscapesWhatPeopleWrote) {
   for (std::string& name : session.info.tissue_names) name = evil;
   session.outcome->hints = {evil};
   session.outcome->risks_touched = session.outcome->core->risks_in_throw = {evil};
-  for (tasks::CorePiece& piece : session.outcome->core->pieces) piece.label = piece.tissue = evil;
-  for (tasks::ScorePart& part : session.outcome->parts) part.title = part.unit = evil;
+  for (scoring::CorePiece& piece : session.outcome->core->pieces) piece.label = piece.tissue = evil;
+  for (scoring::ScorePart& part : session.outcome->parts) part.title = part.unit = evil;
   const std::string html = html_report(session, nullptr);
   EXPECT_EQ(html.find("<script"), std::string::npos);
   EXPECT_EQ(first_unbalanced(html), "");

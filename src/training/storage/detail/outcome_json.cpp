@@ -62,9 +62,9 @@ class Reader {
   bool& is_valid_;
 };
 
-tasks::BiopsyCore read_core(const config::Json& object, bool& is_valid) {
+scoring::BiopsyCore read_core(const config::Json& object, bool& is_valid) {
   Reader reader(object, is_valid);
-  tasks::BiopsyCore core;
+  scoring::BiopsyCore core;
   core.tip_P = reader.vector("tip_P");
   core.axis_P = reader.vector("axis_P");
   for (const config::Json& item : reader.array("pieces")) {
@@ -81,7 +81,7 @@ tasks::BiopsyCore read_core(const config::Json& object, bool& is_valid) {
 
 }  // namespace
 
-std::string outcome_to_json(const tasks::Outcome& outcome) {
+std::string outcome_to_json(const scoring::Outcome& outcome) {
   config::Json object{{"score", outcome.score},
                       {"target_reached", outcome.target_reached},
                       {"parts", parts_json(outcome.parts)},
@@ -92,11 +92,11 @@ std::string outcome_to_json(const tasks::Outcome& outcome) {
   return object.dump(-1, ' ', false, config::Json::error_handler_t::replace);
 }
 
-Result<tasks::Outcome> outcome_from_json(std::string_view text, const std::string& where) {
+Result<scoring::Outcome> outcome_from_json(std::string_view text, const std::string& where) {
   TROCAR_TRY(const config::Json object, config::parse_json(text, where));
   bool is_valid = true;
   Reader reader(object, is_valid);
-  tasks::Outcome outcome;
+  scoring::Outcome outcome;
   outcome.score = reader.number("score");
   outcome.target_reached = reader.boolean("target_reached");
   for (const config::Json& item : reader.array("parts")) {

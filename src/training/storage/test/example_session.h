@@ -64,13 +64,13 @@ inline telemetry::TickSample example_sample(std::size_t n) {
   return s;
 }
 
-inline tasks::Outcome example_outcome() {
-  tasks::Outcome outcome;
+inline scoring::Outcome example_outcome() {
+  scoring::Outcome outcome;
   outcome.score = 100.0 / 3.0;
   outcome.target_reached = true;
   outcome.parts = {{"target", "Distance to the target", 0.1, "mm", 29.5, 30.0}, {"time", "Time", 12.25, "s", 10, 10}};
   outcome.hints = {"Hold the needle nearer to 30°", "\"quoted\" \\ \n second line"};
-  tasks::BiopsyCore core;
+  scoring::BiopsyCore core;
   core.tip_P = {0.1, 0.2, 0.3};
   core.axis_P = {0, 0, -1};
   core.pieces = {{"liver", "liver", 0.0, 7.1}, {"lesion_1", "liver_lesion", 7.1, 19.0}};

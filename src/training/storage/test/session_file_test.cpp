@@ -110,7 +110,7 @@ TEST(SessionFile, GivesTheOutcomeBack) {
   ASSERT_TRUE(session) << session.error().text();
   ASSERT_TRUE(session->outcome);
   EXPECT_EQ(session->fired, std::optional<std::size_t>(5));
-  const tasks::Outcome expected = example_outcome();
+  const scoring::Outcome expected = example_outcome();
   EXPECT_EQ(session->outcome->score, expected.score);
   EXPECT_TRUE(session->outcome->target_reached);
   EXPECT_EQ(session->outcome->hints, expected.hints);
@@ -139,7 +139,7 @@ TEST(SessionFile, KeepsNumbersThatAreNone) {
   sample.f_total_n[2] = -std::numeric_limits<double>::infinity();
   sample.depth_mm = std::numeric_limits<double>::denorm_min();
   sample.f_cutting_n = -0.0;
-  tasks::Outcome outcome = example_outcome();
+  scoring::Outcome outcome = example_outcome();
   outcome.score = std::numeric_limits<double>::quiet_NaN();
   {
     auto writer = SessionWriter::create(folder / "s.trocar", example_info());

@@ -8,7 +8,7 @@
 
 #include "core/testing/allocation_guard.inc.h"
 #include "geometry/quaternion.h"
-#include "tasks/test/layered_body.h"
+#include "tasks/testing/layered_body.h"
 
 namespace trocar::tasks {
 namespace {

@@ -4,12 +4,12 @@
 #include "core/files/atomic_file.h"
 #include "core/files/data_dir.h"
 #include "core/files/temporary_folder.h"
+#include "scoring/score.h"
 #include "tasks/assess_path.h"
 #include "tasks/plan.h"
-#include "tasks/score.h"
-#include "tasks/test/attempt_patient.h"
-#include "tasks/test/box_patient.h"
-#include "tasks/test/layered_body.h"
+#include "tasks/testing/attempt_patient.h"
+#include "tasks/testing/box_patient.h"
+#include "tasks/testing/layered_body.h"
 #include "tasks/testing/shipped_task.h"
 
 namespace trocar::tasks {
@@ -123,27 +123,6 @@ TEST(OwnTask, PointInHealthyTissueIsParenchymal) {
   EXPECT_FALSE(is_parenchymal(task, patient));
   task.target_P = Vec3(-60.0, 10.0, 0.0);
   EXPECT_TRUE(is_parenchymal(task, patient));
-}
-
-TEST(OwnTask, EntryInsideTheZoneIsWhole) {
-  using namespace testing;
-  const anatomy::VirtualPatient patient = make_box_patient();
-  const Segment plan_P = make_box_plan().line_P;
-  const Segment beside_P{plan_P.a + Vec3(4.0, 0.0, 0.0), plan_P.b + Vec3(4.0, 0.0, 0.0)};
-  const Attempt attempt = make_attempt(beside_P);
-  const auto entry_points = [&](const Task& task) {
-    const Outcome outcome =
-        score_attempt(task, patient, make_box_tissues(), make_gun(), make_box_plan(), attempt.samples, attempt.fired);
-    for (const ScorePart& part : outcome.parts)
-      if (part.name == "entry") return part.points / part.max_points;
-    return -1.0;
-  };
-  Task task = make_box_task();
-  EXPECT_LT(entry_points(task), 0.95);
-  task.entry_zone = EntryZone{plan_P.a, 6.0};
-  EXPECT_EQ(entry_points(task), 1.0);
-  task.entry_zone = EntryZone{plan_P.a - Vec3(20.0, 0.0, 0.0), 6.0};  // 18 mm outside
-  EXPECT_NEAR(entry_points(task), 1.0 / (1.0 + 1.8 * 1.8), 0.01);
 }
 
 bool has(const PathAssessment& assessment, PathFault fault, const std::string& label = {}) {

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "core/files/data_dir.h"
-#include "tasks/test/box_patient.h"
+#include "tasks/testing/box_patient.h"
 #include "tasks/testing/shipped_task.h"
 #include "volume/sampling.h"
 

@@ -4,7 +4,7 @@
 
 #include "core/files/data_dir.h"
 #include "tasks/plan.h"
-#include "tasks/test/box_patient.h"
+#include "tasks/testing/box_patient.h"
 
 namespace trocar::tasks {
 namespace {

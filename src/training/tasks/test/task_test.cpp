@@ -7,7 +7,7 @@
 #include "core/files/data_dir.h"
 #include "core/files/temporary_folder.h"
 #include "tasks/needle.h"
-#include "tasks/test/box_patient.h"
+#include "tasks/testing/box_patient.h"
 #include "tasks/testing/shipped_task.h"
 
 namespace trocar::tasks {

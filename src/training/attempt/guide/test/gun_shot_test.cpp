@@ -39,7 +39,7 @@ TEST(GunShot, TakesACoreWhereTheNotchWas) {
   ASSERT_FALSE(shot.pieces.empty());
   double target_mm = 0.0;
   for (const ShotPiece& piece : shot.pieces)
-    if (piece.part == tasks::CorePart::kTarget) target_mm += piece.to_mm - piece.from_mm;
+    if (piece.part == scoring::CorePart::kTarget) target_mm += piece.to_mm - piece.from_mm;
   EXPECT_NEAR(target_mm, shot.core.target_mm, 1e-9);
   EXPECT_GT(target_mm, 5.0);
   EXPECT_NE(shot_words(shot).find("target tissue"), std::string::npos) << shot_words(shot);

@@ -145,7 +145,7 @@ TEST_F(LiveOperatorTest, CountsNoOutageAsTheTraineesTime) {
   const auto result = record_->finish();
   ASSERT_TRUE(result) << result.error().text();
   EXPECT_NEAR(result->active_s, kActive_s, 2.0 * kStep_s);
-  const auto part = std::ranges::find(result->outcome.parts, "time", &tasks::ScorePart::name);
+  const auto part = std::ranges::find(result->outcome.parts, "time", &scoring::ScorePart::name);
   ASSERT_NE(part, result->outcome.parts.end());
   EXPECT_NEAR(part->value, kFired_s, 2.0 * kStep_s);
   const auto session = storage::load_session(folder_ / "attempt.session");

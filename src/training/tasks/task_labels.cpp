@@ -1,4 +1,4 @@
-#include "tasks/detail/task_labels.h"
+#include "tasks/task_labels.h"
 
 namespace trocar::tasks {
 

@@ -1,4 +1,4 @@
-#include "tasks/metrics.h"
+#include "metrics/attempt_metrics.h"
 
 #include <algorithm>
 #include <array>
@@ -6,10 +6,10 @@
 #include <numbers>
 
 #include "geometry/pose.h"
-#include "tasks/detail/task_labels.h"
+#include "tasks/task_labels.h"
 #include "volume/sampling.h"
 
-namespace trocar::tasks {
+namespace trocar::metrics {
 namespace {
 
 constexpr double kStep_mm = 0.5;         // distance of the points tested for risk structures
@@ -49,11 +49,12 @@ Vec3 skin_crossing(const anatomy::VirtualPatient& patient, const Vec3& tip_P, co
 /// Collects risk structures, each label once.
 class RiskFinder {
  public:
-  RiskFinder(const Task& task, const anatomy::VirtualPatient& patient) : patient_(patient), labels_(task, patient) {}
+  RiskFinder(const tasks::Task& task, const anatomy::VirtualPatient& patient)
+      : patient_(patient), labels_(task, patient) {}
 
   void test(const Vec3& p_P, double depth_mm) {
     const std::uint8_t id = volume::sample_nearest<std::uint8_t>(patient_.labels, p_P, 0);
-    const RiskStructure* risk = labels_.risk(id);
+    const tasks::RiskStructure* risk = labels_.risk(id);
     if (risk == nullptr || is_found_[id]) return;
     is_found_[id] = true;
     found.push_back({patient_.label_table.find(id)->name, depth_mm, risk->penalty});
@@ -68,11 +69,11 @@ class RiskFinder {
 
  private:
   const anatomy::VirtualPatient& patient_;
-  TaskLabels labels_;
+  tasks::TaskLabels labels_;
   std::array<bool, 256> is_found_{};
 };
 
-std::vector<RiskTouch> find_risks(const Task& task, const anatomy::VirtualPatient& patient,
+std::vector<RiskTouch> find_risks(const tasks::Task& task, const anatomy::VirtualPatient& patient,
                                   std::span<const telemetry::TickSample> samples, std::size_t end) {
   RiskFinder finder(task, patient);
   const telemetry::TickSample* before = nullptr;  // the last sample inside the body
@@ -151,10 +152,10 @@ Entry find_entry(std::span<const telemetry::TickSample> samples, std::size_t end
 
 }  // namespace
 
-AttemptMetrics measure_attempt(const Task& task, const anatomy::VirtualPatient& patient,
-                               const anatomy::TissueTable& tissues, const PlannedPath& plan,
+AttemptMetrics measure_attempt(const tasks::Task& task, const anatomy::VirtualPatient& patient,
+                               const anatomy::TissueTable& tissues, const tasks::PlannedPath& plan,
                                std::span<const telemetry::TickSample> samples, std::optional<std::size_t> fired,
-                               std::span<const Interruption> interruptions) {
+                               std::span<const tasks::Interruption> interruptions) {
   AttemptMetrics metrics;
   const auto touch = std::find_if(samples.begin(), samples.end(), [](const telemetry::TickSample& sample) {
     return is_valid(sample) && (sample.phase != telemetry::InsertionPhase::kOutside || sample.depth_mm > 0.0);
@@ -177,9 +178,9 @@ AttemptMetrics measure_attempt(const Task& task, const anatomy::VirtualPatient& 
   metrics.travel_mm = inward_travel_mm(samples.first(*end + 1));
   for (const telemetry::TickSample& sample : samples.first(*end + 1))
     if (is_valid(sample)) metrics.deepest_mm = std::max(metrics.deepest_mm, sample.depth_mm);
-  metrics.time_s = active_time_s(touch->time_s, last.time_s, interruptions);
+  metrics.time_s = tasks::active_time_s(touch->time_s, last.time_s, interruptions);
   metrics.risks = find_risks(task, patient, samples, *end);
   return metrics;
 }
 
-}  // namespace trocar::tasks
+}  // namespace trocar::metrics

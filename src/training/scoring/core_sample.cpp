@@ -1,13 +1,13 @@
-#include "tasks/core_sample.h"
+#include "scoring/core_sample.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "tasks/detail/task_labels.h"
-#include "tasks/score.h"
+#include "scoring/score.h"
+#include "tasks/task_labels.h"
 #include "volume/sampling.h"
 
-namespace trocar::tasks {
+namespace trocar::scoring {
 namespace {
 
 constexpr double kStep_mm = 0.25;
@@ -35,24 +35,24 @@ void add_to_pieces(std::vector<CorePiece>& pieces, const anatomy::Label* label, 
   }
 }
 
-void add_to_sums(BiopsyCore& core, TaskLabels::Part part, double length_mm) {
+void add_to_sums(BiopsyCore& core, tasks::TaskLabels::Part part, double length_mm) {
   switch (part) {
-    case TaskLabels::Part::kTarget:
+    case tasks::TaskLabels::Part::kTarget:
       core.target_mm += length_mm;
       break;
-    case TaskLabels::Part::kOrgan:
+    case tasks::TaskLabels::Part::kOrgan:
       core.organ_mm += length_mm;
       break;
-    case TaskLabels::Part::kVessel:
+    case tasks::TaskLabels::Part::kVessel:
       core.vessel_mm += length_mm;
       break;
-    case TaskLabels::Part::kOther:
+    case tasks::TaskLabels::Part::kOther:
       core.other_mm += length_mm;
       break;
   }
 }
 
-double shot_mm(const TaskLabels& labels, const anatomy::VirtualPatient& patient, const Needle& needle,
+double shot_mm(const tasks::TaskLabels& labels, const anatomy::VirtualPatient& patient, const tasks::Needle& needle,
                const Vec3& tip_P, const Vec3& axis_P) {
   double shot = needle.throw_mm;
   walk(0.0, needle.throw_mm, [&](double beyond_tip_mm, double length_mm) {
@@ -64,30 +64,30 @@ double shot_mm(const TaskLabels& labels, const anatomy::VirtualPatient& patient,
 
 }  // namespace
 
-CorePart part_of(const Task& task, const anatomy::VirtualPatient& patient, const CorePiece& piece) {
+CorePart part_of(const tasks::Task& task, const anatomy::VirtualPatient& patient, const CorePiece& piece) {
   const anatomy::Label* label = patient.label_table.find(std::string_view(piece.label));
   if (label == nullptr) return CorePart::kOther;
-  switch (TaskLabels(task, patient).part(label->id)) {
-    case TaskLabels::Part::kTarget:
+  switch (tasks::TaskLabels(task, patient).part(label->id)) {
+    case tasks::TaskLabels::Part::kTarget:
       return CorePart::kTarget;
-    case TaskLabels::Part::kOrgan:
+    case tasks::TaskLabels::Part::kOrgan:
       return CorePart::kOrgan;
-    case TaskLabels::Part::kVessel:
+    case tasks::TaskLabels::Part::kVessel:
       return CorePart::kVessel;
-    case TaskLabels::Part::kOther:
+    case tasks::TaskLabels::Part::kOther:
       break;
   }
   return CorePart::kOther;
 }
 
-double stylet_throw_mm(const Task& task, const anatomy::VirtualPatient& patient, const Needle& needle,
+double stylet_throw_mm(const tasks::Task& task, const anatomy::VirtualPatient& patient, const tasks::Needle& needle,
                        const Vec3& tip_P, const Vec3& axis_P) {
-  return shot_mm(TaskLabels(task, patient), patient, needle, tip_P, axis_P);
+  return shot_mm(tasks::TaskLabels(task, patient), patient, needle, tip_P, axis_P);
 }
 
-BiopsyCore take_core(const Task& task, const anatomy::VirtualPatient& patient, const Needle& needle, const Vec3& tip_P,
-                     const Vec3& axis_P) {
-  const TaskLabels labels(task, patient);
+BiopsyCore take_core(const tasks::Task& task, const anatomy::VirtualPatient& patient, const tasks::Needle& needle,
+                     const Vec3& tip_P, const Vec3& axis_P) {
+  const tasks::TaskLabels labels(task, patient);
   BiopsyCore core;
   core.tip_P = tip_P;
   core.axis_P = axis_P;
@@ -112,4 +112,4 @@ BiopsyCore take_core(const Task& task, const anatomy::VirtualPatient& patient, c
   return core;
 }
 
-}  // namespace trocar::tasks
+}  // namespace trocar::scoring

@@ -14,7 +14,7 @@
 #include "tasks/xray_use.h"
 #include "telemetry/tick_sample.h"
 
-namespace trocar::tasks {
+namespace trocar::scoring {
 
 /// Tissue along one stretch of the specimen notch.
 struct CorePiece {
@@ -72,14 +72,14 @@ struct Outcome {
 
 /// Takes the core at a fired tick. The stylet goes straight on from the tip; bone stops it, and the part of the notch
 /// that then stays inside the cannula takes nothing.
-BiopsyCore take_core(const Task& task, const anatomy::VirtualPatient& patient, const Needle& needle, const Vec3& tip_P,
-                     const Vec3& axis_P);
+BiopsyCore take_core(const tasks::Task& task, const anatomy::VirtualPatient& patient, const tasks::Needle& needle,
+                     const Vec3& tip_P, const Vec3& axis_P);
 
 /// Scores a whole attempt. `fired` is the index of the sample at which the biopsy gun was fired. Time in an
 /// interruption is not counted. `xray`: use of X-ray at the end of the attempt.
-Outcome score_attempt(const Task& task, const anatomy::VirtualPatient& patient, const anatomy::TissueTable& tissues,
-                      const Needle& needle, const PlannedPath& plan, std::span<const telemetry::TickSample> samples,
-                      std::optional<std::size_t> fired, std::span<const Interruption> interruptions = {},
-                      const XrayUse& xray = {});
+Outcome score_attempt(const tasks::Task& task, const anatomy::VirtualPatient& patient,
+                      const anatomy::TissueTable& tissues, const tasks::Needle& needle, const tasks::PlannedPath& plan,
+                      std::span<const telemetry::TickSample> samples, std::optional<std::size_t> fired,
+                      std::span<const tasks::Interruption> interruptions = {}, const tasks::XrayUse& xray = {});
 
-}  // namespace trocar::tasks
+}  // namespace trocar::scoring

@@ -2,16 +2,16 @@
 
 #include <cstdint>
 
-#include "tasks/score.h"
+#include "scoring/score.h"
 
-namespace trocar::tasks {
+namespace trocar::scoring {
 
 /// Role of a core's piece in its task; a BiopsyCore's four lengths are the sums by these parts.
 enum class CorePart : std::uint8_t { kOther, kTarget, kOrgan, kVessel };
-CorePart part_of(const Task& task, const anatomy::VirtualPatient& patient, const CorePiece& piece);
+CorePart part_of(const tasks::Task& task, const anatomy::VirtualPatient& patient, const CorePiece& piece);
 
 /// Distance of the stylet beyond the tip (mm): the needle's throw, or less if bone stops it.
-double stylet_throw_mm(const Task& task, const anatomy::VirtualPatient& patient, const Needle& needle,
+double stylet_throw_mm(const tasks::Task& task, const anatomy::VirtualPatient& patient, const tasks::Needle& needle,
                        const Vec3& tip_P, const Vec3& axis_P);
 
-}  // namespace trocar::tasks
+}  // namespace trocar::scoring

@@ -1,4 +1,4 @@
-#include "tasks/score.h"
+#include "scoring/score.h"
 
 #include <gtest/gtest.h>
 
@@ -6,10 +6,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "tasks/test/attempt_patient.h"
-#include "tasks/test/layered_body.h"
+#include "tasks/testing/attempt_patient.h"
+#include "tasks/testing/layered_body.h"
 
-namespace trocar::tasks {
+namespace trocar::scoring {
 namespace {
 
 using namespace testing;
@@ -50,7 +50,7 @@ TEST(Score, ThePlannedAttemptIsWorthAll) {
 
 TEST(Score, PartsAddUpToAHundredAndToTheScore) {
   for (const bool is_biopsy : {true, false}) {
-    Needle needle = make_gun();
+    tasks::Needle needle = make_gun();
     needle.is_biopsy = is_biopsy;
     const Attempt attempt = make_attempt(shifted({2.0, 0.0, 1.0}));
     const Outcome outcome = score_attempt(make_box_task(), patient(), make_box_tissues(), needle, make_box_plan(),
@@ -68,12 +68,12 @@ TEST(Score, PartsAddUpToAHundredAndToTheScore) {
 }
 
 TEST(Score, DoseCostsPointsOnlyWhereTheTaskLimitsIt) {
-  Needle needle = make_gun();
+  tasks::Needle needle = make_gun();
   needle.is_biopsy = false;
-  Task task = make_box_task();
+  tasks::Task task = make_box_task();
   const Attempt attempt = make_attempt(make_box_plan().line_P);
   const auto score_with = [&](double dose_gycm2) {
-    XrayUse use;
+    tasks::XrayUse use;
     use.dose_area_gycm2 = dose_gycm2;
     return score_attempt(task, patient(), make_box_tissues(), needle, make_box_plan(), attempt.samples, attempt.fired,
                          {}, use);
@@ -149,8 +149,8 @@ TEST(Score, TargetPointsFallWithEveryMillimetre) {
 }
 
 TEST(Score, PenaltiesBeyondTheRiskPartAreADeduction) {
-  Task task = make_box_task();
-  for (RiskStructure& risk : task.risks) risk.penalty = 25.0;
+  tasks::Task task = make_box_task();
+  for (tasks::RiskStructure& risk : task.risks) risk.penalty = 25.0;
   const Attempt attempt = make_attempt({{50.0, 0.0, 75.0}, {50.0, 15.0, 75.0}});
   const Outcome outcome =
       score_attempt(task, patient(), make_box_tissues(), make_gun(), make_box_plan(), attempt.samples, attempt.fired);
@@ -188,15 +188,15 @@ TEST(Score, ATargetFarOffIsNotReached) {
 
 TEST(Score, EveryNoviceIsWorseThanTheExpert) {
   const auto score_of = [](auto make_operator, std::uint64_t seed) {
-    const OperatorCase the_case{make_box_plan().line_P, true, seed};
+    const tasks::OperatorCase the_case{make_box_plan().line_P, true, seed};
     LayeredBody body(the_case.path_P, {{0.0, 4.5, 2.8}, {10.0, 2.8, 2.5}, {20.0, 2.7, 1.5}}, 0.001);
     body.run(*make_operator(the_case), 60.0);
     return score(body.samples, body.fired.empty() ? std::nullopt : std::optional(body.fired[0])).score;
   };
   double novices = 0.0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    const double expert = score_of(make_expert, seed);
-    const double novice = score_of(make_novice, seed);
+    const double expert = score_of(tasks::make_expert, seed);
+    const double novice = score_of(tasks::make_novice, seed);
     EXPECT_GT(expert, 95.0) << seed;
     EXPECT_LT(novice, expert - 5.0) << seed;
     novices += novice / 20.0;
@@ -234,7 +234,7 @@ TEST(Score, ADeepAttemptWithoutAShotIsNotScoredButAPunctureWithoutAGunIs) {
   EXPECT_EQ(unfired.not_scored, "the gun was not fired");
   EXPECT_TRUE(has_hint(unfired, "No core was taken"));
   EXPECT_TRUE(score(attempt.samples, attempt.fired).is_scored());
-  Needle needle = make_gun();
+  tasks::Needle needle = make_gun();
   needle.is_biopsy = false;
   const Outcome puncture =
       score_attempt(make_box_task(), patient(), make_box_tissues(), needle, make_box_plan(), attempt.samples, {});
@@ -301,5 +301,26 @@ TEST(Hints, SpeakOfWhatMattersOnly) {
   EXPECT_FALSE(has_hint(outcome, "pointed"));
 }
 
+TEST(Score, EntryInsideTheZoneIsWhole) {
+  using namespace testing;
+  const anatomy::VirtualPatient patient = make_box_patient();
+  const Segment plan_P = make_box_plan().line_P;
+  const Segment beside_P{plan_P.a + Vec3(4.0, 0.0, 0.0), plan_P.b + Vec3(4.0, 0.0, 0.0)};
+  const Attempt attempt = make_attempt(beside_P);
+  const auto entry_points = [&](const tasks::Task& task) {
+    const Outcome outcome =
+        score_attempt(task, patient, make_box_tissues(), make_gun(), make_box_plan(), attempt.samples, attempt.fired);
+    for (const ScorePart& part : outcome.parts)
+      if (part.name == "entry") return part.points / part.max_points;
+    return -1.0;
+  };
+  tasks::Task task = make_box_task();
+  EXPECT_LT(entry_points(task), 0.95);
+  task.entry_zone = tasks::EntryZone{plan_P.a, 6.0};
+  EXPECT_EQ(entry_points(task), 1.0);
+  task.entry_zone = tasks::EntryZone{plan_P.a - Vec3(20.0, 0.0, 0.0), 6.0};  // 18 mm outside
+  EXPECT_NEAR(entry_points(task), 1.0 / (1.0 + 1.8 * 1.8), 0.01);
+}
+
 }  // namespace
-}  // namespace trocar::tasks
+}  // namespace trocar::scoring

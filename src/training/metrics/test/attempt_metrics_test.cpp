@@ -1,4 +1,4 @@
-#include "tasks/metrics.h"
+#include "metrics/attempt_metrics.h"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,9 @@
 #include <limits>
 #include <numbers>
 
-#include "tasks/test/attempt_patient.h"
+#include "tasks/testing/attempt_patient.h"
 
-namespace trocar::tasks {
+namespace trocar::metrics {
 namespace {
 
 using namespace testing;
@@ -113,4 +113,4 @@ TEST(Metrics, SkipsSamplesThatAreNotFinite) {
 }
 
 }  // namespace
-}  // namespace trocar::tasks
+}  // namespace trocar::metrics

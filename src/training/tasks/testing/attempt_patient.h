@@ -2,7 +2,12 @@
 
 #include <vector>
 
-#include "tasks/score.h"
+#include "anatomy/patient.h"
+#include "anatomy/tissue/tissue_table.h"
+#include "tasks/needle.h"
+#include "tasks/plan.h"
+#include "tasks/task.h"
+#include "telemetry/tick_sample.h"
 
 namespace trocar::testing {
 

@@ -1,4 +1,4 @@
-#include "tasks/detail/hints.h"
+#include "scoring/detail/hints.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include "anatomy/direction_words.h"
 #include "anatomy/structure_words.h"
 
-namespace trocar::tasks {
+namespace trocar::scoring {
 namespace {
 
 constexpr double kMatters = 0.1;          // minimum lost share of a part's points for a hint
@@ -97,7 +97,7 @@ void add_target_hint(const HintSubject& subject, std::vector<Hint>& hints) {
 }
 
 void add_path_hints(const HintSubject& subject, std::vector<Hint>& hints) {
-  const AttemptMetrics& metrics = subject.metrics;
+  const metrics::AttemptMetrics& metrics = subject.metrics;
   if (const double points = lost(subject, "entry"); points > 0.0)
     hints.push_back({points, fmt::format("The insertion point was {}: move the needle {} before you insert it.",
                                          anatomy::direction_words(metrics.entry_offset_P, " mm too far"),
@@ -111,11 +111,11 @@ void add_path_hints(const HintSubject& subject, std::vector<Hint>& hints) {
 }
 
 void add_risk_hints(const HintSubject& subject, std::vector<Hint>& hints) {
-  for (const RiskTouch& touch : subject.metrics.risks)
+  for (const metrics::RiskTouch& touch : subject.metrics.risks)
     hints.push_back({touch.penalty, fmt::format("The needle touched a structure at risk, {}, {:.0f} mm below the skin: "
                                                 "find it in the image and keep clear of it.",
                                                 anatomy::structure_words(touch.label), touch.depth_mm)});
-  for (const RiskTouch& touch : subject.stylet_risks)
+  for (const metrics::RiskTouch& touch : subject.stylet_risks)
     hints.push_back(
         {touch.penalty, fmt::format("The stylet shot into a structure at risk, {}: look {:.0f} mm beyond the "
                                     "tip before you fire.",
@@ -123,7 +123,7 @@ void add_risk_hints(const HintSubject& subject, std::vector<Hint>& hints) {
 }
 
 /// Travel beyond the path's length is either repeated after a retraction or beyond the target.
-std::string travel_hint(const AttemptMetrics& metrics, double path_mm) {
+std::string travel_hint(const metrics::AttemptMetrics& metrics, double path_mm) {
   const double repeated_mm = metrics.travel_mm - metrics.deepest_mm;
   if (repeated_mm < kRepeatedTravel * (metrics.travel_mm - path_mm))
     return fmt::format(
@@ -138,7 +138,7 @@ std::string travel_hint(const AttemptMetrics& metrics, double path_mm) {
 }
 
 void add_economy_hints(const HintSubject& subject, std::vector<Hint>& hints) {
-  const AttemptMetrics& metrics = subject.metrics;
+  const metrics::AttemptMetrics& metrics = subject.metrics;
   if (const double points = lost(subject, "length"); points > 0.0)
     hints.push_back({points, travel_hint(metrics, subject.plan.line_P.length_mm())});
   const bool is_finished = subject.core || !subject.needle.is_biopsy;
@@ -182,4 +182,4 @@ std::vector<std::string> make_hints(const HintSubject& subject) {
   return texts;
 }
 
-}  // namespace trocar::tasks
+}  // namespace trocar::scoring

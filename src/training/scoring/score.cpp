@@ -1,13 +1,13 @@
-#include "tasks/score.h"
+#include "scoring/score.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "tasks/detail/hints.h"
-#include "tasks/detail/task_labels.h"
-#include "tasks/metrics.h"
+#include "metrics/attempt_metrics.h"
+#include "scoring/detail/hints.h"
+#include "tasks/task_labels.h"
 
-namespace trocar::tasks {
+namespace trocar::scoring {
 namespace {
 
 // Weights of the parts; their sum is 100.
@@ -39,25 +39,28 @@ double core_share(const BiopsyCore& core, double possible_mm) noexcept {
 }
 
 /// Structures touched by the stylet but not by the needle.
-std::vector<RiskTouch> find_stylet_risks(const TaskLabels& labels, const anatomy::VirtualPatient& patient,
-                                         const AttemptMetrics& metrics, const std::optional<BiopsyCore>& core) {
-  std::vector<RiskTouch> touches;
+std::vector<metrics::RiskTouch> find_stylet_risks(const tasks::TaskLabels& labels,
+                                                  const anatomy::VirtualPatient& patient,
+                                                  const metrics::AttemptMetrics& metrics,
+                                                  const std::optional<BiopsyCore>& core) {
+  std::vector<metrics::RiskTouch> touches;
   if (!core) return touches;
   for (const std::string& name : core->risks_in_throw) {
     const bool is_known = std::any_of(metrics.risks.begin(), metrics.risks.end(),
-                                      [&](const RiskTouch& touch) { return touch.label == name; });
+                                      [&](const metrics::RiskTouch& touch) { return touch.label == name; });
     if (!is_known) touches.push_back({name, 0.0, labels.risk(patient.label_table.find(name)->id)->penalty});
   }
   return touches;
 }
 
 /// Distance of the entry from its target: from the zone's edge, or without a zone from the expert's entry.
-double entry_miss_mm(const Task& task, const PlannedPath& plan, const AttemptMetrics& metrics) noexcept {
+double entry_miss_mm(const tasks::Task& task, const tasks::PlannedPath& plan,
+                     const metrics::AttemptMetrics& metrics) noexcept {
   if (task.entry_zone) return task.entry_zone->distance_outside_mm(plan.line_P.a + metrics.entry_offset_P);
   return metrics.entry_offset_P.norm();
 }
 
-const Weights& weights_of(const Task& task, const Needle& needle) noexcept {
+const Weights& weights_of(const tasks::Task& task, const tasks::Needle& needle) noexcept {
   if (needle.is_biopsy) return kBiopsy;
   return task.dose_limit_gycm2 > 0.0 ? kPunctureByXray : kPuncture;
 }
@@ -67,8 +70,9 @@ struct Worth {
   double risk_penalty = 0.0;
 };
 
-Worth worth_of(const Task& task, const Needle& needle, const PlannedPath& plan, const AttemptMetrics& metrics,
-               const std::optional<BiopsyCore>& core, double possible_mm, const XrayUse& xray) noexcept {
+Worth worth_of(const tasks::Task& task, const tasks::Needle& needle, const tasks::PlannedPath& plan,
+               const metrics::AttemptMetrics& metrics, const std::optional<BiopsyCore>& core, double possible_mm,
+               const tasks::XrayUse& xray) noexcept {
   const double length_mm = plan.line_P.length_mm();
   const bool is_finished = core || !needle.is_biopsy;
   Worth worth;
@@ -87,7 +91,7 @@ struct PartFigures {
   std::size_t risks = 0;
 };
 
-std::vector<ScorePart> parts_of(const Worth& worth, const Weights& weights, const AttemptMetrics& metrics,
+std::vector<ScorePart> parts_of(const Worth& worth, const Weights& weights, const metrics::AttemptMetrics& metrics,
                                 const PartFigures& figures, const std::optional<BiopsyCore>& core) {
   const double safe = metrics.has_entered ? std::max(0.0, weights.risk - worth.risk_penalty) : 0.0;
   const double scale = metrics.has_entered ? 1.0 : 0.0;
@@ -115,7 +119,7 @@ std::vector<ScorePart> parts_of(const Worth& worth, const Weights& weights, cons
 /// A biopsy reaches its target with a core taken near the planned point, or with a core that contains lesion from
 /// slightly further away, since a lesion has a size. Healthy organ is everywhere: a core of it does not prove the
 /// position.
-bool has_reached_target(const Task& task, const Needle& needle, const AttemptMetrics& metrics,
+bool has_reached_target(const tasks::Task& task, const tasks::Needle& needle, const metrics::AttemptMetrics& metrics,
                         const std::optional<BiopsyCore>& core, double core_share, bool is_parenchymal) noexcept {
   if (!metrics.has_entered || (needle.is_biopsy && !core)) return false;
   const double off_mm = metrics.target_offset_P.norm();
@@ -124,7 +128,7 @@ bool has_reached_target(const Task& task, const Needle& needle, const AttemptMet
 }
 
 /// Empty: it can be scored.
-std::string why_not_scored(const Needle& needle, const AttemptMetrics& metrics, bool has_fired) {
+std::string why_not_scored(const tasks::Needle& needle, const metrics::AttemptMetrics& metrics, bool has_fired) {
   if (!metrics.has_touched_skin) return "the needle never touched the skin";
   if (!metrics.has_entered) return "the needle did not pierce the skin";
   if (needle.is_biopsy && !has_fired) return "the gun was not fired";
@@ -133,12 +137,13 @@ std::string why_not_scored(const Needle& needle, const AttemptMetrics& metrics, 
 
 }  // namespace
 
-Outcome score_attempt(const Task& task, const anatomy::VirtualPatient& patient, const anatomy::TissueTable& tissues,
-                      const Needle& needle, const PlannedPath& plan, std::span<const telemetry::TickSample> samples,
-                      std::optional<std::size_t> fired, std::span<const Interruption> interruptions,
-                      const XrayUse& xray) {
+Outcome score_attempt(const tasks::Task& task, const anatomy::VirtualPatient& patient,
+                      const anatomy::TissueTable& tissues, const tasks::Needle& needle, const tasks::PlannedPath& plan,
+                      std::span<const telemetry::TickSample> samples, std::optional<std::size_t> fired,
+                      std::span<const tasks::Interruption> interruptions, const tasks::XrayUse& xray) {
   if (fired && *fired >= samples.size()) fired.reset();
-  const AttemptMetrics metrics = measure_attempt(task, patient, tissues, plan, samples, fired, interruptions);
+  const metrics::AttemptMetrics metrics =
+      metrics::measure_attempt(task, patient, tissues, plan, samples, fired, interruptions);
 
   Outcome outcome;
   outcome.not_scored = why_not_scored(needle, metrics, fired.has_value());
@@ -150,10 +155,10 @@ Outcome score_attempt(const Task& task, const anatomy::VirtualPatient& patient, 
   }
 
   Worth worth = worth_of(task, needle, plan, metrics, outcome.core, possible_mm, xray);
-  const TaskLabels labels(task, patient);
-  const std::vector<RiskTouch> stylet_risks = find_stylet_risks(labels, patient, metrics, outcome.core);
+  const tasks::TaskLabels labels(task, patient);
+  const std::vector<metrics::RiskTouch> stylet_risks = find_stylet_risks(labels, patient, metrics, outcome.core);
   for (const auto* touches : {&metrics.risks, &stylet_risks})
-    for (const RiskTouch& touch : *touches) {
+    for (const metrics::RiskTouch& touch : *touches) {
       outcome.risks_touched.push_back(touch.label);
       worth.risk_penalty += touch.penalty;
     }
@@ -171,4 +176,4 @@ Outcome score_attempt(const Task& task, const anatomy::VirtualPatient& patient, 
   return outcome;
 }
 
-}  // namespace trocar::tasks
+}  // namespace trocar::scoring

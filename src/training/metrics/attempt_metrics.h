@@ -12,7 +12,7 @@
 #include "tasks/task.h"
 #include "telemetry/tick_sample.h"
 
-namespace trocar::tasks {
+namespace trocar::metrics {
 
 /// A risk structure that the needle touched.
 struct RiskTouch {
@@ -41,9 +41,9 @@ struct AttemptMetrics {
 
 /// Measures an attempt. `fired`: sample at which the gun was fired. Samples without an end (a killed session), none at
 /// all, or with values that are not finite are measured as far as possible.
-AttemptMetrics measure_attempt(const Task& task, const anatomy::VirtualPatient& patient,
-                               const anatomy::TissueTable& tissues, const PlannedPath& plan,
+AttemptMetrics measure_attempt(const tasks::Task& task, const anatomy::VirtualPatient& patient,
+                               const anatomy::TissueTable& tissues, const tasks::PlannedPath& plan,
                                std::span<const telemetry::TickSample> samples, std::optional<std::size_t> fired,
-                               std::span<const Interruption> interruptions = {});
+                               std::span<const tasks::Interruption> interruptions = {});
 
-}  // namespace trocar::tasks
+}  // namespace trocar::metrics

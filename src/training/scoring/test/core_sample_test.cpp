@@ -1,8 +1,9 @@
 #include <gtest/gtest.h>
 
-#include "tasks/test/attempt_patient.h"
+#include "scoring/score.h"
+#include "tasks/testing/attempt_patient.h"
 
-namespace trocar::tasks {
+namespace trocar::scoring {
 namespace {
 
 using namespace testing;
@@ -79,4 +80,4 @@ TEST(TakeCore, OutsideThePatientFindsNothing) {
 }
 
 }  // namespace
-}  // namespace trocar::tasks
+}  // namespace trocar::scoring
