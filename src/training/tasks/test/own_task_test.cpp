@@ -4,7 +4,6 @@
 #include "core/files/atomic_file.h"
 #include "core/files/data_dir.h"
 #include "core/files/temporary_folder.h"
-#include "scoring/score.h"
 #include "tasks/assess_path.h"
 #include "tasks/plan.h"
 #include "tasks/testing/attempt_patient.h"
