@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "geometry/pose.h"
+#include "metrics/detail/strokes.h"
 #include "tasks/task_labels.h"
 #include "volume/sampling.h"
 
@@ -95,23 +96,10 @@ std::vector<RiskTouch> find_risks(const tasks::Task& task, const anatomy::Virtua
 
 /// Inward travel of the tip, counted between turning points that are further apart than tremor.
 double inward_travel_mm(std::span<const telemetry::TickSample> samples) noexcept {
-  double travel_mm = 0.0;
-  double turn_mm = 0.0;  // the deepest point during insertion, the shallowest during withdrawal
-  bool is_going_in = true;
-  for (const telemetry::TickSample& sample : samples) {
-    if (!is_valid(sample)) continue;
-    const double depth_mm = std::max(0.0, sample.depth_mm);
-    if (is_going_in) {
-      travel_mm += std::max(0.0, depth_mm - turn_mm);
-      is_going_in = depth_mm > turn_mm - kTremor_mm;
-      turn_mm = is_going_in ? std::max(turn_mm, depth_mm) : depth_mm;
-    } else {
-      is_going_in = depth_mm > turn_mm + kTremor_mm;
-      if (is_going_in) travel_mm += depth_mm - turn_mm;
-      turn_mm = is_going_in ? depth_mm : std::min(turn_mm, depth_mm);
-    }
-  }
-  return travel_mm;
+  detail::Strokes strokes(kTremor_mm, true);
+  for (const telemetry::TickSample& sample : samples)
+    if (is_valid(sample)) strokes.add(std::max(0.0, sample.depth_mm));
+  return strokes.travel_mm();
 }
 
 std::optional<std::size_t> end_of_attempt(std::span<const telemetry::TickSample> samples,
