@@ -1,0 +1,56 @@
+#pragma once
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+namespace trocar::metrics::detail {
+
+/// Takes the first line off a text, without its end.
+inline std::string_view take_line(std::string_view& text) noexcept {
+  const std::size_t end = std::min(text.find('\n'), text.size());
+  std::string_view line = text.substr(0, end);
+  text.remove_prefix(std::min(end + 1, text.size()));
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  return line;
+}
+
+inline std::string_view trimmed(std::string_view text) noexcept {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
+  return text;
+}
+
+inline std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find(separator), text.size());
+    parts.push_back(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return parts;
+}
+
+/// The comma separated fields of a line, without spaces around them. A field in quotation marks may hold commas; its
+/// doubled quotation marks stay doubled.
+inline void split_fields(std::string_view line, std::vector<std::string_view>& fields) {
+  fields.clear();
+  for (;;) {
+    line = line.substr(std::min(line.find_first_not_of(" \t"), line.size()));
+    std::size_t end = 0;
+    if (line.starts_with('"')) {
+      end = 1;
+      while (end < line.size() && (line[end] != '"' || line.substr(end + 1).starts_with('"')))
+        end += line[end] == '"' ? 2 : 1;
+      fields.push_back(line.substr(1, std::min(end, line.size()) - 1));
+      end = std::min(line.find(',', std::min(end, line.size())), line.size());
+    } else {
+      end = std::min(line.find(','), line.size());
+      fields.push_back(trimmed(line.substr(0, end)));
+    }
+    if (end == line.size()) return;
+    line.remove_prefix(end + 1);
+  }
+}
+
+}  // namespace trocar::metrics::detail

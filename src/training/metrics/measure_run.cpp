@@ -1,0 +1,205 @@
+#include "metrics/measure_run.h"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/check.h"
+#include "metrics/detail/body.h"
+
+namespace trocar::metrics {
+namespace {
+
+constexpr double kLeastAxis = 1e-6;
+
+bool is_finite(const std::optional<double>& value) noexcept {
+  return !value || std::isfinite(*value);
+}
+
+/// Removes optional parts that are not finite.
+void drop_invalid_parts(Moment& moment) noexcept {
+  if (!is_finite(moment.depth_mm)) moment.depth_mm.reset();
+  if (!is_finite(moment.resistance_n)) moment.resistance_n.reset();
+  if (!is_finite(moment.contact_n)) moment.contact_n.reset();
+  if (moment.X_PT && !moment.X_PT->is_finite()) moment.X_PT.reset();
+  if (moment.xray && !(std::isfinite(moment.xray->beam_s) && std::isfinite(moment.xray->contrast_ml) &&
+                       std::isfinite(moment.xray->air_kerma_mgy) && std::isfinite(moment.xray->dose_area_gycm2)))
+    moment.xray.reset();
+}
+
+Roles roles_of(const MetricContext& context) {
+  Roles roles;
+  if (context.task != nullptr) roles.add(Role::kTask);
+  if (context.patient != nullptr) roles.add(Role::kPatient);
+  if (!context.expert_paths.empty()) roles.add(Role::kExpert);
+  if (context.plane) roles.add(Role::kPlane);
+  return roles;
+}
+
+std::optional<Role> find_missing(const Roles& wanted, const Roles& given) noexcept {
+  for (unsigned n = 0; n <= static_cast<unsigned>(kLastRole); ++n)
+    if (const auto role = static_cast<Role>(n); wanted.has(role) && !given.has(role)) return role;
+  return std::nullopt;
+}
+
+bool is_of_context(Role role) noexcept {
+  return role == Role::kTask || role == Role::kPatient || role == Role::kExpert || role == Role::kPlane;
+}
+
+bool context_serves(const MetricGroup& group, const Roles& given) noexcept {
+  for (unsigned n = 0; n <= static_cast<unsigned>(kLastRole); ++n) {
+    const auto role = static_cast<Role>(n);
+    if (is_of_context(role) && group.values.front().roles.has(role) && !given.has(role)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+MeasureRun::MeasureRun(MetricContext context) : context_(std::move(context)), roles_(roles_of(context_)) {
+  for (const MetricGroup& group : metric_groups())
+    metrics_.push_back(context_serves(group, roles_) ? group.make(context_) : nullptr);
+}
+MeasureRun::MeasureRun(MeasureRun&&) noexcept = default;
+MeasureRun::~MeasureRun() = default;
+
+bool MeasureRun::complete(Moment& moment) const {
+  const double length = moment.axis_P.norm();
+  if (!std::isfinite(moment.time_s) || !moment.tip_P.allFinite() || !(length > kLeastAxis && std::isfinite(length)))
+    return false;
+  if (before_ && !(moment.time_s > before_->time_s)) return false;
+  moment.axis_P /= length;
+  drop_invalid_parts(moment);
+  if (const anatomy::VirtualPatient* patient = context_.patient) {
+    moment.label = volume::sample_nearest<std::uint8_t>(patient->labels, moment.tip_P, 0);
+    if (!moment.depth_mm) moment.depth_mm = detail::depth_in_body_mm(*patient, moment.tip_P, moment.axis_P);
+  }
+  if (moment.depth_mm) moment.depth_mm = std::max(0.0, *moment.depth_mm);
+  return true;
+}
+
+void MeasureRun::note_roles(const Moment& moment) {
+  if (moment.depth_mm) roles_.add(Role::kDepth);
+  if (moment.events) roles_.add(Role::kEvents);
+  if (moment.resistance_n) roles_.add(Role::kForce);
+  if (moment.X_PT) roles_.add(Role::kTransducer);
+  if (moment.X_PT && (moment.contact_n || context_.patient != nullptr)) roles_.add(Role::kContact);
+  if (moment.xray) roles_.add(Role::kXray);
+}
+
+void MeasureRun::step(const Moment& given) {
+  has_pause_ = has_pause_ || given.is_paused;
+  Moment moment = given;
+  if (!complete(moment)) {
+    ++left_out_;
+    return;
+  }
+  ++moments_;
+  moment.is_paused = std::exchange(has_pause_, false);
+  note_roles(moment);
+  const bool is_joined = before_ && !moment.is_paused;
+  const double dt_s = is_joined ? moment.time_s - before_->time_s : 0.0;
+  active_s_ += dt_s;
+  const Step step{moment, is_joined ? &*before_ : nullptr, dt_s, active_s_};
+  follow_entry(step);
+  follow_end(step);
+  for (const auto& metric : metrics_)
+    if (metric) metric->step(step);
+  before_ = moment;
+}
+
+void MeasureRun::follow_entry(const Step& step) {
+  const Moment& now = step.now;
+  if (!step.is_inside()) {
+    is_entered_ = false;
+    return;
+  }
+  bool enters = !is_entered_ && now.phase != telemetry::InsertionPhase::kLoading;
+  if (now.events)
+    for (const telemetry::TickEvent& event : *now.events) {
+      const std::string* layer = context_.layer_name(event.id);
+      enters = enters || (event.kind == telemetry::EventKind::kPuncture && layer != nullptr && *layer == "skin");
+    }
+  if (!enters) return;
+  is_entered_ = true;
+  entry_P_ = now.tip_P - *now.depth_mm * now.axis_P;
+}
+
+void MeasureRun::follow_end(const Step& step) {
+  const Moment& now = step.now;
+  if (is_fired_) return;
+  const auto take = [&] {
+    end_ = now;
+    end_entry_P_ = step.is_inside() ? entry_P_ : std::nullopt;
+  };
+  if (context_.fired_s && now.time_s >= *context_.fired_s) {
+    is_fired_ = true;
+    return take();
+  }
+  if (now.depth_mm) {
+    if (*now.depth_mm > 0.0 && (!end_ || !end_->depth_mm || *now.depth_mm > *end_->depth_mm)) take();
+    return;
+  }
+  if (end_ && end_->depth_mm) return;
+  double nearest_mm = std::numeric_limits<double>::infinity();
+  for (const ExpertPath& path : context_.expert_paths)
+    nearest_mm = std::min(nearest_mm, (path.line_P.b - now.tip_P).norm());
+  if (std::isfinite(nearest_mm) && (!end_ || nearest_mm < nearest_mm_)) {
+    nearest_mm_ = nearest_mm;
+    take();
+  }
+}
+
+RunEnd MeasureRun::end() const {
+  RunEnd end;
+  if (!end_) return end;
+  end.moment = end_;
+  end.entry_P = end_entry_P_;
+  if (end_->depth_mm && *end_->depth_mm > 0.0)
+    end.inserted_P = Segment{end_->tip_P - *end_->depth_mm * end_->axis_P, end_->tip_P};
+  double nearest_mm = std::numeric_limits<double>::infinity();
+  for (std::size_t n = 0; n < context_.expert_paths.size(); ++n) {
+    const Segment& line_P = context_.expert_paths[n].line_P;
+    const double apart_mm =
+        end.inserted_P ? detail::piece_distance(*end.inserted_P, line_P).mean_mm : (end_->tip_P - line_P.b).norm();
+    if (apart_mm >= nearest_mm) continue;
+    nearest_mm = apart_mm;
+    end.expert = n;
+  }
+  return end;
+}
+
+void MeasureRun::report_group(std::size_t number, const RunEnd& end, std::span<MetricValue> values) const {
+  const MetricGroup& group = metric_groups()[number];
+  if (moments_ > 0 && metrics_[number]) metrics_[number]->report(end, values);
+  for (std::size_t n = 0; n < values.size(); ++n) {
+    MetricValue& value = values[n];
+    const std::optional<Role> missing = find_missing(group.values[n].roles, roles_);
+    if (moments_ == 0)
+      value.missing = "the recording has no valid moment";
+    else if (missing)
+      value.missing = reason_without(*missing);
+    else if (value.value && !std::isfinite(*value.value))
+      value.missing = "the value is not a finite number";
+    TROCAR_CHECK(value.value || !value.missing.empty());
+    if (value.missing.empty()) continue;
+    value.value.reset();
+    value.at_s.reset();
+    value.note.clear();
+  }
+}
+
+std::vector<MetricValue> MeasureRun::report() const {
+  const RunEnd the_end = end();
+  std::vector<MetricValue> all;
+  const std::span<const MetricGroup> groups = metric_groups();
+  for (std::size_t n = 0; n < groups.size(); ++n) {
+    const std::size_t first = all.size();
+    for (const MetricDescription& description : groups[n].values)
+      all.push_back({description.name, {}, description.unit, {}, {}, {}});
+    report_group(n, the_end, std::span(all).subspan(first));
+  }
+  return all;
+}
+
+}  // namespace trocar::metrics

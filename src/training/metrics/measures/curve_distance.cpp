@@ -1,0 +1,95 @@
+// Distances between the tip's way inside the body and the nearest expert path.
+#include <array>
+
+#include "metrics/detail/curve.h"
+#include "metrics/measures/groups.h"
+
+namespace trocar::metrics {
+namespace {
+
+constexpr std::array kValues{
+    MetricDescription{"frechet_distance",
+                      "Fréchet distance of the tip's way from the expert path",
+                      "mm",
+                      Better::kLower,
+                      {Role::kExpert, Role::kDepth},
+                      "Eiter, Mannila 1994"},
+    MetricDescription{"hausdorff_distance",
+                      "Hausdorff distance of the tip's way from the expert path",
+                      "mm",
+                      Better::kLower,
+                      {Role::kExpert, Role::kDepth},
+                      "Hausdorff 1914"},
+    MetricDescription{"dtw_distance",
+                      "Dynamic time warping distance of the tip's way from the expert path",
+                      "mm",
+                      Better::kLower,
+                      {Role::kExpert, Role::kDepth},
+                      "Sakoe, Chiba 1978"},
+};
+constexpr std::size_t kPoints = 256;
+constexpr double kOut_mm = 0.0;
+
+/// Keeps the tip's way of the insertion that contains the end, and of the present one.
+class CurveDistance : public Metric {
+ public:
+  explicit CurveDistance(const MetricContext& context) : paths_(context.expert_paths), fired_s_(context.fired_s) {}
+
+  void step(const Step& step) override {
+    const Moment& now = step.now;
+    if (!now.depth_mm) return;
+    if (*now.depth_mm <= kOut_mm) {
+      was_inside_ = false;
+      return;
+    }
+    if (!was_inside_) begin();
+    was_inside_ = true;
+    present_.add(now.tip_P, now.time_s);
+    const bool is_fired = fired_s_ && now.time_s >= *fired_s_;
+    if (has_fired_ || (!is_fired && *now.depth_mm <= deepest_mm_)) return;
+    deepest_mm_ = *now.depth_mm;
+    is_end_in_present_ = true;
+    has_fired_ = is_fired;
+  }
+
+  void report(const RunEnd& end, std::span<MetricValue> values) const override {
+    const detail::ThinPath& way = is_end_in_present_ ? present_ : kept_;
+    if (!end.inserted_P || !end.expert || way.points().empty()) {
+      for (MetricValue& value : values) value.missing = "the needle did not enter the body";
+      return;
+    }
+    std::vector<Vec3> points_P;
+    for (const detail::ThinPath::Point& point : way.points())
+      if (point.time_s <= end.moment->time_s) points_P.push_back(point.p_P);
+    points_P.push_back(end.moment->tip_P);
+    const Segment& line_P = paths_[*end.expert].line_P;
+    const std::array<Vec3, 2> ends_P{line_P.a, line_P.b};
+    const std::vector<Vec3> tip_P = detail::resample(points_P, kPoints), expert_P = detail::resample(ends_P, kPoints);
+    values[0].set(detail::frechet_mm(tip_P, expert_P));
+    values[1].set(detail::hausdorff_mm(tip_P, expert_P));
+    values[2].set(detail::warped_mm(tip_P, expert_P));
+  }
+
+ private:
+  void begin() {
+    if (is_end_in_present_) std::swap(kept_, present_);
+    present_.clear();
+    is_end_in_present_ = false;
+  }
+
+  std::vector<ExpertPath> paths_;
+  std::optional<double> fired_s_;
+  detail::ThinPath kept_, present_;
+  bool is_end_in_present_ = false, was_inside_ = false, has_fired_ = false;
+  double deepest_mm_ = 0.0;
+};
+
+}  // namespace
+
+MetricGroup curve_distance_metrics() {
+  return {kValues, [](const MetricContext& context) -> std::unique_ptr<Metric> {
+            return std::make_unique<CurveDistance>(context);
+          }};
+}
+
+}  // namespace trocar::metrics

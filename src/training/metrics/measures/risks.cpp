@@ -1,0 +1,159 @@
+// Target and risk structures of the task (paper B; Johnson 2012, no-go areas).
+#include <array>
+#include <bitset>
+#include <limits>
+
+#include "metrics/measures/groups.h"
+#include "tasks/task_labels.h"
+#include "volume/sampling.h"
+
+namespace trocar::metrics {
+namespace {
+
+constexpr std::array kValues{
+    MetricDescription{"target_reached",
+                      "Target reached (1) or not (0)",
+                      "1",
+                      Better::kHigher,
+                      {Role::kTask, Role::kPatient, Role::kDepth},
+                      "paper B, evaluation component"},
+    MetricDescription{"risk_structures",
+                      "Risk structures touched by tip or shaft",
+                      "1",
+                      Better::kLower,
+                      {Role::kTask, Role::kPatient, Role::kDepth},
+                      "paper B, evaluation component"},
+    MetricDescription{"no_go_touches",
+                      "Contacts with risk structures",
+                      "1",
+                      Better::kLower,
+                      {Role::kTask, Role::kPatient, Role::kDepth},
+                      "Johnson 2012, no-go area touched"},
+    MetricDescription{"no_go_time",
+                      "Time in risk structures",
+                      "s",
+                      Better::kLower,
+                      {Role::kTask, Role::kPatient, Role::kDepth},
+                      "Johnson 2012, total time in no-go area"},
+};
+constexpr double kStep_mm = 0.5;       // distance of tested points of the tip's way
+constexpr double kShaftStep_mm = 1.0;  // and of the shaft
+constexpr double kMoved_mm = 0.25;     // the contacts of a needle that moved less are those found before
+constexpr double kLongest_mm = 500.0;
+constexpr double kApart_s = 0.2;  ///< [assumed] Contacts with a shorter pause count as one.
+
+class Risks : public Metric {
+ public:
+  explicit Risks(const MetricContext& context)
+      : task_(*context.task),
+        patient_(*context.patient),
+        labels_(task_, patient_),
+        needle_(context.needle),
+        paths_(context.expert_paths) {
+    last_s_.fill(-std::numeric_limits<double>::infinity());
+  }
+
+  void step(const Step& step) override {
+    if (!step.is_inside()) {
+      contacts_.reset();
+      is_checked_ = false;
+      return;
+    }
+    if (step.before != nullptr && contacts_.any()) time_s_ += step.dt_s;
+    if (!has_moved(step.now)) {
+      mark(step);
+      return;
+    }
+    contacts_.reset();
+    const double length_mm = std::min(*step.now.depth_mm, kLongest_mm);
+    for (double back_mm = 0.0; back_mm < length_mm; back_mm += kShaftStep_mm)
+      test(step.now.tip_P - back_mm * step.now.axis_P);
+    if (is_checked_ && step.before != nullptr) test_way(tip_P_, step.now.tip_P);
+    tip_P_ = step.now.tip_P;
+    skin_P_ = tip_P_ - length_mm * step.now.axis_P;
+    is_checked_ = true;
+    mark(step);
+  }
+
+  void report(const RunEnd& end, std::span<MetricValue> values) const override {
+    if (end.moment && end.inserted_P)
+      values[0].set(is_target_reached(end) ? 1.0 : 0.0, end.moment->time_s);
+    else
+      values[0].set(0.0);
+    values[1].set(static_cast<double>(order_.size()), first_s_);
+    for (const std::uint8_t id : order_) {
+      const anatomy::Label* label = patient_.label_table.find(id);
+      values[1].note += (values[1].note.empty() ? "" : ", ") + (label != nullptr ? label->name : std::to_string(id));
+    }
+    values[2].set(touches_, first_s_);
+    values[3].set(time_s_, first_s_);
+  }
+
+ private:
+  bool has_moved(const Moment& now) const noexcept {
+    if (!is_checked_) return true;
+    const Vec3 skin_P = now.tip_P - std::min(*now.depth_mm, kLongest_mm) * now.axis_P;
+    return (now.tip_P - tip_P_).norm() > kMoved_mm || (skin_P - skin_P_).norm() > kMoved_mm;
+  }
+  void test(const Vec3& p_P) {
+    const std::uint8_t id = volume::sample_nearest<std::uint8_t>(patient_.labels, p_P, 0);
+    if (labels_.risk(id) != nullptr) contacts_.set(id);
+  }
+  void test_way(const Vec3& from_P, const Vec3& to_P) {
+    const double length_mm = std::min((to_P - from_P).norm(), kLongest_mm);
+    const int steps = static_cast<int>(length_mm / kStep_mm) + 1;
+    for (int n = 1; n < steps; ++n) test(from_P + (to_P - from_P) * n / steps);
+  }
+  /// Counts the contacts of this moment that did not exist just before.
+  void mark(const Step& step) {
+    if (contacts_.none()) return;
+    for (std::size_t id = 1; id < contacts_.size(); ++id) {
+      if (!contacts_[id]) continue;
+      if (last_s_[id] < 0.0) order_.push_back(static_cast<std::uint8_t>(id));
+      if (step.active_s - last_s_[id] > kApart_s) ++touches_;
+      last_s_[id] = step.active_s;
+      if (!first_s_) first_s_ = step.now.time_s;
+    }
+  }
+  /// Any of: tip, or open notch of a biopsy needle, in the target; tip within the task's tolerance of the nearest
+  /// expert path's end; tip in the organ, where the patient has no target and there is no expert path.
+  bool is_target_reached(const RunEnd& end) const {
+    const Vec3& tip_P = end.moment->tip_P;
+    if (end.expert && (tip_P - paths_[*end.expert].line_P.b).norm() <= task_.target_tolerance_mm) return true;
+    double from_mm = 0.0, to_mm = 0.0;
+    if (needle_ && needle_->is_biopsy) {
+      to_mm = needle_->throw_mm - needle_->dead_space_mm;
+      from_mm = to_mm - needle_->notch_mm;
+    }
+    for (double beyond_mm = from_mm; beyond_mm <= to_mm; beyond_mm += kStep_mm) {
+      const std::uint8_t id =
+          volume::sample_nearest<std::uint8_t>(patient_.labels, tip_P + beyond_mm * end.moment->axis_P, 0);
+      if (labels_.part(id) == tasks::TaskLabels::Part::kTarget) return true;
+      const bool is_organ = labels_.part(id) == tasks::TaskLabels::Part::kOrgan;
+      if (is_organ && labels_.is_parenchymal() && !end.expert) return true;
+    }
+    return false;
+  }
+
+  const tasks::Task& task_;
+  const anatomy::VirtualPatient& patient_;
+  tasks::TaskLabels labels_;
+  std::optional<tasks::Needle> needle_;
+  std::vector<ExpertPath> paths_;
+  std::bitset<256> contacts_;  ///< Risk structures that the needle is in now, by label.
+  Vec3 tip_P_ = Vec3::Zero(), skin_P_ = Vec3::Zero();
+  bool is_checked_ = false;
+  std::array<double, 256> last_s_{};  ///< Active time of the last contact, by label.
+  std::vector<std::uint8_t> order_;
+  double touches_ = 0.0, time_s_ = 0.0;
+  std::optional<double> first_s_;
+};
+
+}  // namespace
+
+MetricGroup risk_metrics() {
+  return {kValues,
+          [](const MetricContext& context) -> std::unique_ptr<Metric> { return std::make_unique<Risks>(context); }};
+}
+
+}  // namespace trocar::metrics

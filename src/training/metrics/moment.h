@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "geometry/pose.h"
+#include "tasks/xray_use.h"
+#include "telemetry/tick_sample.h"
+
+namespace trocar::metrics {
+
+/// One moment of a recording of any system. Frame P (LPS, mm). Only time and needle are required.
+struct Moment {
+  double time_s = 0.0;  ///< Time of the recording.
+  Vec3 tip_P = Vec3::Zero();
+  Vec3 axis_P = Vec3::UnitZ();  ///< Hub to tip.
+  /// Depth of the tip below the resting skin along the shaft, 0 outside. MeasureRun finds it in the patient if it is
+  /// missing.
+  std::optional<double> depth_mm;
+  /// Label at the tip, 0 for none; MeasureRun sets it from the patient.
+  std::optional<std::uint8_t> label;
+  std::optional<telemetry::InsertionPhase> phase;
+  std::optional<telemetry::TickEvents> events;  ///< Layer ids as in MetricContext::layer_names.
+  std::optional<double> resistance_n;           ///< Along the needle; positive pushes the needle out.
+  std::optional<Pose> X_PT;                     ///< Ultrasound transducer.
+  std::optional<double> contact_n;              ///< Contact force of transducer and skin.
+  std::optional<tasks::XrayUse> xray;
+  /// The trainee could not act between the moment before and this one: time and motion between them are not counted.
+  bool is_paused = false;
+};
+
+}  // namespace trocar::metrics

@@ -1,0 +1,306 @@
+#include "metrics/pose_csv.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string_view>
+
+#include "core/files/input_file.h"
+#include "core/parse_number.h"
+#include "geometry/quaternion.h"
+#include "metrics/detail/csv_fields.h"
+#include "telemetry/tick_fields.h"
+
+namespace trocar::metrics {
+namespace {
+
+constexpr std::uint64_t kMostBytes = 256ULL << 20;
+constexpr const char* kAdvice = "docs/metrics.md describes the columns";
+constexpr double kMm_per_m = 1000.0;
+constexpr double kUnitTolerance = 1e-2;
+
+constexpr std::array kTip{"tip_x", "tip_y", "tip_z"};
+constexpr std::array kAxis{"axis_x", "axis_y", "axis_z"};
+constexpr std::array kProbe{"probe_x", "probe_y", "probe_z"};
+constexpr std::array kProbeTurn{"probe_qw", "probe_qx", "probe_qy", "probe_qz"};
+/// Forces of `trocar session export` that make up the resistance along the needle.
+constexpr std::array kForces{"f_prepuncture_n", "f_friction_n",    "f_cutting_n",    "f_body_axial_n",
+                             "f_tip_proxy_x_n", "f_tip_proxy_y_n", "f_tip_proxy_z_n"};
+
+/// A column with a number, and what makes it mm.
+struct Column {
+  std::size_t index = 0;
+  double scale = 1.0;
+  std::string name;
+};
+
+template <std::size_t count>
+using Columns = std::array<Column, count>;
+
+struct Layout {
+  std::size_t fields = 0;
+  Column time;
+  Columns<3> tip, axis;
+  std::optional<Column> depth, force, contact;
+  std::optional<Columns<3>> probe;
+  std::optional<Columns<4>> probe_turn;
+  std::optional<Columns<kForces.size()>> forces;
+  std::optional<std::size_t> phase, event;
+};
+
+/// Finds columns by name.
+class Header {
+ public:
+  Header(std::vector<std::string> names, std::string where) : names_(std::move(names)), where_(std::move(where)) {}
+
+  std::optional<std::size_t> find(std::string_view name) const {
+    const auto found = std::find(names_.begin(), names_.end(), name);
+    if (found == names_.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - names_.begin());
+  }
+  std::optional<Column> find_number(const std::string& name) const {
+    if (const auto index = find(name)) return Column{*index, 1.0, name};
+    return std::nullopt;
+  }
+  /// NAME_mm or NAME_m.
+  std::optional<Column> find_length(const std::string& name) const {
+    if (const auto index = find(name + "_mm")) return Column{*index, 1.0, name + "_mm"};
+    if (const auto index = find(name + "_m")) return Column{*index, kMm_per_m, name + "_m"};
+    return std::nullopt;
+  }
+  /// All columns of a group or none. Error: some are missing.
+  template <std::size_t count>
+  Result<std::optional<Columns<count>>> find_group(const std::array<const char*, count>& names, bool is_length) const {
+    Columns<count> columns;
+    std::string missing;
+    std::size_t found = 0;
+    for (std::size_t n = 0; n < count; ++n) {
+      const auto column = is_length ? find_length(names[n]) : find_number(names[n]);
+      if (!column) {
+        missing += (missing.empty() ? "" : ", ") + std::string(names[n]) + (is_length ? "_mm" : "");
+        continue;
+      }
+      columns[n] = *column;
+      ++found;
+    }
+    if (found == count) return std::optional(columns);
+    if (found == 0) return std::optional<Columns<count>>();
+    return fail("line 1: missing column " + missing, where_, kAdvice);
+  }
+  template <std::size_t count>
+  Result<Columns<count>> need_group(const std::array<const char*, count>& names, bool is_length) const {
+    TROCAR_TRY(const auto group, find_group(names, is_length));
+    if (group) return *group;
+    return fail(fmt::format("line 1: missing column {}{}", names[0], is_length ? "_mm" : ""), where_, kAdvice);
+  }
+  Status check_twice() const {
+    for (std::size_t n = 0; n < names_.size(); ++n)
+      if (!names_[n].empty() && find(names_[n]) != n)
+        return fail(fmt::format("line 1: column {} occurs twice", names_[n]), where_, "remove one");
+    return {};
+  }
+  std::size_t size() const noexcept { return names_.size(); }
+
+ private:
+  std::vector<std::string> names_;
+  std::string where_;
+};
+
+Result<Layout> find_layout(const Header& header, const std::string& where) {
+  TROCAR_TRY_STATUS(header.check_twice());
+  Layout layout;
+  layout.fields = header.size();
+  const auto time = header.find_number("time_s");
+  if (!time) return fail("line 1: missing column time_s", where, kAdvice);
+  layout.time = *time;
+  TROCAR_TRY(layout.tip, header.need_group(kTip, true));
+  TROCAR_TRY(layout.axis, header.need_group(kAxis, false));
+  TROCAR_TRY(layout.probe, header.find_group(kProbe, true));
+  TROCAR_TRY(layout.probe_turn, header.find_group(kProbeTurn, false));
+  if (layout.probe.has_value() != layout.probe_turn.has_value())
+    return fail(fmt::format("line 1: missing column {}", layout.probe ? "probe_qw" : "probe_x_mm"), where, kAdvice);
+  layout.depth = header.find_length("depth");
+  layout.force = header.find_number("force_n");
+  layout.contact = header.find_number("probe_contact_n");
+  if (!layout.force && header.find("f_prepuncture_n")) {
+    TROCAR_TRY(layout.forces, header.find_group(kForces, false));
+  }
+  layout.phase = header.find("phase");
+  layout.event = header.find("event");
+  return layout;
+}
+
+using Fields = std::vector<std::string_view>;
+
+/// Reads the numbers of one row; keeps the first fault.
+class RowReader {
+ public:
+  explicit RowReader(const Fields& fields) : fields_(fields) {}
+
+  /// NaN for an empty field and for "nan", "inf".
+  double number(const Column& column) {
+    const std::string_view text = fields_[column.index];
+    if (text.empty() || text == "nan" || text == "-nan" || text == "inf" || text == "-inf")
+      return std::numeric_limits<double>::quiet_NaN();
+    if (const auto value = parse_number<double>(text)) return *value * column.scale;
+    if (fault_.empty()) fault_ = fmt::format("column {}: '{}' is not a number", column.name, text.substr(0, 40));
+    return 0.0;
+  }
+  std::optional<double> number(const std::optional<Column>& column) {
+    if (!column) return std::nullopt;
+    const double value = number(*column);
+    return std::isnan(value) ? std::nullopt : std::optional(value);
+  }
+  Vec3 vector(const Columns<3>& columns) { return {number(columns[0]), number(columns[1]), number(columns[2])}; }
+  void fail_at(std::string fault) {
+    if (fault_.empty()) fault_ = std::move(fault);
+  }
+  const std::string& fault() const noexcept { return fault_; }
+
+ private:
+  const Fields& fields_;
+  std::string fault_;
+};
+
+std::optional<Pose> read_probe(RowReader& reader, const Layout& layout) {
+  if (!layout.probe) return std::nullopt;
+  const Vec3 p_P = reader.vector(*layout.probe);
+  const auto& turn = *layout.probe_turn;
+  const Eigen::Quaterniond q =
+      from_wxyz({reader.number(turn[0]), reader.number(turn[1]), reader.number(turn[2]), reader.number(turn[3])});
+  if (!p_P.allFinite() || !q.coeffs().allFinite()) return std::nullopt;
+  if (std::abs(q.norm() - 1.0) > kUnitTolerance) {
+    reader.fail_at("column probe_qw: the quaternion's length is not 1");
+    return std::nullopt;
+  }
+  return Pose(q.normalized().toRotationMatrix(), p_P);
+}
+
+std::optional<double> read_resistance(RowReader& reader, const Layout& layout, const Vec3& axis_P) {
+  if (layout.force) return reader.number(layout.force);
+  if (!layout.forces) return std::nullopt;
+  const auto& forces = *layout.forces;
+  telemetry::TickSample sample;
+  sample.axis = axis_P;
+  sample.f_prepuncture_n = reader.number(forces[0]);
+  sample.f_friction_n = reader.number(forces[1]);
+  sample.f_cutting_n = reader.number(forces[2]);
+  sample.f_body_axial_n = reader.number(forces[3]);
+  sample.f_tip_proxy_n = {reader.number(forces[4]), reader.number(forces[5]), reader.number(forces[6])};
+  const double resistance_n = telemetry::axial_resistance_n(sample);
+  return std::isfinite(resistance_n) ? std::optional(resistance_n) : std::nullopt;
+}
+
+}  // namespace
+
+struct PoseTable::Impl {
+  std::string text;
+  std::string where;
+  Layout layout;
+  std::vector<std::string> layers;
+  std::size_t rows = 0;
+
+  /// The events of a field; `names`: grows by unknown layers (at most 255).
+  static void read_events(std::string_view field, std::vector<std::string>& names, Moment& moment) {
+    telemetry::TickEvents events{};
+    std::size_t count = 0;
+    for (const std::string_view event : detail::split(field, ';')) {
+      if (event.starts_with("interruption:")) moment.is_paused = true;
+      if (!event.starts_with("puncture:") || count == events.size()) continue;
+      const std::string name(event.substr(9));
+      auto found = std::find(names.begin(), names.end(), name);
+      if (found == names.end() && names.size() < 255) found = names.insert(names.end(), name);
+      if (found == names.end()) continue;
+      events[count++] = {telemetry::EventKind::kPuncture, static_cast<std::uint8_t>(found - names.begin())};
+    }
+    moment.events = events;
+  }
+
+  static void read_phase(std::string_view field, Moment& moment) {
+    for (int n = 0; n <= static_cast<int>(telemetry::kLastInsertionPhase); ++n)
+      if (const auto phase = static_cast<telemetry::InsertionPhase>(n); field == to_string(phase)) moment.phase = phase;
+  }
+
+  Moment read_row(RowReader& reader, const Fields& fields, std::vector<std::string>& names) const {
+    Moment moment;
+    moment.time_s = reader.number(layout.time);
+    moment.tip_P = reader.vector(layout.tip);
+    moment.axis_P = reader.vector(layout.axis);
+    moment.depth_mm = reader.number(layout.depth);
+    moment.resistance_n = read_resistance(reader, layout, moment.axis_P);
+    moment.X_PT = read_probe(reader, layout);
+    moment.contact_n = reader.number(layout.contact);
+    if (layout.phase) read_phase(fields[*layout.phase], moment);
+    if (layout.event) read_events(fields[*layout.event], names, moment);
+    return moment;
+  }
+
+  /// Visits every row after the header. Errors: see read().
+  Status walk(std::vector<std::string>& names, const std::function<void(const Moment&)>& visit) const {
+    std::string_view rest = text;
+    detail::take_line(rest);
+    double last_s = -std::numeric_limits<double>::infinity();
+    Fields fields;
+    for (std::size_t line = 2; !rest.empty(); ++line) {
+      const std::string_view row = detail::take_line(rest);
+      if (row.empty()) continue;
+      detail::split_fields(row, fields);
+      const auto refuse = [&](const std::string& what) {
+        return fail(fmt::format("line {}: {}", line, what), where, kAdvice);
+      };
+      if (fields.size() != layout.fields)
+        return refuse(fmt::format("{} fields, the header has {}", fields.size(), layout.fields));
+      RowReader reader(fields);
+      const Moment moment = read_row(reader, fields, names);
+      if (!reader.fault().empty()) return refuse(reader.fault());
+      if (moment.time_s < last_s)
+        return refuse(fmt::format("column time_s: {} s is before the line above ({} s)", moment.time_s, last_s));
+      if (std::isfinite(moment.time_s)) last_s = moment.time_s;
+      visit(moment);
+    }
+    return {};
+  }
+};
+
+PoseTable::PoseTable(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+PoseTable::PoseTable(PoseTable&&) noexcept = default;
+PoseTable& PoseTable::operator=(PoseTable&&) noexcept = default;
+PoseTable::~PoseTable() = default;
+
+Result<PoseTable> PoseTable::read(const std::filesystem::path& path) {
+  auto impl = std::make_unique<Impl>();
+  impl->where = path.string();
+  TROCAR_TRY(const InputFile file, InputFile::open(path, FileLimit{FileKind::kOther, "table of poses", kMostBytes}));
+  TROCAR_TRY(impl->text, file.read_all());
+  if (impl->text.empty()) return fail("the file is empty", impl->where, kAdvice);
+  std::string_view rest = impl->text;
+  if (rest.starts_with("\xEF\xBB\xBF")) {  // byte order mark of spreadsheet programs
+    impl->text.erase(0, 3);
+    rest = impl->text;
+  }
+  Fields fields;
+  detail::split_fields(detail::take_line(rest), fields);
+  TROCAR_TRY(impl->layout, find_layout(Header({fields.begin(), fields.end()}, impl->where), impl->where));
+  std::size_t rows = 0;
+  TROCAR_TRY_STATUS(impl->walk(impl->layers, [&](const Moment&) { ++rows; }));
+  if (rows == 0) return fail("the table has no row of poses", impl->where, kAdvice);
+  impl->rows = rows;
+  return PoseTable(std::move(impl));
+}
+
+const std::vector<std::string>& PoseTable::layer_names() const noexcept {
+  return impl_->layers;
+}
+std::size_t PoseTable::rows() const noexcept {
+  return impl_->rows;
+}
+void PoseTable::walk(const std::function<void(const Moment&)>& visit) const {
+  std::vector<std::string> names = impl_->layers;
+  (void)impl_->walk(names, visit);  // read() found no error in the same text
+}
+
+}  // namespace trocar::metrics
