@@ -68,11 +68,13 @@ class Risks : public Metric {
     const double length_mm = std::min(*step.now.depth_mm, kLongest_mm);
     for (double back_mm = 0.0; back_mm < length_mm; back_mm += kShaftStep_mm)
       test(step.now.tip_P - back_mm * step.now.axis_P);
+    const std::bitset<256> now = contacts_;
     if (is_checked_ && step.before != nullptr) test_way(tip_P_, step.now.tip_P);
     tip_P_ = step.now.tip_P;
     skin_P_ = tip_P_ - length_mm * step.now.axis_P;
     is_checked_ = true;
     mark(step);
+    contacts_ = now;  // the tip has left the structures on its way
   }
 
   void report(const RunEnd& end, std::span<MetricValue> values) const override {

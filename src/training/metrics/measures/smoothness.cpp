@@ -34,6 +34,7 @@ constexpr std::array kValues{
 constexpr double kLeastRate_hz = 24.0;
 constexpr std::size_t kMostSamples = 32768;  ///< 21 minutes.
 constexpr double kLeastSpeed_mm_s = 1e-6;
+constexpr double kEnd = 1.5;  ///< Samples without a jerk at each end of a stretch.
 
 class Smoothness : public Metric {
  public:
@@ -52,7 +53,7 @@ class Smoothness : public Metric {
       for (MetricValue& value : values) value.missing = reason;
       return;
     }
-    const double mean_square = jerk_squared_ / static_cast<double>(jerks_);
+    const double mean_square = has_jerk_ ? (sum_ + kEnd * last_squared_) / (weight_ + kEnd) : sum_ / weight_;
     const double dimensionless = mean_square * std::pow(active_s_, 4) / (peak_mm_s_ * peak_mm_s_);
     values[0].set(std::sqrt(mean_square));
     values[1].set(dimensionless);
@@ -71,7 +72,7 @@ class Smoothness : public Metric {
 
  private:
   void take(const detail::UniformSampler::Sample& sample) {
-    if (!sample.is_joined) filled_ = 0;
+    if (!sample.is_joined) begin_stretch();
     const double h_s = detail::UniformSampler::kPeriod_s;
     if (filled_ >= 1) {
       const double speed_mm_s = (sample.tip_P - last_[0]).norm() / h_s;
@@ -80,14 +81,30 @@ class Smoothness : public Metric {
     }
     if (filled_ >= 3) {
       const Vec3 jerk = (sample.tip_P - 3.0 * last_[0] + 3.0 * last_[1] - last_[2]) / (h_s * h_s * h_s);
-      jerk_squared_ += jerk.squaredNorm();
-      ++jerks_;
+      add(jerk.squaredNorm());
     }
     last_ = {sample.tip_P, last_[0], last_[1]};
     filled_ = std::min(3, filled_ + 1);
   }
+  /// A stretch of n samples has n - 3 jerks: its first and its last one stand for the samples without one, too.
+  void add(double jerk_squared) noexcept {
+    const double weight = has_jerk_ ? 1.0 : 1.0 + kEnd;
+    sum_ += weight * jerk_squared;
+    weight_ += weight;
+    last_squared_ = jerk_squared;
+    has_jerk_ = true;
+  }
+  void begin_stretch() noexcept {
+    filled_ = 0;
+    if (has_jerk_) {
+      sum_ += kEnd * last_squared_;
+      weight_ += kEnd;
+    }
+    has_jerk_ = false;
+    last_squared_ = 0.0;
+  }
   std::string reason_without_value() const {
-    if (jerks_ == 0) return "the recording is shorter than 0.16 s";
+    if (!(weight_ > 0.0)) return "the recording is shorter than 0.16 s";
     if (static_cast<double>(steps_) < kLeastRate_hz * stepped_s_) return "fewer than 24 moments a second";
     if (!(peak_mm_s_ > kLeastSpeed_mm_s)) return "the needle did not move";
     return {};
@@ -97,8 +114,11 @@ class Smoothness : public Metric {
   std::array<Vec3, 3> last_{};  // newest first
   int filled_ = 0;
   std::vector<double> speeds_;
-  double peak_mm_s_ = 0.0, jerk_squared_ = 0.0, active_s_ = 0.0, stepped_s_ = 0.0;
-  std::size_t jerks_ = 0, steps_ = 0;
+  double peak_mm_s_ = 0.0, active_s_ = 0.0, stepped_s_ = 0.0;
+  double sum_ = 0.0, weight_ = 0.0;  ///< Of squared jerks.
+  double last_squared_ = 0.0;
+  bool has_jerk_ = false;  ///< In the present stretch without gaps.
+  std::size_t steps_ = 0;
 };
 
 }  // namespace

@@ -1,0 +1,125 @@
+#include "metrics/pose_csv.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "core/files/temporary_folder.h"
+#include "metrics/testing/recording.h"
+
+namespace trocar::metrics {
+namespace {
+
+class PoseCsv : public ::testing::Test {
+ protected:
+  Result<PoseTable> read(const std::string& text) {
+    std::ofstream(file_) << text;
+    return PoseTable::read(file_);
+  }
+  std::vector<Moment> moments(const std::string& text) {
+    const auto table = read(text);
+    std::vector<Moment> all;
+    EXPECT_TRUE(table) << (table ? "" : table.error().text());
+    if (table) table->walk([&](const Moment& moment) { all.push_back(moment); });
+    return all;
+  }
+  std::string refused(const std::string& text) {
+    const auto table = read(text);
+    EXPECT_FALSE(table) << text;
+    return table ? std::string() : table.error().what;
+  }
+
+  TemporaryFolder folder_;
+  std::filesystem::path file_ = folder_ / "poses.csv";
+};
+
+constexpr const char* kHeader = "time_s,tip_x_mm,tip_y_mm,tip_z_mm,axis_x,axis_y,axis_z\n";
+
+TEST_F(PoseCsv, ReadsNeedlePoses) {
+  const std::string header = kHeader;
+  const auto all = moments(header + "0.5,1,2,3,0,0,1\n1.5,1e1,-2.5,3,0,1,0");
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_EQ(all[0].time_s, 0.5);
+  EXPECT_EQ(all[1].tip_P, Vec3(10.0, -2.5, 3.0));
+  EXPECT_EQ(all[1].axis_P, Vec3(0, 1, 0));
+  EXPECT_FALSE(all[0].depth_mm || all[0].X_PT || all[0].resistance_n || all[0].events || all[0].phase);
+}
+
+TEST_F(PoseCsv, ReadsMetresOtherOrderUnknownColumnsAndSpreadsheetHabits) {
+  const auto all = moments(
+      "\xEF\xBB\xBFoperator, axis_x,axis_y,axis_z,tip_z_m,tip_y_m,tip_x_m,time_s\r\n"
+      "\"Doe, J.\", 0,0,1,0.003,0.002,0.001,7\r\n\r\n");
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_LT((all[0].tip_P - Vec3(1, 2, 3)).norm(), 1e-12);
+  EXPECT_EQ(all[0].time_s, 7.0);
+}
+
+TEST_F(PoseCsv, ReadsTransducerForceDepthPhaseAndEvents) {
+  const auto table = read(
+      "time_s,tip_x_mm,tip_y_mm,tip_z_mm,axis_x,axis_y,axis_z,probe_x_mm,probe_y_mm,probe_z_mm,probe_qw,probe_qx,"
+      "probe_qy,probe_qz,probe_contact_n,force_n,depth_mm,phase,event\n"
+      "0,0,0,0,0,0,1,4,5,6,0,0,0,1,2.5,1.25,12,inserted,puncture:skin;enter:liver\n"
+      "1,0,0,0,0,0,1,,,,,,,,,nan,,retracting,\"interruption:0.5;puncture:muscle\"\n");
+  ASSERT_TRUE(table) << table.error().text();
+  EXPECT_EQ(table->layer_names(), (std::vector<std::string>{"skin", "muscle"}));
+  std::vector<Moment> all;
+  table->walk([&](const Moment& moment) { all.push_back(moment); });
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_EQ(all[0].X_PT->p(), Vec3(4, 5, 6));
+  EXPECT_LT((all[0].X_PT->R() * Vec3(1, 2, 3) - Vec3(-1, -2, 3)).norm(), 1e-12);
+  EXPECT_EQ(*all[0].contact_n, 2.5);
+  EXPECT_EQ(*all[0].resistance_n, 1.25);
+  EXPECT_EQ(*all[0].depth_mm, 12.0);
+  EXPECT_EQ(*all[0].phase, telemetry::InsertionPhase::kInserted);
+  EXPECT_EQ((*all[0].events)[0].kind, telemetry::EventKind::kPuncture);
+  EXPECT_EQ((*all[0].events)[0].id, 0);
+  EXPECT_FALSE(all[1].X_PT || all[1].contact_n || all[1].resistance_n || all[1].depth_mm);
+  EXPECT_TRUE(all[1].is_paused);
+  EXPECT_EQ((*all[1].events)[0].id, 1);
+}
+
+TEST_F(PoseCsv, NamesLineAndColumnOfAFault) {
+  const std::string header = kHeader;
+  EXPECT_EQ(refused(""), "the file is empty");
+  EXPECT_EQ(refused(header), "the table has no row of poses");
+  EXPECT_EQ(refused("tip_x_mm,tip_y_mm\n1,2\n"), "line 1: missing column time_s");
+  EXPECT_EQ(refused("time_s,tip_x_mm,tip_z_mm,axis_x,axis_y,axis_z\n"), "line 1: missing column tip_y_mm");
+  EXPECT_EQ(refused("time_s,tip_x_mm,tip_y_mm,tip_z_mm\n"), "line 1: missing column axis_x");
+  EXPECT_EQ(refused("time_s,time_s,tip_x_mm,tip_y_mm,tip_z_mm,axis_x,axis_y,axis_z\n"),
+            "line 1: column time_s occurs twice");
+  EXPECT_EQ(refused("time_s,tip_x_mm,tip_y_mm,tip_z_mm,axis_x,axis_y,axis_z,probe_x_mm,probe_y_mm,probe_z_mm\n"),
+            "line 1: missing column probe_qw");
+  EXPECT_EQ(refused(header + "0,0,0,0,0,0,1\n1,0,x7,0,0,0,1\n"), "line 3: column tip_y_mm: 'x7' is not a number");
+  EXPECT_EQ(refused(header + "0,0,0,0,0,0,1\n1,0,0\n"), "line 3: 3 fields, the header has 7");
+  EXPECT_EQ(refused(header + "2,0,0,0,0,0,1\n1,0,0,0,0,0,1\n"),
+            "line 3: column time_s: 1 s is before the line above (2 s)");
+}
+
+TEST_F(PoseCsv, RefusesATurnThatIsNone) {
+  EXPECT_EQ(refused("time_s,tip_x_mm,tip_y_mm,tip_z_mm,axis_x,axis_y,axis_z,probe_x_mm,probe_y_mm,probe_z_mm,probe_qw,"
+                    "probe_qx,probe_qy,probe_qz\n0,0,0,0,0,0,1,0,0,0,2,0,0,0\n"),
+            "line 2: column probe_qw: the quaternion's length is not 1");
+}
+
+TEST_F(PoseCsv, RefusesAHugeFileBeforeReadingIt) {
+  std::ofstream(file_) << kHeader;
+  std::filesystem::resize_file(file_, (256ULL << 20) + 1);
+  const auto table = PoseTable::read(file_);
+  ASSERT_FALSE(table);
+  EXPECT_EQ(PoseTable::read(folder_ / "missing.csv").error().exit_status, 1);
+}
+
+TEST_F(PoseCsv, HostileTextIsRefusedOrRead) {
+  const std::string header = kHeader;
+  const auto expect_refused = [&](const std::string& text) { EXPECT_FALSE(read(text)) << text.substr(0, 60); };
+  expect_refused(std::string(4, '\0'));
+  expect_refused("\n\n\n");
+  expect_refused("\"\"\"\"\n");
+  expect_refused(header + "\"\n");
+  expect_refused(header + std::string(1000, ','));
+  expect_refused(std::string(100000, 'a'));
+  expect_refused(header + "\"0\"\"\",1,2,3,4,5,6\n");
+}
+
+}  // namespace
+}  // namespace trocar::metrics
