@@ -1,4 +1,4 @@
-// trocar session export, motion and report.
+// trocar session export, motion and report; metrics: session_metrics_command.cpp.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -128,6 +128,8 @@ void add_session_commands(CLI::App& program, Action& action) {
   report_command->add_option("--out", r->out, "HTML file to write")->required();
   report_command->footer("Example:\n  trocar session report first.session --out first.html\n");
   report_command->callback([&action, r] { action = [r] { return write_report(*r); }; });
+
+  add_session_metrics_command(*session, action);
 }
 
 }  // namespace trocar::cli

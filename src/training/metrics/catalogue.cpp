@@ -49,14 +49,16 @@ const char* reason_without(Role role) noexcept {
 
 double ImagePlane::slice_at_mm(double at_mm) const noexcept {
   if (!(elevation_focus_mm > 0.0)) return slice_mm;
-  return std::hypot(slice_mm, elevation_mm * std::abs(1.0 - at_mm / elevation_focus_mm));
+  const double geometric_mm = elevation_mm * (1.0 - at_mm / elevation_focus_mm);
+  return std::sqrt(slice_mm * slice_mm + geometric_mm * geometric_mm);
 }
 
 namespace {
 /// Depth of a point along its scanline, from the face.
 double scan_depth_mm(const ImagePlane& plane, const Vec3& p_T) noexcept {
   if (!(plane.field_of_view_rad > 0.0)) return p_T.y();
-  return std::hypot(p_T.x(), p_T.y() + plane.radius_mm) - plane.radius_mm;
+  const double y_mm = p_T.y() + plane.radius_mm;
+  return std::sqrt(p_T.x() * p_T.x() + y_mm * y_mm) - plane.radius_mm;
 }
 }  // namespace
 
@@ -68,7 +70,7 @@ bool ImagePlane::is_in_field(const Vec3& p_T) const noexcept {
 }
 
 bool ImagePlane::is_visible(const Vec3& p_T) const noexcept {
-  return is_in_field(p_T) && std::abs(p_T.z()) <= 0.5 * slice_at_mm(scan_depth_mm(*this, p_T));
+  return std::abs(p_T.z()) <= 0.5 * slice_at_mm(scan_depth_mm(*this, p_T)) && is_in_field(p_T);
 }
 
 }  // namespace trocar::metrics

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <limits>
 #include <numbers>
 
 #include "metrics/detail/strokes.h"
@@ -53,12 +52,12 @@ constexpr double kSteady_s = 0.5;
 /// Punctures of layers from events, of the skin without them.
 class PunctureCounter {
  public:
-  explicit PunctureCounter(const MetricContext& context) : names_(context.layer_names) { shallowest_mm_.fill(kNever); }
+  explicit PunctureCounter(const MetricContext& context) : names_(context.layer_names) {}
 
   void step(const Step& step) {
     const double depth_mm = *step.now.depth_mm;
     out_s_ = depth_mm > 0.0 ? out_s_ : out_s_ + step.dt_s;
-    for (double& shallowest : shallowest_mm_) shallowest = std::min(shallowest, depth_mm);
+    for (std::size_t id = 0; id < known_; ++id) shallowest_mm_[id] = std::min(shallowest_mm_[id], depth_mm);
     if (!is_in_ && depth_mm > kInside_mm && step.now.phase != telemetry::InsertionPhase::kLoading) {
       if (by_depth_ == 0 || out_s_ >= kOutAgain_s) ++by_depth_;
       is_in_ = true;
@@ -70,10 +69,10 @@ class PunctureCounter {
       if (event.kind == telemetry::EventKind::kPuncture) puncture(event.id, depth_mm);
   }
 
-  double skin(bool has_events) const {
-    if (!has_events) return by_depth_;
+  /// By events; a model without puncture events enters by depth.
+  double skin() const {
     for (std::size_t id = 0; id < names_.size() && id < counts_.size(); ++id)
-      if (names_[id] == "skin") return counts_[id];
+      if (names_[id] == "skin" && counts_[id] > 0) return counts_[id];
     return by_depth_;
   }
   double all() const {
@@ -92,12 +91,11 @@ class PunctureCounter {
   }
 
  private:
-  static constexpr double kNever = -std::numeric_limits<double>::infinity();
-
   void puncture(std::uint8_t id, double depth_mm) {
     double& shallowest_mm = shallowest_mm_[id];
     if (shallowest_mm > punctured_mm_[id] - kBackAgain_mm && counts_[id] > 0 && shallowest_mm > 0.0) return;
     ++counts_[id];
+    known_ = std::max(known_, std::size_t{id} + 1);
     punctured_mm_[id] = shallowest_mm = depth_mm;
   }
 
@@ -105,6 +103,7 @@ class PunctureCounter {
   std::array<int, 256> counts_{};
   std::array<double, 256> punctured_mm_{};   // depth of the last counted puncture, by layer
   std::array<double, 256> shallowest_mm_{};  // since then
+  std::size_t known_ = 0;                    // layers with a smaller id may have been punctured
   int by_depth_ = 0;
   bool is_in_ = false;
   double out_s_ = 0.0;
@@ -158,7 +157,6 @@ class Insertion : public Metric {
 
   void step(const Step& step) override {
     if (!step.now.depth_mm) return;
-    has_events_ = has_events_ || step.now.events.has_value();
     punctures_.step(step);
     redirections_.step(step);
     const double depth_mm = *step.now.depth_mm;
@@ -174,7 +172,7 @@ class Insertion : public Metric {
     }
   }
   void report(const RunEnd&, std::span<MetricValue> values) const override {
-    values[0].set(punctures_.skin(has_events_));
+    values[0].set(punctures_.skin());
     values[1].set(punctures_.all());
     values[1].note = punctures_.text();
     values[2].set(pass_count_);
@@ -189,7 +187,7 @@ class Insertion : public Metric {
   detail::Strokes passes_{kPass_mm}, small_{kPullBack_mm}, travel_{kTremor_mm, true};
   double pass_count_ = 0.0, pull_back_count_ = 0.0;
   std::optional<double> pull_back_s_;
-  bool is_back_ = false, has_events_ = false;
+  bool is_back_ = false;
 };
 
 }  // namespace

@@ -1,0 +1,251 @@
+// trocar session metrics.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <fstream>
+
+#include "commands.h"
+#include "io/markups_file.h"
+#include "io/patient/open_patient.h"
+#include "metrics/measure_run.h"
+#include "metrics/pose_csv.h"
+#include "patient_option.h"
+#include "storage/session_moments.h"
+#include "ultrasound/probe/transducer.h"
+
+namespace trocar::cli {
+namespace {
+
+constexpr const char* kTransducer = "C5-2";  // of the trainer's tasks
+
+struct MetricsArguments {
+  std::string recording;
+  std::string task, expert, needle;
+  std::string transducer = kTransducer;
+  double depth_mm = 0.0;  ///< 0: the transducer's default.
+  io::PatientSource patient;
+  bool is_json = false;
+};
+
+/// Owner of the data that a context points at, with the context.
+struct MeasuredCase {
+  std::optional<tasks::Task> task;
+  std::optional<anatomy::VirtualPatient> patient;
+  metrics::MetricContext context;
+};
+
+bool is_database(const std::string& file) {
+  std::string head(15, '\0');
+  std::ifstream(file, std::ios::binary).read(head.data(), static_cast<std::streamsize>(head.size()));
+  return head == "SQLite format 3";
+}
+
+Result<metrics::ImagePlane> load_plane(const MetricsArguments& arguments) {
+  TROCAR_TRY(const auto file, find_data("transducers.toml"));
+  TROCAR_TRY(const ultrasound::Transducer transducer, ultrasound::load_transducer(file, arguments.transducer));
+  metrics::ImagePlane plane;
+  plane.depth_mm = arguments.depth_mm > 0.0 ? arguments.depth_mm : transducer.depth_mm;
+  const bool is_linear = transducer.kind == ultrasound::TransducerKind::kLinear;
+  plane.field_of_view_rad = is_linear ? 0.0 : transducer.field_of_view_rad;
+  plane.radius_mm = is_linear || transducer.kind == ultrasound::TransducerKind::kPhased ? 0.0 : transducer.radius_mm;
+  plane.width_mm = transducer.face_width_mm();
+  plane.elevation_mm = transducer.elevation_aperture_mm;
+  plane.elevation_focus_mm = transducer.elevation_focus_mm;
+  return plane;
+}
+
+/// The task named by the user: one of the data folder, or a file.
+Result<tasks::Task> load_named_task(const std::string& name) {
+  TROCAR_TRY(const auto folder, find_data("tasks"));
+  if (name.ends_with(".toml")) return tasks::load_task_file(name, folder);
+  return tasks::load_task(folder, name);
+}
+
+Result<tasks::Task> recorded_task(const storage::SessionInfo& info) {
+  TROCAR_TRY(const auto folder, find_data("tasks"));
+  if (info.task_toml.empty()) return tasks::load_task(folder, info.task);
+  return tasks::parse_task(info.task_toml, info.task, "the session's task", folder);
+}
+
+/// The patient of a session; empty with a warning if it is not found, cannot be read or is another one.
+std::optional<anatomy::VirtualPatient> recorded_patient(const storage::SessionInfo& info,
+                                                        const MetricsArguments& arguments, const Progress& progress) {
+  io::PatientSource source = arguments.patient;
+  const auto warn = [](const std::string& why) {
+    print_warning("metrics that need the patient have no value: " + why);
+    return std::nullopt;
+  };
+  if (source.folder_or_name.empty()) {
+    const std::filesystem::path beside = std::filesystem::path(arguments.recording).parent_path();
+    auto found = io::find_recorded_patient(info.patient_source, info.patient_hash, beside);
+    if (!found) return warn(found.error().text());
+    source.folder_or_name = *std::move(found);
+  }
+  source.seed = info.patient_seed;
+  auto patient = io::open_patient(source, progress);
+  if (!patient) return warn(patient.error().text());
+  if (patient->content_hash != info.patient_hash)
+    return warn(fmt::format("{} differs from the patient of the session; name the right one with --patient",
+                            source.folder_or_name));
+  return *std::move(patient);
+}
+
+/// The patient's own expert paths for the task ("TASK: place"), behind those that are there.
+void add_own_paths(MeasuredCase& measured) {
+  if (!measured.patient || !measured.task) return;
+  for (const anatomy::NeedlePath& path : measured.patient->paths)
+    if (path.name.starts_with(measured.task->name + ":"))
+      measured.context.expert_paths.push_back({path.name, path.line_P});
+}
+
+Status replace_experts(const std::string& file, metrics::MetricContext& context) {
+  if (file.empty()) return {};
+  TROCAR_TRY(const std::vector<anatomy::NeedlePath> paths, io::read_paths(file));
+  context.expert_paths.clear();
+  for (const anatomy::NeedlePath& path : paths) context.expert_paths.push_back({path.name, path.line_P});
+  return {};
+}
+
+/// Adds what the arguments name and what is found in the data folder to a context.
+Status complete(const MetricsArguments& arguments, MeasuredCase& measured) {
+  if (!arguments.task.empty()) {
+    TROCAR_TRY(measured.task, load_named_task(arguments.task));
+  }
+  if (!arguments.needle.empty() || (measured.task && !measured.context.needle)) {
+    TROCAR_TRY(const auto needles, find_data("needles.toml"));
+    TROCAR_TRY(measured.context.needle,
+               tasks::load_needle(needles, arguments.needle.empty() ? measured.task->needle : arguments.needle));
+  }
+  add_own_paths(measured);
+  TROCAR_TRY_STATUS(replace_experts(arguments.expert, measured.context));
+  TROCAR_TRY(measured.context.plane, load_plane(arguments));
+  measured.context.task = measured.task ? &*measured.task : nullptr;
+  measured.context.patient = measured.patient ? &*measured.patient : nullptr;
+  return {};
+}
+
+Result<std::vector<metrics::MetricValue>> measure_session(const MetricsArguments& arguments, MeasuredCase& measured) {
+  TROCAR_TRY(const storage::Session session, storage::load_session(arguments.recording));
+  if (session.is_incomplete)
+    print_warning(fmt::format("incomplete session: the program ended during the attempt; {} ticks are measured — {}",
+                              session.samples.size(), arguments.recording));
+  measured.context = storage::context_of(session);
+  if (arguments.task.empty()) {
+    TROCAR_TRY(measured.task, recorded_task(session.info));
+  }
+  const ProgressPrinter printer;
+  measured.patient = recorded_patient(session.info, arguments, printer.callback());
+  if (arguments.needle.empty()) {
+    TROCAR_TRY(const auto needles, find_data("needles.toml"));
+    TROCAR_TRY(measured.context.needle, tasks::load_needle(needles, session.info.needle));
+  }
+  TROCAR_TRY_STATUS(complete(arguments, measured));
+  metrics::MeasureRun run(measured.context);
+  storage::walk_moments(session, [&](const metrics::Moment& moment) { run.step(moment); });
+  return run.report();
+}
+
+Result<std::vector<metrics::MetricValue>> measure_poses(const MetricsArguments& arguments, MeasuredCase& measured) {
+  TROCAR_TRY(const metrics::PoseTable table, metrics::PoseTable::read(arguments.recording));
+  if (!arguments.patient.folder_or_name.empty()) {
+    const ProgressPrinter printer;
+    TROCAR_TRY(measured.patient, io::open_patient(arguments.patient, printer.callback()));
+  }
+  measured.context.layer_names = table.layer_names();
+  TROCAR_TRY_STATUS(complete(arguments, measured));
+  metrics::MeasureRun run(measured.context);
+  table.walk([&](const metrics::Moment& moment) { run.step(moment); });
+  if (run.left_out() > 0)
+    print_warning(fmt::format("{} of {} rows are left out: they are not finite, or not later than the row above — {}",
+                              run.left_out(), table.rows(), arguments.recording));
+  return run.report();
+}
+
+const char* word_of(metrics::Better better) {
+  switch (better) {
+    case metrics::Better::kLower:
+      return "lower";
+    case metrics::Better::kHigher:
+      return "higher";
+    case metrics::Better::kNeither:
+      return "neither";
+  }
+  return "";
+}
+
+void print_as_json(const std::vector<metrics::MetricValue>& values, const MeasuredCase& measured,
+                   const MetricsArguments& arguments) {
+  const std::vector<metrics::MetricDescription> catalogue = metrics::metric_catalogue();
+  config::Json list = config::Json::array();
+  for (std::size_t n = 0; n < values.size(); ++n) {
+    const metrics::MetricValue& value = values[n];
+    config::Json row{{"name", value.name},
+                     {"title", catalogue[n].title},
+                     {"value", value.value ? config::Json(*value.value) : config::Json()},
+                     {"unit", value.unit},
+                     {"better", word_of(catalogue[n].better)}};
+    if (!value.missing.empty()) row["missing"] = value.missing;
+    if (!value.note.empty()) row["note"] = value.note;
+    if (value.at_s) row["at_s"] = *value.at_s;
+    list.push_back(std::move(row));
+  }
+  print_json({{"recording", arguments.recording},
+              {"task", measured.task ? config::Json(measured.task->name) : config::Json()},
+              {"patient", measured.patient ? config::Json(measured.patient->name) : config::Json()},
+              {"metrics", list}});
+}
+
+void print_as_text(const std::vector<metrics::MetricValue>& values) {
+  const std::vector<metrics::MetricDescription> catalogue = metrics::metric_catalogue();
+  for (std::size_t n = 0; n < values.size(); ++n) {
+    const metrics::MetricValue& value = values[n];
+    if (!value.value) {
+      fmt::print("{:<24} {:>12}        {}: {}\n", value.name, "-", catalogue[n].title, value.missing);
+      continue;
+    }
+    const std::string note = value.note.empty() ? std::string() : fmt::format(" ({})", value.note);
+    fmt::print("{:<24} {:>12.6g} {:<6} {}{}\n", value.name, *value.value, value.unit == "1" ? "" : value.unit,
+               catalogue[n].title, note);
+  }
+}
+
+Status print_metrics(const MetricsArguments& arguments) {
+  if (!std::isfinite(arguments.depth_mm) || arguments.depth_mm < 0.0 || arguments.depth_mm > 400.0)
+    return fail_usage("the depth of the image must be 10 to 400 mm", "--depth", "leave it out for the default");
+  MeasuredCase measured;
+  TROCAR_TRY(const std::vector<metrics::MetricValue> values, is_database(arguments.recording)
+                                                                 ? measure_session(arguments, measured)
+                                                                 : measure_poses(arguments, measured));
+  if (arguments.is_json)
+    print_as_json(values, measured, arguments);
+  else
+    print_as_text(values);
+  return {};
+}
+
+}  // namespace
+
+void add_session_metrics_command(CLI::App& session, Action& action) {
+  CLI::App* command = session.add_subcommand("metrics", "Measure a session, or poses of another system as CSV");
+  const auto a = std::make_shared<MetricsArguments>();
+  command->add_option("RECORDING", a->recording, "Session file of trocar run, or a CSV file of poses")->required();
+  command->add_option("--task", a->task, "Task, or a file TASK.toml; default: that of the session");
+  command->add_option("--patient", a->patient.folder_or_name,
+                      "Patient folder or embedded patient; default: that of the session");
+  command->add_option("--seed", a->patient.seed, "Seed of an embedded patient, for a CSV file");
+  add_cache_option(*command, a->patient);
+  command->add_option("--expert", a->expert,
+                      "Expert paths (.mrk.json); default: the session's plan and the patient's paths");
+  command->add_option("--needle", a->needle, "Needle; default: that of the session, or of the task");
+  command->add_option("--transducer", a->transducer, "Transducer, for its image plane")->capture_default_str();
+  command->add_option("--depth", a->depth_mm, "Depth of the image, mm; default: the transducer's");
+  command->add_flag("--json", a->is_json, "Print one JSON object");
+  command->footer(
+      "A metric without a value is printed with the reason. Definitions and the columns of the CSV file: "
+      "docs/metrics.md.\n"
+      "Examples:\n  trocar session metrics first.session\n  trocar session metrics poses.csv --task liver-biopsy "
+      "--patient abdomen --expert paths.mrk.json --json\n");
+  command->callback([&action, a] { action = [a] { return print_metrics(*a); }; });
+}
+
+}  // namespace trocar::cli

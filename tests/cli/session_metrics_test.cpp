@@ -1,0 +1,115 @@
+// trocar session metrics: a session, the same as CSV, poses of another system, bad input.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <map>
+
+#include "cli/program.h"
+
+namespace trocar::cli_test {
+namespace {
+
+class SessionMetrics : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = std::make_unique<TemporaryFolder>();
+    session_ = *folder_ / "expert.session";
+    const Outcome ran = trocar("run liver-biopsy --patient phantom --operator expert --out '" + session_ + "'");
+    ASSERT_EQ(ran.exit_status, 0) << ran.err;
+  }
+  static void TearDownTestSuite() { folder_.reset(); }
+
+  /// Metrics by name.
+  static std::map<std::string, config::Json> metrics_of(const std::string& arguments) {
+    std::map<std::string, config::Json> metrics;
+    const Outcome outcome = trocar("session metrics " + arguments + " --json");
+    EXPECT_EQ(outcome.exit_status, 0) << outcome.err;
+    if (outcome.exit_status == 0)
+      for (const config::Json& metric : json_of(outcome)["metrics"]) metrics[metric["name"]] = metric;
+    return metrics;
+  }
+  static std::string write(const std::string& name, const std::string& text) {
+    std::ofstream(*folder_ / name) << text;
+    return *folder_ / name;
+  }
+  static void expect_refused(const std::string& arguments, const std::string& message, int exit_status = 1) {
+    const Outcome outcome = trocar("session metrics " + arguments);
+    EXPECT_EQ(outcome.exit_status, exit_status) << arguments;
+    EXPECT_TRUE(outcome.err.starts_with("error: ")) << outcome.err;
+    EXPECT_EQ(line_count(outcome.err), 1) << outcome.err;
+    EXPECT_NE(outcome.err.find(message), std::string::npos) << outcome.err;
+    EXPECT_TRUE(outcome.out.empty()) << outcome.out;
+  }
+
+  static inline std::unique_ptr<TemporaryFolder> folder_;
+  static inline std::string session_;
+};
+
+TEST_F(SessionMetrics, ExpertsBiopsyIsOnItsPath) {
+  auto metrics = metrics_of("'" + session_ + "'");
+  EXPECT_LT(metrics["target_distance"]["value"], 3.0);
+  EXPECT_LT(metrics["path_distance_max"]["value"], 3.0);
+  EXPECT_EQ(metrics["skin_punctures"]["value"], 1.0);
+  EXPECT_EQ(metrics["needle_passes"]["value"], 1.0);
+  EXPECT_EQ(metrics["target_reached"]["value"], 1.0);
+  EXPECT_EQ(metrics["risk_structures"]["value"], 0.0);
+  EXPECT_GT(metrics["force_peak"]["value"], 0.5);
+  EXPECT_EQ(metrics["force_peak"]["unit"], "N");
+  for (const auto& [name, metric] : metrics) EXPECT_NE(metric["value"].is_null(), !metric.contains("missing")) << name;
+}
+
+TEST_F(SessionMetrics, TheExportedSessionHasTheSameMetrics) {
+  const std::string csv = *folder_ / "expert.csv";
+  ASSERT_EQ(trocar("session export '" + session_ + "' --csv '" + csv + "'").exit_status, 0);
+  auto wanted = metrics_of("'" + session_ + "'");
+  auto metrics = metrics_of("'" + csv + "' --task liver-biopsy --patient phantom");
+  for (const char* name :
+       {"path_length", "time_in_tissue", "tissue_damage", "skin_punctures", "layer_punctures", "force_peak",
+        "puncture_overshoot", "structures_pierced", "no_go_time", "spectral_arc_length"})
+    EXPECT_EQ(metrics[name]["value"], wanted[name]["value"]) << name;
+  EXPECT_EQ(metrics["plane_angle"]["missing"], "the recording has no transducer");
+}
+
+TEST_F(SessionMetrics, PosesOfAnotherSystemAgainstExpertPaths) {
+  // 60 mm along +z at 20 mm/s, 3 mm beside one path and 20 mm beside the other; in metres, without depth.
+  std::string rows = "time_s,tip_x_m,tip_y_m,tip_z_m,axis_x,axis_y,axis_z\n";
+  for (int n = 0; n <= 300; ++n)
+    rows += std::to_string(0.01 * n) + ",0.003,0," + std::to_string(0.0002 * n) + ",0,0,1\n";
+  const std::string poses = write("poses.csv", rows);
+  const std::string paths = write("paths.mrk.json", R"({"markups": [
+    {"type": "Line", "coordinateSystem": "LPS", "controlPoints": [
+      {"id": "1", "label": "e", "position": [23, 0, 0]}, {"id": "2", "label": "t", "position": [23, 0, 60]}]},
+    {"type": "Line", "coordinateSystem": "LPS", "controlPoints": [
+      {"id": "1", "label": "e", "position": [0, 0, 0]}, {"id": "2", "label": "t", "position": [0, 0, 60]}]}]})");
+  auto metrics = metrics_of("'" + poses + "' --expert '" + paths + "'");
+  EXPECT_NEAR(metrics["path_length"]["value"], 60.0, 0.001);
+  EXPECT_NEAR(metrics["elapsed_time"]["value"], 3.0, 1e-9);
+  EXPECT_EQ(metrics["expert_path"]["value"], 2.0);
+  EXPECT_NEAR(metrics["target_distance"]["value"], 3.0, 0.001);
+  EXPECT_EQ(metrics["path_in_tissue"]["missing"], "the recording has no depth and no patient was given");
+  EXPECT_EQ(metrics["target_reached"]["missing"], "the recording has no depth and no patient was given");
+  const Outcome text = trocar("session metrics '" + poses + "' --expert '" + paths + "'");
+  EXPECT_NE(text.out.find("Path length of the tip"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("no patient was given"), std::string::npos) << text.out;
+}
+
+TEST_F(SessionMetrics, BadInputIsOneClearLine) {
+  const std::string header = "time_s,tip_x_mm,tip_y_mm,tip_z_mm,axis_x,axis_y,axis_z\n";
+  const std::string good = write("good.csv", header + "0,0,0,0,0,0,1\n");
+  expect_refused("'" + (*folder_ / "none.csv") + "'", "none.csv");
+  expect_refused("'" + write("empty.csv", "") + "'", "the file is empty");
+  expect_refused("'" + write("header.csv", header) + "'", "no row");
+  expect_refused("'" + write("text.csv", header + "0,a,0,0,0,0,1\n") + "'", "line 2: column tip_x_mm");
+  expect_refused("'" + write("time.csv", header + "1,0,0,0,0,0,1\n0,0,0,0,0,0,1\n") + "'", "line 3: column time_s");
+  expect_refused("'" + write("cut.session", "SQLite format 3 and no more") + "'", "cut.session");
+  expect_refused("'" + good + "' --task none", "none", 2);
+  expect_refused("'" + good + "' --patient nobody", "nobody", 2);
+  expect_refused("'" + good + "' --expert '" + good + "'", "good.csv");
+  expect_refused("'" + good + "' --transducer none", "none", 2);
+  expect_refused("'" + good + "' --depth -3", "--depth", 2);
+  expect_refused("'" + folder_->path().string() + "'", folder_->path().string());
+}
+
+}  // namespace
+}  // namespace trocar::cli_test
