@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <fstream>
 
 #include "commands.h"
@@ -195,6 +196,12 @@ void print_as_json(const std::vector<metrics::MetricValue>& values, const Measur
               {"metrics", list}});
 }
 
+/// Numbers as people read them: counts whole, others with three decimals; large ones by their exponent.
+std::string number_text(double value) {
+  if (value == std::round(value) && std::abs(value) < 1e6) return fmt::format("{:.0f}", value);
+  return std::abs(value) < 1e5 ? fmt::format("{:.3f}", value) : fmt::format("{:.4g}", value);
+}
+
 void print_as_text(const std::vector<metrics::MetricValue>& values) {
   const std::vector<metrics::MetricDescription> catalogue = metrics::metric_catalogue();
   for (std::size_t n = 0; n < values.size(); ++n) {
@@ -204,7 +211,7 @@ void print_as_text(const std::vector<metrics::MetricValue>& values) {
       continue;
     }
     const std::string note = value.note.empty() ? std::string() : fmt::format(" ({})", value.note);
-    fmt::print("{:<24} {:>12.6g} {:<6} {}{}\n", value.name, *value.value, value.unit == "1" ? "" : value.unit,
+    fmt::print("{:<24} {:>12} {:<6} {}{}\n", value.name, number_text(*value.value), value.unit == "1" ? "" : value.unit,
                catalogue[n].title, note);
   }
 }

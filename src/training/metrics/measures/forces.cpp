@@ -26,8 +26,8 @@ constexpr std::array kPunctureValues{
                       {Role::kEvents, Role::kDepth},
                       "issue 22; definition in docs/metrics.md"},
 };
-constexpr double kOvershootWithin_s = 0.5;  ///< [assumed] Reaction time of a hand and its stop.
-constexpr double kOvershootBack_mm = 0.1;   ///< [assumed] The tip has stopped when it came back by so much.
+constexpr double kOvershootWithin_s = 0.25;  ///< [assumed] A hand responds to a touch after 0.15 to 0.25 s.
+constexpr double kOvershootBack_mm = 0.1;    ///< [assumed] The tip has stopped when it came back by so much.
 constexpr std::size_t kMostNotes = 32;
 
 class ForcePeak : public Metric {

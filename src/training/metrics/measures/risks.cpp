@@ -117,24 +117,17 @@ class Risks : public Metric {
       if (!first_s_) first_s_ = step.now.time_s;
     }
   }
-  /// Any of: tip, or open notch of a biopsy needle, in the target; tip within the task's tolerance of the nearest
-  /// expert path's end; tip in the organ, where the patient has no target and there is no expert path.
+  /// Any of: tip, or the notch's middle after the shot of a biopsy needle, in the target; tip within the task's
+  /// tolerance of the nearest expert path's end; tip in the organ, where the patient has no target and there is no
+  /// expert path.
   bool is_target_reached(const RunEnd& end) const {
     const Vec3& tip_P = end.moment->tip_P;
     if (end.expert && (tip_P - paths_[*end.expert].line_P.b).norm() <= task_.target_tolerance_mm) return true;
-    double from_mm = 0.0, to_mm = 0.0;
-    if (needle_ && needle_->is_biopsy) {
-      to_mm = needle_->throw_mm - needle_->dead_space_mm;
-      from_mm = to_mm - needle_->notch_mm;
-    }
-    for (double beyond_mm = from_mm; beyond_mm <= to_mm; beyond_mm += kStep_mm) {
-      const std::uint8_t id =
-          volume::sample_nearest<std::uint8_t>(patient_.labels, tip_P + beyond_mm * end.moment->axis_P, 0);
-      if (labels_.part(id) == tasks::TaskLabels::Part::kTarget) return true;
-      const bool is_organ = labels_.part(id) == tasks::TaskLabels::Part::kOrgan;
-      if (is_organ && labels_.is_parenchymal() && !end.expert) return true;
-    }
-    return false;
+    const double beyond_mm = needle_ ? needle_->notch_middle_mm() : 0.0;
+    const std::uint8_t id =
+        volume::sample_nearest<std::uint8_t>(patient_.labels, tip_P + beyond_mm * end.moment->axis_P, 0);
+    if (labels_.part(id) == tasks::TaskLabels::Part::kTarget) return true;
+    return labels_.part(id) == tasks::TaskLabels::Part::kOrgan && labels_.is_parenchymal() && !end.expert;
   }
 
   const tasks::Task& task_;

@@ -56,9 +56,10 @@ TEST(StructureMetrics, BesideTheLesionTheTargetIsNotReached) {
 
 TEST(StructureMetrics, ABiopsyReachesTheTargetWithItsNotch) {
   MetricContext context = in_box();
-  context.needle = make_gun();  // the notch lies 1 to 18 mm beyond the tip, the lesion begins at 50 mm
-  EXPECT_EQ(measure_one("target_reached", puncture(50.0, 50.0, 40.0), context), 1.0);
-  EXPECT_EQ(measure_one("target_reached", puncture(50.0, 50.0, 30.0), context), 0.0);
+  context.needle = make_gun();  // the notch's middle is 9.5 mm beyond the tip, the lesion reaches from 50 to 70 mm
+  EXPECT_EQ(measure_one("target_reached", puncture(50.0, 50.0, 42.0), context), 1.0);
+  EXPECT_EQ(measure_one("target_reached", puncture(50.0, 50.0, 39.0), context), 0.0);
+  EXPECT_EQ(measure_one("target_reached", puncture(50.0, 50.0, 62.0), context), 0.0);
 }
 
 TEST(StructureMetrics, SlowRecordingsFindThinStructuresBetweenMoments) {
