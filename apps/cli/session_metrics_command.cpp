@@ -33,6 +33,7 @@ struct MeasuredCase {
   std::optional<tasks::Task> task;
   std::optional<anatomy::VirtualPatient> patient;
   metrics::MetricContext context;
+  Status damage;  ///< Error of a session of which only a part could be read.
 };
 
 bool is_database(const std::string& file) {
@@ -126,10 +127,13 @@ Status complete(const MetricsArguments& arguments, MeasuredCase& measured) {
 }
 
 Result<std::vector<metrics::MetricValue>> measure_session(const MetricsArguments& arguments, MeasuredCase& measured) {
-  TROCAR_TRY(const storage::Session session, storage::load_session(arguments.recording));
+  TROCAR_TRY(const storage::Session session, storage::salvage_session(arguments.recording));
   if (session.is_incomplete)
     print_warning(fmt::format("incomplete session: the program ended during the attempt; {} ticks are measured — {}",
                               session.samples.size(), arguments.recording));
+  if (!session.damage.empty())
+    measured.damage = tl::unexpected(
+        storage::damage_error(session, arguments.recording, "the metrics are those of the undamaged part"));
   measured.context = storage::context_of(session);
   if (arguments.task.empty()) {
     TROCAR_TRY(measured.task, recorded_task(session.info));
@@ -227,7 +231,7 @@ Status print_metrics(const MetricsArguments& arguments) {
     print_as_json(values, measured, arguments);
   else
     print_as_text(values);
-  return {};
+  return measured.damage;
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 
 #include "metrics/detail/body.h"
 #include "metrics/measures/groups.h"
-#include "tasks/task_labels.h"
 
 namespace trocar::metrics {
 namespace {
