@@ -7,6 +7,8 @@
 
 #include "geometry/pose.h"
 #include "geometry/segment.h"
+#include "tasks/action.h"
+#include "tasks/task.h"
 #include "telemetry/tick_sample.h"
 
 namespace trocar::tasks {
@@ -21,11 +23,12 @@ struct OperatorView {
 
 /// Target pose of the operator's hand: the hand's spring pulls the device there.
 struct HandCommand {
-  Pose X_PN;                ///< Wanted needle pose.
-  Vec3 v_P = Vec3::Zero();  ///< Wanted velocity of the tip, mm/s.
-  bool has_fired = false;   ///< The biopsy gun is fired at this tick.
-  bool is_done = false;     ///< Finished.
-  bool is_rigid = false;    ///< The device follows X_PN exactly, independent of the force (replay).
+  Pose X_PN;                            ///< Wanted needle pose.
+  Vec3 v_P = Vec3::Zero();              ///< Wanted velocity of the tip, mm/s.
+  bool has_fired = false;               ///< The biopsy gun is fired at this tick.
+  std::optional<ActionRequest> action;  ///< Done at this tick.
+  bool is_done = false;                 ///< Finished.
+  bool is_rigid = false;                ///< The device follows X_PN exactly, independent of the force (replay).
 };
 
 /// A scripted operator. Deterministic: the same seed and the same views give the same commands.
@@ -35,11 +38,21 @@ class Operator {
   virtual HandCommand next(const OperatorView& view) noexcept = 0;
 };
 
+/// What an operator does besides moving the needle.
+struct OperatorActions {
+  bool gives_anaesthetic = false;      ///< Before the skin.
+  std::optional<ActionKind> confirms;  ///< At the target: kDrawStylet or kAspirate.
+  double wire_mm = 0.0;                ///< Guide wire advanced at the target; 0: none.
+};
+/// Those that the task's phases and score ask for.
+OperatorActions actions_for(const Task& task, const Needle& needle);
+
 /// Case data for an operator.
 struct OperatorCase {
   Segment path_P;             ///< The planned (expert) path: entry on the skin -> end position of the tip.
   bool fires_biopsy = false;  ///< The gun is fired at the end position.
   std::uint64_t seed = 1;
+  OperatorActions actions = {};
 };
 
 /// Follows the path: touches, pauses, inserts more slowly with more resistance, stops when the (virtual) tip is at the

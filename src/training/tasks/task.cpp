@@ -90,6 +90,15 @@ std::string lacks_organ(const Task& task, const anatomy::VirtualPatient& patient
 
 }  // namespace
 
+const char* to_string(Guidance guidance) noexcept {
+  switch (guidance) {
+    case Guidance::kUltrasound: return "ultrasound";
+    case Guidance::kXray: return "xray";
+    case Guidance::kPalpation: return "palpation";
+  }
+  return "";
+}
+
 double EntryZone::distance_outside_mm(const Vec3& p_P) const noexcept {
   return std::max(0.0, (p_P - centre_P).norm() - radius_mm);
 }

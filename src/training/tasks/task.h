@@ -1,6 +1,10 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -9,6 +13,8 @@
 #include "anatomy/patient.h"
 #include "anatomy/tissue/tissue_table.h"
 #include "core/result.h"
+#include "tasks/phases/phase.h"
+#include "tasks/substance.h"
 
 namespace trocar::tasks {
 
@@ -19,6 +25,7 @@ struct RiskStructure {
   double margin_mm = 5.0;    ///< Range 0..50.
   double penalty = 20.0;     ///< Points lost when touched. Range 0..100.
   bool is_optional = false;  ///< A patient without it is not doubtful: it stands in for what others have labelled.
+  bool is_critical = false;  ///< An attempt that touches it is not passed, whatever its score.
 
   bool operator==(const RiskStructure&) const = default;
 };
@@ -33,6 +40,22 @@ struct EntryZone {
   bool operator==(const EntryZone&) const = default;
 };
 
+/// By which image the needle is guided.
+enum class Guidance : std::uint8_t { kUltrasound, kXray, kPalpation };
+const char* to_string(Guidance guidance) noexcept;
+
+/// What hurts the patient.
+struct PainRules {
+  std::vector<std::string> tissues;   ///< Each new contact of the tip hurts: "bone" (periosteum), "nerve".
+  bool needs_anaesthesia = false;     ///< The skin pierced without local anaesthetic hurts.
+
+  bool operator==(const PainRules&) const = default;
+};
+
+/// Parts of a score that a task can weigh; scoring/score.h says what each means.
+inline constexpr std::array kScoreParts{"target",  "core",   "confirmation", "risk", "access",  "entry",
+                                        "angle",   "length", "time",         "dose", "comfort", "visibility"};
+
 /// A training task as data (data/tasks/NAME.toml, or task.toml in a patient's folder).
 struct Task {
   std::string name;  ///< "liver-biopsy".
@@ -40,6 +63,12 @@ struct Task {
   std::string organ;                        ///< Label or tissue that holds the target: "liver".
   std::vector<std::string> target_tissues;  ///< "liver_lesion"; where the patient has none: parenchyma of the organ.
   std::string needle;                       ///< Name in data/needles.toml.
+  std::vector<std::string> needles;         ///< Others that may be chosen; empty: all of the same use.
+  Guidance guidance = Guidance::kUltrasound;
+  /// What has to come back for the target to count as reached; kNothing: nothing.
+  Substance confirmed_by = Substance::kNothing;
+  std::vector<Phase> phases;  ///< Steps of the procedure, in the file's order.
+  PainRules pain;
   std::string force_model = "insertion";    ///< insertion, proxy or combined; see docs/physics.md T2.
   /// Engine of the ultrasound image: raycast, or panorama if the patient has one (docs/physics.md U17).
   std::string ultrasound_engine = "raycast";
@@ -66,6 +95,10 @@ struct Task {
   double angle_tolerance_deg = 10.0;
   double time_limit_s = 120.0;
   double dose_limit_gycm2 = 0.0;   ///< Dose–area product of X-ray that gives no points for it; 0: not scored.
+  double margin_tolerance_mm = 2.0;  ///< Missing margin to a structure at risk that halves the points of the access.
+  /// Points of each part (kScoreParts); their sum is 100.
+  std::map<std::string, double, std::less<>> weights;
+  double pass_mark = 70.0;  ///< Least score of a passed attempt. Range 0..100.
   bool exam_shows_needle = false;  ///< In an exam slices and 3D show the needle inside the body, too.
 
   bool operator==(const Task&) const = default;

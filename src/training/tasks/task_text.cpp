@@ -2,6 +2,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "config/toml.h"
 #include "config/toml_writer.h"
@@ -12,6 +14,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr config::Range kCoordinate_mm{-1e5, 1e5};
+constexpr std::array kGuidances{Guidance::kUltrasound, Guidance::kXray, Guidance::kPalpation};
 
 /// Reads the keys of a task file. A complete task must have them all; one with a base has the differing ones.
 class TaskReader {
@@ -21,7 +24,8 @@ class TaskReader {
   Status read(Task& task) const {
     TROCAR_TRY_STATUS(document_.check_keys({"base", "title", "organ", "target_tissues", "needle", "force_model",
                                             "ultrasound_engine", "path", "parenchymal", "scoring", "risks", "target",
-                                            "entry_zone", "expert_path", "exam"}));
+                                            "entry_zone", "expert_path", "exam", "needles", "guidance",
+                                            "confirmed_by", "phases", "pain"}));
     TROCAR_TRY_STATUS(text(document_, "title", task.title));
     TROCAR_TRY_STATUS(text(document_, "organ", task.organ));
     TROCAR_TRY_STATUS(text(document_, "needle", task.needle));
@@ -39,6 +43,7 @@ class TaskReader {
     TROCAR_TRY_STATUS(read_risks(task));
     TROCAR_TRY_STATUS(read_target(task));
     TROCAR_TRY_STATUS(read_exam(task));
+    TROCAR_TRY_STATUS(read_procedure(task));
     return read_entry_zone(task);
   }
 
@@ -81,12 +86,76 @@ class TaskReader {
     if (lacks("scoring")) return {};
     TROCAR_TRY(const config::TomlTable scoring, document_.table("scoring"));
     TROCAR_TRY_STATUS(scoring.check_keys(
-        {"target_tolerance_mm", "entry_tolerance_mm", "angle_tolerance_deg", "time_limit_s", "dose_limit_gycm2"}));
+        {"target_tolerance_mm", "entry_tolerance_mm", "angle_tolerance_deg", "time_limit_s", "dose_limit_gycm2",
+         "margin_tolerance_mm", "pass_mark", "weights"}));
+    TROCAR_TRY(task.margin_tolerance_mm,
+               scoring.number_or("margin_tolerance_mm", {0.1, 50.0}, task.margin_tolerance_mm));
+    TROCAR_TRY(task.pass_mark, scoring.number_or("pass_mark", {0.0, 100.0}, task.pass_mark));
     TROCAR_TRY_STATUS(number(scoring, "target_tolerance_mm", {0.1, 100.0}, task.target_tolerance_mm));
     TROCAR_TRY_STATUS(number(scoring, "entry_tolerance_mm", {0.1, 200.0}, task.entry_tolerance_mm));
     TROCAR_TRY_STATUS(number(scoring, "angle_tolerance_deg", {0.1, 90.0}, task.angle_tolerance_deg));
     TROCAR_TRY(task.dose_limit_gycm2, scoring.number_or("dose_limit_gycm2", {0.0, 1000.0}, task.dose_limit_gycm2));
-    return number(scoring, "time_limit_s", {1.0, 3600.0}, task.time_limit_s);
+    TROCAR_TRY_STATUS(number(scoring, "time_limit_s", {1.0, 3600.0}, task.time_limit_s));
+    return read_weights(scoring, task);
+  }
+
+  Status read_weights(const config::TomlTable& scoring, Task& task) const {
+    if (!is_whole_ && !scoring.has("weights")) return {};
+    TROCAR_TRY(const config::TomlTable table, scoring.table("weights"));
+    TROCAR_TRY_STATUS(table.check_keys({kScoreParts.begin(), kScoreParts.end()}));
+    task.weights.clear();
+    double sum = 0.0;
+    for (const std::string& part : table.keys()) {
+      TROCAR_TRY(const double weight, table.number(part, {0.0, 100.0}));
+      sum += weight;
+      if (weight > 0.0) task.weights[part] = weight;
+    }
+    if (std::abs(sum - 100.0) > 1e-6)
+      return fail(fmt::format("the weights add up to {:g}", sum), table.where(), "let them add up to 100");
+    if (task.weights.contains("dose") && task.dose_limit_gycm2 <= 0.0)
+      return fail("the dose has a weight and no limit", scoring.where(), "give dose_limit_gycm2");
+    return {};
+  }
+
+  Status read_procedure(Task& task) const {
+    if (document_.has("needles")) {
+      TROCAR_TRY(task.needles, document_.strings("needles"));
+    }
+    if (document_.has("guidance")) {
+      TROCAR_TRY(const std::string name, document_.string("guidance"));
+      const auto found = std::find_if(kGuidances.begin(), kGuidances.end(),
+                                      [&](Guidance guidance) { return name == to_string(guidance); });
+      if (found == kGuidances.end())
+        return fail(fmt::format("there is no guidance \"{}\"", name), document_.where(),
+                    "write ultrasound, xray or palpation");
+      task.guidance = *found;
+    }
+    if (document_.has("confirmed_by")) {
+      TROCAR_TRY(const std::string name, document_.string("confirmed_by"));
+      const auto substance = find_substance(name);
+      if (!substance)
+        return fail(fmt::format("there is no substance \"{}\"", name), document_.where(),
+                    "write one of data/substances.toml: csf, bile, ascites …");
+      task.confirmed_by = *substance;
+    }
+    if (document_.has("phases")) {
+      TROCAR_TRY(task.phases, read_phases(document_));
+    }
+    if (task.weights.contains("confirmation") && task.confirmed_by == Substance::kNothing)
+      return fail("the confirmation has a weight and nothing confirms the target", document_.where(),
+                  "give confirmed_by, or omit the weight");
+    return read_pain(task);
+  }
+
+  Status read_pain(Task& task) const {
+    if (!document_.has("pain")) return {};
+    TROCAR_TRY(const config::TomlTable pain, document_.table("pain"));
+    TROCAR_TRY_STATUS(pain.check_keys({"tissues", "needs_anaesthesia"}));
+    if (pain.has("tissues")) {
+      TROCAR_TRY(task.pain.tissues, pain.strings("tissues"));
+    }
+    TROCAR_TRY(task.pain.needs_anaesthesia, pain.boolean_or("needs_anaesthesia", task.pain.needs_anaesthesia));
+    return {};
   }
 
   Status read_risks(Task& task) const {
@@ -94,7 +163,7 @@ class TaskReader {
     TROCAR_TRY(const std::vector<config::TomlTable> rows, document_.tables("risks"));
     task.risks.clear();
     for (const config::TomlTable& row : rows) {
-      TROCAR_TRY_STATUS(row.check_keys({"tissue", "label", "margin_mm", "penalty", "optional"}));
+      TROCAR_TRY_STATUS(row.check_keys({"tissue", "label", "margin_mm", "penalty", "optional", "critical"}));
       RiskStructure risk;
       TROCAR_TRY(risk.tissue, row.string_or("tissue", ""));
       TROCAR_TRY(risk.label, row.string_or("label", ""));
@@ -103,6 +172,7 @@ class TaskReader {
       TROCAR_TRY(risk.margin_mm, row.number("margin_mm", {0.0, 50.0}));
       TROCAR_TRY(risk.penalty, row.number("penalty", {0.0, 100.0}));
       TROCAR_TRY(risk.is_optional, row.boolean_or("optional", false));
+      TROCAR_TRY(risk.is_critical, row.boolean_or("critical", false));
       task.risks.push_back(std::move(risk));
     }
     return {};
@@ -210,6 +280,7 @@ void write_risk(config::TomlWriter& writer, const RiskStructure& risk) {
   writer.set("margin_mm", risk.margin_mm);
   writer.set("penalty", risk.penalty);
   if (risk.is_optional) writer.set("optional", true);
+  if (risk.is_critical) writer.set("critical", true);
 }
 
 }  // namespace
@@ -257,6 +328,10 @@ std::string task_to_toml(const Task& task, const Task& base) {
   keys.set_changed("ultrasound_engine", task.ultrasound_engine, base.ultrasound_engine);
   keys.set_changed("expert_path", task.expert_path, base.expert_path);
   keys.set_changed("target_tissues", task.target_tissues, base.target_tissues);
+  keys.set_changed("needles", task.needles, base.needles);
+  if (task.guidance != base.guidance) keys.set("guidance", to_string(task.guidance));
+  if (task.confirmed_by != base.confirmed_by) keys.set("confirmed_by", to_string(task.confirmed_by));
+  if (task.phases.empty() && !base.phases.empty()) keys.set("phases", std::vector<std::string>());
   const bool has_same_risks = task.risks == base.risks;
   if (!has_same_risks && task.risks.empty()) keys.set("risks", std::vector<std::string>());
   keys.begin_table("path");
@@ -276,6 +351,16 @@ std::string task_to_toml(const Task& task, const Task& base) {
   keys.set_changed("angle_tolerance_deg", task.angle_tolerance_deg, base.angle_tolerance_deg);
   keys.set_changed("time_limit_s", task.time_limit_s, base.time_limit_s);
   keys.set_changed("dose_limit_gycm2", task.dose_limit_gycm2, base.dose_limit_gycm2);
+  keys.set_changed("margin_tolerance_mm", task.margin_tolerance_mm, base.margin_tolerance_mm);
+  keys.set_changed("pass_mark", task.pass_mark, base.pass_mark);
+  if (task.weights != base.weights) {
+    std::vector<config::TomlValue::Entry> weights;
+    for (const auto& [part, weight] : task.weights) weights.push_back({part, weight});
+    keys.set("weights", config::TomlValue(weights));
+  }
+  keys.begin_table("pain");
+  keys.set_changed("tissues", task.pain.tissues, base.pain.tissues);
+  keys.set_changed("needs_anaesthesia", task.pain.needs_anaesthesia, base.pain.needs_anaesthesia);
   keys.begin_table("exam");
   keys.set_changed("shows_needle", task.exam_shows_needle, base.exam_shows_needle);
   keys.begin_table("target");
@@ -286,6 +371,7 @@ std::string task_to_toml(const Task& task, const Task& base) {
     keys.set_point("centre_mm", task.entry_zone->centre_P);
     keys.set("radius_mm", task.entry_zone->radius_mm);
   }
+  if (task.phases != base.phases) write_phases(keys.writer(), task.phases);
   if (!has_same_risks)
     for (const RiskStructure& risk : task.risks) write_risk(keys.writer(), risk);
   return keys.writer().text();

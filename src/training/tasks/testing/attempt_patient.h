@@ -53,6 +53,8 @@ inline tasks::Task make_box_task() {
   tasks::Task task;
   task.organ = "liver";
   task.target_tissues = {"liver_lesion"};
+  task.weights = {{"target", 25.0}, {"core", 25.0},  {"risk", 20.0}, {"entry", 10.0},
+                  {"angle", 10.0},  {"length", 5.0}, {"time", 5.0}};
   task.risks = {{"vessel", "", 5.0, 20.0}, {"bone", "", 5.0, 15.0}};
   return task;
 }

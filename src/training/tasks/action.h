@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "geometry/vec.h"
+#include "tasks/substance.h"
+
+namespace trocar::tasks {
+
+/// What a trainee does besides moving tools.
+enum class ActionKind : std::uint8_t {
+  kAnaesthetise,   ///< Injects local anaesthetic at the tip; `amount` in ml.
+  kDrawStylet,     ///< Draws the stylet; the result is what flows.
+  kReplaceStylet,  ///< Puts it back.
+  kAspirate,       ///< Pulls at a syringe; the result is what comes.
+  kAdvanceWire,    ///< Advances a guide wire through the needle; `amount`: mm beyond the tip.
+  kHoldBreath,     ///< Asks the patient to hold the breath. Acts once patients breathe.
+  kBreathe,        ///< Ends it.
+};
+inline constexpr ActionKind kLastAction = ActionKind::kBreathe;
+/// Name in files: "draw_stylet" …
+const char* to_string(ActionKind kind) noexcept;
+std::optional<ActionKind> find_action(std::string_view name) noexcept;
+
+/// An action that a trainee or an operator asks for.
+struct ActionRequest {
+  ActionKind kind = ActionKind::kAspirate;
+  double amount = 0.0;  ///< See ActionKind.
+};
+
+/// An action during an attempt. Frame P.
+struct Action {
+  double time_s = 0.0;  ///< Session time.
+  ActionKind kind = ActionKind::kAspirate;
+  double amount = 0.0;
+  Return result;              ///< kDrawStylet and kAspirate only.
+  Vec3 tip_P = Vec3::Zero();  ///< Needle's tip at that time.
+  double depth_mm = 0.0;      ///< Of the tip below the skin.
+
+  bool operator==(const Action& other) const noexcept = default;
+};
+
+}  // namespace trocar::tasks
