@@ -11,6 +11,7 @@
 #include "core/result.h"
 #include "geometry/pose.h"
 #include "scoring/score.h"
+#include "tasks/action.h"
 #include "tasks/active_time.h"
 #include "tasks/xray_use.h"
 #include "telemetry/needle_shape.h"
@@ -85,6 +86,8 @@ class SessionWriter {
   Status append(const TransducerSample& sample);
   /// The same.
   Status append(const tasks::XrayUse& use);
+  /// The same.
+  Status append(const tasks::Action& action);
   /// The same. Kept in micrometres.
   Status append(const telemetry::NeedleShape& shape);
   /// Parameters of a sample that was appended already, in the order of ticks, one per tick.
@@ -117,6 +120,7 @@ struct Session {
   std::vector<telemetry::TickSample> samples;
   std::vector<TransducerSample> transducer;  ///< By time; empty: there was none, or an older program recorded it.
   std::vector<tasks::XrayUse> xray;          ///< By time, each until the next one; empty: no X-ray was used.
+  std::vector<tasks::Action> actions;        ///< By time; empty also in a session of an older program.
   /// By time, each until the next one; straight before the first. Empty: never bent, or an older program recorded it.
   std::vector<telemetry::NeedleShape> shapes;
   std::vector<SessionParameters> parameters;       ///< By tick; empty: an older program wrote the session.

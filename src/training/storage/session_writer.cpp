@@ -10,6 +10,7 @@
 #include "core/check.h"
 #include "core/files/atomic_file.h"
 #include "core/log.h"
+#include "storage/detail/action_table.h"
 #include "storage/detail/checksums.h"
 #include "storage/detail/columns.h"
 #include "storage/detail/database.h"
@@ -78,6 +79,7 @@ struct SessionWriter::Impl {
   } events;
   TimedBuffer transducer{transducer_table()};
   TimedBuffer xray{xray_table()};
+  TimedBuffer actions{action_table()};
   ShapeBuffer shapes;
   ParametersBuffer parameters;
 
@@ -188,7 +190,8 @@ void SessionWriter::Impl::buffer(const telemetry::TickSample& sample) {
 }
 
 Status SessionWriter::Impl::flush() {
-  if (tick_column.empty() && transducer.is_empty() && xray.is_empty() && shapes.is_empty() && parameters.is_empty())
+  if (tick_column.empty() && transducer.is_empty() && xray.is_empty() && actions.is_empty() && shapes.is_empty() &&
+      parameters.is_empty())
     return {};
   Status status = guarded("the session cannot be written", path, kWriteAdvice, [&] {
     database << "BEGIN IMMEDIATE";
@@ -199,6 +202,7 @@ Status SessionWriter::Impl::flush() {
     if (!events.tick.empty()) insert_events->execute(true);
     transducer.write(database);
     xray.write(database);
+    actions.write(database);
     shapes.write(database);
     parameters.write(database);
     database << "COMMIT";
@@ -220,6 +224,7 @@ void SessionWriter::Impl::clear() {
   events.text.clear();
   transducer.clear();
   xray.clear();
+  actions.clear();
   shapes.clear();
   parameters.clear();
 }
@@ -280,6 +285,13 @@ Status SessionWriter::append(const tasks::XrayUse& use) {
   return {};
 }
 
+Status SessionWriter::append(const tasks::Action& action) {
+  TROCAR_CHECK(impl_ != nullptr && !impl_->is_finished);
+  if (impl_->failure) return tl::unexpected(*impl_->failure);
+  add(impl_->actions, action);  // written with the next ticks
+  return {};
+}
+
 Status SessionWriter::append(const telemetry::NeedleShape& shape) {
   TROCAR_CHECK(impl_ != nullptr && !impl_->is_finished);
   if (impl_->failure) return tl::unexpected(*impl_->failure);
@@ -326,8 +338,8 @@ Status SessionWriter::finish(const scoring::Outcome& outcome, std::optional<std:
     impl_->database << "INSERT INTO outcome (score, target_reached, fired_tick, json) VALUES (:s, :t, :f, :j)",
         soci::use(score, score_indicator), soci::use(target_reached), soci::use(fired_tick, fired_indicator),
         soci::use(json);
-    for (const CheckedRows& rows :
-         {kTransducerRows, kXrayRows, kShapeRows, kParameterRows, kInterruptionRows, kOutcomeRows, kBlockRows})
+    for (const CheckedRows& rows : {kTransducerRows, kXrayRows, kActionRows, kShapeRows, kParameterRows,
+                                    kInterruptionRows, kOutcomeRows, kBlockRows})
       write_checksum(impl_->database, rows);
     impl_->ticks_hash = impl_->all_ticks.digest();
     write_ticks_hash(impl_->database, impl_->saved_ticks, impl_->ticks_hash);

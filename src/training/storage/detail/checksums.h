@@ -58,6 +58,7 @@ inline constexpr CheckedRows kNameRows{
     "SELECT 1, id, name FROM tissues UNION ALL SELECT 2, id, name FROM layers UNION ALL "
     "SELECT 3, id, name FROM labels UNION ALL SELECT 4, id, name FROM phases ORDER BY 1, 2"};
 inline constexpr CheckedRows kTransducerRows{"transducer", "SELECT * FROM transducer ORDER BY time_s"};
+inline constexpr CheckedRows kActionRows{"actions", "SELECT * FROM actions ORDER BY time_s"};
 inline constexpr CheckedRows kXrayRows{"xray", "SELECT * FROM xray ORDER BY time_s"};
 inline constexpr CheckedRows kShapeRows{"needle_shape", "SELECT * FROM needle_shape ORDER BY time_s"};
 inline constexpr CheckedRows kParameterRows{"parameters", "SELECT * FROM parameters ORDER BY tick"};

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "storage/detail/action_table.h"
 #include "storage/detail/checksums.h"
 #include "storage/detail/columns.h"
 #include "storage/detail/parameters_table.h"
@@ -72,6 +73,7 @@ std::vector<std::string> schema_statements() {
       "text TEXT NOT NULL, PRIMARY KEY (tick, slot)) WITHOUT ROWID");
   statements.push_back(schema_of(transducer_table()));
   statements.push_back(schema_of(xray_table()));
+  statements.push_back(schema_of(action_table()));
   statements.push_back(shape_schema());
   for (std::string& statement : checksum_schema()) statements.push_back(std::move(statement));
   for (std::string& statement : parameters_schema()) statements.push_back(std::move(statement));

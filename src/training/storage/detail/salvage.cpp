@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "storage/detail/action_table.h"
 #include "storage/detail/checksums.h"
 #include "storage/detail/info_table.h"
 #include "storage/detail/parameters_table.h"
@@ -23,6 +24,7 @@ constexpr const char* kNamesPart = "names of tissues, layers, labels or phases";
 constexpr const char* kBlocksPart = "list of tick blocks (table tick_blocks)";
 constexpr const char* kTransducerPart = "poses of the transducer";
 constexpr const char* kXrayPart = "use of the X-ray";
+constexpr const char* kActionsPart = "actions of the trainee";
 constexpr const char* kShapesPart = "shapes of the needle";
 constexpr const char* kParametersPart = "changes of parameters";
 constexpr const char* kInterruptionsPart = "interruptions";
@@ -45,6 +47,8 @@ class Salvage {
     const bool is_read = attempt(kTransducerPart, [&] { session_.transducer = read_transducer(database_.session()); });
     if (!is_read || !check(kTransducerPart, kTransducerRows, is_finished_)) session_.transducer.clear();
     read_added(kXrayPart, kXrayRows, session_.xray, [&] { session_.xray = read_xray(database_.session()); });
+    read_added(kActionsPart, kActionRows, session_.actions,
+               [&] { session_.actions = read_actions(database_.session()); });
     read_added(kShapesPart, kShapeRows, session_.shapes, [&] { session_.shapes = read_shapes(database_.session()); });
     read_parameters_and_interruptions();
     if (is_finished_ && session_.has_checksums)
@@ -58,7 +62,7 @@ class Salvage {
     for (const char* table : {"info", "tissues", "layers", "labels", "phases", "ticks", "events", "outcome"})
       database_.require_table(table);
     for (const char* table :
-         {"transducer", "xray", "needle_shape", "parameters", "interruptions", "tick_blocks", "checksums"})
+         {"transducer", "xray", "actions", "needle_shape", "parameters", "interruptions", "tick_blocks", "checksums"})
       if (database_.has_table(table)) database_.require_table(table);
   }
 

@@ -1,0 +1,57 @@
+#include <gtest/gtest.h>
+
+#include "storage/detail/database.h"
+#include "storage/session_file.h"
+#include "storage/test/example_session.h"
+
+namespace trocar::storage {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::vector<tasks::Action> kActions{
+    {0.1, tasks::ActionKind::kAnaesthetise, 5.0, {}, Vec3(1.0, 2.0, 3.0), 0.5},
+    {0.2, tasks::ActionKind::kDrawStylet, 0.0, {tasks::Substance::kCsf, 0.75}, Vec3(1.0, 40.0, 3.0), 40.25}};
+
+void write_session(const fs::path& path) {
+  auto writer = SessionWriter::create(path, testing::example_info());
+  ASSERT_TRUE(writer) << writer.error().text();
+  for (std::size_t n = 0; n < 50; ++n) ASSERT_TRUE(writer->append(testing::example_sample(10 * n)));
+  for (const tasks::Action& action : kActions) ASSERT_TRUE(writer->append(action));
+  ASSERT_TRUE(writer->finish(testing::example_outcome(), {}));
+}
+
+TEST(SessionActions, ComeBackAsTheyWere) {
+  const TemporaryFolder folder;
+  write_session(folder / "s.trocar");
+  const auto session = load_session(folder / "s.trocar");
+  ASSERT_TRUE(session) << session.error().text();
+  EXPECT_EQ(session->actions, kActions);
+}
+
+TEST(SessionActions, AreMissingInSessionsOfOlderProgramsAndReportedWhenChanged) {
+  const TemporaryFolder folder;
+  for (const char* statement :
+       {"DROP TABLE actions", "UPDATE actions SET kind = 99", "UPDATE actions SET share = 0.5"}) {
+    const bool is_old = statement[0] == 'D';
+    const fs::path path = folder / (std::string(statement + 15) + ".trocar");
+    write_session(path);
+    {
+      soci::session database;
+      detail::open_database(database, path);
+      if (is_old) database << "DELETE FROM checksums WHERE name = 'actions'";
+      database << statement;
+    }
+    const auto session = load_session(path);
+    if (is_old) {
+      ASSERT_TRUE(session) << session.error().text();
+      EXPECT_TRUE(session->actions.empty());
+    } else {
+      ASSERT_FALSE(session) << statement;
+      EXPECT_NE(session.error().text().find("actions of the trainee"), std::string::npos) << session.error().text();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace trocar::storage
