@@ -79,6 +79,8 @@ config::Json result_json(const Arguments& arguments, const cases::Case& the_case
                          {"depth_mm", puncture.depth_mm},
                          {"peak_n", puncture.peak_n}});
   }
+  config::Json hints = config::Json::array();
+  for (const scoring::Hint& hint : outcome.hints) hints.push_back(hint.text);
   config::Json json = {{"session", arguments.run.session.string()},
                        {"task", the_case.task.name},
                        {"patient", the_case.patient->name},
@@ -97,11 +99,13 @@ config::Json result_json(const Arguments& arguments, const cases::Case& the_case
                        {"score", outcome.is_scored() ? config::Json(outcome.score) : config::Json(nullptr)},
                        {"not_scored", outcome.is_scored() ? config::Json(nullptr) : config::Json(outcome.not_scored)},
                        {"target_reached", outcome.target_reached},
+                       {"passed", outcome.is_passed},
+                       {"fails", outcome.fails},
                        {"parts", storage::parts_json(outcome.parts)},
                        {"punctures", punctures},
                        {"risks_touched", outcome.risks_touched},
                        {"core", outcome.core ? storage::core_json(*outcome.core) : config::Json(nullptr)},
-                       {"hints", outcome.hints}};
+                       {"hints", hints}};
   if (const auto same = has_same_ticks(arguments.run, result)) json["same_ticks_as_session"] = *same;
   if (arguments.is_realtime) {
     json["ticks_missing"] = result.ticks_missing;
@@ -136,7 +140,8 @@ void print_result(const Arguments& arguments, const cases::Case& the_case, const
                core.organ_mm, core.vessel_mm, core.other_mm);
   }
   if (outcome.is_scored()) {
-    fmt::print("score {:.0f} of 100, target {}\n", outcome.score, outcome.target_reached ? "reached" : "missed");
+    fmt::print("score {:.0f} of 100, target {}: {}\n", outcome.score, outcome.target_reached ? "reached" : "missed",
+               outcome.is_passed ? "passed" : fmt::format("not passed ({})", fmt::join(outcome.fails, "; ")));
   } else {
     fmt::print("not scored: {}\n", outcome.not_scored);
   }
@@ -146,7 +151,7 @@ void print_result(const Arguments& arguments, const cases::Case& the_case, const
     fmt::print("structures at risk touched: {}\n", fmt::join(names, ", "));
   }
   for (const scoring::ScorePart& part : outcome.parts) print_part(part);
-  for (const std::string& hint : outcome.hints) fmt::print("hint: {}\n", hint);
+  for (const scoring::Hint& hint : outcome.hints) fmt::print("hint: {}\n", hint.text);
   if (const auto same = has_same_ticks(arguments.run, result))
     fmt::print("{}\n",
                *same ? "the ticks are those of the session, to the bit" : "the ticks differ from the session's");

@@ -153,7 +153,7 @@ void FeedbackPanel::show_outcome(const scoring::Outcome& outcome, const QString&
   verdict_->setText(verdict_of(outcome));
   show_parts(outcome.parts);
   QStringList hints;
-  for (const std::string& hint : outcome.hints) hints << QStringLiteral("•  ") + to_qt(hint);
+  for (const scoring::Hint& hint : outcome.hints) hints << QStringLiteral("•  ") + to_qt(hint.text);
   hints_->setText(hints.isEmpty() ? tr("Nothing to improve.") : hints.join(QStringLiteral("\n\n")));
   core_->setText(outcome.core ? core_text(*outcome.core) : QString());
   core_->setVisible(outcome.core.has_value());

@@ -29,7 +29,8 @@ scoring::Outcome long_outcome() {
   scoring::Outcome outcome;
   outcome.score = 42.0;
   for (int n = 0; n < 8; ++n) outcome.parts.push_back({"target", "Distance to the target", 12.0, "mm", 3.0, 25.0});
-  for (int n = 0; n < 6; ++n) outcome.hints.push_back("Bring the tip to the target, hold it still and fire the gun.");
+  for (int n = 0; n < 6; ++n)
+    outcome.hints.push_back({"Bring the tip to the target, hold it still and fire the gun.", {}});
   return outcome;
 }
 
@@ -72,7 +73,7 @@ TEST(FeedbackPanelTest, SaysWhyAnAttemptIsNotScored) {
   FeedbackPanel panel;
   scoring::Outcome outcome;
   outcome.not_scored = "the needle never touched the skin";
-  outcome.hints = {"The needle never reached the skin: bring its tip to the planned insertion point."};
+  outcome.hints = {{"The needle never reached the skin: bring its tip to the planned insertion point.", {}}};
   panel.show_outcome(outcome, {});
   EXPECT_EQ(panel.findChild<QLabel*>(QStringLiteral("verdict"))->text(),
             QStringLiteral("Not scored: the needle never touched the skin"));

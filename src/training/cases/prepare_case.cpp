@@ -64,6 +64,16 @@ const anatomy::NeedlePath* path_for(const Case& the_case, const anatomy::Virtual
 
 }  // namespace
 
+std::vector<tasks::PlannedPath> find_experts(const Case& the_case, const anatomy::VirtualPatient& patient) {
+  std::vector<tasks::PlannedPath> experts{the_case.plan};
+  if (the_case.needle.is_biopsy) return experts;
+  for (const anatomy::NeedlePath& path : patient.paths) {
+    const bool is_ours = path.name.starts_with(the_case.task.name + ": ") && path.name != the_case.task.expert_path;
+    if (is_ours) experts.push_back(tasks::assess_path(the_case.task, patient, the_case.needle, path.line_P).path);
+  }
+  return experts;
+}
+
 bool has_own_task(const std::string& patient_folder) {
   std::error_code ignored;
   return !patient_folder.empty() && fs::is_regular_file(fs::path(patient_folder) / tasks::kOwnTaskFile, ignored);
@@ -86,6 +96,7 @@ Result<Case> load_tables(const CaseOptions& options) {
   TROCAR_TRY_STATUS(find_task(made, options, data / "tasks"));
   const std::string needle = options.needle.empty() ? made.task.needle : options.needle;
   TROCAR_TRY(made.needle, tasks::load_needle(data / "needles.toml", needle));
+  TROCAR_TRY(made.substances, tasks::load_substances(data / "substances.toml"));
   const bool is_own = options.tissue_file.empty() && options.profile.empty() && has_own_tissues(options.patient_folder);
   const fs::path tissues = options.tissue_file.empty() ? data / "tissues.toml" : fs::path(options.tissue_file);
   TROCAR_TRY(made.tissues,
@@ -112,6 +123,7 @@ Result<Case> prepare_case(std::shared_ptr<const anatomy::VirtualPatient> patient
     TROCAR_TRY(const auto paths, tasks::plan_paths(made.task, *patient, made.needle, {1, options.seed}, progress));
     made.plan = paths.front();
   }
+  made.experts = find_experts(made, *patient);
   log_info("expert path: {:.1f} mm, {:.1f} mm of it in the organ, {:.1f} mm to spare from {}", made.plan.length_mm,
            made.plan.organ_path_mm, made.plan.spare_margin_mm, made.plan.nearest_risk);
   made.patient = std::move(patient);

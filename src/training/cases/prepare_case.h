@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "core/result.h"
 #include "tasks/needle.h"
 #include "tasks/plan.h"
+#include "tasks/substance.h"
 #include "tasks/task.h"
 
 namespace trocar::cases {
@@ -33,12 +35,22 @@ struct Case {
   std::string task_toml;  ///< Text of the task's file; empty: a task of the data folder.
   tasks::Needle needle;
   anatomy::TissueTable tissues;
-  tasks::PlannedPath plan;
+  tasks::SubstanceTable substances;
+  tasks::PlannedPath plan;                  ///< The expert path that is shown.
+  std::vector<tasks::PlannedPath> experts;  ///< The plan, then others; an attempt is compared with the nearest.
   bool is_parenchymal = false;
+
+  /// `experts`; in a case made without them the plan alone.
+  std::span<const tasks::PlannedPath> expert_paths() const noexcept {
+    return experts.empty() ? std::span<const tasks::PlannedPath>(&plan, 1) : experts;
+  }
 };
 
 /// Task, needle and tissues from the data folder, without a patient: detects their errors early.
 Result<Case> load_tables(const CaseOptions& options);
+
+/// The plan of a case and the other paths that the patient brings for its task. A biopsy needle has only its plan.
+std::vector<tasks::PlannedPath> find_experts(const Case& the_case, const anatomy::VirtualPatient& patient);
 
 /// True if a patient has its own task: a folder with task.toml in it.
 bool has_own_task(const std::string& patient_folder);

@@ -53,17 +53,17 @@ class RiskFinder {
   RiskFinder(const tasks::Task& task, const anatomy::VirtualPatient& patient)
       : patient_(patient), labels_(task, patient) {}
 
-  void test(const Vec3& p_P, double depth_mm) {
+  void test(const Vec3& p_P, double depth_mm, double time_s) {
     const std::uint8_t id = volume::sample_nearest<std::uint8_t>(patient_.labels, p_P, 0);
     const tasks::RiskStructure* risk = labels_.risk(id);
     if (risk == nullptr || is_found_[id]) return;
     is_found_[id] = true;
-    found.push_back({patient_.label_table.find(id)->name, depth_mm, risk->penalty});
+    found.push_back({patient_.label_table.find(id)->name, depth_mm, risk->penalty, time_s});
   }
   /// Tests from p_P to q_P, without p_P.
-  void test_way(const Vec3& p_P, const Vec3& q_P, double depth_mm) {
+  void test_way(const Vec3& p_P, const Vec3& q_P, double depth_mm, double time_s) {
     const int steps = std::max(1, static_cast<int>(std::ceil(std::min((q_P - p_P).norm(), 1000.0) / kStep_mm)));
-    for (int step = 1; step <= steps; ++step) test(p_P + (q_P - p_P) * step / steps, depth_mm);
+    for (int step = 1; step <= steps; ++step) test(p_P + (q_P - p_P) * step / steps, depth_mm, time_s);
   }
 
   std::vector<RiskTouch> found;
@@ -84,13 +84,13 @@ std::vector<RiskTouch> find_risks(const tasks::Task& task, const anatomy::Virtua
       before = nullptr;
       continue;
     }
-    finder.test_way(before != nullptr ? before->tip_mm : sample.tip_mm, sample.tip_mm, sample.depth_mm);
+    finder.test_way(before != nullptr ? before->tip_mm : sample.tip_mm, sample.tip_mm, sample.depth_mm, sample.time_s);
     before = &sample;
   }
   const telemetry::TickSample& last = samples[end];
   const int steps = static_cast<int>(std::min(last.depth_mm, 1000.0) / kStep_mm);
   for (int step = steps; step >= 1; --step)  // from the skin down: the first contact of the shaft comes first
-    finder.test(last.tip_mm - step * kStep_mm * last.axis, last.depth_mm - step * kStep_mm);
+    finder.test(last.tip_mm - step * kStep_mm * last.axis, last.depth_mm - step * kStep_mm, last.time_s);
   return std::move(finder.found);
 }
 
@@ -159,6 +159,8 @@ AttemptMetrics measure_attempt(const tasks::Task& task, const anatomy::VirtualPa
   const telemetry::TickSample& entered = samples[*entry.sample];
   metrics.entry_offset_P = skin_crossing(patient, entered.tip_mm, entered.axis) - plan.line_P.a;
   const telemetry::TickSample& last = samples[*end];
+  metrics.entry_s = entered.time_s;
+  metrics.end_s = last.time_s;
   metrics.axis_P = last.axis;
   metrics.angle_deg = angle_between_rad(last.axis, plan.line_P.b - plan.line_P.a) * 180.0 / std::numbers::pi;
   metrics.tip_P = last.tip_mm;

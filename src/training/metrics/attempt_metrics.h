@@ -19,6 +19,7 @@ struct RiskTouch {
   std::string label;
   double depth_mm = 0.0;  ///< Depth of the tip below the skin, at the first touch.
   double penalty = 0.0;   ///< Points lost.
+  double time_s = 0.0;    ///< Of the first touch.
 };
 
 /// Measures of an attempt, computed from its samples alone. Offsets are "is minus planned", in P.
@@ -35,6 +36,8 @@ struct AttemptMetrics {
   double travel_mm = 0.0;   ///< Inward path length of the tip inside the body, including repeated pushes after a pull
                             ///< back; motion to and fro of less than 1 mm is tremor and not counted.
   double deepest_mm = 0.0;  ///< Depth of the tip below the skin, the largest up to the end.
+  double entry_s = 0.0;     ///< Time of the last entry before the end.
+  double end_s = 0.0;       ///< Time of the end.
   double time_s = 0.0;      ///< From the first contact with the skin to the end, without interruptions.
   std::vector<RiskTouch> risks;  ///< Touched by tip and shaft, during the whole attempt, one entry per label.
 };

@@ -7,6 +7,7 @@
 
 #include "anatomy/patient.h"
 #include "anatomy/tissue/tissue_table.h"
+#include "tasks/action.h"
 #include "tasks/active_time.h"
 #include "tasks/needle.h"
 #include "tasks/plan.h"
@@ -37,35 +38,48 @@ struct BiopsyCore {
 };
 
 struct ScorePart {
-  std::string name;   ///< "target", "entry", "angle", "risk", "length", "time", "core", "dose", "deduction".
+  std::string name;   ///< One of tasks::kScoreParts.
   std::string title;  ///< Display text.
   double value = 0.0;
   std::string unit;
-  double points = 0.0;      ///< 0..max_points; negative for a deduction.
-  double max_points = 0.0;  ///< 0 for a deduction.
+  double points = 0.0;  ///< 0..max_points.
+  double max_points = 0.0;
 };
-/// True for the part that contains penalties beyond the points of the part "risk". It exists only if there are such
-/// penalties.
+/// True for a part of a session of an older program that contains penalties beyond the points of the part "risk".
 inline bool is_deduction(const ScorePart& part) noexcept {
   return part.max_points <= 0.0;
 }
 
-/// Result of an attempt. A deviation d (target, entry, angle) with tolerance t is worth max_points/(1 + (d/t)^2); an
-/// expense e (length, time) with limit l is worth max_points*(1 - (e/l)^2), 0 from l on; docs/physics.md, S1. Smaller
-/// is never worse. The parts' points add up to the score, within 0..100. An entry inside the task's entry zone is worth
-/// all points; outside, its deviation counts from the zone's edge. An attempt that never pierced the skin, and a biopsy
-/// without a shot, have no end position and are not scored. The points of each part are teaching policy [assumed].
+/// Advice, with the moment of the attempt to look at.
+struct Hint {
+  std::string text;
+  std::optional<double> at_s;  ///< Session time; empty: the whole attempt.
+
+  bool operator==(const Hint&) const = default;
+};
+
+/// Result of an attempt. A deviation d (target, entry, angle, access, comfort) with tolerance t is worth
+/// max_points/(1 + (d/t)^2); an expense e (length, time, dose) with limit l is worth max_points*(1 - (e/l)^2), 0 from l
+/// on; docs/physics.md, S1. Smaller is never worse. No part is negative; the parts' points add up to the score, within
+/// 0..100. A part that cannot be judged (no core without a biopsy needle, no visibility without a transducer) is left
+/// out, and the others count more in proportion. The weights are the task's. An attempt that never pierced the skin, and
+/// a biopsy without a shot, have no end position and are not scored.
 struct Outcome {
   /// Reason why it is not scored; then the score is 0 and there are no parts. Empty: it is scored.
   std::string not_scored;
   double score = 0.0;  ///< 0..100.
-  /// The tip ended within the target tolerance, for a biopsy with a core taken; or within twice the tolerance with a
-  /// core that holds at least half of the lesion tissue that was possible. Touched risks do not change it.
+  /// The tip ended within the target tolerance or in the target, for a biopsy with a core taken; or within twice the
+  /// tolerance with a core that holds at least half of the lesion tissue that was possible. Where something has to come
+  /// back, it did. Touched risks do not change it.
   bool target_reached = false;
+  bool is_passed = false;          ///< `fails` is empty and it is scored.
+  std::vector<std::string> fails;  ///< Reasons why it is not passed: "the lung was touched".
   std::vector<ScorePart> parts;
-  std::vector<std::string> hints;  ///< Advice for improvement, most important first.
+  std::vector<Hint> hints;  ///< Advice for improvement, most important first.
   std::optional<BiopsyCore> core;
   std::vector<std::string> risks_touched;
+  std::size_t expert = 0;       ///< The expert path with which it is compared: the nearest one.
+  std::size_t pain_events = 0;  ///< See tasks::PainRules.
 
   bool is_scored() const noexcept { return not_scored.empty(); }
 };
@@ -75,11 +89,21 @@ struct Outcome {
 BiopsyCore take_core(const tasks::Task& task, const anatomy::VirtualPatient& patient, const tasks::Needle& needle,
                      const Vec3& tip_P, const Vec3& axis_P);
 
-/// Scores a whole attempt. `fired` is the index of the sample at which the biopsy gun was fired. Time in an
-/// interruption is not counted. `xray`: use of X-ray at the end of the attempt.
-Outcome score_attempt(const tasks::Task& task, const anatomy::VirtualPatient& patient,
-                      const anatomy::TissueTable& tissues, const tasks::Needle& needle, const tasks::PlannedPath& plan,
-                      std::span<const telemetry::TickSample> samples, std::optional<std::size_t> fired,
-                      std::span<const tasks::Interruption> interruptions = {}, const tasks::XrayUse& xray = {});
+/// All data of an attempt that its score depends on. Everything outlives the call.
+struct AttemptData {
+  const tasks::Task& task;
+  const anatomy::VirtualPatient& patient;
+  const anatomy::TissueTable& tissues;
+  const tasks::Needle& needle;
+  std::span<const tasks::PlannedPath> experts;  ///< At least one; the nearest one is compared with.
+  std::span<const telemetry::TickSample> samples;
+  std::optional<std::size_t> fired = {};  ///< Sample at which the biopsy gun was fired.
+  std::span<const tasks::Interruption> interruptions = {};  ///< Not counted.
+  std::span<const tasks::Action> actions = {};
+  tasks::XrayUse xray = {};                        ///< At the end of the attempt.
+  std::optional<double> tip_visible_share = {};    ///< Of the advance, 0..1; empty: no transducer.
+};
+/// Scores a whole attempt.
+Outcome score_attempt(const AttemptData& attempt);
 
 }  // namespace trocar::scoring

@@ -33,4 +33,39 @@ std::optional<AttemptEvent> describe_event(const storage::SessionInfo& info, con
   return told;
 }
 
+AttemptEvent describe_action(const tasks::SubstanceTable& substances, const tasks::Action& action) {
+  AttemptEvent told{action.time_s, action.depth_mm, telemetry::EventKind::kNone, "action", {}};
+  const auto look = [&](bool is_aspirated) {
+    const auto found = substances.looks.find(action.result.substance);
+    if (found == substances.looks.end()) return std::string(tasks::substance_words(action.result.substance));
+    std::string words = is_aspirated ? found->second.aspirated : found->second.flows;
+    const bool is_slow = action.result.substance != tasks::Substance::kNothing && action.result.is_slow();
+    return words + (is_slow ? ", slowly: the bevel is only partly in it" : "");
+  };
+  switch (action.kind) {
+    case tasks::ActionKind::kAnaesthetise:
+      told.text = fmt::format("local anaesthetic: {:.0f}\u00a0ml", action.amount);
+      break;
+    case tasks::ActionKind::kDrawStylet:
+      told.text = "stylet drawn: " + look(false);
+      break;
+    case tasks::ActionKind::kReplaceStylet:
+      told.text = "stylet put back";
+      break;
+    case tasks::ActionKind::kAspirate:
+      told.text = "aspirated: " + look(true);
+      break;
+    case tasks::ActionKind::kAdvanceWire:
+      told.text = fmt::format("guide wire {:.0f}\u00a0mm beyond the tip", action.amount);
+      break;
+    case tasks::ActionKind::kHoldBreath:
+      told.text = "the patient holds the breath";
+      break;
+    case tasks::ActionKind::kBreathe:
+      told.text = "the patient breathes again";
+      break;
+  }
+  return told;
+}
+
 }  // namespace trocar::attempt

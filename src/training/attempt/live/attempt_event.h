@@ -12,4 +12,7 @@ namespace trocar::attempt {
 std::optional<AttemptEvent> describe_event(const storage::SessionInfo& info, const telemetry::TickSample& sample,
                                            const telemetry::TickEvent& event);
 
+/// The event of an action: "the stylet was drawn: bile drips from the hub".
+AttemptEvent describe_action(const tasks::SubstanceTable& substances, const tasks::Action& action);
+
 }  // namespace trocar::attempt

@@ -62,6 +62,11 @@ void AttemptExchange::note_xray(const tasks::XrayUse& use) {
   requests_.xray.push_back(use);
 }
 
+void AttemptExchange::act(const tasks::ActionRequest& request) {
+  const std::lock_guard lock(mutex_);
+  requests_.actions.push_back(request);
+}
+
 void AttemptExchange::stop_forces() {
   const std::lock_guard lock(mutex_);
   requests_.stopped = true;

@@ -14,6 +14,7 @@
 #include "core/result.h"
 #include "geometry/pose.h"
 #include "link/messages.h"
+#include "tasks/action.h"
 #include "tasks/operator.h"
 #include "tasks/xray_use.h"
 
@@ -35,7 +36,8 @@ struct AttemptRequests {
   std::optional<bool> stopped;
   std::vector<link::SetParameters> parameters;  ///< Messages, in order.
   std::unique_ptr<tasks::Operator> performer;
-  std::vector<tasks::XrayUse> xray;  ///< In order.
+  std::vector<tasks::XrayUse> xray;           ///< In order.
+  std::vector<tasks::ActionRequest> actions;  ///< In order.
   bool begins = false, fires = false, finishes = false, has_drawn = false;
 };
 
@@ -78,6 +80,8 @@ class AttemptExchange {
   void resume_forces();
   /// Use of the fluoroscope, which the recording keeps; its time is set by the attempt.
   void note_xray(const tasks::XrayUse& use);
+  /// An action besides moving tools; it happens at the newest tick. Ignored before the attempt.
+  void act(const tasks::ActionRequest& request);
   /// Sends parameters to the servers while they run; the insertion continues. The loaded table is the case's. The
   /// view's message is the server's reply.
   void set_parameters(link::SetParameters parameters);

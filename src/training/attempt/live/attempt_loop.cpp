@@ -121,6 +121,14 @@ Status AttemptLoop::take_requests() {
     use.time_s = live_->time_s();
     TROCAR_TRY_STATUS(record_->append(use));
   }
+  for (const tasks::ActionRequest& request : requests.actions)
+    if (record_) TROCAR_TRY_STATUS(act(request));
+  return {};
+}
+
+Status AttemptLoop::act(const tasks::ActionRequest& request) {
+  TROCAR_TRY([[maybe_unused]] const auto action, record_->act(request));
+  note_actions();
   return {};
 }
 

@@ -76,6 +76,7 @@ class AttemptLoop {
   void prepare();
   Status step();
   Status take_requests();
+  Status act(const tasks::ActionRequest& request);
   void lead(const AttemptRequests& requests);
   void stop_or_resume(bool is_stopped);
   void poll_server(ServerSupervisor& server);
@@ -92,6 +93,7 @@ class AttemptLoop {
   Status note_shape(const link::NumberedSample& numbered);
   void note_tick(const telemetry::TickSample& sample);
   void note_shot();
+  void note_actions();
   void send_scheduled_parameters();
   Status step_transducer();
 
@@ -135,6 +137,7 @@ class AttemptLoop {
   std::string disk_banner_, cut_short_;
   std::vector<AttemptEvent> events_;
   std::shared_ptr<const GunShot> shot_;
+  std::size_t told_actions_ = 0;  ///< Number of the record's actions that are among the events.
   std::vector<std::string> notes_;
   std::string message_, progress_, recovered_;
   int recoveries_ = 0;

@@ -75,6 +75,7 @@ Status AttemptLoop::record(const std::vector<link::NumberedSample>& samples) {
     if (!goes_on) break;
   }
   note_shot();
+  note_actions();
   command_ = live_->command();
   last_needle_ = live_->last();
   return {};
@@ -104,6 +105,12 @@ void AttemptLoop::note_shot() {
   // The composition of the core is displayed beside its picture.
   events_.push_back({shot_->time_s, shot_->depth_mm, telemetry::EventKind::kNone, "shot",
                      fmt::format("the gun was fired at {:.0f}\u00a0mm", shot_->depth_mm)});
+}
+
+void AttemptLoop::note_actions() {
+  const std::vector<tasks::Action>& actions = record_->actions();
+  for (; told_actions_ < actions.size(); ++told_actions_)
+    if (options_.has_view) events_.push_back(describe_action(case_.the_case->substances, actions[told_actions_]));
 }
 
 /// Parameters of a replayed session, sent when as many ticks were made as before them. The server replies from which

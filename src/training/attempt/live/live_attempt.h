@@ -55,6 +55,7 @@ class LiveAttempt : private AttemptExchange {
   const AttemptOptions& options() const noexcept { return options_; }
 
   // See AttemptExchange.
+  using AttemptExchange::act;
   using AttemptExchange::begin;
   using AttemptExchange::clamp;
   using AttemptExchange::finish;

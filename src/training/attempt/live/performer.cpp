@@ -58,7 +58,8 @@ Result<Performer> make_replayer(const cases::Case& the_case, const RunOptions& o
 }
 
 Result<Performer> make_named(const cases::Case& the_case, const RunOptions& options) {
-  const tasks::OperatorCase what{the_case.plan.line_P, the_case.needle.is_biopsy, options.seed};
+  const tasks::OperatorCase what{the_case.plan.line_P, the_case.needle.is_biopsy, options.seed,
+                                 tasks::actions_for(the_case.task, the_case.needle)};
   const std::string& force_model = the_case.task.force_model;
   TROCAR_TRY(const OperatorChoice choice, parse_operator(options.operator_name));
   switch (choice.kind) {

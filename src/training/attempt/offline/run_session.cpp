@@ -137,6 +137,15 @@ class RecordedTicks {
     const auto found = std::ranges::find(session_->interruptions, time_s(tick), &tasks::Interruption::to_s);
     return found == session_->interruptions.end() ? nullptr : &*found;
   }
+  /// Actions of the replayed session up to a time, which were not appended yet.
+  Status append_actions(double time_s, AttemptRecord& record) const {
+    if (session_ == nullptr) return {};
+    for (std::size_t n = record.actions().size(); n < session_->actions.size(); ++n) {
+      if (session_->actions[n].time_s > time_s) break;
+      TROCAR_TRY_STATUS(record.append(session_->actions[n]));
+    }
+    return {};
+  }
   std::size_t most_ticks() const noexcept {
     constexpr double kMostTicks = 1e9;
     if (session_ != nullptr) return session_->samples.size() + 1;
@@ -182,6 +191,7 @@ Result<std::size_t> perform(const Performer& performer, SceneSchedule& scenes, d
     view.last = output.sample;
     record.note(command);
     TROCAR_TRY_STATUS(record.append(output.sample));
+    TROCAR_TRY_STATUS(recorded.append_actions(view.time_s, record));
     if (view.time_s >= next_shape_s) {
       telemetry::NeedleShape shape = haptics::needle_shape(state.needle, scene, true);
       shape.time_s = view.time_s;

@@ -83,11 +83,33 @@ Result<AttemptRecord> AttemptRecord::create(const cases::Case& the_case, const R
 
 void AttemptRecord::note(const tasks::HandCommand& command) noexcept {
   if (command.has_fired && !fired_) fired_ = samples_.size();
+  wanted_action_ = command.action;
 }
 
 Status AttemptRecord::append(const telemetry::TickSample& sample) {
   samples_.push_back(sample);
-  return written(writer_.append(sample));
+  TROCAR_TRY_STATUS(written(writer_.append(sample)));
+  if (!wanted_action_) return {};
+  TROCAR_TRY([[maybe_unused]] const auto action, act(*std::exchange(wanted_action_, std::nullopt)));
+  return {};
+}
+
+Result<std::optional<tasks::Action>> AttemptRecord::act(const tasks::ActionRequest& request) {
+  constexpr double kLater_s = 1e-6;  // two actions of one tick have an order
+  if (samples_.empty()) return std::optional<tasks::Action>();
+  const telemetry::TickSample& sample = samples_.back();
+  tasks::Action action{sample.time_s, request.kind, request.amount, {}, sample.tip_mm, sample.depth_mm};
+  if (!actions_.empty()) action.time_s = std::max(action.time_s, actions_.back().time_s + kLater_s);
+  if (request.kind == tasks::ActionKind::kDrawStylet || request.kind == tasks::ActionKind::kAspirate)
+    action.result = tasks::what_returns(the_case_->substances, *the_case_->patient, the_case_->needle, sample.tip_mm,
+                                        sample.axis, request.kind == tasks::ActionKind::kAspirate);
+  TROCAR_TRY_STATUS(append(action));
+  return std::optional<tasks::Action>(action);
+}
+
+Status AttemptRecord::append(const tasks::Action& action) {
+  actions_.push_back(action);
+  return written(writer_.append(action));
 }
 
 Status AttemptRecord::written(Status status) {
@@ -164,8 +186,16 @@ Status AttemptRecord::append(const tasks::XrayUse& use) {
 
 RunResult AttemptRecord::score() {
   RunResult result;
-  result.outcome = scoring::score_attempt(the_case_->task, *the_case_->patient, the_case_->tissues, the_case_->needle,
-                                          the_case_->plan, samples_, fired_, interruptions_, xray_);
+  result.outcome = scoring::score_attempt({.task = the_case_->task,
+                                           .patient = *the_case_->patient,
+                                           .tissues = the_case_->tissues,
+                                           .needle = the_case_->needle,
+                                           .experts = the_case_->expert_paths(),
+                                           .samples = samples_,
+                                           .fired = fired_,
+                                           .interruptions = interruptions_,
+                                           .actions = actions_,
+                                           .xray = xray_});
   result.punctures = find_punctures(info_, samples_);
   result.force_model = info_.force_model;
   result.ticks = samples_.size();
@@ -198,6 +228,7 @@ RunResult AttemptRecord::finish_unsaved() {
   session.info = std::move(info_);
   session.samples = std::move(samples_);
   session.transducer = std::move(transducer_);
+  session.actions = std::move(actions_);
   session.shapes = std::move(shapes_);
   session.parameters = std::move(parameter_rows_);
   session.interruptions = interruptions_;

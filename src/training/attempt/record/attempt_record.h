@@ -49,9 +49,14 @@ class AttemptRecord {
   static Result<AttemptRecord> create(const cases::Case& the_case, const RecordOptions& options,
                                       const AttemptFacts& facts);
 
-  /// Notes the operator's action before the next tick: a shot, if any.
+  /// Notes what the operator does with the next tick: a shot or another action, if any.
   void note(const tasks::HandCommand& command) noexcept;
   Status append(const telemetry::TickSample& sample);
+  /// Does an action at the last sample: what comes back depends on where the tip is. Empty before the first sample.
+  Result<std::optional<tasks::Action>> act(const tasks::ActionRequest& request);
+  /// Appends a recorded action as it was; for the replay of a session.
+  Status append(const tasks::Action& action);
+  const std::vector<tasks::Action>& actions() const noexcept { return actions_; }
   /// Notes the parameters of the last appended sample; they are recorded when they change.
   Status note_parameters(const SceneParameters& parameters);
   /// The same for a server's scene, by its number. A later call records the parameters of a scene that is not known
@@ -103,6 +108,8 @@ class AttemptRecord {
   std::vector<telemetry::NeedleShape> shapes_;         ///< Kept shapes.
   std::vector<storage::SessionParameters> parameter_rows_;
   tasks::XrayUse xray_;  ///< The last one.
+  std::vector<tasks::Action> actions_;
+  std::optional<tasks::ActionRequest> wanted_action_;  ///< With the next sample.
   std::optional<Error> write_failure_;
   SceneParameters parameters_;                   ///< Last recorded parameters.
   std::optional<anatomy::TissueTable> tissues_;  ///< Table of parameters_; none: nothing was recorded yet.

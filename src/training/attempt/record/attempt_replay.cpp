@@ -37,9 +37,16 @@ Result<AttemptReplay> AttemptReplay::of(storage::Session session, std::shared_pt
   const bool was_cut_off = !session.outcome.has_value();
   if (was_cut_off) {
     const cases::Case& the_case = open->the_case;
-    session.outcome = scoring::score_attempt(the_case.task, *the_case.patient, the_case.tissues, the_case.needle,
-                                             the_case.plan, session.samples, session.fired, session.interruptions,
-                                             session.xray.empty() ? tasks::XrayUse{} : session.xray.back());
+    session.outcome = scoring::score_attempt({.task = the_case.task,
+                                              .patient = *the_case.patient,
+                                              .tissues = the_case.tissues,
+                                              .needle = the_case.needle,
+                                              .experts = the_case.expert_paths(),
+                                              .samples = session.samples,
+                                              .fired = session.fired,
+                                              .interruptions = session.interruptions,
+                                              .actions = session.actions,
+                                              .xray = session.xray.empty() ? tasks::XrayUse{} : session.xray.back()});
   }
   return AttemptReplay(std::move(session), std::move(open), was_cut_off);
 }

@@ -79,6 +79,8 @@ Result<cases::Case> restore_case(std::shared_ptr<const anatomy::VirtualPatient> 
   TROCAR_TRY(restored.needle, tasks::load_needle(data / "needles.toml", info.needle));
   TROCAR_TRY(restored.tissues, anatomy::parse_tissue_table(first.tissue_table_toml, "the session's tissue table"));
   restored.plan = tasks::assess_path(restored.task, *patient, restored.needle, info.plan_P.line_P).path;
+  restored.experts = cases::find_experts(restored, *patient);
+  TROCAR_TRY(restored.substances, tasks::load_substances(data / "substances.toml"));
   restored.is_parenchymal = info.is_parenchymal;
   restored.patient = std::move(patient);
   return restored;

@@ -194,7 +194,7 @@ std::string result_section(const storage::Session& session) {
 std::string hints_section(const storage::Session& session) {
   if (!session.outcome || session.outcome->hints.empty()) return {};
   std::string out = "<section class=\"together\"><h2>Hints</h2><ol class=\"hints\">";
-  for (const std::string& hint : session.outcome->hints) out += "<li>" + escape(hint) + "</li>";
+  for (const scoring::Hint& hint : session.outcome->hints) out += "<li>" + escape(hint.text) + "</li>";
   return out + "</ol></section>";
 }
 

@@ -79,7 +79,7 @@ inline storage::Session example_attempt() {
   outcome.score = 83.2;
   outcome.target_reached = true;
   outcome.parts = {{"target", "Distance to the target", 0.4, "mm", 24, 25}, {"risk", "Risks", 1, "", 0, 20}};
-  outcome.hints = {"Hold the needle flatter."};
+  outcome.hints = {{"Hold the needle flatter.", {}}};
   outcome.core = scoring::BiopsyCore{};
   outcome.core->pieces = {{"liver", "liver", 0.0, 8.0}, {"lesion", "liver_lesion", 8.0, 19.0}};
   outcome.core->target_mm = 11.0;

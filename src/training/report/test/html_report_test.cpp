@@ -126,7 +126,7 @@ TEST(HtmlReport, EscapesWhatPeopleWrote) {
   session.info.tissue_table_toml = session.info.needle = session.info.started_utc = session.info.patient_source = evil;
   for (std::string& name : session.info.layer_names) name = evil;
   for (std::string& name : session.info.tissue_names) name = evil;
-  session.outcome->hints = {evil};
+  session.outcome->hints = {{evil, {}}};
   session.outcome->risks_touched = session.outcome->core->risks_in_throw = {evil};
   for (scoring::CorePiece& piece : session.outcome->core->pieces) piece.label = piece.tissue = evil;
   for (scoring::ScorePart& part : session.outcome->parts) part.title = part.unit = evil;

@@ -15,9 +15,20 @@ constexpr double kMatters = 0.1;          // minimum lost share of a part's poin
 constexpr double kNameable = 0.5;         // rounds to 1 mm or degree
 constexpr double kRepeatedTravel = 0.25;  // share of the excess travel for a hint about retractions
 
-struct Hint {
+/// Advice, and the points that following it would bring.
+struct Advice {
   double lost_points;
   std::string text;
+  std::optional<double> at_s;
+};
+
+/// What advice is made of.
+struct HintSubject {
+  const Judgement& judged;
+  const tasks::Task& task;
+  const tasks::Needle& needle;
+  const metrics::AttemptMetrics& measured;
+  std::span<const ScorePart> parts;
 };
 
 const ScorePart* find_part(std::span<const ScorePart> parts, std::string_view name) {
@@ -33,7 +44,10 @@ double lost(const HintSubject& subject, std::string_view name) {
 }
 
 std::string target_name(const HintSubject& subject) {
-  return subject.is_parenchymal ? anatomy::structure_words(subject.task.organ) + " tissue" : "lesion";
+  if (subject.task.target_tissues.empty() || subject.judged.is_parenchymal)
+    return anatomy::structure_words(subject.task.organ) + " tissue";
+  if (subject.task.target_tissues.front() == "csf") return "dural sac";
+  return subject.needle.is_biopsy ? "lesion" : anatomy::structure_words(subject.task.target_tissues.front());
 }
 
 /// "5 mm short of it and 4 mm too far towards the feet", with the advice.
@@ -61,125 +75,240 @@ Correction correct(const Vec3& offset_P, const Vec3& path_direction_P) {
   return {fmt::format("{}", fmt::join(deviations, ", ")), fmt::format("{}", fmt::join(advice, ", "))};
 }
 
-void add_target_hint(const HintSubject& subject, std::vector<Hint>& hints) {
-  const Vec3 path_P = subject.plan.line_P.direction();
-  const double lost_core = lost(subject, "core");
-  const double lost_target = lost(subject, "target");
-  if (subject.needle.is_biopsy && !subject.core) {
-    const Correction correction = correct(subject.metrics.target_offset_P, path_P);
+void add_core_hint(const HintSubject& subject, double points, std::vector<Advice>& advice) {
+  const Judgement& judged = subject.judged;
+  const BiopsyCore& core = *judged.core;
+  if (core.pieces.empty()) {  // deeper insertion would be wrong advice
+    advice.push_back({points,
+                      "No tissue was taken: the stylet hit bone. Choose an insertion point and a direction that pass "
+                      "beside it.",
+                      subject.measured.end_s});
+    return;
+  }
+  const double middle_mm = subject.needle.notch_middle_mm();
+  const Vec3 path_P = judged.expert.line_P.direction();
+  const Vec3 notch_offset_P = core.tip_P + middle_mm * core.axis_P - (judged.expert.line_P.b + middle_mm * path_P);
+  const Correction correction = correct(notch_offset_P, path_P);
+  const std::string what = core.target_mm > 0.0
+                               ? fmt::format("The core holds only {:.0f} mm of {} of {:.0f} mm possible",
+                                             core.target_mm, target_name(subject), judged.possible_core_mm)
+                               : fmt::format("The core missed the {}", target_name(subject));
+  const std::string why = correction.deviation.empty() ? "."
+                                                       : fmt::format(": the notch lay {}; {} before you fire.",
+                                                                     correction.deviation, correction.advice);
+  advice.push_back({points, what + why, subject.measured.end_s});
+}
+
+void add_target_advice(const HintSubject& subject, std::vector<Advice>& advice) {
+  const Judgement& judged = subject.judged;
+  const double lost_core = lost(subject, "core"), lost_target = lost(subject, "target");
+  const Vec3 path_P = judged.expert.line_P.direction();
+  if (subject.needle.is_biopsy && !judged.core) {
+    const Correction correction = correct(subject.measured.target_offset_P, path_P);
     const std::string where = lost_target > 0.0 ? fmt::format(" The tip stopped {}.", correction.deviation) : "";
-    hints.push_back({lost_core + lost_target,
-                     "No core was taken: bring the tip to the target, hold it still and fire the gun." + where});
-  } else if (subject.core && subject.core->pieces.empty()) {  // deeper insertion would be wrong advice
-    hints.push_back(
-        {lost_core + lost_target,
-         "No tissue was taken: the stylet hit bone. Choose an insertion point and a direction that pass beside "
-         "it."});
-  } else if (lost_core > 0.0) {
-    const BiopsyCore& core = *subject.core;
-    const double middle_mm = subject.needle.throw_mm - subject.needle.dead_space_mm - subject.needle.notch_mm / 2.0;
-    const Vec3 notch_offset_P = core.tip_P + middle_mm * core.axis_P - (subject.plan.line_P.b + middle_mm * path_P);
-    const Correction correction = correct(notch_offset_P, path_P);
-    const std::string what = core.target_mm > 0.0
-                                 ? fmt::format("The core holds only {:.0f} mm of {} of {:.0f} mm possible",
-                                               core.target_mm, target_name(subject), subject.possible_core_mm)
-                                 : fmt::format("The core missed the {}", target_name(subject));
-    const std::string why = correction.deviation.empty() ? "."
-                                                         : fmt::format(": the notch lay {}; {} before you fire.",
-                                                                       correction.deviation, correction.advice);
-    hints.push_back({lost_core + lost_target, what + why});
+    advice.push_back({lost_core + lost_target,
+                      "No core was taken: bring the tip to the target, hold it still and fire the gun." + where,
+                      subject.measured.end_s});
+  } else if (judged.core && (lost_core > 0.0 || judged.core->pieces.empty())) {
+    add_core_hint(subject, lost_core + lost_target, advice);
   } else if (lost_target > 0.0) {
-    const Correction correction = correct(subject.metrics.target_offset_P, path_P);
-    hints.push_back(
-        {lost_target, fmt::format("The tip missed the target by {:.0f} mm, {}: {}.",
-                                  subject.metrics.target_offset_P.norm(), correction.deviation, correction.advice)});
+    const Correction correction = correct(subject.measured.target_offset_P, path_P);
+    advice.push_back({lost_target,
+                      fmt::format("The tip missed the {} by {:.0f} mm, {}: {}.", target_name(subject), judged.target_mm,
+                                  correction.deviation, correction.advice),
+                      subject.measured.end_s});
   }
 }
 
-void add_path_hints(const HintSubject& subject, std::vector<Hint>& hints) {
-  const metrics::AttemptMetrics& metrics = subject.metrics;
+void add_confirmation_advice(const HintSubject& subject, std::vector<Advice>& advice) {
+  const double points = lost(subject, "confirmation");
+  if (points <= 0.0) return;
+  const char* const wanted = tasks::substance_words(subject.task.confirmed_by);
+  const bool has_stylet = subject.needle.stylet_diameter_mm > 0.0;
+  const auto looked = std::find_if(
+      subject.judged.attempt.actions.begin(), subject.judged.attempt.actions.end(), [](const tasks::Action& action) {
+        return action.kind == tasks::ActionKind::kDrawStylet || action.kind == tasks::ActionKind::kAspirate;
+      });
+  if (subject.judged.confirmed_s) {
+    advice.push_back(
+        {points,
+         fmt::format("The {} came slowly: only a part of the bevel was in it. Turn the needle or advance it "
+                     "by a millimetre or two.",
+                     wanted),
+         subject.judged.confirmed_s});
+  } else if (looked == subject.judged.attempt.actions.end()) {
+    advice.push_back({points,
+                      fmt::format("Nothing proved the place: {} at the target and look whether {} comes.",
+                                  has_stylet ? "draw the stylet" : "aspirate", wanted),
+                      subject.measured.end_s});
+  } else {
+    advice.push_back({points,
+                      fmt::format("{} came back: the needle was in the wrong place. Put the stylet back, correct the "
+                                  "tip and look again.",
+                                  looked->result.substance == tasks::Substance::kNothing
+                                      ? fmt::format("No {}", wanted)
+                                      : fmt::format("Not {} but {}", wanted,
+                                                    tasks::substance_words(looked->result.substance))),
+                      looked->time_s});
+  }
+}
+
+void add_path_advice(const HintSubject& subject, std::vector<Advice>& advice) {
+  const metrics::AttemptMetrics& measured = subject.measured;
   if (const double points = lost(subject, "entry"); points > 0.0)
-    hints.push_back({points, fmt::format("The insertion point was {}: move the needle {} before you insert it.",
-                                         anatomy::direction_words(metrics.entry_offset_P, " mm too far"),
-                                         anatomy::direction_words(-metrics.entry_offset_P, " mm"))});
+    advice.push_back({points,
+                      fmt::format("The insertion point was {}: move the needle {} before you insert it.",
+                                  anatomy::direction_words(measured.entry_offset_P, " mm too far"),
+                                  anatomy::direction_words(-measured.entry_offset_P, " mm")),
+                      measured.entry_s});
   if (const double points = lost(subject, "angle"); points > 0.0) {
-    const Vec3 tilt_deg = metrics.angle_deg * (metrics.axis_P - subject.plan.line_P.direction()).normalized();
-    hints.push_back({points, fmt::format("The needle pointed {}: tilt it so that its tip points {}.",
-                                         anatomy::direction_words(tilt_deg, "° too far"),
-                                         anatomy::direction_words(-tilt_deg, "° further"))});
+    const Vec3 tilt_deg =
+        measured.angle_deg * (measured.axis_P - subject.judged.expert.line_P.direction()).normalized();
+    advice.push_back(
+        {points,
+         fmt::format("The needle pointed {}: tilt it so that its tip points {}.",
+                     anatomy::direction_words(tilt_deg, "° too far"), anatomy::direction_words(-tilt_deg, "° further")),
+         measured.entry_s});
   }
 }
 
-void add_risk_hints(const HintSubject& subject, std::vector<Hint>& hints) {
-  for (const metrics::RiskTouch& touch : subject.metrics.risks)
-    hints.push_back({touch.penalty, fmt::format("The needle touched a structure at risk, {}, {:.0f} mm below the skin: "
-                                                "find it in the image and keep clear of it.",
-                                                anatomy::structure_words(touch.label), touch.depth_mm)});
-  for (const metrics::RiskTouch& touch : subject.stylet_risks)
-    hints.push_back(
-        {touch.penalty, fmt::format("The stylet shot into a structure at risk, {}: look {:.0f} mm beyond the "
-                                    "tip before you fire.",
-                                    anatomy::structure_words(touch.label), subject.needle.throw_mm)});
+/// Advice about the way: the worst fault of it.
+void add_access_advice(const HintSubject& subject, std::vector<Advice>& advice) {
+  const double points = lost(subject, "access");
+  if (points <= 0.0) return;
+  const AccessJudgement& access = subject.judged.access;
+  std::string text;
+  if (access.missing_margin_mm > kNameable)
+    text = fmt::format(
+        "The way passed the {} at {:.0f} mm; it needs {:.0f} mm. Choose another entry or angle before you "
+        "insert the needle.",
+        anatomy::structure_words(access.margin_label), std::max(0.0, access.margin_mm - access.missing_margin_mm),
+        access.margin_mm);
+  else if (access.outside_zone_mm > kNameable)
+    text = fmt::format("The entry was {:.0f} mm outside of the permitted zone: mark the zone by its landmarks first.",
+                       access.outside_zone_mm);
+  else if (access.excess_angle_deg > kNameable)
+    text = fmt::format("The needle met the skin too flat, by {:.0f}°: hold it steeper.", access.excess_angle_deg);
+  else
+    text = fmt::format(
+        "The needle passed too little {}, by {:.0f} mm: choose a longer way through it, so that the "
+        "channel closes.",
+        anatomy::structure_words(subject.task.organ), access.missing_organ_mm);
+  advice.push_back({points, std::move(text), subject.measured.entry_s});
 }
 
-/// Travel beyond the path's length is either repeated after a retraction or beyond the target.
-std::string travel_hint(const metrics::AttemptMetrics& metrics, double path_mm) {
-  const double repeated_mm = metrics.travel_mm - metrics.deepest_mm;
-  if (repeated_mm < kRepeatedTravel * (metrics.travel_mm - path_mm))
+void add_risk_advice(const HintSubject& subject, std::vector<Advice>& advice) {
+  for (const metrics::RiskTouch& touch : subject.measured.risks)
+    advice.push_back({touch.penalty,
+                      fmt::format("The needle touched a structure at risk, {}, {:.0f} mm below the skin: "
+                                  "find it in the image and keep clear of it.",
+                                  anatomy::structure_words(touch.label), touch.depth_mm),
+                      touch.time_s});
+  for (const metrics::RiskTouch& touch : subject.judged.stylet_risks)
+    advice.push_back({touch.penalty,
+                      fmt::format("The stylet shot into a structure at risk, {}: look {:.0f} mm beyond the "
+                                  "tip before you fire.",
+                                  anatomy::structure_words(touch.label), subject.needle.throw_mm),
+                      subject.measured.end_s});
+}
+
+void add_comfort_advice(const HintSubject& subject, std::vector<Advice>& advice) {
+  const double points = lost(subject, "comfort");
+  const std::vector<PainEvent>& pain = subject.judged.pain;
+  if (points <= 0.0 || pain.empty()) return;
+  const PainEvent& first = pain.front();
+  advice.push_back({points,
+                    first.label.empty()
+                        ? std::string("The skin was pierced without local anaesthetic: give it first, "
+                                      "and wait until it acts.")
+                        : fmt::format("The tip met the {} at {:.0f} mm, which hurts: pull back a little "
+                                      "and correct the direction, do not push on.",
+                                      anatomy::structure_words(first.label), first.depth_mm),
+                    first.time_s});
+}
+
+/// Travel beyond the path's length is either repeated after a retraction or beyond the target. Empty: the advice about
+/// the target says it already.
+std::string travel_hint(const HintSubject& subject, bool is_depth_told) {
+  const metrics::AttemptMetrics& measured = subject.measured;
+  const double path_mm = subject.judged.expert.line_P.length_mm();
+  const double repeated_mm = measured.travel_mm - measured.deepest_mm;
+  if (repeated_mm < kRepeatedTravel * (measured.travel_mm - path_mm)) {
+    if (is_depth_told) return {};
     return fmt::format(
         "The needle went {:.0f} mm deep for a path of {:.0f} mm: follow the tip in the image and stop at "
         "the target.",
-        metrics.deepest_mm, path_mm);
-  const std::string entries = metrics.entries > 1 ? fmt::format(" and pierced the skin {} times", metrics.entries) : "";
+        measured.deepest_mm, path_mm);
+  }
+  const std::string entries =
+      measured.entries > 1 ? fmt::format(" and pierced the skin {} times", measured.entries) : "";
   return fmt::format(
       "The needle travelled {:.0f} mm inside the body{} for a path of {:.0f} mm, {:.0f} mm of it after "
-      "pulling back: set its direction before you insert it and pull back less.",
-      metrics.travel_mm, entries, path_mm, repeated_mm);
+      "pulling back: set its direction before you insert it, so that it need not be corrected inside.",
+      measured.travel_mm, entries, path_mm, repeated_mm);
 }
 
-void add_economy_hints(const HintSubject& subject, std::vector<Hint>& hints) {
-  const metrics::AttemptMetrics& metrics = subject.metrics;
+void add_economy_advice(const HintSubject& subject, std::vector<Advice>& advice) {
+  const bool is_depth_told = lost(subject, "target") > 0.0 || lost(subject, "core") > 0.0;
   if (const double points = lost(subject, "length"); points > 0.0)
-    hints.push_back({points, travel_hint(metrics, subject.plan.line_P.length_mm())});
-  const bool is_finished = subject.core || !subject.needle.is_biopsy;
+    if (std::string text = travel_hint(subject, is_depth_told); !text.empty())
+      advice.push_back({points, std::move(text), {}});
+  const bool is_finished = subject.judged.core || !subject.needle.is_biopsy;
   if (const double points = lost(subject, "time"); points > 0.0 && is_finished)
-    hints.push_back({points, fmt::format("It took {:.0f} s from the skin to the target: plan the path first, then go "
-                                         "on without stopping.",
-                                         metrics.time_s)});
-  const auto dose = std::find_if(subject.parts.begin(), subject.parts.end(),
-                                 [](const ScorePart& part) { return part.name == "dose"; });
-  if (const double points = lost(subject, "dose"); points > 0.0 && dose != subject.parts.end())
-    hints.push_back({points, fmt::format("The dose-area product was {:.1f} Gy cm²: press the pedal briefly, with few "
-                                         "pulses a second, collimate, and work with the last image.",
-                                         dose->value)});
+    advice.push_back({points,
+                      fmt::format("It took {:.0f} s from the skin to the target: plan the path first, then go "
+                                  "on without stopping.",
+                                  subject.measured.time_s),
+                      {}});
+  if (const double points = lost(subject, "dose"); points > 0.0)
+    advice.push_back({points,
+                      fmt::format("The dose-area product was {:.1f} Gy cm²: press the pedal briefly, with few "
+                                  "pulses a second, collimate, and work with the last image.",
+                                  find_part(subject.parts, "dose")->value),
+                      {}});
+  if (const double points = lost(subject, "visibility"); points > 0.0)
+    advice.push_back({points,
+                      fmt::format("The tip was in the image during {:.0f} % of the advance: stop when you lose it, and "
+                                  "move the transducer until you see it again.",
+                                  find_part(subject.parts, "visibility")->value),
+                      {}});
 }
 
 std::string praise(const HintSubject& subject) {
-  const std::string core =
-      subject.core ? fmt::format(", {:.0f} mm of {} in the core", subject.core->target_mm, target_name(subject)) : "";
-  return fmt::format("Well done: the tip came within {:.1f} mm of the target{}, and nothing at risk was touched.",
-                     subject.metrics.target_offset_P.norm(), core);
+  const auto& core = subject.judged.core;
+  const std::string taken =
+      core ? fmt::format(", {:.0f} mm of {} in the core", core->target_mm, target_name(subject)) : "";
+  const std::string where = subject.judged.target_mm < kNameable
+                                ? fmt::format("the tip was in the {}", target_name(subject))
+                                : fmt::format("the tip came within {:.1f} mm of the target", subject.judged.target_mm);
+  return fmt::format(
+      "Well done: {}{}, and nothing at risk was touched.",
+      core ? fmt::format("the tip came within {:.1f} mm of the target", subject.judged.target_mm) : where, taken);
 }
 
 }  // namespace
 
-std::vector<std::string> make_hints(const HintSubject& subject) {
-  if (!subject.metrics.has_touched_skin)
-    return {"The needle never reached the skin: bring its tip to the planned insertion point."};
-  if (!subject.metrics.has_entered)
-    return {"The skin was not pierced: push steadily along the planned direction until it gives way."};
+std::vector<Hint> make_hints(const Judgement& judged, std::span<const ScorePart> parts) {
+  if (!judged.measured.has_touched_skin)
+    return {{"The needle never reached the skin: bring its tip to the planned insertion point.", {}}};
+  if (!judged.measured.has_entered)
+    return {{"The skin was not pierced: push steadily along the planned direction until it gives way.", {}}};
 
+  const HintSubject subject{judged, judged.attempt.task, judged.attempt.needle, judged.measured, parts};
+  std::vector<Advice> advice;
+  add_risk_advice(subject, advice);
+  add_target_advice(subject, advice);
+  add_confirmation_advice(subject, advice);
+  add_access_advice(subject, advice);
+  add_path_advice(subject, advice);
+  add_comfort_advice(subject, advice);
+  add_economy_advice(subject, advice);
+  std::stable_sort(advice.begin(), advice.end(),
+                   [](const Advice& a, const Advice& b) { return a.lost_points > b.lost_points; });
   std::vector<Hint> hints;
-  add_risk_hints(subject, hints);
-  add_target_hint(subject, hints);
-  add_path_hints(subject, hints);
-  add_economy_hints(subject, hints);
-  std::stable_sort(hints.begin(), hints.end(),
-                   [](const Hint& a, const Hint& b) { return a.lost_points > b.lost_points; });
-  std::vector<std::string> texts;
-  for (Hint& hint : hints) texts.push_back(std::move(hint.text));
-  if (texts.empty()) texts.push_back(praise(subject));
-  return texts;
+  for (Advice& one : advice) hints.push_back({std::move(one.text), one.at_s});
+  if (hints.empty()) hints.push_back({praise(subject), {}});
+  return hints;
 }
 
 }  // namespace trocar::scoring

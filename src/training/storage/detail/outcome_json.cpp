@@ -79,13 +79,35 @@ scoring::BiopsyCore read_core(const config::Json& object, bool& is_valid) {
   return core;
 }
 
+/// What sessions of older programs lack.
+void read_judgement(const config::Json& object, scoring::Outcome& outcome, bool& is_valid) {
+  Reader reader(object, is_valid);
+  outcome.is_passed = reader.boolean("passed");
+  outcome.fails = reader.texts("fails");
+  outcome.expert = static_cast<std::size_t>(std::clamp(reader.number("expert"), 0.0, 1e6));
+  outcome.pain_events = static_cast<std::size_t>(std::clamp(reader.number("pain_events"), 0.0, 1e9));
+  const config::Json& times = reader.array("hint_times_s");
+  for (std::size_t n = 0; n < std::min(times.size(), outcome.hints.size()); ++n)
+    if (times[n].is_number()) outcome.hints[n].at_s = times[n].get<double>();
+}
+
 }  // namespace
 
 std::string outcome_to_json(const scoring::Outcome& outcome) {
+  config::Json hints = config::Json::array(), hint_times = config::Json::array();
+  for (const scoring::Hint& hint : outcome.hints) {
+    hints.push_back(hint.text);
+    hint_times.push_back(hint.at_s ? config::Json(*hint.at_s) : config::Json(nullptr));
+  }
   config::Json object{{"score", outcome.score},
                       {"target_reached", outcome.target_reached},
                       {"parts", parts_json(outcome.parts)},
-                      {"hints", outcome.hints},
+                      {"passed", outcome.is_passed},
+                      {"fails", outcome.fails},
+                      {"hints", std::move(hints)},
+                      {"hint_times_s", std::move(hint_times)},
+                      {"expert", outcome.expert},
+                      {"pain_events", outcome.pain_events},
                       {"risks_touched", outcome.risks_touched}};
   if (!outcome.is_scored()) object["not_scored"] = outcome.not_scored;
   if (outcome.core) object["core"] = core_json(*outcome.core);
@@ -104,7 +126,8 @@ Result<scoring::Outcome> outcome_from_json(std::string_view text, const std::str
     outcome.parts.push_back({part.text("name"), part.text("title"), part.number("value"), part.text("unit"),
                              part.number("points"), part.number("max_points")});
   }
-  outcome.hints = reader.texts("hints");
+  for (std::string& text : reader.texts("hints")) outcome.hints.push_back({std::move(text), {}});
+  if (object.contains("passed")) read_judgement(object, outcome, is_valid);
   outcome.risks_touched = reader.texts("risks_touched");
   if (object.contains("not_scored")) outcome.not_scored = reader.text("not_scored");
   if (const auto core = object.find("core"); core != object.end()) outcome.core = read_core(*core, is_valid);

@@ -69,7 +69,7 @@ inline scoring::Outcome example_outcome() {
   outcome.score = 100.0 / 3.0;
   outcome.target_reached = true;
   outcome.parts = {{"target", "Distance to the target", 0.1, "mm", 29.5, 30.0}, {"time", "Time", 12.25, "s", 10, 10}};
-  outcome.hints = {"Hold the needle nearer to 30°", "\"quoted\" \\ \n second line"};
+  outcome.hints = {{"Hold the needle nearer to 30°", 1.25}, {"\"quoted\" \\ \n second line", {}}};
   scoring::BiopsyCore core;
   core.tip_P = {0.1, 0.2, 0.3};
   core.axis_P = {0, 0, -1};

@@ -1,0 +1,178 @@
+#include "scoring/detail/judgement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "scoring/core_sample.h"
+#include "tasks/assess_path.h"
+#include "tasks/task_labels.h"
+#include "volume/sampling.h"
+
+namespace trocar::scoring {
+namespace {
+
+constexpr double kSameContact_s = 1.0;    // contacts with one structure within this time hurt once [assumed]
+constexpr double kShortestPath_mm = 3.0;  // that has a direction and margins
+
+/// Place that has to be at the target: the middle of the notch after the shot, or the tip.
+Vec3 reach_P(const tasks::Needle& needle, const Vec3& tip_P, const Vec3& axis_P) {
+  return tip_P + needle.notch_middle_mm() * axis_P;
+}
+
+/// The expert path whose entry and end are nearest to those of the attempt.
+std::size_t nearest_expert(const AttemptData& attempt, const metrics::AttemptMetrics& first) {
+  const Vec3 entry_P = attempt.experts.front().line_P.a + first.entry_offset_P;
+  const auto distance_mm = [&](const tasks::PlannedPath& path) {
+    return (path.line_P.a - entry_P).norm() + (path.line_P.b - first.tip_P).norm();
+  };
+  const auto nearest = std::min_element(attempt.experts.begin(), attempt.experts.end(),
+                                        [&](const auto& a, const auto& b) { return distance_mm(a) < distance_mm(b); });
+  return static_cast<std::size_t>(nearest - attempt.experts.begin());
+}
+
+double find_target_mm(const Judgement& judged) {
+  const AttemptData& attempt = judged.attempt;
+  const metrics::AttemptMetrics& metrics = judged.measured;
+  if (!attempt.needle.is_biopsy) {
+    const anatomy::Label* const label = anatomy::find_label(attempt.patient, metrics.tip_P);
+    const bool is_long_target = attempt.task.target_step_mm > 0.0;
+    if (is_long_target && judged.confirmed_s) return 0.0;  // nerve roots float in the fluid
+    if (is_long_target && label != nullptr && tasks::is_target(attempt.task, *label)) return 0.0;
+  }
+  double nearest_mm = HUGE_VAL;
+  for (const tasks::PlannedPath& path : attempt.experts)
+    nearest_mm = std::min(nearest_mm, (reach_P(attempt.needle, metrics.tip_P, metrics.axis_P) -
+                                       reach_P(attempt.needle, path.line_P.b, path.line_P.direction()))
+                                          .norm());
+  return nearest_mm;
+}
+
+double find_entry_mm(const AttemptData& attempt, const tasks::PlannedPath& expert,
+                     const metrics::AttemptMetrics& metrics) {
+  const Vec3 entry_P = expert.line_P.a + metrics.entry_offset_P;
+  return attempt.task.entry_zone ? attempt.task.entry_zone->distance_outside_mm(entry_P)
+                                 : metrics.entry_offset_P.norm();
+}
+
+AccessJudgement judge_access(const Judgement& judged) {
+  const AttemptData& attempt = judged.attempt;
+  const Vec3 entry_P = judged.expert.line_P.a + judged.measured.entry_offset_P;
+  AccessJudgement access;
+  const Segment way_P{entry_P, judged.measured.tip_P};
+  if (!judged.measured.has_entered || way_P.length_mm() < kShortestPath_mm) return access;
+  const tasks::PathAssessment found = tasks::assess_path(attempt.task, attempt.patient, attempt.needle, way_P);
+  for (const tasks::PathFinding& finding : found.findings) {
+    const anatomy::Label* const label = attempt.patient.label_table.find(finding.label);
+    const tasks::RiskStructure* const risk = label != nullptr ? tasks::find_risk(attempt.task, *label) : nullptr;
+    if (risk == nullptr) continue;
+    const double missing_mm = risk->margin_mm - finding.clearance_mm;
+    if (missing_mm <= access.missing_margin_mm) continue;
+    access.missing_margin_mm = missing_mm;
+    access.margin_label = finding.label;
+    access.margin_mm = risk->margin_mm;
+  }
+  access.excess_angle_deg = std::max(0.0, found.entry_angle_deg - attempt.task.max_entry_angle_deg);
+  if (attempt.task.entry_zone) access.outside_zone_mm = attempt.task.entry_zone->distance_outside_mm(entry_P);
+  access.missing_organ_mm = std::max(0.0, attempt.task.min_organ_path_mm - found.path.organ_path_mm);
+  return access;
+}
+
+/// Structures touched by the stylet but not by the needle.
+std::vector<metrics::RiskTouch> find_stylet_risks(const Judgement& judged, const tasks::TaskLabels& labels) {
+  std::vector<metrics::RiskTouch> touches;
+  if (!judged.core) return touches;
+  for (const std::string& name : judged.core->risks_in_throw) {
+    const bool is_known = std::any_of(judged.measured.risks.begin(), judged.measured.risks.end(),
+                                      [&](const metrics::RiskTouch& touch) { return touch.label == name; });
+    const anatomy::Label* const label = judged.attempt.patient.label_table.find(name);
+    if (!is_known) touches.push_back({name, 0.0, labels.risk(label->id)->penalty});
+  }
+  return touches;
+}
+
+/// The skin without anaesthetic, and each new contact of the tip with a tissue that hurts.
+std::vector<PainEvent> find_pain(const AttemptData& attempt, bool has_entered) {
+  std::vector<PainEvent> events;
+  const std::vector<std::string>& tissues = attempt.task.pain.tissues;
+  double anaesthetic_s = HUGE_VAL;
+  for (const tasks::Action& action : attempt.actions)
+    if (action.kind == tasks::ActionKind::kAnaesthetise) anaesthetic_s = std::min(anaesthetic_s, action.time_s);
+  bool was_inside = false;
+  const anatomy::Label* touched = nullptr;
+  double left_s = -HUGE_VAL;
+  for (const telemetry::TickSample& sample : attempt.samples) {
+    if (!sample.tip_mm.allFinite() || !std::isfinite(sample.depth_mm) || !std::isfinite(sample.time_s)) continue;
+    const bool is_inside = sample.depth_mm > 0.0;
+    const bool is_entry = is_inside && !std::exchange(was_inside, is_inside);
+    if (is_entry && has_entered && attempt.task.pain.needs_anaesthesia && anaesthetic_s > sample.time_s &&
+        events.empty())
+      events.push_back({sample.time_s, 0.0, {}});
+    if (!is_inside) continue;
+    const anatomy::Label* const label = anatomy::find_label(attempt.patient, sample.tip_mm);
+    const bool hurts = label != nullptr && std::find(tissues.begin(), tissues.end(), label->tissue) != tissues.end();
+    if (hurts && (label != touched || sample.time_s - left_s > kSameContact_s)) {
+      events.push_back({sample.time_s, sample.depth_mm, label->name});
+      touched = label;
+    }
+    if (hurts) left_s = sample.time_s;
+  }
+  return events;
+}
+
+std::optional<double> find_confirmation(const AttemptData& attempt) {
+  if (attempt.task.confirmed_by == tasks::Substance::kNothing || attempt.samples.empty()) return std::nullopt;
+  for (const tasks::Action& action : attempt.actions)
+    if (action.result.substance == attempt.task.confirmed_by && action.result.share > 0.0) return action.time_s;
+  return std::nullopt;
+}
+
+/// The sample at which the needle has reached its end: the shot, or that at which the right substance came back. Empty:
+/// the deepest one.
+std::optional<std::size_t> find_end(const AttemptData& attempt, std::optional<double> confirmed_s) {
+  if (attempt.needle.is_biopsy || !confirmed_s) return attempt.fired;
+  const auto found = std::find_if(attempt.samples.begin(), attempt.samples.end(),
+                                  [&](const telemetry::TickSample& sample) { return sample.time_s >= *confirmed_s; });
+  if (found == attempt.samples.end()) return attempt.samples.size() - 1;
+  return static_cast<std::size_t>(found - attempt.samples.begin());
+}
+
+}  // namespace
+
+Judgement judge(const AttemptData& attempt, std::size_t& expert) {
+  const std::optional<double> confirmed_s = find_confirmation(attempt);
+  const std::optional<std::size_t> end = find_end(attempt, confirmed_s);
+  const auto measure = [&](const tasks::PlannedPath& path) {
+    return metrics::measure_attempt(attempt.task, attempt.patient, attempt.tissues, path, attempt.samples, end,
+                                    attempt.interruptions);
+  };
+  metrics::AttemptMetrics metrics = measure(attempt.experts.front());
+  expert = metrics.has_entered ? nearest_expert(attempt, metrics) : 0;
+  if (expert > 0) metrics = measure(attempt.experts[expert]);
+  Judgement judged{attempt, attempt.experts[expert], std::move(metrics)};
+  const tasks::TaskLabels labels(attempt.task, attempt.patient);
+  judged.confirmed_s = confirmed_s;
+  judged.is_parenchymal = labels.is_parenchymal();
+  if (attempt.needle.is_biopsy) {
+    const Segment& plan_P = judged.expert.line_P;
+    judged.possible_core_mm =
+        take_core(attempt.task, attempt.patient, attempt.needle, plan_P.b, plan_P.direction()).target_mm;
+    // A plan without a core is no reference.
+    if (judged.possible_core_mm <= 0.0) judged.possible_core_mm = attempt.needle.notch_mm;
+    if (attempt.fired && judged.measured.has_entered)
+      judged.core =
+          take_core(attempt.task, attempt.patient, attempt.needle, judged.measured.tip_P, judged.measured.axis_P);
+  }
+  if (judged.measured.has_entered) {
+    judged.target_mm = find_target_mm(judged);
+    judged.entry_mm = find_entry_mm(attempt, judged.expert, judged.measured);
+    judged.access = judge_access(judged);
+  }
+  judged.stylet_risks = find_stylet_risks(judged, labels);
+  for (const auto* touches : {&judged.measured.risks, &judged.stylet_risks})
+    for (const metrics::RiskTouch& touch : *touches) judged.risk_penalty += touch.penalty;
+  judged.pain = find_pain(attempt, judged.measured.has_entered);
+  return judged;
+}
+
+}  // namespace trocar::scoring

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "metrics/attempt_metrics.h"
+#include "scoring/score.h"
+
+namespace trocar::scoring {
+
+/// Way of the needle as it was, measured like a planned path.
+struct AccessJudgement {
+  double missing_margin_mm = 0.0;  ///< Largest part of a margin that is missing; the whole margin: crossed.
+  std::string margin_label;        ///< The structure with the missing margin; empty: none.
+  double margin_mm = 0.0;          ///< The margin that it needs.
+  double excess_angle_deg = 0.0;   ///< Beyond the largest angle to the skin's normal.
+  double outside_zone_mm = 0.0;    ///< Of the entry, outside the task's entry zone.
+  double missing_organ_mm = 0.0;   ///< Of the organ that has to be passed.
+};
+
+/// Something that hurt the patient.
+struct PainEvent {
+  double time_s = 0.0;
+  double depth_mm = 0.0;
+  std::string label;  ///< The structure; empty: the skin without local anaesthetic.
+};
+
+/// Everything that parts and hints are made of.
+struct Judgement {
+  const AttemptData& attempt;
+  const tasks::PlannedPath& expert;  ///< The nearest one.
+  metrics::AttemptMetrics measured;  ///< Against this path.
+  bool is_parenchymal = false;
+  double target_mm = 0.0;  ///< Distance to the target: of the notch for a biopsy needle, 0 in the target.
+  double entry_mm = 0.0;   ///< Of the entry, from the zone's edge or the expert's.
+  AccessJudgement access;
+  std::optional<BiopsyCore> core;
+  double possible_core_mm = 0.0;                 ///< Length of target tissue in a core at the planned place.
+  std::vector<metrics::RiskTouch> stylet_risks;  ///< Structures that only the stylet touched.
+  double risk_penalty = 0.0;
+  std::vector<PainEvent> pain;
+  std::optional<double> confirmed_s;  ///< Time at which the right substance came back.
+};
+
+/// Judges an attempt against its nearest expert path.
+Judgement judge(const AttemptData& attempt, std::size_t& expert);
+
+}  // namespace trocar::scoring
