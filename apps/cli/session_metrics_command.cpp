@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "cases/image_plane.h"
 #include "commands.h"
 #include "io/markups_file.h"
 #include "io/patient/open_patient.h"
@@ -45,15 +46,7 @@ bool is_database(const std::string& file) {
 Result<metrics::ImagePlane> load_plane(const MetricsArguments& arguments) {
   TROCAR_TRY(const auto file, find_data("transducers.toml"));
   TROCAR_TRY(const ultrasound::Transducer transducer, ultrasound::load_transducer(file, arguments.transducer));
-  metrics::ImagePlane plane;
-  plane.depth_mm = arguments.depth_mm > 0.0 ? arguments.depth_mm : transducer.depth_mm;
-  const bool is_linear = transducer.kind == ultrasound::TransducerKind::kLinear;
-  plane.field_of_view_rad = is_linear ? 0.0 : transducer.field_of_view_rad;
-  plane.radius_mm = is_linear || transducer.kind == ultrasound::TransducerKind::kPhased ? 0.0 : transducer.radius_mm;
-  plane.width_mm = transducer.face_width_mm();
-  plane.elevation_mm = transducer.elevation_aperture_mm;
-  plane.elevation_focus_mm = transducer.elevation_focus_mm;
-  return plane;
+  return cases::image_plane(transducer, arguments.depth_mm > 0.0 ? arguments.depth_mm : transducer.depth_mm);
 }
 
 /// The task named by the user: one of the data folder, or a file.

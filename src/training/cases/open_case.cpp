@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "cases/image_plane.h"
 #include "cases/needle_geometry.h"
 #include "cases/transducer_start.h"
 #include "core/files/data_dir.h"
@@ -223,6 +224,10 @@ BackgroundJob<std::vector<CurvePoint>> predict_force_in_background(std::shared_p
                                                  force_model = std::move(force_model)](const Progress&) {
     return predict_force(open_case->the_case, overrides, force_model);
   });
+}
+
+metrics::ImagePlane OpenCase::plane() const {
+  return image_plane(transducer, probe_depth_mm);
 }
 
 }  // namespace trocar::cases

@@ -17,6 +17,7 @@
 #include "core/background_job.h"
 #include "geometry/pose.h"
 #include "io/patient/patient_source.h"
+#include "metrics/metric.h"
 #include "ultrasound/doppler/flow_on_demand.h"
 #include "ultrasound/panorama/panorama_on_demand.h"
 #include "ultrasound/probe/transducer.h"
@@ -56,6 +57,9 @@ struct OpenCase {
   std::vector<std::string> notes;     ///< Missing or doubtful data, one line each.
   double seconds = 0.0;               ///< Duration of opening.
   std::vector<OpenPart> parts;        ///< Durations of its parts.
+
+  /// Image plane of the transducer as the case begins.
+  metrics::ImagePlane plane() const;
 };
 
 struct OpenOptions {

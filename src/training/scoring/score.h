@@ -7,6 +7,7 @@
 
 #include "anatomy/patient.h"
 #include "anatomy/tissue/tissue_table.h"
+#include "metrics/metric.h"
 #include "tasks/action.h"
 #include "tasks/active_time.h"
 #include "tasks/needle.h"
@@ -62,8 +63,8 @@ struct Hint {
 /// max_points/(1 + (d/t)^2); an expense e (length, time, dose) with limit l is worth max_points*(1 - (e/l)^2), 0 from l
 /// on; docs/physics.md, S1. Smaller is never worse. No part is negative; the parts' points add up to the score, within
 /// 0..100. A part that cannot be judged (no core without a biopsy needle, no visibility without a transducer) is left
-/// out, and the others count more in proportion. The weights are the task's. An attempt that never pierced the skin, and
-/// a biopsy without a shot, have no end position and are not scored.
+/// out, and the others count more in proportion. The weights are the task's. An attempt that never pierced the skin,
+/// and a biopsy without a shot, have no end position and are not scored.
 struct Outcome {
   /// Reason why it is not scored; then the score is 0 and there are no parts. Empty: it is scored.
   std::string not_scored;
@@ -78,8 +79,9 @@ struct Outcome {
   std::vector<Hint> hints;  ///< Advice for improvement, most important first.
   std::optional<BiopsyCore> core;
   std::vector<std::string> risks_touched;
-  std::size_t expert = 0;       ///< The expert path with which it is compared: the nearest one.
-  std::size_t pain_events = 0;  ///< See tasks::PainRules.
+  std::size_t expert = 0;                      ///< The expert path with which it is compared: the nearest one.
+  std::size_t pain_events = 0;                 ///< See tasks::PainRules.
+  std::vector<metrics::MetricValue> measures;  ///< Of the whole recording; empty in a session of an older program.
 
   bool is_scored() const noexcept { return not_scored.empty(); }
 };
@@ -97,11 +99,11 @@ struct AttemptData {
   const tasks::Needle& needle;
   std::span<const tasks::PlannedPath> experts;  ///< At least one; the nearest one is compared with.
   std::span<const telemetry::TickSample> samples;
-  std::optional<std::size_t> fired = {};  ///< Sample at which the biopsy gun was fired.
+  std::optional<std::size_t> fired = {};                    ///< Sample at which the biopsy gun was fired.
   std::span<const tasks::Interruption> interruptions = {};  ///< Not counted.
   std::span<const tasks::Action> actions = {};
-  tasks::XrayUse xray = {};                        ///< At the end of the attempt.
-  std::optional<double> tip_visible_share = {};    ///< Of the advance, 0..1; empty: no transducer.
+  tasks::XrayUse xray = {};                      ///< At the end of the attempt.
+  std::optional<double> tip_visible_share = {};  ///< Of the advance, 0..1; empty: no transducer.
 };
 /// Scores a whole attempt.
 Outcome score_attempt(const AttemptData& attempt);

@@ -67,6 +67,11 @@ void AttemptExchange::act(const tasks::ActionRequest& request) {
   requests_.actions.push_back(request);
 }
 
+void AttemptExchange::repeat_phase(std::size_t phase) {
+  const std::lock_guard lock(mutex_);
+  requests_.repeated_phase = phase;
+}
+
 void AttemptExchange::stop_forces() {
   const std::lock_guard lock(mutex_);
   requests_.stopped = true;

@@ -38,6 +38,7 @@ struct AttemptRequests {
   std::unique_ptr<tasks::Operator> performer;
   std::vector<tasks::XrayUse> xray;           ///< In order.
   std::vector<tasks::ActionRequest> actions;  ///< In order.
+  std::optional<std::size_t> repeated_phase;
   bool begins = false, fires = false, finishes = false, has_drawn = false;
 };
 
@@ -82,6 +83,8 @@ class AttemptExchange {
   void note_xray(const tasks::XrayUse& use);
   /// An action besides moving tools; it happens at the newest tick. Ignored before the attempt.
   void act(const tasks::ActionRequest& request);
+  /// Opens a phase of the task again, and those that follow from it: to practise it once more.
+  void repeat_phase(std::size_t phase);
   /// Sends parameters to the servers while they run; the insertion continues. The loaded table is the case's. The
   /// view's message is the server's reply.
   void set_parameters(link::SetParameters parameters);

@@ -119,8 +119,10 @@ Status AttemptLoop::take_requests() {
   for (tasks::XrayUse& use : requests.xray) {
     if (!record_ || record_->samples().empty()) continue;  // before the attempt
     use.time_s = live_->time_s();
+    contrast_ml_ = use.contrast_ml;
     TROCAR_TRY_STATUS(record_->append(use));
   }
+  if (requests.repeated_phase && phases_) phases_->repeat(*requests.repeated_phase);
   for (const tasks::ActionRequest& request : requests.actions)
     if (record_) TROCAR_TRY_STATUS(act(request));
   return {};
@@ -182,8 +184,8 @@ Status AttemptLoop::start_recording() {
   const link::ClientView& client = needle_->client();
   const double wanted_hz = client.status.loop.wanted_hz;
   if (wanted_hz > 0.0) performer_.rate_hz = wanted_hz;
-  const RecordOptions options{options_.session, options_.operator_name, case_.patient_source, case_.patient_seed,
-                              options_.seed};
+  const RecordOptions options{options_.session,   options_.operator_name, case_.patient_source,
+                              case_.patient_seed, options_.seed,          transducer_ ? case_.plane : std::nullopt};
   AttemptFacts facts;
   facts.device =
       fmt::format("{}, {}, through {}", client.welcome.device.name, client.welcome.device.title, client.welcome.server);
@@ -194,6 +196,9 @@ Status AttemptLoop::start_recording() {
   if (const SceneParameters* newest = needle_->scenes().newest()) facts.parameters = *newest;
   TROCAR_TRY(AttemptRecord record, AttemptRecord::create(*case_.the_case, options, facts));
   record_.emplace(std::move(record));
+  const cases::Case& the_case = *case_.the_case;
+  if (options_.has_view && case_.plane)
+    phases_.emplace(the_case.task, *the_case.patient, the_case.needle, the_case.plan, *case_.plane);
   live_.emplace(performer_, *record_, command_, options_.longest_s);
   was_needle_on_ = false;
   needle_->take_samples();  // at rest, while the transducer's server was still busy

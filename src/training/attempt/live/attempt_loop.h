@@ -15,6 +15,7 @@
 #include "attempt/servers/haptic_servers.h"
 #include "attempt/tools/transducer_motion.h"
 #include "cases/prepare_case.h"
+#include "scoring/phase_tracker.h"
 
 namespace trocar::attempt {
 
@@ -24,6 +25,7 @@ struct AttemptCase {
   std::string patient_source;  ///< As given by the user; recorded.
   std::string server_source;   ///< Source for a server of this machine.
   std::uint64_t patient_seed = 1;
+  std::optional<metrics::ImagePlane> plane;  ///< Of the transducer; empty: there is none.
 };
 
 /// Operators that move the tools.
@@ -94,6 +96,8 @@ class AttemptLoop {
   void note_tick(const telemetry::TickSample& sample);
   void note_shot();
   void note_actions();
+  void step_phases();
+  void add_phases(AttemptView& view) const;
   void send_scheduled_parameters();
   Status step_transducer();
 
@@ -137,6 +141,9 @@ class AttemptLoop {
   std::string disk_banner_, cut_short_;
   std::vector<AttemptEvent> events_;
   std::shared_ptr<const GunShot> shot_;
+  std::optional<scoring::PhaseTracker> phases_;  ///< From the begin of the recording.
+  double phases_s_ = 0.0;                        ///< Time of its last step.
+  double contrast_ml_ = 0.0;
   std::size_t told_actions_ = 0;  ///< Number of the record's actions that are among the events.
   std::vector<std::string> notes_;
   std::string message_, progress_, recovered_;

@@ -109,8 +109,10 @@ void AttemptLoop::note_shot() {
 
 void AttemptLoop::note_actions() {
   const std::vector<tasks::Action>& actions = record_->actions();
-  for (; told_actions_ < actions.size(); ++told_actions_)
+  for (; told_actions_ < actions.size(); ++told_actions_) {
+    if (phases_) phases_->note(actions[told_actions_]);
     if (options_.has_view) events_.push_back(describe_action(case_.the_case->substances, actions[told_actions_]));
+  }
 }
 
 /// Parameters of a replayed session, sent when as many ticks were made as before them. The server replies from which

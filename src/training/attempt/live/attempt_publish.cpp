@@ -89,6 +89,44 @@ void AttemptLoop::add_servers(AttemptView& view) const {
   if (is_stopped_ && view.banner.empty()) view.banner = "Forces are stopped. Resume to continue.";
 }
 
+void AttemptLoop::step_phases() {
+  constexpr double kEvery_s = 0.02;
+  if (!phases_ || !last_needle_ || !live_) return;
+  if (last_needle_->time_s < phases_s_ + kEvery_s) return;
+  phases_s_ = last_needle_->time_s;
+  scoring::PhaseMoment moment;
+  moment.needle = *last_needle_;
+  if (last_transducer_) {
+    moment.X_PT = telemetry::felt_probe(*last_transducer_);
+    moment.contact_n = last_transducer_->f_constraint_n.norm();
+  }
+  moment.contrast_ml = contrast_ml_;
+  moment.has_fired = record_ && record_->fired().has_value();
+  phases_->step(moment);
+}
+
+void AttemptLoop::add_phases(AttemptView& view) const {
+  if (record_)
+    for (const tasks::Action& action : record_->actions()) {
+      if (action.kind == tasks::ActionKind::kDrawStylet) view.is_stylet_drawn = true;
+      if (action.kind == tasks::ActionKind::kReplaceStylet) view.is_stylet_drawn = false;
+      if (action.kind == tasks::ActionKind::kHoldBreath) view.is_breath_held = true;
+      if (action.kind == tasks::ActionKind::kBreathe) view.is_breath_held = false;
+    }
+  if (!phases_ || options_.level == "exam") return;
+  const std::vector<tasks::Phase>& phases = case_.the_case->task.phases;
+  for (std::size_t n = 0; n < phases.size(); ++n) {
+    const scoring::PhaseState& state = phases_->states()[n];
+    PhaseView shown{phases[n].title, phases[n].why, {}, state.is_open, state.begun_s, state.done_s};
+    if (!state.lacks.empty()) {
+      shown.lacks = state.lacks.front();
+      shown.lacks.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(shown.lacks.front())));
+    }
+    view.phases.push_back(std::move(shown));
+  }
+  view.current_phase = phases_->current();
+}
+
 void AttemptLoop::add_times(AttemptView& view) {
   if (!last_needle_) return;
   if (live_) session_s_ = live_->active_s();
@@ -124,6 +162,8 @@ void AttemptLoop::publish(AttemptPhase phase, std::optional<Result<RunResult>> r
   view.notes = notes_;
   add_servers(view);
   add_times(view);
+  step_phases();
+  add_phases(view);
   const bool is_moving = phase == AttemptPhase::kReady || phase == AttemptPhase::kInBody;
   if (options_.is_guided && is_moving && last_needle_)
     view.hint = guide_puncture(*case_.the_case, *last_needle_, view.has_fired);

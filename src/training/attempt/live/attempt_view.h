@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -72,6 +73,15 @@ struct ServerView {
   int restarts = 0;               ///< Number of restarts of the process and of recoveries without a restart.
 };
 
+/// A phase of the task for display, in the task's order.
+struct PhaseView {
+  std::string title;
+  std::string why;    ///< The reason for it.
+  std::string lacks;  ///< What is to be done next, one sentence; empty unless it is open and not done.
+  bool is_open = false;
+  std::optional<double> begun_s, done_s;  ///< Session time.
+};
+
 /// All data of an attempt displayed by a page at one time.
 struct AttemptView {
   AttemptPhase phase = AttemptPhase::kStarting;
@@ -81,7 +91,10 @@ struct AttemptView {
   std::string recovered;           ///< Description of the last recovery of a server, one sentence.
   int recoveries = 0;              ///< Number of times that forces returned after a server ended or was unavailable.
   std::string message;             ///< Result of the last set_parameters(), or of a command.
-  std::string hint;                ///< Instruction for the trainee (guided attempts only); may be empty.
+  std::vector<PhaseView> phases;   ///< Empty in an exam, and for a task without phases.
+  std::optional<std::size_t> current_phase;  ///< The first one that is open and not done.
+  bool is_stylet_drawn = false, is_breath_held = false;
+  std::string hint;  ///< Instruction for the trainee (guided attempts only); may be empty.
   NeedleView needle;
   TransducerView probe;
   bool has_probe = false;

@@ -49,6 +49,7 @@ AttemptCase attempt_case(std::shared_ptr<const cases::OpenCase> open_case) {
   of.patient_source = open_case->choice.patient_source;
   of.server_source = io::absolute_source(open_case->server_source);
   of.patient_seed = open_case->choice.patient_seed;
+  of.plane = open_case->plane();
   const cases::Case* const the_case = &open_case->the_case;
   of.the_case = {std::move(open_case), the_case};
   return of;

@@ -63,6 +63,7 @@ class LiveAttempt : private AttemptExchange {
   using AttemptExchange::frame_drawn;
   using AttemptExchange::note_xray;
   using AttemptExchange::perform;
+  using AttemptExchange::repeat_phase;
   using AttemptExchange::resume_forces;
   using AttemptExchange::servers;
   using AttemptExchange::set_goal;

@@ -9,6 +9,7 @@
 
 #include "anatomy/tissue/tissue_settings.h"
 #include "attempt/live/performer.h"
+#include "attempt/record/score_session.h"
 #include "core/version.h"
 #include "io/patient/patient_source.h"
 
@@ -68,9 +69,10 @@ std::string preset_of_device(std::string_view device_name) {
 }
 
 AttemptRecord::AttemptRecord(const cases::Case& the_case, storage::SessionInfo info, storage::SessionWriter writer,
-                             std::size_t expected_ticks)
-    : the_case_(&the_case), info_(std::move(info)), writer_(std::move(writer)) {
-  samples_.reserve(expected_ticks);
+                             std::size_t expected_ticks, const std::optional<metrics::ImagePlane>& plane)
+    : the_case_(&the_case), writer_(std::move(writer)), plane_(plane) {
+  session_.info = std::move(info);
+  session_.samples.reserve(expected_ticks);
 }
 
 Result<AttemptRecord> AttemptRecord::create(const cases::Case& the_case, const RecordOptions& options,
@@ -78,16 +80,16 @@ Result<AttemptRecord> AttemptRecord::create(const cases::Case& the_case, const R
   storage::SessionInfo info = describe(the_case, options, facts);
   TROCAR_TRY(storage::SessionWriter writer, storage::SessionWriter::create(options.session, info));
   const auto expected_ticks = static_cast<std::size_t>(0.25 * kLongestAttempt_s * facts.rate_hz);
-  return AttemptRecord(the_case, std::move(info), std::move(writer), expected_ticks);
+  return AttemptRecord(the_case, std::move(info), std::move(writer), expected_ticks, options.plane);
 }
 
 void AttemptRecord::note(const tasks::HandCommand& command) noexcept {
-  if (command.has_fired && !fired_) fired_ = samples_.size();
+  if (command.has_fired && !session_.fired) session_.fired = session_.samples.size();
   wanted_action_ = command.action;
 }
 
 Status AttemptRecord::append(const telemetry::TickSample& sample) {
-  samples_.push_back(sample);
+  session_.samples.push_back(sample);
   TROCAR_TRY_STATUS(written(writer_.append(sample)));
   if (!wanted_action_) return {};
   TROCAR_TRY([[maybe_unused]] const auto action, act(*std::exchange(wanted_action_, std::nullopt)));
@@ -96,10 +98,10 @@ Status AttemptRecord::append(const telemetry::TickSample& sample) {
 
 Result<std::optional<tasks::Action>> AttemptRecord::act(const tasks::ActionRequest& request) {
   constexpr double kLater_s = 1e-6;  // two actions of one tick have an order
-  if (samples_.empty()) return std::optional<tasks::Action>();
-  const telemetry::TickSample& sample = samples_.back();
+  if (session_.samples.empty()) return std::optional<tasks::Action>();
+  const telemetry::TickSample& sample = session_.samples.back();
   tasks::Action action{sample.time_s, request.kind, request.amount, {}, sample.tip_mm, sample.depth_mm};
-  if (!actions_.empty()) action.time_s = std::max(action.time_s, actions_.back().time_s + kLater_s);
+  if (!session_.actions.empty()) action.time_s = std::max(action.time_s, session_.actions.back().time_s + kLater_s);
   if (request.kind == tasks::ActionKind::kDrawStylet || request.kind == tasks::ActionKind::kAspirate)
     action.result = tasks::what_returns(the_case_->substances, *the_case_->patient, the_case_->needle, sample.tip_mm,
                                         sample.axis, request.kind == tasks::ActionKind::kAspirate);
@@ -108,7 +110,7 @@ Result<std::optional<tasks::Action>> AttemptRecord::act(const tasks::ActionReque
 }
 
 Status AttemptRecord::append(const tasks::Action& action) {
-  actions_.push_back(action);
+  session_.actions.push_back(action);
   return written(writer_.append(action));
 }
 
@@ -118,7 +120,7 @@ Status AttemptRecord::written(Status status) {
 }
 
 Status AttemptRecord::note_parameters(const SceneParameters& parameters) {
-  return record(samples_.size() - 1, parameters);
+  return record(session_.samples.size() - 1, parameters);
 }
 
 Status AttemptRecord::note_scene(std::uint64_t number, const KnownScenes& known) {
@@ -132,7 +134,7 @@ Status AttemptRecord::note_scene(std::uint64_t number, const KnownScenes& known)
   scene_ = number;
   const SceneParameters* told = known.find(number);
   if (told != nullptr && unknown_.empty()) return note_parameters(*told);
-  unknown_.push_back({samples_.size() - 1, number});
+  unknown_.push_back({session_.samples.size() - 1, number});
   return {};
 }
 
@@ -148,59 +150,51 @@ Status AttemptRecord::record(std::size_t tick, const SceneParameters& parameters
   if (is_same) return {};
   TROCAR_TRY(anatomy::TissueTable table,
              anatomy::parse_tissue_table(parameters.tissue_table_toml, "the parameters in force"));
-  storage::SessionParameters row{tick, samples_[tick].time_s, {}, parameters.options, parameters.tissue_table_toml};
+  storage::SessionParameters row{
+      tick, session_.samples[tick].time_s, {}, parameters.options, parameters.tissue_table_toml};
   row.settings =
       tissues_ ? changed(*tissues_, parameters_.options, table, parameters.options) : anatomy::user_settings(table);
-  if (!tissues_) info_.force_model = force_model_of(parameters, info_.force_model);
+  if (!tissues_) session_.info.force_model = force_model_of(parameters, session_.info.force_model);
   tissues_ = std::move(table);
   parameters_ = parameters;
-  parameter_rows_.push_back(std::move(row));
-  return written(writer_.append(parameter_rows_.back()));
+  session_.parameters.push_back(std::move(row));
+  return written(writer_.append(session_.parameters.back()));
 }
 
 Status AttemptRecord::append(const tasks::Interruption& interruption) {
-  interruptions_.push_back(interruption);
+  session_.interruptions.push_back(interruption);
   return written(writer_.append(interruption));
 }
 
 Status AttemptRecord::append(const storage::TransducerSample& sample) {
-  if (!transducer_.empty() && sample.time_s < transducer_.back().time_s + kTransducerEvery_s) return {};
-  transducer_.push_back(sample);
+  if (!session_.transducer.empty() && sample.time_s < session_.transducer.back().time_s + kTransducerEvery_s) return {};
+  session_.transducer.push_back(sample);
   return written(writer_.append(sample));
 }
 
 Status AttemptRecord::append(const telemetry::NeedleShape& shape) {
-  const telemetry::NeedleShape& last = shapes_.empty() ? telemetry::NeedleShape{} : shapes_.back();
+  const telemetry::NeedleShape& last = session_.shapes.empty() ? telemetry::NeedleShape{} : session_.shapes.back();
   if (telemetry::largest_difference_mm(shape, last) <= kShapeStep_mm) return {};
-  shapes_.push_back(shape);
+  session_.shapes.push_back(shape);
   return written(writer_.append(shape));
 }
 
 Status AttemptRecord::append(const tasks::XrayUse& use) {
-  tasks::XrayUse last = xray_;
+  tasks::XrayUse last = session_.xray.empty() ? tasks::XrayUse{} : session_.xray.back();
   last.time_s = use.time_s;
   if (use == last) return {};
-  xray_ = use;
+  session_.xray.push_back(use);
   return written(writer_.append(use));
 }
 
 RunResult AttemptRecord::score() {
   RunResult result;
-  result.outcome = scoring::score_attempt({.task = the_case_->task,
-                                           .patient = *the_case_->patient,
-                                           .tissues = the_case_->tissues,
-                                           .needle = the_case_->needle,
-                                           .experts = the_case_->expert_paths(),
-                                           .samples = samples_,
-                                           .fired = fired_,
-                                           .interruptions = interruptions_,
-                                           .actions = actions_,
-                                           .xray = xray_});
-  result.punctures = find_punctures(info_, samples_);
-  result.force_model = info_.force_model;
-  result.ticks = samples_.size();
-  result.simulated_s = samples_.empty() ? 0.0 : samples_.back().time_s;
-  result.active_s = tasks::active_time_s(0.0, result.simulated_s, interruptions_);
+  result.outcome = score_session(*the_case_, session_, plane_);
+  result.punctures = find_punctures(session_.info, session_.samples);
+  result.force_model = session_.info.force_model;
+  result.ticks = session_.samples.size();
+  result.simulated_s = session_.samples.empty() ? 0.0 : session_.samples.back().time_s;
+  result.active_s = tasks::active_time_s(0.0, result.simulated_s, session_.interruptions);
   if (has_lost_scene_ || !unknown_.empty())
     result.warnings.emplace_back(
         "the server did not report the parameters of some ticks: a change is missing in the session");
@@ -209,32 +203,24 @@ RunResult AttemptRecord::score() {
 
 Result<RunResult> AttemptRecord::finish() {
   RunResult result = score();
-  TROCAR_TRY_STATUS(written(writer_.finish(result.outcome, fired_)));
+  TROCAR_TRY_STATUS(written(writer_.finish(result.outcome, session_.fired)));
   result.ticks_hash = writer_.ticks_hash();
   return result;
 }
 
 RunResult AttemptRecord::finish_unsaved() {
   RunResult result = score();
-  const std::size_t saved = std::min(writer_.saved_ticks(), samples_.size());
-  const double saved_s = saved > 0 ? samples_[saved - 1].time_s : 0.0;
+  const std::size_t saved = std::min(writer_.saved_ticks(), session_.samples.size());
+  const double saved_s = saved > 0 ? session_.samples[saved - 1].time_s : 0.0;
   const Error failure = write_failure_.value_or(Error{});
   result.cut_short = fmt::format(
       "The recording ended after {:.1f} s: {} ({}). The score counts all of it; the file holds the first "
       "{:.1f} s and no score",
       result.simulated_s, failure.what, failure.where, saved_s);
   result.warnings.push_back(result.cut_short);
-  storage::Session& session = result.unsaved.emplace();
-  session.info = std::move(info_);
-  session.samples = std::move(samples_);
-  session.transducer = std::move(transducer_);
-  session.actions = std::move(actions_);
-  session.shapes = std::move(shapes_);
-  session.parameters = std::move(parameter_rows_);
-  session.interruptions = interruptions_;
-  session.outcome = result.outcome;
-  session.fired = fired_;
-  session.is_incomplete = true;
+  session_.outcome = result.outcome;
+  session_.is_incomplete = true;
+  result.unsaved = std::move(session_);
   return result;
 }
 

@@ -10,6 +10,7 @@
 #include "attempt/record/known_scenes.h"
 #include "attempt/record/run_result.h"
 #include "cases/prepare_case.h"
+#include "metrics/metric.h"
 #include "tasks/operator.h"
 
 namespace trocar::attempt {
@@ -31,6 +32,7 @@ struct RecordOptions {
   std::string patient_source;  ///< As given by the user: a folder, or an embedded patient's name.
   std::uint64_t patient_seed = 1;
   std::uint64_t seed = 1;
+  std::optional<metrics::ImagePlane> plane = {};  ///< Of the transducer; empty: none.
 };
 
 /// Preset of a server's device: "premium" of "virtual:premium"; empty: not in data/devices.toml.
@@ -56,7 +58,7 @@ class AttemptRecord {
   Result<std::optional<tasks::Action>> act(const tasks::ActionRequest& request);
   /// Appends a recorded action as it was; for the replay of a session.
   Status append(const tasks::Action& action);
-  const std::vector<tasks::Action>& actions() const noexcept { return actions_; }
+  const std::vector<tasks::Action>& actions() const noexcept { return session_.actions; }
   /// Notes the parameters of the last appended sample; they are recorded when they change.
   Status note_parameters(const SceneParameters& parameters);
   /// The same for a server's scene, by its number. A later call records the parameters of a scene that is not known
@@ -66,7 +68,7 @@ class AttemptRecord {
   void forget_scenes() noexcept;
   /// Call before the first sample after the interruption.
   Status append(const tasks::Interruption& interruption);
-  const std::vector<tasks::Interruption>& interruptions() const noexcept { return interruptions_; }
+  const std::vector<tasks::Interruption>& interruptions() const noexcept { return session_.interruptions; }
   /// Shape of the needle, in session time. Kept if it differs from the last one by more than kShapeStep_mm. The score
   /// does not depend on it.
   Status append(const telemetry::NeedleShape& shape);
@@ -75,10 +77,10 @@ class AttemptRecord {
   Status append(const storage::TransducerSample& sample);
   /// Kept if it differs from the last one. The score depends on the last one's dose.
   Status append(const tasks::XrayUse& use);
-  const storage::SessionInfo& info() const noexcept { return info_; }
-  const std::vector<telemetry::TickSample>& samples() const noexcept { return samples_; }  ///< Samples so far.
+  const storage::SessionInfo& info() const noexcept { return session_.info; }
+  const std::vector<telemetry::TickSample>& samples() const noexcept { return session_.samples; }  ///< Samples so far.
   /// Index of the sample at which the gun was fired; this sample may not be appended yet.
-  const std::optional<std::size_t>& fired() const noexcept { return fired_; }
+  const std::optional<std::size_t>& fired() const noexcept { return session_.fired; }
   /// Scores the attempt and closes the session file.
   Result<RunResult> finish();
   /// The first failure to write the session file; empty: no failure.
@@ -97,18 +99,12 @@ class AttemptRecord {
   RunResult score();
 
   AttemptRecord(const cases::Case& the_case, storage::SessionInfo info, storage::SessionWriter writer,
-                std::size_t expected_ticks);
+                std::size_t expected_ticks, const std::optional<metrics::ImagePlane>& plane);
 
   const cases::Case* the_case_;
-  storage::SessionInfo info_;
+  storage::Session session_;  ///< What is kept.
   storage::SessionWriter writer_;
-  std::vector<telemetry::TickSample> samples_;
-  std::optional<std::size_t> fired_;
-  std::vector<storage::TransducerSample> transducer_;  ///< Kept samples.
-  std::vector<telemetry::NeedleShape> shapes_;         ///< Kept shapes.
-  std::vector<storage::SessionParameters> parameter_rows_;
-  tasks::XrayUse xray_;  ///< The last one.
-  std::vector<tasks::Action> actions_;
+  std::optional<metrics::ImagePlane> plane_;
   std::optional<tasks::ActionRequest> wanted_action_;  ///< With the next sample.
   std::optional<Error> write_failure_;
   SceneParameters parameters_;                   ///< Last recorded parameters.
@@ -116,7 +112,6 @@ class AttemptRecord {
   std::uint64_t scene_ = 0;                      ///< Scene number of the last sample.
   std::vector<UnknownScene> unknown_;            ///< Ordered by tick.
   bool has_lost_scene_ = false;                  ///< Some ticks have no reported parameters.
-  std::vector<tasks::Interruption> interruptions_;
 };
 
 }  // namespace trocar::attempt

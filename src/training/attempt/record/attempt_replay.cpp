@@ -7,6 +7,7 @@
 
 #include "anatomy/structure_words.h"
 #include "attempt/guide/needle_shaft.h"
+#include "attempt/record/score_session.h"
 #include "geometry/segment.h"
 
 namespace trocar::attempt {
@@ -36,17 +37,7 @@ Result<AttemptReplay> AttemptReplay::of(storage::Session session, std::shared_pt
     return fail("the session is of another patient than the case", {}, "open that patient first");
   const bool was_cut_off = !session.outcome.has_value();
   if (was_cut_off) {
-    const cases::Case& the_case = open->the_case;
-    session.outcome = scoring::score_attempt({.task = the_case.task,
-                                              .patient = *the_case.patient,
-                                              .tissues = the_case.tissues,
-                                              .needle = the_case.needle,
-                                              .experts = the_case.expert_paths(),
-                                              .samples = session.samples,
-                                              .fired = session.fired,
-                                              .interruptions = session.interruptions,
-                                              .actions = session.actions,
-                                              .xray = session.xray.empty() ? tasks::XrayUse{} : session.xray.back()});
+    session.outcome = score_session(open->the_case, session, open->plane());
   }
   return AttemptReplay(std::move(session), std::move(open), was_cut_off);
 }

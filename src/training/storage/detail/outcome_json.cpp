@@ -79,12 +79,24 @@ scoring::BiopsyCore read_core(const config::Json& object, bool& is_valid) {
   return core;
 }
 
+/// The metrics that have a value.
+config::Json metrics_json(const std::vector<metrics::MetricValue>& values) {
+  config::Json all = config::Json::array();
+  for (const metrics::MetricValue& value : values)
+    if (value.value) all.push_back({{"name", value.name}, {"value", *value.value}, {"unit", value.unit}});
+  return all;
+}
+
 /// What sessions of older programs lack.
 void read_judgement(const config::Json& object, scoring::Outcome& outcome, bool& is_valid) {
   Reader reader(object, is_valid);
   outcome.is_passed = reader.boolean("passed");
   outcome.fails = reader.texts("fails");
   outcome.expert = static_cast<std::size_t>(std::clamp(reader.number("expert"), 0.0, 1e6));
+  for (const config::Json& item : reader.array("metrics")) {
+    Reader metric(item, is_valid);
+    outcome.measures.push_back({metric.text("name"), metric.number("value"), metric.text("unit"), {}, {}, {}});
+  }
   outcome.pain_events = static_cast<std::size_t>(std::clamp(reader.number("pain_events"), 0.0, 1e9));
   const config::Json& times = reader.array("hint_times_s");
   for (std::size_t n = 0; n < std::min(times.size(), outcome.hints.size()); ++n)
@@ -108,6 +120,7 @@ std::string outcome_to_json(const scoring::Outcome& outcome) {
                       {"hint_times_s", std::move(hint_times)},
                       {"expert", outcome.expert},
                       {"pain_events", outcome.pain_events},
+                      {"metrics", metrics_json(outcome.measures)},
                       {"risks_touched", outcome.risks_touched}};
   if (!outcome.is_scored()) object["not_scored"] = outcome.not_scored;
   if (outcome.core) object["core"] = core_json(*outcome.core);

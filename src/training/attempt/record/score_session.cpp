@@ -1,0 +1,56 @@
+#include "attempt/record/score_session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+#include "metrics/measure_run.h"
+#include "storage/session_moments.h"
+
+namespace trocar::attempt {
+namespace {
+
+std::vector<metrics::MetricValue> measure(const cases::Case& the_case, const storage::Session& session,
+                                          const std::optional<metrics::ImagePlane>& plane) {
+  metrics::MetricContext context = storage::context_of(session);
+  context.task = &the_case.task;
+  context.patient = the_case.patient.get();
+  context.needle = the_case.needle;
+  context.plane = plane;
+  context.expert_paths.clear();
+  for (const tasks::PlannedPath& path : the_case.expert_paths())
+    context.expert_paths.push_back({fmt::format("{}", context.expert_paths.size() + 1), path.line_P});
+  metrics::MeasureRun run(std::move(context));
+  storage::walk_moments(session, [&](const metrics::Moment& moment) { run.step(moment); });
+  return run.report();
+}
+
+std::optional<double> find_value(const std::vector<metrics::MetricValue>& values, std::string_view name) {
+  const auto found = std::ranges::find(values, name, &metrics::MetricValue::name);
+  return found != values.end() ? found->value : std::nullopt;
+}
+
+}  // namespace
+
+scoring::Outcome score_session(const cases::Case& the_case, const storage::Session& session,
+                               const std::optional<metrics::ImagePlane>& plane) {
+  std::vector<metrics::MetricValue> values = measure(the_case, session, plane);
+  const auto visible_percent = find_value(values, "tip_visible");
+  scoring::Outcome outcome = scoring::score_attempt(
+      {.task = the_case.task,
+       .patient = *the_case.patient,
+       .tissues = the_case.tissues,
+       .needle = the_case.needle,
+       .experts = the_case.expert_paths(),
+       .samples = session.samples,
+       .fired = session.fired,
+       .interruptions = session.interruptions,
+       .actions = session.actions,
+       .xray = session.xray.empty() ? tasks::XrayUse{} : session.xray.back(),
+       .tip_visible_share = visible_percent ? std::optional(*visible_percent / 100.0) : std::nullopt});
+  outcome.measures = std::move(values);
+  return outcome;
+}
+
+}  // namespace trocar::attempt
