@@ -25,13 +25,22 @@ Task changed_task() {
   task.title = "A \"hard\" case";
   task.max_path_mm = 123.456789012345;
   task.time_limit_s = 60.0;
-  task.risks = {{"", "rib_right_9", 4.0, 12.5}, {"vessel", "", 2.0, 30.0, true}};
+  task.risks = {{"", "rib_right_9", 4.0, 12.5}, {"vessel", "", 2.0, 30.0, true, true}};
   task.target_label = "lesion";
   task.target_P = Vec3(-30.1, -15.2, 1.0 / 3.0);
   task.entry_zone = EntryZone{{-100.0, 0.0, 0.0}, 25.0};
   task.expert_path = "expert";
   task.exam_shows_needle = true;
   task.ultrasound_engine = "panorama";
+  task.guidance = Guidance::kXray;
+  task.needles = {"biopsy-16g"};
+  task.confirmed_by = Substance::kBlood;
+  task.margin_tolerance_mm = 1.5;
+  task.pass_mark = 55.0;
+  task.weights = {{"target", 40.0}, {"confirmation", 60.0}};
+  task.pain = {{"muscle"}, false};
+  task.phases = {{"a", "A", "because", {}, {{ConditionKind::kTipIn, 0.0, "liver"}}, 0.25},
+                 {"b", "B", "so", {"a"}, {{ConditionKind::kWire, 12.5, {}}, {ConditionKind::kOutside, 0.0, {}}}, 0.0}};
   return task;
 }
 
@@ -61,6 +70,22 @@ TEST(OwnTask, NoRisksAtAllAreKept) {
   const auto read = load_task_file(folder / kOwnTaskFile, kTasks);
   ASSERT_TRUE(read) << read.error().text();
   EXPECT_TRUE(read->risks.empty());
+}
+
+TEST(OwnTask, WeightsThatContradictAreRefused) {
+  const auto error_of = [](const std::string& text) {
+    const auto task = parse_task("base = \"liver-biopsy\"\n" + text, "own", "task.toml", kTasks);
+    return task ? std::string("no error") : task.error().text();
+  };
+  EXPECT_EQ(error_of("[scoring.weights]\ntarget = 60\nrisk = 40\n"), "no error");
+  EXPECT_NE(error_of("[scoring.weights]\ntarget = 60\nrisk = 30\n").find("add up to 90"), std::string::npos);
+  EXPECT_NE(error_of("[scoring.weights]\ntarget = 60\nrisk = 50\ntime = -10\n").find("time"), std::string::npos);
+  EXPECT_NE(error_of("[scoring.weights]\ntarget = 90\nbeauty = 10\n").find("beauty"), std::string::npos);
+  EXPECT_NE(error_of("[scoring.weights]\ntarget = 90\ndose = 10\n").find("dose_limit_gycm2"), std::string::npos);
+  EXPECT_NE(error_of("[scoring.weights]\ntarget = 90\nconfirmation = 10\n").find("nothing confirms"),
+            std::string::npos);
+  EXPECT_NE(error_of("confirmed_by = \"wine\"\n").find("no substance"), std::string::npos);
+  EXPECT_NE(error_of("guidance = \"magic\"\n").find("palpation"), std::string::npos);
 }
 
 TEST(OwnTask, DamagedFileIsRefusedWithItsPlace) {
