@@ -113,7 +113,10 @@ Status complete(const MetricsArguments& arguments, MeasuredCase& measured) {
   }
   add_own_paths(measured);
   TROCAR_TRY_STATUS(replace_experts(arguments.expert, measured.context));
-  TROCAR_TRY(measured.context.plane, load_plane(arguments));
+  const bool names_another = arguments.transducer != kTransducer || arguments.depth_mm > 0.0;
+  if (!measured.context.plane || names_another) {
+    TROCAR_TRY(measured.context.plane, load_plane(arguments));
+  }
   measured.context.task = measured.task ? &*measured.task : nullptr;
   measured.context.patient = measured.patient ? &*measured.patient : nullptr;
   return {};

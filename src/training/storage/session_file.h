@@ -10,6 +10,7 @@
 #include "anatomy/patient.h"
 #include "core/result.h"
 #include "geometry/pose.h"
+#include "metrics/metric.h"
 #include "scoring/score.h"
 #include "tasks/action.h"
 #include "tasks/active_time.h"
@@ -43,6 +44,8 @@ struct SessionInfo {
   std::string tissue_table_toml;  ///< Table in force at the first tick.
   anatomy::NeedlePath plan_P;
   bool is_parenchymal = false;
+  /// Image plane of the transducer, as the attempt began; empty: no transducer, or an older program.
+  std::optional<metrics::ImagePlane> plane;
   /// Names of the ids in the samples, by id.
   std::vector<std::string> tissue_names;
   std::vector<std::string> layer_names;

@@ -46,6 +46,7 @@ void walk_moments(const Session& session, const std::function<void(const metrics
 metrics::MetricContext context_of(const Session& session) {
   metrics::MetricContext context;
   context.layer_names = session.info.layer_names;
+  context.plane = session.info.plane;
   if (session.fired && *session.fired < session.samples.size())
     context.fired_s = session.samples[*session.fired].time_s;
   const anatomy::NeedlePath& plan = session.info.plan_P;

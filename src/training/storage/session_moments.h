@@ -12,8 +12,8 @@ namespace trocar::storage {
 /// paused. Depth, resistance and events are those recorded.
 void walk_moments(const Session& session, const std::function<void(const metrics::Moment&)>& visit);
 
-/// What a session itself says about its recording: names of layers, time of the shot, and its plan as an expert path.
-/// Task, patient, needle and image plane stay empty.
+/// What a session itself says about its recording: names of layers, time of the shot, image plane, and its plan as an
+/// expert path. Task, patient and needle stay empty.
 metrics::MetricContext context_of(const Session& session);
 
 }  // namespace trocar::storage

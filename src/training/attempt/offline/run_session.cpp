@@ -103,8 +103,9 @@ Status SceneSchedule::add(const cases::Case& the_case, const storage::SessionPar
   return {};
 }
 
-RecordOptions record_options(const RunOptions& options) {
-  return {options.session, options.operator_name, options.patient_source, options.patient_seed, options.seed};
+RecordOptions record_options(const RunOptions& options, const Performer& performer) {
+  const auto plane = performer.replayed != nullptr ? performer.replayed->info.plane : std::nullopt;
+  return {options.session, options.operator_name, options.patient_source, options.patient_seed, options.seed, plane};
 }
 
 /// When a tick is, and where its tool: regular, or as recorded by the session that is replayed.
@@ -137,14 +138,12 @@ class RecordedTicks {
     const auto found = std::ranges::find(session_->interruptions, time_s(tick), &tasks::Interruption::to_s);
     return found == session_->interruptions.end() ? nullptr : &*found;
   }
-  /// Actions of the replayed session up to a time, which were not appended yet.
-  Status append_actions(double time_s, AttemptRecord& record) const {
+  /// Appends what the replayed session has besides the needle, up to a time: actions, transducer, X-ray.
+  Status append_others(double time_s, AttemptRecord& record) {
     if (session_ == nullptr) return {};
-    for (std::size_t n = record.actions().size(); n < session_->actions.size(); ++n) {
-      if (session_->actions[n].time_s > time_s) break;
-      TROCAR_TRY_STATUS(record.append(session_->actions[n]));
-    }
-    return {};
+    TROCAR_TRY_STATUS(append_until(time_s, session_->actions, actions_, record));
+    TROCAR_TRY_STATUS(append_until(time_s, session_->transducer, transducer_, record));
+    return append_until(time_s, session_->xray, xray_, record);
   }
   std::size_t most_ticks() const noexcept {
     constexpr double kMostTicks = 1e9;
@@ -153,14 +152,21 @@ class RecordedTicks {
   }
 
  private:
+  template <class Row>
+  static Status append_until(double time_s, const std::vector<Row>& rows, std::size_t& next, AttemptRecord& record) {
+    for (; next < rows.size() && rows[next].time_s <= time_s; ++next) TROCAR_TRY_STATUS(record.append(rows[next]));
+    return {};
+  }
+
   double dt_s_;
   const storage::Session* session_;
+  std::size_t actions_ = 0, transducer_ = 0, xray_ = 0;  ///< Numbers of appended rows.
 };
 
 /// The closed loop, until the operator has finished. Returns the number of ticks.
 Result<std::size_t> perform(const Performer& performer, SceneSchedule& scenes, double mass_kg, AttemptRecord& record,
                             const Progress& progress) {
-  const RecordedTicks recorded(performer);
+  RecordedTicks recorded(performer);
   const std::size_t most_ticks = recorded.most_ticks();
   const SceneSchedule::Entry* before = nullptr;
   haptics::VirtualDeviceState device;
@@ -191,7 +197,7 @@ Result<std::size_t> perform(const Performer& performer, SceneSchedule& scenes, d
     view.last = output.sample;
     record.note(command);
     TROCAR_TRY_STATUS(record.append(output.sample));
-    TROCAR_TRY_STATUS(recorded.append_actions(view.time_s, record));
+    TROCAR_TRY_STATUS(recorded.append_others(view.time_s, record));
     if (view.time_s >= next_shape_s) {
       telemetry::NeedleShape shape = haptics::needle_shape(state.needle, scene, true);
       shape.time_s = view.time_s;
@@ -228,7 +234,7 @@ Result<RunResult> run_session(const cases::Case& the_case, const RunOptions& giv
                            scenes.first().parameters};
   const InterruptibleWork interruptible;
   std::optional<UnfinishedOutput> unfinished;  // declared before the record, whose destructor still writes
-  TROCAR_TRY(AttemptRecord record, AttemptRecord::create(the_case, record_options(options), facts));
+  TROCAR_TRY(AttemptRecord record, AttemptRecord::create(the_case, record_options(options, performer), facts));
   unfinished.emplace(storage::session_files(options.session));
   const auto start = std::chrono::steady_clock::now();
   TROCAR_TRY(const std::size_t ticks, perform(performer, scenes, device.apparent_mass_kg, record, progress));

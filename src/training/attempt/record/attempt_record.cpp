@@ -69,8 +69,8 @@ std::string preset_of_device(std::string_view device_name) {
 }
 
 AttemptRecord::AttemptRecord(const cases::Case& the_case, storage::SessionInfo info, storage::SessionWriter writer,
-                             std::size_t expected_ticks, const std::optional<metrics::ImagePlane>& plane)
-    : the_case_(&the_case), writer_(std::move(writer)), plane_(plane) {
+                             std::size_t expected_ticks)
+    : the_case_(&the_case), writer_(std::move(writer)) {
   session_.info = std::move(info);
   session_.samples.reserve(expected_ticks);
 }
@@ -78,9 +78,10 @@ AttemptRecord::AttemptRecord(const cases::Case& the_case, storage::SessionInfo i
 Result<AttemptRecord> AttemptRecord::create(const cases::Case& the_case, const RecordOptions& options,
                                             const AttemptFacts& facts) {
   storage::SessionInfo info = describe(the_case, options, facts);
+  info.plane = options.plane;
   TROCAR_TRY(storage::SessionWriter writer, storage::SessionWriter::create(options.session, info));
   const auto expected_ticks = static_cast<std::size_t>(0.25 * kLongestAttempt_s * facts.rate_hz);
-  return AttemptRecord(the_case, std::move(info), std::move(writer), expected_ticks, options.plane);
+  return AttemptRecord(the_case, std::move(info), std::move(writer), expected_ticks);
 }
 
 void AttemptRecord::note(const tasks::HandCommand& command) noexcept {
@@ -189,7 +190,7 @@ Status AttemptRecord::append(const tasks::XrayUse& use) {
 
 RunResult AttemptRecord::score() {
   RunResult result;
-  result.outcome = score_session(*the_case_, session_, plane_);
+  result.outcome = score_session(*the_case_, session_);
   result.punctures = find_punctures(session_.info, session_.samples);
   result.force_model = session_.info.force_model;
   result.ticks = session_.samples.size();

@@ -99,12 +99,11 @@ class AttemptRecord {
   RunResult score();
 
   AttemptRecord(const cases::Case& the_case, storage::SessionInfo info, storage::SessionWriter writer,
-                std::size_t expected_ticks, const std::optional<metrics::ImagePlane>& plane);
+                std::size_t expected_ticks);
 
   const cases::Case* the_case_;
   storage::Session session_;  ///< What is kept.
   storage::SessionWriter writer_;
-  std::optional<metrics::ImagePlane> plane_;
   std::optional<tasks::ActionRequest> wanted_action_;  ///< With the next sample.
   std::optional<Error> write_failure_;
   SceneParameters parameters_;                   ///< Last recorded parameters.

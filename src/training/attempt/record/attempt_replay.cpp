@@ -37,7 +37,7 @@ Result<AttemptReplay> AttemptReplay::of(storage::Session session, std::shared_pt
     return fail("the session is of another patient than the case", {}, "open that patient first");
   const bool was_cut_off = !session.outcome.has_value();
   if (was_cut_off) {
-    session.outcome = score_session(open->the_case, session, open->plane());
+    session.outcome = score_session(open->the_case, session);
   }
   return AttemptReplay(std::move(session), std::move(open), was_cut_off);
 }

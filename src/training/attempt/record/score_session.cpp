@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <string_view>
 
 #include "metrics/measure_run.h"
@@ -11,13 +12,11 @@
 namespace trocar::attempt {
 namespace {
 
-std::vector<metrics::MetricValue> measure(const cases::Case& the_case, const storage::Session& session,
-                                          const std::optional<metrics::ImagePlane>& plane) {
+std::vector<metrics::MetricValue> measure(const cases::Case& the_case, const storage::Session& session) {
   metrics::MetricContext context = storage::context_of(session);
   context.task = &the_case.task;
   context.patient = the_case.patient.get();
   context.needle = the_case.needle;
-  context.plane = plane;
   context.expert_paths.clear();
   for (const tasks::PlannedPath& path : the_case.expert_paths())
     context.expert_paths.push_back({fmt::format("{}", context.expert_paths.size() + 1), path.line_P});
@@ -33,9 +32,8 @@ std::optional<double> find_value(const std::vector<metrics::MetricValue>& values
 
 }  // namespace
 
-scoring::Outcome score_session(const cases::Case& the_case, const storage::Session& session,
-                               const std::optional<metrics::ImagePlane>& plane) {
-  std::vector<metrics::MetricValue> values = measure(the_case, session, plane);
+scoring::Outcome score_session(const cases::Case& the_case, const storage::Session& session) {
+  std::vector<metrics::MetricValue> values = measure(the_case, session);
   const auto visible_percent = find_value(values, "tip_visible");
   scoring::Outcome outcome = scoring::score_attempt(
       {.task = the_case.task,

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cmath>
 #include <map>
+#include <optional>
+#include <sstream>
 
 #include "storage/detail/guarded_database.h"
 
@@ -55,6 +58,30 @@ Field parse_number(const std::string& key, const std::string& text) {
   return value;
 }
 
+constexpr const char* kPlaneKey = "image_plane";
+
+/// The seven numbers of an image plane, separated by blanks, in the order of its members; empty: there is none.
+std::string plane_text(const std::optional<metrics::ImagePlane>& plane) {
+  if (!plane) return {};
+  return fmt::format("{} {} {} {} {} {} {}", plane->depth_mm, plane->radius_mm, plane->field_of_view_rad,
+                     plane->width_mm, plane->slice_mm, plane->elevation_mm, plane->elevation_focus_mm);
+}
+
+std::optional<metrics::ImagePlane> parse_plane(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  metrics::ImagePlane plane;
+  double* const members[] = {&plane.depth_mm, &plane.radius_mm,    &plane.field_of_view_rad, &plane.width_mm,
+                             &plane.slice_mm, &plane.elevation_mm, &plane.elevation_focus_mm};
+  std::istringstream words(text);
+  std::string word;
+  for (double* const member : members) {
+    if (!(words >> word)) throw soci::soci_error("the image plane is incomplete");
+    *member = parse_number<double>(kPlaneKey, word);
+    if (!std::isfinite(*member)) throw soci::soci_error("the image plane is not finite");
+  }
+  return plane;
+}
+
 void write_names(soci::session& database, const std::string& table, const std::vector<std::string>& names) {
   int id = 0;
   std::string name;
@@ -98,6 +125,11 @@ void write_info(soci::session& database, const SessionInfo& info) {
     value = field;
     insert.execute(true);
   });
+  if (info.plane) {
+    key = kPlaneKey;
+    value = plane_text(info.plane);
+    insert.execute(true);
+  }
   write_names(database, "tissues", info.tissue_names);
   write_names(database, "layers", info.layer_names);
   write_names(database, "labels", info.label_names);
@@ -137,6 +169,7 @@ SessionInfo read_info(soci::session& database) {
   visit_added_info(info, [&](const char* name, std::string& field) {
     if (const auto found = values.find(name); found != values.end()) field = found->second;
   });
+  if (const auto found = values.find(kPlaneKey); found != values.end()) info.plane = parse_plane(found->second);
   info.tissue_names = read_names(database, "tissues");
   info.layer_names = read_names(database, "layers");
   info.label_names = read_names(database, "labels");

@@ -37,6 +37,8 @@ inline storage::SessionInfo example_info() {
   info.layer_names = {"skin", "muscle", "liver_capsule"};
   info.label_names.resize(256);
   info.label_names[7] = "liver";
+  info.plane =
+      metrics::ImagePlane{.depth_mm = 155.5, .radius_mm = 61.0, .field_of_view_rad = 1.0 / 3.0, .width_mm = 60.2};
   return info;
 }
 

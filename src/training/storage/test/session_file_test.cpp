@@ -98,6 +98,9 @@ TEST(SessionFile, GivesTheCaseBack) {
   EXPECT_EQ(info.plan_P.line_P.a, expected.plan_P.line_P.a);
   EXPECT_EQ(info.plan_P.line_P.b, expected.plan_P.line_P.b);
   EXPECT_EQ(info.is_parenchymal, expected.is_parenchymal);
+  ASSERT_TRUE(info.plane);
+  EXPECT_EQ(info.plane->field_of_view_rad, expected.plane->field_of_view_rad);
+  EXPECT_EQ(info.plane->width_mm, expected.plane->width_mm);
   EXPECT_EQ(info.tissue_names, expected.tissue_names);
   EXPECT_EQ(info.layer_names, expected.layer_names);
   EXPECT_EQ(info.label_names, expected.label_names);
