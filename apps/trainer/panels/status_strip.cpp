@@ -2,8 +2,13 @@
 
 #include <QEvent>
 #include <QHBoxLayout>
+#include <QHelpEvent>
 #include <QLabel>
+#include <QPainter>
 #include <QPushButton>
+#include <QToolButton>
+#include <QToolTip>
+#include <algorithm>
 
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
@@ -11,33 +16,46 @@
 namespace trocar::trainer {
 namespace {
 
-constexpr double kServedWell = 0.999;
-constexpr double kServedBadly = 0.98;
+constexpr int kMost_px = 440;  ///< Width of a line of figures.
 
-QString colored(const QString& text, const QColor& color) {
-  return QStringLiteral("<span style='color:%1'>%2</span>").arg(color.name(), text.toHtmlEscaped());
+QColor color_of(Health health) {
+  const Theme& t = theme();
+  switch (health) {
+    case Health::kOff:
+    case Health::kStarting:
+      return t.dim;
+    case Health::kGood:
+      return t.good;
+    case Health::kStopped:
+    case Health::kSlow:
+      return t.warning;
+    case Health::kInterrupted:
+      return t.bad;
+  }
+  return t.dim;
 }
 
-/// Figures of a server, from least to most detail.
-enum Detail { kShare, kRate, kAll };
-
-QString line_text(const ServerLine& line, int detail) {
-  const Theme& t = theme();
-  const QString name = QStringLiteral("<b>%1</b> ").arg(line.tool.toHtmlEscaped());
-  if (!line.is_connected) return name + colored(StatusStrip::tr("not connected"), t.warning);
-  if (!line.fault.isEmpty())
-    return name +
-           colored(detail == kAll ? StatusStrip::tr("fault: %1").arg(line.fault) : StatusStrip::tr("fault"), t.bad);
-  const QColor served = line.served >= kServedWell ? t.good : line.served >= kServedBadly ? t.warning : t.bad;
-  const QString share =
-      StatusStrip::tr("%1 % on time").arg(100.0 * line.served, 0, 'f', line.served >= kServedBadly ? 2 : 1);
-  if (detail == kShare) return name + colored(share, served);
-  QString text = name + colored(StatusStrip::tr("%1 Hz, %2").arg(line.rate_hz, 0, 'f', 0).arg(share), served);
-  if (detail == kRate) return text;
-  text += colored(StatusStrip::tr(" · %1 µs late").arg(line.lateness_p99_us, 0, 'f', 0), t.dim);
-  if (line.ticks_missing > 0) text += colored(StatusStrip::tr(" · %1 ticks lost").arg(line.ticks_missing), t.warning);
-  if (!line.is_real_time) text += colored(StatusStrip::tr(" · no real-time scheduling"), t.warning);
-  return text;
+/// Disc: good; ring: off; triangle: slow; square: stopped or interrupted. The shape says it without the colour.
+QIcon symbol_of(Health health, int side, double pixel_ratio) {
+  QPixmap picture(QSize(side, side) * pixel_ratio);
+  picture.setDevicePixelRatio(pixel_ratio);
+  picture.fill(Qt::transparent);
+  QPainter painter(&picture);
+  painter.setRenderHint(QPainter::Antialiasing);
+  const QColor color = color_of(health);
+  const QRectF box = QRectF(0, 0, side, side).adjusted(1.5, 1.5, -1.5, -1.5);
+  painter.setPen(QPen(color, 2.0));
+  painter.setBrush(health == Health::kOff || health == Health::kStarting ? QBrush(Qt::NoBrush) : QBrush(color));
+  if (health == Health::kSlow) {
+    const QPointF top(box.center().x(), box.top());
+    painter.drawPolygon(QPolygonF({top, box.bottomRight(), box.bottomLeft()}));
+  } else if (health == Health::kStopped || health == Health::kInterrupted) {
+    painter.drawRect(box);
+  } else {
+    painter.drawEllipse(box);
+  }
+  painter.end();
+  return QIcon(picture);
 }
 
 }  // namespace
@@ -46,81 +64,140 @@ StatusStrip::StatusStrip(QWidget* parent) : QFrame(parent) {
   setObjectName(QStringLiteral("status-strip"));
   setProperty("role", "bar");
   auto* row = new QHBoxLayout(this);
-  row->setContentsMargins(16, 6, 8, 6);
-  row->setSpacing(20);
-  needle_ = make_label(tr("No attempt is running: forces are off"), "dim");
-  probe_ = make_label({});
-  frames_ = make_label({}, "dim");
-  needle_->setObjectName(QStringLiteral("status-needle"));
-  probe_->setObjectName(QStringLiteral("status-probe"));
-  frames_->setObjectName(QStringLiteral("status-frames"));
-  frames_->setToolTip(tr("Frames of the last second and the slowest of them; late: frames of this attempt over %1 ms")
-                          .arg(1e3 * FrameCount::kLate_s, 0, 'f', 0));
-  row->addWidget(needle_);
-  row->addWidget(probe_);
+  row->setContentsMargins(8, 6, 8, 6);
+  row->setSpacing(12);
+  indicator_ = make_tool_button("status-health", {}, {});
+  indicator_->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+  indicator_->setFocusPolicy(Qt::NoFocus);
+  indicator_->setCheckable(true);
+  reason_ = make_label({}, "dim");
+  reason_->setObjectName(QStringLiteral("status-reason"));
+  row->addWidget(indicator_);
+  row->addWidget(reason_);
   row->addStretch();
-  row->addWidget(frames_);
   stop_ = make_button("force-stop", tr("STOP FORCES"),
                       tr("Switches all forces off at once; press again to switch them on (Space)"));
   stop_->setProperty("role", "stop");
   stop_->setFocusPolicy(Qt::NoFocus);
   row->addWidget(stop_);
-  for (QLabel* label : {needle_, probe_, frames_}) label->setMinimumWidth(1);  // the button is never shrunk
+  details_ = new QFrame(this);
+  details_->setObjectName(QStringLiteral("status-details"));
+  details_->setProperty("role", "card");
+  auto* content = new QVBoxLayout(details_);
+  figures_ = make_label({});
+  figures_->setObjectName(QStringLiteral("status-figures"));
+  figures_->setWordWrap(true);
+  content->addWidget(figures_);
+  details_->hide();
   connect(stop_, &QPushButton::clicked, this, &StatusStrip::toggle_requested);
+  connect(indicator_, &QToolButton::toggled, this, &StatusStrip::set_details_shown);
+  report_.health = Health::kInterrupted;  // differs from the state at the start, so that it is displayed
   show_forces(false, false);
 }
 
 void StatusStrip::show_servers(const std::vector<ServerLine>& servers) {
-  if (servers == shown_) return;
-  shown_ = servers;
-  fit_texts();
+  if (servers == input_.servers) return;
+  input_.servers = servers;
+  const bool are_connected =
+      std::all_of(servers.begin(), servers.end(), [](const ServerLine& line) { return line.is_connected; });
+  input_.has_started = !servers.empty() && (input_.has_started || are_connected);
+  update_health();
 }
 
 void StatusStrip::show_frames(const FrameFigures& frames) {
-  QString text = tr("%1 frames/s, slowest %2 ms").arg(frames.per_s, 0, 'f', 0).arg(frames.slowest_ms, 0, 'f', 0);
-  if (frames.late > 0) text += tr(" · %1 of %2 late").arg(frames.late).arg(frames.judged);
-  if (frames_->text() == text) return;
-  frames_->setText(text);
-  fit_texts();
+  if (input_.frames && *input_.frames == frames) return;
+  input_.frames = frames;
+  update_health();
 }
 
-void StatusStrip::set_texts(int detail) {
-  QLabel* labels[] = {needle_, probe_};
-  for (std::size_t s = 0; s < 2; ++s) {
-    const bool is_there = s < shown_.size();
-    labels[s]->setText(is_there ? line_text(shown_[s], detail) : QString());
-    labels[s]->setToolTip(is_there ? line_text(shown_[s], kAll) +
-                                         tr("<br>Granted by the system: %1").arg(shown_[s].grant.toHtmlEscaped())
-                                   : QString());
-  }
-  if (shown_.empty()) needle_->setText(tr("No attempt is running: forces are off"));
+void StatusStrip::show_forces(bool is_attempt, bool are_stopped) {
+  input_.is_attempt = is_attempt;
+  input_.are_forces_stopped = are_stopped;
+  if (stop_->isEnabled() != is_attempt) stop_->setEnabled(is_attempt);
+  const QString text = is_attempt && are_stopped ? tr("RESUME FORCES") : tr("STOP FORCES");
+  if (stop_->text() != text) stop_->setText(text);
+  update_health();
 }
 
-void StatusStrip::fit_texts() {
-  frames_->show();
-  for (int detail = kAll; detail >= kShare; --detail) {
-    set_texts(detail);
-    if (layout()->sizeHint().width() <= width()) return;
+void StatusStrip::update_health() {
+  if (shows_details()) {
+    if (const QString text = health_details(input_); text != figures_->text()) {
+      figures_->setText(text);
+      place_details();
+    }
   }
-  frames_->hide();
+  const HealthReport report = assess_health(input_);
+  if (report == report_) return;
+  report_ = report;
+  indicator_->setText(report_.words);
+  indicator_->setAccessibleName(tr("State of forces and display: %1").arg(report_.words));
+  indicator_->setAccessibleDescription(report_.reason);
+  reason_->setText(report_.reason);
+  reason_->setToolTip(report_.reason);
+  update_symbol();
+}
+
+void StatusStrip::update_symbol() {
+  const int side = fontMetrics().ascent();
+  indicator_->setIconSize({side, side});
+  indicator_->setIcon(symbol_of(report_.health, side, devicePixelRatioF()));
+  reason_->setVisible(indicator_->sizeHint().width() + reason_->sizeHint().width() + stop_->sizeHint().width() +
+                          4 * layout()->spacing() + 16 <=
+                      width());
+}
+
+bool StatusStrip::shows_details() const {
+  return !details_->isHidden();
+}
+
+void StatusStrip::set_details_shown(bool are_shown) {
+  if (indicator_->isChecked() != are_shown) return indicator_->setChecked(are_shown);
+  if (are_shown) {
+    // In the window the frame covers the views above the strip; alone, the strip has no room for it.
+    if (details_->parentWidget() != window()) details_->setParent(window());
+    figures_->setText(health_details(input_));
+  }
+  details_->setVisible(are_shown);
+  place_details();
+}
+
+void StatusStrip::place_details() {
+  if (!shows_details()) return;
+  QWidget* around = details_->parentWidget();
+  figures_->setFixedWidth(std::min(kMost_px, around->width() - 60));
+  details_->adjustSize();
+  const QPoint corner = mapTo(around, QPoint(8, -8));
+  details_->move(corner.x(), std::max(0, corner.y() - details_->height()));
+  details_->raise();
+}
+
+bool StatusStrip::event(QEvent* event) {
+  if (event->type() == QEvent::ToolTip) {
+    const auto* help = static_cast<QHelpEvent*>(event);
+    if (indicator_->geometry().contains(help->pos())) {
+      QToolTip::showText(help->globalPos(), health_details(input_), this);
+      return true;
+    }
+  }
+  return QFrame::event(event);
 }
 
 void StatusStrip::resizeEvent(QResizeEvent* event) {
   QFrame::resizeEvent(event);
-  fit_texts();
+  update_symbol();
+  place_details();
+}
+
+void StatusStrip::moveEvent(QMoveEvent* event) {
+  QFrame::moveEvent(event);
+  place_details();
 }
 
 void StatusStrip::changeEvent(QEvent* event) {
   QFrame::changeEvent(event);
-  if (event->type() == QEvent::FontChange || event->type() == QEvent::StyleChange) fit_texts();
-}
-
-void StatusStrip::show_forces(bool is_attempt, bool are_stopped) {
-  if (stop_->isEnabled() != is_attempt) stop_->setEnabled(is_attempt);
-  const QString text = is_attempt && are_stopped ? tr("RESUME FORCES") : tr("STOP FORCES");
-  if (stop_->text() == text) return;
-  stop_->setText(text);
-  fit_texts();
+  if (event->type() != QEvent::FontChange && event->type() != QEvent::StyleChange) return;
+  update_symbol();
+  place_details();
 }
 
 }  // namespace trocar::trainer

@@ -4,41 +4,34 @@
 #include <vector>
 
 #include "attempt/record/run_result.h"
-#include "ui_kit/frame_count.h"
+#include "panels/status_health.h"
 
 class QLabel;
 class QPushButton;
+class QToolButton;
 
 namespace trocar::trainer {
 
-/// Figures of one haptic server in the strip.
-struct ServerLine {
-  QString tool;  ///< "Needle"
-  bool is_connected = false;
-  double rate_hz = 0.0;
-  double served = 1.0;  ///< Share of periods that were served in time.
-  double lateness_p99_us = 0.0;
-  std::uint64_t ticks_missing = 0;
-  QString fault;  ///< Empty: none.
-  QString grant;  ///< Granted real-time privileges, as text.
-  bool is_real_time = false;
-
-  bool operator==(const ServerLine&) const = default;
-};
-
-/// Status bar of the window: figures of the haptic servers and of the window, and the force stop button, which is
-/// always visible. A narrow window has fewer figures; tooltips have all of them.
+/// Status bar of the window: one indicator of the state of forces and pictures, and the force stop button, which is
+/// always visible. A click on the indicator shows or hides the figures behind it, above the bar; its tooltip has them,
+/// too. The figures do not take the keyboard: Space stops the forces while they are open.
 class StatusStrip : public QFrame {
   Q_OBJECT
 
  public:
   explicit StatusStrip(QWidget* parent = nullptr);
 
+  /// Empty: no attempt.
   void show_servers(const std::vector<ServerLine>& servers);
   /// Figures of the window.
   void show_frames(const FrameFigures& frames);
   /// Sets whether an attempt is running and whether its forces are stopped; the button stops or restores them.
   void show_forces(bool is_attempt, bool are_stopped);
+
+  const HealthReport& report() const noexcept { return report_; }
+  /// True while the figures are open.
+  bool shows_details() const;
+  void set_details_shown(bool are_shown);
 
  Q_SIGNALS:
   /// The button or Space was pressed.
@@ -46,18 +39,22 @@ class StatusStrip : public QFrame {
 
  protected:
   void resizeEvent(QResizeEvent* event) override;
+  void moveEvent(QMoveEvent* event) override;
   void changeEvent(QEvent* event) override;
+  bool event(QEvent* event) override;
 
  private:
-  /// Selects the most detailed texts that fit beside the button.
-  void fit_texts();
-  void set_texts(int detail);
+  void update_health();
+  void update_symbol();
+  void place_details();
 
-  QLabel* needle_ = nullptr;
-  QLabel* probe_ = nullptr;
-  QLabel* frames_ = nullptr;
+  QToolButton* indicator_ = nullptr;
+  QLabel* reason_ = nullptr;  ///< One sentence beside the indicator; hidden in a narrow window.
   QPushButton* stop_ = nullptr;
-  std::vector<ServerLine> shown_;
+  QFrame* details_ = nullptr;  ///< A child of the window, above the strip.
+  QLabel* figures_ = nullptr;
+  HealthInput input_;
+  HealthReport report_;
 };
 
 }  // namespace trocar::trainer

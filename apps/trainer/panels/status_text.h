@@ -4,7 +4,7 @@
 
 #include "attempt/live/attempt_view.h"
 #include "core/result.h"
-#include "panels/status_strip.h"
+#include "panels/status_health.h"
 
 namespace trocar::trainer {
 

@@ -2,10 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <QLabel>
-
-#include "panels/status_strip.h"
-
 namespace trocar::trainer {
 namespace {
 
@@ -45,16 +41,6 @@ TEST(FrameCount, CountsLateFramesOfThisAttemptAlone) {
   EXPECT_EQ(count.late(), 1U);
   count.restart();
   EXPECT_EQ(count.figures()->late, 0U);
-}
-
-TEST(StatusStrip, ShowsLateFramesAsAShareOfAllFrames) {
-  StatusStrip strip;
-  strip.show_frames({52.0, 140.0, 377, 9000});
-  const QString text = strip.findChild<QLabel*>(QStringLiteral("status-frames"))->text();
-  for (const char* part : {"52 frames/s", "140 ms", "377 of 9000 late"})
-    EXPECT_TRUE(text.contains(QString::fromLatin1(part))) << text.toStdString();
-  strip.show_frames({60.0, 17.0, 0, 9000});
-  EXPECT_FALSE(strip.findChild<QLabel*>(QStringLiteral("status-frames"))->text().contains(QStringLiteral("late")));
 }
 
 }  // namespace
