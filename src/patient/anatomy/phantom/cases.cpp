@@ -57,15 +57,17 @@ Result<BodyParameters> read_body(const config::TomlTable& table) {
 }
 
 Result<CaseDescription> read_case(const config::TomlTable& table) {
-  TROCAR_TRY_STATUS(
-      table.check_keys({"name", "task", "difficulty", "description", "briefing", "seed", "posture", "body"}));
+  TROCAR_TRY_STATUS(table.check_keys({"name", "task", "difficulty", "description", "indication", "coagulation",
+                                      "allergies", "seed", "posture", "body"}));
   CaseDescription description;
   TROCAR_TRY(description.name, table.string("name"));
   TROCAR_TRY(description.task, table.string("task"));
   TROCAR_TRY(const std::int64_t difficulty, table.integer("difficulty", {1, 5}));
   description.difficulty = static_cast<int>(difficulty);
   TROCAR_TRY(description.description, table.string("description"));
-  TROCAR_TRY(description.briefing, table.string("briefing"));
+  TROCAR_TRY(description.indication, table.string("indication"));
+  TROCAR_TRY(description.coagulation, table.string("coagulation"));
+  TROCAR_TRY(description.allergies, table.string("allergies"));
   TROCAR_TRY(const std::int64_t seed, table.integer("seed", {1, 1e9}));
   description.seed = static_cast<std::uint64_t>(seed);
   TROCAR_TRY(const std::string posture, table.string("posture"));

@@ -18,7 +18,9 @@ struct CaseDescription {
   std::string task;         ///< "lumbar-puncture".
   int difficulty = 1;       ///< 1 (easiest) to 5.
   std::string description;  ///< One line.
-  std::string briefing;     ///< The referral: indication, findings.
+  std::string indication;   ///< Of the referral: history, question and request.
+  std::string coagulation;  ///< "INR 1.4, platelets 95/nl"
+  std::string allergies;    ///< "none known"
   std::uint64_t seed = 1;
   Posture posture = Posture::kSupine;
   BodyParameters body;

@@ -129,7 +129,15 @@ Result<VirtualPatient> generate_case(const PhantomInfo& info, const CaseDescript
 }
 
 PhantomInfo info_of(const CaseDescription& description) {
-  return {description.name, description.description, {description.task}, description.difficulty, description.briefing};
+  PhantomInfo info{description.name, description.description, {description.task}, description.difficulty};
+  if (description.indication.empty()) return info;
+  const BodyParameters& body = description.body;
+  info.referral =
+      Referral{body.sex == Sex::kFemale, body.age_years,          body.height_cm,        body.weight_kg,
+               description.indication,   description.coagulation, description.allergies, description.posture};
+  info.briefing = fmt::format("{} Coagulation: {}. Allergies: {}. Posture: {}.", description.indication,
+                              description.coagulation, description.allergies, posture_words(description.posture));
+  return info;
 }
 
 /// The named cases; empty if their file is missing or broken, which generate_phantom reports.

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,13 +19,26 @@ inline constexpr std::string_view kVariantPatient = "variant";
 /// Task of that patient.
 std::string variant_task(std::uint64_t seed);
 
+/// What is known of an embedded patient before it is generated, for a referral.
+struct Referral {
+  bool is_female = false;
+  double age_years = 0.0;
+  double height_cm = 0.0;
+  double weight_kg = 0.0;
+  std::string indication;   ///< History, question and request.
+  std::string coagulation;  ///< "INR 1.4, platelets 95/nl"
+  std::string allergies;    ///< "none known"
+  Posture posture = Posture::kSupine;
+};
+
 /// An embedded patient that the program generates itself.
 struct PhantomInfo {
   std::string name;  ///< "abdomen".
   std::string description;
   std::vector<std::string> tasks;  ///< Names of the tasks that it supports.
   int difficulty = 0;              ///< 1 (easiest) to 5; 0: a test scene.
-  std::string briefing = {};       ///< What the trainee is told of the patient; empty: the description says it all.
+  std::string briefing = {};       ///< The referral as one text; empty: the description says it all.
+  std::optional<Referral> referral = {};
 };
 const std::vector<PhantomInfo>& embedded_patients();
 

@@ -164,7 +164,8 @@ TEST(NamedCases, AreFiveOfEachTaskInOrderOfDifficulty) {
   std::map<std::string, std::vector<int>> difficulties;
   for (const CaseDescription& description : shipped_cases()) {
     difficulties[description.task].push_back(description.difficulty);
-    EXPECT_FALSE(description.briefing.empty()) << description.name;
+    for (const std::string* text : {&description.indication, &description.coagulation, &description.allergies})
+      EXPECT_FALSE(text->empty()) << description.name;
   }
   ASSERT_EQ(difficulties.size(), 4U);
   for (const auto& [task, levels] : difficulties) EXPECT_EQ(levels, (std::vector<int>{1, 2, 3, 4, 5})) << task;
