@@ -18,6 +18,21 @@ constexpr double kPainTolerance = 1.0;      // pain events that halve the points
 constexpr double kOrganTolerance_mm = 5.0;  // missing organ on the way that halves the points of the access
 constexpr double kSlowReturn = 0.7;         // share of the points for single drops: the bevel is only partly in it
 
+constexpr std::pair<std::string_view, std::string_view> kTitles[] = {
+    {"target", "Distance to the target"},
+    {"confirmation", "Proof of the place"},
+    {"core", "Target tissue in the core"},
+    {"risk", "Structures at risk touched"},
+    {"access", "Missing margin to structures at risk"},
+    {"entry", "Insertion point"},
+    {"angle", "Needle direction"},
+    {"visibility", "Advance with the tip in the image"},
+    {"comfort", "Painful moments"},
+    {"length", "Needle travel inside the body"},
+    {"time", "Time from the skin to the target"},
+    {"dose", "Radiation dose (dose-area product)"},
+};
+
 /// Share of a part's points at a deviation: 1 at 0, 1/2 at the tolerance, decreasing without end (docs/physics.md, S1).
 double share_at(double deviation, double tolerance) noexcept {
   const double ratio = tolerance > 0.0 ? deviation / tolerance : HUGE_VAL;
@@ -33,7 +48,6 @@ double share_below(double expense, double limit) noexcept {
 /// A part before its weight is known. Empty share: it cannot be judged.
 struct PartShare {
   const char* name;
-  const char* title;
   double value;
   const char* unit;
   std::optional<double> share;
@@ -77,21 +91,18 @@ std::vector<PartShare> all_parts(const Judgement& judged, double risk_weight) {
   if (judged.attempt.xray.beam_s > 0.0) dose = is_finished ? share_below(dose_gycm2, task.dose_limit_gycm2) : 0.0;
   const auto pain = static_cast<double>(judged.pain.size());
   return {
-      {"target", "Distance to the target", judged.target_mm, "mm",
-       share_at(judged.target_mm, task.target_tolerance_mm)},
-      {"confirmation", "Proof of the place", judged.confirmed_s ? 1.0 : 0.0, "", confirmation_share(judged)},
-      {"core", "Target tissue in the core", judged.core ? judged.core->target_mm : 0.0, "mm", core},
-      {"risk", "Structures at risk touched", risks, "", safe},
-      {"access", "Missing margin to structures at risk", judged.access.missing_margin_mm, "mm", access_share(judged)},
-      {"entry", "Insertion point", judged.entry_mm, "mm", share_at(judged.entry_mm, task.entry_tolerance_mm)},
-      {"angle", "Needle direction", measured.angle_deg, "°", share_at(measured.angle_deg, task.angle_tolerance_deg)},
-      {"visibility", "Advance with the tip in the image", 100.0 * judged.attempt.tip_visible_share.value_or(0.0), "%",
-       judged.attempt.tip_visible_share},
-      {"comfort", "Painful moments", pain, "", share_at(pain, kPainTolerance)},
-      {"length", "Needle travel inside the body", measured.travel_mm, "mm",
-       share_below(std::max(0.0, measured.travel_mm - length_mm), length_mm)},
-      {"time", "Time from the skin to the target", measured.time_s, "s", time},
-      {"dose", "Radiation dose (dose-area product)", dose_gycm2, "Gy cm²", dose},
+      {"target", judged.target_mm, "mm", share_at(judged.target_mm, task.target_tolerance_mm)},
+      {"confirmation", judged.confirmed_s ? 1.0 : 0.0, "", confirmation_share(judged)},
+      {"core", judged.core ? judged.core->target_mm : 0.0, "mm", core},
+      {"risk", risks, "", safe},
+      {"access", judged.access.missing_margin_mm, "mm", access_share(judged)},
+      {"entry", judged.entry_mm, "mm", share_at(judged.entry_mm, task.entry_tolerance_mm)},
+      {"angle", measured.angle_deg, "°", share_at(measured.angle_deg, task.angle_tolerance_deg)},
+      {"visibility", 100.0 * judged.attempt.tip_visible_share.value_or(0.0), "%", judged.attempt.tip_visible_share},
+      {"comfort", pain, "", share_at(pain, kPainTolerance)},
+      {"length", measured.travel_mm, "mm", share_below(std::max(0.0, measured.travel_mm - length_mm), length_mm)},
+      {"time", measured.time_s, "s", time},
+      {"dose", dose_gycm2, "Gy cm²", dose},
   };
 }
 
@@ -110,7 +121,7 @@ std::vector<ScorePart> parts_of(const Judgement& judged) {
   for (const PartShare& part : shares) {
     const double most = 100.0 * weight_of(task, part.name) / sum;
     const double share = judged.measured.has_entered ? *part.share : 0.0;
-    parts.push_back({part.name, part.title, part.value, part.unit, share * most, most});
+    parts.push_back({part.name, std::string(part_title(part.name)), part.value, part.unit, share * most, most});
   }
   return parts;
 }
@@ -150,6 +161,12 @@ std::vector<std::string> find_fails(const Judgement& judged, const Outcome& outc
 }
 
 }  // namespace
+
+std::string_view part_title(std::string_view part) noexcept {
+  for (const auto& [name, title] : kTitles)
+    if (name == part) return title;
+  return {};
+}
 
 Outcome score_attempt(const AttemptData& given) {
   AttemptData attempt = given;

@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "anatomy/patient.h"
@@ -37,6 +38,9 @@ struct BiopsyCore {
   double other_mm = 0.0;
   std::vector<std::string> risks_in_throw;  ///< Risk structures over the whole throw, by label name.
 };
+
+/// Display text of one of tasks::kScoreParts: "Needle direction"; empty for another name.
+std::string_view part_title(std::string_view part) noexcept;
 
 struct ScorePart {
   std::string name;   ///< One of tasks::kScoreParts.
