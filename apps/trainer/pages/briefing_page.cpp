@@ -1,17 +1,15 @@
 #include "pages/briefing_page.h"
 
+#include <QGridLayout>
 #include <QImage>
 #include <QLabel>
 #include <QProgressBar>
 #include <QPushButton>
+#include <QScrollArea>
 #include <QVBoxLayout>
 #include <algorithm>
-#include <span>
 
-#include "anatomy/phantom/phantom.h"
-#include "attempt/live/live_attempt.h"
-#include "attempt/servers/device_control.h"
-#include "attempt/servers/tool_devices.h"
+#include "pages/briefing_text.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
 #include "views/slices/briefing_picture.h"
@@ -20,121 +18,55 @@ namespace trocar::trainer {
 namespace {
 
 constexpr int kSteps = 1000;
+constexpr int kWide_px = 1300;  ///< From here on, there is room for a second column of text.
 
-struct Control {
-  const char* with;
-  const char* does;
-};
-constexpr Control kTakeMouse[] = {{"A / S", "select the needle / the transducer"},
-                                  {"drag", "move along the skin; right button: tilt"},
-                                  {"wheel", "advance and withdraw; Shift: fine steps"},
-                                  {"H", "move the active tool to its planned position (guided)"}};
-constexpr Control kNeedleByGamepad[] = {{"left stick", "moves the needle; cross: lifts and lowers it"},
-                                        {"right stick", "swings the tip in the direction of the stick"},
-                                        {"triggers", "right: push in, left: pull out; rumble: resistance"},
-                                        {"shoulders", "turn the bevel"}};
-constexpr Control kProbeByGamepad[] = {{"left stick", "moves the transducer; cross: lifts and lowers it"},
-                                       {"right stick", "tilts it"},
-                                       {"shoulders", "turn it"}};
-constexpr Control kProbeByMouse[] = {{"S, mouse", "drag and wheel move the transducer"}};
-constexpr Control kNeedleByMouse[] = {{"A, mouse", "drag and wheel move the needle; Shift: finely"}};
-constexpr Control kAlways[] = {
-    {"Enter", "fire the biopsy gun"}, {"E", "end the attempt"}, {"Space", "stop all forces"}, {"F1", "all keys"}};
-
-QString row(const QString& with, const QString& does) {
-  return QStringLiteral("<tr><td><b>%1</b></td><td>%2</td></tr>").arg(with.toHtmlEscaped(), does);
-}
-
-QString rows(std::span<const Control> controls) {
-  QString all;
-  for (const Control& control : controls) all += row(BriefingPage::tr(control.with), BriefingPage::tr(control.does));
-  return all;
-}
-
-/// Rows for devices other than the mouse.
-QString device_rows(const std::string& device, bool is_needle) {
-  if (device == "gamepad") return is_needle ? rows(kNeedleByGamepad) : rows(kProbeByGamepad);
-  const QString tool = is_needle ? BriefingPage::tr("needle") : BriefingPage::tr("transducer");
-  if (device == "spacemouse")
-    return row(BriefingPage::tr("cap"), BriefingPage::tr("push and turn it to move and turn the %1").arg(tool));
-  return row(to_qt(attempt::device_title(device)), BriefingPage::tr("its stylus is the %1").arg(tool));
-}
-
-QString controls_text(const TrainerChoice& choice) {
-  const bool is_needle_led = attempt::follows_targets(choice.needle_device);
-  const bool is_probe_led = attempt::follows_targets(choice.probe_device);
-  QString all;
-  if (is_needle_led && is_probe_led) {
-    all = rows(kTakeMouse);
-  } else {
-    all += is_needle_led ? rows(kNeedleByMouse) : device_rows(choice.needle_device, true);
-    all += is_probe_led ? rows(kProbeByMouse) : device_rows(choice.probe_device, false);
-  }
-  return QStringLiteral("<table cellspacing='0' cellpadding='3'>") + all + rows(kAlways) + QStringLiteral("</table>");
-}
-
-QString risks_text(const tasks::Task& task) {
-  QStringList risks;
-  for (const tasks::RiskStructure& risk : task.risks)
-    risks << BriefingPage::tr("%1 (−%2)")
-                 .arg(to_qt(risk.label.empty() ? risk.tissue : risk.label))
-                 .arg(risk.penalty, 0, 'f', 0);
-  return risks.join(QStringLiteral(", "));
-}
-
-QString counts_text(const cases::Case& the_case) {
-  const tasks::Task& task = the_case.task;
-  return BriefingPage::tr(
-             "Scoring: tip at the target (half of the points at %1 mm), entry point (half at %2 mm) and angle (half at "
-             "%3°) compared with the expert's, %6a short path, less than %4 s. Do not touch: %5.")
-      .arg(task.target_tolerance_mm, 0, 'f', 0)
-      .arg(task.entry_tolerance_mm, 0, 'f', 0)
-      .arg(task.angle_tolerance_deg, 0, 'f', 0)
-      .arg(task.time_limit_s, 0, 'f', 0)
-      .arg(risks_text(task), the_case.needle.is_biopsy ? BriefingPage::tr("target tissue in the core, ") : QString());
-}
-
-/// The referral of an embedded patient; empty for others.
-QString referral_text(const cases::Case& the_case) {
-  for (const anatomy::PhantomInfo& info : anatomy::embedded_patients())
-    if (info.name == the_case.patient->name && !info.briefing.empty())
-      return to_qt(info.briefing) + QStringLiteral("\n\n");
-  return {};
-}
-
-/// Targets that are no lesion.
-QString fluid_goal_text(const tasks::Task& task) {
-  const auto is_target = [&](const char* tissue) {
-    return std::find(task.target_tissues.begin(), task.target_tissues.end(), tissue) != task.target_tissues.end();
-  };
-  if (is_target("csf")) return BriefingPage::tr("Bring the needle's tip into the spinal fluid of the dural sac.");
-  if (is_target("ascites")) return BriefingPage::tr("Bring the needle's tip into the free fluid of the abdomen.");
-  if (is_target("bile_duct")) return BriefingPage::tr("Bring the needle's tip into a bile duct of the liver.");
-  return {};
-}
-
-QString goal_text(const cases::Case& the_case) {
-  if (const QString text = fluid_goal_text(the_case.task); !text.isEmpty()) return text;
-  return BriefingPage::tr("Bring the needle's tip to the %1 %2, under ultrasound.")
-      .arg(the_case.is_parenchymal ? BriefingPage::tr("healthy tissue of the") : BriefingPage::tr("lesion of the"),
-           to_qt(the_case.task.organ));
-}
-
-QString way_text(const cases::Case& the_case) {
-  return BriefingPage::tr(" The planned path is %1 mm long, %2 mm of it in the %3; nearest structure: %4.")
-      .arg(the_case.plan.length_mm, 0, 'f', 0)
-      .arg(the_case.plan.organ_path_mm, 0, 'f', 0)
-      .arg(to_qt(the_case.task.organ))
-      .arg(the_case.plan.nearest_risk.empty()
-               ? BriefingPage::tr("no structure at risk")
-               : to_qt(the_case.plan.nearest_risk).replace(QLatin1Char(0x5f), QLatin1Char(0x20)));
-}
-
-QLabel* paragraph() {
+QLabel* paragraph(const char* name) {
   auto* label = make_label({});
+  label->setObjectName(QString::fromLatin1(name));
+  label->setTextFormat(Qt::RichText);
   label->setWordWrap(true);
   label->setAlignment(Qt::AlignTop | Qt::AlignLeft);
   return label;
+}
+
+QFrame* text_card(const QString& heading, QLabel* text) {
+  QBoxLayout* content = nullptr;
+  QFrame* card = make_card(heading, content);
+  content->addWidget(text);
+  content->addStretch();
+  return card;
+}
+
+QString swatch(const QColor& color, const QString& symbol, const QString& words) {
+  return QStringLiteral("<span style='color:%1'>%2</span>&nbsp;%3")
+      .arg(color.name(), symbol, words.toHtmlEscaped().replace(QLatin1Char(' '), QStringLiteral("&nbsp;")));
+}
+
+/// The marks of the plan, then the colours of both slices, the largest area first.
+QString legend_html(const std::vector<LegendEntry>& entries, scene::Guidance guidance) {
+  const Theme& t = theme();
+  QStringList parts{guidance == scene::Guidance::kPath
+                        ? swatch(t.target, QStringLiteral("◯"), BriefingPage::tr("end of the path"))
+                        : swatch(t.target, QStringLiteral("◯"), BriefingPage::tr("target"))};
+  if (guidance != scene::Guidance::kNone) parts << swatch(t.path, QStringLiteral("◯"), BriefingPage::tr("entry"));
+  if (guidance == scene::Guidance::kPath)
+    parts << swatch(t.path, QStringLiteral("- -"), BriefingPage::tr("planned path"));
+  for (const LegendEntry& entry : entries) parts << swatch(entry.color, QStringLiteral("■"), entry.words);
+  return parts.join(QStringLiteral(" &nbsp; "));
+}
+
+/// Entries of two slices; the same colour once.
+std::vector<LegendEntry> joined(std::vector<LegendEntry> a, const std::vector<LegendEntry>& b) {
+  for (const LegendEntry& entry : b) {
+    const auto same = std::find_if(a.begin(), a.end(), [&](const LegendEntry& e) { return e.color == entry.color; });
+    if (same == a.end()) {
+      a.push_back(entry);
+    } else {
+      same->share += entry.share;
+    }
+  }
+  std::stable_sort(a.begin(), a.end(), [](const LegendEntry& x, const LegendEntry& y) { return x.share > y.share; });
+  return a;
 }
 
 }  // namespace
@@ -142,33 +74,38 @@ QLabel* paragraph() {
 BriefingPage::BriefingPage(QWidget* parent) : QWidget(parent) {
   setObjectName(QStringLiteral("briefing-page"));
   auto* page = new QVBoxLayout(this);
-  page->setContentsMargins(40, 24, 40, 24);
-  page->setSpacing(12);
+  page->setContentsMargins(24, 16, 24, 16);
+  page->setSpacing(10);
   title_ = make_label({}, "title");
   subtitle_ = make_label({}, "dim");
+  subtitle_->setWordWrap(true);
   page->addWidget(title_);
   page->addWidget(subtitle_);
   auto* columns = new QHBoxLayout;
-  columns->setSpacing(16);
-  columns->addWidget(make_text(), 5);
-  columns->addWidget(make_pictures(), 6);
+  columns->setSpacing(12);
+  columns->addWidget(make_texts(), 6);
+  columns->addWidget(make_pictures(), 5);
   page->addLayout(columns, 1);
   page->addWidget(make_bottom());
 }
 
-QWidget* BriefingPage::make_text() {
-  QBoxLayout* content = nullptr;
-  QFrame* card = make_card(tr("Task"), content);
-  goal_ = paragraph();
-  content->addWidget(goal_);
-  content->addWidget(make_label(tr("Scoring"), "heading"));
-  counts_ = paragraph();
-  content->addWidget(counts_);
-  content->addWidget(make_label(tr("Controls"), "heading"));
-  controls_ = paragraph();
-  content->addWidget(controls_);
-  content->addStretch();
-  return card;
+QWidget* BriefingPage::make_texts() {
+  auto* content = new QWidget;
+  cards_ = new QGridLayout(content);
+  cards_->setContentsMargins(0, 0, 0, 0);
+  cards_->setSpacing(12);
+  referral_ = paragraph("briefing-referral");
+  procedure_ = paragraph("briefing-procedure");
+  scoring_ = paragraph("briefing-scoring");
+  controls_ = paragraph("briefing-controls");
+  card_widgets_ = {text_card(tr("Referral"), referral_), text_card(tr("Procedure"), procedure_),
+                   text_card(tr("Scoring"), scoring_), text_card(tr("Controls"), controls_)};
+  place_cards();
+  QScrollArea* area = make_scrolled(*content);
+  area->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  area->setMinimumSize(380, 200);
+  area->setFocusPolicy(Qt::StrongFocus);  // arrow keys scroll
+  return area;
 }
 
 QWidget* BriefingPage::make_pictures() {
@@ -178,11 +115,14 @@ QWidget* BriefingPage::make_pictures() {
   for (QLabel** label : {&axial_, &second_}) {
     *label = make_label({}, "dim");
     (*label)->setAlignment(Qt::AlignCenter);
-    (*label)->setMinimumSize(240, 160);
+    (*label)->setWordWrap(true);
+    (*label)->setMinimumSize(240, 120);
     (*label)->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Ignored);
     pictures->addWidget(*label, 1);
   }
   content->addLayout(pictures, 1);
+  legend_ = paragraph("briefing-legend");
+  content->addWidget(legend_);
   return card;
 }
 
@@ -208,15 +148,39 @@ QWidget* BriefingPage::make_bottom() {
   return bottom;
 }
 
+void BriefingPage::place_cards() {
+  const bool is_wide = width() >= kWide_px;
+  for (QWidget* card : card_widgets_) cards_->removeWidget(card);
+  for (std::size_t n = 0; n < card_widgets_.size(); ++n) {
+    const int at = static_cast<int>(n);
+    cards_->addWidget(card_widgets_[n], is_wide ? at % 2 : at, is_wide ? at / 2 : 0);
+  }
+  cards_->setColumnStretch(0, is_wide ? 6 : 1);
+  cards_->setColumnStretch(1, is_wide ? 5 : 0);
+}
+
+void BriefingPage::show_tables(const cases::Case& tables) {
+  title_->setText(to_qt(tables.task.title));
+  procedure_->setText(form_html(procedure_rows(tables)));
+  scoring_->setText(form_html(scoring_rows(tables)));
+}
+
 void BriefingPage::show_opening(const TrainerChoice& choice) {
-  const QString patient = to_qt(choice.patient).section('/', -1);
+  choice_ = choice;
+  open_.reset();
   title_->setText(tr("Briefing"));
-  subtitle_->setText(tr("Patient %1").arg(patient));
-  controls_->setText(controls_text(choice));
-  goal_->clear();
-  counts_->clear();
-  axial_->clear();
+  subtitle_->setText(tr("%1: %2").arg(tr(title_of(choice.difficulty)), tr(help_text_of(choice.difficulty))));
+  std::vector<BriefingRow> rows = referral_rows(choice);
+  rows.push_back({tr("Finding"), tr("follows when the images are loaded")});
+  referral_->setText(form_html(rows));
+  procedure_->clear();
+  scoring_->clear();
+  // An error of the tables is reported by the opening, which reads them, too.
+  if (const auto tables = load_briefing_tables(choice)) show_tables(*tables);
+  controls_->setText(form_html(control_rows(choice)));
+  axial_->setText(tr("The images are being loaded."));
   second_->clear();
+  legend_->clear();
   begin_->setEnabled(false);
   progress_->show();
   show_progress(tr("Opening the patient"), 0.0);
@@ -229,34 +193,56 @@ void BriefingPage::show_progress(const QString& step, double fraction) {
 
 void BriefingPage::show_error(const QString& text) {
   progress_->hide();
+  axial_->clear();
   state_->setText(text);
   state_->setWordWrap(true);
 }
 
-void BriefingPage::show_case(const cases::OpenCase& open, Difficulty difficulty) {
-  const cases::Case& the_case = open.the_case;
-  const scene::Guidance guidance = guidance_of(difficulty);
-  title_->setText(to_qt(the_case.task.title));
-  subtitle_->setText(tr("Patient %1 · %2 · %3: %4")
-                         .arg(to_qt(the_case.patient->name), to_qt(the_case.needle.title), tr(title_of(difficulty)),
-                              tr(help_text_of(difficulty))));
-  const QString goal = referral_text(the_case) + goal_text(the_case);
-  goal_->setText(difficulty == Difficulty::kExam ? goal : goal + way_text(the_case));
-  counts_->setText(counts_text(the_case));
-  const QSize side(qMax(240, axial_->width()), qMax(160, axial_->height()));
-  // A plane along the path would reveal the path.
-  const BriefingPlane second =
-      guidance == scene::Guidance::kPath ? BriefingPlane::kAlongPath : BriefingPlane::kSagittal;
-  axial_->setPixmap(QPixmap::fromImage(briefing_picture(open, BriefingPlane::kAxial, side, guidance)));
-  second_->setPixmap(QPixmap::fromImage(briefing_picture(open, second, side, guidance)));
+void BriefingPage::show_case(std::shared_ptr<const cases::OpenCase> open, Difficulty difficulty) {
+  open_ = std::move(open);
+  choice_.patient = open_->choice.patient_source;
+  choice_.difficulty = difficulty;
+  const cases::Case& the_case = open_->the_case;
+  show_tables(the_case);
+  subtitle_->setText(tr("%1: %2").arg(tr(title_of(difficulty)), tr(help_text_of(difficulty))));
+  std::vector<BriefingRow> rows = referral_rows(choice_);
+  for (BriefingRow& row : finding_rows(the_case)) rows.push_back(std::move(row));
+  if (difficulty != Difficulty::kExam) rows.push_back(path_row(the_case));
+  referral_->setText(form_html(rows));
+  layout()->activate();
+  show_pictures();
   progress_->hide();
   state_->setText(tr("Ready"));
   begin_->setEnabled(true);
   begin_->setFocus();
 }
 
+void BriefingPage::show_pictures() {
+  if (!open_) return;
+  const scene::Guidance guidance = guidance_of(choice_.difficulty);
+  // A plane along the path would reveal the path.
+  const BriefingPlane second =
+      guidance == scene::Guidance::kPath ? BriefingPlane::kAlongPath : BriefingPlane::kSagittal;
+  std::vector<LegendEntry> entries;
+  const auto show = [&](QLabel& label, BriefingPlane plane) {
+    const QSize size(qMax(240, label.width()), qMax(120, label.height()));
+    label.setPixmap(QPixmap::fromImage(briefing_picture(*open_, plane, size, guidance)));
+    entries = joined(std::move(entries), briefing_legend(*open_, plane, size, guidance));
+  };
+  show(*axial_, BriefingPlane::kAxial);
+  show(*second_, second);
+  legend_->setText(legend_html(entries, guidance));
+}
+
 void BriefingPage::show_later(const QString& step) {
   state_->setText(step.isEmpty() ? tr("Ready") : tr("Ready. Being prepared: %1").arg(step));
+}
+
+void BriefingPage::resizeEvent(QResizeEvent* event) {
+  QWidget::resizeEvent(event);
+  place_cards();
+  layout()->activate();
+  show_pictures();
 }
 
 }  // namespace trocar::trainer

@@ -1,19 +1,22 @@
 #pragma once
 
 #include <QWidget>
+#include <array>
+#include <memory>
 
 #include "cases/open_case.h"
 #include "choice/trainer_choice.h"
 
-class QBoxLayout;
+class QGridLayout;
 class QLabel;
 class QProgressBar;
 class QPushButton;
 
 namespace trocar::trainer {
 
-/// Task, patient, needle, scoring and controls; shows the progress while the case opens. Keys: Enter begins, Escape
-/// goes back.
+/// The referral and the task as a form: patient, finding, procedure, scoring, controls, and slices through the target.
+/// All that is known without the patient is there at once; finding and slices follow when the case is open. Keys: Enter
+/// begins, Escape goes back.
 class BriefingPage : public QWidget {
   Q_OBJECT
 
@@ -23,7 +26,7 @@ class BriefingPage : public QWidget {
   void show_opening(const TrainerChoice& choice);
   void show_progress(const QString& step, double fraction);
   void show_error(const QString& text);
-  void show_case(const cases::OpenCase& open, Difficulty difficulty);
+  void show_case(std::shared_ptr<const cases::OpenCase> open, Difficulty difficulty);
   /// Pictures of the case that are still prepared, after show_case; empty: none.
   void show_later(const QString& step);
 
@@ -31,21 +34,34 @@ class BriefingPage : public QWidget {
   void begin_requested();
   void back_requested();
 
+ protected:
+  void resizeEvent(QResizeEvent* event) override;
+
  private:
-  QWidget* make_text();
+  QWidget* make_texts();
   QWidget* make_pictures();
   QWidget* make_bottom();
+  /// Scoring and controls beside the referral in a wide window, below it in a narrow one.
+  void place_cards();
+  void show_tables(const cases::Case& tables);
+  void show_pictures();
 
   QLabel* title_ = nullptr;
   QLabel* subtitle_ = nullptr;
-  QLabel* goal_ = nullptr;
-  QLabel* counts_ = nullptr;
+  QLabel* referral_ = nullptr;
+  QLabel* procedure_ = nullptr;
+  QLabel* scoring_ = nullptr;
   QLabel* controls_ = nullptr;
+  QGridLayout* cards_ = nullptr;
+  std::array<QWidget*, 4> card_widgets_{};  ///< Referral, procedure, scoring, controls.
   QLabel* axial_ = nullptr;
   QLabel* second_ = nullptr;  ///< A slice perpendicular to the first.
+  QLabel* legend_ = nullptr;
   QLabel* state_ = nullptr;
   QProgressBar* progress_ = nullptr;
   QPushButton* begin_ = nullptr;
+  TrainerChoice choice_;
+  std::shared_ptr<const cases::OpenCase> open_;  ///< Whose slices are shown; nullptr: none.
 };
 
 }  // namespace trocar::trainer

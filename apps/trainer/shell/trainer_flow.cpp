@@ -191,7 +191,7 @@ void TrainerFlow::show_opened() {
   const bool is_guided = choice_.difficulty == Difficulty::kGuided;
   const double depth_mm = is_guided ? open_->probe_depth_mm : open_->neutral.depth_mm;
   window_.work().ultrasound().change_settings([&](UltrasoundSettings& s) { s.acquisition.depth_mm = depth_mm; });
-  window_.briefing().show_case(*open_, choice_.difficulty);
+  window_.briefing().show_case(open_, choice_.difficulty);
   if (cut_off_) load_replay(std::exchange(cut_off_, {})->session);
 }
 

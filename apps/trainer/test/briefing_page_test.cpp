@@ -5,8 +5,11 @@
 #include <QCoreApplication>
 #include <QLabel>
 #include <QPushButton>
+#include <QRegularExpression>
 #include <algorithm>
 
+#include "pages/briefing_text.h"
+#include "script/cut_off.h"
 #include "script/widget_events.h"
 #include "test/open_abdomen.h"
 #include "test/widget_actions.h"
@@ -24,16 +27,115 @@ TEST(BriefingPage, TellsHowFarOpeningIsAndLetsNobodyBeginBefore) {
   EXPECT_EQ(page.findChild<QLabel*>(QStringLiteral("opening-state"))->text(), QStringLiteral("surfaces"));
 }
 
+QString text_of(const BriefingPage& page, const char* name) {
+  return page.findChild<QLabel*>(QString::fromLatin1(name))->text();
+}
+
+TEST(BriefingPage, TellsTheReferralAndTheTaskBeforeThePatientIsLoaded) {
+  struct Expected {
+    const char* task;
+    const char* patient;
+    std::vector<const char*> referral, procedure, scoring;
+  };
+  const Expected all[] = {
+      {"lumbar-puncture",
+       "lumbar-4",
+       {"lumbar-4", "male", "72 years", "174 cm", "encephalitis", "heparin", "penicillin", "sitting"},
+       {"spinal fluid", "palpation", "Draw the stylet", "7. "},
+       {"Proof of the place", "spinal fluid comes back", "<b>25</b>", "70 of 100", "nerve"}},
+      {"liver-biopsy",
+       "biopsy-3",
+       {"biopsy-3", "INR 1.4", "none known", "lying on the back"},
+       {"ultrasound", "mm beyond the tip", "Fire the gun"},
+       {"Target tissue in the core", "<b>20</b>", "lung"}},
+      {"ptcd", "ptcd-1", {"jaundice", "INR 1.1"}, {"bile duct"}, {"Radiation dose"}},
+      {"ascites-puncture", "ascites-2", {"carcinoma"}, {"free fluid"}, {"ascites comes back"}}};
+  for (const Expected& expected : all) {
+    BriefingPage page;
+    TrainerChoice choice;
+    choice.task = expected.task;
+    choice.patient = expected.patient;
+    page.show_opening(choice);
+    const auto contains = [&](const char* label, const std::vector<const char*>& parts) {
+      for (const char* part : parts)
+        EXPECT_TRUE(text_of(page, label).contains(QString::fromUtf8(part)))
+            << expected.patient << ": " << part << " in " << text_of(page, label).toStdString();
+    };
+    contains("briefing-referral", expected.referral);
+    contains("briefing-procedure", expected.procedure);
+    contains("briefing-scoring", expected.scoring);
+    EXPECT_FALSE(page.findChild<QPushButton*>(QStringLiteral("begin"))->isEnabled());
+  }
+}
+
+TEST(BriefingPage, TheShownPointsAddUpToAHundredForEveryNeedle) {
+  for (const char* needle : {"biopsy-18g", "chiba-22g"}) {
+    TrainerChoice choice;
+    choice.needle = needle;
+    const auto tables = load_briefing_tables(choice);
+    ASSERT_TRUE(tables) << tables.error().text();
+    const QString text = scoring_rows(*tables).front().text;
+    EXPECT_EQ(text.contains(QStringLiteral("in the core")), tables->needle.is_biopsy);
+    double sum = 0.0;
+    int parts = 0;
+    static const QRegularExpression points(QStringLiteral("<b>([0-9]+)</b>"));
+    for (auto found = points.globalMatch(text); found.hasNext(); ++parts) sum += found.next().captured(1).toDouble();
+    EXPECT_NEAR(sum, 100.0, 0.5 * parts) << needle;  // each is rounded
+    EXPECT_GE(parts, 6);
+  }
+}
+
+TEST(BriefingPage, CallsUnknownWhatNobodyStated) {
+  TrainerChoice choice;
+  choice.patient = "/no/such/patient";
+  BriefingPage page;
+  page.show_opening(choice);
+  EXPECT_TRUE(text_of(page, "briefing-referral").contains(QStringLiteral("not stated")));
+}
+
+TEST(BriefingPage, AddsLesionAndLegendWhenThePatientIsLoaded) {
+  BriefingPage page;
+  page.resize(1000, 640);
+  page.show();
+  page.show_opening({});
+  EXPECT_TRUE(text_of(page, "briefing-legend").isEmpty());
+  page.show_case(open_abdomen(), Difficulty::kAssisted);
+  static const QRegularExpression size(QStringLiteral("lesion of ([0-9]+) × ([0-9]+) × ([0-9]+) mm"));
+  const auto found = size.match(text_of(page, "briefing-referral"));
+  ASSERT_TRUE(found.hasMatch()) << text_of(page, "briefing-referral").toStdString();
+  for (int n = 1; n <= 3; ++n) {
+    EXPECT_GT(found.captured(n).toInt(), 5);
+    EXPECT_LT(found.captured(n).toInt(), 60);
+  }
+  EXPECT_TRUE(text_of(page, "briefing-legend").contains(QStringLiteral("liver")));
+  EXPECT_FALSE(text_of(page, "briefing-legend").contains(QStringLiteral("planned")));
+}
+
+TEST(BriefingPage, FitsSmallAndLargeWindows) {
+  for (const QSize& size : {QSize(1024, 640), QSize(1600, 850)}) {
+    BriefingPage page;
+    page.resize(size);
+    page.show();
+    TrainerChoice choice;
+    choice.task = "lumbar-puncture";
+    choice.patient = "lumbar-5";
+    page.show_opening(choice);
+    QCoreApplication::processEvents();
+    EXPECT_TRUE(find_cut_off(page).isEmpty()) << find_cut_off(page).join(';').toStdString();
+    save(page, size.width() > 1300 ? "briefing_opening_wide.png" : "briefing_opening_narrow.png");
+  }
+}
+
 TEST(BriefingPage, ShowsTheCaseAndLetsBegin) {
   BriefingPage page;
   page.resize(1280, 700);
   page.show();
   page.show_opening({});
   QCoreApplication::processEvents();
-  page.show_case(*open_abdomen(), Difficulty::kGuided);
+  page.show_case(open_abdomen(), Difficulty::kGuided);
   EXPECT_TRUE(page.findChild<QPushButton*>(QStringLiteral("begin"))->isEnabled());
   save(page, "briefing_guided.png");
-  page.show_case(*open_abdomen(), Difficulty::kAssisted);
+  page.show_case(open_abdomen(), Difficulty::kAssisted);
   save(page, "briefing_assisted.png");
   bool says_help = false;
   for (const QLabel* label : page.findChildren<QLabel*>())
@@ -50,11 +152,11 @@ TEST(BriefingPage, TellsNothingOfTheWayInAnExam) {
     return std::any_of(labels.begin(), labels.end(),
                        [&](const QLabel* label) { return label->text().contains(QString::fromUtf8(text)); });
   };
-  page.show_case(*open_abdomen(), Difficulty::kAssisted);
-  EXPECT_TRUE(says("lesion of the liver") && says("planned path"));
-  page.show_case(*open_abdomen(), Difficulty::kExam);
+  page.show_case(open_abdomen(), Difficulty::kAssisted);
+  EXPECT_TRUE(says("lesion of the liver") && says("Planned path"));
+  page.show_case(open_abdomen(), Difficulty::kExam);
   EXPECT_TRUE(says("lesion of the liver"));
-  EXPECT_FALSE(says("planned path"));
+  EXPECT_FALSE(says("Planned path"));
   save(page, "briefing_exam.png");
 }
 
@@ -68,6 +170,25 @@ TEST(BriefingPicture, ShowsThePathInGuidedAttemptsAlone) {
   EXPECT_LT(entry, 0.5 * line);
   EXPECT_GT(entry, 0.0001);  // the ring at the entry
   EXPECT_EQ(share_of_path(scene::Guidance::kNone), 0.0);
+}
+
+TEST(BriefingPicture, TheLegendHasTheColoursThatThePictureShows) {
+  const QSize size(400, 300);
+  for (const scene::Guidance guidance : {scene::Guidance::kTarget, scene::Guidance::kNone}) {
+    const auto entries = briefing_legend(*open_abdomen(), BriefingPlane::kAxial, size, guidance);
+    const QImage image = briefing_picture(*open_abdomen(), BriefingPlane::kAxial, size, guidance);
+    ASSERT_GE(entries.size(), 4U);
+    EXPECT_GT(entries.front().share, 0.05) << entries.front().words.toStdString();
+    bool has_lesion = false;
+    for (const LegendEntry& entry : entries) {
+      // Outlines have the label's own colour.
+      if (entry.share > 0.005) {
+        EXPECT_GT(share_near(image, entry.color, 3), 0.0) << entry.words.toStdString();
+      }
+      has_lesion |= entry.words.contains(QStringLiteral("tumor")) || entry.words.contains(QStringLiteral("lesion"));
+    }
+    EXPECT_EQ(has_lesion, guidance != scene::Guidance::kNone);
+  }
 }
 
 TEST(BriefingPicture, MarksTheTargetInEveryPlane) {

@@ -8,11 +8,6 @@
 namespace trocar::slices {
 namespace {
 
-/// Fat and muscle fill the whole body: they are the background of the structures.
-bool is_drawn(const anatomy::Label& label) {
-  return label.tissue != "adipose" && label.tissue != "muscle" && label.tissue != "skin";
-}
-
 /// A label's colour blended with gray: (gray * gray_share + color) / 256, rounded. All zero: the label is not drawn.
 struct Ink {
   std::array<std::uint32_t, 3> color{};
@@ -90,6 +85,10 @@ void draw_labels(const anatomy::VirtualPatient& patient, const volume::SlicePlan
 }
 
 }  // namespace
+
+bool is_drawn(const anatomy::Label& label) noexcept {
+  return label.tissue != "adipose" && label.tissue != "muscle" && label.tissue != "skin";
+}
 
 void paint_slice(const anatomy::VirtualPatient& patient, const volume::SlicePlane& plane, const SliceStyle& style,
                  SliceBuffers& buffers, volume::RgbImage& picture) {

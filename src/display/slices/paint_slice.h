@@ -26,6 +26,9 @@ struct SliceBuffers {
   std::vector<std::uint8_t> ids;
 };
 
+/// Labels that paint_slice draws: not fat, muscle and skin, which are the background of the structures.
+bool is_drawn(const anatomy::Label& label) noexcept;
+
 /// Paints CT on a plane (trilinear, window/level) and over it the labels (nearest) in their colours, filled and
 /// outlined. Fat, muscle and skin are not painted, as they are the background of structures. The value outside of the
 /// volume is air. Sets the image size to that of the plane. Allocates only if an image is larger than the previous

@@ -2,10 +2,14 @@
 
 #include <QPainter>
 #include <QPainterPath>
+#include <algorithm>
+#include <array>
 
+#include "anatomy/structure_words.h"
 #include "slices/paint_slice.h"
 #include "slices/slice_geometry.h"
 #include "ui_kit/theme.h"
+#include "views/slices/slice_canvas.h"
 
 namespace trocar::trainer {
 namespace {
@@ -58,6 +62,23 @@ void draw_path(QPainter& painter, const slices::SliceGeometry& geometry, const c
   painter.drawEllipse(guidance == scene::Guidance::kPath ? tip : pixel(target_of(the_case)), kRing_px, kRing_px);
 }
 
+/// Samples of each label id in a slice, every fourth pixel; a hidden lesion counts as its organ.
+std::array<std::size_t, 256> count_labels(const cases::OpenCase& open, BriefingPlane plane, const QSize& size,
+                                          bool hides_lesions) {
+  constexpr int kStep_px = 4;
+  const anatomy::VirtualPatient& patient = *open.the_case.patient;
+  const slices::SliceGeometry geometry = geometry_of(open, plane, size);
+  const std::array<std::uint8_t, 256> shown = anatomy::lesions_as_organs(patient.label_table);
+  std::array<std::size_t, 256> counts{};
+  for (int row = 0; row < geometry.rows; row += kStep_px)
+    for (int column = 0; column < geometry.columns; column += kStep_px) {
+      const anatomy::Label* label = find_label(patient, geometry.to_P({column, row}));
+      const std::uint8_t id = label != nullptr ? label->id : std::uint8_t{0};
+      ++counts[hides_lesions ? shown[id] : id];
+    }
+  return counts;
+}
+
 }  // namespace
 
 QImage to_qimage(const volume::RgbImage& picture) {
@@ -79,7 +100,36 @@ QImage briefing_picture(const cases::OpenCase& open, BriefingPlane plane, const 
   QPainter painter(&image);
   painter.setRenderHint(QPainter::Antialiasing);
   draw_path(painter, geometry, open.the_case, guidance);
+  const SliceCanvas canvas{painter, geometry, QRectF(image.rect())};
+  draw_letters(canvas);
+  draw_scale_bar(canvas);
   return image;
+}
+
+std::vector<LegendEntry> briefing_legend(const cases::OpenCase& open, BriefingPlane plane, const QSize& size,
+                                         scene::Guidance guidance) {
+  constexpr double kLeastShare = 0.001;
+  const anatomy::VirtualPatient& patient = *open.the_case.patient;
+  const std::array<std::size_t, 256> counts = count_labels(open, plane, size, guidance == scene::Guidance::kNone);
+  std::size_t samples = 0;
+  for (const std::size_t count : counts) samples += count;
+  std::vector<LegendEntry> entries;
+  for (const anatomy::Label& label : patient.label_table.labels) {
+    const double share = static_cast<double>(counts[label.id]) / static_cast<double>(std::max<std::size_t>(1, samples));
+    if (!slices::is_drawn(label) || share < kLeastShare) continue;
+    const QColor color(label.color[0], label.color[1], label.color[2]);
+    const auto same =
+        std::find_if(entries.begin(), entries.end(), [&](const LegendEntry& entry) { return entry.color == color; });
+    if (same == entries.end()) {
+      entries.push_back({color, QString::fromStdString(anatomy::structure_words(label.name)), share});
+    } else {
+      same->words = QString::fromStdString(anatomy::structure_words(label.tissue));
+      same->share += share;
+    }
+  }
+  std::stable_sort(entries.begin(), entries.end(),
+                   [](const LegendEntry& a, const LegendEntry& b) { return a.share > b.share; });
+  return entries;
 }
 
 }  // namespace trocar::trainer

@@ -1,0 +1,361 @@
+#include "pages/briefing_text.h"
+
+#include <QCoreApplication>
+#include <QStringList>
+#include <algorithm>
+#include <array>
+#include <map>
+#include <span>
+
+#include "anatomy/phantom/phantom.h"
+#include "anatomy/structure_words.h"
+#include "attempt/live/live_attempt.h"
+#include "attempt/servers/device_control.h"
+#include "attempt/servers/tool_devices.h"
+#include "choice/patient_entry.h"
+#include "scoring/score.h"
+#include "ui_kit/parts.h"
+#include "ui_kit/theme.h"
+#include "volume/sampling.h"
+
+namespace trocar::trainer {
+namespace {
+
+QString tr(const char* text) {
+  return QCoreApplication::translate("Briefing", text);
+}
+
+QString escaped(const std::string& text) {
+  return to_qt(text).toHtmlEscaped();
+}
+
+QString words(const std::string& name) {
+  return escaped(anatomy::structure_words(name));
+}
+
+const anatomy::PhantomInfo* find_info(const std::string& name) {
+  for (const anatomy::PhantomInfo& info : anatomy::embedded_patients())
+    if (info.name == name) return &info;
+  return nullptr;
+}
+
+QString not_stated() {
+  return QStringLiteral("<span style='color:%1'>%2</span>").arg(theme().dim.name(), tr("not stated"));
+}
+
+QString person_text(const std::string& name, const anatomy::Referral& referral) {
+  const double height_m = 0.01 * referral.height_cm;
+  return tr("<b>%1</b>, %2, %3 years, %4 cm, %5 kg (BMI %6)")
+      .arg(escaped(name), referral.is_female ? tr("female") : tr("male"))
+      .arg(referral.age_years, 0, 'f', 0)
+      .arg(referral.height_cm, 0, 'f', 0)
+      .arg(referral.weight_kg, 0, 'f', 0)
+      .arg(referral.weight_kg / (height_m * height_m), 0, 'f', 1);
+}
+
+/// Size of a label about a point: the extent along the axes of P until another label comes, mm.
+Vec3 extent_mm(const anatomy::VirtualPatient& patient, const Vec3& middle_P, std::uint8_t id) {
+  constexpr double kStep_mm = 0.25, kMost_mm = 150.0;
+  Vec3 extent = Vec3::Zero();
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    for (const double way : {-1.0, 1.0}) {
+      double out_mm = 0.0;
+      for (; out_mm < kMost_mm; out_mm += kStep_mm) {
+        const anatomy::Label* label = find_label(patient, middle_P + way * out_mm * Vec3::Unit(axis));
+        if (label == nullptr || label->id != id) break;
+      }
+      extent[axis] += out_mm;
+    }
+  }
+  return extent;
+}
+
+/// Couinaud segment of a lesion: of the patient's description where a procedural patient states it, else of labels of
+/// liver segments around the lesion ("liver_segment_6"); empty: not known.
+QString segment_of(const anatomy::VirtualPatient& patient, const Vec3& middle_P, double radius_mm) {
+  constexpr std::string_view kStated = "in segment ", kLabel = "liver_segment_";
+  if (const auto at = patient.description.find(kStated); at != std::string::npos) {
+    const std::size_t from = at + kStated.size();
+    return escaped(patient.description.substr(from, patient.description.find(' ', from) - from));
+  }
+  static constexpr std::array kNumerals{"I", "II", "III", "IV", "V", "VI", "VII", "VIII"};
+  constexpr double kBeside_mm = 4.0;
+  std::map<std::string, int> votes;
+  for (int x = -1; x <= 1; ++x)
+    for (int y = -1; y <= 1; ++y)
+      for (int z = -1; z <= 1; ++z) {
+        if (x == 0 && y == 0 && z == 0) continue;
+        const Vec3 way = Vec3(x, y, z).normalized();
+        const anatomy::Label* label = find_label(patient, middle_P + (radius_mm + kBeside_mm) * way);
+        if (label != nullptr && label->name.starts_with(kLabel)) ++votes[label->name.substr(kLabel.size())];
+      }
+  const auto most =
+      std::max_element(votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  if (most == votes.end()) return {};
+  const int number = to_qt(most->first).toInt();
+  return number >= 1 && number <= 8 ? QString::fromLatin1(kNumerals[static_cast<std::size_t>(number - 1)])
+                                    : escaped(most->first);
+}
+
+QString lesion_text(const cases::Case& the_case) {
+  const anatomy::VirtualPatient& patient = *the_case.patient;
+  const Segment& path_P = the_case.plan.line_P;
+  const Vec3 middle_P = path_P.b + the_case.needle.notch_middle_mm() * path_P.direction();
+  const anatomy::Label* label = find_label(patient, middle_P);
+  if (label == nullptr || !tasks::is_target(the_case.task, *label)) return {};
+  const Vec3 size_mm = extent_mm(patient, middle_P, label->id);
+  QString text =
+      tr("%1 × %2 × %3 mm").arg(size_mm.x(), 0, 'f', 0).arg(size_mm.y(), 0, 'f', 0).arg(size_mm.z(), 0, 'f', 0);
+  text = tr("lesion of %1 (right–left, front–back, head–feet)").arg(text);
+  if (const QString segment = segment_of(patient, middle_P, 0.5 * size_mm.maxCoeff()); !segment.isEmpty())
+    text = tr("segment %1 of the %2: %3").arg(segment, words(the_case.task.organ), text);
+  const double depth_mm = -volume::sample_linear(patient.skin_distance_mm, middle_P);
+  return depth_mm > 0.0 ? tr("%1; middle %2 mm below the nearest skin").arg(text).arg(depth_mm, 0, 'f', 0) : text;
+}
+
+bool is_target_tissue(const tasks::Task& task, std::string_view tissue) {
+  return std::find(task.target_tissues.begin(), task.target_tissues.end(), tissue) != task.target_tissues.end();
+}
+
+bool is_lesion_task(const tasks::Task& task) {
+  return !is_target_tissue(task, "csf") && !is_target_tissue(task, "ascites") && !is_target_tissue(task, "bile_duct");
+}
+
+QString goal_text(const tasks::Task& task) {
+  if (is_target_tissue(task, "csf")) return tr("Bring the needle's tip into the spinal fluid of the dural sac.");
+  if (is_target_tissue(task, "ascites")) return tr("Bring the needle's tip into the free fluid of the abdomen.");
+  if (is_target_tissue(task, "bile_duct")) return tr("Bring the needle's tip into a bile duct of the liver.");
+  return tr("Bring the needle's tip to the lesion of the %1; without a lesion, to its healthy tissue.")
+      .arg(words(task.organ));
+}
+
+QString guidance_text(tasks::Guidance guidance) {
+  switch (guidance) {
+    case tasks::Guidance::kUltrasound:
+      return tr("ultrasound");
+    case tasks::Guidance::kXray:
+      return tr("fluoroscopy (X-ray)");
+    case tasks::Guidance::kPalpation:
+      return tr("palpation of the landmarks");
+  }
+  return {};
+}
+
+QString needle_text(const tasks::Needle& needle) {
+  QString text = tr("%1: %2 G, %3 mm thick, %4 mm long")
+                     .arg(escaped(needle.title))
+                     .arg(needle.gauge, 0, 'f', 0)
+                     .arg(needle.outer_diameter_mm, 0, 'f', 2)
+                     .arg(needle.length_mm, 0, 'f', 0);
+  if (needle.is_biopsy)
+    text += tr("; throws %1 mm beyond the tip, notch of %2 mm")
+                .arg(needle.throw_mm, 0, 'f', 0)
+                .arg(needle.notch_mm, 0, 'f', 0);
+  return text;
+}
+
+QString steps_text(const std::vector<tasks::Phase>& phases) {
+  QStringList lines;
+  for (const tasks::Phase& phase : phases) lines << tr("%1. %2").arg(lines.size() + 1).arg(escaped(phase.title));
+  return lines.join(QStringLiteral("<br>"));
+}
+
+/// How a part of the score is judged, after its title; empty: the title says it.
+QString rule_of(const tasks::Task& task, std::string_view part) {
+  const auto half = [](double tolerance, const char* unit) {
+    return tr("half of the points at %1 %2").arg(tolerance, 0, 'f', 0).arg(QString::fromUtf8(unit));
+  };
+  if (part == "target") return half(task.target_tolerance_mm, "mm");
+  if (part == "entry") return half(task.entry_tolerance_mm, "mm");
+  if (part == "angle") return half(task.angle_tolerance_deg, "°");
+  if (part == "access") return half(task.margin_tolerance_mm, "mm");
+  if (part == "time") return tr("none from %1 s on").arg(task.time_limit_s, 0, 'f', 0);
+  if (part == "dose") return tr("none from %1 Gy cm² on").arg(task.dose_limit_gycm2, 0, 'g', 3);
+  if (part == "comfort") return tr("one of them halves the points");
+  if (part == "confirmation") return tr("%1 comes back").arg(escaped(tasks::substance_words(task.confirmed_by)));
+  if (part == "risk") return tr("each costs the points below");
+  return {};
+}
+
+/// Parts that this needle can be judged by, the heaviest first.
+std::vector<std::pair<std::string, double>> weighed_parts(const cases::Case& tables) {
+  std::vector<std::pair<std::string, double>> parts;
+  double sum = 0.0;
+  for (const auto& [name, weight] : tables.task.weights) {
+    if (weight <= 0.0 || (name == "core" && !tables.needle.is_biopsy)) continue;
+    parts.emplace_back(name, weight);
+    sum += weight;
+  }
+  for (auto& part : parts) part.second *= 100.0 / sum;
+  std::stable_sort(parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  return parts;
+}
+
+QString points_text(const cases::Case& tables) {
+  QString text = QStringLiteral("<table cellspacing='0' cellpadding='1'>");
+  for (const auto& [name, points] : weighed_parts(tables)) {
+    QString what = to_qt(scoring::part_title(name)).toHtmlEscaped();
+    if (const QString rule = rule_of(tables.task, name); !rule.isEmpty())
+      what += QStringLiteral(" <span style='color:%1'>(%2)</span>").arg(theme().dim.name(), rule);
+    text += QStringLiteral("<tr><td align='right'><b>%1</b>&nbsp;&nbsp;</td><td>%2</td></tr>")
+                .arg(points, 0, 'f', 0)
+                .arg(what);
+  }
+  return text + QStringLiteral("</table>");
+}
+
+QString risks_text(const tasks::Task& task) {
+  QStringList risks;
+  for (const tasks::RiskStructure& risk : task.risks)
+    risks << tr("%1&nbsp;(−%2)").arg(words(risk.label.empty() ? risk.tissue : risk.label)).arg(risk.penalty, 0, 'f', 0);
+  return risks.join(QStringLiteral(", "));
+}
+
+QString failing_text(const tasks::Task& task) {
+  QStringList names;
+  for (const tasks::RiskStructure& risk : task.risks)
+    if (risk.is_critical) names << words(risk.label.empty() ? risk.tissue : risk.label);
+  return names.join(QStringLiteral(", "));
+}
+
+struct Control {
+  const char* with;
+  const char* does;
+};
+constexpr Control kTakeMouse[] = {{"A / S", "select the needle / the transducer"},
+                                  {"drag", "move along the skin; right button: tilt"},
+                                  {"wheel", "advance and withdraw; Shift: fine steps"},
+                                  {"H", "move the active tool to its planned position (guided)"}};
+constexpr Control kNeedleByGamepad[] = {{"left stick", "moves the needle; cross: lifts and lowers it"},
+                                        {"right stick", "swings the tip in the direction of the stick"},
+                                        {"triggers", "right: push in, left: pull out; rumble: resistance"},
+                                        {"shoulders", "turn the bevel"}};
+constexpr Control kProbeByGamepad[] = {{"left stick", "moves the transducer; cross: lifts and lowers it"},
+                                       {"right stick", "tilts it"},
+                                       {"shoulders", "turn it"}};
+constexpr Control kProbeByMouse[] = {{"S, mouse", "drag and wheel move the transducer"}};
+constexpr Control kNeedleByMouse[] = {{"A, mouse", "drag and wheel move the needle; Shift: finely"}};
+constexpr Control kAlways[] = {
+    {"Enter", "fire the biopsy gun"}, {"E", "end the attempt"}, {"Space", "stop all forces"}, {"F1", "all keys"}};
+
+void add_controls(std::vector<BriefingRow>& rows, std::span<const Control> controls) {
+  for (const Control& control : controls) rows.push_back({tr(control.with), tr(control.does)});
+}
+
+/// Rows for devices other than the mouse.
+void add_device(std::vector<BriefingRow>& rows, const std::string& device, bool is_needle) {
+  if (device == "gamepad") {
+    if (is_needle) return add_controls(rows, kNeedleByGamepad);
+    return add_controls(rows, kProbeByGamepad);
+  }
+  const QString tool = is_needle ? tr("needle") : tr("transducer");
+  if (device == "spacemouse")
+    return rows.push_back({tr("cap"), tr("push and turn it to move and turn the %1").arg(tool)});
+  rows.push_back({to_qt(attempt::device_title(device)), tr("its stylus is the %1").arg(tool)});
+}
+
+}  // namespace
+
+std::vector<BriefingRow> referral_rows(const TrainerChoice& choice) {
+  const anatomy::PhantomInfo* info = find_info(choice.patient);
+  if (info != nullptr && info->referral) {
+    const anatomy::Referral& referral = *info->referral;
+    return {{tr("Patient"), person_text(info->name, referral)},
+            {tr("Indication"), escaped(referral.indication)},
+            {tr("Coagulation"), escaped(referral.coagulation)},
+            {tr("Allergies"), escaped(referral.allergies)},
+            {tr("Posture"), escaped(std::string(posture_words(referral.posture)))}};
+  }
+  const PatientEntry entry = info != nullptr ? PatientEntry{{}, to_qt(info->name), {}, to_qt(info->description), {}, {}}
+                                             : folder_entry(to_qt(choice.patient));
+  return {{tr("Patient"), QStringLiteral("<b>%1</b>").arg(entry.name.toHtmlEscaped())},
+          {tr("Description"), entry.description.isEmpty() ? not_stated() : entry.description.toHtmlEscaped()},
+          {tr("Indication"), not_stated()},
+          {tr("Coagulation"), not_stated()},
+          {tr("Allergies"), not_stated()}};
+}
+
+std::vector<BriefingRow> finding_rows(const cases::Case& the_case) {
+  std::vector<BriefingRow> rows;
+  const anatomy::PhantomInfo* info = find_info(the_case.patient->name);
+  if (info == nullptr || !info->referral)
+    rows.push_back({tr("Posture"), escaped(std::string(posture_words(the_case.patient->posture)))});
+  if (!is_lesion_task(the_case.task)) return rows;
+  const QString lesion = the_case.is_parenchymal ? QString() : lesion_text(the_case);
+  if (!lesion.isEmpty()) {
+    rows.push_back({tr("Finding"), lesion});
+  } else {
+    rows.push_back({tr("Finding"), the_case.is_parenchymal
+                                       ? tr("no lesion: take healthy tissue of the %1").arg(words(the_case.task.organ))
+                                       : tr("lesion of the %1").arg(words(the_case.task.organ))});
+  }
+  return rows;
+}
+
+std::vector<BriefingRow> procedure_rows(const cases::Case& tables) {
+  std::vector<BriefingRow> rows{{tr("Goal"), goal_text(tables.task)},
+                                {tr("Guidance"), guidance_text(tables.task.guidance)},
+                                {tr("Needle"), needle_text(tables.needle)}};
+  if (!tables.task.phases.empty()) rows.push_back({tr("Steps"), steps_text(tables.task.phases)});
+  return rows;
+}
+
+BriefingRow path_row(const cases::Case& the_case) {
+  const tasks::PlannedPath& plan = the_case.plan;
+  return {tr("Planned path"),
+          tr("%1 mm long, %2 mm of it in the %3; nearest structure at risk: %4")
+              .arg(plan.length_mm, 0, 'f', 0)
+              .arg(plan.organ_path_mm, 0, 'f', 0)
+              .arg(words(the_case.task.organ), plan.nearest_risk.empty() ? tr("none") : words(plan.nearest_risk))};
+}
+
+std::vector<BriefingRow> scoring_rows(const cases::Case& tables) {
+  const tasks::Task& task = tables.task;
+  std::vector<BriefingRow> rows{
+      {tr("Points"), points_text(tables)},
+      {tr("Passed"), tr("with %1 of 100 points and the target reached").arg(task.pass_mark, 0, 'f', 0)}};
+  if (!task.risks.empty()) rows.push_back({tr("Do not touch"), risks_text(task)});
+  if (const QString failing = failing_text(task); !failing.isEmpty())
+    rows.push_back({tr("Not passed"), tr("whatever the points, after touching: %1").arg(failing)});
+  return rows;
+}
+
+std::vector<BriefingRow> control_rows(const TrainerChoice& choice) {
+  const bool is_needle_led = attempt::follows_targets(choice.needle_device);
+  const bool is_probe_led = attempt::follows_targets(choice.probe_device);
+  std::vector<BriefingRow> rows;
+  if (is_needle_led && is_probe_led) {
+    add_controls(rows, kTakeMouse);
+  } else {
+    if (is_needle_led) {
+      add_controls(rows, kNeedleByMouse);
+    } else {
+      add_device(rows, choice.needle_device, true);
+    }
+    if (is_probe_led) {
+      add_controls(rows, kProbeByMouse);
+    } else {
+      add_device(rows, choice.probe_device, false);
+    }
+  }
+  add_controls(rows, kAlways);
+  return rows;
+}
+
+QString form_html(const std::vector<BriefingRow>& rows) {
+  QString text = QStringLiteral("<table cellspacing='0' cellpadding='3' width='100%'>");
+  for (const BriefingRow& row : rows)
+    text += QStringLiteral("<tr><td width='100' style='color:%1'>%2</td><td>%3</td></tr>")
+                .arg(theme().dim.name(), row.heading.toHtmlEscaped(), row.text);
+  return text + QStringLiteral("</table>");
+}
+
+Result<cases::Case> load_briefing_tables(const TrainerChoice& choice) {
+  cases::CaseOptions options;
+  options.patient_folder = choice.patient;
+  options.task = cases::has_own_task(choice.patient) ? std::string() : choice.task;
+  options.needle = choice.needle;
+  return cases::load_tables(options);
+}
+
+}  // namespace trocar::trainer
