@@ -50,7 +50,7 @@ class Reader {
 
  private:
   const config::TomlTable& row_;
-  std::vector<std::string_view> known_{"description", "kind"};
+  std::vector<std::string_view> known_{"description", "kind", "pressure_mpa", "power_mw"};  // see acoustic_output.h
 };
 
 Result<TransducerKind> read_kind(const config::TomlTable& row) {
