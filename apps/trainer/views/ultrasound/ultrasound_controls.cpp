@@ -223,6 +223,24 @@ QWidget* UltrasoundControls::make_picture() {
   const int row = grid->rowCount();
   grid->addWidget(make_label(tr("Gray map")), row, 0);
   grid->addWidget(gray_map_, row, 1, 1, 2);
+  const int zoom_row = grid->rowCount();
+  auto* zoom = new QHBoxLayout;
+  zoom->setSpacing(6);
+  const auto zoom_button = [&](const char* name, const QString& text, const QString& tooltip, auto act) {
+    QPushButton* button = small_button(name, text, tooltip);
+    connect(button, &QPushButton::clicked, this, act);
+    zoom->addWidget(button);
+    return button;
+  };
+  zoom_out_ = zoom_button("ultrasound-zoom-out", QStringLiteral("−"), tr("Smaller  (-, Ctrl + wheel)"),
+                          [this] { view_.zoom_by_steps(-1); });
+  zoom_button("ultrasound-zoom-in", QStringLiteral("+"),
+              tr("Larger  (+, Ctrl + wheel at a point; the middle button moves the image)"),
+              [this] { view_.zoom_by_steps(1); });
+  zoom_reset_ = zoom_button("ultrasound-zoom-reset", tr("Whole"), tr("Shows the whole image  (0)"),
+                            [this] { view_.reset_zoom(); });
+  grid->addWidget(make_label(tr("Zoom")), zoom_row, 0);
+  grid->addLayout(zoom, zoom_row, 1, 1, 2);
   box->addLayout(grid);
   add_check(*box, "ultrasound-mirror", tr("Marker on the left"),
             tr("Off: the image is mirrored; the green dot moves to the other side"),
@@ -366,6 +384,7 @@ void UltrasoundControls::show_view() {
   const int preset = preset_->currentIndex();
   if (preset > 0 && presets_[static_cast<std::size_t>(preset - 1)].transducer != view_.transducer().name)
     preset_->setCurrentIndex(0);
+  for (QPushButton* button : {zoom_out_, zoom_reset_}) button->setEnabled(view_.zoom().factor > 1.0);
   const ultrasound::CineState cine = view_.cine();
   freeze_->setChecked(cine.is_frozen);
   freeze_->setText(cine.is_frozen ? tr("Frozen") : tr("Freeze"));

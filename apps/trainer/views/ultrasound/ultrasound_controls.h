@@ -70,6 +70,7 @@ class UltrasoundControls : public QWidget {
   QComboBox *transducer_ = nullptr, *engine_ = nullptr;
   QComboBox* preset_ = nullptr;
   QComboBox* gray_map_ = nullptr;
+  QPushButton *zoom_out_ = nullptr, *zoom_reset_ = nullptr;
   QPushButton* freeze_ = nullptr;
   QSlider* cine_ = nullptr;
   QWidget* cine_row_ = nullptr;

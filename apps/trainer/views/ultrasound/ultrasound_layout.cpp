@@ -60,10 +60,29 @@ UltrasoundLayout lay_out(const QSizeF& view, const ultrasound::ScanGeometry& sca
   return layout;
 }
 
-PictureMap::PictureMap(const QRectF& target, const ultrasound::RasterGeometry& raster) noexcept : raster_(raster) {
-  scale_ = std::min(target.width() / raster.columns, target.height() / raster.rows);
-  const QSizeF size(scale_ * raster.columns, scale_ * raster.rows);
-  rect_ = QRectF(target.center() - QPointF(0.5 * size.width(), 0.5 * size.height()), size);
+PictureMap::PictureMap(const QRectF& target, const ultrasound::RasterGeometry& raster, const PictureZoom& zoom) noexcept
+    : raster_(raster) {
+  const double fitting = std::min(target.width() / raster.columns, target.height() / raster.rows);
+  const QSizeF size(fitting * raster.columns, fitting * raster.rows);
+  area_ = QRectF(target.center() - QPointF(0.5 * size.width(), 0.5 * size.height()), size);
+  factor_ = std::clamp(zoom.factor, 1.0, kMostZoom);
+  scale_ = factor_ * fitting;
+  rect_ = QRectF(area_.topLeft(), factor_ * size);
+  if (!is_magnified()) return;
+  const QPointF wanted = rect_.topLeft() + area_.center() - to_view(zoom.middle_T);
+  // No gap beside the image.
+  rect_.moveTo(std::clamp(wanted.x(), area_.right() - rect_.width(), area_.left()),
+               std::clamp(wanted.y(), area_.bottom() - rect_.height(), area_.top()));
+}
+
+PictureZoom PictureMap::zoomed_at(const QPointF& place, double factor) const noexcept {
+  const double held = std::clamp(factor, 1.0, kMostZoom);
+  // The middle of the area lies at the same share of the way from the fixed place.
+  return {held, to_T(place + (factor_ / held) * (area_.center() - place))};
+}
+
+PictureZoom PictureMap::moved_by(const QPointF& by) const noexcept {
+  return {factor_, to_T(area_.center() - by)};
 }
 
 QPointF PictureMap::pixel_to_view(const ultrasound::Vec2& pixel) const noexcept {

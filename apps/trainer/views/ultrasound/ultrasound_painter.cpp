@@ -74,6 +74,13 @@ std::vector<CaptionLine> caption_of(const ultrasound::ScanPicture& picture, cons
     if (text.column < annotation.scale_column) lines.push_back({to_qt(text.text), Kind::kPlain});
   if (!lines.empty()) lines.front().kind = Kind::kName;
   if (facts.is_small) lines.resize(std::min<std::size_t>(lines.size(), 1));
+  if (facts.output) {
+    const ultrasound::AcousticIndices indices =
+        ultrasound::acoustic_indices(*facts.output, picture.acquisition.frequency_mhz, picture.acquisition.focus_mm);
+    lines.push_back({QStringLiteral("MI %1  TIS %2").arg(indices.mechanical, 0, 'f', 1).arg(indices.thermal, 0, 'f', 1),
+                     Kind::kPlain});
+  }
+  if (facts.zoom > 1.0) lines.push_back({QStringLiteral("Zoom %1x").arg(facts.zoom, 0, 'f', 1), Kind::kPlain});
   if (picture.is_frozen) {
     const QString state = facts.cine.is_playing ? QStringLiteral("Cine") : QStringLiteral("Frozen");
     lines.push_back(
@@ -127,8 +134,14 @@ void draw_message(QPainter& painter, const QRectF& picture, const QString& text,
   painter.drawText(box, Qt::AlignCenter, text);
 }
 
-void draw_caption(QPainter& painter, const QRectF& place, const std::vector<CaptionLine>& lines, const QFont& font) {
+void draw_caption(QPainter& painter, const QRectF& place, const std::vector<CaptionLine>& lines, const QFont& font,
+                  bool is_on_image) {
   using Kind = CaptionLine::Kind;
+  if (is_on_image) {
+    constexpr double kRim_px = 4.0;
+    painter.fillRect(QRectF(place.topLeft(), caption_size(lines, font)).adjusted(-kRim_px, -kRim_px, kRim_px, kRim_px),
+                     QColor(0, 0, 0, 170));
+  }
   double y = place.top() + QFontMetricsF(font).ascent();
   for (const CaptionLine& line : lines) {
     QColor ink = kInk;
@@ -158,8 +171,10 @@ void draw_depth_scale(QPainter& painter, const PictureMap& map, double scale_x,
   for (const auto& tick : annotation.ticks) longest = std::max(longest, tick.length_px);
   const auto y_of = [&](double row) { return map.pixel_to_view({0.0, row}).y(); };
   const auto lowest = static_cast<double>(painter.viewport().height()) / painter.device()->devicePixelRatioF();
+  const QRectF shown = map.area().adjusted(-kMarkerBeside_px, -kMarkerBeside_px, kMarkerBeside_px, kMarkerBeside_px);
   for (const auto& tick : annotation.ticks) {
     const double y = y_of(tick.row);
+    if (map.is_magnified() && (y < map.area().top() || y > map.area().bottom())) continue;
     const bool is_long = tick.length_px == longest;
     painter.setPen(QPen(kInk, 1.0));
     painter.drawLine(QPointF(scale_x - (is_long ? 8.0 : 4.0), y), QPointF(scale_x, y));
@@ -172,10 +187,12 @@ void draw_depth_scale(QPainter& painter, const PictureMap& map, double scale_x,
   painter.setPen(Qt::NoPen);
   painter.setBrush(kFocusInk);
   const double tip_x = scale_x - 10.0;
-  painter.drawPolygon(
-      QPolygonF({QPointF(tip_x, focus_y), QPointF(tip_x - 7.0, focus_y - 5.0), QPointF(tip_x - 7.0, focus_y + 5.0)}));
+  if (!map.is_magnified() || (focus_y >= map.area().top() && focus_y <= map.area().bottom()))
+    painter.drawPolygon(
+        QPolygonF({QPointF(tip_x, focus_y), QPointF(tip_x - 7.0, focus_y - 5.0), QPointF(tip_x - 7.0, focus_y + 5.0)}));
   painter.setBrush(kMarkerInk);
-  painter.drawEllipse(marker_place(map, annotation), kMarker_px, kMarker_px);
+  const QPointF marker = marker_place(map, annotation);
+  if (!map.is_magnified() || shown.contains(marker)) painter.drawEllipse(marker, kMarker_px, kMarker_px);
   painter.setBrush(Qt::NoBrush);
 }
 
@@ -232,6 +249,18 @@ void draw_outline(QPainter& painter, const PictureMap& map, const ultrasound::El
   painter.setPen(ink);
 }
 
+/// Beside a mark, inside the picture.
+void draw_result(QPainter& painter, const PictureMap& map, const QPointF& at, const QString& text) {
+  constexpr double kBeside_px = 10.0;
+  const QFontMetricsF metrics(painter.font());
+  const double width = metrics.horizontalAdvance(text);
+  const QRectF area = map.area();
+  QPointF place = at + QPointF(kBeside_px, -kBeside_px);
+  if (place.x() + width > area.right()) place.setX(at.x() - kBeside_px - width);
+  if (place.y() - metrics.ascent() < area.top()) place.setY(at.y() + kBeside_px + metrics.ascent());
+  draw_tag(painter, place, text);
+}
+
 }  // namespace
 
 void draw_measurements(QPainter& painter, const PictureMap& map, std::span<const ultrasound::Measurement> measurements,
@@ -259,14 +288,16 @@ void draw_measurements(QPainter& painter, const PictureMap& map, std::span<const
 }
 
 void draw_unfinished(QPainter& painter, const PictureMap& map, std::span<const ultrasound::Vec2> marks_T,
-                     const ultrasound::Vec2& hover_T, bool is_ellipse, bool is_angle) {
+                     const ultrasound::Vec2& hover_T, bool is_ellipse, bool is_angle, const QString& result) {
   painter.setBrush(Qt::NoBrush);
+  painter.setFont(caption_font(false));
   painter.setPen(QPen(kCaliperInk, 1.2));
   const QPen line = dotted(kCaliperInk, 1.2);
   const QPointF hover = map.to_view(hover_T);
   for (const ultrasound::Vec2& mark_T : marks_T) draw_cross(painter, map.to_view(mark_T), kCross_px);
   draw_cross(painter, hover, kCross_px);
   if (marks_T.empty()) return;
+  if (!result.isEmpty()) draw_result(painter, map, hover, result);
   if (is_ellipse && marks_T.size() == 2) {
     ultrasound::EllipseCaliper ellipse{marks_T[0], marks_T[1], 0.0};
     ellipse.half_width_mm = ellipse.distance_to_axis_mm(hover_T);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ultrasound/live/live_scanner.h"
+#include "ultrasound/probe/acoustic_output.h"
 #include "ultrasound/scanner/measurements.h"
 #include "ultrasound/scanner/scan_annotation.h"
 #include "views/ultrasound/ultrasound_layout.h"
@@ -31,6 +32,8 @@ struct CaptionFacts {
   ultrasound::CineState cine;
   std::span<const ultrasound::Measurement> measurements;
   bool is_small = false;
+  std::optional<ultrasound::AcousticOutput> output = {};  ///< For MI and TIS; empty: not displayed.
+  double zoom = 1.0;                                      ///< Displayed if above 1.
 };
 std::vector<CaptionLine> caption_of(const ultrasound::ScanPicture& picture, const CaptionFacts& facts);
 QFont caption_font(bool is_small);
@@ -40,7 +43,9 @@ QSizeF bars_size(const QFont& font, double view_height, bool has_doppler);
 
 /// Draws a message on a dark background at the top of the image.
 void draw_message(QPainter& painter, const QRectF& picture, const QString& text, const QFont& font);
-void draw_caption(QPainter& painter, const QRectF& place, const std::vector<CaptionLine>& lines, const QFont& font);
+/// `is_on_image`: dims the image behind the lines.
+void draw_caption(QPainter& painter, const QRectF& place, const std::vector<CaptionLine>& lines, const QFont& font,
+                  bool is_on_image = false);
 /// Radius of the orientation marker.
 inline constexpr double kMarker_px = 4.0;
 /// Centre of the orientation marker: beside the marked end of the face, within the space that the layout reserves
@@ -53,11 +58,11 @@ void draw_bars(QPainter& painter, const QRectF& place, const ultrasound::ScanAnn
                const ultrasound::ScanPicture& picture, const QFont& font);
 
 /// Draws calipers with their numbers, and rings about the marks of the selected one. draw_unfinished draws an
-/// unfinished measurement with `marks_T`, whose next mark is at hover_T.
+/// unfinished measurement with `marks_T`, whose next mark is at hover_T, and its present result there.
 void draw_measurements(QPainter& painter, const PictureMap& map, std::span<const ultrasound::Measurement> measurements,
                        std::optional<std::size_t> chosen);
 void draw_unfinished(QPainter& painter, const PictureMap& map, std::span<const ultrasound::Vec2> marks_T,
-                     const ultrasound::Vec2& hover_T, bool is_ellipse, bool is_angle);
+                     const ultrasound::Vec2& hover_T, bool is_ellipse, bool is_angle, const QString& result);
 
 /// Dots along a line in the image, with a longer one per centimetre.
 void draw_guide(QPainter& painter, const PictureMap& map, std::span<const ultrasound::Vec2> line_T);

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "core/files/data_dir.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
 #include "views/ultrasound/ultrasound_painter.h"
@@ -84,6 +85,11 @@ void UltrasoundView::show_patient(std::shared_ptr<const ultrasound::AcousticScen
   flow_ = std::move(flow);
   panorama_ = std::move(panorama);
   transducer_ = transducer;
+  output_.reset();
+  if (auto output = ultrasound::load_acoustic_output(data_dir() / "transducers.toml", transducer_.name))
+    output_ = *output;
+  zoom_ = {};
+  panned_from_.reset();
   settings_ = load_settings(transducer_);
   picture_.reset();
   image_ = QImage();
@@ -287,7 +293,28 @@ ultrasound::ScanGeometry UltrasoundView::requested_scan() const {
 
 std::optional<PictureMap> UltrasoundView::picture_map() const {
   if (!picture_) return std::nullopt;
-  return PictureMap(layout_for(picture_->scan).picture, picture_->raster);
+  return PictureMap(layout_for(picture_->scan).picture, picture_->raster, zoom_);
+}
+
+void UltrasoundView::set_zoom(const PictureZoom& zoom) {
+  const PictureZoom held = zoom.factor > 1.0 ? zoom : PictureZoom{};
+  if (zoom_ == held) return;
+  zoom_ = held;
+  update();
+  Q_EMIT changed();
+}
+
+void UltrasoundView::zoom_at(const QPointF& place, double factor) {
+  if (const auto map = picture_map()) set_zoom(map->zoomed_at(place, factor));
+}
+
+void UltrasoundView::zoom_by_steps(int by) {
+  constexpr double kStep = 1.25;
+  if (const auto map = picture_map()) zoom_at(map->area().center(), zoom_.factor * std::pow(kStep, by));
+}
+
+void UltrasoundView::reset_zoom() {
+  set_zoom({});
 }
 
 MarginSpace UltrasoundView::room() const {
@@ -296,7 +323,7 @@ MarginSpace UltrasoundView::room() const {
   const QFont font = caption_font(is_small);
   room.scale_width = QFontMetricsF(font).horizontalAdvance(QStringLiteral("20")) + 12.0;
   if (picture_) {
-    const CaptionFacts facts{to_qt(transducer_.name), 88.0, {}, measurements_.items(), is_small};
+    const CaptionFacts facts{to_qt(transducer_.name), 88.0, {}, measurements_.items(), is_small, output_};
     std::vector<CaptionLine> lines = caption_of(*picture_, facts);
     // Space for optional texts, so that the image does not move.
     std::erase_if(lines, [](const CaptionLine& line) {
@@ -357,10 +384,13 @@ void UltrasoundView::paintEvent(QPaintEvent*) {
     return;
   }
   const UltrasoundLayout& layout = layout_for(picture_->scan);
-  const PictureMap map(layout.picture, picture_->raster);
+  const PictureMap map(layout.picture, picture_->raster, zoom_);
   const bool is_exact = std::abs(map.rect().width() * devicePixelRatioF() - picture_->raster.columns) < 1.0;
   painter.setRenderHint(QPainter::SmoothPixmapTransform, !is_exact);
+  painter.save();
+  painter.setClipRect(map.area());
   painter.drawImage(map.rect(), image_);
+  painter.restore();
 
   ultrasound::ScanCaption caption;
   caption.focus_mm = picture_->acquisition.focus_mm;
@@ -368,22 +398,26 @@ void UltrasoundView::paintEvent(QPaintEvent*) {
   const ultrasound::ScanAnnotation annotation =
       ultrasound::make_scan_annotation(picture_->raster, picture_->scan, caption);
   const QFont font = caption_font(is_small);
-  const CaptionFacts facts{to_qt(transducer_.name), frames_per_s_, shown_cine_, measurements_.items(), is_small};
-  draw_caption(painter, layout.caption, caption_of(*picture_, facts), font);
+  const CaptionFacts facts{
+      to_qt(transducer_.name), frames_per_s_, shown_cine_, measurements_.items(), is_small, output_, zoom_.factor};
+  draw_caption(painter, layout.caption, caption_of(*picture_, facts), font, map.is_magnified());
   draw_depth_scale(painter, map, layout.scale_x, annotation, font);
   if (!layout.bars.isEmpty()) draw_bars(painter, layout.bars, annotation, *picture_, font);
 
   painter.save();
-  painter.setClipPath(outline_of(picture_->scan, map));
+  if (map.is_magnified()) painter.setClipRect(map.area());
+  painter.setClipPath(outline_of(picture_->scan, map), map.is_magnified() ? Qt::IntersectClip : Qt::ReplaceClip);
   if (picture_->unscanned_share > 0.0) hatch_unscanned(painter, map, picture_->scanned_T);
   const bool has_guide = is_guide_visible_ && is_guide_offered_;
   if (has_guide && settings_.guide.is_shown) draw_guide(painter, map, guide_line_T());
   if (has_guide) draw_needle_axis(painter, map, *picture_, needle_shaft_P_);
   painter.restore();
+  if (const QString message = flow_message(); !message.isEmpty()) draw_message(painter, map.area(), message, font);
+  if (map.is_magnified()) painter.setClipRect(map.area());
   draw_measurements(painter, map, measurements_.items(), chosen_);
-  if (const QString message = flow_message(); !message.isEmpty()) draw_message(painter, map.rect(), message, font);
   if (tool_ != MeasuringTool::kNone)
-    draw_unfinished(painter, map, marks_T_, hover_T_, tool_ == MeasuringTool::kEllipse, tool_ == MeasuringTool::kAngle);
+    draw_unfinished(painter, map, marks_T_, hover_T_, tool_ == MeasuringTool::kEllipse, tool_ == MeasuringTool::kAngle,
+                    live_result());
 }
 
 }  // namespace trocar::trainer

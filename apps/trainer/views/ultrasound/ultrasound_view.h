@@ -11,6 +11,7 @@
 #include "ultrasound/doppler/flow_on_demand.h"
 #include "ultrasound/live/live_scanner.h"
 #include "ultrasound/panorama/panorama_on_demand.h"
+#include "ultrasound/probe/acoustic_output.h"
 #include "ultrasound/scanner/measurements.h"
 #include "views/ultrasound/caliper_marks.h"
 #include "views/ultrasound/ultrasound_box.h"
@@ -28,7 +29,8 @@ enum class MeasuringTool { kNone, kDistance, kEllipse, kAngle };
 /// With the focus in the view: Esc leaves the tool, Delete removes the selected or else the last measurement, Ctrl+Z
 /// and Ctrl+Shift+Z undo and redo; in a frozen loop, Left and Right step, P plays. Mouse: clicks set marks, a drag sets
 /// two. Without a tool, a drag moves a mark and selects its measurement, moves the Doppler box, or resizes it by its
-/// edges. The wheel steps the frozen loop.
+/// edges. The wheel steps the frozen loop; Ctrl + wheel magnifies about the pointer, + and - about the middle, 0 shows
+/// the whole image; the middle button moves a magnified image.
 class UltrasoundView : public QWidget {
   Q_OBJECT
  public:
@@ -92,6 +94,18 @@ class UltrasoundView : public QWidget {
   void remove_measurement();
   void clear_measurements();
 
+  /// Result of the measurement as if the next mark were at the pointer: "Dist 23.4 mm"; empty without a first mark, or
+  /// while a further mark is needed.
+  QString live_result() const;
+
+  /// Magnification of the image; it is kept until the patient or the transducer changes.
+  const PictureZoom& zoom() const noexcept { return zoom_; }
+  /// Magnifies about a point of the widget; `factor` is clamped to 1..kMostZoom.
+  void zoom_at(const QPointF& place, double factor);
+  /// The same about the middle of the picture; by = 1 zooms in, -1 out.
+  void zoom_by_steps(int by);
+  void reset_zoom();
+
   /// Mapping between the image plane and the widget, for the newest image.
   std::optional<PictureMap> picture_map() const;
   double frames_per_s() const noexcept { return frames_per_s_; }
@@ -144,6 +158,7 @@ class UltrasoundView : public QWidget {
   bool begin_grip(const QPointF& place);
   void move_grip(const ultrasound::Vec2& to_T);
   void forget_choice();
+  void set_zoom(const PictureZoom& zoom);
   bool begin_box_drag(const QPointF& place);
   void show_cursor(const QPointF& place);
   bool handle_key(int key, Qt::KeyboardModifiers modifiers, bool is_rehearsal);
@@ -159,6 +174,10 @@ class UltrasoundView : public QWidget {
   UltrasoundSettings settings_;
   bool is_saving_wanted_ = false;
   double changed_s_ = 0.0, now_s_ = 0.0;
+
+  PictureZoom zoom_;
+  std::optional<QPointF> panned_from_;  ///< Last place of a drag that moves the magnified image.
+  std::optional<ultrasound::AcousticOutput> output_;
 
   std::optional<Pose> X_PT_;
   std::vector<Vec3> needle_shaft_P_;

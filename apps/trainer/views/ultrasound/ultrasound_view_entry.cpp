@@ -82,6 +82,7 @@ ViewDescription ultrasound_view_entry() {
                {QStringLiteral("G, D"), UltrasoundView::tr("gain, depth; with Shift less")},
                {QStringLiteral("C"), UltrasoundView::tr("colour Doppler")},
                {QStringLiteral("M"), UltrasoundView::tr("measures a distance; its ends can be dragged")},
+               {QStringLiteral("Ctrl+wheel"), UltrasoundView::tr("magnifies at the pointer; + and −, 0: whole image")},
                {QStringLiteral("Delete"), UltrasoundView::tr("deletes the selected caliper, otherwise the last")}};
   view.make = [](ViewContext& context) { return std::make_unique<UltrasoundViewEntry>(context); };
   return view;

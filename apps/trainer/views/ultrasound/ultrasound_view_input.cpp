@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "ui_kit/parts.h"
 #include "views/ultrasound/ultrasound_view.h"
 
 namespace trocar::trainer {
@@ -66,6 +67,13 @@ void UltrasoundView::start_measuring(MeasuringTool tool) {
   setCursor(tool_ != MeasuringTool::kNone ? Qt::CrossCursor : Qt::ArrowCursor);
   update();
   Q_EMIT changed();
+}
+
+QString UltrasoundView::live_result() const {
+  if (tool_ == MeasuringTool::kNone || marks_T_.empty() || marks_T_.size() + 1 < marks_of(tool_)) return {};
+  std::vector<ultrasound::Vec2> marks_T = marks_T_;
+  marks_T.push_back(hover_T_);
+  return to_qt(ultrasound::results(finished(tool_, marks_T)).front());
 }
 
 void UltrasoundView::leave_tool() {
@@ -178,6 +186,10 @@ void UltrasoundView::show_cursor(const QPointF& place) {
 
 void UltrasoundView::mousePressEvent(QMouseEvent* event) {
   const auto map = picture_map();
+  if (event->button() == Qt::MiddleButton && map && map->is_magnified()) {
+    panned_from_ = event->pos();
+    return;
+  }
   if (event->button() != Qt::LeftButton || !map) {
     event->ignore();
     return;
@@ -195,6 +207,11 @@ void UltrasoundView::mousePressEvent(QMouseEvent* event) {
 void UltrasoundView::mouseMoveEvent(QMouseEvent* event) {
   const auto map = picture_map();
   if (!map) return;
+  if (panned_from_) {
+    set_zoom(map->moved_by(event->pos() - *panned_from_));
+    panned_from_ = event->pos();
+    return;
+  }
   if (grip_) return move_grip(map->to_T(event->pos()));
   if (box_drag_) {
     const ultrasound::Vec2 by = box_place(picture_->scan, map->to_T(event->pos())) - box_drag_->from;
@@ -209,6 +226,7 @@ void UltrasoundView::mouseMoveEvent(QMouseEvent* event) {
 }
 
 void UltrasoundView::mouseReleaseEvent(QMouseEvent* event) {
+  if (event->button() == Qt::MiddleButton) panned_from_.reset();
   if (event->button() != Qt::LeftButton) return;
   box_drag_.reset();
   grip_.reset();
@@ -219,6 +237,10 @@ void UltrasoundView::mouseReleaseEvent(QMouseEvent* event) {
 }
 
 void UltrasoundView::wheelEvent(QWheelEvent* event) {
+  if (event->modifiers() == Qt::ControlModifier && picture_) {
+    constexpr double kPerNotch = 1.15;
+    return zoom_at(event->position(), zoom_.factor * std::pow(kPerNotch, turned(*event)));
+  }
   if (!is_frozen()) {
     event->ignore();
     return;
@@ -249,6 +271,13 @@ bool UltrasoundView::handle_key(int key, Qt::KeyboardModifiers modifiers, bool i
       return act(is_frozen(), [this] { step_cine(-1); });
     case Qt::Key_Right:
       return act(is_frozen(), [this] { step_cine(1); });
+    case Qt::Key_Plus:
+    case Qt::Key_Equal:
+      return act(picture_ != nullptr, [this] { zoom_by_steps(1); });
+    case Qt::Key_Minus:
+      return act(zoom_.factor > 1.0, [this] { zoom_by_steps(-1); });
+    case Qt::Key_0:
+      return act(zoom_.factor > 1.0, [this] { reset_zoom(); });
     case Qt::Key_P:
       return act(is_frozen(), [this] { play_cine(!cine().is_playing); });
     default:
