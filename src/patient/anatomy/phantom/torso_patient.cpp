@@ -30,9 +30,15 @@ Result<BiopsyPlan> lesions_of(Anatomy& anatomy, const CaseDescription& descripti
   return none;
 }
 
-std::string finding_of(const Anatomy& anatomy, const Lesion& lesion) {
-  return fmt::format("lesion of {:.0f} mm in segment {} of the liver", 2.0F * lesion.radius_mm * anatomy.scale(),
-                     liver_segment(anatomy, anatomy.torso.at(lesion.centre)));
+/// Sizes and segments of all lesions, by the numbers of their labels: "lesions of the liver: 1 of 21 mm in segment VI,
+/// …".
+std::string finding_of(const Anatomy& anatomy, const std::vector<Lesion>& lesions) {
+  std::string text = lesions.size() == 1 ? "lesion of the liver: " : "lesions of the liver: ";
+  for (std::size_t n = 0; n < lesions.size(); ++n)
+    text += fmt::format("{}{} of {:.0f} mm in segment {}", n == 0 ? "" : ", ", n + 1,
+                        2.0F * lesions[n].radius_mm * anatomy.scale(),
+                        liver_segment(anatomy, anatomy.torso.at(lesions[n].centre)));
+  return text;
 }
 
 }  // namespace
@@ -60,7 +66,7 @@ Result<TorsoPlan> build_torso(Anatomy& anatomy, const CaseDescription& descripti
   plan.landmarks = find_landmarks(anatomy);
   if (description.task == "liver-biopsy") {
     plan.paths = {biopsy.path};
-    plan.finding = finding_of(anatomy, biopsy.lesions.front());
+    plan.finding = finding_of(anatomy, biopsy.lesions);
     for (Vec3* end : {&plan.paths.front().line_P.a, &plan.paths.front().line_P.b}) *end *= anatomy.scale();
   } else if (description.task == "lumbar-puncture") {
     TROCAR_TRY(plan.paths, plan_lumbar_paths(anatomy));
