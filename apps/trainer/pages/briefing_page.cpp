@@ -1,6 +1,5 @@
 #include "pages/briefing_page.h"
 
-#include <QGridLayout>
 #include <QImage>
 #include <QLabel>
 #include <QProgressBar>
@@ -18,6 +17,7 @@ namespace trocar::trainer {
 namespace {
 
 constexpr int kSteps = 1000;
+constexpr int kGap_px = 12;
 constexpr int kWide_px = 1300;  ///< From here on, there is room for a second column of text.
 
 QLabel* paragraph(const char* name) {
@@ -55,7 +55,7 @@ QString legend_html(const std::vector<LegendEntry>& entries, scene::Guidance gui
   return parts.join(QStringLiteral(" &nbsp; "));
 }
 
-/// Entries of two slices; the same colour once.
+/// Entries of two slices; the same colour once, targets first.
 std::vector<LegendEntry> joined(std::vector<LegendEntry> a, const std::vector<LegendEntry>& b) {
   for (const LegendEntry& entry : b) {
     const auto same = std::find_if(a.begin(), a.end(), [&](const LegendEntry& e) { return e.color == entry.color; });
@@ -65,7 +65,9 @@ std::vector<LegendEntry> joined(std::vector<LegendEntry> a, const std::vector<Le
       same->share += entry.share;
     }
   }
-  std::stable_sort(a.begin(), a.end(), [](const LegendEntry& x, const LegendEntry& y) { return x.share > y.share; });
+  std::stable_sort(a.begin(), a.end(), [](const LegendEntry& x, const LegendEntry& y) {
+    return x.is_target != y.is_target ? x.is_target : x.share > y.share;
+  });
   return a;
 }
 
@@ -91,9 +93,14 @@ BriefingPage::BriefingPage(QWidget* parent) : QWidget(parent) {
 
 QWidget* BriefingPage::make_texts() {
   auto* content = new QWidget;
-  cards_ = new QGridLayout(content);
+  cards_ = new QHBoxLayout(content);
   cards_->setContentsMargins(0, 0, 0, 0);
-  cards_->setSpacing(12);
+  for (QVBoxLayout** column : {&left_, &right_}) {
+    *column = new QVBoxLayout;
+    (*column)->setSpacing(kGap_px);
+    (*column)->addStretch();
+    cards_->addLayout(*column, 6);
+  }
   referral_ = paragraph("briefing-referral");
   procedure_ = paragraph("briefing-procedure");
   scoring_ = paragraph("briefing-scoring");
@@ -118,6 +125,7 @@ QWidget* BriefingPage::make_pictures() {
     (*label)->setWordWrap(true);
     (*label)->setMinimumSize(240, 120);
     (*label)->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Ignored);
+    (*label)->installEventFilter(this);
     pictures->addWidget(*label, 1);
   }
   content->addLayout(pictures, 1);
@@ -150,18 +158,21 @@ QWidget* BriefingPage::make_bottom() {
 
 void BriefingPage::place_cards() {
   const bool is_wide = width() >= kWide_px;
-  for (QWidget* card : card_widgets_) cards_->removeWidget(card);
-  for (std::size_t n = 0; n < card_widgets_.size(); ++n) {
-    const int at = static_cast<int>(n);
-    cards_->addWidget(card_widgets_[n], is_wide ? at % 2 : at, is_wide ? at / 2 : 0);
+  for (QWidget* card : card_widgets_) {
+    left_->removeWidget(card);
+    right_->removeWidget(card);
   }
-  cards_->setColumnStretch(0, is_wide ? 6 : 1);
-  cards_->setColumnStretch(1, is_wide ? 5 : 0);
+  for (std::size_t n = 0; n < card_widgets_.size(); ++n) {
+    QBoxLayout* column = is_wide && n >= 2 ? right_ : left_;
+    column->insertWidget(column->count() - 1, card_widgets_[n]);  // before the stretch
+  }
+  cards_->setStretch(1, is_wide ? 5 : 0);
+  cards_->setSpacing(is_wide ? kGap_px : 0);
 }
 
-void BriefingPage::show_tables(const cases::Case& tables) {
+void BriefingPage::show_tables(const cases::Case& tables, std::optional<bool> is_parenchymal) {
   title_->setText(to_qt(tables.task.title));
-  procedure_->setText(form_html(procedure_rows(tables)));
+  procedure_->setText(form_html(procedure_rows(tables, is_parenchymal)));
   scoring_->setText(form_html(scoring_rows(tables)));
 }
 
@@ -170,14 +181,15 @@ void BriefingPage::show_opening(const TrainerChoice& choice) {
   open_.reset();
   title_->setText(tr("Briefing"));
   subtitle_->setText(tr("%1: %2").arg(tr(title_of(choice.difficulty)), tr(help_text_of(choice.difficulty))));
-  std::vector<BriefingRow> rows = referral_rows(choice);
-  rows.push_back({tr("Finding"), tr("follows when the images are loaded")});
-  referral_->setText(form_html(rows));
   procedure_->clear();
   scoring_->clear();
   // An error of the tables is reported by the opening, which reads them, too.
-  if (const auto tables = load_briefing_tables(choice)) show_tables(*tables);
-  controls_->setText(form_html(control_rows(choice)));
+  const auto tables = load_briefing_tables(choice);
+  if (tables) show_tables(*tables);
+  std::vector<BriefingRow> rows = referral_rows(choice);
+  if (tables && is_lesion_task(tables->task)) rows.push_back({tr("Finding"), tr("follows when the images are loaded")});
+  referral_->setText(form_html(rows));
+  controls_->setText(form_html(control_rows(choice, !tables || tables->needle.is_biopsy)));
   axial_->setText(tr("The images are being loaded."));
   second_->clear();
   legend_->clear();
@@ -203,34 +215,40 @@ void BriefingPage::show_case(std::shared_ptr<const cases::OpenCase> open, Diffic
   choice_.patient = open_->choice.patient_source;
   choice_.difficulty = difficulty;
   const cases::Case& the_case = open_->the_case;
-  show_tables(the_case);
+  show_tables(the_case, the_case.is_parenchymal);
   subtitle_->setText(tr("%1: %2").arg(tr(title_of(difficulty)), tr(help_text_of(difficulty))));
   std::vector<BriefingRow> rows = referral_rows(choice_);
   for (BriefingRow& row : finding_rows(the_case)) rows.push_back(std::move(row));
   if (difficulty != Difficulty::kExam) rows.push_back(path_row(the_case));
   referral_->setText(form_html(rows));
-  layout()->activate();
-  show_pictures();
+  show_legend();
+  for (QLabel* label : {axial_, second_}) show_picture(*label);
   progress_->hide();
   state_->setText(tr("Ready"));
   begin_->setEnabled(true);
   begin_->setFocus();
 }
 
-void BriefingPage::show_pictures() {
-  if (!open_) return;
-  const scene::Guidance guidance = guidance_of(choice_.difficulty);
+BriefingPlane BriefingPage::plane_of(const QLabel& label) const {
+  if (&label == axial_) return BriefingPlane::kAxial;
   // A plane along the path would reveal the path.
-  const BriefingPlane second =
-      guidance == scene::Guidance::kPath ? BriefingPlane::kAlongPath : BriefingPlane::kSagittal;
+  return guidance_of(choice_.difficulty) == scene::Guidance::kPath ? BriefingPlane::kAlongPath
+                                                                   : BriefingPlane::kSagittal;
+}
+
+void BriefingPage::show_picture(QLabel& label) {
+  if (!open_ || label.width() < 16 || label.height() < 16) return;
+  const scene::Guidance guidance = guidance_of(choice_.difficulty);
+  label.setPixmap(QPixmap::fromImage(briefing_picture(*open_, plane_of(label), label.size(), guidance)));
+}
+
+void BriefingPage::show_legend() {
+  const scene::Guidance guidance = guidance_of(choice_.difficulty);
   std::vector<LegendEntry> entries;
-  const auto show = [&](QLabel& label, BriefingPlane plane) {
-    const QSize size(qMax(240, label.width()), qMax(120, label.height()));
-    label.setPixmap(QPixmap::fromImage(briefing_picture(*open_, plane, size, guidance)));
-    entries = joined(std::move(entries), briefing_legend(*open_, plane, size, guidance));
-  };
-  show(*axial_, BriefingPlane::kAxial);
-  show(*second_, second);
+  for (const QLabel* label : {axial_, second_}) {
+    const QSize size = label->size().expandedTo({240, 120});
+    entries = joined(std::move(entries), briefing_legend(*open_, plane_of(*label), size, guidance));
+  }
   legend_->setText(legend_html(entries, guidance));
 }
 
@@ -241,8 +259,14 @@ void BriefingPage::show_later(const QString& step) {
 void BriefingPage::resizeEvent(QResizeEvent* event) {
   QWidget::resizeEvent(event);
   place_cards();
-  layout()->activate();
-  show_pictures();
+}
+
+/// The slices are drawn in the size that the layout leaves for them.
+bool BriefingPage::eventFilter(QObject* object, QEvent* event) {
+  if (event->type() == QEvent::Resize)
+    for (QLabel* label : {axial_, second_})
+      if (object == label) show_picture(*label);
+  return QWidget::eventFilter(object, event);
 }
 
 }  // namespace trocar::trainer

@@ -3,14 +3,17 @@
 #include <QWidget>
 #include <array>
 #include <memory>
+#include <optional>
 
 #include "cases/open_case.h"
 #include "choice/trainer_choice.h"
+#include "views/slices/briefing_picture.h"
 
-class QGridLayout;
+class QHBoxLayout;
 class QLabel;
 class QProgressBar;
 class QPushButton;
+class QVBoxLayout;
 
 namespace trocar::trainer {
 
@@ -36,6 +39,7 @@ class BriefingPage : public QWidget {
 
  protected:
   void resizeEvent(QResizeEvent* event) override;
+  bool eventFilter(QObject* object, QEvent* event) override;
 
  private:
   QWidget* make_texts();
@@ -43,8 +47,11 @@ class BriefingPage : public QWidget {
   QWidget* make_bottom();
   /// Scoring and controls beside the referral in a wide window, below it in a narrow one.
   void place_cards();
-  void show_tables(const cases::Case& tables);
-  void show_pictures();
+  /// `is_parenchymal`: see procedure_rows().
+  void show_tables(const cases::Case& tables, std::optional<bool> is_parenchymal = {});
+  BriefingPlane plane_of(const QLabel& label) const;
+  void show_picture(QLabel& label);
+  void show_legend();
 
   QLabel* title_ = nullptr;
   QLabel* subtitle_ = nullptr;
@@ -52,8 +59,9 @@ class BriefingPage : public QWidget {
   QLabel* procedure_ = nullptr;
   QLabel* scoring_ = nullptr;
   QLabel* controls_ = nullptr;
-  QGridLayout* cards_ = nullptr;
-  std::array<QWidget*, 4> card_widgets_{};  ///< Referral, procedure, scoring, controls.
+  QHBoxLayout* cards_ = nullptr;
+  QVBoxLayout *left_ = nullptr, *right_ = nullptr;  ///< Columns of cards.
+  std::array<QWidget*, 4> card_widgets_{};          ///< Referral, procedure, scoring, controls.
   QLabel* axial_ = nullptr;
   QLabel* second_ = nullptr;  ///< A slice perpendicular to the first.
   QLabel* legend_ = nullptr;

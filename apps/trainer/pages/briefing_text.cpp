@@ -1,6 +1,7 @@
 #include "pages/briefing_text.h"
 
 #include <QCoreApplication>
+#include <QRegularExpression>
 #include <QStringList>
 #include <algorithm>
 #include <array>
@@ -70,14 +71,21 @@ Vec3 extent_mm(const anatomy::VirtualPatient& patient, const Vec3& middle_P, std
   return extent;
 }
 
-/// Couinaud segment of a lesion: of the patient's description where a procedural patient states it, else of labels of
-/// liver segments around the lesion ("liver_segment_6"); empty: not known.
-QString segment_of(const anatomy::VirtualPatient& patient, const Vec3& middle_P, double radius_mm) {
-  constexpr std::string_view kStated = "in segment ", kLabel = "liver_segment_";
-  if (const auto at = patient.description.find(kStated); at != std::string::npos) {
-    const std::size_t from = at + kStated.size();
-    return escaped(patient.description.substr(from, patient.description.find(' ', from) - from));
-  }
+/// Couinaud segment that the description of a procedural patient states for a lesion of that label ("liver_lesion_2"):
+/// "lesions of the liver: 1 of 21 mm in segment VI, 2 of …"; empty: none.
+QString stated_segment(const anatomy::VirtualPatient& patient, const std::string& label) {
+  const QString number = to_qt(label).section(QLatin1Char('_'), -1);
+  const QRegularExpression stated(
+      QStringLiteral("[:,] %1 of [0-9]+ mm in segment ([IV]+)").arg(QRegularExpression::escape(number)));
+  return stated.match(to_qt(patient.description)).captured(1);
+}
+
+/// Couinaud segment of a lesion, as the description states it, else of labels of liver segments around the lesion
+/// ("liver_segment_6"); empty: not known.
+QString segment_of(const anatomy::VirtualPatient& patient, const anatomy::Label& lesion, const Vec3& middle_P,
+                   double radius_mm) {
+  constexpr std::string_view kLabel = "liver_segment_";
+  if (const QString stated = stated_segment(patient, lesion.name); !stated.isEmpty()) return stated;
   static constexpr std::array kNumerals{"I", "II", "III", "IV", "V", "VI", "VII", "VIII"};
   constexpr double kBeside_mm = 4.0;
   std::map<std::string, int> votes;
@@ -107,8 +115,8 @@ QString lesion_text(const cases::Case& the_case) {
   QString text =
       tr("%1 × %2 × %3 mm").arg(size_mm.x(), 0, 'f', 0).arg(size_mm.y(), 0, 'f', 0).arg(size_mm.z(), 0, 'f', 0);
   text = tr("lesion of %1 (right–left, front–back, head–feet)").arg(text);
-  if (const QString segment = segment_of(patient, middle_P, 0.5 * size_mm.maxCoeff()); !segment.isEmpty())
-    text = tr("segment %1 of the %2: %3").arg(segment, words(the_case.task.organ), text);
+  if (const QString segment = segment_of(patient, *label, middle_P, 0.5 * size_mm.maxCoeff()); !segment.isEmpty())
+    text = tr("%1 in segment %2 of the %3").arg(text, segment, words(the_case.task.organ));
   const double depth_mm = -volume::sample_linear(patient.skin_distance_mm, middle_P);
   return depth_mm > 0.0 ? tr("%1; middle %2 mm below the nearest skin").arg(text).arg(depth_mm, 0, 'f', 0) : text;
 }
@@ -117,15 +125,15 @@ bool is_target_tissue(const tasks::Task& task, std::string_view tissue) {
   return std::find(task.target_tissues.begin(), task.target_tissues.end(), tissue) != task.target_tissues.end();
 }
 
-bool is_lesion_task(const tasks::Task& task) {
-  return !is_target_tissue(task, "csf") && !is_target_tissue(task, "ascites") && !is_target_tissue(task, "bile_duct");
-}
-
-QString goal_text(const tasks::Task& task) {
+QString goal_text(const tasks::Task& task, std::optional<bool> is_parenchymal) {
   if (is_target_tissue(task, "csf")) return tr("Bring the needle's tip into the spinal fluid of the dural sac.");
   if (is_target_tissue(task, "ascites")) return tr("Bring the needle's tip into the free fluid of the abdomen.");
   if (is_target_tissue(task, "bile_duct")) return tr("Bring the needle's tip into a bile duct of the liver.");
-  return tr("Bring the needle's tip to the lesion of the %1; without a lesion, to its healthy tissue.")
+  if (!is_parenchymal)
+    return tr("Bring the needle's tip to the lesion of the %1; without a lesion, to its healthy tissue.")
+        .arg(words(task.organ));
+  return (*is_parenchymal ? tr("Bring the needle's tip to the healthy tissue of the %1.")
+                          : tr("Bring the needle's tip to the lesion of the %1."))
       .arg(words(task.organ));
 }
 
@@ -141,16 +149,13 @@ QString guidance_text(tasks::Guidance guidance) {
   return {};
 }
 
+/// The title has gauge, length and throw.
 QString needle_text(const tasks::Needle& needle) {
-  QString text = tr("%1: %2 G, %3 mm thick, %4 mm long")
-                     .arg(escaped(needle.title))
-                     .arg(needle.gauge, 0, 'f', 0)
-                     .arg(needle.outer_diameter_mm, 0, 'f', 2)
-                     .arg(needle.length_mm, 0, 'f', 0);
+  QString text = tr("%1; %2 mm thick").arg(escaped(needle.title)).arg(needle.outer_diameter_mm, 0, 'f', 2);
   if (needle.is_biopsy)
-    text += tr("; throws %1 mm beyond the tip, notch of %2 mm")
-                .arg(needle.throw_mm, 0, 'f', 0)
-                .arg(needle.notch_mm, 0, 'f', 0);
+    text += tr(", notch of %1 mm; the stylet shoots %2 mm beyond the tip")
+                .arg(needle.notch_mm, 0, 'f', 0)
+                .arg(needle.throw_mm, 0, 'f', 0);
   return text;
 }
 
@@ -163,12 +168,12 @@ QString steps_text(const std::vector<tasks::Phase>& phases) {
 /// How a part of the score is judged, after its title; empty: the title says it.
 QString rule_of(const tasks::Task& task, std::string_view part) {
   const auto half = [](double tolerance, const char* unit) {
-    return tr("half of the points at %1 %2").arg(tolerance, 0, 'f', 0).arg(QString::fromUtf8(unit));
+    return tr("half of the points at %1%2").arg(tolerance, 0, 'f', 0).arg(QString::fromUtf8(unit));
   };
-  if (part == "target") return half(task.target_tolerance_mm, "mm");
-  if (part == "entry") return half(task.entry_tolerance_mm, "mm");
+  if (part == "target") return half(task.target_tolerance_mm, " mm");
+  if (part == "entry") return half(task.entry_tolerance_mm, " mm");
   if (part == "angle") return half(task.angle_tolerance_deg, "°");
-  if (part == "access") return half(task.margin_tolerance_mm, "mm");
+  if (part == "access") return half(task.margin_tolerance_mm, " mm");
   if (part == "time") return tr("none from %1 s on").arg(task.time_limit_s, 0, 'f', 0);
   if (part == "dose") return tr("none from %1 Gy cm² on").arg(task.dose_limit_gycm2, 0, 'g', 3);
   if (part == "comfort") return tr("one of them halves the points");
@@ -235,8 +240,8 @@ constexpr Control kProbeByGamepad[] = {{"left stick", "moves the transducer; cro
                                        {"shoulders", "turn it"}};
 constexpr Control kProbeByMouse[] = {{"S, mouse", "drag and wheel move the transducer"}};
 constexpr Control kNeedleByMouse[] = {{"A, mouse", "drag and wheel move the needle; Shift: finely"}};
-constexpr Control kAlways[] = {
-    {"Enter", "fire the biopsy gun"}, {"E", "end the attempt"}, {"Space", "stop all forces"}, {"F1", "all keys"}};
+constexpr Control kGun[] = {{"Enter", "fire the biopsy gun"}};
+constexpr Control kAlways[] = {{"E", "end the attempt"}, {"Space", "stop all forces"}, {"F1", "all keys"}};
 
 void add_controls(std::vector<BriefingRow>& rows, std::span<const Control> controls) {
   for (const Control& control : controls) rows.push_back({tr(control.with), tr(control.does)});
@@ -255,6 +260,10 @@ void add_device(std::vector<BriefingRow>& rows, const std::string& device, bool 
 }
 
 }  // namespace
+
+bool is_lesion_task(const tasks::Task& task) {
+  return !is_target_tissue(task, "csf") && !is_target_tissue(task, "ascites") && !is_target_tissue(task, "bile_duct");
+}
 
 std::vector<BriefingRow> referral_rows(const TrainerChoice& choice) {
   const anatomy::PhantomInfo* info = find_info(choice.patient);
@@ -292,8 +301,8 @@ std::vector<BriefingRow> finding_rows(const cases::Case& the_case) {
   return rows;
 }
 
-std::vector<BriefingRow> procedure_rows(const cases::Case& tables) {
-  std::vector<BriefingRow> rows{{tr("Goal"), goal_text(tables.task)},
+std::vector<BriefingRow> procedure_rows(const cases::Case& tables, std::optional<bool> is_parenchymal) {
+  std::vector<BriefingRow> rows{{tr("Goal"), goal_text(tables.task, is_parenchymal)},
                                 {tr("Guidance"), guidance_text(tables.task.guidance)},
                                 {tr("Needle"), needle_text(tables.needle)}};
   if (!tables.task.phases.empty()) rows.push_back({tr("Steps"), steps_text(tables.task.phases)});
@@ -320,7 +329,7 @@ std::vector<BriefingRow> scoring_rows(const cases::Case& tables) {
   return rows;
 }
 
-std::vector<BriefingRow> control_rows(const TrainerChoice& choice) {
+std::vector<BriefingRow> control_rows(const TrainerChoice& choice, bool has_gun) {
   const bool is_needle_led = attempt::follows_targets(choice.needle_device);
   const bool is_probe_led = attempt::follows_targets(choice.probe_device);
   std::vector<BriefingRow> rows;
@@ -338,6 +347,7 @@ std::vector<BriefingRow> control_rows(const TrainerChoice& choice) {
       add_device(rows, choice.probe_device, false);
     }
   }
+  if (has_gun) add_controls(rows, kGun);
   add_controls(rows, kAlways);
   return rows;
 }

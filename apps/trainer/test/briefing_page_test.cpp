@@ -46,7 +46,7 @@ TEST(BriefingPage, TellsTheReferralAndTheTaskBeforeThePatientIsLoaded) {
       {"liver-biopsy",
        "biopsy-3",
        {"biopsy-3", "INR 1.4", "none known", "lying on the back"},
-       {"ultrasound", "mm beyond the tip", "Fire the gun"},
+       {"ultrasound", "beyond the tip", "Fire the gun"},
        {"Target tissue in the core", "<b>20</b>", "lung"}},
       {"ptcd", "ptcd-1", {"jaundice", "INR 1.1"}, {"bile duct"}, {"Radiation dose"}},
       {"ascites-puncture", "ascites-2", {"carcinoma"}, {"free fluid"}, {"ascites comes back"}}};
@@ -109,6 +109,41 @@ TEST(BriefingPage, AddsLesionAndLegendWhenThePatientIsLoaded) {
   }
   EXPECT_TRUE(text_of(page, "briefing-legend").contains(QStringLiteral("liver")));
   EXPECT_FALSE(text_of(page, "briefing-legend").contains(QStringLiteral("planned")));
+  QCoreApplication::processEvents();
+  int slices = 0;
+  for (const QLabel* label : page.findChildren<QLabel*>()) {
+    if (label->pixmap(Qt::ReturnByValue).isNull()) continue;
+    ++slices;
+    EXPECT_EQ(label->pixmap(Qt::ReturnByValue).size(), label->size()) << "nothing of it is cut off";
+  }
+  EXPECT_EQ(slices, 2);
+}
+
+/// The abdomen's case with another description.
+QString finding_with(const std::string& description) {
+  cases::Case the_case = open_abdomen()->the_case;
+  auto patient = std::make_shared<anatomy::VirtualPatient>(*the_case.patient);
+  patient->description = description;
+  the_case.patient = patient;
+  QString text;
+  for (const BriefingRow& row : finding_rows(the_case))
+    if (row.heading == QStringLiteral("Finding")) text = row.text;
+  return text;
+}
+
+TEST(BriefingPage, TellsTheSegmentOfTheTargetAndNotOfAnotherLesion) {
+  const cases::Case& the_case = open_abdomen()->the_case;
+  const Segment& path_P = the_case.plan.line_P;
+  const anatomy::Label* target =
+      find_label(*the_case.patient, path_P.b + the_case.needle.notch_middle_mm() * path_P.direction());
+  ASSERT_NE(target, nullptr);
+  const std::string number = target->name.substr(target->name.rfind('_') + 1);
+  EXPECT_FALSE(finding_with("a man").contains(QStringLiteral("segment")));
+  const std::string stated = "a man; lesions of the liver: 7 of 9 mm in segment II, " + number +
+                             " of 20 mm in segment VI, 8 of 9 mm in segment IV";
+  EXPECT_TRUE(finding_with(stated).contains(QStringLiteral("segment VI of the liver")))
+      << finding_with(stated).toStdString();
+  EXPECT_FALSE(finding_with("a man; lesion of the liver: 7 of 9 mm in segment II").contains(QStringLiteral("segment")));
 }
 
 TEST(BriefingPage, FitsSmallAndLargeWindows) {

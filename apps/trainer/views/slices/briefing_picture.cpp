@@ -1,5 +1,7 @@
 #include "views/slices/briefing_picture.h"
 
+#include <QCoreApplication>
+#include <QFontMetricsF>
 #include <QPainter>
 #include <QPainterPath>
 #include <algorithm>
@@ -62,6 +64,18 @@ void draw_path(QPainter& painter, const slices::SliceGeometry& geometry, const c
   painter.drawEllipse(guidance == scene::Guidance::kPath ? tip : pixel(target_of(the_case)), kRing_px, kRing_px);
 }
 
+QString title_of(BriefingPlane plane) {
+  switch (plane) {
+    case BriefingPlane::kAxial:
+      return QCoreApplication::translate("BriefingPicture", "Axial");
+    case BriefingPlane::kSagittal:
+      return QCoreApplication::translate("BriefingPicture", "Sagittal");
+    case BriefingPlane::kAlongPath:
+      return QCoreApplication::translate("BriefingPicture", "Along the planned path");
+  }
+  return {};
+}
+
 /// Samples of each label id in a slice, every fourth pixel; a hidden lesion counts as its organ.
 std::array<std::size_t, 256> count_labels(const cases::OpenCase& open, BriefingPlane plane, const QSize& size,
                                           bool hides_lesions) {
@@ -103,6 +117,8 @@ QImage briefing_picture(const cases::OpenCase& open, BriefingPlane plane, const 
   const SliceCanvas canvas{painter, geometry, QRectF(image.rect())};
   draw_letters(canvas);
   draw_scale_bar(canvas);
+  painter.setFont(scaled_font(0.9));
+  draw_text(painter, {8.0, 6.0 + QFontMetricsF(painter.font()).ascent()}, title_of(plane), theme().dim);
   return image;
 }
 
@@ -121,10 +137,12 @@ std::vector<LegendEntry> briefing_legend(const cases::OpenCase& open, BriefingPl
     const auto same =
         std::find_if(entries.begin(), entries.end(), [&](const LegendEntry& entry) { return entry.color == color; });
     if (same == entries.end()) {
-      entries.push_back({color, QString::fromStdString(anatomy::structure_words(label.name)), share});
+      entries.push_back({color, QString::fromStdString(anatomy::structure_words(label.name)), share,
+                         tasks::is_target(open.the_case.task, label)});
     } else {
       same->words = QString::fromStdString(anatomy::structure_words(label.tissue));
       same->share += share;
+      same->is_target |= tasks::is_target(open.the_case.task, label);
     }
   }
   std::stable_sort(entries.begin(), entries.end(),

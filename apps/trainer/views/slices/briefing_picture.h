@@ -22,8 +22,9 @@ QImage briefing_picture(const cases::OpenCase& open, BriefingPlane plane, const 
 /// A colour of a slice and the structures that have it.
 struct LegendEntry {
   QColor color;
-  QString words;       ///< "liver"; the tissue where several structures share the colour: "bone".
-  double share = 0.0;  ///< Of the picture's area.
+  QString words;           ///< "liver"; the tissue where several structures share the colour: "bone".
+  double share = 0.0;      ///< Of the picture's area.
+  bool is_target = false;  ///< A target of the task is among them.
 };
 /// The colours of the labels in a slice, the largest area first. Labels below 1/1000 of the area are left out.
 std::vector<LegendEntry> briefing_legend(const cases::OpenCase& open, BriefingPlane plane, const QSize& size,
