@@ -77,8 +77,13 @@ std::vector<CaptionLine> caption_of(const ultrasound::ScanPicture& picture, cons
   if (facts.output) {
     const ultrasound::AcousticIndices indices =
         ultrasound::acoustic_indices(*facts.output, picture.acquisition.frequency_mhz, picture.acquisition.focus_mm);
-    lines.push_back({QStringLiteral("MI %1  TIS %2").arg(indices.mechanical, 0, 'f', 1).arg(indices.thermal, 0, 'f', 1),
-                     Kind::kPlain});
+    const QString mechanical = QStringLiteral("MI %1").arg(indices.mechanical, 0, 'f', 1);
+    // A small view has no room for a further line.
+    if (facts.is_small && !lines.empty()) {
+      lines.front().text += QStringLiteral(" ") + mechanical;
+    } else {
+      lines.push_back({QStringLiteral("%1  TIS %2").arg(mechanical).arg(indices.thermal, 0, 'f', 1), Kind::kPlain});
+    }
   }
   if (facts.zoom > 1.0) lines.push_back({QStringLiteral("Zoom %1x").arg(facts.zoom, 0, 'f', 1), Kind::kPlain});
   if (picture.is_frozen) {

@@ -32,7 +32,7 @@ struct CaptionFacts {
   ultrasound::CineState cine;
   std::span<const ultrasound::Measurement> measurements;
   bool is_small = false;
-  std::optional<ultrasound::AcousticOutput> output = {};  ///< For MI and TIS; empty: not displayed.
+  std::optional<ultrasound::AcousticOutput> output = {};  ///< For MI and TIS (small: MI); empty: none.
   double zoom = 1.0;                                      ///< Displayed if above 1.
 };
 std::vector<CaptionLine> caption_of(const ultrasound::ScanPicture& picture, const CaptionFacts& facts);
