@@ -305,6 +305,10 @@ void PatientScene::set_shot(const std::optional<Segment>& stylet_P, const std::o
   if (impl_->tools.set_shot(stylet_P, core_P)) impl_->has_changed = true;
 }
 
+void PatientScene::set_throw(const std::optional<Segment>& throw_P, const std::optional<Segment>& notch_P) {
+  if (impl_->tools.set_throw(throw_P, notch_P)) impl_->has_changed = true;
+}
+
 void PatientScene::set_transducer(const std::optional<Pose>& X_PT, const TransducerFace& face) {
   if (impl_->tools.set_transducer(X_PT, face)) impl_->has_changed = true;
 }

@@ -63,6 +63,8 @@ class PatientScene {
   void set_needle_goal(const std::optional<Segment>& ghost_P);
   /// A biopsy gun's stylet ahead of the needle, and the place of the last core.
   void set_shot(const std::optional<Segment>& stylet_P, const std::optional<Segment>& core_P);
+  /// Way of a biopsy gun's stylet if it were fired now, and the part of it where the notch stops; dashed.
+  void set_throw(const std::optional<Segment>& throw_P, const std::optional<Segment>& notch_P);
   void set_transducer(const std::optional<Pose>& X_PT, const TransducerFace& face);
   /// An image in 3D; corners of its outline: top left, top right, bottom left. `alpha` has one byte per pixel (0: not
   /// drawn) or is empty (all drawn).

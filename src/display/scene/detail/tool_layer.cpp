@@ -26,6 +26,8 @@ constexpr double kStyletRadius_mm = 0.8;  // drawn thicker than in reality for v
 constexpr volume::Rgb kStyletColor = {236, 240, 246};
 constexpr double kCoreRadius_mm = 1.6;  // around the needle
 constexpr volume::Rgb kCoreColor = {255, 138, 61};
+constexpr double kThrowRadius_mm = 0.3, kNotchRadius_mm = 0.7, kDash_mm = 1.5;
+constexpr volume::Rgb kThrowColor = {236, 240, 246};
 /// A smaller relative change of the minimum thickness does not rebuild the needle.
 constexpr double kThicknessStep = 0.15;
 
@@ -86,11 +88,13 @@ ToolLayer::ToolLayer(vtkRenderer& renderer)
     : needle_(make_tool(renderer)),
       ghost_(make_tool(renderer)),
       shot_(make_tool(renderer)),
+      throw_(make_tool(renderer)),
       transducer_(make_tool(renderer)) {
   ghost_->GetProperty()->SetOpacity(kGhostOpacity);
   ghost_->GetProperty()->BackfaceCullingOn();
   blend_at_once(*ghost_);
   make_unlit(*ghost_);
+  make_unlit(*throw_);
   renderer.AddActor(ultrasound_.actor());
 }
 
@@ -144,6 +148,27 @@ bool ToolLayer::set_shot(const std::optional<Segment>& stylet_P, const std::opti
   add(stylet_P, kStyletRadius_mm, kStyletColor);
   add(core_P, kCoreRadius_mm, kCoreColor);
   set_data(*shot_, to_colored_polydata(parts));
+  return true;
+}
+
+/// Dashes, as no stylet is there yet; those of the notch are thicker.
+bool ToolLayer::set_throw(const std::optional<Segment>& throw_P, const std::optional<Segment>& notch_P) {
+  if (are_same(throw_P, throw_P_) && are_same(notch_P, notch_P_)) return false;
+  throw_P_ = throw_P;
+  notch_P_ = notch_P;
+  throw_->SetVisibility(throw_P.has_value());
+  if (!throw_P) return true;
+  std::vector<ShapePart> parts;
+  const Vec3 along_P = throw_P->direction();
+  const double from_mm = notch_P ? (notch_P->a - throw_P->a).dot(along_P) : 0.0;
+  const double to_mm = notch_P ? (notch_P->b - throw_P->a).dot(along_P) : 0.0;
+  for (double at_mm = 0.0; at_mm < throw_P->length_mm(); at_mm += 2.0 * kDash_mm) {
+    const double end_mm = std::min(at_mm + kDash_mm, throw_P->length_mm()), middle_mm = 0.5 * (at_mm + end_mm);
+    const bool is_notch = middle_mm > from_mm && middle_mm < to_mm;
+    const Vec3 ends_P[2] = {throw_P->a + at_mm * along_P, throw_P->a + end_mm * along_P};
+    parts.push_back({make_tube(ends_P, is_notch ? kNotchRadius_mm : kThrowRadius_mm), kThrowColor});
+  }
+  set_data(*throw_, to_colored_polydata(parts));
   return true;
 }
 

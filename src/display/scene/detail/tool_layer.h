@@ -22,6 +22,7 @@ class ToolLayer {
   bool set_needle(std::span<const Vec3> shaft_P, double diameter_mm, NeedleModel model);
   bool set_needle_goal(const std::optional<Segment>& ghost_P);
   bool set_shot(const std::optional<Segment>& stylet_P, const std::optional<Segment>& core_P);
+  bool set_throw(const std::optional<Segment>& throw_P, const std::optional<Segment>& notch_P);
   bool set_transducer(const std::optional<Pose>& X_PT, const TransducerFace& face);
   /// Draws the transducer translucent.
   void set_transducer_translucent(bool is_translucent);
@@ -40,12 +41,13 @@ class ToolLayer {
   double diameter_mm_ = 1.0;
   NeedleModel model_ = NeedleModel::kChiba;
   double least_mm_ = 0.0;
-  std::optional<Segment> ghost_P_, stylet_P_, core_P_;
+  std::optional<Segment> ghost_P_, stylet_P_, core_P_, throw_P_, notch_P_;
   std::optional<Pose> X_PT_;
   std::optional<TransducerFace> face_;
   vtkSmartPointer<vtkActor> needle_;
   vtkSmartPointer<vtkActor> ghost_;
   vtkSmartPointer<vtkActor> shot_;
+  vtkSmartPointer<vtkActor> throw_;
   vtkSmartPointer<vtkActor> transducer_;
   PictureQuad ultrasound_;
 };

@@ -132,6 +132,19 @@ TEST_F(PatientSceneTest, AShotIsSeenUntilThereIsNone) {
   EXPECT_EQ(count_of(draw(), is_orange), before);
 }
 
+TEST_F(PatientSceneTest, AThrowIsDashedAndThickerAtTheNotch) {
+  scene->apply_preset(StructurePreset::kBones);
+  const int before = count_of(draw(), is_bright);
+  const Segment throw_P{{-60, 0, -50}, {60, 0, -50}};
+  scene->set_throw(throw_P, {});
+  const int thin = count_of(draw(), is_bright);
+  EXPECT_GT(thin, before + 20);
+  scene->set_throw(throw_P, Segment{{-60, 0, -50}, {40, 0, -50}});
+  EXPECT_GT(count_of(draw(), is_bright), thin);
+  scene->set_throw({}, {});
+  EXPECT_EQ(count_of(draw(), is_bright), before);
+}
+
 TEST_F(PatientSceneTest, ThinNeedleIsStillSeenFromAfar) {
   scene->apply_preset(StructurePreset::kBones);
   const Vec3 shaft_P[2] = {{-60, 0, -50}, {60, 0, -50}};
