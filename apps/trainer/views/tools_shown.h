@@ -15,6 +15,8 @@ struct ToolsShown {
   std::optional<Segment> goal_P;    ///< Needle at the hand's pose, if the hand is ahead of the needle.
   std::optional<Segment> stylet_P;  ///< Stylet of a biopsy gun, ahead of its cannula.
   std::optional<Segment> core_P;    ///< Place of the core.
+  std::optional<Segment> throw_P;   ///< Way of the stylet if the gun were fired now, from the tip on.
+  std::optional<Segment> notch_P;   ///< Part of it from which the core would come.
   std::optional<Pose> X_PT;         ///< Transducer.
   std::optional<Vec3> focus_P;      ///< Focus of the slices.
   double inside_mm = 0.0;           ///< Length of the needle in the body.

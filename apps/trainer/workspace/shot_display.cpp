@@ -15,4 +15,12 @@ void show_shot(ToolsShown& tools, const attempt::GunShot& shot, double since_s, 
   if (!is_over) tools.are_moving = true;
 }
 
+void show_throw(ToolsShown& tools, const tasks::Needle& needle) {
+  if (!needle.is_biopsy) return;
+  const Vec3 tip_P = tools.X_PN.p(), axis_P = tools.X_PN.R().col(2);
+  const double notch_end_mm = needle.throw_mm - needle.dead_space_mm;
+  tools.throw_P = Segment{tip_P, tip_P + needle.throw_mm * axis_P};
+  tools.notch_P = Segment{tip_P + (notch_end_mm - needle.notch_mm) * axis_P, tip_P + notch_end_mm * axis_P};
+}
+
 }  // namespace trocar::trainer

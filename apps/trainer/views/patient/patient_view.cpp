@@ -134,6 +134,10 @@ void PatientView::set_shot(const std::optional<Segment>& stylet_P, const std::op
   impl_->scene->set_shot(stylet_P, core_P);
 }
 
+void PatientView::set_throw(const std::optional<Segment>& throw_P, const std::optional<Segment>& notch_P) {
+  impl_->scene->set_throw(throw_P, notch_P);
+}
+
 void PatientView::set_transducer(const std::optional<Pose>& X_PT, const ultrasound::ScanGeometry& scan) {
   impl_->X_PT = X_PT;
   impl_->scan = scan;

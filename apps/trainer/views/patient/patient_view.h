@@ -54,6 +54,7 @@ class PatientView : public QWidget {
   /// Needle pose of the hand, hub to tip; empty if it equals the pose of the needle.
   void set_needle_goal(const std::optional<Segment>& ghost_P);
   void set_shot(const std::optional<Segment>& stylet_P, const std::optional<Segment>& core_P);
+  void set_throw(const std::optional<Segment>& throw_P, const std::optional<Segment>& notch_P);
   void set_transducer(const std::optional<Pose>& X_PT, const ultrasound::ScanGeometry& scan);
   /// Corners of the image outline in P: top left, top right, bottom left. Pixels outside of the scan of the last
   /// set_transducer are transparent; without a transducer, no pixel is. An empty image hides it.

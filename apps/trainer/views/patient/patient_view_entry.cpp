@@ -47,6 +47,7 @@ class PatientViewEntry final : public View {
     view_->set_needle(tools.shaft_P, needle.outer_diameter_mm, scene::needle_model(needle.model));
     view_->set_needle_goal(tools.goal_P);
     view_->set_shot(tools.stylet_P, tools.core_P);
+    view_->set_throw(tools.throw_P, tools.notch_P);
     has_whole_picture_ = false;
   }
 

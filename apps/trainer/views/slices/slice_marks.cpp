@@ -47,11 +47,18 @@ void SliceMarks::set_shot(const std::optional<Segment>& stylet_P, const std::opt
   update();
 }
 
-void SliceMarks::draw_piece(QPainter& painter, const Segment& piece_P, const QColor& color, double width) const {
+void SliceMarks::set_throw(const std::optional<Segment>& throw_P, const std::optional<Segment>& notch_P) {
+  throw_P_ = throw_P;
+  notch_P_ = notch_P;
+  update();
+}
+
+void SliceMarks::draw_piece(QPainter& painter, const Segment& piece_P, const QColor& color, double width,
+                            Qt::PenStyle style) const {
   const bool is_near = std::max(away_mm(piece_P.a), away_mm(piece_P.b)) < kNear_mm;
   QColor shown = color;
   shown.setAlphaF(is_near ? 1.0F : 0.45F);
-  painter.setPen(QPen(shown, width, Qt::SolidLine, Qt::FlatCap));
+  painter.setPen(QPen(shown, width, style, Qt::FlatCap));
   painter.drawLine(view_->position_of(piece_P.a), view_->position_of(piece_P.b));
 }
 
@@ -67,7 +74,9 @@ void SliceMarks::paintEvent(QPaintEvent* /*event*/) {
     color.setAlphaF(is_near ? 1.0F : 0.45F);
     return QPen(color, width, is_near ? Qt::SolidLine : Qt::DashLine);
   };
-  constexpr double kStylet_px = 2.0, kCore_px = 4.0;
+  constexpr double kStylet_px = 2.0, kCore_px = 4.0, kThrow_px = 1.0, kNotch_px = 3.0;
+  if (throw_P_) draw_piece(painter, *throw_P_, theme().needle, kThrow_px, Qt::DashLine);
+  if (notch_P_) draw_piece(painter, *notch_P_, theme().needle, kNotch_px, Qt::DotLine);
   if (stylet_P_) draw_piece(painter, *stylet_P_, theme().needle, kStylet_px);
   if (core_P_) draw_piece(painter, *core_P_, theme().target, kCore_px);
   for (const anatomy::Landmark& landmark : landmarks_) {

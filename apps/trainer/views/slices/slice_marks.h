@@ -13,8 +13,8 @@ namespace trocar::trainer {
 
 class SliceView;
 
-/// Overlay of a slice viewer with the marks of a case besides the plan (target, landmarks) and the gun's shot; faint if
-/// they are off the slice. Transparent for the mouse.
+/// Overlay of a slice viewer with the marks of a case besides the plan (target, landmarks), the gun's shot and its
+/// throw; faint if they are off the slice. Transparent for the mouse.
 class SliceMarks : public QWidget {
   Q_OBJECT
 
@@ -23,6 +23,8 @@ class SliceMarks : public QWidget {
 
   void set_target(const std::optional<Vec3>& p_P);
   void set_shot(const std::optional<Segment>& stylet_P, const std::optional<Segment>& core_P);
+  /// Way of the stylet if the gun were fired now, and the notch's part of it.
+  void set_throw(const std::optional<Segment>& throw_P, const std::optional<Segment>& notch_P);
   void set_landmarks(const std::vector<anatomy::Landmark>& landmarks);
 
  protected:
@@ -32,11 +34,12 @@ class SliceMarks : public QWidget {
  private:
   /// Distance from the slice's plane, mm.
   double away_mm(const Vec3& p_P) const;
-  void draw_piece(QPainter& painter, const Segment& piece_P, const QColor& color, double width) const;
+  void draw_piece(QPainter& painter, const Segment& piece_P, const QColor& color, double width,
+                  Qt::PenStyle style = Qt::SolidLine) const;
 
   SliceView* view_;
   std::optional<Vec3> target_P_;
-  std::optional<Segment> stylet_P_, core_P_;
+  std::optional<Segment> stylet_P_, core_P_, throw_P_, notch_P_;
   std::vector<anatomy::Landmark> landmarks_;
 };
 

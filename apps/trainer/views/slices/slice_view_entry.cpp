@@ -41,6 +41,7 @@ class SliceViewEntry final : public View {
   void show_tools(const ToolContext& context) override {
     tools_ = context.visible;
     marks_->set_shot(tools_.stylet_P, tools_.core_P);
+    marks_->set_throw(tools_.throw_P, tools_.notch_P);
     is_stale_ = true;
   }
 
