@@ -8,6 +8,7 @@
 #include "core/files/atomic_file.h"
 #include "pages/work_page.h"
 #include "panels/feedback_panel.h"
+#include "panels/hint_list.h"
 #include "report/html_report.h"
 #include "telemetry/tick_pose.h"
 #include "ui_kit/parts.h"
@@ -101,6 +102,7 @@ ReplayControl::ReplayControl(attempt::AttemptReplay replay, std::shared_ptr<cons
   page_.workspace().show_help(
       Difficulty::kGuided);  // after the attempt the expert's path is visible at every level of help
   connect(&page_.feedback(), &FeedbackPanel::worst_requested, this, &ReplayControl::go_to_worst);
+  connect(&page_.feedback().hints(), &HintList::moment_chosen, this, &ReplayControl::go_to);
   show_at(replay_.duration_s(), false);
 }
 
@@ -124,6 +126,9 @@ bool ReplayControl::take_key(const QKeyEvent& key, const KeyPlace& place) {
       return true;
     case Qt::Key_W:
       line.go_to_worst();
+      return true;
+    case Qt::Key_H:
+      page_.feedback().hints().choose_next();
       return true;
     default:
       return false;
@@ -215,6 +220,11 @@ void ReplayControl::go_to_worst() {
   page_.time_line().go_to_worst();
 }
 
+void ReplayControl::go_to(double time_s) {
+  page_.time_line().set_playing(false);
+  page_.time_line().set_time(time_s);
+}
+
 Status ReplayControl::save_report(const std::filesystem::path& file) const {
   return write_file_atomically(file, report::html_report(replay_.session(), open_->the_case.patient.get()));
 }
@@ -224,6 +234,10 @@ QVariantMap ReplayControl::facts() const {
   facts[QStringLiteral("level")] = to_qt(replay_.session().info.level);
   facts[QStringLiteral("score")] = replay_.outcome().score;
   facts[QStringLiteral("not_scored")] = to_qt(replay_.outcome().not_scored);
+  facts[QStringLiteral("is_passed")] = replay_.outcome().is_passed;
+  facts[QStringLiteral("hint_moments")] =
+      static_cast<int>(std::count_if(replay_.outcome().hints.begin(), replay_.outcome().hints.end(),
+                                     [](const scoring::Hint& hint) { return hint.at_s.has_value(); }));
   facts[QStringLiteral("target_reached")] = replay_.outcome().target_reached;
   facts[QStringLiteral("replay_s")] = shown_s_;
   facts[QStringLiteral("duration_s")] = replay_.duration_s();

@@ -26,6 +26,8 @@ class ReplayControl : public QObject {
   /// Call once per frame.
   void advance(double dt_s);
   void go_to_worst();
+  /// Pauses and shows the moment; clamped to the recording.
+  void go_to(double time_s);
   Status save_report(const std::filesystem::path& file) const;
   QVariantMap facts() const;
 

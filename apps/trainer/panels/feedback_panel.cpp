@@ -9,6 +9,7 @@
 #include <algorithm>
 
 #include "panels/core_picture.h"
+#include "panels/hint_list.h"
 #include "panels/score_dial.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
@@ -16,15 +17,26 @@
 namespace trocar::trainer {
 namespace {
 
+/// A session of an older program has no verdict.
+bool has_verdict(const scoring::Outcome& outcome) {
+  return outcome.is_passed || !outcome.fails.empty();
+}
+
 QString verdict_of(const scoring::Outcome& outcome) {
-  constexpr double kExcellent = 90.0, kGood = 75.0, kFair = 50.0;
   if (!outcome.is_scored()) return FeedbackPanel::tr("Not scored: %1").arg(to_qt(outcome.not_scored));
+  if (has_verdict(outcome)) return outcome.is_passed ? FeedbackPanel::tr("Passed") : FeedbackPanel::tr("Not passed");
   if (!outcome.risks_touched.empty()) return FeedbackPanel::tr("A structure at risk was touched");
-  if (!outcome.target_reached) return FeedbackPanel::tr("The target was missed");
-  if (outcome.score >= kExcellent) return FeedbackPanel::tr("Excellent");
-  if (outcome.score >= kGood) return FeedbackPanel::tr("Good");
-  return outcome.score >= kFair ? FeedbackPanel::tr("Target reached, with room for improvement")
-                                : FeedbackPanel::tr("Target reached, with a low score");
+  return outcome.target_reached ? FeedbackPanel::tr("Target reached") : FeedbackPanel::tr("The target was missed");
+}
+
+/// One reason a line: "The lung was touched".
+QString reasons_of(const scoring::Outcome& outcome) {
+  QStringList reasons;
+  for (const std::string& fail : outcome.fails) {
+    const QString reason = to_qt(fail);
+    reasons << reason.left(1).toUpper() + reason.mid(1);
+  }
+  return reasons.join(QStringLiteral("\n"));
 }
 
 QString core_text(const scoring::BiopsyCore& core) {
@@ -72,6 +84,12 @@ FeedbackPanel::FeedbackPanel(QWidget* parent) : QWidget(parent) {
   verdict_->setAlignment(Qt::AlignHCenter);
   verdict_->setWordWrap(true);
   content->addWidget(verdict_);
+  reasons_ = make_label({});
+  reasons_->setObjectName(QStringLiteral("verdict-reasons"));
+  reasons_->setAlignment(Qt::AlignHCenter);
+  reasons_->setWordWrap(true);
+  reasons_->hide();
+  content->addWidget(reasons_);
   parts_ = new QGridLayout;
   parts_->setHorizontalSpacing(10);
   parts_->setVerticalSpacing(3);
@@ -84,9 +102,7 @@ FeedbackPanel::FeedbackPanel(QWidget* parent) : QWidget(parent) {
   core_->setWordWrap(true);
   content->addWidget(core_);
   content->addWidget(make_label(tr("Improvements"), "heading"));
-  hints_ = make_label({});
-  hints_->setObjectName(QStringLiteral("hints"));
-  hints_->setWordWrap(true);
+  hints_ = new HintList;
   content->addWidget(hints_);
   worst_ = make_label({}, "dim");
   worst_->setWordWrap(true);
@@ -147,14 +163,22 @@ void FeedbackPanel::show_parts(const std::vector<scoring::ScorePart>& parts) {
   }
 }
 
+void FeedbackPanel::show_verdict(const scoring::Outcome& outcome) {
+  verdict_->setText(verdict_of(outcome));
+  const bool is_coloured = outcome.is_scored() && has_verdict(outcome);
+  verdict_->setStyleSheet(
+      is_coloured ? QStringLiteral("color: %1;").arg((outcome.is_passed ? theme().good : theme().bad).name())
+                  : QString());
+  reasons_->setText(reasons_of(outcome));
+  reasons_->setVisible(!reasons_->text().isEmpty());
+}
+
 void FeedbackPanel::show_outcome(const scoring::Outcome& outcome, const QString& worst_moment) {
   dial_->setVisible(outcome.is_scored());
   dial_->set_score(outcome.score);
-  verdict_->setText(verdict_of(outcome));
+  show_verdict(outcome);
   show_parts(outcome.parts);
-  QStringList hints;
-  for (const scoring::Hint& hint : outcome.hints) hints << QStringLiteral("•  ") + to_qt(hint.text);
-  hints_->setText(hints.isEmpty() ? tr("Nothing to improve.") : hints.join(QStringLiteral("\n\n")));
+  hints_->show_hints(outcome.hints);
   core_->setText(outcome.core ? core_text(*outcome.core) : QString());
   core_->setVisible(outcome.core.has_value());
   worst_->setText(worst_moment);

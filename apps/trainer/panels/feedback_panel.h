@@ -17,9 +17,11 @@ struct GunShot;
 namespace trocar::trainer {
 
 class CorePicture;
+class HintList;
 class ScoreDial;
 
-/// Result of an attempt: score, its parts, improvements. Keys: Ctrl+R tries again, W shows the worst moment.
+/// Result of an attempt: score, passed or not and why, parts of the score, improvements. Keys: Ctrl+R tries again, W
+/// shows the worst moment, H the moment of the next hint.
 class FeedbackPanel : public QWidget {
   Q_OBJECT
 
@@ -34,6 +36,7 @@ class FeedbackPanel : public QWidget {
   void show_core(const attempt::GunShot* shot);
   /// Events during the attempt: warnings, interruptions, changed parameters. One line each.
   void show_notes(const QStringList& notes);
+  HintList& hints() noexcept { return *hints_; }
 
  Q_SIGNALS:
   void again_requested();
@@ -43,6 +46,7 @@ class FeedbackPanel : public QWidget {
 
  private:
   QWidget* make_buttons();
+  void show_verdict(const scoring::Outcome& outcome);
   void show_parts(const std::vector<scoring::ScorePart>& parts);
 
   QScrollArea* scroll_ = nullptr;
@@ -51,7 +55,8 @@ class FeedbackPanel : public QWidget {
   QLabel* level_ = nullptr;
   QLabel* verdict_ = nullptr;
   QGridLayout* parts_ = nullptr;
-  QLabel* hints_ = nullptr;
+  QLabel* reasons_ = nullptr;
+  HintList* hints_ = nullptr;
   QLabel* core_ = nullptr;
   CorePicture* core_picture_ = nullptr;
   QLabel* worst_ = nullptr;

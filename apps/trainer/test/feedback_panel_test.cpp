@@ -8,6 +8,9 @@
 #include <QScrollArea>
 #include <QScrollBar>
 
+#include "panels/hint_list.h"
+#include "test/widget_actions.h"
+
 namespace trocar::trainer {
 namespace {
 
@@ -42,6 +45,7 @@ TEST(FeedbackPanelTest, OpensAtTheTopEachTime) {
   for (int attempt = 0; attempt < 2; ++attempt) {
     panel.show_outcome(long_outcome(), QStringLiteral("Worst moment: 3.0 mm from the planned path, after 4 s"));
     QCoreApplication::processEvents();
+    QCoreApplication::processEvents();  // the hints' rows are shown, and ask for their place
     ASSERT_GT(bar.maximum(), 0);
     EXPECT_EQ(bar.value(), 0);
     bar.setValue(bar.maximum());
@@ -82,6 +86,58 @@ TEST(FeedbackPanelTest, SaysWhyAnAttemptIsNotScored) {
   panel.show_outcome(long_outcome(), QStringLiteral("Worst moment: 3.0 mm from the planned path, after 4 s"));
   EXPECT_FALSE(panel.findChild<QWidget*>(QStringLiteral("score-dial"))->isHidden());
   EXPECT_TRUE(panel.findChild<QPushButton*>(QStringLiteral("worst-moment"))->isEnabled());
+}
+
+QString text_of(const FeedbackPanel& panel, const char* name) {
+  return panel.findChild<QLabel*>(QString::fromLatin1(name))->text();
+}
+
+TEST(FeedbackPanelTest, TellsWhetherTheAttemptPassedAndWhyNot) {
+  FeedbackPanel panel;
+  scoring::Outcome outcome = long_outcome();
+  outcome.fails = {"the lung was touched", "the score is below 70"};
+  panel.show_outcome(outcome, {});
+  EXPECT_EQ(text_of(panel, "verdict"), QStringLiteral("Not passed"));
+  EXPECT_EQ(text_of(panel, "verdict-reasons"), QStringLiteral("The lung was touched\nThe score is below 70"));
+  outcome.fails.clear();
+  outcome.is_passed = true;
+  panel.show_outcome(outcome, {});
+  EXPECT_EQ(text_of(panel, "verdict"), QStringLiteral("Passed"));
+  EXPECT_TRUE(panel.findChild<QLabel*>(QStringLiteral("verdict-reasons"))->isHidden());
+  outcome.is_passed = false;  // a session of an older program
+  panel.show_outcome(outcome, {});
+  EXPECT_EQ(text_of(panel, "verdict"), QStringLiteral("The target was missed"));
+}
+
+TEST(FeedbackPanelTest, AHintWithAMomentShowsIt) {
+  FeedbackPanel panel;
+  panel.resize(238, 900);
+  scoring::Outcome outcome = long_outcome();
+  outcome.parts.resize(3);
+  outcome.hints = {{"The insertion point was 14 mm too far left: move the needle right before inserting it.", 3.2},
+                   {"Give local anaesthetic before you pierce the skin.", {}},
+                   {"The lung was touched: enter lower.", 8.5}};
+  outcome.fails = {"the lung was touched", "the score is below 70"};
+  panel.show_outcome(outcome, QStringLiteral("Worst moment: the lung was touched, after 8.5 s"));
+  std::vector<double> moments;
+  QObject::connect(&panel.hints(), &HintList::moment_chosen, [&](double time_s) { moments.push_back(time_s); });
+  panel.show();
+  QCoreApplication::processEvents();
+  EXPECT_NE(panel.findChild<QLabel*>(QStringLiteral("hint-2")), nullptr) << "no moment, no button";
+  auto* third = panel.findChild<QPushButton*>(QStringLiteral("hint-3"));
+  ASSERT_NE(third, nullptr);
+  third->click();
+  EXPECT_TRUE(third->isChecked());
+  panel.hints().choose_next();
+  panel.hints().choose_next();
+  EXPECT_EQ(moments, (std::vector{8.5, 3.2, 8.5}));
+  auto* first = panel.findChild<QPushButton*>(QStringLiteral("hint-1"));
+  EXPECT_FALSE(first->isChecked());
+  EXPECT_TRUE(first->focusPolicy() & Qt::TabFocus);
+  const auto* words = first->findChild<QLabel*>();
+  EXPECT_GE(words->height(), words->heightForWidth(words->width())) << "its text is cut off";
+  EXPECT_GT(words->height(), 2 * words->fontMetrics().lineSpacing()) << "the text wraps";
+  save(panel, "feedback_panel.png");
 }
 
 }  // namespace
