@@ -11,6 +11,7 @@
 #include "control/task_layout.h"
 #include "pages/work_page.h"
 #include "panels/puncture_panel.h"
+#include "panels/step_list.h"
 #include "ui_kit/parts.h"
 #include "views/patient/patient_view.h"
 #include "views/plots/force_plot.h"
@@ -91,7 +92,8 @@ AttemptControl::AttemptControl(std::shared_ptr<const cases::OpenCase> open, cons
     constexpr double kMoved_mm = 0.5;
     return (attempt_.view().needle.X_PN.p() - view_.needle.X_PN.p()).norm() > kMoved_mm;
   });
-  page_.puncture().begin(kFullForce_n, choice_.difficulty == Difficulty::kGuided, open_->the_case.needle.is_biopsy);
+  page_.puncture().begin(kFullForce_n, choice_.difficulty == Difficulty::kGuided, open_->the_case.needle.is_biopsy,
+                         actions_of(open_->the_case.task, open_->the_case.needle));
   take(ActiveTool::kNeedle);
 }
 
@@ -110,6 +112,8 @@ void AttemptControl::connect_panel() {
   connect(&panel, &PuncturePanel::end_requested, this, &AttemptControl::ask_to_end);
   connect(&panel, &PuncturePanel::confirmed, this,
           [this] { question_ == Question::kEnd ? attempt_.finish() : Q_EMIT close_confirmed(); });
+  connect(&panel, &PuncturePanel::action_requested, this, &AttemptControl::act);
+  connect(&panel.steps(), &StepList::repeat_requested, this, [this](std::size_t step) { attempt_.repeat_phase(step); });
   connect(&gestures_, &ToolGestures::gestured, this, &AttemptControl::gesture);
   connect(&gestures_, &ToolGestures::key_pressed, this, &AttemptControl::handle_key);
   connect(&gestures_, &ToolGestures::taken, &panel, &PuncturePanel::show_active_tool);
@@ -123,6 +127,13 @@ void AttemptControl::take(ActiveTool tool) {
 }
 
 bool AttemptControl::take_key(const QKeyEvent& key, const KeyPlace& place) {
+  const auto action = action_of(key.key());
+  if (action && key.modifiers() == Qt::NoModifier && !place.is_text && !place.is_aside) {
+    const std::vector<TraineeAction> actions = actions_of(open_->the_case.task, open_->the_case.needle);
+    if (std::find(actions.begin(), actions.end(), *action) == actions.end()) return false;
+    if (!key.isAutoRepeat()) act(*action);
+    return true;
+  }
   if (key.key() != Qt::Key_Space || key.modifiers() != Qt::NoModifier) return gestures_.handle_key(key, place);
   // Space in a text field stops the forces but must not switch them on.
   if (place.is_text && attempt_.view().are_forces_stopped) return false;
@@ -199,6 +210,22 @@ void AttemptControl::show_notice(const QString& text) {
   constexpr double kNotice_s = 5.0;
   notice_ = text;
   notice_s_ = kNotice_s;
+  is_notice_result_ = false;
+}
+
+void AttemptControl::act(TraineeAction action) {
+  const ActionState state = action_state();
+  if (const QString reason = why_not(action, state, open_->the_case.needle); !reason.isEmpty())
+    return show_notice(reason);
+  const tasks::ActionRequest request = request_of(action, state);
+  if (action == TraineeAction::kWire) wire_mm_ = request.amount;
+  if (action == TraineeAction::kStylet) wire_mm_ = 0.0;
+  attempt_.act(request);
+}
+
+ActionState AttemptControl::action_state() const {
+  const bool can_act = view_.phase == attempt::AttemptPhase::kReady || view_.phase == attempt::AttemptPhase::kInBody;
+  return {view_.is_stylet_drawn, view_.is_breath_held, wire_mm_, can_act};
 }
 
 void AttemptControl::toggle_clamp() {
@@ -243,16 +270,22 @@ void AttemptControl::advance(double dt_s) {
   show_panel();
 }
 
-/// An exam shows no layer names and no labels: they would reveal the solution.
+/// An exam shows no layer names and no labels: they would reveal the solution. What comes out of the needle is visible
+/// to the trainee.
 void AttemptControl::poll_events() {
   for (const attempt::AttemptEvent& event : attempt_.take_events()) {
-    const bool is_shot = event.kind == telemetry::EventKind::kNone;
-    if (is_exam() && !is_shot) continue;
-    const QString text = is_exam() ? tr("the gun was fired") : to_qt(event.text);
+    const bool is_action = event.name == "action", is_shot = event.name == "shot";
+    if (is_exam() && !is_shot && !is_action) continue;
+    const QString text = is_exam() && is_shot ? tr("the gun was fired") : to_qt(event.text);
     page_.puncture().add_event(QStringLiteral("%1 s  %2").arg(event.time_s, 0, 'f', 1).arg(text),
                                is_risk(open_->the_case, event));
     if (event.kind == telemetry::EventKind::kPuncture)
       page_.forces().add_event(event.depth_mm, event.time_s, to_qt(anatomy::layer_words(event.name)));
+    if (!is_action) continue;
+    show_notice(text.left(1).toUpper() + text.mid(1));
+    constexpr double kResult_s = 8.0;
+    is_notice_result_ = true;
+    notice_s_ = kResult_s;
   }
 }
 
@@ -285,6 +318,8 @@ void AttemptControl::show_tools(double dt_s) {
   const bool is_moving = std::abs(needle.speed_mm_s) > kMoving_mm_s || tools.goal_P.has_value();
   still_s_ = is_moving ? 0.0 : still_s_ + dt_s;
   tools.are_moving = still_s_ < kStill_s;
+  if (!is_exam() && needle.is_known && view_.phase == attempt::AttemptPhase::kInBody && !view_.has_fired)
+    show_throw(tools, open_->the_case.needle);
   if (view_.shot) show_shot(tools, *view_.shot, view_.since_shot_s, needle.depth_mm);
   page_.workspace().show_tools(tools);
   if (tasks::XrayUse use = page_.xray().use(); use != xray_) attempt_.note_xray(xray_ = use);
@@ -313,9 +348,30 @@ void AttemptControl::show_panel() {
   figures.since_contact_s = view_.since_contact_s;
   figures.can_fire =
       open_->the_case.needle.is_biopsy && !view_.has_fired && view_.phase == attempt::AttemptPhase::kInBody;
+  figures.actions = action_state();
+  figures.is_hint_notice = is_notice_result_ && notice_s_ > 0.0;
   figures.is_clamped[0] = is_clamped_[0];
   figures.is_clamped[1] = is_clamped_[1];
+  show_steps();
   page_.puncture().show_figures(figures);
+}
+
+/// In an exam the loop sends no steps.
+void AttemptControl::show_steps() {
+  page_.puncture().steps().show_steps(view_.phases, view_.current_phase, view_.needle.time_s,
+                                      choice_.difficulty == Difficulty::kGuided);
+}
+
+void AttemptControl::add_step_facts(QVariantMap& facts) const {
+  const auto done = std::count_if(view_.phases.begin(), view_.phases.end(), [](const auto& p) { return p.done_s; });
+  facts[QStringLiteral("steps")] = static_cast<int>(view_.phases.size());
+  facts[QStringLiteral("steps_done")] = static_cast<int>(done);
+  const bool has_step = view_.current_phase && *view_.current_phase < view_.phases.size();
+  facts[QStringLiteral("step")] = has_step ? to_qt(view_.phases[*view_.current_phase].title) : QString();
+  facts[QStringLiteral("step_lacks")] = has_step ? to_qt(view_.phases[*view_.current_phase].lacks) : QString();
+  facts[QStringLiteral("is_stylet_drawn")] = view_.is_stylet_drawn;
+  facts[QStringLiteral("is_breath_held")] = view_.is_breath_held;
+  facts[QStringLiteral("wire_mm")] = wire_mm_;
 }
 
 /// Poses of the tools relative to tissue and plan: in an exam, scripts get no more than the window shows.
@@ -333,6 +389,7 @@ QVariantMap AttemptControl::solution_facts() const {
 QVariantMap AttemptControl::facts() const {
   QVariantMap facts;
   if (!is_exam()) facts = solution_facts();
+  add_step_facts(facts);
   facts[QStringLiteral("phase")] = QString::fromLatin1(to_string(view_.phase));
   facts[QStringLiteral("level")] = QString::fromLatin1(name_of(choice_.difficulty));
   facts[QStringLiteral("force_n")] = view_.needle.resistance_n;

@@ -10,6 +10,7 @@
 #include "choice/trainer_choice.h"
 #include "control/page_keys.h"
 #include "control/tool_gestures.h"
+#include "panels/action_buttons.h"
 
 namespace trocar::trainer {
 
@@ -52,9 +53,12 @@ class AttemptControl : public QObject {
   void take(ActiveTool tool);
   void aim();
   void toggle_clamp();
+  void act(TraineeAction action);
+  ActionState action_state() const;
   QString hint() const;
   void show_tools(double dt_s);
   void show_panel();
+  void show_steps();
   void poll_events();
   void poll_shot();
   bool is_free(attempt::Tool tool) const;
@@ -64,6 +68,7 @@ class AttemptControl : public QObject {
   ViewScale scale_of_3d() const;
   ViewScale scale_of_ultrasound() const;
   QVariantMap solution_facts() const;
+  void add_step_facts(QVariantMap& facts) const;
   double distance_mm() const;
 
   std::shared_ptr<const cases::OpenCase> open_;
@@ -82,7 +87,9 @@ class AttemptControl : public QObject {
   double still_s_ = 0.0;
   Question question_ = Question::kEnd;  ///< The last question.
   QString notice_;
-  double notice_s_ = 0.0;  ///< Remaining time of notice_.
+  double notice_s_ = 0.0;          ///< Remaining time of notice_.
+  bool is_notice_result_ = false;  ///< notice_ is the result of an action.
+  double wire_mm_ = 0.0;           ///< Of the guide wire beyond the tip.
   std::size_t frame_ = 0;
 };
 

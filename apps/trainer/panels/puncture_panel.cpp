@@ -11,6 +11,7 @@
 #include <QVBoxLayout>
 
 #include "panels/core_picture.h"
+#include "panels/step_list.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
 #include "ui_kit/wrapped_rows.h"
@@ -23,12 +24,13 @@ void set_text(QLabel& label, const QString& text) {
   if (label.text() != text) label.setText(text);
 }
 
-QLabel* make_figure(QGridLayout& grid, int row, const QString& title, const char* name) {
-  grid.addWidget(make_label(title, "dim"), row, 0);
+QLabel* make_figure(QGridLayout& grid, int row, int column, const QString& title, const char* name) {
+  grid.addWidget(make_label(title, "dim"), row, column);
   auto* value = make_label({});
   value->setObjectName(QString::fromLatin1(name));
   value->setAlignment(Qt::AlignRight);
-  grid.addWidget(value, row, 1);
+  const bool is_whole_row = column == 0 && row < 2;
+  grid.addWidget(value, row, column + 1, 1, is_whole_row ? 3 : 1);
   return value;
 }
 
@@ -37,30 +39,7 @@ QLabel* make_figure(QGridLayout& grid, int row, const QString& title, const char
 PuncturePanel::PuncturePanel(QWidget* parent) : QWidget(parent) {
   setObjectName(QStringLiteral("puncture-panel"));
   auto* inside = new QWidget;
-  auto* content = new QVBoxLayout(inside);
-  content->setContentsMargins(12, 12, 12, 4);
-  content->setSpacing(10);
-  content->addWidget(make_tool_choice());
-  content->addWidget(make_figures());
-  hint_ = make_label({});
-  hint_->setObjectName(QStringLiteral("hint"));
-  hint_->setWordWrap(true);
-  hint_->setMinimumHeight(hint_->fontMetrics().lineSpacing() * 3);
-  hint_->setAlignment(Qt::AlignTop);
-  content->addWidget(hint_);
-  force_ = new ForceBar(Qt::Horizontal);
-  force_->setObjectName(QStringLiteral("force-bar"));
-  content->addWidget(force_);
-  core_ = new CorePicture;
-  core_->hide();
-  content->addWidget(core_);
-  events_ = new QListWidget;
-  events_->setObjectName(QStringLiteral("events"));
-  events_->setFocusPolicy(Qt::NoFocus);
-  wrap_rows(*events_);
-  events_->setSelectionMode(QAbstractItemView::NoSelection);
-  content->addWidget(events_, 1);
-  connect(events_->verticalScrollBar(), &QScrollBar::rangeChanged, events_, &QListWidget::scrollToBottom);
+  make_content(*inside);
   fire_ = make_button("fire", tr("Fire the gun"), tr("Take a core (Enter)"));
   fire_->setProperty("role", "primary");
   fire_->setFocusPolicy(Qt::NoFocus);
@@ -83,33 +62,77 @@ PuncturePanel::PuncturePanel(QWidget* parent) : QWidget(parent) {
   connect(end_, &QPushButton::clicked, this, &PuncturePanel::end_requested);
 }
 
+void PuncturePanel::make_content(QWidget& inside) {
+  auto* content = new QVBoxLayout(&inside);
+  content->setContentsMargins(12, 10, 12, 4);
+  content->setSpacing(8);
+  steps_ = new StepList;
+  content->addWidget(steps_);
+  hint_ = make_label({});
+  hint_->setObjectName(QStringLiteral("hint"));
+  hint_->setWordWrap(true);
+  hint_->setAlignment(Qt::AlignTop);
+  content->addWidget(hint_);
+  actions_ = new ActionButtons;
+  content->addWidget(actions_);
+  connect(actions_, &ActionButtons::requested, this, &PuncturePanel::action_requested);
+  content->addWidget(make_tool_choice());
+  content->addWidget(make_figures());
+  force_ = new ForceBar(Qt::Horizontal);
+  force_->setObjectName(QStringLiteral("force-bar"));
+  content->addWidget(force_);
+  core_ = new CorePicture;
+  core_->hide();
+  content->addWidget(core_);
+  events_ = new QListWidget;
+  events_->setObjectName(QStringLiteral("events"));
+  events_->setFocusPolicy(Qt::NoFocus);
+  wrap_rows(*events_);
+  events_->setSelectionMode(QAbstractItemView::NoSelection);
+  constexpr int kLeastEvents = 3;  // rows
+  events_->setMinimumHeight(kLeastEvents * (events_->fontMetrics().lineSpacing() + 8));
+  content->addWidget(events_, 1);
+  connect(events_->verticalScrollBar(), &QScrollBar::rangeChanged, events_, &QListWidget::scrollToBottom);
+}
+
+/// In a low window only the steps about the current one are shown.
+void PuncturePanel::resizeEvent(QResizeEvent* event) {
+  QWidget::resizeEvent(event);
+  constexpr int kLinesForAllSteps = 42;
+  steps_->propose_folded(height() < kLinesForAllSteps * fontMetrics().lineSpacing());
+}
+
 QWidget* PuncturePanel::make_tool_choice() {
   auto* box = new QWidget;
   auto* grid = new QGridLayout(box);
   grid->setContentsMargins(0, 0, 0, 0);
   grid->setSpacing(6);
-  grid->addWidget(make_label(tr("Active tool"), "dim"), 0, 0, 1, 2);
+  const QString narrow = QStringLiteral("QPushButton { padding: 4px 5px; }");
   tool_buttons_ = new QButtonGroup(this);
-  const auto add = [&](ActiveTool tool, const char* name, const QString& text, const QString& tooltip, int row,
-                       int column) {
+  const auto add = [&](ActiveTool tool, const char* name, const QString& text, const QString& tooltip, int column) {
     auto* button = make_button(name, text, tooltip);
     button->setCheckable(true);
     button->setFocusPolicy(Qt::NoFocus);
+    button->setStyleSheet(narrow);
     tool_buttons_->addButton(button, static_cast<int>(tool));
-    grid->addWidget(button, row, column);
+    grid->addWidget(button, 0, column, 1, 2);
     connect(button, &QPushButton::clicked, this, [this, tool] { Q_EMIT tool_requested(tool); });
   };
-  add(ActiveTool::kNeedle, "tool-needle", tr("Needle"), tr("The mouse moves the needle (A)"), 1, 0);
-  add(ActiveTool::kTransducer, "tool-transducer", tr("Transducer"), tr("The mouse moves the transducer (S)"), 1, 1);
-  add(ActiveTool::kNone, "tool-none", tr("View"), tr("The mouse rotates the view (V)"), 2, 0);
+  constexpr int kColumns = 6;  // three tools above two buttons
+  add(ActiveTool::kNeedle, "tool-needle", tr("Needle"), tr("Active tool: the mouse moves the needle (A)"), 0);
+  add(ActiveTool::kTransducer, "tool-transducer", tr("Transducer"),
+      tr("Active tool: the mouse moves the transducer (S)"), 2);
+  add(ActiveTool::kNone, "tool-none", tr("View"), tr("No active tool: the mouse rotates the view (V)"), 4);
   clamp_ = make_button("clamp", tr("Clamp"), tr("Hold the active tool in place (X)"));
   clamp_->setCheckable(true);
-  clamp_->setFocusPolicy(Qt::NoFocus);
-  grid->addWidget(clamp_, 2, 1);
-  connect(clamp_, &QPushButton::clicked, this, &PuncturePanel::clamp_requested);
   aim_ = make_button("aim", tr("To the planned entry"), {});
-  aim_->setFocusPolicy(Qt::NoFocus);
-  grid->addWidget(aim_, 3, 0, 1, 2);
+  for (QPushButton* button : {clamp_, aim_}) {
+    button->setFocusPolicy(Qt::NoFocus);
+    button->setStyleSheet(narrow);
+  }
+  grid->addWidget(clamp_, 1, 0, 1, 2);
+  grid->addWidget(aim_, 1, 2, 1, kColumns - 2);
+  connect(clamp_, &QPushButton::clicked, this, &PuncturePanel::clamp_requested);
   connect(aim_, &QPushButton::clicked, this, &PuncturePanel::aim_requested);
   return box;
 }
@@ -176,16 +199,20 @@ QWidget* PuncturePanel::make_figures() {
   grid->setContentsMargins(0, 0, 0, 0);
   grid->setHorizontalSpacing(8);
   grid->setVerticalSpacing(4);
-  phase_ = make_figure(*grid, 0, tr("Needle"), "phase");
-  tissue_ = make_figure(*grid, 1, tr("Tissue at the tip"), "tissue");
-  depth_ = make_figure(*grid, 2, tr("Depth"), "depth");
-  target_ = make_figure(*grid, 3, tr("Target distance"), "to-target");
-  time_ = make_figure(*grid, 4, tr("Time from skin"), "time");
+  phase_ = make_figure(*grid, 0, 0, tr("Needle"), "phase");
+  tissue_ = make_figure(*grid, 1, 0, tr("Tissue at the tip"), "tissue");
+  depth_ = make_figure(*grid, 2, 0, tr("Depth"), "depth");
+  target_ = make_figure(*grid, 2, 2, tr("Target"), "to-target");
+  time_ = make_figure(*grid, 3, 0, tr("Time"), "time");
+  time_->setToolTip(tr("Since the needle touched the skin"));
+  target_->setToolTip(tr("Distance of the tip from the target"));
   return box;
 }
 
-void PuncturePanel::begin(double most_force_n, bool can_aim, bool has_gun) {
+void PuncturePanel::begin(double most_force_n, bool can_aim, bool has_gun, const std::vector<TraineeAction>& actions) {
   has_gun_ = has_gun;
+  actions_->begin(actions);
+  steps_->show_steps({}, {}, 0.0, false);
   aim_->setEnabled(can_aim);
   aim_->setToolTip(can_aim ? tr("Move needle or transducer to its planned position (H)")
                            : tr("The planned position is available in guided attempts only"));
@@ -204,7 +231,8 @@ void PuncturePanel::show_figures(const PunctureFigures& figures) {
   set_text(*depth_, figures.depth_mm ? tr("%1 mm").arg(*figures.depth_mm, 0, 'f', 1) : QStringLiteral("–"));
   set_text(*target_, figures.to_target_mm ? tr("%1 mm").arg(*figures.to_target_mm, 0, 'f', 1) : QStringLiteral("–"));
   set_text(*time_, tr("%1 s").arg(figures.since_contact_s, 0, 'f', 0));
-  set_text(*hint_, figures.hint);
+  show_hint(figures);
+  actions_->show_state(figures.actions);
   force_->set_force(figures.force_n, figures.time_s);
   force_->set_lag(figures.lag_mm);
   if (fire_->isEnabled() != figures.can_fire) fire_->setEnabled(figures.can_fire);
@@ -212,6 +240,19 @@ void PuncturePanel::show_figures(const PunctureFigures& figures) {
   const bool is_clamped = (tool == static_cast<int>(ActiveTool::kNeedle) && figures.is_clamped[0]) ||
                           (tool == static_cast<int>(ActiveTool::kTransducer) && figures.is_clamped[1]);
   if (clamp_->isChecked() != is_clamped) clamp_->setChecked(is_clamped);
+}
+
+void PuncturePanel::show_hint(const PunctureFigures& figures) {
+  set_text(*hint_, figures.hint);
+  const int lines_px = hint_->fontMetrics().lineSpacing() * (steps_->isHidden() ? 3 : 2);
+  if (hint_->minimumHeight() != lines_px) hint_->setMinimumHeight(lines_px);
+  const QString sheet =
+      figures.is_hint_notice
+          ? QStringLiteral(
+                "QLabel { background: %1; border: 1px solid %2; border-radius: 6px; padding: 5px; font-weight: 600; }")
+                .arg(theme().raised.name(), theme().accent.name())
+          : QString();
+  if (hint_->styleSheet() != sheet) hint_->setStyleSheet(sheet);
 }
 
 void PuncturePanel::show_active_tool(ActiveTool tool) {

@@ -4,6 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "panels/action_buttons.h"
+
 class QButtonGroup;
 class QFrame;
 class QLabel;
@@ -19,6 +21,7 @@ namespace trocar::trainer {
 
 class CorePicture;
 class ForceBar;
+class StepList;
 
 enum class ActiveTool { kNone, kNeedle, kTransducer };
 
@@ -27,6 +30,7 @@ struct PunctureFigures {
   QString phase;
   QString tissue;
   QString hint;
+  bool is_hint_notice = false;         ///< The hint is the result of an action: shown prominently.
   std::optional<double> depth_mm;      ///< Empty: hidden.
   std::optional<double> to_target_mm;  ///< Empty without help.
   double force_n = 0.0;
@@ -35,11 +39,12 @@ struct PunctureFigures {
   double since_contact_s = 0.0;  ///< Since contact with the skin.
   bool can_fire = false;
   bool is_clamped[2] = {false, false};  ///< Needle, transducer.
+  ActionState actions;
 };
 
-/// Panel during the puncture: active tool, needle position, resistance, next step. Keys: A and S select a tool, V none,
-/// X locks the active tool, Enter fires, E ends. A question replaces the last two buttons and does not pause the
-/// attempt; Enter and Escape answer it.
+/// Panel during the puncture: steps of the procedure, actions, active tool, needle position, resistance, events. Keys:
+/// A and S select a tool, V none, X locks the active tool, Enter fires, E ends; those of the actions: key_of(). A
+/// question replaces the last two buttons and does not pause the attempt; Enter and Escape answer it.
 class PuncturePanel : public QWidget {
   Q_OBJECT
 
@@ -47,8 +52,9 @@ class PuncturePanel : public QWidget {
   explicit PuncturePanel(QWidget* parent = nullptr);
 
   /// `can_aim`: the tools may be moved to their planned poses. `has_gun`: the needle is that of a biopsy gun.
-  void begin(double most_force_n, bool can_aim, bool has_gun = true);
+  void begin(double most_force_n, bool can_aim, bool has_gun = true, const std::vector<TraineeAction>& actions = {});
   void show_figures(const PunctureFigures& figures);
+  StepList& steps() noexcept { return *steps_; }
   void show_active_tool(ActiveTool tool);
   /// A bad event has the colour of errors.
   void add_event(const QString& text, bool is_bad = false);
@@ -64,15 +70,21 @@ class PuncturePanel : public QWidget {
   void aim_requested();
   void fire_requested();
   void end_requested();
+  void action_requested(trocar::trainer::TraineeAction action);
   void asked();
   /// The question was answered with yes.
   void confirmed();
+
+ protected:
+  void resizeEvent(QResizeEvent* event) override;
 
  private:
   QWidget* make_question();
   void answer(bool is_yes);
   QWidget* make_tool_choice();
   QWidget* make_figures();
+  void make_content(QWidget& inside);
+  void show_hint(const PunctureFigures& figures);
 
   QButtonGroup* tool_buttons_ = nullptr;
   QPushButton* clamp_ = nullptr;
@@ -83,6 +95,8 @@ class PuncturePanel : public QWidget {
   QLabel* target_ = nullptr;
   QLabel* time_ = nullptr;
   QLabel* hint_ = nullptr;
+  StepList* steps_ = nullptr;
+  ActionButtons* actions_ = nullptr;
   ForceBar* force_ = nullptr;
   CorePicture* core_ = nullptr;
   QListWidget* events_ = nullptr;

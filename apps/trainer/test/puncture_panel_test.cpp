@@ -3,11 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <QCoreApplication>
+#include <QLabel>
 #include <QListWidget>
 #include <QPushButton>
+#include <QScrollArea>
+#include <QToolButton>
 #include <cmath>
 
 #include "attempt/guide/gun_shot.h"
+#include "panels/step_list.h"
 #include "test/widget_actions.h"
 
 namespace trocar::trainer {
@@ -111,6 +115,185 @@ TEST(PuncturePanel, AsksInThePlaceOfItsButtonsAndStaysAsHigh) {
   shown.panel.begin(8.0, true);  // another attempt
   EXPECT_FALSE(shown.panel.is_asking());
   EXPECT_EQ(yes, 1);
+}
+
+/// The first two of four steps are done, the second one at 12 s; the third one is the current one.
+std::vector<attempt::PhaseView> four_steps() {
+  return {{"Find the lesion with the transducer", "You can only hit what you see.", {}, true, 1.0, 5.0},
+          {"Give local anaesthetic", "Skin and capsule hurt.", {}, true, 5.0, 12.0},
+          {"Align the needle with the image plane",
+           "Only in the plane does the image show needle and tip.",
+           "Turn the needle into the plane",
+           true,
+           12.0,
+           {}},
+          {"Advance with the tip in sight", "If the tip leaves the image, stop.", {}, false, {}, {}}};
+}
+
+template <class Widget>
+Widget& find(const QWidget& parent, const char* name) {
+  auto* found = parent.findChild<Widget*>(QString::fromLatin1(name));
+  if (found == nullptr) throw std::runtime_error(std::string("no ") + name);
+  return *found;
+}
+
+TEST(PunctureSteps, TheCurrentStepTellsWhatItLacksAndWhy) {
+  Shown shown;
+  StepList& steps = shown.panel.steps();
+  EXPECT_TRUE(steps.isHidden()) << "an exam has no steps";
+  steps.propose_folded(false);
+  steps.show_steps(four_steps(), 2, 60.0, true);
+  EXPECT_FALSE(steps.isHidden());
+  EXPECT_EQ(find<QLabel>(steps, "step-lacks").text(), QStringLiteral("Turn the needle into the plane"));
+  EXPECT_TRUE(find<QLabel>(steps, "step-why").text().contains(QStringLiteral("needle and tip")));
+  EXPECT_EQ(find<QLabel>(steps, "steps-heading").text(), QStringLiteral("2 of 4 steps done"));
+  EXPECT_EQ(find<QLabel>(steps, "step-1").accessibleName(),
+            QStringLiteral("done: Find the lesion with the transducer"));
+  EXPECT_EQ(find<QLabel>(steps, "step-3").accessibleName(),
+            QStringLiteral("now: Align the needle with the image plane"));
+  EXPECT_TRUE(find<QLabel>(steps, "step-4").isVisible());
+  shown.panel.show_figures({});
+  QCoreApplication::processEvents();
+  save(shown.panel, "puncture_panel_steps.png");
+}
+
+TEST(PunctureSteps, AssistedShowsTitlesAndTicksOnly) {
+  Shown shown;
+  StepList& steps = shown.panel.steps();
+  steps.show_steps(four_steps(), 2, 60.0, false);
+  EXPECT_TRUE(find<QLabel>(steps, "step-lacks").isHidden());
+  EXPECT_TRUE(find<QLabel>(steps, "step-why").isHidden());
+  EXPECT_TRUE(find<QLabel>(steps, "step-3").toolTip().isEmpty());
+  EXPECT_TRUE(find<QLabel>(steps, "step-3").isVisible());
+}
+
+TEST(PunctureSteps, AStepThatWasDoneIsConfirmedForAWhile) {
+  Shown shown;
+  StepList& steps = shown.panel.steps();
+  const QLabel& heading = find<QLabel>(steps, "steps-heading");
+  steps.show_steps(four_steps(), 2, 12.5, true);
+  EXPECT_EQ(heading.text(), QStringLiteral("\u2713 Step 2 done"));
+  steps.show_steps(four_steps(), 2, 12.0 + StepList::kConfirmed_s + 0.1, true);
+  EXPECT_EQ(heading.text(), QStringLiteral("2 of 4 steps done"));
+}
+
+TEST(PunctureSteps, OnlyADoneStepCanBeRepeated) {
+  Shown shown;
+  StepList& steps = shown.panel.steps();
+  std::vector<std::size_t> repeated;
+  QObject::connect(&steps, &StepList::repeat_requested, [&](std::size_t step) { repeated.push_back(step); });
+  steps.propose_folded(false);
+  steps.show_steps(four_steps(), 2, 60.0, true);
+  EXPECT_FALSE(find<QToolButton>(steps, "step-3-repeat").isVisible());
+  auto& second = find<QToolButton>(steps, "step-2-repeat");
+  EXPECT_TRUE(second.isVisible());
+  EXPECT_TRUE(second.focusPolicy() & Qt::TabFocus);
+  second.click();
+  EXPECT_EQ(repeated, std::vector<std::size_t>{1});
+}
+
+TEST(PunctureSteps, FoldedItShowsTheNeighboursOfTheCurrentStep) {
+  Shown shown;
+  StepList& steps = shown.panel.steps();
+  shown.panel.resize(238, 560);
+  steps.show_steps(four_steps(), 2, 60.0, true);
+  QCoreApplication::processEvents();
+  ASSERT_TRUE(steps.is_folded());
+  const bool are_shown[] = {false, true, true, true};
+  for (int n = 0; n < 4; ++n)
+    EXPECT_EQ(find<QLabel>(steps, qPrintable(QStringLiteral("step-%1").arg(n + 1))).isVisible(), are_shown[n]) << n;
+  find<QToolButton>(steps, "steps-fold").click();
+  EXPECT_TRUE(find<QLabel>(steps, "step-1").isVisible());
+  shown.panel.resize(238, 550);
+  QCoreApplication::processEvents();
+  EXPECT_FALSE(steps.is_folded()) << "the user's choice stays";
+}
+
+tasks::Task liver_biopsy() {
+  tasks::Task task;
+  task.pain.needs_anaesthesia = true;
+  task.phases.resize(1);
+  task.phases[0].done = {{tasks::ConditionKind::kBreathHeld, 0.0, {}}};
+  return task;
+}
+
+TEST(PunctureActions, ATaskShowsItsActionsOnly) {
+  tasks::Needle gun;
+  gun.is_biopsy = true;
+  gun.stylet_diameter_mm = 0.788;
+  EXPECT_EQ(actions_of(liver_biopsy(), gun), (std::vector{TraineeAction::kAnaesthetic, TraineeAction::kBreath}));
+  tasks::Needle chiba;
+  chiba.stylet_diameter_mm = 0.363;
+  tasks::Task drainage;
+  drainage.phases.resize(1);
+  drainage.phases[0].done = {{tasks::ConditionKind::kWire, 50.0, {}}};
+  EXPECT_EQ(actions_of(drainage, chiba),
+            (std::vector{TraineeAction::kStylet, TraineeAction::kAspirate, TraineeAction::kWire}));
+  chiba.stylet_diameter_mm = 0.0;
+  EXPECT_EQ(actions_of({}, chiba), std::vector{TraineeAction::kAspirate});
+}
+
+TEST(PunctureActions, ASecondPressUndoesAndTheWireGoesFurther) {
+  ActionState state;
+  EXPECT_EQ(request_of(TraineeAction::kStylet, state).kind, tasks::ActionKind::kDrawStylet);
+  EXPECT_EQ(request_of(TraineeAction::kBreath, state).kind, tasks::ActionKind::kHoldBreath);
+  EXPECT_EQ(request_of(TraineeAction::kAnaesthetic, state).amount, 5.0);
+  EXPECT_EQ(request_of(TraineeAction::kWire, state).amount, 50.0);
+  state = {.is_stylet_drawn = true, .is_breath_held = true, .wire_mm = 50.0, .can_act = true};
+  EXPECT_EQ(request_of(TraineeAction::kStylet, state).kind, tasks::ActionKind::kReplaceStylet);
+  EXPECT_EQ(request_of(TraineeAction::kBreath, state).kind, tasks::ActionKind::kBreathe);
+  EXPECT_EQ(request_of(TraineeAction::kWire, state).amount, 100.0);
+}
+
+TEST(PunctureActions, AStyletInTheNeedleBlocksSyringeAndWire) {
+  tasks::Needle chiba;
+  chiba.stylet_diameter_mm = 0.363;
+  ActionState state{.can_act = true};
+  EXPECT_FALSE(why_not(TraineeAction::kAspirate, state, chiba).isEmpty());
+  EXPECT_FALSE(why_not(TraineeAction::kWire, state, chiba).isEmpty());
+  EXPECT_TRUE(why_not(TraineeAction::kStylet, state, chiba).isEmpty());
+  state.is_stylet_drawn = true;
+  EXPECT_TRUE(why_not(TraineeAction::kAspirate, state, chiba).isEmpty());
+  state = {};
+  EXPECT_FALSE(why_not(TraineeAction::kAnaesthetic, state, chiba).isEmpty()) << "the attempt does not run";
+}
+
+TEST(PunctureActions, ButtonsTellTheStateAndRequest) {
+  Shown shown;
+  std::vector<TraineeAction> requested;
+  QObject::connect(&shown.panel, &PuncturePanel::action_requested, [&](TraineeAction a) { requested.push_back(a); });
+  shown.panel.begin(8.0, true, false, {TraineeAction::kStylet, TraineeAction::kAspirate, TraineeAction::kWire});
+  auto& stylet = find<QPushButton>(shown.panel, "action-stylet");
+  EXPECT_TRUE(stylet.isVisible());
+  EXPECT_FALSE(find<QPushButton>(shown.panel, "action-anaesthetic").isVisible());
+  EXPECT_FALSE(stylet.isEnabled());
+  PunctureFigures figures;
+  figures.actions.can_act = true;
+  shown.panel.show_figures(figures);
+  EXPECT_TRUE(stylet.toolTip().contains(QStringLiteral("(Y)")));
+  stylet.click();
+  EXPECT_EQ(requested, std::vector{TraineeAction::kStylet});
+  EXPECT_EQ(stylet.text(), QStringLiteral("Draw stylet"));
+  figures.actions.is_stylet_drawn = true;
+  figures.hint = QStringLiteral("Stylet drawn: fluid clear as water drips from the hub");
+  figures.is_hint_notice = true;
+  shown.panel.show_figures(figures);
+  EXPECT_EQ(stylet.text(), QStringLiteral("Stylet in"));
+  QCoreApplication::processEvents();
+  save(shown.panel, "puncture_panel_actions.png");
+  shown.panel.begin(8.0, true);
+  EXPECT_FALSE(stylet.isVisible());
+}
+
+TEST(PunctureActions, NoButtonIsCutOff) {
+  Shown shown;
+  shown.panel.begin(8.0, true, false, {std::begin(kTraineeActions), std::end(kTraineeActions)});
+  QCoreApplication::processEvents();
+  for (const QPushButton* button : shown.panel.findChildren<QPushButton*>()) {
+    if (button->isVisible()) {
+      EXPECT_GE(button->width(), button->sizeHint().width()) << button->objectName().toStdString();
+    }
+  }
 }
 
 }  // namespace
