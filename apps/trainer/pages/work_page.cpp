@@ -20,7 +20,7 @@
 namespace trocar::trainer {
 namespace {
 
-constexpr int kSideColumns = 34;         ///< Average characters.
+constexpr int kSideColumns = 36;         ///< Average characters.
 constexpr int kLeastWorkspace_px = 640;  ///< Two columns of views.
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <QScrollBar>
 #include <QShortcut>
 #include <QVBoxLayout>
+#include <cmath>
 
 #include "panels/core_picture.h"
 #include "panels/step_list.h"
@@ -24,13 +25,19 @@ void set_text(QLabel& label, const QString& text) {
   if (label.text() != text) label.setText(text);
 }
 
-QLabel* make_figure(QGridLayout& grid, int row, int column, const QString& title, const char* name) {
-  grid.addWidget(make_label(title, "dim"), row, column);
+/// Short enough for two of them in a row.
+QString length_text(const std::optional<double>& length_mm) {
+  if (!length_mm) return QStringLiteral("–");
+  return PuncturePanel::tr("%1 mm").arg(*length_mm, 0, 'f', std::abs(*length_mm) < 100.0 ? 1 : 0);
+}
+
+/// A caption and its value.
+QLabel* add_figure(QHBoxLayout& row, const QString& title, const char* name, Qt::Alignment alignment) {
+  row.addWidget(make_label(title, "dim"), 0, Qt::AlignTop);
   auto* value = make_label({});
   value->setObjectName(QString::fromLatin1(name));
-  value->setAlignment(Qt::AlignRight);
-  const bool is_whole_row = column == 0 && row < 2;
-  grid.addWidget(value, row, column + 1, 1, is_whole_row ? 3 : 1);
+  value->setAlignment(alignment | Qt::AlignTop);
+  row.addWidget(value, 1);
   return value;
 }
 
@@ -98,7 +105,7 @@ void PuncturePanel::make_content(QWidget& inside) {
 /// In a low window only the steps about the current one are shown.
 void PuncturePanel::resizeEvent(QResizeEvent* event) {
   QWidget::resizeEvent(event);
-  constexpr int kLinesForAllSteps = 42;
+  constexpr int kLinesForAllSteps = 50;
   steps_->propose_folded(height() < kLinesForAllSteps * fontMetrics().lineSpacing());
 }
 
@@ -125,7 +132,7 @@ QWidget* PuncturePanel::make_tool_choice() {
   add(ActiveTool::kNone, "tool-none", tr("View"), tr("No active tool: the mouse rotates the view (V)"), 4);
   clamp_ = make_button("clamp", tr("Clamp"), tr("Hold the active tool in place (X)"));
   clamp_->setCheckable(true);
-  aim_ = make_button("aim", tr("To the planned entry"), {});
+  aim_ = make_button("aim", tr("To planned entry"), {});
   for (QPushButton* button : {clamp_, aim_}) {
     button->setFocusPolicy(Qt::NoFocus);
     button->setStyleSheet(narrow);
@@ -195,16 +202,26 @@ void PuncturePanel::answer(bool is_yes) {
 
 QWidget* PuncturePanel::make_figures() {
   auto* box = new QWidget;
-  auto* grid = new QGridLayout(box);
-  grid->setContentsMargins(0, 0, 0, 0);
-  grid->setHorizontalSpacing(8);
-  grid->setVerticalSpacing(4);
-  phase_ = make_figure(*grid, 0, 0, tr("Needle"), "phase");
-  tissue_ = make_figure(*grid, 1, 0, tr("Tissue at the tip"), "tissue");
-  depth_ = make_figure(*grid, 2, 0, tr("Depth"), "depth");
-  target_ = make_figure(*grid, 2, 2, tr("Target"), "to-target");
-  time_ = make_figure(*grid, 3, 0, tr("Time"), "time");
-  time_->setToolTip(tr("Since the needle touched the skin"));
+  auto* rows = new QVBoxLayout(box);
+  rows->setContentsMargins(0, 0, 0, 0);
+  rows->setSpacing(4);
+  const auto add_row = [&] {
+    auto* row = new QHBoxLayout;
+    row->setSpacing(5);
+    rows->addLayout(row);
+    return row;
+  };
+  auto* needle = add_row();
+  phase_ = add_figure(*needle, tr("Needle"), "phase", Qt::AlignLeft);
+  time_ = make_label({});
+  time_->setObjectName(QStringLiteral("time"));
+  time_->setToolTip(tr("Time since the needle touched the skin"));
+  needle->addWidget(time_);
+  tissue_ = add_figure(*add_row(), tr("Tissue at the tip"), "tissue", Qt::AlignRight);
+  tissue_->setWordWrap(true);
+  auto* distances = add_row();
+  depth_ = add_figure(*distances, tr("Depth"), "depth", Qt::AlignLeft);
+  target_ = add_figure(*distances, tr("Target"), "to-target", Qt::AlignRight);
   target_->setToolTip(tr("Distance of the tip from the target"));
   return box;
 }
@@ -228,8 +245,8 @@ void PuncturePanel::begin(double most_force_n, bool can_aim, bool has_gun, const
 void PuncturePanel::show_figures(const PunctureFigures& figures) {
   set_text(*phase_, figures.phase);
   set_text(*tissue_, figures.tissue);
-  set_text(*depth_, figures.depth_mm ? tr("%1 mm").arg(*figures.depth_mm, 0, 'f', 1) : QStringLiteral("–"));
-  set_text(*target_, figures.to_target_mm ? tr("%1 mm").arg(*figures.to_target_mm, 0, 'f', 1) : QStringLiteral("–"));
+  set_text(*depth_, length_text(figures.depth_mm));
+  set_text(*target_, length_text(figures.to_target_mm));
   set_text(*time_, tr("%1 s").arg(figures.since_contact_s, 0, 'f', 0));
   show_hint(figures);
   actions_->show_state(figures.actions);

@@ -111,6 +111,7 @@ void StepList::make_rows() {
     row.repeat->setObjectName(step_name(s, "-repeat"));
     row.repeat->setFocusPolicy(Qt::TabFocus);  // a click leaves the arrow keys with the tool
     row.repeat->setStyleSheet(QStringLiteral("QToolButton { padding: 0 4px; min-height: 0; }"));
+    row.repeat->setMaximumHeight(row.title->fontMetrics().lineSpacing() + 2);
     connect(row.repeat, &QToolButton::clicked, this, [this, s] { Q_EMIT repeat_requested(s); });
     grid_->addWidget(row.mark, line, 0, Qt::AlignTop);
     grid_->addWidget(row.repeat, line, 2, Qt::AlignTop);
@@ -152,7 +153,9 @@ void StepList::update_rows() {
       grid_->addWidget(why_, static_cast<int>(kLinesAStep * s + 2), 1, 1, 2);
     }
   }
-  set_text(*lacks_, has_current ? to_qt(steps_[*current_].phase.lacks) : QString());
+  const QString lacks = has_current ? to_qt(steps_[*current_].phase.lacks) : QString();
+  const bool is_title = has_current && lacks.compare(to_qt(steps_[*current_].phase.title), Qt::CaseInsensitive) == 0;
+  set_text(*lacks_, is_title ? QString() : lacks);
   set_text(*why_, has_current ? to_qt(steps_[*current_].phase.why) : QString());
   lacks_->setVisible(!lacks_->text().isEmpty());
   why_->setVisible(!why_->text().isEmpty());

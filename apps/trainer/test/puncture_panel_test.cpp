@@ -285,10 +285,21 @@ TEST(PunctureActions, ButtonsTellTheStateAndRequest) {
   EXPECT_FALSE(stylet.isVisible());
 }
 
+/// As wide as in the window, beside the scroll bar of a low one.
 TEST(PunctureActions, NoButtonIsCutOff) {
   Shown shown;
   shown.panel.begin(8.0, true, false, {std::begin(kTraineeActions), std::end(kTraineeActions)});
-  QCoreApplication::processEvents();
+  PunctureFigures figures;
+  figures.tissue = QStringLiteral("superior mesenteric vein, right lower lobe");
+  figures.phase = QStringLiteral("forces stopped");
+  figures.depth_mm = figures.to_target_mm = 123.4;
+  figures.since_contact_s = 1234.0;
+  shown.panel.show_figures(figures);
+  shown.panel.steps().show_steps(four_steps(), 2, 60.0, true);
+  shown.panel.resize(252, 450);
+  for (int round = 0; round < 3; ++round) QCoreApplication::processEvents();
+  const QScrollArea& area = *shown.panel.findChild<QScrollArea*>();
+  EXPECT_LE(area.widget()->width(), area.viewport()->width());
   for (const QPushButton* button : shown.panel.findChildren<QPushButton*>()) {
     if (button->isVisible()) {
       EXPECT_GE(button->width(), button->sizeHint().width()) << button->objectName().toStdString();
