@@ -7,8 +7,10 @@
 #include <QPushButton>
 #include <QRegularExpression>
 #include <algorithm>
+#include <set>
 
 #include "pages/briefing_text.h"
+#include "scoring/score.h"
 #include "script/cut_off.h"
 #include "script/widget_events.h"
 #include "test/open_abdomen.h"
@@ -83,6 +85,16 @@ TEST(BriefingPage, TheShownPointsAddUpToAHundredForEveryNeedle) {
     EXPECT_NEAR(sum, 100.0, 0.5 * parts) << needle;  // each is rounded
     EXPECT_GE(parts, 6);
   }
+}
+
+TEST(BriefingPage, EveryPartOfAScoreHasATitleOfItsOwn) {
+  std::set<std::string_view> titles;
+  for (const char* part : tasks::kScoreParts) {
+    EXPECT_FALSE(scoring::part_title(part).empty()) << part;
+    titles.insert(scoring::part_title(part));
+  }
+  EXPECT_EQ(titles.size(), tasks::kScoreParts.size());
+  EXPECT_TRUE(scoring::part_title("no part").empty());
 }
 
 TEST(BriefingPage, CallsUnknownWhatNobodyStated) {
