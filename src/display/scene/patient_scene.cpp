@@ -272,8 +272,7 @@ void PatientScene::set_entry_centre(const std::optional<Vec3>& centre_P) {
 
 void PatientScene::set_guidance(Guidance guidance) {
   const bool has_other_marks = impl_->guides.set_guidance(guidance);
-  const bool has_other_lesions = impl_->surfaces.withhold_lesions(guidance == Guidance::kNone);
-  if (has_other_marks || has_other_lesions) impl_->has_changed = true;
+  if (impl_->surfaces.withhold_lesions(guidance == Guidance::kNone) || has_other_marks) impl_->has_changed = true;
 }
 
 Guidance PatientScene::guidance() const noexcept {
@@ -433,8 +432,7 @@ std::optional<Vec3> PatientScene::pick(double right, double down) {
     const auto hit_mm = detail::first_hit_mm(s.surfaces.mesh_P(structure.name), view.eye_P, ray_P);
     if (hit_mm && (!nearest_mm || *hit_mm < *nearest_mm)) nearest_mm = hit_mm;
   }
-  if (!nearest_mm) return std::nullopt;
-  return Vec3(view.eye_P + *nearest_mm * ray_P);
+  return nearest_mm ? std::optional<Vec3>(view.eye_P + *nearest_mm * ray_P) : std::nullopt;
 }
 
 std::string PatientScene::renderer_name() const {
@@ -442,8 +440,7 @@ std::string PatientScene::renderer_name() const {
 }
 
 bool PatientScene::has_gpu() const {
-  const std::string& name = impl_->renderer_name;
-  return !name.empty() && !detail::is_software_renderer(name);
+  return !impl_->renderer_name.empty() && !detail::is_software_renderer(impl_->renderer_name);
 }
 
 std::size_t PatientScene::triangle_count(int mesh_level) const {
