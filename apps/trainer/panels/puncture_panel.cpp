@@ -73,6 +73,10 @@ void PuncturePanel::make_content(QWidget& inside) {
   auto* content = new QVBoxLayout(&inside);
   content->setContentsMargins(12, 10, 12, 4);
   content->setSpacing(8);
+  content->addWidget(make_tool_choice());  // buttons above the text: they keep their place
+  actions_ = new ActionButtons;
+  content->addWidget(actions_);
+  connect(actions_, &ActionButtons::requested, this, &PuncturePanel::action_requested);
   steps_ = new StepList;
   content->addWidget(steps_);
   hint_ = make_label({});
@@ -80,10 +84,6 @@ void PuncturePanel::make_content(QWidget& inside) {
   hint_->setWordWrap(true);
   hint_->setAlignment(Qt::AlignTop);
   content->addWidget(hint_);
-  actions_ = new ActionButtons;
-  content->addWidget(actions_);
-  connect(actions_, &ActionButtons::requested, this, &PuncturePanel::action_requested);
-  content->addWidget(make_tool_choice());
   content->addWidget(make_figures());
   force_ = new ForceBar(Qt::Horizontal);
   force_->setObjectName(QStringLiteral("force-bar"));

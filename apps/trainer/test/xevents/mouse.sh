@@ -15,7 +15,7 @@ shot ready
 
 drag 500 260 540 280 # the needle glides over the skin
 shot glided
-click 122 172 # To the planned entry
+click 150 103 # To planned entry
 click 1164 55 # Controls
 shot controls
 move 1060 336 # over the choice of the transducer: nothing is chosen, the controls scroll
