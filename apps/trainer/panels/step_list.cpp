@@ -111,7 +111,6 @@ void StepList::make_rows() {
     row.repeat->setObjectName(step_name(s, "-repeat"));
     row.repeat->setFocusPolicy(Qt::TabFocus);  // a click leaves the arrow keys with the tool
     row.repeat->setStyleSheet(QStringLiteral("QToolButton { padding: 0 4px; min-height: 0; }"));
-    row.repeat->setMaximumHeight(row.title->fontMetrics().lineSpacing() + 2);
     connect(row.repeat, &QToolButton::clicked, this, [this, s] { Q_EMIT repeat_requested(s); });
     grid_->addWidget(row.mark, line, 0, Qt::AlignTop);
     grid_->addWidget(row.repeat, line, 2, Qt::AlignTop);
