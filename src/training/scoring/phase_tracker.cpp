@@ -17,12 +17,12 @@ using tasks::ActionKind;
 using tasks::Condition;
 using tasks::ConditionKind;
 
-constexpr double kContact_n = 0.05;        // of a transducer that touches the skin
-constexpr double kInPlane_mm = 4.0;        // from the tip to the image plane, for a needle in it [assumed]
-constexpr double kOnSkin_mm = 2.5;         // of the tip from the resting skin, which gives way [assumed]
-constexpr double kStep_mm = 1.0;           // of points along a line that is looked at
-constexpr double kPassedDepth_mm = 5.0;    // inserted at least, so that the needle counts as having been in the body
-constexpr int kDirections = 6;             // about the line
+constexpr double kContact_n = 0.05;      // of a transducer that touches the skin
+constexpr double kInPlane_mm = 4.0;      // from the tip to the image plane, for a needle in it [assumed]
+constexpr double kOnSkin_mm = 2.5;       // of the tip from the resting skin, which gives way [assumed]
+constexpr double kStep_mm = 1.0;         // of points along a line that is looked at
+constexpr double kPassedDepth_mm = 5.0;  // inserted at least, so that the needle counts as having been in the body
+constexpr int kDirections = 6;           // about the line
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 bool is_valid(const telemetry::TickSample& sample) noexcept {
@@ -49,8 +49,14 @@ struct PhaseTracker::Impl {
 
   Impl(const tasks::Task& t, const anatomy::VirtualPatient& p, const tasks::Needle& n, const tasks::PlannedPath& plan,
        const metrics::ImagePlane& image)
-      : task(t), patient(p), needle(n), plan_P(plan.line_P), plane(image), labels(t, p),
-        target_P(plan.line_P.b + n.notch_middle_mm() * plan.line_P.direction()), states(t.phases.size()),
+      : task(t),
+        patient(p),
+        needle(n),
+        plan_P(plan.line_P),
+        plane(image),
+        labels(t, p),
+        target_P(plan.line_P.b + n.notch_middle_mm() * plan.line_P.direction()),
+        states(t.phases.size()),
         held_since_s(t.phases.size(), std::nan("")) {}
 
   bool holds(const Condition& condition, const PhaseState& state, const PhaseMoment& moment) const;
@@ -81,7 +87,8 @@ bool PhaseTracker::Impl::holds_of_image(const Condition& condition, const PhaseM
       const double angle_deg = kDegPerRad * std::asin(std::min(across, 1.0));
       return angle_deg <= condition.number && std::abs((X_PT.inverse() * sample.tip_mm).z()) <= kInPlane_mm;
     }
-    default: return moment.contact_n >= kContact_n;
+    default:
+      return moment.contact_n >= kContact_n;
   }
 }
 
@@ -117,17 +124,19 @@ bool PhaseTracker::Impl::holds(const Condition& condition, const PhaseState& sta
     case ConditionKind::kProbeOnSkin:
     case ConditionKind::kTargetInImage:
     case ConditionKind::kNeedleInPlane:
-    case ConditionKind::kTipInImage: return holds_of_image(condition, moment);
+    case ConditionKind::kTipInImage:
+      return holds_of_image(condition, moment);
     case ConditionKind::kTipOnSkin:
       return sample.depth_mm > 0.0 || (!patient.skin_distance_mm.empty() &&
                                        volume::sample_linear(patient.skin_distance_mm, sample.tip_mm) <= kOnSkin_mm);
     case ConditionKind::kAimsAtTarget: {
       const Vec3 to_target_P = target_P - sample.tip_mm;
-      return to_target_P.norm() < 1.0 ||
-             kDegPerRad * angle_between_rad(sample.axis, to_target_P) <= condition.number;
+      return to_target_P.norm() < 1.0 || kDegPerRad * angle_between_rad(sample.axis, to_target_P) <= condition.number;
     }
-    case ConditionKind::kPathClear: return is_path_clear(moment, condition.number);
-    case ConditionKind::kInserted: return sample.depth_mm >= condition.number;
+    case ConditionKind::kPathClear:
+      return is_path_clear(moment, condition.number);
+    case ConditionKind::kInserted:
+      return sample.depth_mm >= condition.number;
     case ConditionKind::kTargetDistance: {
       const Vec3 reach_P = sample.tip_mm + needle.notch_middle_mm() * sample.axis;
       return (reach_P - target_P).norm() <= condition.number;
@@ -136,21 +145,28 @@ bool PhaseTracker::Impl::holds(const Condition& condition, const PhaseState& sta
       const anatomy::Label* const label = anatomy::find_label(patient, sample.tip_mm);
       return label != nullptr && (label->tissue == condition.name || label->name == condition.name);
     }
-    case ConditionKind::kStyletDrawn: return is_stylet_drawn;
+    case ConditionKind::kStyletDrawn:
+      return is_stylet_drawn;
     case ConditionKind::kReturned: {
       const auto wanted = tasks::find_substance(condition.name);
       return std::any_of(returned.begin(), returned.end(), [&](const auto& entry) {
         return entry.second == wanted && state.begun_s && entry.first >= *state.begun_s;
       });
     }
-    case ConditionKind::kAnaesthetised: return is_anaesthetised;
-    case ConditionKind::kBreathHeld: return is_breath_held;
-    case ConditionKind::kContrast: return contrast_in_target_ml >= condition.number;
-    case ConditionKind::kWire: return wire_mm >= condition.number;
+    case ConditionKind::kAnaesthetised:
+      return is_anaesthetised;
+    case ConditionKind::kBreathHeld:
+      return is_breath_held;
+    case ConditionKind::kContrast:
+      return contrast_in_target_ml >= condition.number;
+    case ConditionKind::kWire:
+      return wire_mm >= condition.number;
     case ConditionKind::kThrowClear:
       return take_core(task, patient, needle, sample.tip_mm, sample.axis).risks_in_throw.empty();
-    case ConditionKind::kFired: return moment.has_fired;
-    case ConditionKind::kOutside: return has_been_inside && sample.depth_mm <= 0.0;
+    case ConditionKind::kFired:
+      return moment.has_fired;
+    case ConditionKind::kOutside:
+      return has_been_inside && sample.depth_mm <= 0.0;
   }
   return false;
 }
@@ -202,13 +218,26 @@ PhaseTracker& PhaseTracker::operator=(PhaseTracker&&) noexcept = default;
 void PhaseTracker::note(const tasks::Action& action) {
   Impl& impl = *impl_;
   switch (action.kind) {
-    case ActionKind::kAnaesthetise: impl.is_anaesthetised = true; break;
-    case ActionKind::kDrawStylet: impl.is_stylet_drawn = true; break;
-    case ActionKind::kReplaceStylet: impl.is_stylet_drawn = false; break;
-    case ActionKind::kAspirate: break;
-    case ActionKind::kAdvanceWire: impl.wire_mm = action.amount; break;
-    case ActionKind::kHoldBreath: impl.is_breath_held = true; break;
-    case ActionKind::kBreathe: impl.is_breath_held = false; break;
+    case ActionKind::kAnaesthetise:
+      impl.is_anaesthetised = true;
+      break;
+    case ActionKind::kDrawStylet:
+      impl.is_stylet_drawn = true;
+      break;
+    case ActionKind::kReplaceStylet:
+      impl.is_stylet_drawn = false;
+      break;
+    case ActionKind::kAspirate:
+      break;
+    case ActionKind::kAdvanceWire:
+      impl.wire_mm = action.amount;
+      break;
+    case ActionKind::kHoldBreath:
+      impl.is_breath_held = true;
+      break;
+    case ActionKind::kBreathe:
+      impl.is_breath_held = false;
+      break;
   }
   if (action.result.substance != tasks::Substance::kNothing)
     impl.returned.emplace_back(action.time_s, action.result.substance);

@@ -16,7 +16,8 @@ namespace {
 constexpr std::array kNames{"nothing", "blood", "csf", "ascites", "bile", "urine", "air", "bowel_content", "fluid"};
 static_assert(kNames.size() == static_cast<std::size_t>(kLastSubstance) + 1);
 
-constexpr std::array kWords{"nothing", "blood", "spinal fluid", "ascites", "bile", "urine", "air", "bowel content", "fluid"};
+constexpr std::array kWords{"nothing", "blood", "spinal fluid",  "ascites", "bile",
+                            "urine",   "air",   "bowel content", "fluid"};
 static_assert(kWords.size() == kNames.size());
 
 constexpr int kPoints = 9;  // along the bevel's opening

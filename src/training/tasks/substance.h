@@ -24,15 +24,16 @@ std::optional<Substance> find_substance(std::string_view name) noexcept;
 
 /// How a substance comes and what it looks like (data/substances.toml).
 struct SubstanceLook {
-  std::string flows;     ///< "Clear fluid drips from the hub"
-  std::string aspirated; ///< "Clear fluid fills the syringe"
+  std::string flows;      ///< "Clear fluid drips from the hub"
+  std::string aspirated;  ///< "Clear fluid fills the syringe"
 };
 
 /// Which substance each structure gives (data/substances.toml).
 struct SubstanceTable {
   std::map<std::string, Substance, std::less<>> tissues;  ///< By tissue class; flows by itself or into a syringe.
   std::map<std::string, Substance, std::less<>> labels;   ///< By a label's name without side and number; goes first.
-  std::map<std::string, Substance, std::less<>> aspirated;  ///< By tissue: only a syringe draws it, e.g. blood of organs.
+  std::map<std::string, Substance, std::less<>>
+      aspirated;  ///< By tissue: only a syringe draws it, e.g. blood of organs.
   std::map<Substance, SubstanceLook> looks;
 
   /// The substance of a label; kNothing: it gives none.

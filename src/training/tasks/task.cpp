@@ -92,9 +92,12 @@ std::string lacks_organ(const Task& task, const anatomy::VirtualPatient& patient
 
 const char* to_string(Guidance guidance) noexcept {
   switch (guidance) {
-    case Guidance::kUltrasound: return "ultrasound";
-    case Guidance::kXray: return "xray";
-    case Guidance::kPalpation: return "palpation";
+    case Guidance::kUltrasound:
+      return "ultrasound";
+    case Guidance::kXray:
+      return "xray";
+    case Guidance::kPalpation:
+      return "palpation";
   }
   return "";
 }

@@ -46,15 +46,15 @@ const char* to_string(Guidance guidance) noexcept;
 
 /// What hurts the patient.
 struct PainRules {
-  std::vector<std::string> tissues;   ///< Each new contact of the tip hurts: "bone" (periosteum), "nerve".
-  bool needs_anaesthesia = false;     ///< The skin pierced without local anaesthetic hurts.
+  std::vector<std::string> tissues;  ///< Each new contact of the tip hurts: "bone" (periosteum), "nerve".
+  bool needs_anaesthesia = false;    ///< The skin pierced without local anaesthetic hurts.
 
   bool operator==(const PainRules&) const = default;
 };
 
 /// Parts of a score that a task can weigh; scoring/score.h says what each means.
-inline constexpr std::array kScoreParts{"target",  "core",   "confirmation", "risk", "access",  "entry",
-                                        "angle",   "length", "time",         "dose", "comfort", "visibility"};
+inline constexpr std::array kScoreParts{"target", "core",   "confirmation", "risk", "access",  "entry",
+                                        "angle",  "length", "time",         "dose", "comfort", "visibility"};
 
 /// A training task as data (data/tasks/NAME.toml, or task.toml in a patient's folder).
 struct Task {
@@ -69,7 +69,7 @@ struct Task {
   Substance confirmed_by = Substance::kNothing;
   std::vector<Phase> phases;  ///< Steps of the procedure, in the file's order.
   PainRules pain;
-  std::string force_model = "insertion";    ///< insertion, proxy or combined; see docs/physics.md T2.
+  std::string force_model = "insertion";  ///< insertion, proxy or combined; see docs/physics.md T2.
   /// Engine of the ultrasound image: raycast, or panorama if the patient has one (docs/physics.md U17).
   std::string ultrasound_engine = "raycast";
   std::vector<RiskStructure> risks;
@@ -94,11 +94,11 @@ struct Task {
   double entry_tolerance_mm = 10.0;
   double angle_tolerance_deg = 10.0;
   double time_limit_s = 120.0;
-  double dose_limit_gycm2 = 0.0;   ///< Dose–area product of X-ray that gives no points for it; 0: not scored.
+  double dose_limit_gycm2 = 0.0;     ///< Dose–area product of X-ray that gives no points for it; 0: not scored.
   double margin_tolerance_mm = 2.0;  ///< Missing margin to a structure at risk that halves the points of the access.
   /// Points of each part (kScoreParts); their sum is 100.
   std::map<std::string, double, std::less<>> weights;
-  double pass_mark = 70.0;  ///< Least score of a passed attempt. Range 0..100.
+  double pass_mark = 70.0;         ///< Least score of a passed attempt. Range 0..100.
   bool exam_shows_needle = false;  ///< In an exam slices and 3D show the needle inside the body, too.
 
   bool operator==(const Task&) const = default;

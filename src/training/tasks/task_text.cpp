@@ -22,10 +22,10 @@ class TaskReader {
   TaskReader(const config::TomlTable& document, bool is_whole) : document_(document), is_whole_(is_whole) {}
 
   Status read(Task& task) const {
-    TROCAR_TRY_STATUS(document_.check_keys({"base", "title", "organ", "target_tissues", "needle", "force_model",
-                                            "ultrasound_engine", "path", "parenchymal", "scoring", "risks", "target",
-                                            "entry_zone", "expert_path", "exam", "needles", "guidance",
-                                            "confirmed_by", "phases", "pain"}));
+    TROCAR_TRY_STATUS(document_.check_keys(
+        {"base", "title",       "organ",    "target_tissues", "needle", "force_model", "ultrasound_engine",
+         "path", "parenchymal", "scoring",  "risks",          "target", "entry_zone",  "expert_path",
+         "exam", "needles",     "guidance", "confirmed_by",   "phases", "pain"}));
     TROCAR_TRY_STATUS(text(document_, "title", task.title));
     TROCAR_TRY_STATUS(text(document_, "organ", task.organ));
     TROCAR_TRY_STATUS(text(document_, "needle", task.needle));
@@ -85,9 +85,9 @@ class TaskReader {
   Status read_scoring(Task& task) const {
     if (lacks("scoring")) return {};
     TROCAR_TRY(const config::TomlTable scoring, document_.table("scoring"));
-    TROCAR_TRY_STATUS(scoring.check_keys(
-        {"target_tolerance_mm", "entry_tolerance_mm", "angle_tolerance_deg", "time_limit_s", "dose_limit_gycm2",
-         "margin_tolerance_mm", "pass_mark", "weights"}));
+    TROCAR_TRY_STATUS(
+        scoring.check_keys({"target_tolerance_mm", "entry_tolerance_mm", "angle_tolerance_deg", "time_limit_s",
+                            "dose_limit_gycm2", "margin_tolerance_mm", "pass_mark", "weights"}));
     TROCAR_TRY(task.margin_tolerance_mm,
                scoring.number_or("margin_tolerance_mm", {0.1, 50.0}, task.margin_tolerance_mm));
     TROCAR_TRY(task.pass_mark, scoring.number_or("pass_mark", {0.0, 100.0}, task.pass_mark));

@@ -142,14 +142,14 @@ void add_confirmation_advice(const HintSubject& subject, std::vector<Advice>& ad
                                   has_stylet ? "draw the stylet" : "aspirate", wanted),
                       subject.measured.end_s});
   } else {
-    advice.push_back({points,
-                      fmt::format("{} came back: the needle was in the wrong place. Put the stylet back, correct the "
-                                  "tip and look again.",
-                                  looked->result.substance == tasks::Substance::kNothing
-                                      ? fmt::format("No {}", wanted)
-                                      : fmt::format("Not {} but {}", wanted,
-                                                    tasks::substance_words(looked->result.substance))),
-                      looked->time_s});
+    advice.push_back(
+        {points,
+         fmt::format("{} came back: the needle was in the wrong place. Put the stylet back, correct the "
+                     "tip and look again.",
+                     looked->result.substance == tasks::Substance::kNothing
+                         ? fmt::format("No {}", wanted)
+                         : fmt::format("Not {} but {}", wanted, tasks::substance_words(looked->result.substance))),
+         looked->time_s});
   }
 }
 

@@ -104,10 +104,13 @@ Result<Phase> read_phase(const config::TomlTable& row) {
 
 config::TomlValue value_of(const Condition& condition) {
   switch (row_of(condition.kind).argument) {
-    case Argument::kNone: return true;
-    case Argument::kNumber: return condition.number;
+    case Argument::kNone:
+      return true;
+    case Argument::kNumber:
+      return condition.number;
     case Argument::kName:
-    case Argument::kSubstance: return condition.name;
+    case Argument::kSubstance:
+      return condition.name;
   }
   return true;
 }
@@ -139,12 +142,15 @@ const char* condition_key(ConditionKind kind) noexcept {
 std::string condition_words(const Condition& condition) {
   const ConditionRow& row = row_of(condition.kind);
   switch (row.argument) {
-    case Argument::kNumber: return fmt::format(fmt::runtime(row.words), condition.number);
-    case Argument::kName: return fmt::format(fmt::runtime(row.words), anatomy::structure_words(condition.name));
+    case Argument::kNumber:
+      return fmt::format(fmt::runtime(row.words), condition.number);
+    case Argument::kName:
+      return fmt::format(fmt::runtime(row.words), anatomy::structure_words(condition.name));
     case Argument::kSubstance:
       return fmt::format(fmt::runtime(row.words),
                          substance_words(find_substance(condition.name).value_or(Substance::kNothing)));
-    case Argument::kNone: break;
+    case Argument::kNone:
+      break;
   }
   return row.words;
 }

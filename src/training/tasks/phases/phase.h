@@ -13,25 +13,25 @@ namespace trocar::tasks {
 
 /// What can be asked of one moment of an attempt. The argument is a number, a name, or none.
 enum class ConditionKind : std::uint8_t {
-  kProbeOnSkin,      ///< The transducer touches the skin.
-  kTargetInImage,    ///< Number: the target is in the fan, at most so far from the image plane, mm.
-  kNeedleInPlane,    ///< Number: angle of needle and image plane, degrees, with the tip at most 4 mm from the plane.
-  kTipInImage,       ///< Number: the tip is in the fan, at most so far from the plane, mm.
-  kTipOnSkin,        ///< The tip touches the skin or is in it.
-  kAimsAtTarget,     ///< Number: angle between the needle and the line from its tip to the target, degrees.
-  kPathClear,        ///< Number: the line on to the target stays so far from structures at risk, mm.
-  kInserted,         ///< Number: depth of the tip, mm.
-  kTargetDistance,   ///< Number: distance of the tip from where it has to be, mm.
-  kTipIn,            ///< Name: tissue class or label at the tip.
-  kStyletDrawn,      ///< The stylet is out.
-  kReturned,         ///< Name: a substance has come back in this phase.
-  kAnaesthetised,    ///< Local anaesthetic was given.
-  kBreathHeld,       ///< The patient holds the breath.
-  kContrast,         ///< Number: contrast agent injected, ml, with the tip in the target.
-  kWire,             ///< Number: guide wire advanced beyond the tip, mm.
-  kThrowClear,       ///< The stylet's way when fired has no structure at risk.
-  kFired,            ///< The gun was fired.
-  kOutside,          ///< The needle has left the body again.
+  kProbeOnSkin,     ///< The transducer touches the skin.
+  kTargetInImage,   ///< Number: the target is in the fan, at most so far from the image plane, mm.
+  kNeedleInPlane,   ///< Number: angle of needle and image plane, degrees, with the tip at most 4 mm from the plane.
+  kTipInImage,      ///< Number: the tip is in the fan, at most so far from the plane, mm.
+  kTipOnSkin,       ///< The tip touches the skin or is in it.
+  kAimsAtTarget,    ///< Number: angle between the needle and the line from its tip to the target, degrees.
+  kPathClear,       ///< Number: the line on to the target stays so far from structures at risk, mm.
+  kInserted,        ///< Number: depth of the tip, mm.
+  kTargetDistance,  ///< Number: distance of the tip from where it has to be, mm.
+  kTipIn,           ///< Name: tissue class or label at the tip.
+  kStyletDrawn,     ///< The stylet is out.
+  kReturned,        ///< Name: a substance has come back in this phase.
+  kAnaesthetised,   ///< Local anaesthetic was given.
+  kBreathHeld,      ///< The patient holds the breath.
+  kContrast,        ///< Number: contrast agent injected, ml, with the tip in the target.
+  kWire,            ///< Number: guide wire advanced beyond the tip, mm.
+  kThrowClear,      ///< The stylet's way when fired has no structure at risk.
+  kFired,           ///< The gun was fired.
+  kOutside,         ///< The needle has left the body again.
 };
 inline constexpr ConditionKind kLastCondition = ConditionKind::kOutside;
 
