@@ -26,7 +26,7 @@ constexpr double kStyletRadius_mm = 0.8;  // drawn thicker than in reality for v
 constexpr volume::Rgb kStyletColor = {236, 240, 246};
 constexpr double kCoreRadius_mm = 1.6;  // around the needle
 constexpr volume::Rgb kCoreColor = {255, 138, 61};
-constexpr double kThrowRadius_mm = 0.3, kNotchRadius_mm = 0.7, kDash_mm = 1.5;
+constexpr double kThrowRadius_mm = 0.5, kNotchRadius_mm = 1.0, kDash_mm = 1.5;
 constexpr volume::Rgb kThrowColor = {236, 240, 246};
 /// A smaller relative change of the minimum thickness does not rebuild the needle.
 constexpr double kThicknessStep = 0.15;
