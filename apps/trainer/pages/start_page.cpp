@@ -227,8 +227,13 @@ void StartPage::fill_needles() {
   const std::string name = to_std(item->data(kSource).toString());
   const auto task = std::find_if(tasks->begin(), tasks->end(), [&](const tasks::Task& t) { return t.name == name; });
   if (task == tasks->end()) return;
+  const auto is_permitted = [&](const tasks::Needle& needle) {
+    const std::vector<std::string>& names = task->needles;
+    return names.empty() || needle.name == task->needle ||
+           std::find(names.begin(), names.end(), needle.name) != names.end();
+  };
   for (const tasks::Needle& needle : tasks::needles_like(*needles, task->needle))
-    needle_->addItem(to_qt(needle.title), to_qt(needle.name));
+    if (is_permitted(needle)) needle_->addItem(to_qt(needle.title), to_qt(needle.name));
   needle_->setCurrentIndex(std::max(0, needle_->findData(chosen)));
 }
 

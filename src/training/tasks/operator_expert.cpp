@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "tasks/detail/guided_hand.h"
+#include "tasks/detail/pending_actions.h"
 #include "tasks/operator.h"
 
 namespace trocar::tasks {
@@ -30,7 +30,6 @@ constexpr double kSettled_mm = 0.5;
 constexpr double kHold_s = 0.5;
 constexpr double kMostHold_s = 3.0;
 constexpr double kAfterFire_s = 0.5;
-constexpr double kAnaesthetic_ml = 5.0;
 constexpr double kWithdraw_mm_s = 30.0;
 constexpr double kStuck_s = 6.0;  // without a millimetre of progress: stop
 constexpr double kGiveUp_s = 45.0;
@@ -83,7 +82,7 @@ class Expert final : public Operator {
     hand_.move(speed_mm_s, view.dt_s);
     HandCommand command = hand_.command();
     command.has_fired = fires;
-    command.action = next_action();
+    command.action = actions_.next(step_ == Step::kAfterFire ? std::optional(in_step_s()) : std::nullopt);
     command.is_done = step_ == Step::kDone;
     return command;
   }
@@ -109,17 +108,6 @@ class Expert final : public Operator {
     return std::min({speed_mm_s, braking_mm_s, kHoming_per_s * std::max(0.0, target_left_mm())});
   }
 
-  /// The action that is due, each once: anaesthetic before the skin, the others at the target, one after another.
-  std::optional<ActionRequest> next_action() noexcept {
-    if (std::exchange(actions_.gives_anaesthetic, false))
-      return ActionRequest{ActionKind::kAnaesthetise, kAnaesthetic_ml};
-    if (step_ != Step::kAfterFire) return std::nullopt;
-    if (actions_.confirms) return ActionRequest{*std::exchange(actions_.confirms, std::nullopt), 0.0};
-    if (actions_.wire_mm > 0.0 && in_step_s() > 0.5 * kAfterFire_s)
-      return ActionRequest{ActionKind::kAdvanceWire, std::exchange(actions_.wire_mm, 0.0)};
-    return std::nullopt;
-  }
-
   double holding_speed_mm_s() const noexcept {
     return target_left_mm() < -kArrived_mm ? std::max(-kCreepBack_mm_s, kHoming_per_s * target_left_mm()) : 0.0;
   }
@@ -129,7 +117,7 @@ class Expert final : public Operator {
   GuidedHand hand_;
   double target_mm_;
   bool fires_biopsy_;
-  OperatorActions actions_;  ///< Those that are left.
+  PendingActions actions_;
   Step step_ = Step::kApproach;
   double step_start_s_ = 0.0;
   double drop_s_ = -10.0;

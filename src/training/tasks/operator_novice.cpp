@@ -2,10 +2,10 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <utility>
 
 #include "core/random.h"
 #include "tasks/detail/guided_hand.h"
+#include "tasks/detail/pending_actions.h"
 #include "tasks/operator.h"
 
 namespace trocar::tasks {
@@ -27,7 +27,6 @@ constexpr double kPullbackChance = 0.6;  // residents: 2.4 pullbacks a biopsy, s
 constexpr double kPullback_mm_s = 15.0;
 constexpr double kBeforeFire_s[] = {0.3, 1.5};
 constexpr double kAfterFire_s = 0.5;
-constexpr double kAnaesthetic_ml = 5.0;
 constexpr double kRemembers = 0.7;  // share of novices who give anaesthetic, and of those who look what comes back
 constexpr double kWithdraw_mm_s = 50.0;
 constexpr double kStuck_s = 5.0;
@@ -94,7 +93,7 @@ class Novice final : public Operator {
     hand_.move(speed_mm_s, view.dt_s);
     HandCommand command = hand_.command();
     command.has_fired = fires;
-    command.action = next_action();
+    command.action = actions_.next(step_ == Step::kAfterFire ? std::optional(in_step_s()) : std::nullopt);
     command.is_done = step_ == Step::kDone;
     return command;
   }
@@ -113,8 +112,8 @@ class Novice final : public Operator {
         fires_biopsy_(the_case.fires_biopsy),
         actions_(the_case.actions) {
     Random forgets(mix64(the_case.seed + 2));
-    actions_.gives_anaesthetic = actions_.gives_anaesthetic && forgets.uniform() < kRemembers;
-    if (forgets.uniform() > kRemembers) actions_.confirms.reset();
+    if (forgets.uniform() > kRemembers) actions_.forget_anaesthetic();
+    if (forgets.uniform() > kRemembers) actions_.forget_confirmation();
     const double length_mm = the_case.path_P.length_mm();
     stop_mm_ = length_mm + (random.uniform() < 0.5 ? -1.0 : 1.0) * draw(random, kStopError_mm);
     speed_mm_s_ = draw(random, kSpeed_mm_s);
@@ -134,16 +133,6 @@ class Novice final : public Operator {
   }
   double in_step_s() const noexcept { return hand_.elapsed_s() - step_start_s_; }
 
-  std::optional<ActionRequest> next_action() noexcept {
-    if (std::exchange(actions_.gives_anaesthetic, false))
-      return ActionRequest{ActionKind::kAnaesthetise, kAnaesthetic_ml};
-    if (step_ != Step::kAfterFire) return std::nullopt;
-    if (actions_.confirms) return ActionRequest{*std::exchange(actions_.confirms, std::nullopt), 0.0};
-    if (actions_.wire_mm > 0.0 && in_step_s() > 0.5 * kAfterFire_s)
-      return ActionRequest{ActionKind::kAdvanceWire, std::exchange(actions_.wire_mm, 0.0)};
-    return std::nullopt;
-  }
-
   double advance_speed_mm_s() const noexcept {
     return speed_mm_s_ * (1.0 + kUnevenness * std::sin(rhythm_rad_s_ * hand_.elapsed_s()));
   }
@@ -153,7 +142,7 @@ class Novice final : public Operator {
   double start_mm_;
   GuidedHand hand_;
   bool fires_biopsy_;
-  OperatorActions actions_;  ///< Those that are left.
+  PendingActions actions_;
   double stop_mm_ = 0.0;
   double speed_mm_s_ = 0.0;
   double rhythm_rad_s_ = 0.0;

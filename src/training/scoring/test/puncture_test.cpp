@@ -3,29 +3,12 @@
 
 #include <algorithm>
 
-#include "scoring/score.h"
-#include "tasks/testing/attempt_patient.h"
+#include "scoring/test/outcome_support.h"
 
 namespace trocar::scoring {
 namespace {
 
 using namespace testing;
-
-const anatomy::VirtualPatient& patient() {
-  static const anatomy::VirtualPatient the_patient = make_box_patient();
-  return the_patient;
-}
-const ScorePart& part(const Outcome& outcome, const std::string& name) {
-  return *std::find_if(outcome.parts.begin(), outcome.parts.end(), [&](const ScorePart& p) { return p.name == name; });
-}
-bool has_hint(const Outcome& outcome, const std::string& words) {
-  return std::any_of(outcome.hints.begin(), outcome.hints.end(),
-                     [&](const Hint& hint) { return hint.text.find(words) != std::string::npos; });
-}
-Segment shifted(const Vec3& by_P) {
-  const Segment line_P = make_box_plan().line_P;
-  return {line_P.a + by_P, line_P.b + by_P};
-}
 
 /// A puncture without a gun, with what came back.
 struct MadePuncture {

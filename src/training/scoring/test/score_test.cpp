@@ -6,18 +6,13 @@
 #include <cmath>
 #include <numbers>
 
-#include "tasks/testing/attempt_patient.h"
+#include "scoring/test/outcome_support.h"
 #include "tasks/testing/layered_body.h"
 
 namespace trocar::scoring {
 namespace {
 
 using namespace testing;
-
-const anatomy::VirtualPatient& patient() {
-  static const anatomy::VirtualPatient the_patient = make_box_patient();
-  return the_patient;
-}
 
 Outcome score_of(const tasks::Task& task, const anatomy::VirtualPatient& who, const tasks::Needle& needle,
                  const std::vector<telemetry::TickSample>& samples, std::optional<std::size_t> fired,
@@ -41,18 +36,6 @@ Outcome score(const Segment& line_P) {
   const Attempt attempt = make_attempt(line_P);
   return score(attempt.samples, attempt.fired);
 }
-const ScorePart& part(const Outcome& outcome, const std::string& name) {
-  return *std::find_if(outcome.parts.begin(), outcome.parts.end(), [&](const ScorePart& p) { return p.name == name; });
-}
-bool has_hint(const Outcome& outcome, const std::string& words) {
-  return std::any_of(outcome.hints.begin(), outcome.hints.end(),
-                     [&](const Hint& hint) { return hint.text.find(words) != std::string::npos; });
-}
-Segment shifted(const Vec3& by_P) {
-  const Segment line_P = make_box_plan().line_P;
-  return {line_P.a + by_P, line_P.b + by_P};
-}
-
 TEST(Score, ThePlannedAttemptIsWorthAll) {
   const Outcome outcome = score(make_box_plan().line_P);
   EXPECT_GT(outcome.score, 99.5);  // 2.5 s of 120 s

@@ -51,6 +51,14 @@ TEST(Phases, MistakesAreNamed) {
   EXPECT_NE(error_of(phase("a", "", "returned = \"wine\"")).find("no substance"), std::string::npos);
 }
 
+TEST(Phases, TheExampleOfTheDocumentationIsAWholeTask) {
+  const auto task =
+      load_task_file(data_dir().parent_path() / "docs" / "examples" / "renal-biopsy.toml", data_dir() / "tasks");
+  ASSERT_TRUE(task) << task.error().text();
+  EXPECT_EQ(task->organ, "kidney");
+  EXPECT_EQ(task->phases.size(), 3U);
+}
+
 TEST(Phases, OfShippedTasksComeBackFromTheirText) {
   const auto tasks = load_tasks(data_dir() / "tasks");
   ASSERT_TRUE(tasks) << tasks.error().text();
