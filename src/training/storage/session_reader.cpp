@@ -6,10 +6,13 @@
 #include <fstream>
 #include <string_view>
 
+#include "storage/detail/checksums.h"
 #include "storage/detail/guarded_database.h"
+#include "storage/detail/info_table.h"
 #include "storage/detail/outcome_json.h"
 #include "storage/detail/salvage.h"
 #include "storage/session_file.h"
+#include "storage/session_summary.h"
 
 namespace trocar::storage {
 namespace fs = std::filesystem;
@@ -60,6 +63,31 @@ const char* open_advice(const fs::path& path) {
   return fs::exists(path.string() + "-wal", error)
              ? "the program was killed during recording: copy the session and its -wal file to a writable folder"
              : "check the file; if it was copied, copy it again";
+}
+
+/// Throws soci::soci_error if rows differ from their checksum. A session of an older program has none.
+void require_unchanged(GuardedDatabase& database, const CheckedRows& rows, const char* part) {
+  if (!database.has_table("checksums")) return;
+  const auto written = read_checksum(database.session(), rows);
+  if (!written || digest_of_rows(database.session(), rows.query) != *written)
+    throw soci::soci_error(fmt::format("the {} is damaged", part));
+}
+
+/// Returns the outcome's JSON, empty if there is none. Throws soci::soci_error.
+std::string read_summary(GuardedDatabase& database, SessionInfo& info) {
+  for (const char* table : {"info", "tissues", "layers", "labels", "phases", "outcome"}) database.require_table(table);
+  if (database.has_table("checksums")) database.require_table("checksums");
+  info = read_info(database.session());
+  require_unchanged(database, kInfoRows, "info");
+  std::string json;
+  soci::indicator indicator = soci::i_null;
+  database.session() << "SELECT json FROM outcome LIMIT 1", soci::into(json, indicator);
+  const bool is_finished = database.session().got_data() && indicator == soci::i_ok && !json.empty();
+  const bool was_finished =
+      database.has_table("checksums") && read_checksum(database.session(), kOutcomeRows).has_value();
+  if (!is_finished && !was_finished) return {};
+  require_unchanged(database, kOutcomeRows, "outcome");
+  return json;
 }
 
 /// The damaged parts, with the name of the first.
@@ -115,6 +143,22 @@ Result<Session> load_session(const fs::path& path) {
   TROCAR_TRY(Session session, salvage_session(path));
   if (session.damage.empty()) return session;
   return tl::unexpected(damage_error(session, path, "save the rest with trocar session export"));
+}
+
+Result<SessionSummary> load_summary(const fs::path& path) {
+  TROCAR_TRY_STATUS(check_file(path));
+  SessionSummary summary;
+  std::string json;
+  Status identity;
+  TROCAR_TRY_STATUS(guarded("the session cannot be read", path, open_advice(path), [&] {
+    GuardedDatabase database(path);
+    identity = check_identity(database.session(), path);
+    if (identity) json = read_summary(database, summary.info);
+  }));
+  TROCAR_TRY_STATUS(identity);
+  if (json.empty()) return summary;
+  TROCAR_TRY(summary.outcome, outcome_from_json(json, path.string()));
+  return summary;
 }
 
 }  // namespace trocar::storage
