@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "attempt/tools/led_pose.h"
 #include "geometry/clamp_norm.h"
 #include "volume/sampling.h"
 
@@ -43,6 +44,26 @@ Vec3 leaned(const Vec3& axis_P, const Vec3& right_P, const Vec3& down_P, double 
   return -handle_P.normalized();
 }
 
+/// Moves a point along the skin towards another one by at most `most_mm`. The other one itself if it is as near as
+/// that, or if the way along the skin comes no nearer.
+Vec3 stepped_on_skin(const anatomy::VirtualPatient& patient, const Vec3& from_P, const Vec3& to_P, double most_mm) {
+  const Vec3 left_P = to_P - from_P;
+  if (!(left_P.norm() > most_mm)) return to_P;
+  const Vec3 inward_P = skin_inward(patient, from_P);
+  const Vec3 along_P = left_P - inward_P.dot(left_P) * inward_P;
+  if (along_P.norm() < 1e-6) return to_P;
+  const Vec3 next_P = nearest_skin_point(patient, from_P + most_mm * along_P.normalized());
+  constexpr double kLeastGain = 0.1;  // of the step
+  return (to_P - next_P).norm() < left_P.norm() - kLeastGain * most_mm ? next_P : to_P;
+}
+
+/// Share of what is left to turn in this step, so that place and direction arrive together. Range 0..1.
+double turn_share(double left_mm, double left_rad, double most_mm, double most_rad) {
+  if (left_rad < 1e-9) return 1.0;
+  const double with_place = left_mm > most_mm ? most_mm / left_mm : 1.0;
+  return std::min(with_place, most_rad / left_rad);
+}
+
 }  // namespace
 
 Vec3 nearest_skin_point(const anatomy::VirtualPatient& patient, const Vec3& p_P) noexcept {
@@ -72,6 +93,22 @@ void PointerNeedle::aim_at(const Segment& path_P) {
   axis_P_ = path_P.direction();
   past_mm_ = -kAbove_mm;
   update();
+}
+
+bool PointerNeedle::approach(const Segment& path_P, double most_mm, double most_rad) {
+  if (is_past_skin()) return true;
+  const Vec3 goal_axis_P = path_P.direction();
+  const double left_rad = angle_between_rad(axis_P_, goal_axis_P);
+  const double left_mm = (path_P.a - entry_P_).norm();
+  const double share = turn_share(left_mm, left_rad, most_mm, most_rad);
+  past_mm_ = std::min(past_mm_, -kAbove_mm);
+  entry_P_ = stepped_on_skin(*patient_, entry_P_, path_P.a, most_mm);
+  const Vec3 turn = turn_between(Mat3::Identity(), rotation_between(axis_P_, goal_axis_P));
+  axis_P_ = (moved(Pose(), Vec3::Zero(), share * turn).R() * axis_P_).normalized();
+  const bool is_there = entry_P_ == path_P.a && share >= 1.0;
+  if (is_there) aim_at(path_P);
+  if (!is_there) update();
+  return is_there;
 }
 
 void PointerNeedle::put(const Pose& X_PN) {
@@ -138,6 +175,21 @@ void PointerProbe::put(const Pose& X_PT) {
   R_PT_ = X_PT.R();
   skin_P_ = nearest_skin_point(*patient_, X_PT.p());
   pressed_mm_ = std::clamp((X_PT.p() - skin_P_).dot(R_PT_.col(1)), -kFarthest_mm, kDeepest_mm);
+}
+
+bool PointerProbe::approach(const Pose& X_PT, double most_mm, double most_rad) {
+  PointerProbe goal(*patient_, X_PT);
+  const double left_mm = (goal.skin_P_ - skin_P_).norm();
+  const Vec3 before_P = skin_inward(*patient_, skin_P_);
+  skin_P_ = stepped_on_skin(*patient_, skin_P_, goal.skin_P_, most_mm);
+  R_PT_ = rotation_between(before_P, skin_inward(*patient_, skin_P_)) * R_PT_;
+  const Vec3 turn_P = turn_between(R_PT_, goal.R_PT_);
+  const double share = turn_share(left_mm, turn_P.norm(), most_mm, most_rad);
+  R_PT_ = moved(Pose(R_PT_, Vec3::Zero()), Vec3::Zero(), share * turn_P).R();
+  pressed_mm_ += std::clamp(goal.pressed_mm_ - pressed_mm_, -most_mm, most_mm);
+  const bool is_there = skin_P_ == goal.skin_P_ && share >= 1.0 && pressed_mm_ == goal.pressed_mm_;
+  if (is_there) *this = goal;
+  return is_there;
 }
 
 Pose PointerProbe::X_PT() const noexcept {

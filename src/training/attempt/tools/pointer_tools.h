@@ -27,6 +27,9 @@ class PointerNeedle {
   const Vec3& entry_P() const noexcept { return entry_P_; }
 
   void aim_at(const Segment& path_P);
+  /// One step towards where aim_at() would put it, over the skin and not through the body: the entry by at most
+  /// `most_mm`, the axis by at most `most_rad`. True once there; in the body it stays where it is and returns true.
+  bool approach(const Segment& path_P, double most_mm, double most_rad);
   /// Takes over from the needle's pose after another hand moved it.
   void put(const Pose& X_PN);
   /// Shifts the hand (mm): over the skin, or in the body the hub about the entry. `seen_along_P`: unit direction of the
@@ -66,6 +69,8 @@ class PointerProbe {
   double pressed_mm() const noexcept { return pressed_mm_; }  ///< Negative: off the skin.
 
   void put(const Pose& X_PT);
+  /// One step over the skin towards a pose, as PointerNeedle::approach. True once there.
+  bool approach(const Pose& X_PT, double most_mm, double most_rad);
   /// Moves over the skin, as PointerNeedle::glide does; the face turns with it.
   void glide(const Vec3& shift_P, const Vec3& seen_along_P = Vec3::Zero());
   void tilt(const Vec3& right_P, const Vec3& down_P, double right_rad, double down_rad);

@@ -38,6 +38,34 @@ TEST(PointerNeedle, AimsAlongThePathBeforeTheSkin) {
   EXPECT_NEAR(hand.X_PN().R().col(2).dot(path().direction()), 1.0, 1e-12);
 }
 
+TEST(PointerNeedle, ApproachesThePathOverTheSkinInBoundedSteps) {
+  constexpr double kStep_mm = 2.0, kStep_rad = 0.05;
+  PointerNeedle hand = needle();
+  for (int step = 0; step < 30; ++step) hand.glide({1.0, 0.0, 0.5});
+  hand.tilt(Vec3::UnitX(), Vec3::UnitZ(), 0.3, 0.0);
+  ASSERT_GT((hand.entry_P() - path().a).norm(), 20.0);
+  int steps = 0;
+  for (bool is_there = false; !is_there && steps < 100; ++steps) {
+    const Vec3 before_P = hand.entry_P(), axis_before_P = hand.X_PN().R().col(2);
+    is_there = hand.approach(path(), kStep_mm, kStep_rad);
+    EXPECT_LE((hand.entry_P() - before_P).norm(), 1.1 * kStep_mm);
+    EXPECT_LE(angle_between_rad(hand.X_PN().R().col(2), axis_before_P), kStep_rad + 1e-9);
+    EXPECT_GT(volume::sample_linear(patient().skin_distance_mm, hand.X_PN().p()), 5.0) << "the tip stays outside";
+  }
+  EXPECT_LT(steps, 60);
+  EXPECT_NEAR((hand.X_PN().p() - needle().X_PN().p()).norm(), 0.0, 1e-9);
+  EXPECT_NEAR(angle_between_rad(hand.X_PN().R().col(2), path().direction()), 0.0, 1e-6);
+}
+
+TEST(PointerNeedle, DoesNotApproachAnotherPathFromWithinTheBody) {
+  PointerNeedle hand = needle();
+  hand.push(PointerNeedle::kAbove_mm + 30.0);
+  const Vec3 tip_P = hand.X_PN().p();
+  const Vec3 beside_P(10.0, 0.0, 0.0);
+  EXPECT_TRUE(hand.approach({path().a + beside_P, path().b + beside_P}, 2.0, 0.05));
+  EXPECT_EQ(hand.X_PN().p(), tip_P);
+}
+
 TEST(PointerNeedle, GlidesOverTheSkinAndKeepsItsHeight) {
   PointerNeedle hand = needle();
   for (int step = 0; step < 20; ++step) hand.glide({1.0, 3.0, 0.5});
@@ -111,6 +139,34 @@ TEST(PointerNeedle, StaysSaneWhateverItIsTold) {
     ASSERT_LE(angle_between_rad(hand.X_PN().R().col(2), skin_inward(patient(), hand.entry_P())),
               PointerNeedle::kFlattest_rad + 1e-6);
   }
+}
+
+/// Beam into the skin, lateral along the body's width.
+PointerProbe probe() {
+  Mat3 R_PT;
+  R_PT.col(1) = path().direction();
+  R_PT.col(0) = (Vec3::UnitX() - R_PT.col(1).x() * R_PT.col(1)).normalized();
+  R_PT.col(2) = R_PT.col(0).cross(R_PT.col(1));
+  return {patient(), {R_PT, path().a}};
+}
+
+TEST(PointerProbe, ApproachesAPoseOnTheSkin) {
+  constexpr double kStep_mm = 2.0, kStep_rad = 0.05;
+  const Pose X_PT_goal = probe().X_PT();
+  PointerProbe hand = probe();
+  hand.push(-10.0);
+  for (int step = 0; step < 25; ++step) hand.glide({1.0, 0.0, 0.5});
+  hand.turn(1.0);
+  int steps = 0;
+  for (bool is_there = false; !is_there && steps < 200; ++steps) {
+    const Vec3 before_P = hand.X_PT().p();
+    is_there = hand.approach(X_PT_goal, kStep_mm, kStep_rad);
+    EXPECT_LE((hand.X_PT().p() - before_P).norm(), 2.2 * kStep_mm) << "along the skin and onto it";
+    EXPECT_LE(hand.pressed_mm(), PointerProbe::kDeepest_mm);
+  }
+  EXPECT_LT(steps, 100);
+  EXPECT_NEAR((hand.X_PT().p() - X_PT_goal.p()).norm(), 0.0, 1e-6);
+  EXPECT_NEAR((hand.X_PT().R() - X_PT_goal.R()).norm(), 0.0, 1e-6);
 }
 
 TEST(PointerProbe, StaysOnTheSkinAndFacesInward) {
