@@ -97,6 +97,7 @@ class AttemptLoop {
   void note_shot();
   void note_actions();
   void step_phases();
+  std::string hint_of(const AttemptView& view) const;
   void add_phases(AttemptView& view) const;
   void send_scheduled_parameters();
   Status step_transducer();

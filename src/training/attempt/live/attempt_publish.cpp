@@ -2,6 +2,7 @@
 #include "attempt/guide/gun_shot.h"
 #include "attempt/guide/needle_view.h"
 #include "attempt/guide/puncture_guide.h"
+#include "attempt/guide/transducer_guide.h"
 #include "attempt/live/attempt_loop.h"
 #include "telemetry/tick_pose.h"
 
@@ -138,6 +139,19 @@ void AttemptLoop::add_times(AttemptView& view) {
   if (shot_) view.since_shot_s = last_needle_->time_s - shot_->time_s;
 }
 
+/// About the transducer in a step that it does, as long as the needle is outside.
+std::string AttemptLoop::hint_of(const AttemptView& view) const {
+  const cases::Case& the_case = *case_.the_case;
+  const bool is_outside = last_needle_->phase == telemetry::InsertionPhase::kOutside;
+  if (view.current_phase && view.probe.is_known && case_.plane && is_outside && !view.has_fired &&
+      is_step_of_transducer(the_case.task.phases[*view.current_phase])) {
+    const Segment& path_P = the_case.plan.line_P;
+    const Vec3 target_P = path_P.b + the_case.needle.notch_middle_mm() * path_P.direction();
+    return guide_transducer(target_P, view.probe.X_PT, view.probe.contact_n, *case_.plane);
+  }
+  return guide_puncture(the_case, *last_needle_, view.has_fired);
+}
+
 void AttemptLoop::publish(AttemptPhase phase, std::optional<Result<RunResult>> result) {
   AttemptUpdate update;
   update.result = std::move(result);
@@ -165,8 +179,7 @@ void AttemptLoop::publish(AttemptPhase phase, std::optional<Result<RunResult>> r
   step_phases();
   add_phases(view);
   const bool is_moving = phase == AttemptPhase::kReady || phase == AttemptPhase::kInBody;
-  if (options_.is_guided && is_moving && last_needle_)
-    view.hint = guide_puncture(*case_.the_case, *last_needle_, view.has_fired);
+  if (options_.is_guided && is_moving && last_needle_) view.hint = hint_of(view);
   update.forces = trace_.take();
   update.events = std::exchange(events_, {});
   exchange_.publish(std::move(update));
