@@ -73,6 +73,7 @@ AttemptControl::AttemptControl(std::shared_ptr<const cases::OpenCase> open, cons
       attempt_(open_, std::move(options), std::move(servers)),
       needle_(*open_->the_case.patient, open_->the_case.plan.line_P, open_->the_case.needle.length_mm),
       probe_(*open_->the_case.patient, attempt_.options().X_PT_start.value_or(open_->X_PT_start)),
+      planned_(open_),
       is_led_{attempt::follows_targets(choice.needle_device), attempt::follows_targets(choice.probe_device)},
       keys_(page, [this](const QKeyEvent& key, const KeyPlace& place) { return take_key(key, place); }) {
   if (const auto& X_PN_start = attempt_.options().X_PN_start) needle_.put(*X_PN_start);
@@ -94,7 +95,7 @@ AttemptControl::AttemptControl(std::shared_ptr<const cases::OpenCase> open, cons
   });
   page_.puncture().begin(kFullForce_n, choice_.difficulty == Difficulty::kGuided, open_->the_case.needle.is_biopsy,
                          actions_of(open_->the_case.task, open_->the_case.needle));
-  take(ActiveTool::kNeedle);
+  take(first_tool(open_->the_case.task));
 }
 
 AttemptControl::~AttemptControl() {
@@ -176,6 +177,7 @@ ViewScale AttemptControl::scale_of_ultrasound() const {
 }
 
 void AttemptControl::gesture(const Gesture& gesture) {
+  planned_.stop(gestures_.active_tool());
   const ViewScale& v = gesture.view;
   const auto move = [&](auto& hand) {
     switch (gesture.kind) {
@@ -201,9 +203,12 @@ bool AttemptControl::is_free(attempt::Tool tool) const {
 void AttemptControl::aim() {
   if (choice_.difficulty != Difficulty::kGuided)
     return show_notice(tr("The planned position is available in guided attempts only."));
-  if (gestures_.active_tool() == ActiveTool::kTransducer && is_led_[1]) probe_.put(open_->X_PT_start);
-  if (gestures_.active_tool() == ActiveTool::kNeedle && is_led_[0] && !needle_.is_past_skin())
-    needle_.aim_at(open_->the_case.plan.line_P);
+  const ActiveTool tool = gestures_.active_tool();
+  if (tool == ActiveTool::kNone) return show_notice(tr("Select needle (A) or transducer (S) first."));
+  if (!is_free(tool == ActiveTool::kNeedle ? attempt::Tool::kNeedle : attempt::Tool::kProbe)) return;
+  if (tool == ActiveTool::kNeedle && needle_.is_past_skin())
+    return show_notice(tr("Withdraw the needle first: it moves to the planned position outside the body only."));
+  planned_.start(tool);
 }
 
 void AttemptControl::show_notice(const QString& text) {
@@ -253,6 +258,7 @@ void AttemptControl::advance(double dt_s) {
     // The hands wait at the poses of the tools, to avoid a jump when the forces return.
     needle_.put(view_.needle.X_PN);
   }
+  planned_.advance(needle_, probe_, dt_s);
   if (!is_led_[1] && view_.probe.is_known) probe_.put(view_.probe.X_PT);
   attempt_.set_goal(attempt::Tool::kNeedle, needle_.X_PN());
   attempt_.set_goal(attempt::Tool::kProbe, probe_.X_PT());
@@ -358,8 +364,11 @@ void AttemptControl::show_panel() {
 
 /// In an exam the loop sends no steps.
 void AttemptControl::show_steps() {
-  page_.puncture().steps().show_steps(view_.phases, view_.current_phase, view_.needle.time_s,
-                                      choice_.difficulty == Difficulty::kGuided);
+  const std::vector<tasks::Phase>& phases = open_->the_case.task.phases;
+  const bool is_guided = choice_.difficulty == Difficulty::kGuided;
+  const bool has_help = is_guided && view_.current_phase && *view_.current_phase < phases.size();
+  page_.puncture().steps().show_steps(view_.phases, view_.current_phase, view_.needle.time_s, is_guided,
+                                      has_help ? planned_position_help(phases[*view_.current_phase]) : QString());
 }
 
 void AttemptControl::add_step_facts(QVariantMap& facts) const {

@@ -9,6 +9,7 @@
 #include "cases/open_case.h"
 #include "choice/trainer_choice.h"
 #include "control/page_keys.h"
+#include "control/planned_position.h"
 #include "control/tool_gestures.h"
 #include "panels/action_buttons.h"
 
@@ -78,6 +79,7 @@ class AttemptControl : public QObject {
   ToolGestures gestures_;
   attempt::PointerNeedle needle_;
   attempt::PointerProbe probe_;
+  PlannedPosition planned_;
   bool is_led_[2];  ///< By Tool: mouse and keys move the tool; else its device does.
   PageKeys keys_;
   bool is_clamped_[2] = {false, false};  ///< Indexed by Tool.

@@ -132,7 +132,7 @@ QWidget* PuncturePanel::make_tool_choice() {
   add(ActiveTool::kNone, "tool-none", tr("View"), tr("No active tool: the mouse rotates the view (V)"), 4);
   clamp_ = make_button("clamp", tr("Clamp"), tr("Hold the active tool in place (X)"));
   clamp_->setCheckable(true);
-  aim_ = make_button("aim", tr("To planned entry"), {});
+  aim_ = make_button("aim", tr("To planned position"), {});
   for (QPushButton* button : {clamp_, aim_}) {
     button->setFocusPolicy(Qt::NoFocus);
     button->setStyleSheet(narrow);

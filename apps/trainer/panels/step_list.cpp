@@ -13,8 +13,8 @@
 namespace trocar::trainer {
 namespace {
 
-/// Of the grid: the title, and below the current one what it lacks and the reason.
-constexpr int kLinesAStep = 3;
+/// Of the grid: the title, and below the current one what it lacks, the reason and help.
+constexpr int kLinesAStep = 4;
 
 void set_text(QLabel& label, const QString& text) {
   if (label.text() != text) label.setText(text);
@@ -55,7 +55,7 @@ StepList::StepList(QWidget* parent) : QWidget(parent) {
   grid_->setVerticalSpacing(2);
   grid_->setColumnStretch(1, 1);
   column->addLayout(grid_);
-  for (QLabel** label : {&lacks_, &why_}) {
+  for (QLabel** label : {&lacks_, &why_, &stuck_}) {
     *label = make_label({}, "", this);
     (*label)->setWordWrap(true);
     (*label)->hide();
@@ -64,6 +64,8 @@ StepList::StepList(QWidget* parent) : QWidget(parent) {
   set_color(*lacks_, theme().accent, true);
   why_->setObjectName(QStringLiteral("step-why"));
   set_color(*why_, theme().dim);
+  stuck_->setObjectName(QStringLiteral("step-stuck"));
+  set_color(*stuck_, theme().text);
   connect(fold_, &QToolButton::clicked, this, [this] {
     is_chosen_ = true;
     set_folded(!is_folded_);
@@ -73,8 +75,9 @@ StepList::StepList(QWidget* parent) : QWidget(parent) {
 }
 
 void StepList::show_steps(const std::vector<attempt::PhaseView>& steps, std::optional<std::size_t> current,
-                          double time_s, bool has_help) {
-  bool is_same = steps.size() == steps_.size() && current == current_ && has_help == has_help_;
+                          double time_s, bool has_help, const QString& stuck) {
+  bool is_same =
+      steps.size() == steps_.size() && current == current_ && has_help == has_help_ && stuck_->text() == stuck;
   const bool are_new = steps.size() != steps_.size();
   steps_.resize(steps.size());
   for (std::size_t s = 0; s < steps.size(); ++s) {
@@ -86,6 +89,7 @@ void StepList::show_steps(const std::vector<attempt::PhaseView>& steps, std::opt
   current_ = current;
   has_help_ = has_help;
   if (are_new) make_rows();
+  set_text(*stuck_, stuck);
   update_rows();
   update_heading();
   setVisible(!steps_.empty());
@@ -100,6 +104,7 @@ void StepList::make_rows() {
   rows_.clear();
   grid_->removeWidget(lacks_);
   grid_->removeWidget(why_);
+  grid_->removeWidget(stuck_);
   int line = 0;
   for (std::size_t s = 0; s < steps_.size(); ++s) {
     Row row{make_label({}, "", this), make_label({}, "", this), nullptr};
@@ -150,6 +155,7 @@ void StepList::update_rows() {
     if (is_current && has_current) {
       grid_->addWidget(lacks_, static_cast<int>(kLinesAStep * s + 1), 1, 1, 2);
       grid_->addWidget(why_, static_cast<int>(kLinesAStep * s + 2), 1, 1, 2);
+      grid_->addWidget(stuck_, static_cast<int>(kLinesAStep * s + 3), 1, 1, 2);
     }
   }
   const QString lacks = has_current ? to_qt(steps_[*current_].phase.lacks) : QString();
@@ -158,6 +164,7 @@ void StepList::update_rows() {
   set_text(*why_, has_current ? to_qt(steps_[*current_].phase.why) : QString());
   lacks_->setVisible(!lacks_->text().isEmpty());
   why_->setVisible(!why_->text().isEmpty());
+  stuck_->setVisible(has_current && !stuck_->text().isEmpty());
 }
 
 void StepList::update_heading() {

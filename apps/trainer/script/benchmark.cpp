@@ -38,7 +38,11 @@ Result<std::vector<ScriptStep>> benchmark_steps(const std::vector<std::string>& 
       "wait-for is_complete is true within 120\n"
       "click begin\n"
       "wait-for phase is ready within 120\n"
+      "key H\n"  // the transducer, then the needle
+      "wait-for probe_from_plan_mm < 6 within 60\n"
+      "key A\n"
       "key H\n"
+      "wait-for entry_from_plan_mm < 1 within 60\n"
       "wait 2\n");
   bool is_inside = false;
   for (const std::size_t number : numbers) {

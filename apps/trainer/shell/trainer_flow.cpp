@@ -222,11 +222,9 @@ void TrainerFlow::begin_attempt() {
   options.level = name_of(choice_.difficulty);
   if (!is_exam()) options.force_model = to_std(window_.work().parameters().preview().model());
   options.is_guided = choice_.difficulty != Difficulty::kExam;
-  if (choice_.difficulty != Difficulty::kGuided) {
-    // The start of the plan would reveal the solution.
-    options.X_PN_start = open_->neutral.X_PN;
-    options.X_PT_start = open_->neutral.X_PT;
-  }
+  // Finding the target is a part of the task, and the start of the plan would reveal it.
+  options.X_PN_start = open_->neutral.X_PN;
+  options.X_PT_start = open_->neutral.X_PT;
   if (const Status kept = journal_.begin({case_choice(choice_), options.session}); !kept)
     return window_.show_banner(sentence_of(kept.error()), BannerKind::kError);
   replay_.reset();

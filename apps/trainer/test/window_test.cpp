@@ -190,7 +190,7 @@ TEST_F(WindowTest, TheCaseBuilderSaysWhyItIsClosedAndStaysWhereItWasOpened) {
   expect_played(play("case_builder.txt"));
 }
 
-TEST_F(WindowTest, OnlyAGuidedAttemptBeginsWhereThePlanHasTheTools) {
+TEST_F(WindowTest, OnlyAGuidedAttemptPutsTheToolsWhereThePlanHasThem) {
   expect_played(play("help_levels.txt"));
 }
 
@@ -302,10 +302,12 @@ TEST_F(WindowTest, ABileDuctIsPuncturedUnderFluoroscopy) {
 
 TEST_F(WindowTest, AnAttemptThatACrashCutOffCanBeSeenAgain) {
   // The window is killed in mid-puncture by its own script's host.
-  const QString script = write("cut.txt",
-                               "click start\nwait-for is_open is true within 300\nclick begin\n"
-                               "wait-for phase is ready within 120\nwheel-until view-3d 10 depth_mm > 15 within 60\n"
-                               "wait 1\nend-window\n");
+  const QString script =
+      write("cut.txt",
+            "click start\nwait-for is_open is true within 300\nclick begin\n"
+            "wait-for phase is ready within 120\nkey A\nkey H\nwait-for entry_from_plan_mm < 1 within 60\n"
+            "wheel-until view-3d 10 depth_mm > 15 within 60\n"
+            "wait 1\nend-window\n");
   EXPECT_EQ(run({QStringLiteral("--script"), script}).exit_status, -1);
   const QString again = write("again.txt",
                               "click recover\nwait-for page is feedback within 300\nexpect was_cut_off is true\n"
@@ -339,6 +341,7 @@ TEST_F(WindowTest, MemoryDoesNotGrowFromCaseToCase) {
   for (const char* name : {"A", "B", "A"})
     steps += QByteArray("choose patients \"case ") + name +
              "\"\nclick start\nwait-for is_open is true within 300\nclick begin\nwait-for phase is ready within 120\n"
+             "key A\nkey H\nwait-for entry_from_plan_mm < 1 within 60\n"
              "wheel-until view-3d 10 depth_mm > 15 within 60\nkey E\nkey Return\nwait-for page is feedback within 120\n"
              "key Ctrl+N\nwait-for page is start within 20\nprint memory_mb\n";
   const Played played = run({QStringLiteral("--script"), write("cases.txt", steps.constData())});

@@ -14,6 +14,10 @@ key shift+Tab
 key space
 seen 2-ready
 shot ready
+key h # the transducer to its planned position
+seen 2-found
+key a h # the needle
+seen 2-aimed
 
 # Through the controls of the scanner: a choice keeps its own arrows, and A brings the needle back.
 key k

@@ -13,9 +13,13 @@ click 1199 711 # Begin
 seen 2-ready
 shot ready
 
-drag 500 260 540 280 # the needle glides over the skin
+drag 500 260 540 280 # the transducer glides over the skin
 shot glided
-click 150 103 # To planned entry
+click 150 103 # To planned position
+seen 2-found
+click 44 69 # Needle
+click 150 103
+seen 2-aimed
 click 1164 55 # Controls
 shot controls
 move 1060 336 # over the choice of the transducer: nothing is chosen, the controls scroll

@@ -1,0 +1,57 @@
+#include "control/planned_position.h"
+
+#include <QCoreApplication>
+#include <algorithm>
+
+#include "attempt/guide/transducer_guide.h"
+
+namespace trocar::trainer {
+namespace {
+
+// Slower than the limits of a hand in attempt/tools/led_pose.h, so that the tool does not cut corners through the body.
+constexpr double kMost_mm_per_s = 50.0, kMost_rad_per_s = 1.2;
+
+}  // namespace
+
+void PlannedPosition::start(ActiveTool tool) {
+  if (tool == ActiveTool::kNeedle) is_needle_moving_ = true;
+  if (tool == ActiveTool::kTransducer) is_probe_moving_ = true;
+}
+
+void PlannedPosition::stop(ActiveTool tool) {
+  if (tool == ActiveTool::kNeedle) is_needle_moving_ = false;
+  if (tool == ActiveTool::kTransducer) is_probe_moving_ = false;
+}
+
+void PlannedPosition::advance(attempt::PointerNeedle& needle, attempt::PointerProbe& probe, double dt_s) {
+  constexpr double kLongest_s = 0.1;  // of a frame: a late one does not make the tool jump
+  const double step_s = std::clamp(dt_s, 0.0, kLongest_s);
+  const double most_mm = kMost_mm_per_s * step_s, most_rad = kMost_rad_per_s * step_s;
+  if (is_needle_moving_) is_needle_moving_ = !needle.approach(open_->the_case.plan.line_P, most_mm, most_rad);
+  if (is_probe_moving_) is_probe_moving_ = !probe.approach(open_->X_PT_start, most_mm, most_rad);
+}
+
+std::optional<ActiveTool> tool_of(const tasks::Phase& phase) {
+  using Kind = tasks::ConditionKind;
+  const auto asks_for = [&](Kind kind) {
+    return std::any_of(phase.done.begin(), phase.done.end(), [&](const auto& c) { return c.kind == kind; });
+  };
+  if (attempt::is_step_of_transducer(phase)) return ActiveTool::kTransducer;
+  if (asks_for(Kind::kTipOnSkin) || asks_for(Kind::kPathClear) || asks_for(Kind::kAimsAtTarget))
+    return ActiveTool::kNeedle;
+  return std::nullopt;
+}
+
+QString planned_position_help(const tasks::Phase& phase) {
+  const auto tool = tool_of(phase);
+  if (!tool) return {};
+  return *tool == ActiveTool::kTransducer
+             ? QCoreApplication::translate("PlannedPosition", "Stuck? Keys S, H: transducer to the planned position")
+             : QCoreApplication::translate("PlannedPosition", "Stuck? Keys A, H: needle to the planned position");
+}
+
+ActiveTool first_tool(const tasks::Task& task) {
+  return task.guidance == tasks::Guidance::kUltrasound ? ActiveTool::kTransducer : ActiveTool::kNeedle;
+}
+
+}  // namespace trocar::trainer

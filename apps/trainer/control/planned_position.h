@@ -1,0 +1,36 @@
+#pragma once
+
+#include <QString>
+#include <memory>
+#include <optional>
+
+#include "attempt/tools/pointer_tools.h"
+#include "cases/open_case.h"
+#include "panels/puncture_panel.h"
+
+namespace trocar::trainer {
+
+/// Brings tools that mouse and keys lead to their planned poses, over the skin and at the speed of a hand, so that the
+/// trainee sees the way. A gesture of a tool ends its motion: call stop().
+class PlannedPosition {
+ public:
+  explicit PlannedPosition(std::shared_ptr<const cases::OpenCase> open) : open_(std::move(open)) {}
+
+  void start(ActiveTool tool);
+  void stop(ActiveTool tool);
+  /// Call once per frame.
+  void advance(attempt::PointerNeedle& needle, attempt::PointerProbe& probe, double dt_s);
+
+ private:
+  std::shared_ptr<const cases::OpenCase> open_;
+  bool is_needle_moving_ = false, is_probe_moving_ = false;
+};
+
+/// The tool that a step of the task moves; empty: none, or it is in the body.
+std::optional<ActiveTool> tool_of(const tasks::Phase& phase);
+/// What a trainee who is stuck in the step can do: the key to the planned position. Empty for steps without one.
+QString planned_position_help(const tasks::Phase& phase);
+/// The tool with which an attempt at the task begins.
+ActiveTool first_tool(const tasks::Task& task);
+
+}  // namespace trocar::trainer
