@@ -1,0 +1,156 @@
+// trocar learn: what a trainee has mastered and practises next.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+
+#include "commands.h"
+#include "core/files/user_folders.h"
+#include "learning/history.h"
+#include "learning/next_exercise.h"
+#include "learning/progress.h"
+#include "tasks/task.h"
+
+namespace trocar::cli {
+namespace {
+
+struct Arguments {
+  std::string sessions;
+  std::string task;
+  bool is_json = false;
+};
+
+/// All that the command prints.
+struct Learned {
+  learning::Curriculum curriculum;
+  learning::History history;
+  std::vector<std::vector<learning::StepProgress>> progress;  ///< By course of the curriculum.
+  learning::Recommendation advice;
+};
+
+std::string date_text(std::chrono::sys_days day) {
+  const std::chrono::year_month_day date(day);
+  return fmt::format("{:04}-{:02}-{:02}", static_cast<int>(date.year()), static_cast<unsigned>(date.month()),
+                     static_cast<unsigned>(date.day()));
+}
+
+Result<Learned> learn(const Arguments& arguments) {
+  Learned learned;
+  TROCAR_TRY(const std::filesystem::path tasks_folder, find_data("tasks"));
+  TROCAR_TRY(learned.curriculum, learning::load_curriculum(tasks_folder.parent_path()));
+  if (!arguments.task.empty()) TROCAR_TRY_STATUS(tasks::load_task(tasks_folder, arguments.task));
+  std::error_code error;
+  if (!arguments.sessions.empty() && !std::filesystem::is_directory(arguments.sessions, error))
+    return fail_usage("no such folder", arguments.sessions, "name a folder of session files");
+  TROCAR_TRY(learned.history,
+             learning::read_history(arguments.sessions.empty() ? user_state_folder() / "sessions"
+                                                               : std::filesystem::path(arguments.sessions)));
+  const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  for (const learning::Course& course : learned.curriculum.courses)
+    learned.progress.push_back(learning::progress_of(learned.history.attempts, course, learned.curriculum.rules, now));
+  learned.advice = learning::next_exercise(learned.history.attempts, learned.curriculum, now, arguments.task);
+  return learned;
+}
+
+config::Json step_json(const learning::StepProgress& step) {
+  return {{"patient", step.exercise.patient},
+          {"case", step.exercise.difficulty},
+          {"level", learning::to_string(step.exercise.level)},
+          {"attempts", step.attempts},
+          {"passes_in_a_row", step.passes_in_a_row},
+          {"mastered", step.is_mastered},
+          {"repeat_on", step.repetition ? config::Json(date_text(step.repetition->due)) : config::Json(nullptr)}};
+}
+
+config::Json learned_json(const Learned& learned, const Arguments& arguments) {
+  config::Json courses = config::Json::array();
+  for (std::size_t n = 0; n < learned.progress.size(); ++n) {
+    const std::string& task = learned.curriculum.courses[n].task;
+    if (!arguments.task.empty() && task != arguments.task) continue;
+    config::Json steps = config::Json::array();
+    for (const learning::StepProgress& step : learned.progress[n]) steps.push_back(step_json(step));
+    courses.push_back({{"task", task}, {"steps", std::move(steps)}});
+  }
+  const learning::Recommendation& advice = learned.advice;
+  config::Json next{{"purpose", learning::to_string(advice.purpose)}};
+  if (advice.exercise) {
+    next["task"] = advice.exercise->task;
+    next["patient"] = advice.exercise->patient;
+    next["case"] = advice.exercise->difficulty;
+    next["level"] = learning::to_string(advice.exercise->level);
+  }
+  next["reasons"] = advice.reasons;
+  return {{"attempts", learned.history.attempts.size()},
+          {"courses", courses},
+          {"next", next},
+          {"notes", advice.notes},
+          {"damaged", learned.history.damaged}};
+}
+
+/// "case 1 guided, assisted; case 2 guided", or "nothing yet".
+std::string mastered_text(const std::vector<learning::StepProgress>& steps) {
+  std::vector<std::string> cases;
+  for (std::size_t n = 0; n < steps.size();) {
+    const int the_case = steps[n].exercise.difficulty;
+    std::vector<std::string> levels;
+    for (; n < steps.size() && steps[n].exercise.difficulty == the_case; ++n)
+      if (steps[n].is_mastered) levels.emplace_back(learning::to_string(steps[n].exercise.level));
+    if (!levels.empty()) cases.push_back(fmt::format("case {} {}", the_case, fmt::join(levels, ", ")));
+  }
+  return cases.empty() ? "nothing yet" : fmt::format("{}", fmt::join(cases, "; "));
+}
+
+void print_course(const learning::Course& course, const std::vector<learning::StepProgress>& steps) {
+  if (steps.empty()) return;
+  fmt::print("{:<26} mastered: {}\n", course.title, mastered_text(steps));
+  for (const learning::StepProgress& step : steps)
+    if (step.repetition)
+      fmt::print("{:<26} repeat case {} {} on {}\n", "", step.exercise.difficulty,
+                 learning::to_string(step.exercise.level), date_text(step.repetition->due));
+}
+
+void print_learned(const Learned& learned, const Arguments& arguments) {
+  const std::vector<learning::PastAttempt>& attempts = learned.history.attempts;
+  const auto counted = std::count_if(attempts.begin(), attempts.end(), [](const learning::PastAttempt& attempt) {
+    return attempt.score.has_value() && attempt.level.has_value();
+  });
+  fmt::print("{} sessions, {} of them scored attempts of a trainee\n", attempts.size(), counted);
+  for (std::size_t n = 0; n < learned.progress.size(); ++n) {
+    const learning::Course& course = learned.curriculum.courses[n];
+    if (arguments.task.empty() || course.task == arguments.task) print_course(course, learned.progress[n]);
+  }
+  const learning::Recommendation& advice = learned.advice;
+  if (advice.exercise)
+    fmt::print("next: {} (patient {})\n", learning::exercise_text(*advice.exercise, learned.curriculum),
+               advice.exercise->patient);
+  for (const std::string& reason : advice.reasons) fmt::print("  {}\n", reason);
+}
+
+Status print(const Arguments& arguments) {
+  TROCAR_TRY(const Learned learned, learn(arguments));
+  for (const std::string& line : learned.history.damaged) print_warning(line);
+  for (const std::string& note : learned.advice.notes) print_warning(note);
+  if (arguments.is_json) {
+    print_json(learned_json(learned, arguments));
+  } else {
+    print_learned(learned, arguments);
+  }
+  return {};
+}
+
+}  // namespace
+
+void add_learn_command(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand("learn", "Print what a trainee has mastered and practises next, and why");
+  const auto a = std::make_shared<Arguments>();
+  command->add_option("--sessions", a->sessions,
+                      "Folder of the trainee's sessions [those of the trainer: $XDG_STATE_HOME/trocar/sessions]");
+  command->add_option("--task", a->task, "Only exercises of this task; see trocar task list");
+  command->add_flag("--json", a->is_json, "Print one JSON object");
+  command->footer("Examples:\n  trocar learn\n  trocar learn --sessions sessions --task liver-biopsy\n");
+  command->callback([&action, a] { action = [a] { return print(*a); }; });
+}
+
+}  // namespace trocar::cli

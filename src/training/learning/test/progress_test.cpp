@@ -1,0 +1,156 @@
+#include "learning/progress.h"
+
+#include <gtest/gtest.h>
+
+#include "learning/test/example_history.h"
+
+namespace trocar::learning {
+namespace {
+
+using testing::add;
+using testing::attempt;
+using testing::day;
+using testing::example_curriculum;
+using testing::master;
+
+StepProgress step_of(const std::vector<PastAttempt>& history, const std::string& patient, Level level, int on_day = 0) {
+  const Curriculum curriculum = example_curriculum();
+  for (const Course& course : curriculum.courses)
+    for (const StepProgress& step : progress_of(history, course, curriculum.rules, day(on_day)))
+      if (step.exercise.patient == patient && step.exercise.level == level) return step;
+  ADD_FAILURE() << "no such step";
+  return {};
+}
+
+std::chrono::sys_days date(int n) {
+  return std::chrono::floor<std::chrono::days>(day(n));
+}
+
+TEST(Progress, AStepIsMasteredByPassesInARow) {
+  std::vector<PastAttempt> history;
+  const PastAttempt pass = attempt("biopsy-1", Level::kGuided, 0);
+  add(history, 2, pass);
+  EXPECT_FALSE(step_of(history, "biopsy-1", Level::kGuided).is_mastered);
+  history.push_back(attempt("biopsy-1", Level::kGuided, 0, 90.0, false));
+  add(history, 2, pass);
+  EXPECT_FALSE(step_of(history, "biopsy-1", Level::kGuided).is_mastered);
+  EXPECT_EQ(step_of(history, "biopsy-1", Level::kGuided).passes_in_a_row, 2);
+  add(history, 1, pass);
+  EXPECT_TRUE(step_of(history, "biopsy-1", Level::kGuided).is_mastered);
+  EXPECT_EQ(step_of(history, "biopsy-1", Level::kGuided).attempts, 6);
+  EXPECT_FALSE(step_of(history, "biopsy-1", Level::kAssisted).is_mastered);
+  EXPECT_FALSE(step_of(history, "biopsy-2", Level::kGuided).is_mastered);
+}
+
+TEST(Progress, APassBelowTheMasteryScoreBreaksTheRow) {
+  std::vector<PastAttempt> history;
+  add(history, 3, attempt("biopsy-1", Level::kGuided, 0, 79.9));
+  EXPECT_FALSE(step_of(history, "biopsy-1", Level::kGuided).is_mastered);
+  EXPECT_EQ(step_of(history, "biopsy-1", Level::kGuided).passes_in_a_row, 0);
+  add(history, 3, attempt("biopsy-1", Level::kGuided, 0, 80.0));
+  EXPECT_TRUE(step_of(history, "biopsy-1", Level::kGuided).is_mastered);
+}
+
+TEST(Progress, AttemptsWithoutScoreOrLevelDoNotCount) {
+  std::vector<PastAttempt> history;
+  add(history, 2, attempt("biopsy-1", Level::kGuided, 0));
+  PastAttempt interrupted = attempt("biopsy-1", Level::kGuided, 0);
+  interrupted.score.reset();
+  interrupted.is_passed = false;
+  history.push_back(interrupted);
+  PastAttempt scripted = attempt("biopsy-1", Level::kGuided, 0);
+  scripted.level.reset();
+  history.push_back(scripted);
+  EXPECT_EQ(step_of(history, "biopsy-1", Level::kGuided).attempts, 2);
+  EXPECT_EQ(step_of(history, "biopsy-1", Level::kGuided).passes_in_a_row, 2);
+}
+
+TEST(Progress, AHarderCaseWithLessHelpCoversTheEasierOnes) {
+  std::vector<PastAttempt> history;
+  add(history, 3, attempt("biopsy-2", Level::kAssisted, 0));
+  EXPECT_TRUE(step_of(history, "biopsy-1", Level::kGuided).is_mastered);
+  EXPECT_TRUE(step_of(history, "biopsy-1", Level::kAssisted).is_mastered);
+  EXPECT_TRUE(step_of(history, "biopsy-2", Level::kGuided).is_mastered);
+  EXPECT_FALSE(step_of(history, "biopsy-1", Level::kExam).is_mastered);
+  EXPECT_FALSE(step_of(history, "biopsy-3", Level::kGuided).is_mastered);
+  EXPECT_FALSE(step_of(history, "tap-1", Level::kGuided).is_mastered);
+  EXPECT_FALSE(step_of(history, "biopsy-1", Level::kAssisted).repetition);  // it was never practised
+}
+
+TEST(Progress, RepetitionsComeAfterGrowingIntervals) {
+  std::vector<PastAttempt> history;
+  add(history, 3, attempt("biopsy-1", Level::kGuided, 0));
+  const auto due = [&] { return step_of(history, "biopsy-1", Level::kGuided, 100).repetition->due; };
+  EXPECT_EQ(due(), date(1));
+  add(history, 1, attempt("biopsy-1", Level::kGuided, 1));
+  EXPECT_EQ(due(), date(1 + 3));
+  add(history, 1, attempt("biopsy-1", Level::kGuided, 4));
+  EXPECT_EQ(due(), date(4 + 7));
+  add(history, 1, attempt("biopsy-1", Level::kGuided, 20));  // late: from the day on which it was done
+  EXPECT_EQ(due(), date(20 + 7));                            // the last interval stays
+}
+
+TEST(Progress, APassBeforeItsDayDoesNotLengthenTheInterval) {
+  std::vector<PastAttempt> history;
+  add(history, 3, attempt("biopsy-1", Level::kGuided, 0));
+  add(history, 5, attempt("biopsy-1", Level::kGuided, 0));
+  EXPECT_EQ(step_of(history, "biopsy-1", Level::kGuided, 9).repetition->due, date(1));
+}
+
+TEST(Progress, AFailedRepetitionBeginsTheIntervalsAnew) {
+  std::vector<PastAttempt> history;
+  add(history, 3, attempt("biopsy-1", Level::kGuided, 0));
+  add(history, 1, attempt("biopsy-1", Level::kGuided, 1));
+  add(history, 1, attempt("biopsy-1", Level::kGuided, 4, 50.0, false));
+  const StepProgress step = step_of(history, "biopsy-1", Level::kGuided, 9);
+  EXPECT_TRUE(step.is_mastered);
+  EXPECT_EQ(step.repetition->due, date(5));
+  EXPECT_TRUE(step.repetition->has_failed);
+  add(history, 1, attempt("biopsy-1", Level::kGuided, 5));
+  EXPECT_EQ(step_of(history, "biopsy-1", Level::kGuided, 9).repetition->due, date(5 + 3));
+  EXPECT_FALSE(step_of(history, "biopsy-1", Level::kGuided, 9).repetition->has_failed);
+}
+
+TEST(Progress, OnlyTheLevelWithTheLeastHelpComesBack) {
+  std::vector<PastAttempt> history;
+  master(history, "biopsy-1", 0);
+  EXPECT_FALSE(step_of(history, "biopsy-1", Level::kGuided).repetition);
+  EXPECT_FALSE(step_of(history, "biopsy-1", Level::kAssisted).repetition);
+  EXPECT_TRUE(step_of(history, "biopsy-1", Level::kExam).repetition);
+  EXPECT_TRUE(step_of(history, "biopsy-1", Level::kGuided).is_mastered);
+}
+
+TEST(WeakestPart, HasTheLowestMeanShareOverTheLastAttempts) {
+  std::vector<PastAttempt> history;
+  const auto with = [](std::map<std::string, double, std::less<>> shares) {
+    PastAttempt one = attempt("biopsy-1", Level::kGuided, 0);
+    one.part_shares = std::move(shares);
+    return one;
+  };
+  add(history, 9, with({{"target", 0.0}}));  // older than the last five
+  add(history, 3, with({{"target", 0.9}, {"visibility", 0.5}}));
+  add(history, 2, with({{"target", 0.8}, {"visibility", 0.3}, {"time", 0.0}}));
+  const auto weakest = find_weakest_part(history, example_curriculum());
+  ASSERT_TRUE(weakest);
+  EXPECT_EQ(weakest->part, "visibility");  // the time was judged only twice
+  EXPECT_NEAR(weakest->share, (3 * 0.5 + 2 * 0.3) / 5, 1e-12);
+  EXPECT_EQ(weakest->attempts, 5);
+}
+
+TEST(WeakestPart, NeedsEnoughAttemptsOfKnownTasks) {
+  std::vector<PastAttempt> history;
+  PastAttempt one = attempt("biopsy-1", Level::kGuided, 0);
+  one.part_shares = {{"target", 0.1}};
+  add(history, 2, one);
+  one.task = "unknown";
+  add(history, 4, one);
+  EXPECT_FALSE(find_weakest_part(history, example_curriculum()));
+  EXPECT_FALSE(find_weakest_part({}, example_curriculum()));
+  one.task = "biopsy";
+  history.push_back(one);
+  EXPECT_TRUE(find_weakest_part(history, example_curriculum()));
+  EXPECT_FALSE(find_weakest_part(history, example_curriculum(), "tap"));
+}
+
+}  // namespace
+}  // namespace trocar::learning
