@@ -81,31 +81,35 @@ config::Json result_json(const Arguments& arguments, const cases::Case& the_case
   }
   config::Json hints = config::Json::array();
   for (const scoring::Hint& hint : outcome.hints) hints.push_back(hint.text);
-  config::Json json = {{"session", arguments.run.session.string()},
-                       {"task", the_case.task.name},
-                       {"patient", the_case.patient->name},
-                       {"patient_hash", the_case.patient->content_hash},
-                       {"patient_seed", arguments.run.patient_seed},
-                       {"seed", arguments.run.seed},
-                       {"needle", the_case.needle.name},
-                       {"force_model", result.force_model},
-                       {"operator", arguments.run.operator_name},
-                       {"device", arguments.run.device},
-                       {"parenchymal", the_case.is_parenchymal},
-                       {"simulated_s", result.simulated_s},
-                       {"active_s", result.active_s},
-                       {"ticks", result.ticks},
-                       {"ticks_hash", result.ticks_hash},
-                       {"score", outcome.is_scored() ? config::Json(outcome.score) : config::Json(nullptr)},
-                       {"not_scored", outcome.is_scored() ? config::Json(nullptr) : config::Json(outcome.not_scored)},
-                       {"target_reached", outcome.target_reached},
-                       {"passed", outcome.is_passed},
-                       {"fails", outcome.fails},
-                       {"parts", storage::parts_json(outcome.parts)},
-                       {"punctures", punctures},
-                       {"risks_touched", outcome.risks_touched},
-                       {"core", outcome.core ? storage::core_json(*outcome.core) : config::Json(nullptr)},
-                       {"hints", hints}};
+  const scoring::BiopsyCore* const best = outcome.best_core();
+  config::Json json = {
+      {"session", arguments.run.session.string()},
+      {"task", the_case.task.name},
+      {"patient", the_case.patient->name},
+      {"patient_hash", the_case.patient->content_hash},
+      {"patient_seed", arguments.run.patient_seed},
+      {"seed", arguments.run.seed},
+      {"needle", the_case.needle.name},
+      {"force_model", result.force_model},
+      {"operator", arguments.run.operator_name},
+      {"device", arguments.run.device},
+      {"parenchymal", the_case.is_parenchymal},
+      {"simulated_s", result.simulated_s},
+      {"active_s", result.active_s},
+      {"ticks", result.ticks},
+      {"ticks_hash", result.ticks_hash},
+      {"score", outcome.is_scored() ? config::Json(outcome.score) : config::Json(nullptr)},
+      {"not_scored", outcome.is_scored() ? config::Json(nullptr) : config::Json(outcome.not_scored)},
+      {"target_reached", outcome.target_reached},
+      {"passed", outcome.is_passed},
+      {"fails", outcome.fails},
+      {"parts", storage::parts_json(outcome.parts)},
+      {"punctures", punctures},
+      {"risks_touched", outcome.risks_touched},
+      {"core", best != nullptr ? storage::core_json(*best) : config::Json(nullptr)},
+      {"cores", storage::cores_json(outcome.cores)},
+      {"bleeding", outcome.bleeding ? storage::bleeding_json(*outcome.bleeding) : config::Json(nullptr)},
+      {"hints", hints}};
   if (const auto same = has_same_ticks(arguments.run, result)) json["same_ticks_as_session"] = *same;
   if (arguments.is_realtime) {
     json["ticks_missing"] = result.ticks_missing;
@@ -119,7 +123,7 @@ void print_part(const scoring::ScorePart& part) {
   if (scoring::is_deduction(part)) {
     fmt::print("  {:<44} {:>13} {:>6.1f} points\n", part.title, "", part.points);
   } else {
-    fmt::print("  {:<44} {:>8.2f} {:<4} {:>6.1f} of {:.0f} points\n", part.title, part.value, part.unit, part.points,
+    fmt::print("  {:<44} {:>8.2f} {:<4} {:>6.1f} of {:.1f} points\n", part.title, part.value, part.unit, part.points,
                part.max_points);
   }
 }
@@ -134,11 +138,12 @@ void print_result(const Arguments& arguments, const cases::Case& the_case, const
     fmt::print("  puncture of {:<16} at {:6.2f} s, {:5.1f} mm deep, {:.2f} N\n", p.layer, p.time_s, p.depth_mm,
                p.peak_n);
   }
-  if (outcome.core) {
-    const scoring::BiopsyCore& core = *outcome.core;
+  for (const scoring::BiopsyCore& core : outcome.cores)
     fmt::print("  core: {:.1f} mm target, {:.1f} mm organ, {:.1f} mm vessel, {:.1f} mm other\n", core.target_mm,
                core.organ_mm, core.vessel_mm, core.other_mm);
-  }
+  if (outcome.bleeding)
+    fmt::print("risk of bleeding: {}{}{}\n", to_string(outcome.bleeding->risk),
+               outcome.bleeding->reasons.empty() ? "" : ", ", fmt::join(outcome.bleeding->reasons, "; "));
   if (outcome.is_scored()) {
     fmt::print("score {:.0f} of 100, target {}: {}\n", outcome.score, outcome.target_reached ? "reached" : "missed",
                outcome.is_passed ? "passed" : fmt::format("not passed ({})", fmt::join(outcome.fails, "; ")));

@@ -145,7 +145,7 @@ TEST_F(EmbeddedBiopsy, ReplayAppliesChangesAtTheirTick) {
     parameters.settings = {"skin.fp=6"};
     parameters.tissue_table_toml = tougher.to_toml();
     ASSERT_TRUE(writer->append(parameters));
-    ASSERT_TRUE(writer->finish(expert->result.outcome, expert->session.fired));
+    ASSERT_TRUE(writer->finish(expert->result.outcome, expert->session.shots));
   }
   const Attempt replay = perform(*the_case, "replay:" + file.string());
   ASSERT_FALSE(replay.result.punctures.empty());

@@ -31,7 +31,7 @@ TEST_F(LiveAttemptTest, ADiskThatIsFullAtOnceLosesNoScoreAndSaysWhatTheFileLacks
   start(options());
   ASSERT_TRUE(wait_phase(attempt::AttemptPhase::kReady)) << where();
   attempt->perform(expert());
-  ASSERT_TRUE(wait_for([&] { return attempt->view().has_fired; })) << where();
+  ASSERT_TRUE(wait_for([&] { return attempt->view().shots > 0; })) << where();
   std::optional<attempt::RunResult> result;
   {
     const FullDisk full(100'000);

@@ -34,7 +34,7 @@ TEST_F(LiveAttemptTest, ExpertReachesTheTarget) {
   EXPECT_EQ(inside.servers[0].tool, "needle");
   EXPECT_GT(inside.servers[0].pid, 0);
   EXPECT_GT(inside.servers[1].wanted_hz, 0.0);
-  ASSERT_TRUE(wait_for([&] { return attempt->view().has_fired; }));
+  ASSERT_TRUE(wait_for([&] { return attempt->view().shots > 0; }));
   ASSERT_TRUE(wait_for([&] { return !attempt->view().is_performing; }));
   attempt->finish();
   const attempt::RunResult result = finished();

@@ -109,7 +109,7 @@ void AttemptControl::connect_panel() {
   connect(&panel, &PuncturePanel::tool_requested, this, &AttemptControl::take);
   connect(&panel, &PuncturePanel::clamp_requested, this, &AttemptControl::toggle_clamp);
   connect(&panel, &PuncturePanel::aim_requested, this, &AttemptControl::aim);
-  connect(&panel, &PuncturePanel::fire_requested, this, [this] { attempt_.fire(); });
+  connect(&panel, &PuncturePanel::fire_requested, this, &AttemptControl::fire);
   connect(&panel, &PuncturePanel::end_requested, this, &AttemptControl::ask_to_end);
   connect(&panel, &PuncturePanel::confirmed, this,
           [this] { question_ == Question::kEnd ? attempt_.finish() : Q_EMIT close_confirmed(); });
@@ -128,10 +128,8 @@ void AttemptControl::take(ActiveTool tool) {
 }
 
 bool AttemptControl::take_key(const QKeyEvent& key, const KeyPlace& place) {
-  const auto action = action_of(key.key());
+  const auto action = action_of(key.key(), actions_of(open_->the_case.task, open_->the_case.needle));
   if (action && key.modifiers() == Qt::NoModifier && !place.is_text && !place.is_aside) {
-    const std::vector<TraineeAction> actions = actions_of(open_->the_case.task, open_->the_case.needle);
-    if (std::find(actions.begin(), actions.end(), *action) == actions.end()) return false;
     if (!key.isAutoRepeat()) act(*action);
     return true;
   }
@@ -146,7 +144,7 @@ void AttemptControl::handle_key(int key) {
   if (key == Qt::Key_H) aim();
   if (key == Qt::Key_X) toggle_clamp();
   if (key == Qt::Key_E) ask_to_end();
-  if (key == Qt::Key_Return || key == Qt::Key_Enter) attempt_.fire();
+  if (key == Qt::Key_Return || key == Qt::Key_Enter) fire();
 }
 
 void AttemptControl::ask_to_end() {
@@ -218,6 +216,11 @@ void AttemptControl::show_notice(const QString& text) {
   is_notice_result_ = false;
 }
 
+void AttemptControl::fire() {
+  if (!view_.is_gun_loaded) return show_notice(tr("The gun is empty: take the core out and load it (Y)."));
+  attempt_.act({tasks::ActionKind::kFire});
+}
+
 void AttemptControl::act(TraineeAction action) {
   const ActionState state = action_state();
   if (const QString reason = why_not(action, state, open_->the_case.needle); !reason.isEmpty())
@@ -230,7 +233,8 @@ void AttemptControl::act(TraineeAction action) {
 
 ActionState AttemptControl::action_state() const {
   const bool can_act = view_.phase == attempt::AttemptPhase::kReady || view_.phase == attempt::AttemptPhase::kInBody;
-  return {view_.is_stylet_drawn, view_.is_breath_held, wire_mm_, can_act};
+  return {view_.is_stylet_drawn, view_.is_breath_held,        wire_mm_, can_act,
+          view_.is_gun_loaded,   view_.needle.depth_mm <= 0.0};
 }
 
 void AttemptControl::toggle_clamp() {
@@ -296,8 +300,8 @@ void AttemptControl::poll_events() {
 }
 
 void AttemptControl::poll_shot() {
-  if (!view_.shot || has_shown_shot_) return;
-  has_shown_shot_ = true;
+  if (!view_.shot || view_.shots == shown_shots_) return;
+  shown_shots_ = view_.shots;
   if (!is_exam()) page_.puncture().show_core(*view_.shot);  // in an exam its composition would reveal the solution
   page_.forces().add_event(view_.shot->depth_mm, view_.shot->time_s, tr("shot"));
   Q_EMIT gun_fired();
@@ -324,9 +328,9 @@ void AttemptControl::show_tools(double dt_s) {
   const bool is_moving = std::abs(needle.speed_mm_s) > kMoving_mm_s || tools.goal_P.has_value();
   still_s_ = is_moving ? 0.0 : still_s_ + dt_s;
   tools.are_moving = still_s_ < kStill_s;
-  if (!is_exam() && needle.is_known && view_.phase == attempt::AttemptPhase::kInBody && !view_.has_fired)
+  if (!is_exam() && needle.is_known && view_.phase == attempt::AttemptPhase::kInBody && view_.is_gun_loaded)
     show_throw(tools, open_->the_case.needle);
-  if (view_.shot) show_shot(tools, *view_.shot, view_.since_shot_s, needle.depth_mm);
+  if (view_.shot && !view_.is_gun_loaded) show_shot(tools, *view_.shot, view_.since_shot_s, needle.depth_mm);
   page_.workspace().show_tools(tools);
   if (tasks::XrayUse use = page_.xray().use(); use != xray_) attempt_.note_xray(xray_ = use);
 }
@@ -353,7 +357,7 @@ void AttemptControl::show_panel() {
   figures.time_s = view_.session_s;
   figures.since_contact_s = view_.since_contact_s;
   figures.can_fire =
-      open_->the_case.needle.is_biopsy && !view_.has_fired && view_.phase == attempt::AttemptPhase::kInBody;
+      open_->the_case.needle.is_biopsy && view_.is_gun_loaded && view_.phase == attempt::AttemptPhase::kInBody;
   figures.actions = action_state();
   figures.is_hint_notice = is_notice_result_ && notice_s_ > 0.0;
   figures.is_clamped[0] = is_clamped_[0];
@@ -404,7 +408,8 @@ QVariantMap AttemptControl::facts() const {
   facts[QStringLiteral("force_n")] = view_.needle.resistance_n;
   facts[QStringLiteral("lag_mm")] = view_.needle.lag_mm;
   facts[QStringLiteral("hint")] = hint();
-  facts[QStringLiteral("has_fired")] = view_.has_fired;
+  facts[QStringLiteral("has_fired")] = view_.shots > 0;
+  facts[QStringLiteral("cores")] = static_cast<int>(view_.shots);
   facts[QStringLiteral("probe_pressed_mm")] = view_.probe.pressed_mm;
   facts[QStringLiteral("probe_force_n")] = view_.probe.contact_n;
   facts[QStringLiteral("probe_up_mm")] = -view_.probe.X_PT.p().y();

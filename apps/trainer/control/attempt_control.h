@@ -54,6 +54,7 @@ class AttemptControl : public QObject {
   void take(ActiveTool tool);
   void aim();
   void toggle_clamp();
+  void fire();
   void act(TraineeAction action);
   ActionState action_state() const;
   QString hint() const;
@@ -85,7 +86,7 @@ class AttemptControl : public QObject {
   bool is_clamped_[2] = {false, false};  ///< Indexed by Tool.
   attempt::AttemptView view_;
   tasks::XrayUse xray_;  ///< As noted last.
-  bool has_shown_shot_ = false;
+  std::size_t shown_shots_ = 0;
   double still_s_ = 0.0;
   Question question_ = Question::kEnd;  ///< The last question.
   QString notice_;

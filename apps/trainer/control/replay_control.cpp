@@ -97,7 +97,7 @@ ReplayControl::ReplayControl(attempt::AttemptReplay replay, std::shared_ptr<cons
     worst = tr("Worst moment: %1, after %2 s").arg(to_qt(moment->text)).arg(moment->time_s, 0, 'f', 1);
   page_.feedback().show_outcome(replay_.outcome(), worst);
   page_.feedback().show_level(level_title(replay_.session().info.level));
-  page_.feedback().show_core(replay_.shot() ? &*replay_.shot() : nullptr);
+  page_.feedback().show_cores(replay_.shots());
   page_.feedback().show_notes(notes_of(replay_, warnings));
   page_.workspace().show_help(
       Difficulty::kGuided);  // after the attempt the expert's path is visible at every level of help
@@ -198,7 +198,7 @@ void ReplayControl::show_at(double time_s, bool is_moving) {
   tools.focus_P = sample.depth_mm > 0.0 ? sample.tip_mm : open_->the_case.plan.line_P.b;
   tools.X_PT = transducer_at(time_s);
   tools.are_moving = is_moving;
-  if (const auto& shot = replay_.shot(); shot && time_s >= shot->time_s)
+  if (const attempt::GunShot* const shot = replay_.shot_at(time_s))
     show_shot(tools, *shot, time_s - shot->time_s, sample.depth_mm);
   page_.workspace().show_tools(tools);
   show_xray(time_s);

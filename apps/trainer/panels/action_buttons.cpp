@@ -27,6 +27,8 @@ const char* name_of(TraineeAction action) {
       return "action-wire";
     case TraineeAction::kBreath:
       return "action-breath";
+    case TraineeAction::kLoad:
+      return "action-load";
   }
   return "";
 }
@@ -43,6 +45,8 @@ QString text_of(TraineeAction action, const ActionState& state) {
       return state.wire_mm > 0.0 ? ActionButtons::tr("Wire further") : ActionButtons::tr("Guide wire");
     case TraineeAction::kBreath:
       return state.is_breath_held ? ActionButtons::tr("Breathe") : ActionButtons::tr("Hold breath");
+    case TraineeAction::kLoad:
+      return ActionButtons::tr("Load the gun");
   }
   return {};
 }
@@ -61,6 +65,8 @@ QString tooltip_of(TraineeAction action, const ActionState& state) {
     case TraineeAction::kBreath:
       return state.is_breath_held ? ActionButtons::tr("Let the patient breathe again")
                                   : ActionButtons::tr("Ask the patient to hold the breath");
+    case TraineeAction::kLoad:
+      return ActionButtons::tr("Take the core out and load the gun again");
   }
   return {};
 }
@@ -82,10 +88,12 @@ std::vector<TraineeAction> actions_of(const tasks::Task& task, const tasks::Need
   if (!needle.is_biopsy && needle.inner_diameter_mm > 0.0) actions.push_back(TraineeAction::kAspirate);
   if (asks_for(task, tasks::ConditionKind::kWire)) actions.push_back(TraineeAction::kWire);
   if (asks_for(task, tasks::ConditionKind::kBreathHeld)) actions.push_back(TraineeAction::kBreath);
+  if (needle.is_biopsy) actions.push_back(TraineeAction::kLoad);
   return actions;
 }
 
-/// Letters that no view uses: N as in numb, Y as in stylet, Q as in aspirate (syringe), W as in wire, U.
+/// Letters that no view uses: N as in numb, Y as in stylet (and the gun's), Q as in aspirate (syringe), W as in wire,
+/// U.
 Qt::Key key_of(TraineeAction action) noexcept {
   switch (action) {
     case TraineeAction::kAnaesthetic:
@@ -98,12 +106,14 @@ Qt::Key key_of(TraineeAction action) noexcept {
       return Qt::Key_W;
     case TraineeAction::kBreath:
       return Qt::Key_U;
+    case TraineeAction::kLoad:
+      return Qt::Key_Y;
   }
   return Qt::Key_unknown;
 }
 
-std::optional<TraineeAction> action_of(int key) noexcept {
-  for (const TraineeAction action : kTraineeActions)
+std::optional<TraineeAction> action_of(int key, const std::vector<TraineeAction>& actions) noexcept {
+  for (const TraineeAction action : actions)
     if (key_of(action) == key) return action;
   return std::nullopt;
 }
@@ -120,6 +130,8 @@ tasks::ActionRequest request_of(TraineeAction action, const ActionState& state) 
       return {tasks::ActionKind::kAdvanceWire, state.wire_mm + kWireStep_mm};
     case TraineeAction::kBreath:
       return {state.is_breath_held ? tasks::ActionKind::kBreathe : tasks::ActionKind::kHoldBreath};
+    case TraineeAction::kLoad:
+      return {tasks::ActionKind::kLoad};
   }
   return {};
 }
@@ -129,6 +141,10 @@ QString why_not(TraineeAction action, const ActionState& state, const tasks::Nee
   const bool needs_bore = action == TraineeAction::kAspirate || action == TraineeAction::kWire;
   if (needs_bore && needle.stylet_diameter_mm > 0.0 && !state.is_stylet_drawn)
     return ActionButtons::tr("Draw the stylet first (Y).");
+  if (action != TraineeAction::kLoad) return {};
+  if (state.is_gun_loaded) return ActionButtons::tr("The gun is loaded.");
+  if (!needle.is_coaxial && !state.is_outside)
+    return ActionButtons::tr("Withdraw the needle first: without a coaxial needle the gun is loaded outside.");
   return {};
 }
 

@@ -1,19 +1,23 @@
 #pragma once
 
 #include <QWidget>
+#include <span>
 #include <vector>
 
 #include "attempt/guide/gun_shot.h"
 
+class QPainter;
+
 namespace trocar::trainer {
 
-/// The core of a biopsy shot, to scale: target tissue, organ, vessel and other tissue by colour, with their lengths.
+/// The cores of biopsy shots, to scale, one bar each: target tissue, organ, vessel and other tissue by colour, with
+/// their lengths in all cores.
 class CorePicture : public QWidget {
   Q_OBJECT
 
  public:
   explicit CorePicture(QWidget* parent = nullptr);
-  void set_shot(const attempt::GunShot& shot);
+  void set_shots(std::span<const attempt::GunShot> shots);
 
   QSize sizeHint() const override;
   QSize minimumSizeHint() const override { return sizeHint(); }
@@ -29,8 +33,9 @@ class CorePicture : public QWidget {
     QString text;
   };
   int bar_height() const;
+  void paint_bar(QPainter& painter, const std::vector<attempt::ShotPiece>& pieces, int top) const;
 
-  std::vector<attempt::ShotPiece> pieces_;
+  std::vector<std::vector<attempt::ShotPiece>> cores_;
   std::vector<Entry> legend_;  ///< Entries of the parts in the core.
 };
 

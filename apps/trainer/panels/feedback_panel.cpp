@@ -39,12 +39,25 @@ QString reasons_of(const scoring::Outcome& outcome) {
   return reasons.join(QStringLiteral("\n"));
 }
 
-QString core_text(const scoring::BiopsyCore& core) {
-  return FeedbackPanel::tr("Core: %1 mm of target, %2 mm of organ, %3 mm of vessel, %4 mm of other tissue")
-      .arg(core.target_mm, 0, 'f', 1)
-      .arg(core.organ_mm, 0, 'f', 1)
-      .arg(core.vessel_mm, 0, 'f', 1)
-      .arg(core.other_mm, 0, 'f', 1);
+/// Target tissue of each core: "Target tissue in the cores: 15.2 mm, 16.0 mm".
+QString cores_text(const std::vector<scoring::BiopsyCore>& cores) {
+  QStringList lengths;
+  for (const scoring::BiopsyCore& core : cores) lengths << FeedbackPanel::tr("%1 mm").arg(core.target_mm, 0, 'f', 1);
+  return (cores.size() == 1 ? FeedbackPanel::tr("Target tissue in the core: %1")
+                            : FeedbackPanel::tr("Target tissue in the cores: %1"))
+      .arg(lengths.join(QStringLiteral(", ")));
+}
+
+/// Risk of bleeding and painful moments, a line each.
+QString harm_text(const scoring::Outcome& outcome) {
+  QStringList lines;
+  if (outcome.bleeding) {
+    QString line = FeedbackPanel::tr("Risk of bleeding: %1").arg(QLatin1String(to_string(outcome.bleeding->risk)));
+    for (const std::string& reason : outcome.bleeding->reasons) line += QStringLiteral("; ") + to_qt(reason);
+    lines << line;
+  }
+  if (outcome.pain_events > 0) lines << FeedbackPanel::tr("Painful moments: %1").arg(outcome.pain_events);
+  return lines.join(QLatin1Char('\n'));
 }
 
 void clear(QGridLayout& grid) {
@@ -101,6 +114,10 @@ FeedbackPanel::FeedbackPanel(QWidget* parent) : QWidget(parent) {
   core_ = make_label({}, "dim");
   core_->setWordWrap(true);
   content->addWidget(core_);
+  harm_ = make_label({}, "dim");
+  harm_->setObjectName(QStringLiteral("harm"));
+  harm_->setWordWrap(true);
+  content->addWidget(harm_);
   content->addWidget(make_label(tr("Improvements"), "heading"));
   hints_ = new HintList;
   content->addWidget(hints_);
@@ -179,8 +196,10 @@ void FeedbackPanel::show_outcome(const scoring::Outcome& outcome, const QString&
   show_verdict(outcome);
   show_parts(outcome.parts);
   hints_->show_hints(outcome.hints);
-  core_->setText(outcome.core ? core_text(*outcome.core) : QString());
-  core_->setVisible(outcome.core.has_value());
+  core_->setText(cores_text(outcome.cores));
+  core_->setVisible(!outcome.cores.empty());
+  harm_->setText(harm_text(outcome));
+  harm_->setVisible(!harm_->text().isEmpty());
   worst_->setText(worst_moment);
   worst_->setVisible(!worst_moment.isEmpty());
   worst_button_->setEnabled(!worst_moment.isEmpty());
@@ -192,9 +211,9 @@ void FeedbackPanel::show_level(const QString& level) {
   level_->setVisible(!level.isEmpty());
 }
 
-void FeedbackPanel::show_core(const attempt::GunShot* shot) {
-  core_picture_->setVisible(shot != nullptr);
-  if (shot != nullptr) core_picture_->set_shot(*shot);
+void FeedbackPanel::show_cores(std::span<const attempt::GunShot> shots) {
+  core_picture_->setVisible(!shots.empty());
+  core_picture_->set_shots(shots);
 }
 
 void FeedbackPanel::show_notes(const QStringList& notes) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <QWidget>
+#include <span>
 
 #include "scoring/score.h"
 
@@ -32,8 +33,8 @@ class FeedbackPanel : public QWidget {
   void show_outcome(const scoring::Outcome& outcome, const QString& worst_moment);
   /// Shows the level of help of the attempt beside the score; empty: unknown.
   void show_level(const QString& level);
-  /// Shows the image of the core; null: the gun was not fired.
-  void show_core(const attempt::GunShot* shot);
+  /// Shows the image of the cores; empty: the gun was not fired.
+  void show_cores(std::span<const attempt::GunShot> shots);
   /// Events during the attempt: warnings, interruptions, changed parameters. One line each.
   void show_notes(const QStringList& notes);
   HintList& hints() noexcept { return *hints_; }
@@ -58,6 +59,7 @@ class FeedbackPanel : public QWidget {
   QLabel* reasons_ = nullptr;
   HintList* hints_ = nullptr;
   QLabel* core_ = nullptr;
+  QLabel* harm_ = nullptr;
   CorePicture* core_picture_ = nullptr;
   QLabel* worst_ = nullptr;
   QLabel* notes_ = nullptr;

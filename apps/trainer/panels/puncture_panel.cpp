@@ -174,7 +174,7 @@ QWidget* PuncturePanel::make_question() {
 }
 
 void PuncturePanel::show_core(const attempt::GunShot& shot) {
-  core_->set_shot(shot);
+  core_->set_shots({&shot, 1});
   core_->show();
 }
 

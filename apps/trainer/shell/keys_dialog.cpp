@@ -28,7 +28,7 @@ constexpr Key kTools[] = {
     {"X", "locks or unlocks the active tool"},
     {"Enter", "fires the biopsy gun"},
     {"N", "local anaesthetic"},
-    {"Y", "draws the stylet, or puts it back"},
+    {"Y", "draws the stylet, or puts it back; takes the core out and loads the gun"},
     {"Q", "aspirates"},
     {"W", "advances the guide wire"},
     {"U", "the patient holds the breath, or breathes again"},

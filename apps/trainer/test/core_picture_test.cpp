@@ -26,7 +26,7 @@ TEST(CorePicture, ShowsEachPartToScale) {
                  {scoring::CorePart::kTarget, "liver_lesion", 4.0, 14.0},
                  {scoring::CorePart::kVessel, "portal_vein", 14.0, 16.0}};
   CorePicture picture;
-  picture.set_shot(shot);
+  picture.set_shots({&shot, 1});
   picture.resize(320, picture.sizeHint().height());
   picture.show();
   EXPECT_NEAR(share_of(picture, scoring::CorePart::kOrgan), 4.0 / 16.0, 0.02);
@@ -39,7 +39,8 @@ TEST(CorePicture, ShowsEachPartToScale) {
 
 TEST(CorePicture, SaysThatANotchIsEmpty) {
   CorePicture picture;
-  picture.set_shot({});
+  const attempt::GunShot empty;
+  picture.set_shots({&empty, 1});
   picture.resize(200, picture.sizeHint().height());
   picture.show();
   EXPECT_EQ(share_of(picture, scoring::CorePart::kTarget), 0.0);

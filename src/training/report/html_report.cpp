@@ -26,6 +26,7 @@ std::string html_report(const storage::Session& session, const anatomy::VirtualP
     page += "<section class=\"together\"><h2>The path</h2>" + path_figure(session, patient) + "</section>";
   }
   page += core_section(session);
+  page += bleeding_section(session);
   page += case_section(session);
   page += "<footer>Made by Trocar " + escape(session.info.program_version) +
           ", a training simulator and not a medical device. Lengths in mm, forces in N.</footer>";

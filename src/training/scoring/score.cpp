@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numeric>
 
 #include "anatomy/structure_words.h"
 #include "scoring/detail/hints.h"
@@ -16,12 +18,16 @@ constexpr double kEnoughCore = 0.5;         // share of the maximum that counts 
 constexpr double kLesionReach = 2.0;        // a core with lesion counts up to this multiple of the target tolerance
 constexpr double kPainTolerance = 1.0;      // pain events that halve the points of the comfort
 constexpr double kOrganTolerance_mm = 5.0;  // missing organ on the way that halves the points of the access
+constexpr double kPassTolerance = 1.0;      // needless punctures of the organ that halve the points of the passes
 constexpr double kSlowReturn = 0.7;         // share of the points for single drops: the bevel is only partly in it
+
+constexpr const char* kBleedingNames[] = {"usual", "raised", "high"};
 
 constexpr std::pair<std::string_view, std::string_view> kTitles[] = {
     {"target", "Distance to the target"},
     {"confirmation", "Proof of the place"},
-    {"core", "Target tissue in the core"},
+    {"core", "Target tissue in the cores"},
+    {"passes", "Punctures of the organ beyond those needed"},
     {"risk", "Structures at risk touched"},
     {"access", "Missing margin to structures at risk"},
     {"entry", "Insertion point"},
@@ -53,9 +59,31 @@ struct PartShare {
   std::optional<double> share;
 };
 
-double core_share(const Judgement& judged) noexcept {
-  return judged.core && judged.possible_core_mm > 0.0 ? std::min(1.0, judged.core->target_mm / judged.possible_core_mm)
-                                                      : 0.0;
+/// Share of a core's target tissue in what was possible, 0..1.
+double core_share(const Judgement& judged, const BiopsyCore& core) noexcept {
+  return judged.possible_core_mm > 0.0 ? std::min(1.0, core.target_mm / judged.possible_core_mm) : 0.0;
+}
+
+/// Of the task's number of cores, the best ones.
+double cores_share(const Judgement& judged) {
+  std::vector<double> shares;
+  for (const BiopsyCore& core : judged.cores) shares.push_back(core_share(judged, core));
+  std::sort(shares.begin(), shares.end(), std::greater<>());
+  shares.resize(judged.attempt.task.cores);
+  return std::accumulate(shares.begin(), shares.end(), 0.0) / static_cast<double>(shares.size());
+}
+
+double target_in_cores_mm(const Judgement& judged) noexcept {
+  double sum_mm = 0.0;
+  for (const BiopsyCore& core : judged.cores) sum_mm += core.target_mm;
+  return sum_mm;
+}
+
+/// Punctures of the organ that another way would have saved: a coaxial needle passes its surface once for all cores.
+double needless_passes(const Judgement& judged) noexcept {
+  const std::size_t needed = judged.attempt.needle.is_coaxial ? 1 : judged.attempt.task.cores;
+  const std::size_t passes = judged.bleeding->passes;
+  return passes > needed ? static_cast<double>(passes - needed) : 0.0;
 }
 
 double access_share(const Judgement& judged) noexcept {
@@ -79,21 +107,23 @@ std::vector<PartShare> all_parts(const Judgement& judged, double risk_weight) {
   const tasks::Task& task = judged.attempt.task;
   const metrics::AttemptMetrics& measured = judged.measured;
   const bool is_biopsy = judged.attempt.needle.is_biopsy;
-  const bool is_finished = judged.core || !is_biopsy;
+  const bool is_finished = !judged.cores.empty() || !is_biopsy;
   const double length_mm = judged.expert.line_P.length_mm();
   const auto risks = static_cast<double>(measured.risks.size() + judged.stylet_risks.size());
   const double dose_gycm2 = judged.attempt.xray.dose_area_gycm2;
   std::optional<double> core;
-  if (is_biopsy) core = core_share(judged);
+  if (is_biopsy) core = cores_share(judged);
   const double safe = risk_weight > 0.0 ? std::max(0.0, 1.0 - judged.risk_penalty / risk_weight) : 1.0;
   const double time = is_finished ? share_below(measured.time_s, task.time_limit_s) : 0.0;
   std::optional<double> dose;  // without X-ray there is nothing to judge
   if (judged.attempt.xray.beam_s > 0.0) dose = is_finished ? share_below(dose_gycm2, task.dose_limit_gycm2) : 0.0;
   const auto pain = static_cast<double>(judged.pain.size());
+  std::optional<double> passes;
+  if (judged.bleeding) passes = needless_passes(judged);
   return {
       {"target", judged.target_mm, "mm", share_at(judged.target_mm, task.target_tolerance_mm)},
       {"confirmation", judged.confirmed_s ? 1.0 : 0.0, "", confirmation_share(judged)},
-      {"core", judged.core ? judged.core->target_mm : 0.0, "mm", core},
+      {"core", target_in_cores_mm(judged), "mm", core},
       {"risk", risks, "", safe},
       {"access", judged.access.missing_margin_mm, "mm", access_share(judged)},
       {"entry", judged.entry_mm, "mm", share_at(judged.entry_mm, task.entry_tolerance_mm)},
@@ -103,6 +133,7 @@ std::vector<PartShare> all_parts(const Judgement& judged, double risk_weight) {
       {"length", measured.travel_mm, "mm", share_below(std::max(0.0, measured.travel_mm - length_mm), length_mm)},
       {"time", measured.time_s, "s", time},
       {"dose", dose_gycm2, "Gy cm²", dose},
+      {"passes", passes.value_or(0.0), "", passes ? std::optional(share_at(*passes, kPassTolerance)) : std::nullopt},
   };
 }
 
@@ -131,18 +162,19 @@ std::vector<ScorePart> parts_of(const Judgement& judged) {
 /// position.
 bool has_reached_target(const Judgement& judged) noexcept {
   const tasks::Task& task = judged.attempt.task;
-  if (!judged.measured.has_entered || (judged.attempt.needle.is_biopsy && !judged.core)) return false;
+  if (!judged.measured.has_entered || (judged.attempt.needle.is_biopsy && judged.cores.empty())) return false;
   if (task.confirmed_by != tasks::Substance::kNothing && !judged.confirmed_s) return false;
   if (judged.target_mm <= task.target_tolerance_mm) return true;
-  return judged.core && !judged.is_parenchymal && core_share(judged) >= kEnoughCore &&
-         judged.target_mm <= kLesionReach * task.target_tolerance_mm;
+  const bool has_lesion = std::any_of(judged.cores.begin(), judged.cores.end(),
+                                      [&](const BiopsyCore& core) { return core_share(judged, core) >= kEnoughCore; });
+  return has_lesion && !judged.is_parenchymal && judged.target_mm <= kLesionReach * task.target_tolerance_mm;
 }
 
 /// Empty: it can be scored.
 std::string why_not_scored(const Judgement& judged) {
   if (!judged.measured.has_touched_skin) return "the needle never touched the skin";
   if (!judged.measured.has_entered) return "the needle did not pierce the skin";
-  if (judged.attempt.needle.is_biopsy && !judged.attempt.fired) return "the gun was not fired";
+  if (judged.attempt.needle.is_biopsy && judged.attempt.shots.empty()) return "the gun was not fired";
   return {};
 }
 
@@ -162,6 +194,22 @@ std::vector<std::string> find_fails(const Judgement& judged, const Outcome& outc
 
 }  // namespace
 
+const char* to_string(BleedingRisk risk) noexcept {
+  return kBleedingNames[static_cast<std::size_t>(risk)];
+}
+
+std::optional<BleedingRisk> find_bleeding_risk(std::string_view name) noexcept {
+  const auto found = std::find(std::begin(kBleedingNames), std::end(kBleedingNames), name);
+  if (found == std::end(kBleedingNames)) return std::nullopt;
+  return static_cast<BleedingRisk>(found - std::begin(kBleedingNames));
+}
+
+const BiopsyCore* Outcome::best_core() const noexcept {
+  const auto best = std::max_element(
+      cores.begin(), cores.end(), [](const BiopsyCore& a, const BiopsyCore& b) { return a.target_mm < b.target_mm; });
+  return best != cores.end() ? &*best : nullptr;
+}
+
 std::string_view part_title(std::string_view part) noexcept {
   for (const auto& [name, title] : kTitles)
     if (name == part) return title;
@@ -170,11 +218,13 @@ std::string_view part_title(std::string_view part) noexcept {
 
 Outcome score_attempt(const AttemptData& given) {
   AttemptData attempt = given;
-  if (attempt.fired && *attempt.fired >= attempt.samples.size()) attempt.fired.reset();
+  while (!attempt.shots.empty() && attempt.shots.back() >= attempt.samples.size())
+    attempt.shots = attempt.shots.first(attempt.shots.size() - 1);
   Outcome outcome;
   const Judgement judged = judge(attempt, outcome.expert);
   outcome.not_scored = why_not_scored(judged);
-  outcome.core = judged.core;
+  outcome.cores = judged.cores;
+  outcome.bleeding = judged.bleeding;
   outcome.pain_events = judged.pain.size();
   for (const auto* touches : {&judged.measured.risks, &judged.stylet_risks})
     for (const metrics::RiskTouch& touch : *touches) outcome.risks_touched.push_back(touch.label);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -37,6 +38,18 @@ struct BiopsyCore {
   double vessel_mm = 0.0;
   double other_mm = 0.0;
   std::vector<std::string> risks_in_throw;  ///< Risk structures over the whole throw, by label name.
+  double time_s = 0.0;                      ///< Session time of the shot; 0 in a session of an older program.
+};
+
+/// Likelihood that a puncture of an organ bleeds, by what the attempt shows; see docs/tasks.md. [assumed grades]
+enum class BleedingRisk : std::uint8_t { kUsual, kRaised, kHigh };
+const char* to_string(BleedingRisk risk) noexcept;
+std::optional<BleedingRisk> find_bleeding_risk(std::string_view name) noexcept;
+
+struct Bleeding {
+  BleedingRisk risk = BleedingRisk::kUsual;
+  std::vector<std::string> reasons;  ///< "the organ was punctured 4 times"; empty with kUsual.
+  std::size_t passes = 0;            ///< Punctures of the organ's surface from outside.
 };
 
 /// Display text of one of tasks::kScoreParts: "Needle direction"; empty for another name.
@@ -67,8 +80,10 @@ struct Hint {
 /// max_points/(1 + (d/t)^2); an expense e (length, time, dose) with limit l is worth max_points*(1 - (e/l)^2), 0 from l
 /// on; docs/physics.md, S1. Smaller is never worse. No part is negative; the parts' points add up to the score, within
 /// 0..100. A part that cannot be judged (no core without a biopsy needle, no visibility without a transducer) is left
-/// out, and the others count more in proportion. The weights are the task's. An attempt that never pierced the skin,
-/// and a biopsy without a shot, have no end position and are not scored.
+/// out, and the others count more in proportion. Several cores are worth
+/// their target tissue together against that of the task's number of cores; the end of the attempt is the first shot.
+/// The weights are the task's. An attempt that never pierced the skin, and a biopsy without a shot, have no end
+/// position and are not scored.
 struct Outcome {
   /// Reason why it is not scored; then the score is 0 and there are no parts. Empty: it is scored.
   std::string not_scored;
@@ -80,14 +95,17 @@ struct Outcome {
   bool is_passed = false;          ///< `fails` is empty and it is scored.
   std::vector<std::string> fails;  ///< Reasons why it is not passed: "the lung was touched".
   std::vector<ScorePart> parts;
-  std::vector<Hint> hints;  ///< Advice for improvement, most important first.
-  std::optional<BiopsyCore> core;
+  std::vector<Hint> hints;           ///< Advice for improvement, most important first.
+  std::vector<BiopsyCore> cores;     ///< By time.
+  std::optional<Bleeding> bleeding;  ///< Empty: the target is a fluid, or an older program.
   std::vector<std::string> risks_touched;
   std::size_t expert = 0;                      ///< The expert path with which it is compared: the nearest one.
   std::size_t pain_events = 0;                 ///< See tasks::PainRules.
   std::vector<metrics::MetricValue> measures;  ///< Of the whole recording; empty in a session of an older program.
 
   bool is_scored() const noexcept { return not_scored.empty(); }
+  /// The core with the most target tissue; null: none was taken.
+  const BiopsyCore* best_core() const noexcept;
 };
 
 /// Takes the core at a fired tick. The stylet goes straight on from the tip; bone stops it, and the part of the notch
@@ -103,7 +121,7 @@ struct AttemptData {
   const tasks::Needle& needle;
   std::span<const tasks::PlannedPath> experts;  ///< At least one; the nearest one is compared with.
   std::span<const telemetry::TickSample> samples;
-  std::optional<std::size_t> fired = {};                    ///< Sample at which the biopsy gun was fired.
+  std::span<const std::size_t> shots = {};                  ///< Samples at which the biopsy gun was fired, in order.
   std::span<const tasks::Interruption> interruptions = {};  ///< Not counted.
   std::span<const tasks::Action> actions = {};
   tasks::XrayUse xray = {};                      ///< At the end of the attempt.

@@ -26,10 +26,25 @@ config::Json core_json(const scoring::BiopsyCore& core) {
   for (const scoring::CorePiece& piece : core.pieces)
     pieces.push_back(
         {{"label", piece.label}, {"tissue", piece.tissue}, {"from_mm", piece.from_mm}, {"to_mm", piece.to_mm}});
-  return {{"tip_P", vector_json(core.tip_P)}, {"axis_P", vector_json(core.axis_P)},
-          {"pieces", std::move(pieces)},      {"target_mm", core.target_mm},
-          {"organ_mm", core.organ_mm},        {"vessel_mm", core.vessel_mm},
-          {"other_mm", core.other_mm},        {"risks_in_throw", core.risks_in_throw}};
+  return {{"tip_P", vector_json(core.tip_P)},
+          {"axis_P", vector_json(core.axis_P)},
+          {"pieces", std::move(pieces)},
+          {"target_mm", core.target_mm},
+          {"organ_mm", core.organ_mm},
+          {"vessel_mm", core.vessel_mm},
+          {"other_mm", core.other_mm},
+          {"risks_in_throw", core.risks_in_throw},
+          {"time_s", core.time_s}};
+}
+
+config::Json cores_json(const std::vector<scoring::BiopsyCore>& cores) {
+  config::Json list = config::Json::array();
+  for (const scoring::BiopsyCore& core : cores) list.push_back(core_json(core));
+  return list;
+}
+
+config::Json bleeding_json(const scoring::Bleeding& bleeding) {
+  return {{"risk", to_string(bleeding.risk)}, {"reasons", bleeding.reasons}, {"passes", bleeding.passes}};
 }
 
 }  // namespace trocar::storage

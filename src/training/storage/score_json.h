@@ -7,8 +7,10 @@
 
 namespace trocar::storage {
 
-/// The parts of a score and a biopsy core as JSON, in session files and on the command line.
+/// The parts of a score, biopsy cores and the bleeding risk as JSON, in session files and on the command line.
 config::Json parts_json(const std::vector<scoring::ScorePart>& parts);
 config::Json core_json(const scoring::BiopsyCore& core);
+config::Json cores_json(const std::vector<scoring::BiopsyCore>& cores);
+config::Json bleeding_json(const scoring::Bleeding& bleeding);
 
 }  // namespace trocar::storage

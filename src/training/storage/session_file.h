@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -97,9 +98,9 @@ class SessionWriter {
   Status append(const SessionParameters& parameters);
   /// In the order of time.
   Status append(const tasks::Interruption& interruption);
-  /// Writes the buffered data, then the outcome, and makes it a single file again. `fired` is a sample's index. Nothing
+  /// Writes the buffered data, then the outcome, and makes it a single file again. `shots`: indices of samples. Nothing
   /// can be appended afterwards.
-  Status finish(const scoring::Outcome& outcome, std::optional<std::size_t> fired);
+  Status finish(const scoring::Outcome& outcome, std::span<const std::size_t> shots);
   std::size_t saved_ticks() const noexcept;  ///< Ticks committed so far.
   /// Hash of all ticks, see Session; empty before finish().
   const std::string& ticks_hash() const noexcept;
@@ -129,7 +130,7 @@ struct Session {
   std::vector<SessionParameters> parameters;       ///< By tick; empty: an older program wrote the session.
   std::vector<tasks::Interruption> interruptions;  ///< By time.
   std::optional<scoring::Outcome> outcome;         ///< Missing when the program was killed before the end.
-  std::optional<std::size_t> fired;                ///< Sample at which the biopsy gun was fired.
+  std::vector<std::size_t> shots;                  ///< Samples at which the biopsy gun was fired, in order.
   bool is_incomplete = false;                      ///< The program ended before the attempt did.
   /// XXH3 (128 bits, hexadecimal) of all values of all ticks: two sessions have the same hash if and only if their
   /// ticks are the same bit by bit (NaN is one value, -0.0 is 0.0). Empty: incomplete, or of an older program.

@@ -47,8 +47,8 @@ metrics::MetricContext context_of(const Session& session) {
   metrics::MetricContext context;
   context.layer_names = session.info.layer_names;
   context.plane = session.info.plane;
-  if (session.fired && *session.fired < session.samples.size())
-    context.fired_s = session.samples[*session.fired].time_s;
+  if (!session.shots.empty() && session.shots.front() < session.samples.size())
+    context.fired_s = session.samples[session.shots.front()].time_s;
   const anatomy::NeedlePath& plan = session.info.plan_P;
   if (plan.line_P.a.allFinite() && plan.line_P.b.allFinite() && plan.line_P.length_mm() > 0.0)
     context.expert_paths.push_back({plan.name.empty() ? "plan" : plan.name, plan.line_P});

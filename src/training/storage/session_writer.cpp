@@ -322,17 +322,17 @@ const std::string& SessionWriter::ticks_hash() const noexcept {
   return impl_->ticks_hash;
 }
 
-Status SessionWriter::finish(const scoring::Outcome& outcome, std::optional<std::size_t> fired) {
+Status SessionWriter::finish(const scoring::Outcome& outcome, std::span<const std::size_t> shots) {
   TROCAR_CHECK(impl_ != nullptr && !impl_->is_finished);
-  TROCAR_CHECK(!fired || *fired < static_cast<std::size_t>(impl_->next_tick));
+  for (const std::size_t shot : shots) TROCAR_CHECK(shot < static_cast<std::size_t>(impl_->next_tick));
   if (impl_->failure) return tl::unexpected(*impl_->failure);
   TROCAR_TRY_STATUS(impl_->flush());
   const Status status = guarded("the session's outcome cannot be written", impl_->path, kWriteAdvice, [&] {
     double score = outcome.score;
     soci::indicator score_indicator = std::isnan(score) || !outcome.is_scored() ? soci::i_null : soci::i_ok;
     int target_reached = outcome.target_reached ? 1 : 0;
-    int fired_tick = fired ? static_cast<int>(*fired) : 0;
-    soci::indicator fired_indicator = fired ? soci::i_ok : soci::i_null;
+    int fired_tick = shots.empty() ? 0 : static_cast<int>(shots.front());  // for older programs
+    soci::indicator fired_indicator = shots.empty() ? soci::i_null : soci::i_ok;
     std::string json = outcome_to_json(outcome);
     impl_->database << "BEGIN IMMEDIATE";
     impl_->database << "INSERT INTO outcome (score, target_reached, fired_tick, json) VALUES (:s, :t, :f, :j)",

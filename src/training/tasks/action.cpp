@@ -6,8 +6,8 @@
 namespace trocar::tasks {
 namespace {
 
-constexpr std::array kNames{"anaesthetise", "draw_stylet", "replace_stylet", "aspirate",
-                            "advance_wire", "hold_breath", "breathe"};
+constexpr std::array kNames{"anaesthetise", "draw_stylet", "replace_stylet", "aspirate", "advance_wire",
+                            "hold_breath",  "breathe",     "fire",           "load"};
 static_assert(kNames.size() == static_cast<std::size_t>(kLastAction) + 1);
 
 }  // namespace
@@ -20,6 +20,15 @@ std::optional<ActionKind> find_action(std::string_view name) noexcept {
   const auto found = std::find(kNames.begin(), kNames.end(), name);
   if (found == kNames.end()) return std::nullopt;
   return static_cast<ActionKind>(found - kNames.begin());
+}
+
+bool is_gun_loaded(std::span<const Action> actions) noexcept {
+  bool is_loaded = true;
+  for (const Action& action : actions) {
+    if (action.kind == ActionKind::kFire) is_loaded = false;
+    if (action.kind == ActionKind::kLoad) is_loaded = true;
+  }
+  return is_loaded;
 }
 
 }  // namespace trocar::tasks

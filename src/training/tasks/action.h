@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 
 #include "geometry/vec.h"
@@ -18,8 +19,10 @@ enum class ActionKind : std::uint8_t {
   kAdvanceWire,    ///< Advances a guide wire through the needle; `amount`: mm beyond the tip.
   kHoldBreath,     ///< Asks the patient to hold the breath. Acts once patients breathe.
   kBreathe,        ///< Ends it.
+  kFire,           ///< Fires the loaded biopsy gun: the core is taken at this moment.
+  kLoad,           ///< Takes the core out and loads the gun again: outside the body, or through a coaxial needle.
 };
-inline constexpr ActionKind kLastAction = ActionKind::kBreathe;
+inline constexpr ActionKind kLastAction = ActionKind::kLoad;
 /// Name in files: "draw_stylet" …
 const char* to_string(ActionKind kind) noexcept;
 std::optional<ActionKind> find_action(std::string_view name) noexcept;
@@ -41,5 +44,8 @@ struct Action {
 
   bool operator==(const Action& other) const noexcept = default;
 };
+
+/// A biopsy gun is loaded at first, and again after kLoad.
+bool is_gun_loaded(std::span<const Action> actions) noexcept;
 
 }  // namespace trocar::tasks

@@ -49,7 +49,7 @@ Result<Needle> read_needle(const config::TomlTable& row, const std::string& name
                                          "length_mm",
                                          "bevel_deg",
                                          "bevel_share"};
-  if (needle.is_biopsy) known.insert(known.end(), {"throw_mm", "notch_mm", "dead_space_mm"});
+  if (needle.is_biopsy) known.insert(known.end(), {"throw_mm", "notch_mm", "dead_space_mm", "is_coaxial"});
   TROCAR_TRY_STATUS(row.check_keys(known));
   TROCAR_TRY_STATUS(read_value(row, "outer_diameter_mm", {0.2, 5.0}, needle.outer_diameter_mm));
   TROCAR_TRY_STATUS(read_value(row, "inner_diameter_mm", {0.0, 5.0}, needle.inner_diameter_mm));
@@ -63,6 +63,7 @@ Result<Needle> read_needle(const config::TomlTable& row, const std::string& name
   TROCAR_TRY_STATUS(read_value(row, "bevel_share", {0.0, 1.0}, needle.bevel_share));
   if (needle.is_biopsy) {
     TROCAR_TRY_STATUS(read_value(row, "throw_mm", {5.0, 40.0}, needle.throw_mm));
+    TROCAR_TRY(needle.is_coaxial, row.boolean_or("is_coaxial", false));
     TROCAR_TRY_STATUS(read_value(row, "notch_mm", {3.0, 40.0}, needle.notch_mm));
     TROCAR_TRY_STATUS(read_value(row, "dead_space_mm", {0.0, 15.0}, needle.dead_space_mm));
     if (needle.notch_mm + needle.dead_space_mm > needle.throw_mm)

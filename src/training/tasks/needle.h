@@ -26,6 +26,8 @@ struct Needle {
   double throw_mm = 0.0;       ///< Distance that the inner stylet shoots beyond the tip. Range 5..40.
   double notch_mm = 0.0;       ///< Length of the specimen notch. Range 3..40; notch and dead space fit into the throw.
   double dead_space_mm = 0.0;  ///< From the notch's distal end to the stylet's tip. Range 0..15.
+  /// A biopsy gun in a coaxial needle: the needle stays where it is while the gun is taken out and loaded.
+  bool is_coaxial = false;
 
   /// From the tip before firing to the middle of the notch after it; 0 for a needle that is not fired.
   double notch_middle_mm() const noexcept { return is_biopsy ? throw_mm - dead_space_mm - 0.5 * notch_mm : 0.0; }

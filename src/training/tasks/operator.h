@@ -25,10 +25,11 @@ struct OperatorView {
 struct HandCommand {
   Pose X_PN;                            ///< Wanted needle pose.
   Vec3 v_P = Vec3::Zero();              ///< Wanted velocity of the tip, mm/s.
-  bool has_fired = false;               ///< The biopsy gun is fired at this tick.
   std::optional<ActionRequest> action;  ///< Done at this tick.
   bool is_done = false;                 ///< Finished.
   bool is_rigid = false;                ///< The device follows X_PN exactly, independent of the force (replay).
+
+  bool fires() const noexcept { return action && action->kind == ActionKind::kFire; }
 };
 
 /// A scripted operator. Deterministic: the same seed and the same views give the same commands.
@@ -43,6 +44,9 @@ struct OperatorActions {
   bool gives_anaesthetic = false;      ///< Before the skin.
   std::optional<ActionKind> confirms;  ///< At the target: kDrawStylet or kAspirate.
   double wire_mm = 0.0;                ///< Guide wire advanced at the target; 0: none.
+  std::size_t cores = 1;               ///< Shots of a biopsy gun.
+  /// The gun is loaded through a coaxial needle that stays at the target; false: each further core is another puncture.
+  bool loads_inside = false;
 };
 /// Those that the task's phases and score ask for.
 OperatorActions actions_for(const Task& task, const Needle& needle);
@@ -56,8 +60,8 @@ struct OperatorCase {
 };
 
 /// Follows the path: touches, pauses, inserts more slowly with more resistance, stops when the (virtual) tip is at the
-/// target, holds still, fires, withdraws. Stops without firing if it cannot advance. The device must start at the pose
-/// of the first command. Takes about 10..30 s, at most 60.
+/// target, holds still, fires, loads the gun and fires again until all cores are taken, withdraws. Stops without firing
+/// if it cannot advance. The device must start at the pose of the first command. Takes about 10..30 s, at most 60.
 std::unique_ptr<Operator> make_expert(const OperatorCase& the_case);
 /// Misses the entry and the angle, trembles, moves unevenly and too fast, hesitates, pulls back, stops short or too
 /// deep: at random, from the seed. Never more than 60 s.
@@ -66,8 +70,7 @@ std::unique_ptr<Operator> make_novice(const OperatorCase& the_case);
 /// It moves from 10 mm before the entry to the target, fires there if the case does, and moves out again. speed in
 /// mm/s, 0.1..500.
 std::unique_ptr<Operator> make_constant_velocity(const OperatorCase& the_case, double speed_mm_per_s);
-/// The device poses of a recorded session, tick by tick, rigid; `fired` is the sample at which the gun was fired.
-std::unique_ptr<Operator> make_replay(std::vector<telemetry::TickSample> samples,
-                                      std::optional<std::size_t> fired = {});
+/// The device poses of a recorded session, tick by tick, rigid, and its actions, each at its tick.
+std::unique_ptr<Operator> make_replay(std::vector<telemetry::TickSample> samples, std::vector<Action> actions = {});
 
 }  // namespace trocar::tasks

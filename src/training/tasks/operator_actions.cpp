@@ -22,6 +22,8 @@ OperatorActions actions_for(const Task& task, const Needle& needle) {
   if (task.confirmed_by != Substance::kNothing)
     actions.confirms = needle.stylet_diameter_mm > 0.0 ? ActionKind::kDrawStylet : ActionKind::kAspirate;
   actions.wire_mm = asked_number(task, ConditionKind::kWire);
+  actions.cores = task.cores;
+  actions.loads_inside = needle.is_coaxial;
   return actions;
 }
 

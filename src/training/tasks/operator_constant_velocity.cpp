@@ -27,7 +27,7 @@ class ConstantVelocity final : public Operator {
     HandCommand command;
     command.is_rigid = true;
     command.is_done = time_s >= 2.0 * one_way_s_;
-    command.has_fired = fires_biopsy_ && is_going_out && !has_turned_;
+    if (fires_biopsy_ && is_going_out && !has_turned_) command.action = ActionRequest{ActionKind::kFire};
     has_turned_ = is_going_out;
     const Vec3 axis_P = path_P_.direction();
     command.X_PN = Pose(R_PN_, path_P_.a + (kStart_mm + travelled_mm) * axis_P);

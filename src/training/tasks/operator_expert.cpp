@@ -30,6 +30,7 @@ constexpr double kSettled_mm = 0.5;
 constexpr double kHold_s = 0.5;
 constexpr double kMostHold_s = 3.0;
 constexpr double kAfterFire_s = 0.5;
+constexpr double kLoading_s = 3.0;  // takes the core out and loads the gun
 constexpr double kWithdraw_mm_s = 30.0;
 constexpr double kStuck_s = 6.0;  // without a millimetre of progress: stop
 constexpr double kGiveUp_s = 45.0;
@@ -40,12 +41,13 @@ class Expert final : public Operator {
   explicit Expert(const OperatorCase& the_case) noexcept
       : hand_(the_case.path_P, kStart_mm, Tremor(kTremor_mm, the_case.seed)),
         target_mm_(the_case.path_P.length_mm()),
-        fires_biopsy_(the_case.fires_biopsy),
+        cores_left_(the_case.fires_biopsy ? the_case.actions.cores : 0),
+        loads_inside_(the_case.actions.loads_inside),
         actions_(the_case.actions) {}
 
   HandCommand next(const OperatorView& view) noexcept override {
     hand_.sense(view);
-    bool fires = false;
+    std::optional<ActionKind> gun;
     double speed_mm_s = 0.0;
     switch (step_) {
       case Step::kApproach:
@@ -63,32 +65,44 @@ class Expert final : public Operator {
       case Step::kHold:
         speed_mm_s = holding_speed_mm_s();
         if ((in_step_s() > kHold_s && target_left_mm() > -kSettled_mm) || in_step_s() > kMostHold_s) {
-          fires = fires_biopsy_;
+          if (cores_left_ > 0) gun = ActionKind::kFire;
           enter(Step::kAfterFire);
         }
         break;
       case Step::kAfterFire:
         speed_mm_s = holding_speed_mm_s();
-        if (in_step_s() > kAfterFire_s) enter(Step::kWithdraw);
+        if (in_step_s() > kAfterFire_s) {
+          if (cores_left_ > 0) --cores_left_;
+          enter(cores_left_ > 0 && loads_inside_ ? Step::kLoad : Step::kWithdraw);
+        }
+        break;
+      case Step::kLoad:
+        speed_mm_s = loads_inside_ ? holding_speed_mm_s() : 0.0;
+        if (in_step_s() > kLoading_s) {
+          gun = ActionKind::kLoad;
+          stall_ = {};  // another insertion
+          enter(loads_inside_ ? Step::kHold : Step::kApproach);
+        }
         break;
       case Step::kWithdraw:
         speed_mm_s = hand_.wanted_mm() > kStart_mm ? -kWithdraw_mm_s : 0.0;
-        if (hand_.tip_mm() < kStart_mm + 2.0 || hand_.elapsed_s() > kOutOfTime_s) enter(Step::kDone);
+        if (hand_.tip_mm() < kStart_mm + 2.0) enter(cores_left_ > 0 && !is_late() ? Step::kLoad : Step::kDone);
+        if (hand_.elapsed_s() > kOutOfTime_s) enter(Step::kDone);
         break;
       case Step::kDone:
         break;
     }
-    if (hand_.elapsed_s() > kGiveUp_s && step_ < Step::kWithdraw) enter(Step::kWithdraw);
+    if (is_late() && step_ < Step::kWithdraw) enter(Step::kWithdraw);
     hand_.move(speed_mm_s, view.dt_s);
     HandCommand command = hand_.command();
-    command.has_fired = fires;
-    command.action = actions_.next(step_ == Step::kAfterFire ? std::optional(in_step_s()) : std::nullopt);
+    if (gun) command.action = ActionRequest{*gun};
+    if (!gun) command.action = actions_.next(step_ == Step::kAfterFire ? std::optional(in_step_s()) : std::nullopt);
     command.is_done = step_ == Step::kDone;
     return command;
   }
 
  private:
-  enum class Step { kApproach, kPause, kInsert, kHold, kAfterFire, kWithdraw, kDone };
+  enum class Step { kApproach, kPause, kInsert, kHold, kAfterFire, kLoad, kWithdraw, kDone };
 
   void enter(Step step) noexcept {
     step_ = step;
@@ -112,11 +126,13 @@ class Expert final : public Operator {
     return target_left_mm() < -kArrived_mm ? std::max(-kCreepBack_mm_s, kHoming_per_s * target_left_mm()) : 0.0;
   }
 
+  bool is_late() const noexcept { return hand_.elapsed_s() > kGiveUp_s; }
   bool is_stuck() noexcept { return stall_.stalled_s(hand_, step_start_s_) > kStuck_s; }
 
   GuidedHand hand_;
   double target_mm_;
-  bool fires_biopsy_;
+  std::size_t cores_left_;
+  bool loads_inside_;
   PendingActions actions_;
   Step step_ = Step::kApproach;
   double step_start_s_ = 0.0;

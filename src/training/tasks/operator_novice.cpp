@@ -27,6 +27,7 @@ constexpr double kPullbackChance = 0.6;  // residents: 2.4 pullbacks a biopsy, s
 constexpr double kPullback_mm_s = 15.0;
 constexpr double kBeforeFire_s[] = {0.3, 1.5};
 constexpr double kAfterFire_s = 0.5;
+constexpr double kLoading_s = 6.0;  // takes the core out and loads the gun
 constexpr double kRemembers = 0.7;  // share of novices who give anaesthetic, and of those who look what comes back
 constexpr double kWithdraw_mm_s = 50.0;
 constexpr double kStuck_s = 5.0;
@@ -56,7 +57,7 @@ class Novice final : public Operator {
 
   HandCommand next(const OperatorView& view) noexcept override {
     hand_.sense(view);
-    bool fires = false;
+    std::optional<ActionKind> gun;
     double speed_mm_s = 0.0;
     switch (step_) {
       case Step::kAdvance:
@@ -76,12 +77,21 @@ class Novice final : public Operator {
         break;
       case Step::kAim:
         if (in_step_s() > before_fire_s_) {
-          fires = fires_biopsy_;
+          if (cores_left_ > 0) gun = ActionKind::kFire;
           enter(Step::kAfterFire);
         }
         break;
       case Step::kAfterFire:
-        if (in_step_s() > kAfterFire_s) enter(Step::kWithdraw);
+        if (in_step_s() > kAfterFire_s) {
+          if (cores_left_ > 0) --cores_left_;
+          enter(cores_left_ > 0 && loads_inside_ ? Step::kLoad : Step::kWithdraw);
+        }
+        break;
+      case Step::kLoad:
+        if (in_step_s() > kLoading_s) {
+          gun = ActionKind::kLoad;
+          enter(Step::kAim);
+        }
         break;
       case Step::kWithdraw:
         speed_mm_s = hand_.wanted_mm() > start_mm_ ? -kWithdraw_mm_s : 0.0;
@@ -92,14 +102,14 @@ class Novice final : public Operator {
     }
     hand_.move(speed_mm_s, view.dt_s);
     HandCommand command = hand_.command();
-    command.has_fired = fires;
-    command.action = actions_.next(step_ == Step::kAfterFire ? std::optional(in_step_s()) : std::nullopt);
+    if (gun) command.action = ActionRequest{*gun};
+    if (!gun) command.action = actions_.next(step_ == Step::kAfterFire ? std::optional(in_step_s()) : std::nullopt);
     command.is_done = step_ == Step::kDone;
     return command;
   }
 
  private:
-  enum class Step { kAdvance, kHesitate, kPullBack, kAim, kAfterFire, kWithdraw, kDone };
+  enum class Step { kAdvance, kHesitate, kPullBack, kAim, kAfterFire, kLoad, kWithdraw, kDone };
   struct Doubt {
     double depth_mm;
     double pause_s;
@@ -109,7 +119,8 @@ class Novice final : public Operator {
   Novice(const OperatorCase& the_case, Random random) noexcept
       : start_mm_(draw(random, kStart_mm)),
         hand_(miss(the_case.path_P, random), start_mm_, Tremor(kTremor_mm, mix64(the_case.seed + 1))),
-        fires_biopsy_(the_case.fires_biopsy),
+        cores_left_(the_case.fires_biopsy ? the_case.actions.cores : 0),
+        loads_inside_(the_case.actions.loads_inside),
         actions_(the_case.actions) {
     Random forgets(mix64(the_case.seed + 2));
     if (forgets.uniform() > kRemembers) actions_.forget_anaesthetic();
@@ -141,7 +152,8 @@ class Novice final : public Operator {
 
   double start_mm_;
   GuidedHand hand_;
-  bool fires_biopsy_;
+  std::size_t cores_left_;
+  bool loads_inside_;
   PendingActions actions_;
   double stop_mm_ = 0.0;
   double speed_mm_s_ = 0.0;

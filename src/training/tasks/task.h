@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -53,8 +54,8 @@ struct PainRules {
 };
 
 /// Parts of a score that a task can weigh; scoring/score.h says what each means.
-inline constexpr std::array kScoreParts{"target", "core",   "confirmation", "risk", "access",  "entry",
-                                        "angle",  "length", "time",         "dose", "comfort", "visibility"};
+inline constexpr std::array kScoreParts{"target", "core", "confirmation", "risk",    "access",     "entry", "angle",
+                                        "length", "time", "dose",         "comfort", "visibility", "passes"};
 
 /// A training task as data (data/tasks/NAME.toml, or task.toml in a patient's folder).
 struct Task {
@@ -64,6 +65,7 @@ struct Task {
   std::vector<std::string> target_tissues;  ///< "liver_lesion"; where the patient has none: parenchyma of the organ.
   std::string needle;                       ///< Name in data/needles.toml.
   std::vector<std::string> needles;         ///< Others that may be chosen; empty: all of the same use.
+  std::size_t cores = 1;                    ///< Cores that a biopsy takes. Range 1..10.
   Guidance guidance = Guidance::kUltrasound;
   /// What has to come back for the target to count as reached; kNothing: nothing.
   Substance confirmed_by = Substance::kNothing;

@@ -23,9 +23,9 @@ class TaskReader {
 
   Status read(Task& task) const {
     TROCAR_TRY_STATUS(document_.check_keys(
-        {"base", "title",       "organ",    "target_tissues", "needle", "force_model", "ultrasound_engine",
-         "path", "parenchymal", "scoring",  "risks",          "target", "entry_zone",  "expert_path",
-         "exam", "needles",     "guidance", "confirmed_by",   "phases", "pain"}));
+        {"base", "title",       "organ",   "target_tissues", "needle",       "force_model", "ultrasound_engine",
+         "path", "parenchymal", "scoring", "risks",          "target",       "entry_zone",  "expert_path",
+         "exam", "needles",     "cores",   "guidance",       "confirmed_by", "phases",      "pain"}));
     TROCAR_TRY_STATUS(text(document_, "title", task.title));
     TROCAR_TRY_STATUS(text(document_, "organ", task.organ));
     TROCAR_TRY_STATUS(text(document_, "needle", task.needle));
@@ -118,6 +118,10 @@ class TaskReader {
   }
 
   Status read_procedure(Task& task) const {
+    if (document_.has("cores")) {
+      TROCAR_TRY(const double cores, document_.number("cores", {1.0, 10.0}));
+      task.cores = static_cast<std::size_t>(cores);
+    }
     if (document_.has("needles")) {
       TROCAR_TRY(task.needles, document_.strings("needles"));
     }
@@ -329,6 +333,7 @@ std::string task_to_toml(const Task& task, const Task& base) {
   keys.set_changed("expert_path", task.expert_path, base.expert_path);
   keys.set_changed("target_tissues", task.target_tissues, base.target_tissues);
   keys.set_changed("needles", task.needles, base.needles);
+  keys.set_changed("cores", static_cast<double>(task.cores), static_cast<double>(base.cores));
   if (task.guidance != base.guidance) keys.set("guidance", to_string(task.guidance));
   if (task.confirmed_by != base.confirmed_by) keys.set("confirmed_by", to_string(task.confirmed_by));
   if (task.phases.empty() && !base.phases.empty()) keys.set("phases", std::vector<std::string>());

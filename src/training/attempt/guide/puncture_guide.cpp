@@ -63,13 +63,20 @@ std::string guide_inside(const cases::Case& the_case, const telemetry::TickSampl
   return fmt::format("{:.0f} mm to the target", left_mm);
 }
 
+std::string guide_after_shot(const cases::Case& the_case, const telemetry::TickSample& sample, const GunState& gun) {
+  const bool is_outside = sample.phase == telemetry::InsertionPhase::kOutside;
+  const bool needs_more = gun.shots < the_case.task.cores;
+  if (needs_more && (is_outside || the_case.needle.is_coaxial))
+    return "The core is taken: load the gun for the next one";
+  if (needs_more) return "The core is taken: withdraw the needle, then load the gun";
+  return is_outside ? "The needle is out: end the attempt" : "The gun was fired: withdraw the needle";
+}
+
 }  // namespace
 
-std::string guide_puncture(const cases::Case& the_case, const telemetry::TickSample& sample, bool has_fired) {
+std::string guide_puncture(const cases::Case& the_case, const telemetry::TickSample& sample, const GunState& gun) {
   if (!sample.tip_mm.allFinite() || !(std::abs(sample.axis.norm() - 1.0) < 1e-3)) return {};
-  if (has_fired)
-    return sample.phase == telemetry::InsertionPhase::kOutside ? "The needle is out: end the attempt"
-                                                               : "The gun was fired: withdraw the needle";
+  if (!gun.is_loaded) return guide_after_shot(the_case, sample, gun);
   std::string danger = danger_ahead(the_case, sample);
   if (!danger.empty()) return danger;
   const bool is_inside = sample.phase == telemetry::InsertionPhase::kInserted ||

@@ -64,6 +64,12 @@ AttemptEvent describe_action(const tasks::SubstanceTable& substances, const task
     case tasks::ActionKind::kBreathe:
       told.text = "the patient breathes again";
       break;
+    case tasks::ActionKind::kFire:
+      told.text = "the gun was fired";
+      break;
+    case tasks::ActionKind::kLoad:
+      told.text = "the core was taken out, the gun is loaded";
+      break;
   }
   return told;
 }

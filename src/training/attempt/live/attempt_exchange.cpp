@@ -52,11 +52,6 @@ void AttemptExchange::begin() {
   requests_.begins = true;
 }
 
-void AttemptExchange::fire() {
-  const std::lock_guard lock(mutex_);
-  requests_.fires = true;
-}
-
 void AttemptExchange::note_xray(const tasks::XrayUse& use) {
   const std::lock_guard lock(mutex_);
   requests_.xray.push_back(use);

@@ -39,7 +39,7 @@ struct AttemptRequests {
   std::vector<tasks::XrayUse> xray;           ///< In order.
   std::vector<tasks::ActionRequest> actions;  ///< In order.
   std::optional<std::size_t> repeated_phase;
-  bool begins = false, fires = false, finishes = false, has_drawn = false;
+  bool begins = false, finishes = false, has_drawn = false;
 };
 
 /// Data that the loop publishes after each poll.
@@ -76,12 +76,12 @@ class AttemptExchange {
   /// Clamped: the tool stays in place and ignores set_goal.
   void clamp(Tool tool, bool is_clamped);
   void begin();  ///< See AttemptOptions::waits_for_begin.
-  void fire();   ///< Fires the biopsy gun; only the first call counts.
   void stop_forces();
   void resume_forces();
   /// Use of the fluoroscope, which the recording keeps; its time is set by the attempt.
   void note_xray(const tasks::XrayUse& use);
-  /// An action besides moving tools; it happens at the newest tick. Ignored before the attempt.
+  /// An action besides moving tools; it happens at the newest tick. Ignored before the attempt, and where it is
+  /// impossible: firing an empty gun.
   void act(const tasks::ActionRequest& request);
   /// Opens a phase of the task again, and those that follow from it: to practise it once more.
   void repeat_phase(std::size_t phase);

@@ -104,7 +104,6 @@ Status AttemptLoop::take_requests() {
   AttemptRequests requests = exchange_.take_requests();
   lead(requests);
   if (requests.begins) begins_ = true;
-  if (requests.fires) steering_->fire();
   if (requests.stopped) stop_or_resume(*requests.stopped);
   if (requests.performer) steering_->perform(std::move(requests.performer));
   for (const link::SetParameters& parameters : requests.parameters) {
@@ -130,6 +129,7 @@ Status AttemptLoop::take_requests() {
 
 Status AttemptLoop::act(const tasks::ActionRequest& request) {
   TROCAR_TRY([[maybe_unused]] const auto action, record_->act(request));
+  note_shots();
   note_actions();
   return {};
 }

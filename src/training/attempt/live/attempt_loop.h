@@ -94,7 +94,7 @@ class AttemptLoop {
   Status record(const std::vector<link::NumberedSample>& samples);
   Status note_shape(const link::NumberedSample& numbered);
   void note_tick(const telemetry::TickSample& sample);
-  void note_shot();
+  void note_shots();
   void note_actions();
   void step_phases();
   std::string hint_of(const AttemptView& view) const;
@@ -141,7 +141,8 @@ class AttemptLoop {
   Clock::TimePoint disk_polled_;
   std::string disk_banner_, cut_short_;
   std::vector<AttemptEvent> events_;
-  std::shared_ptr<const GunShot> shot_;
+  std::shared_ptr<const GunShot> shot_;  ///< The last one.
+  std::size_t told_shots_ = 0;
   std::optional<scoring::PhaseTracker> phases_;  ///< From the begin of the recording.
   double phases_s_ = 0.0;                        ///< Time of its last step.
   double contrast_ml_ = 0.0;

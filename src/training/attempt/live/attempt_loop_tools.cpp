@@ -74,7 +74,7 @@ Status AttemptLoop::record(const std::vector<link::NumberedSample>& samples) {
     finishes_ = finishes_ || !goes_on;
     if (!goes_on) break;
   }
-  note_shot();
+  note_shots();
   note_actions();
   command_ = live_->command();
   last_needle_ = live_->last();
@@ -98,20 +98,24 @@ void AttemptLoop::note_tick(const telemetry::TickSample& sample) {
   }
 }
 
-void AttemptLoop::note_shot() {
-  const std::optional<std::size_t>& fired = record_->fired();
-  if (!options_.has_view || shot_ || !fired || *fired >= record_->samples().size()) return;
-  shot_ = std::make_shared<const GunShot>(make_gun_shot(*case_.the_case, record_->samples()[*fired]));
-  // The composition of the core is displayed beside its picture.
-  events_.push_back({shot_->time_s, shot_->depth_mm, telemetry::EventKind::kNone, "shot",
-                     fmt::format("the gun was fired at {:.0f}\u00a0mm", shot_->depth_mm)});
+void AttemptLoop::note_shots() {
+  const std::vector<std::size_t>& shots = record_->shots();
+  if (!options_.has_view) return;
+  for (; told_shots_ < shots.size(); ++told_shots_) {
+    shot_ = std::make_shared<const GunShot>(make_gun_shot(*case_.the_case, record_->samples()[shots[told_shots_]]));
+    // The composition of the core is displayed beside its picture.
+    events_.push_back({shot_->time_s, shot_->depth_mm, telemetry::EventKind::kNone, "shot",
+                       fmt::format("the gun was fired at {:.0f}\u00a0mm", shot_->depth_mm)});
+  }
 }
 
 void AttemptLoop::note_actions() {
   const std::vector<tasks::Action>& actions = record_->actions();
   for (; told_actions_ < actions.size(); ++told_actions_) {
     if (phases_) phases_->note(actions[told_actions_]);
-    if (options_.has_view) events_.push_back(describe_action(case_.the_case->substances, actions[told_actions_]));
+    const bool is_told = actions[told_actions_].kind != tasks::ActionKind::kFire;  // told as a shot
+    if (options_.has_view && is_told)
+      events_.push_back(describe_action(case_.the_case->substances, actions[told_actions_]));
   }
 }
 

@@ -102,7 +102,7 @@ void AttemptLoop::step_phases() {
     moment.contact_n = last_transducer_->f_constraint_n.norm();
   }
   moment.contrast_ml = contrast_ml_;
-  moment.has_fired = record_ && record_->fired().has_value();
+  moment.cores = record_ ? record_->shots().size() : 0;
   phases_->step(moment);
 }
 
@@ -143,13 +143,13 @@ void AttemptLoop::add_times(AttemptView& view) {
 std::string AttemptLoop::hint_of(const AttemptView& view) const {
   const cases::Case& the_case = *case_.the_case;
   const bool is_outside = last_needle_->phase == telemetry::InsertionPhase::kOutside;
-  if (view.current_phase && view.probe.is_known && case_.plane && is_outside && !view.has_fired &&
+  if (view.current_phase && view.probe.is_known && case_.plane && is_outside && view.shots == 0 &&
       is_step_of_transducer(the_case.task.phases[*view.current_phase])) {
     const Segment& path_P = the_case.plan.line_P;
     const Vec3 target_P = path_P.b + the_case.needle.notch_middle_mm() * path_P.direction();
     return guide_transducer(target_P, view.probe.X_PT, view.probe.contact_n, *case_.plane);
   }
-  return guide_puncture(the_case, *last_needle_, view.has_fired);
+  return guide_puncture(the_case, *last_needle_, {view.shots, view.is_gun_loaded});
 }
 
 void AttemptLoop::publish(AttemptPhase phase, std::optional<Result<RunResult>> result) {
@@ -172,7 +172,10 @@ void AttemptLoop::publish(AttemptPhase phase, std::optional<Result<RunResult>> r
   view.probe = transducer_now();
   view.has_probe = transducer_ != nullptr;
   view.is_performing = steering_->is_performing();
-  view.has_fired = steering_->has_fired();
+  if (record_) {
+    view.shots = record_->shots().size();
+    view.is_gun_loaded = tasks::is_gun_loaded(record_->actions());
+  }
   view.notes = notes_;
   add_servers(view);
   add_times(view);

@@ -103,8 +103,9 @@ struct AttemptView {
   double since_contact_s = 0.0;  ///< Time since the needle first touched the skin, without interruptions; 0 before.
   /// Stopped by stop_forces(), or a server waits; resume_forces() switches them on again.
   bool are_forces_stopped = false;
-  bool has_fired = false;
-  std::shared_ptr<const GunShot> shot;  ///< Set with the first tick after the shot.
+  std::size_t shots = 0;  ///< Of the biopsy gun.
+  bool is_gun_loaded = true;
+  std::shared_ptr<const GunShot> shot;  ///< The last one; null: none.
   double since_shot_s = 0.0;            ///< Session time; stops while there are no data from the needle.
   bool is_performing = false;           ///< A scripted operator moves the needle.
   std::vector<std::string> notes;       ///< Problems during the attempt, in order.

@@ -59,7 +59,6 @@ class LiveAttempt : private AttemptExchange {
   using AttemptExchange::begin;
   using AttemptExchange::clamp;
   using AttemptExchange::finish;
-  using AttemptExchange::fire;
   using AttemptExchange::frame_drawn;
   using AttemptExchange::note_xray;
   using AttemptExchange::perform;

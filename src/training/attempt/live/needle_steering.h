@@ -15,8 +15,6 @@ class NeedleSteering final : public tasks::Operator {
  public:
   LedPose& hand() noexcept { return hand_; }
   const LedPose& hand() const noexcept { return hand_; }
-  void fire() noexcept { fires_ = true; }
-  bool has_fired() const noexcept { return has_fired_; }
   bool is_performing() const noexcept { return performer_ != nullptr; }
   /// The performer is that of the attempt's options: the attempt begins with its first command.
   bool is_scripted() const noexcept { return is_scripted_; }
@@ -59,9 +57,6 @@ class NeedleSteering final : public tasks::Operator {
       hand_.step(view.dt_s);
       command = led();
     }
-    command.has_fired = (command.has_fired || fires_) && !has_fired_;
-    has_fired_ = has_fired_ || command.has_fired;
-    fires_ = false;
     return command;
   }
 
@@ -96,7 +91,6 @@ class NeedleSteering final : public tasks::Operator {
   double performed_s_ = 0.0;
   bool is_scripted_ = false, ends_with_performer_ = false;
   bool is_at_start_ = false;
-  bool fires_ = false, has_fired_ = false;
 };
 
 }  // namespace trocar::attempt

@@ -49,7 +49,7 @@ Result<Performer> make_replayer(const cases::Case& the_case, const RunOptions& o
   if (changes.force_model.empty()) changes.force_model = options.force_model;
   Performer performer;
   TROCAR_TRY(performer.parameters, replay_parameters(*session, changes));
-  performer.the_operator = tasks::make_replay(session->samples, session->fired);
+  performer.the_operator = tasks::make_replay(session->samples, session->actions);
   performer.rate_hz = session->info.rate_hz;
   performer.has_own_rate = true;
   performer.force_model = session->info.force_model;

@@ -138,10 +138,9 @@ class RecordedTicks {
     const auto found = std::ranges::find(session_->interruptions, time_s(tick), &tasks::Interruption::to_s);
     return found == session_->interruptions.end() ? nullptr : &*found;
   }
-  /// Appends what the replayed session has besides the needle, up to a time: actions, transducer, X-ray.
+  /// Appends what the replayed session has besides needle and actions, up to a time: transducer, X-ray.
   Status append_others(double time_s, AttemptRecord& record) {
     if (session_ == nullptr) return {};
-    TROCAR_TRY_STATUS(append_until(time_s, session_->actions, actions_, record));
     TROCAR_TRY_STATUS(append_until(time_s, session_->transducer, transducer_, record));
     return append_until(time_s, session_->xray, xray_, record);
   }
@@ -160,7 +159,7 @@ class RecordedTicks {
 
   double dt_s_;
   const storage::Session* session_;
-  std::size_t actions_ = 0, transducer_ = 0, xray_ = 0;  ///< Numbers of appended rows.
+  std::size_t transducer_ = 0, xray_ = 0;  ///< Numbers of appended rows.
 };
 
 /// The closed loop, until the operator has finished. Returns the number of ticks.

@@ -85,7 +85,6 @@ Result<AttemptRecord> AttemptRecord::create(const cases::Case& the_case, const R
 }
 
 void AttemptRecord::note(const tasks::HandCommand& command) noexcept {
-  if (command.has_fired && !session_.fired) session_.fired = session_.samples.size();
   wanted_action_ = command.action;
 }
 
@@ -97,10 +96,21 @@ Status AttemptRecord::append(const telemetry::TickSample& sample) {
   return {};
 }
 
+/// A gun is fired if it is loaded, and loaded outside the body or through a coaxial needle.
+bool AttemptRecord::is_possible(tasks::ActionKind kind, double depth_mm) const noexcept {
+  const tasks::Needle& needle = the_case_->needle;
+  const bool is_loaded = tasks::is_gun_loaded(session_.actions);
+  if (kind == tasks::ActionKind::kFire) return needle.is_biopsy && is_loaded;
+  if (kind == tasks::ActionKind::kLoad)
+    return needle.is_biopsy && !is_loaded && (needle.is_coaxial || !(depth_mm > 0.0));
+  return true;
+}
+
 Result<std::optional<tasks::Action>> AttemptRecord::act(const tasks::ActionRequest& request) {
   constexpr double kLater_s = 1e-6;  // two actions of one tick have an order
   if (session_.samples.empty()) return std::optional<tasks::Action>();
   const telemetry::TickSample& sample = session_.samples.back();
+  if (!is_possible(request.kind, sample.depth_mm)) return std::optional<tasks::Action>();
   tasks::Action action{sample.time_s, request.kind, request.amount, {}, sample.tip_mm, sample.depth_mm};
   if (!session_.actions.empty()) action.time_s = std::max(action.time_s, session_.actions.back().time_s + kLater_s);
   if (request.kind == tasks::ActionKind::kDrawStylet || request.kind == tasks::ActionKind::kAspirate)
@@ -112,6 +122,7 @@ Result<std::optional<tasks::Action>> AttemptRecord::act(const tasks::ActionReque
 
 Status AttemptRecord::append(const tasks::Action& action) {
   session_.actions.push_back(action);
+  if (action.kind == tasks::ActionKind::kFire) session_.shots.push_back(session_.samples.size() - 1);
   return written(writer_.append(action));
 }
 
@@ -204,7 +215,7 @@ RunResult AttemptRecord::score() {
 
 Result<RunResult> AttemptRecord::finish() {
   RunResult result = score();
-  TROCAR_TRY_STATUS(written(writer_.finish(result.outcome, session_.fired)));
+  TROCAR_TRY_STATUS(written(writer_.finish(result.outcome, session_.shots)));
   result.ticks_hash = writer_.ticks_hash();
   return result;
 }

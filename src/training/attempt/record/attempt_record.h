@@ -79,8 +79,8 @@ class AttemptRecord {
   Status append(const tasks::XrayUse& use);
   const storage::SessionInfo& info() const noexcept { return session_.info; }
   const std::vector<telemetry::TickSample>& samples() const noexcept { return session_.samples; }  ///< Samples so far.
-  /// Index of the sample at which the gun was fired; this sample may not be appended yet.
-  const std::optional<std::size_t>& fired() const noexcept { return session_.fired; }
+  /// Indices of the samples at which the gun was fired.
+  const std::vector<std::size_t>& shots() const noexcept { return session_.shots; }
   /// Scores the attempt and closes the session file.
   Result<RunResult> finish();
   /// The first failure to write the session file; empty: no failure.
@@ -96,6 +96,7 @@ class AttemptRecord {
   };
   Status record(std::size_t tick, const SceneParameters& parameters);
   Status written(Status status);
+  bool is_possible(tasks::ActionKind kind, double depth_mm) const noexcept;
   RunResult score();
 
   AttemptRecord(const cases::Case& the_case, storage::SessionInfo info, storage::SessionWriter writer,

@@ -44,12 +44,24 @@ Result<AttemptReplay> AttemptReplay::of(storage::Session session, std::shared_pt
 
 AttemptReplay::AttemptReplay(storage::Session session, std::shared_ptr<const cases::OpenCase> open, bool was_cut_off)
     : session_(std::move(session)), open_(std::move(open)), was_cut_off_(was_cut_off) {
-  if (session_.fired) shot_ = make_gun_shot(open_->the_case, session_.samples[*session_.fired]);
+  for (const std::size_t fired : session_.shots)
+    shots_.push_back(make_gun_shot(open_->the_case, session_.samples[fired]));
   find_moments();
   find_worst();
   if (worst_) moments_.push_back(*worst_);
   std::stable_sort(moments_.begin(), moments_.end(),
                    [](const ReplayMoment& a, const ReplayMoment& b) { return a.time_s < b.time_s; });
+}
+
+const GunShot* AttemptReplay::shot_at(double time_s) const noexcept {
+  const GunShot* last = nullptr;
+  for (const GunShot& shot : shots_)
+    if (shot.time_s <= time_s) last = &shot;
+  for (const tasks::Action& action : session_.actions)
+    if (last != nullptr && action.kind == tasks::ActionKind::kLoad && action.time_s > last->time_s &&
+        action.time_s <= time_s)
+      return nullptr;
+  return last;
 }
 
 const telemetry::TickSample& AttemptReplay::at(double time_s) const noexcept {
@@ -108,7 +120,7 @@ void AttemptReplay::find_moments() {
   for (const tasks::Interruption& gap : session_.interruptions)
     moments_.push_back({gap.to_s, Kind::kInterruption,
                         fmt::format("interrupted for {:.1f} s: {}", gap.to_s - gap.from_s, gap.reason)});
-  if (shot_) moments_.push_back({shot_->time_s, Kind::kFired, shot_words(*shot_)});
+  for (const GunShot& shot : shots_) moments_.push_back({shot.time_s, Kind::kFired, shot_words(shot)});
 }
 
 /// Contact with a risk structure comes first; then the largest distance of the needle from the path in the body; then

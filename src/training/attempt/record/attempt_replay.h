@@ -50,8 +50,10 @@ class AttemptReplay {
   /// At the recorded tips of the needle.
   InjectionSteps injections() const;
 
-  /// Shot of the gun; empty: it was not fired.
-  const std::optional<GunShot>& shot() const noexcept { return shot_; }
+  /// Shots of the gun by time.
+  const std::vector<GunShot>& shots() const noexcept { return shots_; }
+  /// The shot whose core is in the gun at a time; null: it is loaded.
+  const GunShot* shot_at(double time_s) const noexcept;
   /// Ordered by time; includes the worst one if there is one.
   const std::vector<ReplayMoment>& moments() const noexcept { return moments_; }
   /// Empty: the needle touched nothing.
@@ -65,7 +67,7 @@ class AttemptReplay {
   storage::Session session_;
   std::shared_ptr<const cases::OpenCase> open_;
   bool was_cut_off_;
-  std::optional<GunShot> shot_;
+  std::vector<GunShot> shots_;
   std::vector<ReplayMoment> moments_;
   std::optional<ReplayMoment> worst_;
 };

@@ -42,7 +42,7 @@ scoring::Outcome score_session(const cases::Case& the_case, const storage::Sessi
        .needle = the_case.needle,
        .experts = the_case.expert_paths(),
        .samples = session.samples,
-       .fired = session.fired,
+       .shots = session.shots,
        .interruptions = session.interruptions,
        .actions = session.actions,
        .xray = session.xray.empty() ? tasks::XrayUse{} : session.xray.back(),

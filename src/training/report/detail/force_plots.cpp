@@ -57,8 +57,8 @@ std::vector<PlotLine> event_lines(const storage::Session& session, bool are_name
   std::vector<PlotLine> lines;
   for (const Puncture& puncture : find_punctures(session))
     lines.push_back({puncture.time_s, are_named ? words(anatomy::layer_words(puncture.layer)) : std::string()});
-  if (session.fired && *session.fired < session.samples.size())
-    lines.push_back({session.samples[*session.fired].time_s, are_named ? "fired" : ""});
+  for (const std::size_t shot : session.shots)
+    if (shot < session.samples.size()) lines.push_back({session.samples[shot].time_s, are_named ? "fired" : ""});
   std::sort(lines.begin(), lines.end(), [](const PlotLine& a, const PlotLine& b) { return a.x < b.x; });
   return lines;
 }

@@ -44,7 +44,7 @@ PathDrawing collect(const storage::Session& session) {
     if (!deepest || session.samples[insertion.deepest].depth_mm > session.samples[*deepest].depth_mm)
       deepest = insertion.deepest;
   }
-  if (session.fired && *session.fired < session.samples.size()) deepest = session.fired;
+  if (!session.shots.empty() && session.shots.front() < session.samples.size()) deepest = session.shots.front();
   if (deepest) {
     const telemetry::TickSample& sample = session.samples[*deepest];
     drawing.shaft_P = Segment{sample.tip_mm - (sample.depth_mm + kShaftOutside_mm) * sample.axis, sample.tip_mm};

@@ -199,17 +199,29 @@ std::string hints_section(const storage::Session& session) {
 }
 
 std::string core_section(const storage::Session& session) {
-  if (!session.outcome || !session.outcome->core) return {};
-  const scoring::BiopsyCore& core = *session.outcome->core;
-  std::string out = "<section class=\"together\"><h2>The core</h2><figure>" + core_bar(core) +
-                    fmt::format(
-                        "<figcaption>Target tissue {} mm, organ {} mm, vessel {} mm, other {} mm.</figcaption>"
-                        "</figure>",
-                        number_text(core.target_mm, 1), number_text(core.organ_mm, 1), number_text(core.vessel_mm, 1),
-                        number_text(core.other_mm, 1));
-  if (!core.risks_in_throw.empty())
-    out += fmt::format("<p class=\"warning\">The shot hit: <b>{}</b>.</p>", join(core.risks_in_throw));
+  if (!session.outcome || session.outcome->cores.empty()) return {};
+  const std::vector<scoring::BiopsyCore>& cores = session.outcome->cores;
+  std::string out =
+      fmt::format("<section class=\"together\"><h2>{}</h2>", cores.size() == 1 ? "The core" : "The cores");
+  for (const scoring::BiopsyCore& core : cores) {
+    out += "<figure>" + core_bar(core) +
+           fmt::format("<figcaption>Target tissue {} mm, organ {} mm, vessel {} mm, other {} mm.</figcaption></figure>",
+                       number_text(core.target_mm, 1), number_text(core.organ_mm, 1), number_text(core.vessel_mm, 1),
+                       number_text(core.other_mm, 1));
+    if (!core.risks_in_throw.empty())
+      out += fmt::format("<p class=\"warning\">The shot hit: <b>{}</b>.</p>", join(core.risks_in_throw));
+  }
   return out + "</section>";
+}
+
+std::string bleeding_section(const storage::Session& session) {
+  if (!session.outcome || !session.outcome->bleeding) return {};
+  const scoring::Bleeding& bleeding = *session.outcome->bleeding;
+  std::string out = fmt::format("<section class=\"together\"><h2>Risk of bleeding: {}</h2>", to_string(bleeding.risk));
+  if (bleeding.reasons.empty()) return out + "<p>No vessel was hit, and the channel can close.</p></section>";
+  out += "<ul>";
+  for (const std::string& reason : bleeding.reasons) out += "<li>" + escape(reason) + "</li>";
+  return out + "</ul></section>";
 }
 
 std::string case_section(const storage::Session& session) {

@@ -12,6 +12,7 @@ std::string result_section(const storage::Session& session);
 std::string hints_section(const storage::Session& session);
 /// The tissue along the specimen notch; empty without a core.
 std::string core_section(const storage::Session& session);
+std::string bleeding_section(const storage::Session& session);
 std::string case_section(const storage::Session& session);
 
 }  // namespace trocar::report::detail

@@ -74,17 +74,17 @@ inline storage::Session example_attempt() {
     s.device_f_n = s.f_total_n;
     session.samples.push_back(s);
   }
-  session.fired = 6000;
+  session.shots = {6000};
   scoring::Outcome outcome;
   outcome.score = 83.2;
   outcome.target_reached = true;
   outcome.parts = {{"target", "Distance to the target", 0.4, "mm", 24, 25}, {"risk", "Risks", 1, "", 0, 20}};
   outcome.hints = {{"Hold the needle flatter.", {}}};
-  outcome.core = scoring::BiopsyCore{};
-  outcome.core->pieces = {{"liver", "liver", 0.0, 8.0}, {"lesion", "liver_lesion", 8.0, 19.0}};
-  outcome.core->target_mm = 11.0;
-  outcome.core->organ_mm = 8.0;
-  outcome.core->risks_in_throw = {"gallbladder"};
+  outcome.cores.emplace_back();
+  outcome.cores.back().pieces = {{"liver", "liver", 0.0, 8.0}, {"lesion", "liver_lesion", 8.0, 19.0}};
+  outcome.cores.back().target_mm = 11.0;
+  outcome.cores.back().organ_mm = 8.0;
+  outcome.cores.back().risks_in_throw = {"gallbladder"};
   session.outcome = outcome;
   return session;
 }

@@ -127,8 +127,8 @@ TEST(HtmlReport, EscapesWhatPeopleWrote) {
   for (std::string& name : session.info.layer_names) name = evil;
   for (std::string& name : session.info.tissue_names) name = evil;
   session.outcome->hints = {{evil, {}}};
-  session.outcome->risks_touched = session.outcome->core->risks_in_throw = {evil};
-  for (scoring::CorePiece& piece : session.outcome->core->pieces) piece.label = piece.tissue = evil;
+  session.outcome->risks_touched = session.outcome->cores.back().risks_in_throw = {evil};
+  for (scoring::CorePiece& piece : session.outcome->cores.back().pieces) piece.label = piece.tissue = evil;
   for (scoring::ScorePart& part : session.outcome->parts) part.title = part.unit = evil;
   const std::string html = html_report(session, nullptr);
   EXPECT_EQ(html.find("<script"), std::string::npos);
@@ -140,7 +140,7 @@ TEST(HtmlReport, IsWellFormedWhateverIsMissing) {
   storage::Session whole = example_attempt();
   storage::Session no_outcome = whole;
   no_outcome.outcome.reset();
-  no_outcome.fired.reset();
+  no_outcome.shots.clear();
   storage::Session no_events = whole;
   for (telemetry::TickSample& sample : no_events.samples) sample.events = {};
   storage::Session outside = whole;
@@ -167,7 +167,7 @@ TEST(HtmlReport, IsWellFormedWhateverIsMissing) {
 TEST(HtmlReport, SaysThatAKilledSessionIsIncompleteAndStillPlots) {
   storage::Session session = example_attempt();
   session.outcome.reset();
-  session.fired.reset();
+  session.shots.clear();
   const std::string html = html_report(session, nullptr);
   EXPECT_NE(html.find("This session is incomplete"), std::string::npos);
   EXPECT_EQ(count_of(html, "class=\"mark\""), 3u);

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kMatters = 0.1;          // minimum lost share of a part's points for a hint
 constexpr double kNameable = 0.5;         // rounds to 1 mm or degree
+constexpr double kFullCore = 0.8;         // of the possible length: nothing to improve in this core
 constexpr double kRepeatedTravel = 0.25;  // share of the excess travel for a hint about retractions
 
 /// Advice, and the points that following it would bring.
@@ -75,14 +76,13 @@ Correction correct(const Vec3& offset_P, const Vec3& path_direction_P) {
   return {fmt::format("{}", fmt::join(deviations, ", ")), fmt::format("{}", fmt::join(advice, ", "))};
 }
 
-void add_core_hint(const HintSubject& subject, double points, std::vector<Advice>& advice) {
+void add_core_hint(const HintSubject& subject, const BiopsyCore& core, double points, std::vector<Advice>& advice) {
   const Judgement& judged = subject.judged;
-  const BiopsyCore& core = *judged.core;
   if (core.pieces.empty()) {  // deeper insertion would be wrong advice
     advice.push_back({points,
                       "No tissue was taken: the stylet hit bone. Choose an insertion point and a direction that pass "
                       "beside it.",
-                      subject.measured.end_s});
+                      core.time_s});
     return;
   }
   const double middle_mm = subject.needle.notch_middle_mm();
@@ -96,21 +96,37 @@ void add_core_hint(const HintSubject& subject, double points, std::vector<Advice
   const std::string why = correction.deviation.empty() ? "."
                                                        : fmt::format(": the notch lay {}; {} before you fire.",
                                                                      correction.deviation, correction.advice);
-  advice.push_back({points, what + why, subject.measured.end_s});
+  advice.push_back({points, what + why, core.time_s});
+}
+
+/// Cores that were not taken.
+void add_missing_cores(const HintSubject& subject, double points, std::vector<Advice>& advice) {
+  const std::size_t taken = subject.judged.cores.size(), wanted = subject.task.cores;
+  const char* const how = subject.needle.is_coaxial ? "load the gun again while the coaxial needle stays in place"
+                                                    : "withdraw the needle, load the gun and puncture again";
+  advice.push_back(
+      {points,
+       fmt::format("{} of {} cores {} taken: {}, and fire once more.", taken, wanted, taken == 1 ? "was" : "were", how),
+       subject.judged.cores.back().time_s});
 }
 
 void add_target_advice(const HintSubject& subject, std::vector<Advice>& advice) {
   const Judgement& judged = subject.judged;
   const double lost_core = lost(subject, "core"), lost_target = lost(subject, "target");
   const Vec3 path_P = judged.expert.line_P.direction();
-  if (subject.needle.is_biopsy && !judged.core) {
+  const auto worst = std::min_element(judged.cores.begin(), judged.cores.end(),
+                                      [](const auto& a, const auto& b) { return a.target_mm < b.target_mm; });
+  const bool is_full = worst != judged.cores.end() && worst->target_mm >= kFullCore * judged.possible_core_mm;
+  if (subject.needle.is_biopsy && judged.cores.empty()) {
     const Correction correction = correct(subject.measured.target_offset_P, path_P);
     const std::string where = lost_target > 0.0 ? fmt::format(" The tip stopped {}.", correction.deviation) : "";
     advice.push_back({lost_core + lost_target,
                       "No core was taken: bring the tip to the target, hold it still and fire the gun." + where,
                       subject.measured.end_s});
-  } else if (judged.core && (lost_core > 0.0 || judged.core->pieces.empty())) {
-    add_core_hint(subject, lost_core + lost_target, advice);
+  } else if (lost_core > 0.0 && is_full && judged.cores.size() < subject.task.cores) {
+    add_missing_cores(subject, lost_core, advice);
+  } else if (worst != judged.cores.end() && (lost_core > 0.0 || worst->pieces.empty())) {
+    add_core_hint(subject, *worst, lost_core + lost_target, advice);
   } else if (lost_target > 0.0) {
     const Correction correction = correct(subject.measured.target_offset_P, path_P);
     advice.push_back({lost_target,
@@ -253,7 +269,7 @@ void add_economy_advice(const HintSubject& subject, std::vector<Advice>& advice)
   if (const double points = lost(subject, "length"); points > 0.0)
     if (std::string text = travel_hint(subject, is_depth_told); !text.empty())
       advice.push_back({points, std::move(text), {}});
-  const bool is_finished = subject.judged.core || !subject.needle.is_biopsy;
+  const bool is_finished = !subject.judged.cores.empty() || !subject.needle.is_biopsy;
   if (const double points = lost(subject, "time"); points > 0.0 && is_finished)
     advice.push_back({points,
                       fmt::format("It took {:.0f} s from the skin to the target: plan the path first, then go "
@@ -266,6 +282,12 @@ void add_economy_advice(const HintSubject& subject, std::vector<Advice>& advice)
                                   "pulses a second, collimate, and work with the last image.",
                                   find_part(subject.parts, "dose")->value),
                       {}});
+  if (const double points = lost(subject, "passes"); points > 0.0)
+    advice.push_back({points,
+                      fmt::format("The {} was punctured {} times: stay in it, and correct the direction without "
+                                  "leaving it.",
+                                  anatomy::structure_words(subject.task.organ), subject.judged.bleeding->passes),
+                      {}});
   if (const double points = lost(subject, "visibility"); points > 0.0)
     advice.push_back({points,
                       fmt::format("The tip was in the image during {:.0f} % of the advance: stop when you lose it, and "
@@ -275,15 +297,19 @@ void add_economy_advice(const HintSubject& subject, std::vector<Advice>& advice)
 }
 
 std::string praise(const HintSubject& subject) {
-  const auto& core = subject.judged.core;
-  const std::string taken =
-      core ? fmt::format(", {:.0f} mm of {} in the core", core->target_mm, target_name(subject)) : "";
+  const std::vector<BiopsyCore>& cores = subject.judged.cores;
+  double target_mm = 0.0;
+  for (const BiopsyCore& core : cores) target_mm += core.target_mm;
+  const std::string taken = cores.empty() ? ""
+                                          : fmt::format(", {:.0f} mm of {} in {}", target_mm, target_name(subject),
+                                                        cores.size() == 1 ? "the core" : "the cores");
   const std::string where = subject.judged.target_mm < kNameable
                                 ? fmt::format("the tip was in the {}", target_name(subject))
                                 : fmt::format("the tip came within {:.1f} mm of the target", subject.judged.target_mm);
   return fmt::format(
       "Well done: {}{}, and nothing at risk was touched.",
-      core ? fmt::format("the tip came within {:.1f} mm of the target", subject.judged.target_mm) : where, taken);
+      !cores.empty() ? fmt::format("the tip came within {:.1f} mm of the target", subject.judged.target_mm) : where,
+      taken);
 }
 
 }  // namespace

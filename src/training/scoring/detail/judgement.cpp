@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "scoring/core_sample.h"
+#include "scoring/detail/bleeding.h"
 #include "tasks/assess_path.h"
 #include "tasks/task_labels.h"
 #include "volume/sampling.h"
@@ -41,10 +42,14 @@ double find_target_mm(const Judgement& judged) {
     if (is_long_target && label != nullptr && tasks::is_target(attempt.task, *label)) return 0.0;
   }
   double nearest_mm = HUGE_VAL;
-  for (const tasks::PlannedPath& path : attempt.experts)
-    nearest_mm = std::min(nearest_mm, (reach_P(attempt.needle, metrics.tip_P, metrics.axis_P) -
-                                       reach_P(attempt.needle, path.line_P.b, path.line_P.direction()))
-                                          .norm());
+  const auto reach = [&](const Vec3& tip_P, const Vec3& axis_P) {
+    for (const tasks::PlannedPath& path : attempt.experts)
+      nearest_mm = std::min(nearest_mm, (reach_P(attempt.needle, tip_P, axis_P) -
+                                         reach_P(attempt.needle, path.line_P.b, path.line_P.direction()))
+                                            .norm());
+  };
+  for (const BiopsyCore& core : judged.cores) reach(core.tip_P, core.axis_P);
+  if (judged.cores.empty()) reach(metrics.tip_P, metrics.axis_P);
   return nearest_mm;
 }
 
@@ -81,13 +86,15 @@ AccessJudgement judge_access(const Judgement& judged) {
 /// Structures touched by the stylet but not by the needle.
 std::vector<metrics::RiskTouch> find_stylet_risks(const Judgement& judged, const tasks::TaskLabels& labels) {
   std::vector<metrics::RiskTouch> touches;
-  if (!judged.core) return touches;
-  for (const std::string& name : judged.core->risks_in_throw) {
-    const bool is_known = std::any_of(judged.measured.risks.begin(), judged.measured.risks.end(),
-                                      [&](const metrics::RiskTouch& touch) { return touch.label == name; });
-    const anatomy::Label* const label = judged.attempt.patient.label_table.find(name);
-    if (!is_known) touches.push_back({name, 0.0, labels.risk(label->id)->penalty});
-  }
+  const auto is_among = [](const std::vector<metrics::RiskTouch>& known, const std::string& name) {
+    return std::any_of(known.begin(), known.end(), [&](const auto& touch) { return touch.label == name; });
+  };
+  for (const BiopsyCore& core : judged.cores)
+    for (const std::string& name : core.risks_in_throw) {
+      if (is_among(judged.measured.risks, name) || is_among(touches, name)) continue;
+      const anatomy::Label* const label = judged.attempt.patient.label_table.find(name);
+      touches.push_back({name, 0.0, labels.risk(label->id)->penalty, core.time_s});
+    }
   return touches;
 }
 
@@ -130,11 +137,29 @@ std::optional<double> find_confirmation(const AttemptData& attempt) {
 /// The sample at which the needle has reached its end: the shot, or that at which the right substance came back. Empty:
 /// the deepest one.
 std::optional<std::size_t> find_end(const AttemptData& attempt, std::optional<double> confirmed_s) {
-  if (attempt.needle.is_biopsy || !confirmed_s) return attempt.fired;
+  if (attempt.needle.is_biopsy) {  // the first shot in the body
+    const auto is_inside = [&](std::size_t shot) { return attempt.samples[shot].depth_mm > 0.0; };
+    const auto shot = std::find_if(attempt.shots.begin(), attempt.shots.end(), is_inside);
+    if (shot != attempt.shots.end()) return *shot;
+    if (!attempt.shots.empty()) return attempt.shots.front();
+  }
+  if (attempt.needle.is_biopsy || !confirmed_s) return std::nullopt;
   const auto found = std::find_if(attempt.samples.begin(), attempt.samples.end(),
                                   [&](const telemetry::TickSample& sample) { return sample.time_s >= *confirmed_s; });
   if (found == attempt.samples.end()) return attempt.samples.size() - 1;
   return static_cast<std::size_t>(found - attempt.samples.begin());
+}
+
+/// Cores of the shots inside the body.
+std::vector<BiopsyCore> take_cores(const AttemptData& attempt) {
+  std::vector<BiopsyCore> cores;
+  for (const std::size_t shot : attempt.shots) {
+    const telemetry::TickSample& sample = attempt.samples[shot];
+    if (!(sample.depth_mm > 0.0) || !sample.tip_mm.allFinite() || !sample.axis.allFinite()) continue;
+    cores.push_back(take_core(attempt.task, attempt.patient, attempt.needle, sample.tip_mm, sample.axis));
+    cores.back().time_s = sample.time_s;
+  }
+  return cores;
 }
 
 }  // namespace
@@ -159,9 +184,7 @@ Judgement judge(const AttemptData& attempt, std::size_t& expert) {
         take_core(attempt.task, attempt.patient, attempt.needle, plan_P.b, plan_P.direction()).target_mm;
     // A plan without a core is no reference.
     if (judged.possible_core_mm <= 0.0) judged.possible_core_mm = attempt.needle.notch_mm;
-    if (attempt.fired && judged.measured.has_entered)
-      judged.core =
-          take_core(attempt.task, attempt.patient, attempt.needle, judged.measured.tip_P, judged.measured.axis_P);
+    if (judged.measured.has_entered) judged.cores = take_cores(attempt);
   }
   if (judged.measured.has_entered) {
     judged.target_mm = find_target_mm(judged);
@@ -172,6 +195,7 @@ Judgement judge(const AttemptData& attempt, std::size_t& expert) {
   for (const auto* touches : {&judged.measured.risks, &judged.stylet_risks})
     for (const metrics::RiskTouch& touch : *touches) judged.risk_penalty += touch.penalty;
   judged.pain = find_pain(attempt, judged.measured.has_entered);
+  if (judged.measured.has_entered) judged.bleeding = judge_bleeding(judged);
   return judged;
 }
 

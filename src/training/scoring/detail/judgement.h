@@ -35,12 +35,13 @@ struct Judgement {
   double target_mm = 0.0;  ///< Distance to the target: of the notch for a biopsy needle, 0 in the target.
   double entry_mm = 0.0;   ///< Of the entry, from the zone's edge or the expert's.
   AccessJudgement access;
-  std::optional<BiopsyCore> core;
+  std::vector<BiopsyCore> cores;                 ///< By time.
   double possible_core_mm = 0.0;                 ///< Length of target tissue in a core at the planned place.
   std::vector<metrics::RiskTouch> stylet_risks;  ///< Structures that only the stylet touched.
   double risk_penalty = 0.0;
   std::vector<PainEvent> pain;
   std::optional<double> confirmed_s;  ///< Time at which the right substance came back.
+  std::optional<Bleeding> bleeding;
 };
 
 /// Judges an attempt against its nearest expert path.

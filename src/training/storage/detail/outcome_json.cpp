@@ -76,7 +76,19 @@ scoring::BiopsyCore read_core(const config::Json& object, bool& is_valid) {
   core.vessel_mm = reader.number("vessel_mm");
   core.other_mm = reader.number("other_mm");
   core.risks_in_throw = reader.texts("risks_in_throw");
+  if (object.contains("time_s")) core.time_s = reader.number("time_s");
   return core;
+}
+
+scoring::Bleeding read_bleeding(const config::Json& object, bool& is_valid) {
+  Reader reader(object, is_valid);
+  scoring::Bleeding bleeding;
+  const auto risk = scoring::find_bleeding_risk(reader.text("risk"));
+  if (!risk) is_valid = false;
+  bleeding.risk = risk.value_or(scoring::BleedingRisk::kUsual);
+  bleeding.reasons = reader.texts("reasons");
+  bleeding.passes = static_cast<std::size_t>(std::clamp(reader.number("passes"), 0.0, 1e9));
+  return bleeding;
 }
 
 /// The metrics that have a value.
@@ -123,7 +135,8 @@ std::string outcome_to_json(const scoring::Outcome& outcome) {
                       {"metrics", metrics_json(outcome.measures)},
                       {"risks_touched", outcome.risks_touched}};
   if (!outcome.is_scored()) object["not_scored"] = outcome.not_scored;
-  if (outcome.core) object["core"] = core_json(*outcome.core);
+  if (!outcome.cores.empty()) object["cores"] = cores_json(outcome.cores);
+  if (outcome.bleeding) object["bleeding"] = bleeding_json(*outcome.bleeding);
   return object.dump(-1, ' ', false, config::Json::error_handler_t::replace);
 }
 
@@ -143,7 +156,12 @@ Result<scoring::Outcome> outcome_from_json(std::string_view text, const std::str
   if (object.contains("passed")) read_judgement(object, outcome, is_valid);
   outcome.risks_touched = reader.texts("risks_touched");
   if (object.contains("not_scored")) outcome.not_scored = reader.text("not_scored");
-  if (const auto core = object.find("core"); core != object.end()) outcome.core = read_core(*core, is_valid);
+  if (object.contains("cores"))
+    for (const config::Json& core : reader.array("cores")) outcome.cores.push_back(read_core(core, is_valid));
+  if (const auto core = object.find("core"); core != object.end())  // of an older program
+    outcome.cores.push_back(read_core(*core, is_valid));
+  if (const auto bleeding = object.find("bleeding"); bleeding != object.end())
+    outcome.bleeding = read_bleeding(*bleeding, is_valid);
   if (!is_valid) return fail("the session's outcome is damaged", where, "record the session again");
   return outcome;
 }

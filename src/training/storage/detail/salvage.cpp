@@ -54,7 +54,9 @@ class Salvage {
     if (is_finished_ && session_.has_checksums)
       attempt(kTicksHashPart, [&] { session_.ticks_hash = read_ticks_hash(database_.session()); });
     session_.is_incomplete = !is_finished_ && !has_part(kOutcomePart);
-    return read_outcome();
+    std::string outcome = read_outcome();
+    find_shots();
+    return outcome;
   }
 
  private:
@@ -205,6 +207,21 @@ class Salvage {
     return sample;
   }
 
+  /// The samples of the shots among the actions; that of the outcome is an older program's.
+  void find_shots() {
+    constexpr double kSameTick_s = 1e-4;  // actions of one tick are recorded a little after each other
+    const auto& samples = session_.samples;
+    std::vector<std::size_t> shots;
+    for (const tasks::Action& action : session_.actions) {
+      if (action.kind != tasks::ActionKind::kFire) continue;
+      const auto behind = std::upper_bound(samples.begin(), samples.end(), action.time_s,
+                                           [](double time_s, const auto& sample) { return time_s < sample.time_s; });
+      if (behind == samples.begin() || action.time_s - (behind - 1)->time_s > kSameTick_s) continue;
+      shots.push_back(static_cast<std::size_t>(behind - samples.begin()) - 1);
+    }
+    if (!shots.empty()) session_.shots = std::move(shots);
+  }
+
   std::string read_outcome() {
     std::string json;
     const bool is_read = attempt(kOutcomePart, [&] {
@@ -213,10 +230,10 @@ class Salvage {
       database_.session() << "SELECT fired_tick, json FROM outcome", soci::into(fired, indicator), soci::into(json);
       if (json.empty() || indicator != soci::i_ok) return;
       if (fired < 0) throw soci::soci_error("the fired tick is out of range");
-      session_.fired = sample_of(static_cast<std::size_t>(fired));
+      if (const auto sample = sample_of(static_cast<std::size_t>(fired))) session_.shots = {*sample};
     });
     if (is_read && check(kOutcomePart, kOutcomeRows, is_finished_)) return json;
-    session_.fired.reset();
+    session_.shots.clear();
     return {};
   }
 

@@ -81,7 +81,7 @@ inline scoring::Outcome example_outcome() {
   core.vessel_mm = 0.7;
   core.other_mm = 0.3;
   core.risks_in_throw = {"gallbladder"};
-  outcome.core = core;
+  outcome.cores = {core};
   outcome.risks_touched = {"rib_right_9"};
   return outcome;
 }
@@ -99,7 +99,9 @@ inline void write_example(const std::filesystem::path& path, std::size_t ticks) 
     if (n % 10 != 0) continue;
     ASSERT_TRUE(writer->append(storage::TransducerSample{sample.time_s, Pose(), 0.5}));
   }
-  const Status status = writer->finish(example_outcome(), ticks > 5 ? std::optional<std::size_t>(5) : std::nullopt);
+  std::vector<std::size_t> shots;
+  if (ticks > 5) shots.push_back(5);
+  const Status status = writer->finish(example_outcome(), shots);
   ASSERT_TRUE(status) << status.error().text();
 }
 

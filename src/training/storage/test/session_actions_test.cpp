@@ -53,5 +53,32 @@ TEST(SessionActions, AreMissingInSessionsOfOlderProgramsAndReportedWhenChanged) 
   }
 }
 
+TEST(SessionActions, ShotsOfAKilledSessionAreKnown) {
+  const TemporaryFolder folder;
+  const fs::path path = folder / "killed.trocar";
+  std::vector<double> times_s;
+  {
+    auto writer = SessionWriter::create(path, testing::example_info());
+    ASSERT_TRUE(writer) << writer.error().text();
+    for (std::size_t n = 0; n < 2000; ++n) {
+      telemetry::TickSample sample = testing::example_sample(n);
+      sample.time_s = 0.001 * static_cast<double>(n);
+      times_s.push_back(sample.time_s);
+      ASSERT_TRUE(writer->append(sample));
+      const auto kind = n == 300   ? std::optional(tasks::ActionKind::kFire)
+                        : n == 400 ? std::optional(tasks::ActionKind::kLoad)
+                        : n == 700 ? std::optional(tasks::ActionKind::kFire)
+                                   : std::nullopt;
+      if (kind) {
+        ASSERT_TRUE(writer->append(tasks::Action{sample.time_s, *kind, 0.0, {}, Vec3::Zero(), 10.0}));
+      }
+    }
+  }
+  const auto session = load_session(path);
+  ASSERT_TRUE(session) << session.error().text();
+  EXPECT_TRUE(session->is_incomplete);
+  EXPECT_EQ(session->shots, (std::vector<std::size_t>{300, 700}));
+}
+
 }  // namespace
 }  // namespace trocar::storage

@@ -35,7 +35,7 @@ void expect_same_case(const Session& session) {
   ASSERT_TRUE(session.outcome);
   EXPECT_EQ(session.outcome->score, example_outcome().score);
   EXPECT_EQ(session.outcome->hints, example_outcome().hints);
-  EXPECT_EQ(session.fired, 5u);
+  EXPECT_EQ(session.shots, std::vector<std::size_t>{5});
   if (!session.has_checksums) return;
   ASSERT_EQ(session.parameters.size(), 1u);
   EXPECT_EQ(session.parameters[0].settings, std::vector<std::string>{"skin.fp=6"});
@@ -146,15 +146,15 @@ TEST(SessionDamage, FindsTheFiredTickBehindAGap) {
     auto writer = SessionWriter::create(path, example_info());
     ASSERT_TRUE(writer);
     for (std::size_t n = 0; n < 1800; ++n) ASSERT_TRUE(writer->append(example_sample(n)));
-    ASSERT_TRUE(writer->finish(example_outcome(), 1700));
+    ASSERT_TRUE(writer->finish(example_outcome(), std::vector<std::size_t>{1700}));
   }
   change(path, {"DELETE FROM ticks WHERE tick = 3"});
   const auto session = salvage_session(path);
   ASSERT_TRUE(session) << session.error().text();
-  ASSERT_TRUE(session->fired);
-  EXPECT_EQ(bits_of(session->samples[*session->fired]), bits_of(example_sample(1700)));
+  ASSERT_EQ(session->shots.size(), 1u);
+  EXPECT_EQ(bits_of(session->samples[session->shots.front()]), bits_of(example_sample(1700)));
   change(path, {"DELETE FROM ticks WHERE tick = 1600"});
-  EXPECT_FALSE(salvage_session(path)->fired);
+  EXPECT_TRUE(salvage_session(path)->shots.empty());
 }
 
 TEST(SessionDamage, NamesOtherParts) {

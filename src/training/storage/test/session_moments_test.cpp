@@ -71,13 +71,13 @@ TEST(SessionMoments, MarksTheTickAfterAnInterruptionAndAfterDamage) {
 
 TEST(SessionMoments, ContextHasPlanLayersAndShot) {
   Session session = session_of(60);
-  session.fired = 40;
+  session.shots = {40};
   const metrics::MetricContext context = context_of(session);
   ASSERT_EQ(context.expert_paths.size(), 1u);
   EXPECT_EQ(context.expert_paths[0].name, "expert");
   EXPECT_EQ(context.layer_names, session.info.layer_names);
   EXPECT_EQ(*context.fired_s, session.samples[40].time_s);
-  session.fired = 60;
+  session.shots = {60};
   session.info.plan_P.line_P.b = session.info.plan_P.line_P.a;
   EXPECT_FALSE(context_of(session).fired_s);
   EXPECT_TRUE(context_of(session).expert_paths.empty());

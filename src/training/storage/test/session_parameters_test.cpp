@@ -40,7 +40,7 @@ void write_session(const std::filesystem::path& path) {
       ASSERT_TRUE(writer->append(kChanged)) << "a server may tell it some ticks later";
     }
   }
-  ASSERT_TRUE(writer->finish(example_outcome(), std::nullopt));
+  ASSERT_TRUE(writer->finish(example_outcome(), {}));
 }
 
 TEST(SessionParametersFile, GivesChangesAndInterruptionsBack) {

@@ -43,6 +43,7 @@ constexpr std::array<ConditionRow, static_cast<std::size_t>(kLastCondition) + 1>
     {"wire_mm", Argument::kNumber, {1.0, 300.0}, "advance the guide wire {:.0f} mm"},
     {"throw_clear", Argument::kNone, {}, "make sure that the throw ends in safe tissue"},
     {"fired", Argument::kNone, {}, "fire the gun"},
+    {"cores", Argument::kNumber, {1.0, 10.0}, "take core number {:.0f}"},
     {"outside", Argument::kNone, {}, "withdraw the needle"},
 }};
 

@@ -31,6 +31,7 @@ enum class ConditionKind : std::uint8_t {
   kWire,            ///< Number: guide wire advanced beyond the tip, mm.
   kThrowClear,      ///< The stylet's way when fired has no structure at risk.
   kFired,           ///< The gun was fired.
+  kCores,           ///< So many cores were taken.
   kOutside,         ///< The needle has left the body again.
 };
 inline constexpr ConditionKind kLastCondition = ConditionKind::kOutside;

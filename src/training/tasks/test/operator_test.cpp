@@ -45,6 +45,46 @@ TEST(Expert, StopsAtTheTargetFiresOnceAndLeavesAtAnyRate) {
   }
 }
 
+/// The actions of a whole attempt of the expert.
+std::vector<ActionKind> actions_of_expert(const OperatorCase& the_case, LayeredBody& body) {
+  std::vector<ActionKind> kinds;
+  auto expert = make_expert(the_case);
+  struct Watch final : Operator {
+    HandCommand next(const OperatorView& view) noexcept override {
+      const HandCommand command = watched.next(view);
+      if (command.action) kinds.push_back(command.action->kind);
+      return command;
+    }
+    Operator& watched;
+    std::vector<ActionKind>& kinds;
+    Watch(Operator& o, std::vector<ActionKind>& k) : watched(o), kinds(k) {}
+  } watch(*expert, kinds);
+  body.run(watch, 60.0);
+  return kinds;
+}
+
+TEST(Expert, TakesTheCoresThroughACoaxialNeedleOrByAnotherPuncture) {
+  for (const bool loads_inside : {true, false}) {
+    OperatorCase the_case = case_of_length(75.0);
+    the_case.actions.cores = 2;
+    the_case.actions.loads_inside = loads_inside;
+    LayeredBody body(the_case.path_P, skin_muscle_capsule(), 0.001);
+    using enum ActionKind;
+    EXPECT_EQ(actions_of_expert(the_case, body), (std::vector<ActionKind>{kFire, kLoad, kFire}));
+    ASSERT_EQ(body.fired.size(), 2u);
+    for (const std::size_t fired : body.fired)
+      EXPECT_NEAR(body.depth_mm(body.samples[fired]), 75.0, 0.8) << loads_inside;
+    double shallowest_mm = 75.0;
+    for (std::size_t n = body.fired[0]; n < body.fired[1]; ++n)
+      shallowest_mm = std::min(shallowest_mm, body.depth_mm(body.samples[n]));
+    if (loads_inside) {
+      EXPECT_GT(shallowest_mm, 73.0);
+    } else {
+      EXPECT_LT(shallowest_mm, -15.0);
+    }
+  }
+}
+
 TEST(Expert, NeverOvershootsOnPathsOfAnyLength) {
   for (double length_mm = 42.0; length_mm <= 150.0; length_mm += 12.0) {
     const OperatorCase the_case = case_of_length(length_mm, static_cast<std::uint64_t>(length_mm));
@@ -157,7 +197,8 @@ TEST(Replay, GivesTheRecordedDevicePosesTickByTick) {
     sample.device_rotation_wxyz = to_wxyz(Eigen::Quaterniond(needle_pose(sample.device_mm, sample.axis).R()));
   }
   LayeredBody replayed(the_case.path_P, skin_muscle_capsule(), 0.001);
-  replayed.run(*make_replay(recorded.samples, recorded.fired.at(0)), 60.0);
+  const Action shot{recorded.samples.at(recorded.fired.at(0)).time_s, ActionKind::kFire};
+  replayed.run(*make_replay(recorded.samples, {shot}), 60.0);
   ASSERT_TRUE(replayed.is_done);
   EXPECT_EQ(replayed.fired, recorded.fired);
   ASSERT_GE(replayed.samples.size(), recorded.samples.size());

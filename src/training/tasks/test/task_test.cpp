@@ -51,7 +51,8 @@ TEST(Task, LiverBiopsyPassesTenMillimetresOfLiver) {
   EXPECT_EQ(task.min_organ_path_mm, 10.0);
   EXPECT_EQ(task.parenchymal_depth_mm, 20.0);
   EXPECT_EQ(task.parenchymal_vessel_mm, 10.0);
-  EXPECT_EQ(task.needle, "biopsy-18g");
+  EXPECT_EQ(task.needle, "biopsy-18g-coaxial");
+  EXPECT_EQ(task.cores, 2u);
 }
 
 TEST(Task, ARiskNamedByItsTissueIsNeitherTheOrganNorTheTarget) {

@@ -28,7 +28,7 @@ class LayeredBody {
       const tasks::HandCommand command =
           the_operator.next({time_s, dt_s_, X_PN_, samples.empty() ? telemetry::TickSample{} : last()});
       is_done = command.is_done;
-      if (command.has_fired) fired.push_back(samples.size());
+      if (command.fires()) fired.push_back(samples.size());
       step(command, time_s);
     }
   }

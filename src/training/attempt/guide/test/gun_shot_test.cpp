@@ -85,13 +85,21 @@ TEST(GunShot, AThrownShaftIsLongerByTheThrowAlongItsEnd) {
   EXPECT_TRUE(thrown_shaft({}, 5.0).empty());
 }
 
-TEST(GunShot, TheHintGoesOnToWithdrawing) {
+TEST(GunShot, TheHintGoesOnToTheNextCoreAndToWithdrawing) {
   telemetry::TickSample sample = at_target();
   EXPECT_NE(guide_puncture(liver().the_case, sample).find("fire"), std::string::npos);
-  EXPECT_NE(guide_puncture(liver().the_case, sample, true).find("withdraw the needle"), std::string::npos);
+  const cases::Case& the_case = liver().the_case;
+  ASSERT_EQ(the_case.task.cores, 2u);
+  EXPECT_NE(guide_puncture(the_case, sample, {1, false}).find("load the gun"), std::string::npos);
+  EXPECT_NE(guide_puncture(the_case, sample, {1, true}).find("fire"), std::string::npos);
+  EXPECT_NE(guide_puncture(the_case, sample, {2, false}).find("withdraw the needle"), std::string::npos);
+  cases::Case plain = the_case;
+  plain.needle.is_coaxial = false;
+  EXPECT_NE(guide_puncture(plain, sample, {1, false}).find("withdraw the needle, then load"), std::string::npos);
   sample.depth_mm = 0.0;
   sample.phase = telemetry::InsertionPhase::kOutside;
-  EXPECT_NE(guide_puncture(liver().the_case, sample, true).find("end the attempt"), std::string::npos);
+  EXPECT_NE(guide_puncture(plain, sample, {1, false}).find("load the gun"), std::string::npos);
+  EXPECT_NE(guide_puncture(the_case, sample, {2, false}).find("end the attempt"), std::string::npos);
 }
 
 }  // namespace

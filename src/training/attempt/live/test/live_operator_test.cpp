@@ -19,7 +19,7 @@ class Witness final : public tasks::Operator {
     tasks::HandCommand command;
     command.X_PN = Pose::translation({0.0, static_cast<double>(views.size()), 0.0});
     command.v_P = {0.0, 7.0, 0.0};
-    command.has_fired = views.size() == fires_at;
+    if (views.size() == fires_at) command.action = tasks::ActionRequest{tasks::ActionKind::kFire};
     command.is_done = views.size() == done_at;
     return command;
   }
@@ -239,7 +239,7 @@ TEST_F(LiveOperatorTest, FiresAtTheTickAfterTheCommandAndEndsWhenTheOperatorIsDo
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(take(kServer_s + 0.001 * i));
   EXPECT_FALSE(take(kServer_s + 0.003));
   const storage::Session session = recorded();
-  EXPECT_EQ(session.fired, std::optional<std::size_t>(2));
+  EXPECT_EQ(session.shots, std::vector<std::size_t>{2});
   EXPECT_EQ(session.samples.size(), 4u);
 }
 

@@ -57,9 +57,15 @@ TEST(AttemptReplay, NamesWhatHappenedInOrder) {
   EXPECT_NE(kinds.find("through the skin"), std::string::npos) << kinds;
   EXPECT_NE(kinds.find("through the liver capsule"), std::string::npos) << kinds;
   EXPECT_NE(kinds.find("the gun was fired"), std::string::npos) << kinds;
-  ASSERT_TRUE(replay->shot());
-  EXPECT_GT(replay->shot()->core.target_mm, 0.0);
-  EXPECT_NEAR(replay->shot()->core.target_mm, replay->outcome().core->target_mm, 1e-9);
+  ASSERT_EQ(replay->shots().size(), 2u);
+  EXPECT_GT(replay->shots()[0].core.target_mm, 0.0);
+  ASSERT_EQ(replay->outcome().cores.size(), 2u);
+  EXPECT_NEAR(replay->shots()[0].core.target_mm, replay->outcome().cores[0].target_mm, 1e-9);
+  const double first_s = replay->shots()[0].time_s, second_s = replay->shots()[1].time_s;
+  EXPECT_EQ(replay->shot_at(first_s - 0.01), nullptr);
+  EXPECT_EQ(replay->shot_at(first_s), &replay->shots()[0]);
+  EXPECT_EQ(replay->shot_at(second_s - 0.01), nullptr) << "the gun is loaded again";
+  EXPECT_EQ(replay->shot_at(second_s), &replay->shots()[1]);
   ASSERT_TRUE(replay->worst());
   EXPECT_NE(replay->worst()->text.find("mm from the planned path"), std::string::npos) << replay->worst()->text;
 }
