@@ -28,6 +28,8 @@ Direction direction_of(CameraPreset preset) {
       return {{0, -1, 0}, {0, 0, 1}};
     case CameraPreset::kRightAnteriorOblique:
       return {Vec3(-0.72, -0.80, 0.30).normalized(), {0, 0, 1}};
+    case CameraPreset::kLeftAnteriorOblique:
+      return {Vec3(0.72, -0.80, 0.30).normalized(), {0, 0, 1}};
     case CameraPreset::kRight:
       return {{-1, 0, 0}, {0, 0, 1}};
     case CameraPreset::kLeft:
@@ -56,6 +58,14 @@ Vec3 rotated(const Vec3& v, const Vec3& axis, double angle_rad) {
 double CameraView::mm_per_pixel(const Vec3& p_P, int rows) const noexcept {
   const double depth_mm = std::max(kNearest_mm, (p_P - eye_P).dot(forward_P()));
   return 2.0 * depth_mm * std::tan(0.5 * view_angle_rad) / std::max(1, rows);
+}
+
+CameraPreset preset_facing(const Vec3& outward_P) noexcept {
+  constexpr CameraPreset kPresets[] = {CameraPreset::kRightAnteriorOblique, CameraPreset::kLeftAnteriorOblique,
+                                       CameraPreset::kPosterior};
+  return *std::max_element(std::begin(kPresets), std::end(kPresets), [&](CameraPreset a, CameraPreset b) {
+    return direction_of(a).back_P.dot(outward_P) < direction_of(b).back_P.dot(outward_P);
+  });
 }
 
 CameraView fit_camera(std::span<const Vec3> points_P, CameraPreset preset, double aspect) {

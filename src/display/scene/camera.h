@@ -11,6 +11,7 @@ namespace trocar::scene {
 enum class CameraPreset {
   kAnterior,
   kRightAnteriorOblique,
+  kLeftAnteriorOblique,
   kRight,
   kLeft,
   kPosterior,
@@ -41,6 +42,9 @@ struct CameraView {
   /// Size of a pixel at a point, in an image of `rows` rows.
   double mm_per_pixel(const Vec3& p_P, int rows) const noexcept;
 };
+
+/// The preset that looks best at skin with this outward direction: an oblique one for front and sides, or the back.
+CameraPreset preset_facing(const Vec3& outward_P) noexcept;
 
 /// Camera towards the middle of the points (at least one), at the smallest distance at which an image of `aspect`
 /// (columns over rows) contains all points with a margin.

@@ -202,8 +202,13 @@ scene::FollowMode PatientView::follow() const {
   return impl_->scene->follow();
 }
 
+void PatientView::face(const Vec3& outward_P) {
+  home_ = scene::preset_facing(outward_P);
+  reset_camera();
+}
+
 void PatientView::reset_camera() {
-  set_camera(scene::CameraPreset::kRightAnteriorOblique);
+  set_camera(home_);
 }
 
 void PatientView::set_stereo(const scene::StereoOptions& options) {

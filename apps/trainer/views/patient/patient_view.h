@@ -74,7 +74,8 @@ class PatientView : public QWidget {
   const scene::CameraView& view() const;
   void set_follow(scene::FollowMode mode);
   scene::FollowMode follow() const;
-  /// Restores the initial view of the last patient.
+  /// Turns the side with this outward direction of the skin to the viewer; reset_camera() returns to it.
+  void face(const Vec3& outward_P);
   void reset_camera();
 
   void set_stereo(const scene::StereoOptions& options);
@@ -138,6 +139,7 @@ class PatientView : public QWidget {
   QPointF unmirrored(const QPointF& place) const;
 
   std::unique_ptr<Impl> impl_;
+  scene::CameraPreset home_ = scene::CameraPreset::kRightAnteriorOblique;
   bool is_guidance_visible_ = true;
   bool are_landmarks_visible_ = false;
   Qt::MouseButton drag_ = Qt::NoButton;

@@ -80,6 +80,7 @@ class PatientViewEntry final : public View {
                         the_case.plan.line_P.b);
     surface_groups_ = 0;
     add_new_surfaces();
+    view_->face(-the_case.plan.line_P.direction());
     view_->set_path(the_case.plan.line_P, case_.entry_zone.radius_mm);
     view_->scene().set_entry_centre(case_.entry_zone.centre_P);
     has_patient_ = true;

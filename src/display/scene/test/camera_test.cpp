@@ -29,6 +29,13 @@ TEST(Camera, PresetsLookFromTheirSideWithTheHeadUp) {
   }
 }
 
+TEST(Camera, TheSideOfThePunctureFacesTheViewer) {
+  EXPECT_EQ(preset_facing({-1, 0, 0}), CameraPreset::kRightAnteriorOblique);
+  EXPECT_EQ(preset_facing({-0.3, -0.95, 0}), CameraPreset::kRightAnteriorOblique);
+  EXPECT_EQ(preset_facing({0.6, -0.8, 0}), CameraPreset::kLeftAnteriorOblique);
+  EXPECT_EQ(preset_facing({0.1, 0.9, -0.4}), CameraPreset::kPosterior);
+}
+
 TEST(Camera, FitHoldsAllPoints) {
   for (const double aspect : {0.5, 1.0, 2.0}) {
     const CameraView view = fit_camera(kCorners_P, CameraPreset::kRightAnteriorOblique, aspect);
