@@ -123,7 +123,7 @@ void print_part(const scoring::ScorePart& part) {
   if (scoring::is_deduction(part)) {
     fmt::print("  {:<44} {:>13} {:>6.1f} points\n", part.title, "", part.points);
   } else {
-    fmt::print("  {:<44} {:>8.2f} {:<4} {:>6.1f} of {:.1f} points\n", part.title, part.value, part.unit, part.points,
+    fmt::print("  {:<44} {:>12} {:>6.1f} of {:.1f} points\n", part.title, scoring::part_value_text(part), part.points,
                part.max_points);
   }
 }

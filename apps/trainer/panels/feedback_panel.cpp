@@ -164,8 +164,7 @@ void FeedbackPanel::show_parts(const std::vector<scoring::ScorePart>& parts) {
     auto* title = make_label(to_qt(part.title));
     title->setWordWrap(true);
     parts_->addWidget(title, row, 0);
-    auto* value =
-        make_label(tr("%1 %2").arg(part.value, 0, 'f', part.value < 100.0 ? 1 : 0).arg(to_qt(part.unit)), "dim");
+    auto* value = make_label(to_qt(scoring::part_value_text(part)), "dim");
     value->setAlignment(Qt::AlignRight | Qt::AlignBottom);
     value->setVisible(!scoring::is_deduction(part));
     parts_->addWidget(value, row, 1);

@@ -216,6 +216,12 @@ std::string_view part_title(std::string_view part) noexcept {
   return {};
 }
 
+std::string part_value_text(const ScorePart& part) {
+  if (part.name == "confirmation") return part.value > 0.0 ? "yes" : "no";
+  if (part.unit.empty()) return fmt::format("{:.0f}", part.value);
+  return fmt::format("{:.{}f} {}", part.value, part.value < 100.0 ? 1 : 0, part.unit);
+}
+
 Outcome score_attempt(const AttemptData& given) {
   AttemptData attempt = given;
   while (!attempt.shots.empty() && attempt.shots.back() >= attempt.samples.size())

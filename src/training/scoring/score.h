@@ -63,6 +63,8 @@ struct ScorePart {
   double points = 0.0;  ///< 0..max_points.
   double max_points = 0.0;
 };
+/// Text of a part's value: "3.1 mm", a number of events, or whether the place was proven.
+std::string part_value_text(const ScorePart& part);
 /// True for a part of a session of an older program that contains penalties beyond the points of the part "risk".
 inline bool is_deduction(const ScorePart& part) noexcept {
   return part.max_points <= 0.0;

@@ -64,7 +64,7 @@ std::string part_row(const scoring::ScorePart& part) {
   return fmt::format(
       "<tr><td>{}</td><td class=\"number\">{}</td><td class=\"bar\"><div class=\"track\"><div class=\"fill{}\" "
       "style=\"width:{:.1f}%\"></div></div></td><td class=\"number\"><b>{}</b> / {}</td></tr>",
-      escape(part.title), with_unit(part.value, part.unit), share < kLowShare ? " low" : "", 100.0 * share,
+      escape(part.title), escape(scoring::part_value_text(part)), share < kLowShare ? " low" : "", 100.0 * share,
       short_number(part.points), short_number(part.max_points));
 }
 

@@ -315,6 +315,14 @@ TEST(Hints, SpeakOfWhatMattersOnly) {
   EXPECT_FALSE(has_hint(outcome, "pointed"));
 }
 
+TEST(Score, ValuesReadAsWhatTheyAre) {
+  EXPECT_EQ(part_value_text({"target", "", 3.14, "mm", 0.0, 0.0}), "3.1 mm");
+  EXPECT_EQ(part_value_text({"time", "", 123.4, "s", 0.0, 0.0}), "123 s");
+  EXPECT_EQ(part_value_text({"risk", "", 2.0, "", 0.0, 0.0}), "2");
+  EXPECT_EQ(part_value_text({"confirmation", "", 1.0, "", 0.0, 0.0}), "yes");
+  EXPECT_EQ(part_value_text({"confirmation", "", 0.0, "", 0.0, 0.0}), "no");
+}
+
 TEST(Score, EntryInsideTheZoneIsWhole) {
   using namespace testing;
   const anatomy::VirtualPatient patient = make_box_patient();
