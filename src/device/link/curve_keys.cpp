@@ -1,17 +1,15 @@
 #include "link/curve_keys.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
-#include <unistd.h>
 #include <zmq.h>
 
 #include <array>
 #include <cerrno>
-#include <cstring>
 #include <sstream>
 
 #include "core/files/atomic_file.h"
+#include "core/files/private_file.h"
 
 namespace trocar::link {
 namespace {
@@ -21,8 +19,6 @@ constexpr std::size_t kKeyCharacters = 40;  ///< 32 bytes in Z85.
 constexpr std::size_t kKeyBytes = 32;
 constexpr std::size_t kMostKeyFileBytes = 4096;
 constexpr std::size_t kMostAllowListBytes = 1 << 20;
-constexpr mode_t kUserMayReadAndWrite = 0600;
-constexpr mode_t kOthers = 0077;
 constexpr mode_t kOthersMayWrite = 0022;
 constexpr std::string_view kPublicWord = "public";
 constexpr std::string_view kSecretWord = "secret";
@@ -86,14 +82,6 @@ Result<std::set<std::string>> read_public_keys(const fs::path& file, std::size_t
   return keys;
 }
 
-Status check_for_user_alone(const fs::path& file) {
-  struct stat status {};
-  if (::stat(file.c_str(), &status) != 0) return fail("no such file", file.string(), "check the path");
-  if ((status.st_mode & kOthers) == 0) return {};
-  return fail("the secret key is readable by other users", file.string(),
-              fmt::format("chmod 600 {}, or make new keys", file.string()));
-}
-
 /// Users who can write to such a file decide which keys this program trusts.
 Status check_written_by_user_alone(const fs::path& file) {
   struct stat status {};
@@ -105,30 +93,12 @@ Status check_written_by_user_alone(const fs::path& file) {
   return fail("the key file belongs to another user", file.string(), "copy it: cp FILE COPY");
 }
 
-/// A new file that is never readable by other users.
-Status write_secret(const fs::path& file, std::string_view text) {
-  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kUserMayReadAndWrite);
-  if (descriptor < 0)
-    return fail(std::string("cannot be made: ") + std::strerror(errno), file.string(),
-                "choose a folder that you may write to");
-  while (!text.empty()) {
-    const ssize_t written = ::write(descriptor, text.data(), text.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) break;
-    text.remove_prefix(static_cast<std::size_t>(written));
-  }
-  const bool is_flushed = ::fsync(descriptor) == 0;
-  const bool is_closed = ::close(descriptor) == 0;
-  if (text.empty() && is_flushed && is_closed) return {};
-  return fail("cannot be written", file.string(), "free some disk space");
-}
-
 /// NAME.key and NAME.pub in a folder.
 Result<CurveKeys> write_pair(const fs::path& folder, std::string_view name) {
   TROCAR_TRY(CurveKeys keys, make_curve_keys());
-  TROCAR_TRY_STATUS(write_secret(folder / fmt::format("{}.key", name),
-                                 fmt::format("# Key pair of a Trocar {}: keep it secret.\n{} {}\n{} {}\n", name,
-                                             kPublicWord, keys.public_key, kSecretWord, keys.secret_key)));
+  TROCAR_TRY_STATUS(write_private_file(folder / fmt::format("{}.key", name),
+                                       fmt::format("# Key pair of a Trocar {}: keep it secret.\n{} {}\n{} {}\n", name,
+                                                   kPublicWord, keys.public_key, kSecretWord, keys.secret_key)));
   TROCAR_TRY_STATUS(write_file_atomically(folder / fmt::format("{}.pub", name),
                                           fmt::format("# Public key of a Trocar {}.\n{}\n", name, keys.public_key)));
   return keys;
@@ -160,7 +130,7 @@ Status write_key_folder(const fs::path& folder) {
 }
 
 Result<CurveKeys> load_curve_keys(const fs::path& file) {
-  TROCAR_TRY_STATUS(check_for_user_alone(file));
+  TROCAR_TRY_STATUS(check_private_file(file));
   CurveKeys keys;
   TROCAR_TRY_STATUS(read_lines(file, kMostKeyFileBytes, [&](const Words& words) {
     const bool is_public = words.first == kPublicWord;

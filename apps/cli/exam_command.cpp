@@ -1,0 +1,176 @@
+// trocar exam: the number of an exam, signed results and their check.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <random>
+
+#include "commands.h"
+#include "core/files/atomic_file.h"
+#include "core/files/user_folders.h"
+#include "exams/exam_body.h"
+#include "exams/exam_result.h"
+#include "io/patient/patient_cache.h"
+#include "learning/history.h"
+#include "number_option.h"
+#include "tasks/task.h"
+
+namespace trocar::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostKeyBytes = 4096;
+
+struct DrawArguments {
+  std::string task, sessions;
+  std::int64_t difficulty = 1;
+  std::uint64_t number = 0;  ///< 0: drawn.
+  bool is_json = false;
+};
+
+struct ResultArguments {
+  std::string file, key, state, sessions;
+};
+
+fs::path state_folder(const std::string& given) {
+  return given.empty() ? user_state_folder() : fs::path(given);
+}
+
+fs::path sessions_folder(const std::string& given) {
+  return given.empty() ? user_state_folder() / "sessions" : fs::path(given);
+}
+
+Status draw(const DrawArguments& arguments) {
+  TROCAR_TRY(const fs::path tasks_folder, find_data("tasks"));
+  TROCAR_TRY_STATUS(tasks::load_task(tasks_folder, arguments.task));
+  TROCAR_TRY(const std::string patient,
+             exams::patient_of_difficulty(arguments.task, static_cast<int>(arguments.difficulty)));
+  TROCAR_TRY(const learning::History history, learning::read_history(sessions_folder(arguments.sessions)));
+  exams::ExamBody body;
+  {
+    const ProgressPrinter printer;
+    const exams::FitCheck check =
+        exams::fit_check(arguments.task, patient, io::patient_cache_folder(), printer.callback());
+    std::random_device random;
+    TROCAR_TRY(body, arguments.number == 0 ? exams::draw_body(patient, history.attempts, random(), check)
+                                           : exams::find_body(patient, arguments.number, history.attempts, check));
+  }
+  for (const std::uint64_t unfit : body.unfit)
+    print_warning(fmt::format("exam {} was not taken: its body cannot serve the task", unfit));
+  if (arguments.is_json) {
+    print_json({{"task", arguments.task},
+                {"patient", patient},
+                {"difficulty", arguments.difficulty},
+                {"exam_number", body.number},
+                {"body_was_known", body.is_known},
+                {"unfit", body.unfit}});
+  } else {
+    fmt::print("exam {} of {}, difficulty {} (patient {}, seed {}){}\n", body.number, arguments.task,
+               arguments.difficulty, patient, body.number,
+               body.is_known ? ": known, an attempt of this folder was on this body" : "");
+  }
+  return {};
+}
+
+Status sign(const ResultArguments& arguments) {
+  TROCAR_TRY(const auto key, signing::open_station_key(state_folder(arguments.state) / exams::kStationKeyFile));
+  const fs::path folder =
+      arguments.sessions.empty() ? fs::absolute(arguments.file).parent_path() : fs::path(arguments.sessions);
+  TROCAR_TRY(const learning::History history, learning::read_history(folder));
+  TROCAR_TRY(const fs::path result, exams::sign_exam(arguments.file, history.attempts, key));
+  fmt::print("{}\n", result.string());
+  return {};
+}
+
+/// A public key as 64 hexadecimal digits, or a file that holds it; empty: the station's own.
+Result<signing::PublicKey> trusted_key(const ResultArguments& arguments) {
+  if (arguments.key.empty()) {
+    const fs::path file = state_folder(arguments.state) / exams::kStationKeyFile;
+    std::error_code error;
+    if (!fs::exists(file, error))
+      return fail_usage("this station has no key", file.string(), "give the key of the other station with --key");
+    TROCAR_TRY(const auto key, signing::load_station_key(file));
+    return key.public_key();
+  }
+  if (const auto key = signing::parse_public_key(arguments.key)) return *key;
+  std::error_code error;
+  if (fs::exists(arguments.key, error)) {
+    TROCAR_TRY(std::string text, read_file(arguments.key, kMostKeyBytes));
+    while (!text.empty() && (text.back() == '\n' || text.back() == '\r' || text.back() == ' ')) text.pop_back();
+    if (const auto key = signing::parse_public_key(text)) return *key;
+  }
+  return fail_usage("is no public key", arguments.key,
+                    "give the 64 digits that trocar exam key prints on the station, or a file with them");
+}
+
+Status verify(const ResultArguments& arguments) {
+  TROCAR_TRY(const signing::PublicKey key, trusted_key(arguments));
+  TROCAR_TRY(const exams::Verification verification, exams::verify_exam(arguments.file, key));
+  if (!verification.is_valid()) return fail(verification.text, arguments.file, "do not rely on this result");
+  fmt::print("{}\n", verification.text);
+  return {};
+}
+
+Status print_key(const ResultArguments& arguments) {
+  TROCAR_TRY(const auto key, signing::open_station_key(state_folder(arguments.state) / exams::kStationKeyFile));
+  fmt::print("{}\n", signing::to_hex(key.public_key()));
+  return {};
+}
+
+void add_state_option(CLI::App& command, const std::shared_ptr<ResultArguments>& arguments) {
+  command.add_option("--state", arguments->state, "Folder of the station's key [$XDG_STATE_HOME/trocar]");
+}
+
+void add_draw(CLI::App& exam, Action& action) {
+  CLI::App* command = exam.add_subcommand("draw", "Draw the number of an exam on an unseen body, or check a number");
+  const auto a = std::make_shared<DrawArguments>();
+  command->add_option("TASK,--task", a->task, "Task; see trocar task list")->required();
+  arguments::whole_number_within(command->add_option("--difficulty", a->difficulty, "Difficulty of the case"), 1, 5)
+      ->capture_default_str();
+  arguments::seed_number(command->add_option("--number", a->number, "Check this exam instead of drawing one"));
+  command->add_option(
+      "--sessions", a->sessions,
+      "Folder of sessions whose bodies are known [those of the trainer: $XDG_STATE_HOME/trocar/sessions]");
+  command->add_flag("--json", a->is_json, "Print one JSON object");
+  command->footer("Example:\n  trocar exam draw liver-biopsy --difficulty 2\n");
+  command->callback([&action, a] { action = [a] { return draw(*a); }; });
+}
+
+void add_result_commands(CLI::App& exam, Action& action) {
+  const auto a = std::make_shared<ResultArguments>();
+  CLI::App* sign_command = exam.add_subcommand("sign", "Sign the session of an exam; the trainer does it by itself");
+  sign_command->add_option("SESSION", a->file, "Session of an exam")->required();
+  sign_command->add_option("--sessions", a->sessions,
+                           "Folder of sessions whose bodies are known [that of the session]");
+  add_state_option(*sign_command, a);
+  sign_command->footer("Example:\n  trocar exam sign exam.trocar\n");
+  sign_command->callback([&action, a] { action = [a] { return sign(*a); }; });
+
+  CLI::App* verify_command =
+      exam.add_subcommand("verify", "Check the signature of a result, and the session beside it");
+  verify_command->add_option("RESULT", a->file, "Result of an exam (.result.json)")->required();
+  verify_command->add_option("--key", a->key, "Public key of the station, or a file with it [this station's]");
+  add_state_option(*verify_command, a);
+  verify_command->footer(
+      "Exit status: 0 valid, also if it was signed by another version of the program, which is said; 1 changed, or "
+      "signed with another key; 2 no result, no key.\n"
+      "Example:\n  trocar exam verify exam.result.json --key station.pub\n");
+  verify_command->callback([&action, a] { action = [a] { return verify(*a); }; });
+
+  CLI::App* key_command = exam.add_subcommand("key", "Print the public key of this station");
+  add_state_option(*key_command, a);
+  key_command->footer("Example:\n  trocar exam key > station.pub\n");
+  key_command->callback([&action, a] { action = [a] { return print_key(*a); }; });
+}
+
+}  // namespace
+
+void add_exam_commands(CLI::App& program, Action& action) {
+  CLI::App* exam = program.add_subcommand("exam", "Exams on unseen bodies with signed results");
+  exam->require_subcommand(1);
+  exam->footer("Example:\n  trocar exam verify exam.result.json --key station.pub\n");
+  add_draw(*exam, action);
+  add_result_commands(*exam, action);
+}
+
+}  // namespace trocar::cli

@@ -1,0 +1,83 @@
+#include "exams/exam_body.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <set>
+
+#include "anatomy/phantom/phantom.h"
+#include "cases/prepare_case.h"
+#include "core/random.h"
+#include "io/patient/open_patient.h"
+
+namespace trocar::exams {
+namespace {
+
+constexpr std::uint64_t kFirstDrawn = 1000, kLastDrawn = 9999;
+
+}  // namespace
+
+bool is_known_body(std::span<const learning::PastAttempt> history, const std::string& patient, std::uint64_t seed) {
+  return std::any_of(history.begin(), history.end(), [&](const learning::PastAttempt& attempt) {
+    return attempt.patient == patient && (attempt.patient_seed == seed || io::is_path(patient));
+  });
+}
+
+Result<ExamBody> draw_body(const std::string& patient, std::span<const learning::PastAttempt> history,
+                           std::uint64_t random_seed, const FitCheck& check) {
+  std::set<std::uint64_t> known;
+  for (const learning::PastAttempt& attempt : history)
+    if (attempt.patient == patient) known.insert(attempt.patient_seed);
+  Random random(random_seed);
+  ExamBody body;
+  Status fit = fail("all bodies are known", patient, "choose another patient");
+  constexpr std::uint64_t kNumbers = kLastDrawn - kFirstDrawn + 1;
+  std::uint64_t number = kFirstDrawn + random.next() % kNumbers;
+  // One after the other, so that every number is tried at most once.
+  for (std::uint64_t n = 0; n < kNumbers && body.unfit.size() < kMostTries; ++n, ++number) {
+    if (number > kLastDrawn) number = kFirstDrawn;
+    if (known.contains(number)) continue;
+    fit = check(number);
+    if (fit) {
+      body.number = number;
+      return body;
+    }
+    body.unfit.push_back(number);
+  }
+  return tl::unexpected(std::move(fit).error());
+}
+
+Result<ExamBody> find_body(const std::string& patient, std::uint64_t number,
+                           std::span<const learning::PastAttempt> history, const FitCheck& check) {
+  if (number <= kPractisedNumber || number > kMostNumber)
+    return fail_usage(fmt::format("there is no exam {}", number), "exam number",
+                      fmt::format("choose {} to {}", kPractisedNumber + 1, kMostNumber));
+  if (const Status fit = check(number); !fit)
+    return fail(fmt::format("exam {} cannot be held: {}", number, fit.error().what), patient,
+                "choose another number, or let one be drawn");
+  return ExamBody{number, is_known_body(history, patient, number)};
+}
+
+FitCheck fit_check(const std::string& task, const std::string& patient, const std::filesystem::path& cache_folder,
+                   const Progress& progress) {
+  return [=](std::uint64_t number) -> Status {
+    TROCAR_TRY(anatomy::VirtualPatient body, io::open_patient({patient, number, cache_folder}, progress));
+    cases::CaseOptions options;
+    options.task = task;
+    options.patient_folder = patient;
+    TROCAR_TRY_STATUS(
+        cases::prepare_case(std::make_shared<const anatomy::VirtualPatient>(std::move(body)), options, progress));
+    return {};
+  };
+}
+
+Result<std::string> patient_of_difficulty(const std::string& task, int difficulty) {
+  for (const anatomy::PhantomInfo& info : anatomy::embedded_patients())
+    if (info.difficulty == difficulty && std::find(info.tasks.begin(), info.tasks.end(), task) != info.tasks.end())
+      return info.name;
+  return fail_usage(fmt::format("there is no patient of difficulty {} for {}", difficulty, task), "--difficulty",
+                    "see trocar patient list");
+}
+
+}  // namespace trocar::exams
