@@ -180,7 +180,11 @@ std::string why_not_scored(const Judgement& judged) {
 
 std::vector<std::string> find_fails(const Judgement& judged, const Outcome& outcome) {
   std::vector<std::string> fails;
-  if (!outcome.target_reached) fails.emplace_back("the target was not reached");
+  const tasks::Substance wanted = judged.attempt.task.confirmed_by;
+  if (wanted != tasks::Substance::kNothing && judged.measured.has_entered && !judged.confirmed_s)
+    fails.push_back(fmt::format("the place is not proven: no {} came back", tasks::substance_words(wanted)));
+  else if (!outcome.target_reached)
+    fails.emplace_back("the target was not reached");
   for (const std::string& name : outcome.risks_touched) {
     const anatomy::Label* const label = judged.attempt.patient.label_table.find(name);
     const tasks::RiskStructure* const risk = label != nullptr ? tasks::find_risk(judged.attempt.task, *label) : nullptr;

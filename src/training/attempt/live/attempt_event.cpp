@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
+
 #include "anatomy/structure_words.h"
 
 namespace trocar::attempt {
@@ -39,6 +41,7 @@ AttemptEvent describe_action(const tasks::SubstanceTable& substances, const task
     const auto found = substances.looks.find(action.result.substance);
     if (found == substances.looks.end()) return std::string(tasks::substance_words(action.result.substance));
     std::string words = is_aspirated ? found->second.aspirated : found->second.flows;
+    if (!words.empty()) words.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(words.front())));
     const bool is_slow = action.result.substance != tasks::Substance::kNothing && action.result.is_slow();
     return words + (is_slow ? ", slowly: the bevel is only partly in it" : "");
   };
@@ -72,6 +75,11 @@ AttemptEvent describe_action(const tasks::SubstanceTable& substances, const task
       break;
   }
   return told;
+}
+
+AttemptEvent describe_pain(const scoring::PainEvent& pain) {
+  const std::string why = pain.label.empty() ? "no local anaesthetic" : anatomy::structure_words(pain.label);
+  return {pain.time_s, pain.depth_mm, telemetry::EventKind::kNone, "pain", "the patient feels pain: " + why};
 }
 
 }  // namespace trocar::attempt

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "attempt/live/attempt_view.h"
+#include "scoring/pain.h"
 #include "storage/session_file.h"
 
 namespace trocar::attempt {
@@ -14,5 +15,7 @@ std::optional<AttemptEvent> describe_event(const storage::SessionInfo& info, con
 
 /// The event of an action: "the stylet was drawn: bile drips from the hub".
 AttemptEvent describe_action(const tasks::SubstanceTable& substances, const tasks::Action& action);
+/// The event "pain": "the patient feels pain: spinous process".
+AttemptEvent describe_pain(const scoring::PainEvent& pain);
 
 }  // namespace trocar::attempt

@@ -15,6 +15,7 @@
 #include "attempt/servers/haptic_servers.h"
 #include "attempt/tools/transducer_motion.h"
 #include "cases/prepare_case.h"
+#include "scoring/pain.h"
 #include "scoring/phase_tracker.h"
 
 namespace trocar::attempt {
@@ -143,6 +144,7 @@ class AttemptLoop {
   std::vector<AttemptEvent> events_;
   std::shared_ptr<const GunShot> shot_;  ///< The last one.
   std::size_t told_shots_ = 0;
+  std::optional<scoring::PainWatch> pain_;       ///< From the begin of the recording.
   std::optional<scoring::PhaseTracker> phases_;  ///< From the begin of the recording.
   double phases_s_ = 0.0;                        ///< Time of its last step.
   double contrast_ml_ = 0.0;

@@ -96,6 +96,7 @@ void AttemptLoop::note_tick(const telemetry::TickSample& sample) {
     if (event.kind == telemetry::EventKind::kNone) break;
     if (auto described = describe_event(record_->info(), sample, event)) events_.push_back(*std::move(described));
   }
+  if (const auto pain = pain_ ? pain_->step(sample) : std::nullopt) events_.push_back(describe_pain(*pain));
 }
 
 void AttemptLoop::note_shots() {
@@ -113,6 +114,7 @@ void AttemptLoop::note_actions() {
   const std::vector<tasks::Action>& actions = record_->actions();
   for (; told_actions_ < actions.size(); ++told_actions_) {
     if (phases_) phases_->note(actions[told_actions_]);
+    if (pain_) pain_->note(actions[told_actions_]);
     const bool is_told = actions[told_actions_].kind != tasks::ActionKind::kFire;  // told as a shot
     if (options_.has_view && is_told)
       events_.push_back(describe_action(case_.the_case->substances, actions[told_actions_]));

@@ -13,7 +13,6 @@
 namespace trocar::scoring {
 namespace {
 
-constexpr double kSameContact_s = 1.0;    // contacts with one structure within this time hurt once [assumed]
 constexpr double kShortestPath_mm = 3.0;  // that has a direction and margins
 
 /// Place that has to be at the target: the middle of the notch after the shot, or the tip.
@@ -98,31 +97,16 @@ std::vector<metrics::RiskTouch> find_stylet_risks(const Judgement& judged, const
   return touches;
 }
 
-/// The skin without anaesthetic, and each new contact of the tip with a tissue that hurts.
+/// Everything that hurt; nothing if the skin was never pierced.
 std::vector<PainEvent> find_pain(const AttemptData& attempt, bool has_entered) {
   std::vector<PainEvent> events;
-  const std::vector<std::string>& tissues = attempt.task.pain.tissues;
-  double anaesthetic_s = HUGE_VAL;
-  for (const tasks::Action& action : attempt.actions)
-    if (action.kind == tasks::ActionKind::kAnaesthetise) anaesthetic_s = std::min(anaesthetic_s, action.time_s);
-  bool was_inside = false;
-  const anatomy::Label* touched = nullptr;
-  double left_s = -HUGE_VAL;
+  if (!has_entered) return events;
+  PainWatch watch(attempt.task, attempt.patient);
+  std::size_t next_action = 0;
   for (const telemetry::TickSample& sample : attempt.samples) {
-    if (!sample.tip_mm.allFinite() || !std::isfinite(sample.depth_mm) || !std::isfinite(sample.time_s)) continue;
-    const bool is_inside = sample.depth_mm > 0.0;
-    const bool is_entry = is_inside && !std::exchange(was_inside, is_inside);
-    if (is_entry && has_entered && attempt.task.pain.needs_anaesthesia && anaesthetic_s > sample.time_s &&
-        events.empty())
-      events.push_back({sample.time_s, 0.0, {}});
-    if (!is_inside) continue;
-    const anatomy::Label* const label = anatomy::find_label(attempt.patient, sample.tip_mm);
-    const bool hurts = label != nullptr && std::find(tissues.begin(), tissues.end(), label->tissue) != tissues.end();
-    if (hurts && (label != touched || sample.time_s - left_s > kSameContact_s)) {
-      events.push_back({sample.time_s, sample.depth_mm, label->name});
-      touched = label;
-    }
-    if (hurts) left_s = sample.time_s;
+    while (next_action < attempt.actions.size() && attempt.actions[next_action].time_s <= sample.time_s)
+      watch.note(attempt.actions[next_action++]);
+    if (auto event = watch.step(sample)) events.push_back(*std::move(event));
   }
   return events;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "metrics/attempt_metrics.h"
+#include "scoring/pain.h"
 #include "scoring/score.h"
 
 namespace trocar::scoring {
@@ -17,13 +18,6 @@ struct AccessJudgement {
   double excess_angle_deg = 0.0;   ///< Beyond the largest angle to the skin's normal.
   double outside_zone_mm = 0.0;    ///< Of the entry, outside the task's entry zone.
   double missing_organ_mm = 0.0;   ///< Of the organ that has to be passed.
-};
-
-/// Something that hurt the patient.
-struct PainEvent {
-  double time_s = 0.0;
-  double depth_mm = 0.0;
-  std::string label;  ///< The structure; empty: the skin without local anaesthetic.
 };
 
 /// Everything that parts and hints are made of.

@@ -44,6 +44,8 @@ TEST(Puncture, TheRightSubstanceProvesTheTarget) {
   const Outcome unproved = puncture.score(attempt);
   EXPECT_FALSE(unproved.target_reached);
   EXPECT_NEAR(unproved.score, 60.0, 1e-6);
+  ASSERT_FALSE(unproved.fails.empty());
+  EXPECT_EQ(unproved.fails.front(), "the place is not proven: no bile came back");
   EXPECT_TRUE(has_hint(unproved, "draw the stylet at the target and look whether bile comes"));
   puncture.actions = {{at_s, tasks::ActionKind::kDrawStylet, 0.0, {tasks::Substance::kBlood, 1.0}, {}, 51.0}};
   EXPECT_TRUE(has_hint(puncture.score(attempt), "Not bile but blood came back"));
