@@ -284,14 +284,16 @@ void AttemptControl::advance(double dt_s) {
 /// to the trainee.
 void AttemptControl::poll_events() {
   for (const attempt::AttemptEvent& event : attempt_.take_events()) {
-    const bool is_action = event.name == "action", is_shot = event.name == "shot";
-    if (is_exam() && !is_shot && !is_action) continue;
-    const QString text = is_exam() && is_shot ? tr("the gun was fired") : to_qt(event.text);
+    const bool is_action = event.name == "action", is_shot = event.name == "shot", is_pain = event.name == "pain";
+    if (is_exam() && !is_shot && !is_action && !is_pain) continue;
+    QString text = to_qt(event.text);
+    if (is_exam() && is_shot) text = tr("the gun was fired");
+    if (is_exam() && is_pain) text = tr("the patient feels pain");
     page_.puncture().add_event(QStringLiteral("%1 s  %2").arg(event.time_s, 0, 'f', 1).arg(text),
-                               is_risk(open_->the_case, event));
+                               is_pain || is_risk(open_->the_case, event));
     if (event.kind == telemetry::EventKind::kPuncture)
       page_.forces().add_event(event.depth_mm, event.time_s, to_qt(anatomy::layer_words(event.name)));
-    if (!is_action) continue;
+    if (!is_action && !is_pain) continue;
     show_notice(text.left(1).toUpper() + text.mid(1));
     constexpr double kResult_s = 8.0;
     is_notice_result_ = true;

@@ -103,6 +103,13 @@ FeedbackPanel::FeedbackPanel(QWidget* parent) : QWidget(parent) {
   reasons_->setWordWrap(true);
   reasons_->hide();
   content->addWidget(reasons_);
+  content->addWidget(make_label(tr("Improvements"), "heading"));
+  hints_ = new HintList;
+  content->addWidget(hints_);
+  worst_ = make_label({}, "dim");
+  worst_->setWordWrap(true);
+  content->addWidget(worst_);
+  content->addWidget(make_label(tr("Score"), "heading"));
   parts_ = new QGridLayout;
   parts_->setHorizontalSpacing(10);
   parts_->setVerticalSpacing(3);
@@ -118,12 +125,6 @@ FeedbackPanel::FeedbackPanel(QWidget* parent) : QWidget(parent) {
   harm_->setObjectName(QStringLiteral("harm"));
   harm_->setWordWrap(true);
   content->addWidget(harm_);
-  content->addWidget(make_label(tr("Improvements"), "heading"));
-  hints_ = new HintList;
-  content->addWidget(hints_);
-  worst_ = make_label({}, "dim");
-  worst_->setWordWrap(true);
-  content->addWidget(worst_);
   notes_ = make_label({}, "dim");
   notes_->setObjectName(QStringLiteral("attempt-notes"));
   notes_->setWordWrap(true);
