@@ -22,6 +22,16 @@ std::optional<ActionKind> find_action(std::string_view name) noexcept {
   return static_cast<ActionKind>(found - kNames.begin());
 }
 
+const Action* find_wire(std::span<const Action> actions, double time_s) noexcept {
+  const Action* wire = nullptr;
+  for (const Action& action : actions) {
+    if (action.time_s > time_s) break;
+    if (action.kind == ActionKind::kAdvanceWire) wire = &action;
+    if (action.kind == ActionKind::kReplaceStylet) wire = nullptr;
+  }
+  return wire;
+}
+
 bool is_gun_loaded(std::span<const Action> actions) noexcept {
   bool is_loaded = true;
   for (const Action& action : actions) {

@@ -45,6 +45,9 @@ struct Action {
   bool operator==(const Action& other) const noexcept = default;
 };
 
+/// The last advance of the guide wire up to a time, whose amount is its length; nullptr: there is no wire in the
+/// needle.
+const Action* find_wire(std::span<const Action> actions, double time_s) noexcept;
 /// A biopsy gun is loaded at first, and again after kLoad.
 bool is_gun_loaded(std::span<const Action> actions) noexcept;
 
