@@ -226,14 +226,17 @@ void AttemptControl::act(TraineeAction action) {
   if (const QString reason = why_not(action, state, open_->the_case.needle); !reason.isEmpty())
     return show_notice(reason);
   const tasks::ActionRequest request = request_of(action, state);
-  if (action == TraineeAction::kWire) wire_mm_ = request.amount;
-  if (action == TraineeAction::kStylet) wire_mm_ = 0.0;
+  if (action == TraineeAction::kWire) {
+    const Pose& X_PN = view_.needle.X_PN;
+    wire_P_ = Segment{X_PN.p(), X_PN.p() + request.amount * X_PN.R().col(2)};
+  }
+  if (action == TraineeAction::kStylet) wire_P_.reset();
   attempt_.act(request);
 }
 
 ActionState AttemptControl::action_state() const {
   const bool can_act = view_.phase == attempt::AttemptPhase::kReady || view_.phase == attempt::AttemptPhase::kInBody;
-  return {view_.is_stylet_drawn, view_.is_breath_held,        wire_mm_, can_act,
+  return {view_.is_stylet_drawn, view_.is_breath_held,        wire_mm(), can_act,
           view_.is_gun_loaded,   view_.needle.depth_mm <= 0.0};
 }
 
@@ -325,6 +328,7 @@ void AttemptControl::show_tools(double dt_s) {
     if ((X_PN_goal.p() - needle.X_PN.p()).norm() > kGhost_mm)
       tools.goal_P = Segment{X_PN_goal.p() - length_mm * X_PN_goal.R().col(2), X_PN_goal.p()};
   }
+  tools.wire_P = wire_P_;
   if (view_.has_probe && view_.probe.is_known) tools.X_PT = view_.probe.X_PT;
   constexpr double kMoving_mm_s = 0.5;
   const bool is_moving = std::abs(needle.speed_mm_s) > kMoving_mm_s || tools.goal_P.has_value();
@@ -386,7 +390,7 @@ void AttemptControl::add_step_facts(QVariantMap& facts) const {
   facts[QStringLiteral("step_lacks")] = has_step ? to_qt(view_.phases[*view_.current_phase].lacks) : QString();
   facts[QStringLiteral("is_stylet_drawn")] = view_.is_stylet_drawn;
   facts[QStringLiteral("is_breath_held")] = view_.is_breath_held;
-  facts[QStringLiteral("wire_mm")] = wire_mm_;
+  facts[QStringLiteral("wire_mm")] = wire_mm();
 }
 
 /// Poses of the tools relative to tissue and plan: in an exam, scripts get no more than the window shows.

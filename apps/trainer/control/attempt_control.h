@@ -57,6 +57,7 @@ class AttemptControl : public QObject {
   void fire();
   void act(TraineeAction action);
   ActionState action_state() const;
+  double wire_mm() const { return wire_P_ ? wire_P_->length_mm() : 0.0; }
   QString hint() const;
   void show_tools(double dt_s);
   void show_panel();
@@ -92,7 +93,7 @@ class AttemptControl : public QObject {
   QString notice_;
   double notice_s_ = 0.0;          ///< Remaining time of notice_.
   bool is_notice_result_ = false;  ///< notice_ is the result of an action.
-  double wire_mm_ = 0.0;           ///< Of the guide wire beyond the tip.
+  std::optional<Segment> wire_P_;  ///< See ToolsShown.
   std::size_t frame_ = 0;
 };
 

@@ -213,6 +213,11 @@ void ReplayControl::show_xray(double time_s) {
     if (!moment->is_held()) moment->image_s = page_.xray().pulse_s(*moment->image_s);
     shaft_P = replay_.shaft_at(*moment->image_s);
   }
+  const tasks::Action* const wire =
+      moment && moment->image_s ? tasks::find_wire(replay_.session().actions, *moment->image_s) : nullptr;
+  const Vec3 axis_P = wire != nullptr ? replay_.at(wire->time_s).axis : Vec3::UnitZ();
+  page_.xray().set_wire(wire != nullptr ? std::optional(Segment{wire->tip_P, wire->tip_P + wire->amount * axis_P})
+                                        : std::nullopt);
   page_.xray().show_moment(moment, std::move(shaft_P));
 }
 

@@ -31,7 +31,7 @@ bool look_same(const ToolsShown& a, const ToolsShown& b) {
   return are_near(a.shaft_P, b.shaft_P) && are_near(a.X_PN, b.X_PN) && a.X_PT.has_value() == b.X_PT.has_value() &&
          (!a.X_PT || are_near(*a.X_PT, *b.X_PT)) && are_same(a.goal_P, b.goal_P) && are_same(a.stylet_P, b.stylet_P) &&
          are_same(a.core_P, b.core_P) && are_same(a.throw_P, b.throw_P) && are_same(a.notch_P, b.notch_P) &&
-         a.focus_P.has_value() == b.focus_P.has_value() &&
+         are_same(a.wire_P, b.wire_P) && a.focus_P.has_value() == b.focus_P.has_value() &&
          (!a.focus_P || (*a.focus_P - *b.focus_P).norm() < kUnseen_mm);
 }
 
@@ -43,6 +43,7 @@ ToolsShown seen_from_outside(ToolsShown tools) {
   tools.core_P.reset();
   tools.throw_P.reset();
   tools.notch_P.reset();
+  tools.wire_P.reset();
   tools.focus_P.reset();
   return tools;
 }

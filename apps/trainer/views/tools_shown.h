@@ -17,6 +17,7 @@ struct ToolsShown {
   std::optional<Segment> core_P;    ///< Place of the core.
   std::optional<Segment> throw_P;   ///< Way of the stylet if the gun were fired now, from the tip on.
   std::optional<Segment> notch_P;   ///< Part of it from which the core would come.
+  std::optional<Segment> wire_P;    ///< Guide wire if it went straight on: from the needle's tip as it was advanced.
   std::optional<Pose> X_PT;         ///< Transducer.
   std::optional<Vec3> focus_P;      ///< Focus of the slices.
   double inside_mm = 0.0;           ///< Length of the needle in the body.

@@ -117,7 +117,10 @@ void XrayView::prepare() {
     preparing_ =
         BackgroundJob<Prepared>([patient = patient_, middle_P = find_middle_P_](const Progress&) -> Result<Prepared> {
           TROCAR_TRY(auto volume, xray::XrayVolume::make(patient));
-          return Prepared{std::move(volume), middle_P(), cases::contrast_blood(*patient)};
+          TROCAR_TRY(const std::filesystem::path data, checked_data_dir());
+          TROCAR_TRY(xray::ToolKind wire, xray::load_tool_kind(data / "xray_tools.toml", "fine-wire"));
+          return Prepared{std::move(volume), middle_P(), cases::contrast_blood(*patient),
+                          xray::make_duct_tree(*patient), std::move(wire)};
         });
     return;
   }
@@ -188,9 +191,20 @@ xray::FluoroscopyRequest XrayView::make_request(std::span<const Vec3> shaft_P, b
     needle.inner_radius_mm = is_open ? 0.5 * needle_.inner_diameter_mm : 0.0;
     request.tools.push_back(std::move(needle));
   }
+  if (wire_P_ && prepared_) request.tools.push_back(make_wire());
   request.mode = settings_.mode;
   request.display.is_inverted = settings_.is_inverted;
   return request;
+}
+
+/// It lies in the needle's channel and then follows the duct.
+xray::ToolShape XrayView::make_wire() const {
+  constexpr double kBehindTip_mm = 120.0;  // out of the skin, for all paths of the tasks
+  const Vec3 axis_P = wire_P_->direction();
+  std::vector<Vec3> points_P{wire_P_->a - kBehindTip_mm * axis_P};
+  const std::vector<Vec3> way_P = xray::guide_wire_way(prepared_->ducts, wire_P_->a, axis_P, wire_P_->length_mm());
+  points_P.insert(points_P.end(), way_P.begin(), way_P.end());
+  return xray::tool_along(prepared_->wire, points_P);
 }
 
 void XrayView::change_settings(const std::function<void(XraySettings&)>& change) {

@@ -19,6 +19,8 @@
 #include "xray/contrast/live_contrast.h"
 #include "xray/fluoroscopy/live_fluoroscope.h"
 #include "xray/geometry/c_arm_presets.h"
+#include "xray/tools/guide_wire.h"
+#include "xray/tools/tool_table.h"
 
 namespace trocar::trainer {
 
@@ -55,6 +57,9 @@ class XrayView : public QWidget {
 
   /// Shaft from the hub to the tip; empty: no needle. Not used in a replay.
   void set_needle(std::span<const Vec3> shaft_P) { shaft_P_.assign(shaft_P.begin(), shaft_P.end()); }
+  /// Guide wire: where it left the needle, and its length and direction if it went straight on; in a duct it follows
+  /// the duct. Empty: none.
+  void set_wire(const std::optional<Segment>& wire_P) { wire_P_ = wire_P; }
   /// Called once per frame: requests an image, takes the newest, repaints if necessary. now_s: time of any steady
   /// clock.
   void advance(double now_s);
@@ -96,6 +101,8 @@ class XrayView : public QWidget {
     std::shared_ptr<const xray::XrayVolume> volume;
     Vec3 middle_P;
     xray::BloodVelocity blood;  ///< Empty: no vessel has flow.
+    xray::DuctTree ducts;       ///< Empty: no duct is labelled.
+    xray::ToolKind wire;
   };
   /// A replay and its present moment.
   struct Replay {
@@ -114,6 +121,7 @@ class XrayView : public QWidget {
   void take(std::shared_ptr<const xray::FluoroscopyFrame> newest, const std::optional<Error>& error);
   xray::LiveFluoroscopeOptions fluoroscope_options() const;
   xray::FluoroscopyRequest make_request(std::span<const Vec3> shaft_P, bool is_injecting) const;
+  xray::ToolShape make_wire() const;
   bool is_held() const;
   QRectF image_rect() const;
   void draw_texts(QPainter& painter) const;
@@ -134,6 +142,7 @@ class XrayView : public QWidget {
   std::optional<Replay> replay_;
   RetiredJobs retired_;  ///< The ends of former replays, which may wait for an image.
   std::vector<Vec3> shaft_P_;
+  std::optional<Segment> wire_P_;
   bool is_pedal_down_ = false, is_injecting_ = false;
   double opened_s_ = -1.0;
   std::shared_ptr<const xray::FluoroscopyFrame> frame_;

@@ -47,7 +47,10 @@ class XrayViewEntry final : public View {
                         [open = context.open] { return begin_at_P(*open); });
     return true;
   }
-  void show_tools(const ToolContext& context) override { view_->set_needle(context.tools.shaft_P); }
+  void show_tools(const ToolContext& context) override {
+    view_->set_needle(context.tools.shaft_P);
+    view_->set_wire(context.tools.wire_P);
+  }
   void update(const FrameContext& frame) override { view_->advance(frame.now_s); }
 
  private:
