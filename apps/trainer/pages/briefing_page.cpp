@@ -71,6 +71,14 @@ std::vector<LegendEntry> joined(std::vector<LegendEntry> a, const std::vector<Le
   return a;
 }
 
+/// "Exam: Images and forces only. Exam 4711: an unseen body."
+QString level_line(const TrainerChoice& choice) {
+  const QString level = BriefingPage::tr(title_of(choice.difficulty));
+  return QStringLiteral("%1: %2 %3")
+      .arg(level, BriefingPage::tr(help_text_of(choice.difficulty)), exam_text(choice))
+      .trimmed();
+}
+
 }  // namespace
 
 BriefingPage::BriefingPage(QWidget* parent) : QWidget(parent) {
@@ -180,7 +188,7 @@ void BriefingPage::show_opening(const TrainerChoice& choice) {
   choice_ = choice;
   open_.reset();
   title_->setText(tr("Briefing"));
-  subtitle_->setText(tr("%1: %2").arg(tr(title_of(choice.difficulty)), tr(help_text_of(choice.difficulty))));
+  subtitle_->setText(level_line(choice_));
   procedure_->clear();
   scoring_->clear();
   // An error of the tables is reported by the opening, which reads them, too.
@@ -216,7 +224,7 @@ void BriefingPage::show_case(std::shared_ptr<const cases::OpenCase> open, Diffic
   choice_.difficulty = difficulty;
   const cases::Case& the_case = open_->the_case;
   show_tables(the_case, the_case.is_parenchymal);
-  subtitle_->setText(tr("%1: %2").arg(tr(title_of(difficulty)), tr(help_text_of(difficulty))));
+  subtitle_->setText(level_line(choice_));
   std::vector<BriefingRow> rows = referral_rows(choice_);
   for (BriefingRow& row : finding_rows(the_case)) rows.push_back(std::move(row));
   if (difficulty != Difficulty::kExam) rows.push_back(path_row(the_case));

@@ -14,6 +14,8 @@
 #include <algorithm>
 
 #include "core/files/data_dir.h"
+#include "pages/exam_choice.h"
+#include "pages/next_exercise_card.h"
 #include "pages/patient_cards.h"
 #include "panels/device_choice.h"
 #include "tasks/needle.h"
@@ -56,10 +58,12 @@ QListWidget* make_list(const char* name, const QString& title) {
 StartPage::StartPage(QWidget* parent) : QWidget(parent) {
   setObjectName(QStringLiteral("start-page"));
   auto* page = new QVBoxLayout(this);
-  page->setContentsMargins(40, 24, 40, 24);
-  page->setSpacing(16);
+  page->setContentsMargins(40, 14, 40, 14);
+  page->setSpacing(12);
   page->addWidget(make_label(tr("Select a task and a patient"), "title"));
   page->addWidget(make_recovery());
+  next_ = new NextExerciseCard;
+  page->addWidget(next_);
   auto* columns = new QHBoxLayout;
   columns->setSpacing(16);
   columns->addWidget(make_tasks(), 3);
@@ -74,10 +78,8 @@ StartPage::StartPage(QWidget* parent) : QWidget(parent) {
   start_->setProperty("role", "primary");
   bottom->addWidget(start_);
   page->addLayout(bottom);
-  connect(start_, &QPushButton::clicked, this, [this] {
-    save();
-    Q_EMIT start_requested(choice());
-  });
+  connect(start_, &QPushButton::clicked, this, &StartPage::start);
+  connect(next_, &NextExerciseCard::exercise_requested, this, &StartPage::start_exercise);
   connect(tasks_, &QListWidget::currentRowChanged, this, [this] {
     fill_patients();
     fill_needles();
@@ -154,16 +156,19 @@ QWidget* StartPage::make_help_choice() {
     text->setWordWrap(true);
     content->addWidget(text);
   }
+  exam_ = new ExamChoice;
+  content->addWidget(exam_);
+  connect(exam_, &ExamChoice::difficulty_chosen, this, &StartPage::choose_difficulty);
   content->addSpacing(8);
-  auto* form = new QFormLayout;
-  form->setSpacing(10);
-  form->setLabelAlignment(Qt::AlignLeft);
+  tool_form_ = new QFormLayout;
+  tool_form_->setSpacing(10);
+  tool_form_->setLabelAlignment(Qt::AlignLeft);
   const auto add = [&](const QString& title, const char* name) {
     auto* box = new QComboBox;
     box->setObjectName(QString::fromLatin1(name));
     box->setAccessibleName(title);
     box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-    form->addRow(make_label(title, "dim"), box);
+    tool_form_->addRow(make_label(title, "dim"), box);
     return box;
   };
   needle_ = add(tr("Needle"), "needle");
@@ -172,7 +177,7 @@ QWidget* StartPage::make_help_choice() {
   model_->addItem(tr("Insertion model"), QStringLiteral("insertion"));
   model_->addItem(tr("Volume proxy"), QStringLiteral("proxy"));
   model_->addItem(tr("Both combined"), QStringLiteral("combined"));
-  content->addLayout(form);
+  content->addLayout(tool_form_);
   connect(difficulty_, QOverload<QAbstractButton*, bool>::of(&QButtonGroup::buttonToggled), this,
           [this] { lock_for_exam(); });
   devices_ = new DeviceChoice;
@@ -181,11 +186,41 @@ QWidget* StartPage::make_help_choice() {
   return card;
 }
 
+void StartPage::start() {
+  save();
+  Q_EMIT start_requested(choice());
+}
+
+void StartPage::offer_next(const QString& title, const QString& why, const TrainerChoice& exercise) {
+  next_->offer(title, why, exercise);
+}
+
+/// The devices stay; needle and forces are those of the task.
+void StartPage::start_exercise(const TrainerChoice& exercise) {
+  TrainerChoice next = exercise;
+  next.needle_device = devices_->needle();
+  next.probe_device = devices_->probe();
+  choose(next);
+  if (start_->isEnabled()) start();
+}
+
+void StartPage::choose_difficulty(int difficulty) {
+  const QListWidgetItem* task = tasks_->currentItem();
+  if (task == nullptr) return;
+  for (const PatientEntry& entry : embedded_entries(task->data(kSource).toString(), task->text()))
+    if (entry.difficulty == difficulty) {
+      patients_->choose(entry.source);
+      return;
+    }
+}
+
 void StartPage::lock_for_exam() {
   const bool is_exam = difficulty_->checkedId() == static_cast<int>(Difficulty::kExam);
+  exam_->setVisible(is_exam);
   for (QComboBox* box : {needle_, model_}) {
     box->setEnabled(!is_exam);
-    box->setToolTip(is_exam ? tr("An exam uses the task's own") : QString());
+    box->setVisible(!is_exam);
+    tool_form_->labelForField(box)->setVisible(!is_exam);
     if (is_exam) box->setCurrentIndex(0);
   }
 }
@@ -249,6 +284,7 @@ void StartPage::fill_patients() {
     const QSignalBlocker blocked(patients_);
     patients_->show_patients(entries);
   }
+  exam_->show_patients(entries);
   show_patient_details();
 }
 
@@ -258,6 +294,7 @@ void StartPage::show_patient_details() {
   if (patient != nullptr) lines = QStringList{patient->description, patient->details};
   lines.removeAll(QString());
   patient_text_->setText(lines.join(QLatin1Char('\n')));
+  exam_->show_patient(patient);
   start_->setEnabled(patient != nullptr && tasks_->currentItem() != nullptr);
 }
 
@@ -294,6 +331,8 @@ void StartPage::choose(const TrainerChoice& choice) {
   select(*needle_, choice.needle);
   select(*model_, choice.force_model);
   devices_->choose(choice.needle_device, choice.probe_device);
+  exam_->set_number(choice.exam_number);
+  seeded_ = choice;
   lock_for_exam();
 }
 
@@ -304,7 +343,10 @@ TrainerChoice StartPage::choice() const {
   choice.needle_device = devices_->needle();
   choice.probe_device = devices_->probe();
   choice.difficulty = static_cast<Difficulty>(difficulty_->checkedId());
-  if (choice.difficulty != Difficulty::kExam) {  // an exam uses the task's own
+  if (choice.difficulty == Difficulty::kExam) {
+    choice.exam_number = exam_->number();
+  } else {  // an exam uses the task's own
+    if (choice.patient == seeded_.patient) choice.patient_seed = seeded_.patient_seed;
     choice.needle = to_std(needle_->currentData().toString());
     choice.force_model = to_std(model_->currentData().toString());
   }

@@ -6,6 +6,7 @@
 
 class QButtonGroup;
 class QComboBox;
+class QFormLayout;
 class QFrame;
 class QLabel;
 class QListWidget;
@@ -14,10 +15,12 @@ class QPushButton;
 namespace trocar::trainer {
 
 class DeviceChoice;
+class ExamChoice;
+class NextExerciseCard;
 class PatientCards;
 
-/// Start page: task, patients of the task as cards, level of help, device of each tool. Keys: Enter starts, Ctrl+O
-/// opens a patient folder. The last selection is stored.
+/// Start page: next exercise, task, patients of the task as cards, level of help, device of each tool. Keys: Enter
+/// starts, Ctrl+G starts the next exercise, Ctrl+O opens a patient folder. The last selection is stored.
 class StartPage : public QWidget {
   Q_OBJECT
 
@@ -28,6 +31,9 @@ class StartPage : public QWidget {
   TrainerChoice choice() const;
   /// Offers to recover an attempt that was interrupted by a crash; empty: no offer.
   void offer_recovery(const QString& text);
+  /// Offers the next exercise of the learning path; `exercise` has its task, patient and level of help. An empty title:
+  /// no offer.
+  void offer_next(const QString& title, const QString& why, const TrainerChoice& exercise);
   /// Adds a patient folder to the list and selects it.
   void add_patient(const QString& folder);
 
@@ -41,6 +47,9 @@ class StartPage : public QWidget {
   QWidget* make_patients();
   QWidget* make_help_choice();
   QWidget* make_recovery();
+  void start();
+  void start_exercise(const TrainerChoice& exercise);
+  void choose_difficulty(int difficulty);
   void lock_for_exam();
   void fill_patients();
   void fill_needles();
@@ -52,12 +61,16 @@ class StartPage : public QWidget {
   PatientCards* patients_ = nullptr;
   QLabel* patient_text_ = nullptr;
   QButtonGroup* difficulty_ = nullptr;
+  ExamChoice* exam_ = nullptr;
+  NextExerciseCard* next_ = nullptr;
   DeviceChoice* devices_ = nullptr;
+  QFormLayout* tool_form_ = nullptr;  ///< Needle and forces; hidden in an exam.
   QComboBox* needle_ = nullptr;
   QComboBox* model_ = nullptr;
   QPushButton* start_ = nullptr;
   QFrame* recovery_ = nullptr;
   QLabel* recovery_text_ = nullptr;
+  TrainerChoice seeded_;  ///< Patient and seed that were chosen by choose().
 };
 
 }  // namespace trocar::trainer

@@ -103,12 +103,25 @@ FeedbackPanel::FeedbackPanel(QWidget* parent) : QWidget(parent) {
   reasons_->setWordWrap(true);
   reasons_->hide();
   content->addWidget(reasons_);
+  result_ = make_label({}, "dim");
+  result_->setObjectName(QStringLiteral("exam-result"));
+  result_->setWordWrap(true);
+  result_->hide();
+  content->addWidget(result_);
   content->addWidget(make_label(tr("Improvements"), "heading"));
   hints_ = new HintList;
   content->addWidget(hints_);
   worst_ = make_label({}, "dim");
   worst_->setWordWrap(true);
   content->addWidget(worst_);
+  next_title_ = make_label(tr("Next exercise"), "heading");
+  next_title_->hide();
+  content->addWidget(next_title_);
+  next_ = make_label({});
+  next_->setObjectName(QStringLiteral("feedback-next"));
+  next_->setWordWrap(true);
+  next_->hide();
+  content->addWidget(next_);
   content->addWidget(make_label(tr("Score"), "heading"));
   parts_ = new QGridLayout;
   parts_->setHorizontalSpacing(10);
@@ -214,6 +227,17 @@ void FeedbackPanel::show_level(const QString& level) {
 void FeedbackPanel::show_cores(std::span<const attempt::GunShot> shots) {
   core_picture_->setVisible(!shots.empty());
   core_picture_->set_shots(shots);
+}
+
+void FeedbackPanel::show_next(const QString& text) {
+  next_->setText(text);
+  next_->setVisible(!text.isEmpty());
+  next_title_->setVisible(!text.isEmpty());
+}
+
+void FeedbackPanel::show_result(const QString& text) {
+  result_->setText(breakable(text));
+  result_->setVisible(!text.isEmpty());
 }
 
 void FeedbackPanel::show_notes(const QStringList& notes) {

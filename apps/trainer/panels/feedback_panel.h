@@ -37,6 +37,10 @@ class FeedbackPanel : public QWidget {
   void show_cores(std::span<const attempt::GunShot> shots);
   /// Events during the attempt: warnings, interruptions, changed parameters. One line each.
   void show_notes(const QStringList& notes);
+  /// Shows what to practise next and why; empty: nothing.
+  void show_next(const QString& text);
+  /// Shows where the signed result of an exam lies, or why there is none; empty: no exam.
+  void show_result(const QString& text);
   HintList& hints() noexcept { return *hints_; }
 
  Q_SIGNALS:
@@ -63,6 +67,9 @@ class FeedbackPanel : public QWidget {
   CorePicture* core_picture_ = nullptr;
   QLabel* worst_ = nullptr;
   QLabel* notes_ = nullptr;
+  QLabel* result_ = nullptr;
+  QLabel* next_title_ = nullptr;
+  QLabel* next_ = nullptr;
 };
 
 }  // namespace trocar::trainer

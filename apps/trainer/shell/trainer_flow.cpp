@@ -8,6 +8,7 @@
 #include "attempt/record/recording_space.h"
 #include "cases/scene_request.h"
 #include "control/attempt_control.h"
+#include "control/learning_control.h"
 #include "control/mirror_station.h"
 #include "control/replay_control.h"
 #include "core/available_memory.h"
@@ -49,18 +50,13 @@ cases::CaseChoice case_choice(const TrainerChoice& choice) {
   return result;
 }
 
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
-  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<std::size_t>(at)];
-}
-
 }  // namespace
 
 TrainerFlow::TrainerFlow(MainWindow& window, std::filesystem::path state_folder)
     : QObject(&window), window_(window), state_folder_(std::move(state_folder)), journal_(state_folder_) {
+  learning_ = std::make_unique<LearningControl>(state_folder_, window_.start(), window_.work().feedback());
   connect_pages();
+  connect_learning();
   offered_ = journal_.find_cut_off();
   if (offered_)
     window_.start().offer_recovery(
@@ -77,7 +73,7 @@ TrainerFlow::TrainerFlow(MainWindow& window, std::filesystem::path state_folder)
 TrainerFlow::~TrainerFlow() = default;
 
 void TrainerFlow::connect_pages() {
-  connect(&window_.start(), &StartPage::start_requested, this, &TrainerFlow::open);
+  connect(&window_.start(), &StartPage::start_requested, this, &TrainerFlow::start);
   connect(&window_.start(), &StartPage::recovery_requested, this, &TrainerFlow::recover);
   connect(&window_.start(), &StartPage::recovery_declined, this, [this] {
     if (offered_) journal_.forget(*std::exchange(offered_, {}));
@@ -105,7 +101,14 @@ void TrainerFlow::connect_pages() {
   });
 }
 
+void TrainerFlow::connect_learning() {
+  connect(learning_.get(), &LearningControl::exam_progress, &window_.briefing(), &BriefingPage::show_progress);
+  connect(learning_.get(), &LearningControl::exam_failed, &window_.briefing(), &BriefingPage::show_error);
+  connect(learning_.get(), &LearningControl::exam_found, this, &TrainerFlow::open);
+}
+
 void TrainerFlow::go_to_start() {
+  learning_->cancel_exam_body();
   retired_.retire(std::exchange(opening_, {}));
   opened_.reset();
   attempt_.reset();
@@ -128,6 +131,15 @@ void TrainerFlow::go_to_case_builder() {
   }
   if (loading_.has_work()) return window_.show_message(is_scored, BannerKind::kWarning);
   window_.show_page(QStringLiteral("case-builder"));
+}
+
+void TrainerFlow::start(const TrainerChoice& choice) {
+  if (!needs_exam_body(choice)) return open(choice);
+  choice_ = choice;
+  window_.work().set_parameters_locked(true);
+  window_.briefing().show_opening(choice);
+  window_.show_page(QStringLiteral("briefing"));
+  learning_->find_exam_body(choice);
 }
 
 void TrainerFlow::open(const TrainerChoice& choice) {
@@ -164,7 +176,7 @@ void TrainerFlow::leave(std::shared_ptr<const cases::OpenCase> previous) {
 
 /// Reports the preparation of the case's pictures on the briefing, and its errors once.
 void TrainerFlow::show_later() {
-  if (!open_ || opened_ || opening_.has_work()) return;
+  if (!open_ || opened_ || opening_.has_work() || learning_->is_finding_body()) return;
   window_.work().workspace().take_later_data();
   if (complete_ == open_->later) return;
   const JobView view = open_->later->view();
@@ -278,6 +290,7 @@ void TrainerFlow::poll_attempt() {
                         BannerKind::kError);
     return window_.show_page(QStringLiteral("briefing"));
   }
+  keep_result(session);
   warnings_ = (*result)->warnings;
   cut_short_ = (*result)->cut_short;
   if ((*result)->unsaved) {
@@ -285,6 +298,13 @@ void TrainerFlow::poll_attempt() {
   } else {
     load_replay(session);
   }
+}
+
+/// Exams are signed; every attempt changes the next exercise.
+void TrainerFlow::keep_result(const std::filesystem::path& session) {
+  learning_->forget_result();
+  if (is_exam()) return learning_->sign(session);
+  learning_->refresh();
 }
 
 void TrainerFlow::report_recoveries(const attempt::AttemptView& view) {
@@ -350,6 +370,7 @@ void TrainerFlow::frame() {
   show_opened();
   show_later();
   poll_opening();
+  learning_->poll();
   poll_attempt();
   poll_replay();
   const double dt_s = frames_.since_last_s(now);
@@ -394,53 +415,6 @@ void TrainerFlow::close() {
 
 void TrainerFlow::end_server(const QString& tool) {
   if (attempt_) attempt_->end_server(tool);
-}
-
-QVariantMap TrainerFlow::facts() const {
-  QVariantMap facts;
-  facts[QStringLiteral("case")] = open_ ? to_qt(open_->the_case.patient->name) : QString();
-  facts[QStringLiteral("is_complete")] =
-      open_ != nullptr && open_->later->view().is_done && window_.work().view_3d().is_ready();
-  facts[QStringLiteral("is_open")] = open_ != nullptr && !opening_.has_work() && !opened_;
-  constexpr double kBytesPerMiB = 1024.0 * 1024.0;
-  facts[QStringLiteral("memory_mb")] = static_cast<double>(resident_memory_bytes()) / kBytesPerMiB;
-  facts[QStringLiteral("late_frames")] = static_cast<qulonglong>(frames_.late());
-  if (attempt_) facts.insert(attempt_->facts());
-  if (replay_) facts.insert(replay_->facts());
-  // Settings of the displayed ultrasound image.
-  const bool tells_plan = !attempt_ || !is_exam();
-  if (const auto picture = window_.work().ultrasound().picture(); picture && open_ && tells_plan)
-    facts[QStringLiteral("picture_from_plan_mm")] = (picture->X_PT.p() - open_->X_PT_start.p()).norm();
-  facts[QStringLiteral("frame_p50_ms")] = quantile(frame_ms_, 0.5);
-  facts[QStringLiteral("frame_p99_ms")] = quantile(frame_ms_, 0.99);
-  const double watched_s = now_s() - watched_since_s_;
-  facts[QStringLiteral("ultrasound_per_s")] = static_cast<double>(scan_ms_.size()) / std::max(watched_s, 1e-3);
-  facts[QStringLiteral("ultrasound_p50_ms")] = quantile(scan_ms_, 0.5);
-  facts[QStringLiteral("ultrasound_p99_ms")] = quantile(scan_ms_, 0.99);
-  if (const auto picture = window_.work().ultrasound().picture())
-    facts[QStringLiteral("ultrasound_lines")] = picture->scan.lines;
-  const scene::FrameTimes& renders = window_.work().view_3d().moving_frame_times();
-  facts[QStringLiteral("render_p50_ms")] = renders.p50_ms();
-  facts[QStringLiteral("render_p99_ms")] = renders.p99_ms();
-  const scene::FrameTimes& stills = window_.work().view_3d().still_frame_times();
-  facts[QStringLiteral("still_p50_ms")] = stills.p50_ms();
-  facts[QStringLiteral("unwatched_ms")] = window_.work().view_3d().unwatched_times().percentile_ms(1.0);
-  if (const auto* application = qobject_cast<TrainerApplication*>(QCoreApplication::instance())) {
-    const auto& slowest = application->slowest();
-    facts[QStringLiteral("slowest_ms")] = slowest.empty() ? 0.0 : slowest.front().ms;
-    facts[QStringLiteral("slowest")] =
-        slowest.empty() ? QString()
-                        : QStringLiteral("%1 ms: %2").arg(slowest.front().ms, 0, 'f', 1).arg(slowest.front().what);
-  }
-  return facts;
-}
-
-void TrainerFlow::reset_watch() {
-  window_.work().view_3d().clear_frame_times();
-  frame_ms_.clear();
-  scan_ms_.clear();
-  watched_since_s_ = now_s();
-  if (auto* application = qobject_cast<TrainerApplication*>(QCoreApplication::instance())) application->reset_watch();
 }
 
 }  // namespace trocar::trainer

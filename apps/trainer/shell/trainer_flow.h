@@ -21,6 +21,7 @@
 namespace trocar::trainer {
 
 class AttemptControl;
+class LearningControl;
 class MainWindow;
 class ReplayControl;
 
@@ -50,6 +51,10 @@ class TrainerFlow : public QObject {
 
  private:
   void connect_pages();
+  void connect_learning();
+  /// Finds the body of an exam first.
+  void start(const TrainerChoice& choice);
+  void keep_result(const std::filesystem::path& session);
   void frame();
   void poll_opening();
   void show_opened();
@@ -84,6 +89,7 @@ class TrainerFlow : public QObject {
   std::shared_ptr<attempt::HapticServers> servers_;           ///< Kept from one attempt to the next.
   std::unique_ptr<AttemptControl> attempt_;
   std::unique_ptr<ReplayControl> replay_;
+  std::unique_ptr<LearningControl> learning_;
   bool is_close_confirmed_ = false;
   int recoveries_ = 0;                 ///< Reported recoveries of the attempt's servers.
   std::string cut_short_;              ///< See RunResult; for the same attempt.

@@ -14,6 +14,23 @@
 namespace trocar::trainer {
 namespace {
 
+TEST(FeedbackPanelTest, ShowsTheNextExerciseAndTheSignedResult) {
+  FeedbackPanel panel;
+  const auto* next = panel.findChild<QLabel*>(QStringLiteral("feedback-next"));
+  const auto* result = panel.findChild<QLabel*>(QStringLiteral("exam-result"));
+  EXPECT_TRUE(next->isHidden());
+  EXPECT_TRUE(result->isHidden());
+  panel.show_next(QStringLiteral("Liver biopsy, case 2, assisted. It is due today."));
+  panel.show_result(QStringLiteral("The result of the exam is signed: a.result.json"));
+  EXPECT_FALSE(next->isHidden());
+  EXPECT_TRUE(next->text().contains(QStringLiteral("due today")));
+  EXPECT_FALSE(result->isHidden());
+  panel.show_next({});
+  panel.show_result({});
+  EXPECT_TRUE(next->isHidden());
+  EXPECT_TRUE(result->isHidden());
+}
+
 TEST(FeedbackPanelTest, ShowsWhatHappenedBesideTheTrainee) {
   FeedbackPanel panel;
   const auto* notes = panel.findChild<QLabel*>(QStringLiteral("attempt-notes"));

@@ -4,9 +4,11 @@
 
 #include <QAbstractButton>
 #include <QComboBox>
+#include <QLabel>
 #include <QListWidget>
 #include <QPushButton>
 #include <QSettings>
+#include <QSpinBox>
 #include <QTemporaryDir>
 
 #include "anatomy/phantom/phantom.h"
@@ -63,6 +65,77 @@ TEST_F(StartPageTest, AnExamTakesTheTasksOwnNeedleAndForces) {
   EXPECT_EQ(page.choice().force_model, "");
   page.findChild<QAbstractButton*>(QStringLiteral("difficulty-guided"))->click();
   EXPECT_TRUE(page.findChild<QWidget*>(QStringLiteral("force-model"))->isEnabled());
+}
+
+TEST_F(StartPageTest, AnExamHasADifficultyAndANumber) {
+  StartPage page;
+  page.resize(1280, 700);
+  page.show();
+  auto* number = page.findChild<QSpinBox*>(QStringLiteral("exam-number"));
+  auto* difficulty = page.findChild<QComboBox*>(QStringLiteral("exam-difficulty"));
+  EXPECT_FALSE(number->isVisible());
+  page.findChild<QAbstractButton*>(QStringLiteral("difficulty-exam"))->click();
+  EXPECT_TRUE(number->isVisible());
+  EXPECT_EQ(page.choice().exam_number, 0u);  // drawn
+  number->setValue(4711);
+  EXPECT_EQ(page.choice().exam_number, 4711u);
+  const int row = difficulty->findData(3);
+  ASSERT_GE(row, 0);
+  Q_EMIT difficulty->activated(row);
+  EXPECT_EQ(page.choice().patient, "biopsy-3");
+  TrainerChoice other = page.choice();
+  other.patient = "biopsy-5";
+  page.choose(other);
+  EXPECT_EQ(difficulty->currentData().toInt(), 5);
+  EXPECT_TRUE(needs_exam_body(page.choice()));
+  page.add_patient(QStringLiteral("/somewhere/patient-7"));
+  EXPECT_FALSE(number->isEnabled());
+  EXPECT_EQ(page.choice().exam_number, 0u);
+  EXPECT_FALSE(needs_exam_body(page.choice()));
+  EXPECT_TRUE(exam_text(page.choice()).contains(QStringLiteral("known")));
+}
+
+TEST_F(StartPageTest, AnExamDoesNotTakeTheSeedOfTheCommandLine) {
+  TrainerChoice wanted;
+  wanted.patient_seed = 77;
+  StartPage page;
+  page.choose(wanted);
+  EXPECT_EQ(page.choice().patient_seed, 77u);
+  page.findChild<QAbstractButton*>(QStringLiteral("difficulty-exam"))->click();
+  EXPECT_EQ(page.choice().patient_seed, 1u);
+  EXPECT_EQ(page.choice().exam_number, 0u);
+}
+
+TEST_F(StartPageTest, OffersAndStartsTheNextExercise) {
+  StartPage page;
+  page.resize(1280, 700);
+  page.show();
+  auto* card = page.findChild<QWidget*>(QStringLiteral("next-exercise"));
+  EXPECT_FALSE(card->isVisible());
+  TrainerChoice exercise;
+  exercise.task = "ptcd";
+  exercise.patient = "ptcd-2";
+  exercise.difficulty = Difficulty::kAssisted;
+  page.offer_next(QStringLiteral("Bile duct puncture, case 2, assisted"), QStringLiteral("It is due today."), exercise);
+  EXPECT_TRUE(card->isVisible());
+  EXPECT_EQ(page.findChild<QLabel*>(QStringLiteral("next-exercise-title"))->text(),
+            QStringLiteral("Next exercise: Bile duct puncture, case 2, assisted"));
+  EXPECT_EQ(page.findChild<QLabel*>(QStringLiteral("next-exercise-why"))->text(), QStringLiteral("It is due today."));
+  TrainerChoice before = page.choice();
+  before.needle_device = "gamepad";
+  before.force_model = "proxy";
+  page.choose(before);
+  std::vector<TrainerChoice> started;
+  QObject::connect(&page, &StartPage::start_requested, [&](const TrainerChoice& choice) { started.push_back(choice); });
+  page.findChild<QPushButton*>(QStringLiteral("start-next"))->click();
+  ASSERT_EQ(started.size(), 1u);
+  EXPECT_EQ(started[0].task, "ptcd");
+  EXPECT_EQ(started[0].patient, "ptcd-2");
+  EXPECT_EQ(started[0].difficulty, Difficulty::kAssisted);
+  EXPECT_EQ(started[0].needle_device, "gamepad");  // the devices stay
+  EXPECT_EQ(started[0].force_model, "");           // the task's own
+  page.offer_next({}, {}, {});
+  EXPECT_FALSE(card->isVisible());
 }
 
 TEST_F(StartPageTest, RemembersADeviceForEachTool) {

@@ -15,9 +15,12 @@
 #include <thread>
 #include <vector>
 
+#include "config/json.h"
 #include "core/testing/source_dir.h"
 #include "devices/pointer/test/gamepad_stand_in.h"
 #include "devices/vendor/test/hd_stand_ins.h"
+#include "exams/exam_result.h"
+#include "signing/signing_key.h"
 
 namespace trocar::trainer {
 namespace {
@@ -118,6 +121,26 @@ void expect_played(const Played& played) {
   EXPECT_EQ(played.exit_status, 0) << played.output.toStdString();
 }
 
+/// The sessions of a state folder have one result, which is signed with its key.
+void expect_signed_exam(const std::filesystem::path& state) {
+  const auto key = signing::load_station_key(state / exams::kStationKeyFile);
+  ASSERT_TRUE(key) << key.error().text();
+  std::vector<std::filesystem::path> results;
+  for (const auto& entry : std::filesystem::directory_iterator(state / "sessions"))
+    if (entry.path().extension() == ".json") results.push_back(entry.path());
+  ASSERT_EQ(results.size(), 1u);
+  const auto verification = exams::verify_exam(results.front(), key->public_key());
+  ASSERT_TRUE(verification) << verification.error().text();
+  EXPECT_EQ(verification->verdict, exams::Verdict::kValid) << verification->text;
+  EXPECT_EQ(verification->text.find("not checked"), std::string::npos) << verification->text;
+  const auto json = config::load_json(results.front());
+  ASSERT_TRUE(json) << json.error().text();
+  EXPECT_EQ((*json)["level"], "exam");
+  EXPECT_EQ((*json)["body_was_known"], false);
+  EXPECT_GE((*json)["exam_number"].get<int>(), 1000);
+  EXPECT_TRUE((*json)["changed_settings"].empty()) << (*json)["changed_settings"].dump();
+}
+
 TEST_F(WindowTest, ABiopsyGoesFromTheStartPageToTheScoreAndAgain) {
   expect_played(play("biopsy.txt"));
 }
@@ -139,6 +162,7 @@ TEST_F(WindowTest, AnExamTellsNothingAndIsNotAltered) {
   expect_played(played);
   for (const char* fact : {"depth_mm: ", "distance_mm: ", "tissue: ", "picture_from_plan_mm: ", "entry_from_plan_mm: "})
     EXPECT_TRUE(played.output.contains(QString::fromLatin1(fact) + QLatin1Char('\n'))) << fact;
+  expect_signed_exam(folder.filePath(QStringLiteral("state/trocar")).toStdString());
 }
 
 TEST_F(WindowTest, AFolderThatCannotBeWrittenIsNamedAndNothingBegins) {

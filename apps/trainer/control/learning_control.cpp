@@ -1,0 +1,152 @@
+#include "control/learning_control.h"
+
+#include <algorithm>
+#include <chrono>
+#include <random>
+
+#include "core/files/data_dir.h"
+#include "exams/exam_result.h"
+#include "io/patient/patient_cache.h"
+#include "learning/history.h"
+#include "pages/start_page.h"
+#include "panels/feedback_panel.h"
+#include "panels/status_text.h"
+#include "ui_kit/parts.h"
+
+namespace trocar::trainer {
+namespace {
+
+Difficulty difficulty_of(learning::Level level) {
+  for (const Difficulty difficulty : {Difficulty::kGuided, Difficulty::kAssisted, Difficulty::kExam})
+    if (std::string_view(name_of(difficulty)) == learning::to_string(level)) return difficulty;
+  return Difficulty::kGuided;
+}
+
+TrainerChoice choice_of(const learning::Exercise& exercise) {
+  TrainerChoice choice;
+  choice.task = exercise.task;
+  choice.patient = exercise.patient;
+  choice.difficulty = difficulty_of(exercise.level);
+  return choice;
+}
+
+QString joined(const std::vector<std::string>& sentences) {
+  QStringList lines;
+  for (const std::string& sentence : sentences) lines << to_qt(sentence);
+  return lines.join(QLatin1Char(' '));
+}
+
+}  // namespace
+
+LearningControl::LearningControl(std::filesystem::path state_folder, StartPage& start, FeedbackPanel& feedback,
+                                 QObject* parent)
+    : QObject(parent), state_folder_(std::move(state_folder)), start_(start), feedback_(feedback) {
+  refresh();
+}
+
+LearningControl::~LearningControl() = default;
+
+void LearningControl::refresh() {
+  retired_.retire(std::exchange(advising_, {}));
+  const auto work = [folder = state_folder_ / "sessions"](const Progress&,
+                                                          const std::stop_token& stop) -> Result<Advice> {
+    TROCAR_TRY(const std::filesystem::path data, checked_data_dir());
+    TROCAR_TRY(const learning::Curriculum curriculum, learning::load_curriculum(data));
+    TROCAR_TRY(const learning::History history, learning::read_history(folder, stop));
+    const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+    Advice advice{learning::next_exercise(history.attempts, curriculum, now), {}};
+    if (advice.next.exercise) advice.title = learning::exercise_text(*advice.next.exercise, curriculum);
+    if (!history.damaged.empty())
+      advice.next.notes.push_back(std::to_string(history.damaged.size()) +
+                                  " damaged sessions do not count: see trocar learn.");
+    return advice;
+  };
+  advising_ = BackgroundJob<Advice>(work);
+}
+
+void LearningControl::find_exam_body(const TrainerChoice& choice) {
+  cancel_exam_body();
+  exam_ = choice;
+  const auto work = [choice, folder = state_folder_ / "sessions"](const Progress& progress) -> Result<exams::ExamBody> {
+    TROCAR_TRY(const learning::History history, learning::read_history(folder));
+    const exams::FitCheck check = exams::fit_check(choice.task, choice.patient, io::patient_cache_folder(), progress);
+    if (choice.exam_number != 0) return exams::find_body(choice.patient, choice.exam_number, history.attempts, check);
+    return exams::draw_body(choice.patient, history.attempts, std::random_device()(), check);
+  };
+  drawing_ = BackgroundJob<exams::ExamBody>(work);
+}
+
+void LearningControl::cancel_exam_body() {
+  retired_.retire(std::exchange(drawing_, {}));
+}
+
+void LearningControl::sign(const std::filesystem::path& session) {
+  feedback_.show_result(tr("The result of the exam is being signed …"));
+  const auto work = [session, state = state_folder_](const Progress&) -> Result<std::filesystem::path> {
+    TROCAR_TRY(const auto key, signing::open_station_key(state / exams::kStationKeyFile));
+    TROCAR_TRY(const learning::History history, learning::read_history(state / "sessions"));
+    return exams::sign_exam(session, history.attempts, key);
+  };
+  signing_ = BackgroundJob<std::filesystem::path>(work);
+}
+
+void LearningControl::forget_result() {
+  result_file_.clear();
+  feedback_.show_result({});
+}
+
+void LearningControl::show(const Advice& advice) {
+  next_title_ = to_qt(advice.title);
+  QString why = joined(advice.next.reasons);
+  if (!advice.next.notes.empty()) why += QLatin1Char(' ') + joined(advice.next.notes);
+  start_.offer_next(next_title_, why, advice.next.exercise ? choice_of(*advice.next.exercise) : TrainerChoice());
+  feedback_.show_next(next_title_.isEmpty() ? why : next_title_ + QStringLiteral(". ") + why);
+}
+
+void LearningControl::poll_body() {
+  if (!drawing_.has_work()) return;
+  const JobView view = drawing_.view();
+  auto body = drawing_.take();
+  if (!body) {
+    if (!view.is_done) Q_EMIT exam_progress(tr("Drawing an unseen body: %1").arg(to_qt(view.step)), view.fraction);
+    return;
+  }
+  drawing_ = {};
+  if (!*body) {
+    Q_EMIT exam_failed(to_qt(body->error().text()));
+    return;
+  }
+  exam_.exam_number = exam_.patient_seed = (*body)->number;
+  exam_.is_body_known = (*body)->is_known;
+  Q_EMIT exam_found(exam_);
+}
+
+void LearningControl::poll_signature() {
+  const auto signed_file = signing_.take();
+  if (!signed_file) return;
+  signing_ = {};
+  if (*signed_file) {
+    result_file_ = to_qt((*signed_file)->string());
+    feedback_.show_result(tr("The result of the exam is signed: %1").arg(result_file_));
+  } else {
+    feedback_.show_result(tr("The result of the exam is not signed: %1").arg(sentence_of(signed_file->error())));
+  }
+  refresh();
+}
+
+void LearningControl::poll() {
+  retired_.sweep();
+  poll_body();
+  poll_signature();
+  const auto advice = advising_.take();
+  if (!advice) return;
+  advising_ = {};
+  if (*advice) {
+    show(**advice);
+  } else {
+    start_.offer_next({}, {}, {});
+    feedback_.show_next(sentence_of(advice->error()));
+  }
+}
+
+}  // namespace trocar::trainer

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <QObject>
+#include <filesystem>
+#include <memory>
+
+#include "choice/trainer_choice.h"
+#include "core/background_job.h"
+#include "exams/exam_body.h"
+#include "learning/next_exercise.h"
+
+namespace trocar::trainer {
+
+class FeedbackPanel;
+class StartPage;
+
+/// The learning path of this station's sessions, the bodies of its exams and their signed results. Work runs in the
+/// background; poll() shows what is ready.
+class LearningControl : public QObject {
+  Q_OBJECT
+
+ public:
+  LearningControl(std::filesystem::path state_folder, StartPage& start, FeedbackPanel& feedback,
+                  QObject* parent = nullptr);
+  ~LearningControl() override;
+
+  /// Reads the sessions anew.
+  void refresh();
+  /// Finds the body of an exam; exam_found or exam_failed follows, exam_progress before.
+  void find_exam_body(const TrainerChoice& choice);
+  void cancel_exam_body();
+  /// Signs the session of a finished exam, then refreshes.
+  void sign(const std::filesystem::path& session);
+  /// Clears the result of the last exam on the feedback page.
+  void forget_result();
+  void poll();
+
+  bool is_finding_body() const noexcept { return drawing_.has_work(); }
+  const QString& next_title() const noexcept { return next_title_; }    ///< Empty: none, or not yet.
+  const QString& result_file() const noexcept { return result_file_; }  ///< Of the last exam; empty: none.
+
+ Q_SIGNALS:
+  void exam_progress(const QString& step, double fraction);
+  void exam_found(const trocar::trainer::TrainerChoice& choice);
+  void exam_failed(const QString& error);
+
+ private:
+  struct Advice {
+    learning::Recommendation next;
+    std::string title;  ///< Empty: no exercise.
+  };
+  void show(const Advice& advice);
+  void poll_body();
+  void poll_signature();
+
+  std::filesystem::path state_folder_;
+  StartPage& start_;
+  FeedbackPanel& feedback_;
+  BackgroundJob<Advice> advising_;
+  BackgroundJob<exams::ExamBody> drawing_;
+  BackgroundJob<std::filesystem::path> signing_;
+  RetiredJobs retired_;
+  TrainerChoice exam_;  ///< The choice whose body is being found.
+  QString next_title_, result_file_;
+};
+
+}  // namespace trocar::trainer

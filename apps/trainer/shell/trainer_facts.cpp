@@ -1,0 +1,79 @@
+// What scripts, tests and benchmarks read from a running trainer.
+#include <algorithm>
+
+#include "control/attempt_control.h"
+#include "control/learning_control.h"
+#include "control/replay_control.h"
+#include "core/available_memory.h"
+#include "pages/work_page.h"
+#include "shell/main_window.h"
+#include "shell/trainer_flow.h"
+#include "ui_kit/parts.h"
+#include "ui_kit/trainer_application.h"
+#include "views/patient/patient_view.h"
+#include "views/ultrasound/ultrasound_view.h"
+
+namespace trocar::trainer {
+namespace {
+
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0.0;
+  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return values[static_cast<std::size_t>(at)];
+}
+
+}  // namespace
+
+QVariantMap TrainerFlow::facts() const {
+  QVariantMap facts;
+  facts[QStringLiteral("case")] = open_ ? to_qt(open_->the_case.patient->name) : QString();
+  facts[QStringLiteral("is_complete")] =
+      open_ != nullptr && open_->later->view().is_done && window_.work().view_3d().is_ready();
+  facts[QStringLiteral("is_open")] =
+      open_ != nullptr && !learning_->is_finding_body() && !opening_.has_work() && !opened_;
+  constexpr double kBytesPerMiB = 1024.0 * 1024.0;
+  facts[QStringLiteral("memory_mb")] = static_cast<double>(resident_memory_bytes()) / kBytesPerMiB;
+  facts[QStringLiteral("late_frames")] = static_cast<qulonglong>(frames_.late());
+  facts[QStringLiteral("next_exercise")] = learning_->next_title();
+  facts[QStringLiteral("exam_result")] = learning_->result_file();
+  facts[QStringLiteral("exam_number")] = static_cast<qulonglong>(is_exam() ? choice_.exam_number : 0);
+  if (attempt_) facts.insert(attempt_->facts());
+  if (replay_) facts.insert(replay_->facts());
+  // Settings of the displayed ultrasound image.
+  const bool tells_plan = !attempt_ || !is_exam();
+  if (const auto picture = window_.work().ultrasound().picture(); picture && open_ && tells_plan)
+    facts[QStringLiteral("picture_from_plan_mm")] = (picture->X_PT.p() - open_->X_PT_start.p()).norm();
+  facts[QStringLiteral("frame_p50_ms")] = quantile(frame_ms_, 0.5);
+  facts[QStringLiteral("frame_p99_ms")] = quantile(frame_ms_, 0.99);
+  const double watched_s = now_s() - watched_since_s_;
+  facts[QStringLiteral("ultrasound_per_s")] = static_cast<double>(scan_ms_.size()) / std::max(watched_s, 1e-3);
+  facts[QStringLiteral("ultrasound_p50_ms")] = quantile(scan_ms_, 0.5);
+  facts[QStringLiteral("ultrasound_p99_ms")] = quantile(scan_ms_, 0.99);
+  if (const auto picture = window_.work().ultrasound().picture())
+    facts[QStringLiteral("ultrasound_lines")] = picture->scan.lines;
+  const scene::FrameTimes& renders = window_.work().view_3d().moving_frame_times();
+  facts[QStringLiteral("render_p50_ms")] = renders.p50_ms();
+  facts[QStringLiteral("render_p99_ms")] = renders.p99_ms();
+  const scene::FrameTimes& stills = window_.work().view_3d().still_frame_times();
+  facts[QStringLiteral("still_p50_ms")] = stills.p50_ms();
+  facts[QStringLiteral("unwatched_ms")] = window_.work().view_3d().unwatched_times().percentile_ms(1.0);
+  if (const auto* application = qobject_cast<TrainerApplication*>(QCoreApplication::instance())) {
+    const auto& slowest = application->slowest();
+    facts[QStringLiteral("slowest_ms")] = slowest.empty() ? 0.0 : slowest.front().ms;
+    facts[QStringLiteral("slowest")] =
+        slowest.empty() ? QString()
+                        : QStringLiteral("%1 ms: %2").arg(slowest.front().ms, 0, 'f', 1).arg(slowest.front().what);
+  }
+  return facts;
+}
+
+void TrainerFlow::reset_watch() {
+  window_.work().view_3d().clear_frame_times();
+  frame_ms_.clear();
+  scan_ms_.clear();
+  watched_since_s_ = now_s();
+  if (auto* application = qobject_cast<TrainerApplication*>(QCoreApplication::instance())) application->reset_watch();
+}
+
+}  // namespace trocar::trainer
