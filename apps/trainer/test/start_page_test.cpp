@@ -155,7 +155,7 @@ TEST_F(StartPageTest, RemembersADeviceForEachTool) {
 TEST_F(StartPageTest, OffersNeedlesThatFitTheTask) {
   const StartPage page;
   const auto* box = page.findChild<QComboBox*>(QStringLiteral("needle"));
-  ASSERT_EQ(box->count(), 3);
+  ASSERT_EQ(box->count(), 4);
   EXPECT_TRUE(box->itemText(0).contains(QStringLiteral("defined by the task")));
   for (int row = 1; row < box->count(); ++row)
     EXPECT_TRUE(box->itemText(row).contains(QStringLiteral("biopsy"))) << box->itemText(row).toStdString();
