@@ -304,6 +304,16 @@ double darker_share(const QImage& a, const QImage& b, int least) {
   return static_cast<double>(darker) / all;
 }
 
+TEST_F(WindowTest, ALumbarPunctureIsGuidedStepByStep) {
+  expect_played(run({QStringLiteral("--task"), QStringLiteral("lumbar-puncture"), QStringLiteral("--patient"),
+                     QStringLiteral("lumbar-1"), QStringLiteral("--script"), script_named("lumbar.txt")}));
+}
+
+TEST_F(WindowTest, AscitesIsPuncturedAfterAnUltrasoundCheck) {
+  expect_played(run({QStringLiteral("--task"), QStringLiteral("ascites-puncture"), QStringLiteral("--patient"),
+                     QStringLiteral("ascites-1"), QStringLiteral("--script"), script_named("ascites.txt")}));
+}
+
 TEST_F(WindowTest, ABileDuctIsPuncturedUnderFluoroscopy) {
   QFile script(script_named("fluoroscopy.txt"));
   ASSERT_TRUE(script.open(QIODevice::ReadOnly));
