@@ -1,0 +1,60 @@
+// trocar learn: mastery and the next exercise from a folder of sessions.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "cli/program.h"
+#include "storage/session_file.h"
+
+namespace trocar::cli_test {
+namespace {
+
+void write_session(const std::string& file, const std::string& level, int minute, double score) {
+  storage::SessionInfo info;
+  info.started_utc = "2026-01-02T10:" + std::to_string(10 + minute) + ":00Z";
+  info.task = "liver-biopsy";
+  info.patient_source = "biopsy-1";
+  info.level = level;
+  info.label_names.resize(256);
+  auto writer = storage::SessionWriter::create(file, info);
+  ASSERT_TRUE(writer) << writer.error().text();
+  ASSERT_TRUE(writer->append(telemetry::TickSample()));
+  scoring::Outcome outcome;
+  outcome.score = score;
+  outcome.is_passed = true;
+  outcome.parts = {{"visibility", "Advance with the tip in the image", 50.0, "%", 2.0, 5.0}};
+  ASSERT_TRUE(writer->finish(outcome, {}));
+}
+
+TEST(Learn, ContinuesFromTheSessionsOfAFolder) {
+  const TemporaryFolder folder;
+  for (int n = 0; n < 3; ++n) write_session(folder / ("g" + std::to_string(n) + ".trocar"), "guided", n, 92.0);
+  std::ofstream(folder / "damaged.trocar") << "hello";
+  const Outcome outcome = trocar("learn --task liver-biopsy --sessions '" + folder.path().string() + "'");
+  EXPECT_EQ(outcome.exit_status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("3 of them scored attempts"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("mastered: case 1 guided\n"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("repeat case 1 guided on 2026-01-03"), std::string::npos) << outcome.out;
+  // Its day has passed.
+  EXPECT_NE(outcome.out.find("next: Liver biopsy, case 1, guided (patient biopsy-1)"), std::string::npos)
+      << outcome.out;
+  EXPECT_EQ(line_count(outcome.err), 1) << outcome.err;
+  EXPECT_NE(outcome.err.find("damaged.trocar"), std::string::npos) << outcome.err;
+  const config::Json json = json_of(trocar("learn --json --sessions '" + folder.path().string() + "'"));
+  EXPECT_EQ(json["attempts"], 3);
+  EXPECT_EQ(json["next"]["purpose"], "repetition");
+  EXPECT_EQ(json["next"]["patient"], "biopsy-1");
+  EXPECT_EQ(json["damaged"].size(), 1u);
+}
+
+TEST(Learn, BeginsWithoutSessionsAndRefusesUnknownNames) {
+  const TemporaryFolder folder;
+  const Outcome outcome = trocar("learn --sessions '" + folder.path().string() + "'");
+  EXPECT_EQ(outcome.exit_status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("case 1, guided"), std::string::npos) << outcome.out;
+  EXPECT_EQ(trocar("learn --sessions '" + folder / "nothing" + "'").exit_status, 2);
+  EXPECT_EQ(trocar("learn --task nothing").exit_status, 2);
+}
+
+}  // namespace
+}  // namespace trocar::cli_test
