@@ -22,7 +22,7 @@ ExamChoice::ExamChoice(QWidget* parent) : QWidget(parent) {
   difficulty_ = new QComboBox;
   difficulty_->setObjectName(QStringLiteral("exam-difficulty"));
   difficulty_->setAccessibleName(tr("Difficulty of the exam"));
-  difficulty_->setToolTip(tr("Difficulty, 1 (easiest) to 5"));
+  difficulty_->setToolTip(tr("Difficulty, 1 (easiest) to 5; – is not graded"));
   difficulty_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
   row->addWidget(difficulty_, 1);
   row->addWidget(make_label(tr("No."), "dim"));
@@ -51,7 +51,7 @@ void ExamChoice::show_patients(const std::vector<PatientEntry>& entries) {
   difficulties.erase(std::unique(difficulties.begin(), difficulties.end()), difficulties.end());
   difficulty_->clear();
   for (const int difficulty : difficulties)
-    difficulty_->addItem(difficulty > 0 ? tr("%1 of 5").arg(difficulty) : tr("not graded"), difficulty);
+    difficulty_->addItem(difficulty > 0 ? tr("%1 of 5").arg(difficulty) : QString(QChar(0x2013)), difficulty);
 }
 
 void ExamChoice::show_patient(const PatientEntry* patient) {

@@ -2,11 +2,11 @@
 drag() { xdotool mousemove "$1" "$2" mousedown 1 && sleep 0.2 && xdotool mousemove "$3" "$4" && sleep 0.2 && xdotool mouseup 1; }
 
 shot start
-click 150 208 # the task
-click 403 260 # the patient
-click 955 186 # guided
+click 150 264 # the task
+click 403 300 # the patient
+click 955 238 # guided
 shot chosen
-click 1194 711 # Start
+click 1194 721 # Start
 seen 1-briefing
 shot briefing
 click 1199 711 # Begin
