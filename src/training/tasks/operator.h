@@ -57,6 +57,8 @@ struct OperatorCase {
   bool fires_biopsy = false;  ///< The gun is fired at the end position.
   std::uint64_t seed = 1;
   OperatorActions actions = {};
+  std::optional<Vec3> bevel_P = {};  ///< Direction that the bevel has to face; empty: any.
+  double tremor_mm = 0.0;            ///< Added to the operator's own tremor, rms of each lateral axis. Range 0..3.
 };
 
 /// Follows the path: touches, pauses, inserts more slowly with more resistance, stops when the (virtual) tip is at the

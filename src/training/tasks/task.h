@@ -41,6 +41,48 @@ struct EntryZone {
   bool operator==(const EntryZone&) const = default;
 };
 
+/// Entry zone about a landmark, found in each patient that has it (fit_to_patient.h).
+struct LandmarkZone {
+  std::string landmark;     ///< "left anterior superior iliac spine"; `left` or `right` says where medial is.
+  double medial_mm = 0.0;   ///< Over the skin towards the midline. Range -150..150.
+  double cranial_mm = 0.0;  ///< Over the skin towards the head. Range -150..150.
+  double radius_mm = 25.0;  ///< Range 1..200.
+
+  bool operator==(const LandmarkZone&) const = default;
+};
+
+/// Highest level at which the target may be entered: an attempt that enters it above the middle of a structure is not
+/// passed.
+struct EntryLevel {
+  std::string above;   ///< A label's name: "vertebrae_L2".
+  std::string reason;  ///< For the trainee: "the needle went in above L2/L3 …".
+
+  bool operator==(const EntryLevel&) const = default;
+};
+
+/// Fibres that a bevel has to part instead of cutting them: its face looks across them (bevel.h).
+struct BevelRule {
+  std::string layer;            ///< Layer of the tissue table whose punctures are judged: "dura".
+  std::string fibres;           ///< Tissue class or label along which they run: "csf".
+  double tolerance_deg = 30.0;  ///< Angle that halves the points. Range 1..90.
+
+  bool operator==(const BevelRule&) const = default;
+};
+
+/// A level of difficulty of a task.
+struct Level {
+  std::string name;              ///< "hard"
+  std::string title;             ///< One line: what is harder.
+  double breathing_mm = 0.0;     ///< Amplitude of the breathing. Data; acts once patients breathe. Range 0..40.
+  double tremor_mm = 0.0;        ///< Added to a scripted operator's hand, rms of each lateral axis. Range 0..3.
+  double time_limit_s = 0.0;     ///< Replaces the task's; 0: does not. Range 0..3600.
+  double tolerance_share = 1.0;  ///< Factor on the tolerances of the score. Range 0.1..2.
+  /// Factors on numbers of an embedded patient's body (data/phantoms/cases.toml): "weight_kg" 1.3. Range 0.2..5.
+  std::map<std::string, double, std::less<>> body;
+
+  bool operator==(const Level&) const = default;
+};
+
 /// By which image the needle is guided.
 enum class Guidance : std::uint8_t { kUltrasound, kXray, kPalpation };
 const char* to_string(Guidance guidance) noexcept;
@@ -54,8 +96,8 @@ struct PainRules {
 };
 
 /// Parts of a score that a task can weigh; scoring/score.h says what each means.
-inline constexpr std::array kScoreParts{"target", "core", "confirmation", "risk",    "access",     "entry", "angle",
-                                        "length", "time", "dose",         "comfort", "visibility", "passes"};
+inline constexpr std::array kScoreParts{"target", "core", "confirmation", "risk",    "access",     "entry",  "angle",
+                                        "length", "time", "dose",         "comfort", "visibility", "passes", "bevel"};
 
 /// A training task as data (data/tasks/NAME.toml, or task.toml in a patient's folder).
 struct Task {
@@ -76,9 +118,10 @@ struct Task {
   std::string ultrasound_engine = "raycast";
   std::vector<RiskStructure> risks;
   // Settings that only a patient's own task has: they refer to places and structures of this patient.
-  std::string target_label;             ///< The one label that is the target; empty: all of target_tissues.
-  std::optional<Vec3> target_P;         ///< Target point; empty: the middle of a target's label.
-  std::optional<EntryZone> entry_zone;  ///< Paths are planned inside it; an entry inside it is as good as the expert's.
+  std::string target_label;      ///< The one label that is the target; empty: all of target_tissues.
+  std::optional<Vec3> target_P;  ///< Target point; empty: the middle of a target's label.
+  /// Paths are planned inside it; an entry inside it is as good as the expert's. From `landmark_zone` if there is one.
+  std::optional<EntryZone> entry_zone;
   std::string expert_path;              ///< Name of the patient's path that is the expert's; empty: it is planned.
   double min_organ_path_mm = 10.0;      ///< Organ passed before the target. Range 0..50.
   double parenchymal_depth_mm = 20.0;   ///< Target at least this deep below the organ's surface without a lesion.
@@ -91,6 +134,14 @@ struct Task {
   /// target.
   double target_step_mm = 0.0;
   std::string target_below;  ///< Name of a structure: target points lie below its lowest point (z); empty: anywhere.
+  /// Landmark from which the target keeps at least so far: central ducts lie beside large vessels. Empty: none.
+  std::string target_away_from;
+  double target_away_mm = 0.0;  ///< Range 0..200.
+  std::optional<LandmarkZone> landmark_zone;
+  std::optional<EntryLevel> highest_entry;
+  std::optional<BevelRule> bevel;
+  std::vector<Level> levels;  ///< The easiest first.
+  std::string level;          ///< Name of the level whose numbers the task has; empty: its own.
   // Scoring: deviation at which a part gives half its points, and time at which it gives none.
   double target_tolerance_mm = 5.0;
   double entry_tolerance_mm = 10.0;
@@ -122,6 +173,12 @@ Result<Task> parse_task(std::string_view text, const std::string& name, const st
                         const std::filesystem::path& tasks_folder);
 /// Text of such a file: the differences of `task` from `base`.
 std::string task_to_toml(const Task& task, const Task& base);
+
+/// The task with the time limit and the tolerances of one of its levels, given by its name or its number from 1. Error
+/// (exit status 2): an unknown one, the message lists them; the task has a level already.
+Result<Task> at_level(Task task, std::string_view name_or_number);
+/// The level that a task has; nullptr: none.
+const Level* level_of(const Task& task) noexcept;
 
 /// True if a label is the task's organ or target; its risk structure in the task (nullptr: none). A risk that is named
 /// by its tissue excludes organ and target: a biopsy of the pancreas can have "organ" as a risk.

@@ -7,13 +7,13 @@
 
 #include "config/toml.h"
 #include "config/toml_writer.h"
+#include "tasks/detail/task_rules.h"
 #include "tasks/task.h"
 
 namespace trocar::tasks {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr config::Range kCoordinate_mm{-1e5, 1e5};
 constexpr std::array kGuidances{Guidance::kUltrasound, Guidance::kXray, Guidance::kPalpation};
 
 /// Reads the keys of a task file. A complete task must have them all; one with a base has the differing ones.
@@ -23,9 +23,11 @@ class TaskReader {
 
   Status read(Task& task) const {
     TROCAR_TRY_STATUS(document_.check_keys(
-        {"base", "title",       "organ",   "target_tissues", "needle",       "force_model", "ultrasound_engine",
-         "path", "parenchymal", "scoring", "risks",          "target",       "entry_zone",  "expert_path",
-         "exam", "needles",     "cores",   "guidance",       "confirmed_by", "phases",      "pain"}));
+        {"base",          "title",       "organ",    "target_tissues", "needle", "force_model", "ultrasound_engine",
+         "path",          "parenchymal", "scoring",  "risks",          "target", "entry_zone",  "expert_path",
+         "exam",          "needles",     "guidance", "confirmed_by",   "phases", "pain",        "bevel",
+         "highest_entry", "levels",      "level",    "cores"}));
+    if (!is_whole_) TROCAR_TRY_STATUS(detail::read_level_of(document_, task));  // before keys that replace its numbers
     TROCAR_TRY_STATUS(text(document_, "title", task.title));
     TROCAR_TRY_STATUS(text(document_, "organ", task.organ));
     TROCAR_TRY_STATUS(text(document_, "needle", task.needle));
@@ -44,7 +46,10 @@ class TaskReader {
     TROCAR_TRY_STATUS(read_target(task));
     TROCAR_TRY_STATUS(read_exam(task));
     TROCAR_TRY_STATUS(read_procedure(task));
-    return read_entry_zone(task);
+    TROCAR_TRY_STATUS(detail::read_rules(document_, task));
+    if (task.weights.contains("bevel") && !task.bevel)
+      return fail("the bevel has a weight and no rule", document_.where(), "give [bevel], or omit the weight");
+    return is_whole_ ? detail::read_level_of(document_, task) : Status();
   }
 
  private:
@@ -63,13 +68,18 @@ class TaskReader {
   Status read_path(Task& task) const {
     if (!lacks("path")) {
       TROCAR_TRY(const config::TomlTable path, document_.table("path"));
-      TROCAR_TRY_STATUS(path.check_keys({"min_organ_path_mm", "max_path_mm", "max_entry_angle_deg", "max_posterior_deg",
-                                         "passes", "target_step_mm", "target_below"}));
+      TROCAR_TRY_STATUS(
+          path.check_keys({"min_organ_path_mm", "max_path_mm", "max_entry_angle_deg", "max_posterior_deg", "passes",
+                           "target_step_mm", "target_below", "target_away_from", "target_away_mm"}));
       if (path.has("passes")) {
         TROCAR_TRY(task.passes, path.strings("passes"));
       }
       TROCAR_TRY(task.target_step_mm, path.number_or("target_step_mm", {0.0, 100.0}, task.target_step_mm));
       TROCAR_TRY(task.target_below, path.string_or("target_below", task.target_below));
+      TROCAR_TRY(task.target_away_from, path.string_or("target_away_from", task.target_away_from));
+      TROCAR_TRY(task.target_away_mm, path.number_or("target_away_mm", {0.0, 200.0}, task.target_away_mm));
+      if (task.target_away_from.empty() != (task.target_away_mm <= 0.0))
+        return fail("target_away_from and target_away_mm belong together", path.where(), "give both, or none");
       TROCAR_TRY_STATUS(number(path, "min_organ_path_mm", {0.0, 50.0}, task.min_organ_path_mm));
       TROCAR_TRY_STATUS(number(path, "max_path_mm", {10.0, 300.0}, task.max_path_mm));
       TROCAR_TRY_STATUS(number(path, "max_entry_angle_deg", {5.0, 85.0}, task.max_entry_angle_deg));
@@ -182,19 +192,13 @@ class TaskReader {
     return {};
   }
 
-  static Result<Vec3> point(const config::TomlTable& table, const char* key) {
-    TROCAR_TRY(const std::vector<double> numbers, table.numbers(key, kCoordinate_mm));
-    if (numbers.size() == 3) return Vec3(numbers[0], numbers[1], numbers[2]);
-    return fail(fmt::format("{} is not a point", key), table.where(), "write [x, y, z] in mm (LPS)");
-  }
-
   Status read_target(Task& task) const {
     if (!document_.has("target")) return {};
     TROCAR_TRY(const config::TomlTable target, document_.table("target"));
     TROCAR_TRY_STATUS(target.check_keys({"label", "point_mm"}));
     TROCAR_TRY(task.target_label, target.string_or("label", ""));
     if (target.has("point_mm")) {
-      TROCAR_TRY(task.target_P, point(target, "point_mm"));
+      TROCAR_TRY(task.target_P, detail::read_point(target, "point_mm"));
     }
     return {};
   }
@@ -204,17 +208,6 @@ class TaskReader {
     TROCAR_TRY(const config::TomlTable exam, document_.table("exam"));
     TROCAR_TRY_STATUS(exam.check_keys({"shows_needle"}));
     TROCAR_TRY(task.exam_shows_needle, exam.boolean_or("shows_needle", task.exam_shows_needle));
-    return {};
-  }
-
-  Status read_entry_zone(Task& task) const {
-    if (!document_.has("entry_zone")) return {};
-    TROCAR_TRY(const config::TomlTable table, document_.table("entry_zone"));
-    TROCAR_TRY_STATUS(table.check_keys({"centre_mm", "radius_mm"}));
-    EntryZone zone;
-    TROCAR_TRY(zone.centre_P, point(table, "centre_mm"));
-    TROCAR_TRY(zone.radius_mm, table.number("radius_mm", {1.0, 200.0}));
-    task.entry_zone = zone;
     return {};
   }
 
@@ -334,6 +327,7 @@ std::string task_to_toml(const Task& task, const Task& base) {
   keys.set_changed("target_tissues", task.target_tissues, base.target_tissues);
   keys.set_changed("needles", task.needles, base.needles);
   keys.set_changed("cores", static_cast<double>(task.cores), static_cast<double>(base.cores));
+  keys.set_changed("level", task.level, base.level);
   if (task.guidance != base.guidance) keys.set("guidance", to_string(task.guidance));
   if (task.confirmed_by != base.confirmed_by) keys.set("confirmed_by", to_string(task.confirmed_by));
   if (task.phases.empty() && !base.phases.empty()) keys.set("phases", std::vector<std::string>());
@@ -347,6 +341,8 @@ std::string task_to_toml(const Task& task, const Task& base) {
   keys.set_changed("passes", task.passes, base.passes);
   keys.set_changed("target_step_mm", task.target_step_mm, base.target_step_mm);
   keys.set_changed("target_below", task.target_below, base.target_below);
+  keys.set_changed("target_away_from", task.target_away_from, base.target_away_from);
+  keys.set_changed("target_away_mm", task.target_away_mm, base.target_away_mm);
   keys.begin_table("parenchymal");
   keys.set_changed("depth_mm", task.parenchymal_depth_mm, base.parenchymal_depth_mm);
   keys.set_changed("vessel_mm", task.parenchymal_vessel_mm, base.parenchymal_vessel_mm);
@@ -371,11 +367,7 @@ std::string task_to_toml(const Task& task, const Task& base) {
   keys.begin_table("target");
   keys.set_changed("label", task.target_label, base.target_label);
   if (task.target_P) keys.set_point("point_mm", *task.target_P);
-  keys.begin_table("entry_zone");
-  if (task.entry_zone) {
-    keys.set_point("centre_mm", task.entry_zone->centre_P);
-    keys.set("radius_mm", task.entry_zone->radius_mm);
-  }
+  detail::write_rules(keys.writer(), task, base);
   if (task.phases != base.phases) write_phases(keys.writer(), task.phases);
   if (!has_same_risks)
     for (const RiskStructure& risk : task.risks) write_risk(keys.writer(), risk);

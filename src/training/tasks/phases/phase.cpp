@@ -45,6 +45,7 @@ constexpr std::array<ConditionRow, static_cast<std::size_t>(kLastCondition) + 1>
     {"fired", Argument::kNone, {}, "fire the gun"},
     {"cores", Argument::kNumber, {1.0, 10.0}, "take core number {:.0f}"},
     {"outside", Argument::kNone, {}, "withdraw the needle"},
+    {"bevel_to_fibres_deg", Argument::kNumber, {1.0, 90.0}, "turn the needle until the bevel faces the side"},
 }};
 
 const ConditionRow& row_of(ConditionKind kind) noexcept {

@@ -33,8 +33,9 @@ enum class ConditionKind : std::uint8_t {
   kFired,           ///< The gun was fired.
   kCores,           ///< So many cores were taken.
   kOutside,         ///< The needle has left the body again.
+  kBevelToFibres,   ///< Number: angle between the bevel and the fibres that it has to part (BevelRule), degrees.
 };
-inline constexpr ConditionKind kLastCondition = ConditionKind::kOutside;
+inline constexpr ConditionKind kLastCondition = ConditionKind::kBevelToFibres;
 
 struct Condition {
   ConditionKind kind = ConditionKind::kTipOnSkin;

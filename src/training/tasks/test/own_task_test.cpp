@@ -39,6 +39,12 @@ Task changed_task() {
   task.pass_mark = 55.0;
   task.weights = {{"target", 40.0}, {"confirmation", 60.0}};
   task.pain = {{"muscle"}, false};
+  task.target_away_from = "hilum of the liver";
+  task.target_away_mm = 25.0;
+  task.highest_entry = EntryLevel{"vertebrae_L2", "too high"};
+  task.bevel = BevelRule{"dura", "csf", 20.0};
+  task.levels = {{"easy", "Nothing is harder", 0.0, 0.0, 0.0, 1.0, {}},
+                 {"hard", "All is harder", 12.0, 0.4, 60.0, 0.7, {{"lesion_diameter_mm", 0.7}, {"weight_kg", 1.3}}}};
   task.phases = {{"a", "A", "because", {}, {{ConditionKind::kTipIn, 0.0, "liver"}}, 0.25},
                  {"b", "B", "so", {"a"}, {{ConditionKind::kWire, 12.5, {}}, {ConditionKind::kOutside, 0.0, {}}}, 0.0}};
   return task;
@@ -60,6 +66,50 @@ TEST(OwnTask, FileSaysWhatDiffersAndGivesTheTaskBack) {
   EXPECT_TRUE(read->exam_shows_needle);
   ASSERT_TRUE(read->target_P);
   EXPECT_EQ(*read->target_P, *task.target_P);
+}
+
+TEST(OwnTask, AZoneByItsLandmarkAndALevelAreKept) {
+  Task task = changed_task();
+  task.entry_zone.reset();
+  task.landmark_zone = LandmarkZone{"left anterior superior iliac spine", 30.0, 25.5, 20.0};
+  const auto hard = at_level(task, "2");
+  ASSERT_TRUE(hard) << hard.error().text();
+  EXPECT_EQ(hard->level, "hard");
+  const auto read = parse_task(task_to_toml(*hard, liver_biopsy()), "own", "task.toml", kTasks);
+  ASSERT_TRUE(read) << read.error().text();
+  EXPECT_TRUE(*read == *hard) << task_to_toml(*hard, liver_biopsy());
+}
+
+TEST(OwnTask, ALevelChangesTimeLimitAndTolerancesOnly) {
+  Task task = changed_task();
+  const auto hard = at_level(task, "hard");
+  ASSERT_TRUE(hard) << hard.error().text();
+  EXPECT_DOUBLE_EQ(hard->time_limit_s, 60.0);
+  EXPECT_DOUBLE_EQ(hard->target_tolerance_mm, 0.7 * task.target_tolerance_mm);
+  EXPECT_DOUBLE_EQ(hard->margin_tolerance_mm, 0.7 * task.margin_tolerance_mm);
+  Task back = *hard;
+  back.level.clear();
+  back.time_limit_s = task.time_limit_s;
+  back.target_tolerance_mm = task.target_tolerance_mm;
+  back.entry_tolerance_mm = task.entry_tolerance_mm;
+  back.angle_tolerance_deg = task.angle_tolerance_deg;
+  back.margin_tolerance_mm = task.margin_tolerance_mm;
+  EXPECT_TRUE(back == task);
+  ASSERT_NE(level_of(*hard), nullptr);
+  EXPECT_DOUBLE_EQ(level_of(*hard)->tremor_mm, 0.4);
+  EXPECT_EQ(level_of(task), nullptr);
+}
+
+TEST(OwnTask, AnUnknownLevelIsRefusedWithTheList) {
+  const Task task = changed_task();
+  for (const char* name : {"impossible", "0", "3", "-1", ""}) {
+    const auto level = at_level(task, name);
+    ASSERT_FALSE(level) << name;
+    EXPECT_NE(level.error().text().find("1 easy, 2 hard"), std::string::npos) << level.error().text();
+  }
+  const auto twice = at_level(*at_level(task, "1"), "2");
+  ASSERT_FALSE(twice);
+  EXPECT_NE(twice.error().text().find("already"), std::string::npos);
 }
 
 TEST(OwnTask, NoRisksAtAllAreKept) {
@@ -84,6 +134,7 @@ TEST(OwnTask, WeightsThatContradictAreRefused) {
   EXPECT_NE(error_of("[scoring.weights]\ntarget = 90\ndose = 10\n").find("dose_limit_gycm2"), std::string::npos);
   EXPECT_NE(error_of("[scoring.weights]\ntarget = 90\nconfirmation = 10\n").find("nothing confirms"),
             std::string::npos);
+  EXPECT_NE(error_of("[scoring.weights]\ntarget = 90\nbevel = 10\n").find("no rule"), std::string::npos);
   EXPECT_NE(error_of("confirmed_by = \"wine\"\n").find("no substance"), std::string::npos);
   EXPECT_NE(error_of("guidance = \"magic\"\n").find("palpation"), std::string::npos);
 }
@@ -101,6 +152,12 @@ TEST(OwnTask, DamagedFileIsRefusedWithItsPlace) {
             std::string::npos);
   EXPECT_NE(error_of("base = \"liver-biopsy\"\n[entry_zone]\ncentre_mm = [1, 2, 3]\n").find("radius_mm"),
             std::string::npos);
+  EXPECT_NE(error_of("base = \"liver-biopsy\"\n[entry_zone]\nlandmark = \"umbilicus\"\nmedial_mm = 30\nradius_mm = 9\n")
+                .find("has no side"),
+            std::string::npos);
+  EXPECT_NE(error_of("base = \"liver-biopsy\"\n[path]\ntarget_away_mm = 30\n").find("give both"), std::string::npos);
+  EXPECT_NE(error_of("base = \"liver-biopsy\"\nlevel = \"mad\"\n").find("no level"), std::string::npos);
+  EXPECT_NE(error_of("base = \"liver-biopsy\"\n[[levels]]\nname = \"a\"\n").find("title"), std::string::npos);
   EXPECT_NE(error_of("base = \"liver-biopsy\"\n[target]\npiont_mm = [1, 2, 3]\n").find("did you mean"),
             std::string::npos);
 }
