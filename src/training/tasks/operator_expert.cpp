@@ -39,7 +39,8 @@ constexpr double kOutOfTime_s = 58.0;
 class Expert final : public Operator {
  public:
   explicit Expert(const OperatorCase& the_case) noexcept
-      : hand_(the_case.path_P, kStart_mm, Tremor(kTremor_mm, the_case.seed)),
+      : hand_(the_case.path_P, the_case.bevel_P, kStart_mm,
+              Tremor(std::hypot(kTremor_mm, the_case.tremor_mm), the_case.seed)),
         target_mm_(the_case.path_P.length_mm()),
         cores_left_(the_case.fires_biopsy ? the_case.actions.cores : 0),
         loads_inside_(the_case.actions.loads_inside),

@@ -28,7 +28,9 @@ constexpr double kPullback_mm_s = 15.0;
 constexpr double kBeforeFire_s[] = {0.3, 1.5};
 constexpr double kAfterFire_s = 0.5;
 constexpr double kLoading_s = 6.0;  // takes the core out and loads the gun
-constexpr double kRemembers = 0.7;  // share of novices who give anaesthetic, and of those who look what comes back
+// Share of novices who give anaesthetic, of those who look what comes back, and of those who turn the bevel.
+constexpr double kRemembers = 0.7;
+constexpr double kBevelError_deg = 20.0;  // of those who turn it, at most
 constexpr double kWithdraw_mm_s = 50.0;
 constexpr double kStuck_s = 5.0;
 constexpr double kStop_s = 40.0;  // in any case: fire and withdraw
@@ -49,6 +51,16 @@ Segment miss(const Segment& path_P, Random& random) noexcept {
   const double tilt_rad = draw(random, kAngleError_deg) * std::numbers::pi / 180.0;
   const Vec3 axis_P = std::cos(tilt_rad) * path_P.direction() + std::sin(tilt_rad) * sideways_P();
   return {entry_P, entry_P + path_P.length_mm() * axis_P};
+}
+
+/// Some forget the bevel: it faces anywhere.
+std::optional<Vec3> aim_bevel(const OperatorCase& the_case) noexcept {
+  if (!the_case.bevel_P) return std::nullopt;
+  Random random(mix64(the_case.seed + 3));
+  const bool forgets = random.uniform() > kRemembers;
+  const double error_rad = forgets ? random.uniform(0.0, 2.0 * std::numbers::pi)
+                                   : (2.0 * random.uniform() - 1.0) * kBevelError_deg * std::numbers::pi / 180.0;
+  return Eigen::AngleAxisd(error_rad, the_case.path_P.direction()) * *the_case.bevel_P;
 }
 
 class Novice final : public Operator {
@@ -118,7 +130,8 @@ class Novice final : public Operator {
 
   Novice(const OperatorCase& the_case, Random random) noexcept
       : start_mm_(draw(random, kStart_mm)),
-        hand_(miss(the_case.path_P, random), start_mm_, Tremor(kTremor_mm, mix64(the_case.seed + 1))),
+        hand_(miss(the_case.path_P, random), aim_bevel(the_case), start_mm_,
+              Tremor(std::hypot(kTremor_mm, the_case.tremor_mm), mix64(the_case.seed + 1))),
         cores_left_(the_case.fires_biopsy ? the_case.actions.cores : 0),
         loads_inside_(the_case.actions.loads_inside),
         actions_(the_case.actions) {

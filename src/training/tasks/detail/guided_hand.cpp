@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/random.h"
+#include "tasks/bevel.h"
 
 namespace trocar::tasks {
 namespace {
@@ -55,10 +56,11 @@ Vec3 Tremor::velocity_N(double time_s) const noexcept {
   return velocity;
 }
 
-GuidedHand::GuidedHand(const Segment& line_P, double start_mm, const Tremor& tremor) noexcept
+GuidedHand::GuidedHand(const Segment& line_P, const std::optional<Vec3>& bevel_P, double start_mm,
+                       const Tremor& tremor) noexcept
     : start_P_(line_P.a),
       axis_P_(line_P.direction()),
-      R_PN_(needle_pose(line_P.a, axis_P_).R()),
+      R_PN_(bevel_P ? needle_rotation(axis_P_, *bevel_P) : needle_pose(line_P.a, axis_P_).R()),
       tremor_(tremor),
       wanted_mm_(start_mm),
       device_mm_(start_mm),

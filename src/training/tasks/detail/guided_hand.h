@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 #include "geometry/segment.h"
 #include "tasks/operator.h"
@@ -32,7 +33,8 @@ class Tremor {
 /// reads the tip's position and the device's force. Positions along the line are mm from its start, positive inward.
 class GuidedHand {
  public:
-  GuidedHand(const Segment& line_P, double start_mm, const Tremor& tremor) noexcept;
+  /// `bevel_P`: direction that the bevel faces; empty: any.
+  GuidedHand(const Segment& line_P, const std::optional<Vec3>& bevel_P, double start_mm, const Tremor& tremor) noexcept;
 
   /// Reads tip and force; call it once per tick, first.
   void sense(const OperatorView& view) noexcept;
