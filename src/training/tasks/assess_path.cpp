@@ -11,6 +11,7 @@
 #include "tasks/detail/block_grid.h"
 #include "tasks/detail/path_check.h"
 #include "tasks/detail/planning_map.h"
+#include "tasks/fit_to_patient.h"
 #include "volume/sampling.h"
 
 namespace trocar::tasks {
@@ -171,6 +172,13 @@ class Assessor {
 
   void check_target() {
     const Vec3 reached_P = at(made_.path.length_mm + needle_.notch_middle_mm());
+    if (const anatomy::Landmark* const landmark = find_landmark(patient_, task_.target_away_from)) {
+      const double away_mm = (reached_P - landmark->p_P).norm();
+      if (away_mm < task_.target_away_mm)
+        add(PathFault::kOffTarget, reached_P,
+            fmt::format("the needle ends {:.0f} mm from the {}; the minimum is {:.0f} mm", away_mm, landmark->name,
+                        task_.target_away_mm));
+    }
     if (task_.target_P) {
       const double miss_mm = (reached_P - *task_.target_P).norm();
       if (miss_mm > task_.target_tolerance_mm)

@@ -1,11 +1,13 @@
 #include "tasks/readiness.h"
 
+#include "tasks/fit_to_patient.h"
 #include "tasks/plan.h"
 
 namespace trocar::tasks {
 
-TaskReadiness check_task_and_paths(const Task& task, const anatomy::VirtualPatient& patient, const Needle& needle,
+TaskReadiness check_task_and_paths(const Task& general, const anatomy::VirtualPatient& patient, const Needle& needle,
                                    const Progress& progress) {
+  const Task task = fit_to_patient(general, patient);
   TaskReadiness readiness = check_task(task, patient);
   if (!readiness.is_possible) return readiness;
   const auto paths = plan_paths(task, patient, needle, {}, progress);

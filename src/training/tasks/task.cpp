@@ -6,6 +6,8 @@
 #include <array>
 #include <cstring>
 
+#include "tasks/fit_to_patient.h"
+
 namespace trocar::tasks {
 namespace {
 
@@ -162,6 +164,7 @@ TaskReadiness check_task(const Task& task, const anatomy::VirtualPatient& patien
   std::vector<std::string> missing = unlabelled_risks(task, patient, counts);
   std::erase(missing, "vessel");
   note(!missing.empty(), fmt::format("not labelled, so paths do not avoid them: {}", fmt::join(missing, ", ")));
+  for (const std::string& rule : unserved_rules(task, patient)) note(true, "doubtful: " + rule);
   return readiness;
 }
 

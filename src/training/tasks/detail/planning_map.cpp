@@ -9,6 +9,7 @@
 
 #include "core/parallel.h"
 #include "tasks/detail/block_grid.h"
+#include "tasks/fit_to_patient.h"
 #include "volume/distance.h"
 #include "volume/sampling.h"
 
@@ -32,9 +33,20 @@ Role role_of(const Task& task, const anatomy::Label& label) {
   return passes ? Role::kMuscle : Role::kForbidden;
 }
 
+/// Where the task lets target points lie.
+struct TargetRegion {
+  double highest_z_mm = std::numeric_limits<double>::infinity();
+  const anatomy::Landmark* away_from = nullptr;
+  double away_mm = 0.0;
+
+  bool contains(const Vec3& p_P) const {
+    return p_P.z() <= highest_z_mm && (away_from == nullptr || (p_P - away_from->p_P).norm() >= away_mm);
+  }
+};
+
 /// Points on the middle line of a long target, at least `step_mm` apart, the thickest parts first.
 std::vector<Vec3> points_along(const volume::LabelGrid& labels, std::uint8_t id, const IndexBox& box, double step_mm,
-                               double highest_z_mm) {
+                               const TargetRegion& region) {
   const volume::MaskGrid mask = cut_mask(labels, grown(box, 1), [&](std::uint8_t label) { return label == id; });
   const volume::FloatGrid distance = volume::signed_distance_mm(mask);
   std::vector<std::pair<float, std::size_t>> order;
@@ -44,7 +56,7 @@ std::vector<Vec3> points_along(const volume::LabelGrid& labels, std::uint8_t id,
   std::vector<Vec3> points;
   for (const auto& [depth, n] : order) {
     const Vec3 p_P = mask.geometry.centre_mm(mask.geometry.index_of(n));
-    const bool is_free = p_P.z() <= highest_z_mm && std::none_of(points.begin(), points.end(), [&](const Vec3& other) {
+    const bool is_free = region.contains(p_P) && std::none_of(points.begin(), points.end(), [&](const Vec3& other) {
                            return (other - p_P).norm() < step_mm;
                          });
     if (is_free) points.push_back(p_P);
@@ -170,13 +182,17 @@ Result<PlanTargets> find_targets(const PlanningMap& map) {
   }
   if (organ_box.is_empty()) return fail("has no " + map.task.organ, map.patient.name, "choose another task");
   std::sort(lesions.begin(), lesions.end(), std::greater<>());
-  TROCAR_TRY(const double highest_z_mm, lowest_of(map, boxes, map.task.target_below));
+  TargetRegion region{0.0, find_landmark(map.patient, map.task.target_away_from), map.task.target_away_mm};
+  TROCAR_TRY(region.highest_z_mm, lowest_of(map, boxes, map.task.target_below));
   for (const auto& [voxels, id] : lesions) {
     if (map.task.target_step_mm <= 0.0) break;
-    const auto points = points_along(labels, id, boxes.boxes[id], map.task.target_step_mm, highest_z_mm);
+    const auto points = points_along(labels, id, boxes.boxes[id], map.task.target_step_mm, region);
     targets.points_P.insert(targets.points_P.end(), points.begin(), points.end());
   }
   if (!targets.points_P.empty()) return targets;
+  if (map.task.target_step_mm > 0.0 && !lesions.empty())
+    return fail("no part of the target lies where the task allows it", map.patient.name,
+                "relax target_below or target_away_mm of the task, or choose another patient");
   for (const auto& [voxels, id] : lesions)
     if (targets.points_P.size() < kMaxLesions) targets.points_P.push_back(lesion_middle(labels, id, boxes.boxes[id]));
   if (!targets.points_P.empty()) return targets;
