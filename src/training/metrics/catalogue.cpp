@@ -7,10 +7,10 @@ namespace trocar::metrics {
 
 std::span<const MetricGroup> metric_groups() {
   static const std::array groups{
-      end_position_metrics(), curve_distance_metrics(), structure_metrics(),      risk_metrics(),
-      tip_path_metrics(),     tissue_path_metrics(),    insertion_metrics(),      smoothness_metrics(),
-      action_metrics(),       force_metrics(),          puncture_force_metrics(), transducer_metrics(),
-      contact_metrics(),      plane_metrics(),          visibility_metrics(),     xray_metrics(),
+      end_position_metrics(), curve_distance_metrics(), structure_metrics(),  risk_metrics(),       tip_path_metrics(),
+      tissue_path_metrics(),  insertion_metrics(),      bevel_metrics(),      smoothness_metrics(), action_metrics(),
+      force_metrics(),        puncture_force_metrics(), transducer_metrics(), contact_metrics(),    plane_metrics(),
+      visibility_metrics(),   xray_metrics(),
   };
   return groups;
 }
@@ -43,6 +43,8 @@ const char* reason_without(Role role) noexcept {
       return "no expert path was given";
     case Role::kPlane:
       return "the geometry of the image plane is not known";
+    case Role::kRoll:
+      return "the recording has no rotation of the needle about its axis";
   }
   return "";
 }

@@ -21,6 +21,7 @@ void drop_invalid_parts(Moment& moment) noexcept {
   if (!is_finite(moment.depth_mm)) moment.depth_mm.reset();
   if (!is_finite(moment.resistance_n)) moment.resistance_n.reset();
   if (!is_finite(moment.contact_n)) moment.contact_n.reset();
+  if (moment.R_PN && !moment.R_PN->allFinite()) moment.R_PN.reset();
   if (moment.X_PT && !moment.X_PT->is_finite()) moment.X_PT.reset();
   if (moment.xray && !(std::isfinite(moment.xray->beam_s) && std::isfinite(moment.xray->contrast_ml) &&
                        std::isfinite(moment.xray->air_kerma_mgy) && std::isfinite(moment.xray->dose_area_gycm2)))
@@ -82,6 +83,7 @@ void MeasureRun::note_roles(const Moment& moment) {
   if (moment.depth_mm) roles_.add(Role::kDepth);
   if (moment.events) roles_.add(Role::kEvents);
   if (moment.resistance_n) roles_.add(Role::kForce);
+  if (moment.R_PN) roles_.add(Role::kRoll);
   if (moment.X_PT) roles_.add(Role::kTransducer);
   if (moment.X_PT && (moment.contact_n || context_.patient != nullptr)) roles_.add(Role::kContact);
   if (moment.xray) roles_.add(Role::kXray);

@@ -41,6 +41,7 @@ enum class Role : std::uint8_t {
   kPatient,
   kExpert,  ///< One or more expert paths.
   kPlane,   ///< Geometry of the image plane.
+  kRoll,    ///< Rotation of the needle about its axis.
 };
 class Roles {
  public:
@@ -56,7 +57,7 @@ class Roles {
 };
 /// Reason why there is no value without a role: "no task was given".
 const char* reason_without(Role role) noexcept;
-inline constexpr Role kLastRole = Role::kPlane;
+inline constexpr Role kLastRole = Role::kRoll;
 
 /// Geometry of an ultrasound image in the plane (x, y) of T; y away from the array, 0 at the middle of the face.
 struct ImagePlane {

@@ -14,6 +14,7 @@ struct Moment {
   double time_s = 0.0;  ///< Time of the recording.
   Vec3 tip_P = Vec3::Zero();
   Vec3 axis_P = Vec3::UnitZ();  ///< Hub to tip.
+  std::optional<Mat3> R_PN;     ///< Orientation of the needle with its roll: +y to the bevel's face.
   /// Depth of the tip below the resting skin along the shaft, 0 outside. MeasureRun finds it in the patient if it is
   /// missing.
   std::optional<double> depth_mm;

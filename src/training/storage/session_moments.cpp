@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "telemetry/tick_pose.h"
+
 namespace trocar::storage {
 namespace {
 
@@ -17,6 +19,7 @@ metrics::Moment moment_of(const telemetry::TickSample& sample) {
   moment.time_s = sample.time_s;
   moment.tip_P = sample.tip_mm;
   moment.axis_P = sample.axis;
+  moment.R_PN = telemetry::felt_needle(sample).R();
   moment.depth_mm = sample.depth_mm;
   moment.phase = sample.phase;
   moment.events = sample.events;

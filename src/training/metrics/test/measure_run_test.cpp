@@ -9,6 +9,7 @@
 
 #include "core/random.h"
 #include "metrics/testing/recording.h"
+#include "tasks/bevel.h"
 #include "tasks/testing/attempt_patient.h"
 
 namespace trocar::metrics {
@@ -21,7 +22,11 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 
 MetricContext full_context() {
   static const anatomy::VirtualPatient patient = make_box_patient();
-  static const tasks::Task task = make_box_task();
+  static const tasks::Task task = [] {
+    tasks::Task made = make_box_task();
+    made.bevel = tasks::BevelRule{"skin", "liver", 30.0};
+    return made;
+  }();
   MetricContext context = with_paths({{"expert", make_box_plan().line_P}});
   context.task = &task;
   context.patient = &patient;
@@ -36,6 +41,7 @@ Moment full_moment(double time_s) {
   m.time_s = time_s;
   m.tip_P = {50.0, 20.0 * time_s, 50.0};
   m.axis_P = Vec3::UnitY();
+  m.R_PN = tasks::needle_rotation(m.axis_P, Vec3::UnitX());
   m.events = telemetry::TickEvents{};
   m.resistance_n = 1.0;
   m.X_PT = Pose::translation({50.0, 0.0, 50.0});
