@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "scoring/core_sample.h"
+#include "tasks/bevel.h"
 #include "tasks/task_labels.h"
+#include "telemetry/tick_pose.h"
 #include "volume/sampling.h"
 
 namespace trocar::scoring {
@@ -40,6 +42,7 @@ struct PhaseTracker::Impl {
   metrics::ImagePlane plane;
   tasks::TaskLabels labels;
   Vec3 target_P;  ///< What has to be hit: the tip's end position, with a gun the middle of the notch after the shot.
+  std::optional<Vec3> fibres_P;  ///< Direction of the fibres at the target; empty: the task or the patient has none.
   std::vector<PhaseState> states;
   std::vector<double> held_since_s;  ///< Since when the conditions of each phase hold; NaN: they do not.
   // What actions and moments have changed so far.
@@ -56,6 +59,7 @@ struct PhaseTracker::Impl {
         plane(image),
         labels(t, p),
         target_P(plan.line_P.b + n.notch_middle_mm() * plan.line_P.direction()),
+        fibres_P(tasks::find_fibres(t, p, plan.line_P.b)),
         states(t.phases.size()),
         held_since_s(t.phases.size(), std::nan("")) {}
 
@@ -169,6 +173,10 @@ bool PhaseTracker::Impl::holds(const Condition& condition, const PhaseState& sta
       return static_cast<double>(moment.cores) >= condition.number;
     case ConditionKind::kOutside:
       return has_been_inside && sample.depth_mm <= 0.0;
+    case ConditionKind::kBevelToFibres: {
+      const Mat3 R_PN = telemetry::device_pose(sample).R();
+      return fibres_P && tasks::bevel_to_fibres_deg(R_PN, *fibres_P) <= condition.number;
+    }
   }
   return false;
 }

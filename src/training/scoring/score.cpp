@@ -19,6 +19,7 @@ constexpr double kLesionReach = 2.0;        // a core with lesion counts up to t
 constexpr double kPainTolerance = 1.0;      // pain events that halve the points of the comfort
 constexpr double kOrganTolerance_mm = 5.0;  // missing organ on the way that halves the points of the access
 constexpr double kPassTolerance = 1.0;      // needless punctures of the organ that halve the points of the passes
+constexpr double kAwayTolerance_mm = 10.0;  // missing distance from a landmark that halves the points of the access
 constexpr double kSlowReturn = 0.7;         // share of the points for single drops: the bevel is only partly in it
 
 constexpr const char* kBleedingNames[] = {"usual", "raised", "high"};
@@ -37,6 +38,7 @@ constexpr std::pair<std::string_view, std::string_view> kTitles[] = {
     {"length", "Needle travel inside the body"},
     {"time", "Time from the skin to the target"},
     {"dose", "Radiation dose (dose-area product)"},
+    {"bevel", "Bevel against the fibres"},
 };
 
 /// Share of a part's points at a deviation: 1 at 0, 1/2 at the tolerance, decreasing without end (docs/physics.md, S1).
@@ -92,7 +94,7 @@ double access_share(const Judgement& judged) noexcept {
   return share_at(access.missing_margin_mm, task.margin_tolerance_mm) *
          share_at(access.excess_angle_deg, task.angle_tolerance_deg) *
          share_at(access.outside_zone_mm, task.entry_tolerance_mm) *
-         share_at(access.missing_organ_mm, kOrganTolerance_mm);
+         share_at(access.missing_organ_mm, kOrganTolerance_mm) * share_at(access.missing_away_mm, kAwayTolerance_mm);
 }
 
 double confirmation_share(const Judgement& judged) noexcept {
@@ -117,6 +119,8 @@ std::vector<PartShare> all_parts(const Judgement& judged, double risk_weight) {
   const double time = is_finished ? share_below(measured.time_s, task.time_limit_s) : 0.0;
   std::optional<double> dose;  // without X-ray there is nothing to judge
   if (judged.attempt.xray.beam_s > 0.0) dose = is_finished ? share_below(dose_gycm2, task.dose_limit_gycm2) : 0.0;
+  std::optional<double> bevel;
+  if (judged.bevel && task.bevel) bevel = share_at(judged.bevel->to_fibres_deg, task.bevel->tolerance_deg);
   const auto pain = static_cast<double>(judged.pain.size());
   std::optional<double> passes;
   if (judged.bleeding) passes = needless_passes(judged);
@@ -134,6 +138,7 @@ std::vector<PartShare> all_parts(const Judgement& judged, double risk_weight) {
       {"time", measured.time_s, "s", time},
       {"dose", dose_gycm2, "Gy cm²", dose},
       {"passes", passes.value_or(0.0), "", passes ? std::optional(share_at(*passes, kPassTolerance)) : std::nullopt},
+      {"bevel", judged.bevel ? judged.bevel->to_fibres_deg : 0.0, "°", bevel},
   };
 }
 
@@ -185,6 +190,7 @@ std::vector<std::string> find_fails(const Judgement& judged, const Outcome& outc
     fails.push_back(fmt::format("the place is not proven: no {} came back", tasks::substance_words(wanted)));
   else if (!outcome.target_reached)
     fails.emplace_back("the target was not reached");
+  if (judged.too_high_s) fails.push_back(judged.attempt.task.highest_entry->reason);
   for (const std::string& name : outcome.risks_touched) {
     const anatomy::Label* const label = judged.attempt.patient.label_table.find(name);
     const tasks::RiskStructure* const risk = label != nullptr ? tasks::find_risk(judged.attempt.task, *label) : nullptr;

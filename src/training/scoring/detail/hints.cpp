@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "anatomy/direction_words.h"
@@ -14,6 +15,7 @@ namespace {
 constexpr double kMatters = 0.1;          // minimum lost share of a part's points for a hint
 constexpr double kNameable = 0.5;         // rounds to 1 mm or degree
 constexpr double kFullCore = 0.8;         // of the possible length: nothing to improve in this core
+constexpr double kFails = 100.0;          // points of advice about a fault that fails the attempt
 constexpr double kRepeatedTravel = 0.25;  // share of the excess travel for a hint about retractions
 
 /// Advice, and the points that following it would bring.
@@ -201,8 +203,15 @@ void add_access_advice(const HintSubject& subject, std::vector<Advice>& advice) 
         anatomy::structure_words(access.margin_label), std::max(0.0, access.margin_mm - access.missing_margin_mm),
         access.margin_mm);
   else if (access.outside_zone_mm > kNameable)
-    text = fmt::format("The entry was {:.0f} mm outside of the permitted zone: mark the zone by its landmarks first.",
-                       access.outside_zone_mm);
+    text = fmt::format("The insertion point lay {:.0f} mm outside of the entry zone: move the needle {}.",
+                       access.outside_zone_mm, anatomy::direction_words(access.to_zone_P, " mm"));
+  else if (access.missing_away_mm > kNameable)
+    text = fmt::format(
+        "The tip ended {:.0f} mm from the {}, where large vessels run beside the target: choose a place that is {:.0f} "
+        "mm "
+        "away or more.",
+        subject.task.target_away_mm - access.missing_away_mm, subject.task.target_away_from,
+        subject.task.target_away_mm);
   else if (access.excess_angle_deg > kNameable)
     text = fmt::format("The needle met the skin too flat, by {:.0f}°: hold it steeper.", access.excess_angle_deg);
   else
@@ -226,6 +235,26 @@ void add_risk_advice(const HintSubject& subject, std::vector<Advice>& advice) {
                                   "tip before you fire.",
                                   anatomy::structure_words(touch.label), subject.needle.throw_mm),
                       subject.measured.end_s});
+}
+
+/// A fault that fails the attempt comes first.
+void add_level_advice(const HintSubject& subject, std::vector<Advice>& advice) {
+  if (!subject.judged.too_high_s) return;
+  std::string reason = subject.task.highest_entry->reason;
+  if (!reason.empty()) reason.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(reason.front())));
+  advice.push_back(
+      {kFails, reason + ": count the levels by the landmarks and enter lower.", subject.judged.too_high_s});
+}
+
+void add_bevel_advice(const HintSubject& subject, std::vector<Advice>& advice) {
+  const double points = lost(subject, "bevel");
+  if (points <= 0.0 || !subject.judged.bevel) return;
+  advice.push_back(
+      {points,
+       fmt::format("The bevel stood {:.0f}° across the fibres of the {} and cut them: turn the needle about "
+                   "its axis before you insert it, so that the bevel faces the patient's side.",
+                   subject.judged.bevel->to_fibres_deg, anatomy::structure_words(subject.task.bevel->layer)),
+       subject.judged.bevel->time_s});
 }
 
 void add_comfort_advice(const HintSubject& subject, std::vector<Advice>& advice) {
@@ -322,11 +351,13 @@ std::vector<Hint> make_hints(const Judgement& judged, std::span<const ScorePart>
 
   const HintSubject subject{judged, judged.attempt.task, judged.attempt.needle, judged.measured, parts};
   std::vector<Advice> advice;
+  add_level_advice(subject, advice);
   add_risk_advice(subject, advice);
   add_target_advice(subject, advice);
   add_confirmation_advice(subject, advice);
   add_access_advice(subject, advice);
   add_path_advice(subject, advice);
+  add_bevel_advice(subject, advice);
   add_comfort_advice(subject, advice);
   add_economy_advice(subject, advice);
   std::stable_sort(advice.begin(), advice.end(),

@@ -77,7 +77,12 @@ AccessJudgement judge_access(const Judgement& judged) {
     access.margin_mm = risk->margin_mm;
   }
   access.excess_angle_deg = std::max(0.0, found.entry_angle_deg - attempt.task.max_entry_angle_deg);
-  if (attempt.task.entry_zone) access.outside_zone_mm = attempt.task.entry_zone->distance_outside_mm(entry_P);
+  if (const auto& zone = attempt.task.entry_zone) {
+    access.outside_zone_mm = zone->distance_outside_mm(entry_P);
+    if (access.outside_zone_mm > 0.0)
+      access.to_zone_P = access.outside_zone_mm * (zone->centre_P - entry_P).normalized();
+  }
+  access.missing_away_mm = missing_away_mm(attempt, judged.measured.tip_P);
   access.missing_organ_mm = std::max(0.0, attempt.task.min_organ_path_mm - found.path.organ_path_mm);
   return access;
 }
@@ -180,6 +185,8 @@ Judgement judge(const AttemptData& attempt, std::size_t& expert) {
     for (const metrics::RiskTouch& touch : *touches) judged.risk_penalty += touch.penalty;
   judged.pain = find_pain(attempt, judged.measured.has_entered);
   if (judged.measured.has_entered) judged.bleeding = judge_bleeding(judged);
+  judged.too_high_s = entered_too_high_s(attempt);
+  judged.bevel = judge_bevel(attempt);
   return judged;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "metrics/attempt_metrics.h"
+#include "scoring/detail/needle_rules.h"
 #include "scoring/pain.h"
 #include "scoring/score.h"
 
@@ -17,7 +18,9 @@ struct AccessJudgement {
   double margin_mm = 0.0;          ///< The margin that it needs.
   double excess_angle_deg = 0.0;   ///< Beyond the largest angle to the skin's normal.
   double outside_zone_mm = 0.0;    ///< Of the entry, outside the task's entry zone.
+  Vec3 to_zone_P = Vec3::Zero();   ///< From the entry to the zone's edge.
   double missing_organ_mm = 0.0;   ///< Of the organ that has to be passed.
+  double missing_away_mm = 0.0;    ///< Of the distance that the target keeps from a landmark.
 };
 
 /// Everything that parts and hints are made of.
@@ -36,6 +39,8 @@ struct Judgement {
   std::vector<PainEvent> pain;
   std::optional<double> confirmed_s;  ///< Time at which the right substance came back.
   std::optional<Bleeding> bleeding;
+  std::optional<double> too_high_s;  ///< Time at which the target was entered above the permitted level.
+  std::optional<BevelJudgement> bevel;
 };
 
 /// Judges an attempt against its nearest expert path.

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "tasks/bevel.h"
 #include "tasks/testing/attempt_patient.h"
 
 namespace trocar::scoring {
@@ -69,6 +70,24 @@ TEST_F(Phases, OpenOneAfterAnotherAndStayDone) {
   EXPECT_EQ(tracked.states()[2].done_s, 3.0);
   EXPECT_EQ(tracked.states()[1].done_s, 2.0) << "it stays done";
   EXPECT_FALSE(tracked.current());
+}
+
+TEST_F(Phases, TheBevelHasToFaceAcrossTheFibres) {
+  const std::vector<tasks::Condition> turned{{ConditionKind::kBevelToFibres, 30.0, {}}};
+  const auto with_bevel = [&](const Vec3& face_P) {
+    PhaseMoment moment = at(0.0, {50.0, 0.0, 50.0});
+    const Eigen::Quaterniond q(tasks::needle_rotation(Vec3::UnitY(), face_P));
+    moment.needle.device_rotation_wxyz = {q.w(), q.x(), q.y(), q.z()};
+    moment.needle.device_mm = moment.needle.tip_mm;
+    return moment;
+  };
+  EXPECT_FALSE(is_done_by(turned, with_bevel(Vec3::UnitX()))) << "the task has no rule for the bevel";
+  task_.bevel = tasks::BevelRule{"dura", "liver", 30.0};
+  EXPECT_TRUE(is_done_by(turned, with_bevel(Vec3::UnitX())));
+  EXPECT_TRUE(is_done_by(turned, with_bevel(-Vec3::UnitX())));
+  EXPECT_TRUE(is_done_by(turned, with_bevel({1.0, 0.0, 0.5})));
+  EXPECT_FALSE(is_done_by(turned, with_bevel({1.0, 0.0, 0.7})));
+  EXPECT_FALSE(is_done_by(turned, with_bevel(Vec3::UnitZ())));
 }
 
 TEST_F(Phases, AreRepeatedWithThoseThatFollow) {
