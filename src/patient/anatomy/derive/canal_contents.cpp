@@ -27,6 +27,7 @@ constexpr double kCordHalfDepthMm = 4.0;
 constexpr double kCordHalfWidthMm = 4.5;
 constexpr double kConusMm = 20.0;  // length of the cone at the cord's end
 constexpr double kNearestBodyMm = 16.0;
+constexpr double kVeinsMm = 4.0;  // assumed: depth of the anterior venous plexus, at most
 
 double flavum_mm(std::uint8_t above) {
   const int n = above - (kL1 + 1);
@@ -111,7 +112,35 @@ class CanalContents {
     });
   }
 
+  /// Soft tissue between the sac and the vertebral bodies: the anterior venous plexus.
+  void add_epidural_veins() {
+    const std::uint8_t veins = labels_.add("epidural_veins");
+    for (std::int64_t k = canal_.first_k; k <= canal_.last_k(); ++k) {
+      const CanalSlice* slice = canal_.at(k);
+      if (slice == nullptr) continue;
+      const double half = slice->half_width_mm / spacing().x();
+      for (auto i = static_cast<std::int64_t>(std::ceil(slice->i - half)); static_cast<double>(i) <= slice->i + half;
+           ++i)
+        paint_before_sac(i, static_cast<std::int64_t>(std::lround(slice->j)), k, veins);
+    }
+  }
+
  private:
+  /// The column in front of the sac's middle, from the sac to the next hard tissue.
+  void paint_before_sac(std::int64_t i, std::int64_t middle_j, std::int64_t k, std::uint8_t veins) {
+    const auto most = static_cast<std::int64_t>(std::max(1.0, kVeinsMm / spacing().y()));
+    std::int64_t painted = 0;
+    for (std::int64_t j = middle_j; contains(i, j, k) && painted < most; --j) {
+      const std::uint8_t id = labels_.at(labels_.geometry().offset({i, j, k}));
+      if (is_canal_content(id)) continue;
+      if (!labels_.is_soft(id)) return;
+      paint(i, j, k, veins);
+      ++painted;
+    }
+  }
+  bool is_canal_content(std::uint8_t id) const noexcept {
+    return is_sac(id) || labels_.has_tissue(id, "csf") || labels_.has_tissue(id, "nerve");
+  }
   const Vec3& spacing() const noexcept { return labels_.geometry().spacing_mm; }
   bool contains(std::int64_t i, std::int64_t j, std::int64_t k) const { return labels_.geometry().contains({i, j, k}); }
   bool is_sac(std::uint8_t id) const noexcept { return id != 0 && (id == sac_ || id == canal_.cord); }
@@ -212,6 +241,7 @@ void derive_canal_contents(DerivedLabels& labels, const SpineLabels& spine, cons
   if (is_wanted("dural_sac")) contents.add_sac();
   if (is_wanted("ligamentum_flavum")) contents.add_flavum();
   if (is_wanted("epidural_fat")) contents.add_epidural_fat();
+  if (is_wanted("epidural_veins")) contents.add_epidural_veins();
 }
 
 }  // namespace trocar::anatomy::detail

@@ -13,6 +13,7 @@ namespace trocar::anatomy {
 inline constexpr std::string_view kDerivable[] = {"dural_sac",
                                                   "ligamentum_flavum",
                                                   "epidural_fat",
+                                                  "epidural_veins",
                                                   "interspinous_ligament",
                                                   "supraspinous_ligament",
                                                   "bile_ducts",

@@ -1,5 +1,6 @@
 #include "anatomy/derive/derive_structures.h"
 
+#include <algorithm>
 #include <chrono>
 #include <functional>
 
@@ -10,6 +11,9 @@
 namespace trocar::anatomy {
 namespace {
 using namespace detail;
+
+constexpr std::string_view kOfSpine[] = {"dural_sac",      "ligamentum_flavum",     "epidural_fat",
+                                         "epidural_veins", "interspinous_ligament", "supraspinous_ligament"};
 
 void derive_spine(DerivedLabels& labels, const DeriveChoice& choice) {
   const SpineLabels spine = find_spine_labels(labels.patient().label_table, labels.boxes());
@@ -44,7 +48,8 @@ std::vector<std::string> derive_structures(VirtualPatient& patient, const KnownS
   const std::size_t before = patient.label_table.labels.size();
   DerivedLabels labels(patient, known);
   report(progress, "thin structures", 0.0);
-  timed("structures of the spine", [&] { derive_spine(labels, choice); });
+  const auto is_wanted = [&](std::string_view name) { return choice.has(name); };
+  if (std::ranges::any_of(kOfSpine, is_wanted)) timed("structures of the spine", [&] { derive_spine(labels, choice); });
   report(progress, "thin structures", 0.3);
   timed("bile ducts", [&] { derive_bile_ducts(labels, choice); });
   report(progress, "thin structures", 0.5);

@@ -1,10 +1,14 @@
 #include "anatomy/phantom/cases.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <array>
 #include <utility>
 
 #include "config/toml.h"
+#include "core/parse_number.h"
 #include "core/random.h"
 
 namespace trocar::anatomy::phantom {
@@ -16,6 +20,7 @@ struct NumberRow {
   double BodyParameters::*member;
 };
 
+constexpr double kLeastFactor = 0.2, kLargestFactor = 5.0;  // of scale_body
 constexpr std::array<NumberRow, 13> kNumbers{{
     {"height_cm", {145, 200}, &BodyParameters::height_cm},
     {"weight_kg", {38, 160}, &BodyParameters::weight_kg},
@@ -97,6 +102,27 @@ Result<std::vector<CaseDescription>> load_cases(const std::filesystem::path& pat
     cases.push_back(std::move(description));
   }
   return cases;
+}
+
+Status scale_body(BodyParameters& body, std::string_view factors) {
+  while (!factors.empty()) {
+    const std::string_view one = factors.substr(0, factors.find(','));
+    factors.remove_prefix(std::min(factors.size(), one.size() + 1));
+    const std::string_view key = one.substr(0, one.find('='));
+    const auto row = std::ranges::find(kNumbers, key, &NumberRow::key);
+    if (row == kNumbers.end()) {
+      std::vector<std::string_view> keys;
+      for (const NumberRow& known : kNumbers) keys.push_back(known.key);
+      return fail_usage(fmt::format("a body has no number \"{}\"", key), std::string(one),
+                        fmt::format("there are: {}", fmt::join(keys, ", ")));
+    }
+    const auto factor = parse_number<double>(one.substr(std::min(one.size(), key.size() + 1)));
+    if (!factor || !(*factor >= kLeastFactor && *factor <= kLargestFactor))
+      return fail_usage(fmt::format("the factor of {} is no number from {} to {}", key, kLeastFactor, kLargestFactor),
+                        std::string(one), "write it as weight_kg=1.3");
+    body.*row->member = std::clamp(*factor * body.*row->member, row->range.low, row->range.high);
+  }
+  return {};
 }
 
 CaseDescription draw_case(std::uint64_t seed) {

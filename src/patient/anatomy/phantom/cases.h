@@ -33,6 +33,10 @@ inline constexpr std::string_view kCasesFile = "phantoms/cases.toml";
 /// that occurs twice.
 Result<std::vector<CaseDescription>> load_cases(const std::filesystem::path& path);
 
+/// Multiplies numbers of a body, within their ranges: "weight_kg=1.3,lesion_diameter_mm=0.7". Errors (exit status 2):
+/// an unknown key, the message lists the keys; a factor that is no number from 0.2 to 5.
+Status scale_body(BodyParameters& body, std::string_view factors);
+
 /// A body drawn from the whole range of bodies, for one of the four tasks.
 CaseDescription draw_case(std::uint64_t seed);
 

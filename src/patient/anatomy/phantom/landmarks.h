@@ -7,7 +7,8 @@
 
 namespace trocar::anatomy::phantom {
 
-/// Points of the body that can be seen or felt, inside the anatomy's box (P of the patient, mm).
+/// Points of the body that can be seen or felt, and the hilum of the liver, inside the anatomy's box (P of the patient,
+/// mm).
 std::vector<Landmark> find_landmarks(const Anatomy& anatomy);
 
 }  // namespace trocar::anatomy::phantom

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "anatomy/derive/derive_structures.h"
 #include "anatomy/phantom/abdomen.h"
 #include "anatomy/phantom/cases.h"
 #include "anatomy/phantom/landmarks.h"
@@ -122,6 +123,7 @@ Result<VirtualPatient> generate_case(const PhantomInfo& info, const CaseDescript
   VirtualPatient patient = render_patient(info, seed, anatomy, geometry, progress);
   if (!plan.finding.empty()) patient.description += "; " + plan.finding;
   patient.posture = description.posture;
+  derive_structures(patient, anatomy.known, {false, {"neurovascular_bundle"}});
   patient.landmarks = std::move(plan.landmarks);
   patient.paths = std::move(plan.paths);
   patient.content_hash = hash_patient(patient);
@@ -146,7 +148,25 @@ const Result<std::vector<CaseDescription>>& named_cases() {
   return kCases;
 }
 
+std::string_view plain_name(std::string_view name) {
+  return name.substr(0, name.find(kBodySign));
+}
+std::string_view factors_of(std::string_view name) {
+  return name.substr(std::min(name.size(), plain_name(name).size() + 1));
+}
+
+/// Precondition: the named cases were read.
+std::optional<CaseDescription> find_case(std::string_view name, std::uint64_t seed) {
+  if (name == kVariantPatient) return draw_case(seed);
+  const auto found = std::ranges::find(*named_cases(), name, &CaseDescription::name);
+  return found != named_cases()->end() ? std::optional(*found) : std::nullopt;
+}
+
 }  // namespace
+
+bool has_body(std::string_view name) {
+  return named_cases() && find_case(plain_name(name), 1).has_value();
+}
 
 const std::vector<PhantomInfo>& embedded_patients() {
   static const std::vector<PhantomInfo> kPatients = [] {
@@ -172,13 +192,18 @@ std::vector<std::filesystem::path> phantom_data_files() {
 Result<VirtualPatient> generate_phantom(std::string_view name, std::uint64_t seed, const PhantomResolution& resolution,
                                         const Progress& progress) {
   TROCAR_TRY_STATUS(check_resolution(resolution));
-  if (name == kVariantPatient) {
-    const CaseDescription description = draw_case(seed);
-    return generate_case(info_of(description), description, 1, resolution, progress);
-  }
   if (!named_cases()) return tl::make_unexpected(named_cases().error());
-  for (const CaseDescription& description : *named_cases())
-    if (description.name == name) return generate_case(info_of(description), description, seed, resolution, progress);
+  const std::string_view plain = plain_name(name);
+  if (auto description = find_case(plain, seed)) {
+    TROCAR_TRY_STATUS(scale_body(description->body, factors_of(name)));
+    PhantomInfo info = info_of(*description);
+    info.name = name;
+    // A variant's seed is in its description.
+    return generate_case(info, *description, plain == kVariantPatient ? 1 : seed, resolution, progress);
+  }
+  if (plain != name && std::ranges::find(embedded_patients(), plain, &PhantomInfo::name) != embedded_patients().end())
+    return fail_usage(fmt::format("the embedded patient \"{}\" has no body whose numbers could change", plain), {},
+                      fmt::format("omit {}, or name a case: biopsy-1", name.substr(plain.size())));
   const auto& patients = embedded_patients();
   const auto found =
       std::find_if(patients.begin(), patients.end(), [&](const PhantomInfo& i) { return i.name == name; });

@@ -51,9 +51,15 @@ struct PhantomResolution {
   double voxel_mm = 0.0;  ///< Edge of the voxels, about, 0.5..10; 0: the default grid (1 mm or finer).
 };
 
+/// Between the name of an embedded patient and factors on the numbers of its body: "biopsy-1@weight_kg=1.3".
+inline constexpr char kBodySign = '@';
+/// True if an embedded patient has a body with such numbers: a named case, or the patient drawn by its seed.
+bool has_body(std::string_view name);
+
 /// Generates an embedded patient; bit-identical for the same name, seed and resolution, for any number of threads.
 /// Reads phantom_data_files(). Errors: an unknown name (exit status 2, the message lists the names); data that are
-/// missing or broken; see build_abdomen.
+/// missing or broken; see build_abdomen. Factors after the name change the body (phantom::scale_body), for patients
+/// that have one.
 Result<VirtualPatient> generate_phantom(std::string_view name, std::uint64_t seed = 1,
                                         const PhantomResolution& resolution = {}, const Progress& progress = {});
 

@@ -13,11 +13,15 @@ namespace {
 constexpr float kFlavumMm = 3.7F;
 constexpr float kFlavumHalfWidth = 13.0F;
 constexpr float kFatBehindMm = 4.2F, kFatLeastMm = 0.9F, kFatInFrontMm = 1.4F;
+// The anterior plexus lies in front of the sac, at its sides more than in the midline. Share of the sac's half depth
+// from which it begins: assumed.
+constexpr float kVeinsFrontShare = 0.35F;
 constexpr float kSacEnd = -192.0F;  ///< S2.
 constexpr float kDuraMm = 0.4F;
 constexpr float kTopMm = 170.0F;
 
-constexpr float kFatHu = -95.0F, kLigamentHu = 78.0F, kFlavumHu = 92.0F, kFluidHu = 9.0F, kNerveHu = 38.0F;
+constexpr float kFatHu = -95.0F, kLigamentHu = 78.0F, kFlavumHu = 92.0F, kFluidHu = 9.0F, kNerveHu = 38.0F,
+                kVeinHu = 95.0F;
 
 /// The sac with the spinal fluid: lies in the front of the canal between the laminae.
 CanalSection sac_section(const SpineData& spine, float s_mm) {
@@ -144,6 +148,19 @@ void add_canal_content(Anatomy& anatomy) {
 }
 
 }  // namespace
+
+void add_epidural_veins(Anatomy& anatomy) {
+  const SpineData& spine = anatomy.data.spine;
+  anatomy.add_plain(
+      "epidural_veins", canal_box(14.0F),
+      [&spine](const Place& place) {
+        const Vec3f& u = place.spine;
+        const CanalSection section = sac_section(spine, u.z());
+        const float behind = u.y() - section.y + kVeinsFrontShare * section.radius_y;
+        return std::max({canal(spine, u), -sac(spine, u), behind});
+      },
+      kVeinHu, 8.0F, 4.0F);
+}
 
 void add_spinal_canal(Anatomy& anatomy) {
   add_ligaments(anatomy);

@@ -117,5 +117,6 @@ Vec3f gallbladder_neck(const Anatomy& anatomy);
 void add_great_vessels(Anatomy& anatomy);  ///< Aorta, vena cava and their branches.
 void add_back_muscles(Anatomy& anatomy);
 void add_skeleton(Anatomy& anatomy);
+void add_epidural_veins(Anatomy& anatomy);  ///< Venous plexus in front of the dural sac.
 
 }  // namespace trocar::anatomy::phantom

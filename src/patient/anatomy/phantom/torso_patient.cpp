@@ -60,12 +60,14 @@ Result<TorsoPlan> build_torso(Anatomy& anatomy, const CaseDescription& descripti
   TROCAR_TRY(const BiopsyPlan biopsy, lesions_of(anatomy, description));
   const DuctTree ducts = add_liver_vessels(anatomy, biopsy);
   add_lesions(anatomy, biopsy);
+  add_epidural_veins(anatomy);
   TROCAR_TRY_STATUS(anatomy.check_labels());
   fluid.settle(anatomy);
   TorsoPlan plan;
   plan.landmarks = find_landmarks(anatomy);
   if (description.task == "liver-biopsy") {
     plan.paths = {biopsy.path};
+    plan.paths.front().name = "liver-biopsy: lesion 1";  // the one that the case describes
     plan.finding = finding_of(anatomy, biopsy.lesions);
     for (Vec3* end : {&plan.paths.front().line_P.a, &plan.paths.front().line_P.b}) *end *= anatomy.scale();
   } else if (description.task == "lumbar-puncture") {
