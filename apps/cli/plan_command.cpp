@@ -10,6 +10,7 @@
 #include "io/patient/open_patient.h"
 #include "number_option.h"
 #include "patient_option.h"
+#include "tasks/fit_to_patient.h"
 #include "tasks/plan.h"
 
 namespace trocar::cli {
@@ -63,7 +64,8 @@ Status plan(const Arguments& arguments) {
   {
     const ProgressPrinter printer;
     TROCAR_TRY(const anatomy::VirtualPatient patient, io::open_patient(arguments.source, printer.callback()));
-    TROCAR_TRY(paths, tasks::plan_paths(tables.task, patient, tables.needle, arguments.options, printer.callback()));
+    const tasks::Task task = tasks::fit_to_patient(tables.task, patient);
+    TROCAR_TRY(paths, tasks::plan_paths(task, patient, tables.needle, arguments.options, printer.callback()));
   }
   std::vector<anatomy::NeedlePath> named;
   for (const tasks::PlannedPath& p : paths)

@@ -20,6 +20,7 @@ Status check_contradictions(const NamedOptions& named, const cases::CaseOptions&
   const storage::SessionInfo& info = run.replayed->info;
   TROCAR_TRY_STATUS(check_same(named, kTask, the_case.task, info.task));
   TROCAR_TRY_STATUS(check_same(named, "--needle", the_case.needle, info.needle));
+  if (named.has("--level")) return fail_usage("a replay has the level of its session", "--level", "omit it");
   TROCAR_TRY_STATUS(check_same(named, "--seed", run.seed, info.seed));
   TROCAR_TRY_STATUS(check_same(named, "--rate", run.rate_hz, info.rate_hz));
   const std::string preset = attempt::recorded_preset(info);

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "anatomy/phantom/phantom.h"
 #include "anatomy/structure_words.h"
 #include "attempt/live/realtime_session.h"
 #include "commands.h"
@@ -90,6 +91,7 @@ config::Json result_json(const Arguments& arguments, const cases::Case& the_case
       {"patient_seed", arguments.run.patient_seed},
       {"seed", arguments.run.seed},
       {"needle", the_case.needle.name},
+      {"level", the_case.task.level},
       {"force_model", result.force_model},
       {"operator", arguments.run.operator_name},
       {"device", arguments.run.device},
@@ -218,6 +220,23 @@ Result<cases::Case> make_case(const Arguments& arguments, anatomy::VirtualPatien
   return attempt::restore_case(std::move(patient), *run.replayed, parameters.front(), run.is_other_patient_meant);
 }
 
+/// The level's changes of the body: an embedded patient with other numbers.
+Status change_body(Arguments& arguments) {
+  if (arguments.the_case.level.empty() || arguments.run.replayed != nullptr) return {};
+  TROCAR_TRY(const cases::Case tables, cases::load_tables(arguments.the_case));
+  const tasks::Level* const level = tasks::level_of(tables.task);
+  if (level == nullptr || level->body.empty()) return {};
+  std::string& source = arguments.source.folder_or_name;
+  if (io::is_path(source) || !anatomy::has_body(source)) {
+    print_warning(fmt::format("the level \"{}\" cannot change the body of {}: only embedded cases have one to change",
+                              level->name, source));
+    return {};
+  }
+  source = cases::with_body(source, *level);
+  arguments.run.patient_source = source;
+  return {};
+}
+
 Status run(Arguments& arguments) {
   attempt::RunOptions& run = arguments.run;
   TROCAR_TRY_STATUS(attempt::check_run(run));
@@ -227,6 +246,7 @@ Status run(Arguments& arguments) {
   run.patient_seed = arguments.source.seed;
   arguments.the_case.seed = run.seed;
   arguments.the_case.patient_folder = arguments.source.folder_or_name;
+  TROCAR_TRY_STATUS(change_body(arguments));
   TROCAR_TRY_STATUS(check_servers(arguments));
   TROCAR_TRY_STATUS(check_case(arguments));
   if (arguments.is_realtime) TROCAR_TRY_STATUS(attempt::find_servers(arguments.realtime));
@@ -285,7 +305,9 @@ void add_run_command(CLI::App& program, Action& action) {
   command
       ->add_option("--device", a->run.device, "Simulated device with its limits and coupling; see trocar device list")
       ->capture_default_str();
-  command->add_option("--needle", a->the_case.needle, "Needle of data/needles.toml; the task's own when left out");
+  command->add_option("--needle", a->the_case.needle, "Needle that the task allows; the task's own when left out");
+  command->add_option("--level", a->the_case.level,
+                      "Level of difficulty of the task, by name or number; see trocar task list");
   command->add_option("--tissues", a->the_case.tissue_file, "Tissue table (TOML) instead of data/tissues.toml");
   command->add_option("--profile", a->the_case.profile, "Profile of the tissue table: paper-a, tented ...");
   command->add_option("--set", a->the_case.overrides, "Override numbers of the tissue table: liver.k=0.5")
@@ -307,6 +329,7 @@ void add_run_command(CLI::App& program, Action& action) {
       "Examples:\n  trocar run liver-biopsy --patient abdomen --operator expert --out first.session\n"
       "  trocar run liver-biopsy --patient my_patient --operator novice --set liver.k=0.5 --seed 4 --out "
       "second.session\n"
+      "  trocar run liver-biopsy --patient biopsy-1 --operator novice --level hard --out hard.session\n"
       "  trocar run --patient my_case --operator expert --out own_task.session\n"
       "  trocar run --operator replay:first.session --out again.session\n"
       "  trocar run liver-biopsy --patient abdomen --operator expert --realtime --out live.session\n"

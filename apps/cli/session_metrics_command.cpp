@@ -13,6 +13,7 @@
 #include "metrics/pose_csv.h"
 #include "patient_option.h"
 #include "storage/session_moments.h"
+#include "tasks/fit_to_patient.h"
 #include "ultrasound/probe/transducer.h"
 
 namespace trocar::cli {
@@ -85,12 +86,12 @@ std::optional<anatomy::VirtualPatient> recorded_patient(const storage::SessionIn
   return *std::move(patient);
 }
 
-/// The patient's own expert paths for the task ("TASK: place"), behind those that are there.
+/// The patient's own expert paths for the task, behind those that are there. A biopsy needle is fired before the end of
+/// such a path, so that it has none.
 void add_own_paths(MeasuredCase& measured) {
-  if (!measured.patient || !measured.task) return;
+  if (!measured.patient || !measured.task || (measured.context.needle && measured.context.needle->is_biopsy)) return;
   for (const anatomy::NeedlePath& path : measured.patient->paths)
-    if (path.name.starts_with(measured.task->name + ":"))
-      measured.context.expert_paths.push_back({path.name, path.line_P});
+    if (tasks::is_path_for(*measured.task, path)) measured.context.expert_paths.push_back({path.name, path.line_P});
 }
 
 Status replace_experts(const std::string& file, metrics::MetricContext& context) {
@@ -111,6 +112,8 @@ Status complete(const MetricsArguments& arguments, MeasuredCase& measured) {
     TROCAR_TRY(measured.context.needle,
                tasks::load_needle(needles, arguments.needle.empty() ? measured.task->needle : arguments.needle));
   }
+  if (measured.task && measured.patient)
+    measured.task = tasks::fit_to_patient(*std::move(measured.task), *measured.patient);
   add_own_paths(measured);
   TROCAR_TRY_STATUS(replace_experts(arguments.expert, measured.context));
   const bool names_another = arguments.transducer != kTransducer || arguments.depth_mm > 0.0;

@@ -13,16 +13,23 @@ Status list_tasks(bool is_json) {
   TROCAR_TRY(const auto folder, find_data("tasks"));
   TROCAR_TRY(const auto tasks, tasks::load_tasks(folder));
   if (!is_json) {
-    for (const tasks::Task& task : tasks) fmt::print("{:<16} {} (needle: {})\n", task.name, task.title, task.needle);
+    for (const tasks::Task& task : tasks) {
+      fmt::print("{:<16} {} (needle: {})\n", task.name, task.title, task.needle);
+      for (std::size_t n = 0; n < task.levels.size(); ++n)
+        fmt::print("{:>18} {:<8} {}\n", fmt::format("level {}", n + 1), task.levels[n].name, task.levels[n].title);
+    }
     return {};
   }
   config::Json list = config::Json::array();
   for (const tasks::Task& task : tasks) {
+    config::Json levels = config::Json::array();
+    for (const tasks::Level& level : task.levels) levels.push_back({{"name", level.name}, {"title", level.title}});
     list.push_back({{"name", task.name},
                     {"title", task.title},
                     {"organ", task.organ},
                     {"target_tissues", task.target_tissues},
                     {"needle", task.needle},
+                    {"levels", levels},
                     {"time_limit_s", task.time_limit_s}});
   }
   print_json({{"tasks", list}});

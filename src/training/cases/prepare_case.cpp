@@ -9,7 +9,9 @@
 #include "core/files/atomic_file.h"
 #include "core/files/data_dir.h"
 #include "core/log.h"
+#include "tasks/allowed_needles.h"
 #include "tasks/assess_path.h"
+#include "tasks/fit_to_patient.h"
 
 namespace trocar::cases {
 namespace {
@@ -40,6 +42,26 @@ Status find_task(Case& made, const CaseOptions& options, const fs::path& tasks_f
   return fail_usage("the patient has no task of its own", options.patient_folder, "name a task, see trocar task list");
 }
 
+/// Applies the level of the options, and notes it in the text from which a replay makes the task again.
+Status apply_level(Case& made, const std::string& level) {
+  if (level.empty()) return {};
+  TROCAR_TRY(made.task, tasks::at_level(std::move(made.task), level));
+  if (made.task_toml.empty()) made.task_toml = fmt::format("base = \"{}\"\n", made.task.name);
+  made.task_toml = fmt::format("level = \"{}\"\n", made.task.level) + made.task_toml;
+  return {};
+}
+
+/// The needle of the options, if the task allows it.
+Result<tasks::Needle> find_needle(const tasks::Task& task, const std::string& wanted, const fs::path& file) {
+  TROCAR_TRY(tasks::Needle needle, tasks::load_needle(file, wanted.empty() ? task.needle : wanted));
+  if (wanted.empty() || wanted == task.needle) return needle;
+  TROCAR_TRY(const std::vector<tasks::Needle> all, tasks::load_needles(file));
+  const std::vector<std::string> allowed = tasks::allowed_needles(task, all);
+  if (std::ranges::find(allowed, wanted) != allowed.end()) return needle;
+  return fail_usage(fmt::format("the task {} is not done with the needle {}", task.name, wanted), "needle",
+                    fmt::format("choose one of: {}", fmt::join(allowed, ", ")));
+}
+
 /// The path named by the task, measured like a planned one. Its faults are reported, but do not prevent the attempt.
 Result<tasks::PlannedPath> find_expert_path(const Case& the_case, const anatomy::VirtualPatient& patient) {
   const std::string& name = the_case.task.expert_path;
@@ -58,7 +80,7 @@ Result<tasks::PlannedPath> find_expert_path(const Case& the_case, const anatomy:
 const anatomy::NeedlePath* path_for(const Case& the_case, const anatomy::VirtualPatient& patient) {
   if (the_case.needle.is_biopsy) return nullptr;
   for (const anatomy::NeedlePath& path : patient.paths)
-    if (path.name.starts_with(the_case.task.name + ": ")) return &path;
+    if (tasks::is_path_for(the_case.task, path)) return &path;
   return nullptr;
 }
 
@@ -68,10 +90,17 @@ std::vector<tasks::PlannedPath> find_experts(const Case& the_case, const anatomy
   std::vector<tasks::PlannedPath> experts{the_case.plan};
   if (the_case.needle.is_biopsy) return experts;
   for (const anatomy::NeedlePath& path : patient.paths) {
-    const bool is_ours = path.name.starts_with(the_case.task.name + ": ") && path.name != the_case.task.expert_path;
+    const bool is_ours = tasks::is_path_for(the_case.task, path) && path.name != the_case.task.expert_path;
     if (is_ours) experts.push_back(tasks::assess_path(the_case.task, patient, the_case.needle, path.line_P).path);
   }
   return experts;
+}
+
+std::string with_body(const std::string& patient, const tasks::Level& level) {
+  std::string source = patient;
+  for (const auto& [key, factor] : level.body)
+    source += fmt::format("{}{}={}", source.size() == patient.size() ? anatomy::kBodySign : ',', key, factor);
+  return source;
 }
 
 bool has_own_task(const std::string& patient_folder) {
@@ -94,8 +123,8 @@ Result<Case> load_tables(const CaseOptions& options) {
   TROCAR_TRY(const std::filesystem::path data, checked_data_dir());
   Case made;
   TROCAR_TRY_STATUS(find_task(made, options, data / "tasks"));
-  const std::string needle = options.needle.empty() ? made.task.needle : options.needle;
-  TROCAR_TRY(made.needle, tasks::load_needle(data / "needles.toml", needle));
+  TROCAR_TRY_STATUS(apply_level(made, options.level));
+  TROCAR_TRY(made.needle, find_needle(made.task, options.needle, data / "needles.toml"));
   TROCAR_TRY(made.substances, tasks::load_substances(data / "substances.toml"));
   const bool is_own = options.tissue_file.empty() && options.profile.empty() && has_own_tissues(options.patient_folder);
   const fs::path tissues = options.tissue_file.empty() ? data / "tissues.toml" : fs::path(options.tissue_file);
@@ -109,6 +138,7 @@ Result<Case> load_tables(const CaseOptions& options) {
 Result<Case> prepare_case(std::shared_ptr<const anatomy::VirtualPatient> patient, const CaseOptions& options,
                           const Progress& progress) {
   TROCAR_TRY(Case made, load_tables(options));
+  made.task = tasks::fit_to_patient(std::move(made.task), *patient);
   const tasks::TaskReadiness readiness = tasks::check_task(made.task, *patient);
   if (!readiness.is_possible)
     return fail(

@@ -25,6 +25,7 @@ struct CaseOptions {
   std::string tissue_file;     ///< Empty: the patient's own table, else data/tissues.toml.
   std::string profile;         ///< Profile of the tissue file; without a file, of data/tissues.toml.
   std::vector<std::string> overrides;  ///< "liver.k=0.5"
+  std::string level;                   ///< Name or number of a level of the task; empty: the task as it is.
   std::uint64_t seed = 1;
 };
 
@@ -48,6 +49,9 @@ struct Case {
 
 /// Task, needle and tissues from the data folder, without a patient: detects their errors early.
 Result<Case> load_tables(const CaseOptions& options);
+
+/// Source of an embedded patient with the body of a level: "biopsy-1@weight_kg=1.3".
+std::string with_body(const std::string& patient, const tasks::Level& level);
 
 /// The plan of a case and the other paths that the patient brings for its task. A biopsy needle has only its plan.
 std::vector<tasks::PlannedPath> find_experts(const Case& the_case, const anatomy::VirtualPatient& patient);

@@ -9,6 +9,7 @@
 #include "core/files/data_dir.h"
 #include "haptics/scene_options.h"
 #include "tasks/assess_path.h"
+#include "tasks/fit_to_patient.h"
 
 namespace trocar::attempt {
 namespace {
@@ -78,6 +79,7 @@ Result<cases::Case> restore_case(std::shared_ptr<const anatomy::VirtualPatient> 
                                 : tasks::parse_task(info.task_toml, info.task, "the session's task", data / "tasks"));
   TROCAR_TRY(restored.needle, tasks::load_needle(data / "needles.toml", info.needle));
   TROCAR_TRY(restored.tissues, anatomy::parse_tissue_table(first.tissue_table_toml, "the session's tissue table"));
+  restored.task = tasks::fit_to_patient(std::move(restored.task), *patient);
   restored.plan = tasks::assess_path(restored.task, *patient, restored.needle, info.plan_P.line_P).path;
   restored.experts = cases::find_experts(restored, *patient);
   TROCAR_TRY(restored.substances, tasks::load_substances(data / "substances.toml"));
