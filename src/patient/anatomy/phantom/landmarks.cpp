@@ -72,7 +72,7 @@ std::vector<Landmark> find_landmarks(const Anatomy& anatomy) {
   landmarks.add_on_skin("umbilicus", kFront, anatomy.data.torso.umbilicus_z_mm);
   landmarks.add_spinous_process("T12", kT12);
   for (int level = kL1; level <= kL5; ++level) landmarks.add_spinous_process(fmt::format("L{}", level - kT12), level);
-  landmarks.add("hilum of the liver", anatomy.unwarped(anatomy.data.liver.hilum));
+  landmarks.add(kHilumLandmark, anatomy.unwarped(anatomy.data.liver.hilum));
   landmarks.add_on_skin("right mid-axillary line, tenth rib", -0.5F * kFront,
                         anatomy.data.spine.height(kT10) - data.tenth_rib_below_t10_mm);
   add_pelvic_landmarks(landmarks, anatomy);

@@ -134,7 +134,8 @@ TEST(EpiduralFat, FillsTheSpaceBetweenSacAndFlavum) {
   box.for_each("epidural_fat", [](const Vec3& p) { EXPECT_LT(p.y(), face_y(p.x()) + 1.0); });
 }
 
-// The bodies end at y = -10; the sac of the vertebrae alone leaves 1 mm in front of it.
+// The bodies end at y = -10; the sac of the vertebrae alone leaves 1 mm in front of it. Between the bodies the veins reach
+// up to 4 mm in front of the sac.
 TEST(EpiduralVeins, LieBetweenTheSacAndTheBodies) {
   const LabelledBox box = derived(false);
   ASSERT_GT(box.count("epidural_veins"), 0U);
@@ -142,7 +143,7 @@ TEST(EpiduralVeins, LieBetweenTheSacAndTheBodies) {
   EXPECT_EQ(box.patient.label_table.find("epidural_veins")->tissue, "vessel");
   box.for_each("epidural_veins", [&](const Vec3& p) {
     EXPECT_LT(p.y(), 0.0);
-    EXPECT_GE(p.y(), -11.0) << p.transpose();
+    EXPECT_GE(p.y(), -10.0 - 4.0) << p.transpose();
     std::string behind = "epidural_veins";
     for (double y = p.y(); behind == "epidural_veins"; y += 1.0) behind = box.name_at({p.x(), y, p.z()});
     EXPECT_TRUE(behind == "dural_sac" || behind == "spinal_cord" || std::abs(p.x()) > 8.0) << p.transpose() << behind;
