@@ -238,6 +238,8 @@ void PhaseTracker::note(const tasks::Action& action) {
       impl.is_stylet_drawn = false;
       break;
     case ActionKind::kAspirate:
+    case ActionKind::kFire:  // told by the moments
+    case ActionKind::kLoad:
       break;
     case ActionKind::kAdvanceWire:
       impl.wire_mm = action.amount;

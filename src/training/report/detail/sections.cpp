@@ -49,12 +49,6 @@ std::string score_ring(double score) {
       number_text(score, 0), kRadius, share * around, around);
 }
 
-/// "12 mm", "3°", "0".
-std::string with_unit(double value, const std::string& unit) {
-  const bool is_attached = unit.empty() || unit == "°";
-  return short_number(value) + (is_attached ? "" : " ") + escape(unit);
-}
-
 std::string part_row(const scoring::ScorePart& part) {
   if (scoring::is_deduction(part))
     return fmt::format("<tr><td>{}</td><td></td><td></td><td class=\"number\"><b>{}</b></td></tr>", escape(part.title),

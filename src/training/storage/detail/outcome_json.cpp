@@ -152,7 +152,7 @@ Result<scoring::Outcome> outcome_from_json(std::string_view text, const std::str
     outcome.parts.push_back({part.text("name"), part.text("title"), part.number("value"), part.text("unit"),
                              part.number("points"), part.number("max_points")});
   }
-  for (std::string& text : reader.texts("hints")) outcome.hints.push_back({std::move(text), {}});
+  for (std::string& hint : reader.texts("hints")) outcome.hints.push_back({std::move(hint), {}});
   if (object.contains("passed")) read_judgement(object, outcome, is_valid);
   outcome.risks_touched = reader.texts("risks_touched");
   if (object.contains("not_scored")) outcome.not_scored = reader.text("not_scored");

@@ -197,7 +197,9 @@ TEST(Replay, GivesTheRecordedDevicePosesTickByTick) {
     sample.device_rotation_wxyz = to_wxyz(Eigen::Quaterniond(needle_pose(sample.device_mm, sample.axis).R()));
   }
   LayeredBody replayed(the_case.path_P, skin_muscle_capsule(), 0.001);
-  const Action shot{recorded.samples.at(recorded.fired.at(0)).time_s, ActionKind::kFire};
+  Action shot;
+  shot.time_s = recorded.samples.at(recorded.fired.at(0)).time_s;
+  shot.kind = ActionKind::kFire;
   replayed.run(*make_replay(recorded.samples, {shot}), 60.0);
   ASSERT_TRUE(replayed.is_done);
   EXPECT_EQ(replayed.fired, recorded.fired);
