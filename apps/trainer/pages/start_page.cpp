@@ -60,7 +60,8 @@ StartPage::StartPage(QWidget* parent) : QWidget(parent) {
   auto* page = new QVBoxLayout(this);
   page->setContentsMargins(40, 14, 40, 14);
   page->setSpacing(12);
-  page->addWidget(make_label(tr("Select a task and a patient"), "title"));
+  title_ = make_label(tr("Select a task and a patient"), "title");
+  page->addWidget(title_);
   page->addWidget(make_recovery());
   next_ = new NextExerciseCard;
   page->addWidget(next_);
@@ -248,6 +249,7 @@ QWidget* StartPage::make_recovery() {
 void StartPage::offer_recovery(const QString& text) {
   recovery_text_->setText(text);
   recovery_->setVisible(!text.isEmpty());
+  title_->setVisible(text.isEmpty());  // in a low window both do not fit
 }
 
 /// Lists the needles for the use of the selected task; keeps the selected needle if possible.

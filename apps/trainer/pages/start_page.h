@@ -68,6 +68,7 @@ class StartPage : public QWidget {
   QComboBox* needle_ = nullptr;
   QComboBox* model_ = nullptr;
   QPushButton* start_ = nullptr;
+  QLabel* title_ = nullptr;
   QFrame* recovery_ = nullptr;
   QLabel* recovery_text_ = nullptr;
   TrainerChoice seeded_;  ///< Patient and seed that were chosen by choose().
