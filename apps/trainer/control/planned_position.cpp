@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "attempt/guide/transducer_guide.h"
+#include "tasks/bevel.h"
 
 namespace trocar::trainer {
 namespace {
@@ -12,6 +13,10 @@ namespace {
 constexpr double kMost_mm_per_s = 50.0, kMost_rad_per_s = 1.2;
 
 }  // namespace
+
+PlannedPosition::PlannedPosition(std::shared_ptr<const cases::OpenCase> open)
+    : open_(std::move(open)),
+      bevel_P_(tasks::planned_bevel_P(open_->the_case.task, *open_->the_case.patient, open_->the_case.plan.line_P)) {}
 
 void PlannedPosition::start(ActiveTool tool) {
   if (tool == ActiveTool::kNeedle) is_needle_moving_ = true;
@@ -27,7 +32,11 @@ void PlannedPosition::advance(attempt::PointerNeedle& needle, attempt::PointerPr
   constexpr double kLongest_s = 0.1;  // of a frame: a late one does not make the tool jump
   const double step_s = std::clamp(dt_s, 0.0, kLongest_s);
   const double most_mm = kMost_mm_per_s * step_s, most_rad = kMost_rad_per_s * step_s;
-  if (is_needle_moving_) is_needle_moving_ = !needle.approach(open_->the_case.plan.line_P, most_mm, most_rad);
+  if (is_needle_moving_) {
+    const bool is_aimed = needle.approach(open_->the_case.plan.line_P, most_mm, most_rad);
+    const bool is_turned = !bevel_P_ || needle.turn_bevel(*bevel_P_, most_rad);
+    is_needle_moving_ = !(is_aimed && is_turned);
+  }
   if (is_probe_moving_) is_probe_moving_ = !probe.approach(open_->X_PT_start, most_mm, most_rad);
 }
 

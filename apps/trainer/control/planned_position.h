@@ -14,7 +14,7 @@ namespace trocar::trainer {
 /// trainee sees the way. A gesture of a tool ends its motion: call stop().
 class PlannedPosition {
  public:
-  explicit PlannedPosition(std::shared_ptr<const cases::OpenCase> open) : open_(std::move(open)) {}
+  explicit PlannedPosition(std::shared_ptr<const cases::OpenCase> open);
 
   void start(ActiveTool tool);
   void stop(ActiveTool tool);
@@ -23,6 +23,7 @@ class PlannedPosition {
 
  private:
   std::shared_ptr<const cases::OpenCase> open_;
+  std::optional<Vec3> bevel_P_;  ///< Where the bevel has to face; empty: anywhere.
   bool is_needle_moving_ = false, is_probe_moving_ = false;
 };
 

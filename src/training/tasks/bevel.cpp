@@ -54,6 +54,12 @@ Vec3 bevel_across_fibres_P(const Vec3& axis_P, const Vec3& fibres_P) noexcept {
   return face_P.x() < 0.0 ? Vec3(-face_P.normalized()) : Vec3(face_P.normalized());
 }
 
+std::optional<Vec3> planned_bevel_P(const Task& task, const anatomy::VirtualPatient& patient, const Segment& path_P) {
+  const auto fibres_P = find_fibres(task, patient, path_P.b);
+  if (!fibres_P) return std::nullopt;
+  return bevel_across_fibres_P(path_P.direction(), *fibres_P);
+}
+
 Mat3 needle_rotation(const Vec3& axis_P, const Vec3& bevel_P) noexcept {
   const Vec3 z_P = axis_P.normalized();
   const Vec3 y_P = bevel_P - bevel_P.dot(z_P) * z_P;

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "anatomy/patient.h"
+#include "geometry/segment.h"
 #include "tasks/task.h"
 
 namespace trocar::tasks {
@@ -18,6 +19,9 @@ double bevel_to_fibres_deg(const Mat3& R_PN, const Vec3& fibres_P) noexcept;
 
 /// Direction across the needle that the bevel's face has to look to; of the two the one more to the patient's left.
 Vec3 bevel_across_fibres_P(const Vec3& axis_P, const Vec3& fibres_P) noexcept;
+
+/// Direction that the bevel has to face on a planned path; empty: the task or the patient does not say.
+std::optional<Vec3> planned_bevel_P(const Task& task, const anatomy::VirtualPatient& patient, const Segment& path_P);
 
 /// Orientation of a needle along `axis_P` whose bevel faces `bevel_P` as far as the axis allows.
 Mat3 needle_rotation(const Vec3& axis_P, const Vec3& bevel_P) noexcept;

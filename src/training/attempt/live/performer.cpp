@@ -61,8 +61,7 @@ Result<Performer> make_replayer(const cases::Case& the_case, const RunOptions& o
 Result<Performer> make_named(const cases::Case& the_case, const RunOptions& options) {
   tasks::OperatorCase what{the_case.plan.line_P, the_case.needle.is_biopsy, options.seed,
                            tasks::actions_for(the_case.task, the_case.needle)};
-  if (const auto fibres_P = tasks::find_fibres(the_case.task, *the_case.patient, the_case.plan.line_P.b))
-    what.bevel_P = tasks::bevel_across_fibres_P(the_case.plan.line_P.direction(), *fibres_P);
+  what.bevel_P = tasks::planned_bevel_P(the_case.task, *the_case.patient, the_case.plan.line_P);
   if (const tasks::Level* const level = tasks::level_of(the_case.task)) what.tremor_mm = level->tremor_mm;
   const std::string& force_model = the_case.task.force_model;
   TROCAR_TRY(const OperatorChoice choice, parse_operator(options.operator_name));

@@ -151,6 +151,15 @@ void PointerNeedle::turn(double rad) {
   update();
 }
 
+bool PointerNeedle::turn_bevel(const Vec3& bevel_P, double most_rad) {
+  const Vec3 face_P = X_PN_.R().col(1);
+  const Vec3 goal_P = bevel_P - bevel_P.dot(axis_P_) * axis_P_;
+  if (!(goal_P.norm() > 1e-6)) return true;
+  const double left_rad = std::atan2(face_P.cross(goal_P).dot(axis_P_), face_P.dot(goal_P));
+  turn(std::clamp(left_rad, -most_rad, most_rad));
+  return std::abs(left_rad) <= most_rad;
+}
+
 void PointerNeedle::push(double mm) {
   if (std::isfinite(mm)) past_mm_ = std::clamp(past_mm_ + mm, -kFarthest_mm, length_mm_ - 5.0);
   update();

@@ -39,6 +39,9 @@ class PointerNeedle {
   /// a view).
   void tilt(const Vec3& right_P, const Vec3& down_P, double right_rad, double down_rad);
   void turn(double rad);  ///< Turns the needle about its axis: direction of the bevel.
+  /// One step of turn(), by at most `most_rad`, until the bevel faces `bevel_P` as far as the axis allows. True once
+  /// there.
+  bool turn_bevel(const Vec3& bevel_P, double most_rad);
   void push(double mm);   ///< Moves the needle along its axis, inward positive.
 
  private:

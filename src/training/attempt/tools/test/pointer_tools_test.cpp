@@ -113,6 +113,29 @@ TEST(PointerNeedle, PushesAlongItsAxisWithinBounds) {
   EXPECT_DOUBLE_EQ(hand.past_mm(), -PointerNeedle::kFarthest_mm);
 }
 
+TEST(PointerNeedle, TurnsItsBevelTheShorterWayInBoundedSteps) {
+  constexpr double kStep_rad = 0.05;
+  for (const double from_rad : {0.0, 1.0, -2.5, 3.1}) {
+    PointerNeedle hand = needle();
+    hand.turn(from_rad);
+    const Vec3 goal_P = (Vec3::UnitX() + 0.4 * path().direction() + 0.2 * Vec3::UnitZ()).normalized();
+    const Vec3 axis_P = hand.X_PN().R().col(2);
+    const Vec3 across_P = (goal_P - goal_P.dot(axis_P) * axis_P).normalized();
+    const double left_rad = angle_between_rad(hand.X_PN().R().col(1), across_P);
+    int steps = 0;
+    for (bool is_there = false; !is_there && steps < 200; ++steps) {
+      const Pose before = hand.X_PN();
+      is_there = hand.turn_bevel(goal_P, kStep_rad);
+      EXPECT_LE(angle_between_rad(hand.X_PN().R().col(1), before.R().col(1)), kStep_rad + 1e-9);
+      EXPECT_NEAR((hand.X_PN().p() - before.p()).norm(), 0.0, 1e-12);
+    }
+    EXPECT_EQ(steps, static_cast<int>(std::ceil(left_rad / kStep_rad))) << from_rad;
+    EXPECT_NEAR(angle_between_rad(hand.X_PN().R().col(1), across_P), 0.0, 1e-6);
+  }
+  PointerNeedle hand = needle();
+  EXPECT_TRUE(hand.turn_bevel(hand.X_PN().R().col(2), 0.1)) << "no direction across the needle";
+}
+
 TEST(PointerNeedle, TakesOverFromAnotherHand) {
   PointerNeedle first = needle();
   first.tilt({1, 0, 0}, {0, 0, -1}, 0.3, -0.2);
