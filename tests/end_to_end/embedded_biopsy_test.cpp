@@ -42,8 +42,8 @@ TEST_F(EmbeddedBiopsy, ExpertFeelsThreePeaksAndReachesTheLesion) {
   EXPECT_TRUE(expert->result.outcome.target_reached);
   EXPECT_GT(expert->result.outcome.score, 85.0);
   EXPECT_TRUE(expert->result.outcome.risks_touched.empty());
-  ASSERT_TRUE(expert->result.outcome.core.has_value());
-  EXPECT_GT(expert->result.outcome.core->target_mm, 5.0);
+  ASSERT_TRUE(expert->result.outcome.best_core() != nullptr);
+  EXPECT_GT(expert->result.outcome.best_core()->target_mm, 5.0);
 }
 
 TEST_F(EmbeddedBiopsy, NoviceScoresLowerThanTheExpert) {
