@@ -89,7 +89,9 @@ class SimulatedAttemptTest : public ::testing::Test {
   }
   std::unique_ptr<tasks::Operator> expert() const {
     const cases::Case& the_case = open->the_case;
-    return tasks::make_expert({the_case.plan.line_P, the_case.needle.is_biopsy, 1});
+    tasks::OperatorActions actions = tasks::actions_for(the_case.task, the_case.needle);
+    actions.gives_anaesthetic = false;
+    return tasks::make_expert({the_case.plan.line_P, the_case.needle.is_biopsy, 1, actions});
   }
   /// Ends the attempt without a score, like closing the window.
   void leave() { loop_.reset(); }

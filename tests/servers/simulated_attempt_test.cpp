@@ -6,7 +6,9 @@
 
 #include "attempt/offline/run_session.h"
 #include "attempt/record/attempt_replay.h"
+#include "cases/needle_geometry.h"
 #include "cases/scene_request.h"
+#include "haptics/needle_geometry.h"
 #include "servers/simulated_attempt_lab.h"
 #include "storage/session_file.h"
 
@@ -167,7 +169,9 @@ TEST_F(SimulatedAttemptTest, RecordsTheTissuesThatWereFeltAndReplaysThem) {
   attempt->perform(expert());
   ASSERT_TRUE(run_until([&] { return !attempt->view().is_performing; })) << where();
   const attempt::RunResult felt = finished();
-  EXPECT_NEAR(skin_peak_n(felt.punctures), 6.0, 0.01);
+  const double force_n = 6.0 * haptics::needle_size_factor(open->the_case.tissues.needle_size, 0.0,
+                                                           cases::needle_geometry(open->the_case.needle));
+  EXPECT_NEAR(skin_peak_n(felt.punctures), force_n, 0.015);
 
   const auto session = storage::load_session(chosen.session);
   ASSERT_TRUE(session) << session.error().text();
@@ -181,7 +185,7 @@ TEST_F(SimulatedAttemptTest, RecordsTheTissuesThatWereFeltAndReplaysThem) {
   replay.session = folder_ / "again.trocar";
   const auto again = attempt::run_session(open->the_case, replay);
   ASSERT_TRUE(again) << again.error().text();
-  EXPECT_NEAR(skin_peak_n(again->punctures), 6.0, 0.01);
+  EXPECT_NEAR(skin_peak_n(again->punctures), force_n, 0.015);
   EXPECT_TRUE(session->interruptions.empty());
   EXPECT_EQ(again->punctures.size(), felt.punctures.size());
   EXPECT_NEAR(again->outcome.score, felt.outcome.score, 0.5);

@@ -173,6 +173,8 @@ QString rule_of(const tasks::Task& task, std::string_view part) {
   if (part == "target") return half(task.target_tolerance_mm, " mm");
   if (part == "entry") return half(task.entry_tolerance_mm, " mm");
   if (part == "angle") return half(task.angle_tolerance_deg, "°");
+  if (part == "bevel" && task.bevel) return half(task.bevel->tolerance_deg, "°");
+  if (part == "passes") return tr("one needless puncture halves the points");
   if (part == "access") return half(task.margin_tolerance_mm, " mm");
   if (part == "time") return tr("none from %1 s on").arg(task.time_limit_s, 0, 'f', 0);
   if (part == "dose") return tr("none from %1 Gy cm² on").arg(task.dose_limit_gycm2, 0, 'g', 3);

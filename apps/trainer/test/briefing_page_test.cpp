@@ -44,7 +44,7 @@ TEST(BriefingPage, TellsTheReferralAndTheTaskBeforeThePatientIsLoaded) {
        "lumbar-4",
        {"lumbar-4", "male", "72 years", "174 cm", "encephalitis", "heparin", "penicillin", "sitting"},
        {"spinal fluid", "palpation", "Draw the stylet", "7. "},
-       {"Proof of the place", "spinal fluid comes back", "<b>25</b>", "70 of 100", "nerve"}},
+       {"Proof of the place", "spinal fluid comes back", "<b>20</b>", "70 of 100", "nerve"}},
       {"liver-biopsy",
        "biopsy-3",
        {"biopsy-3", "INR 1.4", "none known", "lying on the back"},
@@ -71,13 +71,15 @@ TEST(BriefingPage, TellsTheReferralAndTheTaskBeforeThePatientIsLoaded) {
 }
 
 TEST(BriefingPage, TheShownPointsAddUpToAHundredForEveryNeedle) {
-  for (const char* needle : {"biopsy-18g", "chiba-22g"}) {
+  for (const auto& [task, needle] :
+       {std::pair("liver-biopsy", "biopsy-18g"), std::pair("lumbar-puncture", "quincke-22g-long")}) {
     TrainerChoice choice;
+    choice.task = task;
     choice.needle = needle;
     const auto tables = load_briefing_tables(choice);
     ASSERT_TRUE(tables) << tables.error().text();
     const QString text = scoring_rows(*tables).front().text;
-    EXPECT_EQ(text.contains(QStringLiteral("in the core")), tables->needle.is_biopsy);
+    EXPECT_EQ(text.contains(QStringLiteral("in the cores")), tables->needle.is_biopsy);
     double sum = 0.0;
     int parts = 0;
     static const QRegularExpression points(QStringLiteral("<b>([0-9]+)</b>"));

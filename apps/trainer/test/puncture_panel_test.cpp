@@ -221,7 +221,8 @@ TEST(PunctureActions, ATaskShowsItsActionsOnly) {
   tasks::Needle gun;
   gun.is_biopsy = true;
   gun.stylet_diameter_mm = 0.788;
-  EXPECT_EQ(actions_of(liver_biopsy(), gun), (std::vector{TraineeAction::kAnaesthetic, TraineeAction::kBreath}));
+  EXPECT_EQ(actions_of(liver_biopsy(), gun),
+            (std::vector{TraineeAction::kAnaesthetic, TraineeAction::kBreath, TraineeAction::kLoad}));
   tasks::Needle chiba;
   chiba.stylet_diameter_mm = 0.363;
   tasks::Task drainage;
