@@ -22,9 +22,6 @@ const QColor kCaliperInk(0xf4, 0xe0, 0x6a);
 constexpr double kHardlyAny = 0.02, kMost = 0.75;  ///< Shares of the face on the skin, as in the command line.
 constexpr double kUnscanned = 0.01;                ///< Share of the image outside the CT that needs a caption.
 constexpr double kWedge_px = 8.0, kBarGap_px = 12.0, kColourBar_px = 10.0;
-/// The needle's axis is drawn within this distance of the plane: about half the beam's thickness.
-constexpr double kNearPlane_mm = 3.0;
-constexpr double kAhead_mm = 250.0, kAxisStep_mm = 1.0;
 constexpr int kOutlinePoints = 72;
 constexpr double kCross_px = 5.0;
 constexpr double kMarkerBeside_px = 8.0;  ///< Largest distance of the marker from the raster.
@@ -311,51 +308,6 @@ void draw_unfinished(QPainter& painter, const PictureMap& map, std::span<const u
   }
   if (is_angle && marks_T.size() == 2) draw_line(painter, map.to_view(marks_T[0]), map.to_view(marks_T[1]), line);
   draw_line(painter, is_angle ? map.to_view(marks_T[0]) : map.to_view(marks_T.back()), hover, line);
-}
-
-void draw_guide(QPainter& painter, const PictureMap& map, std::span<const ultrasound::Vec2> line_T) {
-  painter.setBrush(theme().path);
-  painter.setPen(Qt::NoPen);
-  double along_mm = 0.0, next_mm = 0.0;
-  constexpr double kDot_mm = 2.5;
-  constexpr int kDotsPerCm = 4;
-  int dots = 0;
-  for (std::size_t n = 1; n < line_T.size(); ++n) {
-    const double length_mm = (line_T[n] - line_T[n - 1]).norm();
-    for (; length_mm > 0.0 && next_mm <= along_mm + length_mm; next_mm += kDot_mm, ++dots) {
-      const ultrasound::Vec2 at_T = line_T[n - 1] + (next_mm - along_mm) / length_mm * (line_T[n] - line_T[n - 1]);
-      painter.drawEllipse(map.to_view(at_T), dots % kDotsPerCm == 0 ? 2.2 : 1.0, dots % kDotsPerCm == 0 ? 2.2 : 1.0);
-    }
-    along_mm += length_mm;
-  }
-  painter.setBrush(Qt::NoBrush);
-}
-
-void draw_needle_axis(QPainter& painter, const PictureMap& map, const ultrasound::ScanPicture& picture,
-                      std::span<const Vec3> shaft_P) {
-  if (shaft_P.size() < 2) return;
-  const Vec3 tip_P = shaft_P.back();
-  const Vec3 along_P = (tip_P - shaft_P[shaft_P.size() - 2]).normalized();
-  if (!along_P.allFinite()) return;
-  const Pose X_TP = picture.X_PT.inverse();
-  const Vec3 tip_T = X_TP * tip_P;
-  const Vec3 along_T = X_TP.R() * along_P;
-  QPolygonF near;
-  for (double s = 0.0; s <= kAhead_mm; s += kAxisStep_mm)
-    if (std::abs(tip_T.z() + s * along_T.z()) <= kNearPlane_mm)
-      near << map.to_view(ultrasound::shown_place_T(picture, tip_P + s * along_P));
-  painter.setBrush(Qt::NoBrush);
-  painter.setPen(dotted(theme().path, 2.0));
-  painter.drawPolyline(near);
-  // An axis nearly parallel to the plane has no well-defined intersection.
-  constexpr double kLeastSlope = 0.05;
-  if (std::abs(along_T.z()) < kLeastSlope) return;
-  const double pierce_mm = -tip_T.z() / along_T.z();
-  const QPointF at = map.to_view(ultrasound::shown_place_T(picture, tip_P + pierce_mm * along_P));
-  painter.setPen(QPen(QColor(0, 0, 0, 200), 4.0));
-  draw_cross(painter, at, 8.0);
-  painter.setPen(QPen(theme().path, 2.0));
-  draw_cross(painter, at, 8.0);
 }
 
 }  // namespace trocar::trainer

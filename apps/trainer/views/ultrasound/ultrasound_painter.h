@@ -64,11 +64,4 @@ void draw_measurements(QPainter& painter, const PictureMap& map, std::span<const
 void draw_unfinished(QPainter& painter, const PictureMap& map, std::span<const ultrasound::Vec2> marks_T,
                      const ultrasound::Vec2& hover_T, bool is_ellipse, bool is_angle, const QString& result);
 
-/// Dots along a line in the image, with a longer one per centimetre.
-void draw_guide(QPainter& painter, const PictureMap& map, std::span<const ultrasound::Vec2> line_T);
-/// Draws the part of a needle's axis near the plane and ahead of the tip (dotted) and its intersection with the plane
-/// (cross).
-void draw_needle_axis(QPainter& painter, const PictureMap& map, const ultrasound::ScanPicture& picture,
-                      std::span<const Vec3> shaft_P);
-
 }  // namespace trocar::trainer

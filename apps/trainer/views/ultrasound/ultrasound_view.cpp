@@ -11,6 +11,7 @@
 #include "core/files/data_dir.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
+#include "views/ultrasound/needle_marks.h"
 #include "views/ultrasound/ultrasound_painter.h"
 
 namespace trocar::trainer {
@@ -130,6 +131,12 @@ void UltrasoundView::set_needle(std::span<const Vec3> shaft_P, double diameter_m
   needle_diameter_mm_ = diameter_mm;
   needle_bore_share_ = bore_share;
   tip_shift_mm_ = tip_shift_mm;
+}
+
+void UltrasoundView::set_throw(const std::optional<Segment>& throw_P, const std::optional<Segment>& notch_P) {
+  if (throw_P || throw_P_) update();
+  throw_P_ = throw_P;
+  notch_P_ = notch_P;
 }
 
 void UltrasoundView::advance(double now_s) {
@@ -411,6 +418,7 @@ void UltrasoundView::paintEvent(QPaintEvent*) {
   const bool has_guide = is_guide_visible_ && is_guide_offered_;
   if (has_guide && settings_.guide.is_shown) draw_guide(painter, map, guide_line_T());
   if (has_guide) draw_needle_axis(painter, map, *picture_, needle_shaft_P_);
+  if (throw_P_) draw_throw(painter, map, *picture_, *throw_P_, notch_P_);
   painter.restore();
   if (const QString message = flow_message(); !message.isEmpty()) draw_message(painter, map.area(), message, font);
   if (map.is_magnified()) painter.setClipRect(map.area());

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "geometry/segment.h"
 #include "ultrasound/doppler/flow_on_demand.h"
 #include "ultrasound/live/live_scanner.h"
 #include "ultrasound/panorama/panorama_on_demand.h"
@@ -48,6 +49,8 @@ class UltrasoundView : public QWidget {
   /// Shaft from the hub to the tip; empty: no needle. `bore_share` and `tip_shift_mm` as in ScanRequest.
   void set_needle(std::span<const Vec3> shaft_P, double diameter_mm, double bore_share = 0.0,
                   double tip_shift_mm = 0.0);
+  /// Way of a biopsy gun's stylet if it were fired now, and the notch's part of it; drawn where it is near the plane.
+  void set_throw(const std::optional<Segment>& throw_P, const std::optional<Segment>& notch_P);
   /// Called once per frame: requests an image, takes the newest, repaints if necessary. now_s: time of any steady
   /// clock; defines the cardiac phase.
   void advance(double now_s);
@@ -182,6 +185,7 @@ class UltrasoundView : public QWidget {
   std::optional<Pose> X_PT_;
   std::vector<Vec3> needle_shaft_P_;
   double needle_diameter_mm_ = 1.2, needle_bore_share_ = 0.0, tip_shift_mm_ = 0.0;
+  std::optional<Segment> throw_P_, notch_P_;
   bool is_guide_visible_ = false, is_guide_offered_ = true;
 
   std::shared_ptr<const ultrasound::ScanPicture> picture_;
