@@ -1,6 +1,7 @@
 // Distances between the tip's way inside the body and the nearest expert path.
 #include <array>
 
+#include "metrics/curve_distances.h"
 #include "metrics/detail/curve.h"
 #include "metrics/measures/groups.h"
 
@@ -27,7 +28,6 @@ constexpr std::array kValues{
                       {Role::kExpert, Role::kDepth},
                       "Sakoe, Chiba 1978"},
 };
-constexpr std::size_t kPoints = 256;
 constexpr double kOut_mm = 0.0;
 
 /// Keeps the tip's way of the insertion that contains the end, and of the present one.
@@ -62,12 +62,10 @@ class CurveDistance : public Metric {
     for (const detail::ThinPath::Point& point : way.points())
       if (point.time_s <= end.moment->time_s) points_P.push_back(point.p_P);
     points_P.push_back(end.moment->tip_P);
-    const Segment& line_P = paths_[*end.expert].line_P;
-    const std::array<Vec3, 2> ends_P{line_P.a, line_P.b};
-    const std::vector<Vec3> tip_P = detail::resample(points_P, kPoints), expert_P = detail::resample(ends_P, kPoints);
-    values[0].set(detail::frechet_mm(tip_P, expert_P));
-    values[1].set(detail::hausdorff_mm(tip_P, expert_P));
-    values[2].set(detail::warped_mm(tip_P, expert_P));
+    const CurveDistances distances = curve_distances(points_P, paths_[*end.expert].line_P);
+    values[0].set(distances.frechet_mm);
+    values[1].set(distances.hausdorff_mm);
+    values[2].set(distances.dtw_mm);
   }
 
  private:
