@@ -4,9 +4,11 @@
 #include <algorithm>
 
 #include "control/force_bands.h"
+#include "control/path_comparison.h"
 #include "control/task_layout.h"
 #include "core/files/atomic_file.h"
 #include "pages/work_page.h"
+#include "panels/expert_path_list.h"
 #include "panels/feedback_panel.h"
 #include "panels/hint_list.h"
 #include "report/html_report.h"
@@ -103,7 +105,19 @@ ReplayControl::ReplayControl(attempt::AttemptReplay replay, std::shared_ptr<cons
       Difficulty::kGuided);  // after the attempt the expert's path is visible at every level of help
   connect(&page_.feedback(), &FeedbackPanel::worst_requested, this, &ReplayControl::go_to_worst);
   connect(&page_.feedback().hints(), &HintList::moment_chosen, this, &ReplayControl::go_to);
+  page_.feedback().expert_paths().show_rows(compare_with_experts(replay_, open_->the_case));
+  connect(&page_.feedback().expert_paths(), &ExpertPathList::others_toggled, this, &ReplayControl::show_expert_paths);
+  show_expert_paths();
   show_at(replay_.duration_s(), false);
+}
+
+ReplayControl::~ReplayControl() {
+  page_.workspace().show_expert_paths({open_->the_case.plan.line_P, {}});
+}
+
+void ReplayControl::show_expert_paths() {
+  const bool has_others = page_.feedback().expert_paths().are_others_shown();
+  page_.workspace().show_expert_paths(expert_paths_of(replay_, open_->the_case, has_others));
 }
 
 /// Letter keys and Space of the time line, independent of the focus.
@@ -244,6 +258,8 @@ QVariantMap ReplayControl::facts() const {
       static_cast<int>(std::count_if(replay_.outcome().hints.begin(), replay_.outcome().hints.end(),
                                      [](const scoring::Hint& hint) { return hint.at_s.has_value(); }));
   facts[QStringLiteral("target_reached")] = replay_.outcome().target_reached;
+  facts[QStringLiteral("expert_paths")] = static_cast<int>(open_->the_case.expert_paths().size());
+  facts[QStringLiteral("nearest_path")] = static_cast<int>(replay_.outcome().expert) + 1;
   facts[QStringLiteral("replay_s")] = shown_s_;
   facts[QStringLiteral("duration_s")] = replay_.duration_s();
   facts[QStringLiteral("worst_s")] = replay_.worst() ? replay_.worst()->time_s : 0.0;

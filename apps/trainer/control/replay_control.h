@@ -22,6 +22,7 @@ class ReplayControl : public QObject {
   /// `warnings`: those of the attempt that has just ended, see RunResult.
   ReplayControl(attempt::AttemptReplay replay, std::shared_ptr<const cases::OpenCase> open, WorkPage& page,
                 const std::vector<std::string>& warnings = {});
+  ~ReplayControl() override;
 
   /// Call once per frame.
   void advance(double dt_s);
@@ -37,6 +38,7 @@ class ReplayControl : public QObject {
   void fill_time_line();
   void show_at(double time_s, bool is_moving);
   void show_xray(double time_s);
+  void show_expert_paths();
   Pose transducer_at(double time_s) const;
 
   attempt::AttemptReplay replay_;

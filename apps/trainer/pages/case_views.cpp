@@ -183,7 +183,7 @@ void CaseViews::refresh(bool follows_path) {
   view_->scene().set_entry_centre(zone ? std::optional(zone->centre_P) : std::nullopt);
   refresh_landmarks();
   for (std::size_t n = 0; n < slices_.size(); ++n) {
-    slices_[n]->set_path(line_P);
+    slices_[n]->set_paths(line_P, {});
     slices_[n]->set_entry_zone(draft.task.entry_zone);
     marks_[n]->set_target(target_P);
   }

@@ -9,6 +9,7 @@
 #include <algorithm>
 
 #include "panels/core_picture.h"
+#include "panels/expert_path_list.h"
 #include "panels/hint_list.h"
 #include "panels/score_dial.h"
 #include "ui_kit/parts.h"
@@ -138,6 +139,8 @@ FeedbackPanel::FeedbackPanel(QWidget* parent) : QWidget(parent) {
   harm_->setObjectName(QStringLiteral("harm"));
   harm_->setWordWrap(true);
   content->addWidget(harm_);
+  expert_paths_ = new ExpertPathList;
+  content->addWidget(expert_paths_);
   notes_ = make_label({}, "dim");
   notes_->setObjectName(QStringLiteral("attempt-notes"));
   notes_->setWordWrap(true);

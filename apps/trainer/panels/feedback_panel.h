@@ -18,6 +18,7 @@ struct GunShot;
 namespace trocar::trainer {
 
 class CorePicture;
+class ExpertPathList;
 class HintList;
 class ScoreDial;
 
@@ -42,6 +43,7 @@ class FeedbackPanel : public QWidget {
   /// Shows where the signed result of an exam lies, or why there is none; empty: no exam.
   void show_result(const QString& text);
   HintList& hints() noexcept { return *hints_; }
+  ExpertPathList& expert_paths() noexcept { return *expert_paths_; }
 
  Q_SIGNALS:
   void again_requested();
@@ -65,6 +67,7 @@ class FeedbackPanel : public QWidget {
   QLabel* core_ = nullptr;
   QLabel* harm_ = nullptr;
   CorePicture* core_picture_ = nullptr;
+  ExpertPathList* expert_paths_ = nullptr;
   QLabel* worst_ = nullptr;
   QLabel* notes_ = nullptr;
   QLabel* result_ = nullptr;

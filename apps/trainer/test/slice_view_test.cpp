@@ -206,7 +206,7 @@ TEST(SliceView, ShowsAsMuchOfThePlanAsGuidanceAllows) {
   shown.view.grab();
   shown.view.set_guidance(scene::Guidance::kNone);  // no plan yet; lesions are gone, too
   const QImage none = shown.view.grab().toImage();
-  shown.view.set_path(path);
+  shown.view.set_paths(path, {});
   shown.view.set_entry_zone(tasks::EntryZone{path.a, 15.0});
   EXPECT_EQ(shown.view.grab().toImage(), none);
   const auto drawn_at = [&](const Vec3& p_P, double radius) {
@@ -240,7 +240,7 @@ void look_at(std::shared_ptr<const anatomy::VirtualPatient> patient, const Segme
     view->set_focus(shaft_P.back());
     view->set_needle_frame(needle_pose(shaft_P.back(), path.direction()));
     view->set_needle(shaft_P);
-    view->set_path(path);
+    view->set_paths(path, {});
     views.push_back(std::move(view));
   }
   window.show();

@@ -206,6 +206,11 @@ TEST_F(WindowTest, TheReplayMovesTheTransducerAsItWasMoved) {
   expect_played(play("transducer.txt"));
 }
 
+TEST_F(WindowTest, TheReplayComparesWithSeveralExpertPaths) {
+  expect_played(run({QStringLiteral("--task"), QStringLiteral("lumbar-puncture"), QStringLiteral("--patient"),
+                     QStringLiteral("lumbar-1"), QStringLiteral("--script"), script_named("expert_paths.txt")}));
+}
+
 TEST_F(WindowTest, ABiopsyIsPerformedByKeysAlone) {
   expect_played(play("keyboard.txt"));
 }

@@ -33,6 +33,12 @@ struct ToolContext {
   const cases::OpenCase& open;
 };
 
+/// Expert paths of the case, in P.
+struct ExpertPaths {
+  Segment path_P;                 ///< The one that the views show as the path: the plan, or the nearest to an attempt.
+  std::vector<Segment> others_P;  ///< Drawn faint.
+};
+
 /// One frame of the window.
 struct FrameContext {
   double now_s = 0.0;  ///< Time of any steady clock.
@@ -77,6 +83,8 @@ class View {
   virtual void take_later_data() {}
   /// Shows the guidance that the difficulty permits.
   virtual void show_help(Difficulty) {}
+  /// Replaces the paths of the case.
+  virtual void show_expert_paths(const ExpertPaths&) {}
   /// In an exam, the view must not show the depth of the tip.
   virtual void set_tip_hidden(bool /*is_hidden*/) {}
   /// Called only after a visible movement.

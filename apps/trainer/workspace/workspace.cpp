@@ -113,6 +113,10 @@ void Workspace::show_help(Difficulty difficulty) {
   for (const auto& view : views_) view->show_help(difficulty);
 }
 
+void Workspace::show_expert_paths(const ExpertPaths& paths) {
+  for (const auto& view : views_) view->show_expert_paths(paths);
+}
+
 void Workspace::set_tip_hidden(bool is_hidden) {
   is_tip_hidden_ = is_hidden;
   tools_.reset();

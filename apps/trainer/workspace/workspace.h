@@ -10,6 +10,7 @@
 #include "cases/open_case.h"
 #include "choice/difficulty.h"
 #include "views/tools_shown.h"
+#include "views/view.h"
 #include "views/view_registry.h"
 #include "workspace/layouts.h"
 #include "workspace/standard_views.h"
@@ -37,6 +38,8 @@ class Workspace : public QMainWindow {
   void take_later_data();
   /// Sets the guidance in all views; panels and keys of the views cannot show more.
   void show_help(Difficulty difficulty);
+  /// Replaces the planned path in all views until the next call or case.
+  void show_expert_paths(const ExpertPaths& paths);
   /// Hidden: slices and 3D show the needle up to the skin only, slices do not follow it, and the plot has no depth. The
   /// ultrasound is not changed, as in a real scanner. The crosshairs are moved to the middle of the body.
   void set_tip_hidden(bool is_hidden);

@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "core/check.h"
+#include "scene/detail/callers_break.h"
 #include "scene/detail/display.h"
 #include "scene/detail/guide_layer.h"
 #include "scene/detail/output.h"
@@ -31,25 +32,6 @@ constexpr int kPlanePixels = 320;
 constexpr int kPlanePixelsMoving = 192;
 /// A cut does not clip the needle and this distance in front of it.
 constexpr double kCutBeforeNeedle_mm = 1.5;
-
-/// Polls the caller of `render`; once it returns true, this stays true until the end of the frame.
-class CallersBreak : public detail::FrameBreak {
- public:
-  bool is_wanted() override {
-    if (!has_broken_ && wants_break_ && *wants_break_ && (*wants_break_)()) has_broken_ = true;
-    return has_broken_;
-  }
-  void begin(const std::function<bool()>& wants_break) {
-    wants_break_ = &wants_break;
-    has_broken_ = false;
-  }
-  void end() noexcept { wants_break_ = nullptr; }
-  bool has_broken() const noexcept { return has_broken_; }
-
- private:
-  const std::function<bool()>* wants_break_ = nullptr;
-  bool has_broken_ = false;
-};
 
 }  // namespace
 
@@ -102,7 +84,7 @@ struct PatientScene::Impl {
   vtkNew<vtkRenderer> renderer;
   vtkNew<vtkCallbackCommand> abort_check;
   unsigned long abort_tag = 0;
-  CallersBreak frame_break;
+  detail::CallersBreak frame_break;
   std::shared_ptr<const anatomy::VirtualPatient> patient;
   std::string target_name, around_name;
   std::optional<StructurePreset> structure_preset;
@@ -262,6 +244,11 @@ void PatientScene::set_path(const std::optional<Segment>& line_P, double entry_r
   s.path_P = line_P;
   s.entry_radius_mm = entry_radius_mm;
   s.lay_path();
+}
+
+void PatientScene::set_other_paths(std::span<const Segment> lines_P) {
+  impl_->guides.set_other_paths(lines_P);
+  impl_->has_changed = true;
 }
 
 void PatientScene::set_entry_centre(const std::optional<Vec3>& centre_P) {

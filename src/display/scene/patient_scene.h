@@ -49,6 +49,8 @@ class PatientScene {
 
   /// Sets the path with its target at the end, and an entry zone about its start.
   void set_path(const std::optional<Segment>& line_P, double entry_radius_mm);
+  /// Further paths beside it, faint; none for an empty list.
+  void set_other_paths(std::span<const Segment> lines_P);
   /// Sets the centre of the entry zone; empty: the path's start.
   void set_entry_centre(const std::optional<Vec3>& centre_P);
   /// Amount of guidance and its visibility. Guidance::kNone also withholds lesions.

@@ -108,6 +108,10 @@ void PatientView::set_path(const std::optional<Segment>& line_P, double entry_ra
   impl_->scene->set_path(line_P, entry_radius_mm);
 }
 
+void PatientView::set_other_paths(std::span<const Segment> lines_P) {
+  impl_->scene->set_other_paths(lines_P);
+}
+
 void PatientView::set_guidance(scene::Guidance guidance) {
   impl_->scene->set_guidance(guidance);
 }

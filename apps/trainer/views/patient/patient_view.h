@@ -42,6 +42,7 @@ class PatientView : public QWidget {
   bool is_ready() const;
 
   void set_path(const std::optional<Segment>& line_P, double entry_radius_mm);
+  void set_other_paths(std::span<const Segment> lines_P);
   /// Sets the amount of guidance; set_guidance_visible and the key O show and hide it.
   void set_guidance(scene::Guidance guidance);
   void set_guidance_visible(bool is_visible);

@@ -30,6 +30,7 @@ class PatientViewEntry final : public View {
 
   bool open(const CaseContext& context) override {
     case_ = context;
+    paths_ = {context.open->the_case.plan.line_P, {}};
     picture_number_ = 0;
     has_patient_ = false;
     if (role_ == Role::kMain) show_patient();
@@ -39,6 +40,11 @@ class PatientViewEntry final : public View {
   void show_help(Difficulty difficulty) override {
     view_->set_guidance(guidance_of(difficulty));
     view_->set_guidance_visible(true);
+  }
+
+  void show_expert_paths(const ExpertPaths& paths) override {
+    paths_ = paths;
+    if (has_patient_) show_paths();
   }
 
   void show_tools(const ToolContext& context) override {
@@ -81,9 +87,14 @@ class PatientViewEntry final : public View {
     surface_groups_ = 0;
     add_new_surfaces();
     view_->face(-the_case.plan.line_P.direction());
-    view_->set_path(the_case.plan.line_P, case_.entry_zone.radius_mm);
+    show_paths();
     view_->scene().set_entry_centre(case_.entry_zone.centre_P);
     has_patient_ = true;
+  }
+
+  void show_paths() {
+    view_->set_path(paths_.path_P, case_.entry_zone.radius_mm);
+    view_->set_other_paths(paths_.others_P);
   }
 
   void add_new_surfaces() {
@@ -111,6 +122,7 @@ class PatientViewEntry final : public View {
   ViewContext& context_;
   PatientView* view_;
   CaseContext case_;
+  ExpertPaths paths_;
   bool has_patient_ = false;
   std::size_t surface_groups_ = 0;  ///< Groups of the case's surfaces that the view has.
   std::uint64_t picture_number_ = 0;

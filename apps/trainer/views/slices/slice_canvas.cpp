@@ -114,6 +114,14 @@ void draw_path(const SliceCanvas& canvas, const Segment& path_P) {
   painter.drawEllipse(canvas.to_point(path_P.a), 4.0, 4.0);
 }
 
+void draw_other_path(const SliceCanvas& canvas, const Segment& path_P) {
+  const QPointF from = canvas.to_point(path_P.a), to = canvas.to_point(path_P.b);
+  for (const QPen& pen : {QPen(faded(kHalo, 0.7), 3.0), QPen(faded(theme().text, 0.8), 1.4, Qt::DashLine)}) {
+    canvas.painter.setPen(pen);
+    canvas.painter.drawLine(from, to);
+  }
+}
+
 void draw_target(const SliceCanvas& canvas, const Vec3& p_P) {
   QPainter& painter = canvas.painter;
   painter.setBrush(Qt::NoBrush);

@@ -31,6 +31,8 @@ void draw_needle(const SliceCanvas& canvas, std::span<const Vec3> shaft_P);
 void draw_aim(const SliceCanvas& canvas, std::span<const Vec3> shaft_P);
 /// The line of an expert path, with a ring at its entry.
 void draw_path(const SliceCanvas& canvas, const Segment& path_P);
+/// Another expert path: faint, without a ring.
+void draw_other_path(const SliceCanvas& canvas, const Segment& path_P);
 /// Cross-hairs on the target, faint if it is off the plane.
 void draw_target(const SliceCanvas& canvas, const Vec3& p_P);
 /// The circle in which the plane cuts the zone's sphere; draws nothing if it does not.

@@ -160,10 +160,9 @@ void SliceView::set_needle_frame(const Pose& X_PN) {
   update();
 }
 
-void SliceView::set_path(const std::optional<Segment>& path_P) {
-  if (path_P.has_value() == path_P_.has_value() && (!path_P || (path_P->a == path_P_->a && path_P->b == path_P_->b)))
-    return;
+void SliceView::set_paths(const std::optional<Segment>& path_P, std::vector<Segment> others_P) {
   path_P_ = path_P;
+  other_paths_P_ = std::move(others_P);
   update();
 }
 
@@ -320,6 +319,8 @@ void SliceView::paintEvent(QPaintEvent* /*event*/) {
 void SliceView::draw_plan(const SliceCanvas& canvas) const {
   if (guidance_ == scene::Guidance::kNone) return;
   if (zone_) draw_entry_zone(canvas, *zone_);
+  if (guidance_ == scene::Guidance::kPath)
+    for (const Segment& other_P : other_paths_P_) draw_other_path(canvas, other_P);
   if (guidance_ == scene::Guidance::kPath && path_P_) draw_path(canvas, *path_P_);
   if (path_P_) draw_target(canvas, path_P_->b);
   const bool is_along = kind_ == SliceKind::kAlongNeedle || kind_ == SliceKind::kAlongNeedleTurned;

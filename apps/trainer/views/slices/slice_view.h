@@ -71,8 +71,8 @@ class SliceView : public QWidget {
   void set_needle_frame(const Pose& X_PN);
   /// Sets whether that frame is the one of the tip or of the needle at the skin; shown in the strip.
   void set_frame_at_skin(bool is_at_skin);
-  /// The expert path, from the skin to the target.
-  void set_path(const std::optional<Segment>& path_P);
+  /// The expert path, from the skin to the target, and others to compare with, faint.
+  void set_paths(const std::optional<Segment>& path_P, std::vector<Segment> others_P);
   void set_entry_zone(const std::optional<tasks::EntryZone>& zone);
   /// Amount of guidance shown: path, target and zone; with the path also the needle's direction. With none, lesions are
   /// painted as the organ around them.
@@ -162,6 +162,7 @@ class SliceView : public QWidget {
   double offset_mm_ = 0.0;  ///< Offset of a needle plane from the tip, along the plane's normal.
   std::vector<Vec3> shaft_P_;
   std::optional<Segment> path_P_;
+  std::vector<Segment> other_paths_P_;
   std::optional<tasks::EntryZone> zone_;
   scene::Guidance guidance_ = scene::Guidance::kPath;
   bool has_labels_ = true;

@@ -24,13 +24,15 @@ class SliceViewEntry final : public View {
     const cases::Case& the_case = context.open->the_case;
     body_P_ = slices::body_box(*the_case.patient);
     view_->show_patient(the_case.patient, body_P_);
-    view_->set_path(the_case.plan.line_P);
+    view_->set_paths(the_case.plan.line_P, {});
     view_->set_entry_zone(context.entry_zone);
     view_->set_focus(the_case.plan.line_P.b);
     return true;
   }
 
   void show_help(Difficulty difficulty) override { view_->set_guidance(guidance_of(difficulty)); }
+
+  void show_expert_paths(const ExpertPaths& paths) override { view_->set_paths(paths.path_P, paths.others_P); }
 
   void set_tip_hidden(bool is_hidden) override {
     view_->set_frame_at_skin(is_hidden);

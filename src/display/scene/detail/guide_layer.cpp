@@ -19,6 +19,7 @@ namespace {
 
 // The trainer's colours of path and target (ui_kit/theme.h).
 constexpr volume::Rgb kPathColor = {0x54, 0xd1, 0xc4};
+constexpr volume::Rgb kOtherPathColor = {0xc3, 0xcc, 0xd8};
 constexpr volume::Rgb kTargetColor = {0xff, 0x8a, 0x3d};
 constexpr volume::Rgb kLandmarkColor = {0xf2, 0xd0, 0x6b};
 constexpr double kPathRadius_mm = 1.0;
@@ -155,8 +156,17 @@ void GuideLayer::set_path(const std::optional<Segment>& line_P, const EntryMark&
   show_guidance();
 }
 
+void GuideLayer::set_other_paths(std::span<const Segment> lines_P) {
+  constexpr double kFaint = 0.8;
+  clear(others_);
+  for (const Segment& line_P : lines_P)
+    if (line_P.length_mm() > 0.0) add_mesh(others_, dashes(line_P), kOtherPathColor, kFaint, false);
+  show_guidance();
+}
+
 void GuideLayer::show_guidance() {
-  for (const auto& prop : line_) prop->SetVisibility(is_guidance_visible_ && guidance_ == Guidance::kPath);
+  for (const Props* props : {&line_, &others_})
+    for (const auto& prop : *props) prop->SetVisibility(is_guidance_visible_ && guidance_ == Guidance::kPath);
   for (const auto& prop : marks_) prop->SetVisibility(is_guidance_visible_ && guidance_ != Guidance::kNone);
 }
 

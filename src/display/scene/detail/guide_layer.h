@@ -3,6 +3,7 @@
 #include <vtkTextActor.h>
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "scene/camera.h"
@@ -25,6 +26,8 @@ class GuideLayer {
   /// Replaces path, zone and target. `skin_distance_mm` is used to project the zone on the skin; may be empty.
   void set_path(const std::optional<Segment>& line_P, const EntryMark& entry,
                 const volume::FloatGrid& skin_distance_mm);
+  /// Further paths to compare with, faint; visible as the path is.
+  void set_other_paths(std::span<const Segment> lines_P);
   void set_landmarks(const std::vector<anatomy::Landmark>& landmarks);
   // Return true if they changed something.
   bool set_guidance(Guidance guidance);
@@ -50,8 +53,9 @@ class GuideLayer {
   void show_guidance();
 
   vtkRenderer& renderer_;
-  Props line_;   ///< The path from a point in front of the skin to the target.
-  Props marks_;  ///< Target and entry zone.
+  Props line_;    ///< The path from a point in front of the skin to the target.
+  Props others_;  ///< Further paths.
+  Props marks_;   ///< Target and entry zone.
   Props landmarks_;
   std::vector<Text> texts_;
   double text_scale_ = 1.0;
