@@ -22,6 +22,13 @@ double young_of_hu(const anatomy::HuTransfer& transfer, double hu) noexcept {
   return transfer.laws[transfer.knot_count - 1].young_kpa;
 }
 
+/// Ligaments: the table has their modulus in tension along the fibres, which bear no pressure across them
+/// (docs/physics.md B9). [assumed] Range of the modulus across: 20..200 kPa.
+double across_fibres_kpa(double young_kpa) noexcept {
+  constexpr double kFibrous_kpa = 5e3, kBone_kpa = 5e4, kAcross_kpa = 50.0;
+  return young_kpa >= kFibrous_kpa && young_kpa < kBone_kpa ? kAcross_kpa : young_kpa;
+}
+
 /// Reads moduli along a ray in voxel indices. Outside the volume its edge continues.
 class Ray {
  public:
@@ -42,7 +49,7 @@ class Ray {
     const std::uint8_t label = patient.labels.empty() ? std::uint8_t{0} : patient.labels.voxels[voxel];
     if (label == 0 && scene_.transfer.knot_count > 0 && !patient.ct.empty())
       return young_of_hu(scene_.transfer, patient.ct.voxels[voxel]);
-    return scene_.tissues[scene_.tissue_of_label[label]].young_kpa;
+    return across_fibres_kpa(scene_.tissues[scene_.tissue_of_label[label]].young_kpa);
   }
 
   bool holds(const Vec3& index) const noexcept {
