@@ -14,6 +14,7 @@
 #include "scene/detail/callers_break.h"
 #include "scene/detail/display.h"
 #include "scene/detail/guide_layer.h"
+#include "scene/detail/hand_layer.h"
 #include "scene/detail/output.h"
 #include "scene/detail/pick.h"
 #include "scene/detail/plane_layer.h"
@@ -93,6 +94,7 @@ struct PatientScene::Impl {
   std::optional<Vec3> entry_centre_P;
   detail::SurfaceLayer surfaces{*renderer.Get(), frame_break};
   detail::ToolLayer tools{*renderer.Get()};
+  detail::HandLayer hand{*renderer.Get()};
   detail::GuideLayer guides{*renderer.Get()};
   detail::PlaneLayer planes{*renderer.Get()};
   detail::VolumeLayer volume{*renderer.Get()};
@@ -293,6 +295,10 @@ void PatientScene::set_shot(const std::optional<Segment>& stylet_P, const std::o
 
 void PatientScene::set_throw(const std::optional<Segment>& throw_P, const std::optional<Segment>& notch_P) {
   if (impl_->tools.set_throw(throw_P, notch_P)) impl_->has_changed = true;
+}
+
+void PatientScene::set_hand(const std::optional<Fingertip>& finger, std::span<const Vec3> skin_marks_P) {
+  if (impl_->hand.set(finger, skin_marks_P)) impl_->has_changed = true;
 }
 
 void PatientScene::set_transducer(const std::optional<Pose>& X_PT, const TransducerFace& face) {

@@ -14,6 +14,7 @@
 #include "geometry/pose.h"
 #include "scene/camera.h"
 #include "scene/detail_policy.h"
+#include "scene/fingertip.h"
 #include "scene/guidance.h"
 #include "scene/mpr.h"
 #include "scene/needle_shape.h"
@@ -67,6 +68,8 @@ class PatientScene {
   void set_shot(const std::optional<Segment>& stylet_P, const std::optional<Segment>& core_P);
   /// Way of a biopsy gun's stylet if it were fired now, and the part of it where the notch stops; dashed.
   void set_throw(const std::optional<Segment>& throw_P, const std::optional<Segment>& notch_P);
+  /// A palpating finger, and dots of a skin marker.
+  void set_hand(const std::optional<Fingertip>& finger, std::span<const Vec3> skin_marks_P);
   void set_transducer(const std::optional<Pose>& X_PT, const TransducerFace& face);
   /// An image in 3D; corners of its outline: top left, top right, bottom left. `alpha` has one byte per pixel (0: not
   /// drawn) or is empty (all drawn).

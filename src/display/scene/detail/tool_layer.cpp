@@ -31,19 +31,6 @@ constexpr volume::Rgb kThrowColor = {236, 240, 246};
 /// A smaller relative change of the minimum thickness does not rebuild the needle.
 constexpr double kThicknessStep = 0.15;
 
-vtkSmartPointer<vtkActor> make_tool(vtkRenderer& renderer) {
-  auto actor = vtkSmartPointer<vtkActor>::New();
-  vtkNew<vtkPolyData> nothing;
-  auto mapper = make_mapper(nothing);
-  mapper->ScalarVisibilityOn();
-  mapper->SetColorModeToDirectScalars();
-  actor->SetMapper(mapper);
-  apply(Appearance{{255, 255, 255}, 1.0, 0.5, 0.16}, *actor);
-  actor->VisibilityOff();
-  renderer.AddActor(actor);
-  return actor;
-}
-
 /// Compares the appearance of faces: the number of scanlines of a live scan changes, and with it the last digits of its
 /// width.
 bool are_alike(const TransducerFace& a, const TransducerFace& b) {
@@ -63,11 +50,24 @@ bool are_same(const std::optional<Segment>& a, const std::optional<Segment>& b) 
   return (a->a - b->a).norm() < kUnseen_mm && (a->b - b->b).norm() < kUnseen_mm;
 }
 
-void set_data(vtkActor& actor, vtkPolyData* data) {
-  static_cast<vtkPolyDataMapper*>(actor.GetMapper())->SetInputData(data);
+}  // namespace
+
+vtkSmartPointer<vtkActor> make_tool(vtkRenderer& renderer) {
+  auto actor = vtkSmartPointer<vtkActor>::New();
+  vtkNew<vtkPolyData> nothing;
+  auto mapper = make_mapper(nothing);
+  mapper->ScalarVisibilityOn();
+  mapper->SetColorModeToDirectScalars();
+  actor->SetMapper(mapper);
+  apply(Appearance{{255, 255, 255}, 1.0, 0.5, 0.16}, *actor);
+  actor->VisibilityOff();
+  renderer.AddActor(actor);
+  return actor;
 }
 
-}  // namespace
+void set_data(vtkActor& tool, vtkPolyData* data) {
+  static_cast<vtkPolyDataMapper*>(tool.GetMapper())->SetInputData(data);
+}
 
 vtkSmartPointer<vtkPolyData> to_colored_polydata(std::span<const ShapePart> parts) {
   TriangleMesh all;

@@ -13,6 +13,10 @@ namespace trocar::scene::detail {
 /// One surface of all parts of a tool, each in its own colour.
 vtkSmartPointer<vtkPolyData> to_colored_polydata(std::span<const ShapePart> parts);
 
+/// An invisible actor that draws to_colored_polydata().
+vtkSmartPointer<vtkActor> make_tool(vtkRenderer& renderer);
+void set_data(vtkActor& tool, vtkPolyData* data);
+
 /// Needle, ghost needle at the hand's pose, and transducer with its image.
 class ToolLayer {
  public:
