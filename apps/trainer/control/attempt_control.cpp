@@ -7,6 +7,7 @@
 
 #include "anatomy/structure_words.h"
 #include "attempt/guide/gun_shot.h"
+#include "control/attempt_words.h"
 #include "control/force_bands.h"
 #include "control/task_layout.h"
 #include "pages/work_page.h"
@@ -30,38 +31,6 @@ constexpr double kGhost_mm = 1.0;  ///< The hand is drawn if it is at least this
 /// that peaks are visible.
 constexpr double kFullForce_n = 8.0;
 
-QString phase_text(const attempt::AttemptView& view) {
-  switch (view.phase) {
-    case attempt::AttemptPhase::kStarting:
-      return AttemptControl::tr("starting");
-    case attempt::AttemptPhase::kServerLost:
-      return AttemptControl::tr("interrupted");
-    case attempt::AttemptPhase::kStopped:
-      return AttemptControl::tr("forces stopped");
-    case attempt::AttemptPhase::kFinishing:
-      return AttemptControl::tr("being scored");
-    default:
-      break;
-  }
-  switch (view.needle.phase) {
-    case telemetry::InsertionPhase::kOutside:
-      return AttemptControl::tr("outside");
-    case telemetry::InsertionPhase::kLoading:
-      return AttemptControl::tr("pressing");
-    case telemetry::InsertionPhase::kInserted:
-      return AttemptControl::tr("in the body");
-    case telemetry::InsertionPhase::kRetracting:
-      return AttemptControl::tr("pulling back");
-  }
-  return {};
-}
-
-bool is_risk(const cases::Case& the_case, const attempt::AttemptEvent& event) {
-  if (event.kind != telemetry::EventKind::kEnter) return false;
-  const anatomy::Label* label = the_case.patient->label_table.find(std::string_view(event.name));
-  return label != nullptr && find_risk(the_case.task, *label) != nullptr;
-}
-
 }  // namespace
 
 AttemptControl::AttemptControl(std::shared_ptr<const cases::OpenCase> open, const TrainerChoice& choice,
@@ -74,6 +43,7 @@ AttemptControl::AttemptControl(std::shared_ptr<const cases::OpenCase> open, cons
       needle_(*open_->the_case.patient, open_->the_case.plan.line_P, open_->the_case.needle.length_mm),
       probe_(*open_->the_case.patient, attempt_.options().X_PT_start.value_or(open_->X_PT_start)),
       planned_(open_),
+      hand_(open_, page.view_3d(), choice.difficulty != Difficulty::kExam),
       is_led_{attempt::follows_targets(choice.needle_device), attempt::follows_targets(choice.probe_device)},
       keys_(page, [this](const QKeyEvent& key, const KeyPlace& place) { return take_key(key, place); }) {
   if (const auto& X_PN_start = attempt_.options().X_PN_start) needle_.put(*X_PN_start);
@@ -117,7 +87,7 @@ void AttemptControl::connect_panel() {
   connect(&panel.steps(), &StepList::repeat_requested, this, [this](std::size_t step) { attempt_.repeat_phase(step); });
   connect(&gestures_, &ToolGestures::gestured, this, &AttemptControl::gesture);
   connect(&gestures_, &ToolGestures::key_pressed, this, &AttemptControl::handle_key);
-  connect(&gestures_, &ToolGestures::taken, &panel, &PuncturePanel::show_active_tool);
+  connect(&gestures_, &ToolGestures::taken, this, &AttemptControl::show_taken);
   gestures_.watch(page_.view_3d(), [this] { return scale_of_3d(); });
   gestures_.watch(page_.ultrasound(), [this] { return scale_of_ultrasound(); });
 }
@@ -127,10 +97,22 @@ void AttemptControl::take(ActiveTool tool) {
   page_.puncture().show_active_tool(tool);
 }
 
+void AttemptControl::show_taken(ActiveTool tool) {
+  page_.puncture().show_active_tool(tool);
+  hand_.set_active(tool == ActiveTool::kFinger);
+  if (tool == ActiveTool::kFinger && !hand_.failure().isEmpty()) show_notice(hand_.failure());
+}
+
 bool AttemptControl::take_key(const QKeyEvent& key, const KeyPlace& place) {
   const auto action = action_of(key.key(), actions_of(open_->the_case.task, open_->the_case.needle));
   if (action && key.modifiers() == Qt::NoModifier && !place.is_text && !place.is_aside) {
     if (!key.isAutoRepeat()) act(*action);
+    return true;
+  }
+  const bool plays_cine = key.key() == Qt::Key_P && page_.ultrasound().hasFocus() && page_.ultrasound().is_frozen();
+  if (plays_cine) return false;
+  if (key.key() == Qt::Key_Backspace && hand_.is_active() && !place.is_text && !place.is_aside) {
+    hand_.undo_mark();
     return true;
   }
   if (key.key() != Qt::Key_Space || key.modifiers() != Qt::NoModifier) return gestures_.handle_key(key, place);
@@ -144,7 +126,9 @@ void AttemptControl::handle_key(int key) {
   if (key == Qt::Key_H) aim();
   if (key == Qt::Key_X) toggle_clamp();
   if (key == Qt::Key_E) ask_to_end();
-  if (key == Qt::Key_Return || key == Qt::Key_Enter) fire();
+  const bool is_enter = key == Qt::Key_Return || key == Qt::Key_Enter;
+  if (is_enter && hand_.is_active()) return hand_.set_mark();
+  if (is_enter) fire();
 }
 
 void AttemptControl::ask_to_end() {
@@ -176,6 +160,7 @@ ViewScale AttemptControl::scale_of_ultrasound() const {
 
 void AttemptControl::gesture(const Gesture& gesture) {
   planned_.stop(gestures_.active_tool());
+  if (hand_.is_active() && gesture.kind == Gesture::Kind::kGlide) return hand_.glide(gesture.right, gesture.down);
   const ViewScale& v = gesture.view;
   const auto move = [&](auto& hand) {
     switch (gesture.kind) {
@@ -202,7 +187,8 @@ void AttemptControl::aim() {
   if (choice_.difficulty != Difficulty::kGuided)
     return show_notice(tr("The planned position is available in guided attempts only."));
   const ActiveTool tool = gestures_.active_tool();
-  if (tool == ActiveTool::kNone) return show_notice(tr("Select needle (A) or transducer (S) first."));
+  if (tool == ActiveTool::kNone || tool == ActiveTool::kFinger)
+    return show_notice(tr("Select needle (A) or transducer (S) first."));
   if (!is_free(tool == ActiveTool::kNeedle ? attempt::Tool::kNeedle : attempt::Tool::kProbe)) return;
   if (tool == ActiveTool::kNeedle && needle_.is_past_skin())
     return show_notice(tr("Withdraw the needle first: it moves to the planned position outside the body only."));
@@ -241,7 +227,7 @@ ActionState AttemptControl::action_state() const {
 }
 
 void AttemptControl::toggle_clamp() {
-  if (gestures_.active_tool() == ActiveTool::kNone) return;
+  if (gestures_.active_tool() == ActiveTool::kNone || hand_.is_active()) return;
   const attempt::Tool tool =
       gestures_.active_tool() == ActiveTool::kNeedle ? attempt::Tool::kNeedle : attempt::Tool::kProbe;
   bool& is_clamped = is_clamped_[static_cast<std::size_t>(tool)];
@@ -266,6 +252,7 @@ void AttemptControl::advance(double dt_s) {
     needle_.put(view_.needle.X_PN);
   }
   planned_.advance(needle_, probe_, dt_s);
+  hand_.advance();
   if (!is_led_[1] && view_.probe.is_known) probe_.put(view_.probe.X_PT);
   attempt_.set_goal(attempt::Tool::kNeedle, needle_.X_PN());
   attempt_.set_goal(attempt::Tool::kProbe, probe_.X_PT());
@@ -337,6 +324,7 @@ void AttemptControl::show_tools(double dt_s) {
   if (!is_exam() && needle.is_known && view_.phase == attempt::AttemptPhase::kInBody && view_.is_gun_loaded)
     show_throw(tools, open_->the_case.needle);
   if (view_.shot && !view_.is_gun_loaded) show_shot(tools, *view_.shot, view_.since_shot_s, needle.depth_mm);
+  hand_.add_to(tools);
   page_.workspace().show_tools(tools);
   if (tasks::XrayUse use = page_.xray().use(); use != xray_) attempt_.note_xray(xray_ = use);
 }
@@ -377,8 +365,9 @@ void AttemptControl::show_steps() {
   const std::vector<tasks::Phase>& phases = open_->the_case.task.phases;
   const bool is_guided = choice_.difficulty == Difficulty::kGuided;
   const bool has_help = is_guided && view_.current_phase && *view_.current_phase < phases.size();
-  page_.puncture().steps().show_steps(view_.phases, view_.current_phase, view_.needle.time_s, is_guided,
-                                      has_help ? planned_position_help(phases[*view_.current_phase]) : QString());
+  page_.puncture().steps().show_steps(
+      view_.phases, view_.current_phase, view_.needle.time_s, is_guided,
+      has_help ? planned_position_help(open_->the_case.task, phases[*view_.current_phase]) : QString());
 }
 
 void AttemptControl::add_step_facts(QVariantMap& facts) const {
@@ -409,6 +398,7 @@ QVariantMap AttemptControl::facts() const {
   QVariantMap facts;
   if (!is_exam()) facts = solution_facts();
   add_step_facts(facts);
+  hand_.add_facts(facts);
   facts[QStringLiteral("phase")] = QString::fromLatin1(to_string(view_.phase));
   facts[QStringLiteral("level")] = QString::fromLatin1(name_of(choice_.difficulty));
   facts[QStringLiteral("force_n")] = view_.needle.resistance_n;

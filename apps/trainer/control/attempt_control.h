@@ -9,6 +9,7 @@
 #include "cases/open_case.h"
 #include "choice/trainer_choice.h"
 #include "control/page_keys.h"
+#include "control/palpating_hand.h"
 #include "control/planned_position.h"
 #include "control/tool_gestures.h"
 #include "panels/action_buttons.h"
@@ -52,6 +53,7 @@ class AttemptControl : public QObject {
   bool take_key(const QKeyEvent& key, const KeyPlace& place);
   void handle_key(int key);
   void take(ActiveTool tool);
+  void show_taken(ActiveTool tool);
   void aim();
   void toggle_clamp();
   void fire();
@@ -82,6 +84,7 @@ class AttemptControl : public QObject {
   attempt::PointerNeedle needle_;
   attempt::PointerProbe probe_;
   PlannedPosition planned_;
+  PalpatingHand hand_;
   bool is_led_[2];  ///< By Tool: mouse and keys move the tool; else its device does.
   PageKeys keys_;
   bool is_clamped_[2] = {false, false};  ///< Indexed by Tool.

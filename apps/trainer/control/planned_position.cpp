@@ -51,9 +51,13 @@ std::optional<ActiveTool> tool_of(const tasks::Phase& phase) {
   return std::nullopt;
 }
 
-QString planned_position_help(const tasks::Phase& phase) {
+QString planned_position_help(const tasks::Task& task, const tasks::Phase& phase) {
   const auto tool = tool_of(phase);
   if (!tool) return {};
+  if (*tool == ActiveTool::kNeedle && task.guidance == tasks::Guidance::kPalpation)
+    return QCoreApplication::translate("PlannedPosition",
+                                       "Key P: a finger feels for bone. Stuck? Keys A, H: needle to "
+                                       "the planned position");
   return *tool == ActiveTool::kTransducer
              ? QCoreApplication::translate("PlannedPosition", "Stuck? Keys S, H: transducer to the planned position")
              : QCoreApplication::translate("PlannedPosition", "Stuck? Keys A, H: needle to the planned position");

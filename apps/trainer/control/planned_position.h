@@ -29,8 +29,9 @@ class PlannedPosition {
 
 /// The tool that a step of the task moves; empty: none, or it is in the body.
 std::optional<ActiveTool> tool_of(const tasks::Phase& phase);
-/// What a trainee who is stuck in the step can do: the key to the planned position. Empty for steps without one.
-QString planned_position_help(const tasks::Phase& phase);
+/// What a trainee who is stuck in a step of the task can do: the key to the planned position, and the finger where
+/// landmarks are palpable. Empty for steps without one.
+QString planned_position_help(const tasks::Task& task, const tasks::Phase& phase);
 /// The tool with which an attempt at the task begins.
 ActiveTool first_tool(const tasks::Task& task);
 

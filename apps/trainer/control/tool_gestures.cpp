@@ -60,8 +60,8 @@ const ToolGestures::Watched* ToolGestures::find(const QObject* object) const {
 bool ToolGestures::eventFilter(QObject* object, QEvent* event) {
   const Watched* watched = find(object);
   if (watched == nullptr) return false;
-  const bool is_view = active_tool_ == ActiveTool::kNone || (QApplication::keyboardModifiers() & Qt::ControlModifier) ||
-                       watched->scale().mm_per_px <= 0.0;
+  const bool is_view = active_tool_ == ActiveTool::kNone || active_tool_ == ActiveTool::kFinger ||
+                       (QApplication::keyboardModifiers() & Qt::ControlModifier) || watched->scale().mm_per_px <= 0.0;
   switch (event->type()) {
     case QEvent::MouseButtonPress:
       return !is_view && press(static_cast<const QMouseEvent&>(*event));
@@ -161,6 +161,8 @@ bool ToolGestures::handle_key(const QKeyEvent& event, const KeyPlace& place) {
       return take_by_key(ActiveTool::kNeedle);
     case Qt::Key_S:
       return take_by_key(ActiveTool::kTransducer);
+    case Qt::Key_P:
+      return take_by_key(ActiveTool::kFinger);
     case Qt::Key_V:
       return take_by_key(ActiveTool::kNone);
     case Qt::Key_H:

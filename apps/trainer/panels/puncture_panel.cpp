@@ -116,29 +116,31 @@ QWidget* PuncturePanel::make_tool_choice() {
   grid->setSpacing(6);
   const QString narrow = QStringLiteral("QPushButton { padding: 4px 5px; }");
   tool_buttons_ = new QButtonGroup(this);
-  const auto add = [&](ActiveTool tool, const char* name, const QString& text, const QString& tooltip, int column) {
+  const auto add = [&](ActiveTool tool, const char* name, const QString& text, const QString& tooltip, int row,
+                       int column) {
     auto* button = make_button(name, text, tooltip);
     button->setCheckable(true);
     button->setFocusPolicy(Qt::NoFocus);
     button->setStyleSheet(narrow);
     tool_buttons_->addButton(button, static_cast<int>(tool));
-    grid->addWidget(button, 0, column, 1, 2);
+    grid->addWidget(button, row, column);
     connect(button, &QPushButton::clicked, this, [this, tool] { Q_EMIT tool_requested(tool); });
   };
-  constexpr int kColumns = 6;  // three tools above two buttons
-  add(ActiveTool::kNeedle, "tool-needle", tr("Needle"), tr("Active tool: the mouse moves the needle (A)"), 0);
+  add(ActiveTool::kNeedle, "tool-needle", tr("Needle"), tr("Active tool: the mouse moves the needle (A)"), 0, 0);
   add(ActiveTool::kTransducer, "tool-transducer", tr("Transducer"),
-      tr("Active tool: the mouse moves the transducer (S)"), 2);
-  add(ActiveTool::kNone, "tool-none", tr("View"), tr("No active tool: the mouse rotates the view (V)"), 4);
+      tr("Active tool: the mouse moves the transducer (S)"), 0, 1);
+  add(ActiveTool::kFinger, "tool-finger", tr("Finger"),
+      tr("Active tool: a finger feels the skin under the pointer; a click marks the place (P)"), 0, 2);
+  add(ActiveTool::kNone, "tool-none", tr("View"), tr("No active tool: the mouse rotates the view (V)"), 1, 0);
   clamp_ = make_button("clamp", tr("Clamp"), tr("Hold the active tool in place (X)"));
   clamp_->setCheckable(true);
-  aim_ = make_button("aim", tr("To planned position"), {});
+  aim_ = make_button("aim", tr("To plan"), {});
   for (QPushButton* button : {clamp_, aim_}) {
     button->setFocusPolicy(Qt::NoFocus);
     button->setStyleSheet(narrow);
   }
-  grid->addWidget(clamp_, 1, 0, 1, 2);
-  grid->addWidget(aim_, 1, 2, 1, kColumns - 2);
+  grid->addWidget(clamp_, 1, 1);
+  grid->addWidget(aim_, 1, 2);
   connect(clamp_, &QPushButton::clicked, this, &PuncturePanel::clamp_requested);
   connect(aim_, &QPushButton::clicked, this, &PuncturePanel::aim_requested);
   return box;

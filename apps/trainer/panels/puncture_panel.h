@@ -23,7 +23,7 @@ class CorePicture;
 class ForceBar;
 class StepList;
 
-enum class ActiveTool { kNone, kNeedle, kTransducer };
+enum class ActiveTool { kNone, kNeedle, kTransducer, kFinger };
 
 /// Contents of the panel in one frame.
 struct PunctureFigures {
@@ -43,7 +43,7 @@ struct PunctureFigures {
 };
 
 /// Panel during the puncture: steps of the procedure, actions, active tool, needle position, resistance, events. Keys:
-/// A and S select a tool, V none, X locks the active tool, Enter fires, E ends; those of the actions: key_of(). A
+/// A, S and P select a tool, V none, X locks the active tool, Enter fires, E ends; those of the actions: key_of(). A
 /// question replaces the last two buttons and does not pause the attempt; Enter and Escape answer it.
 class PuncturePanel : public QWidget {
   Q_OBJECT

@@ -18,7 +18,8 @@ struct Key {
   const char* does;
 };
 constexpr Key kTools[] = {
-    {"A, S, V", "select needle, transducer or view as the active tool"},
+    {"A, S, P, V", "select needle, transducer, palpating finger or view as the active tool"},
+    {"click, Backspace", "finger: marks the skin (also Enter), removes the last mark"},
     {"drag", "moves along the skin"},
     {"right drag", "tilts; with Shift it turns about the axis"},
     {"wheel", "needle: advance and withdraw, transducer: press harder and softer; Shift: fine steps"},

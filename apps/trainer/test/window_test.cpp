@@ -211,6 +211,11 @@ TEST_F(WindowTest, TheReplayComparesWithSeveralExpertPaths) {
                      QStringLiteral("lumbar-1"), QStringLiteral("--script"), script_named("expert_paths.txt")}));
 }
 
+TEST_F(WindowTest, AFingerFeelsTheSpineAndMarksTheSkin) {
+  expect_played(run({QStringLiteral("--task"), QStringLiteral("lumbar-puncture"), QStringLiteral("--patient"),
+                     QStringLiteral("lumbar-1"), QStringLiteral("--script"), script_named("palpation.txt")}));
+}
+
 TEST_F(WindowTest, ABiopsyIsPerformedByKeysAlone) {
   expect_played(play("keyboard.txt"));
 }

@@ -5,6 +5,7 @@
 
 #include "geometry/pose.h"
 #include "geometry/segment.h"
+#include "scene/fingertip.h"
 
 namespace trocar::trainer {
 
@@ -20,7 +21,9 @@ struct ToolsShown {
   std::optional<Segment> wire_P;    ///< Guide wire if it went straight on: from the needle's tip as it was advanced.
   std::optional<Pose> X_PT;         ///< Transducer.
   std::optional<Vec3> focus_P;      ///< Focus of the slices.
-  double inside_mm = 0.0;           ///< Length of the needle in the body.
+  std::optional<scene::Fingertip> finger;  ///< Palpating hand.
+  std::vector<Vec3> skin_marks_P;          ///< Dots of a skin marker.
+  double inside_mm = 0.0;                  ///< Length of the needle in the body.
   bool are_moving = false;
 };
 

@@ -73,6 +73,9 @@ class PatientView : public QWidget {
   void set_camera(scene::CameraPreset preset);
   void set_view(const scene::CameraView& view);
   const scene::CameraView& view() const;
+  /// Eye and unit direction of the line of sight at a place of the widget, and the place of a point in front of it.
+  std::pair<Vec3, Vec3> ray_at(const QPointF& place) const;
+  QPointF position_of(const Vec3& p_P) const;
   void set_follow(scene::FollowMode mode);
   scene::FollowMode follow() const;
   /// Turns the side with this outward direction of the skin to the viewer; reset_camera() returns to it.

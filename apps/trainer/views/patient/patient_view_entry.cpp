@@ -54,6 +54,7 @@ class PatientViewEntry final : public View {
     view_->set_needle_goal(tools.goal_P);
     view_->set_shot(tools.stylet_P, tools.core_P);
     view_->set_throw(tools.throw_P, tools.notch_P);
+    view_->scene().set_hand(tools.finger, tools.skin_marks_P);
     has_whole_picture_ = false;
   }
 

@@ -63,6 +63,24 @@ QPointF PatientView::unmirrored(const QPointF& place) const {
           options.is_mirrored_up_down ? height() - place.y() : place.y()};
 }
 
+std::pair<Vec3, Vec3> PatientView::ray_at(const QPointF& place) const {
+  const scene::CameraView& camera = view();
+  const QPointF at = unmirrored(place);
+  const double per_px = 2.0 * std::tan(0.5 * camera.view_angle_rad) / std::max(1, height());
+  const Vec3 along_P = camera.forward_P() + per_px * (at.x() - 0.5 * width()) * camera.right_P() -
+                       per_px * (at.y() - 0.5 * height()) * camera.up_P;
+  return {camera.eye_P, along_P.normalized()};
+}
+
+QPointF PatientView::position_of(const Vec3& p_P) const {
+  const scene::CameraView& camera = view();
+  const double per_px = 2.0 * std::tan(0.5 * camera.view_angle_rad) / std::max(1, height());
+  const Vec3 from_eye_P = p_P - camera.eye_P;
+  const double depth_mm = std::max(1.0, from_eye_P.dot(camera.forward_P()));
+  return unmirrored({0.5 * width() + from_eye_P.dot(camera.right_P()) / (depth_mm * per_px),
+                     0.5 * height() - from_eye_P.dot(camera.up_P) / (depth_mm * per_px)});
+}
+
 void PatientView::wheelEvent(QWheelEvent* event) {
   const double notches = event->angleDelta().y() / kWheelNotch;
   set_view(scene::zoomed(view(), std::pow(kZoomPerNotch, notches)));

@@ -53,6 +53,12 @@ void SliceMarks::set_throw(const std::optional<Segment>& throw_P, const std::opt
   update();
 }
 
+void SliceMarks::set_skin_marks(const std::vector<Vec3>& marks_P) {
+  if (marks_P == skin_marks_P_) return;
+  skin_marks_P_ = marks_P;
+  update();
+}
+
 void SliceMarks::draw_piece(QPainter& painter, const Segment& piece_P, const QColor& color, double width,
                             Qt::PenStyle style) const {
   const bool is_near = std::max(away_mm(piece_P.a), away_mm(piece_P.b)) < kNear_mm;
@@ -79,6 +85,13 @@ void SliceMarks::paintEvent(QPaintEvent* /*event*/) {
   if (notch_P_) draw_piece(painter, *notch_P_, theme().needle, kNotch_px, Qt::DotLine);
   if (stylet_P_) draw_piece(painter, *stylet_P_, theme().needle, kStylet_px);
   if (core_P_) draw_piece(painter, *core_P_, theme().target, kCore_px);
+  for (const Vec3& mark_P : skin_marks_P_) {
+    if (away_mm(mark_P) > kNear_mm) continue;
+    painter.setPen(QPen(QColor(0, 0, 0, 200), 1.0));
+    painter.setBrush(QColor(0x9a, 0x4d, 0xff));
+    painter.drawEllipse(view_->position_of(mark_P), 4.0, 4.0);
+    painter.setBrush(Qt::NoBrush);
+  }
   for (const anatomy::Landmark& landmark : landmarks_) {
     const double away = away_mm(landmark.p_P);
     if (away > kNear_mm) continue;

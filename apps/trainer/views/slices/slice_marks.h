@@ -25,6 +25,8 @@ class SliceMarks : public QWidget {
   void set_shot(const std::optional<Segment>& stylet_P, const std::optional<Segment>& core_P);
   /// Way of the stylet if the gun were fired now, and the notch's part of it.
   void set_throw(const std::optional<Segment>& throw_P, const std::optional<Segment>& notch_P);
+  /// Dots of a skin marker.
+  void set_skin_marks(const std::vector<Vec3>& marks_P);
   void set_landmarks(const std::vector<anatomy::Landmark>& landmarks);
 
  protected:
@@ -40,6 +42,7 @@ class SliceMarks : public QWidget {
   SliceView* view_;
   std::optional<Vec3> target_P_;
   std::optional<Segment> stylet_P_, core_P_, throw_P_, notch_P_;
+  std::vector<Vec3> skin_marks_P_;
   std::vector<anatomy::Landmark> landmarks_;
 };
 

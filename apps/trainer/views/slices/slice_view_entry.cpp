@@ -44,6 +44,7 @@ class SliceViewEntry final : public View {
     tools_ = context.visible;
     marks_->set_shot(tools_.stylet_P, tools_.core_P);
     marks_->set_throw(tools_.throw_P, tools_.notch_P);
+    marks_->set_skin_marks(tools_.skin_marks_P);
     is_stale_ = true;
   }
 

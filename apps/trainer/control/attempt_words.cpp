@@ -1,0 +1,46 @@
+#include "control/attempt_words.h"
+
+#include <QCoreApplication>
+
+namespace trocar::trainer {
+namespace {
+
+QString tr(const char* text) {
+  return QCoreApplication::translate("AttemptControl", text);
+}
+
+}  // namespace
+
+QString phase_text(const attempt::AttemptView& view) {
+  switch (view.phase) {
+    case attempt::AttemptPhase::kStarting:
+      return tr("starting");
+    case attempt::AttemptPhase::kServerLost:
+      return tr("interrupted");
+    case attempt::AttemptPhase::kStopped:
+      return tr("forces stopped");
+    case attempt::AttemptPhase::kFinishing:
+      return tr("being scored");
+    default:
+      break;
+  }
+  switch (view.needle.phase) {
+    case telemetry::InsertionPhase::kOutside:
+      return tr("outside");
+    case telemetry::InsertionPhase::kLoading:
+      return tr("pressing");
+    case telemetry::InsertionPhase::kInserted:
+      return tr("in the body");
+    case telemetry::InsertionPhase::kRetracting:
+      return tr("pulling back");
+  }
+  return {};
+}
+
+bool is_risk(const cases::Case& the_case, const attempt::AttemptEvent& event) {
+  if (event.kind != telemetry::EventKind::kEnter) return false;
+  const anatomy::Label* label = the_case.patient->label_table.find(std::string_view(event.name));
+  return label != nullptr && find_risk(the_case.task, *label) != nullptr;
+}
+
+}  // namespace trocar::trainer
