@@ -176,6 +176,7 @@ QString rule_of(const tasks::Task& task, std::string_view part) {
   if (part == "bevel" && task.bevel) return half(task.bevel->tolerance_deg, "°");
   if (part == "passes") return tr("one needless puncture halves the points");
   if (part == "access") return half(task.margin_tolerance_mm, " mm");
+  if (part == "bevel" && task.bevel) return half(task.bevel->tolerance_deg, "°");
   if (part == "time") return tr("none from %1 s on").arg(task.time_limit_s, 0, 'f', 0);
   if (part == "dose") return tr("none from %1 Gy cm² on").arg(task.dose_limit_gycm2, 0, 'g', 3);
   if (part == "comfort") return tr("one of them halves the points");
@@ -328,6 +329,8 @@ std::vector<BriefingRow> scoring_rows(const cases::Case& tables) {
   if (!task.risks.empty()) rows.push_back({tr("Do not touch"), risks_text(task)});
   if (const QString failing = failing_text(task); !failing.isEmpty())
     rows.push_back({tr("Not passed"), tr("whatever the points, after touching: %1").arg(failing)});
+  if (task.highest_entry)
+    rows.push_back({tr("Not passed"), tr("whatever the points: %1").arg(escaped(task.highest_entry->reason))});
   return rows;
 }
 

@@ -18,6 +18,7 @@
 #include "pages/next_exercise_card.h"
 #include "pages/patient_cards.h"
 #include "panels/device_choice.h"
+#include "tasks/allowed_needles.h"
 #include "tasks/needle.h"
 #include "tasks/task.h"
 #include "ui_kit/parts.h"
@@ -264,13 +265,10 @@ void StartPage::fill_needles() {
   const std::string name = to_std(item->data(kSource).toString());
   const auto task = std::find_if(tasks->begin(), tasks->end(), [&](const tasks::Task& t) { return t.name == name; });
   if (task == tasks->end()) return;
-  const auto is_permitted = [&](const tasks::Needle& needle) {
-    const std::vector<std::string>& names = task->needles;
-    return names.empty() || needle.name == task->needle ||
-           std::find(names.begin(), names.end(), needle.name) != names.end();
-  };
-  for (const tasks::Needle& needle : tasks::needles_like(*needles, task->needle))
-    if (is_permitted(needle)) needle_->addItem(to_qt(needle.title), to_qt(needle.name));
+  const std::vector<std::string> allowed = tasks::allowed_needles(*task, *needles);
+  for (const tasks::Needle& needle : *needles)
+    if (std::ranges::find(allowed, needle.name) != allowed.end())
+      needle_->addItem(to_qt(needle.title), to_qt(needle.name));
   needle_->setCurrentIndex(std::max(0, needle_->findData(chosen)));
 }
 
