@@ -33,7 +33,10 @@ constexpr double kRemembers = 0.7;
 constexpr double kBevelError_deg = 20.0;  // of those who turn it, at most
 constexpr double kWithdraw_mm_s = 50.0;
 constexpr double kStuck_s = 5.0;
-constexpr double kStop_s = 40.0;  // in any case: fire and withdraw
+constexpr double kBone_s = 1.5;          // without a millimetre of progress: it is bone
+constexpr int kCorrections = 2;          // after bone: out, another direction, in again; then the novice stays
+constexpr double kCorrectedShare = 0.5;  // of entry and direction that a correction leaves of the error
+constexpr double kStop_s = 40.0;         // in any case: fire and withdraw
 constexpr double kOutOfTime_s = 58.0;
 
 double draw(Random& random, const double (&range)[2]) noexcept {
@@ -75,7 +78,12 @@ class Novice final : public Operator {
       case Step::kAdvance:
         speed_mm_s = advance_speed_mm_s();
         if (next_doubt_ < doubts_.size() && hand_.tip_mm() > doubts_[next_doubt_].depth_mm) enter(Step::kHesitate);
-        if (hand_.tip_mm() > stop_mm_ || is_stuck() || hand_.elapsed_s() > kStop_s) enter(Step::kAim);
+        if (hand_.tip_mm() > stop_mm_ || is_stuck(kStuck_s) || hand_.elapsed_s() > kStop_s) enter(Step::kAim);
+        if (step_ == Step::kAdvance && corrections_left_ > 0 && is_stuck(kBone_s)) enter(Step::kBackOut);
+        break;
+      case Step::kBackOut:
+        speed_mm_s = -kWithdraw_mm_s;
+        if (hand_.tip_mm() < start_mm_ + 2.0) correct();
         break;
       case Step::kHesitate:
         if (in_step_s() > doubts_[next_doubt_].pause_s) enter(Step::kPullBack);
@@ -121,7 +129,7 @@ class Novice final : public Operator {
   }
 
  private:
-  enum class Step { kAdvance, kHesitate, kPullBack, kAim, kAfterFire, kLoad, kWithdraw, kDone };
+  enum class Step { kAdvance, kBackOut, kHesitate, kPullBack, kAim, kAfterFire, kLoad, kWithdraw, kDone };
   struct Doubt {
     double depth_mm;
     double pause_s;
@@ -130,7 +138,10 @@ class Novice final : public Operator {
 
   Novice(const OperatorCase& the_case, Random random) noexcept
       : start_mm_(draw(random, kStart_mm)),
-        hand_(miss(the_case.path_P, random), aim_bevel(the_case), start_mm_,
+        plan_P_(the_case.path_P),
+        line_P_(miss(plan_P_, random)),
+        bevel_P_(aim_bevel(the_case)),
+        hand_(line_P_, bevel_P_, start_mm_,
               Tremor(std::hypot(kTremor_mm, the_case.tremor_mm), mix64(the_case.seed + 1))),
         cores_left_(the_case.fires_biopsy ? the_case.actions.cores : 0),
         loads_inside_(the_case.actions.loads_inside),
@@ -161,9 +172,21 @@ class Novice final : public Operator {
     return speed_mm_s_ * (1.0 + kUnevenness * std::sin(rhythm_rad_s_ * hand_.elapsed_s()));
   }
 
-  bool is_stuck() noexcept { return stall_.stalled_s(hand_, step_start_s_) > kStuck_s; }
+  bool is_stuck(double longest_s) noexcept { return stall_.stalled_s(hand_, step_start_s_) > longest_s; }
+
+  /// Outside of the body: nearer to the right entry and direction, and in again.
+  void correct() noexcept {
+    --corrections_left_;
+    line_P_ = {plan_P_.a + kCorrectedShare * (line_P_.a - plan_P_.a),
+               plan_P_.b + kCorrectedShare * (line_P_.b - plan_P_.b)};
+    hand_.turn_to(line_P_, bevel_P_);
+    stall_ = {};
+    enter(Step::kAdvance);
+  }
 
   double start_mm_;
+  Segment plan_P_, line_P_;  ///< The right one, and the novice's.
+  std::optional<Vec3> bevel_P_;
   GuidedHand hand_;
   std::size_t cores_left_;
   bool loads_inside_;
@@ -174,6 +197,7 @@ class Novice final : public Operator {
   double before_fire_s_ = 0.0;
   std::array<Doubt, 3> doubts_{};
   std::size_t next_doubt_ = 0;
+  int corrections_left_ = kCorrections;
   Step step_ = Step::kAdvance;
   double step_start_s_ = 0.0;
   StallWatch stall_;

@@ -66,6 +66,12 @@ GuidedHand::GuidedHand(const Segment& line_P, const std::optional<Vec3>& bevel_P
       device_mm_(start_mm),
       tip_mm_(start_mm) {}
 
+void GuidedHand::turn_to(const Segment& line_P, const std::optional<Vec3>& bevel_P) noexcept {
+  start_P_ = line_P.a;
+  axis_P_ = line_P.direction();
+  R_PN_ = bevel_P ? needle_rotation(axis_P_, *bevel_P) : needle_pose(line_P.a, axis_P_).R();
+}
+
 void GuidedHand::sense(const OperatorView& view) noexcept {
   has_felt_drop_ = false;
   if (is_first_) {  // nothing detected yet

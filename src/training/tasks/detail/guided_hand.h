@@ -42,6 +42,8 @@ class GuidedHand {
   /// is limited.
   void move(double speed_mm_s, double dt_s) noexcept;
   HandCommand command() const noexcept;
+  /// Goes on along another line; for a needle outside of the body.
+  void turn_to(const Segment& line_P, const std::optional<Vec3>& bevel_P) noexcept;
 
   double elapsed_s() const noexcept { return elapsed_s_; }
   double wanted_mm() const noexcept { return wanted_mm_; }
