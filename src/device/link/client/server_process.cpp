@@ -31,7 +31,8 @@ constexpr std::chrono::seconds kPatience(2);  ///< From SIGTERM to SIGKILL.
 /// (proc(5)).
 bool is_held_up_thread(const fs::path& thread) {
   std::ifstream file(thread / "stat");
-  const std::string stat{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  std::string stat;
+  std::getline(file, stat);  // no exception if the thread ends while it is read
   const std::size_t end = stat.rfind(") ");
   return end != std::string::npos && end + 2 < stat.size() &&
          std::string_view("RDTt").find(stat[end + 2]) != std::string_view::npos;
