@@ -15,10 +15,10 @@ shot ready
 
 drag 500 260 540 280 # the transducer glides over the skin
 shot glided
-click 150 103 # To planned position
+click 200 103 # To planned position
 seen 2-found
 click 44 69 # Needle
-click 150 103
+click 200 103
 seen 2-aimed
 click 1164 55 # Controls
 shot controls
