@@ -42,7 +42,7 @@ class PointerNeedle {
   /// One step of turn(), by at most `most_rad`, until the bevel faces `bevel_P` as far as the axis allows. True once
   /// there.
   bool turn_bevel(const Vec3& bevel_P, double most_rad);
-  void push(double mm);   ///< Moves the needle along its axis, inward positive.
+  void push(double mm);  ///< Moves the needle along its axis, inward positive.
 
  private:
   void lean(const Vec3& axis_P);

@@ -134,8 +134,8 @@ TEST(EpiduralFat, FillsTheSpaceBetweenSacAndFlavum) {
   box.for_each("epidural_fat", [](const Vec3& p) { EXPECT_LT(p.y(), face_y(p.x()) + 1.0); });
 }
 
-// The bodies end at y = -10; the sac of the vertebrae alone leaves 1 mm in front of it. Between the bodies the veins reach
-// up to 4 mm in front of the sac.
+// The bodies end at y = -10; the sac of the vertebrae alone leaves 1 mm in front of it. Between the bodies the veins
+// reach up to 4 mm in front of the sac.
 TEST(EpiduralVeins, LieBetweenTheSacAndTheBodies) {
   const LabelledBox box = derived(false);
   ASSERT_GT(box.count("epidural_veins"), 0U);
