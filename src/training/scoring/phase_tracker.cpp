@@ -168,9 +168,9 @@ bool PhaseTracker::Impl::holds(const Condition& condition, const PhaseState& sta
     case ConditionKind::kThrowClear:
       return take_core(task, patient, needle, sample.tip_mm, sample.axis).risks_in_throw.empty();
     case ConditionKind::kFired:
-      return moment.cores > 0;
+      return moment.shots > 0;
     case ConditionKind::kCores:
-      return static_cast<double>(moment.cores) >= condition.number;
+      return static_cast<double>(moment.shots) >= condition.number;
     case ConditionKind::kOutside:
       return has_been_inside && sample.depth_mm <= 0.0;
     case ConditionKind::kBevelToFibres: {

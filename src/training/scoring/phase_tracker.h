@@ -23,7 +23,7 @@ struct PhaseMoment {
   std::optional<Pose> X_PT;  ///< Transducer; empty: none.
   double contact_n = 0.0;    ///< Of transducer and skin.
   double contrast_ml = 0.0;  ///< Injected so far.
-  std::size_t cores = 0;     ///< Shots of the gun so far.
+  std::size_t shots = 0;     ///< Of the gun, so far.
 };
 
 /// State of a phase of the task, in the task's order.

@@ -129,7 +129,7 @@ class TaskReader {
 
   Status read_procedure(Task& task) const {
     if (document_.has("cores")) {
-      TROCAR_TRY(const double cores, document_.number("cores", {1.0, 10.0}));
+      TROCAR_TRY(const std::int64_t cores, document_.integer("cores", {1.0, 10.0}));
       task.cores = static_cast<std::size_t>(cores);
     }
     if (document_.has("needles")) {
@@ -326,7 +326,7 @@ std::string task_to_toml(const Task& task, const Task& base) {
   keys.set_changed("expert_path", task.expert_path, base.expert_path);
   keys.set_changed("target_tissues", task.target_tissues, base.target_tissues);
   keys.set_changed("needles", task.needles, base.needles);
-  keys.set_changed("cores", static_cast<double>(task.cores), static_cast<double>(base.cores));
+  if (task.cores != base.cores) keys.set("cores", static_cast<std::int64_t>(task.cores));
   keys.set_changed("level", task.level, base.level);
   if (task.guidance != base.guidance) keys.set("guidance", to_string(task.guidance));
   if (task.confirmed_by != base.confirmed_by) keys.set("confirmed_by", to_string(task.confirmed_by));

@@ -102,7 +102,7 @@ void AttemptLoop::step_phases() {
     moment.contact_n = last_transducer_->f_constraint_n.norm();
   }
   moment.contrast_ml = contrast_ml_;
-  moment.cores = record_ ? record_->shots().size() : 0;
+  moment.shots = record_ ? record_->shots().size() : 0;
   phases_->step(moment);
 }
 
