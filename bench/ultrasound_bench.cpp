@@ -18,6 +18,7 @@ struct Setting {
   std::string transducer;
   int steering_angles = 3;
   double renewed_share = 1.0;  ///< Share of the scanlines that a picture renews.
+  bool is_harmonic = false;
 };
 
 }  // namespace
@@ -45,7 +46,8 @@ Result<std::vector<CaseResult>> run_ultrasound_benchmark(const Options& options)
                               {"raycast/liver-sweep", "liver-sweep", 3},
                               {"raycast/linear", "L14-5", 3},
                               {"raycast/rolling-quarter", "C5-2", 3, 0.25},
-                              {"raycast/rolling-eighth", "C5-2", 3, 0.125}};
+                              {"raycast/rolling-eighth", "C5-2", 3, 0.125},
+                              {"raycast/harmonic", "C5-2", 3, 1.0, true}};
   double fraction = 0.2;
   for (const Setting& setting : settings) {
     report(options.progress, setting.name, fraction);
@@ -55,6 +57,7 @@ Result<std::vector<CaseResult>> run_ultrasound_benchmark(const Options& options)
     TROCAR_TRY(const ultrasound::ProbePlacement placed, ultrasound::place_probe(patient, view, transducer));
     ultrasound::Acquisition acquisition = ultrasound::default_acquisition(transducer);
     acquisition.steering_angles = setting.steering_angles;
+    acquisition.is_harmonic = setting.is_harmonic;
     ultrasound::BMode engine(scene, transducer, acquisition);
     const ScanBest best = measure_scan(engine, placed.X_PT, {}, setting.renewed_share);
     if (&setting == settings)

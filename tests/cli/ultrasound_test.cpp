@@ -89,8 +89,10 @@ TEST(UltrasoundImage, NeedleAndSwitchedArtefactsChangeThePicture) {
   ASSERT_TRUE(io::write_transform(needle_pose({0.0, 40.0, 0.0}, Vec3(0.0, 0.5, -0.8).normalized()), needle));
   const std::string line =
       "ultrasound image" + kScene + kQuick + " --plain --pose " + place_on_scene(folder) + " --out ";
-  const std::vector<std::pair<std::string, std::string>> asked = {
-      {"plain.png", ""}, {"needle.png", " --needle " + needle}, {"silent.png", " --off noise,clutter"}};
+  const std::vector<std::pair<std::string, std::string>> asked = {{"plain.png", ""},
+                                                                  {"needle.png", " --needle " + needle},
+                                                                  {"silent.png", " --off noise,clutter"},
+                                                                  {"harmonic.png", " --harmonic"}};
   std::vector<std::string> pictures;
   for (const auto& [name, more] : asked) {
     const Outcome outcome = trocar(line + (folder / name) + more);
@@ -99,6 +101,7 @@ TEST(UltrasoundImage, NeedleAndSwitchedArtefactsChangeThePicture) {
   }
   EXPECT_NE(pictures[0], pictures[1]);
   EXPECT_NE(pictures[0], pictures[2]);
+  EXPECT_NE(pictures[0], pictures[3]);
 }
 
 /// A patient folder of the scene; the panorama is a sweep from the pose, in P.

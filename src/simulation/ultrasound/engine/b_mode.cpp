@@ -203,7 +203,10 @@ const BasebandFrame& BMode::render(const BModeInput& input) noexcept {
   }
   for_groups(lines, [&](int, int first, int last) {
     if (plan.acquisition.artefacts.clutter) add_clutter(plan, frame, first, last);
-    for (int line = first; line < last; ++line) find_loudest(plan, frame, line);
+    for (int line = first; line < last; ++line) {
+      generate_harmonic(plan, frame, line);
+      find_loudest(plan, frame, line);
+    }
   });
   for_groups(lines, [&](int group, int first, int last) { impl.spread(group, first, last); });
   for (int line = lines.first; line < lines.last; ++line)

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "ultrasound/probe/transducer.h"
 
 namespace trocar::ultrasound {
@@ -20,6 +22,9 @@ struct Beam {
   /// Decrease of the echo's centre frequency with depth, as a share of `frequency_mhz`, up to kMostDownshift: tissue
   /// attenuates high frequencies more (docs/physics.md U4). 0: none.
   double downshift_per_mm = 0.0;
+  /// Tissue harmonic imaging: frequency and wavelength are those of the received second harmonic, which the tissue
+  /// generates from a transmitted beam of half the frequency (docs/physics.md U19).
+  bool is_harmonic = false;
 
   /// Standard deviation of the amplitude spectrum, as a share of `frequency_mhz`.
   double spectrum_sigma() const noexcept;
@@ -28,6 +33,14 @@ struct Beam {
   double lateral_sigma_mm(double depth_mm) const noexcept;
   double elevation_sigma_mm(double depth_mm) const noexcept;
 };
+
+/// Amplitude of the harmonic at a depth over that of a fundamental of the same frequency, transmitted with the same
+/// pressure at the face; without attenuation. Grows with depth from 0, fastest about the focus; at most 1. 1 for a
+/// fundamental beam. One call integrates over the depth: for tables.
+double harmonic_share(const Beam& beam, double depth_mm) noexcept;
+/// Level (dB) in the harmonic image of clutter that has `two_way_db` in a fundamental one: its transmitted half counts
+/// twice, because the harmonic grows with the square of the pressure. Unchanged for a fundamental beam.
+double clutter_level_db(const Beam& beam, double two_way_db) noexcept;
 
 /// Attenuation by which scanners calculate, one way (IEC 61391-2).
 inline constexpr double kNominalLoss_db_per_cm_mhz = 0.5;
@@ -38,6 +51,11 @@ inline constexpr double kScannerSpeed_mm_per_us = 1.540;  ///< Speed of sound th
 
 /// The beam at a frequency (MHz, within the transducer's band) and a transmit focus, without attenuation.
 Beam make_beam(const Transducer& transducer, double frequency_mhz, double focus_mm);
+/// Frequency (MHz) of the received harmonic nearest to the wanted one: twice a frequency of the transducer's band, and
+/// in the band. Empty: the band has less than an octave.
+std::optional<double> harmonic_mhz(const Transducer& transducer, double wanted_mhz) noexcept;
+/// The beam of tissue harmonic imaging that receives at a frequency of harmonic_mhz().
+Beam make_harmonic_beam(const Transducer& transducer, double received_mhz, double focus_mm);
 /// Beam::downshift_per_mm in tissue with the nominal attenuation.
 double nominal_downshift_per_mm(const Beam& beam) noexcept;
 

@@ -25,6 +25,9 @@ struct Acquisition {
   /// Scatterers in the smallest resolution cell: a share of the same ones, so that fewer keep the speckle's pattern.
   /// Four give fully developed speckle. Range 1..4.
   double scatterers = 4.0;
+  /// Tissue harmonic imaging: receives the second harmonic, near `frequency_mhz`, of a transmitted beam of half the
+  /// frequency; see harmonic_mhz(). Without effect for a transducer whose band has less than an octave.
+  bool is_harmonic = false;
   Artefacts artefacts;
 
   bool operator==(const Acquisition&) const = default;

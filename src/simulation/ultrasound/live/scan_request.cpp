@@ -20,6 +20,9 @@ Acquisition within_ranges(const Acquisition& wanted, const Transducer& transduce
   Acquisition a = wanted;
   a.depth_mm = held(wanted.depth_mm, kLeastDepth_mm, transducer.greatest_depth_mm, transducer.depth_mm);
   a.frequency_mhz = held(wanted.frequency_mhz, transducer.lowest_mhz, transducer.highest_mhz, transducer.frequency_mhz);
+  const auto harmonic = wanted.is_harmonic ? harmonic_mhz(transducer, a.frequency_mhz) : std::nullopt;
+  a.is_harmonic = harmonic.has_value();
+  if (harmonic) a.frequency_mhz = *harmonic;
   a.focus_mm = held(wanted.focus_mm, kLeastFocus_mm, a.depth_mm, transducer.focus_mm);
   a.lines = std::clamp(wanted.lines, 16, 1024);
   a.samples = std::clamp(wanted.samples, 64, 4096);

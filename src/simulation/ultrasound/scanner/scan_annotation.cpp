@@ -52,12 +52,13 @@ void add_depth_scale(ScanAnnotation& annotation, const RasterGeometry& raster, c
 
 void add_caption(ScanAnnotation& annotation, const ScanGeometry& scan, const ScanCaption& caption) {
   const DisplaySettings& settings = caption.settings;
-  std::vector<std::string> lines = {caption.transducer,
-                                    fmt::format("{:.1f} MHz", caption.frequency_mhz),
-                                    fmt::format("Depth {:.1f} cm", scan.depth_mm / 10.0),
-                                    fmt::format("Gain {:+.0f} dB", settings.gain_db),
-                                    fmt::format("DR {:.0f} dB", settings.dynamic_range_db),
-                                    fmt::format("Map {}", name_of(settings.gray_map))};
+  std::vector<std::string> lines = {
+      caption.transducer,
+      fmt::format("{}{:.1f} MHz", caption.is_harmonic ? "THI " : "", caption.frequency_mhz),
+      fmt::format("Depth {:.1f} cm", scan.depth_mm / 10.0),
+      fmt::format("Gain {:+.0f} dB", settings.gain_db),
+      fmt::format("DR {:.0f} dB", settings.dynamic_range_db),
+      fmt::format("Map {}", name_of(settings.gray_map))};
   if (settings.persistence > 0.0) lines.push_back(fmt::format("Persist {:.2f}", settings.persistence));
   lines.insert(lines.end(), caption.remarks.begin(), caption.remarks.end());
   const int dot = annotation.text_scale;

@@ -11,7 +11,8 @@ namespace trocar::ultrasound {
 /// Text beside a picture.
 struct ScanCaption {
   std::string transducer;
-  double frequency_mhz = 3.5;
+  double frequency_mhz = 3.5;  ///< Received.
+  bool is_harmonic = false;    ///< Tissue harmonic imaging.
   double focus_mm = 80.0;
   DisplaySettings settings;
   std::vector<std::string> remarks;  ///< Further lines, e.g. "frozen 12/60"; below the others.

@@ -8,6 +8,7 @@
 
 #include "core/check.h"
 #include "core/parallel.h"
+#include "ultrasound/engine/harmonic_levels.h"
 #include "ultrasound/scanner/detail/receiver.h"
 #include "ultrasound/scanner/detail/scan_conversion.h"
 #include "ultrasound/scanner/detail/scanner_kernels.h"
@@ -58,9 +59,12 @@ struct Scanner::Impl {
   RasterGeometry raster;
   detail::Receiver receiver;
   detail::ScanConversion conversion;
-  const float noise_amplitude = static_cast<float>(std::pow(10.0, detail::kReceiverNoise_db / 20.0));
+  float noise_amplitude = 0.0F;
+  std::vector<float> harmonic_level;  ///< Per sample; empty for a fundamental beam.
   int near_full = -1;
   double receiver_sigma_mm = -1.0;  ///< Pulse length for which `receiver` was made.
+  bool is_harmonic = false;         ///< The same for its beam.
+  double focus_mm = 0.0;
   std::optional<DisplaySettings> applied;
   std::optional<DisplaySettings> looked_up;
   double applied_mhz = 0.0;
@@ -99,9 +103,16 @@ void Scanner::Impl::set_scan(const ScanGeometry& new_scan, bool is_mirrored) {
 }
 
 void Scanner::Impl::set_receiver(const Beam& beam) {
-  if (receiver_sigma_mm == beam.axial_sigma_mm) return;
+  if (receiver_sigma_mm == beam.axial_sigma_mm && is_harmonic == beam.is_harmonic && focus_mm == beam.focus_mm) return;
   receiver_sigma_mm = beam.axial_sigma_mm;
+  is_harmonic = beam.is_harmonic;
+  focus_mm = beam.focus_mm;
   receiver.set_geometry(scan, beam);
+  // The harmonic is weaker than the noise is made for.
+  noise_amplitude =
+      static_cast<float>(std::pow(10.0, detail::kReceiverNoise_db / 20.0) / harmonic_share(beam, beam.focus_mm));
+  harmonic_level = beam.is_harmonic ? harmonic_levels(beam, scan) : std::vector<float>{};
+  applied.reset();
 }
 
 void Scanner::Impl::set_near_angles(const BasebandFrame& frame) {
@@ -121,7 +132,8 @@ bool Scanner::Impl::set_settings(const DisplaySettings& wanted, double frequency
   applied_mhz = frequency_mhz;
   for (std::size_t s = 0; s < samples(); ++s) {
     const double depth_mm = (static_cast<double>(s) + 0.5) * scan.sample_mm();
-    const double above_floor_db = tgc_gain_db(wanted, depth_mm, scan.depth_mm, frequency_mhz) - kLevelFloor_db;
+    double above_floor_db = tgc_gain_db(wanted, depth_mm, scan.depth_mm, frequency_mhz) - kLevelFloor_db;
+    if (!harmonic_level.empty()) above_floor_db += harmonic_gain_db(harmonic_level[s]);
     offset[s] = static_cast<float>(above_floor_db * detail::kFineLevels_per_db);
   }
   return true;

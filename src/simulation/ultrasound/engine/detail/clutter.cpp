@@ -39,6 +39,10 @@ float mean_around(const ScanPlan& plan, const FrameState& frame, int line, std::
   return (sums[last + 1] - sums[first]) / static_cast<float>(last - first + 1);
 }
 
+float power_of(double level_db) noexcept {
+  return std::pow(10.0F, static_cast<float>(level_db) / 10.0F);
+}
+
 }  // namespace
 
 void measure_echoes(const ScanPlan& plan, FrameState& frame, int line) noexcept {
@@ -72,14 +76,15 @@ void sum_powers(const ScanPlan& plan, FrameState& frame) noexcept {
 }
 
 float clutter_power(const ScanPlan& plan, const FrameState& frame, int line, std::size_t block) noexcept {
-  const float share = std::pow(10.0F, kClutter_db / 10.0F);
+  const float share = power_of(clutter_level_db(plan.beam, kClutter_db));
   return share * std::max(mean_around(plan, frame, line, block, kReach_mm), 0.0F);
 }
 
 void add_clutter(const ScanPlan& plan, FrameState& frame, int first, int last) noexcept {
   // Noise of every sample is spread by two thirds of the factor that applies to scatterers between scanlines.
-  const float share = 1.5F * std::pow(10.0F, kClutter_db / 10.0F);
-  const float detour_share = 1.5F * std::pow(10.0F, kDetour_db / 10.0F);
+  const float share = 1.5F * power_of(clutter_level_db(plan.beam, kClutter_db));
+  const float detour_share = 1.5F * power_of(clutter_level_db(plan.beam, kDetour_db));
+  const double detour_depth_mm = kDetourDepth_mm / clutter_level_db(plan.beam, 1.0);  // its level falls by dB per mm
   const float keeps = std::exp(-static_cast<float>(kLobeBlock * plan.geometry.sample_mm() / kDetour_mm));
   for (int line = first; line < last; ++line) {
     const std::size_t row = plan.echo_row(line);
@@ -90,7 +95,7 @@ void add_clutter(const ScanPlan& plan, FrameState& frame, int first, int last) n
       const float around = mean_around(plan, frame, line, block, kReach_mm);
       const double depth_mm = static_cast<double>(block * kLobeBlock) * plan.geometry.sample_mm();
       detour = keeps * detour + (1.0F - keeps) * mean_around(plan, frame, line, block, kDetourReach_mm) *
-                                    static_cast<float>(std::exp(-depth_mm / kDetourDepth_mm));
+                                    static_cast<float>(std::exp(-depth_mm / detour_depth_mm));
       const float amplitude = std::sqrt(0.5F * std::max(share * around + detour_share * detour, 0.0F));
       const std::size_t begin = block * kLobeBlock, n = block_samples(plan, block);
       const float* const noise = plan.noise.data() + (place + 2 * begin) % (ScanPlan::kNoise / 2);
@@ -99,6 +104,14 @@ void add_clutter(const ScanPlan& plan, FrameState& frame, int first, int last) n
         frame.im[row + begin + s] += amplitude * noise[kLobeBlock + s];
       }
     }
+  }
+}
+
+void generate_harmonic(const ScanPlan& plan, FrameState& frame, int line) noexcept {
+  const std::size_t row = plan.echo_row(line);
+  for (std::size_t s = 0; s < plan.harmonic_level.size(); ++s) {
+    frame.re[row + s] *= plan.harmonic_level[s];
+    frame.im[row + s] *= plan.harmonic_level[s];
   }
 }
 

@@ -23,4 +23,8 @@ float clutter_power(const ScanPlan& plan, const FrameState& frame, int line, std
 /// Adds clutter to scanlines [first, last).
 void add_clutter(const ScanPlan& plan, FrameState& frame, int first, int last) noexcept;
 
+/// Lowers the echoes of a scanline to the level of the harmonic, which grows with depth. Nothing for a fundamental
+/// beam.
+void generate_harmonic(const ScanPlan& plan, FrameState& frame, int line) noexcept;
+
 }  // namespace trocar::ultrasound::detail

@@ -8,6 +8,7 @@
 #include "core/random.h"
 #include "ultrasound/engine/detail/scatterer_bricks.h"
 #include "ultrasound/engine/detail/scatterer_gain.h"
+#include "ultrasound/engine/harmonic_levels.h"
 
 namespace trocar::ultrasound::detail {
 namespace {
@@ -17,7 +18,7 @@ constexpr double kGelSpeed_m_per_s = 1540.0;
 constexpr float kSilent = -60.0F;  // neper: below any signal
 
 void fill_rows(ScanPlan& plan, const AcousticTable& table) {
-  const double mhz = plan.acquisition.frequency_mhz;
+  const double mhz = plan.beam.frequency_mhz;
   const double assumed_m_per_s = 1000.0 * kScannerSpeed_mm_per_us;
   plan.rows.fill({0.0F, 0.0F, kSilent, 0.0F});
   for (std::size_t t = 0; t < table.tissues.size(); ++t) {
@@ -128,7 +129,8 @@ void fill_lateral(ScanPlan& plan) {
   }
   // Side lobes: of an aperture with moderate apodisation, alternating in sign (docs/physics.md U6).
   constexpr double kFirstLobe_sigma = 3.6, kLastLobe_sigma = 10.0, kLobeSpacing_sigma = 1.7;
-  const double lobe = plan.acquisition.artefacts.side_lobes ? std::pow(10.0, -40.0 / 20.0) : 0.0;
+  const double lobe =
+      plan.acquisition.artefacts.side_lobes ? std::pow(10.0, clutter_level_db(plan.beam, -40.0) / 20.0) : 0.0;
   const double reach_sigma = lobe > 0.0 ? kLastLobe_sigma : 3.3;
   plan.lateral_reach = std::clamp(static_cast<int>(std::ceil(reach_sigma * widest)), 1, std::min(48, plan.lines - 1));
   plan.lateral.assign((static_cast<std::size_t>(plan.lateral_reach) + 1) * n + 16, 0.0F);
@@ -253,7 +255,9 @@ ScanPlan make_scan_plan(const AcousticScene& scene, const Transducer& transducer
   ScanPlan plan;
   plan.acquisition = acquisition;
   plan.geometry = make_scan_geometry(transducer, acquisition.depth_mm, acquisition.lines, acquisition.samples);
-  plan.beam = make_beam(transducer, acquisition.frequency_mhz, acquisition.focus_mm);
+  const auto harmonic = acquisition.is_harmonic ? harmonic_mhz(transducer, acquisition.frequency_mhz) : std::nullopt;
+  plan.beam = harmonic ? make_harmonic_beam(transducer, *harmonic, acquisition.focus_mm)
+                       : make_beam(transducer, acquisition.frequency_mhz, acquisition.focus_mm);
   if (acquisition.artefacts.downshift && acquisition.artefacts.attenuation)
     plan.beam.downshift_per_mm = nominal_downshift_per_mm(plan.beam);
   plan.lines = acquisition.lines;
@@ -286,6 +290,7 @@ ScanPlan make_scan_plan(const AcousticScene& scene, const Transducer& transducer
   fill_axial(plan);
   fill_scatterers(plan);
   fill_noise(plan);
+  if (plan.beam.is_harmonic) plan.harmonic_level = harmonic_levels(plan.beam, plan.geometry);
   return plan;
 }
 

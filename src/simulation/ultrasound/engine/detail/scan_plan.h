@@ -80,6 +80,8 @@ struct ScanPlan {
   /// Makes a plane reflector's echo independent of the number of scanlines that receive it.
   std::vector<float> surface_scale;
 
+  std::vector<float> harmonic_level;  ///< See harmonic_levels(); empty for a fundamental beam.
+
   int steering_angles = 1;  ///< Number of angles of the compound: straight on, then pairs of angles to either side.
   int near_angles = 0, near_full = 0, near_samples = 0;  ///< See BasebandFrame.
   std::vector<float> lateral;  ///< (lateral_reach + 1) rows of `samples` weights, for the scanlines at distances 0, 1,

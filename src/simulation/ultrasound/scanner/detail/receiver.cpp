@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/random.h"
+#include "ultrasound/engine/harmonic_levels.h"
 #include "ultrasound/scanner/detail/scanner_kernels.h"
 
 namespace trocar::ultrasound::detail {
@@ -95,11 +96,19 @@ void Receiver::set_geometry(const ScanGeometry& scan, const Beam& beam) {
   const std::size_t count = clutter_samples_ * static_cast<std::size_t>(scan.lines);
   clutter_re_.assign(count, 0.0F);
   clutter_im_.assign(count, 0.0F);
-  add_haze(scan);
+  add_haze(scan, beam);
   add_bands(scan, beam);
+  if (!beam.is_harmonic) return;
+  // The face and the skin reverberate before there is a harmonic.
+  const std::vector<float> levels = harmonic_levels(beam, scan);
+  for (std::size_t line = 0; line < static_cast<std::size_t>(scan.lines); ++line)
+    for (std::size_t s = 0; s < clutter_samples_; ++s) {
+      clutter_re_[line * clutter_samples_ + s] *= levels[s];
+      clutter_im_[line * clutter_samples_ + s] *= levels[s];
+    }
 }
 
-void Receiver::add_haze(const ScanGeometry& scan) {
+void Receiver::add_haze(const ScanGeometry& scan, const Beam& beam) {
   const std::vector<float> across = gaussian(kHazeWidth_mm / scan.line_spacing_mm(kHazeDecay_mm), 1.0);
   const auto lines = static_cast<std::size_t>(scan.lines);
   std::vector<float> level(clutter_samples_);
@@ -107,7 +116,8 @@ void Receiver::add_haze(const ScanGeometry& scan) {
     const double depth_mm = (static_cast<double>(s) + 0.5) * scan.sample_mm();
     const double end = std::clamp(2.0 * depth_mm / kClutterDepth_mm - 1.0, 0.0, 1.0);
     const double fade = 0.5 + 0.5 * std::cos(std::numbers::pi * end);
-    level[s] = static_cast<float>(fade * amplitude(kHaze_db) * std::exp(-0.5 * depth_mm / kHazeDecay_mm));
+    level[s] = static_cast<float>(fade * amplitude(clutter_level_db(beam, kHaze_db)) *
+                                  std::exp(-0.5 * depth_mm / kHazeDecay_mm));
   }
   // Sources are also on lines beyond the ends: source j is line j - reach.
   const std::size_t reach = across.size() - 1;
@@ -130,7 +140,7 @@ void Receiver::add_bands(const ScanGeometry& scan, const Beam& beam) {
   const double sigma_mm = kBandLength * beam.axial_sigma_mm;
   const double step_rad = scan.line_spacing_mm(0.0) / kUnevenness_mm * 2.0 * std::numbers::pi;
   for (int band = 0; band < kBands; ++band) {
-    const double level = amplitude(kFirstBand_db - band * kBandDecay_db);
+    const double level = amplitude(clutter_level_db(beam, kFirstBand_db - band * kBandDecay_db));
     const double phase = 2.0 * std::numbers::pi * uniform01(kBandSeed, static_cast<std::uint64_t>(band));
     for (std::size_t line = 0; line < static_cast<std::size_t>(scan.lines); ++line) {
       // Two incommensurate waves along the face have no visible pattern.

@@ -42,7 +42,7 @@ class Receiver {
 
  private:
   void filter_noise(double sigma_samples);
-  void add_haze(const ScanGeometry& scan);
+  void add_haze(const ScanGeometry& scan, const Beam& beam);
   void add_bands(const ScanGeometry& scan, const Beam& beam);
 
   std::vector<float> white_;  ///< kNoiseLength, circular.

@@ -76,6 +76,20 @@ TEST(ScanAnnotation, TheWholeMarkerIsInThePictureOfALinearArray) {
   }
 }
 
+TEST(ScanAnnotation, NamesHarmonicImagingAndTheReceivedFrequency) {
+  const ScanGeometry scan = fan(160.0);
+  ScanCaption harmonic = caption();
+  harmonic.is_harmonic = true;
+  harmonic.frequency_mhz = 4.0;
+  const auto has_text = [&](const ScanCaption& shown, const std::string& text) {
+    const ScanAnnotation annotation = make_scan_annotation(fit_raster(scan, 640, 480), scan, shown);
+    return std::any_of(annotation.texts.begin(), annotation.texts.end(), [&](const auto& t) { return t.text == text; });
+  };
+  EXPECT_TRUE(has_text(harmonic, "THI 4.0 MHz"));
+  harmonic.is_harmonic = false;
+  EXPECT_TRUE(has_text(harmonic, "4.0 MHz"));
+}
+
 TEST(ScanAnnotation, WedgeShowsTheGrayMap) {
   const ScanGeometry scan = fan(160.0);
   ScanCaption louder = caption();
