@@ -205,6 +205,7 @@ Status write_picture(const Arguments& arguments, const Scan& scan, const ultraso
     ultrasound::ScanCaption caption;
     caption.transducer = scan.transducer.name;
     caption.frequency_mhz = scan.acquisition.frequency_mhz;
+    caption.is_harmonic = scan.acquisition.is_harmonic;
     caption.focus_mm = scan.acquisition.focus_mm;
     caption.settings = scan.display;
     if (scan.unscanned_share > 0.0) caption.remarks.emplace_back("Outside CT");

@@ -79,6 +79,15 @@ Result<ultrasound::Acquisition> gather_acquisition(const ScanArguments& a, const
       take("--depth-mm", a.depth_mm, kLeastDepth_mm, transducer.greatest_depth_mm, "mm", acquisition.depth_mm));
   TROCAR_TRY_STATUS(take("--frequency-mhz", a.frequency_mhz, transducer.lowest_mhz, transducer.highest_mhz, "MHz",
                          acquisition.frequency_mhz));
+  if (a.is_harmonic) {
+    const auto received_mhz = ultrasound::harmonic_mhz(transducer, acquisition.frequency_mhz);
+    if (!received_mhz)
+      return fail_usage(fmt::format("{} has no harmonic imaging: its band of {:g} to {:g} MHz is less than an octave",
+                                    transducer.name, transducer.lowest_mhz, transducer.highest_mhz),
+                        "--harmonic", "take another transducer");
+    acquisition.is_harmonic = true;
+    acquisition.frequency_mhz = *received_mhz;
+  }
   acquisition.focus_mm = std::min(acquisition.focus_mm, kDeepestFocus * acquisition.depth_mm);
   TROCAR_TRY_STATUS(
       take("--focus-mm", a.focus_mm, kLeastFocus_mm, transducer.greatest_depth_mm, "mm", acquisition.focus_mm));
@@ -138,6 +147,8 @@ void add_scan_options(CLI::App& command, ScanArguments& a) {
   arguments::number_within(
       command.add_option("--frequency-mhz", a.frequency_mhz, "Transmit frequency, within the transducer's band"), 0.5,
       50.0, "MHz");
+  command.add_flag("--harmonic", a.is_harmonic,
+                   "Tissue harmonic imaging: transmit half of the frequency and receive the second harmonic");
   arguments::number_within(command.add_option("--focus-mm", a.focus_mm, "Depth of the transmit focus"), kLeastFocus_mm,
                            kMostDepth_mm, "mm");
   arguments::number_within(command.add_option("--gain-db", a.display.gain_db, "Gain"), -40.0, 40.0, "dB")
