@@ -34,6 +34,13 @@ TEST_F(UltrasoundControlsTest, ControlsAndViewShowTheSame) {
   EXPECT_EQ(find<QSlider>(controls, "ultrasound-depth").value(), 24);
   find<QCheckBox>(controls, "ultrasound-rolling").click();
   EXPECT_TRUE(view.settings().is_rolling);
+  auto& harmonic = find<QCheckBox>(controls, "ultrasound-harmonic");
+  harmonic.click();
+  EXPECT_TRUE(view.settings().acquisition.is_harmonic);
+  EXPECT_EQ(view.settings().acquisition.frequency_mhz, 4.0) << "received: twice the lowest transmitted one";
+  view.set_harmonic(false);
+  EXPECT_FALSE(harmonic.isChecked());
+  EXPECT_EQ(view.settings().acquisition.frequency_mhz, view.transducer().frequency_mhz);
   find<QCheckBox>(controls, "ultrasound-doppler").click();
   EXPECT_TRUE(view.settings().has_doppler);
   find<QPushButton>(controls, "ultrasound-distance").click();

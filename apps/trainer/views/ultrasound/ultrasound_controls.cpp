@@ -242,6 +242,11 @@ QWidget* UltrasoundControls::make_picture() {
   grid->addWidget(make_label(tr("Zoom")), zoom_row, 0);
   grid->addLayout(zoom, zoom_row, 1, 1, 2);
   box->addLayout(grid);
+  harmonic_ = new QCheckBox(tr("Harmonic imaging (THI)"));
+  harmonic_->setObjectName(QStringLiteral("ultrasound-harmonic"));
+  harmonic_->setToolTip(tr("Receives the second harmonic: less haze and fewer side lobes, less penetration  (R)"));
+  connect(harmonic_, &QCheckBox::clicked, this, [this](bool is_on) { view_.set_harmonic(is_on); });
+  box->addWidget(harmonic_);
   add_check(*box, "ultrasound-mirror", tr("Marker on the left"),
             tr("Off: the image is mirrored; the green dot moves to the other side"),
             [](S& s) -> bool& { return s.display.is_mirrored; });
@@ -403,6 +408,8 @@ void UltrasoundControls::show_view() {
   guide_->setEnabled(view_.is_guide_offered());
   axis_->setChecked(view_.is_guide_visible() && view_.is_guide_offered());
   doppler_->setEnabled(view_.has_flow());
+  harmonic_->setEnabled(view_.has_harmonic());
+  harmonic_->setChecked(settings.acquisition.is_harmonic);
   doppler_controls_->setVisible(settings.has_doppler);
 }
 

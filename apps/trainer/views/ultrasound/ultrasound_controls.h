@@ -83,6 +83,7 @@ class UltrasoundControls : public QWidget {
   QCheckBox* axis_ = nullptr;
   QWidget* doppler_controls_ = nullptr;
   QCheckBox* doppler_ = nullptr;
+  QCheckBox* harmonic_ = nullptr;
 };
 
 }  // namespace trocar::trainer

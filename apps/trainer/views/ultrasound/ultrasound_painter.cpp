@@ -63,6 +63,7 @@ std::vector<CaptionLine> caption_of(const ultrasound::ScanPicture& picture, cons
   ultrasound::ScanCaption caption;
   caption.transducer = to_std(facts.transducer);
   caption.frequency_mhz = picture.acquisition.frequency_mhz;
+  caption.is_harmonic = picture.acquisition.is_harmonic;
   caption.focus_mm = picture.acquisition.focus_mm;
   caption.settings = picture.display;
   const ultrasound::ScanAnnotation annotation = ultrasound::make_scan_annotation(picture.raster, picture.scan, caption);
@@ -72,8 +73,9 @@ std::vector<CaptionLine> caption_of(const ultrasound::ScanPicture& picture, cons
   if (!lines.empty()) lines.front().kind = Kind::kName;
   if (facts.is_small) lines.resize(std::min<std::size_t>(lines.size(), 1));
   if (facts.output) {
+    const double transmitted_mhz = picture.acquisition.frequency_mhz * (picture.acquisition.is_harmonic ? 0.5 : 1.0);
     const ultrasound::AcousticIndices indices =
-        ultrasound::acoustic_indices(*facts.output, picture.acquisition.frequency_mhz, picture.acquisition.focus_mm);
+        ultrasound::acoustic_indices(*facts.output, transmitted_mhz, picture.acquisition.focus_mm);
     const QString mechanical = QStringLiteral("MI %1").arg(indices.mechanical, 0, 'f', 1);
     // A small view has no room for a further line.
     if (facts.is_small && !lines.empty()) {

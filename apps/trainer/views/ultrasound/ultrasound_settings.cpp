@@ -15,6 +15,7 @@ template <class Visitor>
 void visit(UltrasoundSettings& s, const Visitor& field) {
   field("depth_mm", s.acquisition.depth_mm);
   field("frequency_mhz", s.acquisition.frequency_mhz);
+  field("is_harmonic", s.acquisition.is_harmonic);
   field("focus_mm", s.acquisition.focus_mm);
   field("gain_db", s.display.gain_db);
   for (std::size_t n = 0; n < s.display.tgc_db.size(); ++n)

@@ -26,12 +26,12 @@ enum class MeasuringTool { kNone, kDistance, kEllipse, kAngle };
 /// Screen of an ultrasound scanner: the image with depth scale, focus, orientation marker, gray wedge, colour bar and
 /// captions, calipers and needle guide. A separate thread computes the images; no function blocks.
 ///
-/// Keys, in the whole window: F freezes, G / Shift+G gain, D / Shift+D depth, C colour Doppler, M measures a distance.
-/// With the focus in the view: Esc leaves the tool, Delete removes the selected or else the last measurement, Ctrl+Z
-/// and Ctrl+Shift+Z undo and redo; in a frozen loop, Left and Right step, P plays. Mouse: clicks set marks, a drag sets
-/// two. Without a tool, a drag moves a mark and selects its measurement, moves the Doppler box, or resizes it by its
-/// edges. The wheel steps the frozen loop; Ctrl + wheel magnifies about the pointer, + and - about the middle, 0 shows
-/// the whole image; the middle button moves a magnified image.
+/// Keys, in the whole window: F freezes, G / Shift+G gain, D / Shift+D depth, R harmonics, C colour Doppler, M measures
+/// a distance. With the focus in the view: Esc leaves the tool, Delete removes the selected or else the last
+/// measurement, Ctrl+Z and Ctrl+Shift+Z undo and redo; in a frozen loop, Left and Right step, P plays. Mouse: clicks
+/// set marks, a drag sets two. Without a tool, a drag moves a mark and selects its measurement, moves the Doppler box,
+/// or resizes it by its edges. The wheel steps the frozen loop; Ctrl + wheel magnifies about the pointer, + and - about
+/// the middle, 0 shows the whole image; the middle button moves a magnified image.
 class UltrasoundView : public QWidget {
   Q_OBJECT
  public:
@@ -76,6 +76,10 @@ class UltrasoundView : public QWidget {
   void set_settings(const UltrasoundSettings& settings);
   void change_settings(const std::function<void(UltrasoundSettings&)>& change);
   void reset_settings();
+  /// Tissue harmonic imaging; without effect if the transducer's band has less than an octave. Switched off, the
+  /// frequency is the transducer's own again.
+  void set_harmonic(bool is_on);
+  bool has_harmonic() const noexcept;
 
   void set_frozen(bool is_frozen);
   bool is_frozen() const { return scanner_.cine().is_frozen; }

@@ -81,6 +81,7 @@ ViewDescription ultrasound_view_entry() {
   view.title = UltrasoundView::tr("Ultrasound");
   view.keys = {{QStringLiteral("F"), UltrasoundView::tr("freezes the ultrasound")},
                {QStringLiteral("G, D"), UltrasoundView::tr("gain, depth; with Shift less")},
+               {QStringLiteral("R"), UltrasoundView::tr("tissue harmonic imaging (THI)")},
                {QStringLiteral("C"), UltrasoundView::tr("colour Doppler")},
                {QStringLiteral("M"), UltrasoundView::tr("measures a distance; its ends can be dragged")},
                {QStringLiteral("Ctrl+wheel"), UltrasoundView::tr("magnifies at the pointer; + and −, 0: whole image")},

@@ -38,6 +38,18 @@ ultrasound::Measurement finished(MeasuringTool tool, const std::vector<ultrasoun
 
 }  // namespace
 
+void UltrasoundView::set_harmonic(bool is_on) {
+  if (!has_harmonic() || is_on == settings_.acquisition.is_harmonic) return;
+  change_settings([&](UltrasoundSettings& s) {
+    s.acquisition.is_harmonic = is_on;
+    s.acquisition.frequency_mhz = transducer_.frequency_mhz;
+  });
+}
+
+bool UltrasoundView::has_harmonic() const noexcept {
+  return ultrasound::harmonic_mhz(transducer_, transducer_.frequency_mhz).has_value();
+}
+
 void UltrasoundView::make_shortcuts() {
   const auto bind = [this](const char* keys, auto act) {
     auto* shortcut = new QShortcut(QKeySequence(QString::fromLatin1(keys)), this);
@@ -50,6 +62,7 @@ void UltrasoundView::make_shortcuts() {
     change_settings([=](UltrasoundSettings& s) { s.acquisition.depth_mm += by_mm; });
   };
   bind("F", [this] { set_frozen(!is_frozen()); });
+  bind("R", [this] { set_harmonic(!settings_.acquisition.is_harmonic); });
   bind("G", [=] { gain(kGainStep_db); });
   bind("Shift+G", [=] { gain(-kGainStep_db); });
   bind("D", [=] { depth(kDepthStep_mm); });
