@@ -63,6 +63,10 @@ std::vector<LegendEntry> joined(std::vector<LegendEntry> a, const std::vector<Le
       a.push_back(entry);
     } else {
       same->share += entry.share;
+      if (entry.largest_share > same->largest_share) {
+        same->largest = entry.largest;
+        same->largest_share = entry.largest_share;
+      }
     }
   }
   std::stable_sort(a.begin(), a.end(), [](const LegendEntry& x, const LegendEntry& y) {
@@ -257,6 +261,7 @@ void BriefingPage::show_legend() {
     const QSize size = label->size().expandedTo({240, 120});
     entries = joined(std::move(entries), briefing_legend(*open_, plane_of(*label), size, guidance));
   }
+  tell_apart(entries);
   legend_->setText(legend_html(entries, guidance));
 }
 

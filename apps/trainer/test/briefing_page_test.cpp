@@ -248,5 +248,15 @@ TEST(BriefingPicture, MarksTheTargetInEveryPlane) {
   }
 }
 
+TEST(BriefingLegend, ColoursOfOneTissueAreToldApart) {
+  std::vector<LegendEntry> entries{{Qt::red, "vessel", 0.2, false, "aorta", 0.15},
+                                   {Qt::blue, "vessel", 0.1, false, "portal vein", 0.1},
+                                   {Qt::white, "bone", 0.1, false, "rib", 0.02}};
+  tell_apart(entries);
+  EXPECT_EQ(entries[0].words, QStringLiteral("aorta and others"));
+  EXPECT_EQ(entries[1].words, QStringLiteral("portal vein and others"));
+  EXPECT_EQ(entries[2].words, QStringLiteral("bone"));
+}
+
 }  // namespace
 }  // namespace trocar::trainer

@@ -136,10 +136,14 @@ std::vector<LegendEntry> briefing_legend(const cases::OpenCase& open, BriefingPl
     const QColor color(label.color[0], label.color[1], label.color[2]);
     const auto same =
         std::find_if(entries.begin(), entries.end(), [&](const LegendEntry& entry) { return entry.color == color; });
+    const QString name = QString::fromStdString(anatomy::structure_words(label.name));
     if (same == entries.end()) {
-      entries.push_back({color, QString::fromStdString(anatomy::structure_words(label.name)), share,
-                         tasks::is_target(open.the_case.task, label)});
+      entries.push_back({color, name, share, tasks::is_target(open.the_case.task, label), name, share});
     } else {
+      if (share > same->largest_share) {
+        same->largest = name;
+        same->largest_share = share;
+      }
       same->words = QString::fromStdString(anatomy::structure_words(label.tissue));
       same->share += share;
       same->is_target |= tasks::is_target(open.the_case.task, label);
@@ -148,6 +152,14 @@ std::vector<LegendEntry> briefing_legend(const cases::OpenCase& open, BriefingPl
   std::stable_sort(entries.begin(), entries.end(),
                    [](const LegendEntry& a, const LegendEntry& b) { return a.share > b.share; });
   return entries;
+}
+
+void tell_apart(std::vector<LegendEntry>& entries) {
+  QStringList words;
+  for (const LegendEntry& entry : entries) words << entry.words;
+  for (LegendEntry& entry : entries)
+    if (words.count(entry.words) > 1 && entry.words != entry.largest)
+      entry.words = QCoreApplication::translate("BriefingPicture", "%1 and others").arg(entry.largest);
 }
 
 }  // namespace trocar::trainer

@@ -25,10 +25,15 @@ struct LegendEntry {
   QString words;           ///< "liver"; the tissue where several structures share the colour: "bone".
   double share = 0.0;      ///< Of the picture's area.
   bool is_target = false;  ///< A target of the task is among them.
+  QString largest;         ///< The structure of this colour with the largest area, and its share.
+  double largest_share = 0.0;
 };
 /// The colours of the labels in a slice, the largest area first. Labels below 1/1000 of the area are left out.
 std::vector<LegendEntry> briefing_legend(const cases::OpenCase& open, BriefingPlane plane, const QSize& size,
                                          scene::Guidance guidance);
+
+/// Two colours of one tissue ("vessel") get the name of their largest structure: "portal vein and others".
+void tell_apart(std::vector<LegendEntry>& entries);
 
 /// Converts to a Qt image; copies the pixels.
 QImage to_qimage(const volume::RgbImage& picture);
