@@ -123,7 +123,8 @@ FeedbackPanel::FeedbackPanel(QWidget* parent) : QWidget(parent) {
   next_->setWordWrap(true);
   next_->hide();
   content->addWidget(next_);
-  content->addWidget(make_label(tr("Score"), "heading"));
+  score_heading_ = make_label(tr("Score"), "heading");
+  content->addWidget(score_heading_);
   parts_ = new QGridLayout;
   parts_->setHorizontalSpacing(10);
   parts_->setVerticalSpacing(3);
@@ -202,7 +203,7 @@ void FeedbackPanel::show_verdict(const scoring::Outcome& outcome) {
   verdict_->setStyleSheet(
       is_coloured ? QStringLiteral("color: %1;").arg((outcome.is_passed ? theme().good : theme().bad).name())
                   : QString());
-  reasons_->setText(reasons_of(outcome));
+  reasons_->setText(outcome.is_scored() ? reasons_of(outcome) : QString());
   reasons_->setVisible(!reasons_->text().isEmpty());
 }
 
@@ -211,6 +212,7 @@ void FeedbackPanel::show_outcome(const scoring::Outcome& outcome, const QString&
   dial_->set_score(outcome.score);
   show_verdict(outcome);
   show_parts(outcome.parts);
+  score_heading_->setVisible(outcome.is_scored());
   hints_->show_hints(outcome.hints);
   core_->setText(cores_text(outcome.cores));
   core_->setVisible(!outcome.cores.empty());

@@ -63,6 +63,7 @@ class FeedbackPanel : public QWidget {
   QLabel* verdict_ = nullptr;
   QGridLayout* parts_ = nullptr;
   QLabel* reasons_ = nullptr;
+  QLabel* score_heading_ = nullptr;
   HintList* hints_ = nullptr;
   QLabel* core_ = nullptr;
   QLabel* harm_ = nullptr;
