@@ -159,6 +159,86 @@ TEST(Novice, MissesEntryAngleAndTarget) {
   EXPECT_GT(miss_mm, 5.0);
 }
 
+/// A stretch of an attempt on one line of the wanted needle.
+struct Leg {
+  Vec3 axis_P;
+  Vec3 entry_P = Vec3::Zero();  ///< Where the line crosses the plane across the planned path at its entry; mean.
+  double begin_mm = 0.0;        ///< Depth of the tip when the line was taken up.
+  double deepest_mm = -HUGE_VAL;
+};
+
+/// Runs an operator and splits its attempt wherever the wanted needle turns; its tremor does not turn it.
+std::vector<Leg> legs_of(Operator& the_operator, const Segment& plan_P, LayeredBody& body) {
+  struct Watch final : Operator {
+    HandCommand next(const OperatorView& view) noexcept override {
+      const HandCommand command = watched.next(view);
+      const Vec3 axis_P = command.X_PN.R().col(2);
+      const double tip_mm = body.samples.empty() ? -HUGE_VAL : body.depth_mm(body.last());
+      if (legs.empty() || axis_P != legs.back().axis_P) {
+        legs.push_back({axis_P, Vec3::Zero(), tip_mm});
+        commands = 0.0;
+      }
+      Leg& leg = legs.back();
+      const Vec3 tip_P = command.X_PN.p();
+      const Vec3 plan_axis_P = plan_P.direction();
+      const Vec3 entry_P = tip_P - (tip_P - plan_P.a).dot(plan_axis_P) / axis_P.dot(plan_axis_P) * axis_P;
+      leg.entry_P += (entry_P - leg.entry_P) / ++commands;
+      leg.deepest_mm = std::max(leg.deepest_mm, tip_mm);
+      return command;
+    }
+    Watch(Operator& o, const Segment& plan, LayeredBody& b) : watched(o), plan_P(plan), body(b) {}
+    Operator& watched;
+    const Segment plan_P;
+    LayeredBody& body;
+    std::vector<Leg> legs;
+    double commands = 0.0;
+  } watch(the_operator, plan_P, body);
+  body.run(watch, 60.0);
+  return watch.legs;
+}
+
+TEST(Novice, LeavesBoneTwiceAndHalvesItsErrorsEachTime) {
+  constexpr double kBone_mm = 14.0;
+  constexpr double kChord_rad = 1e-4;  // half of the way between two ends is not quite half of the angle
+  constexpr double kTremor_mm = 0.05;  // the mean of 8 Hz and more over the seconds of a leg
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const OperatorCase the_case = case_of_length(90.0, seed);
+    const Segment& plan_P = the_case.path_P;
+    LayeredBody body(plan_P, bone_below_skin(), 0.001);
+    const std::vector<Leg> legs = legs_of(*make_novice(the_case), plan_P, body);
+    ASSERT_EQ(legs.size(), 3u) << seed;
+    for (std::size_t n = 1; n < legs.size(); ++n) {
+      const Leg &before = legs[n - 1], &now = legs[n];
+      EXPECT_LT(now.begin_mm, -10.0) << seed << ": outside of the body before it turns";
+      EXPECT_GE(before.deepest_mm, kBone_mm) << seed;
+      EXPECT_LT(before.deepest_mm, kBone_mm + 1.0) << seed;
+      const double before_rad = angle_between_rad(before.axis_P, plan_P.direction());
+      EXPECT_GT(before_rad, 0.01) << seed;
+      EXPECT_NEAR(angle_between_rad(now.axis_P, plan_P.direction()), 0.5 * before_rad, kChord_rad) << seed;
+      EXPECT_LT((now.entry_P - plan_P.a - 0.5 * (before.entry_P - plan_P.a)).norm(), kTremor_mm) << seed;
+    }
+    EXPECT_GE(legs.back().deepest_mm, kBone_mm) << seed << ": in again";
+  }
+}
+
+TEST(Novice, KeepsItsLineWhereThereIsNoBone) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const OperatorCase the_case = case_of_length(90.0, seed);
+    LayeredBody body(the_case.path_P, skin_muscle_capsule(), 0.001);
+    const std::vector<Leg> legs = legs_of(*make_novice(the_case), the_case.path_P, body);
+    EXPECT_EQ(legs.size(), 1u) << seed;
+    ASSERT_EQ(body.fired.size(), 1u) << seed;
+    bool was_inside = false;
+    for (std::size_t n = 0; n < body.fired[0]; ++n) {
+      const double depth_mm = body.depth_mm(body.samples[n]);
+      was_inside = was_inside || depth_mm > 5.0;
+      if (was_inside) {
+        ASSERT_GT(depth_mm, -5.0) << seed << ": pulls back, but does not withdraw";
+      }
+    }
+  }
+}
+
 TEST(Novice, IsTheSameForTheSameSeedOnly) {
   const auto run = [](std::uint64_t seed) {
     const OperatorCase the_case = case_of_length(70.0, seed);
