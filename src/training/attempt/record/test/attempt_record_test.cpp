@@ -1,0 +1,116 @@
+#include "attempt/record/attempt_record.h"
+
+#include <gtest/gtest.h>
+
+#include "anatomy/phantom/phantom.h"
+#include "attempt/live/attempt_event.h"
+#include "core/files/temporary_folder.h"
+
+namespace trocar::attempt {
+namespace {
+
+using enum tasks::ActionKind;
+
+/// An attempt with a biopsy gun, recorded a sample at a time.
+class GunRecordTest : public ::testing::Test {
+ protected:
+  void begin(bool is_biopsy, bool is_coaxial) {
+    static const auto patient = anatomy::generate_phantom("layers-liver");
+    auto tables = cases::load_tables({});
+    ASSERT_TRUE(patient.has_value() && tables.has_value());
+    the_case_ = *std::move(tables);
+    the_case_.patient = std::make_shared<const anatomy::VirtualPatient>(*patient);
+    the_case_.plan.line_P = {Vec3::Zero(), Vec3(0.0, 50.0, 0.0)};
+    the_case_.needle.is_biopsy = is_biopsy;
+    the_case_.needle.is_coaxial = is_coaxial;
+    RecordOptions options;
+    options.session = folder_ / "attempt.session";
+    auto record = AttemptRecord::create(the_case_, options, {"a device", 1000.0, "insertion", "", {}});
+    ASSERT_TRUE(record.has_value()) << record.error().text();
+    record_.emplace(*std::move(record));
+  }
+  void go_to(double depth_mm) {
+    telemetry::TickSample sample;
+    sample.time_s = 0.001 * static_cast<double>(record_->samples().size());
+    sample.axis = Vec3::UnitY();
+    sample.depth_mm = depth_mm;
+    sample.tip_mm = {0.0, depth_mm, 0.0};
+    ASSERT_TRUE(record_->append(sample));
+  }
+  /// The event's text; empty: refused.
+  std::string act(tasks::ActionKind kind) {
+    const auto action = record_->act({kind});
+    EXPECT_TRUE(action) << action.error().text();
+    return action && *action ? describe_action(the_case_.substances, **action).text : std::string();
+  }
+  /// Kinds of the actions in the file when the attempt ends here.
+  std::vector<tasks::ActionKind> recorded_kinds() {
+    EXPECT_TRUE(record_->finish());
+    const auto session = storage::load_session(folder_ / "attempt.session");
+    EXPECT_TRUE(session) << (session ? "" : session.error().text());
+    std::vector<tasks::ActionKind> kinds;
+    if (session)
+      for (const tasks::Action& action : session->actions) kinds.push_back(action.kind);
+    return kinds;
+  }
+
+  TemporaryFolder folder_;
+  cases::Case the_case_;
+  std::optional<AttemptRecord> record_;
+};
+
+constexpr const char* kFired = "the gun was fired";
+constexpr const char* kLoaded = "the core was taken out, the gun is loaded";
+
+TEST_F(GunRecordTest, AnEmptyGunCannotBeFired) {
+  begin(true, true);
+  go_to(40.0);
+  EXPECT_EQ(act(kFire), kFired);
+  go_to(41.0);
+  EXPECT_EQ(act(kFire), "");
+  EXPECT_EQ(record_->shots(), std::vector<std::size_t>{0});
+  EXPECT_EQ(act(kLoad), kLoaded);
+  EXPECT_EQ(act(kLoad), "") << "it is loaded already";
+  EXPECT_EQ(act(kFire), kFired);
+  EXPECT_EQ(record_->shots(), (std::vector<std::size_t>{0, 1}));
+  EXPECT_EQ(recorded_kinds(), (std::vector<tasks::ActionKind>{kFire, kLoad, kFire}));
+}
+
+TEST_F(GunRecordTest, WithoutACoaxialNeedleTheGunIsLoadedOutsideOnly) {
+  begin(true, false);
+  go_to(40.0);
+  EXPECT_EQ(act(kFire), kFired);
+  for (const double depth_mm : {40.0, 10.0, 0.1}) {
+    go_to(depth_mm);
+    EXPECT_EQ(act(kLoad), "") << depth_mm;
+    EXPECT_EQ(act(kFire), "") << "still empty";
+  }
+  go_to(0.0);
+  EXPECT_EQ(act(kLoad), kLoaded);
+  EXPECT_EQ(recorded_kinds(), (std::vector<tasks::ActionKind>{kFire, kLoad}));
+}
+
+TEST_F(GunRecordTest, AnImpossibleCommandOfAnOperatorIsNotRecorded) {
+  begin(true, false);
+  for (const tasks::ActionKind kind : {kFire, kFire, kLoad}) {
+    tasks::HandCommand command;
+    command.action = tasks::ActionRequest{kind};
+    record_->note(command);
+    go_to(40.0);
+  }
+  EXPECT_EQ(record_->shots(), std::vector<std::size_t>{0});
+  EXPECT_EQ(recorded_kinds(), std::vector<tasks::ActionKind>{kFire});
+}
+
+TEST_F(GunRecordTest, APlainNeedleHasNoGunAndNothingHappensBeforeTheFirstSample) {
+  begin(false, false);
+  EXPECT_EQ(act(kReplaceStylet), "");
+  go_to(40.0);
+  EXPECT_EQ(act(kFire), "");
+  EXPECT_EQ(act(kLoad), "");
+  EXPECT_EQ(act(kReplaceStylet), "stylet put back");
+  EXPECT_EQ(recorded_kinds(), std::vector<tasks::ActionKind>{kReplaceStylet});
+}
+
+}  // namespace
+}  // namespace trocar::attempt
