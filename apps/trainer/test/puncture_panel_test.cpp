@@ -259,6 +259,20 @@ TEST(PunctureActions, AStyletInTheNeedleBlocksSyringeAndWire) {
   EXPECT_FALSE(why_not(TraineeAction::kAnaesthetic, state, chiba).isEmpty()) << "the attempt does not run";
 }
 
+TEST(PunctureActions, AGunIsLoadedWhenEmptyOutsideOrThroughACoaxialNeedle) {
+  tasks::Needle gun;
+  gun.is_biopsy = true;
+  const auto reason = [&](bool is_loaded, bool is_outside) {
+    const ActionState state{.can_act = true, .is_gun_loaded = is_loaded, .is_outside = is_outside};
+    return why_not(TraineeAction::kLoad, state, gun);
+  };
+  EXPECT_EQ(reason(true, true), "The gun is loaded.");
+  EXPECT_EQ(reason(false, true), "");
+  EXPECT_EQ(reason(false, false), "Withdraw the needle first: without a coaxial needle the gun is loaded outside.");
+  gun.is_coaxial = true;
+  EXPECT_EQ(reason(false, false), "");
+}
+
 TEST(PunctureActions, ButtonsTellTheStateAndRequest) {
   Shown shown;
   std::vector<TraineeAction> requested;
