@@ -30,6 +30,7 @@ constexpr const char* kTransducerNote = "transducer";
 constexpr const char* kDepthNote = "depth_mm";
 constexpr const char* kFrequencyNote = "frequency_mhz";
 constexpr const char* kFocusNote = "focus_mm";
+constexpr const char* kHarmonicNote = "harmonic";
 
 /// Applies a given number after checking it against the transducer's limits.
 Status take(const char* option, const std::optional<double>& asked, double low, double high, const char* unit,
@@ -63,7 +64,23 @@ Status take_notes(const io::TransformNotes& notes, const ultrasound::Transducer&
       take_note(notes, kDepthNote, kLeastDepth_mm, transducer.greatest_depth_mm, acquisition.depth_mm, where));
   TROCAR_TRY_STATUS(take_note(notes, kFrequencyNote, transducer.lowest_mhz, transducer.highest_mhz,
                               acquisition.frequency_mhz, where));
-  return take_note(notes, kFocusNote, kLeastFocus_mm, transducer.greatest_depth_mm, acquisition.focus_mm, where);
+  TROCAR_TRY_STATUS(
+      take_note(notes, kFocusNote, kLeastFocus_mm, transducer.greatest_depth_mm, acquisition.focus_mm, where));
+  double harmonic = acquisition.is_harmonic ? 1.0 : 0.0;
+  TROCAR_TRY_STATUS(take_note(notes, kHarmonicNote, 0.0, 1.0, harmonic, where));
+  acquisition.is_harmonic = harmonic >= 0.5;
+  return {};
+}
+
+/// Chooses the frequency to receive. Error: the transducer has no harmonic imaging.
+Status tune_harmonic(const ultrasound::Transducer& transducer, ultrasound::Acquisition& acquisition) {
+  const auto received_mhz = ultrasound::harmonic_mhz(transducer, acquisition.frequency_mhz);
+  if (!received_mhz)
+    return fail_usage(fmt::format("{} has no harmonic imaging: its band of {:g} to {:g} MHz is less than an octave",
+                                  transducer.name, transducer.lowest_mhz, transducer.highest_mhz),
+                      "--harmonic", "take another transducer");
+  acquisition.frequency_mhz = *received_mhz;
+  return {};
 }
 
 Result<ultrasound::Acquisition> gather_acquisition(const ScanArguments& a, const ultrasound::Transducer& transducer,
@@ -79,15 +96,8 @@ Result<ultrasound::Acquisition> gather_acquisition(const ScanArguments& a, const
       take("--depth-mm", a.depth_mm, kLeastDepth_mm, transducer.greatest_depth_mm, "mm", acquisition.depth_mm));
   TROCAR_TRY_STATUS(take("--frequency-mhz", a.frequency_mhz, transducer.lowest_mhz, transducer.highest_mhz, "MHz",
                          acquisition.frequency_mhz));
-  if (a.is_harmonic) {
-    const auto received_mhz = ultrasound::harmonic_mhz(transducer, acquisition.frequency_mhz);
-    if (!received_mhz)
-      return fail_usage(fmt::format("{} has no harmonic imaging: its band of {:g} to {:g} MHz is less than an octave",
-                                    transducer.name, transducer.lowest_mhz, transducer.highest_mhz),
-                        "--harmonic", "take another transducer");
-    acquisition.is_harmonic = true;
-    acquisition.frequency_mhz = *received_mhz;
-  }
+  acquisition.is_harmonic = a.is_harmonic.value_or(acquisition.is_harmonic);
+  if (acquisition.is_harmonic) TROCAR_TRY_STATUS(tune_harmonic(transducer, acquisition));
   acquisition.focus_mm = std::min(acquisition.focus_mm, kDeepestFocus * acquisition.depth_mm);
   TROCAR_TRY_STATUS(
       take("--focus-mm", a.focus_mm, kLeastFocus_mm, transducer.greatest_depth_mm, "mm", acquisition.focus_mm));
@@ -138,8 +148,9 @@ void add_scan_options(CLI::App& command, ScanArguments& a) {
   CLI::Option* view =
       command.add_option("--view", a.view, "Place the transducer in a standard view: trocar ultrasound views");
   pose->excludes(view);
-  command.add_option("--save-pose", a.save_pose,
-                     "Write X_PT as a .tfm, with transducer, depth, frequency and focus as comments that --pose reads");
+  command.add_option(
+      "--save-pose", a.save_pose,
+      "Write X_PT as a .tfm, with transducer, depth, frequency, focus and harmonic as comments that --pose reads");
   command.add_option("--transducer", a.transducer,
                      "Transducer, see trocar ultrasound transducers; default: that of the view, or a suitable one");
   arguments::number_within(command.add_option("--depth-mm", a.depth_mm, "Image depth below the face"), kLeastDepth_mm,
@@ -147,8 +158,9 @@ void add_scan_options(CLI::App& command, ScanArguments& a) {
   arguments::number_within(
       command.add_option("--frequency-mhz", a.frequency_mhz, "Transmit frequency, within the transducer's band"), 0.5,
       50.0, "MHz");
-  command.add_flag("--harmonic", a.is_harmonic,
-                   "Tissue harmonic imaging: transmit half of the frequency and receive the second harmonic");
+  command.add_flag_function(
+      "--harmonic,!--no-harmonic", [&a](std::int64_t count) { a.is_harmonic = count > 0; },
+      "Tissue harmonic imaging: transmit half of the frequency and receive the second harmonic");
   arguments::number_within(command.add_option("--focus-mm", a.focus_mm, "Depth of the transmit focus"), kLeastFocus_mm,
                            kMostDepth_mm, "mm");
   arguments::number_within(command.add_option("--gain-db", a.display.gain_db, "Gain"), -40.0, 40.0, "dB")
@@ -268,7 +280,8 @@ Status save_pose(const Scan& scan, const std::string& path) {
                              {{kTransducerNote, scan.transducer.name},
                               {kDepthNote, fmt::format("{}", a.depth_mm)},
                               {kFrequencyNote, fmt::format("{}", a.frequency_mhz)},
-                              {kFocusNote, fmt::format("{}", a.focus_mm)}});
+                              {kFocusNote, fmt::format("{}", a.focus_mm)},
+                              {kHarmonicNote, a.is_harmonic ? "1" : "0"}});
 }
 
 config::Json to_json(const Pose& X) {
@@ -289,6 +302,7 @@ config::Json to_json(const Scan& scan) {
           {"depth_mm", a.depth_mm},
           {"frequency_mhz", a.frequency_mhz},
           {"focus_mm", a.focus_mm},
+          {"harmonic", a.is_harmonic},
           {"lines", a.lines},
           {"samples", a.samples},
           {"planes", a.planes},

@@ -22,7 +22,7 @@ struct ScanArguments {
   std::string pose, view, save_pose;
   std::string transducer;
   std::optional<double> depth_mm, frequency_mhz, focus_mm;
-  bool is_harmonic = false;
+  std::optional<bool> is_harmonic;  ///< Empty: as saved with the pose, otherwise off.
   std::optional<int> lines, samples, planes, steering_angles;
   ultrasound::DisplaySettings display;
   std::vector<double> tgc_db;

@@ -199,6 +199,21 @@ TEST(UltrasoundImage, SavedPoseKeepsTransducerDepthFrequencyAndFocus) {
   EXPECT_EQ(deeper["frequency_mhz"], 2.5);
 }
 
+TEST(UltrasoundImage, SavedPoseKeepsHarmonicImaging) {
+  const TemporaryFolder folder;
+  const std::string line = "ultrasound image" + kScene + " --lines 32 --samples 128 --planes 1 --looks 1 --json";
+  const std::string saved = folder / "saved.tfm";
+  const config::Json first =
+      json_of(trocar(line + " --pose " + place_on_scene(folder) + " --transducer P4-2 --harmonic --save-pose " + saved +
+                     " --out " + (folder / "a.png")));
+  EXPECT_EQ(first["harmonic"], true);
+  const config::Json again = json_of(trocar(line + " --pose " + saved + " --out " + (folder / "b.png")));
+  EXPECT_EQ(again["harmonic"], true);
+  EXPECT_EQ(again["frequency_mhz"], first["frequency_mhz"]);
+  const config::Json plain = json_of(trocar(line + " --pose " + saved + " --no-harmonic --out " + (folder / "c.png")));
+  EXPECT_EQ(plain["harmonic"], false) << "an option counts more than the file";
+}
+
 TEST(UltrasoundImage, PictureBeyondTheCtIsWarnedOf) {
   const TemporaryFolder folder;
   const Outcome outcome =
