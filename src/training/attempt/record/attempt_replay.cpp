@@ -123,8 +123,8 @@ void AttemptReplay::find_moments() {
   for (const GunShot& shot : shots_) moments_.push_back({shot.time_s, Kind::kFired, shot_words(shot)});
 }
 
-/// Contact with a risk structure comes first; then the largest distance of the needle from the path in the body; then
-/// the largest force. A needle without contact has no worst moment.
+/// Contact with a risk structure comes first; then the largest distance of the needle from the path in the body, if it
+/// is worth saying; then the largest force. A needle without contact has no worst moment.
 void AttemptReplay::find_worst() {
   const auto risk = std::find_if(moments_.begin(), moments_.end(),
                                  [](const ReplayMoment& m) { return m.kind == ReplayMoment::Kind::kRisk; });
@@ -144,6 +144,8 @@ void AttemptReplay::find_worst() {
     farthest_mm = beside_mm;
     farthest_s = sample.time_s;
   }
+  constexpr double kWorthSaying_mm = 1.0;  // [assumed] a nearer needle follows the path
+  if (farthest_mm >= 0.0 && farthest_mm < kWorthSaying_mm) return;
   if (farthest_mm >= 0.0) {
     worst_ = {farthest_s, ReplayMoment::Kind::kWorst, fmt::format("{:.1f} mm from the planned path", farthest_mm)};
     return;

@@ -66,8 +66,32 @@ TEST(AttemptReplay, NamesWhatHappenedInOrder) {
   EXPECT_EQ(replay->shot_at(first_s), &replay->shots()[0]);
   EXPECT_EQ(replay->shot_at(second_s - 0.01), nullptr) << "the gun is loaded again";
   EXPECT_EQ(replay->shot_at(second_s), &replay->shots()[1]);
-  ASSERT_TRUE(replay->worst());
-  EXPECT_NE(replay->worst()->text.find("mm from the planned path"), std::string::npos) << replay->worst()->text;
+  EXPECT_FALSE(replay->worst()) << replay->worst()->text;
+}
+
+/// The expert's session with its tips on the planned path, but for one in the middle, which is beside it.
+storage::Session session_beside_the_path(double beside_mm) {
+  auto session = storage::load_session(recorded().session);
+  EXPECT_TRUE(session);
+  const Segment& plan_P = session->info.plan_P.line_P;
+  const Vec3 along_P = plan_P.direction();
+  for (telemetry::TickSample& sample : session->samples)
+    sample.tip_mm = plan_P.a + (sample.tip_mm - plan_P.a).dot(along_P) * along_P;
+  telemetry::TickSample& middle = session->samples[session->samples.size() / 2];
+  EXPECT_GT(middle.depth_mm, 1.0);
+  middle.tip_mm += beside_mm * along_P.unitOrthogonal();
+  return *std::move(session);
+}
+
+TEST(AttemptReplay, TheWorstMomentIsTheFarthestFromThePathFromOneMillimetreOn) {
+  const auto near = AttemptReplay::of(session_beside_the_path(0.9), recorded().open);
+  ASSERT_TRUE(near) << near.error().text();
+  EXPECT_FALSE(near->worst());
+  const auto far = AttemptReplay::of(session_beside_the_path(3.0), recorded().open);
+  ASSERT_TRUE(far) << far.error().text();
+  ASSERT_TRUE(far->worst());
+  EXPECT_EQ(far->worst()->text, "3.0 mm from the planned path");
+  EXPECT_EQ(far->worst()->time_s, far->session().samples[far->session().samples.size() / 2].time_s);
 }
 
 /// A session of two ticks in which the transducer is moved, and one without.
