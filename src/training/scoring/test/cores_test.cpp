@@ -43,17 +43,9 @@ Punctures punctures_along(const std::vector<Segment>& lines_P) {
 }
 
 Outcome score(const Punctures& punctures, const tasks::Task& task, bool is_coaxial) {
-  const anatomy::TissueTable tissues = testing::make_box_tissues();
-  const std::vector<tasks::PlannedPath> experts{make_box_plan()};
-  tasks::Needle needle = testing::make_gun();
-  needle.is_coaxial = is_coaxial;
-  return score_attempt({.task = task,
-                        .patient = patient(),
-                        .tissues = tissues,
-                        .needle = needle,
-                        .experts = experts,
-                        .samples = punctures.samples,
-                        .shots = punctures.shots});
+  BoxCase made{.task = task};
+  made.needle.is_coaxial = is_coaxial;
+  return made.score(punctures.samples, punctures.shots);
 }
 
 double share(const Outcome& outcome, const std::string& name) {

@@ -12,31 +12,16 @@ namespace {
 
 using namespace testing;
 
-/// The box patient's puncture; the rib at z from 70 to 80 stands for a vertebra, the liver for the structure of the
+/// A puncture of the liver; the rib at z from 70 to 80 stands for a vertebra, the liver for the structure of the
 /// fibres, the layer "muscle" (id 0) for the dura.
-struct Made {
-  tasks::Task task = make_box_task();
-  tasks::Needle needle = make_gun();
-  anatomy::VirtualPatient who = make_box_patient();
-  anatomy::TissueTable tissues = make_box_tissues();
-
-  Made() {
-    needle.is_biopsy = false;
-    task.target_tissues = {"liver"};
-    task.target_step_mm = 5.0;
-    task.min_organ_path_mm = 0.0;
-    task.weights = {{"target", 50.0}, {"access", 50.0}};
-  }
-  Outcome score(const Attempt& attempt) const {
-    const std::vector<tasks::PlannedPath> experts{make_box_plan()};
-    return score_attempt({.task = task,
-                          .patient = who,
-                          .tissues = tissues,
-                          .needle = needle,
-                          .experts = experts,
-                          .samples = attempt.samples});
-  }
-};
+BoxCase make_liver_puncture() {
+  BoxCase made = make_puncture();
+  made.task.target_tissues = {"liver"};
+  made.task.target_step_mm = 5.0;
+  made.task.min_organ_path_mm = 0.0;
+  made.task.weights = {{"target", 50.0}, {"access", 50.0}};
+  return made;
+}
 
 bool has_fail(const Outcome& outcome, const std::string& words) {
   return std::ranges::any_of(outcome.fails,
@@ -44,7 +29,7 @@ bool has_fail(const Outcome& outcome, const std::string& words) {
 }
 
 TEST(HighestEntry, EnteringTheTargetAboveTheStructureFailsWithTheReason) {
-  Made made;
+  BoxCase made = make_liver_puncture();
   made.task.highest_entry = tasks::EntryLevel{"rib_right_9", "the needle went in too high"};
   const auto at_height = [&](double z_mm) { return made.score(make_attempt({{50.0, 0.0, z_mm}, {50.0, 51.0, z_mm}})); };
   EXPECT_FALSE(has_fail(at_height(50.0), "too high"));
@@ -61,7 +46,7 @@ TEST(HighestEntry, EnteringTheTargetAboveTheStructureFailsWithTheReason) {
 }
 
 TEST(Bevel, IsJudgedAtThePunctureOfItsLayer) {
-  Made made;
+  BoxCase made = make_liver_puncture();
   made.task.bevel = tasks::BevelRule{"muscle", "liver", 30.0};
   made.task.weights = {{"target", 60.0}, {"bevel", 40.0}};
   Attempt attempt = make_attempt(make_box_plan().line_P);
@@ -84,7 +69,7 @@ TEST(Bevel, IsJudgedAtThePunctureOfItsLayer) {
 }
 
 TEST(Access, TellsTheWayBackIntoTheEntryZone) {
-  Made made;
+  BoxCase made = make_liver_puncture();
   made.task.entry_zone = tasks::EntryZone{{50.0, 0.0, 78.0}, 10.0};
   made.task.entry_tolerance_mm = 9.0;
   const Outcome outside = made.score(make_attempt(make_box_plan().line_P));  // 28 mm below the middle of the zone
@@ -95,14 +80,16 @@ TEST(Access, TellsTheWayBackIntoTheEntryZone) {
 }
 
 TEST(Access, ATargetNearTheLandmarkCostsPoints) {
-  Made made;
-  made.who.landmarks = {{"hilum", {50.0, 71.0, 50.0}}};
+  BoxCase made = make_liver_puncture();
+  anatomy::VirtualPatient with_hilum = make_box_patient();
+  with_hilum.landmarks = {{"hilum", {50.0, 71.0, 50.0}}};
+  made.who = &with_hilum;
   made.task.target_away_from = "hilum";
   made.task.target_away_mm = 30.0;
   const Outcome central = made.score(make_attempt(make_box_plan().line_P));  // the tip ends 20 mm before it
   EXPECT_NEAR(part(central, "access").points, 25.0, 0.1);
   EXPECT_TRUE(has_hint(central, "The tip ended 20 mm from the hilum"));
-  made.who.landmarks.clear();
+  made.who = &patient();
   EXPECT_NEAR(part(made.score(make_attempt(make_box_plan().line_P)), "access").points, 50.0, 0.1);
 }
 

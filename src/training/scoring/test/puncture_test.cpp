@@ -10,33 +10,8 @@ namespace {
 
 using namespace testing;
 
-/// A puncture without a gun, with what came back.
-struct MadePuncture {
-  tasks::Task task = make_box_task();
-  tasks::Needle needle = make_gun();
-  std::vector<tasks::PlannedPath> experts{make_box_plan()};
-  anatomy::TissueTable tissues = make_box_tissues();
-  std::vector<tasks::Action> actions;
-  std::optional<double> tip_visible_share;
-
-  MadePuncture() {
-    needle.is_biopsy = false;
-    needle.stylet_diameter_mm = 0.8;
-  }
-  Outcome score(const Attempt& attempt) const {
-    return score_attempt({.task = task,
-                          .patient = patient(),
-                          .tissues = tissues,
-                          .needle = needle,
-                          .experts = experts,
-                          .samples = attempt.samples,
-                          .actions = actions,
-                          .tip_visible_share = tip_visible_share});
-  }
-};
-
 TEST(Puncture, TheRightSubstanceProvesTheTarget) {
-  MadePuncture puncture;
+  BoxCase puncture = make_puncture();
   puncture.task.confirmed_by = tasks::Substance::kBile;
   puncture.task.weights = {{"target", 60.0}, {"confirmation", 40.0}};
   const Attempt attempt = make_attempt(make_box_plan().line_P);
@@ -59,7 +34,7 @@ TEST(Puncture, TheRightSubstanceProvesTheTarget) {
 }
 
 TEST(Puncture, AConfirmedPlaceIsTheEndEvenIfTheNeedleWentDeeperBefore) {
-  MadePuncture puncture;
+  BoxCase puncture = make_puncture();
   puncture.task.confirmed_by = tasks::Substance::kBile;
   puncture.task.weights = {{"target", 60.0}, {"confirmation", 40.0}};
   const Segment deep_P{make_box_plan().line_P.a, make_box_plan().line_P.b + Vec3(0.0, 12.0, 0.0)};
@@ -72,7 +47,7 @@ TEST(Puncture, AConfirmedPlaceIsTheEndEvenIfTheNeedleWentDeeperBefore) {
 }
 
 TEST(Puncture, TheNearestExpertPathCounts) {
-  MadePuncture puncture;
+  BoxCase puncture = make_puncture();
   const Vec3 beside_P(14.0, 0.0, 0.0);
   tasks::PlannedPath other = make_box_plan();
   other.line_P = shifted(beside_P);
@@ -85,7 +60,7 @@ TEST(Puncture, TheNearestExpertPathCounts) {
 }
 
 TEST(Puncture, PainIsCountedOnceAContact) {
-  MadePuncture puncture;
+  BoxCase puncture = make_puncture();
   puncture.task.pain = {{"bone"}, true};
   puncture.task.weights = {{"target", 50.0}, {"comfort", 50.0}};
   const Attempt attempt = make_attempt({{50.0, 0.0, 75.0}, {50.0, 15.0, 75.0}});  // onto the rib
@@ -100,7 +75,7 @@ TEST(Puncture, PainIsCountedOnceAContact) {
 }
 
 TEST(Puncture, AnySafeWayIsWorthTheWholeAccess) {
-  MadePuncture puncture;
+  BoxCase puncture = make_puncture();
   puncture.task.weights = {{"target", 20.0}, {"access", 80.0}};
   puncture.task.min_organ_path_mm = 0.0;
   const auto access_of = [&](double x_mm) {
@@ -121,7 +96,7 @@ TEST(Puncture, AnySafeWayIsWorthTheWholeAccess) {
 }
 
 TEST(Puncture, PartsThatCannotBeJudgedLeaveTheirPointsToTheOthers) {
-  MadePuncture puncture;
+  BoxCase puncture = make_puncture();
   puncture.task.weights = {{"target", 60.0}, {"visibility", 40.0}};
   const Attempt attempt = make_attempt(make_box_plan().line_P);
   EXPECT_EQ(puncture.score(attempt).parts.size(), 1U);

@@ -14,30 +14,13 @@ namespace {
 
 using namespace testing;
 
-Outcome score_of(const tasks::Task& task, const anatomy::VirtualPatient& who, const tasks::Needle& needle,
-                 const std::vector<telemetry::TickSample>& samples, std::optional<std::size_t> fired,
-                 const tasks::XrayUse& xray = {}) {
-  std::vector<std::size_t> shots;
-  if (fired) shots.push_back(*fired);
-  const anatomy::TissueTable tissues = make_box_tissues();
-  const std::vector<tasks::PlannedPath> experts{make_box_plan()};
-  return score_attempt({.task = task,
-                        .patient = who,
-                        .tissues = tissues,
-                        .needle = needle,
-                        .experts = experts,
-                        .samples = samples,
-                        .shots = shots,
-                        .xray = xray});
-}
-
 Outcome score(const std::vector<telemetry::TickSample>& samples, std::optional<std::size_t> fired) {
-  return score_of(make_box_task(), patient(), make_gun(), samples, fired);
+  return BoxCase().score(samples, fired ? std::vector<std::size_t>{*fired} : std::vector<std::size_t>{});
 }
 Outcome score(const Segment& line_P) {
-  const Attempt attempt = make_attempt(line_P);
-  return score(attempt.samples, attempt.fired);
+  return BoxCase().score(make_attempt(line_P));
 }
+
 TEST(Score, ThePlannedAttemptIsWorthAll) {
   const Outcome outcome = score(make_box_plan().line_P);
   EXPECT_GT(outcome.score, 99.5);  // 2.5 s of 120 s
@@ -50,10 +33,8 @@ TEST(Score, ThePlannedAttemptIsWorthAll) {
 
 TEST(Score, PartsAddUpToAHundredAndToTheScore) {
   for (const bool is_biopsy : {true, false}) {
-    tasks::Needle needle = make_gun();
-    needle.is_biopsy = is_biopsy;
-    const Attempt attempt = make_attempt(shifted({2.0, 0.0, 1.0}));
-    const Outcome outcome = score_of(make_box_task(), patient(), needle, attempt.samples, attempt.fired);
+    const BoxCase made = is_biopsy ? BoxCase() : make_puncture();
+    const Outcome outcome = made.score(make_attempt(shifted({2.0, 0.0, 1.0})));
     double points = 0.0;
     double max_points = 0.0;
     for (const ScorePart& one : outcome.parts) {
@@ -67,20 +48,17 @@ TEST(Score, PartsAddUpToAHundredAndToTheScore) {
 }
 
 TEST(Score, DoseCostsPointsOnlyWhereTheTaskLimitsIt) {
-  tasks::Needle needle = make_gun();
-  needle.is_biopsy = false;
-  tasks::Task task = make_box_task();
+  BoxCase made = make_puncture();
+  made.xray.beam_s = 1.0;
   const Attempt attempt = make_attempt(make_box_plan().line_P);
   const auto score_with = [&](double dose_gycm2) {
-    tasks::XrayUse use;
-    use.dose_area_gycm2 = dose_gycm2;
-    use.beam_s = 1.0;
-    return score_of(task, patient(), needle, attempt.samples, attempt.fired, use);
+    made.xray.dose_area_gycm2 = dose_gycm2;
+    return made.score(attempt);
   };
   EXPECT_EQ(score_with(100.0).score, score_with(0.0).score);
-  task.dose_limit_gycm2 = 8.0;
-  task.weights["target"] = 15.0;
-  task.weights["dose"] = 10.0;
+  made.task.dose_limit_gycm2 = 8.0;
+  made.task.weights["target"] = 15.0;
+  made.task.weights["dose"] = 10.0;
   double before = score_with(0.0).score;
   EXPECT_GT(before, 99.5);
   EXPECT_FALSE(has_hint(score_with(0.0), "dose"));
@@ -151,12 +129,12 @@ TEST(Score, TargetPointsFallWithEveryMillimetre) {
 }
 
 TEST(Score, NoPartIsNegativeAndACriticalTouchIsNotPassed) {
-  tasks::Task task = make_box_task();
-  for (tasks::RiskStructure& risk : task.risks) risk.penalty = 25.0;  // more than the part's 20 points
+  BoxCase made;
+  for (tasks::RiskStructure& risk : made.task.risks) risk.penalty = 25.0;  // more than the part's 20 points
   const Attempt attempt = make_attempt({{50.0, 0.0, 75.0}, {50.0, 15.0, 75.0}});
   for (const bool is_critical : {false, true}) {
-    task.risks[1].is_critical = is_critical;
-    const Outcome outcome = score_of(task, patient(), make_gun(), attempt.samples, attempt.fired);
+    made.task.risks[1].is_critical = is_critical;
+    const Outcome outcome = made.score(attempt);
     EXPECT_EQ(part(outcome, "risk").points, 0.0);
     double points = 0.0;
     for (const ScorePart& one : outcome.parts) {
@@ -187,8 +165,8 @@ TEST(Score, ATargetFarOffIsNotReached) {
     if (long_lesion.labels.voxels[i] == 3) long_lesion.labels.voxels[i] = 4;
   const anatomy::VirtualPatient healthy = make_box_patient(false);
   const auto is_reached = [](const anatomy::VirtualPatient& who, double short_mm) {
-    const Attempt attempt = make_attempt({{50.0, 0.0, 50.0}, {50.0, 51.0 - short_mm, 50.0}});
-    const Outcome outcome = score_of(make_box_task(), who, make_gun(), attempt.samples, attempt.fired);
+    const Outcome outcome =
+        BoxCase{.who = &who}.score(make_attempt({{50.0, 0.0, 50.0}, {50.0, 51.0 - short_mm, 50.0}}));
     EXPECT_GT(outcome.best_core()->target_mm, 16.0) << short_mm;
     return outcome.target_reached;
   };
@@ -248,9 +226,7 @@ TEST(Score, ADeepAttemptWithoutAShotIsNotScoredButAPunctureWithoutAGunIs) {
   EXPECT_EQ(unfired.not_scored, "the gun was not fired");
   EXPECT_TRUE(has_hint(unfired, "No core was taken"));
   EXPECT_TRUE(score(attempt.samples, attempt.fired).is_scored());
-  tasks::Needle needle = make_gun();
-  needle.is_biopsy = false;
-  const Outcome puncture = score_of(make_box_task(), patient(), needle, attempt.samples, {});
+  const Outcome puncture = make_puncture().score(attempt);
   EXPECT_TRUE(puncture.is_scored());
   EXPECT_GT(puncture.score, 0.0);
 }
@@ -324,16 +300,12 @@ TEST(Score, ValuesReadAsWhatTheyAre) {
 }
 
 TEST(Score, EntryInsideTheZoneIsWhole) {
-  using namespace testing;
-  const anatomy::VirtualPatient patient = make_box_patient();
   const Segment plan_P = make_box_plan().line_P;
   const Segment beside_P{plan_P.a + Vec3(4.0, 0.0, 0.0), plan_P.b + Vec3(4.0, 0.0, 0.0)};
   const Attempt attempt = make_attempt(beside_P);
   const auto entry_points = [&](const tasks::Task& task) {
-    const Outcome outcome = score_of(task, patient, make_gun(), attempt.samples, attempt.fired);
-    for (const ScorePart& part : outcome.parts)
-      if (part.name == "entry") return part.points / part.max_points;
-    return -1.0;
+    const ScorePart entry = part(BoxCase{.task = task}.score(attempt), "entry");
+    return entry.points / entry.max_points;
   };
   tasks::Task task = make_box_task();
   EXPECT_LT(entry_points(task), 0.95);
