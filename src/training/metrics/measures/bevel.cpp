@@ -14,7 +14,7 @@ constexpr std::array kValues{
                       "deg",
                       Better::kLower,
                       {Role::kEvents, Role::kTask, Role::kPatient, Role::kRoll},
-                      "issue 22 (bevel along the dural fibres)"},
+                      "Trocar"},
 };
 
 class Bevel : public Metric {

@@ -37,7 +37,7 @@ constexpr std::array kValues{
                       {Role::kExpert, Role::kDepth},
                       kSource},
     MetricDescription{
-        "expert_path", "Number of the nearest expert path", "1", Better::kNeither, {Role::kExpert}, "issue 22"},
+        "expert_path", "Number of the nearest expert path", "1", Better::kNeither, {Role::kExpert}, "Trocar"},
     MetricDescription{"targeting",
                       "Smallest distance of the tip from the target",
                       "mm",

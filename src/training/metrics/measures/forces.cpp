@@ -24,7 +24,7 @@ constexpr std::array kPunctureValues{
                       "mm",
                       Better::kLower,
                       {Role::kEvents, Role::kDepth},
-                      "issue 22; definition in docs/metrics.md"},
+                      "Trocar"},
 };
 constexpr double kOvershootWithin_s = 0.25;  ///< [assumed] A hand responds to a touch after 0.15 to 0.25 s.
 constexpr double kOvershootBack_mm = 0.1;    ///< [assumed] The tip has stopped when it came back by so much.

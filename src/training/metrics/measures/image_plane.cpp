@@ -14,25 +14,25 @@ constexpr std::array kPlaneValues{
                       "deg",
                       Better::kLower,
                       {Role::kTransducer, Role::kDepth},
-                      "issue 22"},
+                      "Trocar"},
     MetricDescription{"plane_offset",
                       "Median distance of the tip from the image plane",
                       "mm",
                       Better::kLower,
                       {Role::kTransducer, Role::kDepth},
-                      "issue 22"},
+                      "Trocar"},
     MetricDescription{"plane_angle_end",
                       "Angle between needle and image plane at the end",
                       "deg",
                       Better::kLower,
                       {Role::kTransducer, Role::kDepth},
-                      "issue 22"},
+                      "Trocar"},
     MetricDescription{"plane_offset_end",
                       "Distance of the tip from the image plane at the end",
                       "mm",
                       Better::kLower,
                       {Role::kTransducer, Role::kDepth},
-                      "issue 22"},
+                      "Trocar"},
 };
 constexpr std::array kVisibilityValues{
     MetricDescription{"needle_in_beam",
@@ -46,7 +46,7 @@ constexpr std::array kVisibilityValues{
                       "%",
                       Better::kHigher,
                       {Role::kTransducer, Role::kDepth, Role::kPlane},
-                      "issue 22"},
+                      "Trocar"},
 };
 constexpr double kAngleBin_deg = 0.05;
 constexpr double kLargestOffset_mm = 200.0, kOffsetBin_mm = 0.05;
