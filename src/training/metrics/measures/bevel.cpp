@@ -1,9 +1,9 @@
 // Bevel of the needle against the fibres that it has to part.
-#include "tasks/bevel.h"
-
+#include <algorithm>
 #include <array>
 
 #include "metrics/measures/groups.h"
+#include "metrics/worst_bevel.h"
 
 namespace trocar::metrics {
 namespace {
@@ -17,38 +17,33 @@ constexpr std::array kValues{
                       "Trocar"},
 };
 
+/// Id of a layer in the events of a recording; empty: it has none of this name.
+std::optional<std::uint8_t> find_layer(const MetricContext& context) {
+  if (!context.task->bevel) return std::nullopt;
+  const auto found = std::ranges::find(context.layer_names, context.task->bevel->layer);
+  if (found == context.layer_names.end()) return std::nullopt;
+  return static_cast<std::uint8_t>(found - context.layer_names.begin());
+}
+
 class Bevel : public Metric {
  public:
-  explicit Bevel(const MetricContext& context) : context_(context) {}
+  explicit Bevel(const MetricContext& context)
+      : has_rule_(context.task->bevel.has_value()), bevel_(*context.task, *context.patient, find_layer(context)) {}
 
   void step(const Step& step) override {
     const Moment& now = step.now;
-    if (!context_.task->bevel || !now.events || !now.R_PN) return;
-    for (const telemetry::TickEvent& event : *now.events) {
-      const std::string* const layer = context_.layer_name(event.id);
-      if (event.kind != telemetry::EventKind::kPuncture || layer == nullptr || *layer != context_.task->bevel->layer)
-        continue;
-      has_punctured_ = true;
-      const auto fibres_P = tasks::find_fibres(*context_.task, *context_.patient, now.tip_P);
-      if (!fibres_P) continue;
-      const double angle_deg = tasks::bevel_to_fibres_deg(*now.R_PN, *fibres_P);
-      if (worst_deg_ && *worst_deg_ >= angle_deg) continue;
-      worst_deg_ = angle_deg;
-      at_s_ = now.time_s;
-    }
+    if (now.events && now.R_PN) bevel_.step(now.time_s, now.tip_P, *now.R_PN, *now.events);
   }
   void report(const RunEnd&, std::span<MetricValue> values) const override {
-    if (worst_deg_) return values[0].set(*worst_deg_, at_s_);
-    values[0].missing = !context_.task->bevel ? "the task has no rule for the bevel"
-                        : has_punctured_      ? "the patient has no fibres there"
-                                              : "the layer of the fibres was not punctured";
+    if (const auto& worst = bevel_.worst()) return values[0].set(worst->to_fibres_deg, worst->time_s);
+    values[0].missing = !has_rule_               ? "the task has no rule for the bevel"
+                        : bevel_.has_punctured() ? "the patient has no fibres there"
+                                                 : "the layer of the fibres was not punctured";
   }
 
  private:
-  MetricContext context_;
-  bool has_punctured_ = false;
-  std::optional<double> worst_deg_;
-  double at_s_ = 0.0;
+  bool has_rule_;
+  WorstBevel bevel_;
 };
 
 }  // namespace

@@ -40,7 +40,7 @@ struct Judgement {
   std::optional<double> confirmed_s;  ///< Time at which the right substance came back.
   std::optional<Bleeding> bleeding;
   std::optional<double> too_high_s;  ///< Time at which the target was entered above the permitted level.
-  std::optional<BevelJudgement> bevel;
+  std::optional<metrics::WorstBevel::Puncture> bevel;
 };
 
 /// Judges an attempt against its nearest expert path.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tasks/bevel.h"
 #include "tasks/fit_to_patient.h"
 #include "telemetry/tick_pose.h"
 
@@ -48,21 +47,13 @@ std::optional<double> entered_too_high_s(const AttemptData& attempt) {
   return std::nullopt;
 }
 
-std::optional<BevelJudgement> judge_bevel(const AttemptData& attempt) {
+std::optional<metrics::WorstBevel::Puncture> judge_bevel(const AttemptData& attempt) {
   if (!attempt.task.bevel) return std::nullopt;
-  const auto layer = attempt.tissues.find_layer(attempt.task.bevel->layer);
-  std::optional<BevelJudgement> worst;
-  for (const telemetry::TickSample& sample : attempt.samples) {
-    const bool is_puncture = std::ranges::any_of(sample.events, [&](const telemetry::TickEvent& event) {
-      return event.kind == telemetry::EventKind::kPuncture && layer && event.id == *layer;
-    });
-    if (!is_puncture || !sample.tip_mm.allFinite() || !sample.axis.allFinite()) continue;
-    const auto fibres_P = tasks::find_fibres(attempt.task, attempt.patient, sample.tip_mm);
-    if (!fibres_P) continue;
-    const double angle_deg = tasks::bevel_to_fibres_deg(telemetry::felt_needle(sample).R(), *fibres_P);
-    if (!worst || angle_deg > worst->to_fibres_deg) worst = BevelJudgement{angle_deg, sample.time_s};
-  }
-  return worst;
+  metrics::WorstBevel bevel(attempt.task, attempt.patient, attempt.tissues.find_layer(attempt.task.bevel->layer));
+  for (const telemetry::TickSample& sample : attempt.samples)
+    if (sample.tip_mm.allFinite() && sample.axis.allFinite())
+      bevel.step(sample.time_s, sample.tip_mm, telemetry::felt_needle(sample).R(), sample.events);
+  return bevel.worst();
 }
 
 double missing_away_mm(const AttemptData& attempt, const Vec3& tip_P) {
