@@ -31,16 +31,16 @@ struct Judgement {
   bool is_parenchymal = false;
   double target_mm = 0.0;  ///< Distance to the target: of the notch for a biopsy needle, 0 in the target.
   double entry_mm = 0.0;   ///< Of the entry, from the zone's edge or the expert's.
-  AccessJudgement access;
-  std::vector<BiopsyCore> cores;                 ///< By time.
-  double possible_core_mm = 0.0;                 ///< Length of target tissue in a core at the planned place.
-  std::vector<metrics::RiskTouch> stylet_risks;  ///< Structures that only the stylet touched.
+  AccessJudgement access = {};
+  std::vector<BiopsyCore> cores = {};                 ///< By time.
+  double possible_core_mm = 0.0;                      ///< Length of target tissue in a core at the planned place.
+  std::vector<metrics::RiskTouch> stylet_risks = {};  ///< Structures that only the stylet touched.
   double risk_penalty = 0.0;
-  std::vector<PainEvent> pain;
-  std::optional<double> confirmed_s;  ///< Time at which the right substance came back.
-  std::optional<Bleeding> bleeding;
-  std::optional<double> too_high_s;  ///< Time at which the target was entered above the permitted level.
-  std::optional<metrics::WorstBevel::Puncture> bevel;
+  std::vector<PainEvent> pain = {};
+  std::optional<double> confirmed_s = {};  ///< Time at which the right substance came back.
+  std::optional<Bleeding> bleeding = {};
+  std::optional<double> too_high_s = {};  ///< Time at which the target was entered above the permitted level.
+  std::optional<metrics::WorstBevel::Puncture> bevel = {};
 };
 
 /// Judges an attempt against its nearest expert path.
