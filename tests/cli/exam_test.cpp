@@ -4,26 +4,13 @@
 #include <fstream>
 
 #include "cli/program.h"
-#include "storage/session_file.h"
+#include "cli/short_session.h"
 
 namespace trocar::cli_test {
 namespace {
 
 void write_exam(const std::string& file, const std::string& level = "exam") {
-  storage::SessionInfo info;
-  info.started_utc = "2026-01-02T10:11:12Z";
-  info.task = "liver-biopsy";
-  info.patient_source = "biopsy-2";
-  info.patient_seed = 4711;
-  info.level = level;
-  info.label_names.resize(256);
-  auto writer = storage::SessionWriter::create(file, info);
-  ASSERT_TRUE(writer) << writer.error().text();
-  ASSERT_TRUE(writer->append(telemetry::TickSample()));
-  scoring::Outcome outcome;
-  outcome.score = 91.0;
-  outcome.is_passed = true;
-  ASSERT_TRUE(writer->finish(outcome, {}));
+  write_session(file, {.patient = "biopsy-2", .seed = 4711, .level = level});
 }
 
 TEST(Exam, ASignedResultIsVerifiedHereAndElsewhere) {

@@ -4,31 +4,21 @@
 #include <fstream>
 
 #include "cli/program.h"
-#include "storage/session_file.h"
+#include "cli/short_session.h"
 
 namespace trocar::cli_test {
 namespace {
 
-void write_session(const std::string& file, const std::string& level, int minute, double score) {
-  storage::SessionInfo info;
-  info.started_utc = "2026-01-02T10:" + std::to_string(10 + minute) + ":00Z";
-  info.task = "liver-biopsy";
-  info.patient_source = "biopsy-1";
-  info.level = level;
-  info.label_names.resize(256);
-  auto writer = storage::SessionWriter::create(file, info);
-  ASSERT_TRUE(writer) << writer.error().text();
-  ASSERT_TRUE(writer->append(telemetry::TickSample()));
-  scoring::Outcome outcome;
-  outcome.score = score;
-  outcome.is_passed = true;
-  outcome.parts = {{"visibility", "Advance with the tip in the image", 50.0, "%", 2.0, 5.0}};
-  ASSERT_TRUE(writer->finish(outcome, {}));
+/// A passed attempt whose weakest part is the visibility.
+void write_attempt(const std::string& file, int minute) {
+  write_session(file, {.started_utc = "2026-01-02T10:" + std::to_string(10 + minute) + ":00Z",
+                       .score = 92.0,
+                       .parts = {{"visibility", "Advance with the tip in the image", 50.0, "%", 2.0, 5.0}}});
 }
 
 TEST(Learn, ContinuesFromTheSessionsOfAFolder) {
   const TemporaryFolder folder;
-  for (int n = 0; n < 3; ++n) write_session(folder / ("g" + std::to_string(n) + ".trocar"), "guided", n, 92.0);
+  for (int n = 0; n < 3; ++n) write_attempt(folder / ("g" + std::to_string(n) + ".trocar"), n);
   std::ofstream(folder / "damaged.trocar") << "hello";
   const Outcome outcome = trocar("learn --task liver-biopsy --sessions '" + folder.path().string() + "'");
   EXPECT_EQ(outcome.exit_status, 0) << outcome.err;
