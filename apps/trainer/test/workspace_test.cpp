@@ -65,6 +65,20 @@ TEST(Workspace, ShowsOfThePlanWhatTheHelpAllows) {
   }
 }
 
+TEST(Workspace, TheSideViewFollowsTheNeedleOfEachCase) {
+  Workspace workspace;
+  workspace.resize(1000, 700);
+  workspace.show();
+  workspace.choose_layout(QStringLiteral("Navigation"));
+  for (int times = 0; times < 2; ++times) {
+    workspace.show_case(open_abdomen());
+    QCoreApplication::processEvents();
+    workspace.draw(0.0);
+    EXPECT_EQ(workspace.find<PatientView>("side")->follow(), scene::FollowMode::kSide);
+    EXPECT_EQ(workspace.find<PatientView>("3d")->follow(), scene::FollowMode::kFree);
+  }
+}
+
 using Sizes = std::map<QString, QSize>;
 
 /// Of the views that are shown.

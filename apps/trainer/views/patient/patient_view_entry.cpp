@@ -87,7 +87,8 @@ class PatientViewEntry final : public View {
                         the_case.plan.line_P.b);
     surface_groups_ = 0;
     add_new_surfaces();
-    view_->face(-the_case.plan.line_P.direction());
+    // The side view follows the needle instead.
+    if (role_ == Role::kMain) view_->face(-the_case.plan.line_P.direction());
     show_paths();
     view_->scene().set_entry_centre(case_.entry_zone.centre_P);
     has_patient_ = true;
