@@ -206,6 +206,8 @@ void PatientCards::fit_cards() {
 void PatientCards::resizeEvent(QResizeEvent* event) {
   QListWidget::resizeEvent(event);
   fit_cards();
+  executeDelayedItemsLayout();  // the selected card has its new place
+  scrollToItem(currentItem());
 }
 
 void PatientCards::changeEvent(QEvent* event) {

@@ -8,8 +8,8 @@
 namespace trocar::trainer {
 
 /// Patients as cards in a scrolled grid: picture, name, task, difficulty as dots, description in one line. As many
-/// columns as fit. Arrow keys, Home, End and the first letters of a name select; Enter and a double click activate.
-/// Screen readers get each card as a sentence.
+/// columns as fit; after a change of size the selected card is in sight. Arrow keys, Home, End and the first letters of
+/// a name select; Enter and a double click activate. Screen readers get each card as a sentence.
 class PatientCards : public QListWidget {
   Q_OBJECT
 

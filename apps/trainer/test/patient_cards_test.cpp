@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <QCoreApplication>
 #include <QImage>
 #include <QScrollBar>
 #include <QTemporaryDir>
@@ -49,6 +50,21 @@ struct PatientCardsTest : ::testing::Test {
   }
   QTemporaryDir folder;
 };
+
+TEST_F(PatientCardsTest, TheSelectedCardIsWholeInEverySize) {
+  PatientCards cards;
+  cards.resize(640, 480);
+  cards.show_patients(made_up(9));
+  cards.show();
+  ASSERT_TRUE(cards.choose(QStringLiteral("lumbar-7")));
+  for (const QSize size : {QSize(760, 420), QSize(640, 300), QSize(900, 380)}) {
+    cards.resize(size);
+    QCoreApplication::processEvents();
+    const QRect card = cards.visualItemRect(cards.currentItem());
+    EXPECT_TRUE(cards.viewport()->rect().contains(card))
+        << size.width() << "x" << size.height() << ": card from " << card.top() << " to " << card.bottom();
+  }
+}
 
 TEST_F(PatientCardsTest, ShowThePictureOrANeutralOne) {
   PatientCards cards;
