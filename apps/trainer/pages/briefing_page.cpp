@@ -52,7 +52,7 @@ QString legend_html(const std::vector<LegendEntry>& entries, scene::Guidance gui
   if (guidance == scene::Guidance::kPath)
     parts << swatch(t.path, QStringLiteral("- -"), BriefingPage::tr("planned path"));
   for (const LegendEntry& entry : entries) parts << swatch(entry.color, QStringLiteral("■"), entry.words);
-  return parts.join(QStringLiteral(" &nbsp; "));
+  return parts.join(QStringLiteral("&nbsp;&nbsp; "));  // a new line begins with an entry
 }
 
 /// Entries of two slices; the same colour once, targets first.

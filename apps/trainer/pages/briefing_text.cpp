@@ -314,11 +314,11 @@ std::vector<BriefingRow> procedure_rows(const cases::Case& tables, std::optional
 
 BriefingRow path_row(const cases::Case& the_case) {
   const tasks::PlannedPath& plan = the_case.plan;
-  return {tr("Planned path"),
-          tr("%1 mm long, %2 mm of it in the %3; nearest structure at risk: %4")
-              .arg(plan.length_mm, 0, 'f', 0)
-              .arg(plan.organ_path_mm, 0, 'f', 0)
-              .arg(words(the_case.task.organ), plan.nearest_risk.empty() ? tr("none") : words(plan.nearest_risk))};
+  QString text = tr("%1 mm long").arg(plan.length_mm, 0, 'f', 0);
+  if (plan.organ_path_mm >= 1.0)  // else the path ends where the organ begins: a space filled with fluid
+    text += tr(", %1 mm of it in the %2").arg(plan.organ_path_mm, 0, 'f', 0).arg(words(the_case.task.organ));
+  text += tr("; nearest structure at risk: %1").arg(plan.nearest_risk.empty() ? tr("none") : words(plan.nearest_risk));
+  return {tr("Planned path"), text};
 }
 
 std::vector<BriefingRow> scoring_rows(const cases::Case& tables) {

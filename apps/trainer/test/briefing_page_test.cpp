@@ -193,6 +193,17 @@ TEST(BriefingPage, ShowsTheCaseAndLetsBegin) {
   EXPECT_TRUE(says_help);
 }
 
+TEST(BriefingPage, TellsTheShareOfThePathInTheOrganIfItHasOne) {
+  cases::Case the_case = open_abdomen()->the_case;
+  the_case.plan.length_mm = 58.0;
+  the_case.plan.organ_path_mm = 21.0;
+  the_case.plan.nearest_risk = "cauda_equina";
+  EXPECT_EQ(path_row(the_case).text,
+            QStringLiteral("58 mm long, 21 mm of it in the liver; nearest structure at risk: cauda equina"));
+  the_case.plan.organ_path_mm = 0.0;  // a dural sac begins at the tip
+  EXPECT_EQ(path_row(the_case).text, QStringLiteral("58 mm long; nearest structure at risk: cauda equina"));
+}
+
 TEST(BriefingPage, TellsNothingOfTheWayInAnExam) {
   BriefingPage page;
   page.resize(1280, 700);
