@@ -90,7 +90,8 @@ std::vector<CaptionLine> caption_of(const ultrasound::ScanPicture& picture, cons
     lines.push_back(
         {QStringLiteral("%1 %2/%3").arg(state).arg(facts.cine.position + 1).arg(facts.cine.size), Kind::kFrozen});
   } else if (!facts.is_small) {
-    lines.push_back({QStringLiteral("%1 Hz").arg(facts.frames_per_s, 0, 'f', 0), Kind::kPlain});
+    lines.push_back(
+        {QStringLiteral("%1 Hz").arg(facts.frames_per_s, 0, 'f', facts.frames_per_s < 1.0 ? 1 : 0), Kind::kPlain});
   }
   if (picture.coupled_share < kHardlyAny) {
     lines.push_back({QStringLiteral("No contact"), Kind::kWarning});
