@@ -158,17 +158,18 @@ QWidget* FeedbackPanel::make_buttons() {
   auto* grid = new QGridLayout(bar);
   grid->setContentsMargins(16, 8, 16, 12);
   grid->setSpacing(8);
-  auto* again = make_button("try-again", tr("Try again"), tr("Repeat the same case"), QStringLiteral("Ctrl+R"));
-  again->setProperty("role", "primary");
+  again_button_ = make_button("try-again", {}, {});
+  again_button_->setProperty("role", "primary");
+  show_again(false);
   worst_button_ = make_button("worst-moment", tr("Worst moment"), tr("Go to the worst moment in the replay (W)"));
   auto* other = make_button("other-case", tr("Other case"), tr("Back to the start page"), QStringLiteral("Ctrl+N"));
   auto* report =
       make_button("open-report", tr("Report"), tr("Save the report of the attempt"), QStringLiteral("Ctrl+P"));
-  grid->addWidget(again, 0, 0, 1, 2);
+  grid->addWidget(again_button_, 0, 0, 1, 2);
   grid->addWidget(worst_button_, 1, 0, 1, 2);
   grid->addWidget(report, 2, 0);
   grid->addWidget(other, 2, 1);
-  connect(again, &QPushButton::clicked, this, &FeedbackPanel::again_requested);
+  connect(again_button_, &QPushButton::clicked, this, &FeedbackPanel::again_requested);
   connect(worst_button_, &QPushButton::clicked, this, &FeedbackPanel::worst_requested);
   connect(other, &QPushButton::clicked, this, &FeedbackPanel::other_case_requested);
   connect(report, &QPushButton::clicked, this, &FeedbackPanel::report_requested);
@@ -220,7 +221,7 @@ void FeedbackPanel::show_outcome(const scoring::Outcome& outcome, const QString&
   harm_->setVisible(!harm_->text().isEmpty());
   worst_->setText(worst_moment);
   worst_->setVisible(!worst_moment.isEmpty());
-  worst_button_->setEnabled(!worst_moment.isEmpty());
+  worst_button_->setVisible(!worst_moment.isEmpty());
   scroll_->verticalScrollBar()->setValue(0);
 }
 
@@ -238,6 +239,15 @@ void FeedbackPanel::show_next(const QString& text) {
   next_->setText(text);
   next_->setVisible(!text.isEmpty());
   next_title_->setVisible(!text.isEmpty());
+}
+
+void FeedbackPanel::show_again(bool is_next_exam) {
+  const QString text = is_next_exam ? tr("Next exam") : tr("Try again");
+  const QString tip = is_next_exam ? tr("Another exam, on a body that you have not seen") : tr("Repeat the same case");
+  again_button_->setText(text);  // clears the shortcut
+  again_button_->setAccessibleName(text);
+  again_button_->setToolTip(tip + QStringLiteral("  (Ctrl+R)"));
+  again_button_->setShortcut(QKeySequence(QStringLiteral("Ctrl+R")));
 }
 
 void FeedbackPanel::show_result(const QString& text) {

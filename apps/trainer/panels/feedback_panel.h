@@ -22,8 +22,8 @@ class ExpertPathList;
 class HintList;
 class ScoreDial;
 
-/// Result of an attempt: score, passed or not and why, parts of the score, improvements. Keys: Ctrl+R tries again, W
-/// shows the worst moment, H the moment of the next hint.
+/// Result of an attempt: score, passed or not and why, parts of the score, improvements. Keys: Ctrl+R tries again or
+/// begins another exam, W shows the worst moment, H the moment of the next hint.
 class FeedbackPanel : public QWidget {
   Q_OBJECT
 
@@ -40,6 +40,8 @@ class FeedbackPanel : public QWidget {
   void show_notes(const QStringList& notes);
   /// Shows what to practise next and why; empty: nothing.
   void show_next(const QString& text);
+  /// Names the button of again_requested: "Next exam" (`is_next_exam`: it draws another body) or "Try again".
+  void show_again(bool is_next_exam);
   /// Shows where the signed result of an exam lies, or why there is none; empty: no exam.
   void show_result(const QString& text);
   HintList& hints() noexcept { return *hints_; }
@@ -57,6 +59,7 @@ class FeedbackPanel : public QWidget {
   void show_parts(const std::vector<scoring::ScorePart>& parts);
 
   QScrollArea* scroll_ = nullptr;
+  QPushButton* again_button_ = nullptr;
   QPushButton* worst_button_ = nullptr;
   ScoreDial* dial_ = nullptr;
   QLabel* level_ = nullptr;

@@ -37,7 +37,7 @@ constexpr Key kTools[] = {
     {"Space", "stops all forces, or switches them on again"}};
 constexpr Key kPages[] = {{"Tab", "next control; Space presses it, during a puncture Enter"},
                           {"Ctrl++, Ctrl+-", "larger, smaller text"},
-                          {"Ctrl+R", "tries again"},
+                          {"Ctrl+R", "tries again; after an exam, begins another"},
                           {"W", "worst moment of the replay"},
                           {"N, P", "next and previous event of the replay"},
                           {"H", "next hint's moment in the replay"},

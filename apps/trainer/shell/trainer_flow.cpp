@@ -260,9 +260,15 @@ void TrainerFlow::begin_attempt() {
     attempt_->attempt().set_parameters(cases::tissue_parameters(changes));
 }
 
+/// After an exam its body is known: another one is drawn.
 void TrainerFlow::try_again() {
   attempt_.reset();
-  begin_attempt();
+  if (!needs_exam_body(choice_)) return begin_attempt();
+  TrainerChoice next = choice_;
+  next.exam_number = 0;
+  next.is_body_known = false;
+  go_to_start();
+  start(next);
 }
 
 void TrainerFlow::poll_attempt() {
@@ -330,6 +336,7 @@ void TrainerFlow::show_replay(Result<attempt::AttemptReplay> replay) {
   window_.show_banner(to_qt(std::exchange(cut_short_, {})));
   replay_ = std::make_unique<ReplayControl>(*std::move(replay), open_, window_.work(), std::exchange(warnings_, {}));
   window_.work().set_parameters_locked(false);
+  window_.work().feedback().show_again(needs_exam_body(choice_));
   window_.work().show_feedback();
   window_.show_page(QStringLiteral("feedback"));
   window_.work().time_line().setFocus();

@@ -90,6 +90,17 @@ TEST(FeedbackPanelTest, TheLevelStandsBesideTheScore) {
   EXPECT_TRUE(level->isHidden());
 }
 
+TEST(FeedbackPanelTest, AfterAnExamTheButtonBeginsTheNextOne) {
+  FeedbackPanel panel;
+  auto* again = panel.findChild<QPushButton*>(QStringLiteral("try-again"));
+  EXPECT_EQ(again->text(), QStringLiteral("Try again"));
+  panel.show_again(true);
+  EXPECT_EQ(again->text(), QStringLiteral("Next exam"));
+  EXPECT_EQ(again->shortcut(), QKeySequence(QStringLiteral("Ctrl+R"))) << "a new text keeps the key";
+  panel.show_again(false);
+  EXPECT_EQ(again->text(), QStringLiteral("Try again"));
+}
+
 TEST(FeedbackPanelTest, SaysWhyAnAttemptIsNotScored) {
   FeedbackPanel panel;
   scoring::Outcome outcome;
@@ -99,10 +110,10 @@ TEST(FeedbackPanelTest, SaysWhyAnAttemptIsNotScored) {
   EXPECT_EQ(panel.findChild<QLabel*>(QStringLiteral("verdict"))->text(),
             QStringLiteral("Not scored: the needle never touched the skin"));
   EXPECT_TRUE(panel.findChild<QWidget*>(QStringLiteral("score-dial"))->isHidden());
-  EXPECT_FALSE(panel.findChild<QPushButton*>(QStringLiteral("worst-moment"))->isEnabled());
+  EXPECT_TRUE(panel.findChild<QPushButton*>(QStringLiteral("worst-moment"))->isHidden());
   panel.show_outcome(long_outcome(), QStringLiteral("Worst moment: 3.0 mm from the planned path, after 4 s"));
   EXPECT_FALSE(panel.findChild<QWidget*>(QStringLiteral("score-dial"))->isHidden());
-  EXPECT_TRUE(panel.findChild<QPushButton*>(QStringLiteral("worst-moment"))->isEnabled());
+  EXPECT_FALSE(panel.findChild<QPushButton*>(QStringLiteral("worst-moment"))->isHidden());
 }
 
 QString text_of(const FeedbackPanel& panel, const char* name) {
