@@ -22,6 +22,17 @@ std::string full_name(const CLI::App& command) {
   return parent == nullptr ? command.get_name() : full_name(*parent) + " " + command.get_name();
 }
 
+/// An option that was given an empty text, as from an unset variable of a shell; null: none. It would read as an option
+/// that was left out.
+const CLI::Option* find_empty(const CLI::App& command) {
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& text : option->results())
+      if (text.empty()) return option;
+  for (const CLI::App* below : command.get_subcommands())
+    if (const CLI::Option* option = find_empty(*below)) return option;
+  return nullptr;
+}
+
 int report_usage(const CLI::App& program, const CLI::ParseError& error) {
   const CLI::App& command = deepest_command(program);
   const std::string name = full_name(command);
@@ -64,6 +75,9 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return report_usage(program, error);
   }
+  if (const CLI::Option* option = find_empty(program))
+    return trocar::arguments::report_error(
+        {option->get_name() + " is empty", full_name(deepest_command(program)), "give a value or leave it out", 2});
   if (is_verbose) trocar::set_log_level(trocar::LogLevel::kInfo);
   const trocar::Status done = action();
   return done ? 0 : trocar::arguments::report_error(done.error());

@@ -44,6 +44,12 @@ TEST(Learn, BeginsWithoutSessionsAndRefusesUnknownNames) {
   EXPECT_NE(outcome.out.find("case 1, guided"), std::string::npos) << outcome.out;
   EXPECT_EQ(trocar("learn --sessions '" + folder / "nothing" + "'").exit_status, 2);
   EXPECT_EQ(trocar("learn --task nothing").exit_status, 2);
+  for (const std::string option : {"--task", "--sessions"}) {
+    const Outcome empty = trocar("learn " + option + " ''");
+    EXPECT_EQ(empty.exit_status, 2);
+    EXPECT_TRUE(empty.err.starts_with("error: " + option + " is empty")) << empty.err;
+    EXPECT_EQ(line_count(empty.err), 1) << empty.err;
+  }
 }
 
 }  // namespace
