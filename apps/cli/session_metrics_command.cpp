@@ -11,6 +11,7 @@
 #include "io/patient/open_patient.h"
 #include "metrics/measure_run.h"
 #include "metrics/pose_csv.h"
+#include "number_option.h"
 #include "patient_option.h"
 #include "storage/session_moments.h"
 #include "tasks/fit_to_patient.h"
@@ -220,8 +221,6 @@ void print_as_text(const std::vector<metrics::MetricValue>& values) {
 }
 
 Status print_metrics(const MetricsArguments& arguments) {
-  if (!std::isfinite(arguments.depth_mm) || arguments.depth_mm < 0.0 || arguments.depth_mm > 400.0)
-    return fail_usage("the depth of the image must be 10 to 400 mm", "--depth", "leave it out for the default");
   MeasuredCase measured;
   TROCAR_TRY(const std::vector<metrics::MetricValue> values, is_database(arguments.recording)
                                                                  ? measure_session(arguments, measured)
@@ -242,13 +241,14 @@ void add_session_metrics_command(CLI::App& session, Action& action) {
   command->add_option("--task", a->task, "Task, or a file TASK.toml; default: that of the session");
   command->add_option("--patient", a->patient.folder_or_name,
                       "Patient folder or embedded patient; default: that of the session");
-  command->add_option("--seed", a->patient.seed, "Seed of an embedded patient, for a CSV file");
+  arguments::seed_number(command->add_option("--seed", a->patient.seed, "Seed of an embedded patient, for a CSV file"));
   add_cache_option(*command, a->patient);
   command->add_option("--expert", a->expert,
                       "Expert paths (.mrk.json); default: the session's plan and the patient's paths");
   command->add_option("--needle", a->needle, "Needle; default: that of the session, or of the task");
   command->add_option("--transducer", a->transducer, "Transducer, for its image plane")->capture_default_str();
-  command->add_option("--depth", a->depth_mm, "Depth of the image, mm; default: the transducer's");
+  arguments::number_within(command->add_option("--depth", a->depth_mm, "Depth of the image [the transducer's]"), 10,
+                           400, "mm");
   command->add_flag("--json", a->is_json, "Print one JSON object");
   command->footer(
       "A metric without a value is printed with the reason. Definitions and the columns of the CSV file: "

@@ -25,6 +25,8 @@ constexpr Command kCommands[] = {
     {"trocar", "plan", "liver-biopsy --patient abdomen --out x"},
     {"trocar", "run", "liver-biopsy --patient abdomen --operator expert --out x"},
     {"trocar", "session report", "x --out y"},
+    {"trocar", "session metrics", "x"},
+    {"trocar", "exam draw", "liver-biopsy"},
     {"trocar", "ultrasound image", "--patient abdomen --view aorta --out x.png"},
     {"trocar", "ultrasound sweep", "--patient abdomen --view aorta --out x.nrrd"},
     {"trocar", "ultrasound reconstruct", "x.igs.mha --out x.nrrd"},
