@@ -10,8 +10,9 @@
 #include "exams/exam_body.h"
 #include "exams/exam_result.h"
 #include "io/patient/patient_cache.h"
-#include "learning/history.h"
 #include "number_option.h"
+#include "past_sessions.h"
+#include "storage/session_summary.h"
 #include "tasks/task.h"
 
 namespace trocar::cli {
@@ -20,6 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostKeyBytes = 4096;
+constexpr std::int64_t kFirstNumber = exams::kPractisedNumber + 1;
 
 struct DrawArguments {
   std::string task, sessions;
@@ -36,16 +38,12 @@ fs::path state_folder(const std::string& given) {
   return given.empty() ? user_state_folder() : fs::path(given);
 }
 
-fs::path sessions_folder(const std::string& given) {
-  return given.empty() ? user_state_folder() / "sessions" : fs::path(given);
-}
-
 Status draw(const DrawArguments& arguments) {
   TROCAR_TRY(const fs::path tasks_folder, find_data("tasks"));
   TROCAR_TRY_STATUS(tasks::load_task(tasks_folder, arguments.task));
   TROCAR_TRY(const std::string patient,
              exams::patient_of_difficulty(arguments.task, static_cast<int>(arguments.difficulty)));
-  TROCAR_TRY(const learning::History history, learning::read_history(sessions_folder(arguments.sessions)));
+  TROCAR_TRY(const learning::History history, read_past_sessions(arguments.sessions));
   exams::ExamBody body;
   {
     const ProgressPrinter printer;
@@ -73,10 +71,11 @@ Status draw(const DrawArguments& arguments) {
 }
 
 Status sign(const ResultArguments& arguments) {
+  TROCAR_TRY_STATUS(storage::load_summary(arguments.file));  // before a key is made, and before warnings about others
   TROCAR_TRY(const auto key, signing::open_station_key(state_folder(arguments.state) / exams::kStationKeyFile));
-  const fs::path folder =
-      arguments.sessions.empty() ? fs::absolute(arguments.file).parent_path() : fs::path(arguments.sessions);
-  TROCAR_TRY(const learning::History history, learning::read_history(folder));
+  TROCAR_TRY(const learning::History history,
+             read_past_sessions(arguments.sessions.empty() ? fs::absolute(arguments.file).parent_path().string()
+                                                           : arguments.sessions));
   TROCAR_TRY(const fs::path result, exams::sign_exam(arguments.file, history.attempts, key));
   fmt::print("{}\n", result.string());
   return {};
@@ -103,9 +102,16 @@ Result<signing::PublicKey> trusted_key(const ResultArguments& arguments) {
                     "give the 64 digits that trocar exam key prints on the station, or a file with them");
 }
 
+/// Exit status 1 of `verify` says that the result is not to be relied on; a check that cannot be made has the status 2.
+template <class T>
+Result<T> without_verdict(Result<T> checked) {
+  if (!checked) checked.error().exit_status = 2;
+  return checked;
+}
+
 Status verify(const ResultArguments& arguments) {
-  TROCAR_TRY(const signing::PublicKey key, trusted_key(arguments));
-  TROCAR_TRY(const exams::Verification verification, exams::verify_exam(arguments.file, key));
+  TROCAR_TRY(const signing::PublicKey key, without_verdict(trusted_key(arguments)));
+  TROCAR_TRY(const exams::Verification verification, without_verdict(exams::verify_exam(arguments.file, key)));
   if (!verification.is_valid()) return fail(verification.text, arguments.file, "do not rely on this result");
   fmt::print("{}\n", verification.text);
   return {};
@@ -127,7 +133,8 @@ void add_draw(CLI::App& exam, Action& action) {
   command->add_option("TASK,--task", a->task, "Task; see trocar task list")->required();
   arguments::whole_number_within(command->add_option("--difficulty", a->difficulty, "Difficulty of the case"), 1, 5)
       ->capture_default_str();
-  arguments::seed_number(command->add_option("--number", a->number, "Check this exam instead of drawing one"));
+  arguments::whole_number_within(command->add_option("--number", a->number, "Check this exam instead of drawing one"),
+                                 kFirstNumber, static_cast<std::int64_t>(exams::kMostNumber));
   command->add_option(
       "--sessions", a->sessions,
       "Folder of sessions whose bodies are known [those of the trainer: $XDG_STATE_HOME/trocar/sessions]");

@@ -7,10 +7,9 @@
 #include <chrono>
 
 #include "commands.h"
-#include "core/files/user_folders.h"
-#include "learning/history.h"
 #include "learning/next_exercise.h"
 #include "learning/progress.h"
+#include "past_sessions.h"
 #include "tasks/task.h"
 
 namespace trocar::cli {
@@ -41,12 +40,7 @@ Result<Learned> learn(const Arguments& arguments) {
   TROCAR_TRY(const std::filesystem::path tasks_folder, find_data("tasks"));
   TROCAR_TRY(learned.curriculum, learning::load_curriculum(tasks_folder.parent_path()));
   if (!arguments.task.empty()) TROCAR_TRY_STATUS(tasks::load_task(tasks_folder, arguments.task));
-  std::error_code error;
-  if (!arguments.sessions.empty() && !std::filesystem::is_directory(arguments.sessions, error))
-    return fail_usage("no such folder", arguments.sessions, "name a folder of session files");
-  TROCAR_TRY(learned.history,
-             learning::read_history(arguments.sessions.empty() ? user_state_folder() / "sessions"
-                                                               : std::filesystem::path(arguments.sessions)));
+  TROCAR_TRY(learned.history, read_past_sessions(arguments.sessions));
   const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
   for (const learning::Course& course : learned.curriculum.courses)
     learned.progress.push_back(learning::progress_of(learned.history.attempts, course, learned.curriculum.rules, now));
@@ -130,7 +124,6 @@ void print_learned(const Learned& learned, const Arguments& arguments) {
 
 Status print(const Arguments& arguments) {
   TROCAR_TRY(const Learned learned, learn(arguments));
-  for (const std::string& line : learned.history.damaged) print_warning(line);
   for (const std::string& note : learned.advice.notes) print_warning(note);
   if (arguments.is_json) {
     print_json(learned_json(learned, arguments));

@@ -1,0 +1,20 @@
+#include "past_sessions.h"
+
+#include <filesystem>
+
+#include "core/files/user_folders.h"
+#include "output.h"
+
+namespace trocar::cli {
+
+Result<learning::History> read_past_sessions(const std::string& folder) {
+  std::error_code error;
+  if (!folder.empty() && !std::filesystem::is_directory(folder, error))
+    return fail_usage("no such folder", folder, "name a folder of session files");
+  TROCAR_TRY(learning::History history,
+             learning::read_history(folder.empty() ? user_state_folder() / "sessions" : std::filesystem::path(folder)));
+  for (const std::string& line : history.damaged) print_warning(line);
+  return history;
+}
+
+}  // namespace trocar::cli
