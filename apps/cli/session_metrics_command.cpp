@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 
@@ -64,27 +65,44 @@ Result<tasks::Task> recorded_task(const storage::SessionInfo& info) {
   return tasks::parse_task(info.task_toml, info.task, "the session's task", folder);
 }
 
-/// The patient of a session; empty with a warning if it is not found, cannot be read or is another one.
-std::optional<anatomy::VirtualPatient> recorded_patient(const storage::SessionInfo& info,
-                                                        const MetricsArguments& arguments, const Progress& progress) {
+/// The patient of a session. Errors: it is not found, cannot be read or is another one.
+Result<anatomy::VirtualPatient> open_recorded_patient(const storage::SessionInfo& info,
+                                                      const MetricsArguments& arguments, const Progress& progress) {
   io::PatientSource source = arguments.patient;
-  const auto warn = [](const std::string& why) {
-    print_warning("metrics that need the patient have no value: " + why);
-    return std::nullopt;
-  };
   if (source.folder_or_name.empty()) {
     const std::filesystem::path beside = std::filesystem::path(arguments.recording).parent_path();
-    auto found = io::find_recorded_patient(info.patient_source, info.patient_hash, beside);
-    if (!found) return warn(found.error().text());
-    source.folder_or_name = *std::move(found);
+    TROCAR_TRY(source.folder_or_name, io::find_recorded_patient(info.patient_source, info.patient_hash, beside));
   }
   source.seed = info.patient_seed;
-  auto patient = io::open_patient(source, progress);
-  if (!patient) return warn(patient.error().text());
-  if (patient->content_hash != info.patient_hash)
-    return warn(fmt::format("{} differs from the patient of the session; name the right one with --patient",
-                            source.folder_or_name));
-  return *std::move(patient);
+  TROCAR_TRY(anatomy::VirtualPatient patient, io::open_patient(source, progress));
+  if (patient.content_hash != info.patient_hash)
+    return fail("is not the patient of the session", source.folder_or_name, "name the right one with --patient");
+  return patient;
+}
+
+/// A patient that the user named must be the right one; without another one there are fewer metrics and a warning.
+Status find_patient(const storage::SessionInfo& info, const MetricsArguments& arguments, MeasuredCase& measured) {
+  const ProgressPrinter printer;
+  auto patient = open_recorded_patient(info, arguments, printer.callback());
+  if (patient) {
+    measured.patient = *std::move(patient);
+  } else if (!arguments.patient.folder_or_name.empty()) {
+    return tl::unexpected(std::move(patient).error());
+  } else {
+    print_warning("metrics that need the patient have no value: " + patient.error().text());
+  }
+  return {};
+}
+
+/// The needle of a session.
+Result<tasks::Needle> recorded_needle(const storage::SessionInfo& info, const MetricsArguments& arguments) {
+  TROCAR_TRY(const auto file, find_data("needles.toml"));
+  TROCAR_TRY(const std::vector<tasks::Needle> needles, tasks::load_needles(file));
+  const auto found = std::ranges::find(needles, info.needle, &tasks::Needle::name);
+  if (found == needles.end())
+    return fail(fmt::format("the needle \"{}\" of the session is not in the list", info.needle), arguments.recording,
+                "name a needle with --needle");
+  return *found;
 }
 
 /// The patient's own expert paths for the task, behind those that are there. A biopsy needle is fired before the end of
@@ -138,12 +156,10 @@ Result<std::vector<metrics::MetricValue>> measure_session(const MetricsArguments
   if (arguments.task.empty()) {
     TROCAR_TRY(measured.task, recorded_task(session.info));
   }
-  const ProgressPrinter printer;
-  measured.patient = recorded_patient(session.info, arguments, printer.callback());
   if (arguments.needle.empty()) {
-    TROCAR_TRY(const auto needles, find_data("needles.toml"));
-    TROCAR_TRY(measured.context.needle, tasks::load_needle(needles, session.info.needle));
+    TROCAR_TRY(measured.context.needle, recorded_needle(session.info, arguments));
   }
+  TROCAR_TRY_STATUS(find_patient(session.info, arguments, measured));
   TROCAR_TRY_STATUS(complete(arguments, measured));
   metrics::MeasureRun run(measured.context);
   storage::walk_moments(session, [&](const metrics::Moment& moment) { run.step(moment); });
@@ -160,6 +176,9 @@ Result<std::vector<metrics::MetricValue>> measure_poses(const MetricsArguments& 
   TROCAR_TRY_STATUS(complete(arguments, measured));
   metrics::MeasureRun run(measured.context);
   table.walk([&](const metrics::Moment& moment) { run.step(moment); });
+  if (run.left_out() == table.rows())
+    return fail(fmt::format("none of the {} rows has a time, a position and a direction", table.rows()),
+                arguments.recording, "docs/metrics.md describes the columns");
   if (run.left_out() > 0)
     print_warning(fmt::format("{} of {} rows are left out: they are not finite, or not later than the row above — {}",
                               run.left_out(), table.rows(), arguments.recording));

@@ -127,6 +127,13 @@ TEST_F(SessionMetrics, BadInputIsOneClearLine) {
   expect_refused("'" + (*folder_ / "none.csv") + "'", "none.csv");
   expect_refused("'" + write("empty.csv", "") + "'", "the file is empty");
   expect_refused("'" + write("header.csv", header) + "'", "no row");
+  for (const char* row : {"0,nan,nan,nan,nan,nan,nan\n", "0,0,0,0,0,0,0\n"})
+    expect_refused("'" + write("no_pose.csv", header + row) + "'", "none of the 1 rows has a time");
+  expect_refused("'" + session_ + "' --patient nobody", "nobody", 2);
+  const Outcome other = trocar("session metrics '" + session_ + "' --patient layers-liver");  // prints its progress
+  EXPECT_EQ(other.exit_status, 1);
+  EXPECT_TRUE(other.out.empty()) << other.out;
+  EXPECT_NE(other.err.find("error: is not the patient of the session — layers-liver"), std::string::npos) << other.err;
   expect_refused("'" + write("text.csv", header + "0,a,0,0,0,0,1\n") + "'", "line 2: column tip_x_mm");
   expect_refused("'" + write("time.csv", header + "1,0,0,0,0,0,1\n0,0,0,0,0,0,1\n") + "'", "line 3: column time_s");
   expect_refused("'" + write("cut.session", "SQLite format 3 and no more") + "'", "cut.session");
@@ -134,7 +141,8 @@ TEST_F(SessionMetrics, BadInputIsOneClearLine) {
   expect_refused("'" + good + "' --patient nobody", "nobody", 2);
   expect_refused("'" + good + "' --expert '" + good + "'", "good.csv");
   expect_refused("'" + good + "' --transducer none", "none", 2);
-  expect_refused("'" + good + "' --depth -3", "--depth", 2);
+  for (const char* depth_mm : {"-3", "9", "nan", "401"})
+    expect_refused("'" + good + "' --depth " + depth_mm, "--depth", 2);
   expect_refused("'" + folder_->path().string() + "'", folder_->path().string());
 }
 
