@@ -201,6 +201,14 @@ TEST(NamedCases, AreFiveOfEachTaskInOrderOfDifficulty) {
 // 1976, and CT volumetry); spleen 50 to 410 (Prassopoulos et al., Eur Radiol 7:246, 1997: mean 215); kidney 90 to 260
 // (Cheong et al., CJASN 2:38, 2007, MRI: 150 to 200, larger in tall men); gallbladder 12 to 130 (fasting 20 to 50,
 // distended more); lumbar vertebra 30 to 95 with its arch.
+TEST(NamedCases, TheReferralHoldsForTheBodiesOfAllSeeds) {
+  // Other seeds place other lesions, and smaller ones where there is no room.
+  for (const CaseDescription& description : shipped_cases())
+    for (const char* word : {" mm", "lobe", "segment"})
+      for (const std::string& text : {description.description, description.indication})
+        EXPECT_EQ(text.find(word), std::string::npos) << description.name << ": " << text;
+}
+
 TEST(NamedCases, HaveOrgansOfPublishedSize) {
   const std::map<std::string, std::pair<double, double>> limits{
       {"liver", {950.0, 2300.0}},         {"spleen", {50.0, 410.0}},      {"kidney_left", {90.0, 260.0}},
