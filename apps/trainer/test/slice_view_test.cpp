@@ -8,6 +8,7 @@
 #include "anatomy/phantom/phantom.h"
 #include "test/widget_actions.h"
 #include "ui_kit/theme.h"
+#include "views/slices/slice_marks.h"
 
 namespace trocar::trainer {
 namespace {
@@ -254,6 +255,16 @@ void look_at(std::shared_ptr<const anatomy::VirtualPatient> patient, const Segme
 
 TEST(SliceView, ShowsTheNeedleInAllPlanes) {
   look_at(abdomen(), expert_path(), "slices.png");
+}
+
+TEST(SliceMarks, NamesOfLandmarksDoNotOverlap) {
+  const QRectF wanted(10.0, 20.0, 100.0, 14.0);
+  EXPECT_EQ(free_place(wanted, {}), wanted);
+  const std::vector<QRectF> beside{{120.0, 20.0, 50.0, 14.0}};
+  EXPECT_EQ(free_place(wanted, beside), wanted);
+  // The second is where the first one leaves room.
+  const std::vector<QRectF> two{{60.0, 40.0, 100.0, 14.0}, {40.0, 26.0, 100.0, 14.0}};
+  EXPECT_EQ(free_place(wanted, two), QRectF(10.0, 54.0, 100.0, 14.0));
 }
 
 }  // namespace

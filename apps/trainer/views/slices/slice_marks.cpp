@@ -18,6 +18,14 @@ constexpr double kNear_mm = 15.0;  ///< Landmarks farther from the slice are not
 
 }  // namespace
 
+QRectF free_place(QRectF wanted, std::span<const QRectF> taken) {
+  const auto overlaps = [&](const QRectF& other) { return other.intersects(wanted); };
+  for (auto other = std::ranges::find_if(taken, overlaps); other != taken.end();
+       other = std::ranges::find_if(taken, overlaps))
+    wanted.moveTop(other->bottom());
+  return wanted;
+}
+
 SliceMarks::SliceMarks(SliceView* view) : QWidget(view), view_(view) {
   setAttribute(Qt::WA_TransparentForMouseEvents);
   setFocusPolicy(Qt::NoFocus);
@@ -92,6 +100,8 @@ void SliceMarks::paintEvent(QPaintEvent* /*event*/) {
     painter.drawEllipse(view_->position_of(mark_P), 4.0, 4.0);
     painter.setBrush(Qt::NoBrush);
   }
+  std::vector<QRectF> names;
+  const QFontMetricsF metrics(painter.font());
   for (const anatomy::Landmark& landmark : landmarks_) {
     const double away = away_mm(landmark.p_P);
     if (away > kNear_mm) continue;
@@ -99,7 +109,11 @@ void SliceMarks::paintEvent(QPaintEvent* /*event*/) {
     painter.setPen(pen_of(theme().warning, 1.5, away < kInPlane_mm));
     painter.drawLine(at - QPointF(4, 4), at + QPointF(4, 4));
     painter.drawLine(at - QPointF(4, -4), at + QPointF(4, -4));
-    draw_text(painter, at + QPointF(7, 4), to_qt(landmark.name), painter.pen().color());
+    const QString name = to_qt(landmark.name);
+    const QSizeF size(metrics.horizontalAdvance(name), metrics.height());
+    const QRectF place = free_place(QRectF(at + QPointF(7.0, 4.0 - metrics.ascent()), size), names);
+    names.push_back(place);
+    draw_text(painter, place.topLeft() + QPointF(0.0, metrics.ascent()), name, painter.pen().color());
   }
   if (target_P_) {
     const QPointF at = view_->position_of(*target_P_);

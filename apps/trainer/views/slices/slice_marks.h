@@ -1,7 +1,9 @@
 #pragma once
 
+#include <QRectF>
 #include <QWidget>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "anatomy/patient.h"
@@ -12,6 +14,9 @@ class QPainter;
 namespace trocar::trainer {
 
 class SliceView;
+
+/// Place of a text, pixels: the wanted one, moved down until it overlaps none of the others.
+QRectF free_place(QRectF wanted, std::span<const QRectF> taken);
 
 /// Overlay of a slice viewer with the marks of a case besides the plan (target, landmarks), the gun's shot and its
 /// throw; faint if they are off the slice. Transparent for the mouse.
