@@ -19,6 +19,7 @@ const QColor kMarkerInk(0x5a, 0xc8, 0x78);
 const QColor kFocusInk(0xf0, 0xc8, 0x50);
 const QColor kCaliperInk(0xf4, 0xe0, 0x6a);
 
+constexpr double kLeastRate_hz = 0.05;             ///< Rounds to 0.1; an image at rest has no rate.
 constexpr double kHardlyAny = 0.02, kMost = 0.75;  ///< Shares of the face on the skin, as in the command line.
 constexpr double kUnscanned = 0.01;                ///< Share of the image outside the CT that needs a caption.
 constexpr double kWedge_px = 8.0, kBarGap_px = 12.0, kColourBar_px = 10.0;
@@ -89,7 +90,7 @@ std::vector<CaptionLine> caption_of(const ultrasound::ScanPicture& picture, cons
     const QString state = facts.cine.is_playing ? QStringLiteral("Cine") : QStringLiteral("Frozen");
     lines.push_back(
         {QStringLiteral("%1 %2/%3").arg(state).arg(facts.cine.position + 1).arg(facts.cine.size), Kind::kFrozen});
-  } else if (!facts.is_small) {
+  } else if (!facts.is_small && facts.frames_per_s >= kLeastRate_hz) {
     lines.push_back(
         {QStringLiteral("%1 Hz").arg(facts.frames_per_s, 0, 'f', facts.frames_per_s < 1.0 ? 1 : 0), Kind::kPlain});
   }
