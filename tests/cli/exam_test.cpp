@@ -58,14 +58,6 @@ TEST(Exam, RefusesWhatCannotBeAnExam) {
   EXPECT_NE(practised.err.find("whole number from 2 to 999999"), std::string::npos) << practised.err;
 }
 
-void expect_one_line(const Outcome& outcome, int exit_status, const std::string& words) {
-  EXPECT_EQ(outcome.exit_status, exit_status) << outcome.err;
-  EXPECT_EQ(outcome.out, "");
-  EXPECT_TRUE(outcome.err.starts_with("error: ")) << outcome.err;
-  EXPECT_EQ(line_count(outcome.err), 1) << outcome.err;
-  EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
-}
-
 TEST(Exam, WhatCannotBeVerifiedHasNoVerdict) {
   const TemporaryFolder folder;
   const std::string session = folder / "a.trocar";
@@ -81,17 +73,17 @@ TEST(Exam, WhatCannotBeVerifiedHasNoVerdict) {
   no_number.replace(no_number.find("91.0"), 4, "NaN");
   for (const std::string& text : {std::string(), std::string("null"), std::string("[]"), std::string("{}"),
                                   good.substr(0, good.size() / 2), no_number, std::string(200000, '[')})
-    expect_one_line(verify(text), 2, "b.json");
-  expect_one_line(verify(good + " "), 1, "changed");
-  expect_one_line(trocar("exam verify '" + session + "'" + state), 2, "a.trocar");
-  expect_one_line(trocar("exam verify '" + folder.path().string() + "'" + state), 2, folder.path().string());
-  expect_one_line(trocar("exam verify '" + folder / "none.json" + "'" + state), 2, "none.json");
+    expect_refused(verify(text), 2, "b.json");
+  expect_refused(verify(good + " "), 1, "changed");
+  expect_refused(trocar("exam verify '" + session + "'" + state), 2, "a.trocar");
+  expect_refused(trocar("exam verify '" + folder.path().string() + "'" + state), 2, folder.path().string());
+  expect_refused(trocar("exam verify '" + folder / "none.json" + "'" + state), 2, "none.json");
   const std::string with_key = "exam verify '" + folder / "a.result.json" + "' --key ";
-  expect_one_line(trocar(with_key + "'" + folder.path().string() + "'"), 2, folder.path().string());
-  expect_one_line(trocar(with_key + "/dev/zero"), 2, "/dev/zero");
-  expect_one_line(trocar(with_key + "''"), 2, "--key is empty");
+  expect_refused(trocar(with_key + "'" + folder.path().string() + "'"), 2, folder.path().string());
+  expect_refused(trocar(with_key + "/dev/zero"), 2, "/dev/zero");
+  expect_refused(trocar(with_key + "''"), 2, "--key is empty");
   std::filesystem::resize_file(session, 10000);
-  expect_one_line(trocar("exam verify '" + folder / "a.result.json" + "'" + state), 1, "changed: the session a.trocar");
+  expect_refused(trocar("exam verify '" + folder / "a.result.json" + "'" + state), 1, "changed: the session a.trocar");
 }
 
 TEST(Exam, ADamagedSessionIsNotSigned) {
@@ -100,21 +92,21 @@ TEST(Exam, ADamagedSessionIsNotSigned) {
   const std::string state = " --state '" + folder / "state" + "'";
   write_exam(session);
   std::filesystem::resize_file(session, std::filesystem::file_size(session) / 2);
-  expect_one_line(trocar("exam sign '" + session + "'" + state), 1, "a.trocar");
+  expect_refused(trocar("exam sign '" + session + "'" + state), 1, "a.trocar");
   EXPECT_FALSE(std::filesystem::exists(folder / "a.result.json"));
   EXPECT_FALSE(std::filesystem::exists(folder / "state"));
-  expect_one_line(trocar("exam sign '" + folder / "none.trocar" + "'" + state), 1, "none.trocar");
-  expect_one_line(trocar("exam sign ''" + state), 2, "SESSION is empty");
-  expect_one_line(trocar("exam key --state /proc/nothing"), 1, "/proc/nothing");
+  expect_refused(trocar("exam sign '" + folder / "none.trocar" + "'" + state), 1, "none.trocar");
+  expect_refused(trocar("exam sign ''" + state), 2, "SESSION is empty");
+  expect_refused(trocar("exam key --state /proc/nothing"), 1, "/proc/nothing");
 }
 
 TEST(Exam, MissingFoldersOfSessionsAreNotTakenForEmptyOnes) {
   const TemporaryFolder folder;
   const std::string none = " --sessions '" + folder / "none" + "'";
-  expect_one_line(trocar("exam draw liver-biopsy" + none), 2, "no such folder");
+  expect_refused(trocar("exam draw liver-biopsy" + none), 2, "no such folder");
   write_exam(folder / "a.trocar");
-  expect_one_line(trocar("exam sign '" + folder / "a.trocar" + "' --state '" + folder / "state" + "'" + none), 2,
-                  "no such folder");
+  expect_refused(trocar("exam sign '" + folder / "a.trocar" + "' --state '" + folder / "state" + "'" + none), 2,
+                 "no such folder");
   EXPECT_FALSE(std::filesystem::exists(folder / "a.result.json"));
 }
 

@@ -42,14 +42,10 @@ TEST(Learn, BeginsWithoutSessionsAndRefusesUnknownNames) {
   const Outcome outcome = trocar("learn --sessions '" + folder.path().string() + "'");
   EXPECT_EQ(outcome.exit_status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("case 1, guided"), std::string::npos) << outcome.out;
-  EXPECT_EQ(trocar("learn --sessions '" + folder / "nothing" + "'").exit_status, 2);
-  EXPECT_EQ(trocar("learn --task nothing").exit_status, 2);
-  for (const std::string option : {"--task", "--sessions"}) {
-    const Outcome empty = trocar("learn " + option + " ''");
-    EXPECT_EQ(empty.exit_status, 2);
-    EXPECT_TRUE(empty.err.starts_with("error: " + option + " is empty")) << empty.err;
-    EXPECT_EQ(line_count(empty.err), 1) << empty.err;
-  }
+  expect_refused(trocar("learn --sessions '" + folder / "nothing" + "'"), 2, "no such folder");
+  expect_refused(trocar("learn --task nothing"), 2, "known are: ascites-puncture");
+  for (const std::string option : {"--task", "--sessions"})
+    expect_refused(trocar("learn " + option + " ''"), 2, option + " is empty");
 }
 
 }  // namespace

@@ -48,6 +48,14 @@ config::Json json_of(const Outcome& outcome) {
   return nullptr;
 }
 
+void expect_refused(const Outcome& outcome, int exit_status, const std::string& words) {
+  EXPECT_EQ(outcome.exit_status, exit_status) << outcome.err;
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_TRUE(outcome.err.starts_with("error: ")) << outcome.err;
+  EXPECT_EQ(line_count(outcome.err), 1) << outcome.err;
+  EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
+}
+
 int line_count(const std::string& text) {
   return static_cast<int>(std::count(text.begin(), text.end(), '\n'));
 }

@@ -27,6 +27,9 @@ Outcome run_shell(const std::string& line);
 /// Standard output as JSON; a test failure and null if it is not JSON.
 config::Json json_of(const Outcome& outcome);
 
+/// Expects this exit status, nothing on standard output, and one line "error: ..." that contains `words`.
+void expect_refused(const Outcome& outcome, int exit_status, const std::string& words);
+
 int line_count(const std::string& text);
 /// A file's text; empty if it cannot be read.
 std::string read_text(const std::string& file);

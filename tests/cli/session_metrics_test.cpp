@@ -41,13 +41,9 @@ class SessionMetrics : public ::testing::Test {
     std::ofstream(*folder_ / name) << text;
     return *folder_ / name;
   }
-  static void expect_refused(const std::string& arguments, const std::string& message, int exit_status = 1) {
-    const Outcome outcome = trocar("session metrics " + arguments);
-    EXPECT_EQ(outcome.exit_status, exit_status) << arguments;
-    EXPECT_TRUE(outcome.err.starts_with("error: ")) << outcome.err;
-    EXPECT_EQ(line_count(outcome.err), 1) << outcome.err;
-    EXPECT_NE(outcome.err.find(message), std::string::npos) << outcome.err;
-    EXPECT_TRUE(outcome.out.empty()) << outcome.out;
+  static void expect_refused(const std::string& arguments, const std::string& words, int exit_status = 1) {
+    SCOPED_TRACE(arguments);
+    cli_test::expect_refused(trocar("session metrics " + arguments), exit_status, words);
   }
 
   static inline std::unique_ptr<TemporaryFolder> folder_;
