@@ -32,6 +32,12 @@ const Action* find_wire(std::span<const Action> actions, double time_s) noexcept
   return wire;
 }
 
+std::optional<Return> last_return(std::span<const Action> actions) noexcept {
+  for (auto action = actions.rbegin(); action != actions.rend(); ++action)
+    if (action->kind == ActionKind::kDrawStylet || action->kind == ActionKind::kAspirate) return action->result;
+  return std::nullopt;
+}
+
 bool is_gun_loaded(std::span<const Action> actions) noexcept {
   bool is_loaded = true;
   for (const Action& action : actions) {

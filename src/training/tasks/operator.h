@@ -17,8 +17,9 @@ namespace trocar::tasks {
 struct OperatorView {
   double time_s = 0.0;
   double dt_s = 0.001;
-  Pose X_PN_device;            ///< Needle as the device holds it now.
-  telemetry::TickSample last;  ///< Result of the last tick; default values at the first call.
+  Pose X_PN_device;                     ///< Needle as the device holds it now.
+  telemetry::TickSample last;           ///< Result of the last tick; default values at the first call.
+  std::optional<Return> returned = {};  ///< What came when the operator looked last; empty: not looked yet.
 };
 
 /// Target pose of the operator's hand: the hand's spring pulls the device there.
@@ -41,15 +42,20 @@ class Operator {
 
 /// What an operator does besides moving the needle.
 struct OperatorActions {
-  bool gives_anaesthetic = false;      ///< Before the skin.
-  std::optional<ActionKind> confirms;  ///< At the target: kDrawStylet or kAspirate.
-  double wire_mm = 0.0;                ///< Guide wire advanced at the target; 0: none.
-  std::size_t cores = 1;               ///< Shots of a biopsy gun.
+  bool gives_anaesthetic = false;           ///< Before the skin.
+  std::optional<ActionKind> confirms;       ///< At the target: kDrawStylet or kAspirate.
+  Substance awaited = Substance::kNothing;  ///< What comes then in the right place.
+  double wire_mm = 0.0;                     ///< Guide wire advanced at the target; 0: none.
+  std::size_t cores = 1;                    ///< Shots of a biopsy gun.
   /// The gun is loaded through a coaxial needle that stays at the target; false: each further core is another puncture.
   bool loads_inside = false;
 };
 /// Those that the task's phases and score ask for.
 OperatorActions actions_for(const Task& task, const Needle& needle);
+
+/// Fat under the skin over the landmarks by which an entry is found, which hides them from the fingers: along the
+/// planned path. 0: the entry is found in images.
+double landmark_cover_mm(const Task& task, const anatomy::VirtualPatient& patient, const Segment& path_P);
 
 /// Case data for an operator.
 struct OperatorCase {
@@ -58,6 +64,7 @@ struct OperatorCase {
   std::uint64_t seed = 1;
   OperatorActions actions = {};
   std::optional<Vec3> bevel_P = {};  ///< Direction that the bevel has to face; empty: any.
+  double cover_mm = 0.0;             ///< See landmark_cover_mm.
   double tremor_mm = 0.0;            ///< Added to the operator's own tremor, rms of each lateral axis. Range 0..3.
 };
 

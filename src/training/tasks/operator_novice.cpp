@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "core/random.h"
@@ -14,9 +15,12 @@ namespace {
 // Errors of a novice; assumed unless stated otherwise.
 constexpr double kTremor_mm = 0.2;  // rms a lateral axis: PMC3032442 figure 4, 0.17 and 0.25 mm without visual feedback
 constexpr double kEntryError_mm[] = {3.0, 8.0};
+constexpr double kFeltThrough_mm = 10.0;          // fat over a landmark; more of it hides the landmark, in proportion
 constexpr double kAngleError_deg[] = {2.0, 6.0};  // CT-guided with a frame: median 1.1, range 0..6.6 (doi
                                                   // 10.3109/10929088.2011.578367)
-constexpr double kStopError_mm[] = {3.0, 8.0};
+constexpr double kStopError_mm[] = {3.0, 8.0};  // on a path of kUsualPath_mm; depth is judged relatively (Weber's law)
+constexpr double kUsualPath_mm = 60.0;
+constexpr double kClumsiness[] = {0.25, 1.0};  // of one novice: share of these errors of place; some learn faster
 constexpr double kStart_mm[] = {-26.0, -18.0};
 constexpr double kSpeed_mm_s[] = {20.0, 35.0};
 constexpr double kUnevenness = 0.5;
@@ -28,14 +32,23 @@ constexpr double kPullback_mm_s = 15.0;
 constexpr double kBeforeFire_s[] = {0.3, 1.5};
 constexpr double kAfterFire_s = 0.5;
 constexpr double kLoading_s = 6.0;  // takes the core out and loads the gun
-// Share of novices who give anaesthetic, of those who look what comes back, and of those who turn the bevel.
+// Share of novices who give anaesthetic, and of those who turn the bevel.
 constexpr double kRemembers = 0.7;
+// Looking what comes back: first short of the depth that the novice expects, then deeper and deeper until the right
+// fluid comes or the needle is clearly beyond.
+constexpr double kFirstLookShare = 0.85;
+constexpr double kLastLookShare = 1.2;
+constexpr double kLookEvery_mm = 2.0;  // as the lumbar task advises
+constexpr double kSettle_s = 0.4;
+constexpr double kLooking_s = 0.7;
+constexpr double kBetweenLooks_mm_s = 5.0;
+constexpr double kForgetsLook = 0.1;
 constexpr double kBevelError_deg = 20.0;  // of those who turn it, at most
 constexpr double kWithdraw_mm_s = 50.0;
 constexpr double kStuck_s = 5.0;
 constexpr double kBone_s = 1.5;          // without a millimetre of progress: it is bone
 constexpr int kCorrections = 2;          // after bone: out, another direction, in again; then the novice stays
-constexpr double kCorrectedShare = 0.5;  // of entry and direction that a correction leaves of the error
+constexpr double kCorrectedShare = 0.7;  // of entry and direction that a correction leaves of the error
 constexpr double kStop_s = 40.0;         // in any case: fire and withdraw
 constexpr double kOutOfTime_s = 58.0;
 
@@ -43,15 +56,22 @@ double draw(Random& random, const double (&range)[2]) noexcept {
   return random.uniform(range[0], range[1]);
 }
 
-/// The novice's actual line: entry and angle with errors in random directions.
-Segment miss(const Segment& path_P, Random& random) noexcept {
+double clumsiness(const OperatorCase& the_case) noexcept {
+  Random random(mix64(the_case.seed + 4));
+  return draw(random, kClumsiness);
+}
+
+/// The novice's actual line: entry and angle with errors in random directions; `share` of them.
+Segment miss(const OperatorCase& the_case, double share, Random& random) noexcept {
+  const Segment& path_P = the_case.path_P;
+  const double hidden = std::max(1.0, the_case.cover_mm / kFeltThrough_mm);
   const Mat3 R_PN = needle_pose(path_P.a, path_P.direction()).R();
   const auto sideways_P = [&] {
     const double angle_rad = random.uniform(0.0, 2.0 * std::numbers::pi);
     return Vec3(R_PN * Vec3(std::cos(angle_rad), std::sin(angle_rad), 0.0));
   };
-  const Vec3 entry_P = path_P.a + draw(random, kEntryError_mm) * sideways_P();
-  const double tilt_rad = draw(random, kAngleError_deg) * std::numbers::pi / 180.0;
+  const Vec3 entry_P = path_P.a + share * hidden * draw(random, kEntryError_mm) * sideways_P();
+  const double tilt_rad = share * draw(random, kAngleError_deg) * std::numbers::pi / 180.0;
   const Vec3 axis_P = std::cos(tilt_rad) * path_P.direction() + std::sin(tilt_rad) * sideways_P();
   return {entry_P, entry_P + path_P.length_mm() * axis_P};
 }
@@ -72,64 +92,29 @@ class Novice final : public Operator {
 
   HandCommand next(const OperatorView& view) noexcept override {
     hand_.sense(view);
-    std::optional<ActionKind> gun;
-    double speed_mm_s = 0.0;
-    switch (step_) {
-      case Step::kAdvance:
-        speed_mm_s = advance_speed_mm_s();
-        if (next_doubt_ < doubts_.size() && hand_.tip_mm() > doubts_[next_doubt_].depth_mm) enter(Step::kHesitate);
-        if (hand_.tip_mm() > stop_mm_ || is_stuck(kStuck_s) || hand_.elapsed_s() > kStop_s) enter(Step::kAim);
-        if (step_ == Step::kAdvance && corrections_left_ > 0 && is_stuck(kBone_s)) enter(Step::kBackOut);
-        break;
-      case Step::kBackOut:
-        speed_mm_s = -kWithdraw_mm_s;
-        if (hand_.tip_mm() < start_mm_ + 2.0) correct();
-        break;
-      case Step::kHesitate:
-        if (in_step_s() > doubts_[next_doubt_].pause_s) enter(Step::kPullBack);
-        break;
-      case Step::kPullBack:
-        speed_mm_s = -kPullback_mm_s;
-        if (in_step_s() * kPullback_mm_s > doubts_[next_doubt_].pullback_mm) {
-          ++next_doubt_;
-          enter(Step::kAdvance);
-        }
-        break;
-      case Step::kAim:
-        if (in_step_s() > before_fire_s_) {
-          if (cores_left_ > 0) gun = ActionKind::kFire;
-          enter(Step::kAfterFire);
-        }
-        break;
-      case Step::kAfterFire:
-        if (in_step_s() > kAfterFire_s) {
-          if (cores_left_ > 0) --cores_left_;
-          enter(cores_left_ > 0 && loads_inside_ ? Step::kLoad : Step::kWithdraw);
-        }
-        break;
-      case Step::kLoad:
-        if (in_step_s() > kLoading_s) {
-          gun = ActionKind::kLoad;
-          enter(Step::kAim);
-        }
-        break;
-      case Step::kWithdraw:
-        speed_mm_s = hand_.wanted_mm() > start_mm_ ? -kWithdraw_mm_s : 0.0;
-        if (hand_.tip_mm() < start_mm_ + 2.0 || hand_.elapsed_s() > kOutOfTime_s) enter(Step::kDone);
-        break;
-      case Step::kDone:
-        break;
-    }
-    hand_.move(speed_mm_s, view.dt_s);
+    wanted_.reset();
+    hand_.move(step(view), view.dt_s);
     HandCommand command = hand_.command();
-    if (gun) command.action = ActionRequest{*gun};
-    if (!gun) command.action = actions_.next(step_ == Step::kAfterFire ? std::optional(in_step_s()) : std::nullopt);
+    if (wanted_) command.action = ActionRequest{*wanted_};
+    if (!wanted_) command.action = actions_.next(step_ == Step::kAfterFire ? std::optional(in_step_s()) : std::nullopt);
     command.is_done = step_ == Step::kDone;
     return command;
   }
 
  private:
-  enum class Step { kAdvance, kBackOut, kHesitate, kPullBack, kAim, kAfterFire, kLoad, kWithdraw, kDone };
+  enum class Step {
+    kAdvance,
+    kBackOut,
+    kHesitate,
+    kPullBack,
+    kSettle,
+    kLook,
+    kAim,
+    kAfterFire,
+    kLoad,
+    kWithdraw,
+    kDone
+  };
   struct Doubt {
     double depth_mm;
     double pause_s;
@@ -139,7 +124,7 @@ class Novice final : public Operator {
   Novice(const OperatorCase& the_case, Random random) noexcept
       : start_mm_(draw(random, kStart_mm)),
         plan_P_(the_case.path_P),
-        line_P_(miss(plan_P_, random)),
+        line_P_(miss(the_case, clumsiness(the_case), random)),
         bevel_P_(aim_bevel(the_case)),
         hand_(line_P_, bevel_P_, start_mm_,
               Tremor(std::hypot(kTremor_mm, the_case.tremor_mm), mix64(the_case.seed + 1))),
@@ -148,9 +133,12 @@ class Novice final : public Operator {
         actions_(the_case.actions) {
     Random forgets(mix64(the_case.seed + 2));
     if (forgets.uniform() > kRemembers) actions_.forget_anaesthetic();
-    if (forgets.uniform() > kRemembers) actions_.forget_confirmation();
+    if (the_case.actions.confirms && forgets.uniform() > kForgetsLook) looks_ = the_case.actions;
+    actions_.forget_confirmation();
     const double length_mm = the_case.path_P.length_mm();
-    stop_mm_ = length_mm + (random.uniform() < 0.5 ? -1.0 : 1.0) * draw(random, kStopError_mm);
+    const double stop_share = clumsiness(the_case) * length_mm / kUsualPath_mm;
+    stop_mm_ = length_mm + (random.uniform() < 0.5 ? -1.0 : 1.0) * stop_share * draw(random, kStopError_mm);
+    next_look_mm_ = looks_ ? kFirstLookShare * stop_mm_ : std::numeric_limits<double>::infinity();
     speed_mm_s_ = draw(random, kSpeed_mm_s);
     rhythm_rad_s_ = 2.0 * std::numbers::pi * draw(random, kRhythm_hz);
     before_fire_s_ = draw(random, kBeforeFire_s);
@@ -162,15 +150,92 @@ class Novice final : public Operator {
     }
   }
 
+  /// Decides what to do; returns the wanted speed inward, mm/s.
+  double step(const OperatorView& view) noexcept {
+    switch (step_) {
+      case Step::kAdvance:
+        return advance();
+      case Step::kBackOut:
+        if (hand_.tip_mm() < start_mm_ + 2.0) correct();
+        return -kWithdraw_mm_s;
+      case Step::kHesitate:
+        if (in_step_s() > doubts_[next_doubt_].pause_s) enter(Step::kPullBack);
+        return 0.0;
+      case Step::kPullBack:
+        if (in_step_s() * kPullback_mm_s > doubts_[next_doubt_].pullback_mm) {
+          ++next_doubt_;
+          enter(Step::kAdvance);
+        }
+        return -kPullback_mm_s;
+      case Step::kSettle:
+        if (in_step_s() > kSettle_s) {
+          wanted_ = looks_->confirms;
+          enter(Step::kLook);
+        }
+        return 0.0;
+      case Step::kLook:
+        look(view);
+        return 0.0;
+      case Step::kAim:
+        if (in_step_s() > before_fire_s_) {
+          if (cores_left_ > 0) wanted_ = ActionKind::kFire;
+          enter(Step::kAfterFire);
+        }
+        return 0.0;
+      case Step::kAfterFire:
+        if (in_step_s() > kAfterFire_s) {
+          if (cores_left_ > 0) --cores_left_;
+          enter(cores_left_ > 0 && loads_inside_ ? Step::kLoad : Step::kWithdraw);
+        }
+        return 0.0;
+      case Step::kLoad:
+        if (in_step_s() > kLoading_s) {
+          wanted_ = ActionKind::kLoad;
+          enter(Step::kAim);
+        }
+        return 0.0;
+      case Step::kWithdraw:
+        if (hand_.tip_mm() < start_mm_ + 2.0 || hand_.elapsed_s() > kOutOfTime_s) enter(Step::kDone);
+        return hand_.wanted_mm() > start_mm_ ? -kWithdraw_mm_s : 0.0;
+      case Step::kDone:
+        return 0.0;
+    }
+    return 0.0;
+  }
+
+  double advance() noexcept {
+    const double last_mm = looks_ ? kLastLookShare * stop_mm_ : stop_mm_;
+    if (next_doubt_ < doubts_.size() && hand_.tip_mm() > doubts_[next_doubt_].depth_mm) {
+      enter(Step::kHesitate);
+    } else if (is_stuck(kStuck_s) || hand_.elapsed_s() > kStop_s) {
+      enter(Step::kAim);
+    } else if (is_stuck(kBone_s) && corrections_left_ > 0) {
+      enter(Step::kBackOut);
+    } else if (hand_.tip_mm() > last_mm) {
+      enter(looks_ && corrections_left_ > 0 ? Step::kBackOut : Step::kAim);
+    } else if (hand_.tip_mm() > next_look_mm_) {
+      enter(Step::kSettle);
+    }
+    if (has_looked_) return step_ == Step::kAdvance ? kBetweenLooks_mm_s : 0.0;
+    return step_ == Step::kAdvance ? speed_mm_s_ * (1.0 + kUnevenness * std::sin(rhythm_rad_s_ * hand_.elapsed_s()))
+                                   : 0.0;
+  }
+
+  /// What comes back? The right fluid: here it is. Another or none: deeper.
+  void look(const OperatorView& view) noexcept {
+    has_looked_ = true;
+    if (in_step_s() < kLooking_s) return;
+    if (view.returned && view.returned->substance == looks_->awaited) return enter(Step::kAim);
+    if (looks_->confirms == ActionKind::kDrawStylet) wanted_ = ActionKind::kReplaceStylet;
+    next_look_mm_ = hand_.tip_mm() + kLookEvery_mm;
+    enter(Step::kAdvance);
+  }
+
   void enter(Step step) noexcept {
     step_ = step;
     step_start_s_ = hand_.elapsed_s();
   }
   double in_step_s() const noexcept { return hand_.elapsed_s() - step_start_s_; }
-
-  double advance_speed_mm_s() const noexcept {
-    return speed_mm_s_ * (1.0 + kUnevenness * std::sin(rhythm_rad_s_ * hand_.elapsed_s()));
-  }
 
   bool is_stuck(double longest_s) noexcept { return stall_.stalled_s(hand_, step_start_s_) > longest_s; }
 
@@ -181,6 +246,8 @@ class Novice final : public Operator {
                plan_P_.b + kCorrectedShare * (line_P_.b - plan_P_.b)};
     hand_.turn_to(line_P_, bevel_P_);
     stall_ = {};
+    if (looks_) next_look_mm_ = kFirstLookShare * stop_mm_;
+    has_looked_ = false;
     enter(Step::kAdvance);
   }
 
@@ -191,7 +258,11 @@ class Novice final : public Operator {
   std::size_t cores_left_;
   bool loads_inside_;
   PendingActions actions_;
-  double stop_mm_ = 0.0;
+  std::optional<OperatorActions> looks_;  ///< Of those who look what comes back.
+  std::optional<ActionKind> wanted_;      ///< With this tick.
+  double stop_mm_ = 0.0;                  ///< Where the novice expects the target.
+  double next_look_mm_ = 0.0;
+  bool has_looked_ = false;  ///< During this insertion.
   double speed_mm_s_ = 0.0;
   double rhythm_rad_s_ = 0.0;
   double before_fire_s_ = 0.0;

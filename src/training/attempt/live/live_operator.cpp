@@ -92,6 +92,7 @@ Result<double> LiveOperator::record(const telemetry::TickSample& tick, bool is_s
   view_.last.time_s = time_s_;
   view_.X_PN_device = telemetry::device_pose(tick);
   TROCAR_TRY_STATUS(record_->append(view_.last));
+  view_.returned = tasks::last_return(record_->actions());
   return step_s;
 }
 

@@ -196,6 +196,7 @@ Result<std::size_t> perform(const Performer& performer, SceneSchedule& scenes, d
     view.last = output.sample;
     record.note(command);
     TROCAR_TRY_STATUS(record.append(output.sample));
+    view.returned = tasks::last_return(record.actions());
     TROCAR_TRY_STATUS(recorded.append_others(view.time_s, record));
     if (view.time_s >= next_shape_s) {
       telemetry::NeedleShape shape = haptics::needle_shape(state.needle, scene, true);

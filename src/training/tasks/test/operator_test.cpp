@@ -146,17 +146,17 @@ TEST(Novice, MissesEntryAngleAndTarget) {
                                    [&](const telemetry::TickSample& sample) { return body.depth_mm(sample) > 0.0; });
     ASSERT_NE(skin, body.samples.end());
     const double entry_error_mm = (skin->tip_mm - the_case.path_P.a).norm();
-    EXPECT_GT(entry_error_mm, 2.0) << seed;  // 3..8 mm and the tremor's 0.6 mm
+    EXPECT_GT(entry_error_mm, 0.4) << seed;  // a quarter of 3 mm to 8 mm, and the tremor
     EXPECT_LT(entry_error_mm, 9.0) << seed;
     ASSERT_EQ(body.fired.size(), 1u);
     const telemetry::TickSample& fired = body.samples[body.fired[0]];
     const double angle_deg = angle_between_rad(fired.axis, the_case.path_P.direction()) * 180.0 / std::numbers::pi;
-    EXPECT_GT(angle_deg, 1.9) << seed;
+    EXPECT_GT(angle_deg, 0.4) << seed;  // a quarter of 2° to 6°
     EXPECT_LT(angle_deg, 6.1) << seed;
     EXPECT_GT((fired.tip_mm - the_case.path_P.b).norm(), 0.8) << seed;  // worse than the expert's worst
     miss_mm += (fired.tip_mm - the_case.path_P.b).norm() / 20.0;
   }
-  EXPECT_GT(miss_mm, 5.0);
+  EXPECT_GT(miss_mm, 4.0);
 }
 
 /// A stretch of an attempt on one line of the wanted needle.
@@ -197,9 +197,10 @@ std::vector<Leg> legs_of(Operator& the_operator, const Segment& plan_P, LayeredB
   return watch.legs;
 }
 
-TEST(Novice, LeavesBoneTwiceAndHalvesItsErrorsEachTime) {
+TEST(Novice, LeavesBoneTwiceAndCorrectsItsErrorsEachTime) {
   constexpr double kBone_mm = 14.0;
-  constexpr double kChord_rad = 1e-4;  // half of the way between two ends is not quite half of the angle
+  constexpr double kLeft = 0.7;        // share of the errors that a correction leaves
+  constexpr double kChord_rad = 1e-4;  // this share of the way between two ends is not quite that of the angle
   constexpr double kTremor_mm = 0.05;  // the mean of 8 Hz and more over the seconds of a leg
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     const OperatorCase the_case = case_of_length(90.0, seed);
@@ -214,8 +215,8 @@ TEST(Novice, LeavesBoneTwiceAndHalvesItsErrorsEachTime) {
       EXPECT_LT(before.deepest_mm, kBone_mm + 1.0) << seed;
       const double before_rad = angle_between_rad(before.axis_P, plan_P.direction());
       EXPECT_GT(before_rad, 0.01) << seed;
-      EXPECT_NEAR(angle_between_rad(now.axis_P, plan_P.direction()), 0.5 * before_rad, kChord_rad) << seed;
-      EXPECT_LT((now.entry_P - plan_P.a - 0.5 * (before.entry_P - plan_P.a)).norm(), kTremor_mm) << seed;
+      EXPECT_NEAR(angle_between_rad(now.axis_P, plan_P.direction()), kLeft * before_rad, kChord_rad) << seed;
+      EXPECT_LT((now.entry_P - plan_P.a - kLeft * (before.entry_P - plan_P.a)).norm(), kTremor_mm) << seed;
     }
     EXPECT_GE(legs.back().deepest_mm, kBone_mm) << seed << ": in again";
   }

@@ -26,10 +26,11 @@ class LayeredBody {
   void run(tasks::Operator& the_operator, double limit_s) {
     for (double time_s = 0.0; time_s < limit_s && !is_done; time_s += dt_s_) {
       const tasks::HandCommand command =
-          the_operator.next({time_s, dt_s_, X_PN_, samples.empty() ? telemetry::TickSample{} : last()});
+          the_operator.next({time_s, dt_s_, X_PN_, samples.empty() ? telemetry::TickSample{} : last(), returned_});
       is_done = command.is_done;
       if (command.fires()) fired.push_back(samples.size());
       step(command, time_s);
+      if (command.action) act(*command.action, time_s);
     }
   }
   const telemetry::TickSample& last() const { return samples.back(); }
@@ -37,6 +38,8 @@ class LayeredBody {
 
   std::vector<telemetry::TickSample> samples;
   std::vector<std::size_t> fired;
+  std::vector<tasks::Action> actions;
+  double csf_from_mm = 0.0, csf_to_mm = 0.0;  ///< Depths at which spinal fluid comes back.
   std::size_t punctured = 0;
   bool is_done = false;
 
@@ -67,6 +70,14 @@ class LayeredBody {
     sample.f_weight_n = kWeight_P;  // carries the stylus; the device is weightless here
     sample.device_f_n = force_P_ + kWeight_P;
     samples.push_back(sample);
+  }
+
+  void act(const tasks::ActionRequest& request, double time_s) {
+    tasks::Action action{time_s, request.kind, request.amount, {}, last().tip_mm, depth_mm(last())};
+    const bool is_in_csf = action.depth_mm >= csf_from_mm && action.depth_mm < csf_to_mm;
+    if (is_in_csf) action.result = {tasks::Substance::kCsf, 1.0};
+    actions.push_back(action);
+    returned_ = tasks::last_return(actions);
   }
 
   void move_device(const tasks::HandCommand& command) {
@@ -115,6 +126,7 @@ class LayeredBody {
   Vec3 v_P_ = Vec3::Zero();
   Vec3 force_P_ = Vec3::Zero();
   double needle_mm_ = 0.0;
+  std::optional<tasks::Return> returned_;
 };
 
 inline std::vector<LayeredBody::Layer> skin_muscle_capsule() {
