@@ -72,9 +72,9 @@ struct OperatorCase {
 /// target, holds still, fires, loads the gun and fires again until all cores are taken, withdraws. Stops without firing
 /// if it cannot advance. The device must start at the pose of the first command. Takes about 10..30 s, at most 60.
 std::unique_ptr<Operator> make_expert(const OperatorCase& the_case);
-/// Misses the entry and the angle, withdraws from bone and corrects them by half (twice at most), trembles, moves
-/// unevenly and too fast, hesitates, pulls back, stops short or too deep: at random, from the seed. Never more than 60
-/// s.
+/// Misses the entry and the angle, trembles, moves unevenly and too fast, hesitates, pulls back, looks what comes back
+/// every few millimetres or stops short or too deep; withdraws from bone and from where nothing comes, and tries again
+/// with smaller errors (twice at most): at random, from the seed. Never more than 60 s.
 std::unique_ptr<Operator> make_novice(const OperatorCase& the_case);
 /// Rigid: the device moves at the given speed, independent of forces, so that forces can be compared with closed forms.
 /// It moves from 10 mm before the entry to the target, fires there if the case does, and moves out again. speed in
