@@ -155,5 +155,15 @@ TEST_F(FirstPuncture, RenderWithAScreenDrawsEveryView) {
   EXPECT_EQ(std::distance(fs::directory_iterator(pictures), fs::directory_iterator()), 10);
 }
 
+TEST_F(FirstPuncture, TakesALongerNeedleThroughAThickWallUnlessOneIsChosen) {
+  const auto needle_of = [](const std::string& options) {
+    const TemporaryFolder folder;
+    const std::string line = "run ascites-puncture --patient ascites-5 --operator expert --json --out '";
+    return json_of(trocar(line + (folder / "a.session") + "'" + options))["needle"];
+  };
+  EXPECT_EQ(needle_of(""), "paracentesis-15g-long");
+  EXPECT_EQ(needle_of(" --needle paracentesis-14g"), "paracentesis-14g");
+}
+
 }  // namespace
 }  // namespace trocar::cli_test

@@ -75,6 +75,25 @@ Result<tasks::PlannedPath> find_expert_path(const Case& the_case, const anatomy:
               "draw it again in the case builder, or take expert_path out of the task");
 }
 
+/// Behind a thick abdominal wall: the shortest needle of the task that reaches the end of its expert path. The case's
+/// own if it reaches, or none does.
+Result<tasks::Needle> find_reaching_needle(const Case& the_case, const anatomy::VirtualPatient& patient) {
+  const auto path = std::ranges::find(patient.paths, the_case.task.expert_path, &anatomy::NeedlePath::name);
+  if (path == patient.paths.end() || the_case.needle.is_biopsy) return the_case.needle;
+  TROCAR_TRY(const fs::path data, checked_data_dir());
+  TROCAR_TRY(std::vector<tasks::Needle> needles, tasks::load_needles(data / "needles.toml"));
+  const std::vector<std::string> allowed = tasks::allowed_needles(the_case.task, needles);
+  std::erase_if(needles, [&](const tasks::Needle& n) { return std::ranges::find(allowed, n.name) == allowed.end(); });
+  std::ranges::sort(needles, {}, &tasks::Needle::length_mm);
+  needles.insert(needles.begin(), the_case.needle);
+  const auto reaches = [&](const tasks::Needle& needle) {
+    const auto findings = tasks::assess_path(the_case.task, patient, needle, path->line_P).findings;
+    return std::ranges::none_of(findings, [](const auto& f) { return f.fault == tasks::PathFault::kTooLong; });
+  };
+  const auto found = std::ranges::find_if(needles, reaches);
+  return found == needles.end() ? the_case.needle : *found;
+}
+
 /// The first path that the patient brings for the task (NeedlePath::name); nullptr: none. A biopsy needle is fired
 /// before the target, so that its path is planned for the needle.
 const anatomy::NeedlePath* path_for(const Case& the_case, const anatomy::VirtualPatient& patient) {
@@ -148,6 +167,9 @@ Result<Case> prepare_case(std::shared_ptr<const anatomy::VirtualPatient> patient
   const anatomy::NeedlePath* brought = path_for(made, *patient);
   if (made.task.expert_path.empty() && brought != nullptr) made.task.expert_path = brought->name;
   if (!made.task.expert_path.empty()) {
+    if (options.needle.empty()) {
+      TROCAR_TRY(made.needle, find_reaching_needle(made, *patient));
+    }
     TROCAR_TRY(made.plan, find_expert_path(made, *patient));
   } else {
     TROCAR_TRY(const auto paths, tasks::plan_paths(made.task, *patient, made.needle, {1, options.seed}, progress));

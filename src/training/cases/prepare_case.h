@@ -21,9 +21,10 @@ struct CaseOptions {
   /// Name of a task of the data folder, or a task file (ends in .toml); empty: the patient's own task.
   std::string task = "liver-biopsy";
   std::string patient_folder;  ///< Folder of the patient's own task and tissues; empty or an embedded one: none.
-  std::string needle;          ///< Name in data/needles.toml; empty: the task's needle.
-  std::string tissue_file;     ///< Empty: the patient's own table, else data/tissues.toml.
-  std::string profile;         ///< Profile of the tissue file; without a file, of data/tissues.toml.
+  /// Name in data/needles.toml; empty: the task's needle, or a longer one of the task where that does not reach.
+  std::string needle;
+  std::string tissue_file;             ///< Empty: the patient's own table, else data/tissues.toml.
+  std::string profile;                 ///< Profile of the tissue file; without a file, of data/tissues.toml.
   std::vector<std::string> overrides;  ///< "liver.k=0.5"
   std::string level;                   ///< Name or number of a level of the task; empty: the task as it is.
   std::uint64_t seed = 1;
