@@ -1,5 +1,6 @@
 #include "pages/briefing_page.h"
 
+#include <QEvent>
 #include <QImage>
 #include <QLabel>
 #include <QProgressBar>
