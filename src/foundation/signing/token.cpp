@@ -1,0 +1,38 @@
+#include "signing/token.h"
+
+#include <sodium.h>
+
+#include <vector>
+
+#include "core/check.h"
+#include "signing/sha256.h"
+
+namespace trocar::signing {
+namespace {
+
+constexpr int kFewestBits = 128;
+constexpr int kMostBits = 512;
+constexpr int kBase64 = sodium_base64_VARIANT_URLSAFE_NO_PADDING;
+
+}  // namespace
+
+Result<std::string> make_token(int bits) {
+  TROCAR_CHECK(bits >= kFewestBits && bits <= kMostBits && bits % 8 == 0);
+  if (sodium_init() < 0) return fail("cryptography cannot be used", "libsodium", "reinstall libsodium");
+  std::vector<unsigned char> bytes(static_cast<std::size_t>(bits / 8));
+  randombytes_buf(bytes.data(), bytes.size());
+  std::string token(sodium_base64_encoded_len(bytes.size(), kBase64), '\0');
+  sodium_bin2base64(token.data(), token.size(), bytes.data(), bytes.size(), kBase64);
+  token.pop_back();  // the terminating zero
+  return token;
+}
+
+std::string token_digest(std::string_view token) {
+  return sha256(token);
+}
+
+bool is_same_secret(std::string_view a, std::string_view b) noexcept {
+  return a.size() == b.size() && sodium_memcmp(a.data(), b.data(), a.size()) == 0;
+}
+
+}  // namespace trocar::signing
