@@ -1,0 +1,96 @@
+#include "cohort/validity.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/check.h"
+
+namespace trocar::cohort {
+namespace {
+
+using Values = std::vector<std::optional<double>>;
+
+/// Values of one group; those that are missing or not finite are left out.
+std::vector<double> of_group(const Values& values, const std::vector<CohortData::Person>& people, bool is_expert) {
+  TROCAR_CHECK(values.size() == people.size());
+  std::vector<double> chosen;
+  for (std::size_t n = 0; n < people.size(); ++n)
+    if (people[n].is_expert == is_expert && values[n] && std::isfinite(*values[n])) chosen.push_back(*values[n]);
+  return chosen;
+}
+
+Result<Separation> separation_in(const CohortData& data, const Values& values, Better better) {
+  const std::vector<double> experts = of_group(values, data.people, true);
+  const std::vector<double> novices = of_group(values, data.people, false);
+  if (experts.empty() || novices.empty())
+    return fail(fmt::format("{} experts and {} novices have a value", experts.size(), novices.size()), "separation",
+                "record attempts of both groups");
+  return separation_of(experts, novices, better);
+}
+
+void decide(MetricValidity& metric, double corrected_p, double level) {
+  metric.corrected_p = corrected_p;
+  const bool is_right_way = metric.better == Better::kNeither || metric.separation->auc > 0.5;
+  metric.discriminates = corrected_p <= level && is_right_way;
+}
+
+void decide_all(Validity& validity, const ValidityRules& rules) {
+  std::vector<double> p;
+  for (const MetricValidity& metric : validity.metrics)
+    if (metric.separation) p.push_back(metric.separation->test.p);
+  const std::vector<double> corrected = corrected_p(p, rules.correction);
+  for (MetricValidity& metric : validity.metrics) {
+    if (!metric.separation) continue;
+    decide(metric, corrected[validity.tested++], rules.level);
+    validity.discriminating += metric.discriminates ? 1 : 0;
+  }
+  if (validity.score.separation) decide(validity.score, validity.score.separation->test.p, rules.level);
+}
+
+/// People who have all items.
+std::vector<std::vector<double>> complete_items(const CohortData& data) {
+  std::vector<std::vector<double>> people;
+  for (const Values& items : data.items) {
+    const bool is_complete = !items.empty() && std::all_of(items.begin(), items.end(), [](const auto& item) {
+      return item && std::isfinite(*item);
+    });
+    if (!is_complete) continue;
+    people.emplace_back();
+    for (const std::optional<double>& item : items) people.back().push_back(*item);
+  }
+  return people;
+}
+
+}  // namespace
+
+Validity validity_of(const CohortData& data, const ValidityRules& rules) {
+  const auto count = [&](auto is_counted) {
+    return static_cast<std::size_t>(std::count_if(data.people.begin(), data.people.end(), is_counted));
+  };
+  Validity validity{
+      count([](const CohortData::Person& person) { return person.is_expert; }),
+      count([](const CohortData::Person& person) { return !person.is_expert; }),
+      count([](const CohortData::Person& person) { return person.is_simulated; }),
+      {"score", "Score", "points", Better::kHigher, separation_in(data, data.scores, Better::kHigher)},
+      {},
+      0,
+      0,
+      cronbach_alpha(complete_items(data)),
+      contrasting_groups(of_group(data.scores, data.people, true), of_group(data.scores, data.people, false))};
+  for (const MetricOfPeople& metric : data.metrics)
+    validity.metrics.push_back(
+        {metric.name, metric.title, metric.unit, metric.better, separation_in(data, metric.values, metric.better)});
+  decide_all(validity, rules);
+  return validity;
+}
+
+std::string smallest_p_text(std::size_t experts, std::size_t novices, std::size_t metrics, double level) {
+  if (experts == 0 || novices == 0) return {};
+  const double smallest = smallest_rank_sum_p(experts, novices);
+  if (smallest * static_cast<double>(std::max<std::size_t>(metrics, 1)) <= level) return {};
+  return fmt::format("with {} experts and {} novices no two-sided p can be below {:.2g}", experts, novices, smallest);
+}
+
+}  // namespace trocar::cohort

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cohort/pass_mark.h"
+#include "cohort/reliability.h"
+#include "cohort/separation.h"
+#include "cohort/summary.h"
+#include "core/result.h"
+
+namespace trocar::cohort {
+
+/// A metric of all people.
+struct MetricOfPeople {
+  std::string name;   ///< "path_length".
+  std::string title;  ///< "Path length of the tip".
+  std::string unit;   ///< "mm"; "1": a pure number.
+  Better better = Better::kNeither;
+  std::vector<std::optional<double>> values = {};  ///< One a person, see person_mean; empty: the person has none.
+};
+
+/// What the evidence of one task is computed from. All lists have one entry a person, in the same order.
+struct CohortData {
+  struct Person {
+    bool is_expert = false;
+    bool is_simulated = false;  ///< A scripted operator.
+  };
+  std::vector<Person> people;
+  std::vector<MetricOfPeople> metrics;
+  std::vector<std::optional<double>> scores;              ///< 0..100, higher is better.
+  std::vector<std::vector<std::optional<double>>> items;  ///< Points of each part of the score, same parts for all.
+};
+
+struct ValidityRules {
+  double level = 0.05;  ///< Of significance, in (0, 1).
+  Correction correction = Correction::kBenjaminiHochberg;
+};
+
+/// A metric, and how well it separates experts from novices.
+struct MetricValidity {
+  std::string name, title, unit;
+  Better better = Better::kNeither;
+  Result<Separation> separation;  ///< Error: a group has no value.
+  double corrected_p = 1.0;
+  /// The corrected p is at most the level and experts are better (if either direction is).
+  bool discriminates = false;
+};
+
+/// Evidence that the score of a task means something.
+struct Validity {
+  std::size_t experts = 0, novices = 0;  ///< People.
+  std::size_t simulated = 0;             ///< Of them, scripted operators.
+  MetricValidity score;                  ///< Not corrected, not counted among the metrics.
+  std::vector<MetricValidity> metrics;
+  std::size_t tested = 0;          ///< Metrics that both groups have.
+  std::size_t discriminating = 0;  ///< Of them.
+  Result<Alpha> alpha;             ///< Of the parts of the score, over all people who have all parts.
+  Result<PassMark> pass_mark;      ///< On the score.
+};
+/// Precondition: the lists have the same length. Parts that cannot be computed have the reason as their error.
+Validity validity_of(const CohortData& data, const ValidityRules& rules = {});
+
+/// "with 2 experts and 12 novices no two-sided p is below 0.022", or empty if the groups are large enough that the
+/// smallest p, corrected by Holm's rule for `metrics` metrics, is below the level.
+std::string smallest_p_text(std::size_t experts, std::size_t novices, std::size_t metrics, double level);
+
+}  // namespace trocar::cohort
