@@ -31,7 +31,7 @@ Words names_of(const Things& things, Name name) {
 Result<Values> known_values() {
   Values values;
   values["--patient"] = values["PATIENT"] = names_of(anatomy::embedded_patients(), &anatomy::PhantomInfo::name);
-  values["--operator"] = {"expert", "novice", "constant-velocity:", "replay:"};
+  values["--operator"] = {"expert", "novice", "novice:", "constant-velocity:", "replay:"};
   values["--force-model"] = {"insertion", "proxy", "combined"};
   TROCAR_TRY(const auto tasks_folder, find_data("tasks"));
   TROCAR_TRY(const auto tasks, tasks::load_tasks(tasks_folder));

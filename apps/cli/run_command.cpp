@@ -297,7 +297,9 @@ void add_run_command(CLI::App& program, Action& action) {
   command->add_option("--patient", a->source.folder_or_name,
                       "Patient folder, or name of an embedded patient; default of a replay: the session's patient");
   command
-      ->add_option("--operator", a->run.operator_name, "expert, novice, constant-velocity:MM_PER_S or replay:SESSION")
+      ->add_option("--operator", a->run.operator_name,
+                   "expert, novice, novice:SHARE with a share of the novice's errors from 0 (none) to 1, "
+                   "constant-velocity:MM_PER_S or replay:SESSION")
       ->required();
   command->add_option("--out", a->run.session, "Session file to write")->required();
   command->add_option("--force-model", a->run.force_model,
@@ -330,6 +332,7 @@ void add_run_command(CLI::App& program, Action& action) {
       "  trocar run liver-biopsy --patient my_patient --operator novice --set liver.k=0.5 --seed 4 --out "
       "second.session\n"
       "  trocar run liver-biopsy --patient biopsy-1 --operator novice --level hard --out hard.session\n"
+      "  trocar run liver-biopsy --patient abdomen --operator novice:0.3 --seed 4 --out practised.session\n"
       "  trocar run --patient my_case --operator expert --out own_task.session\n"
       "  trocar run --operator replay:first.session --out again.session\n"
       "  trocar run liver-biopsy --patient abdomen --operator expert --realtime --out live.session\n"

@@ -57,6 +57,8 @@ INSTANTIATE_TEST_SUITE_P(
         "run liver-biopsy --patient nobody --operator expert --out x",
         "run liver-biopsy --patient abdomen --operator nobody --out x",
         "run liver-biopsy --patient abdomen --operator constant-velocity:fast --out x",
+        "run liver-biopsy --patient abdomen --operator novice: --out x",
+        "run liver-biopsy --patient abdomen --operator novice:1.1 --out x",
         "run liver-biopsy --patient abdomen --operator expert --force-model springs --out x",
         "run liver-biopsy --patient abdomen --operator expert --rate 0 --out x",
         "run liver-biopsy --patient abdomen --operator expert --level nonsense --out x",

@@ -66,6 +66,9 @@ struct OperatorCase {
   std::optional<Vec3> bevel_P = {};  ///< Direction that the bevel has to face; empty: any.
   double cover_mm = 0.0;             ///< See landmark_cover_mm.
   double tremor_mm = 0.0;            ///< Added to the operator's own tremor, rms of each lateral axis. Range 0..3.
+  /// Of a novice: share of all errors, 0 (none) .. 1 (all). Empty: all, but of the errors of entry, angle and depth a
+  /// share drawn from the seed.
+  std::optional<double> error_share = {};
 };
 
 /// Follows the path: touches, pauses, inserts more slowly with more resistance, stops when the (virtual) tip is at the
@@ -74,7 +77,8 @@ struct OperatorCase {
 std::unique_ptr<Operator> make_expert(const OperatorCase& the_case);
 /// Misses the entry and the angle, trembles, moves unevenly and too fast, hesitates, pulls back, looks what comes back
 /// every few millimetres or stops short or too deep; withdraws from bone and from where nothing comes, and tries again
-/// with smaller errors (twice at most): at random, from the seed. Never more than 60 s.
+/// with smaller errors (twice at most): at random, from the seed. The same seed with a smaller error_share misses
+/// entry, angle and depth in the same direction by less. Never more than 60 s.
 std::unique_ptr<Operator> make_novice(const OperatorCase& the_case);
 /// Rigid: the device moves at the given speed, independent of forces, so that forces can be compared with closed forms.
 /// It moves from 10 mm before the entry to the target, fires there if the case does, and moves out again. speed in

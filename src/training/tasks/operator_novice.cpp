@@ -51,14 +51,30 @@ constexpr int kCorrections = 2;          // after bone or without the fluid: out
 constexpr double kCorrectedShare = 0.7;  // of entry and direction that a correction leaves of the error
 constexpr double kStop_s = 40.0;         // in any case: fire and withdraw
 constexpr double kOutOfTime_s = 58.0;
+// Without any error.
+constexpr double kSteadyTremor_mm = 0.05;   // as the expert
+constexpr double kSteadySpeed_mm_s = 10.0;  // mean of the expert's speeds inside the body
+constexpr double kSteadyWithdraw_mm_s = 30.0;
 
 double draw(Random& random, const double (&range)[2]) noexcept {
   return random.uniform(range[0], range[1]);
 }
 
+/// Share of the errors of entry, angle and depth.
 double clumsiness(const OperatorCase& the_case) noexcept {
+  if (the_case.error_share) return *the_case.error_share;
   Random random(mix64(the_case.seed + 4));
   return draw(random, kClumsiness);
+}
+
+/// Share of all other errors.
+double carelessness(const OperatorCase& the_case) noexcept {
+  return the_case.error_share.value_or(1.0);
+}
+
+/// Share of novices who do not forget something.
+double remembering(const OperatorCase& the_case) noexcept {
+  return std::lerp(1.0, kRemembers, carelessness(the_case));
 }
 
 /// The novice's actual line: entry and angle with errors in random directions; `share` of them.
@@ -80,9 +96,10 @@ Segment miss(const OperatorCase& the_case, double share, Random& random) noexcep
 std::optional<Vec3> aim_bevel(const OperatorCase& the_case) noexcept {
   if (!the_case.bevel_P) return std::nullopt;
   Random random(mix64(the_case.seed + 3));
-  const bool forgets = random.uniform() > kRemembers;
-  const double error_rad = forgets ? random.uniform(0.0, 2.0 * std::numbers::pi)
-                                   : (2.0 * random.uniform() - 1.0) * kBevelError_deg * std::numbers::pi / 180.0;
+  const bool forgets = random.uniform() > remembering(the_case);
+  const double error_rad =
+      forgets ? random.uniform(0.0, 2.0 * std::numbers::pi)
+              : (2.0 * random.uniform() - 1.0) * kBevelError_deg * std::numbers::pi / 180.0 * carelessness(the_case);
   return Eigen::AngleAxisd(error_rad, the_case.path_P.direction()) * *the_case.bevel_P;
 }
 
@@ -122,31 +139,34 @@ class Novice final : public Operator {
   };
 
   Novice(const OperatorCase& the_case, Random random) noexcept
-      : start_mm_(draw(random, kStart_mm)),
+      : share_(carelessness(the_case)),
+        start_mm_(draw(random, kStart_mm)),
         plan_P_(the_case.path_P),
         line_P_(miss(the_case, clumsiness(the_case), random)),
         bevel_P_(aim_bevel(the_case)),
         hand_(line_P_, bevel_P_, start_mm_,
-              Tremor(std::hypot(kTremor_mm, the_case.tremor_mm), mix64(the_case.seed + 1))),
+              Tremor(std::hypot(std::lerp(kSteadyTremor_mm, kTremor_mm, share_), the_case.tremor_mm),
+                     mix64(the_case.seed + 1))),
         cores_left_(the_case.fires_biopsy ? the_case.actions.cores : 0),
         loads_inside_(the_case.actions.loads_inside),
         actions_(the_case.actions) {
     Random forgets(mix64(the_case.seed + 2));
-    if (forgets.uniform() > kRemembers) actions_.forget_anaesthetic();
-    if (the_case.actions.confirms && forgets.uniform() > kForgetsLook) looks_ = the_case.actions;
+    if (forgets.uniform() > remembering(the_case)) actions_.forget_anaesthetic();
+    if (the_case.actions.confirms && forgets.uniform() > kForgetsLook * share_) looks_ = the_case.actions;
     actions_.forget_confirmation();
     const double length_mm = the_case.path_P.length_mm();
     const double stop_share = clumsiness(the_case) * length_mm / kUsualPath_mm;
     stop_mm_ = length_mm + (random.uniform() < 0.5 ? -1.0 : 1.0) * stop_share * draw(random, kStopError_mm);
     next_look_mm_ = looks_ ? kFirstLookShare * stop_mm_ : std::numeric_limits<double>::infinity();
-    speed_mm_s_ = draw(random, kSpeed_mm_s);
+    speed_mm_s_ = std::lerp(kSteadySpeed_mm_s, draw(random, kSpeed_mm_s), share_);
     rhythm_rad_s_ = 2.0 * std::numbers::pi * draw(random, kRhythm_hz);
     before_fire_s_ = draw(random, kBeforeFire_s);
     double depth = 0.0;
     for (Doubt& doubt : doubts_) {
       depth += random.uniform(0.15, 0.45);
-      doubt = {depth * length_mm, draw(random, kHesitation_s),
-               random.uniform() < kPullbackChance ? draw(random, kPullback_mm) : 0.0};
+      const double pause_s = share_ * draw(random, kHesitation_s);
+      doubt = {depth * length_mm, pause_s,
+               random.uniform() < kPullbackChance * share_ ? draw(random, kPullback_mm) : 0.0};
     }
   }
 
@@ -157,7 +177,7 @@ class Novice final : public Operator {
         return advance();
       case Step::kBackOut:
         if (hand_.tip_mm() < start_mm_ + 2.0) correct();
-        return -kWithdraw_mm_s;
+        return -withdraw_mm_s();
       case Step::kHesitate:
         if (in_step_s() > doubts_[next_doubt_].pause_s) enter(Step::kPullBack);
         return 0.0;
@@ -196,7 +216,7 @@ class Novice final : public Operator {
         return 0.0;
       case Step::kWithdraw:
         if (hand_.tip_mm() < start_mm_ + 2.0 || hand_.elapsed_s() > kOutOfTime_s) enter(Step::kDone);
-        return hand_.wanted_mm() > start_mm_ ? -kWithdraw_mm_s : 0.0;
+        return hand_.wanted_mm() > start_mm_ ? -withdraw_mm_s() : 0.0;
       case Step::kDone:
         return 0.0;
     }
@@ -217,8 +237,9 @@ class Novice final : public Operator {
       enter(Step::kSettle);
     }
     if (has_looked_) return step_ == Step::kAdvance ? kBetweenLooks_mm_s : 0.0;
-    return step_ == Step::kAdvance ? speed_mm_s_ * (1.0 + kUnevenness * std::sin(rhythm_rad_s_ * hand_.elapsed_s()))
-                                   : 0.0;
+    return step_ == Step::kAdvance
+               ? speed_mm_s_ * (1.0 + kUnevenness * share_ * std::sin(rhythm_rad_s_ * hand_.elapsed_s()))
+               : 0.0;
   }
 
   /// What comes back? The right fluid: here it is. Another or none: deeper.
@@ -235,6 +256,7 @@ class Novice final : public Operator {
     step_ = step;
     step_start_s_ = hand_.elapsed_s();
   }
+  double withdraw_mm_s() const noexcept { return std::lerp(kSteadyWithdraw_mm_s, kWithdraw_mm_s, share_); }
   double in_step_s() const noexcept { return hand_.elapsed_s() - step_start_s_; }
 
   bool is_stuck(double longest_s) noexcept { return stall_.stalled_s(hand_, step_start_s_) > longest_s; }
@@ -251,6 +273,7 @@ class Novice final : public Operator {
     enter(Step::kAdvance);
   }
 
+  double share_;  ///< Of the errors other than entry, angle and depth.
   double start_mm_;
   Segment plan_P_, line_P_;  ///< The right one, and the novice's.
   std::optional<Vec3> bevel_P_;

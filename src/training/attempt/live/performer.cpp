@@ -9,12 +9,13 @@
 namespace trocar::attempt {
 namespace {
 
-/// An operator by its name: the text after the colon is its speed or its session.
+/// An operator by its name: the text after the colon is its share of errors, its speed or its session.
 struct OperatorChoice {
   enum class Kind { kExpert, kNovice, kConstantVelocity, kReplay };
   Kind kind = Kind::kExpert;
   double speed_mm_per_s = 0.0;
   std::string session;
+  std::optional<double> error_share = {};
 };
 
 Result<double> parse_speed(std::string_view text) {
@@ -24,10 +25,22 @@ Result<double> parse_speed(std::string_view text) {
                     "write it as constant-velocity:10");
 }
 
+Result<double> parse_share(std::string_view text) {
+  const auto share = parse_number<double>(text);
+  if (share && *share >= 0.0 && *share <= 1.0) return *share;
+  return fail_usage(fmt::format("share of errors {} is not a number from 0 to 1", text), "--operator novice",
+                    "write it as novice:0.5");
+}
+
 Result<OperatorChoice> parse_operator(std::string_view name) {
   using Kind = OperatorChoice::Kind;
   if (name == "expert") return OperatorChoice{Kind::kExpert, 0.0, {}};
   if (name == "novice") return OperatorChoice{Kind::kNovice, 0.0, {}};
+  constexpr std::string_view kNovice = "novice:";
+  if (name.starts_with(kNovice)) {
+    TROCAR_TRY(const double share, parse_share(name.substr(kNovice.size())));
+    return OperatorChoice{Kind::kNovice, 0.0, {}, share};
+  }
   constexpr std::string_view kConstant = "constant-velocity:";
   if (name.starts_with(kConstant)) {
     TROCAR_TRY(const double speed, parse_speed(name.substr(kConstant.size())));
@@ -37,7 +50,7 @@ Result<OperatorChoice> parse_operator(std::string_view name) {
   if (name == kReplay) return fail_usage("replay: needs a session", "--operator", "write replay:SESSION");
   if (name.starts_with(kReplay)) return OperatorChoice{Kind::kReplay, 0.0, std::string(name.substr(kReplay.size()))};
   return fail_usage(fmt::format("no operator named {}", name), "--operator",
-                    "use expert, novice, constant-velocity:MM_PER_S or replay:SESSION");
+                    "use expert, novice, novice:SHARE, constant-velocity:MM_PER_S or replay:SESSION");
 }
 
 Result<Performer> make_replayer(const cases::Case& the_case, const RunOptions& options) {
@@ -70,6 +83,7 @@ Result<Performer> make_named(const cases::Case& the_case, const RunOptions& opti
     case OperatorChoice::Kind::kExpert:
       return Performer{tasks::make_expert(what), options.rate_hz, false, force_model};
     case OperatorChoice::Kind::kNovice:
+      what.error_share = choice.error_share;
       return Performer{tasks::make_novice(what), options.rate_hz, false, force_model};
     case OperatorChoice::Kind::kConstantVelocity:
       return Performer{tasks::make_constant_velocity(what, choice.speed_mm_per_s), options.rate_hz, false, force_model};

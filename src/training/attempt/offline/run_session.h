@@ -15,7 +15,8 @@ namespace trocar::attempt {
 
 /// Operator, settings and output file of an attempt.
 struct RunOptions {
-  std::string operator_name = "expert";  ///< expert | novice | constant-velocity:MM_PER_S | replay:SESSION
+  std::string operator_name =
+      "expert";             ///< expert | novice | novice:SHARE | constant-velocity:MM_PER_S | replay:SESSION
   std::string force_model;  ///< insertion | proxy | combined; empty: the task's, or that of the replayed session.
   std::string device = "premium";  ///< Name in data/devices.toml; its limits and coupling are simulated.
   double rate_hz = 1000.0;         ///< 250..4000. A replay uses its session's rate.

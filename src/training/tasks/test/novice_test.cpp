@@ -87,20 +87,65 @@ TEST(Novice, TriesTwoOtherWaysWhereNothingComesAndEnds) {
   EXPECT_TRUE(body.is_done);
 }
 
+/// Distance of the line that the novice aims along from the planned entry.
+double entry_error_mm(const OperatorCase& the_case) {
+  const HandCommand first = make_novice(the_case)->next({});
+  const Vec3 axis_P = first.X_PN.R().col(2), plan_axis_P = the_case.path_P.direction();
+  const Vec3 away_P = first.X_PN.p() - the_case.path_P.a;
+  return (away_P - away_P.dot(plan_axis_P) / axis_P.dot(plan_axis_P) * axis_P).norm();
+}
+
+TEST(Novice, MissesTheEntryInProportionToTheShareOfErrors) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const auto with_share = [&](double share) {
+      OperatorCase the_case = puncture(seed);
+      the_case.error_share = share;
+      return entry_error_mm(the_case);
+    };
+    const double all_mm = with_share(1.0), tremor_mm = 0.6;  // three times its rms
+    EXPECT_GT(all_mm, 3.0 - tremor_mm) << seed;
+    EXPECT_LT(all_mm, 8.0 + tremor_mm) << seed;
+    EXPECT_NEAR(with_share(0.5), 0.5 * all_mm, tremor_mm) << seed;
+    EXPECT_LT(with_share(0.0), 0.3) << seed << ": the expert's tremor";
+  }
+}
+
+TEST(Novice, MissesTheTargetLessWithASmallerShareOfErrors) {
+  const auto mean_miss_mm = [](double share) {
+    double sum_mm = 0.0;
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      OperatorCase the_case = puncture(seed);
+      the_case.actions = {};
+      the_case.fires_biopsy = true;
+      the_case.error_share = share;
+      const LayeredBody body = run_in_body(the_case, 0.0, 0.0);
+      EXPECT_TRUE(body.is_done) << seed;
+      EXPECT_EQ(body.fired.size(), 1u) << seed;
+      sum_mm += (body.samples[body.fired.front()].tip_mm - the_case.path_P.b).norm();
+    }
+    return sum_mm / 20.0;
+  };
+  double larger_mm = mean_miss_mm(1.0);
+  EXPECT_GT(larger_mm, 6.0);
+  for (const double share : {0.75, 0.5, 0.25, 0.0}) {
+    const double miss_mm = mean_miss_mm(share);
+    EXPECT_LT(miss_mm, larger_mm - 1.0) << share;
+    larger_mm = miss_mm;
+  }
+  EXPECT_LT(larger_mm, 2.0) << "the way to stop";
+}
+
 TEST(Novice, FindsAHiddenLandmarkInProportionToTheFatOverIt) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    const auto entry_error_mm = [&](double cover_mm) {
+    const auto with_cover = [&](double cover_mm) {
       OperatorCase the_case = puncture(seed);
       the_case.cover_mm = cover_mm;
-      const HandCommand first = make_novice(the_case)->next({});
-      const Vec3 axis_P = first.X_PN.R().col(2), plan_axis_P = the_case.path_P.direction();
-      const Vec3 away_P = first.X_PN.p() - the_case.path_P.a;
-      return (away_P - away_P.dot(plan_axis_P) / axis_P.dot(plan_axis_P) * axis_P).norm();
+      return entry_error_mm(the_case);
     };
-    const double felt_mm = entry_error_mm(0.0);
-    EXPECT_NEAR(entry_error_mm(10.0), felt_mm, 0.05) << seed;
-    EXPECT_NEAR(entry_error_mm(40.0), 4.0 * felt_mm, 3.0) << seed << ": and the tremor four times";
-    EXPECT_GT(entry_error_mm(40.0), 2.0 * felt_mm) << seed;
+    const double felt_mm = with_cover(0.0);
+    EXPECT_NEAR(with_cover(10.0), felt_mm, 0.05) << seed;
+    EXPECT_NEAR(with_cover(40.0), 4.0 * felt_mm, 3.0) << seed << ": and the tremor four times";
+    EXPECT_GT(with_cover(40.0), 2.0 * felt_mm) << seed;
   }
 }
 
