@@ -30,5 +30,9 @@ std::filesystem::path user_cache_folder() {
   return folder("XDG_CACHE_HOME", ".cache");
 }
 
+std::filesystem::path user_data_folder() {
+  return folder("XDG_DATA_HOME", ".local/share");
+}
+
 }  // namespace core
 }  // namespace trocar

@@ -11,6 +11,8 @@ std::filesystem::path user_state_folder();
 std::filesystem::path user_config_folder();
 /// $XDG_CACHE_HOME/trocar, else ~/.cache/trocar: data that can be regenerated.
 std::filesystem::path user_cache_folder();
+/// $XDG_DATA_HOME/trocar, else ~/.local/share/trocar: data of the user that the program keeps, such as results.
+std::filesystem::path user_data_folder();
 
 }  // namespace core
 }  // namespace trocar
