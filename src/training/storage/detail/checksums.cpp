@@ -6,7 +6,6 @@
 
 #include "storage/detail/columns.h"
 #include "storage/detail/guarded_database.h"
-#include "storage/detail/sqlite_handle.h"
 
 namespace trocar::storage::detail {
 namespace {

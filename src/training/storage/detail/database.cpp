@@ -50,9 +50,8 @@ std::string view_columns() {
 }  // namespace
 
 void open_database(soci::session& database, const std::filesystem::path& path) {
-  const std::string absolute = std::filesystem::absolute(path).string();
-  if (absolute.find('"') != std::string::npos) throw soci::soci_error("a quotation mark in the path");
-  database.open(soci::sqlite3, "dbname=\"" + absolute + "\" timeout=5");
+  constexpr int kWaitForWriter_s = 5;
+  database::open_sqlite(database, path, kWaitForWriter_s);
 }
 
 std::vector<std::string> schema_statements() {
@@ -82,19 +81,6 @@ std::vector<std::string> schema_statements() {
   statements.push_back(
       fmt::format("CREATE VIEW session_rows AS SELECT {} FROM ticks t ORDER BY t.tick", view_columns()));
   return statements;
-}
-
-int pragma_integer(soci::session& database, const std::string& name) {
-  int value = 0;
-  database << "PRAGMA " + name, soci::into(value);
-  return value;
-}
-
-std::string reason_of(const std::exception& error) {
-  std::string text = error.what();
-  if (const std::size_t end = text.find(" while "); end != std::string::npos) text.resize(end);
-  if (const std::size_t colon = text.rfind(": "); colon != std::string::npos) text.erase(0, colon + 2);
-  return text;
 }
 
 }  // namespace trocar::storage::detail

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "storage/detail/sqlite_handle.h"
-
 namespace trocar::storage::detail {
 namespace {
 

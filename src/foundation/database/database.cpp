@@ -1,0 +1,169 @@
+#include "database/database.h"
+
+#include <soci/sqlite3/soci-sqlite3.h>
+
+#include <array>
+#include <fstream>
+#include <string_view>
+
+#include "core/files/atomic_file.h"
+#include "core/files/private_file.h"
+#include "database/guarded.h"
+#include "database/server_connection.h"
+#include "database/sqlite_handle.h"
+
+namespace trocar::database {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int kWaitForWriter_s = 10;
+
+/// Checks the first bytes, so that SQLite never opens a file that is none of its own.
+Status check_file(const fs::path& path) {
+  std::error_code error;
+  if (fs::is_directory(path, error)) return fail("is a folder, not a database", path.string(), "name a file");
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return fail("cannot be read", path.string(), "check the permissions");
+  constexpr std::string_view kMark{"SQLite format 3\0", 16};
+  std::array<char, kMark.size()> head{};
+  file.read(head.data(), head.size());
+  if (file.gcount() == 0) return {};  // SQLite makes a new database from an empty file
+  if (std::string_view(head.data(), head.size()) != kMark)
+    return fail("is not a database", path.string(), "name another file");
+  return {};
+}
+
+Status prepare_file(const fs::path& path, Missing missing) {
+  std::error_code error;
+  if (fs::exists(path, error)) return check_file(path);
+  if (missing == Missing::kRefuse) return fail("no such database", path.string(), "check the path");
+  TROCAR_TRY_STATUS(make_parent_folder(path));
+  // The names of people are in it. Another program may make it at the same time.
+  Status made = write_private_file(path, "");
+  return made || !fs::exists(path, error) ? made : Status();
+}
+
+void set_up_sqlite(soci::session& session, const fs::path& file) {
+  open_sqlite(session, file, kWaitForWriter_s);
+  std::string mode;
+  session << "PRAGMA journal_mode = WAL", soci::into(mode);
+  session << "PRAGMA synchronous = FULL";
+  session << "PRAGMA foreign_keys = ON";
+  session << "PRAGMA trusted_schema = OFF";
+}
+
+std::unique_ptr<soci::session> connect(const DatabaseUrl& url) {
+  auto session = std::make_unique<soci::session>();
+  if (url.is_sqlite()) {
+    set_up_sqlite(*session, url.file);
+  } else {
+    open_server(*session, url.server);
+  }
+  return session;
+}
+
+std::optional<Error> sqlite_error(int code, const std::string& where) {
+  switch (code & 0xff) {  // the primary code
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+      return Error{"another program is writing the database", where, "try again in a moment"};
+    case SQLITE_FULL:
+      return Error{"the disk is full", where, "free space; nothing of this was written"};
+    case SQLITE_CORRUPT:
+    case SQLITE_NOTADB:
+      return Error{"the database is damaged", where,
+                   "restore a backup, or save the readable part: sqlite3 FILE .recover"};
+    case SQLITE_READONLY:
+    case SQLITE_PERM:
+      return Error{"the database cannot be written", where, "check the permissions of the file and its folder"};
+    case SQLITE_CANTOPEN:
+      return Error{"the database cannot be opened", where, "check the permissions of the file and its folder"};
+    case SQLITE_IOERR:
+      return Error{"reading or writing the disk failed", where, "check the disk and its free space"};
+    default:
+      return std::nullopt;
+  }
+}
+
+/// The error of an exception in plain words. `session`: null before there is a connection.
+Error error_of(const DatabaseUrl& url, const std::exception& error, soci::session* session) {
+  std::optional<Error> known;
+  if (url.is_sqlite()) {
+    const auto* const sqlite = dynamic_cast<const soci::sqlite3_soci_error*>(&error);
+    if (sqlite != nullptr || session != nullptr)
+      known = sqlite_error(sqlite != nullptr ? sqlite->result() : sqlite_api::sqlite3_errcode(handle_of(*session)),
+                           url.shown());
+  } else {
+    known = server_error(error, url.shown());
+  }
+  return known ? *known : Error{reason_of(error), url.shown(), "check the database", 1};
+}
+
+}  // namespace
+
+Database::Database(DatabaseUrl url, std::unique_ptr<soci::session> session)
+    : url_(std::move(url)), session_(std::move(session)) {}
+Database::Database(Database&&) noexcept = default;
+Database& Database::operator=(Database&&) noexcept = default;
+Database::~Database() = default;
+
+Result<Database> Database::open(const DatabaseUrl& url, Missing missing) {
+  if (url.is_sqlite()) TROCAR_TRY_STATUS(prepare_file(url.file, missing));
+  try {
+    return Database(url, connect(url));
+  } catch (const std::exception& error) {
+    Error reason = error_of(url, error, nullptr);
+    reason.what = "the database cannot be opened: " + reason.what;
+    return tl::unexpected(std::move(reason));
+  }
+}
+
+bool Database::reconnect() noexcept {
+  try {
+    session_ = connect(url_);
+    return true;
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+Status Database::execute(const char* what, Kind kind, const std::function<bool(soci::session&)>& work) {
+  for (bool is_repeated = false;; is_repeated = true) {
+    bool is_open = false, is_committing = false;
+    try {
+      if (kind == Kind::kWrite) {
+        *session_ << (is_sqlite() ? "BEGIN IMMEDIATE" : "BEGIN");
+        is_open = true;
+      }
+      const bool is_kept = work(*session_);
+      is_committing = true;
+      if (is_open) *session_ << (is_kept ? "COMMIT" : "ROLLBACK");
+      return {};
+    } catch (const std::exception& error) {
+      Error translated = translate(what, error);
+      const bool has_lost = !is_sqlite() && is_lost(*session_);
+      if (is_open && !has_lost) {
+        try {
+          *session_ << "ROLLBACK";
+        } catch (const std::exception&) {
+          // SQLite has undone it already, as after a full disk.
+        }
+      }
+      if (!has_lost) return tl::unexpected(std::move(translated));
+      const bool is_connected = reconnect();
+      if (is_connected && !is_repeated && !(is_open && is_committing)) continue;
+      if (is_open && is_committing)
+        return fail("the connection was lost while data were committed: they may have been written or not",
+                    url_.shown(), "repeat it: what was written already is recognised");
+      return fail("the connection to the database was lost", url_.shown(), "check the network and the server");
+    }
+  }
+}
+
+Error Database::translate(const char* what, const std::exception& error) const {
+  Error reason = error_of(url_, error, session_.get());
+  reason.what = std::string(what) + ": " + reason.what;
+  return reason;
+}
+
+}  // namespace trocar::database
