@@ -1,0 +1,33 @@
+#include "results/attempt.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trocar::results {
+namespace {
+constexpr std::array kStates{State::kRunning, State::kFinished, State::kInterrupted};
+}
+
+const char* to_string(State state) noexcept {
+  constexpr std::array kNames{"running", "finished", "interrupted"};
+  return kNames[static_cast<std::size_t>(state)];
+}
+
+std::optional<State> find_state(std::string_view name) noexcept {
+  for (const State state : kStates)
+    if (name == to_string(state)) return state;
+  return std::nullopt;
+}
+
+learning::PastAttempt past_attempt_of(const Attempt& attempt, const std::vector<Part>& parts) {
+  learning::PastAttempt past{attempt.the_case.task, attempt.the_case.patient, attempt.the_case.seed,
+                             learning::find_level(attempt.level), attempt.started};
+  if (attempt.state != State::kFinished || !attempt.score) return past;
+  past.score = std::clamp(*attempt.score, 0.0, 100.0);
+  past.is_passed = attempt.is_passed;
+  for (const Part& part : parts)
+    if (part.max_points > 0.0) past.part_shares[part.name] = std::clamp(part.points / part.max_points, 0.0, 1.0);
+  return past;
+}
+
+}  // namespace trocar::results

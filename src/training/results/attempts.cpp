@@ -1,0 +1,233 @@
+#include "results/attempts.h"
+
+#include <fmt/format.h>
+
+#include "database/bytes.h"
+#include "results/detail/attempt_writer.h"
+#include "results/detail/details_json.h"
+#include "results/detail/rows.h"
+
+namespace trocar::results {
+using namespace detail;
+namespace {
+
+constexpr const char* kCannotRead = "the attempts cannot be read";
+constexpr const char* kCannotWrite = "the attempt cannot be written";
+constexpr const char* kSelect =
+    "SELECT a.sequence, a.id, a.person_id, c.task, c.patient, c.seed, c.patient_hash, c.difficulty, a.level, "
+    "a.operator,"
+    " a.station, a.started_s, a.state, a.score, a.is_passed, a.duration_s, a.program_version"
+    " FROM attempts a JOIN cases c ON c.id = a.case_id";
+
+/// Reads attempts; `texts` and `numbers` bind the parameters of the condition, in this order.
+std::vector<Attempt> read_attempts(soci::session& session, const std::string& condition,
+                                   const std::vector<std::string>& texts, const std::vector<long long>& numbers) {
+  std::vector<Attempt> attempts;
+  Attempt a;
+  long long sequence = 0, started_s = 0;
+  int difficulty = 0, state = 0, is_passed = 0;
+  std::string seed;
+  Nullable<double> score;
+  soci::statement select(session);
+  select.exchange(soci::into(sequence));
+  select.exchange(soci::into(a.id));
+  select.exchange(soci::into(a.person_id));
+  select.exchange(soci::into(a.the_case.task));
+  select.exchange(soci::into(a.the_case.patient));
+  select.exchange(soci::into(seed));
+  select.exchange(soci::into(a.the_case.patient_hash));
+  select.exchange(soci::into(difficulty));
+  select.exchange(soci::into(a.level));
+  select.exchange(soci::into(a.operator_name));
+  select.exchange(soci::into(a.station));
+  select.exchange(soci::into(started_s));
+  select.exchange(soci::into(state));
+  select.exchange(soci::into(score.value, score.indicator));
+  select.exchange(soci::into(is_passed));
+  select.exchange(soci::into(a.duration_s));
+  select.exchange(soci::into(a.program_version));
+  for (const std::string& text : texts) select.exchange(soci::use(text));
+  for (const long long& number : numbers) select.exchange(soci::use(number));
+  select.alloc();
+  select.prepare(kSelect + condition);
+  select.define_and_bind();
+  select.execute();
+  while (select.fetch()) {
+    a.sequence = sequence;
+    a.the_case.seed = std::strtoull(seed.c_str(), nullptr, 10);
+    a.the_case.difficulty = difficulty > 0 ? std::optional(difficulty) : std::nullopt;
+    a.started = Seconds(std::chrono::seconds(started_s));
+    a.state = static_cast<State>(state);
+    a.score = score.get();
+    a.is_passed = is_passed != 0;
+    attempts.push_back(a);
+  }
+  return attempts;
+}
+
+std::optional<Attempt> read_attempt(soci::session& session, std::string_view id) {
+  std::vector<Attempt> found = read_attempts(session, " WHERE a.id = :i", {std::string(id)}, {});
+  return found.empty() ? std::nullopt : std::optional(std::move(found.front()));
+}
+
+std::vector<Part> read_parts(soci::session& session, long long sequence) {
+  std::vector<Part> parts;
+  Part part;
+  soci::statement select =
+      (session.prepare << "SELECT part, points, max_points FROM attempt_parts WHERE sequence = :s ORDER BY part",
+       soci::use(sequence), soci::into(part.name), soci::into(part.points), soci::into(part.max_points));
+  select.execute();
+  while (select.fetch()) parts.push_back(part);
+  return parts;
+}
+
+std::vector<Measure> read_measures(soci::session& session, long long sequence) {
+  std::vector<Measure> measures;
+  Measure measure;
+  soci::statement select =
+      (session.prepare << "SELECT m.name, m.unit, v.value FROM attempt_metrics v JOIN metrics m ON m.id = v.metric_id"
+                          " WHERE v.sequence = :s ORDER BY m.id",
+       soci::use(sequence), soci::into(measure.name), soci::into(measure.unit), soci::into(measure.value));
+  select.execute();
+  while (select.fetch()) measures.push_back(measure);
+  return measures;
+}
+
+}  // namespace
+
+Status begin_attempt(Repository& repository, const Attempt& attempt) {
+  database::Database& database = repository.database();
+  return database.transaction(kCannotWrite,
+                              [&](soci::session& session) { return AttemptWriter(session, database).begin(attempt); });
+}
+
+Result<std::int64_t> record_attempt(Repository& repository, const AttemptRecord& record, std::string_view recording) {
+  database::Database& database = repository.database();
+  return database.transaction(
+      kCannotWrite, [&](soci::session& session) { return AttemptWriter(session, database).record(record, recording); });
+}
+
+Status record_attempts(Repository& repository, const std::vector<AttemptRecord>& records) {
+  database::Database& database = repository.database();
+  return database.transaction("the attempts cannot be written", [&](soci::session& session) -> Status {
+    AttemptWriter writer(session, database);
+    for (const AttemptRecord& record : records) TROCAR_TRY_STATUS(writer.record(record, {}));
+    return {};
+  });
+}
+
+Result<std::vector<Attempt>> list_attempts(Repository& repository, const AttemptFilter& filter) {
+  std::string condition = " WHERE 1 = 1";
+  std::vector<std::string> texts;
+  std::vector<long long> numbers;
+  if (!filter.person_id.empty()) {
+    condition += " AND a.person_id = :person";
+    texts.push_back(filter.person_id);
+  }
+  if (!filter.task.empty()) {
+    condition += " AND a.task = :task";
+    texts.push_back(filter.task);
+  }
+  if (!filter.course.empty()) {
+    condition +=
+        " AND a.person_id IN (SELECT p.id FROM people p JOIN courses k ON k.id = p.course_id"
+        " WHERE k.name_key = :course)";
+    texts.push_back(name_key(filter.course));
+  }
+  if (filter.state) {
+    condition += " AND a.state = :state";
+    numbers.push_back(static_cast<long long>(*filter.state));
+  }
+  if (filter.before) {
+    condition += " AND a.sequence < :before";
+    numbers.push_back(*filter.before);
+  }
+  condition += filter.is_newest_first ? " ORDER BY a.sequence DESC" : " ORDER BY a.sequence";
+  if (filter.limit > 0) condition += fmt::format(" LIMIT {}", filter.limit);
+  return repository.database().run(
+      kCannotRead, [&](soci::session& session) { return read_attempts(session, condition, texts, numbers); });
+}
+
+Result<std::optional<Attempt>> find_attempt(Repository& repository, std::string_view id) {
+  return repository.database().run(kCannotRead, [&](soci::session& session) { return read_attempt(session, id); });
+}
+
+Result<std::optional<AttemptRecord>> load_attempt(Repository& repository, std::string_view id) {
+  using Loaded = std::optional<AttemptRecord>;
+  return repository.database().run(kCannotRead, [&](soci::session& session) -> Result<Loaded> {
+    const std::optional<Attempt> attempt = read_attempt(session, id);
+    if (!attempt) return Loaded();
+    AttemptRecord record;
+    record.attempt = *attempt;
+    const long long sequence = attempt->sequence;
+    record.parts = read_parts(session, sequence);
+    record.measures = read_measures(session, sequence);
+    std::string verdict, trace;
+    session << "SELECT verdict, trace FROM attempt_details WHERE sequence = :s", soci::use(sequence),
+        soci::into(verdict), soci::into(trace);
+    if (!session.got_data()) return Loaded(std::move(record));  // it is running
+    TROCAR_TRY_STATUS(read_verdict(verdict, record));
+    TROCAR_TRY(record.trace, read_trace(trace));
+    return Loaded(std::move(record));
+  });
+}
+
+Result<std::optional<std::string>> load_recording(Repository& repository, std::string_view id) {
+  database::Database& database = repository.database();
+  return database.run("the recording cannot be read", [&](soci::session& session) -> std::optional<std::string> {
+    const std::string key(id);
+    std::string text;
+    session << "SELECT " + database::bytes_out(database, "r.bytes") +
+                   " FROM recordings r JOIN attempts a ON a.sequence = r.sequence WHERE a.id = :i",
+        soci::use(key), soci::into(text);
+    if (!session.got_data()) return std::nullopt;
+    return database::from_bytes(database, std::move(text));
+  });
+}
+
+Result<std::optional<std::string>> find_expert_attempt(Repository& repository, const Attempt& attempt) {
+  return repository.database().run(kCannotRead, [&](soci::session& session) -> std::optional<std::string> {
+    const std::string seed = std::to_string(attempt.the_case.seed);
+    std::string id;
+    session << "SELECT a.id FROM attempts a JOIN people p ON p.id = a.person_id JOIN cases c ON c.id = a.case_id"
+               " WHERE c.task = :t AND c.patient = :n AND c.seed = :s AND c.patient_hash = :h AND p.is_expert = 1"
+               " AND a.score IS NOT NULL ORDER BY p.is_simulated, a.score DESC, a.sequence LIMIT 1",
+        soci::use(attempt.the_case.task), soci::use(attempt.the_case.patient), soci::use(seed),
+        soci::use(attempt.the_case.patient_hash), soci::into(id);
+    return session.got_data() ? std::optional(id) : std::nullopt;
+  });
+}
+
+Status delete_attempt(Repository& repository, std::string_view id) {
+  database::Database& database = repository.database();
+  return database.transaction("the attempt cannot be deleted", [&](soci::session& session) -> Status {
+    const std::string key(id);
+    if (database.is_sqlite()) session << "PRAGMA secure_delete = ON";
+    soci::statement remove = (session.prepare << "DELETE FROM attempts WHERE id = :i", soci::use(key));
+    remove.execute(true);
+    if (remove.get_affected_rows() == 1) return {};
+    return fail_usage("no such attempt", key, "see trocar results list");
+  });
+}
+
+Result<std::vector<learning::PastAttempt>> past_attempts(Repository& repository, std::string_view person_id) {
+  return repository.database().run(kCannotRead, [&](soci::session& session) {
+    const std::string person(person_id);
+    std::map<long long, std::vector<Part>> parts;
+    long long sequence = 0;
+    Part part;
+    soci::statement select =
+        (session.prepare << "SELECT q.sequence, q.part, q.points, q.max_points FROM attempt_parts q"
+                            " JOIN attempts a ON a.sequence = q.sequence WHERE a.person_id = :p",
+         soci::use(person), soci::into(sequence), soci::into(part.name), soci::into(part.points),
+         soci::into(part.max_points));
+    select.execute();
+    while (select.fetch()) parts[sequence].push_back(part);
+    std::vector<learning::PastAttempt> past;
+    for (const Attempt& attempt : read_attempts(session, " WHERE a.person_id = :p ORDER BY a.sequence", {person}, {}))
+      past.push_back(past_attempt_of(attempt, parts[attempt.sequence]));
+    return past;
+  });
+}
+
+}  // namespace trocar::results

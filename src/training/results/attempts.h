@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "results/attempt.h"
+
+namespace trocar::results {
+
+/// Writes that an attempt has begun (state running). Repeating it changes nothing.
+Status begin_attempt(Repository& repository, const Attempt& attempt);
+/// Writes an attempt with all its data; one with the same id that is running or interrupted is completed, a finished
+/// one stays as it is. `recording`: bytes of the session file; empty: not kept. Returns its sequence.
+/// Error (exit status 2): no such person.
+Result<std::int64_t> record_attempt(Repository& repository, const AttemptRecord& record, std::string_view recording);
+/// Many at once in one transaction, without recordings: for imports and measurements.
+Status record_attempts(Repository& repository, const std::vector<AttemptRecord>& records);
+
+/// Which attempts. Empty members do not restrict.
+struct AttemptFilter {
+  std::string person_id, task, course;
+  std::optional<std::int64_t> before = {};  ///< Only with a smaller sequence.
+  std::size_t limit = 0;                    ///< The newest so many; 0: all.
+  bool is_newest_first = false;
+  std::optional<State> state = {};
+};
+Result<std::vector<Attempt>> list_attempts(Repository& repository, const AttemptFilter& filter);
+Result<std::optional<Attempt>> find_attempt(Repository& repository, std::string_view id);
+/// With parts, measures, hints and trace. Empty: no such attempt.
+Result<std::optional<AttemptRecord>> load_attempt(Repository& repository, std::string_view id);
+/// Empty: no such attempt, or its recording is not kept.
+Result<std::optional<std::string>> load_recording(Repository& repository, std::string_view id);
+/// The id of the best attempt of an expert on the same case (of a simulated one only if there is no other); empty:
+/// none.
+Result<std::optional<std::string>> find_expert_attempt(Repository& repository, const Attempt& attempt);
+Status delete_attempt(Repository& repository, std::string_view id);
+
+/// Past attempts of a person for the learning path, by sequence.
+Result<std::vector<learning::PastAttempt>> past_attempts(Repository& repository, std::string_view person_id);
+
+/// One person at one task.
+struct TaskSummary {
+  std::string person_id, task;
+  std::int64_t attempts = 0, scored = 0, passed = 0;
+  std::optional<double> last_score, best_score;
+  std::optional<double> recent_mean;  ///< Of the last kRecentAttempts scored ones.
+  Seconds last{};
+};
+inline constexpr int kRecentAttempts = 5;
+Result<std::vector<TaskSummary>> summarise_tasks(Repository& repository);
+
+/// One scored attempt's value of a metric, or its score (metric "score").
+struct MetricSample {
+  std::string person_id;
+  Group group = Group::kTrainee;
+  bool is_simulated = false;
+  std::int64_t sequence = 0;
+  double value = 0.0;
+};
+/// By sequence. `course`: empty: all.
+Result<std::vector<MetricSample>> metric_samples(Repository& repository, std::string_view task, std::string_view metric,
+                                                 std::string_view course = {});
+/// Metrics that attempts at a task have a value of, by name; with the unit.
+struct StoredMetric {
+  std::string name, unit;
+};
+Result<std::vector<StoredMetric>> list_metrics(Repository& repository, std::string_view task);
+
+}  // namespace trocar::results

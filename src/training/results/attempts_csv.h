@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "results/attempts.h"
+
+namespace trocar::results {
+
+/// One row an attempt: person, group, course, case, times, score, a column each part and metric. Texts that a
+/// spreadsheet would take for a formula (= + - @, tab) begin with an apostrophe, which reading removes. RFC 4180.
+Result<std::string> attempts_csv(Repository& repository, const AttemptFilter& filter);
+Status export_attempts(Repository& repository, const AttemptFilter& filter, const std::filesystem::path& file);
+
+struct ImportedRows {
+  std::int64_t added = 0, present = 0, people = 0;
+};
+/// Reads such a file into the database, all rows or none; people that do not exist are added; attempts that exist stay.
+/// Errors name row and column.
+Result<ImportedRows> import_attempts(Repository& repository, const std::filesystem::path& file);
+
+}  // namespace trocar::results

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <soci/soci.h>
+
+#include <optional>
+#include <string>
+
+#include "results/people.h"
+
+namespace trocar::results::detail {
+
+/// Parts of a larger transaction; see people.h. They throw soci::soci_error.
+Result<Person> add_person(soci::session& session, const NewPerson& person, Seconds now);
+std::optional<Person> find_person(soci::session& session, const std::string& id);
+std::optional<Person> find_person_named(soci::session& session, const std::string& key);
+PersonalData count_personal_data(soci::session& session, const std::string& id);
+Status no_such_person(const std::string& id);
+
+}  // namespace trocar::results::detail

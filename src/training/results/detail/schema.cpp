@@ -1,0 +1,73 @@
+#include "results/detail/schema.h"
+
+#include <vector>
+
+namespace trocar::results::detail {
+namespace {
+
+// Times are seconds since 1970, UTC; truth values 0 or 1; ids of rows 32 hexadecimal digits.
+database::Migration version_1() {
+  return {
+      "CREATE TABLE settings (name TEXT PRIMARY KEY, value TEXT NOT NULL)",
+      "CREATE TABLE courses (id TEXT PRIMARY KEY, name TEXT NOT NULL, name_key TEXT NOT NULL UNIQUE)",
+      "CREATE TABLE people (id TEXT PRIMARY KEY, name TEXT NOT NULL, name_key TEXT NOT NULL UNIQUE,"
+      " is_expert INTEGER NOT NULL, is_simulated INTEGER NOT NULL, course_id TEXT REFERENCES courses (id),"
+      " pin_hash TEXT NOT NULL, pin_failures INTEGER NOT NULL, pin_failed_s BIGINT NOT NULL, added_s BIGINT NOT NULL)",
+      "CREATE INDEX people_of_course ON people (course_id)",
+      "CREATE TABLE cases (id {sequence}, task TEXT NOT NULL, patient TEXT NOT NULL, seed TEXT NOT NULL,"
+      " patient_hash TEXT NOT NULL, difficulty INTEGER NOT NULL, UNIQUE (task, patient, seed, patient_hash))",
+      "CREATE TABLE attempts (sequence {sequence}, id TEXT NOT NULL UNIQUE,"
+      " person_id TEXT NOT NULL REFERENCES people (id) ON DELETE CASCADE, case_id BIGINT NOT NULL REFERENCES cases "
+      "(id),"
+      " task TEXT NOT NULL, level TEXT NOT NULL, operator TEXT NOT NULL, station TEXT NOT NULL,"
+      " started_s BIGINT NOT NULL, state INTEGER NOT NULL, score DOUBLE PRECISION, is_passed INTEGER NOT NULL,"
+      " duration_s DOUBLE PRECISION NOT NULL, program_version TEXT NOT NULL)",
+      "CREATE INDEX attempts_of_person ON attempts (person_id, task, sequence, score, is_passed, started_s)",
+      "CREATE INDEX attempts_of_task ON attempts (task, sequence)",
+      "CREATE INDEX attempts_of_case ON attempts (case_id, score)",
+      // Verdict, hints and trace as JSON: read for one attempt at a time.
+      "CREATE TABLE attempt_details (sequence BIGINT PRIMARY KEY REFERENCES attempts (sequence) ON DELETE CASCADE,"
+      " verdict TEXT NOT NULL, trace TEXT NOT NULL)",
+      "CREATE TABLE attempt_parts (sequence BIGINT NOT NULL REFERENCES attempts (sequence) ON DELETE CASCADE,"
+      " part TEXT NOT NULL, points DOUBLE PRECISION NOT NULL, max_points DOUBLE PRECISION NOT NULL,"
+      " PRIMARY KEY (sequence, part))",
+      "CREATE TABLE metrics (id {sequence}, name TEXT NOT NULL UNIQUE, unit TEXT NOT NULL)",
+      "CREATE TABLE attempt_metrics (sequence BIGINT NOT NULL REFERENCES attempts (sequence) ON DELETE CASCADE,"
+      " metric_id BIGINT NOT NULL REFERENCES metrics (id), value DOUBLE PRECISION NOT NULL,"
+      " PRIMARY KEY (metric_id, sequence))",
+      "CREATE INDEX metrics_of_attempt ON attempt_metrics (sequence)",
+      // The session file, as it was written.
+      "CREATE TABLE recordings (sequence BIGINT PRIMARY KEY REFERENCES attempts (sequence) ON DELETE CASCADE,"
+      " bytes {bytes} NOT NULL)",
+      "CREATE TABLE forms (id TEXT PRIMARY KEY, token TEXT NOT NULL UNIQUE, title TEXT NOT NULL, intro TEXT NOT NULL,"
+      " is_open INTEGER NOT NULL, changed_s BIGINT NOT NULL)",
+      "CREATE TABLE form_items (id TEXT PRIMARY KEY, form_id TEXT NOT NULL REFERENCES forms (id) ON DELETE CASCADE,"
+      " position INTEGER NOT NULL, kind INTEGER NOT NULL, text TEXT NOT NULL, is_required INTEGER NOT NULL,"
+      " is_retired INTEGER NOT NULL)",
+      "CREATE INDEX items_of_form ON form_items (form_id, position)",
+      "CREATE TABLE responses (id TEXT PRIMARY KEY, form_id TEXT NOT NULL REFERENCES forms (id) ON DELETE CASCADE,"
+      " person_id TEXT REFERENCES people (id) ON DELETE CASCADE, submitted_s BIGINT NOT NULL)",
+      "CREATE INDEX responses_to_form ON responses (form_id, submitted_s)",
+      "CREATE INDEX responses_of_person ON responses (person_id)",
+      "CREATE TABLE answers (response_id TEXT NOT NULL REFERENCES responses (id) ON DELETE CASCADE,"
+      " item_id TEXT NOT NULL REFERENCES form_items (id) ON DELETE CASCADE, points INTEGER NOT NULL, text TEXT NOT "
+      "NULL,"
+      " PRIMARY KEY (item_id, response_id))",
+      "CREATE INDEX answers_of_response ON answers (response_id)",
+      "CREATE TABLE accounts (id TEXT PRIMARY KEY, name TEXT NOT NULL, name_key TEXT NOT NULL UNIQUE,"
+      " is_admin INTEGER NOT NULL, password_hash TEXT NOT NULL, added_s BIGINT NOT NULL)",
+      "CREATE TABLE web_sessions (token_hash TEXT PRIMARY KEY,"
+      " account_id TEXT NOT NULL REFERENCES accounts (id) ON DELETE CASCADE, csrf_token TEXT NOT NULL,"
+      " begun_s BIGINT NOT NULL, used_s BIGINT NOT NULL)",
+      "CREATE INDEX web_sessions_of_account ON web_sessions (account_id)",
+  };
+}
+
+}  // namespace
+
+std::span<const database::Migration> migrations() {
+  static const std::vector<database::Migration> kAll{version_1()};
+  return kAll;
+}
+
+}  // namespace trocar::results::detail

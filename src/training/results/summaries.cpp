@@ -1,0 +1,106 @@
+#include <fmt/format.h>
+
+#include <map>
+
+#include "results/attempts.h"
+#include "results/detail/rows.h"
+
+namespace trocar::results {
+using namespace detail;
+namespace {
+
+constexpr const char* kCannotRead = "the attempts cannot be read";
+
+}  // namespace
+
+Result<std::vector<TaskSummary>> summarise_tasks(Repository& repository) {
+  return repository.database().run(kCannotRead, [](soci::session& session) {
+    std::vector<TaskSummary> summaries;
+    TaskSummary one;
+    long long attempts = 0, scored = 0, passed = 0, last_s = 0;
+    Nullable<double> last, best, recent;
+    // One pass over the index: the newest scored attempts of each person at each task have rank 1, 2 …
+    soci::statement select =
+        (session.prepare << fmt::format(
+             "SELECT person_id, task, count(*), sum(CASE WHEN score IS NULL THEN 0 ELSE 1 END), sum(is_passed),"
+             " max(CASE WHEN rank = 1 THEN score END), max(score), avg(CASE WHEN rank <= {} THEN score END),"
+             " max(started_s) FROM (SELECT person_id, task, score, is_passed, started_s, CASE WHEN score IS NOT NULL"
+             " THEN row_number() OVER (PARTITION BY person_id, task, score IS NULL ORDER BY sequence DESC) END AS rank"
+             " FROM attempts) ranked GROUP BY person_id, task ORDER BY person_id, task",
+             kRecentAttempts),
+         soci::into(one.person_id), soci::into(one.task), soci::into(attempts), soci::into(scored), soci::into(passed),
+         soci::into(last.value, last.indicator), soci::into(best.value, best.indicator),
+         soci::into(recent.value, recent.indicator), soci::into(last_s));
+    select.execute();
+    while (select.fetch()) {
+      one.attempts = attempts;
+      one.scored = scored;
+      one.passed = passed;
+      one.last_score = last.get();
+      one.best_score = best.get();
+      one.recent_mean = recent.get();
+      one.last = Seconds(std::chrono::seconds(last_s));
+      summaries.push_back(one);
+    }
+    return summaries;
+  });
+}
+
+Result<std::vector<MetricSample>> metric_samples(Repository& repository, std::string_view task, std::string_view metric,
+                                                 std::string_view course) {
+  const bool is_score = metric == "score";
+  std::string query = "SELECT a.person_id, p.is_expert, p.is_simulated, a.sequence, ";
+  query += is_score ? "a.score FROM attempts a JOIN people p ON p.id = a.person_id WHERE a.score IS NOT NULL"
+                    : "v.value FROM attempt_metrics v JOIN attempts a ON a.sequence = v.sequence JOIN people p ON"
+                      " p.id = a.person_id WHERE v.metric_id = (SELECT id FROM metrics WHERE name = :m)"
+                      " AND a.score IS NOT NULL";
+  query += " AND a.task = :t";
+  if (!course.empty()) query += " AND p.course_id = (SELECT id FROM courses WHERE name_key = :c)";
+  query += " ORDER BY a.sequence";
+  return repository.database().run(kCannotRead, [&](soci::session& session) {
+    const std::string task_name(task), metric_name(metric), course_key = name_key(course);
+    std::vector<MetricSample> samples;
+    MetricSample sample;
+    int is_expert = 0, is_simulated = 0;
+    long long sequence = 0;
+    soci::statement select(session);
+    select.exchange(soci::into(sample.person_id));
+    select.exchange(soci::into(is_expert));
+    select.exchange(soci::into(is_simulated));
+    select.exchange(soci::into(sequence));
+    select.exchange(soci::into(sample.value));
+    if (!is_score) select.exchange(soci::use(metric_name));
+    select.exchange(soci::use(task_name));
+    if (!course.empty()) select.exchange(soci::use(course_key));
+    select.alloc();
+    select.prepare(query);
+    select.define_and_bind();
+    select.execute();
+    while (select.fetch()) {
+      sample.group = is_expert != 0 ? Group::kExpert : Group::kTrainee;
+      sample.is_simulated = is_simulated != 0;
+      sample.sequence = sequence;
+      samples.push_back(sample);
+    }
+    return samples;
+  });
+}
+
+Result<std::vector<StoredMetric>> list_metrics(Repository& repository, std::string_view task) {
+  return repository.database().run(kCannotRead, [&](soci::session& session) {
+    const std::string name(task);
+    std::vector<StoredMetric> metrics;
+    StoredMetric metric;
+    // EXISTS stops at the first attempt of the task.
+    soci::statement select =
+        (session.prepare << "SELECT m.name, m.unit FROM metrics m WHERE EXISTS (SELECT 1 FROM attempt_metrics v JOIN"
+                            " attempts a ON a.sequence = v.sequence WHERE v.metric_id = m.id AND a.task = :t)"
+                            " ORDER BY m.name",
+         soci::use(name), soci::into(metric.name), soci::into(metric.unit));
+    select.execute();
+    while (select.fetch()) metrics.push_back(metric);
+    return metrics;
+  });
+}
+
+}  // namespace trocar::results
