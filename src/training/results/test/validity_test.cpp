@@ -1,0 +1,92 @@
+#include "results/validity.h"
+
+#include <fmt/format.h>
+
+#include "results/test/small_study.h"
+
+namespace trocar::results {
+namespace {
+
+TEST(CohortData, HasTheMeansOfEachPerson) {
+  SmallStudy study;
+  const Person expert = study.add("Expert", Group::kExpert), novice = study.add("Novice", Group::kTrainee, true);
+  study.add("Without attempts", Group::kTrainee);
+  study.attempt(novice, 20.0);
+  study.attempt(expert, 90.0);
+  study.attempt(novice, std::nullopt);
+  study.attempt(novice, 40.0);
+  study.attempt(expert, 100.0);
+  study.attempt(expert, 10.0, "lumbar-puncture");
+  const auto data = cohort_data(study.repository(), {"liver-biopsy"});
+  ASSERT_TRUE(data) << data.error().text();
+  ASSERT_EQ(data->people.size(), 2u);
+  const std::size_t e = data->people[0].is_expert ? 0 : 1, n = 1 - e;
+  EXPECT_TRUE(data->people[e].is_expert);
+  EXPECT_FALSE(data->people[e].is_simulated);
+  EXPECT_TRUE(data->people[n].is_simulated);
+  EXPECT_EQ(data->scores[e], 95.0);
+  EXPECT_EQ(data->scores[n], 30.0);
+  ASSERT_EQ(data->metrics.size(), 2u);
+  EXPECT_EQ(data->metrics[0].title, "Path length of the tip");
+  EXPECT_EQ(data->metrics[0].better, cohort::Better::kLower);
+  EXPECT_EQ(data->metrics[0].values[e], 105.0);
+  EXPECT_EQ(data->metrics[1].name, "of_tomorrow") << "a metric that this program does not know";
+  EXPECT_EQ(data->metrics[1].better, cohort::Better::kNeither);
+  ASSERT_EQ(data->items[n].size(), 2u);
+  EXPECT_DOUBLE_EQ(*data->items[n][0], 18.0);
+}
+
+TEST(CohortData, ChoosesAttemptsOfEachPerson) {
+  SmallStudy study;
+  const Person novice = study.add("Novice", Group::kTrainee), other = study.add("Other", Group::kTrainee);
+  study.attempt(novice, 10.0);
+  study.attempt(other, 50.0);
+  study.attempt(novice, std::nullopt);
+  study.attempt(novice, 20.0);
+  study.attempt(novice, 60.0);
+  const auto second_and_third = cohort_data(study.repository(), {"liver-biopsy", "", {2, 3}});
+  ASSERT_TRUE(second_and_third) << second_and_third.error().text();
+  ASSERT_EQ(second_and_third->people.size(), 1u) << "the other has no second attempt";
+  EXPECT_EQ(second_and_third->scores[0], 40.0);
+  EXPECT_EQ(second_and_third->metrics[0].values[0].has_value(), true);
+}
+
+TEST(CohortData, OfACourseHasItsPeopleAlone) {
+  SmallStudy study;
+  study.attempt(study.add("A", Group::kTrainee, false, "Spring"), 50.0);
+  study.attempt(study.add("B", Group::kTrainee, false, "Autumn"), 70.0);
+  const auto data = cohort_data(study.repository(), {"liver-biopsy", "spring"});
+  ASSERT_TRUE(data) << data.error().text();
+  ASSERT_EQ(data->people.size(), 1u);
+  EXPECT_EQ(data->scores[0], 50.0);
+  EXPECT_TRUE(cohort_data(study.repository(), {"liver-biopsy", "Winter"})->people.empty());
+}
+
+TEST(Validity, OfAStudyInTheDatabase) {
+  SmallStudy study;
+  for (const double score : {95.0, 92.0}) study.attempt(study.add(fmt::format("E{}", score), Group::kExpert), score);
+  for (int n = 0; n < 12; ++n) study.attempt(study.add(fmt::format("N{}", n), Group::kTrainee), 30.0 + 3.0 * n);
+  const auto validity = validity_of(study.repository(), {"liver-biopsy"});
+  ASSERT_TRUE(validity) << validity.error().text();
+  EXPECT_EQ(validity->experts, 2u);
+  EXPECT_EQ(validity->novices, 12u);
+  EXPECT_EQ(validity->simulated, 0u);
+  EXPECT_EQ(validity->score.separation->auc, 1.0);
+  EXPECT_EQ(validity->tested, 2u);
+  EXPECT_EQ(validity->discriminating, 1u) << "the path length; the other metric is the same for all";
+  EXPECT_GT(validity->alpha->value, 0.9);
+  ASSERT_TRUE(validity->pass_mark) << validity->pass_mark.error().text();
+  EXPECT_EQ(validity->pass_mark->false_fails + validity->pass_mark->false_passes, 0u);
+}
+
+TEST(Validity, OfAnUnknownTaskHasNobody) {
+  SmallStudy study;
+  const auto validity = validity_of(study.repository(), {"'; DROP TABLE people; --"});
+  ASSERT_TRUE(validity) << validity.error().text();
+  EXPECT_EQ(validity->experts + validity->novices, 0u);
+  EXPECT_FALSE(validity->pass_mark);
+  EXPECT_TRUE(list_people(study.repository()));
+}
+
+}  // namespace
+}  // namespace trocar::results

@@ -1,0 +1,186 @@
+#include "results/validity.h"
+
+#include <algorithm>
+#include <map>
+#include <vector>
+
+#include "metrics/metric.h"
+#include "results/detail/rows.h"
+#include "results/names.h"
+
+namespace trocar::results {
+namespace {
+
+constexpr const char* kCannotRead = "the attempts cannot be read";
+
+/// Mean of one person's values by their name (metric or part).
+struct NamedMean {
+  std::string person_id, name, unit;
+  double mean = 0.0;
+};
+struct PersonMean {
+  std::string person_id;
+  bool is_expert = false, is_simulated = false;
+  double score = 0.0;
+};
+struct Means {
+  std::vector<PersonMean> people;
+  std::vector<NamedMean> metrics, parts;
+};
+
+/// Reads means over the chosen attempts of each person.
+class MeanReader {
+ public:
+  MeanReader(soci::session& session, const EvidenceFilter& filter)
+      : session_(session),
+        task_(filter.task),
+        course_key_(filter.course.empty() ? std::string() : name_key(filter.course)),
+        first_(bounded(filter.attempts.first)),
+        last_(bounded(filter.attempts.last)) {}
+
+  Means read() {
+    Means means;
+    read_people(means.people);
+    means.metrics = read_named(
+        "SELECT c.person_id, m.name, m.unit, avg(v.value) FROM chosen c JOIN attempt_metrics v ON v.sequence ="
+        " c.sequence JOIN metrics m ON m.id = v.metric_id GROUP BY c.person_id, m.name, m.unit");
+    means.parts = read_named(
+        "SELECT c.person_id, v.part, '', avg(v.points) FROM chosen c JOIN attempt_parts v ON v.sequence = c.sequence"
+        " GROUP BY c.person_id, v.part");
+    return means;
+  }
+
+ private:
+  static long long bounded(std::size_t number) {
+    constexpr std::size_t kMost = 1'000'000'000;
+    return static_cast<long long>(std::min(number, kMost));
+  }
+
+  /// The chosen attempts as the table `chosen`, and a query on it.
+  std::string with_chosen(const std::string& query) const {
+    std::string text =
+        "WITH chosen AS (SELECT sequence, person_id, is_expert, is_simulated, score FROM (SELECT a.sequence,"
+        " a.person_id, p.is_expert, p.is_simulated, a.score, row_number() OVER (PARTITION BY a.person_id ORDER BY"
+        " a.sequence) AS number FROM attempts a JOIN people p ON p.id = a.person_id WHERE a.task = :task AND"
+        " a.score IS NOT NULL";
+    if (!course_key_.empty()) text += " AND p.course_id = (SELECT id FROM courses WHERE name_key = :course)";
+    return text + ") counted WHERE number >= :first AND number <= :last) " + query;
+  }
+
+  void execute(soci::statement& select, const std::string& query) {
+    select.exchange(soci::use(task_));
+    if (!course_key_.empty()) select.exchange(soci::use(course_key_));
+    select.exchange(soci::use(first_));
+    select.exchange(soci::use(last_));
+    select.alloc();
+    select.prepare(with_chosen(query));
+    select.define_and_bind();
+    select.execute();
+  }
+
+  void read_people(std::vector<PersonMean>& people) {
+    PersonMean person;
+    int is_expert = 0, is_simulated = 0;
+    soci::statement select(session_);
+    select.exchange(soci::into(person.person_id));
+    select.exchange(soci::into(is_expert));
+    select.exchange(soci::into(is_simulated));
+    select.exchange(soci::into(person.score));
+    execute(select,
+            "SELECT person_id, is_expert, is_simulated, avg(score) FROM chosen GROUP BY person_id, is_expert,"
+            " is_simulated ORDER BY person_id");
+    while (select.fetch()) {
+      person.is_expert = is_expert != 0;
+      person.is_simulated = is_simulated != 0;
+      people.push_back(person);
+    }
+  }
+
+  std::vector<NamedMean> read_named(const std::string& query) {
+    std::vector<NamedMean> means;
+    NamedMean one;
+    soci::statement select(session_);
+    select.exchange(soci::into(one.person_id));
+    select.exchange(soci::into(one.name));
+    select.exchange(soci::into(one.unit));
+    select.exchange(soci::into(one.mean));
+    execute(select, query);
+    while (select.fetch()) means.push_back(one);
+    return means;
+  }
+
+  soci::session& session_;
+  std::string task_, course_key_;
+  long long first_, last_;
+};
+
+cohort::Better better_of(metrics::Better better) {
+  switch (better) {
+    case metrics::Better::kLower:
+      return cohort::Better::kLower;
+    case metrics::Better::kHigher:
+      return cohort::Better::kHigher;
+    case metrics::Better::kNeither:
+      break;
+  }
+  return cohort::Better::kNeither;
+}
+
+using Columns = std::map<std::string, std::vector<std::optional<double>>>;
+
+/// One column a name, one row a person.
+Columns columns_of(const std::vector<NamedMean>& means, const std::map<std::string, std::size_t>& rows) {
+  Columns columns;
+  for (const NamedMean& mean : means) {
+    const auto row = rows.find(mean.person_id);
+    if (row == rows.end()) continue;  // scored by another station since
+    std::vector<std::optional<double>>& column = columns[mean.name];
+    column.resize(rows.size());
+    column[row->second] = mean.mean;
+  }
+  return columns;
+}
+
+/// In the order of the catalogue; metrics of another program follow.
+std::vector<cohort::MetricOfPeople> metrics_of(const std::vector<NamedMean>& means, Columns columns) {
+  std::vector<cohort::MetricOfPeople> metrics;
+  for (const metrics::MetricDescription& known : metrics::metric_catalogue()) {
+    const auto column = columns.find(known.name);
+    if (column == columns.end()) continue;
+    metrics.push_back({known.name, known.title, known.unit, better_of(known.better), std::move(column->second)});
+    columns.erase(column);
+  }
+  std::map<std::string, std::string> units;
+  for (const NamedMean& mean : means) units[mean.name] = mean.unit;
+  for (auto& [name, column] : columns)
+    metrics.push_back({name, name, units[name], cohort::Better::kNeither, std::move(column)});
+  return metrics;
+}
+
+}  // namespace
+
+Result<cohort::CohortData> cohort_data(Repository& repository, const EvidenceFilter& filter) {
+  TROCAR_TRY(const Means means, repository.database().run(kCannotRead, [&](soci::session& session) {
+    return MeanReader(session, filter).read();
+  }));
+  cohort::CohortData data;
+  std::map<std::string, std::size_t> rows;
+  for (const PersonMean& person : means.people) {
+    rows.emplace(person.person_id, rows.size());
+    data.people.push_back({person.is_expert, person.is_simulated});
+    data.scores.emplace_back(person.score);
+  }
+  data.metrics = metrics_of(means.metrics, columns_of(means.metrics, rows));
+  data.items.resize(rows.size());
+  for (const auto& [name, column] : columns_of(means.parts, rows))
+    for (std::size_t row = 0; row < rows.size(); ++row) data.items[row].push_back(column[row]);
+  return data;
+}
+
+Result<cohort::Validity> validity_of(Repository& repository, const EvidenceFilter& filter,
+                                     const cohort::ValidityRules& rules) {
+  TROCAR_TRY(const cohort::CohortData data, cohort_data(repository, filter));
+  return cohort::validity_of(data, rules);
+}
+
+}  // namespace trocar::results

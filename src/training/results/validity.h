@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+
+#include "cohort/validity.h"
+#include "results/repository.h"
+
+namespace trocar::results {
+
+/// Which attempts are evidence: scored ones at one task.
+struct EvidenceFilter {
+  std::string task;
+  std::string course = {};             ///< Only people of this course; empty: all.
+  cohort::AttemptRange attempts = {};  ///< Of each person, counted over the scored attempts at the task.
+};
+
+/// The people with such attempts, and of each the mean of score, metrics and points of the parts. Trainees are novices.
+/// Titles and directions of the metrics are those of the catalogue (metrics/metric.h), in its order.
+Result<cohort::CohortData> cohort_data(Repository& repository, const EvidenceFilter& filter);
+
+/// cohort::validity_of of these data.
+Result<cohort::Validity> validity_of(Repository& repository, const EvidenceFilter& filter,
+                                     const cohort::ValidityRules& rules = {});
+
+}  // namespace trocar::results
