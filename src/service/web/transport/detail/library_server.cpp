@@ -1,0 +1,196 @@
+#include "web/transport/detail/library_server.h"
+
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+
+#include "core/log.h"
+#include "web/transport/detail/worker_threads.h"
+
+namespace trocar::web::detail {
+namespace {
+
+constexpr int kBacklog = 1024;
+constexpr int kMostRequests = 1000;  ///< Of a connection.
+constexpr std::size_t kMostPathBytes = 1024;
+constexpr std::chrono::milliseconds kIdleSlice{250};  ///< An idle connection sees a stop of the server so soon.
+
+enum Status { kBadRequest = 400, kLengthRequired = 411, kTooLarge = 413, kUriTooLong = 414, kUnsupportedMedia = 415 };
+
+/// A request that is answered before its body is read, and whose connection then ends: its end cannot be trusted.
+std::optional<int> find_refusal(const httplib::Request& request, std::size_t most_bytes) {
+  if (request.target.size() > kMostPathBytes) return kUriTooLong;
+  if (request.has_header("Transfer-Encoding")) return kLengthRequired;
+  if (request.has_header("Content-Encoding")) return kUnsupportedMedia;
+  const std::size_t lengths = request.get_header_value_count("Content-Length");
+  if (lengths > 1) return kBadRequest;
+  if (lengths == 0) return std::nullopt;
+  const std::string length = request.get_header_value("Content-Length");
+  if (length.empty() || length.find_first_not_of("0123456789") != std::string::npos) return kBadRequest;
+  constexpr std::size_t kMostDigits = 12;
+  if (length.size() > kMostDigits || std::stoull(length) > most_bytes) return kTooLarge;
+  return std::nullopt;
+}
+
+std::size_t body_length(const httplib::Request& request) {
+  return request.has_header("Content-Length") ? std::stoull(request.get_header_value("Content-Length")) : 0;
+}
+
+HttpAnswer answer_to_refused(int status) {
+  switch (status) {
+    case kUriTooLong:
+      return error_answer(status, "the address is too long", "shorten it");
+    case kLengthRequired:
+      return error_answer(status, "the length of the body is missing", "send Content-Length, and no chunks");
+    case kUnsupportedMedia:
+      return error_answer(status, "the body is compressed", "send it without Content-Encoding");
+    case kTooLarge:
+      return error_answer(status, "the body is too large", "send less");
+    default:
+      return error_answer(status, "not a request of HTTP/1.1", "check the client");
+  }
+}
+
+HttpRequest converted(const httplib::Request& request) {
+  HttpRequest ours;
+  ours.method = request.method;
+  ours.path = request.path;
+  ours.query.assign(request.params.begin(), request.params.end());
+  for (const auto& [name, value] : request.headers) ours.headers.emplace_back(name, value);
+  ours.body = request.body;
+  ours.address = request.remote_addr;
+  return ours;
+}
+
+void convert(HttpAnswer answer, httplib::Response& response) {
+  response.status = answer.status;
+  for (const auto& [name, value] : answer.headers) {
+    response.headers.erase(name);  // a default
+    response.set_header(name, value);
+  }
+  if (!answer.body || answer.body->empty()) return;
+  response.set_content_provider(answer.body->size(), answer.content_type,
+                                [body = answer.body](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
+                                  return sink.write(body->data() + offset, length);
+                                });
+}
+
+}  // namespace
+
+LibraryServer::LibraryServer(const ServerOptions& options, HttpServer::Handler handler)
+    : options_(options), handler_(std::move(handler)) {
+  limits_.header_time = options.header_time;
+  limits_.body_time = options.body_time;
+  new_task_queue = [this] { return new WorkerThreads(static_cast<std::size_t>(options_.threads), waiting_); };
+  set_payload_max_length(options.body_bytes);
+  set_socket_options([this](int socket) {
+    listening_ = socket;
+    const int yes = 1;
+    ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
+    ::setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof(yes));  // accepted sockets inherit it
+  });
+  httplib::Headers defaults;
+  for (const auto& [name, value] : options.default_headers) defaults.emplace(name, value);
+  set_default_headers(std::move(defaults));
+  set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
+    const auto refusal = find_refusal(request, options_.body_bytes);
+    if (!refusal) return HandlerResponse::Unhandled;
+    convert(answer_to_refused(*refusal), response);
+    return HandlerResponse::Handled;
+  });
+  const auto all = [this](const httplib::Request& request, httplib::Response& response) { answer(request, response); };
+  const std::string any = "[^]*";
+  Get(any, all).Post(any, all).Put(any, all).Patch(any, all).Delete(any, all).Options(any, all);
+  // Only for what the library refuses itself: our own answers have content.
+  set_error_handler(HandlerWithResponse([](const httplib::Request&, httplib::Response& response) {
+    if (response.has_header("Content-Length") || response.has_header("Content-Type")) return HandlerResponse::Unhandled;
+    response.body.clear();
+    const HttpAnswer ours = answer_to_refused(response.status);
+    response.set_content(*ours.body, ours.content_type);
+    return HandlerResponse::Handled;
+  }));
+  set_exception_handler([](const httplib::Request&, httplib::Response& response, std::exception_ptr) {
+    log(LogLevel::kError, "web: an exception ended a request");
+    convert(error_answer(500, "the server failed", "try again"), response);
+  });
+}
+
+std::optional<int> LibraryServer::bind() {
+  int port = options_.listen.port;
+  if (port == 0) {
+    port = bind_to_any_port(options_.listen.host);
+    if (port <= 0) return std::nullopt;
+  } else if (!bind_to_port(options_.listen.host, port)) {
+    return std::nullopt;
+  }
+  ::listen(listening_, kBacklog);  // the library's own backlog is 5
+  return port;
+}
+
+void LibraryServer::end() {
+  is_ending_ = true;
+  stop();
+}
+
+void LibraryServer::answer(const httplib::Request& request, httplib::Response& response) const {
+  convert(handler_(converted(request)), response);
+}
+
+bool LibraryServer::count_in(const std::string& address) {
+  if (address == "127.0.0.1" || address == "::1") return true;
+  const std::lock_guard lock(mutex_);
+  int& count = connections_[address];
+  if (count >= options_.connections_per_address) return false;
+  ++count;
+  return true;
+}
+
+void LibraryServer::count_out(const std::string& address) {
+  const std::lock_guard lock(mutex_);
+  const auto found = connections_.find(address);
+  if (found != connections_.end() && --found->second <= 0) connections_.erase(found);
+}
+
+bool LibraryServer::process_and_close_socket(socket_t socket) {
+  Connection connection(socket, options_.tls ? options_.tls->get() : nullptr, limits_);
+  std::string address;
+  int port = 0;
+  connection.get_remote_ip_and_port(address, port);
+  if (!count_in(address)) return false;
+  try {
+    if (connection.shake_hands()) converse(connection);
+  } catch (const std::exception& error) {
+    log(LogLevel::kError, fmt::format("web: a connection ended: {}", error.what()));
+  }
+  count_out(address);
+  return true;
+}
+
+void LibraryServer::converse(Connection& connection) {
+  for (int n = 0; n < kMostRequests; ++n) {
+    // Requests that are there already are answered even if the server ends.
+    auto left = options_.idle_time;
+    bool has_request = connection.has_request(std::chrono::milliseconds(1));
+    while (!has_request && left.count() > 0 && !is_ending_ && waiting_ == 0 && !connection.is_closed_by_client()) {
+      has_request = connection.has_request(std::min(left, kIdleSlice));
+      left -= kIdleSlice;
+    }
+    if (!has_request) return connection.is_closed_by_client() ? void() : connection.close_gently();
+    connection.begin_header();
+    bool is_last = n + 1 == kMostRequests || is_ending_ || waiting_ > 0;
+    bool is_understood = false, is_closed = false;
+    const bool is_done = process_request(connection, is_last, is_closed, [&](httplib::Request& request) {
+      is_understood = true;
+      request.headers.erase("Accept-Encoding");  // the library would compress every answer anew
+      request.ranges.clear();
+      const auto refusal = find_refusal(request, options_.body_bytes);
+      if (refusal) request.set_header("Connection", "close");
+      is_closed = is_closed || refusal.has_value();
+      connection.begin_body(refusal ? 0 : body_length(request));
+    });
+    const bool is_sent = connection.flush();
+    const bool goes_on = is_done && is_sent && is_understood && !is_last && !is_closed && !connection.has_unread_body();
+    if (!goes_on) return connection.close_gently();
+  }
+}
+
+}  // namespace trocar::web::detail

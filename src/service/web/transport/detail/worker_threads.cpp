@@ -1,0 +1,49 @@
+#include "web/transport/detail/worker_threads.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace trocar::web::detail {
+
+void WorkerThreads::enqueue(std::function<void()> job) {
+  const std::lock_guard lock(mutex_);
+  jobs_.push_back(std::move(job));
+  if (jobs_.size() > free_ && threads_.size() < most_threads_) {
+    ++free_;
+    threads_.emplace_back([this] { work(); });
+  }
+  count_waiting();
+  has_job_.notify_one();
+}
+
+void WorkerThreads::shutdown() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_ending_ = true;
+  }
+  has_job_.notify_all();
+  for (std::thread& thread : threads_) thread.join();
+}
+
+void WorkerThreads::work() {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    has_job_.wait(lock, [this] { return !jobs_.empty() || is_ending_; });
+    if (jobs_.empty()) return;
+    const std::function<void()> job = std::move(jobs_.front());
+    jobs_.pop_front();
+    --free_;
+    count_waiting();
+    lock.unlock();
+    job();
+    lock.lock();
+    ++free_;
+    count_waiting();
+  }
+}
+
+void WorkerThreads::count_waiting() {
+  waiting_ = static_cast<int>(jobs_.size() - std::min(jobs_.size(), free_));
+}
+
+}  // namespace trocar::web::detail
