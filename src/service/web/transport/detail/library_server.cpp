@@ -68,10 +68,7 @@ void convert(HttpAnswer answer, httplib::Response& response) {
     response.set_header(name, value);
   }
   if (!answer.body || answer.body->empty()) return;
-  response.set_content_provider(answer.body->size(), answer.content_type,
-                                [body = answer.body](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
-                                  return sink.write(body->data() + offset, length);
-                                });
+  response.set_content(*answer.body, answer.content_type);  // a content provider would be cut off by stop()
 }
 
 }  // namespace
