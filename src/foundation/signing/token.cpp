@@ -2,10 +2,12 @@
 
 #include <sodium.h>
 
+#include <array>
 #include <vector>
 
 #include "core/check.h"
 #include "signing/sha256.h"
+#include "signing/signing_key.h"
 
 namespace trocar::signing {
 namespace {
@@ -25,6 +27,13 @@ Result<std::string> make_token(int bits) {
   sodium_bin2base64(token.data(), token.size(), bytes.data(), bytes.size(), kBase64);
   token.pop_back();  // the terminating zero
   return token;
+}
+
+std::string make_id() {
+  TROCAR_CHECK(sodium_init() >= 0);
+  std::array<std::uint8_t, 16> bytes;
+  randombytes_buf(bytes.data(), bytes.size());
+  return to_hex(bytes);
 }
 
 std::string token_digest(std::string_view token) {

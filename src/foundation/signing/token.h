@@ -11,6 +11,9 @@ namespace trocar::signing {
 /// 128 bits, 43 for 256. Error: libsodium cannot be used.
 Result<std::string> make_token(int bits);
 
+/// A random key of 128 bits, 32 hexadecimal digits, for what has to be told apart everywhere: attempts, people.
+std::string make_id();
+
 /// Digest of a token (SHA-256, 64 hexadecimal digits): a server stores it in place of the token, so that a stolen
 /// database opens no session.
 std::string token_digest(std::string_view token);

@@ -13,7 +13,30 @@ namespace trocar::learning {
 namespace fs = std::filesystem;
 namespace {
 
-/// "2026-01-02T03:04:05Z"
+bool is_session_name(const fs::path& path) {
+  return path.extension() == ".trocar" || path.extension() == ".session";
+}
+
+Result<PastAttempt> load_attempt(const fs::path& file) {
+  TROCAR_TRY(const storage::SessionSummary session, storage::load_summary(file));
+  auto attempt = attempt_of(session);
+  if (!attempt) attempt.error().where = file.string();
+  return attempt;
+}
+
+}  // namespace
+
+const char* to_string(Level level) noexcept {
+  constexpr std::array kNames{"guided", "assisted", "exam"};
+  return kNames[static_cast<std::size_t>(level)];
+}
+
+std::optional<Level> find_level(std::string_view name) noexcept {
+  for (const Level level : kLevels)
+    if (name == to_string(level)) return level;
+  return std::nullopt;
+}
+
 std::optional<std::chrono::sys_seconds> parse_utc(std::string_view text) {
   constexpr std::string_view kPattern = "0000-00-00T00:00:00Z";
   if (text.size() != kPattern.size()) return std::nullopt;
@@ -35,10 +58,6 @@ std::optional<std::chrono::sys_seconds> parse_utc(std::string_view text) {
          std::chrono::seconds(second);
 }
 
-bool is_session_name(const fs::path& path) {
-  return path.extension() == ".trocar" || path.extension() == ".session";
-}
-
 Result<std::vector<fs::path>> find_sessions(const fs::path& folder) {
   std::vector<fs::path> files;
   std::error_code error;
@@ -48,26 +67,6 @@ Result<std::vector<fs::path>> find_sessions(const fs::path& folder) {
   if (error) return fail("cannot be read: " + error.message(), folder.string(), "name the folder of the sessions");
   std::sort(files.begin(), files.end());
   return files;
-}
-
-Result<PastAttempt> load_attempt(const fs::path& file) {
-  TROCAR_TRY(const storage::SessionSummary session, storage::load_summary(file));
-  auto attempt = attempt_of(session);
-  if (!attempt) attempt.error().where = file.string();
-  return attempt;
-}
-
-}  // namespace
-
-const char* to_string(Level level) noexcept {
-  constexpr std::array kNames{"guided", "assisted", "exam"};
-  return kNames[static_cast<std::size_t>(level)];
-}
-
-std::optional<Level> find_level(std::string_view name) noexcept {
-  for (const Level level : kLevels)
-    if (name == to_string(level)) return level;
-  return std::nullopt;
 }
 
 Result<PastAttempt> attempt_of(const storage::SessionSummary& session) {

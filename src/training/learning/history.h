@@ -1,8 +1,11 @@
 #pragma once
 
+#include <chrono>
 #include <filesystem>
+#include <optional>
 #include <stop_token>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/result.h"
@@ -17,11 +20,18 @@ struct History {
   std::vector<std::string> damaged;   ///< One line for each session that cannot be read.
 };
 
+/// "2026-01-02T03:04:05Z", as sessions have it; empty: another form, or no such time.
+std::optional<std::chrono::sys_seconds> parse_utc(std::string_view text);
+
 /// Error: the time of the session is none.
 Result<PastAttempt> attempt_of(const storage::SessionSummary& session);
 
-/// Reads info and outcome of all sessions (*.trocar, *.session) of a folder, on several threads. A folder that does not
-/// exist has none. Error: the folder cannot be read. Empty if `stop` was requested.
+/// The session files (*.trocar, *.session) of a folder, by name. A folder that does not exist has none. Error: it
+/// cannot be read.
+Result<std::vector<std::filesystem::path>> find_sessions(const std::filesystem::path& folder);
+
+/// Reads info and outcome of all sessions of a folder, on several threads. Errors: those of find_sessions. Empty if
+/// `stop` was requested.
 Result<History> read_history(const std::filesystem::path& folder, const std::stop_token& stop = {});
 
 }  // namespace trocar::learning

@@ -39,6 +39,8 @@ struct SessionInfo {
   double rate_hz = 1000.0;
   /// Level of help in the trainer: "guided", "assisted", "exam"; empty: no window, or an older program.
   std::string level;
+  std::string attempt_id;  ///< 32 hexadecimal digits, signing::make_id(); empty: an older program.
+  std::string person_id;   ///< Key of the trainee in the database of results; empty: nobody was chosen.
   std::string needle;
   std::string device;             ///< Description.
   std::string device_preset;      ///< Name in data/devices.toml; empty: an older program.

@@ -42,6 +42,8 @@ struct LoopOptions {
   std::filesystem::path session;  ///< Written here; must not exist. Its folder must.
   std::string operator_name;      ///< Recorded.
   std::string level;              ///< Recorded.
+  std::string person_id;          ///< Recorded.
+  std::string attempt_id;         ///< Recorded; empty: a new one.
   std::uint64_t seed = 1;
   Pose X_PN_start;  ///< Start pose of a needle that the client leads.
   Pose X_PT_start;  ///< Start pose of a transducer that the client leads.

@@ -34,6 +34,8 @@ LoopOptions loop_options(const cases::OpenCase& open_case, const AttemptOptions&
   loop.session = options.session;
   loop.operator_name = options.trainee;
   loop.level = options.level;
+  loop.person_id = options.person_id;
+  loop.attempt_id = options.attempt_id;
   loop.seed = options.seed;
   loop.X_PN_start = options.X_PN_start.value_or(before_entry(open_case.the_case.plan.line_P));
   loop.X_PT_start = options.X_PT_start.value_or(open_case.X_PT_start);

@@ -26,6 +26,8 @@ struct AttemptOptions {
   std::string force_model;  ///< Empty: the case's.
   std::uint64_t seed = 1;
   std::string level;       ///< Level of help, recorded: "guided", "assisted", "exam".
+  std::string person_id;   ///< Who practises, recorded; empty: nobody was chosen.
+  std::string attempt_id;  ///< Recorded; empty: a new one.
   bool is_guided = false;  ///< Hints are given.
   /// true: recording starts at begin(), for example after a briefing; false: when all is ready.
   bool waits_for_begin = false;

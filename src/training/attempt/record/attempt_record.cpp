@@ -12,6 +12,7 @@
 #include "attempt/record/score_session.h"
 #include "core/version.h"
 #include "io/patient/patient_source.h"
+#include "signing/token.h"
 
 namespace trocar::attempt {
 namespace {
@@ -29,6 +30,8 @@ storage::SessionInfo describe(const cases::Case& the_case, const RecordOptions& 
   info.operator_name = options.operator_name;
   info.force_model = facts.force_model;
   info.seed = options.seed;
+  info.person_id = options.person_id;
+  info.attempt_id = options.attempt_id.empty() ? signing::make_id() : options.attempt_id;
   info.rate_hz = facts.rate_hz;
   info.needle = the_case.needle.name;
   info.device = facts.device;

@@ -33,6 +33,8 @@ struct RecordOptions {
   std::uint64_t patient_seed = 1;
   std::uint64_t seed = 1;
   std::optional<metrics::ImagePlane> plane = {};  ///< Of the transducer; empty: none.
+  std::string person_id = {};                     ///< Who practises; see storage::SessionInfo.
+  std::string attempt_id = {};                    ///< Empty: a new one.
 };
 
 /// Preset of a server's device: "premium" of "virtual:premium"; empty: not in data/devices.toml.

@@ -47,6 +47,8 @@ void visit_added_info(Info& info, Visitor&& visit) {
   visit("task_toml", info.task_toml);
   visit("device_preset", info.device_preset);
   visit("level", info.level);
+  visit("attempt_id", info.attempt_id);
+  visit("person_id", info.person_id);
 }
 
 template <class Field>
