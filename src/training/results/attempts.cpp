@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "database/bytes.h"
+#include "results/detail/attempt_query.h"
 #include "results/detail/attempt_writer.h"
 #include "results/detail/details_json.h"
 #include "results/detail/rows.h"
@@ -13,60 +14,8 @@ namespace {
 
 constexpr const char* kCannotRead = "the attempts cannot be read";
 constexpr const char* kCannotWrite = "the attempt cannot be written";
-constexpr const char* kSelect =
-    "SELECT a.sequence, a.id, a.person_id, c.task, c.patient, c.seed, c.patient_hash, c.difficulty, a.level, "
-    "a.operator,"
-    " a.station, a.started_s, a.state, a.score, a.is_passed, a.duration_s, a.program_version"
-    " FROM attempts a JOIN cases c ON c.id = a.case_id";
-
-/// Reads attempts; `texts` and `numbers` bind the parameters of the condition, in this order.
-std::vector<Attempt> read_attempts(soci::session& session, const std::string& condition,
-                                   const std::vector<std::string>& texts, const std::vector<long long>& numbers) {
-  std::vector<Attempt> attempts;
-  Attempt a;
-  long long sequence = 0, started_s = 0;
-  int difficulty = 0, state = 0, is_passed = 0;
-  std::string seed;
-  Nullable<double> score;
-  soci::statement select(session);
-  select.exchange(soci::into(sequence));
-  select.exchange(soci::into(a.id));
-  select.exchange(soci::into(a.person_id));
-  select.exchange(soci::into(a.the_case.task));
-  select.exchange(soci::into(a.the_case.patient));
-  select.exchange(soci::into(seed));
-  select.exchange(soci::into(a.the_case.patient_hash));
-  select.exchange(soci::into(difficulty));
-  select.exchange(soci::into(a.level));
-  select.exchange(soci::into(a.operator_name));
-  select.exchange(soci::into(a.station));
-  select.exchange(soci::into(started_s));
-  select.exchange(soci::into(state));
-  select.exchange(soci::into(score.value, score.indicator));
-  select.exchange(soci::into(is_passed));
-  select.exchange(soci::into(a.duration_s));
-  select.exchange(soci::into(a.program_version));
-  for (const std::string& text : texts) select.exchange(soci::use(text));
-  for (const long long& number : numbers) select.exchange(soci::use(number));
-  select.alloc();
-  select.prepare(kSelect + condition);
-  select.define_and_bind();
-  select.execute();
-  while (select.fetch()) {
-    a.sequence = sequence;
-    a.the_case.seed = std::strtoull(seed.c_str(), nullptr, 10);
-    a.the_case.difficulty = difficulty > 0 ? std::optional(difficulty) : std::nullopt;
-    a.started = Seconds(std::chrono::seconds(started_s));
-    a.state = static_cast<State>(state);
-    a.score = score.get();
-    a.is_passed = is_passed != 0;
-    attempts.push_back(a);
-  }
-  return attempts;
-}
-
 std::optional<Attempt> read_attempt(soci::session& session, std::string_view id) {
-  std::vector<Attempt> found = read_attempts(session, " WHERE a.id = :i", {std::string(id)}, {});
+  std::vector<Attempt> found = read_attempts(session, {" WHERE a.id = :i", {std::string(id)}, {}});
   return found.empty() ? std::nullopt : std::optional(std::move(found.front()));
 }
 
@@ -117,35 +66,11 @@ Status record_attempts(Repository& repository, const std::vector<AttemptRecord>&
 }
 
 Result<std::vector<Attempt>> list_attempts(Repository& repository, const AttemptFilter& filter) {
-  std::string condition = " WHERE 1 = 1";
-  std::vector<std::string> texts;
-  std::vector<long long> numbers;
-  if (!filter.person_id.empty()) {
-    condition += " AND a.person_id = :person";
-    texts.push_back(filter.person_id);
-  }
-  if (!filter.task.empty()) {
-    condition += " AND a.task = :task";
-    texts.push_back(filter.task);
-  }
-  if (!filter.course.empty()) {
-    condition +=
-        " AND a.person_id IN (SELECT p.id FROM people p JOIN courses k ON k.id = p.course_id"
-        " WHERE k.name_key = :course)";
-    texts.push_back(name_key(filter.course));
-  }
-  if (filter.state) {
-    condition += " AND a.state = :state";
-    numbers.push_back(static_cast<long long>(*filter.state));
-  }
-  if (filter.before) {
-    condition += " AND a.sequence < :before";
-    numbers.push_back(*filter.before);
-  }
-  condition += filter.is_newest_first ? " ORDER BY a.sequence DESC" : " ORDER BY a.sequence";
-  if (filter.limit > 0) condition += fmt::format(" LIMIT {}", filter.limit);
-  return repository.database().run(
-      kCannotRead, [&](soci::session& session) { return read_attempts(session, condition, texts, numbers); });
+  std::string order = filter.is_newest_first ? " ORDER BY a.sequence DESC" : " ORDER BY a.sequence";
+  if (filter.limit > 0) order += fmt::format(" LIMIT {}", filter.limit);
+  const AttemptQuery query = make_query(filter);
+  return repository.database().run(kCannotRead,
+                                   [&](soci::session& session) { return read_attempts(session, query, order); });
 }
 
 Result<std::optional<Attempt>> find_attempt(Repository& repository, std::string_view id) {
@@ -224,7 +149,8 @@ Result<std::vector<learning::PastAttempt>> past_attempts(Repository& repository,
     select.execute();
     while (select.fetch()) parts[sequence].push_back(part);
     std::vector<learning::PastAttempt> past;
-    for (const Attempt& attempt : read_attempts(session, " WHERE a.person_id = :p ORDER BY a.sequence", {person}, {}))
+    for (const Attempt& attempt :
+         read_attempts(session, {" WHERE a.person_id = :p", {person}, {}}, " ORDER BY a.sequence"))
       past.push_back(past_attempt_of(attempt, parts[attempt.sequence]));
     return past;
   });

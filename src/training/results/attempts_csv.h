@@ -17,6 +17,6 @@ struct ImportedRows {
 };
 /// Reads such a file into the database, all rows or none; people that do not exist are added; attempts that exist stay.
 /// Errors name row and column.
-Result<ImportedRows> import_attempts(Repository& repository, const std::filesystem::path& file);
+Result<ImportedRows> import_attempts(Repository& repository, const std::filesystem::path& file, Seconds now);
 
 }  // namespace trocar::results

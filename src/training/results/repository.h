@@ -5,6 +5,7 @@
 
 #include "core/result.h"
 #include "database/database.h"
+#include "signing/token.h"
 
 namespace trocar::results {
 
@@ -36,7 +37,6 @@ class Repository {
 /// Seconds since 1970, UTC, as the database keeps times.
 using Seconds = std::chrono::sys_seconds;
 
-/// A new random key of a row: 32 hexadecimal digits.
-std::string make_id();
+using signing::make_id;  ///< Of a new row.
 
 }  // namespace trocar::results

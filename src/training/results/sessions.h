@@ -6,8 +6,15 @@
 
 #include "learning/curriculum.h"
 #include "results/attempts.h"
+#include "storage/session_file.h"
 
 namespace trocar::results {
+
+/// Name of this computer.
+std::string station_name();
+
+/// What is known of an attempt when it begins; without the time of its begin.
+Attempt begun_attempt(const storage::SessionInfo& info, const learning::Curriculum& curriculum);
 
 /// A session file as an attempt of a person. `person_id` empty: the person that the file names. The id of the attempt
 /// is that of the file, or (older programs) a digest of it. A killed session is an interrupted attempt. Errors: those

@@ -56,6 +56,10 @@ AttemptWriter::Found AttemptWriter::find_for_update(const std::string& id) {
   return found;
 }
 
+bool AttemptWriter::is_finished(const std::string& id) {
+  return find_for_update(id).state == State::kFinished;
+}
+
 Status AttemptWriter::begin(const Attempt& attempt) {
   if (!find_person(session_, attempt.person_id)) return no_such_person(attempt.person_id);
   const long long key = case_key(attempt.the_case), started_s = attempt.started.time_since_epoch().count();

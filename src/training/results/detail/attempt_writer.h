@@ -20,6 +20,7 @@ class AttemptWriter {
 
   /// Adds the attempt's row as running if there is none of its id. Error (exit status 2): no such person.
   Status begin(const Attempt& attempt);
+  bool is_finished(const std::string& id);
   /// Completes an attempt that is not finished, or adds it. Returns its sequence.
   Result<std::int64_t> record(const AttemptRecord& record, std::string_view recording);
 

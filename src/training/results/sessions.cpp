@@ -1,0 +1,165 @@
+#include "results/sessions.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+
+#include "core/files/atomic_file.h"
+#include "learning/history.h"
+#include "results/detail/trace_of.h"
+#include "signing/sha256.h"
+#include "storage/session_summary.h"
+
+namespace trocar::results {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::size_t kIdDigits = 32;
+/// A longer session file is recorded without its bytes.
+constexpr std::uintmax_t kMostRecordingBytes = std::uintmax_t{256} << 20;
+
+/// A session of an older program has no id: the same file has always the same one.
+std::string id_of(const storage::SessionInfo& info, const std::string& ticks_hash) {
+  if (!info.attempt_id.empty()) return info.attempt_id;
+  return signing::sha256(fmt::format("{}\n{}\n{}\n{}\n{}\n{}", info.started_utc, info.task, info.patient_hash,
+                                     info.operator_name, info.seed, ticks_hash))
+      .substr(0, kIdDigits);
+}
+
+Case case_of(const storage::SessionInfo& info, const learning::Curriculum& curriculum) {
+  Case the_case{info.task, info.patient_source, info.patient_seed, info.patient_hash, {}};
+  // The path of a patient's folder says more than a database has to know.
+  if (the_case.patient.find('/') != std::string::npos)
+    the_case.patient = fs::path(the_case.patient).filename().string();
+  if (the_case.patient.empty()) the_case.patient = info.patient_name;
+  if (const learning::Course* course = curriculum.find(info.task))
+    for (const learning::CourseCase& one : course->cases)
+      if (one.patient == the_case.patient) the_case.difficulty = one.difficulty;
+  return the_case;
+}
+
+void add_outcome(const scoring::Outcome& outcome, AttemptRecord& record) {
+  record.attempt.state = State::kFinished;
+  record.not_scored = outcome.not_scored;
+  record.fails = outcome.fails;
+  record.attempt.is_passed = outcome.is_passed;
+  if (outcome.is_scored() && std::isfinite(outcome.score)) record.attempt.score = outcome.score;
+  for (const scoring::Hint& hint : outcome.hints) record.hints.push_back({hint.text, hint.at_s});
+  for (const scoring::ScorePart& part : outcome.parts)
+    if (!scoring::is_deduction(part)) record.parts.push_back({part.name, part.points, part.max_points});
+  for (const metrics::MetricValue& measure : outcome.measures)
+    if (measure.value && std::isfinite(*measure.value))
+      record.measures.push_back({measure.name, measure.unit, *measure.value});
+}
+
+Result<std::string> read_recording(const fs::path& file) {
+  std::error_code error;
+  // The newest ticks of a killed or running session are beside it.
+  if (fs::exists(file.string() + "-wal", error) || fs::file_size(file, error) > kMostRecordingBytes)
+    return std::string();
+  return read_file(file);
+}
+
+Result<std::optional<State>> state_of(Repository& repository, const std::string& id) {
+  TROCAR_TRY(const std::optional<Attempt> attempt, find_attempt(repository, id));
+  return attempt ? std::optional(attempt->state) : std::nullopt;
+}
+
+/// Whether a session is still to be recorded: it names a person of this database and is not there as it is.
+Result<bool> is_left(Repository& repository, const storage::SessionSummary& session) {
+  const storage::SessionInfo& info = session.info;
+  if (info.person_id.empty() || info.attempt_id.empty()) return false;
+  TROCAR_TRY(const auto person, find_person(repository, info.person_id));
+  if (!person) return false;
+  TROCAR_TRY(const auto state, state_of(repository, info.attempt_id));
+  return !state || *state == State::kRunning || (*state == State::kInterrupted && session.outcome.has_value());
+}
+
+}  // namespace
+
+std::string station_name() {
+  std::array<char, 256> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 ? std::string(name.data()) : std::string();
+}
+
+Attempt begun_attempt(const storage::SessionInfo& info, const learning::Curriculum& curriculum) {
+  Attempt attempt;
+  attempt.id = info.attempt_id;
+  attempt.person_id = info.person_id;
+  attempt.the_case = case_of(info, curriculum);
+  attempt.level = info.level;
+  attempt.operator_name = info.operator_name;
+  attempt.station = station_name();
+  attempt.program_version = info.program_version;
+  return attempt;
+}
+
+Result<AttemptRecord> attempt_of_session(const fs::path& file, const std::string& person_id,
+                                         const learning::Curriculum& curriculum) {
+  TROCAR_TRY(const storage::Session session, storage::load_session(file));
+  AttemptRecord record;
+  record.attempt = begun_attempt(session.info, curriculum);
+  record.attempt.id = id_of(session.info, session.ticks_hash);
+  if (!person_id.empty()) record.attempt.person_id = person_id;
+  if (record.attempt.person_id.empty())
+    return fail_usage("the session names no person", file.string(), "name one with --person");
+  TROCAR_TRY(const learning::PastAttempt past, learning::attempt_of({session.info, {}}));
+  record.attempt.started = past.when;
+  record.attempt.state = State::kInterrupted;
+  if (!session.samples.empty())
+    record.attempt.duration_s = session.samples.back().time_s - session.samples.front().time_s;
+  if (session.outcome) add_outcome(*session.outcome, record);
+  record.trace = detail::trace_of(session);
+  return record;
+}
+
+Result<bool> import_session(Repository& repository, const fs::path& file, const std::string& person_id,
+                            const learning::Curriculum& curriculum) {
+  TROCAR_TRY(const AttemptRecord record, attempt_of_session(file, person_id, curriculum));
+  TROCAR_TRY(const auto state, state_of(repository, record.attempt.id));
+  if (state == State::kFinished) return false;
+  TROCAR_TRY(const std::string bytes, read_recording(file));
+  TROCAR_TRY_STATUS(record_attempt(repository, record, bytes));
+  return true;
+}
+
+Result<Imported> import_left_sessions(Repository& repository, const fs::path& folder,
+                                      const learning::Curriculum& curriculum) {
+  TROCAR_TRY(const std::vector<fs::path> files, learning::find_sessions(folder));
+  Imported imported;
+  for (const fs::path& file : files) {
+    const auto summary = storage::load_summary(file);
+    if (!summary) {
+      imported.damaged.push_back(summary.error().text());
+      continue;
+    }
+    TROCAR_TRY(const bool is_missing, is_left(repository, *summary));
+    if (!is_missing) {
+      ++imported.present;
+      continue;
+    }
+    const auto record = attempt_of_session(file, {}, curriculum);
+    if (!record) {
+      imported.damaged.push_back(record.error().text());
+      continue;
+    }
+    TROCAR_TRY(const std::string bytes, read_recording(file));
+    TROCAR_TRY_STATUS(record_attempt(repository, *record, bytes));
+    ++imported.added;
+  }
+  return imported;
+}
+
+Status export_session(Repository& repository, std::string_view attempt_id, const fs::path& file) {
+  TROCAR_TRY(const std::optional<Attempt> attempt, find_attempt(repository, attempt_id));
+  if (!attempt) return fail_usage("no such attempt", std::string(attempt_id), "see trocar results list");
+  TROCAR_TRY(const std::optional<std::string> bytes, load_recording(repository, attempt_id));
+  if (!bytes) return fail("the recording of the attempt is not kept", std::string(attempt_id), "look on its station");
+  std::error_code error;
+  if (fs::exists(file, error)) return fail_usage("the file exists", file.string(), "name another file");
+  return write_file_atomically(file, *bytes);
+}
+
+}  // namespace trocar::results
