@@ -41,9 +41,11 @@ class MeanReader {
   Means read() {
     Means means;
     read_people(means.people);
+    // Groups by number, not by name: an order of magnitude fewer comparisons of texts.
     means.metrics = read_named(
-        "SELECT c.person_id, m.name, m.unit, avg(v.value) FROM chosen c JOIN attempt_metrics v ON v.sequence ="
-        " c.sequence JOIN metrics m ON m.id = v.metric_id GROUP BY c.person_id, m.name, m.unit");
+        "SELECT g.person_id, m.name, m.unit, g.mean FROM (SELECT c.person_id, v.metric_id, avg(v.value) AS mean FROM"
+        " chosen c JOIN attempt_metrics v ON v.sequence = c.sequence GROUP BY c.person_id, v.metric_id) g JOIN metrics"
+        " m ON m.id = g.metric_id");
     means.parts = read_named(
         "SELECT c.person_id, v.part, '', avg(v.points) FROM chosen c JOIN attempt_parts v ON v.sequence = c.sequence"
         " GROUP BY c.person_id, v.part");

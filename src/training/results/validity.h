@@ -10,8 +10,10 @@ namespace trocar::results {
 /// Which attempts are evidence: scored ones at one task.
 struct EvidenceFilter {
   std::string task;
-  std::string course = {};             ///< Only people of this course; empty: all.
-  cohort::AttemptRange attempts = {};  ///< Of each person, counted over the scored attempts at the task.
+  std::string course = {};  ///< Only people of this course; empty: all.
+  /// Of each person, counted over the scored attempts at the task. The first three [assumed]: later a trainee is no
+  /// novice any more. It also bounds the work by the number of people.
+  cohort::AttemptRange attempts = {1, 3};
 };
 
 /// The people with such attempts, and of each the mean of score, metrics and points of the parts. Trainees are novices.
