@@ -18,6 +18,7 @@ void add_run_command(CLI::App& program, Action& action);
 void add_session_commands(CLI::App& program, Action& action);
 void add_session_metrics_command(CLI::App& session, Action& action);  ///< Adds metrics to `session`.
 void add_learn_command(CLI::App& program, Action& action);
+void add_results_commands(CLI::App& program, Action& action);
 void add_exam_commands(CLI::App& program, Action& action);
 void add_device_commands(CLI::App& program, Action& action);
 void add_link_commands(CLI::App& program, Action& action);

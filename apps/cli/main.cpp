@@ -59,6 +59,7 @@ int run(int argc, char** argv) {
   add_run_command(program, action);
   add_session_commands(program, action);
   add_learn_command(program, action);
+  add_results_commands(program, action);
   add_exam_commands(program, action);
   add_device_commands(program, action);
   add_link_commands(program, action);

@@ -1,0 +1,100 @@
+// trocar results list: attempts.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <map>
+
+#include "number_option.h"
+#include "results/attempts.h"
+#include "results_commands.h"
+
+namespace trocar::cli {
+namespace {
+
+struct Arguments {
+  std::string person, task, course;
+  std::int64_t limit = 50;
+  bool is_json = false;
+};
+
+std::string verdict_text(const results::Attempt& attempt) {
+  if (attempt.state != results::State::kFinished) return to_string(attempt.state);
+  if (!attempt.score) return "not scored";
+  return fmt::format("{:5.1f} {}", *attempt.score, attempt.is_passed ? "passed" : "not passed");
+}
+
+std::string case_text(const results::Case& the_case) {
+  return fmt::format("{}, {}", the_case.task, the_case.patient);
+}
+
+config::Json attempt_json(const results::Attempt& a, const results::Person& person) {
+  const auto or_null = [](const auto& value) { return value ? config::Json(*value) : config::Json(nullptr); };
+  return {{"id", a.id},
+          {"sequence", a.sequence},
+          {"person", person.name},
+          {"group", to_string(person.group)},
+          {"simulated", person.is_simulated},
+          {"task", a.the_case.task},
+          {"patient", a.the_case.patient},
+          {"case", or_null(a.the_case.difficulty)},
+          {"level", a.level},
+          {"started_s", a.started.time_since_epoch().count()},
+          {"state", to_string(a.state)},
+          {"score", or_null(a.score)},
+          {"passed", a.is_passed},
+          {"duration_s", a.duration_s},
+          {"station", a.station}};
+}
+
+Status list(const std::string& url, const Arguments& arguments) {
+  TROCAR_TRY(results::Repository repository, open_results(url, database::Missing::kRefuse));
+  results::AttemptFilter filter{{}, arguments.task, arguments.course};
+  if (!arguments.person.empty()) {
+    TROCAR_TRY(const results::Person person, results::get_person_named(repository, arguments.person));
+    filter.person_id = person.id;
+  }
+  filter.limit = static_cast<std::size_t>(arguments.limit);
+  filter.is_newest_first = true;
+  TROCAR_TRY(std::vector<results::Attempt> attempts, results::list_attempts(repository, filter));
+  std::ranges::reverse(attempts);
+  TROCAR_TRY(const std::vector<results::Person> all, results::list_people(repository));
+  std::map<std::string, results::Person> people;
+  std::size_t name_width = 0, case_width = 0;
+  for (const results::Person& person : all) people[person.id] = person;
+  if (arguments.is_json) {
+    config::Json json = config::Json::array();
+    for (const results::Attempt& attempt : attempts) json.push_back(attempt_json(attempt, people[attempt.person_id]));
+    print_json({{"attempts", std::move(json)}});
+    return {};
+  }
+  if (attempts.empty()) fmt::print("no attempts\n");
+  for (const results::Attempt& attempt : attempts) {
+    name_width = std::max(name_width, people[attempt.person_id].name.size());
+    case_width = std::max(case_width, case_text(attempt.the_case).size());
+  }
+  for (const results::Attempt& attempt : attempts) {
+    const results::Person& person = people[attempt.person_id];
+    fmt::print("{}  {:<{}}  {:<{}}  {:<9} {:<18} {}{}\n", minute_text(attempt.started), person.name, name_width,
+               case_text(attempt.the_case), case_width, attempt.level, verdict_text(attempt), attempt.id,
+               person.is_simulated ? "  simulated" : "");
+  }
+  return {};
+}
+
+}  // namespace
+
+void add_results_attempt_commands(CLI::App& results, const DatabaseOption& url, Action& action) {
+  CLI::App* command = results.add_subcommand("list", "List attempts, the newest last");
+  const auto a = std::make_shared<Arguments>();
+  command->add_option("--person", a->person, "Only of this person");
+  command->add_option("--task", a->task, "Only of this task");
+  command->add_option("--course", a->course, "Only of the people of this course");
+  arguments::whole_number_within(command->add_option("--limit", a->limit, "The newest so many"), 1, 1'000'000)
+      ->capture_default_str();
+  command->add_flag("--json", a->is_json, "Print one JSON object");
+  command->footer("Example:\n  trocar results list --person \"Anna Meier\" --task liver-biopsy\n");
+  command->callback([&action, url, a] { action = [url, a] { return list(*url, *a); }; });
+}
+
+}  // namespace trocar::cli

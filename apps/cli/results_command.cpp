@@ -1,0 +1,50 @@
+// trocar results: people, attempts, learning curves and validity from the database of results.
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "commands.h"
+#include "results_commands.h"
+
+namespace trocar::cli {
+
+Result<results::Repository> open_results(const std::string& url, database::Missing missing) {
+  database::DatabaseUrl parsed;
+  if (url.empty()) {
+    TROCAR_TRY(parsed, results::default_url());
+  } else {
+    TROCAR_TRY(parsed, database::parse_url(url));
+  }
+  auto repository = results::Repository::open(parsed, missing);
+  if (!repository && repository.error().what == "no such database")
+    repository.error().advice =
+        "nothing was recorded yet: add a person with trocar results add, or name another with --db";
+  return repository;
+}
+
+std::string minute_text(results::Seconds time) {
+  return fmt::format("{:%Y-%m-%d %H:%M}", fmt::gmtime(std::chrono::system_clock::to_time_t(time)));
+}
+
+results::Seconds now_s() {
+  return std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+}
+
+void add_results_commands(CLI::App& program, Action& action) {
+  CLI::App* results = program.add_subcommand("results", "People, their attempts, learning curves and validity");
+  results->require_subcommand(1);
+  const auto url = std::make_shared<std::string>();
+  results->add_option("--db", *url,
+                      "Database: an SQLite file, or postgresql://USER:PASSWORD@HOST/NAME [$TROCAR_DB, else "
+                      "results.sqlite in $XDG_DATA_HOME/trocar]");
+  results->footer(
+      "Examples:\n  trocar results add \"Anna Meier\" --course \"Radiology 2026\"\n"
+      "  trocar results import sessions/*.trocar --person \"Anna Meier\"\n  trocar results list --task liver-biopsy\n"
+      "  trocar results --db postgresql://trocar@db.example/trocar people\n");
+  add_results_people_commands(*results, url, action);
+  add_results_attempt_commands(*results, url, action);
+  add_results_exchange_commands(*results, url, action);
+}
+
+}  // namespace trocar::cli

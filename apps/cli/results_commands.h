@@ -1,0 +1,27 @@
+#pragma once
+
+#include <CLI/App.hpp>
+#include <memory>
+#include <string>
+
+#include "output.h"
+#include "results/repository.h"
+
+namespace trocar::cli {
+
+/// Text of the option --db of `results`, filled while the command line is parsed.
+using DatabaseOption = std::shared_ptr<const std::string>;
+
+// Sub-commands of `results`.
+void add_results_people_commands(CLI::App& results, const DatabaseOption& url, Action& action);
+void add_results_attempt_commands(CLI::App& results, const DatabaseOption& url, Action& action);
+void add_results_exchange_commands(CLI::App& results, const DatabaseOption& url, Action& action);
+
+/// Opens the database of --db; empty: $TROCAR_DB, else that of the user. `missing`: whether a new one is made.
+Result<results::Repository> open_results(const std::string& url, database::Missing missing);
+
+/// "2026-01-02 03:04" in UTC.
+std::string minute_text(results::Seconds time);
+results::Seconds now_s();
+
+}  // namespace trocar::cli
