@@ -12,6 +12,7 @@
 #include "number_option.h"
 #include "patient_option.h"
 #include "replay_arguments.h"
+#include "run_results.h"
 #include "storage/score_json.h"
 
 namespace trocar::cli {
@@ -27,6 +28,7 @@ struct Arguments {
   std::string key_file, server_key_file;
   double patience_s = 5.0;
   NamedOptions named;
+  std::string person, database;
 };
 
 config::Json latency_json(const realtime::LatencySummary& latency) {
@@ -250,16 +252,24 @@ Status run(Arguments& arguments) {
   TROCAR_TRY_STATUS(check_servers(arguments));
   TROCAR_TRY_STATUS(check_case(arguments));
   if (arguments.is_realtime) TROCAR_TRY_STATUS(attempt::find_servers(arguments.realtime));
+  if (arguments.person.empty() && !arguments.database.empty())
+    return fail_usage("a database is of use for a person only", "--db", "add --person NAME");
+  std::optional<results::Repository> repository;
+  if (!arguments.person.empty()) {
+    TROCAR_TRY(repository, open_for_person(arguments.person, arguments.database, run));
+  }
   cases::Case the_case;
   attempt::RunResult result;
   {
     const ProgressPrinter printer;
     TROCAR_TRY(anatomy::VirtualPatient patient, io::open_patient(arguments.source, printer.callback()));
     TROCAR_TRY(the_case, make_case(arguments, std::move(patient), printer.callback()));
+    if (repository && arguments.is_realtime) TROCAR_TRY_STATUS(record_begin(*repository, the_case, run));
     TROCAR_TRY(result, arguments.is_realtime
                            ? attempt::run_realtime_session(the_case, run, arguments.realtime, printer.callback())
                            : attempt::run_session(the_case, run, printer.callback()));
   }
+  if (repository) TROCAR_TRY_STATUS(record_end(*repository, run));
   for (const std::string& warning : result.warnings) print_warning(warning);
   if (arguments.is_json) {
     print_json(result_json(arguments, the_case, result));
@@ -326,6 +336,8 @@ void add_run_command(CLI::App& program, Action& action) {
                     "Replay with a different patient than that of the session, given with --patient");
   add_cache_option(*command, a->source);
   add_server_options(*command, *a);
+  command->add_option("--person", a->person, "Record the attempt for this person in the database of results");
+  command->add_option("--db", a->database, "Database of --person; see trocar results --help");
   command->add_flag("--json", a->is_json, "Print one JSON object");
   command->footer(
       "Examples:\n  trocar run liver-biopsy --patient abdomen --operator expert --out first.session\n"

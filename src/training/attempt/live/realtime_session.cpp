@@ -64,6 +64,8 @@ LoopOptions loop_options(const RunOptions& options) {
   loop.session = options.session;
   loop.operator_name = options.operator_name;
   loop.seed = options.seed;
+  loop.person_id = options.person_id;
+  loop.attempt_id = options.attempt_id;
   loop.has_view = false;
   loop.longest_s = kLongestAttempt_s;
   loop.scores_unsaved = false;

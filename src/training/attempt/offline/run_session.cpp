@@ -105,7 +105,8 @@ Status SceneSchedule::add(const cases::Case& the_case, const storage::SessionPar
 
 RecordOptions record_options(const RunOptions& options, const Performer& performer) {
   const auto plane = performer.replayed != nullptr ? performer.replayed->info.plane : std::nullopt;
-  return {options.session, options.operator_name, options.patient_source, options.patient_seed, options.seed, plane, {}, {}};
+  return {options.session, options.operator_name, options.patient_source, options.patient_seed, options.seed,
+          plane,           options.person_id,     options.attempt_id};
 }
 
 /// When a tick is, and where its tool: regular, or as recorded by the session that is replayed.

@@ -23,7 +23,8 @@ struct RunOptions {
   std::uint64_t seed = 1;          ///< Seed of operator, friction and plan.
   std::string patient_source;      ///< As given by the user: a folder, or an embedded patient's name.
   std::uint64_t patient_seed = 1;
-  std::filesystem::path session;  ///< Written here; must not exist.
+  std::filesystem::path session;      ///< Written here; must not exist.
+  std::string person_id, attempt_id;  ///< Recorded; see storage::SessionInfo.
   // Replay only. It uses seeds, rate and device of its session; the values above are ignored.
   std::shared_ptr<const storage::Session> replayed;  ///< Session of the operator's name, if it is already loaded.
   ReplayChanges replay_changes;
