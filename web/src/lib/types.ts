@@ -1,0 +1,220 @@
+// The server's answers. Times are seconds since 1970 (UTC); a missing value is null.
+
+export interface Account {
+  name: string;
+  role: "admin" | "instructor";
+}
+export interface Me {
+  account: Account;
+  csrf: string;
+  program_version?: string;
+}
+
+export interface Task {
+  id: string;
+  title: string;
+}
+export interface Course {
+  id: string | number;
+  name: string;
+}
+export interface TaskResult {
+  attempts: number;
+  scored: number;
+  passed: number;
+  last_score: number | null;
+  best_score: number | null;
+  recent_mean: number | null;
+  last_s: number | null;
+}
+export interface Person {
+  id: string;
+  name: string;
+  group: "trainee" | "expert";
+  course: string | number | null;
+  simulated: boolean;
+  tasks: Record<string, TaskResult>;
+}
+export interface Overview {
+  tasks: Task[];
+  courses: Course[];
+  people: Person[];
+}
+export interface PersonAnswer {
+  person: Person;
+  tasks: Task[];
+}
+
+export interface Attempt {
+  id: string;
+  sequence: number;
+  task: string;
+  patient: string;
+  difficulty: number | string | null;
+  level: string | null;
+  started_s: number;
+  state: string;
+  score: number | null;
+  passed: boolean | null;
+  duration_s: number | null;
+  station: string | null;
+}
+export interface AttemptList {
+  attempts: Attempt[];
+  next: number | null;
+}
+
+export interface CurvePoint {
+  n: number;
+  attempt: string;
+  started_s: number;
+  score: number | null;
+  passed: boolean | null;
+  patient: string;
+  difficulty: number | string | null;
+  moving_mean: number | null;
+}
+export interface Curve {
+  points: CurvePoint[];
+  cusum: { values: (number | null)[]; upper: number; lower: number; acceptable: number; unacceptable: number } | null;
+  experts: { n: number; mean: number | null; low: number | null; high: number | null } | null;
+  peers: { n: number; mean_by_attempt: (number | null)[] } | null;
+}
+
+export type Better = "lower" | "higher" | "neither";
+export interface MetricName {
+  name: string;
+  title: string;
+  unit: string;
+  better: Better;
+}
+export interface MetricGroup {
+  group: string;
+  simulated: boolean;
+  n: number;
+  counts: number[];
+  min: number | null;
+  q1: number | null;
+  median: number | null;
+  q3: number | null;
+  max: number | null;
+}
+export interface MetricDistribution extends MetricName {
+  edges: number[];
+  groups: MetricGroup[];
+  auc: { value: number; low: number | null; high: number | null } | null;
+  reason?: string | null;
+}
+
+export interface ScorePart {
+  name: string;
+  title: string;
+  value_text: string | null;
+  points: number;
+  max_points: number;
+}
+export interface MetricValue extends MetricName {
+  value: number | null;
+  expert_median: number | null;
+  expert_q1: number | null;
+  expert_q3: number | null;
+}
+export interface AttemptAnswer {
+  attempt: Attempt & {
+    person: { id: string; name: string; simulated: boolean };
+    not_scored: string | boolean | null;
+    fails: string[];
+    hints: { text: string; at_s: number | null }[];
+  };
+  parts: ScorePart[];
+  metrics: MetricValue[];
+}
+
+export type Point3 = [number, number, number];
+/** Frame P (LPS, mm). Force along the needle; negative pushes the needle out. */
+export interface Trace {
+  rate_hz: number;
+  time_s: number[];
+  tip_x_mm: (number | null)[];
+  tip_y_mm: (number | null)[];
+  tip_z_mm: (number | null)[];
+  depth_mm: (number | null)[];
+  force_n: (number | null)[];
+  tissue: (number | null)[];
+  tissues: string[];
+  plan: { entry: Point3; target: Point3 } | null;
+  events: { time_s: number; text: string }[];
+  expert?: Trace | null;
+}
+
+export interface ValidityMetric {
+  name: string;
+  title: string;
+  unit: string;
+  n_expert: number | null;
+  n_novice: number | null;
+  expert_median: number | null;
+  novice_median: number | null;
+  auc: number | null;
+  low: number | null;
+  high: number | null;
+  p: number | null;
+  discriminates: boolean | null;
+  reason?: string | null;
+}
+export interface Validity {
+  task: string;
+  experts: number;
+  novices: number;
+  simulated: boolean;
+  metrics: ValidityMetric[] | null;
+  discriminating: { share: number | null; count: number | null; of: number | null; reason?: string | null } | null;
+  alpha: { value: number | null; items: number | null; n: number | null; reason?: string | null } | null;
+  pass_mark: {
+    value: number | null;
+    false_passes: number | null;
+    false_fails: number | null;
+    experts: number | null;
+    novices: number | null;
+    reason?: string | null;
+  } | null;
+  reason?: string | null;
+}
+
+export interface FormItem {
+  id?: string | number;
+  kind: "scale" | "text";
+  text: string;
+  is_required: boolean;
+}
+export interface Form {
+  id: string | number;
+  token: string;
+  title: string;
+  intro: string;
+  is_open: boolean;
+  language?: string | null;
+  responses: number;
+  items: FormItem[];
+}
+export interface ItemSummary {
+  id: string | number;
+  kind: "scale" | "text";
+  text: string;
+  n: number;
+  mean?: number | null;
+  sd?: number | null;
+  counts?: number[];
+  comments?: { text: string; submitted_s: number | null }[];
+}
+export interface FormSummary {
+  form: Form;
+  responses: number;
+  items: ItemSummary[];
+}
+export interface PublicForm {
+  title: string;
+  intro: string;
+  language?: string | null;
+  items: FormItem[];
+}

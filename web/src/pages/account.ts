@@ -1,0 +1,122 @@
+// One's own account, its password; for administrators all accounts.
+
+import { get, send } from "../lib/api.ts";
+import { h, replace_children, type Child } from "../lib/dom.ts";
+import { words } from "../lib/format.ts";
+import type { PageContext } from "../lib/router.ts";
+import type { Account } from "../lib/types.ts";
+import { is_admin, session } from "../session.ts";
+import { ask } from "../ui/dialog.ts";
+import { card, run_once, select_field, text_field, type TextField } from "../ui/parts.ts";
+import { error_box, load_into, toast } from "../ui/states.ts";
+import { data_table, type Column } from "../ui/table.ts";
+
+const kPasswordHelp = "12 to 128 characters; no common password, and not the name.";
+
+/** What is wrong with a new password before the server sees it; null if nothing is. */
+export function password_problem(password: string, name: string): string | null {
+  const length = [...password].length;
+  if (length < 12) return "Use at least 12 characters.";
+  if (length > 128) return "Use at most 128 characters.";
+  return password.trim().toLocaleLowerCase() === name.trim().toLocaleLowerCase() ? "The password must not be the name." : null;
+}
+
+function focus_first_error(fields: TextField[]): boolean {
+  const wrong = fields.find((one) => one.input.hasAttribute("aria-invalid"));
+  wrong?.input.focus();
+  return wrong !== undefined;
+}
+
+function submit_form(button: HTMLButtonElement, action: () => Promise<void>, ...children: Child[]): HTMLElement {
+  const form = h("form", { class: "form", novalidate: true }, children, button);
+  form.addEventListener("submit", (event) => {
+    event.preventDefault();
+    void run_once(button, action);
+  });
+  return form;
+}
+
+function password_card(): HTMLElement {
+  const old = text_field("Present password", { type: "password", autocomplete: "current-password" });
+  const fresh = text_field("New password", { type: "password", autocomplete: "new-password" }, kPasswordHelp);
+  const again = text_field("New password again", { type: "password", autocomplete: "new-password" });
+  const problem = h("div", {});
+  const fields = [old, fresh, again];
+  const change = async (): Promise<void> => {
+    replace_children(problem);
+    old.set_error(old.input.value ? null : "Enter your present password.");
+    fresh.set_error(password_problem(fresh.input.value, session.me?.account.name ?? ""));
+    again.set_error(again.input.value === fresh.input.value ? null : "The two new passwords differ.");
+    if (focus_first_error(fields)) return;
+    try {
+      await send("POST", "/api/password", { old: old.input.value, new: fresh.input.value });
+      fields.forEach((one) => (one.input.value = ""));
+      toast("The password was changed. Other sessions of this account have ended.");
+    } catch (error) {
+      replace_children(problem, error_box(error));
+    }
+  };
+  const button = h("button", { type: "submit", class: "button button-primary" }, "Change password");
+  const name = h("input", { type: "text", autocomplete: "username", value: session.me?.account.name ?? "", hidden: true, readonly: true, "aria-hidden": "true", tabindex: "-1" });
+  return card("Password", {}, submit_form(button, change, name, old.element, fresh.element, again.element, problem));
+}
+
+function new_account_card(reload: () => void): HTMLElement {
+  const name = text_field("Name", { maxlength: "100" });
+  const password = text_field("First password", { type: "password", autocomplete: "new-password" }, kPasswordHelp);
+  const problem = h("div", {});
+  let role = "instructor";
+  const roles = select_field("Role", [{ value: "instructor", label: "Instructor" }, { value: "admin", label: "Administrator" }], role, (value) => (role = value));
+  const create = async (): Promise<void> => {
+    replace_children(problem);
+    name.set_error(name.input.value.trim() ? null : "Enter a name.");
+    password.set_error(password_problem(password.input.value, name.input.value));
+    if (focus_first_error([name, password])) return;
+    try {
+      await send("POST", "/api/accounts", { name: name.input.value.trim(), password: password.input.value, role });
+      toast(`The account ${name.input.value.trim()} was made.`);
+      name.input.value = password.input.value = "";
+      reload();
+    } catch (error) {
+      replace_children(problem, error_box(error));
+    }
+  };
+  return card("New account", {}, submit_form(h("button", { type: "submit", class: "button button-primary" }, "Add account"), create, name.element, roles, password.element, problem));
+}
+
+function accounts_table(accounts: Account[], reload: () => void): HTMLElement {
+  const remove = (account: Account): void =>
+    ask({
+      title: `Delete the account ${account.name}?`,
+      text: "Its sessions end at once. Results stay.",
+      action: "Delete",
+      run: async () => {
+        await send("DELETE", `/api/accounts/${encodeURIComponent(account.name)}`, {});
+        toast(`The account ${account.name} was deleted.`);
+        reload();
+      },
+    });
+  const columns: Column<Account>[] = [
+    { name: "name", title: "Name", is_header: true, key: (one) => one.name, cell: (one) => one.name },
+    { name: "role", title: "Role", key: (one) => one.role, cell: (one) => (one.role === "admin" ? "Administrator" : words(one.role)) },
+    {
+      name: "delete", title: "Delete",
+      cell: (one) => (one.name === session.me?.account.name ? h("span", { class: "dim" }, "Your account") : h("button", { type: "button", class: "button button-small", "aria-label": `Delete ${one.name}`, on: { click: () => remove(one) } }, "Delete …")),
+    },
+  ];
+  return data_table({ caption: "Everyone who can sign in here", columns, rows: accounts });
+}
+
+export async function account_page({ main, signal, set_title }: PageContext): Promise<void> {
+  set_title("Account");
+  const account = session.me!.account;
+  main.append(h("h1", {}, "Account"), h("p", { class: "lead" }, `${account.name}, ${account.role === "admin" ? "administrator" : "instructor"}`));
+  const columns = h("div", { class: "two-columns" }, password_card());
+  main.append(columns);
+  if (!is_admin()) return;
+  const place = h("div", {});
+  const load = (): Promise<void> => load_into(place, signal, () => get<{ accounts: Account[] }>("/api/accounts", signal), ({ accounts }) => accounts_table(accounts, () => void load()));
+  columns.append(new_account_card(() => void load()));
+  main.append(card("Accounts", {}, place));
+  await load();
+}

@@ -1,0 +1,151 @@
+// The editor of a questionnaire: title, introduction, items to add, move and remove; a preview beside it.
+
+import { get, send } from "../lib/api.ts";
+import { h, new_id, replace_children, type Child } from "../lib/dom.ts";
+import { navigate, type PageContext } from "../lib/router.ts";
+import type { Form, FormItem } from "../lib/types.ts";
+import { form_view } from "../ui/form_view.ts";
+import { breadcrumb, card, run_once, text_field } from "../ui/parts.ts";
+import { error_box, load_into, toast } from "../ui/states.ts";
+
+interface Draft {
+  title: string;
+  intro: string;
+  items: FormItem[];
+}
+
+const kNew: Draft = {
+  title: "",
+  intro: "",
+  items: [{ kind: "scale", text: "", is_required: true }, { kind: "text", text: "What should be improved?", is_required: false }],
+};
+
+/** The first thing that keeps the form from being stored; null if nothing does. */
+export function problem_of(draft: Draft): string | null {
+  if (!draft.title.trim()) return "Enter a title.";
+  if (draft.items.length === 0) return "Add an item.";
+  const empty = draft.items.findIndex((one) => !one.text.trim());
+  return empty >= 0 ? `Enter the text of item ${empty + 1}, or remove it.` : null;
+}
+
+export function moved<T>(items: T[], from: number, by: number): T[] {
+  const to = from + by;
+  if (to < 0 || to >= items.length) return items;
+  const result = [...items];
+  [result[from], result[to]] = [result[to], result[from]];
+  return result;
+}
+
+function item_editor(draft: Draft, index: number, refresh: (focus: string | null) => void, changed: () => void): HTMLElement {
+  const item = draft.items[index];
+  const id = new_id("item");
+  const area = h("textarea", { id, class: "field", rows: "2", maxlength: "500", value: item.text, on: { input: () => { item.text = area.value; changed(); } } });
+  const required = h("input", { type: "checkbox", id: `${id}-required`, checked: item.is_required, on: { change: () => { item.is_required = required.checked; changed(); } } });
+  const move = (by: number, label: string, sign: string, name: string): HTMLElement =>
+    h(
+      "button",
+      {
+        type: "button", class: "button button-small", "aria-label": `${label} item ${index + 1}`, "data-name": `${name}-${index}`, disabled: index + by < 0 || index + by >= draft.items.length,
+        on: { click: () => { draft.items = moved(draft.items, index, by); refresh(`${name}-${index + by}`); } },
+      },
+      sign,
+    );
+  const remove = (): void => {
+    draft.items.splice(index, 1);
+    refresh("add-scale");
+  };
+  return h(
+    "li",
+    { class: "item-editor" },
+    h("div", { class: "item-head" }, h("label", { for: id }, `${index + 1}. ${item.kind === "scale" ? "Statement, six-point scale" : "Question, free text"}`),
+      h("span", { class: "item-buttons" }, move(-1, "Move up", "↑", "up"), move(1, "Move down", "↓", "down"), h("button", { type: "button", class: "button button-small", "aria-label": `Remove item ${index + 1}`, on: { click: remove } }, "Remove")),
+    ),
+    area,
+    h("div", { class: "check" }, required, h("label", { for: `${id}-required` }, "Required")),
+  );
+}
+
+function show_editor(form: Form | null, context: PageContext): Child {
+  const draft: Draft = form ? { title: form.title, intro: form.intro, items: form.items.map((one) => ({ ...one })) } : { ...kNew, items: kNew.items.map((one) => ({ ...one })) };
+  const title = text_field("Title", { value: draft.title, maxlength: "200", on: { input: () => { draft.title = title.input.value; changed(); } } });
+  const intro_id = new_id("intro");
+  const intro = h("textarea", { id: intro_id, class: "field", rows: "3", maxlength: "2000", value: draft.intro, on: { input: () => { draft.intro = intro.value; changed(); } } });
+  const list = h("ol", { class: "item-list" });
+  const preview = h("div", { class: "preview" });
+  const problem = h("div", {});
+  let is_changed = false;
+
+  const draw_preview = (): void => {
+    const items = draft.items.map((one, k) => ({ ...one, id: k, text: one.text || "…" }));
+    replace_children(preview, h("p", { class: "preview-title" }, draft.title || "Title"), draft.intro && h("p", {}, draft.intro), form_view(items).element);
+  };
+  const changed = (): void => {
+    is_changed = true;
+    draw_preview();
+  };
+  const refresh = (focus: string | null): void => {
+    replace_children(list, draft.items.map((_, k) => item_editor(draft, k, refresh, changed)));
+    changed();
+    if (!focus) return;
+    const wished = section.querySelector<HTMLButtonElement>(`[data-name="${focus}"]`);
+    if (wished && !wished.disabled) wished.focus();
+    else section.querySelector<HTMLButtonElement>(`[data-name="${focus.replace(/^up/, "down*").replace(/^down-/, "up-").replace("down*", "down")}"]`)?.focus();
+  };
+  const add = (kind: FormItem["kind"]): void => {
+    draft.items.push({ kind, text: "", is_required: kind === "scale" });
+    refresh(null);
+    list.querySelector<HTMLElement>("li:last-child textarea")?.focus();
+  };
+  const save = h("button", { type: "submit", class: "button button-primary" }, "Save");
+  const submit = async (): Promise<void> => {
+    const text = problem_of(draft);
+    if (text) {
+      replace_children(problem, h("p", { class: "notice notice-bad", role: "alert" }, text));
+      return;
+    }
+    try {
+      const body = { title: draft.title.trim(), intro: draft.intro.trim(), items: draft.items.map((one) => ({ ...one, text: one.text.trim() })) };
+      const saved = form ? await send<Form | undefined>("PUT", `/api/forms/${encodeURIComponent(String(form.id))}`, body) : await send<Form | undefined>("POST", "/api/forms", body);
+      is_changed = false;
+      toast("The questionnaire was saved.");
+      const id = form?.id ?? saved?.id;
+      navigate(id === undefined ? "/forms" : `/forms/${encodeURIComponent(String(id))}`);
+    } catch (error) {
+      if (!context.signal.aborted) replace_children(problem, error_box(error));
+    }
+  };
+  const element = h(
+    "form",
+    { class: "form", novalidate: true },
+    form !== null && form.responses > 0 && h("p", { class: "notice" }, `This questionnaire has ${form.responses} responses. An item whose text you change is retired with its answers, and a new item takes its place.`),
+    title.element,
+    h("div", { class: "labelled" }, h("label", { for: intro_id }, "Introduction"), intro),
+    h("h2", {}, "Items"),
+    list,
+    h("div", { class: "buttons" }, h("button", { type: "button", class: "button", "data-name": "add-scale", on: { click: () => add("scale") } }, "Add a statement"), h("button", { type: "button", class: "button", on: { click: () => add("text") } }, "Add a free text")),
+    problem,
+    h("div", { class: "buttons" }, save, h("a", { class: "button", href: form ? `/forms/${encodeURIComponent(String(form.id))}` : "/forms" }, "Cancel")),
+  );
+  element.addEventListener("submit", (event) => {
+    event.preventDefault();
+    void run_once(save, submit);
+  });
+  window.addEventListener("beforeunload", (event) => { if (is_changed) event.preventDefault(); }, { signal: context.signal });
+  const section = h("div", { class: "editor" }, card(null, {}, element), card("Preview", { class: "card-preview" }, preview));
+  refresh(null);
+  is_changed = false;
+  const name = form ? form.title : "New questionnaire";
+  return [breadcrumb({ label: "Questionnaires", path: "/forms" }, { label: name }), h("h1", {}, form ? "Edit questionnaire" : "New questionnaire"), section];
+}
+
+export async function form_editor_page(context: PageContext): Promise<void> {
+  const id = context.params[0];
+  context.set_title(id === "new" ? "New questionnaire" : "Edit questionnaire");
+  const place = h("div", {});
+  context.main.append(place);
+  const load = async (): Promise<Form | null> => {
+    if (id === "new") return null;
+    return (await get<{ form: Form }>(`/api/forms/${encodeURIComponent(id)}/summary`, context.signal)).form;
+  };
+  await load_into(place, context.signal, load, (form) => show_editor(form, context));
+}

@@ -1,0 +1,41 @@
+// The list of questionnaires.
+
+import { get } from "../lib/api.ts";
+import { h, type Child } from "../lib/dom.ts";
+import { plural } from "../lib/format.ts";
+import type { PageContext } from "../lib/router.ts";
+import type { Form } from "../lib/types.ts";
+import { empty_box, load_into } from "../ui/states.ts";
+import { data_table, type Column } from "../ui/table.ts";
+
+export function status_badge(form: Form): HTMLElement {
+  return form.is_open ? h("span", { class: "badge badge-open" }, "Open") : h("span", { class: "badge badge-plain" }, "Closed");
+}
+
+export function form_path(form: Form): string {
+  return `/forms/${encodeURIComponent(String(form.id))}`;
+}
+
+const kColumns: Column<Form>[] = [
+  { name: "title", title: "Title", is_header: true, key: (one) => one.title, cell: (one) => h("a", { href: form_path(one) }, one.title || "Without a title") },
+  { name: "status", title: "Status", key: (one) => (one.is_open ? 0 : 1), cell: status_badge },
+  { name: "items", title: "Items", is_number: true, cell: (one) => String(one.items.length) },
+  { name: "responses", title: "Responses", is_number: true, key: (one) => one.responses, cell: (one) => String(one.responses) },
+  { name: "edit", title: "Edit", cell: (one) => h("a", { href: `${form_path(one)}/edit`, "aria-label": `Edit ${one.title}` }, "Edit") },
+];
+
+function show_forms({ forms }: { forms: Form[] }): Child {
+  if (forms.length === 0) return empty_box("No questionnaires", "Make one with “New questionnaire”.");
+  return data_table({ caption: plural(forms.length, "questionnaire"), columns: kColumns, rows: forms });
+}
+
+export async function forms_page({ main, signal, set_title }: PageContext): Promise<void> {
+  set_title("Questionnaires");
+  const place = h("div", {});
+  main.append(
+    h("div", { class: "page-head" }, h("h1", {}, "Questionnaires"), h("span", { class: "page-actions" }, h("a", { class: "button button-primary", href: "/forms/new" }, "New questionnaire"))),
+    h("p", { class: "lead" }, "People answer on a six-point scale from 1 (strongly agree) to 6 (strongly disagree), and in their own words."),
+    place,
+  );
+  await load_into(place, signal, () => get<{ forms: Form[] }>("/api/forms", signal), show_forms);
+}

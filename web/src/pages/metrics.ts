@@ -1,0 +1,91 @@
+// Distribution of a metric in each group.
+
+import { get, path_with } from "../lib/api.ts";
+import { h, replace_children, type Child } from "../lib/dom.ts";
+import { number_text, unit_text, with_unit } from "../lib/format.ts";
+import { write_query, type PageContext } from "../lib/router.ts";
+import type { MetricDistribution, MetricGroup, MetricName, Overview } from "../lib/types.ts";
+import { auc_text, group_title, histograms } from "../plots/histogram.ts";
+import { interval_strip } from "../plots/small.ts";
+import { card, select_field } from "../ui/parts.ts";
+import { empty_box, load_into } from "../ui/states.ts";
+import { data_table, plain_table, type Column } from "../ui/table.ts";
+
+const kBetter = { lower: "Lower values are better.", higher: "Higher values are better.", neither: "Neither direction is better." };
+
+function quartile_table(metric: MetricDistribution): HTMLElement {
+  const value = (title: string, name: "min" | "q1" | "median" | "q3" | "max"): Column<MetricGroup> => ({ name, title, is_number: true, cell: (one) => with_unit(one[name], metric.unit) });
+  const columns: Column<MetricGroup>[] = [
+    { name: "group", title: "Group", is_header: true, cell: group_title },
+    { name: "n", title: "Attempts", is_number: true, cell: (one) => String(one.n) },
+    value("Lowest", "min"), value("Lower quartile", "q1"), value("Median", "median"), value("Upper quartile", "q3"), value("Highest", "max"),
+  ];
+  return data_table({ caption: "Quartiles of each group", columns, rows: metric.groups });
+}
+
+function show_distribution(metric: MetricDistribution, signal: AbortSignal): Child {
+  const unit = unit_text(metric.unit);
+  const filled = metric.groups.filter((one) => one.n > 0);
+  if (filled.length === 0 || metric.edges.length < 2) return empty_box("No values", "Nobody of this course has this metric for this task yet.");
+  const bins = metric.edges.slice(0, -1).map((edge, k) => [`${number_text(edge)} to ${number_text(metric.edges[k + 1])}`, ...filled.map((one) => String(one.counts[k] ?? 0))]);
+  const shown = { ...metric, groups: filled };
+  return card(
+    metric.title,
+    {},
+    h("p", { class: "dim" }, `${kBetter[metric.better] ?? ""} ${unit ? `Unit: ${unit}.` : ""}`),
+    metric.auc
+      ? h("p", { class: "auc" }, h("strong", {}, "Separation of experts and trainees (AUC): "), auc_text(metric.auc), interval_strip(metric.auc.value, metric.auc.low, metric.auc.high), h("span", { class: "dim" }, "0.5 is no separation, 1 is complete."))
+      : h("p", { class: "notice" }, metric.reason ?? "The separation of experts and trainees is not given: it needs attempts of both groups."),
+    histograms(shown, signal),
+    h("details", { class: "as-table" }, h("summary", {}, "Histogram as a table"), plain_table("Attempts in each interval", [`Interval${unit ? ` (${unit})` : ""}`, ...filled.map(group_title)], bins)),
+    quartile_table(shown),
+  );
+}
+
+function show_metrics(overview: Overview, context: PageContext): Child {
+  const { query, signal } = context;
+  if (overview.tasks.length === 0) return empty_box("No tasks", "The database has no attempts yet.");
+  const chosen = { task: query.get("task") || overview.tasks[0].id, course: query.get("course") ?? "", metric: query.get("metric") ?? "score" };
+  const choice_place = h("div", { class: "metric-choice" });
+  const place = h("div", { class: "metric-place" });
+  const show_metric = (): void => {
+    write_query(chosen);
+    const path = path_with(`/api/metrics/${encodeURIComponent(chosen.metric)}`, { task: chosen.task, course: chosen.course });
+    void load_into(place, signal, () => get<MetricDistribution>(path, signal), (metric) => show_distribution(metric, signal));
+  };
+  const show_task = (): void => {
+    replace_children(place);
+    void load_into(choice_place, signal, () => get<{ metrics: MetricName[] }>(path_with("/api/metrics", { task: chosen.task }), signal), ({ metrics }) => {
+      if (metrics.length === 0) return empty_box("No metrics", "Nobody has practised this task yet.");
+      if (!metrics.some((one) => one.name === chosen.metric)) chosen.metric = metrics[0].name;
+      show_metric();
+      return select_field("Metric", metrics.map((one) => ({ value: one.name, label: one.title })), chosen.metric, (value) => {
+        chosen.metric = value;
+        show_metric();
+      });
+    });
+  };
+  const courses = [{ value: "", label: "All courses" }, ...overview.courses.map((one) => ({ value: String(one.id), label: one.name }))];
+  const filters = h(
+    "div",
+    { class: "filters" },
+    select_field("Task", overview.tasks.map((one) => ({ value: one.id, label: one.title })), chosen.task, (value) => {
+      chosen.task = value;
+      show_task();
+    }),
+    select_field("Course", courses, chosen.course, (value) => {
+      chosen.course = value;
+      show_metric();
+    }),
+    choice_place,
+  );
+  show_task();
+  return [filters, place];
+}
+
+export async function metrics_page(context: PageContext): Promise<void> {
+  context.set_title("Metrics");
+  const place = h("div", {});
+  context.main.append(h("h1", {}, "Metrics"), h("p", { class: "lead" }, "How each metric is distributed among experts and trainees."), place);
+  await load_into(place, context.signal, () => get<Overview>("/api/overview", context.signal), (overview) => show_metrics(overview, context));
+}

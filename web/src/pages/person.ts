@@ -1,0 +1,214 @@
+// A person: learning curve and CUSUM of a task, and the attempts.
+
+import { get, path_with, send } from "../lib/api.ts";
+import { h, replace_children, type Child } from "../lib/dom.ts";
+import { date_time_text, duration_text, fixed, percent, plural, words } from "../lib/format.ts";
+import { cusum_by_point, cusum_verdict } from "../lib/judgement.ts";
+import { navigate, write_query, type PageContext } from "../lib/router.ts";
+import type { Attempt, AttemptList, Curve, Person, PersonAnswer, Task } from "../lib/types.ts";
+import { line_plot, type Series } from "../plots/line_plot.ts";
+import { is_admin } from "../session.ts";
+import { ask } from "../ui/dialog.ts";
+import { breadcrumb, card, group_badge, passed_text, person_badges, run_once, select_field, time_element } from "../ui/parts.ts";
+import { empty_box, error_box, load_into, toast } from "../ui/states.ts";
+import { data_table, plain_table, type Column } from "../ui/table.ts";
+
+function only(values: (number | null)[], keep: (index: number) => boolean): (number | null)[] {
+  return values.map((one, k) => (keep(k) ? one : null));
+}
+
+function score_plot(curve: Curve, signal: AbortSignal): HTMLElement {
+  const { points, experts, peers } = curve;
+  const scores = points.map((one) => one.score);
+  const series: Series[] = [];
+  if (experts && experts.low !== null && experts.high !== null) {
+    series.push({ label: `Experts' range (n = ${experts.n})`, values: points.map(() => experts.low), upper: points.map(() => experts.high), colour: "path", mark: "band" });
+  }
+  if (experts?.mean !== null && experts?.mean !== undefined) series.push({ label: "Experts' mean", values: points.map(() => experts.mean), colour: "path", mark: "dotted", width: 1.5 });
+  if (peers && peers.n > 0) series.push({ label: `Peers' mean (n = ${peers.n})`, values: points.map((one) => peers.mean_by_attempt[one.n - 1] ?? null), colour: "dim", mark: "dashed" });
+  series.push(
+    { label: "Moving mean", values: points.map((one) => one.moving_mean), colour: "accent", mark: "line", width: 3 },
+    { label: "Passed", values: only(scores, (k) => points[k].passed === true), colour: "good", mark: "filled-points" },
+    { label: "Not passed", values: only(scores, (k) => points[k].passed !== true), colour: "bad", mark: "hollow-points" },
+  );
+  const last = points[points.length - 1];
+  return line_plot({
+    title: "Score by attempt",
+    summary: `${points.length} attempts; moving mean now ${fixed(last.moving_mean, 0)} of 100.`,
+    x: points.map((one) => one.n),
+    x_label: "attempt",
+    y_label: "score",
+    y_range: [0, 103],
+    whole_x: true,
+    series,
+    signal,
+    read_out: (k) => `Attempt ${points[k].n}, ${date_time_text(points[k].started_s)}: ${fixed(points[k].score, 0)} points on ${points[k].patient}, moving mean ${fixed(points[k].moving_mean, 0)}`,
+    table: () =>
+      plain_table(
+        "Scores by attempt",
+        ["Attempt", "Started", "Patient", "Score", "Result", "Moving mean", "Peers' mean"],
+        points.map((one) => [
+          String(one.n), date_time_text(one.started_s), one.patient, fixed(one.score, 0), one.passed === null ? "not scored" : one.passed ? "passed" : "not passed",
+          fixed(one.moving_mean, 1), fixed(peers?.mean_by_attempt[one.n - 1], 1),
+        ]),
+      ),
+  }).element;
+}
+
+function cusum_plot(curve: Curve, signal: AbortSignal): Child {
+  const { points } = curve;
+  const cusum = curve.cusum && { ...curve.cusum, values: cusum_by_point(points, curve.cusum.values) };
+  if (!cusum || cusum.values.every((one) => one === null)) return empty_box("No CUSUM", "It needs scored attempts.");
+  const known = cusum.values.filter((one): one is number => one !== null);
+  const low = Math.min(cusum.lower, ...known);
+  const high = Math.max(cusum.upper, ...known);
+  const pad = 0.16 * (high - low || 1);
+  const verdict = cusum_verdict(cusum.values, cusum.upper, cusum.lower);
+  return [
+    line_plot({
+      title: "CUSUM of failures",
+      summary: verdict,
+      x: points.map((one) => one.n),
+      x_label: "attempt",
+      y_label: "CUSUM",
+      y_range: [low - pad, high + pad],
+      whole_x: true,
+      limits: [
+        { value: cusum.upper, label: "upper limit: not acceptable", colour: "bad" },
+        { value: cusum.lower, label: "lower limit: acceptable", colour: "good" },
+      ],
+      series: [{ label: "CUSUM", values: cusum.values, colour: "accent", mark: "line", width: 2.5 }],
+      height: 240,
+      signal,
+      read_out: (k) => `Attempt ${points[k].n}: CUSUM ${fixed(cusum.values[k], 2)}`,
+      table: () => plain_table("CUSUM by attempt", ["Attempt", "CUSUM"], points.map((one, k) => [String(one.n), fixed(cusum.values[k], 2)])),
+    }).element,
+    h("p", {}, h("strong", {}, verdict)),
+    h("p", { class: "help" }, `A passed attempt lowers the curve, a failed one raises it. A limit that is reached decides, and the next attempt begins at 0. Acceptable failure rate ${fixed(100 * cusum.acceptable, 0)} %, unacceptable ${fixed(100 * cusum.unacceptable, 0)} %.`),
+  ];
+}
+
+function attempt_columns(tasks: Task[]): Column<Attempt>[] {
+  const title = (id: string): string => tasks.find((one) => one.id === id)?.title ?? id;
+  return [
+    { name: "started", title: "Started", is_header: true, cell: (one) => h("a", { href: `/attempts/${encodeURIComponent(one.id)}` }, time_element(one.started_s)) },
+    { name: "task", title: "Task", cell: (one) => title(one.task) },
+    { name: "patient", title: "Patient", cell: (one) => one.patient },
+    { name: "level", title: "Help", cell: (one) => words(one.level) },
+    { name: "score", title: "Score", is_number: true, cell: (one) => fixed(one.score, 0) },
+    { name: "result", title: "Result", cell: (one) => (one.state === "complete" || one.score !== null ? passed_text(one.passed, one.score) : words(one.state)) },
+    { name: "duration", title: "Duration", is_number: true, cell: (one) => duration_text(one.duration_s) },
+    { name: "station", title: "Station", cell: (one) => one.station ?? "–" },
+  ];
+}
+
+function attempts_section(person: Person, tasks: Task[], task: string, signal: AbortSignal): HTMLElement {
+  const place = h("div", {});
+  const more = h("div", { class: "more" });
+  let rows: Attempt[] = [];
+  const path = (before: number | null): string => path_with(`/api/people/${encodeURIComponent(person.id)}/attempts`, { task, before, limit: 50 });
+  const show = (answer: AttemptList): Child => {
+    rows = rows.concat(answer.attempts);
+    const button = h("button", { type: "button", class: "button" }, "Older attempts");
+    button.addEventListener("click", () => void run_once(button, () => load_older(answer.next!)));
+    replace_children(more, answer.next !== null && [h("span", {}, `${rows.length} shown`), button]);
+    if (rows.length === 0) return empty_box("No attempts", "This person has not practised this task.");
+    return data_table({ caption: "Attempts, newest first", columns: attempt_columns(tasks), rows });
+  };
+  const load_older = async (before: number): Promise<void> => {
+    const first_new = rows.length;
+    try {
+      const answer = await get<AttemptList>(path(before), signal);
+      replace_children(place, show(answer));
+      place.querySelectorAll<HTMLElement>("tbody tr")[first_new]?.querySelector("a")?.focus();
+    } catch (error) {
+      if (!signal.aborted) replace_children(more, error_box(error, () => void load_older(before)));
+    }
+  };
+  void load_into(place, signal, () => get<AttemptList>(path(null), signal), show);
+  return card("Attempts", {}, place, more);
+}
+
+function delete_button(person: Person): HTMLElement {
+  const run = async (): Promise<void> => {
+    await send("DELETE", `/api/people/${encodeURIComponent(person.id)}`, { confirm: person.name });
+    toast(`${person.name} was deleted.`);
+    navigate("/");
+  };
+  return h(
+    "button",
+    {
+      type: "button",
+      class: "button button-danger",
+      on: {
+        click: () =>
+          ask({
+            title: "Delete this person?",
+            text: "All attempts, recordings and answers linked to this person are deleted. This cannot be undone.",
+            action: "Delete",
+            typed: { label: `Type the name to confirm: ${person.name}`, value: person.name },
+            run,
+          }),
+      },
+    },
+    "Delete person …",
+  );
+}
+
+function show_person({ person, tasks }: PersonAnswer, wished_task: string, context: PageContext): Child {
+  context.set_title(person.name);
+  const practised = tasks.filter((one) => (person.tasks[one.id]?.attempts ?? 0) > 0);
+  const header = [
+    breadcrumb({ label: "Cohort", path: "/" }, { label: person.name }),
+    h("div", { class: "page-head" }, h("h1", {}, person.name), person.group !== "expert" && group_badge(person.group), person_badges(person)),
+  ];
+  const removal = is_admin() && card("Data protection", {}, h("p", { class: "dim" }, "A person may ask for the deletion of all results."), delete_button(person));
+  if (practised.length === 0) return [header, empty_box("No attempts yet", "Curves appear after the first attempt."), removal];
+  const most = [...practised].sort((a, b) => (person.tasks[b.id].last_s ?? 0) - (person.tasks[a.id].last_s ?? 0))[0];
+  const first = practised.some((one) => one.id === wished_task) ? wished_task : most.id;
+  const place = h("div", { class: "stack" });
+  let task_controller = new AbortController();
+  const show_task = (task: string): void => {
+    task_controller.abort();
+    task_controller = new AbortController();
+    const signal = AbortSignal.any ? AbortSignal.any([context.signal, task_controller.signal]) : context.signal;
+    const result = person.tasks[task];
+    const curves = h("div", {});
+    replace_children(
+      place,
+      h(
+        "dl",
+        { class: "facts" },
+        [
+          ["Attempts", String(result.attempts)],
+          ["Passed", `${result.passed} of ${result.scored} (${percent(result.passed, result.scored)})`],
+          ["Mean of last 5", fixed(result.recent_mean, 0)],
+          ["Best score", fixed(result.best_score, 0)],
+          ["Last attempt", date_time_text(result.last_s)],
+        ].map(([term, value]) => h("div", {}, h("dt", {}, term), h("dd", {}, value))),
+      ),
+      curves,
+      attempts_section(person, tasks, task, signal),
+    );
+    const path = path_with(`/api/people/${encodeURIComponent(person.id)}/curve`, { task });
+    void load_into(curves, signal, () => get<Curve>(path, signal), (curve) =>
+      curve.points.length === 0
+        ? empty_box("No curve yet", `${plural(result.attempts, "attempt")} without a score.`)
+        : h("div", { class: "curves" }, card("Learning curve", {}, score_plot(curve, signal)), card("CUSUM", {}, cusum_plot(curve, signal))),
+    );
+  };
+  const choice = select_field("Task", practised.map((one) => ({ value: one.id, label: one.title })), first, (task) => {
+    write_query({ task });
+    show_task(task);
+  });
+  show_task(first);
+  return [header, h("div", { class: "filters" }, choice), place, removal];
+}
+
+export async function person_page(context: PageContext): Promise<void> {
+  context.set_title("Person");
+  const place = h("div", {});
+  context.main.append(place);
+  const path = `/api/people/${encodeURIComponent(context.params[0])}`;
+  await load_into(place, context.signal, () => get<PersonAnswer>(path, context.signal), (answer) => show_person(answer, context.query.get("task") ?? "", context));
+}

@@ -1,0 +1,87 @@
+// Evidence that the scores mean something: separation, consistency, pass mark.
+
+import { get, path_with } from "../lib/api.ts";
+import { h, type Child } from "../lib/dom.ts";
+import { fixed, number_text, plural, unit_text } from "../lib/format.ts";
+import { write_query, type PageContext } from "../lib/router.ts";
+import type { Overview, Validity, ValidityMetric } from "../lib/types.ts";
+import { interval_strip } from "../plots/small.ts";
+import { card, select_field } from "../ui/parts.ts";
+import { empty_box, load_into } from "../ui/states.ts";
+import { data_table, type Column } from "../ui/table.ts";
+
+function figure_card(title: string, value: string | null, text: Child, reason: string | null | undefined): HTMLElement {
+  return card(
+    title,
+    { class: "card-figure" },
+    value === null ? [h("p", { class: "figure figure-none" }, "Not computed"), h("p", {}, reason ?? "There are too few data.")] : [h("p", { class: "figure" }, value), h("p", {}, text)],
+  );
+}
+
+function p_text(p: number | null): string {
+  if (p === null) return "–";
+  return p < 0.001 ? "< 0.001" : fixed(p, 3);
+}
+
+function metrics_table(metrics: ValidityMetric[]): HTMLElement {
+  const columns: Column<ValidityMetric>[] = [
+    { name: "title", title: "Metric", is_header: true, key: (one) => one.title, cell: (one) => [one.title, unit_text(one.unit) && h("span", { class: "dim" }, ` (${unit_text(one.unit)})`)] },
+    { name: "expert", title: "Experts' median", is_number: true, key: (one) => one.expert_median, cell: (one) => [number_text(one.expert_median), one.n_expert !== null && h("span", { class: "dim" }, ` (n\u00a0${one.n_expert})`)] },
+    { name: "novice", title: "Novices' median", is_number: true, key: (one) => one.novice_median, cell: (one) => [number_text(one.novice_median), one.n_novice !== null && h("span", { class: "dim" }, ` (n\u00a0${one.n_novice})`)] },
+    {
+      name: "auc", title: "AUC (95 % interval)", is_number: true, key: (one) => one.auc,
+      cell: (one) =>
+        one.auc === null
+          ? h("span", { class: "dim" }, one.reason ?? "–")
+          : h("span", { class: "compared" }, interval_strip(one.auc, one.low, one.high), h("span", { class: "auc-number" }, fixed(one.auc, 2), h("span", { class: "dim" }, one.low === null ? "" : ` (${fixed(one.low, 2)}–${fixed(one.high, 2)})`))),
+    },
+    { name: "p", title: "p", is_number: true, key: (one) => one.p, cell: (one) => p_text(one.p) },
+    {
+      name: "discriminates", title: "Discriminates", key: (one) => (one.discriminates === null ? null : one.discriminates ? 0 : 1),
+      cell: (one) => (one.discriminates === null ? "–" : one.discriminates ? h("span", { class: "outcome outcome-good" }, "✓ Yes") : h("span", { class: "outcome" }, "No")),
+    },
+  ];
+  return data_table({ caption: "Separation of experts and novices by each metric", columns, rows: metrics, order: { column: "auc", is_descending: true } });
+}
+
+function show_validity(answer: Validity): Child {
+  const { discriminating, alpha, pass_mark, metrics } = answer;
+  const share = discriminating?.share ?? null;
+  return [
+    answer.simulated &&
+      h("div", { class: "notice notice-simulated" }, h("p", { class: "notice-title" }, "Simulated"), h("p", {}, "Some or all of these attempts come from scripted operators. They test the computation; they are no evidence about people.")),
+    h("p", { class: "lead" }, `${plural(answer.experts, "expert")} and ${plural(answer.novices, "novice")}${answer.simulated ? ", simulated people included" : ""}.`),
+    h(
+      "div",
+      { class: "figures" },
+      figure_card("Discriminating metrics", share === null ? null : `${fixed(100 * share, 0)} %`, `${discriminating?.count} of ${discriminating?.of} metrics separate experts from novices. An automatic assessment has published 37 of 60.`, discriminating?.reason ?? answer.reason),
+      figure_card("Internal consistency", alpha === null || alpha.value === null ? null : fixed(alpha.value, 2), `Cronbach's alpha of ${alpha?.items} parts of the score over ${alpha?.n} attempts. From 0.7 on it is usually called acceptable.`, alpha?.reason ?? answer.reason),
+      figure_card(
+        "Pass mark",
+        pass_mark === null || pass_mark.value === null ? null : fixed(pass_mark.value, 1),
+        `By contrasting groups: ${pass_mark?.false_passes} of ${pass_mark?.novices} novices would pass, ${pass_mark?.false_fails} of ${pass_mark?.experts} experts would fail.`,
+        pass_mark?.reason ?? answer.reason,
+      ),
+    ),
+    card("Metrics", {}, !metrics || metrics.length === 0 ? empty_box("No metrics", answer.reason ?? "It needs attempts of experts and of novices.") : metrics_table(metrics)),
+  ];
+}
+
+function show_tasks(overview: Overview, context: PageContext): Child {
+  if (overview.tasks.length === 0) return empty_box("No tasks", "The database has no attempts yet.");
+  const place = h("div", {});
+  const show = (task: string): void => {
+    write_query({ task });
+    void load_into(place, context.signal, () => get<Validity>(path_with("/api/validity", { task }), context.signal), show_validity);
+  };
+  const first = context.query.get("task") || overview.tasks[0].id;
+  show(first);
+  return [h("div", { class: "filters" }, select_field("Task", overview.tasks.map((one) => ({ value: one.id, label: one.title })), first, show)), place];
+}
+
+export async function validity_page(context: PageContext): Promise<void> {
+  context.set_title("Validity");
+  const place = h("div", {});
+  context.main.append(h("h1", {}, "Validity"), place);
+  await load_into(place, context.signal, () => get<Overview>("/api/overview", context.signal), (overview) => show_tasks(overview, context));
+}

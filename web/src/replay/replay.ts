@@ -1,0 +1,165 @@
+// Replay of an attempt: two projections and a 3D view of the tip's path, force and depth over time, one clock for all.
+
+import { h, type Child } from "../lib/dom.ts";
+import { clock_text, fixed, words } from "../lib/format.ts";
+import type { Trace } from "../lib/types.ts";
+import { line_plot, type DrawnPlot, type Series } from "../plots/line_plot.ts";
+import { plain_table } from "../ui/table.ts";
+import { select_field } from "../ui/parts.ts";
+import { make_clock, type ReplayClock } from "./clock.ts";
+import { path_view } from "./path_view.ts";
+import { time_line } from "./time_line.ts";
+import { extent_of, index_at, kFront, kSide, points_to_show, tissue_at } from "./trace.ts";
+import { turn_view } from "./turn_view.ts";
+
+const kSpeeds = ["0.25", "0.5", "1", "2", "4"];
+
+/** A second trace at the moments of the first; null outside of its own time. */
+function resampled(values: (number | null)[], times_s: number[], at_s: number[]): (number | null)[] {
+  const end = times_s[times_s.length - 1] ?? -1;
+  return at_s.map((time_s) => (time_s > end ? null : (values[index_at(times_s, time_s)] ?? null)));
+}
+
+/** Resistance is positive where the recorded force along the needle pushes it out. */
+function resistance(force_n: (number | null)[]): (number | null)[] {
+  return force_n.map((one) => (one === null ? null : one === 0 ? 0 : -one));
+}
+
+function time_plot(title: string, y_label: string, own: (number | null)[], expert: (number | null)[] | null, trace: Trace, clock: ReplayClock, signal: AbortSignal): DrawnPlot {
+  const series: Series[] = [];
+  if (expert) series.push({ label: "Expert", values: expert, colour: "expert", mark: "dashed", width: 1.5 });
+  series.push({ label: "This attempt", values: own, colour: "accent", mark: "line" });
+  const known = own.filter((one): one is number => one !== null);
+  const most = known.length ? Math.max(...known) : 0;
+  const unit = y_label.replace(/.*\((.*)\)/, "$1");
+  return line_plot({
+    title,
+    summary: known.length ? `Largest value ${fixed(most, 1)} ${unit} in ${fixed(clock.duration_s, 0)} s.` : "Not recorded.",
+    x: trace.time_s,
+    x_label: "time (s)",
+    y_label,
+    series,
+    height: 190,
+    signal,
+    on_click: (time_s) => clock.set_time(time_s),
+    table: () => second_table(title, unit, own, expert, trace),
+  });
+}
+
+function second_table(title: string, unit: string, own: (number | null)[], expert: (number | null)[] | null, trace: Trace): Child {
+  const rows: string[][] = [];
+  let next_s = 0;
+  trace.time_s.forEach((time_s, k) => {
+    if (time_s < next_s) return;
+    next_s += 1;
+    const row = [fixed(time_s, 0), fixed(own[k], 2), tissue_at(trace, k) ?? "–"];
+    if (expert) row.push(fixed(expert[k], 2));
+    rows.push(row);
+  });
+  const titles = ["Time (s)", `This attempt (${unit})`, "Tissue at the tip"];
+  if (expert) titles.push(`Expert (${unit})`);
+  return plain_table(`${title}, once a second`, titles, rows);
+}
+
+function event_list(trace: Trace, clock: ReplayClock): HTMLElement {
+  if (trace.events.length === 0) return h("p", { class: "dim" }, "No event was recorded.");
+  return h(
+    "ol",
+    { class: "events" },
+    trace.events.map((one) =>
+      h("li", {}, h("button", { type: "button", class: "event", on: { click: () => clock.set_time(one.time_s) } }, h("span", { class: "event-time" }, clock_text(one.time_s)), h("span", {}, one.text))),
+    ),
+  );
+}
+
+function controls(clock: ReplayClock): HTMLElement {
+  const play = h("button", { type: "button", class: "button button-primary play" }, "Play");
+  const time = h("span", { class: "clock" });
+  const step = (label: string, sign: string, by_s: number): HTMLElement =>
+    h("button", { type: "button", class: "button", "aria-label": label, on: { click: () => clock.set_time(clock.time_s + by_s) } }, sign);
+  play.addEventListener("click", () => (clock.is_playing ? clock.pause() : clock.play()));
+  clock.on_change(() => {
+    play.textContent = clock.is_playing ? "Pause" : "Play";
+    time.textContent = `${clock_text(clock.time_s)} / ${clock_text(clock.duration_s)}`;
+  });
+  const speed = select_field("Speed", kSpeeds.map((one) => ({ value: one, label: `${one}×` })), "1", (value) => clock.set_speed(Number(value)));
+  return h("div", { class: "replay-controls" }, play, step("One second back", "−1 s", -1), step("One second on", "+1 s", 1), time, speed);
+}
+
+/** Keys of the replay while the focus is inside it and not in a control that needs the key itself. */
+function bind_keys(section: HTMLElement, clock: ReplayClock, signal: AbortSignal): void {
+  section.addEventListener(
+    "keydown",
+    (event) => {
+      const target = event.target as HTMLElement;
+      if (event.ctrlKey || event.metaKey || event.altKey) return;
+      const is_slider = target instanceof HTMLInputElement && target.type === "range";
+      if (target.matches("select, summary, a, .scroll") || (target.matches("input") && !is_slider)) return;
+      if (event.key === " ") {
+        if (target.matches("button")) return;
+        if (clock.is_playing) clock.pause();
+        else clock.play();
+      } else if (event.key === "ArrowLeft" || event.key === "ArrowRight") {
+        clock.set_time(clock.time_s + (event.key === "ArrowLeft" ? -1 : 1) * (event.shiftKey ? 1 : 0.2));
+      } else if (event.key === "Home" || event.key === "End") {
+        clock.set_time(event.key === "Home" ? 0 : clock.duration_s);
+      } else {
+        return;
+      }
+      event.preventDefault();
+    },
+    { signal },
+  );
+}
+
+export function replay(trace: Trace, signal: AbortSignal): HTMLElement {
+  const expert = trace.expert ?? null;
+  const start_s = trace.time_s[0] ?? 0;
+  const end_s = trace.time_s[trace.time_s.length - 1] ?? 0;
+  const clock = make_clock(end_s, signal);
+  const line = time_line(trace, clock);
+
+  const views = [
+    path_view("From the front", "Path of the tip from the front; the patient's left is on the right.", kFront, signal),
+    path_view("From the patient's left", "Path of the tip from the patient's left; front on the left.", kSide, signal),
+    turn_view(signal),
+  ];
+  let extent = extent_of(points_to_show(trace, false));
+  const now = h("p", { class: "now" });
+  const own_force = resistance(trace.force_n);
+  const draw = (): void => {
+    const index = index_at(trace.time_s, clock.time_s);
+    const expert_index = expert ? index_at(expert.time_s, clock.time_s) : null;
+    for (const view of views) view.draw({ trace, expert, extent, index, expert_index });
+    const tissue = tissue_at(trace, index);
+    now.textContent = `Depth ${fixed(trace.depth_mm[index], 1)} mm · resistance ${fixed(own_force[index], 2)} N · ${tissue ? words(tissue) : "Outside"}`;
+    for (const plot of plots) plot.set_marker(clock.time_s);
+  };
+  const expert_of = (values: (number | null)[] | undefined): (number | null)[] | null => (expert && values ? resampled(values, expert.time_s, trace.time_s) : null);
+  const plots = [
+    time_plot("Resistance along the needle", "force (N)", own_force, expert_of(expert ? resistance(expert.force_n) : undefined), trace, clock, signal),
+    time_plot("Depth of the tip", "depth (mm)", trace.depth_mm, expert_of(expert?.depth_mm), trace, clock, signal),
+  ];
+  const extent_choice = select_field("Picture shows", [{ value: "inside", label: "the inserted part" }, { value: "all", label: "the whole path" }], "inside", (value) => {
+    extent = extent_of(points_to_show(trace, value === "all"));
+    draw();
+  });
+  const key = (name: string, text: string): HTMLElement => h("li", {}, h("span", { class: `key key-${name}`, "aria-hidden": "true" }), text);
+  const section = h(
+    "section",
+    { class: "replay", tabindex: "0", role: "group", "aria-label": "Replay. Space plays and pauses, arrow keys step.", "aria-keyshortcuts": "Space ArrowLeft ArrowRight Home End" },
+    h("div", { class: "replay-top" }, h("ul", { class: "legend" }, key("own", "Tip, this attempt"), trace.plan && key("plan", "Planned path"), trace.plan && key("target", "Target"), expert && key("expert", "Best expert, same case")), extent_choice),
+    h("div", { class: "path-views" }, views.map((one) => one.element)),
+    controls(clock),
+    line.element,
+    now,
+    h("p", { class: "help" }, "Keys: Space plays and pauses, ← and → step 0.2 s, with Shift 1 s, Home and End jump."),
+    h("div", { class: "replay-plots" }, plots.map((one) => one.element)),
+    h("h3", {}, "Events"),
+    event_list(trace, clock),
+  );
+  bind_keys(section, clock, signal);
+  clock.on_change(draw);
+  clock.set_time(start_s);
+  return section;
+}

@@ -1,0 +1,58 @@
+// Pictures of every page: npm run pictures -- FOLDER. Three widths, two themes.
+
+import { mkdir } from "node:fs/promises";
+import { join } from "node:path";
+import type { Page } from "playwright-core";
+import { first_link, login, open_page, settled, start_browser, start_site } from "./browser.ts";
+
+const folder = process.argv[2] ?? "pictures";
+const only = process.argv[3];
+await mkdir(folder, { recursive: true });
+const site = await start_site();
+const browser = await start_browser();
+const sizes: [number, number][] = [[1440, 900], [768, 1024], [360, 780]];
+
+async function paths(page: Page): Promise<[string, string][]> {
+  const person = process.env.PERSON ?? (await first_link(page, "/people/"));
+  await page.goto(person);
+  await settled(page);
+  await page.waitForTimeout(300);
+  const attempt = await first_link(page, "/attempts/");
+  await page.goto("/forms");
+  await settled(page);
+  const form = await first_link(page, "/forms/");
+  const list: [string, string][] = [["cohort", "/"], ["cohort_task", "/?task=liver-biopsy&order=mean.down"], ["person", person], ["attempt", attempt], ["metrics", "/metrics?task=liver-biopsy&metric=target_distance"], ["validity", "/validity?task=liver-biopsy"], ["forms", "/forms"], ["form", form], ["editor", `${form}/edit`], ["account", "/account"]];
+  await page.goto(form);
+  await settled(page);
+  const address = await page.getByLabel("Address of the questionnaire").inputValue();
+  list.push(["questionnaire", new URL(address).pathname]);
+  return list;
+}
+
+for (const theme of ["dark", "light"] as const) {
+  for (const [width, height] of sizes) {
+    const { page, problems } = await open_page(browser, site, { width, height, theme });
+    await page.goto("/login");
+    await settled(page);
+    await page.screenshot({ path: join(folder, `login_${theme}_${width}.png`), fullPage: true });
+    await login(page);
+    for (const [name, path] of await paths(page)) {
+      if (only && !only.split(",").includes(name)) continue;
+      await page.goto(path);
+      await settled(page);
+      await page.waitForTimeout(250);
+      if (name === "attempt") {
+        await page.getByRole("slider").evaluate((one: HTMLInputElement) => {
+          one.value = String(0.7 * Number(one.max));
+          one.dispatchEvent(new Event("input"));
+        });
+      }
+      if (name === "questionnaire") await page.locator("input[type=radio]").nth(1).check({ force: true });
+      await page.screenshot({ path: join(folder, `${name}_${theme}_${width}.png`), fullPage: true });
+    }
+    if (problems.length) console.log(theme, width, problems);
+    await page.context().close();
+  }
+}
+await browser.close();
+await site.stop();
