@@ -30,10 +30,13 @@ Result<Separation> separation_in(const CohortData& data, const Values& values, B
   return separation_of(experts, novices, better);
 }
 
+bool are_experts_better(const MetricValidity& metric) {
+  return metric.better == Better::kNeither || metric.separation->auc > 0.5;
+}
+
 void decide(MetricValidity& metric, double corrected_p, double level) {
   metric.corrected_p = corrected_p;
-  const bool is_right_way = metric.better == Better::kNeither || metric.separation->auc > 0.5;
-  metric.discriminates = corrected_p <= level && is_right_way;
+  metric.discriminates = corrected_p <= level && are_experts_better(metric);
 }
 
 void decide_all(Validity& validity, const ValidityRules& rules) {
@@ -45,6 +48,7 @@ void decide_all(Validity& validity, const ValidityRules& rules) {
     if (!metric.separation) continue;
     decide(metric, corrected[validity.tested++], rules.level);
     validity.discriminating += metric.discriminates ? 1 : 0;
+    validity.uncorrected += metric.separation->test.p <= rules.level && are_experts_better(metric) ? 1 : 0;
   }
   if (validity.score.separation) decide(validity.score, validity.score.separation->test.p, rules.level);
 }
@@ -75,6 +79,7 @@ Validity validity_of(const CohortData& data, const ValidityRules& rules) {
       count([](const CohortData::Person& person) { return person.is_simulated; }),
       {"score", "Score", "points", Better::kHigher, separation_in(data, data.scores, Better::kHigher)},
       {},
+      0,
       0,
       0,
       cronbach_alpha(complete_items(data)),

@@ -56,7 +56,8 @@ struct Validity {
   MetricValidity score;                  ///< Not corrected, not counted among the metrics.
   std::vector<MetricValidity> metrics;
   std::size_t tested = 0;          ///< Metrics that both groups have.
-  std::size_t discriminating = 0;  ///< Of them.
+  std::size_t discriminating = 0;  ///< Of them, after the correction.
+  std::size_t uncorrected = 0;     ///< Of them, each at its own level: many published shares are counted so.
   Result<Alpha> alpha;             ///< Of the parts of the score, over all people who have all parts.
   Result<PassMark> pass_mark;      ///< On the score.
 };

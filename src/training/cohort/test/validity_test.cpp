@@ -60,7 +60,9 @@ TEST(Validity, WorseExpertsAreNoEvidence) {
 TEST(Validity, HolmIsTooStrictForTwoExpertsAndThreeMetrics) {
   CohortData data = study(true);
   data.metrics.push_back(data.metrics[0]);
-  EXPECT_EQ(validity_of(data, {0.05, Correction::kHolm}).discriminating, 0u);
+  const Validity holm = validity_of(data, {0.05, Correction::kHolm});
+  EXPECT_EQ(holm.discriminating, 0u);
+  EXPECT_EQ(holm.uncorrected, 2u);
   EXPECT_EQ(validity_of(data, {0.05, Correction::kNone}).discriminating, 2u);
   EXPECT_EQ(validity_of(data).discriminating, 2u);
   EXPECT_EQ(smallest_p_text(2, 12, 3, 0.05), "with 2 experts and 12 novices no two-sided p can be below 0.022");
