@@ -5,20 +5,22 @@
 namespace trocar::results {
 namespace {
 
-TEST(LearningCurve, HasTheAttemptsOfAPersonInTheOrderOfRecording) {
-  SmallStudy study;
-  const Person person = study.add("Novice", Group::kTrainee);
-  study.attempt(person, 40.0);
-  study.attempt(person, 60.0);
-  study.attempt(person, std::nullopt);
-  study.attempt(person, 90.0);
-  study.attempt(person, 99.0, "lumbar-puncture");
-  study.attempt(person, std::nullopt, "liver-biopsy", State::kInterrupted);
-  const auto curve = learning_curve(study.repository(), person, "liver-biopsy", {2, {}});
+class LearningCurveTest : public SmallStudy {};
+TROCAR_BOTH_DATABASES(LearningCurveTest);
+
+TEST_P(LearningCurveTest, HasTheAttemptsOfAPersonInTheOrderOfRecording) {
+  const Person person = add("Novice", Group::kTrainee);
+  play(person, 40.0);
+  play(person, 58.0);
+  play(person, std::nullopt);
+  play(person, 90.0);
+  play(person, 99.0, "lumbar-puncture");
+  play(person, std::nullopt, "liver-biopsy", State::kInterrupted);
+  const auto curve = learning_curve(*repository_, person, "liver-biopsy", {2, {}});
   ASSERT_TRUE(curve) << curve.error().text();
   ASSERT_EQ(curve->attempts.size(), 4u);
-  EXPECT_EQ(curve->attempts[1].moving_mean, 50.0);
-  EXPECT_EQ(curve->attempts[3].moving_mean, 75.0);
+  EXPECT_EQ(curve->attempts[1].moving_mean, 49.0);
+  EXPECT_EQ(curve->attempts[3].moving_mean, 74.0);
   EXPECT_FALSE(curve->attempts[2].cusum);
   const double step = curve->cusum.pass_step;
   EXPECT_DOUBLE_EQ(*curve->attempts[1].cusum, 2.0 * (1.0 - step));
@@ -28,28 +30,27 @@ TEST(LearningCurve, HasTheAttemptsOfAPersonInTheOrderOfRecording) {
   EXPECT_EQ(curve->peers, 0u);
 }
 
-TEST(LearningCurve, ComparesWithRealExpertsAndPeersOfTheSameKind) {
-  SmallStudy study;
-  const Person person = study.add("Novice", Group::kTrainee);
-  const Person peer = study.add("Peer", Group::kTrainee);
-  const Person simulated = study.add("simulated novice 1", Group::kTrainee, true);
-  const Person robot = study.add("simulated expert 1", Group::kExpert, true);
-  study.attempt(person, 50.0);
-  study.attempt(robot, 100.0);
-  study.attempt(simulated, 10.0);
-  study.attempt(peer, 60.0);
-  study.attempt(peer, 80.0);
-  const auto only_simulated = learning_curve(study.repository(), person, "liver-biopsy");
+TEST_P(LearningCurveTest, ComparesWithRealExpertsAndPeersOfTheSameKind) {
+  const Person person = add("Novice", Group::kTrainee);
+  const Person peer = add("Peer", Group::kTrainee);
+  const Person simulated = add_simulated("simulated novice 1", Group::kTrainee);
+  const Person robot = add_simulated("simulated expert 1", Group::kExpert);
+  play(person, 50.0);
+  play(robot, 100.0);
+  play(simulated, 10.0);
+  play(peer, 60.0);
+  play(peer, 80.0);
+  const auto only_simulated = learning_curve(*repository_, person, "liver-biopsy");
   ASSERT_TRUE(only_simulated) << only_simulated.error().text();
   ASSERT_TRUE(only_simulated->experts);
   EXPECT_TRUE(only_simulated->experts->is_simulated);
   EXPECT_EQ(only_simulated->experts->mean, 100.0);
 
-  const Person first = study.add("Expert 1", Group::kExpert), second = study.add("Expert 2", Group::kExpert);
-  study.attempt(first, 80.0);
-  study.attempt(first, 90.0);
-  study.attempt(second, 95.0);
-  const auto curve = learning_curve(study.repository(), person, "liver-biopsy");
+  const Person first = add("Expert 1", Group::kExpert), second = add("Expert 2", Group::kExpert);
+  play(first, 80.0);
+  play(first, 90.0);
+  play(second, 95.0);
+  const auto curve = learning_curve(*repository_, person, "liver-biopsy");
   ASSERT_TRUE(curve && curve->experts);
   EXPECT_FALSE(curve->experts->is_simulated);
   EXPECT_EQ(curve->experts->people, 2u);
@@ -59,24 +60,21 @@ TEST(LearningCurve, ComparesWithRealExpertsAndPeersOfTheSameKind) {
   EXPECT_EQ(curve->peers, 1u);
   ASSERT_EQ(curve->peer_curve.size(), 2u);
   EXPECT_EQ(curve->peer_curve[1]->mean, 80.0);
-  EXPECT_EQ(learning_curve(study.repository(), first, "liver-biopsy")->experts->people, 1u) << "without oneself";
+  EXPECT_EQ(learning_curve(*repository_, first, "liver-biopsy")->experts->people, 1u) << "without oneself";
 }
 
-TEST(LearningCurve, WithoutAttemptsIsEmpty) {
-  SmallStudy study;
-  const auto curve = learning_curve(study.repository(), study.add("Nobody", Group::kTrainee), "liver-biopsy");
+TEST_P(LearningCurveTest, WithoutAttemptsIsEmpty) {
+  const auto curve = learning_curve(*repository_, add("Nobody", Group::kTrainee), "liver-biopsy");
   ASSERT_TRUE(curve) << curve.error().text();
   EXPECT_TRUE(curve->attempts.empty());
   EXPECT_LT(curve->cusum.lower, 0.0);
   EXPECT_TRUE(curve->peer_curve.empty());
 }
 
-TEST(LearningCurve, RefusesRulesThatAreNone) {
-  SmallStudy study;
-  const Person person = study.add("Novice", Group::kTrainee);
-  EXPECT_EQ(learning_curve(study.repository(), person, "liver-biopsy", {0, {}}).error().exit_status, 2);
-  EXPECT_EQ(learning_curve(study.repository(), person, "liver-biopsy", {5, {0.5, 0.2, 0.1, 0.1}}).error().exit_status,
-            2);
+TEST_P(LearningCurveTest, RefusesRulesThatAreNone) {
+  const Person person = add("Novice", Group::kTrainee);
+  EXPECT_EQ(learning_curve(*repository_, person, "liver-biopsy", {0, {}}).error().exit_status, 2);
+  EXPECT_EQ(learning_curve(*repository_, person, "liver-biopsy", {5, {0.5, 0.2, 0.1, 0.1}}).error().exit_status, 2);
 }
 
 }  // namespace

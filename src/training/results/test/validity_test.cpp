@@ -1,23 +1,25 @@
 #include "results/validity.h"
 
-#include <fmt/format.h>
-
 #include "results/test/small_study.h"
 
 namespace trocar::results {
 namespace {
 
-TEST(CohortData, HasTheMeansOfEachPerson) {
-  SmallStudy study;
-  const Person expert = study.add("Expert", Group::kExpert), novice = study.add("Novice", Group::kTrainee, true);
-  study.add("Without attempts", Group::kTrainee);
-  study.attempt(novice, 20.0);
-  study.attempt(expert, 90.0);
-  study.attempt(novice, std::nullopt);
-  study.attempt(novice, 40.0);
-  study.attempt(expert, 100.0);
-  study.attempt(expert, 10.0, "lumbar-puncture");
-  const auto data = cohort_data(study.repository(), {"liver-biopsy"});
+class CohortDataTest : public SmallStudy {};
+TROCAR_BOTH_DATABASES(CohortDataTest);
+class ValidityTest : public SmallStudy {};
+TROCAR_BOTH_DATABASES(ValidityTest);
+
+TEST_P(CohortDataTest, HasTheMeansOfEachPerson) {
+  const Person expert = add("Expert", Group::kExpert), novice = add_simulated("Novice", Group::kTrainee);
+  add("Without attempts", Group::kTrainee);
+  play(novice, 20.0);
+  play(expert, 90.0);
+  play(novice, std::nullopt);
+  play(novice, 40.0);
+  play(expert, 100.0);
+  play(expert, 10.0, "lumbar-puncture");
+  const auto data = cohort_data(*repository_, {"liver-biopsy"});
   ASSERT_TRUE(data) << data.error().text();
   ASSERT_EQ(data->people.size(), 2u);
   const std::size_t e = data->people[0].is_expert ? 0 : 1, n = 1 - e;
@@ -36,37 +38,34 @@ TEST(CohortData, HasTheMeansOfEachPerson) {
   EXPECT_DOUBLE_EQ(*data->items[n][0], 18.0);
 }
 
-TEST(CohortData, ChoosesAttemptsOfEachPerson) {
-  SmallStudy study;
-  const Person novice = study.add("Novice", Group::kTrainee), other = study.add("Other", Group::kTrainee);
-  study.attempt(novice, 10.0);
-  study.attempt(other, 50.0);
-  study.attempt(novice, std::nullopt);
-  study.attempt(novice, 20.0);
-  study.attempt(novice, 60.0);
-  const auto second_and_third = cohort_data(study.repository(), {"liver-biopsy", "", {2, 3}});
+TEST_P(CohortDataTest, ChoosesAttemptsOfEachPerson) {
+  const Person novice = add("Novice", Group::kTrainee), other = add("Other", Group::kTrainee);
+  play(novice, 10.0);
+  play(other, 50.0);
+  play(novice, std::nullopt);
+  play(novice, 20.0);
+  play(novice, 60.0);
+  const auto second_and_third = cohort_data(*repository_, {"liver-biopsy", "", {2, 3}});
   ASSERT_TRUE(second_and_third) << second_and_third.error().text();
   ASSERT_EQ(second_and_third->people.size(), 1u) << "the other has no second attempt";
   EXPECT_EQ(second_and_third->scores[0], 40.0);
   EXPECT_EQ(second_and_third->metrics[0].values[0].has_value(), true);
 }
 
-TEST(CohortData, OfACourseHasItsPeopleAlone) {
-  SmallStudy study;
-  study.attempt(study.add("A", Group::kTrainee, false, "Spring"), 50.0);
-  study.attempt(study.add("B", Group::kTrainee, false, "Autumn"), 70.0);
-  const auto data = cohort_data(study.repository(), {"liver-biopsy", "spring"});
+TEST_P(CohortDataTest, OfACourseHasItsPeopleAlone) {
+  play(add("A", Group::kTrainee, "Spring"), 50.0);
+  play(add("B", Group::kTrainee, "Autumn"), 70.0);
+  const auto data = cohort_data(*repository_, {"liver-biopsy", "spring"});
   ASSERT_TRUE(data) << data.error().text();
   ASSERT_EQ(data->people.size(), 1u);
   EXPECT_EQ(data->scores[0], 50.0);
-  EXPECT_TRUE(cohort_data(study.repository(), {"liver-biopsy", "Winter"})->people.empty());
+  EXPECT_TRUE(cohort_data(*repository_, {"liver-biopsy", "Winter"})->people.empty());
 }
 
-TEST(Validity, OfAStudyInTheDatabase) {
-  SmallStudy study;
-  for (const double score : {95.0, 92.0}) study.attempt(study.add(fmt::format("E{}", score), Group::kExpert), score);
-  for (int n = 0; n < 12; ++n) study.attempt(study.add(fmt::format("N{}", n), Group::kTrainee), 30.0 + 3.0 * n);
-  const auto validity = validity_of(study.repository(), {"liver-biopsy"});
+TEST_P(ValidityTest, OfAStudyInTheDatabase) {
+  for (const double score : {95.0, 92.0}) play(add(fmt::format("E{}", score), Group::kExpert), score);
+  for (int n = 0; n < 12; ++n) play(add(fmt::format("N{}", n), Group::kTrainee), 30.0 + 3.0 * n);
+  const auto validity = validity_of(*repository_, {"liver-biopsy"});
   ASSERT_TRUE(validity) << validity.error().text();
   EXPECT_EQ(validity->experts, 2u);
   EXPECT_EQ(validity->novices, 12u);
@@ -79,13 +78,12 @@ TEST(Validity, OfAStudyInTheDatabase) {
   EXPECT_EQ(validity->pass_mark->false_fails + validity->pass_mark->false_passes, 0u);
 }
 
-TEST(Validity, OfAnUnknownTaskHasNobody) {
-  SmallStudy study;
-  const auto validity = validity_of(study.repository(), {"'; DROP TABLE people; --"});
+TEST_P(ValidityTest, OfAnUnknownTaskHasNobody) {
+  const auto validity = validity_of(*repository_, {"'; DROP TABLE people; --"});
   ASSERT_TRUE(validity) << validity.error().text();
   EXPECT_EQ(validity->experts + validity->novices, 0u);
   EXPECT_FALSE(validity->pass_mark);
-  EXPECT_TRUE(list_people(study.repository()));
+  EXPECT_TRUE(list_people(*repository_));
 }
 
 }  // namespace
