@@ -45,6 +45,8 @@ void add_results_commands(CLI::App& program, Action& action) {
   add_results_people_commands(*results, url, action);
   add_results_attempt_commands(*results, url, action);
   add_results_exchange_commands(*results, url, action);
+  add_results_curve_command(*results, url, action);
+  add_results_validity_command(*results, url, action);
 }
 
 }  // namespace trocar::cli

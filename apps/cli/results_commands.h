@@ -16,6 +16,8 @@ using DatabaseOption = std::shared_ptr<const std::string>;
 void add_results_people_commands(CLI::App& results, const DatabaseOption& url, Action& action);
 void add_results_attempt_commands(CLI::App& results, const DatabaseOption& url, Action& action);
 void add_results_exchange_commands(CLI::App& results, const DatabaseOption& url, Action& action);
+void add_results_curve_command(CLI::App& results, const DatabaseOption& url, Action& action);
+void add_results_validity_command(CLI::App& results, const DatabaseOption& url, Action& action);
 
 /// Opens the database of --db; empty: $TROCAR_DB, else that of the user. `missing`: whether a new one is made.
 Result<results::Repository> open_results(const std::string& url, database::Missing missing);
