@@ -1,0 +1,167 @@
+// Cache and files of the page.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <fstream>
+#include <thread>
+
+#include "core/files/temporary_folder.h"
+#include "web/answer_cache.h"
+#include "web/static_files.h"
+
+namespace trocar::web {
+namespace {
+
+using namespace std::chrono_literals;
+const AnswerCache::TimePoint kStart{1000h};
+
+AnswerCache::Value text(std::string content) {
+  return std::make_shared<const std::string>(std::move(content));
+}
+
+TEST(AnswerCache, MakesAnAnswerOnceASecond) {
+  AnswerCache cache;
+  int made = 0;
+  const auto make = [&]() -> Result<AnswerCache::Value> { return text(std::to_string(++made)); };
+  EXPECT_EQ(**cache.get("a", kStart, make), "1");
+  EXPECT_EQ(**cache.get("a", kStart + 999ms, make), "1");
+  EXPECT_EQ(**cache.get("b", kStart, make), "2");
+  EXPECT_EQ(**cache.get("a", kStart + 1000ms, make), "3");
+  cache.clear();
+  EXPECT_EQ(**cache.get("a", kStart + 1001ms, make), "4");
+}
+
+TEST(AnswerCache, DoesNotKeepErrors) {
+  AnswerCache cache;
+  EXPECT_FALSE(cache.get("a", kStart, [] { return fail("no", "where", "advice"); }));
+  EXPECT_EQ(**cache.get("a", kStart, [] { return text("yes"); }), "yes");
+}
+
+TEST(AnswerCache, WaitersShareOneAnswer) {
+  AnswerCache cache;
+  std::atomic<int> made{0}, waiting{0};
+  std::vector<std::thread> threads;
+  std::atomic<bool> may_end{false};
+  for (int n = 0; n < 8; ++n)
+    threads.emplace_back([&] {
+      ++waiting;
+      const auto value = cache.get("a", kStart, [&]() -> Result<AnswerCache::Value> {
+        ++made;
+        while (!may_end) std::this_thread::yield();
+        return text("once");
+      });
+      EXPECT_EQ(**value, "once");
+    });
+  while (waiting < 8) std::this_thread::yield();
+  may_end = true;
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(made, 1);
+}
+
+TEST(AnswerCache, GivesTheOldAnswerWhileTheNextIsMade) {
+  AnswerCache cache;
+  ASSERT_TRUE(cache.get("a", kStart, [] { return text("old"); }));
+  const auto next = cache.get("a", kStart + 2s, [&]() -> Result<AnswerCache::Value> {
+    EXPECT_EQ(**cache.get("a", kStart + 2s, [] { return text("not made"); }), "old");
+    return text("new");
+  });
+  EXPECT_EQ(**next, "new");
+}
+
+/// A deletion while an answer is being made: the answer may show the deleted person and must not be kept.
+TEST(AnswerCache, AnswersOfBeforeAChangeAreNotKept) {
+  AnswerCache cache;
+  ASSERT_TRUE(cache.get("a", kStart, [&] {
+    cache.clear();
+    return text("before the change");
+  }));
+  EXPECT_EQ(**cache.get("a", kStart, [] { return text("after"); }), "after");
+}
+
+TEST(AnswerCache, IsBounded) {
+  CacheRules rules;
+  rules.most_entries = 3;
+  rules.most_bytes = 100;
+  AnswerCache cache(rules);
+  int made = 0;
+  const auto get = [&](const std::string& key, int second) {
+    (void)cache.get(key, kStart + std::chrono::milliseconds(second), [&] {
+      ++made;
+      return text(std::string(30, 'x'));
+    });
+  };
+  for (int n = 0; n < 4; ++n) get(std::to_string(n), n);
+  get("3", 4);
+  EXPECT_EQ(made, 4) << "the newest is kept";
+  get("0", 5);
+  EXPECT_EQ(made, 5) << "the oldest is not";
+}
+
+class Page : public ::testing::Test {
+ protected:
+  void write(const std::string& path, const std::string& content) {
+    std::filesystem::create_directories((folder_ / path).parent_path());
+    std::ofstream(folder_ / path) << content;
+  }
+  HttpAnswer get(const std::string& path, TextPairs headers = {}) {
+    HttpRequest request;
+    request.path = path;
+    request.headers = std::move(headers);
+    return StaticFiles::load(folder_.path()).value().answer(request);
+  }
+  void SetUp() override {
+    write("index.html", "<html>");
+    write("assets/index-1234.js", "code");
+  }
+  TemporaryFolder folder_;
+};
+
+std::string header_of(const HttpAnswer& answer, const std::string& name) {
+  for (const auto& [key, value] : answer.headers)
+    if (key == name) return value;
+  return {};
+}
+
+TEST_F(Page, OwnAddressesShowTheIndex) {
+  for (const char* path : {"/", "/people/0123", "/q/token", "/unknown"}) EXPECT_EQ(*get(path).body, "<html>") << path;
+  EXPECT_EQ(get("/").content_type, "text/html; charset=utf-8");
+  EXPECT_EQ(header_of(get("/"), "Cache-Control"), "no-cache");
+}
+
+TEST_F(Page, AssetsAreKeptByTheBrowser) {
+  const HttpAnswer script = get("/assets/index-1234.js");
+  EXPECT_EQ(*script.body, "code");
+  EXPECT_EQ(script.content_type, "text/javascript; charset=utf-8");
+  EXPECT_NE(header_of(script, "Cache-Control").find("immutable"), std::string::npos);
+  const HttpAnswer again = get("/assets/index-1234.js", {{"If-None-Match", header_of(script, "ETag")}});
+  EXPECT_EQ(again.status, 304);
+  EXPECT_FALSE(again.body);
+}
+
+TEST_F(Page, OtherFilesCannotBeReached) {
+  std::ofstream(folder_ / "../secret.txt") << "secret";
+  for (const char* path :
+       {"/../secret.txt", "/assets/../../secret.txt", "/..%2fsecret.txt", "//secret.txt", "/./index.html",
+        "/assets//index-1234.js", "/etc/passwd.txt", "/index.html/../x.js", "\\..\\secret.txt", ""}) {
+    const HttpAnswer answer = get(path);
+    if (answer.status == 200) {
+      EXPECT_EQ(*answer.body, "<html>") << path;
+    }
+  }
+  EXPECT_EQ(get("/../secret.txt").status, 404);
+  std::filesystem::remove(folder_ / "../secret.txt");
+}
+
+TEST_F(Page, ALinkOutOfTheFolderAnUnknownTypeAndNoIndexAreErrors) {
+  write("assets/tool.exe", "x");
+  EXPECT_FALSE(StaticFiles::load(folder_.path()));
+  std::filesystem::remove(folder_ / "assets/tool.exe");
+  std::filesystem::create_symlink("/etc/hostname", folder_ / "assets/host.txt");
+  EXPECT_FALSE(StaticFiles::load(folder_.path()));
+  std::filesystem::remove(folder_ / "assets/host.txt");
+  std::filesystem::remove(folder_ / "index.html");
+  EXPECT_FALSE(StaticFiles::load(folder_.path()));
+}
+
+}  // namespace
+}  // namespace trocar::web

@@ -1,0 +1,217 @@
+// Each guard alone, without sockets, clocks or a database.
+#include <gtest/gtest.h>
+
+#include "web/security/log_text.h"
+#include "web/security/login_throttle.h"
+#include "web/security/request_origin.h"
+#include "web/security/security_headers.h"
+#include "web/security/session_cookie.h"
+
+namespace trocar::web {
+namespace {
+
+using namespace std::chrono_literals;
+using TimePoint = TokenBuckets::TimePoint;
+const TimePoint kStart{1000h};
+const std::string kToken = "abcdefghijklmnopqrstuvwxyz0123456789-_ABCDE";
+
+HttpRequest request_with(TextPairs headers) {
+  HttpRequest request;
+  request.headers = std::move(headers);
+  return request;
+}
+
+TEST(TokenBuckets, AllowABurstAndThenTheRate) {
+  TokenBuckets buckets({3, 0.5});
+  for (int n = 0; n < 3; ++n) EXPECT_FALSE(buckets.try_take("a", kStart));
+  EXPECT_EQ(buckets.try_take("a", kStart), 2s);
+  EXPECT_EQ(buckets.try_take("a", kStart + 1s), 1s);
+  EXPECT_FALSE(buckets.try_take("a", kStart + 2s));
+  EXPECT_TRUE(buckets.try_take("a", kStart + 2s));
+  EXPECT_FALSE(buckets.try_take("b", kStart)) << "another key has a bucket of its own";
+}
+
+TEST(TokenBuckets, NeverHoldMoreThanTheirCapacity) {
+  TokenBuckets buckets({2, 1});
+  EXPECT_FALSE(buckets.try_take("a", kStart));
+  int taken = 0;
+  while (!buckets.try_take("a", kStart + 1000s)) ++taken;
+  EXPECT_EQ(taken, 2);
+  buckets.give_back("a");
+  buckets.give_back("a");
+  buckets.give_back("a");
+  taken = 0;
+  while (!buckets.try_take("a", kStart + 1000s)) ++taken;
+  EXPECT_EQ(taken, 2);
+}
+
+TEST(TokenBuckets, ATimeInThePastGivesNothing) {
+  TokenBuckets buckets({1, 1});
+  EXPECT_FALSE(buckets.try_take("a", kStart));
+  EXPECT_TRUE(buckets.try_take("a", kStart - 100s));
+  EXPECT_TRUE(buckets.try_take("a", kStart));
+}
+
+/// 1000 made-up keys with room for 10: all beyond share one bucket.
+TEST(TokenBuckets, MadeUpKeysNeitherGrowNorEscape) {
+  TokenBuckets buckets({2, 0.001, 10});
+  int taken = 0;
+  for (int n = 0; n < 1000; ++n) taken += buckets.try_take(std::to_string(n), kStart) ? 0 : 1;
+  EXPECT_EQ(taken, 10 + 2);
+  // Keys that rested long enough make room.
+  EXPECT_FALSE(buckets.try_take("new", kStart + 10000s));
+  EXPECT_FALSE(buckets.try_take("new", kStart + 10000s));
+  EXPECT_FALSE(buckets.try_take("other", kStart + 10000s));
+}
+
+int tries(LoginThrottle& throttle, const std::string& account, const std::string& address, TimePoint now,
+          int most = 1000) {
+  int count = 0;
+  while (count < most && !throttle.try_begin(account, address, now)) ++count;
+  return count;
+}
+
+TEST(LoginThrottle, SlowsDownOneAddressAtOneAccount) {
+  LoginThrottle throttle;
+  EXPECT_EQ(tries(throttle, "weber", "192.0.2.1", kStart), 5);
+  EXPECT_EQ(throttle.try_begin("weber", "192.0.2.1", kStart), 60s);
+  EXPECT_EQ(tries(throttle, "weber", "192.0.2.1", kStart + 60s), 1);
+  // A day of guessing: the burst and one a minute.
+  LoginThrottle day;
+  int guesses = 0;
+  for (int second = 0; second < 24 * 3600; ++second)
+    guesses += day.try_begin("weber", "192.0.2.1", kStart + std::chrono::seconds(second)) ? 0 : 1;
+  EXPECT_LE(guesses, 5 + 24 * 60);
+  EXPECT_GE(guesses, 24 * 60 / 2);
+}
+
+TEST(LoginThrottle, NobodyElseIsLockedOut) {
+  LoginThrottle throttle;
+  tries(throttle, "weber", "192.0.2.1", kStart);
+  EXPECT_FALSE(throttle.try_begin("weber", "192.0.2.2", kStart)) << "the owner of the account, from another address";
+  EXPECT_FALSE(throttle.try_begin("huber", "192.0.2.1", kStart)) << "a colleague behind the same address";
+}
+
+TEST(LoginThrottle, AnAddressCannotTryAllAccounts) {
+  LoginThrottle throttle;
+  int count = 0;
+  for (int n = 0; n < 1000; ++n) count += throttle.try_begin(std::to_string(n), "192.0.2.1", kStart) ? 0 : 1;
+  EXPECT_EQ(count, 30);
+}
+
+/// Guesses from many addresses are limited, and do not lock out one that has logged in before.
+TEST(LoginThrottle, ManyAddressesCannotTryOneAccount) {
+  LoginThrottle throttle;
+  ASSERT_FALSE(throttle.try_begin("weber", "198.51.100.1", kStart));
+  throttle.succeeded("weber", "198.51.100.1");
+  int count = 0;
+  for (int n = 0; n < 1000; ++n) count += throttle.try_begin("weber", std::to_string(n), kStart) ? 0 : 1;
+  EXPECT_EQ(count, 100);
+  EXPECT_FALSE(throttle.try_begin("weber", "198.51.100.1", kStart));
+}
+
+TEST(LoginThrottle, RightPasswordsDoNotCount) {
+  LoginThrottle throttle;
+  for (int n = 0; n < 200; ++n) {
+    ASSERT_FALSE(throttle.try_begin("weber", "192.0.2.1", kStart)) << n;
+    throttle.succeeded("weber", "192.0.2.1");
+  }
+}
+
+TEST(HostHeader, IsReadWithoutItsPort) {
+  EXPECT_EQ(host_of("LocalHost:8080"), "localhost");
+  EXPECT_EQ(host_of("[::1]:8080"), "::1");
+  EXPECT_EQ(host_of("10.0.0.7"), "10.0.0.7");
+  for (const char* bad : {"", ":80", "a b", "a:", "a:8x", "[::1", "host/path", "user@host", "h\"ost", "[]:80"})
+    EXPECT_FALSE(host_of(bad)) << bad;
+}
+
+TEST(HostHeader, NamesOfOtherMachinesAreRefused) {
+  const auto nobody = [](const std::string&) { return false; };
+  for (const char* ours : {"localhost:8080", "127.0.0.1", "127.0.0.1:1234", "[::1]:8080"})
+    EXPECT_TRUE(is_for_this_host(request_with({{"Host", ours}}), true, nobody)) << ours;
+  for (const char* other :
+       {"evil.example", "evil.example:8080", "localhost.evil.example", "127.0.0.1.evil.example", ""})
+    EXPECT_FALSE(is_for_this_host(request_with({{"Host", other}}), true, nobody)) << other;
+  EXPECT_FALSE(is_for_this_host(request_with({}), true, nobody));
+  EXPECT_FALSE(is_for_this_host(request_with({{"Host", "localhost"}, {"Host", "localhost"}}), true, nobody));
+  EXPECT_FALSE(is_for_this_host(request_with({{"Host", "localhost"}}), false, nobody));
+  EXPECT_TRUE(is_for_this_host(request_with({{"Host", "trainer.example"}}), false,
+                               [](const std::string& host) { return host == "trainer.example"; }));
+}
+
+TEST(Origin, OfAnotherSiteIsSeen) {
+  const auto is_foreign = [](TextPairs headers) {
+    headers.emplace_back("Host", "localhost:8080");
+    return is_from_another_site(request_with(std::move(headers)), "http");
+  };
+  EXPECT_FALSE(is_foreign({}));
+  EXPECT_FALSE(is_foreign({{"Origin", "http://localhost:8080"}}));
+  EXPECT_FALSE(is_foreign({{"Sec-Fetch-Site", "same-origin"}, {"Origin", "http://localhost:8080"}}));
+  EXPECT_FALSE(is_foreign({{"Sec-Fetch-Site", "none"}}));
+  for (const char* origin : {"http://localhost:8081", "https://localhost:8080", "http://evil.example", "null", "",
+                             "http://localhost:8080.evil.example"})
+    EXPECT_TRUE(is_foreign({{"Origin", origin}})) << origin;
+  for (const char* site : {"cross-site", "same-site", "", "nonsense"})
+    EXPECT_TRUE(is_foreign({{"Sec-Fetch-Site", site}})) << site;
+  EXPECT_TRUE(is_foreign({{"Origin", "http://localhost:8080"}, {"Origin", "http://localhost:8080"}}));
+}
+
+TEST(Cookie, IsLockedAgainstScriptsAndOtherSites) {
+  const std::string plain = login_cookie(kToken, false), secure = login_cookie(kToken, true);
+  EXPECT_EQ(plain, "trocar_session=" + kToken + "; Path=/; HttpOnly; SameSite=Strict");
+  EXPECT_EQ(secure, "__Host-trocar_session=" + kToken + "; Path=/; HttpOnly; SameSite=Strict; Secure");
+  EXPECT_NE(logout_cookie(true).find("Max-Age=0"), std::string::npos);
+}
+
+TEST(Cookie, TokenIsFoundAmongOthers) {
+  EXPECT_EQ(find_session_token(request_with({{"Cookie", "a=b; trocar_session=" + kToken + "; c=d"}}), false), kToken);
+  EXPECT_EQ(find_session_token(request_with({{"Cookie", "a=b"}, {"cookie", "trocar_session=" + kToken}}), false),
+            kToken);
+  EXPECT_FALSE(find_session_token(request_with({}), false));
+  EXPECT_FALSE(find_session_token(request_with({{"Cookie", "trocar_session=" + kToken}}), true))
+      << "a cookie without the prefix may have been set by another host";
+  EXPECT_FALSE(
+      find_session_token(request_with({{"Cookie", "trocar_session=" + kToken + "; trocar_session=" + kToken}}), false));
+  for (const std::string& bad : {std::string(), kToken + "x", kToken.substr(1), std::string(42, '\'') + ";"})
+    EXPECT_FALSE(find_session_token(request_with({{"Cookie", "trocar_session=" + bad}}), false)) << bad;
+}
+
+TEST(Session, EndsByIdlenessAgeAndAClockThatIsSetBack) {
+  const std::chrono::sys_seconds begun{std::chrono::seconds(1'700'000'000)};
+  EXPECT_TRUE(is_session_valid(begun, begun, begun));
+  EXPECT_TRUE(is_session_valid(begun, begun, begun + 29min + 59s));
+  EXPECT_FALSE(is_session_valid(begun, begun, begun + 30min));
+  EXPECT_TRUE(is_session_valid(begun, begun + 11h + 59min, begun + 11h + 59min + 59s));
+  EXPECT_FALSE(is_session_valid(begun, begun + 12h, begun + 12h));
+  EXPECT_FALSE(is_session_valid(begun, begun, begun - 2min));
+  EXPECT_FALSE(is_session_valid(begun, begun + 10min, begun + 5min)) << "used in the future";
+  EXPECT_TRUE(is_session_valid(begun, begun, begun - 30s)) << "clocks of two machines differ a little";
+}
+
+TEST(LogText, CannotForgeALine) {
+  EXPECT_EQ(log_text("Weber"), "\"Weber\"");
+  EXPECT_EQ(log_text("Müller"), "\"Müller\"");
+  EXPECT_EQ(log_text("x\n06:00 info: login succeeded\r\x1b[31m"), "\"x?06:00 info: login succeeded??[31m\"");
+  EXPECT_EQ(log_text("a\" from \"b\\"), "\"a? from ?b?\"");
+  EXPECT_EQ(log_text("\xff\xfe"), "\"??\"");
+  EXPECT_LT(log_text(std::string(10000, 'x')).size(), 70U);
+}
+
+TEST(SecurityHeaders, AllowNothingFromElsewhere) {
+  std::string policy;
+  for (const auto& [name, value] : security_headers(false)) {
+    if (name == "Content-Security-Policy") policy = value;
+    EXPECT_NE(name, "Strict-Transport-Security") << "without TLS it would lock a browser out";
+  }
+  EXPECT_TRUE(policy.starts_with("default-src 'none'; script-src 'self'")) << policy;
+  EXPECT_NE(policy.find("frame-ancestors 'none'"), std::string::npos);
+  for (const char* hole : {"unsafe", "*", "http:", "https:", "blob:"}) EXPECT_EQ(policy.find(hole), std::string::npos);
+  bool has_hsts = false;
+  for (const auto& [name, value] : security_headers(true))
+    has_hsts |= name == "Strict-Transport-Security" && value == "max-age=31536000";
+  EXPECT_TRUE(has_hsts);
+}
+
+}  // namespace
+}  // namespace trocar::web
