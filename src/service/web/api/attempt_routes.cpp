@@ -1,0 +1,153 @@
+// One attempt: verdict, values beside those of experts, trace, recording; and the export of all.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "cohort/summary.h"
+#include "core/log.h"
+#include "results/attempts_csv.h"
+#include "scoring/score.h"
+#include "web/api/attempt_json.h"
+#include "web/api/route.h"
+#include "web/security/log_text.h"
+
+namespace trocar::web {
+namespace {
+
+/// {"path_length": [q1, median, q3]} of the experts at a task: of real ones, of simulated ones if there are no others.
+Result<Json> expert_quartiles(results::Repository& repository, const std::string& task) {
+  TROCAR_TRY(const std::vector<results::ExpertMeasures> measures, results::expert_measures(repository, task));
+  Json json = Json::object();
+  for (const results::ExpertMeasures& one : measures)
+    if (const auto quartiles = cohort::quartiles_of(one.values))
+      json[one.metric] = {quartiles->q1, quartiles->median, quartiles->q3};
+  return json;
+}
+
+Result<Json> experts_of(Backend& backend, results::Repository& repository, const std::string& task, const Moment& now) {
+  TROCAR_TRY(const AnswerCache::Value text,
+             backend.statistics.get("experts\n" + task, now.steady, [&]() -> Result<AnswerCache::Value> {
+               TROCAR_TRY(const Json json, expert_quartiles(repository, task));
+               return std::make_shared<const std::string>(config::json_text(json, -1));
+             }));
+  return config::parse_json(*text, "experts");
+}
+
+Json parts_json(const std::vector<results::Part>& parts) {
+  Json list = Json::array();
+  for (const results::Part& part : parts) {
+    const std::string_view title = scoring::part_title(part.name);
+    list.push_back({{"name", part.name},
+                    {"title", title.empty() ? std::string_view(part.name) : title},
+                    {"value_text", nullptr},
+                    {"points", rounded(part.points)},
+                    {"max_points", rounded(part.max_points)}});
+  }
+  return list;
+}
+
+Json metrics_json(std::vector<results::Measure> measures, const Titles& titles, const Json& experts) {
+  std::stable_sort(measures.begin(), measures.end(), [&](const auto& a, const auto& b) {
+    return titles.order_of(a.name) < titles.order_of(b.name);
+  });
+  Json list = Json::array();
+  for (const results::Measure& measure : measures) {
+    const Titles::Metric metric = titles.metric(measure.name, measure.unit);
+    const auto expert = experts.find(measure.name);
+    const auto quartile = [&](std::size_t n) { return expert == experts.end() ? Json(nullptr) : expert->at(n); };
+    list.push_back({{"name", metric.name},
+                    {"title", metric.title},
+                    {"unit", measure.unit},
+                    {"value", measure.value},
+                    {"expert_median", quartile(1)},
+                    {"expert_q1", quartile(0)},
+                    {"expert_q3", quartile(2)},
+                    {"better", to_string(metric.better)}});
+  }
+  return list;
+}
+
+Result<std::optional<Json>> load_json_of(Backend& backend, results::Repository& repository, const std::string& id,
+                                         const Moment& now) {
+  TROCAR_TRY(const std::optional<results::AttemptRecord> record, results::load_attempt(repository, id));
+  if (!record) return std::optional<Json>();
+  TROCAR_TRY(const auto person, results::find_person(repository, record->attempt.person_id));
+  if (!person) return std::optional<Json>();
+  TROCAR_TRY(const Json experts, experts_of(backend, repository, record->attempt.the_case.task, now));
+  Json attempt = attempt_json(record->attempt);
+  attempt["person"] = {{"id", person->id}, {"name", person->name}, {"simulated", person->is_simulated}};
+  attempt["not_scored"] = or_null(record->not_scored);
+  attempt["fails"] = record->fails;
+  attempt["hints"] = Json::array();
+  for (const results::Hint& hint : record->hints)
+    attempt["hints"].push_back({{"text", hint.text}, {"at_s", or_null(hint.at_s)}});
+  return std::optional<Json>({{"attempt", std::move(attempt)},
+                              {"parts", parts_json(record->parts)},
+                              {"metrics", metrics_json(record->measures, backend.titles, experts)}});
+}
+
+Result<HttpAnswer> show_attempt(Backend& backend, const Call& call) {
+  const std::string& id = call.names[0];
+  if (!is_id(id)) return not_found("attempt");
+  return cached(backend.answers, backend.repositories, "attempt\n" + id, call.now, "attempt",
+                [&](results::Repository& repository) { return load_json_of(backend, repository, id, call.now); });
+}
+
+Result<std::optional<Json>> load_trace(results::Repository& repository, const std::string& id) {
+  TROCAR_TRY(const std::optional<results::AttemptRecord> record, results::load_attempt(repository, id));
+  if (!record) return std::optional<Json>();
+  Json json = trace_json(record->trace);
+  json["expert"] = nullptr;
+  TROCAR_TRY(const std::optional<std::string> expert, results::find_expert_attempt(repository, record->attempt));
+  if (expert && *expert != id) {
+    TROCAR_TRY(const std::optional<results::AttemptRecord> best, results::load_attempt(repository, *expert));
+    if (best && !best->trace.time_s.empty()) json["expert"] = trace_json(best->trace);
+  }
+  return std::optional<Json>(std::move(json));
+}
+
+Result<HttpAnswer> show_trace(Backend& backend, const Call& call) {
+  const std::string& id = call.names[0];
+  if (!is_id(id)) return not_found("attempt");
+  return cached(backend.answers, backend.repositories, "trace\n" + id, call.now, "attempt",
+                [&](results::Repository& repository) { return load_trace(repository, id); });
+}
+
+HttpAnswer attachment(std::string content_type, std::string bytes, const std::string& file_name) {
+  HttpAnswer answer = text_answer(200, std::move(content_type), std::move(bytes));
+  answer.headers = {{"Content-Disposition", fmt::format("attachment; filename=\"{}\"", file_name)}};
+  return answer;
+}
+
+Result<HttpAnswer> send_recording(Backend& backend, const Call& call) {
+  const std::string& id = call.names[0];
+  if (!is_id(id)) return not_found("attempt");
+  const auto repository = backend.repositories.borrow();
+  TROCAR_TRY(std::optional<std::string> bytes, results::load_recording(*repository, id));
+  if (!bytes) return not_found("recording");
+  return attachment("application/octet-stream", std::move(*bytes), id + ".session");
+}
+
+Result<HttpAnswer> send_csv(Backend& backend, const Call& call) {
+  results::AttemptFilter filter;
+  TROCAR_TRY(filter.course, query_course(call.request));
+  if (call.request.find_query("task").value_or("") != "") TROCAR_TRY(filter.task, query_task(call.request));
+  const auto repository = backend.repositories.borrow();
+  TROCAR_TRY(std::string csv, results::attempts_csv(*repository, filter));
+  log_info("web: attempts exported by {} from {}", log_text(call.session().account.name), call.request.address);
+  return attachment("text/csv; charset=utf-8", std::move(csv), "attempts.csv");
+}
+
+}  // namespace
+
+std::vector<Route> attempt_routes() {
+  return {
+      {"GET", "/api/attempts/*", Access::kInstructor, show_attempt},
+      {"GET", "/api/attempts/*/trace", Access::kInstructor, show_trace},
+      {"GET", "/api/attempts/*/recording", Access::kInstructor, send_recording},
+      {"GET", "/api/export/attempts.csv", Access::kInstructor, send_csv},
+  };
+}
+
+}  // namespace trocar::web

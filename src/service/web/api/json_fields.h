@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "config/json.h"
+#include "results/repository.h"
+
+namespace trocar::web {
+
+using config::Json;
+
+/// A text of the body, of at most 4096 bytes of UTF-8. Error (exit status 2): missing, not a text, too long.
+Result<std::string> text_field(const Json& body, const char* name);
+/// The same, empty if it is missing or null.
+Result<std::string> text_field_or_empty(const Json& body, const char* name);
+
+/// A value, or null.
+Json or_null(const std::optional<double>& value);
+Json or_null(std::string_view text);  ///< Null if it is empty.
+/// To three decimals: micrometres, millinewtons.
+double rounded(double value) noexcept;
+std::int64_t seconds_of(results::Seconds time) noexcept;
+
+}  // namespace trocar::web

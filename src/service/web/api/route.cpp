@@ -1,0 +1,108 @@
+#include "web/api/route.h"
+
+#include <algorithm>
+
+#include "core/utf8.h"
+#include "results/names.h"
+
+namespace trocar::web {
+namespace {
+
+std::vector<std::string_view> parts_of(std::string_view path) {
+  std::vector<std::string_view> parts;
+  while (!path.empty()) {
+    path.remove_prefix(1);  // the slash
+    const std::size_t end = std::min(path.find('/'), path.size());
+    parts.push_back(path.substr(0, end));
+    path.remove_prefix(end);
+  }
+  return parts;
+}
+
+/// The parts of `path` at the places of '*'. Empty: the path has another pattern.
+std::optional<std::vector<std::string>> match(std::string_view pattern, std::string_view path) {
+  const auto wanted = parts_of(pattern), given = parts_of(path);
+  if (wanted.size() != given.size()) return std::nullopt;
+  std::vector<std::string> names;
+  for (std::size_t n = 0; n < wanted.size(); ++n) {
+    if (wanted[n] == "*" && !given[n].empty()) {
+      names.emplace_back(given[n]);
+    } else if (wanted[n] != given[n]) {
+      return std::nullopt;
+    }
+  }
+  return names;
+}
+
+}  // namespace
+
+std::vector<Route> all_routes() {
+  std::vector<Route> routes = {
+      {"GET", "/api/health", Access::kPublic, [](Backend&, const Call&) { return empty_answer(204); }}};
+  for (auto group : {account_routes, people_routes, metric_routes, attempt_routes, form_routes})
+    for (Route& route : group()) routes.push_back(std::move(route));
+  return routes;
+}
+
+FoundRoute find_route(const std::vector<Route>& routes, std::string_view method, std::string_view path) {
+  FoundRoute found;
+  for (const Route& route : routes) {
+    auto names = match(route.pattern, path);
+    if (!names) continue;
+    const bool is_meant = route.method == method || (route.method == "GET" && method == "HEAD");
+    if (is_meant && !found.route) {
+      found.route = &route;
+      found.names = std::move(*names);
+    }
+    if (!found.allowed.empty()) found.allowed += ", ";
+    found.allowed += route.method;
+  }
+  return found;
+}
+
+HttpAnswer not_found(std::string_view what) {
+  return error_answer(404, "there is no such " + std::string(what), "it may have been deleted: go back to the list");
+}
+
+HttpAnswer ok(const Json& json, int status) {
+  return json_answer(status, config::json_text(json, -1));
+}
+
+Result<std::string> query_task(const HttpRequest& request) {
+  constexpr std::size_t kMost = 100;
+  const auto task = request.find_query("task");
+  if (!task || task->empty()) return fail_usage("the task is missing", "task", "choose a task");
+  const bool is_name = task->size() <= kMost && std::all_of(task->begin(), task->end(), [](char c) {
+                         return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                                c == '-' || c == '_' || c == '.';
+                       });
+  if (!is_name) return fail_usage("not a name of a task", "task", "choose a task of the list");
+  return std::string(*task);
+}
+
+Result<std::string> query_course(const HttpRequest& request) {
+  const auto course = request.find_query("course");
+  if (!course || course->empty()) return std::string();
+  return results::clean_name(*course, "the name of a course");
+}
+
+bool is_id(std::string_view text) noexcept {
+  constexpr std::size_t kDigits = 32;
+  return text.size() == kDigits && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
+Result<HttpAnswer> cached(AnswerCache& cache, RepositoryPool& repositories, const std::string& key, const Moment& now,
+                          std::string_view what, const MakeJson& make) {
+  TROCAR_TRY(const AnswerCache::Value value, cache.get(key, now.steady, [&]() -> Result<AnswerCache::Value> {
+    const RepositoryPool::Loan repository = repositories.borrow();
+    TROCAR_TRY(const std::optional<Json> json, make(*repository));
+    return std::make_shared<const std::string>(json ? config::json_text(*json, -1) : std::string());
+  }));
+  if (value->empty()) return not_found(what);
+  HttpAnswer answer;
+  answer.content_type = "application/json; charset=utf-8";
+  answer.body = value;
+  return answer;
+}
+
+}  // namespace trocar::web

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "results/accounts.h"
+#include "web/answer_cache.h"
+#include "web/api/json_fields.h"
+#include "web/api/password_gate.h"
+#include "web/api/titles.h"
+#include "web/message.h"
+#include "web/repository_pool.h"
+#include "web/security/login_throttle.h"
+#include "web/security/moment.h"
+
+namespace trocar::web {
+
+/// Parts of the server that routes use; all of them thread-safe.
+struct Backend {
+  RepositoryPool& repositories;
+  AnswerCache& answers;       ///< Of a second.
+  AnswerCache& statistics;    ///< Of a minute: values over all attempts.
+  const Titles& titles;
+  LoginThrottle& logins;
+  TokenBuckets& public_answers;  ///< Of questionnaires, by address.
+  PasswordGate& passwords;
+  std::string unknown_hash;  ///< Of no password: it takes as long to check as that of an account.
+  bool is_secure = false;    ///< The browser uses TLS.
+};
+
+/// A request that has passed the guards.
+struct Call {
+  const HttpRequest& request;
+  std::vector<std::string> names;  ///< Parts of the path at the places of '*'.
+  Json body;                       ///< An object; empty where the request has no body.
+  std::optional<results::WebSession> login;
+  Moment now;
+
+  const results::WebSession& session() const { return *login; }  ///< Precondition: the route needs a login.
+};
+
+enum class Access { kPublic, kInstructor, kAdmin };
+
+/// Errors of exit status 2 are the client's (400), others the server's (500, with a number that is also in the log).
+using RouteHandler = std::function<Result<HttpAnswer>(Backend&, const Call&)>;
+
+struct Route {
+  std::string_view method, pattern;  ///< "GET", "/api/people/*/curve".
+  Access access;
+  RouteHandler handle;
+  bool needs_csrf = true;  ///< Not before a login. Never for GET.
+};
+
+// Groups of routes.
+std::vector<Route> account_routes();
+std::vector<Route> people_routes();
+std::vector<Route> metric_routes();
+std::vector<Route> attempt_routes();
+std::vector<Route> form_routes();
+std::vector<Route> all_routes();
+
+/// The route of a request; `names` is filled. Null with the methods that the path has, if another method is meant.
+struct FoundRoute {
+  const Route* route = nullptr;
+  std::vector<std::string> names;
+  std::string allowed;  ///< "GET, POST"; empty: no such path.
+};
+FoundRoute find_route(const std::vector<Route>& routes, std::string_view method, std::string_view path);
+
+HttpAnswer not_found(std::string_view what);
+HttpAnswer ok(const Json& json, int status = 200);
+/// A task of the query. Error (exit status 2): missing, or characters that no task has.
+Result<std::string> query_task(const HttpRequest& request);
+/// A course of the query; empty: all. Error (exit status 2): no name of a course.
+Result<std::string> query_course(const HttpRequest& request);
+/// Whether a text is a key of a row: 32 hexadecimal digits.
+bool is_id(std::string_view text) noexcept;
+
+/// The answer of the cache by its key, or the JSON of `make(Repository&)`, which returns Result<std::optional<Json>>;
+/// empty: 404 for `what`.
+using MakeJson = std::function<Result<std::optional<Json>>(results::Repository&)>;
+Result<HttpAnswer> cached(AnswerCache& cache, RepositoryPool& repositories, const std::string& key, const Moment& now,
+                          std::string_view what, const MakeJson& make);
+
+}  // namespace trocar::web
