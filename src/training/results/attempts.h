@@ -52,7 +52,8 @@ struct TaskSummary {
   Seconds last{};
 };
 inline constexpr int kRecentAttempts = 5;
-Result<std::vector<TaskSummary>> summarise_tasks(Repository& repository);
+/// `person_id` empty: of all people.
+Result<std::vector<TaskSummary>> summarise_tasks(Repository& repository, std::string_view person_id = {});
 
 /// One scored attempt's value of a metric, or its score (metric "score").
 struct MetricSample {
@@ -70,5 +71,12 @@ struct StoredMetric {
   std::string name, unit;
 };
 Result<std::vector<StoredMetric>> list_metrics(Repository& repository, std::string_view task);
+
+/// Values of a metric in the scored attempts of experts: of real ones; of simulated ones if the task has no others.
+struct ExpertMeasures {
+  std::string metric;
+  std::vector<double> values;
+};
+Result<std::vector<ExpertMeasures>> expert_measures(Repository& repository, std::string_view task);
 
 }  // namespace trocar::results

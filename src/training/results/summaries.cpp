@@ -13,24 +13,35 @@ constexpr const char* kCannotRead = "the attempts cannot be read";
 
 }  // namespace
 
-Result<std::vector<TaskSummary>> summarise_tasks(Repository& repository) {
-  return repository.database().run(kCannotRead, [](soci::session& session) {
+Result<std::vector<TaskSummary>> summarise_tasks(Repository& repository, std::string_view person_id) {
+  return repository.database().run(kCannotRead, [&](soci::session& session) {
+    const std::string person(person_id);
     std::vector<TaskSummary> summaries;
     TaskSummary one;
     long long attempts = 0, scored = 0, passed = 0, last_s = 0;
     Nullable<double> last, best, recent;
     // One pass over the index: the newest scored attempts of each person at each task have rank 1, 2 …
-    soci::statement select =
-        (session.prepare << fmt::format(
-             "SELECT person_id, task, count(*), sum(CASE WHEN score IS NULL THEN 0 ELSE 1 END), sum(is_passed),"
-             " max(CASE WHEN rank = 1 THEN score END), max(score), avg(CASE WHEN rank <= {} THEN score END),"
-             " max(started_s) FROM (SELECT person_id, task, score, is_passed, started_s, CASE WHEN score IS NOT NULL"
-             " THEN row_number() OVER (PARTITION BY person_id, task, score IS NULL ORDER BY sequence DESC) END AS rank"
-             " FROM attempts) ranked GROUP BY person_id, task ORDER BY person_id, task",
-             kRecentAttempts),
-         soci::into(one.person_id), soci::into(one.task), soci::into(attempts), soci::into(scored), soci::into(passed),
-         soci::into(last.value, last.indicator), soci::into(best.value, best.indicator),
-         soci::into(recent.value, recent.indicator), soci::into(last_s));
+    const std::string query = fmt::format(
+        "SELECT person_id, task, count(*), sum(CASE WHEN score IS NULL THEN 0 ELSE 1 END), sum(is_passed),"
+        " max(CASE WHEN rank = 1 THEN score END), max(score), avg(CASE WHEN rank <= {} THEN score END),"
+        " max(started_s) FROM (SELECT person_id, task, score, is_passed, started_s, CASE WHEN score IS NOT NULL"
+        " THEN row_number() OVER (PARTITION BY person_id, task, score IS NULL ORDER BY sequence DESC) END AS rank"
+        " FROM attempts{}) ranked GROUP BY person_id, task ORDER BY person_id, task",
+        kRecentAttempts, person.empty() ? "" : " WHERE person_id = :p");
+    soci::statement select(session);
+    select.exchange(soci::into(one.person_id));
+    select.exchange(soci::into(one.task));
+    select.exchange(soci::into(attempts));
+    select.exchange(soci::into(scored));
+    select.exchange(soci::into(passed));
+    select.exchange(soci::into(last.value, last.indicator));
+    select.exchange(soci::into(best.value, best.indicator));
+    select.exchange(soci::into(recent.value, recent.indicator));
+    select.exchange(soci::into(last_s));
+    if (!person.empty()) select.exchange(soci::use(person));
+    select.alloc();
+    select.prepare(query);
+    select.define_and_bind();
     select.execute();
     while (select.fetch()) {
       one.attempts = attempts;
@@ -100,6 +111,29 @@ Result<std::vector<StoredMetric>> list_metrics(Repository& repository, std::stri
     select.execute();
     while (select.fetch()) metrics.push_back(metric);
     return metrics;
+  });
+}
+
+Result<std::vector<ExpertMeasures>> expert_measures(Repository& repository, std::string_view task) {
+  return repository.database().run(kCannotRead, [&](soci::session& session) {
+    const std::string name(task);
+    std::vector<ExpertMeasures> measures;
+    std::string metric;
+    double value = 0.0;
+    // Experts are few: their attempts are found first, then the values of these.
+    soci::statement select =
+        (session.prepare << "WITH experts AS (SELECT a.sequence, p.is_simulated FROM people p JOIN attempts a ON"
+                            " a.person_id = p.id WHERE p.is_expert = 1 AND a.task = :t AND a.score IS NOT NULL)"
+                            " SELECT m.name, v.value FROM experts e JOIN attempt_metrics v ON v.sequence = e.sequence"
+                            " JOIN metrics m ON m.id = v.metric_id"
+                            " WHERE e.is_simulated = (SELECT min(is_simulated) FROM experts) ORDER BY m.name",
+         soci::use(name), soci::into(metric), soci::into(value));
+    select.execute();
+    while (select.fetch()) {
+      if (measures.empty() || measures.back().metric != metric) measures.push_back({metric, {}});
+      measures.back().values.push_back(value);
+    }
+    return measures;
   });
 }
 
