@@ -20,6 +20,7 @@ void add_session_metrics_command(CLI::App& session, Action& action);  ///< Adds 
 void add_learn_command(CLI::App& program, Action& action);
 void add_results_commands(CLI::App& program, Action& action);
 void add_exam_commands(CLI::App& program, Action& action);
+void add_serve_command(CLI::App& program, Action& action);
 void add_device_commands(CLI::App& program, Action& action);
 void add_link_commands(CLI::App& program, Action& action);
 void add_ultrasound_commands(CLI::App& program, Action& action);

@@ -61,6 +61,7 @@ int run(int argc, char** argv) {
   add_learn_command(program, action);
   add_results_commands(program, action);
   add_exam_commands(program, action);
+  add_serve_command(program, action);
   add_device_commands(program, action);
   add_link_commands(program, action);
   add_ultrasound_commands(program, action);

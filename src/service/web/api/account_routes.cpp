@@ -48,8 +48,7 @@ Result<NewSession> make_session(const results::Account& account, const Moment& n
 
 Status store_session(results::Repository& repository, const NewSession& session, const Moment& now) {
   const SessionRules rules;
-  TROCAR_TRY_STATUS(
-      results::remove_old_web_sessions(repository, now.utc - rules.idle, now.utc - rules.whole, now.utc));
+  TROCAR_TRY_STATUS(results::remove_old_web_sessions(repository, now.utc - rules.idle, now.utc - rules.whole, now.utc));
   return results::add_web_session(repository, session.stored);
 }
 
@@ -183,8 +182,8 @@ Result<HttpAnswer> remove(Backend& backend, const Call& call) {
     if (removed.error().exit_status != 2) return tl::unexpected(removed.error());
     return error_answer(409, removed.error());
   }
-  log_warning("web: account removed: {} by {} from {}", log_text(account->name),
-              log_text(call.session().account.name), call.request.address);
+  log_warning("web: account removed: {} by {} from {}", log_text(account->name), log_text(call.session().account.name),
+              call.request.address);
   return empty_answer(204);
 }
 

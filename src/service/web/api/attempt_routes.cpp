@@ -48,9 +48,8 @@ Json parts_json(const std::vector<results::Part>& parts) {
 }
 
 Json metrics_json(std::vector<results::Measure> measures, const Titles& titles, const Json& experts) {
-  std::stable_sort(measures.begin(), measures.end(), [&](const auto& a, const auto& b) {
-    return titles.order_of(a.name) < titles.order_of(b.name);
-  });
+  std::stable_sort(measures.begin(), measures.end(),
+                   [&](const auto& a, const auto& b) { return titles.order_of(a.name) < titles.order_of(b.name); });
   Json list = Json::array();
   for (const results::Measure& measure : measures) {
     const Titles::Metric metric = titles.metric(measure.name, measure.unit);
@@ -132,7 +131,9 @@ Result<HttpAnswer> send_recording(Backend& backend, const Call& call) {
 Result<HttpAnswer> send_csv(Backend& backend, const Call& call) {
   results::AttemptFilter filter;
   TROCAR_TRY(filter.course, query_course(call.request));
-  if (call.request.find_query("task").value_or("") != "") TROCAR_TRY(filter.task, query_task(call.request));
+  if (call.request.find_query("task").value_or("") != "") {
+    TROCAR_TRY(filter.task, query_task(call.request));
+  }
   const auto repository = backend.repositories.borrow();
   TROCAR_TRY(std::string csv, results::attempts_csv(*repository, filter));
   log_info("web: attempts exported by {} from {}", log_text(call.session().account.name), call.request.address);

@@ -112,7 +112,9 @@ Result<HttpAnswer> list_attempts(Backend& backend, const Call& call) {
   results::AttemptFilter filter;
   filter.person_id = call.names[0];
   filter.is_newest_first = true;
-  if (call.request.find_query("task").value_or("") != "") TROCAR_TRY(filter.task, query_task(call.request));
+  if (call.request.find_query("task").value_or("") != "") {
+    TROCAR_TRY(filter.task, query_task(call.request));
+  }
   TROCAR_TRY(const std::int64_t before, query_number(call.request, "before", 0));
   TROCAR_TRY(const std::int64_t limit, query_number(call.request, "limit", kUsualPage));
   if (before > 0) filter.before = before;

@@ -21,8 +21,8 @@ namespace trocar::web {
 /// Parts of the server that routes use; all of them thread-safe.
 struct Backend {
   RepositoryPool& repositories;
-  AnswerCache& answers;       ///< Of a second.
-  AnswerCache& statistics;    ///< Of a minute: values over all attempts.
+  AnswerCache& answers;     ///< Of a second.
+  AnswerCache& statistics;  ///< Of a minute: values over all attempts.
   const Titles& titles;
   LoginThrottle& logins;
   TokenBuckets& public_answers;  ///< Of questionnaires, by address.

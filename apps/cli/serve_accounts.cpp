@@ -1,0 +1,164 @@
+// trocar serve account: who may log in to the instructor's page.
+#include "serve_accounts.h"
+
+#include <fmt/format.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <iostream>
+
+#include "results/accounts.h"
+#include "results/names.h"
+#include "signing/password.h"
+#include "signing/password_rules.h"
+
+namespace trocar::cli {
+namespace {
+
+struct AccountArguments {
+  std::string database, name, role = "instructor";
+  bool is_from_input = false;
+};
+
+/// Typing is not shown during the lifetime of an object, if standard input is a terminal.
+class HiddenTyping {
+ public:
+  HiddenTyping() {
+    if (::tcgetattr(STDIN_FILENO, &before_) != 0) return;
+    termios hidden = before_;
+    hidden.c_lflag &= ~static_cast<tcflag_t>(ECHO);
+    is_hidden_ = ::tcsetattr(STDIN_FILENO, TCSAFLUSH, &hidden) == 0;
+  }
+  ~HiddenTyping() {
+    if (is_hidden_) ::tcsetattr(STDIN_FILENO, TCSAFLUSH, &before_);
+  }
+  HiddenTyping(const HiddenTyping&) = delete;
+  HiddenTyping& operator=(const HiddenTyping&) = delete;
+
+ private:
+  termios before_{};
+  bool is_hidden_ = false;
+};
+
+Result<std::string> read_line(const char* prompt) {
+  constexpr std::size_t kMostBytes = 4096;
+  if (*prompt != '\0') std::cerr << prompt << std::flush;
+  std::string line;
+  if (!std::getline(std::cin, line)) return fail("there is no password", "standard input", "type it");
+  if (line.size() > kMostBytes)
+    return fail_usage("the password is too long", "standard input", "use at most 128 characters");
+  if (line.ends_with('\r')) line.pop_back();
+  return line;
+}
+
+/// Twice from the terminal, or the first line of standard input.
+Result<std::string> read_new_password(const AccountArguments& arguments) {
+  std::string password;
+  if (arguments.is_from_input) {
+    TROCAR_TRY(password, read_line(""));
+  } else {
+    if (::isatty(STDIN_FILENO) == 0)
+      return fail_usage("standard input is no terminal", "password", "add --password-stdin to read it from there");
+    const HiddenTyping hidden;
+    TROCAR_TRY(password, read_line("Password (12 to 128 characters): "));
+    TROCAR_TRY(const std::string again, read_line("\nAgain: "));
+    std::cerr << "\n";
+    if (again != password) return fail_usage("the passwords differ", "password", "run the command again");
+  }
+  if (const Status is_good = signing::check_new_password(password, arguments.name); !is_good)
+    return fail_usage(is_good.error().what, is_good.error().where, is_good.error().advice);
+  return password;
+}
+
+results::Seconds now() {
+  return std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+}
+
+Result<results::Repository> open(const AccountArguments& arguments) {
+  TROCAR_TRY(const database::DatabaseUrl url, database_of(arguments.database));
+  return results::Repository::open(url);
+}
+
+Status add(const AccountArguments& arguments) {
+  const auto role = results::find_role(arguments.role);
+  if (!role) return fail_usage("there is no such role", "--role " + arguments.role, "choose admin or instructor");
+  TROCAR_TRY(const std::string name, results::clean_name(arguments.name, "the name of an account"));
+  TROCAR_TRY(results::Repository repository, open(arguments));
+  TROCAR_TRY(const auto other, results::find_account(repository, name));
+  if (other) return fail_usage("the name is taken", other->name, "choose another name");
+  TROCAR_TRY(const std::string password, read_new_password(arguments));
+  TROCAR_TRY(const std::string hash, signing::hash_password(password));
+  TROCAR_TRY(const results::Account account, results::add_account(repository, name, *role, hash, now()));
+  fmt::print("{} may log in as {}\n", account.name, results::to_string(account.role));
+  return {};
+}
+
+Status list(const AccountArguments& arguments) {
+  TROCAR_TRY(results::Repository repository, open(arguments));
+  TROCAR_TRY(const std::vector<results::Account> accounts, results::list_accounts(repository));
+  for (const results::Account& account : accounts)
+    fmt::print("{:<10} {}\n", results::to_string(account.role), account.name);
+  if (accounts.empty()) print_warning("there is no account; see trocar serve account add --help");
+  return {};
+}
+
+Status remove(const AccountArguments& arguments) {
+  TROCAR_TRY(results::Repository repository, open(arguments));
+  TROCAR_TRY_STATUS(results::remove_account(repository, arguments.name));
+  fmt::print("{} can no longer log in\n", arguments.name);
+  return {};
+}
+
+Status change_password(const AccountArguments& arguments) {
+  TROCAR_TRY(results::Repository repository, open(arguments));
+  TROCAR_TRY(const auto account, results::find_account(repository, arguments.name));
+  if (!account) return fail_usage("no such account", arguments.name, "see trocar serve account list");
+  TROCAR_TRY(const std::string password, read_new_password(arguments));
+  TROCAR_TRY(const std::string hash, signing::hash_password(password));
+  TROCAR_TRY_STATUS(results::change_password(repository, account->id, hash));
+  fmt::print("{} has a new password; its logins have ended\n", account->name);
+  return {};
+}
+
+using Work = Status (*)(const AccountArguments&);
+
+CLI::App* add_command(CLI::App& account, Action& action, const char* name, const char* description, Work work,
+                      const std::shared_ptr<AccountArguments>& a) {
+  CLI::App* command = account.add_subcommand(name, description);
+  command->add_option("--db", a->database, kDatabaseHelp);
+  if (std::string_view(name) != "list") command->add_option("NAME", a->name, "Name of the account")->required();
+  command->callback([&action, a, work] { action = [a, work] { return work(*a); }; });
+  return command;
+}
+
+void add_password_option(CLI::App* command, const std::shared_ptr<AccountArguments>& a) {
+  command->add_flag("--password-stdin", a->is_from_input, "Read the password from standard input, one line");
+}
+
+}  // namespace
+
+Result<database::DatabaseUrl> database_of(const std::string& option) {
+  return option.empty() ? results::default_url() : database::parse_url(option);
+}
+
+void add_serve_account_commands(CLI::App& serve, Action& action) {
+  CLI::App* account = serve.add_subcommand("account", "Manage who may log in");
+  account->require_subcommand(1);
+  const auto a = std::make_shared<AccountArguments>();
+  CLI::App* adding = add_command(*account, action, "add", "Add an account; asks for its password", add, a);
+  adding->add_option("--role", a->role, "admin (also accounts and deletion of people) or instructor")
+      ->capture_default_str();
+  add_password_option(adding, a);
+  adding->footer(
+      "Examples:\n  trocar serve account add \"Dr. Weber\" --role admin\n"
+      "  pwgen 20 1 | tee /dev/tty | trocar serve account add guest --password-stdin\n");
+  add_command(*account, action, "list", "List the accounts", list, a);
+  add_command(*account, action, "remove", "Remove an account and end its logins", remove, a);
+  CLI::App* changing =
+      add_command(*account, action, "password", "Set a new password and end the logins", change_password, a);
+  add_password_option(changing, a);
+}
+
+}  // namespace trocar::cli

@@ -1,0 +1,208 @@
+#include "web/service.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "core/log.h"
+#include "core/utf8.h"
+#include "signing/password.h"
+#include "signing/token.h"
+#include "web/api/route.h"
+#include "web/security/log_text.h"
+#include "web/security/request_origin.h"
+#include "web/security/session_cookie.h"
+#include "web/static_files.h"
+#include "web/transport/listen_address.h"
+
+namespace trocar::web {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Requests of one address to the interface: a room full of browsers behind one address. [assumed]
+constexpr BucketRule kRequestRule{600, 100};
+/// Filled-in questionnaires of one address: a course that answers at the same time. [assumed]
+constexpr BucketRule kPublicRule{60, 0.2};
+constexpr CacheRules kStatisticsRules{1min, 10min};
+constexpr int kReferenceBits = 128;
+constexpr std::size_t kReferenceCharacters = 8;
+
+Moment system_now() {
+  return {std::chrono::steady_clock::now(), std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now())};
+}
+
+bool is_reading(std::string_view method) {
+  return method == "GET" || method == "HEAD";
+}
+
+bool is_json(const HttpRequest& request) {
+  const auto type = request.find_header("content-type");
+  if (!type) return false;
+  std::string_view media = type->substr(0, type->find(';'));
+  while (media.ends_with(' ')) media.remove_suffix(1);
+  return is_same_name(media, "application/json");
+}
+
+bool has_valid_text(const HttpRequest& request) {
+  const auto is_valid = [](std::string_view text) {
+    return valid_utf8(text) == text && text.find('\0') == std::string_view::npos;
+  };
+  if (!is_valid(request.path)) return false;
+  for (const auto& [name, value] : request.query)
+    if (!is_valid(name) || !is_valid(value)) return false;
+  return true;
+}
+
+/// The error of the server in the log, and its number for the user.
+HttpAnswer server_error(const HttpRequest& request, const Error& error) {
+  const std::string reference = signing::make_token(kReferenceBits).value_or("-").substr(0, kReferenceCharacters);
+  log(LogLevel::kError,
+      fmt::format("web: error {}: {} {}: {}", reference, request.method, log_text(request.path), error.text()));
+  return error_answer(500, "the server failed",
+                      fmt::format("try again; the log of trocar serve has the reason under {}", reference));
+}
+
+}  // namespace
+
+struct Service::State {
+  State(ServiceOptions opened_with, std::unique_ptr<RepositoryPool> opened, Titles loaded, StaticFiles files,
+        std::string unknown_hash)
+      : options(std::move(opened_with)),
+        repositories(std::move(opened)),
+        titles(std::move(loaded)),
+        page(std::move(files)),
+        backend{*repositories,           answers,          statistics, titles, logins, public_answers, passwords,
+                std::move(unknown_hash), options.is_secure} {}
+
+  HttpAnswer answer(HttpRequest request);
+  HttpAnswer answer_api(const HttpRequest& request, const Moment& now);
+  Result<HttpAnswer> answer_route(const Route& route, Call& call);
+  Result<std::optional<results::WebSession>> find_login(const HttpRequest& request, const Moment& now);
+
+  ServiceOptions options;
+  std::unique_ptr<RepositoryPool> repositories;
+  Titles titles;
+  StaticFiles page;
+  AnswerCache answers, statistics{kStatisticsRules};
+  LoginThrottle logins;
+  TokenBuckets requests{kRequestRule}, public_answers{kPublicRule};
+  PasswordGate passwords;
+  Backend backend;
+  std::vector<Route> routes = all_routes();
+};
+
+Result<Service> Service::open(ServiceOptions options) {
+  if (!options.now) options.now = system_now;
+  TROCAR_TRY(StaticFiles page, StaticFiles::load(options.page_folder));
+  TROCAR_TRY(Titles titles, Titles::load(options.data_folder));
+  TROCAR_TRY(auto repositories, RepositoryPool::open(options.database, options.connections));
+  TROCAR_TRY(const std::string nobody, signing::make_token(kReferenceBits));
+  TROCAR_TRY(std::string unknown_hash, signing::hash_password(nobody));
+  return Service(std::make_unique<State>(std::move(options), std::move(repositories), std::move(titles),
+                                         std::move(page), std::move(unknown_hash)));
+}
+
+Service::Service(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Service::Service(Service&&) noexcept = default;
+Service& Service::operator=(Service&&) noexcept = default;
+Service::~Service() = default;
+
+Result<std::size_t> Service::count_accounts() {
+  const auto repository = state_->repositories->borrow();
+  TROCAR_TRY(const std::vector<results::Account> accounts, results::list_accounts(*repository));
+  return accounts.size();
+}
+
+HttpAnswer Service::answer(const HttpRequest& request) {
+  return state_->answer(request);
+}
+
+HttpAnswer Service::State::answer(HttpRequest request) {
+  if (options.is_behind_proxy)
+    if (const auto forwarded = request.find_header("x-forwarded-for")) {
+      std::string_view last = forwarded->substr(forwarded->rfind(',') + 1);
+      while (last.starts_with(' ')) last.remove_prefix(1);
+      request.address = std::string(last);
+    }
+  if (!is_for_this_host(request, options.is_loopback, options.is_served))
+    return error_answer(421, "this server has another name",
+                        "use the address that trocar serve printed, or start it with --name");
+  if (!has_valid_text(request)) return error_answer(400, "the address is not UTF-8", "check the address");
+  if (request.path == "/api" || request.path.starts_with("/api/")) return answer_api(request, options.now());
+  if (!is_reading(request.method)) {
+    HttpAnswer refused = error_answer(405, "pages can only be read", "send GET");
+    refused.headers = {{"Allow", "GET, HEAD"}};
+    return refused;
+  }
+  return page.answer(request);
+}
+
+HttpAnswer Service::State::answer_api(const HttpRequest& request, const Moment& now) {
+  const ListenAddress client{request.address, 0};
+  if (!client.is_loopback() || options.is_behind_proxy)
+    if (const auto wait = requests.try_take(request.address, now.steady)) {
+      HttpAnswer slow = error_answer(429, "too many requests came from this address", "wait a little, then try again");
+      slow.headers = {{"Retry-After", std::to_string(wait->count())}};
+      return slow;
+    }
+  if (is_from_another_site(request, options.is_secure ? "https" : "http"))
+    return error_answer(403, "the request came from another site", "use the page of this server");
+  FoundRoute found = find_route(routes, request.method, request.path);
+  if (!found.route) {
+    if (found.allowed.empty()) return error_answer(404, "there is no such address", "check the address");
+    HttpAnswer refused = error_answer(405, "this address has no such method", "send " + found.allowed);
+    refused.headers = {{"Allow", found.allowed}};
+    return refused;
+  }
+  Call call{request, std::move(found.names), Json::object(), std::nullopt, now};
+  Result<HttpAnswer> answered = answer_route(*found.route, call);
+  if (answered) return *std::move(answered);
+  if (answered.error().exit_status == 2) return error_answer(400, answered.error());
+  return server_error(request, answered.error());
+}
+
+Result<HttpAnswer> Service::State::answer_route(const Route& route, Call& call) {
+  const HttpRequest& request = call.request;
+  if (route.access != Access::kPublic) {
+    TROCAR_TRY(call.login, find_login(request, call.now));
+    if (!call.login) return error_answer(401, "you are not logged in", "log in");
+    if (route.access == Access::kAdmin && call.session().account.role != results::Role::kAdmin) {
+      log_warning("web: access refused: {} {} by {} from {}", request.method, log_text(request.path),
+                  log_text(call.session().account.name), request.address);
+      return error_answer(403, "only an admin may do this", "ask an admin");
+    }
+  }
+  if (is_reading(request.method)) return route.handle(backend, call);
+  if (!is_json(request)) return error_answer(415, "the body is not JSON", "send Content-Type: application/json");
+  if (route.needs_csrf) {
+    const auto token = request.find_header("x-csrf-token");
+    if (!token || !signing::is_same_secret(*token, call.session().csrf_token))
+      return error_answer(403, "the token of the page is missing or wrong", "reload the page and try again");
+  }
+  if (!request.body.empty()) {
+    const auto body = config::parse_json(request.body, "body");
+    if (!body) return error_answer(400, body.error().what, "send an object of JSON");
+    if (!body->is_object()) return error_answer(400, "the body is not an object", "send an object of JSON");
+    call.body = *body;
+  }
+  return route.handle(backend, call);
+}
+
+Result<std::optional<results::WebSession>> Service::State::find_login(const HttpRequest& request, const Moment& now) {
+  const auto token = find_session_token(request, options.is_secure);
+  if (!token) return std::optional<results::WebSession>();
+  const auto repository = repositories->borrow();
+  TROCAR_TRY(auto session, results::find_web_session(*repository, signing::token_digest(*token)));
+  if (!session) return session;
+  const SessionRules rules;
+  if (!is_session_valid(session->begun, session->used, now.utc, rules)) {
+    TROCAR_TRY_STATUS(results::end_web_session(*repository, session->token_hash));
+    return std::optional<results::WebSession>();
+  }
+  if (now.utc - session->used >= rules.touch)
+    TROCAR_TRY_STATUS(results::touch_web_session(*repository, session->token_hash, now.utc));
+  return session;
+}
+
+}  // namespace trocar::web
