@@ -97,7 +97,8 @@ void add_serve_command(CLI::App& program, Action& action) {
   command->add_option("--listen", a->listen, "Address and port, HOST:PORT")->capture_default_str();
   command->add_option("--certificate", a->certificate, "Certificate for TLS, with its chain (PEM)");
   command->add_option("--key", a->key, "Its private key (PEM, without a password)");
-  command->add_option("--name", a->names, "A name of this server in its address, beside those of the certificate");
+  command->add_option("--name", a->names, "A name of this server in its address, beside those of the certificate")
+      ->allow_extra_args(false);
   command->add_flag("--behind-proxy", a->is_behind_proxy,
                     "A proxy in front uses TLS, passes Host and adds X-Forwarded-For");
   command->footer(

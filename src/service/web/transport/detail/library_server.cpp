@@ -79,6 +79,9 @@ LibraryServer::LibraryServer(const ServerOptions& options, HttpServer::Handler h
   limits_.body_time = options.body_time;
   new_task_queue = [this] { return new WorkerThreads(static_cast<std::size_t>(options_.threads), waiting_); };
   set_payload_max_length(options.body_bytes);
+  // The library only names them in its header Keep-Alive.
+  set_keep_alive_max_count(kMostRequests);
+  set_keep_alive_timeout(std::chrono::ceil<std::chrono::seconds>(options.idle_time).count());
   set_socket_options([this](int socket) {
     listening_ = socket;
     const int yes = 1;
