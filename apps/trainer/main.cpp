@@ -17,6 +17,7 @@
 #include "number_option.h"
 #include "pages/start_page.h"
 #include "program_end.h"
+#include "results/repository.h"
 #include "scene/render_patient.h"
 #include "script/benchmark.h"
 #include "script/script_player.h"
@@ -37,7 +38,7 @@ namespace fs = std::filesystem;
 struct Arguments {
   std::optional<std::string> task, patient;
   std::optional<std::uint64_t> patient_seed;
-  std::string script, screenshot, state_folder;
+  std::string script, screenshot, state_folder, database;
   bool is_benchmark = false;
   std::vector<std::string> layouts;
 };
@@ -55,6 +56,9 @@ void add_options(CLI::App& app, Arguments& arguments) {
       app.add_flag("--benchmark", arguments.is_benchmark, "Run a puncture in every layout and print frame times");
   app.add_option("--layout", arguments.layouts, "Layouts of the benchmark [all]")->needs(benchmark);
   app.add_option("--state", arguments.state_folder, "Folder for sessions [$XDG_STATE_HOME/trocar]");
+  app.add_option("--db", arguments.database,
+                 "Database of people and results: a file, or postgresql://USER:PASSWORD@HOST/NAME [$TROCAR_DB, else "
+                 "results.sqlite in $XDG_DATA_HOME/trocar]");
   app.set_version_flag("--version", fmt::format("trocar-trainer {} (Qt {})", kVersion, qVersion()));
   app.footer(
       "Examples:\n  trocar-trainer --task liver-biopsy --patient abdomen\n"
@@ -141,7 +145,10 @@ int run(int argc, char** argv) {
   const QTemporaryDir own_settings;
   if (arguments.is_benchmark) QSettings::setPath(QSettings::NativeFormat, QSettings::UserScope, own_settings.path());
   apply_theme(application, kept_text_percent());
-  MainWindow window(arguments.state_folder.empty() ? user_state_folder() : fs::path(arguments.state_folder));
+  const Result<database::DatabaseUrl> results =
+      arguments.database.empty() ? results::default_url() : database::parse_url(arguments.database);
+  if (!results) return arguments::report_error(results.error());
+  MainWindow window(arguments.state_folder.empty() ? user_state_folder() : fs::path(arguments.state_folder), *results);
   const Result<TrainerChoice> choice = with_arguments(window.start().choice(), arguments);
   if (!choice) return arguments::report_error(choice.error());
   window.start().choose(*choice);

@@ -11,6 +11,7 @@
 #include "pages/start_page.h"
 #include "panels/feedback_panel.h"
 #include "panels/status_text.h"
+#include "results/attempts.h"
 #include "ui_kit/parts.h"
 
 namespace trocar::trainer {
@@ -36,6 +37,13 @@ QString joined(const std::vector<std::string>& sentences) {
   return lines.join(QLatin1Char(' '));
 }
 
+Result<learning::History> history_of(const database::DatabaseUrl& url, const std::string& person_id) {
+  TROCAR_TRY(results::Repository repository, results::Repository::open(url, database::Missing::kRefuse));
+  learning::History history;
+  TROCAR_TRY(history.attempts, results::past_attempts(repository, person_id));
+  return history;
+}
+
 }  // namespace
 
 LearningControl::LearningControl(std::filesystem::path state_folder, StartPage& start, FeedbackPanel& feedback,
@@ -46,13 +54,20 @@ LearningControl::LearningControl(std::filesystem::path state_folder, StartPage& 
 
 LearningControl::~LearningControl() = default;
 
+void LearningControl::follow(const database::DatabaseUrl& url, const std::string& person_id) {
+  url_ = url;
+  person_id_ = person_id;
+  refresh();
+}
+
 void LearningControl::refresh() {
   retired_.retire(std::exchange(advising_, {}));
-  const auto work = [folder = state_folder_ / "sessions"](const Progress&,
-                                                          const std::stop_token& stop) -> Result<Advice> {
+  const auto work = [folder = state_folder_ / "sessions", url = url_, person = person_id_](
+                        const Progress&, const std::stop_token& stop) -> Result<Advice> {
     TROCAR_TRY(const std::filesystem::path data, checked_data_dir());
     TROCAR_TRY(const learning::Curriculum curriculum, learning::load_curriculum(data));
-    TROCAR_TRY(const learning::History history, learning::read_history(folder, stop));
+    TROCAR_TRY(const learning::History history,
+               person.empty() ? learning::read_history(folder, stop) : history_of(url, person));
     const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
     Advice advice{learning::next_exercise(history.attempts, curriculum, now), {}};
     if (advice.next.exercise) advice.title = learning::exercise_text(*advice.next.exercise, curriculum);

@@ -6,6 +6,7 @@
 
 #include "choice/trainer_choice.h"
 #include "core/background_job.h"
+#include "database/database_url.h"
 #include "exams/exam_body.h"
 #include "learning/next_exercise.h"
 
@@ -14,8 +15,8 @@ namespace trocar::trainer {
 class FeedbackPanel;
 class StartPage;
 
-/// The learning path of this station's sessions, the bodies of its exams and their signed results. Work runs in the
-/// background; poll() shows what is ready.
+/// The learning path of who practises (else of this station's sessions), the bodies of its exams and their signed
+/// results. Work runs in the background; poll() shows what is ready.
 class LearningControl : public QObject {
   Q_OBJECT
 
@@ -24,7 +25,10 @@ class LearningControl : public QObject {
                   QObject* parent = nullptr);
   ~LearningControl() override;
 
-  /// Reads the sessions anew.
+  /// Whose attempts count: those of a person in a database, or (empty id) those of the station's folder. Then
+  /// refreshes.
+  void follow(const database::DatabaseUrl& url, const std::string& person_id);
+  /// Reads the attempts anew.
   void refresh();
   /// Finds the body of an exam; exam_found or exam_failed follows, exam_progress before.
   void find_exam_body(const TrainerChoice& choice);
@@ -54,6 +58,8 @@ class LearningControl : public QObject {
   void poll_signature();
 
   std::filesystem::path state_folder_;
+  database::DatabaseUrl url_;
+  std::string person_id_;  ///< Empty: the attempts of the station count.
   StartPage& start_;
   FeedbackPanel& feedback_;
   BackgroundJob<Advice> advising_;

@@ -40,7 +40,7 @@ ExamChoice::ExamChoice(QWidget* parent) : QWidget(parent) {
   note_->setWordWrap(true);
   column->addWidget(note_);
   connect(difficulty_, QOverload<int>::of(&QComboBox::activated), this,
-          [this](int row) { Q_EMIT difficulty_chosen(difficulty_->itemData(row).toInt()); });
+          [this](int index) { Q_EMIT difficulty_chosen(difficulty_->itemData(index).toInt()); });
 }
 
 void ExamChoice::show_patients(const std::vector<PatientEntry>& entries) {

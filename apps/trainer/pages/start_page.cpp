@@ -15,8 +15,10 @@
 
 #include "core/files/data_dir.h"
 #include "pages/exam_choice.h"
+#include "pages/history_card.h"
 #include "pages/next_exercise_card.h"
 #include "pages/patient_cards.h"
+#include "pages/person_bar.h"
 #include "panels/device_choice.h"
 #include "tasks/allowed_needles.h"
 #include "tasks/needle.h"
@@ -61,14 +63,24 @@ StartPage::StartPage(QWidget* parent) : QWidget(parent) {
   auto* page = new QVBoxLayout(this);
   page->setContentsMargins(40, 14, 40, 14);
   page->setSpacing(12);
+  auto* top = new QHBoxLayout;
   title_ = make_label(tr("Select a task and a patient"), "title");
-  page->addWidget(title_);
+  person_ = new PersonBar;
+  top->addWidget(title_);
+  top->addStretch();
+  top->addWidget(person_);
+  page->addLayout(top);
   page->addWidget(make_recovery());
   next_ = new NextExerciseCard;
   page->addWidget(next_);
   auto* columns = new QHBoxLayout;
   columns->setSpacing(16);
-  columns->addWidget(make_tasks(), 3);
+  auto* tasks_and_history = new QVBoxLayout;
+  tasks_and_history->setSpacing(12);
+  tasks_and_history->addWidget(make_tasks(), 1);
+  history_ = new HistoryCard;
+  tasks_and_history->addWidget(history_, 2);
+  columns->addLayout(tasks_and_history, 3);
   columns->addWidget(make_patients(), 8);
   columns->addWidget(make_help_choice(), 4);
   page->addLayout(columns, 1);
@@ -85,6 +97,7 @@ StartPage::StartPage(QWidget* parent) : QWidget(parent) {
   connect(tasks_, &QListWidget::currentRowChanged, this, [this] {
     fill_patients();
     fill_needles();
+    Q_EMIT task_changed();
   });
   connect(patients_, &QListWidget::currentRowChanged, this, [this] { show_patient_details(); });
   connect(patients_, &QListWidget::itemDoubleClicked, start_, &QPushButton::click);
@@ -116,6 +129,9 @@ QWidget* StartPage::make_tasks() {
   } else {
     content->addWidget(make_label(to_qt(tasks.error().text()), "dim"));
   }
+  // All tasks are visible beside the history.
+  constexpr int kFrame = 6;
+  tasks_->setMinimumHeight(tasks_->count() * std::max(0, tasks_->sizeHintForRow(0)) + kFrame);
   content->addWidget(tasks_, 1);
   return card;
 }
@@ -204,6 +220,14 @@ void StartPage::start_exercise(const TrainerChoice& exercise) {
   next.probe_device = devices_->probe();
   choose(next);
   if (start_->isEnabled()) start();
+}
+
+void StartPage::show_history(const results::LearningCurve& curve) {
+  history_->show_history(curve);
+}
+
+void StartPage::hide_history() {
+  history_->clear();
 }
 
 void StartPage::choose_difficulty(int difficulty) {

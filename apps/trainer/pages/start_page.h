@@ -3,6 +3,7 @@
 #include <QWidget>
 
 #include "choice/trainer_choice.h"
+#include "results/curves.h"
 
 class QButtonGroup;
 class QComboBox;
@@ -16,11 +17,14 @@ namespace trocar::trainer {
 
 class DeviceChoice;
 class ExamChoice;
+class HistoryCard;
 class NextExerciseCard;
 class PatientCards;
+class PersonBar;
 
-/// Start page: next exercise, task, patients of the task as cards, level of help, device of each tool. Keys: Enter
-/// starts, Ctrl+G starts the next exercise, Ctrl+O opens a patient folder. The last selection is stored.
+/// Start page: who practises, own history, next exercise, task, patients of the task as cards, level of help, device of
+/// each tool. Keys: Enter starts, Ctrl+G starts the next exercise, Ctrl+O opens a patient folder. The last selection is
+/// stored.
 class StartPage : public QWidget {
   Q_OBJECT
 
@@ -34,11 +38,16 @@ class StartPage : public QWidget {
   /// Offers the next exercise of the learning path; `exercise` has its task, patient and level of help. An empty title:
   /// no offer.
   void offer_next(const QString& title, const QString& why, const TrainerChoice& exercise);
+  PersonBar& person() noexcept { return *person_; }
+  /// Shows the history of who practises at the selected task.
+  void show_history(const results::LearningCurve& curve);
+  void hide_history();
   /// Adds a patient folder to the list and selects it.
   void add_patient(const QString& folder);
 
  Q_SIGNALS:
   void start_requested(const trocar::trainer::TrainerChoice& choice);
+  void task_changed();
   void recovery_requested();
   void recovery_declined();
 
@@ -62,6 +71,8 @@ class StartPage : public QWidget {
   QLabel* patient_text_ = nullptr;
   QButtonGroup* difficulty_ = nullptr;
   ExamChoice* exam_ = nullptr;
+  PersonBar* person_ = nullptr;
+  HistoryCard* history_ = nullptr;
   NextExerciseCard* next_ = nullptr;
   DeviceChoice* devices_ = nullptr;
   QFormLayout* tool_form_ = nullptr;  ///< Needle and forces; hidden in an exam.

@@ -115,6 +115,11 @@ FeedbackPanel::FeedbackPanel(QWidget* parent) : QWidget(parent) {
   worst_ = make_label({}, "dim");
   worst_->setWordWrap(true);
   content->addWidget(worst_);
+  comparison_ = make_label({});
+  comparison_->setObjectName(QStringLiteral("feedback-comparison"));
+  comparison_->setWordWrap(true);
+  comparison_->hide();
+  content->addWidget(comparison_);
   next_title_ = make_label(tr("Next exercise"), "heading");
   next_title_->hide();
   content->addWidget(next_title_);
@@ -233,6 +238,11 @@ void FeedbackPanel::show_level(const QString& level) {
 void FeedbackPanel::show_cores(std::span<const attempt::GunShot> shots) {
   core_picture_->setVisible(!shots.empty());
   core_picture_->set_shots(shots);
+}
+
+void FeedbackPanel::show_comparison(const QString& text) {
+  comparison_->setText(text);
+  comparison_->setVisible(!text.isEmpty());
 }
 
 void FeedbackPanel::show_next(const QString& text) {

@@ -38,6 +38,8 @@ class FeedbackPanel : public QWidget {
   void show_cores(std::span<const attempt::GunShot> shots);
   /// Events during the attempt: warnings, interruptions, changed parameters. One line each.
   void show_notes(const QStringList& notes);
+  /// Compares the score with the person's others and with those of peers and experts; empty: nobody practises.
+  void show_comparison(const QString& text);
   /// Shows what to practise next and why; empty: nothing.
   void show_next(const QString& text);
   /// Names the button of again_requested: "Next exam" (`is_next_exam`: it draws another body) or "Try again".
@@ -75,6 +77,7 @@ class FeedbackPanel : public QWidget {
   QLabel* worst_ = nullptr;
   QLabel* notes_ = nullptr;
   QLabel* result_ = nullptr;
+  QLabel* comparison_ = nullptr;
   QLabel* next_title_ = nullptr;
   QLabel* next_ = nullptr;
 };

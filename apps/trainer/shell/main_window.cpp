@@ -44,7 +44,8 @@ constexpr QSize kLeastSize(960, 640);
 
 }  // namespace
 
-MainWindow::MainWindow(const std::filesystem::path& state_folder, QWidget* parent) : QMainWindow(parent) {
+MainWindow::MainWindow(const std::filesystem::path& state_folder, const database::DatabaseUrl& results, QWidget* parent)
+    : QMainWindow(parent) {
   setObjectName(QStringLiteral("main-window"));
   qApp->installEventFilter(new WheelGuard(this));  // before any control is made
   setWindowTitle(tr("Trocar"));
@@ -71,7 +72,7 @@ MainWindow::MainWindow(const std::filesystem::path& state_folder, QWidget* paren
   new FocusRing(this);
   mirror_ = new MirrorStation(*this);
   mirror_->fill_menu(*views_menu_);
-  flow_ = new TrainerFlow(*this, state_folder);
+  flow_ = new TrainerFlow(*this, state_folder, results);
   // A page that needs more space is scrolled, so that the strip at the bottom is always visible.
   setMinimumSize(kLeastSize);
   resize(QSize(1280, 800).boundedTo(screen()->availableSize()));

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "database/database_url.h"
 #include "ui_kit/banner.h"
 
 class QAction;
@@ -27,8 +28,9 @@ class MainWindow : public QMainWindow {
   Q_OBJECT
 
  public:
-  /// `state_folder`: folder of sessions, profiles and crash recovery data.
-  explicit MainWindow(const std::filesystem::path& state_folder, QWidget* parent = nullptr);
+  /// `state_folder`: folder of sessions, profiles and crash recovery data. `results`: where attempts are recorded.
+  MainWindow(const std::filesystem::path& state_folder, const database::DatabaseUrl& results,
+             QWidget* parent = nullptr);
   ~MainWindow() override;  ///< Ends running work before the views are destroyed.
 
   StartPage& start() noexcept { return *start_; }

@@ -1,10 +1,13 @@
 // What scripts, tests and benchmarks read from a running trainer.
+#include <QLabel>
 #include <algorithm>
 
 #include "control/attempt_control.h"
 #include "control/learning_control.h"
 #include "control/replay_control.h"
+#include "control/results_control.h"
 #include "core/available_memory.h"
+#include "pages/start_page.h"
 #include "pages/work_page.h"
 #include "shell/main_window.h"
 #include "shell/trainer_flow.h"
@@ -35,6 +38,15 @@ QVariantMap TrainerFlow::facts() const {
   constexpr double kBytesPerMiB = 1024.0 * 1024.0;
   facts[QStringLiteral("memory_mb")] = static_cast<double>(resident_memory_bytes()) / kBytesPerMiB;
   facts[QStringLiteral("late_frames")] = static_cast<qulonglong>(frames_.late());
+  facts[QStringLiteral("person")] = to_qt(results_->person_name());
+  const auto text_of = [](const QWidget& page, const char* label) {
+    const auto* found = page.findChild<QLabel*>(QString::fromLatin1(label));
+    return found != nullptr && found->isVisible() ? found->text() : QString();
+  };
+  facts[QStringLiteral("history")] = text_of(window_.start(), "history-text");
+  facts[QStringLiteral("comparison")] = text_of(window_.work(), "feedback-comparison");
+  facts[QStringLiteral("person_message")] = text_of(window_.start(), "person-message");
+  facts[QStringLiteral("is_recording_results")] = results_->has_work();
   facts[QStringLiteral("next_exercise")] = learning_->next_title();
   facts[QStringLiteral("exam_result")] = learning_->result_file();
   facts[QStringLiteral("exam_number")] = static_cast<qulonglong>(is_exam() ? choice_.exam_number : 0);

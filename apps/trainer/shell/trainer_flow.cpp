@@ -11,8 +11,10 @@
 #include "control/learning_control.h"
 #include "control/mirror_station.h"
 #include "control/replay_control.h"
+#include "control/results_control.h"
 #include "core/available_memory.h"
 #include "core/files/disk_space.h"
+#include "core/version.h"
 #include "io/patient/patient_cache.h"
 #include "pages/briefing_page.h"
 #include "pages/case_page.h"
@@ -26,6 +28,7 @@
 #include "parameters/parameter_panel.h"
 #include "report/html_report.h"
 #include "shell/main_window.h"
+#include "signing/token.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/trainer_application.h"
 #include "views/patient/patient_view.h"
@@ -52,11 +55,14 @@ cases::CaseChoice case_choice(const TrainerChoice& choice) {
 
 }  // namespace
 
-TrainerFlow::TrainerFlow(MainWindow& window, std::filesystem::path state_folder)
+TrainerFlow::TrainerFlow(MainWindow& window, std::filesystem::path state_folder, const database::DatabaseUrl& results)
     : QObject(&window), window_(window), state_folder_(std::move(state_folder)), journal_(state_folder_) {
   learning_ = std::make_unique<LearningControl>(state_folder_, window_.start(), window_.work().feedback());
+  results_ =
+      std::make_unique<ResultsControl>(results, state_folder_ / "sessions", window_.start(), window_.work().feedback());
   connect_pages();
   connect_learning();
+  connect_results();
   offered_ = journal_.find_cut_off();
   if (offered_)
     window_.start().offer_recovery(
@@ -107,6 +113,13 @@ void TrainerFlow::connect_learning() {
   connect(learning_.get(), &LearningControl::exam_found, this, &TrainerFlow::open);
 }
 
+void TrainerFlow::connect_results() {
+  connect(results_.get(), &ResultsControl::history_changed, this,
+          [this] { learning_->follow(results_->url(), results_->person_id()); });
+  connect(results_.get(), &ResultsControl::warned, this,
+          [this](const QString& text) { window_.show_message(text, BannerKind::kWarning); });
+}
+
 void TrainerFlow::go_to_start() {
   learning_->cancel_exam_body();
   retired_.retire(std::exchange(opening_, {}));
@@ -118,6 +131,7 @@ void TrainerFlow::go_to_start() {
   window_.work().set_parameters_locked(false);
   window_.show_banner({});
   window_.show_page(QStringLiteral("start"));
+  results_->refresh();
   can_record();
   release_freed_memory();  // a replay holds every tick
 }
@@ -234,11 +248,14 @@ void TrainerFlow::begin_attempt() {
   options.level = name_of(choice_.difficulty);
   if (!is_exam()) options.force_model = to_std(window_.work().parameters().preview().model());
   options.is_guided = choice_.difficulty != Difficulty::kExam;
+  options.person_id = results_->person_id();
+  options.attempt_id = signing::make_id();
   // Finding the target is a part of the task, and the start of the plan would reveal it.
   options.X_PN_start = open_->neutral.X_PN;
   options.X_PT_start = open_->neutral.X_PT;
   if (const Status kept = journal_.begin({case_choice(choice_), options.session}); !kept)
     return window_.show_banner(sentence_of(kept.error()), BannerKind::kError);
+  record_begin(options);
   replay_.reset();
   recoveries_ = 0;
   window_.work().set_parameters_locked(is_exam());
@@ -306,9 +323,25 @@ void TrainerFlow::poll_attempt() {
   }
 }
 
-/// Exams are signed; every attempt changes the next exercise.
+void TrainerFlow::record_begin(const attempt::AttemptOptions& options) {
+  storage::SessionInfo info;
+  info.attempt_id = options.attempt_id;
+  info.person_id = options.person_id;
+  info.task = open_->the_case.task.name;
+  info.patient_name = open_->the_case.patient->name;
+  info.patient_source = open_->choice.patient_source;
+  info.patient_hash = open_->the_case.patient->content_hash;
+  info.patient_seed = open_->choice.patient_seed;
+  info.level = options.level;
+  info.operator_name = options.trainee;
+  info.program_version = kVersion;
+  results_->record_begin(info);
+}
+
+/// Exams are signed; every attempt is recorded and changes the next exercise.
 void TrainerFlow::keep_result(const std::filesystem::path& session) {
   learning_->forget_result();
+  results_->record_end(session);
   if (is_exam()) return learning_->sign(session);
   learning_->refresh();
 }
@@ -378,6 +411,7 @@ void TrainerFlow::frame() {
   show_later();
   poll_opening();
   learning_->poll();
+  results_->poll();
   poll_attempt();
   poll_replay();
   const double dt_s = frames_.since_last_s(now);

@@ -15,6 +15,7 @@
 #include "cases/open_case.h"
 #include "choice/trainer_choice.h"
 #include "core/background_job.h"
+#include "database/database_url.h"
 #include "devices/pointer/speaker.h"
 #include "ui_kit/frame_count.h"
 
@@ -24,6 +25,7 @@ class AttemptControl;
 class LearningControl;
 class MainWindow;
 class ReplayControl;
+class ResultsControl;
 
 /// Sequence of pages: start, open, briefing, puncture, feedback. Owns the data of case and attempt; polls background
 /// work and draws the views once per frame.
@@ -31,7 +33,7 @@ class TrainerFlow : public QObject {
   Q_OBJECT
 
  public:
-  TrainerFlow(MainWindow& window, std::filesystem::path state_folder);
+  TrainerFlow(MainWindow& window, std::filesystem::path state_folder, const database::DatabaseUrl& results);
   ~TrainerFlow() override;
 
   void go_to_start();
@@ -52,6 +54,8 @@ class TrainerFlow : public QObject {
  private:
   void connect_pages();
   void connect_learning();
+  void connect_results();
+  void record_begin(const attempt::AttemptOptions& options);
   /// Finds the body of an exam first.
   void start(const TrainerChoice& choice);
   void keep_result(const std::filesystem::path& session);
@@ -90,6 +94,7 @@ class TrainerFlow : public QObject {
   std::unique_ptr<AttemptControl> attempt_;
   std::unique_ptr<ReplayControl> replay_;
   std::unique_ptr<LearningControl> learning_;
+  std::unique_ptr<ResultsControl> results_;
   bool is_close_confirmed_ = false;
   int recoveries_ = 0;                 ///< Reported recoveries of the attempt's servers.
   std::string cut_short_;              ///< See RunResult; for the same attempt.

@@ -20,6 +20,8 @@
 #include "devices/pointer/test/gamepad_stand_in.h"
 #include "devices/vendor/test/hd_stand_ins.h"
 #include "exams/exam_result.h"
+#include "results/attempts.h"
+#include "results/people.h"
 #include "signing/signing_key.h"
 
 namespace trocar::trainer {
@@ -45,6 +47,7 @@ struct WindowTest : ::testing::Test {
     QProcessEnvironment environment = QProcessEnvironment::systemEnvironment();
     environment.insert(QStringLiteral("XDG_CONFIG_HOME"), folder.filePath(QStringLiteral("config")));
     environment.insert(QStringLiteral("XDG_STATE_HOME"), folder.filePath(QStringLiteral("state")));
+    environment.insert(QStringLiteral("XDG_DATA_HOME"), folder.filePath(QStringLiteral("data")));
     environment.insert(
         QStringLiteral("XDG_CACHE_HOME"),
         QDir(QString::fromUtf8(std::getenv("TROCAR_BIN_DIR"))).filePath(QStringLiteral("../test-cache")));
@@ -188,6 +191,25 @@ QByteArray all_pages(int columns, int rows) {
       .arg(rows)
       .arg(QString::fromUtf8(script.readAll()).replace(pause, QStringLiteral("wait 0.2")))
       .toUtf8();
+}
+
+TEST_F(WindowTest, APersonsAttemptsAreRecordedAndCompared) {
+  expect_played(play("person.txt"));
+  auto repository =
+      results::Repository::open({to_std(folder.filePath(QStringLiteral("data/trocar/results.sqlite"))), {}});
+  ASSERT_TRUE(repository) << repository.error().text();
+  const auto person = results::get_person_named(*repository, "anna meier");
+  ASSERT_TRUE(person) << person.error().text();
+  EXPECT_TRUE(person->has_pin);
+  const auto attempts = results::list_attempts(*repository, {person->id});
+  ASSERT_TRUE(attempts);
+  ASSERT_EQ(attempts->size(), 1u);
+  EXPECT_EQ(attempts->front().state, results::State::kFinished);
+  EXPECT_EQ(attempts->front().level, "guided");
+  EXPECT_TRUE(attempts->front().score.has_value());
+  const auto recording = results::load_recording(*repository, attempts->front().id);
+  ASSERT_TRUE(recording);
+  EXPECT_TRUE(recording->has_value());
 }
 
 TEST_F(WindowTest, EveryPageIsWholeOnASmallScreen) {

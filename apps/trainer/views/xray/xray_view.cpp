@@ -117,8 +117,8 @@ void XrayView::prepare() {
     preparing_ =
         BackgroundJob<Prepared>([patient = patient_, middle_P = find_middle_P_](const Progress&) -> Result<Prepared> {
           TROCAR_TRY(auto volume, xray::XrayVolume::make(patient));
-          TROCAR_TRY(const std::filesystem::path data, checked_data_dir());
-          TROCAR_TRY(xray::ToolKind wire, xray::load_tool_kind(data / "xray_tools.toml", "fine-wire"));
+          TROCAR_TRY(const std::filesystem::path tables, checked_data_dir());
+          TROCAR_TRY(xray::ToolKind wire, xray::load_tool_kind(tables / "xray_tools.toml", "fine-wire"));
           return Prepared{std::move(volume), middle_P(), cases::contrast_blood(*patient),
                           xray::make_duct_tree(*patient), std::move(wire)};
         });
