@@ -196,7 +196,7 @@ QByteArray all_pages(int columns, int rows) {
 TEST_F(WindowTest, APersonsAttemptsAreRecordedAndCompared) {
   expect_played(play("person.txt"));
   auto repository =
-      results::Repository::open({to_std(folder.filePath(QStringLiteral("data/trocar/results.sqlite"))), {}});
+      results::Repository::open({folder.filePath(QStringLiteral("data/trocar/results.sqlite")).toStdString(), {}});
   ASSERT_TRUE(repository) << repository.error().text();
   const auto person = results::get_person_named(*repository, "anna meier");
   ASSERT_TRUE(person) << person.error().text();

@@ -23,7 +23,7 @@ Status record_attempts(Repository& repository, const std::vector<AttemptRecord>&
 
 /// Which attempts. Empty members do not restrict.
 struct AttemptFilter {
-  std::string person_id, task, course;
+  std::string person_id = {}, task = {}, course = {};
   std::optional<std::int64_t> before = {};  ///< Only with a smaller sequence.
   std::size_t limit = 0;                    ///< The newest so many; 0: all.
   bool is_newest_first = false;
