@@ -77,7 +77,7 @@ export interface CurvePoint {
 export interface Curve {
   points: CurvePoint[];
   cusum: { values: (number | null)[]; upper: number; lower: number; acceptable: number; unacceptable: number } | null;
-  experts: { n: number; mean: number | null; low: number | null; high: number | null } | null;
+  experts: { n: number; simulated?: boolean; mean: number | null; low: number | null; high: number | null } | null;
   peers: { n: number; mean_by_attempt: (number | null)[] } | null;
 }
 
@@ -121,6 +121,7 @@ export interface MetricValue extends MetricName {
 }
 export interface AttemptAnswer {
   attempt: Attempt & {
+    task_title?: string;
     person: { id: string; name: string; simulated: boolean };
     not_scored: string | boolean | null;
     fails: string[];
@@ -159,6 +160,8 @@ export interface ValidityMetric {
   low: number | null;
   high: number | null;
   p: number | null;
+  /** Corrected for the number of metrics; `discriminates` is judged by it. */
+  p_corrected?: number | null;
   discriminates: boolean | null;
   reason?: string | null;
 }
@@ -167,9 +170,10 @@ export interface Validity {
   experts: number;
   novices: number;
   simulated: boolean;
+  score?: ValidityMetric | null;
   metrics: ValidityMetric[] | null;
   discriminating: { share: number | null; count: number | null; of: number | null; reason?: string | null } | null;
-  alpha: { value: number | null; items: number | null; n: number | null; reason?: string | null } | null;
+  alpha: { value: number | null; low?: number | null; high?: number | null; items: number | null; n: number | null; reason?: string | null } | null;
   pass_mark: {
     value: number | null;
     false_passes: number | null;
@@ -201,6 +205,8 @@ export interface ItemSummary {
   id: string | number;
   kind: "scale" | "text";
   text: string;
+  /** Its text was changed after answers were given. */
+  is_retired?: boolean;
   n: number;
   mean?: number | null;
   sd?: number | null;

@@ -21,7 +21,7 @@ function parts_card(parts: ScorePart[]): HTMLElement {
   if (parts.length === 0) return card("Score", {}, empty_box("No parts", "This attempt has no score."));
   const columns: Column<ScorePart>[] = [
     { name: "title", title: "Part", is_header: true, cell: (one) => one.title },
-    { name: "value", title: "Measured", is_number: true, cell: (one) => one.value_text ?? "–" },
+    ...(parts.some((one) => one.value_text) ? [{ name: "value", title: "Measured", is_number: true, cell: (one: ScorePart) => one.value_text ?? "–" }] : []),
     {
       name: "points", title: "Points", is_number: true,
       cell: (one) => h("span", { class: "score-cell" }, bar(one.max_points > 0 ? one.points / one.max_points : 0, part_tone(one)), h("span", { class: "points" }, `${fixed(one.points, 1)} of ${fixed(one.max_points, 1)}`)),
@@ -69,7 +69,7 @@ function not_scored_text(not_scored: string | boolean | null): string | null {
 
 function show_attempt(answer: AttemptAnswer, context: PageContext): Child {
   const { attempt } = answer;
-  const title = words(attempt.task);
+  const title = attempt.task_title ?? words(attempt.task);
   context.set_title(`${title}, ${attempt.person.name}`);
   const not_scored = not_scored_text(attempt.not_scored);
   const replay_place = h("div", {});

@@ -35,7 +35,7 @@ function address_card(form: Form): HTMLElement {
 
 function means_table(items: ItemSummary[]): HTMLElement {
   const columns: Column<ItemSummary>[] = [
-    { name: "text", title: "Statement", is_header: true, cell: (one) => one.text },
+    { name: "text", title: "Statement", is_header: true, cell: (one) => [one.text, one.is_retired && h("span", { class: "badge badge-plain retired" }, "Retired")] },
     { name: "n", title: "n", is_number: true, cell: (one) => String(one.n) },
     { name: "mean", title: "Mean", is_number: true, cell: (one) => h("strong", { class: "mean" }, fixed(one.mean, 1)) },
     { name: "sd", title: "SD", is_number: true, cell: (one) => fixed(one.sd, 1) },
@@ -52,7 +52,7 @@ function means_table(items: ItemSummary[]): HTMLElement {
 function comments_card(item: ItemSummary): HTMLElement {
   const comments = item.comments ?? [];
   return card(
-    item.text,
+    item.is_retired ? `${item.text} (retired)` : item.text,
     {},
     comments.length === 0
       ? h("p", { class: "dim" }, "No comment yet.")
@@ -67,7 +67,7 @@ function show_results(summary: FormSummary, context: PageContext, reload: () => 
   const toggle = h("button", { type: "button", class: "button" }, form.is_open ? "Close" : "Publish");
   const change = async (): Promise<void> => {
     try {
-      await send("PUT", `/api${form_path(form)}`, { title: form.title, intro: form.intro, items: form.items, is_open: !form.is_open });
+      await send("PUT", `/api${form_path(form)}`, { is_open: !form.is_open });
       toast(form.is_open ? "The questionnaire is closed." : "The questionnaire is open.");
       reload();
     } catch (error) {

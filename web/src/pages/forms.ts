@@ -1,11 +1,12 @@
 // The list of questionnaires.
 
-import { get } from "../lib/api.ts";
-import { h, type Child } from "../lib/dom.ts";
+import { get, send } from "../lib/api.ts";
+import { h, replace_children, type Child } from "../lib/dom.ts";
 import { plural } from "../lib/format.ts";
-import type { PageContext } from "../lib/router.ts";
+import { navigate, type PageContext } from "../lib/router.ts";
 import type { Form } from "../lib/types.ts";
-import { empty_box, load_into } from "../ui/states.ts";
+import { run_once } from "../ui/parts.ts";
+import { empty_box, error_box, load_into } from "../ui/states.ts";
 import { data_table, type Column } from "../ui/table.ts";
 
 export function status_badge(form: Form): HTMLElement {
@@ -25,16 +26,27 @@ const kColumns: Column<Form>[] = [
 ];
 
 function show_forms({ forms }: { forms: Form[] }): Child {
-  if (forms.length === 0) return empty_box("No questionnaires", "Make one with “New questionnaire”.");
+  if (forms.length === 0) return empty_box("No questionnaires", "“Standard questionnaire” makes one with the four statements of the published study and a free text; “New questionnaire” begins with an empty one.");
   return data_table({ caption: plural(forms.length, "questionnaire"), columns: kColumns, rows: forms });
 }
 
 export async function forms_page({ main, signal, set_title }: PageContext): Promise<void> {
   set_title("Questionnaires");
   const place = h("div", {});
+  const problem = h("div", {});
+  const standard = h("button", { type: "button", class: "button" }, "Standard questionnaire");
+  const add_standard = async (): Promise<void> => {
+    try {
+      navigate(form_path(await send<Form>("POST", "/api/forms", {})));
+    } catch (error) {
+      replace_children(problem, error_box(error));
+    }
+  };
+  standard.addEventListener("click", () => void run_once(standard, add_standard));
   main.append(
-    h("div", { class: "page-head" }, h("h1", {}, "Questionnaires"), h("span", { class: "page-actions" }, h("a", { class: "button button-primary", href: "/forms/new" }, "New questionnaire"))),
+    h("div", { class: "page-head" }, h("h1", {}, "Questionnaires"), h("span", { class: "page-actions" }, standard, h("a", { class: "button button-primary", href: "/forms/new" }, "New questionnaire"))),
     h("p", { class: "lead" }, "People answer on a six-point scale from 1 (strongly agree) to 6 (strongly disagree), and in their own words."),
+    problem,
     place,
   );
   await load_into(place, signal, () => get<{ forms: Form[] }>("/api/forms", signal), show_forms);

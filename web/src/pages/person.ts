@@ -22,7 +22,7 @@ function score_plot(curve: Curve, signal: AbortSignal): HTMLElement {
   const scores = points.map((one) => one.score);
   const series: Series[] = [];
   if (experts && experts.low !== null && experts.high !== null) {
-    series.push({ label: `Experts' range (n = ${experts.n})`, values: points.map(() => experts.low), upper: points.map(() => experts.high), colour: "path", mark: "band" });
+    series.push({ label: `Experts' range (n = ${experts.n}${experts.simulated ? ", simulated" : ""})`, values: points.map(() => experts.low), upper: points.map(() => experts.high), colour: "path", mark: "band" });
   }
   if (experts?.mean !== null && experts?.mean !== undefined) series.push({ label: "Experts' mean", values: points.map(() => experts.mean), colour: "path", mark: "dotted", width: 1.5 });
   if (peers && peers.n > 0) series.push({ label: `Peers' mean (n = ${peers.n})`, values: points.map((one) => peers.mean_by_attempt[one.n - 1] ?? null), colour: "dim", mark: "dashed" });
@@ -67,7 +67,7 @@ function cusum_plot(curve: Curve, signal: AbortSignal): Child {
   return [
     line_plot({
       title: "CUSUM of failures",
-      summary: verdict,
+      summary: `CUSUM now ${fixed(known[known.length - 1], 2)}.`,
       x: points.map((one) => one.n),
       x_label: "attempt",
       y_label: "CUSUM",
@@ -96,7 +96,7 @@ function attempt_columns(tasks: Task[]): Column<Attempt>[] {
     { name: "patient", title: "Patient", cell: (one) => one.patient },
     { name: "level", title: "Help", cell: (one) => words(one.level) },
     { name: "score", title: "Score", is_number: true, cell: (one) => fixed(one.score, 0) },
-    { name: "result", title: "Result", cell: (one) => (one.state === "complete" || one.score !== null ? passed_text(one.passed, one.score) : words(one.state)) },
+    { name: "result", title: "Result", cell: (one) => (one.score !== null ? passed_text(one.passed, one.score) : one.state === "finished" ? "Not scored" : words(one.state)) },
     { name: "duration", title: "Duration", is_number: true, cell: (one) => duration_text(one.duration_s) },
     { name: "station", title: "Station", cell: (one) => one.station ?? "–" },
   ];

@@ -9,8 +9,18 @@ import { form_view, type Answers } from "../ui/form_view.ts";
 import { run_once } from "../ui/parts.ts";
 import { error_box, load_into } from "../ui/states.ts";
 
+interface Draft {
+  answers: Answers;
+  /** Sent with the answers: the server stores a response once, however often it is sent. */
+  response_id: string;
+}
+
+function new_id(): string {
+  return Array.from(crypto.getRandomValues(new Uint8Array(16)), (one) => one.toString(16).padStart(2, "0")).join("");
+}
+
 /** Answers that are not sent yet, for this tab only: the next person at the same computer must not see them. */
-function draft_of(token: string): { read: () => Answers; write: (answers: Answers) => void; clear: () => void } {
+function draft_of(token: string): { read: () => Draft; write: (draft: Draft) => void; clear: () => void } {
   const key = `trocar-answers-${token}`;
   const quietly = <T>(action: () => T, otherwise: T): T => {
     try {
@@ -20,8 +30,8 @@ function draft_of(token: string): { read: () => Answers; write: (answers: Answer
     }
   };
   return {
-    read: () => quietly(() => JSON.parse(sessionStorage.getItem(key) ?? "{}") as Answers, {}),
-    write: (answers) => quietly(() => sessionStorage.setItem(key, JSON.stringify(answers)), undefined),
+    read: () => ({ answers: {}, response_id: new_id(), ...quietly(() => JSON.parse(sessionStorage.getItem(key) ?? "{}") as Partial<Draft>, {}) }),
+    write: (draft) => quietly(() => sessionStorage.setItem(key, JSON.stringify(draft)), undefined),
     clear: () => quietly(() => sessionStorage.removeItem(key), undefined),
   };
 }
@@ -46,8 +56,9 @@ function thanks(title: string, again: () => void): Child {
 function show_form(form: PublicForm, token: string, place: HTMLElement, context: PageContext): Child {
   context.set_title(form.title);
   const draft = draft_of(token);
-  const view = form_view(form.items, () => draft.write(view.answers()));
-  view.fill(draft.read());
+  const { answers: kept, response_id } = draft.read();
+  const view = form_view(form.items, () => draft.write({ answers: view.answers(), response_id }));
+  view.fill(kept);
   const problem = h("div", {});
   const button = h("button", { type: "submit", class: "button button-primary button-wide" }, "Send answers");
   const submit = async (): Promise<void> => {
@@ -63,7 +74,7 @@ function show_form(form: PublicForm, token: string, place: HTMLElement, context:
     replace_children(problem);
     button.textContent = "Sending …";
     try {
-      await send("POST", `/api/public/forms/${encodeURIComponent(token)}/answers`, { answers }, { without_session: true });
+      await send("POST", `/api/public/forms/${encodeURIComponent(token)}/answers`, { answers, response_id }, { without_session: true });
       draft.clear();
       replace_children(place, thanks(form.title, () => replace_children(place, show_form(form, token, place, context))));
     } catch (error) {

@@ -18,6 +18,10 @@ function figure_card(title: string, value: string | null, text: Child, reason: s
   );
 }
 
+function interval_text(low: number | null | undefined, high: number | null | undefined): string {
+  return low === null || low === undefined || high === null || high === undefined ? "" : ` (95 % interval ${fixed(low, 2)} to ${fixed(high, 2)})`;
+}
+
 function p_text(p: number | null): string {
   if (p === null) return "–";
   return p < 0.001 ? "< 0.001" : fixed(p, 3);
@@ -35,7 +39,7 @@ function metrics_table(metrics: ValidityMetric[]): HTMLElement {
           ? h("span", { class: "dim" }, one.reason ?? "–")
           : h("span", { class: "compared" }, interval_strip(one.auc, one.low, one.high), h("span", { class: "auc-number" }, fixed(one.auc, 2), h("span", { class: "dim" }, one.low === null ? "" : ` (${fixed(one.low, 2)}–${fixed(one.high, 2)})`))),
     },
-    { name: "p", title: "p", is_number: true, key: (one) => one.p, cell: (one) => p_text(one.p) },
+    { name: "p", title: metrics.some((one) => one.p_corrected !== undefined) ? "p, corrected" : "p", is_number: true, key: (one) => one.p_corrected ?? one.p, cell: (one) => p_text(one.p_corrected ?? one.p) },
     {
       name: "discriminates", title: "Discriminates", key: (one) => (one.discriminates === null ? null : one.discriminates ? 0 : 1),
       cell: (one) => (one.discriminates === null ? "–" : one.discriminates ? h("span", { class: "outcome outcome-good" }, "✓ Yes") : h("span", { class: "outcome" }, "No")),
@@ -45,7 +49,7 @@ function metrics_table(metrics: ValidityMetric[]): HTMLElement {
 }
 
 function show_validity(answer: Validity): Child {
-  const { discriminating, alpha, pass_mark, metrics } = answer;
+  const { discriminating, alpha, pass_mark, metrics, score } = answer;
   const share = discriminating?.share ?? null;
   return [
     answer.simulated &&
@@ -55,7 +59,13 @@ function show_validity(answer: Validity): Child {
       "div",
       { class: "figures" },
       figure_card("Discriminating metrics", share === null ? null : `${fixed(100 * share, 0)} %`, `${discriminating?.count} of ${discriminating?.of} metrics separate experts from novices. An automatic assessment has published 37 of 60.`, discriminating?.reason ?? answer.reason),
-      figure_card("Internal consistency", alpha === null || alpha.value === null ? null : fixed(alpha.value, 2), `Cronbach's alpha of ${alpha?.items} parts of the score over ${alpha?.n} attempts. From 0.7 on it is usually called acceptable.`, alpha?.reason ?? answer.reason),
+      figure_card(
+        "Internal consistency",
+        alpha === null || alpha.value === null ? null : fixed(alpha.value, 2),
+        `Cronbach's alpha of ${alpha?.items} parts of the score over ${alpha?.n} people${interval_text(alpha?.low, alpha?.high)}. From 0.7 on it is usually called acceptable.`,
+        alpha?.reason ?? answer.reason,
+      ),
+      score && figure_card("Separation by the score", score.auc === null ? null : fixed(score.auc, 2), `AUC of the score${interval_text(score.low, score.high)}; medians ${number_text(score.expert_median)} of experts and ${number_text(score.novice_median)} of novices.`, score.reason),
       figure_card(
         "Pass mark",
         pass_mark === null || pass_mark.value === null ? null : fixed(pass_mark.value, 1),
@@ -70,13 +80,19 @@ function show_validity(answer: Validity): Child {
 function show_tasks(overview: Overview, context: PageContext): Child {
   if (overview.tasks.length === 0) return empty_box("No tasks", "The database has no attempts yet.");
   const place = h("div", {});
-  const show = (task: string): void => {
-    write_query({ task });
-    void load_into(place, context.signal, () => get<Validity>(path_with("/api/validity", { task }), context.signal), show_validity);
+  const chosen = { task: context.query.get("task") || overview.tasks[0].id, course: context.query.get("course") ?? "" };
+  const show = (): void => {
+    write_query(chosen);
+    void load_into(place, context.signal, () => get<Validity>(path_with("/api/validity", chosen), context.signal), show_validity);
   };
-  const first = context.query.get("task") || overview.tasks[0].id;
-  show(first);
-  return [h("div", { class: "filters" }, select_field("Task", overview.tasks.map((one) => ({ value: one.id, label: one.title })), first, show)), place];
+  const tasks = overview.tasks.map((one) => ({ value: one.id, label: one.title }));
+  const courses = [{ value: "", label: "All courses" }, ...overview.courses.map((one) => ({ value: String(one.id), label: one.name }))];
+  const choose = (name: "task" | "course") => (value: string): void => {
+    chosen[name] = value;
+    show();
+  };
+  show();
+  return [h("div", { class: "filters" }, select_field("Task", tasks, chosen.task, choose("task")), select_field("Course", courses, chosen.course, choose("course"))), place];
 }
 
 export async function validity_page(context: PageContext): Promise<void> {

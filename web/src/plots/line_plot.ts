@@ -165,7 +165,7 @@ export function line_plot(plot: LinePlot): DrawnPlot {
     if (width < 50 || plot.signal.aborted) return;
     drawn?.destroy();
     const { options, data } = options_of(plot, width, (index) => {
-      if (plot.read_out) read_out.textContent = index === null ? "\u00a0" : plot.read_out(index);
+      if (plot.read_out) read_out.textContent = index === null ? plot.summary : plot.read_out(index);
     });
     drawn = new uPlot(options, data, canvas_place);
     drawn.over.append(marker);
@@ -199,7 +199,7 @@ export function line_plot(plot: LinePlot): DrawnPlot {
     plot.read_out && read_out,
     plot.table && h("details", { class: "as-table" }, h("summary", {}, "Values as a table"), plot.table()),
   );
-  if (plot.read_out) read_out.textContent = "\u00a0";
+  if (plot.read_out) read_out.textContent = plot.summary;
   return {
     element,
     set_marker: (x) => {

@@ -112,7 +112,14 @@ function bind_keys(section: HTMLElement, clock: ReplayClock, signal: AbortSignal
   );
 }
 
-export function replay(trace: Trace, signal: AbortSignal): HTMLElement {
+/** A plan of no length is none. */
+function without_empty_plan(trace: Trace): Trace {
+  const has_plan = trace.plan !== null && trace.plan.entry.some((one, k) => one !== trace.plan!.target[k]);
+  return has_plan ? trace : { ...trace, plan: null };
+}
+
+export function replay(given: Trace, signal: AbortSignal): HTMLElement {
+  const trace = without_empty_plan(given);
   const expert = trace.expert ?? null;
   const start_s = trace.time_s[0] ?? 0;
   const end_s = trace.time_s[trace.time_s.length - 1] ?? 0;

@@ -139,6 +139,43 @@ describe("questionnaire", () => {
     await page.context().close();
   });
 
+  test("answers that arrived although the page lost the server's word are counted once", needs_mock, async () => {
+    const { page } = await open_page(browser, site);
+    const form = site.mock!.forms.find("1")!;
+    const responses = (): number => (site.mock!.forms.summary(form) as { responses: number }).responses;
+    const before = responses();
+    await page.goto("/q/test-token-1-abcdefghijklmnop");
+    for (let k = 0; k < 4; k += 1) await page.locator(".item").nth(k).getByRole("radio").first().click();
+    await page.route("**/answers", async (route) => {
+      await route.fetch();
+      await route.abort();
+    });
+    await page.getByRole("button", { name: "Send answers" }).click();
+    await page.getByRole("alert").waitFor();
+    assert.equal(responses(), before + 1);
+    await page.unroute("**/answers");
+    await page.reload();
+    await page.getByRole("button", { name: "Send answers" }).click();
+    await page.getByRole("heading", { name: "Thank you" }).waitFor();
+    assert.equal(responses(), before + 1);
+    await page.context().close();
+  });
+
+  test("the standard questionnaire is one click", async () => {
+    const { page } = await open_page(browser, site);
+    await login(page);
+    await page.goto("/forms");
+    await settled(page);
+    await page.getByRole("button", { name: "Standard questionnaire" }).click();
+    await page.waitForURL(/\/forms\/[^/]+$/);
+    await page.getByRole("heading", { name: "Results: 0 responses" }).waitFor();
+    assert.equal(await page.locator(".table tbody tr").count(), 4);
+    await page.getByRole("button", { name: "Delete …" }).click();
+    await page.getByRole("dialog").getByRole("button", { name: "Delete" }).click();
+    await page.waitForURL(/\/forms$/);
+    await page.context().close();
+  });
+
   test("an error of the server is shown with its advice, and the answers stay", needs_mock, async () => {
     const { page } = await open_page(browser, site);
     await page.goto("/q/test-token-1-abcdefghijklmnop");

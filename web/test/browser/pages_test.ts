@@ -204,7 +204,7 @@ describe("browsing", () => {
 
 describe("replay", () => {
   async function open_replay(page: Page): Promise<void> {
-    const attempt = site.mock!.results.attempts.find((one) => one.task === "liver-biopsy" && one.state === "complete")!;
+    const attempt = site.mock!.results.attempts.find((one) => one.task === "liver-biopsy" && one.state === "finished")!;
     await page.goto(`/attempts/${attempt.id}`);
     await settled(page);
     await page.getByRole("slider").waitFor();

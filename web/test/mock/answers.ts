@@ -141,7 +141,7 @@ export class MockResults {
   }
   trace(id: string): unknown {
     const one = this.attempts.find((attempt) => attempt.id === id);
-    if (!one || one.state !== "complete") return null;
+    if (!one || one.state !== "finished") return null;
     return { ...make_trace(one.sequence, one.skill, Math.max(30, one.duration_s)), expert: make_trace(7, 0.96, 55) };
   }
 

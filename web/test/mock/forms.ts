@@ -19,9 +19,11 @@ interface Form {
 }
 type Answers = Record<string, unknown>;
 
+const kStandard: Omit<Item, "id">[] = [1, 2, 3, 4].map((one) => ({ kind: "scale", text: `Standard statement ${one}`, is_required: true }));
+
 export class MockForms {
   private readonly forms: Form[] = [];
-  private readonly responses = new Map<string, { answers: Answers; submitted_s: number }[]>();
+  private readonly responses = new Map<string, { answers: Answers; submitted_s: number; id?: string }[]>();
   private next_id = 1;
 
   constructor() {
@@ -49,7 +51,8 @@ export class MockForms {
     this.create({ title: "Feedback on the course", intro: "", items: [{ kind: "text", text: "What did you miss?", is_required: true }] }).is_open = false;
   }
 
-  create(body: { title: string; intro?: string; items: Omit<Item, "id">[] }): Form {
+  create(given: { title?: string; intro?: string; items?: Omit<Item, "id">[] }): Form {
+    const body = { title: "Your opinion", items: kStandard, ...given };
     const id = String(this.next_id++);
     const token = `test-token-${id}-abcdefghijklmnop`;
     const items = body.items.map((one, k) => ({ id: `${id}-${k}-${this.next_id++}`, kind: one.kind, text: one.text, is_required: one.is_required }));
@@ -100,13 +103,14 @@ export class MockForms {
     return { form: this.listed(form), responses: responses.length, items };
   }
   /** Null, or the error of an answer. */
-  add(form: Form, answers: Answers): string | null {
+  add(form: Form, answers: Answers, id: string): string | null {
     for (const item of form.items) {
       const value = answers[item.id];
       if (value === undefined && item.is_required) return `item "${item.text}" has no answer`;
       if (item.kind === "scale" && value !== undefined && !(Number.isInteger(value) && Number(value) >= 1 && Number(value) <= 6)) return `item "${item.text}" is not 1 to 6`;
     }
-    this.responses.get(form.id)!.push({ answers, submitted_s: Math.floor(Date.now() / 1000) });
+    const all = this.responses.get(form.id)!;
+    if (!all.some((one) => one.id === id)) all.push({ answers, submitted_s: Math.floor(Date.now() / 1000), id });
     return null;
   }
 }

@@ -8,7 +8,7 @@ import { extname, join, normalize } from "node:path";
 import { MockResults } from "./answers.ts";
 import { MockForms } from "./forms.ts";
 
-export const kPolicy = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'";
+export const kPolicy = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 const kTypes: Record<string, string> = { ".html": "text/html; charset=utf-8", ".js": "text/javascript; charset=utf-8", ".css": "text/css; charset=utf-8", ".svg": "image/svg+xml" };
 
 interface Session {
@@ -118,7 +118,8 @@ export class MockServer {
     if (parts[0] === "public") {
       const form = found(this.forms.open_by_token(parts[2]));
       if (method === "GET") return { title: form.title, intro: form.intro, items: form.items };
-      const problem = this.forms.add(form, (await this.body(request)).answers);
+      const { answers, response_id } = await this.body(request);
+      const problem = this.forms.add(form, answers, response_id);
       if (problem) throw new HttpError(400, problem, "correct the answer");
       this.answers_received += 1;
       return {};
