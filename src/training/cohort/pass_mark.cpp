@@ -17,7 +17,8 @@ constexpr const char* kWhere = "pass mark";
 
 Result<ScoreDistribution> fit(std::span<const double> scores, const std::string& group) {
   if (scores.size() < 2)
-    return fail(fmt::format("{} {}: it takes at least 2", scores.size(), group), kWhere, "record more people");
+    return fail(fmt::format("it takes at least 2 {} with a score, not {}", group, scores.size()), kWhere,
+                "record more people");
   TROCAR_TRY_STATUS(check_finite(scores, fmt::format("scores of the {}", group)));
   const auto [least, most] = std::minmax_element(scores.begin(), scores.end());
   if (*least == *most)

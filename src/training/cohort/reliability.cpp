@@ -11,11 +11,10 @@ constexpr const char* kWhere = "internal consistency";
 
 Status check_items(std::span<const std::vector<double>> people) {
   if (people.size() < 2)
-    return fail(fmt::format("{} people are too few, it takes at least 2", people.size()), kWhere,
+    return fail(fmt::format("it takes at least 2 people, not {}", people.size()), kWhere,
                 "record attempts of more people");
   const std::size_t items = people.front().size();
-  if (items < 2)
-    return fail(fmt::format("{} items are too few, it takes at least 2", items), kWhere, "choose more items");
+  if (items < 2) return fail(fmt::format("it takes at least 2 items, not {}", items), kWhere, "choose more items");
   for (std::size_t n = 0; n < people.size(); ++n) {
     TROCAR_TRY_STATUS(check_finite(people[n], fmt::format("items of person {}", n + 1)));
     if (people[n].size() != items)

@@ -25,8 +25,8 @@ Result<Separation> separation_in(const CohortData& data, const Values& values, B
   const std::vector<double> experts = of_group(values, data.people, true);
   const std::vector<double> novices = of_group(values, data.people, false);
   if (experts.empty() || novices.empty())
-    return fail(fmt::format("{} experts and {} novices have a value", experts.size(), novices.size()), "separation",
-                "record attempts of both groups");
+    return fail(fmt::format("people with a value: experts {}, novices {}", experts.size(), novices.size()),
+                "separation", "record attempts of both groups");
   return separation_of(experts, novices, better);
 }
 
@@ -95,7 +95,7 @@ std::string smallest_p_text(std::size_t experts, std::size_t novices, std::size_
   if (experts == 0 || novices == 0) return {};
   const double smallest = smallest_rank_sum_p(experts, novices);
   if (smallest * static_cast<double>(std::max<std::size_t>(metrics, 1)) <= level) return {};
-  return fmt::format("with {} experts and {} novices no two-sided p can be below {:.2g}", experts, novices, smallest);
+  return fmt::format("with groups of {} and {} people no two-sided p can be below {:.2g}", experts, novices, smallest);
 }
 
 }  // namespace trocar::cohort

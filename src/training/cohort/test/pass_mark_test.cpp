@@ -67,9 +67,9 @@ TEST(PassMark, CountsThoseOnTheWrongSide) {
 }
 
 TEST(PassMark, RefusesWithAReason) {
-  EXPECT_NE(reason({}, around(40.0, 10.0)).find("0 experts"), std::string::npos);
-  EXPECT_NE(reason({90.0}, around(40.0, 10.0)).find("1 experts: it takes at least 2"), std::string::npos);
-  EXPECT_NE(reason(around(90.0, 3.0), {50.0}).find("1 novices"), std::string::npos);
+  EXPECT_NE(reason({}, around(40.0, 10.0)).find("at least 2 experts with a score, not 0"), std::string::npos);
+  EXPECT_NE(reason({90.0}, around(40.0, 10.0)).find("at least 2 experts with a score, not 1"), std::string::npos);
+  EXPECT_NE(reason(around(90.0, 3.0), {50.0}).find("at least 2 novices with a score, not 1"), std::string::npos);
   EXPECT_NE(reason({99.0, 99.0}, around(40.0, 10.0)).find("all experts have the same score (99.0)"), std::string::npos);
   EXPECT_NE(reason(around(40.0, 10.0), around(40.0, 12.0)).find("not above"), std::string::npos);
   EXPECT_NE(reason(around(30.0, 10.0), around(40.0, 12.0)).find("not above"), std::string::npos);

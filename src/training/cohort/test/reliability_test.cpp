@@ -103,9 +103,9 @@ TEST(CronbachAlpha, RefusesWithAReason) {
     const auto alpha = cronbach_alpha(rows);
     return alpha ? std::string("none") : alpha.error().text();
   };
-  EXPECT_NE(reason({}).find("0 people are too few"), std::string::npos);
-  EXPECT_NE(reason({{1, 2}}).find("1 people are too few"), std::string::npos);
-  EXPECT_NE(reason({{1}, {2}}).find("1 items are too few"), std::string::npos);
+  EXPECT_NE(reason({}).find("at least 2 people, not 0"), std::string::npos);
+  EXPECT_NE(reason({{1, 2}}).find("at least 2 people, not 1"), std::string::npos);
+  EXPECT_NE(reason({{1}, {2}}).find("at least 2 items, not 1"), std::string::npos);
   EXPECT_NE(reason({{1, 2}, {1}}).find("person 2 has 1 items"), std::string::npos);
   EXPECT_NE(reason({{1, 2}, {2, 1}}).find("same total"), std::string::npos);
   EXPECT_NE(reason({{0.1, 0.2}, {0.1, 0.2}, {0.1, 0.2}}).find("same total"), std::string::npos);

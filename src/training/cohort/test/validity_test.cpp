@@ -65,7 +65,7 @@ TEST(Validity, HolmIsTooStrictForTwoExpertsAndThreeMetrics) {
   EXPECT_EQ(holm.uncorrected, 2u);
   EXPECT_EQ(validity_of(data, {0.05, Correction::kNone}).discriminating, 2u);
   EXPECT_EQ(validity_of(data).discriminating, 2u);
-  EXPECT_EQ(smallest_p_text(2, 12, 3, 0.05), "with 2 experts and 12 novices no two-sided p can be below 0.022");
+  EXPECT_EQ(smallest_p_text(2, 12, 3, 0.05), "with groups of 2 and 12 people no two-sided p can be below 0.022");
   EXPECT_EQ(smallest_p_text(8, 12, 3, 0.05), "");
   EXPECT_EQ(smallest_p_text(0, 12, 3, 0.05), "");
 }
@@ -80,7 +80,7 @@ TEST(Validity, LeavesOutMissingValues) {
   const Validity validity = validity_of(data);
   EXPECT_EQ(validity.metrics[0].separation->novices, 11u);
   ASSERT_FALSE(validity.metrics[1].separation);
-  EXPECT_NE(validity.metrics[1].separation.error().text().find("0 experts and 12 novices have a value"),
+  EXPECT_NE(validity.metrics[1].separation.error().text().find("people with a value: experts 0, novices 12"),
             std::string::npos);
   EXPECT_EQ(validity.tested, 1u);
   EXPECT_EQ(validity.alpha->people, 13u);
