@@ -9,6 +9,7 @@
 #include "results/curves.h"
 #include "results/people.h"
 #include "results_commands.h"
+#include "tasks/task.h"
 
 namespace trocar::cli {
 namespace {
@@ -149,12 +150,19 @@ void print_curve(const LearningCurve& curve, const results::Person& person, cons
   if (curve.peers > 0) fmt::print("peers: {} people{}\n", curve.peers, simulated_text(person.is_simulated));
 }
 
+Status check_task(const std::string& task) {
+  TROCAR_TRY(const std::filesystem::path folder, find_data("tasks"));
+  TROCAR_TRY_STATUS(tasks::load_task(folder, task));
+  return {};
+}
+
 Status show(const std::string& url, Arguments& arguments) {
-  TROCAR_TRY(const std::filesystem::path tasks, find_data("tasks"));
   TROCAR_TRY(results::Repository repository, open_results(url, database::Missing::kRefuse));
   TROCAR_TRY(const results::Person person, results::get_person_named(repository, arguments.person));
   arguments.rules.window = static_cast<std::size_t>(arguments.window);
   TROCAR_TRY(const LearningCurve curve, results::learning_curve(repository, person, arguments.task, arguments.rules));
+  // A misspelt task; one of a file of its own may have any name.
+  if (curve.attempts.empty()) TROCAR_TRY_STATUS(check_task(arguments.task));
   if (arguments.is_json) {
     print_json(curve_json(curve, person, arguments));
   } else {

@@ -131,7 +131,7 @@ void print_people(const Validity& validity, const Arguments& arguments) {
     simulated = "; all simulated, no real people";
   else if (validity.simulated > 0)
     simulated = fmt::format("; {} of {} people are simulated", validity.simulated, people);
-  fmt::print("validity of {}: {} experts, {} novices, attempts {} of each{}\n", arguments.filter.task, validity.experts,
+  fmt::print("validity of {}: experts {}, novices {}, attempts {} of each{}\n", arguments.filter.task, validity.experts,
              validity.novices, arguments.attempts, people > 0 ? simulated : "");
 }
 
@@ -176,12 +176,21 @@ void print_summary(const Validity& validity, const cohort::ValidityRules& rules)
              mark.experts.people, 100.0 * mark.expected_false_fail);
 }
 
-void print_validity(const Validity& validity, const Arguments& arguments) {
-  print_people(validity, arguments);
+void print_table(const Validity& validity) {
+  if (!validity.score.separation) {
+    fmt::print("no comparison: {}; trocar results change NAME --group expert says who is one\n",
+               validity.score.separation.error().what);
+    return;
+  }
   fmt::print("{:<72} {:>9} {:>9}  {:<19}  {:>7} {:>9}  {}\n", "median over people of", "experts", "novices",
              "AUC (95 %)", "p", "corrected", "discriminates");
   print_metric(validity.score);
   for (const cohort::MetricValidity& metric : validity.metrics) print_metric(metric);
+}
+
+void print_validity(const Validity& validity, const Arguments& arguments) {
+  print_people(validity, arguments);
+  print_table(validity);
   print_summary(validity, arguments.rules);
 }
 

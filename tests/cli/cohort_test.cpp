@@ -78,6 +78,7 @@ TEST(ResultsEvidence, RefusesWhatItCannotAnswer) {
   expect_refused(trocar(results + "validity --task liver-biopsy --correction nonsense"), 2, "unknown correction");
   expect_refused(trocar(results + "curve --person Hanna --task liver-biopsy"), 2, "Hanna");
   expect_refused(trocar(results + "curve --person Anna --task liver-biopsy --acceptable 0.5"), 2, "not above");
+  expect_refused(trocar(results + "curve --person Anna --task nonsense"), 2, "nonsense");
   const Outcome nothing = trocar(results + "curve --person Anna --task liver-biopsy");
   EXPECT_EQ(nothing.exit_status, 0) << nothing.err;
   EXPECT_NE(nothing.out.find("0 attempts"), std::string::npos) << nothing.out;
