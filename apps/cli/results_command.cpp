@@ -6,16 +6,12 @@
 
 #include "commands.h"
 #include "results_commands.h"
+#include "serve_accounts.h"
 
 namespace trocar::cli {
 
 Result<results::Repository> open_results(const std::string& url, database::Missing missing) {
-  database::DatabaseUrl parsed;
-  if (url.empty()) {
-    TROCAR_TRY(parsed, results::default_url());
-  } else {
-    TROCAR_TRY(parsed, database::parse_url(url));
-  }
+  TROCAR_TRY(const database::DatabaseUrl parsed, database_of(url));
   auto repository = results::Repository::open(parsed, missing);
   if (!repository && repository.error().what == "no such database")
     repository.error().advice =

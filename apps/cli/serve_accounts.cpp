@@ -124,12 +124,17 @@ Status change_password(const AccountArguments& arguments) {
 
 using Work = Status (*)(const AccountArguments&);
 
+/// --db may stand before `account`, too.
 CLI::App* add_command(CLI::App& account, Action& action, const char* name, const char* description, Work work,
                       const std::shared_ptr<AccountArguments>& a) {
   CLI::App* command = account.add_subcommand(name, description);
   command->add_option("--db", a->database, kDatabaseHelp);
   if (std::string_view(name) != "list") command->add_option("NAME", a->name, "Name of the account")->required();
-  command->callback([&action, a, work] { action = [a, work] { return work(*a); }; });
+  const CLI::Option* of_serve = account.get_parent()->get_option("--db");
+  command->callback([&action, a, work, of_serve] {
+    if (a->database.empty() && of_serve->count() > 0) a->database = of_serve->results().back();
+    action = [a, work] { return work(*a); };
+  });
   return command;
 }
 
