@@ -67,8 +67,7 @@ Result<std::string> read_new_password(const AccountArguments& arguments) {
     std::cerr << "\n";
     if (again != password) return fail_usage("the passwords differ", "password", "run the command again");
   }
-  if (const Status is_good = signing::check_new_password(password, arguments.name); !is_good)
-    return fail_usage(is_good.error().what, is_good.error().where, is_good.error().advice);
+  TROCAR_TRY_STATUS(signing::check_new_password(password, arguments.name));
   return password;
 }
 

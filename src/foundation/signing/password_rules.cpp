@@ -129,17 +129,17 @@ bool is_common_password(std::string_view password) {
 
 Status check_new_password(std::string_view password, std::string_view account) {
   const int characters = count_code_points(password);
-  if (characters < 0) return fail("the password is not valid UTF-8", std::string(kWhere), "type it again");
+  if (characters < 0) return fail_usage("the password is not valid UTF-8", std::string(kWhere), "type it again");
   if (characters < kShortestPassword)
-    return fail("the password is too short", std::string(kWhere),
+    return fail_usage("the password is too short", std::string(kWhere),
                 fmt::format("use at least {} characters, such as four words", kShortestPassword));
   if (characters > kLongestPassword)
-    return fail("the password is too long", std::string(kWhere),
+    return fail_usage("the password is too long", std::string(kWhere),
                 fmt::format("use at most {} characters", kLongestPassword));
   if (is_account_name(lower_case(password), lower_case(account)))
-    return fail("the password is the name of the account", std::string(kWhere), "choose one that others cannot guess");
+    return fail_usage("the password is the name of the account", std::string(kWhere), "choose one that others cannot guess");
   if (is_common_password(password))
-    return fail("the password is one of those that are tried first", std::string(kWhere),
+    return fail_usage("the password is one of those that are tried first", std::string(kWhere),
                 "choose four words that do not belong together");
   return {};
 }
@@ -147,9 +147,9 @@ Status check_new_password(std::string_view password, std::string_view account) {
 Status check_new_pin(std::string_view pin) {
   const bool has_only_digits = std::all_of(pin.begin(), pin.end(), [](char c) { return c >= '0' && c <= '9'; });
   if (!has_only_digits || pin.size() < kShortestPin || pin.size() > kLongestPin)
-    return fail("not a PIN", "PIN", fmt::format("use {} to {} digits", kShortestPin, kLongestPin));
+    return fail_usage("not a PIN", "PIN", fmt::format("use {} to {} digits", kShortestPin, kLongestPin));
   if (pin.find_first_not_of(pin.front()) == std::string_view::npos)
-    return fail("the PIN has one digit only", "PIN", "use different digits");
+    return fail_usage("the PIN has one digit only", "PIN", "use different digits");
   return {};
 }
 

@@ -15,10 +15,10 @@ inline constexpr int kShortestPin = 4, kLongestPin = 12;              ///< In di
 bool is_common_password(std::string_view password);
 
 /// The rules for a new password, as ASVS 5.0 V6.2 asks: length, any character of UTF-8, not common, not the name of its
-/// account (alone, repeated, or with digits behind it). Errors name the rule, and never the password.
+/// account (alone, repeated, or with digits behind it). Errors (exit status 2) name the rule, and never the password.
 Status check_new_password(std::string_view password, std::string_view account);
 
-/// 4 to 12 digits, not all the same.
+/// 4 to 12 digits, not all the same. Errors: exit status 2.
 Status check_new_pin(std::string_view pin);
 
 }  // namespace trocar::signing

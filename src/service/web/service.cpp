@@ -48,7 +48,7 @@ bool has_valid_text(const HttpRequest& request) {
   const auto is_valid = [](std::string_view text) {
     return valid_utf8(text) == text && text.find('\0') == std::string_view::npos;
   };
-  if (!is_valid(request.path)) return false;
+  if (!request.path.starts_with('/') || !is_valid(request.path)) return false;
   for (const auto& [name, value] : request.query)
     if (!is_valid(name) || !is_valid(value)) return false;
   return true;
@@ -72,8 +72,16 @@ struct Service::State {
         repositories(std::move(opened)),
         titles(std::move(loaded)),
         page(std::move(files)),
-        backend{*repositories,           answers,          statistics, titles, logins, public_answers, passwords,
-                std::move(unknown_hash), options.is_secure} {}
+        backend{*repositories,
+                answers,
+                statistics,
+                titles,
+                logins,
+                public_answers,
+                passwords,
+                options.password_work,
+                std::move(unknown_hash),
+                options.is_secure} {}
 
   HttpAnswer answer(HttpRequest request);
   HttpAnswer answer_api(const HttpRequest& request, const Moment& now);
@@ -98,7 +106,7 @@ Result<Service> Service::open(ServiceOptions options) {
   TROCAR_TRY(Titles titles, Titles::load(options.data_folder));
   TROCAR_TRY(auto repositories, RepositoryPool::open(options.database, options.connections));
   TROCAR_TRY(const std::string nobody, signing::make_token(kReferenceBits));
-  TROCAR_TRY(std::string unknown_hash, signing::hash_password(nobody));
+  TROCAR_TRY(std::string unknown_hash, signing::hash_password(nobody, options.password_work));
   return Service(std::make_unique<State>(std::move(options), std::move(repositories), std::move(titles),
                                          std::move(page), std::move(unknown_hash)));
 }
@@ -128,7 +136,7 @@ HttpAnswer Service::State::answer(HttpRequest request) {
   if (!is_for_this_host(request, options.is_loopback, options.is_served))
     return error_answer(421, "this server has another name",
                         "use the address that trocar serve printed, or start it with --name");
-  if (!has_valid_text(request)) return error_answer(400, "the address is not UTF-8", "check the address");
+  if (!has_valid_text(request)) return error_answer(400, "not an address of this server", "check the address");
   if (request.path == "/api" || request.path.starts_with("/api/")) return answer_api(request, options.now());
   if (!is_reading(request.method)) {
     HttpAnswer refused = error_answer(405, "pages can only be read", "send GET");

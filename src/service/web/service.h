@@ -8,6 +8,7 @@
 
 #include "core/result.h"
 #include "database/database_url.h"
+#include "signing/password.h"
 #include "web/message.h"
 #include "web/security/moment.h"
 
@@ -22,6 +23,7 @@ struct ServiceOptions {
   bool is_loopback = true;            ///< Listens on loopback: "localhost" is served.
   std::function<bool(const std::string& host)> is_served;  ///< Other names of this server.
   std::function<Moment()> now;                             ///< Empty: the clocks of the system.
+  signing::PasswordWork password_work;                     ///< Passwords with other work are hashed again at a login.
   std::size_t connections = 4;                             ///< To the database.
 };
 

@@ -62,8 +62,8 @@ Result<std::optional<results::Account>> check_login(Backend& backend, const std:
   }
   const std::string hash = account ? account->password_hash : backend.unknown_hash;
   if (!signing::is_password(hash, password) || !account) return std::optional<results::Account>();
-  if (signing::needs_rehash(hash)) {
-    TROCAR_TRY(account->password_hash, signing::hash_password(password));
+  if (signing::needs_rehash(hash, backend.password_work)) {
+    TROCAR_TRY(account->password_hash, signing::hash_password(password, backend.password_work));
     const auto repository = backend.repositories.borrow();
     TROCAR_TRY_STATUS(results::change_password(*repository, account->id, account->password_hash));
   }
@@ -128,7 +128,7 @@ Result<HttpAnswer> change_own_password(Backend& backend, const Call& call) {
     return error_answer(403, "the present password is wrong", "type it again");
   }
   backend.logins.succeeded(key, call.request.address);
-  TROCAR_TRY(const std::string hash, signing::hash_password(new_password));
+  TROCAR_TRY(const std::string hash, signing::hash_password(new_password, backend.password_work));
   // A new token, with the CSRF token that the page has.
   TROCAR_TRY(NewSession session, make_session(account, call.now));
   session.stored.csrf_token = call.session().csrf_token;
@@ -164,7 +164,7 @@ Result<HttpAnswer> add(Backend& backend, const Call& call) {
   TROCAR_TRY_STATUS(signing::check_new_password(password, name));
   const PasswordGate::Pass pass(backend.passwords);
   if (!pass) return busy_answer();
-  TROCAR_TRY(const std::string hash, signing::hash_password(password));
+  TROCAR_TRY(const std::string hash, signing::hash_password(password, backend.password_work));
   const auto repository = backend.repositories.borrow();
   TROCAR_TRY(const std::optional<results::Account> other, results::find_account(*repository, name));
   if (other) return error_answer(409, "the name is taken", "choose another name");

@@ -27,7 +27,7 @@ Result<HttpAnswer> list_metrics(Backend& backend, const Call& call) {
                   Json list = Json::array({metric_json(backend.titles.score())});
                   for (const results::StoredMetric& one : stored)
                     list.push_back(metric_json(backend.titles.metric(one.name, one.unit)));
-                  return std::optional<Json>({{"metrics", std::move(list)}});
+                  return std::optional<Json>(Json::object({{"metrics", std::move(list)}}));
                 });
 }
 

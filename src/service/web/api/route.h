@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "results/accounts.h"
+#include "signing/password.h"
 #include "web/answer_cache.h"
 #include "web/api/json_fields.h"
 #include "web/api/password_gate.h"
@@ -27,6 +28,7 @@ struct Backend {
   LoginThrottle& logins;
   TokenBuckets& public_answers;  ///< Of questionnaires, by address.
   PasswordGate& passwords;
+  signing::PasswordWork password_work;
   std::string unknown_hash;  ///< Of no password: it takes as long to check as that of an account.
   bool is_secure = false;    ///< The browser uses TLS.
 };

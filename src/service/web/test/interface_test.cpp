@@ -1,0 +1,326 @@
+// The interface over a database: shapes of answers, bad input, deletion, questionnaires.
+#include <gtest/gtest.h>
+
+#include "results/questionnaires.h"
+#include "service_lab.h"
+
+namespace trocar::web {
+namespace {
+
+using namespace std::chrono_literals;
+using namespace testing;
+
+const std::string kHostile = "<script>alert(1)</script>'; DROP TABLE people; --";
+
+class Interface : public ::testing::Test {
+ protected:
+  void SetUp() override { lab_.log_in(); }
+  Json get(const std::string& target, int status = 200) {
+    const HttpAnswer answer = lab_.get(target);
+    EXPECT_EQ(answer.status, status) << target << " " << body_of(answer);
+    return json_of(answer);
+  }
+  ServiceLab lab_;
+};
+
+TEST_F(Interface, OverviewSumsUpEveryPerson) {
+  const auto person = lab_.add_person(kHostile), idle = lab_.add_person("Idle");
+  for (const double score : {50.0, 60.0, 90.0}) lab_.add_attempt(person, score);
+  lab_.add_attempt(person, std::nullopt);
+  const Json overview = get("/api/overview");
+  EXPECT_EQ(overview["tasks"], Json::array({{{"id", "liver-biopsy"}, {"title", "Liver biopsy"}}})) << overview["tasks"];
+  ASSERT_EQ(overview["people"].size(), 2U);
+  const Json& first = overview["people"][0];
+  EXPECT_EQ(first["name"], kHostile);
+  EXPECT_EQ(first["course"], nullptr);
+  EXPECT_EQ(first["simulated"], false);
+  const Json& task = first["tasks"]["liver-biopsy"];
+  EXPECT_EQ(task["attempts"], 4);
+  EXPECT_EQ(task["scored"], 3);
+  EXPECT_EQ(task["passed"], 1);
+  EXPECT_EQ(task["last_score"], 90.0);
+  EXPECT_EQ(task["best_score"], 90.0);
+  EXPECT_NEAR(task["recent_mean"].get<double>(), 200.0 / 3, 1e-9);
+  EXPECT_TRUE(overview["people"][1]["tasks"].empty());
+  EXPECT_EQ(get("/api/people/" + person.id)["person"], first);
+  EXPECT_EQ(get("/api/overview?course=nobody's")["people"].size(), 0U);
+}
+
+TEST_F(Interface, AttemptsComeInPages) {
+  const auto person = lab_.add_person("Anna");
+  std::vector<std::string> ids;
+  for (int n = 0; n < 5; ++n) ids.push_back(lab_.add_attempt(person, 10.0 * n));
+  const std::string base = "/api/people/" + person.id + "/attempts?limit=2";
+  Json page = get(base);
+  EXPECT_EQ(page["attempts"][0]["id"], ids[4]);
+  EXPECT_EQ(page["attempts"][1]["id"], ids[3]);
+  std::size_t seen = 2;
+  while (!page["next"].is_null()) {
+    page = get(base + "&before=" + std::to_string(page["next"].get<int>()));
+    seen += page["attempts"].size();
+  }
+  EXPECT_EQ(seen, 5U);
+  EXPECT_EQ(get(base + "&task=lumbar-puncture")["attempts"].size(), 0U);
+  for (const char* bad : {"&before=x", "&before=-1", "&limit=", "&limit=0", "&task=a b", "&before=1e9"})
+    get("/api/people/" + person.id + "/attempts?a=b" + bad, bad == std::string("&limit=") ? 200 : 400);
+}
+
+TEST_F(Interface, CurveFollowsTheOrderOfRecording) {
+  const auto person = lab_.add_person("Anna");
+  lab_.add_attempt(person, 40.0);
+  lab_.now.utc -= 24h;  // the clock of the station is set back
+  lab_.add_attempt(person, 80.0);
+  lab_.now.utc += 24h;
+  lab_.add_attempt(lab_.add_person("Expert", results::Group::kExpert), 95.0);
+  const Json curve = get("/api/people/" + person.id + "/curve?task=liver-biopsy");
+  ASSERT_EQ(curve["points"].size(), 2U);
+  EXPECT_EQ(curve["points"][1]["n"], 2);
+  EXPECT_EQ(curve["points"][1]["score"], 80.0);
+  EXPECT_EQ(curve["points"][1]["moving_mean"], 60.0);
+  EXPECT_EQ(curve["cusum"]["values"].size(), 2U);
+  EXPECT_EQ(curve["experts"]["mean"], 95.0);
+  get("/api/people/" + person.id + "/curve", 400);
+}
+
+TEST_F(Interface, AttemptShowsItsValuesBesideThoseOfExperts) {
+  const auto person = lab_.add_person("Anna"), expert = lab_.add_person("Expert", results::Group::kExpert);
+  const std::string id = lab_.add_attempt(person, 50.0);
+  lab_.add_attempt(expert, 90.0);
+  const Json attempt = get("/api/attempts/" + id);
+  EXPECT_EQ(attempt["attempt"]["person"]["name"], "Anna");
+  EXPECT_EQ(attempt["attempt"]["hints"][0]["at_s"], 12.5);
+  EXPECT_EQ(attempt["parts"][0]["max_points"], 60.0);
+  ASSERT_EQ(attempt["metrics"].size(), 1U);
+  EXPECT_EQ(attempt["metrics"][0]["value"], 150.0);
+  EXPECT_EQ(attempt["metrics"][0]["expert_median"], 110.0);
+  EXPECT_EQ(attempt["metrics"][0]["better"], "lower");
+  const Json trace = get("/api/attempts/" + id + "/trace");
+  EXPECT_EQ(trace["tip_x_mm"], (Json{1.0, 2.0, 3.0}));
+  EXPECT_EQ(trace["force_n"][2], -1.0);
+  EXPECT_EQ(trace["expert"]["time_s"].size(), 3U);
+  EXPECT_FALSE(trace["expert"].contains("expert"));
+}
+
+TEST_F(Interface, RecordingIsAFile) {
+  const std::string id = lab_.add_attempt(lab_.add_person("Anna"), 50.0);
+  const HttpAnswer answer = lab_.get("/api/attempts/" + id + "/recording");
+  EXPECT_EQ(body_of(answer), "the session file");
+  EXPECT_EQ(answer.content_type, "application/octet-stream");
+  EXPECT_EQ(header_of(answer, "Content-Disposition"), "attachment; filename=\"" + id + ".session\"");
+}
+
+TEST_F(Interface, DistributionsCountEveryAttempt) {
+  const auto trainee = lab_.add_person("Anna"), expert = lab_.add_person("Expert", results::Group::kExpert);
+  for (int n = 0; n <= 10; ++n) lab_.add_attempt(trainee, 5.0 * n);
+  lab_.add_attempt(expert, 100.0);
+  const Json metrics = get("/api/metrics?task=liver-biopsy")["metrics"];
+  EXPECT_EQ(metrics[0]["name"], "score");
+  EXPECT_EQ(metrics[1]["title"], "Path length of the tip");
+  for (const char* name : {"score", "path_length"}) {
+    const Json json = get("/api/metrics/" + std::string(name) + "?task=liver-biopsy");
+    EXPECT_EQ(json["edges"].size(), 21U);
+    std::int64_t counted = 0;
+    for (const Json& group : json["groups"]) {
+      EXPECT_EQ(group["counts"].size(), 20U);
+      for (const Json& count : group["counts"]) counted += count.get<std::int64_t>();
+    }
+    EXPECT_EQ(counted, 12);
+    EXPECT_EQ(json["auc"]["value"], 1.0);
+  }
+  const Json score = get("/api/metrics/score?task=liver-biopsy");
+  EXPECT_EQ(score["groups"][0]["group"], "trainee");
+  EXPECT_EQ(score["groups"][0]["median"], 25.0);
+  get("/api/metrics/unknown?task=liver-biopsy", 404);
+}
+
+TEST_F(Interface, FewDataHaveAReason) {
+  lab_.add_attempt(lab_.add_person("Anna"), 50.0);
+  const Json distribution = get("/api/metrics/score?task=liver-biopsy");
+  EXPECT_EQ(distribution["auc"], nullptr);
+  EXPECT_TRUE(distribution["reason"].is_string());
+  const Json validity = get("/api/validity?task=liver-biopsy");
+  EXPECT_EQ(validity["experts"], 0);
+  EXPECT_EQ(validity["novices"], 1);
+  for (const char* part : {"alpha", "pass_mark", "discriminating"})
+    EXPECT_TRUE(validity[part]["reason"].is_string()) << part;
+  EXPECT_TRUE(validity["metrics"][0]["reason"].is_string());
+}
+
+TEST_F(Interface, ValidityOfTwoGroups) {
+  for (int n = 0; n < 6; ++n)
+    lab_.add_attempt(lab_.add_person("Expert " + std::to_string(n), results::Group::kExpert), 80.0 + n);
+  for (int n = 0; n < 6; ++n) lab_.add_attempt(lab_.add_person("Novice " + std::to_string(n)), 30.0 + n);
+  const Json validity = get("/api/validity?task=liver-biopsy");
+  EXPECT_EQ(validity["experts"], 6);
+  EXPECT_EQ(validity["metrics"][0]["auc"], 1.0);
+  EXPECT_EQ(validity["metrics"][0]["discriminates"], true);
+  EXPECT_EQ(validity["discriminating"]["share"], 1.0);
+  EXPECT_GT(validity["pass_mark"]["value"], 35.0);
+  EXPECT_LT(validity["pass_mark"]["value"], 80.0);
+}
+
+TEST_F(Interface, ExportIsSafeForSpreadsheets) {
+  lab_.add_attempt(lab_.add_person("=HYPERLINK(\"http://evil.example\")"), 50.0);
+  const HttpAnswer csv = lab_.get("/api/export/attempts.csv");
+  EXPECT_EQ(csv.content_type, "text/csv; charset=utf-8");
+  EXPECT_EQ(body_of(csv).find("\n=HYPERLINK"), std::string::npos);
+  EXPECT_EQ(body_of(csv).find(",=HYPERLINK"), std::string::npos);
+  EXPECT_NE(body_of(csv).find("'=HYPERLINK"), std::string::npos) << body_of(csv);
+}
+
+TEST_F(Interface, UnknownIdsAreNotFound) {
+  for (const std::string& id : {std::string(32, '0'), std::string("x"), std::string("../../etc/passwd"), kHostile,
+                                std::string("' OR 1=1"), std::string(32, 'G'), std::string(1000, '0')}) {
+    for (const char* pattern : {"/api/people/*", "/api/people/*/attempts", "/api/people/*/curve?task=a",
+                                "/api/attempts/*", "/api/attempts/*/trace", "/api/attempts/*/recording",
+                                "/api/forms/*/summary", "/api/forms/*/answers.csv", "/api/public/forms/*"}) {
+      std::string target = pattern;
+      target.replace(target.find('*'), 1, id);
+      EXPECT_EQ(lab_.get(target).status, 404) << target;
+    }
+  }
+}
+
+TEST_F(Interface, MethodsAndAddressesThatDoNotExist) {
+  const HttpAnswer method = lab_.send(lab_.request("DELETE", "/api/overview"));
+  EXPECT_EQ(method.status, 405);
+  EXPECT_EQ(header_of(method, "Allow"), "GET");
+  EXPECT_EQ(lab_.post("/", {}).status, 405);
+  for (const char* target :
+       {"/api", "/api/", "/api/nothing", "/api/overview/", "/api//overview", "/API/overview/x.js", "/api/people/"})
+    EXPECT_EQ(lab_.get(target).status, 404) << target;
+  EXPECT_EQ(lab_.send(lab_.request("HEAD", "/api/overview")).status, 200);
+  HttpRequest bad = lab_.request("GET", "/api/overview");
+  bad.path = "/api/people/\xff";
+  EXPECT_EQ(lab_.send(bad).status, 400);
+  bad = lab_.request("GET", "/api/overview?course=\xff");
+  EXPECT_EQ(lab_.send(bad).status, 400);
+}
+
+TEST_F(Interface, ErrorsNeverShowInsides) {
+  for (const HttpAnswer& answer : {lab_.get("/api/people/x"), lab_.get("/api/validity"),
+                                   lab_.get("/api/metrics/x?task=y"), lab_.post("/api/forms", {{"items", 1}}),
+                                   lab_.get("/api/export/attempts.csv?course=" + std::string(200, 'x'))}) {
+    EXPECT_GE(answer.status, 400);
+    for (const char* inside : {"SELECT", "sqlite", "/tmp", "soci", ".cpp", "people p"})
+      EXPECT_EQ(body_of(answer).find(inside), std::string::npos) << body_of(answer);
+    EXPECT_TRUE(json_of(answer)["advice"].is_string());
+  }
+}
+
+TEST_F(Interface, DeletionOfAPersonNeedsItsNameAndIsSeenAtOnce) {
+  const auto person = lab_.add_person("Anna");
+  const std::string id = lab_.add_attempt(person, 50.0), target = "/api/people/" + person.id;
+  get("/api/overview");
+  get("/api/attempts/" + id);
+  for (const Json& body : {Json::object(), Json{{"confirm", "anna"}}, Json{{"confirm", ""}}, Json{{"confirm", true}}})
+    EXPECT_EQ(lab_.send(lab_.request("DELETE", target, body)).status, 400) << body;
+  EXPECT_EQ(lab_.send(lab_.request("DELETE", target, {{"confirm", "Anna"}})).status, 204);
+  EXPECT_EQ(get("/api/overview")["people"].size(), 0U);
+  get("/api/attempts/" + id, 404);
+  get("/api/attempts/" + id + "/recording", 404);
+  get(target, 404);
+}
+
+TEST_F(Interface, HostHeaderOfAnotherNameIsRefused) {
+  HttpRequest request = lab_.request("GET", "/api/me");
+  request.headers[0].second = "evil.example";
+  EXPECT_EQ(lab_.send(request).status, 421);
+  request.path = "/";
+  EXPECT_EQ(lab_.send(request).status, 421) << "the page, too";
+}
+
+TEST_F(Interface, RequestsOfOneAddressAreLimited) {
+  lab_.address = "192.0.2.77";
+  int answered = 0;
+  while (answered < 2000 && lab_.get("/api/health").status == 204) ++answered;
+  EXPECT_EQ(answered, 600);
+  EXPECT_EQ(header_of(lab_.get("/api/health"), "Retry-After"), "1");
+  lab_.address = "192.0.2.78";
+  EXPECT_EQ(lab_.get("/api/health").status, 204);
+}
+
+class Questionnaire : public Interface {
+ protected:
+  Json add_form() {
+    const HttpAnswer answer = lab_.post("/api/forms", {{"title", kHostile}});
+    EXPECT_EQ(answer.status, 201) << body_of(answer);
+    return json_of(answer);
+  }
+  int submit(const Json& form, const Json& answers) {
+    HttpRequest request = lab_.request("POST", "/api/public/forms/" + form["token"].get<std::string>() + "/answers",
+                                       {{"answers", answers}});
+    std::erase_if(request.headers, [](const auto& h) { return h.first == "Cookie" || h.first == "X-CSRF-Token"; });
+    return lab_.send(request).status;
+  }
+};
+
+TEST_F(Questionnaire, IsAnsweredWithoutALoginAndSummedUp) {
+  const Json form = add_form();
+  ASSERT_EQ(form["items"].size(), 5U) << "the default: four statements and a free text";
+  const std::string token = form["token"].get<std::string>();
+  ServiceLab* lab = &lab_;
+  const std::string cookie = std::exchange(lab->cookie, "");
+  const Json shown = get("/api/public/forms/" + token);
+  lab->cookie = cookie;
+  EXPECT_EQ(shown["title"], kHostile);
+  EXPECT_FALSE(shown.contains("id"));
+  EXPECT_FALSE(shown.contains("responses"));
+  Json answers = Json::object();
+  for (const Json& item : shown["items"])
+    answers[item["id"].get<std::string>()] = item["kind"] == "scale" ? Json(1) : Json(kHostile);
+  EXPECT_EQ(submit(form, answers), 201);
+  for (auto& [item, value] : answers.items())
+    if (value.is_number()) value = 4;
+  EXPECT_EQ(submit(form, answers), 201);
+  const Json summary = get("/api/forms/" + form["id"].get<std::string>() + "/summary");
+  EXPECT_EQ(summary["responses"], 2);
+  EXPECT_EQ(summary["items"][0]["mean"], 2.5);
+  EXPECT_EQ(summary["items"][0]["counts"], (Json{1, 0, 0, 1, 0, 0}));
+  EXPECT_EQ(summary["items"][4]["comments"][0]["text"], kHostile);
+}
+
+TEST_F(Questionnaire, BadAnswersNameTheItem) {
+  const Json form = add_form();
+  Json answers = Json::object();
+  for (const Json& item : form["items"])
+    if (item["kind"] == "scale") answers[item["id"].get<std::string>()] = 3;
+  const std::string first = form["items"][0]["id"].get<std::string>();
+  for (const Json& bad :
+       {Json(0), Json(7), Json(-1), Json(2.5), Json("3"), Json(true), Json::array({3}), Json(1e300)}) {
+    Json with_bad = answers;
+    with_bad[first] = bad;
+    EXPECT_EQ(submit(form, with_bad), 400) << bad;
+  }
+  Json unknown = answers;
+  unknown["nonsense"] = 3;
+  EXPECT_EQ(submit(form, unknown), 400);
+  Json long_text = answers;
+  long_text[form["items"][4]["id"].get<std::string>()] = std::string(2001, 'x');
+  EXPECT_EQ(submit(form, long_text), 400);
+  EXPECT_EQ(submit(form, Json::array()), 400);
+  EXPECT_EQ(get("/api/forms/" + form["id"].get<std::string>() + "/summary")["responses"], 0);
+  EXPECT_EQ(submit(form, answers), 201);
+}
+
+TEST_F(Questionnaire, ClosedAndUnknownOnesLookTheSame) {
+  const Json form = add_form();
+  const std::string id = form["id"].get<std::string>(),
+                    address = "/api/public/forms/" + form["token"].get<std::string>();
+  EXPECT_EQ(lab_.send(lab_.request("PUT", "/api/forms/" + id, {{"is_open", false}})).status, 200);
+  EXPECT_EQ(lab_.get(address).status, 404);
+  EXPECT_EQ(body_of(lab_.get(address)), body_of(lab_.get("/api/public/forms/unknown")));
+  EXPECT_EQ(submit(form, Json::object()), 404);
+  EXPECT_EQ(lab_.send(lab_.request("DELETE", "/api/forms/" + id)).status, 204);
+  EXPECT_EQ(lab_.send(lab_.request("DELETE", "/api/forms/" + id)).status, 404);
+}
+
+TEST_F(Questionnaire, AnswersOfOneAddressAreLimited) {
+  const Json form = add_form();
+  int answered = 0;
+  while (answered < 1000 && submit(form, Json::object()) != 429) ++answered;
+  EXPECT_EQ(answered, 60);
+}
+
+}  // namespace
+}  // namespace trocar::web

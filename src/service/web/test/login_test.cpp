@@ -1,0 +1,284 @@
+// Logins: who gets in, how a login ends, and what a forged request achieves.
+#include <gtest/gtest.h>
+
+#include "results/accounts.h"
+#include "service_lab.h"
+#include "signing/password.h"
+#include "signing/token.h"
+
+namespace trocar::web {
+namespace {
+
+using namespace std::chrono_literals;
+using namespace testing;
+
+TEST(Login, GivesACookieAndTheTokenOfThePage) {
+  ServiceLab lab;
+  const HttpAnswer answer = lab.log_in("dr. WEBER");
+  EXPECT_EQ(answer.status, 200) << body_of(answer);
+  EXPECT_EQ(json_of(answer)["account"], (Json{{"name", "Dr. Weber"}, {"role", "admin"}}));
+  const std::string cookie = header_of(answer, "Set-Cookie");
+  EXPECT_TRUE(cookie.starts_with("trocar_session=")) << cookie;
+  EXPECT_NE(cookie.find("; HttpOnly; SameSite=Strict"), std::string::npos);
+  EXPECT_EQ(json_of(lab.get("/api/me"))["csrf"], lab.csrf);
+}
+
+TEST(Login, TheDatabaseHoldsOnlyADigestOfTheToken) {
+  ServiceLab lab;
+  lab.log_in();
+  const std::string token = lab.cookie.substr(lab.cookie.find('=') + 1);
+  EXPECT_FALSE(results::find_web_session(lab.repository(), token).value());
+  EXPECT_TRUE(results::find_web_session(lab.repository(), signing::token_digest(token)).value());
+}
+
+TEST(Login, UnknownNamesAndWrongPasswordsHaveTheSameAnswer) {
+  ServiceLab lab;
+  const HttpAnswer unknown = lab.log_in("nobody", kPassword), wrong = lab.log_in(kAdmin, "another password");
+  EXPECT_EQ(unknown.status, 401);
+  EXPECT_EQ(wrong.status, 401);
+  EXPECT_EQ(body_of(unknown), body_of(wrong));
+  EXPECT_EQ(unknown.headers, wrong.headers);
+  EXPECT_EQ(lab.log_in("' OR 1=1 --", "' OR '1'='1").status, 401);
+  EXPECT_EQ(lab.log_in(kAdmin, "").status, 401);
+  EXPECT_EQ(lab.log_in(kAdmin, std::string(kPassword) + " ").status, 401);
+}
+
+TEST(Login, IsSlowedDownAfterFiveFailures) {
+  ServiceLab lab;
+  for (int n = 0; n < 5; ++n) EXPECT_EQ(lab.log_in(kAdmin, "wrong").status, 401);
+  const HttpAnswer slowed = lab.log_in();
+  EXPECT_EQ(slowed.status, 429);
+  EXPECT_EQ(header_of(slowed, "Retry-After"), "60");
+  lab.address = "192.0.2.9";
+  EXPECT_EQ(lab.log_in().status, 200) << "the owner of the account is not locked out";
+  lab.address = "127.0.0.1";
+  lab.pass(60s);
+  EXPECT_EQ(lab.log_in().status, 200);
+}
+
+TEST(Login, ReplacesThePresentSession) {
+  ServiceLab lab;
+  lab.log_in();
+  const std::string first = lab.cookie;
+  lab.log_in();
+  EXPECT_NE(lab.cookie, first);
+  lab.cookie = first;
+  EXPECT_EQ(lab.get("/api/me").status, 401);
+}
+
+TEST(Login, MalformedBodiesAreRefused) {
+  ServiceLab lab;
+  for (const Json& body : {Json::object(), Json{{"name", 1}, {"password", 2}}, Json{{"name", kAdmin}}, Json::array(),
+                           Json("text"), Json{{"name", {{"$ne", ""}}}, {"password", {{"$ne", ""}}}},
+                           Json{{"name", std::string(5000, 'x')}, {"password", "x"}}})
+    EXPECT_EQ(lab.post("/api/login", body).status, 400) << body.dump();
+  HttpRequest broken = lab.request("POST", "/api/login");
+  for (const std::string& text : {std::string("{"), std::string("{\"name\":\"\xff\"}"), std::string(1000, '[')}) {
+    broken.body = text;
+    EXPECT_EQ(lab.send(broken).status, 400) << text;
+  }
+}
+
+TEST(Session, IsNeededForEverythingButThePublicAddresses) {
+  ServiceLab lab;
+  for (const char* target :
+       {"/api/me", "/api/accounts", "/api/overview", "/api/people/x", "/api/people/x/attempts", "/api/people/x/curve",
+        "/api/metrics", "/api/metrics/x", "/api/validity", "/api/attempts/x", "/api/attempts/x/trace",
+        "/api/attempts/x/recording", "/api/export/attempts.csv", "/api/forms", "/api/forms/x/summary",
+        "/api/forms/x/answers.csv"})
+    EXPECT_EQ(lab.get(target).status, 401) << target;
+  for (const char* target : {"/api/logout", "/api/password", "/api/accounts", "/api/forms"})
+    EXPECT_EQ(lab.post(target, {}).status, 401) << target;
+  EXPECT_EQ(lab.get("/api/health").status, 204);
+  EXPECT_EQ(lab.get("/api/public/forms/x").status, 404);
+}
+
+TEST(Session, ForgedCookiesAreNone) {
+  ServiceLab lab;
+  lab.log_in();
+  const std::string own = lab.cookie;
+  std::string other = own;
+  other.back() = other.back() == 'A' ? 'B' : 'A';
+  for (const std::string& cookie : {other, own + "x", std::string("trocar_session="),
+                                    std::string("trocar_session=' OR 1=1 --"), "__Host-" + own, own + "; " + own}) {
+    lab.cookie = cookie;
+    EXPECT_EQ(lab.get("/api/me").status, 401) << cookie;
+  }
+  lab.cookie = own;
+  EXPECT_EQ(lab.get("/api/me").status, 200);
+}
+
+TEST(Session, EndsWhenItIsIdleOldOrFromTheFuture) {
+  ServiceLab idle;
+  idle.log_in();
+  idle.pass(29min);
+  EXPECT_EQ(idle.get("/api/me").status, 200) << "and a request keeps it";
+  idle.pass(29min);
+  EXPECT_EQ(idle.get("/api/me").status, 200);
+  idle.pass(30min);
+  EXPECT_EQ(idle.get("/api/me").status, 401);
+  idle.pass(-30min);
+  EXPECT_EQ(idle.get("/api/me").status, 401) << "an ended login does not come back";
+
+  ServiceLab old;
+  old.log_in();
+  for (int n = 0; n < 35; ++n) {
+    old.pass(20min);
+    EXPECT_EQ(old.get("/api/me").status, 200);
+  }
+  old.pass(20min);
+  EXPECT_EQ(old.get("/api/me").status, 401) << "12 h after the login, whatever its use";
+
+  ServiceLab back;
+  back.log_in();
+  back.now.utc -= 1h;
+  EXPECT_EQ(back.get("/api/me").status, 401) << "the clock was set back";
+}
+
+TEST(Session, LogoutEndsIt) {
+  ServiceLab lab;
+  lab.log_in();
+  const HttpAnswer out = lab.post("/api/logout", {});
+  EXPECT_EQ(out.status, 204);
+  EXPECT_NE(header_of(out, "Set-Cookie").find("Max-Age=0"), std::string::npos);
+  EXPECT_EQ(lab.get("/api/me").status, 401);
+}
+
+TEST(Session, OverTlsTheCookieIsOfThisHostAlone) {
+  ServiceLab lab(true);
+  HttpRequest request = lab.request("POST", "/api/login", {{"name", kAdmin}, {"password", kPassword}});
+  for (auto& [name, value] : request.headers)
+    if (name == "Origin") value = "https://localhost:8080";
+  const std::string cookie = header_of(lab.send(request), "Set-Cookie");
+  EXPECT_TRUE(cookie.starts_with("__Host-trocar_session=")) << cookie;
+  EXPECT_NE(cookie.find("; Secure"), std::string::npos);
+}
+
+TEST(Csrf, ChangesNeedTheTokenOfThePage) {
+  ServiceLab lab;
+  lab.log_in();
+  const std::string own = lab.csrf;
+  for (const std::string& token : {std::string(), std::string("x"), own + "x", own.substr(1) + "A"}) {
+    lab.csrf = token;
+    EXPECT_EQ(lab.post("/api/forms", {{"title", "x"}}).status, 403) << token;
+    EXPECT_EQ(lab.post("/api/logout", {}).status, 403);
+  }
+  ServiceLab other;
+  other.log_in();
+  lab.csrf = other.csrf;
+  EXPECT_EQ(lab.post("/api/logout", {}).status, 403) << "the token of another session";
+  lab.csrf = own;
+  EXPECT_EQ(lab.post("/api/forms", {{"title", "x"}}).status, 201);
+}
+
+TEST(Csrf, RequestsFromAnotherSiteAreRefused) {
+  ServiceLab lab;
+  lab.log_in();
+  for (const auto& [header, value] : TextPairs{{"Origin", "http://evil.example"},
+                                               {"Origin", "null"},
+                                               {"Origin", "https://localhost:8080"},
+                                               {"Sec-Fetch-Site", "cross-site"},
+                                               {"Sec-Fetch-Site", "same-site"}}) {
+    for (const char* method : {"GET", "POST"}) {
+      HttpRequest request = lab.request(method, method == std::string("GET") ? "/api/me" : "/api/logout");
+      std::erase_if(request.headers, [&](const auto& h) { return h.first == header; });
+      request.headers.emplace_back(header, value);
+      EXPECT_EQ(lab.send(request).status, 403) << method << " " << value;
+    }
+  }
+  EXPECT_EQ(lab.get("/api/me").status, 200);
+}
+
+/// A form of HTML can send these types across sites without asking first.
+TEST(Csrf, BodiesOfFormsAreRefused) {
+  ServiceLab lab;
+  lab.log_in();
+  for (const char* type : {"text/plain", "application/x-www-form-urlencoded", "multipart/form-data; boundary=x", "",
+                           "application/json-patch", "text/json"}) {
+    HttpRequest request = lab.request("POST", "/api/forms", {{"title", "x"}});
+    for (auto& [name, value] : request.headers)
+      if (name == "Content-Type") value = type;
+    EXPECT_EQ(lab.send(request).status, 415) << type;
+  }
+}
+
+TEST(Password, ChangeEndsTheOtherSessionsAndKeepsThisOne) {
+  ServiceLab lab;
+  lab.log_in();
+  const std::string other_cookie = lab.cookie, other_csrf = lab.csrf;
+  lab.cookie.clear();
+  lab.csrf.clear();
+  lab.log_in();
+  EXPECT_EQ(lab.post("/api/password", {{"old", "wrong"}, {"new", "seven quiet otters"}}).status, 403);
+  EXPECT_EQ(lab.post("/api/password", {{"old", kPassword}, {"new", "short"}}).status, 400);
+  EXPECT_EQ(lab.post("/api/password", {{"old", kPassword}, {"new", "Dr. Weber 2026"}}).status, 400);
+  EXPECT_EQ(lab.post("/api/password", {{"old", kPassword}, {"new", "passwordpassword"}}).status, 400);
+  const std::string before = lab.cookie;
+  const HttpAnswer changed = lab.post("/api/password", {{"old", kPassword}, {"new", "seven quiet otters"}});
+  ASSERT_EQ(changed.status, 204) << body_of(changed);
+  const std::string set = header_of(changed, "Set-Cookie");
+  lab.cookie = set.substr(0, set.find(';'));
+  EXPECT_NE(lab.cookie, before);
+  EXPECT_EQ(json_of(lab.get("/api/me"))["csrf"], lab.csrf) << "the page goes on";
+  for (const std::string& ended : {other_cookie, before}) {
+    lab.cookie = ended;
+    EXPECT_EQ(lab.get("/api/me").status, 401);
+  }
+  lab.cookie.clear();
+  EXPECT_EQ(lab.log_in().status, 401);
+  EXPECT_EQ(lab.log_in(kAdmin, "seven quiet otters").status, 200);
+}
+
+TEST(Password, AnOldHashIsRenewedAtTheNextLogin) {
+  ServiceLab lab;
+  const std::string weak = signing::hash_password(kPassword, {1, std::size_t{8} << 10}).value();
+  ASSERT_TRUE(results::add_account(lab.repository(), "old", results::Role::kInstructor, weak, lab.now.utc));
+  EXPECT_EQ(lab.log_in("old").status, 200);
+  EXPECT_EQ(lab.get("/api/me").status, 200);
+  const auto account = results::find_account(lab.repository(), "old").value();
+  EXPECT_FALSE(signing::needs_rehash(account->password_hash, kQuickWork));
+}
+
+TEST(Accounts, AreOfAdminsAlone) {
+  ServiceLab lab;
+  lab.log_in(kInstructor);
+  EXPECT_EQ(lab.get("/api/accounts").status, 403);
+  EXPECT_EQ(lab.post("/api/accounts", {{"name", "x"}, {"password", kPassword}, {"role", "admin"}}).status, 403);
+  EXPECT_EQ(lab.send(lab.request("DELETE", "/api/accounts/Dr. Weber")).status, 403);
+  EXPECT_EQ(lab.send(lab.request("DELETE", "/api/people/" + lab.add_person("Anna").id, {{"confirm", "Anna"}})).status,
+            403);
+  EXPECT_EQ(lab.get("/api/overview").status, 200);
+}
+
+TEST(Accounts, AreAddedListedAndRemoved) {
+  ServiceLab lab;
+  lab.log_in();
+  const Json good = {
+      {"name", " Prof.  <b>X</b>'; DROP TABLE accounts "}, {"password", "seven quiet otters"}, {"role", "instructor"}};
+  const HttpAnswer added = lab.post("/api/accounts", good);
+  ASSERT_EQ(added.status, 201) << body_of(added);
+  EXPECT_EQ(json_of(added)["name"], "Prof. <b>X</b>'; DROP TABLE accounts");
+  EXPECT_EQ(lab.post("/api/accounts", good).status, 409);
+  for (const auto& [field, value] :
+       TextPairs{{"role", "root"}, {"password", "short"}, {"name", "a\nb"}, {"name", ""}}) {
+    Json bad = good;
+    bad[field] = value;
+    EXPECT_EQ(lab.post("/api/accounts", bad).status, 400) << field << value;
+  }
+  EXPECT_EQ(json_of(lab.get("/api/accounts"))["accounts"].size(), 3U);
+  EXPECT_EQ(body_of(lab.get("/api/accounts")).find("argon2"), std::string::npos);
+  EXPECT_EQ(lab.send(lab.request("DELETE", "/api/accounts/nobody")).status, 404);
+  EXPECT_EQ(lab.send(lab.request("DELETE", "/api/accounts/huber")).status, 204);
+  EXPECT_EQ(lab.send(lab.request("DELETE", "/api/accounts/Dr. Weber")).status, 409) << "the last admin";
+  EXPECT_EQ(json_of(lab.get("/api/accounts"))["accounts"].size(), 2U);
+}
+
+TEST(Accounts, RemovalEndsTheirLogins) {
+  ServiceLab lab;
+  lab.log_in(kInstructor);
+  ASSERT_TRUE(results::remove_account(lab.repository(), kInstructor));
+  EXPECT_EQ(lab.get("/api/me").status, 401);
+}
+
+}  // namespace
+}  // namespace trocar::web
