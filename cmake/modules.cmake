@@ -140,7 +140,7 @@ function(trocar_add_test name library)
   endif()
   # What reads foreign bytes, talks to devices and clients, or repeats whole attempts: minutes in a Debug build with
   # sanitizers, too.
-  if(name MATCHES "^(core|realtime|config|geometry|volume|telemetry|link|devices|server|io|dicom|storage|signing|learning|same_bits)$")
+  if(name MATCHES "^(core|realtime|config|geometry|volume|telemetry|link|devices|server|io|dicom|storage|signing|learning|database|results|web|same_bits)$")
     set_tests_properties(${name} PROPERTIES LABELS quick)
     add_dependencies(quick_tests ${name}_test)
   endif()

@@ -10,6 +10,8 @@
 #include "learning/next_exercise.h"
 #include "learning/progress.h"
 #include "past_sessions.h"
+#include "results/attempts.h"
+#include "results_commands.h"
 #include "tasks/task.h"
 
 namespace trocar::cli {
@@ -17,6 +19,7 @@ namespace {
 
 struct Arguments {
   std::string sessions;
+  std::string person, database;
   std::string task;
   bool is_json = false;
 };
@@ -35,12 +38,22 @@ std::string date_text(std::chrono::sys_days day) {
                      static_cast<unsigned>(date.day()));
 }
 
+/// Attempts of a person in the database of results.
+Result<learning::History> history_of(const Arguments& arguments) {
+  TROCAR_TRY(results::Repository repository, open_results(arguments.database, database::Missing::kRefuse));
+  TROCAR_TRY(const results::Person person, results::get_person_named(repository, arguments.person));
+  learning::History history;
+  TROCAR_TRY(history.attempts, results::past_attempts(repository, person.id));
+  return history;
+}
+
 Result<Learned> learn(const Arguments& arguments) {
   Learned learned;
   TROCAR_TRY(const std::filesystem::path tasks_folder, find_data("tasks"));
   TROCAR_TRY(learned.curriculum, learning::load_curriculum(tasks_folder.parent_path()));
   if (!arguments.task.empty()) TROCAR_TRY_STATUS(tasks::load_task(tasks_folder, arguments.task));
-  TROCAR_TRY(learned.history, read_past_sessions(arguments.sessions));
+  TROCAR_TRY(learned.history,
+             arguments.person.empty() ? read_past_sessions(arguments.sessions) : history_of(arguments));
   const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
   for (const learning::Course& course : learned.curriculum.courses)
     learned.progress.push_back(learning::progress_of(learned.history.attempts, course, learned.curriculum.rules, now));
@@ -140,9 +153,17 @@ void add_learn_command(CLI::App& program, Action& action) {
   const auto a = std::make_shared<Arguments>();
   command->add_option("--sessions", a->sessions,
                       "Folder of the trainee's sessions [those of the trainer: $XDG_STATE_HOME/trocar/sessions]");
+  CLI::Option* sessions = command->get_option("--sessions");
+  CLI::Option* person = command
+                            ->add_option("--person", a->person,
+                                         "Attempts of this person in the database of results, in place of sessions")
+                            ->excludes(sessions);
+  command->add_option("--db", a->database, "Database of --person; see trocar results --help")->needs(person);
   command->add_option("--task", a->task, "Only exercises of this task; see trocar task list");
   command->add_flag("--json", a->is_json, "Print one JSON object");
-  command->footer("Examples:\n  trocar learn\n  trocar learn --sessions sessions --task liver-biopsy\n");
+  command->footer(
+      "Examples:\n  trocar learn\n  trocar learn --sessions sessions --task liver-biopsy\n  trocar learn --person "
+      "\"Anna Meier\"\n");
   command->callback([&action, a] { action = [a] { return print(*a); }; });
 }
 

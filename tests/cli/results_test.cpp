@@ -36,6 +36,7 @@ TEST_F(Results, AreImportedListedAndExported) {
   EXPECT_NE(imported.out.find("2 attempts added"), std::string::npos) << imported.out;
   EXPECT_NE(results("import " + file("a.session") + " --person 'Anna Meier'").out.find("1 were there already"),
             std::string::npos);
+  EXPECT_EQ(json_of(trocar("learn --json --person 'Anna Meier' --db " + file("r.sqlite")))["attempts"], 2);
   const config::Json json = json_of(results("list --json"));
   ASSERT_EQ(json["attempts"].size(), 2u);
   EXPECT_EQ(json["attempts"][0]["score"], 91.0);
