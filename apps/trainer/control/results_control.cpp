@@ -174,6 +174,7 @@ void ResultsControl::practise_as(std::optional<results::Person> person) {
 
 void ResultsControl::record_begin(const storage::SessionInfo& info) {
   task_ = info.task;
+  attempt_id_ = info.attempt_id;
   recorded_task_.clear();
   feedback_.show_comparison({});
   if (!person_) return;
@@ -189,8 +190,13 @@ void ResultsControl::record_begin(const storage::SessionInfo& info) {
 
 void ResultsControl::record_end(const std::filesystem::path& session) {
   if (!person_) return;
-  enqueue([session](const database::DatabaseUrl& url) -> Result<Found> {
+  enqueue([session, id = attempt_id_](const database::DatabaseUrl& url) -> Result<Found> {
     TROCAR_TRY(results::Repository repository, results::Repository::open(url));
+    std::error_code error;
+    if (!std::filesystem::exists(session, error)) {
+      TROCAR_TRY_STATUS(results::forget_begun_attempt(repository, id));
+      return Found();
+    }
     TROCAR_TRY(const learning::Curriculum known, curriculum());
     TROCAR_TRY_STATUS(results::import_session(repository, session, {}, known));
     Found found;

@@ -37,7 +37,7 @@ class ResultsControl : public QObject {
   std::string person_name() const { return person_ ? person_->name : std::string(); }
   /// Records sessions that are left on the station, then reads people and history anew.
   void refresh();
-  /// Writes that an attempt has begun, and its result when it has ended.
+  /// Writes that an attempt has begun, and its result when it has ended; one that recorded nothing is forgotten.
   void record_begin(const storage::SessionInfo& info);
   void record_end(const std::filesystem::path& session);
   void poll();
@@ -83,8 +83,8 @@ class ResultsControl : public QObject {
   std::optional<results::Person> person_;
   std::optional<results::Person> asked_;  ///< Whose PIN is being entered.
   Curves curves_;
-  std::string task_;           ///< Of the attempt that has begun.
-  std::string recorded_task_;  ///< Of the attempt that the feedback compares; empty: none.
+  std::string task_, attempt_id_;  ///< Of the attempt that has begun.
+  std::string recorded_task_;      ///< Of the attempt that the feedback compares; empty: none.
   BackgroundJob<Found> working_;
   std::deque<Work> waiting_;
 };

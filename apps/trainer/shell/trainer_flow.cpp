@@ -308,6 +308,7 @@ void TrainerFlow::poll_attempt() {
   window_.show_banner({});
   journal_.clear();
   if (!*result) {
+    results_->record_end(session);
     window_.strip().show_servers({});
     window_.show_banner(sentence_of(result->error()) + tr(" Press Begin to try again, or Back for the start page."),
                         BannerKind::kError);

@@ -50,6 +50,14 @@ Status begin_attempt(Repository& repository, const Attempt& attempt) {
                               [&](soci::session& session) { return AttemptWriter(session, database).begin(attempt); });
 }
 
+Status forget_begun_attempt(Repository& repository, std::string_view id) {
+  return repository.database().transaction(kCannotWrite, [&](soci::session& session) {
+    const std::string key(id);
+    const int state = static_cast<int>(State::kRunning);
+    session << "DELETE FROM attempts WHERE id = :i AND state = :s", soci::use(key), soci::use(state);
+  });
+}
+
 Result<std::int64_t> record_attempt(Repository& repository, const AttemptRecord& record, std::string_view recording) {
   database::Database& database = repository.database();
   return database.transaction(

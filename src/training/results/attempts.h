@@ -14,6 +14,8 @@ namespace trocar::results {
 
 /// Writes that an attempt has begun (state running). Repeating it changes nothing.
 Status begin_attempt(Repository& repository, const Attempt& attempt);
+/// Removes an attempt that has begun and recorded nothing; others stay.
+Status forget_begun_attempt(Repository& repository, std::string_view id);
 /// Writes an attempt with all its data; one with the same id that is running or interrupted is completed, a finished
 /// one stays as it is. `recording`: bytes of the session file; empty: not kept. Returns its sequence.
 /// Error (exit status 2): no such person.

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/files/atomic_file.h"
+#include "core/files/temporary_folder.h"
 #include "learning/history.h"
 #include "results/detail/trace_of.h"
 #include "signing/sha256.h"
@@ -56,10 +57,13 @@ void add_outcome(const scoring::Outcome& outcome, AttemptRecord& record) {
 
 Result<std::string> read_recording(const fs::path& file) {
   std::error_code error;
-  // The newest ticks of a killed or running session are beside it.
-  if (fs::exists(file.string() + "-wal", error) || fs::file_size(file, error) > kMostRecordingBytes)
-    return std::string();
-  return read_file(file);
+  if (fs::file_size(file, error) > kMostRecordingBytes) return std::string();
+  if (!fs::exists(file.string() + "-wal", error)) return read_file(file);
+  // The newest ticks of a killed session are beside it.
+  const TemporaryFolder folder;
+  const fs::path copy = folder / "copy.session";
+  TROCAR_TRY_STATUS(storage::copy_session(file, copy));
+  return read_file(copy);
 }
 
 Result<std::optional<State>> state_of(Repository& repository, const std::string& id) {

@@ -58,6 +58,16 @@ std::vector<fs::path> session_files(const fs::path& path) {
   return {path, path.string() + "-wal", path.string() + "-shm", path.string() + "-journal"};
 }
 
+Status copy_session(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  fs::copy_file(from, to, error);
+  const fs::path wal = from.string() + "-wal";
+  if (!error && fs::exists(wal)) fs::copy_file(wal, to.string() + "-wal", error);
+  if (error) return fail("the session cannot be copied: " + error.message(), from.string(), "check the free space");
+  TROCAR_TRY_STATUS(make_single(to));
+  return {};
+}
+
 Result<std::optional<fs::path>> set_aside_incomplete_session(const fs::path& path) {
   TROCAR_TRY(const bool is_left, make_single(path));
   if (!is_left) return std::nullopt;

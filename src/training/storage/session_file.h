@@ -151,6 +151,9 @@ Error damage_error(const Session& session, const std::filesystem::path& path, co
 
 /// The files that a session consists of while it is written: itself and SQLite's companions.
 std::vector<std::filesystem::path> session_files(const std::filesystem::path& path);
+/// Copies a session of a finished or killed program to a new file, as one file with all that was committed; the
+/// original is only read. Errors: it cannot be read or written.
+Status copy_session(const std::filesystem::path& from, const std::filesystem::path& to);
 /// Renames an incomplete session that an interrupted program left at `path` (first.session ->
 /// first.incomplete.session), so that a new one can be made there; returns its new path. Empty if there is no such
 /// session. Errors: another program is still writing it, or it cannot be renamed.

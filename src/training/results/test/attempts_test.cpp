@@ -81,6 +81,16 @@ TEST_P(Attempts, AreCompletedOnceAndThenStay) {
   EXPECT_EQ(load_attempt(*repository_, record.attempt.id)->value().measures.size(), 2u);
 }
 
+TEST_P(Attempts, ThatOnlyBeganAreForgotten) {
+  const Person anna = add("Anna");
+  AttemptRecord record = attempt(anna.id, 72.0), begun = attempt(anna.id, 0.0);
+  put(record);
+  ASSERT_TRUE(begin_attempt(*repository_, begun.attempt));
+  ASSERT_TRUE(forget_begun_attempt(*repository_, begun.attempt.id));
+  ASSERT_TRUE(forget_begun_attempt(*repository_, record.attempt.id));
+  EXPECT_EQ(list_attempts(*repository_, {})->size(), 1u);
+}
+
 TEST_P(Attempts, AreListedByFilterAndPage) {
   const Person anna = add("Anna", Group::kTrainee, "A"), ben = add("Ben");
   for (int n = 0; n < 7; ++n) put(attempt(anna.id, n));
@@ -212,6 +222,37 @@ TEST_P(Attempts, AreDeletedOneByOne) {
   EXPECT_FALSE(delete_attempt(*repository_, record.attempt.id));
   EXPECT_TRUE(list_attempts(*repository_, {})->empty());
   EXPECT_FALSE(load_recording(*repository_, record.attempt.id)->has_value());
+}
+
+TEST(AttemptsFile, TenThousandAreFoundByPageAndSummarised) {
+  TemporaryFolder folder;
+  auto repository = Repository::open({folder / "a.sqlite", {}});
+  ASSERT_TRUE(repository);
+  const auto anna = add_person(*repository, {"Anna"}, Seconds()), ben = add_person(*repository, {"Ben"}, Seconds());
+  constexpr int kAttempts = 10'000;
+  std::vector<AttemptRecord> records(kAttempts);
+  for (int n = 0; n < kAttempts; ++n) {
+    Attempt& attempt = records[static_cast<std::size_t>(n)].attempt;
+    attempt.id = std::to_string(n);
+    attempt.person_id = n % 2 == 0 ? anna->id : ben->id;
+    attempt.the_case.task = "liver-biopsy";
+    attempt.state = State::kFinished;
+    attempt.score = n % 101;
+  }
+  ASSERT_TRUE(record_attempts(*repository, records));
+  AttemptFilter page{anna->id};
+  page.is_newest_first = true;
+  page.limit = 100;
+  page.before = 5001;
+  const auto attempts = list_attempts(*repository, page);
+  ASSERT_TRUE(attempts);
+  ASSERT_EQ(attempts->size(), 100u);
+  EXPECT_EQ(attempts->front().id, "4998");
+  EXPECT_EQ(attempts->back().id, "4800");
+  const auto summaries = summarise_tasks(*repository);
+  ASSERT_EQ(summaries->size(), 2u);
+  EXPECT_EQ((*summaries)[0].attempts, kAttempts / 2);
+  EXPECT_EQ((*summaries)[0].best_score, 100.0);
 }
 
 TEST(AttemptsFile, LoseNothingOnAFullDisk) {
