@@ -122,7 +122,9 @@ TEST_P(Attempts, KeepTheirOrderWhenTheClockIsSetBack) {
     put(record);
   }
   std::vector<double> scores;
-  for (const learning::PastAttempt& one : *past_attempts(*repository_, anna.id)) scores.push_back(*one.score);
+  const auto past = past_attempts(*repository_, anna.id);
+  ASSERT_TRUE(past);
+  for (const learning::PastAttempt& one : *past) scores.push_back(*one.score);
   EXPECT_EQ(scores, (std::vector<double>{50, 52, 10, 51}));
   EXPECT_EQ(*summarise_tasks(*repository_)->front().last_score, 51.0);
 }
