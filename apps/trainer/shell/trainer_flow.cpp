@@ -14,7 +14,6 @@
 #include "control/results_control.h"
 #include "core/available_memory.h"
 #include "core/files/disk_space.h"
-#include "core/version.h"
 #include "io/patient/patient_cache.h"
 #include "pages/briefing_page.h"
 #include "pages/case_page.h"
@@ -111,13 +110,6 @@ void TrainerFlow::connect_learning() {
   connect(learning_.get(), &LearningControl::exam_progress, &window_.briefing(), &BriefingPage::show_progress);
   connect(learning_.get(), &LearningControl::exam_failed, &window_.briefing(), &BriefingPage::show_error);
   connect(learning_.get(), &LearningControl::exam_found, this, &TrainerFlow::open);
-}
-
-void TrainerFlow::connect_results() {
-  connect(results_.get(), &ResultsControl::history_changed, this,
-          [this] { learning_->follow(results_->url(), results_->person_id()); });
-  connect(results_.get(), &ResultsControl::warned, this,
-          [this](const QString& text) { window_.show_message(text, BannerKind::kWarning); });
 }
 
 void TrainerFlow::go_to_start() {
@@ -322,29 +314,6 @@ void TrainerFlow::poll_attempt() {
   } else {
     load_replay(session);
   }
-}
-
-void TrainerFlow::record_begin(const attempt::AttemptOptions& options) {
-  storage::SessionInfo info;
-  info.attempt_id = options.attempt_id;
-  info.person_id = options.person_id;
-  info.task = open_->the_case.task.name;
-  info.patient_name = open_->the_case.patient->name;
-  info.patient_source = open_->choice.patient_source;
-  info.patient_hash = open_->the_case.patient->content_hash;
-  info.patient_seed = open_->choice.patient_seed;
-  info.level = options.level;
-  info.operator_name = options.trainee;
-  info.program_version = kVersion;
-  results_->record_begin(info);
-}
-
-/// Exams are signed; every attempt is recorded and changes the next exercise.
-void TrainerFlow::keep_result(const std::filesystem::path& session) {
-  learning_->forget_result();
-  results_->record_end(session);
-  if (is_exam()) return learning_->sign(session);
-  learning_->refresh();
 }
 
 void TrainerFlow::report_recoveries(const attempt::AttemptView& view) {

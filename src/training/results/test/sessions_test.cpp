@@ -6,6 +6,7 @@
 
 #include <fstream>
 
+#include "core/files/atomic_file.h"
 #include "results_lab.h"
 #include "storage/session_file.h"
 
