@@ -1,6 +1,7 @@
 #include "cohort/detail/distributions.h"
 
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <numbers>
 
