@@ -116,6 +116,15 @@ class MeanReader {
   long long first_, last_;
 };
 
+void leave_out_simulated(std::vector<PersonMean>& people) {
+  const auto has_real = [&](bool is_expert) {
+    return std::any_of(people.begin(), people.end(),
+                       [&](const PersonMean& person) { return person.is_expert == is_expert && !person.is_simulated; });
+  };
+  if (has_real(true) && has_real(false))
+    std::erase_if(people, [](const PersonMean& person) { return person.is_simulated; });
+}
+
 cohort::Better better_of(metrics::Better better) {
   switch (better) {
     case metrics::Better::kLower:
@@ -135,7 +144,7 @@ Columns columns_of(const std::vector<NamedMean>& means, const std::map<std::stri
   Columns columns;
   for (const NamedMean& mean : means) {
     const auto row = rows.find(mean.person_id);
-    if (row == rows.end()) continue;  // scored by another station since
+    if (row == rows.end()) continue;  // simulated, or scored by another station since
     std::vector<std::optional<double>>& column = columns[mean.name];
     column.resize(rows.size());
     column[row->second] = mean.mean;
@@ -162,9 +171,9 @@ std::vector<cohort::MetricOfPeople> metrics_of(const std::vector<NamedMean>& mea
 }  // namespace
 
 Result<cohort::CohortData> cohort_data(Repository& repository, const EvidenceFilter& filter) {
-  TROCAR_TRY(const Means means, repository.database().run(kCannotRead, [&](soci::session& session) {
-    return MeanReader(session, filter).read();
-  }));
+  TROCAR_TRY(Means means, repository.database().run(
+                              kCannotRead, [&](soci::session& session) { return MeanReader(session, filter).read(); }));
+  leave_out_simulated(means.people);
   cohort::CohortData data;
   std::map<std::string, std::size_t> rows;
   for (const PersonMean& person : means.people) {

@@ -17,6 +17,7 @@ struct EvidenceFilter {
 };
 
 /// The people with such attempts, and of each the mean of score, metrics and points of the parts. Trainees are novices.
+/// Simulated people are left out where there are real experts and real trainees.
 /// Titles and directions of the metrics are those of the catalogue (metrics/metric.h), in its order.
 Result<cohort::CohortData> cohort_data(Repository& repository, const EvidenceFilter& filter);
 

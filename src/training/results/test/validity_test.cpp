@@ -78,6 +78,22 @@ TEST_P(ValidityTest, OfAStudyInTheDatabase) {
   EXPECT_EQ(validity->pass_mark->false_fails + validity->pass_mark->false_passes, 0u);
 }
 
+TEST_P(CohortDataTest, LeavesOutSimulatedPeopleWhereBothGroupsAreReal) {
+  play(add_simulated("simulated expert 1", Group::kExpert), 100.0);
+  play(add_simulated("simulated novice 1", Group::kTrainee), 10.0);
+  play(add("Novice", Group::kTrainee), 50.0);
+  const auto without_experts = cohort_data(*repository_, {"liver-biopsy"});
+  ASSERT_TRUE(without_experts) << without_experts.error().text();
+  EXPECT_EQ(without_experts->people.size(), 3u) << "no real expert";
+  play(add("Expert", Group::kExpert), 90.0);
+  const auto data = cohort_data(*repository_, {"liver-biopsy"});
+  ASSERT_EQ(data->people.size(), 2u);
+  EXPECT_FALSE(data->people[0].is_simulated || data->people[1].is_simulated);
+  EXPECT_EQ(*data->scores[0] + *data->scores[1], 140.0);
+  ASSERT_EQ(data->metrics[0].values.size(), 2u);
+  EXPECT_EQ(data->items.size(), 2u);
+}
+
 TEST_P(ValidityTest, OfAnUnknownTaskHasNobody) {
   const auto validity = validity_of(*repository_, {"'; DROP TABLE people; --"});
   ASSERT_TRUE(validity) << validity.error().text();
