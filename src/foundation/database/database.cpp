@@ -2,10 +2,6 @@
 
 #include <soci/sqlite3/soci-sqlite3.h>
 
-#include <array>
-#include <fstream>
-#include <string_view>
-
 #include "core/files/atomic_file.h"
 #include "core/files/private_file.h"
 #include "database/guarded.h"
@@ -18,24 +14,12 @@ namespace {
 
 constexpr int kWaitForWriter_s = 10;
 
-/// Checks the first bytes, so that SQLite never opens a file that is none of its own.
-Status check_file(const fs::path& path) {
-  std::error_code error;
-  if (fs::is_directory(path, error)) return fail("is a folder, not a database", path.string(), "name a file");
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return fail("cannot be read", path.string(), "check the permissions");
-  constexpr std::string_view kMark{"SQLite format 3\0", 16};
-  std::array<char, kMark.size()> head{};
-  file.read(head.data(), head.size());
-  if (file.gcount() == 0) return {};  // SQLite makes a new database from an empty file
-  if (std::string_view(head.data(), head.size()) != kMark)
-    return fail("is not a database", path.string(), "name another file");
-  return {};
-}
-
 Status prepare_file(const fs::path& path, Missing missing) {
   std::error_code error;
-  if (fs::exists(path, error)) return check_file(path);
+  // SQLite alone may open the file and refuse it: closing it here would drop the locks of all connections of this
+  // process (POSIX), and another process would remove the log that they use.
+  if (fs::is_directory(path, error)) return fail("is a folder, not a database", path.string(), "name a file");
+  if (fs::exists(path, error)) return {};
   if (missing == Missing::kRefuse) return fail("no such database", path.string(), "check the path");
   TROCAR_TRY_STATUS(make_parent_folder(path));
   // The names of people are in it. Another program may make it at the same time.
@@ -85,6 +69,11 @@ std::optional<Error> sqlite_error(int code, const std::string& where) {
   }
 }
 
+bool is_not_a_database(const std::exception& error) {
+  const auto* const sqlite = dynamic_cast<const soci::sqlite3_soci_error*>(&error);
+  return sqlite != nullptr && (sqlite->result() & 0xff) == SQLITE_NOTADB;
+}
+
 /// The error of an exception in plain words. `session`: null before there is a connection.
 Error error_of(const DatabaseUrl& url, const std::exception& error, soci::session* session) {
   std::optional<Error> known;
@@ -112,6 +101,7 @@ Result<Database> Database::open(const DatabaseUrl& url, Missing missing) {
   try {
     return Database(url, connect(url));
   } catch (const std::exception& error) {
+    if (is_not_a_database(error)) return fail("is not a database", url.shown(), "name another file");
     Error reason = error_of(url, error, nullptr);
     reason.what = "the database cannot be opened: " + reason.what;
     return tl::unexpected(std::move(reason));

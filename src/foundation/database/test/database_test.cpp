@@ -1,7 +1,10 @@
 #include "database/database.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <thread>
@@ -52,6 +55,36 @@ TEST_F(DatabaseFile, IsMadeForThisUserAlone) {
   struct stat status {};
   ASSERT_EQ(stat(file_.c_str(), &status), 0);
   EXPECT_EQ(status.st_mode & 0777U, 0600U);
+}
+
+/// True if another process sees a lock of this one on the bytes that SQLite locks (fileformat2.html, 1.2: lock bytes).
+bool is_locked_for_others(const fs::path& file) {
+  const pid_t child = fork();
+  if (child == 0) {
+    struct flock lock {};
+    lock.l_type = F_WRLCK;
+    lock.l_whence = SEEK_SET;
+    lock.l_start = 0x40000000;
+    lock.l_len = 512;
+    const int descriptor = ::open(file.c_str(), O_RDWR | O_CLOEXEC);
+    const bool is_known = descriptor >= 0 && fcntl(descriptor, F_GETLK, &lock) == 0;
+    _exit(is_known && lock.l_type != F_UNLCK ? 1 : 0);
+  }
+  int status = 0;
+  return child > 0 && waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 1;
+}
+
+// Without its lock another process believes to be alone, and removes the log that this one still uses.
+TEST_F(DatabaseFile, StaysLockedWhenItIsOpenedAgain) {
+  Database database = open();
+  ASSERT_TRUE(migrate(database, kMark, kFirst));
+  ASSERT_TRUE(is_locked_for_others(file_));
+  {
+    Database second = open(Missing::kRefuse);
+    EXPECT_EQ(count(second), 0);
+    EXPECT_TRUE(is_locked_for_others(file_));
+  }
+  EXPECT_TRUE(is_locked_for_others(file_));
 }
 
 TEST_F(DatabaseFile, UndoesAFailedTransactionWhole) {
@@ -149,6 +182,7 @@ TEST_F(DatabaseFile, TellsThatAFileIsNone) {
   EXPECT_EQ(error_of(), "no such database");
   std::ofstream(file_) << "this is a letter, and no database";
   EXPECT_EQ(error_of(), "is not a database");
+  EXPECT_EQ(fs::file_size(file_), 33U);
   fs::remove(file_);
   fs::create_directory(file_);
   EXPECT_EQ(error_of(), "is a folder, not a database");
