@@ -55,5 +55,7 @@ Result<std::vector<CaseResult>> run_ultrasound_cost_benchmark(const Options& opt
 Result<std::vector<CaseResult>> run_xray_benchmark(const Options& options);
 /// Live ultrasound beside two live servers and a drawing thread: renewed pictures a second.
 Result<std::vector<CaseResult>> run_live_benchmark(const Options& options);
+/// `trocar serve` with 100,000 simulated attempts: the first answer of every page, 200 readers at the same time.
+Result<std::vector<CaseResult>> run_serve_benchmark(const Options& options);
 
 }  // namespace trocar::bench

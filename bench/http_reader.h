@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace trocar::bench {
+
+/// One connection of a reader to a server on this machine, kept alive. Errors are empty answers.
+class HttpReader {
+ public:
+  explicit HttpReader(int port) : port_(port) {}
+  ~HttpReader();
+  HttpReader(const HttpReader&) = delete;
+  HttpReader& operator=(const HttpReader&) = delete;
+
+  struct Answer {
+    int status = 0;
+    std::string header;
+    std::string body;
+  };
+  /// Sends a request with these header lines (each ends with CR LF) and reads its answer.
+  std::optional<Answer> send(std::string_view method, std::string_view target, std::string_view headers,
+                             std::string_view body = {});
+
+ private:
+  bool connect();
+  bool read_more();
+
+  int port_;
+  int socket_ = -1;
+  std::string received_;
+};
+
+}  // namespace trocar::bench
