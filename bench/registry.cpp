@@ -62,7 +62,7 @@ const std::vector<Benchmark>& all_benchmarks() {
       {"serve",
        "trocar serve with 100,000 simulated attempts: every page once, then 200 readers at the same time",
        run_serve_benchmark,
-       {"--seconds"}},
+       {"--seconds", "--out"}},
       {"link", "batches of ticks encoded and decoded, beside a fixed piece of arithmetic", run_link_benchmark},
       {"servers",
        "two live haptic servers, a drawing client and a busy process: lateness, ticks, missed deadlines",

@@ -9,6 +9,7 @@
 
 #include "bench/benchmarks.h"
 #include "bench/http_reader.h"
+#include "bench/processor_time.h"
 #include "bench/simulated_results.h"
 #include "core/files/data_dir.h"
 #include "core/files/temporary_folder.h"
@@ -68,13 +69,18 @@ Result<std::vector<CaseResult>> time_pages(int port, const std::string& cookie, 
   std::vector<CaseResult> results;
   for (const Page& page : pages_of(filled, 0)) {
     const auto start = Clock::now();
+    const double processor_start_ms = processor_time_ms();
     const auto answer = reader.send("GET", page.target, cookie);
     const double time_ms = Milliseconds(Clock::now() - start).count();
+    const double processor_ms = processor_time_ms() - processor_start_ms;
     if (!answer || answer->status != 200)
       return fail(fmt::format("no answer, status {}", answer ? answer->status : 0), page.target,
                   "report this as a bug");
-    results.push_back(
-        {"serve/first/" + page.name, "ms", figure_of(time_ms), {}, fmt::format("{} KiB", answer->body.size() / 1024)});
+    results.push_back({"serve/first/" + page.name,
+                       "ms",
+                       figure_of(time_ms),
+                       {},
+                       fmt::format("{} KiB, {:.1f} ms of a processor", answer->body.size() / 1024, processor_ms)});
   }
   return results;
 }
@@ -126,7 +132,7 @@ CaseResult reading_case(const std::string& name, const Readings& readings, doubl
 
 Result<std::vector<CaseResult>> run_serve_benchmark(const Options& options) {
   const TemporaryFolder folder;
-  const database::DatabaseUrl url{folder / "results.sqlite", {}};
+  const database::DatabaseUrl url{(options.out.empty() ? folder.path() : options.out) / "results.sqlite", {}};
   const auto fill_start = Clock::now();
   TROCAR_TRY(const SimulatedResults filled, fill_with_simulated_results(url, kAttempts));
   const double fill_s = std::chrono::duration<double>(Clock::now() - fill_start).count();

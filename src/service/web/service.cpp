@@ -32,6 +32,11 @@ Moment system_now() {
   return {std::chrono::steady_clock::now(), std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now())};
 }
 
+std::size_t count_bytes(const std::vector<results::MetricSample>& samples) {
+  constexpr std::size_t kTextBytes = 40;  // of an id
+  return samples.size() * (sizeof(results::MetricSample) + kTextBytes);
+}
+
 bool is_reading(std::string_view method) {
   return method == "GET" || method == "HEAD";
 }
@@ -74,6 +79,7 @@ struct Service::State {
         page(std::move(files)),
         backend{*repositories,
                 answers,
+                samples,
                 statistics,
                 titles,
                 logins,
@@ -92,7 +98,9 @@ struct Service::State {
   std::unique_ptr<RepositoryPool> repositories;
   Titles titles;
   StaticFiles page;
-  AnswerCache answers, statistics{kStatisticsRules};
+  // An answer may need a statistic, and that samples: they end in this order.
+  SampleCache samples{count_bytes, kStatisticsRules};
+  AnswerCache statistics{kStatisticsRules}, answers;
   LoginThrottle logins;
   TokenBuckets requests{kRequestRule}, public_answers{kPublicRule};
   PasswordGate passwords;

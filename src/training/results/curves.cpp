@@ -48,12 +48,17 @@ Result<std::vector<Attempt>> finished_attempts(Repository& repository, const std
 
 Result<LearningCurve> learning_curve(Repository& repository, const Person& person, std::string_view task,
                                      const CurveRules& rules) {
+  TROCAR_TRY(const std::vector<MetricSample> samples, metric_samples(repository, task, "score"));
+  return learning_curve_of(repository, person, task, samples, rules);
+}
+
+Result<LearningCurve> learning_curve_of(Repository& repository, const Person& person, std::string_view task,
+                                        const std::vector<MetricSample>& samples, const CurveRules& rules) {
   constexpr std::size_t kMostWindow = 1000;
   if (rules.window < 1 || rules.window > kMostWindow)
     return fail_usage(fmt::format("a moving mean of {} attempts is not within 1 and {}", rules.window, kMostWindow),
                       "learning curve", "choose another number");
   TROCAR_TRY(std::vector<Attempt> attempts, finished_attempts(repository, person.id, task));
-  TROCAR_TRY(const std::vector<MetricSample> samples, metric_samples(repository, task, "score"));
   Scores scores;
   std::vector<bool> passed;
   for (const Attempt& attempt : attempts) {

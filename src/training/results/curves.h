@@ -43,5 +43,8 @@ struct LearningCurve {
 /// Errors: those of the database; rules outside of their ranges (exit status 2).
 Result<LearningCurve> learning_curve(Repository& repository, const Person& person, std::string_view task,
                                      const CurveRules& rules = {});
+/// The same with the scores of all people at the task (metric_samples of "score"), for many curves in a row.
+Result<LearningCurve> learning_curve_of(Repository& repository, const Person& person, std::string_view task,
+                                        const std::vector<MetricSample>& scores, const CurveRules& rules = {});
 
 }  // namespace trocar::results

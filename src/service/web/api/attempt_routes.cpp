@@ -25,10 +25,11 @@ Result<Json> expert_quartiles(results::Repository& repository, const std::string
   return json;
 }
 
-Result<Json> experts_of(Backend& backend, results::Repository& repository, const std::string& task, const Moment& now) {
+Result<Json> experts_of(Backend& backend, const std::string& task, const Moment& now) {
   TROCAR_TRY(const AnswerCache::Value text,
-             backend.statistics.get("experts\n" + task, now.steady, [&]() -> Result<AnswerCache::Value> {
-               TROCAR_TRY(const Json json, expert_quartiles(repository, task));
+             backend.statistics.get("experts\n" + task, now.steady, [&backend, task]() -> Result<AnswerCache::Value> {
+               const auto repository = backend.repositories.borrow();
+               TROCAR_TRY(const Json json, expert_quartiles(*repository, task));
                return std::make_shared<const std::string>(config::json_text(json, -1));
              }));
   return config::parse_json(*text, "experts");
@@ -67,13 +68,26 @@ Json metrics_json(std::vector<results::Measure> measures, const Titles& titles, 
   return list;
 }
 
-Result<std::optional<Json>> load_json_of(Backend& backend, results::Repository& repository, const std::string& id,
-                                         const Moment& now) {
-  TROCAR_TRY(const std::optional<results::AttemptRecord> record, results::load_attempt(repository, id));
-  if (!record) return std::optional<Json>();
-  TROCAR_TRY(const auto person, results::find_person(repository, record->attempt.person_id));
-  if (!person) return std::optional<Json>();
-  TROCAR_TRY(const Json experts, experts_of(backend, repository, record->attempt.the_case.task, now));
+struct RecordOfPerson {
+  results::AttemptRecord record;
+  results::Person person;
+};
+/// Empty: no such attempt.
+Result<std::optional<RecordOfPerson>> load_record(RepositoryPool& repositories, const std::string& id) {
+  const auto repository = repositories.borrow();
+  TROCAR_TRY(const std::optional<results::AttemptRecord> record, results::load_attempt(*repository, id));
+  if (!record) return std::optional<RecordOfPerson>();
+  TROCAR_TRY(const auto person, results::find_person(*repository, record->attempt.person_id));
+  if (!person) return std::optional<RecordOfPerson>();
+  return std::optional<RecordOfPerson>({*record, *person});
+}
+
+Result<std::optional<Json>> load_json_of(Backend& backend, const std::string& id, const Moment& now) {
+  TROCAR_TRY(const std::optional<RecordOfPerson> loaded, load_record(backend.repositories, id));
+  if (!loaded) return std::optional<Json>();
+  const results::AttemptRecord* const record = &loaded->record;
+  const results::Person* const person = &loaded->person;
+  TROCAR_TRY(const Json experts, experts_of(backend, record->attempt.the_case.task, now));
   Json attempt = attempt_json(record->attempt);
   attempt["person"] = {{"id", person->id}, {"name", person->name}, {"simulated", person->is_simulated}};
   attempt["not_scored"] = or_null(record->not_scored);
@@ -87,10 +101,11 @@ Result<std::optional<Json>> load_json_of(Backend& backend, results::Repository& 
 }
 
 Result<HttpAnswer> show_attempt(Backend& backend, const Call& call) {
-  const std::string& id = call.names[0];
+  const std::string id = call.names[0];
+  const Moment now = call.now;
   if (!is_id(id)) return not_found("attempt");
-  return cached(backend.answers, backend.repositories, "attempt\n" + id, call.now, "attempt",
-                [&](results::Repository& repository) { return load_json_of(backend, repository, id, call.now); });
+  return cached(backend.answers, "attempt\n" + id, now, "attempt",
+                [&backend, id, now] { return load_json_of(backend, id, now); });
 }
 
 Result<std::optional<Json>> load_trace(results::Repository& repository, const std::string& id) {
@@ -107,10 +122,10 @@ Result<std::optional<Json>> load_trace(results::Repository& repository, const st
 }
 
 Result<HttpAnswer> show_trace(Backend& backend, const Call& call) {
-  const std::string& id = call.names[0];
+  const std::string id = call.names[0];
   if (!is_id(id)) return not_found("attempt");
   return cached(backend.answers, backend.repositories, "trace\n" + id, call.now, "attempt",
-                [&](results::Repository& repository) { return load_trace(repository, id); });
+                [=, &backend](results::Repository& repository) { return load_trace(repository, id); });
 }
 
 HttpAnswer attachment(std::string content_type, std::string bytes, const std::string& file_name) {

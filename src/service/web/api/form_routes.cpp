@@ -127,10 +127,10 @@ Json summary_json(const results::ItemSummary& summary) {
 }
 
 Result<HttpAnswer> show_summary(Backend& backend, const Call& call) {
-  const std::string& id = call.names[0];
+  const std::string id = call.names[0];
   return cached(
       backend.answers, backend.repositories, "form\n" + id, call.now, "form",
-      [&](results::Repository& repository) -> Result<std::optional<Json>> {
+      [=, &backend](results::Repository& repository) -> Result<std::optional<Json>> {
         TROCAR_TRY(const std::optional<results::FormSummary> summary, results::summarise_form(repository, id));
         if (!summary) return std::optional<Json>();
         Json items = Json::array();

@@ -19,7 +19,7 @@ Json metric_json(const Titles::Metric& metric) {
 Result<HttpAnswer> list_metrics(Backend& backend, const Call& call) {
   TROCAR_TRY(const std::string task, query_task(call.request));
   return cached(backend.statistics, backend.repositories, "metrics\n" + task, call.now, "task",
-                [&](results::Repository& repository) -> Result<std::optional<Json>> {
+                [=, &backend](results::Repository& repository) -> Result<std::optional<Json>> {
                   TROCAR_TRY(std::vector<results::StoredMetric> stored, results::list_metrics(repository, task));
                   std::stable_sort(stored.begin(), stored.end(), [&](const auto& a, const auto& b) {
                     return backend.titles.order_of(a.name) < backend.titles.order_of(b.name);
@@ -109,20 +109,31 @@ Json distribution_json(const Titles::Metric& metric, const Samples& samples) {
   return json;
 }
 
+/// The unit of a metric that attempts at the task have; empty: they have no such metric.
+Result<std::optional<std::string>> find_unit(Backend& backend, const std::string& task, const std::string& name) {
+  if (name == backend.titles.score().name) return std::optional(backend.titles.score().unit);
+  const auto repository = backend.repositories.borrow();
+  TROCAR_TRY(const std::vector<results::StoredMetric> stored, results::list_metrics(*repository, task));
+  for (const results::StoredMetric& one : stored)
+    if (one.name == name) return std::optional(one.unit);
+  return std::optional<std::string>();
+}
+
+Result<std::optional<Json>> load_distribution(Backend& backend, const std::string& name, const std::string& task,
+                                              const std::string& course, const Moment& now) {
+  TROCAR_TRY(const std::optional<std::string> unit, find_unit(backend, task, name));
+  if (!unit) return std::optional<Json>();
+  TROCAR_TRY(const SampleCache::Value samples, samples_of(backend, task, name, course, now));
+  return std::optional<Json>(distribution_json(backend.titles.metric(name, *unit), *samples));
+}
+
 Result<HttpAnswer> show_distribution(Backend& backend, const Call& call) {
   TROCAR_TRY(const std::string task, query_task(call.request));
   TROCAR_TRY(const std::string course, query_course(call.request));
-  const std::string& name = call.names[0];
-  return cached(backend.statistics, backend.repositories, "metric\n" + name + "\n" + task + "\n" + course, call.now,
-                "metric", [&](results::Repository& repository) -> Result<std::optional<Json>> {
-                  TROCAR_TRY(const std::vector<results::StoredMetric> stored, results::list_metrics(repository, task));
-                  const auto found =
-                      std::find_if(stored.begin(), stored.end(), [&](const auto& one) { return one.name == name; });
-                  if (found == stored.end() && name != backend.titles.score().name) return std::optional<Json>();
-                  TROCAR_TRY(const Samples samples, results::metric_samples(repository, task, name, course));
-                  const std::string unit = found == stored.end() ? std::string() : found->unit;
-                  return std::optional<Json>(distribution_json(backend.titles.metric(name, unit), samples));
-                });
+  const std::string name = call.names[0];
+  return cached(
+      backend.statistics, "metric\n" + name + "\n" + task + "\n" + course, call.now, "metric",
+      [&backend, name, task, course, now = call.now] { return load_distribution(backend, name, task, course, now); });
 }
 
 Json separated_json(const cohort::MetricValidity& metric) {
@@ -190,7 +201,7 @@ Result<HttpAnswer> show_validity(Backend& backend, const Call& call) {
   TROCAR_TRY(const std::string task, query_task(call.request));
   TROCAR_TRY(const std::string course, query_course(call.request));
   return cached(backend.statistics, backend.repositories, "validity\n" + task + "\n" + course, call.now, "task",
-                [&](results::Repository& repository) -> Result<std::optional<Json>> {
+                [=, &backend](results::Repository& repository) -> Result<std::optional<Json>> {
                   results::EvidenceFilter filter;
                   filter.task = task;
                   filter.course = course;

@@ -68,7 +68,7 @@ Result<Json> overview_json(results::Repository& repository, const Titles& titles
 Result<HttpAnswer> show_overview(Backend& backend, const Call& call) {
   TROCAR_TRY(const std::string course, query_course(call.request));
   return cached(backend.answers, backend.repositories, "overview\n" + course, call.now, "course",
-                [&](results::Repository& repository) -> Result<std::optional<Json>> {
+                [=, &backend](results::Repository& repository) -> Result<std::optional<Json>> {
                   return overview_json(repository, backend.titles, course);
                 });
 }
@@ -76,10 +76,10 @@ Result<HttpAnswer> show_overview(Backend& backend, const Call& call) {
 /// The answer of `make(repository, person)` for the person of the path.
 template <class Make>
 Result<HttpAnswer> cached_of_person(Backend& backend, const Call& call, const std::string& key, const Make& make) {
-  const std::string& id = call.names[0];
+  const std::string id = call.names[0];
   if (!is_id(id)) return not_found("person");
   return cached(backend.answers, backend.repositories, "person\n" + id + "\n" + key, call.now, "person",
-                [&](results::Repository& repository) -> Result<std::optional<Json>> {
+                [=, &backend](results::Repository& repository) -> Result<std::optional<Json>> {
                   TROCAR_TRY(const std::optional<results::Person> person, results::find_person(repository, id));
                   if (!person) return std::optional<Json>();
                   TROCAR_TRY(Json json, make(repository, *person));
@@ -89,7 +89,7 @@ Result<HttpAnswer> cached_of_person(Backend& backend, const Call& call, const st
 
 Result<HttpAnswer> show_person(Backend& backend, const Call& call) {
   return cached_of_person(
-      backend, call, "", [&](results::Repository& repository, const results::Person& person) -> Result<Json> {
+      backend, call, "", [=, &backend](results::Repository& repository, const results::Person& person) -> Result<Json> {
         TROCAR_TRY(const std::vector<results::TaskSummary> summaries, results::summarise_tasks(repository, person.id));
         std::set<std::string> practised;
         for (const results::TaskSummary& summary : summaries) practised.insert(summary.task);
@@ -122,7 +122,7 @@ Result<HttpAnswer> list_attempts(Backend& backend, const Call& call) {
   filter.limit = page + 1;  // one more tells if there is a next page
   return cached_of_person(
       backend, call, fmt::format("attempts\n{}\n{}\n{}", filter.task, before, page),
-      [&](results::Repository& repository, const results::Person&) -> Result<Json> {
+      [=, &backend](results::Repository& repository, const results::Person&) -> Result<Json> {
         TROCAR_TRY(std::vector<results::Attempt> attempts, results::list_attempts(repository, filter));
         const bool has_more = attempts.size() > page;
         if (has_more) attempts.pop_back();
@@ -167,14 +167,23 @@ Json curve_json(const results::LearningCurve& curve) {
   return json;
 }
 
+/// Empty: no such person.
+Result<std::optional<Json>> load_curve(Backend& backend, const std::string& id, const std::string& task,
+                                       const Moment& now) {
+  TROCAR_TRY(const SampleCache::Value scores, samples_of(backend, task, "score", {}, now));
+  const auto repository = backend.repositories.borrow();
+  TROCAR_TRY(const std::optional<results::Person> person, results::find_person(*repository, id));
+  if (!person) return std::optional<Json>();
+  TROCAR_TRY(const results::LearningCurve curve, results::learning_curve_of(*repository, *person, task, *scores));
+  return std::optional<Json>(curve_json(curve));
+}
+
 Result<HttpAnswer> show_curve(Backend& backend, const Call& call) {
+  const std::string id = call.names[0];
+  if (!is_id(id)) return not_found("person");
   TROCAR_TRY(const std::string task, query_task(call.request));
-  return cached_of_person(backend, call, "curve\n" + task,
-                          [&](results::Repository& repository, const results::Person& person) -> Result<Json> {
-                            TROCAR_TRY(const results::LearningCurve curve,
-                                       results::learning_curve(repository, person, task));
-                            return curve_json(curve);
-                          });
+  return cached(backend.answers, "curve\n" + id + "\n" + task, call.now, "person",
+                [&backend, id, task, now = call.now] { return load_curve(backend, id, task, now); });
 }
 
 Result<HttpAnswer> delete_person(Backend& backend, const Call& call) {

@@ -91,11 +91,20 @@ bool is_id(std::string_view text) noexcept {
   return text.size() == kDigits && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
 }
 
-Result<HttpAnswer> cached(AnswerCache& cache, RepositoryPool& repositories, const std::string& key, const Moment& now,
-                          std::string_view what, const MakeJson& make) {
-  TROCAR_TRY(const AnswerCache::Value value, cache.get(key, now.steady, [&]() -> Result<AnswerCache::Value> {
-    const RepositoryPool::Loan repository = repositories.borrow();
-    TROCAR_TRY(const std::optional<Json> json, make(*repository));
+Result<SampleCache::Value> samples_of(Backend& backend, const std::string& task, const std::string& metric,
+                                      const std::string& course, const Moment& now) {
+  return backend.samples.get(task + "\n" + metric + "\n" + course, now.steady,
+                             [&backend, task, metric, course]() -> Result<SampleCache::Value> {
+                               const auto repository = backend.repositories.borrow();
+                               TROCAR_TRY(auto samples, results::metric_samples(*repository, task, metric, course));
+                               return std::make_shared<const std::vector<results::MetricSample>>(std::move(samples));
+                             });
+}
+
+Result<HttpAnswer> cached(AnswerCache& cache, const std::string& key, const Moment& now, std::string_view what,
+                          const MakeJsonAlone& make) {
+  TROCAR_TRY(const AnswerCache::Value value, cache.get(key, now.steady, [make]() -> Result<AnswerCache::Value> {
+    TROCAR_TRY(const std::optional<Json> json, make());
     return std::make_shared<const std::string>(json ? config::json_text(*json, -1) : std::string());
   }));
   if (value->empty()) return not_found(what);
@@ -103,6 +112,14 @@ Result<HttpAnswer> cached(AnswerCache& cache, RepositoryPool& repositories, cons
   answer.content_type = "application/json; charset=utf-8";
   answer.body = value;
   return answer;
+}
+
+Result<HttpAnswer> cached(AnswerCache& cache, RepositoryPool& repositories, const std::string& key, const Moment& now,
+                          std::string_view what, const MakeJson& make) {
+  return cached(cache, key, now, what, [&repositories, make]() -> Result<std::optional<Json>> {
+    const RepositoryPool::Loan repository = repositories.borrow();
+    return make(*repository);
+  });
 }
 
 }  // namespace trocar::web

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "results/accounts.h"
+#include "results/attempts.h"
 #include "signing/password.h"
-#include "web/answer_cache.h"
 #include "web/api/json_fields.h"
 #include "web/api/password_gate.h"
 #include "web/api/titles.h"
@@ -16,13 +16,18 @@
 #include "web/repository_pool.h"
 #include "web/security/login_throttle.h"
 #include "web/security/moment.h"
+#include "web/timed_cache.h"
 
 namespace trocar::web {
+
+/// Values of a metric at a task, shared by the pages that need all of them.
+using SampleCache = TimedCache<std::vector<results::MetricSample>>;
 
 /// Parts of the server that routes use; all of them thread-safe.
 struct Backend {
   RepositoryPool& repositories;
-  AnswerCache& answers;     ///< Of a second.
+  AnswerCache& answers;  ///< Of a second.
+  SampleCache& samples;
   AnswerCache& statistics;  ///< Of a minute: values over all attempts.
   const Titles& titles;
   LoginThrottle& logins;
@@ -81,10 +86,20 @@ Result<std::string> query_course(const HttpRequest& request);
 /// Whether a text is a key of a row: 32 hexadecimal digits.
 bool is_id(std::string_view text) noexcept;
 
+/// Values of a metric at a task, at most ten minutes old. `course` empty: all.
+Result<SampleCache::Value> samples_of(Backend& backend, const std::string& task, const std::string& metric,
+                                      const std::string& course, const Moment& now);
+
 /// The answer of the cache by its key, or the JSON of `make(Repository&)`, which returns Result<std::optional<Json>>;
-/// empty: 404 for `what`.
+/// empty: 404 for `what`. It owns
+/// what it uses, beside the backend: the cache may call it again after the request has ended.
 using MakeJson = std::function<Result<std::optional<Json>>(results::Repository&)>;
 Result<HttpAnswer> cached(AnswerCache& cache, RepositoryPool& repositories, const std::string& key, const Moment& now,
                           std::string_view what, const MakeJson& make);
+
+/// The same for work that borrows connections itself, one at a time: a thread that holds one must not wait for another.
+using MakeJsonAlone = std::function<Result<std::optional<Json>>()>;
+Result<HttpAnswer> cached(AnswerCache& cache, const std::string& key, const Moment& now, std::string_view what,
+                          const MakeJsonAlone& make);
 
 }  // namespace trocar::web

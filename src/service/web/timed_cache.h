@@ -1,0 +1,167 @@
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "core/result.h"
+
+namespace trocar::web {
+
+struct CacheRules {
+  std::chrono::milliseconds fresh{1000};   ///< A value is given again for so long.
+  std::chrono::milliseconds stale{10000};  ///< And for so long while the next one is made in the background.
+  std::size_t most_entries = 200;
+  std::size_t most_bytes = std::size_t{32} << 20;
+};
+
+/// Values by key that are costly to make: 200 readers of one page cost one query a second. A value is made by one
+/// thread at a time (single flight): the first request makes it while others wait; later a thread of the cache renews
+/// it while requests get the old one. Thread-safe. Errors are not kept.
+template <class T>
+class TimedCache {
+ public:
+  using TimePoint = std::chrono::steady_clock::time_point;
+  using Value = std::shared_ptr<const T>;
+  /// Owns what it uses: it may be called after the request has ended, until the cache is destroyed.
+  using Make = std::function<Result<Value>()>;
+  using CountBytes = std::function<std::size_t(const T&)>;
+
+  explicit TimedCache(CountBytes count_bytes, const CacheRules& rules = {})
+      : rules_(rules), count_bytes_(std::move(count_bytes)), renewer_([this] { renew_all(); }) {}
+  ~TimedCache() {
+    {
+      const std::lock_guard lock(mutex_);
+      is_ending_ = true;
+    }
+    has_work_.notify_all();
+    renewer_.join();
+  }
+  TimedCache(const TimedCache&) = delete;
+  TimedCache& operator=(const TimedCache&) = delete;
+
+  /// The value of the key, or that of `make`.
+  Result<Value> get(const std::string& key, TimePoint now, const Make& make) {
+    std::unique_lock lock(mutex_);
+    while (true) {
+      Entry& entry = entries_[key];
+      if (entry.value && now - entry.made < rules_.stale) {
+        if (now - entry.made >= rules_.fresh && !entry.is_being_made) {
+          entry.is_being_made = true;
+          work_.push_back({key, make, now});
+          has_work_.notify_one();
+        }
+        return entry.value;
+      }
+      if (!entry.is_being_made) break;
+      is_made_.wait(lock);
+      const auto found = entries_.find(key);
+      if (found != entries_.end() && found->second.value && !found->second.is_being_made) return found->second.value;
+    }
+    entries_[key].is_being_made = true;
+    return make_now(lock, {key, make, now});
+  }
+
+  /// Forgets all values, also those that are being made: something was changed.
+  void clear() {
+    const std::lock_guard lock(mutex_);
+    entries_.clear();
+    work_.clear();
+    bytes_ = 0;
+    ++generation_;
+    is_made_.notify_all();
+  }
+
+  /// Waits until no value is being renewed.
+  void finish_renewal() {
+    std::unique_lock lock(mutex_);
+    is_made_.wait(lock, [this] { return work_.empty() && !is_renewing_; });
+  }
+
+ private:
+  struct Entry {
+    Value value;
+    TimePoint made;
+    bool is_being_made = false;
+  };
+  struct Work {
+    std::string key;
+    Make make;
+    TimePoint now;
+  };
+
+  /// Makes a value without the lock and stores it, unless everything was forgotten meanwhile.
+  Result<Value> make_now(std::unique_lock<std::mutex>& lock, const Work& work) {
+    const std::uint64_t generation = generation_;
+    lock.unlock();
+    Result<Value> made = work.make();
+    lock.lock();
+    if (generation == generation_) {
+      Entry& entry = entries_[work.key];
+      bytes_ -= entry.value ? count_bytes_(*entry.value) : 0;
+      entry.is_being_made = false;
+      entry.value = made ? *made : nullptr;
+      entry.made = work.now;
+      bytes_ += entry.value ? count_bytes_(*entry.value) : 0;
+      if (!entry.value) entries_.erase(work.key);
+      make_room();
+    }
+    is_made_.notify_all();
+    return made;
+  }
+
+  void renew_all() {
+    std::unique_lock lock(mutex_);
+    while (true) {
+      has_work_.wait(lock, [this] { return !work_.empty() || is_ending_; });
+      if (is_ending_) return;
+      const Work work = std::move(work_.front());
+      work_.pop_front();
+      is_renewing_ = true;
+      (void)make_now(lock, work);  // an error is made again, and seen, by the next request
+      is_renewing_ = false;
+      is_made_.notify_all();
+    }
+  }
+
+  /// Removes the oldest values.
+  void make_room() {
+    while (entries_.size() > rules_.most_entries || bytes_ > rules_.most_bytes) {
+      auto oldest = entries_.end();
+      for (auto entry = entries_.begin(); entry != entries_.end(); ++entry)
+        if (!entry->second.is_being_made && (oldest == entries_.end() || entry->second.made < oldest->second.made))
+          oldest = entry;
+      if (oldest == entries_.end()) return;
+      bytes_ -= oldest->second.value ? count_bytes_(*oldest->second.value) : 0;
+      entries_.erase(oldest);
+    }
+  }
+
+  const CacheRules rules_;
+  const CountBytes count_bytes_;
+  std::mutex mutex_;
+  std::condition_variable is_made_, has_work_;
+  std::map<std::string, Entry> entries_;
+  std::deque<Work> work_;
+  std::size_t bytes_ = 0;
+  std::uint64_t generation_ = 0;  ///< Of clear().
+  bool is_ending_ = false, is_renewing_ = false;
+  std::thread renewer_;
+};
+
+/// Answers as text.
+class AnswerCache : public TimedCache<std::string> {
+ public:
+  explicit AnswerCache(const CacheRules& rules = {})
+      : TimedCache([](const std::string& text) { return text.size(); }, rules) {}
+};
+
+}  // namespace trocar::web
