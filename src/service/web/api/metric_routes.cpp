@@ -160,6 +160,9 @@ Json discriminating_json(const cohort::Validity& validity) {
   return {{"share", static_cast<double>(validity.discriminating) / static_cast<double>(validity.tested)},
           {"count", validity.discriminating},
           {"of", validity.tested},
+          {"uncorrected", validity.uncorrected},
+          {"note",
+           cohort::smallest_p_text(validity.experts, validity.novices, validity.tested, cohort::ValidityRules().level)},
           {"reason", nullptr}};
 }
 
