@@ -155,6 +155,7 @@ TEST_F(Interface, ValidityOfTwoGroups) {
   EXPECT_EQ(validity["metrics"][0]["auc"], 1.0);
   EXPECT_EQ(validity["metrics"][0]["discriminates"], true);
   EXPECT_EQ(validity["discriminating"]["share"], 1.0);
+  EXPECT_EQ(validity["discriminating"]["uncorrected"], 1);
   EXPECT_GT(validity["pass_mark"]["value"], 35.0);
   EXPECT_LT(validity["pass_mark"]["value"], 80.0);
 }
