@@ -89,6 +89,7 @@ Result<std::optional<Json>> load_json_of(Backend& backend, const std::string& id
   const results::Person* const person = &loaded->person;
   TROCAR_TRY(const Json experts, experts_of(backend, record->attempt.the_case.task, now));
   Json attempt = attempt_json(record->attempt);
+  attempt["task_title"] = backend.titles.task_title(record->attempt.the_case.task);
   attempt["person"] = {{"id", person->id}, {"name", person->name}, {"simulated", person->is_simulated}};
   attempt["not_scored"] = or_null(record->not_scored);
   attempt["fails"] = record->fails;
