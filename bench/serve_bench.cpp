@@ -64,10 +64,11 @@ Result<std::string> log_in(int port) {
   return "Cookie: " + answer->header.substr(begin, answer->header.find(';', begin) - begin) + "\r\n";
 }
 
-Result<std::vector<CaseResult>> time_pages(int port, const std::string& cookie, const SimulatedResults& filled) {
+Result<std::vector<CaseResult>> time_pages(int port, const std::string& cookie, const SimulatedResults& filled,
+                                           std::size_t n) {
   HttpReader reader(port);
   std::vector<CaseResult> results;
-  for (const Page& page : pages_of(filled, 0)) {
+  for (const Page& page : pages_of(filled, n)) {
     const auto start = Clock::now();
     const double processor_start_ms = processor_time_ms();
     const auto answer = reader.send("GET", page.target, cookie);
@@ -152,8 +153,10 @@ Result<std::vector<CaseResult>> run_serve_benchmark(const Options& options) {
              web::HttpServer::start(server_options, [&](const web::HttpRequest& r) { return service.answer(r); }));
   TROCAR_TRY(const std::string cookie, log_in(server.port()));
 
-  TROCAR_TRY(std::vector<CaseResult> results, time_pages(server.port(), cookie, filled));
+  TROCAR_TRY(std::vector<CaseResult> results, time_pages(server.port(), cookie, filled, 0));
   results.push_back({"serve/fill", "s", figure_of(fill_s), {}, fmt::format("{} attempts into SQLite", kAttempts)});
+  // A running server: the statistics of every task were shown before.
+  for (std::size_t n = 1; n < filled.tasks.size(); ++n) TROCAR_TRY_STATUS(time_pages(server.port(), cookie, filled, n));
   const Readings calm = read_all(server.port(), cookie, filled, options.seconds, kThinking);
   results.push_back(reading_case(fmt::format("serve/{} readers, a page a second", kReaders), calm, options.seconds));
   const Readings busy = read_all(server.port(), cookie, filled, options.seconds, {});

@@ -25,6 +25,7 @@ constexpr BucketRule kRequestRule{600, 100};
 /// Filled-in questionnaires of one address: a course that answers at the same time. [assumed]
 constexpr BucketRule kPublicRule{60, 0.2};
 constexpr CacheRules kStatisticsRules{1min, 10min};
+constexpr CacheRules kLoginRules{1s, 1s, false};
 constexpr int kReferenceBits = 128;
 constexpr std::size_t kReferenceCharacters = 8;
 
@@ -80,6 +81,7 @@ struct Service::State {
         backend{*repositories,
                 answers,
                 samples,
+                sessions,
                 statistics,
                 titles,
                 logins,
@@ -92,6 +94,7 @@ struct Service::State {
   HttpAnswer answer(HttpRequest request);
   HttpAnswer answer_api(const HttpRequest& request, const Moment& now);
   Result<HttpAnswer> answer_route(const Route& route, Call& call);
+  Result<LoginCache::Value> load_login(const std::string& digest, const Moment& now);
   Result<std::optional<results::WebSession>> find_login(const HttpRequest& request, const Moment& now);
 
   ServiceOptions options;
@@ -100,6 +103,7 @@ struct Service::State {
   StaticFiles page;
   // An answer may need a statistic, and that samples: they end in this order.
   SampleCache samples{count_bytes, kStatisticsRules};
+  LoginCache sessions{[](const auto&) { return sizeof(results::WebSession); }, kLoginRules};
   AnswerCache statistics{kStatisticsRules}, answers;
   LoginThrottle logins;
   TokenBuckets requests{kRequestRule}, public_answers{kPublicRule};
@@ -208,17 +212,27 @@ Result<HttpAnswer> Service::State::answer_route(const Route& route, Call& call) 
 Result<std::optional<results::WebSession>> Service::State::find_login(const HttpRequest& request, const Moment& now) {
   const auto token = find_session_token(request, options.is_secure);
   if (!token) return std::optional<results::WebSession>();
+  const std::string digest = signing::token_digest(*token);
+  TROCAR_TRY(const LoginCache::Value stored,
+             sessions.get(digest, now.steady, [this, digest, now] { return load_login(digest, now); }));
+  if (!*stored || is_session_valid((*stored)->begun, (*stored)->used, now.utc)) return *stored;
   const auto repository = repositories->borrow();
-  TROCAR_TRY(auto session, results::find_web_session(*repository, signing::token_digest(*token)));
-  if (!session) return session;
+  TROCAR_TRY_STATUS(results::end_web_session(*repository, digest));
+  sessions.clear();
+  return std::optional<results::WebSession>();
+}
+
+/// The stored login, with this request as its last use.
+Result<LoginCache::Value> Service::State::load_login(const std::string& digest, const Moment& now) {
+  const auto repository = repositories->borrow();
+  TROCAR_TRY(auto login, results::find_web_session(*repository, digest));
   const SessionRules rules;
-  if (!is_session_valid(session->begun, session->used, now.utc, rules)) {
-    TROCAR_TRY_STATUS(results::end_web_session(*repository, session->token_hash));
-    return std::optional<results::WebSession>();
+  const bool is_used = login && is_session_valid(login->begun, login->used, now.utc, rules);
+  if (is_used && now.utc - login->used >= rules.touch) {
+    TROCAR_TRY_STATUS(results::touch_web_session(*repository, digest, now.utc));
+    login->used = now.utc;
   }
-  if (now.utc - session->used >= rules.touch)
-    TROCAR_TRY_STATUS(results::touch_web_session(*repository, session->token_hash, now.utc));
-  return session;
+  return std::make_shared<const std::optional<results::WebSession>>(std::move(login));
 }
 
 }  // namespace trocar::web

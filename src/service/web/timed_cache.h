@@ -19,6 +19,7 @@ namespace trocar::web {
 struct CacheRules {
   std::chrono::milliseconds fresh{1000};   ///< A value is given again for so long.
   std::chrono::milliseconds stale{10000};  ///< And for so long while the next one is made in the background.
+  bool keeps_costly = true;                ///< A value that took long is kept ten times as long.
   std::size_t most_entries = 200;
   std::size_t most_bytes = std::size_t{32} << 20;
 };
@@ -53,8 +54,8 @@ class TimedCache {
     std::unique_lock lock(mutex_);
     while (true) {
       Entry& entry = entries_[key];
-      if (entry.value && now - entry.made < rules_.stale) {
-        if (now - entry.made >= rules_.fresh && !entry.is_being_made) {
+      if (entry.value && now - entry.made < rules_.stale + rest_after(entry)) {
+        if (now - entry.made >= std::max<Duration>(rules_.fresh, rest_after(entry)) && !entry.is_being_made) {
           entry.is_being_made = true;
           work_.push_back({key, make, now});
           has_work_.notify_one();
@@ -87,11 +88,15 @@ class TimedCache {
   }
 
  private:
+  using Duration = TimePoint::duration;
+  static constexpr int kRest = 10;  ///< Times the cost of a value that pass until it is renewed.
   struct Entry {
     Value value;
     TimePoint made;
+    Duration cost{};
     bool is_being_made = false;
   };
+  Duration rest_after(const Entry& entry) const { return rules_.keeps_costly ? kRest * entry.cost : Duration{}; }
   struct Work {
     std::string key;
     Make make;
@@ -102,7 +107,9 @@ class TimedCache {
   Result<Value> make_now(std::unique_lock<std::mutex>& lock, const Work& work) {
     const std::uint64_t generation = generation_;
     lock.unlock();
+    const TimePoint start = std::chrono::steady_clock::now();
     Result<Value> made = work.make();
+    const Duration cost = std::chrono::steady_clock::now() - start;
     lock.lock();
     if (generation == generation_) {
       Entry& entry = entries_[work.key];
@@ -110,6 +117,7 @@ class TimedCache {
       entry.is_being_made = false;
       entry.value = made ? *made : nullptr;
       entry.made = work.now;
+      entry.cost = cost;
       bytes_ += entry.value ? count_bytes_(*entry.value) : 0;
       if (!entry.value) entries_.erase(work.key);
       make_room();

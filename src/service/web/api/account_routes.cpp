@@ -92,6 +92,7 @@ Result<HttpAnswer> log_in(Backend& backend, const Call& call) {
   if (const auto old = find_session_token(call.request, backend.is_secure))
     TROCAR_TRY_STATUS(results::end_web_session(*repository, signing::token_digest(*old)));
   TROCAR_TRY_STATUS(store_session(*repository, session, call.now));
+  backend.sessions.clear();
   log_info("web: login succeeded: account {} from {}", log_text(account->name), address);
   HttpAnswer answer = ok({{"account", account_json(*account)}, {"csrf", session.stored.csrf_token}});
   answer.headers = {{"Set-Cookie", login_cookie(session.token, backend.is_secure)}};
@@ -101,6 +102,7 @@ Result<HttpAnswer> log_in(Backend& backend, const Call& call) {
 Result<HttpAnswer> log_out(Backend& backend, const Call& call) {
   const auto repository = backend.repositories.borrow();
   TROCAR_TRY_STATUS(results::end_web_session(*repository, call.session().token_hash));
+  backend.sessions.clear();
   log_info("web: logout: account {} from {}", log_text(call.session().account.name), call.request.address);
   HttpAnswer answer = empty_answer(204);
   answer.headers = {{"Set-Cookie", logout_cookie(backend.is_secure)}, {"Clear-Site-Data", "\"cache\", \"storage\""}};
@@ -136,6 +138,7 @@ Result<HttpAnswer> change_own_password(Backend& backend, const Call& call) {
   const auto repository = backend.repositories.borrow();
   TROCAR_TRY_STATUS(store_session(*repository, session, call.now));
   TROCAR_TRY_STATUS(results::change_password(*repository, account.id, hash, session.stored.token_hash));
+  backend.sessions.clear();
   log_info("web: password changed: account {} from {}", log_text(account.name), call.request.address);
   HttpAnswer answer = empty_answer(204);
   answer.headers = {{"Set-Cookie", login_cookie(session.token, backend.is_secure)}};
@@ -182,6 +185,7 @@ Result<HttpAnswer> remove(Backend& backend, const Call& call) {
     if (removed.error().exit_status != 2) return tl::unexpected(removed.error());
     return error_answer(409, removed.error());
   }
+  backend.sessions.clear();
   log_warning("web: account removed: {} by {} from {}", log_text(account->name), log_text(call.session().account.name),
               call.request.address);
   return empty_answer(204);

@@ -23,11 +23,15 @@ namespace trocar::web {
 /// Values of a metric at a task, shared by the pages that need all of them.
 using SampleCache = TimedCache<std::vector<results::MetricSample>>;
 
+/// Logins by the digest of their token; empty: there is none. Another program's changes are seen within a second.
+using LoginCache = TimedCache<std::optional<results::WebSession>>;
+
 /// Parts of the server that routes use; all of them thread-safe.
 struct Backend {
   RepositoryPool& repositories;
   AnswerCache& answers;  ///< Of a second.
   SampleCache& samples;
+  LoginCache& sessions;     ///< To be cleared when a login begins or ends.
   AnswerCache& statistics;  ///< Of a minute: values over all attempts.
   const Titles& titles;
   LoginThrottle& logins;

@@ -276,8 +276,21 @@ TEST(Accounts, AreAddedListedAndRemoved) {
 TEST(Accounts, RemovalEndsTheirLogins) {
   ServiceLab lab;
   lab.log_in(kInstructor);
+  EXPECT_EQ(lab.get("/api/me").status, 200);
   ASSERT_TRUE(results::remove_account(lab.repository(), kInstructor));
+  lab.pass(1s);  // another program's change
   EXPECT_EQ(lab.get("/api/me").status, 401);
+
+  ServiceLab own;
+  own.log_in(kInstructor);
+  const std::string cookie = own.cookie, csrf = own.csrf;
+  own.cookie.clear();
+  own.csrf.clear();
+  own.log_in();
+  EXPECT_EQ(own.send(own.request("DELETE", "/api/accounts/huber")).status, 204);
+  own.cookie = cookie;
+  own.csrf = csrf;
+  EXPECT_EQ(own.get("/api/me").status, 401) << "at once";
 }
 
 }  // namespace

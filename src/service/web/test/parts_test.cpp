@@ -31,7 +31,7 @@ TEST(AnswerCache, MakesAnAnswerOnceASecond) {
   EXPECT_EQ(**cache.get("a", kStart + 1001ms, make), "3");
   cache.clear();
   EXPECT_EQ(**cache.get("a", kStart + 1002ms, make), "4");
-  EXPECT_EQ(**cache.get("a", kStart + 11002ms, make), "5") << "too old to be given";
+  EXPECT_EQ(**cache.get("a", kStart + 60s, make), "5") << "too old to be given";
 }
 
 TEST(AnswerCache, DoesNotKeepErrors) {
