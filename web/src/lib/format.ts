@@ -22,12 +22,20 @@ export function fixed(value: number | null | undefined, decimals: number): strin
   return Number(text) === 0 ? text.replace("-", "") : text.replace("-", "\u2212");
 }
 
+/** 1.4 × 10⁹ */
+function power_text(value: number): string {
+  const [digits, power] = value.toExponential(1).split("e");
+  const raised = [...power].map((one) => (one === "-" ? "⁻" : one === "+" ? "" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[Number(one)])).join("");
+  return `${digits.replace("-", "\u2212")}\u00a0×\u00a010${raised}`;
+}
+
 /** Three significant digits: 0.0123, 1.23, 12.3, 123, 12\u202f345. */
 export function number_text(value: number | null | undefined): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return kNone;
   if (Number.isInteger(value) && Math.abs(value) < 1000) return fixed(value, 0);
   const size = Math.abs(value);
-  if (size >= 1e6 || (size > 0 && size < 1e-3)) return value.toExponential(1).replace("e+", "e").replace("-", "\u2212");
+  if (size < 1e-6) return "0";  // smaller numbers are errors of rounding
+  if (size >= 1e6 || size < 1e-3) return power_text(value);
   if (size >= 1000) return String(Math.round(value)).replace(/\B(?=(\d{3})+$)/g, "\u202f").replace("-", "\u2212");
   if (size >= 100) return fixed(value, 0);
   if (size >= 10) return fixed(value, 1);
@@ -66,11 +74,18 @@ export function clock_text(seconds: number): string {
   return `${minutes}:${rest.toFixed(1).padStart(4, "0")}`;
 }
 
+const kAbbreviations = ["csf", "ptcd"];
+
 /** "not_scored" gives "Not scored". */
 export function words(name: string | null | undefined): string {
   if (!name) return kNone;
-  const text = name.replace(/[_-]+/g, " ");
-  return text.charAt(0).toUpperCase() + text.slice(1);
+  const text = name.replace(/_+/g, " ").replace(/(\w)-(?=\w)/g, "$1 ");
+  return kAbbreviations.includes(text) ? text.toUpperCase() : text.charAt(0).toUpperCase() + text.slice(1);
+}
+
+/** "enter:supraspinous_ligament" gives "Enter: supraspinous ligament". */
+export function event_text(text: string): string {
+  return words(text.replace(/^(\w+):(?=\S)/, "$1: "));
 }
 
 export function plural(count: number, one: string, many = `${one}s`): string {

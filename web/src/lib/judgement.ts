@@ -25,7 +25,7 @@ export function cusum_by_point(points: CurvePoint[], values: (number | null)[]):
 export function compared(metric: MetricValue): { text: string; tone: "good" | "bad" | "plain" } {
   const { value, expert_q1: q1, expert_q3: q3, better } = metric;
   if (value === null || q1 === null || q3 === null) return { text: "No comparison", tone: "plain" };
-  if (value >= q1 && value <= q3) return { text: "As the experts' middle half", tone: "good" };
+  if (value >= q1 && value <= q3) return { text: "Within the experts' middle half", tone: "good" };
   const above = value > q3;
   if (better === "neither") return { text: above ? "Above the experts" : "Below the experts", tone: "plain" };
   const is_better = (better === "higher") === above;

@@ -25,7 +25,8 @@ function quartile_table(metric: MetricDistribution): HTMLElement {
 
 function show_distribution(metric: MetricDistribution, signal: AbortSignal): Child {
   const unit = unit_text(metric.unit);
-  const filled = metric.groups.filter((one) => one.n > 0);
+  const rank = (one: MetricGroup): number => (one.group === "expert" ? 0 : 2) + (one.simulated ? 1 : 0);
+  const filled = metric.groups.filter((one) => one.n > 0).sort((a, b) => rank(a) - rank(b));
   if (filled.length === 0 || metric.edges.length < 2) return empty_box("No values", "Nobody of this course has this metric for this task yet.");
   const bins = metric.edges.slice(0, -1).map((edge, k) => [`${number_text(edge)} to ${number_text(metric.edges[k + 1])}`, ...filled.map((one) => String(one.counts[k] ?? 0))]);
   const shown = { ...metric, groups: filled };

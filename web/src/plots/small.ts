@@ -65,7 +65,7 @@ export function scale_distribution(counts: number[]): HTMLElement {
       const count = counts[k] ?? 0;
       const column = h("span", { class: "distribution-bar", "aria-hidden": "true" });
       column.style.height = `${(100 * count) / most}%`;
-      return h("li", {}, h("span", { class: "distribution-area" }, column), h("span", { class: "distribution-count" }, String(count)), h("span", { class: "distribution-label" }, `${k + 1} ${label}`));
+      return h("li", {}, h("span", { class: "distribution-count" }, String(count)), h("span", { class: "distribution-area" }, column), h("span", { class: "distribution-label" }, String(k + 1), h("span", { class: "hidden" }, ` ${label}`)));
     }),
   );
 }

@@ -1,7 +1,7 @@
 // Replay of an attempt: two projections and a 3D view of the tip's path, force and depth over time, one clock for all.
 
 import { h, type Child } from "../lib/dom.ts";
-import { clock_text, fixed, words } from "../lib/format.ts";
+import { clock_text, event_text, fixed, words } from "../lib/format.ts";
 import type { Trace } from "../lib/types.ts";
 import { line_plot, type DrawnPlot, type Series } from "../plots/line_plot.ts";
 import { plain_table } from "../ui/table.ts";
@@ -52,7 +52,7 @@ function second_table(title: string, unit: string, own: (number | null)[], exper
   trace.time_s.forEach((time_s, k) => {
     if (time_s < next_s) return;
     next_s += 1;
-    const row = [fixed(time_s, 0), fixed(own[k], 2), tissue_at(trace, k) ?? "–"];
+    const row = [fixed(time_s, 0), fixed(own[k], 2), words(tissue_at(trace, k))];
     if (expert) row.push(fixed(expert[k], 2));
     rows.push(row);
   });
@@ -67,7 +67,7 @@ function event_list(trace: Trace, clock: ReplayClock): HTMLElement {
     "ol",
     { class: "events" },
     trace.events.map((one) =>
-      h("li", {}, h("button", { type: "button", class: "event", on: { click: () => clock.set_time(one.time_s) } }, h("span", { class: "event-time" }, clock_text(one.time_s)), h("span", {}, one.text))),
+      h("li", {}, h("button", { type: "button", class: "event", on: { click: () => clock.set_time(one.time_s) } }, h("span", { class: "event-time" }, clock_text(one.time_s)), h("span", {}, event_text(one.text)))),
     ),
   );
 }

@@ -1,14 +1,14 @@
 // The time line: a slider over the tissues that the tip was in, with marks of the events.
 
 import { h, svg } from "../lib/dom.ts";
-import { clock_text, words } from "../lib/format.ts";
+import { clock_text, event_text, words } from "../lib/format.ts";
 import type { Trace } from "../lib/types.ts";
 import type { ReplayClock } from "./clock.ts";
 import { index_at, tissue_at, tissue_stretches } from "./trace.ts";
 
 const kTissueTones: [RegExp, string][] = [
-  [/skin|dermis/, "skin"], [/fat|adipose|subcut/, "fat"], [/muscle|fascia/, "muscle"], [/vein|artery|aorta|vessel|blood|cava|portal/, "vessel"],
-  [/lesion|target|csf|ascites|fluid|duct|bile/, "target"], [/bone|rib|vertebra/, "bone"], [/ligament|dura/, "ligament"], [/liver|spleen|kidney|organ/, "organ"],
+  [/skin|dermis/, "skin"], [/fat|adipose|subcut/, "fat"], [/flavum|ligament|dura/, "ligament"], [/muscle|fascia/, "muscle"], [/vein|artery|aorta|vessel|blood|cava|portal/, "vessel"],
+  [/lesion|target|csf|ascites|fluid|duct|bile/, "target"], [/bone|rib|vertebra/, "bone"], [/liver|spleen|kidney|organ/, "organ"],
 ];
 
 export function tissue_tone(tissue: string): string {
@@ -36,7 +36,7 @@ export function time_line(trace: Trace, clock: ReplayClock): TimeLine {
   }
   const marks = h("div", { class: "event-marks", "aria-hidden": "true" });
   for (const event of trace.events) {
-    const mark = h("span", { class: "event-mark", title: `${clock_text(event.time_s)} ${event.text}` });
+    const mark = h("span", { class: "event-mark", title: `${clock_text(event.time_s)} ${event_text(event.text)}` });
     mark.style.left = `${(100 * event.time_s) / duration}%`;
     marks.append(mark);
   }

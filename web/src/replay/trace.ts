@@ -21,9 +21,11 @@ export function tip_at(trace: Trace, index: number): Point3 | null {
   return typeof x === "number" && typeof y === "number" && typeof z === "number" ? [x, y, z] : null;
 }
 
+/** Null outside of the body. */
 export function tissue_at(trace: Trace, index: number): string | null {
   const tissue = trace.tissue[index];
-  return typeof tissue === "number" && tissue >= 0 ? (trace.tissues[tissue] ?? null) : null;
+  const name = typeof tissue === "number" && tissue >= 0 ? (trace.tissues[tissue] ?? null) : null;
+  return name === "air" && !is_inside(trace, index) ? null : name;
 }
 
 export function is_inside(trace: Trace, index: number): boolean {

@@ -62,6 +62,13 @@ export async function login(page: Page, name = kName, password = kPassword): Pro
   await settled(page);
 }
 
+/** The path of the person with the most attempts, from the cohort's own order. */
+export async function busiest_person(page: Page): Promise<string> {
+  await page.goto("/?order=attempts.down");
+  await settled(page);
+  return first_link(page, "/people/");
+}
+
 /** The path of the first link whose address begins so. */
 export async function first_link(page: Page, start: string): Promise<string> {
   return (await page.locator(`main table a[href^="${start}"]`).first().getAttribute("href"))!;

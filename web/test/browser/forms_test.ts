@@ -50,7 +50,13 @@ describe("questionnaire", () => {
       await phone.page.getByRole("button", { name: "Send answers" }).tap();
       await phone.page.getByRole("heading", { name: "Thank you" }).waitFor();
     }
-    await page.goto(own);
+    // The server may keep a summary for some seconds.
+    for (let k = 0; k < 30; k += 1) {
+      await page.goto(own);
+      await settled(page);
+      if (await page.getByRole("heading", { name: "Results: 3 responses" }).isVisible()) break;
+      await page.waitForTimeout(1000);
+    }
     await page.getByRole("heading", { name: "Results: 3 responses" }).waitFor();
     assert.equal(await page.locator(".mean").first().textContent(), "3.0");
     assert.deepEqual(await page.locator(".distribution-count").allTextContents(), ["1", "1", "0", "0", "0", "1"]);

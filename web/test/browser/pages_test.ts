@@ -5,7 +5,7 @@ import assert from "node:assert/strict";
 import { after, before, describe, test } from "node:test";
 import type { Browser, Page } from "playwright-core";
 import { kHtmlName, kSqlName } from "../mock/cohort.ts";
-import { first_link, login, open_page, real_url, settled, start_browser, start_site, type Site } from "./browser.ts";
+import { busiest_person, login, open_page, real_url, settled, start_browser, start_site, type Site } from "./browser.ts";
 
 const needs_mock = { skip: real_url ? "needs the data of the mock server" : false };
 let browser: Browser;
@@ -76,8 +76,8 @@ describe("sign in", () => {
 describe("browsing", () => {
   test("cohort, person, attempt, replay", () =>
     with_page(async (page) => {
+      const person = await busiest_person(page);
       assert.equal(await heading(page), "Cohort");
-      const person = await first_link(page, "/people/");
       await page.locator(`table a[href="${person}"]`).click();
       await page.waitForURL(/\/people\//);
       await settled(page);

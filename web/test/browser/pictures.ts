@@ -3,7 +3,7 @@
 import { mkdir } from "node:fs/promises";
 import { join } from "node:path";
 import type { Page } from "playwright-core";
-import { first_link, login, open_page, settled, start_browser, start_site } from "./browser.ts";
+import { busiest_person, first_link, login, open_page, settled, start_browser, start_site } from "./browser.ts";
 
 const folder = process.argv[2] ?? "pictures";
 const only = process.argv[3];
@@ -13,13 +13,19 @@ const browser = await start_browser();
 const sizes: [number, number][] = [[1440, 900], [768, 1024], [360, 780]];
 
 async function paths(page: Page): Promise<[string, string][]> {
-  const person = process.env.PERSON ?? (await first_link(page, "/people/"));
+  const person = process.env.PERSON ?? (await busiest_person(page));
   await page.goto(person);
   await settled(page);
   await page.waitForTimeout(300);
   const attempt = await first_link(page, "/attempts/");
   await page.goto("/forms");
   await settled(page);
+  if ((await page.locator("table a[href^='/forms/']").count()) === 0) {
+    await page.getByRole("button", { name: "Standard questionnaire" }).click();
+    await page.waitForURL(/\/forms\/[^/]+$/);
+    await page.goto("/forms");
+    await settled(page);
+  }
   const form = await first_link(page, "/forms/");
   const list: [string, string][] = [["cohort", "/"], ["cohort_task", "/?task=liver-biopsy&order=mean.down"], ["person", person], ["attempt", attempt], ["metrics", "/metrics?task=liver-biopsy&metric=target_distance"], ["validity", "/validity?task=liver-biopsy"], ["forms", "/forms"], ["form", form], ["editor", `${form}/edit`], ["account", "/account"]];
   await page.goto(form);

@@ -5,12 +5,12 @@ import { readdirSync, readFileSync, statSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { fileURLToPath } from "node:url";
-import { clock_text, duration_text, fixed, number_text, percent, plural, with_unit, words } from "../../src/lib/format.ts";
+import { clock_text, duration_text, event_text, fixed, number_text, percent, plural, with_unit, words } from "../../src/lib/format.ts";
 import { extent_of, index_at, kFront, kSide, project, tissue_stretches, turned } from "../../src/replay/trace.ts";
 import type { Point3, Trace } from "../../src/lib/types.ts";
 
 test("numbers keep three significant digits and a true minus sign", () => {
-  assert.deepEqual([0.01234, 1.234, 12.34, 123.4, 1234.5, 1234567, -17.52, 0, 3].map(number_text), ["0.012", "1.23", "12.3", "123", "1\u202f235", "1.2e6", "\u221217.5", "0", "3"]);
+  assert.deepEqual([0.01234, 1.234, 12.34, 123.4, 1234.5, 1234567, -17.52, 0, 3, 2.7e-14, -0.00025].map(number_text), ["0.012", "1.23", "12.3", "123", "1\u202f235", "1.2\u00a0×\u00a010⁶", "\u221217.5", "0", "3", "0", "\u22122.5\u00a0×\u00a010⁻⁴"]);
   assert.equal(number_text(null), "–");
   assert.equal(number_text(Number.NaN), "–");
   assert.equal(fixed(-0.04, 1), "0.0");
@@ -33,7 +33,11 @@ test("times are read as clocks", () => {
 
 test("words, plurals and shares", () => {
   assert.equal(words("not_scored"), "Not scored");
+  assert.equal(words("liver-biopsy"), "Liver biopsy");
+  assert.equal(words("csf"), "CSF");
   assert.equal(words(null), "–");
+  assert.equal(event_text("enter:supraspinous_ligament"), "Enter: supraspinous ligament");
+  assert.equal(event_text("shot"), "Shot");
   assert.equal(plural(1, "person", "people"), "1 person");
   assert.equal(plural(0, "answer"), "0 answers");
   assert.equal(percent(1, 3), "33\u00a0%");
@@ -75,7 +79,7 @@ test("the extent has the middle of the points and never vanishes", () => {
 });
 
 test("stretches of one tissue are joined, gaps and changes divide them", () => {
-  const trace = { rate_hz: 10, time_s: [0, 0.1, 0.2, 0.3, 0.4, 0.5], tissue: [-1, 0, 0, 1, null, 1], tissues: ["fat", "liver"] } as unknown as Trace;
+  const trace = { rate_hz: 10, time_s: [0, 0.1, 0.2, 0.3, 0.4, 0.5], depth_mm: [0, 1, 2, 3, 4, 5], tissue: [2, 0, 0, 1, null, 1], tissues: ["fat", "liver", "air"] } as unknown as Trace;
   const found = tissue_stretches(trace).map((one) => [one.tissue, Number(one.start_s.toFixed(3)), Number(one.end_s.toFixed(3))]);
   assert.deepEqual(found, [["fat", 0.1, 0.3], ["liver", 0.3, 0.4], ["liver", 0.5, 0.6]]);
 });

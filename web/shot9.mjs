@@ -1,0 +1,15 @@
+import { chromium } from 'playwright-core';
+const b = await chromium.launch({executablePath:'/usr/bin/chromium', args:['--no-sandbox']});
+const base='http://127.0.0.1:18080';
+const ctx = await b.newContext({viewport:{width:1280,height:800}, colorScheme:'dark'});
+const p = await ctx.newPage();
+p.on('console', m=>{ if(m.type()==='error') console.log('console', m.text());});
+await p.goto(base+'/metrics'); await p.waitForTimeout(800);
+await p.fill('input[autocomplete=username]','Dr. Weber');
+await p.fill('input[type=password]','a very long passphrase 42');
+await p.keyboard.press('Enter'); await p.waitForTimeout(2500);
+console.log(p.url());
+await p.screenshot({path:'/tmp/r23/x1.png', fullPage:true});
+await p.goto(base+'/forms'); await p.waitForTimeout(1500); await p.screenshot({path:'/tmp/r23/x2.png', fullPage:true});
+const btns = await p.$$eval('button, a', els=>els.map(e=>e.textContent.trim()).filter(Boolean)); console.log(btns.join(' | '));
+await b.close();
