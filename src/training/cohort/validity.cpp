@@ -53,18 +53,24 @@ void decide_all(Validity& validity, const ValidityRules& rules) {
   if (validity.score.separation) decide(validity.score, validity.score.separation->test.p, rules.level);
 }
 
-/// People who have all items.
-std::vector<std::vector<double>> complete_items(const CohortData& data) {
-  std::vector<std::vector<double>> people;
-  for (const Values& items : data.items) {
-    const bool is_complete = !items.empty() && std::all_of(items.begin(), items.end(), [](const auto& item) {
-      return item && std::isfinite(*item);
-    });
-    if (!is_complete) continue;
-    people.emplace_back();
-    for (const std::optional<double>& item : items) people.back().push_back(*item);
+bool has_value(const std::optional<double>& item) {
+  return item && std::isfinite(*item);
+}
+
+/// The items that all people with any item have. A part of the score that some attempts do not judge is left out, not
+/// the people without it.
+std::vector<std::vector<double>> common_items(const CohortData& data) {
+  std::vector<const Values*> people;
+  for (const Values& items : data.items)
+    if (std::any_of(items.begin(), items.end(), has_value)) people.push_back(&items);
+  std::vector<std::vector<double>> table(people.size());
+  const std::size_t count = people.empty() ? 0 : people.front()->size();
+  for (std::size_t item = 0; item < count; ++item) {
+    if (!std::all_of(people.begin(), people.end(), [&](const Values* items) { return has_value((*items)[item]); }))
+      continue;
+    for (std::size_t n = 0; n < people.size(); ++n) table[n].push_back(*(*people[n])[item]);
   }
-  return people;
+  return table;
 }
 
 }  // namespace
@@ -82,7 +88,7 @@ Validity validity_of(const CohortData& data, const ValidityRules& rules) {
       0,
       0,
       0,
-      cronbach_alpha(complete_items(data)),
+      cronbach_alpha(common_items(data)),
       contrasting_groups(of_group(data.scores, data.people, true), of_group(data.scores, data.people, false))};
   for (const MetricOfPeople& metric : data.metrics)
     validity.metrics.push_back(

@@ -58,7 +58,7 @@ struct Validity {
   std::size_t tested = 0;          ///< Metrics that both groups have.
   std::size_t discriminating = 0;  ///< Of them, after the correction.
   std::size_t uncorrected = 0;     ///< Of them, each at its own level: many published shares are counted so.
-  Result<Alpha> alpha;             ///< Of the parts of the score, over all people who have all parts.
+  Result<Alpha> alpha;             ///< Of the parts of the score that all people have.
   Result<PassMark> pass_mark;      ///< On the score.
 };
 /// Precondition: the lists have the same length. Parts that cannot be computed have the reason as their error.

@@ -83,7 +83,8 @@ TEST(Validity, LeavesOutMissingValues) {
   EXPECT_NE(validity.metrics[1].separation.error().text().find("people with a value: experts 0, novices 12"),
             std::string::npos);
   EXPECT_EQ(validity.tested, 1u);
-  EXPECT_EQ(validity.alpha->people, 13u);
+  EXPECT_EQ(validity.alpha->people, 14u);
+  EXPECT_EQ(validity.alpha->items, 2u) << "one person lacks the second of three";
   EXPECT_EQ(validity.pass_mark->novices.people, 11u);
 }
 
