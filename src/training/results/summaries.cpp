@@ -20,14 +20,17 @@ Result<std::vector<TaskSummary>> summarise_tasks(Repository& repository, std::st
     TaskSummary one;
     long long attempts = 0, scored = 0, passed = 0, last_s = 0;
     Nullable<double> last, best, recent;
-    // One pass over the index: the newest scored attempts of each person at each task have rank 1, 2 …
+    // All from the index attempts_of_person: one pass for the sums, and the newest scores of each person at each task.
+    const std::string newest = fmt::format(
+        "(SELECT x.score FROM attempts x WHERE x.person_id = a.person_id AND x.task = a.task AND x.score IS NOT NULL"
+        " ORDER BY x.sequence DESC LIMIT {})",
+        kRecentAttempts);
     const std::string query = fmt::format(
-        "SELECT person_id, task, count(*), sum(CASE WHEN score IS NULL THEN 0 ELSE 1 END), sum(is_passed),"
-        " max(CASE WHEN rank = 1 THEN score END), max(score), avg(CASE WHEN rank <= {} THEN score END),"
-        " max(started_s) FROM (SELECT person_id, task, score, is_passed, started_s, CASE WHEN score IS NOT NULL"
-        " THEN row_number() OVER (PARTITION BY person_id, task, score IS NULL ORDER BY sequence DESC) END AS rank"
-        " FROM attempts{}) ranked GROUP BY person_id, task ORDER BY person_id, task",
-        kRecentAttempts, person.empty() ? "" : " WHERE person_id = :p");
+        "SELECT a.person_id, a.task, count(*), count(a.score), sum(a.is_passed), (SELECT x.score FROM attempts x WHERE"
+        " x.person_id = a.person_id AND x.task = a.task AND x.score IS NOT NULL ORDER BY x.sequence DESC LIMIT 1),"
+        " max(a.score), (SELECT avg(score) FROM {} newest), max(a.started_s) FROM attempts a{}"
+        " GROUP BY a.person_id, a.task ORDER BY a.person_id, a.task",
+        newest, person.empty() ? "" : " WHERE a.person_id = :p");
     soci::statement select(session);
     select.exchange(soci::into(one.person_id));
     select.exchange(soci::into(one.task));
