@@ -82,11 +82,21 @@ cohort::Better better_of(metrics::Better better) {
   return better == metrics::Better::kHigher ? cohort::Better::kHigher : cohort::Better::kNeither;
 }
 
+/// Whether both groups have real people: then simulated ones are left out, as in results::validity_of.
+bool has_real_groups(const Samples& samples) {
+  const auto has_real = [&](results::Group group) {
+    return std::any_of(samples.begin(), samples.end(),
+                       [&](const auto& sample) { return sample.group == group && !sample.is_simulated; });
+  };
+  return has_real(results::Group::kExpert) && has_real(results::Group::kTrainee);
+}
+
 /// Of the people's means: attempts of one person are not independent.
 Result<cohort::Separation> separation_of(const Samples& samples, metrics::Better better) {
+  const bool is_real_only = has_real_groups(samples);
   std::map<std::pair<results::Group, std::string>, std::vector<std::optional<double>>> by_person;
   for (const results::MetricSample& sample : samples)
-    by_person[{sample.group, sample.person_id}].emplace_back(sample.value);
+    if (!is_real_only || !sample.is_simulated) by_person[{sample.group, sample.person_id}].emplace_back(sample.value);
   std::vector<double> experts, novices;
   for (const auto& [key, values] : by_person)
     (key.first == results::Group::kExpert ? experts : novices).push_back(*cohort::person_mean(values));

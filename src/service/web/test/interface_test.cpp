@@ -133,6 +133,17 @@ TEST_F(Interface, DistributionsCountEveryAttempt) {
   get("/api/metrics/unknown?task=liver-biopsy", 404);
 }
 
+TEST_F(Interface, SimulatedPeopleDoNotJudgeAMetricOfRealOnes) {
+  lab_.add_attempt(lab_.add_person("Expert", results::Group::kExpert), 90.0);
+  lab_.add_attempt(lab_.add_person("Novice"), 50.0);
+  const auto robot =
+      results::add_person(lab_.repository(), {"Robot", results::Group::kTrainee, {}, true}, lab_.now.utc);
+  lab_.add_attempt(*robot, 100.0);
+  const Json score = get("/api/metrics/score?task=liver-biopsy");
+  EXPECT_EQ(score["auc"]["value"], 1.0);
+  EXPECT_EQ(score["groups"].size(), 3U) << "but they are shown";
+}
+
 TEST_F(Interface, FewDataHaveAReason) {
   lab_.add_attempt(lab_.add_person("Anna"), 50.0);
   const Json distribution = get("/api/metrics/score?task=liver-biopsy");
