@@ -20,6 +20,23 @@ const kNew: Draft = {
   items: [{ kind: "scale", text: "", is_required: true }, { kind: "text", text: "What should be improved?", is_required: false }],
 };
 
+/** Changes that are not saved yet, for this tab: they outlive a session that ended while somebody was writing. */
+function unsaved(id: string): { read: () => Draft | null; write: (draft: Draft) => void; clear: () => void } {
+  const key = `trocar-form-${id}`;
+  const quietly = <T>(action: () => T, otherwise: T): T => {
+    try {
+      return action();
+    } catch {
+      return otherwise;
+    }
+  };
+  return {
+    read: () => quietly(() => JSON.parse(sessionStorage.getItem(key) ?? "null") as Draft | null, null),
+    write: (draft) => quietly(() => sessionStorage.setItem(key, JSON.stringify(draft)), undefined),
+    clear: () => quietly(() => sessionStorage.removeItem(key), undefined),
+  };
+}
+
 /** The first thing that keeps the form from being stored; null if nothing does. */
 export function problem_of(draft: Draft): string | null {
   if (!draft.title.trim()) return "Enter a title.";
@@ -66,7 +83,10 @@ function item_editor(draft: Draft, index: number, refresh: (focus: string | null
 }
 
 function show_editor(form: Form | null, context: PageContext): Child {
-  const draft: Draft = form ? { title: form.title, intro: form.intro, items: form.items.map((one) => ({ ...one })) } : { ...kNew, items: kNew.items.map((one) => ({ ...one })) };
+  const kept = unsaved(String(form?.id ?? "new"));
+  const restored = kept.read();
+  const { title: first_title, intro: first_intro, items: first_items } = restored ?? form ?? kNew;
+  const draft: Draft = { title: first_title, intro: first_intro, items: first_items.map((one) => ({ ...one })) };
   const title = text_field("Title", { value: draft.title, maxlength: "200", on: { input: () => { draft.title = title.input.value; changed(); } } });
   const intro_id = new_id("intro");
   const intro = h("textarea", { id: intro_id, class: "field", rows: "3", maxlength: "2000", value: draft.intro, on: { input: () => { draft.intro = intro.value; changed(); } } });
@@ -81,6 +101,7 @@ function show_editor(form: Form | null, context: PageContext): Child {
   };
   const changed = (): void => {
     is_changed = true;
+    kept.write(draft);
     draw_preview();
   };
   const refresh = (focus: string | null): void => {
@@ -107,6 +128,7 @@ function show_editor(form: Form | null, context: PageContext): Child {
       const body = { title: draft.title.trim(), intro: draft.intro.trim(), items: draft.items.map((one) => ({ ...one, text: one.text.trim() })) };
       const saved = form ? await send<Form | undefined>("PUT", `/api/forms/${encodeURIComponent(String(form.id))}`, body) : await send<Form | undefined>("POST", "/api/forms", body);
       is_changed = false;
+      kept.clear();
       toast("The questionnaire was saved.");
       const id = form?.id ?? saved?.id;
       navigate(id === undefined ? "/forms" : `/forms/${encodeURIComponent(String(id))}`);
@@ -118,13 +140,14 @@ function show_editor(form: Form | null, context: PageContext): Child {
     "form",
     { class: "form", novalidate: true },
     form !== null && form.responses > 0 && h("p", { class: "notice" }, `This questionnaire has ${form.responses} responses. An item whose text you change is retired with its answers, and a new item takes its place.`),
+    restored && h("p", { class: "notice", role: "status" }, "Unsaved changes were restored. ", h("button", { type: "button", class: "button button-small", on: { click: () => discard() } }, "Discard them")),
     title.element,
     h("div", { class: "labelled" }, h("label", { for: intro_id }, "Introduction"), intro),
     h("h2", {}, "Items"),
     list,
     h("div", { class: "buttons" }, h("button", { type: "button", class: "button", "data-name": "add-scale", on: { click: () => add("scale") } }, "Add a statement"), h("button", { type: "button", class: "button", on: { click: () => add("text") } }, "Add a free text")),
     problem,
-    h("div", { class: "buttons" }, save, h("a", { class: "button", href: form ? `/forms/${encodeURIComponent(String(form.id))}` : "/forms" }, "Cancel")),
+    h("div", { class: "buttons" }, save, h("a", { class: "button", href: form ? `/forms/${encodeURIComponent(String(form.id))}` : "/forms", on: { click: () => kept.clear() } }, "Cancel")),
   );
   element.addEventListener("submit", (event) => {
     event.preventDefault();
@@ -132,8 +155,13 @@ function show_editor(form: Form | null, context: PageContext): Child {
   });
   window.addEventListener("beforeunload", (event) => { if (is_changed) event.preventDefault(); }, { signal: context.signal });
   const section = h("div", { class: "editor" }, card(null, {}, element), card("Preview", { class: "card-preview" }, preview));
-  refresh(null);
-  is_changed = false;
+  replace_children(list, draft.items.map((_, k) => item_editor(draft, k, refresh, changed)));
+  draw_preview();
+  const discard = (): void => {
+    kept.clear();
+    context.main.replaceChildren();
+    void form_editor_page(context);
+  };
   const name = form ? form.title : "New questionnaire";
   return [breadcrumb({ label: "Questionnaires", path: "/forms" }, { label: name }), h("h1", {}, form ? "Edit questionnaire" : "New questionnaire"), section];
 }

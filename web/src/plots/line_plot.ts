@@ -2,6 +2,7 @@
 
 import uPlot from "uplot";
 import { h, svg, type Child } from "../lib/dom.ts";
+import { opened_later } from "../ui/table.ts";
 import { colour, on_theme_change } from "../ui/theme.ts";
 
 export type Mark = "line" | "dashed" | "dotted" | "filled-points" | "hollow-points" | "band";
@@ -197,7 +198,7 @@ export function line_plot(plot: LinePlot): DrawnPlot {
     h("figcaption", {}, h("span", { class: "plot-title" }, plot.title), h("ul", { class: "legend" }, entries)),
     canvas_place,
     plot.read_out && read_out,
-    plot.table && h("details", { class: "as-table" }, h("summary", {}, "Values as a table"), plot.table()),
+    plot.table && opened_later("Values as a table", plot.table),
   );
   if (plot.read_out) read_out.textContent = plot.summary;
   return {

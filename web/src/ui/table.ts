@@ -128,6 +128,18 @@ function make_phone_sort<Row>(columns: Column<Row>[], order: Order | undefined, 
   return select;
 }
 
+/** A closed section whose content is made when it is first opened: a table of a long curve is large. */
+export function opened_later(title: string, make: () => Child): HTMLElement {
+  const details = h("details", { class: "as-table" }, h("summary", {}, title));
+  let is_made = false;
+  details.addEventListener("toggle", () => {
+    if (is_made || !details.open) return;
+    is_made = true;
+    details.append(h("div", {}, make()));
+  });
+  return details;
+}
+
 /** A plain table of texts: the alternative of a plot. */
 export function plain_table(caption: string, titles: string[], rows: string[][]): HTMLElement {
   return h(

@@ -92,6 +92,27 @@ describe("questionnaire", () => {
     await page.context().close();
   });
 
+  test("unsaved changes outlive a session that ends, and can be discarded", needs_mock, async () => {
+    const { page } = await open_page(browser, site);
+    await login(page);
+    await page.goto("/forms/1/edit");
+    await page.getByLabel("Title").fill("Changed title");
+    site.mock!.expire_sessions();
+    await page.getByRole("button", { name: "Save" }).click();
+    await page.getByText("Your session has ended").waitFor();
+    await page.getByLabel("Name").fill("Dr. Weber");
+    await page.getByLabel("Password").fill("a long test password");
+    await page.keyboard.press("Enter");
+    await page.getByText("Unsaved changes were restored.").waitFor();
+    assert.equal(await page.getByLabel("Title").inputValue(), "Changed title");
+    await page.getByRole("button", { name: "Discard them" }).click();
+    await page.waitForFunction(() => (document.querySelector("form input") as HTMLInputElement | null)?.value === "Simulator study");
+    await page.reload();
+    await settled(page);
+    assert.equal(await page.getByLabel("Title").inputValue(), "Simulator study");
+    await page.context().close();
+  });
+
   test("answered by keyboard alone; the first missing answer gets the focus", needs_mock, async () => {
     const { page, problems } = await open_page(browser, site);
     await page.goto("/q/test-token-1-abcdefghijklmnop");
