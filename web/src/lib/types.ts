@@ -172,7 +172,7 @@ export interface Validity {
   simulated: boolean;
   score?: ValidityMetric | null;
   metrics: ValidityMetric[] | null;
-  discriminating: { share: number | null; count: number | null; of: number | null; reason?: string | null } | null;
+  discriminating: { share: number | null; count: number | null; of: number | null; uncorrected?: number | null; note?: string | null; reason?: string | null } | null;
   alpha: { value: number | null; low?: number | null; high?: number | null; items: number | null; n: number | null; reason?: string | null } | null;
   pass_mark: {
     value: number | null;

@@ -48,17 +48,24 @@ function metrics_table(metrics: ValidityMetric[]): HTMLElement {
   return data_table({ caption: "Separation of experts and novices by each metric", columns, rows: metrics, order: { column: "auc", is_descending: true } });
 }
 
+function discriminating_text(found: Validity["discriminating"]): string {
+  if (!found) return "";
+  const uncorrected = found.uncorrected == null ? "" : ` after correction for so many metrics, ${found.uncorrected} without`;
+  const note = found.note ? ` ${found.note[0].toUpperCase()}${found.note.slice(1)}.` : "";
+  return `${found.count} of ${found.of} metrics separate experts from novices${uncorrected}.${note} An automatic assessment has published 37 of 60.`;
+}
+
 function show_validity(answer: Validity): Child {
   const { discriminating, alpha, pass_mark, metrics, score } = answer;
   const share = discriminating?.share ?? null;
   return [
     answer.simulated &&
       h("div", { class: "notice notice-simulated" }, h("p", { class: "notice-title" }, "Simulated"), h("p", {}, "Some or all of these attempts come from scripted operators. They test the computation; they are no evidence about people.")),
-    h("p", { class: "lead" }, `${plural(answer.experts, "expert")} and ${plural(answer.novices, "novice")}${answer.simulated ? ", simulated people included" : ""}.`),
+    h("p", { class: "lead" }, `${plural(answer.experts, "expert")} and ${plural(answer.novices, "novice")}${answer.simulated ? ", simulated people included" : ""}. The first three scored attempts of each person count.`),
     h(
       "div",
       { class: "figures" },
-      figure_card("Discriminating metrics", share === null ? null : `${fixed(100 * share, 0)} %`, `${discriminating?.count} of ${discriminating?.of} metrics separate experts from novices. An automatic assessment has published 37 of 60.`, discriminating?.reason ?? answer.reason),
+      figure_card("Discriminating metrics", share === null ? null : `${fixed(100 * share, 0)} %`, discriminating_text(discriminating), discriminating?.reason ?? answer.reason),
       figure_card(
         "Internal consistency",
         alpha === null || alpha.value === null ? null : fixed(alpha.value, 2),

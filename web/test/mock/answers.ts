@@ -158,7 +158,7 @@ export class MockResults {
     const count = judged.filter((one) => one.discriminates).length;
     const few = task === "ptcd";
     return {
-      task, experts: 3, novices: 23, simulated: true, metrics: rows, discriminating: judged.length ? { share: count / judged.length, count, of: judged.length } : null,
+      task, experts: 3, novices: 23, simulated: true, metrics: rows, discriminating: judged.length ? { share: count / judged.length, count, of: judged.length, uncorrected: Math.min(judged.length, count + 2), note: "" } : null,
       alpha: few ? null : { value: 0.81, items: 9, n: 640 }, pass_mark: few ? null : { value: 68.4, false_passes: 4, false_fails: 0, experts: 3, novices: 23 }, reason: few ? "fewer than 30 scored attempts" : null,
     };
   }
