@@ -1,6 +1,8 @@
 // Logins: who gets in, how a login ends, and what a forged request achieves.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "results/accounts.h"
 #include "service_lab.h"
 #include "signing/password.h"
@@ -54,6 +56,35 @@ TEST(Login, IsSlowedDownAfterFiveFailures) {
   lab.address = "127.0.0.1";
   lab.pass(60s);
   EXPECT_EQ(lab.log_in().status, 200);
+}
+
+/// A client can write X-Forwarded-For itself; a proxy appends the address that it sees.
+TEST(Login, AForgedAddressDoesNotHelp) {
+  const auto status = [](ServiceLab& lab, const std::string& forwarded) {
+    HttpRequest request = lab.request("POST", "/api/login", {{"name", kAdmin}, {"password", "wrong"}});
+    std::erase_if(request.headers, [](const auto& h) { return h.first == "Origin"; });
+    request.headers.emplace_back("X-Forwarded-For", forwarded);
+    return lab.send(request).status;
+  };
+  ServiceLab direct, proxied(true, true);
+  for (int n = 0; n < 5; ++n) {
+    EXPECT_EQ(status(direct, "192.0.2." + std::to_string(n)), 401);
+    EXPECT_EQ(status(proxied, "192.0.2." + std::to_string(n) + ", 198.51.100.1"), 401);
+  }
+  EXPECT_EQ(status(direct, "192.0.2.99"), 429);
+  EXPECT_EQ(status(proxied, "192.0.2.99, 198.51.100.1"), 429);
+  EXPECT_EQ(status(proxied, "198.51.100.2"), 401) << "another client of the proxy";
+}
+
+TEST(Login, IsLoggedWithoutThePassword) {
+  ServiceLab lab;
+  ::testing::internal::CaptureStderr();
+  lab.log_in("somebody\n06:00:00 info: forged", "a wrong password");
+  const std::string log = ::testing::internal::GetCapturedStderr();
+  EXPECT_NE(log.find("login failed: account \"somebody?06:00:00 info: forged\" from 127.0.0.1"), std::string::npos)
+      << log;
+  EXPECT_EQ(log.find("wrong password"), std::string::npos) << log;
+  EXPECT_EQ(std::count(log.begin(), log.end(), '\n'), 1) << log;
 }
 
 TEST(Login, ReplacesThePresentSession) {

@@ -22,7 +22,7 @@ const std::string& hash_of_password() {
 
 }  // namespace
 
-ServiceLab::ServiceLab(bool is_secure) : now(kStart) {
+ServiceLab::ServiceLab(bool is_secure, bool is_behind_proxy) : now(kStart) {
   std::filesystem::create_directories(folder_ / "web/assets");
   std::ofstream(folder_ / "web/index.html") << "<!doctype html>";
   std::ofstream(folder_ / "web/assets/index-1.js") << "code";
@@ -38,6 +38,7 @@ ServiceLab::ServiceLab(bool is_secure) : now(kStart) {
   options.data_folder = trocar::testing::source_dir() / "data";
   options.page_folder = folder_ / "web";
   options.is_secure = is_secure;
+  options.is_behind_proxy = is_behind_proxy;
   options.password_work = kQuickWork;
   options.now = [this] { return now; };
   auto service = Service::open(std::move(options));

@@ -20,7 +20,7 @@ inline constexpr signing::PasswordWork kQuickWork{1, std::size_t{64} << 10};
 /// `address` and, after log_in, with cookie and CSRF token, as from the page.
 class ServiceLab {
  public:
-  explicit ServiceLab(bool is_secure = false);
+  explicit ServiceLab(bool is_secure = false, bool is_behind_proxy = false);
 
   HttpRequest request(const std::string& method, const std::string& target, const Json& body = {}) const;
   HttpAnswer send(const HttpRequest& request) { return service_->answer(request); }
