@@ -50,6 +50,7 @@ struct Part {
   std::string name;  ///< One of tasks::kScoreParts.
   double points = 0.0;
   double max_points = 0.0;
+  std::string value = {};  ///< For people: "3.1 mm"; empty: not known.
 };
 struct Measure {
   std::string name;  ///< Of the catalogue of metrics.

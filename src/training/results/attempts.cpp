@@ -23,8 +23,9 @@ std::vector<Part> read_parts(soci::session& session, long long sequence) {
   std::vector<Part> parts;
   Part part;
   soci::statement select =
-      (session.prepare << "SELECT part, points, max_points FROM attempt_parts WHERE sequence = :s ORDER BY part",
-       soci::use(sequence), soci::into(part.name), soci::into(part.points), soci::into(part.max_points));
+      (session.prepare << "SELECT part, points, max_points, value FROM attempt_parts WHERE sequence = :s ORDER BY part",
+       soci::use(sequence), soci::into(part.name), soci::into(part.points), soci::into(part.max_points),
+       soci::into(part.value));
   select.execute();
   while (select.fetch()) parts.push_back(part);
   return parts;

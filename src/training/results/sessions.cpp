@@ -49,7 +49,8 @@ void add_outcome(const scoring::Outcome& outcome, AttemptRecord& record) {
   if (outcome.is_scored() && std::isfinite(outcome.score)) record.attempt.score = outcome.score;
   for (const scoring::Hint& hint : outcome.hints) record.hints.push_back({hint.text, hint.at_s});
   for (const scoring::ScorePart& part : outcome.parts)
-    if (!scoring::is_deduction(part)) record.parts.push_back({part.name, part.points, part.max_points});
+    if (!scoring::is_deduction(part))
+      record.parts.push_back({part.name, part.points, part.max_points, scoring::part_value_text(part)});
   for (const metrics::MetricValue& measure : outcome.measures)
     if (measure.value && std::isfinite(*measure.value))
       record.measures.push_back({measure.name, measure.unit, *measure.value});

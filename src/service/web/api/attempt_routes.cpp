@@ -41,7 +41,7 @@ Json parts_json(const std::vector<results::Part>& parts) {
     const std::string_view title = scoring::part_title(part.name);
     list.push_back({{"name", part.name},
                     {"title", title.empty() ? std::string_view(part.name) : title},
-                    {"value_text", nullptr},
+                    {"value_text", part.value.empty() ? Json(nullptr) : Json(part.value)},
                     {"points", rounded(part.points)},
                     {"max_points", rounded(part.max_points)}});
   }

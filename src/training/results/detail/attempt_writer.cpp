@@ -91,17 +91,18 @@ void AttemptWriter::replace_details(long long sequence, const AttemptRecord& rec
       soci::use(verdict), soci::use(trace);
 
   std::vector<long long> keys, sequences;
-  std::vector<std::string> names;
+  std::vector<std::string> names, texts;
   std::vector<double> values, limits;
   for (const Part& part : record.parts) {
     names.push_back(part.name);
     values.push_back(finite_or_zero(part.points));
     limits.push_back(finite_or_zero(part.max_points));
+    texts.push_back(part.value);
   }
   sequences.assign(names.size(), sequence);
   if (!names.empty())
-    session_ << "INSERT INTO attempt_parts (sequence, part, points, max_points) VALUES (:s, :n, :p, :m)",
-        soci::use(sequences), soci::use(names), soci::use(values), soci::use(limits);
+    session_ << "INSERT INTO attempt_parts (sequence, part, points, max_points, value) VALUES (:s, :n, :p, :m, :v)",
+        soci::use(sequences), soci::use(names), soci::use(values), soci::use(limits), soci::use(texts);
 
   values.clear();
   for (const Measure& measure : record.measures) {

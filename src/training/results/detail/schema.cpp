@@ -29,7 +29,8 @@ database::Migration version_1() {
       "CREATE TABLE attempt_details (sequence BIGINT PRIMARY KEY REFERENCES attempts (sequence) ON DELETE CASCADE,"
       " verdict TEXT NOT NULL, trace TEXT NOT NULL)",
       "CREATE TABLE attempt_parts (sequence BIGINT NOT NULL REFERENCES attempts (sequence) ON DELETE CASCADE,"
-      " part TEXT NOT NULL, points DOUBLE PRECISION NOT NULL, max_points DOUBLE PRECISION NOT NULL,"
+      " part TEXT NOT NULL, points DOUBLE PRECISION NOT NULL, max_points DOUBLE PRECISION NOT NULL, value TEXT NOT "
+      "NULL,"
       " PRIMARY KEY (sequence, part))",
       "CREATE TABLE metrics (id {sequence}, name TEXT NOT NULL UNIQUE, unit TEXT NOT NULL)",
       "CREATE TABLE attempt_metrics (sequence BIGINT NOT NULL REFERENCES attempts (sequence) ON DELETE CASCADE,"

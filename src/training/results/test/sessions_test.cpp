@@ -85,6 +85,8 @@ TEST_P(Sessions, BecomeAttemptsWithPathForcesAndRecording) {
                                         std::chrono::minutes(4) + std::chrono::seconds(5));
   EXPECT_NEAR(record.attempt.duration_s, 1.999, 1e-9);
   ASSERT_EQ(record.measures.size(), 1u);
+  ASSERT_EQ(record.parts.size(), 1u);
+  EXPECT_EQ(record.parts[0].value, "3.0 mm");
   const Trace& trace = record.trace;
   ASSERT_EQ(trace.time_s.size(), 50u);  // 2 s at 25 a second
   EXPECT_NEAR(trace.time_s[1], 0.04, 1e-9);
