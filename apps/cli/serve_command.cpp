@@ -62,7 +62,7 @@ Status serve(const ServeArguments& arguments) {
   options.data_folder = options.page_folder.parent_path();
   options.is_secure = tls || arguments.is_behind_proxy;
   options.is_behind_proxy = arguments.is_behind_proxy;
-  options.is_loopback = listen.is_loopback();
+  options.is_loopback = listen.is_loopback() || listen.is_any();
   options.is_served = served_names(arguments, listen, tls);
   const bool is_secure = options.is_secure;
   TROCAR_TRY(web::Service service, web::Service::open(std::move(options)));
@@ -80,6 +80,8 @@ Status serve(const ServeArguments& arguments) {
   fmt::print("{}\n", server.url());
   std::fflush(stdout);
   log_info("results: {}", database.shown());
+  if (listen.is_any())
+    log_info("listens on every address of this machine; browsers have to use a name of the certificate or of --name");
   TROCAR_TRY(const std::size_t accounts, service.count_accounts());
   if (accounts == 0) log_warning("there is no account yet: run \"trocar serve account add NAME --role admin\"");
   while (!is_interrupted()) std::this_thread::sleep_for(std::chrono::milliseconds(100));

@@ -20,7 +20,7 @@ struct ServiceOptions {
   std::filesystem::path page_folder;  ///< Of the page: data/web.
   bool is_secure = false;             ///< The browser uses TLS: our own, or that of a proxy in front.
   bool is_behind_proxy = false;       ///< The client's address is the last one of X-Forwarded-For.
-  bool is_loopback = true;            ///< Listens on loopback: "localhost" is served.
+  bool is_loopback = true;            ///< Also listens on loopback: "localhost" is served.
   std::function<bool(const std::string& host)> is_served;  ///< Other names of this server.
   std::function<Moment()> now;                             ///< Empty: the clocks of the system.
   signing::PasswordWork password_work;                     ///< Passwords with other work are hashed again at a login.
