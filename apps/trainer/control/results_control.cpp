@@ -3,6 +3,7 @@
 #include <QSettings>
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "core/files/data_dir.h"
 #include "pages/history_card.h"
@@ -117,7 +118,7 @@ void ResultsControl::choose(const QString& id) {
 }
 
 void ResultsControl::check_pin(const QString& pin) {
-  if (!asked_) return;
+  if (!asked_ || std::exchange(has_entry_, true)) return;
   enqueue([person = *asked_, pin = to_std(pin)](const database::DatabaseUrl& url) -> Result<Found> {
     TROCAR_TRY(results::Repository repository, results::Repository::open(url, database::Missing::kRefuse));
     Found found;
@@ -140,6 +141,7 @@ void ResultsControl::check_pin(const QString& pin) {
 
 void ResultsControl::add_person(const QString& name, const QString& pin) {
   if (are_pins_required_ && pin.isEmpty()) return start_.person().show_message(tr("Choose a PIN."));
+  if (std::exchange(has_entry_, true)) return;
   enqueue([name = to_std(name), pin = to_std(pin)](const database::DatabaseUrl& url) -> Result<Found> {
     Found found;
     if (!pin.empty())
@@ -209,7 +211,6 @@ void ResultsControl::record_end(const std::filesystem::path& session) {
 
 void ResultsControl::enqueue(Work work) {
   waiting_.push_back(std::move(work));
-  start_.person().set_busy(true);
 }
 
 void ResultsControl::poll() {
@@ -222,7 +223,7 @@ void ResultsControl::poll() {
                        "later.")
                         .arg(sentence_of(found->error())));
     }
-    start_.person().set_busy(has_work());
+    has_entry_ = has_entry_ && has_work();
   }
   if (working_.has_work() || waiting_.empty()) return;
   working_ =

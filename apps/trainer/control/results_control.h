@@ -82,6 +82,7 @@ class ResultsControl : public QObject {
   bool are_pins_required_ = false;
   std::optional<results::Person> person_;
   std::optional<results::Person> asked_;  ///< Whose PIN is being entered.
+  bool has_entry_ = false;                ///< What was entered is being checked.
   Curves curves_;
   std::string task_, attempt_id_;  ///< Of the attempt that has begun.
   std::string recorded_task_;      ///< Of the attempt that the feedback compares; empty: none.

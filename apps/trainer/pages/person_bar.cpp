@@ -116,9 +116,4 @@ void PersonBar::show_message(const QString& text) {
   message_->setVisible(!text.isEmpty());
 }
 
-void PersonBar::set_busy(bool is_busy) {
-  for (QWidget* widget : std::initializer_list<QWidget*>{people_, new_, name_, pin_, accept_})
-    widget->setEnabled(!is_busy);
-}
-
 }  // namespace trocar::trainer

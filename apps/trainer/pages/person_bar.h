@@ -32,8 +32,6 @@ class PersonBar : public QFrame {
   /// Back to the list, with the person who practises.
   void close_entry();
   void show_message(const QString& text);
-  /// Disables the fields while the database works.
-  void set_busy(bool is_busy);
 
  Q_SIGNALS:
   /// An entry of the list was chosen; empty: nobody.

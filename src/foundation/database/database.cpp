@@ -61,7 +61,7 @@ std::optional<Error> sqlite_error(int code, const std::string& where) {
     case SQLITE_PERM:
       return Error{"the database cannot be written", where, "check the permissions of the file and its folder"};
     case SQLITE_CANTOPEN:
-      return Error{"the database cannot be opened", where, "check the permissions of the file and its folder"};
+      return Error{"the file cannot be read", where, "check the permissions of the file and its folder"};
     case SQLITE_IOERR:
       return Error{"reading or writing the disk failed", where, "check the disk and its free space"};
     default:
