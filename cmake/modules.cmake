@@ -129,7 +129,7 @@ function(trocar_add_test name library)
   set_tests_properties(${name} PROPERTIES TIMEOUT ${timeout_s}
     ENVIRONMENT "GTEST_BRIEF=1;TROCAR_DATA_DIR=${PROJECT_SOURCE_DIR}/data;TROCAR_BIN_DIR=${CMAKE_BINARY_DIR}/bin;XDG_CACHE_HOME=${CMAKE_BINARY_DIR}/test-cache")
   # These open the embedded patient: it is generated once, before the first of them.
-  if(name MATCHES "^(cases|attempt|servers|cli|end_to_end|trainer)$")
+  if(name MATCHES "^(cases|attempt|servers|cli|result_commands|end_to_end|trainer)$")
     set_tests_properties(${name} PROPERTIES FIXTURES_REQUIRED embedded_patient)
   endif()
   if(name STREQUAL "cases")
