@@ -132,15 +132,16 @@ Status check_new_password(std::string_view password, std::string_view account) {
   if (characters < 0) return fail_usage("the password is not valid UTF-8", std::string(kWhere), "type it again");
   if (characters < kShortestPassword)
     return fail_usage("the password is too short", std::string(kWhere),
-                fmt::format("use at least {} characters, such as four words", kShortestPassword));
+                      fmt::format("use at least {} characters, such as four words", kShortestPassword));
   if (characters > kLongestPassword)
     return fail_usage("the password is too long", std::string(kWhere),
-                fmt::format("use at most {} characters", kLongestPassword));
+                      fmt::format("use at most {} characters", kLongestPassword));
   if (is_account_name(lower_case(password), lower_case(account)))
-    return fail_usage("the password is the name of the account", std::string(kWhere), "choose one that others cannot guess");
+    return fail_usage("the password is the name of the account", std::string(kWhere),
+                      "choose one that others cannot guess");
   if (is_common_password(password))
     return fail_usage("the password is one of those that are tried first", std::string(kWhere),
-                "choose four words that do not belong together");
+                      "choose four words that do not belong together");
   return {};
 }
 

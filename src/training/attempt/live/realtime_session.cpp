@@ -55,8 +55,11 @@ Status take_rate(const ServerSupervisor& needle, Performer& performer) {
 }
 
 AttemptCase attempt_case(const cases::Case& the_case, const RunOptions& options) {
-  return {std::make_shared<const cases::Case>(the_case), options.patient_source,
-          io::absolute_source(options.patient_source), options.patient_seed, {}};
+  return {std::make_shared<const cases::Case>(the_case),
+          options.patient_source,
+          io::absolute_source(options.patient_source),
+          options.patient_seed,
+          {}};
 }
 
 LoopOptions loop_options(const RunOptions& options) {
