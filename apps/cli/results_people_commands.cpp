@@ -29,6 +29,7 @@ Result<results::Group> parse_group(const std::string& name) {
 
 Status add(const std::string& url, const Arguments& arguments) {
   TROCAR_TRY(const results::Group group, parse_group(arguments.group));
+  TROCAR_TRY_STATUS(results::clean_name(arguments.name, "the name of a person"));  // before a database is made
   TROCAR_TRY(results::Repository repository, open_results(url, Missing::kCreate));
   TROCAR_TRY(
       const results::Person person,

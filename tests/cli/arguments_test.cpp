@@ -24,8 +24,10 @@ INSTANTIATE_TEST_SUITE_P(EveryCommand, Help,
                                          "patient render", "plan", "task", "task list", "device", "device list", "link",
                                          "link keygen", "run", "session", "session export", "session report",
                                          "ultrasound", "ultrasound image", "ultrasound sweep", "ultrasound reconstruct",
-                                         "ultrasound views", "ultrasound transducers", "bench", "completion",
-                                         "completion bash"));
+                                         "ultrasound views", "ultrasound transducers", "results", "results people",
+                                         "results list", "results import", "results export", "results delete",
+                                         "results curve", "results validity", "serve", "serve account add", "bench",
+                                         "completion", "completion bash"));
 
 class Mistake : public testing::TestWithParam<const char*> {};
 
@@ -71,7 +73,8 @@ INSTANTIATE_TEST_SUITE_P(
         "bench paths --patient nobody", "bench paths --force-model nonsense", "bench --patient abdomen", "ultrasound",
         "ultrasound sweep", "ultrasound reconstruct a.igs.mha", "ultrasound reconstruct --out x.nrrd",
         "ultrasound reconstruct a.igs.mha --out x.nii", "ultrasound reconstruct a.igs.mha --spacing 0 --out x.nrrd",
-        "ultrasound reconstruct a.igs.mha --holes all --out x.nrrd", "serve"));
+        "ultrasound reconstruct a.igs.mha --holes all --out x.nrrd", "serve nonsense", "serve --listen nowhere",
+        "serve account", "results", "results nonsense", "results --db mysql://a/b people", "results --db x add ' '"));
 
 TEST(Arguments, UnknownCommandIsNamed) {
   EXPECT_NE(trocar("nonsense").err.find("nonsense"), std::string::npos);

@@ -31,6 +31,8 @@ constexpr Command kCommands[] = {
     {"trocar", "ultrasound sweep", "--patient abdomen --view aorta --out x.nrrd"},
     {"trocar", "ultrasound reconstruct", "x.igs.mha --out x.nrrd"},
     {"trocar", "xray", "--patient abdomen --out x.png"},
+    {"trocar", "results list", ""},
+    {"trocar", "results curve", "--person x --task liver-biopsy"},
     {"trocar", "bench", "slice"},
     {"trocar-hapticd", "", ""},
 };
