@@ -9,7 +9,8 @@
 namespace trocar::config {
 namespace {
 
-constexpr int kMaxDepth = 64;  ///< Our documents are nested less than 10 deep; recursive functions may process them.
+constexpr int kMaxJsonDepth =
+    64;  ///< Our documents are nested less than 10 deep; recursive functions may process them.
 
 /// Deepest nesting of arrays and objects; brackets inside strings do not count.
 int nesting_depth(std::string_view text) {
@@ -35,8 +36,8 @@ int nesting_depth(std::string_view text) {
 }  // namespace
 
 Result<Json> parse_json(std::string_view text, const std::string& name) {
-  if (nesting_depth(text) > kMaxDepth)
-    return fail(fmt::format("the JSON is nested more than {} deep", kMaxDepth), name, "is this the right file?");
+  if (nesting_depth(text) > kMaxJsonDepth)
+    return fail(fmt::format("the JSON is nested more than {} deep", kMaxJsonDepth), name, "is this the right file?");
   try {
     return Json::parse(text);
   } catch (const Json::parse_error& error) {

@@ -5,11 +5,10 @@
 #include <string>
 #include <string_view>
 
+#include "config/json_fwd.h"
 #include "core/result.h"
 
 namespace trocar::config {
-
-using Json = nlohmann::ordered_json;
 
 /// Parses untrusted JSON, nested at most 64 deep; the error names `name` and the byte. Never throws.
 Result<Json> parse_json(std::string_view text, const std::string& name);

@@ -20,6 +20,7 @@ constexpr std::size_t kLongestLine = 110;  ///< A longer list has one line per v
 /// undefined.
 std::string formatted(const toml::node& node) {
   std::ostringstream stream;
+  stream.imbue(std::locale::classic());
   stream << toml::toml_formatter(node, kFlags);
   return std::move(stream).str();
 }

@@ -2,9 +2,18 @@
 
 namespace trocar {
 inline namespace core {
+
+/// Called with the text of a failed check, in the thread that failed it.
+using CheckHandler = void (*)(const char* text);
+
+/// Replaces what a failed check does, for programs that embed Trocar and must not be aborted (a Python interpreter): a
+/// handler that throws hands its exception to the caller of the function that failed. After one that returns, and where
+/// the exception would leave a function that is noexcept, the program is aborted. Null: as at the start, prints the
+/// text and aborts. Returns the handler before. Thread-safe.
+CheckHandler set_check_handler(CheckHandler handler) noexcept;
+
 namespace detail {
-/// Prints the failed condition and aborts.
-[[noreturn]] void check_failed(const char* condition, const char* file, int line) noexcept;
+[[noreturn]] void check_failed(const char* condition, const char* file, int line);
 }  // namespace detail
 }  // namespace core
 }  // namespace trocar

@@ -3,7 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
+
+#include "core/ascii.h"
 
 namespace trocar::database {
 namespace {
@@ -16,8 +17,7 @@ std::string_view scheme_of(std::string_view text) {
   const std::size_t end = text.find("://");
   if (end == std::string_view::npos) return {};
   const std::string_view scheme = text.substr(0, end);
-  const bool is_word = std::all_of(scheme.begin(), scheme.end(),
-                                   [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; });
+  const bool is_word = std::all_of(scheme.begin(), scheme.end(), ascii::is_letter_or_digit);
   return is_word ? scheme : std::string_view();
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <numbers>
+
 #include "geometry/vec.h"
 
 namespace trocar {
@@ -36,6 +38,7 @@ Pose needle_pose(const Vec3& tip_A, const Vec3& axis_A) noexcept;
 
 /// Angle between two directions, 0..pi rad.
 double angle_between_rad(const Vec3& a, const Vec3& b) noexcept;
+inline constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 }  // namespace geometry
 }  // namespace trocar

@@ -12,7 +12,7 @@
 namespace trocar::volume {
 namespace {
 
-constexpr float kFar = std::numeric_limits<float>::infinity();
+constexpr float kUnreached = std::numeric_limits<float>::infinity();
 constexpr double kLeastDepth_mm = 0.2;   ///< Lower limit for the cost of voxels at the wall.
 constexpr double kCovers = 1.3;          ///< Radius of the region covered by a path, in radii,
 constexpr double kCoversMore_mm = 1.5;   ///< plus this length.
@@ -61,8 +61,8 @@ class Finder {
   explicit Finder(const FloatGrid& depth_mm)
       : depth_(depth_mm), geometry_(depth_mm.geometry), steps_(make_steps(geometry_)) {
     const std::size_t n = depth_.voxels.size();
-    way_.assign(n, kFar);
-    cost_.assign(n, kFar);
+    way_.assign(n, kUnreached);
+    cost_.assign(n, kUnreached);
     before_.assign(n, 0);
     state_.assign(n, kUnseen);
     for (std::size_t v = 0; v < n; ++v)
@@ -122,7 +122,7 @@ class Finder {
   /// The voxel of the component farthest from any other voxel is at one end.
   CentrelineTree make_tree(const std::vector<std::size_t>& piece) {
     const std::size_t root = piece.back();
-    for (const std::size_t v : piece) way_[v] = kFar;
+    for (const std::size_t v : piece) way_[v] = kUnreached;
     const std::vector<std::size_t> by_way = spread(root, way_, false);
     spread(root, cost_, true);
     raw_ = {{root, -1, depth_mm(root)}};

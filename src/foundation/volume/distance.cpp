@@ -16,7 +16,7 @@
 namespace trocar::volume {
 namespace {
 
-constexpr float kFar = std::numeric_limits<float>::infinity();
+constexpr float kNoSite = std::numeric_limits<float>::infinity();
 constexpr std::size_t kTile = 16;  ///< Lines processed together: one cache line of floats per row.
 
 struct Extent {
@@ -41,31 +41,31 @@ void finish_row(std::span<const float> forward, double spacing_mm, float at_end,
 
 /// Squared distance along the row to its nearest site; sites are voxel centres.
 void spread_centres(auto is_site, double spacing_mm, std::span<float> forward, std::span<float> out) {
-  float steps = kFar;
+  float steps = kNoSite;
   for (std::size_t i = 0; i < out.size(); ++i) {
     steps = is_site(i) ? 0.0F : steps + 1.0F;
     forward[i] = steps;
   }
-  finish_row(forward, spacing_mm, kFar, is_site, 0.0F, out);
+  finish_row(forward, spacing_mm, kNoSite, is_site, 0.0F, out);
 }
 
 /// Squared distance along the row to the nearest face between different voxels.
 void spread_faces(std::span<const std::uint8_t> row, double spacing_mm, std::span<float> forward,
                   std::span<float> out) {
-  float steps = kFar;
+  float steps = kNoSite;
   for (std::size_t i = 0; i < row.size(); ++i) {
     steps = i > 0 && row[i] != row[i - 1] ? 0.5F : steps + 1.0F;
     forward[i] = steps;
   }
   const auto face_above = [&](std::size_t i) { return i + 1 < row.size() && row[i] != row[i + 1]; };
-  finish_row(forward, spacing_mm, kFar, face_above, 0.5F, out);
+  finish_row(forward, spacing_mm, kNoSite, face_above, 0.5F, out);
 }
 
 /// The same to the voxels that differ between two neighbouring rows.
 void spread_differences(std::span<const std::uint8_t> a, std::span<const std::uint8_t> b, double spacing_mm,
                         std::span<float> forward, std::span<float> out) {
   if (std::equal(a.begin(), a.end(), b.begin())) {
-    std::fill(out.begin(), out.end(), kFar);
+    std::fill(out.begin(), out.end(), kNoSite);
     return;
   }
   spread_centres([&](std::size_t i) { return a[i] != b[i]; }, spacing_mm, forward, out);

@@ -96,7 +96,7 @@ class VoxelWalk {
 }  // namespace
 
 void sample_slice_nearest(const Grid<std::uint8_t>& grid, const SlicePlane& plane, std::uint8_t outside,
-                          std::span<std::uint8_t> out) noexcept {
+                          std::span<std::uint8_t> out) {
   const auto columns = static_cast<std::size_t>(plane.columns);
   TROCAR_CHECK(plane.columns >= 0 && plane.rows >= 0 && out.size() == columns * static_cast<std::size_t>(plane.rows));
   const GridGeometry& geometry = grid.geometry;
@@ -120,7 +120,7 @@ void sample_slice_nearest(const Grid<std::uint8_t>& grid, const SlicePlane& plan
   }
 }
 
-void sample_slice(const CtGrid& grid, const SlicePlane& plane, float outside, std::span<float> out) noexcept {
+void sample_slice(const CtGrid& grid, const SlicePlane& plane, float outside, std::span<float> out) {
   const auto columns = static_cast<std::size_t>(plane.columns);
   TROCAR_CHECK(plane.columns >= 0 && plane.rows >= 0 && out.size() == columns * static_cast<std::size_t>(plane.rows));
   const GridGeometry& geometry = grid.geometry;
@@ -145,7 +145,7 @@ void sample_slice(const CtGrid& grid, const SlicePlane& plane, float outside, st
   }
 }
 
-void sample_points(const CtGrid& grid, std::span<const Vec3f> points_P, float outside, std::span<float> out) noexcept {
+void sample_points(const CtGrid& grid, std::span<const Vec3f> points_P, float outside, std::span<float> out) {
   TROCAR_CHECK(out.size() == points_P.size());
   const GridGeometry& geometry = grid.geometry;
   if (!has_pairs(grid)) {

@@ -75,13 +75,13 @@ struct SlicePlane {
 /// voxel beyond the outermost voxel centres: in that rim the edge values continue, as in sample_linear; beyond it, and
 /// if the plane is not finite, the value is `outside`. The box is the one of sample_nearest. One thread, floats:
 /// positions are accurate to 1e-5 of a voxel. SIMD, selected at run time for the processor. No allocation.
-void sample_slice(const CtGrid& grid, const SlicePlane& plane, float outside, std::span<float> out) noexcept;
+void sample_slice(const CtGrid& grid, const SlicePlane& plane, float outside, std::span<float> out);
 /// The value of the nearest voxel at each point of a plane, `outside` beyond the grid's box, as in sample_nearest
 /// (positions on the border of two voxels may fall to either side). One thread, no allocation.
 void sample_slice_nearest(const Grid<std::uint8_t>& grid, const SlicePlane& plane, std::uint8_t outside,
-                          std::span<std::uint8_t> out) noexcept;
+                          std::span<std::uint8_t> out);
 /// As sample_slice, at arbitrary points of P; `out` has the length of `points_P` (checked). Points within 1e-4 of a
 /// voxel of the box's faces may fall to either side.
-void sample_points(const CtGrid& grid, std::span<const Vec3f> points_P, float outside, std::span<float> out) noexcept;
+void sample_points(const CtGrid& grid, std::span<const Vec3f> points_P, float outside, std::span<float> out);
 
 }  // namespace trocar::volume

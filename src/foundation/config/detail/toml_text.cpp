@@ -11,7 +11,7 @@ namespace trocar::config::detail {
 namespace {
 
 constexpr std::size_t kMaxBytes = std::size_t{4} << 20;
-constexpr int kMaxDepth = 32;  ///< Nested brackets, and dots of one key.
+constexpr int kMaxTomlDepth = 32;  ///< Nested brackets, and dots of one key.
 
 /// Scans the text like toml++ up to the first error: text after an error is never parsed.
 class Scanner {
@@ -43,7 +43,8 @@ class Scanner {
       dots = c == '.' ? dots + 1 : (c == '\n' || c == '=' || c == ',') ? 0 : dots;
       if (c == '=') is_key = false;
       if (c == '\n') is_key = brackets == 0;
-      if (brackets > kMaxDepth || dots > kMaxDepth) return fmt::format("nested more than {} deep", kMaxDepth);
+      if (brackets > kMaxTomlDepth || dots > kMaxTomlDepth)
+        return fmt::format("nested more than {} deep", kMaxTomlDepth);
       if (c != ' ' && c != '\t' && c != '\r') before = c;
       ++at_;
     }

@@ -18,9 +18,9 @@ bool is_program(const fs::path& path) {
 std::optional<fs::path> find_program(std::string_view name) {
   std::error_code ignored;
   const fs::path self = fs::read_symlink("/proc/self/exe", ignored);
-  if (const fs::path beside = self.parent_path() / name; is_program(beside)) return beside;
+  if (const fs::path beside = self.parent_path() / name; !self.empty() && is_program(beside)) return beside;
   const char* folder = std::getenv("TROCAR_BIN_DIR");
-  if (folder != nullptr && is_program(fs::path(folder) / name)) return fs::path(folder) / name;
+  if (folder != nullptr && *folder != '\0' && is_program(fs::path(folder) / name)) return fs::path(folder) / name;
   const char* path = std::getenv("PATH");
   std::string_view rest = path == nullptr ? "" : path;
   while (!rest.empty()) {

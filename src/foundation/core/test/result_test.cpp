@@ -4,8 +4,6 @@
 
 #include <memory>
 
-#include "core/check.h"
-
 namespace trocar {
 inline namespace core {
 namespace {
@@ -75,12 +73,6 @@ TEST(Try, PassesAStatusOn) {
   EXPECT_TRUE(both(1, 2));
   EXPECT_FALSE(both(-1, 2));
   EXPECT_FALSE(both(1, -2));
-}
-
-TEST(CheckDeathTest, NamesTheConditionThatDoesNotHold) {
-  const int two = 2;
-  TROCAR_CHECK(two == 2);
-  EXPECT_DEATH(TROCAR_CHECK(two == 3), "check failed: two == 3");
 }
 
 }  // namespace

@@ -10,8 +10,8 @@
 namespace trocar::volume::detail {
 namespace {
 
-constexpr std::size_t kMostRows = 150;  ///< Beyond it the distance transform is about as fast.
-constexpr std::uint8_t kFar = 255;      ///< Voxels along a row.
+constexpr std::size_t kMostRows = 150;    ///< Beyond it the distance transform is about as fast.
+constexpr std::uint8_t kMostReach = 255;  ///< Voxels along a row.
 
 /// A row of the ball: the voxels -reach..reach, j and k rows away.
 struct BallRow {
@@ -21,7 +21,7 @@ struct BallRow {
 
 std::optional<std::vector<BallRow>> rows_of_ball(const Vec3& spacing_mm, double radius_mm) {
   const Vec3 reach = radius_mm * spacing_mm.cwiseInverse();
-  if (reach.x() >= kFar || reach.y() * reach.z() > static_cast<double>(kMostRows)) return std::nullopt;
+  if (reach.x() >= kMostReach || reach.y() * reach.z() > static_cast<double>(kMostRows)) return std::nullopt;
   std::vector<BallRow> rows;
   const auto last_j = static_cast<std::int64_t>(reach.y()), last_k = static_cast<std::int64_t>(reach.z());
   for (std::int64_t k = -last_k; k <= last_k; ++k)
@@ -36,14 +36,14 @@ std::optional<std::vector<BallRow>> rows_of_ball(const Vec3& spacing_mm, double 
   return rows;
 }
 
-/// Replaces a row of a mask by the distances to its nearest set voxel, at most kFar. False if none is set.
+/// Replaces a row of a mask by the distances to its nearest set voxel, at most kMostReach. False if none is set.
 bool to_distances(std::span<std::uint8_t> row) {
-  std::uint8_t last = kFar;
+  std::uint8_t last = kMostReach;
   for (std::uint8_t& voxel : row) {
-    last = voxel != 0 ? 0 : static_cast<std::uint8_t>(std::min<int>(last + 1, kFar));
+    last = voxel != 0 ? 0 : static_cast<std::uint8_t>(std::min<int>(last + 1, kMostReach));
     voxel = last;
   }
-  last = kFar;
+  last = kMostReach;
   bool has_set = false;
   for (auto voxel = row.rbegin(); voxel != row.rend(); ++voxel) {
     last = static_cast<std::uint8_t>(std::min<int>(last + 1, *voxel));

@@ -15,10 +15,6 @@ namespace {
 /// Distances are rounded to floats twice.
 constexpr double kRounding = 3e-7;
 
-Vec3 centre_mm(const GridGeometry& geometry, const Index3& ijk) {
-  return geometry.centre_mm(ijk);
-}
-
 /// The points that the signed distance is measured to, by definition: half way between neighbours that differ.
 std::vector<Vec3> surface_points(const MaskGrid& mask) {
   std::vector<Vec3> points;
@@ -28,7 +24,7 @@ std::vector<Vec3> surface_points(const MaskGrid& mask) {
       Index3 next = here;
       ++next[a];
       if (mask.geometry.contains(next) && mask[here] != mask[next])
-        points.push_back(0.5 * (centre_mm(mask.geometry, here) + centre_mm(mask.geometry, next)));
+        points.push_back(0.5 * (mask.geometry.centre_mm(here) + mask.geometry.centre_mm(next)));
     }
   }
   return points;
@@ -49,7 +45,7 @@ TEST(SignedDistance, EqualsBruteForceOnRandomMasks) {
       const std::vector<Vec3> points = surface_points(mask);
       const FloatGrid distance = signed_distance_mm(mask);
       for (std::size_t n = 0; n < mask.voxels.size(); ++n) {
-        const double expected = nearest(points, centre_mm(mask.geometry, mask.geometry.index_of(n)));
+        const double expected = nearest(points, mask.geometry.centre_mm(mask.geometry.index_of(n)));
         const double sign = mask.voxels[n] != 0 ? -1.0 : 1.0;
         if (points.empty()) {
           ASSERT_EQ(distance.voxels[n], sign * expected);
@@ -99,7 +95,7 @@ struct Deviation {
 
 Deviation deviation_from(const GridGeometry& geometry, const Body& body) {
   MaskGrid mask(geometry);
-  const auto centre = [&](std::size_t n) { return centre_mm(geometry, geometry.index_of(n)); };
+  const auto centre = [&](std::size_t n) { return geometry.centre_mm(geometry.index_of(n)); };
   for (std::size_t n = 0; n < mask.voxels.size(); ++n) mask.voxels[n] = body.distance_mm(centre(n)) < 0.0 ? 1 : 0;
   const FloatGrid distance = signed_distance_mm(mask);
   Deviation deviation;
@@ -163,10 +159,10 @@ TEST(DistanceToMask, EqualsBruteForceOnRandomMasks) {
       mask.voxels.back() = 1;
       std::vector<Vec3> points;
       for (std::size_t n = 0; n < mask.voxels.size(); ++n)
-        if (mask.voxels[n] != 0) points.push_back(centre_mm(mask.geometry, mask.geometry.index_of(n)));
+        if (mask.voxels[n] != 0) points.push_back(mask.geometry.centre_mm(mask.geometry.index_of(n)));
       const FloatGrid distance = distance_to_mask_mm(mask);
       for (std::size_t n = 0; n < mask.voxels.size(); ++n) {
-        const double expected = nearest(points, centre_mm(mask.geometry, mask.geometry.index_of(n)));
+        const double expected = nearest(points, mask.geometry.centre_mm(mask.geometry.index_of(n)));
         ASSERT_NEAR(distance.voxels[n], expected, 1e-6 + kRounding * expected);
       }
     }
