@@ -12,11 +12,11 @@ namespace {
 
 // All numbers are assumed: chosen on two CTs (3 mm and 0.74 mm voxels), with a safety distance.
 constexpr std::int16_t kSolidAboveHu = -300;  // skin and fat above, air, foam and cloth below
-constexpr double kCoarseMm = 3.0;             // the table is found at this resolution
+constexpr double kTableVoxelMm = 3.0;         // the table is found at this resolution
 constexpr double kThinRadiusMm = 5.0;         // plates, tubes and blankets are thinner than twice this
 constexpr double kLongMm = 120.0;             // thin parts that are longer do not belong to a body
 constexpr double kSealRadiusMm = 7.0;         // gaps in the chest wall from removing the table
-constexpr double kNearMm = 4.0;               // search distance of the fine contour around the coarse one
+constexpr double kContourSearchMm = 4.0;      // search distance of the fine contour around the coarse one
 
 volume::MaskGrid solid_of(const volume::CtGrid& ct) {
   volume::MaskGrid mask(ct.geometry);
@@ -87,11 +87,11 @@ volume::MaskGrid find_coarse_body(const volume::CtGrid& ct) {
 volume::MaskGrid find_body(const volume::CtGrid& ct) {
   TROCAR_CHECK(volume::order_along_P(ct.geometry).is_identity());
   const volume::CtGrid coarse_ct =
-      volume::resample_linear(ct, volume::isotropic_geometry(ct.geometry, kCoarseMm), -1000);
+      volume::resample_linear(ct, volume::isotropic_geometry(ct.geometry, kTableVoxelMm), -1000);
   volume::MaskGrid zones = find_coarse_body(coarse_ct);
   {  // 0: far from the body, 1: the fine contour decides, 2: deep inside
-    const volume::MaskGrid near = volume::dilate(zones, kNearMm);
-    const volume::MaskGrid deep = volume::erode(zones, kNearMm);
+    const volume::MaskGrid near = volume::dilate(zones, kContourSearchMm);
+    const volume::MaskGrid deep = volume::erode(zones, kContourSearchMm);
     for (std::size_t n = 0; n < zones.voxels.size(); ++n) zones.voxels[n] = deep.voxels[n] ? 2 : near.voxels[n];
   }
   volume::MaskGrid body = volume::resample_nearest(zones, ct.geometry, 0);

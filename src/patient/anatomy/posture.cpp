@@ -5,18 +5,18 @@
 namespace trocar::anatomy {
 namespace {
 
-struct Row {
+struct PostureRow {
   std::string_view name, words;
   std::array<double, 3> down_P;
 };
 
-constexpr std::array<Row, 5> kRows{{{"supine", "lying on the back", {0, 1, 0}},
-                                    {"prone", "lying on the belly", {0, -1, 0}},
-                                    {"left-lateral", "lying on the left side", {1, 0, 0}},
-                                    {"right-lateral", "lying on the right side", {-1, 0, 0}},
-                                    {"sitting", "sitting", {0, 0, -1}}}};
+constexpr std::array<PostureRow, 5> kRows{{{"supine", "lying on the back", {0, 1, 0}},
+                                           {"prone", "lying on the belly", {0, -1, 0}},
+                                           {"left-lateral", "lying on the left side", {1, 0, 0}},
+                                           {"right-lateral", "lying on the right side", {-1, 0, 0}},
+                                           {"sitting", "sitting", {0, 0, -1}}}};
 
-const Row& row_of(Posture posture) {
+const PostureRow& row_of(Posture posture) {
   return kRows[static_cast<std::size_t>(posture)];
 }
 

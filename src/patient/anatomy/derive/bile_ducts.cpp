@@ -19,7 +19,7 @@ constexpr double kWidestMm = 2.0;
 constexpr double kThinnestVeinMm = 1.5;  // radius: beside thinner branches a duct of 1.8 mm would be too wide
 constexpr double kAxisMm = 8.0;          // of the branch that gives its direction
 constexpr double kWallMm = 0.5;          // between vein and duct
-constexpr double kStepMm = 5.0;          // longest piece of a duct between two points of its vein
+constexpr double kLongestPieceMm = 5.0;  // longest piece of a duct between two points of its vein
 constexpr double kThinnestVoxels = 0.4;  // radius: thinner ducts would be wider in voxels than they are
 
 constexpr float kEqualMm = 0.05F;
@@ -144,8 +144,8 @@ void derive_bile_ducts(DerivedLabels& labels, const DeriveChoice& choice) {
   }
   for (std::size_t n = 0; n < pieces.size(); ++n)
     for (std::size_t m = n; m < pieces.size(); ++m) {
-      const bool are_next = (pieces[n].first - pieces[m].first).norm() <= kStepMm &&
-                            (pieces[n].second.p_P - pieces[m].second.p_P).norm() <= kStepMm;
+      const bool are_next = (pieces[n].first - pieces[m].first).norm() <= kLongestPieceMm &&
+                            (pieces[n].second.p_P - pieces[m].second.p_P).norm() <= kLongestPieceMm;
       if (are_next) paint_tube(labels, pieces[n].second, pieces[m].second, ducts);
     }
 }

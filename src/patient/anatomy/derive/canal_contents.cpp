@@ -9,7 +9,7 @@ namespace {
 
 // Thickness of the ligamentum flavum by the vertebra above: mean of 350 adults, L2-L3, L3-L4, L4-L5, L5-S1
 // (doi 10.5603/FM.a2021.0120). Above L2 assumed thinner.
-constexpr double kFlavumMm[] = {3.19, 3.38, 3.71, 3.64};
+constexpr double kLumbarFlavumMm[] = {3.19, 3.38, 3.71, 3.64};
 constexpr double kUpperFlavumMm = 3.0;
 // Posterior epidural space in the midline between lumbar laminae: 3 to 6 mm (about 6 mm at L2-L3: Senac 2019; 6.9 +- 4
 // mm between loss of resistance and CSF: Bevacqua et al., Reg Anesth 1996, 21:456). The sac leaves at least this much
@@ -31,7 +31,7 @@ constexpr double kVeinsMm = 4.0;  // assumed: depth of the anterior venous plexu
 
 double flavum_mm(std::uint8_t above) {
   const int n = above - (kL1 + 1);
-  return n >= 0 && n < 4 ? kFlavumMm[n] : kUpperFlavumMm;
+  return n >= 0 && n < 4 ? kLumbarFlavumMm[n] : kUpperFlavumMm;
 }
 
 /// Centroids along k of labelled vertebrae.

@@ -10,18 +10,17 @@
 
 namespace trocar::anatomy {
 namespace {
-using namespace detail;
 
 constexpr std::string_view kOfSpine[] = {"dural_sac",      "ligamentum_flavum",     "epidural_fat",
                                          "epidural_veins", "interspinous_ligament", "supraspinous_ligament"};
 
-void derive_spine(DerivedLabels& labels, const DeriveChoice& choice) {
-  const SpineLabels spine = find_spine_labels(labels.patient().label_table, labels.boxes());
-  const std::optional<Canal> canal = find_canal(labels, spine);
+void derive_spine(detail::DerivedLabels& labels, const DeriveChoice& choice) {
+  const detail::SpineLabels spine = detail::find_spine_labels(labels.patient().label_table, labels.boxes());
+  const std::optional<detail::Canal> canal = detail::find_canal(labels, spine);
   if (!canal) return;
-  const PosteriorWall wall(labels, spine, *canal);
-  derive_canal_contents(labels, spine, *canal, wall, choice);
-  derive_spinous_ligaments(labels, spine, *canal, wall, choice);
+  const detail::PosteriorWall wall(labels, spine, *canal);
+  detail::derive_canal_contents(labels, spine, *canal, wall, choice);
+  detail::derive_spinous_ligaments(labels, spine, *canal, wall, choice);
 }
 
 /// Logs the duration of a step.
@@ -46,14 +45,14 @@ std::vector<std::string> derive_structures(VirtualPatient& patient, const KnownS
                                            const DeriveChoice& choice, const Progress& progress) {
   if (!choice.is_all && choice.names.empty()) return {};
   const std::size_t before = patient.label_table.labels.size();
-  DerivedLabels labels(patient, known);
+  detail::DerivedLabels labels(patient, known);
   report(progress, "thin structures", 0.0);
   const auto is_wanted = [&](std::string_view name) { return choice.has(name); };
   if (std::ranges::any_of(kOfSpine, is_wanted)) timed("structures of the spine", [&] { derive_spine(labels, choice); });
   report(progress, "thin structures", 0.3);
-  timed("bile ducts", [&] { derive_bile_ducts(labels, choice); });
+  timed("bile ducts", [&] { detail::derive_bile_ducts(labels, choice); });
   report(progress, "thin structures", 0.5);
-  timed("structures of the trunk's wall", [&] { derive_wall_structures(labels, choice); });
+  timed("structures of the trunk's wall", [&] { detail::derive_wall_structures(labels, choice); });
   std::vector<std::string> added;
   std::vector<std::uint8_t> ids;
   for (std::size_t n = before; n < patient.label_table.labels.size(); ++n)

@@ -10,14 +10,14 @@ namespace {
 
 // The epigastric vessels lie 4 to 8 cm from the midline at all levels (CT of 100 patients, doi
 // 10.1097/01.sla.0000109151.53296.07), behind and in the rectus muscle.
-constexpr double kNearMm = 40.0;
-constexpr double kFarMm = 80.0;
+constexpr double kNearMidlineMm = 40.0;
+constexpr double kFarFromMidlineMm = 80.0;
 constexpr double kThicknessMm = 4.0;  // assumed: of the vessels and the sheath
 // Assumed levels: from the symphysis, above the lower end of the hip bones, to the umbilicus, above the iliac crests.
 constexpr double kSymphysisMm = 40.0;
 constexpr double kUmbilicusMm = 20.0;
 constexpr double kThinnestMuscleMm = 2.5;
-constexpr double kDeepestMm = 80.0;  // the muscle begins within this distance of the skin
+constexpr double kDeepestMuscleMm = 80.0;  // the muscle begins within this distance of the skin
 constexpr double kSmoothingMm = 9.0;
 constexpr double kDeeperMm = 25.0;    // a muscle this much deeper below the skin than the rectus is another one
 constexpr double kLeastFound = 0.25;  // share of a slice's columns in which the muscle must be found
@@ -40,7 +40,7 @@ Column find_muscle(const DerivedLabels& labels, const std::array<bool, 256>& is_
     const std::size_t n = g.offset({i, j, k});
     if (column.skin_j < 0 && skin_mm.voxels[n] < 0.0F) column.skin_j = j;
     if (column.skin_j < 0) continue;
-    if (first < 0 && static_cast<double>(j - column.skin_j) * spacing_mm > kDeepestMm) return column;
+    if (first < 0 && static_cast<double>(j - column.skin_j) * spacing_mm > kDeepestMuscleMm) return column;
     const std::uint8_t id = labels.at(n);
     if (is_muscle[id] && first < 0) first = j;
     if (is_muscle[id] || first < 0) continue;
@@ -154,7 +154,7 @@ void derive_epigastric_zone(DerivedLabels& labels) {
     return static_cast<std::int64_t>(std::lround(mm / spacing_mm));
   };
   const double middle = 0.5 * static_cast<double>(hips.low[0] + hips.high[0]);
-  const std::int64_t near = steps(kNearMm, g.spacing_mm.x()), far = steps(kFarMm, g.spacing_mm.x());
+  const std::int64_t near = steps(kNearMidlineMm, g.spacing_mm.x()), far = steps(kFarFromMidlineMm, g.spacing_mm.x());
   const std::int64_t first_k = hips.low[2] + steps(kSymphysisMm, g.spacing_mm.z());
   const std::int64_t last_k = std::min(g.size[2] - 1, hips.high[2] + steps(kUmbilicusMm, g.spacing_mm.z()));
   const auto centre = static_cast<std::int64_t>(std::lround(middle));

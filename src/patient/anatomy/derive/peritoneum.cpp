@@ -13,7 +13,7 @@
 namespace trocar::anatomy::detail {
 namespace {
 
-constexpr double kCoarseMm = 4.0;
+constexpr double kRegionVoxelMm = 4.0;
 constexpr double kAccuracyMm = 1.0;     // of the region's surface
 constexpr double kNarrowMm = 16.0;      // assumed: spaces between organs up to twice this belong to the cavity
 constexpr double kMembraneMm = 1.2;     // membrane and the tissue that holds it: data/phantoms/layers.toml, liver
@@ -69,7 +69,7 @@ PeritonealRegion find_peritoneal_region(const DerivedLabels& labels) {
     region.box.include(labels.boxes().box[label.id]);
   }
   if (region.box.is_empty()) return region;
-  const volume::GridGeometry grid = volume::isotropic_geometry(labels.geometry(), kCoarseMm);
+  const volume::GridGeometry grid = volume::isotropic_geometry(labels.geometry(), kRegionVoxelMm);
   volume::MaskGrid organs = volume::resample_nearest(labels.patient().labels, grid, 0);
   for (std::uint8_t& voxel : organs.voxels) voxel = region.is_organ[voxel] ? 1 : 0;
   region.distance_mm = volume::signed_distance_mm(volume::erode(volume::dilate(organs, kNarrowMm), kNarrowMm));
@@ -78,7 +78,7 @@ PeritonealRegion find_peritoneal_region(const DerivedLabels& labels) {
 
 void derive_peritoneum(DerivedLabels& labels, const PeritonealRegion& region) {
   const volume::GridGeometry& g = labels.geometry();
-  const IndexBox box = grown(region.box, kCoarseMm + 2.0 * kMembraneMm, g);
+  const IndexBox box = grown(region.box, kRegionVoxelMm + 2.0 * kMembraneMm, g);
   std::array<bool, 256> is_filling{};  // fat and soft tissue between the organs
   for (const Label& label : labels.patient().label_table.labels)
     is_filling[label.id] = label.tissue == "adipose" || label.tissue == "soft_tissue" || label.tissue == "gas";

@@ -10,10 +10,10 @@ namespace {
 
 // Assumed lengths.
 constexpr double kBandMm = 10.0;             // a spinous process lies this near to the canal's middle
-constexpr double kDeepestMm = 90.0;          // from the canal's centre to its tip
+constexpr double kDeepestTipMm = 90.0;       // from the canal's centre to its tip
 constexpr double kSpinousMm = 10.0;          // shorter than this behind the wall it is a lamina
 constexpr double kBluntMm = 8.0;             // the tip's rounded end
-constexpr double kLongestGapMm = 40.0;       // between two tips
+constexpr double kLongestTipGapMm = 40.0;    // between two tips
 constexpr double kInterspinousHalfMm = 3.0;  // half the width
 constexpr double kSupraspinousHalfMm = 4.0;
 constexpr double kSupraspinousMm = 4.0;  // thickness
@@ -71,7 +71,7 @@ class SpinousLigaments {
     const auto steps = [](double mm, double spacing_mm) { return static_cast<std::int64_t>(mm / spacing_mm); };
     const auto middle = std::lround(slice->i), start = std::lround(slice->j);
     const std::int64_t band = steps(kBandMm, g.spacing_mm.x());
-    for (std::int64_t j = std::min(g.size[1] - 1, start + steps(kDeepestMm, g.spacing_mm.y())); j > start; --j) {
+    for (std::int64_t j = std::min(g.size[1] - 1, start + steps(kDeepestTipMm, g.spacing_mm.y())); j > start; --j) {
       double sum = 0.0, count = 0.0;
       std::uint8_t place = 0;
       for (std::int64_t i = std::max<std::int64_t>(0, middle - band); i <= std::min(g.size[0] - 1, middle + band);
@@ -102,7 +102,7 @@ class SpinousLigaments {
   }
 
   void bridge_gaps() {
-    const auto longest = static_cast<std::int64_t>(kLongestGapMm / labels_.geometry().spacing_mm.z());
+    const auto longest = static_cast<std::int64_t>(kLongestTipGapMm / labels_.geometry().spacing_mm.z());
     std::int64_t below_k = canal_.first_k - 1;
     for (std::int64_t k = canal_.first_k; k <= canal_.last_k(); ++k) {
       if (!tip(k).is_found()) continue;

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
+
+#include "core/ascii.h"
 
 namespace trocar::anatomy::detail {
 namespace {
@@ -12,11 +13,11 @@ constexpr std::string_view kSeparators = "_- ";
 constexpr std::string_view kSpineRegions = "ctls";
 
 bool is_digits(std::string_view text) {
-  return std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+  return std::all_of(text.begin(), text.end(), ascii::is_digit);
 }
 
 bool is_name_character(char c) {
-  return std::isalnum(static_cast<unsigned char>(c)) != 0 || kSeparators.find(c) != std::string_view::npos;
+  return ascii::is_letter_or_digit(c) || kSeparators.find(c) != std::string_view::npos;
 }
 
 }  // namespace
@@ -24,8 +25,7 @@ bool is_name_character(char c) {
 std::string plain_name(std::string_view name) {
   std::string text;
   for (const char c : name) {
-    const auto u = static_cast<unsigned char>(c);
-    if (std::isalnum(u)) text += static_cast<char>(std::tolower(u));
+    if (ascii::is_letter_or_digit(c)) text += ascii::to_lower(c);
   }
   return text;
 }

@@ -7,11 +7,11 @@
 namespace trocar::anatomy::phantom {
 namespace {
 
-constexpr float kBileHu = 8.0F, kWallHu = 70.0F, kArteryHu = 150.0F, kTumourHu = 78.0F;
+constexpr float kBileHu = 8.0F, kWallHu = 70.0F, kHepaticArteryHu = 150.0F, kTumourHu = 78.0F;
 constexpr float kLeastRadius = 0.5F;
 constexpr float kArteryShare = 0.24F;
-constexpr float kGapMm = 0.4F;
-constexpr float kCysticDuctShare = 0.35F, kCysticRadius = 1.6F;
+constexpr float kBesideVeinMm = 0.4F;
+constexpr float kCysticRadius = 1.6F;
 constexpr double kNormalDiameter = 4.0;
 
 struct Companion {
@@ -22,7 +22,7 @@ struct Companion {
 /// A tree that runs beside another one. Pieces whose radius differs are joined where the veins join.
 std::vector<Cone> companions(const std::vector<Cone>& veins, const Companion& companion) {
   const auto moved_end = [&](const Vec3f& p, float vein) -> Vec3f {
-    return p + companion.beside * (vein + companion.radius(vein) + kGapMm);
+    return p + companion.beside * (vein + companion.radius(vein) + kBesideVeinMm);
   };
   std::vector<Cone> tree;
   for (std::size_t n = 0; n < veins.size(); ++n) {
@@ -97,7 +97,7 @@ void add_arteries(Anatomy& anatomy, const std::vector<Cone>& veins) {
                  return std::max(tree.distance(place.p), outside(place) + 0.8F);
                },
                [=](const Place&, float, const Brush&) {
-                 return Paint{kArteryHu, label};
+                 return Paint{kHepaticArteryHu, label};
                }});
 }
 

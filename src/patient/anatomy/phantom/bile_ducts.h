@@ -6,6 +6,9 @@
 
 namespace trocar::anatomy::phantom {
 
+/// Of the bile duct's length: where the cystic duct joins.
+inline constexpr float kCysticDuctShare = 0.35F;
+
 /// The bile ducts of one liver, in the reference body.
 struct DuctTree {
   Tube inside;   ///< In the liver: a duct beside each portal vein.

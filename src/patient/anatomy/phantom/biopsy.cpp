@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,8 +13,7 @@
 namespace trocar::anatomy::phantom {
 namespace {
 
-constexpr float kDegree = std::numbers::pi_v<float> / 180.0F;
-constexpr int kTries = 60000;
+constexpr int kLesionTries = 60000;
 constexpr float kLiverHu = 106.0F;
 constexpr std::size_t kLesions = 3;
 
@@ -83,12 +81,13 @@ struct Case {
 };
 
 /// A lesion and a path to it between the ribs of the right flank.
-std::optional<Case> find_case(const Anatomy& anatomy, const Risks& risks, const PathMargins& margins, Random& random) {
+std::optional<Case> find_lesion_with_path(const Anatomy& anatomy, const Risks& risks, const PathMargins& margins,
+                                          Random& random) {
   const LesionData& data = anatomy.data.lesions;
   const auto off = [&](std::size_t axis) {
     return static_cast<float>(random.uniform(-data.direction_spread[axis], data.direction_spread[axis]));
   };
-  for (int n = 0; n < kTries; ++n) {
+  for (int n = 0; n < kLesionTries; ++n) {
     const float side = data.gate_deg.draw(random) * kDegree;
     const Vec3f gate = anatomy.torso.contours().on_cavity(-side, data.gate_z_mm.draw(random), data.gate_outward_mm);
     const Vec3f inward = Vec3f(std::sin(side), -std::cos(side), 0.0F);
@@ -110,7 +109,7 @@ std::optional<Lesion> find_lesion(const Anatomy& anatomy, const Risks& risks, co
                                   Random& random) {
   const LesionData& data = anatomy.data.lesions;
   const Box& box = risks.liver->bounds;
-  for (int n = 0; n < kTries; ++n) {
+  for (int n = 0; n < kLesionTries; ++n) {
     const auto within = [&](int axis) { return static_cast<float>(random.uniform(box.low[axis], box.high[axis])); };
     const float x = within(0);
     const float y = within(1);
@@ -157,7 +156,7 @@ bool BiopsyPlan::is_in_the_way(const Vec3f& p, float vessel_radius_mm) const {
 Result<BiopsyPlan> plan_biopsy(const Anatomy& anatomy, const PathMargins& margins) {
   Random random = anatomy.random("lesions");
   const Risks risks(anatomy);
-  const auto first = find_case(anatomy, risks, margins, random);
+  const auto first = find_lesion_with_path(anatomy, risks, margins, random);
   if (!first)
     return fail("no safe path to a liver lesion with this seed", "phantom \"abdomen\"", "choose another seed");
   BiopsyPlan plan{margins, {first->lesion}, {"liver-biopsy expert", {}}};

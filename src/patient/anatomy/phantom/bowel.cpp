@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "anatomy/phantom/structure.h"
 
@@ -8,7 +7,6 @@ namespace trocar::anatomy::phantom {
 namespace {
 
 constexpr float kGasHu = -940.0F;
-constexpr float kPi = std::numbers::pi_v<float>;
 
 /// Content of a piece of bowel in supine position: gas in front (towards -y), fluid or stool behind.
 struct Lumen {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <string>
 
@@ -15,9 +14,6 @@
 
 namespace trocar::anatomy::phantom {
 namespace {
-
-constexpr float kPi = std::numbers::pi_v<float>;
-constexpr float kDegree = kPi / 180.0F;
 
 NeedlePath path_of(const Anatomy& anatomy, std::string name, const Vec3f& entry, const Vec3f& target) {
   const auto scale = static_cast<double>(anatomy.scale());

@@ -10,9 +10,9 @@ namespace trocar::anatomy::phantom {
 namespace {
 
 constexpr float kFluidHu = 8.0F, kTextureHu = 3.0F;
-constexpr float kWallMm = 2.2F;       ///< Inside the cavity: transversalis fascia and peritoneum.
-constexpr float kDiaphragmMm = 3.2F;  ///< Below its upper surface.
-constexpr float kFloor = -238.0F;     ///< The pouch in front of the rectum.
+constexpr float kFasciaMm = 2.2F;          ///< Inside the cavity: transversalis fascia and peritoneum.
+constexpr float kBelowDiaphragmMm = 3.2F;  ///< Below its upper surface.
+constexpr float kFloor = -238.0F;          ///< The pouch in front of the rectum.
 constexpr float kSampleMm = 5.0F;
 
 /// The peritoneal cavity: in front of the spine's great vessels, beside the colon far back, down to the pouch in front
@@ -23,7 +23,7 @@ float peritoneal_space(const Anatomy& anatomy, const Place& place) {
   const float beside = smooth_step(22.0F, 98.0F, std::abs(p.x()) + 10.0F * wave);
   const float pelvis = smooth_step(-128.0F, -196.0F, p.z() + 12.0F * wave);
   const float behind = mix(mix(-18.0F, 48.0F, beside), 26.0F, pelvis) + 6.0F * wave;
-  const float inside = smooth_max(place.cavity + kWallMm, place.diaphragm + kDiaphragmMm, 6.0F);
+  const float inside = smooth_max(place.cavity + kFasciaMm, place.diaphragm + kBelowDiaphragmMm, 6.0F);
   return smooth_max(smooth_max(inside, 0.62F * (p.y() - behind), 8.0F), kFloor - p.z(), 8.0F);
 }
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <string_view>
 
@@ -14,8 +13,7 @@
 namespace trocar::anatomy::phantom {
 namespace {
 
-constexpr float kFront = std::numbers::pi_v<float>;
-constexpr float kDegree = std::numbers::pi_v<float> / 180.0F;
+constexpr float kFront = kPi;
 
 class Landmarks {
  public:

@@ -14,7 +14,7 @@ void check_order(SectionReader& section, std::string_view last_key, std::initial
     section.refuse(last_key, "the layers do not follow each other on the path", "correct the depths of the section");
 }
 
-LumbarLayers read_lumbar(SectionReader s) {
+LumbarLayers read_lumbar_layers(SectionReader s) {
   const LumbarLayers layers{.supraspinous = s.length("supraspinous_mm"),
                             .interspinous = s.length("interspinous_mm"),
                             .flavum = s.length("flavum_mm"),
@@ -55,7 +55,7 @@ LumbarLayers read_lumbar(SectionReader s) {
   return layers;
 }
 
-AscitesLayers read_ascites(SectionReader s) {
+AscitesLayers read_ascites_layers(SectionReader s) {
   const AscitesLayers layers{.muscle = s.length("muscle_mm"),
                              .muscle_end = s.length("muscle_end_mm"),
                              .peritoneum = s.length("peritoneum_mm"),
@@ -71,7 +71,7 @@ AscitesLayers read_ascites(SectionReader s) {
   return layers;
 }
 
-LiverLayers read_liver(SectionReader s) {
+LiverLayers read_liver_layers(SectionReader s) {
   const LiverLayers layers{.muscle = s.length("muscle_mm"),
                            .peritoneum = s.length("peritoneum_mm"),
                            .capsule = s.length("capsule_mm"),
@@ -95,9 +95,9 @@ Result<LayerData> load_layer_data(const std::filesystem::path& path) {
   SectionReader file(std::move(document), state);
   SectionReader cover = file.section("cover");
   const LayerData data{.cover = {cover.length("skin_mm"), cover.length("bone_cortex_mm")},
-                       .lumbar = read_lumbar(file.section("lumbar")),
-                       .ascites = read_ascites(file.section("ascites")),
-                       .liver = read_liver(file.section("liver"))};
+                       .lumbar = read_lumbar_layers(file.section("lumbar")),
+                       .ascites = read_ascites_layers(file.section("ascites")),
+                       .liver = read_liver_layers(file.section("liver"))};
   TROCAR_TRY_STATUS(state.finish());
   return data;
 }

@@ -7,23 +7,23 @@ namespace trocar::anatomy::phantom {
 namespace {
 
 // Hounsfield units of the portal venous phase, typical values [assumed].
-constexpr float kSkinHu = 20.0F;
-constexpr float kFatHu = -105.0F;
-constexpr float kMuscleHu = 55.0F;
-constexpr float kLigamentHu = 75.0F;
-constexpr float kFlavumHu = 85.0F;
+constexpr float kSkinLayerHu = 20.0F;
+constexpr float kFatLayerHu = -105.0F;
+constexpr float kMuscleLayerHu = 55.0F;
+constexpr float kSpinousLigamentHu = 75.0F;
+constexpr float kFlavumLayerHu = 85.0F;
 constexpr float kCsfHu = 8.0F;
 constexpr float kAscitesHu = 8.0F;
 constexpr float kDiscHu = 85.0F;
 constexpr float kCorticalHu = 900.0F;
 constexpr float kCancellousHu = 220.0F;
 constexpr float kPeritoneumHu = -20.0F;
-constexpr float kLiverHu = 105.0F;
-constexpr float kBileHu = 10.0F;
-constexpr float kPortalHu = 170.0F;
+constexpr float kLiverLayerHu = 105.0F;
+constexpr float kDuctLumenHu = 10.0F;
+constexpr float kPortalBranchHu = 170.0F;
 constexpr float kBowelWallHu = 45.0F;
 constexpr float kBowelContentHu = 20.0F;
-constexpr float kGasHu = -850.0F;
+constexpr float kLoopGasHu = -850.0F;
 
 constexpr float kEnd = 1000.0F;  ///< Outside the block.
 
@@ -42,9 +42,9 @@ void add_bone(LayerScene& scene, const CoverLayers& cover, std::string_view name
 
 /// Fat everywhere, skin in front.
 void add_cover(LayerScene& scene, const CoverLayers& cover) {
-  scene.shapes.push_back({"fat", kFatHu, 8.0F, [](float, float d, float) { return slab(d, 0.0F, kEnd); }});
+  scene.shapes.push_back({"fat", kFatLayerHu, 8.0F, [](float, float d, float) { return slab(d, 0.0F, kEnd); }});
   scene.shapes.push_back(
-      {"fat", kSkinHu, 0.0F, [end = cover.skin](float, float d, float) { return slab(d, 0.0F, end); }});
+      {"fat", kSkinLayerHu, 0.0F, [end = cover.skin](float, float d, float) { return slab(d, 0.0F, end); }});
 }
 
 /// A slab between two depths.
@@ -78,10 +78,10 @@ void add_back_muscles(LayerScene& scene, const LumbarLayers& l) {
   for (const bool is_left : {true, false}) {
     const float sign = is_left ? 1.0F : -1.0F;
     scene.shapes.push_back(
-        {is_left ? "autochthon_left" : "autochthon_right", kMuscleHu, 7.0F,
+        {is_left ? "autochthon_left" : "autochthon_right", kMuscleLayerHu, 7.0F,
          [=](float x, float d, float) { return std::max(l.erector_x - sign * x, slab(d, l.erector_depths)); }});
     scene.shapes.push_back(
-        {is_left ? "iliopsoas_left" : "iliopsoas_right", kMuscleHu, 7.0F,
+        {is_left ? "iliopsoas_left" : "iliopsoas_right", kMuscleLayerHu, 7.0F,
          [=](float x, float d, float) { return std::max(l.psoas_x - sign * x, slab(d, l.psoas_depths)); }});
   }
 }
@@ -95,7 +95,7 @@ void add_loop(LayerScene& scene, const AscitesLayers& l, float z0, bool has_gas)
   scene.shapes.push_back(
       {"small_bowel", kBowelContentHu, 12.0F, [loop, l](float, float d, float z) { return loop(d, z) + l.loop_wall; }});
   if (!has_gas) return;
-  scene.shapes.push_back({"small_bowel", kGasHu, 0.0F, [loop, l](float, float d, float z) {
+  scene.shapes.push_back({"small_bowel", kLoopGasHu, 0.0F, [loop, l](float, float d, float z) {
                             return std::max(loop(d, z) + l.loop_wall, d - l.bowel - l.gas);
                           }});
 }
@@ -110,14 +110,14 @@ LayerScene lumbar_scene(const LayerData& data) {
   scene.path_name = "lumbar puncture";
   add_cover(scene, data.cover);
   add_back_muscles(scene, l);
-  scene.shapes.push_back({"interspinous_ligament", kLigamentHu, 8.0F, [l](float x, float d, float) {
+  scene.shapes.push_back({"interspinous_ligament", kSpinousLigamentHu, 8.0F, [l](float x, float d, float) {
                             return std::max(std::abs(x) - l.spinous_half_width, slab(d, l.interspinous, l.epidural));
                           }});
-  scene.shapes.push_back({"supraspinous_ligament", kLigamentHu, 5.0F, [l](float x, float d, float) {
+  scene.shapes.push_back({"supraspinous_ligament", kSpinousLigamentHu, 5.0F, [l](float x, float d, float) {
                             return std::max(std::abs(x) - l.supraspinous_half_width,
                                             slab(d, l.supraspinous, l.interspinous));
                           }});
-  scene.shapes.push_back({"ligamentum_flavum", kFlavumHu, 4.0F, [l](float x, float d, float) {
+  scene.shapes.push_back({"ligamentum_flavum", kFlavumLayerHu, 4.0F, [l](float x, float d, float) {
                             return std::max(canal(l, x, d, l.epidural - l.flavum), d - l.flavum_end);
                           }});
   scene.shapes.push_back({"intervertebral_discs", kDiscHu, 6.0F, [l](float x, float d, float z) {
@@ -125,7 +125,8 @@ LayerScene lumbar_scene(const LayerData& data) {
                           }});
   add_bone(scene, data.cover, "vertebrae_L3", [l](float x, float d, float z) { return vertebra(l, x, d, z); });
   add_bone(scene, data.cover, "vertebrae_L4", [l](float x, float d, float z) { return vertebra(l, x, d, -z); });
-  scene.shapes.push_back({"epidural_fat", kFatHu, 5.0F, [l](float x, float d, float) { return canal(l, x, d, 0.0F); }});
+  scene.shapes.push_back(
+      {"epidural_fat", kFatLayerHu, 5.0F, [l](float x, float d, float) { return canal(l, x, d, 0.0F); }});
   scene.shapes.push_back({"csf", kCsfHu, 0.0F, [l](float x, float d, float) {
                             const float half = 0.5F * (l.sac_end - l.dura);
                             return elliptic_cylinder(x, d - l.dura - half, l.sac_half_width, half);
@@ -140,12 +141,12 @@ LayerScene ascites_scene(const LayerData& data) {
   scene.path_name = "paracentesis";
   add_cover(scene, data.cover);
   scene.shapes.push_back(
-      {"muscle", kMuscleHu, 7.0F, [l](float, float d, float) { return slab(d, l.muscle, l.muscle_end); }});
+      {"muscle", kMuscleLayerHu, 7.0F, [l](float, float d, float) { return slab(d, l.muscle, l.muscle_end); }});
   scene.shapes.push_back({"ascites", kAscitesHu, 0.0F, [l](float, float d, float) {
                             return slab(d, l.peritoneum, l.bowel + l.fluid_behind_bowel);
                           }});
   scene.shapes.push_back(
-      {"iliopsoas_left", kMuscleHu, 7.0F, [l](float, float d, float) { return slab(d, l.psoas, kEnd); }});
+      {"iliopsoas_left", kMuscleLayerHu, 7.0F, [l](float, float d, float) { return slab(d, l.psoas, kEnd); }});
   add_loop(scene, l, l.loop_z, false);
   for (const float z : l.gas_loops_z) add_loop(scene, l, z, true);
   return scene;
@@ -158,14 +159,15 @@ LayerScene liver_scene(const LayerData& data) {
   scene.path_name = "bile duct puncture";
   add_cover(scene, data.cover);
   scene.shapes.push_back(
-      {"muscle", kMuscleHu, 7.0F, [l](float, float d, float) { return slab(d, l.muscle, l.peritoneum); }});
+      {"muscle", kMuscleLayerHu, 7.0F, [l](float, float d, float) { return slab(d, l.muscle, l.peritoneum); }});
   scene.shapes.push_back(
       {"peritoneum", kPeritoneumHu, 0.0F, [l](float, float d, float) { return slab(d, l.peritoneum, l.capsule); }});
-  scene.shapes.push_back({"liver", kLiverHu, 6.0F, [l](float, float d, float) { return slab(d, l.capsule, l.end); }});
-  scene.shapes.push_back({"portal_vein", kPortalHu, 3.0F,
-                          [l](float, float d, float z) { return std::hypot(d - l.vein, z) - l.vein_radius; }});
   scene.shapes.push_back(
-      {"bile_duct", kBileHu, 0.0F, [l](float, float d, float z) { return std::hypot(d - l.duct, z) - l.duct_radius; }});
+      {"liver", kLiverLayerHu, 6.0F, [l](float, float d, float) { return slab(d, l.capsule, l.end); }});
+  scene.shapes.push_back({"portal_vein", kPortalBranchHu, 3.0F,
+                          [l](float, float d, float z) { return std::hypot(d - l.vein, z) - l.vein_radius; }});
+  scene.shapes.push_back({"bile_duct", kDuctLumenHu, 0.0F,
+                          [l](float, float d, float z) { return std::hypot(d - l.duct, z) - l.duct_radius; }});
   add_bone(scene, data.cover, "rib_right_9",
            [l](float, float d, float z) { return std::hypot(d - l.rib_depth, z - l.rib_z) - l.rib_radius; });
   add_bone(scene, data.cover, "rib_right_10",

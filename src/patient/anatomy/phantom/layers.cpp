@@ -6,6 +6,7 @@
 #include "anatomy/known_structures.h"
 #include "anatomy/phantom/body_parameters.h"
 #include "anatomy/phantom/layer_scene.h"
+#include "anatomy/phantom/structure.h"
 #include "anatomy/phantom/texture.h"
 #include "core/files/data_dir.h"
 #include "core/parallel.h"
@@ -20,7 +21,6 @@ constexpr float kSkinY = 45.0F;  ///< The skin is 25 mm inside the box, with air
 constexpr float kTexture_mm = 6.0F;
 constexpr double kPsfSigma_mm =
     0.7;  ///< Together with the voxel, an edge as wide as that of a CT with a soft kernel, FWHM 1.8 mm. [assumed]
-constexpr float kAirHu = -1000.0F;
 
 volume::GridGeometry scene_geometry(const PhantomResolution& resolution) {
   volume::GridGeometry geometry;

@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "anatomy/phantom/bile_ducts.h"
 #include "anatomy/phantom/structure.h"
 
 namespace trocar::anatomy::phantom {
 namespace {
 
-constexpr float kCysticDuctShare = 0.35F;  ///< Of the bile duct's length: where the cystic duct joins.
 constexpr float kFullGallbladder = 1.25F;
 constexpr float kFluidMm = 9.0F;  ///< Of free fluid around the liver, when there is much.
 

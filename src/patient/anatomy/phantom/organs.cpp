@@ -1,13 +1,12 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "anatomy/phantom/structure.h"
 
 namespace trocar::anatomy::phantom {
 namespace {
 
-constexpr float kFatHu = -98.0F;
+constexpr float kRenalFatHu = -98.0F;
 const Vec3f kKidneyReach(52.0F, 48.0F, 74.0F);  ///< The kidney's fat lies within it around the centre, mm.
 
 /// Kidney in its own frame: x away from the spine, y posterior, z up, the origin in its centre.
@@ -71,7 +70,7 @@ void add_kidney(Anatomy& anatomy, float sign) {
                  const float fascia = brush.cover(std::abs(distance + 1.2F) - 0.35F);
                  const float strands = noise(place.p / 7.0F) / 0.10F;
                  const float stranding = 35.0F * std::max(0.0F, 1.0F - strands * strands);
-                 return Paint{mix(kFatHu, -25.0F, fascia) + 0.6F * stranding, fat};
+                 return Paint{mix(kRenalFatHu, -25.0F, fascia) + 0.6F * stranding, fat};
                }});
   const std::uint8_t label = anatomy.label("kidney" + side);
   anatomy.add(
@@ -82,7 +81,7 @@ void add_kidney(Anatomy& anatomy, float sign) {
          float hu = mix(182.0F + 5.0F * noise(place.p / 6.0F), 157.0F, medulla);
          const float sinus = shape.sinus(u) + 2.0F * noise(place.p / 8.0F);
          const float calyces = noise(place.p / 7.5F);
-         const float content = mix(kFatHu + 15.0F, 35.0F, smooth_step(-0.1F, 0.25F, calyces));
+         const float content = mix(kRenalFatHu + 15.0F, 35.0F, smooth_step(-0.1F, 0.25F, calyces));
          hu = mix(hu, content, brush.cover(sinus));
          return Paint{hu, label};
        }});

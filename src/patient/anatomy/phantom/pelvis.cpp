@@ -1,14 +1,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "anatomy/phantom/bone.h"
 
 namespace trocar::anatomy::phantom {
 namespace {
-
-constexpr float kDegree = std::numbers::pi_v<float> / 180.0F;
 
 /// The border of the iliac wing: height (mm) by the angle from the back's midline (deg). The crest is highest at the
 /// level of L4; it ends behind at the posterior superior iliac spine and in front at the anterior one.

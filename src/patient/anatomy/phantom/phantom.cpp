@@ -19,8 +19,6 @@
 namespace trocar::anatomy {
 namespace {
 
-using namespace phantom;
-
 constexpr volume::Index3 kDefaultSize{380, 300, 240};
 constexpr std::uint64_t kSeedStep = 7919;
 /// The default seed 1 gives an abdomen whose shortest safe path comes from the right flank, between two ribs.
@@ -31,7 +29,7 @@ constexpr std::int64_t kGreatestSize = 1024;
 
 /// A box of the reference body, in a patient of another size, divided into voxels; the box is the same for every
 /// resolution.
-volume::GridGeometry box_geometry(const Box& box, double scale, const volume::Index3& default_size,
+volume::GridGeometry box_geometry(const phantom::Box& box, double scale, const volume::Index3& default_size,
                                   const PhantomResolution& resolution) {
   volume::GridGeometry geometry;
   const Vec3 extent = scale * (box.high - box.low).cast<double>();
@@ -47,7 +45,7 @@ volume::GridGeometry box_geometry(const Box& box, double scale, const volume::In
 }
 
 /// Voxels of about 1 mm.
-volume::Index3 torso_size(const Box& box, double scale) {
+volume::Index3 torso_size(const phantom::Box& box, double scale) {
   volume::Index3 size;
   for (std::size_t n = 0; n < 3; ++n) {
     const auto a = static_cast<Eigen::Index>(n);
@@ -70,19 +68,19 @@ Status check_resolution(const PhantomResolution& resolution) {
 
 struct Sources {
   KnownStructures known;
-  AbdomenData data;
+  phantom::AbdomenData data;
 };
 
 Result<Sources> load_sources() {
   TROCAR_TRY(const std::filesystem::path data_folder, checked_data_dir());
   TROCAR_TRY(KnownStructures known, KnownStructures::load(data_folder));
-  TROCAR_TRY(AbdomenData data, load_abdomen_data(data_folder / kAbdomenFile));
+  TROCAR_TRY(phantom::AbdomenData data, phantom::load_abdomen_data(data_folder / phantom::kAbdomenFile));
   return Sources{std::move(known), std::move(data)};
 }
 
-VirtualPatient render_patient(const PhantomInfo& info, std::uint64_t seed, Anatomy& anatomy,
+VirtualPatient render_patient(const PhantomInfo& info, std::uint64_t seed, phantom::Anatomy& anatomy,
                               const volume::GridGeometry& geometry, const Progress& progress) {
-  Rendering rendering = render(anatomy, geometry, progress);
+  phantom::Rendering rendering = phantom::render(anatomy, geometry, progress);
   VirtualPatient patient;
   patient.name = info.name;
   patient.description = info.description;
@@ -98,26 +96,27 @@ Result<VirtualPatient> generate_abdomen(const PhantomInfo& info, std::uint64_t s
                                         const PhantomResolution& resolution, const Progress& progress) {
   report(progress, "generating the anatomy", 0.0);
   TROCAR_TRY(Sources sources, load_sources());
-  Anatomy anatomy(seed + kBeforeAbdomen, std::move(sources.data), std::move(sources.known));
-  TROCAR_TRY(BiopsyPlan plan, build_abdomen(anatomy));
+  phantom::Anatomy anatomy(seed + kBeforeAbdomen, std::move(sources.data), std::move(sources.known));
+  TROCAR_TRY(phantom::BiopsyPlan plan, phantom::build_abdomen(anatomy));
   const volume::GridGeometry geometry = box_geometry(anatomy.torso.box(), anatomy.scale(), kDefaultSize, resolution);
   VirtualPatient patient = render_patient(info, seed, anatomy, geometry, progress);
-  patient.landmarks = find_landmarks(anatomy);
+  patient.landmarks = phantom::find_landmarks(anatomy);
   patient.paths = {std::move(plan.path)};
   patient.content_hash = hash_patient(patient);
   return patient;
 }
 
-Result<VirtualPatient> generate_case(const PhantomInfo& info, const CaseDescription& description, std::uint64_t seed,
-                                     const PhantomResolution& resolution, const Progress& progress) {
+Result<VirtualPatient> generate_case(const PhantomInfo& info, const phantom::CaseDescription& description,
+                                     std::uint64_t seed, const PhantomResolution& resolution,
+                                     const Progress& progress) {
   report(progress, "generating the anatomy", 0.0);
   TROCAR_TRY(Sources sources, load_sources());
   // Seed 1 is the named case; others vary it.
   const std::uint64_t own_seed = description.seed + (seed - 1) * kSeedStep;
-  const Box box = torso_box(sources.data, description.body, own_seed);
-  Anatomy anatomy(own_seed, std::move(sources.data), std::move(sources.known), description.body, box);
+  const phantom::Box box = phantom::torso_box(sources.data, description.body, own_seed);
+  phantom::Anatomy anatomy(own_seed, std::move(sources.data), std::move(sources.known), description.body, box);
   anatomy.posture = description.posture;
-  TROCAR_TRY(TorsoPlan plan, build_torso(anatomy, description));
+  TROCAR_TRY(phantom::TorsoPlan plan, phantom::build_torso(anatomy, description));
   const volume::GridGeometry geometry =
       box_geometry(box, anatomy.scale(), torso_size(box, anatomy.scale()), resolution);
   VirtualPatient patient = render_patient(info, seed, anatomy, geometry, progress);
@@ -130,21 +129,27 @@ Result<VirtualPatient> generate_case(const PhantomInfo& info, const CaseDescript
   return patient;
 }
 
-PhantomInfo info_of(const CaseDescription& description) {
+PhantomInfo info_of(const phantom::CaseDescription& description) {
   PhantomInfo info{description.name, description.description, {description.task}, description.difficulty};
   if (description.indication.empty()) return info;
-  const BodyParameters& body = description.body;
-  info.referral =
-      Referral{body.sex == Sex::kFemale, body.age_years,          body.height_cm,        body.weight_kg,
-               description.indication,   description.coagulation, description.allergies, description.posture};
+  const phantom::BodyParameters& body = description.body;
+  info.referral = Referral{body.sex == phantom::Sex::kFemale,
+                           body.age_years,
+                           body.height_cm,
+                           body.weight_kg,
+                           description.indication,
+                           description.coagulation,
+                           description.allergies,
+                           description.posture};
   info.briefing = fmt::format("{} Coagulation: {}. Allergies: {}. Posture: {}.", description.indication,
                               description.coagulation, description.allergies, posture_words(description.posture));
   return info;
 }
 
 /// The named cases; empty if their file is missing or broken, which generate_phantom reports.
-const Result<std::vector<CaseDescription>>& named_cases() {
-  static const Result<std::vector<CaseDescription>> kCases = load_cases(data_dir() / kCasesFile);
+const Result<std::vector<phantom::CaseDescription>>& named_cases() {
+  static const Result<std::vector<phantom::CaseDescription>> kCases =
+      phantom::load_cases(data_dir() / phantom::kCasesFile);
   return kCases;
 }
 
@@ -156,9 +161,9 @@ std::string_view factors_of(std::string_view name) {
 }
 
 /// Precondition: the named cases were read.
-std::optional<CaseDescription> find_case(std::string_view name, std::uint64_t seed) {
-  if (name == kVariantPatient) return draw_case(seed);
-  const auto found = std::ranges::find(*named_cases(), name, &CaseDescription::name);
+std::optional<phantom::CaseDescription> find_case(std::string_view name, std::uint64_t seed) {
+  if (name == kVariantPatient) return phantom::draw_case(seed);
+  const auto found = std::ranges::find(*named_cases(), name, &phantom::CaseDescription::name);
   return found != named_cases()->end() ? std::optional(*found) : std::nullopt;
 }
 
@@ -173,20 +178,21 @@ const std::vector<PhantomInfo>& embedded_patients() {
     std::vector<PhantomInfo> patients{
         {"abdomen", "upper abdomen in the portal-venous phase with three liver lesions, generated", {"liver-biopsy"}}};
     if (const auto& cases = named_cases())
-      for (const CaseDescription& description : *cases) patients.push_back(info_of(description));
-    patients.insert(patients.end(), layered_scenes().begin(), layered_scenes().end());
+      for (const phantom::CaseDescription& description : *cases) patients.push_back(info_of(description));
+    patients.insert(patients.end(), phantom::layered_scenes().begin(), phantom::layered_scenes().end());
     return patients;
   }();
   return kPatients;
 }
 
 std::string variant_task(std::uint64_t seed) {
-  return draw_case(seed).task;
+  return phantom::draw_case(seed).task;
 }
 
 std::vector<std::filesystem::path> phantom_data_files() {
   const std::filesystem::path folder = data_dir();
-  return {folder / kStructuresFile, folder / kAbdomenFile, folder / kCasesFile, folder / kLayersFile};
+  return {folder / kStructuresFile, folder / phantom::kAbdomenFile, folder / phantom::kCasesFile,
+          folder / phantom::kLayersFile};
 }
 
 Result<VirtualPatient> generate_phantom(std::string_view name, std::uint64_t seed, const PhantomResolution& resolution,
@@ -195,7 +201,7 @@ Result<VirtualPatient> generate_phantom(std::string_view name, std::uint64_t see
   if (!named_cases()) return tl::make_unexpected(named_cases().error());
   const std::string_view plain = plain_name(name);
   if (auto description = find_case(plain, seed)) {
-    TROCAR_TRY_STATUS(scale_body(description->body, factors_of(name)));
+    TROCAR_TRY_STATUS(phantom::scale_body(description->body, factors_of(name)));
     PhantomInfo info = info_of(*description);
     info.name = name;
     // A variant's seed is in its description.
@@ -212,7 +218,7 @@ Result<VirtualPatient> generate_phantom(std::string_view name, std::uint64_t see
     for (const PhantomInfo& patient : patients) names += (names.empty() ? "" : ", ") + patient.name;
     return fail_usage("unknown embedded patient \"" + std::string(name) + "\"", {}, "there are: " + names);
   }
-  if (found != patients.begin()) return make_layered_scene(name, seed, resolution);
+  if (found != patients.begin()) return phantom::make_layered_scene(name, seed, resolution);
   return generate_abdomen(*found, seed, resolution, progress);
 }
 

@@ -1,7 +1,6 @@
 #include "anatomy/phantom/phantom_data.h"
 
 #include <algorithm>
-#include <numbers>
 
 #include "anatomy/phantom/section_reader.h"
 
@@ -76,7 +75,6 @@ LandmarkData read_landmarks(SectionReader landmarks) {
 }
 
 std::vector<SpineInclination> read_inclinations(SectionReader& spine) {
-  constexpr float kDegree = std::numbers::pi_v<float> / 180.0F;
   std::vector<SpineInclination> inclinations;
   for (const std::vector<double>& row : spine.rows("inclinations", 3)) {
     const auto number = [&](std::size_t n) { return static_cast<float>(row[n]); };

@@ -9,7 +9,6 @@
 namespace trocar::anatomy::phantom {
 namespace {
 
-constexpr float kAirHu = -1000.0F;
 constexpr double kBlockMm = 6.5;
 
 /// Voxels [low, high) of a grid, small enough that few structures overlap it.

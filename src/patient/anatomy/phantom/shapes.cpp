@@ -51,27 +51,27 @@ namespace {
 
 constexpr float kCellMm = 8.0F;
 
-/// A cone prepared for distances.
-struct Piece {
-  Vec3f a, along;
-  float inverse_square;  ///< 1 / length^2.
-  float radius, widening;
-  float arc_begin, length;
-
-  explicit Piece(const Cone& cone, float arc)
-      : a(cone.a),
-        along(cone.b - cone.a),
-        inverse_square(1.0F / std::max(along.squaredNorm(), 1e-6F)),
-        radius(cone.radius_a),
-        widening(cone.radius_b - cone.radius_a),
-        arc_begin(arc),
-        length(along.norm()) {}
-  float share(const Vec3f& p) const { return clamp01((p - a).dot(along) * inverse_square); }
-};
-
 }  // namespace
 
 struct Tube::Data {
+  /// A cone prepared for distances.
+  struct Piece {
+    Vec3f a, along;
+    float inverse_square;  ///< 1 / length^2.
+    float radius, widening;
+    float arc_begin, length;
+
+    explicit Piece(const Cone& cone, float arc)
+        : a(cone.a),
+          along(cone.b - cone.a),
+          inverse_square(1.0F / std::max(along.squaredNorm(), 1e-6F)),
+          radius(cone.radius_a),
+          widening(cone.radius_b - cone.radius_a),
+          arc_begin(arc),
+          length(along.norm()) {}
+    float share(const Vec3f& p) const { return clamp01((p - a).dot(along) * inverse_square); }
+  };
+
   std::uint64_t number = next_number();  ///< No other tube has it.
   std::vector<Cone> cones;
   std::vector<Piece> pieces;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <vector>
 
 #include "core/random.h"
@@ -15,6 +16,9 @@
 // per mm. All are Lipschitz within kSteepness, the bound by which blocks of voxels that a shape cannot reach are
 // skipped.
 namespace trocar::anatomy::phantom {
+
+inline constexpr float kPi = std::numbers::pi_v<float>;
+inline constexpr float kDegree = kPi / 180.0F;
 
 /// Upper bound of the slope of every structure's distance function, noise and warp included.
 inline constexpr float kSteepness = 1.7F;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 
 #include "anatomy/phantom/bone.h"
@@ -10,9 +9,6 @@
 
 namespace trocar::anatomy::phantom {
 namespace {
-
-constexpr float kPi = std::numbers::pi_v<float>;
-constexpr float kDegree = kPi / 180.0F;
 
 constexpr float kRibCourse = 1.25F;       ///< Exponent of the fall over the angle.
 constexpr float kRibObliqueness = 0.88F;  ///< Share of the height across an oblique rib.

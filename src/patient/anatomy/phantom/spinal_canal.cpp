@@ -20,8 +20,8 @@ constexpr float kSacEnd = -192.0F;  ///< S2.
 constexpr float kDuraMm = 0.4F;
 constexpr float kTopMm = 170.0F;
 
-constexpr float kFatHu = -95.0F, kLigamentHu = 78.0F, kFlavumHu = 92.0F, kFluidHu = 9.0F, kNerveHu = 38.0F,
-                kVeinHu = 95.0F;
+constexpr float kSpinalFatHu = -95.0F, kLigamentHu = 78.0F, kFlavumHu = 92.0F, kSpinalFluidHu = 9.0F, kNerveHu = 38.0F,
+                kEpiduralVeinHu = 95.0F;
 
 /// The sac with the spinal fluid: lies in the front of the canal between the laminae.
 CanalSection sac_section(const SpineData& spine, float s_mm) {
@@ -107,7 +107,7 @@ void add_ligaments(Anatomy& anatomy) {
         const float wedge = smooth_max(0.85F * (std::abs(u.x()) - width), tip - 1.0F - u.y(), 3.0F);
         return std::max(wedge, place.skin + 2.5F);
       },
-      kFatHu - 6.0F, 10.0F, 6.0F);
+      kSpinalFatHu - 6.0F, 10.0F, 6.0F);
   anatomy.add_plain(
       "supraspinous_ligament", canal_box(4.0F),
       [](const Place& place) {
@@ -129,8 +129,8 @@ void add_ligaments(Anatomy& anatomy) {
 void add_canal_content(Anatomy& anatomy) {
   const SpineData& spine = anatomy.data.spine;
   anatomy.add_plain(
-      "epidural_fat", canal_box(18.0F), [&spine](const Place& place) { return canal(spine, place.spine); }, kFatHu,
-      12.0F, 4.0F);
+      "epidural_fat", canal_box(18.0F), [&spine](const Place& place) { return canal(spine, place.spine); },
+      kSpinalFatHu, 12.0F, 4.0F);
   const std::uint8_t fluid = anatomy.label("dural_sac");
   const std::uint8_t nerve = anatomy.label("spinal_cord");
   const std::uint8_t roots = anatomy.label("cauda_equina");
@@ -140,7 +140,7 @@ void add_canal_content(Anatomy& anatomy) {
                  const Vec3f& u = place.spine;
                  const float of_cord = cord(spine, u), of_roots = cauda.distance(u);
                  const float dura = brush.cover(std::abs(distance + kDuraMm) - kDuraMm);
-                 float hu = mix(kFluidHu, 45.0F, dura);
+                 float hu = mix(kSpinalFluidHu, 45.0F, dura);
                  hu = mix(hu, kNerveHu, std::max(brush.cover(of_cord), brush.cover(of_roots)));
                  if (of_cord < 0.0F) return Paint{hu, nerve};
                  return Paint{hu, of_roots < 0.0F ? roots : fluid};
@@ -159,7 +159,7 @@ void add_epidural_veins(Anatomy& anatomy) {
         const float behind = u.y() - section.y + kVeinsFrontShare * section.radius_y;
         return std::max({canal(spine, u), -sac(spine, u), behind});
       },
-      kVeinHu, 8.0F, 4.0F);
+      kEpiduralVeinHu, 8.0F, 4.0F);
 }
 
 void add_spinal_canal(Anatomy& anatomy) {

@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "anatomy/phantom/shapes.h"
 
 namespace trocar::anatomy::phantom {
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kLowest = -340.0F, kHighest = 260.0F, kStep = 2.0F;
 constexpr int kIterations = 3;
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "anatomy/phantom/bone.h"
 #include "core/check.h"
 
 namespace trocar::anatomy::phantom {
@@ -13,10 +13,8 @@ namespace {
 constexpr float kReach = 1000.0F;  ///< Farther than every box, mm.
 constexpr float kTorsoTop = 154.0F, kTorsoBottom = -266.0F;
 constexpr float kAirMm = 12.0F;  ///< Around the body.
-constexpr int kL3 = 10;
 
 SpineCurve spine_of(const SpineData& spine, const BodyParameters& body) {
-  constexpr float kDegree = std::numbers::pi_v<float> / 180.0F;
   return {Vec3f(0.0F, spine.anchor_y_mm, spine.height(kL3)), spine.inclinations,
           SpineBend{static_cast<float>(body.flexion), static_cast<float>(body.scoliosis_deg) * kDegree}};
 }
@@ -33,7 +31,7 @@ Box torso_box(const AbdomenData& data, const BodyParameters& body, std::uint64_t
   constexpr int kAngles = 120;
   for (float z = kTorsoBottom; z <= kTorsoTop; z += 6.0F)
     for (int n = 0; n < kAngles; ++n) {
-      const float phi = std::numbers::pi_v<float> * (2.0F * static_cast<float>(n) / kAngles - 1.0F);
+      const float phi = kPi * (2.0F * static_cast<float>(n) / kAngles - 1.0F);
       const float r = contours.skin_radius(phi, z);
       box.add(Vec3f(r * std::sin(phi), r * std::cos(phi), z), 0.0F);
     }

@@ -17,9 +17,11 @@
 
 namespace trocar::anatomy::phantom {
 
+inline constexpr float kAirHu = -1000.0F;
+
 /// HU and label of a point.
 struct Paint {
-  float hu = -1000.0F;
+  float hu = kAirHu;
   std::uint8_t label = 0;
 };
 

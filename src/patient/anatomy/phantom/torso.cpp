@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "core/parallel.h"
 
 namespace trocar::anatomy::phantom {
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kLatticeMm = 4.0F;
 constexpr float kMargin = 8.0F;  ///< The lattice extends beyond the box, so that nothing is extrapolated.
 constexpr float kWarpMm = 4.5F;

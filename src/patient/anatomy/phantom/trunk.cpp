@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "anatomy/phantom/structure.h"
 
@@ -51,7 +50,6 @@ float fat_planes(const Place& place, const ValueNoise& noise) {
   const WallPlace at = wall_place(place);
   const float wobble = 0.05F * noise(place.p / 28.0F);
   const float chest = smooth_step(-5.0F, 45.0F, place.p.z());
-  constexpr float kDegree = std::numbers::pi_v<float> / 180.0F;
   const float flank = smooth_step(48.0F * kDegree, 66.0F * kDegree, at.side) *
                       (1.0F - smooth_step(138.0F * kDegree, 150.0F * kDegree, at.side));
   const auto plane = [&](float depth, float half_mm) {

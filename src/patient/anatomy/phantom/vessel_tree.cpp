@@ -10,7 +10,7 @@ namespace {
 
 constexpr float kRunShare = 0.55F;  ///< As root_share of the rule, for the daughters.
 constexpr int kPieces = 4;
-constexpr int kTries = 24;
+constexpr int kBranchTries = 24;
 constexpr std::size_t kLeastPlaces = 4;
 
 class Grower {
@@ -73,9 +73,9 @@ class Grower {
   std::optional<Run> find_run(const Vec3f& start, const Vec3f& direction, const Vec3f& middle, float radius,
                               bool is_root) {
     const float share = is_root ? rule_.root_share : kRunShare;
-    for (int attempt = 0; attempt < kTries; ++attempt) {
+    for (int attempt = 0; attempt < kBranchTries; ++attempt) {
       // Each try is shorter and may bend more.
-      const float tried = static_cast<float>(attempt) / kTries;
+      const float tried = static_cast<float>(attempt) / kBranchTries;
       const Vec3f way = share * (1.0F - 0.75F * tried) * (middle - start);
       const float length = way.norm();
       if (length < 2.0F) return std::nullopt;

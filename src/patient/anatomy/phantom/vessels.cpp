@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "anatomy/phantom/bile_ducts.h"
 #include "anatomy/phantom/biopsy.h"
@@ -41,7 +40,7 @@ Course aorta_course(const AortaData& aorta, const SpineCurve& spine) {
 
 /// The angle at which the cavity's surface is this far from the midline, in front.
 float front_angle(const TorsoContours& contours, float x, float z) {
-  float low = 0.5F * std::numbers::pi_v<float>, high = std::numbers::pi_v<float>;
+  float low = 0.5F * kPi, high = kPi;
   for (int n = 0; n < 24; ++n) {
     const float middle = 0.5F * (low + high);
     (contours.cavity_radius(middle, z) * std::sin(middle) > x ? low : high) = middle;

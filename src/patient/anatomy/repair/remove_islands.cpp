@@ -14,10 +14,10 @@ namespace {
 // Assumed limits of an island.
 constexpr double kLargestShare = 0.05;  // of the structure's largest part
 constexpr double kLargestMl = 5.0;
-constexpr double kNearMm = 10.0;     // a part nearer than this to the largest one stays
-constexpr double kNearRibMm = 30.0;  // ribs break into pieces (fractures, thin slices)
-constexpr double kSpeckMl = 0.03;    // is removed unless it touches the structure at an edge or a corner
-constexpr double kContact = 0.4;     // share of its surface at another structure of its kind
+constexpr double kNearPartMm = 10.0;  // a part nearer than this to the largest one stays
+constexpr double kNearRibMm = 30.0;   // ribs break into pieces (fractures, thin slices)
+constexpr double kSpeckMl = 0.03;     // is removed unless it touches the structure at an edge or a corner
+constexpr double kContact = 0.4;      // share of its surface at another structure of its kind
 
 /// Vertebrae are of one kind, ribs of another; others stand alone.
 int kind_of(const Label& label) {
@@ -81,7 +81,7 @@ void remove_islands_of(const Label& label, const IndexBox& box, volume::LabelGri
   if (parts.count() < 2) return;
   const std::vector<double> distance_mm = distances_to_main_mm(parts);
   const double largest_ml = std::min(kLargestMl, kLargestShare * parts.volume_ml(0));
-  const double near_mm = rib_number(label) != 0 ? kNearRibMm : kNearMm;
+  const double near_mm = rib_number(label) != 0 ? kNearRibMm : kNearPartMm;
   const double touching_mm = labels.geometry.spacing_mm.norm() + 1e-3;
   Tally removed;
   std::map<std::uint8_t, Tally> relabelled;

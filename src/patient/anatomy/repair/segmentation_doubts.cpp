@@ -9,8 +9,8 @@
 #include "anatomy/repair/repair_segmentation.h"
 
 namespace trocar::anatomy {
+namespace detail {
 namespace {
-using namespace detail;
 
 // Assumed limits. Neighbouring vertebrae differ by less than a fifth; mixed labels are known of 1 to 2 % of
 // segmentations (TotalSegmentator, issue 291).
@@ -123,9 +123,10 @@ class DoubtFinder {
 };
 
 }  // namespace
+}  // namespace detail
 
 std::vector<Finding> find_segmentation_doubts(const VirtualPatient& patient) {
-  return DoubtFinder(patient).find();
+  return detail::DoubtFinder(patient).find();
 }
 
 }  // namespace trocar::anatomy

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cctype>
 #include <set>
 #include <string>
 
@@ -9,6 +10,7 @@
 #include "anatomy/testing/shipped_tissues.h"
 #include "core/files/atomic_file.h"
 #include "core/files/temporary_folder.h"
+#include "core/testing/user_locale.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -105,6 +107,16 @@ TEST(KnownStructures, CaseSeparatorsAndSideDoNotMatter) {
   for (const char* name : {"Liver Tumor 1", "LIVER-TUMOR", "liver_tumor_12"})
     EXPECT_EQ(tissue_of(name), "liver_lesion") << name;
   EXPECT_EQ(tissue_of("Left Kidney"), "kidney");
+}
+
+TEST(KnownStructures, AreFoundInATurkishLocaleToo) {
+  const trocar::testing::UserLocale user("tr_TR.UTF-8");
+  if (!user.is_there()) GTEST_SKIP() << "tr_TR.UTF-8 is not on this machine";
+  const volatile int small = (std::tolower)('I');  // the compiler takes it for no capital letter
+  ASSERT_EQ(int{small}, 'I') << "the test must see the Turkish letters";
+  EXPECT_EQ(tissue_of("LIVER"), "liver");
+  EXPECT_EQ(tissue_of("Inferior vena cava"), tissue_of("inferior_vena_cava"));
+  EXPECT_NE(known().find("INFERIOR_VENA_CAVA"), nullptr);
 }
 
 TEST(KnownStructures, UnknownNamesAreNotGuessed) {

@@ -8,12 +8,12 @@ namespace trocar::anatomy::detail {
 namespace {
 
 // Assumed lengths; a lumbar canal is 15 to 25 mm deep and 20 to 30 mm wide.
-constexpr double kSideMm = 14.0;        // of the wall to each side of the canal's centre
-constexpr double kDeepestMm = 28.0;     // search behind the centre
-constexpr double kMidlineMm = 4.5;      // columns that count as the midline
-constexpr double kFartherMm = 5.0;      // bone this much farther than the lamina is a spinous process above or below
-constexpr double kLongestGapMm = 32.0;  // between the laminae of two vertebrae
-constexpr double kNearestMm = 2.0;      // bone at the centre is no wall
+constexpr double kSideMm = 14.0;          // of the wall to each side of the canal's centre
+constexpr double kBehindCentreMm = 28.0;  // search behind the centre
+constexpr double kMidlineMm = 4.5;        // columns that count as the midline
+constexpr double kFartherMm = 5.0;        // bone this much farther than the lamina is a spinous process above or below
+constexpr double kLongestLaminaGapMm = 32.0;  // between the laminae of two vertebrae
+constexpr double kNearestMm = 2.0;            // bone at the centre is no wall
 
 double median(std::vector<double> values) {
   std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
@@ -45,8 +45,8 @@ void PosteriorWall::find_faces(const DerivedLabels& labels, const SpineLabels& s
     const CanalSlice* slice = canal.at(k);
     if (slice == nullptr) continue;
     const auto centre_j = static_cast<std::int64_t>(std::lround(slice->j));
-    const auto last_j =
-        std::min(geometry_.size[1] - 1, centre_j + static_cast<std::int64_t>(std::lround(kDeepestMm / spacing.y())));
+    const auto last_j = std::min(geometry_.size[1] - 1,
+                                 centre_j + static_cast<std::int64_t>(std::lround(kBehindCentreMm / spacing.y())));
     for (std::int64_t i = first_i_; i <= last_i(); ++i) {
       if (std::abs(static_cast<double>(i) - slice->i) * spacing.x() > kSideMm) continue;
       for (std::int64_t j = centre_j; j <= last_j; ++j) {
@@ -84,7 +84,7 @@ void PosteriorWall::remove_far_faces(const Canal& canal) {
 }
 
 void PosteriorWall::bridge_gaps() {
-  const auto longest = static_cast<std::int64_t>(std::floor(kLongestGapMm / geometry_.spacing_mm.z()));
+  const auto longest = static_cast<std::int64_t>(std::floor(kLongestLaminaGapMm / geometry_.spacing_mm.z()));
   for (std::int64_t i = first_i_; i <= last_i(); ++i) {
     std::int64_t below_k = first_k_ - 1;
     for (std::int64_t k = first_k_; k <= last_k(); ++k) {

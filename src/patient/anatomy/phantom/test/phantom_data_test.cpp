@@ -17,7 +17,7 @@ namespace {
 using trocar::testing::load_changed;
 using trocar::testing::OwnDataFolder;
 
-constexpr PhantomResolution kCoarse{{40, 32, 24}};
+constexpr PhantomResolution kCoarsest{{40, 32, 24}};
 
 struct Change {
   std::string_view from, to, message;
@@ -120,12 +120,12 @@ TEST(LayerData, WrongNumbersAreRefusedWithTheirPlace) {
 TEST(PhantomDataFiles, AMissingFileIsNamedByThePatientThatNeedsIt) {
   const OwnDataFolder own;
   own.remove(kAbdomenFile);
-  const auto abdomen = generate_phantom("abdomen", 1, kCoarse);
+  const auto abdomen = generate_phantom("abdomen", 1, kCoarsest);
   ASSERT_FALSE(abdomen);
   EXPECT_NE(abdomen.error().where.find("abdomen.toml"), std::string::npos) << abdomen.error().text();
-  EXPECT_TRUE(generate_phantom("layers-liver", 1, kCoarse));
+  EXPECT_TRUE(generate_phantom("layers-liver", 1, kCoarsest));
   own.remove(kLayersFile);
-  const auto layers = generate_phantom("layers-liver", 1, kCoarse);
+  const auto layers = generate_phantom("layers-liver", 1, kCoarsest);
   ASSERT_FALSE(layers);
   EXPECT_NE(layers.error().where.find("layers.toml"), std::string::npos) << layers.error().text();
 }
@@ -136,7 +136,7 @@ TEST(PhantomDataFiles, AStructureThatIsNotKnownIsNamed) {
   own.change(kStructuresFile, "\"bile_duct#\", \"bile_ducts\", ", "");
   for (const auto& [patient, name] :
        {std::pair("abdomen", "\"gallbladder\""), std::pair("layers-liver", "\"bile_duct\"")}) {
-    const auto made = generate_phantom(patient, 1, kCoarse);
+    const auto made = generate_phantom(patient, 1, kCoarsest);
     ASSERT_FALSE(made) << patient;
     EXPECT_NE(made.error().what.find(name), std::string::npos) << made.error().text();
     EXPECT_NE(made.error().where.find("structures.toml"), std::string::npos) << made.error().text();
@@ -144,10 +144,10 @@ TEST(PhantomDataFiles, AStructureThatIsNotKnownIsNamed) {
 }
 
 TEST(PhantomDataFiles, ChangeThePatient) {
-  const auto before = generate_phantom("layers-liver", 1, kCoarse);
+  const auto before = generate_phantom("layers-liver", 1, kCoarsest);
   const OwnDataFolder own;
   own.change(kLayersFile, "duct_mm = 58.0", "duct_mm = 50.0");
-  const auto after = generate_phantom("layers-liver", 1, kCoarse);
+  const auto after = generate_phantom("layers-liver", 1, kCoarsest);
   ASSERT_TRUE(before && after);
   EXPECT_NE(before->content_hash, after->content_hash);
   EXPECT_DOUBLE_EQ(before->paths[0].line_P.length_mm() - after->paths[0].line_P.length_mm(), 8.0);

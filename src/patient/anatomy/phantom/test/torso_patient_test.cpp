@@ -33,8 +33,8 @@ std::vector<std::string> case_names() {
 }
 
 /// The anatomy of a named case, without voxels.
-struct Built {
-  explicit Built(const CaseDescription& description_) : description(description_) {
+struct BuiltCase {
+  explicit BuiltCase(const CaseDescription& description_) : description(description_) {
     AbdomenData data = load_abdomen_data(data_dir() / kAbdomenFile).value();
     const Box box = torso_box(data, description.body, description.seed);
     anatomy = std::make_unique<Anatomy>(description.seed, std::move(data), shipped_structures(), description.body, box);
@@ -50,17 +50,17 @@ struct Built {
   Result<TorsoPlan> plan = TorsoPlan{};
 };
 
-const Built& built(const std::string& name) {
-  static std::map<std::string, std::unique_ptr<Built>> all;
+const BuiltCase& built(const std::string& name) {
+  static std::map<std::string, std::unique_ptr<BuiltCase>> all;
   auto& found = all[name];
   if (!found)
     for (const CaseDescription& description : shipped_cases())
-      if (description.name == name) found = std::make_unique<Built>(description);
+      if (description.name == name) found = std::make_unique<BuiltCase>(description);
   return *found;
 }
 
 /// Name of the bone nearest to a point: spheres of growing radius are searched in all directions.
-std::string nearest_bone_of(const Built& the_case, const Vec3& p_P) {
+std::string nearest_bone_of(const BuiltCase& the_case, const Vec3& p_P) {
   constexpr int kDirections = 300;
   constexpr double kGolden = 2.399963229728653;
   for (double radius = 3.0; radius < 90.0; radius += 1.5)
@@ -77,7 +77,7 @@ std::string nearest_bone_of(const Built& the_case, const Vec3& p_P) {
 class NamedCase : public ::testing::TestWithParam<std::string> {
  protected:
   void SetUp() override { ASSERT_TRUE(case_.plan) << case_.plan.error().text(); }
-  const Built& case_ = built(GetParam());
+  const BuiltCase& case_ = built(GetParam());
 };
 
 TEST_P(NamedCase, EveryExpertPathReachesItsTargetAndTouchesNoRisk) {
@@ -241,7 +241,7 @@ TEST(NamedCases, HaveOrgansOfPublishedSize) {
 TEST(NamedCases, HaveLumbarDistancesOfPublishedSize) {
   const std::map<std::string, std::pair<double, double>> to_sac{{"lumbar-1", {36.0, 60.0}}, {"lumbar-4", {52.0, 90.0}}};
   for (const auto& [name, range] : to_sac) {
-    const Built& the_case = built(name);
+    const BuiltCase& the_case = built(name);
     const NeedlePath& path = the_case.plan->paths.front();
     std::map<std::string, double> length_mm;
     double sac_mm = -1.0;
@@ -263,7 +263,7 @@ TEST(NamedCases, HaveLumbarDistancesOfPublishedSize) {
 // caudate below 6 % (CT volumetry of healthy livers: Leelaudomlipi et al., Liver Transpl 8:1136, 2002; Abdalla et al.,
 // Surgery 135:404, 2004).
 TEST(LiverSegment, HasSegmentsOfPublishedSize) {
-  const Built& the_case = built("biopsy-2");
+  const BuiltCase& the_case = built("biopsy-2");
   const Structure& liver = the_case.anatomy->find("liver");
   std::map<std::string_view, double> count;
   double all = 0.0;
@@ -293,7 +293,7 @@ TEST(FreeFluid, FillsTheLowestSpaceForThePosture) {
   description.body.ascites_ml = 1200.0;
   const auto middle_of_fluid = [&](Posture posture) -> Vec3 {
     description.posture = posture;
-    const Built made(description);
+    const BuiltCase made(description);
     const Vec3 low = made.anatomy->torso.box().low.cast<double>(), high = made.anatomy->torso.box().high.cast<double>();
     const std::uint8_t fluid = made.anatomy->label_table.find("ascites")->id;
     Vec3 sum = Vec3::Zero();

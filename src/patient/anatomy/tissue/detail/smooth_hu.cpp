@@ -8,14 +8,14 @@
 namespace trocar::anatomy::detail {
 namespace {
 
-using Row = std::span<std::int16_t>;
+using HuRow = std::span<std::int16_t>;
 
 std::int16_t weighted(int before, int here, int after) {
   return static_cast<std::int16_t>((before + 2 * here + after + 2) >> 2);
 }
 
 /// Smooths along a row; the end values continue outside.
-void smooth_row(Row row) {
+void smooth_row(HuRow row) {
   std::int16_t before = row.front();
   for (std::size_t i = 0; i < row.size(); ++i) {
     const std::int16_t here = row[i];

@@ -15,7 +15,7 @@ volume::CtGrid torso_ct() {
 }
 
 /// A CT whose numbers were changed by `change`.
-volume::CtGrid changed(auto change) {
+volume::CtGrid changed_ct(auto change) {
   volume::CtGrid ct = torso_ct();
   for (std::int16_t& voxel : ct.voxels) voxel = static_cast<std::int16_t>(change(static_cast<int>(voxel)));
   return ct;
@@ -29,36 +29,37 @@ std::string doubt(const volume::CtGrid& ct) {
 TEST(Hounsfield, BelievesACt) {
   EXPECT_EQ(doubt(torso_ct()), "believed");
   // Padding outside of the field of view, and contrast agent in much of the body.
-  EXPECT_EQ(doubt(changed([](int hu) { return hu == Torso::kAir ? -3024 : hu; })), "believed");
-  EXPECT_EQ(doubt(changed([](int hu) { return hu == Torso::kMuscle ? 180 : hu; })), "believed");
+  EXPECT_EQ(doubt(changed_ct([](int hu) { return hu == Torso::kAir ? -3024 : hu; })), "believed");
+  EXPECT_EQ(doubt(changed_ct([](int hu) { return hu == Torso::kMuscle ? 180 : hu; })), "believed");
 }
 
 TEST(Hounsfield, DoubtsACtWithoutItsRescaleTags) {
-  const std::string text = doubt(changed([](int hu) { return hu + 1024; }));
+  const std::string text = doubt(changed_ct([](int hu) { return hu + 1024; }));
   EXPECT_NE(text.find("no air"), std::string::npos) << text;
   EXPECT_NE(text.find("24 to 1174"), std::string::npos) << text;
   EXPECT_NE(text.find("--rescale"), std::string::npos);
   // With padding that is negative.
-  EXPECT_NE(doubt(changed([](int hu) { return hu == Torso::kAir ? -2000 : hu + 1024; })), "believed");
+  EXPECT_NE(doubt(changed_ct([](int hu) { return hu == Torso::kAir ? -2000 : hu + 1024; })), "believed");
 }
 
 TEST(Hounsfield, DoubtsAnInterceptAppliedTwice) {
-  EXPECT_NE(doubt(changed([](int hu) { return hu - 1024; })), "believed");
+  EXPECT_NE(doubt(changed_ct([](int hu) { return hu - 1024; })), "believed");
 }
 
 TEST(Hounsfield, DoubtsAWindowOfEightBits) {
-  EXPECT_NE(doubt(changed([](int hu) { return std::clamp((hu + 160) * 255 / 400, 0, 255); })), "believed");
-  EXPECT_NE(doubt(changed([](int hu) { return std::clamp(hu, -160, 240); })), "believed");
+  EXPECT_NE(doubt(changed_ct([](int hu) { return std::clamp((hu + 160) * 255 / 400, 0, 255); })), "believed");
+  EXPECT_NE(doubt(changed_ct([](int hu) { return std::clamp(hu, -160, 240); })), "believed");
 }
 
 TEST(Hounsfield, DoubtsOneValueAndNoise) {
-  EXPECT_NE(doubt(changed([](int) { return 0; })), "believed");
-  EXPECT_NE(doubt(changed([n = 0U](int) mutable { return static_cast<int>((n = n * 1664525U + 1013904223U) >> 20); })),
-            "believed");
+  EXPECT_NE(doubt(changed_ct([](int) { return 0; })), "believed");
+  EXPECT_NE(
+      doubt(changed_ct([n = 0U](int) mutable { return static_cast<int>((n = n * 1664525U + 1013904223U) >> 20); })),
+      "believed");
 }
 
 TEST(Hounsfield, AScaleMakesHuOfStoredNumbers) {
-  volume::CtGrid ct = changed([](int hu) { return 2 * (hu + 1024); });
+  volume::CtGrid ct = changed_ct([](int hu) { return 2 * (hu + 1024); });
   ASSERT_TRUE(apply_rescale({0.5, -1024.0}, ct));
   EXPECT_EQ(ct.voxels, torso_ct().voxels);
 }
@@ -79,7 +80,7 @@ TEST(Hounsfield, NoPatientIsBuiltOfOtherNumbers) {
   std::vector<std::string> warnings;
   const LabelSource liver{"liver.nii.gz", Torso::mask(Torso::grid({5, 5, 6}), Torso::is_liver), {{1, "liver"}}};
   ASSERT_TRUE(build_patient(torso_ct(), {liver}, {"test", {}}, warnings));
-  const auto built = build_patient(changed([](int hu) { return hu + 1024; }), {liver}, {"test", {}}, warnings);
+  const auto built = build_patient(changed_ct([](int hu) { return hu + 1024; }), {liver}, {"test", {}}, warnings);
   ASSERT_FALSE(built);
   EXPECT_NE(built.error().text().find("no air"), std::string::npos);
 }

@@ -15,7 +15,7 @@ namespace {
 using testing::shipped_tissues;
 
 /// Loads the shipped table with its [transfer] changed at one place.
-Result<TissueTable> changed(const std::string& from, const std::string& to) {
+Result<TissueTable> load_changed_transfer(const std::string& from, const std::string& to) {
   std::string text = shipped_tissues().to_toml();
   const std::size_t section = text.find("[transfer]");
   const std::size_t at = text.find(from, section);
@@ -90,7 +90,7 @@ TEST(HuTransferText, DamagedCurvesAreRefusedWithTheirPlace) {
       {"gradient_none_hu_per_mm = {value = ", "gradient_none_hu_per_mm = {value = 4"},
   };
   for (const auto& damage : damages) {
-    const auto table = changed(damage.from, damage.to);
+    const auto table = load_changed_transfer(damage.from, damage.to);
     ASSERT_FALSE(table) << damage.to;
     EXPECT_NE(table.error().text().find("mine.toml"), std::string::npos) << table.error().text();
     EXPECT_NE(table.error().text().find("transfer"), std::string::npos) << table.error().text();
@@ -98,12 +98,12 @@ TEST(HuTransferText, DamagedCurvesAreRefusedWithTheirPlace) {
 }
 
 TEST(HuTransferText, AnAssumedCurveNeedsItsFactors) {
-  const auto table = changed(", factors = [", ", faktors = [");
+  const auto table = load_changed_transfer(", factors = [", ", faktors = [");
   ASSERT_FALSE(table);
   const std::string text = shipped_tissues().to_toml();
   const std::size_t begin = text.find(", factors = [", text.find("[transfer]"));
   const std::size_t end = text.find(']', begin) + 1;
-  const auto without = changed(text.substr(begin, end - begin), "");
+  const auto without = load_changed_transfer(text.substr(begin, end - begin), "");
   ASSERT_FALSE(without);
   EXPECT_NE(without.error().text().find("factors"), std::string::npos);
 }
