@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 constexpr config::Range kWeight_n{0.0, 5.0};
 constexpr config::Range kLever_mm{-200.0, 200.0};
-constexpr const char* kAdvice = "delete the file, or weigh the stylus again";
+constexpr const char* kWeighAgain = "delete the file, or weigh the stylus again";
 
 bool is_plain(char c) noexcept {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
@@ -85,11 +85,12 @@ Result<std::optional<StylusProfile>> load_stylus_profile(const fs::path& folder,
   auto profile = read_profile(file);
   if (!profile) {
     Error broken = std::move(profile).error();
-    broken.advice = kAdvice;
+    broken.advice = kWeighAgain;
     return tl::unexpected(std::move(broken));
   }
   if (profile->device != device)
-    return fail(fmt::format("the saved weight belongs to the device \"{}\"", profile->device), file.string(), kAdvice);
+    return fail(fmt::format("the saved weight belongs to the device \"{}\"", profile->device), file.string(),
+                kWeighAgain);
   return *std::move(profile);
 }
 
@@ -102,12 +103,12 @@ Result<haptics::DevicePreset> with_stylus_profile(haptics::DevicePreset preset, 
   if (profile->preset != preset.name)
     return fail(fmt::format("the saved weight was measured with the preset \"{}\", and the device has \"{}\"",
                             profile->preset, preset.name),
-                file, kAdvice);
+                file, kWeighAgain);
   const double most_n = haptics::gate_params(preset).continuous_force_n;
   if (profile->weight_n > most_n)
     return fail(
         fmt::format("stylus_weight_n is {}, and the device can hold {:.2f} N for long", profile->weight_n, most_n),
-        file, kAdvice);
+        file, kWeighAgain);
   preset.capability.stylus_weight_n = profile->weight_n;
   if (profile->lever_mm) preset.capability.stylus_lever_mm = *profile->lever_mm;
   return preset;

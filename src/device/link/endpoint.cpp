@@ -19,12 +19,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostPathBytes = sizeof(sockaddr_un::sun_path) - 1;
-constexpr std::string_view kIpc = "ipc://";
-constexpr std::string_view kTcp = "tcp://";
 constexpr std::string_view kAdvice = "write ipc:///PATH, or tcp://ADDRESS:PORT as in tcp://127.0.0.1:5571";
 
 Result<Endpoint> parse_ipc(std::string_view path) {
-  const std::string where = fmt::format("{}{}", kIpc, path);
+  const std::string where = fmt::format("{}{}", kIpcScheme, path);
   if (!path.starts_with('/')) return fail_usage("the socket's path is not absolute", where, std::string(kAdvice));
   if (path.ends_with('/')) return fail_usage("names a folder, not a socket", where, std::string(kAdvice));
   if (path.size() > kMostPathBytes) {
@@ -36,7 +34,7 @@ Result<Endpoint> parse_ipc(std::string_view path) {
 
 Result<Endpoint> parse_tcp(std::string_view address) {
   constexpr unsigned kMostPort = 65535;
-  const std::string where = fmt::format("{}{}", kTcp, address);
+  const std::string where = fmt::format("{}{}", kTcpScheme, address);
   const std::size_t colon = address.rfind(':');
   if (colon == std::string_view::npos) return fail_usage("the port is missing", where, std::string(kAdvice));
   std::string_view host = address.substr(0, colon);
@@ -60,8 +58,8 @@ Result<Endpoint> parse_endpoint(std::string_view text) {
   if (!detail::is_plain_text(text, detail::Layout::kLine)) {
     return fail_usage("has control characters or is not UTF-8", "endpoint", std::string(kAdvice));
   }
-  if (text.starts_with(kIpc)) return parse_ipc(text.substr(kIpc.size()));
-  if (text.starts_with(kTcp)) return parse_tcp(text.substr(kTcp.size()));
+  if (text.starts_with(kIpcScheme)) return parse_ipc(text.substr(kIpcScheme.size()));
+  if (text.starts_with(kTcpScheme)) return parse_tcp(text.substr(kTcpScheme.size()));
   return fail_usage("neither ipc:// nor tcp://", std::string(text), std::string(kAdvice));
 }
 
@@ -75,7 +73,7 @@ std::string default_endpoint(std::string_view tool) {
       return {};
     }
   }
-  return fmt::format("{}{}", kIpc, (folder / fmt::format("trocar-{}", tool)).string());
+  return fmt::format("{}{}", kIpcScheme, (folder / fmt::format("trocar-{}", tool)).string());
 }
 
 }  // namespace trocar::link

@@ -7,6 +7,9 @@
 
 namespace trocar::link {
 
+inline constexpr std::string_view kIpcScheme = "ipc://";
+inline constexpr std::string_view kTcpScheme = "tcp://";
+
 /// Address of a server.
 struct Endpoint {
   std::string url;  ///< "ipc:///run/user/0/trocar-needle", "tcp://127.0.0.1:5571"

@@ -14,7 +14,7 @@ constexpr std::size_t kMostDevices = 8;
 /// The device's own thread sends a written wrench within this time. [assumed: ten periods of 1 kHz]
 constexpr int kSent_ms = 10;
 /// Time after which the process ends, even if a device's write() blocks.
-constexpr unsigned kLongest_s = 1;
+constexpr unsigned kProcessEnds_s = 1;
 
 // A signal handler can access data only through a global.
 std::array<std::atomic<LastChance*>, kMostDevices> devices{};
@@ -33,7 +33,7 @@ extern "C" void handle_crash(int number) {
       while (true) ::pause();
     }
   } else {
-    ::alarm(kLongest_s);
+    ::alarm(kProcessEnds_s);
     bool has_device = false;
     for (auto& device : devices) {
       LastChance* const chance = device.load(std::memory_order_acquire);

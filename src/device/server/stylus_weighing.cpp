@@ -16,13 +16,13 @@ constexpr double kHandOver_s = 0.5;       // with the full force before a hand l
 constexpr double kLeastRest_s = 3.0;      // time to let go [assumed]
 constexpr double kRest_s = 0.5;
 constexpr double kRest_mm_per_s = 2.0;
-constexpr double kRest_mm = 2.0;      // from the target
-constexpr double kLongest_s = 15.0;   // of each phase up to the rest
-constexpr double kTooFar_mm = 30.0;   // from the start [assumed]
-constexpr double kSunkShare = 0.7;    // of the distance: downwards
-constexpr double kMostStuck_n = 1.0;  // change of the force without a count: held, or a stuck encoder [assumed]
-constexpr double kTilt_rad = 0.1;     // of a way: about 70 counts of 0.05 deg
-constexpr double kLeastLevel = 0.3;   // sine of the angle to the vertical below which there is no lever
+constexpr double kRest_mm = 2.0;          // from the target
+constexpr double kLongestPhase_s = 15.0;  // of each phase up to the rest
+constexpr double kTooFar_mm = 30.0;       // from the start [assumed]
+constexpr double kSunkShare = 0.7;        // of the distance: downwards
+constexpr double kMostStuck_n = 1.0;      // change of the force without a count: held, or a stuck encoder [assumed]
+constexpr double kTilt_rad = 0.1;         // of a way: about 70 counts of 0.05 deg
+constexpr double kLeastLevel = 0.3;       // sine of the angle to the vertical below which there is no lever
 constexpr double kMostLever_mm = 200.0;
 constexpr double kMostAtLimit = 0.1;  // share of the periods
 constexpr double kLeastFollowed = 0.5;
@@ -128,7 +128,7 @@ StylusWeighing::Demand StylusWeighing::step(const Input& input) noexcept {
   if (phase_ == Phase::kClearing) {
     rested_s_ = input.mode == telemetry::GateMode::kOff ? rested_s_ + dt_s : 0.0;
     if (rested_s_ < kClear_s || !input.X_DS) {
-      if (phase_s_ > kLongest_s) abort(WeighRefusal::kForcesOff, telemetry::GateFault::kNone);
+      if (phase_s_ > kLongestPhase_s) abort(WeighRefusal::kForcesOff, telemetry::GateFault::kNone);
       return {};
     }
     start_X_DS_ = *input.X_DS;
@@ -163,7 +163,7 @@ void StylusWeighing::check_motion(const Input& input) noexcept {
   } else if (off_mm.norm() > kTooFar_mm) {
     const bool has_sunk = -off_mm.z() > kSunkShare * off_mm.norm() && hold_.is_at_limit();
     abort(has_sunk ? WeighRefusal::kTooHeavy : WeighRefusal::kMoved, telemetry::GateFault::kNone);
-  } else if (phase_ != Phase::kMoving && phase_s_ > kLongest_s) {
+  } else if (phase_ != Phase::kMoving && phase_s_ > kLongestPhase_s) {
     abort(WeighRefusal::kNotAtRest, telemetry::GateFault::kNone);
   }
 }

@@ -21,7 +21,7 @@ double finite_or_zero(double value) noexcept {
 }
 
 /// 0 within the dead zone, then increasing to 1.
-double respond(double deflection, double dead_zone) noexcept {
+double deflection_response(double deflection, double dead_zone) noexcept {
   const double beyond = std::clamp((deflection - dead_zone) / (1.0 - dead_zone), 0.0, 1.0);
   return std::pow(beyond, kStickExponent);
 }
@@ -37,7 +37,7 @@ Stick stick(double x, double y) noexcept {
   const double away = -finite_or_zero(y);
   const double deflection = std::hypot(right, away);
   if (!(deflection > kStickDeadZone)) return {};
-  const double response = respond(deflection, kStickDeadZone) / deflection;
+  const double response = deflection_response(deflection, kStickDeadZone) / deflection;
   return {response * right, response * away};
 }
 
@@ -136,8 +136,9 @@ PointerMotion gamepad_motion(const GamepadState& state) noexcept {
   const Stick right = stick(state.right_x, state.right_y);
   PointerMotion motion;
   motion.v_D = kPadSpeed_mm_per_s * Vec3(left.right, left.away, difference(state.is_up, state.is_down));
-  motion.inward_mm_per_s = kPadInward_mm_per_s * (respond(finite_or_zero(state.right_trigger), kTriggerDeadZone) -
-                                                  respond(finite_or_zero(state.left_trigger), kTriggerDeadZone));
+  motion.inward_mm_per_s =
+      kPadInward_mm_per_s * (deflection_response(finite_or_zero(state.right_trigger), kTriggerDeadZone) -
+                             deflection_response(finite_or_zero(state.left_trigger), kTriggerDeadZone));
   // The tip is below the grip: swinging it to the right is a rotation about -y, away from the user about +x.
   motion.w_D = kPadTilt_rad_per_s * Vec3(right.away, -right.right, 0.0);
   motion.turning_rad_per_s = kPadTurning_rad_per_s * difference(state.is_right_shoulder, state.is_left_shoulder);

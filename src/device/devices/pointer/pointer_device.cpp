@@ -9,12 +9,6 @@
 #include "haptics/closed_loop/rotation.h"
 
 namespace trocar::devices {
-namespace {
-
-constexpr double kMaxGap_s = 0.1;
-
-}  // namespace
-
 PointerDevice::PointerDevice(haptics::DevicePreset preset, const PointerParams& params) noexcept
     : preset_(std::move(preset)), params_(params) {}
 

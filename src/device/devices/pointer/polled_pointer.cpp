@@ -16,8 +16,6 @@
 namespace trocar::devices {
 namespace {
 
-constexpr std::int64_t kNsPerMs = 1'000'000;
-
 bool is_finite(const PointerMotion& motion) noexcept {
   return motion.v_D.allFinite() && motion.w_D.allFinite() && std::isfinite(motion.inward_mm_per_s) &&
          std::isfinite(motion.turning_rad_per_s);
@@ -25,6 +23,7 @@ bool is_finite(const PointerMotion& motion) noexcept {
 
 /// Waits for new data of the source, the end, or one period.
 void wait_for_news(int wake, int source) noexcept {
+  constexpr std::int64_t kNsPerMs = 1'000'000;
   std::array<pollfd, 2> watched{pollfd{wake, POLLIN, 0}, pollfd{source, POLLIN, 0}};
   ::poll(watched.data(), source >= 0 ? 2 : 1, static_cast<int>(kPointerPeriod_ns / kNsPerMs));
 }

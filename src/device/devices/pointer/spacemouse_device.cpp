@@ -23,7 +23,7 @@ constexpr int kMostEvents = 64;                                // events per pol
 constexpr int kMostButtons = 16;                               // stored as bits
 constexpr std::size_t kEventBytes = 8 * sizeof(std::int32_t);  // spacenavd's protocol: eight integers per event
 
-double respond(int counts) noexcept {
+double cap_response(int counts) noexcept {
   const double size = std::abs(static_cast<double>(counts));
   const double beyond = std::clamp((size - kCapDeadZone_counts) / (kCapFull_counts - kCapDeadZone_counts), 0.0, 1.0);
   return std::copysign(std::pow(beyond, kCapExponent), counts);
@@ -113,8 +113,8 @@ PointerMotion spacemouse_motion(const SpaceMouseAxes& axes, std::uint32_t button
   const auto& [x, y, z, rx, ry, rz] = axes.counts;
   PointerMotion motion;
   // D is x right, y away, z up: y and z are exchanged, which also inverts the sense of rotations.
-  motion.v_D = kCapSpeed_mm_per_s * Vec3(respond(x), respond(z), respond(y));
-  motion.w_D = kCapTurning_rad_per_s * Vec3(respond(rx), respond(rz), respond(ry));
+  motion.v_D = kCapSpeed_mm_per_s * Vec3(cap_response(x), cap_response(z), cap_response(y));
+  motion.w_D = kCapTurning_rad_per_s * Vec3(cap_response(rx), cap_response(rz), cap_response(ry));
   motion.buttons = buttons;
   return motion;
 }

@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kHeader = "time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz";
-constexpr const char* kAdvice = "write the file with trocar session motion";
+constexpr const char* kRecordMotion = "write the file with trocar session motion";
 constexpr double kMostUneven = 0.01;  ///< Share of a step.
 constexpr double kRateUnit_hz = 1e-6;
 
@@ -58,9 +58,9 @@ std::optional<Pose> pose_of(const Row& row) {
 Result<RecordedMotion> read_motion(const fs::path& path) {
   TROCAR_TRY(const std::string bytes, read_input(path, FileKind::kOther));
   std::string_view rest = bytes;
-  if (take_line(rest) != kHeader) return fail("not a recorded motion", path.string(), kAdvice);
+  if (take_line(rest) != kHeader) return fail("not a recorded motion", path.string(), kRecordMotion);
   const auto damaged = [&](std::size_t line, const char* what) {
-    return fail(fmt::format("line {}: {}", line, what), path.string(), kAdvice);
+    return fail(fmt::format("line {}: {}", line, what), path.string(), kRecordMotion);
   };
   RecordedMotion motion;
   double first_s = 0.0, last_s = 0.0, step_s = 0.0;
@@ -77,7 +77,7 @@ Result<RecordedMotion> read_motion(const fs::path& path) {
     last_s = time_s;
     motion.poses.push_back(*pose);
   }
-  if (motion.poses.size() < 2) return fail("fewer than two poses", path.string(), kAdvice);
+  if (motion.poses.size() < 2) return fail("fewer than two poses", path.string(), kRecordMotion);
   const double rate_hz = static_cast<double>(motion.poses.size() - 1) / (last_s - first_s);
   motion.rate_hz = std::round(rate_hz / kRateUnit_hz) * kRateUnit_hz;
   return motion;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "devices/detail/factories.h"
+#include "devices/detail/units.h"
 #include "devices/simulated/detail/hand_motion.h"
 #include "devices/stylus_profile.h"
 #include "geometry/clamp_norm.h"
@@ -12,7 +13,6 @@
 namespace trocar::devices {
 namespace {
 
-constexpr double kMaxGap_s = 0.1;    ///< Longer gaps: the process was stopped (debugger, suspended machine).
 constexpr double kMaxStep_s = 1e-3;  ///< physics.md H2 holds at 1 kHz.
 /// Twice the stiffest hand of physics.md H1, and the same at the end of a 30 mm grip. A stiffer hand would oscillate.
 constexpr double kStiffestHand_n_per_mm = 10.0;
@@ -98,7 +98,6 @@ Vec3 VirtualHapticDevice::wall_n() const noexcept {
   if (!(beyond_mm > 0.0)) return Vec3::Zero();
   const Vec3 outwards = p_D.normalized();
   const double k = params_.wall_stiffness_n_per_mm;
-  constexpr double kMmPerM = 1000.0;
   const double damping = std::sqrt(k * preset_.apparent_mass_kg / kMmPerM);
   const double speed = std::max(0.0, v_D().dot(outwards));
   return -(k * beyond_mm + damping * speed) * outwards;

@@ -6,13 +6,12 @@
 
 #include "core/random.h"
 #include "core/testing/allocation_guard.h"
+#include "devices/test/random_vec.h"
 
 namespace trocar::devices {
 namespace {
 
-Vec3 random_vec(Random& random, double size) {
-  return {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
-}
+using testing::random_vec;
 
 /// Moment about E of a wrench about S.
 Vec3 moment_about(const Vec3& p_SE, const haptics::Wrench& wrench) {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kDevice = "openhaptics:Left Device";
 
-haptics::DevicePreset preset_of(const char* name) {
+haptics::DevicePreset shipped_preset(const char* name) {
   return haptics::load_device_preset(data_dir() / "devices.toml", name).value();
 }
 
@@ -59,7 +59,7 @@ TEST(StylusProfile, EveryDeviceHasItsOwnFileInTheFolder) {
 
 TEST(StylusProfile, ReplacesThePresetsWeight) {
   const TemporaryFolder folder;
-  const haptics::DevicePreset premium = preset_of("premium");
+  const haptics::DevicePreset premium = shipped_preset("premium");
   ASSERT_TRUE(save_stylus_profile({"a", "premium", 0.75, 31.0}, folder.path()));
   const auto with = with_stylus_profile(premium, folder.path(), "a");
   ASSERT_TRUE(with) << with.error().text();
@@ -74,7 +74,7 @@ TEST(StylusProfile, ReplacesThePresetsWeight) {
 }
 
 TEST(StylusProfile, ABrokenOneIsRefusedInOneLineThatNamesTheFile) {
-  const haptics::DevicePreset omni = preset_of("omni");
+  const haptics::DevicePreset omni = shipped_preset("omni");
   ASSERT_TRUE(with_stylus_profile(omni, Saved(text_with("0.8")).path(), kDevice)) << "the usual text is valid";
   const std::string other = "device = \"x\"\npreset = \"omni\"\nstylus_weight_n = 0.5\n";
   const std::string premium = "device = \"openhaptics:Left Device\"\npreset = \"premium\"\nstylus_weight_n = 0.5\n";
@@ -129,7 +129,7 @@ TEST(StylusProfile, DoesNotChangeTheWeightOfASimulatedStylus) {
   double time_s = 1.0;
   device->read(time_s);
   device->hold(placed);
-  const double lift_n = preset_of("premium").capability.stylus_weight_n;
+  const double lift_n = shipped_preset("premium").capability.stylus_weight_n;
   for (int i = 0; i < 1000; ++i) {
     device->read(time_s += 1e-3);
     device->write({lift_n * Vec3::UnitZ(), Vec3::Zero()});

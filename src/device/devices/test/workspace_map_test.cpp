@@ -7,14 +7,14 @@
 #include "core/random.h"
 #include "core/testing/allocation_guard.h"
 #include "devices/haptic_device.h"
+#include "devices/test/random_vec.h"
 #include "haptics/closed_loop/rotation.h"
 
 namespace trocar::devices {
 namespace {
 
-Vec3 random_vec(Random& random, double size) {
-  return {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
-}
+using testing::random_vec;
+
 Pose random_pose(Random& random) {
   return {haptics::rotation_from_vector(random_vec(random, 1.5)), random_vec(random, 100.0)};
 }

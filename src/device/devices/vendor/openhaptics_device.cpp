@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 
+#include "core/ascii.h"
 #include "devices/detail/factories.h"
 #include "devices/stylus_profile.h"
 #include "devices/vendor/detail/hd_connection.h"
@@ -29,8 +29,7 @@ constexpr std::array kModels{ModelRow{"premium", "premium"}, ModelRow{"desktop",
 
 Result<std::string> preset_of_model(const std::string& model) {
   std::string small = model;
-  std::transform(small.begin(), small.end(), small.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(small.begin(), small.end(), small.begin(), ascii::to_lower);
   for (const ModelRow& row : kModels) {
     if (small.find(row.word) != std::string::npos) return std::string(row.preset);
   }

@@ -6,6 +6,9 @@
 
 namespace trocar::link::detail {
 
+/// Length of a listening socket's queue of connections that wait for accept().
+inline constexpr int kWaitingConnections = 64;
+
 /// Owner of a file descriptor.
 class Descriptor {
  public:

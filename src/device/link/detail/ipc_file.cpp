@@ -16,7 +16,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr mode_t kForUserAlone = 0600;
-constexpr int kWaitingConnections = 64;
 
 std::optional<sockaddr_un> socket_name(const fs::path& path) {
   sockaddr_un name{};
@@ -26,14 +25,14 @@ std::optional<sockaddr_un> socket_name(const fs::path& path) {
   return name;
 }
 
-const sockaddr* as_address(const sockaddr_un& name) {
+const sockaddr* as_ipc_address(const sockaddr_un& name) {
   return reinterpret_cast<const sockaddr*>(&name);
 }
 
 /// A process listens, or may listen: only a refused connection proves that the server has ended.
 bool is_alive(const sockaddr_un& name) {
   const Descriptor probe(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-  return ::connect(probe.get(), as_address(name), sizeof name) == 0 || (errno != ECONNREFUSED && errno != ENOENT);
+  return ::connect(probe.get(), as_ipc_address(name), sizeof name) == 0 || (errno != ECONNREFUSED && errno != ENOENT);
 }
 
 /// Removes the files of a server that has ended.
@@ -70,7 +69,7 @@ Result<IpcFile> IpcFile::listen(const fs::path& path) {
   // The mode of the descriptor becomes that of the file: other users can connect at no time.
   struct stat made {};
   if (!listener.is_open() || ::fchmod(listener.get(), kForUserAlone) != 0 ||
-      ::bind(listener.get(), as_address(*name), sizeof *name) != 0 ||
+      ::bind(listener.get(), as_ipc_address(*name), sizeof *name) != 0 ||
       ::listen(listener.get(), kWaitingConnections) != 0 || ::lstat(path.c_str(), &made) != 0) {
     if (errno == EADDRINUSE)
       return fail("the endpoint is in use by another server", path.string(),

@@ -90,7 +90,7 @@ TEST(CleanText, IsUtf8AsTheStandardHasIt) {
   using detail::Layout;
   for (const char* good : {"", "a b", "\xc2\xa0", "\xdf\xbf", "\xe0\xa0\x80", "\xed\x9f\xbf", "\xee\x80\x80",
                            "\xef\xbf\xbf", "\xf0\x90\x80\x80", "\xf4\x8f\xbf\xbf"}) {
-    EXPECT_TRUE(is_plain_text(good, Layout::kLine)) << testing::PrintToString(good);
+    EXPECT_TRUE(is_plain_text(good, Layout::kLine)) << ::testing::PrintToString(good);
   }
   for (const char* bad : {"\x80",
                           "\xbf",
@@ -115,7 +115,7 @@ TEST(CleanText, IsUtf8AsTheStandardHasIt) {
                           "\x7f",
                           "\v",
                           "\f"}) {
-    EXPECT_FALSE(is_plain_text(bad, Layout::kLines)) << testing::PrintToString(bad);
+    EXPECT_FALSE(is_plain_text(bad, Layout::kLines)) << ::testing::PrintToString(bad);
   }
 }
 

@@ -8,7 +8,7 @@
 namespace trocar::server {
 namespace {
 
-constexpr double kPeriod_s = 1e-3;
+constexpr double kTrialPeriod_s = 1e-3;
 
 struct Tried {
   double most_n = 0.0, least_up_n = 0.0;
@@ -17,8 +17,8 @@ struct Tried {
 
 Tried run(DeviceTrial& trial, double& now_s, double for_s) {
   Tried tried;
-  for (const double end_s = now_s + for_s; now_s < end_s; now_s += kPeriod_s) {
-    tried.last = trial.step(now_s, kPeriod_s);
+  for (const double end_s = now_s + for_s; now_s < end_s; now_s += kTrialPeriod_s) {
+    tried.last = trial.step(now_s, kTrialPeriod_s);
     tried.most_n = std::max(tried.most_n, tried.last.written_D.force_n.norm());
     tried.least_up_n = std::min(tried.least_up_n, tried.last.written_D.force_n.z());
   }
@@ -77,7 +77,7 @@ TEST(DeviceTrial, NothingIsAllocatedInAPeriod) {
   DeviceTrial trial(device, 1000.0);
   trial.push();
   const testing::AllocationGuard guard;
-  trial.step(1.0, kPeriod_s);
+  trial.step(1.0, kTrialPeriod_s);
   EXPECT_EQ(guard.count(), 0u);
 }
 

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "core/ascii.h"
 #include "devices/pointer/pointer_device.h"
 #include "devices/simulated/faulty_device.h"
 #include "devices/simulated/replay_device.h"
@@ -136,7 +137,7 @@ INSTANTIATE_TEST_SUITE_P(Devices, FaultMatrix,
                                               std::get<0>(param.param).preset + "_" +
                                               all_faults()[std::get<1>(param.param)].schedule;
                            for (char& c : name) {
-                             if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+                             if (!ascii::is_letter_or_digit(c)) c = '_';
                            }
                            return name;
                          });

@@ -6,10 +6,10 @@
 #include <thread>
 
 #include "devices/device_spec.h"
-#include "devices/pointer/test/spacenav_daemon.h"
 #include "devices/test/standin/dhd_stand_in.h"
 #include "devices/test/standin/hd_stand_in.h"
-#include "devices/vendor/test/haply_service.h"
+#include "devices/testing/haply_service.h"
+#include "devices/testing/spacenav_daemon.h"
 #include "devices/vendor/test/vendor_library.h"
 #include "realtime/periodic_loop.h"
 #include "server/test/servo_rig.h"
@@ -83,7 +83,7 @@ struct VendorFault {
 
 class VendorFaults : public ::testing::TestWithParam<VendorFault> {};
 
-/// What a device that breaks at kFault_s led to.
+/// What a device that breaks at kScheduledFault_s led to.
 struct Trial {
   telemetry::GateFault fault = telemetry::GateFault::kNone;
   double broken_s =
@@ -93,9 +93,9 @@ struct Trial {
   std::string violations;
 };
 
-constexpr double kOn_s = 0.9;      // past the safe start
-constexpr double kFault_s = 1.2;   // as the schedules say
-constexpr double kSilent_s = 0.5;  // a loaded machine may keep a device's thread waiting for some time
+constexpr double kOn_s = 0.9;              // past the safe start
+constexpr double kScheduledFault_s = 1.2;  // as the schedules say
+constexpr double kSilent_s = 0.5;          // a loaded machine may keep a device's thread waiting for some time
 
 void run_trial(const VendorFault& expected, Trial& trial) {
   const Hardware hardware(expected.kind);
@@ -113,16 +113,18 @@ void run_trial(const VendorFault& expected, Trial& trial) {
     ApproachingPatient patient(preset);
 
     ServoRecord record;
-    const double end_s = kFault_s + (expected.fault == telemetry::GateFault::kDeviceSilent ? kSilent_s : 0.0) + 0.3;
-    constexpr double kPeriod_s = 1e-3;  // the servo's time is counted: a hole of the machine must look like no plunge
+    const double end_s =
+        kScheduledFault_s + (expected.fault == telemetry::GateFault::kDeviceSilent ? kSilent_s : 0.0) + 0.3;
+    constexpr double kCountedPeriod_s =
+        1e-3;  // the servo's time is counted: a hole of the machine must look like no plunge
     for (double time_s = 0.0; time_s < end_s;) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      time_s += kPeriod_s;
+      time_s += kCountedPeriod_s;
       ServoInput input;
       input.now_s = time_s;
-      input.dt_s = kPeriod_s;
+      input.dt_s = kCountedPeriod_s;
       input.is_wanted = true;
-      if (trial.broken_s == 0.0 && time_s >= kFault_s) trial.broken_s = time_s;
+      if (trial.broken_s == 0.0 && time_s >= kScheduledFault_s) trial.broken_s = time_s;
       const double depth_mm = std::min(3.0, -10.0 + std::max(0.0, time_s - kOn_s) * 60.0);
       const Pose X_WS =
           preset.sensed_dof == 6 ? record.X_DS : Pose(rotation_between(Vec3::UnitZ(), -Vec3::UnitZ()), record.X_DS.p());

@@ -6,21 +6,20 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <limits>
 
 #include "devices/pointer/test/pointer_checks.h"
 #include "devices/pointer/test/virtual_gamepad.h"
+#include "devices/test/bad_numbers.h"
 
 namespace trocar::devices {
 namespace {
 
 using testing::is_gone;
+using testing::kInfinity;
+using testing::kNaN;
 using testing::kTick_s;
 using testing::reads_until;
 using testing::wait_until;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// SDL's virtual joystick in the layout of a gamepad. Its state is set by any thread and taken over by SDL's update in
 /// the thread that polls, where the rumble comes back.

@@ -10,7 +10,7 @@
 namespace trocar::devices {
 namespace {
 
-constexpr double kDt_s = 0.001;
+constexpr double kPointerTick_s = 0.001;
 
 DeviceHand pointing(const Vec3& p_D, double time_s) {
   DeviceHand hand;
@@ -24,7 +24,7 @@ TEST(PointerDevice, StartsWhereItIsFirstHeld) {
   PointerDevice device({}, {});
   device.read(0.0);
   device.hold(pointing({50.0, 0.0, 0.0}, 0.0));
-  EXPECT_EQ(device.read(kDt_s).X_DS.p().x(), 50.0);
+  EXPECT_EQ(device.read(kPointerTick_s).X_DS.p().x(), 50.0);
 }
 
 TEST(PointerDevice, FollowsWithItsTimeConstant) {
@@ -33,7 +33,7 @@ TEST(PointerDevice, FollowsWithItsTimeConstant) {
   device.hold(pointing(Vec3::Zero(), 0.0));
   device.hold(pointing({4.0, 0.0, 0.0}, 0.0));
   double time_s = 0.0;
-  for (int i = 0; i < 20; ++i) device.read(time_s += kDt_s);
+  for (int i = 0; i < 20; ++i) device.read(time_s += kPointerTick_s);
   const double once = 4.0 * (1.0 - std::exp(-0.02 / PointerParams{}.time_constant_s));
   EXPECT_NEAR(device.read(time_s).X_DS.p().x(), once, 1e-9);
   PointerDevice slow({}, {});  // and whatever the server's rate
@@ -54,10 +54,10 @@ TEST(PointerDevice, NeverMovesOrTurnsFasterThanAHand) {
   device.hold(far);
   Pose before = device.read(0.0).X_DS;
   for (int i = 1; i < 3000; ++i) {
-    const Pose now = device.read(i * kDt_s).X_DS;
-    EXPECT_LE((now.p() - before.p()).norm(), params.max_speed_mm_per_s * kDt_s * (1.0 + 1e-9));
+    const Pose now = device.read(i * kPointerTick_s).X_DS;
+    EXPECT_LE((now.p() - before.p()).norm(), params.max_speed_mm_per_s * kPointerTick_s * (1.0 + 1e-9));
     EXPECT_LE(haptics::rotation_vector(now.R() * before.R().transpose()).norm(),
-              params.max_turn_rad_per_s * kDt_s + 1e-9);
+              params.max_turn_rad_per_s * kPointerTick_s + 1e-9);
     before = now;
   }
   EXPECT_LT((before.p() - far.X_DS.p()).norm(), 1e-6);
@@ -69,7 +69,7 @@ TEST(PointerDevice, StaysWhereItIsLetGo) {
   device.read(0.0);
   device.hold(pointing({10.0, 0.0, 0.0}, 0.0));
   device.hold({});
-  for (int i = 1; i < 100; ++i) EXPECT_EQ(device.read(i * kDt_s).X_DS.p().x(), 10.0);
+  for (int i = 1; i < 100; ++i) EXPECT_EQ(device.read(i * kPointerTick_s).X_DS.p().x(), 10.0);
 }
 
 TEST(PointerDevice, IsPutInPlaceAndLedRigidly) {
@@ -79,12 +79,12 @@ TEST(PointerDevice, IsPutInPlaceAndLedRigidly) {
   DeviceHand placed = pointing({300.0, 0.0, 0.0}, 0.5);
   placed.is_placed = true;
   device.hold(placed);
-  EXPECT_EQ(device.read(kDt_s).X_DS.p().x(), 300.0);
+  EXPECT_EQ(device.read(kPointerTick_s).X_DS.p().x(), 300.0);
   DeviceHand rigid = pointing({-300.0, 0.0, 0.0}, 0.6);
   rigid.is_rigid = true;
   rigid.buttons = kButtonMain;
   device.hold(rigid);
-  const DeviceReading reading = device.read(2 * kDt_s);
+  const DeviceReading reading = device.read(2 * kPointerTick_s);
   EXPECT_EQ(reading.X_DS.p().x(), -300.0);
   EXPECT_EQ(reading.buttons, kButtonMain);
 }
@@ -95,9 +95,9 @@ TEST(PointerDevice, IgnoresHandsAndClocksThatAreNotFinite) {
   device.read(0.0);
   device.hold(pointing({1.0, 0.0, 0.0}, 0.0));
   device.hold(pointing({nan, 0.0, 0.0}, 0.0));
-  EXPECT_EQ(device.read(kDt_s).X_DS.p().x(), 1.0);
+  EXPECT_EQ(device.read(kPointerTick_s).X_DS.p().x(), 1.0);
   EXPECT_EQ(device.read(nan).status, DeviceStatus::kRepeated);
-  EXPECT_EQ(device.read(2 * kDt_s).status, DeviceStatus::kFresh);
+  EXPECT_EQ(device.read(2 * kPointerTick_s).status, DeviceStatus::kFresh);
 }
 
 }  // namespace

@@ -3,15 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "core/random.h"
+#include "devices/test/bad_numbers.h"
 #include "devices/test/bounded_wait.h"
 
 namespace trocar::devices {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using testing::kInfinity;
+using testing::kNaN;
+
 constexpr double kRadius_mm = 50.0;
 
 PointerMotion sideways(double mm_per_s) {
@@ -69,7 +71,7 @@ TEST(MovePointer, StaysInTheWorkspaceAndARotationWhateverIsAsked) {
 
 TEST(MovePointer, NonsenseMovesNothing) {
   const Pose start = pointer_start();
-  for (const double bad : {kNaN, std::numeric_limits<double>::infinity()}) {
+  for (const double bad : {kNaN, kInfinity}) {
     EXPECT_EQ(move_pointer(start, sideways(bad), 0.01, kRadius_mm).p(), start.p());
     EXPECT_EQ(move_pointer(start, sideways(1.0), bad, kRadius_mm).p(), start.p());
   }

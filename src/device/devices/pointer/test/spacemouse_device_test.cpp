@@ -6,7 +6,7 @@
 #include <string>
 
 #include "devices/pointer/test/pointer_checks.h"
-#include "spacenav_daemon.h"
+#include "devices/testing/spacenav_daemon.h"
 
 namespace trocar::devices {
 namespace {
@@ -16,7 +16,7 @@ using testing::reads_until;
 using testing::SpacenavDaemon;
 using testing::wait_until;
 
-constexpr int kFull = static_cast<int>(kCapFull_counts);
+constexpr int kFullCounts = static_cast<int>(kCapFull_counts);
 
 haptics::DevicePreset spacemouse() {
   haptics::DevicePreset preset;
@@ -34,19 +34,19 @@ std::unique_ptr<HapticDevice> open_cap(const SpacenavDaemon& daemon) {
 
 TEST(SpaceMouseMotion, PushesBecomeDevicesAxes) {
   // Right, up, away.
-  EXPECT_NEAR((spacemouse_motion({{kFull, 0, 0, 0, 0, 0}}, 0).v_D - kCapSpeed_mm_per_s * Vec3::UnitX()).norm(), 0,
+  EXPECT_NEAR((spacemouse_motion({{kFullCounts, 0, 0, 0, 0, 0}}, 0).v_D - kCapSpeed_mm_per_s * Vec3::UnitX()).norm(), 0,
               1e-9);
-  EXPECT_NEAR((spacemouse_motion({{0, kFull, 0, 0, 0, 0}}, 0).v_D - kCapSpeed_mm_per_s * Vec3::UnitZ()).norm(), 0,
+  EXPECT_NEAR((spacemouse_motion({{0, kFullCounts, 0, 0, 0, 0}}, 0).v_D - kCapSpeed_mm_per_s * Vec3::UnitZ()).norm(), 0,
               1e-9);
-  EXPECT_NEAR((spacemouse_motion({{0, 0, kFull, 0, 0, 0}}, 0).v_D - kCapSpeed_mm_per_s * Vec3::UnitY()).norm(), 0,
+  EXPECT_NEAR((spacemouse_motion({{0, 0, kFullCounts, 0, 0, 0}}, 0).v_D - kCapSpeed_mm_per_s * Vec3::UnitY()).norm(), 0,
               1e-9);
 }
 
 TEST(SpaceMouseMotion, TurnsBecomeDevicesAxes) {
   // As libspnav turns an object of OpenGL (x right, y up, z to the viewer): about (rx, ry, -rz).
-  EXPECT_GT(spacemouse_motion({{0, 0, 0, kFull, 0, 0}}, 0).w_D.x(), 0.0);
-  EXPECT_GT(spacemouse_motion({{0, 0, 0, 0, kFull, 0}}, 0).w_D.z(), 0.0);  // about up
-  EXPECT_GT(spacemouse_motion({{0, 0, 0, 0, 0, kFull}}, 0).w_D.y(), 0.0);  // about away
+  EXPECT_GT(spacemouse_motion({{0, 0, 0, kFullCounts, 0, 0}}, 0).w_D.x(), 0.0);
+  EXPECT_GT(spacemouse_motion({{0, 0, 0, 0, kFullCounts, 0}}, 0).w_D.z(), 0.0);  // about up
+  EXPECT_GT(spacemouse_motion({{0, 0, 0, 0, 0, kFullCounts}}, 0).w_D.y(), 0.0);  // about away
 }
 
 TEST(SpaceMouseMotion, RestsInTheDeadZoneAndEndsAtFullSpeed) {
@@ -74,7 +74,7 @@ TEST(SpaceMouse, CapMovesTheStylus) {
   ASSERT_NE(device, nullptr);
   double now_s = 0.0;
   EXPECT_TRUE(reads_until(*device, now_s, [&](const DeviceReading& r) {
-    daemon.push_cap({0, -kFull, 0, 0, 0, 0});  // a real one tells it again and again
+    daemon.push_cap({0, -kFullCounts, 0, 0, 0, 0});  // a real one tells it again and again
     return r.X_DS.p().z() < -3.0;
   }));
   EXPECT_NEAR(device->read(now_s).X_DS.p().head<2>().norm(), 0.0, 1e-9);
@@ -85,7 +85,7 @@ TEST(SpaceMouse, CapThatFellSilentIsLetGo) {
   const auto device = open_cap(daemon);
   ASSERT_NE(device, nullptr);
   double now_s = 0.0;
-  daemon.push_cap({kFull, 0, 0, 0, 0, 0});
+  daemon.push_cap({kFullCounts, 0, 0, 0, 0, 0});
   EXPECT_TRUE(reads_until(*device, now_s, [](const DeviceReading& r) { return r.X_DS.p().x() > 0.0; }));
   double last_mm = 0.0;
   EXPECT_TRUE(reads_until(*device, now_s, [&](const DeviceReading& r) {
@@ -160,7 +160,7 @@ TEST(SpaceMouse, ReadAndWriteDoNotAllocate) {
   SpacenavDaemon daemon;
   const auto device = open_cap(daemon);
   ASSERT_NE(device, nullptr);
-  daemon.push_cap({kFull, kFull, kFull, kFull, kFull, kFull});
+  daemon.push_cap({kFullCounts, kFullCounts, kFullCounts, kFullCounts, kFullCounts, kFullCounts});
   testing::expect_no_allocation(*device);
 }
 

@@ -5,7 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
+#include <string>
 #include <thread>
+
+#include "core/files/temporary_folder.h"
 
 namespace trocar::devices {
 namespace {
@@ -28,23 +32,54 @@ TEST(Speaker, TheGunClicksTwiceAndEndsInSilence) {
   EXPECT_LT(end, 0.001);
 }
 
-/// SDL's choice of driver while it lives: declared before the speaker whose thread reads it.
-struct Driver {
-  explicit Driver(const char* name) { ::setenv("SDL_AUDIODRIVER", name, 1); }
-  ~Driver() { ::unsetenv("SDL_AUDIODRIVER"); }
+/// SDL's disk driver, which writes what is played into a file; declared before the speaker whose thread reads it.
+class DiskDriver {
+ public:
+  /// `driver`: another name makes SDL find no output.
+  explicit DiskDriver(const char* driver = "disk") {
+    ::setenv("SDL_AUDIODRIVER", driver, 1);
+    ::setenv("SDL_DISKAUDIOFILE", file().c_str(), 1);
+  }
+  ~DiskDriver() {
+    ::unsetenv("SDL_AUDIODRIVER");
+    ::unsetenv("SDL_DISKAUDIOFILE");
+  }
+
+  /// Loudest sample that was played until now.
+  float loudest() const {
+    std::ifstream stream(file(), std::ios::binary);
+    float most = 0.0F;
+    for (float sample = 0.0F; stream.read(reinterpret_cast<char*>(&sample), sizeof sample);)
+      most = std::max(most, std::abs(sample));
+    return most;
+  }
+
+ private:
+  std::string file() const { return (folder_ / "played").string(); }
+
+  TemporaryFolder folder_;
 };
 
 TEST(Speaker, IsSilentWhereThereIsNoOutput) {
-  const Driver none("no such driver");
-  Speaker speaker;
-  speaker.play(make_gun_click());
+  const DiskDriver none("no such driver");
+  {
+    Speaker speaker;
+    speaker.play(make_gun_click());
+    EXPECT_FALSE(speaker.is_open());
+  }  // the thread that looked for an output has ended
+  EXPECT_EQ(none.loudest(), 0.0F);
 }
 
-TEST(Speaker, OpensAnOutputAndPlays) {
-  const Driver dummy("dummy");
+TEST(Speaker, PlaysOnTheOutput) {
+  const DiskDriver disk;
   Speaker speaker;
   while (!speaker.is_open()) std::this_thread::yield();
-  speaker.play(make_gun_click());
+  const std::vector<float> click = make_gun_click();
+  speaker.play(click);
+  const float peak =
+      *std::max_element(click.begin(), click.end(), [](float a, float b) { return std::abs(a) < std::abs(b); });
+  while (disk.loudest() < std::abs(peak)) std::this_thread::yield();  // ends by the time limit of the test program
+  EXPECT_FLOAT_EQ(disk.loudest(), std::abs(peak));
 }
 
 }  // namespace

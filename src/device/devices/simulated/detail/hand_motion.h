@@ -7,6 +7,8 @@ namespace trocar::devices {
 /// A hand target is extrapolated by its velocity for at most this time, then the hand is at rest: after this time the
 /// next target counts as lost, not late. Five heartbeats of a trainer.
 inline constexpr double kMaxExtrapolation_s = 0.05;
+/// Longest time between two readings. Longer gaps: the process was stopped (debugger, suspended machine).
+inline constexpr double kMaxGap_s = 0.1;
 
 /// Pose and velocity of the hand at a time.
 struct HandNow {

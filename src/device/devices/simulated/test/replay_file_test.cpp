@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* kHeader = "time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz\n";
 
-class ReplayFile : public testing::Test {
+class ReplayFile : public ::testing::Test {
  protected:
   /// The message for a file of this text; empty: it is read.
   std::string refusal(const std::string& text) const {

@@ -7,8 +7,8 @@
 
 #include "devices/test/standin/hd_stand_in.h"
 #include "devices/test/standin/violations.h"
+#include "devices/testing/hd_stand_ins.h"
 #include "devices/vendor/detail/hd_api.h"
-#include "devices/vendor/test/hd_stand_ins.h"
 
 namespace trocar::testing {
 

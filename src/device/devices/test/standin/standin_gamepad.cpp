@@ -8,8 +8,8 @@
 
 #include <cstdlib>
 
-#include "devices/pointer/test/gamepad_stand_in.h"
 #include "devices/pointer/test/virtual_gamepad.h"
+#include "devices/testing/gamepad_stand_in.h"
 
 namespace {
 

@@ -4,10 +4,10 @@ namespace trocar::devices::dhd {
 namespace {
 
 // libdrd contains all of libdhd.
-constexpr const char* kNames[] = {"libdhd.so", "libdhd.so.3", "libdrd.so", "libdrd.so.3"};
-constexpr LibraryPlace kPlace{
+constexpr const char* kForceDimensionFiles[] = {"libdhd.so", "libdhd.so.3", "libdrd.so", "libdrd.so.3"};
+constexpr LibraryPlace kForceDimensionPlace{
     .variable = "TROCAR_LIBDHD",
-    .names = kNames,
+    .names = kForceDimensionFiles,
     .package = "the vendor's Force Dimension library (libdhd.so)",
     .advice = "install the Force Dimension SDK and allow yourself the device's USB port (udev rule)",
 };
@@ -15,7 +15,7 @@ constexpr LibraryPlace kPlace{
 }  // namespace
 
 Result<Api> load_api() {
-  TROCAR_TRY(const DynamicLibrary library, DynamicLibrary::open(kPlace));
+  TROCAR_TRY(const DynamicLibrary library, DynamicLibrary::open(kForceDimensionPlace));
   Api api{};
   TROCAR_TRY_STATUS(library.find("dhdOpen", api.open));
   TROCAR_TRY_STATUS(library.find("dhdClose", api.close));

@@ -6,11 +6,11 @@
 #include <cmath>
 
 #include "core/log.h"
+#include "devices/detail/units.h"
 
 namespace trocar::devices::dhd {
 namespace {
 
-constexpr double kMmPerM = 1000.0;
 constexpr double kNmmPerNm = 1000.0;
 constexpr double kWatchdog_s = 0.020;  // if the vendor's is off: as ours, ServoExchange::kOldestWrench_s
 constexpr int kFailuresToLose = 5;     // consecutive failed calls [assumed]

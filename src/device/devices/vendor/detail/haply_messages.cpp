@@ -6,12 +6,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "devices/detail/units.h"
+
 namespace trocar::devices {
 namespace {
 
 using Json = nlohmann::json;
 
-constexpr double kMmPerM = 1000.0;
 constexpr std::size_t kMostIdBytes = 64;
 constexpr std::size_t kMostDevices = 16;
 constexpr double kQuaternionSlack = 0.1;  // tolerance of the unit length

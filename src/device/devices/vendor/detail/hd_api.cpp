@@ -3,10 +3,10 @@
 namespace trocar::devices::hd {
 namespace {
 
-constexpr const char* kNames[] = {"libHD.so", "libHD.so.3.4", "libHD.so.3"};
-constexpr LibraryPlace kPlace{
+constexpr const char* kOpenHapticsFiles[] = {"libHD.so", "libHD.so.3.4", "libHD.so.3"};
+constexpr LibraryPlace kOpenHapticsPlace{
     .variable = "TROCAR_LIBHD",
-    .names = kNames,
+    .names = kOpenHapticsFiles,
     .package = "the vendor's OpenHaptics library (libHD.so)",
     .advice = "install the vendor's OpenHaptics toolkit and the driver of the device (Touch Device Driver)",
 };
@@ -14,7 +14,7 @@ constexpr LibraryPlace kPlace{
 }  // namespace
 
 Result<Api> load_api() {
-  TROCAR_TRY(const DynamicLibrary library, DynamicLibrary::open(kPlace));
+  TROCAR_TRY(const DynamicLibrary library, DynamicLibrary::open(kOpenHapticsPlace));
   Api api{};
   TROCAR_TRY_STATUS(library.find("hdInitDevice", api.init_device));
   TROCAR_TRY_STATUS(library.find("hdDisableDevice", api.disable_device));

@@ -8,9 +8,10 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/websocket.hpp>
-#include <cctype>
 #include <exception>
 #include <utility>
+
+#include "core/ascii.h"
 
 namespace trocar::devices {
 namespace {
@@ -23,15 +24,14 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t kMostHostBytes = 253;  // timeout of the DNS lookup
 
 bool is_host(std::string_view host) {
-  return !host.empty() && host.size() <= kMostHostBytes && std::all_of(host.begin(), host.end(), [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '.' || c == '-' || c == '_';
+  return !host.empty() && host.size() <= kMostHostBytes && std::all_of(host.begin(), host.end(), [](char c) {
+    return ascii::is_letter_or_digit(c) || c == '.' || c == '-' || c == '_';
   });
 }
 
 bool is_port(std::string_view port) {
   constexpr std::size_t kMostDigits = 5;
-  return !port.empty() && port.size() <= kMostDigits &&
-         std::all_of(port.begin(), port.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+  return !port.empty() && port.size() <= kMostDigits && std::all_of(port.begin(), port.end(), ascii::is_digit);
 }
 
 }  // namespace

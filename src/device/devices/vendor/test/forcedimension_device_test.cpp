@@ -19,8 +19,8 @@ namespace trocar::devices {
 namespace {
 
 using testing::DhdStandIn;
+using testing::kTiny;
 
-constexpr double kTiny = 1e-9;         // rotations by right angles are exact but for rounding
 constexpr int kPeriodsToNotice = 100;  // more than between two looks at the device's state
 
 class ForceDimension : public ::testing::Test {

@@ -3,26 +3,27 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "core/files/data_dir.h"
 #include "core/files/temporary_folder.h"
 #include "core/testing/allocation_guard.h"
 #include "devices/device_spec.h"
 #include "devices/stylus_profile.h"
+#include "devices/test/bad_numbers.h"
 #include "devices/test/bounded_wait.h"
+#include "devices/testing/haply_service.h"
 #include "devices/vendor/detail/haply_messages.h"
 #include "devices/vendor/detail/websocket.h"
-#include "haply_service.h"
 
 namespace trocar::devices {
 namespace {
 
 using testing::HaplyMood;
 using testing::HaplyService;
+using testing::kInfinity;
+using testing::kNaN;
 using testing::wait_until;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kRightAngle_rad = 1.5707963267948966;
 constexpr double kTolerance_mm = 1e-6;  // decimal text there and back
 
@@ -251,7 +252,7 @@ TEST(HaplyDevice, ForceThatIsNotFiniteIsRefusedAndEndsTheForce) {
   HaplyService service;
   const auto device = open_at(service);
   ASSERT_NE(device, nullptr);
-  for (const double bad : {kNaN, std::numeric_limits<double>::infinity()}) {
+  for (const double bad : {kNaN, kInfinity}) {
     EXPECT_TRUE(wait_until([&] {
       device->write(pull(0.0, 0.5, 0.0));
       return service.last_force_n().y() == 0.5;

@@ -21,8 +21,7 @@ namespace trocar::devices {
 namespace {
 
 using testing::HdStandIn;
-
-constexpr double kTiny = 1e-9;  // rotations by right angles are exact but for rounding
+using testing::kTiny;
 
 std::atomic<double> callback_now_s{0.0};
 double callback_clock_s() noexcept {
@@ -325,7 +324,7 @@ TEST_F(OpenHaptics, MissingLibraryIsOneClearError) {
 }
 
 TEST_F(OpenHaptics, LibraryOfSomethingElseIsOneClearError) {
-  setenv("TROCAR_LIBHD", (std::string(TROCAR_STANDIN_FOLDER) + "/libdhd.so").c_str(), 1);
+  setenv("TROCAR_LIBHD", (testing::standin_dir() / "libdhd.so").c_str(), 1);
   const Status status = open();
   ASSERT_FALSE(status);
   EXPECT_NE(status.error().text().find("hdInitDevice"), std::string::npos) << status.error().text();

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <future>
 #include <memory>
+#include <thread>
 
 #include "link/client/detail/zmq_handles.h"
 #include "link/test/link_fixture.h"
@@ -373,8 +375,15 @@ TEST(HapticClient, EndsThoughNobodyAnswers) {
   // A port where nobody listens, and a server that never speaks: the destructor must come back from both.
   RawServer mute;
   const TemporaryFolder folder;
-  connected(mute.url());
-  connected(ipc_endpoint(folder).url);
+  std::promise<void> has_ended;
+  std::thread destroying([&, mute_url = mute.url(), nobody_url = ipc_endpoint(folder).url] {
+    connected(mute_url);
+    connected(nobody_url);
+    has_ended.set_value();
+  });
+  const bool is_in_time = has_ended.get_future().wait_for(kPatience) == std::future_status::ready;
+  EXPECT_TRUE(is_in_time) << "the destructor waits for an answer";
+  destroying.join();
 }
 
 TEST(HapticClient, CanBeMoved) {

@@ -20,10 +20,8 @@
 namespace trocar::link::detail {
 namespace {
 
-constexpr std::string_view kIpc = "ipc://";
-constexpr std::size_t kReadAtOnce = 64 * 1024;
-constexpr int kMostAcceptedAtOnce = 8;  ///< Per poll of the sockets.
-constexpr int kHeldBack_ms = 1;         ///< Interval of checking a rate limit.
+constexpr int kMostAcceptedPerPoll = 8;  ///< Per poll of the sockets.
+constexpr int kHeldBack_ms = 1;          ///< Interval of checking a rate limit.
 /// Descriptors of a server besides its connections: device, records, scenes, libraries. [assumed]
 constexpr rlim_t kReservedDescriptors = 128;
 constexpr double kPauseAccepts = 50.0;  ///< Skipped accepts without a free descriptor: half a second.
@@ -45,8 +43,8 @@ Result<ServerConnections> ServerConnections::listen(const Endpoint& endpoint, st
   TROCAR_TRY_STATUS(ensure_descriptors());
   ServerConnections made;
   if (identity) made.identity_ = std::make_unique<CurveIdentity>(*std::move(identity));
-  if (endpoint.url.starts_with(kIpc)) {
-    TROCAR_TRY(made.file_, IpcFile::listen(endpoint.url.substr(kIpc.size())));
+  if (endpoint.url.starts_with(kIpcScheme)) {
+    TROCAR_TRY(made.file_, IpcFile::listen(endpoint.url.substr(kIpcScheme.size())));
     made.url_ = endpoint.url;
     return made;
   }
@@ -163,7 +161,7 @@ void ServerConnections::flush(Connection& connection) {
 
 void ServerConnections::accept_some(double now_s) {
   const int listener = tcp_.is_open() ? tcp_.get() : file_.get();
-  for (int i = 0; i < kMostAcceptedAtOnce && accepts_.has_tokens(); ++i) {
+  for (int i = 0; i < kMostAcceptedPerPoll && accepts_.has_tokens(); ++i) {
     Descriptor socket(::accept4(listener, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
     if (!socket.is_open()) {
       if (errno == EAGAIN || errno == EINTR || errno == ECONNABORTED) return;

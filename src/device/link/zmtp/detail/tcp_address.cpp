@@ -9,12 +9,10 @@
 #include <cstring>
 
 #include "core/parse_number.h"
+#include "link/endpoint.h"
 
 namespace trocar::link::detail {
 namespace {
-
-constexpr std::string_view kTcp = "tcp://";
-constexpr int kWaitingConnections = 64;
 
 template <class Address>
 TcpAddress make_address(const Address& address) {
@@ -24,14 +22,14 @@ TcpAddress make_address(const Address& address) {
   return made;
 }
 
-sockaddr* as_address(sockaddr_storage& storage) {
+sockaddr* as_socket_address(sockaddr_storage& storage) {
   return reinterpret_cast<sockaddr*>(&storage);
 }
 
 /// Address of a URL made by parse_endpoint().
 std::optional<TcpAddress> parse_url(std::string_view url) {
-  if (!url.starts_with(kTcp)) return {};
-  const std::string_view address = url.substr(kTcp.size());
+  if (!url.starts_with(kTcpScheme)) return {};
+  const std::string_view address = url.substr(kTcpScheme.size());
   const std::size_t colon = address.rfind(':');
   if (colon == std::string_view::npos) return {};
   const unsigned port = parse_number<unsigned>(address.substr(colon + 1)).value_or(0);
@@ -46,12 +44,12 @@ std::string TcpAddress::url() const {
     sockaddr_in v4{};
     std::memcpy(&v4, &storage, sizeof v4);
     ::inet_ntop(AF_INET, &v4.sin_addr, text.data(), text.size());
-    return fmt::format("{}{}:{}", kTcp, text.data(), ntohs(v4.sin_port));
+    return fmt::format("{}{}:{}", kTcpScheme, text.data(), ntohs(v4.sin_port));
   }
   sockaddr_in6 v6{};
   std::memcpy(&v6, &storage, sizeof v6);
   ::inet_ntop(AF_INET6, &v6.sin6_addr, text.data(), text.size());
-  return fmt::format("{}[{}]:{}", kTcp, text.data(), ntohs(v6.sin6_port));
+  return fmt::format("{}[{}]:{}", kTcpScheme, text.data(), ntohs(v6.sin6_port));
 }
 
 std::optional<TcpAddress> parse_tcp_address(std::string_view host, unsigned port) {
@@ -76,9 +74,9 @@ Result<TcpListener> listen_tcp(const std::string& url) {
   Descriptor socket(::socket(address->storage.ss_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   constexpr int kOn = 1;
   if (!socket.is_open() || ::setsockopt(socket.get(), SOL_SOCKET, SO_REUSEADDR, &kOn, sizeof kOn) != 0 ||
-      ::bind(socket.get(), as_address(address->storage), address->size) != 0 ||
+      ::bind(socket.get(), as_socket_address(address->storage), address->size) != 0 ||
       ::listen(socket.get(), kWaitingConnections) != 0 ||
-      ::getsockname(socket.get(), as_address(address->storage), &address->size) != 0) {
+      ::getsockname(socket.get(), as_socket_address(address->storage), &address->size) != 0) {
     if (errno == EADDRINUSE) {
       return fail("the endpoint is in use by another server", url, "end that one or choose another endpoint");
     }

@@ -10,8 +10,7 @@ namespace trocar::link::detail {
 namespace {
 
 constexpr std::size_t kMostHandshakeBytes = 1024;  ///< The longest command of RFC 26 has 257 bytes plus metadata.
-constexpr std::size_t kReadAtOnce = 64 * 1024;
-constexpr std::size_t kFrameOverhead = 64;  ///< Overhead of ZMTP and CURVE, added to each limit.
+constexpr std::size_t kFrameOverhead = 64;         ///< Overhead of ZMTP and CURVE, added to each limit.
 /// A connection that announces a larger frame is closed; a smaller frame beyond the limit is skipped.
 constexpr std::size_t kCutOffBytes = 2 * kMostMessageBytes;
 constexpr int kMostSkippedFrames = 64;

@@ -14,6 +14,8 @@
 
 namespace trocar::link::detail {
 
+inline constexpr std::size_t kReadAtOnce = 64 * 1024;  ///< Most bytes that are read from a socket in one call.
+
 /// The server's side of one ZMTP 3 connection, without its socket: bytes in, messages and bytes out. Its buffers and
 /// rates are bounded in bytes and frames for any input. Mechanisms: NULL, or CURVE with an identity.
 class ZmtpConnection {

@@ -5,12 +5,12 @@
 namespace trocar::link::detail {
 namespace {
 
-constexpr double kNow_s = 10.0;
+constexpr double kJoined_s = 10.0;
 const Hello kWatcher{"a watcher", false};
 const Hello kDriver{"a driver", true};
 
 /// A peer that was offered control when it came.
-Peer& joined(PeerTable& peers, const char* id, std::uint64_t session, const Hello& hello, double now_s = kNow_s) {
+Peer& joined(PeerTable& peers, const char* id, std::uint64_t session, const Hello& hello, double now_s = kJoined_s) {
   Peer* peer = peers.greet(id, hello, session, now_s);
   EXPECT_NE(peer, nullptr);
   peers.offer_control(*peer, now_s);
@@ -20,31 +20,31 @@ Peer& joined(PeerTable& peers, const char* id, std::uint64_t session, const Hell
 TEST(PeerTable, SequenceMustRiseButMayLeaveGaps) {
   PeerTable peers(2, 2);
   Peer& peer = joined(peers, "a", 7, kDriver);
-  EXPECT_EQ(PeerTable::judge(peer, 7, 0, kNow_s), Verdict::kReplayed);
-  EXPECT_EQ(PeerTable::judge(peer, 7, 1, kNow_s), Verdict::kGood);
-  EXPECT_EQ(PeerTable::judge(peer, 7, 1, kNow_s), Verdict::kReplayed);
-  EXPECT_EQ(PeerTable::judge(peer, 7, 5, kNow_s), Verdict::kGood);
-  EXPECT_EQ(PeerTable::judge(peer, 7, 4, kNow_s), Verdict::kReplayed);
-  EXPECT_EQ(PeerTable::judge(peer, 8, 6, kNow_s), Verdict::kUnknownSession);
+  EXPECT_EQ(PeerTable::judge(peer, 7, 0, kJoined_s), Verdict::kReplayed);
+  EXPECT_EQ(PeerTable::judge(peer, 7, 1, kJoined_s), Verdict::kGood);
+  EXPECT_EQ(PeerTable::judge(peer, 7, 1, kJoined_s), Verdict::kReplayed);
+  EXPECT_EQ(PeerTable::judge(peer, 7, 5, kJoined_s), Verdict::kGood);
+  EXPECT_EQ(PeerTable::judge(peer, 7, 4, kJoined_s), Verdict::kReplayed);
+  EXPECT_EQ(PeerTable::judge(peer, 8, 6, kJoined_s), Verdict::kUnknownSession);
 }
 
 TEST(PeerTable, OnlyAGoodMessageIsASignOfLife) {
   PeerTable peers(2, 2);
   Peer& peer = joined(peers, "a", 7, kDriver);
-  PeerTable::judge(peer, 8, 1, kNow_s + 1.0);
-  PeerTable::judge(peer, 7, 0, kNow_s + 1.0);
-  EXPECT_EQ(peer.heard_s, kNow_s);
-  PeerTable::judge(peer, 7, 1, kNow_s + 1.0);
-  EXPECT_EQ(peer.heard_s, kNow_s + 1.0);
+  PeerTable::judge(peer, 8, 1, kJoined_s + 1.0);
+  PeerTable::judge(peer, 7, 0, kJoined_s + 1.0);
+  EXPECT_EQ(peer.heard_s, kJoined_s);
+  PeerTable::judge(peer, 7, 1, kJoined_s + 1.0);
+  EXPECT_EQ(peer.heard_s, kJoined_s + 1.0);
 }
 
 TEST(PeerTable, ControlPassesOnOnlyAfterTheFullSilence) {
   PeerTable peers(2, 2);
   joined(peers, "a", 1, kDriver);
   joined(peers, "b", 2, kDriver);
-  peers.offer_control(*peers.find("b"), kNow_s + kControlLost_s);
+  peers.offer_control(*peers.find("b"), kJoined_s + kControlLost_s);
   EXPECT_TRUE(peers.has_control(*peers.find("a")));
-  peers.offer_control(*peers.find("b"), kNow_s + kControlLost_s + 0.001);
+  peers.offer_control(*peers.find("b"), kJoined_s + kControlLost_s + 0.001);
   EXPECT_TRUE(peers.has_control(*peers.find("b")));
 }
 
@@ -52,35 +52,35 @@ TEST(PeerTable, SilentControllerKeepsControlWhenNobodyWantedIt) {
   PeerTable peers(2, 2);
   joined(peers, "a", 1, kDriver);
   joined(peers, "b", 2, kWatcher);
-  peers.offer_control(*peers.find("b"), kNow_s + 2.0 * kControlLost_s);
+  peers.offer_control(*peers.find("b"), kJoined_s + 2.0 * kControlLost_s);
   EXPECT_TRUE(peers.has_control(*peers.find("a")));
 }
 
 TEST(PeerTable, FreshSessionKeepsControlUnlessItIsNoLongerWanted) {
   PeerTable peers(2, 2);
   Peer& peer = joined(peers, "a", 1, kDriver);
-  PeerTable::judge(peer, 1, 1, kNow_s);
-  EXPECT_EQ(peers.greet("a", kDriver, 2, kNow_s)->session, 2u);
+  PeerTable::judge(peer, 1, 1, kJoined_s);
+  EXPECT_EQ(peers.greet("a", kDriver, 2, kJoined_s)->session, 2u);
   EXPECT_TRUE(peers.has_control(*peers.find("a")));
   EXPECT_EQ(peers.find_session(1), nullptr);
-  PeerTable::judge(*peers.find("a"), 2, 1, kNow_s);
-  peers.greet("a", kWatcher, 3, kNow_s);
+  PeerTable::judge(*peers.find("a"), 2, 1, kJoined_s);
+  peers.greet("a", kWatcher, 3, kJoined_s);
   EXPECT_EQ(peers.controller(), nullptr);
 }
 
 TEST(PeerTable, HelloOfAnUnusedSessionIsARepetition) {
   PeerTable peers(2, 2);
-  EXPECT_EQ(peers.greet("a", kDriver, 1, kNow_s)->session, 1u);
-  EXPECT_EQ(peers.greet("a", kDriver, 2, kNow_s)->session, 1u);
+  EXPECT_EQ(peers.greet("a", kDriver, 1, kJoined_s)->session, 1u);
+  EXPECT_EQ(peers.greet("a", kDriver, 2, kJoined_s)->session, 1u);
   EXPECT_EQ(peers.all().size(), 1u);
 }
 
 TEST(PeerTable, FullTableTakesANewPeerForASilentOne) {
   PeerTable peers(2, 2);
   joined(peers, "a", 1, kDriver);
-  joined(peers, "b", 2, kDriver, kNow_s + 1.0);
-  EXPECT_EQ(peers.greet("c", kDriver, 3, kNow_s + kControlLost_s), nullptr);
-  EXPECT_NE(peers.greet("c", kDriver, 3, kNow_s + kControlLost_s + 0.5), nullptr);
+  joined(peers, "b", 2, kDriver, kJoined_s + 1.0);
+  EXPECT_EQ(peers.greet("c", kDriver, 3, kJoined_s + kControlLost_s), nullptr);
+  EXPECT_NE(peers.greet("c", kDriver, 3, kJoined_s + kControlLost_s + 0.5), nullptr);
   EXPECT_EQ(peers.find("a"), nullptr);
   EXPECT_NE(peers.find("b"), nullptr);
 }
@@ -88,9 +88,9 @@ TEST(PeerTable, FullTableTakesANewPeerForASilentOne) {
 TEST(PeerTable, ForgottenControllerLeavesControlFree) {
   PeerTable peers(2, 2);
   joined(peers, "a", 1, kDriver);
-  peers.forget_lost(kNow_s + 5.0, 5.0);
+  peers.forget_lost(kJoined_s + 5.0, 5.0);
   EXPECT_NE(peers.controller(), nullptr);
-  peers.forget_lost(kNow_s + 5.1, 5.0);
+  peers.forget_lost(kJoined_s + 5.1, 5.0);
   EXPECT_EQ(peers.controller(), nullptr);
   EXPECT_TRUE(peers.has_control(joined(peers, "b", 2, kDriver)));
   peers.forget(2);

@@ -10,7 +10,7 @@ namespace trocar::link::detail {
 namespace {
 
 using Event = ZmtpConnection::Event;
-constexpr double kNow_s = 5.0;
+constexpr double kReceived_s = 5.0;
 
 std::span<const std::byte> bytes_of(std::string_view text) {
   return std::as_bytes(std::span(text));
@@ -31,7 +31,7 @@ std::vector<std::byte> frame(std::uint8_t flags, std::size_t size) {
 }
 
 /// The next event after the handshake's.
-ZmtpConnection::Incoming next(ZmtpConnection& connection, double now_s = kNow_s) {
+ZmtpConnection::Incoming next(ZmtpConnection& connection, double now_s = kReceived_s) {
   const auto incoming = connection.next(now_s);
   return incoming.event == Event::kReady ? connection.next(now_s) : incoming;
 }
@@ -68,7 +68,7 @@ TEST(ZmtpConnection, ClosesWhatIsNotAZmtp3Dealer) {
     connection.append(bytes);
     EXPECT_EQ(next(connection).event, Event::kBroken);
     EXPECT_FALSE(connection.why().empty());
-    EXPECT_EQ(connection.room(kNow_s), 0u);
+    EXPECT_EQ(connection.room(kReceived_s), 0u);
   }
 }
 
@@ -130,10 +130,10 @@ TEST(ZmtpConnection, RateLimitHoldsAFloodBack) {
     while (next(connection, now_s).event == Event::kMessage) ++taken;
   };
   for (int i = 0; i < 20'000; ++i) connection.append(frame(0, 2));
-  take_all(kNow_s);
+  take_all(kReceived_s);
   EXPECT_LE(taken, static_cast<std::size_t>(kMostMessagesAtOnce));
-  EXPECT_EQ(connection.room(kNow_s), 0u);
-  take_all(kNow_s + 1.0);
+  EXPECT_EQ(connection.room(kReceived_s), 0u);
+  take_all(kReceived_s + 1.0);
   EXPECT_LE(taken, static_cast<std::size_t>(kMostMessagesAtOnce + kMostMessagesPerS));
   EXPECT_GT(taken, static_cast<std::size_t>(kMostMessagesAtOnce));
 }
@@ -143,7 +143,7 @@ TEST(ZmtpConnection, BytesBeyondTheRateAreNotRead) {
   connection.set_greeted(true);
   connection.append(handshake());
   std::size_t read = 0;
-  for (std::size_t room = 0; (room = connection.room(kNow_s)) > 0; read += room) {
+  for (std::size_t room = 0; (room = connection.room(kReceived_s)) > 0; read += room) {
     connection.append(std::vector<std::byte>(room, std::byte{0}));  // empty frames
     while (next(connection).event == Event::kMessage) {
     }

@@ -1,4 +1,4 @@
-#include "devices/vendor/test/hd_stand_ins.h"
+#include "devices/testing/hd_stand_ins.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -12,6 +12,7 @@
 #include <fstream>
 #include <thread>
 
+#include "core/testing/source_dir.h"
 #include "devices/vendor/detail/hd_api.h"
 
 namespace trocar::testing {
@@ -21,7 +22,7 @@ HdStandIns::HdStandIns() {
   std::filesystem::create_directories(folder_ / "home" / "config");
   ::setenv(kHdVariable, (folder_ / "devices").c_str(), 1);
   ::setenv("GTDD_HOME", (folder_ / "home").c_str(), 1);
-  ::setenv("TROCAR_LIBHD", TROCAR_STANDIN_FOLDER "/libHD.so", 1);
+  ::setenv("TROCAR_LIBHD", (standin_dir() / "libHD.so").c_str(), 1);
 }
 
 HdStandIns::~HdStandIns() {

@@ -1,4 +1,4 @@
-#include "devices/pointer/test/gamepad_stand_in.h"
+#include "devices/testing/gamepad_stand_in.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -6,11 +6,13 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include "core/testing/source_dir.h"
+
 namespace trocar::testing {
 namespace {
 
 constexpr int kLeftX = 0, kLeftY = 1, kLeftTrigger = 4, kRightTrigger = 5;  // SDL_GameControllerAxis
-constexpr double kFull = 32767.0;
+constexpr double kAxisEnd = 32767.0;
 constexpr std::int32_t kTriggerFree = -32768;
 
 }  // namespace
@@ -26,7 +28,7 @@ GamepadStandIn::GamepadStandIn(bool is_plugged) {
   controls_->axes[kLeftTrigger] = controls_->axes[kRightTrigger] = kTriggerFree;
   controls_->is_plugged = is_plugged;
   ::setenv(kGamepadVariable, path.c_str(), 1);
-  ::setenv("LD_PRELOAD", TROCAR_STANDIN_FOLDER "/libstandin_gamepad.so", 1);
+  ::setenv("LD_PRELOAD", (standin_dir() / "libstandin_gamepad.so").c_str(), 1);
 }
 
 GamepadStandIn::~GamepadStandIn() {
@@ -36,12 +38,12 @@ GamepadStandIn::~GamepadStandIn() {
 }
 
 void GamepadStandIn::pull_right_trigger(double share) {
-  controls_->axes[kRightTrigger] = static_cast<std::int32_t>(kTriggerFree + share * (kFull - kTriggerFree));
+  controls_->axes[kRightTrigger] = static_cast<std::int32_t>(kTriggerFree + share * (kAxisEnd - kTriggerFree));
 }
 
 void GamepadStandIn::push_left_stick(double right, double away) {
-  controls_->axes[kLeftX] = static_cast<std::int32_t>(kFull * right);
-  controls_->axes[kLeftY] = static_cast<std::int32_t>(-kFull * away);
+  controls_->axes[kLeftX] = static_cast<std::int32_t>(kAxisEnd * right);
+  controls_->axes[kLeftY] = static_cast<std::int32_t>(-kAxisEnd * away);
 }
 
 }  // namespace trocar::testing

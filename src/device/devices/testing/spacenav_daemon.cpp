@@ -1,4 +1,4 @@
-#include "spacenav_daemon.h"
+#include "devices/testing/spacenav_daemon.h"
 
 #include <gtest/gtest.h>
 #include <stdlib.h>
@@ -16,7 +16,7 @@ namespace {
 constexpr std::int32_t kMotion = 0;
 constexpr std::int32_t kPress = 1;
 constexpr std::int32_t kRelease = 2;
-constexpr std::int32_t kDevice = 3;
+constexpr std::int32_t kDeviceMessage = 3;
 constexpr std::int32_t kDeviceRemoved = 1;
 constexpr int kPeriod_ms = 16;
 
@@ -74,7 +74,7 @@ void SpacenavDaemon::press(int button, bool is_pressed) {
 }
 
 void SpacenavDaemon::unplug_device() {
-  send_event({kDevice, kDeviceRemoved});
+  send_event({kDeviceMessage, kDeviceRemoved});
 }
 
 void SpacenavDaemon::send_event(const std::array<std::int32_t, 8>& event) {

@@ -1,4 +1,4 @@
-#include "haply_service.h"
+#include "devices/testing/haply_service.h"
 
 #include <fmt/format.h>
 #include <poll.h>
