@@ -62,6 +62,7 @@ struct HapticOptions {
 inline constexpr int kMaxTissues = 32;
 inline constexpr int kMaxLayers = 16;
 inline constexpr std::uint8_t kNoLayer = 0xff;
+inline constexpr double kNPerMm2PerKpa = 1e-3;
 
 /// Tissue and layer parameters in the form that the tick reads: no text, fixed size.
 struct TissueLaw {

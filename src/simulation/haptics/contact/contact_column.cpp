@@ -8,7 +8,6 @@ namespace {
 
 constexpr double kTiny_mm = 1e-9;
 constexpr double kLeastLength_mm = 0.5;
-constexpr double kNPerMm2PerKpa = 1e-3;
 
 /// Young's modulus over HU: HuTransfer::at for this number only.
 double young_of_hu(const anatomy::HuTransfer& transfer, double hu) noexcept {

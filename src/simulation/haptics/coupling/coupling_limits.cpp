@@ -8,7 +8,7 @@
 namespace trocar::haptics {
 namespace {
 
-Status check_range(double value, double low, double high, const char* name, const char* unit) {
+Status check_coupling_value(double value, double low, double high, const char* name, const char* unit) {
   constexpr double kRounding = 1e-9;  // a scale and its inverse
   if (std::isfinite(value) && value >= low * (1.0 - kRounding) && value <= high * (1.0 + kRounding)) return {};
   return fail_usage(fmt::format("{} is {:.4g} {}", name, value, unit), "the coupling of this device",
@@ -36,10 +36,10 @@ CouplingParams within(const CouplingParams& coupling, const CouplingLimits& limi
 }
 
 Status check(const CouplingParams& coupling, const CouplingLimits& limits) {
-  TROCAR_TRY_STATUS(check_range(coupling.stiffness_n_per_mm, limits.least_n_per_mm, limits.most_n_per_mm,
-                                "coupling.stiffness", "N/mm"));
+  TROCAR_TRY_STATUS(check_coupling_value(coupling.stiffness_n_per_mm, limits.least_n_per_mm, limits.most_n_per_mm,
+                                         "coupling.stiffness", "N/mm"));
   const double most_ns_per_mm = std::min(limits.most_ns_per_mm, limits.longest_s * coupling.stiffness_n_per_mm);
-  return check_range(coupling.damping_ns_per_mm, 0.0, most_ns_per_mm, "coupling.damping", "N s/mm");
+  return check_coupling_value(coupling.damping_ns_per_mm, 0.0, most_ns_per_mm, "coupling.damping", "N s/mm");
 }
 
 }  // namespace trocar::haptics

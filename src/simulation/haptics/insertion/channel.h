@@ -40,6 +40,8 @@ struct Channel {
 /// Bin of a depth, clamped to the channel.
 int bin_of(double s_mm) noexcept;
 
+/// How far a force model looks beyond the tip and the device: more than the motion of one tick.
+inline constexpr double kLook_mm = 10.0;
 /// Fills the bins up to `ahead_mm` past s along the line, at most kMaxBinsPerLook new bins per call. Real-time safe.
 inline constexpr int kMaxBinsPerLook = 200;
 /// A structure that the line leaves for less than this is not left: corners of voxels. [assumed: a voxel's diagonal]

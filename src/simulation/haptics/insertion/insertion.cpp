@@ -10,9 +10,7 @@
 namespace trocar::haptics {
 namespace {
 
-constexpr double kLook_mm = 10.0;  // Beyond tip and device: more than the motion of one tick.
 constexpr double kContactHysteresis_mm = 0.1;
-constexpr double kLeaveSkin_mm = 0.5;  // The insertion ends when the tip is this far out.
 constexpr double kSpeedSmoothing_s = 0.02;
 
 /// Needle and device on the line of this step, at its start and end.

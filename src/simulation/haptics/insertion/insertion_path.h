@@ -45,6 +45,8 @@ void open_path(InsertionPath& path, std::uint8_t skin_layer) noexcept;
 /// none). A liver, for example, is entered after the puncture of its capsule. Real-time safe.
 EnteredLabels move_tip(InsertionPath& path, const HapticScene& scene, double rest_mm, std::uint8_t loading) noexcept;
 
+/// The insertion ends when the tip (of the volume proxy: the proxy) is this far out.
+inline constexpr double kLeaveSkin_mm = 0.5;
 /// Ends the insertion: stores the channel, closes the path. Real-time safe.
 void leave_body(InsertionPath& path) noexcept;
 

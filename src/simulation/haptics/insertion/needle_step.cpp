@@ -9,8 +9,8 @@ namespace trocar::haptics {
 namespace {
 
 /// A hand moves a needle by less than this in a tick.
-constexpr double kJump_mm = 5.0;
-constexpr double kJump_mm_per_s = 3000.0;
+constexpr double kNeedleJump_mm = 5.0;
+constexpr double kNeedleJump_mm_per_s = 3000.0;
 
 /// Starts at the needle's pose: outside, or inside with all layers down to the tip pierced.
 void start(NeedleState& state, const HapticScene& scene, const Pose& X_PN, NeedleStep& step) noexcept {
@@ -145,7 +145,7 @@ NeedleStep step_needle(NeedleState& state, const HapticScene& scene, const Pose&
                        double dt_s) noexcept {
   NeedleStep step;
   const double way_mm = (X_PN.p() - state.X_PN.p()).norm();
-  if (!state.is_started || way_mm > kJump_mm + kJump_mm_per_s * dt_s) start(state, scene, X_PN, step);
+  if (!state.is_started || way_mm > kNeedleJump_mm + kNeedleJump_mm_per_s * dt_s) start(state, scene, X_PN, step);
   const CouplingParams& coupling = scene.options.coupling;
   const double ahead_s = coupling.damping_ns_per_mm / coupling.stiffness_n_per_mm;
   const Pose X_PN_ahead = pose_ahead(state, X_PN, ahead_s, dt_s);

@@ -31,7 +31,6 @@ double SoftColumn::depression_mm(double force_n) const noexcept {
 
 SoftColumn soft_column(const HapticScene& scene, const Vec3& surface_P, const Vec3& inward_P,
                        double radius_mm) noexcept {
-  constexpr double kNPerMm2PerKpa = 1e-3;
   SoftColumn column;
   column.area_mm2 = std::numbers::pi * radius_mm * radius_mm;
   for (std::size_t i = 0; i < kColumnCells; ++i) {

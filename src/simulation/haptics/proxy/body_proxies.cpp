@@ -9,12 +9,11 @@
 namespace trocar::haptics {
 namespace {
 
-constexpr double kTissuePoisson = 0.5;  // Soft tissue keeps its volume.
-constexpr double kNPerMm2PerKpa = 0.001;
+constexpr double kTissuePoisson = 0.5;      // Soft tissue keeps its volume.
 constexpr double kMostTipForce_n = 1000.0;  // Beyond any device: keeps the numbers finite.
 
 /// A vector clamped to a length; zero if it is not finite.
-Vec3 within(const Vec3& v, double most) noexcept {
+Vec3 limited(const Vec3& v, double most) noexcept {
   if (v.squaredNorm() <= most * most) return v;
   const double length = v.stableNorm();
   if (!std::isfinite(length)) return Vec3::Zero();
@@ -154,7 +153,7 @@ HeldShaft hold_shaft(const Channel& channel, const HapticScene& scene, const Pos
     const Vec3 node_P = X_PN.p() - axis_P * (beam.spacing_mm * (beam.node_count - 1 - i));
     const Vec3 to_line_P = across(channel.origin_P - node_P, channel.direction_P);
     const Vec3 offset_P = across(to_line_P, axis_P);
-    shaft.bed.offset_mm[index] = within(offset_P, most_mm);
+    shaft.bed.offset_mm[index] = limited(offset_P, most_mm);
     is_far = is_far || shaft.bed.offset_mm[index] != offset_P;
   }
   if (scene.options.has_bending)
@@ -169,7 +168,7 @@ HeldShaft hold_shaft(const Channel& channel, const HapticScene& scene, const Pos
 
 ShaftReaction react(const HeldShaft& shaft, const HapticScene& scene, const Vec3& tip_force_P) noexcept {
   const Vec3 axis_P = shaft.X_PN.R().col(2);
-  const Vec3 tip_P = within(across(within(tip_force_P, kMostTipForce_n), axis_P), kMostTipForce_n);
+  const Vec3 tip_P = limited(across(limited(tip_force_P, kMostTipForce_n), axis_P), kMostTipForce_n);
   const double spacing_mm = scene.beam_with_stylet.spacing_mm;
   const double most_mm = kMaxDeflection * scene.needle.length_mm;
   ShaftReaction reaction;

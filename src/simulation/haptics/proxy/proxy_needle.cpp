@@ -10,10 +10,8 @@
 namespace trocar::haptics {
 namespace {
 
-constexpr double kLook_mm = 10.0;
-constexpr double kLeaveSkin_mm = 0.5;  // The insertion ends when the proxy is this far outside.
-constexpr double kGrazing = 0.17;      // cosine of 80 degrees: a flatter needle does not pierce
-constexpr double kTipGrip = 2.0;       // A sharp tip does not slide at smaller angles than 63 degrees. [assumed]
+constexpr double kGrazing = 0.17;  // cosine of 80 degrees: a flatter needle does not pierce
+constexpr double kTipGrip = 2.0;   // A sharp tip does not slide at smaller angles than 63 degrees. [assumed]
 constexpr double kAtWall_mm = 1e-6;
 constexpr double kHole_mm = 0.2;  // Within this distance behind the deepest point it is at the end of the channel.
 

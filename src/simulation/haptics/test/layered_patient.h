@@ -48,6 +48,11 @@ inline anatomy::TissueTable paper_tissues() {
   return table;
 }
 
+/// The device's force against a needle that goes along -z, without that for its own weight.
+inline double resistance_n(const telemetry::TickSample& sample) {
+  return -(sample.device_f_n - sample.f_weight_n).z();
+}
+
 /// A slab of tissue that begins at this depth (mm) below the skin.
 struct Slab {
   double from_mm;

@@ -11,10 +11,6 @@ namespace {
 constexpr haptics::ForceModel kModels[] = {haptics::ForceModel::kInsertion, haptics::ForceModel::kProxy,
                                            haptics::ForceModel::kCombined};
 
-double resistance_n(const telemetry::TickSample& sample) {
-  return -(sample.device_f_n - sample.f_weight_n).z();
-}
-
 anatomy::TissueTable smooth_tissues() {
   anatomy::TissueTable table = paper_tissues();
   for (anatomy::TissueParams& tissue : table.tissues) tissue.roughness_n = 0.0;

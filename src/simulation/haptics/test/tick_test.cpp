@@ -10,6 +10,7 @@
 #include "core/testing/allocation_guard.inc.h"
 #include "haptics/closed_loop/virtual_device.h"
 #include "haptics/test/layered_patient.h"
+#include "haptics/test/tick_period.h"
 
 namespace trocar::testing {
 namespace {
@@ -72,7 +73,6 @@ TEST(Tick, GivesTheDeviceTheForceOfTheCoupling) {
   // physics.md V1: along the path the device is pushed back by k_c (s_D - s) + b_c (v_D - v), which balances all
   // resistances. Here from the recorded places alone, without the recorded terms.
   const haptics::CouplingParams coupling;
-  constexpr double kDt_s = 0.001;
   Driver driver(make_scene(liver_way()));
   const std::vector<telemetry::TickSample> samples = driver.move(50.0, 10.0);
   int checked = 0;

@@ -13,7 +13,11 @@
 namespace trocar::haptics {
 namespace {
 
-using namespace testing;
+using testing::AllocationGuard;
+using testing::layered_patient;
+using testing::liver_way;
+using testing::paper_tissues;
+using testing::Slab;
 
 DevicePreset device(const char* name) {
   auto preset = load_device_preset(data_dir() / "devices.toml", name);
@@ -142,7 +146,7 @@ TEST(BoneContact, IsTheCouplingInSeriesWithTheBone) {
   const DevicePreset preset = device("premium");
   PushTrial trial;
   trial.to_mm = 20.0;
-  const auto samples = run_push_trial(scene_for(preset, {{0, kFat}, {12, kBone}}), preset, trial);
+  const auto samples = run_push_trial(scene_for(preset, {{0, testing::kFat}, {12, testing::kBone}}), preset, trial);
   const BoneContact contact = judge_bone_contact(samples, trial, 12.0, preset.capability.peak_force_n);
   // The coupling before a bone of 20 N/mm and more: at most its own stiffness.
   const double k_c = preset.coupling.stiffness_n_per_mm;
@@ -159,7 +163,7 @@ TEST(LossOfResistance, IsFeltWhereALayerGivesWay) {
   const DevicePreset preset = device("omega6");
   PushTrial trial;
   trial.to_mm = 30.0;
-  const auto samples = run_push_trial(scene_for(preset, {{0, kFat}, {12, kMuscle}}), preset, trial);
+  const auto samples = run_push_trial(scene_for(preset, {{0, testing::kFat}, {12, testing::kMuscle}}), preset, trial);
   const LossOfResistance muscle = judge_loss_of_resistance(samples, 1);
   ASSERT_TRUE(muscle.has_given_way);
   EXPECT_GT(muscle.peak_n, 2.5);  // the layer's, and friction

@@ -12,11 +12,12 @@
 #include "haptics/closed_loop/encoder.h"
 #include "haptics/closed_loop/passivity_observer.h"
 #include "haptics/closed_loop/rotation.h"
+#include "haptics/test/tick_period.h"
 
 namespace trocar::haptics {
 namespace {
 
-constexpr double kDt_s = 0.001;
+using testing::kDt_s;
 
 TEST(VirtualStylus, FallsFreely) {
   VirtualStylusState state;
@@ -227,7 +228,7 @@ TEST(Encoder, PassesOnWhatIsNotFinite) {
 }
 
 /// A mass of 0.1 kg on the spring and damper of a haptic side that is sampled, computed and held; 0.5 mJ in the spring.
-PassivityObserver swing(double k_n_per_mm, double b_ns_per_mm) {
+PassivityObserver observe_swing(double k_n_per_mm, double b_ns_per_mm) {
   VirtualStylusParams params;
   params.weight_n = 0.0;
   VirtualStylusState state;
@@ -245,10 +246,10 @@ PassivityObserver swing(double k_n_per_mm, double b_ns_per_mm) {
 TEST(PassivityObserver, SeesAHeldSpringGiveEnergyAndADamperTakeIt) {
   // A spring held for a tick T acts as a damper of -kT/2: in 0.2 s the energy grows to 0.5 mJ exp(0.2 kT/2m), all of it
   // motion at the last zero of the spring, a little earlier.
-  const double growth_mj = swing(1.0, 0.0).growth_mj();
+  const double growth_mj = observe_swing(1.0, 0.0).growth_mj();
   EXPECT_LT(growth_mj, 0.5 * std::exp(1.0));
   EXPECT_GT(growth_mj, 0.5 * std::exp(0.8));
-  EXPECT_LT(swing(1.0, 0.004).growth_mj(), 0.5 + 1e-3);  // passive: no more than had been stored
+  EXPECT_LT(observe_swing(1.0, 0.004).growth_mj(), 0.5 + 1e-3);  // passive: no more than had been stored
 }
 
 }  // namespace

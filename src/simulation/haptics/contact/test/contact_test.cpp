@@ -12,12 +12,11 @@
 #include "haptics/closed_loop/closed_loop.h"
 #include "haptics/closed_loop/virtual_device.h"
 #include "haptics/contact/test/flat_skin.h"
+#include "haptics/test/tick_period.h"
 #include "haptics/tick.h"
 
 namespace trocar::testing {
 namespace {
-
-constexpr double kDt_s = 0.001;
 
 /// Moves the device's tool there from where it is, straight and evenly, and holds it until all is at rest.
 class Hand {

@@ -11,14 +11,14 @@
 #include "haptics/gate/device_gate.h"
 #include "haptics/gate/loop_limits.h"
 #include "haptics/gate/test/gate_rig.h"
+#include "haptics/test/tick_period.h"
 
 namespace trocar::haptics {
 namespace {
 
+using testing::kDt_s;
 using testing::open_gate;
 using testing::wanting;
-
-constexpr double kDt_s = 0.001;
 
 /// Growth a period of a mass with viscosity on a coupling whose force is held for a period and one period late, in the
 /// last half of many periods: above 1 it swings up. Exact for a constant force.
@@ -208,7 +208,7 @@ TEST(GateMotion, ATurnThatNoHandMakesIsAFault) {
 // --- vibration ---
 
 /// A gate at force for so long: force and velocity swing with a frequency, the force ahead of the velocity by a phase.
-GateState swing(double force_n, double speed_mm_per_s, double hz, double phase, double seconds) {
+GateState gate_after_swing(double force_n, double speed_mm_per_s, double hz, double phase, double seconds) {
   GateState state = open_gate();
   const int periods = static_cast<int>(seconds / kDt_s);
   for (int i = 0; i < periods && state.fault == telemetry::GateFault::kNone; ++i) {
@@ -224,16 +224,16 @@ GateState swing(double force_n, double speed_mm_per_s, double hz, double phase, 
 TEST(GateVibration, PowerIntoFastMotionIsAFault) {
   for (const double hz : {80.0, 150.0, 250.0}) {
     // 1200 mW; the passivity control, which comes first, takes at most 3 N of the 8.
-    EXPECT_EQ(swing(8.0, 300.0, hz, 0.0, 1.0).fault, telemetry::GateFault::kVibration) << hz;
+    EXPECT_EQ(gate_after_swing(8.0, 300.0, hz, 0.0, 1.0).fault, telemetry::GateFault::kVibration) << hz;
   }
 }
 
 TEST(GateVibration, SpringsDampersAndHandsAreNone) {
   const double pi = std::numbers::pi;
-  EXPECT_EQ(swing(2.0, 300.0, 100.0, 0.5 * pi, 2.0).fault, telemetry::GateFault::kNone) << "a spring";
-  EXPECT_EQ(swing(2.0, 300.0, 100.0, pi, 2.0).fault, telemetry::GateFault::kNone) << "a damper";
-  EXPECT_EQ(swing(2.0, 40.0, 100.0, 0.0, 2.0).fault, telemetry::GateFault::kNone) << "too weak";
-  EXPECT_EQ(swing(3.0, 400.0, 3.0, 0.0, 2.0).fault, telemetry::GateFault::kNone) << "a hand that is led";
+  EXPECT_EQ(gate_after_swing(2.0, 300.0, 100.0, 0.5 * pi, 2.0).fault, telemetry::GateFault::kNone) << "a spring";
+  EXPECT_EQ(gate_after_swing(2.0, 300.0, 100.0, pi, 2.0).fault, telemetry::GateFault::kNone) << "a damper";
+  EXPECT_EQ(gate_after_swing(2.0, 40.0, 100.0, 0.0, 2.0).fault, telemetry::GateFault::kNone) << "too weak";
+  EXPECT_EQ(gate_after_swing(3.0, 400.0, 3.0, 0.0, 2.0).fault, telemetry::GateFault::kNone) << "a hand that is led";
 }
 
 }  // namespace

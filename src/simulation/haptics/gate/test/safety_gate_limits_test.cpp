@@ -7,15 +7,15 @@
 #include "core/random.h"
 #include "haptics/gate/safety_gate.h"
 #include "haptics/gate/test/gate_rig.h"
+#include "haptics/test/tick_period.h"
 
 namespace trocar::haptics {
 namespace {
 
 using testing::force_n;
+using testing::kDt_s;
 using testing::open_gate;
 using testing::wanting;
-
-constexpr double kDt_s = 0.001;
 
 // --- drops and rises ---
 

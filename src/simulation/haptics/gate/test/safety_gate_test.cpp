@@ -14,15 +14,16 @@
 #include "core/testing/allocation_guard.h"
 #include "haptics/gate/device_gate.h"
 #include "haptics/gate/test/gate_rig.h"
+#include "haptics/test/tick_period.h"
 
 namespace trocar::haptics {
 namespace {
 
 using testing::force_n;
+using testing::kDt_s;
 using testing::open_gate;
 using testing::wanting;
 
-constexpr double kDt_s = 0.001;
 constexpr double kRounding_n = 1e-9;  // sums of a few hundred steps of a ramp
 
 bool is_within(const Wrench& wrench, const GateParams& params) {

@@ -14,12 +14,12 @@ namespace {
 const PathLine kLine{{3.0, -2.0, 10.0}, Vec3(0.2, 0.5, 1.0).normalized()};
 const PathConstraintParams kParams;
 
-constexpr double kLength_mm = 150.0;
+constexpr double kStylusToTip_mm = 150.0;
 
 /// A needle with its stylus origin `aside_P` (across the path) beside the path and its tip `depth_mm` deep.
 NeedleAtPath beside(double depth_mm, const Vec3& aside_P = Vec3::Zero(), const Vec3& axis_P = kLine.direction_P) {
-  const double stylus_mm = depth_mm - kLength_mm * axis_P.dot(kLine.direction_P);
-  return {kLine.origin_P + stylus_mm * kLine.direction_P + aside_P, axis_P, kLength_mm};
+  const double stylus_mm = depth_mm - kStylusToTip_mm * axis_P.dot(kLine.direction_P);
+  return {kLine.origin_P + stylus_mm * kLine.direction_P + aside_P, axis_P, kStylusToTip_mm};
 }
 
 Wrench at_rest(const NeedleAtPath& needle, const PathConstraintParams& params = kParams) {
@@ -95,14 +95,14 @@ TEST(PathConstraint, ForceAndTorqueAboutTheStylusAreTheGradientOfOneEnergy) {
   for (int i = 0; i < 300; ++i) {
     const Vec3 tip_P = kLine.origin_P + random.uniform(0.5, 40.0) * kLine.direction_P + within(5.0);
     const Mat3 R = needle_pose(tip_P, (kLine.direction_P + within(0.2)).normalized()).R();
-    const Vec3 stylus_P = tip_P - kLength_mm * R.col(2);
-    const Wrench wrench = at_rest({stylus_P, R.col(2), kLength_mm});
+    const Vec3 stylus_P = tip_P - kStylusToTip_mm * R.col(2);
+    const Wrench wrench = at_rest({stylus_P, R.col(2), kStylusToTip_mm});
     constexpr double kMove_mm = 1e-4;
     constexpr double kTurn_rad = 1e-6;
     for (int axis = 0; axis < 3; ++axis) {
       const Vec3 e = Vec3::Unit(axis);
       const auto energy = [&](double move, double turn) {
-        return path_energy_nmm(kLine, {stylus_P + move * e, Eigen::AngleAxisd(turn, e) * R.col(2), kLength_mm},
+        return path_energy_nmm(kLine, {stylus_P + move * e, Eigen::AngleAxisd(turn, e) * R.col(2), kStylusToTip_mm},
                                kParams);
       };
       EXPECT_NEAR((energy(kMove_mm, 0) - energy(-kMove_mm, 0)) / (2 * kMove_mm), -wrench.force_n[axis], 1e-4);

@@ -54,10 +54,6 @@ TEST(SoftColumn, EndsAtBoneAndAtFluid) {
   }
 }
 
-double resistance_n(const telemetry::TickSample& sample) {
-  return -(sample.device_f_n - sample.f_weight_n).z();
-}
-
 anatomy::TissueTable yielding_tissues() {
   anatomy::TissueTable table = paper_tissues();
   table.layers[0].load_spread_mm = table.layers[1].load_spread_mm = 2.0;

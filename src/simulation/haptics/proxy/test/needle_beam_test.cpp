@@ -13,12 +13,12 @@
 namespace trocar::testing {
 namespace {
 
-constexpr double kLength_mm = 150.0;
+constexpr double kBeam_mm = 150.0;
 constexpr double kStiffness_n_mm2 = 2600.0;  // About 22 G.
 constexpr double kRounding = 1e-10;          // Relative; the passes add positive numbers only.
 
 haptics::NeedleBeam beam_of(int nodes) {
-  return {nodes, kLength_mm / nodes, kStiffness_n_mm2};
+  return {nodes, kBeam_mm / nodes, kStiffness_n_mm2};
 }
 double arc_mm(const haptics::NeedleBeam& beam, int node) {
   return beam.spacing_mm * (node + 1);
@@ -53,11 +53,11 @@ TEST(NeedleBeam, BendsUnderATipForceAsACantilever) {
     const haptics::NeedleBeam beam = beam_of(nodes);
     const haptics::BeamSolution solution = haptics::solve_beam(beam, {});
     for (int i = 0; i < nodes; ++i) {
-      const double expected = cantilever_mm_per_n(arc_mm(beam, i), kLength_mm);
+      const double expected = cantilever_mm_per_n(arc_mm(beam, i), kBeam_mm);
       EXPECT_NEAR(solution.per_tip_force_mm_n[at(i)], expected, kRounding * expected);
       EXPECT_EQ(solution.deflection_mm[at(i)].norm(), 0.0);
     }
-    const double tip = kLength_mm * kLength_mm * kLength_mm / (3.0 * kStiffness_n_mm2);  // F L^3 / 3 E I
+    const double tip = kBeam_mm * kBeam_mm * kBeam_mm / (3.0 * kStiffness_n_mm2);  // F L^3 / 3 E I
     EXPECT_NEAR(solution.per_tip_force_mm_n[at(nodes - 1)], tip, kRounding * tip);
     EXPECT_FALSE(solution.is_bound);
   }
@@ -88,8 +88,8 @@ TEST(NeedleBeam, IsProppedByAStiffSpring) {
   haptics::BeamBed bed;
   bed.stiffness_n_per_mm[at(support)] = 1e9;  // Gives by 1e-9 mm: the tolerance.
   const haptics::BeamSolution solution = haptics::solve_beam(beam, bed);
-  const double reaction = (3.0 * kLength_mm - a) / (2.0 * a);
-  const double tip = cantilever_mm_per_n(kLength_mm, kLength_mm) - reaction * cantilever_mm_per_n(kLength_mm, a);
+  const double reaction = (3.0 * kBeam_mm - a) / (2.0 * a);
+  const double tip = cantilever_mm_per_n(kBeam_mm, kBeam_mm) - reaction * cantilever_mm_per_n(kBeam_mm, a);
   EXPECT_NEAR(solution.per_tip_force_mm_n[at(14)], tip, 1e-7 * tip);
   EXPECT_NEAR(solution.per_tip_force_mm_n[at(support)], 0.0, 1e-8);
 }
@@ -98,7 +98,7 @@ TEST(NeedleBeam, LiesInAFoundationAsHetenyiSays) {
   // Half-infinite bed of k N/mm^2 from the clamp on, force at the far, free end: w = 2 F b / k, b = (k / 4 E I)^(1/4).
   // b L = 12 leaves exp(-12) of the clamp. Springs at nodes are the trapezoidal rule of a bed: at its end they differ
   // by terms of (b h)^2, which must fall as the square of the spacing.
-  const double b = 12.0 / kLength_mm;
+  const double b = 12.0 / kBeam_mm;
   const double k = 4.0 * kStiffness_n_mm2 * std::pow(b, 4.0);
   double previous = 0.0;
   for (const int nodes : {17, 25, 33}) {
@@ -162,7 +162,7 @@ TEST(NeedleBeam, TellsTheStiffnessThatTheGripMeets) {
       const double k = std::pow(10.0, random.uniform(-4, 0));
       shifted.stiffness_n_per_mm[at(i)] = turned.stiffness_n_per_mm[at(i)] = k;
       shifted.offset_mm[at(i)] = Vec3::UnitX();
-      turned.offset_mm[at(i)] = arc_mm(beam, i) / kLength_mm * Vec3::UnitX();
+      turned.offset_mm[at(i)] = arc_mm(beam, i) / kBeam_mm * Vec3::UnitX();
       sum += k;
       sum_turning += k * arc_mm(beam, i) * arc_mm(beam, i);
     }
@@ -172,7 +172,7 @@ TEST(NeedleBeam, TellsTheStiffnessThatTheGripMeets) {
     for (int i = 0; i < beam.node_count; ++i) {
       const double k = shifted.stiffness_n_per_mm[at(i)];
       across += k * (1.0 - shift.deflection_mm[at(i)].x());
-      turning += k * arc_mm(beam, i) * (arc_mm(beam, i) - kLength_mm * turn.deflection_mm[at(i)].x());
+      turning += k * arc_mm(beam, i) * (arc_mm(beam, i) - kBeam_mm * turn.deflection_mm[at(i)].x());
     }
     const haptics::GripStiffness grip = haptics::grip_stiffness(beam, shifted);
     constexpr double kCancelling = 1e-7;  // Relative: supports are small differences of offset and deflection.
@@ -205,7 +205,7 @@ TEST(NeedleBeam, LimitsItsDeflectionAndSaysSo) {
     bed.offset_mm[16] = huge * Vec3::UnitY();
     const haptics::BeamSolution solution = haptics::solve_beam(beam, bed);
     EXPECT_TRUE(solution.is_bound);
-    EXPECT_NEAR(solution.deflection_mm[16].norm(), haptics::kMaxDeflection * kLength_mm, 1e-6);
+    EXPECT_NEAR(solution.deflection_mm[16].norm(), haptics::kMaxDeflection * kBeam_mm, 1e-6);
   }
 }
 
