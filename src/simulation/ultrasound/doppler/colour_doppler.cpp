@@ -26,7 +26,7 @@ constexpr double kGate_mm = 0.6;
 struct Plane {
   float zeta, weight;  ///< exp(-zeta²), normalised to a sum of 1.
 };
-constexpr std::array<Plane, 5> kPlanes = {
+constexpr std::array<Plane, 5> kBeamPlanes = {
     {{-1.2F, 0.0826F}, {-0.6F, 0.2432F}, {0.0F, 0.3484F}, {0.6F, 0.2432F}, {1.2F, 0.0826F}}};
 
 /// Blood's echo relative to liver's speckle at the image frequency, as in data/acoustics.toml (vessel). Range -35..-20.
@@ -153,15 +153,15 @@ std::array<float, 2> ColourDoppler::Impl::correlate(const Ray& ray, int gate, st
   if (depth_mm > ray.way.mirror_depth_mm) return sum;
   const Vec3f middle_P = ray.start_P + ray.rest_mm(depth_mm, sample) * ray.along_P;
   const Vec3f thick_P = sigma_mm[static_cast<std::size_t>(gate)] * ray.elevation_P;
-  for (std::size_t n = 0; n < kPlanes.size(); ++n) {
-    const VesselFlow::Blood blood = flow->at(middle_P + kPlanes[n].zeta * thick_P, moment);
+  for (std::size_t n = 0; n < kBeamPlanes.size(); ++n) {
+    const VesselFlow::Blood blood = flow->at(middle_P + kBeamPlanes[n].zeta * thick_P, moment);
     if (blood.share <= 0.0F) continue;
     // Towards the face is positive; the phase between pulses in half turns, aliased.
     float share = -blood.velocity_P.dot(ray.along_P) / ray.scale_mm_per_s;
     share -= 2.0F * std::floor(0.5F * (share + 1.0F));
     const float share4 = share * share * share * share;
     const float passed = share4 / (share4 + ray.cut4);
-    const float echo = blood.share * passed * kPlanes[n].weight * speckle_power(key + n);
+    const float echo = blood.share * passed * kBeamPlanes[n].weight * speckle_power(key + n);
     sum[0] += echo * std::cos(kPi * share);
     sum[1] += echo * std::sin(kPi * share);
   }

@@ -10,13 +10,13 @@
 namespace trocar::ultrasound {
 namespace {
 
-constexpr int kNice = 5;  // as the live scanner's thread
+constexpr int kFlowNiceness = 5;  // as the live scanner's thread
 
 /// On one thread of low priority: haptic servers and the window run at the same time.
 Result<std::shared_ptr<const VesselFlow>> make_beside_attempt(const anatomy::VirtualPatient& patient,
                                                               const FlowTable& table, const Progress& progress,
                                                               const std::stop_token& stop) {
-  lower_priority(kNice);
+  lower_priority(kFlowNiceness);
   Result<std::shared_ptr<const VesselFlow>> flow = nullptr;
   run_on_threads(1, [&] { flow = make_vessel_flow(patient, table, {}, progress, stop); });
   return flow;

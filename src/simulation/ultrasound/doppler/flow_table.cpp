@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -18,14 +17,14 @@ namespace {
 constexpr std::size_t kMostWaveforms = 32;
 constexpr double kSecondsPerMinute = 60.0;
 
-Result<double> read_number(const config::TomlTable& row, std::string_view key, config::Range range) {
+Result<double> read_sourced_value(const config::TomlTable& row, std::string_view key, config::Range range) {
   TROCAR_TRY(const config::SourcedNumber number, config::read_sourced_number(row, key, range));
   return number.value;
 }
 
 /// Reads one of a few words.
-Result<std::size_t> read_word(const config::TomlTable& row, std::string_view key,
-                              const std::vector<std::string>& words) {
+Result<std::size_t> read_word_index(const config::TomlTable& row, std::string_view key,
+                                    const std::vector<std::string>& words) {
   TROCAR_TRY(const std::string word, row.string(key));
   const auto it = std::find(words.begin(), words.end(), word);
   if (it != words.end()) return static_cast<std::size_t>(it - words.begin());
@@ -40,7 +39,7 @@ Result<FlowWaveform> read_waveform(const config::TomlTable& row, const std::stri
   if (source.empty()) return fail("a waveform without a source", row.where(), "say where it comes from");
   TROCAR_TRY(waveform.values, row.numbers("values", {-1.0, 1.0}));
   if (waveform.values.size() < 4) return fail("fewer than 4 values", row.where(), "give one heartbeat in even steps");
-  TROCAR_TRY(waveform.breathing, read_number(row, "breathing", {0.0, 0.8}));
+  TROCAR_TRY(waveform.breathing, read_sourced_value(row, "breathing", {0.0, 0.8}));
   return waveform;
 }
 
@@ -52,19 +51,19 @@ Result<FlowRule> read_rule(const config::TomlTable& row, const std::string& name
   rule.name = name;
   TROCAR_TRY(rule.labels, row.strings("labels"));
   TROCAR_TRY(rule.near, row.strings("near"));
-  TROCAR_TRY(const std::size_t ends, read_word(row, "ends", {"sources", "sinks"}));
+  TROCAR_TRY(const std::size_t ends, read_word_index(row, "ends", {"sources", "sinks"}));
   rule.ends = ends == 0 ? FlowRule::End::kSources : FlowRule::End::kSinks;
   if (row.has("at")) {
-    TROCAR_TRY(const std::size_t at, read_word(row, "at", {"head", "feet"}));
+    TROCAR_TRY(const std::size_t at, read_word_index(row, "at", {"head", "feet"}));
     rule.at = at == 0 ? FlowRule::At::kHead : FlowRule::At::kFeet;
   }
   if (rule.labels.empty()) return fail("no labels", row.where(), "add labels = [...]");
   if (rule.near.empty() && rule.at == FlowRule::At::kNowhere)
     return fail("neither near nor at", row.where(), "add near or at");
-  TROCAR_TRY(rule.waveform, read_word(row, "waveform", waveforms));
-  TROCAR_TRY(rule.peak_cm_per_s, read_number(row, "peak_cm_per_s", {1.0, 300.0}));
-  TROCAR_TRY(rule.profile_exponent, read_number(row, "profile_exponent", {1.0, 20.0}));
-  TROCAR_TRY(rule.narrowing_exponent, read_number(row, "narrowing_exponent", {-1.0, 2.0}));
+  TROCAR_TRY(rule.waveform, read_word_index(row, "waveform", waveforms));
+  TROCAR_TRY(rule.peak_cm_per_s, read_sourced_value(row, "peak_cm_per_s", {1.0, 300.0}));
+  TROCAR_TRY(rule.profile_exponent, read_sourced_value(row, "profile_exponent", {1.0, 20.0}));
+  TROCAR_TRY(rule.narrowing_exponent, read_sourced_value(row, "narrowing_exponent", {-1.0, 2.0}));
   return rule;
 }
 
@@ -103,8 +102,8 @@ Result<FlowTable> load_flow_table(const std::filesystem::path& path) {
   TROCAR_TRY(const config::TomlTable document, config::load_toml(path));
   TROCAR_TRY_STATUS(document.check_keys({"heart_per_min", "breaths_per_min", "waveforms", "vessels"}));
   FlowTable table;
-  TROCAR_TRY(table.heart_per_min, read_number(document, "heart_per_min", {30.0, 200.0}));
-  TROCAR_TRY(table.breaths_per_min, read_number(document, "breaths_per_min", {0.0, 60.0}));
+  TROCAR_TRY(table.heart_per_min, read_sourced_value(document, "heart_per_min", {30.0, 200.0}));
+  TROCAR_TRY(table.breaths_per_min, read_sourced_value(document, "breaths_per_min", {0.0, 60.0}));
   TROCAR_TRY(const config::TomlTable waveforms, document.table("waveforms"));
   const std::vector<std::string> names = waveforms.keys();
   if (names.size() > kMostWaveforms)

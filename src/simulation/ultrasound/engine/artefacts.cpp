@@ -9,7 +9,7 @@
 namespace trocar::ultrasound {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, bool Artefacts::*>, 10> kNames = {{
+constexpr std::array<std::pair<std::string_view, bool Artefacts::*>, 10> kArtefactNames = {{
     {"attenuation", &Artefacts::attenuation},
     {"downshift", &Artefacts::downshift},
     {"reverberation", &Artefacts::reverberation},
@@ -26,12 +26,12 @@ constexpr std::array<std::pair<std::string_view, bool Artefacts::*>, 10> kNames 
 
 std::vector<std::string_view> artefact_names() {
   std::vector<std::string_view> names;
-  for (const auto& [name, is_on] : kNames) names.push_back(name);
+  for (const auto& [name, is_on] : kArtefactNames) names.push_back(name);
   return names;
 }
 
 Status switch_off(Artefacts& artefacts, std::string_view name) {
-  for (const auto& [known, is_on] : kNames) {
+  for (const auto& [known, is_on] : kArtefactNames) {
     if (known == name || name == "all") artefacts.*is_on = false;
     if (known == name) return {};
   }

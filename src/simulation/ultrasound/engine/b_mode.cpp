@@ -22,21 +22,17 @@
 #include "ultrasound/engine/detail/tissue_walls.h"
 
 namespace trocar::ultrasound {
-namespace {
-
 using namespace detail;
 
-/// Buffers of one task besides the frame.
-struct Scratch {
-  WalkResult walk;
-  Texture texture;
-  ScattererField scatterers;
-  SteeringRows rows;
-};
-
-}  // namespace
-
 struct BMode::Impl {
+  /// Buffers of one task besides the frame.
+  struct Scratch {
+    WalkResult walk;
+    Texture texture;
+    ScattererField scatterers;
+    SteeringRows rows;
+  };
+
   std::shared_ptr<const AcousticScene> scene;
   Transducer transducer;
   ScanPlan plan;
@@ -139,7 +135,7 @@ void BMode::set_acquisition(const Acquisition& acquisition) {
   impl.has_frame = false;
   impl.aperture_rows.assign(aperture_floats(impl.plan), 0.0F);
   impl.scratch.resize(static_cast<std::size_t>(group_count(impl.plan.lines)));
-  for (Scratch& scratch : impl.scratch) {
+  for (Impl::Scratch& scratch : impl.scratch) {
     scratch.scatterers = make_scatterer_field(impl.plan);
     scratch.rows = SteeringRows(impl.plan);
   }

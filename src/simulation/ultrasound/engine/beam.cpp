@@ -9,10 +9,6 @@
 namespace trocar::ultrasound {
 namespace {
 
-/// Standard deviation of the Gaussian aperture that replaces a uniform one of width 1. The two-way profile of two equal
-/// focused apertures is then as wide at -6 dB as the exact one, sinc^2: 0.8859 wavelengths times f-number.
-constexpr double kGaussianAperture = 0.2991;
-
 /// One-way width of a Gaussian beam (docs/physics.md U3). Standard deviation of the amplitude, mm.
 double one_way_sigma_mm(double depth_mm, double aperture_mm, double focus_mm, double wavelength_mm) noexcept {
   const double face_mm = kGaussianAperture * aperture_mm;

@@ -42,6 +42,10 @@ double harmonic_share(const Beam& beam, double depth_mm) noexcept;
 /// twice, because the harmonic grows with the square of the pressure. Unchanged for a fundamental beam.
 double clutter_level_db(const Beam& beam, double two_way_db) noexcept;
 
+/// Standard deviation of the Gaussian aperture that replaces a uniform one of width 1. The two-way profile of two equal
+/// focused apertures is then as wide at -6 dB as the exact one, sinc^2: 0.8859 wavelengths times f-number.
+inline constexpr double kGaussianAperture = 0.2991;
+
 /// Attenuation by which scanners calculate, one way (IEC 61391-2).
 inline constexpr double kNominalLoss_db_per_cm_mhz = 0.5;
 /// Limit of the downshift: the spectrum has no negative frequencies (assumed).

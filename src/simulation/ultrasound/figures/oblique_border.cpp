@@ -16,7 +16,7 @@ struct Peak {
   double gray = 0.0;
 };
 
-Peak brightest(const EchoPatch& polar, int line) {
+Peak brightest_peak(const EchoPatch& polar, int line) {
   Peak peak;
   for (int s = static_cast<int>(kFirst_mm / polar.sample_mm); s < polar.samples; ++s)
     if (polar.at(line, s) > peak.gray) peak = {s, polar.at(line, s)};
@@ -42,7 +42,7 @@ double extent_mm(const EchoPatch& polar, int line, int sample, double level) {
 
 std::vector<ObliqueBorder> find_oblique_borders(const EchoPatch& polar, const ScanGeometry& scan) {
   std::vector<Peak> peaks;
-  for (int line = 0; line < polar.lines; ++line) peaks.push_back(brightest(polar, line));
+  for (int line = 0; line < polar.lines; ++line) peaks.push_back(brightest_peak(polar, line));
   std::vector<ObliqueBorder> borders;
   for (int line = kReach; line + kReach < polar.lines; ++line) {
     const Peak& peak = peaks[static_cast<std::size_t>(line)];

@@ -6,7 +6,7 @@
 namespace trocar::ultrasound {
 namespace {
 
-constexpr int kLines = 400;
+constexpr int kPolarLines = 400;
 constexpr double kSample_mm = 0.15;
 constexpr double kLevelBand_mm = 10.0;
 constexpr double kPatchDepth_mm = 10.0;
@@ -106,7 +106,7 @@ EchoPatch polar_picture(const FanPicture& picture, int lines, double sample_mm) 
 }
 
 void PictureStatistics::add(const FanPicture& picture) {
-  const EchoPatch polar = polar_picture(picture, kLines, kSample_mm);
+  const EchoPatch polar = polar_picture(picture, kPolarLines, kSample_mm);
   const auto bands = static_cast<std::size_t>(picture.scan.depth_mm / kLevelBand_mm);
   if (band_counts_.size() < bands) band_counts_.resize(bands);
   for (int line = 0; line < polar.lines; ++line)

@@ -15,28 +15,6 @@
 namespace trocar::ultrasound {
 namespace {
 
-/// Objects that render one level of detail.
-struct Stage {
-  std::unique_ptr<EchoEngine> engine;
-  std::shared_ptr<const Panorama> panorama;  ///< Of `engine`; nullptr: ray cast.
-  int next_line = 0;                         ///< First scanline of the next picture, if it renews a part.
-  std::optional<ScanRequest> last;           ///< Of its last picture.
-  std::shared_ptr<const VesselFlow> flow;    ///< Of `doppler`.
-  std::optional<ColourDoppler> doppler;
-};
-
-/// Data of a stored frame besides its levels.
-struct Companion {
-  ScanDetail detail = ScanDetail::kFull;
-  double coupled_share = 1.0;
-  std::vector<float> pressed_mm;
-  double dent_reach_mm = 0.0;
-  bool has_doppler = false;
-  ScanGeometry doppler_scan;
-  DopplerFrame doppler;
-  DopplerSettings doppler_settings;
-};
-
 std::array<Vec3, 3> corners_P(const RasterGeometry& raster, const Pose& X_PT) noexcept {
   const auto corner = [&](double column, double row) -> Vec3 {
     const Vec2 p_T = raster.to_T(column, row);
@@ -54,6 +32,33 @@ void set_unscanned(const AcousticScene& scene, ScanPicture& picture) {
 }  // namespace
 
 struct PictureMaker::Impl {
+  /// Objects that render one level of detail.
+  struct Stage {
+    std::unique_ptr<EchoEngine> engine;
+    std::shared_ptr<const Panorama> panorama;  ///< Of `engine`; nullptr: ray cast.
+    int next_line = 0;                         ///< First scanline of the next picture, if it renews a part.
+    std::optional<ScanRequest> last;           ///< Of its last picture.
+    std::shared_ptr<const VesselFlow> flow;    ///< Of `doppler`.
+    std::optional<ColourDoppler> doppler;
+
+    /// Share of the engine's last frame that comes from its panorama.
+    double panorama_share() const noexcept;
+    /// The scanlines that a picture renews; empty: all. The first picture at rest is whole.
+    LineRange next_lines(const ScanRequest& request, bool is_other_detail);
+  };
+
+  /// Data of a stored frame besides its levels.
+  struct Companion {
+    ScanDetail detail = ScanDetail::kFull;
+    double coupled_share = 1.0;
+    std::vector<float> pressed_mm;
+    double dent_reach_mm = 0.0;
+    bool has_doppler = false;
+    ScanGeometry doppler_scan;
+    DopplerFrame doppler;
+    DopplerSettings doppler_settings;
+  };
+
   std::shared_ptr<const AcousticScene> scene;
   Transducer transducer;
   std::array<std::optional<Stage>, kScanDetails> stages;
@@ -86,7 +91,7 @@ std::unique_ptr<EchoEngine> PictureMaker::Impl::make_engine(const std::shared_pt
   return std::make_unique<PanoramaEngine>(scene, panorama, transducer, acquisition);
 }
 
-Stage& PictureMaker::Impl::stage(const ScanRequest& request, ScanDetail detail) {
+PictureMaker::Impl::Stage& PictureMaker::Impl::stage(const ScanRequest& request, ScanDetail detail) {
   std::optional<Stage>& place = stages[static_cast<std::size_t>(detail)];
   const Acquisition wanted = with_detail(request.acquisition, detail);
   if (!place || place->panorama != request.panorama) {
@@ -97,9 +102,8 @@ Stage& PictureMaker::Impl::stage(const ScanRequest& request, ScanDetail detail) 
   return *place;
 }
 
-/// Share of the engine's last frame that comes from its panorama.
-double panorama_share(const Stage& stage) noexcept {
-  return stage.panorama ? static_cast<const PanoramaEngine&>(*stage.engine).panorama_share() : 0.0;
+double PictureMaker::Impl::Stage::panorama_share() const noexcept {
+  return panorama ? static_cast<const PanoramaEngine&>(*engine).panorama_share() : 0.0;
 }
 
 Scanner& PictureMaker::Impl::scanner(std::optional<Scanner>& place, const ScanRequest& request) {
@@ -110,21 +114,20 @@ Scanner& PictureMaker::Impl::scanner(std::optional<Scanner>& place, const ScanRe
   return *place;
 }
 
-/// The scanlines that a picture renews; empty: all. The first picture at rest is whole.
-LineRange next_lines(Stage& stage, const ScanRequest& request, bool is_other_detail) {
+LineRange PictureMaker::Impl::Stage::next_lines(const ScanRequest& request, bool is_other_detail) {
   constexpr double kRest_mm = 0.02;
-  const int lines = stage.engine->geometry().lines;
-  const bool is_whole = request.renewed_share >= 1.0 || is_other_detail || request.flow != nullptr || !stage.last ||
-                        is_equivalent(*stage.last, request, kRest_mm);
-  stage.last = request;
+  const int lines = engine->geometry().lines;
+  const bool is_whole = request.renewed_share >= 1.0 || is_other_detail || request.flow != nullptr || !last ||
+                        is_equivalent(*last, request, kRest_mm);
+  last = request;
   if (is_whole) {
-    stage.next_line = 0;
+    next_line = 0;
     return {};
   }
-  if (stage.next_line >= lines) stage.next_line = 0;
-  const int first = stage.next_line;
-  stage.next_line += std::max(2, static_cast<int>(std::ceil(request.renewed_share * lines)));
-  return {first, std::min(stage.next_line, lines)};
+  if (next_line >= lines) next_line = 0;
+  const int first = next_line;
+  next_line += std::max(2, static_cast<int>(std::ceil(request.renewed_share * lines)));
+  return {first, std::min(next_line, lines)};
 }
 
 void PictureMaker::Impl::add_colour(const ScanRequest& request, Stage& stage, const BasebandFrame& echoes,
@@ -173,7 +176,7 @@ const Transducer& PictureMaker::transducer() const noexcept {
 ScanPicture PictureMaker::make(const ScanRequest& asked, ScanDetail detail, std::uint64_t seed) {
   Impl& impl = *impl_;
   const ScanRequest request = within_ranges(asked, impl.transducer);
-  Stage& stage = impl.stage(request, detail);
+  Impl::Stage& stage = impl.stage(request, detail);
   Scanner& scanner = impl.scanner(impl.scanners[static_cast<std::size_t>(detail)], request);
   // Persistence combines frames of the same kind only: not those of another detail or without colour.
   const bool is_other_detail = impl.last_detail != detail;
@@ -193,7 +196,7 @@ ScanPicture PictureMaker::make(const ScanRequest& asked, ScanDetail detail, std:
     needles.push_back(needle);
   }
   const BasebandFrame& echoes =
-      stage.engine->render({request.X_PT, needles, request.time_s, next_lines(stage, request, is_other_detail)});
+      stage.engine->render({request.X_PT, needles, request.time_s, stage.next_lines(request, is_other_detail)});
 
   ScanPicture picture;
   picture.gray = scanner.show(echoes, seed);
@@ -207,13 +210,14 @@ ScanPicture PictureMaker::make(const ScanRequest& asked, ScanDetail detail, std:
   picture.display = request.display;
   picture.detail = detail;
   picture.coupled_share = trocar::ultrasound::coupled_share(echoes);
-  picture.panorama_share = panorama_share(stage);
+  picture.panorama_share = stage.panorama_share();
   set_unscanned(*impl.scene, picture);
   for (int line = 0; line < echoes.geometry.lines; ++line)
     picture.pressed_mm.push_back(stage.engine->sound_path(line).pressed_mm);
   picture.dent_reach_mm = find_dent_reach_mm(*impl.scene, echoes.geometry, request.X_PT);
 
-  Companion companion{detail, picture.coupled_share, picture.pressed_mm, picture.dent_reach_mm, false, {}, {}, {}};
+  Impl::Companion companion{detail, picture.coupled_share, picture.pressed_mm, picture.dent_reach_mm, false, {}, {},
+                            {}};
   if (has_colour) impl.add_colour(request, stage, echoes, seed, picture, companion);
   if (!impl.cine || !impl.cine->is_frozen()) impl.keep(request, picture, std::move(companion));
   return picture;
@@ -229,7 +233,7 @@ ScanPicture PictureMaker::show_kept(const ScanRequest& asked) {
   ScanRequest request = within_ranges(asked, impl.transducer);
   const int position = impl.cine->position();
   const CineFrame frame = impl.cine->frame(position);
-  const Companion& companion = impl.companion(position);
+  const Impl::Companion& companion = impl.companion(position);
   Scanner& scanner = impl.scanner(impl.kept_scanner, request);
 
   ScanPicture picture;

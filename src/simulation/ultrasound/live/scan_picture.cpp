@@ -10,12 +10,12 @@ namespace trocar::ultrasound {
 namespace {
 
 /// Two neighbours and the weight of the second, of 256.
-struct Between {
+struct WeightedNeighbours {
   std::size_t low, high;
   unsigned part;
 };
 
-Between between(double place, int count) noexcept {
+WeightedNeighbours weighted_neighbours(double place, int count) noexcept {
   const double held = std::clamp(place, 0.0, static_cast<double>(count - 1));
   const auto low = static_cast<std::size_t>(held);
   return {low, std::min(low + 1, static_cast<std::size_t>(count - 1)),
@@ -43,19 +43,19 @@ void resample_levels(std::span<const std::uint8_t> from, const ScanGeometry& fro
   const auto samples = static_cast<std::size_t>(to_scan.samples);
   TROCAR_CHECK(from.size() == static_cast<std::size_t>(from_scan.lines) * from_samples);
   to.resize(static_cast<std::size_t>(to_scan.lines) * samples);
-  std::vector<Between> along(samples);
+  std::vector<WeightedNeighbours> along(samples);
   for (std::size_t s = 0; s < samples; ++s) {
     const double depth = (static_cast<double>(s) + 0.5) / static_cast<double>(samples);
-    along[s] = between(depth * from_scan.samples - 0.5, from_scan.samples);
+    along[s] = weighted_neighbours(depth * from_scan.samples - 0.5, from_scan.samples);
   }
   for (int line = 0; line < to_scan.lines; ++line) {
     const double share = static_cast<double>(line) / (to_scan.lines - 1);
-    const Between across = between(share * (from_scan.lines - 1), from_scan.lines);
+    const WeightedNeighbours across = weighted_neighbours(share * (from_scan.lines - 1), from_scan.lines);
     const std::uint8_t* const a = from.data() + across.low * from_samples;
     const std::uint8_t* const b = from.data() + across.high * from_samples;
     std::uint8_t* const target = to.data() + static_cast<std::size_t>(line) * samples;
     for (std::size_t s = 0; s < samples; ++s) {
-      const Between& n = along[s];
+      const WeightedNeighbours& n = along[s];
       const unsigned near = a[n.low] * (256U - across.part) + b[n.low] * across.part;
       const unsigned far = a[n.high] * (256U - across.part) + b[n.high] * across.part;
       target[s] = static_cast<std::uint8_t>((near * (256U - n.part) + far * n.part + 0x8000U) >> 16);

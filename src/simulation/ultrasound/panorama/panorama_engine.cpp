@@ -24,13 +24,6 @@ namespace {
 
 using namespace detail;
 
-/// Buffers of one task besides the frame.
-struct Scratch {
-  SteeringRows rows;
-  std::vector<float> logs, rest_mm;
-  PanoramaSamples samples;
-};
-
 /// The scanlines on which needles have echoes or shadows; empty: none.
 LineRange needle_lines(const ScanPlan& plan, const NeedleImage& image) noexcept {
   constexpr float kShadowReach = 3.0F;  // sigmas
@@ -73,6 +66,13 @@ LineRange both(const LineRange& a, const LineRange& b) noexcept {
 }  // namespace
 
 struct PanoramaEngine::Impl {
+  /// Buffers of one task besides the frame.
+  struct Scratch {
+    SteeringRows rows;
+    std::vector<float> logs, rest_mm;
+    PanoramaSamples samples;
+  };
+
   Impl(std::shared_ptr<const AcousticScene> scene_of, std::shared_ptr<const Panorama> panorama_of,
        Transducer transducer_of, const Acquisition& acquisition)
       : scene(std::move(scene_of)),

@@ -9,11 +9,11 @@
 namespace trocar::ultrasound {
 namespace {
 
-constexpr int kNice = 5;  // as the live scanner's thread
+constexpr int kPanoramaNiceness = 5;  // as the live scanner's thread
 
 /// On one thread of low priority: haptic servers and the window run at the same time.
 Result<std::shared_ptr<const Panorama>> load_beside_attempt(const PanoramaOnDemand::Load& load) {
-  lower_priority(kNice);
+  lower_priority(kPanoramaNiceness);
   Result<std::shared_ptr<const Panorama>> panorama = nullptr;
   run_on_threads(1, [&] { panorama = load(); });
   return panorama;

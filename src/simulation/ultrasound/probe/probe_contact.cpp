@@ -10,13 +10,13 @@ namespace trocar::ultrasound {
 namespace {
 
 constexpr int kMaxSteps = 24;
-constexpr double kTolerance_mm = 0.02;
+constexpr double kContactTolerance_mm = 0.02;
 
 // Assumed: half of an indentation is within the fat if that is 20 mm thick.
 constexpr double kReachWithoutFat_mm = 24.0;
 constexpr double kReachOfFat = 0.8;
-constexpr double kLeastReach_mm = 12.0;
-constexpr double kGreatestReach_mm = 48.0;
+constexpr double kLeastContactReach_mm = 12.0;
+constexpr double kGreatestContactReach_mm = 48.0;
 /// A larger impedance is bone (6 MRayl or more; cartilage and muscle have less than 2.5).
 constexpr double kRigid_mrayl = 3.0;
 constexpr int kReachLines = 9;
@@ -28,7 +28,7 @@ double way_to_skin_mm(const volume::FloatGrid& skin_distance_mm, const Vec3& p_P
   double way_mm = 0.0;
   for (int step = 0; step < kMaxSteps && way_mm < farthest_mm; ++step) {
     const double left_mm = sign * sample_linear(skin_distance_mm, Vec3(p_P + way_mm * direction_P));
-    if (!(left_mm > kTolerance_mm)) break;  // also NaN
+    if (!(left_mm > kContactTolerance_mm)) break;  // also NaN
     way_mm += left_mm;
   }
   return std::min(way_mm, farthest_mm);
@@ -60,12 +60,13 @@ double line_reach_mm(const AcousticScene& scene, std::uint8_t fat, const Scanlin
   constexpr double kStep_mm = 1.0;
   double fat_mm = 0.0;
   double depth_mm = 0.0;
-  for (; depth_mm < kGreatestReach_mm; depth_mm += kStep_mm) {
+  for (; depth_mm < kGreatestContactReach_mm; depth_mm += kStep_mm) {
     const std::uint8_t tissue = tissue_at(scene, line.origin_P + depth_mm * line.direction_P);
     if (tissue < scene.table.tissues.size() && scene.table.tissues[tissue].impedance_mrayl() > kRigid_mrayl) break;
     if (tissue == fat) fat_mm += kStep_mm;
   }
-  return std::clamp(std::min(depth_mm, kReachWithoutFat_mm + kReachOfFat * fat_mm), kLeastReach_mm, kGreatestReach_mm);
+  return std::clamp(std::min(depth_mm, kReachWithoutFat_mm + kReachOfFat * fat_mm), kLeastContactReach_mm,
+                    kGreatestContactReach_mm);
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ using detail::ViewRays;
 constexpr double kFarthestSkin_mm = 400.0;
 constexpr double kSearchStep_mm = 4.0;
 constexpr double kFreeSlant = 30.0 * std::numbers::pi / 180.0;  ///< Between beam and skin, without a penalty.
-constexpr int kLines = 33;
+constexpr int kProbedLines = 33;
 constexpr double kWayStep_mm = 2.0;
 
 // Weights of the cost of a pose; assumed, chosen on the embedded patients and two CTs.
@@ -107,7 +107,7 @@ class Placer {
   Placer(const ViewAnatomy& ground, const ProbeView& view, const Transducer& transducer, const Vec3& target_P)
       : ground_(ground),
         view_(view),
-        scan_(make_scan_geometry(transducer, view.depth_mm, kLines, 16)),
+        scan_(make_scan_geometry(transducer, view.depth_mm, kProbedLines, 16)),
         rays_(ground, view, transducer, target_P),
         target_P_(target_P) {}
 
@@ -211,7 +211,7 @@ class Placer {
     double hidden = 0.0, missed = 0.0, weights = 0.0;
     std::array<double, 2> bone{};  // per side
     int in_side = 0;
-    for (int n = 0; n < kLines; ++n) {
+    for (int n = 0; n < kProbedLines; ++n) {
       const double off = (n - middle) / middle;  // -1..1
       const Way way = walk(X_PT, n, depth_mm);
       const double weight = std::exp(-0.5 * std::pow(off / middle_share(), 2));

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -20,8 +19,8 @@ constexpr std::size_t kLeastVoxels = 8;  // smaller labels are segmentation nois
 
 /// Reads one of a few words.
 template <class T, std::size_t N>
-Status read_word(const config::TomlTable& row, std::string_view key, const std::pair<std::string_view, T> (&words)[N],
-                 T& value) {
+Status read_word_meaning(const config::TomlTable& row, std::string_view key,
+                         const std::pair<std::string_view, T> (&words)[N], T& value) {
   if (!row.has(key)) return {};
   TROCAR_TRY(const std::string word, row.string(key));
   std::vector<std::string_view> known;
@@ -50,9 +49,9 @@ Status read_choices(const config::TomlTable& row, ProbeView& view) {
       {"avoid", BonePreference::kAvoid}, {"beside", BonePreference::kBeside}, {"show", BonePreference::kShow}};
   constexpr std::pair<std::string_view, TargetPoint> kPoints[] = {{"middle", TargetPoint::kMiddle},
                                                                   {"facing", TargetPoint::kFacing}};
-  TROCAR_TRY_STATUS(read_word(row, "plane", kPlanes, view.plane));
-  TROCAR_TRY_STATUS(read_word(row, "bone", kBones, view.bone));
-  return read_word(row, "point", kPoints, view.point);
+  TROCAR_TRY_STATUS(read_word_meaning(row, "plane", kPlanes, view.plane));
+  TROCAR_TRY_STATUS(read_word_meaning(row, "bone", kBones, view.bone));
+  return read_word_meaning(row, "point", kPoints, view.point);
 }
 
 Result<ProbeView> read_view(const config::TomlTable& row, const std::string& name) {

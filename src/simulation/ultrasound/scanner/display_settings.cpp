@@ -19,7 +19,7 @@ constexpr Range kAutomaticTgcLimit_db{0.0, 120.0};
 constexpr Range kDynamicRange_db{20.0, 100.0};
 constexpr Range kPersistence{0.0, 0.95};
 
-constexpr std::array<std::pair<GrayMap, std::string_view>, 3> kNames = {
+constexpr std::array<std::pair<GrayMap, std::string_view>, 3> kGrayMapNames = {
     {{GrayMap::kLinear, "linear"}, {GrayMap::kSoft, "soft"}, {GrayMap::kHighContrast, "high-contrast"}}};
 
 /// Sharpness of the transition of the automatic TGC to its limit. Assumed, range 1..6.
@@ -38,7 +38,7 @@ Status in_range(double value, Range range, std::string_view control, std::string
                     fmt::format("choose {} to {}", range.low, range.high));
 }
 
-double held(double value, Range range, double fallback) noexcept {
+double held_in_range(double value, Range range, double fallback) noexcept {
   return std::isnan(value) ? fallback : std::clamp(value, range.low, range.high);
 }
 
@@ -107,26 +107,26 @@ Status check(const DisplaySettings& settings) {
 DisplaySettings within_ranges(const DisplaySettings& settings) noexcept {
   const DisplaySettings fallback;
   DisplaySettings result = settings;
-  result.gain_db = held(settings.gain_db, kGain_db, fallback.gain_db);
-  for (double& slider_db : result.tgc_db) slider_db = held(slider_db, kTgc_db, 0.0);
-  result.automatic_tgc_db_per_cm_mhz =
-      held(settings.automatic_tgc_db_per_cm_mhz, kAutomaticTgc_db_per_cm_mhz, fallback.automatic_tgc_db_per_cm_mhz);
+  result.gain_db = held_in_range(settings.gain_db, kGain_db, fallback.gain_db);
+  for (double& slider_db : result.tgc_db) slider_db = held_in_range(slider_db, kTgc_db, 0.0);
+  result.automatic_tgc_db_per_cm_mhz = held_in_range(settings.automatic_tgc_db_per_cm_mhz, kAutomaticTgc_db_per_cm_mhz,
+                                                     fallback.automatic_tgc_db_per_cm_mhz);
   result.automatic_tgc_limit_db =
-      held(settings.automatic_tgc_limit_db, kAutomaticTgcLimit_db, fallback.automatic_tgc_limit_db);
-  result.dynamic_range_db = held(settings.dynamic_range_db, kDynamicRange_db, fallback.dynamic_range_db);
-  result.persistence = held(settings.persistence, kPersistence, fallback.persistence);
+      held_in_range(settings.automatic_tgc_limit_db, kAutomaticTgcLimit_db, fallback.automatic_tgc_limit_db);
+  result.dynamic_range_db = held_in_range(settings.dynamic_range_db, kDynamicRange_db, fallback.dynamic_range_db);
+  result.persistence = held_in_range(settings.persistence, kPersistence, fallback.persistence);
   return result;
 }
 
 Result<GrayMap> parse_gray_map(std::string_view name) {
-  for (const auto& [map, map_name] : kNames) {
+  for (const auto& [map, map_name] : kGrayMapNames) {
     if (map_name == name) return map;
   }
   return fail_usage(fmt::format("there is no gray map '{}'", name), {}, "choose linear, soft or high-contrast");
 }
 
 std::string_view name_of(GrayMap map) noexcept {
-  for (const auto& [known, map_name] : kNames) {
+  for (const auto& [known, map_name] : kGrayMapNames) {
     if (known == map) return map_name;
   }
   return "unknown";

@@ -10,7 +10,6 @@
 namespace trocar::ultrasound {
 namespace {
 
-constexpr volume::Rgb kInk = {200, 205, 210};
 constexpr volume::Rgb kMarkerInk = {90, 200, 120};
 constexpr volume::Rgb kFocusInk = {240, 200, 80};
 
@@ -130,7 +129,7 @@ void draw_annotation(volume::RgbImage& image, const ScanAnnotation& annotation) 
   const int dot = annotation.text_scale;
   for (const ScanAnnotation::Tick& tick : annotation.ticks) {
     const int row = static_cast<int>(std::lround(tick.row));
-    draw_box(image, annotation.scale_column - tick.length_px, row, tick.length_px, dot, kInk);
+    draw_box(image, annotation.scale_column - tick.length_px, row, tick.length_px, dot, kTextInk);
   }
   const int focus_row = static_cast<int>(std::lround(annotation.focus_row));
   draw_triangle(image, annotation.scale_column - (kLongTick + 2) * dot, focus_row, kTriangle * dot, kFocusInk);
@@ -141,7 +140,7 @@ void draw_annotation(volume::RgbImage& image, const ScanAnnotation& annotation) 
              {gray, gray, gray});
   }
   for (const ScanAnnotation::Text& text : annotation.texts) {
-    volume::draw_text(image, text.column, text.row, text.text, kInk, dot);
+    volume::draw_text(image, text.column, text.row, text.text, kTextInk, dot);
   }
 }
 

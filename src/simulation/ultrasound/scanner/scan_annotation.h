@@ -8,6 +8,8 @@
 
 namespace trocar::ultrasound {
 
+inline constexpr volume::Rgb kTextInk = {200, 205, 210};  ///< Of texts and ticks beside a picture.
+
 /// Text beside a picture.
 struct ScanCaption {
   std::string transducer;

@@ -7,8 +7,8 @@
 namespace trocar::ultrasound {
 namespace {
 
-Status read_number(const config::TomlTable& row, std::string_view key, config::Range range,
-                   std::optional<double>& value) {
+Status read_if_given(const config::TomlTable& row, std::string_view key, config::Range range,
+                     std::optional<double>& value) {
   if (!row.has(key)) return {};
   TROCAR_TRY(value, row.number(key, range));
   return {};
@@ -22,9 +22,9 @@ Result<ScanPreset> read_preset(const config::TomlTable& row, const std::string& 
   preset.name = name;
   TROCAR_TRY(preset.title, row.string("title"));
   TROCAR_TRY(preset.transducer, row.string("transducer"));
-  TROCAR_TRY_STATUS(read_number(row, "depth_mm", {20.0, 300.0}, preset.depth_mm));
-  TROCAR_TRY_STATUS(read_number(row, "frequency_mhz", {1.0, 20.0}, preset.frequency_mhz));
-  TROCAR_TRY_STATUS(read_number(row, "focus_mm", {5.0, 300.0}, preset.focus_mm));
+  TROCAR_TRY_STATUS(read_if_given(row, "depth_mm", {20.0, 300.0}, preset.depth_mm));
+  TROCAR_TRY_STATUS(read_if_given(row, "frequency_mhz", {1.0, 20.0}, preset.frequency_mhz));
+  TROCAR_TRY_STATUS(read_if_given(row, "focus_mm", {5.0, 300.0}, preset.focus_mm));
   DisplaySettings& display = preset.display;
   TROCAR_TRY(display.gain_db, row.number_or("gain_db", {-40.0, 40.0}, display.gain_db));
   TROCAR_TRY(display.dynamic_range_db, row.number_or("dynamic_range_db", {20.0, 100.0}, display.dynamic_range_db));

@@ -8,18 +8,16 @@
 #include "core/check.h"
 #include "core/parallel.h"
 #include "ultrasound/sweep/detail/hole_filling.h"
+#include "ultrasound/sweep/detail/limits.h"
 #include "ultrasound/sweep/transform_graph.h"
 #include "ultrasound/tissue/detail/slice_insertion.h"
 
 namespace trocar::ultrasound {
 namespace {
 
-constexpr double kMaxVoxels = 256e6;  ///< 2.5 GB during the reconstruction.
-constexpr std::size_t kGrain = 1 << 16;
+using detail::is_within;
 
-bool is_within(double value, double low, double high) {
-  return value >= low && value <= high;  // false for NaN
-}
+constexpr std::size_t kGrain = 1 << 16;
 
 Status check_holes(const HoleFilling& way) {
   if (!is_within(way.stick_length_limit, 3, 65))
@@ -85,7 +83,7 @@ Result<volume::GridGeometry> lay_grid(const detail::Extent& extent, const Freeha
   Vec3 size;
   for (int axis = 0; axis < 3; ++axis)
     size[axis] = voxels_along(length_mm[axis], spacing_mm[axis], options.interpolation);
-  if (!(size.prod() <= kMaxVoxels))  // also NaN
+  if (!(size.prod() <= detail::kMaxVoxels))  // also NaN
     return fail(fmt::format("the volume would have {:.0f} x {:.0f} x {:.0f} voxels", size[0], size[1], size[2]), {},
                 "choose a larger spacing, and check that the transforms are in mm");
   volume::GridGeometry grid;
@@ -109,7 +107,7 @@ Result<FreehandVolume> reconstruct_freehand(const TrackedSequence& sequence,
              lay_grid(detail::extent_of(frames, detail::box_of(sequence, runs, options)), options));
 
   report(progress, "inserting the pictures", 0.0);
-  std::vector<detail::Cell> cells(grid.voxel_count(), 0);
+  std::vector<detail::GraySum> cells(grid.voxel_count(), 0);
   detail::insert_frames(sequence, frames, runs, options, grid, cells);
 
   FreehandVolume volume;

@@ -58,7 +58,7 @@ Pose follow_skin(const volume::FloatGrid& skin_distance_mm, const Pose& X_PT, do
 }
 
 /// -1/2..1/2.
-double share_of(int frame, int frames) {
+double centred_share_of(int frame, int frames) {
   return static_cast<double>(frame) / (frames - 1) - 0.5;
 }
 
@@ -70,7 +70,7 @@ std::vector<Pose> slide_over_skin(const volume::FloatGrid& skin_distance_mm, con
   const double depth_of_face_mm = -volume::sample_linear(skin_distance_mm, X_PT.p());
   std::vector<Pose> poses;
   for (int n = 0; n < frames; ++n) {
-    const Pose moved = X_PT * Pose::translation({0.0, 0.0, share_of(n, frames) * length_mm});
+    const Pose moved = X_PT * Pose::translation({0.0, 0.0, centred_share_of(n, frames) * length_mm});
     poses.push_back(follow_skin(skin_distance_mm, moved, depth_of_face_mm));
   }
   return poses;

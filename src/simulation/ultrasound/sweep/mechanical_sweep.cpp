@@ -11,20 +11,18 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "ultrasound/scanner/scanner.h"
+#include "ultrasound/sweep/detail/limits.h"
 
 namespace trocar::ultrasound {
 namespace {
 
-constexpr double kMaxVoxels = 256e6;
-constexpr double kMaxSamples = 1e9;  ///< One byte each.
+using detail::is_within;
+
+constexpr double kMaxSweepSamples = 1e9;  ///< One byte each.
 constexpr double kLeastSweep_rad = 0.01;
 constexpr int kMostFrames = 1000;
 /// The scanner's image is not used, only the gray levels per scanline.
 constexpr int kNoColumns = 16;
-
-bool is_within(double value, double low, double high) {
-  return value >= low && value <= high;  // false for NaN
-}
 
 /// Frames one after another, scanline by scanline.
 struct Frames {
@@ -71,12 +69,12 @@ Frames take_frames(const std::shared_ptr<const AcousticScene>& scene, const Tran
 }
 
 /// Lower neighbour and the weight of the upper one; empty beyond half a sample outside.
-struct Between {
+struct LowerNeighbour {
   std::size_t lower = 0;
   std::size_t step = 0;  ///< Offset of the upper one; 0 at the end.
   float part = 0.0F;
 };
-bool find_between(double at, int count, Between& between) {
+bool find_lower_neighbour(double at, int count, LowerNeighbour& between) {
   if (!(at > -0.5 && at < count - 0.5)) return false;
   const double held = std::clamp(at, 0.0, static_cast<double>(count - 1));
   const int lower = std::min(static_cast<int>(held), std::max(count - 2, 0));
@@ -91,11 +89,11 @@ constexpr long kDarkest = 1;
 /// Trilinear between frames, scanlines and samples.
 std::uint8_t gray_at(const Frames& frames, const SweepGeometry& geometry, const Vec3& p_T) {
   const SweepGeometry::Place place = geometry.to_place(p_T);
-  Between frame, line, sample;
+  LowerNeighbour frame, line, sample;
   const double depth_samples = place.polar.depth_mm / geometry.scan.sample_mm() - 0.5;
-  if (!find_between(place.frame, geometry.frames, frame) ||
-      !find_between(place.polar.line, geometry.scan.lines, line) ||
-      !find_between(depth_samples, geometry.scan.samples, sample))
+  if (!find_lower_neighbour(place.frame, geometry.frames, frame) ||
+      !find_lower_neighbour(place.polar.line, geometry.scan.lines, line) ||
+      !find_lower_neighbour(depth_samples, geometry.scan.samples, sample))
     return 0;
   const auto samples = static_cast<std::size_t>(geometry.scan.samples);
   const auto lines = static_cast<std::size_t>(geometry.scan.lines);
@@ -126,7 +124,7 @@ Result<SweepGeometry> plan_sweep(const Transducer& transducer, const MechanicalS
     return fail_usage(fmt::format("the sweep would have {:.0f} frames", steps + 1.0), transducer.name,
                       fmt::format("choose a step with at most {}", kMostFrames));
   geometry.frames = std::max(2, static_cast<int>(steps) + 1);
-  if (static_cast<double>(geometry.frames) * acquisition.lines * acquisition.samples > kMaxSamples)
+  if (static_cast<double>(geometry.frames) * acquisition.lines * acquisition.samples > kMaxSweepSamples)
     return fail_usage("the frames would have more than a thousand million samples", transducer.name,
                       "choose fewer scanlines or samples");
   return geometry;
@@ -148,7 +146,7 @@ Result<volume::GridGeometry> lay_grid(const SweepGeometry& geometry, double spac
     grid.size[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(count);
     voxels *= count;
   }
-  if (voxels > kMaxVoxels)
+  if (voxels > detail::kMaxVoxels)
     return fail_usage(fmt::format("the volume would have {:.0f} million voxels", voxels * 1e-6), {},
                       "choose a larger spacing");
   return grid;

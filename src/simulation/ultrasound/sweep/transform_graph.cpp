@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <Eigen/LU>
-#include <cctype>
 #include <cmath>
 #include <deque>
 #include <map>
+
+#include "core/ascii.h"
 
 namespace trocar::ultrasound {
 namespace {
@@ -25,7 +26,7 @@ struct Edge {
 void add_edges(const std::string& name, const Matrix4& matrix, std::vector<Edge>& edges) {
   for (std::size_t at = name.find("To", 1); at != std::string::npos; at = name.find("To", at + 1)) {
     const std::size_t next = at + 2;
-    if (next >= name.size() || std::isupper(static_cast<unsigned char>(name[next])) == 0) continue;
+    if (next >= name.size() || !ascii::is_upper(name[next])) continue;
     edges.push_back({name.substr(0, at), name.substr(next), matrix});
     if (std::abs(matrix.topLeftCorner<3, 3>().determinant()) > kLeastDeterminant)
       edges.push_back({name.substr(next), name.substr(0, at), matrix.inverse()});

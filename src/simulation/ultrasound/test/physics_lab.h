@@ -36,6 +36,13 @@ inline ultrasound::Artefacts no_artefacts() {
   return none;
 }
 
+/// Attenuation alone.
+inline ultrasound::Artefacts losses() {
+  ultrasound::Artefacts artefacts = no_artefacts();
+  artefacts.attenuation = true;
+  return artefacts;
+}
+
 /// The transducer's own settings without artefacts.
 inline ultrasound::Acquisition plain(const ultrasound::Transducer& transducer,
                                      ultrasound::Artefacts artefacts = no_artefacts()) {

@@ -9,13 +9,13 @@
 namespace trocar::ultrasound {
 namespace {
 
-Transducer convex() {
+Transducer plain_convex() {
   Transducer transducer;
   transducer.name = "convex";
   return transducer;
 }
 
-std::uint8_t tissue_at(const AcousticScene& scene, const Vec3& p_P) {
+std::uint8_t tissue_number_at(const AcousticScene& scene, const Vec3& p_P) {
   const Vec3 index = scene.geometry.to_index(p_P);
   const volume::Index3 ijk{std::lround(index.x()), std::lround(index.y()), std::lround(index.z())};
   return scene.geometry.contains(ijk) ? scene.tissue[scene.geometry.offset(ijk)] & ~kMixedCell : 255;
@@ -44,20 +44,21 @@ TEST(TestScenes, OnlyDensityBoneAndGasReflect) {
 }
 
 TEST(TestScenes, ABoxHoldsTheWholeScanBehindTheSkin) {
-  const Transducer transducer = convex();
+  const Transducer transducer = plain_convex();
   const ScenePtr scene = homogeneous_scene(box_for(transducer, 120.0, 2.0), TestTissue::kTissue);
   const ScanGeometry scan = make_scan_geometry(transducer, 120.0, 65, 64);
   for (int line = 0; line < scan.lines; line += 8)
     for (const double depth_mm : {3.0, 60.0, 119.0}) {
       const Vec2 p = scan.to_cartesian({static_cast<double>(line), depth_mm});
-      EXPECT_EQ(tissue_at(*scene, {p.x(), p.y(), 0.0}), index_of(TestTissue::kTissue)) << line << " " << depth_mm;
+      EXPECT_EQ(tissue_number_at(*scene, {p.x(), p.y(), 0.0}), index_of(TestTissue::kTissue))
+          << line << " " << depth_mm;
     }
   const Vec2 before = scan.to_cartesian({0.0, -4.0});
-  EXPECT_EQ(tissue_at(*scene, {before.x(), before.y(), 0.0}), 0);
+  EXPECT_EQ(tissue_number_at(*scene, {before.x(), before.y(), 0.0}), 0);
 }
 
 TEST(TestScenes, SkinFollowsAConvexFace) {
-  const Transducer transducer = convex();
+  const Transducer transducer = plain_convex();
   const ScenePtr scene = homogeneous_scene(box_for(transducer, 60.0, 2.0), TestTissue::kTissue);
   const volume::FloatGrid& skin = scene->skin_distance_mm;
   for (std::size_t at = 0; at < skin.voxels.size(); at += 997) {
@@ -71,18 +72,18 @@ TEST(TestScenes, SkinFollowsAConvexFace) {
 TEST(TestScenes, LayersEndAtTheirDepths) {
   const TestLayer layers[] = {{20.0, TestTissue::kTissue}, {26.0, TestTissue::kDense}, {1e9, TestTissue::kGas}};
   const ScenePtr scene = layers_scene(SceneBox{}, layers);
-  EXPECT_EQ(tissue_at(*scene, {3, 19.5, 0}), index_of(TestTissue::kTissue));
-  EXPECT_EQ(tissue_at(*scene, {3, 20.5, 0}), index_of(TestTissue::kDense));
-  EXPECT_EQ(tissue_at(*scene, {3, 25.5, 0}), index_of(TestTissue::kDense));
-  EXPECT_EQ(tissue_at(*scene, {3, 26.5, 0}), index_of(TestTissue::kGas));
+  EXPECT_EQ(tissue_number_at(*scene, {3, 19.5, 0}), index_of(TestTissue::kTissue));
+  EXPECT_EQ(tissue_number_at(*scene, {3, 20.5, 0}), index_of(TestTissue::kDense));
+  EXPECT_EQ(tissue_number_at(*scene, {3, 25.5, 0}), index_of(TestTissue::kDense));
+  EXPECT_EQ(tissue_number_at(*scene, {3, 26.5, 0}), index_of(TestTissue::kGas));
 }
 
 TEST(TestScenes, RodsLieWhereTheyWereSet) {
   const TestRod rods[] = {{-8.0, 30.0, 4.0, TestTissue::kWater}, {8.0, 30.0, 4.0, TestTissue::kBone, 2.0}};
   const ScenePtr scene = rods_scene(SceneBox{}, TestTissue::kTissue, rods, {{Vec3(0, 50, 0), 40.0}});
-  EXPECT_EQ(tissue_at(*scene, {-8.5, 33.5, 9.5}), index_of(TestTissue::kWater));
-  EXPECT_EQ(tissue_at(*scene, {8.5, 33.5, 0.5}), index_of(TestTissue::kBone));
-  EXPECT_EQ(tissue_at(*scene, {8.5, 33.5, 9.5}), index_of(TestTissue::kTissue));
+  EXPECT_EQ(tissue_number_at(*scene, {-8.5, 33.5, 9.5}), index_of(TestTissue::kWater));
+  EXPECT_EQ(tissue_number_at(*scene, {8.5, 33.5, 0.5}), index_of(TestTissue::kBone));
+  EXPECT_EQ(tissue_number_at(*scene, {8.5, 33.5, 9.5}), index_of(TestTissue::kTissue));
   ASSERT_EQ(scene->points.size(), 1u);
 }
 
@@ -90,9 +91,9 @@ TEST(TestScenes, APlaneMirrorsThingsBehindItself) {
   const TestPlane plane{40.0, 0.3};
   const TestRod rods[] = {{5.0, 20.0, 3.0, TestTissue::kPlus12}};
   const ScenePtr scene = plane_scene(SceneBox{}, TestTissue::kTissue, plane, rods);
-  EXPECT_EQ(tissue_at(*scene, {5, 20, 0}), index_of(TestTissue::kPlus12));
+  EXPECT_EQ(tissue_number_at(*scene, {5, 20, 0}), index_of(TestTissue::kPlus12));
   const Vec3 image = mirrored(Vec3(5, 20, 0), plane);
-  EXPECT_EQ(tissue_at(*scene, image), index_of(TestTissue::kGas));
+  EXPECT_EQ(tissue_number_at(*scene, image), index_of(TestTissue::kGas));
   EXPECT_LT((mirrored(image, plane) - Vec3(5, 20, 0)).norm(), 1e-12);
   // The face looks from the origin: what lies before the plane is nearer to it than its mirror image.
   EXPECT_GT(image.norm(), 40.0);
@@ -100,9 +101,9 @@ TEST(TestScenes, APlaneMirrorsThingsBehindItself) {
 
 TEST(TestScenes, AGapIsAirBetweenFaceAndSkin) {
   const ScenePtr scene = gap_scene(SceneBox{}, TestTissue::kTissue, 5.0, 6.0);
-  EXPECT_EQ(tissue_at(*scene, {0.5, 0.5, 0}), index_of(TestTissue::kTissue));
-  EXPECT_EQ(tissue_at(*scene, {6.5, 3.5, 0}), 0);
-  EXPECT_EQ(tissue_at(*scene, {6.5, 7.5, 0}), index_of(TestTissue::kTissue));
+  EXPECT_EQ(tissue_number_at(*scene, {0.5, 0.5, 0}), index_of(TestTissue::kTissue));
+  EXPECT_EQ(tissue_number_at(*scene, {6.5, 3.5, 0}), 0);
+  EXPECT_EQ(tissue_number_at(*scene, {6.5, 7.5, 0}), index_of(TestTissue::kTissue));
 }
 
 TEST(TestScenes, CellsAreMixedAtBordersAlone) {

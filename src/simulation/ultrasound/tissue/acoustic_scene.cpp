@@ -18,7 +18,7 @@
 namespace trocar::ultrasound {
 namespace {
 
-constexpr double kMargin_mm = 20.0;      ///< Air around the body: in front of the skin.
+constexpr double kAirMargin_mm = 20.0;   ///< Air around the body: in front of the skin.
 constexpr double kSkinSpacing_mm = 2.0;  ///< Of the distance to the skin, which is smooth.
 constexpr double kSkin_mm = 2.0;         ///< Thickness of the skin, as TissueTable::skin_thickness_mm.
 /// Assumed: reduces a CT's noise but keeps vessels of 3 mm. With the mean over a cell in a scan it is 1.2 mm.
@@ -124,12 +124,12 @@ class RowSampler {
 };
 
 /// Position of a target voxel between source voxels, along one axis.
-struct Between {
+struct VoxelNeighbours {
   std::int64_t low, high;
   float fraction;
 };
 
-Between between_voxels(double at, std::int64_t size) {
+VoxelNeighbours between_voxels(double at, std::int64_t size) {
   const double inside = std::clamp(at, 0.0, static_cast<double>(size - 1));
   const auto low = static_cast<std::int64_t>(inside);
   return {low, std::min(low + 1, size - 1), static_cast<float>(inside - static_cast<double>(low))};
@@ -184,7 +184,7 @@ class SceneSlices {
   }
 
   /// Linear between the surrounding source voxels of the tissue.
-  std::int8_t texture(const Between& along_u, std::uint8_t tissue) const {
+  std::int8_t texture(const VoxelNeighbours& along_u, std::uint8_t tissue) const {
     float sum = 0.0F;
     float weight = 0.0F;
     for (const auto& [w, share_w] :
@@ -213,8 +213,8 @@ class SceneSlices {
   detail::SliceBlend blend_;
   detail::TissueVotes votes_;
   std::vector<float> distance_mm_;
-  std::vector<Between> columns_;
-  Between along_v_{}, across_{};
+  std::vector<VoxelNeighbours> columns_;
+  VoxelNeighbours along_v_{}, across_{};
   std::int64_t slice_ = -1;
   std::vector<std::uint8_t> tissue_;
 };
@@ -232,7 +232,7 @@ Status check_table(const AcousticTable& table) {
 
 Status check_acoustic_scene(const anatomy::VirtualPatient& patient, const AcousticTable& table) {
   TROCAR_TRY_STATUS(check_table(table));
-  TROCAR_TRY_STATUS(detail::find_body_window(patient, kMargin_mm));
+  TROCAR_TRY_STATUS(detail::find_body_window(patient, kAirMargin_mm));
   return detail::check_tissues(patient.label_table, table);
 }
 
@@ -245,7 +245,7 @@ Result<std::shared_ptr<const AcousticScene>> make_acoustic_scene(const anatomy::
   const auto inner_tissue = table.find("adipose");
 
   report(progress, "acoustic tissues", 0.0);
-  TROCAR_TRY(const detail::BodyWindow window, detail::find_body_window(patient, kMargin_mm));
+  TROCAR_TRY(const detail::BodyWindow window, detail::find_body_window(patient, kAirMargin_mm));
   TROCAR_TRY(detail::TissueVolume source, detail::make_tissue_volume(patient, window, table));
   report(progress, "texture", 0.1);
   detail::make_texture(patient, window, kTextureSigma_mm, source);

@@ -9,13 +9,13 @@
 
 #include "core/check.h"
 #include "core/parallel.h"
+#include "ultrasound/scanner/scan_annotation.h"
 #include "volume/bitmap_font.h"
 
 namespace trocar::ultrasound {
 namespace {
 
 constexpr volume::Rgb kOutlineInk = {120, 190, 130};
-constexpr volume::Rgb kInk = {200, 205, 210};
 
 /// Colours from the baseline to the end of the scale, evenly spaced.
 constexpr std::array<volume::Rgb, 5> kToFace = {{{60, 0, 0}, {150, 0, 0}, {225, 20, 0}, {250, 120, 0}, {255, 240, 90}}};
@@ -67,11 +67,11 @@ void draw_colour_bar(volume::RgbImage& image, int column, int row, int columns, 
   }
   const int dot = std::max(1, image.columns / 640);
   const auto label = [&](double share, int at_row) {
-    volume::draw_text(image, column, at_row, fmt::format("{:+.0f}", share * scale_cm_per_s), kInk, dot);
+    volume::draw_text(image, column, at_row, fmt::format("{:+.0f}", share * scale_cm_per_s), kTextInk, dot);
   };
   label(b + 1.0, row - (volume::kGlyphHeight + 2) * dot);
   label(b - 1.0, row + rows + 2 * dot);
-  volume::draw_text(image, column, row + rows + (volume::kGlyphHeight + 5) * dot, "cm/s", kInk, dot);
+  volume::draw_text(image, column, row + rows + (volume::kGlyphHeight + 5) * dot, "cm/s", kTextInk, dot);
 }
 
 namespace detail {

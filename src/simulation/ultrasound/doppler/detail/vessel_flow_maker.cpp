@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kJoins_mm =
     6.0;  ///< Length of a vessel counted as part of the vessel that it joins. Assumed, range 3..10.
-constexpr double kMargin_mm = 9.0;
+constexpr double kVesselMargin_mm = 9.0;
 constexpr double kMostSpeed_mm_per_s = 3200.0;
 
 /// A point of a branch with lumen, and its neighbours.
@@ -23,11 +23,6 @@ struct Owner {
   const VesselBranch* branch;
   std::size_t point;
 };
-
-Vec3 voxel_place(const volume::GridGeometry& geometry, std::size_t n) {
-  const volume::Index3 at = geometry.index_of(n);
-  return geometry.centre_mm(at);
-}
 
 /// Unit tangent of the flow, and distance from the centreline, at a position near one of its points.
 struct Nearby {
@@ -123,7 +118,7 @@ VesselFlowMaker::Box VesselFlowMaker::box_of(const anatomy::Label& label) const 
   if (box.high[0] < 0) return box;
   for (std::size_t a = 0; a < 3; ++a) {
     const auto margin =
-        static_cast<std::int64_t>(std::ceil(kMargin_mm / source.spacing_mm[static_cast<Eigen::Index>(a)]));
+        static_cast<std::int64_t>(std::ceil(kVesselMargin_mm / source.spacing_mm[static_cast<Eigen::Index>(a)]));
     box.low[a] = std::max<std::int64_t>(box.low[a] - margin, 0);
     box.high[a] = std::min(box.high[a] + margin, source.size[a] - 1);
   }
@@ -152,7 +147,8 @@ volume::FloatGrid VesselFlowMaker::depth_of(const volume::MaskGrid& mask, const 
   volume::FloatGrid depth_mm(target);
   parallel_for(depth_mm.voxels.size(), 4096, [&](std::size_t first, std::size_t last) {
     for (std::size_t n = first; n < last; ++n)
-      depth_mm.voxels[n] = static_cast<float>(-volume::sample_linear(distance_mm, voxel_place(target, n)));
+      depth_mm.voxels[n] =
+          static_cast<float>(-volume::sample_linear(distance_mm, target.centre_mm(target.index_of(n))));
   });
   return depth_mm;
 }
@@ -235,7 +231,7 @@ void VesselFlowMaker::fill(const Lumen& lumen, std::size_t first_branch) {
   parallel_for(voxels.size(), 256, [&](std::size_t first, std::size_t last) {
     for (std::size_t m = first; m < last; ++m) {
       const std::size_t n = voxels[m];
-      const Vec3 p_P = voxel_place(geometry, n);
+      const Vec3 p_P = geometry.centre_mm(geometry.index_of(n));
       const Owner& owner = find_owner(owners, p_P);
       const Vec3 velocity_P = velocity_at(owner, p_P, static_cast<double>(lumen.joined.voxels[n]));
       for (std::size_t a = 0; a < 3; ++a)

@@ -28,7 +28,7 @@ std::shared_ptr<const VesselFlow> tube_flow(double cm_per_s) {
   return *make_vessel_flow(kPatient, make_steady_table(cm_per_s, kPlug));
 }
 
-Transducer linear() {
+Transducer doppler_linear() {
   Transducer transducer;
   transducer.name = "linear";
   transducer.kind = TransducerKind::kLinear;
@@ -45,8 +45,8 @@ DopplerInput look(double angle_rad, std::uint64_t seed = 1) {
   R.col(1) = beam;
   R.col(2) = R.col(0).cross(R.col(1));
   input.X_PT = Pose(R, -50.0 * beam);
-  input.geometry = make_scan_geometry(linear(), 100.0, 64, 512);
-  input.beam = make_beam(linear(), 5.0, 50.0);
+  input.geometry = make_scan_geometry(doppler_linear(), 100.0, 64, 512);
+  input.beam = make_beam(doppler_linear(), 5.0, 50.0);
   input.seed = seed;
   return input;
 }
@@ -291,7 +291,7 @@ TEST(DopplerSettings, RefuseWhatIsOutOfRange) {
 }
 
 TEST(FlowCaliper, CorrectsForTheAngle) {
-  const ScanGeometry scan = make_scan_geometry(linear(), 100.0, 64, 512);
+  const ScanGeometry scan = make_scan_geometry(doppler_linear(), 100.0, 64, 512);
   const FlowCaliper caliper{{0.0, 50.0}, {std::sqrt(3.0), -1.0}};
   EXPECT_NEAR(caliper.angle_rad(scan), std::numbers::pi / 3.0, 1e-9);
   EXPECT_NEAR(caliper.corrected_cm_per_s(20.0, scan), 40.0, 1e-9);

@@ -95,8 +95,6 @@ namespace {
 
 /// Share of the receive aperture whose sound is coherent behind an obstacle (assumed, range 0.3..1).
 constexpr double kCoherentShare = 0.5;
-/// Width of a Gaussian that replaces a uniform aperture (docs/physics.md U3).
-constexpr double kGaussianAperture = 0.2991;
 
 /// The rays of a depth. Beyond aperture * f-number the aperture no longer grows. The sum of the weights is 1.
 std::array<RayStep, kRays> rays_at(const ScanPlan& plan, std::size_t c) noexcept {

@@ -7,11 +7,12 @@
 namespace trocar::ultrasound::detail {
 namespace {
 
-constexpr double kReach_mm = 3.0;  ///< To each side: several voxels, and less than the curvature radius of most organs.
-constexpr int kMostSteps = 4;      ///< Scanlines to each side.
-constexpr float kSteepest = 1.7F;  ///< Largest slope followed from line to line,
-constexpr float kRamp = 16.0F;     ///< Samples.
-constexpr float kStep_mm = 1.2F;   ///< in addition to the step of a voxel.
+/// To each side: several voxels, and less than the curvature radius of most organs.
+constexpr double kFitReach_mm = 3.0;
+constexpr int kMostSteps = 4;        ///< Scanlines to each side.
+constexpr float kSteepest = 1.7F;    ///< Largest slope followed from line to line,
+constexpr float kRamp = 16.0F;       ///< Samples.
+constexpr float kFitStep_mm = 1.2F;  ///< in addition to the step of a voxel.
 
 std::span<const BorderKey> borders_of(const ScanPlan& plan, const FrameState& frame, int plane, int line) noexcept {
   const auto at = static_cast<std::size_t>(plan.row_of(plane, line));
@@ -78,12 +79,12 @@ float spacing_at(const ScanPlan& plan, const Border& border) noexcept {
 SurfaceFit fit_in_plane(const ScanPlan& plan, const FrameState& frame, int plane, int line,
                         const Border& border) noexcept {
   const float spacing_mm = spacing_at(plan, border);
-  const int wanted = std::max(1, static_cast<int>(kReach_mm / (kMostSteps * static_cast<double>(spacing_mm))));
+  const int wanted = std::max(1, static_cast<int>(kFitReach_mm / (kMostSteps * static_cast<double>(spacing_mm))));
   // Outer planes are not walked on every scanline.
   const int shift = plan.shift_of(plane);
   const int stride = (wanted + (1 << shift) - 1) >> shift << shift;
   const int walked = plan.walked_line(plane, line);
-  const float step = (kSteepest * static_cast<float>(stride) * spacing_mm + kStep_mm) / plan.sample_mm;
+  const float step = (kSteepest * static_cast<float>(stride) * spacing_mm + kFitStep_mm) / plan.sample_mm;
   const std::uint16_t tissues = tissues_of(border);
   Curve along_face;
   along_face.add(static_cast<float>(walked - line) * spacing_mm, border.walk);
@@ -120,7 +121,7 @@ SurfaceFit fit_surface(const ScanPlan& plan, const FrameState& frame, int plane,
   Curve across;
   for (int other = 0; other < plan.planes; ++other) {
     const float z_mm = static_cast<float>(other - plane) * plane_mm;
-    const float reach = (kSteepest * std::abs(z_mm) + kStep_mm) / plan.sample_mm;
+    const float reach = (kSteepest * std::abs(z_mm) + kFitStep_mm) / plan.sample_mm;
     if (other == plane)
       across.add(z_mm, here);
     else if (const BorderKey* next =

@@ -10,7 +10,7 @@ namespace {
 /// built against strong reflectors (assumed).
 constexpr float kBrightest = 2.0F;  // power
 /// Scanlines to each side from which clutter comes: the opening of the elements (assumed).
-constexpr double kReach_mm = 25.0;
+constexpr double kClutterReach_mm = 25.0;
 /// Detours in the layers in front, which arrive later: from this far beside the scanline, with this level relative to
 /// the echoes at the face, falling by e with this depth of the layers, and over this distance behind them (assumed).
 /// They are the haze in the near part of a bladder or gallbladder.
@@ -77,7 +77,7 @@ void sum_powers(const ScanPlan& plan, FrameState& frame) noexcept {
 
 float clutter_power(const ScanPlan& plan, const FrameState& frame, int line, std::size_t block) noexcept {
   const float share = power_of(clutter_level_db(plan.beam, kClutter_db));
-  return share * std::max(mean_around(plan, frame, line, block, kReach_mm), 0.0F);
+  return share * std::max(mean_around(plan, frame, line, block, kClutterReach_mm), 0.0F);
 }
 
 void add_clutter(const ScanPlan& plan, FrameState& frame, int first, int last) noexcept {
@@ -92,7 +92,7 @@ void add_clutter(const ScanPlan& plan, FrameState& frame, int first, int last) n
     const std::size_t place = (static_cast<std::size_t>(line) * 2654435761U) % (ScanPlan::kNoise / 2);
     float detour = 0.0F;
     for (std::size_t block = 0; block * kLobeBlock < static_cast<std::size_t>(plan.samples); ++block) {
-      const float around = mean_around(plan, frame, line, block, kReach_mm);
+      const float around = mean_around(plan, frame, line, block, kClutterReach_mm);
       const double depth_mm = static_cast<double>(block * kLobeBlock) * plan.geometry.sample_mm();
       detour = keeps * detour + (1.0F - keeps) * mean_around(plan, frame, line, block, kDetourReach_mm) *
                                     static_cast<float>(std::exp(-depth_mm / detour_depth_mm));

@@ -8,10 +8,6 @@
 namespace trocar::ultrasound::detail {
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
-/// Width of a Gaussian that replaces a uniform aperture (docs/physics.md U3).
-constexpr float kGaussianAperture = 0.2991F;
-
 /// Adds an echo to a scanline, between two samples.
 void put(const ScanPlan& plan, FrameState& frame, std::size_t row, float shown, float re, float im) noexcept {
   if (!(shown >= 0.0F && shown < static_cast<float>(plan.samples - 1))) return;
@@ -70,7 +66,7 @@ class Painter {
     constexpr int kGrainRepeats = 4;
     paint_on_lines(grain.line, grain.walk, [&](std::size_t row, const Way& way, float part) {
       float echo = part * way.gain * grain.echo;
-      const float turn = 2.0F * kPi * (grain.turn + way.shown * plan_.cycles_per_sample);
+      const float turn = 2.0F * std::numbers::pi_v<float> * (grain.turn + way.shown * plan_.cycles_per_sample);
       const float re = std::cos(turn), im = -std::sin(turn);
       for (int k = 0; k <= std::min(repeats_, kGrainRepeats); ++k) {
         put(plan_, frame_, row, way.shown + static_cast<float>(k) * part_.repeat_samples, echo * re, echo * im);
@@ -115,7 +111,8 @@ float behind(const ScanPlan& plan, const Cover& cover, float diameter_mm, float 
   const float aperture_mm =
       std::min(depth_mm / static_cast<float>(plan.beam.f_number), static_cast<float>(plan.beam.aperture_mm));
   const float piece_mm = (piece.walk + 0.5F) * plan.sample_mm;
-  const float cone_mm = kGaussianAperture * aperture_mm * std::max(0.0F, 1.0F - piece_mm / depth_mm);
+  const float cone_mm =
+      static_cast<float>(kGaussianAperture) * aperture_mm * std::max(0.0F, 1.0F - piece_mm / depth_mm);
   const float sigma2 = piece.strip_sigma2_mm2 + piece.strip_lateral * cone_mm * cone_mm;
   const float covered = std::erf(diameter_mm / (2.0F * std::sqrt(2.0F * sigma2))) *
                         std::exp(-0.5F * cover.miss2 * piece.strip_sigma2_mm2 / sigma2);

@@ -9,13 +9,12 @@
 namespace trocar::ultrasound::detail {
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
 constexpr double kSteelSpeed_m_per_s = 5790.0;  // longitudinal, stainless steel 347, CRC Handbook
 constexpr double kBoreSpeed_m_per_s = 1480.0;   // water, 20 degrees C
 constexpr float kGrain_mm = 0.25F;              // several within a resolution cell
 constexpr int kMostSegments = 1024;
 
-float amplitude(double level_db, double diameter_mm) noexcept {
+float needle_amplitude(double level_db, double diameter_mm) noexcept {
   return static_cast<float>(std::pow(10.0, level_db / 20.0) * std::sqrt(diameter_mm / kNeedleReference_mm));
 }
 
@@ -92,7 +91,7 @@ bool find_spot(const ScanPlan& plan, const FrameState& frame, const Vec3f& p_T, 
   spot.along = direction_T.dot(along);
   spot.sideways = direction_T.x() * along.y() - direction_T.y() * along.x();
   spot.elevation = direction_T.z();
-  const float root_two_pi = std::sqrt(2.0F * kPi);
+  const float root_two_pi = std::sqrt(2.0F * std::numbers::pi_v<float>);
   spot.lateral_sigma_mm = spot.spacing_mm / (plan.surface_scale[spot.sample] * root_two_pi);
   const float l = spot.sideways / spot.lateral_sigma_mm;
   const float a = spot.along / static_cast<float>(plan.beam.axial_sigma_mm);
@@ -111,10 +110,10 @@ class Layer {
     const double diameter_mm = std::clamp(needle.diameter_mm, 0.2, 5.0);
     part.diameter_mm = static_cast<float>(diameter_mm);
     tip_mm_ = static_cast<float>(std::clamp(needle.tip_mm, 0.0, 30.0));
-    smooth_ = amplitude(kShaftSmooth_db, diameter_mm);
-    rough_ = amplitude(kShaftRough_db, diameter_mm);
-    tip_rough_ = amplitude(kTipRough_db, diameter_mm);
-    tip_point_ = amplitude(kTipPoint_db, diameter_mm);
+    smooth_ = needle_amplitude(kShaftSmooth_db, diameter_mm);
+    rough_ = needle_amplitude(kShaftRough_db, diameter_mm);
+    tip_rough_ = needle_amplitude(kTipRough_db, diameter_mm);
+    tip_point_ = needle_amplitude(kTipPoint_db, diameter_mm);
   }
 
   void add_tip(const Vec3f& tip_T, const Vec3f& direction_T) noexcept {

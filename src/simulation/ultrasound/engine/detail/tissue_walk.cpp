@@ -122,7 +122,7 @@ Vec3 impedance_slope(const FrameState& frame, const std::array<TissueRow, kTissu
 
 namespace {
 
-constexpr int kBlock = 16;
+constexpr int kWalkBlock = 16;
 constexpr float kSilence = -60.0F;  // neper
 /// Organs have capsules: minimum reflection of a border, even between tissues of equal impedance (assumed).
 constexpr float kWrapping = 0.03F;
@@ -230,7 +230,8 @@ class Walk {
     const std::int32_t* const cells = result_.cell.data();
     const auto is_whole = [&](int n) { return cells[n] >= 0 && frame_.tiles.tile_tissue(cells[n]) == tissue_; };
     int n = s;
-    while (n + kBlock <= end && is_whole(n) && is_whole(n + 5) && is_whole(n + 10) && is_whole(n + 15)) n += kBlock;
+    while (n + kWalkBlock <= end && is_whole(n) && is_whole(n + 5) && is_whole(n + 10) && is_whole(n + 15))
+      n += kWalkBlock;
     for (; n < end && cells[n] >= 0 && frame_.tiles.tissue(cells[n]) == tissue_; ++n)
       if (n % kAhead == 0) frame_.tiles.prefetch(cells[n + kAhead]);
     return n - s;

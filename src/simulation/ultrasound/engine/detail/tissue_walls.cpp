@@ -10,7 +10,7 @@ namespace {
 constexpr float kLeastFacing = 0.05F;
 
 /// Share of a tissue in the eight voxels around a fractional index, 0..1.
-float share_of(const FrameState& frame, std::uint8_t tissue, const Vec3& index) noexcept {
+float tissue_share_at(const FrameState& frame, std::uint8_t tissue, const Vec3& index) noexcept {
   std::array<float, 3> at{};
   for (std::size_t a = 0; a < 3; ++a)
     at[a] = std::clamp(static_cast<float>(index[static_cast<Eigen::Index>(a)]), 0.0F,
@@ -30,8 +30,8 @@ float facing(const FrameState& frame, const LineWalk& line, std::uint8_t inside,
   const Vec3 along = Vec3(line.along[0], line.along[1], line.along[2]).cwiseProduct(spacing_mm);
   Vec3 slope = Vec3::Zero();
   for (const Vec3& corner : corners)
-    slope += static_cast<double>(
-                 share_of(frame, inside, Vec3(border.index[0], border.index[1], border.index[2]) + kReach * corner)) *
+    slope += static_cast<double>(tissue_share_at(
+                 frame, inside, Vec3(border.index[0], border.index[1], border.index[2]) + kReach * corner)) *
              corner;
   slope = slope.cwiseQuotient(spacing_mm);
   const double size = slope.norm();

@@ -8,17 +8,11 @@ namespace {
 
 using namespace testing;
 
-constexpr double kDepth_mm = 120.0;
-
-Artefacts losses() {
-  Artefacts artefacts = no_artefacts();
-  artefacts.attenuation = true;
-  return artefacts;
-}
+constexpr double kShadeDepth_mm = 120.0;
 
 Acquisition deep(const Transducer& transducer, const Artefacts& artefacts) {
   Acquisition acquisition = plain(transducer, artefacts);
-  acquisition.depth_mm = kDepth_mm;
+  acquisition.depth_mm = kShadeDepth_mm;
   return acquisition;
 }
 
@@ -27,7 +21,7 @@ class Shade {
  public:
   explicit Shade(const ScenePtr& with)
       : with_(with, convex(), deep(convex(), losses())),
-        without_(homogeneous_scene(box_for(convex(), kDepth_mm), TestTissue::kLossless), convex(),
+        without_(homogeneous_scene(box_for(convex(), kShadeDepth_mm), TestTissue::kLossless), convex(),
                  deep(convex(), losses())),
         a_(with_.render({})),
         b_(without_.render({})) {}
@@ -53,8 +47,8 @@ double along_scanline(double x0_mm, double y0_mm, double y_mm) {
 
 TEST(Penumbra, OnTheEdgeHalfOfTheApertureIsLeftBothWays) {
   constexpr double kEdge_mm = 15.0, kTop_mm = 26.0;
-  const Shade shade(
-      slab_scene(box_for(convex(), kDepth_mm), TestTissue::kLossless, {kEdge_mm, kTop_mm, 36.0, TestTissue::kBone}));
+  const Shade shade(slab_scene(box_for(convex(), kShadeDepth_mm), TestTissue::kLossless,
+                               {kEdge_mm, kTop_mm, 36.0, TestTissue::kBone}));
   for (const double y_mm : {70.0, 100.0}) {
     const double edge_mm = along_scanline(kEdge_mm, kTop_mm, y_mm);
     // Half of the amplitude in each direction: -12 dB. The slab's voxels of 1 mm, and rays that are not infinitely
@@ -73,8 +67,8 @@ TEST(Penumbra, OnTheEdgeHalfOfTheApertureIsLeftBothWays) {
 
 TEST(Penumbra, GrowsBehindTheEdge) {
   constexpr double kEdge_mm = 15.0, kTop_mm = 26.0;
-  const Shade shade(
-      slab_scene(box_for(convex(), kDepth_mm), TestTissue::kLossless, {kEdge_mm, kTop_mm, 36.0, TestTissue::kBone}));
+  const Shade shade(slab_scene(box_for(convex(), kShadeDepth_mm), TestTissue::kLossless,
+                               {kEdge_mm, kTop_mm, 36.0, TestTissue::kBone}));
   // Distance over which the level rises from -20 to -2 dB.
   const auto width_mm = [&](double y_mm) {
     const double edge_mm = along_scanline(kEdge_mm, kTop_mm, y_mm);
@@ -92,14 +86,14 @@ TEST(Penumbra, GrowsBehindTheEdge) {
 
 TEST(Penumbra, SoundPassesAroundASmallObstacle) {
   const TestRod rods[] = {{0.0, 20.0, 3.0, TestTissue::kBone}};
-  const Shade shade(rods_scene(box_for(convex(), kDepth_mm), TestTissue::kLossless, rods));
+  const Shade shade(rods_scene(box_for(convex(), kShadeDepth_mm), TestTissue::kLossless, rods));
   EXPECT_LT(shade.at(0.0, 32.0), -25.0);
   EXPECT_GT(shade.at(0.0, 105.0), -30.0);
   EXPECT_GT(shade.at(0.0, 105.0), shade.at(0.0, 60.0) + 3.0);
 }
 
 TEST(Penumbra, LeavesTissueWithoutObstaclesAsItIs) {
-  const Shade shade(homogeneous_scene(box_for(convex(), kDepth_mm), TestTissue::kLossless));
+  const Shade shade(homogeneous_scene(box_for(convex(), kShadeDepth_mm), TestTissue::kLossless));
   for (const double x_mm : {-40.0, 0.0, 40.0}) EXPECT_NEAR(shade.at(x_mm, 80.0), 0.0, 1e-3);
 }
 

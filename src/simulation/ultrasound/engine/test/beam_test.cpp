@@ -11,10 +11,9 @@
 namespace trocar::ultrasound {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kFwhm = 2.3548;  // of a Gaussian, in standard deviations
+constexpr double kFwhmOfBeam = 2.3548;  // of a Gaussian, in standard deviations
 
-Transducer convex() {
+Transducer example_transducer() {
   Transducer t;
   t.frequency_mhz = 3.0;
   t.bandwidth = 0.5;
@@ -29,7 +28,7 @@ Transducer convex() {
 /// Pressure of a uniform, focused aperture off its axis: Fresnel's integral, summed up.
 double field(double x_mm, double depth_mm, double aperture_mm, double focus_mm, double wavelength_mm) {
   constexpr int kPoints = 400;
-  const double k = 2.0 * kPi / wavelength_mm;
+  const double k = 2.0 * std::numbers::pi / wavelength_mm;
   std::complex<double> sum = 0.0;
   for (int i = 0; i < kPoints; ++i) {
     const double u = aperture_mm * ((i + 0.5) / kPoints - 0.5);
@@ -48,30 +47,30 @@ double width_mm(const Profile& profile) {
 }
 
 TEST(Beam, PulseHasTheTransducersBandwidth) {
-  const Transducer t = convex();
+  const Transducer t = example_transducer();
   const Beam beam = make_beam(t, t.frequency_mhz, 60.0);
   // The envelope's spectrum at half the bandwidth from the centre, by the sum itself.
   const double off_mhz = 0.5 * t.bandwidth * t.frequency_mhz;
   double spectrum = 0.0, middle = 0.0;
   for (double z_mm = -10.0; z_mm <= 10.0; z_mm += 0.001) {
     const double envelope = std::exp(-0.5 * std::pow(z_mm / beam.axial_sigma_mm, 2));
-    spectrum += envelope * std::cos(2.0 * kPi * off_mhz * 2.0 * z_mm / kScannerSpeed_mm_per_us);
+    spectrum += envelope * std::cos(2.0 * std::numbers::pi * off_mhz * 2.0 * z_mm / kScannerSpeed_mm_per_us);
     middle += envelope;
   }
   EXPECT_NEAR(spectrum / middle, 0.5, 1e-6);
 }
 
 TEST(Beam, LateralWidthAtTheFocusIsThatOfTheExactApertures) {
-  const Transducer t = convex();
+  const Transducer t = example_transducer();
   const Beam beam = make_beam(t, 3.0, 60.0);
   const double exact_mm = width_mm(
       [&](double x_mm) { return std::pow(field(x_mm, 60.0, 60.0 / t.f_number, 60.0, beam.wavelength_mm), 2); });
-  EXPECT_NEAR(kFwhm * beam.lateral_sigma_mm(60.0), exact_mm, 0.01 * exact_mm);
+  EXPECT_NEAR(kFwhmOfBeam * beam.lateral_sigma_mm(60.0), exact_mm, 0.01 * exact_mm);
   EXPECT_NEAR(exact_mm, 0.8859 * beam.wavelength_mm * t.f_number, 0.01);
 }
 
 TEST(Beam, LateralWidthOffTheFocusFollowsFresnel) {
-  const Transducer t = convex();
+  const Transducer t = example_transducer();
   const Beam beam = make_beam(t, 3.0, 60.0);
   const double transmit_mm = 60.0 / t.f_number;
   for (const double depth_mm : {30.0, 45.0, 55.0, 70.0, 85.0, 110.0, 140.0}) {
@@ -81,12 +80,12 @@ TEST(Beam, LateralWidthOffTheFocusFollowsFresnel) {
              field(x_mm, depth_mm, receive_mm, depth_mm, beam.wavelength_mm);
     });
     // Uniform apertures have Fresnel ripples that no Gaussian has.
-    EXPECT_NEAR(kFwhm * beam.lateral_sigma_mm(depth_mm), exact_mm, 0.15 * exact_mm) << depth_mm;
+    EXPECT_NEAR(kFwhmOfBeam * beam.lateral_sigma_mm(depth_mm), exact_mm, 0.15 * exact_mm) << depth_mm;
   }
 }
 
 TEST(Beam, SliceIsThinnestNearTheLensFocus) {
-  const Beam beam = make_beam(convex(), 3.0, 80.0);
+  const Beam beam = make_beam(example_transducer(), 3.0, 80.0);
   double best_mm = 1e9, at_mm = 0.0;
   for (double depth_mm = 1.0; depth_mm < 200.0; depth_mm += 1.0) {
     if (beam.elevation_sigma_mm(depth_mm) >= best_mm) continue;
@@ -98,7 +97,7 @@ TEST(Beam, SliceIsThinnestNearTheLensFocus) {
   EXPECT_GT(at_mm, 45.0);
   const double exact_mm =
       width_mm([&](double z_mm) { return std::pow(field(z_mm, 65.0, 13.0, 65.0, beam.wavelength_mm), 2); });
-  EXPECT_NEAR(kFwhm * beam.elevation_sigma_mm(65.0), exact_mm, 0.01 * exact_mm);
+  EXPECT_NEAR(kFwhmOfBeam * beam.elevation_sigma_mm(65.0), exact_mm, 0.01 * exact_mm);
   EXPECT_GT(beam.elevation_sigma_mm(0.0), 2.0 * best_mm);
   EXPECT_GT(beam.elevation_sigma_mm(160.0), 2.0 * best_mm);
 }
@@ -125,8 +124,8 @@ TEST(Beam, WidthsArePositiveAndWithoutStepsAtEveryDepth) {
 }
 
 TEST(Beam, HigherFrequencyIsFinerInEveryDirection) {
-  const Beam low = make_beam(convex(), 2.0, 70.0);
-  const Beam high = make_beam(convex(), 5.0, 70.0);
+  const Beam low = make_beam(example_transducer(), 2.0, 70.0);
+  const Beam high = make_beam(example_transducer(), 5.0, 70.0);
   EXPECT_NEAR(low.axial_sigma_mm / high.axial_sigma_mm, 2.5, 1e-12);
   EXPECT_NEAR(low.lateral_sigma_mm(70.0) / high.lateral_sigma_mm(70.0), 2.5, 1e-12);
   EXPECT_NEAR(low.elevation_sigma_mm(65.0) / high.elevation_sigma_mm(65.0), 2.5, 1e-12);

@@ -14,7 +14,7 @@ namespace {
 using namespace testing;
 
 /// Level of a cyst of 8 mm radius at 70 mm relative to the tissue beside it, dB.
-double cyst_db(bool has_clutter) {
+double cluttered_cyst_db(bool has_clutter) {
   const Transducer transducer = convex();
   const TestRod cyst{0.0, 70.0, 8.0, TestTissue::kWater};
   Artefacts artefacts = no_artefacts();
@@ -26,9 +26,9 @@ double cyst_db(bool has_clutter) {
 }
 
 TEST(TissueClutter, FillsAnAnechoicCyst) {
-  EXPECT_LT(cyst_db(false), -45.0);
+  EXPECT_LT(cluttered_cyst_db(false), -45.0);
   // The cyst itself is a part of what is around it.
-  EXPECT_NEAR(cyst_db(true), static_cast<double>(detail::kClutter_db), 3.0);
+  EXPECT_NEAR(cluttered_cyst_db(true), static_cast<double>(detail::kClutter_db), 3.0);
 }
 
 TEST(TissueClutter, IsStrongestBehindTheNearWallOfShallowFluid) {

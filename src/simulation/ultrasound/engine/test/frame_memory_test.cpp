@@ -16,7 +16,7 @@ namespace {
 using namespace testing;
 
 /// Rods, a bone and a plane of gas. Borders differ from plane to plane: some rods end within the beam.
-ScenePtr make_scene(const Transducer& transducer, double plane_tilt_rad) {
+ScenePtr make_rods_scene(const Transducer& transducer, double plane_tilt_rad) {
   const TestRod rods[] = {{0.0, 30.0, 9.0, TestTissue::kSlow, 1.0},
                           {-16.0, 34.0, 7.0, TestTissue::kFast, 3.0},
                           {15.0, 28.0, 6.0, TestTissue::kDense, 0.5},
@@ -27,7 +27,7 @@ ScenePtr make_scene(const Transducer& transducer, double plane_tilt_rad) {
   return plane_scene(box_for(transducer, 90.0, 1.0), TestTissue::kTissue, plane, rods, points);
 }
 
-Acquisition coarse(const Transducer& transducer) {
+Acquisition coarse_frames(const Transducer& transducer) {
   Acquisition acquisition = plain(transducer, Artefacts{});
   acquisition.depth_mm = 80.0;
   acquisition.lines = 64;
@@ -48,7 +48,7 @@ struct Shot {
 };
 
 std::vector<Shot> make_shots(const Transducer& transducer) {
-  const Acquisition usual = coarse(transducer);
+  const Acquisition usual = coarse_frames(transducer);
   Acquisition shallow = usual, fine = usual, bare = usual, thin = usual;
   shallow.depth_mm = 45.0;
   shallow.samples = 190;
@@ -107,7 +107,7 @@ TEST(FrameMemory, EngineGivesTheSameBitsAfterAnyOtherFrame) {
   const Transducer transducers[] = {convex(), linear()};
   for (std::size_t t = 0; t < 2; ++t) {
     const Transducer &transducer = transducers[t], &other_transducer = transducers[1 - t];
-    const ScenePtr scene = make_scene(transducer, 0.2), other_scene = make_scene(other_transducer, -0.3);
+    const ScenePtr scene = make_rods_scene(transducer, 0.2), other_scene = make_rods_scene(other_transducer, -0.3);
     const std::vector<Shot> shots = make_shots(transducer), other_shots = make_shots(other_transducer);
     std::vector<Taken> fresh;
     for (const Shot& shot : shots) {
@@ -175,7 +175,7 @@ ScanPicture picture_of(PictureMaker& maker, const std::shared_ptr<const VesselFl
 
 TEST(FrameMemory, PictureWithoutPersistenceIsTheSameAfterAnyOther) {
   const Transducer transducer = convex();
-  const ScenePtr scene = make_scene(transducer, 0.2);
+  const ScenePtr scene = make_rods_scene(transducer, 0.2);
   const auto flow = make_flow();
   const std::vector<Ask> asks = make_asks(transducer);
   std::vector<ScanPicture> fresh;
@@ -197,7 +197,7 @@ TEST(FrameMemory, PictureWithoutPersistenceIsTheSameAfterAnyOther) {
 
 TEST(FrameMemory, ColourThatIsSwitchedOnAgainHasNoOldFrameInIt) {
   const Transducer transducer = convex();
-  const ScenePtr scene = make_scene(transducer, 0.2);
+  const ScenePtr scene = make_rods_scene(transducer, 0.2);
   const auto flow = make_flow();
   Ask first = make_asks(transducer)[0];
   const auto colour_of = [&](PictureMaker& maker, bool has_doppler, const Pose& X_PT) {

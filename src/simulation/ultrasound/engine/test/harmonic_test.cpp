@@ -107,7 +107,7 @@ TEST(HarmonicImage, ShowsAPointThinnerThanTheTransmittedFrequencyDoes) {
 }
 
 /// Level of a cyst of 8 mm radius at the focus relative to the tissue beside it, dB.
-double cyst_db(bool is_harmonic) {
+double harmonic_cyst_db(bool is_harmonic) {
   const TestRod cyst{0.0, kFocus_mm, 8.0, TestTissue::kWater};
   Artefacts artefacts = no_artefacts();
   artefacts.clutter = true;
@@ -118,9 +118,9 @@ double cyst_db(bool is_harmonic) {
 }
 
 TEST(HarmonicImage, HasLessClutterInACyst) {
-  const double fundamental_db = cyst_db(false);
+  const double fundamental_db = harmonic_cyst_db(false);
   EXPECT_GT(fundamental_db, detail::kClutter_db);
-  EXPECT_NEAR(cyst_db(true), 1.5 * fundamental_db, 1.5) << "its transmitted half counts twice";
+  EXPECT_NEAR(harmonic_cyst_db(true), 1.5 * fundamental_db, 1.5) << "its transmitted half counts twice";
 }
 
 /// Level in shallow fluid behind 25 mm of tissue, relative to the tissue, as the scanner shows it, dB.

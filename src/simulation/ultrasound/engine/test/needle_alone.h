@@ -17,7 +17,7 @@ using namespace ultrasound::detail;  // NOLINT: tests only
 
 inline constexpr double kPi = std::numbers::pi;
 
-inline ultrasound::Transducer convex() {
+inline ultrasound::Transducer default_convex() {
   ultrasound::Transducer transducer;
   transducer.name = "convex";
   return transducer;
@@ -35,15 +35,17 @@ inline ultrasound::Acquisition shallow(int lines = 128, int samples = 640) {
 }
 
 inline ultrasound::BMode engine_in(ultrasound::TestTissue tissue) {
-  return {ultrasound::homogeneous_scene(ultrasound::box_for(convex(), 100.0, 2.0), tissue), convex(), shallow()};
+  return {ultrasound::homogeneous_scene(ultrasound::box_for(default_convex(), 100.0, 2.0), tissue), default_convex(),
+          shallow()};
 }
 
 /// Renders the echoes of needles only, like the engine in a medium without loss and scatterers.
 class NeedleAlone {
  public:
   explicit NeedleAlone(const ultrasound::Acquisition& acquisition = shallow())
-      : scene(ultrasound::homogeneous_scene(ultrasound::box_for(convex(), 100.0, 3.0), ultrasound::TestTissue::kWater)),
-        plan(make_scan_plan(*scene, convex(), acquisition)),
+      : scene(ultrasound::homogeneous_scene(ultrasound::box_for(default_convex(), 100.0, 3.0),
+                                            ultrasound::TestTissue::kWater)),
+        plan(make_scan_plan(*scene, default_convex(), acquisition)),
         frame(make_frame_state(*scene)),
         image(make_needle_image(plan)),
         rows(plan) {

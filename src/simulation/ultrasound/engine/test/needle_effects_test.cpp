@@ -53,8 +53,8 @@ TEST(NeedleEffects, ShadowOfACrossingNeedleFills) {
 }
 
 TEST(NeedleEffects, GivesWayWithPressedTissue) {
-  const ScenePtr scene = homogeneous_scene(box_for(convex(), 100.0, 2.0), TestTissue::kWater);
-  BMode engine(scene, convex(), shallow());
+  const ScenePtr scene = homogeneous_scene(box_for(default_convex(), 100.0, 2.0), TestTissue::kWater);
+  BMode engine(scene, default_convex(), shallow());
   const auto shaft = shaft_to({40.0, 16.0, 0.0}, in_plane(0.5 * kPi), 80.0);
   const NeedleEcho needle = needle_of(shaft);
   BModeInput input;

@@ -228,7 +228,7 @@ TEST(NeedleImage, FollowsABentShaft) {
 
 TEST(NeedleImage, LiesDeeperUnderSlowTissue) {
   const TestLayer layers[] = {{30.0, TestTissue::kSlow}, {1e9, TestTissue::kWater}};
-  Transducer linear = convex();
+  Transducer linear = default_convex();
   linear.kind = TransducerKind::kLinear;
   BMode engine(layers_scene(box_for(linear, 100.0, 2.0), layers), linear, shallow());
   const auto shaft = shaft_to({30.0, 60.0, 0.0}, in_plane(0.5 * kPi), 60.0);

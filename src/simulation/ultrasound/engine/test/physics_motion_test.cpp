@@ -10,7 +10,7 @@ namespace {
 
 using namespace testing;
 
-ScenePtr block(const Transducer& transducer) {
+ScenePtr lossless_block(const Transducer& transducer) {
   SceneBox box = box_for(transducer, transducer.depth_mm, 2.0);
   box.half_thickness_mm = 30.0;
   return homogeneous_scene(box, TestTissue::kLossless);
@@ -38,7 +38,7 @@ Match best_match(const EchoPatch& still, const BasebandFrame& moved, const Patch
 
 TEST(Motion, OfTheTransducerAcrossShiftsTheSpeckleTheOtherWay) {
   const Transducer transducer = linear();
-  BMode engine(block(transducer), transducer, plain(transducer));
+  BMode engine(lossless_block(transducer), transducer, plain(transducer));
   const PatchBounds bounds{80, 180, 12.0, 28.0};
   const EchoPatch still = envelope_patch(engine.render({}), bounds);
   for (const int by : {1, 3, 10}) {
@@ -53,7 +53,7 @@ TEST(Motion, OfTheTransducerAcrossShiftsTheSpeckleTheOtherWay) {
 
 TEST(Motion, OfTheTransducerIntoDepthShiftsTheSpeckleUp) {
   const Transducer transducer = linear();
-  BMode engine(block(transducer), transducer, plain(transducer, no_artefacts()));
+  BMode engine(lossless_block(transducer), transducer, plain(transducer, no_artefacts()));
   const PatchBounds bounds{80, 180, 14.0, 24.0};
   // Along the beam the pattern keeps its shape only as far as the beam does. The dented skin is no part of this: the
   // scene has air behind it, so the transducer starts a little away.
@@ -69,7 +69,7 @@ TEST(Motion, OfTheTransducerIntoDepthShiftsTheSpeckleUp) {
 TEST(Motion, InElevationDecorrelatesAsTheBeamIsThick) {
   const Transducer transducer = convex();
   Acquisition acquisition = plain(transducer);
-  BMode engine(block(transducer), transducer, acquisition);
+  BMode engine(lossless_block(transducer), transducer, acquisition);
   for (const double depth_mm : {40.0, 60.0, 100.0}) {
     const PatchBounds bounds{10, 246, depth_mm - 6.0, depth_mm + 6.0};
     const EchoPatch still = intensity_of(envelope_patch(engine.render({}), bounds));
@@ -87,7 +87,7 @@ TEST(Motion, InElevationDecorrelatesAsTheBeamIsThick) {
 
 TEST(Motion, OfAnotherScannersFrameIsWithoutMemory) {
   const Transducer transducer = convex();
-  BMode engine(block(transducer), transducer, plain(transducer, Artefacts{}));
+  BMode engine(lossless_block(transducer), transducer, plain(transducer, Artefacts{}));
   const BasebandFrame first = engine.render({});
   engine.render({at_elevation(7.0), {}, 0.0});
   const BasebandFrame& again = engine.render({});
@@ -97,7 +97,7 @@ TEST(Motion, OfAnotherScannersFrameIsWithoutMemory) {
 
 TEST(Frame, IsTheSameWhoeverComputesIt) {
   const Transducer transducer = convex();
-  const ScenePtr scene = block(transducer);
+  const ScenePtr scene = lossless_block(transducer);
   BMode engine(scene, transducer, plain(transducer, Artefacts{}));
   const BasebandFrame alone = engine.render({at_elevation(3.0), {}, 0.0});
   // Two engines at once share the threads: other parts fall to other threads.

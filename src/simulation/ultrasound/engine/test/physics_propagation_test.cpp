@@ -7,12 +7,6 @@ namespace {
 
 using namespace testing;
 
-Artefacts losses() {
-  Artefacts artefacts = no_artefacts();
-  artefacts.attenuation = true;
-  return artefacts;
-}
-
 /// Slope of speckle's level in one tissue, dB/cm.
 double slope_db_per_cm(TestTissue tissue, double frequency_mhz, const Artefacts& artefacts) {
   const Transducer transducer = convex();

@@ -7,12 +7,12 @@ namespace {
 
 using namespace testing;
 
-constexpr int kFrames = 6;
+constexpr int kSpeckleFrames = 6;
 
-/// A block that kFrames frames, kFrameStep_mm apart, fit into. One tissue needs no fine grid.
-SceneBox thick_box(const Transducer& transducer) {
+/// A block that kSpeckleFrames frames, kFrameStep_mm apart, fit into. One tissue needs no fine grid.
+SceneBox box_of_frames(const Transducer& transducer) {
   SceneBox box = box_for(transducer, transducer.depth_mm, 2.0);
-  box.half_thickness_mm = 0.5 * kFrames * kFrameStep_mm + 8.0;
+  box.half_thickness_mm = 0.5 * kSpeckleFrames * kFrameStep_mm + 8.0;
   return box;
 }
 
@@ -24,8 +24,9 @@ struct Speckle {
 /// Speckle of a band of depth, gathered over frames; every line but those at the edges.
 Speckle speckle_of(BMode& engine, double near_mm, double far_mm) {
   Speckle speckle;
-  for (int n = 0; n < kFrames; ++n) {
-    const BasebandFrame& frame = engine.render({at_elevation(kFrameStep_mm * (n - 0.5 * (kFrames - 1))), {}, 0.0});
+  for (int n = 0; n < kSpeckleFrames; ++n) {
+    const BasebandFrame& frame =
+        engine.render({at_elevation(kFrameStep_mm * (n - 0.5 * (kSpeckleFrames - 1))), {}, 0.0});
     const EchoPatch patch = envelope_patch(frame, {10, frame.geometry.lines - 10, near_mm, far_mm});
     const SpeckleCorrelation correlation = speckle_correlation(intensity_of(patch));
     speckle.cells += correlation.cells;
@@ -36,15 +37,15 @@ Speckle speckle_of(BMode& engine, double near_mm, double far_mm) {
   return speckle;
 }
 
-struct Case {
+struct SpeckleCase {
   const char* transducer;
   double near_mm, far_mm;
 };
-class FullyDevelopedSpeckle : public ::testing::TestWithParam<Case> {};
+class FullyDevelopedSpeckle : public ::testing::TestWithParam<SpeckleCase> {};
 
 TEST_P(FullyDevelopedSpeckle, IsRayleigh) {
   const Transducer transducer = shipped(GetParam().transducer);
-  BMode engine(homogeneous_scene(thick_box(transducer), TestTissue::kLossless), transducer, plain(transducer));
+  BMode engine(homogeneous_scene(box_of_frames(transducer), TestTissue::kLossless), transducer, plain(transducer));
   const Speckle speckle = speckle_of(engine, GetParam().near_mm, GetParam().far_mm);
   const SpeckleMoments moments = speckle_moments(speckle.envelope);
   RecordProperty("cells", std::to_string(speckle.cells));
@@ -60,10 +61,12 @@ TEST_P(FullyDevelopedSpeckle, IsRayleigh) {
 }
 
 INSTANTIATE_TEST_SUITE_P(DepthsAndTransducers, FullyDevelopedSpeckle,
-                         ::testing::Values(Case{"C5-2", 15, 45}, Case{"C5-2", 60, 90}, Case{"C5-2", 100, 125},
-                                           Case{"C5-2", 130, 158}, Case{"L14-5", 5, 12}, Case{"L14-5", 15, 25},
-                                           Case{"L14-5", 28, 39}, Case{"P4-2", 40, 90}, Case{"liver-sweep", 60, 100}),
-                         [](const ::testing::TestParamInfo<Case>& each) {
+                         ::testing::Values(SpeckleCase{"C5-2", 15, 45}, SpeckleCase{"C5-2", 60, 90},
+                                           SpeckleCase{"C5-2", 100, 125}, SpeckleCase{"C5-2", 130, 158},
+                                           SpeckleCase{"L14-5", 5, 12}, SpeckleCase{"L14-5", 15, 25},
+                                           SpeckleCase{"L14-5", 28, 39}, SpeckleCase{"P4-2", 40, 90},
+                                           SpeckleCase{"liver-sweep", 60, 100}),
+                         [](const ::testing::TestParamInfo<SpeckleCase>& each) {
                            std::string name = each.param.transducer;
                            std::replace(name.begin(), name.end(), '-', '_');
                            return name + "_" + std::to_string(static_cast<int>(each.param.near_mm)) + "mm";
@@ -71,7 +74,7 @@ INSTANTIATE_TEST_SUITE_P(DepthsAndTransducers, FullyDevelopedSpeckle,
 
 TEST(Speckle, ScattersFollowsBackscatterAndStaysRayleigh) {
   const Transducer transducer = convex();
-  const ScenePtr scene = homogeneous_scene(thick_box(transducer), TestTissue::kLossless);
+  const ScenePtr scene = homogeneous_scene(box_of_frames(transducer), TestTissue::kLossless);
   BMode engine(scene, transducer, plain(transducer));
   BMode brighter(
       with_table(scene, [](AcousticTable& t) { t.tissues[index_of(TestTissue::kLossless)].backscatter_db = 9.0; }),
@@ -84,7 +87,7 @@ TEST(Speckle, ScattersFollowsBackscatterAndStaysRayleigh) {
 
 TEST(Speckle, OfLessDetailKeepsItsPattern) {
   const Transducer transducer = convex();
-  const ScenePtr scene = homogeneous_scene(thick_box(transducer), TestTissue::kLossless);
+  const ScenePtr scene = homogeneous_scene(box_of_frames(transducer), TestTissue::kLossless);
   const Acquisition full = plain(transducer);
   Acquisition fewer = full, coarse = full;
   fewer.scatterers = 2.0;
@@ -105,7 +108,7 @@ TEST(Speckle, OfLessDetailKeepsItsPattern) {
 
 TEST(Speckle, OfFewScatterersIsNotFullyDeveloped) {
   const Transducer transducer = convex();
-  const ScenePtr scene = homogeneous_scene(thick_box(transducer), TestTissue::kLossless);
+  const ScenePtr scene = homogeneous_scene(box_of_frames(transducer), TestTissue::kLossless);
   BMode engine(
       with_table(scene, [](AcousticTable& t) { t.tissues[index_of(TestTissue::kLossless)].scatterer_share = 0.05; }),
       transducer, plain(transducer));
@@ -119,17 +122,18 @@ TEST(Speckle, OfFewScatterersIsNotFullyDeveloped) {
 TEST(Speckle, WidthsAreTheBeams) {
   for (const char* name : {"C5-2", "L14-5"}) {
     const Transducer transducer = shipped(name);
-    BMode engine(homogeneous_scene(thick_box(transducer), TestTissue::kLossless), transducer, plain(transducer));
+    BMode engine(homogeneous_scene(box_of_frames(transducer), TestTissue::kLossless), transducer, plain(transducer));
     for (const double share : {0.3, 0.5, 0.8}) {
       const double depth_mm = share * transducer.depth_mm;
       const double half_mm = 0.03 * transducer.depth_mm;  // the beam's width changes little over it
       double axial_mm = 0.0, lateral_mm = 0.0;
-      for (int n = 0; n < kFrames; ++n) {
-        const BasebandFrame& frame = engine.render({at_elevation(kFrameStep_mm * (n - 0.5 * (kFrames - 1))), {}, 0.0});
+      for (int n = 0; n < kSpeckleFrames; ++n) {
+        const BasebandFrame& frame =
+            engine.render({at_elevation(kFrameStep_mm * (n - 0.5 * (kSpeckleFrames - 1))), {}, 0.0});
         const SpeckleCorrelation c = speckle_correlation(intensity_of(
             envelope_patch(frame, {10, frame.geometry.lines - 10, depth_mm - half_mm, depth_mm + half_mm})));
-        axial_mm += c.axial_fwhm_mm / kFrames;
-        lateral_mm += c.lateral_fwhm_mm / kFrames;
+        axial_mm += c.axial_fwhm_mm / kSpeckleFrames;
+        lateral_mm += c.lateral_fwhm_mm / kSpeckleFrames;
       }
       const Beam beam = make_beam(transducer, transducer.frequency_mhz, transducer.focus_mm);
       constexpr double kFwhm = 2.3548;

@@ -13,19 +13,19 @@ namespace {
 
 using namespace testing;
 
-constexpr int kLines = 128;
+constexpr int kRollingLines = 128;
 
-ScenePtr make_scene(const Transducer& transducer) {
+ScenePtr make_rolling_scene(const Transducer& transducer) {
   const TestRod rods[] = {{0.0, 30.0, 9.0, TestTissue::kSlow, 1.0},
                           {-16.0, 34.0, 7.0, TestTissue::kFast, 3.0},
                           {-6.0, 52.0, 8.0, TestTissue::kPlus6, 2.0}};
   return plane_scene(box_for(transducer, 90.0, 1.0), TestTissue::kTissue, TestPlane{64.0, 0.1}, rods, {});
 }
 
-Acquisition coarse(const Transducer& transducer) {
+Acquisition coarse_rolling(const Transducer& transducer) {
   Acquisition acquisition = plain(transducer, Artefacts{});
   acquisition.depth_mm = 80.0;
-  acquisition.lines = kLines;
+  acquisition.lines = kRollingLines;
   acquisition.samples = 400;
   return acquisition;
 }
@@ -53,20 +53,20 @@ double difference(const BasebandFrame& a, const BasebandFrame& b, const LineRang
 
 TEST(Rolling, OtherScanlinesKeepTheirEchoes) {
   const Transducer transducer = convex();
-  BMode engine(make_scene(transducer), transducer, coarse(transducer));
+  BMode engine(make_rolling_scene(transducer), transducer, coarse_rolling(transducer));
   const BasebandFrame before = engine.render(renewing(kBefore, {}));
-  EXPECT_EQ(before.renewed, (LineRange{0, kLines}));
+  EXPECT_EQ(before.renewed, (LineRange{0, kRollingLines}));
   const BasebandFrame now = engine.render(renewing(kNow, {40, 72}));
   EXPECT_EQ(now.renewed, (LineRange{40, 72}));
   EXPECT_EQ(difference(now, before, {0, 40}), 0.0);
-  EXPECT_EQ(difference(now, before, {72, kLines}), 0.0);
+  EXPECT_EQ(difference(now, before, {72, kRollingLines}), 0.0);
   EXPECT_GT(difference(now, before, {40, 72}), 0.3);
 }
 
 TEST(Rolling, RenewedScanlinesAreThoseOfAWholeFrame) {
   const Transducer transducer = convex();
-  const ScenePtr scene = make_scene(transducer);
-  BMode engine(scene, transducer, coarse(transducer)), whole(scene, transducer, coarse(transducer));
+  const ScenePtr scene = make_rolling_scene(transducer);
+  BMode engine(scene, transducer, coarse_rolling(transducer)), whole(scene, transducer, coarse_rolling(transducer));
   const BasebandFrame wanted = whole.render(renewing(kNow, {}));
   engine.render(renewing(kBefore, {}));
   const BasebandFrame& now = engine.render(renewing(kNow, {30, 96}));
@@ -75,26 +75,26 @@ TEST(Rolling, RenewedScanlinesAreThoseOfAWholeFrame) {
   EXPECT_LT(difference(now, wanted, {50, 76}), 0.08);
   EXPECT_GT(difference(now, wanted, {0, 30}), 0.3);
   for (int round = 0; round < 2; ++round)
-    for (int first = 0; first < kLines; first += 31) engine.render(renewing(kNow, {first, first + 31}));
+    for (int first = 0; first < kRollingLines; first += 31) engine.render(renewing(kNow, {first, first + 31}));
   // Groups of scanlines begin elsewhere: at their edges a scatterer reads the gain of the scanline beside it.
-  EXPECT_LT(difference(now, wanted, {0, kLines}), 0.08);
+  EXPECT_LT(difference(now, wanted, {0, kRollingLines}), 0.08);
 }
 
 TEST(Rolling, FirstFrameIsWhole) {
   const Transducer transducer = convex();
-  BMode engine(make_scene(transducer), transducer, coarse(transducer));
-  EXPECT_EQ(engine.render(renewing(kNow, {8, 16})).renewed, (LineRange{0, kLines}));
+  BMode engine(make_rolling_scene(transducer), transducer, coarse_rolling(transducer));
+  EXPECT_EQ(engine.render(renewing(kNow, {8, 16})).renewed, (LineRange{0, kRollingLines}));
   EXPECT_EQ(engine.render(renewing(kNow, {9, 16})).renewed, (LineRange{8, 16})) << "from an even scanline on";
-  EXPECT_EQ(engine.render(renewing(kNow, {-5, 4000})).renewed, (LineRange{0, kLines}));
-  Acquisition other = coarse(transducer);
+  EXPECT_EQ(engine.render(renewing(kNow, {-5, 4000})).renewed, (LineRange{0, kRollingLines}));
+  Acquisition other = coarse_rolling(transducer);
   other.frequency_mhz = 2.5;
   engine.set_acquisition(other);
-  EXPECT_EQ(engine.render(renewing(kNow, {8, 16})).renewed, (LineRange{0, kLines}));
+  EXPECT_EQ(engine.render(renewing(kNow, {8, 16})).renewed, (LineRange{0, kRollingLines}));
 }
 
 TEST(Rolling, ScannerKeepsTheNoiseOfOtherScanlines) {
   const Transducer transducer = convex();
-  BMode engine(make_scene(transducer), transducer, coarse(transducer));
+  BMode engine(make_rolling_scene(transducer), transducer, coarse_rolling(transducer));
   Scanner scanner(200, 160);
   scanner.show(engine.render(renewing(kBefore, {})), 1);
   const std::vector<std::uint8_t> before = scanner.polar();
@@ -106,7 +106,7 @@ TEST(Rolling, ScannerKeepsTheNoiseOfOtherScanlines) {
   };
   EXPECT_TRUE(same(0, 40));
   EXPECT_FALSE(same(40, 72));
-  EXPECT_TRUE(same(72, kLines));
+  EXPECT_TRUE(same(72, kRollingLines));
   scanner.settings.gain_db = 6.0;
   scanner.show(engine.render(renewing(kNow, {40, 72})), 3);
   EXPECT_FALSE(same(0, 40)) << "a new gain is that of the whole picture";
@@ -114,10 +114,10 @@ TEST(Rolling, ScannerKeepsTheNoiseOfOtherScanlines) {
 
 TEST(Rolling, PicturesRenewAllScanlinesInTurnAndAWholeOneAtRest) {
   const Transducer transducer = convex();
-  const ScenePtr scene = make_scene(transducer);
+  const ScenePtr scene = make_rolling_scene(transducer);
   PictureMaker maker(scene, transducer);
   ScanRequest request;
-  request.acquisition = coarse(transducer);
+  request.acquisition = coarse_rolling(transducer);
   request.columns = 160;
   request.rows = 120;
   request.renewed_share = 0.25;
@@ -126,7 +126,7 @@ TEST(Rolling, PicturesRenewAllScanlinesInTurnAndAWholeOneAtRest) {
   const auto samples = static_cast<std::size_t>(before.scan.samples);
   const auto changed = [&](const ScanPicture& picture) {
     std::vector<int> lines;
-    for (int line = 0; line < kLines; ++line) {
+    for (int line = 0; line < kRollingLines; ++line) {
       const auto at = static_cast<std::size_t>(line) * samples;
       if (!std::equal(picture.levels.begin() + static_cast<std::ptrdiff_t>(at),
                       picture.levels.begin() + static_cast<std::ptrdiff_t>(at + samples),
@@ -138,8 +138,8 @@ TEST(Rolling, PicturesRenewAllScanlinesInTurnAndAWholeOneAtRest) {
   for (int picture = 1; picture <= 4; ++picture) {
     request.X_PT = Pose::translation({0.5 * picture, 1.0, 0.0});
     const std::vector<int> lines = changed(maker.make(request, ScanDetail::kFull, 1));
-    ASSERT_EQ(static_cast<int>(lines.size()), picture * kLines / 4);
-    EXPECT_EQ(lines.back(), picture * kLines / 4 - 1);
+    ASSERT_EQ(static_cast<int>(lines.size()), picture * kRollingLines / 4);
+    EXPECT_EQ(lines.back(), picture * kRollingLines / 4 - 1);
   }
   const ScanPicture at_rest = maker.make(request, ScanDetail::kFull, 1);
   PictureMaker fresh(scene, transducer);

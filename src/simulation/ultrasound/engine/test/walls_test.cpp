@@ -20,7 +20,7 @@ SceneBox thick_box(const Transducer& transducer) {
 }
 
 /// Speckle in front of an echo-free fluid, whose border is tilted; with or without a wall.
-ScenePtr make_scene(const Transducer& transducer, double tilt_rad, bool has_wall) {
+ScenePtr make_walled_scene(const Transducer& transducer, double tilt_rad, bool has_wall) {
   const ScenePtr bare =
       plane_scene(thick_box(transducer), TestTissue::kLossless, TestPlane{kPlane_mm, tilt_rad, TestTissue::kWater});
   return with_table(bare, [&](AcousticTable& table) {
@@ -48,7 +48,7 @@ double level_in_front_db(BMode& engine, double tilt_rad, double from_mm, double 
 TEST(Walls, ScatterInProportionToTheCosine) {
   const Transducer transducer = linear();
   for (const double tilt_rad : {0.5, 0.9}) {
-    BMode engine(make_scene(transducer, tilt_rad, true), transducer, plain(transducer));
+    BMode engine(make_walled_scene(transducer, tilt_rad, true), transducer, plain(transducer));
     const double expected_db = kLevel_db + 20.0 * std::log10(std::cos(tilt_rad));
     EXPECT_NEAR(level_in_front_db(engine, tilt_rad, 0.8, 2.0), expected_db, 1.5) << tilt_rad;
     EXPECT_NEAR(level_in_front_db(engine, tilt_rad, kThickness_mm + 1.5, kThickness_mm + 5.0), 0.0, 1.5) << tilt_rad;
@@ -90,8 +90,8 @@ TEST(Walls, EvenPartIsABandWithoutSpeckle) {
 TEST(Walls, LieOutsideWhatTheyEnclose) {
   const Transducer transducer = linear();
   constexpr double kTilt_rad = 0.5;
-  BMode walled(make_scene(transducer, kTilt_rad, true), transducer, plain(transducer));
-  BMode bare(make_scene(transducer, kTilt_rad, false), transducer, plain(transducer));
+  BMode walled(make_walled_scene(transducer, kTilt_rad, true), transducer, plain(transducer));
+  BMode bare(make_walled_scene(transducer, kTilt_rad, false), transducer, plain(transducer));
   EXPECT_LT(level_in_front_db(walled, kTilt_rad, -4.0, -2.0), -30.0) << "the fluid stays dark";
   const BasebandFrame &a = walled.render({}), &b = bare.render({});
   const auto far_before = patch_at(a, 0.0, 3.0, 5.0, 15.0), same = patch_at(b, 0.0, 3.0, 5.0, 15.0);

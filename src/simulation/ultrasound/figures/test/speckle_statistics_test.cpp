@@ -10,7 +10,7 @@
 namespace trocar::ultrasound {
 namespace {
 
-constexpr double kFwhmPerSigma = 2.3548200450309493;
+constexpr double kFwhmOfGaussian = 2.3548200450309493;
 
 EchoPatch smoothed(const EchoPatch& source, double sigma, bool is_axial) {
   if (sigma <= 0.0) return source;
@@ -120,8 +120,8 @@ TEST(SpeckleCorrelation, FindsTheWidthsOfTheSmoothingKernel) {
   envelope.sample_mm = 0.15;
   const SpeckleCorrelation correlation = speckle_correlation(intensity_of(envelope));
   // About 2,500 cells: 4 % is three standard errors.
-  EXPECT_NEAR(correlation.axial_fwhm_mm, kFwhmPerSigma * 2.0 * 0.15, 0.04 * 0.706);
-  EXPECT_NEAR(correlation.lateral_fwhm_mm, kFwhmPerSigma * 3.0 * 0.5, 0.04 * 3.53);
+  EXPECT_NEAR(correlation.axial_fwhm_mm, kFwhmOfGaussian * 2.0 * 0.15, 0.04 * 0.706);
+  EXPECT_NEAR(correlation.lateral_fwhm_mm, kFwhmOfGaussian * 3.0 * 0.5, 0.04 * 3.53);
   const double cell = std::sqrt(2.0 * std::numbers::pi);  // Integral of the intensity's autocovariance, in sigmas.
   const double cells = 240.0 * 400.0 / (3.0 * cell * 2.0 * cell);
   EXPECT_NEAR(correlation.cells, cells, 0.15 * cells);

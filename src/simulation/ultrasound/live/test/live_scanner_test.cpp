@@ -12,7 +12,7 @@
 namespace trocar::ultrasound {
 namespace {
 
-constexpr double kDepth_mm = 60.0;
+constexpr double kLiveDepth_mm = 60.0;
 
 Transducer small_probe() {
   Transducer transducer;
@@ -27,14 +27,14 @@ Transducer small_probe() {
 ScenePtr scene() {
   static const ScenePtr made = [] {
     const TestRod rod{12.0, 30.0, 6.0, TestTissue::kPlus12};
-    return rods_scene(box_for(small_probe(), kDepth_mm), TestTissue::kMinus12, std::span(&rod, 1));
+    return rods_scene(box_for(small_probe(), kLiveDepth_mm), TestTissue::kMinus12, std::span(&rod, 1));
   }();
   return made;
 }
 
 ScanRequest small_request() {
   ScanRequest request;
-  request.acquisition.depth_mm = kDepth_mm;
+  request.acquisition.depth_mm = kLiveDepth_mm;
   request.acquisition.focus_mm = 30.0;
   request.acquisition.lines = 64;
   request.acquisition.samples = 256;
@@ -128,8 +128,8 @@ TEST(PictureMaker, BeginsANewLoopAtAnotherDepth) {
 
 TEST(ResampleLevels, KeepsRampsAndIsExactForTheSameScan) {
   const Transducer probe = small_probe();
-  const ScanGeometry coarse = make_scan_geometry(probe, kDepth_mm, 32, 128);
-  const ScanGeometry fine = make_scan_geometry(probe, kDepth_mm, 64, 256);
+  const ScanGeometry coarse = make_scan_geometry(probe, kLiveDepth_mm, 32, 128);
+  const ScanGeometry fine = make_scan_geometry(probe, kLiveDepth_mm, 64, 256);
   std::vector<std::uint8_t> from, same, to;
   for (int line = 0; line < 32; ++line)
     for (int s = 0; s < 128; ++s) from.push_back(static_cast<std::uint8_t>(2 * line + s));

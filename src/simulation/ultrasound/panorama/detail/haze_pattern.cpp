@@ -8,14 +8,14 @@
 namespace trocar::ultrasound::detail {
 namespace {
 
-constexpr std::uint64_t kHazeSeed = 0x68617a65;
+constexpr std::uint64_t kHazePatternSeed = 0x68617a65;
 
 }  // namespace
 
 HazePattern make_haze_pattern(const ScanPlan& plan, FrameState& frame, SteeringRows& rows, BasebandFrame& out) {
   HazePattern haze;
   const auto lines = static_cast<std::size_t>(plan.lines), samples = static_cast<std::size_t>(plan.samples);
-  Random random(kHazeSeed);
+  Random random(kHazePatternSeed);
   for (int l = 0; l < plan.lines; ++l) {
     for (std::size_t s = 0; s < samples; ++s) {
       frame.re[plan.echo_row(l) + s] = static_cast<float>(random.normal());

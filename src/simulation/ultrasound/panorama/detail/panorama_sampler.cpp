@@ -157,7 +157,7 @@ namespace {
 constexpr std::size_t kMostWeights = 4096 + 2 + 48;
 constexpr float kWhole = 1.0F - 1e-6F;
 
-std::array<float, 3> floats(const Vec3& v) {
+std::array<float, 3> single_precision(const Vec3& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
 }
 
@@ -206,8 +206,9 @@ PanoramaMap make_panorama_map(const Panorama& panorama, const Pose& X_PT) noexce
   const Mat3 index_of_T = grid.spacing_mm.cwiseInverse().asDiagonal() * Mat3(grid.R_PV.transpose() * X_UT.R());
   PanoramaMap map;
   map.panorama = &panorama;
-  for (std::size_t a = 0; a < 3; ++a) map.index_of_T[a] = floats(index_of_T.col(static_cast<Eigen::Index>(a)));
-  map.index_of_origin = floats(grid.to_index(X_UT.p()));
+  for (std::size_t a = 0; a < 3; ++a)
+    map.index_of_T[a] = single_precision(index_of_T.col(static_cast<Eigen::Index>(a)));
+  map.index_of_origin = single_precision(grid.to_index(X_UT.p()));
   return map;
 }
 

@@ -1,14 +1,13 @@
 #include "ultrasound/probe/detail/label_pattern.h"
 
-#include <cctype>
+#include "core/ascii.h"
 
 namespace trocar::ultrasound::detail {
 
 std::string plain_name(std::string_view name) {
   std::string text;
   for (const char c : name) {
-    const auto u = static_cast<unsigned char>(c);
-    if (std::isalnum(u) || c == '*') text += static_cast<char>(std::tolower(u));
+    if (ascii::is_letter_or_digit(c) || c == '*') text += ascii::to_lower(c);
   }
   return text;
 }

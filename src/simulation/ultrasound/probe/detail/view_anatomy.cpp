@@ -2,25 +2,20 @@
 
 #include <limits>
 
+#include "ultrasound/tissue/detail/tissue_volume.h"
 #include "volume/sampling.h"
 
 namespace trocar::ultrasound::detail {
 namespace {
 
-constexpr double kSlope_mm = 6.0;   ///< The skin's normal is averaged over a patch of this size.
-constexpr int kGasBelow_hu = -300;  ///< As in src/patient/anatomy; gas in bowel is labelled bowel.
+constexpr double kSlope_mm = 6.0;  ///< The skin's normal is averaged over a patch of this size.
 constexpr double kFacingSlab_mm = 8.0;
-
-Vec3 voxel_place(const volume::GridGeometry& geometry, std::size_t n) {
-  const volume::Index3 ijk = geometry.index_of(n);
-  return geometry.centre_mm(ijk);
-}
 
 /// Calls use(point) for every voxel of a label.
 template <class Use>
 void for_voxels(const volume::LabelGrid& labels, std::uint8_t id, const Use& use) {
   for (std::size_t n = 0; n < labels.voxels.size(); ++n) {
-    if (labels.voxels[n] == id) use(voxel_place(labels.geometry, n));
+    if (labels.voxels[n] == id) use(labels.geometry.centre_mm(labels.geometry.index_of(n)));
   }
 }
 

@@ -9,7 +9,7 @@
 namespace trocar::ultrasound {
 namespace {
 
-const std::filesystem::path kFile = data_dir() / "transducers.toml";
+const std::filesystem::path kOutputsFile = data_dir() / "transducers.toml";
 
 TEST(AcousticOutput, TheMechanicalIndexIsPressureOverTheRootOfTheFrequency) {
   // At the face there is no tissue to derate for.
@@ -38,10 +38,10 @@ TEST(AcousticOutput, TheScannerKeepsTheLimitAndLowersThePowerWithThePressureSqua
 }
 
 TEST(AcousticOutput, ShippedTransducersStayWithinTheLimitsAtEverySetting) {
-  const auto transducers = load_transducers(kFile);
+  const auto transducers = load_transducers(kOutputsFile);
   ASSERT_TRUE(transducers) << transducers.error().text();
   for (const Transducer& t : *transducers) {
-    const auto output = load_acoustic_output(kFile, t.name);
+    const auto output = load_acoustic_output(kOutputsFile, t.name);
     ASSERT_TRUE(output) << output.error().text();
     for (double mhz = t.lowest_mhz; mhz <= t.highest_mhz; mhz += 0.25) {
       double last = kMostMechanicalIndex;
@@ -62,12 +62,12 @@ TEST(AcousticOutput, WrongEntryNamesTransducerAndKey) {
   const auto load = [](const std::filesystem::path& file) { return load_acoustic_output(file, "C5-2"); };
   for (const auto& [from, to] : {std::pair{"pressure_mpa = {value = 4.5,", "pressure_mpa = {value = 45,"},
                                  std::pair{"pressure_mpa = {value = 4.5,", "pressure_kpa = {value = 4.5,"}}) {
-    const auto wrong = testing::load_changed(kFile, from, to, load);
+    const auto wrong = testing::load_changed(kOutputsFile, from, to, load);
     ASSERT_FALSE(wrong) << to;
     EXPECT_NE(wrong.error().text().find("C5-2"), std::string::npos) << wrong.error().text();
     EXPECT_NE(wrong.error().text().find("pressure_"), std::string::npos) << wrong.error().text();
   }
-  EXPECT_FALSE(load_acoustic_output(kFile, "no-such"));
+  EXPECT_FALSE(load_acoustic_output(kOutputsFile, "no-such"));
 }
 
 }  // namespace

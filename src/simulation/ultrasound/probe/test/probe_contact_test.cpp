@@ -27,7 +27,7 @@ volume::FloatGrid flat_skin() {
   return skin;
 }
 
-ScanGeometry linear(int lines = 65) {
+ScanGeometry linear_scan(int lines = 65) {
   ScanGeometry geometry;
   geometry.is_fan = false;
   geometry.lines = lines;
@@ -35,7 +35,7 @@ ScanGeometry linear(int lines = 65) {
   return geometry;
 }
 
-ScanGeometry convex(int lines = 65) {
+ScanGeometry convex_scan(int lines = 65) {
   ScanGeometry geometry;
   geometry.radius_mm = 60.0;
   geometry.lines = lines;
@@ -50,7 +50,7 @@ Pose tilted(double angle_rad, const Vec3& p_PT) {
 TEST(ProbeContact, FlatFaceDentsFlatSkinByItsDepth) {
   const volume::FloatGrid skin = flat_skin();
   std::vector<LineContact> contact(65);
-  find_contact(skin, linear(), Pose::translation({3, 4.3, 1}), contact);
+  find_contact(skin, linear_scan(), Pose::translation({3, 4.3, 1}), contact);
   for (const LineContact& line : contact) {
     EXPECT_NEAR(line.pressed_mm, 4.3, 0.03);
     EXPECT_EQ(line.gap_mm, 0.0F);
@@ -62,7 +62,7 @@ TEST(ProbeContact, GapIsMeasuredAndLosesTheSound) {
   const volume::FloatGrid skin = flat_skin();
   std::vector<LineContact> contact(65);
   for (const double gap_mm : {0.4, 1.5, 3.0, 40.0}) {
-    find_contact(skin, linear(), Pose::translation({3, -gap_mm, 1}), contact);
+    find_contact(skin, linear_scan(), Pose::translation({3, -gap_mm, 1}), contact);
     EXPECT_EQ(contact[5].pressed_mm, 0.0F);
     EXPECT_NEAR(contact[5].gap_mm, std::min(gap_mm, kWidestGap_mm), 0.03);
     if (gap_mm <= kGelFills_mm)
@@ -77,7 +77,7 @@ TEST(ProbeContact, GapIsMeasuredAndLosesTheSound) {
 TEST(ProbeContact, DistanceIsAlongTheScanline) {
   // A convex face: its outer scanlines leave it obliquely and behind the middle.
   const volume::FloatGrid skin = flat_skin();
-  const ScanGeometry geometry = convex();
+  const ScanGeometry geometry = convex_scan();
   std::vector<LineContact> contact(65);
   constexpr double kPressed_mm = 3.0;
   find_contact(skin, geometry, Pose::translation({0, kPressed_mm, 0}), contact);
@@ -94,7 +94,7 @@ TEST(ProbeContact, DistanceIsAlongTheScanline) {
 TEST(ProbeContact, TiltedFaceLosesOneSideSmoothly) {
   const volume::FloatGrid skin = flat_skin();
   std::vector<LineContact> contact(257);
-  find_contact(skin, linear(257), tilted(0.2, {0, 1, 0}), contact);
+  find_contact(skin, linear_scan(257), tilted(0.2, {0, 1, 0}), contact);
   EXPECT_EQ(contact.front().coupling, 0.0F);
   EXPECT_EQ(contact.back().coupling, 1.0F);
   for (std::size_t n = 1; n < contact.size(); ++n) {
@@ -105,13 +105,13 @@ TEST(ProbeContact, TiltedFaceLosesOneSideSmoothly) {
 
 TEST(ProbeContact, WithoutSkinOrPoseNothingIsPressed) {
   std::vector<LineContact> contact(65, LineContact{1, 1, 0});
-  find_contact(volume::FloatGrid{}, linear(), Pose{}, contact);
+  find_contact(volume::FloatGrid{}, linear_scan(), Pose{}, contact);
   EXPECT_EQ(contact[7].pressed_mm, 0.0F);
   EXPECT_EQ(contact[7].coupling, 1.0F);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const volume::FloatGrid skin = flat_skin();
   for (const double bad : {nan, 1e300, -1e300, std::numeric_limits<double>::infinity()}) {
-    find_contact(skin, linear(), Pose::translation({bad, 0, 0}), contact);
+    find_contact(skin, linear_scan(), Pose::translation({bad, 0, 0}), contact);
     for (const LineContact& line : contact) EXPECT_TRUE(std::isfinite(line.pressed_mm + line.gap_mm + line.coupling));
   }
 }
@@ -120,7 +120,7 @@ TEST(ProbeContact, AllocatesNothing) {
   const volume::FloatGrid skin = flat_skin();
   std::vector<LineContact> contact(65);
   const testing::AllocationGuard guard;
-  find_contact(skin, convex(), Pose::translation({0, 3, 0}), contact);
+  find_contact(skin, convex_scan(), Pose::translation({0, 3, 0}), contact);
   EXPECT_EQ(guard.count(), 0U);
 }
 
@@ -163,7 +163,7 @@ TEST(ProbeContact, ReachGrowsWithFatAndEndsAtBone) {
     bone.speed_m_per_s = 3500.0;
     bone.density_kg_per_m3 = 1900.0;
     const auto scene = make_acoustic_scene(patient, table);
-    return find_dent_reach_mm(**scene, linear(), Pose::translation({0, 0, 0}));
+    return find_dent_reach_mm(**scene, linear_scan(), Pose::translation({0, 0, 0}));
   };
   EXPECT_GT(reach_mm(20, 60), reach_mm(5, 60) + 8.0);
   EXPECT_NEAR(reach_mm(20, 16), 16.0, 1.5);

@@ -33,7 +33,7 @@ struct Placed {
   ViewVisibility visibility;
 };
 
-Placed place(const anatomy::VirtualPatient& patient, std::string_view name) {
+Placed place_named_view(const anatomy::VirtualPatient& patient, std::string_view name) {
   const auto view = choose_view(patient, views(), name);
   EXPECT_TRUE(view.has_value()) << view.error().text();
   const auto transducer = load_transducer(data_dir() / "transducers.toml", view->transducer);
@@ -104,7 +104,7 @@ TEST(ProbePlacement, EveryViewOfTheAbdomenTouchesTheSkinAndShowsItsTarget) {
   const std::vector<std::string> names = possible_views(abdomen(), views());
   EXPECT_GE(names.size(), 9U);
   for (const std::string& name : names) {
-    const Placed placed = place(abdomen(), name);
+    const Placed placed = place_named_view(abdomen(), name);
     expect_on_skin(abdomen(), placed);
     expect_target_in_picture(abdomen(), placed);
     EXPECT_GE(placed.visibility.visible, kEnoughVisible) << name << ": " << hidden_causes(placed.visibility);
@@ -120,7 +120,7 @@ TEST(ProbePlacement, LayeredScenesHaveTheirViews) {
   for (const auto& [scene, name] : kViews) {
     const auto patient = anatomy::phantom::make_layered_scene(scene, 1, {{50, 88, 50}});
     ASSERT_TRUE(patient.has_value());
-    const Placed placed = place(*patient, name);
+    const Placed placed = place_named_view(*patient, name);
     expect_on_skin(*patient, placed);
     if (placed.view.offset_mm.isZero())
       expect_target_in_picture(*patient, placed);
@@ -130,7 +130,7 @@ TEST(ProbePlacement, LayeredScenesHaveTheirViews) {
 }
 
 TEST(ProbePlacement, KidneyLiesBehindLiverAndNoBoneInFront) {
-  const Placed placed = place(abdomen(), "liver-right-kidney");
+  const Placed placed = place_named_view(abdomen(), "liver-right-kidney");
   EXPECT_GT(share_of(abdomen(), placed, "kidney_right"), 0.08);
   EXPECT_GT(share_of(abdomen(), placed, "liver"), 0.1);
   EXPECT_LT(placed.X_PT.p().x(), -80.0);  // from the right flank
@@ -142,7 +142,7 @@ TEST(ProbePlacement, KidneyLiesBehindLiverAndNoBoneInFront) {
 TEST(ProbePlacement, IntercostalViewHasARibAtEitherSideOfAFreeMiddle) {
   const auto liver = anatomy::phantom::make_layered_scene("layers-liver", 1, {{100, 175, 100}});
   for (const anatomy::VirtualPatient* patient : {&abdomen(), &*liver}) {
-    const Placed placed = place(*patient, "intercostal");
+    const Placed placed = place_named_view(*patient, "intercostal");
     const double middle = placed.scan.middle_line();
     EXPECT_GT(bone_depth_mm(*patient, placed, middle), 70.0) << patient->name;
     for (const double side : {-1.0, 1.0}) {
@@ -155,7 +155,7 @@ TEST(ProbePlacement, IntercostalViewHasARibAtEitherSideOfAFreeMiddle) {
 }
 
 TEST(ProbePlacement, SpineIsSeenFromTheBackWithItsProcesses) {
-  const Placed placed = place(abdomen(), "spine-longitudinal");
+  const Placed placed = place_named_view(abdomen(), "spine-longitudinal");
   EXPECT_LT(placed.X_PT.R()(1, 1), -0.9);
   EXPECT_GT(placed.X_PT.p().y(), 60.0);
   // Near the skin bone comes and goes along the scan.
@@ -170,7 +170,7 @@ TEST(ProbePlacement, SpineIsSeenFromTheBackWithItsProcesses) {
 }
 
 TEST(ProbePlacement, DiaphragmIsMetThroughTheLiver) {
-  const Placed placed = place(abdomen(), "diaphragm");
+  const Placed placed = place_named_view(abdomen(), "diaphragm");
   bool was_liver = false;
   bool has_border = false;
   for (double depth_mm = 10.0; depth_mm < placed.view.depth_mm; depth_mm += 1.0) {

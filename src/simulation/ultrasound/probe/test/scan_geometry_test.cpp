@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kRounding_mm = 1e-9;  // distances of up to 1e3 mm in double
 
-std::vector<Transducer> shipped() {
+std::vector<Transducer> shipped_transducers() {
   const auto transducers = load_transducers(data_dir() / "transducers.toml");
   EXPECT_TRUE(transducers) << transducers.error().text();
   return transducers.value_or(std::vector<Transducer>{});
@@ -22,7 +22,7 @@ std::vector<Transducer> shipped() {
 /// Kinds of scans, also wider than half a circle.
 std::vector<ScanGeometry> scans() {
   std::vector<ScanGeometry> scans;
-  for (const Transducer& t : shipped()) scans.push_back(make_scan_geometry(t, t.depth_mm, 256, 1024));
+  for (const Transducer& t : shipped_transducers()) scans.push_back(make_scan_geometry(t, t.depth_mm, 256, 1024));
   ScanGeometry wide = scans.front();
   wide.line_step = 3.0 / 255.0;
   scans.push_back(wide);
@@ -86,7 +86,7 @@ TEST(ScanGeometry, ExtentIsTheSmallestBoxThatHoldsTheScan) {
 }
 
 TEST(ScanGeometry, OutermostScanlinesAreTheTransducersOwn) {
-  for (const Transducer& t : shipped()) {
+  for (const Transducer& t : shipped_transducers()) {
     const ScanGeometry scan = make_scan_geometry(t, 100.0, 200, 500);
     EXPECT_EQ(scan.sample_mm(), 0.2);
     if (t.kind == TransducerKind::kLinear) {

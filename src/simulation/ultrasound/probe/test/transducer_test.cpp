@@ -14,14 +14,14 @@
 namespace trocar::ultrasound {
 namespace {
 
-const std::filesystem::path kFile = data_dir() / "transducers.toml";
+const std::filesystem::path kTransducersFile = data_dir() / "transducers.toml";
 
 bool has_arc(TransducerKind kind) {
   return kind == TransducerKind::kConvex || kind == TransducerKind::kMechanicalConvex;
 }
 
 TEST(Transducers, ShippedOnesAreOfEveryKindAndFitTogether) {
-  const auto transducers = load_transducers(kFile);
+  const auto transducers = load_transducers(kTransducersFile);
   ASSERT_TRUE(transducers) << transducers.error().text();
   std::set<TransducerKind> kinds;
   for (const Transducer& t : *transducers) {
@@ -45,7 +45,7 @@ TEST(Transducers, ShippedOnesAreOfEveryKindAndFitTogether) {
 }
 
 TEST(Transducers, LiverSweepHasThePicturesFan) {
-  const auto transducer = load_transducer(kFile, "liver-sweep");
+  const auto transducer = load_transducer(kTransducersFile, "liver-sweep");
   ASSERT_TRUE(transducer) << transducer.error().text();
   const ScanGeometry::Extent extent = make_scan_geometry(*transducer, transducer->depth_mm, 256, 1024).extent();
   // The recorded pictures are cut out to their fan: 739 x 593 pixels of 0.3148 mm, of which the fan leaves a few free.
@@ -55,7 +55,7 @@ TEST(Transducers, LiverSweepHasThePicturesFan) {
 }
 
 TEST(Transducers, UnknownNameIsRefusedWithTheKnownOnes) {
-  const auto transducer = load_transducer(kFile, "C5-3");
+  const auto transducer = load_transducer(kTransducersFile, "C5-3");
   ASSERT_FALSE(transducer);
   EXPECT_EQ(transducer.error().exit_status, 2);
   EXPECT_NE(transducer.error().text().find("\"C5-3\""), std::string::npos);
@@ -64,8 +64,8 @@ TEST(Transducers, UnknownNameIsRefusedWithTheKnownOnes) {
 }
 
 /// Loads the shipped file with one text replaced.
-Result<std::vector<Transducer>> load_changed(const std::string& from, const std::string& to) {
-  return testing::load_changed(kFile, from, to, [](const auto& file) { return load_transducers(file); });
+Result<std::vector<Transducer>> load_changed_transducers(const std::string& from, const std::string& to) {
+  return testing::load_changed(kTransducersFile, from, to, [](const auto& file) { return load_transducers(file); });
 }
 
 TEST(Transducers, WrongEntryNamesFileTransducerAndKey) {
@@ -86,7 +86,7 @@ TEST(Transducers, WrongEntryNamesFileTransducerAndKey) {
       {"kind = \"convex\"", "kind = \"linear\"", "radius_mm"},
       {"frequency_mhz = {value = 3.5,", "frequency_mhz = {value = nan,", "value"}};
   for (const Case& wrong : cases) {
-    const auto transducers = load_changed(wrong.from, wrong.to);
+    const auto transducers = load_changed_transducers(wrong.from, wrong.to);
     ASSERT_FALSE(transducers) << wrong.to;
     const std::string text = transducers.error().text();
     EXPECT_NE(text.find("transducers.toml"), std::string::npos) << text;
@@ -97,7 +97,8 @@ TEST(Transducers, WrongEntryNamesFileTransducerAndKey) {
 }
 
 TEST(Transducers, AssumedNumberNeedsItsRange) {
-  const auto transducers = load_changed("source = \"Ultrasonix data sheet", "source = \"assumed, not the data sheet");
+  const auto transducers =
+      load_changed_transducers("source = \"Ultrasonix data sheet", "source = \"assumed, not the data sheet");
   ASSERT_FALSE(transducers);
   EXPECT_NE(transducers.error().text().find("range"), std::string::npos) << transducers.error().text();
 }

@@ -14,9 +14,9 @@ namespace {
 
 using testing::BlockVoxel;
 
-constexpr double kDepth_mm = 50.0, kRadius_mm = 12.0;
+constexpr double kBallDepth_mm = 50.0, kBallRadius_mm = 12.0;
 
-Transducer convex() {
+Transducer shipped_convex() {
   return *load_transducer(data_dir() / "transducers.toml", "C5-2");
 }
 
@@ -37,7 +37,7 @@ template <class Cover>
 anatomy::VirtualPatient ball_behind(const Cover& cover) {
   return testing::make_block({240.0, 130.0, 240.0}, {4.0, 4.0, 4.0}, [&](const Vec3& p_P) -> BlockVoxel {
     if (const BlockVoxel covering = cover(p_P); covering.label != 0) return covering;
-    const bool is_ball = (p_P - Vec3(0.0, kDepth_mm, 0.0)).norm() < kRadius_mm;
+    const bool is_ball = (p_P - Vec3(0.0, kBallDepth_mm, 0.0)).norm() < kBallRadius_mm;
     return {is_ball ? testing::kKidney : testing::kLiver, 60};
   });
 }
@@ -59,7 +59,7 @@ double sum_of(const ViewVisibility& v) {
 
 TEST(ViewVisibility, OfAFreeBallIsWhole) {
   const anatomy::VirtualPatient patient = ball_behind(nothing);
-  const auto placed = place_probe(patient, ball_view(), convex());
+  const auto placed = place_probe(patient, ball_view(), shipped_convex());
   ASSERT_TRUE(placed) << placed.error().text();
   EXPECT_NEAR(placed->visibility.visible, 1.0, 0.02);
   EXPECT_NEAR(sum_of(placed->visibility), 1.0, 1e-9);
@@ -69,11 +69,11 @@ TEST(ViewVisibility, OfAFreeBallIsWhole) {
 
 TEST(ViewVisibility, FindsTheWindowBesideBoneBeyondTheSearch) {
   const anatomy::VirtualPatient patient = ball_behind(plate(24.0));
-  const auto placed = place_probe(patient, ball_view(), convex());
+  const auto placed = place_probe(patient, ball_view(), shipped_convex());
   ASSERT_TRUE(placed) << placed.error().text();
   EXPECT_GT(placed->visibility.visible, 0.9) << hidden_causes(placed->visibility);
   EXPECT_NEAR(std::abs(placed->X_PT.p().y()), 5.0, 6.0) << "still on the skin";
-  const auto measured = measure_visibility(patient, ball_view(), convex(), placed->X_PT);
+  const auto measured = measure_visibility(patient, ball_view(), shipped_convex(), placed->X_PT);
   ASSERT_TRUE(measured);
   EXPECT_EQ(measured->visible, placed->visibility.visible);
 }
@@ -81,7 +81,7 @@ TEST(ViewVisibility, FindsTheWindowBesideBoneBeyondTheSearch) {
 TEST(ViewVisibility, SaysWhatHidesTheSubject) {
   ProbeView fixed = ball_view();
   fixed.search_mm = 0.0;
-  const auto behind = place_probe(ball_behind(plate(60.0)), fixed, convex());
+  const auto behind = place_probe(ball_behind(plate(60.0)), fixed, shipped_convex());
   ASSERT_TRUE(behind);
   EXPECT_LT(behind->visibility.visible, 0.02);
   EXPECT_GT(behind->visibility.behind_bone, 0.95);
@@ -91,7 +91,7 @@ TEST(ViewVisibility, SaysWhatHidesTheSubject) {
                                  const bool is_bowel = p_P.y() > 10.0 && p_P.y() < 30.0 && p_P.z() < 0.0;
                                  return is_bowel ? BlockVoxel{testing::kBowel, -700} : BlockVoxel{};
                                }),
-                               fixed, convex());
+                               fixed, shipped_convex());
   ASSERT_TRUE(gas);
   EXPECT_NEAR(gas->visibility.behind_gas, 0.5, 0.15);
   EXPECT_NEAR(sum_of(gas->visibility), 1.0, 1e-9);
@@ -101,18 +101,18 @@ TEST(ViewVisibility, EndsWithThePictureAndWithTheSound) {
   const anatomy::VirtualPatient patient = ball_behind(nothing);
   ProbeView fixed = ball_view();
   fixed.search_mm = 0.0;
-  fixed.depth_mm = kDepth_mm;
-  const auto cut = place_probe(patient, fixed, convex());
+  fixed.depth_mm = kBallDepth_mm;
+  const auto cut = place_probe(patient, fixed, shipped_convex());
   ASSERT_TRUE(cut);
   // The picture ends below the ball's middle, as the face is pressed in: a segment of the disc is left out.
   const double middle_mm = cut->X_PT.p().y();
-  const double angle = std::acos(middle_mm / kRadius_mm);
+  const double angle = std::acos(middle_mm / kBallRadius_mm);
   const double segment = (angle - std::sin(angle) * std::cos(angle)) / std::numbers::pi;
   EXPECT_GT(segment, 0.05);
   // Voxels of 4 mm and samples 3 mm apart: a row of samples more or less is an eighth of the disc.
   EXPECT_NEAR(cut->visibility.outside_picture, segment, 0.12);
   EXPECT_GT(cut->visibility.outside_picture, 0.05);
-  Transducer shrill = convex();
+  Transducer shrill = shipped_convex();
   shrill.highest_mhz = 20.0;
   fixed = ball_view();
   fixed.search_mm = 0.0;
@@ -138,7 +138,7 @@ TEST(ViewVisibility, CountsWhatTheCtHasLeftOut) {
     R_PT << 0, 0, -1, 0, 1, 0, 1, 0, 0;
     return Pose(R_PT, {0.0, 5.0, 0.0});
   }();
-  const auto seen = measure_visibility(patient, ball_view(), convex(), straight);
+  const auto seen = measure_visibility(patient, ball_view(), shipped_convex(), straight);
   ASSERT_TRUE(seen) << seen.error().text();
   EXPECT_NEAR(seen->unscanned, 0.5, 0.12);
   EXPECT_NEAR(seen->visible, 0.5, 0.12);

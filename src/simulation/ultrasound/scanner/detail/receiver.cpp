@@ -36,7 +36,7 @@ constexpr double kUnevenness_mm = 8.0;
 /// Length of a band relative to that of the pulse: layers ring longer than a point. Assumed, range 1..2.
 constexpr double kBandLength = 1.5;
 
-double amplitude(double db) {
+double amplitude_of_db(double db) {
   return std::pow(10.0, db / 20.0);
 }
 
@@ -116,7 +116,7 @@ void Receiver::add_haze(const ScanGeometry& scan, const Beam& beam) {
     const double depth_mm = (static_cast<double>(s) + 0.5) * scan.sample_mm();
     const double end = std::clamp(2.0 * depth_mm / kClutterDepth_mm - 1.0, 0.0, 1.0);
     const double fade = 0.5 + 0.5 * std::cos(std::numbers::pi * end);
-    level[s] = static_cast<float>(fade * amplitude(clutter_level_db(beam, kHaze_db)) *
+    level[s] = static_cast<float>(fade * amplitude_of_db(clutter_level_db(beam, kHaze_db)) *
                                   std::exp(-0.5 * depth_mm / kHazeDecay_mm));
   }
   // Sources are also on lines beyond the ends: source j is line j - reach.
@@ -140,7 +140,7 @@ void Receiver::add_bands(const ScanGeometry& scan, const Beam& beam) {
   const double sigma_mm = kBandLength * beam.axial_sigma_mm;
   const double step_rad = scan.line_spacing_mm(0.0) / kUnevenness_mm * 2.0 * std::numbers::pi;
   for (int band = 0; band < kBands; ++band) {
-    const double level = amplitude(clutter_level_db(beam, kFirstBand_db - band * kBandDecay_db));
+    const double level = amplitude_of_db(clutter_level_db(beam, kFirstBand_db - band * kBandDecay_db));
     const double phase = 2.0 * std::numbers::pi * uniform01(kBandSeed, static_cast<std::uint64_t>(band));
     for (std::size_t line = 0; line < static_cast<std::size_t>(scan.lines); ++line) {
       // Two incommensurate waves along the face have no visible pattern.

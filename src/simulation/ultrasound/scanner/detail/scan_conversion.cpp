@@ -9,7 +9,7 @@
 namespace trocar::ultrasound::detail {
 namespace {
 
-constexpr int kBlock = static_cast<int>(kMostLanes);
+constexpr int kPixelBlock = static_cast<int>(kMostLanes);
 /// Tolerance for rounding at the outermost scanline.
 constexpr double kLineTolerance = 1e-6;
 
@@ -32,8 +32,9 @@ Split split(double place, int count) {
 }  // namespace
 
 ScanConversion::ScanConversion(int columns, int rows) : columns_(columns), rows_(rows) {
-  TROCAR_CHECK(columns >= kBlock && rows >= 1);
-  const auto blocks = static_cast<std::size_t>((columns + kBlock - 1) / kBlock) * static_cast<std::size_t>(rows);
+  TROCAR_CHECK(columns >= kPixelBlock && rows >= 1);
+  const auto blocks =
+      static_cast<std::size_t>((columns + kPixelBlock - 1) / kPixelBlock) * static_cast<std::size_t>(rows);
   row_blocks_.resize(static_cast<std::size_t>(rows) + 1);
   block_start_.resize(blocks);
   sample_.resize(blocks * kMostLanes);
@@ -54,10 +55,10 @@ void ScanConversion::set_geometry(const ScanGeometry& scan, const RasterGeometry
   std::size_t block = 0;
   for (int row = 0; row < rows_; ++row) {
     row_blocks_[static_cast<std::size_t>(row)] = block;
-    for (int column = 0; column < columns_; column += kBlock) {
-      const int first = std::min(column, columns_ - kBlock);  // the last one may overlap the previous one
+    for (int column = 0; column < columns_; column += kPixelBlock) {
+      const int first = std::min(column, columns_ - kPixelBlock);  // the last one may overlap the previous one
       bool touches = false;
-      for (int c = first; c < first + kBlock && !touches; ++c) {
+      for (int c = first; c < first + kPixelBlock && !touches; ++c) {
         touches = is_inside(scan.to_polar(raster.to_T(c, row)), scan);
       }
       if (touches) set_block(block++, first, row, scan, raster);
@@ -69,7 +70,7 @@ void ScanConversion::set_geometry(const ScanGeometry& scan, const RasterGeometry
 void ScanConversion::set_block(std::size_t block, int column, int row, const ScanGeometry& scan,
                                const RasterGeometry& raster) {
   block_start_[block] = row * columns_ + column;
-  for (int i = 0; i < kBlock; ++i) {
+  for (int i = 0; i < kPixelBlock; ++i) {
     const std::size_t entry = block * kMostLanes + static_cast<std::size_t>(i);
     const Polar place = scan.to_polar(raster.to_T(column + i, row));
     if (!is_inside(place, scan)) {

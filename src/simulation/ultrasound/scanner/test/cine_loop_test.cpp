@@ -7,7 +7,7 @@
 namespace trocar::ultrasound {
 namespace {
 
-ScanGeometry small_scan() {
+ScanGeometry cine_scan() {
   ScanGeometry scan;
   scan.lines = 4;
   scan.samples = 8;
@@ -23,7 +23,7 @@ void push_frame(CineLoop& loop, int n) {
 }
 
 CineLoop filled(int capacity, int frames) {
-  CineLoop loop(small_scan(), capacity);
+  CineLoop loop(cine_scan(), capacity);
   for (int n = 0; n < frames; ++n) push_frame(loop, n);
   return loop;
 }
@@ -52,7 +52,7 @@ TEST(CineLoop, NothingIsAddedWhileFrozen) {
 }
 
 TEST(CineLoop, AnEmptyLoopCannotBeFrozen) {
-  CineLoop loop(small_scan(), 3);
+  CineLoop loop(cine_scan(), 3);
   loop.freeze();
   loop.step(1);
   loop.play(1.0);

@@ -10,8 +10,8 @@ namespace trocar::ultrasound {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kDepth_mm = 160.0;
-constexpr double kFrequency_mhz = 3.5;
+constexpr double kTgcDepth_mm = 160.0;
+constexpr double kTgcFrequency_mhz = 3.5;
 
 DisplaySettings without_automatic_tgc() {
   DisplaySettings settings;
@@ -20,7 +20,7 @@ DisplaySettings without_automatic_tgc() {
 }
 
 double slider_depth_mm(int slider) {
-  return (slider + 0.5) / kTgcSliders * kDepth_mm;
+  return (slider + 0.5) / kTgcSliders * kTgcDepth_mm;
 }
 
 TEST(DisplaySettings, DefaultsAreInRange) {
@@ -70,19 +70,19 @@ TEST(DisplaySettings, GrayMapsAreKnownByTheirNames) {
 TEST(Tgc, AutomaticPartMakesGoodTheWayThereAndBack) {
   DisplaySettings settings;
   settings.automatic_tgc_limit_db = 120.0;
-  const double near_db = tgc_gain_db(settings, 20.0, kDepth_mm, kFrequency_mhz);
-  const double far_db = tgc_gain_db(settings, 60.0, kDepth_mm, kFrequency_mhz);
-  EXPECT_NEAR(far_db - near_db, 2.0 * 0.5 * kFrequency_mhz * 4.0, 0.02);
+  const double near_db = tgc_gain_db(settings, 20.0, kTgcDepth_mm, kTgcFrequency_mhz);
+  const double far_db = tgc_gain_db(settings, 60.0, kTgcDepth_mm, kTgcFrequency_mhz);
+  EXPECT_NEAR(far_db - near_db, 2.0 * 0.5 * kTgcFrequency_mhz * 4.0, 0.02);
 }
 
 TEST(Tgc, AutomaticPartEndsAtItsLimitWithoutAKink) {
   const DisplaySettings settings;
   EXPECT_NEAR(tgc_gain_db(settings, 300.0, 300.0, 15.0), settings.automatic_tgc_limit_db, 0.02);
   EXPECT_NEAR(tgc_gain_db(settings, 0.0, 300.0, 15.0), 0.0, 1e-9);
-  double last_slope = 2.0 * 0.5 * kFrequency_mhz * 0.1;
-  for (double depth_mm = 1.0; depth_mm < kDepth_mm; depth_mm += 1.0) {
-    const double slope = tgc_gain_db(settings, depth_mm, kDepth_mm, kFrequency_mhz) -
-                         tgc_gain_db(settings, depth_mm - 1.0, kDepth_mm, kFrequency_mhz);
+  double last_slope = 2.0 * 0.5 * kTgcFrequency_mhz * 0.1;
+  for (double depth_mm = 1.0; depth_mm < kTgcDepth_mm; depth_mm += 1.0) {
+    const double slope = tgc_gain_db(settings, depth_mm, kTgcDepth_mm, kTgcFrequency_mhz) -
+                         tgc_gain_db(settings, depth_mm - 1.0, kTgcDepth_mm, kTgcFrequency_mhz);
     EXPECT_GE(slope, 0.0);
     EXPECT_LE(slope, last_slope + 1e-9);
     last_slope = slope;
@@ -91,15 +91,15 @@ TEST(Tgc, AutomaticPartEndsAtItsLimitWithoutAKink) {
 
 TEST(Tgc, EachSliderIsObeyedAtItsDepth) {
   DisplaySettings settings = without_automatic_tgc();
-  const double flat_db = tgc_gain_db(settings, 80.0, kDepth_mm, kFrequency_mhz);
+  const double flat_db = tgc_gain_db(settings, 80.0, kTgcDepth_mm, kTgcFrequency_mhz);
   EXPECT_NEAR(flat_db, 0.0, 1e-4);
   settings.tgc_db = {-12.0, 3.0, 3.0, 20.0, -20.0, 0.0, 1.0, 7.0};
   for (int i = 0; i < kTgcSliders; ++i) {
-    EXPECT_NEAR(tgc_gain_db(settings, slider_depth_mm(i), kDepth_mm, kFrequency_mhz),
+    EXPECT_NEAR(tgc_gain_db(settings, slider_depth_mm(i), kTgcDepth_mm, kTgcFrequency_mhz),
                 settings.tgc_db[static_cast<std::size_t>(i)], 1e-4);
   }
-  EXPECT_NEAR(tgc_gain_db(settings, 0.0, kDepth_mm, kFrequency_mhz), -12.0, 1e-4);
-  EXPECT_NEAR(tgc_gain_db(settings, kDepth_mm, kDepth_mm, kFrequency_mhz), 7.0, 1e-4);
+  EXPECT_NEAR(tgc_gain_db(settings, 0.0, kTgcDepth_mm, kTgcFrequency_mhz), -12.0, 1e-4);
+  EXPECT_NEAR(tgc_gain_db(settings, kTgcDepth_mm, kTgcDepth_mm, kTgcFrequency_mhz), 7.0, 1e-4);
 }
 
 TEST(Tgc, NeverLeavesTheRangeOfNeighbouringSliders) {
@@ -109,8 +109,8 @@ TEST(Tgc, NeverLeavesTheRangeOfNeighbouringSliders) {
     const double a = settings.tgc_db[static_cast<std::size_t>(i)];
     const double b = settings.tgc_db[static_cast<std::size_t>(i) + 1];
     for (double t = 0.0; t <= 1.0; t += 0.05) {
-      const double depth_mm = slider_depth_mm(i) + t * kDepth_mm / kTgcSliders;
-      const double db = tgc_gain_db(settings, depth_mm, kDepth_mm, kFrequency_mhz);
+      const double depth_mm = slider_depth_mm(i) + t * kTgcDepth_mm / kTgcSliders;
+      const double db = tgc_gain_db(settings, depth_mm, kTgcDepth_mm, kTgcFrequency_mhz);
       EXPECT_GE(db, std::min(a, b) - 1e-4);
       EXPECT_LE(db, std::max(a, b) + 1e-4);
     }

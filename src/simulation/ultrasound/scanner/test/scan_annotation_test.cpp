@@ -8,7 +8,7 @@
 namespace trocar::ultrasound {
 namespace {
 
-ScanGeometry fan(double depth_mm) {
+ScanGeometry fan_of_depth(double depth_mm) {
   ScanGeometry scan;
   scan.lines = 128;
   scan.line_step = 1.1 / 127.0;
@@ -29,7 +29,7 @@ bool has_text(const ScanAnnotation& annotation, const std::string& text) {
 }
 
 TEST(ScanAnnotation, TicksLieAtTheirDepthBelowTheFace) {
-  const ScanGeometry scan = fan(160.0);
+  const ScanGeometry scan = fan_of_depth(160.0);
   const RasterGeometry raster = fit_raster(scan, 640, 480);
   const ScanAnnotation annotation = make_scan_annotation(raster, scan, caption());
   ASSERT_EQ(annotation.ticks.size(), 17U);
@@ -42,14 +42,14 @@ TEST(ScanAnnotation, TicksLieAtTheirDepthBelowTheFace) {
 }
 
 TEST(ScanAnnotation, ShallowPicturesHaveAFinerScale) {
-  const ScanGeometry scan = fan(40.0);
+  const ScanGeometry scan = fan_of_depth(40.0);
   const ScanAnnotation annotation = make_scan_annotation(fit_raster(scan, 640, 480), scan, caption());
   EXPECT_EQ(annotation.ticks.size(), 9U);
   EXPECT_TRUE(has_text(annotation, "4"));
 }
 
 TEST(ScanAnnotation, MarkerStaysWithTheMarkedEndWhenThePictureIsMirrored) {
-  const ScanGeometry scan = fan(160.0);
+  const ScanGeometry scan = fan_of_depth(160.0);
   for (const bool is_mirrored : {false, true}) {
     const RasterGeometry raster = fit_raster(scan, 640, 480, is_mirrored);
     const ScanAnnotation annotation = make_scan_annotation(raster, scan, caption());
@@ -77,7 +77,7 @@ TEST(ScanAnnotation, TheWholeMarkerIsInThePictureOfALinearArray) {
 }
 
 TEST(ScanAnnotation, NamesHarmonicImagingAndTheReceivedFrequency) {
-  const ScanGeometry scan = fan(160.0);
+  const ScanGeometry scan = fan_of_depth(160.0);
   ScanCaption harmonic = caption();
   harmonic.is_harmonic = true;
   harmonic.frequency_mhz = 4.0;
@@ -91,7 +91,7 @@ TEST(ScanAnnotation, NamesHarmonicImagingAndTheReceivedFrequency) {
 }
 
 TEST(ScanAnnotation, WedgeShowsTheGrayMap) {
-  const ScanGeometry scan = fan(160.0);
+  const ScanGeometry scan = fan_of_depth(160.0);
   ScanCaption louder = caption();
   louder.settings.gain_db = 13.0;
   const ScanAnnotation annotation = make_scan_annotation(fit_raster(scan, 640, 480), scan, louder);
@@ -102,7 +102,7 @@ TEST(ScanAnnotation, WedgeShowsTheGrayMap) {
 }
 
 TEST(ScanAnnotation, DrawsOverAPictureAndNeverBeyondIt) {
-  const ScanGeometry scan = fan(160.0);
+  const ScanGeometry scan = fan_of_depth(160.0);
   const ScanAnnotation annotation = make_scan_annotation(fit_raster(scan, 640, 480), scan, caption());
   volume::RgbImage image(640, 480);
   draw_annotation(image, annotation);

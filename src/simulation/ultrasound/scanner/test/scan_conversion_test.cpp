@@ -11,7 +11,7 @@ namespace {
 /// Gray values: rounding of the value, of two weights and of a smoothed sample.
 constexpr double kTolerance = 1.6;
 
-ScanGeometry fan() {
+ScanGeometry converted_fan() {
   ScanGeometry scan;
   scan.lines = 64;
   scan.samples = 300;
@@ -22,7 +22,7 @@ ScanGeometry fan() {
 }
 
 ScanGeometry parallel() {
-  ScanGeometry scan = fan();
+  ScanGeometry scan = converted_fan();
   scan.is_fan = false;
   scan.line_step = 0.6;
   scan.depth_mm = 50.0;
@@ -76,7 +76,7 @@ void expect_reproduced(const ScanGeometry& scan, bool is_mirrored,
 }
 
 TEST(ScanConversion, ReproducesWhatIsLinearAlongAndAcrossLines) {
-  for (const ScanGeometry& scan : {fan(), parallel()}) {
+  for (const ScanGeometry& scan : {converted_fan(), parallel()}) {
     for (const bool is_mirrored : {false, true}) {
       expect_reproduced(scan, is_mirrored, slope_along);
       expect_reproduced(scan, is_mirrored, slope_across);
@@ -85,7 +85,7 @@ TEST(ScanConversion, ReproducesWhatIsLinearAlongAndAcrossLines) {
 }
 
 TEST(ScanConversion, PixelsBeyondTheScanAreBlackAndItsEdgeIsClean) {
-  for (const ScanGeometry& scan : {fan(), parallel()}) {
+  for (const ScanGeometry& scan : {converted_fan(), parallel()}) {
     const RasterGeometry raster = fit_raster(scan, 203, 150);
     const std::vector<std::uint8_t> pixels = converted(scan, raster, white);
     int outside = 0;
@@ -105,7 +105,7 @@ TEST(ScanConversion, PixelsBeyondTheScanAreBlackAndItsEdgeIsClean) {
 
 TEST(ScanConversion, CoarsePixelsAverageNeighbouringSamples) {
   // Samples that change between black and white from one to the next would else be drawn as a moire.
-  const ScanGeometry scan = fan();  // 0.4 mm a sample
+  const ScanGeometry scan = converted_fan();  // 0.4 mm a sample
   const RasterGeometry raster = fit_raster(scan, 128, 100);
   ASSERT_GT(raster.mm_per_pixel, 2.0 * scan.sample_mm());
   const auto stripes = [](const ScanGeometry& /*scan*/, double /*line*/, double sample) {

@@ -13,23 +13,23 @@
 namespace trocar::ultrasound {
 namespace {
 
-constexpr int kLines = 96;
+constexpr int kFrameLines = 96;
 constexpr int kSamples = 512;
 constexpr double kFrequency_mhz = 3.5;
 
 /// A frame without any echo.
 BasebandFrame silent_frame() {
   BasebandFrame frame;
-  frame.geometry.lines = kLines;
+  frame.geometry.lines = kFrameLines;
   frame.geometry.samples = kSamples;
   frame.geometry.radius_mm = 55.0;
-  frame.geometry.line_step = 1.1 / (kLines - 1);
+  frame.geometry.line_step = 1.1 / (kFrameLines - 1);
   frame.geometry.depth_mm = 160.0;
   frame.beam.frequency_mhz = kFrequency_mhz;
   frame.beam.axial_sigma_mm = 0.14;
-  frame.re.assign(kLines * kSamples, 0.0F);
-  frame.im.assign(kLines * kSamples, 0.0F);
-  frame.contact.assign(kLines, 1.0F);
+  frame.re.assign(kFrameLines * kSamples, 0.0F);
+  frame.im.assign(kFrameLines * kSamples, 0.0F);
+  frame.contact.assign(kFrameLines, 1.0F);
   return frame;
 }
 
@@ -46,7 +46,7 @@ BasebandFrame liver_frame(std::uint64_t seed) {
   return frame;
 }
 
-std::size_t sample_at(double depth_mm) {
+std::size_t sample_of_depth(double depth_mm) {
   return static_cast<std::size_t>(depth_mm / 160.0 * kSamples);
 }
 
@@ -54,8 +54,8 @@ std::size_t sample_at(double depth_mm) {
 double level_between_db(const Scanner& scanner, double from_mm, double to_mm) {
   double sum = 0.0;
   std::size_t count = 0;
-  for (std::size_t line = 0; line < kLines; ++line) {
-    for (std::size_t s = sample_at(from_mm); s < sample_at(to_mm); ++s, ++count) {
+  for (std::size_t line = 0; line < kFrameLines; ++line) {
+    for (std::size_t s = sample_of_depth(from_mm); s < sample_of_depth(to_mm); ++s, ++count) {
       sum += std::pow(10.0, Scanner::level_db(scanner.levels()[line * kSamples + s]) / 10.0);
     }
   }
@@ -84,8 +84,8 @@ TEST(Scanner, LiverIsAsGrayAsInTheRealSweep) {
   scanner.settings.gain_db = -8.0;  // as behind an abdominal wall
   scanner.show(liver_frame(2), 1);
   std::vector<double> gray;
-  for (std::size_t line = 0; line < kLines; ++line) {
-    for (std::size_t s = sample_at(40.0); s < sample_at(80.0); ++s)
+  for (std::size_t line = 0; line < kFrameLines; ++line) {
+    for (std::size_t s = sample_of_depth(40.0); s < sample_of_depth(80.0); ++s)
       gray.push_back(scanner.polar()[line * kSamples + s]);
   }
   const double n = static_cast<double>(gray.size());
@@ -170,7 +170,7 @@ TEST(Scanner, SamplesThatAreNoNumberAreBlackAndAlone) {
   BasebandFrame frame = liver_frame(4);
   scanner.show(frame, 1);
   const std::vector<std::uint8_t> sound = scanner.polar();
-  const std::size_t bad[] = {5 * kSamples + 3, 40 * kSamples + 200, 41 * kSamples, kLines * kSamples - 1};
+  const std::size_t bad[] = {5 * kSamples + 3, 40 * kSamples + 200, 41 * kSamples, kFrameLines * kSamples - 1};
   frame.re[bad[0]] = std::numeric_limits<float>::quiet_NaN();
   frame.im[bad[1]] = std::numeric_limits<float>::infinity();
   frame.re[bad[2]] = -std::numeric_limits<float>::infinity();
@@ -231,11 +231,11 @@ TEST(Scanner, GeometryFollowsTheFrame) {
   BasebandFrame frame = silent_frame();
   frame.geometry.depth_mm = 80.0;
   frame.geometry.samples = 200;
-  frame.re.assign(kLines * 200, 0.0F);
-  frame.im.assign(kLines * 200, 0.0F);
+  frame.re.assign(kFrameLines * 200, 0.0F);
+  frame.im.assign(kFrameLines * 200, 0.0F);
   const GrayImage& image = scanner.show(frame, 1);
   EXPECT_LT(scanner.raster().mm_per_pixel, coarse_mm);
-  EXPECT_EQ(scanner.polar().size(), static_cast<std::size_t>(kLines * 200));
+  EXPECT_EQ(scanner.polar().size(), static_cast<std::size_t>(kFrameLines * 200));
   EXPECT_EQ(std::count(image.pixels.begin(), image.pixels.end(), 0), std::ssize(image.pixels));
 }
 

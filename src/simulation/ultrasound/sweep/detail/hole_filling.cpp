@@ -202,8 +202,8 @@ std::int64_t reach_of(const std::vector<HoleFilling>& ways) {
   return reach;
 }
 
-std::size_t fill_slice(const Known& known, const NearBlocks& near_blocks, const std::vector<HoleFilling>& ways,
-                       std::int64_t k, std::vector<std::uint8_t>& filled) {
+std::size_t fill_holes_in_slice(const Known& known, const NearBlocks& near_blocks, const std::vector<HoleFilling>& ways,
+                                std::int64_t k, std::vector<std::uint8_t>& filled) {
   std::size_t count = 0;
   for (std::int64_t j = 0; j < known.grid.size[1]; ++j) {
     for (std::int64_t i = 0; i < known.grid.size[0]; ++i) {
@@ -230,7 +230,7 @@ std::size_t fill_holes(volume::LabelGrid& gray, const std::vector<std::uint8_t>&
   std::atomic<std::size_t> count = 0;
   parallel_for(static_cast<std::size_t>(gray.geometry.size[2]), 1, [&](std::size_t first, std::size_t last) {
     for (std::size_t k = first; k < last; ++k)
-      count += fill_slice(before, near_blocks, ways, static_cast<std::int64_t>(k), filled);
+      count += fill_holes_in_slice(before, near_blocks, ways, static_cast<std::int64_t>(k), filled);
   });
   gray.voxels = std::move(filled);
   return count;

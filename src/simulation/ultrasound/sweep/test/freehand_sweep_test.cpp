@@ -14,7 +14,7 @@ namespace {
 
 using namespace testing;
 
-FreehandVolume reconstruct(const std::vector<Pose>& poses, double spacing_mm) {
+FreehandVolume reconstruct_poses(const std::vector<Pose>& poses, double spacing_mm) {
   FreehandSweepOptions options;
   options.acquisition = lab_options().acquisition;
   options.columns = 320;
@@ -36,7 +36,7 @@ TEST(FreehandSweep, ATiltReconstructsToTheVolumeOfTheMotor) {
   const auto direct = make_mechanical_sweep(lab_scene(), motor_probe(), {}, options);
   ASSERT_TRUE(direct) << direct.error().text();
   const auto poses = tilt_on_skin({}, options.sweep_rad, motor_probe().sweep_radius_mm, direct->geometry.frames);
-  const FreehandVolume hand = reconstruct(poses, options.spacing_mm);
+  const FreehandVolume hand = reconstruct_poses(poses, options.spacing_mm);
   std::vector<std::uint8_t> resampled(direct->gray.voxels.size());
   for (std::size_t n = 0; n < resampled.size(); ++n) {
     const volume::Index3 ijk = direct->gray.geometry.index_of(n);
@@ -50,7 +50,7 @@ TEST(FreehandSweep, ATiltReconstructsToTheVolumeOfTheMotor) {
 
 TEST(FreehandSweep, ASlideShowsPointsWhereTheyAre) {
   volume::FloatGrid flat_skin = lab_scene()->skin_distance_mm;
-  const FreehandVolume volume = reconstruct(slide_over_skin(flat_skin, {}, 50.0, 51), 0.7);
+  const FreehandVolume volume = reconstruct_poses(slide_over_skin(flat_skin, {}, 50.0, 51), 0.7);
   for (const AcousticPoint& point : lab_points())
     EXPECT_LT((brightest_near(volume.gray, point.p_P) - point.p_P).norm(), kPlace_mm) << point.p_P.transpose();
 }

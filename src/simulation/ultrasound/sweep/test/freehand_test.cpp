@@ -11,7 +11,7 @@
 namespace trocar::ultrasound {
 namespace {
 
-using Matrix4 = TrackedSequence::Matrix4;
+using SequenceMatrix = TrackedSequence::Matrix4;
 using Pattern = std::function<std::uint8_t(std::size_t frame, int column, int row)>;
 
 TrackedSequence make_sequence(int columns, int rows, std::size_t frames, const Pattern& pattern) {
@@ -23,7 +23,7 @@ TrackedSequence make_sequence(int columns, int rows, std::size_t frames, const P
     for (int row = 0; row < rows; ++row)
       for (int column = 0; column < columns; ++column) sequence.pixels.push_back(pattern(frame, column, row));
     // Side by side, 1 mm apart; pixels of 1 mm.
-    Matrix4 T_PI = Matrix4::Identity();
+    SequenceMatrix T_PI = SequenceMatrix::Identity();
     T_PI.col(3) << 10.0, 20.0, 30.0 + static_cast<double>(frame), 1.0;
     sequence.frames[frame].transforms.emplace("ImageToReference", T_PI);
   }
@@ -71,7 +71,7 @@ TEST(Freehand, StacksParallelPicturesExactly) {
 
 TEST(Freehand, ChainsCalibrationAndTracking) {
   TrackedSequence sequence = make_sequence(5, 4, 3, numbered);
-  Matrix4 image = Matrix4::Identity(), reference = Matrix4::Identity();
+  SequenceMatrix image = SequenceMatrix::Identity(), reference = SequenceMatrix::Identity();
   image.topLeftCorner<3, 3>() *= 0.5;
   reference.col(3) << 0.0, 0.0, 30.0, 1.0;
   for (auto& frame : sequence.frames) {
@@ -119,7 +119,7 @@ TEST(Freehand, MeanOfThousandsOfPixelsIsExact) {
 std::vector<double> slow_means(const TrackedSequence& sequence, const volume::GridGeometry& grid) {
   std::vector<double> sums(grid.voxel_count(), 0.0), counts(grid.voxel_count(), 0.0);
   for (std::size_t frame = 0; frame < sequence.frames.size(); ++frame) {
-    const Matrix4& T_PI = sequence.frames[frame].transforms.at("ImageToReference");
+    const SequenceMatrix& T_PI = sequence.frames[frame].transforms.at("ImageToReference");
     for (int row = 0; row < sequence.rows; ++row) {
       for (int column = 0; column < sequence.columns; ++column) {
         const Vec3 index = grid.to_index((T_PI * Eigen::Vector4d(column, row, 0, 1)).head<3>());

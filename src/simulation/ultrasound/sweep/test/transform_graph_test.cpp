@@ -8,9 +8,9 @@
 namespace trocar::ultrasound {
 namespace {
 
-using Matrix4 = TransformGraph::Matrix4;
+using GraphMatrix = TransformGraph::Matrix4;
 
-Matrix4 moved(double angle_rad, double x, double y, double z, double scale = 1.0) {
+GraphMatrix moved_matrix(double angle_rad, double x, double y, double z, double scale = 1.0) {
   Eigen::Affine3d affine = Eigen::Affine3d::Identity();
   affine.translate(Eigen::Vector3d(x, y, z))
       .rotate(Eigen::AngleAxisd(angle_rad, Eigen::Vector3d(1, 2, 3).normalized()));
@@ -19,7 +19,8 @@ Matrix4 moved(double angle_rad, double x, double y, double z, double scale = 1.0
 }
 
 TEST(TransformGraph, GoesThroughTheTrackerAndBack) {
-  const Matrix4 probe = moved(0.3, 1, 2, 3), reference = moved(-0.7, 4, 5, 6), image = moved(0.1, 7, 8, 9, 0.08);
+  const GraphMatrix probe = moved_matrix(0.3, 1, 2, 3), reference = moved_matrix(-0.7, 4, 5, 6),
+                    image = moved_matrix(0.1, 7, 8, 9, 0.08);
   TransformGraph graph;
   graph.add({{"ImageToProbe", image}});
   graph.add({{"ProbeToTracker", probe}, {"ReferenceToTracker", reference}, {"StylusToTracker", probe}});
@@ -31,27 +32,27 @@ TEST(TransformGraph, GoesThroughTheTrackerAndBack) {
 
 TEST(TransformGraph, TakesTheFewestTransforms) {
   TransformGraph graph;
-  graph.add({{"ImageToProbe", moved(0.3, 1, 0, 0)}, {"ProbeToReference", moved(0.2, 0, 1, 0)}});
-  graph.add({{"ImageToReference", moved(0.1, 0, 0, 1)}});
-  EXPECT_TRUE(graph.find("Image", "Reference")->isApprox(moved(0.1, 0, 0, 1), 1e-12));
+  graph.add({{"ImageToProbe", moved_matrix(0.3, 1, 0, 0)}, {"ProbeToReference", moved_matrix(0.2, 0, 1, 0)}});
+  graph.add({{"ImageToReference", moved_matrix(0.1, 0, 0, 1)}});
+  EXPECT_TRUE(graph.find("Image", "Reference")->isApprox(moved_matrix(0.1, 0, 0, 1), 1e-12));
 }
 
 TEST(TransformGraph, LaterTransformsOfANameReplaceEarlierOnes) {
   TransformGraph graph;
-  graph.add({{"ImageToReference", moved(0.0, 1, 1, 1)}});
-  graph.add({{"ImageToReference", moved(0.0, 2, 2, 2)}});
+  graph.add({{"ImageToReference", moved_matrix(0.0, 1, 1, 1)}});
+  graph.add({{"ImageToReference", moved_matrix(0.0, 2, 2, 2)}});
   EXPECT_EQ((*graph.find("Image", "Reference"))(0, 3), 2.0);
 }
 
 TEST(TransformGraph, KnowsNamesThatHoldToThemselves) {
   TransformGraph graph;
-  graph.add({{"ToolToTracker", moved(0.0, 3, 0, 0)}, {"TorsoToTracker", moved(0.0, 1, 0, 0)}});
+  graph.add({{"ToolToTracker", moved_matrix(0.0, 3, 0, 0)}, {"TorsoToTracker", moved_matrix(0.0, 1, 0, 0)}});
   ASSERT_TRUE(graph.find("Tool", "Torso"));
   EXPECT_EQ((*graph.find("Tool", "Torso"))(0, 3), 2.0);
 }
 
 TEST(TransformGraph, DoesNotInvertAProjection) {
-  Matrix4 flat = Matrix4::Identity();
+  GraphMatrix flat = GraphMatrix::Identity();
   flat(2, 2) = 0.0;
   TransformGraph graph;
   graph.add({{"ImageToReference", flat}});
@@ -61,7 +62,7 @@ TEST(TransformGraph, DoesNotInvertAProjection) {
 
 TEST(TransformGraph, SaysWhatIsMissing) {
   TransformGraph graph;
-  graph.add({{"ProbeToTracker", Matrix4::Identity()}, {"ReferenceToTracker", Matrix4::Identity()}});
+  graph.add({{"ProbeToTracker", GraphMatrix::Identity()}, {"ReferenceToTracker", GraphMatrix::Identity()}});
   EXPECT_FALSE(graph.find("Image", "Reference"));
   EXPECT_EQ(graph.explain("Image", "Reference"),
             "no transform from Image to Reference: known transforms are ProbeToTracker, ReferenceToTracker; Image is "

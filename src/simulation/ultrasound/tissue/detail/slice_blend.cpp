@@ -10,8 +10,8 @@ namespace {
 /// Search distance of borders, in slice spacings and mm: assumed, a slope of about 1 in 3 is the flattest that differs
 /// from an end.
 constexpr double kReachSpacings = 3.0;
-constexpr double kLeastReach_mm = 6.0;
-constexpr double kGreatestReach_mm = 12.0;
+constexpr double kLeastBorderReach_mm = 6.0;
+constexpr double kGreatestBorderReach_mm = 12.0;
 /// Fraction of a structure's thickness: assumed distance of a missing border. A strip then continues by 0.45 of a slice
 /// on average (1 - 0.5 ln 3), the mean extent of structures met by the slices.
 constexpr float kEndShare = 0.25F;
@@ -27,7 +27,8 @@ float farthest_end_mm(float thickness_mm) {
 SliceBlend::SliceBlend(const TissueVolume& volume) : volume_(volume) {
   const Vec3& spacing_mm = volume.geometry.spacing_mm;
   half_pixel_mm_ = static_cast<float>(0.25 * (spacing_mm[0] + spacing_mm[1]));
-  reach_mm_ = static_cast<float>(std::clamp(kReachSpacings * spacing_mm[2], kLeastReach_mm, kGreatestReach_mm));
+  reach_mm_ =
+      static_cast<float>(std::clamp(kReachSpacings * spacing_mm[2], kLeastBorderReach_mm, kGreatestBorderReach_mm));
   const auto reach_u = static_cast<std::int32_t>(reach_mm_ / spacing_mm[0]);
   const auto reach_v = static_cast<std::int32_t>(reach_mm_ / spacing_mm[1]);
   for (std::int32_t v = -reach_v; v <= reach_v; ++v) {

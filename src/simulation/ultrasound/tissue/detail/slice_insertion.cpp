@@ -14,7 +14,7 @@ namespace {
 using Fixed = std::int64_t;
 constexpr int kPlaces = 32;
 constexpr double kOne = 4294967296.0;
-constexpr Cell kFull = (kWholePixel * ((Cell{1} << 20) - 1)) << kWeightShift;
+constexpr GraySum kFull = (kWholePixel * ((GraySum{1} << 20) - 1)) << kWeightShift;
 constexpr std::size_t kSlabs = 64;  ///< Enough for several cores if a sweep is concentrated at one end.
 
 std::int64_t floor_divide(std::int64_t a, std::int64_t b) {
@@ -38,13 +38,13 @@ void narrow(Fixed start, Fixed step, Fixed low, Fixed high, std::int64_t& first,
 }
 
 template <FreehandCompounding kCompounding>
-void meet(Cell& cell, Cell gray, Cell weight) {
+void meet(GraySum& cell, GraySum gray, GraySum weight) {
   if constexpr (kCompounding == FreehandCompounding::kMean) {
     if (cell < kFull) cell += (weight << kWeightShift) | (gray * weight);
   } else {
     // A pixel at the centre of eight voxels belongs to all of them, any other to the nearest ones.
     if (weight * 8 < kWholePixel) return;
-    const Cell whole = (kWholePixel << kWeightShift) | (gray * kWholePixel);
+    const GraySum whole = (kWholePixel << kWeightShift) | (gray * kWholePixel);
     cell = kCompounding == FreehandCompounding::kMaximum ? std::max(cell, whole) : whole;
   }
 }
@@ -52,7 +52,7 @@ void meet(Cell& cell, Cell gray, Cell weight) {
 /// Slices first_k..last_k-1 of the volume, filled by one thread.
 struct Slab {
   const volume::GridGeometry* grid;
-  Cell* cells;
+  GraySum* cells;
   std::int64_t first_k, last_k;
   double least_gray;
 };
@@ -73,16 +73,16 @@ void insert_nearest(const Slab& slab, const std::uint8_t* row, FixedPoint at, co
 /// Distributes a pixel to the eight voxels around it: `low` is the lower one on all axes, `part` in 256ths towards the
 /// next.
 template <FreehandCompounding kCompounding>
-void share(const Slab& slab, const volume::Index3& low, const std::array<Cell, 3>& part, Cell gray) {
+void share(const Slab& slab, const volume::Index3& low, const std::array<GraySum, 3>& part, GraySum gray) {
   const auto& size = slab.grid->size;
   for (int side = 0; side < 4; ++side) {
     const bool is_next_j = (side & 1) != 0, is_next_k = (side & 2) != 0;
     const std::int64_t j = low[1] + (is_next_j ? 1 : 0), k = low[2] + (is_next_k ? 1 : 0);
     if (k < slab.first_k || k >= slab.last_k || j >= size[1]) continue;
-    const Cell weight = (is_next_j ? part[1] : 256 - part[1]) * (is_next_k ? part[2] : 256 - part[2]);
-    constexpr Cell kHalf = 1 << 15;
-    const Cell weight_low = (weight * (256 - part[0]) + kHalf) >> 16, weight_next = (weight * part[0] + kHalf) >> 16;
-    Cell* cell = slab.cells + (k * size[1] + j) * size[0] + low[0];
+    const GraySum weight = (is_next_j ? part[1] : 256 - part[1]) * (is_next_k ? part[2] : 256 - part[2]);
+    constexpr GraySum kHalf = 1 << 15;
+    const GraySum weight_low = (weight * (256 - part[0]) + kHalf) >> 16, weight_next = (weight * part[0] + kHalf) >> 16;
+    GraySum* cell = slab.cells + (k * size[1] + j) * size[0] + low[0];
     if (weight_low > 0) meet<kCompounding>(cell[0], gray, weight_low);
     if (weight_next > 0 && low[0] + 1 < size[0]) meet<kCompounding>(cell[1], gray, weight_next);
   }
@@ -93,10 +93,10 @@ void insert_linear(const Slab& slab, const std::uint8_t* row, FixedPoint at, con
                    std::int64_t last) {
   for (std::int64_t n = first; n <= last; ++n) {
     volume::Index3 low{};
-    std::array<Cell, 3> part{};
+    std::array<GraySum, 3> part{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       low[axis] = at[axis] >> kPlaces;
-      part[axis] = static_cast<Cell>(at[axis] >> (kPlaces - 8)) & 255;
+      part[axis] = static_cast<GraySum>(at[axis] >> (kPlaces - 8)) & 255;
       at[axis] += step[axis];
     }
     if (row[n] >= slab.least_gray) share<kCompounding>(slab, low, part, row[n]);
@@ -178,7 +178,7 @@ ClipRectangle inside(const std::optional<ClipRectangle>& rectangle, const Tracke
 }
 
 /// Maximum of each pixel over all frames.
-std::vector<std::uint8_t> brightest(const TrackedSequence& sequence) {
+std::vector<std::uint8_t> brightest_pixels(const TrackedSequence& sequence) {
   std::vector<std::uint8_t> result(sequence.frame_pixels(), 0);
   for (std::size_t frame = 0; frame < sequence.frames.size(); ++frame) {
     const auto picture = sequence.picture(frame);
@@ -191,7 +191,8 @@ std::vector<std::uint8_t> brightest(const TrackedSequence& sequence) {
 
 std::vector<PixelRun> pixel_runs(const TrackedSequence& sequence, const FreehandOptions& options) {
   const ClipRectangle box = inside(options.rectangle, sequence);
-  const std::vector<std::uint8_t> light = options.is_black_left_out ? brightest(sequence) : std::vector<std::uint8_t>{};
+  const std::vector<std::uint8_t> light =
+      options.is_black_left_out ? brightest_pixels(sequence) : std::vector<std::uint8_t>{};
   std::vector<PixelRun> runs;
   for (int row = box.first_row; row < box.first_row + box.rows; ++row) {
     bool is_open = false;
@@ -235,7 +236,7 @@ Extent extent_of(const std::vector<PlacedFrame>& frames, const ClipRectangle& bo
 
 void insert_frames(const TrackedSequence& sequence, const std::vector<PlacedFrame>& frames,
                    const std::vector<PixelRun>& runs, const FreehandOptions& options, const volume::GridGeometry& grid,
-                   std::vector<Cell>& cells) {
+                   std::vector<GraySum>& cells) {
   const bool is_linear = options.interpolation == FreehandInterpolation::kLinear;
   const double shift = is_linear ? 0.0 : 0.5;
   std::vector<FixedFrame> fixed;

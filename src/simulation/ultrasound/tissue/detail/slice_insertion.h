@@ -36,19 +36,19 @@ Extent extent_of(const std::vector<PlacedFrame>& frames, const ClipRectangle& bo
 
 /// Accumulated pixels of a voxel: gray times weight in the lower 36 bits, weight above; 256 is a whole pixel. A voxel
 /// accepts at most a million whole pixels.
-using Cell = std::uint64_t;
+using GraySum = std::uint64_t;
 inline constexpr int kWeightShift = 36;
-inline constexpr Cell kWholePixel = 256;
+inline constexpr GraySum kWholePixel = 256;
 
 /// Inserts the pixels of all frames into cells (one per voxel of `grid`), frame after frame in each voxel.
 void insert_frames(const TrackedSequence& sequence, const std::vector<PlacedFrame>& frames,
                    const std::vector<PixelRun>& runs, const FreehandOptions& options, const volume::GridGeometry& grid,
-                   std::vector<Cell>& cells);
+                   std::vector<GraySum>& cells);
 
 /// Rounded gray of a cell; 0 without pixels.
-inline std::uint8_t gray_of(Cell cell) noexcept {
-  const Cell weight = cell >> kWeightShift;
-  const Cell sum = cell & ((Cell{1} << kWeightShift) - 1);
+inline std::uint8_t gray_of(GraySum cell) noexcept {
+  const GraySum weight = cell >> kWeightShift;
+  const GraySum sum = cell & ((GraySum{1} << kWeightShift) - 1);
   return weight == 0 ? std::uint8_t{0} : static_cast<std::uint8_t>((sum + weight / 2) / weight);
 }
 

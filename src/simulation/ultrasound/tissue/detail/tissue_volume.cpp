@@ -11,9 +11,8 @@
 namespace trocar::ultrasound::detail {
 namespace {
 
-// HU of unlabelled voxels, as in src/patient/anatomy (adipose tissue up to -30 HU, doi 10.1038/s41598-025-96238-6,
-// table 1). A built patient has no such voxels; a hand-made one may.
-constexpr int kGasBelow_hu = -300;
+// HU of unlabelled voxels besides kGasBelow_hu, as in src/patient/anatomy (adipose tissue up to -30 HU,
+// doi 10.1038/s41598-025-96238-6, table 1). A built patient has no such voxels; a hand-made one may.
 constexpr int kFatUpTo_hu = -30;
 constexpr int kBoneAbove_hu = 250;
 

@@ -10,6 +10,9 @@
 
 namespace trocar::ultrasound::detail {
 
+/// HU of gas, as in src/patient/anatomy; gas in bowel is labelled bowel.
+inline constexpr int kGasBelow_hu = -300;
+
 /// Value of TissueVolume::tissue outside the body.
 inline constexpr std::uint8_t kNoTissue = 0xFF;
 

@@ -14,13 +14,13 @@ namespace {
 
 using namespace testing;
 
-std::shared_ptr<const AcousticScene> make_scene(const anatomy::VirtualPatient& patient, double spacing_mm = 1.0) {
+std::shared_ptr<const AcousticScene> make_block_scene(const anatomy::VirtualPatient& patient, double spacing_mm = 1.0) {
   auto scene = make_acoustic_scene(patient, make_block_table(), {.spacing_mm = spacing_mm});
   EXPECT_TRUE(scene.has_value()) << scene.error().text();
   return *scene;
 }
 
-Vec3 place(const AcousticScene& scene, std::size_t n) {
+Vec3 voxel_place(const AcousticScene& scene, std::size_t n) {
   const volume::Index3 ijk = scene.geometry.index_of(n);
   return scene.geometry.centre_mm(ijk);
 }
@@ -46,7 +46,7 @@ double worst_side_mm(const AcousticScene& scene, const Vec3& normal, std::uint8_
   const Vec3 middle_P(0.0, 25.0, 0.0);
   double worst_mm = 0.0;
   for (std::size_t n = 0; n < scene.tissue.size(); ++n) {
-    const Vec3 p_P = place(scene, n);
+    const Vec3 p_P = voxel_place(scene, n);
     if (p_P.y() < 5.0 || p_P.y() > 44.0 || std::abs(p_P.z()) > 18.0 || std::abs(p_P.x()) > 22.0) continue;
     const double side_mm = normal.dot(p_P - middle_P);
     if (((scene.tissue[n] & 0x7F) == code) != (side_mm < 0.0)) worst_mm = std::max(worst_mm, std::abs(side_mm));
@@ -63,7 +63,7 @@ TEST(AcousticScene, SlantedBorderHasNoTerracesBetweenThickSlices) {
     });
     // Slices as they are would be wrong by up to 2.5 mm cos(slope) (2.35 at 20 degrees); half a voxel of 0.7 mm in
     // plane and the votes' rounding remain.
-    EXPECT_LT(worst_side_mm(*make_scene(patient), normal, kLiver), 0.8) << slope_deg;
+    EXPECT_LT(worst_side_mm(*make_block_scene(patient), normal, kLiver), 0.8) << slope_deg;
   }
 }
 
@@ -73,12 +73,12 @@ TEST(AcousticScene, BallKeepsItsVolumeAndShape) {
   const anatomy::VirtualPatient patient = make_block({50, 60, 50}, {0.7, 0.7, 2.5}, [&](const Vec3& p_P) {
     return BlockVoxel{(p_P - middle_P).norm() < kRadius_mm ? kKidney : kLiver, 60};
   });
-  const auto scene = make_scene(patient);
+  const auto scene = make_block_scene(patient);
   const auto kidney = *scene->table.find("kidney");
   double volume_mm3 = 0.0;
   double worst_mm = 0.0;
   for (std::size_t n = 0; n < scene->tissue.size(); ++n) {
-    const double side_mm = (place(*scene, n) - middle_P).norm() - kRadius_mm;
+    const double side_mm = (voxel_place(*scene, n) - middle_P).norm() - kRadius_mm;
     const bool is_kidney = (scene->tissue[n] & 0x7F) == kidney;
     volume_mm3 += is_kidney ? scene->geometry.voxel_volume_mm3() : 0.0;
     if (is_kidney != (side_mm < 0.0)) worst_mm = std::max(worst_mm, std::abs(side_mm));
@@ -97,7 +97,7 @@ TEST(AcousticScene, WallOfOneVoxelHasNoHole) {
       const double half_mm = 0.35 * (std::abs(normal.x()) + std::abs(normal.y()));
       return BlockVoxel{std::abs(side_mm) <= half_mm ? kMuscle : side_mm < 0.0 ? kLiver : kLung, 0};
     });
-    const auto scene = make_scene(patient);
+    const auto scene = make_block_scene(patient);
     const auto liver = *scene->table.find("liver");
     const auto lung = *scene->table.find("lung");
     // No liver voxel touches a lung voxel at a face.
@@ -129,7 +129,7 @@ TEST(AcousticScene, ThinVesselsAndRibsStayWhole) {
     const anatomy::VirtualPatient patient = make_block({50, 60, 50}, {0.7, 0.7, 2.5}, [&](const Vec3& p_P) {
       return BlockVoxel{away_mm(p_P) < 0.5 * tube.diameter_mm ? kVessel : kLiver, 60};
     });
-    const auto scene = make_scene(patient);
+    const auto scene = make_block_scene(patient);
     const auto vessel = *scene->table.find("vessel");
     const auto is_near_vessel = [&](const Vec3& p_P) {
       for (int dz = -1; dz <= 1; ++dz) {
@@ -144,7 +144,7 @@ TEST(AcousticScene, ThinVesselsAndRibsStayWhole) {
     };
     double volume_mm3 = 0.0;
     for (std::size_t n = 0; n < scene->tissue.size(); ++n) {
-      if ((scene->tissue[n] & 0x7F) == vessel && (place(*scene, n) - through_P).norm() < 15.0)
+      if ((scene->tissue[n] & 0x7F) == vessel && (voxel_place(*scene, n) - through_P).norm() < 15.0)
         volume_mm3 += scene->geometry.voxel_volume_mm3();
     }
     for (double along_mm = -15.0; along_mm <= 15.0; along_mm += 0.5)
@@ -163,13 +163,13 @@ TEST(AcousticScene, LayerThatMovesByMoreThanItsThicknessStaysBetweenItsNeighbour
     const double side_mm = normal.dot(p_P);
     return BlockVoxel{std::abs(side_mm) < half_mm ? kFat : side_mm < 0.0 ? kLiver : kKidney, 0};
   });
-  const auto scene = make_scene(patient);
+  const auto scene = make_block_scene(patient);
   const auto liver = *scene->table.find("liver");
   const auto fat = *scene->table.find("adipose");
   const auto kidney = *scene->table.find("kidney");
   int leaks = 0;
   for (std::size_t n = 0; n < scene->tissue.size(); ++n) {
-    const Vec3 p_P = place(*scene, n);
+    const Vec3 p_P = voxel_place(*scene, n);
     if (std::abs(p_P.z()) > 15.0 || p_P.y() < 4.0 || p_P.y() > 26.0 || std::abs(p_P.x()) > 26.0) continue;
     const auto own = scene->tissue[n] & 0x7F;
     const auto next = scene->tissue[n + 1] & 0x7F;
@@ -186,9 +186,9 @@ TEST(AcousticScene, SkinIsAShellAndOutsideIsAir) {
     return BlockVoxel{kLiver, 60};
   });
   patient.labels[{3, 2, 3}] = kBone;  // outside the body: air all the same
-  const auto scene = make_scene(patient);
+  const auto scene = make_block_scene(patient);
   for (std::size_t n = 0; n < scene->tissue.size(); ++n) {
-    const double depth_mm = place(*scene, n).y();
+    const double depth_mm = voxel_place(*scene, n).y();
     EXPECT_EQ(tissue_name(*scene, n), depth_mm <= 0.0 ? "air" : depth_mm < 2.0 ? "skin" : "liver") << depth_mm;
   }
   const volume::FloatGrid& skin = scene->skin_distance_mm;
@@ -205,7 +205,7 @@ TEST(AcousticScene, IsCroppedToTheBodyAndItsMargin) {
     const Vec3 p_P = patient.labels.geometry.centre_mm(ijk);
     patient.skin_distance_mm.voxels[n] = static_cast<float>((p_P - Vec3(0, 24, 0)).norm() - 15.0);
   }
-  const auto scene = make_scene(patient);
+  const auto scene = make_block_scene(patient);
   EXPECT_NEAR(static_cast<double>(scene->geometry.size[0]), 70.0, 2.0);
   EXPECT_NEAR(static_cast<double>(scene->geometry.size[2]), 70.0, 4.0);
   EXPECT_LT((scene->geometry.spacing_mm - Vec3::Ones()).norm(), 1e-12);
@@ -215,8 +215,8 @@ TEST(AcousticScene, IsCroppedToTheBodyAndItsMargin) {
 
 TEST(AcousticScene, GridIsNotMuchFinerThanTheCt) {
   const auto patient = make_block({60, 60, 60}, {3.0, 3.0, 3.0}, [](const Vec3&) { return BlockVoxel{kLiver, 60}; });
-  EXPECT_DOUBLE_EQ(make_scene(patient)->geometry.spacing_mm.x(), 1.5);
-  EXPECT_DOUBLE_EQ(make_scene(patient, 2.0)->geometry.spacing_mm.x(), 2.0);
+  EXPECT_DOUBLE_EQ(make_block_scene(patient)->geometry.spacing_mm.x(), 1.5);
+  EXPECT_DOUBLE_EQ(make_block_scene(patient, 2.0)->geometry.spacing_mm.x(), 2.0);
 }
 
 TEST(AcousticScene, UnlabelledTissueAndGasInBowelAreWhatTheirHuSay) {
@@ -225,7 +225,7 @@ TEST(AcousticScene, UnlabelledTissueAndGasInBowelAreWhatTheirHuSay) {
     const int hu = p_P.x() < -15.0 ? -900 : p_P.x() < 0.0 ? -100 : p_P.x() < 15.0 ? 40 : 700;
     return BlockVoxel{0, static_cast<std::int16_t>(hu)};
   });
-  const auto scene = make_scene(patient);
+  const auto scene = make_block_scene(patient);
   EXPECT_EQ(tissue_at(*scene, {-22, 20, -10}), "gas");
   EXPECT_EQ(tissue_at(*scene, {-7, 20, -10}), "adipose");
   EXPECT_EQ(tissue_at(*scene, {7, 20, -10}), "soft_tissue");
@@ -241,7 +241,7 @@ TEST(AcousticScene, TextureShowsADeviationAndNoNeighbour) {
     if (p_P.x() > 0.0) return BlockVoxel{kLung, -800};
     return BlockVoxel{kLiver, static_cast<std::int16_t>((p_P - lesion_P).norm() < 5.0 ? 20 : 80)};
   });
-  const auto scene = make_scene(patient);
+  const auto scene = make_block_scene(patient);
   // The lesion is 3 % of the liver block: the mean is within 2 HU of 80.
   EXPECT_NEAR(texture_hu_at(*scene, lesion_P), -60.0, 5.0);
   EXPECT_NEAR(texture_hu_at(*scene, {-20, 24, 8}), 0.0, 3.0);
@@ -254,7 +254,7 @@ TEST(AcousticScene, TextureIsSmoothedByAboutItsSigma) {
   const anatomy::VirtualPatient patient = make_block({60, 60, 20}, {0.5, 0.5, 2.0}, [](const Vec3& p_P) {
     return BlockVoxel{kLiver, static_cast<std::int16_t>(p_P.x() < 0.0 ? 0 : 200)};
   });
-  const auto scene = make_scene(patient, 0.5);
+  const auto scene = make_block_scene(patient, 0.5);
   const auto crossing_mm = [&](double hu) {
     double x_mm = -6.0;
     while (x_mm < 6.0 && texture_hu_at(*scene, {x_mm, 24, 0}) < hu) x_mm += 0.05;
@@ -267,8 +267,8 @@ TEST(AcousticScene, ThickAxisMayBeAnyOfTheThree) {
   const auto label = [](const Vec3& p_P) {
     return BlockVoxel{(p_P - Vec3(2, 24, 1)).norm() < 11.0 ? kKidney : kLiver, 60};
   };
-  const auto thick_x = make_scene(make_block({50, 60, 50}, {5.0, 0.7, 0.7}, label));
-  const auto thick_z = make_scene(make_block({50, 60, 50}, {0.7, 0.7, 5.0}, label));
+  const auto thick_x = make_block_scene(make_block({50, 60, 50}, {5.0, 0.7, 0.7}, label));
+  const auto thick_z = make_block_scene(make_block({50, 60, 50}, {0.7, 0.7, 5.0}, label));
   EXPECT_NEAR(thick_x->geometry.R_PV.determinant(), 1.0, 1e-12);
   int differing = 0;
   int kidney = 0;

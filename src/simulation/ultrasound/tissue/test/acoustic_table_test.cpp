@@ -13,10 +13,10 @@
 namespace trocar::ultrasound {
 namespace {
 
-const std::filesystem::path kFile = data_dir() / "acoustics.toml";
+const std::filesystem::path kAcousticsFile = data_dir() / "acoustics.toml";
 
-AcousticTable shipped() {
-  auto table = load_acoustic_table(kFile);
+AcousticTable shipped_acoustics() {
+  auto table = load_acoustic_table(kAcousticsFile);
   EXPECT_TRUE(table) << table.error().text();
   return table.value_or(AcousticTable{});
 }
@@ -33,18 +33,18 @@ TEST(AcousticTable, HasTheTissuesThatAreFeltAndItsOwn) {
   std::set<std::string> expected = {"air", "water", "gel", "kidney_pyramid", "renal_sinus"};
   for (const auto& params : felt->tissues) expected.insert(params.name);
   std::set<std::string> heard;
-  for (const AcousticTissue& t : shipped().tissues) heard.insert(t.name);
+  for (const AcousticTissue& t : shipped_acoustics().tissues) heard.insert(t.name);
   EXPECT_EQ(heard, expected);
 }
 
 TEST(AcousticTable, AirIsFirstAndUnknownNamesAreNotFound) {
-  const AcousticTable table = shipped();
+  const AcousticTable table = shipped_acoustics();
   EXPECT_EQ(table.find("air"), 0);
   EXPECT_FALSE(table.find("unobtainium"));
 }
 
 TEST(AcousticTable, EchoesAreInRadiologysOrder) {
-  const AcousticTable table = shipped();
+  const AcousticTable table = shipped_acoustics();
   double last_db = 100.0;
   for (const char* name : {"organ", "spleen", "liver", "kidney", "vessel", "gallbladder"}) {
     EXPECT_LT(tissue(table, name).backscatter_db, last_db) << name;
@@ -54,7 +54,7 @@ TEST(AcousticTable, EchoesAreInRadiologysOrder) {
 }
 
 TEST(AcousticTable, BordersReflectAsIsTaught) {
-  const AcousticTable table = shipped();
+  const AcousticTable table = shipped_acoustics();
   const auto echo = [&](const char* from, const char* to) {
     return reflection(tissue(table, from).impedance_mrayl(), tissue(table, to).impedance_mrayl());
   };
@@ -85,7 +85,7 @@ TEST(AcousticTable, AttenuationFollowsItsPowerOfFrequency) {
 }
 
 TEST(AcousticTable, VesselsWithContrastMediumAndLesionsAreDarkInLiver) {
-  const AcousticTissue liver = tissue(shipped(), "liver");
+  const AcousticTissue liver = tissue(shipped_acoustics(), "liver");
   EXPECT_EQ(liver.texture_db(0.0), 0.0);
   EXPECT_LE(liver.texture_db(40.0), -15.0);
   EXPECT_LE(liver.texture_db(-40.0), -4.0);
@@ -94,8 +94,8 @@ TEST(AcousticTable, VesselsWithContrastMediumAndLesionsAreDarkInLiver) {
 }
 
 /// Loads the shipped file with one text replaced.
-Result<AcousticTable> load_changed(const std::string& from, const std::string& to) {
-  return testing::load_changed(kFile, from, to, [](const auto& file) { return load_acoustic_table(file); });
+Result<AcousticTable> load_changed_acoustics(const std::string& from, const std::string& to) {
+  return testing::load_changed(kAcousticsFile, from, to, [](const auto& file) { return load_acoustic_table(file); });
 }
 
 TEST(AcousticTable, WrongEntryNamesFileTissueAndKey) {
@@ -112,7 +112,7 @@ TEST(AcousticTable, WrongEntryNamesFileTissueAndKey) {
       {"backscatter_db = {value = 0, source = \"by definition\"}", "backscatter_db = {value = 0, source = \"assumed\"}",
        "range"}};
   for (const Case& wrong : cases) {
-    const auto table = load_changed(wrong.from, wrong.to);
+    const auto table = load_changed_acoustics(wrong.from, wrong.to);
     ASSERT_FALSE(table) << wrong.to;
     const std::string text = table.error().text();
     EXPECT_NE(text.find("acoustics.toml"), std::string::npos) << text;
@@ -122,7 +122,7 @@ TEST(AcousticTable, WrongEntryNamesFileTissueAndKey) {
 }
 
 TEST(AcousticTable, ReadsWalls) {
-  const AcousticTable table = shipped();
+  const AcousticTable table = shipped_acoustics();
   ASSERT_FALSE(table.walls.empty());
   const AcousticWall& diaphragm = table.walls.front();
   EXPECT_EQ(diaphragm.name, "diaphragm");
@@ -136,14 +136,14 @@ TEST(AcousticTable, NamesTheWallThatIsWrong) {
                                                          {"of = [\"lung\"]", "off = [\"lung\"]"},
                                                          {"thickness_mm = {value = 5,", "thickness_mm = {value = 50,"}};
   for (const auto& [from, to] : changes) {
-    const auto table = load_changed(from, to);
+    const auto table = load_changed_acoustics(from, to);
     ASSERT_FALSE(table) << to;
     EXPECT_NE(table.error().text().find("walls.diaphragm"), std::string::npos) << table.error().text();
   }
 }
 
 TEST(AcousticTable, AirMustComeFirst) {
-  const auto table = load_changed("[tissues.air]", "[tissues.vacuum]");
+  const auto table = load_changed_acoustics("[tissues.air]", "[tissues.vacuum]");
   ASSERT_FALSE(table);
   EXPECT_NE(table.error().text().find("air"), std::string::npos);
 }

@@ -10,13 +10,13 @@
 namespace trocar::ultrasound {
 namespace {
 
-anatomy::VirtualPatient block() {
+anatomy::VirtualPatient liver_block() {
   return testing::make_block({60.0, 60.0, 40.0}, {2.0, 2.0, 2.0}, [](const Vec3&) {
     return testing::BlockVoxel{testing::kLiver, 60};
   });
 }
 
-ScanGeometry fan() {
+ScanGeometry short_fan() {
   ScanGeometry scan;
   scan.radius_mm = 50.0;
   scan.lines = 65;
@@ -28,7 +28,7 @@ ScanGeometry fan() {
 
 TEST(ScanEnds, AreTheFacesThatCutTheBody) {
   // The block has skin in front; all its other faces cut it.
-  const std::vector<ScanEnd> ends = find_scan_ends(block());
+  const std::vector<ScanEnd> ends = find_scan_ends(liver_block());
   ASSERT_EQ(ends.size(), 5u);
   EXPECT_TRUE(std::none_of(ends.begin(), ends.end(), [](const ScanEnd& end) { return end.normal_P.y() < -0.5; }));
   EXPECT_FALSE(is_unscanned(ends, {0.0, 20.0, 0.0}));
@@ -41,24 +41,24 @@ TEST(ScanEnds, AreTheFacesThatCutTheBody) {
 
 TEST(ScanEnds, ShareAndPolygonOfHalfAPicture) {
   const std::vector<ScanEnd> ends = {{Vec3::UnitX(), 0.0}};
-  EXPECT_NEAR(unscanned_share(ends, Pose(), fan()), 0.5, 1e-6);
-  EXPECT_EQ(unscanned_share({}, Pose(), fan()), 0.0);
-  const std::vector<Vec2> polygon = scanned_polygon_T(ends, Pose(), fan());
+  EXPECT_NEAR(unscanned_share(ends, Pose(), short_fan()), 0.5, 1e-6);
+  EXPECT_EQ(unscanned_share({}, Pose(), short_fan()), 0.0);
+  const std::vector<Vec2> polygon = scanned_polygon_T(ends, Pose(), short_fan());
   ASSERT_EQ(polygon.size(), 4u);
   for (const Vec2& corner : polygon) EXPECT_LE(corner.x(), 1e-9);
-  EXPECT_TRUE(scanned_polygon_T({{Vec3::UnitZ(), -1.0}}, Pose(), fan()).empty()) << "the plane lies beyond";
-  EXPECT_EQ(scanned_polygon_T({{Vec3::UnitZ(), 1.0}}, Pose(), fan()).size(), 4u);
+  EXPECT_TRUE(scanned_polygon_T({{Vec3::UnitZ(), -1.0}}, Pose(), short_fan()).empty()) << "the plane lies beyond";
+  EXPECT_EQ(scanned_polygon_T({{Vec3::UnitZ(), 1.0}}, Pose(), short_fan()).size(), 4u);
 }
 
 TEST(ScanEnds, HatchLiesBeyondThemAndWithinTheScan) {
-  const RasterGeometry raster = fit_raster(fan(), 200, 160);
+  const RasterGeometry raster = fit_raster(short_fan(), 200, 160);
   volume::RgbImage image(200, 160);
-  hatch_unscanned(image, raster, fan(), Pose(), {{Vec3::UnitX(), 0.0}});
+  hatch_unscanned(image, raster, short_fan(), Pose(), {{Vec3::UnitX(), 0.0}});
   int hatched = 0, beyond = 0;
   for (int row = 0; row < image.rows; ++row) {
     for (int column = 0; column < image.columns; ++column) {
       const Vec2 p_T = raster.to_T(column, row);
-      const Polar at = fan().to_polar(p_T);
+      const Polar at = short_fan().to_polar(p_T);
       const bool is_beyond = p_T.x() > 0.0 && at.line <= 64.0 && at.depth_mm >= 0.0 && at.depth_mm <= 100.0;
       beyond += is_beyond ? 1 : 0;
       if (image.at(column, row) == volume::Rgb{0, 0, 0}) continue;
