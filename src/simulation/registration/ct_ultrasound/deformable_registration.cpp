@@ -15,7 +15,7 @@
 namespace trocar::registration {
 namespace {
 
-constexpr std::size_t kSamples = 60000;
+constexpr std::size_t kFieldSamples = 60000;
 constexpr double kUs_mm = 1.5, kCt_mm = 0.8;  ///< Smoothing.
 constexpr double kLeastJacobian = 0.1;
 constexpr std::size_t kMemory = 6;     ///< Steps that the optimiser remembers.
@@ -42,7 +42,7 @@ volume::GridGeometry lattice_over(const volume::GridGeometry& grid, double node_
   return lattice;
 }
 
-struct Sample {
+struct SplineSample {
   Vec3 p;
   volume::SplineWeights weights;
 };
@@ -150,7 +150,7 @@ class Cost {
   double bending_per_mm2_;
   detail::SampledInformation information_;
   volume::SplineField field_;
-  std::vector<Sample> samples_;
+  std::vector<SplineSample> samples_;
 };
 
 /// Descent directions of the limited-memory BFGS method (Nocedal, Math Comput 35:773, 1980).
@@ -232,7 +232,7 @@ Result<DeformableRegistration> register_deformable(const volume::CtGrid& ct, con
   ct_U.geometry.origin_P = X_UC * ct_U.geometry.origin_P;
   ct_U.geometry.R_PV = X_UC.R() * ct_U.geometry.R_PV;
   const detail::Level level = detail::make_level(prepared, ct_U, kUs_mm, kCt_mm, 1);
-  const std::vector<Vec3> points = detail::sample_usable(prepared, kSamples, options.seed ^ kSampleSeed);
+  const std::vector<Vec3> points = detail::sample_usable(prepared, kFieldSamples, options.seed ^ kSampleSeed);
   Cost cost(level, lattice_over(us.geometry, options.node_mm), points, options.bending_per_mm2);
 
   DeformableRegistration result;

@@ -28,7 +28,7 @@ struct Pairs {
   std::vector<std::string> names, unmatched;
 };
 
-Pairs match(const std::map<std::string, Vec3>& ct, const std::map<std::string, Vec3>& us) {
+Pairs pair_by_name(const std::map<std::string, Vec3>& ct, const std::map<std::string, Vec3>& us) {
   Pairs pairs;
   for (const auto& [name, p] : ct) {
     const auto other = us.find(name);
@@ -66,7 +66,7 @@ std::size_t find_worst(const Pairs& pairs, const RigidFit& fit) {
 Result<LandmarkFit> fit_landmarks(std::span<const NamedPoint> ct, std::span<const NamedPoint> us) {
   TROCAR_TRY(const auto ct_by_name, by_name(ct, "CT"));
   TROCAR_TRY(const auto us_by_name, by_name(us, "ultrasound"));
-  const Pairs pairs = match(ct_by_name, us_by_name);
+  const Pairs pairs = pair_by_name(ct_by_name, us_by_name);
   if (pairs.names.size() < 3)
     return fail(
         fmt::format("{} landmark{} with the same label in CT and ultrasound: at least 3 are needed{}",

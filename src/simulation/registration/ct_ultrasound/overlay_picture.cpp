@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kPixel_mm = 0.6;
 constexpr double kField_mm = 20.0;
-constexpr double kLowest_hu = -150.0, kHighest_hu = 250.0;
+constexpr double kBlack_hu = -150.0, kWhite_hu = 250.0;
 constexpr int kMost = 600;  ///< Pixels of a panel's side.
 constexpr int kGap = 4, kTitle = 16;
 
@@ -78,7 +78,7 @@ class Painter {
     const Vec3 p_C = X_CU_ * p_U;
     const double hu =
         volume::sample_nearest(ct_, p_C, std::int16_t{-1024}) == -1024 ? -1024.0 : volume::sample_linear(ct_, p_C);
-    pixel.ct = std::clamp(255.0 * (hu - kLowest_hu) / (kHighest_hu - kLowest_hu), 0.0, 255.0);
+    pixel.ct = std::clamp(255.0 * (hu - kBlack_hu) / (kWhite_hu - kBlack_hu), 0.0, 255.0);
     return pixel;
   }
 

@@ -20,8 +20,8 @@ using detail::Summit;
 
 /// docs/physics.md R12; all assumed, chosen on simulated sweeps.
 constexpr std::size_t kCoarseSamples = 5000, kMiddleSamples = 10000, kFineSamples = 40000, kFinestSamples = 100000;
-constexpr double kCoarse_mm = 3.5, kUsFine_mm = 1.2, kCtFine_mm = 0.5;  ///< Smoothing.
-constexpr int kFewStarts = 5;                                           ///< Enough if most of them agree.
+constexpr double kCoarse_mm = 3.5;  ///< Smoothing.
+constexpr int kFewStarts = 5;       ///< Enough if most of them agree.
 constexpr double kEnoughAgreement = 0.75;
 constexpr int kStarts = 15;                                ///< The first estimate and displaced ones.
 constexpr double kStartSpread_mm = 8.0;                    ///< Displacement of starts, by translation and by rotation.
@@ -135,7 +135,7 @@ std::vector<Summit> coarse_summits(const Work& work, const detail::ClimbOptions&
 }
 
 /// The top of the fine level from a motion near it.
-Summit refine(const Work& work, const Motion& start) {
+Summit refine_summit(const Work& work, const Motion& start) {
   detail::PoseMetric fine(work.fine, work.fine_points, work.us.centre);
   const Summit near = detail::climb(fine, start, {work.us.radius_mm, 0.4, 0.08, 30});
   detail::PoseMetric finest(work.fine, work.finest_points, work.us.centre);
@@ -178,7 +178,7 @@ Work make_work(detail::WorkingUltrasound us, const volume::FloatGrid& ct_U, std:
   work.us = std::move(us);
   work.ct_U = ct_U;
   work.coarse = detail::make_level(work.us, ct_U, kCoarse_mm, kCoarse_mm, 2);
-  work.fine = detail::make_level(work.us, ct_U, kUsFine_mm, kCtFine_mm, 1);
+  work.fine = detail::make_level(work.us, ct_U, detail::kUsFine_mm, detail::kCtFine_mm, 1);
   work.coarse_points = detail::sample_usable(work.us, kCoarseSamples, seed ^ kCoarseSeed);
   work.middle_points = detail::sample_usable(work.us, kMiddleSamples, seed ^ kMiddleSeed);
   work.fine_points = detail::sample_usable(work.us, kFineSamples, seed ^ kFineSeed);
@@ -224,7 +224,7 @@ Result<RigidRegistration> register_rigid(const volume::CtGrid& ct, const volume:
     return fail(fmt::format("no pose within {:g} mm of the start matches", options.reach_mm), {},
                 "give landmarks, or search from the skin");
   if (cancelled()) return cancellation();
-  const Summit summit = refine(work, best_distinct(middle, work, 1).front().motion);
+  const Summit summit = refine_summit(work, best_distinct(middle, work, 1).front().motion);
   report(progress, "checking the result", 0.9);
   RigidRegistration result;
   result.X_CU = X_CU * work.pose(summit.motion);

@@ -12,11 +12,11 @@ namespace trocar::registration {
 namespace {
 
 constexpr std::int64_t kBlock = 4;  ///< Voxels along an edge of a block of the coarse grid.
-constexpr float kLeastWeight = 1e-6F;
+constexpr float kTinyWeight = 1e-6F;
 constexpr double kLeastDeviation = 0.25;  ///< Of that of the whole volume: plain regions are not amplified further.
 
 /// Sums over blocks of voxels: weights, gray levels and their squares.
-struct Moments {
+struct BlockSums {
   volume::FloatGrid weight, sum, squares;
 };
 
@@ -28,9 +28,9 @@ volume::GridGeometry block_geometry(const volume::GridGeometry& fine) {
   return coarse;
 }
 
-Moments sum_blocks(const volume::LabelGrid& gray, const volume::MaskGrid& usable) {
+BlockSums sum_blocks(const volume::LabelGrid& gray, const volume::MaskGrid& usable) {
   const volume::GridGeometry coarse = block_geometry(gray.geometry);
-  Moments moments{volume::FloatGrid(coarse), volume::FloatGrid(coarse), volume::FloatGrid(coarse)};
+  BlockSums moments{volume::FloatGrid(coarse), volume::FloatGrid(coarse), volume::FloatGrid(coarse)};
   const auto& size = gray.geometry.size;
   parallel_for(static_cast<std::size_t>(coarse.size[2]), 1, [&](std::size_t first, std::size_t last) {
     const std::int64_t end = std::min(size[2], static_cast<std::int64_t>(last) * kBlock);
@@ -51,7 +51,7 @@ Moments sum_blocks(const volume::LabelGrid& gray, const volume::MaskGrid& usable
   return moments;
 }
 
-double deviation_of(const Moments& moments, double& count) {
+double deviation_of(const BlockSums& moments, double& count) {
   double sum = 0.0, squares = 0.0;
   count = 0.0;
   for (std::size_t n = 0; n < moments.sum.voxels.size(); ++n) {
@@ -66,7 +66,7 @@ double deviation_of(const Moments& moments, double& count) {
 
 Result<volume::FloatGrid> flatten(const volume::LabelGrid& gray, const volume::MaskGrid& usable, double sigma_mm) {
   TROCAR_CHECK(usable.voxels.size() == gray.voxels.size());
-  Moments moments = sum_blocks(gray, usable);
+  BlockSums moments = sum_blocks(gray, usable);
   double count = 0.0;
   const double deviation = deviation_of(moments, count);
   if (count == 0.0)
@@ -77,7 +77,7 @@ Result<volume::FloatGrid> flatten(const volume::LabelGrid& gray, const volume::M
   for (volume::FloatGrid* grid : {&moments.weight, &moments.sum, &moments.squares}) volume::gaussian_blur(*grid, sigma);
   volume::FloatGrid mean(moments.sum.geometry), scale(moments.sum.geometry);
   for (std::size_t n = 0; n < mean.voxels.size(); ++n) {
-    const float weight = std::max(moments.weight.voxels[n], kLeastWeight);
+    const float weight = std::max(moments.weight.voxels[n], kTinyWeight);
     mean.voxels[n] = moments.sum.voxels[n] / weight;
     const float variance = moments.squares.voxels[n] / weight - mean.voxels[n] * mean.voxels[n];
     const double local = std::sqrt(std::max(0.0, static_cast<double>(variance)));

@@ -12,9 +12,6 @@
 namespace trocar::registration {
 namespace {
 
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
-
 constexpr std::size_t kTogether = 4096;  ///< Points that are summed in order.
 constexpr double kFirstDamping = 1e-3;
 constexpr double kMostDamping = 1e3;
@@ -141,7 +138,7 @@ Alignment describe(const Sums& s, std::size_t points, const Pose& X_AB, const Al
 }
 
 /// Motion of the fixed frame: rotation vector about the centre, then translation.
-Pose moved(const Pose& X_AB, const Vector6& step, const Vec3& centre_A) {
+Pose moved_about(const Pose& X_AB, const Vector6& step, const Vec3& centre_A) {
   const Vec3 rotation = step.head<3>();
   const double angle = rotation.norm();
   const Mat3 R = angle > 0.0 ? Eigen::AngleAxisd(angle, rotation / angle).toRotationMatrix() : Mat3::Identity();
@@ -203,7 +200,7 @@ Alignment align(const std::vector<AlignmentPoint>& fixed, const volume::FloatGri
     damped.diagonal() *= 1.0 + damping;
     const Vector6 step = damped.ldlt().solve(g);
     if (!step.allFinite()) break;
-    const Pose X = moved(best.X_AB, step, centre_A);
+    const Pose X = moved_about(best.X_AB, step, centre_A);
     const Sums next = sum_all<true>(fixed, moving, X, centre_A);
     const Alignment candidate = describe(next, fixed.size(), X, options);
     if (candidate.ncc <= best.ncc) {

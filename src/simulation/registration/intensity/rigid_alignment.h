@@ -17,6 +17,10 @@ struct AlignmentPoint {
 /// Every `stride`-th voxel along each axis (>= 1) that has a value and a slope; NaN voxels have none.
 std::vector<AlignmentPoint> alignment_points(const volume::FloatGrid& fixed, int stride);
 
+/// A small motion: rotation vector (rad), then translation (mm).
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
 struct AlignmentOptions {
   int iterations = 20;          ///< Of Gauss-Newton.
   double least_overlap = 0.08;  ///< Share of the points that must meet a value of the moving volume.
@@ -27,8 +31,7 @@ struct Alignment {
   Pose X_AB;
   double ncc = -1.0;     ///< Normalised correlation over the overlap, -1..1; -1 if the volumes overlap too little.
   double overlap = 0.0;  ///< Share of the points in use.
-  Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();  ///< Of (rotation about the middle of
-                                                                                  ///< the points in use, translation).
+  Matrix6 information = Matrix6::Zero();  ///< Of (rotation about the middle of the points in use, translation).
   Vec3 middle_A{0, 0, 0};
 };
 

@@ -15,7 +15,7 @@
 namespace trocar::registration {
 namespace {
 
-constexpr int kRefinements = 6;
+constexpr int kMotionRefinements = 6;
 constexpr int kTrialsForEachCandidate = 200;  ///< At least so many per candidate kept.
 constexpr double kSameMotion_mm = 6.0;        ///< Motions that move the pairs less apart are the same.
 
@@ -47,9 +47,9 @@ Mat3 triangle_axes(const Vec3& p, const Vec3& q, const Vec3& r) {
   return R;
 }
 
-class Search {
+class MotionSearch {
  public:
-  Search(std::span<const PointPair> pairs, const RansacOptions& options)
+  MotionSearch(std::span<const PointPair> pairs, const RansacOptions& options)
       : pairs_(pairs), options_(options), random_(options.seed) {}
 
   struct Candidate {
@@ -142,11 +142,11 @@ std::vector<std::size_t> agreeing(std::span<const PointPair> pairs, const Pose& 
 }
 
 /// Least squares over the pairs that agree, until these stay the same.
-RigidMotion refine(std::span<const PointPair> pairs, const Pose& X_AB, double limit_mm) {
+RigidMotion refine_motion(std::span<const PointPair> pairs, const Pose& X_AB, double limit_mm) {
   RigidMotion motion;
   motion.X_AB = X_AB;
   motion.inliers = agreeing(pairs, X_AB, limit_mm);
-  for (int n = 0; n < kRefinements; ++n) {
+  for (int n = 0; n < kMotionRefinements; ++n) {
     std::vector<Vec3> a, b;
     for (const std::size_t index : motion.inliers) {
       a.push_back(pairs[index].a);
@@ -165,7 +165,7 @@ RigidMotion refine(std::span<const PointPair> pairs, const Pose& X_AB, double li
 
 /// One less the expected number of motions, among all that three pairs define, that this many other pairs support by
 /// chance (Moisan & Stival, IJCV 57:201, 2004): a pair agrees by chance with the share of the volume in its reach.
-double confidence_of(std::size_t inliers, std::size_t pairs, double limit_mm, double extent_mm) {
+double confidence_of_support(std::size_t inliers, std::size_t pairs, double limit_mm, double extent_mm) {
   if (inliers < 4) return 0.0;
   const double reach = limit_mm / extent_mm;
   const double by_chance = std::min(0.5, 4.0 / 3.0 * std::numbers::pi * reach * reach * reach);
@@ -184,12 +184,12 @@ Result<std::vector<RigidMotion>> find_motions(std::span<const PointPair> pairs, 
   TROCAR_TRY_STATUS(check(options));
   std::vector<RigidMotion> motions;
   if (pairs.size() < 4 || !(extent_mm > 0.0)) return motions;
-  Search search(pairs, options);
-  for (const Search::Candidate& candidate : search.run(most)) {
-    RigidMotion motion = refine(pairs, candidate.X_AB, options.inlier_mm);
+  MotionSearch search(pairs, options);
+  for (const MotionSearch::Candidate& candidate : search.run(most)) {
+    RigidMotion motion = refine_motion(pairs, candidate.X_AB, options.inlier_mm);
     if (motion.inliers.size() < 4) continue;
     motion.trials = search.trials();
-    motion.confidence = confidence_of(motion.inliers.size(), pairs.size(), options.inlier_mm, extent_mm);
+    motion.confidence = confidence_of_support(motion.inliers.size(), pairs.size(), options.inlier_mm, extent_mm);
     motions.push_back(std::move(motion));
   }
   std::stable_sort(motions.begin(), motions.end(),

@@ -111,7 +111,7 @@ struct Mixed {
 };
 
 /// Slow parts are mixed over the whole overlap; speckle in narrow seams, with its power kept.
-Mixed mix(const std::vector<Layer>& layers, const Vec3& p_0, double sharpness) {
+Mixed mix_layers(const std::vector<Layer>& layers, const Vec3& p_0, double sharpness) {
   struct Part {
     double weight, gray, smooth;
     std::size_t source;
@@ -229,7 +229,7 @@ Result<Panorama> blend(const std::vector<PlacedVolume>& volumes, const BlendOpti
   std::vector<double> seam(rows, 0.0), seam_count(rows, 0.0);
   parallel_for(rows, 16, [&](std::size_t first, std::size_t last) {
     for (std::size_t n = first * row; n < last * row; ++n) {
-      const Mixed mixed = mix(layers, grid.centre_mm(grid.index_of(n)), options.sharpness);
+      const Mixed mixed = mix_layers(layers, grid.centre_mm(grid.index_of(n)), options.sharpness);
       if (mixed.source == 0) continue;
       panorama.gray.voxels[n] = static_cast<std::uint8_t>(std::clamp(std::lround(mixed.gray), 1L, 255L));
       panorama.source.voxels[n] = static_cast<std::uint8_t>(std::min<std::size_t>(mixed.source, 255));

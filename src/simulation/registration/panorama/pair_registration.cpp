@@ -14,8 +14,8 @@ namespace {
 constexpr std::size_t kMotionsOfThree = 40;
 constexpr std::size_t kMotionsOfOne = 400;
 constexpr std::size_t kAligned = 40;  ///< Motions that are aligned at the coarse detail, after all were at the widest.
-constexpr std::size_t kRefined = 12;  ///< Of those, that are aligned at the middle detail.
-constexpr double kSameMotion_mm = 5.0;  ///< Motions nearer than this at the corners are one.
+constexpr std::size_t kAlignedMiddle = 12;  ///< Of those, that are aligned at the middle detail.
+constexpr double kSameAtCorners_mm = 5.0;   ///< Motions nearer than this at the corners are one.
 
 /// Significance of a correlation: the larger the overlap and the correlation, the larger. Speckle smoothed by sigma is
 /// independent at points about 2 sqrt(pi) sigma apart.
@@ -94,7 +94,7 @@ void remove_repeats(const PreparedVolume& b, std::vector<Candidate>& candidates)
   std::vector<Candidate> kept;
   for (const Candidate& c : candidates) {
     const bool is_new = std::all_of(kept.begin(), kept.end(), [&](const Candidate& other) {
-      return difference_mm(b, c.alignment.X_AB, other.alignment.X_AB) > kSameMotion_mm;
+      return difference_mm(b, c.alignment.X_AB, other.alignment.X_AB) > kSameAtCorners_mm;
     });
     if (is_new) kept.push_back(c);
   }
@@ -128,7 +128,7 @@ double logistic(double x) {
 
 /// 0..1 from the significance of the best motion, and its distance to the best other one. Volumes of different places:
 /// up to 15, less than 2 apart; half-overlapping volumes: 30 to 50, 13 or more apart (docs/validation.md).
-double confidence_of(const std::vector<Candidate>& candidates) {
+double confidence_of_best(const std::vector<Candidate>& candidates) {
   if (candidates.empty()) return 0.0;
   constexpr double kSignificance = 17.0, kApart = 5.0, kWidth = 1.0;
   const double best = candidates.front().significance;
@@ -152,8 +152,8 @@ Result<PairRegistration> register_pair(const PreparedVolume& a, const PreparedVo
   TROCAR_TRY(const std::vector<Pose> proposals, propose(a, b, pairs, options));
   const std::vector<Candidate> widest = align_at(a, b, 0, proposals);
   const std::vector<Candidate> coarse = align_at(a, b, 1, best_poses(widest, kAligned));
-  const std::vector<Candidate> middle = align_at(a, b, 2, best_poses(coarse, kRefined));
-  result.confidence = confidence_of(middle);
+  const std::vector<Candidate> middle = align_at(a, b, 2, best_poses(coarse, kAlignedMiddle));
+  result.confidence = confidence_of_best(middle);
   result.significance = middle.empty() ? 0.0 : middle.front().significance;
   if (middle.empty()) return result;
   const Alignment fine = refine_pair(a, b, middle.front().alignment.X_AB);

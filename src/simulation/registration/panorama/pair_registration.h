@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/result.h"
+#include "registration/intensity/rigid_alignment.h"
 #include "registration/matching/ransac.h"
 #include "registration/panorama/prepared_volume.h"
 
@@ -25,7 +26,7 @@ struct PairRegistration {
   double overlap = 0.0;       ///< Share of A's points that meet B.
   double significance = 0.0;  ///< Of the correlation, in standard deviations of that of independent speckle.
   double confidence = 0.0;    ///< 0..1: that no other motion explains both volumes (docs/physics.md R9).
-  Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
+  Matrix6 information = Matrix6::Zero();
   Vec3 middle_A{0, 0, 0};
   bool is_found = false;  ///< The confidence reaches the least one.
 };

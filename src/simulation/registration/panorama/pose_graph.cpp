@@ -11,9 +11,6 @@
 namespace trocar::registration {
 namespace {
 
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
-
 constexpr int kIterations = 40;
 constexpr double kDifference = 1e-6;  ///< Of the numerical derivative, rad and mm.
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "geometry/pose.h"
+#include "registration/intensity/rigid_alignment.h"
 
 namespace trocar::registration {
 
@@ -12,7 +13,7 @@ struct PoseEdge {
   std::size_t a = 0, b = 0;
   Pose X_AB;
   /// Inverse covariance of a rotation (rad) about `middle_A` and a translation (mm), in A.
-  Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Identity();
+  Matrix6 information = Matrix6::Identity();
   Vec3 middle_A{0, 0, 0};
   double strength = 1.0;  ///< Of two contradicting edges, the weaker one is removed.
 };

@@ -6,8 +6,8 @@
 namespace trocar::registration {
 namespace {
 
-constexpr double kFarthest_mm = 3.0;    ///< A refinement that moves a pair farther found another maximum.
-constexpr double kLeastOverlap = 0.05;  ///< Of a pair that is refined by its poses in the graph.
+constexpr double kFarthest_mm = 3.0;        ///< A refinement that moves a pair farther found another maximum.
+constexpr double kLeastEdgeOverlap = 0.05;  ///< Of a pair that is refined by its poses in the graph.
 
 PoseEdge to_edge(const PairRegistration& pair) {
   PoseEdge edge;
@@ -51,7 +51,7 @@ std::vector<PoseEdge> refine_edges(const std::vector<PreparedVolume>& volumes, c
       if (!graph.X_0N[a] || !graph.X_0N[b]) continue;
       const Pose X_AB = graph.X_0N[a]->inverse() * *graph.X_0N[b];
       const Alignment refined = refine_pair(volumes[a], volumes[b], X_AB);
-      if (refined.ncc <= 0.0 || refined.overlap < kLeastOverlap) continue;
+      if (refined.ncc <= 0.0 || refined.overlap < kLeastEdgeOverlap) continue;
       if (motion_mm(refined.X_AB, X_AB, refined.middle_A, options.graph.arm_mm) > kFarthest_mm) continue;
       PoseEdge edge;
       edge.a = a;

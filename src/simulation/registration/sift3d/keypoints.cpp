@@ -96,8 +96,8 @@ bool has_neighbours(const volume::GridGeometry& geometry, const volume::Index3& 
   return level >= 1 && level <= scales;
 }
 
-std::optional<Keypoint> refine(const ScaleSpace& space, std::size_t octave, const detail::Extremum& candidate,
-                               const KeypointOptions& options) {
+std::optional<Keypoint> refine_keypoint(const ScaleSpace& space, std::size_t octave, const detail::Extremum& candidate,
+                                        const KeypointOptions& options) {
   const Octave& o = space.octaves[octave];
   const Differences differences(o, options.scale_exponent / space.options.scales);
   volume::Index3 at = candidate.ijk;
@@ -138,7 +138,7 @@ Result<std::vector<Keypoint>> find_keypoints(const ScaleSpace& space, const Keyp
     const auto extrema = detail::find_extrema(space.octaves[octave], space.options.scales, options.scale_exponent,
                                               static_cast<float>(kBeforeRefinement * options.least_contrast));
     for (const detail::Extremum& candidate : extrema)
-      if (const auto keypoint = refine(space, octave, candidate, options)) keypoints.push_back(*keypoint);
+      if (const auto keypoint = refine_keypoint(space, octave, candidate, options)) keypoints.push_back(*keypoint);
   }
   std::stable_sort(keypoints.begin(), keypoints.end(),
                    [](const Keypoint& a, const Keypoint& b) { return std::abs(a.contrast) > std::abs(b.contrast); });

@@ -17,7 +17,7 @@ constexpr double kReach_sigma = 6.0;     ///< Radius of the gradients in use, th
 constexpr double kLattice_sigma = 0.8;   ///< Distance between gradients, the same.
 constexpr std::size_t kLeastGradients = 60;
 constexpr int kRollBins = 36;
-constexpr int kRefinements = 4;
+constexpr int kDirectionRefinements = 4;
 constexpr double kSmallestAcross = 1e-9;
 
 struct Gradient {
@@ -112,8 +112,8 @@ struct Peak {
 };
 
 /// Moves a direction to the weighted mean of the gradients near it.
-Vec3 refine(const std::vector<Gradient>& gradients, Vec3 direction) {
-  for (int n = 0; n < kRefinements; ++n) {
+Vec3 refine_direction(const std::vector<Gradient>& gradients, Vec3 direction) {
+  for (int n = 0; n < kDirectionRefinements; ++n) {
     Vec3 sum = Vec3::Zero();
     for (const Gradient& g : gradients) sum += g.weight * closeness(direction.dot(g.direction_P)) * g.direction_P;
     if (sum.norm() > 0.0) direction = sum.normalized();
@@ -192,7 +192,7 @@ std::vector<Mat3> OrientationFinder::find(const ScaleSpace& space, const Keypoin
   keep_highest(peaks, options_.least_peak, static_cast<std::size_t>(options_.most));
   std::vector<Mat3> orientations;
   for (const Peak& peak : peaks) {
-    const Vec3 x = refine(gradients, peak.direction);
+    const Vec3 x = refine_direction(gradients, peak.direction);
     for (const Peak& roll : find_rolls(gradients, x, options_.least_peak)) {
       if (orientations.size() == static_cast<std::size_t>(options_.most)) return orientations;
       Mat3 R_PK;

@@ -74,7 +74,7 @@ TEST(Prepare, RefusesVolumesWithoutAnImage) {
   }
 }
 
-Pose random_pose(Random& random) {
+Pose draw_pose(Random& random) {
   return {Eigen::Quaterniond(random.normal(), random.normal(), random.normal(), random.normal())
               .normalized()
               .toRotationMatrix(),
@@ -87,7 +87,7 @@ struct Ring {
   std::vector<PoseEdge> edges;
   explicit Ring(std::size_t nodes) {
     Random random(5);
-    while (X_0N.size() < nodes) X_0N.push_back(random_pose(random));
+    while (X_0N.size() < nodes) X_0N.push_back(draw_pose(random));
     for (std::size_t a = 0; a < nodes; ++a) {
       for (const std::size_t step : {std::size_t{1}, std::size_t{2}}) {
         PoseEdge edge;

@@ -16,7 +16,7 @@ constexpr double kMostRate_ml_per_s = 50.0;  ///< A power injector's.
 constexpr double kMostIodine_mg_per_ml = 500.0;
 constexpr double kTissue_mm = 1.5, kFluid_mm = 2.5;  ///< Voxels.
 constexpr double kDuctReach_mm = 3.0;                ///< From a voxel of a duct's label to the tree.
-constexpr double kShown_mg_per_ml = 0.05;            ///< Thinner pieces are not given to the projector.
+constexpr double kThinnestPiece_mg_per_ml = 0.05;    ///< Thinner pieces are not given to the projector.
 
 std::string point_text(const Vec3& p_P) {
   return fmt::format("tip at {:g}, {:g}, {:g} mm", p_P.x(), p_P.y(), p_P.z());
@@ -114,8 +114,8 @@ void ContrastFlow::step(double dt_s) {
 
 Iodine ContrastFlow::iodine() const {
   Iodine iodine;
-  if (ducts_.has_iodine()) ducts_.add_pieces(kShown_mg_per_ml, iodine.pieces);
-  vessels_.add_pieces(kShown_mg_per_ml, iodine.pieces);
+  if (ducts_.has_iodine()) ducts_.add_pieces(kThinnestPiece_mg_per_ml, iodine.pieces);
+  vessels_.add_pieces(kThinnestPiece_mg_per_ml, iodine.pieces);
   for (const TissueCloud* cloud : {&tissue_, &fluid_})
     if (auto grid = cloud->grid_mg_per_ml()) iodine.grids_mg_per_ml.push_back(std::move(grid));
   return iodine;

@@ -8,8 +8,7 @@
 namespace trocar::xray {
 namespace {
 
-constexpr double kMm3PerMl = 1000.0;
-constexpr double kShortest_mm = 0.1;  ///< Between the middles of two cells.
+constexpr double kLeastBetween_mm = 0.1;  ///< Between the middles of two cells.
 
 }  // namespace
 
@@ -29,7 +28,7 @@ DuctFill::DuctFill(DuctTree tree, const DuctParams& params) : tree_(std::move(tr
     part.rest_ml += volume_ml_.back();
     if (is_new) continue;
     const DuctCell& parent = tree_.cells[static_cast<std::size_t>(cell.parent)];
-    const double length_mm = std::max(0.5 * (cell.length_mm() + parent.length_mm()), kShortest_mm);
+    const double length_mm = std::max(0.5 * (cell.length_mm() + parent.length_mm()), kLeastBetween_mm);
     const double radius_mm = std::min(cell.radius_a_mm, parent.radius_b_mm);
     exchange_[n] = params_.dispersivity_mm / length_mm;
     rest_exchange_[n] = params_.mixing_mm2_per_s * std::numbers::pi * radius_mm * radius_mm / length_mm / kMm3PerMl;

@@ -13,16 +13,16 @@
 #include "volume/distance.h"
 #include "xray/contrast/detail/duct_ends.h"
 #include "xray/contrast/detail/duct_mask.h"
+#include "xray/contrast/iodine.h"
 
 namespace trocar::xray {
 namespace {
 
-constexpr double kMm3PerMl = 1000.0;
 constexpr double kLeastTree_mm3 = 5.0;
-constexpr double kShortest_mm = 0.3;  ///< Shorter pieces are left out.
-constexpr double kLongest_mm = 2.6;   ///< Longer ends are several cells: a front in a cell is not resolved.
-constexpr double kThinnest_mm = 0.2;  ///< Radius.
-constexpr double kMostScaling = 2.5;  ///< Of a branch's radii.
+constexpr double kShortestPiece_mm = 0.3;  ///< Shorter pieces are left out.
+constexpr double kLongest_mm = 2.6;        ///< Longer ends are several cells: a front in a cell is not resolved.
+constexpr double kThinnest_mm = 0.2;       ///< Radius.
+constexpr double kMostScaling = 2.5;       ///< Of a branch's radii.
 
 /// Length of the part of a tube that the centreline leaves out at its end.
 double end_length_mm(const volume::CentrelineTree& tree, const volume::CentrelineTree::Tip& tip, double sign) {
@@ -39,8 +39,8 @@ class CellMaker {
     cell_at_.assign(tree_.nodes.size(), -1);
     const volume::CentrelineNode& root = tree_.nodes.front();
     const double before_mm = end_length_mm(tree_, tree_.tips.front(), -1.0);
-    if (before_mm > kShortest_mm) add_end(root.p_P - before_mm * root.tangent_P, root.p_P, root.radius_mm, -1);
-    cell_at_[0] = before_mm > kShortest_mm ? last() : -1;
+    if (before_mm > kShortestPiece_mm) add_end(root.p_P - before_mm * root.tangent_P, root.p_P, root.radius_mm, -1);
+    cell_at_[0] = before_mm > kShortestPiece_mm ? last() : -1;
     for (std::size_t n = 1; n < tree_.nodes.size(); ++n) add_node(n);
     for (std::size_t t = 1; t < tree_.tips.size(); ++t) add_tip(tree_.tips[t]);
   }
@@ -88,7 +88,7 @@ class CellMaker {
     const volume::CentrelineNode& node = tree_.nodes[static_cast<std::size_t>(tip.node)];
     const double after_mm = end_length_mm(tree_, tip, 1.0);
     const int parent = cell_at_[static_cast<std::size_t>(tip.node)];
-    if (after_mm <= kShortest_mm || parent < 0 || node.is_within_parent) return;
+    if (after_mm <= kShortestPiece_mm || parent < 0 || node.is_within_parent) return;
     add_end(node.p_P, node.p_P + after_mm * node.tangent_P, node.radius_mm, parent);
   }
 

@@ -8,6 +8,8 @@
 
 namespace trocar::xray {
 
+inline constexpr double kMm3PerMl = 1000.0;
+
 /// A piece of a duct or vessel filled with contrast agent: a truncated cone with round ends.
 struct IodinePiece {
   Vec3 a_P, b_P;

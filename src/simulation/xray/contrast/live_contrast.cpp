@@ -13,7 +13,7 @@ namespace trocar::xray {
 namespace {
 
 constexpr std::chrono::milliseconds kPeriod{33};
-constexpr double kLongestStep_s = 0.5;  // after a stall the agent does not catch up
+constexpr double kLongestCatchUp_s = 0.5;  // after a stall the agent does not catch up
 constexpr int kNice = 5;
 
 }  // namespace
@@ -39,7 +39,7 @@ void LiveContrast::Impl::run(const std::stop_token& stop, std::shared_ptr<const 
   while (!stop.stop_requested()) {
     const auto now = std::chrono::steady_clock::now();
     advance(*flow, table->iodine_mg_per_ml,
-            std::min(kLongestStep_s, std::chrono::duration<double>(now - std::exchange(last, now)).count()));
+            std::min(kLongestCatchUp_s, std::chrono::duration<double>(now - std::exchange(last, now)).count()));
     std::this_thread::sleep_until(now + kPeriod);
   }
 }

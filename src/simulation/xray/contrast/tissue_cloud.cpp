@@ -8,19 +8,17 @@
 #include "core/check.h"
 #include "volume/resample.h"
 #include "volume/sampling.h"
+#include "xray/contrast/iodine.h"
 
 namespace trocar::xray {
 namespace {
 
-constexpr double kMm3PerMl = 1000.0;
 constexpr std::int64_t kGrowth = 8;        ///< Voxels by which the window grows at a time, at least.
 constexpr double kShown_mg_per_ml = 5e-3;  ///< Less does not spread: 0.1 mg/cm² in 20 cm, below the noise.
 constexpr double kStability = 0.16;        ///< Largest mixing * step / spacing² of explicit diffusion (limit: 1/6).
 constexpr double kSameTip_mm = 0.5;        ///< A tip that moves less fills the same place.
 constexpr double kSeedReach_mm = 5.0;      ///< Around the tip, in which the organ's nearest voxel is looked for.
 constexpr double kFarFront_mm = 1e5;       ///< A front from which all voxels are full.
-constexpr std::array<volume::Index3, 6> kNeighbours{
-    {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
 
 volume::Index3 sum(const volume::Index3& a, const volume::Index3& b) {
   return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
@@ -150,7 +148,7 @@ void TissueCloud::include(const volume::Index3& at) {
 void TissueCloud::link(const volume::Index3& at) {
   const std::size_t n = offset(at);
   is_mixed_[n] = 1;
-  for (const volume::Index3& step : kNeighbours) {
+  for (const volume::Index3& step : detail::kNeighbours) {
     const volume::Index3 to = sum(at, step);
     if (!lattice_.contains(to)) continue;
     const std::size_t m = offset(to);
@@ -216,7 +214,7 @@ bool TissueCloud::expand_site() {
 
 /// Whether a voxel borders on a vessel or duct.
 bool TissueCloud::is_tract(const volume::Index3& at) {
-  for (const volume::Index3& step : kNeighbours) {
+  for (const volume::Index3& step : detail::kNeighbours) {
     const volume::Index3 to = sum(at, step);
     if (lattice_.contains(to) && organ_[offset(to)] == kNoOrgan) return true;
   }
@@ -359,7 +357,7 @@ void TissueCloud::spread() {
   for (Mixed& voxel : mixed_) {
     if (voxel.has_spread || iodine_mg_[offset(voxel.at)] < least_mg) continue;
     voxel.has_spread = true;
-    for (const volume::Index3& step : kNeighbours) {
+    for (const volume::Index3& step : detail::kNeighbours) {
       const volume::Index3 to = sum(voxel.at, step);
       if (lattice_.contains(to) && organ_[offset(to)] == organ_[offset(voxel.at)]) reached.push_back(to);
     }

@@ -12,21 +12,18 @@
 namespace trocar::xray {
 namespace {
 
-constexpr double kMm3PerMl = 1000.0;
-constexpr double kSameTip_mm = 1.0;   ///< A tip that moves less injects into the same stream.
-constexpr double kHeartbeat_s = 1.0;  ///< The way follows the mean flow over this time,
-constexpr int kMoments = 8;           ///< at this many moments.
-constexpr int kRing = 6;              ///< Strands in each of two rings around the middle one,
+constexpr double kSameStream_mm = 1.0;  ///< A tip that moves less injects into the same stream.
+constexpr double kHeartbeat_s = 1.0;    ///< The way follows the mean flow over this time,
+constexpr int kMoments = 8;             ///< at this many moments.
+constexpr int kRing = 6;                ///< Strands in each of two rings around the middle one,
 /// whose offsets are between two limits, and whose radii have a limit; all relative to the stream's radius.
 constexpr std::array<std::array<double, 3>, 2> kRings{{{0.4, 0.6, 0.5}, {0.72, 0.85, 0.3}}};
-constexpr double kPiece_mm = 2.0;         ///< Length of the pieces.
+constexpr double kStreakPiece_mm = 2.0;   ///< Length of the pieces.
 constexpr double kLeastLength_mm = 0.5;   ///< Of a strand.
 constexpr double kLeastSwept_mm3 = 1e-4;  ///< Of a portion that does not move.
 constexpr double kLeastSpeed_mm_per_s = 1e-3;
 
-using Station = detail::VesselCourse::Station;
-
-Vec3 offset_P(const Station& station, double mm, double angle) {
+Vec3 offset_P(const detail::VesselCourse::Station& station, double mm, double angle) {
   return station.p_P + mm * (std::cos(angle) * station.u_P + std::sin(angle) * station.w_P);
 }
 
@@ -79,7 +76,7 @@ void VesselStreak::forget_speeds(Stream& stream) const {
 double VesselStreak::speed_mm_per_s(const Stream& stream, Strand& strand, std::size_t station) const {
   double& speed = strand.speed_mm_per_s[station];
   if (!std::isnan(speed)) return speed;
-  const Station& at = stream.course.stations[station];
+  const detail::VesselCourse::Station& at = stream.course.stations[station];
   const Vec3 p_P = offset_P(at, strand.offset * at.stream_mm, strand.angle);
   speed = velocity(p_P, time_s_).dot(at.along_P);
   const double down = stream.course.first_mm + detail::VesselCourse::kStep_mm * static_cast<double>(station);
@@ -119,7 +116,8 @@ double VesselStreak::moved_mm(const Stream& stream, Strand& strand, double place
 }
 
 void VesselStreak::inject(const Vec3& tip_P, double dt_s, double ml, double iodine_mg_per_ml) {
-  if (streams_.empty() || (streams_.back().tip_P - tip_P).norm() > kSameTip_mm) streams_.push_back(make_stream(tip_P));
+  if (streams_.empty() || (streams_.back().tip_P - tip_P).norm() > kSameStream_mm)
+    streams_.push_back(make_stream(tip_P));
   Stream& stream = streams_.back();
   stream.mm3_per_s = ml * kMm3PerMl / dt_s;
   forget_speeds(stream);
@@ -187,7 +185,7 @@ void VesselStreak::add_pieces_of(const Stream& stream, const Strand& strand, dou
     last_mm = std::max(last_mm, portion.head_mm);
   }
   if (last_mm - first_mm < kLeastLength_mm) first_mm = last_mm - kLeastLength_mm;
-  const auto count = static_cast<std::size_t>(std::ceil((last_mm - first_mm) / kPiece_mm));
+  const auto count = static_cast<std::size_t>(std::ceil((last_mm - first_mm) / kStreakPiece_mm));
   const double piece_mm = (last_mm - first_mm) / static_cast<double>(count);
   std::vector<double> mg(count, 0.0);
   for (const Portion& portion : strand.portions) {
@@ -209,9 +207,9 @@ void VesselStreak::add_pieces_of(const Stream& stream, const Strand& strand, dou
     }
   }
   const auto place = [&](std::size_t n) { return stream.course.at(first_mm + piece_mm * static_cast<double>(n)); };
-  Station before = place(0);
+  detail::VesselCourse::Station before = place(0);
   for (std::size_t n = 0; n < count; ++n) {
-    const Station after = place(n + 1);
+    const detail::VesselCourse::Station after = place(n + 1);
     IodinePiece piece{offset_P(before, strand.offset * before.stream_mm, strand.angle),
                       offset_P(after, strand.offset * after.stream_mm, strand.angle), strand.radius * before.stream_mm,
                       strand.radius * after.stream_mm, 0.0};

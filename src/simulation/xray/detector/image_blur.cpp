@@ -12,13 +12,13 @@ namespace trocar::xray {
 namespace {
 
 constexpr double kNarrow_px = 0.7;
-constexpr std::size_t kGrainRows = 32;
+constexpr std::size_t kGrainBlurredRows = 32;
 
 /// Three weights with variance `variance_px2` (pixels squared, at most 0.5), along rows and columns.
 void blur_three(std::vector<float>& pixels, std::size_t columns, std::size_t rows, double variance_px2) {
   const auto side = static_cast<float>(0.5 * variance_px2), middle = static_cast<float>(1.0 - variance_px2);
   std::vector<float> along(pixels.size());
-  parallel_for(rows, kGrainRows, [&](std::size_t first, std::size_t last) {
+  parallel_for(rows, kGrainBlurredRows, [&](std::size_t first, std::size_t last) {
     for (std::size_t row = first; row < last; ++row) {
       const float* const from = pixels.data() + row * columns;
       float* const to = along.data() + row * columns;
@@ -27,7 +27,7 @@ void blur_three(std::vector<float>& pixels, std::size_t columns, std::size_t row
       to[columns - 1] = (middle + side) * from[columns - 1] + side * from[columns >= 2 ? columns - 2 : 0];
     }
   });
-  parallel_for(rows, kGrainRows, [&](std::size_t first, std::size_t last) {
+  parallel_for(rows, kGrainBlurredRows, [&](std::size_t first, std::size_t last) {
     for (std::size_t row = first; row < last; ++row) {
       const float* const here = along.data() + row * columns;
       const float* const above = along.data() + (row == 0 ? 0 : row - 1) * columns;

@@ -11,8 +11,8 @@
 namespace trocar::xray {
 namespace {
 
-constexpr int kBits = 12;
-constexpr std::uint32_t kNodes = 1U << kBits;
+constexpr int kNodeBits = 12;
+constexpr std::uint32_t kNodes = 1U << kNodeBits;
 
 double normal_distribution(double x) {
   return 0.5 * std::erfc(-x / std::sqrt(2.0));
@@ -43,9 +43,9 @@ class QuantileTable {
     for (std::uint32_t k = 0; k <= kNodes; ++k) node_[k] = static_cast<float>(node[k] / std::sqrt(variance));
   }
   float operator()(std::uint32_t random) const noexcept {
-    const std::uint32_t k = random >> (32 - kBits);
-    constexpr float kStep = 1.0F / static_cast<float>(1U << (32 - kBits));
-    const float share = static_cast<float>(random & ((1U << (32 - kBits)) - 1)) * kStep;
+    const std::uint32_t k = random >> (32 - kNodeBits);
+    constexpr float kStep = 1.0F / static_cast<float>(1U << (32 - kNodeBits));
+    const float share = static_cast<float>(random & ((1U << (32 - kNodeBits)) - 1)) * kStep;
     return node_[k] + share * (node_[k + 1] - node_[k]);
   }
 

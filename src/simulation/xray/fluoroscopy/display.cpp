@@ -12,10 +12,9 @@
 namespace trocar::xray {
 namespace {
 
-constexpr float kLeastSignal = 1e-6F;
 constexpr float kDirect = 0.5F;
 constexpr float kBrightSide = 1.5F;  ///< Widest part of a window above the median's brightness, in that below it.
-constexpr std::size_t kGrain = 16384;
+constexpr std::size_t kGrainShown = 16384;
 
 std::size_t percentile(std::size_t count, double share) {
   return std::min(count - 1, static_cast<std::size_t>(share * static_cast<double>(count)));
@@ -58,7 +57,7 @@ void compress_range(std::vector<float>& values, int columns, int rows, double sh
   const float mean = std::accumulate(slow.begin(), slow.end(), 0.0F) / static_cast<float>(slow.size());
   slow = detail::resample_image(slow, cells, cells, columns, rows);
   const auto part = static_cast<float>(share);
-  parallel_for(values.size(), kGrain, [&](std::size_t first, std::size_t last) {
+  parallel_for(values.size(), kGrainShown, [&](std::size_t first, std::size_t last) {
     for (std::size_t n = first; n < last; ++n) values[n] -= part * (slow[n] - mean);
   });
 }
@@ -82,7 +81,7 @@ FieldPixels field_pixels(const CArm& arm) noexcept {
 std::vector<float> shown_values(std::span<const float> signal, int columns, int rows, const DisplaySettings& settings,
                                 const FieldPixels& field) {
   std::vector<float> values(signal.size());
-  parallel_for(signal.size(), kGrain, [&](std::size_t first, std::size_t last) {
+  parallel_for(signal.size(), kGrainShown, [&](std::size_t first, std::size_t last) {
     if (settings.is_logarithmic)
       for (std::size_t n = first; n < last; ++n) values[n] = -std::log(std::max(signal[n], kLeastSignal));
     else
@@ -95,7 +94,7 @@ std::vector<float> shown_values(std::span<const float> signal, int columns, int 
   if (gain == 0.0F) return values;
   std::vector<float> smooth = values;
   blur_image(smooth, columns, rows, std::clamp(settings.edge_sigma_px, 0.7, 20.0));
-  parallel_for(values.size(), kGrain, [&](std::size_t first, std::size_t last) {
+  parallel_for(values.size(), kGrainShown, [&](std::size_t first, std::size_t last) {
     for (std::size_t n = first; n < last; ++n) values[n] += gain * (values[n] - smooth[n]);
   });
   return values;

@@ -9,6 +9,9 @@
 
 namespace trocar::xray {
 
+/// A lower signal is replaced by this one before its logarithm is taken.
+inline constexpr float kLeastSignal = 1e-6F;
+
 /// Gray image, row by row from the upper left.
 struct GrayImage {
   int columns = 0, rows = 0;

@@ -11,10 +11,6 @@
 #include "xray/fluoroscopy/detail/patient_image.h"
 
 namespace trocar::xray {
-namespace {
-
-/// Cores for two servers' loops, the window and the drawing.
-constexpr int kCoresOfOthers = 3;
 
 /// How LiveWorker makes X-ray images.
 struct FluoroscopyTraits : FluoroscopySchedule {
@@ -25,6 +21,11 @@ struct FluoroscopyTraits : FluoroscopySchedule {
     frame.took_ms = took_ms;
   }
 };
+
+namespace {
+
+/// Cores for two servers' loops, the window and the drawing.
+constexpr int kCoresOfOthers = 3;
 
 /// The images of one patient.
 class FluoroscopyRenderer final : public LiveRenderer<FluoroscopyTraits> {

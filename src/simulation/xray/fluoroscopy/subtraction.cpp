@@ -8,9 +8,8 @@
 namespace trocar::xray {
 namespace {
 
-constexpr float kLeastSignal = 1e-6F;
 constexpr float kWeight = 0.7F;  ///< Of the road map where it is shown fully.
-constexpr std::size_t kGrain = 16384;
+constexpr std::size_t kGrainSubtracted = 16384;
 
 }  // namespace
 
@@ -32,7 +31,7 @@ std::vector<float> MaskSubtraction::difference(std::span<const float> signal) co
   std::vector<float> difference(signal.size(), 0.0F);
   if (frames_ == 0 || sum_.size() != signal.size()) return difference;
   const float share = 1.0F / static_cast<float>(frames_);
-  parallel_for(signal.size(), kGrain, [&](std::size_t first, std::size_t last) {
+  parallel_for(signal.size(), kGrainSubtracted, [&](std::size_t first, std::size_t last) {
     for (std::size_t n = first; n < last; ++n)
       difference[n] = std::log(std::max(sum_[n] * share, kLeastSignal) / std::max(signal[n], kLeastSignal));
   });

@@ -32,7 +32,7 @@ double absorbed_share(double kev, double detector_mm) {
   return -std::expm1(-attenuation_cm2_per_g(kCaesiumIodide, kev) * kDetector_g_per_cm3 * 0.1 * detector_mm);
 }
 
-constexpr std::size_t kGrain = 4096;  ///< Pixels of a part of the work.
+constexpr std::size_t kGrainAbsorbed = 4096;  ///< Pixels of a part of the work.
 
 }  // namespace
 
@@ -88,7 +88,7 @@ void Beam::signals(const MassImage& masses, std::span<float> signal) const {
     TROCAR_CHECK(image.empty() || image.size() == masses.size());
     first[m] = image.empty() ? nullptr : image.data();
   }
-  parallel_for(signal.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(signal.size(), kGrainAbsorbed, [&](std::size_t begin, std::size_t end) {
     std::array<const float*, kBases> from{};
     for (std::size_t m = 0; m < kBases; ++m) from[m] = first[m] == nullptr ? nullptr : first[m] + begin;
     detail::sum_terms(impl_->terms, from, end - begin, signal.data() + begin);

@@ -12,7 +12,7 @@
 namespace trocar::xray {
 namespace {
 
-constexpr double kLowest_kev = 10.0;  ///< Photons below do not leave the tube's filter.
+constexpr double kLowestPhoton_kev = 10.0;  ///< Photons below do not leave the tube's filter.
 constexpr double kBin_kev = 1.0;
 constexpr double kAnode_deg = 12.0;
 constexpr double kTungstenKEdge_kev = 69.525;
@@ -88,15 +88,15 @@ double line_photons(double kv, const Line& line) {
 }
 
 Status check_tube(const Tube& tube) {
-  struct Limit {
+  struct TubeLimit {
     const char* name;
     double value, low, high;
     const char* unit;
   };
-  const Limit limits[] = {{"tube voltage", tube.kv, 40.0, 150.0, "kV"},
-                          {"aluminium filter", tube.aluminium_mm, 0.5, 20.0, "mm"},
-                          {"copper filter", tube.copper_mm, 0.0, 1.0, "mm"}};
-  for (const Limit& limit : limits)
+  const TubeLimit limits[] = {{"tube voltage", tube.kv, 40.0, 150.0, "kV"},
+                              {"aluminium filter", tube.aluminium_mm, 0.5, 20.0, "mm"},
+                              {"copper filter", tube.copper_mm, 0.0, 1.0, "mm"}};
+  for (const TubeLimit& limit : limits)
     if (!(limit.value >= limit.low && limit.value <= limit.high))
       return fail_usage(fmt::format("the {} is {:g} {}", limit.name, limit.value, limit.unit), "X-ray tube",
                         fmt::format("give a value from {:g} to {:g} {}", limit.low, limit.high, limit.unit));
@@ -120,15 +120,15 @@ double kerma_behind_mgy(const Spectrum& spectrum, double aluminium_mm) {
 
 Result<Spectrum> tube_spectrum(const Tube& tube) {
   TROCAR_TRY_STATUS(check_tube(tube));
-  const auto bins = static_cast<std::size_t>(std::lround((tube.kv - kLowest_kev) / kBin_kev));
-  const double width = (tube.kv - kLowest_kev) / static_cast<double>(bins);
+  const auto bins = static_cast<std::size_t>(std::lround((tube.kv - kLowestPhoton_kev) / kBin_kev));
+  const double width = (tube.kv - kLowestPhoton_kev) / static_cast<double>(bins);
   Spectrum spectrum;
   for (std::size_t n = 0; n < bins; ++n) {
-    spectrum.energy_kev.push_back(kLowest_kev + (static_cast<double>(n) + 0.5) * width);
+    spectrum.energy_kev.push_back(kLowestPhoton_kev + (static_cast<double>(n) + 0.5) * width);
     spectrum.photons.push_back(bremsstrahlung(tube.kv, spectrum.energy_kev.back()) * width);
   }
   for (const Line& line : kLines) {
-    const auto bin = static_cast<std::size_t>((line.kev - kLowest_kev) / width);
+    const auto bin = static_cast<std::size_t>((line.kev - kLowestPhoton_kev) / width);
     if (bin < bins) spectrum.photons[bin] += line_photons(tube.kv, line);
   }
   for (std::size_t n = 0; n < bins; ++n) {
@@ -141,7 +141,7 @@ Result<Spectrum> tube_spectrum(const Tube& tube) {
 }
 
 Result<Spectrum> one_energy(double kev) {
-  if (!(kev >= kLowest_kev && kev <= 150.0))
+  if (!(kev >= kLowestPhoton_kev && kev <= 150.0))
     return fail_usage(fmt::format("the photon energy is {:g} keV", kev), "X-ray spectrum",
                       "give a value from 10 to 150 keV");
   return Spectrum{{kev}, {1.0}};

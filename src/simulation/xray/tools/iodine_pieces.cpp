@@ -7,7 +7,6 @@
 namespace trocar::xray {
 namespace {
 
-constexpr double kMg_per_g = 1000.0;
 constexpr double kSoftness = 0.5;  ///< Of an end, as a share of the smaller radius: joints of a bent duct stay even.
 
 bool is_usable(const IodinePiece& piece) noexcept {
@@ -33,7 +32,7 @@ void add_iodine(const std::vector<IodinePiece>& pieces, const XrayRays& rays, st
     cone.radius_b_mm = piece.radius_b_mm;
     cone.end_softness_mm = kSoftness * std::min(piece.radius_a_mm, piece.radius_b_mm);
     cone.has_free_end = true;
-    cone.density_g_per_cm3 = piece.iodine_mg_per_ml / kMg_per_g;
+    cone.density_g_per_cm3 = piece.iodine_mg_per_ml / detail::kMg_per_g;
     cones.push_back(cone);
   }
   detail::add_pieces(cones, rays, iodine_g_per_cm2);

@@ -7,8 +7,6 @@
 namespace trocar::xray {
 namespace {
 
-constexpr double kMg_per_g = 1000.0;
-
 std::vector<float>& image_of(MassImage& masses, Basis basis) {
   std::vector<float>& image = masses.of(basis);
   if (image.empty()) image.assign(masses.size(), 0.0F);
@@ -36,7 +34,7 @@ void add_tools(const std::vector<ToolShape>& tools, const XrayRays& rays, MassIm
     append(wall, detail::pieces_along(tool.line_P, bore_mm, -tool.density_g_per_cm3));
     if (tool.filling_iodine_mg_per_ml > 0.0)
       append(pieces[static_cast<std::size_t>(Basis::kIodine)],
-             detail::pieces_along(tool.line_P, bore_mm, tool.filling_iodine_mg_per_ml / kMg_per_g));
+             detail::pieces_along(tool.line_P, bore_mm, tool.filling_iodine_mg_per_ml / detail::kMg_per_g));
   }
   for (std::size_t basis = 0; basis < kBases; ++basis)
     if (!pieces[basis].empty()) detail::add_pieces(pieces[basis], rays, image_of(masses, static_cast<Basis>(basis)));

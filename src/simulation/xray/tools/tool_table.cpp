@@ -13,7 +13,7 @@
 namespace trocar::xray {
 namespace {
 
-constexpr double kPiece_mm = 2.0;
+constexpr double kToolPiece_mm = 2.0;
 
 std::optional<Basis> find_basis(std::string_view name) {
   constexpr std::pair<std::string_view, Basis> kNames[] = {
@@ -96,7 +96,7 @@ ToolShape tool_along(const ToolKind& kind, std::span<const Vec3> points_P) {
     const Vec3 &b = points_P[n], &c = points_P[n + 1];
     const Vec3 a = n > 0 ? points_P[n - 1] : Vec3(2.0 * b - c);
     const Vec3 d = n + 2 < points_P.size() ? points_P[n + 2] : Vec3(2.0 * c - b);
-    const int pieces = std::clamp(static_cast<int>(std::ceil((c - b).norm() / kPiece_mm)), 1, 1000);
+    const int pieces = std::clamp(static_cast<int>(std::ceil((c - b).norm() / kToolPiece_mm)), 1, 1000);
     for (int k = 1; k <= pieces; ++k) tool.line_P.push_back(spline_point(a, b, c, d, static_cast<double>(k) / pieces));
   }
   return tool;

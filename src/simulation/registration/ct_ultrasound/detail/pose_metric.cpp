@@ -11,7 +11,7 @@
 namespace trocar::registration::detail {
 namespace {
 
-constexpr std::size_t kPart = 2048;  ///< Samples whose derivatives one sum contains.
+constexpr std::size_t kDerivativePart = 2048;  ///< Samples whose derivatives one sum contains.
 constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
 /// Rotation about a coordinate axis.
@@ -135,7 +135,7 @@ double PoseMetric::value(const Motion& motion) {
   const Field field(ct_);
   const ToIndex index = to_index(ct_.geometry, motion, centre_);
   values_.resize(points_.size());
-  parallel_for(points_.size(), kPart, [&](std::size_t first, std::size_t last) {
+  parallel_for(points_.size(), kDerivativePart, [&](std::size_t first, std::size_t last) {
     for (std::size_t n = first; n < last; ++n) {
       const Vec3 at = index.at + index.by * points_[n];
       values_[n] = field.has(at) ? field.value(at) : kNoValue;
@@ -149,7 +149,7 @@ PoseMetric::Slope PoseMetric::slope(const Motion& motion) {
   const ToIndex index = to_index(ct_.geometry, motion, centre_);
   values_.resize(points_.size());
   gradients_.resize(points_.size());
-  parallel_for(points_.size(), kPart, [&](std::size_t first, std::size_t last) {
+  parallel_for(points_.size(), kDerivativePart, [&](std::size_t first, std::size_t last) {
     for (std::size_t n = first; n < last; ++n) {
       const Vec3 at = index.at + index.by * points_[n];
       values_[n] = field.has(at) ? field.value(at, gradients_[n]) : kNoValue;
@@ -158,10 +158,10 @@ PoseMetric::Slope PoseMetric::slope(const Motion& motion) {
   Slope result;
   result.value = information_.evaluate(values_, slopes_);
 
-  std::vector<Derivatives> parts((points_.size() + kPart - 1) / kPart);
+  std::vector<Derivatives> parts((points_.size() + kDerivativePart - 1) / kDerivativePart);
   parallel_for(parts.size(), 1, [&](std::size_t first, std::size_t last) {
     for (std::size_t part = first; part < last; ++part)
-      for (std::size_t n = part * kPart; n < std::min(points_.size(), (part + 1) * kPart); ++n) {
+      for (std::size_t n = part * kDerivativePart; n < std::min(points_.size(), (part + 1) * kDerivativePart); ++n) {
         if (slopes_[n] == 0.0) continue;
         const Vec3 by_index = slopes_[n] * gradients_[n].cast<double>();
         parts[part].by_index += by_index;

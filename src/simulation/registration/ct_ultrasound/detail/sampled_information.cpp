@@ -15,7 +15,7 @@ constexpr std::size_t kPadding = 2;  ///< Bins beside the values, for the window
 constexpr std::size_t kLastUsBin = kBins - kPadding - 1;
 constexpr double kLargest = 3.0;  ///< Local contrast.
 constexpr double kWidth = 2.0 * kLargest / static_cast<double>(kBins - 2 * kPadding);
-constexpr std::size_t kPart = 4096;  ///< Samples of one histogram.
+constexpr std::size_t kHistogramPart = 4096;  ///< Samples of one histogram.
 
 /// Rows: bins of the ultrasound.
 using Joint = std::array<std::array<double, kBins>, kBins>;
@@ -50,11 +50,11 @@ std::array<double, 4> slopes_at(double t) {
 
 /// Sums of the samples' windows, not divided by the number of samples.
 Joint joint_of(std::span<const std::uint8_t> us_bins, std::span<const double> ct) {
-  std::vector<Joint> parts((ct.size() + kPart - 1) / kPart);
+  std::vector<Joint> parts((ct.size() + kHistogramPart - 1) / kHistogramPart);
   parallel_for(parts.size(), 1, [&](std::size_t first, std::size_t last) {
     for (std::size_t part = first; part < last; ++part) {
       parts[part] = {};
-      for (std::size_t n = part * kPart; n < std::min(ct.size(), (part + 1) * kPart); ++n) {
+      for (std::size_t n = part * kHistogramPart; n < std::min(ct.size(), (part + 1) * kHistogramPart); ++n) {
         if (std::isnan(ct[n])) continue;
         const Window window = window_of(ct[n]);
         double* bins = parts[part][us_bins[n]].data() + window.first;
@@ -116,7 +116,7 @@ double SampledInformation::evaluate(std::span<const double> ct, std::vector<doub
   slopes.assign(ct.size(), 0.0);
   if (information.count <= 0.0) return 0.0;
   const double scale = 1.0 / (information.count * kWidth);
-  parallel_for(ct.size(), kPart, [&](std::size_t first, std::size_t last) {
+  parallel_for(ct.size(), kHistogramPart, [&](std::size_t first, std::size_t last) {
     for (std::size_t n = first; n < last; ++n) {
       if (!(std::abs(ct[n]) < kLargest)) continue;  // also NaN
       const Window window = window_of(ct[n]);

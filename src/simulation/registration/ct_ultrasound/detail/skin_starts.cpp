@@ -20,10 +20,9 @@ constexpr double kSkinSpacing_mm = 8.0;  ///< Of the grid on which the skin is f
 constexpr double kBetween_mm = 22.0;     ///< Distance between places on the skin.
 constexpr int kRolls = 16;
 constexpr double kTilt_rad = 0.3;
-constexpr double kCoarse_mm = 4.0;  ///< Smoothing of the volumes.
-constexpr std::size_t kSamples = 2000, kRefinedSamples = 8000, kBodySamples = 150;
-constexpr double kUsFine_mm = 1.2, kCtFine_mm = 0.5;
-constexpr std::size_t kClimbed = 300, kRefined = 80, kFinal = 20;
+constexpr double kSearchSmoothing_mm = 4.0;  ///< Smoothing of the volumes.
+constexpr std::size_t kFirstSamples = 2000, kRefinedSamples = 8000, kBodySamples = 150;
+constexpr std::size_t kClimbed = 300, kRefinedPoses = 80, kFinal = 20;
 constexpr double kLeastInBody = 0.9;  ///< Usable voxels show tissue, not air.
 
 struct SkinPlace {
@@ -70,19 +69,19 @@ std::vector<SkinPlace> find_skin(const volume::MaskGrid& body) {
   return places;
 }
 
-struct Candidate {
+struct SkinPose {
   Pose X_CU;
   double value = 0.0;
 };
 
 /// Poses with the middle of the face at a place on the skin.
-std::vector<Candidate> candidates_at(const std::vector<SkinPlace>& places, const Beams& beams, const Vec3& centre_U) {
+std::vector<SkinPose> candidates_at(const std::vector<SkinPlace>& places, const Beams& beams, const Vec3& centre_U) {
   Beams::Place face = beams.to_place(centre_U);
   if (beams.is_fan()) face = {};
   face.depth_mm = 0.0;
   const Vec3 face_U = beams.to_point(face);
   const Vec3 beam_U = beams.direction(face_U);
-  std::vector<Candidate> candidates;
+  std::vector<SkinPose> candidates;
   for (const SkinPlace& place : places) {
     const Vec3 side = place.inward_C.unitOrthogonal();
     const Vec3 other = place.inward_C.cross(side);
@@ -102,8 +101,8 @@ std::vector<Candidate> candidates_at(const std::vector<SkinPlace>& places, const
 }
 
 /// Drops poses that put much of the ultrasound into air or beside the CT.
-void keep_in_body(std::vector<Candidate>& candidates, const volume::MaskGrid& body, const std::vector<Vec3>& points) {
-  std::erase_if(candidates, [&](const Candidate& candidate) {
+void keep_in_body(std::vector<SkinPose>& candidates, const volume::MaskGrid& body, const std::vector<Vec3>& points) {
+  std::erase_if(candidates, [&](const SkinPose& candidate) {
     const auto inside = std::count_if(points.begin(), points.end(), [&](const Vec3& p) {
       return volume::sample_nearest(body, candidate.X_CU * p, std::uint8_t{0}) != 0;
     });
@@ -111,15 +110,15 @@ void keep_in_body(std::vector<Candidate>& candidates, const volume::MaskGrid& bo
   });
 }
 
-void keep_best(std::vector<Candidate>& candidates, std::size_t most) {
+void keep_best(std::vector<SkinPose>& candidates, std::size_t most) {
   std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.value > b.value; });
+                   [](const SkinPose& a, const SkinPose& b) { return a.value > b.value; });
   if (candidates.size() > most) candidates.resize(most);
 }
 
 /// Values of the candidates, or with options the tops of the climbs from them; in parallel.
 /// `is_cancelled` is polled for each; the values are incomplete then.
-void evaluate(std::vector<Candidate>& candidates, const Level& level, const std::vector<Vec3>& points,
+void evaluate(std::vector<SkinPose>& candidates, const Level& level, const std::vector<Vec3>& points,
               const WorkingUltrasound& us, const std::optional<ClimbOptions>& options,
               const std::function<bool()>& is_cancelled) {
   constexpr std::size_t kGrain = 4;
@@ -142,7 +141,7 @@ void evaluate(std::vector<Candidate>& candidates, const Level& level, const std:
 Result<Pose> search_from_skin(const volume::CtGrid& ct, const WorkingUltrasound& us, const Beams& beams,
                               std::uint64_t seed, const std::function<bool()>& is_cancelled, const Progress& progress) {
   const volume::MaskGrid body = find_body(ct);
-  std::vector<Candidate> candidates = candidates_at(find_skin(body), beams, us.centre);
+  std::vector<SkinPose> candidates = candidates_at(find_skin(body), beams, us.centre);
   const std::vector<Vec3> few_points = sample_usable(us, kBodySamples, seed);
   keep_in_body(candidates, body, few_points);
   if (candidates.empty())
@@ -150,7 +149,7 @@ Result<Pose> search_from_skin(const volume::CtGrid& ct, const WorkingUltrasound&
                 "give landmarks, or a CT of the region");
   constexpr double kWhole_mm = 1e4;
   const volume::FloatGrid ct_C = prepare_ct(ct, ct.geometry.to_mm(Vec3::Zero()), kWhole_mm);
-  const Level coarse = make_level(us, ct_C, kCoarse_mm, kCoarse_mm, 2);
+  const Level coarse = make_level(us, ct_C, kSearchSmoothing_mm, kSearchSmoothing_mm, 2);
   const Level fine = make_level(us, ct_C, kUsFine_mm, kCtFine_mm, 1);
   /// Values of the candidates at a level, or climbs from them; the best are kept.
   struct Stage {
@@ -159,8 +158,8 @@ Result<Pose> search_from_skin(const volume::CtGrid& ct, const WorkingUltrasound&
     std::optional<ClimbOptions> climb;
     std::size_t kept;
   };
-  const Stage stages[] = {{coarse, kSamples, {}, kClimbed},
-                          {coarse, kSamples, ClimbOptions{us.radius_mm, 5.0, 0.7, 30}, kRefined},
+  const Stage stages[] = {{coarse, kFirstSamples, {}, kClimbed},
+                          {coarse, kFirstSamples, ClimbOptions{us.radius_mm, 5.0, 0.7, 30}, kRefinedPoses},
                           {coarse, kRefinedSamples, ClimbOptions{us.radius_mm, 2.0, 0.4, 30}, kFinal},
                           {fine, kRefinedSamples, ClimbOptions{us.radius_mm, 1.5, 0.2, 30}, 1}};
   double done = 0.2;

@@ -82,8 +82,8 @@ struct Surroundings {
 
 /// Sums of weights, of weighted values and of their squares over blocks.
 template <class Weight>
-std::array<volume::FloatGrid, 3> sum_blocks(const volume::FloatGrid& grid, const Weight& weight,
-                                            const volume::Index3& factors) {
+std::array<volume::FloatGrid, 3> sum_weighted_blocks(const volume::FloatGrid& grid, const Weight& weight,
+                                                     const volume::Index3& factors) {
   volume::GridGeometry geometry = grid.geometry;
   for (std::size_t a = 0; a < 3; ++a) {
     geometry.size[a] /= factors[a];
@@ -120,7 +120,7 @@ Surroundings find_surroundings(const volume::FloatGrid& grid, const Weight& weig
   Surroundings around;
   around.factors = factors_of(grid.geometry.spacing_mm, 0.5 * kContrast_mm);
   for (std::size_t a = 0; a < 3; ++a) around.factors[a] = std::min(around.factors[a], grid.geometry.size[a]);
-  auto [weights, values, squares] = sum_blocks(grid, weight, around.factors);
+  auto [weights, values, squares] = sum_weighted_blocks(grid, weight, around.factors);
   for (volume::FloatGrid* sums : {&weights, &values, &squares}) smooth(*sums, kContrast_mm);
   const auto per_block = static_cast<float>(around.factors[0] * around.factors[1] * around.factors[2]);
   around.mean = volume::FloatGrid(weights.geometry);

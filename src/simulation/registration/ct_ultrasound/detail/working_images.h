@@ -33,6 +33,9 @@ struct Level {
   volume::FloatGrid ct;  ///< In the frame of the ultrasound.
 };
 
+/// Standard deviations of the smoothing at the finest level (docs/physics.md R12, R14; assumed).
+inline constexpr double kUsFine_mm = 1.2, kCtFine_mm = 0.5;
+
 /// Local contrast of both volumes, smoothed by the standard deviations (mm), on grids of every `factor`-th voxel.
 Level make_level(const WorkingUltrasound& us, const volume::FloatGrid& ct_U, double us_sigma_mm, double ct_sigma_mm,
                  std::int64_t factor);

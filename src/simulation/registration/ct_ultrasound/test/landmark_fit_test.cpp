@@ -5,11 +5,11 @@
 namespace trocar::registration {
 namespace {
 
-using Points = std::vector<NamedPoint>;
+using NamedPoints = std::vector<NamedPoint>;
 
 const Pose kX_CU(Eigen::AngleAxisd(0.7, Vec3(1, 2, 2) / 3.0).toRotationMatrix(), Vec3(30, -120, 55));
 
-Points ultrasound() {
+NamedPoints ultrasound() {
   return {{"hilum", Vec3(0, 50, 0)},
           {"apex", Vec3(40, 60, 10)},
           {"lesion", Vec3(-20, 90, -30)},
@@ -18,13 +18,13 @@ Points ultrasound() {
 }
 
 /// In another order.
-Points ct() {
-  Points points;
+NamedPoints ct() {
+  NamedPoints points;
   for (const NamedPoint& point : ultrasound()) points.insert(points.begin(), {point.name, kX_CU * point.p});
   return points;
 }
 
-std::string refusal(const Points& ct, const Points& us) {
+std::string refusal(const NamedPoints& ct, const NamedPoints& us) {
   const auto fit = fit_landmarks(ct, us);
   return fit ? std::string() : fit.error().text();
 }
@@ -38,7 +38,7 @@ TEST(LandmarkFit, PairsByLabel) {
 }
 
 TEST(LandmarkFit, ListsUnmatchedLabels) {
-  Points us = ultrasound();
+  NamedPoints us = ultrasound();
   us.push_back({"spleen", Vec3(1, 2, 3)});
   const auto fit = fit_landmarks(ct(), us);
   ASSERT_TRUE(fit);
@@ -46,7 +46,7 @@ TEST(LandmarkFit, ListsUnmatchedLabels) {
 }
 
 TEST(LandmarkFit, NamesTheWorstPair) {
-  Points us = ultrasound();
+  NamedPoints us = ultrasound();
   us[2].p += Vec3(0, 8, 0);
   const auto doubtful = fit_landmarks(ct(), us);
   ASSERT_TRUE(doubtful);
@@ -57,13 +57,13 @@ TEST(LandmarkFit, NamesTheWorstPair) {
 }
 
 TEST(LandmarkFit, RefusesAnotherScale) {
-  Points us = ultrasound();
+  NamedPoints us = ultrasound();
   for (NamedPoint& point : us) point.p *= 1.1;
   EXPECT_NE(refusal(ct(), us).find("scale 0.909"), std::string::npos);
 }
 
 TEST(LandmarkFit, RefusesWhatCannotBeFitted) {
-  Points us = ultrasound();
+  NamedPoints us = ultrasound();
   us.resize(2);
   EXPECT_NE(refusal(ct(), us).find("at least 3"), std::string::npos);
   EXPECT_NE(refusal(ct(), {{"a", Vec3(1, 0, 0)}, {"b", Vec3(0, 1, 0)}, {"c", Vec3(0, 0, 1)}}).find("unmatched: "),

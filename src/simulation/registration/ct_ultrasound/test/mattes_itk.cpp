@@ -14,7 +14,7 @@ namespace {
 
 using Image = itk::Image<float, 3>;
 using Metric = itk::MattesMutualInformationImageToImageMetricv4<Image, Image>;
-using Points = Metric::FixedSampledPointSetType;
+using SampledPoints = Metric::FixedSampledPointSetType;
 using Euler = itk::Euler3DTransform<double>;
 
 /// An ITK image that shares the voxels.
@@ -41,11 +41,11 @@ Image::Pointer image_of(const ImageView& view) {
   return image;
 }
 
-Points::Pointer points_of(std::span<const std::array<double, 3>> points) {
-  auto result = Points::New();
+SampledPoints::Pointer points_of(std::span<const std::array<double, 3>> points) {
+  auto result = SampledPoints::New();
   result->GetPoints()->Reserve(points.size());
   for (std::size_t n = 0; n < points.size(); ++n) {
-    Points::PointType point;
+    SampledPoints::PointType point;
     std::copy(points[n].begin(), points[n].end(), point.Begin());
     result->SetPoint(n, point);
   }

@@ -84,7 +84,7 @@ volume::GridGeometry cube(const PairOptions& options) {
 }
 
 /// The grid as the transducer would be: moved from the CT by X_UC.
-volume::GridGeometry moved(volume::GridGeometry geometry, const Pose& X) {
+volume::GridGeometry moved_grid(volume::GridGeometry geometry, const Pose& X) {
   geometry.origin_P = X * geometry.origin_P;
   geometry.R_PV = X.R() * geometry.R_PV;
   return geometry;
@@ -127,7 +127,7 @@ GeneratedPair make_pair(const PairOptions& options) {
     }
   detail::smooth(real, 0.6 * options.spacing_mm);
   detail::smooth(imaginary, 0.6 * options.spacing_mm);
-  pair.us = volume::LabelGrid(moved(geometry, X_UC));
+  pair.us = volume::LabelGrid(moved_grid(geometry, X_UC));
   for (std::size_t n = 0; n < pair.us.voxels.size(); ++n) {
     const double amplitude = std::hypot(static_cast<double>(real.voxels[n]), static_cast<double>(imaginary.voxels[n]));
     const double db = 20.0 * std::log10(amplitude + 1e-6);

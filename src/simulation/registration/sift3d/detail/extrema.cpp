@@ -49,9 +49,9 @@ bool exceeds(const DifferencePlanes& planes, std::int64_t k, std::size_t at, std
   return true;
 }
 
-class Search {
+class ExtremumSearch {
  public:
-  Search(const Octave& octave, int scales, double scale_exponent, float least)
+  ExtremumSearch(const Octave& octave, int scales, double scale_exponent, float least)
       : octave_(octave), scales_(scales), least_(least) {
     for (int level = 0; level < scales + 2; ++level)
       differences_.emplace_back(octave, level, static_cast<float>(std::exp2(scale_exponent * level / scales)));
@@ -109,7 +109,7 @@ std::vector<Extremum> find_extrema(const Octave& octave, int scales, double scal
   const auto parts = static_cast<std::size_t>((planes + kPlanesTogether - 1) / kPlanesTogether);
   std::vector<std::vector<Extremum>> found(parts);
   parallel_for(parts, 1, [&](std::size_t first, std::size_t last) {
-    Search search(octave, scales, scale_exponent, least);
+    ExtremumSearch search(octave, scales, scale_exponent, least);
     for (std::size_t part = first; part < last; ++part) {
       const std::int64_t begin = 1 + static_cast<std::int64_t>(part) * kPlanesTogether;
       search.search(begin, std::min(begin + kPlanesTogether, planes + 1), found[part]);

@@ -33,7 +33,7 @@ Between between(float at) noexcept {
 }
 
 /// Trilinear; NaN outside of the grid and next to unusable voxels.
-float sample_at(const volume::FloatGrid& gray, const Eigen::Vector3f& index) noexcept {
+float trilinear_gray(const volume::FloatGrid& gray, const Eigen::Vector3f& index) noexcept {
   const auto& size = gray.geometry.size;
   const Eigen::Vector3f low = index.array().floor();
   const auto i = static_cast<std::int64_t>(low[0]), j = static_cast<std::int64_t>(low[1]),
@@ -79,7 +79,7 @@ void GradientHistogram::sample(const volume::FloatGrid& gray, const Vec3& first,
   for (int k = 0; k < kPadded; ++k) {
     for (int j = 0; j < kPadded; ++j) {
       Eigen::Vector3f index = first.cast<float>() + static_cast<float>(j) * s.col(1) + static_cast<float>(k) * s.col(2);
-      for (int i = 0; i < kPadded; ++i, index += s.col(0)) gray_[n++] = sample_at(gray, index);
+      for (int i = 0; i < kPadded; ++i, index += s.col(0)) gray_[n++] = trilinear_gray(gray, index);
     }
   }
 }

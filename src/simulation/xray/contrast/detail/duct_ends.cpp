@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kBeyondWall_mm = 2.0;  ///< Where a ring around a duct looks for a lesion.
 constexpr double kRings_mm = 0.5;       ///< The ring also looks this much nearer and farther, per voxel.
-constexpr int kDirections = 16;
+constexpr int kRingDirections = 16;
 constexpr double kEndReach_mm = 4.0;  ///< From an end to the bowel or to a stretch.
 constexpr double kNarrow = 0.6;       ///< Of the widest radius beside it: a narrow place.
 constexpr double kEndRadii = 2.0;     ///< An end as near to a lesion as that, in its radii, is closed by it.
@@ -38,15 +38,15 @@ class Surroundings {
     const double radius_mm = 0.5 * (cell.radius_a_mm + cell.radius_b_mm);
     const double voxel_mm = patient_.labels.geometry.spacing_mm.maxCoeff();
     int count = 0;
-    for (int n = 0; n < kDirections; ++n) {
-      const double angle = 2.0 * std::numbers::pi * n / kDirections;
+    for (int n = 0; n < kRingDirections; ++n) {
+      const double angle = 2.0 * std::numbers::pi * n / kRingDirections;
       const Vec3 out = std::cos(angle) * u + std::sin(angle) * v;
       bool is_touched = false;
       for (const double more_mm : {-kRings_mm * voxel_mm, 0.0, kRings_mm * voxel_mm})
         is_touched = is_touched || is_lesion_[label(middle_P + (radius_mm + kBeyondWall_mm + more_mm) * out)];
       count += is_touched ? 1 : 0;
     }
-    return static_cast<double>(count) / kDirections;
+    return static_cast<double>(count) / kRingDirections;
   }
 
   /// True if bowel is near the end of a duct, before it or beside it.

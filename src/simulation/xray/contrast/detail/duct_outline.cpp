@@ -9,7 +9,6 @@
 namespace trocar::xray::detail {
 namespace {
 
-constexpr double kMm3PerMl = 1000.0;
 constexpr double kFrontRadii = 4.0;  ///< Length of a front's core, in radii of the duct.
 constexpr double kCapLonger =
     1.0 / 3;                      ///< A half ball instead of a flat end of the same volume is longer by this, in radii.
@@ -20,8 +19,8 @@ constexpr double kWhole = 0.97;   ///< A cell of a higher relative concentration
 /// A front is drawn as cores within each other, with parts of equal iodine: the radius falls as these powers of the
 /// relative concentration, so that the edge of the whole is soft.
 constexpr std::array<double, 3> kCorePowers{0.15, 0.3, 0.5};
-constexpr double kSteep = 0.1;      ///< Growth of the radius per length.
-constexpr double kThinnest = 0.02;  ///< Of the cell's radius.
+constexpr double kSteepGrowth = 0.1;  ///< Growth of the radius per length.
+constexpr double kThinnest = 0.02;    ///< Of the cell's radius.
 constexpr double kFar_mm = std::numeric_limits<double>::infinity();
 
 /// Height above the pole of the half ball of radius 1 below which it has the volume of a flat cylinder of the length
@@ -40,7 +39,7 @@ struct Face {
 /// A cone between two sections; a steep one as a cylinder of its volume, which is drawn much faster.
 IodinePiece piece_between(const Face& a, const Face& b) {
   IodinePiece piece{a.p_P, b.p_P, a.radius_mm, b.radius_mm, 0.0};
-  if (std::abs(a.radius_mm - b.radius_mm) <= kSteep * (b.p_P - a.p_P).norm()) return piece;
+  if (std::abs(a.radius_mm - b.radius_mm) <= kSteepGrowth * (b.p_P - a.p_P).norm()) return piece;
   const double squares = a.radius_mm * a.radius_mm + a.radius_mm * b.radius_mm + b.radius_mm * b.radius_mm;
   piece.radius_a_mm = piece.radius_b_mm = std::sqrt(squares / 3.0);
   return piece;

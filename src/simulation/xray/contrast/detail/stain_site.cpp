@@ -15,8 +15,6 @@ constexpr double kFine = 0.45;  ///< Correlation length of the finer half of the
 constexpr double kTractResistance = 0.55;  ///< Relative to the tissue. Assumed, range 0.3..1.
 constexpr double kExactReach = 2.5;        ///< Voxels around the tip in which the straight distance is used.
 constexpr double kLeastReach = 0.2;        ///< Voxels.
-constexpr std::array<volume::Index3, 6> kNeighbours{
-    {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
 
 }  // namespace
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <unordered_map>
 #include <vector>
@@ -8,6 +9,10 @@
 #include "xray/contrast/contrast_table.h"
 
 namespace trocar::xray::detail {
+
+/// Steps to the voxels that share a face.
+inline constexpr std::array<volume::Index3, 6> kNeighbours{
+    {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
 
 /// The way of contrast agent through tissue from a tip, on an isotropic lattice: each voxel's reach, the distance from
 /// the tip weighted with the resistance on the way (fast marching, |grad reach| = resistance), and its uptake. Both

@@ -9,8 +9,8 @@
 namespace trocar::xray::detail {
 namespace {
 
-constexpr double kMeanSquare = 0.55;  ///< Of a quadratic B-spline's samples at distance 1: 11/20.
-constexpr std::uint64_t kBits = 21;   ///< Of a lattice index in a counter.
+constexpr double kMeanSquare = 0.55;      ///< Of a quadratic B-spline's samples at distance 1: 11/20.
+constexpr std::uint64_t kIndexBits = 21;  ///< Of a lattice index in a counter.
 
 /// Weights of the three coefficients nearest to a place, of which the first has the index `first`.
 std::array<double, 3> weights_at(double x, std::int64_t& first) noexcept {
@@ -21,7 +21,7 @@ std::array<double, 3> weights_at(double x, std::int64_t& first) noexcept {
 }
 
 std::uint64_t bits_of(std::int64_t index) noexcept {
-  return static_cast<std::uint64_t>(index) & ((std::uint64_t{1} << kBits) - 1);
+  return static_cast<std::uint64_t>(index) & ((std::uint64_t{1} << kIndexBits) - 1);
 }
 
 }  // namespace
@@ -36,7 +36,7 @@ double uptake_field(const Vec3& p_P, double correlation_mm, std::uint64_t seed) 
     for (std::int64_t j = 0; j < 3; ++j)
       for (std::int64_t i = 0; i < 3; ++i) {
         const std::uint64_t counter =
-            bits_of(first[0] + i) | bits_of(first[1] + j) << kBits | bits_of(first[2] + k) << (2 * kBits);
+            bits_of(first[0] + i) | bits_of(first[1] + j) << kIndexBits | bits_of(first[2] + k) << (2 * kIndexBits);
         const double weight = weights[0][static_cast<std::size_t>(i)] * weights[1][static_cast<std::size_t>(j)] *
                               weights[2][static_cast<std::size_t>(k)];
         sum += weight * (2.0 * uniform01(seed, counter) - 1.0);

@@ -11,7 +11,7 @@ namespace {
 constexpr double kDown_mm = 200.0, kUp_mm = 15.0;
 constexpr double kProbe_mm = 0.4;  ///< Step of the search for the wall.
 constexpr int kMostProbes = 50;    ///< Up to a radius of 20 mm.
-constexpr int kDirections = 8;
+constexpr int kProbeDirections = 8;
 constexpr double kCentring = 0.35;   ///< Greatest sideways part of a step, relative to it.
 constexpr double kNeedle_mm = 0.35;  ///< Radius of the stream at the tip, the needle's.
 constexpr double kLeastFlow = 1.0;   ///< mm/s
@@ -37,12 +37,12 @@ class Tracer {
     const Vec3 w = along.cross(u);
     double least = kMostProbes * kProbe_mm;
     to_middle = Vec3::Zero();
-    for (int n = 0; n < kDirections; ++n) {
-      const double angle = 2.0 * std::numbers::pi * n / kDirections;
+    for (int n = 0; n < kProbeDirections; ++n) {
+      const double angle = 2.0 * std::numbers::pi * n / kProbeDirections;
       const Vec3 out = std::cos(angle) * u + std::sin(angle) * w;
       const double mm = free_mm(p_P, out);
       least = std::min(least, mm);
-      to_middle += (2.0 / kDirections) * mm * out;
+      to_middle += (2.0 / kProbeDirections) * mm * out;
     }
     return least;
   }

@@ -9,7 +9,7 @@ namespace trocar::xray {
 namespace {
 
 constexpr double kStep_s = 0.005;
-constexpr double kIodine = 300.0;
+constexpr double kAgent_mg_per_ml = 300.0;
 
 /// Appends a straight duct in pieces; returns the index of its last cell.
 int append(DuctTree& tree, int parent, const Vec3& a, const Vec3& b, double radius_mm, int pieces) {
@@ -48,7 +48,7 @@ DuctParams without_mixing() {
 
 void inject(DuctFill& fill, int cell, double ml_per_s, double seconds) {
   const auto steps = static_cast<int>(std::lround(seconds / kStep_s));
-  for (int n = 0; n < steps; ++n) fill.step(kStep_s, cell, ml_per_s, kIodine);
+  for (int n = 0; n < steps; ++n) fill.step(kStep_s, cell, ml_per_s, kAgent_mg_per_ml);
 }
 
 /// Contrast agent in the cells [first, last].
@@ -125,7 +125,8 @@ TEST(DuctFill, DistendsAFullTreeThenLosesTheRest) {
   inject(fill, 0, 0.2, 3.0 * rest_ml / 0.2);
   EXPECT_NEAR(fill.volume_ml(), rest_ml * (1.0 + params.distension), 1e-6);
   EXPECT_NEAR(fill.contrast_ml(), fill.volume_ml(), 1e-3);
-  const double injected_mg = static_cast<double>(std::lround(3.0 * rest_ml / 0.2 / kStep_s)) * kStep_s * 0.2 * kIodine;
+  const double injected_mg =
+      static_cast<double>(std::lround(3.0 * rest_ml / 0.2 / kStep_s)) * kStep_s * 0.2 * kAgent_mg_per_ml;
   EXPECT_NEAR(fill.iodine_mg() + fill.refluxed_mg(), injected_mg, 1e-9 * injected_mg);
   EXPECT_GT(fill.refluxed_mg(), 0.5 * injected_mg);
 }
@@ -264,7 +265,8 @@ TEST(DuctFill, FrontInAWideDuctIsARoundNose) {
   EXPECT_LT(before_mm, 0.6 * 7.0);
   for (const IodinePiece& piece : pieces) {
     EXPECT_LE(piece.radius_a_mm, 7.0 + 1e-9);
-    EXPECT_LE(piece.iodine_mg_per_ml, 1.05 * kIodine) << "not denser than the agent, but for cones in a round end";
+    EXPECT_LE(piece.iodine_mg_per_ml, 1.05 * kAgent_mg_per_ml)
+        << "not denser than the agent, but for cones in a round end";
   }
 }
 

@@ -14,8 +14,8 @@
 namespace trocar::xray {
 namespace {
 
-constexpr int kPixels = 256;
-constexpr std::size_t kCount = static_cast<std::size_t>(kPixels) * kPixels;
+constexpr int kDetectorPixels = 256;
+constexpr std::size_t kDetectorCount = static_cast<std::size_t>(kDetectorPixels) * kDetectorPixels;
 
 double mean_of(const std::vector<float>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
@@ -28,49 +28,49 @@ double variance_of(const std::vector<float>& values) {
   return sum / static_cast<double>(values.size() - 1);
 }
 
-/// Relative standard error of a variance of kCount normal numbers is sqrt(2 / kCount) = 0.55 %.
+/// Relative standard error of a variance of kDetectorCount normal numbers is sqrt(2 / kDetectorCount) = 0.55 %.
 constexpr double kVarianceTolerance = 0.03;
 
 TEST(QuantumNoise, HasTheVarianceOfThePhotonsAndKeepsTheMean) {
   for (const double open : {400.0, 1600.0, 25600.0})
     for (const double level : {1.0, 0.2}) {
-      std::vector<float> image(kCount, static_cast<float>(level));
+      std::vector<float> image(kDetectorCount, static_cast<float>(level));
       add_quantum_noise({open, 1.1}, 7, image);
       const double expected = 1.1 * level / open;
       EXPECT_NEAR(variance_of(image), expected, kVarianceTolerance * expected) << open << " " << level;
-      EXPECT_NEAR(mean_of(image), level, 4.0 * std::sqrt(expected / static_cast<double>(kCount)));
+      EXPECT_NEAR(mean_of(image), level, 4.0 * std::sqrt(expected / static_cast<double>(kDetectorCount)));
     }
 }
 
 TEST(QuantumNoise, IsNormal) {
-  std::vector<float> image(kCount, 1.0F);
+  std::vector<float> image(kDetectorCount, 1.0F);
   add_quantum_noise({1e4, 1.0}, 3, image);
   for (const double sigmas : {-2.5, -1.0, 0.0, 0.5, 2.0}) {
     const auto below = std::count_if(image.begin(), image.end(), [&](float v) { return v < 1.0 + sigmas * 0.01; });
     const double expected = 0.5 * std::erfc(-sigmas / std::sqrt(2.0));
-    EXPECT_NEAR(static_cast<double>(below) / static_cast<double>(kCount), expected, 0.008) << sigmas;
+    EXPECT_NEAR(static_cast<double>(below) / static_cast<double>(kDetectorCount), expected, 0.008) << sigmas;
   }
   double fourth = 0.0;
   for (const float value : image) fourth += std::pow((value - 1.0) / 0.01, 4.0);
-  EXPECT_NEAR(fourth / static_cast<double>(kCount), 3.0, 0.1);
+  EXPECT_NEAR(fourth / static_cast<double>(kDetectorCount), 3.0, 0.1);
 }
 
 TEST(QuantumNoise, IsIndependentBetweenPixelsAndSeeds) {
-  std::vector<float> a(kCount, 1.0F), b(kCount, 1.0F);
+  std::vector<float> a(kDetectorCount, 1.0F), b(kDetectorCount, 1.0F);
   add_quantum_noise({1e4, 1.0}, 3, a);
   add_quantum_noise({1e4, 1.0}, 4, b);
   double next = 0.0, other = 0.0;
-  for (std::size_t n = 0; n + 1 < kCount; ++n) {
+  for (std::size_t n = 0; n + 1 < kDetectorCount; ++n) {
     next += (a[n] - 1.0) * (a[n + 1] - 1.0);
     other += (a[n] - 1.0) * (b[n] - 1.0);
   }
-  const double standard_error = 1e-4 * std::sqrt(static_cast<double>(kCount));
+  const double standard_error = 1e-4 * std::sqrt(static_cast<double>(kDetectorCount));
   EXPECT_LT(std::abs(next), 4.0 * standard_error);
   EXPECT_LT(std::abs(other), 4.0 * standard_error);
 }
 
 TEST(QuantumNoise, IsTheSameOnAnyNumberOfThreads) {
-  std::vector<float> one(kCount + 1, 0.5F), many(kCount + 1, 0.5F);
+  std::vector<float> one(kDetectorCount + 1, 0.5F), many(kDetectorCount + 1, 0.5F);
   run_on_threads(1, [&] { add_quantum_noise({500.0, 1.0}, 9, one); });
   run_on_threads(4, [&] { add_quantum_noise({500.0, 1.0}, 9, many); });
   EXPECT_EQ(one, many);
@@ -84,16 +84,16 @@ TEST(QuantumNoise, LeavesDarknessDark) {
 
 /// Modulation of a sine of `cycles` per pixel after the blur.
 double transfer(double sigma_px, double cycles) {
-  std::vector<float> image(kCount);
-  for (int row = 0; row < kPixels; ++row)
-    for (int column = 0; column < kPixels; ++column)
-      image[static_cast<std::size_t>(row * kPixels + column)] =
+  std::vector<float> image(kDetectorCount);
+  for (int row = 0; row < kDetectorPixels; ++row)
+    for (int column = 0; column < kDetectorPixels; ++column)
+      image[static_cast<std::size_t>(row * kDetectorPixels + column)] =
           static_cast<float>(1.0 + std::cos(2.0 * std::numbers::pi * cycles * column));
-  blur_image(image, kPixels, kPixels, sigma_px);
+  blur_image(image, kDetectorPixels, kDetectorPixels, sigma_px);
   double sum = 0.0;
   int count = 0;
   for (int column = 64; column < 192; ++column, ++count)
-    sum += (image[static_cast<std::size_t>(128 * kPixels + column)] - 1.0) *
+    sum += (image[static_cast<std::size_t>(128 * kDetectorPixels + column)] - 1.0) *
            std::cos(2.0 * std::numbers::pi * cycles * column);
   return 2.0 * sum / count;
 }
@@ -114,13 +114,13 @@ TEST(ImageBlur, HasHalfTheModulationAtTheDetectorsFrequency) {
 
 TEST(ImageBlur, KeepsEvenImagesUpToTheEdgeAndTheMean) {
   for (const double sigma : {0.5, 3.0}) {
-    std::vector<float> image(kCount, 0.7F);
-    blur_image(image, kPixels, kPixels, sigma);
+    std::vector<float> image(kDetectorCount, 0.7F);
+    blur_image(image, kDetectorPixels, kDetectorPixels, sigma);
     for (const float value : image) ASSERT_NEAR(value, 0.7, 1e-5);
-    image.assign(kCount, 0.0F);
-    image[100 * kPixels + 90] = 1.0F;
-    blur_image(image, kPixels, kPixels, sigma);
-    EXPECT_NEAR(mean_of(image) * static_cast<double>(kCount), 1.0, 1e-4);
+    image.assign(kDetectorCount, 0.0F);
+    image[100 * kDetectorPixels + 90] = 1.0F;
+    blur_image(image, kDetectorPixels, kDetectorPixels, sigma);
+    EXPECT_NEAR(mean_of(image) * static_cast<double>(kDetectorCount), 1.0, 1e-4);
   }
 }
 
@@ -169,20 +169,20 @@ struct Even {
   std::vector<float> primary;
 
   explicit Even(double mass, double share = 1.0) {
-    arm.pixels = kPixels;
+    arm.pixels = kDetectorPixels;
     arm.field_mm = 600.0;
-    patient.columns = patient.rows = kPixels;
-    patient.of(Basis::kWater).assign(kCount, static_cast<float>(mass));
-    primary.assign(kCount, 0.0F);
-    const int margin = static_cast<int>(std::lround(0.5 * (1.0 - share) * kPixels));
-    for (int row = margin; row < kPixels - margin; ++row)
-      for (int column = margin; column < kPixels - margin; ++column)
-        primary[static_cast<std::size_t>(row * kPixels + column)] = 0.02F;
+    patient.columns = patient.rows = kDetectorPixels;
+    patient.of(Basis::kWater).assign(kDetectorCount, static_cast<float>(mass));
+    primary.assign(kDetectorCount, 0.0F);
+    const int margin = static_cast<int>(std::lround(0.5 * (1.0 - share) * kDetectorPixels));
+    for (int row = margin; row < kDetectorPixels - margin; ++row)
+      for (int column = margin; column < kDetectorPixels - margin; ++column)
+        primary[static_cast<std::size_t>(row * kDetectorPixels + column)] = 0.02F;
   }
   double middle(const DetectorParams& params) const {
-    std::vector<float> signal(kCount, 0.0F);
-    add_scatter(estimate_scatter(patient, primary, arm, params), kPixels, kPixels, signal);
-    return signal[kPixels / 2 * kPixels + kPixels / 2];
+    std::vector<float> signal(kDetectorCount, 0.0F);
+    add_scatter(estimate_scatter(patient, primary, arm, params), kDetectorPixels, kDetectorPixels, signal);
+    return signal[kDetectorPixels / 2 * kDetectorPixels + kDetectorPixels / 2];
   }
 };
 
@@ -205,13 +205,13 @@ TEST(Scatter, FallsWithTheFieldAsTheGaussianInside) {
 TEST(Scatter, IsSmoothAndHalvedAtTheEdgeOfAnEvenField) {
   const DetectorParams params;
   const Even even(20.0);
-  std::vector<float> signal(kCount, 0.0F);
-  add_scatter(estimate_scatter(even.patient, even.primary, even.arm, params), kPixels, kPixels, signal);
-  const double middle = signal[kPixels / 2 * kPixels + kPixels / 2];
-  EXPECT_NEAR(signal[kPixels / 2 * kPixels] / middle, 0.5, 0.06);
-  for (int column = 1; column < kPixels; ++column)
-    EXPECT_LT(std::abs(signal[static_cast<std::size_t>(kPixels / 2 * kPixels + column)] -
-                       signal[static_cast<std::size_t>(kPixels / 2 * kPixels + column - 1)]),
+  std::vector<float> signal(kDetectorCount, 0.0F);
+  add_scatter(estimate_scatter(even.patient, even.primary, even.arm, params), kDetectorPixels, kDetectorPixels, signal);
+  const double middle = signal[kDetectorPixels / 2 * kDetectorPixels + kDetectorPixels / 2];
+  EXPECT_NEAR(signal[kDetectorPixels / 2 * kDetectorPixels] / middle, 0.5, 0.06);
+  for (int column = 1; column < kDetectorPixels; ++column)
+    EXPECT_LT(std::abs(signal[static_cast<std::size_t>(kDetectorPixels / 2 * kDetectorPixels + column)] -
+                       signal[static_cast<std::size_t>(kDetectorPixels / 2 * kDetectorPixels + column - 1)]),
               0.04 * middle);
 }
 

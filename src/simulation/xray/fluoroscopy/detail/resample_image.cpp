@@ -7,7 +7,7 @@
 namespace trocar::xray::detail {
 namespace {
 
-constexpr std::size_t kGrainRows = 32;
+constexpr std::size_t kGrainResampledRows = 32;
 
 }  // namespace
 
@@ -26,7 +26,7 @@ std::vector<float> resample_image(const std::vector<float>& image, int columns, 
   std::vector<Place> across;
   for (int n = 0; n < new_columns; ++n) across.push_back(place(n, new_columns, columns));
   std::vector<float> made(static_cast<std::size_t>(new_columns) * static_cast<std::size_t>(new_rows));
-  parallel_for(static_cast<std::size_t>(new_rows), kGrainRows, [&](std::size_t begin, std::size_t end) {
+  parallel_for(static_cast<std::size_t>(new_rows), kGrainResampledRows, [&](std::size_t begin, std::size_t end) {
     for (std::size_t row = begin; row < end; ++row) {
       const Place y = place(static_cast<int>(row), new_rows, rows);
       const float* const above = image.data() + y.first * static_cast<std::size_t>(columns);

@@ -13,15 +13,15 @@
 namespace trocar::xray {
 namespace {
 
-constexpr int kPixels = 128;
+constexpr int kFramePixels = 128;
 
-std::size_t at(int column, int row) {
-  return static_cast<std::size_t>(row * kPixels + column);
+std::size_t frame_index(int column, int row) {
+  return static_cast<std::size_t>(row * kFramePixels + column);
 }
 
 FluoroscopyRequest small_request() {
   FluoroscopyRequest request;
-  request.arm.pixels = kPixels;
+  request.arm.pixels = kFramePixels;
   request.arm.field_mm = 200.0;
   request.is_pedal_down = true;
   return request;
@@ -54,7 +54,7 @@ FluoroscopyFrame run(Fluoroscope& fluoroscope, FluoroscopyRequest& request, doub
 /// Pixel on which a point falls.
 std::size_t pixel_of(const CArm& arm, const Vec3& p_P) {
   const auto [column, row] = rays_of(arm).project(p_P);
-  return at(static_cast<int>(std::lround(column)), static_cast<int>(std::lround(row)));
+  return frame_index(static_cast<int>(std::lround(column)), static_cast<int>(std::lround(row)));
 }
 
 TEST(Fluoroscope, CountsPulsesAndDoseWhileThePedalIsDown) {
@@ -183,7 +183,7 @@ TEST(Fluoroscope, HasTheNoiseOfItsPhotons) {
     request.dose_mode = mode;
     const FluoroscopyFrame frame = run(fluoroscope, request, 0.0);
     const Beam beam = Beam::make(tube_spectrum(frame.exposure.tube).value()).value();
-    const double pixel_mm = request.arm.field_mm / kPixels;
+    const double pixel_mm = request.arm.field_mm / kFramePixels;
     const double photons = at_distance(beam.detected_photons(), request.arm.source_detector_mm) * frame.exposure.mas *
                            pixel_mm * pixel_mm * params.grid_primary;
     // Blur by three weights in each direction keeps this share of the variance.
@@ -191,10 +191,10 @@ TEST(Fluoroscope, HasTheNoiseOfItsPhotons) {
     const double kept = std::pow((1 - v) * (1 - v) + 0.5 * v * v, 2);
     double sum = 0.0;
     int count = 0;
-    for (int row = 2; row < kPixels - 2; ++row)
-      for (int column = 2; column < kPixels - 2; ++column, ++count) {
-        const double clean = fluoroscope.clean_signal()[at(column, row)];
-        sum += std::pow(fluoroscope.signal()[at(column, row)] - clean, 2) / clean;
+    for (int row = 2; row < kFramePixels - 2; ++row)
+      for (int column = 2; column < kFramePixels - 2; ++column, ++count) {
+        const double clean = fluoroscope.clean_signal()[frame_index(column, row)];
+        sum += std::pow(fluoroscope.signal()[frame_index(column, row)] - clean, 2) / clean;
       }
     const double expected = kept * beam.noise_factor() / photons;
     EXPECT_NEAR(sum / count, expected, 0.05 * expected);
@@ -214,7 +214,7 @@ TEST(Fluoroscope, SubtractsAllButTheContrastAgent) {
     double sum = 0.0;
     const std::size_t middle = pixel_of(request.arm, p_P);
     for (int v = -1; v <= 1; ++v)
-      for (int u = -1; u <= 1; ++u) sum += frame.gray.pixels[middle + static_cast<std::size_t>(v * kPixels + u)];
+      for (int u = -1; u <= 1; ++u) sum += frame.gray.pixels[middle + static_cast<std::size_t>(v * kFramePixels + u)];
     return sum / 9.0;
   };
   const double duct_gray = mean({25, 0, 0}), water = mean({-40, 0, 0}), bone = mean({0, 40, 10});
@@ -249,11 +249,11 @@ TEST(Fluoroscope, IsDarkBehindTheShuttersAndNeedsLessAreaProduct) {
   const FluoroscopyFrame wide = run(open, request, 0.0);
   request.arm.collimation = {0.5, 0.5};
   const FluoroscopyFrame frame = run(narrow, request, 0.0);
-  EXPECT_EQ(frame.gray.pixels[at(5, 64)], 0);
-  EXPECT_EQ(frame.gray.pixels[at(64, 120)], 0);
+  EXPECT_EQ(frame.gray.pixels[frame_index(5, 64)], 0);
+  EXPECT_EQ(frame.gray.pixels[frame_index(64, 120)], 0);
   EXPECT_NEAR(frame.dose.area_product_mgy_cm2 / frame.dose.air_kerma_mgy,
               0.25 * wide.dose.area_product_mgy_cm2 / wide.dose.air_kerma_mgy, 1e-9);
-  EXPECT_LT(narrow.clean_signal()[at(64, 40)], open.clean_signal()[at(64, 40)]) << "less scatter";
+  EXPECT_LT(narrow.clean_signal()[frame_index(64, 40)], open.clean_signal()[frame_index(64, 40)]) << "less scatter";
 }
 
 TEST(Fluoroscope, IsTheSameOnAnyNumberOfThreads) {

@@ -10,7 +10,7 @@
 namespace trocar::xray {
 namespace {
 
-FluoroscopyRequest small_request() {
+FluoroscopyRequest pedal_request() {
   FluoroscopyRequest request;
   request.arm.pixels = 64;
   request.is_pedal_down = true;
@@ -35,7 +35,7 @@ TEST(LiveFluoroscope, ShowsTheNewestOfManyRequests) {
   LiveFluoroscope fluoroscope;
   EXPECT_EQ(fluoroscope.newest(), nullptr);
   fluoroscope.open(testing::trunk());
-  FluoroscopyRequest request = small_request();
+  FluoroscopyRequest request = pedal_request();
   for (int n = 0; n < 200; ++n) {
     request.arm.lao_deg = 0.1 * n;
     fluoroscope.request(request);
@@ -49,7 +49,7 @@ TEST(LiveFluoroscope, ShowsTheNewestOfManyRequests) {
 TEST(LiveFluoroscope, HoldsTheLastImageWithThePedalUp) {
   LiveFluoroscope fluoroscope;
   fluoroscope.open(testing::trunk());
-  FluoroscopyRequest request = small_request();
+  FluoroscopyRequest request = pedal_request();
   ASSERT_NE(ask_until(fluoroscope, request, [](const FluoroscopyFrame& made) { return made.dose.pulses > 3; }),
             nullptr);
   request.is_pedal_down = false;
@@ -70,7 +70,7 @@ TEST(LiveFluoroscope, HoldsTheLastImageWithThePedalUp) {
 TEST(LiveFluoroscope, BeginsAnewWithAnotherPatient) {
   LiveFluoroscope fluoroscope;
   fluoroscope.open(testing::trunk());
-  FluoroscopyRequest request = small_request();
+  FluoroscopyRequest request = pedal_request();
   ASSERT_NE(ask_until(fluoroscope, request, [](const FluoroscopyFrame& made) { return made.dose.pulses > 5; }),
             nullptr);
   fluoroscope.open(testing::trunk());
@@ -83,14 +83,14 @@ TEST(LiveFluoroscope, BeginsAnewWithAnotherPatient) {
 TEST(LiveFluoroscope, NamesAnImpossibleCArmAndGoesOn) {
   LiveFluoroscope fluoroscope;
   fluoroscope.open(testing::trunk());
-  FluoroscopyRequest bad = small_request();
+  FluoroscopyRequest bad = pedal_request();
   bad.arm.source_isocentre_mm = 100.0;
   for (int n = 0; n < 10000 && !fluoroscope.error(); ++n) {
     fluoroscope.request(bad);
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   EXPECT_TRUE(fluoroscope.error().has_value());
-  FluoroscopyRequest request = small_request();
+  FluoroscopyRequest request = pedal_request();
   EXPECT_NE(ask_until(fluoroscope, request, [](const FluoroscopyFrame&) { return true; }), nullptr);
   EXPECT_FALSE(fluoroscope.error().has_value());
 }

@@ -13,7 +13,7 @@ constexpr double kFinestStep = 0.4;  ///< Voxels; finer samples of a linear inte
 constexpr double kNearSource = 0.5;  ///< Slices nearer to the source are left out.
 constexpr double kTinyDirection = 1e-9;
 
-struct Interval {
+struct PlaneExtent {
   double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
   void add(double value) noexcept {
     low = std::min(low, value);
@@ -61,7 +61,7 @@ struct Samples {
 /// Samples on the plane along one axis: what both the tile and the volume's shadow cover, as fine as the pixels are.
 Samples samples_along(const IndexRays& rays, const SlabPlan& plan, int axis, double size,
                       double largest_step) noexcept {
-  Interval tile, shadow;
+  PlaneExtent tile, shadow;
   double step = largest_step;
   for (const auto& [column, row] : places_of(plan.tile)) {
     const double here = on_plane(rays, plan, axis, column, row);

@@ -52,7 +52,7 @@ View look(const volume::CtGrid& ct, const CArm& arm) {
   return view;
 }
 
-double chord_cm(const XrayRays& rays, int column, int row) {
+double cylinder_chord_cm(const XrayRays& rays, int column, int row) {
   const Vec3 d = (rays.pixel_P(column, row) - rays.source_P).normalized();
   const double across = std::hypot(d.x(), d.y());
   const double offset = (rays.source_P.x() * d.y() - rays.source_P.y() * d.x()) / across;
@@ -68,7 +68,7 @@ TEST(XrayVolume, ProjectsAWaterCylinderAsComputed) {
     tube.signals(view.masses, poly);
     for (int row = 16; row < 48; row += 4)  // the cylinder's ends are farther away
       for (int column = 10; column < 55; ++column) {
-        const double water = chord_cm(view.rays, column, row);
+        const double water = cylinder_chord_cm(view.rays, column, row);
         if (water < 6.0) continue;
         EXPECT_NEAR(view.mass(Basis::kWater, column, row), water, 0.01 * water) << lao;
         const auto n = static_cast<std::size_t>(row * 65 + column);
@@ -141,7 +141,7 @@ TEST(XrayVolume, ProjectsATubeOfIodineInWater) {
   project(iodine, view.rays, {}, view.masses.of(Basis::kIodine));
   const double expected = 0.3 * 1.0;
   EXPECT_NEAR(view.mass(Basis::kIodine, 32, 32), expected, 0.01 * expected);
-  const double water = chord_cm(view.rays, 32, 32);
+  const double water = cylinder_chord_cm(view.rays, 32, 32);
   std::vector<float> signal(view.masses.size());
   Beam::make(*one_energy(60.0))->signals(view.masses, signal);
   const double mono = 0.2059 * water + 7.577 * expected;

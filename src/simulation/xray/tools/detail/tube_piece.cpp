@@ -10,7 +10,7 @@ namespace trocar::xray::detail {
 namespace {
 
 constexpr double kCm_per_mm = 0.1;
-constexpr double kSteep = 0.2;        ///< Sine of the angle of ray and axis below which rays are cast one by one.
+constexpr double kSteepSine = 0.2;    ///< Sine of the angle of ray and axis below which rays are cast one by one.
 constexpr double kWidening = 0.1;     ///< Greatest growth of the radius within half a chord, relative to the chord.
 constexpr double kLeastDepth = 0.02;  ///< Distance of a piece from the source, relative to the detector's.
 constexpr double kLeastPiece_mm = 1e-6;
@@ -107,23 +107,23 @@ double strip_chord_mm(const TubePiece& piece, const XrayRays& rays, const RayAtA
 }
 
 /// Interval of a ray, mm from the source.
-struct Interval {
+struct RayInterval {
   double from = 0.0, to = 0.0;
   double length() const { return std::max(0.0, to - from); }
 };
 
 /// Keeps the part where value + slope * t >= 0.
-void clip(Interval& t, double value, double slope) {
+void clip(RayInterval& t, double value, double slope) {
   if (slope > 0.0) t.from = std::max(t.from, -value / slope);
   if (slope < 0.0) t.to = std::min(t.to, -value / slope);
   if (slope == 0.0 && value < 0.0) t.to = t.from;
 }
 
 /// Length of the part of t where a t² + b t + c <= 0.
-double length_within(const Interval& t, double a, double b, double c) {
+double length_within(const RayInterval& t, double a, double b, double c) {
   if (t.length() == 0.0) return 0.0;
   if (std::abs(a) < 1e-14) {
-    Interval part = t;
+    RayInterval part = t;
     clip(part, -c, -b);
     return part.length();
   }
@@ -131,7 +131,7 @@ double length_within(const Interval& t, double a, double b, double c) {
   if (discriminant <= 0.0) return a > 0.0 ? 0.0 : t.length();
   const double root = std::sqrt(discriminant);
   const double low = (-b - std::copysign(root, a)) / (2.0 * a), high = (-b + std::copysign(root, a)) / (2.0 * a);
-  const Interval between{std::max(t.from, low), std::min(t.to, high)};
+  const RayInterval between{std::max(t.from, low), std::min(t.to, high)};
   return a > 0.0 ? between.length() : t.length() - between.length();
 }
 
@@ -140,7 +140,7 @@ double ray_chord_mm(const TubePiece& piece, const Vec3& source_P, const Vec3& di
   const Vec3 w = source_P - piece.a_P;
   const double place = w.dot(piece.axis_P), along = direction_P.dot(piece.axis_P);
   const Vec3 offset = w - place * piece.axis_P, across = direction_P - along * piece.axis_P;
-  Interval t{0.0, 1e6};
+  RayInterval t{0.0, 1e6};
   clip(t, place + offset.dot(piece.start_tilt), along + across.dot(piece.start_tilt));
   clip(t, piece.length_mm - place - offset.dot(piece.end_tilt), -along - across.dot(piece.end_tilt));
   const double slope = (piece.radius_b_mm - piece.radius_a_mm) / piece.length_mm;
@@ -280,7 +280,7 @@ void add_piece(const TubePiece& piece, const PixelRows& pixels) {
   const double sine = middle.cross(piece.axis_P).norm(), cosine = std::abs(middle.dot(piece.axis_P));
   const double widening = std::abs(piece.radius_b_mm - piece.radius_a_mm) / piece.length_mm * cosine / sine;
   const bool has_shadow = std::hypot(reach.b.column - reach.a.column, reach.b.row - reach.a.row) > 1e-6;
-  if (sine < kSteep || widening > kWidening || !has_shadow)
+  if (sine < kSteepSine || widening > kWidening || !has_shadow)
     add_ray_by_ray(piece, reach, pixels);
   else
     StripPainter(piece, reach, pixels).paint();

@@ -6,6 +6,8 @@
 
 namespace trocar::xray::detail {
 
+inline constexpr double kMg_per_g = 1000.0;  ///< Iodine is given in mg/ml, densities are in g/cm³.
+
 /// A straight piece of a tube: a truncated cone around an axis, cut by a plane at each end.
 struct TubePiece {
   Vec3 a_P = Vec3::Zero();         ///< Start of the axis.

@@ -27,7 +27,7 @@ DuctTree forked() {
   return tree;
 }
 
-double length_mm(const std::vector<Vec3>& points_P) {
+double way_length_mm(const std::vector<Vec3>& points_P) {
   double sum_mm = 0.0;
   for (std::size_t n = 1; n < points_P.size(); ++n) sum_mm += (points_P[n] - points_P[n - 1]).norm();
   return sum_mm;
@@ -38,7 +38,7 @@ const Vec3 kUpX = Vec3(-0.3, -1.0, 0.0).normalized();
 
 TEST(GuideWire, GoesTheStraightestWayToTheSideToWhichTheNeedlePoints) {
   const auto way_P = guide_wire_way(forked(), {15, 0, 0}, kDownX, 40.0);
-  EXPECT_NEAR(length_mm(way_P), 40.0, 1e-9);
+  EXPECT_NEAR(way_length_mm(way_P), 40.0, 1e-9);
   EXPECT_NEAR((way_P.back() - Vec3(55, 0, 0)).norm(), 0.0, 1e-9);
   const auto back_P = guide_wire_way(forked(), {15, 0, 0}, kUpX, 12.0);
   EXPECT_NEAR((back_P.back() - Vec3(3, 0, 0)).norm(), 0.0, 1e-9);
@@ -46,14 +46,14 @@ TEST(GuideWire, GoesTheStraightestWayToTheSideToWhichTheNeedlePoints) {
 
 TEST(GuideWire, TurnsFromABranchIntoTheTrunkOrTheOtherBranch) {
   const auto way_P = guide_wire_way(forked(), {30, 20, 0}, Vec3(0, -1, 0), 35.0);  // towards the fork
-  EXPECT_NEAR(length_mm(way_P), 35.0, 1e-9);
+  EXPECT_NEAR(way_length_mm(way_P), 35.0, 1e-9);
   EXPECT_NEAR(way_P.back().y(), 0.0, 1e-9) << "both ways on are equally bent";
   EXPECT_NEAR(std::abs(way_P.back().x() - 30.0), 15.0, 1e-9);
 }
 
 TEST(GuideWire, EndsWhereTheDuctEndsOrIsClosed) {
-  EXPECT_NEAR(length_mm(guide_wire_way(forked(), {15, 0, 0}, kDownX, 200.0)), 45.0, 1e-9);
-  EXPECT_NEAR(length_mm(guide_wire_way(forked(), {15, 0, 0}, kUpX, 200.0)), 15.0, 1e-9);
+  EXPECT_NEAR(way_length_mm(guide_wire_way(forked(), {15, 0, 0}, kDownX, 200.0)), 45.0, 1e-9);
+  EXPECT_NEAR(way_length_mm(guide_wire_way(forked(), {15, 0, 0}, kUpX, 200.0)), 15.0, 1e-9);
   DuctTree tree = forked();
   tree.cells[1].is_closed = true;  // between 0 and 10 mm, and the rest
   EXPECT_NEAR(guide_wire_way(tree, {25, 0, 0}, kUpX, 200.0).back().x(), 10.0, 1e-9);

@@ -12,14 +12,14 @@
 namespace trocar::xray {
 namespace {
 
-ToolKind wire() {
+ToolKind guide_wire() {
   auto kind = load_tool_kind(data_dir() / "xray_tools.toml", "guide-wire");
   EXPECT_TRUE(kind) << kind.error().text();
   return kind.value_or(ToolKind{});
 }
 
 TEST(ToolTable, ListsWireCatheterAndMarker) {
-  EXPECT_NEAR(wire().outer_diameter_mm, 0.035 * 25.4, 1e-9);
+  EXPECT_NEAR(guide_wire().outer_diameter_mm, 0.035 * 25.4, 1e-9);
   const auto catheter = load_tool_kind(data_dir() / "xray_tools.toml", "catheter");
   ASSERT_TRUE(catheter) << catheter.error().text();
   EXPECT_NEAR(catheter->outer_diameter_mm, 8.0 / 3.0, 1e-3);
@@ -41,7 +41,7 @@ TEST(ToolTable, RefusesABoreAsWideAsTheTool) {
 
 TEST(ToolTable, CurvePassesThroughItsPoints) {
   const std::array points{Vec3(0, 0, 0), Vec3(10, 0, 0), Vec3(10, 10, 0)};
-  const ToolShape shape = tool_along(wire(), points);
+  const ToolShape shape = tool_along(guide_wire(), points);
   for (const Vec3& point : points) {
     double nearest_mm = HUGE_VAL;
     for (const Vec3& p_P : shape.line_P) nearest_mm = std::min(nearest_mm, (p_P - point).norm());
@@ -55,12 +55,12 @@ TEST(ToolTable, CurvePassesThroughItsPoints) {
   }
   EXPECT_GT(length_mm, 20.0);  // longer than the polygon that it rounds
   EXPECT_LT(length_mm, 23.0);
-  const ToolShape straight = tool_along(wire(), std::array{Vec3(1, 2, 3), Vec3(1, 2, 13)});
+  const ToolShape straight = tool_along(guide_wire(), std::array{Vec3(1, 2, 3), Vec3(1, 2, 13)});
   for (const Vec3& p_P : straight.line_P) EXPECT_NEAR(std::hypot(p_P.x() - 1.0, p_P.y() - 2.0), 0.0, 1e-12);
 }
 
 TEST(ToolTable, OnePointIsABead) {
-  const ToolShape bead = tool_along(wire(), std::array{Vec3(1, 2, 3)});
+  const ToolShape bead = tool_along(guide_wire(), std::array{Vec3(1, 2, 3)});
   ASSERT_EQ(bead.line_P.size(), 2U);
   EXPECT_NEAR((bead.line_P[1] - bead.line_P[0]).norm(), 2.0 * bead.outer_radius_mm, 1e-12);
   EXPECT_EQ(0.5 * (bead.line_P[0] + bead.line_P[1]), Vec3(1, 2, 3));
