@@ -12,7 +12,6 @@
 #include <vtkXMLPolyDataWriter.h>
 
 #include <array>
-#include <cctype>
 #include <cstdint>
 #include <cstring>
 #include <exception>
@@ -20,6 +19,8 @@
 #include <string>
 #include <string_view>
 
+#include "core/ascii.h"
+#include "core/decimal_point.h"
 #include "core/files/atomic_file.h"
 #include "core/files/input_file.h"
 #include "core/parse_number.h"
@@ -30,14 +31,14 @@ namespace trocar::io {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* kExportAgain = "export the surface again";
+constexpr const char* kExportSurfaceAgain = "export the surface again";
 constexpr std::uint64_t kMaxVertices = 50'000'000;  ///< Assumed: far above any organ surface.
 
 enum class MeshFormat { kVtp, kStl };
 
 Result<MeshFormat> find_mesh_format(const fs::path& path) {
   std::string ending = path.extension().string();
-  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  for (char& c : ending) c = ascii::to_lower(c);
   if (ending == ".vtp") return MeshFormat::kVtp;
   if (ending == ".stl") return MeshFormat::kStl;
   return fail("not a surface file of a known kind", path.string(), "give a .vtp or .stl file");
@@ -46,26 +47,26 @@ Result<MeshFormat> find_mesh_format(const fs::path& path) {
 /// VTK's STL reader trusts the triangle count of a binary file.
 Status check_stl(const std::string& bytes, const std::string& where) {
   if (bytes.starts_with("solid") && bytes.find("facet") != std::string::npos) return {};
-  if (bytes.size() < 84) return fail("not an STL surface", where, kExportAgain);
+  if (bytes.size() < 84) return fail("not an STL surface", where, kExportSurfaceAgain);
   std::uint32_t count = 0;
   std::memcpy(&count, bytes.data() + 80, sizeof count);
   if (bytes.size() >= 84 + std::uint64_t{50} * count) return {};
-  return fail("the surface ends before its last triangle", where, kExportAgain);
+  return fail("the surface ends before its last triangle", where, kExportSurfaceAgain);
 }
 
 /// VTK allocates the declared size of a .vtp file. Each point and polygon takes more than one byte, even compressed.
 Status check_vtp(std::string_view text, const std::string& where) {
   if (text.find("<VTKFile") == std::string_view::npos || text.find("PolyData") == std::string_view::npos)
-    return fail("not a VTK surface", where, kExportAgain);
+    return fail("not a VTK surface", where, kExportSurfaceAgain);
   if (text.find("<!DOCTYPE") != std::string_view::npos || text.find("<!ENTITY") != std::string_view::npos)
-    return fail("has a document type of its own", where, kExportAgain);
+    return fail("has a document type of its own", where, kExportSurfaceAgain);
   constexpr std::string_view kNumberOf = "NumberOf";
   for (auto at = text.find(kNumberOf); at != std::string_view::npos; at = text.find(kNumberOf, at + 1)) {
     const auto quote = text.find_first_of("\"'<>", at);
     if (quote == std::string_view::npos || text[quote] == '<' || text[quote] == '>') continue;
     const auto count = find_leading_number<std::uint64_t>(text.substr(quote + 1));
     if (count && (count->value > kMaxVertices || count->value > text.size() * detail::kMaxDeflateRatio))
-      return fail("the surface declares more points than its file can hold", where, kExportAgain);
+      return fail("the surface declares more points than its file can hold", where, kExportSurfaceAgain);
   }
   return {};
 }
@@ -91,7 +92,7 @@ Result<TriangleMesh> mesh_of(vtkPolyData& data, const std::string& where) {
   mesh.vertices.reserve(static_cast<std::size_t>(data.GetNumberOfPoints()));
   for (vtkIdType n = 0; n < data.GetNumberOfPoints(); ++n) {
     const Vec3f vertex = Vec3(data.GetPoint(n)).cast<float>();
-    if (!vertex.allFinite()) return fail("the surface has a vertex that is not a number", where, kExportAgain);
+    if (!vertex.allFinite()) return fail("the surface has a vertex that is not a number", where, kExportSurfaceAgain);
     mesh.vertices.push_back(vertex);
   }
   vtkNew<vtkIdList> cell;
@@ -99,18 +100,18 @@ Result<TriangleMesh> mesh_of(vtkPolyData& data, const std::string& where) {
   for (polygons.InitTraversal(); polygons.GetNextCell(cell) != 0;) {
     for (vtkIdType n = 0; n < cell->GetNumberOfIds(); ++n)
       if (cell->GetId(n) < 0 || cell->GetId(n) >= data.GetNumberOfPoints())
-        return fail("the surface names a vertex that it does not have", where, kExportAgain);
+        return fail("the surface names a vertex that it does not have", where, kExportSurfaceAgain);
     // A planar polygon becomes a fan of triangles.
     const auto id = [&](vtkIdType n) { return static_cast<std::uint32_t>(cell->GetId(n)); };
     for (vtkIdType n = 2; n < cell->GetNumberOfIds(); ++n) mesh.triangles.push_back({id(0), id(n - 1), id(n)});
   }
-  if (mesh.triangles.empty()) return fail("the surface has no triangle", where, kExportAgain);
+  if (mesh.triangles.empty()) return fail("the surface has no triangle", where, kExportSurfaceAgain);
   return mesh;
 }
 
-Result<TriangleMesh> read_throwing(const InputFile& file, const std::string& bytes, MeshFormat format) {
+Result<TriangleMesh> read_mesh_throwing(const InputFile& file, const std::string& bytes, MeshFormat format) {
   const std::string where = file.path().string();
-  const auto bad = [&] { return fail("damaged or not a surface", where, kExportAgain); };
+  const auto bad = [&] { return fail("damaged or not a surface", where, kExportSurfaceAgain); };
   switch (format) {
     case MeshFormat::kStl: {
       vtkNew<vtkSTLReader> reader;
@@ -153,7 +154,7 @@ bool run_writer(Writer& writer, vtkPolyData& data, const fs::path& path) {
   return writer.Write() == 1 && writer.GetErrorCode() == 0;
 }
 
-bool write_throwing(const TriangleMesh& mesh, const fs::path& path, MeshFormat format) {
+bool write_mesh_throwing(const TriangleMesh& mesh, const fs::path& path, MeshFormat format) {
   const vtkNew<vtkPolyData> data = poly_data_of(mesh);
   switch (format) {
     case MeshFormat::kStl: {
@@ -174,25 +175,27 @@ bool write_throwing(const TriangleMesh& mesh, const fs::path& path, MeshFormat f
 
 Result<TriangleMesh> read_mesh(const fs::path& path, const fs::path& inside) {
   vtkObject::SetGlobalWarningDisplay(0);
+  const DecimalPoint decimal_point;
   TROCAR_TRY(const MeshFormat format, find_mesh_format(path));
   TROCAR_TRY(const InputFile file, InputFile::open(path, FileKind::kMesh, inside));
   TROCAR_TRY(const std::string bytes, file.read_all());
   TROCAR_TRY_STATUS(check_bytes(bytes, format, path.string()));
   try {
-    return read_throwing(file, bytes, format);
+    return read_mesh_throwing(file, bytes, format);
   } catch (const std::bad_alloc&) {
     return fail("not enough memory to read the surface", path.string(), "close other programs");
   } catch (const std::exception&) {
-    return fail("damaged or not a surface", path.string(), kExportAgain);
+    return fail("damaged or not a surface", path.string(), kExportSurfaceAgain);
   }
 }
 
 Status write_mesh(const TriangleMesh& mesh_P, const fs::path& path) {
   vtkObject::SetGlobalWarningDisplay(0);
+  const DecimalPoint decimal_point;
   TROCAR_TRY(const MeshFormat format, find_mesh_format(path));
   return write_atomically(path, [&](const fs::path& temporary) -> Status {
     try {
-      if (write_throwing(mesh_P, temporary, format)) return {};
+      if (write_mesh_throwing(mesh_P, temporary, format)) return {};
     } catch (const std::exception&) {
       // Reported below.
     }

@@ -11,15 +11,8 @@ namespace trocar::dicom {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::size_t kPreamble = 128;
 constexpr std::size_t kMaxFragments = 1 << 16;
 constexpr std::size_t kMaxItems = 1 << 20;
-constexpr std::uint32_t kTransferSyntax = tag(0x0002, 0x0010);
-
-// DICOM PS3.5, annex A.
-constexpr std::string_view kImplicitLittle = "1.2.840.10008.1.2";
-constexpr std::string_view kExplicitBig = "1.2.840.10008.1.2.2";
-constexpr std::string_view kDeflated = "1.2.840.10008.1.2.1.99";
 
 /// The first bytes identify a DICOM file: with its prefix, or starting directly with group 2 or 8.
 bool may_be_dicom(const InputFile& input) {

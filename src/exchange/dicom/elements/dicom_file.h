@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -12,6 +13,8 @@
 #include "dicom/elements/element_walk.h"
 
 namespace trocar::dicom {
+
+inline constexpr std::size_t kPreamble = 128;  ///< Bytes of a file in front of the mark "DICM" (PS3.10, 7.1).
 
 /// The elements of a data set, or of one item of a sequence: a view of the bytes of a DicomFile, valid as long as it.
 /// Nothing is stored, so that memory does not grow with the number of elements: every call walks over the elements.

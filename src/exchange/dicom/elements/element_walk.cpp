@@ -6,19 +6,6 @@
 namespace trocar::dicom {
 namespace {
 
-constexpr std::uint32_t kUndefined = 0xffffffff;
-constexpr int kMaxDepth = 32;
-constexpr std::uint32_t kItem = tag(0xfffe, 0xe000);
-constexpr std::uint32_t kItemEnd = tag(0xfffe, 0xe00d);
-constexpr std::uint32_t kSequenceEnd = tag(0xfffe, 0xe0dd);
-
-/// Value representations with a 32-bit length.
-bool is_long(std::string_view vr) noexcept {
-  constexpr std::array<std::string_view, 13> kLong = {"OB", "OW", "OF", "OD", "OL", "OV", "SQ",
-                                                      "UC", "UR", "UT", "UN", "SV", "UV"};
-  return std::find(kLong.begin(), kLong.end(), vr) != kLong.end();
-}
-
 bool is_capital(char letter) noexcept {
   return letter >= 'A' && letter <= 'Z';
 }
@@ -27,6 +14,12 @@ bool is_capital(char letter) noexcept {
 
 bool is_value_representation(std::string_view text) noexcept {
   return text.size() == 2 && is_capital(text[0]) && is_capital(text[1]);
+}
+
+bool has_long_length(std::string_view vr) noexcept {
+  constexpr std::array<std::string_view, 13> kLong = {"OB", "OW", "OF", "OD", "OL", "OV", "SQ",
+                                                      "UC", "UR", "UT", "UN", "SV", "UV"};
+  return std::find(kLong.begin(), kLong.end(), vr) != kLong.end();
 }
 
 std::uint32_t ElementWalk::peek(std::size_t offset, int count) const noexcept {
@@ -49,7 +42,7 @@ bool ElementWalk::read_start(Start& start, bool is_implicit) noexcept {
   }
   const std::string_view vr = bytes_.substr(at_ + 4, 2);
   if (!is_value_representation(vr)) return false;
-  if (!is_long(vr)) {
+  if (!has_long_length(vr)) {
     start.length = peek(6, 2);
     at_ += 8;
     return true;
@@ -69,7 +62,7 @@ bool ElementWalk::skip(std::size_t length) noexcept {
 }
 
 bool ElementWalk::skip_sequence(bool is_implicit, int depth) noexcept {
-  if (depth > kMaxDepth) return false;
+  if (depth > kMostNestedSequences) return false;
   while (true) {
     const std::size_t end = at_;
     Start item;
@@ -79,7 +72,7 @@ bool ElementWalk::skip_sequence(bool is_implicit, int depth) noexcept {
       return true;
     }
     if (item.tag != kItem) return false;
-    if (!(item.length == kUndefined ? skip_item(is_implicit, depth) : skip(item.length))) return false;
+    if (!(item.length == kUndefinedLength ? skip_item(is_implicit, depth) : skip(item.length))) return false;
   }
 }
 
@@ -92,8 +85,9 @@ bool ElementWalk::skip_item(bool is_implicit, int depth) noexcept {
       value_end_ = end;
       return true;
     }
-    const bool is_done = element.length == kUndefined ? skip_sequence(is_implicit || element.is_unknown, depth + 1)
-                                                      : skip(element.length);
+    const bool is_done = element.length == kUndefinedLength
+                             ? skip_sequence(is_implicit || element.is_unknown, depth + 1)
+                             : skip(element.length);
     if (!is_done) return false;
   }
 }
@@ -104,7 +98,7 @@ ElementWalk::Step ElementWalk::next(Element& element) noexcept {
   if (!read_start(start, encoding_.is_implicit)) return Step::kDamaged;
   element.tag = start.tag;
   element.begin = at_;
-  element.has_undefined_length = start.length == kUndefined;
+  element.has_undefined_length = start.length == kUndefinedLength;
   element.inside = encoding_;
   if (start.is_unknown) element.inside.is_implicit = true;
   const bool is_done = element.has_undefined_length ? skip_sequence(element.inside.is_implicit, 0) : skip(start.length);
@@ -121,7 +115,7 @@ ElementWalk::Step ElementWalk::next_item(Element& item) noexcept {
   if (start.tag != kItem) return Step::kDamaged;
   item.tag = start.tag;
   item.begin = at_;
-  item.has_undefined_length = start.length == kUndefined;
+  item.has_undefined_length = start.length == kUndefinedLength;
   item.inside = encoding_;
   if (!(item.has_undefined_length ? skip_item(encoding_.is_implicit, 0) : skip(start.length))) return Step::kDamaged;
   item.size = item.has_undefined_length ? value_end_ - item.begin : start.length;

@@ -11,7 +11,20 @@ constexpr std::uint32_t tag(std::uint16_t group, std::uint16_t element) {
   return (static_cast<std::uint32_t>(group) << 16) | element;
 }
 
+inline constexpr std::uint32_t kTransferSyntax = tag(0x0002, 0x0010);
+inline constexpr std::uint32_t kCharacterSet = tag(0x0008, 0x0005);
+inline constexpr std::uint32_t kSeriesUid = tag(0x0020, 0x000e);
 inline constexpr std::uint32_t kPixelData = tag(0x7fe0, 0x0010);
+inline constexpr std::uint32_t kItem = tag(0xfffe, 0xe000);
+inline constexpr std::uint32_t kItemEnd = tag(0xfffe, 0xe00d);
+inline constexpr std::uint32_t kSequenceEnd = tag(0xfffe, 0xe0dd);
+inline constexpr std::uint32_t kUndefinedLength = 0xffffffff;
+inline constexpr int kMostNestedSequences = 32;
+
+// UIDs of transfer syntaxes (PS3.5, annex A).
+inline constexpr const char* kImplicitLittle = "1.2.840.10008.1.2";
+inline constexpr const char* kExplicitBig = "1.2.840.10008.1.2.2";
+inline constexpr const char* kDeflated = "1.2.840.10008.1.2.1.99";
 
 /// How elements are written (PS3.5, annex A).
 struct Encoding {
@@ -69,5 +82,7 @@ class ElementWalk {
 
 /// True for two capital letters, as every value representation has them.
 bool is_value_representation(std::string_view text) noexcept;
+/// True for value representations with a 32-bit length (PS3.5, 7.1.2).
+bool has_long_length(std::string_view vr) noexcept;
 
 }  // namespace trocar::dicom

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "config/json.h"
+#include "core/ascii.h"
 #include "core/fail_at.h"
 #include "core/parse_number.h"
 #include "dicom/pacs/detail/http_client.h"
@@ -21,10 +22,6 @@ constexpr std::size_t kMaxJson = std::size_t{8} << 20;
 constexpr int kOk = 200;
 constexpr int kNoContent = 204;
 constexpr int kNotFound = 404;
-
-std::string place_of(const DicomWebOptions& server) {
-  return fmt::format("{}://{}:{}{}", server.is_secure ? "https" : "http", server.host, server.port, server.path);
-}
 
 Status check_status(int status, const DicomWebOptions& server) {
   const std::string place = place_of(server);
@@ -51,8 +48,7 @@ std::string url_encoded(std::string_view text) {
   std::string result;
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
-    const bool is_plain =
-        (byte < 0x80 && std::isalnum(byte) != 0) || std::string_view("-._~").find(c) != std::string_view::npos;
+    const bool is_plain = ascii::is_letter_or_digit(c) || std::string_view("-._~").find(c) != std::string_view::npos;
     result += is_plain ? std::string(1, c) : fmt::format("%{:02X}", byte);
   }
   return result;

@@ -26,7 +26,6 @@ constexpr const char* kGetModel = "1.2.840.10008.5.1.4.1.2.2.3";
 constexpr std::size_t kMaxAnswers = 10'000;
 constexpr std::size_t kMaxAnswerBytes = std::size_t{1} << 20;
 constexpr std::size_t kMaxSenders = 16;
-constexpr int kPoll_ms = 200;
 constexpr std::chrono::milliseconds kGrace{500};
 
 // Status codes (PS3.4, C.4.1.1.4 and C.4.2.1.5).
@@ -37,10 +36,6 @@ constexpr std::uint16_t kUnknownDestination = 0xa801;
 /// Encodings of queries.
 std::vector<ContextOffer> offer(const char* model) {
   return {{model, {"1.2.840.10008.1.2.1", "1.2.840.10008.1.2"}}};
-}
-
-std::string place_of(const DimseOptions& options) {
-  return fmt::format("{}@{}:{}", options.called_title, options.host, options.port);
 }
 
 class DimseSource final : public PacsSource {
@@ -270,14 +265,14 @@ Result<DimseOptions> parse_pacs_address(const std::string& text) {
   const std::size_t at = text.find('@');
   const std::size_t colon = text.rfind(':');
   const bool has_parts = at != std::string::npos && colon != std::string::npos && at + 1 < colon;
-  const auto port = has_parts ? parse_number<int>(std::string_view(text).substr(colon + 1)) : std::nullopt;
+  const int port = has_parts ? parse_number<int>(std::string_view(text).substr(colon + 1)).value_or(0) : 0;
   DimseOptions options;
-  if (port) options.host = text.substr(at + 1, colon - at - 1);
+  if (has_parts) options.host = text.substr(at + 1, colon - at - 1);
   const bool is_host = std::ranges::all_of(options.host, [](char c) { return c > ' ' && c < 0x7f && c != ':'; });
-  if (!port || *port < 1 || *port > 65535 || !is_host || options.host.size() > kMaxHost)
+  if (port < 1 || port > 65535 || !is_host || options.host.size() > kMaxHost)
     return fail_usage(fmt::format("\"{}\" is no address of a PACS", text), "--pacs",
                       "write AET@HOST:PORT, for example ORTHANC@192.168.1.5:4242");
-  options.port = *port;
+  options.port = port;
   options.called_title = text.substr(0, at);
   TROCAR_TRY_STATUS(check_ae_title(options.called_title, "--pacs"));
   return options;

@@ -10,6 +10,9 @@
 
 namespace trocar::dicom {
 
+/// Interval of polling whether a retrieval was cancelled while it waits for the PACS.
+inline constexpr int kPoll_ms = 200;
+
 /// A study as the PACS lists it. Texts come from the PACS: printable, in UTF-8.
 struct StudyEntry {
   std::string uid;

@@ -14,7 +14,6 @@ namespace {
 
 constexpr std::uint32_t kSopClass = tag(0x0008, 0x0016);
 constexpr std::uint32_t kReferencedSeries = tag(0x0008, 0x1115);
-constexpr std::uint32_t kSeriesUid = tag(0x0020, 0x000e);
 constexpr std::uint32_t kFrameOfReference = tag(0x0020, 0x0052);
 constexpr std::uint32_t kReferencedFrames = tag(0x3006, 0x0010);
 constexpr std::uint32_t kReferencedStudies = tag(0x3006, 0x0012);

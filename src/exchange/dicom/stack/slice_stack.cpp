@@ -12,9 +12,8 @@ namespace trocar::dicom {
 namespace {
 
 constexpr double kMaxTilt_deg = 0.3;
-constexpr double kMostTilt_deg = 45.0;   ///< Gantries tilt up to 30 degrees; more is another defect.
-constexpr std::size_t kMostPlanes = 16;  ///< For each slice.
-constexpr double kFarthest_mm = 1e5;
+constexpr double kMostTilt_deg = 45.0;           ///< Gantries tilt up to 30 degrees; more is another defect.
+constexpr std::size_t kMostPlanesPerSlice = 16;  ///< For each slice.
 constexpr double kSmallestPixel_mm = 1e-3;
 constexpr double kLargestPixel_mm = 1e3;
 /// Stored positions may be rounded (0.625 mm steps as 0.6, 1.3, 1.9): maximum deviation of a slice from an even step.
@@ -215,7 +214,7 @@ std::optional<StackPlan> plan_stack(const SliceStack& stack, double single_step_
 
   if (plan.is_uneven) {
     const double planes = std::max(std::round(extent_mm / even_step_mm(stack)), 1.0) + 1.0;
-    if (planes > static_cast<double>(kMostPlanes * count)) return std::nullopt;
+    if (planes > static_cast<double>(kMostPlanesPerSlice * count)) return std::nullopt;
     plan.geometry.size[2] = static_cast<std::int64_t>(planes);
     plan.geometry.spacing_mm.z() = extent_mm / (planes - 1.0);
     plan.layers = even_layers(stack, plan.geometry.size[2], plan.geometry.spacing_mm.z());

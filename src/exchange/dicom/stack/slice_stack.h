@@ -12,6 +12,8 @@
 
 namespace trocar::dicom {
 
+inline constexpr double kFarthest_mm = 1e5;  ///< Largest coordinate in a file: no scanner is larger than 100 m.
+
 /// Parallel slices of one size, at the places that their files state. Frame P, mm.
 struct SliceStack {
   Vec3 row_P = Vec3::UnitX();     ///< Along a row (growing column); unit vector.

@@ -30,7 +30,7 @@ void register_transforms() {
 }
 
 /// May throw exceptions of ITK.
-Result<AffineMap> read_throwing(const InputFile& file) {
+Result<AffineMap> read_transform_throwing(const InputFile& file) {
   const std::string where = file.path().string();
   register_transforms();
   const auto reader = itk::TransformFileReaderTemplate<double>::New();
@@ -96,7 +96,7 @@ Spline::Pointer spline_of(const SplineNumbers& numbers) {
 }
 
 /// May throw exceptions of ITK.
-void write_throwing(const itk::Object* transform, const fs::path& path) {
+void write_transform_throwing(const itk::Object* transform, const fs::path& path) {
   const auto writer = itk::TransformFileWriterTemplate<double>::New();
   writer->SetFileName(path.string());
   writer->SetTransformIO(itk::TxtTransformIOTemplate<double>::New());
@@ -111,9 +111,9 @@ Status unwritten(const fs::path& path) {
 }  // namespace
 
 Result<AffineMap> read_transform_with_itk(const InputFile& file) {
-  silence_itk();
+  const ItkCall call;
   try {
-    return read_throwing(file);
+    return read_transform_throwing(file);
   } catch (const std::exception&) {
     return fail("not an ITK transform file", file.path().string(),
                 "save a linear transform as .tfm, for example in 3D Slicer");
@@ -121,9 +121,9 @@ Result<AffineMap> read_transform_with_itk(const InputFile& file) {
 }
 
 Status write_transform_with_itk(const AffineMap& map, const fs::path& path) {
-  silence_itk();
+  const ItkCall call;
   try {
-    write_throwing(affine_of(map), path);
+    write_transform_throwing(affine_of(map), path);
     return {};
   } catch (const std::exception&) {
     return unwritten(path);
@@ -131,12 +131,12 @@ Status write_transform_with_itk(const AffineMap& map, const fs::path& path) {
 }
 
 Status write_composite_with_itk(const AffineMap& map, const SplineNumbers& spline, const fs::path& path) {
-  silence_itk();
+  const ItkCall call;
   try {
     const auto composite = Composite::New();
     composite->AddTransform(affine_of(map));
     composite->AddTransform(spline_of(spline));  // the last one is applied first
-    write_throwing(composite, path);
+    write_transform_throwing(composite, path);
     return {};
   } catch (const std::exception&) {
     return unwritten(path);
@@ -145,7 +145,7 @@ Status write_composite_with_itk(const AffineMap& map, const SplineNumbers& splin
 
 Result<std::vector<std::array<double, 3>>> map_points_with_itk(const fs::path& path,
                                                                std::span<const std::array<double, 3>> points) {
-  silence_itk();
+  const ItkCall call;
   try {
     register_transforms();
     const auto reader = itk::TransformFileReaderTemplate<double>::New();

@@ -1,7 +1,7 @@
 #include <algorithm>
-#include <cctype>
 #include <string>
 
+#include "core/ascii.h"
 #include "core/files/atomic_file.h"
 #include "io/image/detail/image_fields.h"
 #include "io/image/detail/volume_file.h"
@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 namespace {
 
 Status check_fields(const ImageFields& fields, const fs::path& path) {
-  const auto is_key = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.'; };
+  const auto is_key = [](char c) { return ascii::is_letter_or_digit(c) || c == '_' || c == '-' || c == '.'; };
   const auto is_text = [](unsigned char c) { return c >= 0x20 && c != 0x7F && c != '\\'; };
   if (!fields.empty() && path.extension() != ".nrrd")
     return fail_usage("only .nrrd files carry fields", path.string(), "let the name end in .nrrd");

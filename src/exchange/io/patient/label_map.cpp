@@ -4,17 +4,16 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 
 #include "anatomy/build_patient.h"
 #include "config/toml.h"
+#include "core/ascii.h"
 #include "core/files/data_dir.h"
 #include "core/parse_number.h"
 
 namespace trocar::io {
 namespace {
 
-constexpr int kMaxLabel = 255;
 constexpr std::string_view kTotalSegmentator = "totalsegmentator";
 constexpr std::string_view kTask = "totalsegmentator:";
 constexpr std::string_view kRest = "*";
@@ -55,7 +54,7 @@ std::string structure_name(std::string_view meaning) {
   for (const char letter : meaning) {
     const bool is_separator = letter == ' ' || letter == '-' || letter == ',';
     if (is_separator && !name.empty() && name.back() == '_') continue;
-    name += is_separator ? '_' : static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+    name += is_separator ? '_' : ascii::to_lower(letter);
   }
   return name;
 }

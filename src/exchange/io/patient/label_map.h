@@ -11,6 +11,8 @@
 
 namespace trocar::io {
 
+inline constexpr int kMaxLabel = 255;  ///< Largest number of a label in a file.
+
 /// A structure of a segmentation that describes itself (DICOM SEG, RT structure set, .seg.nrrd).
 struct DescribedSegment {
   std::string name;                   ///< Its label.

@@ -18,7 +18,6 @@ namespace trocar::io {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr int kMaxLabel = 255;
 constexpr std::size_t kFilesAtOnce = 8;  ///< Masks unpacked at a time: limits the memory.
 
 enum class Place { kNamedByUser, kInFolder };

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
-#include <cctype>
 #include <set>
 
+#include "core/ascii.h"
 #include "core/check.h"
 #include "core/files/atomic_file.h"
 #include "core/parallel.h"
@@ -24,7 +24,7 @@ namespace {
 std::string mesh_file_name(const std::string& name, std::set<std::string>& taken) {
   std::string stem;
   for (const char c : name) {
-    const bool is_plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
+    const bool is_plain = ascii::is_letter_or_digit(c) || c == '_' || c == '-';
     stem += is_plain ? c : '_';
   }
   if (stem.empty()) stem = "surface";

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
+#include "core/ascii.h"
 #include "core/files/atomic_file.h"
 #include "io/image/detail/header_payload.h"
 #include "io/sequence/detail/sequence_header.h"
@@ -28,7 +28,7 @@ void turn_pictures(const detail::SequenceHeader& header, ultrasound::TrackedSequ
 }
 
 bool is_transform_name(const std::string& name) {
-  const auto is_word = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
+  const auto is_word = [](char c) { return ascii::is_letter_or_digit(c) || c == '_'; };
   return name.find("To", 1) != std::string::npos && std::all_of(name.begin(), name.end(), is_word);
 }
 

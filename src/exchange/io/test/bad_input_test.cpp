@@ -12,7 +12,7 @@ namespace {
 
 using testing::test_data;
 
-std::vector<std::filesystem::path> files_below(const std::filesystem::path& folder) {
+std::vector<std::filesystem::path> regular_files_below(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
     if (entry.is_regular_file()) files.push_back(entry.path());
@@ -52,7 +52,7 @@ class BadInput : public ::testing::Test {
 };
 
 TEST_F(BadInput, EveryFileIsReadOrRefusedInOneLine) {
-  for (const auto& file : files_below(data_)) {
+  for (const auto& file : regular_files_below(data_)) {
     SCOPED_TRACE(file.string());
     expect_volume_or_one_line(read_ct(file), file.filename().string());
     (void)read_labels(file);
@@ -64,7 +64,7 @@ TEST_F(BadInput, EveryFileIsReadOrRefusedInOneLine) {
 }
 
 TEST_F(BadInput, EveryDicomFileIsReadOrRefusedAsAFolder) {
-  for (const auto& file : files_below(data_ / "dicom")) {
+  for (const auto& file : regular_files_below(data_ / "dicom")) {
     SCOPED_TRACE(file.string());
     const auto alone = folder_ / file.stem().string();
     std::filesystem::create_directory(alone);
@@ -76,7 +76,7 @@ TEST_F(BadInput, EveryDicomFileIsReadOrRefusedAsAFolder) {
 
 TEST_F(BadInput, EveryDicomFileDoubledIsRefused) {
   // Two slices in one place or none: whatever the header says, its pixels are never trusted with a place.
-  for (const auto& file : files_below(data_ / "dicom")) {
+  for (const auto& file : regular_files_below(data_ / "dicom")) {
     SCOPED_TRACE(file.string());
     const auto twice = folder_ / (file.stem().string() + "_twice");
     std::filesystem::create_directory(twice);
@@ -96,7 +96,7 @@ TEST_F(BadInput, DeflatedDicomIsRefusedByNameNotLeftOut) {
 }
 
 TEST_F(BadInput, EveryFileCutInHalfIsRefusedOrRead) {
-  for (const auto& file : files_below(data_)) {
+  for (const auto& file : regular_files_below(data_)) {
     SCOPED_TRACE(file.string());
     const std::string whole = testing::read_bytes(file);
     const auto cut = folder_ / ("cut_" + file.filename().string());

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include "core/files/temporary_folder.h"
 #include "core/testing/test_data.h"
@@ -29,6 +31,13 @@ inline volume::GridGeometry oblique_geometry() {
   g.origin_P = {-31.25, 12.5, 104.0};
   g.R_PV = (Eigen::AngleAxisd(0.4, Vec3::UnitZ()) * Eigen::AngleAxisd(-0.3, Vec3::UnitX())).toRotationMatrix();
   return g;
+}
+
+/// 0, 1, 2 …
+inline std::vector<std::int16_t> numbers(std::size_t count) {
+  std::vector<std::int16_t> values(count);
+  for (std::size_t n = 0; n < count; ++n) values[n] = static_cast<std::int16_t>(n);
+  return values;
 }
 
 /// A grid whose voxels all differ: detects a swapped or mirrored axis.

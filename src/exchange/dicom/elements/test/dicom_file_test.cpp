@@ -8,9 +8,9 @@
 namespace trocar::dicom {
 namespace {
 
-using testing::dicom_element;
-using testing::dicom_sequence;
-using testing::Length;
+using trocar::testing::dicom_element;
+using trocar::testing::dicom_sequence;
+using trocar::testing::Length;
 
 class Elements : public ::testing::Test {
  protected:
@@ -29,8 +29,8 @@ TEST_F(Elements, OfNestedSequencesAreFound) {
         return dicom_sequence(0x0040, 0xa043, {dicom_element(0x0008, 0x0104, "LO", text)}, inner);
       };
       const auto file =
-          read(testing::dicom_file(dicom_sequence(0x0062, 0x0002, {item("one"), item("two "), ""}, outer) +
-                                   dicom_element(0x0070, 0x0080, "CS", "AFTER")));
+          read(trocar::testing::dicom_file(dicom_sequence(0x0062, 0x0002, {item("one"), item("two "), ""}, outer) +
+                                           dicom_element(0x0070, 0x0080, "CS", "AFTER")));
       ASSERT_TRUE(file && *file);
       const DicomItem root = (*file)->root();
       EXPECT_EQ(root.text(tag(0x0070, 0x0080)), "AFTER");
@@ -48,7 +48,7 @@ TEST_F(Elements, AreNestedAtMostThirtyTwoDeep) {
   const auto nested = [](int depth) {
     std::string elements = dicom_element(0x0008, 0x0104, "LO", "deep");
     for (int n = 0; n < depth; ++n) elements = dicom_sequence(0x0040, 0xa730, {elements}, Length::kUndefined);
-    return testing::dicom_file(elements);
+    return trocar::testing::dicom_file(elements);
   };
   EXPECT_TRUE(read(nested(30)));
   EXPECT_FALSE(read(nested(40)));
@@ -56,16 +56,16 @@ TEST_F(Elements, AreNestedAtMostThirtyTwoDeep) {
 }
 
 TEST_F(Elements, WithoutEndAreRefusedWithoutMemory) {
-  const std::string head = testing::dicom_file(dicom_element(0x0008, 0x0060, "CS", "SEG"));
+  const std::string head = trocar::testing::dicom_file(dicom_element(0x0008, 0x0060, "CS", "SEG"));
   for (const std::uint32_t length : {0xfffffffeU, 0x7fffffffU, 1000U}) {
-    const std::string sequence = testing::little_endian(0x0062, 2) + testing::little_endian(0x0002, 2) + "SQ" +
-                                 std::string(2, '\0') + testing::little_endian(length, 4);
+    const std::string sequence = trocar::testing::little_endian(0x0062, 2) + trocar::testing::little_endian(0x0002, 2) +
+                                 "SQ" + std::string(2, '\0') + trocar::testing::little_endian(length, 4);
     EXPECT_FALSE(read(head + sequence + "few"));
   }
 }
 
 TEST_F(Elements, ADamagedSequenceOfKnownLengthIsAnError) {
-  const auto file = read(testing::dicom_file(dicom_element(0x0062, 0x0002, "SQ", "no items")));
+  const auto file = read(trocar::testing::dicom_file(dicom_element(0x0062, 0x0002, "SQ", "no items")));
   ASSERT_TRUE(file && *file);  // the elements around it are sound
   EXPECT_FALSE((*file)->root().items(tag(0x0062, 0x0002)));
   EXPECT_FALSE((*file)->root().first_item(tag(0x0062, 0x0002)));
@@ -73,7 +73,7 @@ TEST_F(Elements, ADamagedSequenceOfKnownLengthIsAnError) {
 
 TEST_F(Elements, DecimalsAreAllNumbersOrNone) {
   const auto decimals = [&](const std::string& text) {
-    const auto file = read(testing::dicom_file(dicom_element(0x0020, 0x0032, "DS", text)));
+    const auto file = read(trocar::testing::dicom_file(dicom_element(0x0020, 0x0032, "DS", text)));
     return (*file)->root().decimals(tag(0x0020, 0x0032));
   };
   EXPECT_EQ(decimals("1\\-2.5\\+3e1 "), (std::vector<double>{1, -2.5, 30}));

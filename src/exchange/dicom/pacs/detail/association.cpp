@@ -25,13 +25,8 @@ namespace {
 constexpr long kMaxPdu = 1 << 17;                          ///< Bytes of one protocol unit that we accept.
 constexpr std::size_t kMaxCommand = std::size_t{1} << 16;  ///< A command holds a few UIDs and numbers.
 constexpr std::array<unsigned char, 10> kAbort{7, 0, 0, 0, 0, 4, 0, 0, 0, 0};  ///< A-ABORT (PS3.8, 9.3.8).
-constexpr int kPoll_ms = 200;
 constexpr int kGreeting_s = 5;  ///< A caller that says nothing must not hold up the others.
 constexpr const char* kVerification = "1.2.840.10008.1.1";
-
-std::string place_of(const DimseOptions& options) {
-  return fmt::format("{}@{}:{}", options.called_title, options.host, options.port);
-}
 
 tl::unexpected<Error> refused(const DimseOptions& options, T_ASC_Parameters* params) {
   T_ASC_RejectParameters reject{};
@@ -112,6 +107,10 @@ void answer_context(T_ASC_Parameters* params, const T_ASC_PresentationContext& c
 }
 
 }  // namespace
+
+std::string place_of(const DimseOptions& options) {
+  return fmt::format("{}@{}:{}", options.called_title, options.host, options.port);
+}
 
 Result<Network> Network::open(int listen_port, int timeout_s) {
   configure_dcmtk(timeout_s);

@@ -15,6 +15,9 @@
 
 namespace trocar::dicom::detail {
 
+/// Address of the PACS, for messages.
+std::string place_of(const DimseOptions& options);
+
 /// A DICOM network endpoint of DCMTK: for our own connections, and with a port for those of the PACS.
 class Network {
  public:

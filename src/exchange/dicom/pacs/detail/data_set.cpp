@@ -3,20 +3,16 @@
 #include <algorithm>
 
 #include "core/parse_number.h"
+#include "dicom/elements/dicom_file.h"
 #include "dicom/pacs/detail/pseudonyms.h"
 
 namespace trocar::dicom::detail {
 namespace {
 
-constexpr std::string_view kImplicitLittle = "1.2.840.10008.1.2";
-constexpr std::string_view kExplicitBig = "1.2.840.10008.1.2.2";
-constexpr std::string_view kDeflated = "1.2.840.10008.1.2.1.99";
-constexpr std::size_t kPreamble = 128;
 constexpr std::string_view kMark = "DICM";
-constexpr std::size_t kMaxText = 4096;  ///< A longer value is no name and no UID.
+constexpr std::size_t kMaxNameBytes = 4096;  ///< A longer value is no name and no UID.
 constexpr const char* kAskAdministrator = "ask the administrator of the PACS to check this study";
 
-constexpr std::uint32_t kTransferSyntax = tag(0x0002, 0x0010);
 constexpr std::uint32_t kImageType = tag(0x0008, 0x0008);
 constexpr std::uint32_t kBurnedIn = tag(0x0028, 0x0301);
 
@@ -30,6 +26,13 @@ tl::unexpected<Error> damaged() {
 }
 
 }  // namespace
+
+std::string lower_case(std::string_view text) {
+  std::string result(text);
+  for (char& c : result)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return result;
+}
 
 std::string_view trimmed(std::string_view value) noexcept {
   constexpr std::string_view kPadding(" \0", 2);
@@ -52,7 +55,7 @@ Result<DataSet> find_data_set(std::string_view object, const std::string& transf
     ElementWalk meta(object, Encoding{}, kPreamble + kMark.size());
     Element element;
     while (meta.next_group() == 0x0002 && meta.next(element) == ElementWalk::Step::kElement)
-      if (element.tag == kTransferSyntax && element.size <= kMaxText)
+      if (element.tag == kTransferSyntax && element.size <= kMaxNameBytes)
         found.transfer_syntax = trimmed(object.substr(element.begin, element.size));
     found.bytes = object.substr(meta.at());
   }
@@ -80,7 +83,7 @@ Result<ObjectSummary> summarize(const DataSet& data_set) {
   Element element;
   auto step = ElementWalk::Step::kEnd;
   while ((step = walk.next(element)) == ElementWalk::Step::kElement)
-    if (element.size <= kMaxText) keep(element.tag, trimmed(data_set.bytes.substr(element.begin, element.size)));
+    if (element.size <= kMaxNameBytes) keep(element.tag, trimmed(data_set.bytes.substr(element.begin, element.size)));
   if (step == ElementWalk::Step::kDamaged) return damaged();
   for (const std::string* uid : {&summary.sop_class, &summary.sop_instance, &summary.study, &summary.series})
     if (!is_uid(*uid)) return damaged();

@@ -9,7 +9,7 @@ namespace {
 
 constexpr Encoding kImplicit{.is_big_endian = false, .is_implicit = true};  // PS3.7, 6.3.1
 constexpr std::uint32_t kGroupLength = tag(0x0000, 0x0000);
-constexpr std::uint32_t kSopClass = tag(0x0000, 0x0002);
+constexpr std::uint32_t kAffectedSopClass = tag(0x0000, 0x0002);
 constexpr std::uint32_t kField = tag(0x0000, 0x0100);
 constexpr std::uint32_t kMessageId = tag(0x0000, 0x0110);
 constexpr std::uint32_t kRespondedId = tag(0x0000, 0x0120);
@@ -36,7 +36,7 @@ std::optional<std::uint16_t> parse_us(std::string_view value) {
 
 void take(DimseCommand& command, std::uint32_t tag, std::string_view value) {
   const auto number = parse_us(value);
-  if (tag == kSopClass) command.sop_class = trimmed(value);
+  if (tag == kAffectedSopClass) command.sop_class = trimmed(value);
   if (tag == kSopInstance) command.sop_instance = trimmed(value);
   if (tag == kField && number) command.field = static_cast<DimseField>(*number);
   if (tag == kMessageId) command.message_id = number;
@@ -56,7 +56,7 @@ std::string encode(const DimseCommand& command) {
   const auto add = [&](std::uint32_t tag, std::string_view vr, std::string_view value) {
     body += encoded_element(tag, vr, value, kImplicit);
   };
-  if (!command.sop_class.empty()) add(kSopClass, "UI", command.sop_class);
+  if (!command.sop_class.empty()) add(kAffectedSopClass, "UI", command.sop_class);
   add(kField, "US", us(static_cast<std::uint16_t>(command.field)));
   if (command.message_id) add(kMessageId, "US", us(*command.message_id));
   if (command.responded_id) add(kRespondedId, "US", us(*command.responded_id));

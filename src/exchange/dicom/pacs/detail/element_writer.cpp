@@ -1,16 +1,9 @@
 #include "dicom/pacs/detail/element_writer.h"
 
-#include <algorithm>
-#include <array>
-
 namespace trocar::dicom::detail {
 namespace {
 
-constexpr std::uint32_t kUndefined = 0xffffffff;
 constexpr std::size_t kMaxShort = 0xffff;  ///< Largest length of 16 bits.
-constexpr std::uint32_t kItem = tag(0xfffe, 0xe000);
-constexpr std::uint32_t kItemEnd = tag(0xfffe, 0xe00d);
-constexpr std::uint32_t kSequenceEnd = tag(0xfffe, 0xe0dd);
 /// UID of this program as an implementation (PS3.7, D.3.3.2): a UUID below 2.25.
 constexpr std::string_view kImplementation = "2.25.177272789833921463255117745380525039137";
 
@@ -28,19 +21,12 @@ std::string delimiter(std::uint32_t tag, std::uint32_t length, Encoding encoding
   return tag_bytes(tag, encoding.is_big_endian) + number(length, 4, encoding.is_big_endian);
 }
 
-/// Value representations with a 32-bit length (PS3.5, 7.1.2).
-bool is_long(std::string_view vr) {
-  constexpr auto kLong =
-      std::to_array<std::string_view>({"OB", "OW", "OF", "OD", "OL", "OV", "SQ", "UC", "UR", "UT", "UN", "SV", "UV"});
-  return std::ranges::find(kLong, vr) != kLong.end();
-}
-
 /// Tag, value representation and length.
 std::string start(std::uint32_t tag, std::string_view vr, std::uint32_t length, Encoding encoding) {
   std::string bytes = tag_bytes(tag, encoding.is_big_endian);
   if (encoding.is_implicit) return bytes + number(length, 4, encoding.is_big_endian);
   bytes += vr;
-  if (!is_long(vr)) return bytes + number(length, 2, encoding.is_big_endian);
+  if (!has_long_length(vr)) return bytes + number(length, 2, encoding.is_big_endian);
   return bytes + std::string(2, '\0') + number(length, 4, encoding.is_big_endian);
 }
 
@@ -61,18 +47,18 @@ std::string encoded_element(std::uint32_t tag, std::string_view vr, std::string_
 void ElementWriter::element(std::uint32_t tag, std::string_view vr, std::string_view value, Encoding encoding) {
   const std::string_view padding = padding_of(vr, value);
   const std::size_t size = value.size() + padding.size();
-  if (!encoding.is_implicit && !is_long(vr) && size > kMaxShort) return;
+  if (!encoding.is_implicit && !has_long_length(vr) && size > kMaxShort) return;
   out_.write(start(tag, vr, static_cast<std::uint32_t>(size), encoding));
   out_.write(value);
   out_.write(padding);
 }
 
 void ElementWriter::begin_sequence(std::uint32_t tag, std::string_view vr, Encoding encoding) {
-  out_.write(start(tag, vr, kUndefined, encoding));
+  out_.write(start(tag, vr, kUndefinedLength, encoding));
 }
 
 void ElementWriter::begin_item(Encoding encoding) {
-  out_.write(delimiter(kItem, kUndefined, encoding));
+  out_.write(delimiter(kItem, kUndefinedLength, encoding));
 }
 
 void ElementWriter::end_item(Encoding encoding) {

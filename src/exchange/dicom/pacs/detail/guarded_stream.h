@@ -5,15 +5,17 @@
 #include <httplib.h>
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace trocar::dicom::detail {
 
 /// The reason for which a stream ended the transfer.
-enum class StreamTrouble { kNone, kStalled, kCancelled, kEndlessHeader };
+enum class StreamTrouble { kNone, kStalled, kCancelled, kEndlessHeader, kNotTls, kUntrusted };
 
 struct StreamLimits {
+  std::string tls_host;  ///< Name on the server's certificate; empty: not encrypted.
   int timeout_s = 30;
   std::function<bool()> is_cancelled;  ///< May be empty.
 };
@@ -22,8 +24,11 @@ struct StreamLimits {
 /// of any length into memory.
 class GuardedStream final : public httplib::Stream {
  public:
-  /// `ssl` null: not encrypted.
-  GuardedStream(socket_t socket, SSL* ssl, const StreamLimits& limits, StreamTrouble& trouble);
+  GuardedStream(socket_t socket, const StreamLimits& limits, StreamTrouble& trouble);
+
+  /// With TLS: agrees on a key with the server and checks its certificate against those of the system. False:
+  /// `trouble`.
+  bool shake_hands();
 
   bool is_readable() const override { return true; }
   bool is_writable() const override { return true; }
@@ -38,7 +43,8 @@ class GuardedStream final : public httplib::Stream {
   ssize_t fill();
 
   socket_t socket_;
-  SSL* ssl_;
+  std::unique_ptr<SSL_CTX, void (*)(SSL_CTX*)> authorities_{nullptr, SSL_CTX_free};
+  std::unique_ptr<SSL, void (*)(SSL*)> ssl_{nullptr, SSL_free};
   const StreamLimits& limits_;
   StreamTrouble& trouble_;
   std::vector<char> buffer_;
@@ -46,19 +52,18 @@ class GuardedStream final : public httplib::Stream {
   std::size_t single_reads_ = 0;     ///< Reads of one byte in a row: the library reads lines byte by byte.
 };
 
-/// One of the library's clients, on a GuardedStream.
-template <class Client>
-class GuardedClient final : public Client {
+/// The library's client on a GuardedStream. TLS is ours: the library's own client for it cannot be derived from in
+/// newer versions. So the library takes the connection for a plain one, and the request has to name the host.
+class GuardedClient final : public httplib::ClientImpl {
  public:
   GuardedClient(const std::string& host, int port, StreamLimits limits)
-      : Client(host, port), limits_(std::move(limits)) {}
+      : ClientImpl(host, port), limits_(std::move(limits)) {}
   StreamTrouble trouble() const noexcept { return trouble_; }
 
  private:
-  bool process_socket(const typename Client::Socket& socket,
-                      std::function<bool(httplib::Stream& stream)> callback) override {
-    GuardedStream stream(socket.sock, socket.ssl, limits_, trouble_);
-    return callback(stream);
+  bool process_socket(const Socket& socket, std::function<bool(httplib::Stream& stream)> callback) override {
+    GuardedStream stream(socket.sock, limits_, trouble_);
+    return stream.shake_hands() && callback(stream);
   }
 
   StreamLimits limits_;

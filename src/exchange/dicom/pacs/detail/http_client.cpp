@@ -8,10 +8,6 @@
 namespace trocar::dicom::detail {
 namespace {
 
-std::string place_of(const DicomWebOptions& server) {
-  return fmt::format("{}://{}:{}{}", server.is_secure ? "https" : "http", server.host, server.port, server.path);
-}
-
 tl::unexpected<Error> explain(httplib::Error error, StreamTrouble trouble, const DicomWebOptions& server) {
   const std::string place = place_of(server);
   if (trouble == StreamTrouble::kCancelled) return fail("cancelled", place, "fetch it again");
@@ -20,20 +16,28 @@ tl::unexpected<Error> explain(httplib::Error error, StreamTrouble trouble, const
                 "try again, or allow more time with --timeout");
   if (trouble == StreamTrouble::kEndlessHeader)
     return fail("the server sends an endless header", place, "check that this is the address of its DICOMweb service");
-  if (error == httplib::Error::Connection)
-    return fail("cannot connect to the server", place, "check address and port, and that the server is running");
-  if (error == httplib::Error::SSLServerVerification || error == httplib::Error::SSLLoadingCerts)
+  if (trouble == StreamTrouble::kUntrusted)
     return fail("the certificate of the server is not trusted", place,
                 "install the certificate of your hospital, or name it in the environment variable SSL_CERT_FILE");
-  if (error == httplib::Error::SSLConnection)
+  if (trouble == StreamTrouble::kNotTls)
     return fail("the server does not answer in TLS", place, "check the port, or use http://");
+  if (error == httplib::Error::Connection)
+    return fail("cannot connect to the server", place, "check address and port, and that the server is running");
   return fail("the server has closed the connection in the middle, or sent no HTTP", place,
               "try again, and check that this is the address of its DICOMweb service");
 }
 
-template <class Client>
-Status get_by(const DicomWebOptions& server, const HttpRequest& request) {
-  GuardedClient<Client> client(server.host, server.port, {server.timeout_s, request.is_cancelled});
+/// As a browser names it: without the usual port.
+std::string host_header(const DicomWebOptions& server) {
+  constexpr int kHttp = 80, kHttps = 443;
+  const std::string host = server.host.find(':') == std::string::npos ? server.host : fmt::format("[{}]", server.host);
+  return server.port == (server.is_secure ? kHttps : kHttp) ? host : fmt::format("{}:{}", host, server.port);
+}
+
+/// May throw exceptions of the library.
+Status get_throwing(const DicomWebOptions& server, const HttpRequest& request) {
+  GuardedClient client(server.host, server.port,
+                       {server.is_secure ? server.host : "", server.timeout_s, request.is_cancelled});
   client.set_connection_timeout(server.timeout_s);
   client.set_read_timeout(server.timeout_s);
   client.set_write_timeout(server.timeout_s);
@@ -42,7 +46,8 @@ Status get_by(const DicomWebOptions& server, const HttpRequest& request) {
   client.set_follow_location(false);
   if (!server.user.empty()) client.set_basic_auth(server.user, server.password);
   Status status;
-  const httplib::Headers headers = {{"Accept", request.accept}, {"Accept-Encoding", "identity"}};
+  const httplib::Headers headers = {
+      {"Host", host_header(server)}, {"Accept", request.accept}, {"Accept-Encoding", "identity"}};
   const auto on_answer = [&](const httplib::Response& answer) {
     status = request.on_answer(answer.status, answer.get_header_value("Content-Type"));
     return status.has_value();
@@ -59,11 +64,14 @@ Status get_by(const DicomWebOptions& server, const HttpRequest& request) {
 
 }  // namespace
 
+std::string place_of(const DicomWebOptions& server) {
+  return fmt::format("{}://{}:{}{}", server.is_secure ? "https" : "http", server.host, server.port, server.path);
+}
+
 Status http_get(const DicomWebOptions& server, const HttpRequest& request) {
   const BrokenPipesIgnored guard;
   try {
-    return server.is_secure ? get_by<httplib::SSLClient>(server, request)
-                            : get_by<httplib::ClientImpl>(server, request);
+    return get_throwing(server, request);
   } catch (const std::exception&) {  // of the library, for headers that it cannot parse
     return explain(httplib::Error::Read, StreamTrouble::kNone, server);
   }

@@ -9,6 +9,9 @@
 
 namespace trocar::dicom::detail {
 
+/// Address of the service, for messages.
+std::string place_of(const DicomWebOptions& server);
+
 struct HttpRequest {
   std::string path;    ///< Encoded, with the path of the service.
   std::string accept;  ///< Media type.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "dicom/pacs/detail/data_set.h"
+
 namespace trocar::dicom::detail {
 namespace {
 
@@ -52,13 +54,6 @@ bool is_separator(char c) {
   return byte < 0x80 && (byte < '0' || (byte > '9' && byte < 'A') || (byte > 'Z' && byte < 'a') || byte > 'z');
 }
 
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return result;
-}
-
 /// Calls `use` with each word of the text and the separators in front of it.
 template <class Use>
 void for_each_word(std::string_view text, Use use) {
@@ -80,14 +75,14 @@ bool is_identifying(std::uint32_t tag) noexcept {
 
 void IdentityWords::add(std::string_view value) {
   for_each_word(value, [&](std::string_view, std::string_view word) {
-    if (word.size() >= kShortest && words_.size() < kMaxWords) words_.insert(lower(word));
+    if (word.size() >= kShortest && words_.size() < kMaxWords) words_.insert(lower_case(word));
   });
 }
 
 bool IdentityWords::is_removed(std::string_view word, bool keeps_anatomy) const {
   const auto digits = std::ranges::count_if(word, [](char c) { return c >= '0' && c <= '9'; });
   if (digits >= kDigitsOfANumber) return true;
-  const std::string small = lower(word);
+  const std::string small = lower_case(word);
   if (keeps_anatomy && std::ranges::find(kAnatomy, small) != kAnatomy.end()) return false;
   return std::ranges::any_of(words_, [&](const std::string& known) {
     if (keeps_anatomy && std::ranges::find(kAnatomy, known) != kAnatomy.end()) return false;

@@ -2,19 +2,14 @@
 
 #include <algorithm>
 
+#include "dicom/pacs/detail/data_set.h"
+
 namespace trocar::dicom::detail {
 namespace {
 
-constexpr std::size_t kMaxHeader = std::size_t{1} << 14;
+constexpr std::size_t kMaxPartHeader = std::size_t{1} << 14;
 constexpr std::size_t kMaxBoundary = 70;  // RFC 2046
 constexpr std::string_view kEndOfHeader = "\r\n\r\n";
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  std::ranges::transform(result, result.begin(),
-                         [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return result;
-}
 
 tl::unexpected<Error> not_multipart() {
   return fail("the answer of the server is no series of DICOM objects", "WADO-RS",
@@ -24,7 +19,7 @@ tl::unexpected<Error> not_multipart() {
 }  // namespace
 
 std::optional<std::string> multipart_boundary(std::string_view content_type) {
-  const std::string small = lower(content_type);
+  const std::string small = lower_case(content_type);
   const std::size_t at = small.find("boundary=");
   if (!small.starts_with("multipart/related") || at == std::string::npos) return std::nullopt;
   std::string_view value = content_type.substr(at + std::string_view("boundary=").size());
@@ -84,7 +79,7 @@ Result<bool> MultipartReader::step() {
   }
   if (state_ == State::kHeader) {  // from the end of the boundary's line to an empty line
     const std::size_t end = buffer_.find(kEndOfHeader);
-    if (std::min(end, buffer_.size()) > kMaxHeader) return not_multipart();
+    if (std::min(end, buffer_.size()) > kMaxPartHeader) return not_multipart();
     if (end == std::string::npos) return false;
     buffer_.erase(0, end + kEndOfHeader.size());
     state_ = State::kPart;

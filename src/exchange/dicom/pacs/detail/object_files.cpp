@@ -16,7 +16,7 @@ namespace trocar::dicom::detail {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::size_t kBufferBytes = std::size_t{1} << 18;
+constexpr std::size_t kWriteBufferBytes = std::size_t{1} << 18;
 constexpr mode_t kForOwner = 0600;
 constexpr mode_t kForAll = 0666;  // less the user's mask
 
@@ -115,7 +115,7 @@ Result<std::string_view> ReceivedFile::bytes() {
 OutputFile::OutputFile(fs::path path)
     : path_(std::move(path)), descriptor_(::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kForAll)) {
   if (descriptor_ < 0) error_ = errno;
-  buffer_.reserve(kBufferBytes);
+  buffer_.reserve(kWriteBufferBytes);
 }
 
 OutputFile::~OutputFile() {
@@ -127,11 +127,11 @@ void OutputFile::flush(std::string_view bytes) {
 }
 
 void OutputFile::write(std::string_view bytes) {
-  if (buffer_.size() + bytes.size() > kBufferBytes) {
+  if (buffer_.size() + bytes.size() > kWriteBufferBytes) {
     flush(buffer_);
     buffer_.clear();
   }
-  if (bytes.size() > kBufferBytes)
+  if (bytes.size() > kWriteBufferBytes)
     flush(bytes);
   else
     buffer_ += bytes;

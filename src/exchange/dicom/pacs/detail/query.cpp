@@ -18,10 +18,9 @@ constexpr std::uint32_t kStudyDescription = tag(0x0008, 0x1030);
 constexpr std::uint32_t kSeriesDescription = tag(0x0008, 0x103e);
 constexpr std::uint32_t kPatientId = tag(0x0010, 0x0020);
 constexpr std::uint32_t kStudyUid = tag(0x0020, 0x000d);
-constexpr std::uint32_t kSeriesUid = tag(0x0020, 0x000e);
 constexpr std::uint32_t kSeriesNumber = tag(0x0020, 0x0011);
 constexpr std::uint32_t kImagesOfSeries = tag(0x0020, 0x1209);
-constexpr std::size_t kMaxText = 1024;
+constexpr std::size_t kMaxAnswerText = 1024;
 
 /// Texts of the top level by tag.
 std::map<std::uint32_t, std::string> texts_of(const DataSet& answer) {
@@ -29,7 +28,7 @@ std::map<std::uint32_t, std::string> texts_of(const DataSet& answer) {
   ElementWalk walk(answer.bytes, answer.encoding);
   Element element;
   while (walk.next(element) == ElementWalk::Step::kElement)
-    if (element.size <= kMaxText && texts.size() < kMaxText)
+    if (element.size <= kMaxAnswerText && texts.size() < kMaxAnswerText)
       texts[element.tag] = trimmed(answer.bytes.substr(element.begin, element.size));
   return texts;
 }

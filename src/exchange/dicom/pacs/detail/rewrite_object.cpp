@@ -10,7 +10,6 @@
 namespace trocar::dicom::detail {
 namespace {
 
-constexpr int kMaxDepth = 32;
 constexpr std::string_view kNameless = "unnamed";
 
 /// An element that every anonymised object has, whatever the original held.
@@ -81,7 +80,7 @@ class Anonymiser {
 
   bool copy_sequence(const Element& sequence, std::string_view vr, std::string_view value, Encoding encoding,
                      int depth) {
-    if (depth >= kMaxDepth) return false;
+    if (depth >= kMostNestedSequences) return false;
     if (!encoding.is_implicit && vr != "SQ" && vr != "UN") return true;  // no sequence: removed
     writer_.begin_sequence(sequence.tag, vr, encoding);
     ElementWalk walk(value, sequence.inside);

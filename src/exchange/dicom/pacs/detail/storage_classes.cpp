@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <array>
 
+#include "dicom/elements/element_walk.h"
+
 namespace trocar::dicom::detail {
 namespace {
 
 constexpr std::string_view kStorage = "1.2.840.10008.5.1.4.1.1.";
 constexpr const char* kExplicitLittle = "1.2.840.10008.1.2.1";
-constexpr const char* kImplicitLittle = "1.2.840.10008.1.2";
 
 // PS3.6, annex A.
 constexpr auto kClasses = std::to_array<std::string_view>({

@@ -10,12 +10,12 @@
 namespace trocar::dicom::detail {
 namespace {
 
-constexpr double kMaxBend_mm = 0.3;     ///< Distance of points from their plane: files round to 0.01 to 0.1 mm.
-constexpr double kParallel = 0.01;      ///< Sine of the angle to an axis of the CT; 0.6 degrees.
-constexpr double kSamePlane_mm = 0.05;  ///< Contours of one plane.
-constexpr double kClosedGap = 2.1;      ///< Gaps up to this multiple of the smallest distance are closed.
-constexpr std::int64_t kMostPlanes = 1 << 14;
-constexpr const char* kExportAgain = "export the structure set again, or the structure as .seg.nrrd";
+constexpr double kMaxBend_mm = 0.3;         ///< Distance of points from their plane: files round to 0.01 to 0.1 mm.
+constexpr double kContoursParallel = 0.01;  ///< Sine of the angle to an axis of the CT; 0.6 degrees.
+constexpr double kContoursOfOnePlane_mm = 0.05;  ///< Contours of one plane.
+constexpr double kClosedGap = 2.1;               ///< Gaps up to this multiple of the smallest distance are closed.
+constexpr std::int64_t kMostContourPlanes = 1 << 14;
+constexpr const char* kExportStructureAgain = "export the structure set again, or the structure as .seg.nrrd";
 
 /// Twice the area of a contour along its normal (Newell's method); right-handed about the order of the points.
 Vec3 area_vector(const Contour& contour) {
@@ -40,7 +40,7 @@ Status check_planar(const ContourStructure& structure, const Vec3& normal, const
       if (std::abs(normal.dot(point - contour.front())) > 2.0 * kMaxBend_mm)
         return fail(fmt::format("contour {} of \"{}\" is not planar or not parallel to the others", n + 1,
                                 structure.segment.name),
-                    where, kExportAgain);
+                    where, kExportStructureAgain);
   }
   return {};
 }
@@ -87,7 +87,7 @@ std::vector<ContourPlane> group_planes(const std::vector<FlatContour>& flat, dou
   std::stable_sort(ordered.begin(), ordered.end(), [](const auto* a, const auto* b) { return a->w < b->w; });
   std::vector<ContourPlane> planes;
   for (const FlatContour* contour : ordered) {
-    if (planes.empty() || contour->w - planes.back().w > kSamePlane_mm / step_mm)
+    if (planes.empty() || contour->w - planes.back().w > kContoursOfOnePlane_mm / step_mm)
       planes.push_back({contour->w, {}, 0.0, 0.0});
     if (is_repeated(*contour, planes.back().contours))
       ++repeated;
@@ -160,8 +160,8 @@ class PlaneFill {
   std::vector<std::uint8_t> turns_;
 };
 
-void fill_plane(const ContourPlane& plane, const ContourGrid& grid, std::int64_t first, std::int64_t last,
-                std::vector<std::uint8_t>& mask) {
+void fill_contours(const ContourPlane& plane, const ContourGrid& grid, std::int64_t first, std::int64_t last,
+                   std::vector<std::uint8_t>& mask) {
   const auto u = static_cast<std::size_t>((grid.axis + 1) % 3);
   const auto v = static_cast<std::size_t>((grid.axis + 2) % 3);
   PlaneFill fill(grid.geometry.size[u], grid.geometry.size[v]);
@@ -198,12 +198,13 @@ volume::GridGeometry grid_along(const ContourStructure& structure, const Vec3& n
   std::sort(along_mm.begin(), along_mm.end());
   double gap_mm = HUGE_VAL;
   for (std::size_t n = 1; n < along_mm.size(); ++n)
-    if (along_mm[n] - along_mm[n - 1] > kSamePlane_mm) gap_mm = std::min(gap_mm, along_mm[n] - along_mm[n - 1]);
+    if (along_mm[n] - along_mm[n - 1] > kContoursOfOnePlane_mm)
+      gap_mm = std::min(gap_mm, along_mm[n] - along_mm[n - 1]);
   if (std::isfinite(gap_mm)) g.spacing_mm.z() = gap_mm;
   const Vec3 extent = (high - low).cwiseQuotient(g.spacing_mm);
   for (int axis = 0; axis < 3; ++axis)
     g.size[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(
-        std::clamp(std::ceil(extent[axis] - 0.01), 0.0, static_cast<double>(kMostPlanes)) + 1.0);
+        std::clamp(std::ceil(extent[axis] - 0.01), 0.0, static_cast<double>(kMostContourPlanes)) + 1.0);
   g.origin_P = g.R_PV * low;
   return g;
 }
@@ -214,7 +215,7 @@ Result<ContourGrid> choose_grid(const ContourStructure& structure, const volume:
                                 const std::string& where) {
   const Vec3 normal = common_normal(structure.contours, ct.R_PV.col(2));
   for (int axis = 0; axis < 3; ++axis) {
-    if (ct.R_PV.col(axis).cross(normal).norm() > kParallel) continue;
+    if (ct.R_PV.col(axis).cross(normal).norm() > kContoursParallel) continue;
     TROCAR_TRY_STATUS(check_planar(structure, ct.R_PV.col(axis), where));
     return ContourGrid{ct, axis};
   }
@@ -238,7 +239,7 @@ RasterResult rasterise(const ContourStructure& structure, const ContourGrid& gri
   for (const ContourPlane& plane : planes) {
     const std::int64_t first = to_plane(plane.low);
     const std::int64_t last = to_plane(plane.high);
-    if (first < last) fill_plane(plane, grid, first, last, result.mask);
+    if (first < last) fill_contours(plane, grid, first, last, result.mask);
   }
   return result;
 }

@@ -8,11 +8,11 @@
 #include <map>
 
 #include "core/parse_number.h"
+#include "dicom/stack/slice_stack.h"
 
 namespace trocar::dicom::detail {
 namespace {
 
-constexpr std::uint32_t kCharacterSet = tag(0x0008, 0x0005);
 constexpr std::uint32_t kStructures = tag(0x3006, 0x0020);
 constexpr std::uint32_t kStructureNumber = tag(0x3006, 0x0022);
 constexpr std::uint32_t kStructureName = tag(0x3006, 0x0026);
@@ -24,10 +24,9 @@ constexpr std::uint32_t kReferencedStructure = tag(0x3006, 0x0084);
 
 /// Ends of a curve that was not closed: assumed, a closed outline has no edge so much longer than its others.
 constexpr double kOpenEnds_mm = 10.0;
-constexpr double kOpenEnds = 10.0;    ///< Of the longest other edge.
-constexpr double kFarthest_mm = 1e5;  ///< No scanner is larger: 100 m.
+constexpr double kOpenEnds = 10.0;  ///< Of the longest other edge.
 constexpr std::size_t kMostNamed = 8;
-constexpr const char* kExportAgain = "export the structure set again";
+constexpr const char* kExportStructureSetAgain = "export the structure set again";
 
 int integer_of(const DicomItem& item, std::uint32_t tag) {
   const auto number = parse_number<int>(item.text(tag));
@@ -65,7 +64,7 @@ Result<std::vector<ContourStructure>> read_names(const DicomItem& root, const st
   const std::string character_set(root.text(kCharacterSet));
   const auto items = root.items(kStructures);
   if (!items) return fail(items.error().what, where, items.error().advice);
-  if (items->empty()) return fail("the structure set has no structure", where, kExportAgain);
+  if (items->empty()) return fail("the structure set has no structure", where, kExportStructureSetAgain);
   std::vector<ContourStructure> structures;
   for (const DicomItem& item : *items) {
     Segment segment{integer_of(item, kStructureNumber), to_utf8(item.text(kStructureName), character_set)};
@@ -82,7 +81,8 @@ Status add_contour(const DicomItem& item, ContourStructure& structure, OpenConto
   const bool is_sane =
       std::all_of(numbers.begin(), numbers.end(), [](double mm) { return std::abs(mm) <= kFarthest_mm; });
   if (numbers.empty() || numbers.size() % 3 != 0 || !is_sane)
-    return fail(fmt::format("a contour of \"{}\" has damaged points", structure.segment.name), where, kExportAgain);
+    return fail(fmt::format("a contour of \"{}\" has damaged points", structure.segment.name), where,
+                kExportStructureSetAgain);
   Contour contour;
   for (std::size_t n = 0; n < numbers.size(); n += 3) contour.emplace_back(numbers[n], numbers[n + 1], numbers[n + 2]);
   if (type != "CLOSED_PLANAR" && type != "CLOSEDPLANAR_XOR" && type != "CLOSED_PLANAR_XOR") {

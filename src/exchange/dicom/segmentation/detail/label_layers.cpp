@@ -8,8 +8,6 @@
 namespace trocar::dicom::detail {
 namespace {
 
-constexpr std::size_t kMostValues = 255;
-
 bool overlap(std::span<const std::uint8_t> mask, std::span<const std::uint8_t> voxels) {
   for (std::size_t n = 0; n < mask.size(); ++n)
     if (mask[n] != 0 && voxels[n] != 0) return true;

@@ -11,6 +11,8 @@
 
 namespace trocar::dicom::detail {
 
+inline constexpr std::size_t kMostValues = 255;  ///< Of a label volume, besides 0.
+
 /// Collects masks of one size in as few label volumes as possible: each volume takes the masks that do not overlap.
 class LabelLayers {
  public:

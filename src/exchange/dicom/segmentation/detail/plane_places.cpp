@@ -10,14 +10,13 @@
 namespace trocar::dicom::detail {
 namespace {
 
-constexpr double kSamePlane_mm = 0.01;     ///< Frames of one plane repeat its position; files round it.
-constexpr double kMaxOffset = 0.1;         ///< Of the distance of two slices: the frame lies on the slice.
-constexpr double kMaxSideways_px = 0.5;    ///< Frames of one plane.
-constexpr double kMaxDeviation = 0.05;     ///< Of the step, from a multiple of it.
-constexpr double kMaxDeviation_mm = 0.06;  ///< At least this, for positions rounded to a tenth.
-constexpr double kParallel = 1e-3;
-constexpr std::size_t kMostPlanes = 1 << 14;
-constexpr const char* kExportAgain = "export the segmentation again, or save it as .seg.nrrd or .nii.gz";
+constexpr double kFramesOfOnePlane_mm = 0.01;  ///< Frames of one plane repeat its position; files round it.
+constexpr double kMaxOffset = 0.1;             ///< Of the distance of two slices: the frame lies on the slice.
+constexpr double kMaxSideways_px = 0.5;        ///< Frames of one plane.
+constexpr double kMaxDeviation = 0.05;         ///< Of the step, from a multiple of it.
+constexpr double kMaxDeviation_mm = 0.06;      ///< At least this, for positions rounded to a tenth.
+constexpr double kFramesParallel = 1e-3;
+constexpr std::size_t kMostFramePlanes = 1 << 14;
 
 /// A plane with its distance along the normal.
 struct Plane {
@@ -41,10 +40,11 @@ Result<FramePlanes> join_frames(const SegHeader& header, const Vec3& normal_P, c
   result.plane_of_frame.resize(order.size());
   for (const std::size_t frame : order) {
     const Vec3& origin_P = header.frames[frame].origin_P;
-    if (result.planes.empty() || along_mm(frame) - result.planes.back().along_mm > kSamePlane_mm)
+    if (result.planes.empty() || along_mm(frame) - result.planes.back().along_mm > kFramesOfOnePlane_mm)
       result.planes.push_back({along_mm(frame), origin_P});
-    else if ((origin_P - result.planes.back().origin_P).norm() > most_mm + kSamePlane_mm)
-      return fail("frames of the DICOM segmentation at one place are shifted sideways", where, kExportAgain);
+    else if ((origin_P - result.planes.back().origin_P).norm() > most_mm + kFramesOfOnePlane_mm)
+      return fail("frames of the DICOM segmentation at one place are shifted sideways", where,
+                  kExportSegmentationAgain);
     result.plane_of_frame[frame] = result.planes.size() - 1;
   }
   return result;
@@ -78,7 +78,7 @@ std::optional<std::vector<std::size_t>> on_slices(const std::vector<Plane>& plan
 /// Distances along the normal of the CT's slices; none if they are unknown or not parallel.
 std::vector<double> slice_distances(const CtReference& ct, const Vec3& normal_P) {
   std::vector<double> slices_mm;
-  if (ct.slices_P.empty() || ct.grid.R_PV.col(2).cross(normal_P).norm() > kParallel) return slices_mm;
+  if (ct.slices_P.empty() || ct.grid.R_PV.col(2).cross(normal_P).norm() > kFramesParallel) return slices_mm;
   for (const Vec3& origin_P : ct.slices_P) slices_mm.push_back(normal_P.dot(origin_P));
   std::sort(slices_mm.begin(), slices_mm.end());
   return slices_mm;
@@ -90,7 +90,7 @@ std::optional<std::vector<std::size_t>> on_steps(const std::vector<Plane>& plane
   const double allowed_mm = std::min(std::max(kMaxDeviation * step_mm, kMaxDeviation_mm), 0.25 * step_mm);
   for (const Plane& plane : planes) {
     const double number = (plane.along_mm - planes.front().along_mm) / step_mm;
-    if (number > static_cast<double>(kMostPlanes) || std::abs(number - std::round(number)) * step_mm > allowed_mm)
+    if (number > static_cast<double>(kMostFramePlanes) || std::abs(number - std::round(number)) * step_mm > allowed_mm)
       return std::nullopt;
     numbers.push_back(static_cast<std::size_t>(std::llround(number)));
     if (numbers.size() > 1 && numbers.back() <= numbers[numbers.size() - 2]) return std::nullopt;
@@ -157,7 +157,7 @@ void move_to_slices(std::vector<Plane>& all, std::size_t first_slice, const std:
 double single_step(const SegHeader& header, const CtReference& ct, const Vec3& normal_P) {
   if (header.slice_step_mm) return *header.slice_step_mm;
   for (int axis = 0; axis < 3; ++axis)
-    if (ct.grid.R_PV.col(axis).cross(normal_P).norm() <= kParallel) return ct.grid.spacing_mm[axis];
+    if (ct.grid.R_PV.col(axis).cross(normal_P).norm() <= kFramesParallel) return ct.grid.spacing_mm[axis];
   return header.thickness_mm.value_or(ct.grid.spacing_mm.maxCoeff());
 }
 
@@ -196,15 +196,15 @@ Result<SegPlanes> place_planes(const SegHeader& header, const CtReference& ct, c
   for (const SegFrame& frame : header.frames) result.stack.origins_P.push_back(frame.origin_P);
   if (!is_sane(result.stack))
     return fail("the positions or the pixel spacing of the DICOM segmentation are not those of a scan", where,
-                kExportAgain);
+                kExportSegmentationAgain);
   result.stack.origins_P.clear();
   const Vec3 normal_P = result.stack.normal_P();
   TROCAR_TRY(FramePlanes found, join_frames(header, normal_P, where));
   std::vector<std::size_t> numbers;
   const std::vector<Plane> all = all_planes(header, found.planes, ct, normal_P, numbers);
   for (const Plane& plane : all) result.stack.origins_P.push_back(plane.origin_P);
-  if (all.size() > kMostPlanes)
-    return fail("the DICOM segmentation has more planes than any scan", where, kExportAgain);
+  if (all.size() > kMostFramePlanes)
+    return fail("the DICOM segmentation has more planes than any scan", where, kExportSegmentationAgain);
   for (const std::size_t plane : found.plane_of_frame) result.plane_of_frame.push_back(numbers[plane]);
   result.single_step_mm = single_step(header, ct, normal_P);
   return result;

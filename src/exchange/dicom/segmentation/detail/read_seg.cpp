@@ -15,7 +15,6 @@ namespace {
 
 /// Voxels of the grid, empty planes included, for each voxel of the CT or pixel of the file: bounds the memory.
 constexpr std::uint64_t kMostEmptiness = 16;
-constexpr const char* kExportAgain = "export the segmentation again, or save it as .seg.nrrd or .nii.gz";
 
 /// The frames of a SEG on their planes.
 class SegPainter {
@@ -75,7 +74,6 @@ Result<std::vector<LabelLayers::Layer>> read_label_map(const SegHeader& header, 
                                                        const SegPixels& pixels, const std::vector<Segment>& segments,
                                                        const std::string& where) {
   constexpr std::size_t kNumbers = 1 << 16;
-  constexpr std::size_t kMostValues = 255;
   std::vector<bool> occurs(kNumbers, false);
   std::vector<std::uint16_t> numbers;
   for (std::size_t frame = 0; frame < header.frames.size(); ++frame) {
@@ -130,14 +128,15 @@ Result<Segmentation> read_seg(const DicomFile& file, const std::string& where, c
   TROCAR_TRY(const SegPixels pixels, SegPixels::open(file, header, decode, where));
   TROCAR_TRY(const SegPlanes planes, place_planes(header, ct, where));
   const auto found = plan_stack(planes.stack, planes.single_step_mm);
-  if (!found) return fail("the frames of the DICOM segmentation are too far apart for one scan", where, kExportAgain);
+  if (!found)
+    return fail("the frames of the DICOM segmentation are too far apart for one scan", where, kExportSegmentationAgain);
   const StackPlan& plan = *found;
   // The pixels are there, so that only empty planes between distant frames can be many.
   const auto bytes = static_cast<std::uint64_t>(plan.geometry.voxel_count());
   const std::uint64_t stored = static_cast<std::uint64_t>(header.frames.size()) *
                                static_cast<std::uint64_t>(header.columns) * static_cast<std::uint64_t>(header.rows);
   if (bytes > kMostEmptiness * std::max<std::uint64_t>(stored, ct.grid.voxel_count()))
-    return fail("the frames of the DICOM segmentation are too far apart for this CT", where, kExportAgain);
+    return fail("the frames of the DICOM segmentation are too far apart for this CT", where, kExportSegmentationAgain);
   TROCAR_TRY_STATUS(check_memory_for_image(bytes, available_memory_bytes(), where));
 
   Segmentation result;

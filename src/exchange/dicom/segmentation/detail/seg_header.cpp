@@ -9,7 +9,6 @@
 namespace trocar::dicom::detail {
 namespace {
 
-constexpr std::uint32_t kCharacterSet = tag(0x0008, 0x0005);
 constexpr std::uint32_t kCodeValue = tag(0x0008, 0x0100);
 constexpr std::uint32_t kCodingScheme = tag(0x0008, 0x0102);
 constexpr std::uint32_t kCodeMeaning = tag(0x0008, 0x0104);
@@ -42,7 +41,6 @@ constexpr std::uint32_t kFrameGroups = tag(0x5200, 0x9230);
 
 constexpr double kMaxSkew = 1e-3;     ///< Accepted as rounding in a file: 0.06 degrees.
 constexpr int kMostFrames = 1 << 20;  ///< As many as items of a sequence.
-constexpr const char* kExportAgain = "export the segmentation again, or save it as .seg.nrrd or .nii.gz";
 
 /// " left", " right" or nothing, by the modifier of a code.
 std::string side_of(const DicomItem& code, std::uint32_t modifier) {
@@ -98,10 +96,10 @@ Status read_segments(const DicomItem& root, SegHeader& header, const std::string
     Segment segment = read_segment(item, character_set);
     if (segment.number == 0 && header.type == SegmentationType::kLabelMap) continue;  // the background
     if (!numbers.insert(segment.number).second)
-      return fail(fmt::format("two segments have the number {}", segment.number), where, kExportAgain);
+      return fail(fmt::format("two segments have the number {}", segment.number), where, kExportSegmentationAgain);
     header.segments.push_back(std::move(segment));
   }
-  if (header.segments.empty()) return fail("the DICOM segmentation names no segment", where, kExportAgain);
+  if (header.segments.empty()) return fail("the DICOM segmentation names no segment", where, kExportSegmentationAgain);
   return {};
 }
 
@@ -115,7 +113,7 @@ Status read_pixels(const DicomItem& root, SegHeader& header, const std::string& 
     header.type = SegmentationType::kLabelMap;
   else
     return fail(fmt::format("is a DICOM segmentation of the unknown type \"{}\"", to_utf8(type, "none")), where,
-                kExportAgain);
+                kExportSegmentationAgain);
   header.columns = root.number(kColumns).value_or(0);
   header.rows = root.number(kRows).value_or(0);
   header.bits = root.number(kBitsAllocated).value_or(1);
@@ -125,7 +123,7 @@ Status read_pixels(const DicomItem& root, SegHeader& header, const std::string& 
   if (header.columns < 1 || header.rows < 1 || !is_known || header.maximum_fractional < 1)
     return fail(
         fmt::format("the DICOM segmentation has {}x{} pixels of {} bits", header.columns, header.rows, header.bits),
-        where, kExportAgain);
+        where, kExportSegmentationAgain);
   return {};
 }
 
@@ -150,11 +148,12 @@ Status read_directions(const DicomItem& frame, const std::optional<DicomItem>& s
   const auto column_P = point_of(numbers, 3, 6);
   const auto spacing = measures ? measures->decimals(kPixelSpacing) : std::vector<double>();
   if (!row_P || !column_P || spacing.size() != 2)
-    return fail("the DICOM segmentation has no position in the patient", where, kExportAgain);
+    return fail("the DICOM segmentation has no position in the patient", where, kExportSegmentationAgain);
   const bool is_square = std::abs(row_P->norm() - 1.0) < kMaxSkew && std::abs(column_P->norm() - 1.0) < kMaxSkew &&
                          std::abs(row_P->dot(*column_P)) < kMaxSkew;
   if (!is_square || spacing[0] <= 0.0 || spacing[1] <= 0.0)
-    return fail("the directions or the pixel spacing of the DICOM segmentation are none", where, kExportAgain);
+    return fail("the directions or the pixel spacing of the DICOM segmentation are none", where,
+                kExportSegmentationAgain);
   header.row_P = row_P->normalized();
   header.column_P = (*column_P - column_P->dot(header.row_P) * header.row_P).normalized();
   header.row_step_mm = spacing[0];  // DICOM gives the distance between rows first
@@ -178,7 +177,7 @@ Status check_direction(const DicomItem& frame, const SegHeader& header, const st
   if (row_P && column_P && (*row_P - header.row_P).norm() < 2 * kMaxSkew &&
       (*column_P - header.column_P).norm() < 2 * kMaxSkew)
     return {};
-  return fail("the frames of the DICOM segmentation have several directions", where, kExportAgain);
+  return fail("the frames of the DICOM segmentation have several directions", where, kExportSegmentationAgain);
 }
 
 Status read_frames(const DicomItem& root, SegHeader& header, const std::string& where) {
@@ -189,7 +188,7 @@ Status read_frames(const DicomItem& root, SegHeader& header, const std::string& 
   if (count.size() != 1 || count[0] < 1 || count[0] > kMostFrames ||
       static_cast<std::size_t>(count[0]) != items->size())
     return fail(fmt::format("the DICOM segmentation describes {} frames, not those of its header", items->size()),
-                where, kExportAgain);
+                where, kExportSegmentationAgain);
   TROCAR_TRY_STATUS(read_directions(items->front(), shared, header, where));
   for (const DicomItem& item : *items) {
     TROCAR_TRY_STATUS(check_direction(item, header, where));
@@ -197,7 +196,7 @@ Status read_frames(const DicomItem& root, SegHeader& header, const std::string& 
     const auto origin_P = place ? point_of(place->decimals(kPosition), 0, 3) : std::nullopt;
     if (!origin_P)
       return fail(fmt::format("frame {} of the DICOM segmentation has no position", header.frames.size() + 1), where,
-                  kExportAgain);
+                  kExportSegmentationAgain);
     const auto segment = group_of(item, shared, kSegmentIdentification);
     header.frames.push_back({segment ? segment->number(kReferencedSegment).value_or(0) : 0, *origin_P});
   }

@@ -12,6 +12,9 @@
 
 namespace trocar::dicom::detail {
 
+inline constexpr const char* kExportSegmentationAgain =
+    "export the segmentation again, or save it as .seg.nrrd or .nii.gz";
+
 enum class SegmentationType { kBinary, kFractional, kLabelMap };
 
 /// One frame of a SEG.

@@ -9,12 +9,12 @@
 namespace trocar::dicom {
 namespace {
 
-using testing::Length;
-using testing::segment_item;
-using testing::TestSeg;
+using trocar::testing::Length;
+using trocar::testing::segment_item;
+using trocar::testing::TestSeg;
 
 /// A CT of 8 x 6 x 5 voxels of 1 x 1 x 2 mm.
-CtReference ct_of(const std::vector<double>& slices_mm = {0, 2, 4, 6, 8}) {
+CtReference ct_with_slices(const std::vector<double>& slices_mm = {0, 2, 4, 6, 8}) {
   CtReference ct;
   ct.grid.size = {8, 6, 5};
   ct.grid.spacing_mm = {1, 1, 2};
@@ -33,20 +33,20 @@ std::function<int(int, int)> block(int first_column, int last_column, int value 
   return [=](int i, int) { return i >= first_column && i <= last_column ? value : 0; };
 }
 
-bool all(const Segment&) {
+bool every_segment(const Segment&) {
   return true;
 }
 
 class Seg : public ::testing::Test {
  protected:
-  Result<Segmentation> read(const std::string& elements, const CtReference& ct = ct_of()) {
-    testing::write_dicom(folder_ / "label.seg", elements);
-    return read_segmentation(folder_ / "label.seg", ct, all);
+  Result<Segmentation> read(const std::string& elements, const CtReference& ct = ct_with_slices()) {
+    trocar::testing::write_dicom(folder_ / "label.seg", elements);
+    return read_segmentation(folder_ / "label.seg", ct, every_segment);
   }
-  Result<Segmentation> read(const TestSeg& seg, const CtReference& ct = ct_of()) {
-    return read(testing::seg_elements(seg), ct);
+  Result<Segmentation> read(const TestSeg& seg, const CtReference& ct = ct_with_slices()) {
+    return read(trocar::testing::seg_elements(seg), ct);
   }
-  std::string error_of(const TestSeg& seg, const CtReference& ct = ct_of()) {
+  std::string error_of(const TestSeg& seg, const CtReference& ct = ct_with_slices()) {
     const auto segmentation = read(seg, ct);
     return segmentation ? "read" : segmentation.error().text();
   }
@@ -153,9 +153,9 @@ TEST_F(Seg, OtherThanWantedSegmentsAreLeftOut) {
   TestSeg seg;
   seg.segments = {segment_item(1, "Liver"), segment_item(2, "Spleen")};
   seg.frames = {{1, at_z(0), block(0, 4)}, {2, at_z(0), block(2, 3)}};
-  testing::write_dicom(folder_ / "label.seg", testing::seg_elements(seg));
+  trocar::testing::write_dicom(folder_ / "label.seg", trocar::testing::seg_elements(seg));
   const auto read_seg =
-      read_segmentation(folder_ / "label.seg", ct_of(), [](const Segment& s) { return s.number == 2; });
+      read_segmentation(folder_ / "label.seg", ct_with_slices(), [](const Segment& s) { return s.number == 2; });
   ASSERT_TRUE(read_seg) << read_seg.error().text();
   ASSERT_EQ(read_seg->segments.size(), 1U);
   EXPECT_EQ(read_seg->segments[0].name, "Spleen");
@@ -166,7 +166,7 @@ TEST_F(Seg, WithoutSlicesOfTheCtStepsComeFromTheFile) {
   TestSeg seg;
   seg.segments = {segment_item(1, "Liver")};
   seg.frames = {{1, at_z(0), block(0, 4)}, {1, at_z(6), block(0, 4)}};
-  const CtReference other_format = ct_of({});
+  const CtReference other_format = ct_with_slices({});
   // Two frames 6 mm apart without a step are two thick planes; with a step of 2 mm, two planes between them are empty.
   EXPECT_EQ(read(seg, other_format)->volumes[0].labels.geometry.size[2], 2);
   seg.slice_step_mm = 2.0;
@@ -185,7 +185,7 @@ TEST_F(Seg, OnUnevenSlicesKeepsEachSlicesReach) {
   TestSeg seg;
   seg.segments = {segment_item(1, "Liver")};
   seg.frames = {{1, at_z(2), block(0, 0)}, {1, at_z(8), block(0, 0)}};
-  const auto read_seg = read(seg, ct_of({0, 2, 4, 8, 12}));
+  const auto read_seg = read(seg, ct_with_slices({0, 2, 4, 8, 12}));
   ASSERT_TRUE(read_seg) << read_seg.error().text();
   EXPECT_EQ(read_seg->warnings.size(), 1U);
   const auto voxels = voxels_of(*read_seg, 0);
@@ -212,17 +212,18 @@ TEST_F(Seg, ObliqueFramesKeepTheirDirections) {
 
 TEST_F(Seg, NamesComeFromLabelTypeAndRegion) {
   TestSeg seg;
-  const std::string left = testing::dicom_code(0x0062, 0x0011, "7771000", "SCT", "Left");
-  seg.segments = {
-      segment_item(1, "Segment_1",
-                   testing::dicom_sequence(0x0062, 0x000f,
-                                           {testing::dicom_element(0x0008, 0x0100, "SH", "64033007") +
-                                            testing::dicom_element(0x0008, 0x0102, "SH", "SCT") +
-                                            testing::dicom_element(0x0008, 0x0104, "LO", "Kidney") + left})),
-      segment_item(2, "Segment_2",
-                   testing::dicom_code(0x0008, 0x2218, "10200004", "SCT", "Liver") +
-                       testing::dicom_code(0x0062, 0x0003, "49755003", "SCT", "Morphologically Altered Structure") +
-                       testing::dicom_code(0x0062, 0x000f, "108369006", "SCT", "Neoplasm"))};
+  const std::string left = trocar::testing::dicom_code(0x0062, 0x0011, "7771000", "SCT", "Left");
+  seg.segments = {segment_item(1, "Segment_1",
+                               trocar::testing::dicom_sequence(
+                                   0x0062, 0x000f,
+                                   {trocar::testing::dicom_element(0x0008, 0x0100, "SH", "64033007") +
+                                    trocar::testing::dicom_element(0x0008, 0x0102, "SH", "SCT") +
+                                    trocar::testing::dicom_element(0x0008, 0x0104, "LO", "Kidney") + left})),
+                  segment_item(2, "Segment_2",
+                               trocar::testing::dicom_code(0x0008, 0x2218, "10200004", "SCT", "Liver") +
+                                   trocar::testing::dicom_code(0x0062, 0x0003, "49755003", "SCT",
+                                                               "Morphologically Altered Structure") +
+                                   trocar::testing::dicom_code(0x0062, 0x000f, "108369006", "SCT", "Neoplasm"))};
   seg.frames = {{1, at_z(0), block(0, 4)}};
   const auto read_seg = read(seg);
   ASSERT_TRUE(read_seg) << read_seg.error().text();
@@ -240,7 +241,7 @@ TEST_F(Seg, OfAnotherSeriesIsRefused) {
   EXPECT_EQ(error_of(seg), "read");
   seg.series_uid = "1.2.4";
   EXPECT_NE(error_of(seg).find("another series (1.2.4)"), std::string::npos) << error_of(seg);
-  CtReference other_format = ct_of();
+  CtReference other_format = ct_with_slices();
   other_format.series_uid.clear();
   other_format.frame_of_reference.clear();
   EXPECT_EQ(error_of(seg, other_format), "read");
@@ -283,17 +284,17 @@ TEST_F(Seg, ThatIsCutShortOrChangedIsReadOrRefusedInOneLine) {
   TestSeg seg;
   seg.columns = 4;
   seg.rows = 2;
-  seg.segments = {segment_item(1, "Liver", testing::dicom_code(0x0062, 0x000f, "10200004", "SCT", "Liver"))};
+  seg.segments = {segment_item(1, "Liver", trocar::testing::dicom_code(0x0062, 0x000f, "10200004", "SCT", "Liver"))};
   seg.frames = {{1, at_z(0), block(0, 4)}, {1, at_z(4), block(0, 4)}};
   std::size_t refused = 0;
   std::size_t accepted = 0;
   for (const Length length : {Length::kDefined, Length::kUndefined}) {
     seg.length = length;
-    const std::string whole = testing::dicom_file(testing::seg_elements(seg));
+    const std::string whole = trocar::testing::dicom_file(trocar::testing::seg_elements(seg));
     const auto expect_verdict = [&](const std::string& bytes) {
       std::ofstream(folder_ / "label.seg", std::ios::binary)
           .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-      const auto result = read_segmentation(folder_ / "label.seg", ct_of(), all);
+      const auto result = read_segmentation(folder_ / "label.seg", ct_with_slices(), every_segment);
       ++(result ? accepted : refused);
       if (result) return;
       ASSERT_NE(result.error().where.find("label.seg"), std::string::npos) << result.error().text();

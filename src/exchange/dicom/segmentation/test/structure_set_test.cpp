@@ -10,13 +10,13 @@
 namespace trocar::dicom {
 namespace {
 
-using testing::TestStructure;
+using trocar::testing::TestStructure;
 using Points = std::vector<Vec3>;
 
 constexpr const char* kClosed = "CLOSED_PLANAR";
 
 /// A CT of 40 x 30 x 10 voxels of 1 x 1 x 3 mm.
-CtReference ct_of(const Mat3& R_PV = Mat3::Identity()) {
+CtReference turned_ct(const Mat3& R_PV = Mat3::Identity()) {
   CtReference ct;
   ct.grid.size = {40, 30, 10};
   ct.grid.spacing_mm = {1, 1, 3};
@@ -35,15 +35,15 @@ Points rectangle(const CtReference& ct, double u0, double u1, double v0, double 
   return points;
 }
 
-bool all(const Segment&) {
+bool every_structure(const Segment&) {
   return true;
 }
 
 class StructureSet : public ::testing::Test {
  protected:
-  Result<Segmentation> read(const std::vector<TestStructure>& structures, const CtReference& ct = ct_of()) {
-    testing::write_dicom(folder_ / "rs.dcm", testing::structure_set_elements(structures));
-    return read_segmentation(folder_ / "rs.dcm", ct, all);
+  Result<Segmentation> read(const std::vector<TestStructure>& structures, const CtReference& ct = turned_ct()) {
+    trocar::testing::write_dicom(folder_ / "rs.dcm", trocar::testing::structure_set_elements(structures));
+    return read_segmentation(folder_ / "rs.dcm", ct, every_structure);
   }
   std::string error_of(const std::vector<TestStructure>& structures) {
     const auto segmentation = read(structures);
@@ -68,7 +68,7 @@ std::vector<std::size_t> voxels_by_plane(const Segmentation& segmentation, std::
 }
 
 TEST_F(StructureSet, ContoursFillTheirPlanes) {
-  const CtReference ct = ct_of();
+  const CtReference ct = turned_ct();
   const auto read_set =
       read({{"Liver", {{kClosed, rectangle(ct, 5, 15, 5, 10, 2)}, {kClosed, rectangle(ct, 5, 10, 5, 10, 3)}}}});
   ASSERT_TRUE(read_set) << read_set.error().text();
@@ -77,7 +77,7 @@ TEST_F(StructureSet, ContoursFillTheirPlanes) {
 }
 
 TEST_F(StructureSet, ContourInsideAnotherIsAHole) {
-  const CtReference ct = ct_of();
+  const CtReference ct = turned_ct();
   for (const char* type : {kClosed, "CLOSEDPLANAR_XOR"}) {
     const auto ring = read({{"Colon",
                              {{type, rectangle(ct, 5, 25, 5, 25, 2)},
@@ -99,7 +99,7 @@ TEST_F(StructureSet, ContourInsideAnotherIsAHole) {
 }
 
 TEST_F(StructureSet, ARoundContourHasItsVolume) {
-  const CtReference ct = ct_of();
+  const CtReference ct = turned_ct();
   TestStructure sphere{"Liver", {}};
   constexpr double kRadius_mm = 12.0;
   const Vec3 centre_P = ct.grid.to_mm({20, 15, 5});
@@ -123,7 +123,7 @@ TEST_F(StructureSet, ARoundContourHasItsVolume) {
 }
 
 TEST_F(StructureSet, ContoursBetweenSlicesReachHalfWay) {
-  const CtReference ct = ct_of();
+  const CtReference ct = turned_ct();
   // Contours on every other slice of the CT, and between slices.
   const auto every_other =
       read({{"Liver", {{kClosed, rectangle(ct, 5, 15, 5, 10, 2)}, {kClosed, rectangle(ct, 5, 10, 5, 10, 4)}}}});
@@ -139,7 +139,7 @@ TEST_F(StructureSet, ContoursBetweenSlicesReachHalfWay) {
 }
 
 TEST_F(StructureSet, OneForgottenPlaneIsFilledAndAWideGapIsNot) {
-  const CtReference ct = ct_of();
+  const CtReference ct = turned_ct();
   TestStructure structure{"Liver", {}};
   for (const int w : {0, 1, 3, 7, 8}) structure.contours.emplace_back(kClosed, rectangle(ct, 5, 15, 5, 10, w));
   const auto read_set = read({structure});
@@ -150,7 +150,7 @@ TEST_F(StructureSet, OneForgottenPlaneIsFilledAndAWideGapIsNot) {
 }
 
 TEST_F(StructureSet, RepeatedAndDegenerateContoursAreLeftOut) {
-  const CtReference ct = ct_of();
+  const CtReference ct = turned_ct();
   const auto read_set = read({{"Liver",
                                {{kClosed, rectangle(ct, 5, 15, 5, 10, 2)},
                                 {kClosed, rectangle(ct, 5, 15, 5, 10, 2)},
@@ -163,7 +163,7 @@ TEST_F(StructureSet, RepeatedAndDegenerateContoursAreLeftOut) {
 TEST_F(StructureSet, ContoursInAnotherPlaneThanTheSlicesAreRead) {
   // On an oblique CT: contours in its slices, in its sagittal planes, and in no plane of it.
   const Mat3 R = (Eigen::AngleAxisd(0.3, Vec3::UnitX()) * Eigen::AngleAxisd(0.5, Vec3::UnitZ())).toRotationMatrix();
-  const CtReference ct = ct_of(R);
+  const CtReference ct = turned_ct(R);
   const auto in_slices = read({{"Liver", {{kClosed, rectangle(ct, 5, 15, 5, 10, 2)}}}}, ct);
   ASSERT_TRUE(in_slices) << in_slices.error().text();
   EXPECT_EQ(voxels_by_plane(*in_slices, 0)[2], 50U);
@@ -193,7 +193,7 @@ TEST_F(StructureSet, ContoursInAnotherPlaneThanTheSlicesAreRead) {
 }
 
 TEST_F(StructureSet, OpenContoursAreRefusedByNameInOneLine) {
-  const CtReference ct = ct_of();
+  const CtReference ct = turned_ct();
   const Points square = rectangle(ct, 5, 15, 5, 10, 2);
   const std::string error = error_of({{"Liver", {{kClosed, square}}},
                                       {"Catheter", {{"OPEN_PLANAR", square}}},
@@ -211,24 +211,25 @@ TEST_F(StructureSet, OpenContoursAreRefusedByNameInOneLine) {
             std::string::npos)
       << error_of({{"Spleen", {{kClosed, arc}}}});
   // A structure that is not wanted does not matter.
-  testing::write_dicom(folder_ / "rs.dcm", testing::structure_set_elements(
-                                               {{"Liver", {{kClosed, square}}}, {"Wire", {{"POINT", square}}}}));
+  trocar::testing::write_dicom(
+      folder_ / "rs.dcm",
+      trocar::testing::structure_set_elements({{"Liver", {{kClosed, square}}}, {"Wire", {{"POINT", square}}}}));
   EXPECT_TRUE(read_segmentation(folder_ / "rs.dcm", ct, [](const Segment& s) { return s.name == "Liver"; }));
 }
 
 TEST_F(StructureSet, BentContoursAreRefused) {
-  const CtReference ct = ct_of();
+  const CtReference ct = turned_ct();
   Points bent = rectangle(ct, 5, 15, 5, 10, 2);
   bent[2].z() += 4.0;
   EXPECT_NE(error_of({{"Liver", {{kClosed, bent}}}}).find("contour 1 of \"Liver\" is not planar"), std::string::npos);
 }
 
 TEST_F(StructureSet, OfAnotherSeriesIsRefused) {
-  const CtReference ct = ct_of();
+  const CtReference ct = turned_ct();
   const std::vector<TestStructure> liver{{"Liver", {{kClosed, rectangle(ct, 5, 15, 5, 10, 2)}}}};
   const auto error_with = [&](const std::string& series, const std::string& frame) {
-    testing::write_dicom(folder_ / "rs.dcm", testing::structure_set_elements(liver, series, frame));
-    const auto result = read_segmentation(folder_ / "rs.dcm", ct, all);
+    trocar::testing::write_dicom(folder_ / "rs.dcm", trocar::testing::structure_set_elements(liver, series, frame));
+    const auto result = read_segmentation(folder_ / "rs.dcm", ct, every_structure);
     return result ? "read" : result.error().text();
   };
   EXPECT_EQ(error_with("1.2.3", "1.2.9"), "read");
@@ -238,24 +239,25 @@ TEST_F(StructureSet, OfAnotherSeriesIsRefused) {
 }
 
 TEST_F(StructureSet, NamesAreUtf8) {
-  const CtReference ct = ct_of();
+  const CtReference ct = turned_ct();
   const auto read_set = read({{"L\xe9sion", {{kClosed, rectangle(ct, 5, 15, 5, 10, 2)}}}});  // ISO 8859-1
   ASSERT_TRUE(read_set) << read_set.error().text();
   EXPECT_EQ(read_set->segments[0].name, "L\xc3\xa9sion");
 }
 
 TEST_F(StructureSet, ThatIsCutShortOrChangedIsReadOrRefusedInOneLine) {
-  const CtReference ct = ct_of();
+  const CtReference ct = turned_ct();
   std::size_t refused = 0;
   std::size_t accepted = 0;
-  for (const testing::Length length : {testing::Length::kDefined, testing::Length::kUndefined}) {
-    const std::string whole = testing::dicom_file(testing::structure_set_elements(
+  for (const trocar::testing::Length length :
+       {trocar::testing::Length::kDefined, trocar::testing::Length::kUndefined}) {
+    const std::string whole = trocar::testing::dicom_file(trocar::testing::structure_set_elements(
         {{"Liver", {{kClosed, rectangle(ct, 5, 15, 5, 10, 2)}, {kClosed, rectangle(ct, 6, 9, 6, 9, 3)}}}}, "1.2.3",
         "1.2.9", length));
     const auto expect_verdict = [&](const std::string& bytes) {
       std::ofstream(folder_ / "rs.dcm", std::ios::binary)
           .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-      const auto result = read_segmentation(folder_ / "rs.dcm", ct, all);
+      const auto result = read_segmentation(folder_ / "rs.dcm", ct, every_structure);
       ++(result ? accepted : refused);
       if (result) return;
       ASSERT_NE(result.error().where.find("rs.dcm"), std::string::npos) << result.error().text();

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/decimal_point.h"
 #include "core/parse_number.h"
 #include "io/dicom/detail/codestream.h"
 #include "io/dicom/detail/dicom_header.h"
@@ -22,7 +23,7 @@ namespace {
 
 constexpr std::string_view kRle = "1.2.840.10008.1.2.5";  ///< DICOM PS3.5, annex A.
 constexpr std::string_view kDeflated = "1.2.840.10008.1.2.1.99";
-constexpr const char* kExportAgain = "export the series again, uncompressed";
+constexpr const char* kExportSeriesAgain = "export the series again, uncompressed";
 
 /// Numbers of a decimal string "a\b\c": exactly as many as requested, or empty.
 template <std::size_t N>
@@ -210,6 +211,7 @@ bool unpack_compressed(const CompressedImage& packed, const PixelLayout& layout,
   image.SetTransferSyntax(syntax);
   image.SetDataElement(pixel_data);
   const MutedStandardError muted;
+  const DecimalPoint decimal_point;
   return image.GetBufferLength() == out.size() && image.GetBuffer(reinterpret_cast<char*>(out.data()));
 }
 
@@ -217,16 +219,16 @@ bool unpack_compressed(const CompressedImage& packed, const PixelLayout& layout,
 Status decode_throwing(const DicomSlice& slice, const std::function<Status(const RawVoxels&)>& use) {
   const std::string where = slice.file.string();
   TROCAR_TRY(const std::optional<DicomHeader> header, DicomHeader::read(slice.file));
-  if (!header) return fail("not a DICOM image any more", where, kExportAgain);
+  if (!header) return fail("not a DICOM image any more", where, kExportSeriesAgain);
   TROCAR_TRY(const PixelLayout layout, layout_of(*header, slice));
   const std::vector<std::span<const char>> pieces = header->pixels();
-  if (pieces.empty()) return fail("has no pixels that could be read", where, kExportAgain);
+  if (pieces.empty()) return fail("has no pixels that could be read", where, kExportSeriesAgain);
   std::vector<std::byte> pixels(layout.bytes());
   if (header->is_compressed()) {
     if (!unpack_compressed({pieces, header->transfer_syntax(), slice.columns, slice.rows}, layout, pixels))
-      return fail("the DICOM image cannot be unpacked", where, kExportAgain);
+      return fail("the DICOM image cannot be unpacked", where, kExportSeriesAgain);
   } else if (pieces.front().size() < pixels.size()) {
-    return fail("the DICOM image ends before its last pixel", where, kExportAgain);
+    return fail("the DICOM image ends before its last pixel", where, kExportSeriesAgain);
   } else {
     unpack_plain(pieces.front(), header->is_big_endian(), layout, pixels);
   }
@@ -249,7 +251,7 @@ Result<std::optional<DicomSlice>> find_dicom_slice(const fs::path& path) {
   if (!header) return std::optional<DicomSlice>();
   // Its elements cannot be read; silently skipping a slice would shift the others.
   if (header->transfer_syntax() == kDeflated)
-    return fail("deflated DICOM is not supported", path.string(), kExportAgain);
+    return fail("deflated DICOM is not supported", path.string(), kExportSeriesAgain);
   DicomSlice slice = slice_of(*header);
   slice.file = path;
   return slice.rows > 0 && slice.columns > 0 ? std::optional(slice) : std::nullopt;
@@ -262,7 +264,7 @@ Status decode_slice(const DicomSlice& slice, const std::function<Status(const Ra
   } catch (const std::bad_alloc&) {
     return fail("not enough memory to read the image", slice.file.string(), "close other programs");
   } catch (const std::exception&) {
-    return fail("the DICOM image is damaged", slice.file.string(), kExportAgain);
+    return fail("the DICOM image is damaged", slice.file.string(), kExportSeriesAgain);
   }
 }
 
@@ -281,7 +283,7 @@ Status decode_frame(const dicom::CompressedFrame& frame, std::span<std::byte> ou
   } catch (const std::exception&) {
     reason = "is damaged";
   }
-  return fail(reason, frame.transfer_syntax, kExportAgain);
+  return fail(reason, frame.transfer_syntax, kExportSeriesAgain);
 }
 
 }  // namespace trocar::io::detail

@@ -12,7 +12,8 @@ namespace trocar::io::detail {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr int kMaxDepth = 16;  ///< Depth of sub-folders; DICOM media have four levels (patient, study, series, image).
+constexpr int kMaxFolderDepth =
+    16;  ///< Depth of sub-folders; DICOM media have four levels (patient, study, series, image).
 constexpr std::size_t kMaxListed = 12;
 
 template <class Iterator>
@@ -22,7 +23,7 @@ std::vector<fs::path> regular_files(Iterator entry) {
   for (; entry != Iterator(); entry.increment(error)) {
     if (error) break;
     if constexpr (std::is_same_v<Iterator, fs::recursive_directory_iterator>)
-      if (entry.depth() >= kMaxDepth) entry.disable_recursion_pending();
+      if (entry.depth() >= kMaxFolderDepth) entry.disable_recursion_pending();
     if (entry->is_regular_file(error)) files.push_back(entry->path());
   }
   std::sort(files.begin(), files.end());

@@ -32,7 +32,7 @@ std::vector<DicomSlice> series(int count, double step_mm, double tilt_deg = 0.0,
   return slices;
 }
 
-std::string error_of(std::vector<DicomSlice> slices) {
+std::string ordering_of(std::vector<DicomSlice> slices) {
   const auto ordered = order_slices(std::move(slices), "folder");
   return ordered ? "ordered" : ordered.error().text();
 }
@@ -55,7 +55,7 @@ TEST(DicomSeries, OrdersByPositionAndTakesTheStepFromIt) {
 TEST(DicomSeries, ToleratesPositionsRoundedToATenth) {
   auto slices = series(40, 1.25);
   for (DicomSlice& slice : slices) slice.position_P->z() = std::round(slice.position_P->z() * 10.0) / 10.0;
-  EXPECT_EQ(error_of(slices), "ordered");
+  EXPECT_EQ(ordering_of(slices), "ordered");
 }
 
 TEST(DicomSeries, FillsTheGapOfAMissingSlice) {
@@ -75,18 +75,20 @@ TEST(DicomSeries, FillsTheGapOfAMissingSlice) {
 TEST(DicomSeries, RefusesAGapThatIsTooWideByName) {
   auto slices = series(20, 2.0);
   slices.erase(slices.begin() + 7, slices.begin() + 10);  // 8 mm, four times the usual distance
-  EXPECT_NE(error_of(slices).find("missing: 8 mm between slice6 and slice10"), std::string::npos) << error_of(slices);
+  EXPECT_NE(ordering_of(slices).find("missing: 8 mm between slice6 and slice10"), std::string::npos)
+      << ordering_of(slices);
   slices = series(8, 5.0);
   slices.erase(slices.begin() + 3, slices.begin() + 5);  // 15 mm
-  EXPECT_NE(error_of(slices).find("missing: 15 mm between slice2 and slice5"), std::string::npos) << error_of(slices);
-  EXPECT_EQ(error_of(series(8, 12.0)), "ordered");  // thick, but even
+  EXPECT_NE(ordering_of(slices).find("missing: 15 mm between slice2 and slice5"), std::string::npos)
+      << ordering_of(slices);
+  EXPECT_EQ(ordering_of(series(8, 12.0)), "ordered");  // thick, but even
 }
 
 TEST(DicomSeries, RefusesTwoSlicesInOnePlace) {
   auto slices = series(10, 2.0);
   slices.push_back(slices[4]);
   slices.back().file = "again";
-  EXPECT_NE(error_of(slices).find("same position: slice4 and again"), std::string::npos) << error_of(slices);
+  EXPECT_NE(ordering_of(slices).find("same position: slice4 and again"), std::string::npos) << ordering_of(slices);
 }
 
 TEST(DicomSeries, StraightensGantryTilt) {
@@ -97,14 +99,14 @@ TEST(DicomSeries, StraightensGantryTilt) {
   EXPECT_NEAR(tilted(-15.0)->plan.tilt_deg, 15.0, 1e-9);
   // 18 mm of stack lean by 4.82 mm, which is 6.4 rows of 0.75 mm.
   EXPECT_EQ(tilted(-15.0)->plan.geometry.size, (std::array<std::int64_t, 3>{6, 4 + 7, 10}));
-  EXPECT_NE(error_of(series(10, 2.0, 50.0)).find("50 degrees, more than a gantry tilts"), std::string::npos);
+  EXPECT_NE(ordering_of(series(10, 2.0, 50.0)).find("50 degrees, more than a gantry tilts"), std::string::npos);
 }
 
 TEST(DicomSeries, RefusesWhatIsNoStackOfGreySlices) {
   const auto refused = [](const std::function<void(DicomSlice&)>& change) {
     auto slices = series(5, 2.0);
     change(slices[2]);
-    return error_of(slices) != "ordered";
+    return ordering_of(slices) != "ordered";
   };
   EXPECT_TRUE(refused([](DicomSlice& s) { s.frames = 2; }));
   EXPECT_TRUE(refused([](DicomSlice& s) { s.samples_per_pixel = 3; }));
@@ -115,8 +117,8 @@ TEST(DicomSeries, RefusesWhatIsNoStackOfGreySlices) {
   EXPECT_TRUE(refused([](DicomSlice& s) { (*s.spacing_mm)[0] = 0.6; }));
   EXPECT_TRUE(refused([](DicomSlice& s) { s.directions_P = {Vec3::UnitY(), Vec3::UnitX()}; }));
   EXPECT_FALSE(refused([](DicomSlice&) {}));
-  EXPECT_NE(error_of(series(1, 2.0)), "ordered");
-  EXPECT_NE(error_of({}), "ordered");
+  EXPECT_NE(ordering_of(series(1, 2.0)), "ordered");
+  EXPECT_NE(ordering_of({}), "ordered");
 }
 
 TEST(DicomSeries, RefusesSlicesThatDoNotBelongTogether) {
@@ -128,7 +130,7 @@ TEST(DicomSeries, RefusesSlicesThatDoNotBelongTogether) {
       slice.frame_of_reference = "1.2.3.4";
     }
     change(slices[3]);
-    return error_of(slices);
+    return ordering_of(slices);
   };
   EXPECT_EQ(error_with([](DicomSlice&) {}), "ordered");
   EXPECT_NE(error_with([](DicomSlice& s) { s.patient_id = "two"; }).find("PatientID"), std::string::npos);
@@ -143,13 +145,13 @@ TEST(DicomSeries, RefusesSlicesThatDoNotBelongTogether) {
 TEST(DicomSeries, RefusesDirectionsThatAreNone) {
   auto slices = series(5, 2.0);
   for (DicomSlice& slice : slices) slice.directions_P = {Vec3(1, 0, 0), Vec3(0.2, 1, 0)};
-  EXPECT_NE(error_of(slices), "ordered");
+  EXPECT_NE(ordering_of(slices), "ordered");
   slices = series(5, 2.0);
   for (DicomSlice& slice : slices) slice.directions_P = {Vec3::Zero(), Vec3::Zero()};
-  EXPECT_NE(error_of(slices), "ordered");
+  EXPECT_NE(ordering_of(slices), "ordered");
   slices = series(5, 2.0);
   for (DicomSlice& slice : slices) slice.spacing_mm = {0.0, 0.75};
-  EXPECT_NE(error_of(slices), "ordered");
+  EXPECT_NE(ordering_of(slices), "ordered");
 }
 
 class RealSlice : public ::testing::TestWithParam<const char*> {};

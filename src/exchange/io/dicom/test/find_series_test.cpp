@@ -1,5 +1,6 @@
 #include "io/dicom/detail/find_series.h"
 
+#include "dicom/testing/dicom_writer.h"
 #include "io/dicom/dicom_folder.h"
 #include "io/image/image_file.h"
 #include "io/test/test_support.h"
@@ -8,41 +9,32 @@ namespace trocar::io {
 namespace {
 namespace fs = std::filesystem;
 
-std::string little_endian(std::uint32_t number, int bytes) {
-  std::string text;
-  for (int n = 0; n < bytes; ++n) text += static_cast<char>(number >> 8 * n & 0xff);
-  return text;
-}
-
-/// An element in explicit little endian (DICOM PS3.5, section 7.1.2).
-std::string element(std::uint16_t group, std::uint16_t number, const std::string& vr, std::string value) {
-  if (value.size() % 2 != 0) value += vr == "UI" ? '\0' : ' ';
-  const auto length = static_cast<std::uint32_t>(value.size());
-  const std::string head = little_endian(group, 2) + little_endian(number, 2) + vr;
-  return head + (vr == "OW" ? std::string(2, '\0') + little_endian(length, 4) : little_endian(length, 2)) + value;
-}
+using testing::dicom_element;
+using testing::little_endian;
 
 std::string short_element(std::uint16_t number, std::uint32_t value) {
-  return element(0x0028, number, "US", little_endian(value, 2));
+  return dicom_element(0x0028, number, "US", little_endian(value, 2));
 }
 
 /// A slice of 4 x 3 pixels, all of `value`, at z = 2 n mm.
-void write_slice(const fs::path& file, const std::string& uid, const std::string& modality, int n, int value) {
+void write_flat_slice(const fs::path& file, const std::string& uid, const std::string& modality, int n, int value) {
   std::string pixels;
   for (int p = 0; p < 12; ++p) pixels += little_endian(static_cast<std::uint32_t>(value), 2);
   fs::create_directories(file.parent_path());
   testing::write_bytes(
-      file, std::string(128, '\0').append("DICM") + element(0x0002, 0x0010, "UI", "1.2.840.10008.1.2.1") +
-                element(0x0008, 0x0060, "CS", modality) + element(0x0008, 0x103e, "LO", "series of " + modality) +
-                element(0x0020, 0x000e, "UI", uid) + element(0x0020, 0x0032, "DS", "0\\0\\" + std::to_string(2 * n)) +
-                element(0x0020, 0x0037, "DS", "1\\0\\0\\0\\1\\0") + short_element(0x0002, 1) +
-                element(0x0028, 0x0004, "CS", "MONOCHROME2") + short_element(0x0010, 3) + short_element(0x0011, 4) +
-                element(0x0028, 0x0030, "DS", "1\\1") + short_element(0x0100, 16) + short_element(0x0101, 16) +
-                short_element(0x0102, 15) + short_element(0x0103, 1) + element(0x7fe0, 0x0010, "OW", pixels));
+      file,
+      std::string(128, '\0').append("DICM") + dicom_element(0x0002, 0x0010, "UI", "1.2.840.10008.1.2.1") +
+          dicom_element(0x0008, 0x0060, "CS", modality) + dicom_element(0x0008, 0x103e, "LO", "series of " + modality) +
+          dicom_element(0x0020, 0x000e, "UI", uid) +
+          dicom_element(0x0020, 0x0032, "DS", "0\\0\\" + std::to_string(2 * n)) +
+          dicom_element(0x0020, 0x0037, "DS", "1\\0\\0\\0\\1\\0") + short_element(0x0002, 1) +
+          dicom_element(0x0028, 0x0004, "CS", "MONOCHROME2") + short_element(0x0010, 3) + short_element(0x0011, 4) +
+          dicom_element(0x0028, 0x0030, "DS", "1\\1") + short_element(0x0100, 16) + short_element(0x0101, 16) +
+          short_element(0x0102, 15) + short_element(0x0103, 1) + dicom_element(0x7fe0, 0x0010, "OW", pixels));
 }
 
 void write_series(const fs::path& folder, const std::string& uid, const std::string& modality, int slices, int value) {
-  for (int n = 0; n < slices; ++n) write_slice(folder / ("image" + std::to_string(n)), uid, modality, n, value);
+  for (int n = 0; n < slices; ++n) write_flat_slice(folder / ("image" + std::to_string(n)), uid, modality, n, value);
 }
 
 int first_voxel(const Result<volume::CtGrid>& ct) {
@@ -91,8 +83,8 @@ TEST(FindSeries, SeveralAreListedAndChosenByNumberOrUid) {
 
 TEST(FindSeries, OneSeriesInTwoFoldersIsOne) {
   const TemporaryFolder folder;
-  write_slice(folder / "a/1", "1.2.3", "CT", 0, 10);
-  write_slice(folder / "b/2", "1.2.3", "CT", 1, 10);
+  write_flat_slice(folder / "a/1", "1.2.3", "CT", 0, 10);
+  write_flat_slice(folder / "b/2", "1.2.3", "CT", 1, 10);
   const auto series = list_dicom_series(folder.path());
   ASSERT_TRUE(series) << series.error().text();
   ASSERT_EQ(series->size(), 1u);

@@ -70,7 +70,7 @@ void read_header(itk::ImageIOBase& io) {
 }
 
 /// May throw exceptions of ITK.
-Result<ItkImage> read_throwing(itk::ImageIOBase& io, const CheckedImage& checked, ImageFormat format) {
+Result<ItkImage> read_image_throwing(itk::ImageIOBase& io, const CheckedImage& checked, ImageFormat format) {
   const std::string where = checked.file.path().string();
   io.SetFileName(checked.library_path.string());
   read_header(io);
@@ -99,9 +99,9 @@ Result<ItkImage> read_throwing(itk::ImageIOBase& io, const CheckedImage& checked
 
 Result<ItkImage> read_with_itk(const CheckedImage& checked, ImageFormat format) {
   const std::string where = checked.file.path().string();
-  silence_itk();
+  const ItkCall call;
   try {
-    return read_throwing(*make_image_io(format), checked, format);
+    return read_image_throwing(*make_image_io(format), checked, format);
   } catch (const std::bad_alloc&) {
     return fail("not enough memory to read the image", where, "close other programs or crop the image");
   } catch (const std::exception&) {
@@ -111,7 +111,7 @@ Result<ItkImage> read_with_itk(const CheckedImage& checked, ImageFormat format) 
 }
 
 Result<TextFields> read_fields_with_itk(const CheckedImage& checked, ImageFormat format) {
-  silence_itk();
+  const ItkCall call;
   try {
     const auto io = make_image_io(format);
     io->SetFileName(checked.library_path.string());

@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <fstream>
 #include <map>
 #include <optional>
 #include <vector>
 
+#include "core/ascii.h"
 #include "core/parse_number.h"
 #include "io/image/detail/header_payload.h"
 #include "io/image/detail/inflate_input.h"
@@ -19,13 +19,13 @@ namespace trocar::io::detail {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::int64_t kMaxSide = 65'535;            ///< Voxels along one axis.
-constexpr std::uint64_t kMaxVoxels = 2'000'000'000;  ///< 4 GB of int16, far above any CT.
-constexpr std::string_view kSegmentation = ".seg";   ///< 3D Slicer adds it before the ending.
-constexpr std::size_t kMaxHeaderBytes = 16u << 20;   ///< .seg.nrrd files with many segments have long headers.
+constexpr std::int64_t kMaxSide = 65'535;                ///< Voxels along one axis.
+constexpr std::uint64_t kMaxVoxels = 2'000'000'000;      ///< 4 GB of int16, far above any CT.
+constexpr std::string_view kSegmentation = ".seg";       ///< 3D Slicer adds it before the ending.
+constexpr std::size_t kMaxImageHeaderBytes = 16u << 20;  ///< .seg.nrrd files with many segments have long headers.
 
 std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::transform(text.begin(), text.end(), text.begin(), ascii::to_lower);
   return text;
 }
 
@@ -38,7 +38,7 @@ std::string trim(std::string_view text) {
 std::vector<std::int64_t> whole_numbers(const std::string& text) {
   std::vector<std::int64_t> numbers;
   for (std::string_view rest = text; !rest.empty();) {
-    if (std::isspace(static_cast<unsigned char>(rest.front()))) {
+    if (ascii::is_space(rest.front())) {
       rest.remove_prefix(1);
       continue;
     }
@@ -120,7 +120,7 @@ std::optional<TextHeader> read_text_header(const InputFile& input, char separato
   std::ifstream file(input.pinned_path(), std::ios::binary);
   TextHeader header;
   std::string line;
-  while (header.end < kMaxHeaderBytes && std::getline(file, line)) {
+  while (header.end < kMaxImageHeaderBytes && std::getline(file, line)) {
     header.end += line.size() + (file.eof() ? 0 : 1);
     if (!is_plain_line(line)) return std::nullopt;
     if (trim(line).empty()) return header;

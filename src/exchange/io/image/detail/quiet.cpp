@@ -25,7 +25,7 @@ Muting& muting() {
 
 }  // namespace
 
-void silence_itk() {
+ItkCall::ItkCall() {
   static std::once_flag once;
   std::call_once(once, [] {
     itk::Object::SetGlobalWarningDisplay(false);

@@ -17,7 +17,7 @@
 namespace trocar::io::detail {
 namespace {
 
-constexpr std::size_t kGrain = std::size_t{1} << 18;
+constexpr std::size_t kVoxelsAtOnce = std::size_t{1} << 18;
 
 /// Calls use(S{}) with the C++ type S of the stored numbers.
 template <class Use>
@@ -71,7 +71,7 @@ std::optional<double> convert_all(const RawVoxels& in, std::span<T> out, const C
     TROCAR_CHECK(in.bytes.size() == out.size() * sizeof(S));
     std::atomic<bool> any_bad{false};
     double bad_value = 0.0;
-    parallel_for(out.size(), kGrain, [&](std::size_t first, std::size_t last) {
+    parallel_for(out.size(), kVoxelsAtOnce, [&](std::size_t first, std::size_t last) {
       const std::byte* source = in.bytes.data() + first * sizeof(S);
       for (std::size_t n = first; n < last; ++n, source += sizeof(S)) {
         S stored;

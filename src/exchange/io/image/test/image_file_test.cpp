@@ -14,18 +14,13 @@ namespace {
 
 using testing::expect_same_place;
 using testing::numbered_grid;
+using testing::numbers;
 using testing::oblique_geometry;
 using testing::read_bytes;
 using testing::write_bytes;
 
 // NIfTI keeps the place in single precision; the other formats in decimal text of full precision.
 constexpr double kSinglePrecision_mm = 1e-4;
-
-std::vector<std::int16_t> numbers(std::size_t count) {
-  std::vector<std::int16_t> values(count);
-  for (std::size_t n = 0; n < count; ++n) values[n] = static_cast<std::int16_t>(n);
-  return values;
-}
 
 class EveryFormat : public ::testing::TestWithParam<const char*> {
  protected:

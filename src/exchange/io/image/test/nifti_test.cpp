@@ -9,6 +9,7 @@ namespace trocar::io {
 namespace {
 
 using testing::numbered_grid;
+using testing::numbers;
 using testing::read_bytes;
 using testing::write_bytes;
 
@@ -57,12 +58,6 @@ HandMadeNifti small_nifti(std::int16_t code, std::vector<T> voxels) {
 
 constexpr std::int16_t kNiftiInt16 = 4;
 constexpr std::int16_t kNiftiFloat = 16;
-
-std::vector<std::int16_t> numbers(std::size_t count) {
-  std::vector<std::int16_t> values(count);
-  for (std::size_t n = 0; n < count; ++n) values[n] = static_cast<std::int16_t>(n);
-  return values;
-}
 
 TEST(Nifti, TurnsRasNiftiIntoLps) {
   TemporaryFolder folder;

@@ -4,10 +4,10 @@
 #include <array>
 #include <filesystem>
 
+#include "io/patient/label_map.h"
+
 namespace trocar::io::detail {
 namespace {
-
-constexpr int kMaxLabel = 255;
 
 /// Merges a mask into a source on the same grid if they do not overlap. A hundred such masks take the memory of one.
 bool try_join(const anatomy::LabelSource& mask, anatomy::LabelSource& into) {

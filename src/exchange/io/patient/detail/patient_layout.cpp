@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr float kDistanceUnit_mm = 0.01F;
-constexpr std::size_t kGrain = std::size_t{1} << 18;
+constexpr std::size_t kDistancesAtOnce = std::size_t{1} << 18;
 
 }  // namespace
 
@@ -30,7 +30,7 @@ volume::CtGrid to_hundredths(const volume::FloatGrid& distance_mm) {
   volume::CtGrid hundredths;
   hundredths.geometry = distance_mm.geometry;
   hundredths.voxels.resize(distance_mm.voxels.size());
-  parallel_for(distance_mm.voxels.size(), kGrain, [&](std::size_t first, std::size_t last) {
+  parallel_for(distance_mm.voxels.size(), kDistancesAtOnce, [&](std::size_t first, std::size_t last) {
     for (std::size_t n = first; n < last; ++n)
       hundredths.voxels[n] = static_cast<std::int16_t>(
           std::lround(std::clamp(distance_mm.voxels[n] / kDistanceUnit_mm, -32767.0F, 32767.0F)));
@@ -42,7 +42,7 @@ volume::FloatGrid from_hundredths(const volume::CtGrid& hundredths) {
   volume::FloatGrid distance_mm;
   distance_mm.geometry = hundredths.geometry;
   distance_mm.voxels.resize(hundredths.voxels.size());
-  parallel_for(hundredths.voxels.size(), kGrain, [&](std::size_t first, std::size_t last) {
+  parallel_for(hundredths.voxels.size(), kDistancesAtOnce, [&](std::size_t first, std::size_t last) {
     for (std::size_t n = first; n < last; ++n)
       distance_mm.voxels[n] = kDistanceUnit_mm * static_cast<float>(hundredths.voxels[n]);
   });

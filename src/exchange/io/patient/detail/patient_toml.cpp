@@ -46,7 +46,7 @@ Result<anatomy::LabelTable> labels_of(const config::TomlTable& file) {
   return table;
 }
 
-Result<PatientMeshEntry> mesh_of(const config::TomlTable& table) {
+Result<PatientMeshEntry> mesh_entry_of(const config::TomlTable& table) {
   TROCAR_TRY_STATUS(table.check_keys({"name", "file"}));
   PatientMeshEntry entry;
   TROCAR_TRY(entry.name, table.string("name"));
@@ -130,7 +130,7 @@ Result<PatientDescription> load_patient_toml(const fs::path& path, const fs::pat
   TROCAR_TRY(patient.label_table, labels_of(file));
   TROCAR_TRY(const std::vector<config::TomlTable> meshes, file.tables("meshes"));
   for (const config::TomlTable& mesh : meshes) {
-    TROCAR_TRY(PatientMeshEntry entry, mesh_of(mesh));
+    TROCAR_TRY(PatientMeshEntry entry, mesh_entry_of(mesh));
     patient.meshes.push_back(std::move(entry));
   }
   TROCAR_TRY(const std::vector<config::TomlTable> repairs, file.tables("repairs"));

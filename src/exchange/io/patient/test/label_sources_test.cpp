@@ -13,7 +13,7 @@ using testing::oblique_geometry;
 using testing::test_data;
 using testing::write_bytes;
 
-using Names = std::vector<std::pair<int, std::string>>;
+using LabelNames = std::vector<std::pair<int, std::string>>;
 
 /// A label volume with the values of `values` in its first voxels.
 volume::LabelGrid labels_with(const std::vector<std::uint8_t>& values) {
@@ -44,7 +44,7 @@ TEST(LabelSources, SingleMaskIsNamedAfterItsFile) {
     const auto sources = read_label_sources({folder / "liver.nii.gz"}, map);
     ASSERT_TRUE(sources) << error_of(sources);
     ASSERT_EQ(sources->size(), 1U);
-    EXPECT_EQ((*sources)[0].names, (Names{{255, "liver"}}));
+    EXPECT_EQ((*sources)[0].names, (LabelNames{{255, "liver"}}));
   }
 }
 
@@ -53,12 +53,12 @@ TEST(LabelSources, NumbersTakeTheirNamesFromTheMap) {
   ASSERT_TRUE(write_image(labels_with({5, 0, 2, 5}), folder / "seg.nii.gz"));
   const auto known = read_label_sources({folder / "seg.nii.gz"}, "totalsegmentator");
   ASSERT_TRUE(known) << error_of(known);
-  EXPECT_EQ((*known)[0].names, (Names{{2, "kidney_right"}, {5, "liver"}}));
+  EXPECT_EQ((*known)[0].names, (LabelNames{{2, "kidney_right"}, {5, "liver"}}));
 
   write_bytes(folder / "map.toml", "[labels]\n2 = \"spleen\"\n5 = \"aorta\"\n77 = \"unused\"\n");
   const auto own = read_label_sources({folder / "seg.nii.gz"}, (folder / "map.toml").string());
   ASSERT_TRUE(own) << error_of(own);
-  EXPECT_EQ((*own)[0].names, (Names{{2, "spleen"}, {5, "aorta"}}));
+  EXPECT_EQ((*own)[0].names, (LabelNames{{2, "spleen"}, {5, "aorta"}}));
 }
 
 TEST(LabelSources, OneNumberOfAMapIsNoMask) {
@@ -66,7 +66,7 @@ TEST(LabelSources, OneNumberOfAMapIsNoMask) {
   ASSERT_TRUE(write_image(labels_with({5, 5}), folder / "segmentation_of_case_7.nrrd"));
   const auto sources = read_label_sources({folder / "segmentation_of_case_7.nrrd"}, "totalsegmentator");
   ASSERT_TRUE(sources) << error_of(sources);
-  EXPECT_EQ((*sources)[0].names, (Names{{5, "liver"}}));
+  EXPECT_EQ((*sources)[0].names, (LabelNames{{5, "liver"}}));
 }
 
 TEST(LabelSources, AMaskIsNamedAfterItsFileWithoutTheEnding) {
@@ -78,7 +78,7 @@ TEST(LabelSources, AMaskIsNamedAfterItsFileWithoutTheEnding) {
   for (const char* ending : {".nii", ".nii.gz", ".mha", ".nrrd", ".NRRD", ".seg.nrrd", ".Seg.nrrd"}) {
     const auto sources = read_label_sources({folder / (std::string("liver") + ending)}, "");
     ASSERT_TRUE(sources) << ending << ": " << error_of(sources);
-    EXPECT_EQ((*sources)[0].names, (Names{{1, "liver"}})) << ending;
+    EXPECT_EQ((*sources)[0].names, (LabelNames{{1, "liver"}})) << ending;
   }
 }
 
@@ -89,7 +89,7 @@ TEST(LabelSources, NumbersWithoutNamesAreAnError) {
   // What the map lacks comes without a name: build_patient lists it with that of other files.
   const auto sources = read_label_sources({folder / "seg.nii.gz"}, "totalsegmentator");
   ASSERT_TRUE(sources) << error_of(sources);
-  EXPECT_EQ((*sources)[0].names, (Names{{2, "kidney_right"}, {5, "liver"}}));
+  EXPECT_EQ((*sources)[0].names, (LabelNames{{2, "kidney_right"}, {5, "liver"}}));
 }
 
 TEST(LabelSources, BadMapsAreNamed) {
@@ -109,23 +109,23 @@ TEST(LabelSources, BadMapsAreNamed) {
 TEST(LabelSources, AMapIgnoresRenamesAndTakesTheRest) {
   TemporaryFolder folder;
   ASSERT_TRUE(write_image(labels_with({1, 2, 3, 5, 200}), folder / "seg.nii.gz"));
-  const auto names = [&](const std::string& map, const std::string& file) -> Names {
+  const auto names = [&](const std::string& map, const std::string& file) -> LabelNames {
     write_bytes(folder / "map.toml", map);
     const auto sources = read_label_sources({folder / file}, (folder / "map.toml").string());
     if (!sources || sources->size() != 1) return {{-1, error_of(sources)}};
     return (*sources)[0].names;
   };
   EXPECT_EQ(names("[labels]\n1 = \"liver\"\n2 = \"ignore\"\n\"*\" = \"fat\"\n", "seg.nii.gz"),
-            (Names{{1, "liver"}, {2, "ignore"}, {3, "fat"}, {5, "fat"}, {200, "fat"}}));
+            (LabelNames{{1, "liver"}, {2, "ignore"}, {3, "fat"}, {5, "fat"}, {200, "fat"}}));
   EXPECT_EQ(names("ignore = [1, 2, 3, 200]\nbase = \"totalsegmentator\"\n", "seg.nii.gz"),
-            (Names{{1, "ignore"}, {2, "ignore"}, {3, "ignore"}, {5, "liver"}, {200, "ignore"}}));
-  // Names that files bring: of a mask, or of a segment.
+            (LabelNames{{1, "ignore"}, {2, "ignore"}, {3, "ignore"}, {5, "liver"}, {200, "ignore"}}));
+  // LabelNames that files bring: of a mask, or of a segment.
   ASSERT_TRUE(write_image(labels_with({4, 4}), folder / "my_roi.nii.gz"));
-  EXPECT_EQ(names("[labels]\nmy_roi = \"liver_tumor\"\n", "my_roi.nii.gz"), (Names{{4, "liver_tumor"}}));
-  EXPECT_EQ(names("[labels]\n\"*\" = \"ignore\"\n", "my_roi.nii.gz"), (Names{{4, "ignore"}}));
-  EXPECT_EQ(names("ignore = [\"my_roi\", \"3\"]\n", "my_roi.nii.gz"), (Names{{4, "ignore"}}));
+  EXPECT_EQ(names("[labels]\nmy_roi = \"liver_tumor\"\n", "my_roi.nii.gz"), (LabelNames{{4, "liver_tumor"}}));
+  EXPECT_EQ(names("[labels]\n\"*\" = \"ignore\"\n", "my_roi.nii.gz"), (LabelNames{{4, "ignore"}}));
+  EXPECT_EQ(names("ignore = [\"my_roi\", \"3\"]\n", "my_roi.nii.gz"), (LabelNames{{4, "ignore"}}));
   ASSERT_TRUE(write_image(labels_with({4, 4}), folder / "liver.nii.gz"));
-  EXPECT_EQ(names("[labels]\n\"*\" = \"ignore\"\n", "liver.nii.gz"), (Names{{4, "liver"}}));
+  EXPECT_EQ(names("[labels]\n\"*\" = \"ignore\"\n", "liver.nii.gz"), (LabelNames{{4, "liver"}}));
 }
 
 TEST(LabelSources, AFolderMayHaveIgnoredMasks) {
@@ -163,7 +163,7 @@ TEST(LabelSources, AnEmptyMaskCoversItsBoxWithFewVoxels) {
   const auto sources = read_label_sources({folder.path()}, "");
   ASSERT_TRUE(sources) << error_of(sources);
   ASSERT_EQ(sources->size(), 1U);
-  EXPECT_EQ((*sources)[0].names, (Names{{1, "brain"}}));
+  EXPECT_EQ((*sources)[0].names, (LabelNames{{1, "brain"}}));
   const volume::GridGeometry &coarse = (*sources)[0].labels.geometry, whole = oblique_geometry();
   EXPECT_LT(coarse.voxel_count(), whole.voxel_count());
   const Vec3 half = Vec3::Constant(-0.5);
@@ -176,7 +176,7 @@ TEST(LabelSources, AMaskInAFolderIsNeverASegmentation) {
   ASSERT_TRUE(write_image(labels_with({1, 1}), folder / "my_lesion.nii.gz"));
   const auto sources = read_label_sources({folder.path()}, "totalsegmentator");
   ASSERT_TRUE(sources) << error_of(sources);
-  EXPECT_EQ((*sources)[0].names, (Names{{1, "my_lesion"}}));
+  EXPECT_EQ((*sources)[0].names, (LabelNames{{1, "my_lesion"}}));
 }
 
 std::string seg_nrrd(const std::string& sizes_and_kinds, const std::string& segments, const std::string& voxels) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -19,8 +18,8 @@ namespace trocar::io::detail {
 namespace {
 
 constexpr std::size_t kMaxLineBytes = std::size_t{1} << 20;
-constexpr std::uint64_t kMaxHeaderBytes = std::uint64_t{64} << 20;  ///< 100,000 frames of three transforms.
-constexpr double kMaxSide = 65'535;
+constexpr std::uint64_t kMaxSequenceHeaderBytes = std::uint64_t{64} << 20;  ///< 100,000 frames of three transforms.
+constexpr double kMaxFrameSide = 65'535;
 constexpr double kMaxFrames = 1'000'000;
 constexpr double kMaxPixels = 2e9;
 constexpr std::string_view kFramePrefix = "Seq_Frame";
@@ -59,7 +58,7 @@ Result<HeaderText> read_text(const InputFile& input) {
     text.end += static_cast<std::uint64_t>(file.gcount());
     const std::string_view content(line.get());
     const auto separator = content.find('=');
-    if (separator == std::string_view::npos || text.end > kMaxHeaderBytes) break;
+    if (separator == std::string_view::npos || text.end > kMaxSequenceHeaderBytes) break;
     const std::string_view key = trimmed(content.substr(0, separator));
     const std::string value(trimmed(content.substr(separator + 1)));
     if (const auto frame_key = find_frame_key(key)) {
@@ -94,7 +93,7 @@ Status take_size(const HeaderText& text, const std::string& where, ultrasound::T
   const double columns = (*sizes)[0], rows = (*sizes)[1], frames = sizes->back();
   for (const double size : {columns, rows, frames})
     if (size < 1.0 || size != std::floor(size)) return fail("the field DimSize is damaged", where, kExportAgain);
-  if (columns > kMaxSide || rows > kMaxSide || frames > kMaxFrames || columns * rows * frames > kMaxPixels)
+  if (columns > kMaxFrameSide || rows > kMaxFrameSide || frames > kMaxFrames || columns * rows * frames > kMaxPixels)
     return fail("the header claims an impossible size", where, kExportAgain);
   if (text.frames.empty()) return fail("has no fields of tracked frames (Seq_Frame...)", where, kNeeded);
   if (text.frames.size() != static_cast<std::size_t>(frames) || text.frames.rbegin()->first >= text.frames.size())

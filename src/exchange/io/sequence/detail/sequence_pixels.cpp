@@ -11,7 +11,7 @@
 namespace trocar::io::detail {
 namespace {
 
-constexpr int kCompressionLevel = 1;                  ///< Speckle hardly compresses: higher levels only take more time.
+constexpr int kSpeckleCompression = 1;                ///< Speckle hardly compresses: higher levels only take more time.
 constexpr std::size_t kPiece = std::size_t{1} << 30;  ///< zlib counts in 32 bits.
 
 /// Unpacks a gzip or zlib stream of at most `packed` bytes into all of `out`. Returns false if it is damaged or too
@@ -62,7 +62,7 @@ Result<std::string> pack(std::span<const std::uint8_t> bytes) {
   uLongf packed_bytes = compressBound(static_cast<uLong>(bytes.size()));
   std::string packed(packed_bytes, '\0');
   const int status = compress2(reinterpret_cast<Bytef*>(packed.data()), &packed_bytes, bytes.data(),
-                               static_cast<uLong>(bytes.size()), kCompressionLevel);
+                               static_cast<uLong>(bytes.size()), kSpeckleCompression);
   if (status != Z_OK) return fail("not enough memory to pack the pixels", {}, "close other programs");
   packed.resize(packed_bytes);
   return packed;

@@ -10,7 +10,7 @@
 namespace trocar::io::detail {
 namespace {
 
-constexpr std::size_t kMaxDepth = 32;
+constexpr std::size_t kMaxElementDepth = 32;
 constexpr std::size_t kMaxElements = 100'000;
 
 /// Collects elements while VTK's parser (expat) reads the text.
@@ -31,7 +31,7 @@ class Collector : public vtkXMLParser {
 
   void StartElement(const char* name, const char** attributes) override {
     open_.emplace_back(name);
-    is_too_much = is_too_much || open_.size() > kMaxDepth || elements.size() >= kMaxElements;
+    is_too_much = is_too_much || open_.size() > kMaxElementDepth || elements.size() >= kMaxElements;
     if (is_too_much) return;
     XmlElement element;
     for (const std::string& part : open_) element.path += (element.path.empty() ? "" : "/") + part;

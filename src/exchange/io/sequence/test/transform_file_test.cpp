@@ -1,5 +1,7 @@
 #include "io/sequence/transform_file.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "core/random.h"
@@ -95,11 +97,10 @@ TEST(TransformFile, TurnsAboutTheCentreOfRotation) {
 
 TEST(TransformFile, ReadsTheRigidKindsOfItk) {
   const double half = std::sqrt(0.5);
-  for (const std::string& text :
-       {tfm("Euler3DTransform_double_3_3", "0 0 1.5707963267948966 1 2 3", "0 0 0 0"),
-        tfm("VersorRigid3DTransform_double_3_3", "0 0 " + std::to_string(half) + " 1 2 3", "0 0 0"),
-        tfm("MatrixOffsetTransformBase_double_3_3", "0 -1 0 1 0 0 0 0 1 1 2 3", "0 0 0"),
-        tfm("AffineTransform_float_3_3", "0 -1 0 1 0 0 0 0 1 1 2 3", "0 0 0")}) {
+  for (const std::string& text : {tfm("Euler3DTransform_double_3_3", "0 0 1.5707963267948966 1 2 3", "0 0 0 0"),
+                                  tfm("VersorRigid3DTransform_double_3_3", fmt::format("0 0 {} 1 2 3", half), "0 0 0"),
+                                  tfm("MatrixOffsetTransformBase_double_3_3", "0 -1 0 1 0 0 0 0 1 1 2 3", "0 0 0"),
+                                  tfm("AffineTransform_float_3_3", "0 -1 0 1 0 0 0 0 1 1 2 3", "0 0 0")}) {
     const auto pose = read_text(text);
     ASSERT_TRUE(pose) << pose.error().text() << text;
     EXPECT_LT((*pose * Vec3(1, 0, 0) - Vec3(1, 3, 3)).norm(), 1e-5) << text;
