@@ -20,7 +20,7 @@ constexpr const char* kRecorded = "panorama";
 constexpr const char* kSimulated = "raycast";
 constexpr double kReach_mm = 15.0;  ///< From the present pose, as from landmarks in `trocar register`.
 
-auto find_landmark(std::vector<registration::NamedPoint>& landmarks, const std::string& name) {
+auto find_ultrasound_landmark(std::vector<registration::NamedPoint>& landmarks, const std::string& name) {
   return std::find_if(landmarks.begin(), landmarks.end(), [&](const auto& point) { return point.name == name; });
 }
 
@@ -92,7 +92,8 @@ Result<CaseDraft> set_ultrasound_landmark(CaseDraft draft, const std::string& na
   if (name.empty()) return fail("a landmark needs a name", {}, "choose or type one");
   TROCAR_TRY_STATUS(detail::check_in_volume(draft.ultrasound->gray_U.geometry, p_U, "landmark of the ultrasound",
                                             "click inside the ultrasound"));
-  if (const auto found = find_landmark(draft.ultrasound_landmarks, name); found != draft.ultrasound_landmarks.end())
+  if (const auto found = find_ultrasound_landmark(draft.ultrasound_landmarks, name);
+      found != draft.ultrasound_landmarks.end())
     found->p = p_U;
   else
     draft.ultrasound_landmarks.push_back({name, p_U});
@@ -100,7 +101,7 @@ Result<CaseDraft> set_ultrasound_landmark(CaseDraft draft, const std::string& na
 }
 
 Result<CaseDraft> remove_ultrasound_landmark(CaseDraft draft, const std::string& name) {
-  const auto found = find_landmark(draft.ultrasound_landmarks, name);
+  const auto found = find_ultrasound_landmark(draft.ultrasound_landmarks, name);
   if (found == draft.ultrasound_landmarks.end())
     return fail("the ultrasound has no such landmark", name, "select one of the list");
   draft.ultrasound_landmarks.erase(found);

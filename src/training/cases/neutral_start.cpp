@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "cases/detail/start_view.h"
 #include "core/files/data_dir.h"
 #include "ultrasound/probe/face_fit.h"
 #include "ultrasound/probe/probe_placement.h"
@@ -21,21 +22,16 @@ namespace {
 
 constexpr double kPastTarget_mm = 25.0;      ///< Minimum distance of the needle's line from the target.
 constexpr double kBesideZone_mm = 20.0;      ///< From the edge of the task's own entry zone.
-constexpr double kFarthest_mm = 160.0;       ///< From the entry; farther ones only if there is no other.
+constexpr double kFarthestPlace_mm = 160.0;  ///< From the entry; farther ones only if there is no other.
 constexpr double kPatientsEnd_mm = 20.0;     ///< Minimum extent of the body in the image towards head and feet.
-constexpr double kSlope_mm = 6.0;            ///< The skin's normal is averaged over a patch of this size.
 constexpr double kLeastUp = 0.3;             ///< Of the skin's unit normal, towards the working side.
 constexpr double kBetween_mm = 10.0;         ///< Distance of the examined positions, and
 constexpr double kFarthestLevel_mm = 150.0;  ///< maximum distance from the organ's level.
 constexpr double kStep_mm = 2.0;
 constexpr double kShaftStep_mm = 10.0;
 constexpr double kShaftFree_mm = 8.0;  ///< Between shaft and skin.
-constexpr double kPress_mm = 3.0;
-constexpr double kTouching = 0.8;
-constexpr int kLines = 33;
 /// From the front, without the plan's part of the liver; then all others in the file's order.
 constexpr std::array kFirstViews{"aorta-transverse", "aorta"};
-constexpr const char* kLesionView = "liver-lesion";
 
 struct Skin {
   Vec3 p_P;
@@ -67,7 +63,7 @@ class UpperSkin {
   Vec3 outwards(const Vec3& p_P) const {
     Vec3 slope;
     for (int a = 0; a < 3; ++a) {
-      const Vec3 step = kSlope_mm * Vec3::Unit(a);
+      const Vec3 step = detail::kSlope_mm * Vec3::Unit(a);
       slope[a] = mm(p_P + step) - mm(p_P - step);
     }
     return slope.norm() > 1e-9 ? Vec3(slope.normalized()) : up_P_;
@@ -154,7 +150,7 @@ std::optional<Pose> neutral_needle(const Case& the_case, const UpperSkin& skin, 
     if (!is_away(the_case, place.p_P) || !skin.is_shaft_free(place, the_case.needle.length_mm)) continue;
     if (distance_to_line_mm(place.p_P, place.out_P, path_P.b) < kPastTarget_mm) continue;
     if (X_PT && (place.p_P - X_PT->p()).norm() < NeutralStart::kApart_mm) continue;
-    const bool is_near = (place.p_P - path_P.a).norm() <= kFarthest_mm;
+    const bool is_near = (place.p_P - path_P.a).norm() <= kFarthestPlace_mm;
     if (is_near || found == nullptr) found = &place;
     if (is_near) break;
   }
@@ -174,7 +170,7 @@ class NeutralProbe {
     for (const ultrasound::ProbeView& view : views) names.push_back(view.name);
     const std::vector<std::string> possible = ultrasound::possible_views(*case_.patient, views);
     for (const std::string& name : names) {
-      if (name == kLesionView || std::find(possible.begin(), possible.end(), name) == possible.end()) continue;
+      if (name == detail::kLesionView || std::find(possible.begin(), possible.end(), name) == possible.end()) continue;
       const auto view = ultrasound::choose_view(*case_.patient, views, name);
       if (!view) continue;
       const auto placed = ultrasound::place_probe(*case_.patient, *view, transducer_);
@@ -188,7 +184,7 @@ class NeutralProbe {
   /// Across the body, at the first position with contact.
   std::optional<Pose> anywhere() const {
     const ultrasound::ScanGeometry scan =
-        ultrasound::make_scan_geometry(transducer_, transducer_.greatest_depth_mm, kLines, 16);
+        ultrasound::make_scan_geometry(transducer_, transducer_.greatest_depth_mm, detail::kLines, 16);
     for (const Skin& place : skin_.places()) {
       if (!is_neutral(place.p_P)) continue;
       Mat3 R_PT;
@@ -197,8 +193,8 @@ class NeutralProbe {
       if (R_PT.col(0).x() > 0.0) R_PT.col(0) *= -1.0;
       R_PT.col(2) = R_PT.col(0).cross(R_PT.col(1));
       const ultrasound::FaceFit fit =
-          ultrasound::fit_face(case_.patient->skin_distance_mm, scan, place.p_P, R_PT, kPress_mm);
-      if (fit.touching >= kTouching) return fit.X_PT;
+          ultrasound::fit_face(case_.patient->skin_distance_mm, scan, place.p_P, R_PT, detail::kPress_mm);
+      if (fit.touching >= detail::kTouching) return fit.X_PT;
     }
     return std::nullopt;
   }

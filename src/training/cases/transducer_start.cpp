@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 
+#include "cases/detail/start_view.h"
 #include "core/files/data_dir.h"
 #include "ultrasound/probe/face_fit.h"
 #include "ultrasound/probe/probe_placement.h"
@@ -16,22 +17,17 @@ namespace trocar::cases {
 namespace {
 
 constexpr const char* kTransducer = "C5-2";  // of the abdomen's view
-constexpr const char* kLesionView = "liver-lesion";
-constexpr int kLines = 33;
-constexpr int kPlanes = 12;             ///< Around the path: every 15 degrees.
-constexpr double kBesideFace_mm = 8.0;  ///< Free skin between the end of the face and the entry.
-constexpr double kFarthest_mm = 24.0;   ///< Additional distance along the skin.
+constexpr int kPlanes = 12;                  ///< Around the path: every 15 degrees.
+constexpr double kBesideFace_mm = 8.0;       ///< Free skin between the end of the face and the entry.
+constexpr double kFarthestSlide_mm = 24.0;   ///< Additional distance along the skin.
 constexpr double kSlide_mm = 4.0;
-constexpr double kPress_mm = 3.0;
 constexpr double kWayStep_mm = 2.0;
-constexpr double kSlope_mm = 6.0;   ///< The skin's normal is averaged over a patch of this size.
 constexpr int kGasBelow_hu = -300;  ///< As in src/patient/anatomy; gas in bowel is labelled bowel.
 constexpr double kBehindTarget = 1.33;
 constexpr double kDepthStep_mm = 10.0;
 constexpr double kLeastDepth_mm = 80.0;
 constexpr double kTiltedSkin = 35.0 * std::numbers::pi / 180.0;  ///< Maximum tilt of the plane relative to the skin.
-constexpr double kTouching = 0.8;
-constexpr std::array kSeen{0.3, 0.5, 0.7, 0.85, 1.0};  ///< Checked points of the path.
+constexpr std::array kSeen{0.3, 0.5, 0.7, 0.85, 1.0};            ///< Checked points of the path.
 
 // Weights of the cost of a pose; assumed, chosen on the embedded patients.
 constexpr double kTargetCost = 4.0;
@@ -53,7 +49,7 @@ class InPlane {
   InPlane(const anatomy::VirtualPatient& patient, const Segment& path_P, const ultrasound::Transducer& transducer)
       : patient_(patient),
         path_P_(path_P),
-        scan_(ultrasound::make_scan_geometry(transducer, transducer.greatest_depth_mm, kLines, 16)) {
+        scan_(ultrasound::make_scan_geometry(transducer, transducer.greatest_depth_mm, detail::kLines, 16)) {
     half_face_mm_ = std::abs(scan_.line_origin(0.0).x());
     for (const anatomy::Label& label : patient.label_table.labels)
       hides_[label.id] =
@@ -67,7 +63,7 @@ class InPlane {
     for (int i = 0; i < kPlanes; ++i) {
       const Vec3 plane_P = Eigen::AngleAxisd(std::numbers::pi * i / kPlanes, d_P) * across_P;
       for (const double side : {-1.0, 1.0}) {
-        for (double far_mm = 0.0; far_mm <= kFarthest_mm; far_mm += kSlide_mm) {
+        for (double far_mm = 0.0; far_mm <= kFarthestSlide_mm; far_mm += kSlide_mm) {
           const Place place = try_place(side * plane_P, far_mm);
           if (place.cost < best.cost) best = place;
         }
@@ -81,7 +77,7 @@ class InPlane {
   Vec3 outwards(const Vec3& p_P) const {
     Vec3 slope;
     for (int a = 0; a < 3; ++a) {
-      const Vec3 step = kSlope_mm * Vec3::Unit(a);
+      const Vec3 step = detail::kSlope_mm * Vec3::Unit(a);
       slope[a] = skin_mm(p_P + step) - skin_mm(p_P - step);
     }
     return slope.norm() > 1e-9 ? Vec3(slope.normalized()) : Vec3(-path_P_.direction());
@@ -101,7 +97,7 @@ class InPlane {
     const double tilt = std::asin(std::min(1.0, std::abs(normal_P.dot(plane_P))));
     const Vec3 y_P = -(normal_P - normal_P.dot(plane_P) * plane_P).normalized();
     const ultrasound::FaceFit fit =
-        ultrasound::fit_face(patient_.skin_distance_mm, scan_, at_P, oriented(y_P, plane_P), kPress_mm);
+        ultrasound::fit_face(patient_.skin_distance_mm, scan_, at_P, oriented(y_P, plane_P), detail::kPress_mm);
     place.X_PT = fit.X_PT;
     const Vec3 entry_T = fit.X_PT.inverse() * path_P_.a;
     if (std::abs(entry_T.x()) < half_face_mm_ + 0.5 * kBesideFace_mm) return place;
@@ -113,8 +109,8 @@ class InPlane {
     place.target_depth_mm = polar(fit.X_PT, path_P_.b).depth_mm;
     place.cost = kTargetCost * target_hidden + hidden + kDarkCost * dark_share(fit.X_PT, place.target_depth_mm) +
                  kTiltCost * tilt + kContactCost * (1.0 - fit.touching) + kUnderHubCost * under_hub +
-                 kFarCost * far_mm / kFarthest_mm;
-    place.shows_target = target_hidden == 0.0 && tilt < kTiltedSkin && fit.touching > kTouching;
+                 kFarCost * far_mm / kFarthestSlide_mm;
+    place.shows_target = target_hidden == 0.0 && tilt < kTiltedSkin && fit.touching > detail::kTouching;
     return place;
   }
 
@@ -182,7 +178,8 @@ std::optional<Pose> standard_view(const anatomy::VirtualPatient& patient,
                                   const std::vector<ultrasound::ProbeView>& views,
                                   const ultrasound::Transducer& transducer, std::string& title) {
   std::vector<std::string> names = ultrasound::possible_views(patient, views);
-  std::stable_partition(names.begin(), names.end(), [](const std::string& name) { return name == kLesionView; });
+  std::stable_partition(names.begin(), names.end(),
+                        [](const std::string& name) { return name == detail::kLesionView; });
   for (const std::string& name : names) {
     const auto view = ultrasound::choose_view(patient, views, name);
     if (!view) continue;

@@ -13,17 +13,17 @@
 namespace trocar::cohort {
 namespace {
 
-constexpr const char* kWhere = "pass mark";
+constexpr const char* kPassMark = "pass mark";
 
 Result<ScoreDistribution> fit(std::span<const double> scores, const std::string& group) {
   if (scores.size() < 2)
-    return fail(fmt::format("it takes at least 2 {} with a score, not {}", group, scores.size()), kWhere,
+    return fail(fmt::format("it takes at least 2 {} with a score, not {}", group, scores.size()), kPassMark,
                 "record more people");
   TROCAR_TRY_STATUS(check_finite(scores, fmt::format("scores of the {}", group)));
   const auto [least, most] = std::minmax_element(scores.begin(), scores.end());
   if (*least == *most)
     return fail(fmt::format("all {} have the same score ({:.1f}): their distribution has no width", group, *least),
-                kWhere, "record more people, or on harder cases");
+                kPassMark, "record more people, or on harder cases");
   return ScoreDistribution{scores.size(), mean_of(scores), standard_deviation_of(scores)};
 }
 
@@ -45,13 +45,13 @@ Result<PassMark> contrasting_groups(std::span<const double> experts, std::span<c
   if (mark.experts.mean <= mark.novices.mean)
     return fail(fmt::format("the experts' mean score ({:.1f}) is not above the novices' ({:.1f})", mark.experts.mean,
                             mark.novices.mean),
-                kWhere, "check who belongs to which group");
+                kPassMark, "check who belongs to which group");
   // Twice the log ratio is quadratic in the score: with a change of sign it has one root between the means.
   const auto experts_over_novices = [&](double score) {
     return log_density(mark.experts, score) - log_density(mark.novices, score);
   };
   if (experts_over_novices(mark.novices.mean) >= 0.0 || experts_over_novices(mark.experts.mean) <= 0.0)
-    return fail("the distributions of experts and novices overlap too much to cross between their means", kWhere,
+    return fail("the distributions of experts and novices overlap too much to cross between their means", kPassMark,
                 "record more people, or use a score that separates them");
   mark.value = bisect(mark.novices.mean, mark.experts.mean, experts_over_novices);
   mark.expected_false_pass = 1.0 - share_below(mark.novices, mark.value);

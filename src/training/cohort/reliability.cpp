@@ -7,18 +7,19 @@
 namespace trocar::cohort {
 namespace {
 
-constexpr const char* kWhere = "internal consistency";
+constexpr const char* kConsistency = "internal consistency";
 
 Status check_items(std::span<const std::vector<double>> people) {
   if (people.size() < 2)
-    return fail(fmt::format("it takes at least 2 people, not {}", people.size()), kWhere,
+    return fail(fmt::format("it takes at least 2 people, not {}", people.size()), kConsistency,
                 "record attempts of more people");
   const std::size_t items = people.front().size();
-  if (items < 2) return fail(fmt::format("it takes at least 2 items, not {}", items), kWhere, "choose more items");
+  if (items < 2)
+    return fail(fmt::format("it takes at least 2 items, not {}", items), kConsistency, "choose more items");
   for (std::size_t n = 0; n < people.size(); ++n) {
     TROCAR_TRY_STATUS(check_finite(people[n], fmt::format("items of person {}", n + 1)));
     if (people[n].size() != items)
-      return fail(fmt::format("person {} has {} items, the first one {}", n + 1, people[n].size(), items), kWhere,
+      return fail(fmt::format("person {} has {} items, the first one {}", n + 1, people[n].size(), items), kConsistency,
                   "leave out people without all items");
   }
   return {};
@@ -46,7 +47,7 @@ Result<Alpha> cronbach_alpha(std::span<const std::vector<double>> people) {
   const double total_variance = variance_of(totals);
   constexpr double kRounding = 1e-18;  // of the squares of the totals
   if (total_variance <= kRounding * (1.0 + totals.front() * totals.front()))
-    return fail("everyone has the same total", kWhere, "record people of different skill");
+    return fail("everyone has the same total", kConsistency, "record people of different skill");
   Alpha alpha;
   alpha.items = items;
   alpha.people = people.size();

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "geometry/pose.h"
+#include "metrics/detail/body.h"
 #include "metrics/detail/strokes.h"
 #include "tasks/task_labels.h"
 #include "volume/sampling.h"
@@ -13,8 +14,6 @@
 namespace trocar::metrics {
 namespace {
 
-constexpr double kStep_mm = 0.5;         // distance of the points tested for risk structures
-constexpr double kTremor_mm = 1.0;       // smaller motions to and fro do not count as travel
 constexpr double kSkinSearch_mm = 40.0;  // from the tip that pierced the skin back to the resting skin
 
 bool is_valid(const telemetry::TickSample& sample) noexcept {
@@ -35,7 +34,7 @@ Vec3 skin_crossing(const anatomy::VirtualPatient& patient, const Vec3& tip_P, co
     return volume::sample_linear(patient.skin_distance_mm, tip_P - back_mm * axis_P);
   };
   double before_mm = outside_mm(0.0);
-  const double step_mm = before_mm < 0.0 ? kStep_mm : -kStep_mm;
+  const double step_mm = before_mm < 0.0 ? detail::kTestedEvery_mm : -detail::kTestedEvery_mm;
   for (double back_mm = step_mm; std::abs(back_mm) <= kSkinSearch_mm; back_mm += step_mm) {
     const double now_mm = outside_mm(back_mm);
     if ((now_mm < 0.0) != (before_mm < 0.0)) {
@@ -62,7 +61,8 @@ class RiskFinder {
   }
   /// Tests from p_P to q_P, without p_P.
   void test_way(const Vec3& p_P, const Vec3& q_P, double depth_mm, double time_s) {
-    const int steps = std::max(1, static_cast<int>(std::ceil(std::min((q_P - p_P).norm(), 1000.0) / kStep_mm)));
+    const int steps =
+        std::max(1, static_cast<int>(std::ceil(std::min((q_P - p_P).norm(), 1000.0) / detail::kTestedEvery_mm)));
     for (int step = 1; step <= steps; ++step) test(p_P + (q_P - p_P) * step / steps, depth_mm, time_s);
   }
 
@@ -88,15 +88,16 @@ std::vector<RiskTouch> find_risks(const tasks::Task& task, const anatomy::Virtua
     before = &sample;
   }
   const telemetry::TickSample& last = samples[end];
-  const int steps = static_cast<int>(std::min(last.depth_mm, 1000.0) / kStep_mm);
+  const int steps = static_cast<int>(std::min(last.depth_mm, 1000.0) / detail::kTestedEvery_mm);
   for (int step = steps; step >= 1; --step)  // from the skin down: the first contact of the shaft comes first
-    finder.test(last.tip_mm - step * kStep_mm * last.axis, last.depth_mm - step * kStep_mm, last.time_s);
+    finder.test(last.tip_mm - step * detail::kTestedEvery_mm * last.axis,
+                last.depth_mm - step * detail::kTestedEvery_mm, last.time_s);
   return std::move(finder.found);
 }
 
 /// Inward travel of the tip, counted between turning points that are further apart than tremor.
 double inward_travel_mm(std::span<const telemetry::TickSample> samples) noexcept {
-  detail::Strokes strokes(kTremor_mm, true);
+  detail::Strokes strokes(detail::kTremor_mm, true);
   for (const telemetry::TickSample& sample : samples)
     if (is_valid(sample)) strokes.add(std::max(0.0, sample.depth_mm));
   return strokes.travel_mm();

@@ -31,26 +31,38 @@ constexpr std::array kProbeTurn{"probe_qw", "probe_qx", "probe_qy", "probe_qz"};
 constexpr std::array kForces{"f_prepuncture_n", "f_friction_n",    "f_cutting_n",    "f_body_axial_n",
                              "f_tip_proxy_x_n", "f_tip_proxy_y_n", "f_tip_proxy_z_n"};
 
+}  // namespace
+
+namespace detail {
+
 /// A column with a number, and what makes it mm.
-struct Column {
+struct PoseColumn {
   std::size_t index = 0;
   double scale = 1.0;
   std::string name;
 };
 
 template <std::size_t count>
-using Columns = std::array<Column, count>;
+using PoseColumns = std::array<PoseColumn, count>;
 
-struct Layout {
+struct PoseLayout {
   std::size_t fields = 0;
-  Column time;
-  Columns<3> tip, axis;
-  std::optional<Column> depth, force, contact;
-  std::optional<Columns<3>> probe;
-  std::optional<Columns<4>> probe_turn;
-  std::optional<Columns<kForces.size()>> forces;
+  PoseColumn time;
+  PoseColumns<3> tip, axis;
+  std::optional<PoseColumn> depth, force, contact;
+  std::optional<PoseColumns<3>> probe;
+  std::optional<PoseColumns<4>> probe_turn;
+  std::optional<PoseColumns<kForces.size()>> forces;
   std::optional<std::size_t> phase, event;
 };
+
+}  // namespace detail
+
+namespace {
+
+using detail::PoseColumn;
+using detail::PoseColumns;
+using detail::PoseLayout;
 
 /// Finds columns by name.
 class Header {
@@ -62,20 +74,21 @@ class Header {
     if (found == names_.end()) return std::nullopt;
     return static_cast<std::size_t>(found - names_.begin());
   }
-  std::optional<Column> find_number(const std::string& name) const {
-    if (const auto index = find(name)) return Column{*index, 1.0, name};
+  std::optional<PoseColumn> find_number(const std::string& name) const {
+    if (const auto index = find(name)) return PoseColumn{*index, 1.0, name};
     return std::nullopt;
   }
   /// NAME_mm or NAME_m.
-  std::optional<Column> find_length(const std::string& name) const {
-    if (const auto index = find(name + "_mm")) return Column{*index, 1.0, name + "_mm"};
-    if (const auto index = find(name + "_m")) return Column{*index, kMm_per_m, name + "_m"};
+  std::optional<PoseColumn> find_length(const std::string& name) const {
+    if (const auto index = find(name + "_mm")) return PoseColumn{*index, 1.0, name + "_mm"};
+    if (const auto index = find(name + "_m")) return PoseColumn{*index, kMm_per_m, name + "_m"};
     return std::nullopt;
   }
   /// All columns of a group or none. Error: some are missing.
   template <std::size_t count>
-  Result<std::optional<Columns<count>>> find_group(const std::array<const char*, count>& names, bool is_length) const {
-    Columns<count> columns;
+  Result<std::optional<PoseColumns<count>>> find_group(const std::array<const char*, count>& names,
+                                                       bool is_length) const {
+    PoseColumns<count> columns;
     std::string missing;
     std::size_t found = 0;
     for (std::size_t n = 0; n < count; ++n) {
@@ -88,11 +101,11 @@ class Header {
       ++found;
     }
     if (found == count) return std::optional(columns);
-    if (found == 0) return std::optional<Columns<count>>();
+    if (found == 0) return std::optional<PoseColumns<count>>();
     return fail("line 1: missing column " + missing, where_, kAdvice);
   }
   template <std::size_t count>
-  Result<Columns<count>> need_group(const std::array<const char*, count>& names, bool is_length) const {
+  Result<PoseColumns<count>> need_group(const std::array<const char*, count>& names, bool is_length) const {
     TROCAR_TRY(const auto group, find_group(names, is_length));
     if (group) return *group;
     return fail(fmt::format("line 1: missing column {}{}", names[0], is_length ? "_mm" : ""), where_, kAdvice);
@@ -110,9 +123,9 @@ class Header {
   std::string where_;
 };
 
-Result<Layout> find_layout(const Header& header, const std::string& where) {
+Result<PoseLayout> find_layout(const Header& header, const std::string& where) {
   TROCAR_TRY_STATUS(header.check_twice());
-  Layout layout;
+  PoseLayout layout;
   layout.fields = header.size();
   const auto time = header.find_number("time_s");
   if (!time) return fail("line 1: missing column time_s", where, kAdvice);
@@ -142,7 +155,7 @@ class RowReader {
   explicit RowReader(const Fields& fields) : fields_(fields) {}
 
   /// NaN for an empty field and for "nan", "inf".
-  double number(const Column& column) {
+  double number(const PoseColumn& column) {
     const std::string_view text = fields_[column.index];
     if (text.empty() || text == "nan" || text == "-nan" || text == "inf" || text == "-inf")
       return std::numeric_limits<double>::quiet_NaN();
@@ -150,12 +163,12 @@ class RowReader {
     if (fault_.empty()) fault_ = fmt::format("column {}: '{}' is not a number", column.name, text.substr(0, 40));
     return 0.0;
   }
-  std::optional<double> number(const std::optional<Column>& column) {
+  std::optional<double> number(const std::optional<PoseColumn>& column) {
     if (!column) return std::nullopt;
     const double value = number(*column);
     return std::isnan(value) ? std::nullopt : std::optional(value);
   }
-  Vec3 vector(const Columns<3>& columns) { return {number(columns[0]), number(columns[1]), number(columns[2])}; }
+  Vec3 vector(const PoseColumns<3>& columns) { return {number(columns[0]), number(columns[1]), number(columns[2])}; }
   void fail_at(std::string fault) {
     if (fault_.empty()) fault_ = std::move(fault);
   }
@@ -166,7 +179,7 @@ class RowReader {
   std::string fault_;
 };
 
-std::optional<Pose> read_probe(RowReader& reader, const Layout& layout) {
+std::optional<Pose> read_probe(RowReader& reader, const PoseLayout& layout) {
   if (!layout.probe) return std::nullopt;
   const Vec3 p_P = reader.vector(*layout.probe);
   const auto& turn = *layout.probe_turn;
@@ -180,7 +193,7 @@ std::optional<Pose> read_probe(RowReader& reader, const Layout& layout) {
   return Pose(q.normalized().toRotationMatrix(), p_P);
 }
 
-std::optional<double> read_resistance(RowReader& reader, const Layout& layout, const Vec3& axis_P) {
+std::optional<double> read_resistance(RowReader& reader, const PoseLayout& layout, const Vec3& axis_P) {
   if (layout.force) return reader.number(layout.force);
   if (!layout.forces) return std::nullopt;
   const auto& forces = *layout.forces;
@@ -200,7 +213,7 @@ std::optional<double> read_resistance(RowReader& reader, const Layout& layout, c
 struct PoseTable::Impl {
   std::string text;
   std::string where;
-  Layout layout;
+  PoseLayout layout;
   std::vector<std::string> layers;
   std::size_t rows = 0;
 

@@ -17,8 +17,8 @@ namespace trocar::report {
 namespace {
 using namespace detail;
 
-constexpr double kField_mm = 120.0;
-constexpr int kPicturePx = 360;
+constexpr double kFindingField_mm = 120.0;
+constexpr int kFindingPx = 360;
 constexpr int kGapPx = 6;
 constexpr double kRingPx = 13.0;
 constexpr volume::Rgb kRing{255, 80, 40};
@@ -62,10 +62,10 @@ std::string finding_list(const anatomy::VirtualPatient& patient, const std::vect
 volume::RgbImage finding_picture(const anatomy::VirtualPatient& patient, const anatomy::Finding& finding) {
   TROCAR_CHECK(finding.place_P.has_value());
   slices::SliceOptions options;
-  options.size_px = kPicturePx;
-  options.field_mm = kField_mm;
+  options.size_px = kFindingPx;
+  options.field_mm = kFindingField_mm;
   options.center_P = *finding.place_P;
-  volume::RgbImage row(3 * kPicturePx + 2 * kGapPx, kPicturePx);
+  volume::RgbImage row(3 * kFindingPx + 2 * kGapPx, kFindingPx);
   int column = 0;
   for (const auto orientation :
        {slices::SliceOrientation::kAxial, slices::SliceOrientation::kCoronal, slices::SliceOrientation::kSagittal}) {
@@ -73,7 +73,7 @@ volume::RgbImage finding_picture(const anatomy::VirtualPatient& patient, const a
     slices::draw_slice_legend(picture);
     draw_ring(picture.to_pixel(*finding.place_P), picture.image);
     paste(picture.image, column, row);
-    column += kPicturePx + kGapPx;
+    column += kFindingPx + kGapPx;
   }
   return row;
 }

@@ -5,8 +5,8 @@
 namespace trocar::results {
 namespace {
 
-constexpr const char* kCannotRead = "the accounts cannot be read";
-constexpr const char* kCannotWrite = "the account cannot be written";
+constexpr const char* kCannotReadAccounts = "the accounts cannot be read";
+constexpr const char* kCannotWriteAccount = "the account cannot be written";
 constexpr const char* kAccountName = "the name of an account";
 
 /// Where the columns of an account are read to.
@@ -42,7 +42,7 @@ std::optional<Role> find_role(std::string_view name) noexcept {
 Result<Account> add_account(Repository& repository, std::string_view name, Role role, std::string_view password_hash,
                             Seconds now) {
   TROCAR_TRY(std::string clean, clean_name(name, kAccountName));
-  return repository.database().transaction(kCannotWrite, [&](soci::session& session) -> Result<Account> {
+  return repository.database().transaction(kCannotWriteAccount, [&](soci::session& session) -> Result<Account> {
     const Account account{make_id(), clean, role, std::string(password_hash), now};
     const std::string key = name_key(account.name);
     const int is_admin = role == Role::kAdmin ? 1 : 0;
@@ -59,7 +59,7 @@ Result<Account> add_account(Repository& repository, std::string_view name, Role 
 }
 
 Result<std::vector<Account>> list_accounts(Repository& repository) {
-  return repository.database().run(kCannotRead, [](soci::session& session) {
+  return repository.database().run(kCannotReadAccounts, [](soci::session& session) {
     std::vector<Account> accounts;
     AccountRow row;
     soci::statement select =
@@ -75,7 +75,7 @@ Result<std::vector<Account>> list_accounts(Repository& repository) {
 Result<std::optional<Account>> find_account(Repository& repository, std::string_view name) {
   const auto clean = clean_name(name, kAccountName);
   if (!clean) return std::optional<Account>();
-  return repository.database().run(kCannotRead, [&](soci::session& session) -> std::optional<Account> {
+  return repository.database().run(kCannotReadAccounts, [&](soci::session& session) -> std::optional<Account> {
     const std::string key = name_key(*clean);
     AccountRow row;
     session << "SELECT id, name, is_admin, password_hash, added_s FROM accounts WHERE name_key = :k", soci::use(key),
@@ -87,7 +87,7 @@ Result<std::optional<Account>> find_account(Repository& repository, std::string_
 
 Status change_password(Repository& repository, std::string_view account_id, std::string_view password_hash,
                        std::string_view kept_token_hash) {
-  return repository.database().transaction(kCannotWrite, [&](soci::session& session) -> Status {
+  return repository.database().transaction(kCannotWriteAccount, [&](soci::session& session) -> Status {
     const std::string id(account_id), hash(password_hash), kept(kept_token_hash);
     soci::statement update =
         (session.prepare << "UPDATE accounts SET password_hash = :p WHERE id = :i", soci::use(hash), soci::use(id));
@@ -101,7 +101,7 @@ Status change_password(Repository& repository, std::string_view account_id, std:
 Status remove_account(Repository& repository, std::string_view name) {
   TROCAR_TRY(const std::optional<Account> account, find_account(repository, name));
   if (!account) return no_such_account(std::string(name));
-  return repository.database().transaction(kCannotWrite, [&](soci::session& session) -> Status {
+  return repository.database().transaction(kCannotWriteAccount, [&](soci::session& session) -> Status {
     if (account->role == Role::kAdmin) {
       int others = 0;
       // The row is locked until the end, so that two admins cannot remove each other at the same time.

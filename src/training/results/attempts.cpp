@@ -12,8 +12,7 @@ namespace trocar::results {
 using namespace detail;
 namespace {
 
-constexpr const char* kCannotRead = "the attempts cannot be read";
-constexpr const char* kCannotWrite = "the attempt cannot be written";
+constexpr const char* kCannotWriteAttempt = "the attempt cannot be written";
 std::optional<Attempt> read_attempt(soci::session& session, std::string_view id) {
   std::vector<Attempt> found = read_attempts(session, {" WHERE a.id = :i", {std::string(id)}, {}});
   return found.empty() ? std::nullopt : std::optional(std::move(found.front()));
@@ -47,12 +46,12 @@ std::vector<Measure> read_measures(soci::session& session, long long sequence) {
 
 Status begin_attempt(Repository& repository, const Attempt& attempt) {
   database::Database& database = repository.database();
-  return database.transaction(kCannotWrite,
+  return database.transaction(kCannotWriteAttempt,
                               [&](soci::session& session) { return AttemptWriter(session, database).begin(attempt); });
 }
 
 Status forget_begun_attempt(Repository& repository, std::string_view id) {
-  return repository.database().transaction(kCannotWrite, [&](soci::session& session) {
+  return repository.database().transaction(kCannotWriteAttempt, [&](soci::session& session) {
     const std::string key(id);
     const int state = static_cast<int>(State::kRunning);
     session << "DELETE FROM attempts WHERE id = :i AND state = :s", soci::use(key), soci::use(state);
@@ -61,8 +60,9 @@ Status forget_begun_attempt(Repository& repository, std::string_view id) {
 
 Result<std::int64_t> record_attempt(Repository& repository, const AttemptRecord& record, std::string_view recording) {
   database::Database& database = repository.database();
-  return database.transaction(
-      kCannotWrite, [&](soci::session& session) { return AttemptWriter(session, database).record(record, recording); });
+  return database.transaction(kCannotWriteAttempt, [&](soci::session& session) {
+    return AttemptWriter(session, database).record(record, recording);
+  });
 }
 
 Status record_attempts(Repository& repository, const std::vector<AttemptRecord>& records) {
@@ -78,17 +78,18 @@ Result<std::vector<Attempt>> list_attempts(Repository& repository, const Attempt
   std::string order = filter.is_newest_first ? " ORDER BY a.sequence DESC" : " ORDER BY a.sequence";
   if (filter.limit > 0) order += fmt::format(" LIMIT {}", filter.limit);
   const AttemptQuery query = make_query(filter);
-  return repository.database().run(kCannotRead,
+  return repository.database().run(kCannotReadAttempts,
                                    [&](soci::session& session) { return read_attempts(session, query, order); });
 }
 
 Result<std::optional<Attempt>> find_attempt(Repository& repository, std::string_view id) {
-  return repository.database().run(kCannotRead, [&](soci::session& session) { return read_attempt(session, id); });
+  return repository.database().run(kCannotReadAttempts,
+                                   [&](soci::session& session) { return read_attempt(session, id); });
 }
 
 Result<std::optional<AttemptRecord>> load_attempt(Repository& repository, std::string_view id) {
   using Loaded = std::optional<AttemptRecord>;
-  return repository.database().run(kCannotRead, [&](soci::session& session) -> Result<Loaded> {
+  return repository.database().run(kCannotReadAttempts, [&](soci::session& session) -> Result<Loaded> {
     const std::optional<Attempt> attempt = read_attempt(session, id);
     if (!attempt) return Loaded();
     AttemptRecord record;
@@ -120,7 +121,7 @@ Result<std::optional<std::string>> load_recording(Repository& repository, std::s
 }
 
 Result<std::optional<std::string>> find_expert_attempt(Repository& repository, const Attempt& attempt) {
-  return repository.database().run(kCannotRead, [&](soci::session& session) -> std::optional<std::string> {
+  return repository.database().run(kCannotReadAttempts, [&](soci::session& session) -> std::optional<std::string> {
     const std::string seed = std::to_string(attempt.the_case.seed);
     std::string id;
     session << "SELECT a.id FROM attempts a JOIN people p ON p.id = a.person_id JOIN cases c ON c.id = a.case_id"
@@ -145,7 +146,7 @@ Status delete_attempt(Repository& repository, std::string_view id) {
 }
 
 Result<std::vector<learning::PastAttempt>> past_attempts(Repository& repository, std::string_view person_id) {
-  return repository.database().run(kCannotRead, [&](soci::session& session) {
+  return repository.database().run(kCannotReadAttempts, [&](soci::session& session) {
     const std::string person(person_id);
     std::map<long long, std::vector<Part>> parts;
     long long sequence = 0;

@@ -20,7 +20,7 @@ namespace {
 constexpr std::array kColumns{"attempt", "person", "group",  "simulated",  "course",   "task",    "patient",
                               "seed",    "hash",   "case",   "level",      "operator", "station", "started_utc",
                               "state",   "score",  "passed", "duration_s", "version"};
-constexpr std::string_view kPart = "part ", kOfMost = " of", kMetric = "metric ";
+constexpr std::string_view kOfMost = " of";
 
 std::string utc_text(Seconds time) {
   return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(time)));
@@ -96,11 +96,11 @@ std::string write_csv(soci::session& session, const AttemptFilter& filter,
     row.push_back(csv_text(name));
   };
   for (const std::string& part : names_of(session, "SELECT DISTINCT part FROM attempt_parts ORDER BY part")) {
-    add_column(fmt::format("{}{}", kPart, part));
-    add_column(fmt::format("{}{}{}", kPart, part, kOfMost));
+    add_column(fmt::format("{}{}", kPartColumn, part));
+    add_column(fmt::format("{}{}{}", kPartColumn, part, kOfMost));
   }
   for (const std::string& metric : names_of(session, "SELECT name || ' (' || unit || ')' FROM metrics ORDER BY name"))
-    add_column(fmt::format("{}{}", kMetric, metric));
+    add_column(fmt::format("{}{}", kMetricColumn, metric));
   std::string text = csv_row(row);
 
   const AttemptQuery query = make_query(filter);
@@ -125,12 +125,13 @@ std::string write_csv(soci::session& session, const AttemptFilter& filter,
         row[column->second] = fmt::format("{}", value);
     };
     points.visit(attempt.sequence,
-                 [&](const std::string& name, double value) { put(fmt::format("{}{}", kPart, name), value); });
+                 [&](const std::string& name, double value) { put(fmt::format("{}{}", kPartColumn, name), value); });
     limits.visit(attempt.sequence, [&](const std::string& name, double value) {
-      put(fmt::format("{}{}{}", kPart, name, kOfMost), value);
+      put(fmt::format("{}{}{}", kPartColumn, name, kOfMost), value);
     });
-    measures.visit(attempt.sequence,
-                   [&](const std::string& name, double value) { put(fmt::format("{}{}", kMetric, name), value); });
+    measures.visit(attempt.sequence, [&](const std::string& name, double value) {
+      put(fmt::format("{}{}", kMetricColumn, name), value);
+    });
     text += csv_row(row);
   }
   return text;

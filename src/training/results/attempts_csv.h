@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "results/attempts.h"
 
@@ -11,6 +12,9 @@ namespace trocar::results {
 /// spreadsheet would take for a formula (= + - @, tab) begin with an apostrophe, which reading removes. RFC 4180.
 Result<std::string> attempts_csv(Repository& repository, const AttemptFilter& filter);
 Status export_attempts(Repository& repository, const AttemptFilter& filter, const std::filesystem::path& file);
+
+/// How the names of the columns of parts and of metrics begin.
+inline constexpr std::string_view kPartColumn = "part ", kMetricColumn = "metric ";
 
 struct ImportedRows {
   std::int64_t added = 0, present = 0, people = 0;

@@ -15,7 +15,7 @@ using namespace detail;
 namespace {
 
 constexpr std::size_t kMostBytes = std::size_t{1} << 30;
-constexpr const char* kAdvice = "use a file of trocar results export";
+constexpr const char* kUseExport = "use a file of trocar results export";
 
 /// The rows of a file with the places of its columns.
 class Table {
@@ -25,15 +25,15 @@ class Table {
     Table table;
     table.where_ = file.string();
     TROCAR_TRY(table.rows_, parse_csv(text, table.where_));
-    if (table.rows_.empty()) return fail("the file is empty", table.where_, kAdvice);
+    if (table.rows_.empty()) return fail("the file is empty", table.where_, kUseExport);
     for (std::size_t n = 0; n < table.rows_.front().size(); ++n) table.columns_[plain_text(table.rows_.front()[n])] = n;
     for (const char* column : {"attempt", "person", "group", "task", "started_utc", "state"})
       if (!table.columns_.contains(column))
-        return fail(fmt::format("the column \"{}\" is missing", column), table.where_, kAdvice);
+        return fail(fmt::format("the column \"{}\" is missing", column), table.where_, kUseExport);
     for (std::size_t n = 1; n < table.rows_.size(); ++n)
       if (table.rows_[n].size() != table.rows_.front().size())
         return fail(fmt::format("the row has {} fields, not {}", table.rows_[n].size(), table.rows_.front().size()),
-                    table.place(n, ""), kAdvice);
+                    table.place(n, ""), kUseExport);
     return table;
   }
 
@@ -55,7 +55,7 @@ class Table {
     if (field.empty()) return std::optional<Number>();
     const auto value = find_leading_number<Number>(field);
     if (!value || !value->rest.empty())
-      return fail(fmt::format("\"{}\" is no number", field), place(row, column), kAdvice);
+      return fail(fmt::format("\"{}\" is no number", field), place(row, column), kUseExport);
     return std::optional<Number>(value->value);
   }
 
@@ -77,17 +77,16 @@ Measure measure_of(const std::string& column, double value) {
 }
 
 Status read_values(const Table& table, std::size_t row, AttemptRecord& record) {
-  constexpr std::string_view kPart = "part ", kMetric = "metric ";
   for (const auto& [name, place] : table.columns()) {
-    if (!name.starts_with(kPart) && !name.starts_with(kMetric)) continue;
+    if (!name.starts_with(kPartColumn) && !name.starts_with(kMetricColumn)) continue;
     if (name.ends_with(" of")) continue;
     TROCAR_TRY(const auto value, table.number<double>(row, name));
     if (!value) continue;
-    if (name.starts_with(kMetric)) {
-      record.measures.push_back(measure_of(name.substr(kMetric.size()), *value));
+    if (name.starts_with(kMetricColumn)) {
+      record.measures.push_back(measure_of(name.substr(kMetricColumn.size()), *value));
     } else {
       TROCAR_TRY(const auto most, table.number<double>(row, name + " of"));
-      record.parts.push_back({name.substr(kPart.size()), *value, most.value_or(0.0)});
+      record.parts.push_back({name.substr(kPartColumn.size()), *value, most.value_or(0.0)});
     }
   }
   return {};
@@ -97,17 +96,17 @@ Result<AttemptRecord> read_row(const Table& table, std::size_t row) {
   AttemptRecord record;
   Attempt& attempt = record.attempt;
   attempt.id = table.text(row, "attempt");
-  if (!is_id(attempt.id)) return fail("the attempt has no valid key", table.place(row, "attempt"), kAdvice);
+  if (!is_id(attempt.id)) return fail("the attempt has no valid key", table.place(row, "attempt"), kUseExport);
   const auto state = find_state(table.text(row, "state"));
-  if (!state) return fail("the state is unknown", table.place(row, "state"), kAdvice);
+  if (!state) return fail("the state is unknown", table.place(row, "state"), kUseExport);
   const auto started = learning::parse_utc(table.text(row, "started_utc"));
-  if (!started) return fail("the time is none", table.place(row, "started_utc"), kAdvice);
+  if (!started) return fail("the time is none", table.place(row, "started_utc"), kUseExport);
   TROCAR_TRY(const auto seed, table.number<std::uint64_t>(row, "seed"));
   TROCAR_TRY(const auto difficulty, table.number<int>(row, "case"));
   TROCAR_TRY(attempt.score, table.number<double>(row, "score"));
   TROCAR_TRY(const auto duration_s, table.number<double>(row, "duration_s"));
   if (attempt.score && !(*attempt.score >= 0.0 && *attempt.score <= 100.0))
-    return fail("the score is not 0 to 100", table.place(row, "score"), kAdvice);
+    return fail("the score is not 0 to 100", table.place(row, "score"), kUseExport);
   attempt.the_case = {table.text(row, "task"), table.text(row, "patient"), seed.value_or(1), table.text(row, "hash"),
                       difficulty};
   attempt.level = table.text(row, "level");

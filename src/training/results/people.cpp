@@ -14,10 +14,10 @@ namespace trocar::results {
 using namespace detail;
 namespace {
 
-constexpr const char* kCannotRead = "the people cannot be read";
-constexpr const char* kCannotWrite = "the person cannot be written";
+constexpr const char* kCannotReadPeople = "the people cannot be read";
+constexpr const char* kCannotWritePerson = "the person cannot be written";
 constexpr const char* kPersonName = "the name of a person";
-constexpr const char* kSelect =
+constexpr const char* kSelectPeople =
     "SELECT p.id, p.name, p.is_expert, coalesce(c.name, ''), p.is_simulated, p.pin_hash, p.added_s"
     " FROM people p LEFT JOIN courses c ON c.id = p.course_id";
 
@@ -38,7 +38,7 @@ std::vector<Person> read_people(soci::session& session, const std::string& condi
   select.exchange(soci::into(added_s));
   if (parameter != nullptr) select.exchange(soci::use(*parameter));
   select.alloc();
-  select.prepare(std::string(kSelect) + condition + " ORDER BY p.name_key");
+  select.prepare(std::string(kSelectPeople) + condition + " ORDER BY p.name_key");
   select.define_and_bind();
   select.execute();
   while (select.fetch()) {
@@ -83,7 +83,7 @@ bool is_name_taken(soci::session& session, const std::string& key, const std::st
 /// Sets one column of a person. Error: there is none.
 template <class Value>
 Status set_column(Repository& repository, std::string_view id, const char* column, const Value& value) {
-  return repository.database().transaction(kCannotWrite, [&](soci::session& session) -> Status {
+  return repository.database().transaction(kCannotWritePerson, [&](soci::session& session) -> Status {
     const std::string key(id);
     soci::statement update = (session.prepare << fmt::format("UPDATE people SET {} = :v WHERE id = :i", column),
                               soci::use(value), soci::use(key));
@@ -152,24 +152,24 @@ std::optional<Person> find_person_named(soci::session& session, const std::strin
 
 Result<Person> add_person(Repository& repository, const NewPerson& person, Seconds now) {
   return repository.database().transaction(
-      kCannotWrite, [&](soci::session& session) { return detail::add_person(session, person, now); });
+      kCannotWritePerson, [&](soci::session& session) { return detail::add_person(session, person, now); });
 }
 
 Result<std::vector<Person>> list_people(Repository& repository) {
-  return repository.database().run(kCannotRead,
+  return repository.database().run(kCannotReadPeople,
                                    [](soci::session& session) { return read_people(session, "", nullptr); });
 }
 
 Result<std::optional<Person>> find_person(Repository& repository, std::string_view id) {
   return repository.database().run(
-      kCannotRead, [&](soci::session& session) { return detail::find_person(session, std::string(id)); });
+      kCannotReadPeople, [&](soci::session& session) { return detail::find_person(session, std::string(id)); });
 }
 
 Result<std::optional<Person>> find_person_named(Repository& repository, std::string_view name) {
   const auto clean = clean_name(name, kPersonName);
   if (!clean) return std::optional<Person>();
   return repository.database().run(
-      kCannotRead, [&](soci::session& session) { return detail::find_person_named(session, name_key(*clean)); });
+      kCannotReadPeople, [&](soci::session& session) { return detail::find_person_named(session, name_key(*clean)); });
 }
 
 Result<Person> get_person_named(Repository& repository, std::string_view name) {
@@ -181,7 +181,7 @@ Result<Person> get_person_named(Repository& repository, std::string_view name) {
 
 Status rename_person(Repository& repository, std::string_view id, std::string_view name) {
   TROCAR_TRY(const std::string clean, clean_name(name, kPersonName));
-  return repository.database().transaction(kCannotWrite, [&](soci::session& session) -> Status {
+  return repository.database().transaction(kCannotWritePerson, [&](soci::session& session) -> Status {
     const std::string key = name_key(clean), person(id);
     if (is_name_taken(session, key, person)) return fail_usage("the name is taken", clean, "choose another name");
     soci::statement update = (session.prepare << "UPDATE people SET name = :n, name_key = :k WHERE id = :i",
@@ -193,7 +193,7 @@ Status rename_person(Repository& repository, std::string_view id, std::string_vi
 
 Status move_to_course(Repository& repository, std::string_view id, std::string_view course) {
   TROCAR_TRY(const std::string clean, clean_course(course));
-  return repository.database().transaction(kCannotWrite, [&](soci::session& session) -> Status {
+  return repository.database().transaction(kCannotWritePerson, [&](soci::session& session) -> Status {
     const std::string person(id);
     Bound<std::string> key(course_id(session, clean));
     soci::statement update = (session.prepare << "UPDATE people SET course_id = :c WHERE id = :i",
@@ -209,7 +209,7 @@ Status change_group(Repository& repository, std::string_view id, Group group) {
 
 Result<PersonalData> count_personal_data(Repository& repository, std::string_view id) {
   return repository.database().run(
-      kCannotRead, [&](soci::session& session) { return detail::count_personal_data(session, std::string(id)); });
+      kCannotReadPeople, [&](soci::session& session) { return detail::count_personal_data(session, std::string(id)); });
 }
 
 namespace detail {
@@ -260,7 +260,7 @@ Result<PinCheck> check_pin(Repository& repository, std::string_view id, std::str
   long long failed_s = 0;
   // The try is counted before it is checked, so that tries at the same time are all counted.
   TROCAR_TRY(const bool may_try,
-             repository.database().transaction(kCannotWrite, [&](soci::session& session) -> Result<bool> {
+             repository.database().transaction(kCannotWritePerson, [&](soci::session& session) -> Result<bool> {
                session << "SELECT pin_hash, pin_failures, pin_failed_s FROM people WHERE id = :i", soci::use(person),
                    soci::into(hash), soci::into(failures), soci::into(failed_s);
                if (!session.got_data()) return tl::unexpected(no_such_person(person).error());
@@ -280,7 +280,7 @@ Result<PinCheck> check_pin(Repository& repository, std::string_view id, std::str
 }
 
 Result<bool> are_pins_required(Repository& repository) {
-  return repository.database().run(kCannotRead, [](soci::session& session) {
+  return repository.database().run(kCannotReadPeople, [](soci::session& session) {
     std::string value;
     session << "SELECT value FROM settings WHERE name = 'pins_required'", soci::into(value);
     return session.got_data() && value == "1";
@@ -296,7 +296,7 @@ Status require_pins(Repository& repository, bool are_required) {
 }
 
 Result<std::vector<Course>> list_courses(Repository& repository) {
-  return repository.database().run(kCannotRead, [](soci::session& session) {
+  return repository.database().run(kCannotReadPeople, [](soci::session& session) {
     std::vector<Course> courses;
     std::string name;
     long long people = 0;

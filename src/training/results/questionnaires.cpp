@@ -13,8 +13,8 @@ namespace trocar::results {
 using namespace detail;
 namespace {
 
-constexpr const char* kCannotRead = "the questionnaires cannot be read";
-constexpr const char* kCannotWrite = "the questionnaire cannot be written";
+constexpr const char* kCannotReadForms = "the questionnaires cannot be read";
+constexpr const char* kCannotWriteForm = "the questionnaire cannot be written";
 constexpr std::size_t kMaxTitle = 200, kMaxIntro = 4000, kMaxItemText = 500;
 constexpr int kTokenBits = 128;
 
@@ -104,7 +104,7 @@ Result<Form> add_form(Repository& repository, const Form& given, Seconds now) {
   TROCAR_TRY(form.token, signing::make_token(kTokenBits));
   form.id = make_id();
   form.changed = now;
-  return repository.database().transaction(kCannotWrite, [&](soci::session& session) {
+  return repository.database().transaction(kCannotWriteForm, [&](soci::session& session) {
     insert_form(session, form);
     int position = 0;
     for (Item& item : form.items) {
@@ -118,7 +118,7 @@ Result<Form> add_form(Repository& repository, const Form& given, Seconds now) {
 Result<Form> change_form(Repository& repository, const Form& given, Seconds now) {
   TROCAR_TRY(Form form, clean_form(given));
   form.changed = now;
-  return repository.database().transaction(kCannotWrite, [&](soci::session& session) -> Result<Form> {
+  return repository.database().transaction(kCannotWriteForm, [&](soci::session& session) -> Result<Form> {
     const std::optional<Form> before = read_form(session, "f.id = :k", form.id);
     if (!before) return tl::unexpected(no_such_form(form.id).error());
     update_form(session, form);
@@ -145,16 +145,16 @@ Result<Form> change_form(Repository& repository, const Form& given, Seconds now)
 }
 
 Result<std::vector<Form>> list_forms(Repository& repository) {
-  return repository.database().run(kCannotRead, [](soci::session& session) { return read_forms(session); });
+  return repository.database().run(kCannotReadForms, [](soci::session& session) { return read_forms(session); });
 }
 
 Result<std::optional<Form>> find_form(Repository& repository, std::string_view id) {
   return repository.database().run(
-      kCannotRead, [&](soci::session& session) { return read_form(session, "f.id = :k", std::string(id)); });
+      kCannotReadForms, [&](soci::session& session) { return read_form(session, "f.id = :k", std::string(id)); });
 }
 
 Result<std::optional<Form>> find_open_form(Repository& repository, std::string_view token) {
-  return repository.database().run(kCannotRead, [&](soci::session& session) {
+  return repository.database().run(kCannotReadForms, [&](soci::session& session) {
     return read_form(session, "f.token = :k AND f.is_open = 1", std::string(token));
   });
 }
@@ -186,7 +186,7 @@ Status add_response(Repository& repository, std::string_view token, std::string_
 }
 
 Result<std::optional<FormSummary>> summarise_form(Repository& repository, std::string_view id) {
-  return repository.database().run(kCannotRead, [&](soci::session& session) -> std::optional<FormSummary> {
+  return repository.database().run(kCannotReadForms, [&](soci::session& session) -> std::optional<FormSummary> {
     std::optional<Form> form = read_form(session, "f.id = :k", std::string(id));
     if (!form) return std::nullopt;
     FormSummary summary;
@@ -197,7 +197,7 @@ Result<std::optional<FormSummary>> summarise_form(Repository& repository, std::s
 }
 
 Result<std::string> answers_csv(Repository& repository, std::string_view id) {
-  return repository.database().run(kCannotRead, [&](soci::session& session) -> Result<std::string> {
+  return repository.database().run(kCannotReadForms, [&](soci::session& session) -> Result<std::string> {
     const std::string key(id);
     if (!read_form(session, "f.id = :k", key)) return tl::unexpected(no_such_form(id).error());
     return write_answers(session, key);

@@ -3,18 +3,13 @@
 #include <map>
 
 #include "results/attempts.h"
+#include "results/detail/attempt_query.h"
 #include "results/detail/rows.h"
 
 namespace trocar::results {
 using namespace detail;
-namespace {
-
-constexpr const char* kCannotRead = "the attempts cannot be read";
-
-}  // namespace
-
 Result<std::vector<TaskSummary>> summarise_tasks(Repository& repository, std::string_view person_id) {
-  return repository.database().run(kCannotRead, [&](soci::session& session) {
+  return repository.database().run(kCannotReadAttempts, [&](soci::session& session) {
     const std::string person(person_id);
     std::vector<TaskSummary> summaries;
     TaskSummary one;
@@ -71,7 +66,7 @@ Result<std::vector<MetricSample>> metric_samples(Repository& repository, std::st
   query += " AND a.task = :t";
   if (!course.empty()) query += " AND p.course_id = (SELECT id FROM courses WHERE name_key = :c)";
   query += " ORDER BY a.sequence";
-  return repository.database().run(kCannotRead, [&](soci::session& session) {
+  return repository.database().run(kCannotReadAttempts, [&](soci::session& session) {
     const std::string task_name(task), metric_name(metric), course_key = name_key(course);
     std::vector<MetricSample> samples;
     MetricSample sample;
@@ -101,7 +96,7 @@ Result<std::vector<MetricSample>> metric_samples(Repository& repository, std::st
 }
 
 Result<std::vector<StoredMetric>> list_metrics(Repository& repository, std::string_view task) {
-  return repository.database().run(kCannotRead, [&](soci::session& session) {
+  return repository.database().run(kCannotReadAttempts, [&](soci::session& session) {
     const std::string name(task);
     std::vector<StoredMetric> metrics;
     StoredMetric metric;
@@ -118,7 +113,7 @@ Result<std::vector<StoredMetric>> list_metrics(Repository& repository, std::stri
 }
 
 Result<std::vector<ExpertMeasures>> expert_measures(Repository& repository, std::string_view task) {
-  return repository.database().run(kCannotRead, [&](soci::session& session) {
+  return repository.database().run(kCannotReadAttempts, [&](soci::session& session) {
     const std::string name(task);
     std::vector<ExpertMeasures> measures;
     std::string metric;

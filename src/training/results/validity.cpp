@@ -5,13 +5,12 @@
 #include <vector>
 
 #include "metrics/metric.h"
+#include "results/detail/attempt_query.h"
 #include "results/detail/rows.h"
 #include "results/names.h"
 
 namespace trocar::results {
 namespace {
-
-constexpr const char* kCannotRead = "the attempts cannot be read";
 
 /// Mean of one person's values by their name (metric or part).
 struct NamedMean {
@@ -171,8 +170,9 @@ std::vector<cohort::MetricOfPeople> metrics_of(const std::vector<NamedMean>& mea
 }  // namespace
 
 Result<cohort::CohortData> cohort_data(Repository& repository, const EvidenceFilter& filter) {
-  TROCAR_TRY(Means means, repository.database().run(
-                              kCannotRead, [&](soci::session& session) { return MeanReader(session, filter).read(); }));
+  TROCAR_TRY(Means means, repository.database().run(detail::kCannotReadAttempts, [&](soci::session& session) {
+    return MeanReader(session, filter).read();
+  }));
   leave_out_simulated(means.people);
   cohort::CohortData data;
   std::map<std::string, std::size_t> rows;

@@ -10,7 +10,7 @@
 namespace trocar::scoring {
 namespace {
 
-constexpr double kStep_mm = 0.25;
+constexpr double kCoreStep_mm = 0.25;
 
 std::uint8_t label_id(const anatomy::VirtualPatient& patient, const Vec3& p_P) noexcept {
   return volume::sample_nearest<std::uint8_t>(patient.labels, p_P, 0);
@@ -20,7 +20,7 @@ std::uint8_t label_id(const anatomy::VirtualPatient& patient, const Vec3& p_P) n
 template <class Visit>
 void walk(double from_mm, double to_mm, Visit visit) {
   if (!(to_mm > from_mm)) return;
-  const int steps = static_cast<int>(std::ceil((to_mm - from_mm) / kStep_mm));
+  const int steps = static_cast<int>(std::ceil((to_mm - from_mm) / kCoreStep_mm));
   const double length_mm = (to_mm - from_mm) / steps;
   for (int step = 0; step < steps; ++step) visit(from_mm + (step + 0.5) * length_mm, length_mm);
 }
@@ -102,13 +102,14 @@ BiopsyCore take_core(const tasks::Task& task, const anatomy::VirtualPatient& pat
     add_to_sums(core, labels.part(id), length_mm);
   });
 
-  walk(0.0, std::min(shot + kStep_mm, needle.throw_mm), [&](double beyond_tip_mm, double) {  // the bone that stopped it
-    const std::uint8_t id = label_id(patient, tip_P + beyond_tip_mm * axis_P);
-    if (labels.risk(id) == nullptr) return;
-    const std::string& name = patient.label_table.find(id)->name;
-    auto& found = core.risks_in_throw;
-    if (std::find(found.begin(), found.end(), name) == found.end()) found.push_back(name);
-  });
+  walk(0.0, std::min(shot + kCoreStep_mm, needle.throw_mm),
+       [&](double beyond_tip_mm, double) {  // the bone that stopped it
+         const std::uint8_t id = label_id(patient, tip_P + beyond_tip_mm * axis_P);
+         if (labels.risk(id) == nullptr) return;
+         const std::string& name = patient.label_table.find(id)->name;
+         auto& found = core.risks_in_throw;
+         if (std::find(found.begin(), found.end(), name) == found.end()) found.push_back(name);
+       });
   return core;
 }
 

@@ -22,10 +22,9 @@ using tasks::ConditionKind;
 constexpr double kContact_n = 0.05;      // of a transducer that touches the skin
 constexpr double kInPlane_mm = 4.0;      // from the tip to the image plane, for a needle in it [assumed]
 constexpr double kOnSkin_mm = 2.5;       // of the tip from the resting skin, which gives way [assumed]
-constexpr double kStep_mm = 1.0;         // of points along a line that is looked at
+constexpr double kLineStep_mm = 1.0;     // of points along a line that is looked at
 constexpr double kPassedDepth_mm = 5.0;  // inserted at least, so that the needle counts as having been in the body
 constexpr int kDirections = 6;           // about the line
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 bool is_valid(const telemetry::TickSample& sample) noexcept {
   return std::isfinite(sample.time_s) && sample.tip_mm.allFinite() && sample.axis.allFinite() &&
@@ -105,7 +104,7 @@ bool PhaseTracker::Impl::is_path_clear(const PhaseMoment& moment, double margin_
     const std::uint8_t id = volume::sample_nearest<std::uint8_t>(patient.labels, p_P, 0);
     return labels.risk(id) == nullptr;
   };
-  for (double along_mm = 0.0; along_mm <= length_mm; along_mm += kStep_mm) {
+  for (double along_mm = 0.0; along_mm <= length_mm; along_mm += kLineStep_mm) {
     const Vec3 p_P = tip_P + along_mm * axis_P;
     if (!is_free(p_P)) return false;
     if (margin_mm <= 0.0) continue;

@@ -1,5 +1,7 @@
 #include "storage/score_json.h"
 
+#include "config/json.h"
+
 namespace trocar::storage {
 namespace {
 

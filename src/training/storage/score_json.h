@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "config/json.h"
+#include "config/json_fwd.h"
 #include "scoring/score.h"
 
 namespace trocar::storage {

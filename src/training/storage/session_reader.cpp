@@ -6,6 +6,7 @@
 #include <fstream>
 #include <string_view>
 
+#include "config/json.h"
 #include "storage/detail/checksums.h"
 #include "storage/detail/guarded_database.h"
 #include "storage/detail/info_table.h"

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "config/json.h"
 #include "core/check.h"
 #include "core/files/atomic_file.h"
 #include "core/log.h"

@@ -20,8 +20,7 @@ namespace {
 using detail::PlanningMap;
 using detail::Role;
 
-constexpr double kStep_mm = 0.25;
-constexpr double kChunk_mm = 8.0;
+constexpr double kPathStep_mm = 0.25;
 constexpr double kOnSkin_mm = 3.0;    ///< Distance from the skin at which a path may start: one or two voxels.
 constexpr double kNotchShare = 0.25;  ///< Part of the notch around its centre that must contain the target.
 
@@ -92,15 +91,15 @@ class Assessor {
   }
 
   void walk() {
-    const int steps = static_cast<int>(std::floor(whole_mm() / kStep_mm));
+    const int steps = static_cast<int>(std::floor(whole_mm() / kPathStep_mm));
     bool has_target = false;
     for (int n = 0; n <= steps; ++n) {
-      const double s_mm = n * kStep_mm;
+      const double s_mm = n * kPathStep_mm;
       const Vec3 p_P = at(s_mm);
       const std::uint8_t id = volume::sample_nearest(patient_.labels, p_P, std::uint8_t{0});
       const Role role = map_.roles[id];
       has_target |= role == Role::kTarget;
-      if (role == Role::kOrgan && !has_target && s_mm < made_.path.length_mm) made_.path.organ_path_mm += kStep_mm;
+      if (role == Role::kOrgan && !has_target && s_mm < made_.path.length_mm) made_.path.organ_path_mm += kPathStep_mm;
       if (id == 0 || role != Role::kForbidden || is_crossed_[id]) continue;
       is_crossed_[id] = true;
       const anatomy::Label& label = *patient_.label_table.find(id);
@@ -147,7 +146,7 @@ class Assessor {
     const double radius_mm = widest_mm + detail::kReportedMargin_mm + 0.5 * patient_.labels.geometry.spacing_mm.norm();
     std::array<Nearest, 256> nearest;
     const Segment way{line_P_.a, at(whole_mm())};
-    const int count = std::max(1, static_cast<int>(std::ceil(whole_mm() / kChunk_mm)));
+    const int count = std::max(1, static_cast<int>(std::ceil(whole_mm() / detail::kChunk_mm)));
     for (int n = 0; n < count; ++n)
       look_around({way.at(static_cast<double>(n) / count), way.at(static_cast<double>(n + 1) / count)}, radius_mm,
                   nearest);
@@ -228,7 +227,7 @@ std::optional<Vec3> find_skin_entry(const anatomy::VirtualPatient& patient, cons
   if (!(way.norm() > 0.0)) return std::nullopt;
   const Vec3 outward = way.normalized();
   double inside_mm = 0.0;
-  for (double s_mm = 0.0; s_mm <= longest_mm; s_mm += kStep_mm) {
+  for (double s_mm = 0.0; s_mm <= longest_mm; s_mm += kPathStep_mm) {
     const Vec3 p_P = target_P + s_mm * outward;
     if (!is_in_volume(patient.skin_distance_mm.geometry, p_P)) return std::nullopt;
     const double distance = volume::sample_linear(patient.skin_distance_mm, p_P);

@@ -11,7 +11,7 @@
 namespace trocar::tasks {
 namespace {
 
-constexpr double kStep_mm = 1.0;            // over the skin
+constexpr double kSkinStep_mm = 1.0;        // over the skin
 constexpr double kLandmarkReach_mm = 30.0;  // from a landmark to the skin over it
 
 std::optional<EntryZone> find_zone(const LandmarkZone& zone, const anatomy::VirtualPatient& patient) {
@@ -48,7 +48,7 @@ const anatomy::Landmark* find_landmark(const anatomy::VirtualPatient& patient, s
 std::optional<Vec3> walk_on_skin(const anatomy::VirtualPatient& patient, const Vec3& from_P, const Vec3& towards_P,
                                  double distance_mm) {
   const Vec3 direction_P = distance_mm < 0.0 ? Vec3(-towards_P) : towards_P;
-  const int steps = static_cast<int>(std::ceil(std::abs(distance_mm) / kStep_mm));
+  const int steps = static_cast<int>(std::ceil(std::abs(distance_mm) / kSkinStep_mm));
   Vec3 p_P = from_P;
   for (int n = 0; n < steps; ++n) {
     const Vec3 normal_P = detail::skin_normal(patient.skin_distance_mm, p_P);

@@ -9,8 +9,8 @@ namespace trocar::tasks {
 namespace {
 
 // Motion of an expert; all assumed, except the tremor.
-constexpr double kTremor_mm = 0.05;  // rms while holding still: Riviere, Rader, Khosla 1997, eye surgeons, 49 um
-constexpr double kStart_mm = -20.0;
+constexpr double kExpertTremor_mm = 0.05;  // rms while holding still: Riviere, Rader, Khosla 1997, eye surgeons, 49 um
+constexpr double kExpertStart_mm = -20.0;
 constexpr double kApproach_mm_s = 20.0;
 constexpr double kTouching_mm_s = 5.0;
 constexpr double kSkinPause_s = 0.5;
@@ -29,18 +29,16 @@ constexpr double kCreepBack_mm_s = 6.0;  // yields if the recoiling tissue lets 
 constexpr double kSettled_mm = 0.5;
 constexpr double kHold_s = 0.5;
 constexpr double kMostHold_s = 3.0;
-constexpr double kAfterFire_s = 0.5;
-constexpr double kLoading_s = 3.0;  // takes the core out and loads the gun
-constexpr double kWithdraw_mm_s = 30.0;
-constexpr double kStuck_s = 6.0;  // without a millimetre of progress: stop
+constexpr double kExpertLoading_s = 3.0;  // takes the core out and loads the gun
+constexpr double kExpertWithdraw_mm_s = 30.0;
+constexpr double kExpertStuck_s = 6.0;  // without a millimetre of progress: stop
 constexpr double kGiveUp_s = 45.0;
-constexpr double kOutOfTime_s = 58.0;
 
 class Expert final : public Operator {
  public:
   explicit Expert(const OperatorCase& the_case) noexcept
-      : hand_(the_case.path_P, the_case.bevel_P, kStart_mm,
-              Tremor(std::hypot(kTremor_mm, the_case.tremor_mm), the_case.seed)),
+      : hand_(the_case.path_P, the_case.bevel_P, kExpertStart_mm,
+              Tremor(std::hypot(kExpertTremor_mm, the_case.tremor_mm), the_case.seed)),
         target_mm_(the_case.path_P.length_mm()),
         cores_left_(the_case.fires_biopsy ? the_case.actions.cores : 0),
         loads_inside_(the_case.actions.loads_inside),
@@ -79,15 +77,15 @@ class Expert final : public Operator {
         break;
       case Step::kLoad:
         speed_mm_s = loads_inside_ ? holding_speed_mm_s() : 0.0;
-        if (in_step_s() > kLoading_s) {
+        if (in_step_s() > kExpertLoading_s) {
           gun = ActionKind::kLoad;
           stall_ = {};  // another insertion
           enter(loads_inside_ ? Step::kHold : Step::kApproach);
         }
         break;
       case Step::kWithdraw:
-        speed_mm_s = hand_.wanted_mm() > kStart_mm ? -kWithdraw_mm_s : 0.0;
-        if (hand_.tip_mm() < kStart_mm + 2.0) enter(cores_left_ > 0 && !is_late() ? Step::kLoad : Step::kDone);
+        speed_mm_s = hand_.wanted_mm() > kExpertStart_mm ? -kExpertWithdraw_mm_s : 0.0;
+        if (hand_.tip_mm() < kExpertStart_mm + 2.0) enter(cores_left_ > 0 && !is_late() ? Step::kLoad : Step::kDone);
         if (hand_.elapsed_s() > kOutOfTime_s) enter(Step::kDone);
         break;
       case Step::kDone:
@@ -128,7 +126,7 @@ class Expert final : public Operator {
   }
 
   bool is_late() const noexcept { return hand_.elapsed_s() > kGiveUp_s; }
-  bool is_stuck() noexcept { return stall_.stalled_s(hand_, step_start_s_) > kStuck_s; }
+  bool is_stuck() noexcept { return stall_.stalled_s(hand_, step_start_s_) > kExpertStuck_s; }
 
   GuidedHand hand_;
   double target_mm_;

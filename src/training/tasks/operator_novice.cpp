@@ -13,7 +13,8 @@ namespace trocar::tasks {
 namespace {
 
 // Errors of a novice; assumed unless stated otherwise.
-constexpr double kTremor_mm = 0.2;  // rms a lateral axis: PMC3032442 figure 4, 0.17 and 0.25 mm without visual feedback
+constexpr double kNoviceTremor_mm =
+    0.2;  // rms a lateral axis: PMC3032442 figure 4, 0.17 and 0.25 mm without visual feedback
 constexpr double kEntryError_mm[] = {3.0, 8.0};
 constexpr double kFeltThrough_mm = 10.0;          // fat over a landmark; more of it hides the landmark, in proportion
 constexpr double kAngleError_deg[] = {2.0, 6.0};  // CT-guided with a frame: median 1.1, range 0..6.6 (doi
@@ -21,7 +22,7 @@ constexpr double kAngleError_deg[] = {2.0, 6.0};  // CT-guided with a frame: med
 constexpr double kStopError_mm[] = {3.0, 8.0};  // on a path of kUsualPath_mm; depth is judged relatively (Weber's law)
 constexpr double kUsualPath_mm = 60.0;
 constexpr double kClumsiness[] = {0.25, 1.0};  // of one novice: share of the errors of entry, angle and depth
-constexpr double kStart_mm[] = {-26.0, -18.0};
+constexpr double kNoviceStart_mm[] = {-26.0, -18.0};
 constexpr double kSpeed_mm_s[] = {20.0, 35.0};
 constexpr double kUnevenness = 0.5;
 constexpr double kRhythm_hz[] = {0.4, 1.2};
@@ -30,8 +31,7 @@ constexpr double kPullback_mm[] = {6.0, 15.0};
 constexpr double kPullbackChance = 0.6;  // residents: 2.4 pullbacks a biopsy, staff 1.2 (Hakime, freehand liver biopsy)
 constexpr double kPullback_mm_s = 15.0;
 constexpr double kBeforeFire_s[] = {0.3, 1.5};
-constexpr double kAfterFire_s = 0.5;
-constexpr double kLoading_s = 6.0;  // takes the core out and loads the gun
+constexpr double kNoviceLoading_s = 6.0;  // takes the core out and loads the gun
 // Share of novices who give anaesthetic, and of those who turn the bevel.
 constexpr double kRemembers = 0.7;
 // Looking what comes back: first short of the depth that the novice expects, then deeper and deeper until the right
@@ -44,13 +44,12 @@ constexpr double kLooking_s = 0.7;
 constexpr double kBetweenLooks_mm_s = 5.0;
 constexpr double kForgetsLook = 0.1;      // share of novices who never look and stop by depth
 constexpr double kBevelError_deg = 20.0;  // of those who turn it, at most
-constexpr double kWithdraw_mm_s = 50.0;
-constexpr double kStuck_s = 5.0;
+constexpr double kNoviceWithdraw_mm_s = 50.0;
+constexpr double kNoviceStuck_s = 5.0;
 constexpr double kBone_s = 1.5;          // without a millimetre of progress: it is bone
 constexpr int kCorrections = 2;          // after bone or without the fluid: out, another direction, in again
 constexpr double kCorrectedShare = 0.7;  // of entry and direction that a correction leaves of the error
 constexpr double kStop_s = 40.0;         // in any case: fire and withdraw
-constexpr double kOutOfTime_s = 58.0;
 // Without any error.
 constexpr double kSteadyTremor_mm = 0.05;   // as the expert
 constexpr double kSteadySpeed_mm_s = 10.0;  // mean of the expert's speeds inside the body
@@ -140,12 +139,12 @@ class Novice final : public Operator {
 
   Novice(const OperatorCase& the_case, Random random) noexcept
       : share_(carelessness(the_case)),
-        start_mm_(draw(random, kStart_mm)),
+        start_mm_(draw(random, kNoviceStart_mm)),
         plan_P_(the_case.path_P),
         line_P_(miss(the_case, clumsiness(the_case), random)),
         bevel_P_(aim_bevel(the_case)),
         hand_(line_P_, bevel_P_, start_mm_,
-              Tremor(std::hypot(std::lerp(kSteadyTremor_mm, kTremor_mm, share_), the_case.tremor_mm),
+              Tremor(std::hypot(std::lerp(kSteadyTremor_mm, kNoviceTremor_mm, share_), the_case.tremor_mm),
                      mix64(the_case.seed + 1))),
         cores_left_(the_case.fires_biopsy ? the_case.actions.cores : 0),
         loads_inside_(the_case.actions.loads_inside),
@@ -209,7 +208,7 @@ class Novice final : public Operator {
         }
         return 0.0;
       case Step::kLoad:
-        if (in_step_s() > kLoading_s) {
+        if (in_step_s() > kNoviceLoading_s) {
           wanted_ = ActionKind::kLoad;
           enter(Step::kAim);
         }
@@ -227,7 +226,7 @@ class Novice final : public Operator {
     const double last_mm = looks_ ? kLastLookShare * stop_mm_ : stop_mm_;
     if (next_doubt_ < doubts_.size() && hand_.tip_mm() > doubts_[next_doubt_].depth_mm) {
       enter(Step::kHesitate);
-    } else if (is_stuck(kStuck_s) || hand_.elapsed_s() > kStop_s) {
+    } else if (is_stuck(kNoviceStuck_s) || hand_.elapsed_s() > kStop_s) {
       enter(Step::kAim);
     } else if (is_stuck(kBone_s) && corrections_left_ > 0) {
       enter(Step::kBackOut);
@@ -256,7 +255,7 @@ class Novice final : public Operator {
     step_ = step;
     step_start_s_ = hand_.elapsed_s();
   }
-  double withdraw_mm_s() const noexcept { return std::lerp(kSteadyWithdraw_mm_s, kWithdraw_mm_s, share_); }
+  double withdraw_mm_s() const noexcept { return std::lerp(kSteadyWithdraw_mm_s, kNoviceWithdraw_mm_s, share_); }
   double in_step_s() const noexcept { return hand_.elapsed_s() - step_start_s_; }
 
   bool is_stuck(double longest_s) noexcept { return stall_.stalled_s(hand_, step_start_s_) > longest_s; }

@@ -57,7 +57,7 @@ Vec3 direction_to(const EntryZone& zone, const Vec3& target_P, const Vec3& on_sp
   const double r = std::sqrt(std::max(0.0, 1.0 - z * z));
   const double around = std::atan2(on_sphere.y(), on_sphere.x());
   const Vec3 local(r * std::cos(around), r * std::sin(around), z);
-  return Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), way / distance) * local;
+  return rotation_between(Vec3::UnitZ(), way / distance) * local;
 }
 
 std::vector<PathCandidate> trace_lines(const PlanningMap& map, const Needle& needle, const PlanTargets& targets,

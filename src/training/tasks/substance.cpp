@@ -13,12 +13,13 @@
 namespace trocar::tasks {
 namespace {
 
-constexpr std::array kNames{"nothing", "blood", "csf", "ascites", "bile", "urine", "air", "bowel_content", "fluid"};
-static_assert(kNames.size() == static_cast<std::size_t>(kLastSubstance) + 1);
+constexpr std::array kSubstanceNames{"nothing", "blood", "csf",           "ascites", "bile",
+                                     "urine",   "air",   "bowel_content", "fluid"};
+static_assert(kSubstanceNames.size() == static_cast<std::size_t>(kLastSubstance) + 1);
 
 constexpr std::array kWords{"nothing", "blood", "spinal fluid",  "ascites", "bile",
                             "urine",   "air",   "bowel content", "fluid"};
-static_assert(kWords.size() == kNames.size());
+static_assert(kWords.size() == kSubstanceNames.size());
 
 constexpr int kPoints = 9;  // along the bevel's opening
 
@@ -26,7 +27,7 @@ Result<Substance> read_substance(const config::TomlTable& table, const std::stri
   TROCAR_TRY(const std::string name, table.string(key));
   if (const auto substance = find_substance(name)) return *substance;
   return fail(fmt::format("there is no substance \"{}\"", name), table.where(),
-              fmt::format("write one of: {}", fmt::join(kNames, ", ")));
+              fmt::format("write one of: {}", fmt::join(kSubstanceNames, ", ")));
 }
 
 Status read_substances(const config::TomlTable& document, std::string_view section,
@@ -54,7 +55,7 @@ std::string_view plain_name(std::string_view name) {
 }  // namespace
 
 const char* to_string(Substance substance) noexcept {
-  return kNames[static_cast<std::size_t>(substance)];
+  return kSubstanceNames[static_cast<std::size_t>(substance)];
 }
 
 const char* substance_words(Substance substance) noexcept {
@@ -62,9 +63,9 @@ const char* substance_words(Substance substance) noexcept {
 }
 
 std::optional<Substance> find_substance(std::string_view name) noexcept {
-  const auto found = std::find(kNames.begin(), kNames.end(), name);
-  if (found == kNames.end()) return std::nullopt;
-  return static_cast<Substance>(found - kNames.begin());
+  const auto found = std::find(kSubstanceNames.begin(), kSubstanceNames.end(), name);
+  if (found == kSubstanceNames.end()) return std::nullopt;
+  return static_cast<Substance>(found - kSubstanceNames.begin());
 }
 
 Substance SubstanceTable::of(const anatomy::Label& label, bool is_aspirated) const {
@@ -83,8 +84,8 @@ Result<SubstanceTable> load_substances(const std::filesystem::path& file) {
   TROCAR_TRY_STATUS(read_substances(document, "labels", table.labels));
   TROCAR_TRY_STATUS(read_substances(document, "aspirated", table.aspirated));
   TROCAR_TRY(const config::TomlTable looks, document.table("looks"));
-  TROCAR_TRY_STATUS(looks.check_keys({kNames.begin(), kNames.end()}));
-  for (const char* name : kNames) {
+  TROCAR_TRY_STATUS(looks.check_keys({kSubstanceNames.begin(), kSubstanceNames.end()}));
+  for (const char* name : kSubstanceNames) {
     TROCAR_TRY(const config::TomlTable row, looks.table(name));
     TROCAR_TRY_STATUS(row.check_keys({"flows", "aspirated"}));
     SubstanceLook& look = table.looks[*find_substance(name)];
@@ -98,7 +99,7 @@ Return what_returns(const SubstanceTable& table, const anatomy::VirtualPatient& 
                     const Vec3& tip_P, const Vec3& axis_P, bool is_aspirated) {
   const double bevel_rad = std::clamp(needle.bevel_deg, 5.0, 90.0) * std::numbers::pi / 180.0;
   const double opening_mm = std::max(0.2, needle.outer_diameter_mm / std::tan(bevel_rad));
-  std::array<int, kNames.size()> points{};
+  std::array<int, kSubstanceNames.size()> points{};
   for (int n = 0; n < kPoints; ++n) {
     const double back_mm = opening_mm * n / (kPoints - 1);
     const anatomy::Label* const label = anatomy::find_label(patient, tip_P - back_mm * axis_P);

@@ -7,13 +7,15 @@
 
 #include "core/files/temporary_folder.h"
 #include "web/static_files.h"
+#include "web/test/service_lab.h"
 #include "web/timed_cache.h"
 
 namespace trocar::web {
 namespace {
 
 using namespace std::chrono_literals;
-const AnswerCache::TimePoint kStart{1000h};
+using testing::header_of;
+const AnswerCache::TimePoint kFirstAsked{1000h};
 
 AnswerCache::Value text(std::string content) {
   return std::make_shared<const std::string>(std::move(content));
@@ -23,21 +25,21 @@ TEST(AnswerCache, MakesAnAnswerOnceASecond) {
   AnswerCache cache;
   int made = 0;
   const auto make = [&]() -> Result<AnswerCache::Value> { return text(std::to_string(++made)); };
-  EXPECT_EQ(**cache.get("a", kStart, make), "1");
-  EXPECT_EQ(**cache.get("a", kStart + 999ms, make), "1");
-  EXPECT_EQ(**cache.get("b", kStart, make), "2");
-  EXPECT_EQ(**cache.get("a", kStart + 1000ms, make), "1") << "the old one, while the next is made";
+  EXPECT_EQ(**cache.get("a", kFirstAsked, make), "1");
+  EXPECT_EQ(**cache.get("a", kFirstAsked + 999ms, make), "1");
+  EXPECT_EQ(**cache.get("b", kFirstAsked, make), "2");
+  EXPECT_EQ(**cache.get("a", kFirstAsked + 1000ms, make), "1") << "the old one, while the next is made";
   cache.finish_renewal();
-  EXPECT_EQ(**cache.get("a", kStart + 1001ms, make), "3");
+  EXPECT_EQ(**cache.get("a", kFirstAsked + 1001ms, make), "3");
   cache.clear();
-  EXPECT_EQ(**cache.get("a", kStart + 1002ms, make), "4");
-  EXPECT_EQ(**cache.get("a", kStart + 60s, make), "5") << "too old to be given";
+  EXPECT_EQ(**cache.get("a", kFirstAsked + 1002ms, make), "4");
+  EXPECT_EQ(**cache.get("a", kFirstAsked + 60s, make), "5") << "too old to be given";
 }
 
 TEST(AnswerCache, DoesNotKeepErrors) {
   AnswerCache cache;
-  EXPECT_FALSE(cache.get("a", kStart, [] { return fail("no", "where", "advice"); }));
-  EXPECT_EQ(**cache.get("a", kStart, [] { return text("yes"); }), "yes");
+  EXPECT_FALSE(cache.get("a", kFirstAsked, [] { return fail("no", "where", "advice"); }));
+  EXPECT_EQ(**cache.get("a", kFirstAsked, [] { return text("yes"); }), "yes");
 }
 
 TEST(AnswerCache, WaitersShareOneAnswer) {
@@ -48,7 +50,7 @@ TEST(AnswerCache, WaitersShareOneAnswer) {
   for (int n = 0; n < 8; ++n)
     threads.emplace_back([&] {
       ++waiting;
-      const auto value = cache.get("a", kStart, [&]() -> Result<AnswerCache::Value> {
+      const auto value = cache.get("a", kFirstAsked, [&]() -> Result<AnswerCache::Value> {
         ++made;
         while (!may_end) std::this_thread::yield();
         return text("once");
@@ -63,21 +65,21 @@ TEST(AnswerCache, WaitersShareOneAnswer) {
 
 TEST(AnswerCache, AFailedRenewalIsSeenByTheNextRequest) {
   AnswerCache cache;
-  ASSERT_TRUE(cache.get("a", kStart, [] { return text("old"); }));
+  ASSERT_TRUE(cache.get("a", kFirstAsked, [] { return text("old"); }));
   const auto no = []() -> Result<AnswerCache::Value> { return fail("no", "where", "advice"); };
-  EXPECT_EQ(**cache.get("a", kStart + 2s, no), "old");
+  EXPECT_EQ(**cache.get("a", kFirstAsked + 2s, no), "old");
   cache.finish_renewal();
-  EXPECT_FALSE(cache.get("a", kStart + 2s, no));
+  EXPECT_FALSE(cache.get("a", kFirstAsked + 2s, no));
 }
 
 /// A deletion while an answer is being made: the answer may show the deleted person and must not be kept.
 TEST(AnswerCache, AnswersOfBeforeAChangeAreNotKept) {
   AnswerCache cache;
-  ASSERT_TRUE(cache.get("a", kStart, [&] {
+  ASSERT_TRUE(cache.get("a", kFirstAsked, [&] {
     cache.clear();
     return text("before the change");
   }));
-  EXPECT_EQ(**cache.get("a", kStart, [] { return text("after"); }), "after");
+  EXPECT_EQ(**cache.get("a", kFirstAsked, [] { return text("after"); }), "after");
 }
 
 TEST(AnswerCache, IsBounded) {
@@ -87,7 +89,7 @@ TEST(AnswerCache, IsBounded) {
   AnswerCache cache(rules);
   int made = 0;
   const auto get = [&](const std::string& key, int second) {
-    (void)cache.get(key, kStart + std::chrono::milliseconds(second), [&] {
+    (void)cache.get(key, kFirstAsked + std::chrono::milliseconds(second), [&] {
       ++made;
       return text(std::string(30, 'x'));
     });
@@ -117,12 +119,6 @@ class Page : public ::testing::Test {
   }
   TemporaryFolder folder_;
 };
-
-std::string header_of(const HttpAnswer& answer, const std::string& name) {
-  for (const auto& [key, value] : answer.headers)
-    if (key == name) return value;
-  return {};
-}
 
 TEST_F(Page, OwnAddressesShowTheIndex) {
   for (const char* path : {"/", "/people/0123", "/q/token", "/unknown"}) EXPECT_EQ(*get(path).body, "<html>") << path;

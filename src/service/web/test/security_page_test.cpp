@@ -63,7 +63,7 @@ std::string text_of(const fs::path& file) {
 std::set<std::string> tests_in(const std::string& folder) {
   static const std::regex macro(R"(TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\))");
   std::set<std::string> tests;
-  for (const auto& entry : fs::directory_iterator(testing::source_dir() / folder)) {
+  for (const auto& entry : fs::directory_iterator(trocar::testing::source_dir() / folder)) {
     const std::string text = text_of(entry.path());
     for (std::sregex_iterator match(text.begin(), text.end(), macro), end; match != end; ++match)
       tests.insert(match->str(1) + "." + match->str(2));
@@ -73,7 +73,7 @@ std::set<std::string> tests_in(const std::string& folder) {
 
 TEST(SecurityPage, HasEveryRequirementOfLevel1Once) {
   std::multiset<std::string> listed;
-  std::istringstream page(text_of(testing::source_dir() / "docs/security.md"));
+  std::istringstream page(text_of(trocar::testing::source_dir() / "docs/security.md"));
   static const std::regex row(R"(^\| (\d+\.\d+\.\d+) \| .+ \| .+ \|$)");
   std::smatch match;
   for (std::string line; std::getline(page, line);)
@@ -87,14 +87,14 @@ TEST(SecurityPage, HasEveryRequirementOfLevel1Once) {
 TEST(SecurityPage, NamesOnlyTestsAndFilesThatExist) {
   std::set<std::string> tests = tests_in("src/service/web/test");
   tests.merge(tests_in("src/foundation/signing/test"));
-  const std::string page = text_of(testing::source_dir() / "docs/security.md");
+  const std::string page = text_of(trocar::testing::source_dir() / "docs/security.md");
   static const std::regex test(R"(`([A-Z]\w+\.[A-Z]\w+)`)"), file(R"(`((?:web|tests|apps)/[\w/.]+\.\w+)`)");
   std::size_t named = 0;
   for (std::sregex_iterator match(page.begin(), page.end(), test), end; match != end; ++match, ++named)
     EXPECT_TRUE(tests.contains(match->str(1))) << match->str(1);
   EXPECT_GT(named, 50U);
   for (std::sregex_iterator match(page.begin(), page.end(), file), end; match != end; ++match)
-    EXPECT_TRUE(fs::exists(testing::source_dir() / match->str(1))) << match->str(1);
+    EXPECT_TRUE(fs::exists(trocar::testing::source_dir() / match->str(1))) << match->str(1);
 }
 
 }  // namespace

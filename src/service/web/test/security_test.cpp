@@ -12,7 +12,7 @@ namespace {
 
 using namespace std::chrono_literals;
 using TimePoint = TokenBuckets::TimePoint;
-const TimePoint kStart{1000h};
+const TimePoint kFirstTry{1000h};
 const std::string kToken = "abcdefghijklmnopqrstuvwxyz0123456789-_ABCDE";
 
 HttpRequest request_with(TextPairs headers) {
@@ -23,45 +23,45 @@ HttpRequest request_with(TextPairs headers) {
 
 TEST(TokenBuckets, AllowABurstAndThenTheRate) {
   TokenBuckets buckets({3, 0.5});
-  for (int n = 0; n < 3; ++n) EXPECT_FALSE(buckets.try_take("a", kStart));
-  EXPECT_EQ(buckets.try_take("a", kStart), 2s);
-  EXPECT_EQ(buckets.try_take("a", kStart + 1s), 1s);
-  EXPECT_FALSE(buckets.try_take("a", kStart + 2s));
-  EXPECT_TRUE(buckets.try_take("a", kStart + 2s));
-  EXPECT_FALSE(buckets.try_take("b", kStart)) << "another key has a bucket of its own";
+  for (int n = 0; n < 3; ++n) EXPECT_FALSE(buckets.try_take("a", kFirstTry));
+  EXPECT_EQ(buckets.try_take("a", kFirstTry), 2s);
+  EXPECT_EQ(buckets.try_take("a", kFirstTry + 1s), 1s);
+  EXPECT_FALSE(buckets.try_take("a", kFirstTry + 2s));
+  EXPECT_TRUE(buckets.try_take("a", kFirstTry + 2s));
+  EXPECT_FALSE(buckets.try_take("b", kFirstTry)) << "another key has a bucket of its own";
 }
 
 TEST(TokenBuckets, NeverHoldMoreThanTheirCapacity) {
   TokenBuckets buckets({2, 1});
-  EXPECT_FALSE(buckets.try_take("a", kStart));
+  EXPECT_FALSE(buckets.try_take("a", kFirstTry));
   int taken = 0;
-  while (!buckets.try_take("a", kStart + 1000s)) ++taken;
+  while (!buckets.try_take("a", kFirstTry + 1000s)) ++taken;
   EXPECT_EQ(taken, 2);
   buckets.give_back("a");
   buckets.give_back("a");
   buckets.give_back("a");
   taken = 0;
-  while (!buckets.try_take("a", kStart + 1000s)) ++taken;
+  while (!buckets.try_take("a", kFirstTry + 1000s)) ++taken;
   EXPECT_EQ(taken, 2);
 }
 
 TEST(TokenBuckets, ATimeInThePastGivesNothing) {
   TokenBuckets buckets({1, 1});
-  EXPECT_FALSE(buckets.try_take("a", kStart));
-  EXPECT_TRUE(buckets.try_take("a", kStart - 100s));
-  EXPECT_TRUE(buckets.try_take("a", kStart));
+  EXPECT_FALSE(buckets.try_take("a", kFirstTry));
+  EXPECT_TRUE(buckets.try_take("a", kFirstTry - 100s));
+  EXPECT_TRUE(buckets.try_take("a", kFirstTry));
 }
 
 /// 1000 made-up keys with room for 10: all beyond share one bucket.
 TEST(TokenBuckets, MadeUpKeysNeitherGrowNorEscape) {
   TokenBuckets buckets({2, 0.001, 10});
   int taken = 0;
-  for (int n = 0; n < 1000; ++n) taken += buckets.try_take(std::to_string(n), kStart) ? 0 : 1;
+  for (int n = 0; n < 1000; ++n) taken += buckets.try_take(std::to_string(n), kFirstTry) ? 0 : 1;
   EXPECT_EQ(taken, 10 + 2);
   // Keys that rested long enough make room.
-  EXPECT_FALSE(buckets.try_take("new", kStart + 10000s));
-  EXPECT_FALSE(buckets.try_take("new", kStart + 10000s));
-  EXPECT_FALSE(buckets.try_take("other", kStart + 10000s));
+  EXPECT_FALSE(buckets.try_take("new", kFirstTry + 10000s));
+  EXPECT_FALSE(buckets.try_take("new", kFirstTry + 10000s));
+  EXPECT_FALSE(buckets.try_take("other", kFirstTry + 10000s));
 }
 
 int tries(LoginThrottle& throttle, const std::string& account, const std::string& address, TimePoint now,
@@ -73,47 +73,47 @@ int tries(LoginThrottle& throttle, const std::string& account, const std::string
 
 TEST(LoginThrottle, SlowsDownOneAddressAtOneAccount) {
   LoginThrottle throttle;
-  EXPECT_EQ(tries(throttle, "weber", "192.0.2.1", kStart), 5);
-  EXPECT_EQ(throttle.try_begin("weber", "192.0.2.1", kStart), 60s);
-  EXPECT_EQ(tries(throttle, "weber", "192.0.2.1", kStart + 60s), 1);
+  EXPECT_EQ(tries(throttle, "weber", "192.0.2.1", kFirstTry), 5);
+  EXPECT_EQ(throttle.try_begin("weber", "192.0.2.1", kFirstTry), 60s);
+  EXPECT_EQ(tries(throttle, "weber", "192.0.2.1", kFirstTry + 60s), 1);
   // A day of guessing: the burst and one a minute.
   LoginThrottle day;
   int guesses = 0;
   for (int second = 0; second < 24 * 3600; ++second)
-    guesses += day.try_begin("weber", "192.0.2.1", kStart + std::chrono::seconds(second)) ? 0 : 1;
+    guesses += day.try_begin("weber", "192.0.2.1", kFirstTry + std::chrono::seconds(second)) ? 0 : 1;
   EXPECT_LE(guesses, 5 + 24 * 60);
   EXPECT_GE(guesses, 24 * 60 / 2);
 }
 
 TEST(LoginThrottle, NobodyElseIsLockedOut) {
   LoginThrottle throttle;
-  tries(throttle, "weber", "192.0.2.1", kStart);
-  EXPECT_FALSE(throttle.try_begin("weber", "192.0.2.2", kStart)) << "the owner of the account, from another address";
-  EXPECT_FALSE(throttle.try_begin("huber", "192.0.2.1", kStart)) << "a colleague behind the same address";
+  tries(throttle, "weber", "192.0.2.1", kFirstTry);
+  EXPECT_FALSE(throttle.try_begin("weber", "192.0.2.2", kFirstTry)) << "the owner of the account, from another address";
+  EXPECT_FALSE(throttle.try_begin("huber", "192.0.2.1", kFirstTry)) << "a colleague behind the same address";
 }
 
 TEST(LoginThrottle, AnAddressCannotTryAllAccounts) {
   LoginThrottle throttle;
   int count = 0;
-  for (int n = 0; n < 1000; ++n) count += throttle.try_begin(std::to_string(n), "192.0.2.1", kStart) ? 0 : 1;
+  for (int n = 0; n < 1000; ++n) count += throttle.try_begin(std::to_string(n), "192.0.2.1", kFirstTry) ? 0 : 1;
   EXPECT_EQ(count, 30);
 }
 
 /// Guesses from many addresses are limited, and do not lock out one that has logged in before.
 TEST(LoginThrottle, ManyAddressesCannotTryOneAccount) {
   LoginThrottle throttle;
-  ASSERT_FALSE(throttle.try_begin("weber", "198.51.100.1", kStart));
+  ASSERT_FALSE(throttle.try_begin("weber", "198.51.100.1", kFirstTry));
   throttle.succeeded("weber", "198.51.100.1");
   int count = 0;
-  for (int n = 0; n < 1000; ++n) count += throttle.try_begin("weber", std::to_string(n), kStart) ? 0 : 1;
+  for (int n = 0; n < 1000; ++n) count += throttle.try_begin("weber", std::to_string(n), kFirstTry) ? 0 : 1;
   EXPECT_EQ(count, 100);
-  EXPECT_FALSE(throttle.try_begin("weber", "198.51.100.1", kStart));
+  EXPECT_FALSE(throttle.try_begin("weber", "198.51.100.1", kFirstTry));
 }
 
 TEST(LoginThrottle, RightPasswordsDoNotCount) {
   LoginThrottle throttle;
   for (int n = 0; n < 200; ++n) {
-    ASSERT_FALSE(throttle.try_begin("weber", "192.0.2.1", kStart)) << n;
+    ASSERT_FALSE(throttle.try_begin("weber", "192.0.2.1", kFirstTry)) << n;
     throttle.succeeded("weber", "192.0.2.1");
   }
 }

@@ -12,8 +12,8 @@
 namespace trocar::web::testing {
 namespace {
 
-const Moment kStart{std::chrono::steady_clock::time_point{std::chrono::hours(1000)},
-                    std::chrono::sys_seconds{std::chrono::seconds(1'790'000'000)}};
+const Moment kOpened{std::chrono::steady_clock::time_point{std::chrono::hours(1000)},
+                     std::chrono::sys_seconds{std::chrono::seconds(1'790'000'000)}};
 
 const std::string& hash_of_password() {
   static const std::string hash = signing::hash_password(kPassword, kQuickWork).value();
@@ -22,7 +22,7 @@ const std::string& hash_of_password() {
 
 }  // namespace
 
-ServiceLab::ServiceLab(bool is_secure, bool is_behind_proxy) : now(kStart) {
+ServiceLab::ServiceLab(bool is_secure, bool is_behind_proxy) : now(kOpened) {
   std::filesystem::create_directories(folder_ / "web/assets");
   std::ofstream(folder_ / "web/index.html") << "<!doctype html>";
   std::ofstream(folder_ / "web/assets/index-1.js") << "code";
@@ -30,9 +30,9 @@ ServiceLab::ServiceLab(bool is_secure, bool is_behind_proxy) : now(kStart) {
   auto opened = results::Repository::open(url);
   EXPECT_TRUE(opened) << opened.error().text();
   repository_.emplace(*std::move(opened));
-  EXPECT_TRUE(results::add_account(*repository_, kAdmin, results::Role::kAdmin, hash_of_password(), kStart.utc));
+  EXPECT_TRUE(results::add_account(*repository_, kAdmin, results::Role::kAdmin, hash_of_password(), kOpened.utc));
   EXPECT_TRUE(
-      results::add_account(*repository_, kInstructor, results::Role::kInstructor, hash_of_password(), kStart.utc));
+      results::add_account(*repository_, kInstructor, results::Role::kInstructor, hash_of_password(), kOpened.utc));
   ServiceOptions options;
   options.database = url;
   options.data_folder = trocar::testing::source_dir() / "data";

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "anatomy/direction_words.h"
 #include "anatomy/structure_words.h"
@@ -15,7 +14,6 @@ namespace {
 
 constexpr double kFarFromEntry_mm = 15.0;
 constexpr double kLookStep_mm = 0.5;
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 /// Structures at risk ahead of the tip.
 std::string danger_ahead(const cases::Case& the_case, const telemetry::TickSample& sample) {

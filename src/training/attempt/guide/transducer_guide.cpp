@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "anatomy/direction_words.h"
 
@@ -12,7 +11,6 @@ namespace trocar::attempt {
 namespace {
 
 constexpr double kContact_n = 0.05;  ///< As in scoring/phase_tracker.cpp.
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 }  // namespace
 

@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <cctype>
-
 #include "anatomy/structure_words.h"
+#include "core/ascii.h"
 
 namespace trocar::attempt {
 
@@ -41,7 +40,7 @@ AttemptEvent describe_action(const tasks::SubstanceTable& substances, const task
     const auto found = substances.looks.find(action.result.substance);
     if (found == substances.looks.end()) return std::string(tasks::substance_words(action.result.substance));
     std::string words = is_aspirated ? found->second.aspirated : found->second.flows;
-    if (!words.empty()) words.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(words.front())));
+    if (!words.empty()) words.front() = ascii::to_lower(words.front());
     const bool is_slow = action.result.substance != tasks::Substance::kNothing && action.result.is_slow();
     return words + (is_slow ? ", slowly: the bevel is only partly in it" : "");
   };

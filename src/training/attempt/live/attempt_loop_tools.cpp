@@ -15,7 +15,6 @@ namespace {
 /// Ticks that are older when they arrive were not answered in time: a server's hand stops when it gets no target for so
 /// long, and the operator's must not have moved on meanwhile.
 constexpr double kAnswered_s = 0.05;
-constexpr double kLongestStep_s = 0.02;  ///< Of a hand between two ticks.
 
 }  // namespace
 
@@ -49,7 +48,7 @@ void AttemptLoop::answer_unrecorded(const std::vector<link::NumberedSample>& sam
   tasks::OperatorView view;
   for (const link::NumberedSample& numbered : samples) {
     view.last = numbered.sample;
-    view.dt_s = std::clamp(numbered.sample.time_s - needle_time_s_, 0.0, kLongestStep_s);
+    view.dt_s = std::clamp(numbered.sample.time_s - needle_time_s_, 0.0, kLongestHandStep_s);
     view.X_PN_device = telemetry::device_pose(numbered.sample);
     needle_time_s_ = numbered.sample.time_s;
     if (numbered.shape) needle_shape_ = *numbered.shape;

@@ -4,6 +4,7 @@
 #include "attempt/guide/puncture_guide.h"
 #include "attempt/guide/transducer_guide.h"
 #include "attempt/live/attempt_loop.h"
+#include "core/ascii.h"
 #include "telemetry/tick_pose.h"
 
 namespace trocar::attempt {
@@ -121,7 +122,7 @@ void AttemptLoop::add_phases(AttemptView& view) const {
     PhaseView shown{phases[n].title, phases[n].why, {}, state.is_open, state.begun_s, state.done_s};
     if (!state.lacks.empty()) {
       shown.lacks = state.lacks.front();
-      shown.lacks.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(shown.lacks.front())));
+      shown.lacks.front() = ascii::to_upper(shown.lacks.front());
     }
     view.phases.push_back(std::move(shown));
   }

@@ -10,7 +10,7 @@
 namespace trocar::attempt {
 namespace {
 
-constexpr std::chrono::milliseconds kBetweenPolls{2};
+constexpr std::chrono::milliseconds kBetweenLoopPolls{2};
 constexpr double kBeforeEntry_mm = 20.0;
 
 LocalServerOptions server_options(const AttemptOptions& options, const char* tool, const std::string& device) {
@@ -103,7 +103,7 @@ void LiveAttempt::run(const std::stop_token& stop, std::shared_ptr<const cases::
   ToolSupervisors supervisors = (*found)->supervise(supervision, clock);
   AttemptLoop loop(attempt_case(open_case), loop_options(*open_case, options_), trainee_operators(*open_case, options_),
                    *std::move(found), std::move(supervisors), clock, *this);
-  while (!stop.stop_requested() && loop.poll()) clock.sleep_for(kBetweenPolls);
+  while (!stop.stop_requested() && loop.poll()) clock.sleep_for(kBetweenLoopPolls);
 }
 
 std::optional<Result<RunResult>> LiveAttempt::take_result() {

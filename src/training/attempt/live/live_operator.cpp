@@ -10,8 +10,7 @@
 namespace trocar::attempt {
 namespace {
 
-constexpr double kLongestGap_s = 0.1;    // between two ticks: a longer gap is time without control
-constexpr double kLongestStep_s = 0.02;  // of a hand: a longer gap between ticks is a pause, not a motion
+constexpr double kLongestGap_s = 0.1;  // between two ticks: a longer gap is time without control
 
 /// The server resumed the needle while placing the hand, in ticks that are not recorded.
 void note_resumption(telemetry::TickSample& sample) noexcept {
@@ -99,7 +98,7 @@ Result<double> LiveOperator::record(const telemetry::TickSample& tick, bool is_s
 Result<bool> LiveOperator::take(const telemetry::TickSample& tick) {
   TROCAR_TRY(const double step_s, record(tick, true));
   // Ticks lost because this program did not read them count as unseen, too.
-  view_.dt_s = std::min(step_s, kLongestStep_s);
+  view_.dt_s = std::min(step_s, kLongestHandStep_s);
   view_.time_s += view_.dt_s;
   unseen_s_ += step_s - view_.dt_s;
   command_ = performer_->the_operator->next(view_);

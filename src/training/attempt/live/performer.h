@@ -10,6 +10,7 @@
 
 namespace trocar::attempt {
 
+inline constexpr double kLongestHandStep_s = 0.02;  ///< A longer gap between ticks is a pause, not a motion of a hand.
 inline constexpr double kLongestAttempt_s = 120.0;  ///< Limit after which an operator is stopped.
 
 /// An operator and its options.

@@ -15,7 +15,7 @@
 namespace trocar::attempt {
 namespace {
 
-constexpr std::chrono::milliseconds kBetweenPolls{1};
+constexpr std::chrono::milliseconds kBetweenViews{1};
 constexpr double kSameRate_hz = 0.5;
 
 using Hosts = std::vector<std::unique_ptr<ServerHost>>;
@@ -103,9 +103,8 @@ Error interrupted(bool is_recorded, const RunOptions& options) {
           "run the command again; it is kept under another name then"};
 }
 
-/// Until the operator is done.
-Result<RunResult> perform(AttemptLoop& loop, AttemptExchange& exchange, const RunOptions& options, Clock& clock,
-                          const Progress& progress) {
+Result<RunResult> perform_until_done(AttemptLoop& loop, AttemptExchange& exchange, const RunOptions& options,
+                                     Clock& clock, const Progress& progress) {
   while (loop.poll()) {
     const AttemptView view = exchange.view();
     if (is_interrupted()) {
@@ -113,7 +112,7 @@ Result<RunResult> perform(AttemptLoop& loop, AttemptExchange& exchange, const Ru
       return tl::unexpected(interrupted(view.phase != AttemptPhase::kStarting, options));
     }
     report_view(progress, view);
-    clock.sleep_for(kBetweenPolls);
+    clock.sleep_for(kBetweenViews);
   }
   Result<RunResult> result = *exchange.take_result();
   if (result) warn_of_gaps(*result);
@@ -132,7 +131,7 @@ Result<RunResult> perform_through(Hosts hosts, const cases::Case& the_case, cons
   AttemptExchange exchange(clock);
   AttemptLoop loop(attempt_case(the_case, options), loop_options(options), std::move(operators),
                    std::move(found.servers), std::move(found.supervisors), *clock, exchange);
-  return perform(loop, exchange, options, *clock, progress);
+  return perform_until_done(loop, exchange, options, *clock, progress);
 }
 
 }  // namespace

@@ -10,23 +10,23 @@
 namespace trocar::cohort {
 namespace {
 
-using Scores = std::vector<std::optional<double>>;
+using AttemptScores = std::vector<std::optional<double>>;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 TEST(MovingMean, IsTheMeanOfTheLastScoredAttempts) {
-  const Scores scores{10.0, 20.0, std::nullopt, 60.0, 100.0};
-  EXPECT_EQ(moving_mean(scores, 2), (Scores{10.0, 15.0, 15.0, 40.0, 80.0}));
-  EXPECT_EQ(moving_mean(scores, 1), (Scores{10.0, 20.0, 20.0, 60.0, 100.0}));
+  const AttemptScores scores{10.0, 20.0, std::nullopt, 60.0, 100.0};
+  EXPECT_EQ(moving_mean(scores, 2), (AttemptScores{10.0, 15.0, 15.0, 40.0, 80.0}));
+  EXPECT_EQ(moving_mean(scores, 1), (AttemptScores{10.0, 20.0, 20.0, 60.0, 100.0}));
   EXPECT_EQ(moving_mean(scores, 100).back(), 47.5);
 }
 
 TEST(MovingMean, IsEmptyBeforeTheFirstScore) {
-  EXPECT_EQ(moving_mean(Scores{std::nullopt, kNan, 5.0}, 3), (Scores{std::nullopt, std::nullopt, 5.0}));
+  EXPECT_EQ(moving_mean(AttemptScores{std::nullopt, kNan, 5.0}, 3), (AttemptScores{std::nullopt, std::nullopt, 5.0}));
   EXPECT_TRUE(moving_mean({}, 3).empty());
 }
 
 TEST(Trend, IsTheSlopeOfALineWhateverOneOutlierDoes) {
-  Scores scores;
+  AttemptScores scores;
   for (int n = 0; n < 9; ++n) scores.emplace_back(40.0 + 3.0 * n);
   EXPECT_DOUBLE_EQ(*trend_per_attempt(scores), 3.0);
   scores[4].reset();
@@ -36,8 +36,8 @@ TEST(Trend, IsTheSlopeOfALineWhateverOneOutlierDoes) {
 }
 
 TEST(Trend, NeedsThreeScores) {
-  EXPECT_FALSE(trend_per_attempt(Scores{1.0, std::nullopt, 2.0, kNan}));
-  EXPECT_EQ(trend_per_attempt(Scores{5.0, 5.0, 5.0}), 0.0);
+  EXPECT_FALSE(trend_per_attempt(AttemptScores{1.0, std::nullopt, 2.0, kNan}));
+  EXPECT_EQ(trend_per_attempt(AttemptScores{5.0, 5.0, 5.0}), 0.0);
 }
 
 TEST(Cusum, HasThePublishedStepAndLimits) {
@@ -117,7 +117,8 @@ TEST(Cusum, RefusesRatesThatAreNone) {
 }
 
 TEST(MeanCurve, CountsThePeopleOfEachAttempt) {
-  const std::vector<Scores> people{{10.0, 20.0, 30.0}, {30.0, std::nullopt, std::nullopt, std::nullopt, 50.0}, {}};
+  const std::vector<AttemptScores> people{
+      {10.0, 20.0, 30.0}, {30.0, std::nullopt, std::nullopt, std::nullopt, 50.0}, {}};
   const auto curve = mean_curve(people);
   ASSERT_EQ(curve.size(), 5u);
   EXPECT_EQ(curve[0]->people, 2u);
@@ -131,7 +132,7 @@ TEST(MeanCurve, CountsThePeopleOfEachAttempt) {
 }
 
 TEST(MeanCurve, HasStudentsInterval) {
-  const std::vector<Scores> people{{10.0}, {30.0}};
+  const std::vector<AttemptScores> people{{10.0}, {30.0}};
   const auto curve = mean_curve(people);
   // Two values: t = 12.706, standard error 10.
   EXPECT_NEAR(curve[0]->interval->low, 20.0 - 127.06, 0.01);

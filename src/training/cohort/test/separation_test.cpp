@@ -12,7 +12,6 @@ namespace trocar::cohort {
 namespace {
 
 using Values = std::vector<double>;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // Hollander and Wolfe 1973, table 4.1: permeability of the chorioamnion at term and at 12 to 26 weeks.
 const Values kAtTerm{0.80, 0.83, 1.89, 1.04, 1.45, 1.38, 1.91, 1.64, 0.73, 1.46};
@@ -91,7 +90,7 @@ TEST(RankSum, SmallestPIsThatOfCompleteSeparation) {
 TEST(RankSum, RefusesWhatIsNoNumberAndEmptyGroups) {
   EXPECT_FALSE(rank_sum_test({}, Values{1.0}));
   EXPECT_FALSE(rank_sum_test(Values{1.0}, {}));
-  EXPECT_FALSE(rank_sum_test(Values{1.0}, Values{2.0, kNan}));
+  EXPECT_FALSE(rank_sum_test(Values{1.0}, Values{2.0, std::numeric_limits<double>::quiet_NaN()}));
   EXPECT_FALSE(rank_sum_test(Values{std::numeric_limits<double>::infinity()}, Values{2.0}));
 }
 

@@ -9,8 +9,6 @@
 namespace trocar::cohort {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
 TEST(Quantile, InterpolatesBetweenSortedValues) {
   const std::vector<double> values{40.0, 10.0, 30.0, 20.0};  // R: quantile(c(40, 10, 30, 20)) is 10 17.5 25 32.5 40
   const auto quartiles = quartiles_of(values);
@@ -33,7 +31,8 @@ TEST(StandardDeviation, IsThatOfASample) {
 }
 
 TEST(PersonMean, TakesTheChosenAttemptsThatHaveAValue) {
-  const std::vector<std::optional<double>> scores{10.0, std::nullopt, 30.0, kNan, 50.0};
+  const std::vector<std::optional<double>> scores{10.0, std::nullopt, 30.0, std::numeric_limits<double>::quiet_NaN(),
+                                                  50.0};
   EXPECT_EQ(person_mean(scores), 30.0);
   EXPECT_EQ(person_mean(scores, {2, 4}), 30.0);  // attempt 2 counts as an attempt
   EXPECT_EQ(person_mean(scores, {3, 5}), 40.0);
@@ -43,7 +42,7 @@ TEST(PersonMean, TakesTheChosenAttemptsThatHaveAValue) {
 }
 
 TEST(CheckFinite, NamesTheValue) {
-  const Status status = check_finite(std::vector{1.0, kNan}, "the experts");
+  const Status status = check_finite(std::vector{1.0, std::numeric_limits<double>::quiet_NaN()}, "the experts");
   ASSERT_FALSE(status);
   EXPECT_NE(status.error().text().find("value 2 is not a number — the experts"), std::string::npos);
   EXPECT_TRUE(check_finite({}, "nothing"));

@@ -9,6 +9,8 @@
 
 namespace trocar::metrics::detail {
 
+inline constexpr double kTestedEvery_mm = 0.5;  ///< Distance of the points of a way whose structures are looked up.
+
 /// Depth (mm) of a tip below the resting skin along its shaft, 0 outside: the shaft is followed from the tip backwards
 /// in steps of the distance to the skin. A shaft that meets no skin within 400 mm has the depth 400.
 inline double depth_in_body_mm(const anatomy::VirtualPatient& patient, const Vec3& tip_P, const Vec3& axis_P) noexcept {

@@ -4,6 +4,8 @@
 
 namespace trocar::metrics::detail {
 
+inline constexpr double kTremor_mm = 1.0;  ///< Smaller motions to and fro do not count as travel.
+
 /// Inward and outward strokes of a depth: a turn counts when the depth has come back by more than a threshold, so that
 /// tremor is no turn. Begins at depth 0; with `is_going_in` the first advance counts from there, however small.
 class Strokes {

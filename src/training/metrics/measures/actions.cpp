@@ -8,10 +8,10 @@
 namespace trocar::metrics {
 namespace {
 
-constexpr const char* kSource = "Perk Tutor (Holden 2014)";
-constexpr std::array kValues{
-    MetricDescription{"translational_actions", "Translational actions", "1", Better::kLower, {}, kSource},
-    MetricDescription{"rotational_actions", "Rotational actions", "1", Better::kLower, {}, kSource},
+constexpr const char* kPerkTutor = "Perk Tutor (Holden 2014)";
+constexpr std::array kActionValues{
+    MetricDescription{"translational_actions", "Translational actions", "1", Better::kLower, {}, kPerkTutor},
+    MetricDescription{"rotational_actions", "Rotational actions", "1", Better::kLower, {}, kPerkTutor},
 };
 constexpr double kFast_mm_s = 50.0;   ///< Perk Tutor, TranslationalActions.
 constexpr double kFast_deg_s = 50.0;  ///< Perk Tutor, RotationalActions.
@@ -62,7 +62,7 @@ class Actions : public Metric {
 }  // namespace
 
 MetricGroup action_metrics() {
-  return {kValues, [](const MetricContext&) -> std::unique_ptr<Metric> { return std::make_unique<Actions>(); }};
+  return {kActionValues, [](const MetricContext&) -> std::unique_ptr<Metric> { return std::make_unique<Actions>(); }};
 }
 
 }  // namespace trocar::metrics

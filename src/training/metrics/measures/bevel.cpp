@@ -8,7 +8,7 @@
 namespace trocar::metrics {
 namespace {
 
-constexpr std::array kValues{
+constexpr std::array kBevelValues{
     MetricDescription{"bevel_to_fibres",
                       "Largest angle between the bevel and the fibres at a puncture of their layer",
                       "deg",
@@ -49,7 +49,7 @@ class Bevel : public Metric {
 }  // namespace
 
 MetricGroup bevel_metrics() {
-  return {kValues,
+  return {kBevelValues,
           [](const MetricContext& context) -> std::unique_ptr<Metric> { return std::make_unique<Bevel>(context); }};
 }
 

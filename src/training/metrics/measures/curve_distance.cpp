@@ -8,7 +8,7 @@
 namespace trocar::metrics {
 namespace {
 
-constexpr std::array kValues{
+constexpr std::array kCurveValues{
     MetricDescription{"frechet_distance",
                       "Fréchet distance of the tip's way from the expert path",
                       "mm",
@@ -85,7 +85,7 @@ class CurveDistance : public Metric {
 }  // namespace
 
 MetricGroup curve_distance_metrics() {
-  return {kValues, [](const MetricContext& context) -> std::unique_ptr<Metric> {
+  return {kCurveValues, [](const MetricContext& context) -> std::unique_ptr<Metric> {
             return std::make_unique<CurveDistance>(context);
           }};
 }

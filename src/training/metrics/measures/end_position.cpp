@@ -8,34 +8,34 @@
 namespace trocar::metrics {
 namespace {
 
-constexpr const char* kSource = "paper B, evaluation component";
-constexpr std::array kValues{
+constexpr const char* kPaperB = "paper B, evaluation component";
+constexpr std::array kEndValues{
     MetricDescription{"target_distance",
                       "Distance of the tip from the target at the end",
                       "mm",
                       Better::kLower,
                       {Role::kExpert},
-                      kSource},
+                      kPaperB},
     MetricDescription{"entry_offset",
                       "Distance of the entry from the expert's entry",
                       "mm",
                       Better::kLower,
                       {Role::kExpert, Role::kDepth},
-                      kSource},
+                      kPaperB},
     MetricDescription{
-        "path_angle", "Angle between the needle and the expert path", "deg", Better::kLower, {Role::kExpert}, kSource},
+        "path_angle", "Angle between the needle and the expert path", "deg", Better::kLower, {Role::kExpert}, kPaperB},
     MetricDescription{"path_distance_mean",
                       "Mean distance of the inserted needle from the expert path",
                       "mm",
                       Better::kLower,
                       {Role::kExpert, Role::kDepth},
-                      kSource},
+                      kPaperB},
     MetricDescription{"path_distance_max",
                       "Largest distance of the inserted needle from the expert path",
                       "mm",
                       Better::kLower,
                       {Role::kExpert, Role::kDepth},
-                      kSource},
+                      kPaperB},
     MetricDescription{
         "expert_path", "Number of the nearest expert path", "1", Better::kNeither, {Role::kExpert}, "Trocar"},
     MetricDescription{"targeting",
@@ -99,7 +99,7 @@ class EndPosition : public Metric {
 }  // namespace
 
 MetricGroup end_position_metrics() {
-  return {kValues, [](const MetricContext& context) -> std::unique_ptr<Metric> {
+  return {kEndValues, [](const MetricContext& context) -> std::unique_ptr<Metric> {
             return std::make_unique<EndPosition>(context);
           }};
 }

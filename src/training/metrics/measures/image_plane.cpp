@@ -51,8 +51,8 @@ constexpr std::array kVisibilityValues{
 constexpr double kAngleBin_deg = 0.05;
 constexpr double kLargestOffset_mm = 200.0, kOffsetBin_mm = 0.05;
 constexpr double kEvery_s = 0.01;  // the transducer is recorded 100 times a second
-constexpr double kShaftStep_mm = 1.0;
-constexpr double kLongest_mm = 400.0;
+constexpr double kShaftPiece_mm = 1.0;
+constexpr double kLongestShaft_mm = 400.0;
 
 /// Angle (deg) between a needle and the plane, 0..90; distance (mm) of its tip from the plane.
 struct PlaneRelation {
@@ -131,8 +131,8 @@ class Visibility : public Metric {
 
  private:
   double share_in_beam(const Moment& now, const Pose& X_TP) const noexcept {
-    const double length_mm = std::min(*now.depth_mm, kLongest_mm);
-    const int pieces = static_cast<int>(length_mm / kShaftStep_mm) + 1;
+    const double length_mm = std::min(*now.depth_mm, kLongestShaft_mm);
+    const int pieces = static_cast<int>(length_mm / kShaftPiece_mm) + 1;
     const Vec3 tip_T = X_TP * now.tip_P, step_T = X_TP.R() * now.axis_P * (length_mm / pieces);
     int seen = 0;
     for (int n = 0; n < pieces; ++n) seen += plane_.is_visible(tip_T - (n + 0.5) * step_T) ? 1 : 0;

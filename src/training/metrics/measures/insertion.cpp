@@ -10,7 +10,7 @@
 namespace trocar::metrics {
 namespace {
 
-constexpr std::array kValues{
+constexpr std::array kInsertionValues{
     MetricDescription{"skin_punctures",
                       "Punctures of the skin",
                       "1",
@@ -40,7 +40,6 @@ constexpr std::array kValues{
 };
 constexpr double kPass_mm = 10.0;         ///< [assumed] Least advance of a pass, and withdrawal before another one.
 constexpr double kPullBack_mm = 2.0;      ///< [assumed] Least withdrawal of a pull-back; tremor is below 1 mm.
-constexpr double kTremor_mm = 1.0;        ///< As in attempt_metrics.h.
 constexpr double kBackAgain_mm = 2.0;     ///< [assumed] Withdrawal after which the same layer counts again.
 constexpr double kOutAgain_s = 0.2;       ///< [assumed] Time out of the body after which the skin counts again.
 constexpr double kInside_mm = 1.0;        ///< [assumed] Depth from which the skin is punctured, without events.
@@ -183,7 +182,7 @@ class Insertion : public Metric {
  private:
   PunctureCounter punctures_;
   RedirectionCounter redirections_;
-  detail::Strokes passes_{kPass_mm}, small_{kPullBack_mm}, travel_{kTremor_mm, true};
+  detail::Strokes passes_{kPass_mm}, small_{kPullBack_mm}, travel_{detail::kTremor_mm, true};
   double pass_count_ = 0.0, pull_back_count_ = 0.0;
   std::optional<double> pull_back_s_;
   bool is_back_ = false;
@@ -192,7 +191,7 @@ class Insertion : public Metric {
 }  // namespace
 
 MetricGroup insertion_metrics() {
-  return {kValues,
+  return {kInsertionValues,
           [](const MetricContext& context) -> std::unique_ptr<Metric> { return std::make_unique<Insertion>(context); }};
 }
 

@@ -3,6 +3,7 @@
 #include <bitset>
 #include <limits>
 
+#include "metrics/detail/body.h"
 #include "metrics/measures/groups.h"
 #include "tasks/task_labels.h"
 #include "volume/sampling.h"
@@ -10,7 +11,7 @@
 namespace trocar::metrics {
 namespace {
 
-constexpr std::array kValues{
+constexpr std::array kRiskValues{
     MetricDescription{"target_reached",
                       "Target reached (1) or not (0)",
                       "1",
@@ -36,11 +37,10 @@ constexpr std::array kValues{
                       {Role::kTask, Role::kPatient, Role::kDepth},
                       "Johnson 2012, total time in no-go area"},
 };
-constexpr double kStep_mm = 0.5;       // distance of tested points of the tip's way
-constexpr double kShaftStep_mm = 1.0;  // and of the shaft
+constexpr double kShaftStep_mm = 1.0;  // distance of tested points of the shaft
 constexpr double kMoved_mm = 0.25;     // the contacts of a needle that moved less are those found before
-constexpr double kLongest_mm = 500.0;
-constexpr double kApart_s = 0.2;  ///< [assumed] Contacts with a shorter pause count as one.
+constexpr double kLongestTested_mm = 500.0;
+constexpr double kTouchesApart_s = 0.2;  ///< [assumed] Contacts with a shorter pause count as one.
 
 class Risks : public Metric {
  public:
@@ -65,7 +65,7 @@ class Risks : public Metric {
       return;
     }
     contacts_.reset();
-    const double length_mm = std::min(*step.now.depth_mm, kLongest_mm);
+    const double length_mm = std::min(*step.now.depth_mm, kLongestTested_mm);
     for (double back_mm = 0.0; back_mm < length_mm; back_mm += kShaftStep_mm)
       test(step.now.tip_P - back_mm * step.now.axis_P);
     const std::bitset<256> now = contacts_;
@@ -94,7 +94,7 @@ class Risks : public Metric {
  private:
   bool has_moved(const Moment& now) const noexcept {
     if (!is_checked_) return true;
-    const Vec3 skin_P = now.tip_P - std::min(*now.depth_mm, kLongest_mm) * now.axis_P;
+    const Vec3 skin_P = now.tip_P - std::min(*now.depth_mm, kLongestTested_mm) * now.axis_P;
     return (now.tip_P - tip_P_).norm() > kMoved_mm || (skin_P - skin_P_).norm() > kMoved_mm;
   }
   void test(const Vec3& p_P) {
@@ -102,8 +102,8 @@ class Risks : public Metric {
     if (labels_.risk(id) != nullptr) contacts_.set(id);
   }
   void test_way(const Vec3& from_P, const Vec3& to_P) {
-    const double length_mm = std::min((to_P - from_P).norm(), kLongest_mm);
-    const int steps = static_cast<int>(length_mm / kStep_mm) + 1;
+    const double length_mm = std::min((to_P - from_P).norm(), kLongestTested_mm);
+    const int steps = static_cast<int>(length_mm / detail::kTestedEvery_mm) + 1;
     for (int n = 1; n < steps; ++n) test(from_P + (to_P - from_P) * n / steps);
   }
   /// Counts the contacts of this moment that did not exist just before.
@@ -112,7 +112,7 @@ class Risks : public Metric {
     for (std::size_t id = 1; id < contacts_.size(); ++id) {
       if (!contacts_[id]) continue;
       if (last_s_[id] < 0.0) order_.push_back(static_cast<std::uint8_t>(id));
-      if (step.active_s - last_s_[id] > kApart_s) ++touches_;
+      if (step.active_s - last_s_[id] > kTouchesApart_s) ++touches_;
       last_s_[id] = step.active_s;
       if (!first_s_) first_s_ = step.now.time_s;
     }
@@ -147,7 +147,7 @@ class Risks : public Metric {
 }  // namespace
 
 MetricGroup risk_metrics() {
-  return {kValues,
+  return {kRiskValues,
           [](const MetricContext& context) -> std::unique_ptr<Metric> { return std::make_unique<Risks>(context); }};
 }
 

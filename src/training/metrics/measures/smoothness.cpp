@@ -9,7 +9,7 @@
 namespace trocar::metrics {
 namespace {
 
-constexpr std::array kValues{
+constexpr std::array kSmoothnessValues{
     MetricDescription{"jerk_rms",
                       "Root mean square jerk of the tip",
                       "mm/s³",
@@ -124,7 +124,8 @@ class Smoothness : public Metric {
 }  // namespace
 
 MetricGroup smoothness_metrics() {
-  return {kValues, [](const MetricContext&) -> std::unique_ptr<Metric> { return std::make_unique<Smoothness>(); }};
+  return {kSmoothnessValues,
+          [](const MetricContext&) -> std::unique_ptr<Metric> { return std::make_unique<Smoothness>(); }};
 }
 
 }  // namespace trocar::metrics

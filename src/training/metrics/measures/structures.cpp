@@ -1,13 +1,14 @@
 // Structures that the tip passed (paper B, evaluation component).
 #include <array>
 
+#include "metrics/detail/body.h"
 #include "metrics/measures/groups.h"
 #include "volume/sampling.h"
 
 namespace trocar::metrics {
 namespace {
 
-constexpr std::array kValues{
+constexpr std::array kStructureValues{
     MetricDescription{"structures_pierced",
                       "Structures that the tip was in",
                       "1",
@@ -15,7 +16,6 @@ constexpr std::array kValues{
                       {Role::kPatient},
                       "paper B, evaluation component"},
 };
-constexpr double kStep_mm = 0.5;        // distance of the tested points
 constexpr double kFarthest_mm = 500.0;  // a longer step is a jump of the recording
 
 class Structures : public Metric {
@@ -28,8 +28,8 @@ class Structures : public Metric {
     if (step.before == nullptr) return;
     const Vec3 way_P = step.now.tip_P - step.before->tip_P;
     const double length_mm = way_P.norm();
-    if (length_mm <= kStep_mm || length_mm > kFarthest_mm) return;
-    const int steps = static_cast<int>(length_mm / kStep_mm) + 1;
+    if (length_mm <= detail::kTestedEvery_mm || length_mm > kFarthest_mm) return;
+    const int steps = static_cast<int>(length_mm / detail::kTestedEvery_mm) + 1;
     for (int n = 1; n < steps; ++n)
       note(volume::sample_nearest<std::uint8_t>(patient_.labels, step.before->tip_P + way_P * n / steps, 0));
   }
@@ -56,7 +56,7 @@ class Structures : public Metric {
 }  // namespace
 
 MetricGroup structure_metrics() {
-  return {kValues, [](const MetricContext& context) -> std::unique_ptr<Metric> {
+  return {kStructureValues, [](const MetricContext& context) -> std::unique_ptr<Metric> {
             return std::make_unique<Structures>(context);
           }};
 }

@@ -6,7 +6,7 @@
 namespace trocar::metrics {
 namespace {
 
-constexpr std::array kValues{
+constexpr std::array kTipPathValues{
     MetricDescription{"elapsed_time", "Elapsed time", "s", Better::kLower, {}, "Perk Tutor (Ungi 2012); Johnson 2012"},
     MetricDescription{"path_length", "Path length of the tip", "mm", Better::kLower, {}, "Perk Tutor (Ungi 2012)"},
 };
@@ -29,7 +29,7 @@ class TipPath : public Metric {
 }  // namespace
 
 MetricGroup tip_path_metrics() {
-  return {kValues, [](const MetricContext&) -> std::unique_ptr<Metric> { return std::make_unique<TipPath>(); }};
+  return {kTipPathValues, [](const MetricContext&) -> std::unique_ptr<Metric> { return std::make_unique<TipPath>(); }};
 }
 
 }  // namespace trocar::metrics

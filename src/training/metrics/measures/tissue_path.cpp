@@ -7,7 +7,7 @@
 namespace trocar::metrics {
 namespace {
 
-constexpr std::array kValues{
+constexpr std::array kTissuePathValues{
     MetricDescription{"path_in_tissue",
                       "Path length of the tip inside the body",
                       "mm",
@@ -69,7 +69,8 @@ class TissuePath : public Metric {
 }  // namespace
 
 MetricGroup tissue_path_metrics() {
-  return {kValues, [](const MetricContext&) -> std::unique_ptr<Metric> { return std::make_unique<TissuePath>(); }};
+  return {kTissuePathValues,
+          [](const MetricContext&) -> std::unique_ptr<Metric> { return std::make_unique<TissuePath>(); }};
 }
 
 }  // namespace trocar::metrics

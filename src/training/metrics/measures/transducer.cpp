@@ -29,9 +29,9 @@ constexpr std::array kContactValues{
                       {Role::kTransducer, Role::kContact},
                       "Johnson 2012, number of skin contacts"},
 };
-constexpr double kContact_n = 0.05;  ///< [assumed] Above the noise of a force sensor.
-constexpr double kGel_mm = 1.0;      ///< Gel fills gaps up to this distance (ultrasound/probe/probe_contact.h).
-constexpr double kApart_s = 0.2;     ///< [assumed] A shorter change neither ends nor begins a contact.
+constexpr double kContact_n = 0.05;       ///< [assumed] Above the noise of a force sensor.
+constexpr double kGel_mm = 1.0;           ///< Gel fills gaps up to this distance (ultrasound/probe/probe_contact.h).
+constexpr double kLastingChange_s = 0.2;  ///< [assumed] A shorter change neither ends nor begins a contact.
 
 class TransducerPath : public Metric {
  public:
@@ -61,7 +61,7 @@ class TransducerContact : public Metric {
       return;
     }
     other_s_ = touches != is_counted_ ? other_s_ + step.dt_s : 0.0;
-    if (other_s_ < kApart_s) return;
+    if (other_s_ < kLastingChange_s) return;
     is_counted_ = touches;
     other_s_ = 0.0;
     if (touches) ++count_;

@@ -6,12 +6,13 @@
 namespace trocar::metrics {
 namespace {
 
-constexpr const char* kSource = "counters of the fluoroscope (docs/physics.md, X-ray)";
-constexpr std::array kValues{
-    MetricDescription{"dose_area", "Dose–area product", "Gy·cm²", Better::kLower, {Role::kXray}, kSource},
-    MetricDescription{"air_kerma", "Air kerma at the reference point", "mGy", Better::kLower, {Role::kXray}, kSource},
-    MetricDescription{"beam_time", "Time with the beam on", "s", Better::kLower, {Role::kXray}, kSource},
-    MetricDescription{"contrast_volume", "Injected contrast agent", "ml", Better::kLower, {Role::kXray}, kSource},
+constexpr const char* kFluoroscope = "counters of the fluoroscope (docs/physics.md, X-ray)";
+constexpr std::array kXrayValues{
+    MetricDescription{"dose_area", "Dose–area product", "Gy·cm²", Better::kLower, {Role::kXray}, kFluoroscope},
+    MetricDescription{
+        "air_kerma", "Air kerma at the reference point", "mGy", Better::kLower, {Role::kXray}, kFluoroscope},
+    MetricDescription{"beam_time", "Time with the beam on", "s", Better::kLower, {Role::kXray}, kFluoroscope},
+    MetricDescription{"contrast_volume", "Injected contrast agent", "ml", Better::kLower, {Role::kXray}, kFluoroscope},
 };
 
 class XrayCounters : public Metric {
@@ -33,7 +34,8 @@ class XrayCounters : public Metric {
 }  // namespace
 
 MetricGroup xray_metrics() {
-  return {kValues, [](const MetricContext&) -> std::unique_ptr<Metric> { return std::make_unique<XrayCounters>(); }};
+  return {kXrayValues,
+          [](const MetricContext&) -> std::unique_ptr<Metric> { return std::make_unique<XrayCounters>(); }};
 }
 
 }  // namespace trocar::metrics

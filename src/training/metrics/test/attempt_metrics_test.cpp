@@ -13,7 +13,7 @@ namespace {
 
 using namespace testing;
 
-AttemptMetrics measure(const std::vector<telemetry::TickSample>& samples, std::optional<std::size_t> fired) {
+AttemptMetrics measure_in_box(const std::vector<telemetry::TickSample>& samples, std::optional<std::size_t> fired) {
   static const anatomy::VirtualPatient patient = make_box_patient();
   return measure_attempt(make_box_task(), patient, make_box_tissues(), make_box_plan(), samples, fired);
 }
@@ -21,7 +21,7 @@ AttemptMetrics measure(const std::vector<telemetry::TickSample>& samples, std::o
 TEST(Metrics, APlannedAttemptHasNoDeviations) {
   for (const double dent_mm : {0.6, 4.5}) {  // skin that gives way late is no error of the entry
     const Attempt attempt = make_attempt(make_box_plan().line_P, dent_mm);
-    const AttemptMetrics metrics = measure(attempt.samples, attempt.fired);
+    const AttemptMetrics metrics = measure_in_box(attempt.samples, attempt.fired);
     ASSERT_TRUE(metrics.has_entered);
     EXPECT_EQ(metrics.entries, 1);
     EXPECT_LT(metrics.entry_offset_P.norm(), 1e-3) << dent_mm;
@@ -37,7 +37,7 @@ TEST(Metrics, OffsetsAreWhereTheNeedleWasMinusWhereItWasPlanned) {
   const double angle = 5.0 * std::numbers::pi / 180.0;
   const Vec3 entry_P(53.0, 0.0, 46.0);
   const Attempt attempt = make_attempt({entry_P, entry_P + 40.0 * Vec3(std::sin(angle), std::cos(angle), 0.0)});
-  const AttemptMetrics metrics = measure(attempt.samples, attempt.fired);
+  const AttemptMetrics metrics = measure_in_box(attempt.samples, attempt.fired);
   EXPECT_LT((metrics.entry_offset_P - Vec3(3.0, 0.0, -4.0)).norm(), 1e-3);
   EXPECT_NEAR(metrics.angle_deg, 5.0, 1e-6);
   EXPECT_LT((metrics.target_offset_P - Vec3(3.0 + 40.0 * std::sin(angle), 40.0 * std::cos(angle) - 51.0, -4.0)).norm(),
@@ -55,16 +55,16 @@ TEST(Metrics, CountsPullingBackButNotTremorAsTravel) {
     samples.push_back(sample);
   };
   for (int i = 0; i < 5000; ++i) add(40.0 - 0.4 + 0.4 * std::cos(0.1 * i));
-  EXPECT_NEAR(measure(samples, {}).travel_mm, 40.0, 0.1);
+  EXPECT_NEAR(measure_in_box(samples, {}).travel_mm, 40.0, 0.1);
   for (double depth_mm = 40.0; depth_mm > 25.0; depth_mm -= 0.05) add(depth_mm);
   for (double depth_mm = 25.0; depth_mm < 45.0; depth_mm += 0.05) add(depth_mm);
-  EXPECT_NEAR(measure(samples, {}).travel_mm, 40.0 + 20.0, 0.2);
+  EXPECT_NEAR(measure_in_box(samples, {}).travel_mm, 40.0 + 20.0, 0.2);
 }
 
 TEST(Metrics, FindsRisksByTheTipWithTheirDepth) {
   // Towards the feet through the rib's place: z falls from 75 by 0.2 mm a mm, so the rib is met at once behind the fat.
   const Attempt attempt = make_attempt({{50.0, 0.0, 75.0}, {50.0, 15.0, 75.0}});
-  const AttemptMetrics metrics = measure(attempt.samples, {});
+  const AttemptMetrics metrics = measure_in_box(attempt.samples, {});
   ASSERT_EQ(metrics.risks.size(), 1u);
   EXPECT_EQ(metrics.risks[0].label, "rib_right_9");
   EXPECT_NEAR(metrics.risks[0].depth_mm, 10.0, 1.0);
@@ -77,7 +77,7 @@ TEST(Metrics, FindsRisksBetweenSamplesThatLieFarApart) {
   telemetry::TickSample jump = samples.back();
   jump.tip_mm.x() = 10.0;  // over the vessel between two ticks
   samples.push_back(jump);
-  const AttemptMetrics metrics = measure(samples, {});
+  const AttemptMetrics metrics = measure_in_box(samples, {});
   ASSERT_EQ(metrics.risks.size(), 1u);
   EXPECT_EQ(metrics.risks[0].label, "portal_vein");
 }
@@ -85,29 +85,29 @@ TEST(Metrics, FindsRisksBetweenSamplesThatLieFarApart) {
 TEST(Metrics, WithoutPunctureEventsEntersWhereTheDepthBegins) {
   Attempt attempt = make_attempt(make_box_plan().line_P);
   for (telemetry::TickSample& sample : attempt.samples) sample.events = {};
-  const AttemptMetrics metrics = measure(attempt.samples, attempt.fired);
+  const AttemptMetrics metrics = measure_in_box(attempt.samples, attempt.fired);
   EXPECT_TRUE(metrics.has_entered);
   EXPECT_EQ(metrics.entries, 1);
   EXPECT_LT(metrics.entry_offset_P.norm(), 1e-3);
 }
 
 TEST(Metrics, TellsSkinNeverTouchedFromSkinNeverPierced) {
-  EXPECT_FALSE(measure({}, {}).has_touched_skin);
+  EXPECT_FALSE(measure_in_box({}, {}).has_touched_skin);
   const std::vector<telemetry::TickSample> whole = make_attempt(make_box_plan().line_P).samples;
   const std::vector<telemetry::TickSample> outside(whole.begin(), whole.begin() + 200);
-  EXPECT_FALSE(measure(outside, {}).has_touched_skin);
+  EXPECT_FALSE(measure_in_box(outside, {}).has_touched_skin);
   const std::vector<telemetry::TickSample> loading(whole.begin(), whole.begin() + 270);
-  EXPECT_TRUE(measure(loading, {}).has_touched_skin);
-  EXPECT_FALSE(measure(loading, {}).has_entered);
+  EXPECT_TRUE(measure_in_box(loading, {}).has_touched_skin);
+  EXPECT_FALSE(measure_in_box(loading, {}).has_entered);
 }
 
 TEST(Metrics, SkipsSamplesThatAreNotFinite) {
   Attempt attempt = make_attempt(make_box_plan().line_P);
-  const AttemptMetrics clean = measure(attempt.samples, attempt.fired);
+  const AttemptMetrics clean = measure_in_box(attempt.samples, attempt.fired);
   for (std::size_t i = 3; i < attempt.samples.size(); i += 7)
     if (i != attempt.fired && attempt.samples[i].events[0].kind == telemetry::EventKind::kNone)
       attempt.samples[i].tip_mm.x() = attempt.samples[i].depth_mm = std::numeric_limits<double>::quiet_NaN();
-  const AttemptMetrics metrics = measure(attempt.samples, attempt.fired);
+  const AttemptMetrics metrics = measure_in_box(attempt.samples, attempt.fired);
   EXPECT_EQ(metrics.target_offset_P, clean.target_offset_P);
   EXPECT_NEAR(metrics.travel_mm, clean.travel_mm, 1e-9);
 }

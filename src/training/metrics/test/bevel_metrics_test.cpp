@@ -28,7 +28,7 @@ MetricContext with_bevel() {
 }
 
 /// A needle along +y whose bevel is turned by an angle from the patient's side (+x) towards the fibres (z).
-Moment puncture(double time_s, double turned_deg, std::uint8_t layer) {
+Moment turned_puncture(double time_s, double turned_deg, std::uint8_t layer) {
   Moment moment;
   moment.time_s = time_s;
   set_depth(moment, 55.0);
@@ -41,8 +41,8 @@ Moment puncture(double time_s, double turned_deg, std::uint8_t layer) {
 }
 
 TEST(BevelMetrics, TheWorstPunctureOfTheLayerCounts) {
-  const Recording recording{puncture(0.0, 80.0, 0), puncture(1.0, 10.0, 1), puncture(2.0, 25.0, 1),
-                            puncture(3.0, 5.0, 1)};
+  const Recording recording{turned_puncture(0.0, 80.0, 0), turned_puncture(1.0, 10.0, 1), turned_puncture(2.0, 25.0, 1),
+                            turned_puncture(3.0, 5.0, 1)};
   const auto values = measure(recording, with_bevel());
   EXPECT_NEAR(value_of(values, "bevel_to_fibres"), 25.0, 1e-6) << "the 80 degrees were at the skin";
   EXPECT_EQ(find(values, "bevel_to_fibres").at_s, 2.0);
@@ -50,23 +50,23 @@ TEST(BevelMetrics, TheWorstPunctureOfTheLayerCounts) {
 
 TEST(BevelMetrics, BothSidesOfTheBevelPartTheFibres) {
   for (const double turned_deg : {0.0, 180.0, 360.0})
-    EXPECT_NEAR(measure_one("bevel_to_fibres", {puncture(0.0, turned_deg, 1)}, with_bevel()), 0.0, 1e-6);
+    EXPECT_NEAR(measure_one("bevel_to_fibres", {turned_puncture(0.0, turned_deg, 1)}, with_bevel()), 0.0, 1e-6);
   for (const double turned_deg : {90.0, 270.0})
-    EXPECT_NEAR(measure_one("bevel_to_fibres", {puncture(0.0, turned_deg, 1)}, with_bevel()), 90.0, 1e-4);
+    EXPECT_NEAR(measure_one("bevel_to_fibres", {turned_puncture(0.0, turned_deg, 1)}, with_bevel()), 90.0, 1e-4);
 }
 
 TEST(BevelMetrics, SaysWhyThereIsNoValue) {
-  EXPECT_EQ(missing_of("bevel_to_fibres", {puncture(0.0, 0.0, 0)}, with_bevel()),
+  EXPECT_EQ(missing_of("bevel_to_fibres", {turned_puncture(0.0, 0.0, 0)}, with_bevel()),
             "the layer of the fibres was not punctured");
-  Moment without_roll = puncture(0.0, 0.0, 1);
+  Moment without_roll = turned_puncture(0.0, 0.0, 1);
   without_roll.R_PN.reset();
   EXPECT_EQ(missing_of("bevel_to_fibres", {without_roll}, with_bevel()),
             "the recording has no rotation of the needle about its axis");
   MetricContext other = with_bevel();
   const tasks::Task plain = make_box_task();
   other.task = &plain;
-  EXPECT_EQ(missing_of("bevel_to_fibres", {puncture(0.0, 0.0, 1)}, other), "the task has no rule for the bevel");
-  Moment far = puncture(0.0, 0.0, 1);
+  EXPECT_EQ(missing_of("bevel_to_fibres", {turned_puncture(0.0, 0.0, 1)}, other), "the task has no rule for the bevel");
+  Moment far = turned_puncture(0.0, 0.0, 1);
   far.tip_P = {50.0, 500.0, 50.0};
   EXPECT_EQ(missing_of("bevel_to_fibres", {far}, with_bevel()), "the patient has no fibres there");
 }

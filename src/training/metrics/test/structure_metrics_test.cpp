@@ -26,7 +26,7 @@ MetricContext in_box() {
 }
 
 /// Along +y at (x, z) from 5 mm before the skin at 20 mm/s to a depth; depth is not recorded.
-Recording puncture(double x, double z, double depth_mm, double rate_hz = 500.0) {
+Recording puncture_at(double x, double z, double depth_mm, double rate_hz = 500.0) {
   return record((depth_mm + 5.0) / 20.0, rate_hz, [&](double t, Moment& m) {
     m.tip_P = {x, 20.0 * t - 5.0, z};
     m.axis_P = Vec3::UnitY();
@@ -34,14 +34,14 @@ Recording puncture(double x, double z, double depth_mm, double rate_hz = 500.0) 
 }
 
 TEST(StructureMetrics, DepthIsFoundInThePatient) {
-  const auto values = measure(puncture(50.0, 50.0, 60.0), in_box());
+  const auto values = measure(puncture_at(50.0, 50.0, 60.0), in_box());
   EXPECT_NEAR(value_of(values, "depth_max"), 60.0, 0.1);
   EXPECT_NEAR(value_of(values, "path_in_tissue"), 60.0, 0.1);
   EXPECT_EQ(value_of(values, "skin_punctures"), 1.0);
 }
 
 TEST(StructureMetrics, PassesFatMuscleLiverAndTheLesion) {
-  const auto values = measure(puncture(50.0, 50.0, 60.0), in_box());
+  const auto values = measure(puncture_at(50.0, 50.0, 60.0), in_box());
   EXPECT_EQ(value_of(values, "structures_pierced"), 4.0);
   EXPECT_EQ(find(values, "structures_pierced").note, "fat, muscle, liver, livertumor1");
   EXPECT_EQ(value_of(values, "target_reached"), 1.0);
@@ -50,21 +50,21 @@ TEST(StructureMetrics, PassesFatMuscleLiverAndTheLesion) {
 }
 
 TEST(StructureMetrics, BesideTheLesionTheTargetIsNotReached) {
-  EXPECT_EQ(measure_one("target_reached", puncture(75.0, 50.0, 60.0), in_box()), 0.0);
-  EXPECT_EQ(measure_one("target_reached", puncture(50.0, 50.0, 40.0), in_box()), 0.0);
+  EXPECT_EQ(measure_one("target_reached", puncture_at(75.0, 50.0, 60.0), in_box()), 0.0);
+  EXPECT_EQ(measure_one("target_reached", puncture_at(50.0, 50.0, 40.0), in_box()), 0.0);
 }
 
 TEST(StructureMetrics, ABiopsyReachesTheTargetWithItsNotch) {
   MetricContext context = in_box();
   context.needle = make_gun();  // the notch's middle is 9.5 mm beyond the tip, the lesion reaches from 50 to 70 mm
-  EXPECT_EQ(measure_one("target_reached", puncture(50.0, 50.0, 42.0), context), 1.0);
-  EXPECT_EQ(measure_one("target_reached", puncture(50.0, 50.0, 39.0), context), 0.0);
-  EXPECT_EQ(measure_one("target_reached", puncture(50.0, 50.0, 62.0), context), 0.0);
+  EXPECT_EQ(measure_one("target_reached", puncture_at(50.0, 50.0, 42.0), context), 1.0);
+  EXPECT_EQ(measure_one("target_reached", puncture_at(50.0, 50.0, 39.0), context), 0.0);
+  EXPECT_EQ(measure_one("target_reached", puncture_at(50.0, 50.0, 62.0), context), 0.0);
 }
 
 TEST(StructureMetrics, SlowRecordingsFindThinStructuresBetweenMoments) {
   // Through the vessel of 5 mm at 20 mm a moment, sideways.
-  Recording recording = puncture(60.0, 50.0, 40.0);
+  Recording recording = puncture_at(60.0, 50.0, 40.0);
   Moment jump = recording.back();
   jump.time_s += 0.5;
   jump.tip_P.x() = 10.0;

@@ -14,9 +14,9 @@
 namespace trocar::report::detail {
 namespace {
 
-constexpr int kPicturePx = 440;
-constexpr double kField_mm = 220.0;      ///< Minimum side of the square displayed by a slice,
-constexpr double kAroundPath_mm = 60.0;  ///< and minimum margin around the path.
+constexpr int kPathPicturePx = 440;
+constexpr double kLeastField_mm = 220.0;  ///< Minimum side of the square displayed by a slice,
+constexpr double kAroundPath_mm = 60.0;   ///< and minimum margin around the path.
 constexpr double kScaleBar_mm = 50.0;
 constexpr double kShaftOutside_mm = 30.0;  ///< Length of the needle's shaft drawn outside the skin.
 
@@ -28,7 +28,7 @@ struct PathDrawing {
   std::optional<Segment> shaft_P;  ///< The needle at firing, or at its deepest position: from outside to the tip.
   Vec3 through_P = Vec3::Zero();
   Vec3 center_P = Vec3::Zero();  ///< Centre of the path.
-  double field_mm = kField_mm;
+  double field_mm = kLeastField_mm;
 };
 
 PathDrawing collect(const storage::Session& session) {
@@ -55,7 +55,7 @@ PathDrawing collect(const storage::Session& session) {
     drawing.through_P = drawing.shaft_P->b;
   const Segment shown = drawing.planned_P ? *drawing.planned_P : drawing.shaft_P.value_or(Segment{plan.b, plan.b});
   drawing.center_P = shown.at(0.5);
-  drawing.field_mm = std::max(kField_mm, shown.length_mm() + 2.0 * kAroundPath_mm);
+  drawing.field_mm = std::max(kLeastField_mm, shown.length_mm() + 2.0 * kAroundPath_mm);
   return drawing;
 }
 
@@ -147,7 +147,7 @@ std::string draw_overlay(const slices::SlicePicture& picture, const SliceText& t
 /// scale.
 std::string slice_figure(const anatomy::VirtualPatient& patient, const SliceText& text, const PathDrawing& drawing) {
   slices::SliceOptions options;
-  options.size_px = kPicturePx;
+  options.size_px = kPathPicturePx;
   options.label_opacity = 0.12;
   options.field_mm = drawing.field_mm;
   options.center_P = drawing.center_P;

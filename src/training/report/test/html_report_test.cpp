@@ -5,19 +5,15 @@
 #include <cmath>
 #include <limits>
 
+#include "report/test/count_of.h"
 #include "report/test/example_attempt.h"
 
 namespace trocar::report {
 namespace {
 
+using testing::count_of;
 using testing::example_attempt;
 using testing::example_patient;
-
-std::size_t count_of(const std::string& text, const std::string& part) {
-  std::size_t count = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size())) ++count;
-  return count;
-}
 
 /// The page without the bytes of its pictures, which may spell any word.
 std::string without_pictures(std::string html) {

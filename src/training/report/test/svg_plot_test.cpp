@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "report/test/count_of.h"
+
 namespace trocar::report {
 namespace {
 
@@ -15,17 +17,11 @@ Plot two_curves() {
   return plot;
 }
 
-std::size_t count_of(const std::string& text, const std::string& what) {
-  std::size_t count = 0;
-  for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++count;
-  return count;
-}
-
 TEST(SvgFile, StandsAlone) {
   const std::string file = to_svg_file(two_curves(), "Forces <1>");
   EXPECT_TRUE(file.starts_with("<svg xmlns=\"http://www.w3.org/2000/svg\" width="));
   EXPECT_TRUE(file.ends_with("</svg>\n"));
-  EXPECT_EQ(count_of(file, "<svg"), 1U);
+  EXPECT_EQ(testing::count_of(file, "<svg"), 1U);
   EXPECT_NE(file.find(".c-second {"), std::string::npos);  // its own style ...
   EXPECT_EQ(file.find("var(--"), std::string::npos);       // ... in words that every program knows
   EXPECT_NE(file.find("Forces &lt;1&gt;"), std::string::npos);

@@ -7,7 +7,7 @@
 namespace trocar::results::detail {
 namespace {
 
-constexpr const char* kSelect =
+constexpr const char* kSelectAttempts =
     "SELECT a.sequence, a.id, a.person_id, c.task, c.patient, c.seed, c.patient_hash, c.difficulty, a.level, "
     "a.operator,"
     " a.station, a.started_s, a.state, a.score, a.is_passed, a.duration_s, a.program_version"
@@ -74,7 +74,7 @@ std::vector<Attempt> read_attempts(soci::session& session, const AttemptQuery& q
   select.exchange(soci::into(a.program_version));
   query.bind(select);
   select.alloc();
-  select.prepare(kSelect + query.condition + order);
+  select.prepare(kSelectAttempts + query.condition + order);
   select.define_and_bind();
   select.execute();
   while (select.fetch()) {

@@ -9,6 +9,8 @@
 
 namespace trocar::results::detail {
 
+inline constexpr const char* kCannotReadAttempts = "the attempts cannot be read";
+
 /// A condition on rows of `attempts` ("a") with its parameters, texts before numbers.
 struct AttemptQuery {
   std::string condition;  ///< " WHERE …", without order.

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "config/json.h"
 #include "database/bytes.h"
 #include "results/detail/details_json.h"
 #include "results/detail/people_table.h"

@@ -9,7 +9,7 @@ namespace trocar::results::detail {
 namespace {
 
 constexpr double kPerMm = 100.0, kPerN = 1000.0, kPerSecond = 1000.0;
-constexpr const char* kAdvice = "import the session file again";
+constexpr const char* kImportAgain = "import the session file again";
 
 std::string dump(const config::Json& json) {
   return json.dump(-1, ' ', false, config::Json::error_handler_t::replace);
@@ -87,7 +87,7 @@ Status read_verdict(std::string_view text, AttemptRecord& record) {
   const auto hints = json.find("hints"), reason = json.find("not_scored");
   if (!read_texts(json, "fails", record.fails) || hints == json.end() || !hints->is_array() || reason == json.end() ||
       !reason->is_string())
-    return fail("the verdict of the attempt is damaged", record.attempt.id, kAdvice);
+    return fail("the verdict of the attempt is damaged", record.attempt.id, kImportAgain);
   record.not_scored = reason->get<std::string>();
   for (const config::Json& hint : *hints) {
     const auto hint_text = hint.find("text"), at = hint.find("at_s");
@@ -136,7 +136,7 @@ Result<Trace> read_trace(std::string_view text) {
   const bool is_even = trace.tip_mm[0].size() == size && trace.tip_mm[1].size() == size &&
                        trace.tip_mm[2].size() == size && trace.depth_mm.size() == size &&
                        trace.force_n.size() == size && trace.tissue.size() == size;
-  if (!is_read || !is_even) return fail("the path of the attempt is damaged", {}, kAdvice);
+  if (!is_read || !is_even) return fail("the path of the attempt is damaged", {}, kImportAgain);
   trace.rate_hz = rate->get<double>();
   return trace;
 }

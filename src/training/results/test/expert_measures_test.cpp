@@ -8,10 +8,10 @@ namespace trocar::results {
 namespace {
 
 /// path_length of an attempt is 200 − score.
-class ExpertMeasures : public SmallStudy {};
-TROCAR_BOTH_DATABASES(ExpertMeasures);
+class MeasuresOfExperts : public SmallStudy {};
+TROCAR_BOTH_DATABASES(MeasuresOfExperts);
 
-TEST_P(ExpertMeasures, AreThoseOfRealExpertsIfThereAreAny) {
+TEST_P(MeasuresOfExperts, AreThoseOfRealExpertsIfThereAreAny) {
   play(add_simulated("Simulated expert", Group::kExpert), 90.0);
   play(add("Trainee"), 10.0);
   const auto values_of = [this] {
@@ -34,7 +34,7 @@ TEST_P(ExpertMeasures, AreThoseOfRealExpertsIfThereAreAny) {
   EXPECT_TRUE(expert_measures(*repository_, "unknown").value().empty());
 }
 
-TEST_P(ExpertMeasures, AndSummariesOfOnePersonAreThoseOfAll) {
+TEST_P(MeasuresOfExperts, AndSummariesOfOnePersonAreThoseOfAll) {
   const Person a = add("A"), b = add("B");
   for (const double score : {50.0, 60.0, 90.0}) play(a, score);
   play(b, 10.0);

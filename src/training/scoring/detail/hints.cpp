@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "anatomy/direction_words.h"
 #include "anatomy/structure_words.h"
+#include "core/ascii.h"
 
 namespace trocar::scoring {
 namespace {
@@ -241,7 +241,7 @@ void add_risk_advice(const HintSubject& subject, std::vector<Advice>& advice) {
 void add_level_advice(const HintSubject& subject, std::vector<Advice>& advice) {
   if (!subject.judged.too_high_s) return;
   std::string reason = subject.task.highest_entry->reason;
-  if (!reason.empty()) reason.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(reason.front())));
+  if (!reason.empty()) reason.front() = ascii::to_upper(reason.front());
   advice.push_back(
       {kFails, reason + ": count the levels by the landmarks and enter lower.", subject.judged.too_high_s});
 }

@@ -42,7 +42,7 @@ Punctures punctures_along(const std::vector<Segment>& lines_P) {
   return punctures;
 }
 
-Outcome score(const Punctures& punctures, const tasks::Task& task, bool is_coaxial) {
+Outcome score_of_punctures(const Punctures& punctures, const tasks::Task& task, bool is_coaxial) {
   BoxCase made{.task = task};
   made.needle.is_coaxial = is_coaxial;
   return made.score(punctures.samples, punctures.shots);
@@ -54,14 +54,14 @@ double share(const Outcome& outcome, const std::string& name) {
 
 TEST(Cores, OneOfTwoIsWorthHalf) {
   Punctures once = punctures_along({kPlan_P});
-  const Outcome one = score(once, make_core_task(2), true);
+  const Outcome one = score_of_punctures(once, make_core_task(2), true);
   EXPECT_NEAR(share(one, "core"), 0.5, 1e-9);
   EXPECT_TRUE(has_hint(one, "1 of 2 cores was taken")) << one.hints.front().text;
   EXPECT_TRUE(has_hint(one, "coaxial needle stays in place"));
-  EXPECT_TRUE(has_hint(score(once, make_core_task(2), false), "withdraw the needle, load the gun"));
+  EXPECT_TRUE(has_hint(score_of_punctures(once, make_core_task(2), false), "withdraw the needle, load the gun"));
 
   once.shots.push_back(once.shots.front() + 1);  // loaded and fired again at the same place
-  const Outcome two = score(once, make_core_task(2), true);
+  const Outcome two = score_of_punctures(once, make_core_task(2), true);
   EXPECT_NEAR(share(two, "core"), 1.0, 1e-9);
   ASSERT_EQ(two.cores.size(), 2u);
   EXPECT_LT(two.cores[0].time_s, two.cores[1].time_s);
@@ -70,7 +70,7 @@ TEST(Cores, OneOfTwoIsWorthHalf) {
 
 TEST(Cores, TheBestOnesCount) {
   const Punctures three = punctures_along({kBesideLesion_P, kPlan_P, kPlan_P});
-  const Outcome outcome = score(three, make_core_task(2), true);
+  const Outcome outcome = score_of_punctures(three, make_core_task(2), true);
   ASSERT_EQ(outcome.cores.size(), 3u);
   EXPECT_EQ(outcome.cores[0].target_mm, 0.0);
   EXPECT_NEAR(share(outcome, "core"), 1.0, 1e-9);
@@ -82,24 +82,25 @@ TEST(Cores, TheBestOnesCount) {
 TEST(Cores, AShotOutsideTheBodyTakesNone) {
   Punctures once = punctures_along({kPlan_P});
   once.shots = {0, once.shots.front(), once.samples.size() + 7};
-  EXPECT_EQ(score(once, make_core_task(1), true).cores.size(), 1u);
+  EXPECT_EQ(score_of_punctures(once, make_core_task(1), true).cores.size(), 1u);
 }
 
 TEST(Passes, EachNeedlessOneCosts) {
   const Punctures two = punctures_along({kPlan_P, kPlan_P});
-  EXPECT_NEAR(share(score(two, make_core_task(2), false), "passes"), 1.0, 1e-9) << "one a core";
-  EXPECT_NEAR(share(score(two, make_core_task(2), true), "passes"), 0.5, 1e-9) << "the coaxial needle saves one";
-  EXPECT_NEAR(share(score(punctures_along({kPlan_P}), make_core_task(2), true), "passes"), 1.0, 1e-9);
-  EXPECT_TRUE(has_hint(score(two, make_core_task(2), true), "was punctured 2 times"));
+  EXPECT_NEAR(share(score_of_punctures(two, make_core_task(2), false), "passes"), 1.0, 1e-9) << "one a core";
+  EXPECT_NEAR(share(score_of_punctures(two, make_core_task(2), true), "passes"), 0.5, 1e-9)
+      << "the coaxial needle saves one";
+  EXPECT_NEAR(share(score_of_punctures(punctures_along({kPlan_P}), make_core_task(2), true), "passes"), 1.0, 1e-9);
+  EXPECT_TRUE(has_hint(score_of_punctures(two, make_core_task(2), true), "was punctured 2 times"));
 }
 
 TEST(Bleeding, IsUsualAfterOnePunctureAndRaisedAfterMany) {
-  const Outcome once = score(punctures_along({kPlan_P}), make_core_task(1), true);
+  const Outcome once = score_of_punctures(punctures_along({kPlan_P}), make_core_task(1), true);
   ASSERT_TRUE(once.bleeding);
   EXPECT_EQ(once.bleeding->risk, BleedingRisk::kUsual);
   EXPECT_EQ(once.bleeding->passes, 1u);
   EXPECT_TRUE(once.bleeding->reasons.empty());
-  const Outcome often = score(punctures_along({kPlan_P, kPlan_P, kPlan_P}), make_core_task(1), true);
+  const Outcome often = score_of_punctures(punctures_along({kPlan_P, kPlan_P, kPlan_P}), make_core_task(1), true);
   EXPECT_EQ(often.bleeding->risk, BleedingRisk::kRaised);
   EXPECT_EQ(often.bleeding->passes, 3u);
   ASSERT_EQ(often.bleeding->reasons.size(), 1u);
@@ -109,12 +110,12 @@ TEST(Bleeding, IsUsualAfterOnePunctureAndRaisedAfterMany) {
 TEST(Bleeding, ATremblingTipAtTheSurfaceIsOnePuncture) {
   Punctures once = punctures_along({kPlan_P});
   for (std::size_t n = 0; n < once.samples.size(); ++n) once.samples[n].tip_mm.y() += n % 2 == 0 ? 0.5 : -0.5;
-  EXPECT_EQ(score(once, make_core_task(1), true).bleeding->passes, 1u);
+  EXPECT_EQ(score_of_punctures(once, make_core_task(1), true).bleeding->passes, 1u);
 }
 
 TEST(Bleeding, IsHighAfterAVesselWasHit) {
   // The vessel lies at x 20 to 25 mm below 20 mm of depth.
-  const Outcome outcome = score(punctures_along({shifted({-27.5, 0.0, 0.0})}), make_core_task(1), true);
+  const Outcome outcome = score_of_punctures(punctures_along({shifted({-27.5, 0.0, 0.0})}), make_core_task(1), true);
   ASSERT_TRUE(outcome.bleeding);
   EXPECT_EQ(outcome.bleeding->risk, BleedingRisk::kHigh);
   EXPECT_NE(outcome.bleeding->reasons.at(0).find("hit a vessel"), std::string::npos);
@@ -123,7 +124,7 @@ TEST(Bleeding, IsHighAfterAVesselWasHit) {
 TEST(Bleeding, IsNotGradedWhereTheTargetIsAFluid) {
   tasks::Task task = make_core_task(1);
   task.min_organ_path_mm = 0.0;
-  const Outcome outcome = score(punctures_along({kPlan_P}), task, true);
+  const Outcome outcome = score_of_punctures(punctures_along({kPlan_P}), task, true);
   EXPECT_FALSE(outcome.bleeding);
   EXPECT_TRUE(
       std::none_of(outcome.parts.begin(), outcome.parts.end(), [](const auto& p) { return p.name == "passes"; }));

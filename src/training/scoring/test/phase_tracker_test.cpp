@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "scoring/test/outcome_support.h"
 #include "tasks/bevel.h"
 #include "tasks/testing/attempt_patient.h"
 
@@ -12,11 +13,6 @@ namespace {
 
 using tasks::ActionKind;
 using tasks::ConditionKind;
-
-const anatomy::VirtualPatient& patient() {
-  static const anatomy::VirtualPatient the_patient = testing::make_box_patient();
-  return the_patient;
-}
 
 /// The box patient with one phase per condition under test. The plan goes along +y from (50, 0, 50) to (50, 51, 50).
 class Phases : public ::testing::Test {

@@ -54,6 +54,13 @@ void open_database(soci::session& database, const std::filesystem::path& path) {
   database::open_sqlite(database, path, kWaitForWriter_s);
 }
 
+bool has_table(soci::session& database, const std::string& name) {
+  int count = 0;
+  database << "SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name = :name", soci::use(name),
+      soci::into(count);
+  return count > 0;
+}
+
 std::vector<std::string> schema_statements() {
   std::string ticks = "CREATE TABLE ticks (tick INTEGER PRIMARY KEY";
   const telemetry::TickSample sample;

@@ -18,6 +18,9 @@ inline constexpr int kApplicationId = 0x74726372;
 /// Opens the SQLite file (created if it is missing). Throws soci::soci_error.
 void open_database(soci::session& database, const std::filesystem::path& path);
 
+/// Throws soci::soci_error.
+bool has_table(soci::session& database, const std::string& name);
+
 /// The statements that give a new session its identity, tables and view.
 std::vector<std::string> schema_statements();
 

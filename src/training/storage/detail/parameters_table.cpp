@@ -21,13 +21,6 @@ std::vector<std::string> split(const std::string& text, char separator) {
   return parts;
 }
 
-bool has_table(soci::session& database, const std::string& name) {
-  int count = 0;
-  database << "SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name = :name", soci::use(name),
-      soci::into(count);
-  return count > 0;
-}
-
 }  // namespace
 
 std::vector<std::string> parameters_schema() {

@@ -13,7 +13,7 @@ namespace {
 constexpr double kMicrometres = 1000.0;
 constexpr int kMost_um = static_cast<int>(telemetry::kMostBeside_mm * kMicrometres);
 constexpr std::size_t kMostText = telemetry::NeedleShape::kMostSpans * 2 * sizeof("-1000000");
-constexpr std::size_t kRowsAFetch = 1024;
+constexpr std::size_t kShapesAFetch = 1024;
 
 bool is_storable(const telemetry::NeedleShape& shape) {
   if (!std::isfinite(shape.time_s) || shape.spans > telemetry::NeedleShape::kMostSpans) return false;
@@ -83,8 +83,8 @@ void ShapeBuffer::clear() noexcept {
 
 std::vector<telemetry::NeedleShape> read_shapes(soci::session& database) {
   std::vector<telemetry::NeedleShape> shapes;
-  std::vector<double> times_s(kRowsAFetch);
-  std::vector<std::string> points_um(kRowsAFetch);
+  std::vector<double> times_s(kShapesAFetch);
+  std::vector<std::string> points_um(kShapesAFetch);
   soci::statement select =
       (database.prepare << fmt::format("SELECT time_s, substr(beside_um, 1, {}) FROM needle_shape ORDER BY time_s",
                                        kMostText + 1),
@@ -93,8 +93,8 @@ std::vector<telemetry::NeedleShape> read_shapes(soci::session& database) {
   while (select.fetch()) {
     if (shapes.size() > kMaxShapeRows) throw soci::soci_error("too many shapes of the needle");
     for (std::size_t i = 0; i < times_s.size(); ++i) shapes.push_back(to_shape(times_s[i], points_um[i]));
-    times_s.resize(kRowsAFetch);
-    points_um.resize(kRowsAFetch);
+    times_s.resize(kShapesAFetch);
+    points_um.resize(kShapesAFetch);
   }
   return shapes;
 }

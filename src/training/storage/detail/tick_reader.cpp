@@ -9,7 +9,7 @@
 namespace trocar::storage::detail {
 namespace {
 
-constexpr std::size_t kRowsAFetch = 4096;
+constexpr std::size_t kTicksAFetch = 4096;
 
 /// Values above `last` are those of a damaged file or of a newer program.
 int within(int value, int last, const char* column) {
@@ -91,7 +91,7 @@ std::string bind_columns(soci::statement& select, TickColumns& columns, const st
       columns.integers.emplace_back();
   });
   columns.indicators.resize(columns.reals.size());
-  columns.resize(kRowsAFetch);
+  columns.resize(kTicksAFetch);
 
   select.exchange(soci::into(columns.tick));
   std::size_t real = 0;
@@ -149,7 +149,7 @@ std::vector<telemetry::TickSample> TickReader::read(const TickBlock& block) {
         throw soci::soci_error("a tick is missing");
       samples.push_back(columns.row(i));
     }
-    columns.resize(kRowsAFetch);
+    columns.resize(kTicksAFetch);
   }
   if (samples.size() != block.ticks) throw soci::soci_error("ticks are missing");
   read_events(*database_, block, samples);

@@ -10,14 +10,6 @@ namespace {
 
 constexpr std::size_t kRowsAFetch = 1024;
 
-bool has_table(soci::session& database, const TimedTable& table) {
-  int count = 0;
-  const std::string name = table.name;
-  database << "SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name = :name", soci::use(name),
-      soci::into(count);
-  return count > 0;
-}
-
 }  // namespace
 
 std::string schema_of(const TimedTable& table) {
@@ -52,7 +44,7 @@ void TimedBuffer::clear() noexcept {
 
 std::vector<std::vector<double>> read_rows(soci::session& database, const TimedTable& table) {
   std::vector<std::vector<double>> rows;
-  if (!has_table(database, table)) return rows;
+  if (!has_table(database, table.name)) return rows;
   std::vector<std::vector<double>> columns(table.columns.size(), std::vector<double>(kRowsAFetch));
   soci::statement select(database);
   for (std::vector<double>& column : columns) select.exchange(soci::into(column));

@@ -9,6 +9,7 @@
 
 #include "core/files/temporary_folder.h"
 #include "core/random.h"
+#include "storage/detail/database.h"
 #include "storage/session_file.h"
 #include "telemetry/tick_fields.h"
 
@@ -103,6 +104,13 @@ inline void write_example(const std::filesystem::path& path, std::size_t ticks) 
   if (ticks > 5) shots.push_back(5);
   const Status status = writer->finish(example_outcome(), shots);
   ASSERT_TRUE(status) << status.error().text();
+}
+
+/// Runs a statement on the database of a session.
+inline void change(const std::filesystem::path& path, const std::string& statement) {
+  soci::session database;
+  storage::detail::open_database(database, path);
+  database << statement;
 }
 
 /// All fields of a sample, bit by bit.

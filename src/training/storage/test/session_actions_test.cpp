@@ -13,7 +13,7 @@ const std::vector<tasks::Action> kActions{
     {0.1, tasks::ActionKind::kAnaesthetise, 5.0, {}, Vec3(1.0, 2.0, 3.0), 0.5},
     {0.2, tasks::ActionKind::kDrawStylet, 0.0, {tasks::Substance::kCsf, 0.75}, Vec3(1.0, 40.0, 3.0), 40.25}};
 
-void write_session(const fs::path& path) {
+void write_with_actions(const fs::path& path) {
   auto writer = SessionWriter::create(path, testing::example_info());
   ASSERT_TRUE(writer) << writer.error().text();
   for (std::size_t n = 0; n < 50; ++n) ASSERT_TRUE(writer->append(testing::example_sample(10 * n)));
@@ -23,7 +23,7 @@ void write_session(const fs::path& path) {
 
 TEST(SessionActions, ComeBackAsTheyWere) {
   const TemporaryFolder folder;
-  write_session(folder / "s.trocar");
+  write_with_actions(folder / "s.trocar");
   const auto session = load_session(folder / "s.trocar");
   ASSERT_TRUE(session) << session.error().text();
   EXPECT_EQ(session->actions, kActions);
@@ -35,7 +35,7 @@ TEST(SessionActions, AreMissingInSessionsOfOlderProgramsAndReportedWhenChanged) 
        {"DROP TABLE actions", "UPDATE actions SET kind = 99", "UPDATE actions SET share = 0.5"}) {
     const bool is_old = statement[0] == 'D';
     const fs::path path = folder / (std::string(statement + 15) + ".trocar");
-    write_session(path);
+    write_with_actions(path);
     {
       soci::session database;
       detail::open_database(database, path);

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "core/files/atomic_file.h"
+#include "core/parse_number.h"
 #include "storage/session_file.h"
 #include "storage/test/example_session.h"
 
@@ -64,7 +65,7 @@ TEST(SessionCsv, PutsEachFieldUnderItsName) {
       if (rows[0][c] == name) return rows[4][c];
     return "no column " + name;
   };
-  const auto number = [&](const std::string& name) { return std::strtod(field(name).c_str(), nullptr); };
+  const auto number = [&](const std::string& name) { return parse_number<double>(field(name)).value_or(std::nan("")); };
   EXPECT_EQ(number("time_s"), s.time_s);
   EXPECT_EQ(number("tip_z_mm"), s.tip_mm.z());
   EXPECT_EQ(number("axis_y"), s.axis.y());
@@ -102,8 +103,8 @@ TEST(SessionCsv, WritesNumbersThatReadBackToTheSameValue) {
   session.samples[0].f_stick_n = -std::numeric_limits<double>::infinity();
   const auto rows = exported_rows(session);
   EXPECT_EQ(rows[1][1], "0.1");
-  EXPECT_EQ(std::strtod(rows[1][2].c_str(), nullptr), 1e-310);
-  EXPECT_EQ(std::strtod(rows[1][3].c_str(), nullptr), 123456789.123456789);
+  EXPECT_EQ(parse_number<double>(rows[1][2]), 1e-310);
+  EXPECT_EQ(parse_number<double>(rows[1][3]), 123456789.123456789);
   EXPECT_EQ(rows[1][8], "nan");
   EXPECT_EQ(rows[1][34], "-inf");
 }

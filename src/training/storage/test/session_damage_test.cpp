@@ -19,7 +19,7 @@ using testing::example_outcome;
 using testing::example_sample;
 using testing::write_example;
 
-void change(const fs::path& path, const std::vector<std::string>& statements) {
+void change_all(const fs::path& path, const std::vector<std::string>& statements) {
   soci::session database;
   detail::open_database(database, path);
   for (const std::string& statement : statements) database << statement;
@@ -122,8 +122,8 @@ TEST(SessionDamage, NamesTheBlockAndGivesTheRest) {
   const TemporaryFolder folder;
   const fs::path path = folder / "s.trocar";
   write_example(path, 2600);
-  change(path, {"UPDATE ticks SET depth_mm = depth_mm + 1 WHERE tick = 700",
-                "DELETE FROM events WHERE tick = (SELECT min(tick) FROM events WHERE tick > 2000)"});
+  change_all(path, {"UPDATE ticks SET depth_mm = depth_mm + 1 WHERE tick = 700",
+                    "DELETE FROM events WHERE tick = (SELECT min(tick) FROM events WHERE tick > 2000)"});
   const auto session = salvage_session(path);
   ASSERT_TRUE(session) << session.error().text();
   ASSERT_EQ(session->damage.size(), 2u);
@@ -148,12 +148,12 @@ TEST(SessionDamage, FindsTheFiredTickBehindAGap) {
     for (std::size_t n = 0; n < 1800; ++n) ASSERT_TRUE(writer->append(example_sample(n)));
     ASSERT_TRUE(writer->finish(example_outcome(), std::vector<std::size_t>{1700}));
   }
-  change(path, {"DELETE FROM ticks WHERE tick = 3"});
+  change_all(path, {"DELETE FROM ticks WHERE tick = 3"});
   const auto session = salvage_session(path);
   ASSERT_TRUE(session) << session.error().text();
   ASSERT_EQ(session->shots.size(), 1u);
   EXPECT_EQ(bits_of(session->samples[session->shots.front()]), bits_of(example_sample(1700)));
-  change(path, {"DELETE FROM ticks WHERE tick = 1600"});
+  change_all(path, {"DELETE FROM ticks WHERE tick = 1600"});
   EXPECT_TRUE(salvage_session(path)->shots.empty());
 }
 
@@ -175,7 +175,7 @@ TEST(SessionDamage, NamesOtherParts) {
     const TemporaryFolder folder;
     const fs::path path = folder / "s.trocar";
     write_example(path, 1200);
-    change(path, {statement});
+    change_all(path, {statement});
     const auto session = load_session(path);
     ASSERT_FALSE(session) << statement;
     EXPECT_NE(session.error().text().find(part), std::string::npos) << statement << ": " << session.error().text();
@@ -187,7 +187,7 @@ TEST(SessionDamage, OlderSessionsOpenAndAreKnownByTheirLackOfChecksums) {
   const fs::path path = folder / "s.trocar";
   write_example(path, 1200);
   EXPECT_TRUE(load_session(path)->has_checksums);
-  change(path, {"DROP TABLE tick_blocks", "DROP TABLE checksums"});
+  change_all(path, {"DROP TABLE tick_blocks", "DROP TABLE checksums"});
   const auto session = load_session(path);
   ASSERT_TRUE(session) << session.error().text();
   EXPECT_FALSE(session->has_checksums);
@@ -210,7 +210,7 @@ TEST(SessionDamage, RefusesTablesThatCompute) {
     const TemporaryFolder folder;
     const fs::path path = folder / "s.trocar";
     write_example(path, 600);
-    change(path, statements);
+    change_all(path, statements);
     const auto session = load_session(path);
     ASSERT_FALSE(session) << statements.back();
     EXPECT_TRUE(session.error().text().find("is not a table") != std::string::npos ||
@@ -227,7 +227,7 @@ TEST(SessionDamage, RefusesLongTextsUnread) {
     const TemporaryFolder folder;
     const fs::path path = folder / "s.trocar";
     write_example(path, 600);
-    change(path, {statement});
+    change_all(path, {statement});
     const auto session = load_session(path);
     ASSERT_FALSE(session) << statement;
     EXPECT_NE(session.error().text().find("facts of the case"), std::string::npos) << session.error().text();
@@ -266,7 +266,7 @@ TEST(SessionDamage, TheCsvMarksGapsAndIncompleteSessions) {
     ASSERT_TRUE(writer);
     for (std::size_t n = 0; n < 1600; ++n) ASSERT_TRUE(writer->append(example_sample(n)));
   }
-  change(path, {"DELETE FROM ticks WHERE tick IN (10, 1510)"});
+  change_all(path, {"DELETE FROM ticks WHERE tick IN (10, 1510)"});
   const auto session = salvage_session(path);
   ASSERT_TRUE(session) << session.error().text();
   EXPECT_TRUE(session->is_incomplete);

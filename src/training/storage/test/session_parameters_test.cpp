@@ -25,7 +25,7 @@ const SessionParameters kChanged{
     7, 0.007, {"skin.fp=6", "coupling.stiffness=0.5"}, {"force_model=insertion", "coupling.stiffness=0.5"}, "other\n"};
 const tasks::Interruption kGap{0.004, 0.009, "the needle's server was away"};
 
-void write_session(const std::filesystem::path& path) {
+void write_with_changes(const std::filesystem::path& path) {
   auto writer = SessionWriter::create(path, example_info());
   ASSERT_TRUE(writer) << writer.error().text();
   for (std::size_t n = 0; n < 12; ++n) {
@@ -45,7 +45,7 @@ void write_session(const std::filesystem::path& path) {
 
 TEST(SessionParametersFile, GivesChangesAndInterruptionsBack) {
   const TemporaryFolder folder;
-  write_session(folder / "s.trocar");
+  write_with_changes(folder / "s.trocar");
   const auto session = load_session(folder / "s.trocar");
   ASSERT_TRUE(session) << session.error().text();
   ASSERT_EQ(session->parameters.size(), 2u);
@@ -78,7 +78,7 @@ std::vector<std::string> column(const std::string& csv, std::size_t index) {
 TEST(SessionParametersFile, ShowsThemInTheEventColumnOfCsvAndView) {
   constexpr std::size_t kEvent = 27;
   const TemporaryFolder folder;
-  write_session(folder / "s.trocar");
+  write_with_changes(folder / "s.trocar");
   const auto session = load_session(folder / "s.trocar");
   ASSERT_TRUE(session) << session.error().text();
   ASSERT_TRUE(export_csv(*session, folder / "s.csv"));
@@ -98,7 +98,7 @@ TEST(SessionParametersFile, ShowsThemInTheEventColumnOfCsvAndView) {
 
 TEST(SessionParametersFile, OpensSessionsOfOlderPrograms) {
   const TemporaryFolder folder;
-  write_session(folder / "s.trocar");
+  write_with_changes(folder / "s.trocar");
   {
     soci::session database;
     detail::open_database(database, folder / "s.trocar");
@@ -117,7 +117,7 @@ TEST(SessionParametersFile, OpensSessionsOfOlderPrograms) {
 
 TEST(SessionParametersFile, RefusesAChangeBeyondTheTicks) {
   const TemporaryFolder folder;
-  write_session(folder / "s.trocar");
+  write_with_changes(folder / "s.trocar");
   {
     soci::session database;
     detail::open_database(database, folder / "s.trocar");
@@ -132,7 +132,7 @@ TEST(SessionParametersFile, MissesNoChangeUnnoticed) {
   for (const char* statement : {"DROP TABLE parameters", "DELETE FROM parameters WHERE tick = 7",
                                 "UPDATE parameters SET settings = '' WHERE tick = 7", "DROP TABLE interruptions"}) {
     const TemporaryFolder folder;
-    write_session(folder / "s.trocar");
+    write_with_changes(folder / "s.trocar");
     {
       soci::session database;
       detail::open_database(database, folder / "s.trocar");

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <limits>
 
-#include "storage/detail/database.h"
 #include "storage/session_file.h"
 #include "storage/test/example_session.h"
 
@@ -22,7 +21,7 @@ telemetry::NeedleShape example_shape(std::size_t n) {
   return shape;
 }
 
-void write_session(const fs::path& path, std::size_t shapes) {
+void write_with_shapes(const fs::path& path, std::size_t shapes) {
   auto writer = SessionWriter::create(path, testing::example_info());
   ASSERT_TRUE(writer) << writer.error().text();
   for (std::size_t n = 0; n < shapes; ++n) {
@@ -32,15 +31,9 @@ void write_session(const fs::path& path, std::size_t shapes) {
   ASSERT_TRUE(writer->finish(testing::example_outcome(), {}));
 }
 
-void change(const fs::path& path, const char* statement) {
-  soci::session database;
-  detail::open_database(database, path);
-  database << statement;
-}
-
 TEST(SessionShape, ComesBackToTheMicrometre) {
   const TemporaryFolder folder;
-  write_session(folder / "s.trocar", 2345);
+  write_with_shapes(folder / "s.trocar", 2345);
   const auto session = load_session(folder / "s.trocar");
   ASSERT_TRUE(session) << session.error().text();
   ASSERT_EQ(session->shapes.size(), 2345u);
@@ -72,9 +65,9 @@ TEST(SessionShape, LeavesOutWhatIsNoShapeOrNotLater) {
 
 TEST(SessionShape, SessionsOfOlderProgramsHaveNoneAndOpen) {
   const TemporaryFolder folder;
-  write_session(folder / "s.trocar", 20);
+  write_with_shapes(folder / "s.trocar", 20);
   for (const char* statement : {"DROP TABLE needle_shape", "DELETE FROM checksums WHERE name = 'needle_shape'"})
-    change(folder / "s.trocar", statement);
+    testing::change(folder / "s.trocar", statement);
   const auto session = load_session(folder / "s.trocar");
   ASSERT_TRUE(session) << session.error().text();
   EXPECT_EQ(session->samples.size(), 20u);
@@ -89,8 +82,8 @@ TEST(SessionShape, WhatIsNoShapeIsDamage) {
                              "UPDATE needle_shape SET beside_um = '1 2' WHERE time_s > 0.05",
                              "DELETE FROM needle_shape WHERE time_s > 0.05", "DROP TABLE needle_shape"}) {
     const TemporaryFolder folder;
-    write_session(folder / "s.trocar", 20);
-    change(folder / "s.trocar", damage);
+    write_with_shapes(folder / "s.trocar", 20);
+    testing::change(folder / "s.trocar", damage);
     const auto session = load_session(folder / "s.trocar");
     ASSERT_FALSE(session) << damage;
     EXPECT_NE(session.error().text().find("shapes of the needle"), std::string::npos) << session.error().text();

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "core/files/atomic_file.h"
-#include "storage/detail/database.h"
 #include "storage/test/example_session.h"
 
 namespace trocar::storage {
@@ -12,12 +11,6 @@ namespace {
 using testing::example_info;
 using testing::example_outcome;
 using testing::write_example;
-
-void change(const std::filesystem::path& path, const std::string& statement) {
-  soci::session database;
-  detail::open_database(database, path);
-  database << statement;
-}
 
 TEST(SessionSummary, IsThatOfTheWholeSession) {
   const TemporaryFolder folder;
@@ -55,7 +48,7 @@ TEST(SessionSummary, RefusesAChangedLevelAndAChangedScore) {
     const auto file = folder / "a.trocar";
     write_example(file, 20);
     ASSERT_TRUE(load_summary(file)) << statement;
-    change(file, statement);
+    testing::change(file, statement);
     const auto summary = load_summary(file);
     ASSERT_FALSE(summary) << statement;
     EXPECT_NE(summary.error().text().find("a.trocar"), std::string::npos) << summary.error().text();

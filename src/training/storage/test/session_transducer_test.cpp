@@ -28,7 +28,7 @@ SessionWriter begin(const fs::path& path) {
 }
 
 /// A finished session of some ticks and a transducer that moves all the while.
-void write_session(const fs::path& path, std::size_t moments) {
+void write_with_transducer(const fs::path& path, std::size_t moments) {
   SessionWriter writer = begin(path);
   for (std::size_t n = 0; n < moments; ++n) {
     ASSERT_TRUE(writer.append(testing::example_sample(10 * n)));
@@ -37,17 +37,11 @@ void write_session(const fs::path& path, std::size_t moments) {
   ASSERT_TRUE(writer.finish(testing::example_outcome(), {}));
 }
 
-void change(const fs::path& path, const char* statement) {
-  soci::session database;
-  detail::open_database(database, path);
-  database << statement;
-}
-
 constexpr double kTolerance = 1e-12;  // a rotation becomes a quaternion and comes back
 
 TEST(SessionTransducer, ComesBackInOrder) {
   const TemporaryFolder folder;
-  write_session(folder / "s.trocar", 2345);
+  write_with_transducer(folder / "s.trocar", 2345);
   const auto session = load_session(folder / "s.trocar");
   ASSERT_TRUE(session) << session.error().text();
   ASSERT_EQ(session->transducer.size(), 2345u);
@@ -91,10 +85,10 @@ TEST(SessionTransducer, LeavesOutWhatIsNoPoseOrNotLater) {
 
 TEST(SessionTransducer, SessionsOfOlderProgramsHaveNoneAndOpen) {
   const TemporaryFolder folder;
-  write_session(folder / "s.trocar", 20);
+  write_with_transducer(folder / "s.trocar", 20);
   // What a program of format 1 wrote before there was such a table, nor checksums.
   for (const char* statement : {"DROP TABLE transducer", "DROP TABLE checksums", "DROP TABLE tick_blocks"})
-    change(folder / "s.trocar", statement);
+    testing::change(folder / "s.trocar", statement);
   const auto session = load_session(folder / "s.trocar");
   ASSERT_TRUE(session) << session.error().text();
   EXPECT_EQ(session->samples.size(), 20u);
@@ -104,7 +98,7 @@ TEST(SessionTransducer, SessionsOfOlderProgramsHaveNoneAndOpen) {
 
 TEST(SessionTransducer, DoesNotMakeTheFormatANewerOne) {
   const TemporaryFolder folder;
-  write_session(folder / "s.trocar", 2);
+  write_with_transducer(folder / "s.trocar", 2);
   soci::session database;
   detail::open_database(database, folder / "s.trocar");
   EXPECT_EQ(detail::pragma_integer(database, "user_version"), 1);  // older programs still read its ticks
@@ -115,8 +109,8 @@ TEST(SessionTransducer, WhatIsNoPoseIsRefused) {
                              "UPDATE transducer SET x_mm = 9e999 WHERE time_s > 0.05",
                              "ALTER TABLE transducer RENAME COLUMN x_mm TO left_mm"}) {
     const TemporaryFolder folder;
-    write_session(folder / "s.trocar", 20);
-    change(folder / "s.trocar", damage);
+    write_with_transducer(folder / "s.trocar", 20);
+    testing::change(folder / "s.trocar", damage);
     const auto session = load_session(folder / "s.trocar");
     ASSERT_FALSE(session) << damage;
     EXPECT_EQ(session.error().text().find('\n'), std::string::npos);

@@ -16,7 +16,7 @@ tasks::XrayUse example_use(std::size_t n) {
   return {0.1 * x, 20.0 - x, 5.0, Vec3(-30.0, 0.1 * x, 12.0), 220.0, n % 2 == 1, 0.5 * x, x, 2.0 * x, 0.25 * x};
 }
 
-void write_session(const fs::path& path, const std::vector<tasks::XrayUse>& uses) {
+void write_with_xray(const fs::path& path, const std::vector<tasks::XrayUse>& uses) {
   auto writer = SessionWriter::create(path, testing::example_info());
   ASSERT_TRUE(writer) << writer.error().text();
   for (std::size_t n = 0; n < 50; ++n) ASSERT_TRUE(writer->append(testing::example_sample(10 * n)));
@@ -27,7 +27,7 @@ void write_session(const fs::path& path, const std::vector<tasks::XrayUse>& uses
 TEST(SessionXray, ComesBackInOrder) {
   const TemporaryFolder folder;
   const std::vector<tasks::XrayUse> uses{example_use(0), example_use(1), example_use(2)};
-  write_session(folder / "s.trocar", uses);
+  write_with_xray(folder / "s.trocar", uses);
   const auto session = load_session(folder / "s.trocar");
   ASSERT_TRUE(session) << session.error().text();
   EXPECT_EQ(session->xray, uses);
@@ -37,7 +37,7 @@ TEST(SessionXray, LeavesOutWhatIsNotLaterOrNotFinite) {
   const TemporaryFolder folder;
   tasks::XrayUse broken = example_use(2);
   broken.air_kerma_mgy = std::numeric_limits<double>::quiet_NaN();
-  write_session(folder / "s.trocar", {example_use(1), example_use(0), broken, example_use(3)});
+  write_with_xray(folder / "s.trocar", {example_use(1), example_use(0), broken, example_use(3)});
   const auto session = load_session(folder / "s.trocar");
   ASSERT_TRUE(session) << session.error().text();
   EXPECT_EQ(session->xray, (std::vector<tasks::XrayUse>{example_use(1), example_use(3)}));
@@ -47,7 +47,7 @@ TEST(SessionXray, IsMissingInSessionsOfOlderProgramsAndReportedWhenChanged) {
   const TemporaryFolder folder;
   for (const char* statement : {"DROP TABLE xray", "UPDATE xray SET beam_s = -1"}) {
     const fs::path path = folder / (statement[0] == 'D' ? "old.trocar" : "changed.trocar");
-    write_session(path, {example_use(1)});
+    write_with_xray(path, {example_use(1)});
     {
       soci::session database;
       detail::open_database(database, path);

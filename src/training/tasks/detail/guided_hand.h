@@ -29,6 +29,10 @@ class Tremor {
   std::array<std::array<Sine, kSines>, 3> axes_;
 };
 
+// Both of expert and novice; assumed.
+inline constexpr double kAfterFire_s = 0.5;   ///< Between the shot and the withdrawal.
+inline constexpr double kOutOfTime_s = 58.0;  ///< The withdrawal ends even if the tip is still inside.
+
 /// Common part of expert and novice: a hand that moves its wanted pose along a straight line with smooth speed, and
 /// reads the tip's position and the device's force. Positions along the line are mm from its start, positive inward.
 class GuidedHand {

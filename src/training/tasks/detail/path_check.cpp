@@ -16,7 +16,6 @@ constexpr double kScreenStep_mm = 2.0;
 constexpr double kWalkStep_mm = 0.25;
 constexpr double kSkinTolerance_mm = 0.5;  ///< Above the skin: still a fold of it, not outside the body.
 constexpr double kMinMuscle_mm = 2.0;
-constexpr double kChunk_mm = 8.0;  ///< Of the path, for the exact margins.
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 bool is_near_border(const volume::GridGeometry& geometry, const Vec3& p_P, double margin_mm) {

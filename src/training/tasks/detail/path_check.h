@@ -50,6 +50,7 @@ struct PathFindings {
   std::uint8_t nearest_risk = 0;  ///< Label id; 0: none within kReportedMargin_mm.
 };
 inline constexpr double kHubReserve_mm = 10.0;      ///< Length of the needle that stays outside.
+inline constexpr double kChunk_mm = 8.0;            ///< Piece of the path, for the exact margins.
 inline constexpr double kReportedMargin_mm = 10.0;  ///< Upper bound of spare_margin_mm.
 
 /// Walks the path and the throw beyond it voxel by voxel: layers in order, organ passed, margins to the risk voxels.

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include "core/files/atomic_file.h"
-#include "core/files/data_dir.h"
 #include "core/files/temporary_folder.h"
 #include "tasks/assess_path.h"
 #include "tasks/plan.h"
@@ -17,8 +16,7 @@ namespace {
 using testing::BoxPatient;
 using testing::liver_biopsy;
 using testing::shipped_needle;
-
-const std::filesystem::path kTasks = data_dir() / "tasks";
+using testing::tasks_folder;
 
 Task changed_task() {
   Task task = liver_biopsy();
@@ -57,7 +55,7 @@ TEST(OwnTask, FileSaysWhatDiffersAndGivesTheTaskBack) {
   EXPECT_EQ(text.find("organ"), std::string::npos) << text;
   EXPECT_EQ(text.find("max_posterior_deg"), std::string::npos) << text;
   ASSERT_TRUE(write_file_atomically(folder / kOwnTaskFile, text));
-  const auto read = load_task_file(folder / kOwnTaskFile, kTasks);
+  const auto read = load_task_file(folder / kOwnTaskFile, tasks_folder());
   ASSERT_TRUE(read) << read.error().text();
   EXPECT_TRUE(*read == task) << text;
   EXPECT_EQ(read->name, "liver-biopsy");
@@ -75,7 +73,7 @@ TEST(OwnTask, AZoneByItsLandmarkAndALevelAreKept) {
   const auto hard = at_level(task, "2");
   ASSERT_TRUE(hard) << hard.error().text();
   EXPECT_EQ(hard->level, "hard");
-  const auto read = parse_task(task_to_toml(*hard, liver_biopsy()), "own", "task.toml", kTasks);
+  const auto read = parse_task(task_to_toml(*hard, liver_biopsy()), "own", "task.toml", tasks_folder());
   ASSERT_TRUE(read) << read.error().text();
   EXPECT_TRUE(*read == *hard) << task_to_toml(*hard, liver_biopsy());
 }
@@ -117,14 +115,14 @@ TEST(OwnTask, NoRisksAtAllAreKept) {
   Task task = liver_biopsy();
   task.risks.clear();
   ASSERT_TRUE(write_file_atomically(folder / kOwnTaskFile, task_to_toml(task, liver_biopsy())));
-  const auto read = load_task_file(folder / kOwnTaskFile, kTasks);
+  const auto read = load_task_file(folder / kOwnTaskFile, tasks_folder());
   ASSERT_TRUE(read) << read.error().text();
   EXPECT_TRUE(read->risks.empty());
 }
 
 TEST(OwnTask, WeightsThatContradictAreRefused) {
   const auto error_of = [](const std::string& text) {
-    const auto task = parse_task("base = \"liver-biopsy\"\n" + text, "own", "task.toml", kTasks);
+    const auto task = parse_task("base = \"liver-biopsy\"\n" + text, "own", "task.toml", tasks_folder());
     return task ? std::string("no error") : task.error().text();
   };
   EXPECT_EQ(error_of("[scoring.weights]\ntarget = 60\nrisk = 40\n"), "no error");
@@ -143,7 +141,7 @@ TEST(OwnTask, DamagedFileIsRefusedWithItsPlace) {
   const TemporaryFolder folder;
   const auto error_of = [&](const std::string& text) {
     EXPECT_TRUE(write_file_atomically(folder / kOwnTaskFile, text));
-    const auto task = load_task_file(folder / kOwnTaskFile, kTasks);
+    const auto task = load_task_file(folder / kOwnTaskFile, tasks_folder());
     return task ? std::string("no error") : task.error().text();
   };
   EXPECT_EQ(error_of("base = \"liver-biopsy\"\n"), "no error");

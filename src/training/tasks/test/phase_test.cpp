@@ -13,7 +13,7 @@ Result<std::vector<Phase>> parse(const std::string& text) {
   EXPECT_TRUE(document) << text;
   return read_phases(*document);
 }
-std::string error_of(const std::string& text) {
+std::string phases_error(const std::string& text) {
   const auto phases = parse(text);
   return phases ? std::string("no error") : phases.error().text();
 }
@@ -36,19 +36,20 @@ TEST(Phases, ComeWithTheirConditions) {
 }
 
 TEST(Phases, MistakesAreNamed) {
-  EXPECT_NE(error_of(phase("a", "\"b\"", "fired = true")).find("after \"b\", which does not exist"), std::string::npos);
-  EXPECT_NE(error_of(phase("a", "\"c\"", "fired = true") + phase("b", "\"a\"", "outside = true") +
-                     phase("c", "\"b\"", "outside = true"))
+  EXPECT_NE(phases_error(phase("a", "\"b\"", "fired = true")).find("after \"b\", which does not exist"),
+            std::string::npos);
+  EXPECT_NE(phases_error(phase("a", "\"c\"", "fired = true") + phase("b", "\"a\"", "outside = true") +
+                         phase("c", "\"b\"", "outside = true"))
                 .find("waits for itself"),
             std::string::npos);
-  EXPECT_NE(error_of(phase("a", "\"a\"", "fired = true")).find("waits for itself"), std::string::npos);
-  EXPECT_NE(error_of(phase("a", "", "fired = true") + phase("a", "", "outside = true")).find("two phases"),
+  EXPECT_NE(phases_error(phase("a", "\"a\"", "fired = true")).find("waits for itself"), std::string::npos);
+  EXPECT_NE(phases_error(phase("a", "", "fired = true") + phase("a", "", "outside = true")).find("two phases"),
             std::string::npos);
-  EXPECT_NE(error_of(phase("a", "", "")).find("has no condition"), std::string::npos);
-  EXPECT_NE(error_of(phase("a", "", "fierd = true")).find("did you mean"), std::string::npos);
-  EXPECT_NE(error_of(phase("a", "", "fired = false")).find("asks for nothing"), std::string::npos);
-  EXPECT_NE(error_of(phase("a", "", "inserted_mm = -3")).find("inserted_mm"), std::string::npos);
-  EXPECT_NE(error_of(phase("a", "", "returned = \"wine\"")).find("no substance"), std::string::npos);
+  EXPECT_NE(phases_error(phase("a", "", "")).find("has no condition"), std::string::npos);
+  EXPECT_NE(phases_error(phase("a", "", "fierd = true")).find("did you mean"), std::string::npos);
+  EXPECT_NE(phases_error(phase("a", "", "fired = false")).find("asks for nothing"), std::string::npos);
+  EXPECT_NE(phases_error(phase("a", "", "inserted_mm = -3")).find("inserted_mm"), std::string::npos);
+  EXPECT_NE(phases_error(phase("a", "", "returned = \"wine\"")).find("no substance"), std::string::npos);
 }
 
 TEST(Phases, TheExampleOfTheDocumentationIsAWholeTask) {

@@ -15,8 +15,7 @@ namespace {
 
 using testing::BoxPatient;
 using testing::liver_biopsy;
-
-const std::filesystem::path kTasks = data_dir() / "tasks";
+using testing::tasks_folder;
 
 bool mentions(const TaskReadiness& readiness, std::string_view text) {
   for (const std::string& reason : readiness.reasons)
@@ -25,7 +24,7 @@ bool mentions(const TaskReadiness& readiness, std::string_view text) {
 }
 
 TEST(Task, ShippedTasksAreReadableAndNameKnownTissuesAndNeedles) {
-  const auto tasks = load_tasks(kTasks);
+  const auto tasks = load_tasks(tasks_folder());
   ASSERT_TRUE(tasks) << tasks.error().text();
   ASSERT_FALSE(tasks->empty());
   const auto table = anatomy::load_tissue_table(data_dir() / "tissues.toml");
@@ -69,7 +68,7 @@ TEST(Task, ARiskNamedByItsTissueIsNeitherTheOrganNorTheTarget) {
 }
 
 TEST(Task, UnknownNameListsTheKnownOnes) {
-  const auto task = load_task(kTasks, "lever-biopsy");
+  const auto task = load_task(tasks_folder(), "lever-biopsy");
   ASSERT_FALSE(task);
   EXPECT_EQ(task.error().exit_status, 2);
   EXPECT_NE(task.error().advice.find("liver-biopsy"), std::string::npos);
@@ -82,7 +81,7 @@ TEST(Task, MissingFolderSaysWhatToDo) {
 }
 
 TEST(Task, DamagedTaskIsRefusedWithItsPlace) {
-  const std::string good = *read_file(kTasks / "liver-biopsy.toml");
+  const std::string good = *read_file(tasks_folder() / "liver-biopsy.toml");
   const TemporaryFolder folder;
   const auto error_of = [&](const std::string& from, const std::string& to) {
     std::string text = good;

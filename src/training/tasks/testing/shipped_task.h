@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <string_view>
 
 #include "core/files/data_dir.h"
@@ -10,9 +11,12 @@
 
 namespace trocar::testing {
 
+inline std::filesystem::path tasks_folder() {
+  return data_dir() / "tasks";
+}
 /// The task of the data folder.
 inline tasks::Task liver_biopsy() {
-  auto task = tasks::load_task(data_dir() / "tasks", "liver-biopsy");
+  auto task = tasks::load_task(tasks_folder(), "liver-biopsy");
   EXPECT_TRUE(task) << (task ? "" : task.error().text());
   return task.value_or(tasks::Task{});
 }

@@ -165,6 +165,23 @@ bool LibraryServer::process_and_close_socket(socket_t socket) {
   return true;
 }
 
+bool LibraryServer::process(Connection& connection, bool is_last, bool& is_closed,
+                            const std::function<void(httplib::Request&)>& set_up) {
+  // Newer versions of the library are told both addresses, and ask the connection no more.
+  const auto call = [&](auto& server) {
+    if constexpr (requires { server.process_request(connection, is_last, is_closed, set_up); }) {
+      return server.process_request(connection, is_last, is_closed, set_up);
+    } else {
+      std::string remote, local;
+      int remote_port = 0, local_port = 0;
+      connection.get_remote_ip_and_port(remote, remote_port);
+      connection.get_local_ip_and_port(local, local_port);
+      return server.process_request(connection, remote, remote_port, local, local_port, is_last, is_closed, set_up);
+    }
+  };
+  return call(*this);
+}
+
 void LibraryServer::converse(Connection& connection) {
   for (int n = 0; n < kMostRequests; ++n) {
     // Requests that are there already are answered even if the server ends.
@@ -178,7 +195,7 @@ void LibraryServer::converse(Connection& connection) {
     connection.begin_header();
     bool is_last = n + 1 == kMostRequests || is_ending_ || waiting_ > 0;
     bool is_understood = false, is_closed = false;
-    const bool is_done = process_request(connection, is_last, is_closed, [&](httplib::Request& request) {
+    const bool is_done = process(connection, is_last, is_closed, [&](httplib::Request& request) {
       is_understood = true;
       request.headers.erase("Accept-Encoding");  // the library would compress every answer anew
       request.ranges.clear();

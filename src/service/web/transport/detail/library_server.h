@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <string>
@@ -23,6 +24,8 @@ class LibraryServer final : public httplib::Server {
  private:
   bool process_and_close_socket(socket_t socket) override;
   void converse(Connection& connection);
+  bool process(Connection& connection, bool is_last, bool& is_closed,
+               const std::function<void(httplib::Request&)>& set_up);
   void answer(const httplib::Request& request, httplib::Response& response) const;
   bool count_in(const std::string& address);
   void count_out(const std::string& address);

@@ -5,7 +5,7 @@
 
 namespace trocar::web::detail {
 
-void WorkerThreads::enqueue(std::function<void()> job) {
+WorkerThreads::Taken WorkerThreads::enqueue(std::function<void()> job) {
   const std::lock_guard lock(mutex_);
   jobs_.push_back(std::move(job));
   if (jobs_.size() > free_ && threads_.size() < most_threads_) {
@@ -14,6 +14,7 @@ void WorkerThreads::enqueue(std::function<void()> job) {
   }
   count_waiting();
   has_job_.notify_one();
+  return static_cast<Taken>(true);
 }
 
 void WorkerThreads::shutdown() {

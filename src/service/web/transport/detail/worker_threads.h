@@ -6,6 +6,7 @@
 #include <list>
 #include <mutex>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "web/transport/detail/httplib_include.h"
@@ -18,7 +19,9 @@ class WorkerThreads final : public httplib::TaskQueue {
  public:
   WorkerThreads(std::size_t most_threads, std::atomic<int>& waiting) : most_threads_(most_threads), waiting_(waiting) {}
 
-  void enqueue(std::function<void()> job) override;
+  /// void or bool, by the library's version. Every job is taken.
+  using Taken = decltype(std::declval<httplib::TaskQueue&>().enqueue(std::function<void()>()));
+  Taken enqueue(std::function<void()> job) override;
   /// Ends after all jobs, also those that wait.
   void shutdown() override;
 

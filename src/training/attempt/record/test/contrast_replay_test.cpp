@@ -8,7 +8,6 @@
 namespace trocar::attempt {
 namespace {
 
-constexpr double kStep_s = InjectionSteps::kStep_s;
 constexpr double kIodine_mg_per_ml = 300.0;
 constexpr double kStart_s = 10.0;
 
@@ -76,9 +75,9 @@ TEST(ContrastReplay, ManyCopiesAreThinnedAndStillRight) {
 
 TEST(ContrastReplay, AStepHasOneState) {
   ContrastReplay replay = two_places();
-  const auto state = replay.at(kStart_s + 3.0 * kStep_s);
-  EXPECT_EQ(replay.at(kStart_s + 3.9 * kStep_s), state);
-  EXPECT_NE(replay.at(kStart_s + 4.0 * kStep_s), state);
+  const auto state = replay.at(kStart_s + 3.0 * InjectionSteps::kStep_s);
+  EXPECT_EQ(replay.at(kStart_s + 3.9 * InjectionSteps::kStep_s), state);
+  EXPECT_NE(replay.at(kStart_s + 4.0 * InjectionSteps::kStep_s), state);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 namespace trocar::attempt {
 namespace {
 
-constexpr double kStep_s = InjectionSteps::kStep_s;
+constexpr double kInjectionStep_s = InjectionSteps::kStep_s;
 
 tasks::XrayUse use_at(double time_s, double lao_deg, bool is_beam_on, double contrast_ml, double beam_s) {
   tasks::XrayUse use;
@@ -77,22 +77,23 @@ TEST(XrayReplay, KnowsWhenContrastAgentWasInjected) {
 double volume_ml(const InjectionSteps& made, double to_s) {
   double ml = 0.0;
   for (std::size_t n = 0; n < made.steps.size(); ++n)
-    if (made.start_s + static_cast<double>(n + 1) * kStep_s <= to_s + 1e-9) ml += made.steps[n].ml_per_s * kStep_s;
+    if (made.start_s + static_cast<double>(n + 1) * kInjectionStep_s <= to_s + 1e-9)
+      ml += made.steps[n].ml_per_s * kInjectionStep_s;
   return ml;
 }
 
 TEST(XrayReplay, InjectsTheRecordedVolumesAtTheRecordedTimesAndTips) {
   const auto made = injection_steps(two_exposures(), [](double time_s) { return Vec3(time_s, 0.0, 0.0); });
   ASSERT_FALSE(made.steps.empty());
-  EXPECT_NEAR(made.start_s, 4.15, kStep_s) << "0.1 s before the first use with contrast agent";
+  EXPECT_NEAR(made.start_s, 4.15, kInjectionStep_s) << "0.1 s before the first use with contrast agent";
   EXPECT_NEAR(volume_ml(made, 1e9), 2.0, 1e-9);
-  EXPECT_NEAR(volume_ml(made, 4.25), 0.2, 2.0 * kStep_s) << "at 2 ml/s within a step";
-  EXPECT_NEAR(volume_ml(made, 4.3), 0.4, 4.0 * kStep_s);
+  EXPECT_NEAR(volume_ml(made, 4.25), 0.2, 2.0 * kInjectionStep_s) << "at 2 ml/s within a step";
+  EXPECT_NEAR(volume_ml(made, 4.3), 0.4, 4.0 * kInjectionStep_s);
   EXPECT_NEAR(volume_ml(made, 4.6), 0.4, 1e-9) << "the rest was injected within the last 0.1 s before 4.7 s";
-  const double end_s = made.start_s + static_cast<double>(made.steps.size()) * kStep_s;
-  EXPECT_NEAR(end_s, 4.7, kStep_s);
+  const double end_s = made.start_s + static_cast<double>(made.steps.size()) * kInjectionStep_s;
+  EXPECT_NEAR(end_s, 4.7, kInjectionStep_s);
   for (std::size_t n = 0; n < made.steps.size(); ++n)
-    EXPECT_NEAR(made.steps[n].tip_P.x(), made.start_s + (static_cast<double>(n) + 0.5) * kStep_s, 1e-9);
+    EXPECT_NEAR(made.steps[n].tip_P.x(), made.start_s + (static_cast<double>(n) + 0.5) * kInjectionStep_s, 1e-9);
 }
 
 TEST(XrayReplay, SpreadsASuddenVolumeOverSteps) {

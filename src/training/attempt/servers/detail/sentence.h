@@ -1,14 +1,15 @@
 #pragma once
 
-#include <cctype>
 #include <string>
 #include <utility>
+
+#include "core/ascii.h"
 
 namespace trocar::attempt::detail {
 
 /// A message with a capital first letter, for the beginning of a sentence.
 inline std::string sentence(std::string text) {
-  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  if (!text.empty()) text[0] = ascii::to_upper(text[0]);
   return text;
 }
 
