@@ -21,7 +21,7 @@ constexpr volume::Rgb kHubBlack = {54, 60, 70};
 constexpr volume::Rgb kGunGreen = {44, 150, 110};
 constexpr volume::Rgb kHandleGrey = {120, 130, 142};
 constexpr volume::Rgb kWhite = {232, 236, 240};
-constexpr int kSides = 16;
+constexpr int kShaftSides = 16;
 
 /// Shape of a needle's tip; lengths in shaft diameters.
 struct Tip {
@@ -92,18 +92,18 @@ TriangleMesh make_shaft(std::span<const Vec3> line, double diameter_mm, const Ti
   const double length_mm = tip.bevel * diameter_mm;
   const auto before_tip = [&](const Pose& X) { return -(X_AEnd.inverse() * X.p()).z() > 1.2 * length_mm; };
   for (std::size_t i = 0; i + 1 < frames.size(); ++i) {
-    if (i == 0 || before_tip(frames[i])) rings.push_back(circle(frames[i], radius_mm, kSides));
+    if (i == 0 || before_tip(frames[i])) rings.push_back(circle(frames[i], radius_mm, kShaftSides));
   }
   const Vec3 lift = tip.curve * diameter_mm * Vec3::UnitY();
-  rings.push_back(circle(X_AEnd * Pose::translation(Vec3(0, 0, -1.15 * length_mm)), radius_mm, kSides));
+  rings.push_back(circle(X_AEnd * Pose::translation(Vec3(0, 0, -1.15 * length_mm)), radius_mm, kShaftSides));
   if (tip.is_point) {
-    rings.push_back(triangle(X_AEnd * Pose::translation(Vec3(0, 0, -0.8 * length_mm)), 0.8 * radius_mm, kSides));
-    rings.push_back(triangle(X_AEnd, 0.02 * radius_mm, kSides));
+    rings.push_back(triangle(X_AEnd * Pose::translation(Vec3(0, 0, -0.8 * length_mm)), 0.8 * radius_mm, kShaftSides));
+    rings.push_back(triangle(X_AEnd, 0.02 * radius_mm, kShaftSides));
     return detail::make_loft(rings);
   }
   std::vector<Vec3> cut;
-  for (int s = 0; s < kSides; ++s) {
-    const double angle = 2.0 * std::numbers::pi * s / kSides;
+  for (int s = 0; s < kShaftSides; ++s) {
+    const double angle = 2.0 * std::numbers::pi * s / kShaftSides;
     const double back_mm = 0.5 * length_mm * (1.0 + std::sin(angle));  // the face points along +y
     const double share = 1.0 - back_mm / std::max(length_mm, 1e-9);
     cut.push_back(X_AEnd *
@@ -136,7 +136,7 @@ void add_depth_marks(std::vector<ShapePart>& parts, std::span<const Vec3> line, 
       const Vec3 middle = line[i] + (next_mm - from_tip_mm) / length_mm * back;
       const Vec3 half = 0.5 * kWidth_mm / length_mm * back;
       const Vec3 ends[2] = {middle + half, middle - half};
-      parts.push_back({make_tube(ends, 0.54 * diameter_mm, kSides), kDarkSteel, 0.2});
+      parts.push_back({make_tube(ends, 0.54 * diameter_mm, kShaftSides), kDarkSteel, 0.2});
     }
     from_tip_mm += length_mm;
   }

@@ -13,6 +13,7 @@
 #include "core/check.h"
 #include "scene/detail/callers_break.h"
 #include "scene/detail/display.h"
+#include "scene/detail/drawing.h"
 #include "scene/detail/guide_layer.h"
 #include "scene/detail/hand_layer.h"
 #include "scene/detail/output.h"
@@ -26,7 +27,6 @@
 namespace trocar::scene {
 namespace {
 
-constexpr int kPeels = 6;
 /// Minimum thickness of a needle in pixels.
 constexpr double kLeastNeedle_px = 2.6;
 constexpr int kPlanePixels = 320;
@@ -42,7 +42,7 @@ struct PatientScene::Impl {
     window->SetOffScreenRendering(1);
     window->SetSize(columns, rows);
     detail::add_studio(*renderer);
-    renderer->SetMaximumNumberOfPeels(kPeels);
+    renderer->SetMaximumNumberOfPeels(detail::kDepthPeels);
     renderer->SetOcclusionRatio(0.01);
     window->SetMultiSamples(0);
     window->SetAlphaBitPlanes(1);

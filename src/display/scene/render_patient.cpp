@@ -23,7 +23,6 @@ constexpr int kMinPixels = 16;
 constexpr int kMaxPixels = 8192;
 /// Rendered larger and scaled down: smooth edges also with depth peeling, which excludes multisampling.
 constexpr int kSupersampling = 2;
-constexpr int kPeels = 6;
 
 void add_surface(vtkRenderer& renderer, const TriangleMesh& mesh_P, const Appearance& look) {
   vtkNew<vtkActor> actor;
@@ -75,7 +74,7 @@ Result<volume::RgbImage> render_patient(const anatomy::VirtualPatient& patient,
   const double aspect = static_cast<double>(options.columns) / options.rows;
   detail::apply(options.view ? *options.view : fit_camera(points_P, options.camera, aspect), *renderer);
   renderer->SetUseDepthPeeling(1);
-  renderer->SetMaximumNumberOfPeels(kPeels);
+  renderer->SetMaximumNumberOfPeels(detail::kDepthPeels);
   renderer->SetOcclusionRatio(0.01);
 
   vtkNew<vtkRenderWindow> window;

@@ -13,8 +13,8 @@ constexpr volume::Rgb kLensGrey = {92, 100, 112};
 constexpr volume::Rgb kShell = {214, 220, 227};
 constexpr volume::Rgb kHandle = {176, 186, 198};
 constexpr volume::Rgb kMark = {79, 179, 217};
-constexpr int kSides = 40;
-constexpr double kRim_mm = 4.0;            ///< Of the shell around the outermost elements.
+constexpr int kHousingSides = 40;
+constexpr double kShellRim_mm = 4.0;       ///< Of the shell around the outermost elements.
 constexpr double kHalfElevation_mm = 9.0;  ///< Half the lens' height.
 
 /// A cross section of the housing at height y: half sizes along x and z.
@@ -28,8 +28,8 @@ struct Section {
 std::vector<Vec3> outline(const Section& section, double arc_radius_mm) {
   constexpr double kPower = 0.55;  // 1: an ellipse, 0: a rectangle
   std::vector<Vec3> points;
-  for (int s = 0; s < kSides; ++s) {
-    const double angle = 2.0 * std::numbers::pi * s / kSides;
+  for (int s = 0; s < kHousingSides; ++s) {
+    const double angle = 2.0 * std::numbers::pi * s / kHousingSides;
     const double c = std::cos(angle), d = std::sin(angle);
     const double x = section.half_x * std::copysign(std::pow(std::abs(c), kPower), c);
     const double z = section.half_z * std::copysign(std::pow(std::abs(d), kPower), d);
@@ -52,7 +52,7 @@ std::vector<ShapePart> make_transducer_shape(const TransducerFace& face) {
   const bool is_arc = face.is_convex && face.radius_mm > 0.0;
   const double half_face_mm = is_arc ? face.radius_mm * std::sin(std::min(1.5, 0.5 * face.field_of_view_rad))
                                      : 0.5 * std::max(face.width_mm, face.least_width_mm);
-  const double wide = half_face_mm + kRim_mm;
+  const double wide = half_face_mm + kShellRim_mm;
   const double arc_mm = is_arc ? std::max(face.radius_mm, 1.02 * wide) : 0.0;
   const double sink_mm = is_arc ? arc_mm - std::sqrt(arc_mm * arc_mm - wide * wide) : 0.0;
   const double grip = std::min(wide, 15.0);

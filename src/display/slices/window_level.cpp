@@ -15,7 +15,7 @@ std::string_view window_name(const Window& window) noexcept {
   return {};
 }
 
-void apply_window(std::span<const float> hu, const Window& window, std::span<std::uint8_t> gray) noexcept {
+void apply_window(std::span<const float> hu, const Window& window, std::span<std::uint8_t> gray) {
   TROCAR_CHECK(hu.size() == gray.size() && window.width_hu > 0.0);
   const auto steps_per_hu = static_cast<float>(255.0 / window.width_hu);
   const auto center_hu = static_cast<float>(window.center_hu);

@@ -32,6 +32,6 @@ inline constexpr std::array<WindowPreset, 5> kWindowPresets{{{"Abdomen", {40.0, 
 std::string_view window_name(const Window& window) noexcept;
 
 /// Gray of HU, rounded to the nearest step; 0 for NaN. `gray` has the length of `hu` (checked).
-void apply_window(std::span<const float> hu, const Window& window, std::span<std::uint8_t> gray) noexcept;
+void apply_window(std::span<const float> hu, const Window& window, std::span<std::uint8_t> gray);
 
 }  // namespace trocar::slices

@@ -179,7 +179,6 @@ void PictureQuad::show(const std::array<Vec3, 3>& corners_P) {
 
 bool PictureQuad::show_picture(const volume::RgbImage& picture, std::span<const std::uint8_t> alpha,
                                const std::array<Vec3, 3>& corners_P) {
-  constexpr double kUnseen_mm = 0.005;
   const std::span<std::uint8_t> rgba = resize(picture.columns, picture.rows);
   bool is_new = actor_->GetVisibility() == 0;
   for (std::size_t i = 0; i < 3; ++i) is_new |= (corners_P[i] - corners_P_[i]).norm() > kUnseen_mm;

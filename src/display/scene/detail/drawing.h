@@ -41,7 +41,10 @@ void blend_at_once(vtkActor& actor);
 /// Adds a key light from the upper left, a weak fill light from the right, a cool rim light from behind, and a dark
 /// background gradient.
 void add_studio(vtkRenderer& renderer);
+inline constexpr int kDepthPeels = 6;  ///< Translucent layers of a pixel that are drawn, at most.
 void apply(const CameraView& view, vtkRenderer& renderer);
+
+inline constexpr double kUnseen_mm = 0.005;  ///< Smaller motion is invisible: five thousandths of a millimetre.
 
 /// A textured rectangle in 3D: RGBA pixels. Pixels with alpha 0 are not drawn; all others are opaque.
 class PictureQuad {

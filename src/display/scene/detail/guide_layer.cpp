@@ -23,11 +23,11 @@ constexpr volume::Rgb kOtherPathColor = {0xc3, 0xcc, 0xd8};
 constexpr volume::Rgb kTargetColor = {0xff, 0x8a, 0x3d};
 constexpr volume::Rgb kLandmarkColor = {0xf2, 0xd0, 0x6b};
 constexpr double kPathRadius_mm = 1.0;
-constexpr double kDash_mm = 6.0;
-constexpr double kGap_mm = 4.0;
-constexpr double kOutside_mm = 45.0;  ///< Length of the path drawn outside the skin.
+constexpr double kPathDash_mm = 6.0;
+constexpr double kPathGap_mm = 4.0;
+constexpr double kPathOutside_mm = 45.0;  ///< Length of the path drawn outside the skin.
 constexpr double kTargetRadius_mm = 3.0;
-constexpr double kRingRadius_mm = 0.9;
+constexpr double kEntryRing_mm = 0.9;
 constexpr double kFont_px = 13.0;  ///< At a text scale of 1.
 constexpr double kBesideMark_px = 8.0;
 constexpr double kFarBehind_mm = 25.0;
@@ -73,8 +73,9 @@ TriangleMesh disc(const std::vector<Vec3>& ring_P, const Vec3& middle_P) {
 TriangleMesh dashes(const Segment& line_P) {
   TriangleMesh all;
   const double length_mm = line_P.length_mm();
-  for (double from_mm = -kOutside_mm; from_mm < length_mm - kTargetRadius_mm; from_mm += kDash_mm + kGap_mm) {
-    const double to_mm = std::min(from_mm + kDash_mm, length_mm);
+  for (double from_mm = -kPathOutside_mm; from_mm < length_mm - kTargetRadius_mm;
+       from_mm += kPathDash_mm + kPathGap_mm) {
+    const double to_mm = std::min(from_mm + kPathDash_mm, length_mm);
     const Vec3 ends_P[2] = {line_P.a + from_mm * line_P.direction(), line_P.a + to_mm * line_P.direction()};
     const TriangleMesh dash = make_tube(ends_P, kPathRadius_mm, 10);
     const auto first = static_cast<std::uint32_t>(all.vertices.size());
@@ -151,7 +152,7 @@ void GuideLayer::set_path(const std::optional<Segment>& line_P, const EntryMark&
   add_mesh(line_, dashes(*line_P), kPathColor, 1.0, false);
   add_mesh(marks_, make_ball(line_P->b, kTargetRadius_mm), kTargetColor, 1.0, true);
   const std::vector<Vec3> ring_P = entry_ring(entry, along_P, skin_distance_mm);
-  add_mesh(marks_, make_tube(ring_P, kRingRadius_mm, 8), kPathColor, 1.0, false);
+  add_mesh(marks_, make_tube(ring_P, kEntryRing_mm, 8), kPathColor, 1.0, false);
   add_mesh(marks_, disc(ring_P, onto_skin(entry.centre_P, along_P, skin_distance_mm)), kPathColor, 0.3, false);
   show_guidance();
 }

@@ -13,15 +13,15 @@ namespace {
 constexpr double kFingerRadius_mm = 7.0;
 constexpr double kFingerLength_mm = 45.0;
 constexpr double kLean = 1.2;  ///< Of the finger's axis, against the skin's normal.
-constexpr double kAround_mm = 11.0, kRingRadius_mm = 1.3;
+constexpr double kAround_mm = 11.0, kFingerRing_mm = 1.3;
 constexpr double kMarkRadius_mm = 3.0;
-constexpr double kUnseen_mm = 0.05;
+constexpr double kSamePlace_mm = 0.05;
 constexpr volume::Rgb kFingerColor = {0xd9, 0xb3, 0x9a};
 constexpr volume::Rgb kMarkColor = {0x9a, 0x4d, 0xff};  ///< Of a surgical skin marker.
 
-bool are_same(const std::optional<Fingertip>& a, const std::optional<Fingertip>& b) {
+bool are_same_touch(const std::optional<Fingertip>& a, const std::optional<Fingertip>& b) {
   if (!a || !b) return !a && !b;
-  return (a->p_P - b->p_P).norm() < kUnseen_mm && (a->inward_P - b->inward_P).norm() < 1e-3 && a->color == b->color;
+  return (a->p_P - b->p_P).norm() < kSamePlace_mm && (a->inward_P - b->inward_P).norm() < 1e-3 && a->color == b->color;
 }
 
 /// Circle on the skin about the fingertip.
@@ -48,7 +48,7 @@ bool HandLayer::set(const std::optional<Fingertip>& finger, std::span<const Vec3
 }
 
 bool HandLayer::set_finger(const std::optional<Fingertip>& finger) {
-  if (are_same(finger, finger_)) return false;
+  if (are_same_touch(finger, finger_)) return false;
   finger_ = finger;
   finger_actor_->SetVisibility(finger.has_value());
   if (!finger) return true;
@@ -60,7 +60,7 @@ bool HandLayer::set_finger(const std::optional<Fingertip>& finger) {
   const Vec3 line_P[2] = {end_P, end_P + kFingerLength_mm * axis_P};
   const ShapePart parts[3] = {{make_tube(line_P, kFingerRadius_mm), kFingerColor, 0.1},
                               {make_ball(end_P, kFingerRadius_mm), kFingerColor, 0.1},
-                              {make_tube(ring_about(*finger), kRingRadius_mm), finger->color, 0.1}};
+                              {make_tube(ring_about(*finger), kFingerRing_mm), finger->color, 0.1}};
   set_data(*finger_actor_, to_colored_polydata(parts));
   return true;
 }

@@ -9,14 +9,14 @@ namespace trocar::scene::detail {
 namespace {
 
 constexpr float kOutside_hu = -32768.0F;
-constexpr double kUnseen_mm = 0.02;
+constexpr double kSamePlanes_mm = 0.02;  ///< A needle that moves less does not change the pictures.
 /// The air around the patient is not drawn, as it would hide structures behind it. Distance from the skin at which the
 /// plane ends.
-constexpr double kRim_mm = 0.5;
+constexpr double kBeyondSkin_mm = 0.5;
 
-bool are_close(const std::optional<Segment>& a, const std::optional<Segment>& b) {
+bool have_same_planes(const std::optional<Segment>& a, const std::optional<Segment>& b) {
   if (!a || !b) return !a && !b;
-  return (a->a - b->a).norm() < kUnseen_mm && (a->b - b->b).norm() < kUnseen_mm;
+  return (a->a - b->a).norm() < kSamePlanes_mm && (a->b - b->b).norm() < kSamePlanes_mm;
 }
 
 }  // namespace
@@ -38,7 +38,7 @@ bool PlaneLayer::set_options(const MprOptions& options) {
 }
 
 void PlaneLayer::update(const std::optional<Segment>& needle_P, int pixels) {
-  if (pixels == drawn_pixels_ && are_close(needle_P, drawn_for_P_)) return;
+  if (pixels == drawn_pixels_ && have_same_planes(needle_P, drawn_for_P_)) return;
   drawn_for_P_ = needle_P;
   drawn_pixels_ = pixels;
   for (PictureQuad& quad : quads_) quad.hide();
@@ -73,7 +73,7 @@ void PlaneLayer::draw(PictureQuad& quad, const Vec3& middle_P, const Vec3& right
     const auto column = static_cast<double>(i % static_cast<std::size_t>(pixels));
     const auto row = static_cast<double>(i / static_cast<std::size_t>(pixels));
     const Vec3 p_P = plane.origin_P + column * plane.step_u_P + row * plane.step_v_P;
-    return volume::sample_linear(patient_->skin_distance_mm, p_P) < kRim_mm;
+    return volume::sample_linear(patient_->skin_distance_mm, p_P) < kBeyondSkin_mm;
   };
   for (std::size_t i = 0; i < hu_.size(); ++i) {
     const auto grey = static_cast<std::uint8_t>(std::clamp((hu_[i] - low_hu) * scale, 0.0F, 255.0F));

@@ -14,8 +14,6 @@
 namespace trocar::scene::detail {
 namespace {
 
-/// Smaller motion is invisible: five thousandths of a millimetre.
-constexpr double kUnseen_mm = 0.005;
 constexpr double kTranslucentTransducer = 0.3;
 constexpr double kGhostOpacity = 0.4;
 constexpr double kGhostRadius_mm = 1.2;
@@ -26,7 +24,7 @@ constexpr double kStyletRadius_mm = 0.8;  // drawn thicker than in reality for v
 constexpr volume::Rgb kStyletColor = {236, 240, 246};
 constexpr double kCoreRadius_mm = 1.6;  // around the needle
 constexpr volume::Rgb kCoreColor = {255, 138, 61};
-constexpr double kThrowRadius_mm = 0.5, kNotchRadius_mm = 1.0, kDash_mm = 1.5;
+constexpr double kThrowRadius_mm = 0.5, kNotchRadius_mm = 1.0, kThrowDash_mm = 1.5;
 constexpr volume::Rgb kThrowColor = {236, 240, 246};
 /// A smaller relative change of the minimum thickness does not rebuild the needle.
 constexpr double kThicknessStep = 0.15;
@@ -162,8 +160,8 @@ bool ToolLayer::set_throw(const std::optional<Segment>& throw_P, const std::opti
   const Vec3 along_P = throw_P->direction();
   const double from_mm = notch_P ? (notch_P->a - throw_P->a).dot(along_P) : 0.0;
   const double to_mm = notch_P ? (notch_P->b - throw_P->a).dot(along_P) : 0.0;
-  for (double at_mm = 0.0; at_mm < throw_P->length_mm(); at_mm += 2.0 * kDash_mm) {
-    const double end_mm = std::min(at_mm + kDash_mm, throw_P->length_mm()), middle_mm = 0.5 * (at_mm + end_mm);
+  for (double at_mm = 0.0; at_mm < throw_P->length_mm(); at_mm += 2.0 * kThrowDash_mm) {
+    const double end_mm = std::min(at_mm + kThrowDash_mm, throw_P->length_mm()), middle_mm = 0.5 * (at_mm + end_mm);
     const bool is_notch = middle_mm > from_mm && middle_mm < to_mm;
     const Vec3 ends_P[2] = {throw_P->a + at_mm * along_P, throw_P->a + end_mm * along_P};
     parts.push_back({make_tube(ends_P, is_notch ? kNotchRadius_mm : kThrowRadius_mm), kThrowColor});

@@ -12,7 +12,7 @@ constexpr std::int16_t kAir_hu = -1000;
 constexpr std::int16_t kFat_hu = -100;
 constexpr std::int16_t kSoft_hu = 40;
 /// Voxels farther outside the skin are table or blanket.
-constexpr float kOutside_mm = 1.0F;
+constexpr float kBeyondBody_mm = 1.0F;
 /// Gas at this depth is not the air outside the skin.
 constexpr float kInside_mm = -5.0F;
 /// The partial volume edge of bone is also removed.
@@ -60,7 +60,7 @@ std::int16_t cloud_hu(const anatomy::VirtualPatient& patient, CloudContent conte
   const std::int16_t hu = patient.ct.voxels[at];
   if (patient.skin_distance_mm.empty()) return hu;
   const float skin_mm = patient.skin_distance_mm.voxels[at];
-  if (skin_mm > kOutside_mm) return kAir_hu;
+  if (skin_mm > kBeyondBody_mm) return kAir_hu;
   return content == CloudContent::kWithoutGas && skin_mm < kInside_mm ? std::max(hu, kFat_hu) : hu;
 }
 

@@ -14,7 +14,7 @@ namespace {
 constexpr int kSize = 160;
 
 /// A red organ on the patient's right and a green one towards the head, in a skin.
-class PatientSceneTest : public testing::Test {
+class PatientSceneTest : public ::testing::Test {
  protected:
   void SetUp() override {
     if (!can_render()) GTEST_SKIP() << "no X server: run under scripts/with_display";

@@ -18,7 +18,7 @@ SceneOptions small(CameraPreset camera) {
   return options;
 }
 
-class RenderPatient : public testing::Test {
+class RenderPatient : public ::testing::Test {
  protected:
   void SetUp() override {
     if (!can_render()) GTEST_SKIP() << "no X server: run under scripts/with_display";
