@@ -10,24 +10,24 @@ namespace trocar::bench {
 namespace {
 
 std::atomic<bool> is_counting{false};
-std::atomic<std::size_t> allocations{0};
+std::atomic<std::size_t> counted_allocations{0};
 
 void* take(std::size_t size, std::size_t alignment) {
-  if (is_counting.load(std::memory_order_relaxed)) allocations.fetch_add(1, std::memory_order_relaxed);
+  if (is_counting.load(std::memory_order_relaxed)) counted_allocations.fetch_add(1, std::memory_order_relaxed);
   return testing::heap_memory(size, alignment);
 }
 
 }  // namespace
 
 AllocationCount::AllocationCount() noexcept {
-  allocations = 0;
+  counted_allocations = 0;
   is_counting = true;
 }
 AllocationCount::~AllocationCount() {
   is_counting = false;
 }
 std::size_t AllocationCount::count() const noexcept {
-  return allocations;
+  return counted_allocations;
 }
 
 }  // namespace trocar::bench

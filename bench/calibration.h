@@ -13,8 +13,8 @@ double time_us(Work&& work) {
 }
 
 /// A chain of dependent multiplications and additions that the compiler cannot shorten: about 8 us, the same on every
-/// call. Interleaved with a tick, its time measures the speed of the machine at that moment.
-inline double calibration_arithmetic(double x) noexcept {
+/// call, whatever its argument. Interleaved with a tick, its time measures the speed of the machine at that moment.
+[[gnu::noipa]] inline double calibration_arithmetic(double x) noexcept {
   constexpr int kSteps = 5000;
   for (int i = 0; i < kSteps; ++i) x = x * 0.999 + 0.001;
   return x;

@@ -109,7 +109,7 @@ Status add_cohort(std::vector<CaseResult>& results, const CohortPatient& on, con
     inward_n.push_back(figures.inward_n);
     step_n.push_back(figures.step_n);
     largest_n.push_back(figures.largest_n);
-    report(options.progress, on.name, static_cast<double>(seed) / kNovices);
+    core::report(options.progress, on.name, static_cast<double>(seed) / kNovices);
   }
   const auto [worst, best] = std::minmax_element(scores.begin(), scores.end());
   double sum = 0.0;

@@ -13,22 +13,20 @@
 namespace trocar::bench {
 namespace {
 
-constexpr std::array kModels{haptics::ForceModel::kInsertion, haptics::ForceModel::kProxy,
-                             haptics::ForceModel::kCombined};
 constexpr double kBone_mm = 25.0;
 constexpr double kPastBone_mm = 10.0;  // final target depth of the tip
 constexpr double kFlavum_mm = 30.0;
 constexpr double kFlavumThickness_mm = 4.0;  // [assumed] 3..5
 constexpr double kPastFlavum_mm = 45.0;
 
-struct Setting {
+struct ContactSetting {
   const anatomy::TissueTable& table;
   const haptics::DevicePreset& device;
   haptics::ForceModel model;
   std::uint64_t seed;
 };
 
-Result<std::vector<haptics::PushSample>> push(const Setting& setting,
+Result<std::vector<haptics::PushSample>> push(const ContactSetting& setting,
                                               const std::shared_ptr<const anatomy::VirtualPatient>& patient,
                                               const haptics::PushTrial& trial) {
   haptics::HapticOptions haptic;
@@ -40,13 +38,14 @@ Result<std::vector<haptics::PushSample>> push(const Setting& setting,
   return haptics::run_push_trial(scene, setting.device, trial);
 }
 
-void add(std::vector<CaseResult>& results, std::string name, const char* unit, double value, std::string note = {}) {
+void add_value(std::vector<CaseResult>& results, std::string name, const char* unit, double value,
+               std::string note = {}) {
   Figures figures;
   figures.median = value;
   results.push_back({std::move(name), unit, figures, {}, std::move(note)});
 }
 
-Status add_bone(std::vector<CaseResult>& results, const Setting& setting,
+Status add_bone(std::vector<CaseResult>& results, const ContactSetting& setting,
                 const std::shared_ptr<const anatomy::VirtualPatient>& patient) {
   haptics::PushTrial trial;
   trial.to_mm = kBone_mm + kPastBone_mm;
@@ -54,14 +53,15 @@ Status add_bone(std::vector<CaseResult>& results, const Setting& setting,
   const haptics::BoneContact contact =
       haptics::judge_bone_contact(samples, trial, kBone_mm, setting.device.capability.peak_force_n);
   const std::string name = fmt::format("contact/bone/{}/{}", setting.device.name, to_string(setting.model));
-  add(results, name, "n", contact.peak_n,
+  add_value(
+      results, name, "n", contact.peak_n,
       fmt::format("peak; steady {:.2f} N, overshoot {:.0f} %, p-p at rest {:.3f} N{}", contact.steady_n,
                   100.0 * contact.overshoot, contact.chatter_n, contact.is_limited ? ", at the device's limit" : ""));
-  add(results, name + "/slope", "n_per_mm", contact.slope_n_per_mm);
+  add_value(results, name + "/slope", "n_per_mm", contact.slope_n_per_mm);
   return {};
 }
 
-Status add_flavum(std::vector<CaseResult>& results, const Setting& setting,
+Status add_flavum(std::vector<CaseResult>& results, const ContactSetting& setting,
                   const std::shared_ptr<const anatomy::VirtualPatient>& patient, std::uint8_t layer) {
   haptics::PushTrial trial;
   trial.to_mm = kFlavum_mm + kPastFlavum_mm;
@@ -69,18 +69,18 @@ Status add_flavum(std::vector<CaseResult>& results, const Setting& setting,
   const haptics::LossOfResistance loss = haptics::judge_loss_of_resistance(samples, layer);
   const std::string name = fmt::format("contact/flavum/{}/{}", setting.device.name, to_string(setting.model));
   if (!loss.has_given_way) {
-    add(results, name, "n", 0.0, "not punctured");
+    add_value(results, name, "n", 0.0, "not punctured");
     return {};
   }
-  add(results, name, "n", loss.peak_n, "peak on the device");
-  add(results, name + "/drop", "n", loss.drop_n);
-  add(results, name + "/drop-time", "ms", 1000.0 * loss.drop_time_s,
-      fmt::format("10 to 90 %; lowest force {:.2f} N", loss.lowest_n));
+  add_value(results, name, "n", loss.peak_n, "peak on the device");
+  add_value(results, name + "/drop", "n", loss.drop_n);
+  add_value(results, name + "/drop-time", "ms", 1000.0 * loss.drop_time_s,
+            fmt::format("10 to 90 %; lowest force {:.2f} N", loss.lowest_n));
   trial.is_rigid = true;
   TROCAR_TRY(const auto without_hand, push(setting, patient, trial));
-  add(results, name + "/drop-time-model", "ms",
-      1000.0 * haptics::judge_loss_of_resistance(without_hand, layer).drop_time_s, "the same, without a hand");
-  add(results, name + "/jump", "mm", loss.jump_mm, "needle travel beyond the hand within 0.3 s");
+  add_value(results, name + "/drop-time-model", "ms",
+            1000.0 * haptics::judge_loss_of_resistance(without_hand, layer).drop_time_s, "the same, without a hand");
+  add_value(results, name + "/jump", "mm", loss.jump_mm, "needle travel beyond the hand within 0.3 s");
   return {};
 }
 
@@ -99,10 +99,10 @@ Result<std::vector<CaseResult>> run_contact_benchmark(const Options& options) {
   const auto flavum = table.find_layer("ligamentum_flavum");
   if (!flavum) return fail("has no layer ligamentum_flavum", "tissue table", "add it");
   std::vector<CaseResult> results;
-  for (const haptics::ForceModel model : kModels) {
+  for (const haptics::ForceModel model : kForceModels) {
     if (options.force_model && *options.force_model != model) continue;
     for (const haptics::DevicePreset& device : devices) {
-      const Setting setting{table, device, model, options.seed};
+      const ContactSetting setting{table, device, model, options.seed};
       TROCAR_TRY_STATUS(add_bone(results, setting, bone));
       TROCAR_TRY_STATUS(add_flavum(results, setting, back, *flavum));
     }

@@ -20,18 +20,17 @@ namespace {
 /// Every coupling within this factor of a device's k_c and b_c must be stable, up to the device's limit.
 constexpr double kMargin = 1.25;
 constexpr std::array kFactors{1.25, 1.6, 2.0, 2.5, 3.2, 4.0, 5.0};  // of the values varied in turn
-constexpr double kSurface_mm = 30.0;
+constexpr double kCouplingSurface_mm = 30.0;
 constexpr double kSeconds = 20.0;
 
 /// Tissue and depth of a run: pressed on a wall, on bone, deep in tissue that holds the needle well or hardly.
-struct Place {
+struct PressedPlace {
   std::string_view tissue;
   double depth_mm;
 };
-constexpr std::array kPlaces{Place{"liver", kSurface_mm + 0.5}, Place{"bone", kSurface_mm + 2.0},
-                             Place{"muscle", kSurface_mm + 30.0}, Place{"fluid", kSurface_mm + 30.0}};
-constexpr std::array kModels{haptics::ForceModel::kInsertion, haptics::ForceModel::kProxy,
-                             haptics::ForceModel::kCombined};
+constexpr std::array kPlaces{
+    PressedPlace{"liver", kCouplingSurface_mm + 0.5}, PressedPlace{"bone", kCouplingSurface_mm + 2.0},
+    PressedPlace{"muscle", kCouplingSurface_mm + 30.0}, PressedPlace{"fluid", kCouplingSurface_mm + 30.0}};
 constexpr std::array kHolders{haptics::Holder::kHand, haptics::Holder::kBare45g, haptics::Holder::kBare150g};
 
 using Patients = std::array<std::shared_ptr<const anatomy::VirtualPatient>, kPlaces.size()>;
@@ -42,7 +41,7 @@ Result<bool> is_stable(const haptics::DevicePreset& device, const Patients& pati
   haptics::HapticOptions haptic;
   haptics::apply_device_preset(device, haptic);
   std::vector<std::shared_ptr<const haptics::HapticScene>> scenes;
-  for (const haptics::ForceModel model : kModels) {
+  for (const haptics::ForceModel model : kForceModels) {
     haptic.force_model = model;
     for (const auto& patient : patients) {
       TROCAR_TRY(const auto scene, haptics::make_haptic_scene(patient, table, {}, device.capability, haptic));
@@ -150,11 +149,12 @@ Result<std::vector<CaseResult>> run_coupling_benchmark(const Options& options) {
   std::erase_if(devices, [](const haptics::DevicePreset& device) { return !device.has_force(); });
   Patients patients;
   for (std::size_t i = 0; i < kPlaces.size(); ++i) {
-    TROCAR_TRY(patients[i], make_flat_patient({{0.0, "adipose"}, {kSurface_mm, std::string(kPlaces[i].tissue)}}));
+    TROCAR_TRY(patients[i],
+               make_flat_patient({{0.0, "adipose"}, {kCouplingSurface_mm, std::string(kPlaces[i].tissue)}}));
   }
   std::vector<CaseResult> results;
   for (std::size_t i = 0; i < devices.size(); ++i) {
-    report(options.progress, "varying couplings", static_cast<double>(i) / static_cast<double>(devices.size()));
+    core::report(options.progress, "varying couplings", static_cast<double>(i) / static_cast<double>(devices.size()));
     TROCAR_TRY_STATUS(add_device(results, devices[i], patients, table));
   }
   return results;

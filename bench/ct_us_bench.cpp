@@ -24,7 +24,7 @@ namespace trocar::bench {
 namespace {
 namespace fs = std::filesystem;
 
-constexpr int kSeeds = 10;
+constexpr int kPairs = 10;
 constexpr double kOffset_mm = 10.0, kOffset_rad = 10.0 * std::numbers::pi / 180.0;
 
 /// Errors and times of one program over all seeds.
@@ -33,13 +33,9 @@ struct Runs {
   int failures = 0;
 };
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-Result<Pose> run_trocar(const PairFiles& files, const fs::path& out) {
-  TROCAR_TRY_STATUS(run_quietly({fs::read_symlink("/proc/self/exe").string(), "register", "--ct", files.ct.string(),
-                                 "--us", files.us.string(), "--out", out.string()}));
+Result<Pose> register_by_trocar(const PairFiles& files, const fs::path& out) {
+  TROCAR_TRY_STATUS(
+      run_trocar({"register", "--ct", files.ct.string(), "--us", files.us.string(), "--out", out.string()}));
   return io::read_transform(out);
 }
 
@@ -72,11 +68,11 @@ Figures with_largest(std::vector<double> values) {
 }
 
 std::string failures_of(const Runs& runs) {
-  return runs.failures == 0 ? std::string() : fmt::format(", {} of {} failed", runs.failures, kSeeds);
+  return runs.failures == 0 ? std::string() : fmt::format(", {} of {} failed", runs.failures, kPairs);
 }
 
 void add_cases(const Runs& ours, const Runs& elastix, const Runs& plastimatch, std::vector<CaseResult>& results) {
-  const std::string what = fmt::format("{} seeds, 128x128x128 voxels of 1.5 mm, 10 mm and 10 degrees off", kSeeds);
+  const std::string what = fmt::format("{} seeds, 128x128x128 voxels of 1.5 mm, 10 mm and 10 degrees off", kPairs);
   results.push_back({"ct-us/error", "mm", with_largest(ours.error_mm),
                      peer_of("elastix", ours.error_mm, elastix.error_mm), what + failures_of(ours)});
   results.push_back({"ct-us/seconds", "s", with_largest(ours.seconds),
@@ -98,8 +94,8 @@ void add_cases(const Runs& ours, const Runs& elastix, const Runs& plastimatch, s
 Result<std::vector<CaseResult>> run_ct_us_benchmark(const Options& options) {
   const TemporaryFolder folder;
   Runs ours, elastix, plastimatch;
-  for (int seed = 1; seed <= kSeeds; ++seed) {
-    report(options.progress, "registering", static_cast<double>(seed - 1) / kSeeds);
+  for (int seed = 1; seed <= kPairs; ++seed) {
+    core::report(options.progress, "registering", static_cast<double>(seed - 1) / kPairs);
     registration::testing::PairOptions pair_options;
     pair_options.size = 128;
     pair_options.spacing_mm = 1.5;
@@ -115,7 +111,7 @@ Result<std::vector<CaseResult>> run_ct_us_benchmark(const Options& options) {
     TROCAR_TRY_STATUS(io::write_image(pair.ct, files.ct));
     TROCAR_TRY_STATUS(io::write_image(pair.us, files.us));
     TROCAR_TRY_STATUS(io::write_image(mask, files.us_mask));
-    measure(ours, pair.us, beams, pair.X_CU, [&] { return run_trocar(files, own / "trocar.tfm"); });
+    measure(ours, pair.us, beams, pair.X_CU, [&] { return register_by_trocar(files, own / "trocar.tfm"); });
     measure(elastix, pair.us, beams, pair.X_CU, [&] { return run_elastix(files, own / "elastix"); });
     measure(plastimatch, pair.us, beams, pair.X_CU, [&] { return run_plastimatch(files, own / "plastimatch"); });
   }

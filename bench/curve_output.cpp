@@ -11,8 +11,8 @@
 namespace trocar::bench {
 namespace {
 
-constexpr int kRows = 45;  ///< Maximum rows of the plot on a terminal.
-constexpr int kBar = 20;   ///< Characters of the longest bar.
+constexpr int kPlotRows = 45;  ///< Maximum rows of the plot on a terminal.
+constexpr int kBar = 20;       ///< Characters of the longest bar.
 
 std::string words(std::string text) {
   std::replace(text.begin(), text.end(), '_', ' ');
@@ -124,7 +124,7 @@ std::string csv_of(const PathCurves& path, const anatomy::TissueTable& tissues) 
 std::string curves_text(const PathCurves& path) {
   const double length = length_mm(path);
   if (path.curves.empty() || !(length > 0.0)) return {};
-  const double step = report::nice_step({0.0, length}, kRows);
+  const double step = report::nice_step({0.0, length}, kPlotRows);
   const double full_n = std::max(largest_n(path), 1e-9);
   std::string text = fmt::format("{}\n  {:>7}", path.title, "mm");
   for (const NamedCurve& curve : path.curves) text += fmt::format("   {:<{}}", curve.name, kBar + 7);

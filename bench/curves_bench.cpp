@@ -16,10 +16,8 @@
 namespace trocar::bench {
 namespace {
 
-constexpr double kSpeed_mm_per_s = 5.0;
+constexpr double kCurveSpeed_mm_per_s = 5.0;
 constexpr double kAfter_mm = 10.0;  ///< Maximum time for the tip to arrive.
-constexpr haptics::ForceModel kModels[] = {haptics::ForceModel::kInsertion, haptics::ForceModel::kProxy,
-                                           haptics::ForceModel::kCombined};
 
 /// A patient and its needles: the usual one, and others for comparison.
 struct Way {
@@ -80,14 +78,14 @@ Result<PathCurves> curves_of(std::shared_ptr<const anatomy::VirtualPatient> pati
 
   cases::PrescribedMotion motion;
   motion.line_P = patient->paths.front().line_P;
-  motion.speed_mm_per_s = kSpeed_mm_per_s;
+  motion.speed_mm_per_s = kCurveSpeed_mm_per_s;
   motion.after_mm = kAfter_mm;
   const Segment with_rest{motion.line_P.a, motion.line_P.b + kAfter_mm * motion.line_P.direction()};
   PathCurves path;
   path.name = short_name(patient->name);
   if (!is_usual_needle) path.name += "-" + needle_name;
-  path.title = fmt::format("{}, {}, {:.0f} mm/s", patient->name, needle_name, kSpeed_mm_per_s);
-  for (const haptics::ForceModel model : kModels) {
+  path.title = fmt::format("{}, {}, {:.0f} mm/s", patient->name, needle_name, kCurveSpeed_mm_per_s);
+  for (const haptics::ForceModel model : kForceModels) {
     if (options.force_model && *options.force_model != model) continue;
     haptics::HapticOptions haptic;
     haptic.force_model = model;

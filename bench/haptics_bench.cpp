@@ -18,19 +18,17 @@
 namespace trocar::bench {
 namespace {
 
-constexpr double kDt_s = 0.001;
 constexpr double kSpeed_mm_per_s = 10.0;
-constexpr int kRounds = 5;
 
-struct Round {
+struct TickRound {
   std::vector<double> tick_us;
   std::vector<double> calibration_us;
 };
 
 /// In along the planned path and out again, with an offset and a tilt that bend the shaft; a calibration after each
 /// tick.
-Round measure_round(const haptics::HapticScene& scene, const Segment& path_P) {
-  Round round;
+TickRound measure_round(const haptics::HapticScene& scene, const Segment& path_P) {
+  TickRound round;
   auto state = std::make_unique<haptics::HapticState>();  // some hundred kB
   const double length = path_P.length_mm();
   const auto count = static_cast<int>(2.0 * (length + 10.0) / (kSpeed_mm_per_s * kDt_s));
@@ -50,14 +48,14 @@ Round measure_round(const haptics::HapticScene& scene, const Segment& path_P) {
 }
 
 /// The best of the rounds, and its ratio to the calibration.
-struct Best {
+struct BestTicks {
   Figures tick, calibration;
   std::size_t calls = 0;
 };
-Best measure(const haptics::HapticScene& scene, const Segment& path_P) {
-  Best best;
+BestTicks measure(const haptics::HapticScene& scene, const Segment& path_P) {
+  BestTicks best;
   for (int i = 0; i < kRounds; ++i) {
-    Round round = measure_round(scene, path_P);
+    TickRound round = measure_round(scene, path_P);
     best.calls = round.tick_us.size();
     const Figures ticks = figures_of(std::move(round.tick_us));
     if (i > 0 && *ticks.median >= *best.tick.median) continue;
@@ -67,7 +65,7 @@ Best measure(const haptics::HapticScene& scene, const Segment& path_P) {
   return best;
 }
 
-void append_case(std::vector<CaseResult>& results, const std::string& name, const Best& best) {
+void append_case(std::vector<CaseResult>& results, const std::string& name, const BestTicks& best) {
   if (results.empty())
     results.push_back({"calibration/arithmetic", "us", best.calibration, {}, "a fixed loop, after each tick"});
   results.push_back({name, "us", best.tick, {}, fmt::format("{} calls, best of {} rounds", best.calls, kRounds)});

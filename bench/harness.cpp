@@ -3,21 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
-#include <cmath>
 #include <fstream>
 #include <thread>
 
+#include "anatomy/phantom/phantom.h"
+#include "config/json.h"
 #include "core/version.h"
 
 namespace trocar::bench {
 namespace {
-
-/// Nearest rank: the smallest value that at least `fraction` of all values do not exceed.
-double quantile(const std::vector<double>& sorted, double fraction) {
-  const auto rank = static_cast<std::size_t>(std::ceil(fraction * static_cast<double>(sorted.size())));
-  return sorted[std::max<std::size_t>(rank, 1) - 1];
-}
 
 std::string cpu_name() {
   std::ifstream info("/proc/cpuinfo");
@@ -62,21 +56,14 @@ Figures time_ms(int warm_up, int rounds, const std::function<void()>& work) {
   return figures_of(std::move(times_ms));
 }
 
-Figures figures_of(std::vector<double> values) {
-  if (values.empty()) return {};
-  std::sort(values.begin(), values.end());
-  Figures figures;
-  figures.median = quantile(values, 0.5);
-  if (values.size() >= 100) figures.p99 = quantile(values, 0.99);
-  if (values.size() >= 1000) figures.p999 = quantile(values, 0.999);
-  figures.max = values.back();
-  return figures;
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-Figures figure_of(double value) {
-  Figures figures;
-  figures.median = value;
-  return figures;
+Result<std::shared_ptr<const anatomy::VirtualPatient>> patient_of(const Options& options) {
+  if (options.patient) return options.patient;
+  TROCAR_TRY(anatomy::VirtualPatient generated, anatomy::generate_phantom("abdomen", 1, {}, options.progress));
+  return std::make_shared<const anatomy::VirtualPatient>(std::move(generated));
 }
 
 config::Json machine_json() {

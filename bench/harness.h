@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <chrono>
 #include <concepts>
 #include <filesystem>
 #include <functional>
@@ -10,17 +12,19 @@
 #include <vector>
 
 #include "anatomy/patient.h"
-#include "config/json.h"
+#include "bench/figures.h"
+#include "config/json_fwd.h"
 #include "core/progress.h"
 #include "core/result.h"
 #include "haptics/haptic_scene.h"
 
 namespace trocar::bench {
 
-/// Figures of one case, in `unit`; a field that does not apply stays empty.
-struct Figures {
-  std::optional<double> median, p99, p999, max;
-};
+inline constexpr int kRounds = 5;       ///< The best one counts, because machines are noisy.
+inline constexpr double kDt_s = 0.001;  ///< Of a tick.
+inline constexpr double kMsPerS = 1000.0;
+inline constexpr std::array kForceModels{haptics::ForceModel::kInsertion, haptics::ForceModel::kProxy,
+                                         haptics::ForceModel::kCombined};
 
 /// One line of `trocar bench`.
 struct CaseResult {
@@ -38,11 +42,7 @@ struct CaseResult {
 
 /// Calls `work` `rounds` times after `warm_up` calls and returns the times in milliseconds.
 Figures time_ms(int warm_up, int rounds, const std::function<void()>& work);
-/// Median, p99, p99.9 and maximum of any numbers, by nearest rank. A tail is empty if there are too few values to
-/// resolve it: p99 below 100, p99.9 below 1000.
-Figures figures_of(std::vector<double> values);
-/// A single number: the median.
-Figures figure_of(double value);
+double seconds_since(std::chrono::steady_clock::time_point start);
 
 /// Options of benchmarks. An option that is not in Benchmark::options is an error.
 struct Options {
@@ -58,6 +58,9 @@ struct Options {
   Progress progress;
   std::function<void(std::string_view)> print;  ///< Prints text in addition to the figures; empty with --json.
 };
+
+/// The patient of the options, else the embedded abdomen.
+Result<std::shared_ptr<const anatomy::VirtualPatient>> patient_of(const Options& options);
 
 /// The work of a benchmark: a function with options or without.
 class Work {

@@ -12,7 +12,12 @@
 namespace trocar::bench {
 
 HttpReader::~HttpReader() {
+  close();
+}
+
+void HttpReader::close() {
   if (socket_ >= 0) ::close(socket_);
+  socket_ = -1;
 }
 
 bool HttpReader::connect() {
@@ -37,9 +42,14 @@ bool HttpReader::read_more() {
 
 std::optional<HttpReader::Answer> HttpReader::send(std::string_view method, std::string_view target,
                                                    std::string_view headers, std::string_view body) {
+  const auto answer = exchange(fmt::format("{} {} HTTP/1.1\r\nHost: localhost\r\nContent-Length: {}\r\n{}\r\n{}", method,
+                                           target, body.size(), headers, body));
+  if (!answer || answer->header.find("\r\nConnection: close\r\n") != std::string::npos) close();
+  return answer;
+}
+
+std::optional<HttpReader::Answer> HttpReader::exchange(std::string_view request) {
   if (!connect()) return std::nullopt;
-  const std::string request = fmt::format("{} {} HTTP/1.1\r\nHost: localhost\r\nContent-Length: {}\r\n{}\r\n{}", method,
-                                          target, body.size(), headers, body);
   if (::send(socket_, request.data(), request.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(request.size()))
     return std::nullopt;
   received_.clear();

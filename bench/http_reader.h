@@ -7,7 +7,8 @@
 
 namespace trocar::bench {
 
-/// One connection of a reader to a server on this machine, kept alive. Errors are empty answers.
+/// A reader of a server on this machine. Its connection is kept alive and opened anew where the server has closed it, as
+/// it does after a number of requests. Errors are empty answers.
 class HttpReader {
  public:
   explicit HttpReader(int port) : port_(port) {}
@@ -26,7 +27,9 @@ class HttpReader {
 
  private:
   bool connect();
+  void close();
   bool read_more();
+  std::optional<Answer> exchange(std::string_view request);
 
   int port_;
   int socket_ = -1;

@@ -16,7 +16,6 @@
 namespace trocar::bench {
 namespace {
 
-constexpr double kDt_s = 0.001;
 constexpr double kBeyond_mm = 10.0;  ///< The device moves past the target: the tip lags it while a layer is loaded.
 
 std::shared_ptr<const haptics::HapticScene> make_scene(const cases::Case& the_case) {

@@ -21,12 +21,12 @@ namespace trocar::bench {
 namespace {
 
 constexpr const char* kTransducer = "liver-sweep";
-constexpr const char* kView = "diaphragm";
+constexpr const char* kLiverView = "diaphragm";
 /// Geometry of the recorded images (739 x 593 pixels): pixel size, and the pixel at the centre of the face; fitted to
 /// the edges of the fan.
-constexpr double kPixel_mm = 0.3148;
+constexpr double kRecordedPixel_mm = 0.3148;
 constexpr double kFaceColumn = 369.6, kFaceRow = 22.3;
-constexpr int kColumns = 739, kRows = 593;
+constexpr int kRecordedColumns = 739, kRecordedRows = 593;
 constexpr std::size_t kEvery = 10;  ///< Interval of the measured frames of the recording.
 constexpr int kSimulated = 14;      ///< Number of frames.
 constexpr double kSweep_mm = 40.0;  ///< Along elevation.
@@ -54,19 +54,20 @@ volume::RgbImage side_by_side(const volume::RgbImage& a, const volume::RgbImage&
 
 Result<Pictures> recorded(const std::filesystem::path& path, const ultrasound::Transducer& transducer) {
   TROCAR_TRY(const ultrasound::TrackedSequence sequence, io::read_sequence(path));
-  if (sequence.columns != kColumns || sequence.rows != kRows)
+  if (sequence.columns != kRecordedColumns || sequence.rows != kRecordedRows)
     return fail_usage("the pictures are not those of the public liver sweep", path.string(),
-                      fmt::format("expected {} x {} pixels", kColumns, kRows));
+                      fmt::format("expected {} x {} pixels", kRecordedColumns, kRecordedRows));
   ultrasound::FanPicture picture;
   picture.scan = ultrasound::make_scan_geometry(transducer, transducer.depth_mm, transducer.scanlines, 1024);
-  picture.raster = {kColumns, kRows, kPixel_mm, kPixel_mm * ultrasound::Vec2(-kFaceColumn, -kFaceRow), false};
-  const auto size = static_cast<std::size_t>(kColumns) * static_cast<std::size_t>(kRows);
+  picture.raster = {kRecordedColumns, kRecordedRows, kRecordedPixel_mm,
+                    kRecordedPixel_mm * ultrasound::Vec2(-kFaceColumn, -kFaceRow), false};
+  const auto size = static_cast<std::size_t>(kRecordedColumns) * static_cast<std::size_t>(kRecordedRows);
   ultrasound::PictureStatistics statistics;
   Pictures pictures;
   for (std::size_t frame = 0; frame < sequence.frames.size(); frame += kEvery) {
     picture.pixels = std::span(sequence.pixels).subspan(frame * size, size);
     statistics.add(picture);
-    if (frame <= sequence.frames.size() / 3) pictures.shown = rgb_of(picture.pixels, kColumns, kRows);
+    if (frame <= sequence.frames.size() / 3) pictures.shown = rgb_of(picture.pixels, kRecordedColumns, kRecordedRows);
   }
   pictures.figures = statistics.figures();
   return pictures;
@@ -78,9 +79,9 @@ Result<Pictures> simulated(const anatomy::VirtualPatient& patient, const ultraso
   TROCAR_TRY(const auto scene, ultrasound::make_acoustic_scene(patient, std::move(table), {}, options.progress));
   ultrasound::BMode engine(scene, transducer, ultrasound::default_acquisition(transducer));
   TROCAR_TRY(const auto views, ultrasound::load_probe_views(data_dir() / "views.toml"));
-  TROCAR_TRY(const ultrasound::ProbeView chosen, ultrasound::choose_view(patient, views, kView));
+  TROCAR_TRY(const ultrasound::ProbeView chosen, ultrasound::choose_view(patient, views, kLiverView));
   TROCAR_TRY(const ultrasound::ProbePlacement placed, ultrasound::place_probe(patient, chosen, transducer));
-  ultrasound::Scanner scanner(kColumns, kRows);
+  ultrasound::Scanner scanner(kRecordedColumns, kRecordedRows);
   ultrasound::PictureStatistics statistics;
   Pictures pictures;
   for (int frame = 0; frame < kSimulated; ++frame) {
@@ -172,12 +173,6 @@ Status write_pictures(const std::filesystem::path& folder, const std::optional<P
   if (error) return fail("the folder could not be made", folder.string(), error.message());
   const volume::RgbImage image = real ? side_by_side(real->shown, synthetic.shown) : synthetic.shown;
   return png::write_png(image, folder / "likeness.png");
-}
-
-Result<std::shared_ptr<const anatomy::VirtualPatient>> patient_of(const Options& options) {
-  if (options.patient) return options.patient;
-  TROCAR_TRY(anatomy::VirtualPatient generated, anatomy::generate_phantom("abdomen", 1, {}, options.progress));
-  return std::make_shared<const anatomy::VirtualPatient>(std::move(generated));
 }
 
 }  // namespace

@@ -13,8 +13,7 @@
 namespace trocar::bench {
 namespace {
 
-constexpr int kRounds = 5;      ///< The best one counts, as machines are noisy.
-constexpr int kRepeats = 4000;  ///< Batches a round.
+constexpr int kBatchesPerRound = 4000;  ///< Batches a round.
 
 struct Measured {
   Figures encode, decode, calibration;
@@ -41,7 +40,7 @@ link::ServerMessage make_batch(std::size_t ticks) {
 Result<Measured> measure_round(const link::ServerMessage& message) {
   std::vector<double> encode_us, decode_us, calibration_us;
   double sum = 1.0;
-  for (int i = 0; i < kRepeats; ++i) {
+  for (int i = 0; i < kBatchesPerRound; ++i) {
     link::Bytes bytes;
     encode_us.push_back(time_us([&] { bytes = link::encode(message); }));
     std::optional<Result<link::ServerMessage>> decoded;

@@ -77,7 +77,7 @@ void append(const Seen& seen, Stations& stations, std::vector<CaseResult>& resul
 }  // namespace
 
 Result<std::vector<CaseResult>> run_live_benchmark(const Options& options) {
-  report(options.progress, "patient", 0.0);
+  core::report(options.progress, "patient", 0.0);
   TROCAR_TRY(anatomy::VirtualPatient abdomen, anatomy::generate_phantom("abdomen"));
   const auto patient = std::make_shared<const anatomy::VirtualPatient>(std::move(abdomen));
   TROCAR_TRY(const cases::Case the_case, cases::prepare_case(patient, {}));
@@ -105,7 +105,7 @@ Result<std::vector<CaseResult>> run_live_benchmark(const Options& options) {
   watch(scanner, request, placed.X_PT, stations, 3.0);  // past the safe start; the scanner learns its times
   for (Station& station : stations)
     TROCAR_TRY_STATUS(station.client.ask(link::ServerCommand::kRestartStatistics, kPatience));
-  report(options.progress, "servers and ultrasound are running", 0.4);
+  core::report(options.progress, "servers and ultrasound are running", 0.4);
   const Seen seen = watch(scanner, request, placed.X_PT, stations, options.seconds);
   std::vector<CaseResult> results;
   append(seen, stations, results);

@@ -43,10 +43,6 @@ double peak_mib() {
   return 0.0;
 }
 
-double seconds_since(std::chrono::steady_clock::time_point begin) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
-
 /// Until an attempt can begin, and until all pictures are there ("later data").
 Status open_once(const cases::OpenOptions& options, Opening& opening) {
   reset_peak();
@@ -86,7 +82,7 @@ Result<std::vector<CaseResult>> run_open_benchmark(const Options& options) {
     cases::OpenOptions opening;
     if (is_torso) opening.load = torso_sized;
     for (int round = 0; round < kFirstRounds; ++round) {
-      report(options.progress, "opening " + first.name, static_cast<double>(round) / kFirstRounds);
+      core::report(options.progress, "opening " + first.name, static_cast<double>(round) / kFirstRounds);
       const TemporaryFolder folder;
       opening.cache_folder = folder / "patients";
       TROCAR_TRY_STATUS(open_once(opening, first));

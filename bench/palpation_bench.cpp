@@ -19,9 +19,7 @@
 namespace trocar::bench {
 namespace {
 
-constexpr double kDt_s = 0.001;
 constexpr double kPress_mm_per_s = 20.0;
-constexpr int kRounds = 5;
 
 Figures one(double value) {
   Figures figures;

@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kSpacing_mm = 0.7;
 
-struct Subject {
+struct PanoramaSubject {
   std::shared_ptr<const ultrasound::AcousticScene> scene;
   ultrasound::Transducer transducer;
   Pose X_PT;
@@ -30,7 +30,7 @@ struct Subject {
 };
 
 /// A panorama that covers the scans of a transducer: the same array with a wider fan, swung by a motor.
-Result<volume::LabelGrid> sweep_widely(const Subject& subject) {
+Result<volume::LabelGrid> sweep_widely(const PanoramaSubject& subject) {
   constexpr double kDeeper_mm = 40.0, kWider = 1.5;
   ultrasound::Transducer wide = subject.transducer;
   wide.kind = ultrasound::TransducerKind::kMechanicalConvex;
@@ -47,12 +47,12 @@ Result<volume::LabelGrid> sweep_widely(const Subject& subject) {
   return std::move(volume.gray);
 }
 
-Result<Subject> make_subject() {
+Result<PanoramaSubject> make_subject() {
   TROCAR_TRY(const anatomy::VirtualPatient patient, anatomy::generate_phantom("abdomen", 1, {{512, 512, 119}}));
   TROCAR_TRY(ultrasound::AcousticTable table, ultrasound::load_acoustic_table(data_dir() / "acoustics.toml"));
   TROCAR_TRY(const auto views, ultrasound::load_probe_views(data_dir() / "views.toml"));
   TROCAR_TRY(const ultrasound::ProbeView view, ultrasound::choose_view(patient, views, "liver-right-kidney"));
-  Subject subject;
+  PanoramaSubject subject;
   TROCAR_TRY(subject.transducer, ultrasound::load_transducer(data_dir() / "transducers.toml", "C5-2"));
   TROCAR_TRY(const ultrasound::ProbePlacement placed, ultrasound::place_probe(patient, view, subject.transducer));
   subject.X_PT = placed.X_PT;
@@ -70,7 +70,7 @@ volume::LabelGrid half_of(const volume::LabelGrid& gray) {
 }
 
 /// VTK's mean of five linear slices of the same volume, without shadows, contact, needles and scanner; ms.
-double time_peer(const Subject& subject) {
+double time_peer(const PanoramaSubject& subject) {
   constexpr int kColumns = 640, kRows = 480, kSlices = 5, kThreads = 2, kRepeats = 60;
   constexpr double kPixel_mm = 0.35;
   const volume::GridGeometry& grid = subject.gray_U.geometry;
@@ -112,8 +112,8 @@ void add_share(const std::string& name, const ultrasound::PanoramaEngine& engine
 }  // namespace
 
 Result<std::vector<CaseResult>> run_panorama_benchmark(const Options& options) {
-  report(options.progress, "patient and panorama", 0.0);
-  TROCAR_TRY(const Subject subject, make_subject());
+  core::report(options.progress, "patient and panorama", 0.0);
+  TROCAR_TRY(const PanoramaSubject subject, make_subject());
   const std::array<Vec3, 2> shaft = {subject.X_PT * Vec3(-60.0, 5.0, 0.0), subject.X_PT * Vec3(0.0, 60.0, 0.0)};
   ultrasound::NeedleEcho needle;
   needle.shaft_P = shaft;
@@ -126,7 +126,7 @@ Result<std::vector<CaseResult>> run_panorama_benchmark(const Options& options) {
   for (const Setting& setting : {Setting{"panorama/640x480", false, false},
                                  {"panorama/640x480-needle", false, true},
                                  {"panorama/640x480-half", true, false}}) {
-    report(options.progress, setting.name, fraction);
+    core::report(options.progress, setting.name, fraction);
     fraction += 0.2;
     TROCAR_TRY(auto panorama,
                ultrasound::make_panorama(setting.is_half ? half_of(subject.gray_U) : subject.gray_U, subject.X_PT));

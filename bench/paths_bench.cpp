@@ -22,12 +22,6 @@ constexpr int kMostPlanned = 100000;     ///< Limit of plan_paths; the study's p
 constexpr std::size_t kWorstPlaces = 8;  ///< Rows of the table.
 constexpr haptics::ForceModel kModel = haptics::ForceModel::kProxy;  ///< Model of the study.
 
-Result<std::shared_ptr<const anatomy::VirtualPatient>> patient_of(const Options& options) {
-  if (options.patient) return options.patient;
-  TROCAR_TRY(anatomy::VirtualPatient generated, anatomy::generate_phantom("abdomen", 1, {}, options.progress));
-  return std::make_shared<const anatomy::VirtualPatient>(std::move(generated));
-}
-
 Result<std::vector<cases::PrescribedMotion>> plan_motions(const cases::Case& tables,
                                                           const anatomy::VirtualPatient& patient,
                                                           const Options& options) {

@@ -6,9 +6,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
 
 #include "core/files/data_dir.h"
+#include "core/files/find_program.h"
 
 extern char** environ;
 
@@ -32,9 +34,22 @@ Status run_quietly(const std::vector<std::string>& arguments) {
   const int failed = ::posix_spawnp(&child, argv.front(), &quiet, nullptr, argv.data(), environ);
   posix_spawn_file_actions_destroy(&quiet);
   int status = 0;
-  if (failed != 0 || ::waitpid(child, &status, 0) != child || !WIFEXITED(status) || WEXITSTATUS(status) != 0)
-    return fail("the program failed", arguments.front(), "run it by hand to see why");
+  // A shell's command begins with the program.
+  const std::string program =
+      arguments.front() == "sh" ? arguments.back().substr(0, arguments.back().find(' ')) : arguments.front();
+  constexpr int kNotFound = 127;
+  const bool has_ended = failed == 0 && ::waitpid(child, &status, 0) == child && WIFEXITED(status);
+  if (failed == ENOENT || (has_ended && WEXITSTATUS(status) == kNotFound))
+    return fail("a program that the benchmark compares with is missing", program, "install it: apt install " + program);
+  if (!has_ended || WEXITSTATUS(status) != 0) return fail("the program failed", program, "run it by hand to see why");
   return {};
+}
+
+Status run_trocar(std::vector<std::string> arguments) {
+  const auto trocar = find_program("trocar");
+  if (!trocar) return fail("the program trocar is missing", "beside trocar-bench", "build it with scripts/build");
+  arguments.insert(arguments.begin(), trocar->string());
+  return run_quietly(arguments);
 }
 
 }  // namespace trocar::bench

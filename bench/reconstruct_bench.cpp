@@ -19,8 +19,6 @@ namespace trocar::bench {
 namespace {
 namespace fs = std::filesystem;
 
-constexpr int kRounds = 5;
-
 /// 100 images of 640 by 480 pixels of 0.3 mm in a tilting sweep, filled with speckle.
 ultrasound::TrackedSequence made_sweep() {
   ultrasound::TrackedSequence sequence;

@@ -14,13 +14,11 @@
 namespace trocar::bench {
 namespace {
 
-constexpr int kRounds = 5;  ///< The best median counts, because machines are noisy.
 constexpr int kFrames = 120;
 constexpr int kWarmUp = 5;
-constexpr int kColumns = 640, kRows = 480;
-constexpr double kMsPerS = 1000.0;
+constexpr int kPictureColumns = 640, kPictureRows = 480;
 
-struct Round {
+struct ScanRound {
   std::vector<double> frame_ms, engine_ms, scanner_ms, calibration_us;
   double allocations_a_frame = 0.0;
   double cpu_ms_a_frame = 0.0;  ///< Of all threads.
@@ -34,9 +32,9 @@ ultrasound::LineRange lines_of(int n, int lines, double share) {
   return {part * count, (part + 1) * count};
 }
 
-Round measure_round(ultrasound::EchoEngine& engine, ultrasound::Scanner& scanner, const Pose& X_PT,
-                    std::span<const ultrasound::NeedleEcho> needles, double renewed_share, int first_frame) {
-  Round round;
+ScanRound measure_round(ultrasound::EchoEngine& engine, ultrasound::Scanner& scanner, const Pose& X_PT,
+                        std::span<const ultrasound::NeedleEcho> needles, double renewed_share, int first_frame) {
+  ScanRound round;
   for (auto* list : {&round.frame_ms, &round.engine_ms, &round.scanner_ms, &round.calibration_us})
     list->reserve(kFrames);
   volatile double sink = 0.5;
@@ -76,11 +74,11 @@ Figures frames_per_s(const Figures& frame_ms) {
 
 ScanBest measure_scan(ultrasound::EchoEngine& engine, const Pose& X_PT, std::span<const ultrasound::NeedleEcho> needles,
                       double renewed_share) {
-  ultrasound::Scanner scanner(kColumns, kRows);
+  ultrasound::Scanner scanner(kPictureColumns, kPictureRows);
   for (int n = 0; n < kWarmUp; ++n) scanner.show(engine.render({ultrasound::sway(X_PT, -n), needles, 0.0}), 1);
   ScanBest best;
   for (int round = 0; round < kRounds; ++round) {
-    Round taken = measure_round(engine, scanner, X_PT, needles, renewed_share, round * kFrames);
+    ScanRound taken = measure_round(engine, scanner, X_PT, needles, renewed_share, round * kFrames);
     best.allocations_a_frame = std::max(best.allocations_a_frame, taken.allocations_a_frame);
     best.cpu_ms_a_frame = round == 0 ? taken.cpu_ms_a_frame : std::min(best.cpu_ms_a_frame, taken.cpu_ms_a_frame);
     const Figures frame = figures_of(std::move(taken.frame_ms));

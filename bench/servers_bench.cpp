@@ -139,7 +139,7 @@ int play(Stations& stations, const cases::Case& the_case, double seconds, const 
       station.client.frame_drawn();
     }
     ++frames;
-    report(progress, "servers are running", now_s / seconds);
+    core::report(progress, "servers are running", now_s / seconds);
     std::this_thread::sleep_until(begun + kFrame);
   }
   return frames;

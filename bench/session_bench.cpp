@@ -17,13 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kSimulated_s = 30.0;
-constexpr double kOutside_mm = 10.0;  // start and end of make_constant_velocity
-
-/// Runs this program again with other arguments and waits for it.
-Status run_self(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), fs::read_symlink("/proc/self/exe").string());
-  return run_quietly(arguments);
-}
+constexpr double kOutsideSkin_mm = 10.0;  // start and end of make_constant_velocity
 
 /// Times work that can fail, in ms.
 Result<Figures> time_fallible_ms(int rounds, const std::function<Status()>& work) {
@@ -47,7 +41,7 @@ Result<std::vector<CaseResult>> run_session_benchmark() {
              cases::prepare_case(std::make_shared<const anatomy::VirtualPatient>(std::move(generated)), {}));
 
   // In and out along the path in exactly 30 simulated seconds.
-  const double speed = 2.0 * (the_case.plan.line_P.length_mm() + kOutside_mm) / kSimulated_s;
+  const double speed = 2.0 * (the_case.plan.line_P.length_mm() + kOutsideSkin_mm) / kSimulated_s;
   attempt::RunOptions options;
   options.operator_name = fmt::format("constant-velocity:{:.6f}", speed);
   int round = 0;
@@ -60,8 +54,8 @@ Result<std::vector<CaseResult>> run_session_benchmark() {
              }));
   TROCAR_TRY(const Figures process, time_fallible_ms(5, [&]() -> Status {
                const fs::path session = folder.path() / fmt::format("process{}.trocar", ++round);
-               return run_self({"run", "liver-biopsy", "--patient", patient_folder.string(), "--operator",
-                                options.operator_name, "--out", session.string()});
+               return run_trocar({"run", "liver-biopsy", "--patient", patient_folder.string(), "--operator",
+                                  options.operator_name, "--out", session.string()});
              }));
   CaseResult loop_result{"session/loop", "ms", loop, {}, fmt::format("{} ticks at 1 kHz, recorded and scored", ticks)};
   CaseResult process_result{"session/process", "ms", process, {}, "trocar run: start, patient load, plan, loop, score"};

@@ -14,7 +14,7 @@
 namespace trocar::bench {
 namespace {
 
-constexpr int kRounds = 7;
+constexpr int kSiftRounds = 7;
 constexpr std::size_t kMatched = 13500;  ///< The number of keypoints that the peer was measured with.
 
 /// Set of keypoints with random descriptors of unit length, one each.
@@ -61,7 +61,7 @@ Result<std::vector<CaseResult>> run_sift_benchmark() {
     return {};
   };
   TROCAR_TRY_STATUS(detect());
-  Figures figures = time_ms(1, kRounds, [&] { (void)detect(); });
+  Figures figures = time_ms(1, kSiftRounds, [&] { (void)detect(); });
   scale(figures, 1.0 / mvoxels);
   results.push_back({"sift/keypoints-per-mvoxel",
                      "ms",
@@ -70,7 +70,7 @@ Result<std::vector<CaseResult>> run_sift_benchmark() {
                      fmt::format("shadow mask, flattening, scale space and {} keypoints of 128^3", keypoints.size())});
 
   std::size_t descriptors = 0;
-  figures = time_ms(1, kRounds, [&] {
+  figures = time_ms(1, kSiftRounds, [&] {
     if (const auto features = registration::describe(space, keypoints)) descriptors = features->descriptors.size();
   });
   scale(figures, 1.0 / static_cast<double>(std::max<std::size_t>(descriptors, 1)));

@@ -17,10 +17,9 @@
 namespace trocar::bench {
 namespace {
 
-constexpr int kSide = 256;     ///< Voxels along each axis of the volume.
-constexpr int kPixels = 512;   ///< Pixels along each side of the slice.
-constexpr int kRounds = 5;     ///< Ours and the peer's alternate; the best median counts, because machines are noisy.
-constexpr int kRepeats = 100;  ///< Slices per round.
+constexpr int kSide = 256;            ///< Voxels along each axis of the volume.
+constexpr int kPixels = 512;          ///< Pixels along each side of the slice.
+constexpr int kSlicesPerRound = 100;  ///< Slices per round.
 constexpr int kPeerThreads = 2;
 constexpr float kOutside = -1024.0F;
 
@@ -106,8 +105,8 @@ Result<CaseResult> race(const volume::CtGrid& ct, std::string name, const volume
   Figures best;
   Figures best_peer;
   for (int round = 0; round < kRounds; ++round) {
-    keep_best(best, time_ms(3, kRepeats, [&] { volume::sample_slice(ct, plane, kOutside, ours); }));
-    keep_best(best_peer, time_ms(3, kRepeats / 4, [&] { peer.run(); }));
+    keep_best(best, time_ms(3, kSlicesPerRound, [&] { volume::sample_slice(ct, plane, kOutside, ours); }));
+    keep_best(best_peer, time_ms(3, kSlicesPerRound / 4, [&] { peer.run(); }));
   }
   TROCAR_TRY_STATUS(check_agreement(ours, peer.run(), name));
   CaseResult result{std::move(name), "ms", best, std::nullopt, {}};
@@ -127,7 +126,7 @@ CaseResult time_points(const volume::CtGrid& ct) {
   std::vector<float> values(points_P.size());
   Figures best;
   for (int round = 0; round < kRounds; ++round)
-    keep_best(best, time_ms(3, kRepeats, [&] { volume::sample_points(ct, points_P, kOutside, values); }));
+    keep_best(best, time_ms(3, kSlicesPerRound, [&] { volume::sample_points(ct, points_P, kOutside, values); }));
   return {"slice/points-262144", "ms", best, std::nullopt, "the oblique slice as single points, one core"};
 }
 
@@ -151,7 +150,7 @@ CaseResult time_painting(const volume::CtGrid& ct) {
   volume::RgbImage picture;
   Figures best;
   for (int round = 0; round < kRounds; ++round)
-    keep_best(best, time_ms(3, kRepeats, [&] { slices::paint_slice(patient, plane, {}, buffers, picture); }));
+    keep_best(best, time_ms(3, kSlicesPerRound, [&] { slices::paint_slice(patient, plane, {}, buffers, picture); }));
   return {"slice/paint-400", "ms", best, std::nullopt, "400x400 oblique with labels everywhere, one core"};
 }
 

@@ -21,8 +21,6 @@ constexpr double kSurface_mm = 30.0;  // adipose tissue above it, under the skin
 constexpr double kDeep_mm = 60.0;
 constexpr double kAtWall_mm = 0.5;  // position below the wall's resting surface: no wall is punctured
 constexpr double kIntoBone_mm = 2.0;
-constexpr std::array kModels{haptics::ForceModel::kInsertion, haptics::ForceModel::kProxy,
-                             haptics::ForceModel::kCombined};
 
 struct Trial {
   std::shared_ptr<const haptics::HapticScene> scene;
@@ -51,7 +49,7 @@ Result<std::vector<Trial>> plan_trials(const anatomy::TissueTable& table,
   for (std::size_t i = 1; i < table.tissues.size(); ++i) {  // 0 is air
     const anatomy::TissueParams& tissue = table.tissues[i];
     TROCAR_TRY(const auto patient, make_flat_patient({{0.0, "adipose"}, {kSurface_mm, tissue.name}}));
-    for (const haptics::ForceModel model : kModels) {
+    for (const haptics::ForceModel model : kForceModels) {
       if (options.force_model && *options.force_model != model) continue;
       for (const haptics::DevicePreset& device : devices) {
         haptics::HapticOptions haptic;
@@ -76,7 +74,7 @@ void run_trials(std::vector<Trial>& trials, const Progress& progress) {
       trial.outcome = haptics::run_stability_trial(trial.scene, *trial.device, trial.holder, {trial.depth_mm});
       const std::size_t count = ++done;
       if (count % 32 == 0)
-        report(progress, "releasing needles", static_cast<double>(count) / static_cast<double>(trials.size()));
+        core::report(progress, "releasing needles", static_cast<double>(count) / static_cast<double>(trials.size()));
     }
   });
 }
@@ -142,7 +140,7 @@ Result<std::vector<CaseResult>> run_stability_benchmark(const Options& options) 
   run_trials(trials, options.progress);
   print_failures(trials, options);
   std::vector<CaseResult> results;
-  for (const haptics::ForceModel model : kModels)
+  for (const haptics::ForceModel model : kForceModels)
     for (const haptics::DevicePreset& device : devices) add_results(results, trials, model, device);
   return results;
 }

@@ -52,7 +52,8 @@ Result<Outcome> stitch_known(std::vector<KnownVolume> known, Outcome outcome) {
   return outcome;
 }
 
-void add(std::vector<CaseResult>& results, const std::string& name, const Outcome& outcome, const std::string& what) {
+void add_outcome(std::vector<CaseResult>& results, const std::string& name, const Outcome& outcome,
+                 const std::string& what) {
   Figures figures = figures_of(outcome.mean_mm);
   const double worst = outcome.max_mm.empty() ? 0.0 : *std::max_element(outcome.max_mm.begin(), outcome.max_mm.end());
   results.push_back({"stitch/" + name,
@@ -81,10 +82,10 @@ Status measure_generated(const Progress& progress, std::vector<CaseResult>& resu
   constexpr int kSeeds = 3;
   registration::SeriesOptions options;
   const auto measure = [&](const std::string& name, const std::string& what) -> Status {
-    report(progress, name, 0.0);
+    core::report(progress, name, 0.0);
     TROCAR_TRY(const Outcome outcome, stitch_series(options, 100, kSeeds));
-    add(results, name, outcome,
-        fmt::format("{}, {} seeds of six half-overlapping volumes of 96^3 at 1 mm", what, kSeeds));
+    add_outcome(results, name, outcome,
+                fmt::format("{}, {} seeds of six half-overlapping volumes of 96^3 at 1 mm", what, kSeeds));
     return {};
   };
   TROCAR_TRY_STATUS(measure("half-overlap", "speckle and shadows of their own, 15 degrees between neighbours"));
@@ -107,10 +108,10 @@ Status measure_affine(const Progress& progress, std::vector<CaseResult>& results
       options.volumes = 3;
       (is_shear ? options.shear : options.scale) = is_shear ? part : 1.0 + part;
       const std::string name = fmt::format("{}-{:.0f}percent", is_shear ? "shear" : "scale", 100.0 * part);
-      report(progress, name, 0.0);
+      core::report(progress, name, 0.0);
       TROCAR_TRY(const Outcome outcome, stitch_series(options, 200, 2));
-      add(results, name, outcome,
-          "every second volume distorted about its middle; the error contains the distortion's own mean");
+      add_outcome(results, name, outcome,
+                  "every second volume distorted about its middle; the error contains the distortion's own mean");
     }
   }
   return {};
@@ -121,11 +122,12 @@ Status measure_sweeps(const Progress& progress, std::vector<CaseResult>& results
   for (const double turn_deg : {25.0, 40.0}) {
     for (const bool is_straight : {true, false}) {
       const std::string name = fmt::format("sweeps-{:.0f}deg{}", turn_deg, is_straight ? "" : "-distorted");
-      report(progress, name, 0.0);
+      core::report(progress, name, 0.0);
       TROCAR_TRY(std::vector<KnownVolume> sweeps, make_sweeps(scene, turn_deg, is_straight));
       TROCAR_TRY(const Outcome outcome, stitch_known(std::move(sweeps), Outcome()));
-      add(results, name, outcome,
-          is_straight ? "six sweeps of the embedded patient, 1 mm, refraction and range distortion off"
+      add_outcome(results, name, outcome,
+                  is_straight
+                      ? "six sweeps of the embedded patient, 1 mm, refraction and range distortion off"
                       : "the same with refraction and range distortion: positions in the pictures are not rigid");
     }
   }
@@ -169,7 +171,7 @@ Result<std::vector<KnownVolume>> cut_parts(const volume::LabelGrid& whole, int a
 Status measure_recorded(const Progress& progress, std::vector<CaseResult>& results) {
   const fs::path liver = real_data() / "us-liver-sweep" / "liver_sweep_decoded.igs.mha";
   if (fs::exists(liver)) {
-    report(progress, "recorded liver sweep", 0.0);
+    core::report(progress, "recorded liver sweep", 0.0);
     TROCAR_TRY(const ultrasound::TrackedSequence sequence, io::read_sequence(liver));
     ultrasound::FreehandOptions options;
     options.spacing_mm = Vec3::Constant(1.0);
@@ -179,15 +181,17 @@ Status measure_recorded(const Progress& progress, std::vector<CaseResult>& resul
     TROCAR_TRY(const MainDirections axes, main_directions(sequence, volume.gray.geometry));
     TROCAR_TRY(std::vector<KnownVolume> parts, cut_parts(volume.gray, axes.motion, axes.beam));
     TROCAR_TRY(const Outcome outcome, stitch_known(std::move(parts), Outcome()));
-    add(results, "recorded-liver", outcome, "three half-overlapping parts of the recorded sweep, turned by 10 degrees");
+    add_outcome(results, "recorded-liver", outcome,
+                "three half-overlapping parts of the recorded sweep, turned by 10 degrees");
   }
   const fs::path spine = real_data() / "us-spine-phantom" / "vtkVolumeReconstructorTestNNMEANvolumeRef.mha";
   if (fs::exists(spine)) {
-    report(progress, "spine phantom", 0.0);
+    core::report(progress, "spine phantom", 0.0);
     TROCAR_TRY(const volume::LabelGrid volume, io::read_gray_levels(spine));
     TROCAR_TRY(std::vector<KnownVolume> parts, cut_parts(volume, 0, "+y"));
     TROCAR_TRY(const Outcome outcome, stitch_known(std::move(parts), Outcome()));
-    add(results, "recorded-spine-phantom", outcome, "three half-overlapping parts at 0.5 mm, turned by 10 degrees");
+    add_outcome(results, "recorded-spine-phantom", outcome,
+                "three half-overlapping parts at 0.5 mm, turned by 10 degrees");
   }
   return {};
 }

@@ -10,8 +10,6 @@
 namespace trocar::bench {
 namespace {
 
-constexpr double kMsPerS = 1000.0;
-
 /// A scan to time.
 struct Setting {
   std::string name;
@@ -24,7 +22,7 @@ struct Setting {
 }  // namespace
 
 Result<std::vector<CaseResult>> run_ultrasound_benchmark(const Options& options) {
-  report(options.progress, "patient", 0.0);
+  core::report(options.progress, "patient", 0.0);
   TROCAR_TRY(const anatomy::VirtualPatient patient, anatomy::generate_phantom("abdomen", 1, {{512, 512, 119}}));
   TROCAR_TRY(ultrasound::AcousticTable table, ultrasound::load_acoustic_table(data_dir() / "acoustics.toml"));
   TROCAR_TRY(const auto views, ultrasound::load_probe_views(data_dir() / "views.toml"));
@@ -50,7 +48,7 @@ Result<std::vector<CaseResult>> run_ultrasound_benchmark(const Options& options)
                               {"raycast/harmonic", "C5-2", 3, 1.0, true}};
   double fraction = 0.2;
   for (const Setting& setting : settings) {
-    report(options.progress, setting.name, fraction);
+    core::report(options.progress, setting.name, fraction);
     fraction += 0.8 / static_cast<double>(std::size(settings));
     TROCAR_TRY(const ultrasound::Transducer transducer,
                ultrasound::load_transducer(data_dir() / "transducers.toml", setting.transducer));

@@ -17,31 +17,30 @@
 namespace trocar::bench {
 namespace {
 
-constexpr int kFrames = 40;
-constexpr int kWarmUp = 4;
-constexpr int kRounds = 3;  ///< The best median counts.
-constexpr double kMsPerS = 1000.0;
+constexpr int kCostFrames = 40;
+constexpr int kCostWarmUp = 4;
+constexpr int kCostRounds = 3;  ///< The best median counts.
 
-struct Subject {
+struct CostSubject {
   std::shared_ptr<const ultrasound::AcousticScene> scene;
   ultrasound::Transducer transducer;
   Pose X_PT;
   ultrasound::Acquisition usual;
 };
 
-void add_case(const Subject& subject, const std::string& name, const ultrasound::Acquisition& acquisition, int threads,
-              std::vector<CaseResult>& results) {
+void add_case(const CostSubject& subject, const std::string& name, const ultrasound::Acquisition& acquisition,
+              int threads, std::vector<CaseResult>& results) {
   std::optional<Figures> best;
   double cpu_ms = 0.0;
   run_on_threads(threads, [&] {
     ultrasound::BMode engine(subject.scene, subject.transducer, acquisition);
-    for (int n = 0; n < kWarmUp; ++n) engine.render({ultrasound::sway(subject.X_PT, n), {}, 0.0});
-    for (int round = 0; round < kRounds; ++round) {
+    for (int n = 0; n < kCostWarmUp; ++n) engine.render({ultrasound::sway(subject.X_PT, n), {}, 0.0});
+    for (int round = 0; round < kCostRounds; ++round) {
       std::vector<double> frame_ms;
       const double cpu_before_ms = processor_time_ms();
-      for (int n = 0; n < kFrames; ++n)
+      for (int n = 0; n < kCostFrames; ++n)
         frame_ms.push_back(time_us([&] { engine.render({ultrasound::sway(subject.X_PT, n), {}, 0.0}); }) / kMsPerS);
-      const double took_ms = (processor_time_ms() - cpu_before_ms) / kFrames;
+      const double took_ms = (processor_time_ms() - cpu_before_ms) / kCostFrames;
       const Figures figures = figures_of(std::move(frame_ms));
       if (best && *figures.median >= *best->median) continue;
       best = figures;
@@ -51,7 +50,7 @@ void add_case(const Subject& subject, const std::string& name, const ultrasound:
   results.push_back({"ultrasound-cost/" + name, "ms", *best, {}, fmt::format("{:.1f} ms of processor time", cpu_ms)});
 }
 
-void vary_size(const Subject& subject, std::vector<CaseResult>& results) {
+void vary_size(const CostSubject& subject, std::vector<CaseResult>& results) {
   constexpr int kThreads = 2;
   for (const int lines : {128, 256, 512}) {
     ultrasound::Acquisition a = subject.usual;
@@ -78,12 +77,12 @@ void vary_size(const Subject& subject, std::vector<CaseResult>& results) {
 }  // namespace
 
 Result<std::vector<CaseResult>> run_ultrasound_cost_benchmark(const Options& options) {
-  report(options.progress, "patient", 0.0);
+  core::report(options.progress, "patient", 0.0);
   TROCAR_TRY(const anatomy::VirtualPatient patient, anatomy::generate_phantom("abdomen", 1, {{512, 512, 119}}));
   TROCAR_TRY(ultrasound::AcousticTable table, ultrasound::load_acoustic_table(data_dir() / "acoustics.toml"));
   TROCAR_TRY(const auto views, ultrasound::load_probe_views(data_dir() / "views.toml"));
   TROCAR_TRY(const ultrasound::ProbeView view, ultrasound::choose_view(patient, views, "liver-right-kidney"));
-  Subject subject;
+  CostSubject subject;
   TROCAR_TRY(subject.scene, ultrasound::make_acoustic_scene(patient, std::move(table)));
   TROCAR_TRY(subject.transducer, ultrasound::load_transducer(data_dir() / "transducers.toml", "C5-2"));
   TROCAR_TRY(const ultrasound::ProbePlacement placed, ultrasound::place_probe(patient, view, subject.transducer));
@@ -91,12 +90,12 @@ Result<std::vector<CaseResult>> run_ultrasound_cost_benchmark(const Options& opt
   subject.usual = ultrasound::default_acquisition(subject.transducer);
 
   std::vector<CaseResult> results;
-  report(options.progress, "scanlines, depth, planes", 0.2);
+  core::report(options.progress, "scanlines, depth, planes", 0.2);
   vary_size(subject, results);
-  report(options.progress, "threads", 0.6);
+  core::report(options.progress, "threads", 0.6);
   for (const int threads : {1, 2, 4, 8})
     add_case(subject, fmt::format("threads-{}", threads), subject.usual, threads, results);
-  report(options.progress, "levels of detail", 0.8);
+  core::report(options.progress, "levels of detail", 0.8);
   const std::pair<const char*, ultrasound::ScanDetail> levels[] = {{"fast", ultrasound::ScanDetail::kFast},
                                                                    {"middle", ultrasound::ScanDetail::kMiddle},
                                                                    {"full", ultrasound::ScanDetail::kFull}};

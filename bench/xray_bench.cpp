@@ -29,11 +29,10 @@ namespace trocar::bench {
 namespace {
 namespace fs = std::filesystem;
 
-constexpr int kSide = 256;    ///< Voxels along each axis of the volume.
-constexpr int kPixels = 512;  ///< Pixels along each side of an image.
-constexpr int kRounds = 5;    ///< Ours and the peer's alternate; the best median counts, because machines are noisy.
-constexpr int kRepeats = 20;  ///< Images of ours per round.
-constexpr int kFrames = 200;  ///< Frames of the turning C-arm.
+constexpr int kCtSide = 256;         ///< Voxels along each axis of the volume.
+constexpr int kImagePixels = 512;    ///< Pixels along each side of an image.
+constexpr int kImagesPerRound = 20;  ///< Images of ours per round.
+constexpr int kTurningFrames = 200;  ///< Frames of the turning C-arm.
 constexpr double kCt_kev = 70.0;
 constexpr double kLeastCorrelation = 0.999;
 static_assert(std::endian::native == std::endian::little, "PFM files of plastimatch are little-endian");
@@ -50,7 +49,7 @@ std::vector<View> views(const Vec3& isocentre_P) {
     arm.cranial_deg = cranial;
     arm.isocentre_P = isocentre_P;
     arm.field_mm = 400.0;
-    arm.pixels = kPixels;
+    arm.pixels = kImagePixels;
     return arm;
   };
   return {{"", at(0.0, 0.0)},
@@ -153,7 +152,7 @@ Status compare(const View& view, const xray::XrayVolume& volume, const fs::path&
   Figures best;
   double peer_ms = std::numeric_limits<double>::infinity(), likeness = 0.0;
   for (int round = 0; round < kRounds; ++round) {
-    const Figures figures = time_ms(1, kRepeats, [&] { xray::project(volume, rays, {}, masses); });
+    const Figures figures = time_ms(1, kImagesPerRound, [&] { xray::project(volume, rays, {}, masses); });
     if (!best.median || *figures.median < *best.median) best = figures;
     TROCAR_TRY(const PeerImage peer, run_plastimatch(ct, view.arm, folder));
     peer_ms = std::min(peer_ms, peer.ms);
@@ -175,14 +174,14 @@ Status compare(const View& view, const xray::XrayVolume& volume, const fs::path&
 Result<std::vector<CaseResult>> run_xray_benchmark(const Options& options) {
   std::vector<CaseResult> results;
   const TemporaryFolder folder;
-  report(options.progress, "generating the patient", 0.0);
-  TROCAR_TRY(auto small, anatomy::generate_phantom("abdomen", 1, {{kSide, kSide, kSide}, 0.0}));
+  core::report(options.progress, "generating the patient", 0.0);
+  TROCAR_TRY(auto small, anatomy::generate_phantom("abdomen", 1, {{kCtSide, kCtSide, kCtSide}, 0.0}));
   const fs::path ct = folder.path() / "ct.nrrd";
   TROCAR_TRY_STATUS(io::write_image(attenuation_of(small.ct), ct));
   TROCAR_TRY(const auto volume, xray::XrayVolume::from_ct(small.ct));
   const std::vector<View> all = views(middle_P(small.ct.geometry));
   for (const View& view : all) {
-    report(options.progress, "projecting", 0.3);
+    core::report(options.progress, "projecting", 0.3);
     TROCAR_TRY_STATUS(compare(view, *volume, ct, folder.path(), results));
   }
 
@@ -195,7 +194,7 @@ Result<std::vector<CaseResult>> run_xray_benchmark(const Options& options) {
   Figures figures = time_ms(2, 100, [&] { beam.signals(masses, signal); });
   results.push_back({"drr/512-poly", "ms", figures, {}, "signal of 80 kV behind the masses; drr/512 before it"});
 
-  report(options.progress, "turning the C-arm", 0.8);
+  core::report(options.progress, "turning the C-arm", 0.8);
   TROCAR_TRY(auto full, anatomy::generate_phantom("abdomen", 1, {{0, 0, 0}, 1.0}));
   const auto patient = std::make_shared<const anatomy::VirtualPatient>(std::move(full));
   const auto start = std::chrono::steady_clock::now();
@@ -206,8 +205,8 @@ Result<std::vector<CaseResult>> run_xray_benchmark(const Options& options) {
   arm.field_mm = 300.0;
   arm.isocentre_P = middle_P(patient->ct.geometry);
   int frame = 0;
-  figures = time_ms(5, kFrames, [&] {
-    const double turn = static_cast<double>(frame++) / kFrames;
+  figures = time_ms(5, kTurningFrames, [&] {
+    const double turn = static_cast<double>(frame++) / kTurningFrames;
     arm.lao_deg = 90.0 * std::sin(6.28 * turn);
     arm.cranial_deg = 30.0 * std::sin(6.28 * 3.0 * turn);
     xray::project(*body, xray::rays_of(arm), {}, masses);
@@ -220,7 +219,7 @@ Result<std::vector<CaseResult>> run_xray_benchmark(const Options& options) {
                      {},
                      fmt::format("{}x{}x{} voxels of 1 mm, masses and signal, C-arm turning: {:.0f} frames/s; bar 15",
                                  size[0], size[1], size[2], 1e3 / *figures.median)});
-  report(options.progress, "fluoroscopy", 0.9);
+  core::report(options.progress, "fluoroscopy", 0.9);
   TROCAR_TRY(const auto fluoroscopy, fluoroscopy_cases());
   results.insert(results.end(), fluoroscopy.begin(), fluoroscopy.end());
   TROCAR_TRY(const auto contrast, contrast_cases(options.progress));

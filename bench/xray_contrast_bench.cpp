@@ -17,7 +17,7 @@ constexpr double kVoxel_mm = 1.5;
 constexpr double kFrame_s = 0.033;
 constexpr double kRate_ml_per_s = 0.8;
 constexpr double kAgent_mg_per_ml = 300.0;
-constexpr int kFrames = 600;
+constexpr int kContrastFrames = 600;
 
 /// A tip in the middle of a peripheral duct: that end of a duct which has the widest lumen.
 Result<Vec3> find_tip_P(const xray::DuctTree& tree) {
@@ -33,7 +33,7 @@ Result<Vec3> find_tip_P(const xray::DuctTree& tree) {
 }  // namespace
 
 Result<std::vector<CaseResult>> contrast_cases(const Progress& progress) {
-  report(progress, "generating the patient with bile ducts", 0.92);
+  core::report(progress, "generating the patient with bile ducts", 0.92);
   TROCAR_TRY(auto phantom, anatomy::generate_phantom("ptcd-1", 1, {{0, 0, 0}, kVoxel_mm}));
   const auto patient = std::make_shared<const anatomy::VirtualPatient>(std::move(phantom));
   TROCAR_TRY(const xray::ContrastTable table, xray::load_contrast_table(data_dir() / "contrast.toml"));
@@ -43,8 +43,8 @@ Result<std::vector<CaseResult>> contrast_cases(const Progress& progress) {
   TROCAR_TRY(const Vec3 tip_P, find_tip_P(flow.ducts().tree()));
   TROCAR_TRY_STATUS(flow.inject(tip_P, kRate_ml_per_s, kAgent_mg_per_ml));
   std::size_t pieces = 0;
-  report(progress, "injecting contrast agent", 0.95);
-  const Figures figures = time_ms(0, kFrames, [&] {
+  core::report(progress, "injecting contrast agent", 0.95);
+  const Figures figures = time_ms(0, kContrastFrames, [&] {
     flow.step(kFrame_s);
     pieces = flow.iodine().pieces.size();
   });
@@ -57,7 +57,7 @@ Result<std::vector<CaseResult>> contrast_cases(const Progress& progress) {
        {},
        fmt::format(
            "flow and pieces of a frame of 33 ms, one thread; {} cells, {:.1f} ml/s for {:.0f} s, then {} pieces",
-           flow.ducts().tree().cells.size(), kRate_ml_per_s, kFrames * kFrame_s, pieces)}};
+           flow.ducts().tree().cells.size(), kRate_ml_per_s, kContrastFrames * kFrame_s, pieces)}};
 }
 
 }  // namespace trocar::bench

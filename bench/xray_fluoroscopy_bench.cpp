@@ -10,7 +10,7 @@
 namespace trocar::bench {
 namespace {
 
-constexpr int kWarmUp = 5, kRounds = 100, kMovingRounds = 40;
+constexpr int kFluoroscopyWarmUp = 5, kStillRounds = 100, kMovingRounds = 40;
 
 /// A trunk of water with a spine and ribs of bone, 256³ voxels of 1.4 mm.
 volume::CtGrid make_trunk() {
@@ -77,10 +77,10 @@ Result<std::vector<CaseResult>> fluoroscopy_cases() {
     if (!made) error = made.error();
   };
   std::vector<CaseResult> results;
-  results.push_back(make_case("fluoroscopy/512-static", time_ms(kWarmUp, kRounds, render),
+  results.push_back(make_case("fluoroscopy/512-static", time_ms(kFluoroscopyWarmUp, kStillRounds, render),
                               "256^3 CT, static C-arm, needle, wire of 60 and tree of 200 pieces change, all cores"));
   results.push_back(make_case("fluoroscopy/512-moving",
-                              time_ms(kWarmUp, kMovingRounds,
+                              time_ms(kFluoroscopyWarmUp, kMovingRounds,
                                       [&] {
                                         request.arm.lao_deg = 30.0 * std::sin(0.05 * frame);
                                         render();
