@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <map>
 
@@ -48,30 +47,12 @@ Result<Values> known_values() {
   return values;
 }
 
-/// Choices of an option with a fixed set of words: CLI11 writes them as "TEXT:{a,b}".
-Words choices_of(const CLI::Option& option) {
-  const std::string type = option.get_type_name();
-  const auto open = type.find('{');
-  const auto close = type.find('}', open);
-  if (open == std::string::npos || close == std::string::npos) return {};
-  Words words(1);
-  for (const char c : type.substr(open + 1, close - open - 1)) {
-    if (c == ',') {
-      words.emplace_back();
-    } else {
-      words.back() += c;
-    }
-  }
-  return words;
-}
-
-Words values_of(const CLI::Option& option, const Values& known) {
-  Words names;
-  for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
-  if (option.get_positional()) names.push_back(option.get_name(true));
+Words values_of(const Option& option, const Values& known) {
+  Words names = option.dashed_names();
+  names.push_back(option.argument_name());
   for (const std::string& name : names)
     if (const auto found = known.find(name); found != known.end()) return found->second;
-  return choices_of(option);
+  return option.words();
 }
 
 std::string quoted(const Words& words) {
@@ -83,15 +64,15 @@ class CommandLines {
  public:
   explicit CommandLines(const Values& known) : known_(known) {}
 
-  void add(const CLI::App& command, const std::string& path) {
+  void add(const Command& command, const std::string& path) {
     Words words;
-    for (const CLI::App* below : command.get_subcommands({})) {
-      const std::string name = path.empty() ? below->get_name() : path + " " + below->get_name();
-      words.push_back(below->get_name());
+    for (const Command& below : command.commands()) {
+      const std::string name = path.empty() ? below.name() : path + " " + below.name();
+      words.push_back(below.name());
       commands_ += fmt::format("      '{}') command='{}' ;;\n", name, name);
-      add(*below, name);
+      add(below, name);
     }
-    for (const CLI::Option* option : command.get_options()) add(*option, path, words);
+    for (const Option& option : command.options()) add(option, path, words);
     words_ += fmt::format("    '{}') words={} ;;\n", path, quoted(words));
   }
 
@@ -100,16 +81,15 @@ class CommandLines {
   const std::string& values() const { return values_; }
 
  private:
-  void add(const CLI::Option& option, const std::string& path, Words& words) {
+  void add(const Option& option, const std::string& path, Words& words) {
     const Words values = values_of(option, known_);
     Words patterns;
-    for (const std::string& name : option.get_lnames()) {
-      words.push_back("--" + name);
-      patterns.push_back(fmt::format("'{} --{}'", path, name));
+    for (const std::string& name : option.dashed_names()) {
+      words.push_back(name);
+      if (name.starts_with("--")) patterns.push_back(fmt::format("'{} {}'", path, name));
     }
-    for (const std::string& name : option.get_snames()) words.push_back("-" + name);
-    if (option.get_positional()) words.insert(words.end(), values.begin(), values.end());
-    if (option.get_items_expected_max() == 0 || patterns.empty()) return;  // a flag, or an argument without a name
+    if (!option.argument_name().empty()) words.insert(words.end(), values.begin(), values.end());
+    if (option.is_flag() || patterns.empty()) return;
     values_ += fmt::format("    {}) values={} ;;\n", fmt::join(patterns, "|"), quoted(values));
   }
 
@@ -139,7 +119,7 @@ _trocar() {{
 complete -o bashdefault -o default -F _trocar trocar
 )";
 
-Status print_completion(const CLI::App& program) {
+Status print_completion(const Command& program) {
   TROCAR_TRY(const Values known, known_values());
   CommandLines lines(known);
   lines.add(program, {});
@@ -149,15 +129,15 @@ Status print_completion(const CLI::App& program) {
 
 }  // namespace
 
-void add_completion_command(CLI::App& program, Action& action) {
-  CLI::App* completion = program.add_subcommand("completion", "Print a completion script for a shell");
-  completion->require_subcommand(1);
-  completion->footer("Example:\n  source <(trocar completion bash)\n");
-  CLI::App* bash = completion->add_subcommand("bash", "Commands, options and names for bash");
-  bash->footer(
+void add_completion_command(Command& program, Action& action) {
+  Command completion = program.add_command("completion", "Print a completion script for a shell");
+  completion.require_command();
+  completion.footer("Example:\n  source <(trocar completion bash)\n");
+  Command bash = completion.add_command("bash", "Commands, options and names for bash");
+  bash.footer(
       "Examples:\n  source <(trocar completion bash)\n"
       "  trocar completion bash > ~/.local/share/bash-completion/completions/trocar\n");
-  bash->callback([&action, &program] { action = [&program] { return print_completion(program); }; });
+  bash.when_parsed([&action, program] { action = [program] { return print_completion(program); }; });
 }
 
 }  // namespace trocar::cli

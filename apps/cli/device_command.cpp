@@ -1,25 +1,19 @@
 // trocar device list.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-#include <numbers>
-
 #include "commands.h"
+#include "config/json.h"
+#include "constants.h"
 #include "haptics/closed_loop/rotation.h"
 #include "haptics/coupling/device_preset.h"
+#include "json_parts.h"
 
 namespace trocar::cli {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-
 /// Unknown or missing values are null.
 config::Json optional_json(const std::optional<double>& value) {
   return value ? config::Json(*value) : config::Json(nullptr);
-}
-
-config::Json vector_json(const Vec3& v) {
-  return {v.x(), v.y(), v.z()};
 }
 
 config::Json preset_json(const haptics::DevicePreset& preset) {
@@ -76,17 +70,17 @@ Status list_devices(bool is_json) {
 
 }  // namespace
 
-void add_device_commands(CLI::App& program, Action& action) {
-  CLI::App* device = program.add_subcommand("device", "Haptic devices");
-  device->require_subcommand(1);
-  device->footer("Example:\n  trocar device list\n");
-  CLI::App* list = device->add_subcommand("list",
-                                          "List the devices of data/devices.toml: peak force and torque, stiffness, "
-                                          "encoder resolution, coupling stiffness");
-  list->footer("Example:\n  trocar device list --json\n");
+void add_device_commands(Command& program, Action& action) {
+  Command device = program.add_command("device", "Haptic devices");
+  device.require_command();
+  device.footer("Example:\n  trocar device list\n");
+  Command list = device.add_command("list",
+                                    "List the devices of data/devices.toml: peak force and torque, stiffness, "
+                                    "encoder resolution, coupling stiffness");
+  list.footer("Example:\n  trocar device list --json\n");
   const auto is_json = std::make_shared<bool>(false);
-  list->add_flag("--json", *is_json, "Print one JSON object");
-  list->callback([&action, is_json] { action = [is_json] { return list_devices(*is_json); }; });
+  list.add_flag("--json", *is_json, "Print one JSON object");
+  list.when_parsed([&action, is_json] { action = [is_json] { return list_devices(*is_json); }; });
 }
 
 }  // namespace trocar::cli

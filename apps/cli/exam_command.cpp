@@ -1,16 +1,15 @@
 // trocar exam: the number of an exam, signed results and their check.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <random>
 
 #include "commands.h"
+#include "config/json.h"
 #include "core/files/atomic_file.h"
 #include "core/files/user_folders.h"
 #include "exams/exam_body.h"
 #include "exams/exam_result.h"
 #include "io/patient/patient_cache.h"
-#include "number_option.h"
 #include "past_sessions.h"
 #include "storage/session_summary.h"
 #include "tasks/task.h"
@@ -123,61 +122,58 @@ Status print_key(const ResultArguments& arguments) {
   return {};
 }
 
-void add_state_option(CLI::App& command, const std::shared_ptr<ResultArguments>& arguments) {
+void add_state_option(Command& command, const std::shared_ptr<ResultArguments>& arguments) {
   command.add_option("--state", arguments->state, "Folder of the station's key [$XDG_STATE_HOME/trocar]");
 }
 
-void add_draw(CLI::App& exam, Action& action) {
-  CLI::App* command = exam.add_subcommand("draw", "Draw the number of an exam on an unseen body, or check a number");
+void add_draw(Command& exam, Action& action) {
+  Command command = exam.add_command("draw", "Draw the number of an exam on an unseen body, or check a number");
   const auto a = std::make_shared<DrawArguments>();
-  command->add_option("TASK,--task", a->task, "Task; see trocar task list")->required();
-  arguments::whole_number_within(command->add_option("--difficulty", a->difficulty, "Difficulty of the case"), 1, 5)
-      ->capture_default_str();
-  arguments::whole_number_within(command->add_option("--number", a->number, "Check this exam instead of drawing one"),
-                                 kFirstNumber, static_cast<std::int64_t>(exams::kMostNumber));
-  command->add_option(
+  command.add_option("TASK,--task", a->task, "Task; see trocar task list").required();
+  command.add_option("--difficulty", a->difficulty, "Difficulty of the case").whole_number_within(1, 5).show_default();
+  command.add_option("--number", a->number, "Check this exam instead of drawing one")
+      .whole_number_within(kFirstNumber, static_cast<std::int64_t>(exams::kMostNumber));
+  command.add_option(
       "--sessions", a->sessions,
       "Folder of sessions whose bodies are known [those of the trainer: $XDG_STATE_HOME/trocar/sessions]");
-  command->add_flag("--json", a->is_json, "Print one JSON object");
-  command->footer("Example:\n  trocar exam draw liver-biopsy --difficulty 2\n");
-  command->callback([&action, a] { action = [a] { return draw(*a); }; });
+  command.add_flag("--json", a->is_json, "Print one JSON object");
+  command.footer("Example:\n  trocar exam draw liver-biopsy --difficulty 2\n");
+  command.when_parsed([&action, a] { action = [a] { return draw(*a); }; });
 }
 
-void add_result_commands(CLI::App& exam, Action& action) {
+void add_result_commands(Command& exam, Action& action) {
   const auto a = std::make_shared<ResultArguments>();
-  CLI::App* sign_command = exam.add_subcommand("sign", "Sign the session of an exam; the trainer does it by itself");
-  sign_command->add_option("SESSION", a->file, "Session of an exam")->required();
-  sign_command->add_option("--sessions", a->sessions,
-                           "Folder of sessions whose bodies are known [that of the session]");
-  add_state_option(*sign_command, a);
-  sign_command->footer("Example:\n  trocar exam sign exam.trocar\n");
-  sign_command->callback([&action, a] { action = [a] { return sign(*a); }; });
+  Command sign_command = exam.add_command("sign", "Sign the session of an exam; the trainer does it by itself");
+  sign_command.add_option("SESSION", a->file, "Session of an exam").required();
+  sign_command.add_option("--sessions", a->sessions, "Folder of sessions whose bodies are known [that of the session]");
+  add_state_option(sign_command, a);
+  sign_command.footer("Example:\n  trocar exam sign exam.trocar\n");
+  sign_command.when_parsed([&action, a] { action = [a] { return sign(*a); }; });
 
-  CLI::App* verify_command =
-      exam.add_subcommand("verify", "Check the signature of a result, and the session beside it");
-  verify_command->add_option("RESULT", a->file, "Result of an exam (.result.json)")->required();
-  verify_command->add_option("--key", a->key, "Public key of the station, or a file with it [this station's]");
-  add_state_option(*verify_command, a);
-  verify_command->footer(
+  Command verify_command = exam.add_command("verify", "Check the signature of a result, and the session beside it");
+  verify_command.add_option("RESULT", a->file, "Result of an exam (.result.json)").required();
+  verify_command.add_option("--key", a->key, "Public key of the station, or a file with it [this station's]");
+  add_state_option(verify_command, a);
+  verify_command.footer(
       "Exit status: 0 valid, also if it was signed by another version of the program, which is said; 1 changed, or "
       "signed with another key; 2 no result, no key.\n"
       "Example:\n  trocar exam verify exam.result.json --key station.pub\n");
-  verify_command->callback([&action, a] { action = [a] { return verify(*a); }; });
+  verify_command.when_parsed([&action, a] { action = [a] { return verify(*a); }; });
 
-  CLI::App* key_command = exam.add_subcommand("key", "Print the public key of this station");
-  add_state_option(*key_command, a);
-  key_command->footer("Example:\n  trocar exam key > station.pub\n");
-  key_command->callback([&action, a] { action = [a] { return print_key(*a); }; });
+  Command key_command = exam.add_command("key", "Print the public key of this station");
+  add_state_option(key_command, a);
+  key_command.footer("Example:\n  trocar exam key > station.pub\n");
+  key_command.when_parsed([&action, a] { action = [a] { return print_key(*a); }; });
 }
 
 }  // namespace
 
-void add_exam_commands(CLI::App& program, Action& action) {
-  CLI::App* exam = program.add_subcommand("exam", "Exams on unseen bodies with signed results");
-  exam->require_subcommand(1);
-  exam->footer("Example:\n  trocar exam verify exam.result.json --key station.pub\n");
-  add_draw(*exam, action);
-  add_result_commands(*exam, action);
+void add_exam_commands(Command& program, Action& action) {
+  Command exam = program.add_command("exam", "Exams on unseen bodies with signed results");
+  exam.require_command();
+  exam.footer("Example:\n  trocar exam verify exam.result.json --key station.pub\n");
+  add_draw(exam, action);
+  add_result_commands(exam, action);
 }
 
 }  // namespace trocar::cli

@@ -2,11 +2,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 
 #include "commands.h"
+#include "config/json.h"
 #include "learning/next_exercise.h"
 #include "learning/progress.h"
 #include "past_sessions.h"
@@ -17,7 +17,7 @@
 namespace trocar::cli {
 namespace {
 
-struct Arguments {
+struct LearnArguments {
   std::string sessions;
   std::string person, database;
   std::string task;
@@ -39,7 +39,7 @@ std::string date_text(std::chrono::sys_days day) {
 }
 
 /// Attempts of a person in the database of results.
-Result<learning::History> history_of(const Arguments& arguments) {
+Result<learning::History> history_of(const LearnArguments& arguments) {
   TROCAR_TRY(results::Repository repository, open_results(arguments.database, database::Missing::kRefuse));
   TROCAR_TRY(const results::Person person, results::get_person_named(repository, arguments.person));
   learning::History history;
@@ -47,7 +47,7 @@ Result<learning::History> history_of(const Arguments& arguments) {
   return history;
 }
 
-Result<Learned> learn(const Arguments& arguments) {
+Result<Learned> learn(const LearnArguments& arguments) {
   Learned learned;
   TROCAR_TRY(const std::filesystem::path tasks_folder, find_data("tasks"));
   TROCAR_TRY(learned.curriculum, learning::load_curriculum(tasks_folder.parent_path()));
@@ -71,7 +71,7 @@ config::Json step_json(const learning::StepProgress& step) {
           {"repeat_on", step.repetition ? config::Json(date_text(step.repetition->due)) : config::Json(nullptr)}};
 }
 
-config::Json learned_json(const Learned& learned, const Arguments& arguments) {
+config::Json learned_json(const Learned& learned, const LearnArguments& arguments) {
   config::Json courses = config::Json::array();
   for (std::size_t n = 0; n < learned.progress.size(); ++n) {
     const std::string& task = learned.curriculum.courses[n].task;
@@ -118,7 +118,7 @@ void print_course(const learning::Course& course, const std::vector<learning::St
                  learning::to_string(step.exercise.level), date_text(step.repetition->due));
 }
 
-void print_learned(const Learned& learned, const Arguments& arguments) {
+void print_learned(const Learned& learned, const LearnArguments& arguments) {
   const std::vector<learning::PastAttempt>& attempts = learned.history.attempts;
   const auto counted = std::count_if(attempts.begin(), attempts.end(), [](const learning::PastAttempt& attempt) {
     return attempt.score.has_value() && attempt.level.has_value();
@@ -135,7 +135,7 @@ void print_learned(const Learned& learned, const Arguments& arguments) {
   for (const std::string& reason : advice.reasons) fmt::print("  {}\n", reason);
 }
 
-Status print(const Arguments& arguments) {
+Status print(const LearnArguments& arguments) {
   TROCAR_TRY(const Learned learned, learn(arguments));
   for (const std::string& note : learned.advice.notes) print_warning(note);
   if (arguments.is_json) {
@@ -148,23 +148,23 @@ Status print(const Arguments& arguments) {
 
 }  // namespace
 
-void add_learn_command(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand("learn", "Print what a trainee has mastered and practises next, and why");
-  const auto a = std::make_shared<Arguments>();
-  command->add_option("--sessions", a->sessions,
-                      "Folder of the trainee's sessions [those of the trainer: $XDG_STATE_HOME/trocar/sessions]");
-  CLI::Option* sessions = command->get_option("--sessions");
-  CLI::Option* person = command
-                            ->add_option("--person", a->person,
-                                         "Attempts of this person in the database of results, in place of sessions")
-                            ->excludes(sessions);
-  command->add_option("--db", a->database, "Database of --person; see trocar results --help")->needs(person);
-  command->add_option("--task", a->task, "Only exercises of this task; see trocar task list");
-  command->add_flag("--json", a->is_json, "Print one JSON object");
-  command->footer(
+void add_learn_command(Command& program, Action& action) {
+  Command command = program.add_command("learn", "Print what a trainee has mastered and practises next, and why");
+  const auto a = std::make_shared<LearnArguments>();
+  Option sessions =
+      command.add_option("--sessions", a->sessions,
+                         "Folder of the trainee's sessions [those of the trainer: $XDG_STATE_HOME/trocar/sessions]");
+  Option person =
+      command
+          .add_option("--person", a->person, "Attempts of this person in the database of results, in place of sessions")
+          .excludes(sessions);
+  command.add_option("--db", a->database, "Database of --person; see trocar results --help").needs(person);
+  command.add_option("--task", a->task, "Only exercises of this task; see trocar task list");
+  command.add_flag("--json", a->is_json, "Print one JSON object");
+  command.footer(
       "Examples:\n  trocar learn\n  trocar learn --sessions sessions --task liver-biopsy\n  trocar learn --person "
       "\"Anna Meier\"\n");
-  command->callback([&action, a] { action = [a] { return print(*a); }; });
+  command.when_parsed([&action, a] { action = [a] { return print(*a); }; });
 }
 
 }  // namespace trocar::cli

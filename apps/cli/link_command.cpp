@@ -1,9 +1,8 @@
 // trocar link keygen.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-
 #include "commands.h"
+#include "config/json.h"
 #include "link/curve_keys.h"
 
 namespace trocar::cli {
@@ -31,19 +30,19 @@ Status make_keys(const KeygenArguments& arguments) {
 
 }  // namespace
 
-void add_link_commands(CLI::App& program, Action& action) {
-  CLI::App* link = program.add_subcommand("link", "Connections to haptic servers on other machines");
-  link->require_subcommand(1);
-  link->footer("Example:\n  trocar link keygen --out keys\n");
-  CLI::App* keygen = link->add_subcommand(
+void add_link_commands(Command& program, Action& action) {
+  Command link = program.add_command("link", "Connections to haptic servers on other machines");
+  link.require_command();
+  link.footer("Example:\n  trocar link keygen --out keys\n");
+  Command keygen = link.add_command(
       "keygen", "Create CURVE keys for a server and a client (without keys, a server accepts local connections only)");
-  keygen->footer(
+  keygen.footer(
       "Example:\n  trocar link keygen --out keys\n"
       "  trocar-hapticd --endpoint tcp://0.0.0.0:5571 --keys keys/server.key --allow keys/allowed\n");
   const auto arguments = std::make_shared<KeygenArguments>();
-  keygen->add_option("--out", arguments->out, "New folder for the keys, accessible only to you")->required();
-  keygen->add_flag("--json", arguments->is_json, "Print one JSON object");
-  keygen->callback([&action, arguments] { action = [arguments] { return make_keys(*arguments); }; });
+  keygen.add_option("--out", arguments->out, "New folder for the keys, accessible only to you").required();
+  keygen.add_flag("--json", arguments->is_json, "Print one JSON object");
+  keygen.when_parsed([&action, arguments] { action = [arguments] { return make_keys(*arguments); }; });
 }
 
 }  // namespace trocar::cli

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <mutex>
 
+#include "config/json.h"
 #include "core/files/data_dir.h"
 #include "core/files/output_check.h"
 

@@ -7,14 +7,11 @@
 #include <string>
 #include <string_view>
 
-#include "config/json.h"
+#include "config/json_fwd.h"
 #include "core/progress.h"
 #include "core/result.h"
 
 namespace trocar::cli {
-
-/// The requested command, bound to its arguments: set while the command line is parsed, called by main.
-using Action = std::function<Status()>;
 
 void print_warning(std::string_view text);
 /// Prints results to standard output, as one JSON object.

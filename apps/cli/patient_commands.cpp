@@ -1,7 +1,6 @@
 // trocar patient list, generate and build: sources of patients.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -11,6 +10,7 @@
 #include "anatomy/tissue/tissue_table.h"
 #include "cases/prepare_case.h"
 #include "commands.h"
+#include "config/json.h"
 #include "core/files/atomic_file.h"
 #include "core/parse_number.h"
 #include "core/part_of_progress.h"
@@ -18,7 +18,6 @@
 #include "io/patient/build_from_files.h"
 #include "io/patient/patient_folder.h"
 #include "io/patient/patient_thumbnail.h"
-#include "number_option.h"
 #include "patient_summary.h"
 #include "patient_thumbnail.h"
 #include "png/png_file.h"
@@ -74,7 +73,7 @@ Result<std::vector<anatomy::NamedMesh>> save_with_surfaces(const anatomy::Virtua
                                                            const Progress& progress,
                                                            std::vector<io::PatientExtra> extras = {}) {
   auto meshes = surface::extract_surfaces(patient, {}, part_of(progress, 0.0, 0.5));
-  report(progress, "drawing the thumbnail", 0.5);
+  core::report(progress, "drawing the thumbnail", 0.5);
   TROCAR_TRY(const volume::RgbImage thumbnail, make_thumbnail(patient, meshes, slices::find_thumbnail_region(patient)));
   extras.push_back({io::kThumbnailFile, png::encode_png(thumbnail)});
   TROCAR_TRY_STATUS(io::save_patient(patient, meshes, out, part_of(progress, 0.6, 1.0), extras));
@@ -192,16 +191,16 @@ Status list_series(const SeriesArguments& arguments) {
 
 }  // namespace
 
-void add_patient_commands(CLI::App& program, Action& action) {
-  CLI::App* patient = program.add_subcommand("patient", "Create, show and check virtual patients");
-  patient->require_subcommand(1);
-  patient->footer("Example:\n  trocar patient generate abdomen --out my_patient\n");
+void add_patient_commands(Command& program, Action& action) {
+  Command patient = program.add_command("patient", "Create, show and check virtual patients");
+  patient.require_command();
+  patient.footer("Example:\n  trocar patient generate abdomen --out my_patient\n");
 
-  CLI::App* list = patient->add_subcommand("list", "List embedded patients: task, difficulty from 1 to 5, thumbnail");
-  list->footer("Example:\n  trocar patient list\n");
+  Command list = patient.add_command("list", "List embedded patients: task, difficulty from 1 to 5, thumbnail");
+  list.footer("Example:\n  trocar patient list\n");
   const auto is_json = std::make_shared<bool>(false);
-  list->add_flag("--json", *is_json, "Print one JSON object");
-  list->callback([&action, is_json] { action = [is_json] { return list_patients(*is_json); }; });
+  list.add_flag("--json", *is_json, "Print one JSON object");
+  list.when_parsed([&action, is_json] { action = [is_json] { return list_patients(*is_json); }; });
 
   struct GenerateArguments {
     std::string name = std::string(anatomy::kVariantPatient);
@@ -209,77 +208,74 @@ void add_patient_commands(CLI::App& program, Action& action) {
     double voxel_mm = 0.0;
     std::string out;
   };
-  CLI::App* generate = patient->add_subcommand("generate", "Write an embedded patient to a folder");
-  generate->footer("Example:\n  trocar patient generate abdomen --seed 7 --out abdomen_7\n");
+  Command generate = patient.add_command("generate", "Write an embedded patient to a folder");
+  generate.footer("Example:\n  trocar patient generate abdomen --seed 7 --out abdomen_7\n");
   const auto g = std::make_shared<GenerateArguments>();
   generate
-      ->add_option("NAME", g->name,
-                   "Embedded patient: see trocar patient list; \"variant\" is a body drawn by the seed from the whole "
-                   "range of bodies")
-      ->capture_default_str();
-  generate->add_option("--out", g->out, "Folder to create")->required();
-  arguments::seed_number(generate->add_option("--seed", g->seed, "Random seed; each seed gives a different individual"))
-      ->capture_default_str();
-  arguments::number_within(
-      generate->add_option("--voxel-mm", g->voxel_mm, "Edge of the voxels; without it 1 mm or finer"), 0.5, 10.0, "mm");
-  generate->callback(
+      .add_option("NAME", g->name,
+                  "Embedded patient: see trocar patient list; \"variant\" is a body drawn by the seed from the whole "
+                  "range of bodies")
+      .show_default();
+  generate.add_option("--out", g->out, "Folder to create").required();
+  generate.add_option("--seed", g->seed, "Random seed; each seed gives a different individual").seed().show_default();
+  generate.add_option("--voxel-mm", g->voxel_mm, "Edge of the voxels; without it 1 mm or finer")
+      .number_within(0.5, 10.0, "mm");
+  generate.when_parsed(
       [&action, g] { action = [g] { return generate_patient(g->name, g->seed, g->voxel_mm, g->out); }; });
 
-  CLI::App* build_command = patient->add_subcommand("build", "Build a patient from a CT and its segmentation");
-  build_command->footer(
+  Command build_command = patient.add_command("build", "Build a patient from a CT and its segmentation");
+  build_command.footer(
       "Examples:\n  trocar patient build --ct ct.nii.gz --labels segmentation.nii.gz --out case_1\n"
       "  trocar patient build --ct dicom_folder --labels masks_folder --label-map names.toml --out case_2\n"
       "  trocar patient build --ct dicom_disc --series 2 --labels segmentation.nii.gz --out case_3\n"
       "  trocar patient build --ct dicom_disc --labels dicom_disc/RTSTRUCT --out case_4\n"
       "  trocar patient build --ct ct.nii.gz --labels segmentation.nii.gz --posture left-lateral --out lumbar_1\n");
   const auto b = std::make_shared<BuildArguments>();
-  build_command->add_option("--ct", b->ct, "CT: NIfTI, NRRD, MHA, or a folder of DICOM files with its sub-folders")
-      ->required();
-  build_command->add_option("--series", b->series,
-                            "Number or UID of the DICOM series of the CT, see trocar patient series; required if the "
-                            "folder contains several CT series and the labels refer to none of them");
+  build_command.add_option("--ct", b->ct, "CT: NIfTI, NRRD, MHA, or a folder of DICOM files with its sub-folders")
+      .required();
+  build_command.add_option("--series", b->series,
+                           "Number or UID of the DICOM series of the CT, see trocar patient series; required if the "
+                           "folder contains several CT series and the labels refer to none of them");
   build_command
-      ->add_option(
+      .add_option(
           "--labels", b->labels,
           "Label volumes, .seg.nrrd, single masks, folders of masks or of DICOM mask series, DICOM SEG and RTSTRUCT "
           "files or their folder")
-      ->required();
+      .required();
   build_command
-      ->add_option(
+      .add_option(
           "--label-map", b->label_map,
           "Names of labels: totalsegmentator, totalsegmentator:TASK (liver_vessels, tissue_types ...), or a TOML file "
           "with [labels] and ignore (see the user guide)")
-      ->capture_default_str();
-  build_command->add_option("--rescale", b->rescale,
-                            "SLOPE,INTERCEPT of a CT whose file lacks them: HU = SLOPE * stored number + INTERCEPT");
+      .show_default();
+  build_command.add_option("--rescale", b->rescale,
+                           "SLOPE,INTERCEPT of a CT whose file lacks them: HU = SLOPE * stored number + INTERCEPT");
   build_command
-      ->add_option(
-          "--derive", b->derive,
-          "Thin structures to add where their neighbours are labelled: all, none, or names separated by commas")
-      ->capture_default_str();
+      .add_option("--derive", b->derive,
+                  "Thin structures to add where their neighbours are labelled: all, none, or names separated by commas")
+      .show_default();
   build_command
-      ->add_option("--posture", b->posture,
-                   "How the patient lies for the puncture: supine, prone, left-lateral, right-lateral, sitting")
-      ->capture_default_str();
-  build_command->add_option(
-      "--tissues", b->tissues,
-      "Tissue table (TOML) fitted to this patient: stored in the folder and used by its attempts");
-  build_command->add_option("--name", b->name, "Name of the patient; default: the folder's name");
-  build_command->add_option("--out", b->out, "Folder to create")->required();
-  build_command->add_flag("--json", b->is_json, "Print the summary as one JSON object");
-  build_command->callback([&action, b] { action = [b] { return build(*b); }; });
+      .add_option("--posture", b->posture,
+                  "How the patient lies for the puncture: supine, prone, left-lateral, right-lateral, sitting")
+      .show_default();
+  build_command.add_option("--tissues", b->tissues,
+                           "Tissue table (TOML) fitted to this patient: stored in the folder and used by its attempts");
+  build_command.add_option("--name", b->name, "Name of the patient; default: the folder's name");
+  build_command.add_option("--out", b->out, "Folder to create").required();
+  build_command.add_flag("--json", b->is_json, "Print the summary as one JSON object");
+  build_command.when_parsed([&action, b] { action = [b] { return build(*b); }; });
 
-  CLI::App* series_command = patient->add_subcommand("series", "List the DICOM series of a folder and its sub-folders");
-  series_command->footer("Example:\n  trocar patient series dicom_disc\n");
+  Command series_command = patient.add_command("series", "List the DICOM series of a folder and its sub-folders");
+  series_command.footer("Example:\n  trocar patient series dicom_disc\n");
   const auto s = std::make_shared<SeriesArguments>();
-  series_command->add_option("FOLDER", s->folder, "Folder of DICOM files")->required();
-  series_command->add_flag("--json", s->is_json, "Print one JSON object");
-  series_command->callback([&action, s] { action = [s] { return list_series(*s); }; });
+  series_command.add_option("FOLDER", s->folder, "Folder of DICOM files").required();
+  series_command.add_flag("--json", s->is_json, "Print one JSON object");
+  series_command.when_parsed([&action, s] { action = [s] { return list_series(*s); }; });
 
-  add_patient_fetch_command(*patient, action);
-  add_patient_variants_command(*patient, action);
-  add_thumbnail_command(*patient, action);
-  add_patient_report_commands(*patient, action);
+  add_patient_fetch_command(patient, action);
+  add_patient_variants_command(patient, action);
+  add_thumbnail_command(patient, action);
+  add_patient_report_commands(patient, action);
 }
 
 }  // namespace trocar::cli

@@ -2,18 +2,18 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
 
 #include "commands.h"
+#include "config/json.h"
 #include "core/files/input_file.h"
 #include "core/interruption.h"
 #include "dicom/pacs/dicomweb_source.h"
 #include "dicom/pacs/dimse_source.h"
 #include "dicom/pacs/fetch_study.h"
-#include "number_option.h"
+#include "json_parts.h"
 
 namespace trocar::cli {
 namespace {
@@ -71,11 +71,6 @@ Result<std::unique_ptr<dicom::PacsSource>> open_source(const FetchArguments& arg
   return dicom::make_dicomweb_source(std::move(options));
 }
 
-template <class Number>
-config::Json or_null(const std::optional<Number>& number) {
-  return number ? config::Json(*number) : config::Json();
-}
-
 Status list_studies(dicom::PacsSource& source, const FetchArguments& arguments) {
   TROCAR_TRY(const auto studies, source.list_studies(arguments.patient_id));
   if (studies.empty())
@@ -95,7 +90,7 @@ Status list_studies(dicom::PacsSource& source, const FetchArguments& arguments) 
 }
 
 /// The same table as `trocar patient series`.
-Status list_series(dicom::PacsSource& source, const FetchArguments& arguments) {
+Status list_pacs_series(dicom::PacsSource& source, const FetchArguments& arguments) {
   TROCAR_TRY(const auto series, dicom::list_study(source, arguments.study));
   config::Json list = config::Json::array();
   if (!arguments.is_json)
@@ -178,33 +173,34 @@ Status fetch(const FetchArguments& arguments) {
     return fail_usage("--patient-id only lists studies", "--out", "choose one of them with --study");
   TROCAR_TRY(const std::unique_ptr<dicom::PacsSource> source, open_source(arguments));
   if (!arguments.patient_id.empty()) return list_studies(*source, arguments);
-  return arguments.is_list ? list_series(*source, arguments) : fetch_series(*source, arguments);
+  return arguments.is_list ? list_pacs_series(*source, arguments) : fetch_series(*source, arguments);
 }
 
-void add_server_options(CLI::App& command, FetchArguments& a) {
+void add_pacs_options(Command& command, FetchArguments& a) {
   command.add_option("--pacs", a.pacs, "PACS with DICOM's own protocol: AET@HOST:PORT");
   command.add_option("--dicomweb", a.dicomweb, "PACS with DICOMweb: http(s)://HOST:PORT/PATH");
-  command.add_option("--aet", a.title, "Our AE title, as the PACS has to know it")->capture_default_str();
-  arguments::whole_number_within(
-      command.add_option("--listen-port", a.listen_port, "Port that the PACS sends to (C-MOVE)"), 1, 65535)
-      ->capture_default_str();
+  command.add_option("--aet", a.title, "Our AE title, as the PACS has to know it").show_default();
+  command.add_option("--listen-port", a.listen_port, "Port that the PACS sends to (C-MOVE)")
+      .whole_number_within(1, 65535)
+      .show_default();
   command.add_option("--via", a.via, "With --pacs: move (C-MOVE) or get (C-GET, needs no entry of our port)")
-      ->check(CLI::IsMember({"move", "get"}))
-      ->capture_default_str();
+      .one_of({"move", "get"})
+      .show_default();
   command.add_option("--user", a.user,
                      fmt::format("With --dicomweb: user; the password is read from --password-file, from the variable "
                                  "{} or from the terminal",
                                  kPasswordVariable));
   command.add_option("--password-file", a.password_file, "File whose first line is the password");
-  arguments::whole_number_within(command.add_option("--timeout", a.timeout_s, "Longest time without data (s)"), 1, 3600)
-      ->capture_default_str();
+  command.add_option("--timeout", a.timeout_s, "Longest time without data (s)")
+      .whole_number_within(1, 3600)
+      .show_default();
 }
 
 }  // namespace
 
-void add_patient_fetch_command(CLI::App& patient, Action& action) {
-  CLI::App* command = patient.add_subcommand("fetch", "Fetch series from a PACS, anonymised");
-  command->footer(
+void add_patient_fetch_command(Command& patient, Action& action) {
+  Command command = patient.add_command("fetch", "Fetch series from a PACS, anonymised");
+  command.footer(
       "Names, numbers, dates, private elements and all other elements that Trocar does not need are removed, UIDs are\n"
       "replaced. Segmentations and structure sets fetched by one command still fit their CT. Pixels are not changed: "
       "a\n"
@@ -214,17 +210,17 @@ void add_patient_fetch_command(CLI::App& patient, Action& action) {
       "  trocar patient fetch --dicomweb https://pacs.example/dicom-web --user me --study 1.2.840.1 --out dicom_1\n"
       "  trocar patient build --ct dicom_1 --labels segmentation.nii.gz --out case_1\n");
   const auto a = std::make_shared<FetchArguments>();
-  add_server_options(*command, *a);
-  command->add_option("--study", a->study, "UID of the study");
-  command->add_option("--patient-id", a->patient_id, "List the studies of this patient");
-  command->add_option("--series", a->series,
-                      "Number or UID of a series, see --list; can be repeated. Default: all series with images, "
-                      "segmentations or structure sets");
-  command->add_flag("--list", a->is_list, "List the series of the study and fetch nothing");
-  command->add_option("--out", a->out, "Folder to create");
-  command->add_flag("--keep-identity", a->keeps_identity, "Keep the objects as they are, with the patient's identity");
-  command->add_flag("--json", a->is_json, "Print one JSON object");
-  command->callback([&action, a] { action = [a] { return fetch(*a); }; });
+  add_pacs_options(command, *a);
+  command.add_option("--study", a->study, "UID of the study");
+  command.add_option("--patient-id", a->patient_id, "List the studies of this patient");
+  command.add_option("--series", a->series,
+                     "Number or UID of a series, see --list; can be repeated. Default: all series with images, "
+                     "segmentations or structure sets");
+  command.add_flag("--list", a->is_list, "List the series of the study and fetch nothing");
+  command.add_option("--out", a->out, "Folder to create");
+  command.add_flag("--keep-identity", a->keeps_identity, "Keep the objects as they are, with the patient's identity");
+  command.add_flag("--json", a->is_json, "Print one JSON object");
+  command.when_parsed([&action, a] { action = [a] { return fetch(*a); }; });
 }
 
 }  // namespace trocar::cli

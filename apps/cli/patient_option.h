@@ -1,13 +1,12 @@
 #pragma once
 
-#include <CLI/App.hpp>
-
+#include "action.h"
 #include "io/patient/patient_source.h"
 
 namespace trocar::cli {
 
 /// Adds --no-cache; without it `source` uses the user's cache folder for embedded patients. `source` must outlive the
 /// command.
-void add_cache_option(CLI::App& command, io::PatientSource& source);
+void add_cache_option(Command& command, io::PatientSource& source);
 
 }  // namespace trocar::cli

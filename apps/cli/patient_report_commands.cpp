@@ -1,8 +1,7 @@
-// trocar patient show, check and render: contents of a patient.
+// trocar patient show_patient, check and render: contents of a patient.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -11,11 +10,13 @@
 #include "anatomy/patient_doubts.h"
 #include "cases/prepare_case.h"
 #include "commands.h"
+#include "config/json.h"
+#include "constants.h"
 #include "core/files/atomic_file.h"
 #include "io/markups_file.h"
 #include "io/patient/open_patient.h"
 #include "io/patient/patient_panorama.h"
-#include "number_option.h"
+#include "json_parts.h"
 #include "patient_option.h"
 #include "patient_summary.h"
 #include "png/png_file.h"
@@ -30,7 +31,7 @@ namespace trocar::cli {
 namespace {
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct PatientArguments {
   io::PatientSource source;
   bool is_json = false;
   std::string paths;  ///< Markups file with needle paths to draw; empty: those of the patient.
@@ -38,16 +39,13 @@ struct Arguments {
   std::string pictures, report;  ///< Of `check`; empty: none.
 };
 
-constexpr double kMm2PerCm2 = 100.0;
-constexpr double kMm3PerMl = 1000.0;
-
 /// Contents of a patient's folder besides the patient.
 struct OwnFiles {
   bool has_panorama = false;
   std::optional<anatomy::TissueTable> tissues;  ///< The table that was fitted to it.
 };
 
-Result<OwnFiles> own_files(const Arguments& arguments) {
+Result<OwnFiles> own_files(const PatientArguments& arguments) {
   OwnFiles own;
   own.has_panorama = io::has_panorama(arguments.source);
   if (!cases::has_own_tissues(arguments.source.folder_or_name)) return own;
@@ -82,12 +80,12 @@ config::Json patient_json(const anatomy::VirtualPatient& patient, const std::vec
   for (const anatomy::NamedMesh& m : meshes) surfaces.push_back(mesh_json(m));
   config::Json landmarks = config::Json::array();
   for (const anatomy::Landmark& l : patient.landmarks)
-    landmarks.push_back({{"name", l.name}, {"position_mm", to_json(l.p_P)}});
+    landmarks.push_back({{"name", l.name}, {"position_mm", vector_json(l.p_P)}});
   config::Json paths = config::Json::array();
   for (const anatomy::NeedlePath& p : patient.paths) {
     paths.push_back({{"name", p.name},
-                     {"entry_mm", to_json(p.line_P.a)},
-                     {"target_mm", to_json(p.line_P.b)},
+                     {"entry_mm", vector_json(p.line_P.a)},
+                     {"target_mm", vector_json(p.line_P.b)},
                      {"length_mm", p.line_P.length_mm()}});
   }
   return {{"name", patient.name},
@@ -139,7 +137,7 @@ void print_patient(const anatomy::VirtualPatient& patient, const std::vector<ana
   print_own_files(own);
 }
 
-Status show(const Arguments& arguments) {
+Status show_patient(const PatientArguments& arguments) {
   const ProgressPrinter printer;
   TROCAR_TRY(const OwnFiles own, own_files(arguments));
   TROCAR_TRY(const anatomy::VirtualPatient patient, io::open_patient(arguments.source, printer.callback()));
@@ -158,8 +156,8 @@ struct CheckedTask {
 };
 
 /// The tasks of the data folder and the patient's own, each with its needle.
-Result<std::vector<CheckedTask>> checked_tasks(const Arguments& arguments, const anatomy::VirtualPatient& patient,
-                                               const Progress& progress) {
+Result<std::vector<CheckedTask>> checked_tasks(const PatientArguments& arguments,
+                                               const anatomy::VirtualPatient& patient, const Progress& progress) {
   TROCAR_TRY(const fs::path folder, find_data("tasks"));
   TROCAR_TRY(const fs::path needles, find_data("needles.toml"));
   TROCAR_TRY(const auto tasks, tasks::load_tasks(folder));
@@ -185,7 +183,7 @@ struct CheckResult {
   bool has_panorama = false;
 };
 
-Result<CheckResult> check_patient(const Arguments& arguments, const anatomy::VirtualPatient& patient,
+Result<CheckResult> check_patient(const PatientArguments& arguments, const anatomy::VirtualPatient& patient,
                                   const Progress& progress) {
   CheckResult result;
   TROCAR_TRY(result.tasks, checked_tasks(arguments, patient, progress));
@@ -216,7 +214,7 @@ config::Json findings_json(const std::vector<anatomy::Finding>& findings) {
   for (const anatomy::Finding& finding : findings)
     list.push_back({{"text", finding.text},
                     {"label", finding.label},
-                    {"position_mm", finding.place_P ? to_json(*finding.place_P) : config::Json()}});
+                    {"position_mm", finding.place_P ? vector_json(*finding.place_P) : config::Json()}});
   return list;
 }
 
@@ -263,7 +261,7 @@ Status write_pictures(const anatomy::VirtualPatient& patient, const CheckResult&
   });
 }
 
-Status check(const Arguments& arguments) {
+Status check(const PatientArguments& arguments) {
   for (const std::string& out : {arguments.pictures, arguments.report})
     if (!out.empty()) TROCAR_TRY_STATUS(check_new(out));
   const ProgressPrinter printer;
@@ -333,7 +331,7 @@ Status write_views(const anatomy::VirtualPatient& patient, const std::vector<ana
   return {};
 }
 
-Status render(const Arguments& arguments) {
+Status render(const PatientArguments& arguments) {
   TROCAR_TRY_STATUS(check_new(arguments.out));
   const ProgressPrinter printer;
   const Progress progress = printer.callback();
@@ -355,40 +353,39 @@ Status render(const Arguments& arguments) {
   return {};
 }
 
-CLI::App* add_command(CLI::App& patient, Action& action, const char* name, const char* description,
-                      Status (*work)(const Arguments&), std::shared_ptr<Arguments> arguments) {
-  CLI::App* command = patient.add_subcommand(name, description);
-  command->add_option("PATIENT", arguments->source.folder_or_name, "Patient folder, or an embedded patient's name")
-      ->required();
-  arguments::seed_number(command->add_option("--seed", arguments->source.seed, "Seed of an embedded patient"))
-      ->capture_default_str();
-  add_cache_option(*command, arguments->source);
-  command->callback([&action, arguments, work] { action = [arguments, work] { return work(*arguments); }; });
+Command add_command(Command& patient, Action& action, const char* name, const char* description,
+                    Status (*work)(const PatientArguments&), std::shared_ptr<PatientArguments> arguments) {
+  Command command = patient.add_command(name, description);
+  command.add_option("PATIENT", arguments->source.folder_or_name, "Patient folder, or an embedded patient's name")
+      .required();
+  command.add_option("--seed", arguments->source.seed, "Seed of an embedded patient").seed().show_default();
+  add_cache_option(command, arguments->source);
+  command.when_parsed([&action, arguments, work] { action = [arguments, work] { return work(*arguments); }; });
   return command;
 }
 
 }  // namespace
 
-void add_patient_report_commands(CLI::App& patient, Action& action) {
-  const auto arguments = std::make_shared<Arguments>();  // one command runs: they share the arguments
-  CLI::App* show_command =
-      add_command(patient, action, "show", "Labels with volumes, meshes, frames, provenance", show, arguments);
-  show_command->add_flag("--json", arguments->is_json, "Print one JSON object");
-  show_command->footer("Example:\n  trocar patient show my_patient\n");
+void add_patient_report_commands(Command& patient, Action& action) {
+  const auto arguments = std::make_shared<PatientArguments>();  // one command runs: they share the arguments
+  Command show_command =
+      add_command(patient, action, "show", "Labels with volumes, meshes, frames, provenance", show_patient, arguments);
+  show_command.add_flag("--json", arguments->is_json, "Print one JSON object");
+  show_command.footer("Example:\n  trocar patient show my_patient\n");
 
-  CLI::App* check_command = add_command(
-      patient, action, "check", "List the tasks that a patient supports, and doubtful results", check, arguments);
-  check_command->add_flag("--json", arguments->is_json, "Print one JSON object");
-  check_command->add_option("--pictures", arguments->pictures,
-                            "Folder to create, with a picture of each doubtful place");
-  check_command->add_option("--report", arguments->report, "HTML page to write, with these pictures");
-  check_command->footer("Example:\n  trocar patient check my_patient --report check.html\n");
+  Command check_command = add_command(patient, action, "check",
+                                      "List the tasks that a patient supports, and doubtful results", check, arguments);
+  check_command.add_flag("--json", arguments->is_json, "Print one JSON object");
+  check_command.add_option("--pictures", arguments->pictures,
+                           "Folder to create, with a picture of each doubtful place");
+  check_command.add_option("--report", arguments->report, "HTML page to write, with these pictures");
+  check_command.footer("Example:\n  trocar patient check my_patient --report check.html\n");
 
-  CLI::App* render_command = add_command(
+  Command render_command = add_command(
       patient, action, "render", "Render CT slices, and 3D images if an X server is available", render, arguments);
-  render_command->add_option("--out", arguments->out, "Folder to create")->required();
-  render_command->add_option("--paths", arguments->paths, "Needle paths to draw, as trocar plan writes them");
-  render_command->footer("Example:\n  xvfb-run -a trocar patient render my_patient --out pictures\n");
+  render_command.add_option("--out", arguments->out, "Folder to create").required();
+  render_command.add_option("--paths", arguments->paths, "Needle paths to draw, as trocar plan writes them");
+  render_command.footer("Example:\n  xvfb-run -a trocar patient render my_patient --out pictures\n");
 }
 
 }  // namespace trocar::cli

@@ -6,16 +6,16 @@
 #include <algorithm>
 
 #include "anatomy/patient_doubts.h"
+#include "config/json.h"
+#include "constants.h"
 #include "core/files/data_dir.h"
 #include "geometry/triangle_mesh.h"
+#include "json_parts.h"
 #include "tasks/needle.h"
 #include "tasks/readiness.h"
 
 namespace trocar::cli {
 namespace {
-
-constexpr double kMm2PerCm2 = 100.0;
-constexpr double kMm3PerMl = 1000.0;
 
 double body_volume_ml(const volume::FloatGrid& skin_distance_mm) {
   const auto inside = std::count_if(skin_distance_mm.voxels.begin(), skin_distance_mm.voxels.end(),
@@ -31,17 +31,13 @@ std::size_t triangle_count(const std::vector<anatomy::NamedMesh>& meshes) {
 
 }  // namespace
 
-config::Json to_json(const Vec3& v) {
-  return config::Json::array({v.x(), v.y(), v.z()});
-}
-
 config::Json grid_json(const volume::GridGeometry& g) {
   config::Json direction = config::Json::array();
-  for (int axis = 0; axis < 3; ++axis) direction.push_back(to_json(Vec3(g.R_PV.col(axis))));
+  for (int axis = 0; axis < 3; ++axis) direction.push_back(vector_json(Vec3(g.R_PV.col(axis))));
   return {{"frame", "P: LPS, mm"},
           {"size_voxels", {g.size[0], g.size[1], g.size[2]}},
-          {"spacing_mm", to_json(g.spacing_mm)},
-          {"origin_mm", to_json(g.origin_P)},
+          {"spacing_mm", vector_json(g.spacing_mm)},
+          {"origin_mm", vector_json(g.origin_P)},
           {"direction_of_ijk", direction}};
 }
 
@@ -54,7 +50,7 @@ config::Json label_json(const anatomy::VirtualPatient& patient, const anatomy::L
           {"mean_hu", s.mean_hu},
           {"derived", label != nullptr && label->is_derived},
           {"voxels", s.voxels},
-          {"centroid_mm", to_json(s.centroid_P)},
+          {"centroid_mm", vector_json(s.centroid_P)},
           {"touches_border", s.touches_border}};
 }
 

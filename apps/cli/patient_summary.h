@@ -11,7 +11,6 @@
 namespace trocar::cli {
 
 // Parts of the JSON output of `patient`.
-config::Json to_json(const Vec3& v);
 config::Json grid_json(const volume::GridGeometry& geometry);
 config::Json label_json(const anatomy::VirtualPatient& patient, const anatomy::LabelStatistics& statistics);
 config::Json mesh_json(const anatomy::NamedMesh& mesh);

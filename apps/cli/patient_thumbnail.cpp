@@ -9,7 +9,6 @@
 #include "cases/prepare_case.h"
 #include "core/part_of_progress.h"
 #include "io/patient/open_patient.h"
-#include "number_option.h"
 #include "patient_option.h"
 #include "png/png_file.h"
 #include "scene/render_patient.h"
@@ -55,7 +54,7 @@ scene::CameraView camera_of(const slices::ThumbnailRegion& region) {
   return scene::orbited(scene::fit_camera(points_P, side.preset, kAspect), side.turn_rad, kRaise_rad);
 }
 
-struct Arguments {
+struct ThumbnailArguments {
   io::PatientSource source;
   std::string task;
   std::string out;
@@ -71,14 +70,14 @@ Result<slices::ThumbnailRegion> region_of(const std::shared_ptr<const anatomy::V
   return slices::ThumbnailRegion{the_case.plan.line_P.b, the_case.plan.line_P};
 }
 
-Status write_thumbnail(const Arguments& arguments) {
+Status write_thumbnail(const ThumbnailArguments& arguments) {
   const ProgressPrinter printer;
   const Progress progress = printer.callback();
   TROCAR_TRY(anatomy::VirtualPatient opened, io::open_patient(arguments.source, part_of(progress, 0.0, 0.4)));
   const auto patient = std::make_shared<const anatomy::VirtualPatient>(std::move(opened));
   TROCAR_TRY(const auto region, region_of(patient, arguments.task, part_of(progress, 0.4, 0.5)));
   TROCAR_TRY(const auto meshes, io::open_meshes(arguments.source, *patient, part_of(progress, 0.5, 0.9)));
-  report(progress, "drawing", 0.9);
+  core::report(progress, "drawing", 0.9);
   TROCAR_TRY(const volume::RgbImage image, make_thumbnail(*patient, meshes, region));
   return png::write_png(image, arguments.out);
 }
@@ -100,19 +99,18 @@ Result<volume::RgbImage> make_thumbnail(const anatomy::VirtualPatient& patient,
   return image;
 }
 
-void add_thumbnail_command(CLI::App& patient, Action& action) {
-  CLI::App* command = patient.add_subcommand(
+void add_thumbnail_command(Command& patient, Action& action) {
+  Command command = patient.add_command(
       "thumbnail", "Draw the small picture of a patient for lists: in 3D if an X server is available, else slices");
-  const auto a = std::make_shared<Arguments>();
-  command->add_option("PATIENT", a->source.folder_or_name, "Patient folder, or an embedded patient's name")->required();
-  arguments::seed_number(command->add_option("--seed", a->source.seed, "Seed of an embedded patient"))
-      ->capture_default_str();
-  add_cache_option(*command, a->source);
-  command->add_option("--task", a->task,
-                      "Task whose planned path is shown; default: the patient's first path or lesion");
-  command->add_option("--out", a->out, "PNG file to write")->required();
-  command->footer("Example:\n  xvfb-run -a trocar patient thumbnail abdomen --task liver-biopsy --out abdomen.png\n");
-  command->callback([&action, a] { action = [a] { return write_thumbnail(*a); }; });
+  const auto a = std::make_shared<ThumbnailArguments>();
+  command.add_option("PATIENT", a->source.folder_or_name, "Patient folder, or an embedded patient's name").required();
+  command.add_option("--seed", a->source.seed, "Seed of an embedded patient").seed().show_default();
+  add_cache_option(command, a->source);
+  command.add_option("--task", a->task,
+                     "Task whose planned path is shown; default: the patient's first path or lesion");
+  command.add_option("--out", a->out, "PNG file to write").required();
+  command.footer("Example:\n  xvfb-run -a trocar patient thumbnail abdomen --task liver-biopsy --out abdomen.png\n");
+  command.when_parsed([&action, a] { action = [a] { return write_thumbnail(*a); }; });
 }
 
 }  // namespace trocar::cli

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <vector>
 
 #include "anatomy/patient.h"
@@ -18,6 +17,6 @@ Result<volume::RgbImage> make_thumbnail(const anatomy::VirtualPatient& patient,
                                         const slices::ThumbnailRegion& region);
 
 /// trocar patient thumbnail.
-void add_thumbnail_command(CLI::App& patient, Action& action);
+void add_thumbnail_command(Command& patient, Action& action);
 
 }  // namespace trocar::cli

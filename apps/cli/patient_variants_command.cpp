@@ -1,15 +1,14 @@
 // trocar patient variants: generates many bodies of the whole range, and checks each of them.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
 
 #include "anatomy/phantom/consistency.h"
 #include "anatomy/phantom/phantom.h"
 #include "commands.h"
+#include "config/json.h"
 #include "core/files/data_dir.h"
-#include "number_option.h"
 #include "output.h"
 #include "tasks/assess_path.h"
 #include "tasks/readiness.h"
@@ -63,7 +62,8 @@ Status check_variants(const VariantsArguments& arguments) {
     const Progress progress = printer.callback();
     for (std::int64_t n = 0; n < arguments.count; ++n) {
       const std::uint64_t seed = arguments.first + static_cast<std::uint64_t>(n);
-      report(progress, fmt::format("seed {}", seed), static_cast<double>(n) / static_cast<double>(arguments.count));
+      core::report(progress, fmt::format("seed {}", seed),
+                   static_cast<double>(n) / static_cast<double>(arguments.count));
       const std::string task = anatomy::variant_task(seed);
       TROCAR_TRY(const std::vector<std::string> faults, check_seed(seed, arguments.voxel_mm, task));
       if (!faults.empty()) failures.push_back({{"seed", seed}, {"task", task}, {"faults", faults}});
@@ -86,18 +86,16 @@ Status check_variants(const VariantsArguments& arguments) {
 
 }  // namespace
 
-void add_patient_variants_command(CLI::App& patient, Action& action) {
-  CLI::App* variants = patient.add_subcommand(
+void add_patient_variants_command(Command& patient, Action& action) {
+  Command variants = patient.add_command(
       "variants", "Generate many procedural bodies and check that each is sound and serves its task");
-  variants->footer("Example:\n  trocar patient variants --seed 1 --count 200\n");
+  variants.footer("Example:\n  trocar patient variants --seed 1 --count 200\n");
   const auto v = std::make_shared<VariantsArguments>();
-  arguments::seed_number(variants->add_option("--seed", v->first, "First seed"))->capture_default_str();
-  arguments::whole_number_within(variants->add_option("--count", v->count, "Number of seeds"), 1, 100000)
-      ->capture_default_str();
-  arguments::number_within(variants->add_option("--voxel-mm", v->voxel_mm, "Edge of the voxels"), 0.5, 10.0, "mm")
-      ->capture_default_str();
-  variants->add_flag("--json", v->is_json, "Print one JSON object");
-  variants->callback([&action, v] { action = [v] { return check_variants(*v); }; });
+  variants.add_option("--seed", v->first, "First seed").seed().show_default();
+  variants.add_option("--count", v->count, "Number of seeds").whole_number_within(1, 100000).show_default();
+  variants.add_option("--voxel-mm", v->voxel_mm, "Edge of the voxels").number_within(0.5, 10.0, "mm").show_default();
+  variants.add_flag("--json", v->is_json, "Print one JSON object");
+  variants.when_parsed([&action, v] { action = [v] { return check_variants(*v); }; });
 }
 
 }  // namespace trocar::cli

@@ -1,14 +1,14 @@
 // trocar plan: safe needle paths for a task.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 
 #include "cases/prepare_case.h"
 #include "commands.h"
+#include "config/json.h"
 #include "io/markups_file.h"
 #include "io/patient/open_patient.h"
-#include "number_option.h"
+#include "json_parts.h"
 #include "patient_option.h"
 #include "tasks/fit_to_patient.h"
 #include "tasks/plan.h"
@@ -17,7 +17,7 @@ namespace trocar::cli {
 namespace {
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct PlanArguments {
   std::string task;
   io::PatientSource source;
   std::string needle;
@@ -26,16 +26,12 @@ struct Arguments {
   bool is_json = false;
 };
 
-config::Json to_json(const Vec3& v) {
-  return config::Json::array({v.x(), v.y(), v.z()});
-}
-
 void print_plan(const std::vector<tasks::PlannedPath>& paths, bool is_json) {
   if (is_json) {
     config::Json list = config::Json::array();
     for (const tasks::PlannedPath& p : paths) {
-      list.push_back({{"entry_mm", to_json(p.line_P.a)},
-                      {"target_mm", to_json(p.line_P.b)},
+      list.push_back({{"entry_mm", vector_json(p.line_P.a)},
+                      {"target_mm", vector_json(p.line_P.b)},
                       {"length_mm", p.length_mm},
                       {"organ_path_mm", p.organ_path_mm},
                       {"spare_margin_mm", p.spare_margin_mm},
@@ -53,7 +49,7 @@ void print_plan(const std::vector<tasks::PlannedPath>& paths, bool is_json) {
   }
 }
 
-Status plan(const Arguments& arguments) {
+Status plan(const PlanArguments& arguments) {
   TROCAR_TRY_STATUS(check_new(arguments.out));
   cases::CaseOptions options;
   options.task = arguments.task;
@@ -77,27 +73,25 @@ Status plan(const Arguments& arguments) {
 
 }  // namespace
 
-void add_plan_command(CLI::App& program, Action& action) {
-  const auto a = std::make_shared<Arguments>();
-  CLI::App* command = program.add_subcommand("plan", "Plan safe needle paths that keep all margins of the task");
-  command->add_option("TASK,--task", a->task,
-                      "Task: see trocar task list, or a task file (.toml); default: the patient's own task");
-  command->add_option("--patient", a->source.folder_or_name, "Patient folder, or an embedded patient's name")
-      ->required();
-  arguments::whole_number_within(
-      command->add_option("--count", a->options.count, "Number of paths, each with a different entry point"), 1, 100000)
-      ->capture_default_str();
-  command->add_option("--needle", a->needle, "Needle of data/needles.toml; default: the task's needle");
-  arguments::seed_number(command->add_option("--seed", a->options.seed, "Random seed for the choice among paths"))
-      ->capture_default_str();
-  arguments::seed_number(
-      command->add_option("--patient-seed", a->source.seed, "Random seed for the anatomy of an embedded patient"))
-      ->capture_default_str();
-  add_cache_option(*command, a->source);
-  command->add_option("--out", a->out, "3D Slicer markups file to write (.mrk.json)")->required();
-  command->add_flag("--json", a->is_json, "Print one JSON object");
-  command->footer("Example:\n  trocar plan liver-biopsy --patient abdomen --count 5 --out paths.mrk.json\n");
-  command->callback([&action, a] { action = [a] { return plan(*a); }; });
+void add_plan_command(Command& program, Action& action) {
+  const auto a = std::make_shared<PlanArguments>();
+  Command command = program.add_command("plan", "Plan safe needle paths that keep all margins of the task");
+  command.add_option("TASK,--task", a->task,
+                     "Task: see trocar task list, or a task file (.toml); default: the patient's own task");
+  command.add_option("--patient", a->source.folder_or_name, "Patient folder, or an embedded patient's name").required();
+  command.add_option("--count", a->options.count, "Number of paths, each with a different entry point")
+      .whole_number_within(1, 100000)
+      .show_default();
+  command.add_option("--needle", a->needle, "Needle of data/needles.toml; default: the task's needle");
+  command.add_option("--seed", a->options.seed, "Random seed for the choice among paths").seed().show_default();
+  command.add_option("--patient-seed", a->source.seed, "Random seed for the anatomy of an embedded patient")
+      .seed()
+      .show_default();
+  add_cache_option(command, a->source);
+  command.add_option("--out", a->out, "3D Slicer markups file to write (.mrk.json)").required();
+  command.add_flag("--json", a->is_json, "Print one JSON object");
+  command.footer("Example:\n  trocar plan liver-biopsy --patient abdomen --count 5 --out paths.mrk.json\n");
+  command.when_parsed([&action, a] { action = [a] { return plan(*a); }; });
 }
 
 }  // namespace trocar::cli

@@ -2,12 +2,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <filesystem>
 #include <optional>
 
 #include "commands.h"
+#include "config/json.h"
 #include "core/fail_at.h"
 #include "core/interruption.h"
 #include "io/image/image_file.h"
@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 constexpr double kLandmarkReach_mm = 15.0;  ///< From the fit of landmarks.
 
-struct Arguments {
+struct RegisterArguments {
   std::string ct, us, out, checkerboard;
   std::vector<std::string> landmarks;
   std::string init = "header";
@@ -51,7 +51,7 @@ struct Inputs {
   std::optional<registration::LandmarkFit> landmarks;
 };
 
-Status check_arguments(const Arguments& arguments) {
+Status check_arguments(const RegisterArguments& arguments) {
   if (fs::path(arguments.out).extension() != ".tfm")
     return fail_usage("the file name must end in .tfm", arguments.out, "rename the output");
   TROCAR_TRY_STATUS(check_new(arguments.out));
@@ -69,7 +69,7 @@ Result<std::vector<registration::NamedPoint>> read_points(const std::string& pat
   return points;
 }
 
-Result<Inputs> read_inputs(const Arguments& arguments) {
+Result<Inputs> read_inputs(const RegisterArguments& arguments) {
   Inputs inputs;
   if (!arguments.landmarks.empty()) {
     TROCAR_TRY(const auto ct, read_points(arguments.landmarks[0]));
@@ -128,7 +128,7 @@ void print_summary(const Found& found, const Inputs& inputs, double seconds) {
                deformable->mean_mm, deformable->largest_mm, deformable->metric_before, deformable->metric);
 }
 
-Result<Found> find_poses(const Arguments& arguments, const Inputs& inputs, const Progress& progress) {
+Result<Found> find_poses(const RegisterArguments& arguments, const Inputs& inputs, const Progress& progress) {
   registration::RigidOptions options;
   options.seed = arguments.seed;
   options.is_search = arguments.init == "search" && !inputs.landmarks;
@@ -138,9 +138,10 @@ Result<Found> find_poses(const Arguments& arguments, const Inputs& inputs, const
     options.reach_mm = kLandmarkReach_mm;
   }
   Found found;
-  TROCAR_TRY(found.rigid, registration::register_rigid(
-                              inputs.ct, inputs.us.gray, inputs.us.beams, options,
-                              [&](std::string_view step, double part) { report(progress, step, 0.2 + 0.5 * part); }));
+  TROCAR_TRY(found.rigid, registration::register_rigid(inputs.ct, inputs.us.gray, inputs.us.beams, options,
+                                                       [&](std::string_view step, double part) {
+                                                         core::report(progress, step, 0.2 + 0.5 * part);
+                                                       }));
   TROCAR_TRY_STATUS(registration::check_confidence(found.rigid, "nothing was written"));
   if (!arguments.is_deformable) return found;
   registration::DeformableOptions deformable;
@@ -149,23 +150,23 @@ Result<Found> find_poses(const Arguments& arguments, const Inputs& inputs, const
   TROCAR_TRY(found.deformable,
              registration::register_deformable(
                  inputs.ct, inputs.us.gray, inputs.us.beams, found.rigid.X_CU, deformable,
-                 [&](std::string_view step, double part) { report(progress, step, 0.7 + 0.2 * part); }));
+                 [&](std::string_view step, double part) { core::report(progress, step, 0.7 + 0.2 * part); }));
   return found;
 }
 
 /// The transforms; the deformation first, so that a file at --out means that all was written.
-Status write_transforms(const Arguments& arguments, const Found& found) {
+Status write_registration(const RegisterArguments& arguments, const Found& found) {
   if (found.deformable)
     TROCAR_TRY_STATUS(io::write_deformation(found.rigid.X_CU, found.deformable->field_U, arguments.deformation()));
   return io::write_transform(found.rigid.X_CU, arguments.out);
 }
 
-Status register_volumes(const Arguments& arguments) {
+Status register_volumes(const RegisterArguments& arguments) {
   TROCAR_TRY_STATUS(check_arguments(arguments));
   const InterruptibleWork interruptible;
   const ProgressPrinter printer;
   const Progress progress = printer.callback();
-  report(progress, "reading the volumes", 0.0);
+  core::report(progress, "reading the volumes", 0.0);
   const auto start = std::chrono::steady_clock::now();
   TROCAR_TRY(const Inputs inputs, read_inputs(arguments));
   warn_of_landmarks(inputs.landmarks);
@@ -177,8 +178,8 @@ Status register_volumes(const Arguments& arguments) {
                registration::overlay_picture(inputs.ct, inputs.us.gray, inputs.us.beams, found->rigid.X_CU));
     TROCAR_TRY_STATUS(png::write_png(picture, arguments.checkerboard));
   }
-  TROCAR_TRY_STATUS(write_transforms(arguments, *found));
-  report(progress, "done", 1.0);
+  TROCAR_TRY_STATUS(write_registration(arguments, *found));
+  core::report(progress, "done", 1.0);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (arguments.is_json) {
     print_json(to_json(*found, inputs, seconds));
@@ -190,37 +191,37 @@ Status register_volumes(const Arguments& arguments) {
 
 }  // namespace
 
-void add_register_command(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand("register", "Register an ultrasound volume to a CT");
-  command->footer(
+void add_register_command(Command& program, Action& action) {
+  Command command = program.add_command("register", "Register an ultrasound volume to a CT");
+  command.footer(
       "The transform maps points of the ultrasound to points of the CT (ITK, LPS mm). A result of low confidence is\n"
       "refused: exit status 1, nothing is written.\n"
       "Examples:\n  trocar register --ct ct.nrrd --us liver.nrrd --out us_to_ct.tfm --checkerboard check.png\n"
       "  trocar register --ct ct.nrrd --us liver.nrrd --landmarks ct.mrk.json us.mrk.json --out us_to_ct.tfm\n");
-  const auto a = std::make_shared<Arguments>();
-  command->add_option("--ct", a->ct, "CT: .nii .nii.gz .nrrd .mha .mhd, or a DICOM folder")->required();
-  command->add_option("--us", a->us, "Ultrasound volume, one byte per voxel: the same formats")->required();
+  const auto a = std::make_shared<RegisterArguments>();
+  command.add_option("--ct", a->ct, "CT: .nii .nii.gz .nrrd .mha .mhd, or a DICOM folder").required();
+  command.add_option("--us", a->us, "Ultrasound volume, one byte per voxel: the same formats").required();
   command
-      ->add_option("--landmarks", a->landmarks,
-                   "Start: landmarks of CT and ultrasound, two Slicer markups (.mrk.json), paired by label")
-      ->expected(2)
-      ->type_name("CT US");
+      .add_option("--landmarks", a->landmarks,
+                  "Start: landmarks of CT and ultrasound, two Slicer markups (.mrk.json), paired by label")
+      .values(2)
+      .type_name("CT US");
   command
-      ->add_option(
+      .add_option(
           "--init", a->init,
           "Start without landmarks: header (the volumes share a frame) or search (transducer anywhere on the skin)")
-      ->check(CLI::IsMember({"header", "search"}))
-      ->capture_default_str();
-  command->add_option("--beam-axis", a->beam_axis,
-                      "Direction of sound along the index axes: +x, -x, … -z; default: the header's, else +y");
-  command->add_option("--out", a->out, "Output: rigid transform, .tfm")->required();
-  command->add_flag(
+      .one_of({"header", "search"})
+      .show_default();
+  command.add_option("--beam-axis", a->beam_axis,
+                     "Direction of sound along the index axes: +x, -x, … -z; default: the header's, else +y");
+  command.add_option("--out", a->out, "Output: rigid transform, .tfm").required();
+  command.add_flag(
       "--deformable", a->is_deformable,
       "Also deform by a B-spline: written beside the rigid transform as NAME.deformable.tfm (ITK composite)");
-  command->add_option("--checkerboard", a->checkerboard, "Picture of both volumes to judge the result by: .png");
-  command->add_option("--seed", a->seed, "Random seed of samples and starts")->capture_default_str();
-  command->add_flag("--json", a->is_json, "Print one JSON object");
-  command->callback([&action, a] { action = [a] { return register_volumes(*a); }; });
+  command.add_option("--checkerboard", a->checkerboard, "Picture of both volumes to judge the result by: .png");
+  command.add_option("--seed", a->seed, "Random seed of samples and starts").show_default();
+  command.add_flag("--json", a->is_json, "Print one JSON object");
+  command.when_parsed([&action, a] { action = [a] { return register_volumes(*a); }; });
 }
 
 }  // namespace trocar::cli

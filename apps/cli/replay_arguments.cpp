@@ -31,11 +31,9 @@ Status check_contradictions(const NamedOptions& named, const cases::CaseOptions&
 
 }  // namespace
 
-void NamedOptions::note(const CLI::App& command) {
-  for (const CLI::Option* option : command.get_options()) {
-    if (option->count() == 0) continue;
-    names_.insert(option->get_positional() ? kTask : option->get_name());
-  }
+void NamedOptions::note(const Command& command) {
+  for (const Option& option : command.options())
+    if (option.is_given()) names_.insert(option.argument_name().empty() ? option.name() : kTask);
 }
 
 Status restore_arguments(const NamedOptions& named, cases::CaseOptions& the_case, attempt::RunOptions& run,

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <initializer_list>
 #include <set>
 #include <string>
 
+#include "action.h"
 #include "attempt/live/performer.h"
 #include "io/patient/patient_source.h"
 
@@ -13,7 +13,7 @@ namespace trocar::cli {
 /// The options of a command that were named on the command line, "--seed".
 class NamedOptions {
  public:
-  void note(const CLI::App& command);
+  void note(const Command& command);
   bool has(const std::string& option) const { return names_.contains(option); }
 
  private:

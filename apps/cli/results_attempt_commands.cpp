@@ -1,18 +1,18 @@
 // trocar results list: attempts.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <map>
 
-#include "number_option.h"
+#include "config/json.h"
+#include "json_parts.h"
 #include "results/attempts.h"
 #include "results_commands.h"
 
 namespace trocar::cli {
 namespace {
 
-struct Arguments {
+struct ListArguments {
   std::string person, task, course;
   std::int64_t limit = 50;
   bool is_json = false;
@@ -29,7 +29,6 @@ std::string case_text(const results::Case& the_case) {
 }
 
 config::Json attempt_json(const results::Attempt& a, const results::Person& person) {
-  const auto or_null = [](const auto& value) { return value ? config::Json(*value) : config::Json(nullptr); };
   return {{"id", a.id},
           {"sequence", a.sequence},
           {"person", person.name},
@@ -47,7 +46,7 @@ config::Json attempt_json(const results::Attempt& a, const results::Person& pers
           {"station", a.station}};
 }
 
-Status list(const std::string& url, const Arguments& arguments) {
+Status list_attempts(const std::string& url, const ListArguments& arguments) {
   TROCAR_TRY(results::Repository repository, open_results(url, database::Missing::kRefuse));
   results::AttemptFilter filter{{}, arguments.task, arguments.course};
   if (!arguments.person.empty()) {
@@ -84,17 +83,16 @@ Status list(const std::string& url, const Arguments& arguments) {
 
 }  // namespace
 
-void add_results_attempt_commands(CLI::App& results, const DatabaseOption& url, Action& action) {
-  CLI::App* command = results.add_subcommand("list", "List attempts, the newest last");
-  const auto a = std::make_shared<Arguments>();
-  command->add_option("--person", a->person, "Only of this person");
-  command->add_option("--task", a->task, "Only of this task");
-  command->add_option("--course", a->course, "Only of the people of this course");
-  arguments::whole_number_within(command->add_option("--limit", a->limit, "The newest so many"), 1, 1'000'000)
-      ->capture_default_str();
-  command->add_flag("--json", a->is_json, "Print one JSON object");
-  command->footer("Example:\n  trocar results list --person \"Anna Meier\" --task liver-biopsy\n");
-  command->callback([&action, url, a] { action = [url, a] { return list(*url, *a); }; });
+void add_results_attempt_commands(Command& results, const DatabaseOption& url, Action& action) {
+  Command command = results.add_command("list", "List attempts, the newest last");
+  const auto a = std::make_shared<ListArguments>();
+  command.add_option("--person", a->person, "Only of this person");
+  command.add_option("--task", a->task, "Only of this task");
+  command.add_option("--course", a->course, "Only of the people of this course");
+  command.add_option("--limit", a->limit, "The newest so many").whole_number_within(1, 1'000'000).show_default();
+  command.add_flag("--json", a->is_json, "Print one JSON object");
+  command.footer("Example:\n  trocar results list --person \"Anna Meier\" --task liver-biopsy\n");
+  command.when_parsed([&action, url, a] { action = [url, a] { return list_attempts(*url, *a); }; });
 }
 
 }  // namespace trocar::cli

@@ -2,8 +2,6 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-
 #include "commands.h"
 #include "results_commands.h"
 #include "serve_accounts.h"
@@ -27,22 +25,22 @@ results::Seconds now_s() {
   return std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
 }
 
-void add_results_commands(CLI::App& program, Action& action) {
-  CLI::App* results = program.add_subcommand("results", "People, their attempts, learning curves and validity");
-  results->require_subcommand(1);
+void add_results_commands(Command& program, Action& action) {
+  Command results = program.add_command("results", "People, their attempts, learning curves and validity");
+  results.require_command();
   const auto url = std::make_shared<std::string>();
-  results->add_option("--db", *url,
-                      "Database: an SQLite file, or postgresql://USER:PASSWORD@HOST/NAME [$TROCAR_DB, else "
-                      "results.sqlite in $XDG_DATA_HOME/trocar]");
-  results->footer(
+  results.add_option("--db", *url,
+                     "Database: an SQLite file, or postgresql://USER:PASSWORD@HOST/NAME [$TROCAR_DB, else "
+                     "results.sqlite in $XDG_DATA_HOME/trocar]");
+  results.footer(
       "Examples:\n  trocar results add \"Anna Meier\" --course \"Radiology 2026\"\n"
       "  trocar results import sessions/*.trocar --person \"Anna Meier\"\n  trocar results list --task liver-biopsy\n"
       "  trocar results --db postgresql://trocar@db.example/trocar people\n");
-  add_results_people_commands(*results, url, action);
-  add_results_attempt_commands(*results, url, action);
-  add_results_exchange_commands(*results, url, action);
-  add_results_curve_command(*results, url, action);
-  add_results_validity_command(*results, url, action);
+  add_results_people_commands(results, url, action);
+  add_results_attempt_commands(results, url, action);
+  add_results_exchange_commands(results, url, action);
+  add_results_curve_command(results, url, action);
+  add_results_validity_command(results, url, action);
 }
 
 }  // namespace trocar::cli

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <CLI/App.hpp>
 #include <memory>
 #include <string>
 
+#include "action.h"
 #include "output.h"
 #include "results/repository.h"
 
@@ -13,11 +13,11 @@ namespace trocar::cli {
 using DatabaseOption = std::shared_ptr<const std::string>;
 
 // Sub-commands of `results`.
-void add_results_people_commands(CLI::App& results, const DatabaseOption& url, Action& action);
-void add_results_attempt_commands(CLI::App& results, const DatabaseOption& url, Action& action);
-void add_results_exchange_commands(CLI::App& results, const DatabaseOption& url, Action& action);
-void add_results_curve_command(CLI::App& results, const DatabaseOption& url, Action& action);
-void add_results_validity_command(CLI::App& results, const DatabaseOption& url, Action& action);
+void add_results_people_commands(Command& results, const DatabaseOption& url, Action& action);
+void add_results_attempt_commands(Command& results, const DatabaseOption& url, Action& action);
+void add_results_exchange_commands(Command& results, const DatabaseOption& url, Action& action);
+void add_results_curve_command(Command& results, const DatabaseOption& url, Action& action);
+void add_results_validity_command(Command& results, const DatabaseOption& url, Action& action);
 
 /// Opens the database of --db; empty: $TROCAR_DB, else that of the user. `missing`: whether a new one is made.
 Result<results::Repository> open_results(const std::string& url, database::Missing missing);

@@ -1,11 +1,11 @@
 // trocar results curve: how a person learns a task.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 
-#include "number_option.h"
+#include "config/json.h"
+#include "json_parts.h"
 #include "results/curves.h"
 #include "results/people.h"
 #include "results_commands.h"
@@ -16,17 +16,12 @@ namespace {
 
 using results::LearningCurve;
 
-struct Arguments {
+struct CurveArguments {
   std::string person, task;
   std::int64_t window = 5;
   results::CurveRules rules;
   bool is_json = false;
 };
-
-template <class T>
-config::Json or_null(const std::optional<T>& value) {
-  return value ? config::Json(*value) : config::Json(nullptr);
-}
 
 const char* decision_text(cohort::Cusum::Decision decision) {
   return decision == cohort::Cusum::Decision::kAcceptable ? "acceptable" : "unacceptable";
@@ -42,7 +37,7 @@ config::Json cusum_json(const LearningCurve& curve, const cohort::CusumRates& ra
           {"pass_step", curve.cusum.pass_step}};
 }
 
-config::Json curve_json(const LearningCurve& curve, const results::Person& person, const Arguments& arguments) {
+config::Json curve_json(const LearningCurve& curve, const results::Person& person, const CurveArguments& arguments) {
   config::Json points = config::Json::array(), peers = config::Json::array(), experts;
   for (const results::CurveAttempt& point : curve.attempts) {
     const results::Attempt& attempt = point.attempt;
@@ -91,7 +86,7 @@ class PlotLine {
   std::string text_ = std::string(kWidth, ' ');
 };
 
-std::string number_text(const std::optional<double>& value, int decimals) {
+std::string text_or_dash(const std::optional<double>& value, int decimals) {
   return value ? fmt::format("{:.{}f}", *value, decimals) : std::string("-");
 }
 
@@ -112,8 +107,8 @@ void print_attempts(const LearningCurve& curve, std::int64_t window) {
     scored += attempt.score ? 1 : 0;
     const char* const verdict = !attempt.score ? "not scored" : attempt.is_passed ? "passed" : "not passed";
     fmt::print("{:>3}  {:<16}  {:<12} {:>5}  {:<10} {:>10} {:>6}  |{}|\n", n + 1, minute_text(attempt.started),
-               attempt.the_case.patient, number_text(attempt.score, 1), verdict, number_text(point.moving_mean, 1),
-               number_text(point.cusum, 2), line.text());
+               attempt.the_case.patient, text_or_dash(attempt.score, 1), verdict, text_or_dash(point.moving_mean, 1),
+               text_or_dash(point.cusum, 2), line.text());
   }
   fmt::print("plot: * score, o moving mean{}{}\n", curve.peers > 0 ? ", . mean of the peers at this attempt" : "",
              curve.experts ? ", E mean of the experts" : "");
@@ -134,7 +129,7 @@ void print_cusum(const cohort::Cusum& cusum, const cohort::CusumRates& rates) {
   fmt::print("{} since scored attempt {}\n", decision_text(last.decision), last.attempt);
 }
 
-void print_curve(const LearningCurve& curve, const results::Person& person, const Arguments& arguments) {
+void print_curve(const LearningCurve& curve, const results::Person& person, const CurveArguments& arguments) {
   const auto passed = std::count_if(curve.attempts.begin(), curve.attempts.end(),
                                     [](const auto& point) { return point.attempt.score && point.attempt.is_passed; });
   fmt::print("{} ({}{}), {}: {} attempts, {} scored, {} passed\n", person.name, to_string(person.group),
@@ -156,7 +151,7 @@ Status check_task(const std::string& task) {
   return {};
 }
 
-Status show(const std::string& url, Arguments& arguments) {
+Status show_curve(const std::string& url, CurveArguments& arguments) {
   TROCAR_TRY(results::Repository repository, open_results(url, database::Missing::kRefuse));
   TROCAR_TRY(const results::Person person, results::get_person_named(repository, arguments.person));
   arguments.rules.window = static_cast<std::size_t>(arguments.window);
@@ -173,24 +168,21 @@ Status show(const std::string& url, Arguments& arguments) {
 
 }  // namespace
 
-void add_results_curve_command(CLI::App& results, const DatabaseOption& url, Action& action) {
-  CLI::App* command = results.add_subcommand("curve", "Show how a person learns a task: moving mean and CUSUM");
-  const auto a = std::make_shared<Arguments>();
-  command->add_option("--person", a->person, "Name of the person")->required();
-  command->add_option("--task", a->task, "Task; see trocar task list")->required();
-  arguments::whole_number_within(command->add_option("--window", a->window, "Attempts of the moving mean"), 1, 1000)
-      ->capture_default_str();
-  arguments::number_within(
-      command->add_option("--acceptable", a->rules.cusum.acceptable, "Failure rate of a competent person"), 0.001, 0.9,
-      "")
-      ->capture_default_str();
-  arguments::number_within(
-      command->add_option("--unacceptable", a->rules.cusum.unacceptable, "Failure rate that must be found"), 0.001,
-      0.999, "")
-      ->capture_default_str();
-  command->add_flag("--json", a->is_json, "Print one JSON object");
-  command->footer("Example:\n  trocar results curve --person \"Anna Meier\" --task liver-biopsy\n");
-  command->callback([&action, url, a] { action = [url, a] { return show(*url, *a); }; });
+void add_results_curve_command(Command& results, const DatabaseOption& url, Action& action) {
+  Command command = results.add_command("curve", "Show how a person learns a task: moving mean and CUSUM");
+  const auto a = std::make_shared<CurveArguments>();
+  command.add_option("--person", a->person, "Name of the person").required();
+  command.add_option("--task", a->task, "Task; see trocar task list").required();
+  command.add_option("--window", a->window, "Attempts of the moving mean").whole_number_within(1, 1000).show_default();
+  command.add_option("--acceptable", a->rules.cusum.acceptable, "Failure rate of a competent person")
+      .number_within(0.001, 0.9, "")
+      .show_default();
+  command.add_option("--unacceptable", a->rules.cusum.unacceptable, "Failure rate that must be found")
+      .number_within(0.001, 0.999, "")
+      .show_default();
+  command.add_flag("--json", a->is_json, "Print one JSON object");
+  command.footer("Example:\n  trocar results curve --person \"Anna Meier\" --task liver-biopsy\n");
+  command.when_parsed([&action, url, a] { action = [url, a] { return show_curve(*url, *a); }; });
 }
 
 }  // namespace trocar::cli

@@ -1,7 +1,6 @@
 // trocar results import, export: session files and CSV.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 
 #include "learning/curriculum.h"
@@ -66,7 +65,7 @@ Status import_files(const std::string& url, const ImportArguments& arguments) {
     const ProgressPrinter printer;
     const Progress progress = printer.callback();
     for (std::size_t n = 0; n < files.size(); ++n) {
-      report(progress, files[n].filename().string(), static_cast<double>(n) / static_cast<double>(files.size()));
+      core::report(progress, files[n].filename().string(), static_cast<double>(n) / static_cast<double>(files.size()));
       if (files[n].extension() == ".csv") {
         TROCAR_TRY(const results::ImportedRows rows, results::import_attempts(repository, files[n], now_s()));
         added += rows.added;
@@ -110,31 +109,31 @@ Status export_results(const std::string& url, const ExportArguments& arguments) 
 
 }  // namespace
 
-void add_results_exchange_commands(CLI::App& results, const DatabaseOption& url, Action& action) {
-  CLI::App* imported = results.add_subcommand("import", "Record session files, or attempts from a CSV file");
+void add_results_exchange_commands(Command& results, const DatabaseOption& url, Action& action) {
+  Command imported = results.add_command("import", "Record session files, or attempts from a CSV file");
   const auto i = std::make_shared<ImportArguments>();
-  imported->add_option("files", i->files, "Session files, folders of them, CSV files of results export")->required();
-  imported->add_option("--person", i->person, "Whose sessions they are, added if new [who the sessions name]");
-  imported->add_option("--group", i->group, "Group of a new person: trainee or expert")->capture_default_str();
-  imported->add_option("--course", i->course, "Course of a new person");
-  imported->add_flag("--simulated", i->is_simulated, "A new person is a scripted operator");
-  imported->footer(
+  imported.add_option("files", i->files, "Session files, folders of them, CSV files of results export").required();
+  imported.add_option("--person", i->person, "Whose sessions they are, added if new [who the sessions name]");
+  imported.add_option("--group", i->group, "Group of a new person: trainee or expert").show_default();
+  imported.add_option("--course", i->course, "Course of a new person");
+  imported.add_flag("--simulated", i->is_simulated, "A new person is a scripted operator");
+  imported.footer(
       "Examples:\n  trocar results import first.session --person \"Anna Meier\"\n"
       "  trocar results import attempts.csv\n");
-  imported->callback([&action, url, i] { action = [url, i] { return import_files(*url, *i); }; });
+  imported.when_parsed([&action, url, i] { action = [url, i] { return import_files(*url, *i); }; });
 
-  CLI::App* exported = results.add_subcommand("export", "Write attempts as CSV, or the session file of one attempt");
+  Command exported = results.add_command("export", "Write attempts as CSV, or the session file of one attempt");
   const auto e = std::make_shared<ExportArguments>();
-  exported->add_option("--csv", e->csv, "CSV file to write, one row an attempt");
-  exported->add_option("--attempt", e->attempt, "Key of an attempt; see trocar results list");
-  exported->add_option("--out", e->out, "Session file to write, with --attempt");
-  exported->add_option("--person", e->person, "Only of this person");
-  exported->add_option("--task", e->task, "Only of this task");
-  exported->add_option("--course", e->course, "Only of the people of this course");
-  exported->footer(
+  exported.add_option("--csv", e->csv, "CSV file to write, one row an attempt");
+  exported.add_option("--attempt", e->attempt, "Key of an attempt; see trocar results list");
+  exported.add_option("--out", e->out, "Session file to write, with --attempt");
+  exported.add_option("--person", e->person, "Only of this person");
+  exported.add_option("--task", e->task, "Only of this task");
+  exported.add_option("--course", e->course, "Only of the people of this course");
+  exported.footer(
       "Examples:\n  trocar results export --csv attempts.csv --course \"Radiology 2026\"\n"
       "  trocar results export --attempt 3f0a9c… --out replay.session\n");
-  exported->callback([&action, url, e] { action = [url, e] { return export_results(*url, *e); }; });
+  exported.when_parsed([&action, url, e] { action = [url, e] { return export_results(*url, *e); }; });
 }
 
 }  // namespace trocar::cli

@@ -2,11 +2,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
 #include <map>
 
+#include "config/json.h"
 #include "results/attempts.h"
 #include "results/people.h"
 #include "results_commands.h"
@@ -16,7 +16,7 @@ namespace {
 
 using database::Missing;
 
-struct Arguments {
+struct PersonArguments {
   std::string name, new_name, group = "trainee", course, attempt;
   bool is_simulated = false, is_json = false, is_sure = false, has_no_pin = false;
   std::string pins;
@@ -27,7 +27,7 @@ Result<results::Group> parse_group(const std::string& name) {
   return fail_usage("unknown group \"" + name + "\"", "--group", "use trainee or expert");
 }
 
-Status add(const std::string& url, const Arguments& arguments) {
+Status add_person(const std::string& url, const PersonArguments& arguments) {
   TROCAR_TRY(const results::Group group, parse_group(arguments.group));
   TROCAR_TRY_STATUS(results::clean_name(arguments.name, "the name of a person"));  // before a database is made
   TROCAR_TRY(results::Repository repository, open_results(url, Missing::kCreate));
@@ -70,7 +70,7 @@ Status list_people(const std::string& url, bool is_json) {
   return {};
 }
 
-Status change(const std::string& url, const Arguments& arguments, bool has_group, bool has_course) {
+Status change(const std::string& url, const PersonArguments& arguments, bool has_group, bool has_course) {
   TROCAR_TRY(results::Repository repository, open_results(url, Missing::kRefuse));
   TROCAR_TRY(const results::Person person, results::get_person_named(repository, arguments.name));
   TROCAR_TRY(const results::Group group, parse_group(arguments.group));
@@ -97,7 +97,7 @@ Result<std::string> read_pin() {
   return line;
 }
 
-Status set_pin(const std::string& url, const Arguments& arguments) {
+Status set_pin(const std::string& url, const PersonArguments& arguments) {
   TROCAR_TRY(results::Repository repository, open_results(url, Missing::kRefuse));
   TROCAR_TRY(const results::Person person, results::get_person_named(repository, arguments.name));
   std::string pin;
@@ -117,7 +117,7 @@ Status change_pins(const std::string& url, const std::string& choice) {
   return {};
 }
 
-Status delete_data(const std::string& url, const Arguments& arguments) {
+Status delete_data(const std::string& url, const PersonArguments& arguments) {
   if (arguments.name.empty() == arguments.attempt.empty())
     return fail_usage("nothing to delete", "trocar results delete", "give either --person or --attempt");
   TROCAR_TRY(results::Repository repository, open_results(url, Missing::kRefuse));
@@ -138,51 +138,48 @@ Status delete_data(const std::string& url, const Arguments& arguments) {
 
 }  // namespace
 
-void add_results_people_commands(CLI::App& results, const DatabaseOption& url, Action& action) {
-  const auto a = std::make_shared<Arguments>();
-  CLI::App* people = results.add_subcommand("people", "List the people with their groups, courses and attempts");
-  people->add_flag("--json", a->is_json, "Print one JSON object");
-  people->footer("Example:\n  trocar results people\n");
-  people->callback([&action, url, a] { action = [url, a] { return list_people(*url, a->is_json); }; });
+void add_results_people_commands(Command& results, const DatabaseOption& url, Action& action) {
+  const auto a = std::make_shared<PersonArguments>();
+  Command people = results.add_command("people", "List the people with their groups, courses and attempts");
+  people.add_flag("--json", a->is_json, "Print one JSON object");
+  people.footer("Example:\n  trocar results people\n");
+  people.when_parsed([&action, url, a] { action = [url, a] { return list_people(*url, a->is_json); }; });
 
-  CLI::App* added = results.add_subcommand("add", "Add a person");
-  added->add_option("name", a->name, "Name, as it is shown")->required();
-  added->add_option("--group", a->group, "trainee or expert")->capture_default_str();
-  added->add_option("--course", a->course, "Course; made if it is new");
-  added->add_flag("--simulated", a->is_simulated, "A scripted operator; said wherever its results are shown");
-  added->footer("Example:\n  trocar results add \"Anna Meier\" --course \"Radiology 2026\"\n");
-  added->callback([&action, url, a] { action = [url, a] { return add(*url, *a); }; });
+  Command added = results.add_command("add", "Add a person");
+  added.add_option("name", a->name, "Name, as it is shown").required();
+  added.add_option("--group", a->group, "trainee or expert").show_default();
+  added.add_option("--course", a->course, "Course; made if it is new");
+  added.add_flag("--simulated", a->is_simulated, "A scripted operator; said wherever its results are shown");
+  added.footer("Example:\n  trocar results add \"Anna Meier\" --course \"Radiology 2026\"\n");
+  added.when_parsed([&action, url, a] { action = [url, a] { return add_person(*url, *a); }; });
 
-  CLI::App* changed = results.add_subcommand("change", "Change name, group or course of a person");
-  changed->add_option("person", a->name, "Name of the person")->required();
-  changed->add_option("--name", a->new_name, "New name");
-  CLI::Option* group = changed->add_option("--group", a->group, "trainee or expert");
-  CLI::Option* course = changed->add_option("--course", a->course, "Course; made if it is new");
-  changed->footer("Example:\n  trocar results change \"Anna Meier\" --group expert\n");
-  changed->callback([&action, url, a, group, course] {
-    action = [url, a, group, course] { return change(*url, *a, group->count() > 0, course->count() > 0); };
+  Command changed = results.add_command("change", "Change name, group or course of a person");
+  changed.add_option("person", a->name, "Name of the person").required();
+  changed.add_option("--name", a->new_name, "New name");
+  Option group = changed.add_option("--group", a->group, "trainee or expert");
+  Option course = changed.add_option("--course", a->course, "Course; made if it is new");
+  changed.footer("Example:\n  trocar results change \"Anna Meier\" --group expert\n");
+  changed.when_parsed([&action, url, a, group, course] {
+    action = [url, a, group, course] { return change(*url, *a, group.is_given(), course.is_given()); };
   });
 
-  CLI::App* pin =
-      results.add_subcommand("pin", "Set or remove the PIN of a person, read from terminal or standard input");
-  pin->add_option("person", a->name, "Name of the person")->required();
-  pin->add_flag("--none", a->has_no_pin, "Remove it");
-  pin->footer("Example:\n  trocar results pin \"Anna Meier\"\n");
-  pin->callback([&action, url, a] { action = [url, a] { return set_pin(*url, *a); }; });
+  Command pin = results.add_command("pin", "Set or remove the PIN of a person, read from terminal or standard input");
+  pin.add_option("person", a->name, "Name of the person").required();
+  pin.add_flag("--none", a->has_no_pin, "Remove it");
+  pin.footer("Example:\n  trocar results pin \"Anna Meier\"\n");
+  pin.when_parsed([&action, url, a] { action = [url, a] { return set_pin(*url, *a); }; });
 
-  CLI::App* pins = results.add_subcommand("pins", "Say whether everybody has to have a PIN");
-  pins->add_option("choice", a->pins, "required or optional")
-      ->required()
-      ->check(CLI::IsMember({"required", "optional"}));
-  pins->footer("Example:\n  trocar results pins required\n");
-  pins->callback([&action, url, a] { action = [url, a] { return change_pins(*url, a->pins); }; });
+  Command pins = results.add_command("pins", "Say whether everybody has to have a PIN");
+  pins.add_option("choice", a->pins, "required or optional").required().one_of({"required", "optional"});
+  pins.footer("Example:\n  trocar results pins required\n");
+  pins.when_parsed([&action, url, a] { action = [url, a] { return change_pins(*url, a->pins); }; });
 
-  CLI::App* removed = results.add_subcommand("delete", "Delete a person with all data, or one attempt, for ever");
-  removed->add_option("--person", a->name, "Name of the person");
-  removed->add_option("--attempt", a->attempt, "Key of the attempt; see trocar results list");
-  removed->add_flag("--yes", a->is_sure, "Do it; without, the data of the person are only counted");
-  removed->footer("Example:\n  trocar results delete --person \"Anna Meier\" --yes\n");
-  removed->callback([&action, url, a] { action = [url, a] { return delete_data(*url, *a); }; });
+  Command removed = results.add_command("delete", "Delete a person with all data, or one attempt, for ever");
+  removed.add_option("--person", a->name, "Name of the person");
+  removed.add_option("--attempt", a->attempt, "Key of the attempt; see trocar results list");
+  removed.add_flag("--yes", a->is_sure, "Do it; without, the data of the person are only counted");
+  removed.footer("Example:\n  trocar results delete --person \"Anna Meier\" --yes\n");
+  removed.when_parsed([&action, url, a] { action = [url, a] { return delete_data(*url, *a); }; });
 }
 
 }  // namespace trocar::cli

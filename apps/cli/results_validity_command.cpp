@@ -1,12 +1,11 @@
 // trocar results validity: evidence that the scores of a task mean something.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <limits>
 
+#include "config/json.h"
 #include "core/parse_number.h"
-#include "number_option.h"
 #include "results/validity.h"
 #include "results_commands.h"
 
@@ -15,7 +14,7 @@ namespace {
 
 using cohort::Validity;
 
-struct Arguments {
+struct ValidityArguments {
   results::EvidenceFilter filter;
   cohort::ValidityRules rules;
   std::string attempts = "1-3", correction = "bh";
@@ -82,7 +81,7 @@ config::Json pass_mark_json(const Result<cohort::PassMark>& mark) {
           {"novices", mark->novices.people}};
 }
 
-config::Json validity_json(const Validity& validity, const Arguments& arguments) {
+config::Json validity_json(const Validity& validity, const ValidityArguments& arguments) {
   config::Json metrics = config::Json::array();
   for (const cohort::MetricValidity& metric : validity.metrics) metrics.push_back(metric_json(metric));
   const double share =
@@ -124,7 +123,7 @@ void print_metric(const cohort::MetricValidity& metric) {
              found.auc_interval.high, found.test.p, metric.corrected_p, metric.discriminates ? "yes" : "no");
 }
 
-void print_people(const Validity& validity, const Arguments& arguments) {
+void print_people(const Validity& validity, const ValidityArguments& arguments) {
   const std::size_t people = validity.experts + validity.novices;
   std::string simulated;
   if (validity.simulated == people)
@@ -188,13 +187,13 @@ void print_table(const Validity& validity) {
   for (const cohort::MetricValidity& metric : validity.metrics) print_metric(metric);
 }
 
-void print_validity(const Validity& validity, const Arguments& arguments) {
+void print_validity(const Validity& validity, const ValidityArguments& arguments) {
   print_people(validity, arguments);
   print_table(validity);
   print_summary(validity, arguments.rules);
 }
 
-Status show(const std::string& url, Arguments& arguments) {
+Status show_validity(const std::string& url, ValidityArguments& arguments) {
   TROCAR_TRY(arguments.filter.attempts, parse_attempts(arguments.attempts));
   TROCAR_TRY(arguments.rules.correction, parse_correction(arguments.correction));
   TROCAR_TRY(results::Repository repository, open_results(url, database::Missing::kRefuse));
@@ -211,21 +210,20 @@ Status show(const std::string& url, Arguments& arguments) {
 
 }  // namespace
 
-void add_results_validity_command(CLI::App& results, const DatabaseOption& url, Action& action) {
-  CLI::App* command = results.add_subcommand(
+void add_results_validity_command(Command& results, const DatabaseOption& url, Action& action) {
+  Command command = results.add_command(
       "validity", "Show how the metrics of a task separate experts from novices, consistency and pass mark");
-  const auto a = std::make_shared<Arguments>();
-  command->add_option("--task", a->filter.task, "Task; see trocar task list")->required();
-  command->add_option("--course", a->filter.course, "Only people of this course");
-  command->add_option("--attempts", a->attempts, "Scored attempts of each person: 1-3, or 4- for all from the fourth")
-      ->capture_default_str();
-  command->add_option("--correction", a->correction, "For many metrics: bh (Benjamini-Hochberg), holm or none")
-      ->capture_default_str();
-  arguments::number_within(command->add_option("--level", a->rules.level, "Level of significance"), 0.0001, 0.5, "")
-      ->capture_default_str();
-  command->add_flag("--json", a->is_json, "Print one JSON object");
-  command->footer("Example:\n  trocar results validity --task liver-biopsy --attempts 1-2\n");
-  command->callback([&action, url, a] { action = [url, a] { return show(*url, *a); }; });
+  const auto a = std::make_shared<ValidityArguments>();
+  command.add_option("--task", a->filter.task, "Task; see trocar task list").required();
+  command.add_option("--course", a->filter.course, "Only people of this course");
+  command.add_option("--attempts", a->attempts, "Scored attempts of each person: 1-3, or 4- for all from the fourth")
+      .show_default();
+  command.add_option("--correction", a->correction, "For many metrics: bh (Benjamini-Hochberg), holm or none")
+      .show_default();
+  command.add_option("--level", a->rules.level, "Level of significance").number_within(0.0001, 0.5, "").show_default();
+  command.add_flag("--json", a->is_json, "Print one JSON object");
+  command.footer("Example:\n  trocar results validity --task liver-biopsy --attempts 1-2\n");
+  command.when_parsed([&action, url, a] { action = [url, a] { return show_validity(*url, *a); }; });
 }
 
 }  // namespace trocar::cli

@@ -2,14 +2,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
-
 #include "anatomy/phantom/phantom.h"
 #include "anatomy/structure_words.h"
 #include "attempt/live/realtime_session.h"
 #include "commands.h"
+#include "config/json.h"
 #include "io/patient/open_patient.h"
-#include "number_option.h"
 #include "patient_option.h"
 #include "replay_arguments.h"
 #include "run_results.h"
@@ -18,7 +16,7 @@
 namespace trocar::cli {
 namespace {
 
-struct Arguments {
+struct RunArguments {
   cases::CaseOptions the_case;
   attempt::RunOptions run;
   io::PatientSource source;
@@ -73,7 +71,7 @@ std::optional<bool> has_same_ticks(const attempt::RunOptions& run, const attempt
   return run.replayed->ticks_hash == result.ticks_hash;
 }
 
-config::Json result_json(const Arguments& arguments, const cases::Case& the_case, const attempt::RunResult& result) {
+config::Json result_json(const RunArguments& arguments, const cases::Case& the_case, const attempt::RunResult& result) {
   const scoring::Outcome& outcome = result.outcome;
   config::Json punctures = config::Json::array();
   for (const attempt::PunctureRecord& puncture : result.punctures) {
@@ -132,7 +130,7 @@ void print_part(const scoring::ScorePart& part) {
   }
 }
 
-void print_result(const Arguments& arguments, const cases::Case& the_case, const attempt::RunResult& result) {
+void print_result(const RunArguments& arguments, const cases::Case& the_case, const attempt::RunResult& result) {
   const scoring::Outcome& outcome = result.outcome;
   fmt::print("{} on {} by {}: {:.1f} s, {} ticks\n", the_case.task.title, the_case.patient->name,
              arguments.run.operator_name, result.simulated_s, result.ticks);
@@ -168,7 +166,7 @@ void print_result(const Arguments& arguments, const cases::Case& the_case, const
 }
 
 /// Checks the options of live servers for conflicts.
-Status check_servers(Arguments& a) {
+Status check_servers(RunArguments& a) {
   const bool names_servers = !a.realtime.endpoints.empty() || !a.key_file.empty() || !a.server_key_file.empty();
   if (names_servers && !a.is_realtime)
     return fail_usage("these options need --realtime", "--endpoint, --keys, --server-key", "add --realtime");
@@ -200,7 +198,7 @@ Status prepare_session_file(const std::filesystem::path& session) {
 }
 
 /// Checks the case before a patient is opened.
-Status check_case(const Arguments& arguments) {
+Status check_case(const RunArguments& arguments) {
   const attempt::RunOptions& run = arguments.run;
   if (run.replayed == nullptr) {
     TROCAR_TRY_STATUS(cases::load_tables(arguments.the_case));
@@ -214,7 +212,7 @@ Status check_case(const Arguments& arguments) {
   return {};
 }
 
-Result<cases::Case> make_case(const Arguments& arguments, anatomy::VirtualPatient opened, const Progress& progress) {
+Result<cases::Case> make_case(const RunArguments& arguments, anatomy::VirtualPatient opened, const Progress& progress) {
   auto patient = std::make_shared<const anatomy::VirtualPatient>(std::move(opened));
   const attempt::RunOptions& run = arguments.run;
   if (run.replayed == nullptr) return cases::prepare_case(std::move(patient), arguments.the_case, progress);
@@ -223,7 +221,7 @@ Result<cases::Case> make_case(const Arguments& arguments, anatomy::VirtualPatien
 }
 
 /// The level's changes of the body: an embedded patient with other numbers.
-Status change_body(Arguments& arguments) {
+Status change_body(RunArguments& arguments) {
   if (arguments.the_case.level.empty() || arguments.run.replayed != nullptr) return {};
   TROCAR_TRY(const cases::Case tables, cases::load_tables(arguments.the_case));
   const tasks::Level* const level = tasks::level_of(tables.task);
@@ -239,7 +237,7 @@ Status change_body(Arguments& arguments) {
   return {};
 }
 
-Status run(Arguments& arguments) {
+Status run_task(RunArguments& arguments) {
   attempt::RunOptions& run = arguments.run;
   TROCAR_TRY_STATUS(attempt::check_run(run));
   TROCAR_TRY_STATUS(restore_arguments(arguments.named, arguments.the_case, run, arguments.source));
@@ -279,7 +277,7 @@ Status run(Arguments& arguments) {
   return {};
 }
 
-void add_server_options(CLI::App& command, Arguments& a) {
+void add_server_options(Command& command, RunArguments& a) {
   command.add_flag(
       "--realtime", a.is_realtime,
       "Run in real time through live haptic servers; without --endpoint, two servers (needle and probe) are started");
@@ -287,59 +285,54 @@ void add_server_options(CLI::App& command, Arguments& a) {
       .add_option("--endpoint", a.realtime.endpoints,
                   "Endpoint of a running trocar-hapticd: ipc://PATH, or tcp://ADDRESS:PORT with --keys; repeat it for "
                   "a second one, in any order")
-      ->allow_extra_args(false);
+      .one_value_each();
   command.add_option("--keys", a.key_file, "Your private key file, for servers on other machines (trocar link keygen)");
   command.add_option("--server-key", a.server_key_file, "The servers' public key");
-  arguments::number_within(
-      command.add_option("--patience", a.patience_s, "Time without messages until a server counts as lost"), 0.1, 600.0,
-      "s")
-      ->capture_default_str();
+  command.add_option("--patience", a.patience_s, "Time without messages until a server counts as lost")
+      .number_within(0.1, 600.0, "s")
+      .show_default();
 }
 
 }  // namespace
 
-void add_run_command(CLI::App& program, Action& action) {
-  const auto a = std::make_shared<Arguments>();
-  CLI::App* command = program.add_subcommand("run", "Perform a task with a scripted operator and record it");
+void add_run_command(Command& program, Action& action) {
+  const auto a = std::make_shared<RunArguments>();
+  Command command = program.add_command("run", "Perform a task with a scripted operator and record it");
   a->the_case.task.clear();
-  command->add_option("TASK,--task", a->the_case.task,
-                      "Task: see trocar task list, or a task file (.toml); the patient's own when left out");
-  command->add_option("--patient", a->source.folder_or_name,
-                      "Patient folder, or name of an embedded patient; default of a replay: the session's patient");
+  command.add_option("TASK,--task", a->the_case.task,
+                     "Task: see trocar task list, or a task file (.toml); the patient's own when left out");
+  command.add_option("--patient", a->source.folder_or_name,
+                     "Patient folder, or name of an embedded patient; default of a replay: the session's patient");
   command
-      ->add_option("--operator", a->run.operator_name,
-                   "expert, novice, novice:SHARE with a share of the novice's errors from 0 (none) to 1, "
-                   "constant-velocity:MM_PER_S or replay:SESSION")
-      ->required();
-  command->add_option("--out", a->run.session, "Session file to write")->required();
-  command->add_option("--force-model", a->run.force_model,
-                      "Force model: insertion (paper A), proxy (paper B) or combined; default: the task's model");
-  command
-      ->add_option("--device", a->run.device, "Simulated device with its limits and coupling; see trocar device list")
-      ->capture_default_str();
-  command->add_option("--needle", a->the_case.needle, "Needle that the task allows; the task's own when left out");
-  command->add_option("--level", a->the_case.level,
-                      "Level of difficulty of the task, by name or number; see trocar task list");
-  command->add_option("--tissues", a->the_case.tissue_file, "Tissue table (TOML) instead of data/tissues.toml");
-  command->add_option("--profile", a->the_case.profile, "Profile of the tissue table: paper-a, tented ...");
-  command->add_option("--set", a->the_case.overrides, "Override numbers of the tissue table: liver.k=0.5")
-      ->allow_extra_args(false);
-  arguments::seed_number(
-      command->add_option("--seed", a->run.seed, "Random seed for operator, friction and path choice"))
-      ->capture_default_str();
-  arguments::seed_number(
-      command->add_option("--patient-seed", a->source.seed, "Random seed for the anatomy of an embedded patient"))
-      ->capture_default_str();
-  arguments::number_within(command->add_option("--rate", a->run.rate_hz, "Haptic tick rate"), 250.0, 4000.0, "Hz")
-      ->capture_default_str();
-  command->add_flag("--other-patient", a->run.is_other_patient_meant,
-                    "Replay with a different patient than that of the session, given with --patient");
-  add_cache_option(*command, a->source);
-  add_server_options(*command, *a);
-  command->add_option("--person", a->person, "Record the attempt for this person in the database of results");
-  command->add_option("--db", a->database, "Database of --person; see trocar results --help");
-  command->add_flag("--json", a->is_json, "Print one JSON object");
-  command->footer(
+      .add_option("--operator", a->run.operator_name,
+                  "expert, novice, novice:SHARE with a share of the novice's errors from 0 (none) to 1, "
+                  "constant-velocity:MM_PER_S or replay:SESSION")
+      .required();
+  command.add_option("--out", a->run.session, "Session file to write").required();
+  command.add_option("--force-model", a->run.force_model,
+                     "Force model: insertion (paper A), proxy (paper B) or combined; default: the task's model");
+  command.add_option("--device", a->run.device, "Simulated device with its limits and coupling; see trocar device list")
+      .show_default();
+  command.add_option("--needle", a->the_case.needle, "Needle that the task allows; the task's own when left out");
+  command.add_option("--level", a->the_case.level,
+                     "Level of difficulty of the task, by name or number; see trocar task list");
+  command.add_option("--tissues", a->the_case.tissue_file, "Tissue table (TOML) instead of data/tissues.toml");
+  command.add_option("--profile", a->the_case.profile, "Profile of the tissue table: paper-a, tented ...");
+  command.add_option("--set", a->the_case.overrides, "Override numbers of the tissue table: liver.k=0.5")
+      .one_value_each();
+  command.add_option("--seed", a->run.seed, "Random seed for operator, friction and path choice").seed().show_default();
+  command.add_option("--patient-seed", a->source.seed, "Random seed for the anatomy of an embedded patient")
+      .seed()
+      .show_default();
+  command.add_option("--rate", a->run.rate_hz, "Haptic tick rate").number_within(250.0, 4000.0, "Hz").show_default();
+  command.add_flag("--other-patient", a->run.is_other_patient_meant,
+                   "Replay with a different patient than that of the session, given with --patient");
+  add_cache_option(command, a->source);
+  add_server_options(command, *a);
+  command.add_option("--person", a->person, "Record the attempt for this person in the database of results");
+  command.add_option("--db", a->database, "Database of --person; see trocar results --help");
+  command.add_flag("--json", a->is_json, "Print one JSON object");
+  command.footer(
       "Examples:\n  trocar run liver-biopsy --patient abdomen --operator expert --out first.session\n"
       "  trocar run liver-biopsy --patient my_patient --operator novice --set liver.k=0.5 --seed 4 --out "
       "second.session\n"
@@ -350,9 +343,9 @@ void add_run_command(CLI::App& program, Action& action) {
       "  trocar run liver-biopsy --patient abdomen --operator expert --realtime --out live.session\n"
       "  trocar run liver-biopsy --patient abdomen --operator expert --realtime --endpoint ipc:///tmp/needle "
       "--endpoint ipc:///tmp/probe --out live.session\n");
-  command->callback([&action, a, command] {
-    a->named.note(*command);
-    action = [a] { return run(*a); };
+  command.when_parsed([&action, a, command] {
+    a->named.note(command);
+    action = [a] { return run_task(*a); };
   });
 }
 

@@ -5,7 +5,6 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <iostream>
 
@@ -80,7 +79,7 @@ Result<results::Repository> open(const AccountArguments& arguments) {
   return results::Repository::open(url);
 }
 
-Status add(const AccountArguments& arguments) {
+Status add_account(const AccountArguments& arguments) {
   const auto role = results::find_role(arguments.role);
   if (!role) return fail_usage("there is no such role", "--role " + arguments.role, "choose admin or instructor");
   TROCAR_TRY(const std::string name, results::clean_name(arguments.name, "the name of an account"));
@@ -94,7 +93,7 @@ Status add(const AccountArguments& arguments) {
   return {};
 }
 
-Status list(const AccountArguments& arguments) {
+Status print_accounts(const AccountArguments& arguments) {
   TROCAR_TRY(results::Repository repository, open(arguments));
   TROCAR_TRY(const std::vector<results::Account> accounts, results::list_accounts(repository));
   for (const results::Account& account : accounts)
@@ -123,22 +122,8 @@ Status change_password(const AccountArguments& arguments) {
 
 using Work = Status (*)(const AccountArguments&);
 
-/// --db may stand before `account`, too.
-CLI::App* add_command(CLI::App& account, Action& action, const char* name, const char* description, Work work,
-                      const std::shared_ptr<AccountArguments>& a) {
-  CLI::App* command = account.add_subcommand(name, description);
-  command->add_option("--db", a->database, kDatabaseHelp);
-  if (std::string_view(name) != "list") command->add_option("NAME", a->name, "Name of the account")->required();
-  const CLI::Option* of_serve = account.get_parent()->get_option("--db");
-  command->callback([&action, a, work, of_serve] {
-    if (a->database.empty() && of_serve->count() > 0) a->database = of_serve->results().back();
-    action = [a, work] { return work(*a); };
-  });
-  return command;
-}
-
-void add_password_option(CLI::App* command, const std::shared_ptr<AccountArguments>& a) {
-  command->add_flag("--password-stdin", a->is_from_input, "Read the password from standard input, one line");
+void add_password_option(Command& command, AccountArguments& a) {
+  command.add_flag("--password-stdin", a.is_from_input, "Read the password from standard input, one line");
 }
 
 }  // namespace
@@ -147,22 +132,31 @@ Result<database::DatabaseUrl> database_of(const std::string& option) {
   return option.empty() ? results::default_url() : database::parse_url(option);
 }
 
-void add_serve_account_commands(CLI::App& serve, Action& action) {
-  CLI::App* account = serve.add_subcommand("account", "Manage who may log in");
-  account->require_subcommand(1);
+void add_serve_account_commands(Command& serve, Action& action) {
+  Command account = serve.add_command("account", "Manage who may log in");
+  account.require_command();
   const auto a = std::make_shared<AccountArguments>();
-  CLI::App* adding = add_command(*account, action, "add", "Add an account; asks for its password", add, a);
-  adding->add_option("--role", a->role, "admin (also accounts and deletion of people) or instructor")
-      ->capture_default_str();
-  add_password_option(adding, a);
-  adding->footer(
+  const Option db_of_serve = serve.option("--db");  // may stand before `account`, too
+  const auto add_command = [&](const char* name, const char* description, Work work) {
+    Command command = account.add_command(name, description);
+    command.add_option("--db", a->database, kDatabaseHelp);
+    if (work != print_accounts) command.add_option("NAME", a->name, "Name of the account").required();
+    command.when_parsed([&action, a, work, db_of_serve] {
+      if (a->database.empty() && db_of_serve.is_given()) a->database = db_of_serve.texts().back();
+      action = [a, work] { return work(*a); };
+    });
+    return command;
+  };
+  Command adding = add_command("add", "Add an account; asks for its password", add_account);
+  adding.add_option("--role", a->role, "admin (also accounts and deletion of people) or instructor").show_default();
+  add_password_option(adding, *a);
+  adding.footer(
       "Examples:\n  trocar serve account add \"Dr. Weber\" --role admin\n"
       "  pwgen 20 1 | tee /dev/tty | trocar serve account add guest --password-stdin\n");
-  add_command(*account, action, "list", "List the accounts", list, a);
-  add_command(*account, action, "remove", "Remove an account and end its logins", remove, a);
-  CLI::App* changing =
-      add_command(*account, action, "password", "Set a new password and end the logins", change_password, a);
-  add_password_option(changing, a);
+  add_command("list", "List the accounts", print_accounts);
+  add_command("remove", "Remove an account and end its logins", remove);
+  Command changing = add_command("password", "Set a new password and end the logins", change_password);
+  add_password_option(changing, *a);
 }
 
 }  // namespace trocar::cli

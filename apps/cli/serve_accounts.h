@@ -14,6 +14,6 @@ inline constexpr const char* kDatabaseHelp =
 Result<database::DatabaseUrl> database_of(const std::string& option);
 
 /// Adds `account` with add, list, remove and password to `serve`.
-void add_serve_account_commands(CLI::App& serve, Action& action);
+void add_serve_account_commands(Command& serve, Action& action);
 
 }  // namespace trocar::cli

@@ -1,7 +1,6 @@
 // trocar serve: the instructor's page and its accounts.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <thread>
 
@@ -92,28 +91,28 @@ Status serve(const ServeArguments& arguments) {
 
 }  // namespace
 
-void add_serve_command(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand("serve", "Serve the instructor's page and the web questionnaire");
+void add_serve_command(Command& program, Action& action) {
+  Command command = program.add_command("serve", "Serve the instructor's page and the web questionnaire");
   const auto a = std::make_shared<ServeArguments>();
-  command->add_option("--db", a->database, kDatabaseHelp);
-  command->add_option("--listen", a->listen, "Address and port, HOST:PORT")->capture_default_str();
-  command->add_option("--certificate", a->certificate, "Certificate for TLS, with its chain (PEM)");
-  command->add_option("--key", a->key, "Its private key (PEM, without a password)");
-  command->add_option("--name", a->names, "A name of this server in its address, beside those of the certificate")
-      ->allow_extra_args(false);
-  command->add_flag("--behind-proxy", a->is_behind_proxy,
-                    "A proxy in front uses TLS, passes Host and adds X-Forwarded-For");
-  command->footer(
+  command.add_option("--db", a->database, kDatabaseHelp);
+  command.add_option("--listen", a->listen, "Address and port, HOST:PORT").show_default();
+  command.add_option("--certificate", a->certificate, "Certificate for TLS, with its chain (PEM)");
+  command.add_option("--key", a->key, "Its private key (PEM, without a password)");
+  command.add_option("--name", a->names, "A name of this server in its address, beside those of the certificate")
+      .one_value_each();
+  command.add_flag("--behind-proxy", a->is_behind_proxy,
+                   "A proxy in front uses TLS, passes Host and adds X-Forwarded-For");
+  command.footer(
       "The page is at the printed address. Ctrl+C ends the server after its running requests.\n"
       "Examples:\n"
       "  trocar serve account add \"Dr. Weber\" --role admin\n"
       "  trocar serve\n"
       "  trocar serve --db postgresql://trocar@db/results --listen 0.0.0.0:8443 --certificate server.pem --key "
       "server.key\n");
-  command->callback([&action, a, command] {
-    if (command->get_subcommands().empty()) action = [a] { return serve(*a); };
+  command.when_parsed([&action, a, command] {
+    if (!command.has_given_command()) action = [a] { return serve(*a); };
   });
-  add_serve_account_commands(*command, action);
+  add_serve_account_commands(command, action);
 }
 
 }  // namespace trocar::cli

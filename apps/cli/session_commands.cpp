@@ -1,8 +1,6 @@
 // trocar session export, motion and report; metrics: session_metrics_command.cpp.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-
 #include "attempt/record/stylus_motion.h"
 #include "commands.h"
 #include "core/files/atomic_file.h"
@@ -50,8 +48,9 @@ struct ReportArguments {
 };
 
 /// The session's patient; empty with a warning if it is missing or has changed.
-std::optional<anatomy::VirtualPatient> find_patient(const storage::SessionInfo& info, io::PatientSource source,
-                                                    const std::filesystem::path& session, const Progress& progress) {
+std::optional<anatomy::VirtualPatient> find_report_patient(const storage::SessionInfo& info, io::PatientSource source,
+                                                           const std::filesystem::path& session,
+                                                           const Progress& progress) {
   if (source.folder_or_name.empty()) {
     auto found = io::find_recorded_patient(info.patient_source, info.patient_hash, session.parent_path());
     if (!found) {
@@ -81,7 +80,7 @@ Status write_report(const ReportArguments& arguments) {
   TROCAR_TRY(const storage::Session session, storage::salvage_session(arguments.session));
   warn_of(session, arguments.session);
   const ProgressPrinter printer;
-  const auto patient = find_patient(session.info, arguments.patient, arguments.session, printer.callback());
+  const auto patient = find_report_patient(session.info, arguments.patient, arguments.session, printer.callback());
   TROCAR_TRY_STATUS(write_file_atomically(arguments.out, report::html_report(session, patient ? &*patient : nullptr)));
   if (session.damage.empty()) return {};
   return tl::unexpected(storage::damage_error(session, arguments.session, "the report shows the undamaged part"));
@@ -89,47 +88,46 @@ Status write_report(const ReportArguments& arguments) {
 
 }  // namespace
 
-void add_session_commands(CLI::App& program, Action& action) {
-  CLI::App* session = program.add_subcommand("session", "Recorded attempts");
-  session->require_subcommand(1);
-  session->footer("Example:\n  trocar session report first.session --out first.html\n");
+void add_session_commands(Command& program, Action& action) {
+  Command session = program.add_command("session", "Recorded attempts");
+  session.require_command();
+  session.footer("Example:\n  trocar session report first.session --out first.html\n");
 
   struct ExportArguments {
     std::string session;
     std::string csv;
   };
-  CLI::App* export_command = session->add_subcommand("export", "Export as CSV, one row per tick");
+  Command export_command = session.add_command("export", "Export as CSV, one row per tick");
   const auto e = std::make_shared<ExportArguments>();
-  export_command->add_option("SESSION", e->session, "Session file of trocar run")->required();
-  export_command->add_option("--csv", e->csv, "CSV file to write")->required();
-  export_command->footer(
+  export_command.add_option("SESSION", e->session, "Session file of trocar run").required();
+  export_command.add_option("--csv", e->csv, "CSV file to write").required();
+  export_command.footer(
       "Units are mm, N, N mm, s; vectors are in the patient frame P (LPS).\n"
       "Example:\n  trocar session export first.session --csv first.csv\n");
-  export_command->callback([&action, e] { action = [e] { return export_session(e->session, e->csv); }; });
+  export_command.when_parsed([&action, e] { action = [e] { return export_session(e->session, e->csv); }; });
 
-  CLI::App* motion_command =
-      session->add_subcommand("motion", "Write the stylus's motion as CSV, for trocar-hapticd --device replay:FILE");
+  Command motion_command =
+      session.add_command("motion", "Write the stylus's motion as CSV, for trocar-hapticd --device replay:FILE");
   const auto m = std::make_shared<ExportArguments>();
-  motion_command->add_option("SESSION", m->session, "Session file of trocar run")->required();
-  motion_command->add_option("--csv", m->csv, "CSV file to write")->required();
-  motion_command->footer(
+  motion_command.add_option("SESSION", m->session, "Session file of trocar run").required();
+  motion_command.add_option("--csv", m->csv, "CSV file to write").required();
+  motion_command.footer(
       "One pose per tick: time (s), position of the grip (mm) and quaternion of the stylus, in the room: x towards the "
       "feet, y to the patient's left, z up.\n"
       "Example:\n  trocar session motion first.session --csv motion.csv\n  trocar-hapticd --device replay:motion.csv "
       "--tool needle --patient abdomen\n");
-  motion_command->callback([&action, m] { action = [m] { return write_session_motion(m->session, m->csv); }; });
+  motion_command.when_parsed([&action, m] { action = [m] { return write_session_motion(m->session, m->csv); }; });
 
-  CLI::App* report_command =
-      session->add_subcommand("report", "Write an HTML report with score, hints, forces and slices");
+  Command report_command = session.add_command("report", "Write an HTML report with score, hints, forces and slices");
   const auto r = std::make_shared<ReportArguments>();
-  report_command->add_option("SESSION", r->session, "Session file of trocar run")->required();
-  report_command->add_option("--patient", r->patient.folder_or_name, "Patient folder, if it was moved");
-  add_cache_option(*report_command, r->patient);
-  report_command->add_option("--out", r->out, "HTML file to write")->required();
-  report_command->footer("Example:\n  trocar session report first.session --out first.html\n");
-  report_command->callback([&action, r] { action = [r] { return write_report(*r); }; });
+  report_command.add_option("SESSION", r->session, "Session file of trocar run").required();
+  report_command.add_option("--patient", r->patient.folder_or_name, "Patient folder, if it was moved");
+  add_cache_option(report_command, r->patient);
+  report_command.add_option("--out", r->out, "HTML file to write").required();
+  report_command.footer("Example:\n  trocar session report first.session --out first.html\n");
+  report_command.when_parsed([&action, r] { action = [r] { return write_report(*r); }; });
 
-  add_session_metrics_command(*session, action);
+  add_session_metrics_command(session, action);
 }
 
 }  // namespace trocar::cli

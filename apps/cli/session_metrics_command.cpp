@@ -1,18 +1,17 @@
 // trocar session metrics.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <fstream>
 
 #include "cases/image_plane.h"
 #include "commands.h"
+#include "config/json.h"
 #include "io/markups_file.h"
 #include "io/patient/open_patient.h"
 #include "metrics/measure_run.h"
 #include "metrics/pose_csv.h"
-#include "number_option.h"
 #include "patient_option.h"
 #include "storage/session_moments.h"
 #include "tasks/fit_to_patient.h"
@@ -253,28 +252,27 @@ Status print_metrics(const MetricsArguments& arguments) {
 
 }  // namespace
 
-void add_session_metrics_command(CLI::App& session, Action& action) {
-  CLI::App* command = session.add_subcommand("metrics", "Measure a session, or poses of another system as CSV");
+void add_session_metrics_command(Command& session, Action& action) {
+  Command command = session.add_command("metrics", "Measure a session, or poses of another system as CSV");
   const auto a = std::make_shared<MetricsArguments>();
-  command->add_option("RECORDING", a->recording, "Session file of trocar run, or a CSV file of poses")->required();
-  command->add_option("--task", a->task, "Task, or a file TASK.toml; default: that of the session");
-  command->add_option("--patient", a->patient.folder_or_name,
-                      "Patient folder or embedded patient; default: that of the session");
-  arguments::seed_number(command->add_option("--seed", a->patient.seed, "Seed of an embedded patient, for a CSV file"));
-  add_cache_option(*command, a->patient);
-  command->add_option("--expert", a->expert,
-                      "Expert paths (.mrk.json); default: the session's plan and the patient's paths");
-  command->add_option("--needle", a->needle, "Needle; default: that of the session, or of the task");
-  command->add_option("--transducer", a->transducer, "Transducer, for its image plane")->capture_default_str();
-  arguments::number_within(command->add_option("--depth", a->depth_mm, "Depth of the image [the transducer's]"), 10,
-                           400, "mm");
-  command->add_flag("--json", a->is_json, "Print one JSON object");
-  command->footer(
+  command.add_option("RECORDING", a->recording, "Session file of trocar run, or a CSV file of poses").required();
+  command.add_option("--task", a->task, "Task, or a file TASK.toml; default: that of the session");
+  command.add_option("--patient", a->patient.folder_or_name,
+                     "Patient folder or embedded patient; default: that of the session");
+  command.add_option("--seed", a->patient.seed, "Seed of an embedded patient, for a CSV file").seed();
+  add_cache_option(command, a->patient);
+  command.add_option("--expert", a->expert,
+                     "Expert paths (.mrk.json); default: the session's plan and the patient's paths");
+  command.add_option("--needle", a->needle, "Needle; default: that of the session, or of the task");
+  command.add_option("--transducer", a->transducer, "Transducer, for its image plane").show_default();
+  command.add_option("--depth", a->depth_mm, "Depth of the image [the transducer's]").number_within(10, 400, "mm");
+  command.add_flag("--json", a->is_json, "Print one JSON object");
+  command.footer(
       "A metric without a value is printed with the reason. Definitions and the columns of the CSV file: "
       "docs/metrics.md.\n"
       "Examples:\n  trocar session metrics first.session\n  trocar session metrics poses.csv --task liver-biopsy "
       "--patient abdomen --expert paths.mrk.json --json\n");
-  command->callback([&action, a] { action = [a] { return print_metrics(*a); }; });
+  command.when_parsed([&action, a] { action = [a] { return print_metrics(*a); }; });
 }
 
 }  // namespace trocar::cli

@@ -1,9 +1,8 @@
 // trocar task list.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-
 #include "commands.h"
+#include "config/json.h"
 #include "tasks/task.h"
 
 namespace trocar::cli {
@@ -38,15 +37,15 @@ Status list_tasks(bool is_json) {
 
 }  // namespace
 
-void add_task_commands(CLI::App& program, Action& action) {
-  CLI::App* task = program.add_subcommand("task", "Training tasks");
-  task->require_subcommand(1);
-  task->footer("Example:\n  trocar task list\n");
-  CLI::App* list = task->add_subcommand("list", "List the tasks and the needle of each");
-  list->footer("Example:\n  trocar task list --json\n");
+void add_task_commands(Command& program, Action& action) {
+  Command task = program.add_command("task", "Training tasks");
+  task.require_command();
+  task.footer("Example:\n  trocar task list\n");
+  Command list = task.add_command("list", "List the tasks and the needle of each");
+  list.footer("Example:\n  trocar task list --json\n");
   const auto is_json = std::make_shared<bool>(false);
-  list->add_flag("--json", *is_json, "Print one JSON object");
-  list->callback([&action, is_json] { action = [is_json] { return list_tasks(*is_json); }; });
+  list.add_flag("--json", *is_json, "Print one JSON object");
+  list.when_parsed([&action, is_json] { action = [is_json] { return list_tasks(*is_json); }; });
 }
 
 }  // namespace trocar::cli

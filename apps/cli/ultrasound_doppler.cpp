@@ -3,11 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <utility>
-
-#include "number_option.h"
 
 namespace trocar::cli {
 namespace {
@@ -22,36 +19,32 @@ constexpr int kBarColumns = 10;
 
 }  // namespace
 
-void add_doppler_options(CLI::App& command, DopplerArguments& a) {
+void add_doppler_options(Command& command, DopplerArguments& a) {
   ultrasound::DopplerSettings& s = a.settings;
   command.add_flag("--doppler", a.is_wanted, "Show flow in the labelled vessels as colour Doppler");
-  arguments::number_within(
-      command.add_option("--doppler-scale", s.scale_cm_per_s, "Velocity at the ends of the colour bar"), 2.0, 200.0,
-      "cm/s")
-      ->capture_default_str();
-  arguments::number_within(
-      command.add_option("--doppler-box", a.box,
-                         "Colour box in percent of width and depth: first,last,near,far, as 20,80,20,90"),
-      0.0, 100.0, "%")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  arguments::number_within(command.add_option("--doppler-gain-db", s.gain_db, "Colour gain"), -40.0, 40.0, "dB")
-      ->capture_default_str();
-  arguments::number_within(
-      command.add_option("--doppler-filter", s.wall_filter, "Wall filter cutoff, as a fraction of the scale"), 0.0, 0.6,
-      "")
-      ->capture_default_str();
-  arguments::number_within(command.add_option("--doppler-mhz", s.frequency_mhz, "Frequency of the Doppler pulses"), 1.0,
-                           15.0, "MHz")
-      ->capture_default_str();
-  arguments::number_within(
-      command.add_option("--doppler-baseline", s.baseline, "Baseline shift, as a fraction of the scale"), -0.9, 0.9, "")
-      ->capture_default_str();
+  command.add_option("--doppler-scale", s.scale_cm_per_s, "Velocity at the ends of the colour bar")
+      .number_within(2.0, 200.0, "cm/s")
+      .show_default();
+  command
+      .add_option("--doppler-box", a.box,
+                  "Colour box in percent of width and depth: first,last,near,far, as 20,80,20,90")
+      .number_within(0.0, 100.0, "%")
+      .separated_by(',')
+      .one_value_each();
+  command.add_option("--doppler-gain-db", s.gain_db, "Colour gain").number_within(-40.0, 40.0, "dB").show_default();
+  command.add_option("--doppler-filter", s.wall_filter, "Wall filter cutoff, as a fraction of the scale")
+      .number_within(0.0, 0.6, "")
+      .show_default();
+  command.add_option("--doppler-mhz", s.frequency_mhz, "Frequency of the Doppler pulses")
+      .number_within(1.0, 15.0, "MHz")
+      .show_default();
+  command.add_option("--doppler-baseline", s.baseline, "Baseline shift, as a fraction of the scale")
+      .number_within(-0.9, 0.9, "")
+      .show_default();
   command.add_flag("--doppler-invert", s.is_inverted, "Invert the colours: blue is flow towards the transducer");
-  arguments::number_within(
-      command.add_option("--time-s", a.time_s, "Seconds since the last R wave (cardiac phase for Doppler)"), 0.0,
-      3600.0, "s")
-      ->capture_default_str();
+  command.add_option("--time-s", a.time_s, "Seconds since the last R wave (cardiac phase for Doppler)")
+      .number_within(0.0, 3600.0, "s")
+      .show_default();
 }
 
 Result<ultrasound::DopplerSettings> gather_doppler(const DopplerArguments& a) {

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <CLI/App.hpp>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "action.h"
 #include "output.h"
 #include "ultrasound/doppler/colour_doppler.h"
 #include "ultrasound/engine/echo_engine.h"
@@ -18,7 +18,7 @@ struct DopplerArguments {
   std::vector<double> box;  ///< Empty, or first and last of the width, near and far of the depth, percent.
   double time_s = 0.17;     ///< Time after the R wave: systole.
 };
-void add_doppler_options(CLI::App& command, DopplerArguments& arguments);
+void add_doppler_options(Command& command, DopplerArguments& arguments);
 
 /// The settings, or an error.
 Result<ultrasound::DopplerSettings> gather_doppler(const DopplerArguments& arguments);

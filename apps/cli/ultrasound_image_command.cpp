@@ -1,7 +1,6 @@
 // trocar ultrasound image: a B-mode image of a patient, and the frame rate.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -11,12 +10,13 @@
 #include <optional>
 #include <span>
 
-#include "bench/harness.h"
+#include "bench/figures.h"
 #include "commands.h"
+#include "config/json.h"
+#include "constants.h"
 #include "io/image/image_file.h"
 #include "io/patient/patient_panorama.h"
 #include "io/sequence/transform_file.h"
-#include "number_option.h"
 #include "png/png_file.h"
 #include "ultrasound/engine/b_mode.h"
 #include "ultrasound/panorama/panorama_engine.h"
@@ -33,7 +33,6 @@ namespace fs = std::filesystem;
 // Engines.
 constexpr const char* kRaycast = "raycast";
 constexpr const char* kPanorama = "panorama";
-constexpr double kNeedleLength_mm = 200.0;
 constexpr int kMostFrames = 100000;
 constexpr double kHardlyAny = 0.01;  ///< Share of the image from the panorama that causes a warning.
 /// Range of the needle gauges below.
@@ -41,7 +40,7 @@ constexpr int kThickestGauge = 14, kThinnestGauge = 25;
 /// Number of frames after which persistence has converged to one or two gray values.
 constexpr int kPersistingPictures = 40;
 
-struct Arguments {
+struct ImageArguments {
   ScanArguments scan;
   DopplerArguments doppler;
   std::string needle;
@@ -81,7 +80,7 @@ struct Needle {
   std::vector<Vec3> shaft_P;
   double diameter_mm = 0.0;
 };
-Result<Needle> load_needle(const Arguments& arguments) {
+Result<Needle> load_needle(const ImageArguments& arguments) {
   Needle needle;
   needle.diameter_mm = diameter_of_gauge(arguments.needle_gauge);
   if (arguments.needle.empty()) return needle;
@@ -96,7 +95,7 @@ struct Request {
   Needle needle;
   ultrasound::DopplerSettings doppler;
 };
-Result<Request> check_arguments(const Arguments& arguments) {
+Result<Request> check_arguments(const ImageArguments& arguments) {
   const std::string ending = fs::path(arguments.out).extension().string();
   if (ending != ".png" && ending != ".nrrd")
     return fail_usage("the file name must end in .png or .nrrd", arguments.out, "rename the output");
@@ -157,7 +156,7 @@ Timing time_frames(ultrasound::EchoEngine& engine, ultrasound::Scanner& scanner,
   std::vector<double> frame_ms, engine_ms, scanner_ms;
   double whole_ms = 0.0;
   for (int n = 0; n < frames; ++n) {
-    report(progress, "timing frames", static_cast<double>(n) / frames);
+    core::report(progress, "timing frames", static_cast<double>(n) / frames);
     const auto start = Clock::now();
     const ultrasound::BasebandFrame& echoes =
         engine.render({ultrasound::sway(scan.X_PT, n), needles, static_cast<double>(n) / 60.0});
@@ -194,7 +193,7 @@ void print_figures(const char* name, const bench::Figures& figures) {
   fmt::print("  {:<8} median {:.2f} ms, {}, max {:.2f}\n", name, *figures.median, tail, *figures.max);
 }
 
-Status write_picture(const Arguments& arguments, const Scan& scan, const ultrasound::GrayImage& gray,
+Status write_picture(const ImageArguments& arguments, const Scan& scan, const ultrasound::GrayImage& gray,
                      const ultrasound::RasterGeometry& raster, const ultrasound::ScanGeometry& geometry,
                      std::optional<ColourPicture> colour) {
   if (fs::path(arguments.out).extension() == ".nrrd")
@@ -215,7 +214,7 @@ Status write_picture(const Arguments& arguments, const Scan& scan, const ultraso
   return png::write_png(picture, arguments.out);
 }
 
-Status make_image(const Arguments& arguments) {
+Status make_image(const ImageArguments& arguments) {
   TROCAR_TRY(const Request request, check_arguments(arguments));
   const ProgressPrinter printer;
   ScanArguments wanted = arguments.scan;
@@ -284,45 +283,42 @@ Status make_image(const Arguments& arguments) {
 
 }  // namespace
 
-void add_ultrasound_image_command(CLI::App& ultrasound, Action& action) {
-  CLI::App* command = ultrasound.add_subcommand("image", "Create a B-mode image of a patient");
-  command->footer(
+void add_ultrasound_image_command(Command& ultrasound, Action& action) {
+  Command command = ultrasound.add_command("image", "Create a B-mode image of a patient");
+  command.footer(
       "Examples:\n  trocar ultrasound image --patient abdomen --view liver-right-kidney --out kidney.png\n"
       "  trocar ultrasound image --patient abdomen --view aorta --doppler --doppler-scale 60 --out aorta.png\n"
       "  trocar ultrasound image --patient my_patient --pose probe.tfm --needle needle.tfm --out needle.png\n"
       "  trocar ultrasound image --patient my_patient --pose probe.tfm --engine panorama --out slice.png\n"
       "  trocar ultrasound image --patient abdomen --pose probe.tfm --frames 300 --out frame.png\n");
-  const auto a = std::make_shared<Arguments>();
-  add_scan_options(*command, a->scan);
-  add_doppler_options(*command, a->doppler);
-  arguments::number_within(
-      command->add_option("--persistence", a->scan.display.persistence, "Weight of the previous frame (persistence)"),
-      0.0, 0.95, "")
-      ->capture_default_str();
-  command->add_option("--needle", a->needle,
-                      "X_PN: transform from the needle (tip at 0, +z towards the tip) to the patient (.tfm)");
-  arguments::whole_number_within(
-      command->add_option("--needle-gauge", a->needle_gauge, "Outer diameter of the needle, gauge"), kThickestGauge,
-      kThinnestGauge)
-      ->capture_default_str();
+  const auto a = std::make_shared<ImageArguments>();
+  add_scan_options(command, a->scan);
+  add_doppler_options(command, a->doppler);
+  command.add_option("--persistence", a->scan.display.persistence, "Weight of the previous frame (persistence)")
+      .number_within(0.0, 0.95, "")
+      .show_default();
+  command.add_option("--needle", a->needle,
+                     "X_PN: transform from the needle (tip at 0, +z towards the tip) to the patient (.tfm)");
+  command.add_option("--needle-gauge", a->needle_gauge, "Outer diameter of the needle, gauge")
+      .whole_number_within(kThickestGauge, kThinnestGauge)
+      .show_default();
   command
-      ->add_option("--engine", a->engine,
-                   "raycast (from CT and labels) or panorama (from the stitched volumes in the patient folder)")
-      ->check(CLI::IsMember({kRaycast, kPanorama}))
-      ->capture_default_str();
+      .add_option("--engine", a->engine,
+                  "raycast (from CT and labels) or panorama (from the stitched volumes in the patient folder)")
+      .one_of({kRaycast, kPanorama})
+      .show_default();
   command
-      ->add_option("--out", a->out,
-                   "Output: .png, or .nrrd as a thin slab at the position of the image plane in the patient")
-      ->required();
-  command->add_option("--size", a->size, "Size of the image, COLUMNSxROWS, 16 to 4096 each")->capture_default_str();
-  arguments::whole_number_within(
-      command->add_option("--frames", a->frames, "Benchmark: render N more frames with a moving transducer"), 1,
-      kMostFrames);
-  command->add_flag("--plain", a->is_plain, "Omit scale, marker and settings around the image");
-  command->add_flag("--unmirrored", a->is_unmirrored,
-                    "Show +x of the transducer (head, or the patient's right) on the right");
-  command->add_flag("--json", a->is_json, "Print one JSON object");
-  command->callback([&action, a] { action = [a] { return make_image(*a); }; });
+      .add_option("--out", a->out,
+                  "Output: .png, or .nrrd as a thin slab at the position of the image plane in the patient")
+      .required();
+  command.add_option("--size", a->size, "Size of the image, COLUMNSxROWS, 16 to 4096 each").show_default();
+  command.add_option("--frames", a->frames, "Benchmark: render N more frames with a moving transducer")
+      .whole_number_within(1, kMostFrames);
+  command.add_flag("--plain", a->is_plain, "Omit scale, marker and settings around the image");
+  command.add_flag("--unmirrored", a->is_unmirrored,
+                   "Show +x of the transducer (head, or the patient's right) on the right");
+  command.add_flag("--json", a->is_json, "Print one JSON object");
+  command.when_parsed([&action, a] { action = [a] { return make_image(*a); }; });
 }
 
 }  // namespace trocar::cli

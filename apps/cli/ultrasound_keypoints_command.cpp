@@ -1,33 +1,29 @@
 // trocar ultrasound keypoints: 3D SIFT keypoints of a volume.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 
 #include "commands.h"
+#include "config/json.h"
 #include "core/files/atomic_file.h"
-#include "number_option.h"
+#include "json_parts.h"
 #include "registration/panorama/prepared_volume.h"
 #include "ultrasound_volume.h"
 
 namespace trocar::cli {
 namespace {
 
-struct Arguments {
+struct KeypointsArguments {
   std::string volume, out, beam_axis;
   std::optional<double> shadow_threshold;
   registration::PreparationOptions options;
   bool is_json = false;
 };
 
-config::Json to_json(const Vec3& v) {
-  return {v.x(), v.y(), v.z()};
-}
-
 config::Json to_json(const registration::PreparedVolume& volume, double seconds) {
   config::Json keypoints = config::Json::array();
   for (const registration::Keypoint& k : volume.keypoints.keypoints)
-    keypoints.push_back({{"p_mm", to_json(k.p_P)},
+    keypoints.push_back({{"p_mm", vector_json(k.p_P)},
                          {"sigma_mm", k.sigma_mm},
                          {"contrast", k.contrast},
                          {"ratio", k.ratio},
@@ -35,7 +31,8 @@ config::Json to_json(const registration::PreparedVolume& volume, double seconds)
                          {"orientations", config::Json::array()}});
   for (const registration::Feature& feature : volume.keypoints.features.features) {
     const Mat3& R = feature.R_PK;
-    keypoints[feature.keypoint]["orientations"].push_back({to_json(R.col(0)), to_json(R.col(1)), to_json(R.col(2))});
+    keypoints[feature.keypoint]["orientations"].push_back(
+        {vector_json(R.col(0)), vector_json(R.col(1)), vector_json(R.col(2))});
   }
   return {{"volume", volume.name},
           {"shadow_threshold", volume.shadow_threshold},
@@ -44,7 +41,7 @@ config::Json to_json(const registration::PreparedVolume& volume, double seconds)
           {"keypoints", std::move(keypoints)}};
 }
 
-Status find(const Arguments& arguments) {
+Status find(const KeypointsArguments& arguments) {
   TROCAR_TRY_STATUS(check_new(arguments.out));
   const ProgressPrinter printer;
   TROCAR_TRY(UltrasoundVolume volume, read_ultrasound_volume(arguments.volume, arguments.beam_axis));
@@ -72,30 +69,29 @@ Status find(const Arguments& arguments) {
 
 }  // namespace
 
-void add_ultrasound_keypoints_command(CLI::App& ultrasound, Action& action) {
-  CLI::App* command = ultrasound.add_subcommand("keypoints", "Find the 3D SIFT keypoints of a volume");
-  command->footer("Example:\n  trocar ultrasound keypoints volume.nrrd --out keypoints.json\n");
-  const auto a = std::make_shared<Arguments>();
-  command->add_option("VOLUME", a->volume, "Ultrasound volume, gray levels 0..255: .nrrd .nii .nii.gz .mha")
-      ->required();
+void add_ultrasound_keypoints_command(Command& ultrasound, Action& action) {
+  Command command = ultrasound.add_command("keypoints", "Find the 3D SIFT keypoints of a volume");
+  command.footer("Example:\n  trocar ultrasound keypoints volume.nrrd --out keypoints.json\n");
+  const auto a = std::make_shared<KeypointsArguments>();
+  command.add_option("VOLUME", a->volume, "Ultrasound volume, gray levels 0..255: .nrrd .nii .nii.gz .mha").required();
   command
-      ->add_option("--out", a->out, "JSON file to write: place (LPS, mm), scale, contrast, orientations (x, y, z axes)")
-      ->required();
-  command->add_option("--beam-axis", a->beam_axis,
-                      "Direction of sound along the axes of the volume: +x to -z; default: the header's, or +y");
-  arguments::number_within(
-      command->add_option("--shadow-threshold", a->shadow_threshold,
-                          "Gray level below which the end of a beam is shadow; default: estimated from the volume"),
-      0.0, 255.0, "");
+      .add_option("--out", a->out, "JSON file to write: place (LPS, mm), scale, contrast, orientations (x, y, z axes)")
+      .required();
+  command.add_option("--beam-axis", a->beam_axis,
+                     "Direction of sound along the axes of the volume: +x to -z; default: the header's, or +y");
   command
-      ->add_option("--contrast", a->options.keypoints.least_contrast,
-                   "Least contrast of a keypoint, in local standard deviations")
-      ->capture_default_str();
+      .add_option("--shadow-threshold", a->shadow_threshold,
+                  "Gray level below which the end of a beam is shadow; default: estimated from the volume")
+      .number_within(0.0, 255.0, "");
   command
-      ->add_option("--edge-ratio", a->options.keypoints.largest_ratio, "Largest ratio of the curvatures of a keypoint")
-      ->capture_default_str();
-  command->add_flag("--json", a->is_json, "Print one JSON object");
-  command->callback([&action, a] { action = [a] { return find(*a); }; });
+      .add_option("--contrast", a->options.keypoints.least_contrast,
+                  "Least contrast of a keypoint, in local standard deviations")
+      .show_default();
+  command
+      .add_option("--edge-ratio", a->options.keypoints.largest_ratio, "Largest ratio of the curvatures of a keypoint")
+      .show_default();
+  command.add_flag("--json", a->is_json, "Print one JSON object");
+  command.when_parsed([&action, a] { action = [a] { return find(*a); }; });
 }
 
 }  // namespace trocar::cli

@@ -1,13 +1,12 @@
 // trocar ultrasound views and transducers: available choices.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <numbers>
 
 #include "commands.h"
+#include "config/json.h"
+#include "constants.h"
 #include "io/patient/open_patient.h"
-#include "number_option.h"
 #include "patient_option.h"
 #include "ultrasound/probe/probe_view.h"
 #include "ultrasound/probe/transducer.h"
@@ -15,9 +14,7 @@
 namespace trocar::cli {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-
-struct Arguments {
+struct ViewArguments {
   io::PatientSource source;
   bool is_json = false;
 };
@@ -34,7 +31,7 @@ config::Json view_json(const ultrasound::ProbeView& view, const std::optional<st
           {"target", target != nullptr ? config::Json(target->name) : config::Json(nullptr)}};
 }
 
-Status list_views(const Arguments& arguments) {
+Status list_views(const ViewArguments& arguments) {
   TROCAR_TRY(const auto file, find_data("views.toml"));
   TROCAR_TRY(const auto views, ultrasound::load_probe_views(file));
   const bool has_patient = !arguments.source.folder_or_name.empty();
@@ -116,7 +113,7 @@ void print_transducers(const std::vector<ultrasound::Transducer>& transducers) {
   }
 }
 
-Status list_transducers(const Arguments& arguments) {
+Status list_transducers(const ViewArguments& arguments) {
   TROCAR_TRY(const auto file, find_data("transducers.toml"));
   TROCAR_TRY(const auto transducers, ultrasound::load_transducers(file));
   if (!arguments.is_json) {
@@ -131,21 +128,20 @@ Status list_transducers(const Arguments& arguments) {
 
 }  // namespace
 
-void add_ultrasound_list_commands(CLI::App& ultrasound, Action& action) {
-  const auto a = std::make_shared<Arguments>();  // one command runs: they share the arguments
-  CLI::App* views = ultrasound.add_subcommand("views", "List standard views, and whether a patient supports them");
-  views->add_option("--patient", a->source.folder_or_name, "Patient folder, or an embedded patient's name");
-  arguments::seed_number(views->add_option("--patient-seed", a->source.seed, "Seed of an embedded patient"))
-      ->capture_default_str();
-  add_cache_option(*views, a->source);
-  views->add_flag("--json", a->is_json, "Print one JSON object");
-  views->footer("Example:\n  trocar ultrasound views --patient abdomen\n");
-  views->callback([&action, a] { action = [a] { return list_views(*a); }; });
+void add_ultrasound_list_commands(Command& ultrasound, Action& action) {
+  const auto a = std::make_shared<ViewArguments>();  // one command runs: they share the arguments
+  Command views = ultrasound.add_command("views", "List standard views, and whether a patient supports them");
+  views.add_option("--patient", a->source.folder_or_name, "Patient folder, or an embedded patient's name");
+  views.add_option("--patient-seed", a->source.seed, "Seed of an embedded patient").seed().show_default();
+  add_cache_option(views, a->source);
+  views.add_flag("--json", a->is_json, "Print one JSON object");
+  views.footer("Example:\n  trocar ultrasound views --patient abdomen\n");
+  views.when_parsed([&action, a] { action = [a] { return list_views(*a); }; });
 
-  CLI::App* transducers = ultrasound.add_subcommand("transducers", "List available transducers");
-  transducers->add_flag("--json", a->is_json, "Print one JSON object");
-  transducers->footer("Example:\n  trocar ultrasound transducers\n");
-  transducers->callback([&action, a] { action = [a] { return list_transducers(*a); }; });
+  Command transducers = ultrasound.add_command("transducers", "List available transducers");
+  transducers.add_flag("--json", a->is_json, "Print one JSON object");
+  transducers.footer("Example:\n  trocar ultrasound transducers\n");
+  transducers.when_parsed([&action, a] { action = [a] { return list_transducers(*a); }; });
 }
 
 }  // namespace trocar::cli

@@ -2,23 +2,22 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <filesystem>
 #include <map>
 
 #include "commands.h"
+#include "config/json.h"
 #include "io/image/image_file.h"
 #include "io/sequence/plus_config.h"
 #include "io/sequence/sequence_file.h"
-#include "number_option.h"
 #include "ultrasound/sweep/freehand.h"
 
 namespace trocar::cli {
 namespace {
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct ReconstructArguments {
   std::string sequence;
   std::string calibration;
   std::string out;
@@ -51,14 +50,14 @@ const std::map<std::string, ultrasound::HoleFilling::Kind>& hole_fillings() {
 }
 
 template <class Value>
-std::vector<std::string> names_of(const std::map<std::string, Value>& values) {
+std::vector<std::string> keys_of(const std::map<std::string, Value>& values) {
   std::vector<std::string> names;
   for (const auto& [name, value] : values) names.push_back(name);
   return names;
 }
 
 /// Settings of the calibration file, overridden by the command line.
-Result<io::PlusConfig> gather(const Arguments& arguments) {
+Result<io::PlusConfig> gather(const ReconstructArguments& arguments) {
   io::PlusConfig config;
   if (!arguments.calibration.empty()) {
     TROCAR_TRY(config, io::read_plus_config(arguments.calibration));
@@ -105,24 +104,24 @@ void print_summary(const ultrasound::FreehandVolume& volume, const ultrasound::F
   fmt::print("axes of the frame {}, stored as LPS\n", options.reference_frame);
 }
 
-Status reconstruct(const Arguments& arguments) {
+Status reconstruct(const ReconstructArguments& arguments) {
   const std::string extension = fs::path(arguments.out).extension().string();
   if (extension != ".nrrd") return fail_usage("the file name must end in .nrrd", arguments.out, "rename the output");
   TROCAR_TRY_STATUS(check_new(arguments.out));
   TROCAR_TRY(const io::PlusConfig config, gather(arguments));
   const ProgressPrinter printer;
   const Progress progress = printer.callback();
-  report(progress, "reading the sequence", 0.0);
+  core::report(progress, "reading the sequence", 0.0);
   TROCAR_TRY(const ultrasound::TrackedSequence sequence, io::read_sequence(arguments.sequence));
   const auto start = std::chrono::steady_clock::now();
   auto volume = ultrasound::reconstruct_freehand(
       sequence, config.transforms, config.reconstruction,
-      [&](std::string_view step, double fraction) { report(progress, step, 0.4 + 0.4 * fraction); });
+      [&](std::string_view step, double fraction) { core::report(progress, step, 0.4 + 0.4 * fraction); });
   if (!volume) return fail(volume.error().what, arguments.sequence, volume.error().advice);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  report(progress, "writing the volume", 0.8);
+  core::report(progress, "writing the volume", 0.8);
   TROCAR_TRY_STATUS(io::write_image(volume->gray, arguments.out));
-  report(progress, "done", 1.0);
+  core::report(progress, "done", 1.0);
   for (const std::string& what : config.left_aside)
     print_warning(fmt::format("PLUS setting {} of {} is ignored", what, arguments.calibration));
   if (volume->frames_left_out > 0)
@@ -137,39 +136,36 @@ Status reconstruct(const Arguments& arguments) {
 
 }  // namespace
 
-void add_ultrasound_reconstruct_command(CLI::App& ultrasound, Action& action) {
-  CLI::App* command = ultrasound.add_subcommand("reconstruct", "Reconstruct a volume from a tracked freehand sweep");
-  command->footer(
+void add_ultrasound_reconstruct_command(Command& ultrasound, Action& action) {
+  Command command = ultrasound.add_command("reconstruct", "Reconstruct a volume from a tracked freehand sweep");
+  command.footer(
       "Examples:\n  trocar ultrasound reconstruct sweep.igs.mha --calibration PlusDeviceSet.xml --spacing 0.5 --out "
       "volume.nrrd\n  trocar ultrasound reconstruct sweep.igs.mha --spacing 1 --reference Tracker --out volume.nrrd\n");
-  const auto a = std::make_shared<Arguments>();
-  command->add_option("SEQUENCE", a->sequence, "Tracked images of PLUS or 3D Slicer: .igs.mha")->required();
-  command->add_option("--calibration", a->calibration,
-                      "PLUS configuration (XML) with ImageToProbe; its <VolumeReconstruction> gives the defaults");
-  arguments::number_within(
-      command->add_option("--spacing", a->spacing_mm, "Voxel size; default: that of the calibration file, or 1 mm"),
-      0.01, 100.0, "mm");
-  command->add_option("--out", a->out, "Volume to write: .nrrd, one byte a voxel, LPS axes of the reference")
-      ->required();
-  command->add_option("--reference", a->reference, "Reference frame of the volume; default: Reference");
-  command->add_option("--interpolation", a->interpolation, "nearest or linear; nearest when left out")
-      ->check(CLI::IsMember(names_of(interpolations())));
+  const auto a = std::make_shared<ReconstructArguments>();
+  command.add_option("SEQUENCE", a->sequence, "Tracked images of PLUS or 3D Slicer: .igs.mha").required();
+  command.add_option("--calibration", a->calibration,
+                     "PLUS configuration (XML) with ImageToProbe; its <VolumeReconstruction> gives the defaults");
+  command.add_option("--spacing", a->spacing_mm, "Voxel size; default: that of the calibration file, or 1 mm")
+      .number_within(0.01, 100.0, "mm");
+  command.add_option("--out", a->out, "Volume to write: .nrrd, one byte a voxel, LPS axes of the reference").required();
+  command.add_option("--reference", a->reference, "Reference frame of the volume; default: Reference");
+  command.add_option("--interpolation", a->interpolation, "nearest or linear; nearest when left out")
+      .one_of(keys_of(interpolations()));
   command
-      ->add_option("--compounding", a->compounding,
-                   "How pixels in one voxel are combined: mean, maximum or latest; mean when left out")
-      ->check(CLI::IsMember(names_of(compoundings())));
-  auto holes = names_of(hole_fillings());
+      .add_option("--compounding", a->compounding,
+                  "How pixels in one voxel are combined: mean, maximum or latest; mean when left out")
+      .one_of(keys_of(compoundings()));
+  auto holes = keys_of(hole_fillings());
   holes.emplace_back("none");
+  command.add_option("--holes", a->holes, "How holes are filled: stick, nearest, gaussian or none; stick when left out")
+      .one_of(holes);
   command
-      ->add_option("--holes", a->holes, "How holes are filled: stick, nearest, gaussian or none; stick when left out")
-      ->check(CLI::IsMember(holes));
-  command
-      ->add_option("--black", a->black,
-                   "Pixels that are black in all frames (margin outside the fan): skip or keep; default: skip, or keep "
-                   "with a <VolumeReconstruction> in the calibration file")
-      ->check(CLI::IsMember({"skip", "keep"}));
-  command->add_flag("--json", a->is_json, "Print one JSON object");
-  command->callback([&action, a] { action = [a] { return reconstruct(*a); }; });
+      .add_option("--black", a->black,
+                  "Pixels that are black in all frames (margin outside the fan): skip or keep; default: skip, or keep "
+                  "with a <VolumeReconstruction> in the calibration file")
+      .one_of({"skip", "keep"});
+  command.add_flag("--json", a->is_json, "Print one JSON object");
+  command.when_parsed([&action, a] { action = [a] { return reconstruct(*a); }; });
 }
 
 }  // namespace trocar::cli

@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <set>
 
+#include "config/json.h"
 #include "core/parse_number.h"
 #include "io/sequence/transform_file.h"
-#include "number_option.h"
 #include "patient_option.h"
 #include "ultrasound/probe/probe_placement.h"
 
@@ -139,58 +138,50 @@ Result<std::optional<ultrasound::ProbeView>> find_view(const std::vector<ultraso
 
 }  // namespace
 
-void add_scan_options(CLI::App& command, ScanArguments& a) {
-  command.add_option("--patient", a.source.folder_or_name, "Patient folder, or an embedded patient's name")->required();
-  arguments::seed_number(command.add_option("--patient-seed", a.source.seed, "Seed of an embedded patient"))
-      ->capture_default_str();
+void add_scan_options(Command& command, ScanArguments& a) {
+  command.add_option("--patient", a.source.folder_or_name, "Patient folder, or an embedded patient's name").required();
+  command.add_option("--patient-seed", a.source.seed, "Seed of an embedded patient").seed().show_default();
   add_cache_option(command, a.source);
-  CLI::Option* pose = command.add_option("--pose", a.pose, "X_PT: transform from the transducer to the patient (.tfm)");
-  CLI::Option* view =
+  Option pose = command.add_option("--pose", a.pose, "X_PT: transform from the transducer to the patient (.tfm)");
+  Option view =
       command.add_option("--view", a.view, "Place the transducer in a standard view: trocar ultrasound views");
-  pose->excludes(view);
+  pose.excludes(view);
   command.add_option(
       "--save-pose", a.save_pose,
       "Write X_PT as a .tfm, with transducer, depth, frequency, focus and harmonic as comments that --pose reads");
   command.add_option("--transducer", a.transducer,
                      "Transducer, see trocar ultrasound transducers; default: that of the view, or a suitable one");
-  arguments::number_within(command.add_option("--depth-mm", a.depth_mm, "Image depth below the face"), kLeastDepth_mm,
-                           kMostDepth_mm, "mm");
-  arguments::number_within(
-      command.add_option("--frequency-mhz", a.frequency_mhz, "Transmit frequency, within the transducer's band"), 0.5,
-      50.0, "MHz");
-  command.add_flag_function(
-      "--harmonic,!--no-harmonic", [&a](std::int64_t count) { a.is_harmonic = count > 0; },
-      "Tissue harmonic imaging: transmit half of the frequency and receive the second harmonic");
-  arguments::number_within(command.add_option("--focus-mm", a.focus_mm, "Depth of the transmit focus"), kLeastFocus_mm,
-                           kMostDepth_mm, "mm");
-  arguments::number_within(command.add_option("--gain-db", a.display.gain_db, "Gain"), -40.0, 40.0, "dB")
-      ->capture_default_str();
-  arguments::number_within(
-      command.add_option("--tgc", a.tgc_db, "Eight TGC sliders from near to far, as 0,0,0,0,0,0,0,0"), -20.0, 20.0,
-      "dB")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  arguments::number_within(command.add_option("--dynamic-range-db", a.display.dynamic_range_db, "Dynamic range"), 20.0,
-                           100.0, "dB")
-      ->capture_default_str();
+  command.add_option("--depth-mm", a.depth_mm, "Image depth below the face")
+      .number_within(kLeastDepth_mm, kMostDepth_mm, "mm");
+  command.add_option("--frequency-mhz", a.frequency_mhz, "Transmit frequency, within the transducer's band")
+      .number_within(0.5, 50.0, "MHz");
+  command.add_flag("--harmonic,!--no-harmonic", a.is_harmonic,
+                   "Tissue harmonic imaging: transmit half of the frequency and receive the second harmonic");
+  command.add_option("--focus-mm", a.focus_mm, "Depth of the transmit focus")
+      .number_within(kLeastFocus_mm, kMostDepth_mm, "mm");
+  command.add_option("--gain-db", a.display.gain_db, "Gain").number_within(-40.0, 40.0, "dB").show_default();
+  command.add_option("--tgc", a.tgc_db, "Eight TGC sliders from near to far, as 0,0,0,0,0,0,0,0")
+      .number_within(-20.0, 20.0, "dB")
+      .separated_by(',')
+      .one_value_each();
+  command.add_option("--dynamic-range-db", a.display.dynamic_range_db, "Dynamic range")
+      .number_within(20.0, 100.0, "dB")
+      .show_default();
   command.add_option("--gray-map", a.gray_map, "linear, soft or high-contrast; soft when left out");
-  arguments::whole_number_within(command.add_option("--lines", a.lines, "Number of scanlines"), 2, 1024);
-  arguments::whole_number_within(command.add_option("--samples", a.samples, "Samples per scanline; 1024 when left out"),
-                                 16, 4096);
-  arguments::whole_number_within(
-      command.add_option("--planes", a.planes, "Number of elevation planes, an odd number; 5 when left out"), 1, 9);
-  arguments::whole_number_within(
-      command.add_option("--looks", a.steering_angles,
-                         "Number of compounding angles; 3 when left out, 1 gives full speckle"),
-      1, 5);
+  command.add_option("--lines", a.lines, "Number of scanlines").whole_number_within(2, 1024);
+  command.add_option("--samples", a.samples, "Samples per scanline; 1024 when left out").whole_number_within(16, 4096);
+  command.add_option("--planes", a.planes, "Number of elevation planes, an odd number; 5 when left out")
+      .whole_number_within(1, 9);
+  command
+      .add_option("--looks", a.steering_angles, "Number of compounding angles; 3 when left out, 1 gives full speckle")
+      .whole_number_within(1, 5);
   command
       .add_option(
           "--off", a.off,
           fmt::format("Artefacts to switch off, with commas: {}, all", fmt::join(ultrasound::artefact_names(), ", ")))
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  arguments::seed_number(command.add_option("--seed", a.seed, "Random seed of the receiver noise"))
-      ->capture_default_str();
+      .separated_by(',')
+      .one_value_each();
+  command.add_option("--seed", a.seed, "Random seed of the receiver noise").seed().show_default();
 }
 
 Result<Scan> prepare_scan(const ScanArguments& a, const std::string& default_transducer, const Progress& progress) {
@@ -220,7 +211,7 @@ Result<Scan> prepare_scan(const ScanArguments& a, const std::string& default_tra
   scan.patient_name = patient.name;
   if (scan.view) {
     TROCAR_TRY(scan.view, ultrasound::choose_view(patient, views, a.view));
-    report(progress, "searching the pose of the transducer", 0.0);
+    core::report(progress, "searching the pose of the transducer", 0.0);
     TROCAR_TRY(const ultrasound::ProbePlacement placed, ultrasound::place_probe(patient, *scan.view, scan.transducer));
     scan.X_PT = placed.X_PT;
     scan.visibility = placed.visibility;

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <CLI/App.hpp>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "action.h"
 #include "io/patient/open_patient.h"
 #include "output.h"
 #include "ultrasound/doppler/vessel_flow.h"
@@ -33,7 +33,7 @@ struct ScanArguments {
 };
 
 /// Adds the options; `arguments` must outlive the command.
-void add_scan_options(CLI::App& command, ScanArguments& arguments);
+void add_scan_options(Command& command, ScanArguments& arguments);
 
 /// Arguments that were combined and checked against their ranges, and the acoustic scene of the patient.
 struct Scan {

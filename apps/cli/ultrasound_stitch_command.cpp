@@ -2,17 +2,16 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <filesystem>
 #include <set>
 
 #include "commands.h"
+#include "config/json.h"
 #include "core/files/atomic_file.h"
 #include "core/part_of_progress.h"
 #include "io/image/image_file.h"
 #include "io/sequence/transform_file.h"
-#include "number_option.h"
 #include "registration/panorama/stitch.h"
 #include "report/stitch_report.h"
 #include "ultrasound_volume.h"
@@ -21,7 +20,7 @@ namespace trocar::cli {
 namespace {
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct StitchArguments {
   std::vector<std::string> volumes;
   std::string out, transforms, report, beam_axis;
   std::optional<double> shadow_threshold;
@@ -30,7 +29,7 @@ struct Arguments {
   bool is_json = false;
 };
 
-Status check_arguments(const Arguments& arguments) {
+Status check_arguments(const StitchArguments& arguments) {
   if (arguments.volumes.size() < 2)
     return fail("a single volume cannot be stitched", arguments.volumes.front(), "give two or more volumes");
   if (fs::path(arguments.out).extension() != ".nrrd")
@@ -51,7 +50,7 @@ std::string spacing_text(const volume::GridGeometry& geometry) {
 }
 
 /// Without a common spacing, the scales of keypoints are not the same in all volumes.
-Status check_spacing(const Arguments& arguments, const UltrasoundVolume& first, const UltrasoundVolume& other) {
+Status check_spacing(const StitchArguments& arguments, const UltrasoundVolume& first, const UltrasoundVolume& other) {
   constexpr double kSame = 0.01;
   const Vec3 ratio = other.gray.geometry.spacing_mm.cwiseQuotient(first.gray.geometry.spacing_mm);
   if (arguments.spacing_mm > 0.0 || ((ratio.array() - 1.0).abs() < kSame).all()) return {};
@@ -60,7 +59,8 @@ Status check_spacing(const Arguments& arguments, const UltrasoundVolume& first, 
               {}, "give a common one with --spacing MM, or resample");
 }
 
-Result<std::vector<registration::PreparedVolume>> prepare_all(const Arguments& arguments, const Progress& progress) {
+Result<std::vector<registration::PreparedVolume>> prepare_all(const StitchArguments& arguments,
+                                                              const Progress& progress) {
   std::vector<UltrasoundVolume> read;
   for (const std::string& path : arguments.volumes) {
     core::report(progress, "reading " + io::name_without_ending(path), 0.0);
@@ -134,7 +134,7 @@ void print_summary(const std::vector<registration::PreparedVolume>& volumes, con
              volumes.size(), seconds);
 }
 
-Status write_panorama(const Arguments& arguments, const std::vector<registration::PreparedVolume>& volumes,
+Status write_panorama(const StitchArguments& arguments, const std::vector<registration::PreparedVolume>& volumes,
                       const registration::Stitching& stitching, const Progress& progress) {
   std::vector<registration::PlacedVolume> placed;
   for (std::size_t n = 0; n < volumes.size(); ++n)
@@ -158,7 +158,7 @@ Status write_panorama(const Arguments& arguments, const std::vector<registration
   return written;
 }
 
-Status stitch(const Arguments& arguments) {
+Status stitch(const StitchArguments& arguments) {
   TROCAR_TRY_STATUS(check_arguments(arguments));
   const auto start = std::chrono::steady_clock::now();
   const ProgressPrinter printer;
@@ -189,35 +189,34 @@ Status stitch(const Arguments& arguments) {
 
 }  // namespace
 
-void add_ultrasound_stitch_command(CLI::App& ultrasound, Action& action) {
-  CLI::App* command = ultrasound.add_subcommand("stitch", "Stitch overlapping volumes into a panorama");
-  command->footer(
+void add_ultrasound_stitch_command(Command& ultrasound, Action& action) {
+  Command command = ultrasound.add_command("stitch", "Stitch overlapping volumes into a panorama");
+  command.footer(
       "Examples:\n  trocar ultrasound stitch left.nrrd middle.nrrd right.nrrd --out panorama.nrrd --transforms poses\n"
       "  trocar ultrasound stitch sweep-*.nrrd --beam-axis +z --out panorama.nrrd --transforms poses --report "
       "stitch.html\n");
-  const auto a = std::make_shared<Arguments>();
-  command->add_option("VOLUMES", a->volumes, "Ultrasound volumes, gray levels 0..255; the first gives the frame")
-      ->required();
-  command->add_option("--out", a->out, "Panorama to write: .nrrd; 0 = never imaged")->required();
+  const auto a = std::make_shared<StitchArguments>();
+  command.add_option("VOLUMES", a->volumes, "Ultrasound volumes, gray levels 0..255; the first gives the frame")
+      .required();
+  command.add_option("--out", a->out, "Panorama to write: .nrrd; 0 = never imaged").required();
   command
-      ->add_option("--transforms", a->transforms,
-                   "Folder to write: one .tfm a placed volume, from its points to points of the first volume")
-      ->required();
-  command->add_option("--report", a->report, "Report to write: .html with matches, graph of pairs, seams");
-  command->add_option("--beam-axis", a->beam_axis,
-                      "Direction of sound along the axes of all volumes: +x to -z; default: the headers', or +y");
-  arguments::number_within(
-      command->add_option("--shadow-threshold", a->shadow_threshold,
-                          "Gray level below which the end of a beam is shadow; default: estimated for each volume"),
-      0.0, 255.0, "");
-  arguments::number_within(
-      command->add_option("--spacing", a->spacing_mm,
-                          "Voxel size of the panorama and of the comparison; default: that of the volumes"),
-      0.05, 10.0, "mm");
-  arguments::seed_number(command->add_option("--seed", a->seed, "Random seed of the search for poses"))
-      ->capture_default_str();
-  command->add_flag("--json", a->is_json, "Print one JSON object");
-  command->callback([&action, a] { action = [a] { return stitch(*a); }; });
+      .add_option("--transforms", a->transforms,
+                  "Folder to write: one .tfm a placed volume, from its points to points of the first volume")
+      .required();
+  command.add_option("--report", a->report, "Report to write: .html with matches, graph of pairs, seams");
+  command.add_option("--beam-axis", a->beam_axis,
+                     "Direction of sound along the axes of all volumes: +x to -z; default: the headers', or +y");
+  command
+      .add_option("--shadow-threshold", a->shadow_threshold,
+                  "Gray level below which the end of a beam is shadow; default: estimated for each volume")
+      .number_within(0.0, 255.0, "");
+  command
+      .add_option("--spacing", a->spacing_mm,
+                  "Voxel size of the panorama and of the comparison; default: that of the volumes")
+      .number_within(0.05, 10.0, "mm");
+  command.add_option("--seed", a->seed, "Random seed of the search for poses").seed().show_default();
+  command.add_flag("--json", a->is_json, "Print one JSON object");
+  command.when_parsed([&action, a] { action = [a] { return stitch(*a); }; });
 }
 
 }  // namespace trocar::cli

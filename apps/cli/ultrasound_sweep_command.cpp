@@ -2,16 +2,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <filesystem>
 #include <numbers>
 
 #include "commands.h"
+#include "config/json.h"
 #include "io/image/image_file.h"
 #include "io/sequence/sequence_file.h"
 #include "io/sequence/transform_file.h"
-#include "number_option.h"
 #include "ultrasound/sweep/freehand_sweep.h"
 #include "ultrasound/sweep/mechanical_sweep.h"
 #include "ultrasound_scan.h"
@@ -22,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
-struct Arguments {
+struct SweepArguments {
   ScanArguments scan;
   std::string out, tracked;
   double angle_deg = 0.0;  ///< 0: that of the transducer; freehand: translation only.
@@ -71,7 +70,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-void print_done(const Arguments& arguments, const config::Json& json, const std::string& line) {
+void print_done(const SweepArguments& arguments, const config::Json& json, const std::string& line) {
   if (arguments.is_json) {
     print_json(json);
   } else {
@@ -79,7 +78,7 @@ void print_done(const Arguments& arguments, const config::Json& json, const std:
   }
 }
 
-Status sweep_by_motor(const Arguments& arguments, const Scan& scan, const Progress& progress) {
+Status sweep_by_motor(const SweepArguments& arguments, const Scan& scan, const Progress& progress) {
   ultrasound::MechanicalSweepOptions options;
   options.acquisition = scan.acquisition;
   options.display = scan.display;
@@ -116,7 +115,7 @@ Status sweep_by_motor(const Arguments& arguments, const Scan& scan, const Progre
   return {};
 }
 
-std::vector<Pose> hand_poses(const Arguments& arguments, const Scan& scan) {
+std::vector<Pose> hand_poses(const SweepArguments& arguments, const Scan& scan) {
   if (arguments.angle_deg > 0.0) {
     const int steps = static_cast<int>(std::ceil(arguments.angle_deg / arguments.step_deg));
     const int frames = arguments.frames > 0 ? arguments.frames : std::max(2, steps + 1);
@@ -127,7 +126,7 @@ std::vector<Pose> hand_poses(const Arguments& arguments, const Scan& scan) {
   return ultrasound::slide_over_skin(scan.scene->skin_distance_mm, scan.X_PT, arguments.length_mm, frames);
 }
 
-Status sweep_by_hand(const Arguments& arguments, const Scan& scan, const Progress& progress) {
+Status sweep_by_hand(const SweepArguments& arguments, const Scan& scan, const Progress& progress) {
   ultrasound::FreehandSweepOptions options;
   options.acquisition = scan.acquisition;
   options.display = scan.display;
@@ -151,7 +150,7 @@ Status sweep_by_hand(const Arguments& arguments, const Scan& scan, const Progres
   return {};
 }
 
-Status check_arguments(const Arguments& arguments) {
+Status check_arguments(const SweepArguments& arguments) {
   if (arguments.out.empty() == arguments.tracked.empty())
     return fail_usage("exactly one of --out and --tracked is needed", "--out, --tracked",
                       "give --out VOLUME.nrrd or --tracked SEQUENCE.igs.mha");
@@ -162,7 +161,7 @@ Status check_arguments(const Arguments& arguments) {
   return check_outputs({arguments.out, arguments.tracked, arguments.scan.save_pose});
 }
 
-Status sweep(const Arguments& arguments) {
+Status sweep(const SweepArguments& arguments) {
   TROCAR_TRY_STATUS(check_arguments(arguments));
   const bool is_by_motor = !arguments.out.empty();
   const ProgressPrinter printer;
@@ -174,38 +173,35 @@ Status sweep(const Arguments& arguments) {
 
 }  // namespace
 
-void add_ultrasound_sweep_command(CLI::App& ultrasound, Action& action) {
-  CLI::App* command = ultrasound.add_subcommand("sweep", "Simulate a 3D acquisition");
-  command->footer(
+void add_ultrasound_sweep_command(Command& ultrasound, Action& action) {
+  Command command = ultrasound.add_command("sweep", "Simulate a 3D acquisition");
+  command.footer(
       "Examples:\n  trocar ultrasound sweep --patient my_patient --pose probe.tfm --out volume.nrrd\n"
       "  trocar ultrasound sweep --patient abdomen --view liver-right-kidney --in-patient --out liver.nrrd\n"
       "  trocar ultrasound sweep --patient abdomen --view liver-right-kidney --tracked sweep.igs.mha\n");
-  const auto a = std::make_shared<Arguments>();
-  add_scan_options(*command, a->scan);
-  command->add_option(
+  const auto a = std::make_shared<SweepArguments>();
+  add_scan_options(command, a->scan);
+  command.add_option(
       "--out", a->out,
       "Output volume of a mechanical 3D transducer: .nrrd, one byte per voxel, with the fan geometry in the header");
-  command->add_option("--tracked", a->tracked, "Alternative output: tracked images of a freehand sweep, .igs.mha");
-  arguments::number_within(
-      command->add_option(
-          "--angle-deg", a->angle_deg,
-          "Total angle of the sweep; default: that of the transducer. Freehand sweep: tilt without translation"),
-      1.0, 90.0, "degrees");
-  arguments::number_within(command->add_option("--step-deg", a->step_deg, "Angle between frames"), 0.1, 10.0, "degrees")
-      ->capture_default_str();
-  arguments::number_within(command->add_option("--spacing", a->spacing_mm, "Voxel size"), 0.2, 5.0, "mm")
-      ->capture_default_str();
-  command->add_flag("--in-patient", a->is_in_patient,
-                    "Write the volume in the patient's frame; when left out in the transducer's frame at mid sweep");
-  arguments::number_within(command->add_option("--length-mm", a->length_mm, "Freehand sweep: distance along the skin"),
-                           1.0, 300.0, "mm")
-      ->capture_default_str();
-  arguments::whole_number_within(
-      command->add_option("--frames", a->frames,
-                          "Freehand sweep: number of frames; one per mm or angle step when left out"),
-      2, 1000);
-  command->add_flag("--json", a->is_json, "Print one JSON object");
-  command->callback([&action, a] { action = [a] { return sweep(*a); }; });
+  command.add_option("--tracked", a->tracked, "Alternative output: tracked images of a freehand sweep, .igs.mha");
+  command
+      .add_option("--angle-deg", a->angle_deg,
+                  "Total angle of the sweep; default: that of the transducer. Freehand sweep: tilt without translation")
+      .number_within(1.0, 90.0, "degrees");
+  command.add_option("--step-deg", a->step_deg, "Angle between frames")
+      .number_within(0.1, 10.0, "degrees")
+      .show_default();
+  command.add_option("--spacing", a->spacing_mm, "Voxel size").number_within(0.2, 5.0, "mm").show_default();
+  command.add_flag("--in-patient", a->is_in_patient,
+                   "Write the volume in the patient's frame; when left out in the transducer's frame at mid sweep");
+  command.add_option("--length-mm", a->length_mm, "Freehand sweep: distance along the skin")
+      .number_within(1.0, 300.0, "mm")
+      .show_default();
+  command.add_option("--frames", a->frames, "Freehand sweep: number of frames; one per mm or angle step when left out")
+      .whole_number_within(2, 1000);
+  command.add_flag("--json", a->is_json, "Print one JSON object");
+  command.when_parsed([&action, a] { action = [a] { return sweep(*a); }; });
 }
 
 }  // namespace trocar::cli

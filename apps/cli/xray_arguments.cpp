@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <filesystem>
 #include <string_view>
@@ -11,7 +10,6 @@
 #include "core/files/data_dir.h"
 #include "core/parse_number.h"
 #include "io/markups_file.h"
-#include "number_option.h"
 #include "xray/geometry/c_arm_presets.h"
 #include "xray/tools/tool_table.h"
 
@@ -66,51 +64,48 @@ Status check_reach(const XrayArguments& a, const xray::CArmPreset& unit, const x
 
 }  // namespace
 
-void add_xray_options(CLI::App& command, XrayArguments& a) {
-  command.add_option("--patient", a.source.folder_or_name, "Patient folder, or an embedded patient's name")->required();
-  arguments::seed_number(command.add_option("--patient-seed", a.source.seed, "Seed of an embedded patient"))
-      ->capture_default_str();
-  command.add_option("--carm", a.carm, "LAO,CRAN in degrees; RAO and caudal are negative")->capture_default_str();
+void add_xray_options(Command& command, XrayArguments& a) {
+  command.add_option("--patient", a.source.folder_or_name, "Patient folder, or an embedded patient's name").required();
+  command.add_option("--patient-seed", a.source.seed, "Seed of an embedded patient").seed().show_default();
+  command.add_option("--carm", a.carm, "LAO,CRAN in degrees; RAO and caudal are negative").show_default();
   command.add_option("--at", a.at,
                      "Middle of the image, x,y,z (mm, LPS); without it: the needle's tip, the injection or the body");
-  command.add_option("--unit", a.unit, "X-ray unit of data/carms.toml")->capture_default_str();
-  arguments::number_within(
-      command.add_option("--field", a.field_mm, "Edge of the field; without it the unit's largest"), 50.0, 500.0, "mm");
-  arguments::whole_number_within(command.add_option("--pixels", a.pixels, "Pixels along each edge"), 16, 2048)
-      ->capture_default_str();
-  command.add_option("--collimate", a.collimate, "Irradiated share of width and height, 0.05 to 1")
-      ->capture_default_str();
+  command.add_option("--unit", a.unit, "X-ray unit of data/carms.toml").show_default();
+  command.add_option("--field", a.field_mm, "Edge of the field; without it the unit's largest")
+      .number_within(50.0, 500.0, "mm");
+  command.add_option("--pixels", a.pixels, "Pixels along each edge").whole_number_within(16, 2048).show_default();
+  command.add_option("--collimate", a.collimate, "Irradiated share of width and height, 0.05 to 1").show_default();
   command.add_option("--dose", a.dose, "Dose at the detector; --subtract takes that of acquisitions")
-      ->check(CLI::IsMember({"low", "normal", "high"}))
-      ->capture_default_str();
-  CLI::Option* const needle = command.add_option(
+      .one_of({"low", "normal", "high"})
+      .show_default();
+  const Option needle = command.add_option(
       "--needle", a.needle, "X_PN: transform from the needle (tip at 0, +z towards the tip) to the patient (.tfm)");
-  arguments::number_within(command.add_option("--needle-diameter", a.needle_mm, "Outer diameter of the needle"), 0.2,
-                           5.0, "mm")
-      ->needs(needle)
-      ->capture_default_str();
+  command.add_option("--needle-diameter", a.needle_mm, "Outer diameter of the needle")
+      .number_within(0.2, 5.0, "mm")
+      .needs(needle)
+      .show_default();
   command.add_option(
       "--tools", a.tools,
       "Guide wire, catheter, markers: curves and point lists of 3D Slicer (.mrk.json), each named after a "
       "tool of data/xray_tools.toml");
-  CLI::Option* const contrast = command.add_option(
-      "--contrast", a.contrast, "Contrast agent, ML@x,y,z: volume (ml) and place of the tip (mm, LPS)");
-  arguments::number_within(command.add_option("--rate", a.rate_ml_per_s, "Rate of the injection"), 0.05, 20.0, "ml/s")
-      ->needs(contrast)
-      ->capture_default_str();
-  arguments::number_within(
-      command.add_option("--time", a.time_s, "Time since the injection began; without it: when it ends"), 0.0, 3600.0,
-      "s")
-      ->needs(contrast);
-  arguments::whole_number_within(command.add_option("--frames", a.frames, "Images over that time, as one .dcm"), 1,
-                                 1000)
-      ->capture_default_str();
+  const Option contrast = command.add_option("--contrast", a.contrast,
+                                             "Contrast agent, ML@x,y,z: volume (ml) and place of the tip (mm, LPS)");
+  command.add_option("--rate", a.rate_ml_per_s, "Rate of the injection")
+      .number_within(0.05, 20.0, "ml/s")
+      .needs(contrast)
+      .show_default();
+  command.add_option("--time", a.time_s, "Time since the injection began; without it: when it ends")
+      .number_within(0.0, 3600.0, "s")
+      .needs(contrast);
+  command.add_option("--frames", a.frames, "Images over that time, as one .dcm")
+      .whole_number_within(1, 1000)
+      .show_default();
   command.add_flag("--subtract", a.is_subtracted, "Digital subtraction: only what the contrast agent adds")
-      ->needs(contrast);
+      .needs(contrast);
   command.add_flag("--inverted", a.is_inverted, "Bones white, as in a radiograph");
-  arguments::seed_number(command.add_option("--seed", a.seed, "Seed of the noise"))->capture_default_str();
+  command.add_option("--seed", a.seed, "Seed of the noise").seed().show_default();
   command.add_option("--out", a.out, "Output: .png, .nrrd (attenuation -ln of the signal) or .dcm (DICOM XA)")
-      ->required();
+      .required();
   command.add_flag("--json", a.is_json, "Print one JSON object");
 }
 

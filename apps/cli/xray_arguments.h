@@ -1,10 +1,10 @@
 #pragma once
 
-#include <CLI/App.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "action.h"
 #include "io/patient/patient_source.h"
 #include "xray/fluoroscopy/fluoroscopy_frame.h"
 
@@ -38,7 +38,7 @@ struct Injection {
   Vec3 place_P = Vec3::Zero();
 };
 
-void add_xray_options(CLI::App& command, XrayArguments& a);
+void add_xray_options(Command& command, XrayArguments& a);
 /// Empty without a text. Usage errors (exit status 2): not ML@x,y,z, a volume that is not above 0 and up to 200 ml.
 Result<std::optional<Injection>> parse_injection(const std::string& text, double ml_per_s);
 /// Guide wires, catheters and markers of --tools; none without a file. Errors: the file's; a name that is no tool of

@@ -1,7 +1,6 @@
 // trocar xray: an X-ray image of a patient, with needle and contrast agent.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,12 +10,13 @@
 
 #include "cases/contrast_blood.h"
 #include "commands.h"
+#include "config/json.h"
+#include "constants.h"
 #include "core/files/data_dir.h"
 #include "dicom/xa/xa_file.h"
 #include "io/image/image_file.h"
 #include "io/patient/open_patient.h"
 #include "io/sequence/transform_file.h"
-#include "number_option.h"
 #include "patient_option.h"
 #include "png/png_file.h"
 #include "ultrasound/doppler/vessel_flow.h"
@@ -29,7 +29,6 @@ namespace trocar::cli {
 namespace {
 namespace fs = std::filesystem;
 
-constexpr double kNeedleLength_mm = 200.0;
 constexpr double kStep_s = 0.05;  // of the contrast agent
 constexpr int kMaskFrames = xray::Fluoroscope::kMaskFrames;
 constexpr double kPulses_per_s = 15.0;
@@ -132,12 +131,12 @@ Result<Room> prepare_room(const XrayArguments& a, const Progress& progress) {
   room.patient = std::make_shared<const anatomy::VirtualPatient>(std::move(patient));
   if (a.at.empty()) room.request.arm.isocentre_P = middle_P(room, X_PN);
   if (X_PN) room.request.tools.push_back(needle_of(*X_PN, a.needle_mm));
-  report(progress, "preparing the X-ray", 0.5);
+  core::report(progress, "preparing the X-ray", 0.5);
   TROCAR_TRY(auto volume, xray::XrayVolume::make(room.patient));
   TROCAR_TRY_STATUS(check_beam(*volume, room.request.arm));
   room.fluoroscope.emplace(std::move(volume));
   if (room.injection) {
-    report(progress, "following the ducts", 0.8);
+    core::report(progress, "following the ducts", 0.8);
     TROCAR_TRY_STATUS(prepare_contrast(a, room));
   }
   if (X_PN) warn_of_needle(room, X_PN->p());
@@ -174,7 +173,7 @@ Result<std::vector<xray::FluoroscopyFrame>> make_frames(Room& room, const XrayAr
                        : room.injection ? room.injection->ml / room.injection->ml_per_s
                                         : 0.0;
   for (int n = 0; n < before + a.frames; ++n) {
-    report(progress, "making images", static_cast<double>(n) / (before + a.frames));
+    core::report(progress, "making images", static_cast<double>(n) / (before + a.frames));
     if (room.injection && n >= before) {
       const double to_s = a.frames > 1 ? end_s * (n - before) / (a.frames - 1) : end_s;
       TROCAR_TRY_STATUS(advance(room, contrast_s, to_s));
@@ -288,18 +287,18 @@ Status make_xray(const XrayArguments& a) {
 
 }  // namespace
 
-void add_xray_command(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand("xray", "Create an X-ray image of a patient");
-  command->footer(
+void add_xray_command(Command& program, Action& action) {
+  Command command = program.add_command("xray", "Create an X-ray image of a patient");
+  command.footer(
       "Examples:\n  trocar xray --patient ptcd-1 --out ap.png\n"
       "  trocar xray --patient ptcd-1 --carm -30,10 --needle needle.tfm --out oblique.png\n"
       "  trocar xray --patient ptcd-1 --contrast 10@-36.8,-62.9,16.1 --time 12 --subtract --out ducts.png\n"
       "  trocar xray --patient ptcd-1 --contrast 10@-36.8,-62.9,16.1 --time 12 --frames 30 --out run.dcm\n"
       "  trocar xray --patient ptcd-1 --tools drainage.mrk.json --out drainage.png\n");
   const auto a = std::make_shared<XrayArguments>();
-  add_cache_option(*command, a->source);
-  add_xray_options(*command, *a);
-  command->callback([&action, a] { action = [a] { return make_xray(*a); }; });
+  add_cache_option(command, a->source);
+  add_xray_options(command, *a);
+  command.when_parsed([&action, a] { action = [a] { return make_xray(*a); }; });
 }
 
 }  // namespace trocar::cli

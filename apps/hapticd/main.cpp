@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <signal.h>
 
-#include <CLI/CLI.hpp>
 #include <condition_variable>
 #include <cstdlib>
 #include <memory>
@@ -10,13 +9,13 @@
 #include <thread>
 
 #include "cases/scene_request.h"
+#include "command.h"
 #include "core/files/data_dir.h"
 #include "core/files/user_folders.h"
 #include "core/log.h"
 #include "core/version.h"
 #include "devices/device_spec.h"
 #include "io/patient/patient_source.h"
-#include "number_option.h"
 #include "program_end.h"
 #include "replayed_motion.h"
 #include "server/haptic_server.h"
@@ -206,38 +205,34 @@ Status serve(Arguments& arguments) {
   return {};
 }
 
-void add_options(CLI::App& program, Arguments& a) {
+void add_options(arguments::Program& program, Arguments& a) {
   program
       .add_option("--device", a.device,
                   "Device: virtual[:PRESET], mouse, gamepad, spacemouse, replay:FILE, openhaptics[:NAME], "
                   "forcedimension or haply[:ws://HOST:PORT]")
-      ->capture_default_str();
+      .show_default();
   program.add_option("--preset", a.preset, "Preset (row of data/devices.toml); default: that of the device");
-  program.add_option("--tool", a.tool, "Tool of the device: needle, probe or finger")->capture_default_str();
+  program.add_option("--tool", a.tool, "Tool of the device: needle, probe or finger").show_default();
   program.add_option("--patient", a.patient.folder_or_name,
                      "Patient to load at the start; without it, a client sends one");
-  arguments::seed_number(program.add_option("--patient-seed", a.patient.seed, "Seed of an embedded patient"))
-      ->capture_default_str();
-  program.add_option("--task", a.the_case.task, "Task that defines the patient's position in the room")
-      ->capture_default_str();
+  program.add_option("--patient-seed", a.patient.seed, "Seed of an embedded patient").seed().show_default();
+  program.add_option("--task", a.the_case.task, "Task that defines the patient's position in the room").show_default();
   program.add_option("--needle", a.the_case.needle, "Needle of data/needles.toml; the task's own when left out");
   program.add_option("--force-model", a.force_model, "insertion, proxy or combined; the task's own when left out");
-  arguments::number_within(program.add_option("--rate", a.rate_hz, "Rate of haptic ticks"), 250.0, 4000.0, "Hz")
-      ->capture_default_str();
+  program.add_option("--rate", a.rate_hz, "Rate of haptic ticks").number_within(250.0, 4000.0, "Hz").show_default();
   program.add_option("--endpoint", a.endpoint,
                      "ipc://PATH (for this user), or tcp://ADDRESS:PORT with --keys and --allow");
   program.add_option("--keys", a.key_file, "The server's key file (trocar link keygen)");
   program.add_option("--allow", a.allow_file, "Public keys of the clients that may connect");
-  arguments::whole_number_within(
-      program.add_option("--priority", a.priority, "Priority under SCHED_FIFO; 0 selects ordinary scheduling"), 0, 99)
-      ->capture_default_str();
-  program.add_option("--flight-records", a.flight_folder, "Folder for the last 2 s before a fault")
-      ->capture_default_str();
+  program.add_option("--priority", a.priority, "Priority under SCHED_FIFO; 0 selects ordinary scheduling")
+      .whole_number_within(0, 99)
+      .show_default();
+  program.add_option("--flight-records", a.flight_folder, "Folder for the last 2 s before a fault").show_default();
   program
       .add_option("--fault", a.faults,
                   "Inject a device fault: KIND[:AMOUNT]@FROM_S[+FOR_S], as nan@2+0.5; kinds jitter, dropped, nan, "
                   "stuck, jump, disconnect, slow_write, slow_read")
-      ->allow_extra_args(false);
+      .one_value_each();
   program.add_flag("--test", a.is_test,
                    "Test mode without clients: print the device's pose 30 times a second; the line \"push\" on "
                    "standard input applies a small upward force, \"weigh\" weighs the stylus and saves its weight, "
@@ -253,18 +248,12 @@ void add_options(CLI::App& program, Arguments& a) {
 }
 
 int run(int argc, char** argv) {
-  CLI::App program("The haptic server of Trocar, one process per device. A trainer, not a medical device.");
-  program.name("trocar-hapticd");
-  program.set_version_flag("--version", std::string("trocar-hapticd ") + kVersion, "Print the version and exit");
+  arguments::Program program("trocar-hapticd",
+                             "The haptic server of Trocar, one process per device. A trainer, not a medical device.");
+  program.add_version_flag(std::string("trocar-hapticd ") + kVersion, "Print the version and exit");
   Arguments arguments;
   add_options(program, arguments);
-  try {
-    program.parse(argc, argv);
-  } catch (const CLI::Success& asked_for_text) {
-    return program.exit(asked_for_text);
-  } catch (const CLI::ParseError& error) {
-    return arguments::report_error({error.what(), "trocar-hapticd", "see trocar-hapticd --help", 2});
-  }
+  if (const std::optional<int> end = program.parse(argc, argv)) return *end;
   if (arguments.is_verbose) set_log_level(LogLevel::kInfo);
   const Status done = serve(arguments);
   return done ? 0 : arguments::report_error(done.error());

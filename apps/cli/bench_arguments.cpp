@@ -1,0 +1,35 @@
+#include "bench_arguments.h"
+
+#include "patient_option.h"
+
+namespace trocar::cli {
+
+void add_bench_options(Command& command, BenchArguments& a) {
+  command.add_option("NAME", a.names, "Benchmarks to run; default: all");
+  command.add_flag("--list", a.is_list, "List the benchmarks");
+  command.add_flag("--json", a.is_json, "Print one JSON object; with several benchmarks a list under \"benches\"");
+  command.add_option("--patient", a.source.folder_or_name, "Patient folder, or an embedded patient's name");
+  command.add_option("--patient-seed", a.source.seed, "Random seed for the anatomy of an embedded patient")
+      .seed()
+      .show_default();
+  add_cache_option(command, a.source);
+  command.add_option("--task", a.options.task, "Task whose paths are planned").show_default();
+  command.add_option("--paths", a.options.paths, "Number of planned paths")
+      .whole_number_within(1, 100000)
+      .show_default();
+  command.add_option("--force-model", a.force_model, "Force model: insertion, proxy or combined");
+  command.add_option("--seed", a.options.seed, "Random seed for the choice of paths and the motion")
+      .seed()
+      .show_default();
+  command.add_option("--seconds", a.options.seconds, "Measuring time of live servers")
+      .number_within(1.0, 86400.0, "s")
+      .show_default();
+  command.add_option("--rate", a.options.rates_hz, "Rate of the live servers; can be given several times")
+      .number_within(250.0, 4000.0, "Hz")
+      .show_default();
+  command.add_option("--sequence", a.options.sequence, "Recorded ultrasound (.igs.mha) for the comparison of images");
+  command.add_option("--out", a.options.out, "Folder to create for the benchmark's files");
+  command.footer("Examples:\n  trocar bench slice --json\n  trocar bench paths --patient my_patient --paths 2000\n");
+}
+
+}  // namespace trocar::cli

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <numbers>
+
+namespace trocar::cli {
+
+inline constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+inline constexpr double kMm2PerCm2 = 100.0;
+inline constexpr double kMm3PerMl = 1000.0;
+
+/// Of needles that are given by the pose of their tip.
+inline constexpr double kNeedleLength_mm = 200.0;
+
+}  // namespace trocar::cli
