@@ -1,20 +1,20 @@
 // trocar-trainer: the trainer's window.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <QPixmap>
 #include <QSettings>
 #include <QTemporaryDir>
 #include <QTimer>
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <optional>
 
 #include "anatomy/phantom/phantom.h"
+#include "command.h"
 #include "core/files/data_dir.h"
 #include "core/files/user_folders.h"
 #include "core/version.h"
-#include "number_option.h"
 #include "pages/start_page.h"
 #include "program_end.h"
 #include "results/repository.h"
@@ -38,28 +38,35 @@ namespace fs = std::filesystem;
 struct Arguments {
   std::optional<std::string> task, patient;
   std::optional<std::uint64_t> patient_seed;
-  std::string script, screenshot, state_folder, database;
+  std::vector<std::string> scripts;
+  std::string screenshot, state_folder, database;
+  int frame_rate_hz = 60;
   bool is_benchmark = false;
   std::vector<std::string> layouts;
 };
 
-void add_options(CLI::App& app, Arguments& arguments) {
+void add_options(arguments::Program& app, Arguments& arguments) {
   app.add_option("--task", arguments.task, "Task selected at the start");
   app.add_option("--patient", arguments.patient, "Patient folder, or an embedded patient's name");
-  arguments::seed_number(app.add_option("--patient-seed", arguments.patient_seed,
-                                        "Random seed for the anatomy of an embedded patient [1]"));
-  app.add_option("--script", arguments.script, "Run a script of user actions, then exit; exit status 1 if a step fails")
-      ->check(CLI::ExistingFile);
+  app.add_option("--patient-seed", arguments.patient_seed, "Random seed for the anatomy of an embedded patient [1]")
+      .seed();
+  app.add_option("--script", arguments.scripts,
+                 "Run scripts of user actions one after the other, then exit; exit status 1 if a step fails")
+      .existing_file();
   app.add_option("--screenshot", arguments.screenshot,
                  "Save the window as a PNG and exit; after the script if there is one");
-  auto* benchmark =
+  const arguments::Option benchmark =
       app.add_flag("--benchmark", arguments.is_benchmark, "Run a puncture in every layout and print frame times");
-  app.add_option("--layout", arguments.layouts, "Layouts of the benchmark [all]")->needs(benchmark);
+  app.add_option("--layout", arguments.layouts, "Layouts of the benchmark [all]").needs(benchmark);
+  app.add_option("--frame-rate", arguments.frame_rate_hz,
+                 "Frames per second, at most: fewer leave more of a slow processor to the simulation [60]")
+      .whole_number_within(1, 60);
   app.add_option("--state", arguments.state_folder, "Folder for sessions [$XDG_STATE_HOME/trocar]");
   app.add_option("--db", arguments.database,
                  "Database of people and results: a file, or postgresql://USER:PASSWORD@HOST/NAME [$TROCAR_DB, else "
                  "results.sqlite in $XDG_DATA_HOME/trocar]");
-  app.set_version_flag("--version", fmt::format("trocar-trainer {} (Qt {})", kVersion, qVersion()));
+  app.add_version_flag(fmt::format("trocar-trainer {} (Qt {})", kVersion, qVersion()),
+                       "Display program version information and exit");
   app.footer(
       "Examples:\n  trocar-trainer --task liver-biopsy --patient abdomen\n"
       "  trocar-trainer --script steps.txt --screenshot window.png\n\n"
@@ -96,14 +103,20 @@ void save_window(MainWindow& window, const std::string& file) {
 
 /// Runs the script, then saves the screenshot, then exits.
 Status play(const Arguments& arguments, MainWindow& window) {
-  if (arguments.script.empty() && !arguments.is_benchmark) {
+  if (arguments.scripts.empty() && !arguments.is_benchmark) {
     constexpr int kSettled_ms = 700;
     if (!arguments.screenshot.empty())
       QTimer::singleShot(kSettled_ms, &window, [&] { save_window(window, arguments.screenshot); });
     return {};
   }
-  TROCAR_TRY(std::vector<ScriptStep> steps,
-             arguments.is_benchmark ? benchmark_steps(arguments.layouts) : load_script(arguments.script));
+  std::vector<ScriptStep> steps;
+  if (arguments.is_benchmark) {
+    TROCAR_TRY(steps, benchmark_steps(arguments.layouts));
+  }
+  for (const std::string& script : arguments.scripts) {
+    TROCAR_TRY(std::vector<ScriptStep> more, load_script(script));
+    std::ranges::move(more, std::back_inserter(steps));
+  }
   const Stage stage{&window, [&] { return window.facts(); },
                     [&](const QString& tool) { window.flow().end_server(tool); }, [&] { window.flow().reset_watch(); }};
   auto* player = new ScriptPlayer(std::move(steps), stage, &window);
@@ -120,16 +133,10 @@ Status play(const Arguments& arguments, MainWindow& window) {
 }
 
 int run(int argc, char** argv) {
-  CLI::App app("The Trocar trainer window: ultrasound, slices, 3D, forces and score.", "trocar-trainer");
+  arguments::Program app("trocar-trainer", "The Trocar trainer window: ultrasound, slices, 3D, forces and score.");
   Arguments arguments;
   add_options(app, arguments);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& asked_for_text) {
-    return app.exit(asked_for_text);
-  } catch (const CLI::ParseError& error) {
-    return arguments::report_error({error.what(), "trocar-trainer", "see trocar-trainer --help", 2});
-  }
+  if (const std::optional<int> end = app.parse(argc, argv)) return *end;
   if (!scene::can_render())
     return arguments::report_error(Error{"the window needs an X server with rendering; none is available", "DISPLAY",
                                          "start it from a desktop, or under xvfb-run"});
@@ -151,6 +158,7 @@ int run(int argc, char** argv) {
   MainWindow window(arguments.state_folder.empty() ? user_state_folder() : fs::path(arguments.state_folder), *results);
   const Result<TrainerChoice> choice = with_arguments(window.start().choice(), arguments);
   if (!choice) return arguments::report_error(choice.error());
+  window.flow().set_frame_rate(arguments.frame_rate_hz);
   window.start().choose(*choice);
   window.show();
   if (const Status status = play(arguments, window); !status) return arguments::report_error(status.error());

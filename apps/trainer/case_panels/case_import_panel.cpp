@@ -135,6 +135,7 @@ class ImportPanel final : public CasePanel {
     has_failed_ = false;
     before_ = editor_.draft().imported;
     editor_.import_patient(std::move(request));
+    was_importing_ = true;  // it may end before the next refresh
   }
 
   /// Stores the fields of the import.

@@ -18,7 +18,7 @@
 namespace trocar::trainer {
 namespace {
 
-enum Column { kName, kTissue, kVolume, kColumns };
+enum LabelColumn { kLabelName, kLabelTissue, kLabelVolume, kLabelColumns };
 
 class LabelsPanel final : public CasePanel {
  public:
@@ -52,17 +52,17 @@ class LabelsPanel final : public CasePanel {
   }
 
   void add_table() {
-    table_ = new QTableWidget(0, kColumns);
+    table_ = new QTableWidget(0, kLabelColumns);
     table_->setObjectName(QStringLiteral("case-label-table"));
     table_->setAccessibleName(tr("Labels"));
     table_->setToolTip(tr("Select a row to edit it below; double-click to go to the label"));
     table_->setHorizontalHeaderLabels({tr("Label"), tr("Tissue"), tr("ml")});
     table_->verticalHeader()->hide();
     table_->verticalHeader()->setDefaultSectionSize(26);
-    table_->horizontalHeader()->setSectionResizeMode(kName, QHeaderView::Stretch);
-    table_->horizontalHeader()->setSectionResizeMode(kTissue, QHeaderView::Interactive);
-    table_->setColumnWidth(kTissue, 80);
-    table_->setColumnWidth(kVolume, 48);
+    table_->horizontalHeader()->setSectionResizeMode(kLabelName, QHeaderView::Stretch);
+    table_->horizontalHeader()->setSectionResizeMode(kLabelTissue, QHeaderView::Interactive);
+    table_->setColumnWidth(kLabelTissue, 80);
+    table_->setColumnWidth(kLabelVolume, 48);
     table_->setShowGrid(false);
     table_->setEditTriggers(QAbstractItemView::NoEditTriggers);
     table_->setSelectionBehavior(QAbstractItemView::SelectRows);
@@ -76,7 +76,7 @@ class LabelsPanel final : public CasePanel {
     });
     connect(table_, &QTableWidget::cellDoubleClicked, this, [this](int row, int) { jump_to(row); });
     connect(table_, &QTableWidget::itemChanged, this, [this](const QTableWidgetItem* item) {
-      if (is_refreshing_ || item->column() != kName) return;
+      if (is_refreshing_ || item->column() != kLabelName) return;
       const bool is_visible = item->checkState() == Qt::Checked;
       if (is_visible)
         hidden_.erase(id_of(item->row()));
@@ -143,7 +143,7 @@ class LabelsPanel final : public CasePanel {
     for (std::size_t n = 0; n < labels.size(); ++n) {
       const anatomy::Label& label = labels[n];
       const int row = static_cast<int>(n);
-      QTableWidgetItem* name = item(row, kName);
+      QTableWidgetItem* name = item(row, kLabelName);
       name->setText(to_qt(label.name));
       name->setData(Qt::UserRole, label.id);
       name->setData(Qt::DecorationRole, QColor(label.color[0], label.color[1], label.color[2]));
@@ -152,8 +152,8 @@ class LabelsPanel final : public CasePanel {
       QFont font = name->font();
       font.setItalic(label.is_derived);
       name->setFont(font);
-      item(row, kTissue)->setText(to_qt(label.tissue));
-      QTableWidgetItem* volume = item(row, kVolume);
+      item(row, kLabelTissue)->setText(to_qt(label.tissue));
+      QTableWidgetItem* volume = item(row, kLabelVolume);
       volume->setText(QString::number(volumes[label.id], 'f', volumes[label.id] < 10.0 ? 1 : 0));
       volume->setTextAlignment(Qt::AlignRight | Qt::AlignVCenter);
     }
@@ -165,12 +165,12 @@ class LabelsPanel final : public CasePanel {
   }
 
   std::uint8_t id_of(int row) const {
-    return static_cast<std::uint8_t>(table_->item(row, kName)->data(Qt::UserRole).toInt());
+    return static_cast<std::uint8_t>(table_->item(row, kLabelName)->data(Qt::UserRole).toInt());
   }
 
   const anatomy::Label* selected() const {
     const int row = table_->currentRow();
-    if (row < 0 || table_->item(row, kName) == nullptr) return nullptr;
+    if (row < 0 || table_->item(row, kLabelName) == nullptr) return nullptr;
     return editor_.draft().label_table.find(id_of(row));
   }
 

@@ -16,7 +16,7 @@
 namespace trocar::trainer {
 namespace {
 
-enum Column { kName, kInCt, kInUltrasound, kResidual, kColumns };
+enum PairColumn { kPairName, kPairInCt, kPairInUltrasound, kPairResidual, kPairColumns };
 constexpr int kListHeight = 150;
 
 const anatomy::Landmark* find_in_ct(const case_builder::CaseDraft& draft, const std::string& name) {
@@ -78,18 +78,18 @@ void CaseLandmarkPairs::add_naming() {
 }
 
 void CaseLandmarkPairs::add_list() {
-  list_ = new QTableWidget(0, kColumns);
+  list_ = new QTableWidget(0, kPairColumns);
   list_->setObjectName(QStringLiteral("case-pairs"));
   list_->setAccessibleName(tr("Landmark pairs"));
   list_->setToolTip(tr("Click to go there  (Enter); Delete removes the landmark of the ultrasound"));
   list_->setHorizontalHeaderLabels({tr("Landmark"), tr("CT"), tr("US"), tr("Off")});
-  list_->horizontalHeaderItem(kResidual)->setToolTip(tr("Distance between both points after the fit"));
+  list_->horizontalHeaderItem(kPairResidual)->setToolTip(tr("Distance between both points after the fit"));
   list_->verticalHeader()->hide();
   list_->verticalHeader()->setDefaultSectionSize(24);
-  list_->horizontalHeader()->setSectionResizeMode(kName, QHeaderView::Stretch);
-  list_->setColumnWidth(kInCt, 32);
-  list_->setColumnWidth(kInUltrasound, 32);
-  list_->setColumnWidth(kResidual, 64);
+  list_->horizontalHeader()->setSectionResizeMode(kPairName, QHeaderView::Stretch);
+  list_->setColumnWidth(kPairInCt, 32);
+  list_->setColumnWidth(kPairInUltrasound, 32);
+  list_->setColumnWidth(kPairResidual, 64);
   list_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   list_->horizontalHeader()->setMinimumSectionSize(24);
   list_->setShowGrid(false);
@@ -137,8 +137,8 @@ void CaseLandmarkPairs::show_picking(bool is_on) {
 }
 
 void CaseLandmarkPairs::show_row(int row) {
-  if (list_->item(row, kName) == nullptr) return;
-  const std::string name = to_std(list_->item(row, kName)->text());
+  if (list_->item(row, kPairName) == nullptr) return;
+  const std::string name = to_std(list_->item(row, kPairName)->text());
   name_->setEditText(to_qt(name));
   const case_builder::CaseDraft& draft = editor_.draft();
   if (const auto* point = find_in_ultrasound(draft, name)) Q_EMIT ultrasound_place_requested(point->p);
@@ -149,7 +149,7 @@ void CaseLandmarkPairs::show_row(int row) {
 void CaseLandmarkPairs::remove_current() {
   const int row = list_->currentRow();
   if (row < 0) return;
-  const std::string name = to_std(list_->item(row, kName)->text());
+  const std::string name = to_std(list_->item(row, kPairName)->text());
   editor_.edit(case_builder::remove_ultrasound_landmark(editor_.draft(), name), "remove a landmark of the ultrasound");
 }
 
@@ -186,21 +186,21 @@ void CaseLandmarkPairs::fill_list() {
   list_->setRowCount(static_cast<int>(names.size()));
   for (int row = 0; row < list_->rowCount(); ++row) {
     const std::string& name = names[static_cast<std::size_t>(row)];
-    const auto put = [&](Column column, const QString& text) {
+    const auto put = [&](PairColumn column, const QString& text) {
       if (list_->item(row, column) == nullptr) list_->setItem(row, column, new QTableWidgetItem);
       list_->item(row, column)->setText(text);
       list_->item(row, column)->setToolTip(text);
     };
-    put(kName, to_qt(name));
-    put(kInCt, find_in_ct(draft, name) != nullptr ? QStringLiteral("✓") : QStringLiteral("–"));
-    put(kInUltrasound, find_in_ultrasound(draft, name) != nullptr ? QStringLiteral("✓") : QStringLiteral("–"));
+    put(kPairName, to_qt(name));
+    put(kPairInCt, find_in_ct(draft, name) != nullptr ? QStringLiteral("✓") : QStringLiteral("–"));
+    put(kPairInUltrasound, find_in_ultrasound(draft, name) != nullptr ? QStringLiteral("✓") : QStringLiteral("–"));
     QString off;
     if (fit)
       for (std::size_t n = 0; n < fit->names.size(); ++n)
         if (fit->names[n] == name) off = tr("%1 mm").arg(fit->fit.residual_mm[n], 0, 'f', 1);
-    put(kResidual, off);
+    put(kPairResidual, off);
   }
-  if (current >= 0) list_->setCurrentCell(std::min(current, list_->rowCount() - 1), kName);
+  if (current >= 0) list_->setCurrentCell(std::min(current, list_->rowCount() - 1), kPairName);
   const auto pairs = std::count_if(names.begin(), names.end(), [&](const std::string& name) {
     return find_in_ct(draft, name) != nullptr && find_in_ultrasound(draft, name) != nullptr;
   });

@@ -16,7 +16,7 @@
 namespace trocar::trainer {
 namespace {
 
-enum Column { kStructure, kMargin, kPenalty, kColumns };
+enum RiskColumn { kRiskStructure, kRiskMargin, kRiskPenalty, kRiskColumns };
 
 QString name_of(const tasks::RiskStructure& risk) {
   return to_qt(risk.tissue.empty() ? risk.label : risk.tissue);
@@ -116,16 +116,16 @@ class TargetPanel final : public CasePanel {
   }
 
   void add_table(QVBoxLayout& column) {
-    table_ = new QTableWidget(0, kColumns);
+    table_ = new QTableWidget(0, kRiskColumns);
     table_->setObjectName(QStringLiteral("case-risk-table"));
     table_->setAccessibleName(tr("Risk structures"));
     table_->setToolTip(tr("Select a row to change it below"));
     table_->setHorizontalHeaderLabels({tr("Structure"), tr("Margin"), tr("Points")});
     table_->verticalHeader()->hide();
     table_->verticalHeader()->setDefaultSectionSize(26);
-    table_->horizontalHeader()->setSectionResizeMode(kStructure, QHeaderView::Stretch);
-    table_->setColumnWidth(kMargin, 72);
-    table_->setColumnWidth(kPenalty, 64);
+    table_->horizontalHeader()->setSectionResizeMode(kRiskStructure, QHeaderView::Stretch);
+    table_->setColumnWidth(kRiskMargin, 72);
+    table_->setColumnWidth(kRiskPenalty, 64);
     table_->setShowGrid(false);
     table_->setEditTriggers(QAbstractItemView::NoEditTriggers);
     table_->setSelectionBehavior(QAbstractItemView::SelectRows);
@@ -233,11 +233,11 @@ class TargetPanel final : public CasePanel {
     for (std::size_t n = 0; n < risks.size(); ++n) {
       const QStringList texts{name_of(risks[n]), tr("%1 mm").arg(risks[n].margin_mm),
                               QString::number(risks[n].penalty)};
-      for (int column = 0; column < kColumns; ++column) {
+      for (int column = 0; column < kRiskColumns; ++column) {
         QTableWidgetItem* cell = table_->item(static_cast<int>(n), column);
         if (cell == nullptr) table_->setItem(static_cast<int>(n), column, cell = new QTableWidgetItem);
         cell->setText(texts[column]);
-        if (column != kStructure) cell->setTextAlignment(Qt::AlignRight | Qt::AlignVCenter);
+        if (column != kRiskStructure) cell->setTextAlignment(Qt::AlignRight | Qt::AlignVCenter);
       }
     }
     show_selected();

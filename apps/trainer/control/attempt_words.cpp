@@ -5,7 +5,7 @@
 namespace trocar::trainer {
 namespace {
 
-QString tr(const char* text) {
+QString phase_tr(const char* text) {
   return QCoreApplication::translate("AttemptControl", text);
 }
 
@@ -14,25 +14,25 @@ QString tr(const char* text) {
 QString phase_text(const attempt::AttemptView& view) {
   switch (view.phase) {
     case attempt::AttemptPhase::kStarting:
-      return tr("starting");
+      return phase_tr("starting");
     case attempt::AttemptPhase::kServerLost:
-      return tr("interrupted");
+      return phase_tr("interrupted");
     case attempt::AttemptPhase::kStopped:
-      return tr("forces stopped");
+      return phase_tr("forces stopped");
     case attempt::AttemptPhase::kFinishing:
-      return tr("being scored");
+      return phase_tr("being scored");
     default:
       break;
   }
   switch (view.needle.phase) {
     case telemetry::InsertionPhase::kOutside:
-      return tr("outside");
+      return phase_tr("outside");
     case telemetry::InsertionPhase::kLoading:
-      return tr("pressing");
+      return phase_tr("pressing");
     case telemetry::InsertionPhase::kInserted:
-      return tr("in the body");
+      return phase_tr("in the body");
     case telemetry::InsertionPhase::kRetracting:
-      return tr("pulling back");
+      return phase_tr("pulling back");
   }
   return {};
 }

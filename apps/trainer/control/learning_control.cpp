@@ -31,7 +31,7 @@ TrainerChoice choice_of(const learning::Exercise& exercise) {
   return choice;
 }
 
-QString joined(const std::vector<std::string>& sentences) {
+QString joined_sentences(const std::vector<std::string>& sentences) {
   QStringList lines;
   for (const std::string& sentence : sentences) lines << to_qt(sentence);
   return lines.join(QLatin1Char(' '));
@@ -112,8 +112,8 @@ void LearningControl::forget_result() {
 
 void LearningControl::show(const Advice& advice) {
   next_title_ = to_qt(advice.title);
-  QString why = joined(advice.next.reasons);
-  if (!advice.next.notes.empty()) why += QLatin1Char(' ') + joined(advice.next.notes);
+  QString why = joined_sentences(advice.next.reasons);
+  if (!advice.next.notes.empty()) why += QLatin1Char(' ') + joined_sentences(advice.next.notes);
   start_.offer_next(next_title_, why, advice.next.exercise ? choice_of(*advice.next.exercise) : TrainerChoice());
   feedback_.show_next(next_title_.isEmpty() ? why : next_title_ + QStringLiteral(". ") + why);
 }

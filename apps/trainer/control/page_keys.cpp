@@ -28,7 +28,7 @@ const QWidget* main_window_of(const QWidget& widget) {
   return window;
 }
 
-KeyPlace place_of(const QWidget& receiver, const QWidget& window) {
+KeyPlace key_place_of(const QWidget& receiver, const QWidget& window) {
   QWidget* focus = receiver.window()->focusWidget();
   KeyPlace place;
   place.is_text = is_text_field(&receiver) || is_text_field(focus);
@@ -52,7 +52,7 @@ bool PageKeys::eventFilter(QObject* watched, QEvent* event) {
   if (event->type() != QEvent::KeyPress) return false;
   const auto* receiver = qobject_cast<const QWidget*>(watched);
   if (receiver == nullptr || main_window_of(*receiver) != main_window_of(page_)) return false;
-  return take_(static_cast<const QKeyEvent&>(*event), place_of(*receiver, *receiver->window()));
+  return take_(static_cast<const QKeyEvent&>(*event), key_place_of(*receiver, *receiver->window()));
 }
 
 }  // namespace trocar::trainer

@@ -38,7 +38,7 @@ std::optional<Vec3> find_skin(const anatomy::VirtualPatient& patient, const Vec3
   return std::nullopt;
 }
 
-QPointF place_of(const QMouseEvent& event) {
+QPointF pointer_place_of(const QMouseEvent& event) {
   return event.localPos();
 }
 
@@ -74,14 +74,14 @@ bool PalpatingHand::eventFilter(QObject* /*watched*/, QEvent* event) {
   const auto& mouse = static_cast<const QMouseEvent&>(*event);
   switch (event->type()) {
     case QEvent::MouseMove:
-      pointer_ = place_of(mouse);
+      pointer_ = pointer_place_of(mouse);
       break;
     case QEvent::MouseButtonPress:
-      if (mouse.button() == Qt::LeftButton) pressed_at_ = place_of(mouse);
+      if (mouse.button() == Qt::LeftButton) pressed_at_ = pointer_place_of(mouse);
       break;
     case QEvent::MouseButtonRelease:
-      if (pressed_at_ && QLineF(*pressed_at_, place_of(mouse)).length() < kClick_px) {
-        pointer_ = place_of(mouse);
+      if (pressed_at_ && QLineF(*pressed_at_, pointer_place_of(mouse)).length() < kClick_px) {
+        pointer_ = pointer_place_of(mouse);
         advance();
         set_mark();
       }

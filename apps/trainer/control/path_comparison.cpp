@@ -10,7 +10,7 @@ namespace trocar::trainer {
 namespace {
 
 /// As the patient calls the path, without the task's name: "L3/4 median".
-QString name_of(const cases::Case& the_case, std::size_t number) {
+QString path_name(const cases::Case& the_case, std::size_t number) {
   const Segment& line_P = the_case.expert_paths()[number].line_P;
   const std::string task = the_case.task.name + ": ";
   for (const anatomy::NeedlePath& path : the_case.patient->paths) {
@@ -38,7 +38,7 @@ std::vector<ExpertPathList::Row> compare_with_experts(const attempt::AttemptRepl
   for (std::size_t n = 0; n < the_case.expert_paths().size(); ++n) {
     const metrics::CurveDistances distances = metrics::curve_distances(way_P, the_case.expert_paths()[n].line_P);
     rows.push_back(
-        {name_of(the_case, n), distances.frechet_mm, distances.hausdorff_mm, n == nearest_of(replay, the_case)});
+        {path_name(the_case, n), distances.frechet_mm, distances.hausdorff_mm, n == nearest_of(replay, the_case)});
   }
   return rows;
 }

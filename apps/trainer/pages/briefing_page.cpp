@@ -17,8 +17,8 @@
 namespace trocar::trainer {
 namespace {
 
-constexpr int kSteps = 1000;
-constexpr int kGap_px = 12;
+constexpr int kProgressSteps = 1000;
+constexpr int kTextCardGap_px = 12;
 constexpr int kWide_px = 1300;  ///< From here on, there is room for a second column of text.
 
 QLabel* paragraph(const char* name) {
@@ -38,7 +38,7 @@ QFrame* text_card(const QString& heading, QLabel* text) {
   return card;
 }
 
-QString swatch(const QColor& color, const QString& symbol, const QString& words) {
+QString legend_part_html(const QColor& color, const QString& symbol, const QString& words) {
   return QStringLiteral("<span style='color:%1'>%2</span>&nbsp;%3")
       .arg(color.name(), symbol, words.toHtmlEscaped().replace(QLatin1Char(' '), QStringLiteral("&nbsp;")));
 }
@@ -47,17 +47,18 @@ QString swatch(const QColor& color, const QString& symbol, const QString& words)
 QString legend_html(const std::vector<LegendEntry>& entries, scene::Guidance guidance) {
   const Theme& t = theme();
   QStringList parts{guidance == scene::Guidance::kPath
-                        ? swatch(t.target, QStringLiteral("◯"), BriefingPage::tr("end of the path"))
-                        : swatch(t.target, QStringLiteral("◯"), BriefingPage::tr("target"))};
-  if (guidance != scene::Guidance::kNone) parts << swatch(t.path, QStringLiteral("◯"), BriefingPage::tr("entry"));
+                        ? legend_part_html(t.target, QStringLiteral("◯"), BriefingPage::tr("end of the path"))
+                        : legend_part_html(t.target, QStringLiteral("◯"), BriefingPage::tr("target"))};
+  if (guidance != scene::Guidance::kNone)
+    parts << legend_part_html(t.path, QStringLiteral("◯"), BriefingPage::tr("entry"));
   if (guidance == scene::Guidance::kPath)
-    parts << swatch(t.path, QStringLiteral("- -"), BriefingPage::tr("planned path"));
-  for (const LegendEntry& entry : entries) parts << swatch(entry.color, QStringLiteral("■"), entry.words);
+    parts << legend_part_html(t.path, QStringLiteral("- -"), BriefingPage::tr("planned path"));
+  for (const LegendEntry& entry : entries) parts << legend_part_html(entry.color, QStringLiteral("■"), entry.words);
   return parts.join(QStringLiteral("&nbsp;&nbsp; "));  // a new line begins with an entry
 }
 
 /// Entries of two slices; the same colour once, targets first.
-std::vector<LegendEntry> joined(std::vector<LegendEntry> a, const std::vector<LegendEntry>& b) {
+std::vector<LegendEntry> joined_legends(std::vector<LegendEntry> a, const std::vector<LegendEntry>& b) {
   for (const LegendEntry& entry : b) {
     const auto same = std::find_if(a.begin(), a.end(), [&](const LegendEntry& e) { return e.color == entry.color; });
     if (same == a.end()) {
@@ -110,7 +111,7 @@ QWidget* BriefingPage::make_texts() {
   cards_->setContentsMargins(0, 0, 0, 0);
   for (QVBoxLayout** column : {&left_, &right_}) {
     *column = new QVBoxLayout;
-    (*column)->setSpacing(kGap_px);
+    (*column)->setSpacing(kTextCardGap_px);
     (*column)->addStretch();
     cards_->addLayout(*column, 6);
   }
@@ -158,7 +159,7 @@ QWidget* BriefingPage::make_bottom() {
   row->addWidget(state_, 1);
   progress_ = new QProgressBar;
   progress_->setObjectName(QStringLiteral("opening-progress"));
-  progress_->setRange(0, kSteps);
+  progress_->setRange(0, kProgressSteps);
   progress_->setFixedWidth(260);
   row->addWidget(progress_);
   begin_ = make_button("begin", tr("Begin"), tr("Starts the haptic servers and the attempt"), QStringLiteral("Return"));
@@ -180,7 +181,7 @@ void BriefingPage::place_cards() {
     column->insertWidget(column->count() - 1, card_widgets_[n]);  // before the stretch
   }
   cards_->setStretch(1, is_wide ? 5 : 0);
-  cards_->setSpacing(is_wide ? kGap_px : 0);
+  cards_->setSpacing(is_wide ? kTextCardGap_px : 0);
 }
 
 void BriefingPage::show_tables(const cases::Case& tables, std::optional<bool> is_parenchymal) {
@@ -213,7 +214,7 @@ void BriefingPage::show_opening(const TrainerChoice& choice) {
 
 void BriefingPage::show_progress(const QString& step, double fraction) {
   state_->setText(step);
-  progress_->setValue(static_cast<int>(kSteps * fraction));
+  progress_->setValue(static_cast<int>(kProgressSteps * fraction));
 }
 
 void BriefingPage::show_error(const QString& text) {
@@ -260,7 +261,7 @@ void BriefingPage::show_legend() {
   std::vector<LegendEntry> entries;
   for (const QLabel* label : {axial_, second_}) {
     const QSize size = label->size().expandedTo({240, 120});
-    entries = joined(std::move(entries), briefing_legend(*open_, plane_of(*label), size, guidance));
+    entries = joined_legends(std::move(entries), briefing_legend(*open_, plane_of(*label), size, guidance));
   }
   tell_apart(entries);
   legend_->setText(legend_html(entries, guidance));

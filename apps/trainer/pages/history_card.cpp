@@ -38,7 +38,7 @@ QString experts_text(const results::LearningCurve& curve) {
   return (experts.is_simulated ? QObject::tr("Simulated experts: %1.") : QObject::tr("Experts: %1.")).arg(range);
 }
 
-QString joined(QStringList sentences) {
+QString joined_without_empty(QStringList sentences) {
   sentences.removeAll(QString());
   return sentences.join(QLatin1Char(' '));
 }
@@ -47,7 +47,7 @@ QString joined(QStringList sentences) {
 
 QString history_text(const results::LearningCurve& curve) {
   const std::size_t count = scored(curve);
-  if (count == 0) return joined({QObject::tr("No scored attempt yet."), experts_text(curve)});
+  if (count == 0) return joined_without_empty({QObject::tr("No scored attempt yet."), experts_text(curve)});
   const auto passed = std::ranges::count_if(curve.attempts, [](const auto& one) { return one.attempt.is_passed; });
   const auto last = std::find_if(curve.attempts.rbegin(), curve.attempts.rend(),
                                  [](const auto& one) { return one.moving_mean.has_value(); });
@@ -57,13 +57,13 @@ QString history_text(const results::LearningCurve& curve) {
     own += QObject::tr(" Mean of the last %1: %2.")
                .arg(std::min(count, results::CurveRules().window))
                .arg(points_text(*last->moving_mean));
-  return joined({own, peers_text(curve, count), experts_text(curve)});
+  return joined_without_empty({own, peers_text(curve, count), experts_text(curve)});
 }
 
 QString comparison_text(const results::LearningCurve& curve) {
   if (curve.attempts.empty() || !curve.attempts.back().attempt.score) return {};
   const std::size_t count = scored(curve);
-  return joined(
+  return joined_without_empty(
       {QObject::tr("Your attempt %1: %2 points.").arg(count).arg(points_text(*curve.attempts.back().attempt.score)),
        peers_text(curve, count), experts_text(curve)});
 }

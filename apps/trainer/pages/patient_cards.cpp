@@ -18,7 +18,7 @@ namespace {
 constexpr int kTask = Qt::UserRole, kDescription = Qt::UserRole + 1, kDifficulty = Qt::UserRole + 2;
 
 constexpr int kLeastWidth = 178, kGreatestWidth = 300;  ///< Of a card, px.
-constexpr int kGap = 10;                                ///< Between cards.
+constexpr int kPatientCardGap = 10;                     ///< Between cards.
 constexpr int kPad = 8;
 constexpr double kShape = 0.625;  ///< Height over width of a picture.
 constexpr int kDots = 5;
@@ -89,7 +89,9 @@ class CardDelegate final : public QStyledItemDelegate {
   void paint(QPainter* painter, const QStyleOptionViewItem& option, const QModelIndex& index) const override {
     painter->save();
     painter->setRenderHint(QPainter::Antialiasing);
-    const QRectF card = QRectF(option.rect).adjusted(0.5 * kGap, 0.5 * kGap, -0.5 * kGap, -0.5 * kGap);
+    const QRectF card =
+        QRectF(option.rect)
+            .adjusted(0.5 * kPatientCardGap, 0.5 * kPatientCardGap, -0.5 * kPatientCardGap, -0.5 * kPatientCardGap);
     paint_card(*painter, card, option.state);
     const QRectF inner = card.adjusted(kPad, kPad, -kPad, -kPad);
     const QRectF picture(inner.topLeft(), QSizeF(inner.width(), kShape * inner.width()));
@@ -195,9 +197,9 @@ void PatientCards::fit_cards() {
   // Always beside a scroll bar: with cards that depend on it, it could appear and vanish in turn.
   constexpr int kRim = 4;  // the view wraps a row that fills it exactly
   const int width = contentsRect().width() - verticalScrollBar()->sizeHint().width() - kRim;
-  const int columns = std::max(1, width / (kLeastWidth + kGap));
-  const int cell = std::min(width / columns, kGreatestWidth + kGap);
-  const QSize size(cell, CardDelegate::height_of(cell - kGap) + kGap);
+  const int columns = std::max(1, width / (kLeastWidth + kPatientCardGap));
+  const int cell = std::min(width / columns, kGreatestWidth + kPatientCardGap);
+  const QSize size(cell, CardDelegate::height_of(cell - kPatientCardGap) + kPatientCardGap);
   if (size == gridSize()) return;
   setGridSize(size);
   for (int row = 0; row < count(); ++row) item(row)->setSizeHint(size);

@@ -71,7 +71,7 @@ QString tooltip_of(TraineeAction action, const ActionState& state) {
   return {};
 }
 
-void set_text(QPushButton& button, const QString& text, const QString& tooltip) {
+void set_button_text(QPushButton& button, const QString& text, const QString& tooltip) {
   if (button.text() == text && button.toolTip() == tooltip) return;
   button.setText(text);
   button.setToolTip(tooltip);
@@ -183,8 +183,8 @@ void ActionButtons::begin(const std::vector<TraineeAction>& actions) {
 
 void ActionButtons::show_state(const ActionState& state) {
   for (const auto& [action, button] : buttons_) {
-    set_text(*button, text_of(action, state),
-             tr("%1 (%2)").arg(tooltip_of(action, state)).arg(QChar(static_cast<char16_t>(key_of(action)))));
+    set_button_text(*button, text_of(action, state),
+                    tr("%1 (%2)").arg(tooltip_of(action, state)).arg(QChar(static_cast<char16_t>(key_of(action)))));
     if (button->isEnabled() != state.can_act) button->setEnabled(state.can_act);
   }
 }

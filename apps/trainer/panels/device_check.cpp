@@ -6,6 +6,7 @@
 #include "attempt/servers/local_server.h"
 #include "link/client/server_process.h"
 #include "panels/status_text.h"
+#include "telemetry/gate_state.h"
 #include "ui_kit/parts.h"
 
 namespace trocar::trainer {
@@ -41,6 +42,9 @@ DeviceCheck::~DeviceCheck() {
 }
 
 void DeviceCheck::push() {
+  has_pushed_ = true;
+  view_.strongest_n = 0.0;
+  view_.stop_reason.clear();
   process_.write("push\n");
 }
 
@@ -73,6 +77,8 @@ void DeviceCheck::read_state(const QStringList& fields) {
   view_.state = fields[8] == QLatin1String("1") ? DeviceCheckView::State::kAnswers : DeviceCheckView::State::kUnplugged;
   view_.force_n = fields[9].toDouble();
   view_.strongest_n = std::max(view_.strongest_n, view_.force_n);
+  const bool is_stopped = has_pushed_ && fields[10] != QString::fromLatin1(to_string(telemetry::GateFault::kNone));
+  view_.stop_reason = is_stopped ? QString(fields[10]).replace('_', ' ') : QString();
   if (!view_.has_pose) first_p_D_ = view_.p_D;
   view_.has_pose = true;
   view_.moved_mm = std::max(view_.moved_mm, (view_.p_D - first_p_D_).norm());

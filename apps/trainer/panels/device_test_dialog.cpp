@@ -66,6 +66,8 @@ QString pose_text(const DeviceCheckView& view) {
 QString force_text(const DeviceCheckView& view) {
   constexpr double kSomething_n = 0.05;
   if (view.force_n > kSomething_n) return DeviceTestDialog::tr("Force now: %1 N upwards").arg(view.force_n, 0, 'f', 1);
+  if (!view.stop_reason.isEmpty())
+    return DeviceTestDialog::tr("The safety gate stopped the force: %1. Request it again.").arg(view.stop_reason);
   if (view.strongest_n > kSomething_n)
     return DeviceTestDialog::tr("%1 N were applied. Did you feel the force?").arg(view.strongest_n, 0, 'f', 1);
   return view.has_force ? DeviceTestDialog::tr("No force is applied before you request it.")

@@ -24,13 +24,6 @@ QPixmap sample_of(bool is_nearest, const QFontMetrics& metrics) {
   return sample;
 }
 
-void clear(QGridLayout& grid) {
-  while (QLayoutItem* item = grid.takeAt(0)) {
-    delete item->widget();
-    delete item;
-  }
-}
-
 }  // namespace
 
 ExpertPathList::ExpertPathList(QWidget* parent) : QWidget(parent) {
@@ -56,7 +49,7 @@ ExpertPathList::ExpertPathList(QWidget* parent) : QWidget(parent) {
 }
 
 void ExpertPathList::show_rows(const std::vector<Row>& rows) {
-  clear(*grid_);
+  clear_layout(*grid_);
   const auto add = [&](const QString& text, int line, int place, bool is_dim) {
     auto* label = make_label(text, is_dim ? "dim" : "");
     if (place > 1) label->setAlignment(Qt::AlignRight | Qt::AlignTop);

@@ -61,15 +61,8 @@ QString harm_text(const scoring::Outcome& outcome) {
   return lines.join(QLatin1Char('\n'));
 }
 
-void clear(QGridLayout& grid) {
-  while (QLayoutItem* item = grid.takeAt(0)) {
-    delete item->widget();
-    delete item;
-  }
-}
-
 /// File names can be wrapped, too.
-QString breakable(QString text) {
+QString breakable_file_names(QString text) {
   for (const char mark : {'/', '_', '-'}) text.replace(QLatin1Char(mark), QString(QLatin1Char(mark)) + QChar(0x200b));
   return text;
 }
@@ -182,7 +175,7 @@ QWidget* FeedbackPanel::make_buttons() {
 }
 
 void FeedbackPanel::show_parts(const std::vector<scoring::ScorePart>& parts) {
-  clear(*parts_);
+  clear_layout(*parts_);
   int row = 0;
   for (const scoring::ScorePart& part : parts) {
     auto* title = make_label(to_qt(part.title));
@@ -261,13 +254,13 @@ void FeedbackPanel::show_again(bool is_next_exam) {
 }
 
 void FeedbackPanel::show_result(const QString& text) {
-  result_->setText(breakable(text));
+  result_->setText(breakable_file_names(text));
   result_->setVisible(!text.isEmpty());
 }
 
 void FeedbackPanel::show_notes(const QStringList& notes) {
   const QString text = tr("Notes on the recording:") + QStringLiteral("\n•  ") + notes.join(QStringLiteral("\n•  "));
-  notes_->setText(breakable(text));
+  notes_->setText(breakable_file_names(text));
   notes_->setVisible(!notes.isEmpty());
 }
 

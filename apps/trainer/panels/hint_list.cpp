@@ -41,10 +41,7 @@ HintList::HintList(QWidget* parent) : QWidget(parent) {
 }
 
 void HintList::show_hints(const std::vector<scoring::Hint>& hints) {
-  while (QLayoutItem* item = rows_->takeAt(0)) {
-    delete item->widget();
-    delete item;
-  }
+  clear_layout(*rows_);
   moments_.clear();
   chosen_.reset();
   for (std::size_t h = 0; h < hints.size(); ++h) add_row(static_cast<int>(h + 1), hints[h]);

@@ -10,7 +10,7 @@
 namespace trocar::trainer {
 namespace {
 
-constexpr double kFarthest_mm = 500.0;
+constexpr double kFarthestPicture_mm = 500.0;
 constexpr double kLeastAngle_rad = 0.05, kMostAngle_rad = 1.5;  // of CameraView
 
 double screen_width_mm() {
@@ -20,7 +20,7 @@ double screen_width_mm() {
   return told_mm >= kLeast_mm ? told_mm : MirrorSettings().screen_width_mm;
 }
 
-double number(const QSettings& settings, const char* key, double otherwise, double least, double most) {
+double stored_number(const QSettings& settings, const char* key, double otherwise, double least, double most) {
   const double value = settings.value(QStringLiteral("mirror/") + QString::fromLatin1(key), otherwise).toDouble();
   return std::isfinite(value) ? std::clamp(value, least, most) : otherwise;
 }
@@ -30,13 +30,14 @@ double number(const QSettings& settings, const char* key, double otherwise, doub
 MirrorSettings load_mirror_settings() {
   const QSettings settings;
   MirrorSettings mirror;
-  mirror.axis = static_cast<MirrorAxis>(static_cast<int>(number(settings, "axis", 0, 0, 2)));
+  mirror.axis = static_cast<MirrorAxis>(static_cast<int>(stored_number(settings, "axis", 0, 0, 2)));
   mirror.is_camera_fixed = settings.value(QStringLiteral("mirror/fixed-camera")).toBool();
   const char* const keys[] = {"right-mm", "away-mm", "up-mm"};
-  for (int i = 0; i < 3; ++i) mirror.picture_W[i] = number(settings, keys[i], 0.0, -kFarthest_mm, kFarthest_mm);
-  mirror.tilt_deg = number(settings, "tilt-deg", mirror.tilt_deg, 0.0, 90.0);
-  mirror.screen_width_mm = number(settings, "width-mm", screen_width_mm(), 100.0, 2000.0);
-  mirror.eye_distance_mm = number(settings, "eye-mm", mirror.eye_distance_mm, 200.0, 2000.0);
+  for (int i = 0; i < 3; ++i)
+    mirror.picture_W[i] = stored_number(settings, keys[i], 0.0, -kFarthestPicture_mm, kFarthestPicture_mm);
+  mirror.tilt_deg = stored_number(settings, "tilt-deg", mirror.tilt_deg, 0.0, 90.0);
+  mirror.screen_width_mm = stored_number(settings, "width-mm", screen_width_mm(), 100.0, 2000.0);
+  mirror.eye_distance_mm = stored_number(settings, "eye-mm", mirror.eye_distance_mm, 200.0, 2000.0);
   return mirror;
 }
 

@@ -10,7 +10,7 @@
 namespace trocar::trainer {
 namespace {
 
-constexpr int kMargin_px = 8, kBarHeight_px = 8, kGap_px = 4;
+constexpr int kTagMargin_px = 8, kBarHeight_px = 8, kGapAboveBar_px = 4;
 constexpr double kFullBar_n_per_mm = 2.0 * haptics::kHard_n_per_mm;
 
 }  // namespace
@@ -63,7 +63,7 @@ void PalpationTag::show_felt(const haptics::Palpation& felt, bool says_below) {
 QSize PalpationTag::sizeHint() const {
   const QFontMetrics metrics = fontMetrics();
   const int width = std::max({metrics.horizontalAdvance(words_), metrics.horizontalAdvance(figure_), 90});
-  return {width + 2 * kMargin_px, 2 * metrics.lineSpacing() + kBarHeight_px + kGap_px + 2 * kMargin_px};
+  return {width + 2 * kTagMargin_px, 2 * metrics.lineSpacing() + kBarHeight_px + kGapAboveBar_px + 2 * kTagMargin_px};
 }
 
 void PalpationTag::paintEvent(QPaintEvent* /*event*/) {
@@ -75,7 +75,7 @@ void PalpationTag::paintEvent(QPaintEvent* /*event*/) {
   painter.setBrush(ground);
   painter.drawRoundedRect(QRectF(rect()).adjusted(0.5, 0.5, -0.5, -0.5), 6.0, 6.0);
   const int line = fontMetrics().lineSpacing();
-  const QRect inside = rect().adjusted(kMargin_px, kMargin_px, -kMargin_px, -kMargin_px);
+  const QRect inside = rect().adjusted(kTagMargin_px, kTagMargin_px, -kTagMargin_px, -kTagMargin_px);
   painter.setPen(theme().text);
   painter.drawText(inside.left(), inside.top() + fontMetrics().ascent(), words_);
   painter.setPen(theme().dim);

@@ -21,10 +21,6 @@
 namespace trocar::trainer {
 namespace {
 
-void set_text(QLabel& label, const QString& text) {
-  if (label.text() != text) label.setText(text);
-}
-
 /// Short enough for two of them in a row.
 QString length_text(const std::optional<double>& length_mm) {
   if (!length_mm) return QStringLiteral("–");
@@ -245,11 +241,11 @@ void PuncturePanel::begin(double most_force_n, bool can_aim, bool has_gun, const
 }
 
 void PuncturePanel::show_figures(const PunctureFigures& figures) {
-  set_text(*phase_, figures.phase);
-  set_text(*tissue_, figures.tissue);
-  set_text(*depth_, length_text(figures.depth_mm));
-  set_text(*target_, length_text(figures.to_target_mm));
-  set_text(*time_, tr("%1 s").arg(figures.since_contact_s, 0, 'f', 0));
+  set_label_text(*phase_, figures.phase);
+  set_label_text(*tissue_, figures.tissue);
+  set_label_text(*depth_, length_text(figures.depth_mm));
+  set_label_text(*target_, length_text(figures.to_target_mm));
+  set_label_text(*time_, tr("%1 s").arg(figures.since_contact_s, 0, 'f', 0));
   show_hint(figures);
   actions_->show_state(figures.actions);
   force_->set_force(figures.force_n, figures.time_s);
@@ -262,7 +258,7 @@ void PuncturePanel::show_figures(const PunctureFigures& figures) {
 }
 
 void PuncturePanel::show_hint(const PunctureFigures& figures) {
-  set_text(*hint_, figures.hint);
+  set_label_text(*hint_, figures.hint);
   const int lines_px = hint_->fontMetrics().lineSpacing() * (steps_->isHidden() ? 3 : 2);
   if (hint_->minimumHeight() != lines_px) hint_->setMinimumHeight(lines_px);
   const QString sheet =

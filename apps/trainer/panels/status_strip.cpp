@@ -16,8 +16,8 @@
 namespace trocar::trainer {
 namespace {
 
-constexpr int kBeside_px = 4;  ///< Between symbol and words.
-constexpr int kMost_px = 440;  ///< Width of a line of figures.
+constexpr int kBesideSymbol_px = 4;  ///< Between symbol and words.
+constexpr int kMost_px = 440;        ///< Width of a line of figures.
 
 QColor color_of(Health health) {
   const Theme& t = theme();
@@ -38,7 +38,7 @@ QColor color_of(Health health) {
 
 /// Disc: good; ring: off; triangle: slow; square: stopped or interrupted. The shape says it without the colour.
 QIcon symbol_of(Health health, int side, double pixel_ratio) {
-  QPixmap picture(QSize(side + kBeside_px, side) * pixel_ratio);
+  QPixmap picture(QSize(side + kBesideSymbol_px, side) * pixel_ratio);
   picture.setDevicePixelRatio(pixel_ratio);
   picture.fill(Qt::transparent);
   QPainter painter(&picture);
@@ -140,7 +140,7 @@ void StatusStrip::update_health() {
 
 void StatusStrip::update_symbol() {
   const int side = fontMetrics().ascent();
-  indicator_->setIconSize({side + kBeside_px, side});
+  indicator_->setIconSize({side + kBesideSymbol_px, side});
   indicator_->setIcon(symbol_of(report_.health, side, devicePixelRatioF()));
   reason_->setVisible(indicator_->sizeHint().width() + reason_->sizeHint().width() + stop_->sizeHint().width() +
                           4 * layout()->spacing() + 16 <=

@@ -16,10 +16,6 @@ namespace {
 /// Of the grid: the title, and below the current one what it lacks, the reason and help.
 constexpr int kLinesAStep = 4;
 
-void set_text(QLabel& label, const QString& text) {
-  if (label.text() != text) label.setText(text);
-}
-
 void set_color(QLabel& label, const QColor& color, bool is_bold = false) {
   const QString sheet =
       QStringLiteral("color: %1;%2").arg(color.name(), is_bold ? QStringLiteral(" font-weight: 600;") : QString());
@@ -89,7 +85,7 @@ void StepList::show_steps(const std::vector<attempt::PhaseView>& steps, std::opt
   current_ = current;
   has_help_ = has_help;
   if (are_new) make_rows();
-  set_text(*stuck_, stuck);
+  set_label_text(*stuck_, stuck);
   update_rows();
   update_heading();
   setVisible(!steps_.empty());
@@ -137,12 +133,12 @@ void StepList::update_rows() {
     const attempt::PhaseView& phase = steps_[s].phase;
     const Row& row = rows_[s];
     const bool is_current = s == current_, is_done = phase.done_s.has_value(), is_shown = is_row_shown(s);
-    set_text(*row.mark, is_done      ? QStringLiteral("\u2713")
-                        : is_current ? QStringLiteral("\u25b6")
-                                     : QString::number(s + 1));
+    set_label_text(*row.mark, is_done      ? QStringLiteral("\u2713")
+                              : is_current ? QStringLiteral("\u25b6")
+                                           : QString::number(s + 1));
     set_color(*row.mark, is_done ? theme().good : is_current ? theme().accent : theme().dim, is_done || is_current);
     const QString title = to_qt(phase.title);
-    set_text(*row.title, title);
+    set_label_text(*row.title, title);
     set_color(*row.title, steps_[s].is_confirmed ? theme().good : is_current ? theme().text : theme().dim, is_current);
     row.title->setToolTip(has_help_ ? to_qt(phase.why) : QString());
     row.title->setAccessibleName(is_done ? tr("done: %1").arg(title) : is_current ? tr("now: %1").arg(title) : title);
@@ -160,8 +156,8 @@ void StepList::update_rows() {
   }
   const QString lacks = has_current ? to_qt(steps_[*current_].phase.lacks) : QString();
   const bool is_title = has_current && lacks.compare(to_qt(steps_[*current_].phase.title), Qt::CaseInsensitive) == 0;
-  set_text(*lacks_, is_title ? QString() : lacks);
-  set_text(*why_, has_current ? to_qt(steps_[*current_].phase.why) : QString());
+  set_label_text(*lacks_, is_title ? QString() : lacks);
+  set_label_text(*why_, has_current ? to_qt(steps_[*current_].phase.why) : QString());
   lacks_->setVisible(!lacks_->text().isEmpty());
   why_->setVisible(!why_->text().isEmpty());
   stuck_->setVisible(has_current && !stuck_->text().isEmpty());
@@ -171,11 +167,11 @@ void StepList::update_heading() {
   const auto confirmed = std::find_if(steps_.rbegin(), steps_.rend(), [](const Step& s) { return s.is_confirmed; });
   const auto done = std::count_if(steps_.begin(), steps_.end(), [](const Step& s) { return s.phase.done_s; });
   if (confirmed != steps_.rend()) {
-    set_text(*heading_, tr("\u2713 Step %1 done").arg(std::distance(confirmed, steps_.rend())));
+    set_label_text(*heading_, tr("\u2713 Step %1 done").arg(std::distance(confirmed, steps_.rend())));
   } else if (done == static_cast<std::ptrdiff_t>(steps_.size())) {
-    set_text(*heading_, tr("All steps done"));
+    set_label_text(*heading_, tr("All steps done"));
   } else {
-    set_text(*heading_, tr("%1 of %2 steps done").arg(done).arg(steps_.size()));
+    set_label_text(*heading_, tr("%1 of %2 steps done").arg(done).arg(steps_.size()));
   }
   set_color(*heading_, confirmed != steps_.rend() ? theme().good : theme().dim, confirmed != steps_.rend());
 }

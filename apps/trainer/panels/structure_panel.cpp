@@ -21,7 +21,7 @@
 namespace trocar::trainer {
 namespace {
 
-constexpr int kGap = 8;
+constexpr int kControlGap = 8;
 constexpr int kSwatch = 12;
 // Smaller padding than elsewhere, because many small controls are side by side.
 constexpr const char* kSlim = "padding: 5px 3px;";
@@ -39,7 +39,7 @@ QString shown_name(const std::string& structure) {
 }
 
 /// A disc in the structure's colour; a ring if it is hidden.
-QIcon swatch(const volume::Rgb& color, double ratio) {
+QIcon swatch_icon(const volume::Rgb& color, double ratio) {
   QIcon icon;
   for (const bool is_shown : {true, false}) {
     QPixmap pixmap(qRound(kSwatch * ratio), qRound(kSwatch * ratio));
@@ -69,8 +69,8 @@ QToolButton* make_toggle(const char* name, const QString& text, const QString& t
 StructurePanel::StructurePanel(PatientView& view, QWidget* parent) : QWidget(parent), view_(view) {
   setObjectName(QStringLiteral("structure-panel"));
   auto* layout = new QVBoxLayout(this);
-  layout->setContentsMargins(kGap, kGap, kGap, kGap);
-  layout->setSpacing(kGap);
+  layout->setContentsMargins(kControlGap, kControlGap, kControlGap, kControlGap);
+  layout->setSpacing(kControlGap);
   add_presets(*layout);
   auto* scroll = new QScrollArea(this);
   scroll->setObjectName(QStringLiteral("structure-list"));
@@ -78,7 +78,7 @@ StructurePanel::StructurePanel(PatientView& view, QWidget* parent) : QWidget(par
   scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   auto* rows = new QWidget(scroll);
   list_ = new QVBoxLayout(rows);
-  list_->setContentsMargins(0, 0, kGap, 0);
+  list_->setContentsMargins(0, 0, kControlGap, 0);
   list_->setSpacing(2);
   scroll->setWidget(rows);
   layout->addWidget(scroll, 1);
@@ -104,7 +104,7 @@ void StructurePanel::add_presets(QBoxLayout& layout) {
       {"preset-target", tr("Target"), tr("The target and the organ around it"), scene::StructurePreset::kTarget},
   };
   auto* rows = new QGridLayout;
-  rows->setSpacing(kGap / 2);
+  rows->setSpacing(kControlGap / 2);
   constexpr int kInRow = 3;
   int place = 0;
   for (const Choice& choice : choices) {
@@ -120,7 +120,7 @@ void StructurePanel::add_presets(QBoxLayout& layout) {
     ++place;
   }
   auto* steps = new QHBoxLayout;
-  steps->setSpacing(kGap / 2);
+  steps->setSpacing(kControlGap / 2);
   const auto walk = [this](void (StepHistory<Opacities>::*way)()) {
     (steps_.*way)();
     show_step();
@@ -133,10 +133,7 @@ void StructurePanel::add_presets(QBoxLayout& layout) {
 }
 
 void StructurePanel::rebuild() {
-  while (QLayoutItem* item = list_->takeAt(0)) {
-    delete item->widget();
-    delete item;
-  }
+  clear_layout(*list_);
   rows_.clear();
   for (const scene::StructureInfo& info : view_.structures()) add_row(info);
   list_->addStretch(1);
@@ -175,13 +172,13 @@ void StructurePanel::add_row(const scene::StructureInfo& info) {
   auto* line = new QWidget(list_->parentWidget());
   auto* layout = new QHBoxLayout(line);
   layout->setContentsMargins(0, 0, 0, 0);
-  layout->setSpacing(kGap);
+  layout->setSpacing(kControlGap);
   Row row{info, line, new QToolButton(line), new QSlider(Qt::Horizontal, line)};
   const QString name = shown_name(info.name);
   row.eye->setObjectName(widget_name("structure-eye-", info.name));
   row.eye->setCheckable(true);
   row.eye->setStyleSheet(QString::fromLatin1(kFlat));
-  row.eye->setIcon(swatch(info.color, devicePixelRatioF()));
+  row.eye->setIcon(swatch_icon(info.color, devicePixelRatioF()));
   row.eye->setIconSize({kSwatch, kSwatch});
   row.eye->setChecked(info.opacity > 0.0);
   row.eye->setToolTip(tr("Show or hide %1 (Space)").arg(name));
@@ -257,7 +254,7 @@ void StructurePanel::add_toggles(QBoxLayout& layout) {
   };
   layout.addWidget(make_label(tr("CT planes"), "dim", this));
   auto* planes = new QHBoxLayout;
-  planes->setSpacing(kGap / 2);
+  planes->setSpacing(kControlGap / 2);
   add_plane(*planes, "plane-long", tr("Along"), tr("CT plane along the needle"), &scene::MprOptions::has_long_plane);
   add_plane(*planes, "plane-cross", tr("Turned"), tr("CT plane along the needle, turned by 90°"),
             &scene::MprOptions::has_cross_plane);
@@ -266,7 +263,7 @@ void StructurePanel::add_toggles(QBoxLayout& layout) {
   layout.addLayout(planes);
 
   auto* marks = new QHBoxLayout;
-  marks->setSpacing(kGap / 2);
+  marks->setSpacing(kControlGap / 2);
   guidance_ = make_toggle("show-guidance", tr("Guidance"),
                           tr("Path, entry zone and target, as permitted by the level of help (O)"),
                           view_.is_guidance_visible());
@@ -284,7 +281,7 @@ void StructurePanel::add_toggles(QBoxLayout& layout) {
 
 void StructurePanel::add_menus(QBoxLayout& layout) {
   auto* row = new QHBoxLayout;
-  row->setSpacing(kGap / 2);
+  row->setSpacing(kControlGap / 2);
   const auto add = [&](const char* name, const QString& text, const QString& tooltip) {
     QToolButton* button = make_tool_button(name, text, tooltip);
     button->setAccessibleName(tooltip);

@@ -10,7 +10,7 @@
 namespace trocar::trainer {
 namespace {
 
-QString title_of(const std::string& tissue) {
+QString tissue_title(const std::string& tissue) {
   if (tissue == "transfer") return ParameterList::tr("Unlabelled tissue, by HU");
   QString title = to_qt(tissue).replace(QLatin1Char('_'), QLatin1Char(' '));
   if (tissue == "csf") return title.toUpper();
@@ -19,7 +19,7 @@ QString title_of(const std::string& tissue) {
 }
 
 /// "0–2 mm": depth range of a tissue on the path; several ranges are given from first to last.
-QString place_of(const std::string& tissue, const std::vector<cases::PathPiece>& pieces) {
+QString depth_range_of(const std::string& tissue, const std::vector<cases::PathPiece>& pieces) {
   double from = 0.0, to = -1.0;
   for (const cases::PathPiece& piece : pieces) {
     if (piece.tissue != tissue) continue;
@@ -64,7 +64,7 @@ void ParameterList::show_tissues(const std::vector<anatomy::TissueParameterGroup
   const std::vector<std::string> first = along_path(pieces);
   for (const std::string& name : first)
     for (const anatomy::TissueParameterGroup& group : groups)
-      if (group.name == name) add_section(group, place_of(name, pieces), *all);
+      if (group.name == name) add_section(group, depth_range_of(name, pieces), *all);
   all->addSpacing(8);
   all->addWidget(make_label(tr("Other tissues"), "dim"));
   for (const anatomy::TissueParameterGroup& group : groups)
@@ -77,7 +77,7 @@ void ParameterList::show_tissues(const std::vector<anatomy::TissueParameterGroup
 }
 
 void ParameterList::add_section(const anatomy::TissueParameterGroup& group, const QString& place, QVBoxLayout& into) {
-  Section section{group, title_of(group.name), place, new QPushButton, new QVBoxLayout};
+  Section section{group, tissue_title(group.name), place, new QPushButton, new QVBoxLayout};
   section.header->setObjectName(QStringLiteral("parameter-tissue-") + to_qt(group.name));
   section.header->setAccessibleName(section.title);
   section.header->setToolTip(tr("Show the parameters of this tissue  (Space)"));
@@ -161,9 +161,9 @@ QWidget* ParameterList::make_rows(const anatomy::TissueParameterGroup& group) {
     rows_.push_back(row);
     layout->addWidget(row);
   }
-  reset_tissue_ = new QPushButton(tr("↺  Reset %1").arg(title_of(group.name)));
+  reset_tissue_ = new QPushButton(tr("↺  Reset %1").arg(tissue_title(group.name)));
   reset_tissue_->setObjectName(name + QStringLiteral("reset-all"));
-  reset_tissue_->setAccessibleName(tr("Reset %1").arg(title_of(group.name)));
+  reset_tissue_->setAccessibleName(tr("Reset %1").arg(tissue_title(group.name)));
   reset_tissue_->setToolTip(tr("Reset all parameters of this tissue to their defaults"));
   connect(reset_tissue_, &QPushButton::clicked, this,
           [this, tissue = group.name] { Q_EMIT reset_tissue_asked(tissue); });

@@ -49,7 +49,7 @@ QLabel* make_wrapped(const char* name) {
 }
 
 /// Inserts break opportunities for wrapping paths, keys and very long words.
-QString breakable(const QString& text) {
+QString breakable_words(const QString& text) {
   constexpr int kLongestWord = 18;
   QString broken;
   int run = 0;
@@ -279,14 +279,14 @@ void ParameterProfiles::remove() {
   ask(Question::kNone);
   read_folder();
   if (done) {
-    show_message(tr("Profile “%1” is deleted; its values stay active.").arg(breakable(name)), false);
+    show_message(tr("Profile “%1” is deleted; its values stay active.").arg(breakable_words(name)), false);
   } else {
     show_problem(to_qt(done.error().text()));
   }
 }
 
 void ParameterProfiles::show_problem(const QString& text) {
-  show_message(breakable(text), true);
+  show_message(breakable_words(text), true);
 }
 
 void ParameterProfiles::show_message(const QString& text, bool is_problem) {

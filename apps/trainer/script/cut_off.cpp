@@ -13,7 +13,7 @@ namespace {
 constexpr int kRounding_px = 2;
 
 /// Empty for widgets without text.
-QString text_of(const QWidget& widget) {
+QString text_on(const QWidget& widget) {
   if (const auto* button = qobject_cast<const QAbstractButton*>(&widget)) return button->text();
   if (const auto* label = qobject_cast<const QLabel*>(&widget)) return label->text();
   return {};
@@ -50,19 +50,25 @@ const QWidget* find_cutter(const QWidget& widget) {
   return nullptr;
 }
 
-QString name_of(const QWidget& widget) {
+QString name_or_text_of(const QWidget& widget) {
   const QString name = widget.objectName();
-  return name.isEmpty() ? QStringLiteral("\"%1\"").arg(text_of(widget).left(40)) : name;
+  return name.isEmpty() ? QStringLiteral("\"%1\"").arg(text_on(widget).left(40)) : name;
 }
 
 std::optional<QString> find_fault(const QWidget& widget) {
   const QSize needed = needed_by(widget);
   if (needed.width() > widget.width() + kRounding_px)
-    return QStringLiteral("%1: %2 px wide, needs %3").arg(name_of(widget)).arg(widget.width()).arg(needed.width());
+    return QStringLiteral("%1: %2 px wide, needs %3")
+        .arg(name_or_text_of(widget))
+        .arg(widget.width())
+        .arg(needed.width());
   if (needed.height() > widget.height() + kRounding_px)
-    return QStringLiteral("%1: %2 px high, needs %3").arg(name_of(widget)).arg(widget.height()).arg(needed.height());
+    return QStringLiteral("%1: %2 px high, needs %3")
+        .arg(name_or_text_of(widget))
+        .arg(widget.height())
+        .arg(needed.height());
   if (const QWidget* cutter = find_cutter(widget))
-    return QStringLiteral("%1: reaches out of %2").arg(name_of(widget), name_of(*cutter));
+    return QStringLiteral("%1: reaches out of %2").arg(name_or_text_of(widget), name_or_text_of(*cutter));
   return std::nullopt;
 }
 
@@ -71,7 +77,7 @@ std::optional<QString> find_fault(const QWidget& widget) {
 QStringList find_cut_off(const QWidget& window) {
   QStringList faults;
   for (const QWidget* widget : window.findChildren<QWidget*>()) {
-    if (!widget->isVisible() || widget->window() != &window || text_of(*widget).isEmpty()) continue;
+    if (!widget->isVisible() || widget->window() != &window || text_on(*widget).isEmpty()) continue;
     if (const auto fault = find_fault(*widget)) faults << *fault;
   }
   return faults;

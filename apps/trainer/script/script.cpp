@@ -120,7 +120,7 @@ Result<std::vector<ScriptStep>> parse_script(const QString& text, const QString&
     if (const auto wrong = find_no_comparison(verb, *words))
       return fail(fmt::format("\"{}\" is not a comparison", to_std(*wrong)), where,
                   "write is, isnt, has, <, >, <= or >=");
-    steps.push_back({number, verb, *words});
+    steps.push_back({name, number, verb, *words});
   }
   if (steps.empty()) return fail("the script contains no steps", to_std(name), "see trocar-trainer --help");
   return steps;

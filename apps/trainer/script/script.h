@@ -11,13 +11,15 @@ namespace trocar::trainer {
 
 /// One line of a script.
 struct ScriptStep {
+  QString script;  ///< Name of its script, for messages.
   int line = 0;
   QString verb;
   QStringList arguments;  ///< A quoted text is one argument.
 };
 
 /// User actions, one per line; # starts a comment, "…" quotes an argument with spaces. The player waits for a widget
-/// that is not visible or disabled, as a user would.
+/// that is not visible or disabled, as a user would. Seconds count while the window keeps up: on a busy machine a
+/// script has more time.
 ///
 ///   click NAME [X Y]            left button, at a position in 0..1 of the widget; also double-click, right-click
 ///   drag NAME X1 Y1 X2 Y2 [left|right|middle] [SECONDS]

@@ -23,9 +23,9 @@ constexpr int kBetweenSteps_ms = 15;
 constexpr double kTimeout_s = 30.0;
 constexpr double kDrag_s = 0.4;
 constexpr double kSettled_s = 1.0;  ///< Time after which a layout is stable.
-constexpr int kMostAtOnce = 2;      ///< Events per call of a step that repeats until a condition is true.
+constexpr double kMostPerPoll_s = 0.1;
 
-QPointF place_of(const QStringList& arguments, int first) {
+QPointF place_in_arguments(const QStringList& arguments, int first) {
   if (arguments.size() < first + 2) return {0.5, 0.5};
   return {arguments[first].toDouble(), arguments[first + 1].toDouble()};
 }
@@ -51,11 +51,13 @@ ScriptPlayer::ScriptPlayer(std::vector<ScriptStep> steps, Stage stage, QObject* 
 }
 
 void ScriptPlayer::start() {
-  clock_.start();
+  poll_.start();
   timer_.start();
 }
 
 void ScriptPlayer::play_on() {
+  step_s_ += std::min(kMostPerPoll_s, static_cast<double>(poll_.nsecsElapsed()) / 1e9);
+  poll_.restart();
   if (at_ >= steps_.size()) {
     timer_.stop();
     Q_EMIT finished({});
@@ -65,13 +67,13 @@ void ScriptPlayer::play_on() {
   const Result<Progress> progress = play(step);
   if (!progress) {
     timer_.stop();
-    Q_EMIT finished(tr("line %1: %2").arg(step.line).arg(to_qt(progress.error().text())));
+    Q_EMIT finished(tr("%1 line %2: %3").arg(step.script).arg(step.line).arg(to_qt(progress.error().text())));
     return;
   }
   if (*progress == Progress::kAgain) return;
   ++at_;
   sent_ = 0;
-  clock_.restart();
+  step_s_ = 0.0;
 }
 
 Result<QWidget*> ScriptPlayer::find(const QString& name) const {
@@ -193,10 +195,10 @@ Result<ScriptPlayer::Progress> ScriptPlayer::play_pointer(const ScriptStep& step
   if (step.verb == QLatin1String("wheel")) {
     const int notches = a[1].toInt();
     if (notches == 0) return Progress::kDone;
-    turn_wheel(widget, place_of(a, 2), notches > 0 ? 1 : -1);
+    turn_wheel(widget, place_in_arguments(a, 2), notches > 0 ? 1 : -1);
     return ++sent_ >= std::abs(notches) ? Progress::kDone : Progress::kAgain;
   }
-  const QPointF place = place_of(a, 1);
+  const QPointF place = place_in_arguments(a, 1);
   if (step.verb == QLatin1String("double-click")) {
     double_click(widget, place);
     return Progress::kDone;
@@ -214,7 +216,7 @@ Result<ScriptPlayer::Progress> ScriptPlayer::play_drag(const ScriptStep& step, Q
                                  : name == QLatin1String("middle") ? Qt::MiddleButton
                                                                    : Qt::LeftButton;
   const double duration_s = a.size() > 6 ? a[6].toDouble() : kDrag_s;
-  const QPointF from = place_of(a, 1), to = place_of(a, 3);
+  const QPointF from = place_in_arguments(a, 1), to = place_in_arguments(a, 3);
   if (sent_++ == 0) {
     press(widget, from, button);
     return Progress::kAgain;
@@ -231,9 +233,9 @@ Result<ScriptPlayer::Progress> ScriptPlayer::play_until(const ScriptStep& step, 
   TROCAR_TRY(const Progress progress, wait_until_holds(a.mid(2), timeout_of(a, timeout_factor() * kTimeout_s)));
   if (progress == Progress::kDone) return progress;
   const int due = static_cast<int>(seconds() * std::abs(a[1].toDouble()));
-  // Missed events are dropped: catching up would overshoot the condition.
-  sent_ = std::max(sent_, due - kMostAtOnce);
-  for (; sent_ < due; ++sent_) TROCAR_TRY_STATUS(act());
+  // One at a time, so that none follows once the condition holds; missed events are dropped.
+  if (sent_ < due) TROCAR_TRY_STATUS(act());
+  sent_ = due;
   return Progress::kAgain;
 }
 

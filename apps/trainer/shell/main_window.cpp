@@ -36,7 +36,7 @@ struct Step {
   const char* page;
   const char* title;
 };
-constexpr Step kSteps[] = {
+constexpr Step kPageSteps[] = {
     {"start", "Choose"}, {"briefing", "Briefing"}, {"puncture", "Puncture"}, {"feedback", "Feedback"}};
 
 /// Fits a screen of 1024x768 with the bars of a desktop.
@@ -92,7 +92,7 @@ QWidget* MainWindow::make_top_bar() {
   row->setSpacing(8);
   row->addWidget(make_label(QStringLiteral("Trocar"), "brand"));
   row->addSpacing(12);
-  for (const Step& step : kSteps) {
+  for (const Step& step : kPageSteps) {
     if (!steps_.empty()) row->addWidget(make_label(QStringLiteral("›"), "dim"));
     auto* label = make_label(tr(step.title), "dim");
     label->setObjectName(QStringLiteral("step-") + QString::fromLatin1(step.page));

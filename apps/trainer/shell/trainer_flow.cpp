@@ -77,6 +77,10 @@ TrainerFlow::TrainerFlow(MainWindow& window, std::filesystem::path state_folder,
 
 TrainerFlow::~TrainerFlow() = default;
 
+void TrainerFlow::set_frame_rate(int most_hz) {
+  timer_.setInterval(std::max(kFrame_ms, 1000 / most_hz));
+}
+
 void TrainerFlow::connect_pages() {
   connect(&window_.start(), &StartPage::start_requested, this, &TrainerFlow::start);
   connect(&window_.start(), &StartPage::recovery_requested, this, &TrainerFlow::recover);

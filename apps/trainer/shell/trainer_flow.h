@@ -50,6 +50,7 @@ class TrainerFlow : public QObject {
   void end_server(const QString& tool);
   /// Restarts the recording of frame times and slow handlers.
   void reset_watch();
+  void set_frame_rate(int most_hz);  ///< 1..60.
 
  private:
   void connect_pages();

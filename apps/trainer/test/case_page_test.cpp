@@ -188,6 +188,9 @@ TEST_F(CasePageTest, FilesThatAreChosenAfterAFailureReplaceTheFailedOnes) {
   choose(folder / "two.nrrd");
   EXPECT_EQ(labels.text().count(QLatin1Char(';')), 1) << "several are added up";
   import("layers-liver", "/nowhere/labels.nrrd", "totalsegmentator");
+  // It fails before the page's next frame.
+  for (int n = 0; n < 30'000 && !page_.editor().work_view().is_done; ++n) QThread::msleep(1);
+  ASSERT_TRUE(page_.editor().work_view().is_done);
   ASSERT_TRUE(wait_for_work());
   ASSERT_TRUE(page_.editor().is_error());
   choose(folder / "one.nrrd");

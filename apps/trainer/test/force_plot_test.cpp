@@ -32,8 +32,8 @@ std::vector<ForcePlot::Band> bands() {
           {30.0, 90.0, "liver", QColor(0x90, 0x50, 0x30)}};
 }
 
-struct Shown {
-  Shown() {
+struct ShownPlot {
+  ShownPlot() {
     plot.resize(420, 260);
     plot.show();
     QCoreApplication::processEvents();
@@ -88,7 +88,7 @@ TEST(CurveTrace, DrawsNothingMoreForATremblingHand) {
 }
 
 TEST(ForcePlot, DrawsTheCurveWhereItsValuesLie) {
-  Shown shown;
+  ShownPlot shown;
   shown.plot.set_bands(bands());
   shown.plot.append(insertion(6.0));
   const PlotFrame frame = shown.plot.frame();
@@ -111,7 +111,7 @@ TEST(ForcePlot, DrawsTheCurveWhereItsValuesLie) {
 }
 
 TEST(ForcePlot, AxesOnlyGrow) {
-  Shown shown;
+  ShownPlot shown;
   double last_n = 0.0;
   int changes = 0;
   for (const ForcePoint& point : insertion(12.0)) {
@@ -128,7 +128,7 @@ TEST(ForcePlot, AxesOnlyGrow) {
 }
 
 TEST(ForcePlot, SwitchesToTimeByKeyAndButton) {
-  Shown shown;
+  ShownPlot shown;
   shown.plot.append(insertion(12.0));
   press_key(shown.plot, Qt::Key_T);
   EXPECT_EQ(shown.plot.axis(), ForcePlot::Axis::kTime);
@@ -138,7 +138,7 @@ TEST(ForcePlot, SwitchesToTimeByKeyAndButton) {
 }
 
 TEST(ForcePlot, CursorGoesToItsTime) {
-  Shown shown;
+  ShownPlot shown;
   EXPECT_FALSE(shown.plot.current().has_value());
   shown.plot.append(insertion(6.0));
   EXPECT_NEAR(shown.plot.current()->time_s, 5.999, 1e-9);
@@ -152,7 +152,7 @@ TEST(ForcePlot, CursorGoesToItsTime) {
 }
 
 TEST(ForcePlot, LeavesOutWhatIsNotFinite) {
-  Shown shown;
+  ShownPlot shown;
   const double nan = std::nan("");
   const std::vector<ForcePoint> points{{0.0, nan, 1.0}, {0.1, 1.0, INFINITY}, {nan, 1.0, 1.0}, {0.2, 5.0, 0.5}};
   shown.plot.append(points);
@@ -162,7 +162,7 @@ TEST(ForcePlot, LeavesOutWhatIsNotFinite) {
 }
 
 TEST(ForcePlot, MarksPuncturesWithTheirNames) {
-  Shown shown;
+  ShownPlot shown;
   const QPointF on_line = shown.plot.frame().to_point({10.0, 0.2});
   const int column = static_cast<int>(on_line.x());
   const QImage before = shown.plot.grab().toImage();
@@ -207,7 +207,7 @@ TEST(ForcePlot, CanBeLookedAt) {
 }
 
 TEST(ForcePlot, TellsNoDepthWhereItIsNotShown) {
-  Shown shown;
+  ShownPlot shown;
   shown.plot.append(insertion(5.0));
   shown.plot.add_event(20.0, 2.0, QStringLiteral("shot"));
   EXPECT_TRUE(shown.plot.figures_text().contains(QStringLiteral("mm")));

@@ -6,6 +6,7 @@
 #include <QSettings>
 #include <QTemporaryDir>
 
+#include "core/testing/run_all_tests.h"
 #include "ui_kit/theme.h"
 
 int main(int argc, char** argv) {
@@ -15,5 +16,5 @@ int main(int argc, char** argv) {
   QSettings::setDefaultFormat(QSettings::IniFormat);
   QSettings::setPath(QSettings::IniFormat, QSettings::UserScope, settings.path());
   trocar::trainer::apply_theme(application);
-  return RUN_ALL_TESTS();
+  return trocar::testing::run_all_tests();
 }

@@ -18,8 +18,8 @@ namespace trocar::trainer {
 namespace {
 
 /// As wide as beside the views; events come while it is shown.
-struct Shown {
-  Shown() {
+struct ShownPanel {
+  ShownPanel() {
     panel.resize(238, 700);
     panel.begin(8.0, true);
     panel.show();
@@ -43,7 +43,7 @@ struct Shown {
 
 TEST(PuncturePanel, NoRowOfEventsHasABlankLine) {
   // Longer and longer: some text ends where the scroll bar would be.
-  Shown shown;
+  ShownPanel shown;
   QString text = QStringLiteral("3.7 s  through the");
   for (int longer = 0; longer < 24; ++longer) {
     shown.panel.begin(8.0, true);
@@ -63,7 +63,7 @@ TEST(PuncturePanel, NoRowOfEventsHasABlankLine) {
 }
 
 TEST(PuncturePanel, AimsOnlyWhereThePlanMayBeTold) {
-  Shown shown;
+  ShownPanel shown;
   auto* aim = shown.panel.findChild<QPushButton*>(QStringLiteral("aim"));
   EXPECT_TRUE(aim->isEnabled());
   shown.panel.begin(8.0, false);
@@ -72,7 +72,7 @@ TEST(PuncturePanel, AimsOnlyWhereThePlanMayBeTold) {
 }
 
 TEST(PuncturePanel, TheNewestEventStaysInSightWhenTheCoreIsShown) {
-  Shown shown;
+  ShownPanel shown;
   for (int n = 0; n < 12; ++n)
     shown.panel.add_event(QStringLiteral("%1.0 s  through the liver capsule at 1.5 N").arg(n));
   shown.panel.add_event(QStringLiteral("12.0 s  the gun was fired at 52 mm"));
@@ -87,7 +87,7 @@ TEST(PuncturePanel, TheNewestEventStaysInSightWhenTheCoreIsShown) {
 }
 
 TEST(PuncturePanel, AsksInThePlaceOfItsButtonsAndStaysAsHigh) {
-  Shown shown;
+  ShownPanel shown;
   auto& question = *shown.panel.findChild<QWidget*>(QStringLiteral("question"));
   auto& end = *shown.panel.findChild<QPushButton*>(QStringLiteral("end-attempt"));
   int yes = 0;
@@ -131,46 +131,46 @@ std::vector<attempt::PhaseView> four_steps() {
 }
 
 template <class Widget>
-Widget& find(const QWidget& parent, const char* name) {
+Widget& part(const QWidget& parent, const char* name) {
   auto* found = parent.findChild<Widget*>(QString::fromLatin1(name));
   if (found == nullptr) throw std::runtime_error(std::string("no ") + name);
   return *found;
 }
 
 TEST(PunctureSteps, TheCurrentStepTellsWhatItLacksAndWhy) {
-  Shown shown;
+  ShownPanel shown;
   StepList& steps = shown.panel.steps();
   EXPECT_TRUE(steps.isHidden()) << "an exam has no steps";
   steps.propose_folded(false);
   steps.show_steps(four_steps(), 2, 60.0, true);
   EXPECT_FALSE(steps.isHidden());
-  EXPECT_EQ(find<QLabel>(steps, "step-lacks").text(), QStringLiteral("Turn the needle into the plane"));
-  EXPECT_TRUE(find<QLabel>(steps, "step-why").text().contains(QStringLiteral("needle and tip")));
-  EXPECT_EQ(find<QLabel>(steps, "steps-heading").text(), QStringLiteral("2 of 4 steps done"));
-  EXPECT_EQ(find<QLabel>(steps, "step-1").accessibleName(),
+  EXPECT_EQ(part<QLabel>(steps, "step-lacks").text(), QStringLiteral("Turn the needle into the plane"));
+  EXPECT_TRUE(part<QLabel>(steps, "step-why").text().contains(QStringLiteral("needle and tip")));
+  EXPECT_EQ(part<QLabel>(steps, "steps-heading").text(), QStringLiteral("2 of 4 steps done"));
+  EXPECT_EQ(part<QLabel>(steps, "step-1").accessibleName(),
             QStringLiteral("done: Find the lesion with the transducer"));
-  EXPECT_EQ(find<QLabel>(steps, "step-3").accessibleName(),
+  EXPECT_EQ(part<QLabel>(steps, "step-3").accessibleName(),
             QStringLiteral("now: Align the needle with the image plane"));
-  EXPECT_TRUE(find<QLabel>(steps, "step-4").isVisible());
+  EXPECT_TRUE(part<QLabel>(steps, "step-4").isVisible());
   shown.panel.show_figures({});
   QCoreApplication::processEvents();
   save(shown.panel, "puncture_panel_steps.png");
 }
 
 TEST(PunctureSteps, AssistedShowsTitlesAndTicksOnly) {
-  Shown shown;
+  ShownPanel shown;
   StepList& steps = shown.panel.steps();
   steps.show_steps(four_steps(), 2, 60.0, false);
-  EXPECT_TRUE(find<QLabel>(steps, "step-lacks").isHidden());
-  EXPECT_TRUE(find<QLabel>(steps, "step-why").isHidden());
-  EXPECT_TRUE(find<QLabel>(steps, "step-3").toolTip().isEmpty());
-  EXPECT_TRUE(find<QLabel>(steps, "step-3").isVisible());
+  EXPECT_TRUE(part<QLabel>(steps, "step-lacks").isHidden());
+  EXPECT_TRUE(part<QLabel>(steps, "step-why").isHidden());
+  EXPECT_TRUE(part<QLabel>(steps, "step-3").toolTip().isEmpty());
+  EXPECT_TRUE(part<QLabel>(steps, "step-3").isVisible());
 }
 
 TEST(PunctureSteps, AStepThatWasDoneIsConfirmedForAWhile) {
-  Shown shown;
+  ShownPanel shown;
   StepList& steps = shown.panel.steps();
-  const QLabel& heading = find<QLabel>(steps, "steps-heading");
+  const QLabel& heading = part<QLabel>(steps, "steps-heading");
   steps.show_steps(four_steps(), 2, 12.5, true);
   EXPECT_EQ(heading.text(), QStringLiteral("\u2713 Step 2 done"));
   steps.show_steps(four_steps(), 2, 12.0 + StepList::kConfirmed_s + 0.1, true);
@@ -178,14 +178,14 @@ TEST(PunctureSteps, AStepThatWasDoneIsConfirmedForAWhile) {
 }
 
 TEST(PunctureSteps, OnlyADoneStepCanBeRepeated) {
-  Shown shown;
+  ShownPanel shown;
   StepList& steps = shown.panel.steps();
   std::vector<std::size_t> repeated;
   QObject::connect(&steps, &StepList::repeat_requested, [&](std::size_t step) { repeated.push_back(step); });
   steps.propose_folded(false);
   steps.show_steps(four_steps(), 2, 60.0, true);
-  EXPECT_FALSE(find<QToolButton>(steps, "step-3-repeat").isVisible());
-  auto& second = find<QToolButton>(steps, "step-2-repeat");
+  EXPECT_FALSE(part<QToolButton>(steps, "step-3-repeat").isVisible());
+  auto& second = part<QToolButton>(steps, "step-2-repeat");
   EXPECT_TRUE(second.isVisible());
   EXPECT_TRUE(second.focusPolicy() & Qt::TabFocus);
   second.click();
@@ -193,7 +193,7 @@ TEST(PunctureSteps, OnlyADoneStepCanBeRepeated) {
 }
 
 TEST(PunctureSteps, FoldedItShowsTheNeighboursOfTheCurrentStep) {
-  Shown shown;
+  ShownPanel shown;
   StepList& steps = shown.panel.steps();
   shown.panel.resize(238, 560);
   steps.show_steps(four_steps(), 2, 60.0, true);
@@ -201,9 +201,9 @@ TEST(PunctureSteps, FoldedItShowsTheNeighboursOfTheCurrentStep) {
   ASSERT_TRUE(steps.is_folded());
   const bool are_shown[] = {false, true, true, true};
   for (int n = 0; n < 4; ++n)
-    EXPECT_EQ(find<QLabel>(steps, qPrintable(QStringLiteral("step-%1").arg(n + 1))).isVisible(), are_shown[n]) << n;
-  find<QToolButton>(steps, "steps-fold").click();
-  EXPECT_TRUE(find<QLabel>(steps, "step-1").isVisible());
+    EXPECT_EQ(part<QLabel>(steps, qPrintable(QStringLiteral("step-%1").arg(n + 1))).isVisible(), are_shown[n]) << n;
+  part<QToolButton>(steps, "steps-fold").click();
+  EXPECT_TRUE(part<QLabel>(steps, "step-1").isVisible());
   shown.panel.resize(238, 550);
   QCoreApplication::processEvents();
   EXPECT_FALSE(steps.is_folded()) << "the user's choice stays";
@@ -274,13 +274,13 @@ TEST(PunctureActions, AGunIsLoadedWhenEmptyOutsideOrThroughACoaxialNeedle) {
 }
 
 TEST(PunctureActions, ButtonsTellTheStateAndRequest) {
-  Shown shown;
+  ShownPanel shown;
   std::vector<TraineeAction> requested;
   QObject::connect(&shown.panel, &PuncturePanel::action_requested, [&](TraineeAction a) { requested.push_back(a); });
   shown.panel.begin(8.0, true, false, {TraineeAction::kStylet, TraineeAction::kAspirate, TraineeAction::kWire});
-  auto& stylet = find<QPushButton>(shown.panel, "action-stylet");
+  auto& stylet = part<QPushButton>(shown.panel, "action-stylet");
   EXPECT_TRUE(stylet.isVisible());
-  EXPECT_FALSE(find<QPushButton>(shown.panel, "action-anaesthetic").isVisible());
+  EXPECT_FALSE(part<QPushButton>(shown.panel, "action-anaesthetic").isVisible());
   EXPECT_FALSE(stylet.isEnabled());
   PunctureFigures figures;
   figures.actions.can_act = true;
@@ -302,7 +302,7 @@ TEST(PunctureActions, ButtonsTellTheStateAndRequest) {
 
 /// As wide as in the window, beside the scroll bar of a low one.
 TEST(PunctureActions, NoButtonIsCutOff) {
-  Shown shown;
+  ShownPanel shown;
   shown.panel.begin(8.0, true, false, {std::begin(kTraineeActions), std::end(kTraineeActions)});
   PunctureFigures figures;
   figures.tissue = QStringLiteral("superior mesenteric vein, right lower lobe");

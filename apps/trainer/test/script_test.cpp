@@ -8,6 +8,7 @@
 #include <QPushButton>
 #include <QSlider>
 #include <QSpinBox>
+#include <QThread>
 #include <QTimer>
 #include <QVBoxLayout>
 #include <QWidgetAction>
@@ -119,6 +120,15 @@ TEST_F(SmallStage, WheelGoesOnUntilAFactHolds) {
   EXPECT_GE(slider->value(), 30);
 }
 
+TEST_F(SmallStage, AWindowThatIsBusyHasMoreTimeAndGetsNoEventTooMany) {
+  // Each event takes the window 0.3 s: 20 of them are due in a second, and 8 fit into the 2.4 s that they take.
+  QObject::connect(slider, &QSlider::valueChanged, slider, [] { QThread::msleep(300); });
+  slider->setSingleStep(1);
+  EXPECT_EQ(play("wheel-until slide 20 value >= 24 within 1.5\n"), QString());
+  EXPECT_GE(slider->value(), 24);
+  EXPECT_LE(slider->value(), 26) << "no notch after the condition held";
+}
+
 TEST_F(SmallStage, WhatIsNotThereYetIsWaitedFor) {
   button->setEnabled(false);
   slider->hide();
@@ -132,7 +142,7 @@ TEST_F(SmallStage, WhatIsNotThereYetIsWaitedFor) {
 
 TEST_F(SmallStage, WhatFailsNamesItsLine) {
   default_timeout_s = 0.05;
-  EXPECT_TRUE(play("click push\nexpect pushed is 7\n").startsWith(QStringLiteral("line 2:")));
+  EXPECT_TRUE(play("click push\nexpect pushed is 7\n").startsWith(QStringLiteral("s line 2:")));
   EXPECT_TRUE(play("click nothing\n").contains(QStringLiteral("nothing")));
   EXPECT_TRUE(play("wait-for pushed > 99 within 0.1\n").contains(QStringLiteral("did not become true")));
   EXPECT_TRUE(play("expect unheard is 1\n").contains(QStringLiteral("unknown fact")));

@@ -13,16 +13,16 @@
 namespace trocar::trainer {
 namespace {
 
-std::shared_ptr<const anatomy::VirtualPatient> abdomen() {
+std::shared_ptr<const anatomy::VirtualPatient> coarse_abdomen() {
   static const auto patient = std::make_shared<const anatomy::VirtualPatient>(
       anatomy::generate_phantom("abdomen", 1, {{180, 144, 128}}).value());
   return patient;
 }
 
-struct Shown {
-  explicit Shown(SliceKind kind) : view(kind) {
+struct ShownSlice {
+  explicit ShownSlice(SliceKind kind) : view(kind) {
     view.resize(400, 360);
-    view.show_patient(abdomen());
+    view.show_patient(coarse_abdomen());
     view.show();
     QObject::connect(&view, &SliceView::focus_moved, [this](const Vec3& p_P) { moved_P.push_back(p_P); });
     QObject::connect(&view, &SliceView::clicked, [this](const Vec3& p_P) { clicked_P.push_back(p_P); });
@@ -39,13 +39,13 @@ struct Shown {
 };
 
 Segment expert_path() {
-  return abdomen()->paths.front().line_P;
+  return coarse_abdomen()->paths.front().line_P;
 }
 
 TEST(SliceView, LeadsFromPixelsToThePatientAndBack) {
   for (const SliceKind kind : {SliceKind::kAxial, SliceKind::kCoronal, SliceKind::kSagittal, SliceKind::kAlongNeedle,
                                SliceKind::kAlongNeedleTurned, SliceKind::kAcrossNeedle}) {
-    Shown shown(kind);
+    ShownSlice shown(kind);
     shown.view.set_needle_frame(needle_pose(expert_path().b, expert_path().direction()));
     for (const QPointF at : {QPointF(3, 40), QPointF(200, 200), QPointF(399, 359)}) {
       const QPointF back = shown.view.position_of(shown.view.point_at(at));
@@ -56,14 +56,14 @@ TEST(SliceView, LeadsFromPixelsToThePatientAndBack) {
 }
 
 TEST(SliceView, ShowsTheLiverInItsColourOnTheLeft) {
-  Shown shown(SliceKind::kAxial);
+  ShownSlice shown(SliceKind::kAxial);
   const Vec3 target_P = expert_path().b;  // in the liver
   shown.view.set_focus(target_P);
   shown.view.set_label_opacity(1.0);
   const QPointF target = shown.view.position_of(target_P);
   EXPECT_LT(target.x(), 0.5 * shown.view.width());
   const Vec3 beside_P = target_P + Vec3(-12.0, 3.0, 0.0);  // clear of the cross-hairs
-  const anatomy::Label* label = anatomy::find_label(*abdomen(), beside_P);
+  const anatomy::Label* label = anatomy::find_label(*coarse_abdomen(), beside_P);
   ASSERT_NE(label, nullptr);
   ASSERT_EQ(label->name, "liver");
   EXPECT_EQ(shown.color_at(shown.view.position_of(beside_P)),
@@ -75,7 +75,7 @@ TEST(SliceView, ShowsTheLiverInItsColourOnTheLeft) {
 }
 
 TEST(SliceView, MovesTheCrossHairsToTheMouse) {
-  Shown shown(SliceKind::kCoronal);
+  ShownSlice shown(SliceKind::kCoronal);
   const Vec3 before_P = shown.view.focus();
   drag(shown.view, {150, 200}, {240, 130}, Qt::LeftButton);
   ASSERT_EQ(shown.moved_P.size(), 2U);
@@ -95,10 +95,10 @@ TEST(SliceView, MovesTheCrossHairsToTheMouse) {
 }
 
 TEST(SliceView, ScrollsByTheSlicesOfTheVolume) {
-  Shown shown(SliceKind::kAxial);
+  ShownSlice shown(SliceKind::kAxial);
   const Vec3 before_P = shown.view.focus();
   wheel(shown.view, {200, 200}, 240);
-  const double step_mm = abdomen()->ct.geometry.spacing_mm.z();
+  const double step_mm = coarse_abdomen()->ct.geometry.spacing_mm.z();
   EXPECT_NEAR(shown.view.focus().z() - before_P.z(), 2.0 * step_mm, 1e-9);
   EXPECT_NEAR(shown.view.geometry().height_mm(shown.view.focus()), 0.0, 1e-9);
   press_key(shown.view, Qt::Key_PageDown);
@@ -107,7 +107,7 @@ TEST(SliceView, ScrollsByTheSlicesOfTheVolume) {
 }
 
 TEST(SliceView, ZoomsAtThePointerAndPans) {
-  Shown shown(SliceKind::kSagittal);
+  ShownSlice shown(SliceKind::kSagittal);
   const QPointF at(120, 250);
   const Vec3 under_P = shown.view.point_at(at);
   const double before = shown.view.geometry().mm_per_px;
@@ -126,7 +126,7 @@ TEST(SliceView, ZoomsAtThePointerAndPans) {
 }
 
 TEST(SliceView, ChangesTheWindowByDraggingAndByKeys) {
-  Shown shown(SliceKind::kAxial);
+  ShownSlice shown(SliceKind::kAxial);
   const QPointF muscle = shown.view.picture_rect().center() + QPointF(30, 25);
   press_key(shown.view, Qt::Key_L);
   const int before = shown.color_at(muscle).red();
@@ -143,7 +143,7 @@ TEST(SliceView, ChangesTheWindowByDraggingAndByKeys) {
 }
 
 TEST(SliceView, FollowsTheTipOnlyOutsideTheMiddlePart) {
-  Shown shown(SliceKind::kAxial);
+  ShownSlice shown(SliceKind::kAxial);
   for (int n = 0; n < 8; ++n) press_key(shown.view, Qt::Key_Plus);
   const Vec3 center_P = shown.view.geometry().center_P;
   shown.view.set_focus(center_P + Vec3(10.0, 0.0, 0.0));
@@ -159,7 +159,7 @@ TEST(SliceView, FollowsTheTipOnlyOutsideTheMiddlePart) {
 }
 
 TEST(SliceView, DrawsTheNeedleWhereItLies) {
-  Shown shown(SliceKind::kAxial);
+  ShownSlice shown(SliceKind::kAxial);
   const Vec3 tip_P = expert_path().b;
   shown.view.set_focus(tip_P + Vec3(0.0, 40.0, 0.0));
   const std::vector<Vec3> shaft_P{tip_P + Vec3(-90.0, 0.0, 0.0), tip_P};
@@ -188,7 +188,7 @@ TEST(SliceView, DrawsTheNeedleWhereItLies) {
 TEST(SliceView, NeedlePlanesHoldTheShaftAndTheTipPointsDown) {
   const Segment path = expert_path();
   for (const SliceKind kind : {SliceKind::kAlongNeedle, SliceKind::kAlongNeedleTurned}) {
-    Shown shown(kind);
+    ShownSlice shown(kind);
     shown.view.set_needle_frame(needle_pose(path.at(0.6), path.direction()));
     EXPECT_NEAR(shown.view.geometry().height_mm(path.a), 0.0, 1e-9);
     EXPECT_NEAR(shown.view.geometry().height_mm(path.b), 0.0, 1e-9);
@@ -201,7 +201,7 @@ TEST(SliceView, NeedlePlanesHoldTheShaftAndTheTipPointsDown) {
 }
 
 TEST(SliceView, ShowsAsMuchOfThePlanAsGuidanceAllows) {
-  Shown shown(SliceKind::kAxial);
+  ShownSlice shown(SliceKind::kAxial);
   const Segment path = expert_path();
   shown.view.set_focus(0.5 * (path.a + path.b) + Vec3(0.0, 40.0, 0.0));  // the cross-hairs beside all that is looked at
   shown.view.grab();
@@ -254,7 +254,7 @@ void look_at(std::shared_ptr<const anatomy::VirtualPatient> patient, const Segme
 }
 
 TEST(SliceView, ShowsTheNeedleInAllPlanes) {
-  look_at(abdomen(), expert_path(), "slices.png");
+  look_at(coarse_abdomen(), expert_path(), "slices.png");
 }
 
 TEST(SliceMarks, NamesOfLandmarksDoNotOverlap) {

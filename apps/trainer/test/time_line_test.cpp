@@ -12,8 +12,8 @@
 namespace trocar::trainer {
 namespace {
 
-struct Shown {
-  Shown() {
+struct ShownTimeLine {
+  ShownTimeLine() {
     line.resize(900, 60);
     line.set_duration(20.0);
     line.set_events({{12.0, "liver capsule", TimeMark::kPuncture},
@@ -37,7 +37,7 @@ struct Shown {
 };
 
 TEST(TimeLine, PlaysAtItsSpeedAndStopsAtTheEnd) {
-  Shown shown;
+  ShownTimeLine shown;
   shown.line.advance(1.0);
   EXPECT_EQ(shown.line.time_s(), 0.0);  // It stands.
   press_key(shown.line, Qt::Key_Space);
@@ -57,7 +57,7 @@ TEST(TimeLine, PlaysAtItsSpeedAndStopsAtTheEnd) {
 }
 
 TEST(TimeLine, GoesToEventsAndTheWorstMoment) {
-  Shown shown;
+  ShownTimeLine shown;
   std::vector<double> visited_s;
   for (int n = 0; n < 5; ++n) {
     press_key(shown.line, Qt::Key_N);
@@ -73,7 +73,7 @@ TEST(TimeLine, GoesToEventsAndTheWorstMoment) {
 }
 
 TEST(TimeLine, StepsByKeysInsideItsEnds) {
-  Shown shown;
+  ShownTimeLine shown;
   press_key(shown.line, Qt::Key_Left);
   EXPECT_TRUE(shown.times_s.empty());
   press_key(shown.line, Qt::Key_Right);
@@ -89,7 +89,7 @@ TEST(TimeLine, StepsByKeysInsideItsEnds) {
 }
 
 TEST(TimeLine, ScrubsWithTheMouseAndHitsMarks) {
-  Shown shown;
+  ShownTimeLine shown;
   TimeTrack& track = shown.track();
   drag(track, {track.x_of(5.0), 30.0}, {track.x_of(10.0), 30.0}, Qt::LeftButton);
   EXPECT_NEAR(shown.line.time_s(), 10.0, 0.05);  // half a point of 900 for 20 s
@@ -100,7 +100,7 @@ TEST(TimeLine, ScrubsWithTheMouseAndHitsMarks) {
 }
 
 TEST(TimeLine, ShowsPhasesAndMarksWhereTheyAre) {
-  Shown shown;
+  ShownTimeLine shown;
   shown.line.set_time(20.0);  // nothing is dimmed
   TimeTrack& track = shown.track();
   const QImage image = track.grab().toImage();
@@ -113,7 +113,7 @@ TEST(TimeLine, ShowsPhasesAndMarksWhereTheyAre) {
 }
 
 TEST(TimeLine, ARiskThatWasHitIsSeenOverTheWorstMoment) {
-  Shown shown;
+  ShownTimeLine shown;
   shown.line.set_events({{4.0, "touched: lung", TimeMark::kRisk},
                          {8.0, "touched: rib", TimeMark::kRisk},
                          {8.0, "the worst", TimeMark::kWorst},
@@ -138,7 +138,7 @@ TEST(TimeLine, ARiskThatWasHitIsSeenOverTheWorstMoment) {
 }
 
 TEST(TimeLine, OffersTheWorstMomentOnlyWhereThereIsOne) {
-  Shown shown;
+  ShownTimeLine shown;
   EXPECT_TRUE(shown.line.findChild<QToolButton*>("time-worst")->isVisible());
   shown.line.set_events({});
   EXPECT_FALSE(shown.line.findChild<QToolButton*>("time-worst")->isVisible());
@@ -156,7 +156,7 @@ TEST(TimeLine, StandsStillWithoutASession) {
 }
 
 TEST(TimeLine, CanBeLookedAt) {
-  Shown shown;
+  ShownTimeLine shown;
   shown.line.set_time(9.2);
   save(shown.line, "time_line.png");
   shown.line.resize(520, 60);

@@ -13,7 +13,7 @@ namespace {
 class UltrasoundControlsTest : public UltrasoundViewTest {};
 
 template <class Widget>
-Widget& find(UltrasoundControls& controls, const char* name) {
+Widget& control(UltrasoundControls& controls, const char* name) {
   auto* found = controls.findChild<Widget*>(QString::fromLatin1(name));
   if (found == nullptr) ADD_FAILURE() << name;
   return *found;
@@ -26,51 +26,51 @@ TEST_F(UltrasoundControlsTest, ControlsAndViewShowTheSame) {
   controls.resize(300, 1010);
   controls.show();
   ASSERT_TRUE(settle(view));
-  find<QSlider>(controls, "ultrasound-gain").setValue(9);
+  control<QSlider>(controls, "ultrasound-gain").setValue(9);
   EXPECT_EQ(view.settings().display.gain_db, 9.0);
-  find<QSlider>(controls, "ultrasound-tgc-8").setValue(-4);
+  control<QSlider>(controls, "ultrasound-tgc-8").setValue(-4);
   EXPECT_EQ(view.settings().display.tgc_db[7], -4.0);
   view.change_settings([](UltrasoundSettings& s) { s.acquisition.depth_mm = 120.0; });
-  EXPECT_EQ(find<QSlider>(controls, "ultrasound-depth").value(), 24);
-  find<QCheckBox>(controls, "ultrasound-rolling").click();
+  EXPECT_EQ(control<QSlider>(controls, "ultrasound-depth").value(), 24);
+  control<QCheckBox>(controls, "ultrasound-rolling").click();
   EXPECT_TRUE(view.settings().is_rolling);
-  auto& harmonic = find<QCheckBox>(controls, "ultrasound-harmonic");
+  auto& harmonic = control<QCheckBox>(controls, "ultrasound-harmonic");
   harmonic.click();
   EXPECT_TRUE(view.settings().acquisition.is_harmonic);
   EXPECT_EQ(view.settings().acquisition.frequency_mhz, 4.0) << "received: twice the lowest transmitted one";
   view.set_harmonic(false);
   EXPECT_FALSE(harmonic.isChecked());
   EXPECT_EQ(view.settings().acquisition.frequency_mhz, view.transducer().frequency_mhz);
-  find<QCheckBox>(controls, "ultrasound-doppler").click();
+  control<QCheckBox>(controls, "ultrasound-doppler").click();
   EXPECT_TRUE(view.settings().has_doppler);
-  find<QPushButton>(controls, "ultrasound-distance").click();
+  control<QPushButton>(controls, "ultrasound-distance").click();
   EXPECT_EQ(view.measuring_tool(), MeasuringTool::kDistance);
-  find<QPushButton>(controls, "ultrasound-freeze").click();
+  control<QPushButton>(controls, "ultrasound-freeze").click();
   ASSERT_TRUE(run_until(view, [](const ultrasound::ScanPicture& p) { return p.is_frozen; }));
-  EXPECT_TRUE(find<QSlider>(controls, "ultrasound-cine").isVisible());
+  EXPECT_TRUE(control<QSlider>(controls, "ultrasound-cine").isVisible());
   if (const char* folder = std::getenv("TROCAR_TEST_PICTURES")) {
     controls.setStyleSheet(QStringLiteral("trocar--trainer--UltrasoundControls { background: #181e27; }"));
     controls.grab().save(QStringLiteral("%1/usview_controls.png").arg(QString::fromUtf8(folder)));
   }
-  find<QSlider>(controls, "ultrasound-cine").setValue(0);
+  control<QSlider>(controls, "ultrasound-cine").setValue(0);
   EXPECT_TRUE(run_until(view, [&](const ultrasound::ScanPicture&) { return view.cine().position == 0; }));
-  find<QPushButton>(controls, "ultrasound-freeze").click();
+  control<QPushButton>(controls, "ultrasound-freeze").click();
   EXPECT_FALSE(view.is_frozen());
-  auto& presets = find<QComboBox>(controls, "ultrasound-preset");
+  auto& presets = control<QComboBox>(controls, "ultrasound-preset");
   presets.setCurrentIndex(presets.findText(QStringLiteral("Shallow vessel")));
   Q_EMIT presets.activated(presets.currentIndex());
   EXPECT_EQ(view.transducer().name, "L14-5");
   EXPECT_EQ(view.settings().acquisition.depth_mm, 40.0);
-  EXPECT_EQ(find<QComboBox>(controls, "ultrasound-transducer").currentText(), QStringLiteral("L14-5"));
+  EXPECT_EQ(control<QComboBox>(controls, "ultrasound-transducer").currentText(), QStringLiteral("L14-5"));
   // A preset's name does not stay beside another transducer.
-  auto& transducers = find<QComboBox>(controls, "ultrasound-transducer");
+  auto& transducers = control<QComboBox>(controls, "ultrasound-transducer");
   transducers.setCurrentIndex(transducers.findText(QStringLiteral("C5-2")));
   Q_EMIT transducers.activated(transducers.currentIndex());
   EXPECT_EQ(view.transducer().name, "C5-2");
   EXPECT_EQ(presets.currentIndex(), 0) << presets.currentText().toStdString();
   transducers.setCurrentIndex(transducers.findText(QStringLiteral("L14-5")));
   Q_EMIT transducers.activated(transducers.currentIndex());
-  find<QPushButton>(controls, "ultrasound-reset").click();
+  control<QPushButton>(controls, "ultrasound-reset").click();
   EXPECT_EQ(view.settings(), default_settings(transducer("L14-5")));
 }
 
@@ -89,7 +89,7 @@ TEST_F(UltrasoundControlsTest, EngineIsOfferedOnlyForAPatientWithAPanorama) {
   UltrasoundView view;
   open(view, "aorta", {320, 280});
   UltrasoundControls controls(view);
-  auto& engine = find<QComboBox>(controls, "ultrasound-engine");
+  auto& engine = control<QComboBox>(controls, "ultrasound-engine");
   EXPECT_FALSE(engine.isEnabled());
   EXPECT_EQ(engine.currentIndex(), 0);
   view.show_patient(abdomen().scene, abdomen().flow, transducer("C5-2"), panorama_at(X_PT_));

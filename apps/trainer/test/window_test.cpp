@@ -1,4 +1,6 @@
 // The program itself, in a real window, used as a person uses it: each script of test/scripts is played to its end.
+// Opening a patient takes longer than most scripts: those that need no window of their own share one, and return to the
+// start page.
 #include <gtest/gtest.h>
 
 #include <QDir>
@@ -17,8 +19,8 @@
 
 #include "config/json.h"
 #include "core/testing/source_dir.h"
-#include "devices/pointer/test/gamepad_stand_in.h"
-#include "devices/vendor/test/hd_stand_ins.h"
+#include "devices/testing/gamepad_stand_in.h"
+#include "devices/testing/hd_stand_ins.h"
 #include "exams/exam_result.h"
 #include "results/attempts.h"
 #include "results/people.h"
@@ -53,15 +55,24 @@ struct WindowTest : ::testing::Test {
         QDir(QString::fromUtf8(std::getenv("TROCAR_BIN_DIR"))).filePath(QStringLiteral("../test-cache")));
     process.setProcessEnvironment(environment);
     process.setProcessChannelMode(QProcess::MergedChannels);
-    process.start(program(), arguments);
+    // Windows are drawn without a graphics card: the tests beside this one need the processor, too.
+    process.start(program(), arguments + QStringList{QStringLiteral("--frame-rate"), QStringLiteral("12")});
     const bool is_slow_build = qEnvironmentVariableIsSet("TROCAR_SCRIPT_TIMEOUT_FACTOR");
-    if (!process.waitForFinished(is_slow_build ? 1'500'000 : 400'000)) process.kill();
+    if (!process.waitForFinished(is_slow_build ? 1'500'000 : 900'000)) process.kill();
     process.waitForFinished();
     return {process.exitStatus() == QProcess::NormalExit ? process.exitCode() : -1,
             QString::fromUtf8(process.readAll())};
   }
-  Played play(const char* script) const { return run({QStringLiteral("--script"), script_named(script)}); }
-  QString write(const char* name, const char* text) const {
+  /// Plays scripts of test/scripts in one window, one after the other.
+  Played play(const std::vector<const char*>& scripts, QStringList arguments = {}) const {
+    for (const char* script : scripts) arguments << QStringLiteral("--script") << script_named(script);
+    return run(arguments);
+  }
+  Played play_lumbar(const std::vector<const char*>& scripts) const {
+    return play(scripts, {QStringLiteral("--task"), QStringLiteral("lumbar-puncture"), QStringLiteral("--patient"),
+                          QStringLiteral("lumbar-1")});
+  }
+  QString write(const char* name, const QByteArray& text) const {
     QFile file(folder.filePath(QString::fromUtf8(name)));
     EXPECT_TRUE(file.open(QIODevice::WriteOnly));
     file.write(text);
@@ -144,24 +155,21 @@ void expect_signed_exam(const std::filesystem::path& state) {
   EXPECT_TRUE((*json)["changed_settings"].empty()) << (*json)["changed_settings"].dump();
 }
 
+// By keys alone, by mouse from the start page to the score and again; the replay; the case builder beside; the help
+// levels.
 TEST_F(WindowTest, ABiopsyGoesFromTheStartPageToTheScoreAndAgain) {
-  expect_played(play("biopsy.txt"));
+  expect_played(play({"keyboard.txt", "biopsy.txt", "transducer.txt", "case_builder.txt", "help_levels.txt"}));
 }
 
-TEST_F(WindowTest, AKilledServerComesBackAndThePunctureGoesOn) {
-  expect_played(play("server_killed.txt"));
-}
-
-TEST_F(WindowTest, ForcesAreStoppedAndTurnedOnAgain) {
-  expect_played(play("forces_stopped.txt"));
-}
-
-TEST_F(WindowTest, AnAttemptIsNotEndedUnasked) {
-  expect_played(play("end_asked.txt"));
+// A device that is not there, a killed server, stopped forces, the question before the end.
+TEST_F(WindowTest, WhatGoesWrongIsToldAndThePunctureGoesOn) {
+  const trocar::testing::GamepadStandIn unplugged(false);
+  expect_played(play({"no_device.txt", "server_killed.txt", "forces_stopped.txt", "layouts.txt", "end_asked_narrow.txt",
+                      "end_asked.txt"}));
 }
 
 TEST_F(WindowTest, AnExamTellsNothingAndIsNotAltered) {
-  const Played played = play("exam.txt");
+  const Played played = play({"exam.txt"});
   expect_played(played);
   for (const char* fact : {"depth_mm: ", "distance_mm: ", "tissue: ", "picture_from_plan_mm: ", "entry_from_plan_mm: "})
     EXPECT_TRUE(played.output.contains(QString::fromLatin1(fact) + QLatin1Char('\n'))) << fact;
@@ -177,10 +185,6 @@ TEST_F(WindowTest, AFolderThatCannotBeWrittenIsNamedAndNothingBegins) {
       run({QStringLiteral("--state"), QStringLiteral("/dev/null/state"), QStringLiteral("--script"), script}));
 }
 
-TEST_F(WindowTest, EveryLayoutShowsWhatItNames) {
-  expect_played(play("layouts.txt"));
-}
-
 /// The script of every page, in a window of that size; pictures are not waited for.
 QByteArray all_pages(int columns, int rows) {
   QFile script(script_named("all_pages.txt"));
@@ -193,8 +197,13 @@ QByteArray all_pages(int columns, int rows) {
       .toUtf8();
 }
 
+TEST_F(WindowTest, EveryPageIsWholeOnASmallAndOnAUsualScreen) {
+  expect_played(run({QStringLiteral("--script"), write("small.txt", all_pages(1024, 768) + "click open-case-builder\n"),
+                     QStringLiteral("--script"), write("usual.txt", all_pages(1280, 800))}));
+}
+
 TEST_F(WindowTest, APersonsAttemptsAreRecordedAndCompared) {
-  expect_played(play("person.txt"));
+  expect_played(play({"person.txt"}));
   auto repository =
       results::Repository::open({folder.filePath(QStringLiteral("data/trocar/results.sqlite")).toStdString(), {}});
   ASSERT_TRUE(repository) << repository.error().text();
@@ -210,49 +219,6 @@ TEST_F(WindowTest, APersonsAttemptsAreRecordedAndCompared) {
   EXPECT_TRUE(results::load_recording(*repository, attempts->front().id)->has_value());
 }
 
-TEST_F(WindowTest, EveryPageIsWholeOnASmallScreen) {
-  expect_played(run({QStringLiteral("--script"), write("small.txt", all_pages(1024, 768).constData())}));
-}
-
-TEST_F(WindowTest, TheQuestionOfTheEndIsSeenBesideTheTissues) {
-  expect_played(play("end_asked_narrow.txt"));
-}
-
-TEST_F(WindowTest, EveryPageIsWholeOnAUsualScreen) {
-  expect_played(run({QStringLiteral("--script"), write("usual.txt", all_pages(1280, 800).constData())}));
-}
-
-TEST_F(WindowTest, TheReplayMovesTheTransducerAsItWasMoved) {
-  expect_played(play("transducer.txt"));
-}
-
-TEST_F(WindowTest, TheReplayComparesWithSeveralExpertPaths) {
-  expect_played(run({QStringLiteral("--task"), QStringLiteral("lumbar-puncture"), QStringLiteral("--patient"),
-                     QStringLiteral("lumbar-1"), QStringLiteral("--script"), script_named("expert_paths.txt")}));
-}
-
-TEST_F(WindowTest, AFingerFeelsTheSpineAndMarksTheSkin) {
-  expect_played(run({QStringLiteral("--task"), QStringLiteral("lumbar-puncture"), QStringLiteral("--patient"),
-                     QStringLiteral("lumbar-1"), QStringLiteral("--script"), script_named("palpation.txt")}));
-}
-
-TEST_F(WindowTest, ABiopsyIsPerformedByKeysAlone) {
-  expect_played(play("keyboard.txt"));
-}
-
-TEST_F(WindowTest, TheCaseBuilderSaysWhyItIsClosedAndStaysWhereItWasOpened) {
-  expect_played(play("case_builder.txt"));
-}
-
-TEST_F(WindowTest, OnlyAGuidedAttemptPutsTheToolsWhereThePlanHasThem) {
-  expect_played(play("help_levels.txt"));
-}
-
-TEST_F(WindowTest, ADeviceThatIsNotThereIsToldAndAnotherOneTaken) {
-  const trocar::testing::GamepadStandIn unplugged(false);
-  expect_played(play("no_device.txt"));
-}
-
 TEST_F(WindowTest, AGamepadDrivesTheNeedleAndMayBeUnpluggedMeanwhile) {
   trocar::testing::GamepadStandIn pad;
   // The script takes a picture where it is the person's turn.
@@ -265,7 +231,7 @@ TEST_F(WindowTest, AGamepadDrivesTheNeedleAndMayBeUnpluggedMeanwhile) {
   QFile script(script_named("gamepad.txt"));
   ASSERT_TRUE(script.open(QIODevice::ReadOnly));
   const QString here = QString::fromUtf8(script.readAll()).replace(QStringLiteral("FOLDER"), folder.path());
-  expect_played(run({QStringLiteral("--script"), write("gamepad.txt", here.toUtf8().constData())}));
+  expect_played(run({QStringLiteral("--script"), write("gamepad.txt", here.toUtf8())}));
   EXPECT_TRUE(person.has_done_all());
   EXPECT_GT(pad.strongest_rumble(), 0);
 }
@@ -300,7 +266,7 @@ TEST_F(WindowTest, TwoHapticDevicesAreNamedTestedAndMoveATool) {
     EXPECT_TRUE(script.open(QIODevice::ReadOnly));
     EXPECT_TRUE(QDir().mkpath(pictures));
     const QString here = QString::fromUtf8(script.readAll()).replace(QStringLiteral("FOLDER"), pictures);
-    Played played = run({QStringLiteral("--script"), write("two_devices.txt", here.toUtf8().constData())});
+    Played played = run({QStringLiteral("--script"), write("two_devices.txt", here.toUtf8())});
     EXPECT_TRUE(played.exit_status != 0 || person.has_done_all());
     return played;
   };
@@ -334,9 +300,9 @@ double darker_share(const QImage& a, const QImage& b, int least) {
   return static_cast<double>(darker) / all;
 }
 
-TEST_F(WindowTest, ALumbarPunctureIsGuidedStepByStep) {
-  expect_played(run({QStringLiteral("--task"), QStringLiteral("lumbar-puncture"), QStringLiteral("--patient"),
-                     QStringLiteral("lumbar-1"), QStringLiteral("--script"), script_named("lumbar.txt")}));
+// Step by step with the needle, compared with several expert paths, and with a finger that feels the spine.
+TEST_F(WindowTest, ALumbarPunctureIsGuidedComparedAndPalpated) {
+  expect_played(play_lumbar({"lumbar.txt", "expert_paths.txt", "palpation.txt"}));
 }
 
 TEST_F(WindowTest, AscitesIsPuncturedAfterAnUltrasoundCheck) {
@@ -348,9 +314,8 @@ TEST_F(WindowTest, ABileDuctIsPuncturedUnderFluoroscopy) {
   QFile script(script_named("fluoroscopy.txt"));
   ASSERT_TRUE(script.open(QIODevice::ReadOnly));
   const QString here = QString::fromUtf8(script.readAll()).replace(QStringLiteral("FOLDER"), folder.path());
-  expect_played(
-      run({QStringLiteral("--task"), QStringLiteral("ptcd"), QStringLiteral("--patient"), QStringLiteral("ptcd-1"),
-           QStringLiteral("--script"), write("fluoroscopy.txt", here.toUtf8().constData())}));
+  expect_played(run({QStringLiteral("--task"), QStringLiteral("ptcd"), QStringLiteral("--patient"),
+                     QStringLiteral("ptcd-1"), QStringLiteral("--script"), write("fluoroscopy.txt", here.toUtf8())}));
   const auto image = [this](const char* name) { return xray_in(folder.filePath(QString::fromUtf8(name))); };
   const QImage live = image("live.png"), filled = image("filled.png"), empty = image("empty.png"),
                none = image("none.png"), again = image("filled_again.png");
@@ -359,7 +324,7 @@ TEST_F(WindowTest, ABileDuctIsPuncturedUnderFluoroscopy) {
   EXPECT_GT(darker_share(empty, filled, kDark), 0.005) << "the ducts are filled";
   EXPECT_LT(darker_share(filled, empty, kDark), 0.001);
   // The replay shows what the trainee saw.
-  EXPECT_LT(darker_share(live, filled, kDark) + darker_share(filled, live, kDark), 0.003);
+  EXPECT_LT(darker_share(live, filled, kDark) + darker_share(filled, live, kDark), 0.001);
   EXPECT_EQ(darker_share(again, filled, 1) + darker_share(filled, again, 1), 0.0) << "a moment has one image";
   EXPECT_GT(darker_share(empty, none, kDark), 0.5) << "black before the first pulse";
 }
@@ -408,7 +373,7 @@ TEST_F(WindowTest, MemoryDoesNotGrowFromCaseToCase) {
              "key A\nkey H\nwait-for entry_from_plan_mm < 1 within 60\n"
              "wheel-until view-3d 10 depth_mm > 15 within 60\nkey E\nkey Return\nwait-for page is feedback within 120\n"
              "key Ctrl+N\nwait-for page is start within 20\nprint memory_mb\n";
-  const Played played = run({QStringLiteral("--script"), write("cases.txt", steps.constData())});
+  const Played played = run({QStringLiteral("--script"), write("cases.txt", steps)});
   expect_played(played);
   std::vector<double> memory_mb;
   for (const QString& line : played.output.split(QLatin1Char('\n')))

@@ -17,8 +17,8 @@
 namespace trocar::trainer {
 namespace {
 
-constexpr int kMargin_px = 8;
-constexpr int kStep_px = 8;
+constexpr int kBannerMargin_px = 8;
+constexpr int kPlaceStep_px = 8;
 constexpr int kWidest_px = 900;
 
 /// A part of the window that should not be covered.
@@ -113,7 +113,7 @@ void Banner::display(const Message& message) {
 
 void Banner::place() {
   if (isHidden()) return;
-  const int widest = std::min(area_.width() - 2 * kMargin_px, kWidest_px);
+  const int widest = std::min(area_.width() - 2 * kBannerMargin_px, kWidest_px);
   setWordWrap(false);
   int width = sizeHint().width();
   setWordWrap(true);
@@ -125,11 +125,12 @@ void Banner::place() {
 QRect Banner::free_place(const QSize& size) const {
   const std::vector<Obstacle> obstacles = obstacles_in(area_, *this);
   const int middle = (area_.width() - size.width()) / 2;
-  const int right = area_.width() - size.width() - kMargin_px;
-  QRect best(QPoint(middle, kMargin_px), size);
+  const int right = area_.width() - size.width() - kBannerMargin_px;
+  QRect best(QPoint(middle, kBannerMargin_px), size);
   double least = covered(obstacles, best);
-  for (int y = kMargin_px; y + size.height() + kMargin_px <= area_.height() && least > 0.0; y += kStep_px) {
-    for (const int x : {middle, right, kMargin_px}) {
+  for (int y = kBannerMargin_px; y + size.height() + kBannerMargin_px <= area_.height() && least > 0.0;
+       y += kPlaceStep_px) {
+    for (const int x : {middle, right, kBannerMargin_px}) {
       const QRect place(QPoint(x, y), size);
       const double now = covered(obstacles, place);
       if (now >= least) continue;

@@ -64,6 +64,17 @@ void set_style(QWidget& widget, const char* property, const QVariant& value) {
   widget.style()->polish(&widget);
 }
 
+void set_label_text(QLabel& label, const QString& text) {
+  if (label.text() != text) label.setText(text);
+}
+
+void clear_layout(QLayout& layout) {
+  while (QLayoutItem* item = layout.takeAt(0)) {
+    delete item->widget();
+    delete item;
+  }
+}
+
 QString to_qt(std::string_view text) {
   return QString::fromUtf8(text.data(), static_cast<int>(text.size()));
 }

@@ -8,6 +8,7 @@
 class QBoxLayout;
 class QFrame;
 class QLabel;
+class QLayout;
 class QPushButton;
 class QScrollArea;
 class QToolButton;
@@ -29,6 +30,10 @@ QFrame* make_card(const QString& heading, QBoxLayout*& content);
 QScrollArea* make_scrolled(QWidget& content);
 /// Sets a property used by the style sheet and updates the style.
 void set_style(QWidget& widget, const char* property, const QVariant& value);
+/// Sets the text of a label that does not show it yet.
+void set_label_text(QLabel& label, const QString& text);
+/// Removes and deletes all items of a layout and their widgets.
+void clear_layout(QLayout& layout);
 
 QString to_qt(std::string_view text);
 std::string to_std(const QString& text);

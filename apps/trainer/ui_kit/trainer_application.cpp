@@ -5,6 +5,7 @@
 #include <QWidget>
 #include <algorithm>
 #include <chrono>
+#include <clocale>
 
 namespace trocar::trainer {
 namespace {
@@ -27,7 +28,10 @@ TrainerApplication* the_application() {
 
 }  // namespace
 
-TrainerApplication::TrainerApplication(int& argc, char** argv) : QApplication(argc, argv) {}
+TrainerApplication::TrainerApplication(int& argc, char** argv) : QApplication(argc, argv) {
+  // Qt has taken over the user's locale. Messages stay, but no library may write decimal commas into a file.
+  std::setlocale(LC_NUMERIC, "C");
+}
 
 bool TrainerApplication::notify(QObject* receiver, QEvent* event) {
   const QEvent::Type type = event->type();

@@ -65,7 +65,7 @@ struct TurnedWheelEvent : QWheelEvent {
     g = global;
   }
 };
-QPointF place_of(const QMouseEvent& event) {
+QPointF event_place_of(const QMouseEvent& event) {
   return event.localPos();
 }
 #else
@@ -78,11 +78,11 @@ struct TurnedWheelEvent : QWheelEvent {
       : QWheelEvent(place, global, event.pixelDelta(), event.angleDelta(), event.buttons(), event.modifiers(),
                     event.phase(), event.inverted()) {}
 };
-QPointF place_of(const QSinglePointEvent& event) {
+QPointF event_place_of(const QSinglePointEvent& event) {
   return event.position();
 }
 #endif
-QPointF place_of(const QWheelEvent& event) {
+QPointF event_place_of(const QWheelEvent& event) {
   return event.position();
 }
 
@@ -138,7 +138,7 @@ void WindowMirror::put_in_place(QWidget& popup) const {
 
 bool WindowMirror::forward(QWindow& window, QEvent& event) {
   const auto send = [&](auto& original, auto make) {
-    const QPointF place = turned(place_of(original), window.size());
+    const QPointF place = turned(event_place_of(original), window.size());
     auto copy = make(original, place, QPointF(window.mapToGlobal(QPoint(0, 0))) + place);
     copy.setTimestamp(original.timestamp());
     is_forwarding_ = true;

@@ -15,7 +15,7 @@ constexpr double kZoomPerView = 6.0;  ///< A drag over the whole height.
 constexpr double kKeyOrbit_rad = 0.12;
 constexpr double kWheelNotch = 120.0;  ///< Of QWheelEvent::angleDelta.
 /// Position of a mouse event; the same in Qt 5 and Qt 6.
-QPointF place_of(const QMouseEvent& event) {
+QPointF whole_place_of(const QMouseEvent& event) {
   return QPointF(event.pos());
 }
 
@@ -90,12 +90,12 @@ void PatientView::wheelEvent(QWheelEvent* event) {
 void PatientView::mousePressEvent(QMouseEvent* event) {
   const bool has_shift = (event->modifiers() & Qt::ShiftModifier) != 0;
   drag_ = event->button() == Qt::LeftButton && has_shift ? Qt::MiddleButton : event->button();
-  last_place_ = unmirrored(place_of(*event));
+  last_place_ = unmirrored(whole_place_of(*event));
   setFocus(Qt::MouseFocusReason);
 }
 
 void PatientView::mouseMoveEvent(QMouseEvent* event) {
-  const QPointF place = unmirrored(place_of(*event));
+  const QPointF place = unmirrored(whole_place_of(*event));
   const QPointF moved = (place - last_place_) / std::max(1, height());
   last_place_ = place;
   if (drag_ == Qt::LeftButton)
@@ -109,7 +109,7 @@ void PatientView::mouseReleaseEvent(QMouseEvent* /*event*/) {
 }
 
 void PatientView::mouseDoubleClickEvent(QMouseEvent* event) {
-  const QPointF place = unmirrored(place_of(*event));
+  const QPointF place = unmirrored(whole_place_of(*event));
   const auto p_P = scene().pick(place.x() / std::max(1, width()), place.y() / std::max(1, height()));
   if (p_P) Q_EMIT picked(*p_P);
 }

@@ -13,12 +13,12 @@ namespace {
 constexpr double kHold_s = 1.5;        ///< Hold time of a peak.
 constexpr double kWarningShare = 0.6;  ///< Of the device's peak force.
 constexpr double kBadShare = 0.85;
-constexpr double kGap = 8.0;
+constexpr double kGapBesideBar = 8.0;
 constexpr double kForceThick = 16.0;
 constexpr double kLagThick = 7.0;
 constexpr double kShown = 0.002;  ///< Smallest visible change, as share of the bar: smaller changes are not drawn.
 
-QColor color_of(double share) {
+QColor color_of_force(double share) {
   const Theme& t = theme();
   if (share >= kBadShare) return t.bad;
   return share >= kWarningShare ? t.warning : t.good;
@@ -42,11 +42,11 @@ QString lag_title() {
 
 /// Width of the titles and values next to horizontal bars.
 double titles_width() {
-  return std::max(text_width(force_title()), text_width(lag_title())) + kGap;
+  return std::max(text_width(force_title()), text_width(lag_title())) + kGapBesideBar;
 }
 
 double values_width() {
-  return text_width(QStringLiteral("00.0 mm")) + kGap;
+  return text_width(QStringLiteral("00.0 mm")) + kGapBesideBar;
 }
 
 }  // namespace
@@ -106,7 +106,7 @@ void ForceBar::clear() {
 
 QRectF ForceBar::force_rect() const {
   if (orientation_ == Qt::Vertical) {
-    const double left = 0.5 * (width() - kForceThick - kGap - kLagThick);
+    const double left = 0.5 * (width() - kForceThick - kGapBesideBar - kLagThick);
     return {left, 2.0 * text_height() + 4.0, kForceThick, height() - 4.0 * text_height() - 8.0};
   }
   const double top = 0.5 * (height() - text_height() - kForceThick);  // two text lines, a bar in the middle of each
@@ -115,7 +115,7 @@ QRectF ForceBar::force_rect() const {
 
 QRectF ForceBar::lag_rect() const {
   const QRectF bar = force_rect();
-  if (orientation_ == Qt::Vertical) return {bar.right() + kGap, bar.top(), kLagThick, bar.height()};
+  if (orientation_ == Qt::Vertical) return {bar.right() + kGapBesideBar, bar.top(), kLagThick, bar.height()};
   const double middle = bar.bottom() + 0.5 * text_height();
   return {bar.left(), middle - 0.5 * kLagThick, bar.width(), kLagThick};
 }
@@ -137,7 +137,7 @@ void ForceBar::paintEvent(QPaintEvent* /*event*/) {
   const double peak = std::min(peak_n_ / full_n_, 1.0);
   painter.fillRect(bar, t.raised);
   painter.fillRect(lag, t.raised);
-  painter.fillRect(part_of(bar, 0.0, share), color_of(share));
+  painter.fillRect(part_of(bar, 0.0, share), color_of_force(share));
   painter.fillRect(part_of(lag, 0.0, lag_mm_ / full_mm_), t.accent);
   constexpr double kLine = 2.0;
   const double thickness = kLine / (orientation_ == Qt::Vertical ? bar.height() : bar.width());

@@ -33,7 +33,7 @@ std::vector<QPointF> finite_only(std::vector<QPointF> curve) {
   return curve;
 }
 
-QColor faded(QColor color, double share) {
+QColor with_alpha(QColor color, double share) {
   color.setAlphaF(static_cast<float>(share));
   return color;
 }
@@ -215,7 +215,7 @@ void ForcePlot::redraw_ground(const PlotFrame& frame) {
   dashes.setDashPattern({5.0, 3.0});
   painter.setPen(dashes);
   painter.drawPolyline(polygon_of(predicted_, frame));
-  painter.setPen(QPen(faded(theme().path, 0.75), 1.4));
+  painter.setPen(QPen(with_alpha(theme().path, 0.75), 1.4));
   painter.drawPolyline(polygon_of(reference_, frame));
 }
 
@@ -228,7 +228,7 @@ void ForcePlot::paint_bands(QPainter& painter, const PlotFrame& frame) const {
     const double left = std::max(frame.area.left(), frame.to_point({band.from_mm, 0.0}).x());
     const double right = std::min(frame.area.right(), frame.to_point({band.to_mm, 0.0}).x());
     if (!(right > left)) continue;
-    painter.fillRect(QRectF(left, frame.area.top(), right - left, frame.area.height()), faded(band.color, 0.10));
+    painter.fillRect(QRectF(left, frame.area.top(), right - left, frame.area.height()), with_alpha(band.color, 0.10));
     const QRectF box(left, frame.area.bottom(), right - left, high);
     painter.fillRect(box.adjusted(0.0, 0.0, right - left > 3.0 ? -1.0 : 0.0, 0.0), band.color);
     if (metrics.horizontalAdvance(band.name) + 4.0 > box.width()) continue;  // the tool tip shows the name
@@ -251,7 +251,7 @@ void ForcePlot::paint_curve(QPainter& painter, const PlotFrame& frame) {
   painter.save();
   painter.setClipRect(frame.area.adjusted(-2.0, -2.0, 2.0, 2.0));
   if (shown < trace.points().size()) {
-    painter.setPen(QPen(faded(theme().accent, 0.3), 1.4));
+    painter.setPen(QPen(with_alpha(theme().accent, 0.3), 1.4));
     painter.drawPolyline(polygon(trace.points().size()));
   }
   painter.setPen(QPen(theme().accent, 1.8, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
@@ -260,7 +260,7 @@ void ForcePlot::paint_curve(QPainter& painter, const PlotFrame& frame) {
   if (shown == 0) return;
   const QPointF at = frame.to_point(value_at(shown - 1));
   if (cursor_s_) {
-    painter.setPen(QPen(faded(theme().text, 0.4), 1.0));
+    painter.setPen(QPen(with_alpha(theme().text, 0.4), 1.0));
     painter.drawLine(QPointF(at.x(), frame.area.top()), QPointF(at.x(), frame.area.bottom()));
   }
   painter.setPen(QPen(theme().panel, 1.5));
@@ -281,14 +281,14 @@ void ForcePlot::paint_events(QPainter& painter, const PlotFrame& frame) const {
   for (const Event* event : by_place) {
     const double x = frame.to_point({place_of(*event), 0.0}).x();
     if (x < frame.area.left() - 0.5 || x > frame.area.right() + 0.5) continue;
-    painter.setPen(QPen(faded(theme().warning, 0.7), 1.0, Qt::DashLine));
+    painter.setPen(QPen(with_alpha(theme().warning, 0.7), 1.0, Qt::DashLine));
     painter.drawLine(QPointF(x, frame.area.top()), QPointF(x, frame.area.bottom()));
     const double wide = metrics.horizontalAdvance(event->text);
     const double left = std::min(x + 4.0, frame.area.right() - wide);
     for (std::size_t row = 0; row < kRows; ++row) {  // if no row has space, the tool tip shows the name
       if (left < free_from[row]) continue;
       const double top = frame.area.top() + static_cast<double>(row) * metrics.height();
-      painter.fillRect(QRectF(left - 2.0, top, wide + 4.0, metrics.height()), faded(theme().panel, 0.75));
+      painter.fillRect(QRectF(left - 2.0, top, wide + 4.0, metrics.height()), with_alpha(theme().panel, 0.75));
       painter.setPen(theme().warning);
       painter.drawText(QPointF(left, top + metrics.ascent()), event->text);
       free_from[row] = left + wide + 6.0;

@@ -14,7 +14,7 @@ int steps_in(double points, double room) {
   return std::max(1, static_cast<int>(points / room));
 }
 
-QString number(double value, double step) {
+QString tick_label(double value, double step) {
   return QString::fromStdString(report::tick_text(value, step));
 }
 
@@ -43,7 +43,7 @@ void PlotFrame::draw_axes(QPainter& painter, const QString& x_unit, const QStrin
     painter.drawLine(QPointF(area.left(), at), QPointF(area.right(), at));
     painter.setPen(t.dim);
     painter.drawText(QRectF(0.0, at - 0.5 * high, area.left() - 6.0, high), Qt::AlignRight | Qt::AlignVCenter,
-                     number(value, step_y));
+                     tick_label(value, step_y));
   }
   const double unit_wide = metrics.horizontalAdvance(x_unit) + 8.0;
   const double top = area.bottom() + below + 2.0;
@@ -51,7 +51,7 @@ void PlotFrame::draw_axes(QPainter& painter, const QString& x_unit, const QStrin
     const double at = to_point({value, y.low}).x();
     painter.setPen(QPen(t.line, 1.0));
     painter.drawLine(QPointF(at, area.top()), QPointF(at, area.bottom()));
-    const QString text = number(value, step_x);
+    const QString text = tick_label(value, step_x);
     const double wide = metrics.horizontalAdvance(text);
     if (at + 0.5 * wide > area.right() - unit_wide) continue;  // space of the unit
     painter.setPen(t.dim);

@@ -47,8 +47,8 @@ slices::SliceGeometry geometry_of(const cases::OpenCase& open, BriefingPlane pla
   return geometry;
 }
 
-void draw_path(QPainter& painter, const slices::SliceGeometry& geometry, const cases::Case& the_case,
-               scene::Guidance guidance) {
+void draw_planned_path(QPainter& painter, const slices::SliceGeometry& geometry, const cases::Case& the_case,
+                       scene::Guidance guidance) {
   const Segment& path_P = the_case.plan.line_P;
   const auto pixel = [&](const Vec3& p_P) {
     const Eigen::Vector2d p = geometry.to_pixel(p_P);
@@ -113,7 +113,7 @@ QImage briefing_picture(const cases::OpenCase& open, BriefingPlane plane, const 
   QImage image = to_qimage(picture).convertToFormat(QImage::Format_RGB32);
   QPainter painter(&image);
   painter.setRenderHint(QPainter::Antialiasing);
-  draw_path(painter, geometry, open.the_case, guidance);
+  draw_planned_path(painter, geometry, open.the_case, guidance);
   const SliceCanvas canvas{painter, geometry, QRectF(image.rect())};
   draw_letters(canvas);
   draw_scale_bar(canvas);

@@ -15,8 +15,8 @@ namespace {
 constexpr double kClick = 4.0;        ///< Maximum motion of a click in points.
 constexpr double kWheelStep = 120.0;  ///< angleDelta of one step; finer wheels send fractions.
 constexpr double kZoomStep = 1.15;
-constexpr double kNearest_mm = 0.02;  ///< Nearest zoom: size of a device pixel.
-constexpr double kFarthest_mm = 10.0;
+constexpr double kNearestZoom_mm_per_px = 0.02;  ///< Nearest zoom: size of a device pixel.
+constexpr double kFarthestZoom_mm_per_px = 10.0;
 constexpr double kPanStep = 16.0;  ///< Points per arrow key.
 
 }  // namespace
@@ -56,7 +56,8 @@ void SliceView::pan_by(const QPointF& points) {
 
 void SliceView::zoom_at(const QPointF& position, double factor) {
   is_fitted_ = false;
-  geometry_.zoom_at(to_pixel(position), std::clamp(geometry_.mm_per_px / factor, kNearest_mm, kFarthest_mm));
+  geometry_.zoom_at(to_pixel(position),
+                    std::clamp(geometry_.mm_per_px / factor, kNearestZoom_mm_per_px, kFarthestZoom_mm_per_px));
   is_stale_ = true;
   update();
 }

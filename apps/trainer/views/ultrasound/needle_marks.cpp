@@ -5,22 +5,12 @@
 #include <cmath>
 
 #include "ui_kit/theme.h"
+#include "views/ultrasound/ultrasound_painter.h"
 
 namespace trocar::trainer {
 namespace {
 
 constexpr double kAhead_mm = 250.0, kAxisStep_mm = 1.0;
-
-void draw_cross(QPainter& painter, const QPointF& at, double size) {
-  painter.drawLine(at - QPointF(size, 0), at + QPointF(size, 0));
-  painter.drawLine(at - QPointF(0, size), at + QPointF(0, size));
-}
-
-QPen dotted(const QColor& color, double width) {
-  QPen pen(color, width, Qt::CustomDashLine, Qt::RoundCap);
-  pen.setDashPattern({0.1, 3.0});
-  return pen;
-}
 
 /// The part of a line near the plane, in the view.
 QPolygonF part_near_plane(const PictureMap& map, const ultrasound::ScanPicture& picture, const Segment& line_P) {
@@ -69,7 +59,7 @@ void draw_needle_axis(QPainter& painter, const PictureMap& map, const ultrasound
     if (std::abs(tip_T.z() + s * along_T.z()) <= kNearPlane_mm)
       near << map.to_view(ultrasound::shown_place_T(picture, tip_P + s * along_P));
   painter.setBrush(Qt::NoBrush);
-  painter.setPen(dotted(theme().path, 2.0));
+  painter.setPen(dotted_pen(theme().path, 2.0));
   painter.drawPolyline(near);
   // An axis nearly parallel to the plane has no well-defined intersection.
   constexpr double kLeastSlope = 0.05;

@@ -9,16 +9,16 @@ namespace trocar::trainer {
 namespace {
 
 /// Steps of the search for the largest image, and of the test whether a box overlaps the scan.
-constexpr int kSteps = 12;
-constexpr double kStep_px = 5.0;
+constexpr int kSearchSteps = 12;
+constexpr double kOverlapStep_px = 5.0;
 constexpr double kClearance_px = 4.0;
 
 bool touches(const QRectF& box, const QRectF& picture, const ultrasound::RasterGeometry& raster,
              const ultrasound::ScanGeometry& scan) {
   if (box.isEmpty()) return false;
   const QRectF wide = box.adjusted(-kClearance_px, -kClearance_px, kClearance_px, kClearance_px);
-  const int columns = std::max(2, static_cast<int>(std::ceil(wide.width() / kStep_px)));
-  const int rows = std::max(2, static_cast<int>(std::ceil(wide.height() / kStep_px)));
+  const int columns = std::max(2, static_cast<int>(std::ceil(wide.width() / kOverlapStep_px)));
+  const int rows = std::max(2, static_cast<int>(std::ceil(wide.height() / kOverlapStep_px)));
   for (int r = 0; r <= rows; ++r)
     for (int c = 0; c <= columns; ++c) {
       const double x = wide.left() + wide.width() * c / columns - picture.left();
@@ -41,9 +41,9 @@ UltrasoundLayout lay_out(const QSizeF& view, const ultrasound::ScanGeometry& sca
   const double right_most = room.bars.isEmpty() ? 0.0 : room.bars.width() + 1.5 * room.margin;
   const double marker = scan.is_fan ? 0.0 : room.marker;
   double best_mm_per_pixel = std::numeric_limits<double>::infinity();
-  for (int l = 0; l <= kSteps; ++l)
-    for (int r = 0; r <= kSteps; ++r) {
-      const double left = left_most * l / kSteps, right = right_most * r / kSteps;
+  for (int l = 0; l <= kSearchSteps; ++l)
+    for (int r = 0; r <= kSearchSteps; ++r) {
+      const double left = left_most * l / kSearchSteps, right = right_most * r / kSearchSteps;
       const QRectF picture(left + marker, marker,
                            std::max(16.0, layout.scale_x - room.margin - left - right - 2.0 * marker),
                            std::max(16.0, view.height() - marker));
@@ -52,8 +52,8 @@ UltrasoundLayout lay_out(const QSizeF& view, const ultrasound::ScanGeometry& sca
       // Of equal sizes, the smallest displacement of the image is preferred.
       const double moved = 1.0 + 1e-4 * (std::abs(l - r) + l + r);
       if (raster.mm_per_pixel * moved >= best_mm_per_pixel) continue;
-      if (l < kSteps && touches(layout.caption, picture, raster, scan)) continue;
-      if (r < kSteps && touches(layout.bars, picture, raster, scan)) continue;
+      if (l < kSearchSteps && touches(layout.caption, picture, raster, scan)) continue;
+      if (r < kSearchSteps && touches(layout.bars, picture, raster, scan)) continue;
       best_mm_per_pixel = raster.mm_per_pixel * moved;
       layout.picture = picture;
     }

@@ -36,11 +36,6 @@ QFont bold(QFont font) {
   return font;
 }
 
-void draw_cross(QPainter& painter, const QPointF& at, double size) {
-  painter.drawLine(at - QPointF(size, 0), at + QPointF(size, 0));
-  painter.drawLine(at - QPointF(0, size), at + QPointF(0, size));
-}
-
 /// Text next to a mark, with a dark outline for legibility on bright tissue.
 void draw_tag(QPainter& painter, const QPointF& at, const QString& text) {
   const QPen ink = painter.pen();
@@ -51,13 +46,18 @@ void draw_tag(QPainter& painter, const QPointF& at, const QString& text) {
   painter.drawText(at, text);
 }
 
-QPen dotted(const QColor& color, double width) {
+}  // namespace
+
+void draw_cross(QPainter& painter, const QPointF& at, double size) {
+  painter.drawLine(at - QPointF(size, 0), at + QPointF(size, 0));
+  painter.drawLine(at - QPointF(0, size), at + QPointF(0, size));
+}
+
+QPen dotted_pen(const QColor& color, double width) {
   QPen pen(color, width, Qt::CustomDashLine, Qt::RoundCap);
   pen.setDashPattern({0.1, 3.0});
   return pen;
 }
-
-}  // namespace
 
 std::vector<CaptionLine> caption_of(const ultrasound::ScanPicture& picture, const CaptionFacts& facts) {
   using Kind = CaptionLine::Kind;
@@ -238,7 +238,7 @@ void draw_bars(QPainter& painter, const QRectF& place, const ultrasound::ScanAnn
 
 namespace {
 
-void draw_line(QPainter& painter, const QPointF& a, const QPointF& b, const QPen& line) {
+void draw_caliper_line(QPainter& painter, const QPointF& a, const QPointF& b, const QPen& line) {
   const QPen ink = painter.pen();
   painter.setPen(line);
   painter.drawLine(a, b);
@@ -276,14 +276,14 @@ void draw_measurements(QPainter& painter, const PictureMap& map, std::span<const
   for (std::size_t n = 0; n < measurements.size(); ++n) {
     const ultrasound::Measurement& measurement = measurements[n];
     const bool is_chosen = chosen == n;
-    const QPen line = dotted(kCaliperInk, is_chosen ? 1.8 : 1.2);
+    const QPen line = dotted_pen(kCaliperInk, is_chosen ? 1.8 : 1.2);
     painter.setPen(QPen(kCaliperInk, is_chosen ? 1.8 : 1.2));
     std::vector<QPointF> marks;
     for (const ultrasound::Vec2& mark_T : marks_T(measurement)) marks.push_back(map.to_view(mark_T));
     if (const auto* ellipse = std::get_if<ultrasound::EllipseCaliper>(&measurement)) {
       draw_outline(painter, map, *ellipse, line);
     } else {
-      for (std::size_t end = 1; end < marks.size(); ++end) draw_line(painter, marks[0], marks[end], line);
+      for (std::size_t end = 1; end < marks.size(); ++end) draw_caliper_line(painter, marks[0], marks[end], line);
     }
     for (const QPointF& mark : marks) draw_cross(painter, mark, kCross_px);
     if (is_chosen)
@@ -298,7 +298,7 @@ void draw_unfinished(QPainter& painter, const PictureMap& map, std::span<const u
   painter.setBrush(Qt::NoBrush);
   painter.setFont(caption_font(false));
   painter.setPen(QPen(kCaliperInk, 1.2));
-  const QPen line = dotted(kCaliperInk, 1.2);
+  const QPen line = dotted_pen(kCaliperInk, 1.2);
   const QPointF hover = map.to_view(hover_T);
   for (const ultrasound::Vec2& mark_T : marks_T) draw_cross(painter, map.to_view(mark_T), kCross_px);
   draw_cross(painter, hover, kCross_px);
@@ -310,8 +310,9 @@ void draw_unfinished(QPainter& painter, const PictureMap& map, std::span<const u
     draw_outline(painter, map, ellipse, line);
     return;
   }
-  if (is_angle && marks_T.size() == 2) draw_line(painter, map.to_view(marks_T[0]), map.to_view(marks_T[1]), line);
-  draw_line(painter, is_angle ? map.to_view(marks_T[0]) : map.to_view(marks_T.back()), hover, line);
+  if (is_angle && marks_T.size() == 2)
+    draw_caliper_line(painter, map.to_view(marks_T[0]), map.to_view(marks_T[1]), line);
+  draw_caliper_line(painter, is_angle ? map.to_view(marks_T[0]) : map.to_view(marks_T.back()), hover, line);
 }
 
 }  // namespace trocar::trainer

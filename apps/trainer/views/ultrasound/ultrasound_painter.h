@@ -1,6 +1,7 @@
 #pragma once
 
 #include <QFont>
+#include <QPen>
 #include <QSizeF>
 #include <QString>
 #include <QStringList>
@@ -57,6 +58,9 @@ void draw_depth_scale(QPainter& painter, const PictureMap& map, double scale_x,
 void draw_bars(QPainter& painter, const QRectF& place, const ultrasound::ScanAnnotation& annotation,
                const ultrasound::ScanPicture& picture, const QFont& font);
 
+/// A cross about `at`; `size`: length of each arm in points.
+void draw_cross(QPainter& painter, const QPointF& at, double size);
+QPen dotted_pen(const QColor& color, double width);
 /// Draws calipers with their numbers, and rings about the marks of the selected one. draw_unfinished draws an
 /// unfinished measurement with `marks_T`, whose next mark is at hover_T, and its present result there.
 void draw_measurements(QPainter& painter, const PictureMap& map, std::span<const ultrasound::Measurement> measurements,

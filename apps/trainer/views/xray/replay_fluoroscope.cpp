@@ -11,9 +11,8 @@
 #include "core/random.h"
 
 namespace trocar::trainer {
-namespace {
 
-/// An image depends on its request only: it is not refreshed.
+/// An image depends on its request only: it is not refreshed. Not in the anonymous namespace: a member of Impl uses it.
 struct ReplayTraits {
   using Request = ReplayXrayRequest;
   using Level = xray::FluoroscopySchedule::Level;
@@ -33,6 +32,8 @@ struct ReplayTraits {
 
   xray::FluoroscopySchedule live;
 };
+
+namespace {
 
 class ReplayRenderer final : public LiveRenderer<ReplayTraits> {
  public:

@@ -19,7 +19,7 @@ namespace {
 
 constexpr const char* kUnit = "angiography";
 constexpr double kTurn_deg_per_px = 0.3;
-constexpr double kMargin_px = 10.0;
+constexpr double kCaptionMargin_px = 10.0;
 constexpr double kLeastCollimation = 0.1;
 constexpr double kMostTable_mm = 150.0;
 
@@ -33,7 +33,7 @@ xray::CArmPreset load_unit() {
 }
 
 /// With a dark edge, so that it can be read on bright parts of the image.
-void draw_text(QPainter& painter, const QRectF& area, int flags, const QString& text) {
+void draw_outlined_text(QPainter& painter, const QRectF& area, int flags, const QString& text) {
   const QPen pen = painter.pen();
   painter.setPen(Qt::black);
   for (const QPointF by : {QPointF(-1, 0), QPointF(1, 0), QPointF(0, -1), QPointF(0, 1)})
@@ -272,30 +272,31 @@ void XrayView::paintEvent(QPaintEvent*) {
 }
 
 void XrayView::draw_texts(QPainter& painter) const {
-  const QRectF area = QRectF(rect()).marginsRemoved({kMargin_px, kMargin_px, kMargin_px, kMargin_px});
+  const QRectF area =
+      QRectF(rect()).marginsRemoved({kCaptionMargin_px, kCaptionMargin_px, kCaptionMargin_px, kCaptionMargin_px});
   painter.setPen(QColor(214, 222, 230));
   if (const QString text = message(); !text.isEmpty())
-    draw_text(painter, area, static_cast<int>(Qt::AlignCenter) | Qt::TextWordWrap, text);
+    draw_outlined_text(painter, area, static_cast<int>(Qt::AlignCenter) | Qt::TextWordWrap, text);
   const xray::CArm& arm = settings_.arm;
   const QString position = angle_text(arm.lao_deg, tr("LAO"), tr("RAO")) + QLatin1Char('\n') +
                            angle_text(arm.cranial_deg, tr("CRAN"), tr("CAUD")) + QLatin1Char('\n') +
                            tr("Field %1 cm").arg(arm.field_mm / 10.0, 0, 'f', 0);
-  draw_text(painter, area, Qt::AlignLeft | Qt::AlignBottom, position);
+  draw_outlined_text(painter, area, Qt::AlignLeft | Qt::AlignBottom, position);
   if (!frame_ || (replay_ && !replay_->moment)) return;
   const tasks::XrayUse shown = use();
   const xray::Exposure& exposure = frame_->exposure;
-  draw_text(painter, area, Qt::AlignLeft | Qt::AlignTop,
-            tr("%1 kV\n%2 mAs\n%3 pulses/s")
-                .arg(exposure.tube.kv, 0, 'f', 0)
-                .arg(exposure.mas, 0, 'f', 2)
-                .arg(settings_.pulses_per_s));
-  draw_text(painter, area, Qt::AlignRight | Qt::AlignBottom,
-            tr("%1 s\n%2 mGy\n%3 Gy cm²")
-                .arg(shown.beam_s, 0, 'f', 1)
-                .arg(shown.air_kerma_mgy, 0, 'f', 2)
-                .arg(shown.dose_area_gycm2, 0, 'f', 2));
+  draw_outlined_text(painter, area, Qt::AlignLeft | Qt::AlignTop,
+                     tr("%1 kV\n%2 mAs\n%3 pulses/s")
+                         .arg(exposure.tube.kv, 0, 'f', 0)
+                         .arg(exposure.mas, 0, 'f', 2)
+                         .arg(settings_.pulses_per_s));
+  draw_outlined_text(painter, area, Qt::AlignRight | Qt::AlignBottom,
+                     tr("%1 s\n%2 mGy\n%3 Gy cm²")
+                         .arg(shown.beam_s, 0, 'f', 1)
+                         .arg(shown.air_kerma_mgy, 0, 'f', 2)
+                         .arg(shown.dose_area_gycm2, 0, 'f', 2));
   painter.setPen(is_held() ? QColor(150, 160, 172) : QColor(255, 196, 60));
-  draw_text(painter, area, Qt::AlignRight | Qt::AlignTop, is_held() ? tr("Last image") : tr("● X-rays on"));
+  draw_outlined_text(painter, area, Qt::AlignRight | Qt::AlignTop, is_held() ? tr("Last image") : tr("● X-rays on"));
 }
 
 void XrayView::mousePressEvent(QMouseEvent* event) {
