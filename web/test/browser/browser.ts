@@ -1,7 +1,9 @@
 // A browser on the page under test: the mock server, or the server that TROCAR_WEB_URL names.
 
+import assert from "node:assert/strict";
+import { setTimeout as sleep } from "node:timers/promises";
 import { fileURLToPath } from "node:url";
-import { chromium, type Browser, type Page } from "playwright-core";
+import { chromium, type Browser, type Locator, type Page } from "playwright-core";
 import { MockServer } from "../mock/server.ts";
 
 export const kFolder = process.env.TROCAR_WEB_FOLDER ?? fileURLToPath(new URL("../../../../data/web", import.meta.url));
@@ -47,6 +49,13 @@ export async function open_page(browser: Browser, site: Site, look: Look = {}): 
     if (!request.url().startsWith(site.url) && !request.url().startsWith("data:")) problems.push(`request to another host: ${request.url()}`);
   });
   return { page, problems };
+}
+
+/** Waits until exactly so many elements are there: what a click opens may be made by a later event. */
+export async function has_count(found: Locator, expected: number): Promise<void> {
+  const end = performance.now() + 10_000;
+  while ((await found.count()) !== expected && performance.now() < end) await sleep(20);
+  assert.equal(await found.count(), expected);
 }
 
 export async function settled(page: Page): Promise<void> {

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { after, before, describe, test } from "node:test";
 import type { Browser, Page } from "playwright-core";
-import { login, open_page, real_url, settled, start_browser, start_site, type Site } from "./browser.ts";
+import { has_count, login, open_page, real_url, settled, start_browser, start_site, type Site } from "./browser.ts";
 
 const needs_mock = { skip: real_url ? "needs the mock server" : false };
 let browser: Browser;
@@ -69,7 +69,7 @@ describe("questionnaire", () => {
     await page.getByRole("dialog").getByRole("button", { name: "Delete" }).click();
     await page.waitForURL(/\/forms$/);
     await settled(page);
-    assert.equal(await page.getByRole("link", { name: kTitle, exact: true }).count(), 0);
+    await has_count(page.getByRole("link", { name: kTitle, exact: true }), 0);
     assert.deepEqual([...problems, ...phone.problems], []);
     await page.context().close();
     await phone.page.context().close();
@@ -86,7 +86,7 @@ describe("questionnaire", () => {
     assert.equal(await page.evaluate(() => document.activeElement?.getAttribute("aria-label")), "Move up item 2");
     await page.locator(".preview legend", { hasText: "2. Third" }).waitFor();
     await page.getByRole("button", { name: "Remove item 2" }).click();
-    assert.equal(await page.locator(".item-editor").count(), 2);
+    await has_count(page.locator(".item-editor"), 2);
     await page.getByRole("button", { name: "Save" }).click();
     await page.getByRole("alert").filter({ hasText: "Enter a title." }).waitFor();
     await page.context().close();
@@ -152,7 +152,7 @@ describe("questionnaire", () => {
     await page.reload();
     await page.getByRole("heading", { level: 1 }).waitFor();
     assert.equal(await page.getByLabel(/^5\./).inputValue(), "Kept text");
-    assert.equal(await page.locator("input[type=radio]:checked").count(), 4);
+    await has_count(page.locator("input[type=radio]:checked"), 4);
     await page.route("**/answers", async (route) => {
       await new Promise((done) => setTimeout(done, 300));
       await route.continue();
@@ -162,7 +162,7 @@ describe("questionnaire", () => {
     await page.getByRole("heading", { name: "Thank you" }).waitFor();
     assert.equal(site.mock!.answers_received, before + 1);
     await page.getByRole("button", { name: "Answer for another person" }).click();
-    assert.equal(await page.locator("input[type=radio]:checked").count(), 0);
+    await has_count(page.locator("input[type=radio]:checked"), 0);
     await page.context().close();
   });
 
@@ -196,7 +196,7 @@ describe("questionnaire", () => {
     await page.getByRole("button", { name: "Standard questionnaire" }).click();
     await page.waitForURL(/\/forms\/[^/]+$/);
     await page.getByRole("heading", { name: "Results: 0 responses" }).waitFor();
-    assert.equal(await page.locator(".table tbody tr").count(), 4);
+    await has_count(page.locator(".table tbody tr"), 4);
     await page.getByRole("button", { name: "Delete …" }).click();
     await page.getByRole("dialog").getByRole("button", { name: "Delete" }).click();
     await page.waitForURL(/\/forms$/);
@@ -213,7 +213,7 @@ describe("questionnaire", () => {
       await page.getByRole("alert").filter({ hasText: `failure ${status} for the test` }).waitFor();
       await page.getByText("advice for the test").waitFor();
       if (status === 429) await page.getByText("Possible again in 30 s").waitFor();
-      assert.equal(await page.locator("input[type=radio]:checked").count(), 4);
+      await has_count(page.locator("input[type=radio]:checked"), 4);
     }
     await page.context().close();
   });
@@ -223,7 +223,7 @@ describe("questionnaire", () => {
     await login(page);
     await page.goto("/forms/1");
     await page.getByText("<script>alert('comment')</script>").waitFor();
-    assert.equal(await page.locator("main script").count(), 0);
+    await has_count(page.locator("main script"), 0);
     assert.deepEqual(problems, []);
     await page.context().close();
   });

@@ -5,7 +5,7 @@ import assert from "node:assert/strict";
 import { after, before, describe, test } from "node:test";
 import type { Browser, Page } from "playwright-core";
 import { kHtmlName, kSqlName } from "../mock/cohort.ts";
-import { busiest_person, login, open_page, real_url, settled, start_browser, start_site, type Site } from "./browser.ts";
+import { busiest_person, has_count, login, open_page, real_url, settled, start_browser, start_site, type Site } from "./browser.ts";
 
 const needs_mock = { skip: real_url ? "needs the data of the mock server" : false };
 let browser: Browser;
@@ -87,7 +87,7 @@ describe("browsing", () => {
       await page.locator("table a[href^='/attempts/']").first().click();
       await page.waitForURL(/\/attempts\//);
       await settled(page);
-      assert.ok(await page.getByRole("heading", { name: "Metrics beside the experts" }).isVisible());
+      await page.getByRole("heading", { name: "Metrics beside the experts" }).waitFor();
       await page.goBack();
       await page.waitForURL(/\/people\//);
       await page.getByRole("heading", { level: 1, name: name! }).waitFor();
@@ -118,10 +118,10 @@ describe("browsing", () => {
   test("simulated people are marked, and can be filtered", needs_mock, () =>
     with_page(async (page) => {
       await page.getByLabel("Group").selectOption("simulated");
-      assert.equal(await page.locator("tbody tr").count(), 14);
-      assert.equal(await page.locator("tbody .badge-simulated").count(), 14);
+      await has_count(page.locator("tbody tr"), 14);
+      await has_count(page.locator("tbody .badge-simulated"), 14);
       await page.getByLabel("Group").selectOption("people");
-      assert.equal(await page.locator("tbody .badge-simulated").count(), 0);
+      await has_count(page.locator("tbody .badge-simulated"), 0);
     }));
 
   test("HTML and SQL in names are shown as text", needs_mock, () =>
@@ -134,8 +134,8 @@ describe("browsing", () => {
       }
       await page.goto("/");
       await settled(page);
-      assert.equal(await page.locator("main img").count(), 0);
-      assert.equal(await page.locator("main b").count(), 0);
+      await has_count(page.locator("main img"), 0);
+      await has_count(page.locator("main b"), 0);
       assert.equal(await page.title(), "Cohort – Trocar");
     }));
 
@@ -149,7 +149,7 @@ describe("browsing", () => {
       await page.waitForFunction((expected) => document.querySelectorAll("table[role=table] tbody tr").length === expected, count);
       const paths = await page.locator("table a[href^='/attempts/']").evaluateAll((all) => all.map((one) => one.getAttribute("href")));
       assert.equal(new Set(paths).size, count);
-      assert.equal(await page.getByRole("button", { name: "Older attempts" }).count(), 0);
+      await has_count(page.getByRole("button", { name: "Older attempts" }), 0);
     }));
 
   test("the learning curve has a text and a table with one row an attempt", needs_mock, () =>
@@ -160,8 +160,8 @@ describe("browsing", () => {
       const plot = page.getByRole("img", { name: /^Score by attempt/ });
       assert.match((await plot.getAttribute("aria-label"))!, new RegExp(`${count} attempts; moving mean now \\d+ of 100`));
       await page.getByText("Values as a table").first().click();
-      assert.equal(await page.getByRole("region", { name: "Scores by attempt" }).locator("tbody tr").count(), count);
-      assert.ok(await plot.locator("canvas").isVisible());
+      await has_count(page.getByRole("region", { name: "Scores by attempt" }).locator("tbody tr"), count);
+      await plot.locator("canvas").waitFor();
     }));
 
   test("metrics: another metric gives another distribution", () =>
@@ -174,7 +174,7 @@ describe("browsing", () => {
       for (const title of titles.slice(0, 2)) {
         await choice.selectOption({ label: title });
         await page.getByRole("heading", { level: 2, name: title, exact: true }).waitFor();
-        assert.ok((await page.locator(".histogram svg").count()) > 0);
+        await page.locator(".histogram svg").first().waitFor();
       }
       assert.match(page.url(), /metric=/);
     }));
@@ -183,11 +183,11 @@ describe("browsing", () => {
     with_page(async (page) => {
       await page.goto("/validity");
       await settled(page);
-      for (const name of ["Discriminating metrics", "Internal consistency", "Pass mark"]) assert.ok(await page.getByRole("heading", { name }).isVisible());
+      for (const name of ["Discriminating metrics", "Internal consistency", "Pass mark"]) await page.getByRole("heading", { name }).waitFor();
       if (site.mock) {
         await page.getByLabel("Task").selectOption("liver-biopsy");
         await page.getByText("they are no evidence about people").waitFor();
-        assert.equal(await page.locator("tbody tr").count(), 15);
+        await has_count(page.locator("tbody tr"), 15);
         await page.getByLabel("Task").selectOption("ptcd");
         await page.getByText("fewer than 30 scored attempts").first().waitFor();
       }

@@ -6,7 +6,7 @@ import { createRequire } from "node:module";
 import { after, before, describe, test } from "node:test";
 import type { Browser, Page } from "playwright-core";
 import { kPolicy } from "../mock/server.ts";
-import { busiest_person, first_link, kName, kPassword, login, open_page, real_url, settled, start_browser, start_site, type Site } from "./browser.ts";
+import { busiest_person, first_link, has_count, kName, kPassword, login, open_page, real_url, settled, start_browser, start_site, type Site } from "./browser.ts";
 
 const needs_mock = { skip: real_url ? "needs the mock server" : false };
 const axe_source = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
@@ -228,7 +228,7 @@ describe("deletion", () => {
     await dialog.getByRole("button", { name: "Delete" }).click();
     await page.getByRole("heading", { level: 1, name: "Cohort" }).waitFor();
     await settled(page);
-    assert.equal(await page.getByRole("link", { name: "Hiroshi Tanaka" }).count(), 0);
+    await has_count(page.getByRole("link", { name: "Hiroshi Tanaka" }), 0);
     await page.context().close();
   });
 });
@@ -238,10 +238,10 @@ test("an instructor sees neither accounts nor deletion", needs_mock, async () =>
   await login(page, "instructor", "another long password");
   await page.goto(await first_link(page, "/people/"));
   await settled(page);
-  assert.equal(await page.getByRole("button", { name: "Delete person …" }).count(), 0);
+  await has_count(page.getByRole("button", { name: "Delete person …" }), 0);
   await page.goto("/account");
   await settled(page);
-  assert.equal(await page.getByRole("heading", { name: "Accounts" }).count(), 0);
+  await has_count(page.getByRole("heading", { name: "Accounts" }), 0);
   await page.context().close();
 });
 
