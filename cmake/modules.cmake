@@ -1,5 +1,39 @@
-# A module is a folder src/TIER/MODULE: its .cpp files make one library, its test/*_test.cpp one test program.
+# A module is a folder src/TIER/MODULE: its .cpp files make one library, its test/*_test.cpp one test program, the .cpp files of
+# its testing/ a library trocar_MODULE_testing for the tests of those that use it.
 # What it links is what src/modules.txt allows it to include.
+
+# Modules that read, write, record and show results: no loop of theirs takes long, and less optimising saves a third of the time
+# to compile them. Import takes as long as with -O3 (docs/validation.md).
+set(trocar_light_modules config signing database dicom io png scene scoring storage learning cohort results exams report case_builder
+  web)
+
+# What reads files of others, talks to devices and clients, or repeats whole attempts: minutes in a Debug build with sanitizers, too.
+set(trocar_quick_modules core realtime config geometry volume telemetry link devices server io dicom storage signing learning database
+  results web)
+
+# What reads bytes of files, devices and clients as numbers: every pointer is checked under the sanitizers.
+set(trocar_pointer_checked_modules volume link devices io dicom)
+
+# Sources of `io` and `cases` that the haptic server links: batches of their own, so that it gets no writers and no sessions with
+# them (tests/cli/server_program_test.cpp).
+set(trocar_server_sources
+  "/(volume_file|raw_volume|payload|markups_file|patient_(folder|layout|source|toml)|prepare_case|needle_geometry|scene_request)[.]cpp$")
+
+# list(FILTER), by the path below the source folder: the checkout may lie in a folder named test.
+function(trocar_filter list mode regex)
+  set(kept)
+  foreach(file IN LISTS ${list})
+    file(RELATIVE_PATH below ${PROJECT_SOURCE_DIR} ${file})
+    set(matches FALSE)
+    if("/${below}" MATCHES "${regex}")
+      set(matches TRUE)
+    endif()
+    if((mode STREQUAL "INCLUDE" AND matches) OR (mode STREQUAL "EXCLUDE" AND NOT matches))
+      list(APPEND kept ${file})
+    endif()
+  endforeach()
+  set(${list} ${kept} PARENT_SCOPE)
+endfunction()
 
 function(trocar_add_modules)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/modules.txt)
@@ -28,10 +62,13 @@ function(trocar_add_module tier name uses libraries)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${folder}/*.cpp)
   file(GLOB_RECURSE tests CONFIGURE_DEPENDS ${folder}/test/*.cpp ${folder}/*/test/*.cpp)
   file(GLOB_RECURSE headers CONFIGURE_DEPENDS ${folder}/*.h)
-  list(FILTER headers EXCLUDE REGEX "/test(ing)?/")  # these need what a test program defines
+  trocar_filter(headers EXCLUDE "/test(ing)?/")  # these need what a test program defines
   list(REMOVE_ITEM sources ${tests})
-  list(FILTER sources EXCLUDE REGEX "/fuzz/")  # built by scripts/fuzz
-  list(FILTER tests EXCLUDE REGEX "/test/standin/")  # libraries of their own, by test/standin/CMakeLists.txt
+  trocar_filter(sources EXCLUDE "/fuzz/")  # built by scripts/fuzz
+  set(testing_sources ${sources})
+  trocar_filter(testing_sources INCLUDE "/testing/")
+  trocar_filter(sources EXCLUDE "/testing/")
+  trocar_filter(tests EXCLUDE "/test/standin/")  # libraries of their own, by test/standin/CMakeLists.txt
   set(target trocar_${name})
   set(links Eigen3::Eigen fmt::fmt)
   foreach(use IN LISTS uses)
@@ -65,13 +102,38 @@ function(trocar_add_module tier name uses libraries)
   endforeach()
 
   if(sources)
-    add_library(${target} STATIC ${sources})
+    set(server_sources)
+    set(other_sources ${sources})
+    if(name MATCHES "^(io|cases)$")
+      set(server_sources ${sources})
+      trocar_filter(server_sources INCLUDE ${trocar_server_sources})
+      trocar_filter(other_sources EXCLUDE ${trocar_server_sources})
+    endif()
+    trocar_unite(server_batches ${name}_of_server ${server_sources})
+    trocar_unite(batches ${name} ${other_sources})
+    add_library(${target} STATIC ${batches} ${server_batches})
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
     if(schemas)
       target_include_directories(${target} SYSTEM PUBLIC $<BUILD_INTERFACE:${CMAKE_BINARY_DIR}/generated>)
     endif()
     set(scope PUBLIC)
     target_link_libraries(${target} PUBLIC ${links} PRIVATE $<BUILD_INTERFACE:trocar_warnings>)
-    trocar_use_precompiled(${target} trocar_precompiled)
+    if(TROCAR_CHECKS_BEHAVIOUR AND name IN_LIST trocar_pointer_checked_modules)
+      trocar_use_precompiled(${target} trocar_precompiled)
+    elseif(name IN_LIST trocar_light_modules)
+      trocar_optimise_little(${target})
+      trocar_skip_pointer_checks(${target})
+      trocar_use_precompiled(${target} trocar_precompiled_light)
+    elseif(TROCAR_CHECKS_BEHAVIOUR)
+      trocar_skip_pointer_checks(${target})  # a precompiled header needs the same options
+    else()
+      trocar_use_precompiled(${target} trocar_precompiled)
+    endif()
+    if(name STREQUAL "devices")
+      # Boost.Beast takes longest to compile of all files, and has no loop that takes long.
+      set_source_files_properties(${folder}/vendor/detail/websocket.cpp PROPERTIES
+        SKIP_PRECOMPILE_HEADERS ON COMPILE_OPTIONS $<$<CONFIG:Release>:-O1>)
+    endif()
     foreach(source IN LISTS sources tests)
       if(EXISTS ${source})
         file(STRINGS ${source} itk_include REGEX "^#include <(itk|gdcm)" LIMIT_COUNT 1)
@@ -97,22 +159,35 @@ function(trocar_add_module tier name uses libraries)
   # The preset `check` compiles each of these headers alone.
   target_sources(${target} ${scope} FILE_SET HEADERS BASE_DIRS ${tier_folder} FILES ${headers})
 
+  if(testing_sources)
+    add_library(${target}_testing STATIC EXCLUDE_FROM_ALL ${testing_sources})
+    target_link_libraries(${target}_testing PUBLIC ${target} $<TARGET_NAME_IF_EXISTS:trocar_test_main> PRIVATE trocar_warnings)
+    trocar_compile_fast(${target}_testing)
+  endif()
   if(TROCAR_TESTS AND tests)
     trocar_add_test(${name} ${target} ${tests})
+    foreach(use IN LISTS name uses)
+      if(TARGET trocar_${use}_testing)
+        target_link_libraries(${name}_test PRIVATE trocar_${use}_testing)
+      endif()
+    endforeach()
     include(${folder}/test/standin/CMakeLists.txt OPTIONAL)
   endif()
 endfunction()
 
 # One test program of GoogleTest files.
 function(trocar_add_test name library)
-  add_executable(${name}_test ${ARGN})
-  if(NOT TARGET trocar_source_dir)
-    add_library(trocar_source_dir STATIC ${PROJECT_SOURCE_DIR}/tests/source_dir.cpp)
-    target_include_directories(trocar_source_dir PRIVATE ${PROJECT_SOURCE_DIR}/src/foundation)
-    target_compile_definitions(trocar_source_dir PRIVATE TROCAR_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  trocar_unite(batches ${name}_test ${ARGN})
+  add_executable(${name}_test ${batches})
+  if(NOT TARGET trocar_test_main)
+    add_library(trocar_test_main STATIC ${PROJECT_SOURCE_DIR}/tests/test_main.cpp ${PROJECT_SOURCE_DIR}/tests/source_dir.cpp)
+    target_include_directories(trocar_test_main PRIVATE ${PROJECT_SOURCE_DIR}/src/foundation)
+    set_source_files_properties(${PROJECT_SOURCE_DIR}/tests/source_dir.cpp PROPERTIES
+      COMPILE_DEFINITIONS TROCAR_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+    target_link_libraries(trocar_test_main PUBLIC GTest::gtest)
   endif()
-  target_link_libraries(${name}_test PRIVATE ${library} trocar_source_dir GTest::gtest_main trocar_warnings)
-  trocar_optimise_little(${name}_test)
+  target_link_libraries(${name}_test PRIVATE ${library} trocar_test_main trocar_warnings)
+  trocar_compile_fast(${name}_test)
   if(NOT name STREQUAL "trainer")
     trocar_use_precompiled(${name}_test trocar_precompiled_tests)
   endif()
@@ -121,29 +196,41 @@ function(trocar_add_test name library)
   if(name MATCHES "^(scene|cli|trainer)$")  # VTK and Qt draw on an X server only
     set(launcher ${PROJECT_SOURCE_DIR}/scripts/with_display)
   endif()
-  add_test(NAME ${name} COMMAND ${launcher} $<TARGET_FILE:${name}_test>)
   set(timeout_s 600)
-  if(name STREQUAL "cli")  # up to 540 s on a busy machine with two cores
-    set(timeout_s 1200)
-  endif()
   if(CMAKE_CXX_FLAGS MATCHES "fsanitize")
     set(timeout_s 3600)
   endif()
-  set_tests_properties(${name} PROPERTIES TIMEOUT ${timeout_s}
-    ENVIRONMENT "GTEST_BRIEF=1;TROCAR_DATA_DIR=${PROJECT_SOURCE_DIR}/data;TROCAR_BIN_DIR=${CMAKE_BINARY_DIR}/bin;XDG_CACHE_HOME=${CMAKE_BINARY_DIR}/test-cache")
-  # These open the embedded patient: it is generated once, before the first of them.
-  if(name MATCHES "^(cases|attempt|servers|cli|result_commands|end_to_end|trainer)$")
-    set_tests_properties(${name} PROPERTIES FIXTURES_REQUIRED embedded_patient)
+  set(environment "GTEST_BRIEF=1;TROCAR_DATA_DIR=${PROJECT_SOURCE_DIR}/data;TROCAR_BIN_DIR=${CMAKE_BINARY_DIR}/bin;XDG_CACHE_HOME=${CMAKE_BINARY_DIR}/test-cache")
+  # Minutes of one program are shared among several processors.
+  set(parts 1)
+  if(name STREQUAL "cli")
+    set(parts 4)
   endif()
+  foreach(part RANGE 1 ${parts})
+    set(test_name ${name})
+    if(parts GREATER 1)
+      math(EXPR index "${part} - 1")
+      set(test_name ${name}_${part})
+      set(environment_of_part "${environment};GTEST_TOTAL_SHARDS=${parts};GTEST_SHARD_INDEX=${index}")
+    else()
+      set(environment_of_part "${environment}")
+    endif()
+    add_test(NAME ${test_name} COMMAND ${launcher} $<TARGET_FILE:${name}_test>)
+    set_tests_properties(${test_name} PROPERTIES TIMEOUT ${timeout_s} ENVIRONMENT "${environment_of_part}")
+    # These open the embedded patient: it is generated once, before the first of them.
+    if(name MATCHES "^(cases|attempt|servers|cli|result_commands|end_to_end|trainer)$")
+      set_tests_properties(${test_name} PROPERTIES FIXTURES_REQUIRED embedded_patient)
+    endif()
+  endforeach()
   if(name STREQUAL "cases")
-    get_test_property(cases ENVIRONMENT environment)
     add_test(NAME embedded_patient COMMAND cases_test --gtest_filter=OpenedCase.HoldsAllThatIsShown)
     set_tests_properties(embedded_patient PROPERTIES FIXTURES_SETUP embedded_patient TIMEOUT ${timeout_s} COST 1000
       ENVIRONMENT "${environment}")
   endif()
-  # What reads foreign bytes, talks to devices and clients, or repeats whole attempts: minutes in a Debug build with
-  # sanitizers, too.
-  if(name MATCHES "^(core|realtime|config|geometry|volume|telemetry|link|devices|server|io|dicom|storage|signing|learning|database|results|web|same_bits)$")
+  if(name MATCHES "^(anatomy|ultrasound|registration|server|trainer)$")  # long ones begin early
+    set_tests_properties(${name} PROPERTIES COST 100)
+  endif()
+  if(name IN_LIST trocar_quick_modules)
     set_tests_properties(${name} PROPERTIES LABELS quick)
     add_dependencies(quick_tests ${name}_test)
   endif()

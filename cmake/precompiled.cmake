@@ -1,8 +1,7 @@
 # Headers that most files read, compiled once for all of them. Two thirds of the build's time was the reading of headers.
 # A file still names every header it uses: the preset `check` builds without this, each header alone.
 trocar_find_library(expected)
-set(trocar_common_headers "${PROJECT_SOURCE_DIR}/src/foundation/core/result.h"
-  "${PROJECT_SOURCE_DIR}/src/foundation/geometry/pose.h" <Eigen/Core> <Eigen/Geometry> <fmt/format.h> <tl/expected.hpp>
+set(trocar_common_headers <core/result.h> <geometry/pose.h> <Eigen/Core> <Eigen/Geometry> <fmt/format.h> <tl/expected.hpp>
   <algorithm> <array> <atomic> <chrono> <cmath> <cstdint> <filesystem> <functional> <map> <memory> <optional> <set>
   <span> <sstream> <string> <string_view> <tuple> <utility> <variant> <vector>)
 
