@@ -1,8 +1,10 @@
 #include "architecture/definitions.h"
 
 #include <algorithm>
-#include <cctype>
 #include <optional>
+
+#include "architecture/source_files.h"
+#include "core/ascii.h"
 
 namespace trocar::architecture {
 namespace {
@@ -14,10 +16,7 @@ struct Token {
 using Tokens = std::vector<Token>;
 
 bool is_word_start(char c) {
-  return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_';
-}
-bool is_word(char c) {
-  return is_word_start(c) || std::isdigit(static_cast<unsigned char>(c)) != 0;
+  return ascii::is_letter(c) || c == '_';
 }
 
 /// Splits a source into words and punctuation. Leaves out comments, literals' contents, preprocessor lines, and all but
@@ -52,7 +51,7 @@ class Lexer {
 
   void step() {
     const char c = peek();
-    if (std::isspace(static_cast<unsigned char>(c)) != 0) return advance();
+    if (ascii::is_space(c)) return advance();
     if (c == '/' && peek(1) == '/') return skip_line();
     if (c == '/' && peek(1) == '*') return skip_to("*/");
     if (c == '#' && is_line_start_) return directive();
@@ -60,7 +59,7 @@ class Lexer {
     if (c == 'R' && peek(1) == '"') return raw_string();
     if (c == '"' || c == '\'') return literal(c);
     if (is_word_start(c)) return word();
-    if (std::isdigit(static_cast<unsigned char>(c)) != 0) return number();
+    if (ascii::is_digit(c)) return number();
     if (c == ':' && peek(1) == ':') {
       push("::");
       return advance(2);

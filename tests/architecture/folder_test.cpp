@@ -28,26 +28,26 @@ Modules trainer_folders() {
   return folders_of(std::string{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()});
 }
 
-std::string verdict(const std::string& path, std::string_view source) {
+std::string folder_verdict(const std::string& path, std::string_view source) {
   static const Modules folders = folders_of("[trainer]\nui_kit : :\nviews : ui_kit :\nshell : views :\n");
   return joined(check_folder_includes(folders, kTrainer, path, source));
 }
 
 TEST(Folders, IncludesGoDownOnly) {
-  EXPECT_EQ(verdict("apps/trainer/shell/a.cpp", "#include \"ui_kit/a.h\"\n#include \"shell/b.h\"\n"), "");
-  EXPECT_EQ(verdict("apps/trainer/views/plots/a.cpp", "#include \"views/a.h\"\n#include \"core/a.h\"\n"), "");
-  EXPECT_NE(verdict("apps/trainer/views/plots/a.cpp", "#include \"shell/a.h\"\n"), "");
-  EXPECT_NE(verdict("apps/trainer/ui_kit/a.cpp", "#include \"views/a.h\"\n"), "");
+  EXPECT_EQ(folder_verdict("apps/trainer/shell/a.cpp", "#include \"ui_kit/a.h\"\n#include \"shell/b.h\"\n"), "");
+  EXPECT_EQ(folder_verdict("apps/trainer/views/plots/a.cpp", "#include \"views/a.h\"\n#include \"core/a.h\"\n"), "");
+  EXPECT_NE(folder_verdict("apps/trainer/views/plots/a.cpp", "#include \"shell/a.h\"\n"), "");
+  EXPECT_NE(folder_verdict("apps/trainer/ui_kit/a.cpp", "#include \"views/a.h\"\n"), "");
 }
 
 TEST(Folders, MainAndTestsMayIncludeAll) {
-  EXPECT_EQ(verdict("apps/trainer/main.cpp", "#include \"shell/a.h\"\n"), "");
-  EXPECT_EQ(verdict("apps/trainer/test/a_test.cpp", "#include \"shell/a.h\"\n"), "");
-  EXPECT_EQ(verdict("apps/cli/a.cpp", "#include \"shell/a.h\"\n"), "");
+  EXPECT_EQ(folder_verdict("apps/trainer/main.cpp", "#include \"shell/a.h\"\n"), "");
+  EXPECT_EQ(folder_verdict("apps/trainer/test/a_test.cpp", "#include \"shell/a.h\"\n"), "");
+  EXPECT_EQ(folder_verdict("apps/cli/a.cpp", "#include \"shell/a.h\"\n"), "");
 }
 
 TEST(Folders, OneOutsideTheListIsRefused) {
-  EXPECT_NE(verdict("apps/trainer/other/a.cpp", ""), "");
+  EXPECT_NE(folder_verdict("apps/trainer/other/a.cpp", ""), "");
 }
 
 TEST(TrainerFolders, AreAllListedWithoutCycles) {

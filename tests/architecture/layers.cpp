@@ -90,9 +90,9 @@ bool is_vocabulary(std::string_view header) {
 }
 
 bool is_system(std::string_view header) {
-  static const std::set<std::string_view> posix = {"stdlib.h", "dlfcn.h",     "fcntl.h",  "poll.h",      "pthread.h",
-                                                   "malloc.h", "sched.h",     "signal.h", "spawn.h",     "strings.h",
-                                                   "unistd.h", "semaphore.h", "time.h",   "immintrin.h", "termios.h"};
+  static const std::set<std::string_view> posix = {
+      "stdlib.h", "locale.h", "dlfcn.h",   "fcntl.h",  "poll.h",      "pthread.h", "malloc.h",    "sched.h",
+      "signal.h", "spawn.h",  "strings.h", "unistd.h", "semaphore.h", "time.h",    "immintrin.h", "termios.h"};
   const bool is_standard = header.find_first_of("/.") == std::string_view::npos;
   return is_standard || header.starts_with("sys/") || header.starts_with("netinet/") || header.starts_with("arpa/") ||
          header.starts_with("sanitizer/") || posix.contains(header);
@@ -115,6 +115,7 @@ struct Place {
   std::set<std::string> modules;
   std::set<std::string> libraries;
   bool is_program = false;
+  bool has_arguments = false;
   bool has_window = false;  ///< The trainer: the only one to use Qt.
   bool is_test = false;
   bool is_bench = false;
@@ -126,6 +127,7 @@ std::optional<Place> find_place(const Modules& modules, const std::string& path)
                   path.find("/testing/") != std::string::npos;
   place.is_bench = path.starts_with("bench/");
   place.is_program = path.starts_with("apps/");
+  place.has_arguments = path.starts_with("apps/arguments/");
   place.has_window = path.starts_with("apps/trainer/");
   if (path.starts_with("src/")) {
     const std::size_t behind_tier = path.find('/', 4);
@@ -167,7 +169,7 @@ std::optional<std::string> complaint_about_theirs(const Place& place, const std:
     return place.is_test ? std::nullopt : std::optional<std::string>("a test framework outside of tests");
   }
   if (header.starts_with("CLI/")) {
-    return place.is_program ? std::nullopt : std::optional<std::string>("CLI11 belongs to apps/ alone");
+    return place.has_arguments ? std::nullopt : std::optional<std::string>("CLI11 belongs to apps/arguments alone");
   }
   for (const HeaderRule& rule : header_rules()) {
     if (!header.starts_with(rule.prefix)) continue;

@@ -1,16 +1,13 @@
 #include "architecture/messages.h"
 
 #include <algorithm>
-#include <cctype>
+
+#include "architecture/source_files.h"
 
 namespace trocar::architecture {
 namespace {
 
 constexpr std::size_t kParts = 3;
-
-bool is_word(char c) {
-  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
-}
 
 std::string trimmed(std::string text) {
   const auto first = text.find_first_not_of(" \t\n");

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "core/ascii.h"
 #include "core/testing/source_dir.h"
 
 namespace trocar::architecture {
@@ -22,6 +23,10 @@ std::map<std::string, std::string> source_files(const std::vector<std::string>& 
     }
   }
   return files;
+}
+
+bool is_word(char c) {
+  return ascii::is_letter_or_digit(c) || c == '_';
 }
 
 std::string joined(const std::vector<std::string>& complaints) {

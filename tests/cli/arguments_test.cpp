@@ -9,7 +9,7 @@
 namespace trocar::cli_test {
 namespace {
 
-class Help : public testing::TestWithParam<const char*> {};
+class Help : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(Help, ExitsZeroWithAnExample) {
   const Outcome outcome = trocar(std::string(GetParam()) + " --help");
@@ -19,17 +19,17 @@ TEST_P(Help, ExitsZeroWithAnExample) {
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryCommand, Help,
-                         testing::Values("", "patient", "patient list", "patient generate", "patient build",
-                                         "patient series", "patient fetch", "patient show", "patient check",
-                                         "patient render", "plan", "task", "task list", "device", "device list", "link",
-                                         "link keygen", "run", "session", "session export", "session report",
-                                         "ultrasound", "ultrasound image", "ultrasound sweep", "ultrasound reconstruct",
-                                         "ultrasound views", "ultrasound transducers", "results", "results people",
-                                         "results list", "results import", "results export", "results delete",
-                                         "results curve", "results validity", "serve", "serve account add", "bench",
-                                         "completion", "completion bash"));
+                         ::testing::Values("", "patient", "patient list", "patient generate", "patient build",
+                                           "patient series", "patient fetch", "patient show", "patient check",
+                                           "patient render", "plan", "task", "task list", "device", "device list",
+                                           "link", "link keygen", "run", "session", "session export", "session report",
+                                           "ultrasound", "ultrasound image", "ultrasound sweep",
+                                           "ultrasound reconstruct", "ultrasound views", "ultrasound transducers",
+                                           "results", "results people", "results list", "results import",
+                                           "results export", "results delete", "results curve", "results validity",
+                                           "serve", "serve account add", "bench", "completion", "completion bash"));
 
-class Mistake : public testing::TestWithParam<const char*> {};
+class Mistake : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(Mistake, ExitsTwoWithOneLine) {
   const TemporaryFolder folder;
@@ -43,7 +43,7 @@ TEST_P(Mistake, ExitsTwoWithOneLine) {
 
 INSTANTIATE_TEST_SUITE_P(
     OfTheUser, Mistake,
-    testing::Values(
+    ::testing::Values(
         "", "nonsense", "patient", "patient nonsense", "patient show", "patient list --nonsense",
         "patient generate abdomen", "patient generate nobody --out x", "patient generate abdomen --seed many --out x",
         "patient build --ct a.nii", "patient series", "patient fetch --study 1.2 --out x",
@@ -114,6 +114,16 @@ TEST(Lists, ArePrintedAsJson) {
   ASSERT_FALSE(tasks["tasks"].empty());
   EXPECT_NE(trocar("task list").out.find("liver-biopsy"), std::string::npos);
   EXPECT_NE(trocar("bench --list").out.find("slice"), std::string::npos);
+}
+
+TEST(Bench, SaysHowToBuildItsProgram) {
+  const TemporaryFolder folder;
+  const Outcome copied = run_shell("cp \"$TROCAR_BIN_DIR/trocar\" '" + folder.path().string() + "'");
+  ASSERT_EQ(copied.exit_status, 0) << copied.err;
+  const Outcome outcome =
+      run_shell("/usr/bin/env -u TROCAR_BIN_DIR PATH=/nowhere '" + (folder / "trocar") + "' bench --list");
+  expect_refused(outcome, 1, "scripts/build release trocar-bench");
+  EXPECT_NE(outcome.err.find(folder.path().string()), std::string::npos) << outcome.err;
 }
 
 }  // namespace

@@ -10,7 +10,7 @@ namespace trocar::cli_test {
 namespace {
 namespace fs = std::filesystem;
 
-void expect_refused(const std::string& arguments) {
+void expect_refused_in_one_line(const std::string& arguments) {
   const Outcome outcome = trocar(arguments);
   EXPECT_TRUE(outcome.exit_status == 1 || outcome.exit_status == 2) << arguments << "\n" << outcome.exit_status;
   const auto at = outcome.err.find("error: ");
@@ -28,8 +28,8 @@ class BadFiles : public ::testing::Test {
 
 TEST_F(BadFiles, TextIsNoImage) {
   write("ct.nii", "hello");
-  expect_refused("patient build --ct '" + (inputs_ / "ct.nii") + "' --labels '" + (inputs_ / "ct.nii") + "' --out '" +
-                 (outputs_ / "patient") + "'");
+  expect_refused_in_one_line("patient build --ct '" + (inputs_ / "ct.nii") + "' --labels '" + (inputs_ / "ct.nii") +
+                             "' --out '" + (outputs_ / "patient") + "'");
   EXPECT_TRUE(outputs_.is_empty());
 }
 
@@ -38,9 +38,9 @@ TEST_F(BadFiles, TextIsNoSequenceAndNoCalibration) {
   write("calibration.xml", "hello");
   const std::string begin =
       "ultrasound reconstruct '" + (inputs_ / "sweep.igs.mha") + "' --out '" + (outputs_ / "v.nrrd");
-  expect_refused(begin + "'");
-  expect_refused(begin + "' --calibration '" + (inputs_ / "calibration.xml") + "'");
-  expect_refused("ultrasound reconstruct /nowhere/sweep.igs.mha --out '" + (outputs_ / "v.nrrd") + "'");
+  expect_refused_in_one_line(begin + "'");
+  expect_refused_in_one_line(begin + "' --calibration '" + (inputs_ / "calibration.xml") + "'");
+  expect_refused_in_one_line("ultrasound reconstruct /nowhere/sweep.igs.mha --out '" + (outputs_ / "v.nrrd") + "'");
   EXPECT_TRUE(outputs_.is_empty());
 }
 
@@ -54,19 +54,20 @@ TEST_F(BadFiles, MissingImageIsNamed) {
 
 TEST_F(BadFiles, EmptyFolderIsNoPatient) {
   for (const std::string command : {"show", "check"})
-    expect_refused("patient " + command + " '" + inputs_.path().string() + "'");
-  expect_refused("patient render '" + inputs_.path().string() + "' --out '" + (outputs_ / "pictures") + "'");
-  expect_refused("run liver-biopsy --patient '" + inputs_.path().string() + "' --operator expert --out '" +
-                 (outputs_ / "session") + "'");
+    expect_refused_in_one_line("patient " + command + " '" + inputs_.path().string() + "'");
+  expect_refused_in_one_line("patient render '" + inputs_.path().string() + "' --out '" + (outputs_ / "pictures") +
+                             "'");
+  expect_refused_in_one_line("run liver-biopsy --patient '" + inputs_.path().string() + "' --operator expert --out '" +
+                             (outputs_ / "session") + "'");
   EXPECT_TRUE(outputs_.is_empty());
 }
 
 TEST_F(BadFiles, TextIsNoSession) {
   write("session", "hello");
-  expect_refused("session export '" + (inputs_ / "session") + "' --csv '" + (outputs_ / "x.csv") + "'");
-  expect_refused("session report '" + (inputs_ / "session") + "' --out '" + (outputs_ / "x.html") + "'");
-  expect_refused("run liver-biopsy --patient abdomen --operator 'replay:" + (inputs_ / "session") + "' --out '" +
-                 (outputs_ / "again") + "'");
+  expect_refused_in_one_line("session export '" + (inputs_ / "session") + "' --csv '" + (outputs_ / "x.csv") + "'");
+  expect_refused_in_one_line("session report '" + (inputs_ / "session") + "' --out '" + (outputs_ / "x.html") + "'");
+  expect_refused_in_one_line("run liver-biopsy --patient abdomen --operator 'replay:" + (inputs_ / "session") +
+                             "' --out '" + (outputs_ / "again") + "'");
   EXPECT_TRUE(outputs_.is_empty());
 }
 
@@ -77,8 +78,8 @@ TEST_F(BadFiles, OtherPeoplesOddImagesNeverCrashTheProgram) {
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     if (!entry.is_regular_file()) continue;
     ++tried;
-    expect_refused("patient build --ct '" + entry.path().string() + "' --labels '" + entry.path().string() +
-                   "' --out '" + (outputs_ / "patient") + "'");
+    expect_refused_in_one_line("patient build --ct '" + entry.path().string() + "' --labels '" + entry.path().string() +
+                               "' --out '" + (outputs_ / "patient") + "'");
     ASSERT_TRUE(outputs_.is_empty()) << entry.path();
   }
   EXPECT_GT(tried, 5);

@@ -14,7 +14,7 @@ namespace trocar::cli_test {
 namespace {
 
 /// CT and labels of a coarse embedded patient, as files.
-class BuildSummary : public testing::Test {
+class BuildSummary : public ::testing::Test {
  protected:
   void SetUp() override {
     const auto patient = anatomy::generate_phantom("abdomen", 1, {{90, 72, 64}});

@@ -34,27 +34,27 @@ std::vector<std::string> completions(const std::string& words) {
 
 using Offered = std::vector<std::string>;
 
-bool has(const Offered& offered, const std::string& word) {
+bool offers(const Offered& offered, const std::string& word) {
   return std::find(offered.begin(), offered.end(), word) != offered.end();
 }
 
 TEST(Completion, OffersCommandsAndSubCommands) {
   EXPECT_EQ(completions("pat"), Offered{"patient"});
   EXPECT_EQ(completions("patient bu"), Offered{"build"});
-  EXPECT_TRUE(has(completions("''"), "ultrasound"));
+  EXPECT_TRUE(offers(completions("''"), "ultrasound"));
   EXPECT_EQ(completions("completion ba"), Offered{"bash"});
 }
 
 TEST(Completion, OffersTheOptionsOfTheCommandAlone) {
-  EXPECT_TRUE(has(completions("patient build --"), "--labels"));
-  EXPECT_FALSE(has(completions("patient build --"), "--operator"));
-  EXPECT_TRUE(has(completions("run --patient abdomen --"), "--operator"));
+  EXPECT_TRUE(offers(completions("patient build --"), "--labels"));
+  EXPECT_FALSE(offers(completions("patient build --"), "--operator"));
+  EXPECT_TRUE(offers(completions("run --patient abdomen --"), "--operator"));
 }
 
 TEST(Completion, OffersNamesOfThisProgram) {
   EXPECT_EQ(completions("run --patient abd"), Offered{"abdomen"});
   EXPECT_EQ(completions("run liver-b"), Offered{"liver-biopsy"});
-  EXPECT_TRUE(has(completions("run --operator ''"), "novice"));
+  EXPECT_TRUE(offers(completions("run --operator ''"), "novice"));
   EXPECT_EQ(completions("ultrasound reconstruct --holes st"), Offered{"stick"});
   EXPECT_EQ(completions("ultrasound image --view gall"), Offered{"gallbladder"});
 }
@@ -69,14 +69,19 @@ TEST(Completion, KnowsEveryOptionOfTheHelp) {
   for (const std::string command : {"patient build", "plan", "run", "session report", "ultrasound image",
                                     "ultrasound sweep", "ultrasound reconstruct", "bench"}) {
     const Offered offered = completions(command + " --");
-    std::istringstream help(trocar(command + " --help").out);
+    const Outcome printed = trocar(command + " --help");
+    EXPECT_EQ(printed.exit_status, 0) << printed.err;
+    std::istringstream help(printed.out);
+    int options = 0;
     for (std::string word; help >> word;) {
       if (!word.starts_with("--") || word.find_first_not_of("abcdefghijklmnopqrstuvwxyz-,") != std::string::npos)
         continue;
       if (word.ends_with(",")) word.pop_back();
       if (word.starts_with("--help")) continue;
-      EXPECT_TRUE(has(offered, word)) << command << " " << word;
+      EXPECT_TRUE(offers(offered, word)) << command << " " << word;
+      ++options;
     }
+    EXPECT_GT(options, 0) << command;
   }
 }
 

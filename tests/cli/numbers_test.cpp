@@ -55,7 +55,7 @@ constexpr const char* kNoNumbers[] = {"nan", "''", "1e300", "-1e300", "3x"};
 constexpr const char* kMoreSpellings[] = {"-nan",     "inf",  "-inf", "' '", "18446744073709551616",
                                           "-1000000", "0x10", "1,5x"};
 
-class Numbers : public testing::TestWithParam<Command> {
+class Numbers : public ::testing::TestWithParam<Command> {
  protected:
   void expect_refused(const std::string& option, const char* value) {
     const std::string line = std::string(command_.name) + " " + command_.required + " " + option + "=" + value;
@@ -85,7 +85,7 @@ TEST_P(Numbers, HaveTheirRangeInTheHelp) {
   EXPECT_FALSE(std::regex_search(help.out, unrestricted)) << help.out;
 }
 
-INSTANTIATE_TEST_SUITE_P(OfEveryCommand, Numbers, testing::ValuesIn(kCommands));
+INSTANTIATE_TEST_SUITE_P(OfEveryCommand, Numbers, ::testing::ValuesIn(kCommands));
 
 TEST(NumericOptions, AreFoundInTheHelp) {
   EXPECT_GE(numeric_options(trocar("ultrasound image --help").out).size(), 20u);

@@ -1,19 +1,21 @@
 // A replay takes everything from its session.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <memory>
+#include <string_view>
 
+#include "core/parse_number.h"
 #include "program.h"
 
 namespace trocar::cli_test {
 namespace {
 
 /// An expert's attempt whose every argument is another one than the usual.
-class ReplayCommand : public testing::Test {
+class ReplayCommand : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = std::make_unique<TemporaryFolder>();
@@ -105,24 +107,44 @@ double distance_mm(const Position& a, const Position& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
-/// Where a replaying server has its stylus at first, in its test mode.
-Position shown_position(const std::string& file) {
-  const Outcome outcome = run_program("trocar-hapticd", "--device 'replay:" + file + "' --test", "sleep 1 | ");
-  EXPECT_EQ(outcome.exit_status, 0) << outcome.err;
-  const auto first = outcome.out.find("state\t");
+/// Three numbers after `head`, separated by `separator`.
+Position position_in(const std::string& text, const std::string& head, char separator) {
   Position p{};
-  const bool is_shown = first != std::string::npos &&
-                        std::sscanf(outcome.out.c_str() + first, "state\t%lf\t%lf\t%lf\t", &p[0], &p[1], &p[2]) == 3;
-  EXPECT_TRUE(is_shown) << outcome.out;
+  EXPECT_TRUE(text.starts_with(head)) << text;
+  std::string_view rest = std::string_view(text).substr(std::min(head.size(), text.size()));
+  for (double& value : p) {
+    const auto number = find_leading_number<double>(rest);
+    if (!number) {
+      ADD_FAILURE() << "no number: " << rest;
+      return {};
+    }
+    value = number->value;
+    rest = number->rest;
+    EXPECT_TRUE(rest.starts_with(separator));
+    rest.remove_prefix(std::min<std::size_t>(1, rest.size()));
+  }
   return p;
+}
+
+/// Where a replaying server has its stylus at first, in its test mode, which ends with its input.
+Position shown_position(const std::string& file) {
+  const TemporaryFolder folder;
+  const std::string shown = folder / "shown";
+  const std::string until_shown = "for n in $(seq 600); do grep -qs ^state '" + shown + "' && break; sleep 0.1; done | ";
+  const Outcome outcome =
+      run_program("trocar-hapticd", "--device 'replay:" + file + "' --test >'" + shown + "'", until_shown);
+  EXPECT_EQ(outcome.exit_status, 0) << outcome.err;
+  const std::string text = read_text(shown);
+  const auto first = text.find("state\t");
+  EXPECT_NE(first, std::string::npos) << text;
+  return first == std::string::npos ? Position{} : position_in(text.substr(first), "state\t", '\t');
 }
 
 TEST_F(ReplayCommand, ServerReplaysASessionAndItsMotionAlike) {
   const std::string csv = *folder_ / "motion.csv";
   ASSERT_EQ(trocar("session motion '" + session_ + "' --csv '" + csv + "'").exit_status, 0);
   const std::string text = read_text(csv);
-  Position first{};
-  ASSERT_EQ(std::sscanf(text.c_str() + text.find('\n') + 1, "0,%lf,%lf,%lf,", &first[0], &first[1], &first[2]), 3);
+  const Position first = position_in(text.substr(text.find('\n') + 1), "0,", ',');
   EXPECT_GT(std::hypot(first[0], first[1], first[2]), 20.0) << "a server that shows zeros would be noticed";
   constexpr double kMoved_mm = 10.0;  // the server shows a pose of the first tenths of a second
   EXPECT_LT(distance_mm(shown_position(csv), first), kMoved_mm);

@@ -16,23 +16,23 @@ std::string told_of_server(const std::string& tool) {
   return outcome.out;
 }
 
-bool has(const std::string& text, const char* part) {
+bool contains(const std::string& text, const char* part) {
   return text.find(part) != std::string::npos;
 }
 
 TEST(ServerProgram, LoadsNeitherSessionsNorSurfacesNorDicom) {
   const std::string libraries = told_of_server("readelf -d");
-  EXPECT_TRUE(has(libraries, "libITK")) << "it reads patient folders";
+  EXPECT_TRUE(contains(libraries, "libITK")) << "it reads patient folders";
   for (const char* library : {"libvtk", "libgdcm", "libsoci", "libsqlite", "libQt", "libpng"})
-    EXPECT_FALSE(has(libraries, library)) << library;
+    EXPECT_FALSE(contains(libraries, library)) << library;
 }
 
 TEST(ServerProgram, ContainsNoCodeOfItsClients) {
   const std::string symbols = told_of_server("nm -C");
-  EXPECT_TRUE(has(symbols, "trocar::io::load_patient("));
+  EXPECT_TRUE(contains(symbols, "trocar::io::load_patient("));
   for (const char* code : {"trocar::storage::", "trocar::surface::", "trocar::attempt::", "trocar::io::save_patient(",
                            "trocar::io::write_image(", "trocar::io::detail::write_with_itk("})
-    EXPECT_FALSE(has(symbols, code)) << code;
+    EXPECT_FALSE(contains(symbols, code)) << code;
 }
 
 TEST(ServerProgram, ABrokenSavedWeightIsOneLineAndCanBeForgotten) {
@@ -45,10 +45,10 @@ TEST(ServerProgram, ABrokenSavedWeightIsOneLineAndCanBeForgotten) {
   const Outcome refused = run_program("trocar-hapticd", "--device virtual:omni" + endpoint, home);
   EXPECT_EQ(refused.exit_status, 1);
   EXPECT_EQ(line_count(refused.err), 1) << refused.err;
-  EXPECT_TRUE(has(refused.err, file.c_str())) << refused.err;
+  EXPECT_TRUE(contains(refused.err, file.c_str())) << refused.err;
   const Outcome forgot = run_program("trocar-hapticd", "--device virtual:omni --test", "echo forget | " + home);
   EXPECT_EQ(forgot.exit_status, 0) << forgot.err;
-  EXPECT_TRUE(has(forgot.out, "forgot\t")) << forgot.out;
+  EXPECT_TRUE(contains(forgot.out, "forgot\t")) << forgot.out;
   EXPECT_FALSE(std::filesystem::exists(file));
 }
 

@@ -1,4 +1,5 @@
 // trocar session metrics: a session, the same as CSV, poses of another system, bad input.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -78,8 +79,7 @@ TEST_F(SessionMetrics, TheExportedSessionHasTheSameMetrics) {
 TEST_F(SessionMetrics, PosesOfAnotherSystemAgainstExpertPaths) {
   // 60 mm along +z at 20 mm/s, 3 mm beside one path and 20 mm beside the other; in metres, without depth.
   std::string rows = "time_s,tip_x_m,tip_y_m,tip_z_m,axis_x,axis_y,axis_z\n";
-  for (int n = 0; n <= 300; ++n)
-    rows += std::to_string(0.01 * n) + ",0.003,0," + std::to_string(0.0002 * n) + ",0,0,1\n";
+  for (int n = 0; n <= 300; ++n) rows += fmt::format("{},0.003,0,{},0,0,1\n", 0.01 * n, 0.0002 * n);
   const std::string poses = write("poses.csv", rows);
   const std::string paths = write("paths.mrk.json", R"({"markups": [
     {"type": "Line", "coordinateSystem": "LPS", "controlPoints": [
@@ -105,8 +105,8 @@ TEST_F(SessionMetrics, NeedleInTheImagePlaneOfARecordedTransducer) {
       "probe_qx,probe_qy,probe_qz,probe_contact_n\n";
   for (int n = 0; n <= 300; ++n) {
     const double depth_mm = 0.2 * n;
-    rows += std::to_string(0.01 * n) + ",0," + std::to_string(depth_mm) + ",0,0,1,0," + std::to_string(depth_mm) +
-            ",0,0," + (depth_mm > 45.0 ? "20" : "0") + ",1,0,0,0,2\n";
+    rows +=
+        fmt::format("{},0,{},0,0,1,0,{},0,0,{},1,0,0,0,2\n", 0.01 * n, depth_mm, depth_mm, depth_mm > 45.0 ? 20 : 0);
   }
   auto metrics = metrics_of("'" + write("in_plane.csv", rows) + "'");
   EXPECT_NEAR(value_of(metrics, "plane_angle"), 0.0, 0.03);

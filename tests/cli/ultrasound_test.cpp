@@ -6,6 +6,7 @@
 
 #include "cli/program.h"
 #include "core/files/atomic_file.h"
+#include "core/parse_number.h"
 #include "geometry/pose.h"
 #include "io/image/image_file.h"
 #include "io/sequence/transform_file.h"
@@ -266,7 +267,7 @@ TEST(UltrasoundSweep, VolumeOfAScannerStandsInItsOwnFrameAndCarriesItsFan) {
   EXPECT_EQ(fields->at("trocar_apex_mm"), "0 -40 0");
   EXPECT_EQ(fields->at("trocar_beam_axis"), "+y");
   EXPECT_EQ(fields->at("trocar_depth_mm"), "60");
-  EXPECT_NEAR(std::stod(fields->at("trocar_sweep_rad")), 0.349066, 1e-5);
+  EXPECT_NEAR(parse_number<double>(fields->at("trocar_sweep_rad")).value_or(0.0), 0.349066, 1e-5);
   EXPECT_EQ(fields->count("trocar_fov_rad") + fields->count("trocar_radius_mm"), 2U);
   EXPECT_EQ(fields->count("trocar_X_PT"), 0U) << "a scanner's volume does not know the patient";
   const auto volume = io::read_labels(folder / "v.nrrd");
@@ -299,7 +300,7 @@ struct Refused {
   const char* named;
 };
 
-class UltrasoundMistake : public testing::TestWithParam<Refused> {};
+class UltrasoundMistake : public ::testing::TestWithParam<Refused> {};
 
 TEST_P(UltrasoundMistake, SaysOneLineAndWritesNothing) {
   const TemporaryFolder folder;
@@ -319,7 +320,7 @@ TEST_P(UltrasoundMistake, SaysOneLineAndWritesNothing) {
 
 INSTANTIATE_TEST_SUITE_P(
     OfTheUser, UltrasoundMistake,
-    testing::Values(
+    ::testing::Values(
         Refused{"image --patient layers-liver --out x.png", 2, "--view"},
         Refused{"image --patient nobody --pose pose8.tfm --out x.png", 2, "abdomen"},
         Refused{"image --patient layers-liver --view nothing --out x.png", 2, "liver-right-kidney"},

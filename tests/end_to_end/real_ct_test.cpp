@@ -15,8 +15,8 @@ namespace trocar::testing {
 namespace {
 namespace fs = std::filesystem;
 
-Result<cases::Case> case_of(const fs::path& ct_path, const std::vector<fs::path>& labels,
-                            const std::string& label_map) {
+Result<cases::Case> case_of_files(const fs::path& ct_path, const std::vector<fs::path>& labels,
+                                  const std::string& label_map) {
   TROCAR_TRY(const volume::CtGrid ct, io::read_ct(ct_path));
   TROCAR_TRY(auto sources, io::read_label_sources(labels, label_map));
   std::vector<std::string> warnings;
@@ -38,7 +38,7 @@ TEST(RealCt, TorsoWithoutLesionGivesAParenchymalBiopsy) {
   const fs::path data = test_data() / "ct-torso";
   if (!fs::exists(data)) GTEST_SKIP() << "no test data at " << data;
   const auto prepared =
-      case_of(data / "example_ct.nii.gz", {data / "example_seg_fast_force_split.nii.gz"}, "totalsegmentator");
+      case_of_files(data / "example_ct.nii.gz", {data / "example_seg_fast_force_split.nii.gz"}, "totalsegmentator");
   expect_whole_line(prepared);
   EXPECT_TRUE(prepared && prepared->is_parenchymal);
 }
@@ -49,7 +49,7 @@ TEST(RealCt, LiverWithTumoursFromDicomMasks) {
   const TemporaryFolder folder;
   const std::string unpack = fmt::format("tar -xJf '{}' -C '{}'", archive.string(), folder.path().string());
   if (std::system(unpack.c_str()) != 0) GTEST_SKIP() << "tar cannot unpack .xz here";
-  expect_whole_line(case_of(folder.path() / "PATIENT_DICOM", {folder.path() / "MASKS_DICOM"}, ""));
+  expect_whole_line(case_of_files(folder.path() / "PATIENT_DICOM", {folder.path() / "MASKS_DICOM"}, ""));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs Trocar into a folder of its own, runs a program there and builds another project against the package:
+# Installs Trocar into a folder of its own, runs a program there, writes the man pages and builds another project against the package:
 # install_test.sh BUILD_FOLDER SOURCE_FOLDER
 set -euo pipefail
 build=$1 source=$2
@@ -9,6 +9,25 @@ trap 'rm -rf "$prefix"' EXIT
 cmake --install "$build" --prefix "$prefix/usr" >/dev/null
 unset TROCAR_DATA_DIR TROCAR_BIN_DIR
 "$prefix/usr/bin/trocar" task list | grep -q liver-biopsy
+
+# Every file belongs to a Debian package.
+for component in trocar hapticd trainer dev; do
+  cmake --install "$build" --prefix "$prefix/parts" --component "$component" >/dev/null
+done
+diff <(cd "$prefix/usr" && find . | sort) <(cd "$prefix/parts" && find . | sort)
+rm -rf "$prefix/parts"
+
+# Man pages of all commands, without a warning where groff can tell.
+for program in trocar trocar-hapticd trocar-trainer; do
+  page=$prefix/$program.1
+  "$source/scripts/man_pages" --version 1.0 "$prefix/usr/bin/$program" "$page"
+  grep -q '^\.SH OPTIONS' "$page"
+  if command -v groff >/dev/null; then
+    warnings=$(groff -man -Tutf8 -Kutf8 -ww -z "$page" 2>&1)
+    [[ -z $warnings ]] || { echo "error: $page: $warnings" >&2 && exit 1; }
+  fi
+done
+grep -q 'trocar patient build' "$prefix/trocar.1"
 
 # With the same flags: a library with a sanitizer needs it in its user, too.
 flags=$(sed -n 's/^CMAKE_CXX_FLAGS:[A-Z]*=//p' "$build/CMakeCache.txt")

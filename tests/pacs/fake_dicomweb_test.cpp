@@ -41,7 +41,7 @@ FakeServer::Serve lists(int images) {
 
 const std::string kMultipart = "multipart/related; type=\"application/dicom\"; boundary=frontier";
 
-std::string part(const std::string& file) {
+std::string dicom_part(const std::string& file) {
   return "--frontier\r\nContent-Type: application/dicom\r\n\r\n" + file + "\r\n";
 }
 
@@ -71,7 +71,8 @@ class FromFakeServer : public ::testing::Test {
   }
 
   cli_test::TemporaryFolder folder_;
-  const std::string two_ = part(made::made_ct(0).file()) + part(made::made_ct(1).file()) + "--frontier--\r\n";
+  const std::string two_ =
+      dicom_part(made::made_ct(0).file()) + dicom_part(made::made_ct(1).file()) + "--frontier--\r\n";
 };
 
 /// In chunks of `size` bytes (RFC 9112, 7.1).
@@ -197,10 +198,11 @@ TEST_F(FromFakeServer, ContentThatEndsEarlyIsRefused) {
 }
 
 TEST_F(FromFakeServer, PartsThatAreNoDicomAreRefused) {
-  expect_refused({lists(1), answers(answer(kMultipart, part("<html>") + "--frontier--"))}, "not DICOM");
-  expect_refused({lists(1), answers(answer(kMultipart, part("") + "--frontier--"))}, "not DICOM");
-  expect_refused({lists(1), answers(answer(kMultipart, part(made::made_ct(0).file().substr(0, 900)) + "--frontier--"))},
-                 "ends too early");
+  expect_refused({lists(1), answers(answer(kMultipart, dicom_part("<html>") + "--frontier--"))}, "not DICOM");
+  expect_refused({lists(1), answers(answer(kMultipart, dicom_part("") + "--frontier--"))}, "not DICOM");
+  expect_refused(
+      {lists(1), answers(answer(kMultipart, dicom_part(made::made_ct(0).file().substr(0, 900)) + "--frontier--"))},
+      "ends too early");
   expect_refused({lists(1), answers(answer(kMultipart, "--frontier--"))}, "sent 0 of 1 image");
   expect_refused({lists(3), answers(answer(kMultipart, two_))}, "sent 2 of 3 images");
 }

@@ -6,8 +6,8 @@
 
 #include "attempt/live/live_attempt.h"
 #include "core/files/temporary_folder.h"
-#include "devices/pointer/test/gamepad_stand_in.h"
-#include "devices/pointer/test/spacenav_daemon.h"
+#include "devices/testing/gamepad_stand_in.h"
+#include "devices/testing/spacenav_daemon.h"
 #include "servers/live_attempt_lab.h"
 
 namespace trocar::servers_test {

@@ -1,5 +1,6 @@
 // Real processes that get no processor: a stopped server, and this very program. The rules of stalls are tested in
 // simulated time (stall_test.cpp).
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <unistd.h>
@@ -11,13 +12,13 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kStall{500};  ///< Twice the hole that a server's loop may have.
-constexpr double kCreep_mm = 0.5;    ///< Of a needle that rests in tissue.
+constexpr milliseconds kStall{500};       ///< Twice the hole that a server's loop may have.
+constexpr double kRestingCreep_mm = 0.5;  ///< Of a needle that rests in tissue.
 
 /// This very process gets no processor for so long: only another one can wake it.
 void stall_myself(milliseconds duration) {
   const std::string pid = std::to_string(::getpid());
-  const std::string seconds = std::to_string(0.001 * static_cast<double>(duration.count()));
+  const std::string seconds = fmt::format("{}", 0.001 * static_cast<double>(duration.count()));
   auto waker = link::ServerProcess::start(
       "/bin/sh", {"-c", "kill -STOP " + pid + "; sleep " + seconds + "; kill -CONT " + pid}, "/dev/null");
   ASSERT_TRUE(waker) << waker.error().text();
@@ -52,7 +53,7 @@ class ProcessStalls : public LiveAttemptTest {
       return view.phase == attempt::AttemptPhase::kInBody && view.banner.empty() &&
              view.servers[0].gate == telemetry::GateMode::kOn;
     })) << where();
-    EXPECT_LT((attempt->view().needle.X_PN.p() - rest_P).norm(), kCreep_mm);
+    EXPECT_LT((attempt->view().needle.X_PN.p() - rest_P).norm(), kRestingCreep_mm);
     EXPECT_EQ(attempt->view().servers[0].pid, pid) << "a slow server was ended";
     EXPECT_EQ(attempt->view().servers[0].restarts, 0);
   }
