@@ -166,7 +166,8 @@ Status serve(Arguments& arguments) {
   if (arguments.is_test) {
     TROCAR_TRY(const std::unique_ptr<devices::HapticDevice> device, open_named_device(arguments));
     // A device with injected faults has no weight of its own.
-    test_device(*device, arguments.rate_hz, arguments.faults.empty() ? stylus_folder() : std::filesystem::path());
+    test_device(*device, arguments.rate_hz, arguments.priority,
+                arguments.faults.empty() ? stylus_folder() : std::filesystem::path());
     return {};
   }
   server::ServerOptions options;

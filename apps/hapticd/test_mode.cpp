@@ -15,6 +15,7 @@
 
 #include "devices/stylus_profile.h"
 #include "realtime/periodic_loop.h"
+#include "realtime/real_time_grant.h"
 #include "server/device_trial.h"
 #include "server/weigh_report.h"
 
@@ -27,7 +28,7 @@ constexpr std::size_t kLongestLine = 64;              ///< Longer ones are no co
 
 /// Commands on standard input.
 struct Wishes {
-  std::atomic<bool> pushes{false};
+  std::atomic<int> pushes{0};
   std::atomic<bool> weighs{false};
   std::atomic<bool> forgets{false};
   std::atomic<bool> ends{false};
@@ -49,7 +50,7 @@ void read_wishes(Wishes& wishes) {
       if (line.size() <= kLongestLine) line += c;
       continue;
     }
-    if (line == "push") wishes.pushes = true;
+    if (line == "push") ++wishes.pushes;
     if (line == "weigh") wishes.weighs = true;
     if (line == "forget") wishes.forgets = true;
     line.clear();
@@ -58,12 +59,13 @@ void read_wishes(Wishes& wishes) {
   wishes.ends = true;
 }
 
-void print_state(const server::DeviceTrialRecord& record, double strongest_n) {
+void print_state(const server::DeviceTrialRecord& record, double strongest_n, int ended_pushes) {
   const Vec3& p = record.reading.X_DS.p();
   const Vec3 axis = record.reading.X_DS.R().col(2);
   const bool is_there = record.reading.status != devices::DeviceStatus::kDisconnected;
-  fmt::print("state\t{:.2f}\t{:.2f}\t{:.2f}\t{:.4f}\t{:.4f}\t{:.4f}\t{}\t{:d}\t{:.2f}\t{}\n", p.x(), p.y(), p.z(),
-             axis.x(), axis.y(), axis.z(), record.reading.buttons, is_there, strongest_n, to_string(record.fault));
+  fmt::print("state\t{:.2f}\t{:.2f}\t{:.2f}\t{:.4f}\t{:.4f}\t{:.4f}\t{}\t{:d}\t{:.2f}\t{}\t{}\n", p.x(), p.y(), p.z(),
+             axis.x(), axis.y(), axis.z(), record.reading.buttons, is_there, strongest_n, to_string(record.fault),
+             ended_pushes);
   std::fflush(stdout);
 }
 
@@ -136,7 +138,8 @@ class Weighing {
 
 }  // namespace
 
-void test_device(devices::HapticDevice& device, double rate_hz, const std::filesystem::path& stylus_folder) {
+void test_device(devices::HapticDevice& device, double rate_hz, int priority,
+                 const std::filesystem::path& stylus_folder) {
   server::DeviceTrial trial(device, rate_hz);
   const haptics::DevicePreset& preset = device.preset();
   fmt::print("device\t{}\t{}\t{}\t{:.2f}\t{:d}\n", device.name(), preset.title, preset.sensed_dof, trial.push_n(),
@@ -145,20 +148,26 @@ void test_device(devices::HapticDevice& device, double rate_hz, const std::files
   Weighing weighing(trial, device, stylus_folder);
   Wishes wishes;
   std::jthread reader([&wishes] { read_wishes(wishes); });
+  if (priority > 0) realtime::request_real_time(priority);
   const auto periods_a_line = static_cast<std::uint64_t>(std::max(1.0, rate_hz / kPrinted_hz));
   std::uint64_t made = 0;
   double strongest_n = 0.0;
+  int pushes = 0, ended_pushes = 0;
   const auto period_ns = static_cast<std::int64_t>(1e9 / rate_hz);
   realtime::LoopStatistics statistics(period_ns);
   realtime::run_periodic(period_ns, wishes.ends, statistics,
                          [&](const realtime::Period& period, const realtime::LoopStatistics&) {
-                           if (wishes.pushes.exchange(false)) trial.push();
+                           if (const int wished = wishes.pushes.exchange(0); wished > 0) {
+                             trial.push();
+                             pushes += wished;
+                           }
                            if (wishes.weighs.exchange(false)) weighing.start();
                            const server::DeviceTrialRecord record = trial.step(period.now_s, period.dt_s);
+                           if (!record.is_pushing) ended_pushes = pushes;
                            weighing.take(record, wishes);
                            strongest_n = std::max(strongest_n, record.written_D.force_n.norm());
                            if (++made % periods_a_line != 0) return;
-                           print_state(record, strongest_n);
+                           print_state(record, strongest_n, ended_pushes);
                            strongest_n = 0.0;
                          });
   if (wishes.forgets) forget(device.name(), stylus_folder);  // the input ended before a period took it

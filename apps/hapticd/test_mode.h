@@ -11,12 +11,14 @@ namespace trocar {
 /// and saves its weight in `stylus_folder` (devices/stylus_profile.h; empty: not saved); "forget" deletes the saved
 /// weight. Output lines, with tabs between the fields:
 ///   device NAME TITLE SENSED_DOF PUSH_N HAS_FORCE(0|1)
-///   state X_MM Y_MM Z_MM AXIS_X AXIS_Y AXIS_Z BUTTONS IS_THERE(0|1) FORCE_N FAULT
+///   state X_MM Y_MM Z_MM AXIS_X AXIS_Y AXIS_Z BUTTONS IS_THERE(0|1) FORCE_N FAULT ENDED_PUSHES
 ///   weighing TEXT
 ///   weighed WEIGHT_N FRICTION_N HORIZONTAL_N SPREAD_N LEVER_MM(- if not measured) TEXT
 ///   refused TEXT
 ///   forgot TEXT
-/// Position, axis (+z of the stylus) and force in D. TEXT is one line for people.
-void test_device(devices::HapticDevice& device, double rate_hz, const std::filesystem::path& stylus_folder);
+/// Position, axis (+z of the stylus) and force in D. TEXT is one line for people. `priority`: under SCHED_FIFO, where
+/// it is permitted; 0: ordinary scheduling.
+void test_device(devices::HapticDevice& device, double rate_hz, int priority,
+                 const std::filesystem::path& stylus_folder);
 
 }  // namespace trocar

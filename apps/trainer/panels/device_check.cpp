@@ -42,7 +42,8 @@ DeviceCheck::~DeviceCheck() {
 }
 
 void DeviceCheck::push() {
-  has_pushed_ = true;
+  ++pushes_;
+  view_.is_push_over = false;
   view_.strongest_n = 0.0;
   view_.stop_reason.clear();
   process_.write("push\n");
@@ -67,7 +68,7 @@ void DeviceCheck::read_device(const QStringList& fields) {
 }
 
 void DeviceCheck::read_state(const QStringList& fields) {
-  constexpr int kFields = 11;
+  constexpr int kFields = 12;
   if (fields.size() < kFields) return;
   for (int i = 0; i < 3; ++i) {
     view_.p_D[i] = fields[1 + i].toDouble();
@@ -77,7 +78,8 @@ void DeviceCheck::read_state(const QStringList& fields) {
   view_.state = fields[8] == QLatin1String("1") ? DeviceCheckView::State::kAnswers : DeviceCheckView::State::kUnplugged;
   view_.force_n = fields[9].toDouble();
   view_.strongest_n = std::max(view_.strongest_n, view_.force_n);
-  const bool is_stopped = has_pushed_ && fields[10] != QString::fromLatin1(to_string(telemetry::GateFault::kNone));
+  view_.is_push_over = pushes_ > 0 && fields[11].toInt() >= pushes_;
+  const bool is_stopped = pushes_ > 0 && fields[10] != QString::fromLatin1(to_string(telemetry::GateFault::kNone));
   view_.stop_reason = is_stopped ? QString(fields[10]).replace('_', ' ') : QString();
   if (!view_.has_pose) first_p_D_ = view_.p_D;
   view_.has_pose = true;

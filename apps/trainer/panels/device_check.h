@@ -20,9 +20,10 @@ struct DeviceCheckView {
   Vec3 p_D = Vec3::Zero(), axis_D = Vec3::UnitZ();  ///< Grip (mm) and direction of the stylus.
   double moved_mm = 0.0;                            ///< Largest distance from its first position.
   unsigned buttons = 0;
-  double force_n = 0.0;      ///< Present force.
-  double strongest_n = 0.0;  ///< Largest force since the last push was requested.
-  QString stop_reason;       ///< Fault with which the safety gate refused or ended the last push; empty: none.
+  double force_n = 0.0;       ///< Present force.
+  double strongest_n = 0.0;   ///< Largest force since the last push was requested.
+  bool is_push_over = false;  ///< The last push has ended.
+  QString stop_reason;        ///< Fault with which the safety gate refused or ended the last push; empty: none.
 };
 
 /// Tests a device without a patient with a separate trocar-hapticd --test: connection, pose, a small force on request.
@@ -51,7 +52,7 @@ class DeviceCheck : public QObject {
   QProcess process_;
   DeviceCheckView view_;
   Vec3 first_p_D_ = Vec3::Zero();
-  bool has_pushed_ = false;
+  int pushes_ = 0;  ///< Requested.
 };
 
 }  // namespace trocar::trainer

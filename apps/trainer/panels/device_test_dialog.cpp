@@ -70,6 +70,8 @@ QString force_text(const DeviceCheckView& view) {
     return DeviceTestDialog::tr("The safety gate stopped the force: %1. Request it again.").arg(view.stop_reason);
   if (view.strongest_n > kSomething_n)
     return DeviceTestDialog::tr("%1 N were applied. Did you feel the force?").arg(view.strongest_n, 0, 'f', 1);
+  if (view.is_push_over)
+    return DeviceTestDialog::tr("The computer was too busy for a force that can be felt. Request it again.");
   return view.has_force ? DeviceTestDialog::tr("No force is applied before you request it.")
                         : DeviceTestDialog::tr("It has no motors for forces; a gamepad uses rumble.");
 }

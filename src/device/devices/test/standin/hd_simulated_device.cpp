@@ -1,6 +1,7 @@
 #include "devices/test/standin/hd_simulated_device.h"
 
 #include <fcntl.h>
+#include <sched.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -16,6 +17,7 @@ namespace {
 
 constexpr devices::hd::Handle kHandle = 7;
 constexpr double kPeriod_s = 0.001;
+constexpr int kPriority = 81;  ///< Just above the loop that it serves.
 
 }  // namespace
 
@@ -271,6 +273,9 @@ void HdSimulatedDevice::unschedule(devices::hd::SchedulerHandle handle) {
 }
 
 void HdSimulatedDevice::run() {
+  // A vendor's scheduler is a real-time thread; without the privilege this one is not.
+  const sched_param wanted{kPriority};
+  ::sched_setscheduler(0, SCHED_FIFO, &wanted);
   std::unique_lock lock(mutex_);
   thread_id_ = std::this_thread::get_id();
   const auto has_work = [&] {
