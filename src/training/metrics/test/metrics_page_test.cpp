@@ -46,7 +46,7 @@ TEST(MetricsPage, HasEveryMetricOfTheCatalogueAndNoOther) {
   auto rows = rows_of(text_of(source / "docs" / "metrics.md"));
   std::string tests;
   for (const auto& entry : fs::directory_iterator(source / "src" / "training" / "metrics" / "test"))
-    if (entry.path() != fs::path(__FILE__)) tests += text_of(entry.path());
+    if (entry.path().filename() != fs::path(__FILE__).filename()) tests += text_of(entry.path());
   for (const MetricDescription& metric : metric_catalogue()) {
     ASSERT_TRUE(rows.contains(metric.name)) << "docs/metrics.md has no row `" << metric.name << "`";
     const std::vector<std::string> cells = rows[metric.name];
