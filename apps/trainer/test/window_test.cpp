@@ -240,31 +240,46 @@ TEST_F(WindowTest, TwoHapticDevicesAreNamedTestedAndMoveATool) {
   trocar::testing::HdStandIns devices;
   trocar::testing::HdControls& premium = devices.add_premium("Left Device");
   trocar::testing::HdControls& omni = devices.add_omni("Right Device");
-  place(premium, {-29.0, 33.0, 80.0});  // beside the patient's right flank, at the height of the planned entry
-  place(omni, {0.0, 40.0, 0.0});
-  for (trocar::testing::HdControls* device : {&premium, &omni})
-    device->tremor_mm = 0.03;  // no hand is as still as an encoder that is stuck
-  const auto at_picture = [&](const char* name) { return QFile::exists(folder.filePath(QString::fromUtf8(name))); };
-  Person person({{[&] { return at_picture("needle.png"); },
-                  [&] {
-                    glide(premium, {-9.0, 33.0, 80.0}, 40.0);
-                    glide(premium, {-29.0, 33.0, 80.0}, 40.0);
-                  }},
-                 {[&] { return at_picture("ready.png"); },
-                  [&] {
-                    glide(premium, {-29.0, 33.0, 0.0}, 15.0);
-                  }},
-                 {[&] { return at_picture("inside.png"); },
-                  [&] {
-                    glide(omni, {0.0, 20.0, 0.0}, 20.0);
-                  }},
-                 {[&] { return at_picture("unplug.png"); }, [&] { omni.is_present = 0; }},
-                 {[&] { return at_picture("plug.png"); }, [&] { omni.is_present = 1; }}});
-  QFile script(script_named("two_devices.txt"));
-  ASSERT_TRUE(script.open(QIODevice::ReadOnly));
-  const QString here = QString::fromUtf8(script.readAll()).replace(QStringLiteral("FOLDER"), folder.path());
-  expect_played(run({QStringLiteral("--script"), write("two_devices.txt", here.toUtf8())}));
-  EXPECT_TRUE(person.has_done_all());
+  const auto played_in = [&](const QString& pictures) {
+    place(premium, {-29.0, 33.0, 80.0});  // beside the patient's right flank, at the height of the planned entry
+    place(omni, {0.0, 40.0, 0.0});
+    omni.is_present = 1;
+    for (trocar::testing::HdControls* device : {&premium, &omni})
+      device->tremor_mm = 0.03;  // no hand is as still as an encoder that is stuck
+    const auto at_picture = [&](const char* name) { return QFile::exists(pictures + QString::fromUtf8(name)); };
+    Person person({{[&] { return at_picture("/needle.png"); },
+                    [&] {
+                      glide(premium, {-9.0, 33.0, 80.0}, 40.0);
+                      glide(premium, {-29.0, 33.0, 80.0}, 40.0);
+                    }},
+                   {[&] { return at_picture("/ready.png"); },
+                    [&] {
+                      glide(premium, {-29.0, 33.0, 0.0}, 15.0);
+                    }},
+                   {[&] { return at_picture("/inside.png"); },
+                    [&] {
+                      glide(omni, {0.0, 20.0, 0.0}, 20.0);
+                    }},
+                   {[&] { return at_picture("/unplug.png"); }, [&] { omni.is_present = 0; }},
+                   {[&] { return at_picture("/plug.png"); }, [&] { omni.is_present = 1; }}});
+    QFile script(script_named("two_devices.txt"));
+    EXPECT_TRUE(script.open(QIODevice::ReadOnly));
+    EXPECT_TRUE(QDir().mkpath(pictures));
+    const QString here = QString::fromUtf8(script.readAll()).replace(QStringLiteral("FOLDER"), pictures);
+    Played played = run({QStringLiteral("--script"), write("two_devices.txt", here.toUtf8())});
+    EXPECT_TRUE(played.exit_status != 0 || person.has_done_all());
+    return played;
+  };
+  // A machine too busy for a device in a real hand stops its forces until somebody requests them again, who is not
+  // here. Whatever else fails is not tried again.
+  const auto was_too_busy = [](const Played& played) {
+    const auto says = [&](const char* part) { return played.output.contains(QString::fromLatin1(part)); };
+    return played.exit_status == 1 && (says("Request it again") || (says("window message: ") && says("resume")));
+  };
+  Played played = played_in(folder.filePath(QStringLiteral("1")));
+  for (int again = 2; again <= 3 && was_too_busy(played); ++again)
+    played = played_in(folder.filePath(QString::number(again)));
+  expect_played(played);
   EXPECT_GT(premium.strongest_n, 0.3) << "the tissue was felt";
 }
 
