@@ -1,7 +1,9 @@
 #include "core/decimal_point.h"
 
+#include <clocale>
 #include <locale>
 #include <mutex>
+#include <string>
 
 namespace trocar {
 inline namespace core {
@@ -19,6 +21,18 @@ ReplacedLocale& replaced_locale() {
   return shared;
 }
 
+/// The classic locale, without its name: global() gives a name to C's setlocale(), too.
+std::locale make_nameless_classic() {
+  return {std::locale::classic(), new std::numpunct<char>};
+}
+
+/// Makes it the global locale of C++. That of C stays as it is.
+void restore(const std::locale& before) {
+  const std::string of_c = std::setlocale(LC_ALL, nullptr);
+  std::locale::global(before);
+  std::setlocale(LC_ALL, of_c.c_str());
+}
+
 }  // namespace
 
 DecimalPoint::DecimalPoint() {
@@ -27,7 +41,7 @@ DecimalPoint::DecimalPoint() {
     const std::lock_guard lock(shared.mutex);
     if (shared.count++ == 0) {
       shared.before = std::locale();
-      if (shared.before != std::locale::classic()) std::locale::global(std::locale::classic());
+      if (shared.before != std::locale::classic()) std::locale::global(make_nameless_classic());
     }
   }
   numbers_ = ::newlocale(LC_NUMERIC_MASK, "C", ::duplocale(::uselocale(nullptr)));
@@ -39,7 +53,7 @@ DecimalPoint::~DecimalPoint() {
   if (numbers_ != nullptr) ::freelocale(numbers_);
   ReplacedLocale& shared = replaced_locale();
   const std::lock_guard lock(shared.mutex);
-  if (--shared.count == 0 && shared.before != std::locale::classic()) std::locale::global(shared.before);
+  if (--shared.count == 0 && shared.before != std::locale::classic()) restore(shared.before);
 }
 
 }  // namespace core
