@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <string_view>
+
 /// Letters and digits of ASCII, the same in every locale: where the user's language is Turkish, the standard library
 /// has no small letter for I. Other bytes, as those of UTF-8, are neither letters nor digits.
 namespace trocar::ascii {
@@ -28,6 +31,13 @@ constexpr char to_lower(char c) noexcept {
 }
 constexpr char to_upper(char c) noexcept {
   return is_lower(c) ? static_cast<char>(c - 'a' + 'A') : c;
+}
+
+/// The text with small letters.
+inline std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) c = to_lower(c);
+  return lower;
 }
 
 }  // namespace trocar::ascii

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/ascii.h"
 #include "core/utf8.h"
 #include "signing/common_words.h"
 
@@ -21,13 +22,6 @@ constexpr std::string_view kWhere = "password";
 /// A lower-case letter, or a byte of a letter of another alphabet.
 bool is_in_words(char c) {
   return (c >= 'a' && c <= 'z') || static_cast<unsigned char>(c) >= 0x80;
-}
-
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return lower;
 }
 
 /// Digits and symbols that stand for a letter.
@@ -122,7 +116,7 @@ bool is_account_name(const std::string& password, const std::string& account) {
 }  // namespace
 
 bool is_common_password(std::string_view password) {
-  const std::string lower = lower_case(password);
+  const std::string lower = ascii::lower_case(password);
   const std::string rest = without_rows(lower);
   return is_repeated(lower) || is_of_common_words(rest) || is_of_common_words(lower);
 }
@@ -136,7 +130,7 @@ Status check_new_password(std::string_view password, std::string_view account) {
   if (characters > kLongestPassword)
     return fail_usage("the password is too long", std::string(kWhere),
                       fmt::format("use at most {} characters", kLongestPassword));
-  if (is_account_name(lower_case(password), lower_case(account)))
+  if (is_account_name(ascii::lower_case(password), ascii::lower_case(account)))
     return fail_usage("the password is the name of the account", std::string(kWhere),
                       "choose one that others cannot guess");
   if (is_common_password(password))

@@ -3,13 +3,10 @@
 #include <algorithm>
 
 #include "config/json.h"
+#include "core/ascii.h"
 
 namespace trocar::web {
 namespace {
-
-char lower(char c) {
-  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-}
 
 template <class IsName>
 std::optional<std::string_view> find_single(const TextPairs& pairs, IsName is_name) noexcept {
@@ -25,7 +22,8 @@ std::optional<std::string_view> find_single(const TextPairs& pairs, IsName is_na
 }  // namespace
 
 bool is_same_name(std::string_view a, std::string_view b) noexcept {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) { return lower(x) == lower(y); });
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](char x, char y) { return ascii::to_lower(x) == ascii::to_lower(y); });
 }
 
 std::optional<std::string_view> HttpRequest::find_header(std::string_view name) const noexcept {

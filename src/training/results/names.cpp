@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/ascii.h"
 #include "core/utf8.h"
 
 namespace trocar::results {
@@ -60,10 +61,7 @@ Result<std::string> clean_name(std::string_view name, const char* kind) {
 }
 
 std::string name_key(std::string_view clean_name) {
-  std::string key(clean_name);
-  std::transform(key.begin(), key.end(), key.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return key;
+  return ascii::lower_case(clean_name);
 }
 
 Result<std::string> clean_text(std::string_view text, std::size_t max_characters, const char* kind) {

@@ -28,8 +28,7 @@ constexpr std::array kModels{ModelRow{"premium", "premium"}, ModelRow{"desktop",
                              ModelRow{"omni", "omni"},       ModelRow{"touch", "omni"}};
 
 Result<std::string> preset_of_model(const std::string& model) {
-  std::string small = model;
-  std::transform(small.begin(), small.end(), small.begin(), ascii::to_lower);
+  const std::string small = ascii::lower_case(model);
   for (const ModelRow& row : kModels) {
     if (small.find(row.word) != std::string::npos) return std::string(row.preset);
   }

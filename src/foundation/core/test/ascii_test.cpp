@@ -34,5 +34,10 @@ TEST(Ascii, ChangesCaseOfLettersOnly) {
   }
 }
 
+TEST(Ascii, LowersTextAndKeepsOtherAlphabets) {
+  EXPECT_EQ(lower_case("LIVER I-9 Ä"), "liver i-9 Ä");
+  EXPECT_EQ(lower_case(""), "");
+}
+
 }  // namespace
 }  // namespace trocar::ascii

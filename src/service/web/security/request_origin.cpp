@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/ascii.h"
 #include "web/transport/listen_address.h"
 
 namespace trocar::web {
@@ -20,14 +21,11 @@ std::optional<std::string> host_of(std::string_view header) {
   const bool is_port = port.empty() || (port.size() > 1 && port.front() == ':' &&
                                         port.find_first_not_of("0123456789", 1) == std::string_view::npos);
   if (host.empty() || !is_port) return std::nullopt;
-  std::string lower(host);
-  for (char& c : lower) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    const bool is_name =
-        (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-' || c == '.' || c == ':' || c == '_';
-    if (!is_name) return std::nullopt;
-  }
-  return lower;
+  const auto is_of_name = [](char c) {
+    return ascii::is_letter_or_digit(c) || c == '-' || c == '.' || c == ':' || c == '_';
+  };
+  if (!std::all_of(host.begin(), host.end(), is_of_name)) return std::nullopt;
+  return ascii::lower_case(host);
 }
 
 bool is_for_this_host(const HttpRequest& request, bool is_loopback,

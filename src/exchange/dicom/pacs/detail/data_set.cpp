@@ -27,13 +27,6 @@ tl::unexpected<Error> damaged() {
 
 }  // namespace
 
-std::string lower_case(std::string_view text) {
-  std::string result(text);
-  for (char& c : result)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return result;
-}
-
 std::string_view trimmed(std::string_view value) noexcept {
   constexpr std::string_view kPadding(" \0", 2);
   const auto first = value.find_first_not_of(kPadding);

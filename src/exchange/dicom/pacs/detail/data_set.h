@@ -40,9 +40,6 @@ struct ObjectSummary {
 /// Reads the top level and checks that it ends where it should. Errors: damaged or truncated, a UID is missing.
 Result<ObjectSummary> summarize(const DataSet& data_set);
 
-/// The text with small letters from a to z.
-std::string lower_case(std::string_view text);
-
 /// Text of a value without the spaces and zeros that pad it.
 std::string_view trimmed(std::string_view value) noexcept;
 

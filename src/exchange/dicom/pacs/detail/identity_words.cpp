@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/ascii.h"
 #include "dicom/pacs/detail/data_set.h"
 
 namespace trocar::dicom::detail {
@@ -75,14 +76,14 @@ bool is_identifying(std::uint32_t tag) noexcept {
 
 void IdentityWords::add(std::string_view value) {
   for_each_word(value, [&](std::string_view, std::string_view word) {
-    if (word.size() >= kShortest && words_.size() < kMaxWords) words_.insert(lower_case(word));
+    if (word.size() >= kShortest && words_.size() < kMaxWords) words_.insert(ascii::lower_case(word));
   });
 }
 
 bool IdentityWords::is_removed(std::string_view word, bool keeps_anatomy) const {
   const auto digits = std::ranges::count_if(word, [](char c) { return c >= '0' && c <= '9'; });
   if (digits >= kDigitsOfANumber) return true;
-  const std::string small = lower_case(word);
+  const std::string small = ascii::lower_case(word);
   if (keeps_anatomy && std::ranges::find(kAnatomy, small) != kAnatomy.end()) return false;
   return std::ranges::any_of(words_, [&](const std::string& known) {
     if (keeps_anatomy && std::ranges::find(kAnatomy, known) != kAnatomy.end()) return false;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/ascii.h"
 #include "dicom/pacs/detail/data_set.h"
 
 namespace trocar::dicom::detail {
@@ -19,7 +20,7 @@ tl::unexpected<Error> not_multipart() {
 }  // namespace
 
 std::optional<std::string> multipart_boundary(std::string_view content_type) {
-  const std::string small = lower_case(content_type);
+  const std::string small = ascii::lower_case(content_type);
   const std::size_t at = small.find("boundary=");
   if (!small.starts_with("multipart/related") || at == std::string::npos) return std::nullopt;
   std::string_view value = content_type.substr(at + std::string_view("boundary=").size());

@@ -24,11 +24,6 @@ constexpr std::uint64_t kMaxVoxels = 2'000'000'000;      ///< 4 GB of int16, far
 constexpr std::string_view kSegmentation = ".seg";       ///< 3D Slicer adds it before the ending.
 constexpr std::size_t kMaxImageHeaderBytes = 16u << 20;  ///< .seg.nrrd files with many segments have long headers.
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), ascii::to_lower);
-  return text;
-}
-
 std::string trim(std::string_view text) {
   const auto first = text.find_first_not_of(" \t\r\n");
   if (first == std::string_view::npos) return {};
@@ -126,10 +121,11 @@ std::optional<TextHeader> read_text_header(const InputFile& input, char separato
     if (trim(line).empty()) return header;
     const auto at = line.find(separator);
     if (at == std::string::npos) continue;
-    const std::string key = lower(trim(std::string_view(line).substr(0, at)));
+    const std::string key = ascii::lower_case(trim(std::string_view(line).substr(0, at)));
     header.fields.emplace(key, trim(std::string_view(line).substr(at + 1)));
     // The library accepts this key in this spelling only, and would otherwise continue to read.
-    if (key == lower(std::string(last_key))) return line.starts_with(last_key) ? std::optional(header) : std::nullopt;
+    if (key == ascii::lower_case(std::string(last_key)))
+      return line.starts_with(last_key) ? std::optional(header) : std::nullopt;
   }
   return header.fields.empty() ? std::nullopt : std::optional(header);
 }
@@ -169,13 +165,13 @@ Result<Payload> nrrd_payload(const InputFile& input) {
   const auto header = read_text_header(input, ':', {});
   if (std::string_view(magic.data(), 4) != "NRRD" || !header) return fail("not a NRRD image", where, kExportAgain);
 
-  const auto type_bytes = nrrd_type_bytes(lower(header->get("type")));
+  const auto type_bytes = nrrd_type_bytes(ascii::lower_case(header->get("type")));
   if (!type_bytes) return fail("has no known voxel type", where, "convert it to 16-bit integers");
   std::vector<std::int64_t> sizes = whole_numbers(header->get("sizes"));
-  const std::uint64_t layers = take_list_axis(sizes, lower(header->get("kinds")));
+  const std::uint64_t layers = take_list_axis(sizes, ascii::lower_case(header->get("kinds")));
   TROCAR_TRY(const std::uint64_t bytes, volume_bytes(sizes, *type_bytes * layers, where));
 
-  const std::string encoding = lower(header->get("encoding"));
+  const std::string encoding = ascii::lower_case(header->get("encoding"));
   Payload payload{.offset = header->end, .bytes = bytes};
   payload.is_compressed = encoding == "gzip" || encoding == "gz";
   payload.is_text = encoding == "ascii" || encoding == "text" || encoding == "txt" || encoding == "hex";
@@ -208,19 +204,19 @@ Result<Payload> meta_payload(const InputFile& input) {
   TROCAR_TRY(const std::uint64_t bytes, volume_bytes(whole_numbers(header->get("dimsize")), *type_bytes, where));
 
   Payload payload{.offset = header->end, .bytes = bytes};
-  payload.is_compressed = lower(header->get("compresseddata")).starts_with('t');
+  payload.is_compressed = ascii::lower_case(header->get("compresseddata")).starts_with('t');
   const std::vector<std::int64_t> packed = whole_numbers(header->get("compresseddatasize"));
   if (packed.size() == 1 && packed[0] > 0) payload.packed = static_cast<std::uint64_t>(packed[0]);
-  payload.is_text = lower(header->get("binarydata", "true")).starts_with('f');
+  payload.is_text = ascii::lower_case(header->get("binarydata", "true")).starts_with('f');
   payload.least_bytes = 2 * (bytes / *type_bytes) - 1;
   const std::string data_file = header->get("elementdatafile");
-  if (lower(data_file) != "local") TROCAR_TRY_STATUS(take_data_file(data_file, where, payload));
+  if (ascii::lower_case(data_file) != "local") TROCAR_TRY_STATUS(take_data_file(data_file, where, payload));
   return payload;
 }
 
 /// nullptr: not an image file.
 const ImageEnding* find_ending(const fs::path& path) {
-  const std::string name = lower(path.filename().string());
+  const std::string name = ascii::lower_case(path.filename().string());
   const auto* found = std::find_if(kImageEndings.begin(), kImageEndings.end(), [&](const ImageEnding& ending) {
     return name.size() > ending.text.size() && name.ends_with(ending.text);
   });
@@ -268,7 +264,7 @@ Result<ImageFormat> find_image_format(const fs::path& path) {
 std::string image_stem(const fs::path& path) {
   std::string name = path.filename().string();
   if (const ImageEnding* ending = find_ending(path)) name.erase(name.size() - ending->text.size());
-  if (lower(name).ends_with(kSegmentation) && name.size() > kSegmentation.size())
+  if (ascii::lower_case(name).ends_with(kSegmentation) && name.size() > kSegmentation.size())
     name.erase(name.size() - kSegmentation.size());
   return name;
 }
