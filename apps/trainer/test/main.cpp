@@ -5,6 +5,10 @@
 #include <QApplication>
 #include <QSettings>
 #include <QTemporaryDir>
+#include <clocale>
+#include <cstdio>
+#include <cstdlib>
+#include <string_view>
 
 #include "core/testing/run_all_tests.h"
 #include "ui_kit/theme.h"
@@ -12,6 +16,11 @@
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
   QApplication application(argc, argv);
+  const char* wanted = std::getenv("LC_NUMERIC");
+  if (wanted != nullptr && std::string_view(std::setlocale(LC_NUMERIC, nullptr)) != wanted) {
+    std::fprintf(stderr, "error: Qt did not take over the locale %s of LC_NUMERIC\n", wanted);
+    return 1;
+  }
   const QTemporaryDir settings;
   QSettings::setDefaultFormat(QSettings::IniFormat);
   QSettings::setPath(QSettings::IniFormat, QSettings::UserScope, settings.path());
