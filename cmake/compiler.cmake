@@ -63,7 +63,7 @@ add_library(trocar_warnings INTERFACE)
 target_compile_options(trocar_warnings INTERFACE -Wall -Wextra -Wconversion -Wshadow)
 
 # Objects are found again from another folder: paths below the source folder are taken relative to the build folder, and no flag or
-# generated file contains an absolute one. `scripts/check` measures it.
+# generated file contains an absolute one, except for prefixes that ccache maps, and tests/source_dir.cpp. `scripts/check` measures it.
 # Decided once for a build folder: ./test installs ccache, and what ./run has compiled without it must not be compiled again.
 find_program(CCACHE_PROGRAM ccache)
 set(TROCAR_CCACHE "${CCACHE_PROGRAM}" CACHE STRING "ccache, or empty")

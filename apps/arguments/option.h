@@ -41,7 +41,7 @@ class Option {
   Option seed();
 
   bool is_given() const { return !texts().empty(); }
-  const std::vector<std::string>& texts() const;  ///< As written on the command line; "true" for a flag.
+  const std::vector<std::string>& texts() const;  ///< As written; numbers as they were read; "true" for a flag.
 
   std::string name() const;                       ///< "--seed"; of an argument "NAME".
   std::string argument_name() const;              ///< "NAME"; empty if it is an option only.
