@@ -47,7 +47,7 @@ function(trocar_compile_fast target)
 endfunction()
 
 # The preset `quick` checks only what reads files of others and talks to devices and clients, and their tests: compiling with
-# sanitizers takes more than twice as long.
+# sanitizers takes about twice as long.
 set(TROCAR_SANITIZED all CACHE STRING "Modules under the preset's sanitizers: all or quick (trocar_quick_modules)")
 function(trocar_leave_unchecked target)
   target_compile_options(${target} PRIVATE -fno-sanitize=all)
