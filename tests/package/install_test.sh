@@ -31,8 +31,24 @@ grep -q 'trocar patient build' "$prefix/trocar.1"
 
 # With the same flags: a library with a sanitizer needs it in its user, too.
 flags=$(sed -n 's/^CMAKE_CXX_FLAGS:[A-Z]*=//p' "$build/CMakeCache.txt")
-cmake -S "$source/tests/package/consumer" -B "$prefix/build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
-  -DCMAKE_CXX_FLAGS="$flags" -DCMAKE_PREFIX_PATH="$prefix/usr" >/dev/null
+configure() {
+  cmake -S "$source/tests/package/consumer" -B "$1" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS="$flags" \
+    -DCMAKE_PREFIX_PATH="$prefix/usr" "${@:2}"
+}
+# refuses MESSAGE OPTION...: a wrong find_package says why.
+refuses() {
+  local said
+  rm -rf "$prefix/refused"
+  if said=$(configure "$prefix/refused" "${@:2}" 2>&1) || [[ ${said//$'\n'/ } != *$1* ]]; then
+    echo "error: not refused with \"$1\": $said" >&2
+    exit 1
+  fi
+}
+refuses "there is no module haptic;" -DCOMPONENTS="anatomy;haptic"
+refuses "project(NAME" -DCOMPONENTS=exams
+# A module of many others, and with it nearly all third-party libraries.
+configure "$prefix/many" -DLANGUAGES="C;CXX" -DCOMPONENTS=exams >/dev/null
+configure "$prefix/build" >/dev/null
 cmake --build "$prefix/build"
 # It pushes a needle into the skin of an embedded patient, and fails if it feels no force.
 TROCAR_DATA_DIR=$prefix/usr/share/trocar "$prefix/build/first_force" "$prefix/usr/share/trocar"

@@ -146,10 +146,14 @@ PhantomInfo info_of(const phantom::CaseDescription& description) {
   return info;
 }
 
+Result<std::vector<phantom::CaseDescription>> load_named_cases() {
+  TROCAR_TRY(const std::filesystem::path data_folder, checked_data_dir());
+  return phantom::load_cases(data_folder / phantom::kCasesFile);
+}
+
 /// The named cases; empty if their file is missing or broken, which generate_phantom reports.
 const Result<std::vector<phantom::CaseDescription>>& named_cases() {
-  static const Result<std::vector<phantom::CaseDescription>> kCases =
-      phantom::load_cases(data_dir() / phantom::kCasesFile);
+  static const Result<std::vector<phantom::CaseDescription>> kCases = load_named_cases();
   return kCases;
 }
 
