@@ -1,10 +1,14 @@
-// Pushes a needle 3 mm against the skin of an embedded patient and prints the force on it: first_force DATA_FOLDER
+// Pushes a needle against the skin of an embedded patient and prints the force on it; then turns a failed check of a
+// library into an exception: first_force DATA_FOLDER
 #include <cstdio>
+#include <stdexcept>
 
 #include "anatomy/phantom/phantom.h"
 #include "anatomy/tissue/tissue_table.h"
+#include "core/check.h"
 #include "haptics/haptic_scene.h"
 #include "haptics/tick.h"
+#include "volume/resample.h"
 
 namespace {
 
@@ -32,6 +36,17 @@ Result<double> largest_force_n(const char* data_folder) {
   return most_n;
 }
 
+bool has_thrown_for_failed_check() {
+  set_check_handler([](const char* text) { throw std::invalid_argument(text); });
+  try {
+    volume::isotropic_geometry({{2, 2, 2}, {1.0, 1.0, 1.0}}, -1.0);
+  } catch (const std::invalid_argument& error) {
+    std::printf("caught: %s\n", error.what());
+    return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -42,5 +57,5 @@ int main(int count, char** arguments) {
     return 1;
   }
   std::printf("the skin holds the needle back with %.2f N\n", *force);
-  return *force > 0.5 ? 0 : 1;
+  return *force > 0.5 && has_thrown_for_failed_check() ? 0 : 1;
 }

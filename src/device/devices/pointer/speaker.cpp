@@ -53,11 +53,15 @@ double click_at(double time_s, double noise) {
 
 struct Speaker::Impl {
   std::atomic<SDL_AudioDeviceID> device{0};
+  std::atomic<bool> is_opening{true};
   std::jthread opening;
 };
 
 Speaker::Speaker() : impl_(std::make_unique<Impl>()) {
-  impl_->opening = std::jthread([device = &impl_->device] { *device = open_output(); });
+  impl_->opening = std::jthread([impl = impl_.get()] {
+    impl->device = open_output();
+    impl->is_opening = false;
+  });
 }
 
 Speaker::~Speaker() {
@@ -74,6 +78,10 @@ void Speaker::play(std::span<const float> samples) {
 
 bool Speaker::is_open() const noexcept {
   return impl_->device != 0;
+}
+
+bool Speaker::is_opening() const noexcept {
+  return impl_->is_opening;
 }
 
 std::vector<float> make_gun_click() {

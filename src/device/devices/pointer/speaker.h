@@ -18,6 +18,8 @@ class Speaker {
   /// Plays mono samples, -1..1, at kRate_hz. They replace the sound that is being played.
   void play(std::span<const float> samples);
   bool is_open() const noexcept;
+  /// True until an output was opened, or none was found.
+  bool is_opening() const noexcept;
 
   static constexpr int kRate_hz = 44'100;
 

@@ -79,7 +79,7 @@ std::span<const FileLimit> file_limits() noexcept {
   return kLimits;
 }
 
-const FileLimit& limit_of(FileKind kind) noexcept {
+const FileLimit& limit_of(FileKind kind) {
   const auto found =
       std::find_if(kLimits.begin(), kLimits.end(), [&](const FileLimit& limit) { return limit.kind == kind; });
   TROCAR_CHECK(found != kLimits.end());

@@ -22,7 +22,7 @@ struct FileLimit {
 
 /// The one table of size limits; docs/user_guide.md lists the same numbers.
 std::span<const FileLimit> file_limits() noexcept;
-const FileLimit& limit_of(FileKind kind) noexcept;
+const FileLimit& limit_of(FileKind kind);
 
 /// An open regular file. Opening never blocks and never has a side effect on the named file: a FIFO, socket, device or
 /// folder is refused, whether named directly or through a symbolic link.

@@ -15,17 +15,21 @@ struct Listed {
   int status = -1;
 };
 
-/// Output of this program that lists the tests of a part; `arguments` come before.
-Listed list_part(const std::string& part, const std::string& arguments = {}) {
+/// This program in another process: its output, and how it ended.
+Listed run_self(const std::string& environment, const std::string& arguments) {
   const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
-  const std::string line =
-      "env -u GTEST_FILTER TROCAR_TEST_PART=" + part + " '" + self + "' --gtest_list_tests " + arguments + " 2>&1";
+  const std::string line = "env -u GTEST_FILTER " + environment + " '" + self + "' " + arguments + " 2>&1";
   Listed listed;
   std::FILE* pipe = ::popen(line.c_str(), "r");
   if (pipe == nullptr) return listed;
   for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) listed.text += static_cast<char>(c);
   listed.status = ::pclose(pipe);
   return listed;
+}
+
+/// Lists the tests of a part.
+Listed list_part(const std::string& part, const std::string& arguments = {}) {
+  return run_self("TROCAR_TEST_PART=" + part, "--gtest_list_tests " + arguments);
 }
 
 /// Adds how often each suite is listed.
@@ -62,6 +66,16 @@ TEST(TestParts, AFilterStillChooses) {
 
 TEST(TestParts, WhatIsNoPartIsRefused) {
   for (const char* part : {"0/2", "3/2", "1", "1/2x", "''", "a/b"}) EXPECT_NE(list_part(part).status, 0) << part;
+}
+
+// A filter names tests that were renamed; an empty shard of one that names some is in order.
+TEST(TestFilter, OneThatSelectsNothingIsRefused) {
+  const std::string shard = "GTEST_TOTAL_SHARDS=9 GTEST_SHARD_INDEX=8 ", part = "TROCAR_TEST_PART=9/9 ";
+  for (const std::string& environment : {std::string(), shard, part}) {
+    EXPECT_NE(run_self(environment, "--gtest_filter='NoSuch.*'").status, 0) << environment;
+    EXPECT_NE(run_self(environment, "--gtest_filter='TestParts.*-TestParts.*'").status, 0) << environment;
+    EXPECT_EQ(run_self(environment, "--gtest_filter='NoSuch.*:Test?arts.WhatIs*'").status, 0) << environment;
+  }
 }
 
 }  // namespace

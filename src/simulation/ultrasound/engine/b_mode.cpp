@@ -212,7 +212,7 @@ const BasebandFrame& BMode::render(const BModeInput& input) noexcept {
   return impl.out;
 }
 
-SoundPath BMode::sound_path(int line) const noexcept {
+SoundPath BMode::sound_path(int line) const {
   const Impl& impl = *impl_;
   TROCAR_CHECK(line >= 0 && line < impl.plan.lines);
   const auto samples = static_cast<std::size_t>(impl.plan.samples);

@@ -20,7 +20,7 @@ class BMode final : public EchoEngine {
   const Acquisition& acquisition() const noexcept override;
   const ScanGeometry& geometry() const noexcept override;
   const BasebandFrame& render(const BModeInput& input) noexcept override;
-  SoundPath sound_path(int line) const noexcept override;
+  SoundPath sound_path(int line) const override;
 
  private:
   struct Impl;

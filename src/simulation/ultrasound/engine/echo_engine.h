@@ -104,7 +104,7 @@ class EchoEngine {
   /// The echoes from that pose. The frame stays valid until the next call.
   virtual const BasebandFrame& render(const BModeInput& input) noexcept = 0;
   /// Losses along a scanline of the last frame; valid until the next call of render(). 0 <= line < lines.
-  virtual SoundPath sound_path(int line) const noexcept = 0;
+  virtual SoundPath sound_path(int line) const = 0;
 };
 
 }  // namespace trocar::ultrasound

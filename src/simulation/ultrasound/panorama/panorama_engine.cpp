@@ -392,7 +392,7 @@ const BasebandFrame& PanoramaEngine::render(const BModeInput& input) noexcept {
   return impl.out;
 }
 
-SoundPath PanoramaEngine::sound_path(int line) const noexcept {
+SoundPath PanoramaEngine::sound_path(int line) const {
   const Impl& impl = *impl_;
   TROCAR_CHECK(line >= 0 && line < impl.plan.lines);
   const auto samples = static_cast<std::size_t>(impl.plan.samples), at = static_cast<std::size_t>(line);

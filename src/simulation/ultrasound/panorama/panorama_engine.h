@@ -27,7 +27,7 @@ class PanoramaEngine final : public EchoEngine {
   const ScanGeometry& geometry() const noexcept override;
   const BasebandFrame& render(const BModeInput& input) noexcept override;
   /// The gain without attenuation in soft tissue except that by which the scanner's TGC calculates; no mirrors.
-  SoundPath sound_path(int line) const noexcept override;
+  SoundPath sound_path(int line) const override;
 
   /// Share of the last frame's area that comes from the panorama, 0..1.
   double panorama_share() const noexcept;

@@ -19,7 +19,7 @@ std::size_t CineLoop::slot(int index) const noexcept {
 }
 
 void CineLoop::push(std::span<const std::uint8_t> levels, const Pose& X_PT, double time_s,
-                    const DisplaySettings& settings) noexcept {
+                    const DisplaySettings& settings) {
   TROCAR_CHECK(levels.size() == frame_bytes_);
   if (is_frozen_) return;
   if (size_ == capacity()) {
@@ -72,7 +72,7 @@ void CineLoop::play(double elapsed_s) noexcept {
   played_s_ = now_s - time_s(position_);
 }
 
-CineFrame CineLoop::frame(int index) const noexcept {
+CineFrame CineLoop::frame(int index) const {
   TROCAR_CHECK(index >= 0 && index < size_);
   const std::size_t place = slot(index);
   const Moment& moment = moments_[place];

@@ -33,8 +33,7 @@ class CineLoop {
 
   /// Adds the newest frame (Scanner::levels()), in place of the oldest when full; does nothing while frozen. time_s
   /// does not decrease. Real-time safe.
-  void push(std::span<const std::uint8_t> levels, const Pose& X_PT, double time_s,
-            const DisplaySettings& settings) noexcept;
+  void push(std::span<const std::uint8_t> levels, const Pose& X_PT, double time_s, const DisplaySettings& settings);
   /// Clears all frames and unfreezes the loop. Real-time safe.
   void restart() noexcept;
 
@@ -56,7 +55,7 @@ class CineLoop {
   void play(double elapsed_s) noexcept;
 
   /// Frame 0..size()-1. Valid until the next push or restart.
-  CineFrame frame(int index) const noexcept;
+  CineFrame frame(int index) const;
 
  private:
   struct Moment {

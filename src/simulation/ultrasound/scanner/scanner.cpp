@@ -211,7 +211,7 @@ Scanner::~Scanner() = default;
 Scanner::Scanner(Scanner&&) noexcept = default;
 Scanner& Scanner::operator=(Scanner&&) noexcept = default;
 
-const GrayImage& Scanner::show(const BasebandFrame& frame, std::uint64_t seed) noexcept {
+const GrayImage& Scanner::show(const BasebandFrame& frame, std::uint64_t seed) {
   const DisplaySettings held = within_ranges(settings);
   impl_->set_scan(frame.geometry, held.is_mirrored);
   const std::size_t count = impl_->lines() * impl_->samples();
@@ -238,7 +238,7 @@ const GrayImage& Scanner::show(const BasebandFrame& frame, std::uint64_t seed) n
   return impl_->image;
 }
 
-const GrayImage& Scanner::show_levels(std::span<const std::uint8_t> levels, const ScanGeometry& scan) noexcept {
+const GrayImage& Scanner::show_levels(std::span<const std::uint8_t> levels, const ScanGeometry& scan) {
   const DisplaySettings held = within_ranges(settings);
   impl_->set_scan(scan, held.is_mirrored);
   const std::size_t n = impl_->samples();

@@ -36,10 +36,10 @@ class Scanner {
   /// Picture of a frame; `seed` is the seed of its noise. Of a frame that renewed some scanlines only, the others stay
   /// as they are, unless settings change. Valid until the next call. Non-finite samples and pixels beyond the scan are
   /// black. The result does not depend on the number of threads.
-  const GrayImage& show(const BasebandFrame& frame, std::uint64_t seed) noexcept;
+  const GrayImage& show(const BasebandFrame& frame, std::uint64_t seed);
   /// Displays stored levels of a cine loop (see levels()) with the present gain, dynamic range and gray map. Does not
   /// change persistence.
-  const GrayImage& show_levels(std::span<const std::uint8_t> levels, const ScanGeometry& scan) noexcept;
+  const GrayImage& show_levels(std::span<const std::uint8_t> levels, const ScanGeometry& scan);
 
   /// The last picture before scan conversion, one gray value per sample, scanline by scanline.
   const std::vector<std::uint8_t>& polar() const noexcept;

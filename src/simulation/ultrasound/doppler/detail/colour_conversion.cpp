@@ -118,7 +118,7 @@ void ColourConversion::set_colours(const DopplerSettings& settings) noexcept {
 
 const volume::RgbImage& ColourConversion::convert(const GrayImage& image, const RasterGeometry& raster,
                                                   const ScanGeometry& scan, const DopplerFrame& frame,
-                                                  const DopplerSettings& settings) noexcept {
+                                                  const DopplerSettings& settings) {
   const bool fits = is_made_ && image_.columns == image.columns && image_.rows == image.rows &&
                     raster_.is_mirrored == raster.is_mirrored && raster_.mm_per_pixel == raster.mm_per_pixel &&
                     raster_.first_T == raster.first_T;

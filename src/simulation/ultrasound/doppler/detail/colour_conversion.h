@@ -18,7 +18,7 @@ class ColourConversion {
   /// Discards the tables.
   void forget() noexcept { is_made_ = false; }
   const volume::RgbImage& convert(const GrayImage& image, const RasterGeometry& raster, const ScanGeometry& scan,
-                                  const DopplerFrame& frame, const DopplerSettings& settings) noexcept;
+                                  const DopplerFrame& frame, const DopplerSettings& settings);
 
  private:
   /// A pixel within the box: its cell (lower line and gate), and its distances to the next line and gate in 1/255 of a
