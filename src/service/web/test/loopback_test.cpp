@@ -140,16 +140,17 @@ class OverTls : public ::testing::Test {
 };
 
 /// A client that trusts every certificate.
-class TrustingClient : public httplib::SSLClient {
- public:
-  explicit TrustingClient(int port) : httplib::SSLClient("127.0.0.1", port) {
-    enable_server_certificate_verification(false);
-  }
+struct TrustingClient {
+  explicit TrustingClient(int port) : http("127.0.0.1", port) { http.enable_server_certificate_verification(false); }
+  httplib::Result get() { return http.Get("/", {{"Host", "localhost"}}); }
+  SSL_CTX* context() { return http.ssl_context(); }
+
+  httplib::SSLClient http;
 };
 
 TEST_F(OverTls, AnswersWithStrictTransportSecurity) {
   TrustingClient client(server_->port());
-  const auto answer = client.Get("/", {{"Host", "localhost"}});
+  const auto answer = client.get();
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->status, 200);
   EXPECT_EQ(answer->get_header_value("Strict-Transport-Security"), "max-age=31536000");
@@ -159,21 +160,21 @@ TEST_F(OverTls, AnswersWithStrictTransportSecurity) {
 TEST_F(OverTls, OldVersionsAndWeakCiphersAreRefused) {
   for (const int version : {TLS1_VERSION, TLS1_1_VERSION}) {
     TrustingClient client(server_->port());
-    SSL_CTX_set_security_level(client.ssl_context(), 0);
-    SSL_CTX_set_min_proto_version(client.ssl_context(), version);
-    SSL_CTX_set_max_proto_version(client.ssl_context(), version);
-    EXPECT_FALSE(client.Get("/", {{"Host", "localhost"}})) << version;
+    SSL_CTX_set_security_level(client.context(), 0);
+    SSL_CTX_set_min_proto_version(client.context(), version);
+    SSL_CTX_set_max_proto_version(client.context(), version);
+    EXPECT_FALSE(client.get()) << version;
   }
   for (const char* cipher : {"AES128-SHA", "AES256-GCM-SHA384", "ECDHE-RSA-AES128-SHA", "NULL-SHA256"}) {
     TrustingClient client(server_->port());
-    SSL_CTX_set_security_level(client.ssl_context(), 0);
-    SSL_CTX_set_max_proto_version(client.ssl_context(), TLS1_2_VERSION);
-    ASSERT_EQ(SSL_CTX_set_cipher_list(client.ssl_context(), cipher), 1) << cipher;
-    EXPECT_FALSE(client.Get("/", {{"Host", "localhost"}})) << cipher;
+    SSL_CTX_set_security_level(client.context(), 0);
+    SSL_CTX_set_max_proto_version(client.context(), TLS1_2_VERSION);
+    ASSERT_EQ(SSL_CTX_set_cipher_list(client.context(), cipher), 1) << cipher;
+    EXPECT_FALSE(client.get()) << cipher;
   }
   TrustingClient client(server_->port());
-  SSL_CTX_set_max_proto_version(client.ssl_context(), TLS1_2_VERSION);
-  EXPECT_TRUE(client.Get("/", {{"Host", "localhost"}})) << "TLS 1.2 itself is served";
+  SSL_CTX_set_max_proto_version(client.context(), TLS1_2_VERSION);
+  EXPECT_TRUE(client.get()) << "TLS 1.2 itself is served";
 }
 
 TEST_F(OverTls, PlainTextIsNotAnswered) {
