@@ -63,7 +63,7 @@ WorkPage::WorkPage(QWidget* parent) : QWidget(parent) {
 
 /// In a narrow window the tissue panel replaces the side panel, so that the images keep their size.
 void WorkPage::fit() {
-  const int side_px = fontMetrics().averageCharWidth() * kSideColumns;
+  const int side_px = std::max(fontMetrics().averageCharWidth() * kSideColumns, puncture_->needed_width());
   if (side_->maximumWidth() != side_px) side_->setFixedWidth(side_px);
   const bool has_room =
       !are_parameters_shown() ||
@@ -84,6 +84,7 @@ void WorkPage::changeEvent(QEvent* event) {
 void WorkPage::show_puncture() {
   side_->setCurrentWidget(puncture_);
   time_line_->hide();
+  fit();  // the buttons of another task need another width
 }
 
 void WorkPage::show_feedback() {

@@ -48,12 +48,12 @@ PuncturePanel::PuncturePanel(QWidget* parent) : QWidget(parent) {
   fire_->setFocusPolicy(Qt::NoFocus);
   end_ = make_button("end-attempt", tr("End the attempt"), tr("End and score the attempt; asks for confirmation (E)"));
   end_->setFocusPolicy(Qt::NoFocus);
-  auto* scroll = make_scrolled(*inside);
-  scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  scroll_ = make_scrolled(*inside);
+  scroll_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   auto* column = new QVBoxLayout(this);
   column->setContentsMargins(0, 0, 0, 0);
   column->setSpacing(0);
-  column->addWidget(scroll, 1);
+  column->addWidget(scroll_, 1);
   auto* buttons = new QVBoxLayout;  // always visible
   buttons->setContentsMargins(12, 8, 12, 12);
   buttons->setSpacing(8);
@@ -63,6 +63,10 @@ PuncturePanel::PuncturePanel(QWidget* parent) : QWidget(parent) {
   column->addLayout(buttons);
   connect(fire_, &QPushButton::clicked, this, &PuncturePanel::fire_requested);
   connect(end_, &QPushButton::clicked, this, &PuncturePanel::end_requested);
+}
+
+int PuncturePanel::needed_width() const {
+  return scroll_->widget()->minimumSizeHint().width() + scroll_->verticalScrollBar()->sizeHint().width();
 }
 
 void PuncturePanel::make_content(QWidget& inside) {

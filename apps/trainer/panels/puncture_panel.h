@@ -11,6 +11,7 @@ class QFrame;
 class QLabel;
 class QListWidget;
 class QPushButton;
+class QScrollArea;
 class QShortcut;
 
 namespace trocar::attempt {
@@ -55,6 +56,8 @@ class PuncturePanel : public QWidget {
   void begin(double most_force_n, bool can_aim, bool has_gun = true, const std::vector<TraineeAction>& actions = {});
   void show_figures(const PunctureFigures& figures);
   StepList& steps() noexcept { return *steps_; }
+  /// In pixels: what its buttons and texts need beside the scroll bar.
+  int needed_width() const;
   void show_active_tool(ActiveTool tool);
   /// A bad event has the colour of errors.
   void add_event(const QString& text, bool is_bad = false);
@@ -100,6 +103,7 @@ class PuncturePanel : public QWidget {
   ForceBar* force_ = nullptr;
   CorePicture* core_ = nullptr;
   QListWidget* events_ = nullptr;
+  QScrollArea* scroll_ = nullptr;
   QPushButton* fire_ = nullptr;
   bool has_gun_ = true;
   QPushButton* end_ = nullptr;

@@ -90,8 +90,12 @@ TEST(SliceView, MovesTheCrossHairsToTheMouse) {
   const QColor vertical = shown.color_at({at.x(), 330});
   EXPECT_GT(vertical.green(), 2 * vertical.blue());  // yellow
   EXPECT_GT(vertical.red(), 2 * vertical.blue());
-  const QColor horizontal = shown.color_at({396, at.y()});  // over air
-  EXPECT_GT(horizontal.red(), 2 * horizontal.green());      // red
+  bool has_red = false;
+  for (const double beside : {-1.0, 0.0, 1.0}) {  // which row of pixels a line between two of them takes is Qt's choice
+    const QColor horizontal = shown.color_at({396, at.y() + beside});  // over air
+    has_red = has_red || horizontal.red() > std::max(50, 2 * horizontal.green());
+  }
+  EXPECT_TRUE(has_red);
 }
 
 TEST(SliceView, ScrollsByTheSlicesOfTheVolume) {

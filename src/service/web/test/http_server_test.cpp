@@ -100,6 +100,7 @@ TEST_F(Transport, AmbiguousEndsOfARequestAreRefused) {
     EXPECT_NE(answer.find("X-Default: here\r\n"), std::string::npos) << answer;
   }
   const std::string get = answer_to(port(), "GET / HTTP/1.1\r\nHost: x\r\nContent-Length: 30\r\n\r\n" + hidden);
+  EXPECT_EQ(status_of(get), 400) << get;
   EXPECT_EQ(get.find("hidden"), std::string::npos) << get;
 }
 

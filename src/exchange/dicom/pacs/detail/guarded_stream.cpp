@@ -16,6 +16,8 @@ namespace {
 
 constexpr std::size_t kStreamBufferBytes = std::size_t{1} << 16;
 constexpr std::size_t kMaxHttpHeader = std::size_t{1} << 16;
+constexpr std::size_t kMaxHttpLine = std::size_t{1}
+                                     << 14;  ///< Newer versions of the library end at 32 KiB, without a reason.
 
 }  // namespace
 
@@ -80,7 +82,7 @@ ssize_t GuardedStream::fill() {
 ssize_t GuardedStream::read(char* bytes, size_t size) {
   if (trouble_ != StreamTrouble::kNone) return -1;
   single_reads_ = size == 1 ? single_reads_ + 1 : 0;
-  if (single_reads_ > kMaxHttpHeader) {
+  if (single_reads_ > kMaxHttpHeader || line_bytes_ > kMaxHttpLine) {
     trouble_ = StreamTrouble::kEndlessHeader;
     return -1;
   }
@@ -93,6 +95,7 @@ ssize_t GuardedStream::read(char* bytes, size_t size) {
   const std::size_t part = std::min(size, end_ - begin_);
   std::memcpy(bytes, buffer_.data() + begin_, part);
   begin_ += part;
+  line_bytes_ = size != 1 || *bytes == '\n' ? 0 : line_bytes_ + 1;
   return static_cast<ssize_t>(part);
 }
 

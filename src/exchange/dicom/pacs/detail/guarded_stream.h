@@ -50,6 +50,7 @@ class GuardedStream final : public httplib::Stream {
   std::vector<char> buffer_;
   std::size_t begin_ = 0, end_ = 0;  ///< Of the bytes in the buffer that were not read yet.
   std::size_t single_reads_ = 0;     ///< Reads of one byte in a row: the library reads lines byte by byte.
+  std::size_t line_bytes_ = 0;       ///< Of these, since the last end of a line.
 };
 
 /// The library's client on a GuardedStream. TLS is ours: the library's own client for it cannot be derived from in
