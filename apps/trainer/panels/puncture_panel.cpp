@@ -105,7 +105,7 @@ void PuncturePanel::make_content(QWidget& inside) {
 /// In a low window only the steps about the current one are shown.
 void PuncturePanel::resizeEvent(QResizeEvent* event) {
   QWidget::resizeEvent(event);
-  constexpr int kLinesForAllSteps = 50;
+  constexpr int kLinesForAllSteps = 60;  // with depth, resistance and events below them
   steps_->propose_folded(height() < kLinesForAllSteps * fontMetrics().lineSpacing());
 }
 
