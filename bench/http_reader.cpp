@@ -42,8 +42,8 @@ bool HttpReader::read_more() {
 
 std::optional<HttpReader::Answer> HttpReader::send(std::string_view method, std::string_view target,
                                                    std::string_view headers, std::string_view body) {
-  const auto answer = exchange(fmt::format("{} {} HTTP/1.1\r\nHost: localhost\r\nContent-Length: {}\r\n{}\r\n{}", method,
-                                           target, body.size(), headers, body));
+  const auto answer = exchange(fmt::format("{} {} HTTP/1.1\r\nHost: localhost\r\nContent-Length: {}\r\n{}\r\n{}",
+                                           method, target, body.size(), headers, body));
   if (!answer || answer->header.find("\r\nConnection: close\r\n") != std::string::npos) close();
   return answer;
 }

@@ -7,8 +7,8 @@
 
 namespace trocar::bench {
 
-/// A reader of a server on this machine. Its connection is kept alive and opened anew where the server has closed it, as
-/// it does after a number of requests. Errors are empty answers.
+/// A reader of a server on this machine. Its connection is kept alive and opened anew where the server has closed it,
+/// as it does after a number of requests. Errors are empty answers.
 class HttpReader {
  public:
   explicit HttpReader(int port) : port_(port) {}

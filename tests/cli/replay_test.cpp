@@ -130,7 +130,8 @@ Position position_in(const std::string& text, const std::string& head, char sepa
 Position shown_position(const std::string& file) {
   const TemporaryFolder folder;
   const std::string shown = folder / "shown";
-  const std::string until_shown = "for n in $(seq 600); do grep -qs ^state '" + shown + "' && break; sleep 0.1; done | ";
+  const std::string until_shown =
+      "for n in $(seq 600); do grep -qs ^state '" + shown + "' && break; sleep 0.1; done | ";
   const Outcome outcome =
       run_program("trocar-hapticd", "--device 'replay:" + file + "' --test >'" + shown + "'", until_shown);
   EXPECT_EQ(outcome.exit_status, 0) << outcome.err;
