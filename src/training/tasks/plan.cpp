@@ -12,6 +12,7 @@
 
 #include "core/parallel.h"
 #include "core/random.h"
+#include "geometry/pose.h"
 #include "tasks/detail/block_grid.h"
 #include "tasks/detail/path_check.h"
 #include "tasks/detail/planning_map.h"

@@ -1,5 +1,6 @@
 #include "server/stylus_weighing.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,6 +1,9 @@
 #include "xray/projection/project.h"
 
 #include <algorithm>
+#include <array>
+#include <span>
+#include <utility>
 
 #include "core/parallel.h"
 #include "xray/projection/detail/packed_volume.h"

@@ -42,10 +42,9 @@ TEST(ImagingMetrics, AngleAndOffsetOfATiltedNeedle) {
 TEST(ImagingMetrics, MediansAreOverTime) {
   // 1.2 s at 2 mm, 0.8 s at 9 mm beside the plane, with many more moments in the second part.
   Recording recording = record(1.2, 50.0, [](double, Moment& m) { set_depth(m, 20.0), m.tip_P.z() = 2.0; });
-  for (Moment moment : record(0.8, 1000.0, [](double, Moment& m) { set_depth(m, 20.0), m.tip_P.z() = 9.0; })) {
-    moment.time_s += 1.201;
-    recording.push_back(moment);
-  }
+  Recording second = record(0.8, 1000.0, [](double, Moment& m) { set_depth(m, 20.0), m.tip_P.z() = 9.0; });
+  for (Moment& moment : second) moment.time_s += 1.201;
+  recording.insert(recording.end(), second.begin(), second.end());
   for (Moment& moment : recording) moment.X_PT = kInPlane;
   EXPECT_NEAR(measure_one("plane_offset", recording), 2.0, 0.03);
 }

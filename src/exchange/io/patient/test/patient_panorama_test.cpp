@@ -1,5 +1,7 @@
 #include "io/patient/patient_panorama.h"
 
+#include <gtest/gtest.h>
+
 #include "anatomy/phantom/phantom.h"
 #include "core/files/temporary_folder.h"
 #include "io/image/image_file.h"
