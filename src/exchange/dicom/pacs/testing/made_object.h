@@ -48,7 +48,9 @@ class MadeObject {
     const std::string group = detail::encoded_element(0x00020010, "UI", transfer_syntax, {});
     std::string length(4, '\0');
     length[0] = static_cast<char>(group.size());
-    return std::string(128, '\0') + "DICM" + detail::encoded_element(0x00020000, "UL", length, {}) + group + bytes();
+    std::string all(128, '\0');
+    all += "DICM";
+    return all + detail::encoded_element(0x00020000, "UL", length, {}) + group + bytes();
   }
 
  private:
