@@ -75,7 +75,7 @@ void reset_slow_loop(link::HapticClient& client) {
 
 }  // namespace
 
-void press_on_skin(link::HapticClient& client) {
+void press_on_skin(link::HapticClient& client, double* pressed_mm) {
   const auto loaded = client.ask(layers_scene(), kPatience);
   ASSERT_TRUE(loaded) << loaded.error().text();
   link::HandTarget hand = hand_at_depth(-5.0);
@@ -86,16 +86,19 @@ void press_on_skin(link::HapticClient& client) {
     reset_slow_loop(client);
     return client.view().status.gate_mode == telemetry::GateMode::kOn;
   })) << to_string(client.view().status.gate_mode);
-  // Slowly: a hand that is thrown at the skin goes through it. The wall gives way under the needle.
-  constexpr double kStep_mm = 0.02, kDeepest_mm = 15.0;
   double depth_mm = -5.0;
-  ASSERT_TRUE(wait_for([&] {
-    reset_slow_loop(client);
-    depth_mm = std::min(depth_mm + kStep_mm, kDeepest_mm);
-    client.set_hand(hand_at_depth(depth_mm));
-    const auto newest = client.newest();
-    return newest && felt_n(*newest) > 0.5;
-  }));
+  ASSERT_TRUE(wait_for([&] { return keep_pressing(client, 0.5, depth_mm); }));
+  if (pressed_mm != nullptr) *pressed_mm = depth_mm;
+}
+
+bool keep_pressing(link::HapticClient& client, double least_n, double& depth_mm) {
+  reset_slow_loop(client);
+  const auto newest = client.newest();
+  if (newest && felt_n(*newest) > least_n) return true;
+  constexpr double kStep_mm = 0.02, kDeepest_mm = 15.0;
+  depth_mm = std::min(depth_mm + kStep_mm, kDeepest_mm);
+  client.set_hand(hand_at_depth(depth_mm));
+  return false;
 }
 
 double felt_n(const telemetry::TickSample& sample) {

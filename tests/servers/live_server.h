@@ -39,7 +39,10 @@ link::HapticClient connect(const std::string& url, bool wants_control = true);
 link::LoadScene layers_scene();
 link::HandTarget hand_at_depth(double depth_mm);
 /// Loads the scene, presses the hand on the skin, turns the forces on and waits for the end of the safe start.
-void press_on_skin(link::HapticClient& client);
+void press_on_skin(link::HapticClient& client, double* pressed_mm = nullptr);
+/// A step of a hand that presses: slowly, as one that is thrown at the skin goes through it, and deeper while less than
+/// `least_n` is felt, as the wall gives way under the needle. True if that much is felt.
+bool keep_pressing(link::HapticClient& client, double least_n, double& depth_mm);
 /// Tissue force on the device (N), without the weight of the stylus.
 double felt_n(const telemetry::TickSample& sample);
 bool has_limit(const telemetry::TickSample& sample, telemetry::LimitReason reason);

@@ -65,8 +65,10 @@ TEST(Holder, DISABLED_HoldsTheServerUntilItIsKilled) {
   const char* url = ::getenv(kHeldUrl);
   ASSERT_NE(url, nullptr);
   link::HapticClient client = connect(url);
-  press_on_skin(client);
-  for (;;) std::this_thread::sleep_for(std::chrono::seconds(1));
+  // Another process has to feel it, however late it looks: the hand goes on pressing.
+  double depth_mm = 0.0;
+  press_on_skin(client, &depth_mm);
+  for (;; std::this_thread::sleep_for(std::chrono::milliseconds(5))) keep_pressing(client, 0.7, depth_mm);
 }
 
 TEST(Liveness, ForceIsGoneInTimeWhenTheClientIsKilled) {
