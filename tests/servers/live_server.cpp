@@ -67,9 +67,10 @@ link::HandTarget hand_at_depth(double depth_mm) {
 
 namespace {
 
-/// A busy machine can make a loop slow: such a fault is reset, as a seat with a simulated device does.
-void reset_slow_loop(link::HapticClient& client) {
-  if (client.view().status.fault == telemetry::GateFault::kLoopSlow)
+/// A busy machine can make a loop slow or stop it: such a fault is reset, as a seat with a simulated device does.
+void reset_loop_fault(link::HapticClient& client) {
+  const telemetry::GateFault fault = client.view().status.fault;
+  if (fault == telemetry::GateFault::kLoopSlow || fault == telemetry::GateFault::kLoopStalled)
     client.ask(link::ServerCommand::kResetFault, kPatience);
 }
 
@@ -83,7 +84,7 @@ void press_on_skin(link::HapticClient& client, double* pressed_mm) {
   client.set_hand(hand);
   ASSERT_TRUE(client.ask(link::ServerCommand::kStart, kPatience));
   ASSERT_TRUE(wait_for([&] {
-    reset_slow_loop(client);
+    reset_loop_fault(client);
     return client.view().status.gate_mode == telemetry::GateMode::kOn;
   })) << to_string(client.view().status.gate_mode);
   double depth_mm = -5.0;
@@ -92,11 +93,12 @@ void press_on_skin(link::HapticClient& client, double* pressed_mm) {
 }
 
 bool keep_pressing(link::HapticClient& client, double least_n, double& depth_mm) {
-  reset_slow_loop(client);
+  reset_loop_fault(client);
   const auto newest = client.newest();
   if (newest && felt_n(*newest) > least_n) return true;
-  constexpr double kStep_mm = 0.02, kDeepest_mm = 15.0;
-  depth_mm = std::min(depth_mm + kStep_mm, kDeepest_mm);
+  // A needle that went through the skin is pulled out and pressed on it again.
+  constexpr double kStep_mm = 0.02, kDeepest_mm = 15.0, kOutside_mm = -5.0;
+  depth_mm = depth_mm < kDeepest_mm ? depth_mm + kStep_mm : kOutside_mm;
   client.set_hand(hand_at_depth(depth_mm));
   return false;
 }

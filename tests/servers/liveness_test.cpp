@@ -51,13 +51,16 @@ Fade watch_fade(link::HapticClient& watcher) {
 }
 
 /// The holder presses on the skin; what the watcher has seen so far is taken.
-bool wait_until_felt(link::HapticClient& watcher) {
+::testing::AssertionResult wait_until_felt(link::HapticClient& watcher) {
   const bool is_felt = wait_for([&] {
     const auto newest = watcher.newest();
     return newest && felt_n(*newest) > 0.5;
   });
   watcher.take_samples();
-  return is_felt;
+  if (is_felt) return ::testing::AssertionSuccess();
+  const link::ServerStatus status = watcher.view().status;
+  return ::testing::AssertionFailure() << "not felt: " << to_string(status.state) << ", forces "
+                                       << to_string(status.gate_mode) << ", fault " << to_string(status.fault);
 }
 
 // Not a test: the other process of the tests below.
