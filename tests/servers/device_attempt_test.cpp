@@ -73,7 +73,7 @@ TEST_F(DeviceAttemptTest, AGamepadPushesTheNeedleInAndRumbles) {
   pad.pull_right_trigger(0.0);
   ASSERT_TRUE(wait_rest()) << where();
   EXPECT_GT(pad.strongest_rumble(), 0);
-  EXPECT_EQ(attempt->view().phase, attempt::AttemptPhase::kInBody);
+  EXPECT_TRUE(wait_phase(attempt::AttemptPhase::kInBody)) << where();
 }
 
 TEST_F(DeviceAttemptTest, AnUnpluggedGamepadIsToldAndThePunctureGoesOnWhenItIsBack) {
@@ -124,7 +124,7 @@ TEST_F(DeviceAttemptTest, ASpaceMousePushesTheNeedleInAndMayBeUnplugged) {
   };
   const auto is_deeper = [&](double mm) { return [this, mm] { return attempt->view().needle.depth_mm > mm; }; };
   ASSERT_TRUE(push_until(-200, is_deeper(12.0))) << where();
-  EXPECT_EQ(attempt->view().phase, attempt::AttemptPhase::kInBody);
+  EXPECT_TRUE(wait_phase(attempt::AttemptPhase::kInBody)) << where();
   ASSERT_TRUE(wait_rest()) << where();
   daemon.unplug_device();
   ASSERT_TRUE(wait_for([&] { return attempt->view().banner.find("SpaceMouse is disconnected") != std::string::npos; }))
