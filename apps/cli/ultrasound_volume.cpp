@@ -2,13 +2,16 @@
 
 #include "core/fail_at.h"
 #include "io/image/image_file.h"
+#include "output.h"
 
 namespace trocar::cli {
 
 Result<UltrasoundVolume> read_ultrasound_volume(const std::string& path, const std::string& beam_axis) {
   UltrasoundVolume volume;
   volume.name = io::name_without_ending(path);
-  TROCAR_TRY(volume.gray, io::read_gray_levels(path));
+  std::vector<std::string> warnings;
+  TROCAR_TRY(volume.gray, io::read_gray_levels(path, warnings));
+  for (const std::string& warning : warnings) print_warning(warning);
   TROCAR_TRY(const io::ImageFields fields, io::read_image_fields(path));
   auto beams = registration::Beams::choose(beam_axis, fields, volume.gray.geometry);
   if (!beams) return fail_at(path, beams.error());

@@ -16,8 +16,8 @@ struct UltrasoundVolume {
   registration::Beams beams;
 };
 
-/// Reads a volume of gray levels. `beam_axis`: parallel beams along it; empty: the beams of the header, or
-/// parallel along +y.
+/// Reads a volume of gray levels; prints warnings. `beam_axis`: parallel beams along it; empty: the beams of the
+/// header, or parallel along +y.
 Result<UltrasoundVolume> read_ultrasound_volume(const std::string& path, const std::string& beam_axis);
 
 }  // namespace trocar::cli

@@ -34,7 +34,8 @@ struct ImportedUltrasound {
   double white = 255.0;       ///< Gray level to show white.
   io::ImageFields fields;     ///< Of its header.
   registration::Beams beams;
-  std::string source;  ///< File.
+  std::string source;                 ///< File.
+  std::vector<std::string> warnings;  ///< What was found while it was read.
 };
 
 enum class PlacementOrigin : std::uint8_t {

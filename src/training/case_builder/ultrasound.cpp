@@ -40,7 +40,7 @@ Result<std::shared_ptr<const ImportedUltrasound>> read_ultrasound(const Ultrasou
   if (request.file.empty()) return fail("no ultrasound given", {}, "choose a volume of gray levels");
   auto read = std::make_shared<ImportedUltrasound>();
   read->source = request.file.string();
-  TROCAR_TRY(read->gray_U, io::read_gray_levels(request.file));
+  TROCAR_TRY(read->gray_U, io::read_gray_levels(request.file, read->warnings));
   TROCAR_TRY(read->fields, io::read_image_fields(request.file));
   auto beams = registration::Beams::choose(request.beam_axis, read->fields, read->gray_U.geometry);
   if (!beams) return fail_at(read->source, beams.error());

@@ -26,7 +26,7 @@ Result<CtScan> read_ct_scan(const fs::path& path, const std::string& series,
   }
   if (!series.empty())
     return fail_usage("a series can only be chosen in a folder of DICOM files", path.string(), "omit --series");
-  TROCAR_TRY(scan.grid, detail::read_grid<std::int16_t>(path, detail::convert_voxels));
+  TROCAR_TRY(scan.grid, detail::read_grid<std::int16_t>(path, detail::convert_voxels, scan.warnings));
   return scan;
 }
 
@@ -36,11 +36,20 @@ Result<volume::CtGrid> read_ct(const fs::path& path, const std::string& series) 
 }
 
 Result<volume::LabelGrid> read_labels(const fs::path& path) {
-  return detail::read_grid<std::uint8_t>(path, detail::convert_voxels);
+  std::vector<std::string> unused;
+  return detail::read_grid<std::uint8_t>(path, detail::convert_voxels, unused);
 }
 
-Result<volume::LabelGrid> read_gray_levels(const fs::path& path) {
-  return detail::read_grid<std::uint8_t>(path, detail::convert_gray);
+Result<volume::LabelGrid> read_gray_levels(const fs::path& path, std::vector<std::string>& warnings) {
+  std::error_code error;
+  if (fs::is_directory(path, error)) return detail::read_grid<std::uint8_t>(path, detail::convert_gray, warnings);
+  TROCAR_TRY_STATUS(detail::check_image_path(path));
+  TROCAR_TRY(const detail::RawVolume raw, detail::read_volume_file(path));
+  warnings.insert(warnings.end(), raw.warnings.begin(), raw.warnings.end());
+  TROCAR_TRY(auto grid, detail::to_grid<std::uint8_t>(raw, path.string(), detail::convert_gray));
+  if (detail::has_fractions(raw.voxels()))
+    warnings.push_back(path.filename().string() + ": the gray levels have fractions and are rounded");
+  return grid;
 }
 
 std::vector<std::string_view> image_endings() {
@@ -59,7 +68,8 @@ std::string name_without_ending(const fs::path& path) {
 }
 
 Result<volume::FloatGrid> read_float(const fs::path& path) {
-  return detail::read_grid<float>(path, detail::convert_voxels);
+  std::vector<std::string> unused;
+  return detail::read_grid<float>(path, detail::convert_voxels, unused);
 }
 
 Result<ImageFields> read_image_fields(const fs::path& path) {

@@ -39,8 +39,9 @@ Result<volume::CtGrid> read_ct(const std::filesystem::path& path, const std::str
 /// are whole numbers 0..255, anything else is refused.
 Result<volume::LabelGrid> read_labels(const std::filesystem::path& path);
 
-/// Reads an ultrasound volume: the same formats and values, with errors that name gray levels.
-Result<volume::LabelGrid> read_gray_levels(const std::filesystem::path& path);
+/// Reads an ultrasound volume: the same formats, gray levels 0..255, rounded with a warning if they have fractions.
+/// Warnings are appended. Errors: values outside, a volume of fractions from 0 to 1.
+Result<volume::LabelGrid> read_gray_levels(const std::filesystem::path& path, std::vector<std::string>& warnings);
 
 /// Endings of image files in lower case, for file dialogs: ".nii", ".nii.gz" …
 std::vector<std::string_view> image_endings();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "core/parallel.h"
 #include "core/parse_number.h"
@@ -88,24 +89,53 @@ DescribedSegment describe(const std::string& name, int value, std::string_view t
   return segment;
 }
 
-/// Segments described in the header: Segment{N}_Name, _LabelValue, _Layer. Empty for an ordinary file.
-std::vector<Segment3dSlicer> segments_in(const detail::RawVolume& raw) {
+/// The numbers N of the fields Segment{N}_…, in order; none for an ordinary file.
+std::set<int> segment_numbers(const std::map<std::string, std::string>& fields) {
+  constexpr std::string_view kPrefix = "Segment";
+  std::set<int> numbers;
+  for (auto field = fields.lower_bound(std::string(kPrefix)); field != fields.end(); ++field) {
+    const std::string_view key = field->first;
+    if (!key.starts_with(kPrefix)) break;
+    const auto number = find_leading_number<int>(key.substr(kPrefix.size()));
+    if (number && number->rest.starts_with('_')) numbers.insert(number->value);
+  }
+  return numbers;
+}
+
+/// Segments described in the header: Segment{N}_Name, _LabelValue, _Layer. Empty for an ordinary file. Errors: a
+/// segment without a name, without a value, in a layer that the image does not have, or with another one's value in its
+/// layer: nothing may be guessed that decides which organ a voxel belongs to.
+Result<std::vector<Segment3dSlicer>> segments_in(const detail::RawVolume& raw, const fs::path& path) {
   const std::map<std::string, std::string> fields(raw.fields.begin(), raw.fields.end());
-  const auto number = [&](const std::string& key, int fallback) {
-    const auto found = fields.find(key);
-    const auto value = found == fields.end() ? std::nullopt : find_leading_number<int>(found->second);
-    return value ? value->value : fallback;
+  const auto refused = [&](const std::string& what) {
+    return fail(what, path.string(), "save the segmentation again in 3D Slicer");
   };
   std::vector<Segment3dSlicer> segments;
-  for (int n = 0;; ++n) {
+  for (const int n : segment_numbers(fields)) {
     const std::string prefix = fmt::format("Segment{}_", n);
-    const auto name = fields.find(prefix + "Name");
-    if (name == fields.end()) return segments;
-    const int value = number(prefix + "LabelValue", n + 1);
-    const auto tags = fields.find(prefix + "Tags");
-    segments.push_back({describe(name->second, value, tags == fields.end() ? std::string() : tags->second), value,
-                        number(prefix + "Layer", 0)});
+    const auto name = fields.find(prefix + "Name"), value_text = fields.find(prefix + "LabelValue");
+    const auto layer_text = fields.find(prefix + "Layer"), tags = fields.find(prefix + "Tags");
+    if (name == fields.end()) return refused(fmt::format("the header has no {}Name", prefix));
+    if (value_text == fields.end())
+      return refused(fmt::format("the segment \"{}\" has no label value ({}LabelValue)", name->second, prefix));
+    const auto value = parse_number<int>(value_text->second);
+    if (!value || *value < 1 || *value > kMaxLabel)
+      return refused(
+          fmt::format("{}LabelValue is \"{}\", not a number from 1 to {}", prefix, value_text->second, kMaxLabel));
+    // A file of one layer may leave it out.
+    const std::string layer_number = layer_text != fields.end() ? layer_text->second : raw.components > 1 ? "" : "0";
+    const int layer = parse_number<int>(layer_number).value_or(-1);
+    if (layer < 0 || layer >= raw.components)
+      return refused(
+          fmt::format("the segment \"{}\" has no layer of the image, which has {}", name->second, raw.components));
+    for (const Segment3dSlicer& other : segments)
+      if (other.value == *value && other.layer == layer)
+        return refused(fmt::format("the segments \"{}\" and \"{}\" have the same label value {}",
+                                   other.description.name, name->second, *value));
+    segments.push_back(
+        {describe(name->second, *value, tags == fields.end() ? std::string() : tags->second), *value, layer});
   }
+  return segments;
 }
 
 /// One source per layer: overlapping segments are in different layers.
@@ -119,6 +149,8 @@ Result<std::vector<anatomy::LabelSource>> read_segments(const detail::RawVolume&
     detail::RawVolume single;
     single.geometry = raw.geometry;
     single.type = raw.type;
+    single.slope = raw.slope;
+    single.intercept = raw.intercept;
     single.bytes = std::make_unique_for_overwrite<std::byte[]>(single.byte_count());
     for (std::size_t n = 0; n < raw.geometry.voxel_count(); ++n)
       std::copy_n(raw.bytes.get() + (n * count + layer) * voxel_bytes, voxel_bytes,
@@ -141,7 +173,9 @@ Result<std::vector<anatomy::LabelSource>> read_label_file(const fs::path& path, 
                                                           std::vector<std::string>& warnings) {
   TROCAR_TRY_STATUS(detail::check_image_path(path));
   TROCAR_TRY(const detail::RawVolume raw, detail::read_volume_file(path));
-  if (const auto segments = segments_in(raw); !segments.empty()) return read_segments(raw, segments, map, path);
+  warnings.insert(warnings.end(), raw.warnings.begin(), raw.warnings.end());
+  TROCAR_TRY(const std::vector<Segment3dSlicer> segments, segments_in(raw, path));
+  if (!segments.empty()) return read_segments(raw, segments, map, path);
   TROCAR_TRY(volume::LabelGrid labels, detail::to_grid<std::uint8_t>(raw, path.string(), detail::convert_voxels));
   TROCAR_TRY(anatomy::LabelSource source, name_labels(std::move(labels), path, map, place, warnings));
   std::vector<anatomy::LabelSource> sources;
@@ -163,16 +197,18 @@ std::vector<fs::path> sorted_entries(const fs::path& folder, bool want_folders) 
   return paths;
 }
 
-Result<std::vector<anatomy::LabelSource>> read_mask_files(const std::vector<fs::path>& files, const LabelMap& map) {
+Result<std::vector<anatomy::LabelSource>> read_mask_files(const std::vector<fs::path>& files, const LabelMap& map,
+                                                          std::vector<std::string>& warnings) {
   detail::MaskFolder folder;
   for (std::size_t begin = 0; begin < files.size(); begin += kFilesAtOnce) {
     const std::size_t count = std::min(kFilesAtOnce, files.size() - begin);
     std::vector<Result<std::vector<anatomy::LabelSource>>> read(count);
+    std::vector<std::vector<std::string>> told(count);
     parallel_for(count, 1, [&](std::size_t first, std::size_t last) {
-      std::vector<std::string> none;  // only of files that the user named
       for (std::size_t n = first; n < last; ++n)
-        read[n] = read_label_file(files[begin + n], map, Place::kInFolder, none);
+        read[n] = read_label_file(files[begin + n], map, Place::kInFolder, told[n]);
     });
+    for (const auto& of_file : told) warnings.insert(warnings.end(), of_file.begin(), of_file.end());
     for (auto& result : read) {
       TROCAR_TRY(std::vector<anatomy::LabelSource> sources, std::move(result));
       for (anatomy::LabelSource& source : sources) folder.add(std::move(source));
@@ -186,10 +222,11 @@ Result<anatomy::LabelSource> read_dicom_mask(const fs::path& folder, const Label
   return anatomy::LabelSource{folder.string(), std::move(mask.grid), {{1, map.name_of(folder.filename().string())}}};
 }
 
-Result<std::vector<anatomy::LabelSource>> read_label_folder(const fs::path& folder, const LabelMap& map) {
+Result<std::vector<anatomy::LabelSource>> read_label_folder(const fs::path& folder, const LabelMap& map,
+                                                            std::vector<std::string>& warnings) {
   std::vector<fs::path> files = sorted_entries(folder, false);
   std::erase_if(files, [](const fs::path& file) { return !detail::find_image_format(file); });
-  if (!files.empty()) return read_mask_files(files, map);
+  if (!files.empty()) return read_mask_files(files, map, warnings);
 
   detail::MaskFolder masks;
   // A path with a trailing slash has no file name.
@@ -218,7 +255,8 @@ Result<std::vector<anatomy::LabelSource>> read_path(const fs::path& path, const 
   const bool is_folder = fs::is_directory(path, error);
   TROCAR_TRY(const std::vector<fs::path> objects, detail::find_dicom_labels(path));
   if (objects.empty())
-    return is_folder ? read_label_folder(path, map) : read_label_file(path, map, Place::kNamedByUser, warnings);
+    return is_folder ? read_label_folder(path, map, warnings)
+                     : read_label_file(path, map, Place::kNamedByUser, warnings);
   std::vector<anatomy::LabelSource> all;
   for (const fs::path& object : objects) {
     TROCAR_TRY(std::vector<anatomy::LabelSource> sources, detail::read_dicom_labels(object, map, ct, warnings));

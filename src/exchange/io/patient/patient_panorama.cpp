@@ -55,7 +55,8 @@ Result<std::shared_ptr<const ultrasound::Panorama>> load_panorama(const PatientS
                   "correct the header, or stitch the panorama again");
     options.dynamic_range_db = *number;
   }
-  TROCAR_TRY(const volume::LabelGrid gray_U, read_gray_levels(volume));
+  std::vector<std::string> unused;  // the volume was written by this program
+  TROCAR_TRY(const volume::LabelGrid gray_U, read_gray_levels(volume, unused));
   auto panorama = ultrasound::make_panorama(gray_U, X_PU, options);
   if (!panorama) return fail(panorama.error().what, volume.string(), panorama.error().advice);
   return panorama;

@@ -7,7 +7,7 @@
 
 #include "core/ascii.h"
 #include "core/files/atomic_file.h"
-#include "io/image/detail/header_payload.h"
+#include "io/image/detail/image_header.h"
 #include "io/sequence/detail/sequence_header.h"
 #include "io/sequence/detail/sequence_pixels.h"
 

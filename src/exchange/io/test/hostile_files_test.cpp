@@ -21,6 +21,10 @@ using testing::numbered_grid;
 using testing::oblique_geometry;
 using testing::write_bytes;
 
+const std::string kNrrdPlace =
+    "space: left-posterior-superior\nspace directions: (1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0)\n";
+const std::string kMetaPlace = "TransformMatrix = 1 0 0 0 1 0 0 0 1\nOffset = 0 0 0\nElementSpacing = 1 1 1\n";
+
 template <class T>
 std::string error_text(const Result<T>& result) {
   return result ? "was read" : result.error().text();
@@ -86,15 +90,13 @@ TEST(HostileFiles, ADetachedHeaderMayNotLeaveItsFolder) {
   fs::create_symlink("../outside.raw", folder / "in" / "link.raw");
   ::mkfifo((folder / "in" / "fifo.raw").c_str(), 0600);
   const auto nrrd_error = [&](const std::string& key, const std::string& name) {
-    write_bytes(folder / "in" / "a.nhdr",
-                "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 4 4 4\nencoding: raw\n" + key + ": " + name + "\n\n");
+    write_bytes(folder / "in" / "a.nhdr", "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 4 4 4\nencoding: raw\n" +
+                                              kNrrdPlace + key + ": " + name + "\n\n");
     return error_text(read_labels(folder / "in" / "a.nhdr"));
   };
   const auto meta_error = [&](const std::string& name) {
-    write_bytes(folder / "in" / "a.mhd",
-                "ObjectType = Image\nNDims = 3\nDimSize = 4 4 4\nElementType = MET_UCHAR\n"
-                "ElementDataFile = " +
-                    name + "\n");
+    write_bytes(folder / "in" / "a.mhd", "ObjectType = Image\nNDims = 3\nDimSize = 4 4 4\nElementType = MET_UCHAR\n" +
+                                             kMetaPlace + "ElementDataFile = " + name + "\n");
     return error_text(read_labels(folder / "in" / "a.mhd"));
   };
   EXPECT_EQ(nrrd_error("data file", "inside.raw"), "was read");
@@ -117,16 +119,18 @@ TEST(HostileFiles, ADetachedHeaderMayNotLeaveItsFolder) {
 
 TEST(HostileFiles, HeadersThatReadersUnderstandDifferentlyAreRefused) {
   TemporaryFolder folder;
-  const std::string start = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 4 4 4\nencoding: raw\n";
-  for (const std::string& more : {std::string(" \ndata file: /dev/zero\n\n"),
-                                  std::string("x: y\rdata file: /dev/zero\n\n"), std::string("x: \x01\n\n")}) {
+  const std::string start = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 4 4 4\nencoding: raw\n" + kNrrdPlace;
+  write_bytes(folder / "a.nrrd", start + "content: y\n\n" + std::string(64, '\0'));
+  EXPECT_TRUE(read_labels(folder / "a.nrrd")) << error_text(read_labels(folder / "a.nrrd"));
+  for (const std::string& more :
+       {std::string(" \ndata file: /dev/zero\n\n"), std::string("content: y\rdata file: /dev/zero\n\n"),
+        std::string("content: \x01\n\n")}) {
     write_bytes(folder / "a.nrrd", start + more + std::string(64, '\0'));
     EXPECT_FALSE(read_labels(folder / "a.nrrd")) << more;
   }
-  write_bytes(folder / "a.mha",
-              "ObjectType = Image\nNDims = 3\nDimSize = 4 4 4\nElementType = MET_UCHAR\n"
-              "elementdatafile = LOCAL\nElementDataFile = /dev/zero\n" +
-                  std::string(64, '\0'));
+  write_bytes(folder / "a.mha", "ObjectType = Image\nNDims = 3\nDimSize = 4 4 4\nElementType = MET_UCHAR\n" +
+                                    kMetaPlace + "elementdatafile = LOCAL\nElementDataFile = /dev/zero\n" +
+                                    std::string(64, '\0'));
   EXPECT_FALSE(read_labels(folder / "a.mha"));
 }
 
@@ -135,12 +139,13 @@ TEST(HostileFiles, ADeclaredSizeIsComparedWithTheFileFirst) {
   TemporaryFolder folder;
   const std::string sizes = "1000 1000 2000";
   for (const char* encoding : {"raw", "gzip", "ascii", "hex"}) {
-    write_bytes(folder / "a.nrrd",
-                "NRRD0004\ntype: uchar\ndimension: 3\nsizes: " + sizes + "\nencoding: " + encoding + "\n\n0 1 2");
+    write_bytes(folder / "a.nrrd", "NRRD0004\ntype: uchar\ndimension: 3\nsizes: " + sizes + "\nencoding: " + encoding +
+                                       "\n" + kNrrdPlace + "\n0 1 2");
     EXPECT_FALSE(read_labels(folder / "a.nrrd")) << encoding;
   }
   write_bytes(folder / "a.mha", "ObjectType = Image\nNDims = 3\nDimSize = " + sizes +
-                                    "\nElementType = MET_UCHAR\nBinaryData = False\nElementDataFile = LOCAL\n0 1 2");
+                                    "\nElementType = MET_UCHAR\nBinaryData = False\n" + kMetaPlace +
+                                    "ElementDataFile = LOCAL\n0 1 2");
   EXPECT_FALSE(read_labels(folder / "a.mha"));
   write_bytes(folder / "a.vtp",
               "<VTKFile type=\"PolyData\" version=\"0.1\"><PolyData><Piece NumberOfPoints=\"40000000\" "
@@ -219,9 +224,8 @@ TEST_F(HostilePatient, HugeTextIsRefusedBeforeItIsRead) {
 
 TEST_F(HostilePatient, VolumesInAnotherFileAreRefused) {
   write_bytes(path_ / "ct.raw", std::string(280, '\0'));
-  write_bytes(path_ / "ct.nrrd",
-              "NRRD0004\ntype: short\ndimension: 3\nsizes: 7 5 4\nencoding: raw\nendian: little\n"
-              "data file: ct.raw\n\n");
+  write_bytes(path_ / "ct.nrrd", "NRRD0004\ntype: short\ndimension: 3\nsizes: 7 5 4\nencoding: raw\nendian: little\n" +
+                                     kNrrdPlace + "data file: ct.raw\n\n");
   EXPECT_NE(error_text(load_patient(path_)).find("the voxels are in another file"), std::string::npos);
 }
 

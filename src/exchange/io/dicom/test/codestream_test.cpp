@@ -22,7 +22,9 @@ std::string jpeg2000_start() {
 
 /// A comment, a table, a fill byte, then the frame header of 512 rows, 256 columns and one component.
 std::string jpeg_start(char frame) {
-  return "\xff\xd8\xff\xfe\x00\x04\x61\x62\xff\xc4\x00\x03\x00\xff\xff"s + frame + "\x00\x0b\x0c\x02\x00\x01\x00\x01"s;
+  std::string bytes = "\xff\xd8\xff\xfe\x00\x04\x61\x62\xff\xc4\x00\x03\x00\xff\xff"s;
+  bytes.push_back(frame);
+  return bytes.append("\x00\x0b\x0c\x02\x00\x01\x00\x01"s);
 }
 
 TEST(Codestream, GivesTheSizeOfJpeg2000) {

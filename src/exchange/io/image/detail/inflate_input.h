@@ -7,11 +7,16 @@
 #include <fstream>
 #include <vector>
 
-#include "io/image/detail/header_payload.h"
+#include "io/image/detail/image_header.h"
 
 namespace trocar::io::detail {
 
 inline constexpr std::uint64_t kMaxDeflateRatio = 1'032;  ///< Upper limit of the compression ratio of deflate.
+
+/// True if this many packed bytes can be unpacked to so many.
+inline bool could_unpack_to(std::uint64_t bytes, std::uint64_t packed) noexcept {
+  return packed > 0 && bytes / kMaxDeflateRatio <= packed;
+}
 
 /// A gzip or zlib stream that starts at the file's position and has at most `packed` bytes.
 class InflateInput {

@@ -2,7 +2,6 @@
 
 #include <itkMetaDataObject.h>
 
-#include <mutex>
 #include <optional>
 
 #include "core/available_memory.h"
@@ -60,11 +59,8 @@ TextFields text_fields(const itk::ImageIOBase& io) {
   return fields;
 }
 
-/// Reads the header, one file at a time: ITK's NIfTI reader keeps the last file's name in a variable shared by all
-/// threads.
+/// MetaIO and VNL print what they find.
 void read_header(itk::ImageIOBase& io) {
-  static std::mutex mutex;
-  const std::lock_guard lock(mutex);
   const MutedStandardError muted;
   io.ReadImageInformation();
 }

@@ -36,19 +36,24 @@ enum class Check {
   kSize     ///< Only a size check: for files whose content hash is compared afterwards.
 };
 
+struct ImageHeader;
+
 /// An image file whose header was compared with its size.
 struct CheckedImage {
   InputFile file;  ///< Header and, unless the header names another file, voxels.
-  /// Path for a library that opens files by name. InputFile::pinned_path() if the library ignores the ending and the
-  /// voxels are in the same file; else the path itself, whose file could be replaced between the check and the
-  /// library's opening.
+  /// Path for a library that opens files by name: InputFile::pinned_path() if the voxels are in the same file; else the
+  /// path itself, whose file could be replaced between the check and the library's opening.
   std::filesystem::path library_path;
 };
 
-/// Compares a header with its file before anything is allocated: a header of the format, one 3D volume of possible
-/// size, and as many bytes as it declares. The libraries behind ITK do not all do this. With `inside` (a patient's
-/// folder), header and voxels must be one file in that folder. Errors name the defect and the file.
+/// Compares a header with its file before anything is allocated: as many bytes as it declares. The libraries behind ITK
+/// do not all do this. With `inside` (a patient's folder), header and voxels must be one file. Errors name the defect
+/// and the file.
+Result<CheckedImage> check_image_file(InputFile file, const ImageHeader& header, Check check,
+                                      const std::filesystem::path& inside = {});
+
+/// The same for a path: opens the file and reads its header first (see read_image_header).
 Result<CheckedImage> open_image_file(const std::filesystem::path& path, ImageFormat format,
-                                     Check check = Check::kUnpack, const std::filesystem::path& inside = {});
+                                     Check check = Check::kUnpack);
 
 }  // namespace trocar::io::detail

@@ -171,7 +171,7 @@ Result<volume::Grid<T>> to_grid(const RawVolume& raw, const std::string& where, 
   Status status = tidy_geometry(grid.geometry);
   if (status) {
     grid.voxels.resize(grid.geometry.voxel_count());
-    status = convert({raw.type, {raw.bytes.get(), raw.byte_count()}}, grid.voxels);
+    status = convert(raw.voxels(), grid.voxels);
   }
   if (!status) return fail(status.error().what, where, status.error().advice);
   make_right_handed(grid);
@@ -194,7 +194,8 @@ Status convert_voxels(const RawVoxels& in, std::span<std::int16_t> out) {
     return true;
   });
   if (!bad) return {};
-  if (!std::isfinite(*bad)) return fail("the image has a voxel that is no number", {}, "export it again without NaN");
+  if (!std::isfinite(*bad))
+    return fail("the image has a voxel that is not a number", {}, "export it again without NaN");
   return fail(fmt::format("the image contains the value {:g}, which is not a valid HU", *bad), {},
               "give a CT in Hounsfield units");
 }
@@ -202,6 +203,8 @@ Status convert_voxels(const RawVoxels& in, std::span<std::int16_t> out) {
 Status convert_voxels(const RawVoxels& in, std::span<std::uint8_t> out) {
   const auto bad = convert_whole(in, out);
   if (!bad) return {};
+  if (!std::isfinite(*bad))
+    return fail("the image has a voxel that is not a number", {}, "export it again without NaN");
   if (const std::vector<int> above = labels_above_255(in, out.size()); !above.empty())
     return fail(fmt::format("the segmentation has label numbers above 255: {}", fmt::join(above, ", ")), {},
                 "give its structures numbers from 1 to 255");
@@ -210,11 +213,32 @@ Status convert_voxels(const RawVoxels& in, std::span<std::uint8_t> out) {
 }
 
 Status convert_gray(const RawVoxels& in, std::span<std::uint8_t> out) {
-  const auto bad = convert_whole(in, out);
-  if (!bad) return {};
-  return fail(
-      fmt::format("the image contains the value {:g}, which is not a gray level (whole numbers 0 to 255)", *bad), {},
-      "export the ultrasound with one byte per voxel");
+  const auto bad = convert_all(in, out, [](double value, std::uint8_t& voxel) {
+    if (!(value > -0.5 && value < 255.5)) return false;
+    voxel = static_cast<std::uint8_t>(std::round(value));
+    return true;
+  });
+  if (bad && !std::isfinite(*bad))
+    return fail("the image has a voxel that is not a number", {}, "export it again without NaN");
+  if (bad)
+    return fail(fmt::format("the image contains the value {:g}, which is not a gray level (0 to 255)", *bad), {},
+                "export the ultrasound with one byte per voxel");
+  if (has_fractions(in) && std::all_of(out.begin(), out.end(), [](std::uint8_t voxel) { return voxel <= 1; }))
+    return fail("the image contains fractions from 0 to 1, not gray levels from 0 to 255", {},
+                "multiply it by 255, or export the ultrasound with one byte per voxel");
+  return {};
+}
+
+bool has_fractions(const RawVoxels& in) {
+  return with_type(in.type, [&]<class S>(S) {
+    for (std::size_t at = 0; at + sizeof(S) <= in.bytes.size(); at += sizeof(S)) {
+      S stored;
+      std::memcpy(&stored, in.bytes.data() + at, sizeof(S));
+      const double value = static_cast<double>(stored) * in.slope + in.intercept;
+      if (std::abs(value - std::round(value)) > 1e-3) return true;
+    }
+    return false;
+  });
 }
 
 Status convert_voxels(const RawVoxels& in, std::span<float> out) {
@@ -223,7 +247,7 @@ Status convert_voxels(const RawVoxels& in, std::span<float> out) {
     return std::isfinite(voxel);
   });
   if (!bad) return {};
-  return fail("the image has a voxel that is no number", {}, "export it again without NaN");
+  return fail("the image has a voxel that is not a number", {}, "export it again without NaN");
 }
 
 Status convert_mask(const RawVoxels& in, std::span<std::uint8_t> out) {
@@ -232,7 +256,7 @@ Status convert_mask(const RawVoxels& in, std::span<std::uint8_t> out) {
     return !std::isnan(value);
   });
   if (!bad) return {};
-  return fail("the mask has a voxel that is no number", {}, "export it again without NaN");
+  return fail("the mask has a voxel that is not a number", {}, "export it again without NaN");
 }
 
 }  // namespace trocar::io::detail

@@ -28,8 +28,12 @@ struct RawVolume {
   VoxelType type = VoxelType::kUInt8;
   int components = 1;  ///< Numbers per voxel, running fastest.
   std::unique_ptr<std::byte[]> bytes;
+  double slope = 1.0;  ///< Value = stored number * slope + intercept.
+  double intercept = 0.0;
   std::vector<std::pair<std::string, std::string>> fields;  ///< Key and value texts of the header (NRRD).
+  std::vector<std::string> warnings;                        ///< They name the file.
 
+  RawVoxels voxels() const noexcept { return {type, {bytes.get(), byte_count()}, slope, intercept}; }
   std::size_t byte_count() const noexcept {
     return geometry.voxel_count() * static_cast<std::size_t>(components) * bytes_per_voxel(type);
   }
@@ -45,6 +49,9 @@ Status tidy_geometry(volume::GridGeometry& geometry);
 /// times direction, and its reader divides them again: a geometry that was rounded before writing is read back
 /// bit-identically.
 void round_geometry(volume::GridGeometry& geometry);
+
+/// True if a number is not whole, apart from the rounding of a float scaling.
+bool has_fractions(const RawVoxels& in);
 
 /// One of the functions below: turns stored numbers into voxels.
 template <class T>
@@ -66,7 +73,7 @@ void make_right_handed(volume::Grid<T>& grid);
 Status convert_voxels(const RawVoxels& in, std::span<std::int16_t> out);
 /// Labels: whole numbers 0..255, anything else is an error.
 Status convert_voxels(const RawVoxels& in, std::span<std::uint8_t> out);
-/// Gray levels: as labels, with an error that names gray levels.
+/// Gray levels: rounded; below 0, above 255 and a volume of fractions from 0 to 1 are errors.
 Status convert_gray(const RawVoxels& in, std::span<std::uint8_t> out);
 /// Floats: NaN and infinity are errors.
 Status convert_voxels(const RawVoxels& in, std::span<float> out);

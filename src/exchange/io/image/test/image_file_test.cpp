@@ -54,7 +54,8 @@ TEST_P(EveryFormat, KeepsGrayLevelsAndItsNameWithoutEnding) {
   const volume::LabelGrid gray = numbered_grid<std::uint8_t>(oblique_geometry());
   const auto path = folder_ / (std::string("sweep.1") + GetParam());
   ASSERT_TRUE(write_image(gray, path));
-  const auto read = read_gray_levels(path);
+  std::vector<std::string> warnings;
+  const auto read = read_gray_levels(path, warnings);
   ASSERT_TRUE(read) << read.error().text();
   EXPECT_EQ(read->voxels, gray.voxels);
   EXPECT_EQ(name_without_ending(path), "sweep.1");

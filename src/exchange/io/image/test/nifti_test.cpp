@@ -3,58 +3,18 @@
 #include <limits>
 
 #include "io/image/image_file.h"
+#include "io/image/testing/hand_made_nifti.h"
 #include "io/test/test_support.h"
 
 namespace trocar::io {
 namespace {
 
+using testing::HandMadeNifti;
 using testing::numbered_grid;
 using testing::numbers;
 using testing::read_bytes;
+using testing::small_nifti;
 using testing::write_bytes;
-
-/// Fields of a hand-made NIfTI-1 header, as the standard numbers its bytes.
-struct HandMadeNifti {
-  std::string bytes = std::string(352, '\0');
-
-  HandMadeNifti() {
-    put<std::int32_t>(0, 348);
-    put<std::int16_t>(254, 1);  // sform: scanner coordinates
-    put<float>(108, 352.0F);    // voxels follow at once
-    std::memcpy(bytes.data() + 344, "n+1", 4);
-  }
-  template <class T>
-  void put(std::size_t offset, T value) {
-    std::memcpy(bytes.data() + offset, &value, sizeof value);
-  }
-  void put_sizes(std::initializer_list<int> sizes) {
-    put(40, static_cast<std::int16_t>(sizes.size()));
-    std::size_t offset = 42;
-    for (const int size : sizes) put(offset, static_cast<std::int16_t>(size)), offset += 2;
-  }
-  void put_type(std::int16_t code, std::int16_t bits) { put(70, code), put(72, bits); }
-  void put_spacing(float x, float y, float z) { put(80, x), put(84, y), put(88, z); }
-  /// Rows of the matrix index -> RAS mm.
-  void put_sform(const std::array<float, 12>& rows) {
-    for (std::size_t n = 0; n < rows.size(); ++n) put(280 + 4 * n, rows[n]);
-  }
-  template <class T>
-  void add_voxels(const std::vector<T>& voxels) {
-    bytes.append(reinterpret_cast<const char*>(voxels.data()), voxels.size() * sizeof(T));
-  }
-};
-
-/// 3 x 2 x 2 voxels at 2 x 3 x 4 mm, first voxel at RAS (10, 20, 30), axes towards right, anterior, superior.
-template <class T>
-HandMadeNifti small_nifti(std::int16_t code, std::vector<T> voxels) {
-  HandMadeNifti nifti;
-  nifti.put_sizes({3, 2, 2});
-  nifti.put_type(code, static_cast<std::int16_t>(8 * sizeof(T)));
-  nifti.put_spacing(2, 3, 4);
-  nifti.put_sform({2, 0, 0, 10, 0, 3, 0, 20, 0, 0, 4, 30});
-  nifti.add_voxels(voxels);
-  return nifti;
-}
 
 constexpr std::int16_t kNiftiInt16 = 4;
 constexpr std::int16_t kNiftiFloat = 16;
@@ -148,12 +108,33 @@ TEST(Nifti, RefusesIntensitiesAsLabels) {
     values[7] = bad;
     write_bytes(folder / "bad.nii", small_nifti(kNiftiFloat, values).bytes);
     EXPECT_FALSE(read_labels(folder / "bad.nii")) << bad;
-    const auto gray = read_gray_levels(folder / "bad.nii");
+    std::vector<std::string> warnings;
+    if (bad == 0.5F) continue;  // gray levels may be rounded, see below
+    const auto gray = read_gray_levels(folder / "bad.nii", warnings);
     ASSERT_FALSE(gray) << bad;
     const char* told = std::isfinite(bad) ? "gray level" : "not a number";
     EXPECT_NE(gray.error().text().find(told), std::string::npos) << gray.error().text();
     EXPECT_EQ(gray.error().text().find("label"), std::string::npos) << gray.error().text();
   }
+}
+
+TEST(Nifti, RoundsGrayLevelsAndSaysSo) {
+  TemporaryFolder folder;
+  std::vector<float> values(12, 100.4F);
+  values[3] = 254.6F;
+  write_bytes(folder / "us.nii", small_nifti(kNiftiFloat, values).bytes);
+  std::vector<std::string> warnings;
+  const auto gray = read_gray_levels(folder / "us.nii", warnings);
+  ASSERT_TRUE(gray) << gray.error().text();
+  EXPECT_EQ(gray->voxels[0], 100);
+  EXPECT_EQ(gray->voxels[3], 255);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_EQ(warnings[0], "us.nii: the gray levels have fractions and are rounded");
+  for (float& value : values) value /= 255.0F;
+  write_bytes(folder / "us.nii", small_nifti(kNiftiFloat, values).bytes);
+  const auto shares = read_gray_levels(folder / "us.nii", warnings);
+  ASSERT_FALSE(shares);
+  EXPECT_NE(shares.error().text().find("multiply it by 255"), std::string::npos) << shares.error().text();
 }
 
 TEST(Nifti, RefusesAPlaceInDoubt) {

@@ -12,7 +12,7 @@
 
 #include "core/parse_number.h"
 #include "io/detail/number_text.h"
-#include "io/image/detail/header_payload.h"
+#include "io/image/detail/image_header.h"
 
 namespace trocar::io::detail {
 namespace {
