@@ -27,9 +27,9 @@ struct CtScan {
 /// onto a straight, even grid; overview images and copies of slices are left out; each with a warning. Errors: no
 /// image, truncated, damaged or of an impossible size, a single slice, 4D, NaN or infinite voxels, values above 32767,
 /// sheared axes; in a folder more than one CT series, a gap above 10 mm or three times the usual distance in uneven
-/// slices, two slices at one position, multi-frame, colour or deflated files; a single DICOM file. `series` selects one
-/// of several DICOM series by number (list_dicom_series) or UID; if it is empty, the only series or the only CT series
-/// with more than one slice is read. A non-empty `series` for a file is an error.
+/// slices, two slices at one position, frames without a place, colour or deflated files; a single DICOM file. `series`
+/// selects one of several DICOM series by number (list_dicom_series) or UID; if it is empty, the only series or the
+/// only CT series with more than one slice is read. A non-empty `series` for a file is an error.
 Result<CtScan> read_ct_scan(const std::filesystem::path& path, const std::string& series = {},
                             const std::vector<std::string>& preferred = {});
 /// The same without what the files say; warnings are lost.

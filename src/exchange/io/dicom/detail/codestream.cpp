@@ -27,10 +27,12 @@ class Bytes {
   std::span<const char> bytes_;
 };
 
-std::optional<CodestreamSize> to_size(std::uint32_t columns, std::uint32_t rows, std::uint32_t components) noexcept {
+std::optional<CodestreamSize> to_size(std::uint32_t columns, std::uint32_t rows, std::uint32_t components,
+                                      std::uint32_t bits) noexcept {
   constexpr auto kMost = static_cast<std::uint32_t>(std::numeric_limits<int>::max());
   if (columns > kMost || rows > kMost) return std::nullopt;
-  return CodestreamSize{static_cast<int>(columns), static_cast<int>(rows), static_cast<int>(components)};
+  return CodestreamSize{static_cast<int>(columns), static_cast<int>(rows), static_cast<int>(components),
+                        static_cast<int>(bits), false};
 }
 
 /// Frame headers are C0 to CF but for tables (C4), extensions (C8) and arithmetic conditioning (CC); F7 is JPEG-LS.
@@ -50,11 +52,12 @@ std::optional<CodestreamSize> jpeg_size(const Bytes& bytes) noexcept {
     const auto length = bytes.at(at + 2, 2);
     if (!length || *length < 2) return std::nullopt;
     if (is_frame_header(*marker)) {
+      const auto bits = bytes.at(at + 4, 1);
       const auto rows = bytes.at(at + 5, 2);
       const auto columns = bytes.at(at + 7, 2);
       const auto components = bytes.at(at + 9, 1);
       if (!components) return std::nullopt;
-      return to_size(*columns, *rows, *components);
+      return to_size(*columns, *rows, *components, *bits);
     }
     at += 2 + *length;
   }
@@ -66,8 +69,11 @@ std::optional<CodestreamSize> jpeg2000_size(const Bytes& bytes) noexcept {
   const auto left = bytes.at(16, 4);
   const auto top = bytes.at(20, 4);
   const auto components = bytes.at(40, 2);
-  if (!components || *right < *left || *bottom < *top) return std::nullopt;
-  return to_size(*right - *left, *bottom - *top, *components);
+  const auto numbers = bytes.at(42, 1);  // of the first component: sign, and bits less one
+  if (!numbers || *right < *left || *bottom < *top) return std::nullopt;
+  auto size = to_size(*right - *left, *bottom - *top, *components, (*numbers & 0x7f) + 1);
+  if (size) size->is_signed = (*numbers & 0x80) != 0;
+  return size;
 }
 
 }  // namespace

@@ -5,11 +5,13 @@
 
 namespace trocar::io::detail {
 
-/// Image size in the header of a compressed image.
+/// Image size and kind of numbers in the header of a compressed image.
 struct CodestreamSize {
   int columns = 0;
   int rows = 0;
   int components = 0;
+  int bits = 0;            ///< Of a number.
+  bool is_signed = false;  ///< JPEG 2000 only: JPEG and JPEG-LS state no sign.
 };
 
 /// Image size of a JPEG, JPEG-LS (SOF segment; ISO 10918-1, 14495-1) or JPEG 2000 codestream (SIZ segment; ISO 15444-1,

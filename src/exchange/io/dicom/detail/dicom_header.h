@@ -72,6 +72,7 @@ class DicomHeader {
   std::string text(std::uint32_t tag) const;
   /// Unsigned short (US).
   std::optional<int> number(std::uint32_t tag) const;
+  dicom::DicomItem root() const noexcept { return file_.root(); }
   const std::string& transfer_syntax() const noexcept { return file_.transfer_syntax(); }
   bool is_big_endian() const noexcept { return file_.is_big_endian(); }
   bool is_compressed() const noexcept { return file_.is_compressed(); }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <type_traits>
 
 #include "core/available_memory.h"
@@ -21,13 +22,19 @@ constexpr double kWidestGap = 3.05;          ///< Of the usual distance: two sli
 constexpr std::int16_t kOutside_hu = -1024;  ///< Beyond the slices of a tilted stack.
 constexpr const char* kNameOneSeries = "name the folder that holds the slices of one series";
 
+/// For messages.
+std::string name_of(const DicomSlice& slice) {
+  const std::string file = slice.file.filename().string();
+  return slice.frames > 1 ? fmt::format("frame {} of {}", slice.frame + 1, file) : file;
+}
+
 /// Checks the slices one by one.
 Status check_slices(const std::vector<DicomSlice>& slices, const fs::path& folder) {
   if (slices.empty()) return fail("no DICOM image", folder.string(), kNameOneSeries);
   for (const DicomSlice& slice : slices) {
     const std::string where = slice.file.string();
-    if (slice.frames > 1)
-      return fail(fmt::format("is a DICOM file with {} frames", slice.frames), where,
+    if (slice.frames > 1 && !slice.is_placed)
+      return fail(fmt::format("is a DICOM file with {} frames without a place", slice.frames), where,
                   "convert it to .nrrd or .nii.gz, for example with 3D Slicer");
     if (slice.is_cut) return fail("the DICOM image ends before its last pixel", where, "copy or export it again");
     if (slice.slope == 0.0)
@@ -51,7 +58,7 @@ Status check_slices(const std::vector<DicomSlice>& slices, const fs::path& folde
 }
 
 Status check_places(const DicomSeries& series, const fs::path& folder) {
-  const auto name = [&](std::size_t n) { return series.slices[n].file.filename().string(); };
+  const auto name = [&](std::size_t n) { return name_of(series.slices[n]); };
   for (std::size_t n = 1; n < series.slices.size(); ++n)
     if (series.stack.along_mm(n) - series.stack.along_mm(n - 1) < kSamePlace_mm)
       return fail(fmt::format("two slices have the same position: {} and {}", name(n - 1), name(n)), folder.string(),
@@ -64,10 +71,10 @@ Result<dicom::StackPlan> plan_of(const DicomSeries& series, const fs::path& fold
   const dicom::StackGap gap = dicom::widest_gap(series.stack);
   const bool is_too_wide = gap.gap_mm > kWidestGap_mm || gap.gap_mm > kWidestGap * gap.median_mm;
   if (dicom::is_uneven(series.stack) && is_too_wide)
-    return fail(fmt::format("slices are missing: {:.3g} mm between {} and {}, {:.3g} mm between most others",
-                            gap.gap_mm, series.slices[gap.below].file.filename().string(),
-                            series.slices[gap.below + 1].file.filename().string(), gap.median_mm),
-                folder.string(), "export the whole series again");
+    return fail(
+        fmt::format("slices are missing: {:.3g} mm between {} and {}, {:.3g} mm between most others", gap.gap_mm,
+                    name_of(series.slices[gap.below]), name_of(series.slices[gap.below + 1]), gap.median_mm),
+        folder.string(), "export the whole series again");
   auto plan = dicom::plan_stack(series.stack);
   if (!plan)
     return fail(fmt::format("the slices are shifted sideways by {:.0f} degrees, more than a gantry tilts",
@@ -108,9 +115,19 @@ void warn_of_plan(const DicomSeries& series, std::vector<std::string>& warnings)
   warnings.push_back(
       fmt::format("uneven slice distances: {:.3g} mm between {} and {}, {:.3g} mm between most others; interpolated to "
                   "{} slices of {:.3g} mm",
-                  gap.gap_mm, series.slices[gap.below].file.filename().string(),
-                  series.slices[gap.below + 1].file.filename().string(), gap.median_mm, plan.geometry.size[2],
-                  plan.geometry.spacing_mm.z()));
+                  gap.gap_mm, name_of(series.slices[gap.below]), name_of(series.slices[gap.below + 1]), gap.median_mm,
+                  plan.geometry.size[2], plan.geometry.spacing_mm.z()));
+}
+
+/// Files of many frames are read once, others slice by slice.
+Result<std::map<fs::path, DicomPixels>> open_files_of_frames(const DicomSeries& series) {
+  std::map<fs::path, DicomPixels> opened;
+  for (const DicomSlice& slice : series.slices) {
+    if (slice.frames == 1 || opened.contains(slice.file)) continue;
+    TROCAR_TRY(DicomPixels pixels, DicomPixels::open(slice.file));
+    opened.emplace(slice.file, std::move(pixels));
+  }
+  return opened;
 }
 
 /// Reads the pixels of all slices, one after the other.
@@ -119,11 +136,16 @@ Result<std::vector<T>> read_pixels(const DicomSeries& series, Converter<T> conve
   const auto pixels = static_cast<std::size_t>(series.stack.columns * series.stack.rows);
   std::vector<T> all(pixels * series.slices.size());
   std::vector<Status> statuses(series.slices.size());
+  TROCAR_TRY(const auto opened, open_files_of_frames(series));
   parallel_for(series.slices.size(), 4, [&](std::size_t first, std::size_t last) {
-    for (std::size_t k = first; k < last; ++k)
-      statuses[k] = decode_slice(series.slices[k], [&](const RawVoxels& voxels) {
+    for (std::size_t k = first; k < last; ++k) {
+      const DicomSlice& slice = series.slices[k];
+      const auto use = [&](const RawVoxels& voxels) {
         return convert(voxels, std::span(all).subspan(k * pixels, pixels));
-      });
+      };
+      const auto file = opened.find(slice.file);
+      statuses[k] = file != opened.end() ? file->second.decode(slice, use) : decode_slice(slice, use);
+    }
   });
   for (const Status& status : statuses)
     if (!status) return tl::unexpected(status.error());

@@ -5,10 +5,12 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/result.h"
 #include "dicom/segmentation/segmentation.h"
 #include "geometry/vec.h"
+#include "io/dicom/detail/dicom_header.h"
 #include "io/image/detail/raw_volume.h"
 
 namespace trocar::io::detail {
@@ -24,7 +26,9 @@ struct DicomSlice {
   std::string frame_of_reference;  ///< UID; positions in another frame are not comparable.
   int columns = 0;
   int rows = 0;
-  int frames = 1;
+  int frames = 1;          ///< In its file.
+  int frame = 0;           ///< Its own, from 0.
+  bool is_placed = false;  ///< A frame of an enhanced file, which states the place of each.
   int samples_per_pixel = 1;
   std::optional<Vec3> position_P;                   ///< Centre of the first pixel.
   std::optional<std::array<Vec3, 2>> directions_P;  ///< Along a row (growing column), along a column.
@@ -36,12 +40,30 @@ struct DicomSlice {
   double intercept = 0.0;
 };
 
-/// Header of a DICOM image with or without the "DICM" mark; empty if the file is not DICOM or has no image. An error if
-/// it is a damaged or truncated DICOM file.
-Result<std::optional<DicomSlice>> find_dicom_slice(const std::filesystem::path& path);
+/// Uses the numbers of one slice.
+using PixelUse = std::function<Status(const RawVoxels&)>;
 
-/// Unpacks the pixels of one slice (uncompressed, JPEG, JPEG-LS, JPEG 2000, RLE) and passes them to `use`.
-Status decode_slice(const DicomSlice& slice, const std::function<Status(const RawVoxels&)>& use);
+/// The images of a DICOM file with or without the "DICM" mark: one, or the frames of an enhanced multi-frame file, each
+/// with its own place and scaling. None if the file is not DICOM or has no image. An error if it is a damaged or
+/// truncated DICOM file.
+Result<std::vector<DicomSlice>> find_dicom_slices(const std::filesystem::path& path);
+
+/// An open file, for those that hold many frames.
+class DicomPixels {
+ public:
+  /// Errors: those of find_dicom_slices().
+  static Result<DicomPixels> open(const std::filesystem::path& path);
+  /// Unpacks the pixels of one of its slices (uncompressed, JPEG, JPEG-LS, JPEG 2000, RLE) and passes them to `use`.
+  /// Thread-safe.
+  Status decode(const DicomSlice& slice, const PixelUse& use) const;
+
+ private:
+  explicit DicomPixels(DicomHeader header) : header_(std::move(header)) {}
+  DicomHeader header_;
+};
+
+/// Opens the file of one slice and unpacks it.
+Status decode_slice(const DicomSlice& slice, const PixelUse& use);
 
 /// Unpacks one frame of a DICOM SEG by the same codecs. Error (without a file): it cannot be unpacked.
 Status decode_frame(const dicom::CompressedFrame& frame, std::span<std::byte> out);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 
 #include "core/parallel.h"
@@ -86,24 +87,24 @@ std::vector<fs::path> files_below(const fs::path& folder) {
 bool has_dicom_images(const fs::path& folder) {
   std::error_code error;
   for (const fs::path& file : regular_files(fs::directory_iterator(folder, kSkip, error)))
-    if (const auto slice = find_dicom_slice(file); !slice || *slice) return true;
+    if (const auto slices = find_dicom_slices(file); !slices || !slices->empty()) return true;
   return false;
 }
 
 Result<std::vector<SeriesImages>> find_series(const fs::path& folder) {
   const std::vector<fs::path> files = files_below(folder);
-  std::vector<Result<std::optional<DicomSlice>>> found(files.size());
+  std::vector<Result<std::vector<DicomSlice>>> found(files.size());
   parallel_for(files.size(), 8, [&](std::size_t first, std::size_t last) {
-    for (std::size_t n = first; n < last; ++n) found[n] = find_dicom_slice(files[n]);
+    for (std::size_t n = first; n < last; ++n) found[n] = find_dicom_slices(files[n]);
   });
   std::vector<SeriesImages> series;
   std::map<std::string, std::size_t> index_of_uid;
   for (auto& result : found) {
-    TROCAR_TRY(std::optional<DicomSlice> slice, std::move(result));
-    if (!slice) continue;
-    const auto [entry, is_new] = index_of_uid.emplace(slice->series_uid, series.size());
+    TROCAR_TRY(std::vector<DicomSlice> slices, std::move(result));
+    if (slices.empty()) continue;
+    const auto [entry, is_new] = index_of_uid.emplace(slices.front().series_uid, series.size());
     if (is_new) series.emplace_back();
-    series[entry->second].push_back(std::move(*slice));
+    std::move(slices.begin(), slices.end(), std::back_inserter(series[entry->second]));
   }
   if (series.empty())
     return fail("no DICOM image in the folder or its sub-folders", folder.string(),

@@ -10,14 +10,15 @@ namespace {
 using io::detail::codestream_size;
 using namespace std::string_literals;
 
-/// SOC and SIZ of JPEG 2000: 640 x 480 in a canvas that starts at (10, 20), three components.
+/// SOC and SIZ of JPEG 2000: 640 x 480 in a canvas that starts at (10, 20), three components, the first of 12 signed
+/// bits.
 std::string jpeg2000_start() {
   return "\xff\x4f\xff\x51\x00\x2f\x00\x00"
          "\x00\x00\x02\x8a\x00\x00\x01\xf4"
          "\x00\x00\x00\x0a\x00\x00\x00\x14"
          "\x00\x00\x02\x80\x00\x00\x01\xe0"
          "\x00\x00\x00\x00\x00\x00\x00\x00"
-         "\x00\x03"s;
+         "\x00\x03\x8b"s;
 }
 
 /// A comment, a table, a fill byte, then the frame header of 512 rows, 256 columns and one component.
@@ -33,6 +34,8 @@ TEST(Codestream, GivesTheSizeOfJpeg2000) {
   EXPECT_EQ(size->columns, 640);
   EXPECT_EQ(size->rows, 480);
   EXPECT_EQ(size->components, 3);
+  EXPECT_EQ(size->bits, 12);
+  EXPECT_TRUE(size->is_signed);
 }
 
 TEST(Codestream, GivesTheSizeOfJpegAndJpegLs) {
@@ -42,6 +45,8 @@ TEST(Codestream, GivesTheSizeOfJpegAndJpegLs) {
     EXPECT_EQ(size->columns, 256);
     EXPECT_EQ(size->rows, 512);
     EXPECT_EQ(size->components, 1);
+    EXPECT_EQ(size->bits, 12);
+    EXPECT_FALSE(size->is_signed);
   }
 }
 

@@ -158,10 +158,10 @@ class RealSlice : public ::testing::TestWithParam<const char*> {};
 
 /// Mean of the pixels, NaN where they cannot be unpacked.
 double mean_of(const std::filesystem::path& file) {
-  const auto slice = detail::find_dicom_slice(file);
+  const auto slices = detail::find_dicom_slices(file);
   double mean = std::nan("");
-  if (!slice || !*slice) return mean;
-  (void)detail::decode_slice(**slice, [&](const detail::RawVoxels& voxels) -> Status {
+  if (!slices || slices->empty()) return mean;
+  (void)detail::decode_slice(slices->front(), [&](const detail::RawVoxels& voxels) -> Status {
     std::vector<float> pixels(voxels.bytes.size() / detail::bytes_per_voxel(voxels.type));
     TROCAR_TRY_STATUS(detail::convert_voxels(voxels, std::span(pixels)));
     mean = std::accumulate(pixels.begin(), pixels.end(), 0.0) / static_cast<double>(pixels.size());
@@ -201,9 +201,10 @@ TEST(RealSlices, OfThreeComponentsThatClaimOneIsRefused) {
   bytes[at + samples_per_pixel.size() - 1] = 1;
   const TemporaryFolder folder;
   testing::write_bytes(folder / "slice.dcm", bytes);
-  const auto slice = detail::find_dicom_slice(folder / "slice.dcm");
-  ASSERT_TRUE(slice && *slice) << slice.error().text();
-  const Status decoded = detail::decode_slice(**slice, [](const detail::RawVoxels&) { return Status(); });
+  const auto slices = detail::find_dicom_slices(folder / "slice.dcm");
+  ASSERT_TRUE(slices) << slices.error().text();
+  ASSERT_EQ(slices->size(), 1U);
+  const Status decoded = detail::decode_slice(slices->front(), [](const detail::RawVoxels&) { return Status(); });
   ASSERT_FALSE(decoded);  // GDCM ends the program
   EXPECT_NE(decoded.error().what.find("cannot be unpacked"), std::string::npos) << decoded.error().text();
 }

@@ -147,5 +147,79 @@ TEST(Scanner, CopiesOfSlicesAreLeftOutButNoOtherSliceOfThePlace) {
   EXPECT_NE(two_times.error().what.find("same position"), std::string::npos) << two_times.error().text();
 }
 
+/// An enhanced multi-frame CT: frames at these heights, in this order, each with an intercept of its own.
+struct EnhancedCt {
+  std::vector<double> z_mm{0, 2, 4, 6};
+  std::vector<int> intercepts{-1024, -1000, -1024, -900};
+  bool has_shared_place = false;  ///< A place of the top level, which is not that of a frame.
+  std::size_t places = 4;         ///< Frames that the functional groups describe.
+
+  std::string elements() const {
+    using namespace testing;  // NOLINT: the writers of elements
+    constexpr int kColumns = 8, kRows = 6;
+    std::string pixels;
+    std::vector<std::string> groups;
+    for (std::size_t n = 0; n < z_mm.size(); ++n) {
+      for (int j = 0; j < kRows; ++j)
+        for (int i = 0; i < kColumns; ++i)
+          pixels += little_endian(
+              static_cast<std::uint32_t>(static_cast<int>(linear_hu(Vec3(i, j, z_mm[n]))) - intercepts[n]), 2);
+      if (n < places)
+        groups.push_back(dicom_sequence(0x0020, 0x9113, {dicom_point(0x0020, 0x0032, Vec3(0, 0, z_mm[n]))}) +
+                         dicom_sequence(0x0028, 0x9145,
+                                        {dicom_decimals(0x0028, 0x1052, {static_cast<double>(intercepts[n])}) +
+                                         dicom_decimals(0x0028, 0x1053, {1.0})}));
+    }
+    const std::string shared = dicom_sequence(0x0020, 0x9116, {dicom_decimals(0x0020, 0x0037, {1, 0, 0, 0, 1, 0})}) +
+                               dicom_sequence(0x0028, 0x9110, {dicom_decimals(0x0028, 0x0030, {1.0, 1.0})});
+    return dicom_element(0x0008, 0x0016, "UI", "1.2.840.10008.5.1.4.1.1.2.1") +
+           dicom_element(0x0008, 0x0018, "UI", "1.2.5") + dicom_element(0x0008, 0x0060, "CS", "CT") +
+           dicom_element(0x0020, 0x000e, "UI", "1.2.3") +
+           (has_shared_place ? dicom_point(0x0020, 0x0032, Vec3(500, 500, 500)) : std::string()) +
+           dicom_element(0x0020, 0x0052, "UI", "1.2.9") + dicom_short(0x0028, 0x0002, 1) +
+           dicom_element(0x0028, 0x0004, "CS", "MONOCHROME2") +
+           dicom_element(0x0028, 0x0008, "IS", std::to_string(z_mm.size())) + dicom_short(0x0028, 0x0010, kRows) +
+           dicom_short(0x0028, 0x0011, kColumns) + dicom_short(0x0028, 0x0100, 16) + dicom_short(0x0028, 0x0101, 16) +
+           dicom_short(0x0028, 0x0102, 15) + dicom_short(0x0028, 0x0103, 1) + dicom_sequence(0x5200, 0x9229, {shared}) +
+           dicom_sequence(0x5200, 0x9230, groups) + dicom_element(0x7fe0, 0x0010, "OW", pixels);
+  }
+};
+
+TEST(Scanner, FramesOfAnEnhancedFileAreSlices) {
+  for (const bool has_shared_place : {false, true})
+    for (const std::vector<double>& z_mm : {std::vector<double>{0, 2, 4, 6}, std::vector<double>{6, 0, 4, 2}}) {
+      const TemporaryFolder folder;
+      EnhancedCt enhanced;
+      enhanced.z_mm = z_mm;
+      enhanced.has_shared_place = has_shared_place;
+      testing::write_dicom(folder / "all.dcm", enhanced.elements());
+      const auto scan = read_ct_scan(folder.path());
+      ASSERT_TRUE(scan) << scan.error().text();
+      EXPECT_EQ(scan->grid.geometry.size, (std::array<std::int64_t, 3>{8, 6, 4}));
+      EXPECT_NEAR(scan->grid.geometry.spacing_mm.z(), 2.0, 1e-9);
+      EXPECT_LT(worst_difference_hu(scan->grid, 0.0), 0.5);
+      EXPECT_EQ(scan->slices_P.size(), 4U);
+      EXPECT_TRUE(scan->warnings.empty());
+    }
+}
+
+TEST(Scanner, EnhancedFilesThatContradictThemselvesAreRefused) {
+  const auto error_of = [](const EnhancedCt& enhanced) {
+    const TemporaryFolder folder;
+    testing::write_dicom(folder / "all.dcm", enhanced.elements());
+    const auto scan = read_ct_scan(folder.path());
+    return scan ? std::string("was read") : scan.error().text();
+  };
+  EnhancedCt phases;
+  phases.z_mm = {0, 2, 0, 2};
+  EXPECT_NE(error_of(phases).find("frame 2 of all.dcm and frame 4 of all.dcm"), std::string::npos) << error_of(phases);
+  EnhancedCt incomplete;
+  incomplete.places = 3;
+  EXPECT_NE(error_of(incomplete).find("4 frames, but places for 3"), std::string::npos) << error_of(incomplete);
+  EnhancedCt gap;
+  gap.z_mm = {0, 2, 4, 60};
+  EXPECT_NE(error_of(gap).find("slices are missing"), std::string::npos) << error_of(gap);
+}
+
 }  // namespace
 }  // namespace trocar::io

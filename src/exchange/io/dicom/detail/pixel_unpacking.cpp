@@ -1,0 +1,158 @@
+#include "io/dicom/detail/pixel_unpacking.h"
+
+#include <gdcmFragment.h>
+#include <gdcmImage.h>
+#include <gdcmSequenceOfFragments.h>
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+#include <string_view>
+
+#include "core/decimal_point.h"
+#include "io/dicom/detail/codestream.h"
+#include "io/image/detail/quiet.h"
+
+namespace trocar::io::detail {
+namespace {
+
+constexpr std::string_view kRle = "1.2.840.10008.1.2.5";  ///< DICOM PS3.5, annex A.
+constexpr const char* kExportUncompressed = "export the series again, uncompressed";
+
+void swap_pairs(std::span<std::byte> bytes) {
+  for (std::size_t at = 0; at + 2 <= bytes.size(); at += 2) std::swap(bytes[at], bytes[at + 1]);
+}
+
+/// Keeps the stored bits of each number, moved down by `down`, with their sign.
+void keep_stored_bits(const PixelLayout& layout, int down, std::span<std::byte> out) {
+  if (layout.bits_allocated == layout.bits_stored) return;
+  const auto width = static_cast<std::size_t>(layout.bits_allocated / 8);
+  const int up = 32 - layout.bits_stored;
+  for (std::size_t at = 0; at + width <= out.size(); at += width) {
+    std::byte* pixel = out.data() + at;
+    std::uint32_t stored = std::to_integer<std::uint32_t>(pixel[0]);
+    if (width == 2) stored |= std::to_integer<std::uint32_t>(pixel[1]) << 8;
+    const std::uint32_t raised = (stored >> down) << up;
+    const std::uint32_t value =
+        layout.is_signed ? static_cast<std::uint32_t>(static_cast<std::int32_t>(raised) >> up) : raised >> up;
+    pixel[0] = static_cast<std::byte>(value & 0xff);
+    if (width == 2) pixel[1] = static_cast<std::byte>(value >> 8 & 0xff);
+  }
+}
+
+std::uint32_t little_endian_32(std::span<const char> bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  for (std::size_t n = 0; n < 4; ++n)
+    value |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[at + n])) << 8 * n;
+  return value;
+}
+
+/// Unpacks one run-length coded plane of bytes (PS3.5, annex G) into every `stride`-th byte of `out`.
+bool unpack_rle_plane(std::span<const char> in, std::span<std::byte> out, std::size_t stride) {
+  std::size_t at = 0;
+  for (std::size_t to = 0; to < out.size();) {
+    if (at >= in.size()) return false;
+    const int control = static_cast<signed char>(in[at++]);
+    if (control == -128) continue;
+    const auto count = static_cast<std::size_t>(control >= 0 ? control + 1 : 1 - control);
+    const std::size_t needed = control >= 0 ? count : 1;
+    if (needed > in.size() - at) return false;
+    for (std::size_t n = 0; n < count && to < out.size(); ++n, to += stride)
+      out[to] = static_cast<std::byte>(in[at + (control >= 0 ? n : 0)]);
+    at += needed;
+  }
+  return true;
+}
+
+/// Run-length coded pixels, the high bytes first. GDCM is not used: a damaged file ends the program there.
+bool unpack_rle(const CompressedImage& image, const PixelLayout& layout, std::span<std::byte> out) {
+  constexpr std::size_t kRleHeader = 64;
+  std::vector<char> bytes;
+  for (const std::span<const char> piece : image.pieces) bytes.insert(bytes.end(), piece.begin(), piece.end());
+  const auto planes = static_cast<std::size_t>(layout.bits_allocated / 8);
+  if (bytes.size() < kRleHeader || little_endian_32(bytes, 0) != planes) return false;
+  for (std::size_t plane = 0; plane < planes; ++plane) {
+    const std::size_t begin = little_endian_32(bytes, 4 + 4 * plane);
+    if (begin < kRleHeader || begin > bytes.size()) return false;
+    if (!unpack_rle_plane(std::span(bytes).subspan(begin), out.subspan(planes - 1 - plane), planes)) return false;
+  }
+  return true;
+}
+
+/// Size and kind of numbers in the stream.
+std::optional<CodestreamSize> stream_of(const CompressedImage& image) {
+  std::vector<char> start;
+  constexpr std::size_t kLongestStart = 1 << 20;  // comments and tables may come before the size
+  for (const std::span<const char> piece : image.pieces) {
+    if (start.size() >= kLongestStart) break;
+    start.insert(start.end(), piece.begin(),
+                 piece.begin() + static_cast<std::ptrdiff_t>(std::min(piece.size(), kLongestStart)));
+  }
+  return codestream_size(start);
+}
+
+/// GDCM ends the program where a stream holds more components than its header says.
+bool is_as_described(const CodestreamSize& stream, const CompressedImage& image) {
+  return stream.components == 1 && stream.columns == image.columns && stream.rows == image.rows;
+}
+
+/// Unpacks the fragments with GDCM's codecs. May throw exceptions of GDCM.
+bool unpack_with_gdcm(const CompressedImage& packed, const PixelLayout& layout, std::span<std::byte> out) {
+  const auto syntax = gdcm::TransferSyntax::GetTSType(packed.transfer_syntax.c_str());
+  if (syntax == gdcm::TransferSyntax::TS_END) return false;
+  gdcm::SmartPointer<gdcm::SequenceOfFragments> fragments = new gdcm::SequenceOfFragments;
+  for (const std::span<const char> piece : packed.pieces) {
+    gdcm::Fragment fragment;
+    fragment.SetByteValue(piece.data(), gdcm::VL(static_cast<std::uint32_t>(piece.size())));
+    fragments->AddFragment(fragment);
+  }
+  gdcm::DataElement pixel_data(gdcm::Tag(0x7fe0, 0x0010));
+  pixel_data.SetVR(gdcm::VR::OB);
+  pixel_data.SetValue(*fragments);
+
+  gdcm::Image image;
+  image.SetNumberOfDimensions(2);
+  image.SetDimension(0, static_cast<unsigned>(packed.columns));
+  image.SetDimension(1, static_cast<unsigned>(packed.rows));
+  image.SetPixelFormat(gdcm::PixelFormat(1, static_cast<unsigned short>(layout.bits_allocated),
+                                         static_cast<unsigned short>(layout.bits_stored),
+                                         static_cast<unsigned short>(layout.high_bit), layout.is_signed ? 1 : 0));
+  image.SetPhotometricInterpretation(gdcm::PhotometricInterpretation::MONOCHROME2);
+  image.SetTransferSyntax(syntax);
+  image.SetDataElement(pixel_data);
+  const MutedStandardError muted;
+  const DecimalPoint decimal_point;
+  return image.GetBufferLength() == out.size() && image.GetBuffer(reinterpret_cast<char*>(out.data()));
+}
+
+}  // namespace
+
+void unpack_plain(std::span<const char> pixels, bool is_big_endian, const PixelLayout& layout,
+                  std::span<std::byte> out) {
+  std::memcpy(out.data(), pixels.data(), out.size());
+  if (is_big_endian && layout.bits_allocated == 16) swap_pairs(out);
+  keep_stored_bits(layout, layout.high_bit + 1 - layout.bits_stored, out);
+}
+
+Status unpack_compressed(const CompressedImage& packed, const PixelLayout& layout, std::span<std::byte> out) {
+  const auto damaged = fail("the DICOM image cannot be unpacked", {}, kExportUncompressed);
+  if (packed.transfer_syntax == kRle) {
+    if (!unpack_rle(packed, layout, out)) return damaged;
+    keep_stored_bits(layout, layout.high_bit + 1 - layout.bits_stored, out);
+    return {};
+  }
+  const auto stream = stream_of(packed);
+  if (!stream || !is_as_described(*stream, packed)) return damaged;
+  // Only JPEG 2000 states a sign. Unsigned numbers of a signed image are the two's complement of the stored bits.
+  if (stream->is_signed && !layout.is_signed)
+    return fail("the JPEG 2000 stream has signed numbers, but the header says unsigned ones (PixelRepresentation 0)",
+                {}, kExportUncompressed);
+  if (stream->bits < layout.bits_stored && layout.is_signed && !stream->is_signed)
+    return fail("the sign of the compressed pixels is not known: the stream has fewer bits than the header", {},
+                kExportUncompressed);
+  if (!unpack_with_gdcm(packed, layout, out)) return damaged;
+  keep_stored_bits(layout, 0, out);  // the lowest bits of a stream's numbers, wherever they were stored before
+  return {};
+}
+
+}  // namespace trocar::io::detail
