@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <compare>
+#include <cstdint>
 #include <map>
 #include <set>
 #include <string_view>
@@ -115,10 +118,25 @@ void warn_of_repeated_names(const std::vector<LabelSource>& sources, const Known
     warnings.push_back(fmt::format("regions that hold several structures were left out: {}", fmt::join(regions, ", ")));
 }
 
-/// Merges one source after the other. Their names are known or left out (check_names).
+/// Volume of each structure in its own file, by plain name (mm³).
+std::map<std::string, double> volumes_of(const std::vector<LabelSource>& sources) {
+  std::map<std::string, double> volumes;
+  for (const LabelSource& source : sources) {
+    const auto counts = count_values(source.labels);
+    for (const auto& [value, name] : source.names)
+      if (value > 0 && value <= 255)
+        volumes[plain_name(name)] +=
+            static_cast<double>(counts[static_cast<std::size_t>(value)]) * source.labels.geometry.voxel_volume_mm3();
+  }
+  return volumes;
+}
+
+/// Merges one source after the other. Their names are known or left out (check_names). A voxel in two structures gets
+/// the one of higher priority, among equals the smaller structure: independent of the order of files and segments.
 class Merger {
  public:
-  Merger(const volume::GridGeometry& grid, const KnownStructures& known) : known_(known) {
+  Merger(const volume::GridGeometry& grid, const KnownStructures& known, std::map<std::string, double> volumes)
+      : known_(known), volumes_(std::move(volumes)), overlaps_(256 * 256) {
     merged_.labels = volume::LabelGrid(grid);
   }
 
@@ -156,13 +174,32 @@ class Merger {
 
   MergedLabels take() { return std::move(merged_); }
 
+  /// Overlaps of two structures above 1 ml, largest first: in one line, or empty.
+  std::string overlap_text() const {
+    constexpr double kSmallest_ml = 1.0;
+    constexpr std::size_t kMostNamed = 8;
+    std::vector<std::pair<double, std::string>> found;
+    for (const Label& kept : merged_.table.labels)
+      for (const Label& lost : merged_.table.labels) {
+        const auto voxels = static_cast<double>(overlaps_[256U * kept.id + lost.id]);
+        const double ml = voxels * merged_.labels.geometry.voxel_volume_mm3() / 1000.0;
+        if (ml > kSmallest_ml)
+          found.emplace_back(-ml, fmt::format("{:.1f} ml of {} and {} (now {})", ml, kept.name, lost.name, kept.name));
+      }
+    std::sort(found.begin(), found.end());
+    std::vector<std::string> texts;
+    for (std::size_t n = 0; n < std::min(found.size(), kMostNamed); ++n) texts.push_back(found[n].second);
+    if (found.size() > kMostNamed) texts.push_back(fmt::format("{} more", found.size() - kMostNamed));
+    return texts.empty() ? std::string() : fmt::format("overlapping structures: {}", fmt::join(texts, ", "));
+  }
+
  private:
   std::uint8_t find_or_add(const std::string& name, const KnownStructure& structure) {
     for (const Label& label : merged_.table.labels)
       if (plain_name(label.name) == plain_name(name)) return label.id;
     const auto id = static_cast<std::uint8_t>(merged_.table.labels.size() + 1);
     merged_.table.labels.push_back({id, name, structure.tissue, structure.color});
-    priority_[id] = structure.priority;
+    rank_[id] = {structure.priority, -volumes_[plain_name(name)], plain_name(name)};
     return id;
   }
 
@@ -176,14 +213,27 @@ class Merger {
       for (std::size_t n = first; n < last; ++n) {
         const std::uint8_t id = id_of[labels.voxels[n]];
         std::uint8_t& voxel = merged_.labels.voxels[n];
-        if (id != 0 && (voxel == 0 || priority_[id] > priority_[voxel])) voxel = id;
+        if (id == 0 || id == voxel) continue;
+        const std::uint8_t before = voxel;
+        if (before == 0 || rank_[id] > rank_[before]) voxel = id;
+        if (before != 0) overlaps_[256U * voxel + (voxel == id ? before : id)].fetch_add(1, std::memory_order_relaxed);
       }
     });
   }
 
+  /// What decides between two structures: the larger rank has the voxel.
+  struct Rank {
+    int priority = 0;
+    double minus_volume = 0.0;
+    std::string name;
+    auto operator<=>(const Rank&) const = default;
+  };
+
   const KnownStructures& known_;
   MergedLabels merged_;
-  std::array<int, 256> priority_{};
+  std::map<std::string, double> volumes_;
+  std::array<Rank, 256> rank_{};
+  std::vector<std::atomic<std::uint32_t>> overlaps_;  ///< Voxels by the structure that has them and the other one.
 };
 
 }  // namespace
@@ -195,11 +245,12 @@ Result<MergedLabels> merge_sources(std::vector<LabelSource> sources, const volum
   for (const LabelSource& source : sources) TROCAR_TRY_STATUS(check_overlap(source, grid, warnings));
   warn_of_repeated_names(sources, known, warnings);
   const std::string where = sources.size() == 1 ? sources.front().file : fmt::format("{} files", sources.size());
-  Merger merger(grid, known);
+  Merger merger(grid, known, volumes_of(sources));
   std::vector<std::string> empty_masks;
   for (LabelSource& source : sources) {
     TROCAR_TRY_STATUS(merger.add(std::move(source), empty_masks));
   }
+  if (std::string text = merger.overlap_text(); !text.empty()) warnings.push_back(std::move(text));
   MergedLabels merged = merger.take();
   if (merged.table.labels.empty())
     return fail("all masks are empty", where, "check that the segmentation belongs to this CT and is not blank");

@@ -16,7 +16,8 @@ struct MergedLabels {
 };
 
 /// Resamples the sources onto the grid of the CT (nearest voxel); a voxel in two structures gets the one of higher
-/// priority, the earlier one among equals. Each source is freed after use. Errors and warnings as build_patient.
+/// priority, the smaller one among equals; overlaps above 1 ml are warnings. Each source is freed after use. Errors and
+/// warnings as build_patient.
 Result<MergedLabels> merge_sources(std::vector<LabelSource> sources, const volume::GridGeometry& grid,
                                    const KnownStructures& known, std::vector<std::string>& warnings);
 

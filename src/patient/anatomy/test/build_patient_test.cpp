@@ -303,6 +303,24 @@ TEST(BuildPatient, LabelsOfOneNameBecomeOneStructureWithAWarning) {
   EXPECT_FALSE(has_warning(build({unused}), "labels are named"));
 }
 
+TEST(BuildPatient, OverlapsGoToTheSmallerStructureInAnyOrderAndAreTold) {
+  // A spleen of the liver's priority that covers a corner of it.
+  const LabelSource spleen = source("spleen", Torso::mask(Torso::grid(kSpacingMm), [](const Vec3& p_P) {
+                                      return (p_P - Vec3(-30.0, -10.0, p_P.z())).norm() < 25.0;
+                                    }));
+  const Built built = build({liver(), spleen});
+  ASSERT_TRUE(built.patient) << built.patient.error().text();
+  EXPECT_EQ(name_at(*built.patient, {-35.0, -10.0, 0.0}), "spleen");
+  EXPECT_TRUE(has_warning(built, "ml of spleen and liver (now spleen)"));
+  const Built other = build({spleen, liver()});
+  EXPECT_EQ(name_at(*other.patient, {-35.0, -10.0, 0.0}), "spleen");
+  EXPECT_TRUE(has_warning(other, "ml of spleen and liver (now spleen)"));
+  // Priority counts before size: a lesion as large as its liver.
+  const LabelSource lesion = source("liver_tumor", liver().labels);
+  EXPECT_EQ(name_at(*build({lesion, liver()}).patient, {-50.0, -10.0, 0.0}), "liver_tumor");
+  EXPECT_FALSE(has_warning(build({liver()}), "overlapping"));
+}
+
 TEST(BuildPatient, RegionsOfSeveralStructuresAreLeftOutWithAWarning) {
   const Built built =
       build({liver(), source("abdominal_cavity", Torso::mask(Torso::grid(kSpacingMm), Torso::is_inside))});
