@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "anatomy/phantom/phantom.h"
+#include "anatomy/plausibility/judge_anatomy.h"
 #include "anatomy/posture.h"
 #include "anatomy/tissue/tissue_table.h"
 #include "cases/prepare_case.h"
@@ -99,6 +100,8 @@ struct BuildArguments {
   std::string rescale;  ///< "SLOPE,INTERCEPT", or empty.
   std::string derive = "all";
   std::string posture = "supine";
+  std::string mirror;  ///< "labels", "both", or empty.
+  std::vector<std::string> confirmed;
   std::string tissues;  ///< Tissue table to put into the folder; empty: none.
   std::string out;
   bool is_json = false;
@@ -127,6 +130,13 @@ Result<anatomy::Posture> parse_posture(const std::string& name) {
   return fail_usage("there is no such posture", name, "give supine, prone, left-lateral, right-lateral or sitting");
 }
 
+Result<io::Mirroring> parse_mirroring(const std::string& text) {
+  if (text.empty()) return io::Mirroring::kNone;
+  if (text == "labels") return io::Mirroring::kLabels;
+  if (text == "both") return io::Mirroring::kBoth;
+  return fail_usage("--mirror needs what was mirrored", text, "write --mirror labels or --mirror both");
+}
+
 Status build(const BuildArguments& arguments) {
   TROCAR_TRY_STATUS(check_new(arguments.out));
   TROCAR_TRY(const fs::path tasks_folder, find_data("tasks"));
@@ -140,6 +150,9 @@ Status build(const BuildArguments& arguments) {
   TROCAR_TRY(const anatomy::Posture posture, parse_posture(arguments.posture));
   TROCAR_TRY(const auto extras, read_tissues(arguments.tissues));
   TROCAR_TRY(files.derive, anatomy::parse_derive_choice(arguments.derive));
+  TROCAR_TRY(files.mirroring, parse_mirroring(arguments.mirror));
+  TROCAR_TRY_STATUS(anatomy::check_confirmable(arguments.confirmed));
+  files.confirmed = arguments.confirmed;
   files.name = arguments.name.empty() ? io::last_name(arguments.out) : arguments.name;
   std::vector<std::string> warnings;
   std::vector<anatomy::NamedMesh> meshes;
@@ -258,6 +271,11 @@ void add_patient_commands(Command& program, Action& action) {
       .add_option("--posture", b->posture,
                   "How the patient lies for the puncture: supine, prone, left-lateral, right-lateral, sitting")
       .show_default();
+  build_command.add_option("--mirror", b->mirror,
+                           "Mirror left to right what its file has mirrored: labels, or both (the CT, too)");
+  build_command.add_option("--confirm", b->confirmed,
+                           "A finding about the whole segmentation that is right: mirrored (situs inversus), turned, "
+                           "shifted, numbers, missing, sizes; can be given several times");
   build_command.add_option("--tissues", b->tissues,
                            "Tissue table (TOML) fitted to this patient: stored in the folder and used by its attempts");
   build_command.add_option("--name", b->name, "Name of the patient; default: the folder's name");

@@ -11,6 +11,7 @@
 #include "anatomy/detail/fill_unlabelled.h"
 #include "anatomy/detail/merge_sources.h"
 #include "anatomy/known_structures.h"
+#include "anatomy/plausibility/judge_anatomy.h"
 #include "anatomy/repair/repair_segmentation.h"
 #include "anatomy/tissue/hounsfield.h"
 #include "anatomy/tissue/plausible_hu.h"
@@ -97,6 +98,7 @@ Result<VirtualPatient> build_patient(const volume::CtGrid& ct, std::vector<Label
   patient.name = options.name;
   patient.provenance = options.provenance;
 
+  std::vector<AnatomyFinding> findings = judge_numbers(ct, sources, known);
   // Slices are axial from here on, independent of the stored order of the CT.
   patient.ct = volume::along_P(ct);
   report(progress, "labels", 0.0);
@@ -107,10 +109,13 @@ Result<VirtualPatient> build_patient(const volume::CtGrid& ct, std::vector<Label
   merged.body_hint = {};
   clear_outside(body, merged.labels, merged.table, warnings);
 
-  report(progress, "distance to the skin", 0.4);
-  patient.skin_distance_mm = volume::signed_distance_mm(body);
   patient.labels = std::move(merged.labels);
   patient.label_table = std::move(merged.table);
+  for (AnatomyFinding& finding : judge_anatomy(patient)) findings.push_back(std::move(finding));
+  TROCAR_TRY_STATUS(settle_findings(findings, options.confirmed, patient.provenance, warnings));
+
+  report(progress, "distance to the skin", 0.4);
+  patient.skin_distance_mm = volume::signed_distance_mm(body);
   report(progress, "errors of the segmentation", 0.6);
   patient.repairs = repair_segmentation(patient.ct, patient.labels, patient.label_table);
   for (const Finding& repair : patient.repairs) warnings.push_back(repair.text);

@@ -12,6 +12,13 @@
 
 namespace trocar::anatomy {
 
+/// What the numbers of a segmentation would mean by another label map.
+struct OtherReading {
+  std::string label_map;  ///< Option that selects it: "totalsegmentator:total_v1".
+  std::string words;      ///< "TotalSegmentator 1".
+  std::vector<std::pair<int, std::string>> names;
+};
+
 /// A structure as it was read from a segmentation, on its own grid.
 struct LabelSource {
   std::string file;                                ///< For messages.
@@ -20,6 +27,7 @@ struct LabelSource {
   /// It names its structures itself (DICOM SEG, RT structure set, .seg.nrrd): beyond its grid there are none, and the
   /// values mean nothing to a user.
   bool is_described = false;
+  std::vector<OtherReading> other_readings{};  ///< Likely mistakes; for numbers that a label map names.
 };
 
 /// Name in a label map of label values that are left out. Background names are left out, too.
@@ -28,7 +36,8 @@ inline constexpr std::string_view kIgnoredStructure = "ignore";
 struct BuildOptions {
   std::string name;
   std::vector<std::string> provenance;
-  DeriveChoice derive{};  ///< Thin structures to add (derive/derive_structures.h).
+  DeriveChoice derive{};                 ///< Thin structures to add (derive/derive_structures.h).
+  std::vector<std::string> confirmed{};  ///< Findings that a person has confirmed (plausibility/judge_anatomy.h).
 };
 
 /// A patient from a CT and segmentations: the body without table and clothing, labels resampled onto the CT's grid with
@@ -36,7 +45,8 @@ struct BuildOptions {
 /// volumes have their axes in the order of P (volume/orientation.h), whatever the order in the files. The structures
 /// are those of data_dir(), loaded once (KnownStructures). Errors: no such data, impossible HU (check_hounsfield), a
 /// segmentation that does not overlap the CT, unknown structure names and values without a name (all of them in one
-/// line), no body in the CT, all masks empty. Warnings (an empty mask, a structure cut by the volume's border, a
+/// line), no body in the CT, all masks empty, a grave finding that is not confirmed (mirrored, turned or shifted
+/// labels, numbers of another label map). Warnings (an empty mask, a structure cut by the volume's border, a
 /// segmentation of a part of the CT, labels of one name, which become one structure, regions) are appended to
 /// `warnings`.
 Result<VirtualPatient> build_patient(const volume::CtGrid& ct, std::vector<LabelSource> sources,

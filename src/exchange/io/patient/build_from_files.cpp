@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <iterator>
+#include <utility>
 
 #include "anatomy/build_patient.h"
 #include "core/part_of_progress.h"
@@ -16,6 +17,21 @@ namespace {
 Status check_stop(const std::stop_token& stop, const PatientFiles& files) {
   if (stop.stop_requested()) return fail("stopped", files.ct.string(), "start the build again");
   return {};
+}
+
+/// Reverses the axis that runs most nearly along left and right.
+template <class T>
+void mirror_left_right(volume::Grid<T>& grid) {
+  const volume::GridGeometry& g = grid.geometry;
+  Eigen::Index axis = 0;
+  g.R_PV.row(0).cwiseAbs().maxCoeff(&axis);
+  const auto a = static_cast<std::size_t>(axis);
+  for (std::size_t n = 0; n < grid.voxels.size(); ++n) {
+    volume::Index3 ijk = g.index_of(n);
+    if (2 * ijk[a] >= g.size[a] - 1) continue;
+    ijk[a] = g.size[a] - 1 - ijk[a];
+    std::swap(grid.voxels[n], grid.voxels[g.offset(ijk)]);
+  }
 }
 
 }  // namespace
@@ -42,12 +58,19 @@ Result<anatomy::VirtualPatient> build_from_files(const PatientFiles& files, std:
 
   anatomy::BuildOptions options;
   options.name = files.name;
+  options.confirmed = files.confirmed;
   options.derive = files.derive;
   options.provenance = {fmt::format("built by trocar {}", kVersion), "CT: " + last_name(files.ct)};
   if (files.rescale)
     options.provenance.push_back(
         fmt::format("CT rescaled: HU = {} * stored + {}", files.rescale->slope, files.rescale->intercept));
   for (const std::filesystem::path& path : files.labels) options.provenance.push_back("labels: " + last_name(path));
+  if (files.mirroring != Mirroring::kNone) {
+    options.provenance.push_back(files.mirroring == Mirroring::kBoth ? "mirrored left to right: CT and labels"
+                                                                     : "mirrored left to right: labels");
+    for (anatomy::LabelSource& source : sources) mirror_left_right(source.labels);
+    if (files.mirroring == Mirroring::kBoth) mirror_left_right(ct);
+  }
   return anatomy::build_patient(ct, std::move(sources), options, warnings, part_of(progress, 0.4, 1.0));
 }
 

@@ -14,6 +14,9 @@
 
 namespace trocar::io {
 
+/// What is mirrored left to right, about the middle of its own grid, because its file was.
+enum class Mirroring { kNone, kLabels, kBoth };
+
 /// The input files of a patient.
 struct PatientFiles {
   std::filesystem::path ct;                    ///< NIfTI, NRRD, MHA, or a folder of DICOM files.
@@ -23,6 +26,8 @@ struct PatientFiles {
   std::string series{};                        ///< Selects one of several DICOM series, see read_ct.
   std::optional<anatomy::Rescale> rescale{};   ///< Rescale for a CT whose file lacks it.
   anatomy::DeriveChoice derive{};              ///< Thin structures to add.
+  Mirroring mirroring = Mirroring::kNone;      ///< Kept in the provenance, as the next ones.
+  std::vector<std::string> confirmed{};        ///< Findings that are right (anatomy/plausibility/judge_anatomy.h).
 };
 
 /// Reads the files and builds the patient; its provenance names the files without paths of this machine. A stop request

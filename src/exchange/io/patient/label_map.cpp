@@ -137,6 +137,7 @@ Result<LabelMap> LabelMap::load(const std::string& label_map) {
   TROCAR_TRY(const std::filesystem::path data_folder, checked_data_dir());
   TROCAR_TRY(map.structures_, anatomy::KnownStructures::load(data_folder));
   TROCAR_TRY_STATUS(map.read_codes(data_folder));
+  map.label_map_ = label_map;
   if (label_map.empty()) return map;
   if (label_map == kTotalSegmentator || label_map.starts_with(kTask)) {
     TROCAR_TRY_STATUS(map.read_base(label_map, "--label-map"));
@@ -156,6 +157,23 @@ Result<LabelMap> LabelMap::load(const std::string& label_map) {
     TROCAR_TRY_STATUS(map.read_entry(key, std::move(name), table.where()));
   }
   return map;
+}
+
+std::optional<anatomy::OtherReading> LabelMap::likely_mistake() const {
+  constexpr std::string_view kVersion1 = "totalsegmentator:total_v1";
+  const bool is_1 = label_map_ == kVersion1;
+  if (!is_1 && label_map_ != kTotalSegmentator) return std::nullopt;
+  anatomy::OtherReading other;
+  other.label_map = is_1 ? kTotalSegmentator : kVersion1;
+  other.words = is_1 ? "TotalSegmentator 2" : "TotalSegmentator 1 (total_v1)";
+  std::map<int, std::string> names = totalsegmentator_names(structures_);
+  if (!is_1) {
+    auto of_1 = task_names(std::string(kVersion1.substr(kTask.size())), "--label-map");
+    if (!of_1) return std::nullopt;  // an installation without the tasks
+    names = *std::move(of_1);
+  }
+  other.names.assign(names.begin(), names.end());
+  return other;
 }
 
 std::optional<std::string> LabelMap::name_of(int number) const {

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "anatomy/build_patient.h"
 #include "anatomy/known_structures.h"
 #include "core/result.h"
 
@@ -36,6 +37,10 @@ class LabelMap {
   /// names. Errors: an unusable file, an unknown task, no data folder.
   static Result<LabelMap> load(const std::string& label_map);
 
+  /// The names of numbers by the label map that this one is likely taken for: TotalSegmentator 1 and 2 number
+  /// their structures differently. Empty for other maps.
+  std::optional<anatomy::OtherReading> likely_mistake() const;
+
   bool is_empty() const noexcept { return by_number_.empty() && !rest_; }
   /// True if the number has its own entry, not only "*".
   bool has_number(int number) const { return by_number_.contains(number); }
@@ -56,6 +61,7 @@ class LabelMap {
   Status read_codes(const std::filesystem::path& data_folder);
   Status read_entry(const std::string& key, std::string name, const std::string& where);
   anatomy::KnownStructures structures_;
+  std::string label_map_;  ///< As given to load().
   std::map<int, std::string> by_number_;
   std::map<std::string, std::string, std::less<>> by_name_;
   std::optional<std::string> rest_;

@@ -33,7 +33,7 @@ bool is_mask(const std::vector<int>& values, const std::string& stem, const Labe
 /// Values without a name are reported by build_patient, which lists those of all files.
 Result<anatomy::LabelSource> name_labels(volume::LabelGrid labels, const fs::path& path, const LabelMap& map,
                                          Place place, std::vector<std::string>& warnings) {
-  anatomy::LabelSource source{path.string(), std::move(labels), {}};
+  anatomy::LabelSource source{path.string(), std::move(labels), {}, false, {}};
   const std::vector<int> values = detail::values_in(source.labels);
   const std::string stem = detail::image_stem(path);
   if (is_mask(values, stem, map, place)) {
@@ -50,6 +50,7 @@ Result<anatomy::LabelSource> name_labels(volume::LabelGrid labels, const fs::pat
                 "name them: --label-map totalsegmentator, or a TOML file with [labels] 1 = \"liver\" …");
   for (const int value : values)
     if (auto name = map.name_of(value)) source.names.emplace_back(value, std::move(*name));
+  if (auto other = map.likely_mistake()) source.other_readings.push_back(*std::move(other));
   return source;
 }
 
@@ -155,7 +156,7 @@ Result<std::vector<anatomy::LabelSource>> read_segments(const detail::RawVolume&
     for (std::size_t n = 0; n < raw.geometry.voxel_count(); ++n)
       std::copy_n(raw.bytes.get() + (n * count + layer) * voxel_bytes, voxel_bytes,
                   single.bytes.get() + n * voxel_bytes);
-    anatomy::LabelSource source{path.string(), {}, {}, true};
+    anatomy::LabelSource source{path.string(), {}, {}, true, {}};
     TROCAR_TRY(source.labels, detail::to_grid<std::uint8_t>(single, path.string(), detail::convert_voxels));
     for (const Segment3dSlicer& segment : segments)
       if (segment.layer == static_cast<int>(layer))
@@ -219,7 +220,8 @@ Result<std::vector<anatomy::LabelSource>> read_mask_files(const std::vector<fs::
 
 Result<anatomy::LabelSource> read_dicom_mask(const fs::path& folder, const LabelMap& map) {
   TROCAR_TRY(auto mask, detail::read_dicom_folder<std::uint8_t>(folder, detail::convert_mask));
-  return anatomy::LabelSource{folder.string(), std::move(mask.grid), {{1, map.name_of(folder.filename().string())}}};
+  return anatomy::LabelSource{
+      folder.string(), std::move(mask.grid), {{1, map.name_of(folder.filename().string())}}, false, {}};
 }
 
 Result<std::vector<anatomy::LabelSource>> read_label_folder(const fs::path& folder, const LabelMap& map,

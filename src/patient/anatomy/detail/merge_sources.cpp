@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <compare>
 #include <cstdint>
 #include <map>
@@ -77,7 +78,10 @@ Status check_names(const std::vector<LabelSource>& sources, const KnownStructure
   return unknown.status();
 }
 
-Status check_overlap(const LabelSource& source, const volume::GridGeometry& grid, std::vector<std::string>& warnings) {
+/// Files that cover a part of the CT, by this part (%).
+using PartialFiles = std::map<int, std::vector<std::string>>;
+
+Status check_overlap(const LabelSource& source, const volume::GridGeometry& grid, PartialFiles& partial) {
   if (source.labels.empty())
     return fail("the segmentation has no voxels", source.file, "export the segmentation again");
   const double covered = volume::overlap_fraction(source.labels.geometry, grid);
@@ -86,10 +90,15 @@ Status check_overlap(const LabelSource& source, const volume::GridGeometry& grid
     return fail(fmt::format("the segmentation does not overlap the CT ({:.1f} % common)", 100.0 * overlap), source.file,
                 "give the segmentation that was made from this CT");
   if (!source.is_described && covered < kMostlyCovered)
-    warnings.push_back(
-        fmt::format("the segmentation covers {:.0f} % of the CT; beyond it, structures have no label: {}",
-                    100.0 * covered, source.file));
+    partial[static_cast<int>(std::lround(100.0 * covered))].push_back(source.file);
   return {};
+}
+
+void warn_of_partial_files(const PartialFiles& partial, std::vector<std::string>& warnings) {
+  for (const auto& [percent, files] : partial)
+    warnings.push_back(fmt::format("the segmentation covers {} % of the CT; beyond it, structures have no label: {}{}",
+                                   percent, files.front(),
+                                   files.size() > 1 ? fmt::format(" and {} more", files.size() - 1) : ""));
 }
 
 /// Structures that occur more than once become one: "liver" of liver.nii.gz and of seg.nii.gz.
@@ -242,7 +251,9 @@ Result<MergedLabels> merge_sources(std::vector<LabelSource> sources, const volum
                                    const KnownStructures& known, std::vector<std::string>& warnings) {
   if (sources.empty()) return fail_usage("no segmentation given", "--labels", "give at least one label file");
   TROCAR_TRY_STATUS(check_names(sources, known));
-  for (const LabelSource& source : sources) TROCAR_TRY_STATUS(check_overlap(source, grid, warnings));
+  PartialFiles partial;
+  for (const LabelSource& source : sources) TROCAR_TRY_STATUS(check_overlap(source, grid, partial));
+  warn_of_partial_files(partial, warnings);
   warn_of_repeated_names(sources, known, warnings);
   const std::string where = sources.size() == 1 ? sources.front().file : fmt::format("{} files", sources.size());
   Merger merger(grid, known, volumes_of(sources));

@@ -25,8 +25,8 @@ constexpr double kSmallestJudged_ml = 1.0;
 
 }  // namespace
 
-std::vector<Finding> find_implausible_hu(const VirtualPatient& patient,
-                                         const std::vector<LabelStatistics>& statistics) {
+std::vector<Finding> find_implausible_hu(const VirtualPatient& patient, const std::vector<LabelStatistics>& statistics,
+                                         std::size_t* judged_count) {
   std::vector<Finding> doubts;
   std::size_t judged = 0;
   for (const LabelStatistics& s : statistics) {
@@ -41,14 +41,7 @@ std::vector<Finding> find_implausible_hu(const VirtualPatient& patient,
         {fmt::format("{}: mean {:.0f} HU, expected {:.0f} to {:.0f}", label->name, s.mean_hu, range->low, range->high),
          label->name, s.centroid_P});
   }
-  constexpr std::size_t kMany = 4;
-  if (doubts.size() >= kMany && doubts.size() * 5 >= judged) {
-    doubts.insert(doubts.begin(),
-                  {fmt::format("{} of {} structures have implausible HU: does the segmentation belong to this CT?",
-                               doubts.size(), judged),
-                   {},
-                   {}});
-  }
+  if (judged_count != nullptr) *judged_count = judged;
   return doubts;
 }
 

@@ -6,8 +6,9 @@
 
 namespace trocar::anatomy {
 
-/// Labels with a mean HU that is implausible for their tissue. If many labels fail, the first line warns
-/// that the segmentation may belong to another CT. Ranges are wide; small labels are not checked.
-std::vector<Finding> find_implausible_hu(const VirtualPatient& patient, const std::vector<LabelStatistics>& statistics);
+/// Labels with a mean HU that is implausible for their tissue. Ranges are wide; small labels are not checked.
+/// `judged_count`: how many were.
+std::vector<Finding> find_implausible_hu(const VirtualPatient& patient, const std::vector<LabelStatistics>& statistics,
+                                         std::size_t* judged_count = nullptr);
 
 }  // namespace trocar::anatomy

@@ -55,7 +55,7 @@ Result<std::vector<anatomy::LabelSource>> read_dicom_labels(const fs::path& path
   std::vector<anatomy::LabelSource> sources;
   std::vector<bool> has_voxels(read.segments.size(), false);
   for (dicom::SegmentVolume& volume : read.volumes) {
-    anatomy::LabelSource source{path.string(), std::move(volume.labels), {}, true};
+    anatomy::LabelSource source{path.string(), std::move(volume.labels), {}, true, {}};
     for (std::size_t n = 0; n < volume.segments.size(); ++n) {
       has_voxels[volume.segments[n]] = true;
       source.names.emplace_back(static_cast<int>(n + 1), name_of(read.segments[volume.segments[n]], map, stem));
@@ -64,7 +64,7 @@ Result<std::vector<anatomy::LabelSource>> read_dicom_labels(const fs::path& path
   }
   for (std::size_t n = 0; n < read.segments.size(); ++n)
     if (!has_voxels[n])
-      sources.push_back({path.string(), empty_over(ct.grid), {{1, name_of(read.segments[n], map, stem)}}, true});
+      sources.push_back({path.string(), empty_over(ct.grid), {{1, name_of(read.segments[n], map, stem)}}, true, {}});
   return sources;
 }
 

@@ -1,0 +1,193 @@
+#include "anatomy/plausibility/judge_anatomy.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "anatomy/plausibility/detail/directions.h"
+#include "anatomy/plausibility/detail/edge_match.h"
+#include "anatomy/plausibility/detail/sizes.h"
+#include "anatomy/tissue/plausible_hu.h"
+#include "core/parallel.h"
+
+namespace trocar::anatomy {
+namespace {
+
+using detail::AxisVotes;
+using detail::EdgeMatch;
+
+// A better place of the labels is one whose borders lie on steps of HU that are larger by this factor, this far away.
+// Chosen so that no patient of docs/validation.md (section Findings) is told of, and 15 mm are.
+constexpr double kBetter = 1.25, kLeastShift_mm = 5.0;
+constexpr double kFarthest_mm = 30.0, kStep_mm = 5.0, kFineStep_mm = 1.5;
+constexpr std::size_t kFewestEdges = 300, kFewestStructures = 3;
+constexpr double kClearStep_hu = 45.0;  ///< A place with smaller steps fits nothing.
+
+struct BestShift {
+  volume::Index3 shift{};
+  double step_hu = 0.0;
+};
+
+/// The best of the places around `middle`, `most` steps of so many voxels to each side.
+template <class StepHu>
+BestShift find_best_around(const volume::Index3& middle, const volume::Index3& step, const volume::Index3& most,
+                           const StepHu& step_hu) {
+  std::vector<BestShift> tried;
+  for (std::int64_t k = -most[2]; k <= most[2]; ++k)
+    for (std::int64_t j = -most[1]; j <= most[1]; ++j)
+      for (std::int64_t i = -most[0]; i <= most[0]; ++i)
+        tried.push_back({{middle[0] + i * step[0], middle[1] + j * step[1], middle[2] + k * step[2]}, 0.0});
+  parallel_for(tried.size(), 8, [&](std::size_t first, std::size_t last) {
+    for (std::size_t n = first; n < last; ++n) tried[n].step_hu = step_hu(tried[n].shift);
+  });
+  return *std::max_element(tried.begin(), tried.end(),
+                           [](const BestShift& a, const BestShift& b) { return a.step_hu < b.step_hu; });
+}
+
+/// The place with the largest steps within `farthest_mm` along each axis: in coarse steps, then in finer ones around
+/// it.
+template <class StepHu>
+BestShift find_best(const volume::GridGeometry& g, const Vec3& farthest_mm, const StepHu& step_hu) {
+  volume::Index3 coarse{}, most{}, fine{}, around{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto axis = static_cast<Eigen::Index>(a);
+    const double spacing_mm = g.spacing_mm[axis];
+    coarse[a] = std::max<std::int64_t>(1, std::lround(kStep_mm / spacing_mm));
+    most[a] = std::lround(farthest_mm[axis] / (spacing_mm * static_cast<double>(coarse[a])));
+    fine[a] = std::max<std::int64_t>(1, std::lround(kFineStep_mm / spacing_mm));
+    around[a] = farthest_mm[axis] > 0.0 ? (coarse[a] + fine[a] - 1) / fine[a] : 0;
+  }
+  const BestShift best = find_best_around({0, 0, 0}, coarse, most, step_hu);
+  return find_best_around(best.shift, fine, around, step_hu);
+}
+
+/// "15 mm to the left, 5 mm to the head"
+std::string way_text(const Vec3& way_mm) {
+  constexpr std::array<std::array<const char*, 2>, 3> kWords{{{"right", "left"}, {"front", "back"}, {"feet", "head"}}};
+  std::vector<std::string> parts;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double mm = way_mm[static_cast<Eigen::Index>(axis)];
+    if (std::abs(mm) >= 1.0)
+      parts.push_back(fmt::format("{:.0f} mm to the {}", std::abs(mm), kWords[axis][mm > 0.0 ? 1 : 0]));
+  }
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::string found_text(const std::array<AxisVotes, 3>& votes) {
+  std::vector<std::string> texts;
+  for (const AxisVotes& axis : votes)
+    if (axis.is_reversed())
+      for (const std::string& wrong : axis.wrong_ones)
+        if (texts.size() < 5 && std::ranges::find(texts, wrong) == texts.end()) texts.push_back(wrong);
+  return fmt::format("{}", fmt::join(texts, ", "));
+}
+
+/// Labels that fit the CT better when they are mirrored were mirrored alone.
+bool are_labels_mirrored_alone(const EdgeMatch& edges, const volume::GridGeometry& g) {
+  if (edges.count() < kFewestEdges) return false;
+  const auto mirrored = find_best(g, {kFarthest_mm, 0.0, 0.0},
+                                  [&](const volume::Index3& shift) { return edges.mirrored_step_hu(shift); });
+  return mirrored.step_hu > kBetter * edges.step_hu({0, 0, 0});
+}
+
+void judge_directions(const std::array<AxisVotes, 3>& votes, const EdgeMatch& edges, const volume::GridGeometry& g,
+                      std::vector<AnatomyFinding>& findings) {
+  constexpr std::array kAxes{"left and right", "front and back", "head and feet"};
+  std::vector<std::string> reversed;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (votes[axis].is_reversed()) reversed.emplace_back(kAxes[axis]);
+  if (reversed.empty()) return;
+  const std::string found = found_text(votes);
+  if (reversed.size() > 1 || !votes[0].is_reversed()) {
+    findings.push_back(
+        {kTurned, fmt::format("{} are exchanged ({}): the image is turned", fmt::join(reversed, ", "), found),
+         fmt::format("export CT and labels again with their orientation; --confirm {} if it is right", kTurned)});
+    return;
+  }
+  if (are_labels_mirrored_alone(edges, g)) {
+    findings.push_back({kMirrored,
+                        fmt::format("the labels are mirrored ({}), and fit the CT when they are mirrored back", found),
+                        "build with --mirror labels"});
+    return;
+  }
+  findings.push_back(
+      {kMirrored, fmt::format("left and right are exchanged ({}): a mirrored image, or situs inversus", found),
+       fmt::format("build with --mirror both if the image is mirrored, --confirm {} if the patient is like that",
+                   kMirrored)});
+}
+
+void judge_shift(const EdgeMatch& edges, const volume::GridGeometry& g, std::vector<AnatomyFinding>& findings) {
+  if (edges.count() < kFewestEdges || edges.structures() < kFewestStructures) return;
+  const double here_hu = edges.step_hu({0, 0, 0});
+  const BestShift best =
+      find_best(g, Vec3::Constant(kFarthest_mm), [&](const volume::Index3& shift) { return edges.step_hu(shift); });
+  const Vec3 way_mm = volume::to_vec3(best.shift).cwiseProduct(g.spacing_mm);
+  if (best.step_hu < kClearStep_hu || best.step_hu <= kBetter * here_hu || way_mm.norm() < kLeastShift_mm) return;
+  findings.push_back({kShifted,
+                      fmt::format("the labels lie beside the structures in the CT: they would fit {} "
+                                  "(steps of {:.0f} instead of {:.0f} HU at their borders)",
+                                  way_text(way_mm), best.step_hu, here_hu),
+                      fmt::format("give the labels of this CT, with its place in their header; --confirm {} if they "
+                                  "are right",
+                                  kShifted)});
+}
+
+/// A segmentation of another CT has many structures where this one has other things.
+void judge_hu(const VirtualPatient& patient, std::vector<AnatomyFinding>& findings) {
+  constexpr std::size_t kMany = 4;
+  std::size_t judged = 0;
+  const std::vector<Finding> wrong = find_implausible_hu(patient, label_statistics(patient), &judged);
+  if (wrong.size() < kMany || wrong.size() * 4 < judged) return;
+  findings.push_back(
+      {kOtherCt,
+       fmt::format("{} of {} structures have HU that they cannot have ({}; {}): the segmentation seems to "
+                   "belong to another CT",
+                   wrong.size(), judged, wrong[0].text, wrong[1].text),
+       fmt::format("give the segmentation of this CT; --confirm {} if it is right", kOtherCt)});
+}
+
+}  // namespace
+
+std::vector<AnatomyFinding> judge_anatomy(const VirtualPatient& patient) {
+  std::vector<AnatomyFinding> findings;
+  const EdgeMatch edges(patient.ct, patient.labels, patient.label_table);
+  const volume::GridGeometry& g = patient.labels.geometry;
+  judge_directions(detail::vote_directions(patient.labels, patient.label_table), edges, g, findings);
+  if (findings.empty()) judge_shift(edges, g, findings);
+  if (findings.empty()) judge_hu(patient, findings);
+  detail::judge_sizes(patient.labels, patient.label_table, findings);
+  return findings;
+}
+
+Status settle_findings(const std::vector<AnatomyFinding>& findings, const std::vector<std::string>& confirmed,
+                       std::vector<std::string>& provenance, std::vector<std::string>& warnings) {
+  for (const std::string& name : confirmed)
+    if (std::ranges::none_of(findings, [&](const AnatomyFinding& finding) { return finding.name == name; }))
+      warnings.push_back(fmt::format("nothing to confirm: there is no finding \"{}\"", name));
+  const AnatomyFinding* gravest = nullptr;
+  for (const AnatomyFinding& finding : findings) {
+    if (std::ranges::find(confirmed, finding.name) != confirmed.end()) {
+      provenance.push_back(fmt::format("confirmed: {}: {}", finding.name, finding.text));
+    } else if (finding.is_grave) {
+      if (gravest == nullptr) gravest = &finding;
+    } else {
+      warnings.push_back(fmt::format("{} (--confirm {} if it is right)", finding.text, finding.name));
+    }
+  }
+  if (gravest == nullptr) return {};
+  return fail(gravest->text, {}, gravest->advice);
+}
+
+Status check_confirmable(const std::vector<std::string>& names) {
+  constexpr std::array kAll{kMirrored, kTurned, kShifted, kNumbers, kOtherCt, kMissing, kSizes};
+  for (const std::string& name : names)
+    if (std::ranges::find(kAll, name) == kAll.end())
+      return fail_usage(fmt::format("there is no finding \"{}\"", name), "--confirm",
+                        fmt::format("give one of {}", fmt::join(kAll, ", ")));
+  return {};
+}
+
+}  // namespace trocar::anatomy

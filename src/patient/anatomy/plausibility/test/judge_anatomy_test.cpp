@@ -1,0 +1,212 @@
+// A body of simple shapes and its segmentation: as it is, and with one thing wrong.
+#include "anatomy/plausibility/judge_anatomy.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace trocar::anatomy {
+namespace {
+
+struct Ball {
+  const char* name;
+  int number;  ///< In TotalSegmentator 2.
+  Vec3 middle_P;
+  double radius_mm;
+  std::int16_t hu;
+};
+
+/// Liver on the right, spleen and stomach on the left, spine behind: sizes as in an adult.
+const std::vector<Ball>& balls() {
+  static const std::vector<Ball> all = {
+      {"liver", 5, {-60, -20, 60}, 55, 110},      {"spleen", 1, {70, 30, 70}, 28, 120},
+      {"stomach", 6, {50, -50, 60}, 25, 30},      {"kidney_left", 3, {55, 45, 0}, 24, 160},
+      {"kidney_right", 2, {-55, 45, 0}, 24, 160}, {"gallbladder", 4, {-40, -60, 0}, 14, 8},
+      {"aorta", 52, {12, 25, 20}, 12, 180},         {"inferior_vena_cava", 63, {-14, 25, 20}, 12, 140},
+      {"pancreas", 7, {5, -10, 20}, 14, 90},      {"urinary_bladder", 21, {0, -40, -85}, 24, 5},
+      {"vertebrae_L1", 31, {0, 55, 40}, 16, 260}, {"vertebrae_L2", 30, {0, 55, 5}, 16, 250},
+      {"vertebrae_L3", 29, {0, 55, -30}, 16, 255}};
+  return all;
+}
+
+volume::GridGeometry body_grid() {
+  volume::GridGeometry g;
+  g.size = {72, 54, 60};
+  g.spacing_mm = {4, 4, 4};
+  g.origin_P = {-142, -106, -118};
+  return g;
+}
+
+/// A CT and labels numbered as TotalSegmentator 2 does; each is drawn at where(p) instead of p.
+using Where = std::function<Vec3(const Vec3&)>;
+const Where kHere = [](const Vec3& p_P) { return p_P; };
+const Where kMirroredHere = [](const Vec3& p_P) { return Vec3(-p_P.x(), p_P.y(), p_P.z()); };
+
+volume::CtGrid ct_at(const Where& where) {
+  volume::CtGrid ct(body_grid(), -1000);
+  for (std::size_t n = 0; n < ct.voxels.size(); ++n) {
+    const Vec3 p_P = ct.geometry.centre_mm(ct.geometry.index_of(n));
+    if (std::hypot(p_P.x() / 130.0, p_P.y() / 95.0) < 1.0) ct.voxels[n] = -90;
+    const Vec3 at = where(p_P);
+    for (const Ball& ball : balls())
+      if ((at - ball.middle_P).norm() < ball.radius_mm) ct.voxels[n] = ball.hu;
+  }
+  return ct;
+}
+
+LabelSource labels_at(const Where& where, const std::vector<std::string>& without = {}) {
+  LabelSource source{"labels.nii.gz", volume::LabelGrid(body_grid()), {}, false, {}};
+  for (std::size_t n = 0; n < source.labels.voxels.size(); ++n) {
+    const Vec3 at = where(source.labels.geometry.centre_mm(source.labels.geometry.index_of(n)));
+    for (const Ball& ball : balls())
+      if ((at - ball.middle_P).norm() < ball.radius_mm && std::ranges::find(without, ball.name) == without.end())
+        source.labels.voxels[n] = static_cast<std::uint8_t>(ball.number);
+  }
+  for (const Ball& ball : balls()) source.names.emplace_back(ball.number, ball.name);
+  return source;
+}
+
+struct BodyOutcome {
+  Result<VirtualPatient> patient;
+  std::vector<std::string> warnings;
+  std::string text() const { return patient ? "built" : patient.error().text(); }
+  bool warns_of(const std::string& words) const {
+    return std::ranges::any_of(warnings, [&](const auto& w) { return w.find(words) != std::string::npos; });
+  }
+};
+
+BodyOutcome build_body(const volume::CtGrid& ct, LabelSource source, std::vector<std::string> confirmed = {}) {
+  std::vector<std::string> warnings;
+  BuildOptions options;
+  options.name = "test";
+  options.derive = {false, {}};
+  options.confirmed = std::move(confirmed);
+  auto patient = build_patient(ct, {std::move(source)}, options, warnings);
+  return {std::move(patient), std::move(warnings)};
+}
+
+bool has_words(const std::string& text, const std::string& words) {
+  return text.find(words) != std::string::npos;
+}
+
+TEST(JudgeAnatomy, FindsNothingInARightSegmentation) {
+  const BodyOutcome built = build_body(ct_at(kHere), labels_at(kHere));
+  ASSERT_TRUE(built.patient) << built.text();
+  EXPECT_FALSE(built.warns_of("--confirm")) << built.warnings.front();
+}
+
+TEST(JudgeAnatomy, MirroredLabelsAreToldFromAMirroredBody) {
+  const BodyOutcome labels = build_body(ct_at(kHere), labels_at(kMirroredHere));
+  EXPECT_TRUE(has_words(labels.text(), "the labels are mirrored")) << labels.text();
+  EXPECT_TRUE(has_words(labels.text(), "--mirror labels")) << labels.text();
+  const BodyOutcome both = build_body(ct_at(kMirroredHere), labels_at(kMirroredHere));
+  EXPECT_TRUE(has_words(both.text(), "situs inversus")) << both.text();
+  EXPECT_TRUE(has_words(both.text(), "--mirror both")) << both.text();
+}
+
+TEST(JudgeAnatomy, AConfirmedFindingIsKeptInTheProvenance) {
+  const BodyOutcome built = build_body(ct_at(kMirroredHere), labels_at(kMirroredHere), {kMirrored, kShifted});
+  ASSERT_TRUE(built.patient) << built.text();
+  EXPECT_TRUE(std::ranges::any_of(built.patient->provenance, [](const auto& line) {
+    return has_words(line, "confirmed: mirrored: left and right");
+  }));
+  EXPECT_TRUE(built.warns_of("nothing to confirm: there is no finding \"shifted\""));
+}
+
+TEST(JudgeAnatomy, TurnedImagesAreRefused) {
+  const Where half_turn = [](const Vec3& p_P) { return Vec3(-p_P.x(), -p_P.y(), p_P.z()); };
+  const Where head_down = [](const Vec3& p_P) { return Vec3(p_P.x(), p_P.y(), -p_P.z()); };
+  const BodyOutcome turned = build_body(ct_at(half_turn), labels_at(half_turn));
+  EXPECT_TRUE(has_words(turned.text(), "left and right, front and back are exchanged")) << turned.text();
+  const BodyOutcome down = build_body(ct_at(head_down), labels_at(head_down));
+  EXPECT_TRUE(has_words(down.text(), "head and feet are exchanged")) << down.text();
+}
+
+TEST(JudgeAnatomy, LabelsBesideTheirStructuresAreRefusedWithTheWay) {
+  for (const Vec3& way_mm : {Vec3(16, 0, 0), Vec3(0, -12, 0), Vec3(0, 0, 20), Vec3(8, 8, 8)}) {
+    const BodyOutcome built = build_body(ct_at(kHere), labels_at([&](const Vec3& p_P) { return Vec3(p_P - way_mm); }));
+    ASSERT_TRUE(has_words(built.text(), "beside the structures in the CT")) << way_mm.transpose() << built.text();
+    if (way_mm.x() == 16.0) {
+      EXPECT_TRUE(has_words(built.text(), "16 mm to the right")) << built.text();
+    }
+    if (way_mm.z() == 20.0) {
+      EXPECT_TRUE(has_words(built.text(), "20 mm to the feet")) << built.text();
+    }
+  }
+}
+
+TEST(JudgeAnatomy, NumbersOfTheOtherVersionAreRefusedWithTheOption) {
+  // The same file read as TotalSegmentator 2 and 1: numbers by version 1, names by version 2.
+  const std::vector<std::pair<std::string, int>> numbers_1 = {{"spleen", 1},
+                                                              {"kidney_right", 2},
+                                                              {"kidney_left", 3},
+                                                              {"gallbladder", 4},
+                                                              {"liver", 5},
+                                                              {"stomach", 6},
+                                                              {"aorta", 7},
+                                                              {"pancreas", 10},
+                                                              {"inferior_vena_cava", 8},
+                                                              {"vertebrae_L3", 20},
+                                                              {"vertebrae_L2", 21},
+                                                              {"vertebrae_L1", 22},
+                                                              {"urinary_bladder", 104}};
+  LabelSource right = labels_at(kHere);
+  LabelSource wrong = right;
+  for (std::uint8_t& voxel : wrong.labels.voxels) {
+    if (voxel == 0) continue;
+    const auto ball = std::ranges::find(balls(), static_cast<int>(voxel), &Ball::number);
+    const auto number = std::ranges::find_if(numbers_1, [&](const auto& row) { return row.first == ball->name; });
+    voxel = static_cast<std::uint8_t>(number->second);
+  }
+  wrong.names = {{1, "spleen"},
+                 {2, "kidney_right"},
+                 {3, "kidney_left"},
+                 {4, "gallbladder"},
+                 {5, "liver"},
+                 {6, "stomach"},
+                 {7, "pancreas"},
+                 {8, "adrenal_gland_right"},
+                 {10, "lung_upper_lobe_left"},
+                 {20, "colon"},
+                 {21, "urinary_bladder"},
+                 {22, "prostate"},
+                 {104, "rib_left_12"}};
+  OtherReading version_1{"totalsegmentator:total_v1", "TotalSegmentator 1", {}};
+  for (const auto& [name, number] : numbers_1) version_1.names.emplace_back(number, name);
+  wrong.other_readings = {version_1};
+  const BodyOutcome built = build_body(ct_at(kHere), wrong);
+  EXPECT_TRUE(has_words(built.text(), "TotalSegmentator 1")) << built.text();
+  EXPECT_TRUE(has_words(built.text(), "--label-map totalsegmentator:total_v1")) << built.text();
+  // Right numbers are not doubted.
+  right.other_readings = {version_1};
+  EXPECT_TRUE(build_body(ct_at(kHere), right).patient);
+}
+
+TEST(JudgeAnatomy, TheSegmentationOfAnotherCtIsRefused) {
+  // Another body: all organs elsewhere, so that no shift explains it.
+  const Where elsewhere = [](const Vec3& p_P) { return Vec3(p_P.x(), p_P.y() * 0.6 - 30.0, p_P.z() * 1.5 + 25.0); };
+  const BodyOutcome built = build_body(ct_at(elsewhere), labels_at(kHere));
+  EXPECT_FALSE(built.patient);
+  EXPECT_TRUE(has_words(built.text(), "another CT") || has_words(built.text(), "beside the structures"))
+      << built.text();
+}
+
+TEST(JudgeAnatomy, AMissingSpleenIsToldNotRefused) {
+  const BodyOutcome built = build_body(ct_at(kHere), labels_at(kHere, {"spleen"}));
+  ASSERT_TRUE(built.patient) << built.text();
+  EXPECT_TRUE(built.warns_of("no label for: spleen (--confirm missing if it is right)"));
+  const BodyOutcome confirmed = build_body(ct_at(kHere), labels_at(kHere, {"spleen"}), {kMissing});
+  EXPECT_FALSE(confirmed.warns_of("no label for"));
+}
+
+TEST(JudgeAnatomy, FindingsHaveNamesThatCanBeConfirmed) {
+  EXPECT_TRUE(check_confirmable({kMirrored, kTurned, kShifted, kNumbers, kOtherCt, kMissing, kSizes}));
+  const Status unknown = check_confirmable({"situs"});
+  ASSERT_FALSE(unknown);
+  EXPECT_TRUE(has_words(unknown.error().text(), "mirrored, turned, shifted")) << unknown.error().text();
+}
+
+}  // namespace
+}  // namespace trocar::anatomy
