@@ -291,6 +291,7 @@ void add_patient_commands(Command& program, Action& action) {
   series_command.when_parsed([&action, s] { action = [s] { return list_series(*s); }; });
 
   add_patient_fetch_command(patient, action);
+  add_patient_export_command(patient, action);
   add_patient_variants_command(patient, action);
   add_thumbnail_command(patient, action);
   add_patient_report_commands(patient, action);

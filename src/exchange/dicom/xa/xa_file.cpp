@@ -5,12 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "core/files/atomic_file.h"
 #include "core/version.h"
 #include "dicom/elements/element_walk.h"
-#include "dicom/pacs/detail/element_writer.h"
+#include "dicom/pacs/detail/data_elements.h"
 #include "dicom/pacs/detail/pseudonyms.h"
 
 namespace trocar::dicom {
@@ -22,33 +21,7 @@ constexpr double kMgy_per_dgy = 100.0;
 constexpr double kMs_per_s = 1000.0;
 constexpr double kTimeRounding_ms = 0.05;  ///< Frames whose distances differ by less are evenly spaced.
 
-/// Elements of a data set in the order of their tags.
-class DataElements {
- public:
-  void text(std::uint32_t tag, std::string_view vr, std::string_view value) {
-    elements_[tag] = {std::string(vr), std::string(value)};
-  }
-  void decimal(std::uint32_t tag, double value) { text(tag, "DS", fmt::format("{:.9g}", value)); }
-  void integer(std::uint32_t tag, long value) { text(tag, "IS", std::to_string(value)); }
-  void number(std::uint32_t tag, int value) {
-    const auto n = static_cast<std::uint16_t>(value);
-    text(tag, "US", std::string{static_cast<char>(n & 0xff), static_cast<char>(n >> 8)});
-  }
-  void tag_pointer(std::uint32_t tag, std::uint32_t target) {
-    std::string bytes;
-    for (const int shift : {16, 24, 0, 8}) bytes += static_cast<char>(target >> shift & 0xff);
-    text(tag, "AT", bytes);
-  }
-  void write(detail::ElementWriter& writer) const {
-    for (const auto& [tag, element] : elements_) writer.element(tag, element.vr, element.value, Encoding{});
-  }
-
- private:
-  struct Value {
-    std::string vr, value;
-  };
-  std::map<std::uint32_t, Value> elements_;
-};
+using detail::DataElements;
 
 Status check(const XaImage& image, const std::string& where) {
   const auto size =

@@ -2,10 +2,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "core/ascii.h"
 #include "io/image/detail/image_header.h"
+#include "io/image/detail/raw_volume.h"
 #include "io/image/detail/text_header.h"
 
 namespace trocar::io::detail {
