@@ -275,7 +275,7 @@ void add_patient_commands(Command& program, Action& action) {
                            "Mirror left to right what its file has mirrored: labels, or both (the CT, too)");
   build_command.add_option("--confirm", b->confirmed,
                            "A finding about the whole segmentation that is right: mirrored (situs inversus), turned, "
-                           "shifted, numbers, missing, sizes; can be given several times");
+                           "shifted, numbers, other-ct, cropped, missing, sizes; can be given several times");
   build_command.add_option("--tissues", b->tissues,
                            "Tissue table (TOML) fitted to this patient: stored in the folder and used by its attempts");
   build_command.add_option("--name", b->name, "Name of the patient; default: the folder's name");

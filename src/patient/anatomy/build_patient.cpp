@@ -89,7 +89,7 @@ Result<VirtualPatient> build_patient(const volume::CtGrid& ct, std::vector<Label
                                      const BuildOptions& options, std::vector<std::string>& warnings,
                                      const Progress& progress) {
   if (ct.empty()) return fail("the CT has no voxels", "CT", "give a CT volume with image data");
-  TROCAR_TRY_STATUS(check_hounsfield(ct));
+  TROCAR_TRY_STATUS(check_hounsfield(ct, air_of(options.confirmed)));
   TROCAR_TRY(const std::filesystem::path data_folder, checked_data_dir());
   TROCAR_TRY(const KnownStructures known, KnownStructures::load(data_folder));
   TROCAR_TRY_STATUS(detail::check_fill_names(known));
@@ -105,8 +105,13 @@ Result<VirtualPatient> build_patient(const volume::CtGrid& ct, std::vector<Label
   TROCAR_TRY(detail::MergedLabels merged,
              detail::merge_sources(std::move(sources), patient.ct.geometry, known, warnings));
   report(progress, "body", 0.2);
-  TROCAR_TRY(const volume::MaskGrid body, find_checked_body(patient.ct, merged.body_hint));
+  TROCAR_TRY(volume::MaskGrid body, find_checked_body(patient.ct, merged.body_hint));
   merged.body_hint = {};
+  for (AnatomyFinding& finding : judge_sides(body)) {
+    const bool is_confirmed = air_of(options.confirmed) == AirIn::kNowhere;
+    if (finding.is_grave && is_confirmed) take_sides_as_skin(body);
+    findings.push_back(std::move(finding));
+  }
   clear_outside(body, merged.labels, merged.table, warnings);
 
   patient.labels = std::move(merged.labels);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "anatomy/build_patient.h"
+#include "anatomy/plausibility/judge_anatomy.h"
 #include "core/part_of_progress.h"
 #include "core/version.h"
 #include "io/image/image_file.h"
@@ -48,7 +49,7 @@ Result<anatomy::VirtualPatient> build_from_files(const PatientFiles& files, std:
   volume::CtGrid& ct = scan.grid;
   std::move(scan.warnings.begin(), scan.warnings.end(), std::back_inserter(warnings));
   if (files.rescale) TROCAR_TRY_STATUS(anatomy::apply_rescale(*files.rescale, ct));
-  if (auto status = anatomy::check_hounsfield(ct); !status)
+  if (auto status = anatomy::check_hounsfield(ct, anatomy::air_of(files.confirmed)); !status)
     return fail(status.error().what, files.ct.string(), status.error().advice);
   TROCAR_TRY_STATUS(check_stop(stop, files));
   report(progress, "reading the labels", 0.2);

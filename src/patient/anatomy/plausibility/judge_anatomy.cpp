@@ -182,7 +182,7 @@ Status settle_findings(const std::vector<AnatomyFinding>& findings, const std::v
 }
 
 Status check_confirmable(const std::vector<std::string>& names) {
-  constexpr std::array kAll{kMirrored, kTurned, kShifted, kNumbers, kOtherCt, kMissing, kSizes};
+  constexpr std::array kAll{kMirrored, kTurned, kShifted, kNumbers, kOtherCt, kCropped, kMissing, kSizes};
   for (const std::string& name : names)
     if (std::ranges::find(kAll, name) == kAll.end())
       return fail_usage(fmt::format("there is no finding \"{}\"", name), "--confirm",

@@ -5,6 +5,7 @@
 
 #include "anatomy/build_patient.h"
 #include "anatomy/known_structures.h"
+#include "anatomy/tissue/hounsfield.h"
 
 namespace trocar::anatomy {
 
@@ -17,6 +18,7 @@ inline constexpr const char* kTurned = "turned";      ///< Two or three directio
 inline constexpr const char* kShifted = "shifted";    ///< The labels lie beside what the CT shows.
 inline constexpr const char* kNumbers = "numbers";    ///< The label numbers have another meaning.
 inline constexpr const char* kOtherCt = "other-ct";   ///< Many structures have HU that they cannot have.
+inline constexpr const char* kCropped = "cropped";    ///< The sides of the CT lie inside the body.
 inline constexpr const char* kMissing = "missing";    ///< A large organ has no label in a whole segmentation.
 inline constexpr const char* kSizes = "sizes";        ///< An organ has a volume that no person's has.
 
@@ -35,6 +37,14 @@ std::vector<AnatomyFinding> judge_numbers(const volume::CtGrid& ct, const std::v
 /// The structures of a segmentation in a patient that has a CT, labels and their table, but no repairs and nothing
 /// found from HU yet: directions, place, HU, volumes. The axes of the volumes run along P.
 std::vector<AnatomyFinding> judge_anatomy(const VirtualPatient& patient);
+
+/// How much of the sides of a CT (left, right, front, back) lies inside the body: where it does, there is no skin.
+/// Grave from half on.
+std::vector<AnatomyFinding> judge_sides(const volume::MaskGrid& body);
+/// Makes the sides of the CT the skin where they lie inside the body.
+void take_sides_as_skin(volume::MaskGrid& body);
+/// A CT that a person has confirmed to be cropped needs no air.
+AirIn air_of(const std::vector<std::string>& confirmed);
 
 /// Sorts findings into what was confirmed (provenance), what is only told (warnings), and the first grave one, which is
 /// the error.

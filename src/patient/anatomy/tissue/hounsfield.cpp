@@ -22,6 +22,9 @@ constexpr double kLeastBody = 0.02;  ///< Of all voxels.
 constexpr const char* kAdvice =
     "give a CT in Hounsfield units that shows the skin and air around it, or the missing scale with --rescale "
     "SLOPE,INTERCEPT (often 1,-1024)";
+constexpr const char* kAirAdvice =
+    "give a CT in Hounsfield units that shows the skin and air around it, or the missing scale with --rescale "
+    "SLOPE,INTERCEPT (often 1,-1024); a CT that ends inside the body: --confirm cropped takes its sides as the skin";
 
 class Histogram {
  public:
@@ -69,12 +72,12 @@ Status apply_rescale(const Rescale& rescale, volume::CtGrid& ct) {
   return {};
 }
 
-Status check_hounsfield(const volume::CtGrid& ct) {
+Status check_hounsfield(const volume::CtGrid& ct, AirIn air) {
   const Histogram histogram(ct);
   const std::string range = fmt::format("its values are {} to {}", histogram.lowest(), histogram.highest());
   const auto all = static_cast<double>(ct.voxels.size());
-  if (histogram.count(kAirFrom, kAirBelow) < kLeastAir * all)
-    return fail(fmt::format("the CT shows no air ({} to {} HU): {}", kAirFrom, kAirBelow, range), {}, kAdvice);
+  if (air == AirIn::kAroundTheBody && histogram.count(kAirFrom, kAirBelow) < kLeastAir * all)
+    return fail(fmt::format("the CT shows no air ({} to {} HU): {}", kAirFrom, kAirBelow, range), {}, kAirAdvice);
   const double solid = histogram.count(kAirBelow, std::numeric_limits<std::int16_t>::max() + 1);
   if (histogram.count(kSoftFrom, kSoftBelow) < std::max(kLeastSoft * solid, kLeastBody * all))
     return fail(

@@ -15,9 +15,12 @@ struct Rescale {
 /// value above 32767 is an error.
 Status apply_rescale(const Rescale& rescale, volume::CtGrid& ct);
 
+/// Whether a CT has to show air.
+enum class AirIn { kAroundTheBody, kNowhere /* a CT that ends inside the body */ };
+
 /// Checks that the numbers of a CT can be HU: air is present, and most of the rest is soft tissue. Fails if the rescale
 /// tags are missing (air at 0) or applied twice, or for an exported 8-bit image. Errors state the range found. Every
 /// build calls this: without air no skin is found, and the noise of a whole volume becomes structures.
-Status check_hounsfield(const volume::CtGrid& ct);
+Status check_hounsfield(const volume::CtGrid& ct, AirIn air = AirIn::kAroundTheBody);
 
 }  // namespace trocar::anatomy

@@ -24,7 +24,7 @@ const std::vector<Ball>& balls() {
       {"liver", 5, {-60, -20, 60}, 55, 110},      {"spleen", 1, {70, 30, 70}, 28, 120},
       {"stomach", 6, {50, -50, 60}, 25, 30},      {"kidney_left", 3, {55, 45, 0}, 24, 160},
       {"kidney_right", 2, {-55, 45, 0}, 24, 160}, {"gallbladder", 4, {-40, -60, 0}, 14, 8},
-      {"aorta", 52, {12, 25, 20}, 12, 180},         {"inferior_vena_cava", 63, {-14, 25, 20}, 12, 140},
+      {"aorta", 52, {12, 25, 20}, 12, 180},       {"inferior_vena_cava", 63, {-14, 25, 20}, 12, 140},
       {"pancreas", 7, {5, -10, 20}, 14, 90},      {"urinary_bladder", 21, {0, -40, -85}, 24, 5},
       {"vertebrae_L1", 31, {0, 55, 40}, 16, 260}, {"vertebrae_L2", 30, {0, 55, 5}, 16, 250},
       {"vertebrae_L3", 29, {0, 55, -30}, 16, 255}};
@@ -201,8 +201,42 @@ TEST(JudgeAnatomy, AMissingSpleenIsToldNotRefused) {
   EXPECT_FALSE(confirmed.warns_of("no label for"));
 }
 
+/// The middle of the body: no air, no skin.
+template <class T>
+volume::Grid<T> cropped(const volume::Grid<T>& grid) {
+  volume::GridGeometry g = grid.geometry;
+  g.size = {44, 30, 60};
+  g.origin_P = grid.geometry.to_mm({14, 12, 0});
+  volume::Grid<T> part(g);
+  for (std::size_t n = 0; n < part.voxels.size(); ++n) {
+    const volume::Index3 ijk = g.index_of(n);
+    part.voxels[n] = grid[{ijk[0] + 14, ijk[1] + 12, ijk[2]}];
+  }
+  return part;
+}
+
+TEST(JudgeAnatomy, ACtWithoutSkinIsRefusedOrItsSidesAreTakenWhenToldSo) {
+  const volume::CtGrid ct = cropped(ct_at(kHere));
+  LabelSource labels = labels_at(kHere);
+  labels.labels = cropped(labels.labels);
+  const BodyOutcome refused = build_body(ct, labels);
+  EXPECT_TRUE(has_words(refused.text(), "--confirm cropped")) << refused.text();
+  // With gas in the bowel, as most have it.
+  volume::CtGrid with_gas = ct;
+  for (std::size_t n = 0; n < with_gas.voxels.size(); ++n)
+    if ((with_gas.geometry.centre_mm(with_gas.geometry.index_of(n)) - Vec3(10, -30, -40)).norm() < 16.0)
+      with_gas.voxels[n] = -900;
+  const BodyOutcome sides = build_body(with_gas, labels);
+  EXPECT_TRUE(has_words(sides.text(), "% of the sides of the CT lie inside the body")) << sides.text();
+  for (const volume::CtGrid* told : {&ct, static_cast<const volume::CtGrid*>(&with_gas)}) {
+    const BodyOutcome built = build_body(*told, labels, {kCropped});
+    ASSERT_TRUE(built.patient) << built.text();
+    for (const float mm : built.patient->skin_distance_mm.voxels) ASSERT_TRUE(std::isfinite(mm) && mm > -200.0F) << mm;
+  }
+}
+
 TEST(JudgeAnatomy, FindingsHaveNamesThatCanBeConfirmed) {
-  EXPECT_TRUE(check_confirmable({kMirrored, kTurned, kShifted, kNumbers, kOtherCt, kMissing, kSizes}));
+  EXPECT_TRUE(check_confirmable({kMirrored, kTurned, kShifted, kNumbers, kOtherCt, kCropped, kMissing, kSizes}));
   const Status unknown = check_confirmable({"situs"});
   ASSERT_FALSE(unknown);
   EXPECT_TRUE(has_words(unknown.error().text(), "mirrored, turned, shifted")) << unknown.error().text();
