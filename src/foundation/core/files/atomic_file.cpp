@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "core/files/input_file.h"
+#include "core/files/part_folder.h"
 #include "core/files/unfinished_output.h"
 
 namespace trocar {
@@ -23,10 +24,7 @@ fs::path plain(const fs::path& target) {
 }
 
 fs::path temporary_beside(const fs::path& target) {
-  const fs::path absolute = plain(target);
-  const std::string name = absolute.filename().string();
-  return absolute.parent_path() / fmt::format(".{}.{}.part{}", absolute.stem().string(), ::getpid(),
-                                              name.ends_with(".nii.gz") ? ".nii.gz" : absolute.extension().string());
+  return part_path(plain(target), ::getpid());
 }
 
 Status flush_to_disk(const fs::path& path) {
@@ -82,10 +80,9 @@ Status write_folder_atomically(const fs::path& target, const std::function<Statu
     return fail_usage("exists already", target.string(), "choose another name or remove it first");
   TROCAR_TRY_STATUS(make_parent_folder(target));
   const fs::path temporary = temporary_beside(target);
+  remove_abandoned_parts(plain(target));
+  TROCAR_TRY(const PartFolder locked, PartFolder::create(temporary));
   UnfinishedOutput unfinished({temporary});
-  fs::remove_all(temporary, error);
-  fs::create_directories(temporary, error);
-  if (error) return fail("cannot make the folder: " + error.message(), temporary.string(), "choose another place");
   TROCAR_TRY_STATUS(write(temporary));
   if (const std::error_code not_renamed = unfinished.rename_to(target))
     return fail("cannot write: " + not_renamed.message(), target.string(), "choose another folder");

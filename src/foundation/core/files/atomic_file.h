@@ -18,7 +18,8 @@ Status write_atomically(const std::filesystem::path& target,
 Status write_file_atomically(const std::filesystem::path& target, std::string_view bytes);
 
 /// The same for a folder: `write` fills an empty temporary folder beside `target`, which is then renamed to it. An
-/// existing target is an error (exit status 2) unless it is an empty folder: user data is never overwritten.
+/// existing target is an error (exit status 2) unless it is an empty folder: user data is never overwritten. Temporary
+/// folders that killed processes left for this target are removed.
 Status write_folder_atomically(const std::filesystem::path& target,
                                const std::function<Status(const std::filesystem::path& temporary)>& write);
 

@@ -1,0 +1,121 @@
+#include "core/files/part_folder.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include "core/ascii.h"
+
+namespace trocar {
+inline namespace core {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr mode_t kForAllUsers = 0777;  // less the user's mask
+constexpr int kTriesToCreate = 10;
+
+/// What precedes and follows the number of the process in part_path().
+std::pair<std::string, std::string> part_name(const fs::path& target) {
+  const bool is_packed = target.filename().string().ends_with(".nii.gz");
+  return {fmt::format(".{}.", target.stem().string()),
+          fmt::format(".part{}", is_packed ? ".nii.gz" : target.extension().string())};
+}
+
+enum class Lock { kTaken, kInUse, kUnknown };
+
+/// A folder that is open, and locked if the file system permits. Links are not followed.
+class OpenFolder {
+ public:
+  explicit OpenFolder(const fs::path& path)
+      : descriptor_(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC)) {
+    if (descriptor_ < 0) return;
+    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0)
+      lock_ = errno == EWOULDBLOCK ? Lock::kInUse : Lock::kUnknown;
+    else
+      lock_ = is_at(path) ? Lock::kTaken : Lock::kInUse;
+  }
+  ~OpenFolder() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+  OpenFolder(const OpenFolder&) = delete;
+  OpenFolder& operator=(const OpenFolder&) = delete;
+
+  Lock lock() const { return lock_; }
+  bool is_own() const {
+    struct stat opened {};
+    return ::fstat(descriptor_, &opened) == 0 && opened.st_uid == ::geteuid();
+  }
+  int release() { return std::exchange(descriptor_, -1); }
+
+ private:
+  /// False: its owner has renamed or removed it since it was opened.
+  bool is_at(const fs::path& path) const {
+    struct stat opened {
+    }, named{};
+    return ::fstat(descriptor_, &opened) == 0 && ::lstat(path.c_str(), &named) == 0 && opened.st_dev == named.st_dev &&
+           opened.st_ino == named.st_ino;
+  }
+
+  int descriptor_ = -1;
+  Lock lock_ = Lock::kUnknown;
+};
+
+void remove_if_abandoned(const fs::path& path) {
+  const OpenFolder folder(path);
+  std::error_code ignored;
+  if (folder.lock() == Lock::kTaken && folder.is_own()) fs::remove_all(path, ignored);
+}
+
+}  // namespace
+
+fs::path part_path(const fs::path& target, int process) {
+  const auto [before, after] = part_name(target);
+  return target.parent_path() / fmt::format("{}{}{}", before, process, after);
+}
+
+Result<PartFolder> PartFolder::create(const fs::path& path) {
+  for (int n = 0; n < kTriesToCreate; ++n) {
+    remove_if_abandoned(path);
+    if (::mkdir(path.c_str(), kForAllUsers) != 0) {
+      if (errno == EEXIST)
+        return fail("is written by another program", path.string(), "wait for it, or remove this folder if none runs");
+      return fail(std::string("cannot make the folder: ") + std::strerror(errno), path.string(),
+                  "choose another place");
+    }
+    OpenFolder folder(path);
+    if (folder.lock() != Lock::kInUse) return PartFolder(folder.release());
+    // Another program looked at the folder before it was locked, and removes it.
+  }
+  return fail("cannot lock the folder", path.string(), "try again");
+}
+
+PartFolder::PartFolder(PartFolder&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+PartFolder::~PartFolder() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void remove_abandoned_parts(const fs::path& target) {
+  const auto [before, after] = part_name(target);
+  std::vector<fs::path> parts;
+  std::error_code error;
+  for (fs::directory_iterator entry(target.parent_path(), error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (name.size() <= before.size() + after.size() || !name.starts_with(before) || !name.ends_with(after)) continue;
+    const std::string_view process =
+        std::string_view(name).substr(before.size(), name.size() - before.size() - after.size());
+    if (std::ranges::all_of(process, ascii::is_digit)) parts.push_back(entry->path());
+  }
+  for (const fs::path& part : parts) remove_if_abandoned(part);
+}
+
+}  // namespace core
+}  // namespace trocar
