@@ -1,14 +1,16 @@
 #include "dicom/pacs/fetch_study.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <optional>
 
 #include "core/files/atomic_file.h"
+#include "core/files/data_dir.h"
 #include "core/parse_number.h"
-#include "dicom/pacs/detail/pseudonyms.h"
+#include "dicom/pacs/detail/anonymisation.h"
 #include "dicom/pacs/detail/series_writer.h"
 
 namespace trocar::dicom {
@@ -76,6 +78,7 @@ class Fetch {
       : source_(source), options_(options), progress_(progress) {}
 
   Result<FetchedStudy> run(const fs::path& out) {
+    if (!options_.keeps_identity) TROCAR_TRY_STATUS(load_anonymisation());
     report(progress_, "asking for the series", 0.0);
     TROCAR_TRY(const std::vector<SeriesEntry> all, list_study(source_, options_.study_uid));
     TROCAR_TRY(const std::vector<NumberedSeries> chosen, choose_series(all, options_, fetched_.warnings));
@@ -88,10 +91,18 @@ class Fetch {
                     "choose series of images, or keep the identity");
       return {};
     }));
+    note_replaced_texts();
     return std::move(fetched_);
   }
 
  private:
+  Status load_anonymisation() {
+    TROCAR_TRY(const fs::path data_folder, checked_data_dir());
+    TROCAR_TRY(HarmlessWords words, HarmlessWords::load(data_folder));
+    anonymisation_.emplace(Anonymisation{Pseudonyms::with_random_salt(), std::move(words), {}});
+    return {};
+  }
+
   Status fetch_series(const NumberedSeries& series, const fs::path& out) {
     const std::string name = fmt::format("series_{:03}_{}", series.number, safe_name(series.entry.modality));
     std::error_code error;
@@ -100,7 +111,7 @@ class Fetch {
     SeriesRules rules;
     rules.study_uid = options_.study_uid;
     rules.series_uid = series.entry.uid;
-    rules.pseudonyms = options_.keeps_identity ? nullptr : &pseudonyms_;
+    rules.anonymisation = anonymisation_ ? &*anonymisation_ : nullptr;
     rules.is_cancelled = options_.is_cancelled;
     rules.on_object = [&](std::size_t count) { report_object(series, count); };
     TROCAR_TRY(SeriesWriter writer, SeriesWriter::create(out / name, std::move(rules)));
@@ -114,7 +125,7 @@ class Fetch {
       fs::remove(out / name, error);
       return {};
     }
-    const std::string uid = options_.keeps_identity ? series.entry.uid : pseudonyms_.uid(series.entry.uid);
+    const std::string uid = anonymisation_ ? anonymisation_->pseudonyms.uid(series.entry.uid) : series.entry.uid;
     fetched_.series.push_back({series.number, uid, safe_name(series.entry.modality), count, name});
     return {};
   }
@@ -164,10 +175,28 @@ class Fetch {
           series.number, safe_name(series.entry.modality)));
   }
 
+  /// Counts only: the texts can contain names.
+  void note_replaced_texts() {
+    if (!anonymisation_) return;
+    using Kind = TextCodes::Kind;
+    const TextCodes& codes = anonymisation_->codes;
+    std::vector<std::string> parts;
+    const auto add = [&](Kind kind, std::string_view one, std::string_view many) {
+      const std::size_t count = codes.count(kind);
+      if (count > 0) parts.push_back(fmt::format("{} {}", count, count == 1 ? one : many));
+    };
+    add(Kind::kSeries, "description of a series", "descriptions of series");
+    add(Kind::kStructure, "name of a structure", "names of structures");
+    add(Kind::kOther, "other text", "other texts");
+    if (parts.empty()) return;
+    fetched_.warnings.push_back(fmt::format(
+        "replaced by codes, because of words that are not in harmless_words.toml: {}", fmt::join(parts, ", ")));
+  }
+
   PacsSource& source_;
   const FetchOptions& options_;
   const Progress& progress_;
-  const Pseudonyms pseudonyms_ = Pseudonyms::with_random_salt();
+  std::optional<Anonymisation> anonymisation_;  ///< Empty: the identity is kept.
   FetchedStudy fetched_;
   std::size_t announced_ = 0;
   std::size_t received_ = 0;

@@ -61,7 +61,8 @@ Result<ObjectSummary> summarize(const DataSet& data_set) {
   ObjectSummary summary;
   std::string burned_in, image_type;
   const auto keep = [&](std::uint32_t tag, std::string_view text) {
-    if (is_identifying(tag)) summary.words.add(text);
+    if (tag == kCharacterSet) summary.repertoire = repertoire_of(text);
+    if (is_name_of_person(tag)) summary.names.add(text, summary.repertoire);
     if (tag == 0x00080016) summary.sop_class = text;
     if (tag == 0x00080018) summary.sop_instance = text;
     if (tag == 0x0020000d) summary.study = text;

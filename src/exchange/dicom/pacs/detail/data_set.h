@@ -6,6 +6,7 @@
 
 #include "core/result.h"
 #include "dicom/elements/element_walk.h"
+#include "dicom/pacs/detail/character_set.h"
 #include "dicom/pacs/detail/identity_words.h"
 
 namespace trocar::dicom::detail {
@@ -34,7 +35,8 @@ struct ObjectSummary {
   std::string modality;
   std::optional<int> instance_number;
   bool may_show_text = false;  ///< Names may be written into the pixels: stated, or usual for this kind of image.
-  IdentityWords words;
+  Repertoire repertoire = Repertoire::kAscii;
+  IdentityWords names;
 };
 
 /// Reads the top level and checks that it ends where it should. Errors: damaged or truncated, a UID is missing.

@@ -79,7 +79,8 @@ void write_meta(const MetaInformation& meta, OutputFile& out) {
   group += encoded_element(tag(0x0002, 0x0012), "UI", kImplementation, kExplicit);
   group += encoded_element(tag(0x0002, 0x0013), "SH", "TROCAR", kExplicit);
   const std::string length = number(static_cast<std::uint32_t>(group.size()), 4, false);
-  out.write(std::string(128, '\0') + "DICM");
+  out.write(std::string(128, '\0'));
+  out.write("DICM");
   out.write(encoded_element(tag(0x0002, 0x0000), "UL", length, kExplicit));
   out.write(group);
 }

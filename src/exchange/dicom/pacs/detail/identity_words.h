@@ -5,25 +5,24 @@
 #include <string>
 #include <string_view>
 
+#include "dicom/pacs/detail/character_set.h"
+
 namespace trocar::dicom::detail {
 
-/// True for elements whose value names a person or a case: names, numbers, addresses, institutions.
-bool is_identifying(std::uint32_t tag) noexcept;
+/// True for elements whose value names a person.
+bool is_name_of_person(std::uint32_t tag) noexcept;
 
-/// The words that identify the patient of one object, and texts without them.
+/// The words of the names of one object that could be on the list of harmless words: a person can have the name of an
+/// organ.
 class IdentityWords {
  public:
-  /// Adds the words of an identifying value. Single letters are left out.
-  void add(std::string_view value);
-
-  /// The text without these words, without words that contain one of them, and without words that hold five or more
-  /// digits (dates, numbers of patients). `keeps_anatomy`: names of structures such as "liver" always stay; research
-  /// data often use them as names of patients.
-  std::string cleaned(std::string_view text, bool keeps_anatomy) const;
+  /// Adds the words of a name. Those with characters that are not on any list are left out.
+  void add(std::string_view name, Repertoire repertoire);
+  /// `word` in small letters.
+  bool has(std::u32string_view word) const { return words_.contains(word); }
 
  private:
-  bool is_removed(std::string_view word, bool keeps_anatomy) const;
-  std::set<std::string, std::less<>> words_;  ///< In lower case.
+  std::set<std::u32string, std::less<>> words_;  ///< In small letters.
 };
 
 }  // namespace trocar::dicom::detail

@@ -5,16 +5,22 @@
 
 namespace trocar::dicom::detail {
 
-/// How the anonymisation treats an element that stays.
+/// How the anonymisation treats an element that stays. No text stays unless every word of it is known (harmless_words).
 enum class Treatment {
-  kKeep,         ///< Unchanged.
-  kSequence,     ///< Its items are treated element by element.
-  kUid,          ///< Replaced, unless DICOM itself defines it.
-  kDescription,  ///< Free text: words that identify the patient are removed.
-  kLabel,        ///< The same for the name of a structure: words of anatomy stay, and it does not become empty.
-  kEmpty,        ///< The element stays, its value is removed.
-  kDate,         ///< The element must have a value: 1 January 2000.
-  kTime,         ///< The element must have a value: midnight.
+  kKeep,          ///< Binary numbers or pixels: unchanged. Removed if the object says that it is text.
+  kNumber,        ///< Numbers in decimal digits: emptied if there is anything else.
+  kCode,          ///< Defined terms of DICOM and other known words; others become "OTHER".
+  kCodeValue,     ///< Code of a public scheme; others are replaced.
+  kCodingScheme,  ///< Public scheme; others are replaced.
+  kCharacters,    ///< Character set of DICOM; others are emptied.
+  kSequence,      ///< Its items are treated element by element.
+  kUid,           ///< Replaced, unless DICOM itself defines it.
+  kSeries,        ///< Description of a series: replaced by a code if it has an unknown word.
+  kStructure,     ///< The same for the name of a structure.
+  kText,          ///< The same for any other text.
+  kEmpty,         ///< The element stays, its value is removed.
+  kDate,          ///< The element must have a value: 1 January 2000.
+  kTime,          ///< The element must have a value: midnight.
 };
 
 struct KeptElement {

@@ -6,11 +6,12 @@
 #include "dicom/pacs/detail/element_writer.h"
 #include "dicom/pacs/detail/kept_elements.h"
 #include "dicom/pacs/detail/object_files.h"
+#include "dicom/pacs/detail/value_treatment.h"
 
 namespace trocar::dicom::detail {
 namespace {
 
-constexpr std::string_view kNameless = "unnamed";
+constexpr std::uint32_t kCodingSchemeDesignator = 0x00080102;
 
 /// An element that every anonymised object has, whatever the original held.
 struct AddedElement {
@@ -30,16 +31,31 @@ std::vector<AddedElement> added_elements(const std::string& patient) {
           {0x00200010, "SH", ""},      {0x00280303, "CS", "REMOVED"}};
 }
 
+/// What an item says about its own texts and codes. It has the character set of `outer` unless it names another.
+ValueContext context_of(std::string_view item, Encoding encoding, const ValueContext& outer) {
+  ValueContext context{outer.repertoire, {}, outer.names};
+  constexpr std::uint32_t kGroupOfBoth = 0x0008;
+  ElementWalk walk(item, encoding);
+  Element element;
+  while (walk.next_group() <= kGroupOfBoth && walk.next(element) == ElementWalk::Step::kElement) {
+    const std::string_view value = trimmed(item.substr(element.begin, element.size));
+    if (element.tag == kCharacterSet) context.repertoire = repertoire_of(value);
+    if (element.tag == kCodingSchemeDesignator) context.coding_scheme = value;
+  }
+  return context;
+}
+
 /// Copies one object element by element.
 class Anonymiser {
  public:
-  Anonymiser(const ObjectSummary& summary, const Pseudonyms& pseudonyms, OutputFile& out)
-      : summary_(summary), pseudonyms_(pseudonyms), writer_(out) {}
+  Anonymiser(const ObjectSummary& summary, Anonymisation& rules, OutputFile& out)
+      : summary_(summary), rules_(rules), treated_(rules), writer_(out) {}
 
   Status run(const DataSet& original) {
-    std::vector<AddedElement> added = added_elements(pseudonyms_.patient(summary_.patient_id));
+    std::vector<AddedElement> added = added_elements(rules_.pseudonyms.patient(summary_.patient_id));
     std::size_t next = 0;
-    const bool is_whole = copy_elements(original.bytes, original.encoding, 0, [&](std::uint32_t tag) {
+    const ValueContext outer{summary_.repertoire, {}, &summary_.names};
+    const bool is_whole = copy_elements(original.bytes, original.encoding, 0, outer, [&](std::uint32_t tag) {
       for (; next < added.size() && added[next].tag < tag; ++next) add(added[next], original.encoding);
     });
     for (; next < added.size(); ++next) add(added[next], original.encoding);
@@ -55,7 +71,8 @@ class Anonymiser {
 
   /// False: damaged. `before` is called with the tag of each element that stays.
   template <class Before>
-  bool copy_elements(std::string_view bytes, Encoding encoding, int depth, Before before) {
+  bool copy_elements(std::string_view bytes, Encoding encoding, int depth, const ValueContext& outer, Before before) {
+    const ValueContext context = context_of(bytes, encoding, outer);
     ElementWalk walk(bytes, encoding);
     Element element;
     while (true) {
@@ -68,18 +85,19 @@ class Anonymiser {
       const std::string_view vr = encoding.is_implicit ? std::string_view() : bytes.substr(begin + 4, 2);
       const std::string_view value = bytes.substr(element.begin, element.size);
       if (kept->treatment == Treatment::kSequence) {
-        if (!copy_sequence(element, vr, value, encoding, depth)) return false;
+        if (!copy_sequence(element, vr, value, encoding, depth, context)) return false;
       } else if (element.tag == kPixelData) {
         writer_.bytes(bytes.substr(begin, walk.at() - begin));
-      } else if (vr != "SQ" && !element.has_undefined_length) {
+      } else if (vr != "SQ" && !element.has_undefined_length &&
+                 (kept->treatment != Treatment::kKeep || !has_characters(vr))) {
         const std::string_view new_vr = kept->treatment == Treatment::kUid ? "UI" : vr;
-        writer_.element(element.tag, new_vr, treated(value, kept->treatment), encoding);
+        writer_.element(element.tag, new_vr, treated_(value, kept->treatment, context), encoding);
       }
     }
   }
 
-  bool copy_sequence(const Element& sequence, std::string_view vr, std::string_view value, Encoding encoding,
-                     int depth) {
+  bool copy_sequence(const Element& sequence, std::string_view vr, std::string_view value, Encoding encoding, int depth,
+                     const ValueContext& outer) {
     if (depth >= kMostNestedSequences) return false;
     if (!encoding.is_implicit && vr != "SQ" && vr != "UN") return true;  // no sequence: removed
     writer_.begin_sequence(sequence.tag, vr, encoding);
@@ -89,62 +107,26 @@ class Anonymiser {
     while ((step = walk.next_item(item)) == ElementWalk::Step::kElement) {
       writer_.begin_item(encoding);
       const auto ignore = [](std::uint32_t) {};
-      if (!copy_elements(value.substr(item.begin, item.size), sequence.inside, depth + 1, ignore)) return false;
+      if (!copy_elements(value.substr(item.begin, item.size), sequence.inside, depth + 1, outer, ignore)) return false;
       writer_.end_item(encoding);
     }
     writer_.end_sequence(encoding);
     return step == ElementWalk::Step::kEnd;
   }
 
-  std::string_view treated(std::string_view value, Treatment treatment) {
-    switch (treatment) {
-      case Treatment::kUid:
-        return text_ = replaced_uids(value);
-      case Treatment::kDescription:
-        return text_ = summary_.words.cleaned(trimmed(value), false);
-      case Treatment::kLabel:
-        text_ = summary_.words.cleaned(trimmed(value), true);
-        if (text_.empty() && !trimmed(value).empty()) text_ = kNameless;
-        return text_;
-      case Treatment::kEmpty:
-        return {};
-      case Treatment::kDate:
-        return "20000101";
-      case Treatment::kTime:
-        return "000000";
-      case Treatment::kKeep:
-      case Treatment::kSequence:
-        break;
-    }
-    return value;
-  }
-
-  /// The UIDs of a value "a\b".
-  std::string replaced_uids(std::string_view value) const {
-    std::string result;
-    for (std::size_t begin = 0; begin <= value.size();) {
-      const std::size_t end = std::min(value.find('\\', begin), value.size());
-      const std::string_view uid = trimmed(value.substr(begin, end - begin));
-      if (begin > 0) result += '\\';
-      if (!uid.empty()) result += pseudonyms_.uid(uid);
-      begin = end + 1;
-    }
-    return result;
-  }
-
   const ObjectSummary& summary_;
-  const Pseudonyms& pseudonyms_;
+  Anonymisation& rules_;
+  ValueTreatment treated_;
   ElementWriter writer_;
-  std::string text_;  ///< The value that treated() returned last.
 };
 
 }  // namespace
 
-Status write_anonymised(const DataSet& original, const ObjectSummary& summary, const Pseudonyms& pseudonyms,
+Status write_anonymised(const DataSet& original, const ObjectSummary& summary, Anonymisation& rules,
                         const std::filesystem::path& path) {
   OutputFile out(path);
-  write_meta({summary.sop_class, pseudonyms.uid(summary.sop_instance), original.transfer_syntax}, out);
-  TROCAR_TRY_STATUS(Anonymiser(summary, pseudonyms, out).run(original));
+  write_meta({summary.sop_class, rules.pseudonyms.uid(summary.sop_instance), original.transfer_syntax}, out);
+  TROCAR_TRY_STATUS(Anonymiser(summary, rules, out).run(original));
   return out.close();
 }
 

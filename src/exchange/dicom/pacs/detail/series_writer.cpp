@@ -43,10 +43,10 @@ Status SeriesWriter::end(const std::string& transfer_syntax) {
     return fail(fmt::format("the PACS sent more than {} objects", kMaxObjects), "", "fetch another series");
   sop_instances_.insert(summary.sop_instance);
   const fs::path file = folder_ / fmt::format("{}.part", sop_instances_.size());
-  if (rules_.pseudonyms == nullptr) {
+  if (rules_.anonymisation == nullptr) {
     TROCAR_TRY_STATUS(write_unchanged(data_set, summary, file));
   } else if (can_anonymise(summary.sop_class)) {
-    TROCAR_TRY_STATUS(write_anonymised(data_set, summary, *rules_.pseudonyms, file));
+    TROCAR_TRY_STATUS(write_anonymised(data_set, summary, *rules_.anonymisation, file));
   } else {
     ++skipped_;
     return {};

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "dicom/pacs/detail/anonymisation.h"
 #include "dicom/pacs/detail/data_set.h"
 #include "dicom/pacs/detail/object_files.h"
-#include "dicom/pacs/detail/pseudonyms.h"
 #include "dicom/pacs/pacs_source.h"
 
 namespace trocar::dicom::detail {
@@ -18,7 +18,7 @@ namespace trocar::dicom::detail {
 struct SeriesRules {
   std::string study_uid;
   std::string series_uid;
-  const Pseudonyms* pseudonyms = nullptr;      ///< Null: unchanged.
+  Anonymisation* anonymisation = nullptr;      ///< Null: unchanged.
   std::function<bool()> is_cancelled;          ///< May be empty.
   std::function<void(std::size_t)> on_object;  ///< Called with the number of objects so far; may be empty.
 };

@@ -10,6 +10,8 @@
 #include <array>
 #include <string>
 
+#include "dicom/pacs/detail/value_treatment.h"
+
 namespace trocar::dicom::detail {
 namespace {
 
@@ -50,13 +52,13 @@ TEST(KeptElements, HaveTheTreatmentOfTheirRepresentation) {
   }
 }
 
-TEST(KeptElements, KeepNoFreeTextUnchanged) {
+TEST(KeptElements, KeepNoCharactersUnchanged) {
   if (!dcmDataDict.isDictionaryLoaded()) GTEST_SKIP() << "DCMTK's dictionary is not installed";
-  constexpr std::array<std::uint32_t, 2> kDefinedTerms{0x00281054, 0x00283004};  // RescaleType, ModalityLUTType
   for (const KeptElement& element : kept_elements()) {
-    const bool is_defined = std::ranges::find(kDefinedTerms, element.tag) != kDefinedTerms.end();
-    const bool is_free_text = dictionary_vr(element.tag) == "LO" && !is_defined;
-    EXPECT_FALSE(is_free_text && element.treatment == Treatment::kKeep) << element.tag;
+    const std::string vr = dictionary_vr(element.tag);
+    const bool has_digits = vr == "DS" || vr == "IS";
+    EXPECT_EQ(has_digits, element.treatment == Treatment::kNumber) << element.tag << " " << vr;
+    EXPECT_FALSE(has_characters(vr) && element.treatment == Treatment::kKeep) << element.tag << " " << vr;
   }
 }
 

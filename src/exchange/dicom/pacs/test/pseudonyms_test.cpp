@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "dicom/pacs/detail/identity_words.h"
-
 namespace trocar::dicom::detail {
 namespace {
 
@@ -46,28 +44,6 @@ TEST(Uid, HasUpTo64DigitsAndDots) {
   EXPECT_FALSE(is_uid(""));
   EXPECT_FALSE(is_uid("1.2/../3"));
   EXPECT_FALSE(is_uid(std::string(65, '1')));
-}
-
-TEST(IdentityWords, AreRemovedFromTexts) {
-  IdentityWords words;
-  words.add("Mustermann^Erika");
-  words.add("PAT-778123");
-  words.add("Li^X");
-  EXPECT_EQ(words.cleaned("Abdomen MUSTERMANN 3.0", false), "Abdomen 3.0");
-  EXPECT_EQ(words.cleaned("Mustermann, Erika", false), "");
-  EXPECT_EQ(words.cleaned("ErikaMustermann_liver", false), "liver");
-  EXPECT_EQ(words.cleaned("CT of li 5 mm", false), "CT of 5 mm");
-  EXPECT_EQ(words.cleaned("liver", false), "liver") << "a short word is removed only if it stands alone";
-  EXPECT_EQ(words.cleaned("from 20230517", false), "from") << "a date";
-  EXPECT_EQ(words.cleaned("B30f X 2.0", false), "B30f X 2.0") << "a single letter is no name";
-}
-
-TEST(IdentityWords, NamesOfStructuresStay) {
-  IdentityWords words;
-  words.add("liver_17^patient");
-  EXPECT_EQ(words.cleaned("liver", true), "liver");
-  EXPECT_EQ(words.cleaned("livertumor1", true), "livertumor1");
-  EXPECT_EQ(words.cleaned("liver", false), "");
 }
 
 }  // namespace

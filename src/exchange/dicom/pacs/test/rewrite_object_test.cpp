@@ -7,6 +7,7 @@
 #include <iterator>
 #include <set>
 
+#include "core/files/data_dir.h"
 #include "core/files/temporary_folder.h"
 #include "dicom/elements/dicom_file.h"
 #include "dicom/pacs/testing/made_object.h"
@@ -28,7 +29,7 @@ class Rewriting : public ::testing::Test {
     TROCAR_TRY(const DataSet data_set, find_data_set(object, transfer_syntax));
     TROCAR_TRY(const ObjectSummary summary, summarize(data_set));
     path_ = folder_ / (std::to_string(++count_) + ".dcm");
-    TROCAR_TRY_STATUS(write_anonymised(data_set, summary, pseudonyms_, path_));
+    TROCAR_TRY_STATUS(write_anonymised(data_set, summary, rules_, path_));
     return bytes_of(path_);
   }
 
@@ -50,7 +51,7 @@ class Rewriting : public ::testing::Test {
 
   TemporaryFolder folder_;
   std::filesystem::path path_;
-  Pseudonyms pseudonyms_{Pseudonyms::Salt{7}};
+  Anonymisation rules_{Pseudonyms(Pseudonyms::Salt{7}), *HarmlessWords::load(data_dir()), {}};
   int count_ = 0;
 };
 
@@ -85,7 +86,7 @@ TEST_F(Rewriting, KeepsGeometryPixelsAndMeaning) {
   EXPECT_EQ(root.text(0x00200032), "-4\\-8\\105");
   EXPECT_EQ(root.text(0x00280030), "0.5\\0.5");
   EXPECT_EQ(root.text(0x00281052), "-1000");
-  EXPECT_EQ(root.text(0x0008103e), "Abdomen 3.0") << "a description without the name";
+  EXPECT_EQ(root.text(0x0008103e), "series-01") << "the description has a name";
   EXPECT_EQ(root.number(0x00280010), testing::kColumns);
   ASSERT_EQ(file.pixels().size(), 1U);
   const std::string original = testing::made_ct(2).bytes();
@@ -98,7 +99,7 @@ TEST_F(Rewriting, StatesTheAnonymisation) {
   const DicomFile file = read_back();
   EXPECT_EQ(file.root().text(0x00120062), "YES");
   EXPECT_EQ(file.root().text(0x00280303), "REMOVED");
-  EXPECT_EQ(file.root().text(0x00100020), pseudonyms_.patient("PAT-778123"));
+  EXPECT_EQ(file.root().text(0x00100020), rules_.pseudonyms.patient("PAT-778123"));
   EXPECT_EQ(file.root().text(0x00100010), file.root().text(0x00100020));
   EXPECT_TRUE(file.root().find(0x00080020)) << "may be empty, must not be missing";
 }
@@ -113,8 +114,8 @@ TEST_F(Rewriting, ReferencesFitTheObjectsThatTheyName) {
   EXPECT_EQ(contour->first_item(0x30060016)->text(0x00081155), ct.root().text(0x00080018));
   EXPECT_EQ(structures.root().first_item(0x30060020)->text(0x30060024), ct.root().text(0x00200052));
   EXPECT_EQ(structures.root().text(0x0020000d), ct.root().text(0x0020000d));
-  EXPECT_EQ(structures.root().first_item(0x30060020)->text(0x30060026), "liver");
-  EXPECT_EQ(structures.root().text(0x30060002), "unnamed") << "a label must not become empty";
+  EXPECT_EQ(structures.root().first_item(0x30060020)->text(0x30060026), "structure-02");
+  EXPECT_EQ(structures.root().text(0x30060002), "structure-01") << "a label must not become empty";
 }
 
 TEST_F(Rewriting, ReadsEveryEncoding) {
@@ -129,7 +130,7 @@ TEST_F(Rewriting, ReadsEveryEncoding) {
     EXPECT_EQ(file.root().number(0x00280010), 258) << uid;
     const auto image = file.root().first_item(0x00081140);
     ASSERT_TRUE(image) << uid;
-    EXPECT_EQ(image->text(0x00081155), pseudonyms_.uid("1.3.6.1.4.1.99999.5")) << uid;
+    EXPECT_EQ(image->text(0x00081155), rules_.pseudonyms.uid("1.3.6.1.4.1.99999.5")) << uid;
     EXPECT_EQ(image->text(0x00081150), testing::kCtClass) << uid;
   }
 }
@@ -148,7 +149,7 @@ TEST_F(Rewriting, SequenceOfUnknownRepresentationIsTreatedInside) {
   const auto bytes = anonymised(object.file());
   ASSERT_TRUE(bytes) << bytes.error().text();
   expect_no_identity(*bytes);
-  EXPECT_EQ(read_back().root().first_item(0x00081140)->text(0x00081155), pseudonyms_.uid("1.3.6.1.4.1.99999.5"));
+  EXPECT_EQ(read_back().root().first_item(0x00081140)->text(0x00081155), rules_.pseudonyms.uid("1.3.6.1.4.1.99999.5"));
 }
 
 TEST_F(Rewriting, CompressedPixelsStay) {
@@ -160,6 +161,70 @@ TEST_F(Rewriting, CompressedPixelsStay) {
   const auto bytes = anonymised(object.file("1.2.840.10008.1.2.4.90"));
   ASSERT_TRUE(bytes) << bytes.error().text();
   EXPECT_TRUE(bytes->ends_with(begin + table + fragment + end));
+}
+
+/// The same text in several character sets: no byte of a name stays in any of them.
+TEST_F(Rewriting, NamesAreRemovedInEveryCharacterSet) {
+  const std::vector<std::pair<std::string, std::string>> names = {{"", "MUELLER"},
+                                                                  {"ISO_IR 100", "M\xdcLLER"},
+                                                                  {"ISO_IR 101", "M\xdcLLER"},
+                                                                  {"ISO_IR 109", "M\xdcLLER"},
+                                                                  {"ISO_IR 110", "M\xdcLLER"},
+                                                                  {"ISO_IR 126", "\xd0\xc1\xd0\xc1\xc4"},
+                                                                  {"ISO_IR 127", "\xe2\xc8\xc7\xe6\xea"},
+                                                                  {"ISO_IR 138", "\xf9\xf8\xe5\xef"},
+                                                                  {"ISO_IR 144", "\xb8\xb2\xb0\xbd\xbe\xb2"},
+                                                                  {"ISO_IR 148",
+                                                                   "\xc7"
+                                                                   "ELIK"},
+                                                                  {"ISO_IR 166", "\xca\xc1\xaa\xd2\xc2"},
+                                                                  {"ISO_IR 192", "\xd0\x98\xd0\x92\xd0\x90\xd0\x9d"},
+                                                                  {"GB18030", "\xcd\xf5\xd0\xa1\xb6\xab"},
+                                                                  {"\\ISO 2022 IR 87", "\x1b$B;3ED\x1b(B"},
+                                                                  {"\\ISO 2022 IR 149", "\x1b$)C\xfb\xf3\xd1\xce"},
+                                                                  {"UNKNOWN", "M\xdcLLER"}};
+  for (const auto& [character_set, name] : names) {
+    MadeObject object = small_object(kExplicit), segment, code;
+    code.add(0x00080100, "SH", name).add(0x00080102, "SH", "99" + name.substr(0, 2)).add(0x00080104, "LO", name);
+    segment.add(0x00620005, "LO", "liver " + name).add_items(0x0062000f, {code}).add(0x00620009, "LO", name);
+    object.add(0x00080005, "CS", character_set)
+        .add(0x0008103e, "LO", "CT " + name + " 5mm")
+        .add(0x00100010, "PN", name);
+    object.add(0x00080070, "LO", name)
+        .add(0x00180015, "CS", name)
+        .add(0x00181210, "SH", name)
+        .add(0x00180050, "DS", name);
+    object.add(0x00209056, "SH", name).add(0x00700080, "CS", name).add_items(0x00620002, {segment});
+    const auto bytes = anonymised(object.file());
+    ASSERT_TRUE(bytes) << bytes.error().text();
+    EXPECT_EQ(bytes->find(name), std::string::npos) << character_set;
+    const DicomFile file = read_back();
+    EXPECT_TRUE(file.root().text(0x0008103e).starts_with("series-")) << character_set;
+    EXPECT_TRUE(file.root().first_item(0x00620002)->text(0x00620005).starts_with("structure-")) << character_set;
+    EXPECT_EQ(file.root().text(0x00180015), "OTHER");
+  }
+}
+
+TEST_F(Rewriting, TextsOfAnItemAreReadInItsOwnCharacterSet) {
+  MadeObject object = small_object(kExplicit), segment, other;
+  segment.add(0x00620005, "LO", "ven\xf6s");
+  other.add(0x00080005, "CS", "ISO_IR 192").add(0x00620005, "LO", "ven\xc3\xb6s");
+  object.add(0x00080005, "CS", "ISO_IR 100").add_items(0x00620002, {segment, other});
+  ASSERT_TRUE(anonymised(object.file()));
+  const DicomFile file = read_back();
+  const auto segments = file.root().items(0x00620002);
+  ASSERT_EQ(segments->size(), 2U);
+  EXPECT_EQ((*segments)[0].text(0x00620005), "ven\xf6s");
+  EXPECT_EQ((*segments)[1].text(0x00620005), "ven\xc3\xb6s");
+}
+
+TEST_F(Rewriting, TextInTheElementOfANumberIsRemoved) {
+  MadeObject object = small_object(kExplicit);
+  object.add(0x00280106, "LO", "MUELLER");
+  const auto bytes = anonymised(object.file());
+  ASSERT_TRUE(bytes);
+  EXPECT_EQ(bytes->find("MUELLER"), std::string::npos);
+  EXPECT_FALSE(read_back().root().find(0x00280106));
 }
 
 TEST_F(Rewriting, ElementsBehindThePixelsAreRemoved) {
