@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <iterator>
 
 #include "cli/program.h"
 #include "dicom/pacs/testing/made_object.h"
@@ -125,17 +126,38 @@ TEST_F(FromFakePacs, SilenceEndsAfterTheTimeLimit) {
 }
 
 TEST_F(FromFakePacs, ClosingInTheMiddleIsNamed) {
-  expect_get_refused([](int, int, int) {}, "has ended the connection in the middle");
   expect_get_refused(
       [](int socket, int, int ct) {
         send_object(socket, ct, made::made_ct(0).bytes());
         send_all(socket, part(ct, true, true, store_request().bytes()) + part(ct, false, false, "half an obj"));
       },
       "has ended the connection in the middle");
-  expect_get_refused([](int socket, int, int) { send_all(socket, pdu(7, std::string(4, '\0'))); },
-                     "has ended the connection in the middle");
+  expect_get_refused(
+      [](int socket, int, int ct) {
+        send_object(socket, ct, made::made_ct(0).bytes());
+        send_all(socket, pdu(7, std::string(4, '\0')));
+      },
+      "has ended the connection in the middle");
   expect_get_refused([](int socket, int, int) { send_all(socket, pdu(5, std::string(4, '\0'))); },
                      "ended the retrieval early");
+}
+
+TEST_F(FromFakePacs, EndWithoutAnAnswerNamesTheAeTitle) {
+  const std::string message = "without an answer: it may not know our AE title TROCAR";
+  const auto abort = [](int socket) { send_all(socket, pdu(7, std::string(4, '\0'))); };
+  expect_get_refused([](int, int, int) {}, message);
+  expect_get_refused([&](int socket, int, int) { abort(socket); }, "--aet");
+  const auto accept_and_abort = [&](int socket) {
+    send_all(socket, acceptance(receive_pdu(socket)));
+    receive_pdu(socket);
+    abort(socket);
+  };
+  expect_refused({accept_and_abort}, message);
+  const auto abort_at_once = [&](int socket) {
+    receive_pdu(socket);
+    abort(socket);
+  };
+  expect_refused({abort_at_once}, "--aet");
 }
 
 TEST_F(FromFakePacs, WrongProtocolUnitsAreRefused) {
@@ -354,6 +376,56 @@ TEST_F(Interrupted, KilledProgramLeavesNoIdentity) {
       EXPECT_EQ(bytes.find(text), std::string::npos) << text << " in " << entry.path();
   }
   EXPECT_EQ(files, 1) << "the first object, anonymised, in the temporary folder";
+}
+
+FakeServer::Serve sends_two_slices() {
+  return answers_get([](int socket, int request, int ct) {
+    for (int slice = 0; slice < 2; ++slice) send_object(socket, ct, made::made_ct(slice).bytes());
+    end_get(socket, request);
+  });
+}
+
+TEST_F(Interrupted, NextFetchToTheSamePlaceRemovesWhatAKilledOneLeft) {
+  EXPECT_NE(run_with_signal("KILL").exit_status, 0);
+  ASSERT_FALSE(folder_.is_empty());
+  const FakeServer server({lists_series(2), sends_two_slices()});
+  const Outcome outcome = cli_test::trocar(arguments(server.port()));
+  EXPECT_EQ(outcome.exit_status, 0) << outcome.err;
+  const fs::directory_iterator entries(folder_.path());
+  EXPECT_EQ(std::distance(entries, fs::directory_iterator()), 1) << "the fetched folder alone";
+  EXPECT_TRUE(fs::exists(folder_.path() / "a" / "series_001_CT" / "00002.dcm"));
+}
+
+TEST_F(Interrupted, NextFetchLeavesARunningOneAlone) {
+  const FakeServer other({lists_series(2), sends_two_slices()});
+  Outcome second;
+  const FakeServer server({lists_series(2), answers_get([&](int socket, int request, int ct) {
+                             send_object(socket, ct, made::made_ct(0).bytes());
+                             second = cli_test::trocar(arguments(other.port()));
+                             fs::rename(folder_.path() / "a", folder_.path() / "b");
+                             send_object(socket, ct, made::made_ct(1).bytes());
+                             end_get(socket, request);
+                           })});
+  const Outcome first = cli_test::trocar(arguments(server.port()));
+  EXPECT_EQ(second.exit_status, 0) << second.err;
+  EXPECT_EQ(first.exit_status, 0) << first.err;
+  for (const char* name : {"a", "b"})
+    EXPECT_TRUE(fs::exists(folder_.path() / name / "series_001_CT" / "00002.dcm")) << name;
+}
+
+TEST_F(FromFakePacs, TextsThatAreReplacedAreCountedAndNotShown) {
+  const FakeServer server({lists_series(2), sends_two_slices()});
+  const Outcome outcome = cli_test::trocar(arguments(server.port()));
+  EXPECT_EQ(outcome.exit_status, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("harmless_words.toml: 1 description of a series"), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find("MUSTERMANN"), std::string::npos) << outcome.err;
+}
+
+TEST_F(FromFakePacs, MissingListOfWordsIsNamedBeforeAnythingIsFetched) {
+  const cli_test::TemporaryFolder data;
+  const Outcome outcome = cli_test::trocar(arguments(free_port()), "TROCAR_DATA_DIR='" + data.path().string() + "'");
+  EXPECT_EQ(outcome.exit_status, 1);
+  EXPECT_NE(outcome.err.find("harmless_words.toml"), std::string::npos) << outcome.err;
 }
 
 }  // namespace

@@ -28,15 +28,15 @@ bool Orthanc::is_installed() {
   return std::filesystem::exists(kProgram) && std::filesystem::exists(kPlugin);
 }
 
-Orthanc::Orthanc() : http_port_(free_port()), dicom_port_(free_port()), move_port_(free_port()) {
+Orthanc::Orthanc(bool permits_all) : http_port_(free_port()), dicom_port_(free_port()), move_port_(free_port()) {
   const std::string file = (folder_ / "orthanc.json").string();
   std::ofstream(file) << fmt::format(
       R"({{"StorageDirectory": "{0}/db", "IndexDirectory": "{0}/db", "Plugins": ["{1}"], "HttpPort": {2},
-"DicomPort": {3}, "DicomAet": "ORTHANC", "DicomCheckCalledAet": true, "DicomAlwaysAllowFind": true,
-"DicomAlwaysAllowMove": true, "DicomAlwaysAllowGet": true, "RemoteAccessAllowed": false, "AuthenticationEnabled": false,
+"DicomPort": {3}, "DicomAet": "ORTHANC", "DicomCheckCalledAet": true, "DicomAlwaysAllowFind": {6},
+"DicomAlwaysAllowMove": {6}, "DicomAlwaysAllowGet": {6}, "RemoteAccessAllowed": false, "AuthenticationEnabled": false,
 "DicomModalities": {{"trocar": ["TROCAR", "127.0.0.1", {4}], "closed": ["CLOSED", "127.0.0.1", {5}]}},
 "DicomWeb": {{"Enable": true, "Root": "/dicom-web/"}}}})",
-      folder_.path().string(), kPlugin, http_port_, dicom_port_, move_port_, free_port());
+      folder_.path().string(), kPlugin, http_port_, dicom_port_, move_port_, free_port(), permits_all);
   process_ = ::fork();
   if (process_ == 0) {
     ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // must not outlive a test that crashes

@@ -12,7 +12,8 @@ class Orthanc {
  public:
   static bool is_installed();
 
-  Orthanc();
+  /// `permits_all`: an AE title that it does not know may ask and retrieve.
+  explicit Orthanc(bool permits_all = true);
   ~Orthanc();
   Orthanc(const Orthanc&) = delete;
   Orthanc& operator=(const Orthanc&) = delete;

@@ -257,6 +257,50 @@ TEST_F(FromOrthanc, RefusalSaysWhatThePacsHasToKnow) {
   EXPECT_TRUE(folder_.is_empty());
 }
 
+TEST_F(FromOrthanc, StrangersAreToldOfTheirAeTitle) {
+  const Orthanc strict(false);
+  ASSERT_TRUE(strict.is_running());
+  for (const char* via : {"", " --via get"}) {
+    const Outcome unknown = fetch(strict.pacs() + " --aet STRANGER" + via, "--out '" + out("a") + "'");
+    EXPECT_EQ(unknown.exit_status, 1);
+    for (const char* part : {"may not know our AE title STRANGER", "--aet"})
+      EXPECT_NE(unknown.err.find(part), std::string::npos) << part << "\n" << unknown.err;
+    EXPECT_EQ(cli_test::line_count(unknown.err), 1) << unknown.err;
+  }
+  EXPECT_NE(fetch(strict.pacs(), "--list").err.find("no such study"), std::string::npos) << "TROCAR is known";
+  EXPECT_TRUE(folder_.is_empty());
+}
+
+/// Names that need more than ASCII, through a real PACS.
+TEST_F(FromOrthanc, NamesOutsideAsciiAreReplaced) {
+  const std::vector<std::pair<std::string, std::string>> names = {{"ISO_IR 100", "M\xdcLLER"},
+                                                                  {"ISO_IR 144", "\xb8\xb2\xb0\xbd\xbe\xb2"},
+                                                                  {"ISO_IR 126", "\xd0\xc1\xd0\xc1\xc4"},
+                                                                  {"ISO_IR 148",
+                                                                   "\xc7"
+                                                                   "EL\xddK"},
+                                                                  {"ISO_IR 192",
+                                                                   "\xc3\x87"
+                                                                   "EL\xc4\xb0K"}};
+  int study = 0;
+  for (const auto& [character_set, name] : names) {
+    made::MadeObject object = made::made_ct(0);
+    const std::string uid = fmt::format("1.3.6.1.4.1.99999.2.{}", ++study);
+    object.add(0x00080005, "CS", character_set).add(0x00100010, "PN", name + "^Erika");
+    object.add(0x0008103e, "LO", "CT " + name + " 5mm").add(0x00080018, "UI", uid + ".3");
+    object.add(0x0020000d, "UI", uid).add(0x0020000e, "UI", uid + ".1");
+    ASSERT_TRUE(orthanc_->store(object.file()));
+    const Outcome fetched =
+        trocar("patient fetch " + orthanc_->pacs() + " --study " + uid + " --out '" + out(uid) + "'");
+    ASSERT_EQ(fetched.exit_status, 0) << fetched.err;
+    EXPECT_NE(fetched.err.find("1 description of a series"), std::string::npos) << fetched.err;
+    const std::string bytes = cli_test::read_text(out(uid) + "/series_001_CT/00001.dcm");
+    EXPECT_FALSE(bytes.empty());
+    EXPECT_EQ(bytes.find(name), std::string::npos) << character_set;
+    EXPECT_NE(bytes.find("series-01"), std::string::npos) << character_set;
+  }
+}
+
 TEST_F(FromOrthanc, FullDiskLeavesNothing) {
   for (const std::string& way : ways()) {
     const std::string arguments = "patient fetch " + way + " --study " + made::kStudyUid + " --out '" + out("a") + "'";

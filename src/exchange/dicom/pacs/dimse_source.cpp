@@ -119,7 +119,8 @@ class DimseSource final : public PacsSource {
   Result<bool> receive_answer(Association& pacs, const std::string& syntax, const TakeAnswer& take) {
     TROCAR_TRY(const std::optional<DimseMessage> message, pacs.receive());
     if (!message || message->command.field != DimseField::kFindResponse || !message->command.status)
-      return fail("the PACS does not answer the query", place_of(options_), "check that it permits queries");
+      return fail("the PACS does not answer the query", place_of(options_),
+                  fmt::format("check that it permits queries for AE title {} (--aet)", options_.calling_title));
     const std::uint16_t status = *message->command.status;
     std::string bytes;
     if (message->command.has_data)

@@ -28,6 +28,14 @@ constexpr std::array<unsigned char, 10> kAbort{7, 0, 0, 0, 0, 4, 0, 0, 0, 0};  /
 constexpr int kGreeting_s = 5;  ///< A caller that says nothing must not hold up the others.
 constexpr const char* kVerification = "1.2.840.10008.1.1";
 
+/// What to do if the PACS may not know this program.
+std::string title_advice(const DimseOptions& options) {
+  return fmt::format(
+      "name the AE title that it knows with --aet, or ask its administrator to enter {} with the address of this "
+      "computer and port {}",
+      options.calling_title, options.listen_port);
+}
+
 tl::unexpected<Error> refused(const DimseOptions& options, T_ASC_Parameters* params) {
   T_ASC_RejectParameters reject{};
   ASC_getRejectParameters(params, &reject);
@@ -37,8 +45,7 @@ tl::unexpected<Error> refused(const DimseOptions& options, T_ASC_Parameters* par
                 "ask its administrator for the AE title");
   if (reject.reason == ASC_REASON_SU_CALLINGAETITLENOTRECOGNIZED)
     return fail(fmt::format("the PACS refuses: it does not know our AE title {}", options.calling_title), place,
-                fmt::format("ask its administrator to enter AE title {} with the address of this computer and port {}",
-                            options.calling_title, options.listen_port));
+                title_advice(options));
   if (reject.result == ASC_RESULT_REJECTEDTRANSIENT)
     return fail("the PACS refuses for now: it is busy", place, "try again later");
   return fail("the PACS refuses the association", place,
@@ -56,7 +63,9 @@ tl::unexpected<Error> not_connected(const DimseOptions& options, const OFConditi
     return fail("there is no computer of this name", place, "check the address of the PACS");
   if (condition.code() == DULC_TCPINITERROR)
     return fail("cannot connect to the PACS", place, "check address and port, and that the PACS is running");
-  return fail("the computer there does not answer as a PACS", place, "check that this is the DICOM port of the PACS");
+  return fail("the computer there does not answer as a PACS", place,
+              fmt::format("check that this is the DICOM port of the PACS, and that it knows AE title {} (--aet)",
+                          options.calling_title));
 }
 
 /// DCMTK copies these values: strings of C, and an array of them.
@@ -138,6 +147,8 @@ struct Association::Handle {
   DimseOptions options;
   std::function<bool()> is_cancelled;  ///< May be empty.
   std::optional<DUL_PDV> next;         ///< Arrived, not yet used.
+  bool is_request = false;             ///< We have opened the association.
+  bool has_answered = false;           ///< A message has arrived.
 
   Handle() = default;
   Handle(const Handle&) = delete;
@@ -161,9 +172,14 @@ struct Association::Handle {
     if (condition == DUL_READTIMEOUT)
       return fail(fmt::format("the PACS sent nothing for {} s", options.timeout_s), place,
                   "try again, or allow more time with --timeout");
+    const bool has_ended = condition == DUL_PEERABORTEDASSOCIATION || condition == DUL_NETWORKCLOSED;
+    // Many PACS accept everybody and end the connection at the first request of an AE title that they do not know.
+    if (has_ended && is_request && !has_answered)
+      return fail(fmt::format("the PACS has ended the connection without an answer: it may not know our AE title {}",
+                              options.calling_title),
+                  place, title_advice(options));
     // DCMTK does not tell an abort from a closed connection.
-    if (condition == DUL_PEERABORTEDASSOCIATION || condition == DUL_NETWORKCLOSED)
-      return fail("the PACS has ended the connection in the middle", place, "try again");
+    if (has_ended) return fail("the PACS has ended the connection in the middle", place, "try again");
     return fail("the PACS sent something that is no DICOM message", place, "check that this is its DICOM port");
   }
 
@@ -199,6 +215,7 @@ struct Association::Handle {
     }
     const DUL_PDV part = *next;
     next.reset();
+    has_answered = true;
     return std::optional(part);
   }
 
@@ -245,6 +262,7 @@ Result<Association> Association::request(const Network& network, const DimseOpti
   auto handle = std::make_unique<Handle>();
   handle->network = network.network_;
   handle->options = options;
+  handle->is_request = true;
   T_ASC_Association* association = nullptr;
   const OFCondition condition = ASC_requestAssociation(static_cast<T_ASC_Network*>(network.network_.get()), params,
                                                        &association, nullptr, nullptr, DUL_NOBLOCK, options.timeout_s);
