@@ -3,15 +3,13 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <filesystem>
-#include <iterator>
 
 #include "cli/program.h"
 #include "dicom/pacs/testing/made_object.h"
+#include "pacs/from_fake_pacs.h"
 #include "pacs/sockets.h"
 
 namespace trocar::pacs_test {
@@ -20,45 +18,6 @@ namespace fs = std::filesystem;
 namespace made = dicom::testing;
 
 using cli_test::Outcome;
-
-constexpr int kPatient_s = 20;   ///< Longer than a busy machine needs.
-constexpr int kImpatient_s = 1;  ///< For servers that never answer.
-
-class FromFakePacs : public ::testing::Test {
- protected:
-  std::string arguments(int port, int timeout_s = kPatient_s) const {
-    return fmt::format("patient fetch --pacs FAKE@127.0.0.1:{} --via get --timeout {} --study {} --out '{}'", port,
-                       timeout_s, made::kStudyUid, folder_ / "a");
-  }
-
-  /// One line that contains `message`, exit status 1, nothing written.
-  void expect_refused(std::vector<FakeServer::Serve> serve, const std::string& message, int timeout_s = kPatient_s) {
-    const FakeServer server(std::move(serve));
-    const Outcome outcome = cli_test::trocar(arguments(server.port(), timeout_s));
-    EXPECT_EQ(outcome.exit_status, 1) << outcome.err;
-    EXPECT_NE(outcome.err.find(message), std::string::npos) << outcome.err;
-    EXPECT_EQ(cli_test::line_count(outcome.err), 1) << outcome.err;
-    EXPECT_TRUE(folder_.is_empty());
-  }
-
-  /// The same for what follows a request to send a CT of `announced` images.
-  void expect_get_refused(std::function<void(int, int, int)> then, const std::string& message, int announced = 2,
-                          int timeout_s = kPatient_s) {
-    expect_refused({lists_series(announced), answers_get(std::move(then))}, message, timeout_s);
-  }
-
-  cli_test::TemporaryFolder folder_;
-};
-
-void send_object(int socket, int context, const std::string& data) {
-  send_all(socket, message(context, store_request(), data));
-  receive_pdu(socket);  // the answer
-}
-
-void end_get(int socket, int context, int status = 0) {
-  send_all(socket, message(context, response(kGetResponse, status)));
-  if (receive_pdu(socket).type == 5) send_all(socket, pdu(6, std::string(4, '\0')));
-}
 
 TEST_F(FromFakePacs, ObjectsOfACorrectOneAreWritten) {
   const FakeServer server({lists_series(2), answers_get([](int socket, int request, int ct) {
@@ -337,80 +296,6 @@ TEST_F(Listening, UsedPortIsNamed) {
   EXPECT_NE(outcome.err.find(fmt::format("cannot listen for the images of the PACS — port {}", other.port())),
             std::string::npos)
       << outcome.err;
-}
-
-/// The program gets a signal in the middle of the second object.
-class Interrupted : public FromFakePacs {
- protected:
-  Outcome run_with_signal(const std::string& signal) {
-    const FakeServer server({lists_series(3), answers_get([&](int socket, int, int ct) {
-                               send_object(socket, ct, made::made_ct(0).bytes());
-                               send_all(socket, part(ct, true, true, store_request().bytes()));
-                               send_all(socket, part(ct, false, false, made::made_ct(1).bytes().substr(0, 3000)));
-                               cli_test::run_shell("kill -" + signal + " $(cat '" + (pid_ / "pid") + "')");
-                               wait_for_close(socket);
-                             })});
-    return cli_test::trocar(arguments(server.port()), "echo $$ > '" + (pid_ / "pid") + "'; exec");
-  }
-
-  cli_test::TemporaryFolder pid_;
-};
-
-TEST_F(Interrupted, ProgramLeavesNothing) {
-  const Outcome outcome = run_with_signal("TERM");  // a shell's job in the background ignores INT
-  EXPECT_EQ(outcome.exit_status, 1) << outcome.err;
-  EXPECT_NE(outcome.err.find("interrupted: nothing was written"), std::string::npos) << outcome.err;
-  EXPECT_TRUE(folder_.is_empty());
-}
-
-TEST_F(Interrupted, KilledProgramLeavesNoIdentity) {
-  const Outcome outcome = run_with_signal("KILL");
-  EXPECT_NE(outcome.exit_status, 0);
-  EXPECT_FALSE(fs::exists(folder_.path() / "a"));
-  int files = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(folder_.path())) {
-    if (!entry.is_regular_file()) continue;
-    ++files;
-    const std::string bytes = cli_test::read_text(entry.path().string());
-    for (const std::string& text : made::identifying_texts())
-      EXPECT_EQ(bytes.find(text), std::string::npos) << text << " in " << entry.path();
-  }
-  EXPECT_EQ(files, 1) << "the first object, anonymised, in the temporary folder";
-}
-
-FakeServer::Serve sends_two_slices() {
-  return answers_get([](int socket, int request, int ct) {
-    for (int slice = 0; slice < 2; ++slice) send_object(socket, ct, made::made_ct(slice).bytes());
-    end_get(socket, request);
-  });
-}
-
-TEST_F(Interrupted, NextFetchToTheSamePlaceRemovesWhatAKilledOneLeft) {
-  EXPECT_NE(run_with_signal("KILL").exit_status, 0);
-  ASSERT_FALSE(folder_.is_empty());
-  const FakeServer server({lists_series(2), sends_two_slices()});
-  const Outcome outcome = cli_test::trocar(arguments(server.port()));
-  EXPECT_EQ(outcome.exit_status, 0) << outcome.err;
-  const fs::directory_iterator entries(folder_.path());
-  EXPECT_EQ(std::distance(entries, fs::directory_iterator()), 1) << "the fetched folder alone";
-  EXPECT_TRUE(fs::exists(folder_.path() / "a" / "series_001_CT" / "00002.dcm"));
-}
-
-TEST_F(Interrupted, NextFetchLeavesARunningOneAlone) {
-  const FakeServer other({lists_series(2), sends_two_slices()});
-  Outcome second;
-  const FakeServer server({lists_series(2), answers_get([&](int socket, int request, int ct) {
-                             send_object(socket, ct, made::made_ct(0).bytes());
-                             second = cli_test::trocar(arguments(other.port()));
-                             fs::rename(folder_.path() / "a", folder_.path() / "b");
-                             send_object(socket, ct, made::made_ct(1).bytes());
-                             end_get(socket, request);
-                           })});
-  const Outcome first = cli_test::trocar(arguments(server.port()));
-  EXPECT_EQ(second.exit_status, 0) << second.err;
-  EXPECT_EQ(first.exit_status, 0) << first.err;
-  for (const char* name : {"a", "b"})
-    EXPECT_TRUE(fs::exists(folder_.path() / name / "series_001_CT" / "00002.dcm")) << name;
 }
 
 TEST_F(FromFakePacs, TextsThatAreReplacedAreCountedAndNotShown) {
