@@ -202,9 +202,9 @@ void add_patient_fetch_command(Command& patient, Action& action) {
   Command command = patient.add_command("fetch", "Fetch series from a PACS, anonymised");
   command.footer(
       "Names, numbers, dates, private elements and all other elements that Trocar does not need are removed, UIDs are\n"
-      "replaced. Segmentations and structure sets fetched by one command still fit their CT. Pixels are not changed: "
-      "a\n"
-      "warning names series that may show text.\n"
+      "replaced. Texts with words that are not in data/harmless_words.toml are replaced by codes. Segmentations and\n"
+      "structure sets fetched by one command still fit their CT. Pixels are not changed: a warning names series that\n"
+      "may show text.\n"
       "Examples:\n  trocar patient fetch --pacs ORTHANC@192.168.1.5:4242 --study 1.2.840.1 --list\n"
       "  trocar patient fetch --pacs ORTHANC@192.168.1.5:4242 --study 1.2.840.1 --series 2 --series 4 --out dicom_1\n"
       "  trocar patient fetch --dicomweb https://pacs.example/dicom-web --user me --study 1.2.840.1 --out dicom_1\n"

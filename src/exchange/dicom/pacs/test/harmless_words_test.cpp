@@ -56,6 +56,9 @@ TEST_F(HarmlessText, UsualDescriptionsOfSeriesStay) {
                            "iDose4",
                            "Liver 70 keV",
                            "3D",
+                           "Br40f",
+                           "SOMATOM Definition AS+",
+                           "WINDOW1",
                            ""})
     EXPECT_TRUE(stays(text)) << text;
 }
