@@ -81,10 +81,9 @@ Status write_folder_atomically(const fs::path& target, const std::function<Statu
   TROCAR_TRY_STATUS(make_parent_folder(target));
   const fs::path temporary = temporary_beside(target);
   remove_abandoned_parts(plain(target));
-  TROCAR_TRY(const PartFolder locked, PartFolder::create(temporary));
-  UnfinishedOutput unfinished({temporary});
+  TROCAR_TRY(PartFolder part, PartFolder::create(temporary));
   TROCAR_TRY_STATUS(write(temporary));
-  if (const std::error_code not_renamed = unfinished.rename_to(target))
+  if (const std::error_code not_renamed = part.rename_to(target))
     return fail("cannot write: " + not_renamed.message(), target.string(), "choose another folder");
   return {};
 }

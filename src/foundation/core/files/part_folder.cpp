@@ -84,22 +84,33 @@ fs::path part_path(const fs::path& target, int process) {
 Result<PartFolder> PartFolder::create(const fs::path& path) {
   for (int n = 0; n < kTriesToCreate; ++n) {
     remove_if_abandoned(path);
-    if (::mkdir(path.c_str(), kForAllUsers) != 0) {
-      if (errno == EEXIST)
-        return fail("is written by another program", path.string(), "wait for it, or remove this folder if none runs");
-      return fail(std::string("cannot make the folder: ") + std::strerror(errno), path.string(),
-                  "choose another place");
-    }
+    struct stat existing {};
+    if (::lstat(path.c_str(), &existing) == 0)
+      return fail("is written by another program", path.string(), "wait for it, or remove this folder if none runs");
+    // Registered before it exists, so that an interruption leaves no folder.
+    auto unfinished = std::make_unique<UnfinishedOutput>(std::vector{path});
+    const bool is_made = ::mkdir(path.c_str(), kForAllUsers) == 0;
+    const int reason = errno;
     OpenFolder folder(path);
-    if (folder.lock() != Lock::kInUse) return PartFolder(folder.release());
-    // Another program looked at the folder before it was locked, and removes it.
+    if (is_made && folder.lock() != Lock::kInUse) return PartFolder(std::move(unfinished), folder.release());
+    // Not ours: another program has made it, or has seen it before it was locked and removes it.
+    unfinished->keep();
+    forget_finished_output(path);
+    if (!is_made && reason != EEXIST)
+      return fail(std::string("cannot make the folder: ") + std::strerror(reason), path.string(),
+                  "choose another place");
   }
   return fail("cannot lock the folder", path.string(), "try again");
 }
 
-PartFolder::PartFolder(PartFolder&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+PartFolder::PartFolder(std::unique_ptr<UnfinishedOutput> unfinished, int descriptor) noexcept
+    : unfinished_(std::move(unfinished)), descriptor_(descriptor) {}
+
+PartFolder::PartFolder(PartFolder&& other) noexcept
+    : unfinished_(std::move(other.unfinished_)), descriptor_(std::exchange(other.descriptor_, -1)) {}
 
 PartFolder::~PartFolder() {
+  unfinished_.reset();  // while it is locked
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 

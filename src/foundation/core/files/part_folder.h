@@ -1,7 +1,10 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
+#include <system_error>
 
+#include "core/files/unfinished_output.h"
 #include "core/result.h"
 
 namespace trocar {
@@ -11,7 +14,7 @@ inline namespace core {
 /// target, which is absolute and does not end with a slash.
 std::filesystem::path part_path(const std::filesystem::path& target, int process);
 
-/// A new empty folder for an unfinished output. It is locked (flock) as long as this object exists; the system releases
+/// A new empty folder for an UnfinishedOutput. It is locked (flock) as long as this object exists; the system releases
 /// the lock of a process that was killed, so that others can tell an abandoned folder from one in use. File systems
 /// without such locks get a folder without a lock.
 class PartFolder {
@@ -20,10 +23,15 @@ class PartFolder {
   static Result<PartFolder> create(const std::filesystem::path& path);
   PartFolder(PartFolder&& other) noexcept;
   PartFolder& operator=(PartFolder&&) = delete;
+  /// Removes the folder unless it was renamed.
   ~PartFolder();
 
+  /// As UnfinishedOutput::rename_to.
+  std::error_code rename_to(const std::filesystem::path& target) { return unfinished_->rename_to(target); }
+
  private:
-  explicit PartFolder(int descriptor) noexcept : descriptor_(descriptor) {}
+  PartFolder(std::unique_ptr<UnfinishedOutput> unfinished, int descriptor) noexcept;
+  std::unique_ptr<UnfinishedOutput> unfinished_;
   int descriptor_ = -1;  ///< -1: not locked.
 };
 

@@ -95,8 +95,11 @@ TEST(PartFolder, InUseIsNotTakenOver) {
   EXPECT_EQ(second.error().where, path.string());
   EXPECT_TRUE(fs::exists(path / "file"));
   { const PartFolder ended = *std::move(first); }
-  ASSERT_TRUE(PartFolder::create(path));
-  EXPECT_TRUE(fs::is_empty(path));
+  EXPECT_FALSE(fs::exists(path)) << "was not renamed";
+  auto third = PartFolder::create(path);
+  ASSERT_TRUE(third);
+  EXPECT_FALSE(third->rename_to(folder / "a"));
+  EXPECT_TRUE(fs::is_empty(folder / "a"));
 }
 
 TEST(PartFolder, NothingElseIsRemoved) {
