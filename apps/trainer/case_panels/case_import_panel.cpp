@@ -8,6 +8,9 @@
 #include <QPushButton>
 #include <QSettings>
 #include <QVBoxLayout>
+#include <algorithm>
+#include <memory>
+#include <optional>
 
 #include "case_panels/case_panel.h"
 #include "ui_kit/parts.h"
@@ -41,6 +44,7 @@ class ImportPanel final : public CasePanel {
     map_->addItem(QStringLiteral("totalsegmentator"));
     content()->addWidget(map_);
     add_actions();
+    add_finding();
     content()->addWidget(make_label(tr("Recent"), "dim"));
     recent_ = new QListWidget;
     recent_->setObjectName(QStringLiteral("case-recent"));
@@ -60,6 +64,7 @@ class ImportPanel final : public CasePanel {
     if (was_importing_ && !is_importing) {
       has_failed_ = editor_.is_error();
       if (editor_.draft().imported != before_) remember();  // neither failed nor cancelled
+      show_finding();
       fill_recent();
     }
     was_importing_ = is_importing;
@@ -123,8 +128,68 @@ class ImportPanel final : public CasePanel {
     connect(start_, &QPushButton::clicked, this, [this] { import(); });
   }
 
+  /// What is wrong with the segmentation as a whole, and how to go on.
+  void add_finding() {
+    finding_ = make_label({});
+    finding_->setObjectName(QStringLiteral("case-finding"));
+    finding_->setWordWrap(true);
+    repair_ = make_button("case-finding-repair", {}, {});
+    confirm_ = make_button("case-finding-confirm", tr("It is right: import as it is"),
+                           tr("The patient is really like that; the case keeps this confirmation"));
+    for (QWidget* widget : std::initializer_list<QWidget*>{finding_, repair_, confirm_}) {
+      widget->hide();
+      content()->addWidget(widget);
+    }
+    connect(repair_, &QPushButton::clicked, this, [this] { repair(); });
+    connect(confirm_, &QPushButton::clicked, this, [this] {
+      if (!open_finding_) return;
+      confirmed_.push_back(open_finding_->name);
+      start();
+    });
+  }
+
+  /// The first grave finding of the import that was not confirmed, if it failed because of it.
+  void show_finding() {
+    open_finding_.reset();
+    if (has_failed_ && findings_ != nullptr)
+      for (const anatomy::AnatomyFinding& finding : *findings_)
+        if (!open_finding_ && finding.is_grave && std::ranges::count(confirmed_, finding.name) == 0)
+          open_finding_ = finding;
+    const bool is_open = open_finding_.has_value();
+    finding_->setVisible(is_open);
+    confirm_->setVisible(is_open);
+    repair_->setVisible(is_open && !open_finding_->repair.empty());
+    if (!is_open) return;
+    finding_->setText(to_qt(open_finding_->text));
+    const std::string& option = open_finding_->repair;
+    repair_->setText(option == anatomy::kMirrorLabels ? tr("Mirror the labels and import")
+                     : option == anatomy::kMirrorBoth ? tr("Mirror CT and labels and import")
+                                                      : tr("Read the numbers so and import"));
+    repair_->setToolTip(to_qt(option));
+  }
+
+  void repair() {
+    if (!open_finding_) return;
+    const std::string option = open_finding_->repair;
+    if (option == anatomy::kMirrorLabels) mirroring_ = io::Mirroring::kLabels;
+    if (option == anatomy::kMirrorBoth) mirroring_ = io::Mirroring::kBoth;
+    if (option.starts_with(anatomy::kUseLabelMap))
+      map_->setCurrentText(to_qt(option.substr(std::string_view(anatomy::kUseLabelMap).size())));
+    start();
+  }
+
+  /// New files: nothing about them has been confirmed.
   void import() {
+    confirmed_.clear();
+    mirroring_ = io::Mirroring::kNone;
+    start();
+  }
+
+  void start() {
     case_builder::ImportRequest request;
+    request.mirroring = mirroring_;
+    request.confirmed = confirmed_;
+    request.findings = findings_ = std::make_shared<std::vector<anatomy::AnatomyFinding>>();
     request.ct = to_std(ct_->text().trimmed());
     for (const QString& path : labels_->text().split(QLatin1Char(';')))
       if (!path.trimmed().isEmpty()) request.labels.push_back(to_std(path.trimmed()));
@@ -133,6 +198,7 @@ class ImportPanel final : public CasePanel {
     imported_ =
         QStringList{ct_->text().trimmed(), labels_->text().trimmed(), map_->currentText()}.join(QLatin1Char('\n'));
     has_failed_ = false;
+    show_finding();
     before_ = editor_.draft().imported;
     editor_.import_patient(std::move(request));
     was_importing_ = true;  // it may end before the next refresh
@@ -170,6 +236,13 @@ class ImportPanel final : public CasePanel {
   QComboBox* map_ = nullptr;
   QPushButton* start_ = nullptr;
   QListWidget* recent_ = nullptr;
+  QLabel* finding_ = nullptr;
+  QPushButton* repair_ = nullptr;
+  QPushButton* confirm_ = nullptr;
+  std::shared_ptr<std::vector<anatomy::AnatomyFinding>> findings_;  ///< Of the last import; read when it has ended.
+  std::optional<anatomy::AnatomyFinding> open_finding_;             ///< The one that is displayed.
+  std::vector<std::string> confirmed_;
+  io::Mirroring mirroring_ = io::Mirroring::kNone;
   QString imported_;                                             ///< The three fields of the last import, a line each.
   std::shared_ptr<const case_builder::ImportedPatient> before_;  ///< Import of the draft when the new import started.
   bool was_importing_ = false;

@@ -36,6 +36,16 @@ std::string text_of(const config::Json& object, const char* key, std::string fal
   return found != object.end() && found->is_string() ? found->get<std::string>() : fallback;
 }
 
+/// What decides how points are read: missing is the schema's default, but another kind of value is no text.
+Result<std::string> checked_text_of(const config::Json& object, const char* key, const std::string& missing,
+                                    const std::string& where) {
+  const auto found = object.find(key);
+  if (found == object.end()) return missing;
+  if (found->is_string()) return found->get<std::string>();
+  return fail(fmt::format("\"{}\" is not a text: {}", key, config::json_text(*found)), where,
+              "save the markups again in 3D Slicer");
+}
+
 Result<Vec3> position_of(const config::Json& point, const std::string& where) {
   const auto found = point.find("position");
   Vec3 p = Vec3::Constant(std::nan(""));
@@ -49,8 +59,9 @@ Result<Vec3> position_of(const config::Json& point, const std::string& where) {
 
 Result<Markup> markup_of(const config::Json& json, const std::string& where) {
   if (!json.is_object()) return fail("a markup is not an object", where, "save the markups again in 3D Slicer");
-  Markup markup{text_of(json, "type"), text_of(json, "name"), {}};
-  const std::string system = text_of(json, "coordinateSystem", "LPS");
+  Markup markup{{}, text_of(json, "name"), {}};
+  TROCAR_TRY(markup.type, checked_text_of(json, "type", "", where));
+  TROCAR_TRY(const std::string system, checked_text_of(json, "coordinateSystem", "LPS", where));
   if (system != "LPS" && system != "RAS")
     return fail(fmt::format("unknown coordinate system \"{}\"", system), where, "use LPS or RAS");
   const auto units = json.find("coordinateUnits");
@@ -65,7 +76,8 @@ Result<Markup> markup_of(const config::Json& json, const std::string& where) {
     if (!point.is_object())
       return fail("a control point is not an object", where, "save the markups again in 3D Slicer");
     // 3D Slicer also stores points that were never placed.
-    if (text_of(point, "positionStatus", "defined") != "defined") continue;
+    TROCAR_TRY(const std::string status, checked_text_of(point, "positionStatus", "defined", where));
+    if (status != "defined") continue;
     TROCAR_TRY(Vec3 p, position_of(point, where));
     if (system == "RAS") p = Vec3(-p.x(), -p.y(), p.z());
     markup.points.push_back({text_of(point, "label"), p});

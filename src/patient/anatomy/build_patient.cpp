@@ -117,6 +117,7 @@ Result<VirtualPatient> build_patient(const volume::CtGrid& ct, std::vector<Label
   patient.labels = std::move(merged.labels);
   patient.label_table = std::move(merged.table);
   for (AnatomyFinding& finding : judge_anatomy(patient)) findings.push_back(std::move(finding));
+  if (options.findings != nullptr) *options.findings = findings;
   TROCAR_TRY_STATUS(settle_findings(findings, options.confirmed, patient.provenance, warnings));
 
   report(progress, "distance to the skin", 0.4);

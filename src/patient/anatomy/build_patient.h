@@ -7,6 +7,7 @@
 
 #include "anatomy/derive/derive_choice.h"
 #include "anatomy/patient.h"
+#include "anatomy/plausibility/anatomy_finding.h"
 #include "core/progress.h"
 #include "core/result.h"
 
@@ -36,8 +37,9 @@ inline constexpr std::string_view kIgnoredStructure = "ignore";
 struct BuildOptions {
   std::string name;
   std::vector<std::string> provenance;
-  DeriveChoice derive{};                 ///< Thin structures to add (derive/derive_structures.h).
-  std::vector<std::string> confirmed{};  ///< Findings that a person has confirmed (plausibility/judge_anatomy.h).
+  DeriveChoice derive{};                            ///< Thin structures to add (derive/derive_structures.h).
+  std::vector<std::string> confirmed{};             ///< Names of findings that a person has confirmed.
+  std::vector<AnatomyFinding>* findings = nullptr;  ///< Receives all findings, also if one of them is the error.
 };
 
 /// A patient from a CT and segmentations: the body without table and clothing, labels resampled onto the CT's grid with

@@ -38,10 +38,14 @@ Status check_request(const ImportRequest& request) {
 Result<anatomy::VirtualPatient> read_patient(const ImportRequest& request, std::vector<std::string>& warnings,
                                              const Progress& progress, const std::stop_token& stop) {
   if (is_whole_patient(request)) return io::open_patient({request.ct, 1}, progress);
-  const io::PatientFiles files{request.ct,
-                               {request.labels.begin(), request.labels.end()},
-                               request.label_map,
-                               fs::path(io::last_name(request.ct)).stem().stem().string()};
+  io::PatientFiles files;
+  files.ct = request.ct;
+  files.labels.assign(request.labels.begin(), request.labels.end());
+  files.label_map = request.label_map;
+  files.name = fs::path(io::last_name(request.ct)).stem().stem().string();
+  files.mirroring = request.mirroring;
+  files.confirmed = request.confirmed;
+  files.findings = request.findings.get();
   return io::build_from_files(files, warnings, progress, stop);
 }
 

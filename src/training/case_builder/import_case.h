@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "case_builder/case_draft.h"
 #include "core/progress.h"
 #include "core/result.h"
+#include "io/patient/build_from_files.h"
 
 namespace trocar::case_builder {
 
@@ -18,6 +20,10 @@ struct ImportRequest {
   std::vector<std::string> labels;  ///< Label volumes, masks, .seg.nrrd, folders of masks or of DICOM mask series.
   std::string label_map = "totalsegmentator";  ///< Names of label numbers, or a TOML file with a [labels] table.
   std::string task = "liver-biopsy";           ///< Template task of the data folder.
+  io::Mirroring mirroring = io::Mirroring::kNone;
+  std::vector<std::string> confirmed{};  ///< Findings about the whole segmentation that are right.
+  /// Receives the findings when the import ends, also if it fails; may be empty.
+  std::shared_ptr<std::vector<anatomy::AnatomyFinding>> findings{};
 };
 
 /// True if the request names a patient that is already complete.

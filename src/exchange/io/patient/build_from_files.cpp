@@ -60,6 +60,7 @@ Result<anatomy::VirtualPatient> build_from_files(const PatientFiles& files, std:
   anatomy::BuildOptions options;
   options.name = files.name;
   options.confirmed = files.confirmed;
+  options.findings = files.findings;
   options.derive = files.derive;
   options.provenance = {fmt::format("built by trocar {}", kVersion), "CT: " + last_name(files.ct)};
   if (files.rescale)

@@ -8,6 +8,7 @@
 
 #include "anatomy/derive/derive_choice.h"
 #include "anatomy/patient.h"
+#include "anatomy/plausibility/anatomy_finding.h"
 #include "anatomy/tissue/hounsfield.h"
 #include "core/progress.h"
 #include "core/result.h"
@@ -27,7 +28,8 @@ struct PatientFiles {
   std::optional<anatomy::Rescale> rescale{};   ///< Rescale for a CT whose file lacks it.
   anatomy::DeriveChoice derive{};              ///< Thin structures to add.
   Mirroring mirroring = Mirroring::kNone;      ///< Kept in the provenance, as the next ones.
-  std::vector<std::string> confirmed{};        ///< Findings that are right (anatomy/plausibility/judge_anatomy.h).
+  std::vector<std::string> confirmed{};        ///< Findings that are right (anatomy/plausibility/anatomy_finding.h).
+  std::vector<anatomy::AnatomyFinding>* findings = nullptr;  ///< Receives all findings.
 };
 
 /// Reads the files and builds the patient; its provenance names the files without paths of this machine. A stop request

@@ -90,7 +90,13 @@ TEST_F(Markups, SkipsPointsThatWereNeverPlaced) {
 TEST_F(Markups, RefusesWhatItCannotPlace) {
   for (const char* text :
        {R"("type": "Fiducial", "coordinateSystem": "HFS", "controlPoints": [])",
+        R"("type": "Fiducial", "coordinateSystem": 0, "controlPoints": [])",
+        R"("type": "Fiducial", "coordinateSystem": null, "controlPoints": [])",
+        R"("type": "Fiducial", "coordinateSystem": ["RAS"], "controlPoints": [])",
         R"("type": "Fiducial", "coordinateUnits": "um", "controlPoints": [])",
+        R"("type": "Fiducial", "coordinateUnits": null, "controlPoints": [])",
+        R"("type": "Fiducial", "coordinateUnits": ["cm"], "controlPoints": [])", R"("type": 1, "controlPoints": [])",
+        R"("type": "Fiducial", "controlPoints": [{"position": [1, 2, 3], "positionStatus": 0}])",
         R"("type": "Fiducial", "controlPoints": [{"position": [1, 2]}])",
         R"("type": "Fiducial", "controlPoints": [{"position": [1, 2, "x"]}])",
         R"("type": "Fiducial", "controlPoints": [{"position": [1, 2, 1e300]}])",

@@ -110,13 +110,14 @@ void judge_directions(const std::array<AxisVotes, 3>& votes, const EdgeMatch& ed
   if (are_labels_mirrored_alone(edges, g)) {
     findings.push_back({kMirrored,
                         fmt::format("the labels are mirrored ({}), and fit the CT when they are mirrored back", found),
-                        "build with --mirror labels"});
+                        fmt::format("build with {}", kMirrorLabels), true, kMirrorLabels});
     return;
   }
-  findings.push_back(
-      {kMirrored, fmt::format("left and right are exchanged ({}): a mirrored image, or situs inversus", found),
-       fmt::format("build with --mirror both if the image is mirrored, --confirm {} if the patient is like that",
-                   kMirrored)});
+  findings.push_back({kMirrored,
+                      fmt::format("left and right are exchanged ({}): a mirrored image, or situs inversus", found),
+                      fmt::format("build with {} if the image is mirrored, --confirm {} if the patient is like that",
+                                  kMirrorBoth, kMirrored),
+                      true, kMirrorBoth});
 }
 
 void judge_shift(const EdgeMatch& edges, const volume::GridGeometry& g, std::vector<AnatomyFinding>& findings) {

@@ -5,29 +5,12 @@
 
 #include "anatomy/build_patient.h"
 #include "anatomy/known_structures.h"
+#include "anatomy/plausibility/anatomy_finding.h"
 #include "anatomy/tissue/hounsfield.h"
 
 namespace trocar::anatomy {
 
-// Judges a segmentation as a whole: what no single structure shows, and what makes another patient of it. Each finding
-// has a name by which a person can confirm that the patient is really like that.
-
-/// Names of the findings.
-inline constexpr const char* kMirrored = "mirrored";  ///< Left and right are exchanged.
-inline constexpr const char* kTurned = "turned";      ///< Two or three directions are exchanged.
-inline constexpr const char* kShifted = "shifted";    ///< The labels lie beside what the CT shows.
-inline constexpr const char* kNumbers = "numbers";    ///< The label numbers have another meaning.
-inline constexpr const char* kOtherCt = "other-ct";   ///< Many structures have HU that they cannot have.
-inline constexpr const char* kCropped = "cropped";    ///< The sides of the CT lie inside the body.
-inline constexpr const char* kMissing = "missing";    ///< A large organ has no label in a whole segmentation.
-inline constexpr const char* kSizes = "sizes";        ///< An organ has a volume that no person's has.
-
-struct AnatomyFinding {
-  std::string name;      ///< One of the above.
-  std::string text;      ///< What was found, with numbers: one line.
-  std::string advice;    ///< The likely cause and the option that repairs it.
-  bool is_grave = true;  ///< No patient is built unless it is confirmed; else it is told.
-};
+// Judges a segmentation as a whole, see AnatomyFinding.
 
 /// Finds a source whose values mean structures of plausible HU and order by another label map, and not by the given
 /// one.

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <optional>
 
 #include "anatomy/derive/detail/spine_labels.h"
 #include "anatomy/plausibility/judge_anatomy.h"
@@ -73,11 +72,13 @@ double contradiction_of(const std::map<int, ValueSums>& sums, const std::vector<
     const double mean = sum->second.mean_hu();
     total += std::min(kMost, kPerHu * std::max({0.0, typical->low - mean, mean - typical->high}));
   }
-  // Vertebrae lie below each other in their order.
-  std::optional<double> last_z;
-  for (const auto& [place, middle_P] : vertebrae) {
-    if (last_z) total += *last_z > middle_P.z() ? -0.5 : kMost;
-    last_z = middle_P.z();
+  // Vertebrae lie below each other in their order, at the distances of vertebrae.
+  constexpr double kLeastStep_mm = 12.0, kLargestStep_mm = 50.0;  // [assumed, from C3 of a child to L4 of a tall adult]
+  for (auto below = vertebrae.begin(); below != vertebrae.end();) {
+    const auto above = below++;
+    if (below == vertebrae.end()) break;
+    const double step_mm = (above->second.z() - below->second.z()) / static_cast<double>(below->first - above->first);
+    total += step_mm >= kLeastStep_mm && step_mm <= kLargestStep_mm ? -0.5 : kMost;
   }
   return total;
 }

@@ -8,39 +8,50 @@
 namespace trocar::anatomy {
 namespace {
 
-constexpr double kMostlyInside = 0.5;  ///< Share of the sides from which on no task has a skin to enter.
-constexpr double kTold = 0.1;          ///< Arms and hips are often beyond the edge of a CT.
+constexpr double kMostlyInside = 0.5;  ///< Share of every side from which on no task has a skin to enter.
+constexpr double kTold = 0.1;          ///< Of all sides: arms and hips are often beyond the edge of a CT.
 
-/// Calls visit(offset) for the outermost voxels along i and j.
+/// Calls visit(offset) for the outermost voxels of one side: the lowest or highest i or j.
 template <class Visit>
-void for_each_at_sides(const volume::GridGeometry& g, const Visit& visit) {
+void for_each_at_side(const volume::GridGeometry& g, std::size_t axis, bool is_high, const Visit& visit) {
+  const std::size_t other = 1 - axis;
   for (std::int64_t k = 0; k < g.size[2]; ++k)
-    for (std::int64_t j = 0; j < g.size[1]; ++j) {
-      const bool is_edge_row = j == 0 || j == g.size[1] - 1;
-      const std::int64_t step = is_edge_row ? 1 : std::max<std::int64_t>(1, g.size[0] - 1);
-      for (std::int64_t i = 0; i < g.size[0]; i += step) visit(g.offset({i, j, k}));
+    for (std::int64_t n = 0; n < g.size[other]; ++n) {
+      volume::Index3 ijk{0, 0, k};
+      ijk[axis] = is_high ? g.size[axis] - 1 : 0;
+      ijk[other] = n;
+      visit(g.offset(ijk));
     }
 }
 
 }  // namespace
 
 std::vector<AnatomyFinding> judge_sides(const volume::MaskGrid& body) {
-  std::size_t all = 0, inside = 0;
-  for_each_at_sides(body.geometry, [&](std::size_t n) {
-    ++all;
-    inside += body.voxels[n];
-  });
-  const double share = all == 0 ? 0.0 : static_cast<double>(inside) / static_cast<double>(all);
+  double all = 0.0, inside = 0.0, least_share = 1.0;
+  for (const std::size_t axis : {0U, 1U})
+    for (const bool is_high : {false, true}) {
+      double of_side = 0.0, inside_of_side = 0.0;
+      for_each_at_side(body.geometry, axis, is_high, [&](std::size_t n) {
+        of_side += 1.0;
+        inside_of_side += body.voxels[n];
+      });
+      all += of_side;
+      inside += inside_of_side;
+      least_share = std::min(least_share, inside_of_side / std::max(of_side, 1.0));
+    }
+  const double share = inside / std::max(all, 1.0);
   if (share < kTold) return {};
   const std::string text =
       fmt::format("{:.0f} % of the sides of the CT lie inside the body: there it shows no skin", 100.0 * share);
   return {{kCropped, text,
            fmt::format("give a CT that shows the skin; --confirm {} takes the sides of the CT as the skin", kCropped),
-           share >= kMostlyInside}};
+           least_share >= kMostlyInside}};
 }
 
 void take_sides_as_skin(volume::MaskGrid& body) {
-  for_each_at_sides(body.geometry, [&](std::size_t n) { body.voxels[n] = 0; });
+  for (const std::size_t axis : {0U, 1U})
+    for (const bool is_high : {false, true})
+      for_each_at_side(body.geometry, axis, is_high, [&](std::size_t n) { body.voxels[n] = 0; });
 }
 
 AirIn air_of(const std::vector<std::string>& confirmed) {

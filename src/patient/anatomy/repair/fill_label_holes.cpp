@@ -6,7 +6,9 @@
 namespace trocar::anatomy::detail {
 namespace {
 
-constexpr double kLargestHoleMl = 30.0;  // assumed: a larger closed cavity is no error
+// Assumed: gaps of a segmentation program are smaller; a larger closed cavity was left open on purpose (a cyst, a
+// necrosis), and is only told.
+constexpr double kLargestHoleMl = 2.0;
 constexpr double kSmallestMl = 0.001;
 
 bool is_solid(const Label& label) {
@@ -29,12 +31,11 @@ void fill_holes_of(const Label& label, const IndexBox& box, volume::LabelGrid& l
   const auto is_filled = [&](std::size_t part) {
     return static_cast<double>(parts.voxel_counts[part]) * voxel_ml <= kLargestHoleMl;
   };
-  std::size_t count = 0;
-  double volume_ml = 0.0;
+  std::size_t count = 0, kept = 0;
+  double volume_ml = 0.0, kept_ml = 0.0;
   for (std::size_t part = 0; part < parts.voxel_counts.size(); ++part) {
-    if (!is_filled(part)) continue;
-    ++count;
-    volume_ml += static_cast<double>(parts.voxel_counts[part]) * voxel_ml;
+    ++(is_filled(part) ? count : kept);
+    (is_filled(part) ? volume_ml : kept_ml) += static_cast<double>(parts.voxel_counts[part]) * voxel_ml;
   }
   std::optional<Vec3> place_P;  // in the largest hole
   std::size_t place_part = parts.voxel_counts.size();
@@ -47,6 +48,9 @@ void fill_holes_of(const Label& label, const IndexBox& box, volume::LabelGrid& l
     place_part = part;
     place_P = labels.geometry.centre_mm(ijk);
   });
+  if (kept > 0)
+    repairs.push_back(
+        {fmt::format("left {} in {} open", amount_text(kept, "hole", "holes", kept_ml), label.name), label.name, {}});
   if (volume_ml >= kSmallestMl)
     repairs.push_back({fmt::format("filled {} in {}", amount_text(count, "hole", "holes", volume_ml), label.name),
                        label.name, place_P});

@@ -28,7 +28,10 @@ void DataElements::decimal(std::uint32_t tag, double value) {
 
 void DataElements::decimals(std::uint32_t tag, const std::vector<double>& values) {
   std::string all;
-  for (const double value : values) all += (all.empty() ? "" : "\\") + decimal_text(value);
+  for (const double value : values) {
+    if (!all.empty()) all += '\\';
+    all += decimal_text(value);
+  }
   text(tag, "DS", all);
 }
 

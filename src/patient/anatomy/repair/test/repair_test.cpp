@@ -61,6 +61,15 @@ TEST(Repair, FillsHolesAndSaysHowMuch) {
   EXPECT_EQ(box.count("sacrum"), whole);
 }
 
+TEST(Repair, LeavesALargeHoleOpenAndSaysSo) {
+  LabelledBox box = make_segmentation();
+  box.paint("liver", ball(Vec3::Zero(), 24.0));
+  box.paint("", ball({0.0, 0.0, 3.0}, 9.0));  // a cyst of 3 ml without a label
+  const std::size_t drawn = box.count("liver");
+  EXPECT_EQ(repair(box), Texts{"left 1 hole (3.1 ml) in liver open"});
+  EXPECT_EQ(box.count("liver"), drawn);
+}
+
 TEST(Repair, KeepsWhatLiesInAnOrgan) {
   LabelledBox box = make_segmentation();
   box.paint("liver", ball(Vec3::Zero(), 20.0));
