@@ -72,7 +72,7 @@ using FrameDecoder = std::function<Status(const CompressedFrame& frame, std::spa
 /// several volumes. A fractional pixel is inside from half of the maximum on. The volumes are in the places of the
 /// frames, not on the CT's grid. RT structure set: closed planar contours, on the CT's grid if they are parallel to one
 /// of its planes. Contours of one plane count by even-odd: a contour inside another is a hole. A contour reaches
-/// half-way to its neighbours, over gaps of at most twice the smallest distance.
+/// half-way to its neighbours, wherever their planes lie; wider gaps between separate parts stay empty (warning).
 ///
 /// Errors: another series or frame of reference than the CT's, where both are known; open contours, not planar ones;
 /// frames without a place; an unknown kind of pixels; a damaged file; not enough memory.

@@ -12,9 +12,9 @@ namespace {
 
 constexpr double kMaxBend_mm = 0.3;         ///< Distance of points from their plane: files round to 0.01 to 0.1 mm.
 constexpr double kContoursParallel = 0.01;  ///< Sine of the angle to an axis of the CT; 0.6 degrees.
-constexpr double kContoursOfOnePlane_mm = 0.05;  ///< Contours of one plane.
-constexpr double kClosedGap = 2.1;               ///< Gaps up to this multiple of the smallest distance are closed.
 constexpr std::int64_t kMostContourPlanes = 1 << 14;
+constexpr std::int64_t kMostBeside = 1 << 12;  ///< Pixels beside the grid that are counted, on each side.
+constexpr double kEvenPlanes = 0.05;           ///< Of the usual distance.
 constexpr const char* kExportStructureAgain = "export the structure set again, or the structure as .seg.nrrd";
 
 /// Twice the area of a contour along its normal (Newell's method); right-handed about the order of the points.
@@ -45,97 +45,30 @@ Status check_planar(const ContourStructure& structure, const Vec3& normal, const
   return {};
 }
 
-/// A contour in indices of a grid: u and v in the plane, w along the axis.
-struct FlatContour {
-  std::vector<Eigen::Vector2d> points;
-  double w = 0.0;
-};
-
-/// Contours of one plane.
-struct ContourPlane {
-  double w = 0.0;
-  std::vector<const FlatContour*> contours;
-  double low = 0.0;   ///< The plane reaches from here
-  double high = 0.0;  ///< to here.
-};
-
-std::vector<FlatContour> flatten(const std::vector<Contour>& contours, const ContourGrid& grid) {
-  const int u = (grid.axis + 1) % 3;
-  const int v = (grid.axis + 2) % 3;
-  std::vector<FlatContour> flat;
-  for (const Contour& contour : contours) {
-    FlatContour& out = flat.emplace_back();
-    double sum = 0.0;
-    for (const Vec3& point_P : contour) {
-      const Vec3 index = grid.geometry.to_index(point_P);
-      out.points.emplace_back(index[u], index[v]);
-      sum += index[grid.axis];
-    }
-    out.w = sum / static_cast<double>(contour.size());
-  }
-  return flat;
-}
-
-bool is_repeated(const FlatContour& contour, const std::vector<const FlatContour*>& others) {
-  return std::any_of(others.begin(), others.end(),
-                     [&](const FlatContour* other) { return contour.points == other->points; });
-}
-
-std::vector<ContourPlane> group_planes(const std::vector<FlatContour>& flat, double step_mm, std::size_t& repeated) {
-  std::vector<const FlatContour*> ordered;
-  for (const FlatContour& contour : flat) ordered.push_back(&contour);
-  std::stable_sort(ordered.begin(), ordered.end(), [](const auto* a, const auto* b) { return a->w < b->w; });
-  std::vector<ContourPlane> planes;
-  for (const FlatContour* contour : ordered) {
-    if (planes.empty() || contour->w - planes.back().w > kContoursOfOnePlane_mm / step_mm)
-      planes.push_back({contour->w, {}, 0.0, 0.0});
-    if (is_repeated(*contour, planes.back().contours))
-      ++repeated;
-    else
-      planes.back().contours.push_back(contour);
-  }
-  return planes;
-}
-
-/// Each plane reaches half-way to its neighbours; at the ends and over wide gaps half the smallest distance.
-void set_reach(std::vector<ContourPlane>& planes, RasterResult& result) {
-  double smallest = HUGE_VAL;
-  for (std::size_t n = 1; n < planes.size(); ++n) smallest = std::min(smallest, planes[n].w - planes[n - 1].w);
-  if (planes.size() == 1) smallest = 1.0;  // the step of the grid
-  for (std::size_t n = 0; n < planes.size(); ++n) {
-    planes[n].low = planes[n].w - 0.5 * smallest;
-    planes[n].high = planes[n].w + 0.5 * smallest;
-  }
-  for (std::size_t n = 1; n < planes.size(); ++n) {
-    const double gap = planes[n].w - planes[n - 1].w;
-    if (gap > kClosedGap * smallest) {
-      ++result.open_gaps;
-      continue;
-    }
-    if (gap > 1.5 * smallest) ++result.filled_gaps;
-    planes[n - 1].high = planes[n].low = 0.5 * (planes[n].w + planes[n - 1].w);
-  }
-}
-
-/// Even-odd fill of pixel centres: every edge turns over all pixels of a row that lie beyond it.
+/// Even-odd fill of the pixel centres in a box: every edge turns over all pixels of a row that lie beyond it.
 class PlaneFill {
  public:
-  PlaneFill(std::int64_t columns, std::int64_t rows)
-      : columns_(columns), rows_(rows), turns_(static_cast<std::size_t>((columns + 1) * rows), 0) {}
+  /// Columns `first_u` to below `last_u`, rows `first_v` to below `last_v`.
+  PlaneFill(std::int64_t first_u, std::int64_t last_u, std::int64_t first_v, std::int64_t last_v)
+      : first_u_(first_u),
+        first_v_(first_v),
+        columns_(last_u - first_u),
+        rows_(last_v - first_v),
+        turns_(static_cast<std::size_t>((columns_ + 1) * rows_), 0) {}
 
   void add(const FlatContour& contour) {
     for (std::size_t n = 0; n < contour.points.size(); ++n)
       add_edge(contour.points[n], contour.points[(n + 1) % contour.points.size()]);
   }
 
-  /// Calls set(column, row) for every pixel inside.
+  /// Calls set(u, v) for every pixel inside.
   template <class Set>
   void for_inside(const Set& set) const {
     for (std::int64_t row = 0; row < rows_; ++row) {
       std::uint8_t is_inside = 0;
       for (std::int64_t column = 0; column < columns_; ++column) {
         is_inside ^= turns_[static_cast<std::size_t>(row * (columns_ + 1) + column)];
-        if (is_inside != 0) set(column, row);
+        if (is_inside != 0) set(first_u_ + column, first_v_ + row);
       }
     }
   }
@@ -145,39 +78,69 @@ class PlaneFill {
   void add_edge(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
     const Eigen::Vector2d& low = a.y() < b.y() ? a : b;
     const Eigen::Vector2d& high = a.y() < b.y() ? b : a;
-    const double first = std::clamp(std::ceil(low.y()), 0.0, static_cast<double>(rows_));
-    const double last = std::clamp(std::ceil(high.y()), 0.0, static_cast<double>(rows_));
+    const auto first_v = static_cast<double>(first_v_);
+    const auto first_u = static_cast<double>(first_u_);
+    const double first = std::clamp(std::ceil(low.y()) - first_v, 0.0, static_cast<double>(rows_));
+    const double last = std::clamp(std::ceil(high.y()) - first_v, 0.0, static_cast<double>(rows_));
     for (auto row = static_cast<std::int64_t>(first); row < static_cast<std::int64_t>(last); ++row) {
-      const double share = (static_cast<double>(row) - low.y()) / (high.y() - low.y());
-      const double column = std::ceil(low.x() + share * (high.x() - low.x()));
+      const double share = (static_cast<double>(row) + first_v - low.y()) / (high.y() - low.y());
+      const double column = std::ceil(low.x() + share * (high.x() - low.x())) - first_u;
       const auto at = static_cast<std::int64_t>(std::clamp(column, 0.0, static_cast<double>(columns_)));
       turns_[static_cast<std::size_t>(row * (columns_ + 1) + at)] ^= 1;
     }
   }
 
+  std::int64_t first_u_;
+  std::int64_t first_v_;
   std::int64_t columns_;
   std::int64_t rows_;
   std::vector<std::uint8_t> turns_;
 };
 
-void fill_contours(const ContourPlane& plane, const ContourGrid& grid, std::int64_t first, std::int64_t last,
-                   std::vector<std::uint8_t>& mask) {
+/// The first whole number from `index` on, near a grid of `count` pixels.
+std::int64_t first_pixel(double index, std::int64_t count) {
+  return static_cast<std::int64_t>(
+      std::clamp(std::ceil(index), static_cast<double>(-kMostBeside), static_cast<double>(count + kMostBeside)));
+}
+
+/// Fills one group; returns the number of voxels beyond the grid.
+std::uint64_t fill_group(const ContourGroup& group, const ContourGrid& grid, std::vector<std::uint8_t>& mask) {
   const auto u = static_cast<std::size_t>((grid.axis + 1) % 3);
   const auto v = static_cast<std::size_t>((grid.axis + 2) % 3);
-  PlaneFill fill(grid.geometry.size[u], grid.geometry.size[v]);
-  for (const FlatContour* contour : plane.contours) fill.add(*contour);
+  const auto w = static_cast<std::size_t>(grid.axis);
+  const auto& size = grid.geometry.size;
+  const std::int64_t first = first_pixel(group.low, size[w]), last = first_pixel(group.high, size[w]);
+  if (first >= last) return 0;
+  PlaneFill fill(first_pixel(group.box.min().x(), size[u]), first_pixel(group.box.max().x() + 1.0, size[u]),
+                 first_pixel(group.box.min().y(), size[v]), first_pixel(group.box.max().y() + 1.0, size[v]));
+  for (const FlatContour* contour : group.contours) fill.add(*contour);
+  const std::int64_t first_inside = std::max<std::int64_t>(first, 0), last_inside = std::min(last, size[w]);
+  std::uint64_t outside = 0;
   fill.for_inside([&](std::int64_t column, std::int64_t row) {
+    const bool is_beside = column < 0 || row < 0 || column >= size[u] || row >= size[v];
+    const std::int64_t planes = is_beside ? 0 : std::max<std::int64_t>(last_inside - first_inside, 0);
+    outside += static_cast<std::uint64_t>(last - first - planes);
     volume::Index3 ijk{};
     ijk[u] = column;
     ijk[v] = row;
-    for (std::int64_t w = first; w < last; ++w) {
-      ijk[static_cast<std::size_t>(grid.axis)] = w;
+    for (std::int64_t plane = first_inside; plane < first_inside + planes; ++plane) {
+      ijk[w] = plane;
       mask[grid.geometry.offset(ijk)] = 1;
     }
   });
+  return outside;
 }
 
-/// A grid along contours that are parallel to no plane of the CT, with the CT's finest spacing in their planes.
+/// True if the planes at these places lie on steps of `step_mm`.
+bool are_on_steps(const std::vector<double>& places_mm, double step_mm) {
+  return std::all_of(places_mm.begin(), places_mm.end(), [&](double place_mm) {
+    const double steps = (place_mm - places_mm.front()) / step_mm;
+    return std::abs(steps - std::round(steps)) <= kEvenPlanes;
+  });
+}
+
+/// A grid along contours that are parallel to no plane of the CT, with the CT's finest spacing in their planes, and
+/// along them if their distances differ.
 volume::GridGeometry grid_along(const ContourStructure& structure, const Vec3& normal, const volume::GridGeometry& ct) {
   volume::GridGeometry g;
   Vec3 u = ct.R_PV.col(0) - normal.dot(ct.R_PV.col(0)) * normal;
@@ -195,12 +158,14 @@ volume::GridGeometry grid_along(const ContourStructure& structure, const Vec3& n
       high = high.cwiseMax(g.R_PV.transpose() * point);
     }
   }
-  std::sort(along_mm.begin(), along_mm.end());
-  double gap_mm = HUGE_VAL;
-  for (std::size_t n = 1; n < along_mm.size(); ++n)
-    if (along_mm[n] - along_mm[n - 1] > kContoursOfOnePlane_mm)
-      gap_mm = std::min(gap_mm, along_mm[n] - along_mm[n - 1]);
-  if (std::isfinite(gap_mm)) g.spacing_mm.z() = gap_mm;
+  const double usual_mm = usual_distance(along_mm, g.spacing_mm.z());
+  if (are_on_steps(along_mm, usual_mm)) {
+    g.spacing_mm.z() = usual_mm;
+  } else {
+    // The outermost planes reach half a usual distance.
+    low.z() -= 0.5 * usual_mm;
+    high.z() += 0.5 * usual_mm;
+  }
   const Vec3 extent = (high - low).cwiseQuotient(g.spacing_mm);
   for (int axis = 0; axis < 3; ++axis)
     g.size[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(
@@ -230,17 +195,12 @@ RasterResult rasterise(const ContourStructure& structure, const ContourGrid& gri
   result.mask.assign(grid.geometry.voxel_count(), 0);
   if (structure.contours.empty()) return result;
   const std::vector<FlatContour> flat = flatten(structure.contours, grid);
-  std::vector<ContourPlane> planes = group_planes(flat, grid.geometry.spacing_mm[grid.axis], result.repeated);
-  set_reach(planes, result);
-  const std::int64_t count = grid.geometry.size[static_cast<std::size_t>(grid.axis)];
-  const auto to_plane = [&](double w) {
-    return static_cast<std::int64_t>(std::clamp(std::ceil(w), 0.0, static_cast<double>(count)));
-  };
-  for (const ContourPlane& plane : planes) {
-    const std::int64_t first = to_plane(plane.low);
-    const std::int64_t last = to_plane(plane.high);
-    if (first < last) fill_contours(plane, grid, first, last, result.mask);
-  }
+  const GroupedContours grouped = group_contours(flat, grid.geometry.spacing_mm[grid.axis]);
+  result.repeated = grouped.repeated;
+  result.distances = grouped.distances;
+  std::uint64_t outside = 0;
+  for (const ContourGroup& group : grouped.groups) outside += fill_group(group, grid, result.mask);
+  result.outside_ml = static_cast<double>(outside) * grid.geometry.voxel_volume_mm3() / 1000.0;
   return result;
 }
 

@@ -1,21 +1,15 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "core/result.h"
+#include "dicom/segmentation/detail/contour_planes.h"
 #include "dicom/segmentation/detail/contours.h"
 #include "volume/grid.h"
 
 namespace trocar::dicom::detail {
-
-/// The grid that contours are drawn on, and the axis of it that they are at right angles to.
-struct ContourGrid {
-  volume::GridGeometry geometry;
-  int axis = 2;
-};
 
 /// The CT's grid if the contours are parallel to one of its planes, else a grid of its own along the contours. Errors
 /// (at `where`, by the structure's name): a contour that is not planar, or not parallel to the others; a grid too large
@@ -26,9 +20,9 @@ Result<ContourGrid> choose_grid(const ContourStructure& structure, const volume:
 /// The voxels inside the contours; one byte a voxel of the grid.
 struct RasterResult {
   std::vector<std::uint8_t> mask;
-  std::size_t repeated = 0;     ///< Contours that repeat another one, left out: twice inside would be outside.
-  std::size_t filled_gaps = 0;  ///< Gaps of twice the usual distance, which were closed.
-  std::size_t open_gaps = 0;    ///< Wider gaps, which are empty.
+  std::size_t repeated = 0;  ///< Contours that repeat another one, left out: twice inside would be outside.
+  PlaneDistances distances;
+  double outside_ml = 0.0;  ///< Inside the contours, but beyond the grid.
 };
 RasterResult rasterise(const ContourStructure& structure, const ContourGrid& grid);
 

@@ -10,15 +10,38 @@
 namespace trocar::dicom::detail {
 namespace {
 
-void warn_of(const ContourStructure& structure, const RasterResult& raster, std::vector<std::string>& warnings) {
+constexpr double kSparsePlanes = 3.5;    ///< Steps of the grid: more were drawn on by hand only here and there.
+constexpr double kMostOutside_ml = 1.0;  ///< Of a structure beyond the CT without a warning.
+
+/// What the contours leave open: gaps and the places between them.
+void warn_of_distances(const std::string& name, const PlaneDistances& distances, double step_mm,
+                       std::vector<std::string>& warnings) {
+  if (distances.filled_gaps > 0)
+    warnings.push_back(fmt::format(
+        "\"{}\": {} gaps between contours are filled, the widest of {:.1f} mm; its planes are usually {:.1f} mm apart",
+        name, distances.filled_gaps, distances.widest_filled * step_mm, distances.usual * step_mm));
+  if (distances.open_gaps > 0)
+    warnings.push_back(
+        fmt::format("\"{}\": {} gaps between contours stay empty, the narrowest of {:.1f} mm; its planes are usually "
+                    "{:.1f} mm apart",
+                    name, distances.open_gaps, distances.narrowest_open * step_mm, distances.usual * step_mm));
+  if (distances.usual > kSparsePlanes)
+    warnings.push_back(
+        fmt::format("\"{}\": its contours are {:.1f} mm apart, the CT's slices {:.1f} mm: filled "
+                    "half-way to the next contour",
+                    name, distances.usual * step_mm, step_mm));
+}
+
+void warn_of(const ContourStructure& structure, const RasterResult& raster, const ContourGrid& grid,
+             std::vector<std::string>& warnings) {
   const std::string& name = structure.segment.name;
   if (structure.degenerate > 0)
     warnings.push_back(fmt::format("\"{}\": {} contours of one or two points left out", name, structure.degenerate));
   if (raster.repeated > 0)
     warnings.push_back(fmt::format("\"{}\": {} contours that repeat another one left out", name, raster.repeated));
-  if (raster.filled_gaps > 0)
-    warnings.push_back(
-        fmt::format("\"{}\": {} planes without a contour between two with one were filled", name, raster.filled_gaps));
+  warn_of_distances(name, raster.distances, grid.geometry.spacing_mm[grid.axis], warnings);
+  if (raster.outside_ml > kMostOutside_ml)
+    warnings.push_back(fmt::format("\"{}\": {:.0f} ml lie beyond the CT and are left out", name, raster.outside_ml));
 }
 
 }  // namespace
@@ -35,7 +58,7 @@ Result<Segmentation> read_structure_set(const DicomFile& file, const std::string
     if (structure.contours.empty()) continue;
     TROCAR_TRY(const ContourGrid grid, choose_grid(structure, ct.grid, where));
     const RasterResult raster = rasterise(structure, grid);
-    warn_of(structure, raster, result.warnings);
+    warn_of(structure, raster, grid, result.warnings);
     if (grid.geometry.matches(ct.grid)) {
       TROCAR_TRY_STATUS(on_ct.add(index, 0, raster.mask));
       continue;

@@ -145,8 +145,13 @@ TEST_F(StructureSet, OneForgottenPlaneIsFilledAndAWideGapIsNot) {
   const auto read_set = read({structure});
   ASSERT_TRUE(read_set) << read_set.error().text();
   EXPECT_EQ(voxels_by_plane(*read_set, 0), (std::vector<std::size_t>{50, 50, 50, 50, 0, 0, 0, 50, 50, 0}));
-  ASSERT_EQ(read_set->warnings.size(), 1U);
-  EXPECT_NE(read_set->warnings[0].find("\"Liver\": 1 planes"), std::string::npos) << read_set->warnings[0];
+  ASSERT_EQ(read_set->warnings.size(), 2U);
+  EXPECT_NE(read_set->warnings[0].find("\"Liver\": 1 gaps between contours are filled, the widest of 6.0 mm"),
+            std::string::npos)
+      << read_set->warnings[0];
+  EXPECT_NE(read_set->warnings[1].find("\"Liver\": 1 gaps between contours stay empty, the narrowest of 12.0 mm"),
+            std::string::npos)
+      << read_set->warnings[1];
 }
 
 TEST_F(StructureSet, RepeatedAndDegenerateContoursAreLeftOut) {
