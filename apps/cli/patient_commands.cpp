@@ -104,6 +104,7 @@ struct BuildArguments {
   std::vector<std::string> confirmed;
   std::string tissues;  ///< Tissue table to put into the folder; empty: none.
   std::string out;
+  bool sibling_series = false;
   bool is_json = false;
 };
 
@@ -146,6 +147,7 @@ Status build(const BuildArguments& arguments) {
   files.labels.assign(arguments.labels.begin(), arguments.labels.end());
   files.label_map = arguments.label_map;
   files.series = arguments.series;
+  files.sibling_series = arguments.sibling_series;
   TROCAR_TRY(files.rescale, parse_rescale(arguments.rescale));
   TROCAR_TRY(const anatomy::Posture posture, parse_posture(arguments.posture));
   TROCAR_TRY(const auto extras, read_tissues(arguments.tissues));
@@ -255,6 +257,9 @@ void add_patient_commands(Command& program, Action& action) {
           "Label volumes, .seg.nrrd, single masks, folders of masks or of DICOM mask series, DICOM SEG and RTSTRUCT "
           "files or their folder")
       .required();
+  build_command.add_flag("--sibling-series", b->sibling_series,
+                         "Accept a DICOM SEG or RTSTRUCT of another series with the same frame of reference, such as "
+                         "another reconstruction of the scan");
   build_command
       .add_option(
           "--label-map", b->label_map,

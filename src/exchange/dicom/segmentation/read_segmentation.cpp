@@ -59,18 +59,30 @@ bool contains(const std::vector<std::string>& texts, const std::string& text) {
   return std::find(texts.begin(), texts.end(), text) != texts.end();
 }
 
-/// Compares what both files tell; what one of them lacks is not compared.
-Status check_origin(const Origin& origin, const CtReference& ct, const std::string& where) {
-  if (!ct.series_uid.empty() && !origin.series.empty() && !contains(origin.series, ct.series_uid))
-    return fail(
-        fmt::format("was drawn on another series ({}), not on the CT's ({})", origin.series.front(), ct.series_uid),
-        where, "give that series as the CT (--ct, --series UID), or the segmentation of this one");
-  if (!ct.frame_of_reference.empty() && !origin.frames_of_reference.empty() &&
-      !contains(origin.frames_of_reference, ct.frame_of_reference))
+/// Compares what both files tell; what one of them lacks is not compared. Returns warnings.
+Result<std::vector<std::string>> check_origin(const Origin& origin, const CtReference& ct, const std::string& where) {
+  const bool has_frames = !ct.frame_of_reference.empty() && !origin.frames_of_reference.empty();
+  const bool is_same_frame = has_frames && contains(origin.frames_of_reference, ct.frame_of_reference);
+  std::vector<std::string> warnings;
+  if (!ct.series_uid.empty() && !origin.series.empty() && !contains(origin.series, ct.series_uid)) {
+    if (!is_same_frame || !ct.accepts_sibling)
+      return fail(
+          fmt::format("was drawn on another series ({}), not on the CT's ({})", origin.series.front(), ct.series_uid),
+          where,
+          is_same_frame
+              ? "give that series as the CT (--ct, --series UID), or accept it, as both have the same frame of "
+                "reference, by --sibling-series"
+              : "give that series as the CT (--ct, --series UID), or the segmentation of this one");
+    warnings.push_back(
+        fmt::format("was drawn on the series {}, not on the CT's ({}): placed by their common frame of "
+                    "reference ({})",
+                    origin.series.front(), ct.series_uid, ct.frame_of_reference));
+  }
+  if (has_frames && !is_same_frame)
     return fail(fmt::format("has another frame of reference ({}) than the CT ({})", origin.frames_of_reference.front(),
                             ct.frame_of_reference),
                 where, "give the segmentation that was drawn on this CT");
-  return {};
+  return warnings;
 }
 
 Result<ObjectKind> kind_of(const DicomFile& file, const std::string& where) {
@@ -121,10 +133,13 @@ Result<Segmentation> read_segmentation(const fs::path& path, const CtReference& 
   if (!object) return fail("is no DICOM segmentation or RT structure set", where, "give a SEG or RTSTRUCT file");
   const auto origin = origin_of(object->file.root(), object->kind);
   if (!origin) return fail(origin.error().what, where, origin.error().advice);
-  TROCAR_TRY_STATUS(check_origin(*origin, ct, where));
+  TROCAR_TRY(const std::vector<std::string> warnings, check_origin(*origin, ct, where));
   try {
-    return object->kind == ObjectKind::kSegmentation ? detail::read_seg(object->file, where, ct, is_wanted, decode)
-                                                     : detail::read_structure_set(object->file, where, ct, is_wanted);
+    auto read = object->kind == ObjectKind::kSegmentation
+                    ? detail::read_seg(object->file, where, ct, is_wanted, decode)
+                    : detail::read_structure_set(object->file, where, ct, is_wanted);
+    if (read) read->warnings.insert(read->warnings.begin(), warnings.begin(), warnings.end());
+    return read;
   } catch (const std::bad_alloc&) {
     return fail("not enough memory to read the segmentation", where, "close other programs");
   }

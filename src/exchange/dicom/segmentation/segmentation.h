@@ -19,6 +19,8 @@ struct CtReference {
   std::string series_uid{};          ///< Empty if it is not known (a CT of another format), as the next two.
   std::string frame_of_reference{};  ///< UID.
   std::vector<Vec3> slices_P{};      ///< Centres of the first pixels of its slices in the files, along their normal.
+  /// A segmentation of another series of the same scan (another reconstruction) is read, too, with a warning.
+  bool accepts_sibling = false;
 };
 
 /// One structure of a segmentation, as its file describes it. Texts are UTF-8.
@@ -74,8 +76,9 @@ using FrameDecoder = std::function<Status(const CompressedFrame& frame, std::spa
 /// of its planes. Contours of one plane count by even-odd: a contour inside another is a hole. A contour reaches
 /// half-way to its neighbours, wherever their planes lie; wider gaps between separate parts stay empty (warning).
 ///
-/// Errors: another series or frame of reference than the CT's, where both are known; open contours, not planar ones;
-/// frames without a place; an unknown kind of pixels; a damaged file; not enough memory.
+/// Errors: another series or frame of reference than the CT's, where both are known (CtReference::accepts_sibling);
+/// open contours, not planar ones; frames without a place or of a segment that is not defined, such numbers in a label
+/// map; an unknown kind of pixels; a damaged file; not enough memory.
 Result<Segmentation> read_segmentation(const std::filesystem::path& path, const CtReference& ct,
                                        const std::function<bool(const Segment&)>& is_wanted,
                                        const FrameDecoder& decode = {});

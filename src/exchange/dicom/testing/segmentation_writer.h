@@ -32,6 +32,7 @@ struct TestSeg {
   int rows = 6;
   int bits = 1;
   int maximum_fractional = 0;
+  int padding = -1;  ///< PixelPaddingValue.
   double spacing_mm = 1.0;
   double slice_step_mm = 0.0;
   Mat3 R_PV = Mat3::Identity();
@@ -86,8 +87,9 @@ inline std::string seg_elements(const TestSeg& seg, bool with_pixels = true) {
   if (!seg.frame_of_reference.empty()) elements += dicom_element(0x0020, 0x0052, "UI", seg.frame_of_reference);
   elements += dicom_element(0x0028, 0x0008, "IS", std::to_string(seg.frames.size())) +
               dicom_short(0x0028, 0x0010, seg.rows) + dicom_short(0x0028, 0x0011, seg.columns) +
-              dicom_short(0x0028, 0x0100, seg.bits) + dicom_element(0x0062, 0x0001, "CS", seg.type) +
-              dicom_sequence(0x0062, 0x0002, seg.segments, seg.length);
+              dicom_short(0x0028, 0x0100, seg.bits) +
+              (seg.padding >= 0 ? dicom_short(0x0028, 0x0120, seg.padding) : std::string()) +
+              dicom_element(0x0062, 0x0001, "CS", seg.type) + dicom_sequence(0x0062, 0x0002, seg.segments, seg.length);
   if (seg.maximum_fractional > 0) elements += dicom_short(0x0062, 0x000e, seg.maximum_fractional);
   elements += dicom_sequence(0x5200, 0x9229,
                              {dicom_sequence(0x0020, 0x9116, {orientation}, seg.length) +

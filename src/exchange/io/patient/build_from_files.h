@@ -30,6 +30,7 @@ struct PatientFiles {
   Mirroring mirroring = Mirroring::kNone;      ///< Kept in the provenance, as the next ones.
   std::vector<std::string> confirmed{};        ///< Findings that are right (anatomy/plausibility/anatomy_finding.h).
   std::vector<anatomy::AnatomyFinding>* findings = nullptr;  ///< Receives all findings.
+  bool sibling_series = false;  ///< Labels may be drawn on another series of the scan (dicom::CtReference).
 };
 
 /// Reads the files and builds the patient; its provenance names the files without paths of this machine. A stop request

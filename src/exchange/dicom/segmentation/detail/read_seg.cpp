@@ -68,28 +68,44 @@ class SegPainter {
   std::vector<std::uint16_t> numbers_;
 };
 
+constexpr std::size_t kPixelNumbers = 1 << 16;
+
+/// Pixels of each number in a label map. Error: numbers without a segment, other than the background.
+Result<std::vector<std::size_t>> count_numbers(const SegHeader& header, const SegPixels& pixels,
+                                               const std::string& where) {
+  std::vector<std::size_t> counts(kPixelNumbers, 0);
+  std::vector<std::uint16_t> numbers;
+  for (std::size_t frame = 0; frame < header.frames.size(); ++frame) {
+    TROCAR_TRY_STATUS(pixels.read(frame, numbers));
+    for (const std::uint16_t number : numbers) ++counts[number];
+  }
+  std::vector<bool> is_defined(kPixelNumbers, false);
+  for (const Segment& segment : header.segments) is_defined[static_cast<std::uint16_t>(segment.number)] = true;
+  for (std::size_t number = 1; number < counts.size(); ++number)
+    if (counts[number] > 0 && !is_defined[number] && static_cast<int>(number) != header.padding)
+      return fail(fmt::format("{} pixels have the number {}, which the DICOM segmentation does not define as a segment",
+                              counts[number], number),
+                  where, kExportSegmentationAgain);
+  return counts;
+}
+
 /// The wanted segments of a label map in volumes of at most 255; they cannot overlap. Reads the frames twice: to find
 /// the segments that occur, and to paint them.
 Result<std::vector<LabelLayers::Layer>> read_label_map(const SegHeader& header, const SegPlanes& planes,
                                                        const SegPixels& pixels, const std::vector<Segment>& segments,
                                                        const std::string& where) {
-  constexpr std::size_t kNumbers = 1 << 16;
-  std::vector<bool> occurs(kNumbers, false);
+  TROCAR_TRY(const std::vector<std::size_t> counts, count_numbers(header, pixels, where));
   std::vector<std::uint16_t> numbers;
-  for (std::size_t frame = 0; frame < header.frames.size(); ++frame) {
-    TROCAR_TRY_STATUS(pixels.read(frame, numbers));
-    for (const std::uint16_t number : numbers) occurs[number] = true;
-  }
   const auto plane_size = static_cast<std::size_t>(header.columns) * static_cast<std::size_t>(header.rows);
   const std::size_t voxels = plane_size * planes.stack.origins_P.size();
   std::vector<LabelLayers::Layer> layers;
   for (std::size_t next = 0; next < segments.size();) {
     TROCAR_TRY_STATUS(check_memory_for_image(voxels, available_memory_bytes(), where));
     LabelLayers::Layer layer{std::vector<std::uint8_t>(voxels, 0), {}};
-    std::vector<std::uint8_t> value_of(kNumbers, 0);
+    std::vector<std::uint8_t> value_of(kPixelNumbers, 0);
     for (; next < segments.size() && layer.segments.size() < kMostValues; ++next) {
-      const auto number = static_cast<std::size_t>(segments[next].number);
-      if (!occurs[number]) continue;
+      const auto number = static_cast<std::uint16_t>(segments[next].number);
+      if (counts[number] == 0) continue;
       layer.segments.push_back(next);
       value_of[number] = static_cast<std::uint8_t>(layer.segments.size());
     }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 namespace trocar::dicom::detail {
@@ -25,6 +26,7 @@ constexpr std::uint32_t kRows = tag(0x0028, 0x0010);
 constexpr std::uint32_t kColumns = tag(0x0028, 0x0011);
 constexpr std::uint32_t kPixelSpacing = tag(0x0028, 0x0030);
 constexpr std::uint32_t kBitsAllocated = tag(0x0028, 0x0100);
+constexpr std::uint32_t kPixelPadding = tag(0x0028, 0x0120);
 constexpr std::uint32_t kPixelMeasures = tag(0x0028, 0x9110);
 constexpr std::uint32_t kSegmentationType = tag(0x0062, 0x0001);
 constexpr std::uint32_t kSegments = tag(0x0062, 0x0002);
@@ -117,6 +119,7 @@ Status read_pixels(const DicomItem& root, SegHeader& header, const std::string& 
   header.columns = root.number(kColumns).value_or(0);
   header.rows = root.number(kRows).value_or(0);
   header.bits = root.number(kBitsAllocated).value_or(1);
+  header.padding = root.number(kPixelPadding);
   header.maximum_fractional = root.number(kMaximumFractional).value_or(255);
   const bool is_known = (header.bits == 1 && header.type == SegmentationType::kBinary) || header.bits == 8 ||
                         (header.bits == 16 && header.type == SegmentationType::kLabelMap);
@@ -203,6 +206,23 @@ Status read_frames(const DicomItem& root, SegHeader& header, const std::string& 
   return {};
 }
 
+/// Frames of a segment without a description would be left out, whatever they show.
+Status check_segments(const SegHeader& header, const std::string& where) {
+  if (header.type == SegmentationType::kLabelMap) return {};  // its pixels are the numbers
+  std::map<int, std::size_t> frames_of;
+  for (const SegFrame& frame : header.frames) ++frames_of[frame.segment];
+  for (const Segment& segment : header.segments) frames_of.erase(segment.number);
+  if (frames_of.empty()) return {};
+  const auto& [number, frames] = *frames_of.begin();
+  const std::string others = frames_of.size() > 1 ? fmt::format(" (and {} more)", frames_of.size() - 1) : "";
+  if (number == 0)
+    return fail(fmt::format("{} frames of the DICOM segmentation name no segment{}", frames, others), where,
+                kExportSegmentationAgain);
+  return fail(fmt::format("{} frames belong to the segment number {}, which the DICOM segmentation does not define{}",
+                          frames, number, others),
+              where, kExportSegmentationAgain);
+}
+
 }  // namespace
 
 Result<SegHeader> read_seg_header(const DicomFile& file, const std::string& where) {
@@ -211,6 +231,7 @@ Result<SegHeader> read_seg_header(const DicomFile& file, const std::string& wher
   TROCAR_TRY_STATUS(read_pixels(root, header, where));
   TROCAR_TRY_STATUS(read_segments(root, header, where));
   TROCAR_TRY_STATUS(read_frames(root, header, where));
+  TROCAR_TRY_STATUS(check_segments(header, where));
   return header;
 }
 

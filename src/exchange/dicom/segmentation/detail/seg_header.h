@@ -38,9 +38,11 @@ struct SegHeader {
   std::optional<double> thickness_mm;   ///< SliceThickness.
   std::vector<Segment> segments;        ///< Without the background of a label map.
   std::vector<SegFrame> frames;
+  std::optional<int> padding;  ///< PixelPaddingValue: another background of a label map.
 };
 
-/// Errors (at `where`): no segments, frames without a place or in several directions, an unknown kind of pixels.
+/// Errors (at `where`): no segments, frames without a place, in several directions or of a segment
+/// that is not defined, an unknown kind of pixels.
 Result<SegHeader> read_seg_header(const DicomFile& file, const std::string& where);
 
 }  // namespace trocar::dicom::detail

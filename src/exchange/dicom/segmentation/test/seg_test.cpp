@@ -149,6 +149,42 @@ TEST_F(Seg, LabelMapHasNumbersOfSegments) {
   }
 }
 
+TEST_F(Seg, NumbersOfALabelMapWithoutASegmentAreRefused) {
+  TestSeg seg;
+  seg.type = "LABELMAP";
+  seg.bits = 8;
+  seg.segments = {segment_item(0, "Background"), segment_item(3, "Liver")};
+  seg.frames = {{0, at_z(4), [](int i, int) { return i < 2 ? 3 : i > 5 ? 7 : 0; }}, {0, at_z(0), block(1, 1, 7)}};
+  EXPECT_NE(error_of(seg).find("18 pixels have the number 7"), std::string::npos) << error_of(seg);
+  // Not even those of segments that are not wanted are undefined.
+  seg.segments.push_back(segment_item(7, "Spleen"));
+  trocar::testing::write_dicom(folder_ / "label.seg", trocar::testing::seg_elements(seg));
+  EXPECT_TRUE(
+      read_segmentation(folder_ / "label.seg", ct_with_slices(), [](const Segment& s) { return s.number == 3; }));
+  // The padding is a background.
+  seg.segments.pop_back();
+  seg.padding = 7;
+  EXPECT_EQ(error_of(seg), "read");
+  seg.padding = 8;
+  EXPECT_NE(error_of(seg), "read");
+}
+
+TEST_F(Seg, FramesOfAnUndefinedSegmentAreRefused) {
+  TestSeg seg;
+  seg.segments = {segment_item(1, "Liver"), segment_item(3, "Spleen")};
+  seg.frames = {{1, at_z(0), block(0, 4)}, {2, at_z(0), block(2, 3)}, {2, at_z(2), block(2, 3)}};
+  EXPECT_NE(error_of(seg).find("2 frames belong to the segment number 2"), std::string::npos) << error_of(seg);
+  seg.frames.push_back({9, at_z(0), block(2, 3)});
+  EXPECT_NE(error_of(seg).find("(and 1 more)"), std::string::npos) << error_of(seg);
+  // An empty frame may hide a mistake as well.
+  seg.frames = {{1, at_z(0), block(0, 4)}, {0, at_z(2), block(9, 9)}};
+  EXPECT_NE(error_of(seg).find("1 frames of the DICOM segmentation name no segment"), std::string::npos)
+      << error_of(seg);
+  // A defined segment without frames is empty.
+  seg.frames.pop_back();
+  EXPECT_EQ(error_of(seg), "read");
+}
+
 TEST_F(Seg, OtherThanWantedSegmentsAreLeftOut) {
   TestSeg seg;
   seg.segments = {segment_item(1, "Liver"), segment_item(2, "Spleen")};
@@ -251,6 +287,50 @@ TEST_F(Seg, OfAnotherSeriesIsRefused) {
   EXPECT_NE(error_of(seg).find("another frame of reference"), std::string::npos) << error_of(seg);
 }
 
+TEST_F(Seg, OfASiblingSeriesIsReadOnRequest) {
+  TestSeg seg;
+  seg.segments = {segment_item(1, "Liver")};
+  seg.frames = {{1, at_z(0), block(0, 4)}};
+  seg.series_uid = "1.2.4";
+  EXPECT_NE(error_of(seg).find("--sibling-series"), std::string::npos) << error_of(seg);
+  CtReference ct = ct_with_slices();
+  ct.accepts_sibling = true;
+  const auto sibling = read(seg, ct);
+  ASSERT_TRUE(sibling) << sibling.error().text();
+  EXPECT_EQ(voxels_of(*sibling, 0).size(), 5U * 6);
+  ASSERT_EQ(sibling->warnings.size(), 1U);
+  for (const char* uid : {"1.2.4", "1.2.3", "1.2.9"})
+    EXPECT_NE(sibling->warnings[0].find(uid), std::string::npos) << sibling->warnings[0];
+  // Its own series needs no warning.
+  seg.series_uid = "1.2.3";
+  EXPECT_TRUE(read(seg, ct)->warnings.empty());
+  // Another frame of reference, or none, is no sibling: the option is not offered.
+  seg.series_uid = "1.2.4";
+  for (const char* frame : {"1.2.8", ""}) {
+    seg.frame_of_reference = frame;
+    EXPECT_NE(error_of(seg, ct).find("another series"), std::string::npos) << error_of(seg, ct);
+    EXPECT_EQ(error_of(seg, ct).find("--sibling-series"), std::string::npos) << error_of(seg, ct);
+  }
+  seg.frame_of_reference = "1.2.9";
+  ct.frame_of_reference.clear();
+  EXPECT_NE(error_of(seg, ct).find("another series"), std::string::npos) << error_of(seg, ct);
+}
+
+TEST_F(Seg, OfASiblingWithThinSlicesKeepsItsPlaces) {
+  // Slices of 0.5 mm beside those of the CT, 2 mm apart: the volume is 5 x 6 x 4 mm.
+  TestSeg seg;
+  seg.series_uid = "1.2.4";
+  seg.segments = {segment_item(1, "Liver")};
+  for (int n = 0; n < 8; ++n) seg.frames.push_back({1, at_z(2.25 + 0.5 * n), block(0, 4)});
+  CtReference ct = ct_with_slices();
+  ct.accepts_sibling = true;
+  const auto sibling = read(seg, ct);
+  ASSERT_TRUE(sibling) << sibling.error().text();
+  const auto voxels = voxels_of(*sibling, 0);
+  EXPECT_DOUBLE_EQ(static_cast<double>(voxels.size()) * sibling->volumes[0].labels.geometry.voxel_volume_mm3(), 120.0);
+  for (const auto& voxel : voxels) EXPECT_TRUE(voxel[2] > 2.2 && voxel[2] < 5.8) << voxel[2];
+}
+
 TEST_F(Seg, ThatCannotBeReadIsRefusedByItsDefect) {
   const auto changed = [&](const std::function<void(TestSeg&)>& change) {
     TestSeg seg;
@@ -309,7 +389,7 @@ TEST_F(Seg, ThatIsCutShortOrChangedIsReadOrRefusedInOneLine) {
     }
   }
   EXPECT_GT(refused, 1000U);
-  EXPECT_GT(accepted, 500U);
+  EXPECT_GT(accepted, 400U);
 }
 
 }  // namespace
