@@ -59,6 +59,24 @@ std::string structure_name(std::string_view meaning) {
   return name;
 }
 
+/// Words of a name without side and number: "Lymph node, left", "lymph_node_2" are "lymph node".
+std::string words_of(std::string_view name) {
+  std::string words;
+  std::string word;
+  const auto end_word = [&] {
+    const bool is_number = !word.empty() && std::all_of(word.begin(), word.end(), ascii::is_digit);
+    if (!word.empty() && !is_number && word != "left" && word != "right") words += (words.empty() ? "" : " ") + word;
+    word.clear();
+  };
+  for (const char letter : name)
+    if (letter == ' ' || letter == '_' || letter == '-' || letter == ',')
+      end_word();
+    else
+      word += ascii::to_lower(letter);
+  end_word();
+  return words;
+}
+
 /// The list as texts; its TOML entries can be numbers or texts.
 Result<std::vector<std::string>> ignored_labels(const config::TomlTable& file) {
   if (!file.has("ignore")) return std::vector<std::string>{};
@@ -106,12 +124,22 @@ Status LabelMap::read_base(const std::string& base, const std::string& where) {
 
 Status LabelMap::read_codes(const std::filesystem::path& data_folder) {
   TROCAR_TRY(const config::TomlTable file, config::load_toml(data_folder / kCodesFile));
+  TROCAR_TRY(const std::vector<std::string> unused, file.strings("unused"));
+  for (const std::string& name : unused) {
+    if (is_known(name))
+      return fail(fmt::format("\"{}\" is a known structure", name), file.where() + ": unused", "remove it");
+    unused_.insert(words_of(name));
+  }
+  TROCAR_TRY(const std::vector<std::string> generic, file.strings("generic"));
+  generic_codes_.insert(generic.begin(), generic.end());
   for (const std::string& scheme : file.keys()) {
+    if (scheme == "unused" || scheme == "generic") continue;
     TROCAR_TRY(const config::TomlTable codes, file.table(scheme));
     for (const std::string& code : codes.keys()) {
       TROCAR_TRY(std::string name, codes.string(code));
-      if (!is_known(name))
-        return fail(fmt::format("\"{}\" is no known structure", name), codes.where(), "use a name of structures.toml");
+      if (!is_known(name) && !is_unused(name) && !structures_.is_region(name))
+        return fail(fmt::format("\"{}\" is no known structure", name), codes.where(),
+                    "use a name of structures.toml, or of unused");
       by_code_[scheme + ":" + code] = std::move(name);
     }
   }
@@ -188,6 +216,10 @@ std::string LabelMap::name_of(const std::string& name) const {
              : name;
 }
 
+bool LabelMap::is_unused(const std::string& name) const {
+  return !is_known(name) && unused_.contains(words_of(name));
+}
+
 std::string LabelMap::name_of(const DescribedSegment& segment) const {
   for (const std::string& key : {segment.name, std::to_string(segment.number)})
     if (const auto found = by_name_.find(key); found != by_name_.end()) return found->second;
@@ -195,13 +227,14 @@ std::string LabelMap::name_of(const DescribedSegment& segment) const {
     return segment.name;
   if (const std::string name = with_whole_side(segment.name); is_known(name)) return structure_name(name);
   if (is_known(segment.type_in_region)) return structure_name(segment.type_in_region);
-  for (const std::string& code : segment.codes) {
+  for (std::size_t n = 0; n < segment.codes.size(); ++n) {
+    const std::string& code = segment.codes[n];
     const std::size_t end = std::min(code.find(' '), code.size());
     if (const auto found = by_code_.find(code.substr(0, end)); found != by_code_.end())
       return found->second + structure_name(code.substr(end));
+    if (n < segment.meanings.size() && is_known(segment.meanings[n])) return structure_name(segment.meanings[n]);
+    if (!is_generic(code.substr(0, end))) break;  // a stent in the liver is not the liver
   }
-  for (const std::string& meaning : segment.meanings)
-    if (is_known(meaning)) return structure_name(meaning);
   return rest_.value_or(segment.name);
 }
 

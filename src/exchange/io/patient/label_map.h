@@ -2,6 +2,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -49,11 +50,13 @@ class LabelMap {
   /// Structure of a name in a file: the name itself, unless the map has an entry for it.
   std::string name_of(const std::string& name) const;
   /// Structure of a segment: the map's entry for its name or its number, else the first known one of its name (also
-  /// with an abbreviated side: "Kidney_L", "Lt Lung"), the meanings and the codes of its property type
-  /// (structure_codes.toml), else its name.
+  /// with an abbreviated side: "Kidney_L", "Lt Lung"), its type in its region, code and meaning of its type
+  /// (structure_codes.toml), those of its region if the type says nothing (tissue, organ); else its name.
   std::string name_of(const DescribedSegment& segment) const;
   /// True for a structure of structures.toml.
   bool is_known(const std::string& name) const { return structures_.find(name) != nullptr; }
+  /// True for something that is known, but that no task needs (structure_codes.toml): "tissue", "lymph node".
+  bool is_unused(const std::string& name) const;
   const anatomy::KnownStructures& structures() const noexcept { return structures_; }
 
  private:
@@ -65,7 +68,11 @@ class LabelMap {
   std::map<int, std::string> by_number_;
   std::map<std::string, std::string, std::less<>> by_name_;
   std::optional<std::string> rest_;
+  /// True for a code that says nothing of the structure: "SCT:85756007", tissue.
+  bool is_generic(std::string_view code) const { return generic_codes_.contains(code); }
   std::map<std::string, std::string, std::less<>> by_code_;  ///< "SCT:10200004" -> "liver".
+  std::set<std::string, std::less<>> generic_codes_;
+  std::set<std::string, std::less<>> unused_;  ///< Plain names.
 };
 
 }  // namespace trocar::io

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "core/parallel.h"
@@ -12,6 +13,7 @@
 #include "io/image/detail/payload.h"
 #include "io/image/detail/read_grid.h"
 #include "io/patient/detail/dicom_labels.h"
+#include "io/patient/detail/label_checks.h"
 #include "io/patient/detail/mask_folder.h"
 #include "io/patient/label_map.h"
 
@@ -73,20 +75,41 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
   return parts;
 }
 
-/// Its tags contain "TerminologyEntry:CONTEXT~CATEGORY~TYPE~MODIFIER~…", with SCHEME^CODE^MEANING for each.
+/// One of its codes: SCHEME^CODE^MEANING, with the side that its modifier gives.
+struct SlicerCode {
+  std::string code;
+  std::string meaning;
+};
+
+std::optional<SlicerCode> slicer_code(const std::vector<std::string_view>& parts, std::size_t at) {
+  const auto words = at < parts.size() ? split(parts[at], '^') : std::vector<std::string_view>();
+  if (words.size() != 3 || words[1].empty()) return std::nullopt;
+  const auto modifier = at + 1 < parts.size() ? split(parts[at + 1], '^') : std::vector<std::string_view>();
+  std::string side;
+  if (modifier.size() == 3) {
+    if (modifier[1] == "7771000" || modifier[1] == "G-A101" || modifier[2] == "Left") side = " left";
+    if (modifier[1] == "24028007" || modifier[1] == "G-A100" || modifier[2] == "Right") side = " right";
+  }
+  return SlicerCode{fmt::format("{}:{}{}", words[0], words[1], side), fmt::format("{}{}", words[2], side)};
+}
+
+/// Its tags contain "TerminologyEntry:CONTEXT~CATEGORY~TYPE~MODIFIER~CONTEXT~REGION~MODIFIER".
 DescribedSegment describe(const std::string& name, int value, std::string_view tags) {
   DescribedSegment segment{name, value, {}, {}, {}};
   constexpr std::string_view kEntry = "TerminologyEntry:";
   const std::size_t at = tags.find(kEntry);
   if (at == std::string_view::npos) return segment;
   const auto parts = split(tags.substr(at + kEntry.size(), tags.find('|', at) - at - kEntry.size()), '~');
-  const auto type = parts.size() > 2 ? split(parts[2], '^') : std::vector<std::string_view>();
-  if (type.size() != 3) return segment;
-  const auto modifier = parts.size() > 3 ? split(parts[3], '^') : std::vector<std::string_view>();
-  std::string side;
-  if (modifier.size() == 3 && (modifier[2] == "Left" || modifier[2] == "Right")) side = fmt::format(" {}", modifier[2]);
-  segment.meanings.push_back(fmt::format("{}{}", type[2], side));
-  segment.codes.push_back(fmt::format("{}:{}{}", type[0], type[1], side));
+  const auto category = slicer_code(parts, 1), type = slicer_code(parts, 2), region = slicer_code(parts, 5);
+  // A lesion in an organ is no part of the organ (as in DICOM SEG).
+  const bool is_altered =
+      category && (category->code.starts_with("SCT:49755003") || category->code.starts_with("SRT:M-01000"));
+  if (type && region) segment.type_in_region = region->meaning + " " + type->meaning;
+  for (const auto& code : {type, is_altered ? std::nullopt : region}) {
+    if (!code) continue;
+    segment.codes.push_back(code->code);
+    segment.meanings.push_back(code->meaning);
+  }
   return segment;
 }
 
@@ -280,6 +303,9 @@ Result<std::vector<anatomy::LabelSource>> read_label_sources(const std::vector<f
   }
   if (all.empty() && !paths.empty())
     return fail("the label map leaves out every label", label_map, "name at least one structure in [labels]");
+  detail::leave_out_unused(all, map, warnings);
+  const std::string where = paths.size() == 1 ? paths.front().string() : fmt::format("{} files", paths.size());
+  TROCAR_TRY_STATUS(detail::check_voxels(all, map, ct.grid, where, warnings));
   return all;
 }
 

@@ -160,11 +160,12 @@ TEST(LabelSources, MasksThatDoNotOverlapShareAVolume) {
 TEST(LabelSources, AnEmptyMaskCoversItsBoxWithFewVoxels) {
   TemporaryFolder folder;
   ASSERT_TRUE(write_image(labels_with({}), folder / "brain.nii.gz"));
+  ASSERT_TRUE(write_image(labels_with({1}), folder / "liver.nii.gz"));
   const auto sources = read_label_sources({folder.path()}, "");
   ASSERT_TRUE(sources) << error_of(sources);
-  ASSERT_EQ(sources->size(), 1U);
-  EXPECT_EQ((*sources)[0].names, (LabelNames{{1, "brain"}}));
-  const volume::GridGeometry &coarse = (*sources)[0].labels.geometry, whole = oblique_geometry();
+  ASSERT_EQ(sources->size(), 2U);
+  EXPECT_EQ((*sources)[1].names, (LabelNames{{1, "brain"}}));
+  const volume::GridGeometry &coarse = (*sources)[1].labels.geometry, whole = oblique_geometry();
   EXPECT_LT(coarse.voxel_count(), whole.voxel_count());
   const Vec3 half = Vec3::Constant(-0.5);
   EXPECT_LT((coarse.to_mm(half) - whole.to_mm(half)).norm(), 1e-4);

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "anatomy/build_patient.h"
+#include "core/result.h"
+#include "io/patient/label_map.h"
+#include "volume/grid.h"
+
+namespace trocar::io::detail {
+
+/// Ignores the structures that no task needs (LabelMap::is_unused), with one warning that names them.
+void leave_out_unused(std::vector<anatomy::LabelSource>& sources, const LabelMap& map,
+                      std::vector<std::string>& warnings);
+
+/// Counts the voxels of each structure in its file and on the CT's grid (`ct` without voxels: unknown). Empty
+/// structures of files that describe themselves, and empty files without a structure's name, are removed with a
+/// warning; empty masks stay, as build_patient lists them. Warnings: a structure that loses more than 1 ml beyond the
+/// CT or on its coarser voxels, or all of its voxels. Errors (at `where`): no structure has a voxel, or none within the
+/// CT.
+Status check_voxels(std::vector<anatomy::LabelSource>& sources, const LabelMap& map, const volume::GridGeometry& ct,
+                    const std::string& where, std::vector<std::string>& warnings);
+
+}  // namespace trocar::io::detail
