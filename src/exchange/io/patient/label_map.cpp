@@ -220,20 +220,40 @@ bool LabelMap::is_unused(const std::string& name) const {
   return !is_known(name) && unused_.contains(words_of(name));
 }
 
+std::optional<std::string> LabelMap::name_of_code(const std::string& code) const {
+  const std::size_t end = std::min(code.find(' '), code.size());
+  const auto found = by_code_.find(std::string_view(code).substr(0, end));
+  return found != by_code_.end() ? std::optional(found->second + structure_name(code.substr(end))) : std::nullopt;
+}
+
+std::string LabelMap::contradiction_in(const DescribedSegment& segment) const {
+  if (segment.codes.empty() || name_of(segment) != segment.name) return {};
+  const auto by_code = name_of_code(segment.codes.front());
+  const anatomy::KnownStructure* named = structures_.find(segment.name);
+  const anatomy::KnownStructure* coded = by_code ? structures_.find(*by_code) : nullptr;
+  if (named == nullptr || coded == nullptr || named->tissue == coded->tissue) return {};
+  return fmt::format("the segment \"{}\" is read by its name ({}), but its code {} is {} ({})", segment.name,
+                     named->tissue, segment.codes.front(), *by_code, coded->tissue);
+}
+
 std::string LabelMap::name_of(const DescribedSegment& segment) const {
   for (const std::string& key : {segment.name, std::to_string(segment.number)})
     if (const auto found = by_name_.find(key); found != by_name_.end()) return found->second;
+  const bool is_meaning = !segment.codes.empty() && !segment.meanings.empty() &&
+                          words_of(segment.name) == words_of(segment.meanings.front());
+  if (const auto by_code = is_meaning ? name_of_code(segment.codes.front()) : std::nullopt;
+      by_code && is_known(*by_code) && is_known(segment.name) &&
+      structures_.find(*by_code)->tissue != structures_.find(segment.name)->tissue)
+    return *by_code;
   if (is_known(segment.name) || structures_.is_background(segment.name) || structures_.is_region(segment.name))
     return segment.name;
   if (const std::string name = with_whole_side(segment.name); is_known(name)) return structure_name(name);
   if (is_known(segment.type_in_region)) return structure_name(segment.type_in_region);
   for (std::size_t n = 0; n < segment.codes.size(); ++n) {
     const std::string& code = segment.codes[n];
-    const std::size_t end = std::min(code.find(' '), code.size());
-    if (const auto found = by_code_.find(code.substr(0, end)); found != by_code_.end())
-      return found->second + structure_name(code.substr(end));
+    if (auto by_code = name_of_code(code)) return *std::move(by_code);
     if (n < segment.meanings.size() && is_known(segment.meanings[n])) return structure_name(segment.meanings[n]);
-    if (!is_generic(code.substr(0, end))) break;  // a stent in the liver is not the liver
+    if (!is_generic(code.substr(0, code.find(' ')))) break;  // a stent in the liver is not the liver
   }
   return rest_.value_or(segment.name);
 }

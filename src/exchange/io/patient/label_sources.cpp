@@ -165,7 +165,11 @@ Result<std::vector<Segment3dSlicer>> segments_in(const detail::RawVolume& raw, c
 /// One source per layer: overlapping segments are in different layers.
 Result<std::vector<anatomy::LabelSource>> read_segments(const detail::RawVolume& raw,
                                                         const std::vector<Segment3dSlicer>& segments,
-                                                        const LabelMap& map, const fs::path& path) {
+                                                        const LabelMap& map, const fs::path& path,
+                                                        std::vector<std::string>& warnings) {
+  for (const Segment3dSlicer& segment : segments)
+    if (const std::string doubt = map.contradiction_in(segment.description); !doubt.empty())
+      warnings.push_back(path.filename().string() + ": " + doubt);
   const auto count = static_cast<std::size_t>(raw.components);
   const std::size_t voxel_bytes = detail::bytes_per_voxel(raw.type);
   std::vector<anatomy::LabelSource> sources;
@@ -199,7 +203,7 @@ Result<std::vector<anatomy::LabelSource>> read_label_file(const fs::path& path, 
   TROCAR_TRY(const detail::RawVolume raw, detail::read_volume_file(path));
   warnings.insert(warnings.end(), raw.warnings.begin(), raw.warnings.end());
   TROCAR_TRY(const std::vector<Segment3dSlicer> segments, segments_in(raw, path));
-  if (!segments.empty()) return read_segments(raw, segments, map, path);
+  if (!segments.empty()) return read_segments(raw, segments, map, path, warnings);
   TROCAR_TRY(volume::LabelGrid labels, detail::to_grid<std::uint8_t>(raw, path.string(), detail::convert_voxels));
   TROCAR_TRY(anatomy::LabelSource source, name_labels(std::move(labels), path, map, place, warnings));
   std::vector<anatomy::LabelSource> sources;

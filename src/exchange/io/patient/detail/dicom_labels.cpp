@@ -12,10 +12,13 @@ namespace trocar::io::detail {
 namespace fs = std::filesystem;
 namespace {
 
+DescribedSegment description_of(const dicom::Segment& segment) {
+  return {segment.name, segment.number, segment.type_in_region, segment.codes, segment.meanings};
+}
+
 /// Name of a structure. `stem` is that of the file if it holds only this structure.
 std::string name_of(const dicom::Segment& segment, const LabelMap& map, const std::string& stem) {
-  const std::string name = map.name_of(
-      DescribedSegment{segment.name, segment.number, segment.type_in_region, segment.codes, segment.meanings});
+  const std::string name = map.name_of(description_of(segment));
   if (name == anatomy::kIgnoredStructure || map.is_known(name) || !map.is_known(stem)) return name;
   return map.name_of(stem);
 }
@@ -50,6 +53,9 @@ Result<std::vector<anatomy::LabelSource>> read_dicom_labels(const fs::path& path
   };
   TROCAR_TRY(dicom::Segmentation read, dicom::read_segmentation(path, ct, is_wanted, decode_frame));
   for (const std::string& warning : read.warnings) warnings.push_back(path.filename().string() + ": " + warning);
+  for (const dicom::Segment& segment : read.segments)
+    if (const std::string doubt = map.contradiction_in(description_of(segment)); !doubt.empty())
+      warnings.push_back(path.filename().string() + ": " + doubt);
 
   const std::string stem = read.segments.size() == 1 ? path.stem().string() : std::string();
   std::vector<anatomy::LabelSource> sources;

@@ -197,7 +197,10 @@ class RealSegmentation : public ::testing::Test {
     if (!scan) return {};
     ct = reference_of(*scan);
     std::vector<std::string> warnings;
-    auto sources = read_label_sources({seg}, "", ct, warnings);
+    const TemporaryFolder folder;
+    // Names that no task needs, as capillaries, are kept by a map.
+    testing::write_bytes(folder / "map.toml", "[labels]\nLIGHT_BLUE = \"LIGHT_BLUE\"\nPURPLE = \"PURPLE\"\n");
+    auto sources = read_label_sources({seg}, (folder / "map.toml").string(), ct, warnings);
     EXPECT_TRUE(sources) << sources.error().text();
     return sources ? *std::move(sources) : std::vector<anatomy::LabelSource>();
   }

@@ -185,6 +185,14 @@ TEST_F(LabelChecks, TerminologyOf3dSlicerIsUnderstood) {
   EXPECT_EQ(one("Segment_1", terminology("SCT^108369006^Neoplasm", "^^", "SCT^64033007^Kidney",
                                          "SCT^49755003^Morphologically Altered Structure")),
             "neoplasm");
+  // A name that is the meaning of its code is the code's; other contradictions are told.
+  EXPECT_EQ(one("Left Ventricle", terminology("SCT^87878005^Left Ventricle")), "heart_ventricle_left");
+  EXPECT_EQ(one("left ventricle of heart", ""), "left ventricle of heart");
+  EXPECT_FALSE(is_told("code")) << told();
+  EXPECT_EQ(one("Spleen", terminology("SCT^64033007^Kidney", "SCT^7771000^Left")), "Spleen");
+  EXPECT_TRUE(
+      is_told("\"Spleen\" is read by its name (spleen), but its code SCT:64033007 left is kidney_left (kidney)"))
+      << told();
   // The type that every new segment has is no structure: the build refuses the name.
   EXPECT_EQ(one("Segment_1", terminology("SCT^85756007^Tissue")), "Segment_1");
 }
