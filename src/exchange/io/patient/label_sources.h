@@ -17,7 +17,8 @@ namespace trocar::io {
 /// detail/dicom_labels.h). The map may rename or ignore names of files. A file with one value is a mask. If it is given
 /// as a file and its name is not a known structure, a label map that contains the value names it. Several values
 /// without a map and values above 255 are errors; a value that the map lacks has no name, which is an error in
-/// build_patient. Masks of a folder that do not overlap share one source; an empty mask has a coarse grid over its box.
+/// build_patient. Masks of a folder that do not overlap share one source; empty structures are left out
+/// with warnings, and labels without any voxel are errors.
 /// `ct` is the CT that they belong to: DICOM objects of another series are errors, contours are drawn on its grid.
 Result<std::vector<anatomy::LabelSource>> read_label_sources(const std::vector<std::filesystem::path>& paths,
                                                              const std::string& label_map, const dicom::CtReference& ct,

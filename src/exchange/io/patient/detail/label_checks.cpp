@@ -108,13 +108,14 @@ struct Found {
   std::size_t structures = 0;
   std::size_t in_file = 0;
   std::size_t on_ct = 0;
+  std::vector<std::string> empty_masks;
 };
 
 void check_source(anatomy::LabelSource& source, const LabelMap& map, const volume::GridGeometry& ct, Found& found,
                   std::vector<std::string>& warnings) {
   const SourceCounts counts = count_source(source, ct);
   const std::string file = std::filesystem::path(source.file).filename().string();
-  const bool is_unnamed_file = source.names.size() == 1 && !map.is_known(source.names.front().second);
+  const bool is_mask = !source.is_described && source.names.size() == 1;
   std::erase_if(source.names, [&](const auto& entry) {
     const auto& [number, name] = entry;
     if (number < 1 || number >= static_cast<int>(counts.in_file.size()) || !is_structure(name, map)) return false;
@@ -128,9 +129,9 @@ void check_source(anatomy::LabelSource& source, const LabelMap& map, const volum
     }
     if (source.is_described)
       warnings.push_back(fmt::format("{}: the structure \"{}\" is empty", file, name));
-    else if (is_unnamed_file)
-      warnings.push_back(fmt::format("{} has no label: it is left out", file));
-    return source.is_described || is_unnamed_file;
+    else if (is_mask)
+      found.empty_masks.push_back(name);
+    return source.is_described || is_mask;  // a label map can name more structures than a file has
   });
 }
 
@@ -162,6 +163,9 @@ Status check_voxels(std::vector<anatomy::LabelSource>& sources, const LabelMap& 
                             found.structures),
                 where, "give the segmentation that was made from this CT");
   warnings.insert(warnings.end(), told.begin(), told.end());
+  if (!found.empty_masks.empty())
+    warnings.push_back(fmt::format("{} of {} structures are empty masks and were left out: {}",
+                                   found.empty_masks.size(), found.structures, fmt::join(found.empty_masks, ", ")));
   std::erase_if(sources, [](const anatomy::LabelSource& source) {
     return source.names.empty() && std::all_of(source.labels.voxels.begin(), source.labels.voxels.end(),
                                                [](std::uint8_t voxel) { return voxel == 0; });

@@ -15,10 +15,9 @@ void leave_out_unused(std::vector<anatomy::LabelSource>& sources, const LabelMap
                       std::vector<std::string>& warnings);
 
 /// Counts the voxels of each structure in its file and on the CT's grid (`ct` without voxels: unknown). Empty
-/// structures of files that describe themselves, and empty files without a structure's name, are removed with a
-/// warning; empty masks stay, as build_patient lists them. Warnings: a structure that loses more than 1 ml beyond the
-/// CT or on its coarser voxels, or all of its voxels. Errors (at `where`): no structure has a voxel, or none within the
-/// CT.
+/// structures are removed with a warning: each of a file that describes itself; the empty masks in one line. Warnings:
+/// a structure that loses more than 1 ml beyond the CT or on its coarser voxels, or all of its voxels. Errors (at
+/// `where`): no structure has a voxel, or none within the CT.
 Status check_voxels(std::vector<anatomy::LabelSource>& sources, const LabelMap& map, const volume::GridGeometry& ct,
                     const std::string& where, std::vector<std::string>& warnings);
 
