@@ -13,8 +13,8 @@ namespace {
 constexpr double kMaxBend_mm = 0.3;         ///< Distance of points from their plane: files round to 0.01 to 0.1 mm.
 constexpr double kContoursParallel = 0.01;  ///< Sine of the angle to an axis of the CT; 0.6 degrees.
 constexpr std::int64_t kMostContourPlanes = 1 << 14;
-constexpr std::int64_t kMostBeside = 1 << 12;  ///< Pixels beside the grid that are counted, on each side.
-constexpr double kEvenPlanes = 0.05;           ///< Of the usual distance.
+constexpr std::int64_t kMostBeside = 1 << 9;  ///< Pixels beside the grid that are counted, on each side.
+constexpr double kEvenPlanes = 0.05;          ///< Of the usual distance.
 constexpr const char* kExportStructureAgain = "export the structure set again, or the structure as .seg.nrrd";
 
 /// Twice the area of a contour along its normal (Newell's method); right-handed about the order of the points.

@@ -13,33 +13,35 @@ namespace {
 constexpr double kSparsePlanes = 3.5;    ///< Steps of the grid: more were drawn on by hand only here and there.
 constexpr double kMostOutside_ml = 1.0;  ///< Of a structure beyond the CT without a warning.
 
+std::string counted(std::size_t count, std::string_view noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
 /// What the contours leave open: gaps and the places between them.
-void warn_of_distances(const std::string& name, const PlaneDistances& distances, double step_mm,
+void warn_of_distances(const std::string& name, const PlaneDistances& distances, double step_mm, bool is_on_ct,
                        std::vector<std::string>& warnings) {
+  const std::string usual = fmt::format("; its planes are usually {:.1f} mm apart", distances.usual * step_mm);
   if (distances.filled_gaps > 0)
-    warnings.push_back(fmt::format(
-        "\"{}\": {} gaps between contours are filled, the widest of {:.1f} mm; its planes are usually {:.1f} mm apart",
-        name, distances.filled_gaps, distances.widest_filled * step_mm, distances.usual * step_mm));
+    warnings.push_back(fmt::format("\"{}\": {} between contours filled, of up to {:.1f} mm{}", name,
+                                   counted(distances.filled_gaps, "gap"), distances.widest_filled * step_mm, usual));
   if (distances.open_gaps > 0)
-    warnings.push_back(
-        fmt::format("\"{}\": {} gaps between contours stay empty, the narrowest of {:.1f} mm; its planes are usually "
-                    "{:.1f} mm apart",
-                    name, distances.open_gaps, distances.narrowest_open * step_mm, distances.usual * step_mm));
-  if (distances.usual > kSparsePlanes)
+    warnings.push_back(fmt::format("\"{}\": {} between contours left empty, of {:.1f} mm or more{}", name,
+                                   counted(distances.open_gaps, "gap"), distances.narrowest_open * step_mm, usual));
+  if (is_on_ct && distances.usual > kSparsePlanes)
     warnings.push_back(
         fmt::format("\"{}\": its contours are {:.1f} mm apart, the CT's slices {:.1f} mm: filled "
                     "half-way to the next contour",
                     name, distances.usual * step_mm, step_mm));
 }
 
-void warn_of(const ContourStructure& structure, const RasterResult& raster, const ContourGrid& grid,
+void warn_of(const ContourStructure& structure, const RasterResult& raster, const ContourGrid& grid, bool is_on_ct,
              std::vector<std::string>& warnings) {
   const std::string& name = structure.segment.name;
   if (structure.degenerate > 0)
     warnings.push_back(fmt::format("\"{}\": {} contours of one or two points left out", name, structure.degenerate));
   if (raster.repeated > 0)
     warnings.push_back(fmt::format("\"{}\": {} contours that repeat another one left out", name, raster.repeated));
-  warn_of_distances(name, raster.distances, grid.geometry.spacing_mm[grid.axis], warnings);
+  warn_of_distances(name, raster.distances, grid.geometry.spacing_mm[grid.axis], is_on_ct, warnings);
   if (raster.outside_ml > kMostOutside_ml)
     warnings.push_back(fmt::format("\"{}\": {:.0f} ml lie beyond the CT and are left out", name, raster.outside_ml));
 }
@@ -58,8 +60,9 @@ Result<Segmentation> read_structure_set(const DicomFile& file, const std::string
     if (structure.contours.empty()) continue;
     TROCAR_TRY(const ContourGrid grid, choose_grid(structure, ct.grid, where));
     const RasterResult raster = rasterise(structure, grid);
-    warn_of(structure, raster, grid, result.warnings);
-    if (grid.geometry.matches(ct.grid)) {
+    const bool is_on_ct = grid.geometry.matches(ct.grid);
+    warn_of(structure, raster, grid, is_on_ct, result.warnings);
+    if (is_on_ct) {
       TROCAR_TRY_STATUS(on_ct.add(index, 0, raster.mask));
       continue;
     }

@@ -213,13 +213,14 @@ Status check_segments(const SegHeader& header, const std::string& where) {
   for (const SegFrame& frame : header.frames) ++frames_of[frame.segment];
   for (const Segment& segment : header.segments) frames_of.erase(segment.number);
   if (frames_of.empty()) return {};
-  const auto& [number, frames] = *frames_of.begin();
+  const auto& [number, count] = *frames_of.begin();
+  const std::string frames = count == 1 ? "1 frame" : fmt::format("{} frames", count);
   const std::string others = frames_of.size() > 1 ? fmt::format(" (and {} more)", frames_of.size() - 1) : "";
   if (number == 0)
-    return fail(fmt::format("{} frames of the DICOM segmentation name no segment{}", frames, others), where,
+    return fail(fmt::format("{} of the DICOM segmentation without the number of a segment{}", frames, others), where,
                 kExportSegmentationAgain);
-  return fail(fmt::format("{} frames belong to the segment number {}, which the DICOM segmentation does not define{}",
-                          frames, number, others),
+  return fail(fmt::format("{} of the segment number {}, which the DICOM segmentation does not define{}", frames, number,
+                          others),
               where, kExportSegmentationAgain);
 }
 

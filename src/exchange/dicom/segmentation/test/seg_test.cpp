@@ -173,12 +173,12 @@ TEST_F(Seg, FramesOfAnUndefinedSegmentAreRefused) {
   TestSeg seg;
   seg.segments = {segment_item(1, "Liver"), segment_item(3, "Spleen")};
   seg.frames = {{1, at_z(0), block(0, 4)}, {2, at_z(0), block(2, 3)}, {2, at_z(2), block(2, 3)}};
-  EXPECT_NE(error_of(seg).find("2 frames belong to the segment number 2"), std::string::npos) << error_of(seg);
+  EXPECT_NE(error_of(seg).find("2 frames of the segment number 2"), std::string::npos) << error_of(seg);
   seg.frames.push_back({9, at_z(0), block(2, 3)});
   EXPECT_NE(error_of(seg).find("(and 1 more)"), std::string::npos) << error_of(seg);
   // An empty frame may hide a mistake as well.
   seg.frames = {{1, at_z(0), block(0, 4)}, {0, at_z(2), block(9, 9)}};
-  EXPECT_NE(error_of(seg).find("1 frames of the DICOM segmentation name no segment"), std::string::npos)
+  EXPECT_NE(error_of(seg).find("1 frame of the DICOM segmentation without the number of a segment"), std::string::npos)
       << error_of(seg);
   // A defined segment without frames is empty.
   seg.frames.pop_back();

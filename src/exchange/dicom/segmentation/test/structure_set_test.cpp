@@ -146,10 +146,9 @@ TEST_F(StructureSet, OneForgottenPlaneIsFilledAndAWideGapIsNot) {
   ASSERT_TRUE(read_set) << read_set.error().text();
   EXPECT_EQ(voxels_by_plane(*read_set, 0), (std::vector<std::size_t>{50, 50, 50, 50, 0, 0, 0, 50, 50, 0}));
   ASSERT_EQ(read_set->warnings.size(), 2U);
-  EXPECT_NE(read_set->warnings[0].find("\"Liver\": 1 gaps between contours are filled, the widest of 6.0 mm"),
-            std::string::npos)
+  EXPECT_NE(read_set->warnings[0].find("\"Liver\": 1 gap between contours filled, of up to 6.0 mm"), std::string::npos)
       << read_set->warnings[0];
-  EXPECT_NE(read_set->warnings[1].find("\"Liver\": 1 gaps between contours stay empty, the narrowest of 12.0 mm"),
+  EXPECT_NE(read_set->warnings[1].find("\"Liver\": 1 gap between contours left empty, of 12.0 mm or more"),
             std::string::npos)
       << read_set->warnings[1];
 }

@@ -195,6 +195,7 @@ TEST_F(LabelChecks, TerminologyOf3dSlicerIsUnderstood) {
       << told();
   // The type that every new segment has is no structure: the build refuses the name.
   EXPECT_EQ(one("Segment_1", terminology("SCT^85756007^Tissue")), "Segment_1");
+  EXPECT_EQ(one("Segment_1", terminology("SCT^32457005^Body fluid")), "Segment_1");  // perhaps the ascites
 }
 
 TEST_F(LabelChecks, WhatNoTaskNeedsIsLeftOutWithOneLine) {
