@@ -116,6 +116,17 @@ TEST_F(DicomLabels, SidesOfStructureSetsMayBeShort) {
   EXPECT_EQ(read(folder_ / "rs.dcm"), (Voxels{{"kidney_left", 12}, {"lung_right", 12}, {"SpinalCord", 12}}));
 }
 
+TEST_F(DicomLabels, OfASiblingSeriesAreReadOnRequest) {
+  TestSeg seg = two_segments("Liver", "Spleen");
+  seg.series_uid = "1.2.4";
+  testing::write_dicom(folder_ / "label.seg", testing::seg_elements(seg));
+  EXPECT_NE(read(folder_ / "label.seg").begin()->first.find("--sibling-series"), std::string::npos);
+  ct_.accepts_sibling = true;
+  EXPECT_EQ(read(folder_ / "label.seg"), (Voxels{{"Liver", 60}, {"Spleen", 12}}));
+  ASSERT_EQ(warnings_.size(), 1U);
+  EXPECT_NE(warnings_[0].find("label.seg: was drawn on the series 1.2.4"), std::string::npos) << warnings_[0];
+}
+
 TEST_F(DicomLabels, OfAFolderAreFoundBesideTheCt) {
   testing::write_dicom(folder_ / "ct/../study/seg/1", testing::seg_elements(two_segments("Liver", "Spleen")));
   fs::rename(folder_ / "ct", folder_ / "study/ct");
