@@ -73,7 +73,8 @@ double contradiction_of(const std::map<int, ValueSums>& sums, const std::vector<
     total += std::min(kMost, kPerHu * std::max({0.0, typical->low - mean, mean - typical->high}));
   }
   // Vertebrae lie below each other in their order, at the distances of vertebrae.
-  constexpr double kLeastStep_mm = 12.0, kLargestStep_mm = 50.0;  // [assumed, from C3 of a child to L4 of a tall adult]
+  constexpr double kLeastStep_mm = 12.0,
+                   kLargestStep_mm = 70.0;  // [assumed, wide: 15 in a child's neck, 45 in a tall adult's back]
   for (auto below = vertebrae.begin(); below != vertebrae.end();) {
     const auto above = below++;
     if (below == vertebrae.end()) break;

@@ -34,10 +34,9 @@ TEST(ImplausibleHu, NamesTheLabelThatCannotBe) {
   EXPECT_NE(doubts[0].find("bone1"), std::string::npos);
 }
 
-TEST(ImplausibleHu, AsksWhetherTheSegmentationBelongsToTheCt) {
+TEST(ImplausibleHu, NamesEachLabelThatCannotBe) {
   const auto doubts = doubts_of({{"bone", 20}, {"liver", -300}, {"lung", 40}, {"spleen", -100}, {"kidney", 30}});
-  ASSERT_EQ(doubts.size(), 5u);
-  EXPECT_NE(doubts[0].find("belong to this CT"), std::string::npos);
+  EXPECT_EQ(doubts.size(), 4u);
 }
 
 TEST(ImplausibleHu, DoesNotJudgeCrumbs) {
