@@ -173,7 +173,7 @@ class Mutator {
         bytes.resize(at + 1);
         break;
       case 6:
-        bytes.insert(at, std::string(1 + below(5'000), static_cast<char>('0' + below(10))));
+        bytes.insert(at, 1 + below(5'000), static_cast<char>('0' + below(10)));
         break;
       default:
         replace_digits(bytes, at);
@@ -217,7 +217,7 @@ long peak_megabytes() {
     const Target& target = targets[mutator.below(targets.size())];
     const fs::path path = folder / target.name;
     testing::write_bytes(path, mutator.change(target.bytes));
-    testing::write_bytes(folder / "current", target.name);
+    std::ofstream(folder / "current") << target.name;
     ::alarm(kMostSeconds);
     target.read(path);
     ::alarm(0);

@@ -23,6 +23,7 @@ struct Payload {
   std::uint64_t packed = 0;           ///< Length of the compressed stream, 0 if the header does not declare it.
   bool is_compressed = false;         ///< gzip or zlib.
   bool is_text = false;               ///< Numbers written as text.
+  bool is_hex = false;                ///< Text of two digits a byte, without spaces.
   std::uint64_t least_bytes = 0;      ///< Lower limit of the file size: no encoding is shorter. Text only.
   std::filesystem::path data_file{};  ///< The file with the voxels, relative to the header; empty: the header file.
 };

@@ -208,6 +208,7 @@ Result<ImageHeader> read_nrrd_header(const InputFile& input) {
   payload.is_text = encoding == "ascii" || encoding == "text" || encoding == "txt" || encoding == "hex";
   if (encoding != "raw" && !payload.is_compressed && !payload.is_text)
     return fail(fmt::format("the encoding \"{}\" is not supported", encoding), where, "save it with encoding gzip");
+  payload.is_hex = encoding == "hex";
   payload.least_bytes = encoding == "hex" ? 2 * bytes : 2 * (bytes / *voxel_bytes) - 1;
   TROCAR_TRY_STATUS(read_data_place(header, input, payload));
   image.geometry.size = sides(sizes);

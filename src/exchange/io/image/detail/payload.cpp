@@ -43,17 +43,33 @@ bool is_valid_stream(std::ifstream& file, std::uint64_t packed, std::uint64_t by
   }
 }
 
+/// The libraries copy each number of a text into an array on the stack.
+bool has_short_numbers(std::ifstream& file) {
+  constexpr std::size_t kLongest = 60;
+  std::vector<char> chunk(kChunkBytes);
+  for (std::size_t length = 0;
+       file.read(chunk.data(), static_cast<std::streamsize>(chunk.size())) || file.gcount() > 0;)
+    for (std::streamsize n = 0; n < file.gcount(); ++n) {
+      length = ascii::is_space(chunk[static_cast<std::size_t>(n)]) ? 0 : length + 1;
+      if (length > kLongest) return false;
+    }
+  return true;
+}
+
 Status check_payload(const Payload& payload, const InputFile& input, Check check, const std::string& where) {
   const std::uint64_t available = input.size() > payload.offset ? input.size() - payload.offset : 0;
-  if (payload.is_text && available >= payload.least_bytes) return {};
-  if (payload.is_text) return fail("the image ends before its last voxel", where, kExportAgain);
+  if (payload.is_text && available < payload.least_bytes)
+    return fail("the image ends before its last voxel", where, kExportAgain);
+  std::ifstream file(input.pinned_path(), std::ios::binary);
+  file.seekg(static_cast<std::streamoff>(payload.offset));
+  if (payload.is_text && !payload.is_hex && !has_short_numbers(file))
+    return fail("the voxels contain a number of more than 60 letters", where, kExportAgain);
+  if (payload.is_text) return {};
   if (!payload.is_compressed) {
     if (available >= payload.bytes) return {};
     return fail(fmt::format("the image ends before its last voxel ({} of {} bytes)", available, payload.bytes), where,
                 kExportAgain);
   }
-  std::ifstream file(input.pinned_path(), std::ios::binary);
-  file.seekg(static_cast<std::streamoff>(payload.offset));
   const std::uint64_t packed = payload.packed > 0 ? payload.packed : available;
   const bool could_be_enough = packed <= available && could_unpack_to(payload.bytes, available);
   if (could_be_enough && (check == Check::kSize || is_valid_stream(file, packed, payload.bytes))) return {};

@@ -231,6 +231,11 @@ TEST_F(StatedPlaceTest, BoundsATextHeader) {
   std::string many;
   for (int n = 0; n < 10'000; ++n) many += "key" + std::to_string(n) + ":=value\n";
   expect_refused("a.nrrd", nrrd(place, many), "more than 10000 lines");
+  // Read by the library into an array on the stack.
+  std::string text = nrrd(place);
+  text.replace(text.find("raw"), 3, "ascii");
+  text.resize(text.size() - voxel_bytes().size());
+  expect_refused("a.nrrd", text + "1 2 3 4 5 6 7 8 9 10 11 1" + std::string(5'000, '0'), "more than 60 letters");
   // What 3D Slicer writes fits.
   expect_at("a.nrrd", nrrd(place, "key:=" + std::string(30'000, 'A') + "\n" + many.substr(0, 60'000)), 8, {14, 20, 34});
 }
@@ -277,7 +282,7 @@ TEST_F(StatedPlaceTest, RefusesAMetaImageThatMisleadsItsLibrary) {
   }
   expect_refused("a.mha", meta(kMetaPlace, "CompressedData = True\n"), "no CompressedDataSize");
   expect_refused("a.mha", meta(kMetaPlace, "HeaderSize = 12\n"), "HeaderSize");
-  expect_refused("a.mha", meta(kMetaPlace, "Comment = " + std::string(5'000, 'A') + "\n"), "too long");
+  expect_refused("a.mha", meta(kMetaPlace, "Comment = " + std::string(300, 'A') + "\n"), "too long");
   // A field that MetaIO does not know in this spelling: it would read a spacing of 1 mm.
   std::string lower = meta(kMetaPlace);
   lower.replace(lower.find("ElementSpacing"), 14, "elementspacing");
