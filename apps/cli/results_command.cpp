@@ -14,7 +14,12 @@ Result<results::Repository> open_results(const std::string& url, database::Missi
   if (!repository && repository.error().what == "no such database")
     repository.error().advice =
         "nothing was recorded yet: add a person with trocar results add, or name another with --db";
+  if (repository) warn_of_journal(*repository);
   return repository;
+}
+
+void warn_of_journal(results::Repository& repository) {
+  if (const std::string note = repository.database().note(); !note.empty()) print_warning(note);
 }
 
 std::string minute_text(results::Seconds time) {

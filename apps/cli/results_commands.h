@@ -21,6 +21,8 @@ void add_results_validity_command(Command& results, const DatabaseOption& url, A
 
 /// Opens the database of --db; empty: $TROCAR_DB, else that of the user. `missing`: whether a new one is made.
 Result<results::Repository> open_results(const std::string& url, database::Missing missing);
+/// Prints how the database is kept where it has no write-ahead log.
+void warn_of_journal(results::Repository& repository);
 
 /// "2026-01-02 03:04" in UTC.
 std::string minute_text(results::Seconds time);

@@ -10,6 +10,7 @@
 
 #include "results/accounts.h"
 #include "results/names.h"
+#include "results_commands.h"
 #include "signing/password.h"
 #include "signing/password_rules.h"
 
@@ -76,7 +77,9 @@ results::Seconds now() {
 
 Result<results::Repository> open(const AccountArguments& arguments) {
   TROCAR_TRY(const database::DatabaseUrl url, database_of(arguments.database));
-  return results::Repository::open(url);
+  TROCAR_TRY(results::Repository repository, results::Repository::open(url));
+  warn_of_journal(repository);
+  return repository;
 }
 
 Status add_account(const AccountArguments& arguments) {

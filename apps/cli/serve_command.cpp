@@ -81,6 +81,7 @@ Status serve(const ServeArguments& arguments) {
   log_info("results: {}", database.shown());
   if (listen.is_any())
     log_info("listens on every address of this machine; browsers have to use a name of the certificate or of --name");
+  if (const std::string note = service.database_note(); !note.empty()) log_warning("{}", note);
   TROCAR_TRY(const std::size_t accounts, service.count_accounts());
   if (accounts == 0) log_warning("there is no account yet: run \"trocar serve account add NAME --role admin\"");
   while (!is_interrupted()) std::this_thread::sleep_for(std::chrono::milliseconds(100));

@@ -81,6 +81,7 @@ ResultsControl::Work ResultsControl::reading_of(const std::optional<results::Per
     found.people.emplace();
     if (is_missing(url)) return found;
     TROCAR_TRY(results::Repository repository, results::Repository::open(url, database::Missing::kRefuse));
+    found.warning = repository.database().note();
     TROCAR_TRY(found.people, results::list_people(repository));
     TROCAR_TRY(found.are_pins_required, results::are_pins_required(repository));
     if (!person) return found;
@@ -232,6 +233,7 @@ void ResultsControl::poll() {
 }
 
 void ResultsControl::take(Found found) {
+  if (!found.warning.empty() && !std::exchange(has_warned_, true)) Q_EMIT warned(to_qt(found.warning));
   if (!found.message.empty())
     start_.person().show_message(sentence_of({.what = found.message, .where = {}, .advice = {}}));
   if (!found.people) {

@@ -58,7 +58,7 @@ class ResultsControl : public QObject {
     std::string read_for;                   ///< Id of the person whose curves were read; empty: nobody's.
     std::optional<Curves> curves;           ///< Of that person, by task; empty: the person is deleted.
     std::string message;                    ///< On the start page: a wrong PIN, a name that is taken.
-    std::string warning;                    ///< In the window: the database cannot be reached.
+    std::string warning;                    ///< In the window, once: how the database is kept.
     bool has_recorded = false;              ///< An attempt was recorded.
   };
   using Work = std::function<Result<Found>(const database::DatabaseUrl&)>;
@@ -83,6 +83,7 @@ class ResultsControl : public QObject {
   std::optional<results::Person> person_;
   std::optional<results::Person> asked_;  ///< Whose PIN is being entered.
   bool has_entry_ = false;                ///< What was entered is being checked.
+  bool has_warned_ = false;               ///< Of how the database is kept.
   Curves curves_;
   std::string task_, attempt_id_;  ///< Of the attempt that has begun.
   std::string recorded_task_;      ///< Of the attempt that the feedback compares; empty: none.

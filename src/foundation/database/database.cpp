@@ -1,5 +1,6 @@
 #include "database/database.h"
 
+#include <fmt/format.h>
 #include <soci/sqlite3/soci-sqlite3.h>
 
 #include "core/files/atomic_file.h"
@@ -27,30 +28,20 @@ Status prepare_file(const fs::path& path, Missing missing) {
   return made || !fs::exists(path, error) ? made : Status();
 }
 
-void set_up_sqlite(soci::session& session, const fs::path& file) {
+Journal set_up_sqlite(soci::session& session, const fs::path& file) {
   open_sqlite(session, file, kWaitForWriter_s);
-  std::string mode;
-  session << "PRAGMA journal_mode = WAL", soci::into(mode);
+  Journal journal = set_journal(session, file, find_network_file_system(file));
   session << "PRAGMA synchronous = FULL";
   session << "PRAGMA foreign_keys = ON";
   session << "PRAGMA trusted_schema = OFF";
-}
-
-std::unique_ptr<soci::session> connect(const DatabaseUrl& url) {
-  auto session = std::make_unique<soci::session>();
-  if (url.is_sqlite()) {
-    set_up_sqlite(*session, url.file);
-  } else {
-    open_server(*session, url.server);
-  }
-  return session;
+  return journal;
 }
 
 std::optional<Error> sqlite_error(int code, const std::string& where) {
   switch (code & 0xff) {  // the primary code
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
-      return Error{"another program is writing the database", where, "try again in a moment"};
+      return Error{"another program is using the database", where, "try again in a moment"};
     case SQLITE_FULL:
       return Error{"the disk is full", where, "free space; nothing of this was written"};
     case SQLITE_CORRUPT:
@@ -90,11 +81,29 @@ Error error_of(const DatabaseUrl& url, const std::exception& error, soci::sessio
 
 }  // namespace
 
-Database::Database(DatabaseUrl url, std::unique_ptr<soci::session> session)
-    : url_(std::move(url)), session_(std::move(session)) {}
+Database::Database(DatabaseUrl url, Connection connection)
+    : url_(std::move(url)), session_(std::move(connection.session)), journal_(std::move(connection.journal)) {}
 Database::Database(Database&&) noexcept = default;
 Database& Database::operator=(Database&&) noexcept = default;
 Database::~Database() = default;
+
+Database::Connection Database::connect(const DatabaseUrl& url) {
+  Connection made{std::make_unique<soci::session>(), {}};
+  if (url.is_sqlite()) {
+    made.journal = set_up_sqlite(*made.session, url.file);
+  } else {
+    open_server(*made.session, url.server);
+  }
+  return made;
+}
+
+std::string Database::note() const {
+  if (journal_.obstacle.empty()) return {};
+  return fmt::format(
+      "the database has no write-ahead log ({}): {} is written with a rollback journal; programs wait for each other — "
+      "use PostgreSQL for several computers",
+      journal_.obstacle, url_.shown());
+}
 
 Result<Database> Database::open(const DatabaseUrl& url, Missing missing) {
   if (url.is_sqlite()) TROCAR_TRY_STATUS(prepare_file(url.file, missing));
@@ -110,7 +119,9 @@ Result<Database> Database::open(const DatabaseUrl& url, Missing missing) {
 
 bool Database::reconnect() noexcept {
   try {
-    session_ = connect(url_);
+    Connection made = connect(url_);
+    session_ = std::move(made.session);
+    journal_ = std::move(made.journal);
     return true;
   } catch (const std::exception&) {
     return false;

@@ -12,6 +12,7 @@
 
 #include "core/result.h"
 #include "database/database_url.h"
+#include "database/sqlite_journal.h"
 
 namespace trocar::database {
 
@@ -36,6 +37,8 @@ class Database {
 
   const DatabaseUrl& url() const noexcept { return url_; }
   bool is_sqlite() const noexcept { return url_.is_sqlite(); }
+  /// What the user has to know of an SQLite file without a write-ahead log, in one line; empty: nothing.
+  std::string note() const;
   soci::session& session() noexcept { return *session_; }
 
   /// Runs reading statements: `work(soci::session&)` returns T or Result<T>. `what`: "the attempts cannot be read".
@@ -54,7 +57,12 @@ class Database {
 
  private:
   enum class Kind { kRead, kWrite };
-  Database(DatabaseUrl url, std::unique_ptr<soci::session> session);
+  struct Connection {
+    std::unique_ptr<soci::session> session;
+    Journal journal;  ///< Of an SQLite file.
+  };
+  Database(DatabaseUrl url, Connection connection);
+  static Connection connect(const DatabaseUrl& url);
 
   template <class Work>
   auto attempt(const char* what, Kind kind, const Work& work) {
@@ -80,6 +88,7 @@ class Database {
 
   DatabaseUrl url_;
   std::unique_ptr<soci::session> session_;
+  Journal journal_;
 };
 
 }  // namespace trocar::database

@@ -128,6 +128,11 @@ Service::Service(Service&&) noexcept = default;
 Service& Service::operator=(Service&&) noexcept = default;
 Service::~Service() = default;
 
+std::string Service::database_note() {
+  const auto repository = state_->repositories->borrow();
+  return (*repository).database().note();
+}
+
 Result<std::size_t> Service::count_accounts() {
   const auto repository = state_->repositories->borrow();
   TROCAR_TRY(const std::vector<results::Account> accounts, results::list_accounts(*repository));

@@ -40,6 +40,8 @@ class Service {
   HttpAnswer answer(const HttpRequest& request);
   /// Number of accounts: without any nobody can log in.
   Result<std::size_t> count_accounts();
+  /// See Database::note.
+  std::string database_note();
 
  private:
   struct State;

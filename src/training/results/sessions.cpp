@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -59,8 +60,11 @@ void add_outcome(const scoring::Outcome& outcome, AttemptRecord& record) {
 Result<std::string> read_recording(const fs::path& file) {
   std::error_code error;
   if (fs::file_size(file, error) > kMostRecordingBytes) return std::string();
-  if (!fs::exists(file.string() + "-wal", error)) return read_file(file);
-  // The newest ticks of a killed session are beside it.
+  const std::vector<fs::path> files = storage::session_files(file);
+  const bool is_single =
+      std::none_of(files.begin() + 1, files.end(), [&](const fs::path& beside) { return fs::exists(beside, error); });
+  if (is_single) return read_file(file);
+  // The newest ticks of a killed session are beside it, or what its last commit has to be undone with.
   const TemporaryFolder folder;
   const fs::path copy = folder / "copy.session";
   TROCAR_TRY_STATUS(storage::copy_session(file, copy));

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "storage/detail/database.h"
+#include "storage/detail/shared_lock.h"
 #include "storage/session_file.h"
 
 namespace trocar::storage {
@@ -29,6 +30,17 @@ fs::path free_name(const fs::path& path) {
   }
 }
 
+/// One file with a rollback journal, which no other program uses. Throws soci::soci_error.
+void take_alone(soci::session& database) {
+  constexpr int kWaitForReader_ms = 200;
+  set_wait(database, kWaitForReader_ms);
+  std::string mode;
+  database << "PRAGMA journal_mode = DELETE", soci::into(mode);
+  if (mode != "delete") throw soci::soci_error("it is locked");
+  database << "BEGIN EXCLUSIVE";
+  database << "COMMIT";
+}
+
 /// True for the file of an interrupted program: an incomplete session, now in one file, or an empty file.
 Result<bool> make_single(const fs::path& path) {
   std::error_code ignored;
@@ -39,13 +51,10 @@ Result<bool> make_single(const fs::path& path) {
   const Status status = guarded("cannot write: another program is writing this session", path,
                                 "wait for it, or choose another name", [&] {
                                   soci::session database;
-                                  open_database(database, path);
+                                  open_existing(database, path);
                                   is_left = is_incomplete(database);
                                   is_checked = true;
-                                  if (!is_left) return;
-                                  std::string mode;
-                                  database << "PRAGMA journal_mode = DELETE", soci::into(mode);
-                                  if (mode != "delete") throw soci::soci_error("it is locked");
+                                  if (is_left) take_alone(database);
                                 });
   if (!is_checked) return false;  // not a database: a file of another program
   TROCAR_TRY_STATUS(status);
@@ -61,8 +70,10 @@ std::vector<fs::path> session_files(const fs::path& path) {
 Status copy_session(const fs::path& from, const fs::path& to) {
   std::error_code error;
   fs::copy_file(from, to, error);
-  const fs::path wal = from.string() + "-wal";
-  if (!error && fs::exists(wal)) fs::copy_file(wal, to.string() + "-wal", error);
+  for (const char* log : {"-wal", "-journal"}) {
+    const fs::path beside = from.string() + log;
+    if (!error && fs::exists(beside)) fs::copy_file(beside, to.string() + log, error);
+  }
   if (error) return fail("the session cannot be copied: " + error.message(), from.string(), "check the free space");
   TROCAR_TRY_STATUS(make_single(to));
   return {};

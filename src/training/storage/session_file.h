@@ -73,7 +73,8 @@ struct SessionParameters {
   std::string tissue_table_toml;     ///< The whole table.
 };
 
-/// Writes a session during the attempt: one SQLite file in WAL mode. If the program is killed at any moment, the file
+/// Writes a session during the attempt: one SQLite file, in WAL mode where the file system permits it, else with a
+/// rollback journal (commits then wait until no other program reads). If the program is killed at any moment, the file
 /// lacks at most the last half second of ticks and can be opened again: ticks are buffered and committed every 0.5 s of
 /// session time, and after as many ticks as 0.5 s contain at the session's rate. After the first failure it writes no
 /// more and returns that failure again. Not real-time safe; one thread. Without finish() the buffered data are written
@@ -104,6 +105,8 @@ class SessionWriter {
   /// can be appended afterwards.
   Status finish(const scoring::Outcome& outcome, std::span<const std::size_t> shots);
   std::size_t saved_ticks() const noexcept;  ///< Ticks committed so far.
+  /// What the user has to know of a folder where SQLite has no write-ahead log, in one line; empty: nothing.
+  std::string note() const;
   /// Hash of all ticks, see Session; empty before finish().
   const std::string& ticks_hash() const noexcept;
 

@@ -58,12 +58,14 @@ void apply(const SessionParameters& first, SessionInfo& info) {
     if (option.starts_with(kForceModel)) info.force_model = option.substr(kForceModel.size());
 }
 
-/// A killed session needs its folder: SQLite creates an index of the -wal file there.
+/// A killed session needs its folder: SQLite creates an index of the -wal file there, and removes the -journal file.
 const char* open_advice(const fs::path& path) {
   std::error_code error;
-  return fs::exists(path.string() + "-wal", error)
-             ? "the program was killed during recording: copy the session and its -wal file to a writable folder"
-             : "check the file; if it was copied, copy it again";
+  if (fs::exists(path.string() + "-wal", error))
+    return "the program was killed during recording: copy the session and its -wal file to a writable folder";
+  if (fs::exists(path.string() + "-journal", error))
+    return "the program was killed during recording: copy the session and its -journal file to a writable folder";
+  return "check the file; if it was copied, copy it again";
 }
 
 /// Throws soci::soci_error if rows differ from their checksum. A session of an older program has none.

@@ -13,12 +13,13 @@
 #include "core/log.h"
 #include "storage/detail/action_table.h"
 #include "storage/detail/checksums.h"
-#include "storage/detail/columns.h"
 #include "storage/detail/database.h"
 #include "storage/detail/info_table.h"
 #include "storage/detail/outcome_json.h"
 #include "storage/detail/parameters_table.h"
 #include "storage/detail/shape_table.h"
+#include "storage/detail/shared_lock.h"
+#include "storage/detail/tick_buffer.h"
 #include "storage/detail/transducer_table.h"
 #include "storage/detail/xray_table.h"
 #include "storage/session_file.h"
@@ -30,6 +31,10 @@ namespace {
 
 constexpr double kBatchSeconds = 0.5;         ///< Session time between two commits.
 constexpr double kMaxBatchTicks = 100'000.0;  ///< Limit of the buffer at any rate.
+// With a rollback journal a commit waits for readers: shortly, then it is put off to the next one, but not for ever.
+constexpr int kShortWait_ms = 100;
+constexpr int kLongWait_ms = 5000;
+constexpr std::size_t kMostPutOff = 20;  ///< Batches.
 constexpr const char* kWriteAdvice = "free some disk space or choose another folder";
 constexpr const char* kPlaceAdvice = "choose another folder";
 
@@ -57,27 +62,18 @@ void remove_all(const std::vector<fs::path>& files) {
 
 }  // namespace
 
-/// Invariant: every buffered column has the length of `samples`.
 struct SessionWriter::Impl {
   fs::path path;
   SessionInfo info;
   std::size_t batch_ticks = 1;
-  int next_tick = 0;
   std::size_t saved_ticks = 0;
   double batch_start_s = 0.0;
+  std::size_t put_off_ticks = 0;            ///< Buffered ticks of commits that were put off.
+  double transducer_due_s = kBatchSeconds;  ///< Time span of the transducer's buffer that is committed.
   std::optional<Error> failure;
   bool is_finished = false;
 
-  // Buffered columns, bound to the statements.
-  std::vector<telemetry::TickSample> samples;
-  std::vector<int> tick_column;
-  std::vector<std::vector<double>> real_columns;
-  std::vector<std::vector<soci::indicator>> real_indicators;
-  std::vector<std::vector<int>> integer_columns;
-  struct {
-    std::vector<int> tick, slot, kind, id;
-    std::vector<std::string> text;
-  } events;
+  TickBuffer ticks;
   TimedBuffer transducer{transducer_table()};
   TimedBuffer xray{xray_table()};
   TimedBuffer actions{action_table()};
@@ -88,141 +84,82 @@ struct SessionWriter::Impl {
   std::string ticks_hash;  ///< When finished.
 
   soci::session database;
-  std::optional<soci::statement> insert_ticks, insert_events;
+  database::Journal journal;
+  SharedLock lock;  ///< With a rollback journal, until the session is complete.
 
   ~Impl() {
-    if (!is_finished && !failure) static_cast<void>(flush());
-    insert_events.reset();
-    insert_ticks.reset();
+    if (!is_finished && !failure) static_cast<void>(flush(Readers::kAwait));
+    ticks.end_statements();
+    lock.release();
     if (!is_finished) static_cast<void>(make_single_file());  // an incomplete session is also one file
   }
 
   void set_up();
-  void prepare_insert_ticks();
-  void prepare_insert_events();
-  void buffer(const telemetry::TickSample& sample);
-  Status flush();
+  enum class Readers { kAwait, kPutOff };
+  /// Commits the buffer. kPutOff: where another program reads a session with a rollback journal, the buffer is kept.
+  Status flush(Readers readers = Readers::kPutOff);
+  void write_buffer();
+  void undo();
   void clear();
   Status make_single_file();
 };
 
 void SessionWriter::Impl::set_up() {
   open_database(database, path);
-  std::string mode;
-  database << "PRAGMA journal_mode = WAL", soci::into(mode);
-  database << "PRAGMA synchronous = NORMAL";
+  journal = database::set_journal(database, path, database::find_network_file_system(path));
+  if (journal.is_write_ahead) database << "PRAGMA synchronous = NORMAL";
   database << "BEGIN IMMEDIATE";
   for (const std::string& statement : schema_statements()) database << statement;
   write_info(database, info);
   write_checksum(database, kInfoRows);
   write_checksum(database, kNameRows);
   database << "COMMIT";
-  prepare_insert_ticks();
-  prepare_insert_events();
+  if (!journal.is_write_ahead) lock.take(database);
+  ticks.prepare(database);
 }
 
-void SessionWriter::Impl::prepare_insert_ticks() {
-  std::string names = "tick";
-  std::string values = ":tick";
-  std::size_t reals = 0;
-  std::size_t integers = 0;
-  const telemetry::TickSample sample;
-  visit_stored_columns(sample, [&](const char* name, const auto& field) {
-    names += fmt::format(", {}", name);
-    values += fmt::format(", :{}", name);
-    ++(kIsReal<std::remove_cvref_t<decltype(field)>> ? reals : integers);
-  });
-  real_columns.resize(reals);
-  real_indicators.resize(reals);
-  integer_columns.resize(integers);
-
-  insert_ticks.emplace(database);
-  insert_ticks->exchange(soci::use(tick_column));
-  reals = integers = 0;
-  visit_stored_columns(sample, [&](const char*, const auto& field) {
-    if constexpr (kIsReal<std::remove_cvref_t<decltype(field)>>) {
-      insert_ticks->exchange(soci::use(real_columns[reals], real_indicators[reals]));
-      ++reals;
-    } else {
-      insert_ticks->exchange(soci::use(integer_columns[integers++]));
-    }
-  });
-  insert_ticks->alloc();
-  insert_ticks->prepare(fmt::format("INSERT INTO ticks ({}) VALUES ({})", names, values));
-  insert_ticks->define_and_bind();
-}
-
-void SessionWriter::Impl::prepare_insert_events() {
-  insert_events.emplace(database);
-  insert_events->exchange(soci::use(events.tick));
-  insert_events->exchange(soci::use(events.slot));
-  insert_events->exchange(soci::use(events.kind));
-  insert_events->exchange(soci::use(events.id));
-  insert_events->exchange(soci::use(events.text));
-  insert_events->alloc();
-  insert_events->prepare("INSERT INTO events (tick, slot, kind, id, text) VALUES (:tick, :slot, :kind, :id, :text)");
-  insert_events->define_and_bind();
-}
-
-void SessionWriter::Impl::buffer(const telemetry::TickSample& sample) {
-  samples.push_back(sample);
-  tick_column.push_back(next_tick);
-  std::size_t real = 0;
-  std::size_t integer = 0;
-  visit_stored_columns(sample, [&](const char*, const auto& field) {
-    if constexpr (kIsReal<std::remove_cvref_t<decltype(field)>>) {
-      // SQLite has no NaN: it is stored as NULL.
-      real_indicators[real].push_back(std::isnan(field) ? soci::i_null : soci::i_ok);
-      real_columns[real++].push_back(field);
-    } else {
-      integer_columns[integer++].push_back(static_cast<int>(field));
-    }
-  });
-  for (std::size_t slot = 0; slot < sample.events.size(); ++slot) {
-    const telemetry::TickEvent& event = sample.events[slot];
-    if (event.kind == telemetry::EventKind::kNone) continue;
-    events.tick.push_back(next_tick);
-    events.slot.push_back(static_cast<int>(slot));
-    events.kind.push_back(static_cast<int>(event.kind));
-    events.id.push_back(event.id);
-    events.text.push_back(event_text(info, event));
-  }
-  ++next_tick;
-}
-
-Status SessionWriter::Impl::flush() {
-  if (tick_column.empty() && transducer.is_empty() && xray.is_empty() && actions.is_empty() && shapes.is_empty() &&
+Status SessionWriter::Impl::flush(Readers readers) {
+  if (ticks.is_empty() && transducer.is_empty() && xray.is_empty() && actions.is_empty() && shapes.is_empty() &&
       parameters.is_empty())
     return {};
-  Status status = guarded("the session cannot be written", path, kWriteAdvice, [&] {
-    database << "BEGIN IMMEDIATE";
-    if (!tick_column.empty()) {
-      insert_ticks->execute(true);
-      write_block(database, {static_cast<std::size_t>(tick_column.front()), samples.size(), digest_of(samples)});
-    }
-    if (!events.tick.empty()) insert_events->execute(true);
-    transducer.write(database);
-    xray.write(database);
-    actions.write(database);
-    shapes.write(database);
-    parameters.write(database);
-    database << "COMMIT";
-  });
+  const bool may_put_off =
+      readers == Readers::kPutOff && !journal.is_write_ahead && ticks.samples().size() < kMostPutOff * batch_ticks;
+  set_wait(database, may_put_off ? kShortWait_ms : kLongWait_ms);
+  const Status status = guarded("the session cannot be written", path, kWriteAdvice, [&] { write_buffer(); });
+  if (!status && may_put_off && is_busy(database)) {
+    undo();
+    put_off_ticks = ticks.samples().size();
+    if (!ticks.is_empty()) batch_start_s = ticks.samples().back().time_s;
+    transducer_due_s = transducer.span_s() + kBatchSeconds;
+    return {};
+  }
+  put_off_ticks = 0;
+  transducer_due_s = kBatchSeconds;
   if (!status) failure = status.error();
-  if (status) saved_ticks += samples.size();
-  if (status) add_ticks(all_ticks, samples);
+  if (status) saved_ticks += ticks.samples().size();
+  if (status) add_ticks(all_ticks, ticks.samples());
   clear();
   return status;
 }
 
+void SessionWriter::Impl::write_buffer() {
+  database << "BEGIN IMMEDIATE";
+  ticks.write(database);
+  transducer.write(database);
+  xray.write(database);
+  actions.write(database);
+  shapes.write(database);
+  parameters.write(database);
+  database << "COMMIT";
+}
+
+/// Ends the transaction that could not be committed, if it has begun.
+void SessionWriter::Impl::undo() {
+  static_cast<void>(guarded("", path, "", [&] { database << "ROLLBACK"; }));
+}
+
 void SessionWriter::Impl::clear() {
-  samples.clear();
-  tick_column.clear();
-  for (auto& column : real_columns) column.clear();
-  for (auto& column : real_indicators) column.clear();
-  for (auto& column : integer_columns) column.clear();
-  for (auto* column : {&events.tick, &events.slot, &events.kind, &events.id}) column->clear();
-  events.text.clear();
+  ticks.clear();
   transducer.clear();
   xray.clear();
   actions.clear();
@@ -265,10 +202,11 @@ Result<SessionWriter> SessionWriter::create(const fs::path& path, const SessionI
 Status SessionWriter::append(const telemetry::TickSample& sample) {
   TROCAR_CHECK(impl_ != nullptr && !impl_->is_finished);
   if (impl_->failure) return tl::unexpected(*impl_->failure);
-  if (impl_->tick_column.empty()) impl_->batch_start_s = sample.time_s;
-  impl_->buffer(sample);
+  if (impl_->ticks.is_empty()) impl_->batch_start_s = sample.time_s;
+  impl_->ticks.add(impl_->info, sample);
   const bool is_due = sample.time_s - impl_->batch_start_s >= kBatchSeconds;
-  if (is_due || impl_->tick_column.size() >= impl_->batch_ticks) return impl_->flush();
+  const std::size_t new_ticks = impl_->ticks.samples().size() - impl_->put_off_ticks;
+  if (is_due || new_ticks >= impl_->batch_ticks) return impl_->flush();
   return {};
 }
 
@@ -276,7 +214,8 @@ Status SessionWriter::append(const TransducerSample& sample) {
   TROCAR_CHECK(impl_ != nullptr && !impl_->is_finished);
   if (impl_->failure) return tl::unexpected(*impl_->failure);
   add(impl_->transducer, sample);
-  return impl_->transducer.span_s() >= kBatchSeconds ? impl_->flush() : Status{};  // it moves without the needle
+  return impl_->transducer.span_s() >= impl_->transducer_due_s ? impl_->flush()
+                                                               : Status{};  // it moves without the needle
 }
 
 Status SessionWriter::append(const tasks::XrayUse& use) {
@@ -302,7 +241,7 @@ Status SessionWriter::append(const telemetry::NeedleShape& shape) {
 
 Status SessionWriter::append(const SessionParameters& parameters) {
   TROCAR_CHECK(impl_ != nullptr && !impl_->is_finished);
-  TROCAR_CHECK(parameters.tick < static_cast<std::size_t>(impl_->next_tick));
+  TROCAR_CHECK(parameters.tick < static_cast<std::size_t>(impl_->ticks.next_tick()));
   if (impl_->failure) return tl::unexpected(*impl_->failure);
   impl_->parameters.add(parameters);
   return {};
@@ -311,12 +250,20 @@ Status SessionWriter::append(const SessionParameters& parameters) {
 Status SessionWriter::append(const tasks::Interruption& interruption) {
   TROCAR_CHECK(impl_ != nullptr && !impl_->is_finished);
   if (impl_->failure) return tl::unexpected(*impl_->failure);
-  impl_->parameters.add(interruption, static_cast<std::size_t>(impl_->next_tick));
+  impl_->parameters.add(interruption, static_cast<std::size_t>(impl_->ticks.next_tick()));
   return {};
 }
 
 std::size_t SessionWriter::saved_ticks() const noexcept {
   return impl_->saved_ticks;
+}
+
+std::string SessionWriter::note() const {
+  if (impl_->journal.obstacle.empty()) return {};
+  return fmt::format(
+      "the session is written with a rollback journal ({}): while another program reads {}, up to {:.0f} s "
+      "of it are not yet stored",
+      impl_->journal.obstacle, impl_->path.string(), kBatchSeconds * static_cast<double>(kMostPutOff));
 }
 
 const std::string& SessionWriter::ticks_hash() const noexcept {
@@ -325,9 +272,10 @@ const std::string& SessionWriter::ticks_hash() const noexcept {
 
 Status SessionWriter::finish(const scoring::Outcome& outcome, std::span<const std::size_t> shots) {
   TROCAR_CHECK(impl_ != nullptr && !impl_->is_finished);
-  for (const std::size_t shot : shots) TROCAR_CHECK(shot < static_cast<std::size_t>(impl_->next_tick));
+  for (const std::size_t shot : shots) TROCAR_CHECK(shot < static_cast<std::size_t>(impl_->ticks.next_tick()));
   if (impl_->failure) return tl::unexpected(*impl_->failure);
-  TROCAR_TRY_STATUS(impl_->flush());
+  TROCAR_TRY_STATUS(impl_->flush(Impl::Readers::kAwait));
+  set_wait(impl_->database, kLongWait_ms);
   const Status status = guarded("the session's outcome cannot be written", impl_->path, kWriteAdvice, [&] {
     double score = outcome.score;
     soci::indicator score_indicator = std::isnan(score) || !outcome.is_scored() ? soci::i_null : soci::i_ok;
@@ -349,8 +297,8 @@ Status SessionWriter::finish(const scoring::Outcome& outcome, std::span<const st
   if (!status) impl_->failure = status.error();
   TROCAR_TRY_STATUS(status);
   impl_->is_finished = true;
-  impl_->insert_events.reset();
-  impl_->insert_ticks.reset();
+  impl_->ticks.end_statements();
+  impl_->lock.release();
   return impl_->make_single_file();
 }
 

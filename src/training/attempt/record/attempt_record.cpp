@@ -213,6 +213,7 @@ RunResult AttemptRecord::score() {
   if (has_lost_scene_ || !unknown_.empty())
     result.warnings.emplace_back(
         "the server did not report the parameters of some ticks: a change is missing in the session");
+  if (std::string note = writer_.note(); !note.empty()) result.warnings.push_back(std::move(note));
   return result;
 }
 

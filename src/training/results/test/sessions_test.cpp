@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "core/files/atomic_file.h"
+#include "database/testing/other_file_system.h"
 #include "results_lab.h"
 #include "storage/session_file.h"
 
@@ -151,6 +152,36 @@ TEST_P(Sessions, OfAKilledProgramLackAtMostTheLastHalfSecond) {
   ASSERT_TRUE(session) << session.error().text();
   EXPECT_TRUE(session->is_incomplete);
   EXPECT_GE(session->samples.size(), 2250u);
+}
+
+// On a network drive: neither the session nor the database has a write-ahead log.
+TEST_P(Sessions, AreRecordedWhereThereIsNoLog) {
+  const fs::path file = folder_ / "killed.session", kept = folder_ / "drive.sqlite";
+  const database::testing::OtherFileSystem other(database::testing::SharedMemory::kFails);
+  auto repository = Repository::open({kept, {}});
+  ASSERT_TRUE(repository) << repository.error().text();
+  EXPECT_NE(repository->database().note(), "");
+  const auto anna = add_person(*repository, {"Anna"}, Seconds());
+  ASSERT_TRUE(anna);
+  const storage::SessionInfo written = info(anna->id);
+  const pid_t station = ::fork();
+  if (station == 0) {
+    auto writer = storage::SessionWriter::create(file, written);
+    if (writer) append_ticks(*writer, 1600);
+    database::testing::OtherFileSystem::die_after(20);  // in the middle of the next commit
+    if (writer) append_ticks(*writer, 600);
+    ::_exit(1);
+  }
+  int status = 0;
+  ::waitpid(station, &status, 0);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  ASSERT_TRUE(fs::exists(file.string() + "-journal"));
+  ASSERT_TRUE(*import_session(*repository, file, {}, curriculum()));
+  const fs::path back = folder_ / "back.session";
+  ASSERT_TRUE(export_session(*repository, written.attempt_id, back));
+  const auto session = storage::load_session(back);
+  ASSERT_TRUE(session) << session.error().text();
+  EXPECT_EQ(session->samples.size(), 1500u);
 }
 
 TEST_P(Sessions, OfNobodyNeedAPerson) {

@@ -54,6 +54,17 @@ void open_database(soci::session& database, const std::filesystem::path& path) {
   database::open_sqlite(database, path, kWaitForWriter_s);
 }
 
+void open_existing(soci::session& database, const std::filesystem::path& path) {
+  open_database(database, path);
+  try {
+    pragma_integer(database, "application_id");
+  } catch (const soci::soci_error&) {
+    // The write-ahead log of a killed program, in a folder whose file system shares no memory.
+    if (!std::filesystem::exists(path.string() + "-wal")) throw;
+    database::read_without_shared_memory(database);
+  }
+}
+
 bool has_table(soci::session& database, const std::string& name) {
   int count = 0;
   database << "SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name = :name", soci::use(name),

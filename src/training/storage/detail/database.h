@@ -9,6 +9,7 @@
 #include "core/result.h"
 #include "database/guarded.h"
 #include "database/sqlite_handle.h"
+#include "database/sqlite_journal.h"
 
 namespace trocar::storage::detail {
 
@@ -17,6 +18,9 @@ inline constexpr int kApplicationId = 0x74726372;
 
 /// Opens the SQLite file (created if it is missing). Throws soci::soci_error.
 void open_database(soci::session& database, const std::filesystem::path& path);
+
+/// The same for a file that exists; its killed program's log is read also where it cannot be shared.
+void open_existing(soci::session& database, const std::filesystem::path& path);
 
 /// Throws soci::soci_error.
 bool has_table(soci::session& database, const std::string& name);

@@ -28,7 +28,7 @@ void switch_to(sqlite_api::sqlite3* handle, int option, int value) {
 
 GuardedDatabase::GuardedDatabase(const std::filesystem::path& path)
     : steps_left_(kLeastSteps + kStepsAByte * size_of(path)) {
-  open_database(session_, path);
+  open_existing(session_, path);
   sqlite_api::sqlite3* const handle = handle_of(session_);
   switch_to(handle, SQLITE_DBCONFIG_DEFENSIVE, 1);
   switch_to(handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0);
