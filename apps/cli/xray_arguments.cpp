@@ -68,8 +68,10 @@ void add_xray_options(Command& command, XrayArguments& a) {
   command.add_option("--patient", a.source.folder_or_name, "Patient folder, or an embedded patient's name").required();
   command.add_option("--patient-seed", a.source.seed, "Seed of an embedded patient").seed().show_default();
   command.add_option("--carm", a.carm, "LAO,CRAN in degrees; RAO and caudal are negative").show_default();
-  command.add_option("--at", a.at,
-                     "Middle of the image, x,y,z (mm, LPS); without it: the needle's tip, the injection or the body");
+  command.add_option(
+      "--at", a.at,
+      "Middle of the image, x,y,z (mm, LPS); without it: the needle's tip, the injection, the target of the patient's "
+      "task (its first expert path), or the centre of the body");
   command.add_option("--unit", a.unit, "X-ray unit of data/carms.toml").show_default();
   command.add_option("--field", a.field_mm, "Edge of the field; without it the unit's largest")
       .number_within(50.0, 500.0, "mm");

@@ -15,7 +15,7 @@ struct XrayArguments {
   io::PatientSource source;
   std::string unit = "angiography";
   std::string carm = "0,0";
-  std::string at;         ///< Empty: the needle's tip, the injection, or the middle of the body.
+  std::string at;  ///< Empty: the needle's tip, the injection, the target of the patient's task, or the body's centre.
   double field_mm = 0.0;  ///< 0: the unit's largest.
   int pixels = 512;
   std::string collimate = "1,1";

@@ -43,13 +43,31 @@ struct Room {
   double iodine_mg_per_ml = 0.0;  ///< Of the contrast agent.
 };
 
-/// Where the arm looks without --at: the needle's tip, the injection, or the middle of the body.
+/// Mean place of the body's voxels; the grid's centre if there is none.
+Vec3 body_centre_P(const volume::FloatGrid& skin_distance_mm) {
+  const volume::GridGeometry& geometry = skin_distance_mm.geometry;
+  Vec3 sum = Vec3::Zero();
+  double count = 0.0;
+  for (std::size_t n = 0; n < skin_distance_mm.voxels.size(); ++n)
+    if (skin_distance_mm.voxels[n] < 0.0F) {
+      sum += volume::to_vec3(geometry.index_of(n));
+      count += 1.0;
+    }
+  const volume::Index3 last{geometry.size[0] - 1, geometry.size[1] - 1, geometry.size[2] - 1};
+  return geometry.to_mm(count > 0.0 ? Vec3(sum / count) : Vec3(0.5 * volume::to_vec3(last)));
+}
+
+/// Where the arm looks without --at: the needle's tip, the injection, the target of the patient's task, or the centre
+/// of the body.
 Vec3 middle_P(const Room& room, const std::optional<Pose>& X_PN) {
   if (X_PN) return X_PN->p();
   if (room.injection) return room.injection->place_P;
-  const volume::FloatGrid& skin = room.patient->skin_distance_mm;
-  const auto deepest = std::min_element(skin.voxels.begin(), skin.voxels.end());
-  return skin.geometry.centre_mm(skin.geometry.index_of(static_cast<std::size_t>(deepest - skin.voxels.begin())));
+  const std::vector<anatomy::NeedlePath>& paths = room.patient->paths;
+  if (paths.empty()) return body_centre_P(room.patient->skin_distance_mm);
+  // "TASK: place" is a path of the task that the patient was made for; abdomens have a biopsy's path before it.
+  const auto stated = std::ranges::find_if(
+      paths, [](const anatomy::NeedlePath& path) { return path.name.find(": ") != std::string::npos; });
+  return (stated != paths.end() ? *stated : paths.front()).line_P.b;
 }
 
 xray::ToolShape needle_of(const Pose& X_PN, double diameter_mm) {

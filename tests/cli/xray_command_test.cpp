@@ -19,7 +19,7 @@ namespace trocar::cli_test {
 namespace {
 namespace fs = std::filesystem;
 
-/// A place in a bile duct of ptcd-1, the target of its first planned path, and one in the liver.
+/// A place in a bile duct of ptcd-1, and one in the liver.
 const Vec3 kDuct_P{-36.75, -62.89, 16.08};
 const std::string kDuct = "-36.75,-62.89,16.08";
 const std::string kLiver = "-19.77,-59.89,30.09";
@@ -113,6 +113,46 @@ TEST_F(XrayCommand, SameSeedGivesSameBytes) {
   EXPECT_EQ(static_cast<int>(bytes[23]), 96);  // rows
   EXPECT_EQ(bytes, read_text(folder_ / "b.png"));
   EXPECT_NE(bytes, read_text(folder_ / "c.png"));
+}
+
+/// The first place of that name in the JSON that a command prints.
+Vec3 place_in(const Outcome& outcome, const std::string& name) {
+  const std::regex numbers("\"" + name + R"re(": \[\s*([-0-9.e]+),\s*([-0-9.e]+),\s*([-0-9.e]+))re");
+  std::smatch found;
+  if (!std::regex_search(outcome.out, found, numbers)) return Vec3::Constant(std::nan(""));
+  return {std::stod(found[1]), std::stod(found[2]), std::stod(found[3])};
+}
+
+TEST_F(XrayCommand, LooksAtTheTargetOfThePatientsTask) {
+  const Outcome outcome = xray("--json", "x.png");
+  ASSERT_EQ(outcome.exit_status, 0) << outcome.err;
+  const Vec3 target_P = place_in(trocar("patient show '" + patient() + "' --json"), "target_mm");
+  EXPECT_NEAR((place_in(outcome, "isocentre_mm") - target_P).norm(), 0.0, 1e-6);
+}
+
+TEST_F(XrayCommand, LooksAtTheCentreOfABodyWithoutATask) {
+  // A body of 60 x 40 x 100 mm in air, off the middle of the scan and cut off by its end.
+  volume::GridGeometry geometry;
+  geometry.size = {50, 40, 60};
+  geometry.spacing_mm = Vec3::Constant(2.0);
+  geometry.origin_P = Vec3(-10.0, 20.0, -30.0);
+  volume::CtGrid ct(geometry, -1000);
+  for (std::int64_t k = 10; k < 60; ++k)
+    for (std::int64_t j = 5; j < 25; ++j)
+      for (std::int64_t i = 15; i < 45; ++i) ct.voxels[geometry.offset({i, j, k})] = 40;
+  ASSERT_TRUE(io::write_image(ct, folder_ / "ct.nrrd"));
+  volume::LabelGrid labels(geometry, 0);
+  for (std::int64_t k = 20; k < 30; ++k) labels.voxels[geometry.offset({30, 15, k})] = 5;
+  ASSERT_TRUE(io::write_image(labels, folder_ / "labels.nrrd"));
+  const std::string build = "patient build --ct '" + (folder_ / "ct.nrrd") + "' --labels '" +
+                            (folder_ / "labels.nrrd") + "' --out '" + (folder_ / "body") + "' >/dev/null";
+  const Outcome built = trocar(build);
+  ASSERT_EQ(built.exit_status, 0) << built.err;
+  const Outcome outcome =
+      trocar("xray --patient '" + (folder_ / "body") + "' --pixels 32 --json --out '" + (folder_ / "x.png") + "'");
+  ASSERT_EQ(outcome.exit_status, 0) << outcome.err;
+  const Vec3 centre_P = geometry.to_mm(Vec3(29.5, 14.5, 34.5));
+  EXPECT_NEAR((place_in(outcome, "isocentre_mm") - centre_P).norm(), 0.0, 1.0);
 }
 
 TEST_F(XrayCommand, NrrdLiesAtTheDetector) {

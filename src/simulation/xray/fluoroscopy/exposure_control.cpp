@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
 #include "xray/fluoroscopy/dose.h"
@@ -10,6 +11,9 @@ namespace trocar::xray {
 namespace {
 
 constexpr int kMeters = 12;  ///< Rays along each edge of the metering field.
+/// Body (g/cm²) behind which more than half of the beam arrives: direct radiation, and the edge of the body.
+constexpr double kThinBody = 3.0;
+constexpr std::size_t kFewRays = kMeters * kMeters / 20;  ///< As for the display's window.
 constexpr double kStep_kv = 2.0;
 constexpr double kRise_kv = 10.0;  ///< If the current does not suffice.
 constexpr double kNgy_per_mgy = 1e6;
@@ -37,9 +41,24 @@ RayMasses metering_rays(const MassImage& patient, const CArm& arm) {
   return rays;
 }
 
+double body_of(const std::array<double, kBases>& masses) noexcept {
+  return masses[0] + masses[1];
+}
+
+/// The rays that are measured: those behind the body. Where it covers next to nothing of the field, all.
+RayMasses rays_behind_body(RayMasses rays) {
+  for (const double least : {kThinBody, 0.0}) {
+    RayMasses behind;
+    std::copy_if(rays.begin(), rays.end(), std::back_inserter(behind),
+                 [&](const auto& masses) { return body_of(masses) > least; });
+    if (behind.size() > kFewRays) return behind;
+  }
+  return rays;
+}
+
 double mean_body(const RayMasses& rays) {
   double sum = 0.0;
-  for (const auto& masses : rays) sum += masses[0] + masses[1];
+  for (const auto& masses : rays) sum += body_of(masses);
   return sum / static_cast<double>(rays.size());
 }
 
@@ -81,7 +100,7 @@ double kv_of_body(double g_per_cm2, const ExposureLimits& limits) noexcept {
 
 Result<Exposure> control_exposure(const MassImage& patient, const CArm& arm, const Tube& filters, DoseMode mode,
                                   double pulses_per_s, const ExposureLimits& limits, BeamCache& beams) {
-  const RayMasses rays = metering_rays(patient, arm);
+  const RayMasses rays = rays_behind_body(metering_rays(patient, arm));
   Exposure exposure{filters, 0.0, false};
   exposure.tube.kv = kv_of_body(mean_body(rays), limits);
   for (;;) {

@@ -54,9 +54,9 @@ class BeamCache {
 /// Voltage behind a mass of body (g/cm²), in steps of 2 kV: 60 kV to 8 g/cm², 2.5 kV per g/cm² above; assumed.
 double kv_of_body(double g_per_cm2, const ExposureLimits& limits) noexcept;
 
-/// Exposure of a pulse that gives the detector its dose behind the patient, in the middle half of the collimated field.
-/// The voltage follows the thickness; if the dose needs more current than the limits permit, the voltage rises too.
-/// `filters`: aluminium and copper of the tube. Errors: those of the spectrum.
+/// Exposure of a pulse that gives the detector its dose behind the patient, in the middle half of the collimated field;
+/// direct radiation there is not measured. The voltage follows the thickness; if the dose needs more current than the
+/// limits permit, the voltage rises too. `filters`: aluminium and copper of the tube. Errors: those of the spectrum.
 Result<Exposure> control_exposure(const MassImage& patient, const CArm& arm, const Tube& filters, DoseMode mode,
                                   double pulses_per_s, const ExposureLimits& limits, BeamCache& beams);
 

@@ -41,6 +41,46 @@ TEST(ExposureControl, HoldsTheDetectorsDoseForAllBodies) {
   EXPECT_GT(former_kv, 80.0);
 }
 
+/// A slab over the first `columns` of 32 columns, and air beside it.
+MassImage slab_over(double g_per_cm2, int columns) {
+  MassImage masses = body(g_per_cm2);
+  std::vector<float>& water = masses.of(Basis::kWater);
+  for (std::size_t n = 0; n < water.size(); ++n)
+    if (static_cast<int>(n % 32) >= columns) water[n] = 0.0F;
+  return masses;
+}
+
+/// The mean of equal rays depends on their number by rounding alone.
+void expect_same(const Exposure& a, const Exposure& b) {
+  EXPECT_EQ(a.tube, b.tube);
+  EXPECT_NEAR(a.mas, b.mas, 1e-9 * b.mas);
+  EXPECT_EQ(a.is_limited, b.is_limited);
+}
+
+TEST(ExposureControl, DoesNotMeasureDirectRadiation) {
+  const CArm arm;
+  BeamCache beams;
+  for (const double mass : {1.0, 5.0, 15.0, 25.0}) {
+    const auto exposure_of = [&](int columns) {
+      return control_exposure(slab_over(mass, columns), arm, Tube{}, DoseMode::kNormal, 15.0, {}, beams).value();
+    };
+    const Exposure whole = exposure_of(32);
+    for (const int columns : {24, 16, 11}) expect_same(exposure_of(columns), whole);
+    // The measuring field begins at column 8: the slab is beside it.
+    EXPECT_EQ(exposure_of(8), exposure_of(0)) << mass;
+  }
+}
+
+TEST(ExposureControl, DoesNotMeasureTheEdgeOfTheBody) {
+  const CArm arm;
+  BeamCache beams;
+  MassImage masses = slab_over(20.0, 16);
+  for (std::size_t n = 0; n < masses.size(); ++n)
+    if (n % 32 >= 16 && n % 32 < 20) masses.of(Basis::kWater)[n] = 1.5F;
+  expect_same(control_exposure(masses, arm, Tube{}, DoseMode::kNormal, 15.0, {}, beams).value(),
+              control_exposure(body(20.0), arm, Tube{}, DoseMode::kNormal, 15.0, {}, beams).value());
+}
+
 TEST(ExposureControl, FollowsTheDoseMode) {
   const CArm arm;
   BeamCache beams;
