@@ -66,6 +66,8 @@ config::Json readiness_json(const tasks::Task& task, const tasks::TaskReadiness&
   return {{"task", task.name},
           {"possible", readiness.is_possible},
           {"parenchymal", readiness.is_parenchymal},
+          {"posture", readiness.posture ? config::Json(std::string(anatomy::posture_name(*readiness.posture)))
+                                        : config::Json(nullptr)},
           {"reasons", readiness.reasons}};
 }
 
@@ -123,7 +125,9 @@ void print_summary(const BuildSummary& summary, const anatomy::VirtualPatient& p
                  label->is_derived ? "  derived" : "");
   std::vector<std::string> possible;
   for (std::size_t n = 0; n < summary.tasks.size(); ++n)
-    if (summary.readiness[n].is_possible) possible.push_back(summary.tasks[n].name);
+    if (const tasks::TaskReadiness& readiness = summary.readiness[n]; readiness.is_possible)
+      possible.push_back(summary.tasks[n].name +
+                         (readiness.posture ? fmt::format(" ({})", anatomy::posture_name(*readiness.posture)) : ""));
   fmt::print("tasks     {}\n",
              possible.empty() ? "none; see trocar patient check" : fmt::format("{}", fmt::join(possible, ", ")));
   if (!summary.doubts.empty()) fmt::print("doubtful\n");

@@ -6,6 +6,7 @@
 #include "cases/prepare_case.h"
 #include "commands.h"
 #include "config/json.h"
+#include "constants.h"
 #include "io/markups_file.h"
 #include "io/patient/open_patient.h"
 #include "json_parts.h"
@@ -20,7 +21,7 @@ namespace fs = std::filesystem;
 struct PlanArguments {
   std::string task;
   io::PatientSource source;
-  std::string needle;
+  std::string needle, posture;
   tasks::PlanOptions options;
   std::string out;
   bool is_json = false;
@@ -36,11 +37,13 @@ void print_plan(const std::vector<tasks::PlannedPath>& paths, bool is_json) {
                       {"organ_path_mm", p.organ_path_mm},
                       {"spare_margin_mm", p.spare_margin_mm},
                       {"nearest_risk", p.nearest_risk},
+                      {"posture", std::string(anatomy::posture_name(p.posture))},
                       {"cost_mm", p.cost_mm}});
     }
     print_json({{"paths", list}});
     return;
   }
+  fmt::print("with the patient {}\n", anatomy::posture_words(paths.front().posture));
   fmt::print("{:>4} {:>10} {:>14} {:>14}  {}\n", "path", "length", "in the organ", "spare margin", "nearest risk");
   for (std::size_t i = 0; i < paths.size(); ++i) {
     const tasks::PlannedPath& p = paths[i];
@@ -54,6 +57,7 @@ Status plan(const PlanArguments& arguments) {
   cases::CaseOptions options;
   options.task = arguments.task;
   options.needle = arguments.needle;
+  options.posture = arguments.posture;
   options.patient_folder = arguments.source.folder_or_name;
   TROCAR_TRY(const cases::Case tables, cases::load_tables(options));
   std::vector<tasks::PlannedPath> paths;
@@ -83,6 +87,7 @@ void add_plan_command(Command& program, Action& action) {
       .whole_number_within(1, 100000)
       .show_default();
   command.add_option("--needle", a->needle, "Needle of data/needles.toml; default: the task's needle");
+  command.add_option("--posture", a->posture, kPostureHelp);
   command.add_option("--seed", a->options.seed, "Random seed for the choice among paths").seed().show_default();
   command.add_option("--patient-seed", a->source.seed, "Random seed for the anatomy of an embedded patient")
       .seed()

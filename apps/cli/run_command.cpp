@@ -7,11 +7,13 @@
 #include "attempt/live/realtime_session.h"
 #include "commands.h"
 #include "config/json.h"
+#include "constants.h"
 #include "io/patient/open_patient.h"
 #include "patient_option.h"
 #include "replay_arguments.h"
 #include "run_results.h"
 #include "storage/score_json.h"
+#include "tasks/postures.h"
 
 namespace trocar::cli {
 namespace {
@@ -96,6 +98,7 @@ config::Json result_json(const RunArguments& arguments, const cases::Case& the_c
       {"operator", arguments.run.operator_name},
       {"device", arguments.run.device},
       {"parenchymal", the_case.is_parenchymal},
+      {"posture", std::string(anatomy::posture_name(tasks::posture_of(the_case.task, *the_case.patient)))},
       {"simulated_s", result.simulated_s},
       {"active_s", result.active_s},
       {"ticks", result.ticks},
@@ -134,6 +137,9 @@ void print_result(const RunArguments& arguments, const cases::Case& the_case, co
   const scoring::Outcome& outcome = result.outcome;
   fmt::print("{} on {} by {}: {:.1f} s, {} ticks\n", the_case.task.title, the_case.patient->name,
              arguments.run.operator_name, result.simulated_s, result.ticks);
+  if (const anatomy::Posture posture = tasks::posture_of(the_case.task, *the_case.patient);
+      posture != the_case.patient->posture)
+    fmt::print("with the patient {}\n", anatomy::posture_words(posture));
   if (!the_case.tissues.origin.empty()) fmt::print("tissues: {}\n", the_case.tissues.origin);
   if (the_case.is_parenchymal) fmt::print("no lesion in this patient: the target is in healthy tissue\n");
   for (const attempt::PunctureRecord& p : result.punctures) {
@@ -314,6 +320,7 @@ void add_run_command(Command& program, Action& action) {
   command.add_option("--device", a->run.device, "Simulated device with its limits and coupling; see trocar device list")
       .show_default();
   command.add_option("--needle", a->the_case.needle, "Needle that the task allows; the task's own when left out");
+  command.add_option("--posture", a->the_case.posture, kPostureHelp);
   command.add_option("--level", a->the_case.level,
                      "Level of difficulty of the task, by name or number; see trocar task list");
   command.add_option("--tissues", a->the_case.tissue_file, "Tissue table (TOML) instead of data/tissues.toml");

@@ -15,6 +15,7 @@
 #include "attempt/servers/tool_devices.h"
 #include "choice/patient_entry.h"
 #include "scoring/score.h"
+#include "tasks/postures.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
 #include "volume/sampling.h"
@@ -300,7 +301,8 @@ std::vector<BriefingRow> finding_rows(const cases::Case& the_case) {
   std::vector<BriefingRow> rows;
   const anatomy::PhantomInfo* info = find_info(the_case.patient->name);
   if (info == nullptr || !info->referral)
-    rows.push_back({briefing_tr("Posture"), escaped(std::string(posture_words(the_case.patient->posture)))});
+    rows.push_back({briefing_tr("Posture"),
+                    escaped(std::string(posture_words(tasks::posture_of(the_case.task, *the_case.patient))))});
   if (!is_lesion_task(the_case.task)) return rows;
   const QString lesion = the_case.is_parenchymal ? QString() : lesion_text(the_case);
   if (!lesion.isEmpty()) {

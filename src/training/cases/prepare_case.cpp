@@ -51,6 +51,36 @@ Status apply_level(Case& made, const std::string& level) {
   return {};
 }
 
+/// Notes the posture in the text from which a replay makes the task again.
+void note_posture(Case& made, anatomy::Posture posture) {
+  made.task.posture = posture;
+  if (made.task_toml.empty()) made.task_toml = fmt::format("base = \"{}\"\n", made.task.name);
+  made.task_toml = fmt::format("posture = \"{}\"\n", anatomy::posture_name(posture)) + made.task_toml;
+}
+
+/// The posture of the options.
+Status apply_posture(Case& made, const std::string& name) {
+  if (name.empty()) return {};
+  const auto posture = anatomy::find_posture(name);
+  if (!posture)
+    return fail_usage("there is no such posture", name, "give supine, prone, left-lateral, right-lateral or sitting");
+  const std::vector<anatomy::Posture>& allowed = made.task.postures;
+  if (!allowed.empty() && std::ranges::find(allowed, *posture) == allowed.end()) {
+    std::vector<std::string_view> names;
+    for (const anatomy::Posture one : allowed) names.push_back(anatomy::posture_name(one));
+    return fail_usage(
+        fmt::format("the task {} is not done with the patient {}", made.task.name, anatomy::posture_words(*posture)),
+        name, fmt::format("choose one of: {}", fmt::join(names, ", ")));
+  }
+  if (made.task.posture == posture) return {};
+  if (made.task.posture)
+    return fail_usage(fmt::format("the task {} has a posture of its own: {}", made.task.name,
+                                  anatomy::posture_name(*made.task.posture)),
+                      name, "omit --posture");
+  note_posture(made, *posture);
+  return {};
+}
+
 /// The needle of the options, if the task allows it.
 Result<tasks::Needle> find_needle(const tasks::Task& task, const std::string& wanted, const fs::path& file) {
   TROCAR_TRY(tasks::Needle needle, tasks::load_needle(file, wanted.empty() ? task.needle : wanted));
@@ -143,6 +173,7 @@ Result<Case> load_tables(const CaseOptions& options) {
   Case made;
   TROCAR_TRY_STATUS(find_task(made, options, data / "tasks"));
   TROCAR_TRY_STATUS(apply_level(made, options.level));
+  TROCAR_TRY_STATUS(apply_posture(made, options.posture));
   TROCAR_TRY(made.needle, find_needle(made.task, options.needle, data / "needles.toml"));
   TROCAR_TRY(made.substances, tasks::load_substances(data / "substances.toml"));
   const bool is_own = options.tissue_file.empty() && options.profile.empty() && has_own_tissues(options.patient_folder);
@@ -174,6 +205,7 @@ Result<Case> prepare_case(std::shared_ptr<const anatomy::VirtualPatient> patient
   } else {
     TROCAR_TRY(const auto paths, tasks::plan_paths(made.task, *patient, made.needle, {1, options.seed}, progress));
     made.plan = paths.front();
+    if (made.plan.posture != patient->posture && !made.task.posture) note_posture(made, made.plan.posture);
   }
   made.experts = find_experts(made, *patient);
   log_info("expert path: {:.1f} mm, {:.1f} mm of it in the organ, {:.1f} mm to spare from {}", made.plan.length_mm,

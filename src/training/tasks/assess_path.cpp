@@ -12,6 +12,7 @@
 #include "tasks/detail/path_check.h"
 #include "tasks/detail/planning_map.h"
 #include "tasks/fit_to_patient.h"
+#include "tasks/postures.h"
 #include "volume/sampling.h"
 
 namespace trocar::tasks {
@@ -70,11 +71,12 @@ class Assessor {
       add(PathFault::kGlancing, entry_P,
           fmt::format("the needle is {:.0f}° from the skin's normal; the limit is {:.0f}°", made_.entry_angle_deg,
                       task_.max_entry_angle_deg));
-    const double down = normal.dot(anatomy::gravity_P(patient_.posture));
+    const anatomy::Posture posture = posture_of(task_, patient_);
+    const double down = normal.dot(anatomy::gravity_P(posture));
     if (down > std::sin(task_.max_posterior_deg * std::numbers::pi / 180.0))
       add(PathFault::kOutOfReach, entry_P,
           fmt::format("the patient is {}: the entry faces down and is not accessible",
-                      anatomy::posture_words(patient_.posture)));
+                      anatomy::posture_words(posture)));
     if (!task_.entry_zone) return;
     const double outside_mm = task_.entry_zone->distance_outside_mm(entry_P);
     if (outside_mm > 0.0)

@@ -16,6 +16,7 @@
 #include "tasks/detail/block_grid.h"
 #include "tasks/detail/path_check.h"
 #include "tasks/detail/planning_map.h"
+#include "tasks/postures.h"
 
 namespace trocar::tasks {
 namespace {
@@ -154,6 +155,7 @@ class Selection {
     path.organ_path_mm = found.organ_path_mm;
     path.spare_margin_mm = found.spare_margin_mm;
     path.cost_mm = cost_mm(n);
+    path.posture = map_.posture;
     if (const anatomy::Label* label = map_.patient.label_table.find(found.nearest_risk))
       path.nearest_risk = label->name;
     return path;
@@ -198,8 +200,7 @@ std::string reason_of(const PlanningMap& map, const Needle& needle, const PathCa
     case Verdict::kCutFace:
       return "leave the volume before the skin";
     case Verdict::kOutOfReach:
-      return fmt::format("start where the skin faces down, with the patient {}",
-                         anatomy::posture_words(map.patient.posture));
+      return fmt::format("start where the skin faces down, with the patient {}", anatomy::posture_words(map.posture));
     case Verdict::kOutsideZone:
       return "start outside the entry zone";
     case Verdict::kGlancing:
@@ -229,13 +230,17 @@ bool is_about_skin(Verdict verdict) {
          verdict == Verdict::kOutsideZone || verdict == Verdict::kGlancing;
 }
 
-/// Names the reason that excluded the most lines; lines without a valid entry on the skin (half of a body is its back)
-/// count only if there are no others.
-tl::unexpected<Error> no_path(const PlanningMap& map, const Needle& needle, const std::vector<PathCandidate>& lines) {
+/// The reason that excluded the most lines; lines without a valid entry on the skin (half of a body is its back) count
+/// only if there are no others, or if the patient lies on the only usable one.
+std::string obstacle_of(const PlanningMap& map, const Needle& needle, const std::vector<PathCandidate>& lines) {
   constexpr std::size_t kMaxAsked = 4000;
+  constexpr double kManyBelow = 0.1;
   std::vector<const PathCandidate*> asked;
-  for (const PathCandidate& line : lines)
+  std::size_t below = 0;
+  for (const PathCandidate& line : lines) {
     if (!is_about_skin(line.verdict)) asked.push_back(&line);
+    if (line.verdict == Verdict::kOutOfReach) ++below;
+  }
   const bool has_entries = !asked.empty();
   if (!has_entries)
     for (const PathCandidate& line : lines) asked.push_back(&line);
@@ -245,11 +250,54 @@ tl::unexpected<Error> no_path(const PlanningMap& map, const Needle& needle, cons
   for (std::size_t n = 0; n < asked.size(); n += stride, ++total) ++reasons[reason_of(map, needle, *asked[n])];
   const auto worst = std::max_element(reasons.begin(), reasons.end(),
                                       [](const auto& a, const auto& b) { return a.second < b.second; });
-  return fail(fmt::format("no safe path: of the {} {:.0f} % {}",
-                          has_entries ? "lines from a usable entry" : "lines from the target",
-                          100.0 * static_cast<double>(worst->second) / static_cast<double>(total), worst->first),
-              map.patient.name,
-              fmt::format("relax this limit of the task {} or select another patient", map.task.name));
+  std::string text =
+      fmt::format("of the {} {:.0f} % {}", has_entries ? "lines from a usable entry" : "lines from the target",
+                  100.0 * static_cast<double>(worst->second) / static_cast<double>(total), worst->first);
+  const double share_below = static_cast<double>(below) / static_cast<double>(lines.size());
+  if (has_entries && share_below > kManyBelow)
+    text += fmt::format(", and {:.0f} % of all lines start where the skin faces down", 100.0 * share_below);
+  return text;
+}
+
+struct Obstacle {
+  anatomy::Posture posture;
+  std::string text;
+};
+
+/// The obstacles of the postures; equal ones of several postures once.
+tl::unexpected<Error> no_path(const Task& task, const anatomy::VirtualPatient& patient,
+                              const std::vector<Obstacle>& obstacles) {
+  std::vector<std::pair<std::string, std::string>> texts;  // obstacle, postures
+  for (const auto& [posture, text] : obstacles) {
+    const auto same = std::ranges::find(texts, text, &std::pair<std::string, std::string>::first);
+    const std::string words(anatomy::posture_words(posture));
+    if (same == texts.end())
+      texts.emplace_back(text, words);
+    else
+      same->second += ", " + words;
+  }
+  std::string what = "no safe path";
+  for (const auto& [text, postures] : texts)
+    what += fmt::format("{} with the patient {}: {}", &text == &texts.front().first ? "" : ";", postures, text);
+  return fail(std::move(what), patient.name,
+              fmt::format("relax this limit of the task {}, choose a posture with --posture, or select another patient",
+                          task.name));
+}
+
+/// The paths in the posture of the map; empty: none, and `lines` are settled.
+std::vector<PlannedPath> find_paths(const PlanningMap& map, const Needle& needle, const PlanOptions& options,
+                                    std::vector<PathCandidate>& lines, const Progress& progress) {
+  Selection selection(map, needle, lines);
+  const auto count = static_cast<std::size_t>(options.count);
+  const bool is_spread = count > 1 && count <= kMaxSpreadCount;
+  std::vector<PlannedPath> paths;
+  for (double spread = is_spread ? kFirstSpread_mm : 0.0; paths.size() < count;
+       spread = spread > 1.0 ? spread / 2 : 0.0) {
+    paths = selection.choose(count, spread, progress);
+    if (spread == 0.0 || paths.empty()) break;
+  }
+  if (paths.empty()) selection.settle();
+  return paths;
 }
 
 }  // namespace
@@ -272,21 +320,16 @@ Result<std::vector<PlannedPath>> plan_paths(const Task& task, const anatomy::Vir
   TROCAR_TRY(const PlanTargets targets, detail::find_targets(map));
   report(progress, "measuring distances", 0.1);
   detail::measure_clearance(map, targets, std::min(task.max_path_mm, needle.length_mm) + needle.throw_mm);
-  report(progress, "trying lines", 0.4);
-  std::vector<PathCandidate> lines = trace_lines(map, needle, targets, options);
-
-  Selection selection(map, needle, lines);
-  const auto count = static_cast<std::size_t>(options.count);
-  const bool is_spread = count > 1 && count <= kMaxSpreadCount;
-  std::vector<PlannedPath> paths;
-  for (double spread = is_spread ? kFirstSpread_mm : 0.0; paths.size() < count;
-       spread = spread > 1.0 ? spread / 2 : 0.0) {
-    paths = selection.choose(count, spread, progress);
-    if (spread == 0.0 || paths.empty()) break;
+  std::vector<Obstacle> obstacles;
+  for (const anatomy::Posture posture : postures_to_try(task, patient)) {
+    report(progress, "trying lines", 0.4);
+    map.posture = posture;
+    std::vector<PathCandidate> lines = trace_lines(map, needle, targets, options);
+    std::vector<PlannedPath> paths = find_paths(map, needle, options, lines, progress);
+    if (!paths.empty()) return paths;
+    obstacles.push_back({posture, obstacle_of(map, needle, lines)});
   }
-  if (!paths.empty()) return paths;
-  selection.settle();
-  return no_path(map, needle, lines);
+  return no_path(task, patient, obstacles);
 }
 
 }  // namespace trocar::tasks

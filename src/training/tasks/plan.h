@@ -22,8 +22,9 @@ struct PlannedPath {
   /// Smallest clearance to a risk structure minus the margin that the task requires for it; at most 10. The clearance
   /// itself is this value plus the margin of nearest_risk.
   double spare_margin_mm = 0.0;
-  std::string nearest_risk;  ///< Label name; empty: none within 10 mm beyond its margin.
-  double cost_mm = 0.0;      ///< See path_cost_mm; planned paths only.
+  anatomy::Posture posture = anatomy::Posture::kSupine;  ///< In which the entry is reached.
+  std::string nearest_risk;                              ///< Label name; empty: none within 10 mm beyond its margin.
+  double cost_mm = 0.0;                                  ///< See path_cost_mm; planned paths only.
 };
 
 /// Cost by which paths are ranked: the length plus a penalty for spare margin below 10 mm,
@@ -38,8 +39,9 @@ struct PlanOptions {
 
 /// Safe paths, lowest cost (path_cost_mm) first; each passes skin, muscle and organ surface, in this order and nothing
 /// else with a surface. Several paths have entries as far apart as possible (16 mm and less); the result has fewer than
-/// `count` if the patient has no more. The same seed gives the same paths for any number of threads. The error names
-/// the constraint that left no path.
+/// `count` if the patient has no more. The same seed gives the same paths for any number of threads. Paths are
+/// sought in the task's postures (postures_to_try), and are those of the first one that has any. The error names for
+/// each posture the constraint that left no path.
 Result<std::vector<PlannedPath>> plan_paths(const Task& task, const anatomy::VirtualPatient& patient,
                                             const Needle& needle, const PlanOptions& options = {},
                                             const Progress& progress = {});

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstring>
 
+#include "tasks/detail/target_volume.h"
 #include "tasks/fit_to_patient.h"
 
 namespace trocar::tasks {
@@ -146,7 +147,9 @@ TaskReadiness check_task(const Task& task, const anatomy::VirtualPatient& patien
   };
   const bool has_skin = std::any_of(patient.skin_distance_mm.voxels.begin(), patient.skin_distance_mm.voxels.end(),
                                     [](float distance) { return distance > 0.0F; });
-  readiness.is_possible = found.has_organ && found.has_muscle && has_skin;
+  const std::string shortage = found.has_organ ? detail::target_shortage(task, patient) : std::string();
+  readiness.is_possible = found.has_organ && found.has_muscle && has_skin && shortage.empty();
+  note(!shortage.empty(), shortage);
   if (!found.has_organ) note(true, lacks_organ(task, patient, counts));
   note(!found.has_muscle, "no muscle between skin and organ is labelled");
   note(!has_skin, "the skin's surface is not inside the volume");

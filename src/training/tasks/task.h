@@ -129,10 +129,15 @@ struct Task {
   double max_path_mm = 150.0;           ///< Skin to the tip when it is at the target. Range 10..300.
   double max_entry_angle_deg = 60.0;    ///< Between the needle and the skin's normal. Range 5..85.
   double max_posterior_deg = 30.0;      ///< Largest angle by which the skin may face down in the posture. Range 0..90.
-  std::vector<std::string> passes;      ///< Tissues that a path may pass besides skin, fat, muscle and fluid.
+  /// Postures in which the puncture is done, the best first; empty: as the patient lies.
+  std::vector<anatomy::Posture> postures;
+  std::optional<anatomy::Posture> posture;  ///< The one of an attempt; empty: see postures.h.
+  std::vector<std::string> passes;          ///< Tissues that a path may pass besides skin, fat, muscle and fluid.
   /// Long targets (a dural sac, bile ducts): a target point every so many mm, range 0..100; 0: the middle of each
   /// target.
   double target_step_mm = 0.0;
+  /// The target has to be labelled, with so much (ml) in one piece. Range 0..1000; 0: it need not.
+  double least_target_ml = 0.0;
   std::string target_below;  ///< Name of a structure: target points lie below its lowest point (z); empty: anywhere.
   /// Landmark from which the target keeps at least so far: central ducts lie beside large vessels. Empty: none.
   std::string target_away_from;
@@ -192,7 +197,9 @@ bool is_parenchymal(const Task& task, const anatomy::VirtualPatient& patient);
 /// Checks if a patient supports a task; lists missing and doubtful requirements.
 struct TaskReadiness {
   bool is_possible = false;
-  bool is_parenchymal = false;       ///< No lesion: the target is in the organ's healthy tissue.
+  bool is_parenchymal = false;  ///< No lesion: the target is in the organ's healthy tissue.
+  /// In which the task is done, if the patient lies otherwise in the scan; found by check_task_and_paths.
+  std::optional<anatomy::Posture> posture;
   std::vector<std::string> reasons;  ///< Reasons why it is not possible, or doubts.
 };
 TaskReadiness check_task(const Task& task, const anatomy::VirtualPatient& patient);

@@ -26,7 +26,7 @@ class TaskReader {
         {"base",          "title",       "organ",    "target_tissues", "needle", "force_model", "ultrasound_engine",
          "path",          "parenchymal", "scoring",  "risks",          "target", "entry_zone",  "expert_path",
          "exam",          "needles",     "guidance", "confirmed_by",   "phases", "pain",        "bevel",
-         "highest_entry", "levels",      "level",    "cores"}));
+         "highest_entry", "levels",      "level",    "cores",          "posture"}));
     if (!is_whole_) TROCAR_TRY_STATUS(detail::read_level_of(document_, task));  // before keys that replace its numbers
     TROCAR_TRY_STATUS(text(document_, "title", task.title));
     TROCAR_TRY_STATUS(text(document_, "organ", task.organ));
@@ -36,6 +36,10 @@ class TaskReader {
     if (task.ultrasound_engine != "raycast" && task.ultrasound_engine != "panorama")
       return fail(fmt::format("there is no ultrasound engine \"{}\"", task.ultrasound_engine), document_.where(),
                   "write raycast or panorama");
+    if (document_.has("posture")) {
+      TROCAR_TRY(const std::string posture, document_.string("posture"));
+      TROCAR_TRY(task.posture, detail::read_posture(posture, document_.where()));
+    }
     TROCAR_TRY(task.expert_path, document_.string_or("expert_path", task.expert_path));
     if (is_whole_ || document_.has("target_tissues")) {
       TROCAR_TRY(task.target_tissues, document_.strings("target_tissues"));
@@ -68,12 +72,16 @@ class TaskReader {
   Status read_path(Task& task) const {
     if (!lacks("path")) {
       TROCAR_TRY(const config::TomlTable path, document_.table("path"));
-      TROCAR_TRY_STATUS(
-          path.check_keys({"min_organ_path_mm", "max_path_mm", "max_entry_angle_deg", "max_posterior_deg", "passes",
-                           "target_step_mm", "target_below", "target_away_from", "target_away_mm"}));
+      TROCAR_TRY_STATUS(path.check_keys({"min_organ_path_mm", "max_path_mm", "max_entry_angle_deg", "max_posterior_deg",
+                                         "passes", "postures", "least_target_ml", "target_step_mm", "target_below",
+                                         "target_away_from", "target_away_mm"}));
       if (path.has("passes")) {
         TROCAR_TRY(task.passes, path.strings("passes"));
       }
+      if (path.has("postures")) {
+        TROCAR_TRY(task.postures, detail::read_postures(path));
+      }
+      TROCAR_TRY(task.least_target_ml, path.number_or("least_target_ml", {0.0, 1000.0}, task.least_target_ml));
       TROCAR_TRY(task.target_step_mm, path.number_or("target_step_mm", {0.0, 100.0}, task.target_step_mm));
       TROCAR_TRY(task.target_below, path.string_or("target_below", task.target_below));
       TROCAR_TRY(task.target_away_from, path.string_or("target_away_from", task.target_away_from));
@@ -328,6 +336,7 @@ std::string task_to_toml(const Task& task, const Task& base) {
   keys.set_changed("needles", task.needles, base.needles);
   if (task.cores != base.cores) keys.set("cores", static_cast<std::int64_t>(task.cores));
   keys.set_changed("level", task.level, base.level);
+  if (task.posture && task.posture != base.posture) keys.set("posture", std::string(posture_name(*task.posture)));
   if (task.guidance != base.guidance) keys.set("guidance", to_string(task.guidance));
   if (task.confirmed_by != base.confirmed_by) keys.set("confirmed_by", to_string(task.confirmed_by));
   if (task.phases.empty() && !base.phases.empty()) keys.set("phases", std::vector<std::string>());
@@ -339,6 +348,8 @@ std::string task_to_toml(const Task& task, const Task& base) {
   keys.set_changed("max_entry_angle_deg", task.max_entry_angle_deg, base.max_entry_angle_deg);
   keys.set_changed("max_posterior_deg", task.max_posterior_deg, base.max_posterior_deg);
   keys.set_changed("passes", task.passes, base.passes);
+  keys.set_changed("postures", detail::names_of(task.postures), detail::names_of(base.postures));
+  keys.set_changed("least_target_ml", task.least_target_ml, base.least_target_ml);
   keys.set_changed("target_step_mm", task.target_step_mm, base.target_step_mm);
   keys.set_changed("target_below", task.target_below, base.target_below);
   keys.set_changed("target_away_from", task.target_away_from, base.target_away_from);

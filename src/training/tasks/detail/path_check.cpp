@@ -204,7 +204,7 @@ PathCandidate trace_path(const PlanningMap& map, const Needle& needle, const Vec
   if (map.task.entry_zone && map.task.entry_zone->distance_outside_mm(path.line_P.a) > 0.0)
     return reject(PathVerdict::kOutsideZone);
   const Vec3 normal = skin_normal(skin_distance, path.line_P.a);
-  const double down = normal.dot(anatomy::gravity_P(map.patient.posture));
+  const double down = normal.dot(anatomy::gravity_P(map.posture));
   if (down > std::sin(map.task.max_posterior_deg * kDegree)) return reject(PathVerdict::kOutOfReach);
   if (normal.dot(outward) < std::cos(map.task.max_entry_angle_deg * kDegree)) return reject(PathVerdict::kGlancing);
 

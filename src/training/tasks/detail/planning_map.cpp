@@ -9,7 +9,9 @@
 
 #include "core/parallel.h"
 #include "tasks/detail/block_grid.h"
+#include "tasks/detail/target_volume.h"
 #include "tasks/fit_to_patient.h"
+#include "tasks/postures.h"
 #include "volume/distance.h"
 #include "volume/sampling.h"
 
@@ -156,6 +158,7 @@ Role PlanningMap::role_at(const Vec3& p_P) const noexcept {
 
 PlanningMap make_planning_map(const Task& task, const anatomy::VirtualPatient& patient) {
   PlanningMap map{task, patient};
+  map.posture = posture_of(task, patient);
   for (const anatomy::Label& label : patient.label_table.labels) {
     map.roles[label.id] = role_of(task, label);
     if (map.roles[label.id] == Role::kForbidden) map.risks[label.id] = find_risk(task, label);
@@ -165,6 +168,8 @@ PlanningMap make_planning_map(const Task& task, const anatomy::VirtualPatient& p
 
 Result<PlanTargets> find_targets(const PlanningMap& map) {
   const volume::LabelGrid& labels = map.patient.labels;
+  if (std::string shortage = target_shortage(map.task, map.patient); !shortage.empty())
+    return fail(std::move(shortage), map.patient.name, "label the target, or choose another patient");
   if (map.task.target_P) {
     const Role role = map.role_at(*map.task.target_P);
     if (role == Role::kTarget || role == Role::kOrgan) return PlanTargets{{*map.task.target_P}, role == Role::kOrgan};

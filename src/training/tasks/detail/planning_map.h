@@ -19,6 +19,7 @@ struct PlanningMap {
   std::array<const RiskStructure*, 256> risks{};  ///< By label id; nullptr: none.
   double largest_margin_mm = 0.0;                 ///< Largest margin of the risks that exist in the patient.
   volume::FloatGrid clearance_mm{};               ///< Coarse: distance to the nearest risk cell minus its margin.
+  anatomy::Posture posture = anatomy::Posture::kSupine;  ///< In which entries are judged.
   double slack_mm = 0.0;  ///< The coarse clearance may err by this (half the diagonal of a cell).
 
   Role role_at(const Vec3& p_P) const noexcept;

@@ -128,6 +128,28 @@ Result<Vec3> read_point(const config::TomlTable& table, const char* key) {
   return fail(fmt::format("{} is not a point", key), table.where(), "write [x, y, z] in mm (LPS)");
 }
 
+Result<anatomy::Posture> read_posture(const std::string& name, const std::string& where) {
+  if (const auto posture = anatomy::find_posture(name)) return *posture;
+  return fail(fmt::format("there is no posture \"{}\"", name), where,
+              "write supine, prone, left-lateral, right-lateral or sitting");
+}
+
+Result<std::vector<anatomy::Posture>> read_postures(const config::TomlTable& path) {
+  TROCAR_TRY(const std::vector<std::string> names, path.strings("postures"));
+  std::vector<anatomy::Posture> postures;
+  for (const std::string& name : names) {
+    TROCAR_TRY(const anatomy::Posture posture, read_posture(name, path.where()));
+    if (std::ranges::find(postures, posture) == postures.end()) postures.push_back(posture);
+  }
+  return postures;
+}
+
+std::vector<std::string> names_of(const std::vector<anatomy::Posture>& postures) {
+  std::vector<std::string> names;
+  for (const anatomy::Posture posture : postures) names.emplace_back(anatomy::posture_name(posture));
+  return names;
+}
+
 Status read_rules(const config::TomlTable& document, Task& task) {
   TROCAR_TRY_STATUS(read_entry_zone(document, task));
   TROCAR_TRY_STATUS(read_highest_entry(document, task));

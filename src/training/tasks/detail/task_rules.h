@@ -15,6 +15,11 @@ Status read_level_of(const config::TomlTable& document, Task& task);
 /// Writes what differs from the base.
 void write_rules(config::TomlWriter& writer, const Task& task, const Task& base);
 
+/// A posture by its name; the list of `postures`, without repetitions, and its names.
+Result<anatomy::Posture> read_posture(const std::string& name, const std::string& where);
+Result<std::vector<anatomy::Posture>> read_postures(const config::TomlTable& path);
+std::vector<std::string> names_of(const std::vector<anatomy::Posture>& postures);
+
 /// A point [x, y, z] in mm.
 Result<Vec3> read_point(const config::TomlTable& table, const char* key);
 

@@ -32,6 +32,9 @@ Task changed_task() {
   task.ultrasound_engine = "panorama";
   task.guidance = Guidance::kXray;
   task.needles = {"biopsy-16g"};
+  task.postures = {anatomy::Posture::kSitting, anatomy::Posture::kProne};
+  task.posture = anatomy::Posture::kProne;
+  task.least_target_ml = 0.25;
   task.confirmed_by = Substance::kBlood;
   task.margin_tolerance_mm = 1.5;
   task.pass_mark = 55.0;
@@ -154,6 +157,8 @@ TEST(OwnTask, DamagedFileIsRefusedWithItsPlace) {
                 .find("has no side"),
             std::string::npos);
   EXPECT_NE(error_of("base = \"liver-biopsy\"\n[path]\ntarget_away_mm = 30\n").find("give both"), std::string::npos);
+  EXPECT_NE(error_of("base = \"liver-biopsy\"\nposture = \"standing\"\n").find("left-lateral"), std::string::npos);
+  EXPECT_NE(error_of("base = \"liver-biopsy\"\n[path]\npostures = [\"bent\"]\n").find("bent"), std::string::npos);
   EXPECT_NE(error_of("base = \"liver-biopsy\"\nlevel = \"mad\"\n").find("no level"), std::string::npos);
   EXPECT_NE(error_of("base = \"liver-biopsy\"\n[[levels]]\nname = \"a\"\n").find("title"), std::string::npos);
   EXPECT_NE(error_of("base = \"liver-biopsy\"\n[target]\npiont_mm = [1, 2, 3]\n").find("did you mean"),
