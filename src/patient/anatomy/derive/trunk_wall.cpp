@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "anatomy/derive/detail/trunk_parts.h"
-#include "anatomy/detail/structure_pattern.h"
 #include "core/parallel.h"
 #include "volume/distance.h"
 #include "volume/morphology.h"
@@ -26,10 +25,6 @@ constexpr double kCostalLungMm = 16.0;  // assumed: lung this near to a rib ends
 constexpr double kFacesWall = 0.3;      // cosine between the directions to the skin and away from the organ
 constexpr int kSectors = 36;
 
-// Neurovascular bundle: vein, artery and nerve in the costal groove, at the lower border of the rib, inner side.
-constexpr double kBundleMm = 4.0;  // assumed
-constexpr int kRibSectors = 120;
-
 /// Directions around the axis of the trunk.
 class Sectors {
  public:
@@ -45,21 +40,6 @@ class Sectors {
   Vec3 axis_P_;
   int count_;
 };
-
-/// The centroid of the body.
-Vec3 trunk_axis(const VirtualPatient& patient) {
-  const volume::GridGeometry& g = patient.skin_distance_mm.geometry;
-  constexpr std::size_t kStep = 97;  // a sample is sufficient
-  Vec3 sum = Vec3::Zero();
-  double count = 0.0;
-  for (std::size_t n = 0; n < patient.skin_distance_mm.voxels.size(); n += kStep) {
-    if (!(patient.skin_distance_mm.voxels[n] < 0.0F)) continue;
-    const volume::Index3 ijk = g.index_of(n);
-    sum += g.centre_mm(ijk);
-    count += 1.0;
-  }
-  return sum / std::max(count, 1.0);
-}
 
 std::array<bool, 256> ids_with_tissue(const DerivedLabels& labels, std::initializer_list<std::string_view> tissues) {
   std::array<bool, 256> ids{};
@@ -97,56 +77,21 @@ std::vector<double> lung_edges(const volume::LabelGrid& coarse, const std::array
   return edges;
 }
 
-/// "rib_left_7"; not "ribs", a label of all of them.
-bool is_single_rib(const Label& label) {
-  const std::string plain = without_side(plain_name(label.name));
-  return label.tissue == "bone" && plain.starts_with("rib") && plain.size() > 3 && plain != "ribs";
-}
-
-/// Lowest voxels of a rib, one for each column.
-struct RibBottom {
-  volume::Index3 ijk{};
-  std::size_t sector = 0;
-  float skin_distance_mm = 0.0F;
-};
-
-std::vector<RibBottom> rib_bottoms(const DerivedLabels& labels, std::uint8_t id, const Sectors& sectors) {
-  const volume::GridGeometry& g = labels.geometry();
-  const IndexBox& box = labels.boxes().box[id];
-  std::vector<RibBottom> bottoms;
-  for (std::int64_t j = box.low[1]; j <= box.high[1]; ++j)
-    for (std::int64_t i = box.low[0]; i <= box.high[0]; ++i)
-      for (std::int64_t k = box.low[2]; k <= box.high[2]; ++k) {
-        const std::size_t n = g.offset({i, j, k});
-        if (labels.at(n) != id) continue;
-        const Vec3 p_P = g.centre_mm({i, j, k});
-        bottoms.push_back({{i, j, k}, sectors.of(p_P), labels.patient().skin_distance_mm.voxels[n]});
-        break;
-      }
-  return bottoms;
-}
-
-void paint_bundle(DerivedLabels& labels, std::uint8_t rib, std::uint8_t bundle, const Sectors& sectors) {
-  const std::vector<RibBottom> bottoms = rib_bottoms(labels, rib, sectors);
-  std::vector<std::vector<float>> depths(sectors.count());
-  for (const RibBottom& b : bottoms) depths[b.sector].push_back(b.skin_distance_mm);
-  std::vector<float> middle(sectors.count(), 0.0F);
-  for (std::size_t s = 0; s < depths.size(); ++s) {
-    if (depths[s].empty()) continue;
-    const auto at = depths[s].begin() + static_cast<std::ptrdiff_t>(depths[s].size() / 2);
-    std::nth_element(depths[s].begin(), at, depths[s].end());
-    middle[s] = *at;
-  }
-  const volume::GridGeometry& g = labels.geometry();
-  const auto steps = std::max<std::int64_t>(1, std::lround(kBundleMm / g.spacing_mm.z()));
-  for (const RibBottom& b : bottoms) {
-    if (b.skin_distance_mm > middle[b.sector]) continue;  // the outer half
-    for (std::int64_t k = b.ijk[2] - 1; k >= std::max<std::int64_t>(0, b.ijk[2] - steps); --k)
-      labels.paint(g.offset({b.ijk[0], b.ijk[1], k}), bundle);
-  }
-}
-
 }  // namespace
+
+Vec3 trunk_axis(const VirtualPatient& patient) {
+  const volume::GridGeometry& g = patient.skin_distance_mm.geometry;
+  constexpr std::size_t kStep = 97;  // a sample is sufficient
+  Vec3 sum = Vec3::Zero();
+  double count = 0.0;
+  for (std::size_t n = 0; n < patient.skin_distance_mm.voxels.size(); n += kStep) {
+    if (!(patient.skin_distance_mm.voxels[n] < 0.0F)) continue;
+    const volume::Index3 ijk = g.index_of(n);
+    sum += g.centre_mm(ijk);
+    count += 1.0;
+  }
+  return sum / std::max(count, 1.0);
+}
 
 void derive_pleural_recess(DerivedLabels& labels, const PeritonealRegion& region) {
   const volume::GridGeometry& g = labels.geometry();
@@ -185,17 +130,10 @@ void derive_pleural_recess(DerivedLabels& labels, const PeritonealRegion& region
   });
 }
 
-void derive_neurovascular_bundle(DerivedLabels& labels) {
-  std::vector<std::uint8_t> ribs;
-  for (const Label& label : labels.patient().label_table.labels)
-    if (is_single_rib(label)) ribs.push_back(label.id);
-  if (ribs.empty()) return;
-  const std::uint8_t bundle = labels.add("neurovascular_bundle");
-  const Sectors sectors(trunk_axis(labels.patient()), kRibSectors);
-  for (const std::uint8_t rib : ribs) paint_bundle(labels, rib, bundle, sectors);
-}
-
 void derive_wall_structures(DerivedLabels& labels, const DeriveChoice& choice) {
+  // Before the membranes, which are wider than they are in coarse voxels and would cut it.
+  if (choice.has("neurovascular_bundle") && !labels.is_labelled("neurovascular_bundle"))
+    derive_neurovascular_bundle(labels);
   const bool has_peritoneum = choice.has("peritoneum") && !labels.is_labelled("peritoneum");
   const bool has_recess = choice.has("pleural_recess") && !labels.is_labelled("pleural_recess_left") &&
                           !labels.is_labelled("pleural_recess_right");
@@ -204,8 +142,6 @@ void derive_wall_structures(DerivedLabels& labels, const DeriveChoice& choice) {
     if (has_peritoneum && !region.box.is_empty()) derive_peritoneum(labels, region);
     if (has_recess && !region.box.is_empty()) derive_pleural_recess(labels, region);
   }
-  if (choice.has("neurovascular_bundle") && !labels.is_labelled("neurovascular_bundle"))
-    derive_neurovascular_bundle(labels);
   if (choice.has("inferior_epigastric_zone") && !labels.is_labelled("inferior_epigastric_zone_left") &&
       !labels.is_labelled("inferior_epigastric_zone_right"))
     derive_epigastric_zone(labels);

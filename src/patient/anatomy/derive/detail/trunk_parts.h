@@ -20,6 +20,9 @@ struct PeritonealRegion {
 /// Empty box: no such organ is labelled.
 PeritonealRegion find_peritoneal_region(const DerivedLabels& labels);
 
+/// The centroid of the body.
+Vec3 trunk_axis(const VirtualPatient& patient);
+
 void derive_peritoneum(DerivedLabels& labels, const PeritonealRegion& region);
 void derive_pleural_recess(DerivedLabels& labels, const PeritonealRegion& region);
 void derive_epigastric_zone(DerivedLabels& labels);
