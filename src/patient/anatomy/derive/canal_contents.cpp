@@ -17,6 +17,9 @@ constexpr double kUpperFlavumMm = 3.0;
 constexpr double kEpiduralMm = 3.0;
 constexpr double kEpiduralSideMm = 8.0;  // assumed: from here on outwards the sac touches the flavum
 constexpr double kEpiduralDeepestMm = 12.0;
+// Fat has -190 to -30 HU (Kvist et al., Am J Clin Nutr 1988, 48:1351), ligament and muscle up to about 60 HU: a voxel
+// above 30 HU has less than a fifth of fat, or bone in it (docs/physics.md, N2). It is not called fat.
+constexpr std::int16_t kMostFatHu = 30;
 // Sac without a label of cord or canal, and the cord in it above the conus. Half sizes, assumed: a lumbar sac is about
 // 14 mm deep and 17 mm wide, the cord at T12 about 8 x 9 mm.
 constexpr double kSacHalfDepthMm = 7.0;
@@ -91,7 +94,7 @@ class CanalContents {
     });
   }
 
-  /// Soft tissue between the sac and the posterior wall.
+  /// Soft tissue between the sac and the posterior wall that can be fat by its HU.
   void add_epidural_fat() {
     const std::uint8_t fat = labels_.add("epidural_fat");
     for_each_cell([&](std::int64_t i, std::int64_t k, const PosteriorWall::Cell& c, const CanalSlice& slice) {
@@ -101,10 +104,11 @@ class CanalContents {
         const double depth_mm = (c.face_j - static_cast<double>(j)) * spacing().y();
         const std::size_t n = labels_.geometry().offset({i, j, k});
         const std::uint8_t id = labels_.at(n);
+        const bool can_be_fat = labels_.patient().ct.voxels[n] <= kMostFatHu;
         if (is_sac(id) && is_free && depth_mm < room_mm) {
-          labels_.replace(n, fat);
+          if (can_be_fat) labels_.replace(n, fat);
         } else if (labels_.is_soft(id) && depth_mm <= kEpiduralDeepestMm && static_cast<double>(j) > slice.j) {
-          labels_.paint(n, fat);
+          if (can_be_fat) labels_.paint(n, fat);
         } else {
           break;
         }

@@ -11,7 +11,8 @@
 namespace trocar::anatomy::detail {
 namespace {
 
-// Vein, artery and nerve in the costal groove, at the lower border of the rib, inner side: a tube along the border.
+// Vein, artery and nerve in the costal groove, at the lower border of the rib, inner side: a tube along the border
+// (docs/physics.md, N1).
 constexpr double kBundleRadiusMm = 2.0;  // assumed: the three vessels and nerves beside each other are about 4 mm high
 constexpr int kRibSectors = 120;
 constexpr double kLongestGapMm = 25.0;  // between two points of a rib: a fault of the segmentation, not its end

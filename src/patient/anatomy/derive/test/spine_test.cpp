@@ -33,6 +33,12 @@ LabelledBox make_spine(bool has_cord) {
       return body || pedicle || lamina || spinous;
     });
   }
+  // Fat around the sac; all else has 40 HU.
+  const volume::GridGeometry& g = box.patient.ct.geometry;
+  for (std::size_t n = 0; n < g.voxel_count(); ++n) {
+    const Vec3 p_P = g.centre_mm(g.index_of(n));
+    if (std::abs(p_P.x()) <= 11.0 && p_P.y() > 0.0 && p_P.y() < face_y(p_P.x())) box.patient.ct.voxels[n] = -90;
+  }
   if (has_cord)
     box.paint("spinal_cord", [](const Vec3& p) { return std::hypot(p.x() / 8.0, (p.y() + 1.0) / 6.5) <= 1.0; });
   return box;
@@ -132,6 +138,42 @@ TEST(EpiduralFat, FillsTheSpaceBetweenSacAndFlavum) {
     EXPECT_LE(fat, 6) << z;
   }
   box.for_each("epidural_fat", [](const Vec3& p) { EXPECT_LT(p.y(), face_y(p.x()) + 1.0); });
+}
+
+// Voxels at the bone contain a part of it: at 300 HU of lamina and flavum's edge they are no fat, and the rest still
+// is.
+TEST(EpiduralFat, LeavesOutVoxelsThatContainBone) {
+  LabelledBox box = make_spine(true);
+  const volume::GridGeometry& g = box.patient.ct.geometry;
+  const auto set_hu = [&](std::int16_t hu, const auto& is_inside) {
+    for (std::size_t n = 0; n < g.voxel_count(); ++n)
+      if (is_inside(g.centre_mm(g.index_of(n)))) box.patient.ct.voxels[n] = hu;
+  };
+  set_hu(300, [](const Vec3& p) { return std::abs(p.x()) <= 11.0 && std::abs(p.y() - face_y(p.x())) <= 1.0; });
+  derive_structures(box.patient, box.known, {});
+  double sum = 0.0, count = 0.0;
+  box.for_each("epidural_fat", [&](const Vec3& p) {
+    const Vec3 index = g.to_index(p);
+    const int hu = box.patient.ct[{std::lround(index.x()), std::lround(index.y()), std::lround(index.z())}];
+    EXPECT_LE(hu, 30) << p.transpose();
+    sum += hu;
+    count += 1.0;
+  });
+  ASSERT_GT(count, 0.0);
+  EXPECT_LT(sum / count, -30.0);
+  for (const double z : {38.0, 70.0}) {
+    int fat = 0;
+    for (double y = -8.0; y < face_y(0.0); y += 1.0) fat += box.name_at({0.0, y, z}) == "epidural_fat" ? 1 : 0;
+    EXPECT_GE(fat, 2) << z;
+  }
+}
+
+TEST(EpiduralFat, IsNotWhereNothingCanBeFat) {
+  LabelledBox box = make_spine(true);
+  box.patient.ct = volume::CtGrid(box.patient.ct.geometry, 40);
+  derive_structures(box.patient, box.known, {});
+  EXPECT_EQ(box.patient.label_table.find("epidural_fat"), nullptr);
+  EXPECT_GT(box.count("dural_sac"), 0U);
 }
 
 // The bodies end at y = -10; the sac of the vertebrae alone leaves 1 mm in front of it. Between the bodies the veins
