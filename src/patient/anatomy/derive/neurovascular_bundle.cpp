@@ -134,6 +134,58 @@ class TubePainter {
   Vec3 radius_voxels_ = Vec3::Ones();
 };
 
+/// Joins voxels of the bundle that have only an edge or a corner in common, where soft tissue between them permits.
+class CornerFiller {
+ public:
+  CornerFiller(DerivedLabels& labels, std::uint8_t id) : labels_(labels), id_(id) {}
+
+  void fill(const IndexBox& box) {
+    for_each_in(labels_.geometry(), box, [&](std::size_t n, std::size_t, const volume::Index3& ijk) {
+      if (labels_.at(n) != id_) return;
+      for (std::int64_t code = 14; code < 27; ++code)  // the half of the 26 neighbours that comes later
+        join(ijk, {code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1});
+    });
+  }
+
+ private:
+  void join(const volume::Index3& from, const volume::Index3& step) {
+    std::vector<std::size_t> axes;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (step[axis] != 0) axes.push_back(axis);
+    const volume::Index3 to{from[0] + step[0], from[1] + step[1], from[2] + step[2]};
+    if (axes.size() < 2 || !is(to, false)) return;
+    std::vector<volume::Index3> way;
+    do {
+      std::vector<volume::Index3> between = cells_between(from, step, axes);
+      if (std::ranges::all_of(between, [&](const volume::Index3& cell) { return is(cell, false); })) return;
+      const bool is_free = std::ranges::all_of(between, [&](const volume::Index3& cell) { return is(cell, true); });
+      if (way.empty() && is_free) way = std::move(between);
+    } while (std::ranges::next_permutation(axes).found);
+    for (const volume::Index3& cell : way) labels_.paint(labels_.geometry().offset(cell), id_);
+  }
+
+  /// The cells on the way that takes the axes in this order, without its ends.
+  static std::vector<volume::Index3> cells_between(volume::Index3 cell, const volume::Index3& step,
+                                                   const std::vector<std::size_t>& axes) {
+    std::vector<volume::Index3> cells;
+    for (std::size_t n = 0; n + 1 < axes.size(); ++n) {
+      cell[axes[n]] += step[axes[n]];
+      cells.push_back(cell);
+    }
+    return cells;
+  }
+
+  /// A voxel of the bundle, or one that may become one.
+  bool is(const volume::Index3& cell, bool or_soft) const {
+    if (!labels_.geometry().contains(cell)) return false;
+    const std::uint8_t here = labels_.at(labels_.geometry().offset(cell));
+    return here == id_ || (or_soft && labels_.is_soft(here));
+  }
+
+  DerivedLabels& labels_;
+  std::uint8_t id_;
+};
+
 }  // namespace
 
 void derive_neurovascular_bundle(DerivedLabels& labels) {
@@ -144,12 +196,15 @@ void derive_neurovascular_bundle(DerivedLabels& labels) {
   const std::uint8_t bundle = labels.add("neurovascular_bundle");
   const Vec3 axis_P = trunk_axis(labels.patient());
   TubePainter painter(labels, bundle);
+  CornerFiller filler(labels, bundle);
   for (const std::uint8_t rib : ribs) {
     const std::vector<Vec3> course = course_of(rib_bottoms(labels, rib, axis_P), labels.geometry().spacing_mm.z());
     for (std::size_t n = 0; n < course.size(); ++n) {
       const Vec3& next = course[std::min(n + 1, course.size() - 1)];
       painter.paint(course[n], (next - course[n]).norm() <= kLongestGapMm ? next : course[n]);
     }
+    filler.fill(grown(labels.boxes().box[rib], 2.0 * kBundleRadiusMm + 2.0 * labels.geometry().spacing_mm.maxCoeff(),
+                      labels.geometry()));
   }
 }
 

@@ -116,7 +116,8 @@ TEST(LeastTarget, PiecesThatDoNotTouchAreNotAdded) {
   task.least_target_ml = 3.0;
   const TaskReadiness readiness = check_task(task, box.make());
   EXPECT_FALSE(readiness.is_possible);
-  EXPECT_NE(readiness.reasons.front().find("at most 2 ml in one piece"), std::string::npos) << readiness.reasons.front();
+  EXPECT_NE(readiness.reasons.front().find("at most 2 ml in one piece"), std::string::npos)
+      << readiness.reasons.front();
 }
 
 TEST(ShippedTasks, LumbarPunctureIsNeverDoneOnTheBackAndPtcdNeedsDucts) {
