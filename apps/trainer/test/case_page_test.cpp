@@ -39,6 +39,37 @@ namespace trocar::trainer {
 namespace {
 namespace fs = std::filesystem;
 
+TEST_F(CasePageTest, MirroredLabelsAreRepairedOrConfirmed) {
+  const TemporaryFolder folder;
+  auto labels = io::read_labels(*files_ / "labels.nrrd");
+  ASSERT_TRUE(labels) << labels.error().text();
+  const auto width = static_cast<std::ptrdiff_t>(labels->geometry.size[0]);
+  for (auto row = labels->voxels.begin(); row != labels->voxels.end(); row += width) std::reverse(row, row + width);
+  ASSERT_TRUE(io::write_image(*labels, folder / "mirrored.nrrd"));
+  const auto import_mirrored = [&] {
+    import((*files_ / "ct.nrrd").string(), (folder / "mirrored.nrrd").string(), (*files_ / "names.toml").string());
+    ASSERT_TRUE(wait_for_work());
+    ASSERT_TRUE(find<QLabel>("case-finding").isVisible()) << page_.editor().message();
+  };
+  import_mirrored();
+  EXPECT_FALSE(page_.editor().has_patient());
+  EXPECT_TRUE(find<QLabel>("case-finding").text().contains(QStringLiteral("mirrored")));
+  save_steps("finding");
+  press("case-finding-repair");
+  ASSERT_TRUE(wait_for_work());
+  ASSERT_TRUE(page_.editor().has_patient()) << page_.editor().message();
+  EXPECT_FALSE(find<QLabel>("case-finding").isVisible());
+  const auto has_line = [&](const std::string& words) {
+    return std::ranges::any_of(page_.editor().draft().provenance,
+                               [&](const std::string& line) { return line.find(words) != std::string::npos; });
+  };
+  EXPECT_TRUE(has_line("mirrored left to right: labels"));
+  import_mirrored();
+  press("case-finding-confirm");
+  ASSERT_TRUE(wait_for_work());
+  EXPECT_TRUE(has_line("confirmed: mirrored")) << page_.editor().message();
+}
+
 TEST_F(CasePageTest, CaseIsMadeByClicksSavedAndOpenedAgain) {
   const TemporaryFolder folder;
   import_files();

@@ -1,7 +1,7 @@
-// Changes small valid files at random and reads them: io_fuzz [INPUTS [SEED]], 1,000,000 inputs by default. Each reader
-// must return, within 10 s and with less than 512 MiB above what the program had before. Readers run in child
-// processes; what ends one is kept beside the program as fuzz-input.*, with the reader's name. Exit status 1 if there
-// was one.
+// Changes small valid files at random and reads them (scripts/fuzz readers): io_fuzz [INPUTS [SEED]], 1,000,000 inputs
+// by default. Each reader must return, within 10 s and with less than 512 MiB above what the program had before.
+// Readers run in child processes; what ends one is kept in the working folder as fuzz-input.*, with the reader's name.
+// Exit status 1 if there was one.
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -150,7 +150,7 @@ class Mutator {
 
  private:
   void change_once(std::string& bytes) {
-    if (bytes.empty()) bytes = "x";
+    if (bytes.empty()) bytes.push_back('x');
     // Headers come first, and decide what is read.
     const std::size_t at = below(below(3) == 0 ? bytes.size() : std::min<std::size_t>(bytes.size(), 800));
     switch (below(8)) {
