@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 
 #include "core/files/atomic_file.h"
 #include "core/version.h"
@@ -50,6 +51,19 @@ void add_common(const VolumeIdentity& identity, std::string_view sop_class, cons
   to.text(tag(0x0020, 0x0010), "SH", "1");
   to.text(tag(0x0020, 0x0052), "UI", identity.frame_of_reference);
   to.text(tag(0x0020, 0x1040), "LO", "");
+}
+
+/// When the segmentation was written: DICOM requires a date.
+void add_content_time(DataElements& to) {
+  const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  const auto day = std::chrono::floor<std::chrono::days>(now);
+  const std::chrono::year_month_day date(day);
+  const std::chrono::hh_mm_ss time(now - day);
+  to.text(tag(0x0008, 0x0023), "DA",
+          fmt::format("{:04}{:02}{:02}", static_cast<int>(date.year()), static_cast<unsigned>(date.month()),
+                      static_cast<unsigned>(date.day())));
+  to.text(tag(0x0008, 0x0033), "TM",
+          fmt::format("{:02}{:02}{:02}", time.hours().count(), time.minutes().count(), time.seconds().count()));
 }
 
 std::vector<double> numbers_of(const Vec3& v) {
@@ -114,8 +128,10 @@ DataElements slice_elements(const volume::CtGrid& ct, std::int64_t k, const Volu
   to.text(tag(0x0008, 0x103e), "LO", "CT");
   to.decimal(tag(0x0018, 0x0050), g.spacing_mm.z());
   to.text(tag(0x0018, 0x0060), "DS", "");
+  to.text(tag(0x0018, 0x5100), "CS", "");  // the position in a scanner is not known
   to.text(tag(0x0020, 0x000e), "UI", identity.ct_series_uid);
   to.integer(tag(0x0020, 0x0011), 1);
+  to.text(tag(0x0020, 0x0060), "CS", "");  // laterality: none
   to.text(tag(0x0020, 0x0012), "IS", "");
   to.integer(tag(0x0020, 0x0013), static_cast<long>(k + 1));
   to.decimals(tag(0x0020, 0x0032), numbers_of(place_of_slice(g, k)));
@@ -215,23 +231,25 @@ void add_dimensions(const std::string& uid, DataElements& to) {
 
 }  // namespace
 
-VolumeIdentity make_identity() {
+VolumeIdentity make_identity(std::int64_t slices) {
   const detail::Pseudonyms random = detail::Pseudonyms::with_random_salt();
   VolumeIdentity identity;
   identity.study_uid = random.uid("study");
   identity.ct_series_uid = random.uid("CT series");
   identity.segmentation_series_uid = random.uid("segmentation series");
   identity.frame_of_reference = random.uid("frame of reference");
+  for (std::int64_t k = 0; k < slices; ++k) identity.slice_uids.push_back(random.uid(fmt::format("slice {}", k)));
   return identity;
 }
 
 Status write_ct_series(const volume::CtGrid& ct, const VolumeIdentity& identity, const std::filesystem::path& folder,
                        const Progress& progress) {
   TROCAR_TRY_STATUS(check_volume(ct.geometry, folder.string()));
-  const detail::Pseudonyms random = detail::Pseudonyms::with_random_salt();
+  if (identity.slice_uids.size() != static_cast<std::size_t>(ct.geometry.size[2]))
+    return fail("the identity is not that of this CT", folder.string(), "make one for its number of slices");
   for (std::int64_t k = 0; k < ct.geometry.size[2]; ++k) {
     report(progress, "slices", static_cast<double>(k) / static_cast<double>(ct.geometry.size[2]));
-    const std::string uid = random.uid(fmt::format("slice {}", k));
+    const std::string& uid = identity.slice_uids[static_cast<std::size_t>(k)];
     TROCAR_TRY_STATUS(
         write_object(slice_elements(ct, k, identity, uid), kCtClass, uid, folder / fmt::format("ct_{:04}.dcm", k + 1)));
   }
@@ -254,7 +272,16 @@ Status write_segmentation(const volume::LabelGrid& labels, const std::vector<Wri
   if (groups.empty()) return fail("no structure has a voxel", path.string(), "export a patient with structures");
   const std::string instance_uid = new_uid();
   DataElements to, series;
+  std::vector<DataElements> instances;
+  for (const std::string& uid : identity.slice_uids) {
+    DataElements instance;
+    instance.text(tag(0x0008, 0x1150), "UI", kCtClass);
+    instance.text(tag(0x0008, 0x1155), "UI", uid);
+    instances.push_back(instance);
+  }
+  series.sequence(tag(0x0008, 0x114a), instances);
   add_common(identity, kSegClass, instance_uid, to);
+  add_content_time(to);
   to.text(tag(0x0008, 0x0008), "CS", "DERIVED\\PRIMARY");
   to.text(tag(0x0008, 0x0060), "CS", "SEG");
   to.text(tag(0x0008, 0x103e), "LO", "Segmentation");

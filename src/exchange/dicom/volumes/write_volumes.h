@@ -16,13 +16,14 @@ struct VolumeIdentity {
   std::string patient_name = "ANONYMOUS^";
   std::string patient_id = "ANONYMOUS";
   std::string study_uid, ct_series_uid, segmentation_series_uid, frame_of_reference;
+  std::vector<std::string> slice_uids;  ///< Instances of the CT, one for each slice.
 };
 
-/// An anonymous patient with new, random UIDs.
-VolumeIdentity make_identity();
+/// An anonymous patient with new, random UIDs, for a CT of so many slices.
+VolumeIdentity make_identity(std::int64_t slices);
 
 /// Writes a CT as one file a slice, "ct_0001.dcm" … (CT Image, PS3.3 A.3): 16 bits, signed, HU. Frame P (LPS, mm).
-/// Errors: more than 65,535 rows or columns; the file system's.
+/// Errors: more than 65,535 rows or columns, another number of slices than in the identity; the file system's.
 Status write_ct_series(const volume::CtGrid& ct, const VolumeIdentity& identity, const std::filesystem::path& folder,
                        const Progress& progress = {});
 

@@ -94,7 +94,7 @@ dicom::WrittenSegment segment_of(const anatomy::Label& label, const std::map<std
 Status write_dicom(const anatomy::VirtualPatient& patient, const fs::path& folder, const Progress& progress) {
   std::error_code error;
   fs::create_directories(folder / "ct", error);  // an error is reported when writing
-  const dicom::VolumeIdentity identity = dicom::make_identity();
+  const dicom::VolumeIdentity identity = dicom::make_identity(patient.ct.geometry.size[2]);
   TROCAR_TRY_STATUS(dicom::write_ct_series(patient.ct, identity, folder / "ct", part_of(progress, 0.0, 0.7)));
   report(progress, "segmentation", 0.7);
   const auto codes = codes_by_name();

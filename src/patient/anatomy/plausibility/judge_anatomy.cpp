@@ -139,8 +139,9 @@ void judge_shift(const EdgeMatch& edges, const volume::GridGeometry& g, std::vec
 /// A segmentation of another CT has many structures where this one has other things.
 void judge_hu(const VirtualPatient& patient, std::vector<AnatomyFinding>& findings) {
   constexpr std::size_t kMany = 4;
+  constexpr double kMargin_hu = 60.0;  // the bones of old people, and thin ones in thick slices, come near soft tissue
   std::size_t judged = 0;
-  const std::vector<Finding> wrong = find_implausible_hu(patient, label_statistics(patient), &judged);
+  const std::vector<Finding> wrong = find_implausible_hu(patient, label_statistics(patient), &judged, kMargin_hu);
   if (wrong.size() < kMany || wrong.size() * 4 < judged) return;
   findings.push_back(
       {kOtherCt,

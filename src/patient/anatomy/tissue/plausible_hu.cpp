@@ -26,7 +26,7 @@ constexpr double kSmallestJudged_ml = 1.0;
 }  // namespace
 
 std::vector<Finding> find_implausible_hu(const VirtualPatient& patient, const std::vector<LabelStatistics>& statistics,
-                                         std::size_t* judged_count) {
+                                         std::size_t* judged_count, double margin_hu) {
   std::vector<Finding> doubts;
   std::size_t judged = 0;
   for (const LabelStatistics& s : statistics) {
@@ -36,7 +36,7 @@ std::vector<Finding> find_implausible_hu(const VirtualPatient& patient, const st
         std::find_if(kRanges.begin(), kRanges.end(), [&](const HuRange& r) { return r.tissue == label->tissue; });
     if (range == kRanges.end()) continue;
     ++judged;
-    if (s.mean_hu >= range->low && s.mean_hu <= range->high) continue;
+    if (s.mean_hu >= range->low - margin_hu && s.mean_hu <= range->high + margin_hu) continue;
     doubts.push_back(
         {fmt::format("{}: mean {:.0f} HU, expected {:.0f} to {:.0f}", label->name, s.mean_hu, range->low, range->high),
          label->name, s.centroid_P});

@@ -87,6 +87,7 @@ TEST(SecurityPage, HasEveryRequirementOfLevel1Once) {
 TEST(SecurityPage, NamesOnlyTestsAndFilesThatExist) {
   std::set<std::string> tests = tests_in("src/service/web/test");
   tests.merge(tests_in("src/foundation/signing/test"));
+  tests.merge(tests_in("src/exchange/dicom/pacs/test"));
   const std::string page = text_of(trocar::testing::source_dir() / "docs/security.md");
   static const std::regex test(R"(`([A-Z]\w+\.[A-Z]\w+)`)"), file(R"(`((?:web|tests|apps)/[\w/.]+\.\w+)`)");
   std::size_t named = 0;

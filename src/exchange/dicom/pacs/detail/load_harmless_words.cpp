@@ -94,11 +94,19 @@ Status HarmlessWords::add_structures(const fs::path& data_folder) {
   for (const std::string& task : tasks.keys()) {
     TROCAR_TRY(maps.emplace_back(), tasks.table(task));
   }
+  TROCAR_TRY(const config::TomlTable codes, config::load_toml(data_folder / "structure_codes.toml"));
+  TROCAR_TRY(const std::vector<std::string> unused, codes.strings("unused"));
+  append(unused);
+  for (const char* scheme : {"SCT", "SRT"}) {
+    TROCAR_TRY(maps.emplace_back(), codes.table(scheme));
+  }
   for (const config::TomlTable& map : maps)
     for (const std::string& number : map.keys()) {
       TROCAR_TRY(names.emplace_back(), map.string(number));
     }
-  for (const std::string& name : names) add_structure(name);
+  constexpr std::string_view kMonth = "lip";  // July in Polish and Croatian: a part of a date
+  for (const std::string& name : names)
+    if (name != kMonth) add_structure(name);
   return {};
 }
 
