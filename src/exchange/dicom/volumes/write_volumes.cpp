@@ -28,6 +28,11 @@ Status check_volume(const volume::GridGeometry& g, const std::string& where) {
   return {};
 }
 
+Status check_slices(const VolumeIdentity& identity, const volume::GridGeometry& g, const std::string& where) {
+  if (identity.slice_uids.size() == static_cast<std::size_t>(g.size[2])) return {};
+  return fail("the identity is not that of this CT", where, "make one for its number of slices");
+}
+
 void add_common(const VolumeIdentity& identity, std::string_view sop_class, const std::string& instance_uid,
                 DataElements& to) {
   to.text(tag(0x0008, 0x0005), "CS", "ISO_IR 192");
@@ -145,10 +150,10 @@ DataElements slice_elements(const volume::CtGrid& ct, std::int64_t k, const Volu
   return to;
 }
 
-DataElements code_item(std::string_view value, std::string_view meaning) {
+DataElements code_item(std::string_view value, std::string_view meaning, std::string_view scheme = "SCT") {
   DataElements item;
   item.text(tag(0x0008, 0x0100), "SH", value);
-  item.text(tag(0x0008, 0x0102), "SH", "SCT");
+  item.text(tag(0x0008, 0x0102), "SH", scheme);
   item.text(tag(0x0008, 0x0104), "LO", meaning);
   return item;
 }
@@ -190,8 +195,20 @@ class BitFrames {
   std::size_t bits_ = 0;
 };
 
-DataElements frame_groups(const volume::GridGeometry& g, int segment, std::int64_t k) {
+/// The slice of the CT that a frame was drawn on.
+DataElements derivation_from(const std::string& slice_uid) {
+  DataElements source, derivation;
+  source.text(tag(0x0008, 0x1150), "UI", kCtClass);
+  source.text(tag(0x0008, 0x1155), "UI", slice_uid);
+  source.sequence(tag(0x0040, 0xa170), {code_item("121322", "Source image for image processing operation", "DCM")});
+  derivation.sequence(tag(0x0008, 0x2112), {source});
+  derivation.sequence(tag(0x0008, 0x9215), {code_item("113076", "Segmentation", "DCM")});
+  return derivation;
+}
+
+DataElements frame_groups(const volume::GridGeometry& g, int segment, std::int64_t k, const std::string& slice_uid) {
   DataElements position, content, identification, groups;
+  groups.sequence(tag(0x0008, 0x9124), {derivation_from(slice_uid)});
   position.decimals(tag(0x0020, 0x0032), numbers_of(place_of_slice(g, k)));
   std::string indices;  // segment, slice
   for (const std::int64_t index : {static_cast<std::int64_t>(segment), k + 1})
@@ -245,8 +262,7 @@ VolumeIdentity make_identity(std::int64_t slices) {
 Status write_ct_series(const volume::CtGrid& ct, const VolumeIdentity& identity, const std::filesystem::path& folder,
                        const Progress& progress) {
   TROCAR_TRY_STATUS(check_volume(ct.geometry, folder.string()));
-  if (identity.slice_uids.size() != static_cast<std::size_t>(ct.geometry.size[2]))
-    return fail("the identity is not that of this CT", folder.string(), "make one for its number of slices");
+  TROCAR_TRY_STATUS(check_slices(identity, ct.geometry, folder.string()));
   for (std::int64_t k = 0; k < ct.geometry.size[2]; ++k) {
     report(progress, "slices", static_cast<double>(k) / static_cast<double>(ct.geometry.size[2]));
     const std::string& uid = identity.slice_uids[static_cast<std::size_t>(k)];
@@ -260,13 +276,15 @@ Status write_segmentation(const volume::LabelGrid& labels, const std::vector<Wri
                           const VolumeIdentity& identity, const std::filesystem::path& path) {
   const volume::GridGeometry& g = labels.geometry;
   TROCAR_TRY_STATUS(check_volume(g, path.string()));
+  TROCAR_TRY_STATUS(check_slices(identity, g, path.string()));
   BitFrames frames(labels);
   std::vector<DataElements> items, groups;
   for (const WrittenSegment& segment : segments) {
     const int number = static_cast<int>(items.size()) + 1;
     const std::size_t before = groups.size();
     for (std::int64_t k = 0; k < g.size[2]; ++k)
-      if (frames.add(segment.number, k)) groups.push_back(frame_groups(g, number, k));
+      if (frames.add(segment.number, k))
+        groups.push_back(frame_groups(g, number, k, identity.slice_uids[static_cast<std::size_t>(k)]));
     if (groups.size() > before) items.push_back(segment_item_of(segment, number));
   }
   if (groups.empty()) return fail("no structure has a voxel", path.string(), "export a patient with structures");
