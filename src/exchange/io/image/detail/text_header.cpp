@@ -93,7 +93,12 @@ class TextHeaderReader {
     if (line.empty()) return true;
     const bool is_nrrd = kind_ == TextHeaderKind::kNrrd;
     const auto field = is_nrrd ? nrrd_field(line) : meta_field(line);
-    if (!field) return false;
+    if (!field) {
+      // A pair, a comment, or the magic; the library repeats any other line in its message.
+      const bool is_other = is_nrrd && (number == 1 || line.starts_with('#') || line.find(":=") <= kLongestKey);
+      if (!is_other) return damaged(fmt::format("line {} of the header is no field", number));
+      return false;
+    }
     const std::size_t most = is_nrrd ? kLongestNrrdField : kLongestMetaField;
     if (line.size() > most || field->key.size() > kLongestKey)
       return damaged(fmt::format("line {} of the header is too long: a field of {} characters", number, line.size()));

@@ -231,6 +231,9 @@ TEST_F(StatedPlaceTest, BoundsATextHeader) {
   std::string many;
   for (int n = 0; n < 10'000; ++n) many += "key" + std::to_string(n) + ":=value\n";
   expect_refused("a.nrrd", nrrd(place, many), "more than 10000 lines");
+  expect_refused("a.nrrd", nrrd(place, std::string(5'000, '8') + "\n"), "line 10 of the header is no field");
+  expect_refused("a.nrrd", nrrd(place, std::string(5'000, 'k') + ":=v\n"), "line 10 of the header is no field");
+  expect_at("a.nrrd", nrrd(place, "# " + std::string(5'000, 'A') + "\n"), 8, {14, 20, 34});
   // Read by the library into an array on the stack.
   std::string text = nrrd(place);
   text.replace(text.find("raw"), 3, "ascii");
