@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "commands.h"
+#include "core/part_of_progress.h"
 #include "io/patient/export_patient.h"
 #include "io/patient/open_patient.h"
 #include "output.h"

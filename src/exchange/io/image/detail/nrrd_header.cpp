@@ -191,6 +191,9 @@ Result<ImageHeader> read_nrrd_header(const InputFile& input) {
   TROCAR_TRY(const TextHeader header, read_text_header(input, TextHeaderKind::kNrrd));
   TROCAR_TRY_STATUS(check_fields(header, where));
 
+  const std::string endian = ascii::lower_case(header.get("endian", "little"));
+  if (endian != "little" && endian != "big")
+    return fail("the header's \"endian\" is neither little nor big", where, kExportAgain);
   const auto voxel_bytes = nrrd_type_bytes(ascii::lower_case(header.get("type")));
   if (!voxel_bytes) return fail("has no known voxel type", where, "convert it to 16-bit integers");
   std::vector<std::int64_t> sizes = whole_numbers(header.get("sizes"));

@@ -13,8 +13,8 @@ namespace trocar::io::detail {
 namespace {
 
 constexpr std::size_t kMostLines = 10'000;  ///< A segmentation of 255 structures has about 3,000.
-constexpr std::size_t kLongestNrrdField = 1'000, kLongestPair = 64 * 1024;
-constexpr std::size_t kLongestMetaField = 250;  ///< MetaIO keeps texts in arrays of 255.
+constexpr std::size_t kLongestNrrdField = 500, kLongestPair = 64 * 1024;  // nine numbers of 24 letters fit
+constexpr std::size_t kLongestMetaField = 250;                            ///< MetaIO keeps texts in arrays of 255.
 constexpr std::size_t kLongestKey = 250;
 constexpr std::string_view kLastMetaKey = "ElementDataFile";
 

@@ -225,6 +225,10 @@ TEST_F(StatedPlaceTest, RefusesDirectionsThatAreNone) {
 TEST_F(StatedPlaceTest, BoundsATextHeader) {
   const std::string place = "space: LPS\nspace directions: (2,0,0) (0,3,0) (0,0,4)\nspace origin: (10,20,30)\n";
   expect_refused("a.nrrd", nrrd(place, "comment: " + std::string(3'000, 'A') + "\n"), "a field of 3009 characters");
+  expect_refused("a.nrrd", nrrd(place, "content: " + std::string(600, 'A') + "\n"), "a field of 609 characters");
+  std::string no_order = nrrd(place);
+  no_order.replace(no_order.find("little"), 6, std::string(300, '4'));
+  expect_refused("a.nrrd", no_order, "neither little nor big");
   expect_refused("a.nrrd", nrrd(place, "comment: hello\n"), "\"comment\", which NRRD does not know");
   expect_refused("a.nrrd", nrrd(place, "space: LPS\n"), "\"space\" twice");
   expect_refused("a.nrrd", nrrd(place, "key:=" + std::string(70'000, 'A') + "\n"), "longer than");

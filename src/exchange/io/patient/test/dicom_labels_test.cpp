@@ -172,7 +172,8 @@ TEST_F(DicomLabels, CompressedFramesAreUnpacked) {
   std::string damaged = whole;
   damaged[damaged.rfind(run_lengths(pixels.substr(48, 48))) + 4] = '\x7f';
   testing::write_bytes(folder_ / "label.seg", damaged);
-  EXPECT_NE(read(folder_ / "label.seg").begin()->first.find("frame 2: the DICOM image cannot be unpacked"), std::string::npos)
+  EXPECT_NE(read(folder_ / "label.seg").begin()->first.find("frame 2: the DICOM image cannot be unpacked"),
+            std::string::npos)
       << read(folder_ / "label.seg").begin()->first;
 }
 

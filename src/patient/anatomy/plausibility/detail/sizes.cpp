@@ -25,7 +25,7 @@ constexpr std::array kVolumes{VolumeRange{"liver", 150, 6000},       VolumeRange
                               VolumeRange{"urinarybladder", 3, 3000}};
 
 constexpr std::size_t kWholeSegmentation = 12;  ///< Structures from which on a missing organ means something.
-constexpr std::array<std::string_view, 4> kExpected{"spleen", "kidneyleft", "kidneyright", "liver"};
+constexpr std::array<std::string_view, 4> kExpected{"spleen", "kidney_left", "kidney_right", "liver"};
 
 bool is_whole(const IndexBox& box, const volume::GridGeometry& g) {
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -61,15 +61,13 @@ void judge_missing(const volume::LabelGrid& labels, const LabelTable& table, con
   for (const std::string_view name : kExpected) {
     bool is_there = false;
     for (const Label& label : table.labels) {
-      if (plain_name(label.name) != name || boxes.voxels[label.id] == 0) continue;
+      if (plain_name(label.name) != plain_name(name) || boxes.voxels[label.id] == 0) continue;
       is_there = true;
       whole += is_whole(boxes.box[label.id], labels.geometry) ? 1 : 0;
     }
     if (!is_there) missing.emplace_back(name);
   }
   if (present < kWholeSegmentation || whole < 2 || missing.empty()) return;
-  for (std::string& name : missing)
-    if (name.starts_with("kidney")) name.insert(6, "_");
   findings.push_back({kMissing, fmt::format("no label for: {}", fmt::join(missing, ", ")),
                       "removed from the patient, or not found by the segmentation", false});
 }
