@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <iterator>
 #include <utility>
 
@@ -20,19 +21,58 @@ Status check_stop(const std::stop_token& stop, const PatientFiles& files) {
   return {};
 }
 
-/// Reverses the axis that runs most nearly along left and right.
+/// The axis of a grid that runs most nearly along left and right.
+std::size_t left_right_axis(const volume::GridGeometry& g) {
+  Eigen::Index axis = 0;
+  g.R_PV.row(0).cwiseAbs().maxCoeff(&axis);
+  return static_cast<std::size_t>(axis);
+}
+
+/// Reverses this axis: mirrors the volume about the middle of its grid.
 template <class T>
 void mirror_left_right(volume::Grid<T>& grid) {
   const volume::GridGeometry& g = grid.geometry;
-  Eigen::Index axis = 0;
-  g.R_PV.row(0).cwiseAbs().maxCoeff(&axis);
-  const auto a = static_cast<std::size_t>(axis);
+  const std::size_t a = left_right_axis(g);
   for (std::size_t n = 0; n < grid.voxels.size(); ++n) {
     volume::Index3 ijk = g.index_of(n);
     if (2 * ijk[a] >= g.size[a] - 1) continue;
     ijk[a] = g.size[a] - 1 - ijk[a];
     std::swap(grid.voxels[n], grid.voxels[g.offset(ijk)]);
   }
+}
+
+Vec3 middle_P(const volume::GridGeometry& g) {
+  return g.to_mm(0.5 * (volume::to_vec3(g.size) - Vec3::Ones()));
+}
+
+/// Mirrors labels together with their CT: about the middle of the CT, also where their own grid is smaller. Error: a
+/// grid that lies obliquely to the CT's.
+Status mirror_about(const volume::GridGeometry& ct, anatomy::LabelSource& source) {
+  volume::GridGeometry& g = source.labels.geometry;
+  const Vec3 normal_P = ct.R_PV.col(static_cast<Eigen::Index>(left_right_axis(ct)));
+  const Vec3 own_P = g.R_PV.col(static_cast<Eigen::Index>(left_right_axis(g)));
+  constexpr double kParallel = 0.999999;
+  if (std::abs(normal_P.dot(own_P)) < kParallel)
+    return fail("the labels lie obliquely to the CT and cannot be mirrored with it", source.file,
+                "give labels on the grid of the CT");
+  mirror_left_right(source.labels);
+  g.origin_P -= 2.0 * normal_P.dot(middle_P(g) - middle_P(ct)) * normal_P;
+  return {};
+}
+
+/// What is mirrored is said in the provenance.
+Status mirror(Mirroring mirroring, volume::CtGrid& ct, std::vector<anatomy::LabelSource>& sources,
+              std::vector<std::string>& provenance) {
+  if (mirroring == Mirroring::kNone) return {};
+  if (mirroring == Mirroring::kLabels) {
+    provenance.emplace_back("mirrored left to right: labels");
+    for (anatomy::LabelSource& source : sources) mirror_left_right(source.labels);
+    return {};
+  }
+  provenance.emplace_back("mirrored left to right: CT and labels");
+  for (anatomy::LabelSource& source : sources) TROCAR_TRY_STATUS(mirror_about(ct.geometry, source));
+  mirror_left_right(ct);
+  return {};
 }
 
 }  // namespace
@@ -68,12 +108,7 @@ Result<anatomy::VirtualPatient> build_from_files(const PatientFiles& files, std:
     options.provenance.push_back(
         fmt::format("CT rescaled: HU = {} * stored + {}", files.rescale->slope, files.rescale->intercept));
   for (const std::filesystem::path& path : files.labels) options.provenance.push_back("labels: " + last_name(path));
-  if (files.mirroring != Mirroring::kNone) {
-    options.provenance.push_back(files.mirroring == Mirroring::kBoth ? "mirrored left to right: CT and labels"
-                                                                     : "mirrored left to right: labels");
-    for (anatomy::LabelSource& source : sources) mirror_left_right(source.labels);
-    if (files.mirroring == Mirroring::kBoth) mirror_left_right(ct);
-  }
+  TROCAR_TRY_STATUS(mirror(files.mirroring, ct, sources, options.provenance));
   return anatomy::build_patient(ct, std::move(sources), options, warnings, part_of(progress, 0.4, 1.0));
 }
 

@@ -15,7 +15,8 @@
 
 namespace trocar::io {
 
-/// What is mirrored left to right, about the middle of its own grid, because its file was.
+/// What is mirrored left to right, because its file was: labels about the middle of their own grid, or CT and labels
+/// about the middle of the CT.
 enum class Mirroring { kNone, kLabels, kBoth };
 
 /// The input files of a patient.
