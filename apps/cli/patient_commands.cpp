@@ -149,7 +149,7 @@ Status build(const BuildArguments& arguments) {
   files.series = arguments.series;
   files.sibling_series = arguments.sibling_series;
   TROCAR_TRY(files.rescale, parse_rescale(arguments.rescale));
-  TROCAR_TRY(const anatomy::Posture posture, parse_posture(arguments.posture));
+  TROCAR_TRY(files.posture, parse_posture(arguments.posture));
   TROCAR_TRY(const auto extras, read_tissues(arguments.tissues));
   TROCAR_TRY(files.derive, anatomy::parse_derive_choice(arguments.derive));
   TROCAR_TRY(files.mirroring, parse_mirroring(arguments.mirror));
@@ -163,7 +163,6 @@ Status build(const BuildArguments& arguments) {
     const ProgressPrinter printer;
     const Progress progress = printer.callback();
     TROCAR_TRY(patient, io::build_from_files(files, warnings, part_of(progress, 0.0, 0.5)));
-    patient.posture = posture;
     TROCAR_TRY(meshes, save_with_surfaces(patient, arguments.out, part_of(progress, 0.5, 1.0), extras));
   }
   for (const std::string& warning : warnings) print_warning(warning);
@@ -278,9 +277,11 @@ void add_patient_commands(Command& program, Action& action) {
       .show_default();
   build_command.add_option("--mirror", b->mirror,
                            "Mirror left to right what its file has mirrored: labels, or both (the CT, too)");
-  build_command.add_option("--confirm", b->confirmed,
-                           "A finding about the whole segmentation that is right: mirrored (situs inversus), turned, "
-                           "shifted, numbers, other-ct, cropped, missing, sizes; can be given several times");
+  build_command.add_option(
+      "--confirm", b->confirmed,
+      "A finding about the whole segmentation that is right: mirrored (situs inversus), turned, "
+      "shifted, numbers, other-ct, cropped, missing, sizes, places, hu, posture; can be given several "
+      "times");
   build_command.add_option("--tissues", b->tissues,
                            "Tissue table (TOML) fitted to this patient: stored in the folder and used by its attempts");
   build_command.add_option("--name", b->name, "Name of the patient; default: the folder's name");

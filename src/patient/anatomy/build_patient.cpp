@@ -14,7 +14,6 @@
 #include "anatomy/plausibility/judge_anatomy.h"
 #include "anatomy/repair/repair_segmentation.h"
 #include "anatomy/tissue/hounsfield.h"
-#include "anatomy/tissue/plausible_hu.h"
 #include "core/files/data_dir.h"
 #include "core/part_of_progress.h"
 #include "volume/distance.h"
@@ -72,12 +71,10 @@ void clear_outside(const volume::MaskGrid& body, volume::LabelGrid& labels, cons
   }
 }
 
-void warn_of_doubtful_structures(const VirtualPatient& patient, std::size_t known_count,
-                                 std::vector<std::string>& warnings) {
-  const auto statistics = label_statistics(patient);
-  for (Finding& doubt : find_implausible_hu(patient, statistics)) warnings.push_back(std::move(doubt.text));
+void warn_of_cut_structures(const VirtualPatient& patient, std::size_t known_count,
+                            std::vector<std::string>& warnings) {
   std::vector<std::string> cut;
-  for (const LabelStatistics& label : statistics) {
+  for (const LabelStatistics& label : label_statistics(patient)) {
     if (label.touches_border && label.id <= known_count) cut.push_back(patient.label_table.find(label.id)->name);
   }
   if (!cut.empty()) warnings.push_back(fmt::format("cut off by the border of the CT: {}", fmt::join(cut, ", ")));
@@ -97,6 +94,7 @@ Result<VirtualPatient> build_patient(const volume::CtGrid& ct, std::vector<Label
   VirtualPatient patient;
   patient.name = options.name;
   patient.provenance = options.provenance;
+  patient.posture = options.posture;
 
   std::vector<AnatomyFinding> findings = judge_numbers(ct, sources, known);
   // Slices are axial from here on, independent of the stored order of the CT.
@@ -108,10 +106,11 @@ Result<VirtualPatient> build_patient(const volume::CtGrid& ct, std::vector<Label
   TROCAR_TRY(volume::MaskGrid body, find_checked_body(patient.ct, merged.body_hint));
   merged.body_hint = {};
   for (AnatomyFinding& finding : judge_sides(body)) {
-    const bool is_confirmed = air_of(options.confirmed) == AirIn::kNowhere;
-    if (finding.is_grave && is_confirmed) take_sides_as_skin(body);
+    if (finding.is_grave && air_of(options.confirmed) == AirIn::kNowhere) take_sides_as_skin(body);
     findings.push_back(std::move(finding));
   }
+  for (AnatomyFinding& finding : judge_posture(patient.ct, body, patient.posture))
+    findings.push_back(std::move(finding));
   clear_outside(body, merged.labels, merged.table, warnings);
 
   patient.labels = std::move(merged.labels);
@@ -132,7 +131,7 @@ Result<VirtualPatient> build_patient(const volume::CtGrid& ct, std::vector<Label
   const std::vector<std::string> derived =
       derive_structures(patient, known, options.derive, part_of(progress, 0.8, 0.95));
   if (!derived.empty()) patient.provenance.push_back(fmt::format("derived: {}", fmt::join(derived, ", ")));
-  warn_of_doubtful_structures(patient, known_count, warnings);
+  warn_of_cut_structures(patient, known_count, warnings);
   patient.content_hash = hash_patient(patient);
   report(progress, "patient", 1.0);
   return patient;

@@ -38,6 +38,7 @@ struct BuildOptions {
   std::string name;
   std::vector<std::string> provenance;
   DeriveChoice derive{};                            ///< Thin structures to add (derive/derive_structures.h).
+  Posture posture = Posture::kSupine;               ///< For the puncture.
   std::vector<std::string> confirmed{};             ///< Names of findings that a person has confirmed.
   std::vector<AnatomyFinding>* findings = nullptr;  ///< Receives all findings, also if one of them is the error.
 };
@@ -59,12 +60,17 @@ Result<VirtualPatient> build_patient(const volume::CtGrid& ct, std::vector<Label
 /// or the feet are closed in axial slices: k must run along the body (volume/orientation.h, checked).
 volume::MaskGrid find_body(const volume::CtGrid& ct);
 
+inline constexpr int kGasBelow_hu = -300;
+inline constexpr int kBoneAbove_hu = 350;
+
 /// One line for each label: voxels, volume, extent; used by `patient show` and `patient check`.
 struct LabelStatistics {
   std::uint8_t id = 0;
   std::size_t voxels = 0;
   double volume_ml = 0.0;
   double mean_hu = 0.0;
+  double gas_share = 0.0;   ///< Of its voxels, below kGasBelow_hu.
+  double bone_share = 0.0;  ///< Of its voxels, above kBoneAbove_hu.
   bool touches_border = false;
   Vec3 centroid_P = Vec3::Zero();
 };

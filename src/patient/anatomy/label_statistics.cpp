@@ -8,6 +8,7 @@ namespace {
 struct Sums {
   std::size_t voxels = 0;
   std::int64_t hu = 0;
+  std::size_t gas = 0, bone = 0;
   std::array<std::int64_t, 3> index{0, 0, 0};
   bool touches_border = false;
 };
@@ -25,6 +26,8 @@ std::vector<LabelStatistics> label_statistics(const VirtualPatient& patient) {
         Sums& sum = sums[patient.labels.voxels[n]];
         ++sum.voxels;
         sum.hu += patient.ct.voxels[n];
+        sum.gas += patient.ct.voxels[n] < kGasBelow_hu ? 1U : 0U;
+        sum.bone += patient.ct.voxels[n] > kBoneAbove_hu ? 1U : 0U;
         sum.index[0] += i;
         sum.index[1] += j;
         sum.index[2] += k;
@@ -43,6 +46,8 @@ std::vector<LabelStatistics> label_statistics(const VirtualPatient& patient) {
       const auto count = static_cast<double>(sum.voxels);
       statistics.volume_ml = count * geometry.voxel_volume_mm3() / 1000.0;
       statistics.mean_hu = static_cast<double>(sum.hu) / count;
+      statistics.gas_share = static_cast<double>(sum.gas) / count;
+      statistics.bone_share = static_cast<double>(sum.bone) / count;
       statistics.touches_border = sum.touches_border;
       const Vec3 index = volume::to_vec3(sum.index);
       statistics.centroid_P = geometry.to_mm(index / count);

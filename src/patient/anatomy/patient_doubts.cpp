@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "anatomy/plausibility/judge_anatomy.h"
 #include "anatomy/repair/repair_segmentation.h"
 #include "anatomy/tissue/plausible_hu.h"
 
@@ -35,6 +36,9 @@ std::vector<Finding> find_doubts(const VirtualPatient& patient, const std::vecto
 std::vector<Finding> find_all_doubts(const VirtualPatient& patient, const std::vector<LabelStatistics>& statistics) {
   std::vector<Finding> doubts = find_doubts(patient, statistics);
   for (Finding& doubt : find_segmentation_doubts(patient)) doubts.push_back(std::move(doubt));
+  for (const AnatomyFinding& finding : judge_anatomy(patient))
+    if (finding.name != kHu && !is_confirmed(patient.provenance, finding.name))  // HU stand above, a line each
+      doubts.push_back({fmt::format("{}: {}", finding.name, finding.text), {}, {}});
   return doubts;
 }
 

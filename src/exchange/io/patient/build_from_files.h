@@ -28,6 +28,7 @@ struct PatientFiles {
   std::string series{};                        ///< Selects one of several DICOM series, see read_ct.
   std::optional<anatomy::Rescale> rescale{};   ///< Rescale for a CT whose file lacks it.
   anatomy::DeriveChoice derive{};              ///< Thin structures to add.
+  anatomy::Posture posture = anatomy::Posture::kSupine;  ///< For the puncture.
   Mirroring mirroring = Mirroring::kNone;      ///< Kept in the provenance, as the next ones.
   std::vector<std::string> confirmed{};        ///< Findings that are right (anatomy/plausibility/anatomy_finding.h).
   std::vector<anatomy::AnatomyFinding>* findings = nullptr;  ///< Receives all findings.

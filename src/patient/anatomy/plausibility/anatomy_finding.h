@@ -12,7 +12,10 @@ inline constexpr const char* kNumbers = "numbers";    ///< The label numbers hav
 inline constexpr const char* kOtherCt = "other-ct";   ///< Many structures have HU that they cannot have.
 inline constexpr const char* kCropped = "cropped";    ///< The sides of the CT lie inside the body.
 inline constexpr const char* kMissing = "missing";    ///< A large organ has no label in a whole segmentation.
-inline constexpr const char* kSizes = "sizes";        ///< An organ has a volume that no person's has.
+inline constexpr const char* kSizes = "sizes";        ///< An organ has a size or shape that no person's has.
+inline constexpr const char* kPlaces = "places";      ///< Single structures lie where they do not belong.
+inline constexpr const char* kHu = "hu";              ///< Single structures have HU that they cannot have.
+inline constexpr const char* kPosture = "posture";    ///< The CT table lies elsewhere than for the patient's posture.
 
 /// Something about a segmentation as a whole: what no single structure shows, and what makes another patient of it.
 struct AnatomyFinding {
@@ -25,6 +28,7 @@ struct AnatomyFinding {
 
 inline constexpr const char* kMirrorLabels = "--mirror labels";
 inline constexpr const char* kMirrorBoth = "--mirror both";
+inline constexpr const char* kUsePosture = "--posture ";     ///< Followed by its name.
 inline constexpr const char* kUseLabelMap = "--label-map ";  ///< Followed by its name.
 
 }  // namespace trocar::anatomy

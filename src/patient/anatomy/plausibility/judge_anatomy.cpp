@@ -136,19 +136,40 @@ void judge_shift(const EdgeMatch& edges, const volume::GridGeometry& g, std::vec
                                   kShifted)});
 }
 
-/// A segmentation of another CT has many structures where this one has other things.
+/// Single structures on a side where nearly nobody has them. Two of them are no variant, but exchanged names.
+void judge_places(const std::array<AxisVotes, 3>& votes, std::vector<AnatomyFinding>& findings) {
+  std::vector<std::string> wrong;
+  for (const AxisVotes& axis : votes) wrong.insert(wrong.end(), axis.misplaced.begin(), axis.misplaced.end());
+  if (wrong.empty()) return;
+  findings.push_back({kPlaces, fmt::format("structures lie where they do not belong: {}", fmt::join(wrong, ", ")),
+                      fmt::format("check whether names are exchanged; --confirm {} if it is right", kPlaces),
+                      wrong.size() > 1});
+}
+
+/// A segmentation of another CT has many structures where this one has other things; a single one may be wrong.
 void judge_hu(const VirtualPatient& patient, std::vector<AnatomyFinding>& findings) {
-  constexpr std::size_t kMany = 4;
-  constexpr double kMargin_hu = 60.0;  // the bones of old people, and thin ones in thick slices, come near soft tissue
+  constexpr std::size_t kMany = 4, kMostNamed = 4;
+  // The bones of old people, and thin ones in thick slices, come near soft tissue.
+  constexpr HuMargin kClear{60.0, 0.2};
+  const std::vector<LabelStatistics> statistics = label_statistics(patient);
   std::size_t judged = 0;
-  const std::vector<Finding> wrong = find_implausible_hu(patient, label_statistics(patient), &judged, kMargin_hu);
-  if (wrong.size() < kMany || wrong.size() * 4 < judged) return;
-  findings.push_back(
-      {kOtherCt,
-       fmt::format("{} of {} structures have HU that they cannot have ({}; {}): the segmentation seems to "
-                   "belong to another CT",
-                   wrong.size(), judged, wrong[0].text, wrong[1].text),
-       fmt::format("give the segmentation of this CT; --confirm {} if it is right", kOtherCt)});
+  const std::vector<Finding> wrong = find_implausible_hu(patient, statistics, &judged, kClear);
+  if (wrong.size() >= kMany && wrong.size() * 4 >= judged) {
+    findings.push_back(
+        {kOtherCt,
+         fmt::format("{} of {} structures have HU that they cannot have ({}; {}): the segmentation seems to "
+                     "belong to another CT",
+                     wrong.size(), judged, wrong[0].text, wrong[1].text),
+         fmt::format("give the segmentation of this CT; --confirm {} if it is right", kOtherCt)});
+    return;
+  }
+  std::vector<std::string> texts;
+  const std::vector<Finding> doubts = find_implausible_hu(patient, statistics);
+  for (const Finding& doubt : doubts)
+    if (texts.size() < kMostNamed) texts.push_back(doubt.text);
+  if (doubts.size() > kMostNamed) texts.push_back(fmt::format("and {} more", doubts.size() - kMostNamed));
+  if (!texts.empty())
+    findings.push_back({kHu, fmt::format("{}", fmt::join(texts, "; ")), "check the segmentation", false});
 }
 
 }  // namespace
@@ -157,11 +178,23 @@ std::vector<AnatomyFinding> judge_anatomy(const VirtualPatient& patient) {
   std::vector<AnatomyFinding> findings;
   const EdgeMatch edges(patient.ct, patient.labels, patient.label_table);
   const volume::GridGeometry& g = patient.labels.geometry;
-  judge_directions(detail::vote_directions(patient.labels, patient.label_table), edges, g, findings);
+  const detail::LabelShapes shapes = detail::find_label_shapes(patient.labels);
+  const auto votes = detail::vote_directions(shapes, g.voxel_volume_mm3() / 1000.0, patient.label_table);
+  judge_directions(votes, edges, g, findings);
   if (findings.empty()) judge_shift(edges, g, findings);
-  if (findings.empty()) judge_hu(patient, findings);
-  detail::judge_sizes(patient.labels, patient.label_table, findings);
+  if (findings.empty()) judge_places(votes, findings);
+  if (findings.empty() || !findings.back().is_grave) judge_hu(patient, findings);
+  detail::judge_sizes(patient.labels, patient.label_table, shapes, findings);
   return findings;
+}
+
+bool is_confirmed(const std::vector<std::string>& provenance, const std::string& name) {
+  const std::string start = confirmation({name, {}, {}});
+  return std::ranges::any_of(provenance, [&](const std::string& line) { return line.starts_with(start); });
+}
+
+std::string confirmation(const AnatomyFinding& finding) {
+  return fmt::format("confirmed: {}: {}", finding.name, finding.text);
 }
 
 Status settle_findings(const std::vector<AnatomyFinding>& findings, const std::vector<std::string>& confirmed,
@@ -172,11 +205,12 @@ Status settle_findings(const std::vector<AnatomyFinding>& findings, const std::v
   const AnatomyFinding* gravest = nullptr;
   for (const AnatomyFinding& finding : findings) {
     if (std::ranges::find(confirmed, finding.name) != confirmed.end()) {
-      provenance.push_back(fmt::format("confirmed: {}: {}", finding.name, finding.text));
+      provenance.push_back(confirmation(finding));
     } else if (finding.is_grave) {
       if (gravest == nullptr) gravest = &finding;
     } else {
-      warnings.push_back(fmt::format("{} (--confirm {} if it is right)", finding.text, finding.name));
+      const std::string repair = finding.repair.empty() ? "" : fmt::format("{}, or ", finding.repair);
+      warnings.push_back(fmt::format("{} ({}--confirm {} if it is right)", finding.text, repair, finding.name));
     }
   }
   if (gravest == nullptr) return {};
@@ -184,7 +218,8 @@ Status settle_findings(const std::vector<AnatomyFinding>& findings, const std::v
 }
 
 Status check_confirmable(const std::vector<std::string>& names) {
-  constexpr std::array kAll{kMirrored, kTurned, kShifted, kNumbers, kOtherCt, kCropped, kMissing, kSizes};
+  constexpr std::array kAll{kMirrored, kTurned, kShifted, kNumbers, kOtherCt, kCropped,
+                            kMissing,  kSizes,  kPlaces,  kHu,      kPosture};
   for (const std::string& name : names)
     if (std::ranges::find(kAll, name) == kAll.end())
       return fail_usage(fmt::format("there is no finding \"{}\"", name), "--confirm",

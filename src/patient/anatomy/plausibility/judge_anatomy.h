@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,16 @@ std::vector<AnatomyFinding> judge_sides(const volume::MaskGrid& body);
 void take_sides_as_skin(volume::MaskGrid& body);
 /// A CT that a person has confirmed to be cropped needs no air.
 AirIn air_of(const std::vector<std::string>& confirmed);
+
+/// The posture in which a CT was taken, from the side of the body on which its table lies: what is outside the body and
+/// the same in most slices. None if there is no table, or no clear side. Axes along P.
+std::optional<Posture> find_scanned_posture(const volume::CtGrid& ct, const volume::MaskGrid& body);
+/// Told if the patient was scanned otherwise than `posture`: organs, gas and fluid lie as they were scanned.
+std::vector<AnatomyFinding> judge_posture(const volume::CtGrid& ct, const volume::MaskGrid& body, Posture posture);
+
+/// The line of the provenance that keeps a confirmed finding, and whether one of that name is among its lines.
+std::string confirmation(const AnatomyFinding& finding);
+bool is_confirmed(const std::vector<std::string>& provenance, const std::string& name);
 
 /// Sorts findings into what was confirmed (provenance), what is only told (warnings), and the first grave one, which is
 /// the error.

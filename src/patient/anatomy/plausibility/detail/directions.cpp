@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -25,71 +26,55 @@ constexpr double kSmallest_ml = 0.5;
 /// The places of structures by the group that they belong to: "liver", "spine", "kidney".
 class Places {
  public:
-  Places(const volume::LabelGrid& labels, const LabelTable& table) : labels_(labels) {
-    sum_up();
+  Places(const LabelShapes& shapes, double voxel_ml, const LabelTable& table) : voxel_ml_(voxel_ml) {
     for (const Label& label : table.labels) {
-      if (label.is_derived) continue;
-      const std::string plain = without_side(plain_name(label.name));
-      add(group_of(plain, label), label.id);
-      if (const int place = vertebra_place(label.name); place > 0) vertebrae_[place] = places_[label.id];
+      const LabelShape& shape = shapes[label.id];
+      if (label.is_derived || shape.voxels == 0.0) continue;
+      add(group_of(label), shape);
+      if (plain_name(label.name) != group_of(label)) add(plain_name(label.name), shape);
+      if (const int n = vertebra_place(label.name); n > 0) vertebrae_[n] = shape.middle_P;
     }
   }
 
-  /// `name` as in a segmentation, or "spine", "lung", "heart".
+  /// `name` as in a segmentation, with or without its side, or "spine", "lung", "heart".
   std::optional<Vec3> find(std::string_view name) const {
     const auto found = groups_.find(plain_name(name));
-    if (found == groups_.end()) return std::nullopt;
-    const double ml = found->second.voxels * labels_.geometry.voxel_volume_mm3() / 1000.0;
-    return ml < kSmallest_ml ? std::nullopt : std::optional(found->second.middle_P());
+    if (found == groups_.end() || found->second.voxels * voxel_ml_ < kSmallest_ml) return std::nullopt;
+    return found->second.middle_P();
   }
   /// Middles of the vertebrae from head to feet.
   std::vector<Vec3> vertebrae() const {
     std::vector<Vec3> middles;
-    for (const auto& [place, where] : vertebrae_)
-      if (where.voxels > 0.0) middles.push_back(where.middle_P());
+    for (const auto& [place, middle_P] : vertebrae_) middles.push_back(middle_P);
     return middles;
   }
 
  private:
-  static std::string group_of(const std::string& plain, const Label& label) {
+  static std::string group_of(const Label& label) {
+    std::string plain = without_side(plain_name(label.name));
     if (vertebra_place(label.name) > 0) return "spine";
     if (plain.starts_with("lung")) return "lung";
     if (plain.starts_with("heart") || plain == "atrium" || plain == "ventricle") return "heart";
     return plain;
   }
-  void add(const std::string& group, std::uint8_t id) {
-    groups_[group].sum_P += places_[id].sum_P;
-    groups_[group].voxels += places_[id].voxels;
-  }
-  void sum_up() {
-    const volume::GridGeometry& g = labels_.geometry;
-    std::array<std::array<double, 4>, 256> sums{};
-    std::size_t n = 0;
-    for (std::int64_t k = 0; k < g.size[2]; ++k)
-      for (std::int64_t j = 0; j < g.size[1]; ++j)
-        for (std::int64_t i = 0; i < g.size[0]; ++i, ++n) {
-          auto& sum = sums[labels_.voxels[n]];
-          sum[0] += static_cast<double>(i), sum[1] += static_cast<double>(j), sum[2] += static_cast<double>(k);
-          sum[3] += 1.0;
-        }
-    for (std::size_t id = 1; id < 256; ++id) {
-      if (sums[id][3] == 0.0) continue;
-      const Vec3 middle = Vec3(sums[id][0], sums[id][1], sums[id][2]) / sums[id][3];
-      places_[id] = {g.to_mm(middle) * sums[id][3], sums[id][3]};
-    }
+
+  void add(const std::string& group, const LabelShape& shape) {
+    Place& place = groups_[group];
+    place.sum_P += shape.middle_P * shape.voxels;
+    place.voxels += shape.voxels;
   }
 
-  const volume::LabelGrid& labels_;
-  std::array<Place, 256> places_{};
+  double voxel_ml_;
   std::map<std::string, Place, std::less<>> groups_;
-  std::map<int, Place> vertebrae_;
+  std::map<int, Vec3> vertebrae_;
 };
 
-void vote(AxisVotes& votes, double offset_mm, double clear_mm, const std::string& wrong) {
+void vote(AxisVotes& votes, double offset_mm, double clear_mm, const std::string& wrong, bool varies = false) {
   if (offset_mm > clear_mm) ++votes.right;
   if (offset_mm >= -clear_mm) return;
   ++votes.wrong;
   votes.wrong_ones.push_back(wrong);
+  if (!varies) votes.misplaced.push_back(wrong);
 }
 
 /// Organs of one side; `sign` is their side along x of P (left is positive).
@@ -97,10 +82,12 @@ struct OneSided {
   std::string_view name;
   double sign;
   double clear_mm;
+  bool varies = false;  ///< Lies in the middle or beyond it in some people.
 };
-constexpr std::array kOneSided{
-    OneSided{"liver", -1, 15}, OneSided{"gallbladder", -1, 10}, OneSided{"spleen", 1, 15},  OneSided{"stomach", 1, 10},
-    OneSided{"heart", 1, 5},   OneSided{"duodenum", -1, 10},    OneSided{"pancreas", 1, 15}};
+constexpr std::array kOneSided{OneSided{"liver", -1, 15},        OneSided{"gallbladder", -1, 10, true},
+                               OneSided{"spleen", 1, 15},        OneSided{"stomach", 1, 10, true},
+                               OneSided{"heart", 1, 5, true},    OneSided{"duodenum", -1, 10, true},
+                               OneSided{"pancreas", 1, 15, true}};
 
 AxisVotes vote_left_right(const Places& places) {
   AxisVotes votes;
@@ -109,7 +96,7 @@ AxisVotes vote_left_right(const Places& places) {
     for (const OneSided& organ : kOneSided)
       if (const auto place = places.find(organ.name))
         vote(votes, organ.sign * (place->x() - spine->x()), organ.clear_mm,
-             fmt::format("{} on the {}", organ.name, organ.sign > 0.0 ? "right" : "left"));
+             fmt::format("{} on the {}", organ.name, organ.sign > 0.0 ? "right" : "left"), organ.varies);
   } else if (const auto liver = places.find("liver")) {
     for (const char* name : {"spleen", "stomach"})
       if (const auto left = places.find(name))
@@ -152,11 +139,23 @@ AxisVotes vote_up_down(const Places& places) {
   return votes;
 }
 
+/// A transplanted or pelvic kidney says nothing about the image.
+void find_low_kidney(const Places& places, AxisVotes& votes) {
+  constexpr double kFar_mm = 80.0;
+  const auto left = places.find("kidney_left"), right = places.find("kidney_right");
+  if (!left || !right || std::abs(left->z() - right->z()) < kFar_mm) return;
+  const bool is_left = left->z() < right->z();
+  votes.misplaced.push_back(fmt::format("kidney_{} lies {:.0f} mm below the other", is_left ? "left" : "right",
+                                        std::abs(left->z() - right->z())));
+}
+
 }  // namespace
 
-std::array<AxisVotes, 3> vote_directions(const volume::LabelGrid& labels, const LabelTable& table) {
-  const Places places(labels, table);
-  return {vote_left_right(places), vote_front_back(places), vote_up_down(places)};
+std::array<AxisVotes, 3> vote_directions(const LabelShapes& shapes, double voxel_ml, const LabelTable& table) {
+  const Places places(shapes, voxel_ml, table);
+  std::array<AxisVotes, 3> votes{vote_left_right(places), vote_front_back(places), vote_up_down(places)};
+  find_low_kidney(places, votes[2]);
+  return votes;
 }
 
 }  // namespace trocar::anatomy::detail

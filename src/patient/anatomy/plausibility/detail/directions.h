@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "anatomy/label_table.h"
-#include "volume/grid.h"
+#include "anatomy/plausibility/detail/label_shapes.h"
 
 namespace trocar::anatomy::detail {
 
@@ -13,10 +13,11 @@ namespace trocar::anatomy::detail {
 struct AxisVotes {
   int right = 0, wrong = 0;
   std::vector<std::string> wrong_ones;  ///< "liver on the left".
+  std::vector<std::string> misplaced;   ///< Those of them that lie on one side in nearly everybody.
   bool is_reversed() const noexcept { return wrong >= 2 && wrong > 2 * right; }
 };
 
 /// Votes along x (left), y (back) and z (head).
-std::array<AxisVotes, 3> vote_directions(const volume::LabelGrid& labels, const LabelTable& table);
+std::array<AxisVotes, 3> vote_directions(const LabelShapes& shapes, double voxel_ml, const LabelTable& table);
 
 }  // namespace trocar::anatomy::detail

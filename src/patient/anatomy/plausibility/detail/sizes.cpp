@@ -3,26 +3,44 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <string_view>
 
+#include "anatomy/derive/detail/spine_labels.h"
 #include "anatomy/detail/label_boxes.h"
 #include "anatomy/detail/structure_pattern.h"
 
 namespace trocar::anatomy::detail {
 namespace {
 
-/// Volumes of adults and children from hypoplasia to the largest that are published (ml). [assumed, wide on purpose]
-struct VolumeRange {
+/// Adults and children from hypoplasia to the largest that are published. [assumed, wide on purpose]
+struct SizeRange {
   std::string_view name;
   double low_ml, high_ml;
+  double longest_mm = 0.0;       ///< Longest axis of the ellipsoid with the same moments; 0: not judged.
+  double least_fullness = 0.0;   ///< See LabelShape: below it, voxels are scattered or form a shell.
+  double longest_to_next = 0.0;  ///< At least so many times as long as wide.
 };
-constexpr std::array kVolumes{VolumeRange{"liver", 150, 6000},       VolumeRange{"spleen", 5, 5000},
-                              VolumeRange{"kidney", 10, 1500},       VolumeRange{"gallbladder", 1, 500},
-                              VolumeRange{"stomach", 10, 4000},      VolumeRange{"pancreas", 5, 300},
-                              VolumeRange{"aorta", 5, 700},          VolumeRange{"inferiorvenacava", 2, 400},
-                              VolumeRange{"urinarybladder", 3, 3000}};
+constexpr std::array kKnownSizes{SizeRange{"liver", 150, 6000, 400, 0.3},
+                                 SizeRange{"spleen", 5, 5000, 350, 0.25},
+                                 SizeRange{"kidney", 10, 1500, 250, 0.3},
+                                 SizeRange{"gallbladder", 1, 500, 250, 0.25},
+                                 SizeRange{"stomach", 10, 4000},
+                                 SizeRange{"pancreas", 5, 300, 300},
+                                 SizeRange{"aorta", 5, 700, 0, 0, 1.3},
+                                 SizeRange{"inferiorvenacava", 2, 400, 0, 0, 1.3},
+                                 SizeRange{"urinarybladder", 3, 3000, 300, 0.3}};
+constexpr double kSmallestTube_ml = 30.0;
+constexpr SizeRange kVertebra{"vertebra", 1, 200, 200, 0.15};
+
+const SizeRange* find_range(const Label& label) {
+  if (const int place = vertebra_place(label.name); place > 0 && place < kSacrum) return &kVertebra;
+  const std::string plain = without_side(plain_name(label.name));
+  const auto found = std::ranges::find(kKnownSizes, plain, &SizeRange::name);
+  return found == kKnownSizes.end() ? nullptr : found;
+}
 
 constexpr std::size_t kWholeSegmentation = 12;  ///< Structures from which on a missing organ means something.
 constexpr std::array<std::string_view, 4> kExpected{"spleen", "kidney_left", "kidney_right", "liver"};
@@ -33,19 +51,30 @@ bool is_whole(const IndexBox& box, const volume::GridGeometry& g) {
   return true;
 }
 
-void judge_volumes(const volume::LabelGrid& labels, const LabelTable& table, const LabelBoxes& boxes,
-                   std::vector<AnatomyFinding>& findings) {
+/// What is wrong with the size or shape of a structure; empty if nothing is.
+std::string size_text(const Label& label, const SizeRange& range, const LabelShape& shape, double ml, bool is_whole) {
+  if (ml > range.high_ml || (is_whole && ml < range.low_ml))
+    return fmt::format("{} has {:.3g} ml (expected {:g} to {:g})", label.name, ml, range.low_ml, range.high_ml);
+  if (range.longest_mm > 0.0 && shape.axes_mm[2] > range.longest_mm)
+    return fmt::format("{} is {:.0f} mm long (expected at most {:g})", label.name, shape.axes_mm[2], range.longest_mm);
+  if (is_whole && shape.fullness < range.least_fullness)
+    return fmt::format("{} is scattered or hollow: it fills {:.0f} % of its outline", label.name,
+                       100.0 * shape.fullness);
+  if (is_whole && ml > kSmallestTube_ml && shape.axes_mm[2] < range.longest_to_next * shape.axes_mm[1])
+    return fmt::format("{} is no tube: {:.0f} mm long and {:.0f} mm wide", label.name, shape.axes_mm[2],
+                       shape.axes_mm[1]);
+  return {};
+}
+
+void judge_each(const volume::GridGeometry& g, const LabelTable& table, const LabelBoxes& boxes,
+                const LabelShapes& shapes, std::vector<AnatomyFinding>& findings) {
   std::vector<std::string> texts;
   for (const Label& label : table.labels) {
-    const std::string plain = without_side(plain_name(label.name));
-    for (const VolumeRange& range : kVolumes) {
-      if (plain != range.name || label.is_derived || boxes.voxels[label.id] == 0) continue;
-      const double ml = static_cast<double>(boxes.voxels[label.id]) * labels.geometry.voxel_volume_mm3() / 1000.0;
-      const bool is_too_small = ml < range.low_ml && is_whole(boxes.box[label.id], labels.geometry);
-      if (is_too_small || ml > range.high_ml)
-        texts.push_back(
-            fmt::format("{} has {:.3g} ml (expected {:g} to {:g})", label.name, ml, range.low_ml, range.high_ml));
-    }
+    const SizeRange* range = find_range(label);
+    if (range == nullptr || label.is_derived || boxes.voxels[label.id] == 0) continue;
+    const double ml = static_cast<double>(boxes.voxels[label.id]) * g.voxel_volume_mm3() / 1000.0;
+    const std::string text = size_text(label, *range, shapes[label.id], ml, is_whole(boxes.box[label.id], g));
+    if (!text.empty()) texts.push_back(text);
   }
   if (!texts.empty())
     findings.push_back({kSizes, fmt::format("{}", fmt::join(texts, ", ")), "check the segmentation", false});
@@ -74,9 +103,10 @@ void judge_missing(const volume::LabelGrid& labels, const LabelTable& table, con
 
 }  // namespace
 
-void judge_sizes(const volume::LabelGrid& labels, const LabelTable& table, std::vector<AnatomyFinding>& findings) {
+void judge_sizes(const volume::LabelGrid& labels, const LabelTable& table, const LabelShapes& shapes,
+                 std::vector<AnatomyFinding>& findings) {
   const LabelBoxes boxes = find_label_boxes(labels);
-  judge_volumes(labels, table, boxes, findings);
+  judge_each(labels.geometry, table, boxes, shapes, findings);
   judge_missing(labels, table, boxes, findings);
 }
 

@@ -77,12 +77,14 @@ struct BodyOutcome {
   }
 };
 
-BodyOutcome build_body(const volume::CtGrid& ct, LabelSource source, std::vector<std::string> confirmed = {}) {
+BodyOutcome build_body(const volume::CtGrid& ct, LabelSource source, std::vector<std::string> confirmed = {},
+                       Posture posture = Posture::kSupine) {
   std::vector<std::string> warnings;
   BuildOptions options;
   options.name = "test";
   options.derive = {false, {}};
   options.confirmed = std::move(confirmed);
+  options.posture = posture;
   auto patient = build_patient(ct, {std::move(source)}, options, warnings);
   return {std::move(patient), std::move(warnings)};
 }
@@ -235,8 +237,104 @@ TEST(JudgeAnatomy, ACtWithoutSkinIsRefusedOrItsSidesAreTakenWhenToldSo) {
   }
 }
 
+/// A plate of 220 x 8 mm along the whole scan, `away_mm` from the axis of the body in the direction `down`.
+void add_table(volume::CtGrid& ct, const Vec3& down, double away_mm, std::int16_t hu = -250) {
+  const Vec3 across(down.y(), down.x(), 0.0);
+  for (std::size_t n = 0; n < ct.voxels.size(); ++n) {
+    const Vec3 p_P = ct.geometry.centre_mm(ct.geometry.index_of(n));
+    if (std::abs(p_P.dot(down) - away_mm) < 4.0 && std::abs(p_P.dot(across)) < 110.0 && ct.voxels[n] == -1000)
+      ct.voxels[n] = hu;
+  }
+}
+
+TEST(JudgeAnatomy, TheTableTellsThePosture) {
+  const struct {
+    Vec3 down;
+    double away_mm;
+    Posture posture;
+  } sides[] = {{{0, 1, 0}, 102, Posture::kSupine},
+               {{0, -1, 0}, 102, Posture::kProne},
+               {{1, 0, 0}, 138, Posture::kLeftLateral},
+               {{-1, 0, 0}, 138, Posture::kRightLateral}};
+  for (const auto& side : sides) {
+    volume::CtGrid ct = ct_at(kHere);
+    add_table(ct, side.down, side.away_mm);
+    EXPECT_EQ(find_scanned_posture(ct, find_body(ct)), side.posture) << posture_name(side.posture);
+  }
+}
+
+TEST(JudgeAnatomy, AScanWithoutAClearTableTellsNoPosture) {
+  volume::CtGrid ct = ct_at(kHere);
+  EXPECT_FALSE(find_scanned_posture(ct, find_body(ct)));
+  // Something on both sides, as two arms, or only in a third of the slices, as a hand.
+  volume::CtGrid arms = ct;
+  add_table(arms, {1, 0, 0}, 138);
+  add_table(arms, {-1, 0, 0}, 138);
+  EXPECT_FALSE(find_scanned_posture(arms, find_body(arms)));
+  volume::CtGrid hand = ct;
+  add_table(hand, {0, -1, 0}, 102);
+  for (std::size_t n = 0; n < ct.voxels.size(); ++n)
+    if (ct.geometry.index_of(n)[2] > ct.geometry.size[2] / 3) hand.voxels[n] = ct.voxels[n];
+  EXPECT_FALSE(find_scanned_posture(hand, find_body(hand)));
+}
+
+TEST(JudgeAnatomy, AProneScanIsToldAndConfirmedOrBuiltProne) {
+  volume::CtGrid ct = ct_at(kHere);
+  add_table(ct, {0, -1, 0}, 102);
+  const BodyOutcome told = build_body(ct, labels_at(kHere));
+  ASSERT_TRUE(told.patient) << told.text();
+  EXPECT_TRUE(told.warns_of("the table lies in front of the body: the CT was taken lying on the belly (prone)"));
+  EXPECT_TRUE(told.warns_of("--posture prone"));
+  EXPECT_FALSE(build_body(ct, labels_at(kHere), {}, Posture::kProne).warns_of("table"));
+  EXPECT_FALSE(build_body(ct, labels_at(kHere), {kPosture}).warns_of("table"));
+}
+
+/// Exchanges the names of two structures.
+LabelSource with_exchanged(const std::string& a, const std::string& b) {
+  LabelSource labels = labels_at(kHere);
+  for (auto& [number, name] : labels.names) name = name == a ? b : name == b ? a : name;
+  return labels;
+}
+
+TEST(JudgeAnatomy, ExchangedNamesAreRefusedOrTold) {
+  const BodyOutcome refused = build_body(ct_at(kHere), with_exchanged("liver", "spleen"));
+  EXPECT_TRUE(has_words(refused.text(), "liver on the left, spleen on the right")) << refused.text();
+  EXPECT_TRUE(has_words(refused.text(), "--confirm places")) << refused.text();
+  EXPECT_TRUE(build_body(ct_at(kHere), with_exchanged("liver", "spleen"), {kPlaces}).patient);
+  const BodyOutcome told = build_body(ct_at(kHere), with_exchanged("aorta", "inferior_vena_cava"));
+  ASSERT_TRUE(told.patient) << told.text();
+  EXPECT_TRUE(told.warns_of("aorta right of the inferior vena cava"));
+}
+
+TEST(JudgeAnatomy, AStructureOfGasOrBoneIsTold) {
+  volume::CtGrid gas = ct_at(kHere), bone = gas;
+  for (std::size_t n = 0; n < gas.voxels.size(); ++n) {
+    const Vec3 p_P = gas.geometry.centre_mm(gas.geometry.index_of(n));
+    if ((p_P - Vec3(-80, -20, 60)).norm() < 38.0) gas.voxels[n] = -800;
+    if ((p_P - Vec3(-60, -20, 90)).norm() < 38.0) bone.voxels[n] = 800;
+  }
+  EXPECT_TRUE(build_body(gas, labels_at(kHere), {kShifted}).warns_of("% of it is gas (--confirm hu"));
+  EXPECT_TRUE(build_body(bone, labels_at(kHere), {kShifted}).warns_of("% of it is as dense as bone"));
+}
+
+TEST(JudgeAnatomy, ScatteredLongAndBallShapedStructuresAreTold) {
+  LabelSource scattered = labels_at(kHere), ball = labels_at(kHere);
+  for (std::size_t n = 0; n < scattered.labels.voxels.size(); ++n) {
+    const Vec3 p_P = scattered.labels.geometry.centre_mm(scattered.labels.geometry.index_of(n));
+    std::uint8_t& voxel = scattered.labels.voxels[n];
+    if (voxel == 5) voxel = 0;
+    const volume::Index3 ijk = scattered.labels.geometry.index_of(n);
+    if (voxel == 0 && ijk[0] % 4 == 0 && ijk[1] % 3 == 0 && std::hypot(p_P.x() / 120.0, p_P.y() / 85.0) < 1.0)
+      voxel = 5;
+    if ((p_P - Vec3(12, 25, 20)).norm() < 26.0) ball.labels.voxels[n] = 52;
+  }
+  EXPECT_TRUE(build_body(ct_at(kHere), scattered, {kShifted}).warns_of("liver is scattered or hollow"));
+  EXPECT_TRUE(build_body(ct_at(kHere), ball, {kShifted}).warns_of("aorta is no tube"));
+}
+
 TEST(JudgeAnatomy, FindingsHaveNamesThatCanBeConfirmed) {
-  EXPECT_TRUE(check_confirmable({kMirrored, kTurned, kShifted, kNumbers, kOtherCt, kCropped, kMissing, kSizes}));
+  EXPECT_TRUE(check_confirmable(
+      {kMirrored, kTurned, kShifted, kNumbers, kOtherCt, kCropped, kMissing, kSizes, kPlaces, kHu, kPosture}));
   const Status unknown = check_confirmable({"situs"});
   ASSERT_FALSE(unknown);
   EXPECT_TRUE(has_words(unknown.error().text(), "mirrored, turned, shifted")) << unknown.error().text();
