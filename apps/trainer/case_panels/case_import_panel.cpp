@@ -1,4 +1,5 @@
 // Step 1 of the case builder: input files of the case.
+#include <QCheckBox>
 #include <QComboBox>
 #include <QFileDialog>
 #include <QLabel>
@@ -12,6 +13,9 @@
 #include <memory>
 #include <optional>
 
+#include "anatomy/plausibility/judge_anatomy.h"
+#include "anatomy/posture.h"
+#include "case_builder/case_edits.h"
 #include "case_panels/case_panel.h"
 #include "ui_kit/parts.h"
 
@@ -28,6 +32,7 @@ QString first_line(const QString& entry) {
 class ImportPanel final : public CasePanel {
  public:
   ImportPanel(case_builder::CaseEditor& editor, QWidget* parent) : CasePanel(editor, parent) {
+    add_finding();
     content()->addWidget(make_label(tr("CT, or a complete patient folder"), "dim"));
     ct_ = add_field("case-ct", tr("CT"), tr("Path of a CT: NIfTI, NRRD, MHA, a DICOM folder; or a patient folder"));
     add_choosers();
@@ -43,8 +48,8 @@ class ImportPanel final : public CasePanel {
     map_->setEditable(true);
     map_->addItem(QStringLiteral("totalsegmentator"));
     content()->addWidget(map_);
+    add_posture();
     add_actions();
-    add_finding();
     content()->addWidget(make_label(tr("Recent"), "dim"));
     recent_ = new QListWidget;
     recent_->setObjectName(QStringLiteral("case-recent"));
@@ -64,10 +69,10 @@ class ImportPanel final : public CasePanel {
     if (was_importing_ && !is_importing) {
       has_failed_ = editor_.is_error();
       if (editor_.draft().imported != before_) remember();  // neither failed nor cancelled
-      show_finding();
       fill_recent();
     }
     was_importing_ = is_importing;
+    show_finding();
   }
 
  private:
@@ -121,6 +126,24 @@ class ImportPanel final : public CasePanel {
             [this, add] { add(QFileDialog::getExistingDirectory(this, tr("Folder of masks"))); });
   }
 
+  void add_posture() {
+    content()->addWidget(make_label(tr("Posture for the puncture"), "dim"));
+    posture_ = new QComboBox;
+    posture_->setObjectName(QStringLiteral("case-posture"));
+    posture_->setAccessibleName(tr("Posture for the puncture"));
+    posture_->setToolTip(tr("How the patient lies or sits: a finding tells if the CT was taken otherwise"));
+    using enum anatomy::Posture;
+    for (const anatomy::Posture posture : {kSupine, kProne, kLeftLateral, kRightLateral, kSitting})
+      posture_->addItem(to_qt(anatomy::posture_words(posture)), to_qt(anatomy::posture_name(posture)));
+    content()->addWidget(posture_);
+    sibling_ = new QCheckBox(tr("Labels of a sibling series"));
+    sibling_->setObjectName(QStringLiteral("case-sibling-series"));
+    sibling_->setToolTip(
+        tr("Accept a DICOM SEG or RTSTRUCT of another series with the same frame of reference, such as "
+           "another reconstruction of the scan"));
+    content()->addWidget(sibling_);
+  }
+
   void add_actions() {
     start_ = make_button("case-import", tr("Import"), tr("Read the files and build the patient"));
     start_->setProperty("role", "primary");
@@ -128,7 +151,7 @@ class ImportPanel final : public CasePanel {
     connect(start_, &QPushButton::clicked, this, [this] { import(); });
   }
 
-  /// What is wrong with the segmentation as a whole, and how to go on.
+  /// What was found about the segmentation as a whole, and how to go on: above the fields, where it is seen.
   void add_finding() {
     finding_ = make_label({});
     finding_->setObjectName(QStringLiteral("case-finding"));
@@ -143,28 +166,43 @@ class ImportPanel final : public CasePanel {
     connect(repair_, &QPushButton::clicked, this, [this] { repair(); });
     connect(confirm_, &QPushButton::clicked, this, [this] {
       if (!open_finding_) return;
-      confirmed_.push_back(open_finding_->name);
-      start();
+      if (has_failed_) {
+        confirmed_.push_back(open_finding_->name);
+        start();
+      } else {
+        editor_.edit(case_builder::confirm_finding(editor_.draft(), *open_finding_), "confirm what was found");
+      }
     });
   }
 
-  /// The first grave finding of the import that was not confirmed, if it failed because of it.
+  /// The first grave finding that was not confirmed if the import failed because of it, else the first one at all.
+  std::optional<anatomy::AnatomyFinding> next_finding() const {
+    if (has_failed_) {
+      if (findings_ != nullptr)
+        for (const anatomy::AnatomyFinding& finding : *findings_)
+          if (finding.is_grave && std::ranges::count(confirmed_, finding.name) == 0) return finding;
+    } else if (editor_.work() != case_builder::CaseEditor::Work::kImporting && editor_.has_patient()) {
+      const case_builder::CaseDraft& draft = editor_.draft();
+      for (const anatomy::AnatomyFinding& finding : draft.imported->findings)
+        if (!anatomy::is_confirmed(draft.provenance, finding.name)) return finding;
+    }
+    return std::nullopt;
+  }
+
   void show_finding() {
-    open_finding_.reset();
-    if (has_failed_ && findings_ != nullptr)
-      for (const anatomy::AnatomyFinding& finding : *findings_)
-        if (!open_finding_ && finding.is_grave && std::ranges::count(confirmed_, finding.name) == 0)
-          open_finding_ = finding;
+    open_finding_ = next_finding();
     const bool is_open = open_finding_.has_value();
     finding_->setVisible(is_open);
     confirm_->setVisible(is_open);
     repair_->setVisible(is_open && !open_finding_->repair.empty());
     if (!is_open) return;
     finding_->setText(to_qt(open_finding_->text));
+    confirm_->setText(has_failed_ ? tr("It is right: import as it is") : tr("It is right: keep it so"));
     const std::string& option = open_finding_->repair;
-    repair_->setText(option == anatomy::kMirrorLabels ? tr("Mirror the labels and import")
-                     : option == anatomy::kMirrorBoth ? tr("Mirror CT and labels and import")
-                                                      : tr("Read the numbers so and import"));
+    repair_->setText(option == anatomy::kMirrorLabels           ? tr("Mirror the labels and import")
+                     : option == anatomy::kMirrorBoth           ? tr("Mirror CT and labels and import")
+                     : option.starts_with(anatomy::kUsePosture) ? tr("Import with this posture")
+                                                                : tr("Read the numbers so and import"));
     repair_->setToolTip(to_qt(option));
   }
 
@@ -175,6 +213,9 @@ class ImportPanel final : public CasePanel {
     if (option == anatomy::kMirrorBoth) mirroring_ = io::Mirroring::kBoth;
     if (option.starts_with(anatomy::kUseLabelMap))
       map_->setCurrentText(to_qt(option.substr(std::string_view(anatomy::kUseLabelMap).size())));
+    if (option.starts_with(anatomy::kUsePosture))
+      posture_->setCurrentIndex(
+          posture_->findData(to_qt(option.substr(std::string_view(anatomy::kUsePosture).size()))));
     start();
   }
 
@@ -188,6 +229,8 @@ class ImportPanel final : public CasePanel {
   void start() {
     case_builder::ImportRequest request;
     request.mirroring = mirroring_;
+    request.posture = *anatomy::find_posture(to_std(posture_->currentData().toString()));
+    request.sibling_series = sibling_->isChecked();
     request.confirmed = confirmed_;
     request.findings = findings_ = std::make_shared<std::vector<anatomy::AnatomyFinding>>();
     request.ct = to_std(ct_->text().trimmed());
@@ -234,6 +277,8 @@ class ImportPanel final : public CasePanel {
   QLineEdit* ct_ = nullptr;
   QLineEdit* labels_ = nullptr;
   QComboBox* map_ = nullptr;
+  QComboBox* posture_ = nullptr;
+  QCheckBox* sibling_ = nullptr;
   QPushButton* start_ = nullptr;
   QListWidget* recent_ = nullptr;
   QLabel* finding_ = nullptr;

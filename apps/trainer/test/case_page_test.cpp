@@ -70,6 +70,43 @@ TEST_F(CasePageTest, MirroredLabelsAreRepairedOrConfirmed) {
   EXPECT_TRUE(has_line("confirmed: mirrored")) << page_.editor().message();
 }
 
+TEST_F(CasePageTest, AToldFindingIsConfirmedAndTheConfirmationUndone) {
+  // The CT table is in front of the body: a prone scan.
+  const TemporaryFolder folder;
+  auto ct = io::read_ct(*files_ / "ct.nrrd");
+  ASSERT_TRUE(ct) << ct.error().text();
+  const volume::GridGeometry& g = ct->geometry;
+  std::int64_t skin = g.size[1];
+  for (std::size_t n = 0; n < ct->voxels.size(); ++n)
+    if (ct->voxels[n] > -300) skin = std::min(skin, g.index_of(n)[1]);
+  const auto away =
+      static_cast<std::int64_t>(std::lround(14.0 / g.spacing_mm.y()));  // beyond the blocks next to the body
+  ASSERT_GE(skin, away + 1);
+  for (std::int64_t k = 0; k < g.size[2]; ++k)
+    for (std::int64_t i = g.size[0] / 5; i < g.size[0] * 4 / 5; ++i) (*ct)[{i, skin - away, k}] = -200;
+  ASSERT_TRUE(io::write_image(*ct, folder / "prone.nrrd"));
+  import((folder / "prone.nrrd").string(), (*files_ / "labels.nrrd").string(), (*files_ / "names.toml").string());
+  ASSERT_TRUE(wait_for_work());
+  ASSERT_TRUE(page_.editor().has_patient()) << page_.editor().message();
+  ASSERT_TRUE(find<QLabel>("case-finding").isVisible());
+  EXPECT_TRUE(find<QLabel>("case-finding").text().contains(QStringLiteral("table")))
+      << to_std(find<QLabel>("case-finding").text());
+  save_steps("told");
+  press("case-step-1");
+  press("case-finding-confirm");
+  page_.advance();
+  EXPECT_FALSE(find<QLabel>("case-finding").isVisible()) << to_std(find<QLabel>("case-finding").text());
+  EXPECT_TRUE(page_.editor().draft().provenance.back().starts_with("confirmed: posture"));
+  page_.editor().undo();
+  QCoreApplication::processEvents();
+  page_.advance();
+  EXPECT_TRUE(find<QLabel>("case-finding").isVisible());
+  press("case-finding-repair");
+  ASSERT_TRUE(wait_for_work());
+  EXPECT_EQ(page_.editor().draft().imported->patient.posture, anatomy::Posture::kProne);
+  EXPECT_FALSE(find<QLabel>("case-finding").isVisible());
+}
+
 TEST_F(CasePageTest, CaseIsMadeByClicksSavedAndOpenedAgain) {
   const TemporaryFolder folder;
   import_files();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "anatomy/plausibility/judge_anatomy.h"
 #include "case_builder/detail/in_volume.h"
 #include "tasks/assess_path.h"
 
@@ -143,6 +144,11 @@ Result<CaseDraft> set_expert_path(CaseDraft draft, const Segment& line_P) {
     return draft;
   }
   draft.paths.insert(draft.paths.begin(), {draft.task.expert_path, line_P});
+  return draft;
+}
+
+CaseDraft confirm_finding(CaseDraft draft, const anatomy::AnatomyFinding& finding) {
+  draft.provenance.push_back(anatomy::confirmation(finding));
   return draft;
 }
 

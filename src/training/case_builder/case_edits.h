@@ -37,6 +37,9 @@ CaseDraft clear_entry_zone(CaseDraft draft);
 Result<CaseDraft> set_expert_path(CaseDraft draft, const Segment& line_P);
 CaseDraft clear_expert_path(CaseDraft draft);
 
+/// Keeps in the provenance that a finding of the import is right.
+CaseDraft confirm_finding(CaseDraft draft, const anatomy::AnatomyFinding& finding);
+
 /// Adds a landmark inside the volume, or moves the one of that name.
 Result<CaseDraft> set_landmark(CaseDraft draft, const std::string& name, const Vec3& p_P);
 /// Names are unique and not empty. The landmark of that name in the ultrasound is renamed, too.

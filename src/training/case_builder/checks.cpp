@@ -7,6 +7,7 @@
 #include <array>
 
 #include "anatomy/patient_doubts.h"
+#include "anatomy/plausibility/judge_anatomy.h"
 #include "case_builder/detail/in_volume.h"
 #include "case_builder/ultrasound.h"
 #include "tasks/assess_path.h"
@@ -74,9 +75,14 @@ class Checks {
     const std::vector<anatomy::Finding> doubts = anatomy::find_doubts(patient_, statistics_);
     for (const anatomy::Finding& doubt : draft_.imported->doubts) warn(CaseStep::kLabels, doubt.text, doubt.place_P);
     for (const anatomy::Finding& doubt : doubts) warn(CaseStep::kLabels, doubt.text, doubt.place_P);
+    const auto& findings = draft_.imported->findings;
+    for (const anatomy::AnatomyFinding& finding : findings)
+      if (!anatomy::is_confirmed(draft_.provenance, finding.name)) warn(CaseStep::kImport, finding.text);
     for (const std::string& warning : draft_.imported->warnings) {
       const auto is_same = [&](const anatomy::Finding& doubt) { return doubt.text == warning; };
+      const auto is_finding = [&](const anatomy::AnatomyFinding& finding) { return warning.starts_with(finding.text); };
       const bool is_told = std::any_of(doubts.begin(), doubts.end(), is_same) ||
+                           std::any_of(findings.begin(), findings.end(), is_finding) ||
                            warning.starts_with("cut off by the border of the CT");  // the same doubt in different words
       if (!is_told) warn(CaseStep::kImport, warning);
     }

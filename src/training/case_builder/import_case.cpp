@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "anatomy/phantom/phantom.h"
+#include "anatomy/plausibility/judge_anatomy.h"
 #include "anatomy/repair/repair_segmentation.h"
 #include "case_builder/ultrasound.h"
 #include "cases/prepare_case.h"
@@ -36,17 +37,26 @@ Status check_request(const ImportRequest& request) {
 }
 
 Result<anatomy::VirtualPatient> read_patient(const ImportRequest& request, std::vector<std::string>& warnings,
-                                             const Progress& progress, const std::stop_token& stop) {
-  if (is_whole_patient(request)) return io::open_patient({request.ct, 1}, progress);
+                                             std::vector<anatomy::AnatomyFinding>& findings, const Progress& progress,
+                                             const std::stop_token& stop) {
+  if (is_whole_patient(request)) {
+    TROCAR_TRY(anatomy::VirtualPatient patient, io::open_patient({request.ct, 1}, progress));
+    findings = anatomy::judge_anatomy(patient);
+    return patient;
+  }
   io::PatientFiles files;
   files.ct = request.ct;
   files.labels.assign(request.labels.begin(), request.labels.end());
   files.label_map = request.label_map;
   files.name = fs::path(io::last_name(request.ct)).stem().stem().string();
+  files.posture = request.posture;
+  files.sibling_series = request.sibling_series;
   files.mirroring = request.mirroring;
   files.confirmed = request.confirmed;
-  files.findings = request.findings.get();
-  return io::build_from_files(files, warnings, progress, stop);
+  files.findings = &findings;
+  auto patient = io::build_from_files(files, warnings, progress, stop);
+  if (request.findings != nullptr) *request.findings = findings;
+  return patient;
 }
 
 }  // namespace
@@ -66,7 +76,8 @@ Result<CaseDraft> import_case(const ImportRequest& request, const Progress& prog
 
   auto imported = std::make_shared<ImportedPatient>();
   imported->source = request.ct;
-  TROCAR_TRY(imported->patient, read_patient(request, imported->warnings, part_of(progress, 0.0, kVolumesPart), stop));
+  TROCAR_TRY(imported->patient,
+             read_patient(request, imported->warnings, imported->findings, part_of(progress, 0.0, kVolumesPart), stop));
   if (stop.stop_requested()) return fail("stopped", request.ct, "start the import again");
   const Progress surfaces = part_of(progress, kVolumesPart, 1.0);
   if (is_patient_folder(request.ct)) {

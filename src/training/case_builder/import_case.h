@@ -20,6 +20,8 @@ struct ImportRequest {
   std::vector<std::string> labels;  ///< Label volumes, masks, .seg.nrrd, folders of masks or of DICOM mask series.
   std::string label_map = "totalsegmentator";  ///< Names of label numbers, or a TOML file with a [labels] table.
   std::string task = "liver-biopsy";           ///< Template task of the data folder.
+  anatomy::Posture posture = anatomy::Posture::kSupine;
+  bool sibling_series = false;  ///< Labels may be drawn on another series of the scan.
   io::Mirroring mirroring = io::Mirroring::kNone;
   std::vector<std::string> confirmed{};  ///< Findings about the whole segmentation that are right.
   /// Receives the findings when the import ends, also if it fails; may be empty.
