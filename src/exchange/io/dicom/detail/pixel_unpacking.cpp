@@ -91,9 +91,10 @@ std::optional<CodestreamSize> stream_of(const CompressedImage& image) {
   return codestream_size(start);
 }
 
-/// GDCM ends the program where a stream holds more components than its header says.
-bool is_as_described(const CodestreamSize& stream, const CompressedImage& image) {
-  return stream.components == 1 && stream.columns == image.columns && stream.rows == image.rows;
+/// GDCM ends the program where a stream holds more components than its header says, or numbers of more than 16 bits.
+bool is_as_described(const CodestreamSize& stream, const CompressedImage& image, const PixelLayout& layout) {
+  return stream.components == 1 && stream.columns == image.columns && stream.rows == image.rows && stream.bits >= 1 &&
+         stream.bits <= layout.bits_allocated;
 }
 
 /// Unpacks the fragments with GDCM's codecs. May throw exceptions of GDCM.
@@ -142,7 +143,7 @@ Status unpack_compressed(const CompressedImage& packed, const PixelLayout& layou
     return {};
   }
   const auto stream = stream_of(packed);
-  if (!stream || !is_as_described(*stream, packed)) return damaged;
+  if (!stream || !is_as_described(*stream, packed, layout)) return damaged;
   // Only JPEG 2000 states a sign. Unsigned numbers of a signed image are the two's complement of the stored bits.
   if (stream->is_signed && !layout.is_signed)
     return fail("the JPEG 2000 stream has signed numbers, but the header says unsigned ones (PixelRepresentation 0)",

@@ -155,6 +155,23 @@ TEST(PixelUnpackingOf, SignedJpeg2000InAnUnsignedImageIsRefused) {
   EXPECT_NE(unpacked.error().what.find("PixelRepresentation"), std::string::npos) << unpacked.error().text();
 }
 
+TEST(PixelUnpackingOf, AStreamOfMoreBitsThanTheImageHasIsRefused) {
+  for (const char* syntax : {kJpegLosslessSyntax, kJpegLsSyntax, kJpeg2000Syntax}) {
+    auto pieces = pack(bytes_of(all_of(16, false)), 16, false, syntax);
+    ASSERT_FALSE(pieces.empty());
+    const bool is_2000 = syntax == std::string_view(kJpeg2000Syntax);
+    const std::size_t at =
+        is_2000 ? 42 : pieces[0].find(syntax == std::string_view(kJpegLsSyntax) ? "\xff\xf7" : "\xff\xc3") + 4;
+    ASSERT_EQ(pieces[0][at], is_2000 ? 15 : 16) << syntax;
+    for (const char bits : {'\xff', '\x20', '\x11', '\x00'}) {
+      pieces[0][at] = bits;
+      if (!(is_2000 && bits == 0)) {  // 0 is one bit there
+        EXPECT_FALSE(unpack(pieces, layout_of_bits(16, false), syntax)) << syntax << static_cast<int>(bits);
+      }
+    }
+  }
+}
+
 TEST(PixelUnpackingOf, ASignThatTheStreamCannotHoldIsRefused) {
   // The frame header of JPEG-LS: 12 bits, 8 rows, 16 columns, one component.
   const std::string stream("\xff\xd8\xff\xf7\x00\x0b\x0c\x00\x08\x00\x10\x01\x01\x11\x00", 15);
