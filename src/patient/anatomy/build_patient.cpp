@@ -71,6 +71,19 @@ void clear_outside(const volume::MaskGrid& body, volume::LabelGrid& labels, cons
   }
 }
 
+/// Removes the mark of derived structures (kDerivedMark) from the names of an exported segmentation; returns their
+/// plain names.
+std::vector<std::string> take_derived_marks(std::vector<LabelSource>& sources) {
+  std::vector<std::string> derived;
+  for (LabelSource& source : sources)
+    for (auto& [value, name] : source.names) {
+      if (!is_marked_derived(name)) continue;
+      name.erase(0, kDerivedMark.size());
+      derived.push_back(name);
+    }
+  return derived;
+}
+
 void warn_of_cut_structures(const VirtualPatient& patient, std::size_t known_count,
                             std::vector<std::string>& warnings) {
   std::vector<std::string> cut;
@@ -97,6 +110,7 @@ Result<VirtualPatient> build_patient(const volume::CtGrid& ct, std::vector<Label
   patient.posture = options.posture;
 
   std::vector<AnatomyFinding> findings = judge_numbers(ct, sources, known);
+  const std::vector<std::string> derived_before = take_derived_marks(sources);
   // Slices are axial from here on, independent of the stored order of the CT.
   patient.ct = volume::along_P(ct);
   report(progress, "labels", 0.0);
@@ -115,7 +129,9 @@ Result<VirtualPatient> build_patient(const volume::CtGrid& ct, std::vector<Label
 
   patient.labels = std::move(merged.labels);
   patient.label_table = std::move(merged.table);
-  for (AnatomyFinding& finding : judge_anatomy(patient)) findings.push_back(std::move(finding));
+  for (Label& label : patient.label_table.labels)
+    label.is_derived = std::ranges::find(derived_before, label.name) != derived_before.end();
+  for (AnatomyFinding& finding : judge_anatomy(patient, options.mirroring)) findings.push_back(std::move(finding));
   if (options.findings != nullptr) *options.findings = findings;
   TROCAR_TRY_STATUS(settle_findings(findings, options.confirmed, patient.provenance, warnings));
 

@@ -34,11 +34,15 @@ struct LabelSource {
 /// Name in a label map of label values that are left out. Background names are left out, too.
 inline constexpr std::string_view kIgnoredStructure = "ignore";
 
+/// What was mirrored left to right before the build, on request.
+enum class Mirroring { kNone, kLabels, kBoth };
+
 struct BuildOptions {
   std::string name;
   std::vector<std::string> provenance;
   DeriveChoice derive{};                            ///< Thin structures to add (derive/derive_structures.h).
   Posture posture = Posture::kSupine;               ///< For the puncture.
+  Mirroring mirroring = Mirroring::kNone;           ///< For the advice of findings.
   std::vector<std::string> confirmed{};             ///< Names of findings that a person has confirmed.
   std::vector<AnatomyFinding>* findings = nullptr;  ///< Receives all findings, also if one of them is the error.
 };

@@ -104,6 +104,7 @@ Result<anatomy::VirtualPatient> build_from_files(const PatientFiles& files, std:
   options.findings = files.findings;
   options.derive = files.derive;
   options.posture = files.posture;
+  options.mirroring = files.mirroring;
   options.provenance = {fmt::format("built by trocar {}", kVersion), "CT: " + last_name(files.ct)};
   if (files.rescale)
     options.provenance.push_back(

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "anatomy/build_patient.h"
 #include "anatomy/derive/derive_choice.h"
 #include "anatomy/patient.h"
 #include "anatomy/plausibility/anatomy_finding.h"
@@ -17,7 +18,7 @@ namespace trocar::io {
 
 /// What is mirrored left to right, because its file was: labels about the middle of their own grid, or CT and labels
 /// about the middle of the CT.
-enum class Mirroring { kNone, kLabels, kBoth };
+using anatomy::Mirroring;
 
 /// The input files of a patient.
 struct PatientFiles {
@@ -29,8 +30,8 @@ struct PatientFiles {
   std::optional<anatomy::Rescale> rescale{};   ///< Rescale for a CT whose file lacks it.
   anatomy::DeriveChoice derive{};              ///< Thin structures to add.
   anatomy::Posture posture = anatomy::Posture::kSupine;  ///< For the puncture.
-  Mirroring mirroring = Mirroring::kNone;      ///< Kept in the provenance, as the next ones.
-  std::vector<std::string> confirmed{};        ///< Findings that are right (anatomy/plausibility/anatomy_finding.h).
+  Mirroring mirroring = Mirroring::kNone;                ///< Kept in the provenance, as the next ones.
+  std::vector<std::string> confirmed{};  ///< Findings that are right (anatomy/plausibility/anatomy_finding.h).
   std::vector<anatomy::AnatomyFinding>* findings = nullptr;  ///< Receives all findings.
   bool sibling_series = false;  ///< Labels may be drawn on another series of the scan (dicom::CtReference).
 };

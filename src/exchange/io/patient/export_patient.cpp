@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 
+#include "anatomy/derive/derive_choice.h"
 #include "config/toml.h"
 #include "core/ascii.h"
 #include "core/files/atomic_file.h"
@@ -30,11 +31,16 @@ bool occurs(const anatomy::VirtualPatient& patient, std::uint8_t id) {
   return std::find(patient.labels.voxels.begin(), patient.labels.voxels.end(), id) != patient.labels.voxels.end();
 }
 
-/// Structures that a segmentation would contain.
+/// Structures that a segmentation would contain, and those derived from them, which are named so: they lie within their
+/// neighbours, so that a build could not derive them again. What is found from HU is left out.
 std::vector<anatomy::Label> exported_labels(const anatomy::VirtualPatient& patient) {
   std::vector<anatomy::Label> labels;
-  for (const anatomy::Label& label : patient.label_table.labels)
-    if (!label.is_derived && occurs(patient, label.id)) labels.push_back(label);
+  for (anatomy::Label label : patient.label_table.labels) {
+    const bool was_derived = label.is_derived && anatomy::is_derivable(label.name);
+    if ((label.is_derived && !was_derived) || !occurs(patient, label.id)) continue;
+    if (was_derived) label.name = std::string(anatomy::kDerivedMark) + label.name;
+    labels.push_back(std::move(label));
+  }
   return labels;
 }
 
@@ -75,12 +81,14 @@ std::map<std::string, std::string> codes_by_name() {
 
 dicom::WrittenSegment segment_of(const anatomy::Label& label, const std::map<std::string, std::string>& codes) {
   dicom::WrittenSegment segment{label.id, label.name, {}, label.name, {}};
-  if (const auto whole = codes.find(label.name); whole != codes.end()) {
+  const std::size_t mark = label.name.starts_with(anatomy::kDerivedMark) ? anatomy::kDerivedMark.size() : 0;
+  const std::string structure = label.name.substr(mark);
+  if (const auto whole = codes.find(structure); whole != codes.end()) {
     segment.code = whole->second;  // the code tells the side, too
     return segment;
   }
   for (const auto& [part, side] : {std::pair{"_left", "Left"}, std::pair{"_right", "Right"}}) {
-    std::string name = label.name;
+    std::string name = structure;
     const std::size_t at = name.find(part);
     if (at == std::string::npos) continue;
     const auto found = codes.find(name.erase(at, std::string_view(part).size()));

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "anatomy/build_patient.h"
+#include "anatomy/derive/derive_choice.h"
 #include "config/toml.h"
 #include "core/ascii.h"
 #include "core/files/data_dir.h"
@@ -204,6 +205,10 @@ std::optional<anatomy::OtherReading> LabelMap::likely_mistake() const {
   return other;
 }
 
+bool LabelMap::is_totalsegmentator() const noexcept {
+  return label_map_ == kTotalSegmentator;
+}
+
 std::optional<std::string> LabelMap::name_of(int number) const {
   const auto found = by_number_.find(number);
   return found != by_number_.end() ? std::optional(found->second) : rest_;
@@ -239,6 +244,7 @@ std::string LabelMap::contradiction_in(const DescribedSegment& segment) const {
 std::string LabelMap::name_of(const DescribedSegment& segment) const {
   for (const std::string& key : {segment.name, std::to_string(segment.number)})
     if (const auto found = by_name_.find(key); found != by_name_.end()) return found->second;
+  if (anatomy::is_marked_derived(segment.name)) return segment.name;
   const bool is_meaning = !segment.codes.empty() && !segment.meanings.empty() &&
                           words_of(segment.name) == words_of(segment.meanings.front());
   if (const auto by_code = is_meaning ? name_of_code(segment.codes.front()) : std::nullopt;

@@ -42,6 +42,8 @@ class LabelMap {
   /// their structures differently. Empty for other maps.
   std::optional<anatomy::OtherReading> likely_mistake() const;
 
+  /// True for the numbers of TotalSegmentator's task total, without a file of the user.
+  bool is_totalsegmentator() const noexcept;
   bool is_empty() const noexcept { return by_number_.empty() && !rest_; }
   /// True if the number has its own entry, not only "*".
   bool has_number(int number) const { return by_number_.contains(number); }

@@ -1,6 +1,7 @@
 #include "io/patient/label_sources.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
@@ -21,6 +22,8 @@ namespace trocar::io {
 namespace fs = std::filesystem;
 namespace {
 
+/// Fewer numbers than a whole body has can as well be another program's: 1 = liver, 2 = tumour.
+constexpr std::size_t kFewNumbers = 10;
 constexpr std::size_t kFilesAtOnce = 8;  ///< Masks unpacked at a time: limits the memory.
 
 enum class Place { kNamedByUser, kInFolder };
@@ -30,6 +33,13 @@ enum class Place { kNamedByUser, kInFolder };
 bool is_mask(const std::vector<int>& values, const std::string& stem, const LabelMap& map, Place place) {
   if (values.size() != 1) return values.empty();
   return place == Place::kInFolder || map.structures().find(stem) != nullptr || !map.has_number(values.front());
+}
+
+/// "1 = spleen, 5 = liver"
+std::string readings_text(const std::vector<std::pair<int, std::string>>& names) {
+  std::vector<std::string> texts;
+  for (const auto& [number, name] : names) texts.push_back(fmt::format("{} = {}", number, name));
+  return fmt::format("{}", fmt::join(texts, ", "));
 }
 
 /// Values without a name are reported by build_patient, which lists those of all files.
@@ -52,6 +62,11 @@ Result<anatomy::LabelSource> name_labels(volume::LabelGrid labels, const fs::pat
                 "name them: --label-map totalsegmentator, or a TOML file with [labels] 1 = \"liver\" …");
   for (const int value : values)
     if (auto name = map.name_of(value)) source.names.emplace_back(value, std::move(*name));
+  if (values.size() > 1 && values.size() < kFewNumbers && map.is_totalsegmentator())
+    warnings.push_back(
+        fmt::format("the numbers of {} are read as TotalSegmentator's: {}; if this is wrong, name them by "
+                    "--label-map",
+                    path.filename().string(), readings_text(source.names)));
   if (auto other = map.likely_mistake()) source.other_readings.push_back(*std::move(other));
   return source;
 }

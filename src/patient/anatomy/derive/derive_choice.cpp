@@ -5,7 +5,18 @@
 
 #include <algorithm>
 
+#include "anatomy/detail/structure_pattern.h"
+
 namespace trocar::anatomy {
+
+bool is_derivable(std::string_view name) {
+  const std::string plain = detail::without_side(detail::plain_name(name));
+  return std::ranges::any_of(kDerivable, [&](std::string_view known) { return detail::plain_name(known) == plain; });
+}
+
+bool is_marked_derived(std::string_view name) {
+  return name.starts_with(kDerivedMark) && is_derivable(name.substr(kDerivedMark.size()));
+}
 
 bool DeriveChoice::has(std::string_view name) const noexcept {
   return is_all || std::find(names.begin(), names.end(), name) != names.end();

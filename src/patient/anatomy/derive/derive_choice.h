@@ -22,6 +22,13 @@ inline constexpr std::string_view kDerivable[] = {"dural_sac",
                                                   "neurovascular_bundle",
                                                   "peritoneum"};
 
+/// Start of the name of a structure in an exported segmentation that was derived, and not seen: a build keeps it so.
+inline constexpr std::string_view kDerivedMark = "derived_";
+/// True for one of kDerivable, with or without a side.
+bool is_derivable(std::string_view name);
+/// True for kDerivedMark and the name of one.
+bool is_marked_derived(std::string_view name);
+
 /// Which of them a build adds. The default is all.
 struct DeriveChoice {
   bool is_all = true;

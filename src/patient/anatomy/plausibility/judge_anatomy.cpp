@@ -18,6 +18,7 @@ namespace {
 
 using detail::AxisVotes;
 using detail::EdgeMatch;
+using detail::Reversal;
 
 // A better place of the labels is one whose borders lie on steps of HU that are larger by this factor, this far away.
 // Chosen so that no patient of docs/validation.md (section Findings) is told of, and 15 mm are.
@@ -85,46 +86,75 @@ std::string found_text(const std::array<AxisVotes, 3>& votes) {
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
-/// Labels that fit the CT better when they are mirrored were mirrored alone.
-bool are_labels_mirrored_alone(const EdgeMatch& edges, const volume::GridGeometry& g) {
-  if (edges.count() < kFewestEdges) return false;
-  const auto mirrored = find_best(g, {kFarthest_mm, 0.0, 0.0},
-                                  [&](const volume::Index3& shift) { return edges.mirrored_step_hu(shift); });
-  return mirrored.step_hu > kBetter * edges.step_hu({0, 0, 0});
+/// The largest steps of HU with the labels reversed along some axes, and moved along these.
+double best_reversed_hu(const EdgeMatch& edges, const volume::GridGeometry& g, const Reversal& reversed) {
+  constexpr double kFarthestReversed_mm = 60.0;  // twice as far as the body's middle lies from the grid's
+  Vec3 farthest_mm = Vec3::Zero();
+  for (std::size_t a = 0; a < 3; ++a)
+    if (reversed[a]) farthest_mm[static_cast<Eigen::Index>(a)] = kFarthestReversed_mm;
+  return find_best(g, farthest_mm, [&](const volume::Index3& shift) { return edges.step_hu(shift, reversed); }).step_hu;
+}
+
+/// "left and right, front and back"
+std::string axes_text(const Reversal& reversed) {
+  constexpr std::array kAxes{"left and right", "front and back", "head and feet"};
+  std::vector<std::string> names;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (reversed[axis]) names.emplace_back(kAxes[axis]);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+constexpr Reversal kLeftRight{true, false, false};
+
+AnatomyFinding reversed_labels(const Reversal& reversed, const std::string& found, Mirroring mirroring) {
+  if (reversed != kLeftRight)
+    return {kTurned,
+            fmt::format("the labels are turned against the CT: {} are exchanged ({})", axes_text(reversed), found),
+            fmt::format("export the labels again with their orientation; --confirm {} if they are right", kTurned)};
+  const bool was_asked = mirroring == Mirroring::kLabels;
+  return {kMirrored, fmt::format("the labels are mirrored ({}), and fit the CT when they are mirrored back", found),
+          fmt::format("build {}", was_asked ? "without --mirror" : std::string("with ") + kMirrorLabels), true,
+          was_asked ? "" : kMirrorLabels};
+}
+
+AnatomyFinding reversed_image(const Reversal& reversed, const std::string& found, Mirroring mirroring) {
+  if (reversed != kLeftRight)
+    return {kTurned, fmt::format("{} are exchanged ({}): the image is turned", axes_text(reversed), found),
+            fmt::format("export CT and labels again with their orientation; --confirm {} if it is right", kTurned)};
+  const bool was_asked = mirroring == Mirroring::kBoth;
+  return {kMirrored, fmt::format("left and right are exchanged ({}): a mirrored image, or situs inversus", found),
+          fmt::format("build {} if the image is mirrored, --confirm {} if the patient is like that",
+                      was_asked ? "without --mirror" : std::string("with ") + kMirrorBoth, kMirrored),
+          true, was_asked ? "" : kMirrorBoth};
 }
 
 void judge_directions(const std::array<AxisVotes, 3>& votes, const EdgeMatch& edges, const volume::GridGeometry& g,
-                      std::vector<AnatomyFinding>& findings) {
-  constexpr std::array kAxes{"left and right", "front and back", "head and feet"};
-  std::vector<std::string> reversed;
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    if (votes[axis].is_reversed()) reversed.emplace_back(kAxes[axis]);
-  if (reversed.empty()) return;
-  const std::string found = found_text(votes);
-  if (reversed.size() > 1 || !votes[0].is_reversed()) {
-    findings.push_back(
-        {kTurned, fmt::format("{} are exchanged ({}): the image is turned", fmt::join(reversed, ", "), found),
-         fmt::format("export CT and labels again with their orientation; --confirm {} if it is right", kTurned)});
-    return;
-  }
-  if (are_labels_mirrored_alone(edges, g)) {
-    findings.push_back({kMirrored,
-                        fmt::format("the labels are mirrored ({}), and fit the CT when they are mirrored back", found),
-                        fmt::format("build with {}", kMirrorLabels), true, kMirrorLabels});
-    return;
-  }
-  findings.push_back({kMirrored,
-                      fmt::format("left and right are exchanged ({}): a mirrored image, or situs inversus", found),
-                      fmt::format("build with {} if the image is mirrored, --confirm {} if the patient is like that",
-                                  kMirrorBoth, kMirrored),
-                      true, kMirrorBoth});
+                      Mirroring mirroring, std::vector<AnatomyFinding>& findings) {
+  const Reversal reversed{votes[0].is_reversed(), votes[1].is_reversed(), votes[2].is_reversed()};
+  if (reversed == Reversal{}) return;
+  const bool is_alone =
+      edges.count() >= kFewestEdges && best_reversed_hu(edges, g, reversed) > kBetter * edges.step_hu({0, 0, 0});
+  findings.push_back(is_alone ? reversed_labels(reversed, found_text(votes), mirroring)
+                              : reversed_image(reversed, found_text(votes), mirroring));
 }
 
-void judge_shift(const EdgeMatch& edges, const volume::GridGeometry& g, std::vector<AnatomyFinding>& findings) {
+/// Labels that fit the CT better elsewhere, or reversed although no organ tells.
+void judge_place(const EdgeMatch& edges, const volume::GridGeometry& g, Mirroring mirroring,
+                 std::vector<AnatomyFinding>& findings) {
   if (edges.count() < kFewestEdges || edges.structures() < kFewestStructures) return;
   const double here_hu = edges.step_hu({0, 0, 0});
   const BestShift best =
       find_best(g, Vec3::Constant(kFarthest_mm), [&](const volume::Index3& shift) { return edges.step_hu(shift); });
+  constexpr std::array<Reversal, 4> kLikely{
+      {kLeftRight, {false, true, false}, {false, false, true}, {true, true, false}}};
+  for (const Reversal& reversed : kLikely) {
+    const double reversed_hu = best_reversed_hu(edges, g, reversed);
+    if (reversed_hu < kClearStep_hu || reversed_hu <= kBetter * std::max(here_hu, best.step_hu)) continue;
+    findings.push_back(reversed_labels(
+        reversed, fmt::format("steps of {:.0f} HU at their borders, {:.0f} when reversed", here_hu, reversed_hu),
+        mirroring));
+    return;
+  }
   const Vec3 way_mm = volume::to_vec3(best.shift).cwiseProduct(g.spacing_mm);
   if (best.step_hu < kClearStep_hu || best.step_hu <= kBetter * here_hu || way_mm.norm() < kLeastShift_mm) return;
   findings.push_back({kShifted,
@@ -174,14 +204,14 @@ void judge_hu(const VirtualPatient& patient, std::vector<AnatomyFinding>& findin
 
 }  // namespace
 
-std::vector<AnatomyFinding> judge_anatomy(const VirtualPatient& patient) {
+std::vector<AnatomyFinding> judge_anatomy(const VirtualPatient& patient, Mirroring mirroring) {
   std::vector<AnatomyFinding> findings;
   const EdgeMatch edges(patient.ct, patient.labels, patient.label_table);
   const volume::GridGeometry& g = patient.labels.geometry;
   const detail::LabelShapes shapes = detail::find_label_shapes(patient.labels);
   const auto votes = detail::vote_directions(shapes, g.voxel_volume_mm3() / 1000.0, patient.label_table);
-  judge_directions(votes, edges, g, findings);
-  if (findings.empty()) judge_shift(edges, g, findings);
+  judge_directions(votes, edges, g, mirroring, findings);
+  if (findings.empty()) judge_place(edges, g, mirroring, findings);
   if (findings.empty()) judge_places(votes, findings);
   if (findings.empty() || !findings.back().is_grave) judge_hu(patient, findings);
   detail::judge_sizes(patient.labels, patient.label_table, shapes, findings);

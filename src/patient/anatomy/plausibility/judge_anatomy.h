@@ -20,7 +20,7 @@ std::vector<AnatomyFinding> judge_numbers(const volume::CtGrid& ct, const std::v
 
 /// The structures of a segmentation in a patient that has a CT, labels and their table, but no repairs and nothing
 /// found from HU yet: directions, place, HU, volumes. The axes of the volumes run along P.
-std::vector<AnatomyFinding> judge_anatomy(const VirtualPatient& patient);
+std::vector<AnatomyFinding> judge_anatomy(const VirtualPatient& patient, Mirroring mirroring = Mirroring::kNone);
 
 /// How much of the sides of a CT (left, right, front, back) lies inside the body: where it does, there is no skin.
 /// Grave from half on.

@@ -103,7 +103,8 @@ std::vector<AnatomyFinding> judge_numbers(const volume::CtGrid& ct, const std::v
                        "given they do not",
                        other.words),
            fmt::format("build with --label-map {}, or --confirm {} if the numbers are right", other.label_map,
-                       kNumbers)});
+                       kNumbers),
+           true, kUseLabelMap + other.label_map});
     }
   }
   return findings;

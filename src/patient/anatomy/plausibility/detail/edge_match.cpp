@@ -56,17 +56,13 @@ double EdgeMatch::step_at(volume::Index3 low, int axis, const volume::Index3& sh
   return std::abs(clamped(behind) - clamped(before));
 }
 
-double EdgeMatch::step_hu(const volume::Index3& shift) const noexcept {
-  double sum = 0.0;
-  for (const Edge& edge : edges_) sum += step_at(edge.low, edge.axis, shift);
-  return edges_.empty() ? 0.0 : sum / static_cast<double>(edges_.size());
-}
-
-double EdgeMatch::mirrored_step_hu(const volume::Index3& shift) const noexcept {
+double EdgeMatch::step_hu(const volume::Index3& shift, const Reversal& reversed) const noexcept {
   double sum = 0.0;
   for (Edge edge : edges_) {
-    // Along i the border lies between the same two voxels, counted from the other end.
-    edge.low[0] = ct_.geometry.size[0] - 1 - edge.low[0] - (edge.axis == 0 ? 1 : 0);
+    // Along its axis the border lies between the same two voxels, counted from the other end.
+    for (std::size_t a = 0; a < 3; ++a)
+      if (reversed[a])
+        edge.low[a] = ct_.geometry.size[a] - 1 - edge.low[a] - (edge.axis == static_cast<int>(a) ? 1 : 0);
     sum += step_at(edge.low, edge.axis, shift);
   }
   return edges_.empty() ? 0.0 : sum / static_cast<double>(edges_.size());

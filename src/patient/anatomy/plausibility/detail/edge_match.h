@@ -1,11 +1,14 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "anatomy/label_table.h"
 #include "volume/grid.h"
 
 namespace trocar::anatomy::detail {
+
+using Reversal = std::array<bool, 3>;  ///< Of i, j, k.
 
 /// How well the borders of structures lie on steps of HU: the mean step (HU) across them, over some thousand places.
 /// Structures of gas and food, and those found from HU, are not counted.
@@ -17,10 +20,8 @@ class EdgeMatch {
   std::size_t count() const noexcept { return edges_.size(); }
   /// Structures that are judged and occur.
   std::size_t structures() const noexcept { return structures_; }
-  /// With the labels moved by so many voxels.
-  double step_hu(const volume::Index3& shift) const noexcept;
-  /// With the labels mirrored about the middle of the grid along i, then moved.
-  double mirrored_step_hu(const volume::Index3& shift) const noexcept;
+  /// With the labels reversed along some axes, about the middle of the grid, and then moved by so many voxels.
+  double step_hu(const volume::Index3& shift, const Reversal& reversed = {}) const noexcept;
 
  private:
   struct Edge {

@@ -217,6 +217,39 @@ volume::Grid<T> cropped(const volume::Grid<T>& grid) {
   return part;
 }
 
+TEST(JudgeAnatomy, LabelsThatAreReversedAloneAreToldFromATurnedBody) {
+  const struct {
+    Vec3 signs;
+    const char* words;
+  } ways[] = {{{1, -1, 1}, "the labels are turned against the CT: front and back are exchanged"},
+              {{1, 1, -1}, "the labels are turned against the CT: head and feet are exchanged"},
+              {{-1, -1, 1}, "the labels are turned against the CT: left and right, front and back are exchanged"}};
+  for (const auto& way : ways) {
+    const Where turned = [&](const Vec3& p_P) { return Vec3(way.signs.cwiseProduct(p_P)); };
+    const BodyOutcome built = build_body(ct_at(kHere), labels_at(turned));
+    EXPECT_TRUE(has_words(built.text(), way.words)) << built.text();
+  }
+}
+
+TEST(JudgeAnatomy, LabelsOnTheRightSidesOfAMirroredCtAreRefused) {
+  const BodyOutcome built = build_body(ct_at(kMirroredHere), labels_at(kHere));
+  EXPECT_TRUE(has_words(built.text(), "the labels are mirrored (steps of")) << built.text();
+}
+
+TEST(JudgeAnatomy, AMirroringThatWasAskedForIsNotAdvisedAgain) {
+  for (const auto mirroring : {Mirroring::kLabels, Mirroring::kBoth}) {
+    std::vector<std::string> warnings;
+    BuildOptions options;
+    options.name = "test";
+    options.derive = {false, {}};
+    options.mirroring = mirroring;
+    const Where ct = mirroring == Mirroring::kBoth ? kMirroredHere : kHere;
+    const auto built = build_patient(ct_at(ct), {labels_at(kMirroredHere)}, options, warnings);
+    ASSERT_FALSE(built);
+    EXPECT_TRUE(has_words(built.error().text(), "build without --mirror")) << built.error().text();
+  }
+}
+
 TEST(JudgeAnatomy, ACtWithoutSkinIsRefusedOrItsSidesAreTakenWhenToldSo) {
   const volume::CtGrid ct = cropped(ct_at(kHere));
   LabelSource labels = labels_at(kHere);
@@ -324,12 +357,14 @@ TEST(JudgeAnatomy, ScatteredLongAndBallShapedStructuresAreTold) {
     std::uint8_t& voxel = scattered.labels.voxels[n];
     if (voxel == 5) voxel = 0;
     const volume::Index3 ijk = scattered.labels.geometry.index_of(n);
-    if (voxel == 0 && ijk[0] % 4 == 0 && ijk[1] % 3 == 0 && std::hypot(p_P.x() / 120.0, p_P.y() / 85.0) < 1.0)
-      voxel = 5;
+    const bool is_picked = ijk[0] % 4 == 0 && ijk[1] % 3 == 0 && ijk[2] > 4 && ijk[2] < 55;
+    if (voxel == 0 && is_picked && std::hypot(p_P.x() / 120.0, p_P.y() / 85.0) < 1.0) voxel = 5;
     if ((p_P - Vec3(12, 25, 20)).norm() < 26.0) ball.labels.voxels[n] = 52;
   }
-  EXPECT_TRUE(build_body(ct_at(kHere), scattered, {kShifted}).warns_of("liver is scattered or hollow"));
-  EXPECT_TRUE(build_body(ct_at(kHere), ball, {kShifted}).warns_of("aorta is no tube"));
+  const BodyOutcome in_pieces = build_body(ct_at(kHere), scattered, {kMirrored, kShifted, kTurned});
+  EXPECT_TRUE(in_pieces.warns_of("liver is scattered or hollow")) << in_pieces.text();
+  const BodyOutcome as_ball = build_body(ct_at(kHere), ball, {kShifted});
+  EXPECT_TRUE(as_ball.warns_of("aorta is no tube")) << as_ball.text();
 }
 
 TEST(JudgeAnatomy, FindingsHaveNamesThatCanBeConfirmed) {
