@@ -25,36 +25,54 @@ namespace {
 
 constexpr double kMinBodyMl = 100.0;       // assumed: smaller parts do not belong to a person
 constexpr double kHintAgreement = 0.9;     // Dice coefficient above which a given body mask is used
+constexpr double kHintRemoves = 0.01;      // share of the body that a given mask removes without a warning
 constexpr double kMaxShareOutside = 0.02;  // share of a structure outside the body without a warning
 
-/// Removes the voxels outside a given, filled mask of the whole body if it is similar to the one found.
-volume::MaskGrid apply_body_hint(volume::MaskGrid body, const volume::MaskGrid& given) {
+/// Removes the voxels outside a given, filled mask of the whole body if it is similar to the one found. Depths are
+/// measured from this skin: what it removes is told.
+volume::MaskGrid apply_body_hint(volume::MaskGrid body, const volume::MaskGrid& given,
+                                 std::vector<std::string>& warnings) {
   const volume::MaskGrid hint = volume::fill_holes_in_slices(given);
-  std::size_t both = 0;
-  std::size_t sum = 0;
+  std::size_t both = 0, found = 0, in_hint = 0;
   for (std::size_t n = 0; n < hint.voxels.size(); ++n) {
     both += hint.voxels[n] & body.voxels[n];
-    sum += static_cast<std::size_t>(hint.voxels[n]) + body.voxels[n];
+    found += body.voxels[n];
+    in_hint += hint.voxels[n];
   }
-  if (2.0 * static_cast<double>(both) < kHintAgreement * static_cast<double>(sum)) return body;
+  if (2.0 * static_cast<double>(both) < kHintAgreement * static_cast<double>(found + in_hint)) {
+    warnings.push_back(
+        fmt::format("the given mask of the body is not used: it has {:.0f} % in common with the body in "
+                    "the CT",
+                    200.0 * static_cast<double>(both) / static_cast<double>(found + in_hint)));
+    return body;
+  }
+  const double removed_ml = static_cast<double>(found - both) * body.geometry.voxel_volume_mm3() / 1000.0;
+  if (static_cast<double>(found - both) > kHintRemoves * static_cast<double>(found))
+    warnings.push_back(
+        fmt::format("the given mask of the body leaves out {:.0f} ml ({:.1f} %) of what the CT shows as "
+                    "body: the skin, from which depths are measured, follows the mask",
+                    removed_ml, 100.0 * static_cast<double>(found - both) / static_cast<double>(found)));
   for (std::size_t n = 0; n < hint.voxels.size(); ++n) body.voxels[n] &= hint.voxels[n];
   return volume::largest_component(body);
 }
 
-Result<volume::MaskGrid> find_checked_body(const volume::CtGrid& ct, const volume::MaskGrid& hint) {
+Result<volume::MaskGrid> find_checked_body(const volume::CtGrid& ct, const volume::MaskGrid& hint,
+                                           std::vector<std::string>& warnings) {
   volume::MaskGrid body = find_body(ct);
-  if (!hint.empty()) body = apply_body_hint(std::move(body), hint);
+  if (!hint.empty()) body = apply_body_hint(std::move(body), hint, warnings);
   const auto voxels = static_cast<double>(std::count(body.voxels.begin(), body.voxels.end(), 1));
   if (voxels * ct.geometry.voxel_volume_mm3() / 1000.0 < kMinBodyMl)
     return fail("no body found in the CT", {}, "check that it is a CT in Hounsfield units and shows a patient");
   return body;
 }
 
-/// Clears labels outside the body; warns if a structure loses more than a rim.
-void clear_outside(const volume::MaskGrid& body, volume::LabelGrid& labels, const LabelTable& table,
-                   std::vector<std::string>& warnings) {
-  std::array<std::size_t, 256> all{};
-  std::array<std::size_t, 256> outside{};
+/// Clears labels outside the body; warns if a structure loses more than a rim. An organ that lies outside by a good
+/// part is that of another patient; arms may lie beside what is found as the body.
+std::vector<AnatomyFinding> clear_outside(const volume::MaskGrid& body, volume::LabelGrid& labels,
+                                          const LabelTable& table, std::vector<std::string>& warnings) {
+  constexpr double kFarOutside = 0.05, kOfAllOrgans = 0.1;
+  constexpr std::array<std::string_view, 4> kOfArms{"bone", "muscle", "adipose", "soft_tissue"};
+  std::array<std::size_t, 256> all{}, outside{};
   for (std::size_t n = 0; n < labels.voxels.size(); ++n) {
     std::uint8_t& id = labels.voxels[n];
     ++all[id];
@@ -62,13 +80,26 @@ void clear_outside(const volume::MaskGrid& body, volume::LabelGrid& labels, cons
     ++outside[id];
     id = 0;
   }
+  std::vector<std::string> far_outside;
+  double organs = 0.0, organs_outside = 0.0;
   for (const Label& label : table.labels) {
-    const double share =
-        static_cast<double>(outside[label.id]) / static_cast<double>(std::max<std::size_t>(all[label.id], 1));
-    if (share > kMaxShareOutside)
-      warnings.push_back(
-          fmt::format("{:.0f} % of \"{}\" is outside the body and was removed", 100.0 * share, label.name));
+    const auto voxels = static_cast<double>(std::max<std::size_t>(all[label.id], 1));
+    const double share = static_cast<double>(outside[label.id]) / voxels;
+    const bool is_organ = std::ranges::find(kOfArms, label.tissue) == kOfArms.end() && !label.is_derived;
+    organs += is_organ ? voxels : 0.0;
+    organs_outside += is_organ ? share * voxels : 0.0;
+    if (share <= kMaxShareOutside) continue;
+    warnings.push_back(
+        fmt::format("{:.0f} % of \"{}\" is outside the body and was removed", 100.0 * share, label.name));
+    if (is_organ && share > kFarOutside)
+      far_outside.push_back(fmt::format("{:.0f} % of {}", 100.0 * share, label.name));
   }
+  if (organs_outside <= kOfAllOrgans * organs) return {};
+  return {
+      {kOtherCt,
+       fmt::format("{:.0f} % of the organs lie outside the body ({}): the segmentation seems to belong to another CT",
+                   100.0 * organs_outside / organs, fmt::join(far_outside, ", ")),
+       fmt::format("give the segmentation of this CT; --confirm {} if it is right", kOtherCt)}};
 }
 
 /// Removes the mark of derived structures (kDerivedMark) from the names of an exported segmentation; returns their
@@ -117,7 +148,7 @@ Result<VirtualPatient> build_patient(const volume::CtGrid& ct, std::vector<Label
   TROCAR_TRY(detail::MergedLabels merged,
              detail::merge_sources(std::move(sources), patient.ct.geometry, known, warnings));
   report(progress, "body", 0.2);
-  TROCAR_TRY(volume::MaskGrid body, find_checked_body(patient.ct, merged.body_hint));
+  TROCAR_TRY(volume::MaskGrid body, find_checked_body(patient.ct, merged.body_hint, warnings));
   merged.body_hint = {};
   for (AnatomyFinding& finding : judge_sides(body)) {
     if (finding.is_grave && air_of(options.confirmed) == AirIn::kNowhere) take_sides_as_skin(body);
@@ -125,7 +156,8 @@ Result<VirtualPatient> build_patient(const volume::CtGrid& ct, std::vector<Label
   }
   for (AnatomyFinding& finding : judge_posture(patient.ct, body, patient.posture))
     findings.push_back(std::move(finding));
-  clear_outside(body, merged.labels, merged.table, warnings);
+  for (AnatomyFinding& finding : clear_outside(body, merged.labels, merged.table, warnings))
+    findings.push_back(std::move(finding));
 
   patient.labels = std::move(merged.labels);
   patient.label_table = std::move(merged.table);

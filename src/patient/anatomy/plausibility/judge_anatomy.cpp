@@ -51,12 +51,13 @@ BestShift find_best_around(const volume::Index3& middle, const volume::Index3& s
 /// The place with the largest steps within `farthest_mm` along each axis: in coarse steps, then in finer ones around
 /// it.
 template <class StepHu>
-BestShift find_best(const volume::GridGeometry& g, const Vec3& farthest_mm, const StepHu& step_hu) {
+BestShift find_best(const volume::GridGeometry& g, const Vec3& farthest_mm, const StepHu& step_hu,
+                    double step_mm = kStep_mm) {
   volume::Index3 coarse{}, most{}, fine{}, around{};
   for (std::size_t a = 0; a < 3; ++a) {
     const auto axis = static_cast<Eigen::Index>(a);
     const double spacing_mm = g.spacing_mm[axis];
-    coarse[a] = std::max<std::int64_t>(1, std::lround(kStep_mm / spacing_mm));
+    coarse[a] = std::max<std::int64_t>(1, std::lround(step_mm / spacing_mm));
     most[a] = std::lround(farthest_mm[axis] / (spacing_mm * static_cast<double>(coarse[a])));
     fine[a] = std::max<std::int64_t>(1, std::lround(kFineStep_mm / spacing_mm));
     around[a] = farthest_mm[axis] > 0.0 ? (coarse[a] + fine[a] - 1) / fine[a] : 0;
@@ -166,6 +167,55 @@ void judge_place(const EdgeMatch& edges, const volume::GridGeometry& g, Mirrorin
                                   kShifted)});
 }
 
+/// Structures whose borders show in every CT: by tissue, a step of HU above which they lie where they belong, and
+/// whether another place is sure enough to refuse. Chosen on the patients of docs/validation.md (section Findings).
+struct SharpTissue {
+  std::string_view name;
+  double sure_hu;
+  bool is_grave;
+};
+constexpr std::array kSharp{SharpTissue{"bone", 90, true}, SharpTissue{"liver", 45, true},
+                            SharpTissue{"spleen", 45, true}, SharpTissue{"kidney", 45, true},
+                            SharpTissue{"gallbladder", 30}};
+constexpr double kTold = 1.6, kSure = 1.8;  ///< Times as large steps elsewhere.
+
+/// Single structures that were drawn elsewhere, in a segmentation that fits otherwise.
+void judge_single_places(const VirtualPatient& patient, const EdgeMatch& edges, std::vector<AnatomyFinding>& findings) {
+  constexpr std::size_t kFewest = 200;
+  constexpr double kCloseStep_mm = 4.0;  // a small structure fits in a small place
+  const volume::GridGeometry& g = patient.labels.geometry;
+  std::vector<std::string> texts;
+  bool is_grave = false;
+  for (const Label& label : patient.label_table.labels) {
+    const auto tissue = std::ranges::find(kSharp, label.tissue, &SharpTissue::name);
+    if (label.is_derived || tissue == kSharp.end() || edges.count_of(label.id) < kFewest) continue;
+    const double here_hu = edges.step_hu_of(label.id, {0, 0, 0});
+    if (here_hu > tissue->sure_hu) continue;
+    const auto step_hu = [&](const volume::Index3& shift) { return edges.step_hu_of(label.id, shift); };
+    const BestShift best = find_best(g, Vec3::Constant(kFarthest_mm), step_hu, kCloseStep_mm);
+    const Vec3 way_mm = volume::to_vec3(best.shift).cwiseProduct(g.spacing_mm);
+    if (best.step_hu < kClearStep_hu || best.step_hu < kTold * here_hu || way_mm.norm() < kLeastShift_mm) continue;
+    is_grave |= tissue->is_grave && best.step_hu >= kSure * here_hu;
+    texts.push_back(fmt::format("{} would fit {} (steps of {:.0f} instead of {:.0f} HU at its border)", label.name,
+                                way_text(way_mm), best.step_hu, here_hu));
+  }
+  if (texts.empty()) return;
+  constexpr std::size_t kMany = 4, kMostNamed = 3;
+  const std::size_t count = texts.size();
+  texts.resize(std::min(count, kMostNamed));
+  const std::string named = fmt::format("{}", fmt::join(texts, ", "));
+  if (count >= kMany) {
+    findings.push_back({kOtherCt,
+                        fmt::format("{} structures lie beside what the CT shows, each elsewhere ({}): the segmentation "
+                                    "seems to belong to another CT",
+                                    count, named),
+                        fmt::format("give the segmentation of this CT; --confirm {} if it is right", kOtherCt)});
+    return;
+  }
+  findings.push_back({kShifted, fmt::format("single structures lie beside what the CT shows: {}", named),
+                      fmt::format("segment them again; --confirm {} if they are right", kShifted), is_grave});
+}
+
 /// Single structures on a side where nearly nobody has them. Two of them are no variant, but exchanged names.
 void judge_places(const std::array<AxisVotes, 3>& votes, std::vector<AnatomyFinding>& findings) {
   std::vector<std::string> wrong;
@@ -202,6 +252,20 @@ void judge_hu(const VirtualPatient& patient, std::vector<AnatomyFinding>& findin
     findings.push_back({kHu, fmt::format("{}", fmt::join(texts, "; ")), "check the segmentation", false});
 }
 
+/// Along x: the middle of what is no air.
+double middle_of_body(const volume::CtGrid& ct) {
+  constexpr std::size_t kMostVisited = 500'000;
+  constexpr int kAirBelow_hu = -300;
+  const std::size_t stride = std::max<std::size_t>(1, ct.voxels.size() / kMostVisited) | 1;
+  double sum = 0.0, count = 0.0;
+  for (std::size_t n = 0; n < ct.voxels.size(); n += stride) {
+    if (ct.voxels[n] < kAirBelow_hu) continue;
+    sum += static_cast<double>(static_cast<std::int64_t>(n) % ct.geometry.size[0]);
+    count += 1.0;
+  }
+  return ct.geometry.to_mm({sum / std::max(count, 1.0), 0.0, 0.0}).x();
+}
+
 }  // namespace
 
 std::vector<AnatomyFinding> judge_anatomy(const VirtualPatient& patient, Mirroring mirroring) {
@@ -209,10 +273,12 @@ std::vector<AnatomyFinding> judge_anatomy(const VirtualPatient& patient, Mirrori
   const EdgeMatch edges(patient.ct, patient.labels, patient.label_table);
   const volume::GridGeometry& g = patient.labels.geometry;
   const detail::LabelShapes shapes = detail::find_label_shapes(patient.labels);
-  const auto votes = detail::vote_directions(shapes, g.voxel_volume_mm3() / 1000.0, patient.label_table);
+  const auto votes =
+      detail::vote_directions(shapes, g.voxel_volume_mm3() / 1000.0, patient.label_table, middle_of_body(patient.ct));
   judge_directions(votes, edges, g, mirroring, findings);
   if (findings.empty()) judge_place(edges, g, mirroring, findings);
-  if (findings.empty()) judge_places(votes, findings);
+  if (findings.empty()) judge_single_places(patient, edges, findings);
+  if (findings.empty() || !findings.back().is_grave) judge_places(votes, findings);
   if (findings.empty() || !findings.back().is_grave) judge_hu(patient, findings);
   detail::judge_sizes(patient.labels, patient.label_table, shapes, findings);
   return findings;

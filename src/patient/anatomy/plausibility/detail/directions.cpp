@@ -89,34 +89,57 @@ constexpr std::array kOneSided{OneSided{"liver", -1, 15},        OneSided{"gallb
                                OneSided{"heart", 1, 5, true},    OneSided{"duodenum", -1, 10, true},
                                OneSided{"pancreas", 1, 15, true}};
 
-AxisVotes vote_left_right(const Places& places) {
-  AxisVotes votes;
-  // The spine is in the middle; without one, the middle between a right and a left organ tells nothing new.
-  if (const auto spine = places.find("spine")) {
-    for (const OneSided& organ : kOneSided)
-      if (const auto place = places.find(organ.name))
-        vote(votes, organ.sign * (place->x() - spine->x()), organ.clear_mm,
-             fmt::format("{} on the {}", organ.name, organ.sign > 0.0 ? "right" : "left"), organ.varies);
-  } else if (const auto liver = places.find("liver")) {
-    for (const char* name : {"spleen", "stomach"})
-      if (const auto left = places.find(name))
-        vote(votes, left->x() - liver->x(), 30.0, fmt::format("{} right of the liver", name));
+/// Left ones of pairs that lie right of their partners. Only counted against the organs' votes where none of these says
+/// that left is left: single exchanged names are repaired (repair/correct_sides).
+void vote_pairs(const Places& places, AxisVotes& votes) {
+  if (votes.right > 0) return;
+  for (const char* name :
+       {"kidney", "lung_upper_lobe", "lung_lower_lobe", "adrenal_gland", "hip", "femur", "iliopsoas"}) {
+    const auto left = places.find(fmt::format("{}_left", name)), right = places.find(fmt::format("{}_right", name));
+    if (left && right)
+      vote(votes, left->x() - right->x(), 10.0, fmt::format("{}_left right of {}_right", name, name), true);
   }
+}
+
+AxisVotes vote_left_right(const Places& places, double middle_x_P) {
+  AxisVotes votes;
+  // The spine is in the middle of the body, which is not always in the middle of the CT.
+  constexpr double kUnsure_mm = 10.0;
+  const auto spine = places.find("spine");
+  const double middle = spine ? spine->x() : middle_x_P;
+  for (const OneSided& organ : kOneSided)
+    if (const auto place = places.find(organ.name))
+      vote(votes, organ.sign * (place->x() - middle), organ.clear_mm + (spine ? 0.0 : kUnsure_mm),
+           fmt::format("{} on the {}", organ.name, organ.sign > 0.0 ? "right" : "left"), organ.varies);
   const auto aorta = places.find("aorta"), cava = places.find("inferior_vena_cava");
   if (aorta && cava) vote(votes, aorta->x() - cava->x(), 5.0, "aorta right of the inferior vena cava");
+  vote_pairs(places, votes);
   return votes;
 }
 
+/// Two structures of which one lies clearly before, or above, the other in everybody.
+using InOrder = std::pair<const char*, const char*>;
+
 AxisVotes vote_front_back(const Places& places) {
   AxisVotes votes;
-  const auto spine = places.find("spine");
-  if (!spine) return votes;
-  for (const char* name : {"aorta", "inferior_vena_cava", "liver", "stomach", "pancreas", "small_bowel", "duodenum",
-                           "urinary_bladder", "heart", "colon"})
-    if (const auto place = places.find(name))
-      vote(votes, spine->y() - place->y(), 5.0, fmt::format("{} behind the spine", name));
-  if (const auto back = places.find("autochthon"))
-    vote(votes, back->y() - spine->y(), 5.0, "back muscles in front of the spine");
+  if (const auto spine = places.find("spine")) {
+    for (const char* name : {"aorta", "inferior_vena_cava", "liver", "stomach", "pancreas", "small_bowel", "duodenum",
+                             "urinary_bladder", "heart", "colon"})
+      if (const auto place = places.find(name))
+        vote(votes, spine->y() - place->y(), 5.0, fmt::format("{} behind the spine", name));
+    if (const auto back = places.find("autochthon"))
+      vote(votes, back->y() - spine->y(), 5.0, "back muscles in front of the spine");
+  }
+  constexpr std::array<InOrder, 6> kBefore{{{"liver", "kidney"},
+                                            {"stomach", "kidney"},
+                                            {"pancreas", "kidney"},
+                                            {"gallbladder", "kidney"},
+                                            {"urinary_bladder", "sacrum"},
+                                            {"heart", "autochthon"}}};
+  for (const auto& [front, behind] : kBefore) {
+    const auto before = places.find(front), after = places.find(behind);
+    if (before && after) vote(votes, after->y() - before->y(), 15.0, fmt::format("{} behind {}", front, behind), true);
+  }
   return votes;
 }
 
@@ -125,16 +148,22 @@ AxisVotes vote_up_down(const Places& places) {
   const std::vector<Vec3> vertebrae = places.vertebrae();
   for (std::size_t n = 1; n < vertebrae.size(); ++n)
     vote(votes, vertebrae[n - 1].z() - vertebrae[n].z(), 5.0, "vertebrae from feet to head");
-  constexpr std::array<std::pair<const char*, const char*>, 7> kAbove{{{"lung", "urinary_bladder"},
-                                                                       {"heart", "urinary_bladder"},
-                                                                       {"lung", "kidney"},
-                                                                       {"liver", "urinary_bladder"},
-                                                                       {"liver", "femur"},
-                                                                       {"kidney", "femur"},
-                                                                       {"kidney", "urinary_bladder"}}};
+  constexpr std::array<InOrder, 13> kAbove{{{"lung", "urinary_bladder"},
+                                            {"heart", "urinary_bladder"},
+                                            {"lung", "kidney"},
+                                            {"lung", "liver"},
+                                            {"heart", "liver"},
+                                            {"liver", "urinary_bladder"},
+                                            {"spleen", "urinary_bladder"},
+                                            {"stomach", "urinary_bladder"},
+                                            {"liver", "femur"},
+                                            {"liver", "kidney"},
+                                            {"spleen", "kidney"},
+                                            {"kidney", "femur"},
+                                            {"kidney", "urinary_bladder"}}};
   for (const auto& [upper, lower] : kAbove) {
     const auto above = places.find(upper), below = places.find(lower);
-    if (above && below) vote(votes, above->z() - below->z(), 20.0, fmt::format("{} below {}", upper, lower));
+    if (above && below) vote(votes, above->z() - below->z(), 20.0, fmt::format("{} below {}", upper, lower), true);
   }
   return votes;
 }
@@ -151,9 +180,10 @@ void find_low_kidney(const Places& places, AxisVotes& votes) {
 
 }  // namespace
 
-std::array<AxisVotes, 3> vote_directions(const LabelShapes& shapes, double voxel_ml, const LabelTable& table) {
+std::array<AxisVotes, 3> vote_directions(const LabelShapes& shapes, double voxel_ml, const LabelTable& table,
+                                         double middle_x_P) {
   const Places places(shapes, voxel_ml, table);
-  std::array<AxisVotes, 3> votes{vote_left_right(places), vote_front_back(places), vote_up_down(places)};
+  std::array<AxisVotes, 3> votes{vote_left_right(places, middle_x_P), vote_front_back(places), vote_up_down(places)};
   find_low_kidney(places, votes[2]);
   return votes;
 }

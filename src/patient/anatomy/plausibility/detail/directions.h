@@ -17,7 +17,8 @@ struct AxisVotes {
   bool is_reversed() const noexcept { return wrong >= 2 && wrong > 2 * right; }
 };
 
-/// Votes along x (left), y (back) and z (head).
-std::array<AxisVotes, 3> vote_directions(const LabelShapes& shapes, double voxel_ml, const LabelTable& table);
+/// Votes along x (left), y (back) and z (head). `middle_x_P`: of the body, for a segmentation without a spine.
+std::array<AxisVotes, 3> vote_directions(const LabelShapes& shapes, double voxel_ml, const LabelTable& table,
+                                         double middle_x_P);
 
 }  // namespace trocar::anatomy::detail

@@ -8,13 +8,21 @@
 namespace trocar::anatomy::detail {
 namespace {
 
-constexpr std::size_t kMostEdges = 6'000;
+constexpr std::size_t kMostEdges = 6'000, kMostOfOne = 600;
 constexpr std::size_t kMostVisited = 6'000'000;  ///< Voxels that are looked at, evenly spread.
 constexpr double kReach_mm = 3.0;
 // Between fat and enhanced organs: what lies beyond, gas or bone, must not outweigh all other borders.
 constexpr int kLeastHu = -150, kMostHu = 250;
 constexpr std::array<std::string_view, 9> kJudged{"liver", "spleen", "kidney",      "organ",       "bone",
                                                   "lung",  "vessel", "gallbladder", "liver_lesion"};
+
+/// So many of them, evenly spread.
+template <class T>
+void thin_out(std::vector<T>& all, std::size_t most) {
+  if (all.size() <= most) return;
+  for (std::size_t n = 0; n < most; ++n) all[n] = all[n * all.size() / most];
+  all.resize(most);
+}
 
 }  // namespace
 
@@ -36,13 +44,13 @@ EdgeMatch::EdgeMatch(const volume::CtGrid& ct, const volume::LabelGrid& labels, 
       if (here == next || !(is_judged[here] || is_judged[next])) continue;
       occurs[here] = occurs[next] = true;
       edges_.push_back({ijk, static_cast<int>(axis)});
+      for (const std::uint8_t id : {here, next})
+        if (is_judged[id]) edges_of_[id].push_back(edges_.back());
     }
   }
   for (std::size_t id = 0; id < 256; ++id) structures_ += is_judged[id] && occurs[id] ? 1 : 0;
-  if (edges_.size() <= kMostEdges) return;
-  std::vector<Edge> kept;
-  for (std::size_t n = 0; n < kMostEdges; ++n) kept.push_back(edges_[n * edges_.size() / kMostEdges]);
-  edges_ = std::move(kept);
+  thin_out(edges_, kMostEdges);
+  for (std::vector<Edge>& edges : edges_of_) thin_out(edges, kMostOfOne);
 }
 
 double EdgeMatch::step_at(volume::Index3 low, int axis, const volume::Index3& shift) const noexcept {
@@ -56,16 +64,17 @@ double EdgeMatch::step_at(volume::Index3 low, int axis, const volume::Index3& sh
   return std::abs(clamped(behind) - clamped(before));
 }
 
-double EdgeMatch::step_hu(const volume::Index3& shift, const Reversal& reversed) const noexcept {
+double EdgeMatch::mean_step(const std::vector<Edge>& edges, const volume::Index3& shift,
+                            const Reversal& reversed) const noexcept {
   double sum = 0.0;
-  for (Edge edge : edges_) {
+  for (Edge edge : edges) {
     // Along its axis the border lies between the same two voxels, counted from the other end.
     for (std::size_t a = 0; a < 3; ++a)
       if (reversed[a])
         edge.low[a] = ct_.geometry.size[a] - 1 - edge.low[a] - (edge.axis == static_cast<int>(a) ? 1 : 0);
     sum += step_at(edge.low, edge.axis, shift);
   }
-  return edges_.empty() ? 0.0 : sum / static_cast<double>(edges_.size());
+  return edges.empty() ? 0.0 : sum / static_cast<double>(edges.size());
 }
 
 }  // namespace trocar::anatomy::detail

@@ -76,8 +76,14 @@ void judge_each(const volume::GridGeometry& g, const LabelTable& table, const La
     const std::string text = size_text(label, *range, shapes[label.id], ml, is_whole(boxes.box[label.id], g));
     if (!text.empty()) texts.push_back(text);
   }
+  // A voxel size that is wrong changes all of them.
+  constexpr std::size_t kMany = 3;
+  const bool is_grave = texts.size() >= kMany;
   if (!texts.empty())
-    findings.push_back({kSizes, fmt::format("{}", fmt::join(texts, ", ")), "check the segmentation", false});
+    findings.push_back(
+        {kSizes, fmt::format("{}", fmt::join(texts, ", ")),
+         fmt::format("check the size of the voxels and the segmentation; --confirm {} if it is right", kSizes),
+         is_grave});
 }
 
 /// An organ is expected if the scan reaches from above the kidneys or liver to below them: both of two others are

@@ -1,6 +1,7 @@
 // A body of simple shapes and its segmentation: as it is, and with one thing wrong.
 #include "anatomy/plausibility/judge_anatomy.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -365,6 +366,48 @@ TEST(JudgeAnatomy, ScatteredLongAndBallShapedStructuresAreTold) {
   EXPECT_TRUE(in_pieces.warns_of("liver is scattered or hollow")) << in_pieces.text();
   const BodyOutcome as_ball = build_body(ct_at(kHere), ball, {kShifted});
   EXPECT_TRUE(as_ball.warns_of("aorta is no tube")) << as_ball.text();
+}
+
+TEST(JudgeAnatomy, OneMovedOrganIsRefusedWithTheWay) {
+  for (const char* name : {"liver", "spleen", "kidney_left", "vertebrae_L2"}) {
+    LabelSource labels = labels_at(kHere, {name});
+    const auto ball = std::ranges::find_if(balls(), [&](const Ball& b) { return name == std::string_view(b.name); });
+    for (std::size_t n = 0; n < labels.labels.voxels.size(); ++n)
+      if ((labels.labels.geometry.centre_mm(labels.labels.geometry.index_of(n)) - ball->middle_P - Vec3(0, 16, 0))
+              .norm() < ball->radius_mm)
+        labels.labels.voxels[n] = static_cast<std::uint8_t>(ball->number);
+    const BodyOutcome built = build_body(ct_at(kHere), labels);
+    EXPECT_TRUE(has_words(built.text(), fmt::format("{} would fit 16 mm to the front", name))) << built.text();
+  }
+}
+
+TEST(JudgeAnatomy, FewStructuresAreEnoughToFindAMirroredOrTurnedBody) {
+  const std::vector<std::string> without{"stomach",         "gallbladder",  "aorta",        "inferior_vena_cava",
+                                         "urinary_bladder", "vertebrae_L1", "vertebrae_L2", "vertebrae_L3"};
+  const BodyOutcome mirrored = build_body(ct_at(kMirroredHere), labels_at(kMirroredHere, without));
+  EXPECT_TRUE(has_words(mirrored.text(), "situs inversus")) << mirrored.text();
+  const Where head_down = [](const Vec3& p_P) { return Vec3(p_P.x(), p_P.y(), -p_P.z()); };
+  const BodyOutcome turned = build_body(ct_at(head_down), labels_at(head_down, without));
+  EXPECT_TRUE(has_words(turned.text(), "head and feet are exchanged")) << turned.text();
+  const Where face_down = [](const Vec3& p_P) { return Vec3(p_P.x(), -p_P.y(), p_P.z()); };
+  const BodyOutcome prone = build_body(ct_at(face_down), labels_at(face_down, without));
+  EXPECT_TRUE(has_words(prone.text(), "front and back are exchanged")) << prone.text();
+  EXPECT_TRUE(build_body(ct_at(kHere), labels_at(kHere, without)).patient);
+}
+
+TEST(JudgeAnatomy, AVoxelSizeThatIsWrongIsRefused) {
+  volume::CtGrid ct = ct_at(kHere);
+  LabelSource labels = labels_at(kHere);
+  ct.geometry.spacing_mm *= 0.4;
+  labels.labels.geometry = ct.geometry;
+  const BodyOutcome small = build_body(ct, labels);
+  EXPECT_TRUE(has_words(small.text(), "check the size of the voxels")) << small.text();
+}
+
+TEST(JudgeAnatomy, OrgansOutsideTheBodyAreThoseOfAnotherPatient) {
+  const BodyOutcome built =
+      build_body(ct_at(kHere), labels_at([](const Vec3& p_P) { return Vec3(p_P - Vec3(0, 70, 0)); }));
+  EXPECT_TRUE(has_words(built.text(), "of the organs lie outside the body")) << built.text();
 }
 
 TEST(JudgeAnatomy, FindingsHaveNamesThatCanBeConfirmed) {
