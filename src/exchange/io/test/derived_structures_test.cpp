@@ -11,6 +11,7 @@
 #include "core/files/temporary_folder.h"
 #include "core/testing/test_data.h"
 #include "io/patient/build_from_files.h"
+#include "io/patient/export_patient.h"
 
 namespace trocar::io {
 namespace {
@@ -77,6 +78,7 @@ TEST_F(TorsoWithDerivedStructures, GivesTheLayersOfALumbarPuncture) {
   for (const anatomy::LabelStatistics& s : statistics)
     if (s.id == l3->id || s.id == l4->id) middle += 0.5 * s.centroid_P;
   bool is_found = false;
+  std::size_t in_muscle = 0;
   for (double z = -20.0; z <= 10.0; z += 3.0)
     for (double x = -6.0; x <= 6.0; x += 1.5) {
       std::vector<std::string> crossed;
@@ -84,6 +86,7 @@ TEST_F(TorsoWithDerivedStructures, GivesTheLayersOfALumbarPuncture) {
         const std::string name = name_at({middle.x() + x, y, middle.z() + z});
         const bool is_layer = name.ends_with("ligament") || name == "ligamentum_flavum" || name == "epidural_fat" ||
                               name == "dural_sac" || name.starts_with("vertebrae");
+        in_muscle += !crossed.empty() && crossed.back() == "ligamentum_flavum" && name == "muscle" ? 1 : 0;
         if (is_layer && (crossed.empty() || crossed.back() != name)) crossed.push_back(name);
         if (name == "dural_sac") break;
       }
@@ -91,6 +94,7 @@ TEST_F(TorsoWithDerivedStructures, GivesTheLayersOfALumbarPuncture) {
                                                                  "ligamentum_flavum", "epidural_fat", "dural_sac"};
     }
   EXPECT_TRUE(is_found);
+  EXPECT_EQ(in_muscle, 0U) << "there is none in the canal";
   EXPECT_EQ(g.spacing_mm, Vec3(3.0, 3.0, 3.0));
 }
 
@@ -142,6 +146,27 @@ TEST_F(TorsoWithDerivedStructures, FindsTheSacFromTheVertebraeAsWell) {
   }
   EXPECT_GT(all, 500.0);
   EXPECT_GT(inside, 0.8 * all);
+}
+
+TEST_F(TorsoWithDerivedStructures, IsTheSamePatientAfterExport) {
+  const TemporaryFolder folder;
+  const Status exported = export_patient(patient_, ExportKind::kNifti, folder / "files");
+  ASSERT_TRUE(exported) << exported.error().text();
+  PatientFiles files;
+  files.ct = folder / "files/ct.nii.gz";
+  files.labels = {folder / "files/segmentations"};
+  files.name = "again";
+  std::vector<std::string> warnings;
+  const auto again = build_from_files(files, warnings);
+  ASSERT_TRUE(again) << again.error().text();
+  for (const anatomy::LabelStatistics& s : anatomy::label_statistics(*again)) {
+    const anatomy::Label* label = again->label_table.find(s.id);
+    const anatomy::Label* before = patient_.label_table.find(label->name);
+    ASSERT_NE(before, nullptr) << label->name;
+    EXPECT_EQ(label->is_derived, before->is_derived) << label->name;
+    if (label->name == "lung" || label->name == "soft_tissue") continue;  // found from HU, next to what is derived
+    EXPECT_NEAR(s.volume_ml, volume_ml_[label->name], 0.02 * volume_ml_[label->name] + 0.05) << label->name;
+  }
 }
 
 TEST_F(TorsoWithDerivedStructures, ListsItsRepairs) {

@@ -94,9 +94,11 @@ class CanalContents {
     });
   }
 
-  /// Soft tissue between the sac and the posterior wall that can be fat by its HU.
+  /// Soft tissue between the sac and the posterior wall that can be fat by its HU. The rest is no muscle either: voxels
+  /// that are partly ligament or bone.
   void add_epidural_fat() {
     const std::uint8_t fat = labels_.add("epidural_fat");
+    const std::uint8_t other = labels_.find_or_add("soft_tissue");
     for_each_cell([&](std::int64_t i, std::int64_t k, const PosteriorWall::Cell& c, const CanalSlice& slice) {
       const double room_mm = kEpiduralMm * (1.0 - offset_mm(i, slice) / kEpiduralSideMm);
       const bool is_free = c.is_gap() && c.above >= kL1 && room_mm > 0.0;
@@ -108,7 +110,7 @@ class CanalContents {
         if (is_sac(id) && is_free && depth_mm < room_mm) {
           if (can_be_fat) labels_.replace(n, fat);
         } else if (labels_.is_soft(id) && depth_mm <= kEpiduralDeepestMm && static_cast<double>(j) > slice.j) {
-          if (can_be_fat) labels_.paint(n, fat);
+          labels_.paint(n, can_be_fat ? fat : other);
         } else {
           break;
         }

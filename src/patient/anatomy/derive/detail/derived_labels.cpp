@@ -22,6 +22,11 @@ std::uint8_t DerivedLabels::add(std::string_view name) {
   return static_cast<std::uint8_t>(id);
 }
 
+std::uint8_t DerivedLabels::find_or_add(std::string_view name) {
+  const Label* label = patient_.label_table.find(name);
+  return label != nullptr ? label->id : add(name);
+}
+
 bool DerivedLabels::has_tissue(std::uint8_t id, std::string_view tissue) const noexcept {
   const Label* label = patient_.label_table.find(id);
   return label != nullptr && label->tissue == tissue;

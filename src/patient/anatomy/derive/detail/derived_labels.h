@@ -25,6 +25,7 @@ class DerivedLabels {
   bool is_labelled(std::string_view name) const noexcept { return patient_.label_table.find(name) != nullptr; }
   /// The id of a new derived label, 0 if all ids are used. The row is removed by finish() if it stays empty.
   std::uint8_t add(std::string_view name);
+  std::uint8_t find_or_add(std::string_view name);
   /// True if a label can give its voxel to a derived one: fat, muscle, soft tissue.
   bool is_soft(std::uint8_t id) const noexcept { return is_soft_[id]; }
   bool has_tissue(std::uint8_t id, std::string_view tissue) const noexcept;
