@@ -1,6 +1,7 @@
 // trocar patient list, generate and build: sources of patients.
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -69,16 +70,25 @@ Status list_patients(bool is_json) {
   return {};
 }
 
-/// Writes the folder and returns the surfaces in it.
+/// Writes the folder and returns the surfaces in it. Its thumbnail shows slices: see draw_in_3d.
 Result<std::vector<anatomy::NamedMesh>> save_with_surfaces(const anatomy::VirtualPatient& patient, const fs::path& out,
                                                            const Progress& progress,
                                                            std::vector<io::PatientExtra> extras = {}) {
   auto meshes = surface::extract_surfaces(patient, {}, part_of(progress, 0.0, 0.5));
-  core::report(progress, "drawing the thumbnail", 0.5);
-  TROCAR_TRY(const volume::RgbImage thumbnail, make_thumbnail(patient, meshes, slices::find_thumbnail_region(patient)));
+  const volume::RgbImage thumbnail = slices::make_slice_thumbnail(patient, slices::find_thumbnail_region(patient));
   extras.push_back({io::kThumbnailFile, png::encode_png(thumbnail)});
   TROCAR_TRY_STATUS(io::save_patient(patient, meshes, out, part_of(progress, 0.6, 1.0), extras));
   return meshes;
+}
+
+/// Draws the thumbnail of a saved patient anew, in 3D if an X server is there. After everything else: the program ends
+/// if the X server does.
+void draw_in_3d(const anatomy::VirtualPatient& patient, const std::vector<anatomy::NamedMesh>& meshes,
+                const fs::path& folder) {
+  const auto thumbnail = make_thumbnail(patient, meshes, slices::find_thumbnail_region(patient));
+  const Status written =
+      thumbnail ? png::write_png(*thumbnail, folder / io::kThumbnailFile) : tl::unexpected(thumbnail.error());
+  if (!written) print_warning(fmt::format("the thumbnail shows slices, not 3D: {}", written.error().text()));
 }
 
 Status generate_patient(const std::string& name, std::uint64_t seed, double voxel_mm, const fs::path& out) {
@@ -87,7 +97,8 @@ Status generate_patient(const std::string& name, std::uint64_t seed, double voxe
   const Progress progress = printer.callback();
   TROCAR_TRY(const anatomy::VirtualPatient patient,
              anatomy::generate_phantom(name, seed, {{0, 0, 0}, voxel_mm}, part_of(progress, 0.0, 0.5)));
-  TROCAR_TRY_STATUS(save_with_surfaces(patient, out, part_of(progress, 0.5, 1.0)).map([](const auto&) {}));
+  TROCAR_TRY(const auto meshes, save_with_surfaces(patient, out, part_of(progress, 0.5, 1.0)));
+  draw_in_3d(patient, meshes, out);
   return {};
 }
 
@@ -172,6 +183,8 @@ Status build(const BuildArguments& arguments) {
   } else {
     print_summary(summary, patient, meshes);
   }
+  std::fflush(stdout);
+  draw_in_3d(patient, meshes, arguments.out);
   return {};
 }
 
