@@ -71,8 +71,12 @@ class ImportPanel final : public CasePanel {
       if (editor_.draft().imported != before_) remember();  // neither failed nor cancelled
       fill_recent();
     }
+    const bool has_ended = was_importing_ && !is_importing;
     was_importing_ = is_importing;
     show_finding();
+    // The error names options of the command line; here there are buttons.
+    if (has_ended && has_failed_ && open_finding_)
+      editor_.say(to_std(tr("Not imported: see what was found, and repair or confirm it")), true);
   }
 
  private:

@@ -159,8 +159,8 @@ Journal set_journal(soci::session& session, const fs::path& file, const std::opt
   }
   if (mode_of(session) != Mode::kRollback) set_rollback_journal(session);
   session << "PRAGMA synchronous = FULL";
-  return {false,
-          network ? *network + " is a network file system" : "its file system shares no memory between programs"};
+  return {false, network ? fmt::format("{} {} a network file system", *network, *network == "fuse" ? "can be" : "is")
+                         : "its file system shares no memory between programs"};
 }
 
 }  // namespace trocar::database
