@@ -8,6 +8,8 @@
 #include <cmath>
 #include <functional>
 
+#include "anatomy/patient_doubts.h"
+
 namespace trocar::anatomy {
 namespace {
 
@@ -116,6 +118,18 @@ TEST(JudgeAnatomy, AConfirmedFindingIsKeptInTheProvenance) {
     return has_words(line, "confirmed: mirrored: left and right");
   }));
   EXPECT_TRUE(built.warns_of("nothing to confirm: there is no finding \"shifted\""));
+}
+
+TEST(JudgeAnatomy, ASavedPatientIsJudgedToo) {
+  BodyOutcome built = build_body(ct_at(kMirroredHere), labels_at(kMirroredHere), {kMirrored});
+  ASSERT_TRUE(built.patient) << built.text();
+  const auto says_mirrored = [&] {
+    const auto doubts = find_all_doubts(*built.patient, label_statistics(*built.patient));
+    return std::ranges::any_of(doubts, [](const Finding& doubt) { return doubt.text.starts_with("mirrored: left"); });
+  };
+  EXPECT_FALSE(says_mirrored()) << "it is confirmed";
+  built.patient->provenance.clear();
+  EXPECT_TRUE(says_mirrored());
 }
 
 TEST(JudgeAnatomy, TurnedImagesAreRefused) {
