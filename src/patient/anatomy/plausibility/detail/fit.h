@@ -1,0 +1,23 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "anatomy/plausibility/detail/directions.h"
+#include "anatomy/plausibility/detail/edge_match.h"
+#include "anatomy/plausibility/judge_anatomy.h"
+
+namespace trocar::anatomy::detail {
+
+// Whether the labels lie where the CT shows the structures. Each function appends what it finds.
+
+/// Directions that the organs' places contradict: labels that are reversed alone fit the CT when reversed back.
+void judge_directions(const std::array<AxisVotes, 3>& votes, const EdgeMatch& edges, const volume::GridGeometry& g,
+                      Mirroring mirroring, std::vector<AnatomyFinding>& findings);
+/// Labels that fit the CT better elsewhere, or reversed although no organ tells.
+void judge_place(const EdgeMatch& edges, const volume::GridGeometry& g, Mirroring mirroring,
+                 std::vector<AnatomyFinding>& findings);
+/// Single structures that were drawn elsewhere, in a segmentation that fits otherwise.
+void judge_single_places(const VirtualPatient& patient, const EdgeMatch& edges, std::vector<AnatomyFinding>& findings);
+
+}  // namespace trocar::anatomy::detail
