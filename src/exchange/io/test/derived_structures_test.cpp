@@ -7,6 +7,7 @@
 #include <map>
 
 #include "anatomy/build_patient.h"
+#include "anatomy/plausibility/judge_anatomy.h"
 #include "core/files/atomic_file.h"
 #include "core/files/temporary_folder.h"
 #include "core/testing/test_data.h"
@@ -167,6 +168,29 @@ TEST_F(TorsoWithDerivedStructures, IsTheSamePatientAfterExport) {
     if (label->name == "lung" || label->name == "soft_tissue") continue;  // found from HU, next to what is derived
     EXPECT_NEAR(s.volume_ml, volume_ml_[label->name], 0.02 * volume_ml_[label->name] + 0.05) << label->name;
   }
+}
+
+TEST_F(TorsoWithDerivedStructures, OneOrganThatIsMovedBy15MmIsFound) {
+  const volume::GridGeometry& g = patient_.labels.geometry;
+  for (const char* name : {"liver", "spleen", "kidney_left", "vertebrae_L3"})
+    for (const std::int64_t voxels : {-5, 5}) {
+      const std::uint8_t id = patient_.label_table.find(name)->id;
+      anatomy::VirtualPatient moved = patient_;
+      for (std::uint8_t& voxel : moved.labels.voxels) voxel = voxel == id ? 0 : voxel;
+      for (std::size_t n = 0; n < moved.labels.voxels.size(); ++n) {
+        volume::Index3 from = g.index_of(n);
+        from[0] -= voxels;
+        if (g.contains(from) && patient_.labels[from] == id) moved.labels.voxels[n] = id;
+      }
+      const auto findings = anatomy::judge_anatomy(moved);
+      EXPECT_TRUE(std::ranges::any_of(findings,
+                                      [&](const anatomy::AnatomyFinding& finding) {
+                                        return finding.name == anatomy::kShifted &&
+                                               finding.text.find(name) != std::string::npos;
+                                      }))
+          << name << voxels;
+    }
+  for (const anatomy::AnatomyFinding& finding : anatomy::judge_anatomy(patient_)) ADD_FAILURE() << finding.text;
 }
 
 TEST_F(TorsoWithDerivedStructures, ListsItsRepairs) {
