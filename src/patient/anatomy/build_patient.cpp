@@ -70,7 +70,8 @@ Result<volume::MaskGrid> find_checked_body(const volume::CtGrid& ct, const volum
 /// part is that of another patient; arms may lie beside what is found as the body.
 std::vector<AnatomyFinding> clear_outside(const volume::MaskGrid& body, volume::LabelGrid& labels,
                                           const LabelTable& table, std::vector<std::string>& warnings) {
-  constexpr double kFarOutside = 0.05, kOfAllOrgans = 0.1;
+  constexpr double kFarOutside = 0.05, kOfAllOrgans = 0.1, kOfAll = 0.15;
+  constexpr std::size_t kMostNamed = 5;
   constexpr std::array<std::string_view, 4> kOfArms{"bone", "muscle", "adipose", "soft_tissue"};
   std::array<std::size_t, 256> all{}, outside{};
   for (std::size_t n = 0; n < labels.voxels.size(); ++n) {
@@ -81,20 +82,22 @@ std::vector<AnatomyFinding> clear_outside(const volume::MaskGrid& body, volume::
     id = 0;
   }
   std::vector<std::string> far_outside;
-  double organs = 0.0, organs_outside = 0.0;
+  double organs = 0.0, organs_outside = 0.0, whole = 0.0, whole_outside = 0.0;
   for (const Label& label : table.labels) {
     const auto voxels = static_cast<double>(std::max<std::size_t>(all[label.id], 1));
     const double share = static_cast<double>(outside[label.id]) / voxels;
     const bool is_organ = std::ranges::find(kOfArms, label.tissue) == kOfArms.end() && !label.is_derived;
+    whole += voxels;
+    whole_outside += share * voxels;
     organs += is_organ ? voxels : 0.0;
     organs_outside += is_organ ? share * voxels : 0.0;
     if (share <= kMaxShareOutside) continue;
     warnings.push_back(
         fmt::format("{:.0f} % of \"{}\" is outside the body and was removed", 100.0 * share, label.name));
-    if (is_organ && share > kFarOutside)
-      far_outside.push_back(fmt::format("{:.0f} % of {}", 100.0 * share, label.name));
+    if (share > kFarOutside) far_outside.push_back(fmt::format("{:.0f} % of {}", 100.0 * share, label.name));
   }
-  if (organs_outside <= kOfAllOrgans * organs) return {};
+  if (organs_outside <= kOfAllOrgans * organs && whole_outside <= kOfAll * whole) return {};
+  if (far_outside.size() > kMostNamed) far_outside.resize(kMostNamed);
   return {
       {kOtherCt,
        fmt::format("{:.0f} % of the organs lie outside the body ({}): the segmentation seems to belong to another CT",

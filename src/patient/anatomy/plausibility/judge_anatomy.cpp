@@ -29,27 +29,33 @@ void judge_places(const std::array<AxisVotes, 3>& votes, std::vector<AnatomyFind
                       wrong.size() > 1});
 }
 
+std::vector<std::string> texts_of(const std::vector<Finding>& findings, std::size_t most) {
+  std::vector<std::string> texts;
+  for (const Finding& finding : findings)
+    if (texts.size() < most) texts.push_back(finding.text);
+  return texts;
+}
+
 /// A segmentation of another CT has many structures where this one has other things; a single one may be wrong.
 void judge_hu(const VirtualPatient& patient, std::vector<AnatomyFinding>& findings) {
-  constexpr std::size_t kMany = 4, kMostNamed = 4;
+  constexpr std::size_t kMostNamed = 4;
   // The bones of old people, and thin ones in thick slices, come near soft tissue.
   constexpr HuMargin kClear{60.0, 0.2};
   const std::vector<LabelStatistics> statistics = label_statistics(patient);
   std::size_t judged = 0;
   const std::vector<Finding> wrong = find_implausible_hu(patient, statistics, &judged, kClear);
-  if (wrong.size() >= kMany && wrong.size() * 4 >= judged) {
+  const std::size_t many = judged <= 3 ? 1 : judged <= 8 ? 2 : 4;
+  if (wrong.size() >= many && wrong.size() * 4 >= judged) {
     findings.push_back(
         {kOtherCt,
-         fmt::format("{} of {} structures have HU that they cannot have ({}; {}): the segmentation seems to "
-                     "belong to another CT",
-                     wrong.size(), judged, wrong[0].text, wrong[1].text),
+         fmt::format("{} of {} structures have HU that they cannot have ({}): the segmentation seems to belong to "
+                     "another CT",
+                     wrong.size(), judged, fmt::join(texts_of(wrong, 2), "; ")),
          fmt::format("give the segmentation of this CT; --confirm {} if it is right", kOtherCt)});
     return;
   }
-  std::vector<std::string> texts;
   const std::vector<Finding> doubts = find_implausible_hu(patient, statistics);
-  for (const Finding& doubt : doubts)
-    if (texts.size() < kMostNamed) texts.push_back(doubt.text);
+  std::vector<std::string> texts = texts_of(doubts, kMostNamed);
   if (doubts.size() > kMostNamed) texts.push_back(fmt::format("and {} more", doubts.size() - kMostNamed));
   if (!texts.empty())
     findings.push_back({kHu, fmt::format("{}", fmt::join(texts, "; ")), "check the segmentation", false});

@@ -179,6 +179,7 @@ constexpr double kTold = 1.6, kSure = 1.8;  ///< Times as large steps elsewhere.
 
 void judge_single_places(const VirtualPatient& patient, const EdgeMatch& edges, std::vector<AnatomyFinding>& findings) {
   constexpr std::size_t kFewest = 200;
+  constexpr double kFarthestOfOne_mm = 45.0;
   constexpr double kCloseStep_mm = 4.0;  // a small structure fits in a small place
   const volume::GridGeometry& g = patient.labels.geometry;
   std::vector<std::string> texts;
@@ -189,7 +190,7 @@ void judge_single_places(const VirtualPatient& patient, const EdgeMatch& edges, 
     const double here_hu = edges.step_hu_of(label.id, {0, 0, 0});
     if (here_hu > tissue->sure_hu) continue;
     const auto step_hu = [&](const volume::Index3& shift) { return edges.step_hu_of(label.id, shift); };
-    const BestShift best = find_best(g, Vec3::Constant(kFarthest_mm), step_hu, kCloseStep_mm);
+    const BestShift best = find_best(g, Vec3::Constant(kFarthestOfOne_mm), step_hu, kCloseStep_mm);
     const Vec3 way_mm = volume::to_vec3(best.shift).cwiseProduct(g.spacing_mm);
     if (best.step_hu < kClearStep_hu || best.step_hu < kTold * here_hu || way_mm.norm() < kLeastShift_mm) continue;
     is_grave |= tissue->is_grave && best.step_hu >= kSure * here_hu;

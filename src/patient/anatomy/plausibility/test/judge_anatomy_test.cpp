@@ -421,7 +421,7 @@ TEST(JudgeAnatomy, AVoxelSizeThatIsWrongIsRefused) {
 TEST(JudgeAnatomy, OrgansOutsideTheBodyAreThoseOfAnotherPatient) {
   const BodyOutcome built =
       build_body(ct_at(kHere), labels_at([](const Vec3& p_P) { return Vec3(p_P - Vec3(0, 70, 0)); }));
-  EXPECT_TRUE(has_words(built.text(), "of the organs lie outside the body")) << built.text();
+  EXPECT_TRUE(has_words(built.text(), "of the labels lie outside the body")) << built.text();
 }
 
 TEST(JudgeAnatomy, FindingsHaveNamesThatCanBeConfirmed) {
