@@ -100,8 +100,8 @@ std::vector<AnatomyFinding> clear_outside(const volume::MaskGrid& body, volume::
   if (far_outside.size() > kMostNamed) far_outside.resize(kMostNamed);
   return {
       {kOtherCt,
-       fmt::format("{:.0f} % of the organs lie outside the body ({}): the segmentation seems to belong to another CT",
-                   100.0 * organs_outside / organs, fmt::join(far_outside, ", ")),
+       fmt::format("{:.0f} % of the labels lie outside the body ({}): the segmentation seems to belong to another CT",
+                   100.0 * whole_outside / whole, fmt::join(far_outside, ", ")),
        fmt::format("give the segmentation of this CT; --confirm {} if it is right", kOtherCt)}};
 }
 

@@ -104,12 +104,12 @@ TEST(BuildPatient, WhereMasksOverlapTheMoreSpecialWins) {
 }
 
 TEST(BuildPatient, IdsFollowTheOrderOfTheFiles) {
-  LabelSource spleen = source("spleen", Torso::mask(Torso::grid(kSpacingMm), [](const Vec3& p_P) {
-                                return (p_P - Vec3(80.0, -20.0, 0.0)).norm() < 15.0;
-                              }));
-  const Built built = build({spleen, liver()});
+  LabelSource pancreas = source("pancreas", Torso::mask(Torso::grid(kSpacingMm), [](const Vec3& p_P) {
+                                  return (p_P - Vec3(80.0, -20.0, 0.0)).norm() < 15.0;
+                                }));
+  const Built built = build({pancreas, liver()});
   ASSERT_TRUE(built.patient);
-  EXPECT_EQ(built.patient->label_table.find("spleen")->id, 1);
+  EXPECT_EQ(built.patient->label_table.find("pancreas")->id, 1);
   EXPECT_EQ(built.patient->label_table.find("liver")->id, 2);
   EXPECT_EQ(built.patient->label_table.find("liver")->tissue, "liver");
 }
