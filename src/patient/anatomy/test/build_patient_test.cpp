@@ -108,7 +108,7 @@ TEST(BuildPatient, IdsFollowTheOrderOfTheFiles) {
                                   return (p_P - Vec3(80.0, -20.0, 0.0)).norm() < 15.0;
                                 }));
   const Built built = build({pancreas, liver()});
-  ASSERT_TRUE(built.patient);
+  ASSERT_TRUE(built.patient) << built.patient.error().text();
   EXPECT_EQ(built.patient->label_table.find("pancreas")->id, 1);
   EXPECT_EQ(built.patient->label_table.find("liver")->id, 2);
   EXPECT_EQ(built.patient->label_table.find("liver")->tissue, "liver");

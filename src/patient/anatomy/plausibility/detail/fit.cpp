@@ -172,7 +172,7 @@ struct SharpTissue {
 };
 constexpr std::array kSharp{SharpTissue{"bone", 90, true}, SharpTissue{"liver", 45, true},
                             SharpTissue{"spleen", 45, true}, SharpTissue{"kidney", 45, true},
-                            SharpTissue{"gallbladder", 30}};
+                            SharpTissue{"gallbladder", 30, false}};
 constexpr double kTold = 1.6, kSure = 1.8;  ///< Times as large steps elsewhere.
 
 }  // namespace
