@@ -11,6 +11,8 @@
 
 #include "core/decimal_point.h"
 #include "io/dicom/detail/codestream.h"
+#include "io/dicom/detail/jpeg_segments.h"
+#include "io/dicom/detail/lossless_jpeg.h"
 #include "io/image/detail/quiet.h"
 
 namespace trocar::io::detail {
@@ -47,6 +49,12 @@ std::uint32_t little_endian_32(std::span<const char> bytes, std::size_t at) {
   return value;
 }
 
+std::vector<char> joined(const std::vector<std::span<const char>>& pieces) {
+  std::vector<char> bytes;
+  for (const std::span<const char> piece : pieces) bytes.insert(bytes.end(), piece.begin(), piece.end());
+  return bytes;
+}
+
 /// Unpacks one run-length coded plane of bytes (PS3.5, annex G) into every `stride`-th byte of `out`.
 bool unpack_rle_plane(std::span<const char> in, std::span<std::byte> out, std::size_t stride) {
   std::size_t at = 0;
@@ -67,8 +75,7 @@ bool unpack_rle_plane(std::span<const char> in, std::span<std::byte> out, std::s
 /// Run-length coded pixels, the high bytes first. GDCM is not used: a damaged file ends the program there.
 bool unpack_rle(const CompressedImage& image, const PixelLayout& layout, std::span<std::byte> out) {
   constexpr std::size_t kRleHeader = 64;
-  std::vector<char> bytes;
-  for (const std::span<const char> piece : image.pieces) bytes.insert(bytes.end(), piece.begin(), piece.end());
+  const std::vector<char> bytes = joined(image.pieces);
   const auto planes = static_cast<std::size_t>(layout.bits_allocated / 8);
   if (bytes.size() < kRleHeader || little_endian_32(bytes, 0) != planes) return false;
   for (std::size_t plane = 0; plane < planes; ++plane) {
@@ -79,16 +86,15 @@ bool unpack_rle(const CompressedImage& image, const PixelLayout& layout, std::sp
   return true;
 }
 
-/// Size and kind of numbers in the stream.
-std::optional<CodestreamSize> stream_of(const CompressedImage& image) {
-  std::vector<char> start;
-  constexpr std::size_t kLongestStart = 1 << 20;  // comments and tables may come before the size
-  for (const std::span<const char> piece : image.pieces) {
-    if (start.size() >= kLongestStart) break;
-    start.insert(start.end(), piece.begin(),
-                 piece.begin() + static_cast<std::ptrdiff_t>(std::min(piece.size(), kLongestStart)));
-  }
-  return codestream_size(start);
+/// JPEG with a frame header of ISO 10918-1, not JPEG-LS or JPEG 2000.
+bool is_jpeg(std::string_view transfer_syntax) {
+  constexpr std::string_view kJpeg = "1.2.840.10008.1.2.4.";
+  if (!transfer_syntax.starts_with(kJpeg)) return false;
+  const std::string_view number = transfer_syntax.substr(kJpeg.size());
+  return number >= "50" && number <= "70";
+}
+bool is_lossless(std::string_view transfer_syntax) {
+  return transfer_syntax == "1.2.840.10008.1.2.4.57" || transfer_syntax == "1.2.840.10008.1.2.4.70";
 }
 
 /// GDCM ends the program where a stream holds more components than its header says, or numbers of more than 16 bits.
@@ -97,16 +103,15 @@ bool is_as_described(const CodestreamSize& stream, const CompressedImage& image,
          stream.bits <= layout.bits_allocated;
 }
 
-/// Unpacks the fragments with GDCM's codecs. May throw exceptions of GDCM.
-bool unpack_with_gdcm(const CompressedImage& packed, const PixelLayout& layout, std::span<std::byte> out) {
+/// Unpacks a stream with GDCM's codecs. May throw exceptions of GDCM.
+bool unpack_with_gdcm(std::span<const char> stream, const CompressedImage& packed, const PixelLayout& layout,
+                      std::span<std::byte> out) {
   const auto syntax = gdcm::TransferSyntax::GetTSType(packed.transfer_syntax.c_str());
   if (syntax == gdcm::TransferSyntax::TS_END) return false;
   gdcm::SmartPointer<gdcm::SequenceOfFragments> fragments = new gdcm::SequenceOfFragments;
-  for (const std::span<const char> piece : packed.pieces) {
-    gdcm::Fragment fragment;
-    fragment.SetByteValue(piece.data(), gdcm::VL(static_cast<std::uint32_t>(piece.size())));
-    fragments->AddFragment(fragment);
-  }
+  gdcm::Fragment fragment;
+  fragment.SetByteValue(stream.data(), gdcm::VL(static_cast<std::uint32_t>(stream.size())));
+  fragments->AddFragment(fragment);
   gdcm::DataElement pixel_data(gdcm::Tag(0x7fe0, 0x0010));
   pixel_data.SetVR(gdcm::VR::OB);
   pixel_data.SetValue(*fragments);
@@ -126,6 +131,20 @@ bool unpack_with_gdcm(const CompressedImage& packed, const PixelLayout& layout, 
   return image.GetBufferLength() == out.size() && image.GetBuffer(reinterpret_cast<char*>(out.data()));
 }
 
+/// Unpacks all but run lengths. May throw exceptions of GDCM.
+bool unpack_stream(std::vector<char> stream, const CompressedImage& packed, const PixelLayout& layout,
+                   std::span<std::byte> out) {
+  if (is_jpeg(packed.transfer_syntax)) {
+    const bool is_coded_losslessly =
+        unpack_lossless_jpeg(stream, packed.columns, packed.rows, layout.bits_allocated / 8, out);
+    if (is_coded_losslessly || is_lossless(packed.transfer_syntax)) return is_coded_losslessly;
+    auto plain = plain_jpeg(stream);
+    if (!plain) return false;
+    stream = *std::move(plain);
+  }
+  return unpack_with_gdcm(stream, packed, layout, out);
+}
+
 }  // namespace
 
 void unpack_plain(std::span<const char> pixels, bool is_big_endian, const PixelLayout& layout,
@@ -142,7 +161,8 @@ Status unpack_compressed(const CompressedImage& packed, const PixelLayout& layou
     keep_stored_bits(layout, layout.high_bit + 1 - layout.bits_stored, out);
     return {};
   }
-  const auto stream = stream_of(packed);
+  std::vector<char> bytes = joined(packed.pieces);
+  const auto stream = codestream_size(bytes);
   if (!stream || !is_as_described(*stream, packed, layout)) return damaged;
   // Only JPEG 2000 states a sign. Unsigned numbers of a signed image are the two's complement of the stored bits.
   if (stream->is_signed && !layout.is_signed)
@@ -151,7 +171,7 @@ Status unpack_compressed(const CompressedImage& packed, const PixelLayout& layou
   if (stream->bits < layout.bits_stored && layout.is_signed && !stream->is_signed)
     return fail("the sign of the compressed pixels is not known: the stream has fewer bits than the header", {},
                 kExportUncompressed);
-  if (!unpack_with_gdcm(packed, layout, out)) return damaged;
+  if (!unpack_stream(std::move(bytes), packed, layout, out)) return damaged;
   keep_stored_bits(layout, 0, out);  // the lowest bits of a stream's numbers, wherever they were stored before
   return {};
 }
