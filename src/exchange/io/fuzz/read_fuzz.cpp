@@ -1,11 +1,12 @@
-// Changes small valid files at random and reads them (scripts/fuzz readers): io_fuzz [INPUTS [SEED]], 1,000,000 inputs
-// by default. Each reader must return, within 10 s and with less than 512 MiB above what the program had before.
-// Readers run in child processes; what ends one is kept in the working folder as fuzz-input.*, with the reader's name.
-// Exit status 1 if there was one.
+// Changes small valid files at random and reads them (scripts/fuzz readers): io_fuzz [INPUTS [SEED [NAME]]], 1,000,000
+// inputs by default, of all kinds or of those whose name contains NAME ("jp": JPEG and JPEG 2000). Each reader must
+// return, within 10 s and with less than 512 MiB above what the program had before. Readers run in child processes;
+// what ends one is kept in the working folder as fuzz-input.*, with the reader's name. Exit status 1 if there was one.
 #include <fmt/format.h>
 #include <gdcmImageChangeTransferSyntax.h>
 #include <gdcmImageReader.h>
 #include <gdcmImageWriter.h>
+#include <gdcmSequenceOfFragments.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -89,6 +90,58 @@ void add_images(const fs::path& folder, std::vector<Target>& targets) {
        kReadCt});
 }
 
+/// An 8-bit image packed by a lossy process of JPEG.
+std::string lossy_stream(const testing::CtSeries& series) {
+  std::string pixels;
+  for (int n = 0; n < series.columns * series.rows; ++n) pixels += static_cast<char>(n * 3 % 128);
+  gdcm::SmartPointer<gdcm::Image> image = new gdcm::Image;
+  image->SetNumberOfDimensions(2);
+  image->SetDimension(0, static_cast<unsigned>(series.columns));
+  image->SetDimension(1, static_cast<unsigned>(series.rows));
+  image->SetPixelFormat(gdcm::PixelFormat(1, 8, 8, 7, 0));
+  image->SetPhotometricInterpretation(gdcm::PhotometricInterpretation::MONOCHROME2);
+  image->SetTransferSyntax(gdcm::TransferSyntax::ExplicitVRLittleEndian);
+  gdcm::DataElement element(gdcm::Tag(0x7fe0, 0x0010));
+  element.SetByteValue(pixels.data(), gdcm::VL(static_cast<std::uint32_t>(pixels.size())));
+  image->SetDataElement(element);
+  gdcm::ImageChangeTransferSyntax change;
+  change.SetTransferSyntax(gdcm::TransferSyntax::JPEGBaselineProcess1);
+  change.SetInput(*image);
+  if (!change.Change()) throw std::runtime_error("cannot compress as lossy JPEG");
+  const gdcm::ByteValue* value =
+      change.GetOutput().GetDataElement().GetSequenceOfFragments()->GetFragment(0).GetByteValue();
+  return {value->GetPointer(), value->GetLength()};
+}
+
+/// Slices of 8 bits, with pixels of a lossy JPEG.
+void add_lossy(const fs::path& folder, std::vector<Target>& targets) {
+  const testing::CtSeries series;
+  const std::string stream = lossy_stream(series);
+  const auto item = [](std::uint32_t tag, const std::string& value) {
+    return testing::little_endian(0xfffe, 2) + testing::little_endian(tag, 2) +
+           testing::little_endian(static_cast<std::uint32_t>(value.size()), 4) + value;
+  };
+  fs::create_directory(folder / "jpeg-lossy");
+  for (int n = 0; n < 3; ++n) {
+    const fs::path file = folder / "jpeg-lossy" / fmt::format("slice{}", n);
+    const std::string pixels = testing::little_endian(0x7fe0, 2) + testing::little_endian(0x0010, 2) + "OB" +
+                               std::string(2, '\0') + testing::little_endian(0xffffffff, 4) + item(0xe000, {}) +
+                               item(0xe000, stream) + item(0xe0dd, {});
+    const std::string elements =
+        testing::dicom_element(0x0008, 0x0060, "CS", "CT") + testing::dicom_element(0x0020, 0x000e, "UI", "1.2.3") +
+        testing::dicom_point(0x0020, 0x0032, Vec3(0, 0, 2.0 * n)) +
+        testing::dicom_decimals(0x0020, 0x0037, {1, 0, 0, 0, 1, 0}) + testing::dicom_short(0x0028, 0x0002, 1) +
+        testing::dicom_element(0x0028, 0x0004, "CS", "MONOCHROME2") +
+        testing::dicom_short(0x0028, 0x0010, series.rows) + testing::dicom_short(0x0028, 0x0011, series.columns) +
+        testing::dicom_decimals(0x0028, 0x0030, {1, 1}) + testing::dicom_short(0x0028, 0x0100, 8) +
+        testing::dicom_short(0x0028, 0x0101, 8) + testing::dicom_short(0x0028, 0x0102, 7) +
+        testing::dicom_short(0x0028, 0x0103, 0) + pixels;
+    testing::write_bytes(file, testing::dicom_file(elements, "1.2.840.10008.1.2.4.50"));
+  }
+  if (const auto scan = read_ct_scan(folder / "jpeg-lossy"); !scan) throw std::runtime_error(scan.error().text());
+  targets.push_back({"jpeg-lossy/slice1", testing::read_bytes(folder / "jpeg-lossy/slice1"), kReadFolder});
+}
+
 /// The slices of "ct" with compressed pixels, in a folder of this name.
 void add_compressed(const fs::path& folder, const std::string& name, gdcm::TransferSyntax::TSType syntax,
                     std::vector<Target>& targets) {
@@ -121,6 +174,7 @@ void add_dicom(const fs::path& folder, std::vector<Target>& targets) {
   add_compressed(folder, "jpeg", JPEGLosslessProcess14_1, targets);
   add_compressed(folder, "jpeg-ls", JPEGLSLossless, targets);
   add_compressed(folder, "jpeg-2000", JPEG2000Lossless, targets);
+  add_lossy(folder, targets);
   testing::TestSeg seg;
   seg.segments = {testing::segment_item(1, "liver"), testing::segment_item(2, "spleen")};
   for (int n = 0; n < 3; ++n)
@@ -278,12 +332,14 @@ bool run_child(const std::vector<Target>& targets, const fs::path& folder, std::
   return false;
 }
 
-int fuzz(std::size_t count, std::uint64_t seed) {
+int fuzz(std::size_t count, std::uint64_t seed, const std::string& name) {
   const TemporaryFolder folder;
   std::vector<Target> targets;
   add_images(folder.path(), targets);
   add_dicom(folder.path(), targets);
   add_others(targets);
+  std::erase_if(targets, [&](const Target& target) { return target.name.find(name) == std::string::npos; });
+  if (targets.empty()) throw std::runtime_error("no kind of file has this name");
   std::size_t failed = 0;
   for (std::size_t done = 0; done < count; done += kInputsOfAChild) {
     failed += run_child(targets, folder.path(), seed + done, std::min(kInputsOfAChild, count - done)) ? 0 : 1;
@@ -300,5 +356,5 @@ int main(int count, char** arguments) {
   const auto number = [&](int n, std::uint64_t otherwise) {
     return count > n ? trocar::parse_number<std::uint64_t>(arguments[n]).value_or(otherwise) : otherwise;
   };
-  return trocar::io::fuzz(number(1, 1'000'000), number(2, 1));
+  return trocar::io::fuzz(number(1, 1'000'000), number(2, 1), count > 3 ? arguments[3] : "");
 }
