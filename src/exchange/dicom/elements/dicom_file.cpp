@@ -68,9 +68,9 @@ std::optional<int> DicomItem::number(std::uint32_t tag) const noexcept {
   return unsigned_short(bytes_.substr(element->begin, element->size), encoding_.is_big_endian);
 }
 
-std::vector<double> DicomItem::decimals(std::uint32_t tag) const {
+std::vector<double> decimals_in(std::string_view text) {
   std::vector<double> numbers;
-  std::string_view rest = text(tag);
+  std::string_view rest = text;
   while (!rest.empty()) {
     rest.remove_prefix(std::min(rest.find_first_not_of(" +"), rest.size()));
     const auto found = find_leading_number<double>(rest);
@@ -83,6 +83,10 @@ std::vector<double> DicomItem::decimals(std::uint32_t tag) const {
     rest.remove_prefix(1);
   }
   return numbers;
+}
+
+std::vector<double> DicomItem::decimals(std::uint32_t tag) const {
+  return decimals_in(text(tag));
 }
 
 Result<std::vector<DicomItem>> DicomItem::items(std::uint32_t tag) const {

@@ -28,7 +28,7 @@ class DicomItem {
   std::string_view text(std::uint32_t tag) const noexcept;
   /// Unsigned short (US).
   std::optional<int> number(std::uint32_t tag) const noexcept;
-  /// Decimal or integer string "a\b\c" (DS, IS); empty if one of them is no finite number.
+  /// decimals_in(text(tag)).
   std::vector<double> decimals(std::uint32_t tag) const;
   /// The items of a sequence; none if it is missing. Errors (without a place): a damaged sequence, more than 2^20
   /// items.
@@ -81,6 +81,9 @@ class DicomFile {
 
 /// A text without the spaces and zeros that fill it up.
 std::string_view without_padding(std::string_view text) noexcept;
+/// The numbers of a decimal or integer string "a\b\c" (DS, IS). Empty if one of them is no finite number, or more than
+/// that ("4,8", "4.8 mm").
+std::vector<double> decimals_in(std::string_view text);
 /// The value of an element US; empty for fewer than two bytes.
 std::optional<int> unsigned_short(std::string_view value, bool is_big_endian) noexcept;
 /// The text in UTF-8 by the character set of the data set (0008,0005): ISO 8859-1 is converted, what cannot be

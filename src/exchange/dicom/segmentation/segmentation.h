@@ -21,6 +21,7 @@ struct CtReference {
   std::vector<Vec3> slices_P{};      ///< Centres of the first pixels of its slices in the files, along their normal.
   /// A segmentation of another series of the same scan (another reconstruction) is read, too, with a warning.
   bool accepts_sibling = false;
+  std::string patient_id{};  ///< Compared, never displayed; empty if it is not known.
 };
 
 /// One structure of a segmentation, as its file describes it. Texts are UTF-8.

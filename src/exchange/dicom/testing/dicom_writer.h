@@ -82,6 +82,12 @@ struct CtSeries {
   int rows = 6;
   double spacing_mm = 1.0;
   Mat3 R_PV = Mat3::Identity();
+  std::string patient_id;
+  std::string spacing_text;     ///< Instead of spacing_mm.
+  std::string intercept = "0";  ///< RescaleIntercept, which `hu` does not contain; empty: none.
+  std::string more;             ///< Elements of the groups 0028 from 0104 on, in front of RescaleIntercept.
+  std::string acquisition;      ///< AcquisitionNumber.
+  std::string sop_class = "1.2.840.10008.5.1.4.1.1.2";
 };
 
 template <class Hu>
@@ -94,20 +100,23 @@ void write_slice(const std::filesystem::path& path, const CtSeries& series, cons
       pixels += little_endian(static_cast<std::uint32_t>(static_cast<int>(std::lround(hu(p_P)))), 2);
     }
   const Mat3& R = series.R_PV;
-  write_dicom(path, dicom_element(0x0008, 0x0008, "CS", series.image_type) +
-                        dicom_element(0x0008, 0x0016, "UI", "1.2.840.10008.5.1.4.1.1.2") +
-                        dicom_element(0x0008, 0x0018, "UI", instance_uid) +
-                        dicom_element(0x0008, 0x0060, "CS", series.modality) +
-                        dicom_element(0x0008, 0x103e, "LO", "series " + series.series_uid) +
-                        dicom_element(0x0020, 0x000e, "UI", series.series_uid) + dicom_point(0x0020, 0x0032, origin_P) +
-                        dicom_decimals(0x0020, 0x0037, {R(0, 0), R(1, 0), R(2, 0), R(0, 1), R(1, 1), R(2, 1)}) +
-                        dicom_element(0x0020, 0x0052, "UI", series.frame_of_reference) +
-                        dicom_short(0x0028, 0x0002, 1) + dicom_element(0x0028, 0x0004, "CS", "MONOCHROME2") +
-                        dicom_short(0x0028, 0x0010, series.rows) + dicom_short(0x0028, 0x0011, series.columns) +
-                        dicom_decimals(0x0028, 0x0030, {series.spacing_mm, series.spacing_mm}) +
-                        dicom_short(0x0028, 0x0100, 16) + dicom_short(0x0028, 0x0101, 16) +
-                        dicom_short(0x0028, 0x0102, 15) + dicom_short(0x0028, 0x0103, 1) +
-                        dicom_element(0x7fe0, 0x0010, "OW", pixels));
+  write_dicom(
+      path,
+      dicom_element(0x0008, 0x0008, "CS", series.image_type) + dicom_element(0x0008, 0x0016, "UI", series.sop_class) +
+          dicom_element(0x0008, 0x0018, "UI", instance_uid) + dicom_element(0x0008, 0x0060, "CS", series.modality) +
+          dicom_element(0x0008, 0x103e, "LO", "series " + series.series_uid) +
+          dicom_element(0x0010, 0x0020, "LO", series.patient_id) +
+          dicom_element(0x0020, 0x000e, "UI", series.series_uid) +
+          dicom_element(0x0020, 0x0012, "IS", series.acquisition) + dicom_point(0x0020, 0x0032, origin_P) +
+          dicom_decimals(0x0020, 0x0037, {R(0, 0), R(1, 0), R(2, 0), R(0, 1), R(1, 1), R(2, 1)}) +
+          dicom_element(0x0020, 0x0052, "UI", series.frame_of_reference) + dicom_short(0x0028, 0x0002, 1) +
+          dicom_element(0x0028, 0x0004, "CS", "MONOCHROME2") + dicom_short(0x0028, 0x0010, series.rows) +
+          dicom_short(0x0028, 0x0011, series.columns) +
+          (series.spacing_text.empty() ? dicom_decimals(0x0028, 0x0030, {series.spacing_mm, series.spacing_mm})
+                                       : dicom_element(0x0028, 0x0030, "DS", series.spacing_text)) +
+          dicom_short(0x0028, 0x0100, 16) + dicom_short(0x0028, 0x0101, 16) + dicom_short(0x0028, 0x0102, 15) +
+          dicom_short(0x0028, 0x0103, 1) + series.more + dicom_element(0x0028, 0x1052, "DS", series.intercept) +
+          dicom_element(0x7fe0, 0x0010, "OW", pixels));
 }
 
 /// Slices at these origins, as files "slice0", "slice1" … of the folder.

@@ -20,6 +20,7 @@ Result<CtScan> read_ct_scan(const fs::path& path, const std::string& series,
     scan.grid = std::move(volume.grid);
     scan.series_uid = std::move(volume.series_uid);
     scan.frame_of_reference = std::move(volume.frame_of_reference);
+    scan.patient_id = std::move(volume.patient_id);
     scan.slices_P = std::move(volume.slices_P);
     scan.warnings = std::move(volume.warnings);
     return scan;

@@ -16,6 +16,7 @@ struct CtScan {
   volume::CtGrid grid;
   std::string series_uid;             ///< Empty if the CT is not DICOM, as the next two.
   std::string frame_of_reference;     ///< UID.
+  std::string patient_id;             ///< For comparison, never displayed; also empty if the CT is not DICOM.
   std::vector<Vec3> slices_P;         ///< Centres of the first pixels of the slices in the files, along their normal.
   std::vector<std::string> warnings;  ///< Images that were left out, slices that were resampled.
 };

@@ -93,8 +93,8 @@ Result<anatomy::VirtualPatient> build_from_files(const PatientFiles& files, std:
     return fail(status.error().what, files.ct.string(), status.error().advice);
   TROCAR_TRY_STATUS(check_stop(stop, files));
   report(progress, "reading the labels", 0.2);
-  const dicom::CtReference reference{ct.geometry, scan.series_uid, scan.frame_of_reference, scan.slices_P,
-                                     files.sibling_series};
+  const dicom::CtReference reference{ct.geometry,   scan.series_uid,      scan.frame_of_reference,
+                                     scan.slices_P, files.sibling_series, scan.patient_id};
   TROCAR_TRY(auto sources, read_label_sources(files.labels, files.label_map, reference, warnings));
   TROCAR_TRY_STATUS(check_stop(stop, files));
 

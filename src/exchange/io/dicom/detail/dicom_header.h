@@ -17,14 +17,17 @@ namespace trocar::io::detail {
 /// The elements that are read. A file may have millions of other elements: these are not stored.
 namespace dicom_tags {
 inline constexpr std::uint32_t kImageType = dicom::tag(0x0008, 0x0008);
+inline constexpr std::uint32_t kSopClass = dicom::tag(0x0008, 0x0016);
 inline constexpr std::uint32_t kInstanceUid = dicom::tag(0x0008, 0x0018);
 inline constexpr std::uint32_t kModality = dicom::tag(0x0008, 0x0060);
 inline constexpr std::uint32_t kSeriesDescription = dicom::tag(0x0008, 0x103e);
 inline constexpr std::uint32_t kPatientId = dicom::tag(0x0010, 0x0020);
 inline constexpr std::uint32_t kSeriesUid = dicom::tag(0x0020, 0x000e);
+inline constexpr std::uint32_t kAcquisition = dicom::tag(0x0020, 0x0012);
 inline constexpr std::uint32_t kImagePosition = dicom::tag(0x0020, 0x0032);
 inline constexpr std::uint32_t kImageOrientation = dicom::tag(0x0020, 0x0037);
 inline constexpr std::uint32_t kFrameOfReference = dicom::tag(0x0020, 0x0052);
+inline constexpr std::uint32_t kTemporalPosition = dicom::tag(0x0020, 0x0100);
 inline constexpr std::uint32_t kSamplesPerPixel = dicom::tag(0x0028, 0x0002);
 inline constexpr std::uint32_t kPhotometric = dicom::tag(0x0028, 0x0004);
 inline constexpr std::uint32_t kNumberOfFrames = dicom::tag(0x0028, 0x0008);
@@ -35,29 +38,23 @@ inline constexpr std::uint32_t kBitsAllocated = dicom::tag(0x0028, 0x0100);
 inline constexpr std::uint32_t kBitsStored = dicom::tag(0x0028, 0x0101);
 inline constexpr std::uint32_t kHighBit = dicom::tag(0x0028, 0x0102);
 inline constexpr std::uint32_t kPixelRepresentation = dicom::tag(0x0028, 0x0103);
+inline constexpr std::uint32_t kPadding = dicom::tag(0x0028, 0x0120);
+inline constexpr std::uint32_t kPaddingLimit = dicom::tag(0x0028, 0x0121);
 inline constexpr std::uint32_t kRescaleIntercept = dicom::tag(0x0028, 0x1052);
 inline constexpr std::uint32_t kRescaleSlope = dicom::tag(0x0028, 0x1053);
-inline constexpr std::array kAll{kImageType,
-                                 kInstanceUid,
-                                 kModality,
-                                 kSeriesDescription,
-                                 kPatientId,
-                                 kSeriesUid,
-                                 kImagePosition,
-                                 kImageOrientation,
-                                 kFrameOfReference,
-                                 kSamplesPerPixel,
-                                 kPhotometric,
-                                 kNumberOfFrames,
-                                 kRows,
-                                 kColumns,
-                                 kPixelSpacing,
-                                 kBitsAllocated,
-                                 kBitsStored,
-                                 kHighBit,
-                                 kPixelRepresentation,
-                                 kRescaleIntercept,
-                                 kRescaleSlope};
+inline constexpr std::array kAll{kImageType,         kSopClass,
+                                 kInstanceUid,       kModality,
+                                 kSeriesDescription, kPatientId,
+                                 kSeriesUid,         kAcquisition,
+                                 kImagePosition,     kImageOrientation,
+                                 kFrameOfReference,  kTemporalPosition,
+                                 kSamplesPerPixel,   kPhotometric,
+                                 kNumberOfFrames,    kRows,
+                                 kColumns,           kPixelSpacing,
+                                 kBitsAllocated,     kBitsStored,
+                                 kHighBit,           kPixelRepresentation,
+                                 kPadding,           kPaddingLimit,
+                                 kRescaleIntercept,  kRescaleSlope};
 }  // namespace dicom_tags
 
 /// Parsed header of one DICOM file: short elements of the top level and the position of the pixels. Every length was

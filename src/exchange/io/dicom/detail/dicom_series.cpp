@@ -9,7 +9,9 @@
 
 #include "core/available_memory.h"
 #include "core/parallel.h"
+#include "io/dicom/detail/acquisitions.h"
 #include "io/dicom/detail/find_series.h"
+#include "io/dicom/detail/padding.h"
 #include "io/dicom/detail/tidy_series.h"
 
 namespace trocar::io::detail {
@@ -28,6 +30,18 @@ std::string name_of(const DicomSlice& slice) {
   return slice.frames > 1 ? fmt::format("frame {} of {}", slice.frame + 1, file) : file;
 }
 
+/// A slice without a scaling among others is not in HU: with the usual intercept, 1024 HU too high.
+Status check_same_scaling(const DicomSlice& first, const DicomSlice& slice) {
+  const auto check = [&](const char* name, bool has_first, bool has_this) -> Status {
+    if (has_first == has_this) return {};
+    return fail(fmt::format("{} is missing in some slices of the series: it is in {}, not in {}", name,
+                            name_of(has_first ? first : slice), name_of(has_first ? slice : first)),
+                slice.file.string(), "export the series again");
+  };
+  TROCAR_TRY_STATUS(check("RescaleIntercept", first.intercept.has_value(), slice.intercept.has_value()));
+  return check("RescaleSlope", first.slope.has_value(), slice.slope.has_value());
+}
+
 /// Checks the slices one by one.
 Status check_slices(const std::vector<DicomSlice>& slices, const fs::path& folder) {
   if (slices.empty()) return fail("no DICOM image", folder.string(), kNameOneSeries);
@@ -36,9 +50,13 @@ Status check_slices(const std::vector<DicomSlice>& slices, const fs::path& folde
     if (slice.frames > 1 && !slice.is_placed)
       return fail(fmt::format("is a DICOM file with {} frames without a place", slice.frames), where,
                   "convert it to .nrrd or .nii.gz, for example with 3D Slicer");
+    if (!slice.unreadable.empty())
+      return fail(slice.unreadable + ", not the numbers that DICOM has there (with decimal points)", where,
+                  "export the series again, or correct the header");
     if (slice.is_cut) return fail("the DICOM image ends before its last pixel", where, "copy or export it again");
     if (slice.slope == 0.0)
       return fail("RescaleSlope is 0: every pixel would have one value", where, "export the series again");
+    TROCAR_TRY_STATUS(check_same_scaling(slices.front(), slice));
     if (slice.patient_id != slices.front().patient_id)
       return fail("the slices are of two patients (PatientID differs)", where, kNameOneSeries);
     if (slice.frame_of_reference != slices.front().frame_of_reference)
@@ -130,18 +148,50 @@ Result<std::map<fs::path, DicomPixels>> open_files_of_frames(const DicomSeries& 
   return opened;
 }
 
+/// The voxels of one slice; padding of a CT becomes air.
+template <class T>
+Status convert_slice(const DicomSlice& slice, const RawVoxels& voxels, Converter<T> convert, std::span<T> out,
+                     PaddingCount& padding) {
+  if (!std::is_same_v<T, std::int16_t> || !padding_hu(slice)) return convert(voxels, out);
+  std::vector<std::byte> pixels(voxels.bytes.begin(), voxels.bytes.end());
+  padding = fill_padding(voxels, slice, pixels);
+  return convert({voxels.type, pixels, voxels.slope, voxels.intercept}, out);
+}
+
+void warn_of_padding(const DicomSeries& series, const std::vector<PaddingCount>& found,
+                     std::vector<std::string>& warnings) {
+  PaddingCount all;
+  std::optional<double> hu;
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    if (found[k].filled + found[k].kept > 0 && !hu) hu = padding_hu(series.slices[k]);
+    all.filled += found[k].filled;
+    all.kept += found[k].kept;
+  }
+  if (!hu) return;
+  const double share =
+      100.0 / (static_cast<double>(found.size()) * static_cast<double>(series.stack.columns * series.stack.rows));
+  const std::string kept =
+      all.kept == 0 ? std::string()
+                    : fmt::format("; {} pixels of it within the image are taken as tissue of {:.0f} HU", all.kept, *hu);
+  warnings.push_back(
+      fmt::format("padding of the CT (PixelPaddingValue, {:.0f} HU) is taken as air: {:.2g} % of the pixels{}", *hu,
+                  share * static_cast<double>(all.filled), kept));
+}
+
 /// Reads the pixels of all slices, one after the other.
 template <class T>
-Result<std::vector<T>> read_pixels(const DicomSeries& series, Converter<T> convert) {
+Result<std::vector<T>> read_pixels(const DicomSeries& series, Converter<T> convert,
+                                   std::vector<std::string>& warnings) {
   const auto pixels = static_cast<std::size_t>(series.stack.columns * series.stack.rows);
   std::vector<T> all(pixels * series.slices.size());
   std::vector<Status> statuses(series.slices.size());
+  std::vector<PaddingCount> padding(series.slices.size());
   TROCAR_TRY(const auto opened, open_files_of_frames(series));
   parallel_for(series.slices.size(), 4, [&](std::size_t first, std::size_t last) {
     for (std::size_t k = first; k < last; ++k) {
       const DicomSlice& slice = series.slices[k];
       const auto use = [&](const RawVoxels& voxels) {
-        return convert(voxels, std::span(all).subspan(k * pixels, pixels));
+        return convert_slice(slice, voxels, convert, std::span(all).subspan(k * pixels, pixels), padding[k]);
       };
       const auto file = opened.find(slice.file);
       statuses[k] = file != opened.end() ? file->second.decode(slice, use) : decode_slice(slice, use);
@@ -149,6 +199,7 @@ Result<std::vector<T>> read_pixels(const DicomSeries& series, Converter<T> conve
   });
   for (const Status& status : statuses)
     if (!status) return tl::unexpected(status.error());
+  warn_of_padding(series, padding, warnings);
   return all;
 }
 
@@ -182,29 +233,39 @@ Result<DicomSeries> order_slices(std::vector<DicomSlice> slices, const fs::path&
 
 template <class T>
 Result<DicomVolume<T>> read_dicom_folder(const fs::path& folder, Converter<T> convert, const std::string& wanted,
-                                         const std::vector<std::string>& preferred) {
+                                         const std::vector<std::string>& preferred, PixelNumbers numbers) {
   TROCAR_TRY(std::vector<SeriesImages> found, find_series(folder));
   TROCAR_TRY(SeriesImages images, choose_series(std::move(found), folder, wanted, preferred));
   DicomVolume<T> result;
-  TROCAR_TRY(const DicomSeries series, order_slices(leave_out_others(std::move(images), result.warnings), folder));
+  TROCAR_TRY(images, leave_out_others(std::move(images), result.warnings));
+  TROCAR_TRY(DicomSeries series, order_slices(std::move(images), folder));
+  TROCAR_TRY_STATUS(check_acquisitions(series.slices, folder));
+  if (numbers == PixelNumbers::kStored)
+    for (DicomSlice& slice : series.slices) slice.slope = slice.intercept = std::nullopt;
   if constexpr (std::is_same_v<T, std::int16_t>) TROCAR_TRY_STATUS(check_modality(series.slices.front(), folder));
   warn_of_plan(series, result.warnings);
   const std::uint64_t bytes = series.plan.geometry.voxel_count() * sizeof(T);
   TROCAR_TRY_STATUS(check_memory_for_image(bytes, available_memory_bytes(), folder.string()));
-  TROCAR_TRY(std::vector<T> pixels, read_pixels<T>(series, convert));
+  TROCAR_TRY(std::vector<T> pixels, read_pixels<T>(series, convert, result.warnings));
+  if constexpr (std::is_same_v<T, std::int16_t>)
+    TROCAR_TRY_STATUS(
+        check_alternation(pixels, static_cast<std::size_t>(series.stack.columns * series.stack.rows), folder));
   constexpr T kOutside = std::is_same_v<T, std::uint8_t> ? T{0} : static_cast<T>(kOutside_hu);
   result.grid = dicom::fill_from_stack<T>(series.plan, series.stack, std::move(pixels), kOutside);
   result.series_uid = series.slices.front().series_uid;
   result.frame_of_reference = series.slices.front().frame_of_reference;
+  result.patient_id = series.slices.front().patient_id;
   result.slices_P = series.stack.origins_P;
   return result;
 }
 
 template Result<DicomVolume<std::int16_t>> read_dicom_folder(const fs::path&, Converter<std::int16_t>,
-                                                             const std::string&, const std::vector<std::string>&);
+                                                             const std::string&, const std::vector<std::string>&,
+                                                             PixelNumbers);
 template Result<DicomVolume<std::uint8_t>> read_dicom_folder(const fs::path&, Converter<std::uint8_t>,
-                                                             const std::string&, const std::vector<std::string>&);
+                                                             const std::string&, const std::vector<std::string>&,
+                                                             PixelNumbers);
 template Result<DicomVolume<float>> read_dicom_folder(const fs::path&, Converter<float>, const std::string&,
-                                                      const std::vector<std::string>&);
+                                                      const std::vector<std::string>&, PixelNumbers);
 
 }  // namespace trocar::io::detail

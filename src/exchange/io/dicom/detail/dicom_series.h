@@ -30,16 +30,24 @@ struct DicomVolume {
   volume::Grid<T> grid;
   std::string series_uid;
   std::string frame_of_reference;
+  std::string patient_id;             ///< For comparison, never displayed.
   std::vector<Vec3> slices_P;         ///< Centres of the first pixels of the slices in the files, along their normal.
-  std::vector<std::string> warnings;  ///< Images left out; a tilted or uneven stack that was resampled.
+  std::vector<std::string> warnings;  ///< Images left out; a tilted or uneven stack that was resampled; padding.
+};
+
+/// What counts as the value of a pixel.
+enum class PixelNumbers {
+  kRescaled,  ///< By RescaleSlope and RescaleIntercept.
+  kStored,
 };
 
 /// Reads one DICOM series of a folder and its sub-folders; files that are not DICOM images are ignored. A tilted stack
-/// is straightened, an uneven one gets even steps: numbers linearly, bytes by the nearest slice. `wanted` and
-/// `preferred`: see choose_series.
+/// is straightened, an uneven one gets even steps: numbers linearly, bytes by the nearest slice. Padding of a CT
+/// (int16) becomes air (fill_padding). `wanted` and `preferred`: see choose_series. Errors: those of find_series,
+/// choose_series, leave_out_others, order_slices, check_acquisitions and, for a CT, check_alternation.
 template <class T>
 Result<DicomVolume<T>> read_dicom_folder(const std::filesystem::path& folder, Converter<T> convert,
-                                         const std::string& wanted = {},
-                                         const std::vector<std::string>& preferred = {});
+                                         const std::string& wanted = {}, const std::vector<std::string>& preferred = {},
+                                         PixelNumbers numbers = PixelNumbers::kRescaled);
 
 }  // namespace trocar::io::detail

@@ -8,7 +8,6 @@
 #include <string_view>
 #include <vector>
 
-#include "core/parse_number.h"
 #include "io/dicom/detail/frames.h"
 #include "io/dicom/detail/pixel_unpacking.h"
 
@@ -19,23 +18,22 @@ namespace {
 constexpr std::string_view kDeflated = "1.2.840.10008.1.2.1.99";
 constexpr const char* kExportSeriesAgain = "export the series again, uncompressed";
 
-/// Numbers of a decimal string "a\b\c": exactly as many as requested, or empty.
-template <std::size_t N>
-std::optional<std::array<double, N>> decimals_of(const DicomHeader& header, std::uint32_t tag) {
-  const std::string text = header.text(tag);
-  std::array<double, N> numbers{};
-  std::size_t begin = 0;
-  for (double& number : numbers) {
-    if (begin > text.size()) return std::nullopt;
-    const std::size_t end = std::min(text.find('\\', begin), text.size());
-    const std::size_t first = text.find_first_not_of(" +", begin);
-    if (first >= end) return std::nullopt;
-    const auto found = find_leading_number<double>(std::string_view(text).substr(first, end - first));
-    if (!found) return std::nullopt;
-    number = found->value;
-    begin = end + 1;
-  }
-  return numbers;
+/// A number as the pixels have it: of the stored bits, with their sign.
+int stored_number(int word, int bits_stored, bool is_signed) {
+  const int bits = std::clamp(bits_stored, 1, 16);
+  const int low = word & ((1 << bits) - 1);
+  return is_signed && low >> (bits - 1) != 0 ? low - (1 << bits) : low;
+}
+
+std::optional<std::array<int, 2>> padding_of(const DicomHeader& header) {
+  const auto value = header.number(dicom_tags::kPadding);
+  if (!value) return std::nullopt;
+  const int limit = header.number(dicom_tags::kPaddingLimit).value_or(*value);
+  const int bits =
+      header.number(dicom_tags::kBitsStored).value_or(header.number(dicom_tags::kBitsAllocated).value_or(16));
+  const bool is_signed = header.number(dicom_tags::kPixelRepresentation).value_or(0) != 0;
+  const int a = stored_number(*value, bits, is_signed), b = stored_number(limit, bits, is_signed);
+  return std::array{std::min(a, b), std::max(a, b)};
 }
 
 DicomSlice slice_of(const DicomHeader& header) {
@@ -43,23 +41,29 @@ DicomSlice slice_of(const DicomHeader& header) {
   slice.series_uid = header.text(dicom_tags::kSeriesUid);
   slice.instance_uid = header.text(dicom_tags::kInstanceUid);
   slice.is_localizer = header.text(dicom_tags::kImageType).find("LOCALIZER") != std::string::npos;
+  slice.is_capture = header.text(dicom_tags::kSopClass).starts_with("1.2.840.10008.5.1.4.1.1.7");
   slice.series_description = header.text(dicom_tags::kSeriesDescription);
   slice.modality = header.text(dicom_tags::kModality);
   slice.patient_id = header.text(dicom_tags::kPatientId);
   slice.frame_of_reference = header.text(dicom_tags::kFrameOfReference);
+  slice.acquisition = header.text(dicom_tags::kAcquisition) + "/" + header.text(dicom_tags::kTemporalPosition);
+  slice.padding = padding_of(header);
   slice.rows = header.number(dicom_tags::kRows).value_or(0);
   slice.columns = header.number(dicom_tags::kColumns).value_or(0);
   slice.samples_per_pixel = header.number(dicom_tags::kSamplesPerPixel).value_or(1);
-  if (const auto frames = decimals_of<1>(header, dicom_tags::kNumberOfFrames))
-    slice.frames = static_cast<int>(std::clamp((*frames)[0], 0.0, 1e6));
-  if (const auto p = decimals_of<3>(header, dicom_tags::kImagePosition))
-    slice.position_P = Vec3((*p)[0], (*p)[1], (*p)[2]);
-  if (const auto d = decimals_of<6>(header, dicom_tags::kImageOrientation))
-    slice.directions_P = {Vec3((*d)[0], (*d)[1], (*d)[2]), Vec3((*d)[3], (*d)[4], (*d)[5])};
+  NumberReader reader(slice);
+  if (const auto frames = reader.decimal(header.text(dicom_tags::kNumberOfFrames), "NumberOfFrames"))
+    slice.frames = static_cast<int>(std::clamp(*frames, 0.0, 1e6));
+  if (const auto p = reader.decimals(header.text(dicom_tags::kImagePosition), 3, "ImagePositionPatient"); !p.empty())
+    slice.position_P = Vec3(p[0], p[1], p[2]);
+  if (const auto d = reader.decimals(header.text(dicom_tags::kImageOrientation), 6, "ImageOrientationPatient");
+      !d.empty())
+    slice.directions_P = {Vec3(d[0], d[1], d[2]), Vec3(d[3], d[4], d[5])};
   // DICOM gives the distance between rows first.
-  if (const auto s = decimals_of<2>(header, dicom_tags::kPixelSpacing)) slice.spacing_mm = {(*s)[1], (*s)[0]};
-  if (const auto slope = decimals_of<1>(header, dicom_tags::kRescaleSlope)) slice.slope = (*slope)[0];
-  if (const auto intercept = decimals_of<1>(header, dicom_tags::kRescaleIntercept)) slice.intercept = (*intercept)[0];
+  if (const auto s = reader.decimals(header.text(dicom_tags::kPixelSpacing), 2, "PixelSpacing"); !s.empty())
+    slice.spacing_mm = {s[1], s[0]};
+  slice.slope = reader.decimal(header.text(dicom_tags::kRescaleSlope), "RescaleSlope");
+  slice.intercept = reader.decimal(header.text(dicom_tags::kRescaleIntercept), "RescaleIntercept");
   const auto bytes_per_pixel = static_cast<std::size_t>(header.number(dicom_tags::kBitsAllocated).value_or(16) / 8);
   slice.declared_bytes = static_cast<std::size_t>(slice.columns) * static_cast<std::size_t>(slice.rows) *
                          static_cast<std::size_t>(std::max(slice.samples_per_pixel, 1)) * bytes_per_pixel;
@@ -104,7 +108,7 @@ Status decode_throwing(const DicomHeader& header, const DicomSlice& slice, const
   } else {
     unpack_plain(pieces.front().subspan(frame * pixels.size()), header.is_big_endian(), layout, pixels);
   }
-  if (auto status = use({layout.type(), pixels, slice.slope, slice.intercept}); !status)
+  if (auto status = use({layout.type(), pixels, slice.slope.value_or(1.0), slice.intercept.value_or(0.0)}); !status)
     return fail(status.error().what, where, status.error().advice);
   return {};
 }
@@ -117,6 +121,21 @@ void silence_gdcm() {
 }
 
 }  // namespace
+
+std::vector<double> NumberReader::decimals(std::string_view text, std::size_t count, const char* name) {
+  if (text.find_first_not_of(' ') == std::string_view::npos) return {};
+  std::vector<double> numbers = dicom::decimals_in(text);
+  if (numbers.size() == count) return numbers;
+  constexpr std::size_t kMostShown = 60;
+  if (slice_.unreadable.empty())
+    slice_.unreadable = fmt::format("{} is \"{}\"", name, dicom::to_utf8(text.substr(0, kMostShown), {}));
+  return {};
+}
+
+std::optional<double> NumberReader::decimal(std::string_view text, const char* name) {
+  const std::vector<double> numbers = decimals(text, 1, name);
+  return numbers.empty() ? std::nullopt : std::optional(numbers.front());
+}
 
 Result<std::vector<DicomSlice>> find_dicom_slices(const fs::path& path) {
   TROCAR_TRY(const std::optional<DicomHeader> header, DicomHeader::read(path));

@@ -24,6 +24,7 @@ struct DicomSlice {
   std::string modality;            ///< "CT", "MR" …; empty if the file has none.
   std::string patient_id;          ///< Compared among slices, never displayed.
   std::string frame_of_reference;  ///< UID; positions in another frame are not comparable.
+  std::string acquisition;         ///< Numbers of the acquisition and of the time point, for comparison.
   int columns = 0;
   int rows = 0;
   int frames = 1;          ///< In its file.
@@ -35,9 +36,27 @@ struct DicomSlice {
   std::optional<std::array<double, 2>> spacing_mm;  ///< Between columns, between rows.
   std::size_t declared_bytes = 0;                   ///< Size of the unpacked pixels.
   bool is_localizer = false;                        ///< An overview image (scout, topogram), no slice.
+  bool is_capture = false;                          ///< A Secondary Capture: a picture of a screen or a report.
   bool is_cut = false;                              ///< The pixels are uncompressed and fewer than declared.
-  double slope = 1.0;
-  double intercept = 0.0;
+  std::optional<double> slope;                      ///< Empty if the file does not state it, as the next one.
+  std::optional<double> intercept;
+  std::optional<std::array<int, 2>> padding;  ///< Stored numbers of padding: lowest, highest.
+  /// The first element with a text that is not the numbers it should be: "PixelSpacing is "4,8\4,8"". Empty if there is
+  /// none. Such an element counts as missing.
+  std::string unreadable;
+};
+
+/// Takes the numbers of DICOM elements for a slice.
+class NumberReader {
+ public:
+  explicit NumberReader(DicomSlice& slice) noexcept : slice_(slice) {}
+  /// The numbers of a decimal string; empty if there are not `count` of them. Then any text but an empty one makes the
+  /// slice unreadable.
+  std::vector<double> decimals(std::string_view text, std::size_t count, const char* name);
+  std::optional<double> decimal(std::string_view text, const char* name);
+
+ private:
+  DicomSlice& slice_;
 };
 
 /// Uses the numbers of one slice.

@@ -3,8 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
+#include <fstream>
 #include <iterator>
 #include <map>
+#include <set>
 
 #include "core/parallel.h"
 #include "core/parse_number.h"
@@ -77,6 +81,42 @@ std::optional<std::size_t> find_preferred(const std::vector<SeriesImages>& serie
   return found;
 }
 
+bool is_empty_or_zeros(const fs::path& file) {
+  std::array<char, 4096> start{};
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(start.data(), start.size());
+  return std::all_of(start.begin(), start.end(), [](char byte) { return byte == 0; });
+}
+
+/// True if a file that is no DICOM image has the name of one: what is left of a slice after a failed copy. Hidden files
+/// ("._slice.dcm") belong to the system.
+bool is_lost_slice(const fs::path& file, bool has_slices_beside) {
+  const std::string name = file.filename().string();
+  std::string ending = file.extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char letter) { return std::tolower(letter); });
+  if (name.starts_with('.')) return false;
+  const bool is_named_dicom = ending == ".dcm" || ending == ".dicom" || ending == ".ima";
+  if (is_named_dicom) {
+    const auto header = DicomHeader::read(file);
+    return header && !*header;
+  }
+  return has_slices_beside && name.find_first_of("0123456789") != std::string::npos && is_empty_or_zeros(file);
+}
+
+/// Slices at the ends of a series would be missing without a word.
+Status check_lost_slices(const std::vector<fs::path>& files,
+                         const std::vector<Result<std::vector<DicomSlice>>>& found) {
+  std::set<fs::path> folders;
+  for (std::size_t n = 0; n < files.size(); ++n)
+    if (found[n] && !found[n]->empty()) folders.insert(files[n].parent_path());
+  if (folders.empty()) return {};
+  for (std::size_t n = 0; n < files.size(); ++n)
+    if (found[n] && found[n]->empty() && is_lost_slice(files[n], folders.contains(files[n].parent_path())))
+      return fail("is empty or no DICOM file, but has the name of one: a slice may be missing", files[n].string(),
+                  "copy or export it again, or remove it if it is no slice");
+  return {};
+}
+
 }  // namespace
 
 std::vector<fs::path> files_below(const fs::path& folder) {
@@ -97,6 +137,7 @@ Result<std::vector<SeriesImages>> find_series(const fs::path& folder) {
   parallel_for(files.size(), 8, [&](std::size_t first, std::size_t last) {
     for (std::size_t n = first; n < last; ++n) found[n] = find_dicom_slices(files[n]);
   });
+  TROCAR_TRY_STATUS(check_lost_slices(files, found));
   std::vector<SeriesImages> series;
   std::map<std::string, std::size_t> index_of_uid;
   for (auto& result : found) {

@@ -19,7 +19,8 @@ std::vector<std::filesystem::path> files_below(const std::filesystem::path& fold
 bool has_dicom_images(const std::filesystem::path& folder);
 
 /// The series with images in a folder and its sub-folders, in the order of their first files. Files that are not DICOM
-/// images are ignored; symbolic links to folders are not followed. Errors: a damaged DICOM file, no image at all.
+/// images are ignored; symbolic links to folders are not followed. Errors: a damaged DICOM file, no image at all; a
+/// file that has the name of a slice, but is empty or no DICOM file.
 Result<std::vector<SeriesImages>> find_series(const std::filesystem::path& folder);
 
 /// Selects one of several series. `wanted`: its number (from 1) or its UID. If empty: the only series, else the only CT

@@ -16,6 +16,8 @@ constexpr std::uint32_t kShared = tag(0x5200, 0x9229), kPerFrame = tag(0x5200, 0
 constexpr std::uint32_t kPlanePosition = tag(0x0020, 0x9113), kPlaneOrientation = tag(0x0020, 0x9116);
 constexpr std::uint32_t kPixelMeasures = tag(0x0028, 0x9110), kPixelValues = tag(0x0028, 0x9145);
 constexpr std::uint32_t kCtFrameType = tag(0x0018, 0x9329), kFrameType = tag(0x0008, 0x9007);
+constexpr std::uint32_t kFrameContent = tag(0x0020, 0x9111), kFrameAcquisition = tag(0x0020, 0x9156);
+constexpr std::uint32_t kTemporalPositionIndex = tag(0x0020, 0x9128);  ///< Its low half: there are fewer than 65,536.
 constexpr const char* kExportFramesAgain = "export the series again, as one image a file if possible";
 
 /// The functional groups of one frame, and those that all frames share.
@@ -23,12 +25,10 @@ struct Groups {
   DicomItem own;
   std::optional<DicomItem> shared;
 
-  /// The numbers of an element in a macro; empty if there are not so many.
-  std::vector<double> decimals(std::uint32_t macro, std::uint32_t element, std::size_t count) const {
+  /// The text of an element in a macro; empty if there is none.
+  std::string_view text(std::uint32_t macro, std::uint32_t element) const {
     const auto item = find(macro);
-    std::vector<double> numbers = item ? item->decimals(element) : std::vector<double>();
-    if (numbers.size() != count) numbers.clear();
-    return numbers;
+    return item ? item->text(element) : std::string_view();
   }
   std::optional<DicomItem> find(std::uint32_t macro) const {
     if (auto item = own.first_item(macro)) return item;
@@ -41,16 +41,26 @@ void take_groups(const Groups& groups, DicomSlice& slice) {
   slice.position_P.reset();
   slice.directions_P.reset();
   slice.spacing_mm.reset();
-  if (const auto p = groups.decimals(kPlanePosition, dicom_tags::kImagePosition, 3); !p.empty())
+  NumberReader reader(slice);
+  if (const auto p =
+          reader.decimals(groups.text(kPlanePosition, dicom_tags::kImagePosition), 3, "ImagePositionPatient");
+      !p.empty())
     slice.position_P = Vec3(p[0], p[1], p[2]);
-  if (const auto d = groups.decimals(kPlaneOrientation, dicom_tags::kImageOrientation, 6); !d.empty())
+  if (const auto d =
+          reader.decimals(groups.text(kPlaneOrientation, dicom_tags::kImageOrientation), 6, "ImageOrientationPatient");
+      !d.empty())
     slice.directions_P = {Vec3(d[0], d[1], d[2]), Vec3(d[3], d[4], d[5])};
-  if (const auto s = groups.decimals(kPixelMeasures, dicom_tags::kPixelSpacing, 2); !s.empty())
+  if (const auto s = reader.decimals(groups.text(kPixelMeasures, dicom_tags::kPixelSpacing), 2, "PixelSpacing");
+      !s.empty())
     slice.spacing_mm = {s[1], s[0]};
-  if (const auto slope = groups.decimals(kPixelValues, dicom_tags::kRescaleSlope, 1); !slope.empty())
-    slice.slope = slope[0];
-  if (const auto intercept = groups.decimals(kPixelValues, dicom_tags::kRescaleIntercept, 1); !intercept.empty())
-    slice.intercept = intercept[0];
+  if (const auto slope = reader.decimal(groups.text(kPixelValues, dicom_tags::kRescaleSlope), "RescaleSlope"))
+    slice.slope = slope;
+  if (const auto intercept =
+          reader.decimal(groups.text(kPixelValues, dicom_tags::kRescaleIntercept), "RescaleIntercept"))
+    slice.intercept = intercept;
+  if (const auto content = groups.own.first_item(kFrameContent))
+    slice.acquisition += fmt::format("/{}/{}", content->number(kFrameAcquisition).value_or(0),
+                                     content->number(kTemporalPositionIndex).value_or(0));
   if (const auto type = groups.find(kCtFrameType))
     slice.is_localizer = type->text(kFrameType).find("LOCALIZER") != std::string_view::npos;
 }

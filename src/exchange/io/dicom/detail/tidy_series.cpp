@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace trocar::io::detail {
 namespace {
@@ -41,6 +42,17 @@ void leave_out_overviews(SeriesImages& images, std::vector<std::string>& warning
   images = std::move(rest);
 }
 
+/// Converted series consist of nothing else.
+void leave_out_captures(SeriesImages& images, std::vector<std::string>& warnings) {
+  SeriesImages rest = images;
+  const SeriesImages captures = take_out(rest, [](const DicomSlice& image) { return image.is_capture; });
+  if (captures.empty() || rest.size() < 2) return;
+  warnings.push_back(fmt::format("left out {} among the slices: {}",
+                                 captures.size() == 1 ? "a secondary capture" : "secondary captures",
+                                 names_of(captures)));
+  images = std::move(rest);
+}
+
 bool are_parallel(const DicomSlice& a, const DicomSlice& b) {
   constexpr double kMaxAngle_rad = 0.02;
   const Vec3 a_P = (*a.directions_P)[0].cross((*a.directions_P)[1]);
@@ -68,14 +80,27 @@ void leave_out_odd(SeriesImages& images, std::vector<std::string>& warnings) {
       fmt::format("left out {} of another direction: {}", odd.size() == 1 ? "an image" : "images", names_of(odd)));
 }
 
-bool have_same_pixels(const DicomSlice& a, const DicomSlice& b) {
+/// Files of many frames that were read already.
+using OpenedFiles = std::map<std::filesystem::path, DicomPixels>;
+
+Status decode_opened(const DicomSlice& slice, OpenedFiles& opened, const PixelUse& use) {
+  if (slice.frames == 1) return decode_slice(slice, use);
+  auto file = opened.find(slice.file);
+  if (file == opened.end()) {
+    TROCAR_TRY(DicomPixels pixels, DicomPixels::open(slice.file));
+    file = opened.emplace(slice.file, std::move(pixels)).first;
+  }
+  return file->second.decode(slice, use);
+}
+
+bool have_same_pixels(const DicomSlice& a, const DicomSlice& b, OpenedFiles& opened) {
   std::vector<std::byte> first;
-  const Status read = decode_slice(a, [&](const RawVoxels& voxels) -> Status {
+  const Status read = decode_opened(a, opened, [&](const RawVoxels& voxels) -> Status {
     first.assign(voxels.bytes.begin(), voxels.bytes.end());
     return {};
   });
   bool is_same = false;
-  const Status compared = decode_slice(b, [&](const RawVoxels& voxels) -> Status {
+  const Status compared = decode_opened(b, opened, [&](const RawVoxels& voxels) -> Status {
     is_same = std::equal(first.begin(), first.end(), voxels.bytes.begin(), voxels.bytes.end());
     return {};
   });
@@ -83,8 +108,8 @@ bool have_same_pixels(const DicomSlice& a, const DicomSlice& b) {
 }
 
 /// Images at one place are neighbours in the order along the normal.
-void leave_out_copies(SeriesImages& images, std::vector<std::string>& warnings) {
-  if (images.empty() || !std::all_of(images.begin(), images.end(), has_place)) return;
+Status leave_out_copies(SeriesImages& images, std::vector<std::string>& warnings) {
+  if (images.empty() || !std::all_of(images.begin(), images.end(), has_place)) return {};
   const auto [row_P, column_P] = *images.front().directions_P;
   const Vec3 normal_P = row_P.cross(column_P).normalized();
   std::vector<const DicomSlice*> ordered;
@@ -94,11 +119,17 @@ void leave_out_copies(SeriesImages& images, std::vector<std::string>& warnings) 
                    [&](const auto* a, const auto* b) { return along_mm(a) < along_mm(b); });
   std::vector<bool> is_copy(images.size(), false);
   const DicomSlice* kept = ordered.front();
+  OpenedFiles opened;
   for (std::size_t n = 1; n < ordered.size(); ++n) {
     const DicomSlice* image = ordered[n];
     const bool is_same_instance = !image->instance_uid.empty() && image->instance_uid == kept->instance_uid;
-    if (along_mm(image) - along_mm(kept) < kSamePlace_mm && is_alike(*kept, *image) &&
-        (is_same_instance || have_same_pixels(*kept, *image)))
+    const bool is_same_place = along_mm(image) - along_mm(kept) < kSamePlace_mm && is_alike(*kept, *image);
+    const bool is_same = is_same_place && have_same_pixels(*kept, *image, opened);
+    if (is_same_place && is_same_instance && !is_same)
+      return fail(fmt::format("{} and {} have one SOPInstanceUID, but different pixels: nothing tells which is right",
+                              kept->file.filename().string(), image->file.filename().string()),
+                  image->file.string(), "remove the wrong one, or export the series again");
+    if (is_same)
       is_copy[static_cast<std::size_t>(image - images.data())] = true;
     else
       kept = image;
@@ -110,6 +141,7 @@ void leave_out_copies(SeriesImages& images, std::vector<std::string>& warnings) 
   if (!left_out.empty())
     warnings.push_back(fmt::format("left out {}: {}", left_out.size() == 1 ? "a copy of a slice" : "copies of slices",
                                    names_of(left_out)));
+  return {};
 }
 
 }  // namespace
@@ -128,10 +160,11 @@ bool is_alike(const DicomSlice& a, const DicomSlice& b) {
   return true;
 }
 
-SeriesImages leave_out_others(SeriesImages images, std::vector<std::string>& warnings) {
+Result<SeriesImages> leave_out_others(SeriesImages images, std::vector<std::string>& warnings) {
   leave_out_overviews(images, warnings);
+  leave_out_captures(images, warnings);
   leave_out_odd(images, warnings);
-  leave_out_copies(images, warnings);
+  TROCAR_TRY_STATUS(leave_out_copies(images, warnings));
   return images;
 }
 
