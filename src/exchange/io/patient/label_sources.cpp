@@ -260,13 +260,41 @@ Result<std::vector<anatomy::LabelSource>> read_mask_files(const std::vector<fs::
   return folder.take();
 }
 
-Result<anatomy::LabelSource> read_dicom_mask(const fs::path& folder, const LabelMap& map) {
-  TROCAR_TRY(auto mask, detail::read_dicom_folder<std::uint8_t>(folder, detail::convert_mask));
+/// A mask of another patient, or in another frame of reference, lies anywhere in this CT.
+Status check_mask_origin(const detail::DicomVolume<std::uint8_t>& mask, const dicom::CtReference& ct,
+                         const fs::path& folder) {
+  const auto differ = [](const std::string& a, const std::string& b) { return !a.empty() && !b.empty() && a != b; };
+  if (differ(mask.patient_id, ct.patient_id))
+    return fail("the mask is of another patient than the CT (PatientID differs)", folder.string(),
+                "give the masks of this patient");
+  if (!differ(mask.frame_of_reference, ct.frame_of_reference)) return {};
+  return fail(fmt::format("the mask has another frame of reference ({}) than the CT ({})", mask.frame_of_reference,
+                          ct.frame_of_reference),
+              folder.string(), "give the masks that were drawn on this CT");
+}
+
+/// The stored numbers count: some masks have the header of their CT, with its intercept of -1024. If all of them are
+/// above zero, they are numbers with an offset.
+Result<detail::DicomVolume<std::uint8_t>> read_mask_volume(const fs::path& folder) {
+  using detail::PixelNumbers;
+  const auto read = [&](PixelNumbers numbers) {
+    return detail::read_dicom_folder<std::uint8_t>(folder, detail::convert_mask, {}, {}, numbers);
+  };
+  auto mask = read(PixelNumbers::kStored);
+  if (!mask || std::ranges::count(mask->grid.voxels, std::uint8_t{0}) > 0) return mask;
+  return read(PixelNumbers::kRescaled);
+}
+
+Result<anatomy::LabelSource> read_dicom_mask(const fs::path& folder, const LabelMap& map,
+                                             const dicom::CtReference& ct) {
+  TROCAR_TRY(auto mask, read_mask_volume(folder));
+  TROCAR_TRY_STATUS(check_mask_origin(mask, ct, folder));
   return anatomy::LabelSource{
       folder.string(), std::move(mask.grid), {{1, map.name_of(folder.filename().string())}}, false, {}};
 }
 
 Result<std::vector<anatomy::LabelSource>> read_label_folder(const fs::path& folder, const LabelMap& map,
+                                                            const dicom::CtReference& ct,
                                                             std::vector<std::string>& warnings) {
   std::vector<fs::path> files = sorted_entries(folder, false);
   std::erase_if(files, [](const fs::path& file) { return !detail::find_image_format(file); });
@@ -276,14 +304,14 @@ Result<std::vector<anatomy::LabelSource>> read_label_folder(const fs::path& fold
   // A path with a trailing slash has no file name.
   const fs::path self = fs::absolute(folder / ".").lexically_normal().parent_path();
   if (detail::has_dicom_images(self)) {
-    TROCAR_TRY(anatomy::LabelSource mask, read_dicom_mask(self, map));
+    TROCAR_TRY(anatomy::LabelSource mask, read_dicom_mask(self, map, ct));
     masks.add(std::move(mask));
     return masks.take();
   }
   bool any = false;
   for (const fs::path& series : sorted_entries(folder, true)) {
     if (!detail::has_dicom_images(series)) continue;
-    TROCAR_TRY(anatomy::LabelSource mask, read_dicom_mask(series, map));
+    TROCAR_TRY(anatomy::LabelSource mask, read_dicom_mask(series, map, ct));
     masks.add(std::move(mask));
     any = true;
   }
@@ -299,7 +327,7 @@ Result<std::vector<anatomy::LabelSource>> read_path(const fs::path& path, const 
   const bool is_folder = fs::is_directory(path, error);
   TROCAR_TRY(const std::vector<fs::path> objects, detail::find_dicom_labels(path));
   if (objects.empty())
-    return is_folder ? read_label_folder(path, map, warnings)
+    return is_folder ? read_label_folder(path, map, ct, warnings)
                      : read_label_file(path, map, Place::kNamedByUser, warnings);
   std::vector<anatomy::LabelSource> all;
   for (const fs::path& object : objects) {
