@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <fstream>
 #include <iterator>
 #include <map>
 #include <set>
 
+#include "core/ascii.h"
 #include "core/parallel.h"
 #include "core/parse_number.h"
 
@@ -93,7 +93,7 @@ bool is_empty_or_zeros(const fs::path& file) {
 bool is_lost_slice(const fs::path& file, bool has_slices_beside) {
   const std::string name = file.filename().string();
   std::string ending = file.extension().string();
-  std::ranges::transform(ending, ending.begin(), [](unsigned char letter) { return std::tolower(letter); });
+  std::ranges::transform(ending, ending.begin(), ascii::to_lower);
   if (name.starts_with('.')) return false;
   const bool is_named_dicom = ending == ".dcm" || ending == ".dicom" || ending == ".ima";
   if (is_named_dicom) {
