@@ -2,6 +2,7 @@
 #include "dicom/pacs/detail/harmless_words.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace trocar::dicom::detail {
 
@@ -56,22 +57,49 @@ std::u32string_view take_run(std::u32string_view& text) {
   return run;
 }
 
+int number_of(std::u32string_view digits) {
+  int number = 0;
+  for (const char32_t c : digits) number = 10 * number + static_cast<int>(c - U'0');
+  return number;
+}
+
 /// A number and what follows it without a gap.
 struct NumberRun {
-  std::size_t whole = 0;     ///< Digits before the point.
-  std::size_t fraction = 0;  ///< Digits behind it.
+  std::size_t whole = 0;  ///< Digits before the point.
+  bool has_leading_zero = false;
+  bool is_day_of_year = false;  ///< "17.3": two digits, a point and a month.
+  std::size_t fraction = 0;     ///< Digits behind it.
   std::u32string unit;
 
   explicit NumberRun(std::u32string_view run) : whole(count_digits(run)) {
+    has_leading_zero = whole > 1 && run.front() == U'0';
+    const int first = number_of(run.substr(0, std::min<std::size_t>(whole, 3)));
     run.remove_prefix(whole);
     if (!run.empty() && (run.front() == U'.' || run.front() == U',')) {
       fraction = count_digits(run.substr(1));
+      const int second = number_of(run.substr(1, std::min<std::size_t>(fraction, 3)));
+      is_day_of_year = whole == 2 && first >= 1 && first <= 31 && second >= 1 && second <= 12;
       run.remove_prefix(1 + fraction);
     }
     unit = folded(run);
   }
   /// No year, no day with its month ("17.03"), no number of a patient.
   bool is_small() const { return whole == 1 ? fraction <= 3 : whole == 2 && fraction <= 1; }
+};
+
+/// Counts numbers with the same unit and no word between them: "17 mm 3 mm 45 mm" is a date.
+class UnitsInARow {
+ public:
+  bool is_one_too_many(const std::u32string& unit) {
+    constexpr int kMost = 2;
+    count_ = unit == last_ ? count_ + 1 : 1;
+    last_ = unit;
+    return count_ > kMost;
+  }
+
+ private:
+  std::u32string last_;
+  int count_ = 0;
 };
 
 /// '#' stands for one or two digits.
@@ -126,22 +154,28 @@ bool HarmlessWords::is_listed(std::u32string_view run, const Rules& rules) const
 }
 
 bool HarmlessWords::are_listed(std::u32string_view text, const Rules& rules) const {
-  bool is_after_number = false;
+  std::optional<NumberRun> bare;  // the number before, if it has no unit yet
+  UnitsInARow units;
   while (true) {
     const std::u32string_view run = take_run(text);
+    const bool is_number = !run.empty() && is_number_digit(run.front());
+    const bool is_unit = !run.empty() && !is_number && bare && units_.contains(folded(run));
+    if (bare && (is_unit ? bare->has_leading_zero : is_number || bare->is_day_of_year)) return false;
     if (run.empty()) return text.empty();
-    if (!is_number_digit(run.front())) {
-      if (!is_listed(run, rules) && !(is_after_number && units_.contains(folded(run)))) return false;
-      is_after_number = false;
+    if (!is_number) {
+      if (is_unit ? units.is_one_too_many(folded(run)) : !is_listed(run, rules)) return false;
+      if (!is_unit) units = {};
+      bare.reset();
       continue;
     }
-    const NumberRun number(run);
+    NumberRun number(run);
     const bool is_code_word = rules.is_code && code_words_.contains(folded(run));
     const bool is_bare = number.unit.empty() && !is_code_word;
-    if (is_bare ? !number.is_small() || is_after_number
-                : !is_code_word && (number.whole > kDigitsWithAUnit || !units_.contains(number.unit)))
+    if (is_bare ? !number.is_small()
+                : !is_code_word && (number.whole > kDigitsWithAUnit || number.has_leading_zero ||
+                                    !units_.contains(number.unit) || units.is_one_too_many(number.unit)))
       return false;
-    is_after_number = is_bare;
+    bare = is_bare ? std::optional(std::move(number)) : std::nullopt;
   }
 }
 

@@ -24,7 +24,8 @@ class HarmlessWords {
   static Result<HarmlessWords> load(const std::filesystem::path& data_folder);
 
   /// True if all words of the text are on the list and its numbers are no date and no number of a patient: at most two
-  /// digits before and one behind the point, or with a unit, and never two of them in a row. Words that are part of a
+  /// digits before and one behind the point, or with a unit, and never two of them in a row; "17.3" and the like need a
+  /// unit; no zero in front and no three in a row with one unit. Words that are part of a
   /// name in `names` are refused, except words of known structures in the name of a structure.
   bool is_harmless(std::string_view text, Repertoire repertoire, TextUse use, const IdentityWords& names) const;
 

@@ -7,8 +7,9 @@ namespace trocar::dicom::detail {
 
 /// How the anonymisation treats an element that stays. No text stays unless every word of it is known (harmless_words).
 enum class Treatment {
-  kKeep,          ///< Binary numbers or pixels: unchanged. Removed if the object says that it is text.
-  kNumber,        ///< Numbers in decimal digits: emptied if there is anything else.
+  kKeep,          ///< Binary numbers or pixels: unchanged. Removed if they are text, or the object says so.
+  kNumber,        ///< Numbers in decimal digits: emptied if there is anything else, or a number with the digits
+                  ///< of a date or of a patient's number.
   kCode,          ///< Defined terms of DICOM and other known words; others become "OTHER".
   kCodeValue,     ///< Code of a public scheme; others are replaced.
   kCodingScheme,  ///< Public scheme; others are replaced.

@@ -89,7 +89,7 @@ class Anonymiser {
       } else if (element.tag == kPixelData) {
         writer_.bytes(bytes.substr(begin, walk.at() - begin));
       } else if (vr != "SQ" && !element.has_undefined_length &&
-                 (kept->treatment != Treatment::kKeep || !has_characters(vr))) {
+                 (kept->treatment != Treatment::kKeep || (!has_characters(vr) && !is_text(value, vr)))) {
         const std::string_view new_vr = kept->treatment == Treatment::kUid ? "UI" : vr;
         writer_.element(element.tag, new_vr, treated_(value, kept->treatment, context), encoding);
       }

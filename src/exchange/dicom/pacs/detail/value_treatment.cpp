@@ -4,6 +4,8 @@
 #include <array>
 
 #include "core/ascii.h"
+#include "core/parse_number.h"
+#include "dicom/elements/dicom_file.h"
 #include "dicom/pacs/detail/data_set.h"
 
 namespace trocar::dicom::detail {
@@ -57,6 +59,35 @@ bool is_code_value_of_a_scheme(std::string_view value) {
   return std::ranges::any_of(rest, ascii::is_digit) && std::ranges::all_of(rest, is_allowed);
 }
 
+int number_at(std::string_view digits, std::size_t at, std::size_t count) {
+  return parse_number<int>(digits.substr(at, count)).value_or(0);
+}
+
+/// Six digits of a day, a month and a year in any usual order.
+bool is_date(std::string_view digits) {
+  const auto is_day_and_month = [&](std::size_t day, std::size_t month) {
+    const int d = number_at(digits, day, 2), m = number_at(digits, month, 2);
+    return d >= 1 && d <= 31 && m >= 1 && m <= 12;
+  };
+  return digits.size() == 6 && (is_day_and_month(0, 2) || is_day_and_month(2, 0) || is_day_and_month(4, 2));
+}
+
+/// One number, with a decimal comma, too; no date, and not so many digits as the number of a patient has.
+bool is_harmless_number(std::string_view text) {
+  std::string number(text);
+  std::ranges::replace(number, ',', '.');
+  if (decimals_in(number).size() != 1) return false;
+  constexpr std::size_t kMostDigits = 6;
+  std::string_view digits = number;
+  while (!digits.empty() && !ascii::is_digit(digits.front())) digits.remove_prefix(1);
+  const auto is_other = [](char c) { return !ascii::is_digit(c); };
+  const auto end = std::ranges::find_if(digits, is_other);
+  const std::string_view behind(end, digits.end());
+  const bool is_whole = behind.find_first_not_of(".0 ") == std::string_view::npos;
+  digits = digits.substr(0, static_cast<std::size_t>(end - digits.begin()));
+  return digits.size() <= kMostDigits && !(is_whole && is_date(digits));
+}
+
 Kind kind_of(Treatment treatment) {
   if (treatment == Treatment::kSeries) return Kind::kSeries;
   return treatment == Treatment::kStructure ? Kind::kStructure : Kind::kOther;
@@ -66,6 +97,19 @@ Kind kind_of(Treatment treatment) {
 
 bool has_characters(std::string_view vr) noexcept {
   return std::ranges::find(kOfCharacters, vr) != kOfCharacters.end();
+}
+
+bool is_text(std::string_view value, std::string_view vr) noexcept {
+  // Numbers of eight bytes have others among them: the last is @ or ? from 0.00003 to 65,536.
+  constexpr std::size_t kShortest = 6;
+  constexpr std::string_view kOfNames(" .,^'-/:_=()");
+  const bool has_any_vr = vr == "UN";
+  const auto is_of_text = [&](char c) {
+    return ascii::is_letter_or_digit(c) || kOfNames.find(c) != std::string_view::npos ||
+           (has_any_vr && static_cast<unsigned char>(c) >= 0x80);
+  };
+  const std::string_view text = trimmed(value);
+  return text.size() >= kShortest && std::ranges::all_of(text, is_of_text);
 }
 
 std::string_view ValueTreatment::operator()(std::string_view value, Treatment treatment, const ValueContext& context) {
@@ -126,8 +170,9 @@ std::string_view ValueTreatment::checked_code_value(std::string_view value, cons
 }
 
 std::string_view ValueTreatment::checked_numbers(std::string_view value) {
-  constexpr std::string_view kOfNumbers("0123456789+-.,eE\\ \0", 19);
-  if (value.find_first_not_of(kOfNumbers) == std::string_view::npos) return value;
+  bool are_numbers = true;
+  for_each_value(value, [&](std::string_view number) { are_numbers &= number.empty() || is_harmless_number(number); });
+  if (are_numbers) return value;
   rules_.codes.add_removed(value);
   return {};
 }

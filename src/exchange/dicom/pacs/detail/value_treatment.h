@@ -38,5 +38,8 @@ class ValueTreatment {
 
 /// True for a value representation whose values are characters. Elements of numbers are removed if they have it.
 bool has_characters(std::string_view vr) noexcept;
+/// True if a value that should be binary numbers consists of letters, digits and what stands between them: an object
+/// can name any VR, "UN" or none.
+bool is_text(std::string_view value, std::string_view vr) noexcept;
 
 }  // namespace trocar::dicom::detail

@@ -220,6 +220,56 @@ TEST_F(HarmlessText, OfAPersonNamedLikeAnOrganIsReplaced) {
   EXPECT_TRUE(stays_with_names("CT Thorax", TextUse::kDescription));
 }
 
+TEST_F(HarmlessText, OfAPersonIsReplacedInEverySpelling) {
+  struct Case {
+    std::string name;
+    std::vector<std::string> replaced;
+    Repertoire repertoire = Repertoire::kUtf8;
+  };
+  for (const auto& [name, replaced, repertoire] : std::vector<Case>{
+           {"Fuß^Anna", {"CT FUSS 5mm", "Fuß", "fuss"}},
+           {"FUSS^Anna", {"CT Fuß", "fuss"}},
+           {"Fu\xdf^Anna", {"CT FUSS 5mm", "Fuß"}, Repertoire::kLatin1},
+           {"Fu\xdf^Anna", {"CT FUSS 5mm", "Fuß"}, Repertoire::kAscii},  // ISO_IR 101, 109, 148 have it there, too
+           {"Fuß^Anna", {"CT FUSS 5mm"}, Repertoire::kAscii},            // UTF-8 that does not say so
+           {"Früh^Anna", {"Abdomen FRUEH", "Früh", "früharteriell frueh"}},
+           {"Frueh", {"Abdomen früh"}},
+           {"Fru\u0308h", {"Abdomen frueh", "früh"}},
+           {"Spät^A", {"Spaet venoes"}},
+           {"Spat^A", {"Spaet venoes", "spät"}},
+           {"Schädel^B", {"CT Schaedel nativ"}},
+           {"Läsion", {"Laesion Leber"}},
+           {"Arm^X", {"arms", "Arm", "ARME"}},
+           {"Arms^X", {"arm"}},
+           {"Stones^John", {"Stone"}},
+           {"Vein", {"veins"}},
+           {"Niere", {"Nieren"}},
+           {"ＨＥＲＺ^Anna", {"CT Herz"}},
+           {"ｈｅｒｚ", {"CT HERZ"}},
+           {"Hërz", {"CT HERZ"}},
+           {"HĘRŻ", {"CT HERZ"}},
+           {"Kọpf", {"kopf"}},
+           {"Cœur", {"coeur"}},
+           {"Artère", {"artere", "ARTÈRE"}}}) {
+    IdentityWords names;
+    names.add(name, repertoire);
+    for (const std::string& text : replaced) {
+      EXPECT_TRUE(stays(text)) << text << ": must be on the list, or this proves nothing";
+      EXPECT_FALSE(words_.is_harmless(text, Repertoire::kUtf8, TextUse::kDescription, names)) << name << ": " << text;
+    }
+    EXPECT_TRUE(words_.is_harmless("CT Thorax 5mm", Repertoire::kUtf8, TextUse::kDescription, names)) << name;
+  }
+}
+
+TEST_F(HarmlessText, NumbersThatAreADateInDisguiseAreReplaced) {
+  for (const char* text : {"17.3", "CT 17.3", "17,3 liver", "31.1", "17 mm 03 mm 45 mm", "17 mm 3 mm 45 mm",
+                           "17mm 3mm 45mm", "B30f 17s 03s 45s", "17s 3s 45s", "03 mm", "liver 17.3 5mm"})
+    EXPECT_FALSE(stays(text)) << text;
+  for (const char* text : {"12.5 mm", "12.5mm", "1.5", "7.3", "10.0", "32.5", "5mm 120kV 2s", "10 mm 5 mm",
+                           "02 Abdomen", "Thorax 5mm Abdomen 3mm Becken 2mm"})
+    EXPECT_TRUE(stays(text)) << text;
+}
+
 TEST_F(HarmlessText, CodedValuesOfDicomStay) {
   for (const char* value :
        {"ORIGINAL", "CT_SOM5 SPI",  "MONOCHROME2",   "YBR_FULL_422", "ISO_10918_1", "HFS",           "L",

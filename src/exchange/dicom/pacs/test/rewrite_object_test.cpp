@@ -227,6 +227,24 @@ TEST_F(Rewriting, TextInTheElementOfANumberIsRemoved) {
   EXPECT_FALSE(read_back().root().find(0x00280106));
 }
 
+TEST_F(Rewriting, TextInAnElementOfUnknownOrNoRepresentationIsRemoved) {
+  const std::vector<std::pair<Encoding, std::string>> encodings = {{kExplicit, kExplicitUid},
+                                                                   {kImplicit, "1.2.840.10008.1.2"}};
+  for (const auto& [encoding, uid] : encodings) {
+    MadeObject named(encoding);
+    named.add(0x00080016, "UI", testing::kCtClass).add(0x00080018, "UI", "1.3.6.1.4.1.99999.6");
+    named.add(0x00189305, "UN", std::string("\0\0\0\0\0\0\xe0\x3f", 8)).add(0x00189306, "UN", "Mustermann");
+    named.add(0x0020000d, "UI", testing::kStudyUid).add(0x0020000e, "UI", testing::kCtSeriesUid);
+    named.add(0x00200011, "IS", "17031945").add_number(0x00280010, 258);
+    named.add(0x7fe00010, "OW", std::string("\x01\x02\x03\x04", 4));
+    const auto bytes = anonymised(named.file(uid));
+    ASSERT_TRUE(bytes) << bytes.error().text();
+    EXPECT_EQ(bytes->find("Mustermann"), std::string::npos);
+    EXPECT_EQ(bytes->find("17031945"), std::string::npos);
+    EXPECT_NE(bytes->find(std::string("\0\0\0\0\0\0\xe0\x3f", 8)), std::string::npos) << "RevolutionTime of 0.5 s";
+  }
+}
+
 TEST_F(Rewriting, ElementsBehindThePixelsAreRemoved) {
   MadeObject object = testing::made_ct(0);
   object.add(0xfffcfffc, "OB", "Mustermann");

@@ -47,6 +47,33 @@ TEST_F(Treating, NumbersAreNumbers) {
   EXPECT_EQ(treated(std::string_view("12\0", 3), Treatment::kNumber), std::string("12\0", 3));
   EXPECT_EQ(treated("Mueller", Treatment::kNumber), "");
   EXPECT_EQ(treated("17/03/1945", Treatment::kNumber), "");
+  for (const char* number : {"0.976562\\0.976562", "-1024", "1e-3", "+4.5", "4,8\\4,8", "123456.789", "120000", "",
+                             " 601 ", "999999", "-123.4567890123", "0"})
+    EXPECT_EQ(treated(number, Treatment::kNumber), number);
+  for (const char* date : {"17031945", "19450317", "170345", "031745", "450317", "17.03.1945", "17-03-1945",
+                           "1\\170345", "17031945.0", "4711001", "17 03 45", "1e", "."})
+    EXPECT_EQ(treated(date, Treatment::kNumber), "") << date;
+}
+
+std::string bytes_of_doubles(const std::vector<double>& numbers) {
+  return {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(double)};
+}
+
+TEST(TextInNumbers, IsToldFromNumbers) {
+  for (const char* text : {"Mueller x", "Mueller^Hans", "17031945", "17.03.45", "O'Brien "}) {
+    EXPECT_TRUE(is_text(text, "UN")) << text;
+    EXPECT_TRUE(is_text(text, "")) << text << ": implicit VR";
+    EXPECT_TRUE(is_text(text, "FD")) << text;
+  }
+  EXPECT_TRUE(is_text(std::string_view("Mueller\0", 8), "UN"));
+  EXPECT_TRUE(is_text("M\xfcller Hans", "UN"));
+  for (double number = 1e-4; number < 65'000; number *= 1.0003) {
+    EXPECT_FALSE(is_text(bytes_of_doubles({number}), "UN")) << number;
+    EXPECT_FALSE(is_text(bytes_of_doubles({number, -number}), "")) << number;
+  }
+  EXPECT_FALSE(is_text(std::string("\0\1\0\0\0\0\0\1", 8), "US"));
+  EXPECT_FALSE(is_text("AB", "US"));
+  EXPECT_FALSE(is_text("", "UN"));
 }
 
 TEST_F(Treating, CodesAreOfPublicSchemes) {
