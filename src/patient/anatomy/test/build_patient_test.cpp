@@ -104,12 +104,12 @@ TEST(BuildPatient, WhereMasksOverlapTheMoreSpecialWins) {
 }
 
 TEST(BuildPatient, IdsFollowTheOrderOfTheFiles) {
-  LabelSource pancreas = source("pancreas", Torso::mask(Torso::grid(kSpacingMm), [](const Vec3& p_P) {
+  LabelSource colon = source("colon", Torso::mask(Torso::grid(kSpacingMm), [](const Vec3& p_P) {
                                   return (p_P - Vec3(80.0, -20.0, 0.0)).norm() < 15.0;
                                 }));
-  const Built built = build({pancreas, liver()});
+  const Built built = build({colon, liver()});
   ASSERT_TRUE(built.patient) << built.patient.error().text();
-  EXPECT_EQ(built.patient->label_table.find("pancreas")->id, 1);
+  EXPECT_EQ(built.patient->label_table.find("colon")->id, 1);
   EXPECT_EQ(built.patient->label_table.find("liver")->id, 2);
   EXPECT_EQ(built.patient->label_table.find("liver")->tissue, "liver");
 }
