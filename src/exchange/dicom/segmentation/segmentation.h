@@ -71,15 +71,17 @@ using FrameDecoder = std::function<Status(const CompressedFrame& frame, std::spa
 
 /// Reads a DICOM SEG or RT structure set; structures that are not wanted are left out, even unusable ones.
 ///
-/// SEG: frames in any order and of any orientation, missing frames are empty planes, overlapping segments come in
-/// several volumes. A fractional pixel is inside from half of the maximum on. The volumes are in the places of the
-/// frames, not on the CT's grid. RT structure set: closed planar contours, on the CT's grid if they are parallel to one
-/// of its planes. Contours of one plane count by even-odd: a contour inside another is a hole. A contour reaches
-/// half-way to its neighbours, wherever their planes lie; wider gaps between separate parts stay empty (warning).
+/// SEG: frames in any order and of any orientation, missing frames are empty planes (warning within a structure),
+/// planes of a thicker scan fill their thickness, overlapping segments come in several volumes. A fractional pixel is
+/// inside from half of the maximum on. The volumes are in the places of the frames, not on the CT's grid. RT structure
+/// set: closed planar contours, on the CT's grid if they are parallel to one of its planes. Contours of one plane count
+/// by even-odd: a contour inside another is a hole. A contour reaches half-way to its neighbours, wherever their planes
+/// lie; wider gaps between separate parts stay empty (warning).
 ///
 /// Errors: another series or frame of reference than the CT's, where both are known (CtReference::accepts_sibling);
 /// open contours, not planar ones; frames without a place or of a segment that is not defined, such numbers in a label
-/// map; an unknown kind of pixels; a damaged file; not enough memory.
+/// map; a structure with as many empty planes between as drawn ones; an unknown kind of pixels; a damaged file; not
+/// enough memory.
 Result<Segmentation> read_segmentation(const std::filesystem::path& path, const CtReference& ct,
                                        const std::function<bool(const Segment&)>& is_wanted,
                                        const FrameDecoder& decode = {});

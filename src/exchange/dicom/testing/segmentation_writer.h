@@ -35,6 +35,7 @@ struct TestSeg {
   int padding = -1;  ///< PixelPaddingValue.
   double spacing_mm = 1.0;
   double slice_step_mm = 0.0;
+  double thickness_mm = 0.0;
   Mat3 R_PV = Mat3::Identity();
   std::string series_uid = "1.2.3";
   std::string frame_of_reference = "1.2.9";
@@ -68,6 +69,7 @@ inline std::string seg_pixels(const TestSeg& seg) {
 inline std::string seg_elements(const TestSeg& seg, bool with_pixels = true) {
   const Mat3& R = seg.R_PV;
   std::string measures;
+  if (seg.thickness_mm > 0.0) measures += dicom_decimals(0x0018, 0x0050, {seg.thickness_mm});
   if (seg.slice_step_mm > 0.0) measures += dicom_decimals(0x0018, 0x0088, {seg.slice_step_mm});
   measures += dicom_decimals(0x0028, 0x0030, {seg.spacing_mm, seg.spacing_mm});
   const std::string orientation =

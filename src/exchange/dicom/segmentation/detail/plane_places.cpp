@@ -16,6 +16,9 @@ constexpr double kMaxSideways_px = 0.5;        ///< Frames of one plane.
 constexpr double kMaxDeviation = 0.05;         ///< Of the step, from a multiple of it.
 constexpr double kMaxDeviation_mm = 0.06;      ///< At least this, for positions rounded to a tenth.
 constexpr double kFramesParallel = 1e-3;
+constexpr double kThicker = 1.25;    ///< Times the distance of the CT's slices: planes of a thicker scan.
+constexpr double kOverlap = 0.95;    ///< Of the stated thickness: planes that are closer overlap.
+constexpr double kPlaneEdge = 0.01;  ///< Of the thickness: rounding of a slice half-way between two planes.
 constexpr std::size_t kMostFramePlanes = 1 << 14;
 
 /// A plane with its distance along the normal.
@@ -50,16 +53,22 @@ Result<FramePlanes> join_frames(const SegHeader& header, const Vec3& normal_P, c
   return result;
 }
 
+/// The wider one of the distances from a slice to the next ones; 0 for a single slice.
+double gap_beside(const std::vector<double>& slices_mm, std::size_t slice) {
+  double gap_mm = 0.0;
+  if (slice > 0) gap_mm = slices_mm[slice] - slices_mm[slice - 1];
+  if (slice + 1 < slices_mm.size()) gap_mm = std::max(gap_mm, slices_mm[slice + 1] - slices_mm[slice]);
+  return gap_mm;
+}
+
 /// The plane of a scan that a plane of the segmentation lies on.
 std::optional<std::size_t> find_slice(const std::vector<double>& slices_mm, double along_mm) {
   const auto above = std::lower_bound(slices_mm.begin(), slices_mm.end(), along_mm);
   std::size_t nearest = static_cast<std::size_t>(above - slices_mm.begin());
   if (nearest == slices_mm.size() || (nearest > 0 && along_mm - slices_mm[nearest - 1] < slices_mm[nearest] - along_mm))
     --nearest;
-  double gap_mm = 0.0;
-  if (nearest > 0) gap_mm = slices_mm[nearest] - slices_mm[nearest - 1];
-  if (nearest + 1 < slices_mm.size()) gap_mm = std::max(gap_mm, slices_mm[nearest + 1] - slices_mm[nearest]);
-  if (std::abs(slices_mm[nearest] - along_mm) > std::max(kMaxOffset * gap_mm, kMaxDeviation_mm)) return std::nullopt;
+  const double allowed_mm = std::max(kMaxOffset * gap_beside(slices_mm, nearest), kMaxDeviation_mm);
+  if (std::abs(slices_mm[nearest] - along_mm) > allowed_mm) return std::nullopt;
   return nearest;
 }
 
@@ -161,26 +170,84 @@ double single_step(const SegHeader& header, const CtReference& ct, const Vec3& n
   return header.thickness_mm.value_or(ct.grid.spacing_mm.maxCoeff());
 }
 
-/// All planes, and the numbers of those that have frames.
-std::vector<Plane> all_planes(const SegHeader& header, const std::vector<Plane>& planes, const CtReference& ct,
-                              const Vec3& normal_P, std::vector<std::size_t>& numbers) {
+/// All planes in order, and the numbers of those that have frames.
+struct AllPlanes {
+  std::vector<Plane> planes;
+  std::vector<std::size_t> numbers;
+  std::vector<PlaneRepeat> repeats;
+  std::optional<ThickPlanes> thick;
+};
+
+AllPlanes on_ct_slices(const std::vector<Plane>& planes, const std::vector<std::size_t>& slices,
+                       const std::vector<double>& slices_mm, const Vec3& normal_P) {
+  AllPlanes all;
+  for (const std::size_t slice : slices) all.numbers.push_back(slice - slices.front());
+  all.planes = fill_between(planes, all.numbers);
+  move_to_slices(all.planes, slices.front(), slices_mm, normal_P);
+  return all;
+}
+
+/// Planes that the file makes thicker than the slices of the CT they lie on: they were drawn on a thicker scan. Planes
+/// on neighbouring slices are as thick as these, whatever the file states.
+std::optional<ThickPlanes> find_thick_planes(const SegHeader& header, const std::vector<std::size_t>& slices,
+                                             const std::vector<double>& slices_mm) {
+  const double stated_mm = header.slice_step_mm.value_or(header.thickness_mm.value_or(0.0));
+  std::optional<ThickPlanes> thick;
+  for (std::size_t n = 0; n < slices.size(); ++n) {
+    const double gap_mm = gap_beside(slices_mm, slices[n]);
+    if (gap_mm > 0.0 && stated_mm > kThicker * gap_mm && (!thick || gap_mm < thick->ct_step_mm))
+      thick = ThickPlanes{stated_mm, gap_mm};
+    const bool is_next = n > 0 && slices[n] == slices[n - 1] + 1;
+    if (is_next && slices_mm[slices[n]] - slices_mm[slices[n - 1]] < kOverlap * stated_mm) return std::nullopt;
+  }
+  return thick;
+}
+
+/// Each plane fills the slices of the CT within its thickness that are closer to no other plane.
+AllPlanes over_ct_slices(const std::vector<Plane>& planes, const std::vector<std::size_t>& slices,
+                         const ThickPlanes& thick, const std::vector<double>& slices_mm, const Vec3& normal_P) {
+  const double low_mm = -(0.5 + kPlaneEdge) * thick.thickness_mm, high_mm = (0.5 - kPlaneEdge) * thick.thickness_mm;
+  const auto first_from = [&](double at_mm) {
+    const auto found = std::lower_bound(slices_mm.begin(), slices_mm.end(), at_mm);
+    return static_cast<std::size_t>(found - slices_mm.begin());
+  };
+  const std::size_t first = first_from(slices_mm[slices.front()] + low_mm);
+  const std::size_t end = first_from(slices_mm[slices.back()] + high_mm);
+  AllPlanes all = on_ct_slices(planes, slices, slices_mm, normal_P);
+  all.thick = thick;
+  all.planes.insert(all.planes.begin(), slices.front() - first, all.planes.front());
+  all.planes.resize(end - first, all.planes.back());
+  move_to_slices(all.planes, first, slices_mm, normal_P);
+  for (std::size_t& number : all.numbers) number += slices.front() - first;
+  for (std::size_t slice = first, plane = 0; slice < end; ++slice) {
+    const auto from_plane_mm = [&](std::size_t n) { return slices_mm[slice] - slices_mm[slices[n]]; };
+    while (plane + 1 < slices.size() && from_plane_mm(plane) + from_plane_mm(plane + 1) >= 0.0) ++plane;
+    const double at_mm = from_plane_mm(plane);
+    if (slice != slices[plane] && at_mm >= low_mm && at_mm < high_mm)
+      all.repeats.push_back({all.numbers[plane], slice - first});
+  }
+  return all;
+}
+
+AllPlanes all_planes(const SegHeader& header, const std::vector<Plane>& planes, const CtReference& ct,
+                     const Vec3& normal_P) {
   const std::vector<double> slices_mm = slice_distances(ct, normal_P);
-  if (auto slices = on_slices(planes, slices_mm)) {
-    const std::size_t first = slices->front();
-    for (const std::size_t slice : *slices) numbers.push_back(slice - first);
-    std::vector<Plane> all = fill_between(planes, numbers);
-    move_to_slices(all, first, slices_mm, normal_P);
-    return all;
+  if (const auto slices = on_slices(planes, slices_mm)) {
+    if (const auto thick = find_thick_planes(header, *slices, slices_mm))
+      return over_ct_slices(planes, *slices, *thick, slices_mm, normal_P);
+    return on_ct_slices(planes, *slices, slices_mm, normal_P);
   }
+  AllPlanes all;
   if (planes.size() == 1) {
-    numbers = {0};
-    return planes;
+    all.numbers = {0};
+    all.planes = planes;
+  } else if (auto even = on_even_steps(header, planes)) {
+    all.numbers = *std::move(even);
+    all.planes = fill_between(planes, all.numbers);
+  } else {
+    all.planes = with_gaps(planes, all.numbers);
   }
-  if (auto even = on_even_steps(header, planes)) {
-    numbers = *std::move(even);
-    return fill_between(planes, numbers);
-  }
-  return with_gaps(planes, numbers);
+  return all;
 }
 
 }  // namespace
@@ -200,12 +267,13 @@ Result<SegPlanes> place_planes(const SegHeader& header, const CtReference& ct, c
   result.stack.origins_P.clear();
   const Vec3 normal_P = result.stack.normal_P();
   TROCAR_TRY(FramePlanes found, join_frames(header, normal_P, where));
-  std::vector<std::size_t> numbers;
-  const std::vector<Plane> all = all_planes(header, found.planes, ct, normal_P, numbers);
-  for (const Plane& plane : all) result.stack.origins_P.push_back(plane.origin_P);
-  if (all.size() > kMostFramePlanes)
+  AllPlanes all = all_planes(header, found.planes, ct, normal_P);
+  for (const Plane& plane : all.planes) result.stack.origins_P.push_back(plane.origin_P);
+  if (all.planes.size() > kMostFramePlanes)
     return fail("the DICOM segmentation has more planes than any scan", where, kExportSegmentationAgain);
-  for (const std::size_t plane : found.plane_of_frame) result.plane_of_frame.push_back(numbers[plane]);
+  for (const std::size_t plane : found.plane_of_frame) result.plane_of_frame.push_back(all.numbers[plane]);
+  result.repeats = std::move(all.repeats);
+  result.thick = all.thick;
   result.single_step_mm = single_step(header, ct, normal_P);
   return result;
 }

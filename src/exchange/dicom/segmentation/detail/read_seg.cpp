@@ -1,12 +1,14 @@
 #include "dicom/segmentation/detail/read_seg.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <iterator>
 
 #include "core/available_memory.h"
 #include "dicom/segmentation/detail/label_layers.h"
+#include "dicom/segmentation/detail/plane_gaps.h"
 #include "dicom/segmentation/detail/plane_places.h"
 #include "dicom/segmentation/detail/seg_pixels.h"
 
@@ -120,10 +122,54 @@ Result<std::vector<LabelLayers::Layer>> read_label_map(const SegHeader& header, 
   return layers;
 }
 
-void warn_of_planes(const StackPlan& plan, std::vector<std::string>& warnings) {
+void warn_of_planes(const SegPlanes& planes, const StackPlan& plan, std::vector<std::string>& warnings) {
+  if (planes.thick)
+    warnings.push_back(
+        fmt::format("its planes are {:.2f} mm thick, the CT's slices {:.2f} mm apart: each plane fills its thickness",
+                    planes.thick->thickness_mm, planes.thick->ct_step_mm));
   if (plan.is_plain) return;
   warnings.push_back(fmt::format("the planes of the segmentation are {}: resampled by the nearest plane",
                                  plan.is_uneven ? "at uneven distances" : "tilted"));
+}
+
+constexpr std::size_t kFewGaps = 2;        ///< Forgotten planes.
+constexpr std::size_t kMostNamedGaps = 4;  ///< Structures in one line.
+
+/// Planes that are left empty are told; a structure of stripes is refused.
+Status check_gaps(const std::vector<LabelLayers::Layer>& layers, const SliceStack& stack,
+                  const std::vector<Segment>& segments, const std::string& where, std::vector<std::string>& warnings) {
+  std::vector<std::string> striped;
+  for (const LabelLayers::Layer& layer : layers) {
+    const std::vector<PlaneGaps> gaps = find_plane_gaps(layer, stack);
+    for (std::size_t n = 0; n < gaps.size(); ++n) {
+      if (gaps[n].count == 0) continue;
+      const std::string& name = segments[layer.segments[n]].name;
+      const std::string between = fmt::format("{} between {} planes, up to {:.1f} mm from plane to plane",
+                                              gaps[n].count == 1 ? "1 gap" : fmt::format("{} gaps", gaps[n].count),
+                                              gaps[n].drawn, gaps[n].widest_mm);
+      if (gaps[n].count > kFewGaps && 2 * gaps[n].count > gaps[n].drawn)
+        striped.push_back(fmt::format("\"{}\" ({})", name, between));
+      else
+        warnings.push_back(fmt::format("\"{}\": left empty: {}", name, between));
+    }
+  }
+  if (striped.empty()) return {};
+  if (striped.size() > kMostNamedGaps) {
+    const std::size_t more = striped.size() - kMostNamedGaps;
+    striped.resize(kMostNamedGaps);
+    striped.push_back(fmt::format("{} more", more));
+  }
+  return fail(fmt::format("is drawn on some planes only, with empty ones between: {}", fmt::join(striped, ", ")), where,
+              "fill between the planes in the program that drew them, and export again");
+}
+
+/// Shows the planes of a thicker scan on all slices that they fill.
+void repeat_planes(const SegPlanes& planes, std::vector<LabelLayers::Layer>& layers) {
+  const std::int64_t plane_size = planes.stack.columns * planes.stack.rows;
+  for (LabelLayers::Layer& layer : layers)
+    for (const PlaneRepeat& repeat : planes.repeats)
+      std::copy_n(layer.voxels.begin() + static_cast<std::int64_t>(repeat.from) * plane_size, plane_size,
+                  layer.voxels.begin() + static_cast<std::int64_t>(repeat.to) * plane_size);
 }
 
 Result<std::vector<LabelLayers::Layer>> read_layers(const SegHeader& header, const SegPlanes& planes,
@@ -158,10 +204,12 @@ Result<Segmentation> read_seg(const DicomFile& file, const std::string& where, c
   Segmentation result;
   std::copy_if(header.segments.begin(), header.segments.end(), std::back_inserter(result.segments), is_wanted);
   TROCAR_TRY(std::vector<LabelLayers::Layer> layers, read_layers(header, planes, pixels, result.segments, where));
+  repeat_planes(planes, layers);
+  warn_of_planes(planes, plan, result.warnings);
+  TROCAR_TRY_STATUS(check_gaps(layers, planes.stack, result.segments, where, result.warnings));
   for (LabelLayers::Layer& layer : layers)
     result.volumes.push_back(
         {fill_from_stack<std::uint8_t>(plan, planes.stack, std::move(layer.voxels), 0), std::move(layer.segments)});
-  warn_of_planes(plan, result.warnings);
   return result;
 }
 

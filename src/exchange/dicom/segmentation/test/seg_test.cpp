@@ -1,75 +1,23 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <fstream>
 
-#include "core/files/temporary_folder.h"
-#include "dicom/segmentation/segmentation.h"
-#include "dicom/testing/segmentation_writer.h"
+#include "dicom/segmentation/test/seg_fixture.h"
 
 namespace trocar::dicom {
 namespace {
 
+using seg_test::at_z;
+using seg_test::block;
+using seg_test::count_at;
+using seg_test::ct_with_slices;
+using seg_test::every_segment;
+using seg_test::Seg;
+using seg_test::voxels_of;
 using trocar::testing::Length;
 using trocar::testing::segment_item;
 using trocar::testing::TestSeg;
-
-/// A CT of 8 x 6 x 5 voxels of 1 x 1 x 2 mm.
-CtReference ct_with_slices(const std::vector<double>& slices_mm = {0, 2, 4, 6, 8}) {
-  CtReference ct;
-  ct.grid.size = {8, 6, 5};
-  ct.grid.spacing_mm = {1, 1, 2};
-  ct.grid.origin_P = {-4, 10, 100};
-  ct.series_uid = "1.2.3";
-  ct.frame_of_reference = "1.2.9";
-  for (const double z : slices_mm) ct.slices_P.push_back(ct.grid.origin_P + z * Vec3::UnitZ());
-  return ct;
-}
-
-Vec3 at_z(double z_mm) {
-  return Vec3(-4, 10, 100 + z_mm);
-}
-
-std::function<int(int, int)> block(int first_column, int last_column, int value = 1) {
-  return [=](int i, int) { return i >= first_column && i <= last_column ? value : 0; };
-}
-
-bool every_segment(const Segment&) {
-  return true;
-}
-
-class Seg : public ::testing::Test {
- protected:
-  Result<Segmentation> read(const std::string& elements, const CtReference& ct = ct_with_slices()) {
-    trocar::testing::write_dicom(folder_ / "label.seg", elements);
-    return read_segmentation(folder_ / "label.seg", ct, every_segment);
-  }
-  Result<Segmentation> read(const TestSeg& seg, const CtReference& ct = ct_with_slices()) {
-    return read(trocar::testing::seg_elements(seg), ct);
-  }
-  std::string error_of(const TestSeg& seg, const CtReference& ct = ct_with_slices()) {
-    const auto segmentation = read(seg, ct);
-    return segmentation ? "read" : segmentation.error().text();
-  }
-  TemporaryFolder folder_;
-};
-
-/// Voxel indices (z in mm from the first slice) of a segment, in any volume.
-std::vector<std::array<double, 3>> voxels_of(const Segmentation& segmentation, std::size_t segment) {
-  std::vector<std::array<double, 3>> voxels;
-  for (const SegmentVolume& volume : segmentation.volumes)
-    for (std::size_t n = 0; n < volume.labels.voxels.size(); ++n) {
-      const std::uint8_t value = volume.labels.voxels[n];
-      if (value == 0 || volume.segments.at(value - 1U) != segment) continue;
-      const Vec3 p_P = volume.labels.geometry.centre_mm(volume.labels.geometry.index_of(n)) - at_z(0);
-      voxels.push_back({p_P.x(), p_P.y(), p_P.z()});
-    }
-  return voxels;
-}
-
-std::size_t count_at(const std::vector<std::array<double, 3>>& voxels, double z_mm) {
-  return static_cast<std::size_t>(
-      std::count_if(voxels.begin(), voxels.end(), [&](const auto& v) { return std::abs(v[2] - z_mm) < 1e-6; }));
-}
 
 TEST_F(Seg, FramesInAnyOrderLandOnTheirPlaces) {
   for (const Length length : {Length::kDefined, Length::kUndefined}) {
@@ -198,54 +146,6 @@ TEST_F(Seg, OtherThanWantedSegmentsAreLeftOut) {
   EXPECT_EQ(voxels_of(*read_seg, 0).size(), 2U * 6);
 }
 
-TEST_F(Seg, WithoutSlicesOfTheCtStepsComeFromTheFile) {
-  TestSeg seg;
-  seg.segments = {segment_item(1, "Liver")};
-  seg.frames = {{1, at_z(0), block(0, 4)}, {1, at_z(6), block(0, 4)}};
-  const CtReference other_format = ct_with_slices({});
-  // Two frames 6 mm apart without a step are two thick planes; with a step of 2 mm, two planes between them are empty.
-  EXPECT_EQ(read(seg, other_format)->volumes[0].labels.geometry.size[2], 2);
-  seg.slice_step_mm = 2.0;
-  const auto stepped = read(seg, other_format);
-  ASSERT_TRUE(stepped) << stepped.error().text();
-  EXPECT_EQ(stepped->volumes[0].labels.geometry.size[2], 4);
-  EXPECT_EQ(count_at(voxels_of(*stepped, 0), 2), 0U);
-  // A single frame is as thick as a slice of the CT.
-  seg.slice_step_mm = 0.0;
-  seg.frames.resize(1);
-  EXPECT_EQ(read(seg, other_format)->volumes[0].labels.geometry.spacing_mm.z(), 2.0);
-}
-
-TEST_F(Seg, OnUnevenSlicesKeepsEachSlicesReach) {
-  // Slices at 0, 2, 4, 8, 12: the plane at 8 reaches from 6 to 10.
-  TestSeg seg;
-  seg.segments = {segment_item(1, "Liver")};
-  seg.frames = {{1, at_z(2), block(0, 0)}, {1, at_z(8), block(0, 0)}};
-  const auto read_seg = read(seg, ct_with_slices({0, 2, 4, 8, 12}));
-  ASSERT_TRUE(read_seg) << read_seg.error().text();
-  EXPECT_EQ(read_seg->warnings.size(), 1U);
-  const auto voxels = voxels_of(*read_seg, 0);
-  EXPECT_EQ(count_at(voxels, 2), 6U);
-  EXPECT_EQ(count_at(voxels, 4), 0U);
-  EXPECT_EQ(count_at(voxels, 6), 6U);
-  EXPECT_EQ(count_at(voxels, 8), 6U);
-}
-
-TEST_F(Seg, ObliqueFramesKeepTheirDirections) {
-  TestSeg seg;
-  seg.R_PV = (Eigen::AngleAxisd(0.4, Vec3::UnitX()) * Eigen::AngleAxisd(0.2, Vec3::UnitZ())).toRotationMatrix();
-  seg.segments = {segment_item(1, "Liver")};
-  for (const double along_mm : {3.0, 0.0, 1.5})
-    seg.frames.push_back({1, Vec3(1, 2, 3) + along_mm * seg.R_PV.col(2), block(0, 4)});
-  const auto read_seg = read(seg);
-  ASSERT_TRUE(read_seg) << read_seg.error().text();
-  const volume::GridGeometry& g = read_seg->volumes.at(0).labels.geometry;
-  EXPECT_LT((g.R_PV - seg.R_PV).norm(), 1e-6);
-  EXPECT_LT((g.origin_P - Vec3(1, 2, 3)).norm(), 1e-6);
-  EXPECT_NEAR(g.spacing_mm.z(), 1.5, 1e-6);
-  EXPECT_EQ(g.size[2], 3);
-}
-
 TEST_F(Seg, NamesComeFromLabelTypeAndRegion) {
   TestSeg seg;
   const std::string left = trocar::testing::dicom_code(0x0062, 0x0011, "7771000", "SCT", "Left");
@@ -314,21 +214,6 @@ TEST_F(Seg, OfASiblingSeriesIsReadOnRequest) {
   seg.frame_of_reference = "1.2.9";
   ct.frame_of_reference.clear();
   EXPECT_NE(error_of(seg, ct).find("another series"), std::string::npos) << error_of(seg, ct);
-}
-
-TEST_F(Seg, OfASiblingWithThinSlicesKeepsItsPlaces) {
-  // Slices of 0.5 mm beside those of the CT, 2 mm apart: the volume is 5 x 6 x 4 mm.
-  TestSeg seg;
-  seg.series_uid = "1.2.4";
-  seg.segments = {segment_item(1, "Liver")};
-  for (int n = 0; n < 8; ++n) seg.frames.push_back({1, at_z(2.25 + 0.5 * n), block(0, 4)});
-  CtReference ct = ct_with_slices();
-  ct.accepts_sibling = true;
-  const auto sibling = read(seg, ct);
-  ASSERT_TRUE(sibling) << sibling.error().text();
-  const auto voxels = voxels_of(*sibling, 0);
-  EXPECT_DOUBLE_EQ(static_cast<double>(voxels.size()) * sibling->volumes[0].labels.geometry.voxel_volume_mm3(), 120.0);
-  for (const auto& voxel : voxels) EXPECT_TRUE(voxel[2] > 2.2 && voxel[2] < 5.8) << voxel[2];
 }
 
 TEST_F(Seg, ThatCannotBeReadIsRefusedByItsDefect) {
