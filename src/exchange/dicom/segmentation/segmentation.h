@@ -74,8 +74,9 @@ using FrameDecoder = std::function<Status(const CompressedFrame& frame, std::spa
 /// SEG: frames in any order and of any orientation, missing frames are empty planes (warning within a structure),
 /// planes of a thicker scan fill their thickness, overlapping segments come in several volumes. A fractional pixel is
 /// inside from half of the maximum on. The volumes are in the places of the frames, not on the CT's grid. RT structure
-/// set: closed planar contours, on the CT's grid if they are parallel to one of its planes. Contours of one plane count
-/// by even-odd: a contour inside another is a hole. A contour reaches half-way to its neighbours, wherever their planes
+/// set: closed planar contours, on the CT's grid if they are parallel to one of its planes. Contours of one plane: one
+/// inside another is a hole, those that cross are united (by even-odd if they are CLOSEDPLANAR_XOR), the same outline
+/// counts once. A contour reaches half-way to its neighbours, wherever their planes
 /// lie; wider gaps between separate parts stay empty (warning).
 ///
 /// Errors: another series or frame of reference than the CT's, where both are known (CtReference::accepts_sibling);

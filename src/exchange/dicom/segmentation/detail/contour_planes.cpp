@@ -8,8 +8,6 @@ namespace trocar::dicom::detail {
 namespace {
 
 constexpr double kContoursOfOnePlane_mm = 0.05;  ///< Contours of one plane.
-constexpr double kSamePlace_mm = 0.005;          ///< Rounding of the points of one plane.
-constexpr double kSameOutline = 0.7;             ///< Common part of two boxes, of both together.
 constexpr double kClosedGap = 2.1;               ///< Usual distances: one plane without a contour is filled.
 constexpr double kClosedJitter = 2.5;            ///< Of the jitter, that a gap may exceed this by.
 constexpr double kMuchJitter = 0.25;             ///< Of the usual distance: then planes are out of place by up to
@@ -55,52 +53,45 @@ double rounded_to_steps(double distance) {
   return std::abs(distance - steps) <= kNextToAStep ? steps : distance;
 }
 
-double area_of(const Eigen::AlignedBox2d& box) {
+double box_area(const Eigen::AlignedBox2d& box) {
   return box.sizes().prod();
 }
 
-bool is_repeated(const FlatContour& contour, const std::vector<ContourGroup>& groups) {
-  return std::any_of(groups.begin(), groups.end(), [&](const ContourGroup& group) {
-    return std::any_of(group.contours.begin(), group.contours.end(),
-                       [&](const FlatContour* other) { return contour.points == other->points; });
-  });
-}
+/// Contours of one plane whose boxes overlap.
+struct Heap {
+  std::vector<const FlatContour*> contours;
+  Eigen::AlignedBox2d box;
+};
 
-/// True for an outline that was drawn again beside its plane: it is none of the holes.
-bool is_drawn_again(const FlatContour& contour, const ContourGroup& group, double step_mm) {
-  if (std::abs(contour.w - group.w) <= kSamePlace_mm / step_mm) return false;
-  return area_of(contour.box.intersection(group.box)) > kSameOutline * area_of(contour.box.merged(group.box));
-}
-
-/// Adds a contour to the groups of its plane; it may join several of them.
-void add_to_plane(const FlatContour& contour, double step_mm, std::vector<ContourGroup>& plane) {
-  ContourGroup joined{{&contour}, contour.box, contour.w, contour.w, contour.w};
-  std::erase_if(plane, [&](ContourGroup& group) {
-    if (!group.box.intersects(joined.box) || is_drawn_again(contour, group, step_mm)) return false;
-    joined.contours.insert(joined.contours.end(), group.contours.begin(), group.contours.end());
-    joined.box.extend(group.box);
-    joined.w = group.w;
+/// Adds a contour to the heaps of its plane; it may join several of them.
+void add_to_plane(const FlatContour& contour, std::vector<Heap>& plane) {
+  Heap joined{{&contour}, contour.box};
+  std::erase_if(plane, [&](Heap& heap) {
+    if (!heap.box.intersects(joined.box)) return false;
+    joined.contours.insert(joined.contours.begin(), heap.contours.begin(), heap.contours.end());
+    joined.box.extend(heap.box);
     return true;
   });
   plane.push_back(std::move(joined));
 }
 
-std::vector<ContourGroup> group_by_plane(const std::vector<FlatContour>& contours, double step_mm,
-                                         std::size_t& repeated) {
+std::vector<ContourGroup> group_by_plane(const std::vector<FlatContour>& contours, const ContourGrid& grid,
+                                         bool is_exclusive_or) {
+  const Vec3& step_mm = grid.geometry.spacing_mm;
+  const Eigen::Vector2d pixel_mm(step_mm[(grid.axis + 1) % 3], step_mm[(grid.axis + 2) % 3]);
   std::vector<const FlatContour*> ordered;
   for (const FlatContour& contour : contours) ordered.push_back(&contour);
   std::stable_sort(ordered.begin(), ordered.end(), [](const auto* a, const auto* b) { return a->w < b->w; });
   std::vector<ContourGroup> groups;
   for (std::size_t begin = 0; begin < ordered.size();) {
     const double w = ordered[begin]->w;
-    std::vector<ContourGroup> plane;
-    for (; begin < ordered.size() && ordered[begin]->w - w <= kContoursOfOnePlane_mm / step_mm; ++begin) {
-      if (is_repeated(*ordered[begin], plane))
-        ++repeated;
-      else
-        add_to_plane(*ordered[begin], step_mm, plane);
+    std::vector<Heap> plane;
+    for (; begin < ordered.size() && ordered[begin]->w - w <= kContoursOfOnePlane_mm / step_mm[grid.axis]; ++begin)
+      add_to_plane(*ordered[begin], plane);
+    for (const Heap& heap : plane) {
+      const double at = heap.contours.front()->w;
+      groups.push_back({combine_outlines(heap.contours, pixel_mm, is_exclusive_or), heap.box, at, at, at});
     }
-    std::move(plane.begin(), plane.end(), std::back_inserter(groups));
   }
   std::stable_sort(groups.begin(), groups.end(), [](const auto& a, const auto& b) { return a.w < b.w; });
   return groups;
@@ -145,6 +136,16 @@ std::vector<double> gaps_above(const std::vector<ContourGroup>& groups, const Ne
   return gaps;
 }
 
+void add_outlines(const CombinedOutlines& more, CombinedOutlines& outlines) {
+  outlines.contours.insert(outlines.contours.end(), more.contours.begin(), more.contours.end());
+  outlines.united.insert(outlines.united.end(), more.united.begin(), more.united.end());
+  outlines.repeated += more.repeated;
+  outlines.crossing += more.crossing;
+  outlines.crossing_mm2 += more.crossing_mm2;
+  outlines.doubtful += more.doubtful;
+  outlines.doubtful_mm2 += more.doubtful_mm2;
+}
+
 /// A small outline between two much larger ones, close to one of them, is a hole whose plane is rounded or shifted
 /// otherwise than that of its outline.
 void join_holes(std::vector<ContourGroup>& groups, double step_mm) {
@@ -157,13 +158,13 @@ void join_holes(std::vector<ContourGroup>& groups, double step_mm) {
   for (std::size_t n = 0; n < groups.size(); ++n) {
     const ContourGroup& hole = groups[n];
     const auto is_outline = [&](const ContourGroup& other) {
-      return other.box.contains(hole.box) && area_of(hole.box) < kHoleArea * area_of(other.box);
+      return other.box.contains(hole.box) && box_area(hole.box) < kHoleArea * box_area(other.box);
     };
     const auto below = next_group(groups, n, -1, is_outline), above = next_group(groups, n, 1, is_outline);
     if (!below || !above) continue;
     const std::size_t closer = hole.w - groups[*below].w <= groups[*above].w - hole.w ? *below : *above;
     if (is_joined[closer] || std::abs(groups[closer].w - hole.w) > kHoleDistance * usual) continue;
-    groups[closer].contours.insert(groups[closer].contours.end(), hole.contours.begin(), hole.contours.end());
+    add_outlines(hole.outlines, groups[closer].outlines);
     is_joined[n] = true;
   }
   std::size_t n = 0;
@@ -269,9 +270,11 @@ std::vector<FlatContour> flatten(const std::vector<Contour>& contours, const Con
   return flat;
 }
 
-GroupedContours group_contours(const std::vector<FlatContour>& contours, double step_mm) {
+GroupedContours group_contours(const std::vector<FlatContour>& contours, const ContourGrid& grid,
+                               bool is_exclusive_or) {
+  const double step_mm = grid.geometry.spacing_mm[grid.axis];
   GroupedContours result;
-  result.groups = group_by_plane(contours, step_mm, result.repeated);
+  result.groups = group_by_plane(contours, grid, is_exclusive_or);
   join_holes(result.groups, step_mm);
   const Neighbours neighbours = find_neighbours(result.groups);
   const Spread spread = spread_of(gaps_above(result.groups, neighbours), step_mm).value_or(Spread{1.0, 0.0, 1.0});

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "dicom/segmentation/detail/contour_overlaps.h"
 #include "dicom/segmentation/detail/contours.h"
 #include "volume/grid.h"
 
@@ -15,17 +16,12 @@ struct ContourGrid {
   int axis = 2;
 };
 
-/// A contour in indices of a grid: u and v in the plane, w along the axis.
-struct FlatContour {
-  std::vector<Eigen::Vector2d> points;
-  double w = 0.0;
-  Eigen::AlignedBox2d box;
-};
+/// Contours in indices of the grid.
 std::vector<FlatContour> flatten(const std::vector<Contour>& contours, const ContourGrid& grid);
 
 /// Contours of one plane whose boxes overlap: an outline with its holes. Fills [low, high) along the axis.
 struct ContourGroup {
-  std::vector<const FlatContour*> contours;
+  CombinedOutlines outlines;
   Eigen::AlignedBox2d box;
   double w = 0.0;
   double low = 0.0;
@@ -44,15 +40,14 @@ struct PlaneDistances {
 struct GroupedContours {
   std::vector<ContourGroup> groups;  ///< In order of w.
   PlaneDistances distances;
-  std::size_t repeated = 0;  ///< Contours that repeat another one of their plane, left out.
 };
 
 /// Gives each outline the part of the axis that it fills. Planes lie where the file puts them: beside the slices of the
 /// CT, at uneven distances, on every other slice. An outline reaches half-way to the next one above and below that
 /// overlaps it; where there is none, or beyond a gap between separate parts, half the usual distance. A gap is one if
 /// it is wider than two usual distances and the jitter of the planes, and much wider than the distances beside it.
-/// `step_mm` is the step of the grid.
-GroupedContours group_contours(const std::vector<FlatContour>& contours, double step_mm);
+/// `is_exclusive_or` as for combine_outlines.
+GroupedContours group_contours(const std::vector<FlatContour>& contours, const ContourGrid& grid, bool is_exclusive_or);
 
 /// The usual distance of planes at these places (mm, in any order), by the same rule; `fallback_mm` for one plane.
 double usual_distance(std::vector<double> places_mm, double fallback_mm);

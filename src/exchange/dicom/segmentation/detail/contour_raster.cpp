@@ -61,6 +61,26 @@ class PlaneFill {
       add_edge(contour.points[n], contour.points[(n + 1) % contour.points.size()]);
   }
 
+  /// The pixels inside at least one of the contours, as one outline.
+  void add_union(const std::vector<const FlatContour*>& contours) {
+    std::vector<std::uint8_t> inside(static_cast<std::size_t>(columns_ * rows_), 0);
+    for (const FlatContour* contour : contours) {
+      PlaneFill one(first_u_, first_u_ + columns_, first_v_, first_v_ + rows_);
+      one.add(*contour);
+      one.for_inside([&](std::int64_t u, std::int64_t v) {
+        inside[static_cast<std::size_t>((v - first_v_) * columns_ + u - first_u_)] = 1;
+      });
+    }
+    for (std::int64_t row = 0; row < rows_; ++row) {
+      std::uint8_t before = 0;
+      for (std::int64_t column = 0; column <= columns_; ++column) {
+        const std::uint8_t here = column < columns_ ? inside[static_cast<std::size_t>(row * columns_ + column)] : 0;
+        turns_[static_cast<std::size_t>(row * (columns_ + 1) + column)] ^= here ^ before;
+        before = here;
+      }
+    }
+  }
+
   /// Calls set(u, v) for every pixel inside.
   template <class Set>
   void for_inside(const Set& set) const {
@@ -113,7 +133,8 @@ std::uint64_t fill_group(const ContourGroup& group, const ContourGrid& grid, std
   if (first >= last) return 0;
   PlaneFill fill(first_pixel(group.box.min().x(), size[u]), first_pixel(group.box.max().x() + 1.0, size[u]),
                  first_pixel(group.box.min().y(), size[v]), first_pixel(group.box.max().y() + 1.0, size[v]));
-  for (const FlatContour* contour : group.contours) fill.add(*contour);
+  for (const FlatContour* contour : group.outlines.contours) fill.add(*contour);
+  for (const auto& contours : group.outlines.united) fill.add_union(contours);
   const std::int64_t first_inside = std::max<std::int64_t>(first, 0), last_inside = std::min(last, size[w]);
   std::uint64_t outside = 0;
   fill.for_inside([&](std::int64_t column, std::int64_t row) {
@@ -195,11 +216,18 @@ RasterResult rasterise(const ContourStructure& structure, const ContourGrid& gri
   result.mask.assign(grid.geometry.voxel_count(), 0);
   if (structure.contours.empty()) return result;
   const std::vector<FlatContour> flat = flatten(structure.contours, grid);
-  const GroupedContours grouped = group_contours(flat, grid.geometry.spacing_mm[grid.axis]);
-  result.repeated = grouped.repeated;
+  const GroupedContours grouped = group_contours(flat, grid, structure.is_exclusive_or);
   result.distances = grouped.distances;
   std::uint64_t outside = 0;
-  for (const ContourGroup& group : grouped.groups) outside += fill_group(group, grid, result.mask);
+  for (const ContourGroup& group : grouped.groups) {
+    outside += fill_group(group, grid, result.mask);
+    const double ml_per_mm2 = (group.high - group.low) * grid.geometry.spacing_mm[grid.axis] / 1000.0;
+    result.repeated += group.outlines.repeated;
+    result.crossing += group.outlines.crossing;
+    result.crossing_ml += group.outlines.crossing_mm2 * ml_per_mm2;
+    result.doubtful += group.outlines.doubtful;
+    result.doubtful_ml += group.outlines.doubtful_mm2 * ml_per_mm2;
+  }
   result.outside_ml = static_cast<double>(outside) * grid.geometry.voxel_volume_mm3() / 1000.0;
   return result;
 }

@@ -20,9 +20,13 @@ Result<ContourGrid> choose_grid(const ContourStructure& structure, const volume:
 /// The voxels inside the contours; one byte a voxel of the grid.
 struct RasterResult {
   std::vector<std::uint8_t> mask;
-  std::size_t repeated = 0;  ///< Contours that repeat another one, left out: twice inside would be outside.
   PlaneDistances distances;
-  double outside_ml = 0.0;  ///< Inside the contours, but beyond the grid.
+  std::size_t repeated = 0;  ///< Contours that repeat another one, left out: twice inside would be outside.
+  std::size_t crossing = 0;  ///< Pairs of contours of one plane that cross,
+  double crossing_ml = 0.0;  ///< and what lies in both: inside, but for a structure of CLOSEDPLANAR_XOR.
+  std::size_t doubtful = 0;  ///< Holes that may be none (OutlinePair),
+  double doubtful_ml = 0.0;  ///< and what lies in them.
+  double outside_ml = 0.0;   ///< Inside the contours, but beyond the grid.
 };
 RasterResult rasterise(const ContourStructure& structure, const ContourGrid& grid);
 

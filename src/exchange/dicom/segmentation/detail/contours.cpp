@@ -96,6 +96,7 @@ Status add_contour(const DicomItem& item, ContourStructure& structure, OpenConto
              fmt::format("{}, but its ends are {:.0f} mm apart", type, (contour.back() - contour.front()).norm()));
   else
     structure.contours.push_back(std::move(contour));
+  structure.is_exclusive_or = structure.is_exclusive_or || type != "CLOSED_PLANAR";
   return {};
 }
 

@@ -17,7 +17,8 @@ using Contour = std::vector<Vec3>;
 struct ContourStructure {
   Segment segment;
   std::vector<Contour> contours;
-  std::size_t degenerate = 0;  ///< Contours of one or two points, which enclose nothing.
+  std::size_t degenerate = 0;    ///< Contours of one or two points, which enclose nothing.
+  bool is_exclusive_or = false;  ///< CLOSEDPLANAR_XOR: what two contours of a plane have in common is outside.
 };
 
 /// The wanted structures, in the order of their names in the file. Errors (at `where`): no structures, damaged points;

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kSparsePlanes = 3.5;    ///< Steps of the grid: more were drawn on by hand only here and there.
 constexpr double kMostOutside_ml = 1.0;  ///< Of a structure beyond the CT without a warning.
+constexpr double kMostCommon_ml = 0.05;  ///< In two contours of a plane without a warning.
 
 std::string counted(std::size_t count, std::string_view noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
@@ -34,13 +35,30 @@ void warn_of_distances(const std::string& name, const PlaneDistances& distances,
                     name, distances.usual * step_mm, step_mm));
 }
 
+/// Contours of one plane whose meaning is not plain.
+void warn_of_overlaps(const ContourStructure& structure, const RasterResult& raster,
+                      std::vector<std::string>& warnings) {
+  const std::string& name = structure.segment.name;
+  if (raster.repeated > 0)
+    warnings.push_back(fmt::format("\"{}\": {} left out, the same as another one of the plane", name,
+                                   counted(raster.repeated, "contour")));
+  if (raster.crossing_ml > kMostCommon_ml)
+    warnings.push_back(fmt::format("\"{}\": {} of contours cross in their plane: the {:.1f} ml in both are {}", name,
+                                   counted(raster.crossing, "pair"), raster.crossing_ml,
+                                   structure.is_exclusive_or ? "outside (CLOSEDPLANAR_XOR)" : "inside"));
+  if (raster.doubtful_ml > kMostCommon_ml)
+    warnings.push_back(
+        fmt::format("\"{}\": {} of {:.1f} ml left empty: contours inside others of their plane, but "
+                    "across them or leaving only a thin ring; drawn twice?",
+                    name, counted(raster.doubtful, "hole"), raster.doubtful_ml));
+}
+
 void warn_of(const ContourStructure& structure, const RasterResult& raster, const ContourGrid& grid, bool is_on_ct,
              std::vector<std::string>& warnings) {
   const std::string& name = structure.segment.name;
   if (structure.degenerate > 0)
     warnings.push_back(fmt::format("\"{}\": {} contours of one or two points left out", name, structure.degenerate));
-  if (raster.repeated > 0)
-    warnings.push_back(fmt::format("\"{}\": {} contours that repeat another one left out", name, raster.repeated));
+  warn_of_overlaps(structure, raster, warnings);
   warn_of_distances(name, raster.distances, grid.geometry.spacing_mm[grid.axis], is_on_ct, warnings);
   if (raster.outside_ml > kMostOutside_ml)
     warnings.push_back(fmt::format("\"{}\": {:.0f} ml lie beyond the CT and are left out", name, raster.outside_ml));

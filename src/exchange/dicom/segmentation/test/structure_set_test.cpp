@@ -164,6 +164,24 @@ TEST_F(StructureSet, RepeatedAndDegenerateContoursAreLeftOut) {
   EXPECT_EQ(read_set->warnings.size(), 2U);
 }
 
+TEST_F(StructureSet, OverlappingContoursAreTold) {
+  const CtReference ct = turned_ct();
+  const auto warnings_of = [&](const char* type) {
+    const auto parts =
+        read({{"Liver", {{type, rectangle(ct, 0, 20, 0, 20, 2)}, {type, rectangle(ct, 10, 30, 0, 20, 2)}}}});
+    return parts ? parts->warnings : std::vector<std::string>{parts.error().text()};
+  };
+  // 10 x 20 x 3 mm.
+  EXPECT_EQ(
+      warnings_of(kClosed),
+      (std::vector<std::string>{"\"Liver\": 1 pair of contours cross in their plane: the 0.6 ml in both are inside"}));
+  EXPECT_NE(warnings_of("CLOSEDPLANAR_XOR").at(0).find("0.6 ml in both are outside"), std::string::npos);
+  const auto ring =
+      read({{"Liver", {{kClosed, rectangle(ct, 0, 30, 0, 30, 2)}, {kClosed, rectangle(ct, 1, 29, 1, 29, 2)}}}});
+  ASSERT_EQ(ring->warnings.size(), 1U);
+  EXPECT_NE(ring->warnings[0].find("1 hole of 2."), std::string::npos) << ring->warnings[0];
+}
+
 TEST_F(StructureSet, ContoursInAnotherPlaneThanTheSlicesAreRead) {
   // On an oblique CT: contours in its slices, in its sagittal planes, and in no plane of it.
   const Mat3 R = (Eigen::AngleAxisd(0.3, Vec3::UnitX()) * Eigen::AngleAxisd(0.5, Vec3::UnitZ())).toRotationMatrix();
