@@ -80,7 +80,8 @@ using FrameDecoder = std::function<Status(const CompressedFrame& frame, std::spa
 /// lie; wider gaps between separate parts stay empty (warning).
 ///
 /// Errors: another series or frame of reference than the CT's, where both are known (CtReference::accepts_sibling);
-/// open contours, not planar ones; frames without a place or of a segment that is not defined, such numbers in a label
+/// open contours, not planar ones, numbers that are not those of one structure each, a structure in another frame of
+/// reference; frames without a place or of a segment that is not defined, such numbers in a label
 /// map; a structure with as many empty planes between as drawn ones; an unknown kind of pixels; a damaged file; not
 /// enough memory.
 Result<Segmentation> read_segmentation(const std::filesystem::path& path, const CtReference& ct,

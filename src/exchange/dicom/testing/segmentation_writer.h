@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -105,6 +106,9 @@ inline std::string seg_elements(const TestSeg& seg, bool with_pixels = true) {
 struct TestStructure {
   std::string name;
   std::vector<std::pair<std::string, std::vector<Vec3>>> contours;
+  std::optional<std::string> number{};           ///< ROINumber, if not its place in the list, from 1.
+  std::optional<std::string> contours_number{};  ///< ReferencedROINumber, if not the same.
+  std::string frame_of_reference{};              ///< Left out if empty.
 };
 
 inline std::string structure_set_elements(const std::vector<TestStructure>& structures,
@@ -114,8 +118,10 @@ inline std::string structure_set_elements(const std::vector<TestStructure>& stru
   std::vector<std::string> names;
   std::vector<std::string> lists;
   for (std::size_t n = 0; n < structures.size(); ++n) {
-    const std::string number = std::to_string(n + 1);
+    const std::string number = structures[n].number.value_or(std::to_string(n + 1));
+    const std::string& frame = structures[n].frame_of_reference;
     names.push_back(dicom_element(0x3006, 0x0022, "IS", number) +
+                    (frame.empty() ? std::string() : dicom_element(0x3006, 0x0024, "UI", frame)) +
                     dicom_element(0x3006, 0x0026, "LO", structures[n].name));
     std::vector<std::string> contours;
     for (const auto& [type, points] : structures[n].contours) {
@@ -123,7 +129,8 @@ inline std::string structure_set_elements(const std::vector<TestStructure>& stru
       for (const Vec3& point : points) numbers.insert(numbers.end(), {point.x(), point.y(), point.z()});
       contours.push_back(dicom_element(0x3006, 0x0042, "CS", type) + dicom_decimals(0x3006, 0x0050, numbers));
     }
-    lists.push_back(dicom_sequence(0x3006, 0x0040, contours, length) + dicom_element(0x3006, 0x0084, "IS", number));
+    lists.push_back(dicom_sequence(0x3006, 0x0040, contours, length) +
+                    dicom_element(0x3006, 0x0084, "IS", structures[n].contours_number.value_or(number)));
   }
   const std::string series =
       series_uid.empty() ? std::string()

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
+#include <set>
 
 #include "core/parse_number.h"
 #include "dicom/stack/slice_stack.h"
@@ -15,6 +17,7 @@ namespace {
 
 constexpr std::uint32_t kStructures = tag(0x3006, 0x0020);
 constexpr std::uint32_t kStructureNumber = tag(0x3006, 0x0022);
+constexpr std::uint32_t kStructureFrame = tag(0x3006, 0x0024);
 constexpr std::uint32_t kStructureName = tag(0x3006, 0x0026);
 constexpr std::uint32_t kContourLists = tag(0x3006, 0x0039);
 constexpr std::uint32_t kContours = tag(0x3006, 0x0040);
@@ -28,9 +31,8 @@ constexpr double kOpenEnds = 10.0;  ///< Of the longest other edge.
 constexpr std::size_t kMostNamed = 8;
 constexpr const char* kExportStructureSetAgain = "export the structure set again";
 
-int integer_of(const DicomItem& item, std::uint32_t tag) {
-  const auto number = parse_number<int>(item.text(tag));
-  return number.value_or(-1);
+std::optional<int> integer_of(const DicomItem& item, std::uint32_t tag) {
+  return parse_number<int>(item.text(tag));
 }
 
 bool has_open_ends(const Contour& contour) {
@@ -59,18 +61,40 @@ struct OpenContours {
   }
 };
 
-Result<std::vector<ContourStructure>> read_names(const DicomItem& root, const std::string& where,
-                                                 const std::function<bool(const Segment&)>& is_wanted) {
+/// All structures, wanted or not, by their numbers. What two of one number, or one without, own cannot be told.
+Result<std::vector<ContourStructure>> read_names(const DicomItem& root, const std::string& where) {
   const std::string character_set(root.text(kCharacterSet));
   const auto items = root.items(kStructures);
   if (!items) return fail(items.error().what, where, items.error().advice);
   if (items->empty()) return fail("the structure set has no structure", where, kExportStructureSetAgain);
   std::vector<ContourStructure> structures;
+  std::map<int, std::string> names;
   for (const DicomItem& item : *items) {
-    Segment segment{integer_of(item, kStructureNumber), to_utf8(item.text(kStructureName), character_set)};
-    if (is_wanted(segment)) structures.push_back({std::move(segment), {}, 0});
+    std::string name = to_utf8(item.text(kStructureName), character_set);
+    const std::optional<int> number = integer_of(item, kStructureNumber);
+    if (!number)
+      return fail(fmt::format("the structure \"{}\" has no number (ROINumber \"{}\")", name,
+                              to_utf8(item.text(kStructureNumber), "none")),
+                  where, kExportStructureSetAgain);
+    if (const auto [other, is_new] = names.emplace(*number, name); !is_new)
+      return fail(fmt::format("the structures \"{}\" and \"{}\" have the same number {} (ROINumber)", other->second,
+                              name, *number),
+                  where, kExportStructureSetAgain);
+    ContourStructure& structure = structures.emplace_back();
+    structure.segment = {*number, std::move(name)};
+    structure.frame_of_reference = to_utf8(item.text(kStructureFrame), "none");
   }
   return structures;
+}
+
+/// Contours that belong to no structure.
+tl::unexpected<Error> unknown_number(const DicomItem& list, std::size_t contours, const std::string& where) {
+  const std::optional<int> number = integer_of(list, kReferencedStructure);
+  const std::string of =
+      number ? fmt::format("of the structure number {}, which the structure set does not define", *number)
+             : std::string("without the number of a structure (ReferencedROINumber)");
+  return fail(fmt::format("{} {}", contours == 1 ? "1 contour" : fmt::format("{} contours", contours), of), where,
+              kExportStructureSetAgain);
 }
 
 /// Adds one contour to its structure.
@@ -105,19 +129,28 @@ Status add_contour(const DicomItem& item, ContourStructure& structure, OpenConto
 Result<std::vector<ContourStructure>> read_contours(const DicomFile& file, const std::string& where,
                                                     const std::function<bool(const Segment&)>& is_wanted) {
   const DicomItem root = file.root();
-  TROCAR_TRY(std::vector<ContourStructure> structures, read_names(root, where, is_wanted));
+  TROCAR_TRY(std::vector<ContourStructure> structures, read_names(root, where));
   std::map<int, ContourStructure*> by_number;
   for (ContourStructure& structure : structures) by_number[structure.segment.number] = &structure;
+  std::set<int> wanted;
+  for (const ContourStructure& structure : structures)
+    if (is_wanted(structure.segment)) wanted.insert(structure.segment.number);
   const auto lists = root.items(kContourLists);
   if (!lists) return fail(lists.error().what, where, lists.error().advice);
   OpenContours open;
   for (const DicomItem& list : *lists) {
-    const auto found = by_number.find(integer_of(list, kReferencedStructure));
-    if (found == by_number.end()) continue;
     const auto contours = list.items(kContours);
     if (!contours) return fail(contours.error().what, where, contours.error().advice);
+    const std::optional<int> number = integer_of(list, kReferencedStructure);
+    const auto found = number ? by_number.find(*number) : by_number.end();
+    if (found == by_number.end()) {
+      if (contours->empty()) continue;
+      return unknown_number(list, contours->size(), where);
+    }
+    if (!wanted.contains(*number)) continue;
     for (const DicomItem& contour : *contours) TROCAR_TRY_STATUS(add_contour(contour, *found->second, open, where));
   }
+  std::erase_if(structures, [&](const auto& structure) { return !wanted.contains(structure.segment.number); });
   TROCAR_TRY_STATUS(open.status(where));
   return structures;
 }

@@ -17,11 +17,13 @@ using Contour = std::vector<Vec3>;
 struct ContourStructure {
   Segment segment;
   std::vector<Contour> contours;
-  std::size_t degenerate = 0;    ///< Contours of one or two points, which enclose nothing.
-  bool is_exclusive_or = false;  ///< CLOSEDPLANAR_XOR: what two contours of a plane have in common is outside.
+  std::size_t degenerate = 0;        ///< Contours of one or two points, which enclose nothing.
+  std::string frame_of_reference{};  ///< UID; empty if the file tells none.
+  bool is_exclusive_or = false;      ///< CLOSEDPLANAR_XOR: what two contours of a plane have in common is outside.
 };
 
-/// The wanted structures, in the order of their names in the file. Errors (at `where`): no structures, damaged points;
+/// The wanted structures, in the order of their names in the file. Errors (at `where`): no structures, structures
+/// without a number or with the same one, contours of a number that no structure has, damaged points;
 /// one line that names all structures with open contours or points: OPEN_PLANAR, OPEN_NONPLANAR, POINT, and contours
 /// whose ends are more than 10 mm and ten times their longest step apart, whatever their type says.
 Result<std::vector<ContourStructure>> read_contours(const DicomFile& file, const std::string& where,

@@ -64,11 +64,34 @@ void warn_of(const ContourStructure& structure, const RasterResult& raster, cons
     warnings.push_back(fmt::format("\"{}\": {:.0f} ml lie beyond the CT and are left out", name, raster.outside_ml));
 }
 
+/// The place of a structure in another frame of reference than the CT's, or than that of the other structures, is
+/// unknown.
+Status check_frames(const std::vector<ContourStructure>& structures, const CtReference& ct, const std::string& where) {
+  std::string expected = ct.frame_of_reference;
+  std::string owner = "the CT";
+  for (const ContourStructure& structure : structures) {
+    const std::string& frame = structure.frame_of_reference;
+    if (frame.empty() || structure.contours.empty()) continue;
+    if (expected.empty()) {
+      expected = frame;
+      owner = fmt::format("\"{}\"", structure.segment.name);
+    } else if (frame != expected) {
+      return fail(fmt::format("\"{}\" (number {}) is in another frame of reference ({}) than {} ({})",
+                              structure.segment.name, structure.segment.number, frame, owner, expected),
+                  where,
+                  "draw it on this CT and export it again, or ignore it with ignore = [\"NAME\"] in a label map "
+                  "(--label-map)");
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<Segmentation> read_structure_set(const DicomFile& file, const std::string& where, const CtReference& ct,
                                         const std::function<bool(const Segment&)>& is_wanted) {
   TROCAR_TRY(const std::vector<ContourStructure> structures, read_contours(file, where, is_wanted));
+  TROCAR_TRY_STATUS(check_frames(structures, ct, where));
   TROCAR_TRY_STATUS(check_memory_for_image(ct.grid.voxel_count(), available_memory_bytes(), where));
   Segmentation result;
   LabelLayers on_ct(ct.grid.size, where);

@@ -260,6 +260,57 @@ TEST_F(StructureSet, OfAnotherSeriesIsRefused) {
   EXPECT_NE(error_with("", "1.2.8").find("another frame of reference"), std::string::npos);
 }
 
+TEST_F(StructureSet, NumbersThatAreNotOneStructuresAreRefused) {
+  const CtReference ct = turned_ct();
+  const std::vector<std::pair<std::string, Points>> square{{kClosed, rectangle(ct, 5, 15, 5, 10, 2)}};
+  EXPECT_EQ(error_of({{"Liver", square, "7"}, {"Spleen", square, "9"}}), "read");
+  EXPECT_NE(error_of({{"Liver", square, "3"}, {"Kidney", square, "4"}, {"Spleen", square, "3"}})
+                .find("\"Liver\" and \"Spleen\" have the same number 3"),
+            std::string::npos);
+  for (const char* number : {"", "one", "99999999999"})
+    EXPECT_NE(error_of({{"Liver", square}, {"Spleen", square, number}}).find("\"Spleen\" has no number"),
+              std::string::npos)
+        << number;
+  EXPECT_NE(
+      error_of({{"Liver", square}, {"Spleen", square, "2", "5"}}).find("1 contour of the structure number 5, which"),
+      std::string::npos);
+  EXPECT_NE(error_of({{"Liver", square}, {"Spleen", square, "2", ""}}).find("1 contour without the number"),
+            std::string::npos);
+  EXPECT_EQ(error_of({{"Liver", square}, {"Spleen", {}, "2", "5"}}), "read");  // a list without contours
+  // Two lists of one structure are one.
+  const auto both = read({{"Liver", square}, {"Spleen", {{kClosed, rectangle(ct, 5, 15, 5, 10, 4)}}, "2", "1"}});
+  ASSERT_TRUE(both) << both.error().text();
+  EXPECT_EQ(voxels_by_plane(*both, 0)[2] + voxels_by_plane(*both, 0)[4], 100U);
+}
+
+TEST_F(StructureSet, AStructureInAnotherFrameOfReferenceIsRefused) {
+  const CtReference ct = turned_ct();
+  const std::vector<std::pair<std::string, Points>> square{{kClosed, rectangle(ct, 5, 15, 5, 10, 2)}};
+  const auto with_frame = [&](const std::string& name, const std::string& frame) {
+    TestStructure structure{name, square};
+    structure.frame_of_reference = frame;
+    return structure;
+  };
+  EXPECT_EQ(error_of({with_frame("Liver", "1.2.9"), with_frame("Spleen", "")}), "read");
+  const std::string error = error_of({with_frame("Liver", "1.2.9"), with_frame("Spleen", "1.2.66")});
+  for (const char* part : {"\"Spleen\" (number 2)", "(1.2.66) than the CT (1.2.9)"})
+    EXPECT_NE(error.find(part), std::string::npos) << error;
+  // Without contours, or not wanted, it does not matter.
+  TestStructure empty = with_frame("Spleen", "1.2.66");
+  empty.contours.clear();
+  EXPECT_EQ(error_of({with_frame("Liver", "1.2.9"), empty}), "read");
+  trocar::testing::write_dicom(folder_ / "rs.dcm", trocar::testing::structure_set_elements(
+                                                       {with_frame("Liver", "1.2.9"), with_frame("Spleen", "1.2.66")}));
+  EXPECT_TRUE(read_segmentation(folder_ / "rs.dcm", ct, [](const Segment& s) { return s.name == "Liver"; }));
+  // On a CT without one, all have the same.
+  CtReference other_format = ct;
+  other_format.frame_of_reference.clear();
+  const auto on_other = read({with_frame("Liver", "1.2.9"), with_frame("Spleen", "1.2.66")}, other_format);
+  ASSERT_FALSE(on_other);
+  EXPECT_NE(on_other.error().text().find("than \"Liver\" (1.2.9)"), std::string::npos) << on_other.error().text();
+  EXPECT_TRUE(read({with_frame("Liver", "1.2.66"), with_frame("Spleen", "1.2.66")}, other_format));
+}
+
 TEST_F(StructureSet, NamesAreUtf8) {
   const CtReference ct = turned_ct();
   const auto read_set = read({{"L\xe9sion", {{kClosed, rectangle(ct, 5, 15, 5, 10, 2)}}}});  // ISO 8859-1
