@@ -59,20 +59,35 @@ bool contains(const std::vector<std::string>& texts, const std::string& text) {
   return std::find(texts.begin(), texts.end(), text) != texts.end();
 }
 
+/// The error for an object of another series: that series may be at hand, be no volume, or be elsewhere.
+tl::unexpected<Error> other_series(const Origin& origin, const CtReference& ct, bool is_same_frame,
+                                   const std::string& where) {
+  std::string series = origin.series.front();
+  std::size_t images = 0;
+  for (const std::string& uid : origin.series)
+    if (const std::size_t count = ct.images_of_series ? ct.images_of_series(uid) : 0; count > images) {
+      images = count;
+      series = uid;
+    }
+  std::string what = fmt::format("was drawn on another series ({}), not on the CT's ({})", series, ct.series_uid);
+  std::string advice = "give that series as the CT (--ct, --series UID)";
+  if (ct.images_of_series && images < 2) {
+    what += images == 0 ? "; that series is not in the folder of the CT"
+                        : "; that series has only one image in the folder of the CT, which is no volume";
+    advice = "give a folder with all images of that series as the CT (--ct)";
+  }
+  advice += is_same_frame ? ", or accept this CT, as both have the same frame of reference, by --sibling-series"
+                          : ", or the segmentation of this CT";
+  return fail(what, where, advice);
+}
+
 /// Compares what both files tell; what one of them lacks is not compared. Returns warnings.
 Result<std::vector<std::string>> check_origin(const Origin& origin, const CtReference& ct, const std::string& where) {
   const bool has_frames = !ct.frame_of_reference.empty() && !origin.frames_of_reference.empty();
   const bool is_same_frame = has_frames && contains(origin.frames_of_reference, ct.frame_of_reference);
   std::vector<std::string> warnings;
   if (!ct.series_uid.empty() && !origin.series.empty() && !contains(origin.series, ct.series_uid)) {
-    if (!is_same_frame || !ct.accepts_sibling)
-      return fail(
-          fmt::format("was drawn on another series ({}), not on the CT's ({})", origin.series.front(), ct.series_uid),
-          where,
-          is_same_frame
-              ? "give that series as the CT (--ct, --series UID), or accept it, as both have the same frame of "
-                "reference, by --sibling-series"
-              : "give that series as the CT (--ct, --series UID), or the segmentation of this one");
+    if (!is_same_frame || !ct.accepts_sibling) return other_series(origin, ct, is_same_frame, where);
     warnings.push_back(
         fmt::format("was drawn on the series {}, not on the CT's ({}): placed by their common frame of "
                     "reference ({})",

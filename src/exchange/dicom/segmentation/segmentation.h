@@ -22,6 +22,8 @@ struct CtReference {
   /// A segmentation of another series of the same scan (another reconstruction) is read, too, with a warning.
   bool accepts_sibling = false;
   std::string patient_id{};  ///< Compared, never displayed; empty if it is not known.
+  /// Number of images of a series in the folder of the CT; empty if it comes from no folder. Called for an error only.
+  std::function<std::size_t(const std::string& series_uid)> images_of_series{};
 };
 
 /// One structure of a segmentation, as its file describes it. Texts are UTF-8.

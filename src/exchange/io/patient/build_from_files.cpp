@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <utility>
 
@@ -10,6 +12,7 @@
 #include "anatomy/plausibility/judge_anatomy.h"
 #include "core/part_of_progress.h"
 #include "core/version.h"
+#include "io/dicom/detail/find_series.h"
 #include "io/image/image_file.h"
 #include "io/patient/label_sources.h"
 
@@ -75,6 +78,20 @@ Status mirror(Mirroring mirroring, volume::CtGrid& ct, std::vector<anatomy::Labe
   return {};
 }
 
+/// Counts the images of a series in a folder; nothing for a single file.
+std::function<std::size_t(const std::string&)> series_counter(const std::filesystem::path& ct) {
+  std::error_code error;
+  if (!std::filesystem::is_directory(ct, error)) return {};
+  return [ct](const std::string& series_uid) -> std::size_t {
+    const auto all = detail::find_series(ct);
+    if (!all) return 0;
+    const auto found = std::find_if(all->begin(), all->end(), [&](const detail::SeriesImages& series) {
+      return series.front().series_uid == series_uid;
+    });
+    return found != all->end() ? found->size() : 0;
+  };
+}
+
 }  // namespace
 
 std::string last_name(const std::filesystem::path& path) {
@@ -93,8 +110,8 @@ Result<anatomy::VirtualPatient> build_from_files(const PatientFiles& files, std:
     return fail(status.error().what, files.ct.string(), status.error().advice);
   TROCAR_TRY_STATUS(check_stop(stop, files));
   report(progress, "reading the labels", 0.2);
-  const dicom::CtReference reference{ct.geometry,   scan.series_uid,      scan.frame_of_reference,
-                                     scan.slices_P, files.sibling_series, scan.patient_id};
+  const dicom::CtReference reference{ct.geometry,          scan.series_uid, scan.frame_of_reference, scan.slices_P,
+                                     files.sibling_series, scan.patient_id, series_counter(files.ct)};
   TROCAR_TRY(auto sources, read_label_sources(files.labels, files.label_map, reference, warnings));
   TROCAR_TRY_STATUS(check_stop(stop, files));
 

@@ -216,6 +216,29 @@ TEST_F(Seg, OfASiblingSeriesIsReadOnRequest) {
   EXPECT_NE(error_of(seg, ct).find("another series"), std::string::npos) << error_of(seg, ct);
 }
 
+TEST_F(Seg, OfASeriesThatIsNoVolumeTellsWhatIsThere) {
+  TestSeg seg;
+  seg.segments = {segment_item(1, "Liver")};
+  seg.frames = {{1, at_z(0), block(0, 4)}};
+  seg.series_uid = "1.2.4";
+  CtReference ct = ct_with_slices();
+  const auto error_with = [&](std::size_t images) {
+    ct.images_of_series = [images](const std::string& uid) { return uid == "1.2.4" ? images : 99; };
+    return error_of(seg, ct);
+  };
+  for (const char* frame : {"1.2.9", "1.2.8"}) {
+    seg.frame_of_reference = frame;
+    EXPECT_NE(error_with(0).find("not in the folder"), std::string::npos) << error_with(0);
+    EXPECT_NE(error_with(1).find("only one image in the folder"), std::string::npos) << error_with(1);
+    EXPECT_EQ(error_with(1).find("--series UID"), std::string::npos) << error_with(1);
+    EXPECT_NE(error_with(2).find("--series UID"), std::string::npos) << error_with(2);
+    EXPECT_EQ(error_with(2).find("in the folder"), std::string::npos) << error_with(2);
+    // The option is named only where it would help.
+    for (const std::size_t images : {0, 1, 2})
+      EXPECT_EQ(error_with(images).find("--sibling-series") != std::string::npos, seg.frame_of_reference == "1.2.9");
+  }
+}
+
 TEST_F(Seg, ThatCannotBeReadIsRefusedByItsDefect) {
   const auto changed = [&](const std::function<void(TestSeg&)>& change) {
     TestSeg seg;

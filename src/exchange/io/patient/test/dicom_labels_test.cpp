@@ -6,6 +6,7 @@
 
 #include "dicom/testing/segmentation_writer.h"
 #include "io/image/image_file.h"
+#include "io/patient/build_from_files.h"
 #include "io/patient/label_sources.h"
 #include "io/test/test_support.h"
 #include "volume/resample.h"
@@ -142,6 +143,31 @@ TEST_F(DicomLabels, SeriesThatTheyReferToIsChosen) {
   const auto scan = read_ct_scan(folder_.path(), "", series_of_labels({folder_ / "label.seg"}));
   ASSERT_TRUE(scan) << scan.error().text();
   EXPECT_EQ(scan->series_uid, "1.2.3");
+}
+
+TEST_F(DicomLabels, SeriesThatTheyReferToIsNoVolume) {
+  const auto error_of = [&](const std::string& series, const fs::path& ct) {
+    TestSeg seg = two_segments("Liver", "Spleen");
+    seg.series_uid = series;
+    testing::write_dicom(folder_ / "label.seg", testing::seg_elements(seg));
+    PatientFiles files;
+    files.ct = ct;
+    files.labels = {folder_ / "label.seg"};
+    std::vector<std::string> warnings;
+    const auto patient = build_from_files(files, warnings);
+    return patient ? "built" : patient.error().text();
+  };
+  std::vector<Vec3> origins_P;
+  for (int n = 0; n < 5; ++n) origins_P.emplace_back(0, 0, 2 * n);
+  testing::write_slices(folder_ / "ct", testing::CtSeries{}, origins_P,
+                        [](const Vec3& p_P) { return p_P.x() < 2.0 ? -1000.0 : 40.0; });
+  testing::CtSeries one;
+  one.series_uid = "1.2.5";
+  testing::write_slices(folder_ / "other", one, {{0, 0, 0}}, [](const Vec3&) { return 40.0; });
+  EXPECT_NE(error_of("1.2.5", folder_.path()).find("only one image in the folder"), std::string::npos)
+      << error_of("1.2.5", folder_.path());
+  EXPECT_NE(error_of("1.2.5", folder_ / "ct").find("not in the folder"), std::string::npos)
+      << error_of("1.2.5", folder_ / "ct");
 }
 
 /// One row of bytes, run-length coded (PS3.5, annex G): each byte as a run of one.
