@@ -110,6 +110,44 @@ std::string with_whole_side(const std::string& name) {
   return rest + side;
 }
 
+/// "left", "right" or nothing.
+std::string_view side_in(const std::string& name) {
+  const std::string plain = structure_name(with_whole_side(name));
+  return plain.find("left") != std::string::npos ? "left" : plain.find("right") != std::string::npos ? "right" : "";
+}
+
+/// The last word if it is a number or a vertebra's: "3" of "Rib 3 left", "l1" of "vertebrae_L1".
+std::string level_in(const std::string& name) {
+  std::string level, word;
+  for (const char letter : structure_name(name) + "_") {
+    if (letter != '_') {
+      word += letter;
+      continue;
+    }
+    const std::string_view digits = std::string_view(word).substr(!word.empty() && !ascii::is_digit(word[0]) ? 1 : 0);
+    if (word != "left" && word != "right")
+      level = !digits.empty() && std::all_of(digits.begin(), digits.end(), ascii::is_digit) ? word : std::string();
+    word.clear();
+  }
+  return level;
+}
+
+/// Words without side, level and plural: "Vertebra" and "vertebrae_L1" are the same.
+std::string kind_of(const std::string& name) {
+  std::string words = words_of(with_whole_side(name));
+  if (const std::string level = level_in(name); !level.empty() && words.ends_with(" " + level))
+    words.resize(words.size() - level.size() - 1);
+  for (const char end : {'s', 'e'})
+    if (words.ends_with(end)) words.pop_back();
+  return words;
+}
+
+/// True for a name of many structures: it leaves the choice to a code of the same tissue.
+bool is_unspecific(const std::string& name) {
+  const std::string kind = kind_of(name);
+  return kind == "bon" || kind == "artery" || kind == "vein" || kind == "muscl";
+}
+
 }  // namespace
 
 Status LabelMap::read_base(const std::string& base, const std::string& where) {
@@ -231,14 +269,36 @@ std::optional<std::string> LabelMap::name_of_code(const std::string& code) const
   return found != by_code_.end() ? std::optional(found->second + structure_name(code.substr(end))) : std::nullopt;
 }
 
-std::string LabelMap::contradiction_in(const DescribedSegment& segment) const {
-  if (segment.codes.empty() || name_of(segment) != segment.name) return {};
-  const auto by_code = name_of_code(segment.codes.front());
+std::optional<std::string> LabelMap::specified_by_code(const DescribedSegment& segment) const {
+  const auto by_code = segment.codes.empty() ? std::nullopt : name_of_code(segment.codes.front());
   const anatomy::KnownStructure* named = structures_.find(segment.name);
   const anatomy::KnownStructure* coded = by_code ? structures_.find(*by_code) : nullptr;
-  if (named == nullptr || coded == nullptr || named->tissue == coded->tissue) return {};
-  return fmt::format("the segment \"{}\" is read by its name ({}), but its code {} is {} ({})", segment.name,
-                     named->tissue, segment.codes.front(), *by_code, coded->tissue);
+  if (named == nullptr || coded == nullptr || named->tissue != coded->tissue) return std::nullopt;
+  const std::string_view side = side_in(segment.name);
+  const std::string level = level_in(segment.name);
+  if ((!side.empty() && side != side_in(*by_code)) || (!level.empty() && level != level_in(*by_code)))
+    return std::nullopt;
+  const bool is_kind = kind_of(segment.name) == kind_of(*by_code);
+  const bool adds = side != side_in(*by_code) || level != level_in(*by_code);
+  return (is_kind && adds) || (!is_kind && is_unspecific(segment.name)) ? by_code : std::nullopt;
+}
+
+std::string LabelMap::contradiction_in(const DescribedSegment& segment) const {
+  if (segment.codes.empty()) return {};
+  for (const std::string& key : {segment.name, std::to_string(segment.number)})
+    if (by_name_.contains(key)) return {};
+  const std::string name = name_of(segment);
+  const auto by_code = name_of_code(segment.codes.front());
+  const anatomy::KnownStructure* named = structures_.find(name);
+  const anatomy::KnownStructure* coded = by_code ? structures_.find(*by_code) : nullptr;
+  if (named == nullptr || coded == nullptr || name == *by_code) return {};
+  if (named->tissue != coded->tissue)
+    return fmt::format("the segment \"{}\" is read by its name ({}), but its code {} is {} ({})", segment.name,
+                       named->tissue, segment.codes.front(), *by_code, coded->tissue);
+  const auto differ = [](std::string_view a, std::string_view b) { return !a.empty() && !b.empty() && a != b; };
+  if (!differ(side_in(name), side_in(*by_code)) && !differ(level_in(name), level_in(*by_code))) return {};
+  return fmt::format("the segment \"{}\" is read by its name, but its code {} is {}", segment.name,
+                     segment.codes.front(), *by_code);
 }
 
 std::string LabelMap::name_of(const DescribedSegment& segment) const {
@@ -251,6 +311,7 @@ std::string LabelMap::name_of(const DescribedSegment& segment) const {
       by_code && is_known(*by_code) && is_known(segment.name) &&
       structures_.find(*by_code)->tissue != structures_.find(segment.name)->tissue)
     return *by_code;
+  if (auto specified = specified_by_code(segment)) return *std::move(specified);
   if (is_known(segment.name) || structures_.is_background(segment.name) || structures_.is_region(segment.name))
     return segment.name;
   if (const std::string name = with_whole_side(segment.name); is_known(name)) return structure_name(name);

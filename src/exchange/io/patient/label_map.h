@@ -54,9 +54,10 @@ class LabelMap {
   /// Structure of a segment: the map's entry for its name or its number, else the first known one of its name (also
   /// with an abbreviated side: "Kidney_L", "Lt Lung"), its type in its region, code and meaning of its type
   /// (structure_codes.toml), those of its region if the type says nothing (tissue, organ); else its name. A name that
-  /// is the meaning of its type leaves the choice to the code: "Left Ventricle" of the heart.
+  /// is the meaning of its type leaves the choice to the code: "Left Ventricle" of the heart. A code adds the side or
+  /// the level that a name lacks ("Kidney", "Vertebra"), and says which "Bone", "Artery", "Vein" or "Muscle" it is.
   std::string name_of(const DescribedSegment& segment) const;
-  /// A warning if a segment's known name and its known code are different tissues; empty otherwise.
+  /// A warning if a segment's known name and its known code are different tissues, sides or levels; empty otherwise.
   std::string contradiction_in(const DescribedSegment& segment) const;
   /// True for a structure of structures.toml.
   bool is_known(const std::string& name) const { return structures_.find(name) != nullptr; }
@@ -69,6 +70,8 @@ class LabelMap {
   Status read_codes(const std::filesystem::path& data_folder);
   /// Structure of a code: "SCT:64033007 left" is kidney_left.
   std::optional<std::string> name_of_code(const std::string& code) const;
+  /// The structure of a code that says more than the name, and nothing else.
+  std::optional<std::string> specified_by_code(const DescribedSegment& segment) const;
   Status read_entry(const std::string& key, std::string name, const std::string& where);
   anatomy::KnownStructures structures_;
   std::string label_map_;  ///< As given to load().

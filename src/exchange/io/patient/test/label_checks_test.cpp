@@ -198,6 +198,38 @@ TEST_F(LabelChecks, TerminologyOf3dSlicerIsUnderstood) {
   EXPECT_EQ(one("Segment_1", terminology("SCT^32457005^Body fluid")), "Segment_1");  // perhaps the ascites
 }
 
+TEST_F(LabelChecks, CodesAddSideAndLevelToGenericNames) {
+  const auto one = [&](const std::string& name, const std::string& tags) {
+    Names names = read_slicer(slicer_file({{"liver", ""}, {name, tags}}));
+    return names.size() == 2 ? names[1] : names[0];
+  };
+  const std::string left = "SCT^7771000^Left", right = "SCT^24028007^Right";
+  EXPECT_EQ(one("Kidney", terminology("SCT^64033007^Kidney", left)), "kidney_left");
+  EXPECT_EQ(one("kidneys", terminology("SCT^64033007^Kidney", right)), "kidney_right");
+  EXPECT_EQ(one("Lung", terminology("SRT^T-28000^Lung", left)), "lung_left");
+  EXPECT_EQ(one("Vertebra", terminology("SCT^66794005^First lumbar vertebra")), "vertebrae_L1");
+  EXPECT_EQ(one("vertebrae", terminology("SCT^23215003^Twelfth thoracic vertebra")), "vertebrae_T12");
+  EXPECT_EQ(one("Rib", terminology("SCT^25888004^Third rib", left)), "rib_3_left");
+  EXPECT_EQ(one("Rib left", terminology("SCT^25888004^Third rib", left)), "rib_3_left");
+  EXPECT_EQ(one("Bone", terminology("SCT^54735007^Sacrum")), "sacrum");
+  EXPECT_EQ(one("Vein", terminology("SCT^64131007^Inferior vena cava")), "inferior_vena_cava");
+  EXPECT_FALSE(is_told("code")) << told();
+  // A name that says more than its code, or something else, counts; what contradicts it is told.
+  EXPECT_EQ(one("Kidney left", terminology("SCT^64033007^Kidney")), "Kidney left");
+  EXPECT_EQ(one("vertebrae_L1", terminology("SCT^51282000^Vertebra")), "vertebrae_L1");
+  EXPECT_EQ(one("liver", terminology("SCT^10200004^Liver")), "liver");
+  EXPECT_FALSE(is_told("code")) << told();
+  EXPECT_EQ(one("Kidney left", terminology("SCT^64033007^Kidney", right)), "Kidney left");
+  EXPECT_TRUE(is_told("\"Kidney left\" is read by its name, but its code SCT:64033007 right is kidney_right"))
+      << told();
+  EXPECT_EQ(one("Kidney_L", terminology("SCT^64033007^Kidney", right)), "kidney_left");
+  EXPECT_TRUE(is_told("but its code SCT:64033007 right is kidney_right")) << told();
+  EXPECT_EQ(one("vertebrae_L1", terminology("SCT^36470004^Third lumbar vertebra")), "vertebrae_L1");
+  EXPECT_TRUE(is_told("but its code SCT:36470004 is vertebrae_L3")) << told();
+  EXPECT_EQ(one("Rib 3", terminology("SCT^15339008^Fifth rib")), "Rib 3");
+  EXPECT_TRUE(is_told("but its code SCT:15339008 is rib_5")) << told();
+}
+
 TEST_F(LabelChecks, WhatNoTaskNeedsIsLeftOutWithOneLine) {
   EXPECT_EQ(read_slicer(slicer_file({{"liver", ""},
                                      {"tissue", terminology("SCT^85756007^Tissue")},
