@@ -24,8 +24,11 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 const KnownStructure* KnownStructures::find(std::string_view name) const {
-  const std::string key = detail::without_side(detail::plain_name(name));
-  const auto row = std::find_if(rows_.begin(), rows_.end(), [&](const Row& r) { return r.pattern.matches(key); });
+  const std::string plain = detail::plain_name(name);
+  const std::string key = detail::without_side(plain);
+  const auto row = std::find_if(rows_.begin(), rows_.end(), [&](const Row& r) {
+    return (!r.needs_side || key.size() < plain.size()) && r.pattern.matches(key);
+  });
   return row != rows_.end() ? &structures_[row->structure] : nullptr;
 }
 

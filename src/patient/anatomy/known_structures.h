@@ -55,6 +55,7 @@ class KnownStructures {
   friend class StructureReader;
   struct Row {
     detail::StructurePattern pattern;
+    bool needs_side;        ///< Only a name with "left" or "right".
     std::size_t structure;  ///< Index into structures_.
   };
   std::string file_;

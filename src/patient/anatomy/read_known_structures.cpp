@@ -83,7 +83,7 @@ class StructureReader {
 
  private:
   Status read_structure(const config::TomlTable& row) {
-    TROCAR_TRY_STATUS(row.check_keys({"names", "tissue", "colour", "priority"}));
+    TROCAR_TRY_STATUS(row.check_keys({"names", "with_side", "tissue", "colour", "priority"}));
     KnownStructure structure;
     TROCAR_TRY(structure.tissue, row.string("tissue"));
     TROCAR_TRY(structure.color, named(colors_, row, "colour", "colours"));
@@ -91,19 +91,23 @@ class StructureReader {
     TROCAR_TRY(const std::vector<std::string> names, row.strings("names"));
     if (names.empty()) return fail("the structure has no name", row.where(), "give names = [\"…\"]");
     known_.structures_.push_back(std::move(structure));
-    for (const std::string& name : names) TROCAR_TRY_STATUS(add_name(name, row));
+    for (const std::string& name : names) TROCAR_TRY_STATUS(add_name(name, row, false));
+    if (!row.has("with_side")) return {};
+    TROCAR_TRY(const std::vector<std::string> with_side, row.strings("with_side"));
+    for (const std::string& name : with_side) TROCAR_TRY_STATUS(add_name(name, row, true));
     return {};
   }
 
-  Status add_name(const std::string& name, const config::TomlTable& row) {
+  Status add_name(const std::string& name, const config::TomlTable& row, bool needs_side) {
     auto pattern = detail::StructurePattern::parse(name);
     if (!pattern)
       return fail(fmt::format("no structure can have the name \"{}\"", name), row.where(),
                   "use letters, digits, '_', without left and right; only the end may be '#', '%#' or '*'");
     std::vector<KnownStructures::Row>& rows = known_.rows_;
-    if (std::any_of(rows.begin(), rows.end(), [&](const auto& other) { return other.pattern == *pattern; }))
+    if (std::any_of(rows.begin(), rows.end(),
+                    [&](const auto& other) { return other.pattern == *pattern && other.needs_side == needs_side; }))
       return fail(fmt::format("the name \"{}\" occurs twice", name), row.where(), "remove one");
-    rows.push_back({*std::move(pattern), known_.structures_.size() - 1});
+    rows.push_back({*std::move(pattern), needs_side, known_.structures_.size() - 1});
     return {};
   }
 

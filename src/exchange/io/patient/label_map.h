@@ -54,7 +54,7 @@ class LabelMap {
   /// Structure of a segment: the map's entry for its name or its number, else the first known one of its name (also
   /// with an abbreviated side: "Kidney_L", "Lt Lung"), its type in its region, code and meaning of its type
   /// (structure_codes.toml), those of its region if the type says nothing (tissue, organ); else its name. A name that
-  /// is the meaning of its type leaves the choice to the code: "Left Ventricle" of the heart. A code adds the side or
+  /// is the meaning of its type leaves the choice to the code: "Ventricle" of the heart. A code adds the side or
   /// the level that a name lacks ("Kidney", "Vertebra"), and says which "Bone", "Artery", "Vein" or "Muscle" it is.
   std::string name_of(const DescribedSegment& segment) const;
   /// A warning if a segment's known name and its known code are different tissues, sides or levels; empty otherwise.

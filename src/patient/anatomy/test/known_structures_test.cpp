@@ -109,6 +109,17 @@ TEST(KnownStructures, CaseSeparatorsAndSideDoNotMatter) {
   EXPECT_EQ(tissue_of("Left Kidney"), "kidney");
 }
 
+TEST(KnownStructures, AVentricleWithASideIsTheHearts) {
+  for (const char* name : {"Left Ventricle", "ventricle_right", "right ventricle 1", "Left_Ventricle_Cavity",
+                           "left ventricle of heart", "heart_ventricle_left"})
+    EXPECT_EQ(tissue_of(name), "organ") << name;
+  for (const char* name :
+       {"ventricle", "Ventricles", "left lateral ventricle", "Left-Inferior-Lateral-Ventricle", "third ventricle",
+        "fourth_ventricle", "ventricle_body_left", "ventricle_frontal_horn_right", "brain ventricle left"})
+    EXPECT_EQ(tissue_of(name), "csf") << name;
+  EXPECT_EQ(known().find("ventricle_l"), nullptr);
+}
+
 TEST(KnownStructures, AreFoundInATurkishLocaleToo) {
   const trocar::testing::UserLocale user("tr_TR.UTF-8");
   if (!user.is_there()) GTEST_SKIP() << "tr_TR.UTF-8 is not on this machine";

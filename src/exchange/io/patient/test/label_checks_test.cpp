@@ -186,8 +186,11 @@ TEST_F(LabelChecks, TerminologyOf3dSlicerIsUnderstood) {
                                          "SCT^49755003^Morphologically Altered Structure")),
             "neoplasm");
   // A name that is the meaning of its code is the code's; other contradictions are told.
-  EXPECT_EQ(one("Left Ventricle", terminology("SCT^87878005^Left Ventricle")), "heart_ventricle_left");
+  EXPECT_EQ(one("Ventricle", terminology("SCT^87878005^Left Ventricle")), "heart_ventricle_left");
   EXPECT_EQ(one("left ventricle of heart", ""), "left ventricle of heart");
+  EXPECT_EQ(one("Ventricle_L", ""), "ventricle_left");  // the heart's
+  EXPECT_EQ(one("Segment_1", terminology("SCT^66720007^Lateral ventricle", "SCT^7771000^Left")),
+            "lateral_ventricle_left");
   EXPECT_FALSE(is_told("code")) << told();
   EXPECT_EQ(one("Spleen", terminology("SCT^64033007^Kidney", "SCT^7771000^Left")), "Spleen");
   EXPECT_TRUE(
