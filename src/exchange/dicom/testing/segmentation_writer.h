@@ -23,6 +23,9 @@ struct TestFrame {
   int segment = 1;
   Vec3 origin_P = Vec3::Zero();
   std::function<int(int, int)> value;
+  std::vector<double> spacing_mm{};  ///< PixelSpacing of its own, if not empty,
+  double slice_step_mm = 0.0;        ///< with its own SpacingBetweenSlices.
+  std::vector<double> directions{};  ///< ImageOrientationPatient of its own, if not empty.
 };
 
 /// A SEG; what is empty is left out of the file.
@@ -80,6 +83,14 @@ inline std::string seg_elements(const TestSeg& seg, bool with_pixels = true) {
     std::string groups = dicom_sequence(0x0020, 0x9113, {dicom_point(0x0020, 0x0032, frame.origin_P)}, seg.length);
     if (seg.type != "LABELMAP")
       groups += dicom_sequence(0x0062, 0x000a, {dicom_short(0x0062, 0x000b, frame.segment)}, seg.length);
+    if (!frame.spacing_mm.empty())
+      groups += dicom_sequence(
+          0x0028, 0x9110,
+          {(frame.slice_step_mm > 0.0 ? dicom_decimals(0x0018, 0x0088, {frame.slice_step_mm}) : std::string()) +
+           dicom_decimals(0x0028, 0x0030, frame.spacing_mm)},
+          seg.length);
+    if (!frame.directions.empty())
+      groups += dicom_sequence(0x0020, 0x9116, {dicom_decimals(0x0020, 0x0037, frame.directions)}, seg.length);
     frames.push_back(std::move(groups));
   }
   std::string elements =

@@ -18,6 +18,12 @@ namespace {
 /// Voxels of the grid, empty planes included, for each voxel of the CT or pixel of the file: bounds the memory.
 constexpr std::uint64_t kMostEmptiness = 16;
 
+/// A segment with pixels, but none inside.
+struct FaintSegment {
+  std::size_t index = 0;
+  int highest = 0;  ///< Of its pixels.
+};
+
 /// The frames of a SEG on their planes.
 class SegPainter {
  public:
@@ -37,6 +43,8 @@ class SegPainter {
   }
 
   std::vector<LabelLayers::Layer> take() { return layers_.take(); }
+  /// Fractional segments that reach half of the maximum nowhere.
+  const std::vector<FaintSegment>& faint() const { return faint_; }
 
  private:
   /// Half of the maximum, or more; 1 bit is all or nothing.
@@ -54,12 +62,15 @@ class SegPainter {
     const std::size_t count = planes_.plane_of_frame[*high] - first + 1;
     const auto plane_size = static_cast<std::size_t>(header_.columns) * static_cast<std::size_t>(header_.rows);
     std::vector<std::uint8_t> mask(count * plane_size, 0);
+    std::uint16_t highest = 0;
     for (const std::size_t frame : frames) {
       TROCAR_TRY_STATUS(pixels_.read(frame, numbers_));
       std::uint8_t* out = mask.data() + (planes_.plane_of_frame[frame] - first) * plane_size;
       for (std::size_t n = 0; n < plane_size; ++n)
         if (is_inside(numbers_[n])) out[n] = 1;
+      highest = std::max(highest, *std::max_element(numbers_.begin(), numbers_.end()));
     }
+    if (highest > 0 && !is_inside(highest)) faint_.push_back({index, highest});
     return layers_.add(index, static_cast<std::int64_t>(first), mask);
   }
 
@@ -68,6 +79,7 @@ class SegPainter {
   const SegPixels& pixels_;
   LabelLayers layers_;
   std::vector<std::uint16_t> numbers_;
+  std::vector<FaintSegment> faint_;
 };
 
 constexpr std::size_t kPixelNumbers = 1 << 16;
@@ -172,14 +184,30 @@ void repeat_planes(const SegPlanes& planes, std::vector<LabelLayers::Layer>& lay
                   layer.voxels.begin() + static_cast<std::int64_t>(repeat.to) * plane_size);
 }
 
+/// Told by their numbers, instead of as empty; refused if nothing else is left.
+Status check_faint(const std::vector<FaintSegment>& faint, const SegHeader& header,
+                   const std::vector<Segment>& segments, bool any_inside, const std::string& where,
+                   std::vector<std::string>& warnings) {
+  for (const FaintSegment& segment : faint) {
+    const std::string what =
+        fmt::format("the fractions of \"{}\" are at most {} of {}: a pixel is inside from half of it on",
+                    segments[segment.index].name, segment.highest, header.maximum_fractional);
+    if (!any_inside) return fail(what, where, "export it as a binary segmentation, or with its true maximum");
+    warnings.push_back(what);
+  }
+  return {};
+}
+
 Result<std::vector<LabelLayers::Layer>> read_layers(const SegHeader& header, const SegPlanes& planes,
                                                     const SegPixels& pixels, const std::vector<Segment>& segments,
-                                                    const std::string& where) {
+                                                    const std::string& where, std::vector<std::string>& warnings) {
   if (header.type == SegmentationType::kLabelMap) return read_label_map(header, planes, pixels, segments, where);
   SegPainter painter(header, planes, pixels, where);
   for (std::size_t index = 0; index < segments.size(); ++index)
     TROCAR_TRY_STATUS(painter.add_segment(index, segments[index].number));
-  return painter.take();
+  std::vector<LabelLayers::Layer> layers = painter.take();
+  TROCAR_TRY_STATUS(check_faint(painter.faint(), header, segments, !layers.empty(), where, warnings));
+  return layers;
 }
 
 }  // namespace
@@ -203,7 +231,8 @@ Result<Segmentation> read_seg(const DicomFile& file, const std::string& where, c
 
   Segmentation result;
   std::copy_if(header.segments.begin(), header.segments.end(), std::back_inserter(result.segments), is_wanted);
-  TROCAR_TRY(std::vector<LabelLayers::Layer> layers, read_layers(header, planes, pixels, result.segments, where));
+  TROCAR_TRY(std::vector<LabelLayers::Layer> layers,
+             read_layers(header, planes, pixels, result.segments, where, result.warnings));
   repeat_planes(planes, layers);
   warn_of_planes(planes, plan, result.warnings);
   TROCAR_TRY_STATUS(check_gaps(layers, planes.stack, result.segments, where, result.warnings));

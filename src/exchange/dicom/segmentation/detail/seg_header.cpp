@@ -41,8 +41,10 @@ constexpr std::uint32_t kPropertyModifier = tag(0x0062, 0x0011);
 constexpr std::uint32_t kSharedGroups = tag(0x5200, 0x9229);
 constexpr std::uint32_t kFrameGroups = tag(0x5200, 0x9230);
 
-constexpr double kMaxSkew = 1e-3;     ///< Accepted as rounding in a file: 0.06 degrees.
-constexpr int kMostFrames = 1 << 20;  ///< As many as items of a sequence.
+constexpr double kMaxSkew = 1e-3;        ///< Accepted as rounding in a file: 0.06 degrees.
+constexpr double kMaxSpread_mm = 0.2;    ///< Between the last pixels of two frames, by the rounding of their spacing.
+constexpr double kMaxStepChange = 0.01;  ///< Of a thickness: rounding.
+constexpr int kMostFrames = 1 << 20;     ///< As many as items of a sequence.
 
 /// " left", " right" or nothing, by the modifier of a code.
 std::string side_of(const DicomItem& code, std::uint32_t modifier) {
@@ -141,9 +143,15 @@ std::optional<Vec3> point_of(const std::vector<double>& numbers, std::size_t at,
   return Vec3(numbers[at], numbers[at + 1], numbers[at + 2]);
 }
 
-/// Directions and spacing, which all frames share.
-Status read_directions(const DicomItem& frame, const std::optional<DicomItem>& shared, SegHeader& header,
-                       const std::string& where) {
+/// Where the pixels of a frame lie, but for its position.
+struct FrameGrid {
+  Vec3 row_P = Vec3::UnitX();
+  Vec3 column_P = Vec3::UnitY();
+  Eigen::Vector2d spacing_mm{1, 1};  ///< Between rows first, as in DICOM.
+  std::optional<double> slice_step_mm, thickness_mm;
+};
+
+Result<FrameGrid> read_grid(const DicomItem& frame, const std::optional<DicomItem>& shared, const std::string& where) {
   const auto orientation = group_of(frame, shared, kPlaneOrientation);
   const auto measures = group_of(frame, shared, kPixelMeasures);
   const auto numbers = orientation ? orientation->decimals(kOrientation) : std::vector<double>();
@@ -157,30 +165,40 @@ Status read_directions(const DicomItem& frame, const std::optional<DicomItem>& s
   if (!is_square || spacing[0] <= 0.0 || spacing[1] <= 0.0)
     return fail("the directions or the pixel spacing of the DICOM segmentation are none", where,
                 kExportSegmentationAgain);
-  header.row_P = row_P->normalized();
-  header.column_P = (*column_P - column_P->dot(header.row_P) * header.row_P).normalized();
-  header.row_step_mm = spacing[0];  // DICOM gives the distance between rows first
-  header.column_step_mm = spacing[1];
   const auto positive = [&](std::uint32_t tag) -> std::optional<double> {
     const auto values = measures->decimals(tag);
     if (values.size() != 1 || std::abs(values[0]) < 1e-3) return std::nullopt;
     return std::abs(values[0]);
   };
-  header.slice_step_mm = positive(kSpacingBetweenSlices);
-  header.thickness_mm = positive(kSliceThickness);
-  return {};
+  return FrameGrid{
+      *row_P, *column_P, {spacing[0], spacing[1]}, positive(kSpacingBetweenSlices), positive(kSliceThickness)};
 }
 
-Status check_direction(const DicomItem& frame, const SegHeader& header, const std::string& where) {
-  const auto orientation = frame.first_item(kPlaneOrientation);
-  if (!orientation) return {};
-  const auto numbers = orientation->decimals(kOrientation);
-  const auto row_P = point_of(numbers, 0, 6);
-  const auto column_P = point_of(numbers, 3, 6);
-  if (row_P && column_P && (*row_P - header.row_P).norm() < 2 * kMaxSkew &&
-      (*column_P - header.column_P).norm() < 2 * kMaxSkew)
-    return {};
-  return fail("the frames of the DICOM segmentation have several directions", where, kExportSegmentationAgain);
+void take_grid(const FrameGrid& grid, SegHeader& header) {
+  header.row_P = grid.row_P.normalized();
+  header.column_P = (grid.column_P - grid.column_P.dot(header.row_P) * header.row_P).normalized();
+  header.row_step_mm = grid.spacing_mm.x();
+  header.column_step_mm = grid.spacing_mm.y();
+  header.slice_step_mm = grid.slice_step_mm;
+  header.thickness_mm = grid.thickness_mm;
+}
+
+/// All frames have the directions and the spacing of the first one; a thickness that differs is none that all have.
+Status check_grid(const FrameGrid& grid, const FrameGrid& first, SegHeader& header, const std::string& where) {
+  if ((grid.row_P - first.row_P).norm() >= 2 * kMaxSkew || (grid.column_P - first.column_P).norm() >= 2 * kMaxSkew)
+    return fail("the frames of the DICOM segmentation have several directions", where, kExportSegmentationAgain);
+  const double extent_px = std::max(header.columns, header.rows);
+  if ((grid.spacing_mm - first.spacing_mm).cwiseAbs().maxCoeff() * extent_px > kMaxSpread_mm)
+    return fail(fmt::format("frame {} of the DICOM segmentation has pixels of {} x {} mm, the first one of {} x {} mm",
+                            header.frames.size() + 1, grid.spacing_mm.y(), grid.spacing_mm.x(), first.spacing_mm.y(),
+                            first.spacing_mm.x()),
+                where, kExportSegmentationAgain);
+  const auto is_same = [](const std::optional<double>& a, const std::optional<double>& b) {
+    return a.has_value() == b.has_value() && (!a || std::abs(*a - *b) <= kMaxStepChange * *b);
+  };
+  if (!is_same(grid.slice_step_mm, first.slice_step_mm)) header.slice_step_mm.reset();
+  if (!is_same(grid.thickness_mm, first.thickness_mm)) header.thickness_mm.reset();
+  return {};
 }
 
 Status read_frames(const DicomItem& root, SegHeader& header, const std::string& where) {
@@ -192,9 +210,11 @@ Status read_frames(const DicomItem& root, SegHeader& header, const std::string& 
       static_cast<std::size_t>(count[0]) != items->size())
     return fail(fmt::format("the DICOM segmentation describes {} frames, not those of its header", items->size()),
                 where, kExportSegmentationAgain);
-  TROCAR_TRY_STATUS(read_directions(items->front(), shared, header, where));
+  TROCAR_TRY(const FrameGrid first, read_grid(items->front(), shared, where));
+  take_grid(first, header);
   for (const DicomItem& item : *items) {
-    TROCAR_TRY_STATUS(check_direction(item, header, where));
+    TROCAR_TRY(const FrameGrid grid, read_grid(item, shared, where));
+    TROCAR_TRY_STATUS(check_grid(grid, first, header, where));
     const auto place = group_of(item, shared, kPlanePosition);
     const auto origin_P = place ? point_of(place->decimals(kPosition), 0, 3) : std::nullopt;
     if (!origin_P)

@@ -34,15 +34,15 @@ struct SegHeader {
   Vec3 column_P = Vec3::UnitY();  ///< Along a column.
   double column_step_mm = 1.0;
   double row_step_mm = 1.0;
-  std::optional<double> slice_step_mm;  ///< SpacingBetweenSlices.
-  std::optional<double> thickness_mm;   ///< SliceThickness.
+  std::optional<double> slice_step_mm;  ///< SpacingBetweenSlices, if all frames have the same.
+  std::optional<double> thickness_mm;   ///< SliceThickness, likewise.
   std::vector<Segment> segments;        ///< Without the background of a label map.
   std::vector<SegFrame> frames;
   std::optional<int> padding;  ///< PixelPaddingValue: another background of a label map.
 };
 
-/// Errors (at `where`): no segments, frames without a place, in several directions or of a segment
-/// that is not defined, an unknown kind of pixels.
+/// Errors (at `where`): no segments, frames without a place, in several directions, of several
+/// pixel spacings or of a segment that is not defined, an unknown kind of pixels.
 Result<SegHeader> read_seg_header(const DicomFile& file, const std::string& where);
 
 }  // namespace trocar::dicom::detail

@@ -129,6 +129,16 @@ TEST_F(Seg, PlanesOnNeighbouringSlicesAreAsThickAsThese) {
     EXPECT_EQ(filled_slices(read(seg, ct_with_slices(slices_mm)), slices_mm), (std::vector<double>{4, 6, 10}));
     seg.slice_step_mm = 0.0;
   }
+  // Frames that state different distances state none.
+  TestSeg mixed = drawn_at({4, 6, 10});
+  for (TestFrame& frame : mixed.frames) frame.spacing_mm = {1.0, 1.0};
+  mixed.frames[0].slice_step_mm = 6.0;
+  mixed.frames[1].slice_step_mm = 2.0;
+  EXPECT_EQ(filled_slices(read(mixed, ct_with_slices(slices_mm)), slices_mm), (std::vector<double>{4, 6, 10}));
+  mixed = drawn_at({2, 10});
+  for (TestFrame& frame : mixed.frames) frame.spacing_mm = {1.0, 1.0};
+  mixed.frames[0].slice_step_mm = 6.0;
+  EXPECT_EQ(filled_slices(read(mixed, ct_with_slices(slices_mm)), slices_mm), (std::vector<double>{2, 10}));
   // A slice of the CT is missing beside a plane: 5 mm are not thicker than its other distance.
   TestSeg uneven = drawn_at({5, 10, 20, 30});
   uneven.slice_step_mm = 5.0;

@@ -76,6 +76,55 @@ TEST_F(Seg, FractionIsInsideFromHalfOfTheMaximum) {
   EXPECT_EQ(voxels_of(*read(half), 0).size(), 4U * 6);
 }
 
+TEST_F(Seg, FractionsThatAreAllBelowHalfAreRefusedWithTheirNumbers) {
+  TestSeg seg;
+  seg.type = "FRACTIONAL";
+  seg.bits = 8;
+  seg.maximum_fractional = 255;
+  seg.segments = {segment_item(1, "Liver"), segment_item(2, "Spleen")};
+  seg.frames = {{1, at_z(0), block(0, 4, 100)}, {2, at_z(0), block(5, 6, 127)}};
+  EXPECT_NE(error_of(seg).find("the fractions of \"Liver\" are at most 100 of 255"), std::string::npos)
+      << error_of(seg);
+  seg.frames[1].value = block(5, 6, 128);
+  const auto told = read(seg);
+  ASSERT_TRUE(told) << told.error().text();
+  ASSERT_EQ(told->warnings.size(), 1U);
+  EXPECT_NE(told->warnings[0].find("\"Liver\" are at most 100 of 255"), std::string::npos) << told->warnings[0];
+  seg.frames[0].value = block(0, 4, 0);  // empty is another matter
+  EXPECT_TRUE(read(seg)->warnings.empty());
+}
+
+TEST_F(Seg, FramesOfAnotherSpacingOrDirectionAreRefused) {
+  const auto changed = [&](std::size_t frame, const std::function<void(trocar::testing::TestFrame&)>& change) {
+    TestSeg seg;
+    seg.segments = {segment_item(1, "Liver")};
+    for (const double z : {0, 2, 4}) seg.frames.push_back({1, at_z(z), block(0, 4)});
+    change(seg.frames[frame]);
+    return error_of(seg);
+  };
+  using trocar::testing::TestFrame;
+  EXPECT_EQ(changed(1, [](TestFrame& f) { f.spacing_mm = {1.0, 1.0001}; }), "read");
+  EXPECT_NE(changed(1,
+                    [](TestFrame& f) {
+                      f.spacing_mm = {0.5, 0.5};
+                    })
+                .find("frame 2 of the DICOM segmentation has pixels of 0.5 x 0.5 mm"),
+            std::string::npos);
+  EXPECT_NE(changed(2,
+                    [](TestFrame& f) {
+                      f.spacing_mm = {1.0, 1.1};
+                    })
+                .find("pixels of 1.1 x 1 mm, the first one of 1 x 1 mm"),
+            std::string::npos);
+  EXPECT_NE(changed(0, [](TestFrame& f) { f.spacing_mm = {2.0, 2.0}; }).find("frame 2"), std::string::npos);
+  EXPECT_NE(changed(2, [](TestFrame& f) { f.spacing_mm = {0.0, 1.0}; }).find("are none"), std::string::npos);
+  EXPECT_NE(changed(1, [](TestFrame& f) { f.directions = {0, 1, 0, 1, 0, 0}; }).find("several directions"),
+            std::string::npos);
+  EXPECT_NE(changed(2, [](TestFrame& f) { f.directions = {1, 0, 0, 0, -1, 0}; }).find("several directions"),
+            std::string::npos);
+  EXPECT_EQ(changed(2, [](TestFrame& f) { f.directions = {1, 0, 0, 0, 1, 0}; }), "read");
+}
+
 TEST_F(Seg, LabelMapHasNumbersOfSegments) {
   for (const int bits : {8, 16}) {
     TestSeg seg;
