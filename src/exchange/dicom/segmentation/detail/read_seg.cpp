@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <span>
+#include <utility>
 
 #include "core/available_memory.h"
 #include "dicom/segmentation/detail/label_layers.h"
@@ -45,12 +47,26 @@ class SegPainter {
   std::vector<LabelLayers::Layer> take() { return layers_.take(); }
   /// Fractional segments that reach half of the maximum nowhere.
   const std::vector<FaintSegment>& faint() const { return faint_; }
+  /// Segments, and frames of each that differ from another one of their plane.
+  const std::vector<std::pair<std::size_t, std::size_t>>& repeated() const { return repeated_; }
 
  private:
   /// Half of the maximum, or more; 1 bit is all or nothing.
   bool is_inside(std::uint16_t value) const {
     if (header_.type != SegmentationType::kFractional) return value != 0;
     return 2 * static_cast<int>(value) >= header_.maximum_fractional;
+  }
+
+  /// The frame that is read shows something else than an earlier one of its plane; an empty one tells nothing.
+  bool differs(std::span<const std::uint8_t> before) const {
+    bool any_before = false, any_now = false, is_other = false;
+    for (std::size_t n = 0; n < before.size(); ++n) {
+      const bool now = is_inside(numbers_[n]);
+      any_before = any_before || before[n] != 0;
+      any_now = any_now || now;
+      is_other = is_other || now != (before[n] != 0);
+    }
+    return any_before && any_now && is_other;
   }
 
   Status add_frames(std::size_t index, const std::vector<std::size_t>& frames) {
@@ -62,14 +78,20 @@ class SegPainter {
     const std::size_t count = planes_.plane_of_frame[*high] - first + 1;
     const auto plane_size = static_cast<std::size_t>(header_.columns) * static_cast<std::size_t>(header_.rows);
     std::vector<std::uint8_t> mask(count * plane_size, 0);
+    std::vector<bool> is_shown(count, false);
+    std::size_t contradictions = 0;
     std::uint16_t highest = 0;
     for (const std::size_t frame : frames) {
       TROCAR_TRY_STATUS(pixels_.read(frame, numbers_));
-      std::uint8_t* out = mask.data() + (planes_.plane_of_frame[frame] - first) * plane_size;
+      const std::size_t plane = planes_.plane_of_frame[frame] - first;
+      const std::span<std::uint8_t> out = std::span(mask).subspan(plane * plane_size, plane_size);
+      if (is_shown[plane] && differs(out)) ++contradictions;
+      is_shown[plane] = true;
       for (std::size_t n = 0; n < plane_size; ++n)
         if (is_inside(numbers_[n])) out[n] = 1;
       highest = std::max(highest, *std::max_element(numbers_.begin(), numbers_.end()));
     }
+    if (contradictions > 0) repeated_.push_back({index, contradictions});
     if (highest > 0 && !is_inside(highest)) faint_.push_back({index, highest});
     return layers_.add(index, static_cast<std::int64_t>(first), mask);
   }
@@ -80,6 +102,7 @@ class SegPainter {
   LabelLayers layers_;
   std::vector<std::uint16_t> numbers_;
   std::vector<FaintSegment> faint_;
+  std::vector<std::pair<std::size_t, std::size_t>> repeated_;
 };
 
 constexpr std::size_t kPixelNumbers = 1 << 16;
@@ -205,6 +228,9 @@ Result<std::vector<LabelLayers::Layer>> read_layers(const SegHeader& header, con
   SegPainter painter(header, planes, pixels, where);
   for (std::size_t index = 0; index < segments.size(); ++index)
     TROCAR_TRY_STATUS(painter.add_segment(index, segments[index].number));
+  for (const auto& [index, frames] : painter.repeated())
+    warnings.push_back(fmt::format("\"{}\": {} of a plane that another one shows otherwise: the union counts",
+                                   segments[index].name, frames == 1 ? "1 frame" : fmt::format("{} frames", frames)));
   std::vector<LabelLayers::Layer> layers = painter.take();
   TROCAR_TRY_STATUS(check_faint(painter.faint(), header, segments, !layers.empty(), where, warnings));
   return layers;

@@ -54,6 +54,19 @@ TEST_F(Seg, OverlappingSegmentsComeInSeveralVolumes) {
   EXPECT_EQ(voxels_of(*read_seg, 2).size(), 2U * 6);
 }
 
+TEST_F(Seg, FramesOfOnePlaneThatDifferAreTold) {
+  TestSeg seg;
+  seg.segments = {segment_item(1, "Liver"), segment_item(2, "Spleen")};
+  seg.frames = {
+      {1, at_z(0), block(0, 4)}, {1, at_z(0), block(0, 4)}, {1, at_z(0), block(9, 9)}, {2, at_z(0), block(2, 3)}};
+  EXPECT_TRUE(read(seg)->warnings.empty());  // the same, empty, or of another segment
+  seg.frames.push_back({1, at_z(0), block(3, 6)});
+  const auto told = read(seg);
+  EXPECT_EQ(voxels_of(*told, 0).size(), 7U * 6);
+  ASSERT_EQ(told->warnings.size(), 1U);
+  EXPECT_NE(told->warnings[0].find("\"Liver\": 1 frame of a plane"), std::string::npos) << told->warnings[0];
+}
+
 TEST_F(Seg, FractionIsInsideFromHalfOfTheMaximum) {
   for (const int maximum : {255, 100}) {
     TestSeg seg;
