@@ -7,6 +7,7 @@
 namespace trocar::io::detail {
 namespace {
 
+constexpr double kSmallestVoxel_mm = 0.001, kLargestVoxel_mm = 100.0;
 constexpr std::int64_t kMaxSide = 65'535;            ///< Voxels along one axis.
 constexpr std::uint64_t kMaxVoxels = 2'000'000'000;  ///< 4 GB of int16, far above any CT.
 
@@ -39,6 +40,10 @@ Status set_place(const Mat3& axes_P, const Vec3& origin_P, const std::string& na
     return fail(fmt::format("the header's {} contains a number that is not finite", name), where, kExportAgain);
   if ((lengths.array() <= 0.0).any())
     return fail(fmt::format("the header's {} gives voxels without extent", name), where, kExportAgain);
+  if (lengths.maxCoeff() > kLargestVoxel_mm || lengths.minCoeff() < kSmallestVoxel_mm)
+    return fail(fmt::format("the header's {} gives voxels of {:.3g} x {:.3g} x {:.3g} mm, which no scan has", name,
+                            lengths[0], lengths[1], lengths[2]),
+                where, "export it again in mm");
   geometry.spacing_mm = lengths;
   geometry.origin_P = origin_P;
   geometry.R_PV = axes_P * lengths.cwiseInverse().asDiagonal();

@@ -28,6 +28,14 @@ struct Payload {
   std::filesystem::path data_file{};  ///< The file with the voxels, relative to the header; empty: the header file.
 };
 
+/// True if a file holds so much more than its header states that the header cannot be right: half as much again, as
+/// where each number has more bytes than stated. A little more behind the voxels is harmless.
+constexpr bool is_far_more(std::uint64_t bytes, std::uint64_t stated) noexcept {
+  constexpr std::uint64_t kHarmless = 4096;
+  return bytes > stated + kHarmless && bytes - stated >= stated / 2;
+}
+inline constexpr const char* kHoldsMore = "holds far more data than its header states ({} of {} bytes are its voxels)";
+
 /// What the header of an image file states, read by this program: the place of the voxels is taken from here, not from
 /// a library. docs/import.md lists what happens where a header contradicts itself.
 struct ImageHeader {
@@ -39,8 +47,9 @@ struct ImageHeader {
   std::vector<std::string> warnings;  ///< Without the name of the file.
   /// False where ITK is known to read another place from a valid header: the two are not compared.
   bool is_place_compared = true;
-  VoxelType type = VoxelType::kUInt8;  ///< NIfTI only, as the next one.
+  VoxelType type = VoxelType::kUInt8;  ///< NIfTI only, as the next ones.
   bool is_swapped = false;             ///< The file's byte order is not this machine's.
+  std::string label_table;             ///< XML of an extension that names label numbers (Caret), unread.
 };
 
 /// Sets the place of a grid from the affine map index -> P: columns of `axes_P` are steps of one voxel along i, j, k.

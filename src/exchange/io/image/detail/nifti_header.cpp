@@ -49,14 +49,19 @@ class NiftiHeader {
     const auto n = static_cast<std::size_t>(4 * row + column);
     return real(400 + 8 * n, 280 + 4 * n);
   }
+  /// A number of the file, in this machine's byte order.
+  template <class T>
+  T number_at(const unsigned char* bytes) const {
+    std::array<unsigned char, sizeof(T)> raw;
+    std::memcpy(raw.data(), bytes, sizeof(T));
+    if (swap_) std::reverse(raw.begin(), raw.end());
+    return std::bit_cast<T>(raw);
+  }
 
  private:
   template <class T>
   T get(std::size_t offset) const {
-    std::array<unsigned char, sizeof(T)> raw;
-    std::memcpy(raw.data(), bytes_ + offset, sizeof(T));
-    if (swap_) std::reverse(raw.begin(), raw.end());
-    return std::bit_cast<T>(raw);
+    return number_at<T>(bytes_ + offset);
   }
   double real(std::size_t offset_2, std::size_t offset_1) const {
     return is_version_2_ ? get<double>(offset_2) : static_cast<double>(get<float>(offset_1));
@@ -177,6 +182,33 @@ Status read_scaling(const NiftiHeader& header, const std::string& where, ImageHe
   return {};
 }
 
+/// The extension with a label table; empty if there is none. Extensions lie between the header and the voxels, each
+/// with its size and kind first. Programs write the table with the kind of Caret (30) or with none (0).
+std::string read_label_table(gzFile file, const NiftiHeader& header, std::uint64_t voxels_at) {
+  constexpr std::uint64_t kMostBytes = std::uint64_t{16} << 20;
+  constexpr std::int32_t kLeastBytes = 16, kLargest = std::int32_t{1} << 20, kUnknown = 0, kCaret = 30;
+  constexpr std::uint64_t kSizeAndKind = 8;
+  std::array<unsigned char, kExtensionFlagBytes> flag{};
+  std::uint64_t at = header.size();
+  const auto read = [&](void* into, std::size_t bytes) {
+    if (gzseek(file, static_cast<z_off_t>(at), SEEK_SET) < 0) return false;
+    at += bytes;
+    return gzread(file, into, static_cast<unsigned>(bytes)) == static_cast<int>(bytes);
+  };
+  if (!read(flag.data(), flag.size()) || flag[0] == 0) return {};
+  while (at + kSizeAndKind < std::min(voxels_at, kMostBytes)) {
+    std::array<unsigned char, kSizeAndKind> start{};
+    if (!read(start.data(), start.size())) return {};
+    const auto size = header.number_at<std::int32_t>(start.data()), kind = header.number_at<std::int32_t>(&start[4]);
+    if (size < kLeastBytes || size > kLargest || at - kSizeAndKind + static_cast<std::uint64_t>(size) > voxels_at)
+      return {};
+    std::string text(static_cast<std::size_t>(size) - kSizeAndKind, '\0');
+    if (!read(text.data(), text.size())) return {};
+    if ((kind == kCaret || kind == kUnknown) && text.find("<LabelTable") != std::string::npos) return text;
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<ImageHeader> read_nifti_header(const InputFile& input) {
@@ -191,6 +223,10 @@ Result<ImageHeader> read_nifti_header(const InputFile& input) {
   if (is_swapped) header_size = __builtin_bswap32(header_size);
   const bool is_2 = header_size == kHeaderBytes2;
   const auto magic = std::string_view(reinterpret_cast<const char*>(bytes.data()) + (is_2 ? 4 : 344), 3);
+  const bool has_header = (header_size == kHeaderBytes1 || is_2) && count >= static_cast<int>(header_size);
+  if (has_header && magic == (is_2 ? "ni2" : "ni1"))
+    return fail("is the header of a pair: its voxels are in another file (.img)", where,
+                "convert the pair to one .nii file, header and voxels in one");
   if ((header_size != kHeaderBytes1 && !is_2) || count < static_cast<int>(header_size) ||
       magic != (is_2 ? "n+2" : "n+1"))
     return fail("not a NIfTI image", where, "give a .nii or .nii.gz file with header and voxels in one");
@@ -217,6 +253,7 @@ Result<ImageHeader> read_nifti_header(const InputFile& input) {
   if (!(offset >= static_cast<double>(header.size() + kExtensionFlagBytes) && offset < 1e9) ||
       offset != std::floor(offset))
     return fail(fmt::format("the voxels cannot begin at byte {} (vox_offset)", offset), where, kExportAgain);
+  image.label_table = read_label_table(file.get(), header, static_cast<std::uint64_t>(offset));
   // In a compressed file the header is part of the stream.
   image.payload.is_compressed = gzdirect(file.get()) == 0;
   if (image.payload.is_compressed) {

@@ -4,9 +4,11 @@
 #include <itk_zlib.h>
 
 #include <algorithm>
-#include <array>
+#include <optional>
+#include <vector>
 
 #include "core/available_memory.h"
+#include "io/image/detail/image_header.h"
 #include "io/image/detail/inflate_input.h"
 #include "io/image/detail/raw_volume.h"
 
@@ -35,13 +37,20 @@ bool read_bytes(gzFile file, std::span<std::byte> bytes) {
   return true;
 }
 
-/// zlib compares the check sum when it reaches the end of the stream; a stream without an end is no error of gzread().
-bool has_valid_end(gzFile file) {
-  std::array<std::byte, 4096> more;
-  int status = Z_OK;
-  const int got = gzread(file, more.data(), more.size());
-  gzerror(file, &status);
-  return got >= 0 && (status == Z_OK || status == Z_STREAM_END);
+/// The bytes behind the voxels, up to as many as the voxels have; none: the stream is damaged. zlib compares the check
+/// sum when it reaches the end of the stream; a stream without an end is no error of gzread().
+std::optional<std::uint64_t> bytes_behind(gzFile file, std::uint64_t voxel_bytes) {
+  std::vector<std::byte> more(kChunkBytes);
+  std::uint64_t behind = 0;
+  while (behind <= voxel_bytes) {
+    int status = Z_OK;
+    const int got = gzread(file, more.data(), static_cast<unsigned>(more.size()));
+    gzerror(file, &status);
+    if (got < 0 || (status != Z_OK && status != Z_STREAM_END)) return std::nullopt;
+    if (got == 0) break;
+    behind += static_cast<std::uint64_t>(got);
+  }
+  return behind;
 }
 
 }  // namespace
@@ -64,9 +73,11 @@ Result<std::unique_ptr<std::byte[]>> read_nifti_voxels(const InputFile& input, c
   gzbuffer(file.get(), kChunkBytes);
   auto bytes = std::make_unique_for_overwrite<std::byte[]>(count);
   const std::span all(bytes.get(), count);
-  if (gzseek(file.get(), static_cast<z_off_t>(first), SEEK_SET) < 0 || !read_bytes(file.get(), all) ||
-      !has_valid_end(file.get()))
-    return damaged;
+  if (gzseek(file.get(), static_cast<z_off_t>(first), SEEK_SET) < 0 || !read_bytes(file.get(), all)) return damaged;
+  const auto behind = bytes_behind(file.get(), count);
+  if (!behind) return damaged;
+  if (is_far_more(count + *behind, count))
+    return fail(fmt::format(kHoldsMore, count, count + *behind), where, kExportAgain);
   if (header.is_swapped) swap_bytes(all, number_bytes);
   return bytes;
 }

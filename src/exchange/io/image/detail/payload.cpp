@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <optional>
 #include <vector>
 
 #include "core/ascii.h"
@@ -17,27 +18,27 @@ namespace {
 
 constexpr std::string_view kSegmentation = ".seg";  ///< 3D Slicer adds it before the ending.
 
-/// Unpacks a gzip or zlib stream of `packed` bytes and discards the result: true if it is valid and has at least
-/// `bytes` bytes.
-bool is_valid_stream(std::ifstream& file, std::uint64_t packed, std::uint64_t bytes) {
+/// Unpacks a gzip or zlib stream of `packed` bytes and discards the result. Returns the number of unpacked bytes (a
+/// second gzip member behind `bytes` bytes is not unpacked), none if the stream is damaged or has fewer than `bytes`.
+std::optional<std::uint64_t> unpacked_bytes(std::ifstream& file, std::uint64_t packed, std::uint64_t bytes) {
   InflateInput input(file, packed);
-  if (!input.is_ready()) return false;
+  if (!input.is_ready()) return std::nullopt;
   z_stream& stream = input.stream();
   std::vector<unsigned char> out(kChunkBytes);
   std::uint64_t unpacked = 0;
   bool at_end = false;
   while (true) {
-    if (!input.refill()) return at_end && unpacked >= bytes;
+    if (!input.refill()) return at_end && unpacked >= bytes ? std::optional(unpacked) : std::nullopt;
     if (at_end) {
       // A further gzip member, or other data after the voxels.
-      if (unpacked >= bytes) return true;
-      if (inflateReset(&stream) != Z_OK) return false;
+      if (unpacked >= bytes) return unpacked;
+      if (inflateReset(&stream) != Z_OK) return std::nullopt;
       at_end = false;
     }
     stream.next_out = out.data();
     stream.avail_out = static_cast<unsigned>(out.size());
     const int status = inflate(&stream, Z_NO_FLUSH);
-    if (status != Z_OK && status != Z_STREAM_END && status != Z_BUF_ERROR) return false;
+    if (status != Z_OK && status != Z_STREAM_END && status != Z_BUF_ERROR) return std::nullopt;
     unpacked += out.size() - stream.avail_out;
     at_end = status == Z_STREAM_END;
   }
@@ -65,14 +66,22 @@ Status check_payload(const Payload& payload, const InputFile& input, Check check
   if (payload.is_text && !payload.is_hex && !has_short_numbers(file))
     return fail("the voxels contain a number of more than 60 letters", where, kExportAgain);
   if (payload.is_text) return {};
+  const auto holds_more = [&](std::uint64_t bytes) {
+    return fail(fmt::format(kHoldsMore, payload.bytes, bytes), where, kExportAgain);
+  };
   if (!payload.is_compressed) {
+    if (is_far_more(available, payload.bytes)) return holds_more(available);
     if (available >= payload.bytes) return {};
     return fail(fmt::format("the image ends before its last voxel ({} of {} bytes)", available, payload.bytes), where,
                 kExportAgain);
   }
   const std::uint64_t packed = payload.packed > 0 ? payload.packed : available;
   const bool could_be_enough = packed <= available && could_unpack_to(payload.bytes, available);
-  if (could_be_enough && (check == Check::kSize || is_valid_stream(file, packed, payload.bytes))) return {};
+  if (could_be_enough && check == Check::kSize) return {};
+  if (const auto bytes = could_be_enough ? unpacked_bytes(file, packed, payload.bytes) : std::nullopt) {
+    if (is_far_more(*bytes, payload.bytes)) return holds_more(*bytes);
+    return {};
+  }
   return fail("the compressed voxels are damaged or end too early", where, kExportAgain);
 }
 

@@ -111,6 +111,14 @@ std::optional<double> convert_whole(const RawVoxels& in, std::span<std::uint8_t>
   });
 }
 
+/// NaN or infinity.
+Status not_finite(const char* what, double value) {
+  if (std::isnan(value))
+    return fail(fmt::format("the {} has a voxel that is not a number", what), {}, "export it again without NaN");
+  return fail(fmt::format("the {} has an infinite voxel ({}infinity)", what, value < 0.0 ? "-" : "+"), {},
+              "export it again with a number there (a CT: -1024 where nothing was measured)");
+}
+
 }  // namespace
 
 std::size_t bytes_per_voxel(VoxelType type) noexcept {
@@ -194,8 +202,7 @@ Status convert_voxels(const RawVoxels& in, std::span<std::int16_t> out) {
     return true;
   });
   if (!bad) return {};
-  if (!std::isfinite(*bad))
-    return fail("the image has a voxel that is not a number", {}, "export it again without NaN");
+  if (!std::isfinite(*bad)) return not_finite("image", *bad);
   return fail(fmt::format("the image contains the value {:g}, which is not a valid HU", *bad), {},
               "give a CT in Hounsfield units");
 }
@@ -203,8 +210,7 @@ Status convert_voxels(const RawVoxels& in, std::span<std::int16_t> out) {
 Status convert_voxels(const RawVoxels& in, std::span<std::uint8_t> out) {
   const auto bad = convert_whole(in, out);
   if (!bad) return {};
-  if (!std::isfinite(*bad))
-    return fail("the image has a voxel that is not a number", {}, "export it again without NaN");
+  if (!std::isfinite(*bad)) return not_finite("image", *bad);
   if (const std::vector<int> above = labels_above_255(in, out.size()); !above.empty())
     return fail(fmt::format("the segmentation has label numbers above 255: {}", fmt::join(above, ", ")), {},
                 "give its structures numbers from 1 to 255");
@@ -218,8 +224,7 @@ Status convert_gray(const RawVoxels& in, std::span<std::uint8_t> out) {
     voxel = static_cast<std::uint8_t>(std::round(value));
     return true;
   });
-  if (bad && !std::isfinite(*bad))
-    return fail("the image has a voxel that is not a number", {}, "export it again without NaN");
+  if (bad && !std::isfinite(*bad)) return not_finite("image", *bad);
   if (bad)
     return fail(fmt::format("the image contains the value {:g}, which is not a gray level (0 to 255)", *bad), {},
                 "export the ultrasound with one byte per voxel");
@@ -246,8 +251,7 @@ Status convert_voxels(const RawVoxels& in, std::span<float> out) {
     voxel = static_cast<float>(value);
     return std::isfinite(voxel);
   });
-  if (!bad) return {};
-  return fail("the image has a voxel that is not a number", {}, "export it again without NaN");
+  return bad ? not_finite("image", *bad) : Status{};
 }
 
 Status convert_mask(const RawVoxels& in, std::span<std::uint8_t> out) {

@@ -31,6 +31,7 @@ struct RawVolume {
   double slope = 1.0;  ///< Value = stored number * slope + intercept.
   double intercept = 0.0;
   std::vector<std::pair<std::string, std::string>> fields;  ///< Key and value texts of the header (NRRD).
+  std::string label_table;                                  ///< XML of the header that names label numbers (NIfTI).
   std::vector<std::string> warnings;                        ///< They name the file.
 
   RawVoxels voxels() const noexcept { return {type, {bytes.get(), byte_count()}, slope, intercept}; }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <set>
 
 #include "core/ascii.h"
 #include "core/parse_number.h"
@@ -97,6 +98,9 @@ class TextHeaderReader {
       // A pair, a comment, or the magic; the library repeats any other line in its message.
       const bool is_other = is_nrrd && (number == 1 || line.starts_with('#') || line.find(":=") <= kLongestKey);
       if (!is_other) return damaged(fmt::format("line {} of the header is no field", number));
+      const std::size_t pair = is_nrrd && !line.starts_with('#') ? line.find(":=") : std::string::npos;
+      if (pair != std::string::npos && !pairs_.insert(trim(std::string_view(line).substr(0, pair))).second)
+        return damaged(fmt::format("the header has the key \"{}\" twice", trim(line.substr(0, pair))));
       return false;
     }
     const std::size_t most = is_nrrd ? kLongestNrrdField : kLongestMetaField;
@@ -113,6 +117,7 @@ class TextHeaderReader {
   std::string where_;
   TextHeaderKind kind_;
   std::ifstream file_;
+  std::set<std::string> pairs_;  ///< Keys of NRRD's "key:=value".
   TextHeader header_;
 };
 

@@ -74,6 +74,7 @@ Result<RawVolume> read_volume_file(const fs::path& path, Check check, const fs::
   volume.geometry = header.geometry;
   volume.slope = header.slope;
   volume.intercept = header.intercept;
+  volume.label_table = std::move(header.label_table);
   for (const std::string& warning : header.warnings)
     volume.warnings.push_back(fmt::format("{}: {}", path.filename().string(), warning));
   return volume;

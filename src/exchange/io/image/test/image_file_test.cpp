@@ -203,5 +203,36 @@ TEST(ImageFile, RefusesToWriteAnUnknownEnding) {
   EXPECT_TRUE(folder.is_empty());
 }
 
+TEST(ImageFile, FarMoreDataThanStatedIsRefused) {
+  // Numbers of twice the bytes that the header states; a little more behind the voxels is harmless.
+  const TemporaryFolder folder;
+  volume::GridGeometry g;
+  g.size = {32, 32, 32};
+  constexpr std::size_t kVoxelBytes = 2 * 32 * 32 * 32;
+  ASSERT_TRUE(write_image(volume::CtGrid(g, 7), folder / "plain.nii"));
+  const std::string nifti = read_bytes(folder / "plain.nii");
+  const std::string voxels = nifti.substr(nifti.size() - kVoxelBytes);
+  const std::string nrrd =
+      "NRRD0004\ntype: short\ndimension: 3\nspace: left-posterior-superior\nsizes: 32 32 32\nspace directions: (1,0,0) "
+      "(0,1,0) (0,0,1)\nendian: little\nencoding: raw\nspace origin: (0,0,0)\n\n";
+  const std::string meta =
+      "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\nCompressedData = False\n"
+      "TransformMatrix = 1 0 0 0 1 0 0 0 1\nOffset = 0 0 0\nElementSpacing = 1 1 1\nDimSize = 32 32 32\n"
+      "ElementType = MET_SHORT\nElementDataFile = LOCAL\n";
+  const std::vector<std::pair<const char*, std::string>> files{
+      {"ct.nii", nifti}, {"ct.nrrd", nrrd + voxels}, {"ct.mha", meta + voxels}};
+  for (const auto& [name, bytes] : files) {
+    const auto read_with = [&](std::size_t more) {
+      write_bytes(folder / name, bytes + std::string(more, '\0'));
+      const auto ct = read_ct(folder / name);
+      return ct ? std::string("read") : ct.error().text();
+    };
+    EXPECT_EQ(read_with(0), "read") << name;
+    EXPECT_EQ(read_with(kVoxelBytes / 4), "read") << name;
+    for (const std::size_t more : {kVoxelBytes / 2, kVoxelBytes, 3 * kVoxelBytes})
+      EXPECT_NE(read_with(more).find("far more data"), std::string::npos) << name << more;
+  }
+}
+
 }  // namespace
 }  // namespace trocar::io

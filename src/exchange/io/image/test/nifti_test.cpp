@@ -215,5 +215,42 @@ TEST(Nifti, WritesNiftiInRas) {
   for (std::size_t n = 0; n < expected.size(); ++n) EXPECT_FLOAT_EQ(sform[n], expected[n]) << n;
 }
 
+TEST(Nifti, TheHeaderOfAPairIsNamed) {
+  const TemporaryFolder folder;
+  HandMadeNifti nifti = small_nifti(kNiftiInt16, numbers(12));
+  std::memcpy(nifti.bytes.data() + 344, "ni1", 4);
+  write_bytes(folder / "ct.nii", nifti.bytes);
+  const auto ct = read_ct(folder / "ct.nii");
+  ASSERT_FALSE(ct);
+  EXPECT_NE(ct.error().text().find("header of a pair"), std::string::npos) << ct.error().text();
+}
+
+TEST(Nifti, VoxelsOfImpossibleSizeAreRefused) {
+  const TemporaryFolder folder;
+  for (const float mm : {1e10F, 1000.0F, 1e-5F}) {
+    HandMadeNifti nifti = small_nifti(kNiftiInt16, numbers(12));
+    nifti.put_spacing(mm, 3, 4);
+    nifti.put_sform({mm, 0, 0, 10, 0, 3, 0, 20, 0, 0, 4, 30});
+    write_bytes(folder / "ct.nii", nifti.bytes);
+    const auto ct = read_ct(folder / "ct.nii");
+    ASSERT_FALSE(ct) << mm;
+    EXPECT_NE(ct.error().text().find("no scan has"), std::string::npos) << ct.error().text();
+  }
+}
+
+TEST(Nifti, InfinityIsCalledInfinity) {
+  const TemporaryFolder folder;
+  const auto error_with = [&](float value) {
+    std::vector<float> voxels(12, 5.0F);
+    voxels[7] = value;
+    write_bytes(folder / "ct.nii", small_nifti(kNiftiFloat, voxels).bytes);
+    const auto ct = read_ct(folder / "ct.nii");
+    return ct ? std::string("read") : ct.error().text();
+  };
+  EXPECT_NE(error_with(-std::numeric_limits<float>::infinity()).find("-infinity"), std::string::npos);
+  EXPECT_NE(error_with(std::numeric_limits<float>::infinity()).find("+infinity"), std::string::npos);
+  EXPECT_NE(error_with(std::numeric_limits<float>::quiet_NaN()).find("NaN"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace trocar::io
