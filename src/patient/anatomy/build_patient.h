@@ -18,6 +18,7 @@ struct OtherReading {
   std::string label_map;  ///< Option that selects it: "totalsegmentator:total_v1".
   std::string words;      ///< "TotalSegmentator 1".
   std::vector<std::pair<int, std::string>> names;
+  std::string advice{};  ///< How to select it, if not by the option.
 };
 
 /// A structure as it was read from a segmentation, on its own grid.
@@ -29,6 +30,7 @@ struct LabelSource {
   /// values mean nothing to a user.
   bool is_described = false;
   std::vector<OtherReading> other_readings{};  ///< Likely mistakes; for numbers that a label map names.
+  std::string numbers_of{};                    ///< The scheme that names the numbers: "TotalSegmentator 2".
 };
 
 /// Name in a label map of label values that are left out. Background names are left out, too.
