@@ -72,21 +72,23 @@ std::vector<std::string> unlabelled_risks(const Task& task, const anatomy::Virtu
   return missing;
 }
 
-/// The organ is not in the scan, or its segmentation lacks it; the largest labels tell which part of the body it is.
+/// The organ is not in the scan, or its segmentation lacks it: what the segmentation has, the largest first, tells
+/// which part of the body it is. What was derived from it, or found from HU, is not listed.
 std::string lacks_organ(const Task& task, const anatomy::VirtualPatient& patient, const LabelCounts& counts) {
-  constexpr std::size_t kMostNamed = 5;
+  constexpr std::size_t kMostNamed = 12;
   std::vector<const anatomy::Label*> labels;
   for (const anatomy::Label& label : patient.label_table.labels) {
-    // These are found everywhere from the HU.
+    // These are everywhere.
     const bool is_everywhere = label.tissue == "adipose" || label.tissue == "muscle" || label.tissue == "soft_tissue" ||
                                label.tissue == "gas" || label.tissue == "skin";
-    if (counts.voxels[label.id] > 0 && !is_everywhere) labels.push_back(&label);
+    if (counts.voxels[label.id] > 0 && !label.is_derived && !is_everywhere) labels.push_back(&label);
   }
   std::stable_sort(labels.begin(), labels.end(),
                    [&](const auto* a, const auto* b) { return counts.voxels[a->id] > counts.voxels[b->id]; });
   std::vector<std::string> names;
   for (const anatomy::Label* label : labels)
     if (names.size() < kMostNamed) names.push_back(label->name);
+  if (labels.size() > kMostNamed) names.push_back(fmt::format("{} more", labels.size() - kMostNamed));
   return fmt::format("the {} is not labelled: the scan does not show it, or the segmentation lacks it (labelled: {})",
                      task.organ, names.empty() ? "no organ" : fmt::format("{}", fmt::join(names, ", ")));
 }

@@ -134,6 +134,11 @@ TEST(TaskReadiness, OfAnotherPartOfTheBodyNamesWhatTheScanShows) {
   const auto readiness = check_task(liver_biopsy(), head.make());
   EXPECT_FALSE(readiness.is_possible);
   EXPECT_TRUE(mentions(readiness, "(labelled: gallbladder, rib)")) << readiness.reasons.front();
+  // What was derived is not what the segmentation shows.
+  anatomy::VirtualPatient derived = head.make();
+  for (anatomy::Label& label : derived.label_table.labels) label.is_derived = label.name == "gallbladder";
+  const auto without = check_task(liver_biopsy(), derived);
+  EXPECT_TRUE(mentions(without, "(labelled: rib)")) << without.reasons.front();
 }
 
 TEST(TaskReadiness, NamesWhatMakesTheTaskImpossible) {
