@@ -275,8 +275,10 @@ void add_patient_commands(Command& program, Action& action) {
   build_command
       .add_option(
           "--label-map", b->label_map,
-          "Names of labels: totalsegmentator, totalsegmentator:TASK (liver_vessels, tissue_types ...), or a TOML file "
-          "with [labels] and ignore (see the user guide)")
+          "Names of labels: totalsegmentator, totalsegmentator:TASK (liver_vessels, tissue_types ...), a data set "
+          "(lits, "
+          "msd_pancreas, kits, chaos, btcv, amos, flare22, word, ct_org, verse ...), or a TOML file with [labels] and "
+          "ignore (see the user guide)")
       .show_default();
   build_command.add_option("--rescale", b->rescale,
                            "SLOPE,INTERCEPT of a CT whose file lacks them: HU = SLOPE * stored number + INTERCEPT");

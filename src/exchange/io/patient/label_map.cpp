@@ -11,43 +11,13 @@
 #include "core/ascii.h"
 #include "core/files/data_dir.h"
 #include "core/parse_number.h"
+#include "io/patient/detail/number_schemes.h"
 
 namespace trocar::io {
 namespace {
 
-constexpr std::string_view kTotalSegmentator = "totalsegmentator";
-constexpr std::string_view kTask = "totalsegmentator:";
 constexpr std::string_view kRest = "*";
-constexpr const char* kTasksFile = "totalsegmentator_tasks.toml";
 constexpr const char* kCodesFile = "structure_codes.toml";
-
-std::map<int, std::string> totalsegmentator_names(const anatomy::KnownStructures& structures) {
-  std::map<int, std::string> names;
-  for (const std::string& name : structures.totalsegmentator_names())
-    names.emplace(static_cast<int>(names.size() + 1), name);
-  return names;
-}
-
-/// Numbers and names of a task: [tasks.NAME] of totalsegmentator_tasks.toml.
-Result<std::map<int, std::string>> task_names(const std::string& task, const std::string& where) {
-  TROCAR_TRY(const std::filesystem::path data_folder, checked_data_dir());
-  TROCAR_TRY(const config::TomlTable file, config::load_toml(data_folder / kTasksFile));
-  TROCAR_TRY(const config::TomlTable tasks, file.table("tasks"));
-  if (!tasks.has(task))
-    return fail_usage(fmt::format("TotalSegmentator has no task \"{}\" with own numbers; there are {}", task,
-                                  fmt::join(tasks.keys(), ", ")),
-                      where, "write totalsegmentator:TASK, or totalsegmentator for the task total");
-  TROCAR_TRY(const config::TomlTable table, tasks.table(task));
-  std::map<int, std::string> names;
-  for (const std::string& key : table.keys()) {
-    const auto number = parse_number<int>(key);
-    if (!number || *number < 1 || *number > kMaxLabel)
-      return fail(fmt::format("\"{}\" is not a label number from 1 to {}", key, kMaxLabel), table.where(),
-                  "write lines such as 5 = \"liver\"");
-    TROCAR_TRY(names[*number], table.string(key));
-  }
-  return names;
-}
 
 /// "Kidney left" as a structure name: "kidney_left".
 std::string structure_name(std::string_view meaning) {
@@ -148,16 +118,25 @@ bool is_unspecific(const std::string& name) {
   return kind == "bon" || kind == "artery" || kind == "vein" || kind == "muscl";
 }
 
+/// A name of numbers (btcv), not the path of a file.
+bool is_scheme_name(const std::string& label_map) {
+  std::error_code error;
+  return label_map.find_first_of("/.") == std::string::npos && !std::filesystem::is_regular_file(label_map, error);
+}
+
+/// " 5", "5.0", "+5": meant as a number, and equal to none.
+bool is_almost_number(const std::string& key) {
+  return !parse_number<int>(key) && std::any_of(key.begin(), key.end(), ascii::is_digit) &&
+         key.find_first_not_of("0123456789.+- \t") == std::string::npos;
+}
+
 }  // namespace
 
 Status LabelMap::read_base(const std::string& base, const std::string& where) {
-  if (base == kTotalSegmentator) {
-    by_number_ = totalsegmentator_names(structures_);
-    return {};
-  }
-  if (!base.starts_with(kTask))
-    return fail(fmt::format("unknown base \"{}\"", base), where, "write base = \"totalsegmentator\"");
-  TROCAR_TRY(by_number_, task_names(base.substr(kTask.size()), where));
+  TROCAR_TRY(detail::NumberScheme scheme, detail::load_scheme(base, structures_, where));
+  by_number_ = std::move(scheme.names);
+  base_ = base;
+  base_words_ = std::move(scheme.words);
   return {};
 }
 
@@ -191,10 +170,18 @@ Status LabelMap::read_entry(const std::string& key, std::string name, const std:
     return {};
   }
   const std::optional<int> number = parse_number<int>(key);
+  if (is_almost_number(key))
+    return fail(fmt::format("\"{}\" is no number of a label", key), where, "write lines such as 5 = \"liver\"");
+  if (parse_number<int>(name))
+    return fail(fmt::format("{} = \"{}\": the number comes first", key, name), where,
+                fmt::format("write {} = \"{}\"", name, key));
   if (number && (*number < 1 || *number > kMaxLabel))
     return fail(fmt::format("\"{}\" is not a label number from 1 to {}", key, kMaxLabel), where,
                 "write lines such as 5 = \"liver\"");
-  if (number) by_number_.insert_or_assign(*number, name);
+  if (number) {
+    by_number_.insert_or_assign(*number, name);
+    own_numbers_.insert(*number);
+  }
   by_name_.insert_or_assign(key, std::move(name));
   return {};
 }
@@ -204,12 +191,12 @@ Result<LabelMap> LabelMap::load(const std::string& label_map) {
   TROCAR_TRY(const std::filesystem::path data_folder, checked_data_dir());
   TROCAR_TRY(map.structures_, anatomy::KnownStructures::load(data_folder));
   TROCAR_TRY_STATUS(map.read_codes(data_folder));
-  map.label_map_ = label_map;
   if (label_map.empty()) return map;
-  if (label_map == kTotalSegmentator || label_map.starts_with(kTask)) {
+  if (is_scheme_name(label_map)) {
     TROCAR_TRY_STATUS(map.read_base(label_map, "--label-map"));
     return map;
   }
+  map.file_ = label_map;
   TROCAR_TRY(const config::TomlTable file, config::load_toml(label_map));
   TROCAR_TRY_STATUS(file.check_keys({"base", "ignore", "labels"}));
   TROCAR_TRY(const std::string base, file.string_or("base", ""));
@@ -226,25 +213,38 @@ Result<LabelMap> LabelMap::load(const std::string& label_map) {
   return map;
 }
 
-std::optional<anatomy::OtherReading> LabelMap::likely_mistake() const {
-  constexpr std::string_view kVersion1 = "totalsegmentator:total_v1";
-  const bool is_1 = label_map_ == kVersion1;
-  if (!is_1 && label_map_ != kTotalSegmentator) return std::nullopt;
-  anatomy::OtherReading other;
-  other.label_map = is_1 ? kTotalSegmentator : kVersion1;
-  other.words = is_1 ? "TotalSegmentator 2" : "TotalSegmentator 1 (total_v1)";
-  std::map<int, std::string> names = totalsegmentator_names(structures_);
-  if (!is_1) {
-    auto of_1 = task_names(std::string(kVersion1.substr(kTask.size())), "--label-map");
-    if (!of_1) return std::nullopt;  // an installation without the tasks
-    names = *std::move(of_1);
+std::vector<anatomy::OtherReading> LabelMap::other_readings(
+    const std::vector<std::pair<int, std::string>>& given) const {
+  std::vector<anatomy::OtherReading> readings;
+  if (std::ranges::all_of(given, [&](const auto& entry) { return own_numbers_.contains(entry.first); }))
+    return readings;
+  for (const detail::NumberScheme& scheme : detail::load_comparable_schemes(structures_)) {
+    anatomy::OtherReading other{scheme.name, scheme.words, {}, {}};
+    if (!file_.empty()) other.advice = fmt::format("write base = \"{}\" in {}", scheme.name, file_);
+    for (const auto& [value, name] : given) {
+      const auto found = scheme.names.find(value);
+      if (own_numbers_.contains(value) || (found == scheme.names.end() && rest_))
+        other.names.emplace_back(value, name);
+      else if (found != scheme.names.end())
+        other.names.emplace_back(value, found->second);
+    }
+    if (other.names != given && other.names.size() == given.size()) readings.push_back(std::move(other));
   }
-  other.names.assign(names.begin(), names.end());
-  return other;
+  return readings;
 }
 
-bool LabelMap::is_totalsegmentator() const noexcept {
-  return label_map_ == kTotalSegmentator;
+bool LabelMap::is_chosen() const noexcept {
+  return !base_.empty() && (!is_default() || !file_.empty());
+}
+
+bool LabelMap::is_default() const noexcept {
+  return base_ == detail::kTotalSegmentator;
+}
+
+bool LabelMap::is_structure_file(const std::string& stem) const {
+  // "pancreas_001": the number of a case.
+  const std::size_t end = stem.find_last_not_of("0123456789_- ");
+  return by_name_.contains(stem) || is_known(stem) || (end != std::string::npos && is_known(stem.substr(0, end + 1)));
 }
 
 std::optional<std::string> LabelMap::name_of(int number) const {

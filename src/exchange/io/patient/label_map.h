@@ -25,7 +25,7 @@ struct DescribedSegment {
 };
 
 /// Names that a user gives to the labels of segmentations, and the structures of data_dir().
-///   base = "totalsegmentator"     names of numbers that are not in [labels]; also "totalsegmentator:TASK"
+///   base = "totalsegmentator"     names of numbers that are not in [labels]; also "totalsegmentator:TASK", "btcv" …
 ///   ignore = [13, 14]             or ignore = ["13", "my_roi"]: labels that are ignored
 ///   [labels]
 ///   1 = "liver"                   a number in a file
@@ -34,16 +34,27 @@ struct DescribedSegment {
 ///   "*" = "ignore"                every label without another entry
 class LabelMap {
  public:
-  /// "totalsegmentator", "totalsegmentator:TASK" (a task of totalsegmentator_tasks.toml), a TOML file, or empty for no
-  /// names. Errors: an unusable file, an unknown task, no data folder.
+  /// "totalsegmentator", "totalsegmentator:TASK" (a task of totalsegmentator_tasks.toml), a data set of
+  /// dataset_labels.toml, a TOML file, or empty for no names. A name has no point and no slash. Errors: an unusable
+  /// file, an unknown name or task (the known ones are listed), an entry that can match nothing (" 5", liver = "5"), no
+  /// data.
   static Result<LabelMap> load(const std::string& label_map);
 
-  /// The names of numbers by the label map that this one is likely taken for: TotalSegmentator 1 and 2 number
-  /// their structures differently. Empty for other maps.
-  std::optional<anatomy::OtherReading> likely_mistake() const;
+  /// What the values of a file, with the names that they were given, would mean by other schemes that name all of them
+  /// and not the same. Entries of the user hold in all. None if the user has named all of them.
+  std::vector<anatomy::OtherReading> other_readings(const std::vector<std::pair<int, std::string>>& given) const;
 
-  /// True for the numbers of TotalSegmentator's task total, without a file of the user.
-  bool is_totalsegmentator() const noexcept;
+  /// The scheme of the numbers for messages: "TotalSegmentator 2"; empty: none but the user's own.
+  const std::string& base_words() const noexcept { return base_words_; }
+  /// True for the numbers of TotalSegmentator's task total, also as the base of a file: what is taken unless a user
+  /// chooses another scheme.
+  bool is_default() const noexcept;
+  /// True if the user has chosen what numbers mean: any other scheme, or a file with a base.
+  bool is_chosen() const noexcept;
+  /// True if the user's own file names the number.
+  bool is_own(int number) const { return own_numbers_.contains(number); }
+  /// True for the name of a mask file: a structure, also with the number of a case, or a name of the user's map.
+  bool is_structure_file(const std::string& stem) const;
   bool is_empty() const noexcept { return by_number_.empty() && !rest_; }
   /// True if the number has its own entry, not only "*".
   bool has_number(int number) const { return by_number_.contains(number); }
@@ -74,7 +85,10 @@ class LabelMap {
   std::optional<std::string> specified_by_code(const DescribedSegment& segment) const;
   Status read_entry(const std::string& key, std::string name, const std::string& where);
   anatomy::KnownStructures structures_;
-  std::string label_map_;  ///< As given to load().
+  std::string base_;           ///< Name of the scheme; empty: none.
+  std::string base_words_;     ///< Its name for messages.
+  std::string file_;           ///< The user's TOML file; empty: none.
+  std::set<int> own_numbers_;  ///< Named by the user's file.
   std::map<int, std::string> by_number_;
   std::map<std::string, std::string, std::less<>> by_name_;
   std::optional<std::string> rest_;
