@@ -134,6 +134,14 @@ TEST(JudgeNumbers, SeveralThatFitAreNamedWithoutARepair) {
   EXPECT_TRUE(findings.front().repair.empty());
 }
 
+TEST(JudgeNumbers, ALiverReadAsASpleenIsRefused) {
+  LabelSource source = numbered(adult(), {{1, "liver"}}, {{1, "spleen"}});
+  source.other_readings = {{"lits", "LiTS", {{1, "liver"}}}, {"verse", "VerSe", {{1, "vertebrae_C1"}}}};
+  const auto findings = found_in(adult(), source);
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_EQ(findings.front().repair, "--label-map lits") << findings.front().text;
+}
+
 TEST(JudgeNumbers, VertebraeReadAsBowelAndBladderAreRefused) {
   const std::vector<NumberedBall> balls = adult();
   const Meaning verse{{20, "vertebrae_L1"}, {21, "vertebrae_L2"}, {22, "vertebrae_L3"}, {23, "vertebrae_L4"}};
