@@ -165,8 +165,11 @@ Result<anatomy::LabelSource> name_labels(const RawVolume& raw, const std::filesy
     if (auto name = map.name_of(value)) source.names.emplace_back(value, std::move(*name));
   TROCAR_TRY_STATUS(check_background(source, map));
   tell_readings(source, values, path, map, place, warnings);
+  // What a user has written is no likely mistake.
+  if (map.base_words().empty() || std::ranges::all_of(values, [&](int value) { return map.is_own(value); }))
+    return source;
   source.other_readings = map.other_readings(source.names);
-  if (std::ranges::any_of(values, [&](int value) { return !map.is_own(value); })) source.numbers_of = map.base_words();
+  source.numbers_of = map.base_words();
   return source;
 }
 

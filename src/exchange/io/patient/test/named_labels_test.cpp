@@ -103,6 +103,20 @@ TEST(NumberSchemes, OtherReadingsCoverTheFileAndKeepWhatTheUserHasWritten) {
   EXPECT_TRUE(schemes_of((folder / "all.toml").string(), {{1, "aorta"}, {2, "liver"}}).empty());
 }
 
+TEST(NumberSchemes, NumbersOfTheUsersOwnFileHaveNoOtherReadings) {
+  const TemporaryFolder folder;
+  write_values(folder / "seg.nii.gz", {1, 2});
+  const auto readings = [&](const std::string& toml) {
+    write_bytes(folder / "own.toml", toml);
+    const LabelsRead read = read_labels_of(folder / "seg.nii.gz", (folder / "own.toml").string());
+    return read.sources ? read.sources->front().other_readings.size() : std::size_t{99};
+  };
+  EXPECT_EQ(readings("[labels]\n1 = \"aorta\"\n2 = \"liver\"\n"), 0U);
+  EXPECT_EQ(readings("[labels]\n\"*\" = \"liver\"\n"), 0U);
+  EXPECT_EQ(readings("base = \"totalsegmentator\"\n[labels]\n1 = \"aorta\"\n2 = \"liver\"\n"), 0U);
+  EXPECT_GT(readings("base = \"totalsegmentator\"\n"), 3U);
+}
+
 TEST(NamedLabels, AFileNamedAfterOneStructureHasOneValue) {
   for (const char* name : {"liver.nii.gz", "vertebrae.nii.gz", "kidney_left.nrrd", "pancreas_001.nii.gz"}) {
     const TemporaryFolder folder;
