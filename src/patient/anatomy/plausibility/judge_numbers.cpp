@@ -44,7 +44,8 @@ std::vector<Fit> readings_that_fit(const LabelSource& source, const detail::Valu
   return fits;
 }
 
-AnatomyFinding other_numbers(const std::vector<Fit>& fits, const std::string& given_words, const ReadingMatch& given) {
+AnatomyFinding other_numbers(const std::vector<Fit>& fits, const std::string& given_words, const ReadingMatch& given,
+                             bool is_turned) {
   std::vector<std::string> words, maps, advices;
   for (const Fit& fit : fits) {
     words.push_back(fit.reading->words);
@@ -54,15 +55,17 @@ AnatomyFinding other_numbers(const std::vector<Fit>& fits, const std::string& gi
   const std::string how = !advices.empty() ? fmt::format("{}", fmt::join(advices, ", or "))
                                            : fmt::format("build with {}{}", kUseLabelMap,
                                                          fmt::join(maps, std::string(" or ") + kUseLabelMap));
-  const bool is_one = fits.size() == 1;
+  const char* turned =
+      is_turned ? " (or export the labels again, if they are mirrored or turned: so the given numbers fit, too)" : "";
+  const bool is_one = fits.size() == 1 && !is_turned;
   return {
       kNumbers,
       fmt::format("the label numbers look like those of {}: so read, they agree with the CT, and as given{} they do "
                   "not ({})",
                   fmt::join(words, " or "), given_words.empty() ? "" : fmt::format(" ({})", given_words),
                   fmt::join(given.most, ", ")),
-      fmt::format("{}{}, or --confirm {} if the numbers are right", how,
-                  is_one ? "" : ", by the program or data set that the file is from", kNumbers),
+      fmt::format("{}{}{}, or --confirm {} if the numbers are right", how,
+                  is_one ? "" : ", by the program or data set that the file is from", turned, kNumbers),
       true, is_one && advices.empty() ? kUseLabelMap + maps.front() : std::string()};
 }
 
@@ -81,11 +84,11 @@ std::optional<AnatomyFinding> judge_source(const LabelSource& source, const volu
   const detail::ValuesInCt in_ct = detail::measure_values(ct, source.labels);
   const ReadingMatch given = detail::match_reading(in_ct, source.names, known);
   if (given.against < kClear) return std::nullopt;
-  if (const auto fits = readings_that_fit(source, in_ct, given, known); !fits.empty())
-    return other_numbers(fits, source.numbers_of, given);
-  if (source.numbers_of.empty()) return std::nullopt;
   // Mirrored or turned labels are none of wrong numbers.
   const ReadingMatch turned = detail::match_any_direction(in_ct, source.names, known);
+  if (const auto fits = readings_that_fit(source, in_ct, given, known); !fits.empty())
+    return other_numbers(fits, source.numbers_of, given, turned.against < kClear);
+  if (source.numbers_of.empty()) return std::nullopt;
   const bool is_disordered =
       turned.misplaced >= kFewestMisplaced &&
       static_cast<double>(turned.misplaced) >= kMisplacedShare * static_cast<double>(turned.compared);
