@@ -30,7 +30,7 @@ constexpr std::array kUsualHus{UsualHu{"urinary_bladder", -30, 3100},
                                UsualHu{"soft_tissue", -100, 160}};
 
 constexpr UsualSize kUsualVertebra{"vertebra", 0, 180, 40};
-constexpr std::array kUsualSizes{UsualSize{"liver", 300, 3500, 75},
+constexpr std::array kUsualSizes{UsualSize{"liver", 0, 3500, 75},
                                  UsualSize{"spleen", 0, 1100, 45},
                                  UsualSize{"kidney_left", 0, 600, 35},
                                  UsualSize{"kidney", 0, 700, 95},
