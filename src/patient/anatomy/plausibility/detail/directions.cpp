@@ -148,22 +148,27 @@ AxisVotes vote_up_down(const Places& places) {
   const std::vector<Vec3> vertebrae = places.vertebrae();
   for (std::size_t n = 1; n < vertebrae.size(); ++n)
     vote(votes, vertebrae[n - 1].z() - vertebrae[n].z(), 5.0, "vertebrae from feet to head");
-  constexpr std::array<InOrder, 13> kAbove{{{"lung", "urinary_bladder"},
-                                            {"heart", "urinary_bladder"},
-                                            {"lung", "kidney"},
-                                            {"lung", "liver"},
-                                            {"heart", "liver"},
-                                            {"liver", "urinary_bladder"},
-                                            {"spleen", "urinary_bladder"},
-                                            {"stomach", "urinary_bladder"},
-                                            {"liver", "femur"},
-                                            {"liver", "kidney"},
-                                            {"spleen", "kidney"},
-                                            {"kidney", "femur"},
-                                            {"kidney", "urinary_bladder"}}};
-  for (const auto& [upper, lower] : kAbove) {
-    const auto above = places.find(upper), below = places.find(lower);
-    if (above && below) vote(votes, above->z() - below->z(), 20.0, fmt::format("{} below {}", upper, lower), true);
+  struct Above {
+    const char *upper, *lower;
+    bool varies = false;
+  };
+  constexpr std::array<Above, 13> kAbove{{{"lung", "urinary_bladder"},
+                                          {"heart", "urinary_bladder"},
+                                          {"liver", "urinary_bladder"},
+                                          {"spleen", "urinary_bladder"},
+                                          {"stomach", "urinary_bladder", true},
+                                          {"kidney", "urinary_bladder", true},
+                                          {"lung", "kidney"},
+                                          {"lung", "liver", true},
+                                          {"heart", "liver", true},
+                                          {"liver", "kidney", true},
+                                          {"spleen", "kidney", true},
+                                          {"liver", "femur"},
+                                          {"kidney", "femur", true}}};
+  for (const Above& pair : kAbove) {
+    const auto above = places.find(pair.upper), below = places.find(pair.lower);
+    if (above && below)
+      vote(votes, above->z() - below->z(), 20.0, fmt::format("{} below {}", pair.upper, pair.lower), pair.varies);
   }
   return votes;
 }
