@@ -56,10 +56,8 @@ volume::MaskGrid apply_body_hint(volume::MaskGrid body, const volume::MaskGrid& 
   return volume::largest_component(body);
 }
 
-Result<volume::MaskGrid> find_checked_body(const volume::CtGrid& ct, const volume::MaskGrid& hint,
-                                           std::vector<std::string>& warnings) {
+Result<volume::MaskGrid> find_checked_body(const volume::CtGrid& ct) {
   volume::MaskGrid body = find_body(ct);
-  if (!hint.empty()) body = apply_body_hint(std::move(body), hint, warnings);
   const auto voxels = static_cast<double>(std::count(body.voxels.begin(), body.voxels.end(), 1));
   if (voxels * ct.geometry.voxel_volume_mm3() / 1000.0 < kMinBodyMl)
     return fail("no body found in the CT", {}, "check that it is a CT in Hounsfield units and shows a patient");
@@ -151,14 +149,15 @@ Result<VirtualPatient> build_patient(const volume::CtGrid& ct, std::vector<Label
   TROCAR_TRY(detail::MergedLabels merged,
              detail::merge_sources(std::move(sources), patient.ct.geometry, known, warnings));
   report(progress, "body", 0.2);
-  TROCAR_TRY(volume::MaskGrid body, find_checked_body(patient.ct, merged.body_hint, warnings));
+  TROCAR_TRY(volume::MaskGrid body, find_checked_body(patient.ct));
+  for (AnatomyFinding& finding : judge_posture(patient.ct, body, patient.posture))
+    findings.push_back(std::move(finding));
+  if (!merged.body_hint.empty()) body = apply_body_hint(std::move(body), merged.body_hint, warnings);
   merged.body_hint = {};
   for (AnatomyFinding& finding : judge_sides(body)) {
     if (finding.is_grave && air_of(options.confirmed) == AirIn::kNowhere) take_sides_as_skin(body);
     findings.push_back(std::move(finding));
   }
-  for (AnatomyFinding& finding : judge_posture(patient.ct, body, patient.posture))
-    findings.push_back(std::move(finding));
   for (AnatomyFinding& finding : clear_outside(body, merged.labels, merged.table, warnings))
     findings.push_back(std::move(finding));
 
