@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 
 #include "anatomy/build_patient.h"
 #include "anatomy/derive/derive_choice.h"
@@ -239,6 +240,18 @@ bool LabelMap::is_chosen() const noexcept {
 
 bool LabelMap::is_default() const noexcept {
   return base_ == detail::kTotalSegmentator;
+}
+
+std::string LabelMap::name_in_file_name(const std::string& stem) const {
+  if (by_name_.contains(stem) || is_known(stem)) return stem;
+  const std::size_t at = stem.find_last_of("_-. ");
+  if (at == std::string::npos) return stem;
+  std::string end;
+  for (const char letter : stem.substr(at + 1)) end += ascii::to_lower(letter);
+  constexpr std::array<std::string_view, 7> kEnds{"seg", "segmentation", "mask", "label", "labels", "roi", "contour"};
+  const std::string start = stem.substr(0, at);
+  const bool is_named = std::ranges::find(kEnds, end) != kEnds.end() && (by_name_.contains(start) || is_known(start));
+  return is_named ? start : stem;
 }
 
 bool LabelMap::is_structure_file(const std::string& stem) const {

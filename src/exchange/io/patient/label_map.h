@@ -53,6 +53,8 @@ class LabelMap {
   bool is_chosen() const noexcept;
   /// True if the user's own file names the number.
   bool is_own(int number) const { return own_numbers_.contains(number); }
+  /// "liver" of "liver_seg", "liver-mask": what a file is named after if it is a known structure; else `stem`.
+  std::string name_in_file_name(const std::string& stem) const;
   /// True for the name of a mask file: a structure, also with the number of a case, or a name of the user's map.
   bool is_structure_file(const std::string& stem) const;
   bool is_empty() const noexcept { return by_number_.empty() && !rest_; }

@@ -136,7 +136,7 @@ Result<anatomy::LabelSource> name_labels(const RawVolume& raw, const std::filesy
   TROCAR_TRY(volume::LabelGrid labels, to_grid<std::uint8_t>(raw, where, convert_voxels));
   anatomy::LabelSource source{where, std::move(labels), {}, false, {}, {}};
   const std::vector<int> values = values_in(source.labels);
-  const std::string stem = image_stem(path);
+  const std::string stem = map.name_in_file_name(image_stem(path));
   const bool is_named_mask = values.size() == 1 && map.is_known(map.name_of(stem));
   TROCAR_TRY(source.names, own_names(raw, values, path, map, warnings));
   if (is_named_mask && !source.names.empty() && source.names.front().second != map.name_of(stem))

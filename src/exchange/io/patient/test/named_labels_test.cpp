@@ -289,5 +289,19 @@ TEST(NamedLabels, SegNrrdFieldsAreNeitherTwiceNorMisspelt) {
   EXPECT_TRUE(read_with(right + "Segment2_labelValue:=2\n").refuses("misspells"));
 }
 
+TEST(NamedLabels, AMaskCanSayInItsNameThatItIsOne) {
+  const TemporaryFolder folder;
+  for (const char* name : {"spleen_seg.nii", "spleen-mask.nii.gz", "spleen_Segmentation.nrrd", "spleen label.nii"}) {
+    write_values(folder / name, {1, 1});
+    EXPECT_EQ(read_labels_of(folder / name).names(), (NumberNames{{1, "spleen"}})) << name;
+  }
+  write_values(folder / "liver_seg.nii", {1, 1});
+  const LabelsRead liver = read_labels_of(folder / "liver_seg.nii");
+  EXPECT_EQ(liver.names(), (NumberNames{{1, "liver"}}));
+  EXPECT_TRUE(liver.warnings.empty());
+  write_values(folder / "liver_mask.nii", {1, 2});
+  EXPECT_TRUE(read_labels_of(folder / "liver_mask.nii").refuses("named after one structure"));
+}
+
 }  // namespace
 }  // namespace trocar::io
