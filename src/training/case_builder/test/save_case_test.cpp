@@ -145,7 +145,10 @@ TEST(ImportCase, BuildsACaseFromFiles) {
   const TemporaryFolder folder;
   anatomy::VirtualPatient patient = BoxPatient{}.make();
   for (std::size_t n = 0; n < patient.ct.voxels.size(); ++n)
-    patient.ct.voxels[n] = patient.skin_distance_mm.voxels[n] < 0.0F ? std::int16_t{60} : std::int16_t{-1000};
+    patient.ct.voxels[n] = patient.skin_distance_mm.voxels[n] >= 0.0F ? std::int16_t{-1000}
+                           : patient.labels.voxels[n] == 3            ? std::int16_t{110}
+                           : patient.labels.voxels[n] == 4            ? std::int16_t{60}
+                                                                      : std::int16_t{-80};
   volume::LabelGrid labels = patient.labels;
   for (std::uint8_t& id : labels.voxels) id = id == 3 ? 1 : id == 4 ? 2 : 0;
   ASSERT_TRUE(io::write_image(patient.ct, folder.path() / "ct.nrrd"));
