@@ -105,8 +105,8 @@ TEST(BuildPatient, WhereMasksOverlapTheMoreSpecialWins) {
 
 TEST(BuildPatient, IdsFollowTheOrderOfTheFiles) {
   LabelSource colon = source("colon", Torso::mask(Torso::grid(kSpacingMm), [](const Vec3& p_P) {
-                                  return (p_P - Vec3(80.0, -20.0, 0.0)).norm() < 15.0;
-                                }));
+                               return (p_P - Vec3(80.0, -20.0, 0.0)).norm() < 15.0;
+                             }));
   const Built built = build({colon, liver()});
   ASSERT_TRUE(built.patient) << built.patient.error().text();
   EXPECT_EQ(built.patient->label_table.find("colon")->id, 1);
