@@ -65,7 +65,7 @@ class BitWriter {
 
 int prediction_of(int predictor, int a, int b, int c) {
   const std::array<int, 8> all{0, a, b, c, a + b - c, a + ((b - c) >> 1), b + ((a - c) >> 1), (a + b) >> 1};
-  return all[static_cast<std::size_t>(predictor)];
+  return all[static_cast<std::size_t>(predictor) % all.size()];  // 8 is no predictor: written, to be refused
 }
 
 struct Packing {
