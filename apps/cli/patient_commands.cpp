@@ -273,12 +273,10 @@ void add_patient_commands(Command& program, Action& action) {
                          "Accept a DICOM SEG or RTSTRUCT of another series with the same frame of reference, such as "
                          "another reconstruction of the scan");
   build_command
-      .add_option(
-          "--label-map", b->label_map,
-          "Names of labels: totalsegmentator, totalsegmentator:TASK (liver_vessels, tissue_types ...), a data set "
-          "(lits, "
-          "msd_pancreas, kits, chaos, btcv, amos, flare22, word, ct_org, verse ...), or a TOML file with [labels] and "
-          "ignore (see the user guide)")
+      .add_option("--label-map", b->label_map,
+                  "Names of labels: totalsegmentator, totalsegmentator:TASK (liver_vessels, tissue_types ...), a data "
+                  "set such as "
+                  "lits, btcv or verse, or a TOML file with [labels] and ignore (see the user guide)")
       .show_default();
   build_command.add_option("--rescale", b->rescale,
                            "SLOPE,INTERCEPT of a CT whose file lacks them: HU = SLOPE * stored number + INTERCEPT");

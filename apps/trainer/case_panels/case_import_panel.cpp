@@ -7,7 +7,9 @@
 #include <QListWidget>
 #include <QProgressBar>
 #include <QPushButton>
+#include <QScrollArea>
 #include <QSettings>
+#include <QTimer>
 #include <QVBoxLayout>
 #include <algorithm>
 #include <memory>
@@ -135,7 +137,9 @@ class ImportPanel final : public CasePanel {
     posture_ = new QComboBox;
     posture_->setObjectName(QStringLiteral("case-posture"));
     posture_->setAccessibleName(tr("Posture for the puncture"));
-    posture_->setToolTip(tr("How the patient lies or sits: a finding tells if the CT was taken otherwise"));
+    posture_->setToolTip(
+        tr("How the patient lies or sits: a finding tells if the CT was taken otherwise. A complete patient "
+           "keeps its own."));
     using enum anatomy::Posture;
     for (const anatomy::Posture posture : {kSupine, kProne, kLeftLateral, kRightLateral, kSitting})
       posture_->addItem(to_qt(anatomy::posture_words(posture)), to_qt(anatomy::posture_name(posture)));
@@ -193,20 +197,27 @@ class ImportPanel final : public CasePanel {
     return std::nullopt;
   }
 
+  /// The import was started at the panel's lower end.
+  void scroll_to_top() {
+    for (QWidget* widget = parentWidget(); widget != nullptr; widget = widget->parentWidget())
+      if (auto* area = qobject_cast<QScrollArea*>(widget)) return area->ensureVisible(0, 0);
+  }
+
   void show_finding() {
     open_finding_ = next_finding();
     const bool is_open = open_finding_.has_value();
     finding_->setVisible(is_open);
     confirm_->setVisible(is_open);
     repair_->setVisible(is_open && !open_finding_->repair.empty());
-    if (!is_open) return;
+    if (!is_open) return finding_->clear();
+    if (finding_->text() != to_qt(open_finding_->text)) QTimer::singleShot(0, this, [this] { scroll_to_top(); });
     finding_->setText(to_qt(open_finding_->text));
-    confirm_->setText(has_failed_ ? tr("It is right: import as it is") : tr("It is right: keep it so"));
+    confirm_->setText(has_failed_ ? tr("It is right: import as it is") : tr("It is right: keep it"));
     const std::string& option = open_finding_->repair;
     repair_->setText(option == anatomy::kMirrorLabels           ? tr("Mirror the labels and import")
                      : option == anatomy::kMirrorBoth           ? tr("Mirror CT and labels and import")
                      : option.starts_with(anatomy::kUsePosture) ? tr("Import with this posture")
-                                                                : tr("Read the numbers so and import"));
+                                                                : tr("Use those numbers and import"));
     repair_->setToolTip(to_qt(option));
   }
 
