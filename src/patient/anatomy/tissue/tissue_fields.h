@@ -40,9 +40,10 @@ inline constexpr std::array<TissueField<TissueParams>, 6> kTissueFields{{
 }};
 
 /// Fields of a layer that a file may omit: zero.
-inline constexpr std::array<TissueField<LayerParams>, 2> kOptionalLayerFields{{
+inline constexpr std::array<TissueField<LayerParams>, 3> kOptionalLayerFields{{
     {"for_diameter_mm", "diameter", &LayerParams::for_diameter_mm, {0.0, 5.0}},
     {"load_spread_mm", "spread", &LayerParams::load_spread_mm, {0.0, 10.0}},
+    {"pressed_young_kpa", "pressed", &LayerParams::pressed_young_kpa, {0.0, 1000.0}},
 }};
 
 inline constexpr std::string_view kNeedleSize = "needle_size";
@@ -59,6 +60,18 @@ inline constexpr std::array<TissueField<PathConstraintLaw>, 2> kPathConstraintFi
     {"force_n", "m0", &PathConstraintLaw::force_n, {0.0, 20.0}},
     {"torque_nmm", "n0", &PathConstraintLaw::torque_nmm, {0.0, 500.0}},
 }};
+
+inline constexpr std::string_view kFriction = "friction";
+inline constexpr std::string_view kGrowsTo = "grows_to_mm_per_s";
+inline constexpr std::array<TissueField<FrictionLaw>, 2> kFrictionFields{{
+    {"tip", "tip", &FrictionLaw::tip, {0.0, 5.0}},
+    {kGrowsTo, "grows_to", &FrictionLaw::grows_to_mm_per_s, {0.1, 1000.0}},
+}};
+
+/// Numbers that may be infinite, written as never = true.
+inline constexpr bool may_be_never(std::string_view field) noexcept {
+  return field == kPunctureForce || field == kGrowsTo;
+}
 
 inline constexpr std::string_view kOrigin = "origin";
 inline constexpr std::size_t kLongestOrigin = 200;

@@ -32,6 +32,14 @@ void append_numbers(std::vector<NamedNumber>& numbers, const std::vector<T>& row
   }
 }
 
+template <class T>
+void append_section(std::vector<NamedNumber>& numbers, const T& section, std::span<const TissueField<T>> fields,
+                    std::string_view name) {
+  for (const TissueField<T>& field : fields)
+    numbers.push_back(
+        {fmt::format("{}.{}", name, field.short_name), fmt::format("{}.{}", name, field.name), section.*field.member});
+}
+
 std::vector<NamedNumber> numbers_of(const TissueTable& table) {
   std::vector<NamedNumber> numbers;
   append_numbers<LayerParams>(numbers, table.layers, kLayerFields, "layers");
@@ -42,6 +50,9 @@ std::vector<NamedNumber> numbers_of(const TissueTable& table) {
   append_numbers<TissueParams>(numbers, table.tissues, kTissueFields, "tissues");
   const std::string thickness = fmt::format("skin.{}", kSkinThickness);
   numbers.push_back({thickness, thickness, table.skin_thickness_mm});
+  append_section<FrictionLaw>(numbers, table.friction, kFrictionFields, kFriction);
+  if (table.path_constraint.is_given)
+    append_section<PathConstraintLaw>(numbers, table.path_constraint, kPathConstraintFields, kPathConstraint);
   for (const auto& field : kGradientFields) {
     const std::string setting = fmt::format("{}.{}", kTransfer, field.name);
     numbers.push_back({setting, setting, table.transfer.*field.member});

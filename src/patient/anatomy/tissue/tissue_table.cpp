@@ -54,7 +54,7 @@ Status read_fields(const config::TomlTable& row, std::span<const TissueField<T>>
   for (const TissueField<T>& field : fields) {
     if (!are_required && !row.has(field.name)) continue;
     const std::string field_path = fmt::format("{}.{}", path, field.name);
-    if (field.name == kPunctureForce) {
+    if (may_be_never(field.name)) {
       TROCAR_TRY(const std::optional<std::string> never, read_never(row, field.name));
       if (never) {
         entry.*field.member = std::numeric_limits<double>::infinity();
@@ -179,7 +179,15 @@ Status read_needle_size(const config::TomlTable& document, TissueTable& table) {
   return fail("tearing and spreading are both zero", row.where(), "give at least one of them a share");
 }
 
-/// Only tables that were fitted to a patient have it.
+/// Tables stored before there was such a section keep the friction that they had.
+Status read_friction(const config::TomlTable& document, TissueTable& table) {
+  if (!document.has(kFriction)) return {};
+  TROCAR_TRY(const config::TomlTable row, document.table(kFriction));
+  TROCAR_TRY_STATUS(row.check_keys(field_names<FrictionLaw>(kFrictionFields)));
+  return read_fields<FrictionLaw>(row, kFrictionFields, std::string(kFriction), true, table.friction, table);
+}
+
+/// Only tables that were fitted to a patient have it, and those in which the user chose it.
 Status read_path_constraint(const config::TomlTable& document, TissueTable& table) {
   if (!document.has(kPathConstraint)) return {};
   TROCAR_TRY(const config::TomlTable row, document.table(kPathConstraint));
@@ -196,8 +204,8 @@ Status read_origin(const config::TomlTable& document, TissueTable& table) {
 }
 
 Result<TissueTable> read_table(const config::TomlTable& document, std::string_view profile) {
-  TROCAR_TRY_STATUS(document.check_keys(
-      {"skin", "layers", "tissues", "profiles", "applied_profile", kTransfer, kNeedleSize, kPathConstraint, kOrigin}));
+  TROCAR_TRY_STATUS(document.check_keys({"skin", "layers", "tissues", "profiles", "applied_profile", kTransfer,
+                                         kNeedleSize, kPathConstraint, kFriction, kOrigin}));
   TissueTable table;
   TROCAR_TRY(const config::TomlTable skin, document.table("skin"));
   TROCAR_TRY_STATUS(skin.check_keys({kSkinThickness}));
@@ -214,6 +222,7 @@ Result<TissueTable> read_table(const config::TomlTable& document, std::string_vi
   TROCAR_TRY_STATUS(read_hu_transfer(document, table));
   TROCAR_TRY_STATUS(read_needle_size(document, table));
   TROCAR_TRY_STATUS(read_path_constraint(document, table));
+  TROCAR_TRY_STATUS(read_friction(document, table));
   TROCAR_TRY_STATUS(read_origin(document, table));
   TROCAR_TRY_STATUS(apply_profile(document, profile, table));
   return table;

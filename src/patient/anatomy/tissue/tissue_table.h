@@ -29,6 +29,8 @@ struct LayerParams {
   /// The layer spreads the load of the tip over this distance around it onto the tissue below, which gives way
   /// (physics.md P6). 0: the layer is held from the side and the tissue below does not matter. Range 0..10.
   double load_spread_mm = 0.0;
+  /// Young's modulus that soft tissue below the layer has at least under a needle's load (P6). Range 0..1000.
+  double pressed_young_kpa = 0.0;
 };
 
 /// How puncture and cutting forces depend on the needle (physics.md P7). The default is no dependence.
@@ -40,9 +42,16 @@ struct NeedleSizeLaw {
   double face_friction = 0.0;  ///< Coefficient of friction between the bevel's face and the tissue. Range 0..0.35.
 };
 
-/// Strength of the path constraint that was fitted to a patient (paper A; physics.md C3, C4).
+/// Friction that does not belong to one tissue.
+struct FrictionLaw {
+  double tip = 2.0;  ///< Coefficient of friction of a needle's tip on unpierced skin (physics.md V2). Range 0..5.
+  /// The viscous friction of the shaft grows with speed up to this; infinite: paper A's law (F1). Range 0.1..1000.
+  double grows_to_mm_per_s = std::numeric_limits<double>::infinity();
+};
+
+/// Paper A's path constraint (physics.md C3, C4) with these numbers, instead of the bending shaft in the tissue.
 struct PathConstraintLaw {
-  bool is_given = false;     ///< Else the program's own values are used.
+  bool is_given = false;
   double force_n = 3.0;      ///< m_0. Range 0..20. A device may render less.
   double torque_nmm = 80.0;  ///< n_0. Range 0..500.
 };
@@ -76,6 +85,7 @@ struct TissueTable {
   HuTransfer transfer;             ///< Transfer functions of unlabelled tissue, over HU.
   NeedleSizeLaw needle_size;
   PathConstraintLaw path_constraint;
+  FrictionLaw friction;
   std::string origin;  ///< Where a table comes from that is not the program's: "fitted to ..."; at most 200 bytes.
 
   std::optional<std::uint8_t> find_tissue(std::string_view name) const noexcept;
@@ -96,7 +106,8 @@ Result<std::vector<std::string>> tissue_profiles(const std::filesystem::path& pa
 /// Applies one override "liver.k=0.5": TISSUE.KEY=VALUE or LAYER.KEY=VALUE, KEY a field name or its short form (k, nu,
 /// mu, dx, delta, stick, fc, fp, young, spread, diameter); fp may be "never"; skin.thickness_mm is the shell's;
 /// LAYER.wall is 0 or 1; transfer.gradient_scale_mm, _none_hu_per_mm and _full_hu_per_mm (scale, none, full) are the
-/// transfer functions'; path_constraint.m0 and .n0 are the path constraint's. A layer's key given on a tissue changes
+/// transfer functions'; path_constraint.m0 and .n0 select paper A's path constraint; friction.tip and .grows_to
+/// (or "never") are the friction's. A layer's key given on a tissue changes
 /// that tissue's layer. nu given on the first tissue that carries a layer changes the layer too: paper A's table has
 /// one nu for both laws. tissues.NAME.KEY and layers.NAME.KEY mean that row alone. transfer.tn_factor=1.2 (k, tn, tt,
 /// r0, c, shaft, nu, young) multiplies the whole curve over HU as it stands by 0.1..10, each value kept in its field's

@@ -23,6 +23,14 @@ void write_fields(config::TomlWriter& writer, const T& entry, std::span<const Ti
                  provenance);
 }
 
+template <class T>
+void write_section(config::TomlWriter& writer, std::string_view name, const T& section,
+                   std::span<const TissueField<T>> fields, const std::map<std::string, Provenance>& provenance) {
+  writer.begin_table({std::string(name)});
+  for (const TissueField<T>& field : fields)
+    write_number(writer, field.name, section.*field.member, fmt::format("{}.{}", name, field.name), provenance);
+}
+
 /// What an override names; `name` may hold dots.
 struct Assignment {
   std::string_view name;
@@ -31,7 +39,7 @@ struct Assignment {
 };
 
 Status check_range(const Assignment& assignment, std::string_view field, config::Range range, std::string_view text) {
-  const bool is_never = std::isinf(assignment.value) && field == kPunctureForce;
+  const bool is_never = std::isinf(assignment.value) && may_be_never(field);
   if (is_never || (assignment.value >= range.low && assignment.value <= range.high)) return {};
   return fail_usage(fmt::format("{} must be a number from {} to {}", field, range.low, range.high), std::string(text),
                     "give a number in this range");
@@ -50,7 +58,13 @@ class Override {
 
   Status apply() {
     if (assignment_.name == "skin" && (assignment_.key == kSkinThickness)) return set_skin_thickness();
-    if (assignment_.name == kPathConstraint) return set_path_constraint();
+    if (assignment_.name == kPathConstraint) {
+      TROCAR_TRY_STATUS(set_number<PathConstraintLaw>(table_.path_constraint, kPathConstraintFields, "m0, n0"));
+      table_.path_constraint.is_given = true;
+      return {};
+    }
+    if (assignment_.name == kFriction)
+      return set_number<FrictionLaw>(table_.friction, kFrictionFields, "tip, grows_to");
     if (assignment_.name == kTransfer)
       return assignment_.key.ends_with(kFactorEnding) ? scale_curve() : set_gradient_number();
     if (assignment_.name.starts_with(kOfLayers)) return set_row<LayerParams>(table_.layers, kLayerFields, kOfLayers);
@@ -114,15 +128,16 @@ class Override {
     return {};
   }
 
-  Status set_path_constraint() {
-    const auto* field = find_field<PathConstraintLaw>(kPathConstraintFields, assignment_.key);
+  /// A number of a section that is not a row of a tissue or layer.
+  template <class T>
+  Status set_number(T& section, std::span<const TissueField<T>> fields, std::string_view known) {
+    const TissueField<T>* field = find_field<T>(fields, assignment_.key);
     if (!field)
-      return fail_usage(fmt::format("{} has no \"{}\"", kPathConstraint, assignment_.key), std::string(text_),
-                        "known are: m0, n0");
+      return fail_usage(fmt::format("{} has no \"{}\"", assignment_.name, assignment_.key), std::string(text_),
+                        fmt::format("known are: {}", known));
     TROCAR_TRY_STATUS(check_range(assignment_, field->name, field->range, text_));
-    table_.path_constraint.is_given = true;
-    table_.path_constraint.*field->member = assignment_.value;
-    table_.provenance[fmt::format("{}.{}", kPathConstraint, field->name)] = {std::string(kOverrideSource), {}, {}};
+    section.*field->member = assignment_.value;
+    table_.provenance[fmt::format("{}.{}", assignment_.name, field->name)] = {std::string(kOverrideSource), {}, {}};
     return {};
   }
 
@@ -227,18 +242,11 @@ std::string TissueTable::to_toml() const {
     write_fields<TissueParams>(writer, tissue, kTissueFields, "tissues", provenance);
   }
   write_hu_transfer(writer, *this);
-  if (needle_size.diameter_mm > 0.0) {
-    writer.begin_table({std::string(kNeedleSize)});
-    for (const auto& field : kNeedleSizeFields)
-      write_number(writer, field.name, needle_size.*field.member, fmt::format("{}.{}", kNeedleSize, field.name),
-                   provenance);
-  }
-  if (path_constraint.is_given) {
-    writer.begin_table({std::string(kPathConstraint)});
-    for (const auto& field : kPathConstraintFields)
-      write_number(writer, field.name, path_constraint.*field.member, fmt::format("{}.{}", kPathConstraint, field.name),
-                   provenance);
-  }
+  if (needle_size.diameter_mm > 0.0)
+    write_section<NeedleSizeLaw>(writer, kNeedleSize, needle_size, kNeedleSizeFields, provenance);
+  write_section<FrictionLaw>(writer, kFriction, friction, kFrictionFields, provenance);
+  if (path_constraint.is_given)
+    write_section<PathConstraintLaw>(writer, kPathConstraint, path_constraint, kPathConstraintFields, provenance);
   return writer.text();
 }
 
