@@ -71,8 +71,8 @@ Status fill_laws(HapticScene& scene, const anatomy::TissueTable& table) {
     const LoadingLaw loading{layer.stiffness_n_per_mm, layer.viscosity_ns_per_mm, layer.delta_x_mm};
     const double puncture_force_n =
         layer.puncture_force_n * needle_size_factor(table.needle_size, layer.for_diameter_mm, scene.needle);
-    scene.layers[i] = {loading, puncture_force_n, indentation_stiffness(loading, puncture_force_n), layer.is_wall,
-                       layer.load_spread_mm};
+    scene.layers[i] = {loading,       puncture_force_n,     indentation_stiffness(loading, puncture_force_n),
+                       layer.is_wall, layer.load_spread_mm, layer.pressed_young_kpa};
     if (!(layer.delta_x_mm > 0.0) || !(layer.puncture_force_n > 0.0))
       return fail_usage(fmt::format("layer {} needs positive dx and puncture force", layer.name), "tissue table",
                         "set delta_x_mm and fp above 0");
@@ -83,7 +83,7 @@ Status fill_laws(HapticScene& scene, const anatomy::TissueTable& table) {
   for (std::size_t i = 0; i < table.tissues.size(); ++i) {
     const anatomy::TissueParams& tissue = table.tissues[i];
     scene.tissues[i] = {tissue.viscosity_ns_per_mm,
-                        tissue.roughness_n * tissue.friction_mu,
+                        tissue.roughness_n * tissue.friction_mu * girth,
                         tissue.stick_n_per_mm * girth,
                         tissue.cutting_n * size,
                         tissue.young_kpa,
@@ -101,6 +101,8 @@ Status fill_laws(HapticScene& scene, const anatomy::TissueTable& table) {
     law.shaft_n_per_mm *= girth;
   }
   scene.skin_thickness_mm = table.skin_thickness_mm;
+  scene.friction = table.friction;
+  scene.has_path_constraint = table.path_constraint.is_given && scene.options.force_model == ForceModel::kInsertion;
   return {};
 }
 

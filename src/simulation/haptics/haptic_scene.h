@@ -67,7 +67,7 @@ inline constexpr double kNPerMm2PerKpa = 1e-3;
 /// Tissue and layer parameters in the form that the tick reads: no text, fixed size.
 struct TissueLaw {
   double viscosity_ns_per_mm = 0.0;
-  double noise_n = 0.0;  ///< delta * mu
+  double noise_n = 0.0;  ///< delta * mu, in proportion to the needle's diameter
   double stick_n_per_mm = 0.0;
   double cutting_n = 0.0;
   double young_kpa = 0.0;
@@ -80,8 +80,9 @@ struct LayerLaw {
   double puncture_force_n = std::numeric_limits<double>::infinity();
   /// Puncture force divided by the static indentation at that force; bone: its stiffness.
   double indent_n_per_mm = 1.0;
-  bool is_wall = false;         ///< Proxy models: the layer is punctured at a label's border.
-  double load_spread_mm = 0.0;  ///< Above 0: the tissue below gives way (physics.md P6).
+  bool is_wall = false;            ///< Proxy models: the layer is punctured at a label's border.
+  double load_spread_mm = 0.0;     ///< Above 0: the tissue below gives way (physics.md P6).
+  double pressed_young_kpa = 0.0;  ///< Least Young's modulus of that tissue.
 };
 
 /// Constant data of the tick. Built off-line, shared, read by many threads.
@@ -94,7 +95,9 @@ struct HapticScene {
   std::array<std::uint8_t, 256> tissue_of_label{};  ///< By label id.
   std::uint8_t skin = 0;
   double skin_thickness_mm = 2.0;
-  anatomy::HuTransfer transfer;  ///< Transfer functions of unlabelled tissue; proxy and combined.
+  anatomy::FrictionLaw friction;
+  bool has_path_constraint = false;  ///< Insertion model: paper A's path constraint instead of the bending shaft.
+  anatomy::HuTransfer transfer;      ///< Transfer functions of unlabelled tissue; proxy and combined.
   NeedleGeometry needle;
   ContactFace face;  ///< Face of a transducer or a finger.
   NeedleBeam beam_with_stylet;

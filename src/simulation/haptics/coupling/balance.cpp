@@ -10,22 +10,33 @@ double AxialBalance::prepuncture_n(double s_mm) const noexcept {
 }
 
 double AxialBalance::friction_at(double v) const noexcept {
-  const double thinning = is_thinning ? shear_thinning(v) : 1.0;
-  return viscous_ns_per_mm * thinning * v + noise_n + std::copysign(dry_n * motion_fade(v), v);
+  const double speed = std::abs(v);
+  const double viscous_n = is_thinning ? viscous_ns_per_mm * shear_thinning(v) * speed
+                                       : viscous_ns_per_mm * std::min(speed, grows_to_mm_per_s);
+  return std::copysign(std::max(0.0, viscous_n + (noise_n + dry_n) * motion_fade(v)), v);
 }
 
-double AxialBalance::cutting_at(double s_mm, double v, double prepuncture) const noexcept {
-  if (!(cutting_n > 0.0) || !(s_mm > cut_to_mm) || !(v > 0.0)) return 0.0;
-  return std::max(0.0, cutting_n * motion_fade(v) - prepuncture);
+AxialBalance::Resistance AxialBalance::resistance_at(double s_mm, double v) const noexcept {
+  const double x_mm = displacement(s_mm);
+  Resistance resistance{x_mm > 0.0 ? prepuncture_force_n(x_mm, v, loading) : 0.0, friction_at(v), 0.0, bed_n};
+  if (cutting_n > 0.0 && s_mm > cut_to_mm && v > 0.0)
+    resistance.cutting_n = std::max(0.0, cutting_n * motion_fade(v) - resistance.layer_n);
+  return resistance;
 }
 
-double AxialBalance::yielding_under(double prepuncture) const noexcept {
-  const double under_load_mm = below != nullptr ? below->depression_mm(prepuncture) : 0.0;
-  return std::max(under_load_mm, recoiling_mm());
+double AxialBalance::recoiling_under(double load_n) const noexcept {
+  if (!(recoil_mm > 0.0)) return 0.0;
+  const double held_mm = below != nullptr ? std::min(recoil_mm, below->depression_mm(load_n)) : 0.0;
+  return held_mm + (recoil_mm - held_mm) * kTissueRecoil_s / (kTissueRecoil_s + dt_s);
 }
 
-double AxialBalance::coupling_at(double s_mm, double v, double prepuncture) const noexcept {
-  const double yields_mm = yielding_under(prepuncture);
+double AxialBalance::yielding_under(const Resistance& resistance) const noexcept {
+  const double under_load_mm = is_yielding ? below->depression_mm(resistance.layer_n) : 0.0;
+  return std::max(under_load_mm, recoiling_under(resistance.sum_n() + stick_n));
+}
+
+double AxialBalance::coupling_under(double s_mm, double v, const Resistance& resistance) const noexcept {
+  const double yields_mm = yielding_under(resistance);
   const double v_tip = v + (yields_mm - yielded_mm) / dt_s;
   return coupling.stiffness_n_per_mm * (s_device_mm - yields_mm - s_mm) +
          coupling.damping_ns_per_mm * (v_device_mm_per_s - v_tip);
@@ -36,22 +47,26 @@ double AxialBalance::friction_n(double s_mm) const noexcept {
 }
 
 double AxialBalance::cutting_force_n(double s_mm) const noexcept {
-  return cutting_at(s_mm, velocity(s_mm), prepuncture_n(s_mm));
+  return resistance_at(s_mm, velocity(s_mm)).cutting_n;
 }
 
 double AxialBalance::yielding_mm(double s_mm) const noexcept {
-  return yielding_under(prepuncture_n(s_mm));
+  return yielding_under(resistance_at(s_mm, velocity(s_mm)));
+}
+
+double AxialBalance::recoiling_mm(double s_mm) const noexcept {
+  return recoiling_under(resistance_at(s_mm, velocity(s_mm)).sum_n() + stick_n);
 }
 
 double AxialBalance::coupling_n(double s_mm) const noexcept {
-  return coupling_at(s_mm, velocity(s_mm), prepuncture_n(s_mm));
+  const double v = velocity(s_mm);
+  return coupling_under(s_mm, v, resistance_at(s_mm, v));
 }
 
 double AxialBalance::unbalance_n(double s_mm) const noexcept {
   const double v = velocity(s_mm);
-  const double x_mm = displacement(s_mm);
-  const double prepuncture = x_mm > 0.0 ? prepuncture_force_n(x_mm, v, loading) : 0.0;
-  return prepuncture + friction_at(v) + cutting_at(s_mm, v, prepuncture) - coupling_at(s_mm, v, prepuncture);
+  const Resistance resistance = resistance_at(s_mm, v);
+  return resistance.sum_n() - coupling_under(s_mm, v, resistance);
 }
 
 AxialSolution solve(const AxialBalance& balance) noexcept {

@@ -20,12 +20,16 @@ class AxialBalance {
   LoadingLaw loading;
   double surface_mm = std::numeric_limits<double>::infinity();  ///< Resting surface of the layer ahead.
   double viscous_ns_per_mm = 0.0;                               ///< Sum of nu_i A_i over the inserted shaft.
-  double noise_n = 0.0;                                         ///< Fluctuation of the friction in this step.
+  double noise_n = 0.0;  ///< Fluctuation of the friction in this step; never along the motion.
+  double grows_to_mm_per_s = std::numeric_limits<double>::infinity();  ///< Viscous friction grows up to this speed.
   double dry_n = 0.0;        ///< Dry friction of the body proxies, against the motion.
   bool is_thinning = false;  ///< The viscous friction is that of the body proxies, less than linear (physics.md B6).
+  double bed_n = 0.0;        ///< Force with which the bed of the bent shaft pushes the needle out.
+  double stick_n = 0.0;      ///< Holding force of a needle at rest; it loads the tissue below.
   double cutting_n = 0.0;    ///< F_c of the tissue in front of the tip and of the layer that it presses on.
   double cut_to_mm = 0.0;    ///< Start of uncut tissue.
-  const SoftColumn* below = nullptr;  ///< Tissue below the layer ahead, which gives way; nullptr: rigid.
+  const SoftColumn* below = nullptr;  ///< Tissue below the layer ahead, or what recoils; nullptr: rigid.
+  bool is_yielding = false;           ///< The layer ahead presses that tissue in.
   double yielded_mm = 0.0;            ///< Depression of that tissue at the start of the step.
   double recoil_mm = 0.0;             ///< Depression that remains of the last puncture, at the start of the step.
 
@@ -35,19 +39,25 @@ class AxialBalance {
   double friction_n(double s_mm) const noexcept;
   /// The share of F_c that the layer ahead does not yet bear: the tip's resistance is the larger of both.
   double cutting_force_n(double s_mm) const noexcept;
-  /// Depression of the tissue below at the end of the step; what remains of the last puncture's.
+  /// Depression of the tissue below at the end of the step; what remains of the last puncture's, which recoils no
+  /// further than the present load permits.
   double yielding_mm(double s_mm) const noexcept;
-  double recoiling_mm() const noexcept { return recoil_mm * kTissueRecoil_s / (kTissueRecoil_s + dt_s); }
+  double recoiling_mm(double s_mm) const noexcept;
   double coupling_n(double s_mm) const noexcept;
   /// Resistance minus coupling; increases with s.
   double unbalance_n(double s_mm) const noexcept;
 
  private:
-  // The same for a speed and a force of the layer ahead that are known already.
+  /// Forces of the tissue at a place and speed.
+  struct Resistance {
+    double layer_n, friction_n, cutting_n, bed_n;
+    double sum_n() const noexcept { return layer_n + friction_n + cutting_n + bed_n; }
+  };
+  Resistance resistance_at(double s_mm, double v) const noexcept;
   double friction_at(double v) const noexcept;
-  double cutting_at(double s_mm, double v, double prepuncture) const noexcept;
-  double yielding_under(double prepuncture) const noexcept;
-  double coupling_at(double s_mm, double v, double prepuncture) const noexcept;
+  double recoiling_under(double load_n) const noexcept;
+  double yielding_under(const Resistance& resistance) const noexcept;
+  double coupling_under(double s_mm, double v, const Resistance& resistance) const noexcept;
 };
 
 struct AxialSolution {

@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "haptics/coupling/balance.h"
-#include "volume/sampling.h"
 
 namespace trocar::haptics {
 namespace {
@@ -22,50 +21,45 @@ struct LineStep {
 
 void stop_loading(InsertionState& state) noexcept {
   state.loading = kNoLayer;
-  state.is_stuck = false;
+  state.is_yielding = state.is_stuck = false;
   state.pending_s = 0.0;
   state.pressed_to_mm = state.front_n = 0.0;
 }
 
-/// Distance along the axis from the device's tip to the skin. Skin that is pressed in does not get lost where it is too
-/// uneven for the search: it stays where it was.
-std::optional<double> way_to_skin(const InsertionState& state, const HapticScene& scene, const Vec3& tip_P,
-                                  const Vec3& axis_P) noexcept {
-  if (state.loading == kNoLayer) return distance_to_skin_along(scene, tip_P, axis_P);
-  const double near_mm = state.to_skin_mm - axis_P.dot(tip_P - state.device_tip_P);
-  const auto found = distance_to_skin_along(scene, tip_P, axis_P, near_mm);
-  constexpr double kSameSkin_mm = 2.0;
-  if (found && std::abs(*found - near_mm) < kSameSkin_mm) return found;
-  return volume::sample_linear(scene.patient->skin_distance_mm, tip_P) < 0.0 ? std::optional(near_mm) : found;
+/// Where the tip of a needle in air meets the skin, or an open channel: false while it stays in air. Skin that still
+/// recoils from a puncture is met that much deeper.
+bool meet(InsertionState& state, InsertionPath& path, const HapticScene& scene, const Vec3& tip_P,
+          const Vec3& axis_P) noexcept {
+  if (!(skin_distance_mm(scene, tip_P) < -state.recoil_mm)) return false;
+  const bool is_from_outside = skin_distance_mm(scene, state.device_tip_P) > 0.0;
+  const Vec3 entry_P = is_from_outside ? meet_skin(scene, state.device_tip_P, tip_P) : nearest_skin(scene, tip_P);
+  Vec3 way_P = inward_normal(scene, entry_P);
+  if (const Channel* hole = path.memory.find(entry_P, axis_P)) {
+    path.channel = *hole;
+    path.is_open = true;
+    way_P = hole->direction_P;
+  } else {
+    start_channel(path, entry_P, axis_P);
+    state.skin.anchor_P = entry_P;
+  }
+  // So far needle and device coincided, above skin that may still recoil.
+  state.s_device_mm = way_P.dot(state.device_tip_P - path.channel.origin_P);
+  state.yielded_mm = state.recoil_mm;
+  state.s_mm = state.s_device_mm - state.yielded_mm;
+  return true;
 }
 
-/// Projects needle and device onto the line of this step: the path after the skin puncture, before that the needle's
-/// axis from its intersection with the skin. Empty: no skin ahead.
+/// Projects needle and device onto the line of this step: the path after the skin puncture, before that the way from
+/// the point of the skin that the tip holds to the device's tip. Empty: in air.
 std::optional<LineStep> place_on_line(InsertionState& state, InsertionPath& path, const HapticScene& scene,
                                       const Vec3& tip_P, const Vec3& axis_P) noexcept {
-  if (!path.is_open) {
-    const auto to_skin = way_to_skin(state, scene, tip_P, axis_P);
-    if (!to_skin) return std::nullopt;
-    state.to_skin_mm = *to_skin;
-    const Vec3 entry_P = tip_P + *to_skin * axis_P;
-    if (const Channel* hole =
-            state.loading == kNoLayer && *to_skin < -state.recoil_mm ? path.memory.find(entry_P, axis_P) : nullptr) {
-      path.channel = *hole;
-      path.is_open = true;
-    } else if (state.loading == kNoLayer) {
-      start_channel(path, entry_P, axis_P);
-    } else {  // translation and rotation on the skin
-      path.channel.origin_P = entry_P;
-      path.channel.direction_P = axis_P;
-    }
-    if (state.loading == kNoLayer) {  // no contact yet: needle and device coincided, above skin that may still recoil
-      state.s_device_mm = path.channel.direction_P.dot(state.device_tip_P - path.channel.origin_P);
-      state.yielded_mm = state.recoil_mm;
-      state.s_mm = state.s_device_mm - state.yielded_mm;
-    }
-  }
+  if (!path.is_open && state.loading == kNoLayer && !meet(state, path, scene, tip_P, axis_P)) return std::nullopt;
   const Channel& line = path.channel;
-  return LineStep{state.s_mm, state.s_device_mm, line.direction_P.dot(tip_P - line.origin_P)};
+  if (path.is_open) return LineStep{state.s_mm, state.s_device_mm, line.direction_P.dot(tip_P - line.origin_P)};
+  follow_skin(state.skin, scene, tip_P, scene.friction.tip);
+  path.channel.origin_P = state.skin.anchor_P;
+  path.channel.direction_P = axis_P;
+  return LineStep{state.s_mm, state.s_device_mm, state.skin.to_device_mm};
 }
 
 /// The layer under load, or the next one ahead of the tip.
@@ -80,15 +74,14 @@ LayerAhead layer_in_front(InsertionState& state, InsertionPath& path, const Hapt
 }
 
 /// Friction of paper A: each tissue by the shaft length in it, with its fluctuation.
-void add_friction(AxialBalance& balance, const InsertionState& state, const InsertionPath& path,
-                  const HapticScene& scene) noexcept {
-  const double fade = motion_fade(state.velocity_mm_per_s);
+void add_friction(AxialBalance& balance, const InsertionPath& path, const HapticScene& scene) noexcept {
+  balance.grows_to_mm_per_s = scene.friction.grows_to_mm_per_s;
   for (std::size_t i = 0; i < static_cast<std::size_t>(scene.tissue_count); ++i) {
     if (path.inserted_mm[i] <= 0.0) continue;
     balance.viscous_ns_per_mm +=
         scene.tissues[i].viscosity_ns_per_mm * contact_area_cm2(scene.needle.radius_mm, path.inserted_mm[i]);
-    balance.noise_n += fade * scene.tissues[i].noise_n *
-                       friction_noise(scene.options.seed, static_cast<std::uint32_t>(i), path.travel_mm);
+    balance.noise_n +=
+        scene.tissues[i].noise_n * friction_noise(scene.options.seed, static_cast<std::uint32_t>(i), path.travel_mm);
   }
 }
 
@@ -120,12 +113,14 @@ AxialBalance make_balance(const InsertionState& state, const InsertionPath& path
   if (ahead.layer != kNoLayer) {
     balance.loading = scene.layers[ahead.layer].loading;
     balance.surface_mm = ahead.surface_mm;
-    if (state.loading != kNoLayer && state.below.cells > 0) balance.below = &state.below;
   }
+  if (state.loading == kNoLayer) balance.bed_n = path.bed_out_n;  // else the tip rests at the layer
+  if (state.below.cells > 0) balance.below = &state.below;
+  balance.is_yielding = state.is_yielding && balance.below != nullptr;
   balance.cutting_n = state.front_n;
   balance.cut_to_mm = std::max(path.channel.cut_to_mm, state.pressed_to_mm);
   if (share == nullptr) {
-    add_friction(balance, state, path, scene);
+    add_friction(balance, path, scene);
     return balance;
   }
   balance.viscous_ns_per_mm = share->shaft.viscous_ns_per_mm;
@@ -151,11 +146,17 @@ bool is_held(const InsertionState& state, const InsertionPath& path, const Hapti
                                           state.device_speed_mm_per_s <= kRestSpeed_mm_per_s);
   if (!at_rest) return false;
   const double s = balance.s_previous_mm;
-  const double push = balance.coupling_n(s) - balance.prepuncture_n(s);
+  const double push = balance.coupling_n(s) - balance.prepuncture_n(s) - balance.bed_n;
   const double holding = holding_force_n(path, scene, balance);
   // Uncut tissue holds until it is cut, except the share that the layer behind it bears.
   const double uncut = s >= balance.cut_to_mm ? std::max(0.0, balance.cutting_n - balance.prepuncture_n(s)) : 0.0;
   return push <= holding + uncut && push >= -holding;
+}
+
+/// The holding force of a needle at rest also loads the tissue that recoils.
+void hold(AxialBalance& balance) noexcept {
+  const double s = balance.s_previous_mm;
+  balance.stick_n = balance.coupling_n(s) - balance.prepuncture_n(s) - balance.bed_n;
 }
 
 /// Fraction of the step at which the layer reaches its puncture force.
@@ -195,13 +196,17 @@ telemetry::InsertionPhase next_phase(const InsertionState& state, const Insertio
                                                                : telemetry::InsertionPhase::kInserted;
 }
 
-/// The tissue below a layer, if it gives way under the load of the tip.
-SoftColumn tissue_below(const InsertionPath& path, const HapticScene& scene, const LayerAhead& layer) noexcept {
-  const double spread_mm = scene.layers[layer.layer].load_spread_mm;
-  if (!(spread_mm > 0.0)) return {};
+/// The tip begins to press on a layer. Tissue that still recoils from the puncture before stays the tissue below.
+void begin_loading(InsertionState& state, const InsertionPath& path, const HapticScene& scene,
+                   const LayerAhead& layer) noexcept {
+  constexpr double kRecoiled_mm = 0.05;
+  const LayerLaw& law = scene.layers[layer.layer];
+  state.is_yielding = law.load_spread_mm > 0.0;
+  if (!state.is_yielding || state.recoil_mm > kRecoiled_mm) return;
   const Channel& line = path.channel;
-  return soft_column(scene, line.origin_P + layer.surface_mm * line.direction_P, line.direction_P,
-                     scene.needle.radius_mm + spread_mm);
+  const Vec3 inward_P = path.is_open ? line.direction_P : state.skin.way_P;
+  state.below = soft_column(scene, line.origin_P + layer.surface_mm * inward_P, inward_P,
+                            scene.needle.radius_mm + law.load_spread_mm, law.pressed_young_kpa);
 }
 
 /// Contact with hysteresis: starts at the resting surface, ends slightly above it.
@@ -210,7 +215,7 @@ void update_contact(InsertionState& state, const InsertionPath& path, const Hapt
   if (ahead.layer == kNoLayer) return;
   if (state.s_mm > ahead.surface_mm) {
     if (!path.is_open && state.loading == kNoLayer) state.contact_P = path.channel.origin_P;
-    if (state.loading == kNoLayer) state.below = tissue_below(path, scene, ahead);
+    if (state.loading == kNoLayer) begin_loading(state, path, scene, ahead);
     state.loading = ahead.layer;
     state.surface_mm = ahead.surface_mm;
     if (path.is_open) state.pressed_to_mm = std::max(state.pressed_to_mm, state.s_mm);
@@ -219,23 +224,34 @@ void update_contact(InsertionState& state, const InsertionPath& path, const Hapt
   }
 }
 
+/// The place on the skin contact's way, seen along the path that opens: the needle's axis.
+void turn_to_path(InsertionState& state, const InsertionPath& path) noexcept {
+  const double along = state.skin.way_P.dot(path.channel.direction_P);
+  for (double* value : {&state.s_mm, &state.s_device_mm, &state.yielded_mm, &state.recoil_mm, &state.velocity_mm_per_s,
+                        &state.device_velocity_mm_per_s})
+    *value *= along;
+}
+
 /// Punctures the layer under load; for the skin this opens the path.
 void give_way(InsertionState& state, InsertionPath& path, std::uint8_t layer) noexcept {
   state.loading = kNoLayer;
+  state.is_yielding = false;
   if (path.is_open) {
     path.channel.pierce(layer);
     return;
   }
+  path.contact_to_puncture_P = path.channel.origin_P + state.s_mm * state.skin.way_P - state.contact_P;
+  turn_to_path(state, path);
   open_path(path, layer);
-  path.contact_to_puncture_P = path.channel.origin_P + state.s_mm * path.channel.direction_P - state.contact_P;
 }
 
-/// No skin ahead: the virtual needle is at the device.
+/// The virtual needle is at the device; skin that was pierced before recoils freely.
 InsertionStep step_in_air(InsertionState& state, InsertionPath& path, const Vec3& tip_P, const Vec3& axis_P,
                           double dt_s) noexcept {
   leave_body(path);
   stop_loading(state);
-  state.yielded_mm = state.recoil_mm = 0.0;
+  state.recoil_mm *= kTissueRecoil_s / (kTissueRecoil_s + dt_s);
+  state.yielded_mm = state.recoil_mm;
   InsertionStep step;
   step.tip_P = tip_P;
   step.axis_P = axis_P;
@@ -253,8 +269,9 @@ void record_forces(const InsertionState& state, const AxialBalance& balance, dou
   step.velocity_mm_per_s = is_stuck ? 0.0 : balance.velocity(s_mm);
   step.displacement_mm = balance.displacement(s_mm);
   step.prepuncture_n = balance.prepuncture_n(s_mm);
+  step.bed_n = balance.bed_n;
   if (is_stuck) {
-    step.stick_n = balance.coupling_n(s_mm) - step.prepuncture_n;
+    step.stick_n = balance.coupling_n(s_mm) - step.prepuncture_n - step.bed_n;
     return;
   }
   const double friction_n = balance.friction_n(s_mm);
@@ -281,6 +298,7 @@ double solve_step(InsertionState& state, const HapticScene& scene, const LineSte
   const AxialSolution solution = solve(balance);
   step.hit_solver_bound = solution.hit_bound;
   if (ahead.layer == kNoLayer) return solution.s_mm;
+  if (step.is_on_skin && !can_pierce(state.skin, scene, step.axis_P)) return solution.s_mm;
   const double puncture_force_n = scene.layers[ahead.layer].puncture_force_n;
   if (balance.prepuncture_n(solution.s_mm) < puncture_force_n) return solution.s_mm;
   const Puncture puncture = find_puncture(balance, line, state.device_velocity_mm_per_s, puncture_force_n);
@@ -313,7 +331,10 @@ InsertionStep step_insertion(InsertionState& state, InsertionPath& path, const H
   const double smoothing = dt_s / (dt_s + kSpeedSmoothing_s);
   state.device_speed_mm_per_s += smoothing * (std::abs(balance.v_device_mm_per_s) - state.device_speed_mm_per_s);
   state.is_stuck = is_held(state, path, scene, balance);
+  if (state.is_stuck) hold(balance);
   InsertionStep step;
+  step.is_on_skin = !path.is_open;
+  step.axis_P = path.channel.direction_P;
   const double s_mm = solve_step(state, scene, *line, ahead, balance, step);
   record_forces(state, balance, s_mm, share, step);
 
@@ -324,7 +345,7 @@ InsertionStep step_insertion(InsertionState& state, InsertionPath& path, const H
   state.device_velocity_mm_per_s = balance.v_device_mm_per_s;
   state.device_tip_P = device_tip_P;
   state.yielded_mm = balance.yielding_mm(s_mm);
-  state.recoil_mm = step.punctured != kNoLayer ? state.yielded_mm : balance.recoiling_mm();
+  state.recoil_mm = step.punctured != kNoLayer ? state.yielded_mm : balance.recoiling_mm(s_mm);
   update_contact(state, path, scene, ahead);
   if (path.is_open) {
     const double rest_mm = state.loading != kNoLayer ? std::min(s_mm, state.surface_mm) : s_mm;
@@ -334,8 +355,7 @@ InsertionStep step_insertion(InsertionState& state, InsertionPath& path, const H
 
   step.phase = state.phase;
   step.tissue = tissue_at_tip(state, path, scene);
-  step.axis_P = path.channel.direction_P;
-  step.tip_P = path.channel.origin_P + s_mm * step.axis_P;
+  step.tip_P = path.channel.origin_P + s_mm * (step.is_on_skin ? state.skin.way_P : step.axis_P);
   step.depth_mm = path.is_open || state.loading != kNoLayer ? std::max(0.0, s_mm) : 0.0;
   if (step.punctured != kNoLayer) give_way(state, path, step.punctured);
   if (path.is_open && s_mm < -kLeaveSkin_mm) {

@@ -5,6 +5,7 @@
 
 #include "haptics/haptic_scene.h"
 #include "haptics/insertion/insertion_path.h"
+#include "haptics/insertion/skin_contact.h"
 #include "haptics/insertion/soft_column.h"
 #include "haptics/proxy/body_proxies.h"
 #include "telemetry/tick_sample.h"
@@ -25,11 +26,12 @@ struct InsertionState {
 
   std::uint8_t loading = kNoLayer;  ///< Layer under load.
   double surface_mm = 0.0;          ///< s of its resting surface.
-  double to_skin_mm = 0.0;          ///< From the device's tip to the skin that it presses, along the axis; <= 0.
+  SkinContact skin;                 ///< Before the skin puncture: s is along skin.way_P, from skin.anchor_P.
   double front_n = 0.0;             ///< Cutting force of the tissue in front of it.
   bool is_front_proxy = false;      ///< That force is the tip proxy's (combined model).
   double pressed_to_mm = 0.0;       ///< Deepest s under the load of layers: the tissue in front is cut so far.
-  SoftColumn below;                 ///< Tissue below it, which gives way.
+  SoftColumn below;                 ///< Tissue that gives way or recoils.
+  bool is_yielding = false;         ///< The layer under load presses that tissue in.
   double yielded_mm = 0.0;          ///< Depression of that tissue: the device is that much further along the path.
   double recoil_mm = 0.0;           ///< What remains of it since the last puncture.
   bool is_stuck = false;
@@ -47,6 +49,7 @@ struct InsertionStep {
   double friction_n = 0.0;
   double cutting_n = 0.0;
   double stick_n = 0.0;
+  double bed_n = 0.0;  ///< Of the bed of the bent shaft (physics.md B7).
   /// Combined model: force of the tip proxy in tissue that no layer or cutting force describes.
   double tip_proxy_n = 0.0;
   double body_axial_n = 0.0;  ///< Combined model: friction of the body proxies, in place of friction_n.
@@ -55,6 +58,7 @@ struct InsertionStep {
   std::uint8_t punctured = kNoLayer;  ///< Layer punctured in this step.
   EnteredLabels entered;
   bool hit_solver_bound = false;
+  bool is_on_skin = false;  ///< The tip presses unpierced skin: its force is along the contact's way (physics.md V2).
 };
 
 /// Forces of the proxies of paper B along the path, instead of the friction of paper A (combined model; physics.md T2).

@@ -7,26 +7,6 @@
 
 namespace trocar::haptics {
 
-std::optional<double> distance_to_skin_along(const HapticScene& scene, const Vec3& tip_P, const Vec3& axis_P,
-                                             double near_mm) noexcept {
-  const volume::FloatGrid& distance = scene.patient->skin_distance_mm;
-  constexpr double kReach_mm = 60.0;  // more than the skin gives way
-  constexpr double kGrazing = 0.17;   // cosine of 80 degrees
-  constexpr int kMaxSteps = 12;
-  double t = near_mm;
-  for (int i = 0; i < kMaxSteps; ++i) {
-    const Vec3 here_P = tip_P + t * axis_P;
-    const double d = volume::sample_linear(distance, here_P);
-    if (!(std::abs(d) < kReach_mm)) return std::nullopt;
-    if (std::abs(d) < 1e-6) return t;
-    const double slope = volume::gradient_per_mm(distance, here_P).dot(axis_P);
-    if (slope > -kGrazing) return std::nullopt;
-    t -= d / slope;
-    if (std::abs(t) > kReach_mm) return std::nullopt;
-  }
-  return t;
-}
-
 void start_channel(InsertionPath& path, const Vec3& origin_P, const Vec3& direction_P) noexcept {
   path.channel.is_used = true;
   path.channel.origin_P = origin_P;
@@ -80,6 +60,7 @@ EnteredLabels move_tip(InsertionPath& path, const HapticScene& scene, double res
 void leave_body(InsertionPath& path) noexcept {
   if (path.is_open) path.memory.remember(path.channel);
   path.is_open = false;
+  path.bed_out_n = 0.0;
   path.contact_to_puncture_P = Vec3::Zero();
   path.rest_mm = 0.0;
   path.label = 0;

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 
 #include "haptics/haptic_scene.h"
 #include "haptics/insertion/channel.h"
@@ -26,13 +25,9 @@ struct InsertionPath {
   std::uint8_t label = 0;  ///< Label at the tip.
   std::array<double, kMaxTissues> inserted_mm{};  ///< Shaft length in each tissue.
   Vec3 contact_to_puncture_P = Vec3::Zero();      ///< PX_p of paper A; zero before the skin puncture.
+  /// Force (N) along the path with which the bed of the bent shaft pushes the needle out, of the last step (B7).
+  double bed_out_n = 0.0;
 };
-
-/// Distance (mm) along the axis from the tip to the resting skin; negative if the tip is below it. Empty if the skin is
-/// far away or nearly parallel to the axis. The search starts at `near_mm`, where the skin was: a tip that presses the
-/// skin in may be closer to another part of it. Real-time safe.
-std::optional<double> distance_to_skin_along(const HapticScene& scene, const Vec3& tip_P, const Vec3& axis_P,
-                                             double near_mm = 0.0) noexcept;
 
 /// Starts a new channel on a line. Real-time safe.
 void start_channel(InsertionPath& path, const Vec3& origin_P, const Vec3& direction_P) noexcept;

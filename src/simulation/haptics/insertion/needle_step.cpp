@@ -54,22 +54,59 @@ Vec3 axial_torque_nmm(const HapticScene& scene, const Pose& X_PN, const Vec3& di
   return -along_n * Vec3(scene.needle.length_mm * X_PN.R().col(2)).cross(direction_P);
 }
 
+/// Force across the needle on unpierced skin, whose whole force is along the contact's way, at the tip; damped like the
+/// force along it (physics.md V2).
+void hold_on_skin(const NeedleState& state, const Pose& X_PN, const Pose& X_PN_ahead, double length_mm,
+                  NeedleStep& step) noexcept {
+  if (!step.axial.is_on_skin) return;
+  const SkinContact& skin = state.insertion.skin;
+  const double load_n = step.axial.prepuncture_n;
+  Vec3 force_P = load_n * (step.axial.axis_P - skin.way_P);
+  constexpr double kNear_mm = 1e-6;
+  if (!skin.has_slid && skin.to_device_mm > kNear_mm) {
+    const Vec3 ahead_P = X_PN_ahead.p() - X_PN.p();
+    force_P -= load_n / skin.to_device_mm * (ahead_P - skin.way_P * skin.way_P.dot(ahead_P));
+  }
+  step.held_P.force_n += force_P;
+  step.held_P.torque_nmm += Vec3(length_mm * X_PN.R().col(2)).cross(force_P);
+}
+
+/// Change of the share that is rendered per mm of depth: the grip's rotational stiffness between the last two depths.
+double share_slope_per_mm(GripTurning& turning, const HeldShaft& shaft, double tip_mm) noexcept {
+  constexpr double kMoved_mm = 1e-3;
+  if (std::abs(tip_mm - turning.tip_mm) > kMoved_mm) {
+    turning.slope =
+        turning.nmm_per_rad > 0.0 ? (shaft.turning_nmm_per_rad - turning.nmm_per_rad) / (tip_mm - turning.tip_mm) : 0.0;
+    turning.tip_mm = tip_mm;
+    turning.nmm_per_rad = shaft.turning_nmm_per_rad;
+  }
+  return shaft.share < 1.0 ? -shaft.share * turning.slope / shaft.turning_nmm_per_rad : 0.0;
+}
+
 /// Forces of the body proxies across the path, the bent shape of the needle, and the torque about the grip of all
 /// forces (paper B, eq. 6): those along the path act at the tip, from whose motion they are computed.
 void hold_body(NeedleState& state, const HapticScene& scene, const Pose& X_PN_ahead, bool is_stylet_in,
                double cutting_mm_per_s, NeedleStep& step) noexcept {
   state.bent.node_count = 0;
-  if (!state.path.is_open) return;
-  const HeldShaft shaft = hold_shaft(state.path.channel, scene, X_PN_ahead, state.path.rest_mm, is_stylet_in);
   const InsertionStep& axial = step.axial;
+  step.held_P.force_n = -axial.bed_n * axial.axis_P;
   const double on_tip_n = axial.prepuncture_n + axial.cutting_n - step.tip_proxy_P.dot(axial.axis_P);
+  const double along_n = on_tip_n + axial.friction_n + axial.body_axial_n + axial.stick_n + axial.bed_n;
+  step.held_P.torque_nmm = axial_torque_nmm(scene, X_PN_ahead, axial.axis_P, along_n);
+  if (!state.path.is_open) {  // the tip proxy's force across the needle; nothing holds the shaft yet
+    const Vec3 across_P = step.tip_proxy_P - axial.axis_P * step.tip_proxy_P.dot(axial.axis_P);
+    step.held_P.torque_nmm += Vec3(scene.needle.length_mm * X_PN_ahead.R().col(2)).cross(across_P);
+    return;
+  }
+  const HeldShaft shaft = hold_shaft(state.path.channel, scene, X_PN_ahead, state.path.rest_mm, is_stylet_in);
   // The bevel deflects only while it cuts: at rest its force would have no potential.
   const double cuts = cutting_mm_per_s > 0.0 ? motion_fade(cutting_mm_per_s) : 0.0;
   const ShaftReaction reaction = react(shaft, scene, bevel_force_P(scene.needle, X_PN_ahead, cuts * on_tip_n));
   state.bent = reaction.bent;
-  step.held_P = reaction.wrench_P;
-  const double along_n = on_tip_n + axial.body_axial_n + axial.stick_n;
-  step.held_P.torque_nmm += axial_torque_nmm(scene, X_PN_ahead, axial.axis_P, along_n);
+  state.path.bed_out_n =
+      shaft.out_n + share_slope_per_mm(state.turning, shaft, state.path.rest_mm) / shaft.share * shaft.energy_nmm;
+  step.held_P.force_n += reaction.wrench_P.force_n;
+  step.held_P.torque_nmm += reaction.wrench_P.torque_nmm;
 }
 
 /// Contribution of model B along the path in the combined model: the shaft's friction, and the tip in tissue that model
@@ -88,13 +125,24 @@ ProxyShare proxy_share(const InsertionPath& path, const HapticScene& scene) noex
   return share;
 }
 
-void step_insertion_model(NeedleState& state, const HapticScene& scene, const Pose& X_PN, const Pose& X_PN_ahead,
-                          double dt_s, NeedleStep& step) noexcept {
-  step.axial = step_insertion(state.insertion, state.path, scene, X_PN.p(), X_PN.R().col(2), dt_s);
+/// Paper A's path constraint instead of the bending shaft (C3, C4).
+void constrain_to_path(NeedleState& state, const HapticScene& scene, const Pose& X_PN, const Pose& X_PN_ahead,
+                       NeedleStep& step) noexcept {
   step.held_P = path_constraint_wrench(state.path, scene, X_PN, X_PN_ahead);
   const InsertionStep& axial = step.axial;
   const double along_n = axial.prepuncture_n + axial.friction_n + axial.cutting_n + axial.stick_n;
   step.held_P.torque_nmm += axial_torque_nmm(scene, X_PN, axial.axis_P, along_n);
+}
+
+void step_insertion_model(NeedleState& state, const HapticScene& scene, const Pose& X_PN, const Pose& X_PN_ahead,
+                          bool is_stylet_in, double dt_s, NeedleStep& step) noexcept {
+  constexpr double kNoBevel = 0.0;  // paper A has no force on the bevel
+  step.axial = step_insertion(state.insertion, state.path, scene, X_PN.p(), X_PN.R().col(2), dt_s);
+  if (scene.has_path_constraint)
+    constrain_to_path(state, scene, X_PN, X_PN_ahead, step);
+  else
+    hold_body(state, scene, X_PN_ahead, is_stylet_in, kNoBevel, step);
+  hold_on_skin(state, X_PN, X_PN_ahead, scene.needle.length_mm, step);
 }
 
 void step_proxy_model(NeedleState& state, const HapticScene& scene, const Pose& X_PN, const Pose& X_PN_ahead,
@@ -113,6 +161,7 @@ void step_combined_model(NeedleState& state, const HapticScene& scene, const Pos
   step.axial = step_insertion(state.insertion, state.path, scene, X_PN.p(), X_PN.R().col(2), dt_s, &share);
   step.tip_proxy_P = -step.axial.tip_proxy_n * step.axial.axis_P;
   hold_body(state, scene, X_PN_ahead, is_stylet_in, step.axial.velocity_mm_per_s, step);
+  hold_on_skin(state, X_PN, X_PN_ahead, scene.needle.length_mm, step);
 }
 
 /// A tick without any bend that can be seen is sent as straight.
@@ -125,7 +174,7 @@ telemetry::NeedleShape needle_shape(const NeedleState& state, const HapticScene&
   telemetry::NeedleShape shape;
   if (!state.path.is_open) return shape;
   BentShaft bent = state.bent;
-  if (scene.options.force_model == ForceModel::kInsertion) {
+  if (scene.has_path_constraint) {
     const HeldShaft shaft = hold_shaft(state.path.channel, scene, state.X_PN, state.path.rest_mm, is_stylet_in);
     bent = react(shaft, scene, Vec3::Zero()).bent;
   }
@@ -151,7 +200,7 @@ NeedleStep step_needle(NeedleState& state, const HapticScene& scene, const Pose&
   const Pose X_PN_ahead = pose_ahead(state, X_PN, ahead_s, dt_s);
   switch (scene.options.force_model) {
     case ForceModel::kInsertion:
-      step_insertion_model(state, scene, X_PN, X_PN_ahead, dt_s, step);
+      step_insertion_model(state, scene, X_PN, X_PN_ahead, is_stylet_in, dt_s, step);
       break;
     case ForceModel::kProxy:
       step_proxy_model(state, scene, X_PN, X_PN_ahead, is_stylet_in, dt_s, step);

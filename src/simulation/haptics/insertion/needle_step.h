@@ -8,6 +8,13 @@
 
 namespace trocar::haptics {
 
+/// Rotational stiffness of the shaft's bed at the grip at the last depth of the tip, and its change per mm of depth.
+struct GripTurning {
+  double tip_mm = 0.0;
+  double nmm_per_rad = 0.0;
+  double slope = 0.0;
+};
+
 /// State of the needle under any force model, from one tick to the next. Fixed size.
 struct NeedleState {
   bool is_started = false;
@@ -18,7 +25,8 @@ struct NeedleState {
   InsertionPath path;
   InsertionState insertion;  ///< Used by the insertion and combined models.
   ProxyNeedleState proxy;    ///< Used by the proxy model.
-  BentShaft bent;            ///< Used by the proxy and combined models; see needle_shape.
+  BentShaft bent;            ///< See needle_shape.
+  GripTurning turning;
 };
 
 /// Result of a step of the needle, in P, before weight and limits (physics.md T1, T2).

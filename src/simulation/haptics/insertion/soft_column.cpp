@@ -29,8 +29,8 @@ double SoftColumn::depression_mm(double force_n) const noexcept {
   return depression_mm;
 }
 
-SoftColumn soft_column(const HapticScene& scene, const Vec3& surface_P, const Vec3& inward_P,
-                       double radius_mm) noexcept {
+SoftColumn soft_column(const HapticScene& scene, const Vec3& surface_P, const Vec3& inward_P, double radius_mm,
+                       double least_kpa) noexcept {
   SoftColumn column;
   column.area_mm2 = std::numbers::pi * radius_mm * radius_mm;
   for (std::size_t i = 0; i < kColumnCells; ++i) {
@@ -40,7 +40,8 @@ SoftColumn soft_column(const HapticScene& scene, const Vec3& surface_P, const Ve
     if (young >= kRigid_kpa || !(young > 0.0)) break;
     column.thickness_mm[i] = to_mm - from_mm;
     column.share[i] = (settlement_mm(to_mm, radius_mm) - settlement_mm(from_mm, radius_mm)) / (to_mm - from_mm);
-    column.plane_n_per_mm2[i] = kNPerMm2PerKpa * std::max(young, kSoftest_kpa) / (1.0 - kPoisson * kPoisson);
+    column.plane_n_per_mm2[i] =
+        kNPerMm2PerKpa * std::max({young, least_kpa, kSoftest_kpa}) / (1.0 - kPoisson * kPoisson);
     ++column.cells;
   }
   return column;

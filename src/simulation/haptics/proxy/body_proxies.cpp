@@ -73,6 +73,8 @@ void for_each_cell(const Channel& channel, const HapticScene& scene, const Piece
   }
 }
 
+constexpr double kBedPower = 13.0 / 12.0;  // of Young's modulus in the bed's stiffness
+
 /// Stiffness of the tissue around a unit length of shaft (Vesic 1961), and the tissue with a given one.
 struct BedLaw {
   double diameter_mm;
@@ -95,27 +97,54 @@ const NeedleBeam& beam_of(const HapticScene& scene, bool is_stylet_in) noexcept 
   return is_stylet_in ? scene.beam_with_stylet : scene.beam_without_stylet;
 }
 
-/// Springs of the foundation, with a total stiffness within the device's limit.
-void fill_stiffness(BeamBed& bed, const Channel& channel, const HapticScene& scene, const NeedleBeam& beam,
+/// Springs of the foundation, with a total stiffness within the device's limit, and their change with depth: both ends
+/// of a piece move with the tip.
+void fill_stiffness(HeldShaft& shaft, const Channel& channel, const HapticScene& scene, const NeedleBeam& beam,
                     double tip_mm) noexcept {
+  BeamBed& bed = shaft.bed;
   const BedLaw law{2.0 * scene.needle.radius_mm, beam.bending_stiffness_n_mm2};
   const double most_kpa = law.young_kpa_of(scene.options.coupling.stiffness_n_per_mm / beam.spacing_mm);
   double sum_n_per_mm = 0.0;
+  double sum_stiffening = 0.0;
   for (int i = 0; i < beam.node_count; ++i) {
     const Piece piece = piece_of(beam, i, tip_mm);
     if (!(piece.length_mm() > 0.0)) continue;
-    double young_kpa_mm = 0.0;
+    double young_kpa_mm = 0.0, at_tip_kpa = 0.0, at_skin_kpa = -1.0;  // of the piece's ends
     for_each_cell(channel, scene, piece, [&](const ShaftTissue& tissue, double length_mm) {
-      young_kpa_mm += std::min(tissue.young_kpa, most_kpa) * length_mm;
+      at_tip_kpa = std::min(tissue.young_kpa, most_kpa);
+      if (at_skin_kpa < 0.0) at_skin_kpa = at_tip_kpa;
+      young_kpa_mm += at_tip_kpa * length_mm;
     });
     const double length_mm = piece.length_mm();
-    const double k = law.stiffness_n_per_mm2(young_kpa_mm / length_mm) * length_mm;
-    bed.stiffness_n_per_mm[static_cast<std::size_t>(i)] = k;
-    sum_n_per_mm += k;
+    const double mean_kpa = young_kpa_mm / length_mm;
+    const double per_mm = law.stiffness_n_per_mm2(mean_kpa);
+    const bool is_growing = !(piece.from_mm > 0.0);  // the piece at the skin
+    const double mean_change_kpa = at_tip_kpa - (is_growing ? mean_kpa : at_skin_kpa);
+    const double stiffening =
+        (is_growing ? per_mm : 0.0) + (mean_kpa > 0.0 ? kBedPower * per_mm / mean_kpa * mean_change_kpa : 0.0);
+    const auto index = static_cast<std::size_t>(i);
+    bed.stiffness_n_per_mm[index] = per_mm * length_mm;
+    shaft.stiffening_n_per_mm2[index] = stiffening;
+    sum_n_per_mm += per_mm * length_mm;
+    sum_stiffening += stiffening;
   }
   const double most_n_per_mm = 0.5 * scene.device.max_stiffness_n_per_mm;
   if (!(sum_n_per_mm > most_n_per_mm)) return;
-  for (double& k : bed.stiffness_n_per_mm) k *= most_n_per_mm / sum_n_per_mm;
+  const double scale = most_n_per_mm / sum_n_per_mm;
+  for (std::size_t i = 0; i < bed.stiffness_n_per_mm.size(); ++i) {
+    double& k = bed.stiffness_n_per_mm[i];
+    shaft.stiffening_n_per_mm2[i] = scale * (shaft.stiffening_n_per_mm2[i] - k * sum_stiffening / sum_n_per_mm);
+    k *= scale;
+  }
+}
+
+/// Energy of tissue and shaft, and its growth with depth: at equilibrium only the change of the stiffness counts.
+void store_energy(HeldShaft& shaft) noexcept {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(shaft.beam.node_count); ++i) {
+    const Vec3 stretch_P = shaft.bed.offset_mm[i] - shaft.beam.deflection_mm[i];
+    shaft.energy_nmm += 0.5 * shaft.share * shaft.bed.stiffness_n_per_mm[i] * stretch_P.dot(shaft.bed.offset_mm[i]);
+    shaft.out_n += 0.5 * shaft.share * shaft.stiffening_n_per_mm2[i] * stretch_P.squaredNorm();
+  }
 }
 
 }  // namespace
@@ -143,7 +172,7 @@ HeldShaft hold_shaft(const Channel& channel, const HapticScene& scene, const Pos
     return shaft;
   }
   shaft.X_PN = X_PN;
-  fill_stiffness(shaft.bed, channel, scene, beam, tip_mm);
+  fill_stiffness(shaft, channel, scene, beam, tip_mm);
   const Vec3 axis_P = X_PN.R().col(2);
   const double most_mm = kMaxDeflection * scene.needle.length_mm;
   bool is_far = false;
@@ -160,9 +189,10 @@ HeldShaft hold_shaft(const Channel& channel, const HapticScene& scene, const Pos
     shaft.beam = solve_beam(beam, shaft.bed);
   else
     beam.bending_stiffness_n_mm2 = std::numeric_limits<double>::infinity();
-  const double turning = grip_stiffness(beam, shaft.bed).turning_nmm_per_rad;
+  const double turning = shaft.turning_nmm_per_rad = grip_stiffness(beam, shaft.bed).turning_nmm_per_rad;
   if (turning > kMostTurning_nmm_per_rad) shaft.share = kMostTurning_nmm_per_rad / turning;
   shaft.beam.is_bound = shaft.beam.is_bound || is_far;
+  store_energy(shaft);
   return shaft;
 }
 

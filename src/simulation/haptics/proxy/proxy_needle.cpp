@@ -4,14 +4,13 @@
 #include <cmath>
 
 #include "haptics/insertion/insertion_law.h"
+#include "haptics/insertion/skin_contact.h"
 #include "haptics/proxy/tip_proxy.h"
 #include "volume/sampling.h"
 
 namespace trocar::haptics {
 namespace {
 
-constexpr double kGrazing = 0.17;  // cosine of 80 degrees: a flatter needle does not pierce
-constexpr double kTipGrip = 2.0;   // A sharp tip does not slide at smaller angles than 63 degrees. [assumed]
 constexpr double kAtWall_mm = 1e-6;
 constexpr double kHole_mm = 0.2;  // Within this distance behind the deepest point it is at the end of the channel.
 
@@ -21,21 +20,6 @@ double in_series(double a, double b) noexcept {
 
 double damping_s(const HapticScene& scene) noexcept {
   return scene.options.coupling.damping_ns_per_mm / scene.options.coupling.stiffness_n_per_mm;
-}
-
-double skin_distance(const HapticScene& scene, const Vec3& p_P) noexcept {
-  return volume::sample_linear(scene.patient->skin_distance_mm, p_P);
-}
-
-/// Intersection of the skin with the line from a point outside to one inside.
-Vec3 meet_skin(const HapticScene& scene, const Vec3& outside_P, const Vec3& inside_P) noexcept {
-  double low = 0.0;
-  double high = 1.0;
-  for (int i = 0; i < 30; ++i) {
-    const double t = 0.5 * (low + high);
-    (skin_distance(scene, outside_P + t * (inside_P - outside_P)) > 0.0 ? low : high) = t;
-  }
-  return outside_P + low * (inside_P - outside_P);
 }
 
 /// The needle in its tissue during one step, and the results of the step.
@@ -65,7 +49,7 @@ ProxyNeedleStep in_air(ProxyNeedleState& state, InsertionPath& path, const Pose&
 ProxyNeedleStep on_skin(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene, const Pose& X_PN,
                         const Pose& X_PN_ahead, double dt_s) noexcept {
   const Vec3 axis_P = X_PN.R().col(2);
-  const Vec3 inward_P = -volume::gradient_per_mm(scene.patient->skin_distance_mm, state.proxy_P).normalized();
+  const Vec3 inward_P = inward_normal(scene, state.proxy_P);
   const std::uint8_t layer = scene.tissues[scene.skin].layer;
   const double tissue_n_per_mm = layer == kNoLayer ? 1.0 : scene.layers[layer].indent_n_per_mm;
   const double k = in_series(scene.options.coupling.stiffness_n_per_mm, tissue_n_per_mm);
@@ -73,7 +57,7 @@ ProxyNeedleStep on_skin(ProxyNeedleState& state, InsertionPath& path, const Hapt
   Vec3 f = spring.force_P;
   double f_normal = f.dot(inward_P);
   if (!(f_normal > 0.0)) {  // one count backwards does not end the contact: the surface stays
-    if (!(skin_distance(scene, X_PN.p()) < 0.0)) return in_air(state, path, X_PN, dt_s);
+    if (!(skin_distance_mm(scene, X_PN.p()) < 0.0)) return in_air(state, path, X_PN, dt_s);
     f = Vec3::Zero();
     f_normal = 0.0;
   }
@@ -88,9 +72,9 @@ ProxyNeedleStep on_skin(ProxyNeedleState& state, InsertionPath& path, const Hapt
     skin.normal_P = inward_P;
     skin.border = 1.0;
     skin.law.normal_n = f_normal;
-    skin.law.tangential_n = kTipGrip * f_normal;
+    skin.law.tangential_n = scene.friction.tip * f_normal;
     state.proxy_P += proxy_motion(spring, skin, Vec3::Zero());
-    state.proxy_P += skin_distance(scene, state.proxy_P) * inward_P;  // back to the surface
+    state.proxy_P += skin_distance_mm(scene, state.proxy_P) * inward_P;  // back to the surface
     f -= residual_force(f, skin, 0.0);
   }
   step.tip_force_P = -f;
@@ -223,7 +207,8 @@ ProxyNeedleStep in_body(ProxyNeedleState& state, InsertionPath& path, const Hapt
                           {resistance.dry_n, shear_thinning(state.velocity_mm_per_s) * resistance.viscous_ns_per_mm},
                           u.dot(X_PN_ahead.p() - path.channel.origin_P),
                           state.needle_mm,
-                          dt_s};
+                          dt_s,
+                          state.wall == kNoLayer ? path.bed_out_n : 0.0};
   const Vec3 origin_P = path.channel.origin_P;
   state.proxy_P = origin_P + u.dot(state.proxy_P - origin_P) * u;  // the path also guides the tip
   const TipStep moved = move_proxy(state, path, scene, drive);
@@ -236,6 +221,7 @@ ProxyNeedleStep in_body(ProxyNeedleState& state, InsertionPath& path, const Hapt
   step.tip_force_P = -on_tip_n * u;
   InsertionStep& axial = step.axial;
   axial.body_axial_n = moved.balance.on_shaft_n;
+  axial.bed_n = drive.bed_n;
   axial.punctured = moved.punctured;
   axial.hit_solver_bound = moved.hit_bound;
   axial.axis_P = u;
@@ -253,7 +239,7 @@ ProxyNeedleStep in_body(ProxyNeedleState& state, InsertionPath& path, const Hapt
 
 /// A tip from outside: its intersection with the skin, and an open channel that it may enter.
 void meet(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene, const Pose& X_PN) noexcept {
-  state.proxy_P = skin_distance(scene, state.proxy_P) >= 0.0 ? meet_skin(scene, state.proxy_P, X_PN.p()) : X_PN.p();
+  state.proxy_P = skin_distance_mm(scene, state.proxy_P) >= 0.0 ? meet_skin(scene, state.proxy_P, X_PN.p()) : X_PN.p();
   state.contact_P = state.proxy_P;
   state.is_on_skin = true;
   if (const Channel* hole = path.memory.find(state.proxy_P, X_PN.R().col(2))) {
@@ -278,7 +264,7 @@ void start_proxy_needle(ProxyNeedleState& state, const InsertionPath& path, cons
 ProxyNeedleStep step_proxy_needle(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene,
                                   const Pose& X_PN, const Pose& X_PN_ahead, double dt_s) noexcept {
   if (!path.is_open && !state.is_on_skin) {
-    if (!(skin_distance(scene, X_PN.p()) < 0.0)) return in_air(state, path, X_PN, dt_s);
+    if (!(skin_distance_mm(scene, X_PN.p()) < 0.0)) return in_air(state, path, X_PN, dt_s);
     meet(state, path, scene, X_PN);
   }
   if (!path.is_open) return on_skin(state, path, scene, X_PN, X_PN_ahead, dt_s);

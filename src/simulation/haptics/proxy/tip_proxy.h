@@ -45,6 +45,7 @@ struct NeedleDrive {
   double ahead_mm = 0.0;   ///< Position of the device a damping time ahead.
   double before_mm = 0.0;  ///< Position of the needle at the last tick.
   double dt_s = 0.001;
+  double bed_n = 0.0;  ///< Force with which the bed of the bent shaft pushes the needle out.
 };
 struct NeedleBalance {
   double needle_mm = 0.0;

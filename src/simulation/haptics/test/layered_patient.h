@@ -48,6 +48,13 @@ inline anatomy::TissueTable paper_tissues() {
   return table;
 }
 
+/// The same with paper A's path constraint.
+inline anatomy::TissueTable constrained_tissues() {
+  anatomy::TissueTable table = paper_tissues();
+  table.path_constraint.is_given = true;
+  return table;
+}
+
 /// The device's force against a needle that goes along -z, without that for its own weight.
 inline double resistance_n(const telemetry::TickSample& sample) {
   return -(sample.device_f_n - sample.f_weight_n).z();

@@ -268,7 +268,7 @@ TEST(Insertion, PhasesFollowTheNeedle) {
 }
 
 TEST(Insertion, KeepsThePathThatPiercedTheSkin) {
-  Driver driver(make_scene(liver_way()));
+  Driver driver(make_scene(liver_way(), {}, constrained_tissues()));
   driver.move(10.0, 10.0);
   telemetry::TickSample sample;
   const Vec3 tilted = Vec3(0.1, 0.0, 1.0).normalized();

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "haptics/haptic_scene.h"
+
+namespace trocar::haptics {
+
+/// A needle flatter to the skin than this does not pierce it: cosine of 80 degrees to the normal.
+inline constexpr double kGrazing = 0.17;
+
+/// Signed distance (mm) to the resting skin, negative inside the body, and the unit normal into the body. Real-time
+/// safe.
+double skin_distance_mm(const HapticScene& scene, const Vec3& p_P) noexcept;
+Vec3 inward_normal(const HapticScene& scene, const Vec3& p_P) noexcept;
+/// The point of the resting skin nearest to a point close to it. Real-time safe.
+Vec3 nearest_skin(const HapticScene& scene, const Vec3& p_P) noexcept;
+/// Where the way from a point outside the body to one inside meets the skin. Real-time safe.
+Vec3 meet_skin(const HapticScene& scene, const Vec3& outside_P, const Vec3& inside_P) noexcept;
+
+/// The tip on unpierced skin (physics.md V2): the point of the resting skin that it holds, and the way from there to
+/// the device's tip. The force is along that way and depends on its length alone, one energy; the point slides on the
+/// skin where the force leaves the cone of friction, which only dissipates.
+struct SkinContact {
+  Vec3 anchor_P = Vec3::Zero();  ///< On the resting skin.
+  Vec3 way_P = Vec3::UnitZ();    ///< Unit, from there to the device's tip; into the body.
+  double to_device_mm = 0.0;     ///< Length of that way; negative: the device's tip is that far outside the skin.
+  bool has_slid = false;         ///< In the last step.
+};
+
+/// Follows the device's tip with the coefficient of friction `friction`. Real-time safe.
+void follow_skin(SkinContact& contact, const HapticScene& scene, const Vec3& device_tip_P, double friction) noexcept;
+
+/// True if a force along the contact's way drives a needle with this unit axis through the skin: it is neither flat on
+/// the skin nor pushed sideways.
+bool can_pierce(const SkinContact& contact, const HapticScene& scene, const Vec3& axis_P) noexcept;
+
+}  // namespace trocar::haptics
