@@ -28,6 +28,8 @@ Result<std::vector<CaseResult>> run_stability_benchmark(const Options& options);
 /// Needle pushed on bone and through the ligamentum flavum, by device and force model.
 Result<std::vector<CaseResult>> run_coupling_benchmark(const Options& options);
 Result<std::vector<CaseResult>> run_contact_benchmark(const Options& options);
+/// Random closed motions of a prescribed tool: the force models return no more energy than they were given.
+Result<std::vector<CaseResult>> run_passivity_benchmark(const Options& options);
 /// Slow loops on every simulated device with a moving hand: time to zero force, force, travel.
 Result<std::vector<CaseResult>> run_faults_benchmark(const Options& options);
 /// Fingertip and transducer on the embedded patient: force (N) per place, and time of a tick.

@@ -38,6 +38,7 @@ struct CaseResult {
   };
   std::optional<Peer> peer;
   std::string note;
+  bool is_missed = false;  ///< A criterion is not met: the exit status is 1.
 };
 
 /// Calls `work` `rounds` times after `warm_up` calls and returns the times in milliseconds.
@@ -53,6 +54,9 @@ struct Options {
   std::uint64_t seed = 1;
   double seconds = 10.0;  ///< Duration of the measurement of live servers.
   std::vector<double> rates_hz{1000.0, 4000.0};
+  int motions = 10000;             ///< Number of random motions.
+  int only = -1;                   ///< Number of the only motion to run; -1: all.
+  std::string model;               ///< Force model of a needle, or a face on the skin; empty: all.
   std::filesystem::path sequence;  ///< Tracked sequence for comparison; empty: none.
   std::filesystem::path out;       ///< Folder for files; empty: none are written.
   Progress progress;

@@ -20,7 +20,8 @@ using cli::BenchArguments;
 
 /// Options that only some benchmarks use.
 constexpr const char* kForSome[] = {"--patient", "--patient-seed", "--task",    "--paths", "--force-model",
-                                    "--seed",    "--out",          "--seconds", "--rate",  "--sequence"};
+                                    "--seed",    "--out",          "--seconds", "--rate",  "--sequence",
+                                    "--motions", "--model",        "--only"};
 
 std::vector<std::string> given_options(const arguments::Command& command) {
   std::vector<std::string> given;
@@ -83,6 +84,12 @@ Status prepare(BenchArguments& arguments) {
   return {};
 }
 
+/// Cases whose criterion is not met.
+void add_missed(std::vector<std::string>& missed, const std::vector<CaseResult>& results) {
+  for (const CaseResult& result : results)
+    if (result.is_missed) missed.push_back(result.name);
+}
+
 Result<std::vector<CaseResult>> run_one(const Benchmark& benchmark, const BenchArguments& arguments) {
   const cli::ProgressPrinter printer;
   Options options = arguments.options;
@@ -112,8 +119,10 @@ Status run_benchmarks(BenchArguments& arguments, const std::vector<std::string>&
   TROCAR_TRY_STATUS(check_options(chosen, given));
   TROCAR_TRY_STATUS(prepare(arguments));
   config::Json all = config::Json::array();
+  std::vector<std::string> missed;
   for (const Benchmark* benchmark : chosen) {
     TROCAR_TRY(const auto results, run_one(*benchmark, arguments));
+    add_missed(missed, results);
     if (arguments.is_json) {
       all.push_back(to_json(benchmark->name, results));
     } else {
@@ -121,6 +130,8 @@ Status run_benchmarks(BenchArguments& arguments, const std::vector<std::string>&
     }
   }
   if (arguments.is_json) cli::print_json(all.size() == 1 ? all.front() : config::Json{{"benches", all}});
+  if (!missed.empty())
+    return fail("criteria are not met", fmt::format("{}", fmt::join(missed, ", ")), "see the notes of these cases");
   return {};
 }
 

@@ -16,6 +16,7 @@ class PassivityObserver {
   void add(const Wrench& wrench, const Vec3& v, const Vec3& w, double dt_s) noexcept {
     energy_mj_ += (wrench.force_n.dot(v) + wrench.torque_nmm.dot(w)) * dt_s;
     lowest_mj_ = std::min(lowest_mj_, energy_mj_);
+    highest_mj_ = std::max(highest_mj_, energy_mj_);
     growth_mj_ = std::max(growth_mj_, energy_mj_ - lowest_mj_);
   }
 
@@ -23,10 +24,14 @@ class PassivityObserver {
   double energy_mj() const noexcept { return energy_mj_; }
   /// Largest rise of the energy from any earlier moment. A passive environment keeps it below its stored energy.
   double growth_mj() const noexcept { return growth_mj_; }
+  /// Smallest and largest energy since the start; 0 counts.
+  double lowest_mj() const noexcept { return lowest_mj_; }
+  double highest_mj() const noexcept { return highest_mj_; }
 
  private:
   double energy_mj_ = 0.0;  // N mm
   double lowest_mj_ = 0.0;
+  double highest_mj_ = 0.0;
   double growth_mj_ = 0.0;
 };
 
