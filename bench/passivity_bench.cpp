@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "bench/benchmarks.h"
@@ -23,15 +24,14 @@ struct RunMotion {
   haptics::PassivityOutcome outcome;
 
   bool is_lossless() const { return haptics::is_elastic(planned.kind); }
-  /// What must not exceed the allowance: energy made, and without losses energy that is missing, too.
+  bool is_limited() const { return outcome.limited_ticks > 0; }
+  /// Energy that the force model made. Without losses, energy that is missing counts, too, unless the needle is still
+  /// in its channel.
   double error_mj() const {
     if (!outcome.is_finite) return std::numeric_limits<double>::infinity();
-    const double made_mj = std::max(outcome.most_mj, is_lossless() ? 0.0 : outcome.device_mj);
-    return is_lossless() ? std::max(made_mj, std::abs(outcome.end_mj)) : made_mj;
+    const bool is_closed = is_lossless() && outcome.is_free_at_end;
+    return is_closed ? std::max(outcome.most_mj, std::abs(outcome.end_mj)) : outcome.most_mj;
   }
-  bool is_missed() const { return error_mj() > kAllowed_mj || !is_valid(); }
-  /// A closed motion starts and ends without contact.
-  bool is_valid() const { return outcome.is_free_at_start && outcome.is_free_at_end; }
 };
 
 haptics::PassivityOutcome run_at(const PlannedMotion& planned, double rate_hz,
@@ -76,52 +76,63 @@ Result<std::vector<RunMotion>> run_all(const MotionPool& pool, const Options& op
 }
 
 using Group = std::vector<const RunMotion*>;
+using Energy = std::function<double(const RunMotion&)>;
 
-const RunMotion& worst_of(const Group& group) {
+const RunMotion& worst_of(const Group& group, const Energy& energy) {
   return **std::max_element(group.begin(), group.end(),
-                            [](const RunMotion* a, const RunMotion* b) { return a->error_mj() < b->error_mj(); });
+                            [&](const RunMotion* a, const RunMotion* b) { return energy(*a) < energy(*b); });
 }
 
-std::string note_of(const Group& group) {
-  const RunMotion& worst = worst_of(group);
-  const auto missed = std::count_if(group.begin(), group.end(), [](const RunMotion* m) { return m->is_missed(); });
-  const auto limited =
-      std::count_if(group.begin(), group.end(), [](const RunMotion* m) { return m->outcome.limited_ticks > 0; });
-  const auto touching = std::count_if(group.begin(), group.end(), [](const RunMotion* m) { return !m->is_valid(); });
+std::string note_of(const Group& group, const RunMotion& worst, std::size_t missed) {
+  const auto open =
+      std::count_if(group.begin(), group.end(), [](const RunMotion* m) { return !m->outcome.is_free_at_end; });
+  const haptics::PassivityOutcome& outcome = worst.outcome;
   const haptics::PassivityOutcome finer = run_at(worst.planned, kFiner * worst.planned.rate_hz);
   std::string note = fmt::format(
-      "{} of {} above {} mJ; worst {:.3f} mJ made, {:+.3f} at the end ({:.3f} and {:+.3f} at {:.0f} times the rate), "
-      "{:.1f} mJ put in, "
-      "{:.1f} N; {}",
-      missed, group.size(), kAllowed_mj, worst.outcome.most_mj, worst.outcome.end_mj, finer.most_mj, finer.end_mj,
-      kFiner, worst.outcome.stored_mj, worst.outcome.peak_force_n, worst.planned.text());
-  if (limited > 0) note += fmt::format("; the device's limits act in {}", limited);
-  if (touching > 0) note += fmt::format("; {} in contact at start or end", touching);
+      "{} of {} above {} mJ; worst {:.3f} mJ made, {:+.3f} at the end ({:.3f}, {:+.3f} at {:.0f} times the rate), "
+      "{:.1f} "
+      "mJ put in, {:.1f} N; {}",
+      missed, group.size(), kAllowed_mj, outcome.most_mj, outcome.end_mj, finer.most_mj, finer.end_mj, kFiner,
+      outcome.stored_mj, outcome.peak_force_n, worst.planned.text());
+  if (open > 0) note += fmt::format("; {} end in contact", open);
   return note;
 }
 
 /// `is_judged`: the case decides on the exit status.
-void add_case(std::vector<CaseResult>& results, const std::string& name, const Group& group, bool is_judged) {
-  std::vector<double> errors;
-  for (const RunMotion* motion : group) errors.push_back(motion->error_mj());
-  CaseResult result{name, "mj", figures_of(errors), {}, note_of(group)};
-  result.is_missed =
-      is_judged && std::any_of(group.begin(), group.end(), [](const RunMotion* m) { return m->is_missed(); });
+void add_case(std::vector<CaseResult>& results, const std::string& name, const Group& group, const Energy& energy,
+              bool is_judged) {
+  if (group.empty()) return;
+  std::vector<double> energies;
+  for (const RunMotion* motion : group) energies.push_back(energy(*motion));
+  const auto missed = static_cast<std::size_t>(
+      std::count_if(energies.begin(), energies.end(), [](double mj) { return !(mj <= kAllowed_mj); }));
+  CaseResult result{name, "mj", figures_of(energies), {}, note_of(group, worst_of(group, energy), missed)};
+  result.is_missed = is_judged && missed > 0;
   results.push_back(std::move(result));
+}
+
+double law_mj(const RunMotion& motion) {
+  return motion.error_mj();
+}
+double device_mj(const RunMotion& motion) {
+  return motion.outcome.device_mj;
 }
 
 void add_model(std::vector<CaseResult>& results, const std::vector<RunMotion>& motions, MovedModel model) {
   std::map<haptics::MotionKind, Group> by_kind;
-  Group net, lossless;
+  Group net, lossless, limited;
   for (const RunMotion& motion : motions) {
     if (motion.planned.model != model) continue;
     by_kind[motion.planned.kind].push_back(&motion);
     (motion.is_lossless() ? lossless : net).push_back(&motion);
+    if (!motion.is_lossless() && motion.is_limited()) limited.push_back(&motion);
   }
   const std::string prefix = fmt::format("passivity/{}", to_string(model));
-  if (!net.empty()) add_case(results, prefix + "/net", net, true);
-  if (!lossless.empty()) add_case(results, prefix + "/lossless", lossless, true);
-  for (const auto& [kind, group] : by_kind) add_case(results, fmt::format("{}/{}", prefix, to_string(kind)), group, false);
+  add_case(results, prefix + "/net", net, law_mj, true);
+  add_case(results, prefix + "/net-limited", limited, device_mj, true);
+  add_case(results, prefix + "/lossless", lossless, law_mj, true);
+  for (const auto& [kind, group] : by_kind)
+    add_case(results, fmt::format("{}/{}", prefix, to_string(kind)), group, law_mj, false);
 }
 
 Status write_motion(const PlannedMotion& planned, const std::filesystem::path& file) {
@@ -151,16 +162,35 @@ Status write_motion(const PlannedMotion& planned, const std::filesystem::path& f
   return write_file_atomically(file, text);
 }
 
-/// The worst motion of every model.
+/// One row per motion.
+Status write_list(const std::vector<RunMotion>& motions, const std::filesystem::path& file) {
+  std::string text =
+      "number,model,kind,angle_deg,tempo_mm_s,rate_hz,patient,needle,profile,error_mj,made_mj,made_at_s,end_mj,"
+      "device_made_mj,put_in_mj,peak_n,punctures,ticks,limited_ticks,is_free_at_start,is_free_at_end\n";
+  for (const RunMotion& motion : motions) {
+    const PlannedMotion& p = motion.planned;
+    const haptics::PassivityOutcome& o = motion.outcome;
+    text += fmt::format(
+        "{},{},{},{:.2f},{:.2f},{:.0f},{},{},{},{:.6g},{:.6g},{:.3f},{:.6g},{:.6g},{:.6g},{:.4g},{},{},"
+        "{},{:d},{:d}\n",
+        p.number, to_string(p.model), haptics::to_string(p.kind), p.angle_deg, p.tempo_mm_per_s, p.rate_hz, p.patient,
+        p.needle, p.profile, motion.error_mj(), o.most_mj, o.most_s, o.end_mj, o.device_mj, o.stored_mj, o.peak_force_n,
+        o.punctures, o.ticks, o.limited_ticks, o.is_free_at_start, o.is_free_at_end);
+  }
+  return write_file_atomically(file, text);
+}
+
+/// All motions as a list, and the worst one of every model tick by tick.
 Status write_worst(const std::vector<RunMotion>& motions, const std::filesystem::path& out) {
   return write_folder_atomically(out, [&](const std::filesystem::path& folder) -> Status {
+    TROCAR_TRY_STATUS(write_list(motions, folder / "motions.csv"));
     for (const MovedModel model : kMovedModels) {
       for (const bool is_lossless : {false, true}) {
         Group group;
         for (const RunMotion& motion : motions)
           if (motion.planned.model == model && motion.is_lossless() == is_lossless) group.push_back(&motion);
         if (group.empty()) continue;
-        const PlannedMotion& worst = worst_of(group).planned;
+        const PlannedMotion& worst = worst_of(group, law_mj).planned;
         const std::string name = fmt::format("{}-{}-{}.csv", to_string(model), to_string(worst.kind), worst.number);
         TROCAR_TRY_STATUS(write_motion(worst, folder / name));
       }
@@ -174,6 +204,9 @@ Status write_worst(const std::vector<RunMotion>& motions, const std::filesystem:
 Result<std::vector<CaseResult>> run_passivity_benchmark(const Options& options) {
   TROCAR_TRY(const MotionPool pool, load_motion_pool(options.progress));
   TROCAR_TRY(const auto motions, run_all(pool, options));
+  for (const RunMotion& motion : motions)
+    if (!motion.outcome.is_free_at_start)
+      return fail("a motion starts in contact", motion.planned.text(), "start it farther from the skin");
   std::vector<CaseResult> results;
   for (const MovedModel model : kMovedModels) add_model(results, motions, model);
   if (!options.out.empty()) TROCAR_TRY_STATUS(write_worst(motions, options.out));

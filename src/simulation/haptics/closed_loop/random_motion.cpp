@@ -65,6 +65,23 @@ class Composer {
   void maybe_wait(double share) {
     if (chance(share)) motion_.wait(random_.uniform(0.0, kLongest_s));
   }
+  /// Back along the axis from `from_mm` by `by_mm`, as tissue recoils: with this time constant.
+  void recede(double from_mm, double by_mm, double time_s) {
+    constexpr int kSteps = 16;
+    constexpr double kStep = 0.25;  // of the time constant
+    double left = 1.0;
+    for (int i = 0; i < kSteps; ++i) {
+      const double next = i + 1 < kSteps ? left * std::exp(-kStep) : 0.0;
+      const double mm_per_s = std::max(0.1, (left - next) * by_mm / (kStep * time_s));
+      const Vec3 to_P = along(from_mm - (1.0 - next) * by_mm);
+      if (i + 1 < kSteps) {
+        motion_.pass(to_P, Vec3::Zero(), mm_per_s);
+      } else {
+        motion_.go(to_P, Vec3::Zero(), mm_per_s);
+      }
+      left = next;
+    }
+  }
   /// Off the skin from wherever the tool is.
   void lift() {
     const double deep_mm = (motion_.shift_P() - kOver_mm * place_.inward_P).dot(place_.inward_P);
@@ -133,8 +150,16 @@ ClosedMotion puncture(Composer c) {
 ClosedMotion give_way(Composer c) {
   const double at_mm = c.place().closed_mm;
   c.fly(c.over());
+  const bool follows = c.chance(0.6);  // the tissue that recoils
   double way_mm = at_mm + c.random().uniform(0.02, 2.0);
   c.go(c.along(way_mm));
+  if (follows) {
+    way_mm += c.random().uniform(0.0, c.chance(0.3) ? 25.0 : 8.0);
+    c.fly(c.along(way_mm));  // to what lies behind, before the tissue has recoiled
+    const double by_mm = c.random().uniform(0.2, 1.1) * at_mm;
+    c.recede(way_mm, by_mm, c.random().uniform(0.08, 0.4));
+    way_mm -= by_mm;
+  }
   for (int i = c.count(1, 4); i > 0; --i) {
     c.maybe_wait(0.7);
     way_mm =
