@@ -91,9 +91,9 @@ std::string note_of(const Group& group, const RunMotion& worst, std::size_t miss
   std::string note = fmt::format(
       "{} of {} above {} mJ; worst {:.3f} mJ made, {:+.3f} at the end ({:.3f}, {:+.3f} at {:.0f} times the rate), "
       "{:.1f} "
-      "mJ put in, {:.1f} N; {}",
+      "mJ put in, {:.1f} N, {:.3f} mJ made after the device's limits; {}",
       missed, group.size(), kAllowed_mj, outcome.most_mj, outcome.end_mj, finer.most_mj, finer.end_mj, kFiner,
-      outcome.stored_mj, outcome.peak_force_n, worst.planned.text());
+      outcome.stored_mj, outcome.peak_force_n, outcome.device_mj, worst.planned.text());
   if (open > 0) note += fmt::format("; {} end in contact", open);
   return note;
 }

@@ -18,12 +18,15 @@ void add_bench_options(Command& command, BenchArguments& a) {
       .whole_number_within(1, 100000)
       .show_default();
   command.add_option("--force-model", a.force_model, "Force model: insertion, proxy or combined");
-  command.add_option("--motions", a.options.motions, "Number of random closed motions")
-      .whole_number_within(1, 1000000)
-      .show_default();
-  command.add_option("--model", a.options.model, "Force model of a needle, or a face on the skin")
-      .one_of({"insertion", "proxy", "combined", "probe", "finger"});
-  command.add_option("--only", a.options.only, "Run one random motion, by its number").whole_number_within(0, 999999);
+  const auto motions = command.add_option("--motions", a.options.motions, "Number of random closed motions")
+                           .whole_number_within(1, 1000000)
+                           .show_default();
+  const auto model = command.add_option("--model", a.options.model, "Force model of a needle, or a face on the skin")
+                         .one_of({"insertion", "proxy", "combined", "probe", "finger"});
+  command.add_option("--only", a.options.only, "Run one random motion, by its number")
+      .whole_number_within(0, 999999)
+      .excludes(motions)
+      .excludes(model);
   command.add_option("--seed", a.options.seed, "Random seed for the choice of paths and the motion")
       .seed()
       .show_default();

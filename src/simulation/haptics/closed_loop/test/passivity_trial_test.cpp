@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <ostream>
 
 #include "haptics/closed_loop/random_motion.h"
 #include "haptics/test/layered_patient.h"
@@ -133,6 +134,9 @@ struct Moved {
   Tool tool;
   ForceModel model;
 };
+void PrintTo(const Moved& moved, std::ostream* out) {
+  *out << moved.name;
+}
 class RandomMotions : public ::testing::TestWithParam<Moved> {};
 
 /// The energy of one motion that must not exceed the allowance (physics.md H8).
