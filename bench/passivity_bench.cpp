@@ -43,7 +43,7 @@ haptics::PassivityOutcome run_at(const PlannedMotion& planned, double rate_hz,
   return haptics::run_passivity_trial(*planned.scene, trial, see);
 }
 
-std::vector<int> numbers_of(const Options& options) {
+std::vector<int> motion_numbers(const Options& options) {
   if (options.only >= 0) return {options.only};
   std::vector<int> numbers;
   for (int number = 0; static_cast<int>(numbers.size()) < options.motions; ++number)
@@ -52,7 +52,7 @@ std::vector<int> numbers_of(const Options& options) {
 }
 
 Result<std::vector<RunMotion>> run_all(const MotionPool& pool, const Options& options) {
-  const std::vector<int> numbers = numbers_of(options);
+  const std::vector<int> numbers = motion_numbers(options);
   std::vector<RunMotion> motions(numbers.size());
   std::vector<Status> done(numbers.size());
   std::atomic<std::size_t> count{0};
@@ -75,15 +75,15 @@ Result<std::vector<RunMotion>> run_all(const MotionPool& pool, const Options& op
   return motions;
 }
 
-using Group = std::vector<const RunMotion*>;
-using Energy = std::function<double(const RunMotion&)>;
+using MotionGroup = std::vector<const RunMotion*>;
+using EnergyOf = std::function<double(const RunMotion&)>;
 
-const RunMotion& worst_of(const Group& group, const Energy& energy) {
+const RunMotion& worst_of(const MotionGroup& group, const EnergyOf& energy) {
   return **std::max_element(group.begin(), group.end(),
                             [&](const RunMotion* a, const RunMotion* b) { return energy(*a) < energy(*b); });
 }
 
-std::string note_of(const Group& group, const RunMotion& worst, std::size_t missed) {
+std::string group_note(const MotionGroup& group, const RunMotion& worst, std::size_t missed) {
   const auto open =
       std::count_if(group.begin(), group.end(), [](const RunMotion* m) { return !m->outcome.is_free_at_end; });
   const haptics::PassivityOutcome& outcome = worst.outcome;
@@ -99,14 +99,14 @@ std::string note_of(const Group& group, const RunMotion& worst, std::size_t miss
 }
 
 /// `is_judged`: the case decides on the exit status.
-void add_case(std::vector<CaseResult>& results, const std::string& name, const Group& group, const Energy& energy,
-              bool is_judged) {
+void add_group(std::vector<CaseResult>& results, const std::string& name, const MotionGroup& group,
+               const EnergyOf& energy, bool is_judged) {
   if (group.empty()) return;
   std::vector<double> energies;
   for (const RunMotion* motion : group) energies.push_back(energy(*motion));
   const auto missed = static_cast<std::size_t>(
       std::count_if(energies.begin(), energies.end(), [](double mj) { return !(mj <= kAllowed_mj); }));
-  CaseResult result{name, "mj", figures_of(energies), {}, note_of(group, worst_of(group, energy), missed)};
+  CaseResult result{name, "mj", figures_of(energies), {}, group_note(group, worst_of(group, energy), missed)};
   result.is_missed = is_judged && missed > 0;
   results.push_back(std::move(result));
 }
@@ -119,8 +119,8 @@ double device_mj(const RunMotion& motion) {
 }
 
 void add_model(std::vector<CaseResult>& results, const std::vector<RunMotion>& motions, MovedModel model) {
-  std::map<haptics::MotionKind, Group> by_kind;
-  Group net, lossless, limited;
+  std::map<haptics::MotionKind, MotionGroup> by_kind;
+  MotionGroup net, lossless, limited;
   for (const RunMotion& motion : motions) {
     if (motion.planned.model != model) continue;
     by_kind[motion.planned.kind].push_back(&motion);
@@ -128,11 +128,11 @@ void add_model(std::vector<CaseResult>& results, const std::vector<RunMotion>& m
     if (!motion.is_lossless() && motion.is_limited()) limited.push_back(&motion);
   }
   const std::string prefix = fmt::format("passivity/{}", to_string(model));
-  add_case(results, prefix + "/net", net, law_mj, true);
-  add_case(results, prefix + "/net-limited", limited, device_mj, true);
-  add_case(results, prefix + "/lossless", lossless, law_mj, true);
+  add_group(results, prefix + "/net", net, law_mj, true);
+  add_group(results, prefix + "/net-limited", limited, device_mj, true);
+  add_group(results, prefix + "/lossless", lossless, law_mj, true);
   for (const auto& [kind, group] : by_kind)
-    add_case(results, fmt::format("{}/{}", prefix, to_string(kind)), group, law_mj, false);
+    add_group(results, fmt::format("{}/{}", prefix, to_string(kind)), group, law_mj, false);
 }
 
 Status write_motion(const PlannedMotion& planned, const std::filesystem::path& file) {
@@ -186,7 +186,7 @@ Status write_worst(const std::vector<RunMotion>& motions, const std::filesystem:
     TROCAR_TRY_STATUS(write_list(motions, folder / "motions.csv"));
     for (const MovedModel model : kMovedModels) {
       for (const bool is_lossless : {false, true}) {
-        Group group;
+        MotionGroup group;
         for (const RunMotion& motion : motions)
           if (motion.planned.model == model && motion.is_lossless() == is_lossless) group.push_back(&motion);
         if (group.empty()) continue;

@@ -8,7 +8,7 @@ namespace trocar::haptics {
 namespace {
 
 constexpr double kOver_mm = 15.0;  // of the start over the skin
-constexpr double kNear_mm = 3.0;
+constexpr double kHover_mm = 3.0;
 constexpr double kInAir_mm_per_s = 150.0;
 constexpr double kLongest_s = 1.0;        // of a pause
 constexpr double kWidestSwing_mm = 15.0;  // of the tip about a pivot behind it
@@ -38,7 +38,7 @@ class Composer {
   /// Over the skin on the axis.
   Vec3 over() const noexcept {
     constexpr double kGrazing = 0.17;
-    return along(-kNear_mm / std::max(kGrazing, place_.axis_P.dot(place_.inward_P)));
+    return along(-kHover_mm / std::max(kGrazing, place_.axis_P.dot(place_.inward_P)));
   }
   Vec3 on_skin(double most_mm) noexcept {
     const double angle = random_.uniform(0.0, 2.0 * std::numbers::pi);
@@ -85,7 +85,7 @@ class Composer {
   /// Off the skin from wherever the tool is.
   void lift() {
     const double deep_mm = (motion_.shift_P() - kOver_mm * place_.inward_P).dot(place_.inward_P);
-    go(motion_.shift_P() - (std::max(0.0, deep_mm) + 2.0 * kNear_mm) * place_.inward_P, motion_.turn_rad_P());
+    go(motion_.shift_P() - (std::max(0.0, deep_mm) + 2.0 * kHover_mm) * place_.inward_P, motion_.turn_rad_P());
   }
   ClosedMotion close() {
     motion_.close(kInAir_mm_per_s);
@@ -147,7 +147,7 @@ ClosedMotion puncture(Composer c) {
   return c.close();
 }
 
-ClosedMotion give_way(Composer c) {
+ClosedMotion giving_way(Composer c) {
   const double at_mm = c.place().closed_mm;
   c.fly(c.over());
   const bool follows = c.chance(0.6);  // the tissue that recoils
@@ -235,7 +235,7 @@ ClosedMotion spline(Composer c) {
 }
 
 ClosedMotion elastic_skin(Composer c) {
-  c.fly(c.place().grips_skin ? Vec3((kOver_mm - kNear_mm) * c.place().inward_P) : c.over());
+  c.fly(c.place().grips_skin ? Vec3((kOver_mm - kHover_mm) * c.place().inward_P) : c.over());
   for (int i = c.count(1, 6); i > 0; --i) {
     const double load_mm = c.random().uniform(0.1, 1.0) * c.place().closed_mm;
     if (c.place().grips_skin) {  // within the cone of the skin's grip over the first contact: the tip does not slide
@@ -245,7 +245,7 @@ ClosedMotion elastic_skin(Composer c) {
       c.go(c.along(load_mm) + c.on_skin(0.7 * kWidestDrag_mm), c.maybe_turn(0.5));
     }
   }
-  if (c.place().grips_skin) c.go((kOver_mm - kNear_mm) * c.place().inward_P);
+  if (c.place().grips_skin) c.go((kOver_mm - kHover_mm) * c.place().inward_P);
   c.lift();
   return c.close();
 }
@@ -328,7 +328,7 @@ ClosedMotion make_random_motion(MotionKind kind, const MotionPlace& place, Rando
     case MotionKind::kPuncture:
       return puncture(std::move(composer));
     case MotionKind::kGiveWay:
-      return give_way(std::move(composer));
+      return giving_way(std::move(composer));
     case MotionKind::kReentry:
       return reentry(std::move(composer));
     case MotionKind::kBend:

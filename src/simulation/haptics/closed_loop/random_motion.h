@@ -1,7 +1,7 @@
 #pragma once
 
+#include <array>
 #include <optional>
-#include <span>
 
 #include "core/random.h"
 #include "haptics/closed_loop/closed_motion.h"
