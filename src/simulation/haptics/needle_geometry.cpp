@@ -19,9 +19,11 @@ double needle_size_factor(const anatomy::NeedleSizeLaw& law, double reference_mm
                           const NeedleGeometry& needle) noexcept {
   if (!(law.diameter_mm > 0.0)) return 1.0;
   const double d = 2.0 * needle.radius_mm / (reference_mm > 0.0 ? reference_mm : law.diameter_mm);
-  const double wedge = wedge_factor(needle.bevel_rad, law.face_friction) /
-                       wedge_factor(law.bevel_deg * std::numbers::pi / 180.0, law.face_friction);
-  return (law.tearing * d + law.spreading * wedge * d * d) / (law.tearing + law.spreading);
+  const double reference_rad = law.bevel_deg * std::numbers::pi / 180.0;
+  const double wedge =
+      wedge_factor(needle.bevel_rad, law.face_friction) / wedge_factor(reference_rad, law.face_friction);
+  const double sharpness = std::pow(std::sin(needle.bevel_rad) / std::sin(reference_rad), law.bevel_power);
+  return (law.tearing * sharpness * d + law.spreading * wedge * d * d) / (law.tearing + law.spreading);
 }
 
 }  // namespace trocar::haptics

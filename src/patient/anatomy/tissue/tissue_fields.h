@@ -55,6 +55,11 @@ inline constexpr std::array<TissueField<NeedleSizeLaw>, 5> kNeedleSizeFields{{
     {"face_friction", "", &NeedleSizeLaw::face_friction, {0.0, 0.35}},
 }};
 
+/// Tables stored before there was this field have forces that depend less on the bevel.
+inline constexpr std::array<TissueField<NeedleSizeLaw>, 1> kOptionalNeedleSizeFields{{
+    {"bevel_power", "", &NeedleSizeLaw::bevel_power, {0.0, 1.0}},
+}};
+
 inline constexpr std::string_view kPathConstraint = "path_constraint";
 inline constexpr std::array<TissueField<PathConstraintLaw>, 2> kPathConstraintFields{{
     {"force_n", "m0", &PathConstraintLaw::force_n, {0.0, 20.0}},

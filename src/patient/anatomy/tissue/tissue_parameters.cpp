@@ -131,7 +131,7 @@ class Collector {
       words.felt = kInsertionAndCombined;  // For the proxy, such a surface is a border in the CT.
     }
     TissueParameter made = parameter_of(words, std::move(setting), layer_->*field.member, field.range);
-    made.may_be_never = field.name == kPunctureForce;
+    made.may_be_never = may_be_never(field.name);
     if (first_ != &tissue_) made.owner = first_->name;
     add(std::move(made), fmt::format("layers.{}.{}", layer_->name, field.name));
   }

@@ -172,9 +172,12 @@ Status apply_profile(const config::TomlTable& document, std::string_view wanted,
 Status read_needle_size(const config::TomlTable& document, TissueTable& table) {
   if (!document.has(kNeedleSize)) return {};
   TROCAR_TRY(const config::TomlTable row, document.table(kNeedleSize));
-  TROCAR_TRY_STATUS(row.check_keys(field_names<NeedleSizeLaw>(kNeedleSizeFields)));
-  TROCAR_TRY_STATUS(
-      read_fields<NeedleSizeLaw>(row, kNeedleSizeFields, std::string(kNeedleSize), true, table.needle_size, table));
+  std::vector<std::string_view> known = field_names<NeedleSizeLaw>(kNeedleSizeFields);
+  for (const auto& field : kOptionalNeedleSizeFields) known.push_back(field.name);
+  TROCAR_TRY_STATUS(row.check_keys(known));
+  const std::string name(kNeedleSize);
+  TROCAR_TRY_STATUS(read_fields<NeedleSizeLaw>(row, kNeedleSizeFields, name, true, table.needle_size, table));
+  TROCAR_TRY_STATUS(read_fields<NeedleSizeLaw>(row, kOptionalNeedleSizeFields, name, false, table.needle_size, table));
   if (table.needle_size.tearing + table.needle_size.spreading > 0.0) return {};
   return fail("tearing and spreading are both zero", row.where(), "give at least one of them a share");
 }

@@ -40,6 +40,7 @@ struct NeedleSizeLaw {
   double tearing = 61.0;       ///< Share of the force that tears the tissue; grows with the diameter. Range 0..100.
   double spreading = 18.0;     ///< Share that spreads the tissue; grows with the diameter squared. Range 0..100.
   double face_friction = 0.0;  ///< Coefficient of friction between the bevel's face and the tissue. Range 0..0.35.
+  double bevel_power = 0.0;    ///< The share that tears grows with this power of the bevel's sine. Range 0..1.
 };
 
 /// Friction that does not belong to one tissue.

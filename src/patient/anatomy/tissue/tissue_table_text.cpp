@@ -242,8 +242,11 @@ std::string TissueTable::to_toml() const {
     write_fields<TissueParams>(writer, tissue, kTissueFields, "tissues", provenance);
   }
   write_hu_transfer(writer, *this);
-  if (needle_size.diameter_mm > 0.0)
+  if (needle_size.diameter_mm > 0.0) {
     write_section<NeedleSizeLaw>(writer, kNeedleSize, needle_size, kNeedleSizeFields, provenance);
+    if (needle_size.bevel_power > 0.0)
+      write_number(writer, "bevel_power", needle_size.bevel_power, "needle_size.bevel_power", provenance);
+  }
   write_section<FrictionLaw>(writer, kFriction, friction, kFrictionFields, provenance);
   if (path_constraint.is_given)
     write_section<PathConstraintLaw>(writer, kPathConstraint, path_constraint, kPathConstraintFields, provenance);
