@@ -9,7 +9,8 @@ namespace trocar::tasks {
 /// position and the device's needle position; docs/physics.md, hand. Form: Speich, Shao, Goldfarb 2005, Mechatronics
 /// 15:1127 (the usual model of a human on a haptic handle is a second order mass-spring-damper; more elements gain
 /// little in some cases). Stiffness and damping grow with the grip: Hasser, Cutkosky 2002; stylus grips of 1..3 N on a
-/// Phantom Premium 1.5: Fu, Cavusoglu 2012. The numbers here are [assumed]: no table of these papers could be read.
+/// Phantom Premium 1.5: Fu, Cavusoglu 2012. The numbers here are [assumed]: no table of these papers could be read. A
+/// hand with a firmer grip (HandCommand::grip) has the same damping ratio.
 struct HandParams {
   double mass_kg = 0.15;             ///< Mass of hand and fingers that moves with the stylus. Range 0.02..2. Assumed.
   double stiffness_n_per_mm = 0.6;   ///< Range 0.05..5. Assumed: 2.8 N at the skin press the grip in by 4.7 mm.

@@ -28,6 +28,7 @@ struct HandCommand {
   Vec3 v_P = Vec3::Zero();              ///< Wanted velocity of the tip, mm/s.
   std::optional<ActionRequest> action;  ///< Done at this tick.
   bool is_done = false;                 ///< Finished.
+  double grip = 1.0;                    ///< Stiffness of the hand as a multiple of HandParams'; above 1: braced.
   bool is_rigid = false;                ///< The device follows X_PN exactly, independent of the force (replay).
 
   bool fires() const noexcept { return action && action->kind == ActionKind::kFire; }

@@ -18,9 +18,10 @@ constexpr double kCruise_mm_s = 18.0;
 constexpr double kPressing_mm_s = 9.0;   // against a resisting layer
 constexpr double kUnfelt_n = 0.3;        // resistance without an effect
 constexpr double kFirm_n = 1.2;          // resistance at which the speed is reduced to pressing
-constexpr double kAfterDrop_mm_s = 4.0;  // after a puncture
-constexpr double kReaction_s = 0.15;     // from the drop to the slower hand
-constexpr double kCaution_s = 0.35;      // duration of the slow motion
+constexpr double kBraced = 5.0;          // stiffness of a hand that rests on the patient: little runs on after a drop
+constexpr double kAfterDrop_mm_s = 0.0;  // stops after a puncture,
+constexpr double kReaction_s = 0.15;     // this long after the drop,
+constexpr double kCaution_s = 0.35;      // for so long
 constexpr double kFineZone_mm = 10.0;    // before the target
 constexpr double kFine_mm_s = 5.0;
 constexpr double kHoming_per_s = 2.0;  // the last millimetres: speed per remaining distance
@@ -38,7 +39,7 @@ class Expert final : public Operator {
  public:
   explicit Expert(const OperatorCase& the_case) noexcept
       : hand_(the_case.path_P, the_case.bevel_P, kExpertStart_mm,
-              Tremor(std::hypot(kExpertTremor_mm, the_case.tremor_mm), the_case.seed)),
+              Tremor(std::hypot(kExpertTremor_mm, the_case.tremor_mm), the_case.seed), kBraced),
         target_mm_(the_case.path_P.length_mm()),
         cores_left_(the_case.fires_biopsy ? the_case.actions.cores : 0),
         loads_inside_(the_case.actions.loads_inside),

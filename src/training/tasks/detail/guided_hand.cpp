@@ -15,7 +15,7 @@ constexpr double kTremorHigh_hz = 12.0;
 constexpr double kTremorAlongNeedle = 0.1;  // assumed
 
 constexpr double kSpeedSmoothing_s = 0.06;  // of each of two stages; assumed
-constexpr double kMaxLead_mm = 12.0;        // lead of the hand over the device: 7 N at 0.6 N/mm; assumed
+constexpr double kMaxLead_mm = 12.0;        // lead of the hand over the device: 7 N at 0.6 N/mm, for any grip; assumed
 constexpr double kFeeling_s = 0.02;         // assumed
 constexpr double kTouch_n = 0.15;           // assumed; below the threshold of a fingertip
 constexpr double kLeastDrop_n = 0.3;        // assumed
@@ -56,12 +56,13 @@ Vec3 Tremor::velocity_N(double time_s) const noexcept {
   return velocity;
 }
 
-GuidedHand::GuidedHand(const Segment& line_P, const std::optional<Vec3>& bevel_P, double start_mm,
-                       const Tremor& tremor) noexcept
+GuidedHand::GuidedHand(const Segment& line_P, const std::optional<Vec3>& bevel_P, double start_mm, const Tremor& tremor,
+                       double grip) noexcept
     : start_P_(line_P.a),
       axis_P_(line_P.direction()),
       R_PN_(bevel_P ? needle_rotation(axis_P_, *bevel_P) : needle_pose(line_P.a, axis_P_).R()),
       tremor_(tremor),
+      grip_(grip),
       wanted_mm_(start_mm),
       device_mm_(start_mm),
       tip_mm_(start_mm) {}
@@ -98,13 +99,15 @@ void GuidedHand::move(double speed_mm_s, double dt_s) noexcept {
   speed_ahead_mm_s_ += (speed_mm_s - speed_ahead_mm_s_) * share;
   speed_mm_s_ += (speed_ahead_mm_s_ - speed_mm_s_) * share;
   const double unlimited_mm = wanted_mm_ + speed_mm_s_ * dt_s;
-  wanted_mm_ = std::clamp(unlimited_mm, device_mm_ - kMaxLead_mm, device_mm_ + kMaxLead_mm);
+  const double lead_mm = kMaxLead_mm / grip_;
+  wanted_mm_ = std::clamp(unlimited_mm, device_mm_ - lead_mm, device_mm_ + lead_mm);
   if (wanted_mm_ != unlimited_mm) speed_ahead_mm_s_ = speed_mm_s_ = 0.0;
 }
 
 HandCommand GuidedHand::command() const noexcept {
   HandCommand command;
   command.X_PN = Pose(R_PN_, start_P_ + wanted_mm_ * axis_P_ + R_PN_ * tremor_.offset_N(elapsed_s_));
+  command.grip = grip_;
   command.v_P = speed_mm_s_ * axis_P_ + R_PN_ * tremor_.velocity_N(elapsed_s_);
   return command;
 }

@@ -38,7 +38,9 @@ inline constexpr double kOutOfTime_s = 58.0;  ///< The withdrawal ends even if t
 class GuidedHand {
  public:
   /// `bevel_P`: direction that the bevel faces; empty: any.
-  GuidedHand(const Segment& line_P, const std::optional<Vec3>& bevel_P, double start_mm, const Tremor& tremor) noexcept;
+  /// `grip`: HandCommand::grip.
+  GuidedHand(const Segment& line_P, const std::optional<Vec3>& bevel_P, double start_mm, const Tremor& tremor,
+             double grip = 1.0) noexcept;
 
   /// Reads tip and force; call it once per tick, first.
   void sense(const OperatorView& view) noexcept;
@@ -63,6 +65,7 @@ class GuidedHand {
   Vec3 axis_P_;
   Mat3 R_PN_;
   Tremor tremor_;
+  double grip_;
   double wanted_mm_;
   double speed_mm_s_ = 0.0;
   double speed_ahead_mm_s_ = 0.0;  // first of two smoothing stages
