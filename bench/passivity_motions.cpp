@@ -124,7 +124,6 @@ void limit_place(haptics::MotionPlace& place, const haptics::HapticScene& scene,
     place.widest_rad = 0.2;
     return;
   }
-  place.grips_skin = model == MovedModel::kProxy;
   if (kind == haptics::MotionKind::kElasticSkin) {
     place.closed_mm = random.uniform(1.0, kClosedSkin_mm);
     return;

@@ -157,6 +157,7 @@ void remove_losses(anatomy::TissueTable& tissues, HapticOptions& options) {
 
 void close_layers(anatomy::TissueTable& tissues, ClosedLayers closed) {
   if (closed == ClosedLayers::kNone) return;
+  if (closed == ClosedLayers::kAll) tissues.friction.tip = 0.0;
   const auto skin = tissues.tissues[tissues.skin].layer;
   for (std::size_t i = 0; i < tissues.layers.size(); ++i) {
     if (closed == ClosedLayers::kAllButSkin && skin && *skin == i) continue;

@@ -57,7 +57,8 @@ Pose tool_of_motion(const HapticScene& scene, const Pose& X_PM) noexcept;
 /// Switches off what takes energy from the hand: friction, cutting, viscosity, borders of the CT and the coupling's
 /// damper. What remains is elastic, below the puncture forces, which stay as they are.
 void remove_losses(anatomy::TissueTable& tissues, HapticOptions& options);
-/// The layers that a motion of the elastic criterion may not open.
+/// The layers that a motion of the elastic criterion may not open. On skin that never opens the tip slides without
+/// friction.
 enum class ClosedLayers { kNone, kAllButSkin, kAll };
 void close_layers(anatomy::TissueTable& tissues, ClosedLayers closed);
 

@@ -235,17 +235,11 @@ ClosedMotion spline(Composer c) {
 }
 
 ClosedMotion elastic_skin(Composer c) {
-  c.fly(c.place().grips_skin ? Vec3((kOver_mm - kHover_mm) * c.place().inward_P) : c.over());
+  c.fly(c.over());
   for (int i = c.count(1, 6); i > 0; --i) {
     const double load_mm = c.random().uniform(0.1, 1.0) * c.place().closed_mm;
-    if (c.place().grips_skin) {  // within the cone of the skin's grip over the first contact: the tip does not slide
-      constexpr double kCone = 1.2;
-      c.go((kOver_mm + load_mm) * c.place().inward_P + c.on_skin(kCone * load_mm), c.maybe_turn(0.6));
-    } else {
-      c.go(c.along(load_mm) + c.on_skin(0.7 * kWidestDrag_mm), c.maybe_turn(0.5));
-    }
+    c.go(c.along(load_mm) + c.on_skin(0.7 * kWidestDrag_mm), c.maybe_turn(0.5));
   }
-  if (c.place().grips_skin) c.go((kOver_mm - kHover_mm) * c.place().inward_P);
   c.lift();
   return c.close();
 }
@@ -315,8 +309,7 @@ std::optional<ClosedMotion> motion_before(MotionKind kind, const MotionPlace& pl
 
 ClosedMotion make_random_motion(MotionKind kind, const MotionPlace& place, Random& random) {
   const double share = random.uniform();
-  const bool is_at_tip = share < 0.4 || (kind == MotionKind::kElasticSkin && place.grips_skin);
-  const double pivot_mm = is_at_tip ? 0.0 : share < 0.7 ? place.length_mm : random.uniform(0.0, place.length_mm);
+  const double pivot_mm = share < 0.4 ? 0.0 : share < 0.7 ? place.length_mm : random.uniform(0.0, place.length_mm);
   Composer composer(place, random, pivot_mm);
   switch (kind) {
     case MotionKind::kDrag:

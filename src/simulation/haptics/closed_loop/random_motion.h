@@ -44,7 +44,6 @@ struct MotionPlace {
   double deepest_mm = 60.0;       ///< Deepest way along the axis.
   double tempo_mm_per_s = 50.0;   ///< 1 to 330.
   double widest_rad = 0.35;       ///< Largest rotation.
-  bool grips_skin = false;        ///< The skin resists the tip sideways (proxy model): elastic motions do not slide.
 };
 
 /// The motion that prepares the channel of the elastic kinds; empty for the others.

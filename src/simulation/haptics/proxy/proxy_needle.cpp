@@ -18,10 +18,6 @@ double in_series(double a, double b) noexcept {
   return a * b / (a + b);
 }
 
-double damping_s(const HapticScene& scene) noexcept {
-  return scene.options.coupling.damping_ns_per_mm / scene.options.coupling.stiffness_n_per_mm;
-}
-
 /// The needle in its tissue during one step, and the results of the step.
 struct TipStep {
   NeedleBalance balance;
@@ -45,53 +41,43 @@ ProxyNeedleStep in_air(ProxyNeedleState& state, InsertionPath& path, const Pose&
   return step;
 }
 
-/// The tip on unpierced skin: it slides with friction, indents, and pierces at the skin's puncture force.
+/// The skin under the tip gives way: the path begins at the point that the tip held, along the needle's axis.
+void open_skin(ProxyNeedleState& state, InsertionPath& path, std::uint8_t layer, InsertionStep& axial) noexcept {
+  state.proxy_P = state.skin.anchor_P;
+  start_channel(path, state.skin.anchor_P, axial.axis_P);
+  open_path(path, layer);
+  path.contact_to_puncture_P = axial.tip_P - state.contact_P;
+  state.needle_mm = axial.depth_mm * state.skin.way_P.dot(axial.axis_P);
+  axial.punctured = layer;
+  state.is_on_skin = false;
+}
+
+/// The tip on unpierced skin (physics.md V2): its spring is the coupling in series with the skin's indentation, damped
+/// unless the point of the skin that it holds slides.
 ProxyNeedleStep on_skin(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene, const Pose& X_PN,
                         const Pose& X_PN_ahead, double dt_s) noexcept {
-  const Vec3 axis_P = X_PN.R().col(2);
-  const Vec3 inward_P = inward_normal(scene, state.proxy_P);
+  SkinContact& skin = state.skin;
+  follow_skin(skin, scene, X_PN.p(), scene.friction.tip);
+  if (!(skin.to_device_mm > 0.0)) return in_air(state, path, X_PN, dt_s);
   const std::uint8_t layer = scene.tissues[scene.skin].layer;
   const double tissue_n_per_mm = layer == kNoLayer ? 1.0 : scene.layers[layer].indent_n_per_mm;
   const double k = in_series(scene.options.coupling.stiffness_n_per_mm, tissue_n_per_mm);
-  const TipSpring spring = free_spring(k, damping_s(scene), X_PN_ahead.p(), state.proxy_P, Vec3::Zero(), dt_s);
-  Vec3 f = spring.force_P;
-  double f_normal = f.dot(inward_P);
-  if (!(f_normal > 0.0)) {  // one count backwards does not end the contact: the surface stays
-    if (!(skin_distance_mm(scene, X_PN.p()) < 0.0)) return in_air(state, path, X_PN, dt_s);
-    f = Vec3::Zero();
-    f_normal = 0.0;
-  }
+  const Vec3 ahead_P = skin.has_slid ? Vec3(Vec3::Zero()) : Vec3(X_PN_ahead.p() - X_PN.p());
+  double load_n = std::max(0.0, k * (skin.to_device_mm + skin.way_P.dot(ahead_P)));
+  const double puncture_n = layer == kNoLayer ? 0.0 : scene.layers[layer].puncture_force_n;
+  const bool gives_way = load_n >= puncture_n && can_pierce(skin, scene, X_PN.R().col(2));
+  if (gives_way) load_n = puncture_n;
 
   ProxyNeedleStep step;
-  const double puncture_n = layer == kNoLayer ? 0.0 : scene.layers[layer].puncture_force_n;
-  const bool gives_way = axis_P.dot(inward_P) > kGrazing && f.dot(axis_P) >= puncture_n;
-  if (gives_way) {  // the load is limited to the puncture force along the needle
-    f *= puncture_n / f.dot(axis_P);
-  } else {
-    TipLaw skin;  // equations (3) and (4): blocked along the normal, Coulomb friction across it
-    skin.normal_P = inward_P;
-    skin.border = 1.0;
-    skin.law.normal_n = f_normal;
-    skin.law.tangential_n = scene.friction.tip * f_normal;
-    state.proxy_P += proxy_motion(spring, skin, Vec3::Zero());
-    state.proxy_P += skin_distance_mm(scene, state.proxy_P) * inward_P;  // back to the surface
-    f -= residual_force(f, skin, 0.0);
-  }
-  step.tip_force_P = -f;
-  step.axial.tip_P = state.proxy_P + f / tissue_n_per_mm;
-  step.axial.axis_P = axis_P;
-  step.axial.displacement_mm = step.axial.depth_mm = f.dot(inward_P) / tissue_n_per_mm;
+  step.tip_force_P = -load_n * skin.way_P - k * (ahead_P - skin.way_P * skin.way_P.dot(ahead_P));
+  step.axial.axis_P = X_PN.R().col(2);
+  step.axial.displacement_mm = step.axial.depth_mm = load_n / tissue_n_per_mm;
+  step.axial.tip_P = skin.anchor_P + step.axial.depth_mm * skin.way_P;
   step.axial.tissue = scene.skin;
   step.axial.phase = state.phase = telemetry::InsertionPhase::kLoading;
-  if (gives_way) {
-    start_channel(path, state.proxy_P, axis_P);
-    open_path(path, layer);
-    path.contact_to_puncture_P = step.axial.tip_P - state.contact_P;
-    state.needle_mm = step.axial.depth_mm;
-    state.tissue_n_per_mm = tissue_n_per_mm;
-    step.axial.punctured = layer;
-    state.is_on_skin = false;
-  }
+  state.proxy_P = skin.anchor_P;
+  state.tissue_n_per_mm = tissue_n_per_mm;
+  if (gives_way) open_skin(state, path, layer, step.axial);
   return step;
 }
 
@@ -240,7 +226,7 @@ ProxyNeedleStep in_body(ProxyNeedleState& state, InsertionPath& path, const Hapt
 /// A tip from outside: its intersection with the skin, and an open channel that it may enter.
 void meet(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene, const Pose& X_PN) noexcept {
   state.proxy_P = skin_distance_mm(scene, state.proxy_P) >= 0.0 ? meet_skin(scene, state.proxy_P, X_PN.p()) : X_PN.p();
-  state.contact_P = state.proxy_P;
+  state.contact_P = state.skin.anchor_P = state.proxy_P;
   state.is_on_skin = true;
   if (const Channel* hole = path.memory.find(state.proxy_P, X_PN.R().col(2))) {
     path.channel = *hole;

@@ -2,6 +2,7 @@
 
 #include "haptics/insertion/insertion.h"
 #include "haptics/insertion/insertion_path.h"
+#include "haptics/insertion/skin_contact.h"
 #include "haptics/proxy/body_proxies.h"
 
 namespace trocar::haptics {
@@ -11,11 +12,12 @@ struct ProxyNeedleState {
   Vec3 proxy_P = Vec3::Zero();    ///< x_p
   Vec3 contact_P = Vec3::Zero();  ///< Point of the needle's first contact with the skin.
   bool is_on_skin = false;        ///< In contact with unpierced skin.
-  double needle_mm = 0.0;         ///< Position of the virtual needle along the path, between the device and the proxy.
-  double tissue_n_per_mm = 0.0;   ///< K at the last step; 0: none yet.
-  std::uint8_t wall = kNoLayer;   ///< Wall in contact with the tip.
-  double wall_mm = 0.0;           ///< Position of that wall on the path at rest.
-  double wall_anchor_mm = 0.0;    ///< Position of the proxy under the load of the wall.
+  SkinContact skin;
+  double needle_mm = 0.0;        ///< Position of the virtual needle along the path, between the device and the proxy.
+  double tissue_n_per_mm = 0.0;  ///< K at the last step; 0: none yet.
+  std::uint8_t wall = kNoLayer;  ///< Wall in contact with the tip.
+  double wall_mm = 0.0;          ///< Position of that wall on the path at rest.
+  double wall_anchor_mm = 0.0;   ///< Position of the proxy under the load of the wall.
   double velocity_mm_per_s = 0.0;
   telemetry::InsertionPhase phase = telemetry::InsertionPhase::kOutside;
 };

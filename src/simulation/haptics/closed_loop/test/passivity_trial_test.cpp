@@ -159,7 +159,6 @@ double error_of(const Moved& moved, MotionKind kind, int number) {
   place.deepest_mm = is_needle ? 40.0 : 5.0;
   place.tempo_mm_per_s = random.uniform(20.0, 200.0);
   place.widest_rad = is_needle ? 0.3 : 0.2;
-  place.grips_skin = moved.model == ForceModel::kProxy && is_needle;
   if (is_elastic(kind)) {
     place.tempo_mm_per_s = 60.0;
   } else if (is_needle) {
