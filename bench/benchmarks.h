@@ -36,6 +36,9 @@ Result<std::vector<CaseResult>> run_faults_benchmark(const Options& options);
 Result<std::vector<CaseResult>> run_palpation_benchmark();
 /// Encoding and decoding of batches of ticks.
 Result<std::vector<CaseResult>> run_link_benchmark();
+/// A stop after 150 starts, 10,000 times, and control passed under such a flood: no stop is lost, time until it is
+/// seen.
+Result<std::vector<CaseResult>> run_stops_benchmark(const Options& options);
 /// Two live servers, a drawing client and a busy process: rate, lateness, ticks, missed deadlines.
 Result<std::vector<CaseResult>> run_servers_benchmark(const Options& options);
 /// Volumes from tracked freehand sweeps; with the test data, compared with the volume of PLUS.

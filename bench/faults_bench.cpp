@@ -17,18 +17,6 @@ namespace {
 
 constexpr std::array kSlow_ms{1.0, 2.0, 3.0, 5.0, 8.0, 12.0, 20.0, 30.0, 50.0, 100.0, 200.0, 240.0, 400.0, 1000.0};
 
-/// The flat patient below the room: z of the room points up, the needle points down at the skin.
-link::LoadScene flat_request() {
-  link::LoadScene request;
-  request.patient = "flat";
-  Mat3 R_PW;
-  R_PW.col(0) = Vec3::UnitX();
-  R_PW.col(1) = -Vec3::UnitY();
-  R_PW.col(2) = -Vec3::UnitZ();
-  request.X_PW = Pose(R_PW, {0.0, 0.0, 20.0 - request.needle_length_mm});
-  return request;
-}
-
 Result<std::shared_ptr<const anatomy::VirtualPatient>> open_flat(const std::string&, std::uint64_t, const Progress&) {
   return make_flat_patient({{0.0, "adipose"}, {12.0, "muscle"}, {24.0, "liver"}});
 }

@@ -25,6 +25,17 @@ constexpr double kAirHu = -1000.0;
 
 }  // namespace
 
+link::LoadScene flat_request() {
+  link::LoadScene request;
+  request.patient = "flat";
+  Mat3 R_PW;
+  R_PW.col(0) = Vec3::UnitX();
+  R_PW.col(1) = -Vec3::UnitY();
+  R_PW.col(2) = -Vec3::UnitZ();
+  request.X_PW = Pose(R_PW, {0.0, 0.0, 20.0 - request.needle_length_mm});
+  return request;
+}
+
 double typical_hu(std::string_view tissue) noexcept {
   const auto it =
       std::find_if(kTypical.begin(), kTypical.end(), [&](const TypicalHu& t) { return t.tissue == tissue; });

@@ -68,6 +68,8 @@ const std::vector<Benchmark>& all_benchmarks() {
        run_serve_benchmark,
        {"--seconds", "--out"}},
       {"link", "batches of ticks encoded and decoded, beside a fixed piece of arithmetic", run_link_benchmark},
+      {"stops", "a stop after 150 starts, 10,000 times: none may be lost; time until a tick sees it: 10 minutes",
+       run_stops_benchmark},
       {"servers",
        "two live haptic servers, a drawing client and a busy process: lateness, ticks, missed deadlines",
        run_servers_benchmark,

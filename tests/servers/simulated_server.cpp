@@ -15,6 +15,10 @@ constexpr double kPeriod_s = 1e-9 * static_cast<double>(kPeriod_ns);
 constexpr double kBatch_s = 0.005, kStatus_s = 0.05;  // as the server's link thread
 constexpr double kNeverHeard_s = 1e6;
 
+std::int64_t to_ns(double time_s) {
+  return static_cast<std::int64_t>(1e9 * time_s);
+}
+
 std::unique_ptr<devices::HapticDevice> open(const std::string& spec) {
   devices::DeviceOptions options;
   options.devices_file = data_dir() / "devices.toml";
@@ -69,7 +73,7 @@ struct SimulatedServer::Process {
   double ready_s;
   double period_s;  ///< When the last period began.
   server::ServoSwitches switches;
-  std::deque<link::ServerCommand> commands;
+  server::CommandQueue commands;
   std::optional<link::HandTarget> hand;
   std::optional<server::ServoScene> scene;
   std::deque<Job> jobs;
@@ -191,11 +195,16 @@ void SimulatedServer::step() {
 
 void SimulatedServer::receive(double now_s) {
   while (const auto received = link_.receive(welcome(), now_s)) {
+    watch_control(now_s);
     if (const auto* command = std::get_if<link::Command>(&received->body)) take(*received, *command, now_s);
-    if (const auto* target = std::get_if<link::HandTarget>(&received->body)) process_->hand = *target;
-    note_control(*received);
+    if (const auto* target = std::get_if<link::HandTarget>(&received->body)) {
+      const bool was_placed = process_->hand && process_->hand->is_placed;
+      process_->hand = *target;
+      process_->hand->is_placed |= was_placed;
+    }
   }
   link_.drop_lost(now_s);
+  watch_control(now_s);
 }
 
 void SimulatedServer::take(const link::Received& received, const link::Command& command, double now_s) {
@@ -210,17 +219,15 @@ void SimulatedServer::take(const link::Received& received, const link::Command& 
     link_.send_reply(received.session, {command.request, false, "no scene loaded — load one first"});
     return;
   }
-  process_->commands.push_back(*simple);
-  link_.send_reply(received.session, {command.request, true, "done"});
+  const bool is_taken = process_->commands.push(*simple, to_ns(now_s));
+  link_.send_reply(received.session,
+                   {command.request, is_taken, is_taken ? "done" : "too many commands at once — send it again"});
 }
 
-/// Another client took over, or the one in control said goodbye: forces wait to be requested again.
-void SimulatedServer::note_control(const link::Received& received) {
-  const bool has_left = received.session == process_->in_control && !received.has_control;
-  const bool is_another = received.has_control && received.session != process_->in_control;
-  if (!has_left && !is_another) return;
-  if (process_->in_control != 0) process_->commands.push_back(link::ServerCommand::kStop);
-  process_->in_control = is_another ? received.session : 0;
+void SimulatedServer::watch_control(double now_s) {
+  if (link_.controller() == process_->in_control) return;
+  process_->commands.stop(to_ns(now_s));
+  process_->in_control = link_.controller();
 }
 
 void SimulatedServer::run_periods(double now_s) {
@@ -233,7 +240,9 @@ void SimulatedServer::run_periods(double now_s) {
 void SimulatedServer::run_period(double now_s, double dt_s) {
   Process& process = *process_;
   process.switches.begin_period();
-  for (; !process.commands.empty(); process.commands.pop_front()) process.switches.obey(process.commands.front());
+  process.commands.apply_stops(process.switches);
+  process.commands.apply_commands(process.switches);
+  process.commands.confirm(process.switches);
   server::ServoInput input;
   input.now_s = now_s;
   input.dt_s = dt_s;
@@ -245,7 +254,7 @@ void SimulatedServer::run_period(double now_s, double dt_s) {
   input.is_reset = process.switches.is_reset;
   input.is_stylet_in = process.switches.is_stylet_in;
   add(process.servo.step(input));
-  const auto now_ns = static_cast<std::int64_t>(1e9 * now_s);
+  const std::int64_t now_ns = to_ns(now_s);
   process.statistics.add(now_ns, now_ns, now_ns, 0);
 }
 

@@ -12,9 +12,9 @@
 #include "devices/haptic_device.h"
 #include "link/testing/in_process_link.h"
 #include "realtime/loop_statistics.h"
+#include "server/command_queue.h"
 #include "server/scene_builder.h"
 #include "server/servo.h"
-#include "server/servo_commands.h"
 
 namespace trocar::servers_test {
 
@@ -70,7 +70,8 @@ class SimulatedServer {
   double now_s() const;
   void receive(double now_s);
   void take(const link::Received& received, const link::Command& command, double now_s);
-  void note_control(const link::Received& received);
+  /// Forces off, if control has changed.
+  void watch_control(double now_s);
   void run_periods(double now_s);
   void run_period(double now_s, double dt_s);
   void run_jobs(double now_s);

@@ -16,7 +16,7 @@
 
 namespace trocar::link {
 
-inline constexpr std::uint32_t kLinkVersion = 4;  ///< Both sides must have the same version.
+inline constexpr std::uint32_t kLinkVersion = 5;  ///< Both sides must have the same version.
 
 // From a client.
 
@@ -78,7 +78,7 @@ struct SetParameters {
 
 enum class ServerCommand : std::uint8_t {
   kStart,  ///< Forces on (through the safe start).
-  kStop,   ///< Forces off.
+  kStop,   ///< Forces off. Never refused: every client may send it.
   kResetFault,
   kReconnect,  ///< Reopen the device.
   kStyletOut,
@@ -92,6 +92,11 @@ struct Command {
   std::uint32_t request = 0;
   std::variant<LoadScene, SetParameters, ServerCommand> what = ServerCommand::kStop;
 };
+/// The only command that a client without control may send.
+inline bool is_stop(const Command& command) noexcept {
+  const auto* simple = std::get_if<ServerCommand>(&command.what);
+  return simple != nullptr && *simple == ServerCommand::kStop;
+}
 
 /// Target pose of the tool for a simulated hand or a pointer: X_PN of a needle, X_PT of a transducer. No reply; the
 /// server uses only the newest target.

@@ -127,6 +127,7 @@ std::optional<Received> ServerSocket::Impl::take(const ServerConnections::Incomi
   if (!is_leaving) peers.offer_control(*peer, now_s);
   Received received{peer->session, peers.has_control(*peer), std::move(message->body)};
   if (is_leaving) {
+    received.has_control = false;
     peers.forget(received.session);
     connections.refresh(now_s);
     return received;
@@ -171,11 +172,11 @@ void ServerSocket::Impl::greet(Peer& peer, const Welcome& welcome) {
   if (send(peer, message)) peer.was_told_control = peers.has_control(peer);
 }
 
-/// Clients without control may not move anything.
+/// Clients without control may not move anything; everyone may stop the forces.
 bool ServerSocket::Impl::is_permitted(Peer& peer, const ClientBody& body) {
   const auto* command = std::get_if<Command>(&body);
   if (command == nullptr && !std::holds_alternative<HandTarget>(body)) return true;
-  if (peers.has_control(peer)) return true;
+  if (peers.has_control(peer) || (command != nullptr && is_stop(*command))) return true;
   ++refused.not_in_control;
   if (command != nullptr) send_reply(peer, {command->request, false, "another client controls this server"});
   return false;
@@ -217,6 +218,11 @@ void ServerSocket::drop_lost(double now_s) {
 std::optional<double> ServerSocket::controller_heard_s() const {
   const Peer* controller = impl_->peers.controller();
   return controller == nullptr ? std::optional<double>() : controller->heard_s;
+}
+
+std::uint64_t ServerSocket::controller() const {
+  const Peer* controller = impl_->peers.controller();
+  return controller == nullptr ? 0 : controller->session;
 }
 
 std::string ServerSocket::bound_url() const {

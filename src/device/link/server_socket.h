@@ -29,7 +29,7 @@ struct RefusedMessages {
 /// A message of a client with a session, in the order of sending.
 struct Received {
   std::uint64_t session = 0;
-  bool has_control = false;
+  bool has_control = false;  ///< After this message: false for a Goodbye.
   ClientBody body;
 };
 
@@ -57,6 +57,8 @@ class ServerSocket {
 
   /// Time of the last message from the client in control (steady clock, s); empty without such a client.
   std::optional<double> controller_heard_s() const;
+  /// Session of the client in control; 0: none.
+  std::uint64_t controller() const;
   /// URL with the actual port: "tcp://127.0.0.1:40123" if the port was 0.
   std::string bound_url() const;
   RefusedMessages refused() const;

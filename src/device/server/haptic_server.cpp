@@ -95,13 +95,8 @@ struct HapticServer::Impl {
       last_chance.reset();
       device.reset();
     }
-    return {is_loading,
-            shared.statistics.newest().summary(),
-            shared.grant,
-            link.ticks(),
-            shared.records_dropped,
-            socket.refused(),
-            socket.batches_not_taken()};
+    return {is_loading,       shared.statistics.newest().summary(), shared.grant, link.ticks(), shared.records_dropped,
+            socket.refused(), socket.batches_not_taken(),           shared.stops};
   }
 
   ServoParams params;

@@ -14,6 +14,7 @@
 #include "link/server_socket.h"
 #include "realtime/real_time_grant.h"
 #include "server/scene_builder.h"
+#include "server/stop_statistics.h"
 
 namespace trocar::server {
 
@@ -43,6 +44,7 @@ struct ServerReport {
   std::uint64_t ticks = 0, ticks_dropped = 0;
   link::RefusedMessages refused;
   std::uint64_t batches_not_taken = 0;
+  StopStatistics stops;
 };
 
 /// A haptic server: a real-time thread for the device, a thread for the link, and a control thread for slow work

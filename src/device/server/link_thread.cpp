@@ -35,6 +35,7 @@ void LinkThread::run() {
     receive_round();
     const double now_s = realtime::seconds(realtime::now_ns());
     socket_.drop_lost(now_s);
+    watch_control();
     const std::optional<double> heard_s = socket_.controller_heard_s();
     shared_.heard_ns.store(heard_s ? static_cast<std::int64_t>(*heard_s * 1e9) : 0, std::memory_order_relaxed);
     for (const AddressedReply& answer : shared_.door.take_replies()) socket_.send_reply(answer.session, answer.reply);
@@ -58,6 +59,7 @@ void LinkThread::receive_round() {
   double now_s = begin_s;
   for (int taken = 0; taken < kMostMessagesARound && now_s - begin_s < kLongestRound_s; ++taken) {
     const auto received = socket_.receive(taken == 0 ? kWait_ms : 0, welcome_, now_s);
+    watch_control();  // before the message: a kStart of the client that has just got control comes after the stop
     if (!received) return;
     take(*received);
     now_s = realtime::seconds(realtime::now_ns());
@@ -104,14 +106,16 @@ void LinkThread::take(const link::Received& received) {
   } else if (const auto* command = std::get_if<link::Command>(&received.body)) {
     take(received, *command);
   } else if (const auto* target = std::get_if<link::HandTarget>(&received.body)) {
-    shared_.hand.write(*target);
+    placements_ += target->is_placed ? 1 : 0;
+    shared_.hand.write({*target, placements_});
   }
-  // Another client has control, or the controlling client said goodbye: forces must be requested again.
-  const bool has_left = received.session == in_control_ && !received.has_control;
-  const bool is_another = received.has_control && received.session != in_control_;
-  if (!has_left && !is_another) return;
-  if (in_control_ != 0) shared_.commands.push(link::ServerCommand::kStop);
-  in_control_ = is_another ? received.session : 0;
+}
+
+void LinkThread::watch_control() {
+  const std::uint64_t controller = socket_.controller();
+  if (controller == in_control_) return;
+  shared_.commands.stop(realtime::now_ns());
+  in_control_ = controller;
   window_age_s_ = 0.0;
 }
 
@@ -132,9 +136,9 @@ void LinkThread::take(const link::Received& received, const link::Command& comma
     reply(received, command.request, false, "no scene loaded — load one first");
     return;
   }
-  if (*simple == link::ServerCommand::kResetFault)
+  const bool is_taken = shared_.commands.push(*simple, realtime::now_ns());
+  if (is_taken && *simple == link::ServerCommand::kResetFault)
     shared_.door.update([](ControlStatus& status) { status.warning.clear(); });
-  const bool is_taken = shared_.commands.push(*simple);
   reply(received, command.request, is_taken, is_taken ? "done" : "too many commands at once — send it again");
 }
 
@@ -167,11 +171,13 @@ link::ServerStatus LinkThread::make_status(double now_s) {
   status.drop_s = drop_s_;
   status.is_device_connected = newest_.status != devices::DeviceStatus::kDisconnected;
   status.has_controller = in_control_ != 0;
-  status.state = newest_.fault != telemetry::GateFault::kNone        ? link::ServerState::kFault
-                 : control.loading > 0.0                             ? link::ServerState::kLoading
-                 : !control.has_scene                                ? link::ServerState::kNoScene
-                 : shared_.is_wanted.load(std::memory_order_relaxed) ? link::ServerState::kRunning
-                                                                     : link::ServerState::kReady;
+  const bool is_running =
+      shared_.commands.have_stops_taken_effect() && shared_.is_wanted.load(std::memory_order_relaxed);
+  status.state = newest_.fault != telemetry::GateFault::kNone ? link::ServerState::kFault
+                 : control.loading > 0.0                      ? link::ServerState::kLoading
+                 : !control.has_scene                         ? link::ServerState::kNoScene
+                 : is_running                                 ? link::ServerState::kRunning
+                                                              : link::ServerState::kReady;
   return status;
 }
 

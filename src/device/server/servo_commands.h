@@ -1,8 +1,16 @@
 #pragma once
 
+#include <cstdint>
+
 #include "link/messages.h"
 
 namespace trocar::server {
+
+/// A command, and the number of stops that were received before it.
+struct OrderedCommand {
+  link::ServerCommand command = link::ServerCommand::kStop;
+  std::uint64_t stops = 0;
+};
 
 /// Switches of the real-time thread that commands have set.
 struct ServoSwitches {
@@ -10,14 +18,25 @@ struct ServoSwitches {
   bool is_stylet_in = true;
   bool is_reset = false;             ///< A fault reset was requested in this period.
   bool restarts_statistics = false;  ///< Requested in this period.
+  std::uint64_t stops = 0;           ///< Stops that have been applied.
 
   /// Call it at the beginning of each period.
   void begin_period() noexcept { is_reset = restarts_statistics = false; }
-  /// Applies a command. Real-time safe. kReconnect is for the control thread and changes nothing here.
-  void obey(link::ServerCommand command) noexcept {
-    switch (command) {
+  /// Applies the stops, of which `received` have come so far: forces are off until a later kStart. Returns true if one
+  /// was new. Real-time safe.
+  bool obey_stops(std::uint64_t received) noexcept {
+    if (received <= stops) return false;
+    stops = received;
+    is_wanted = false;
+    return true;
+  }
+  /// Applies a command, after the stops before it. A kStart with a later stop has no effect. Real-time safe. kReconnect
+  /// is for the control thread and changes nothing here; kStop is counted, see obey_stops().
+  void obey(const OrderedCommand& ordered) noexcept {
+    obey_stops(ordered.stops);
+    switch (ordered.command) {
       case link::ServerCommand::kStart:
-        is_wanted = true;
+        is_wanted = is_wanted || ordered.stops == stops;
         break;
       case link::ServerCommand::kStop:
         is_wanted = false;

@@ -1,3 +1,5 @@
+#include <cmath>
+#include <optional>
 #include <utility>
 
 #include "realtime/periodic_loop.h"
@@ -9,12 +11,35 @@ namespace {
 
 constexpr double kStatistics_s = 0.05;  // interval of copying the statistics
 
-/// Pops a bounded number of commands.
-void obey(Shared& shared, ServoSwitches& switches, realtime::LoopStatistics& statistics) noexcept {
+/// Applies the stops; called in every period, also while the device is lent.
+void obey_stops(Shared& shared, ServoSwitches& switches, const realtime::Period& period,
+                StopStatistics& stops) noexcept {
+  if (!shared.commands.apply_stops(switches)) return;
+  const std::int64_t now_ns = realtime::now_ns();
+  const auto since_last_ns = static_cast<std::int64_t>(std::llround(period.dt_s * 1e9));
+  stops.add(now_ns - shared.commands.stopped_ns(), now_ns - period.begin_ns + since_last_ns - shared.period_ns);
+}
+
+/// Applies a bounded number of commands.
+void obey_commands(Shared& shared, ServoSwitches& switches, realtime::LoopStatistics& statistics) noexcept {
   switches.begin_period();
-  link::ServerCommand command{};
-  for (int i = 0; i < kMostCommandsAPeriod && shared.commands.pop(command); ++i) switches.obey(command);
+  shared.commands.apply_commands(switches);
   if (switches.restarts_statistics) statistics = realtime::LoopStatistics(shared.period_ns);
+}
+
+void publish(Shared& shared, ServoSwitches& switches) noexcept {
+  if (shared.is_fading.load(std::memory_order_relaxed)) switches.is_wanted = false;
+  shared.is_wanted.store(switches.is_wanted, std::memory_order_relaxed);
+  shared.commands.confirm(switches);
+}
+
+/// The newest hand, if there is a new one; placed if any target since the last period was.
+std::optional<link::HandTarget> take_hand(Shared& shared, std::uint64_t& placements) noexcept {
+  if (!shared.hand.update()) return {};
+  const CountedHand& newest = shared.hand.value();
+  link::HandTarget target = newest.target;
+  target.is_placed = std::exchange(placements, newest.placements) != newest.placements;
+  return target;
 }
 
 }  // namespace
@@ -26,6 +51,8 @@ void run_servo_thread(Shared& shared, Servo& servo, int priority) noexcept {
   shared.has_grant.store(true, std::memory_order_release);
   realtime::LoopStatistics statistics(shared.period_ns);
   ServoSwitches switches;
+  StopStatistics stops;
+  std::uint64_t placements = 0;
   double told_s = 0.0;
   bool is_lent = false;
   std::int64_t busy_ns = 0;
@@ -34,7 +61,9 @@ void run_servo_thread(Shared& shared, Servo& servo, int priority) noexcept {
       [&](const realtime::Period& period, const realtime::LoopStatistics& so_far) {
         const DeviceLoan::Request request = shared.loan.look();
         if (shared.last_chance != nullptr && shared.last_chance->takes_over(is_lent && request.is_open)) return;
+        obey_stops(shared, switches, period, stops);
         if (request.is_open && (is_lent || !servo.gives_force())) {
+          publish(shared, switches);
           is_lent = true;
           shared.loan.lend(request);
           return;  // commands are waiting: a reset must not be lost
@@ -45,15 +74,14 @@ void run_servo_thread(Shared& shared, Servo& servo, int priority) noexcept {
         }
 
         const std::int64_t begun_ns = realtime::now_ns();
-        obey(shared, switches, statistics);
-        if (shared.is_fading.load(std::memory_order_relaxed)) switches.is_wanted = false;
-        shared.is_wanted.store(switches.is_wanted, std::memory_order_relaxed);
+        obey_commands(shared, switches, statistics);
+        publish(shared, switches);
 
         ServoInput input;
         input.now_s = period.now_s;
         input.dt_s = period.dt_s;
         input.scene = shared.scene.acquire();
-        if (shared.hand.update()) input.hand = shared.hand.value();
+        input.hand = take_hand(shared, placements);
         const std::int64_t heard_ns = shared.heard_ns.load(std::memory_order_relaxed);
         input.silence_s = heard_ns == 0 ? kNeverHeard_s : realtime::seconds(period.begin_ns - heard_ns);
         input.is_wanted = switches.is_wanted && !request.is_open;  // on request: forces fade before the device is lent
@@ -68,6 +96,7 @@ void run_servo_thread(Shared& shared, Servo& servo, int priority) noexcept {
         shared.statistics.write(so_far);
       });
   shared.statistics.write(statistics);
+  shared.stops = stops;
 }
 
 }  // namespace trocar::server

@@ -76,6 +76,51 @@ TEST(ServerSocket, SendsEveryTickToEveryClient) {
   EXPECT_EQ(server.batches_not_taken(), 0u);
 }
 
+TEST(ServerSocket, EveryClientMayStop) {
+  ServerSocket server = bound();
+  RawClient controller(server.bound_url());
+  join(server, controller);
+  for (const bool wants_control : {false, true}) {
+    RawClient other(server.bound_url());
+    join(server, other, wants_control);
+    other.send(Command{7, ServerCommand::kStop});
+    const auto stop = serve(server);
+    ASSERT_TRUE(stop);
+    EXPECT_FALSE(stop->has_control);
+    const auto* command = std::get_if<Command>(&stop->body);
+    ASSERT_NE(command, nullptr);
+    EXPECT_TRUE(is_stop(*command));
+    // Only the stop: any other command without control is answered with an error.
+    for (int number = 0; number <= static_cast<int>(kLastServerCommand); ++number) {
+      if (static_cast<ServerCommand>(number) != ServerCommand::kStop)
+        other.send(Command{8, static_cast<ServerCommand>(number)});
+    }
+    other.send(Command{9, LoadScene{}});
+    other.send(Command{10, SetParameters{}});
+    ASSERT_TRUE(beat(server, other));
+  }
+  EXPECT_EQ(server.refused().not_in_control, 2u * (static_cast<unsigned>(kLastServerCommand) + 2u));
+}
+
+TEST(ServerSocket, TellsWhoHasControl) {
+  ServerSocket server = bound();
+  EXPECT_EQ(server.controller(), 0u);
+  RawClient first(server.bound_url()), second(server.bound_url());
+  join(server, first);
+  EXPECT_EQ(server.controller(), first.session());
+  join(server, second);
+  EXPECT_EQ(server.controller(), first.session());
+  first.send(Goodbye{});
+  const auto goodbye = serve(server);
+  ASSERT_TRUE(goodbye);
+  EXPECT_FALSE(goodbye->has_control) << "a client that leaves has no control";
+  EXPECT_EQ(server.controller(), 0u);
+  ASSERT_TRUE(beat(server, second));
+  EXPECT_EQ(server.controller(), second.session());
+  server.drop_lost(kLongAfter_s);  // it sent nothing for kForgotten_s
+  EXPECT_EQ(server.controller(), 0u);
+}
+
 TEST(ServerSocket, FirstWhoWantsControlHasItAndOthersWatch) {
   ServerSocket server = bound();
   RawClient first(server.bound_url()), second(server.bound_url());

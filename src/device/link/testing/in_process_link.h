@@ -43,6 +43,10 @@ class InProcessServerEnd {
     const link::detail::Peer* controller = peers_.controller();
     return controller == nullptr ? std::optional<double>() : controller->heard_s;
   }
+  std::uint64_t controller() const {
+    const link::detail::Peer* controller = peers_.controller();
+    return controller == nullptr ? 0 : controller->session;
+  }
   /// Simulates the end of the server process: messages are not accepted.
   void close() {
     is_open_ = false;
@@ -194,6 +198,7 @@ inline std::optional<link::Received> InProcessServerEnd::take(const std::string&
   if (!is_leaving) peers_.offer_control(*peer, now_s);
   link::Received received{peer->session, peers_.has_control(*peer), std::move(message.body)};
   if (is_leaving) {
+    received.has_control = false;
     peers_.forget(received.session);
     return received;
   }
@@ -205,7 +210,7 @@ inline std::optional<link::Received> InProcessServerEnd::take(const std::string&
   }
   const auto* command = std::get_if<link::Command>(&received.body);
   const bool is_moving = command != nullptr || std::holds_alternative<link::HandTarget>(received.body);
-  if (is_moving && !received.has_control) {
+  if (is_moving && !received.has_control && !(command != nullptr && link::is_stop(*command))) {
     if (command != nullptr) send(*peer, link::Reply{command->request, false, "another client controls this server"});
     return {};
   }

@@ -16,6 +16,8 @@ class LinkThread {
 
  private:
   void receive_round();
+  /// Forces off, if control has changed: another client, a new session of the same one, or nobody.
+  void watch_control();
   void take(const link::Received& received);
   void take(const link::Received& received, const link::Command& command);
   void reply(const link::Received& received, std::uint32_t request, bool is_done, std::string text);
@@ -33,6 +35,7 @@ class LinkThread {
   ServoRecord newest_;
   std::uint64_t ticks_ = 0;
   std::uint64_t in_control_ = 0;  ///< Session of the client in control; 0: none.
+  std::uint64_t placements_ = 0;  ///< See CountedHand.
   double window_age_s_ = 0.0;
   std::uint32_t actions_ = 0;
   double drop_n_ = 0.0, drop_s_ = 0.0;

@@ -18,9 +18,11 @@
 #include "realtime/real_time_grant.h"
 #include "realtime/spsc_ring.h"
 #include "realtime/triple_buffer.h"
+#include "server/command_queue.h"
 #include "server/detail/device_loan.h"
 #include "server/last_chance.h"
 #include "server/servo.h"
+#include "server/stop_statistics.h"
 
 /// Data shared by the three threads of a haptic server. Private to `server`.
 namespace trocar::server {
@@ -128,9 +130,13 @@ class ControlDoor {
 };
 
 inline constexpr std::size_t kRecordsKept = 8192;  // 2 s at 4 kHz
-inline constexpr std::size_t kCommandsKept = 64;
-inline constexpr int kMostCommandsAPeriod = 8;
 inline constexpr double kNeverHeard_s = 1e6;
+
+/// The newest hand. A placement is counted, so that a later target before the next period does not hide it.
+struct CountedHand {
+  link::HandTarget target;
+  std::uint64_t placements = 0;  ///< Targets with is_placed so far.
+};
 
 /// Data exchanged between the threads, grouped by direction.
 struct Shared {
@@ -142,8 +148,8 @@ struct Shared {
   std::atomic<bool> is_fading{false};  ///< True before the server stops: forces off.
 
   // From the link thread to the real-time thread.
-  realtime::SpscRing<link::ServerCommand> commands{kCommandsKept};
-  realtime::TripleBuffer<link::HandTarget> hand;
+  CommandQueue commands;
+  realtime::TripleBuffer<CountedHand> hand;
   std::atomic<std::int64_t> heard_ns{0};  ///< Time of the last message of the client in control; 0: no such client.
 
   // From the real-time thread to the link thread.
@@ -151,6 +157,7 @@ struct Shared {
   std::atomic<std::uint64_t> records_dropped{0};
   realtime::TripleBuffer<realtime::LoopStatistics> statistics;
   std::atomic<bool> is_wanted{false};
+  StopStatistics stops;  ///< Written by the real-time thread at its end.
   std::atomic<bool> has_grant{false};
   realtime::RealTimeGrant grant;  ///< Written before has_grant is set.
 

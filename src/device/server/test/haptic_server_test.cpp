@@ -14,74 +14,17 @@
 #include "link/client/haptic_client.h"
 #include "link/codec.h"
 #include "link/test/raw_link.h"
-#include "server/test/servo_rig.h"
+#include "server/test/server_rig.h"
 
 namespace trocar::server {
 namespace {
 
 using namespace std::chrono_literals;
+using testing::kServerPatience;
 using testing::ScriptedDevice;
-
-/// Long enough for a loaded machine; nothing is measured by it.
-constexpr auto kServerPatience = 20s;
-
-bool wait_for(const std::function<bool()>& is_so) {
-  const auto end = std::chrono::steady_clock::now() + kServerPatience;
-  while (!is_so()) {
-    if (std::chrono::steady_clock::now() > end) return false;
-    std::this_thread::sleep_for(1ms);
-  }
-  return true;
-}
-
-/// Forces on. A machine too busy for the loop's period has latched a fault: it is reset, as a person would.
-bool turn_on(link::HapticClient& client) {
-  return wait_for([&] {
-    const telemetry::GateMode mode = client.view().status.gate_mode;
-    if (mode == telemetry::GateMode::kOn) return true;
-    const bool is_fault = mode == telemetry::GateMode::kFault;
-    const bool is_off = is_fault || mode == telemetry::GateMode::kOff;
-    EXPECT_TRUE(!is_fault || client.ask(link::ServerCommand::kResetFault, kServerPatience));
-    EXPECT_TRUE(!is_off || client.ask(link::ServerCommand::kStart, kServerPatience));
-    return false;
-  });
-}
-
-/// A server with a scripted device on an endpoint of its own, and a client.
-class ServerRig {
- public:
-  ServerRig() : server_(start()) {}
-
-  HapticServer start() {
-    ServerOptions options;
-    options.endpoint = *link::parse_endpoint("ipc://" + (folder_ / "needle").string());
-    options.priority = 0;
-    options.tissues_file = testing::data_file("tissues.toml");
-    options.flight_folder = folder_.path();
-    auto device = std::make_unique<ScriptedDevice>(testing::device_preset());
-    device->reading.X_DS = testing::needle_at_depth(-10.0);
-    device_ = device.get();
-    auto server = HapticServer::start(options, std::move(device), testing::layered_opener());
-    TROCAR_CHECK(server.has_value());
-    return std::move(*server);
-  }
-  link::HapticClient connect(bool wants_control = true) {
-    link::ClientOptions options;
-    options.endpoint = server_.url();
-    options.wants_control = wants_control;
-    auto client = link::HapticClient::connect(options);
-    TROCAR_CHECK(client.has_value());
-    TROCAR_CHECK(client->wait_connected(kServerPatience).has_value());
-    return std::move(*client);
-  }
-  HapticServer& server() { return server_; }
-  const TemporaryFolder& folder() const { return folder_; }
-
- private:
-  TemporaryFolder folder_;
-  ScriptedDevice* device_ = nullptr;
-  HapticServer server_;
-};
+using testing::ServerRig;
+using testing::turn_on;
+using testing::wait_for;
 
 TEST(HapticServer, LoadsASceneAndRuns) {
   ServerRig rig;
@@ -230,8 +173,8 @@ TEST(HapticServer, CountsBadMessagesAndKeepsItsForcesMeanwhile) {
   EXPECT_FALSE(welcome->has_control);
   stranger.send(link::Bytes(link::kMostMessageBytes + 1));
   stranger.send(welcome->session, 5, link::Heartbeat{});
-  stranger.send(welcome->session, 5, link::Heartbeat{});                             // replayed
-  stranger.send(welcome->session, 6, link::Command{1, link::ServerCommand::kStop});  // not in control
+  stranger.send(welcome->session, 5, link::Heartbeat{});                              // replayed
+  stranger.send(welcome->session, 6, link::Command{1, link::ServerCommand::kStart});  // not in control
 
   EXPECT_TRUE(wait_for([&] { return client.view().status.messages_refused >= 3 * kRounds + 3; }))
       << client.view().status.messages_refused;

@@ -352,7 +352,9 @@ void ServerSupervisor::frame_drawn() {
 void ServerSupervisor::end() {
   constexpr std::chrono::milliseconds kTimeout{500};
   if (!connection_) return;
-  if (client_.is_connected) static_cast<void>(connection_->ask(link::ServerCommand::kStop, kTimeout));
+  // Without control, the forces are those of another client.
+  if (client_.is_connected && client_.welcome.has_control)
+    static_cast<void>(connection_->ask(link::ServerCommand::kStop, kTimeout));
   client_ = connection_->view();
 }
 
