@@ -28,8 +28,6 @@ inline constexpr double kMostAcceptedPerS = 100.0;
 inline constexpr double kMostAcceptedAtOnce = 16.0;
 inline constexpr double kMostRefusalsPerS = 10.0;  ///< Refusals of invalid messages, for one connection.
 inline constexpr double kMostRefusalsAtOnce = 10.0;
-inline constexpr double kMostLogLinesPerS = 1.0 / 6.0;  ///< For all connections.
-inline constexpr double kMostLogLinesAtOnce = 10.0;
 inline constexpr double kHelloPatience_s = 5.0;  ///< A connection without a valid Hello is closed after this time.
 
 }  // namespace trocar::link

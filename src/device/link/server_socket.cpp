@@ -143,7 +143,7 @@ std::optional<Received> ServerSocket::Impl::take(const ServerConnections::Incomi
 
 /// Handles a message that cannot be decoded: a command of a known client gets a reply, everything else a refusal.
 void ServerSocket::Impl::explain(const ServerConnections::Incoming& incoming, const Error& error, double now_s) {
-  connections.report(fmt::format("a message was refused: {}", error.text()), now_s);
+  connections.report(fmt::format("a message was refused: {}", error.text()));
   Peer* peer = peers.find(incoming.routing_id);
   const auto command = peer == nullptr ? std::nullopt : find_command(incoming.message);
   if (!command || peers.judge(*peer, command->session, command->sequence, now_s) != Verdict::kGood) {
@@ -223,6 +223,10 @@ std::optional<double> ServerSocket::controller_heard_s() const {
 std::uint64_t ServerSocket::controller() const {
   const Peer* controller = impl_->peers.controller();
   return controller == nullptr ? 0 : controller->session;
+}
+
+std::shared_ptr<LogLimit> ServerSocket::log_limit() const {
+  return impl_->connections.log_limit();
 }
 
 std::string ServerSocket::bound_url() const {

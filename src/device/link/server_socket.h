@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/log_limit.h"
 #include "core/result.h"
 #include "link/curve_keys.h"
 #include "link/endpoint.h"
@@ -59,6 +60,8 @@ class ServerSocket {
   std::optional<double> controller_heard_s() const;
   /// Session of the client in control; 0: none.
   std::uint64_t controller() const;
+  /// Limit of the log lines that clients can cause: those of this socket, and the caller's own about their messages.
+  std::shared_ptr<LogLimit> log_limit() const;
   /// URL with the actual port: "tcp://127.0.0.1:40123" if the port was 0.
   std::string bound_url() const;
   RefusedMessages refused() const;

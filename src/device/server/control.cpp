@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <optional>
 #include <thread>
 
 #include "core/log.h"
@@ -63,12 +64,15 @@ void Control::run() {
   const CrashStack stack;
   ControlJob job;
   while (shared_.door.wait(job)) {
+    std::optional<LimitedLog> limited;
+    if (job.session != 0) limited.emplace(*shared_.log_limit);  // also for the lines of the job
     const Result<std::string> done = perform(job);
     if (done) {
       log_info("{}", *done);
     } else {
       log_warning("{}", done.error().text());
     }
+    limited.reset();
     if (job.session != 0) shared_.door.answer({job.session, make_reply(job, done)});
     shared_.scene.collect();
   }

@@ -53,6 +53,7 @@ struct HapticServer::Impl {
         link(shared, socket, make_welcome(*device, options.tool, params.workspace.force_scale),
              options.priority > 0 ? kLinkPriority : 0) {
     shared.last_chance = &*last_chance;
+    shared.log_limit = socket.log_limit();
   }
   ~Impl() {
     stop();

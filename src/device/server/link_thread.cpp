@@ -31,6 +31,7 @@ void LinkThread::run() {
   const CrashStack stack;
   const realtime::RealTimeGrant grant = realtime::request_real_time(priority_);
   log_info("link thread: {}", grant.text());
+  const LimitedLog limited(*shared_.log_limit);
   while (!shared_.is_stopping.load(std::memory_order_relaxed)) {
     receive_round();
     const double now_s = realtime::seconds(realtime::now_ns());

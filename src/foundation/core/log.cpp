@@ -3,6 +3,8 @@
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include "core/log_limit.h"
+
 namespace trocar {
 inline namespace core {
 namespace {
@@ -34,7 +36,10 @@ spdlog::logger& logger() {
 }  // namespace
 
 void log(LogLevel level, std::string_view text) {
-  logger().log(spd_level(level), "{}", text);
+  if (!logger().should_log(spd_level(level))) return;
+  LogLimit* const limit = LimitedLog::current();
+  if (limit == nullptr) return logger().log(spd_level(level), "{}", text);
+  if (const auto line = limit->pass(text)) logger().log(spd_level(level), "{}", *line);
 }
 
 void set_log_level(LogLevel level) {

@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <mutex>
 #include <stop_token>
 #include <string>
@@ -12,6 +13,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/log_limit.h"
 #include "link/messages.h"
 #include "realtime/handover.h"
 #include "realtime/loop_statistics.h"
@@ -167,6 +169,7 @@ struct Shared {
 
   // Between the link thread and the control thread.
   ControlDoor door;
+  std::shared_ptr<LogLimit> log_limit = std::make_shared<LogLimit>();  ///< Of log lines that clients can cause.
 };
 
 /// Function of the real-time thread.

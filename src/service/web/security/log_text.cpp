@@ -11,10 +11,8 @@ std::string log_text(std::string_view text) {
     const auto character = first_character(text);
     const std::size_t bytes = character ? character->bytes : 1;
     if (safe.size() + bytes > kMostBytes) return safe + "…\"";
-    const bool is_plain =
-        character && character->code_point >= 0x20 && character->code_point != '"' && character->code_point != '\\' &&
-        (character->code_point < 0x7f || character->code_point >= 0xa0) && character->code_point != 0x2028 &&
-        character->code_point != 0x2029 && (character->code_point < 0x202a || character->code_point > 0x202e);
+    const bool is_plain = character && is_printable(character->code_point) && character->code_point != '"' &&
+                          character->code_point != '\\';
     safe += is_plain ? text.substr(0, bytes) : "?";
     text.remove_prefix(bytes);
   }

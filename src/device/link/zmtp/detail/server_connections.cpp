@@ -83,7 +83,7 @@ std::optional<ServerConnections::Incoming> ServerConnections::next_buffered(doub
       continue;
     }
     if (incoming.event == ZmtpConnection::Event::kBroken) {
-      report(fmt::format("a connection was closed: {}", connection.stream->why()), now_s);
+      report(fmt::format("a connection was closed: {}", connection.stream->why()));
       flush(connection);  // the last message to the client
       connection.is_closed = true;
       ++refused_;
@@ -166,12 +166,12 @@ void ServerConnections::accept_some(double now_s) {
     if (!socket.is_open()) {
       if (errno == EAGAIN || errno == EINTR || errno == ECONNABORTED) return;
       accepts_.take(kPauseAccepts);
-      report(fmt::format("cannot accept a connection: {}", std::strerror(errno)), now_s);
+      report(fmt::format("cannot accept a connection: {}", std::strerror(errno)));
       return;
     }
     accepts_.take(1.0);
     if (!may_connect(socket.get())) {
-      report("a connection of another user was refused", now_s);
+      report("a connection of another user was refused");
       ++refused_;
       continue;
     }
@@ -246,10 +246,8 @@ ServerConnections::Connection* ServerConnections::find(std::string_view routing_
   return found == connections_.end() ? nullptr : &*found;
 }
 
-void ServerConnections::report(const std::string& what, double now_s) {
-  log_lines_.refill(now_s);
-  if (!log_lines_.has_tokens()) return;
-  log_lines_.take(1.0);
+void ServerConnections::report(const std::string& what) {
+  const LimitedLog limited(*log_limit_);
   log_warning("link: {}", what);
 }
 

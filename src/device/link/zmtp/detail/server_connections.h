@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/log_limit.h"
 #include "core/result.h"
 #include "link/detail/descriptor.h"
 #include "link/detail/ipc_file.h"
@@ -43,8 +44,9 @@ class ServerConnections {
   bool send(std::string_view routing_id, std::span<const std::byte> message, std::size_t most_waiting = kMostBytesOut);
   /// True if a Refusal may be sent to the peer now; refusals are limited in rate.
   bool may_refuse(std::string_view routing_id, double now_s);
-  /// Logs a warning, limited in rate.
-  void report(const std::string& what, double now_s);
+  /// Logs a warning within log_limit().
+  void report(const std::string& what);
+  const std::shared_ptr<LogLimit>& log_limit() const { return log_limit_; }
   /// Sets the function that returns whether the client with this routing id has sent Hello. It is called after the
   /// handshake of a connection, and by refresh().
   void set_known(std::function<bool(std::string_view)> is_known) { is_known_ = std::move(is_known); }
@@ -87,7 +89,7 @@ class ServerConnections {
   std::size_t turn_ = 0;
   std::uint64_t last_number_ = 0, refused_ = 0;
   TokenBucket accepts_{kMostAcceptedPerS, kMostAcceptedAtOnce};
-  TokenBucket log_lines_{kMostLogLinesPerS, kMostLogLinesAtOnce};
+  std::shared_ptr<LogLimit> log_limit_ = std::make_shared<LogLimit>();
   bool has_ready_ = false;  ///< The last pump found a socket ready.
 };
 
