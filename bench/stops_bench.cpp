@@ -82,7 +82,7 @@ bool wait_for_reply(link::HapticClient& client, std::uint32_t request, StopCount
   while (std::chrono::steady_clock::now() < end) {
     for (const link::Reply& reply : client.take_replies()) {
       if (reply.request == request) return reply.is_done;
-      counts.starts_refused += reply.is_done ? 0 : 1;
+      counts.starts_refused += reply.text.find("too many commands") != std::string::npos ? 1 : 0;
     }
     pause();
   }

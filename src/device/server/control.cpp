@@ -1,6 +1,5 @@
 #include "server/detail/control.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <chrono>
@@ -138,12 +137,21 @@ Result<std::string> Control::perform(link::ServerCommand) {
   return fmt::format("{} is open again; reset the fault to continue", device_.name());
 }
 
-Result<std::string> Control::perform(const WriteFlight& flight) {
+void Control::check_flights() {
+  if (flight_folder_.empty()) return;
+  const Status checked = check_flight_folder(flight_folder_);
+  if (checked) return;
+  const std::string text = fmt::format("flight records cannot be written: {}", checked.error().text());
+  log_warning("{}", text);
+  shared_.door.update([&](ControlStatus& status) { status.warning = text; });
+}
+
+Result<std::string> Control::write(const Flight& flight) {
   if (flight_folder_.empty()) return std::string("no folder for flight records was given");
-  const std::string utc = fmt::format("{:%Y%m%dT%H%M%SZ}", fmt::gmtime(std::chrono::system_clock::now()));
-  const Result<std::filesystem::path> path = write_flight(flight_folder_, utc, flight.records);
+  const Result<std::filesystem::path> path =
+      write_flight(flight_folder_, flight_time(std::chrono::system_clock::now()), flight);
   const std::string text =
-      path ? fmt::format("fault: the last {} periods were saved to {}", flight.records.size(), path->string())
+      path ? fmt::format("fault: the last {} periods were saved to {}", flight.size(), path->string())
            : fmt::format("the flight record could not be written: {}", path.error().text());
   shared_.door.update([&](ControlStatus& status) { status.warning = text; });
   if (!path) return tl::unexpected(path.error());

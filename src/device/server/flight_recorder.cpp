@@ -1,12 +1,19 @@
 #include "server/flight_recorder.h"
 
+#include <fcntl.h>
+#include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <cstring>
 #include <iterator>
+#include <utility>
 
 #include "core/files/atomic_file.h"
+#include "core/files/disk_space.h"
 #include "telemetry/tick_fields.h"
 
 namespace trocar::server {
@@ -59,13 +66,31 @@ void append_row(std::string& text, const ServoRecord& record) {
   text.back() = '\n';
 }
 
-/// "flight-20260101T000000Z-runaway.csv"
-bool is_flight_name(const std::string& name) {
-  constexpr std::string_view kPrefix = "flight-", kSuffix = ".csv", kTime = "00000000T000000Z-";
+/// "flight-20260101T000000.123Z-runaway.csv"; former versions wrote no milliseconds.
+bool is_flight_name(std::string_view name) {
+  constexpr std::string_view kPrefix = "flight-", kSuffix = ".csv";
+  constexpr std::array<std::string_view, 2> kTimes{"00000000T000000.000Z-", "00000000T000000Z-"};
   if (!name.starts_with(kPrefix) || !name.ends_with(kSuffix)) return false;
-  if (name.size() <= kPrefix.size() + kTime.size() + kSuffix.size()) return false;
-  return std::equal(kTime.begin(), kTime.end(), name.begin() + kPrefix.size(),
-                    [](char pattern, char c) { return pattern == '0' ? c >= '0' && c <= '9' : c == pattern; });
+  return std::any_of(kTimes.begin(), kTimes.end(), [&](std::string_view time) {
+    if (name.size() <= kPrefix.size() + time.size() + kSuffix.size()) return false;
+    return std::equal(time.begin(), time.end(), name.begin() + kPrefix.size(),
+                      [](char pattern, char c) { return pattern == '0' ? c >= '0' && c <= '9' : c == pattern; });
+  });
+}
+
+/// Creates an empty file with a name that does not exist: `stem`.csv, `stem`-2.csv and so on.
+Result<fs::path> reserve_name(const fs::path& folder, const std::string& stem) {
+  constexpr int kMostOfAName = 1000;
+  for (int number = 1; number <= kMostOfAName; ++number) {
+    const fs::path path = folder / (number == 1 ? stem + ".csv" : fmt::format("{}-{}.csv", stem, number));
+    const int file = ::open(path.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+    if (file >= 0) {
+      ::close(file);
+      return path;
+    }
+    if (errno != EEXIST) return fail(std::strerror(errno), path.string(), "see --flight-records");
+  }
+  return fail("there are too many flight records of one moment", folder.string(), "remove some");
 }
 
 struct FlightFile {
@@ -122,6 +147,32 @@ std::optional<std::vector<ServoRecord>> FlightRecorder::add(const ServoRecord& r
   return std::vector<ServoRecord>(records_.begin(), records_.end());
 }
 
+std::optional<std::vector<ServoRecord>> FlightRecorder::finish() {
+  if (std::exchange(wanted_, 0) == 0) return std::nullopt;
+  return std::vector<ServoRecord>(records_.begin(), records_.end());
+}
+
+Status check_flight_folder(const fs::path& folder) {
+  constexpr const char* kAdvice = "free or repair it, or name another folder with --flight-records";
+  if (Status made = make_writable_folder(folder); !made) {
+    made.error().advice = kAdvice;
+    return made;
+  }
+  constexpr std::uintmax_t kOneRecord_bytes = 4U << 20;  // see FlightQuota
+  const std::optional<std::uintmax_t> free_bytes = find_free_bytes(folder);
+  if (free_bytes && *free_bytes < kOneRecord_bytes)
+    return fail(fmt::format("only {} kB are free, a flight record needs up to {} kB", *free_bytes / 1024,
+                            kOneRecord_bytes / 1024),
+                folder.string(), kAdvice);
+  return {};
+}
+
+std::string flight_time(std::chrono::system_clock::time_point time) {
+  const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(time.time_since_epoch()).count();
+  constexpr std::int64_t kMsPerS = 1000;
+  return fmt::format("{:%Y%m%dT%H%M%S}.{:03}Z", fmt::gmtime(static_cast<std::time_t>(ms / kMsPerS)), ms % kMsPerS);
+}
+
 Result<std::filesystem::path> write_flight(const std::filesystem::path& folder, const std::string& utc,
                                            const std::vector<ServoRecord>& flight) {
   std::string text = csv_header();
@@ -130,8 +181,12 @@ Result<std::filesystem::path> write_flight(const std::filesystem::path& folder, 
     append_row(text, record);
     if (fault == telemetry::GateFault::kNone) fault = record.fault;
   }
-  const std::filesystem::path path = folder / fmt::format("flight-{}-{}.csv", utc, to_string(fault));
-  TROCAR_TRY_STATUS(write_file_atomically(path, text));
+  TROCAR_TRY(const fs::path path, reserve_name(folder, fmt::format("flight-{}-{}", utc, to_string(fault))));
+  if (Status written = write_file_atomically(path, text); !written) {
+    std::error_code error;
+    fs::remove(path, error);  // the reserved name
+    return tl::unexpected(std::move(written.error()));
+  }
   keep_quota(folder, path);
   return path;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <deque>
 #include <filesystem>
@@ -20,6 +21,8 @@ class FlightRecorder {
   explicit FlightRecorder(double rate_hz);
   /// Adds one record. Returns a flight record when it is complete.
   std::optional<std::vector<ServoRecord>> add(const ServoRecord& record);
+  /// The server ends: returns the flight record of a fault less than kAfter_s ago, with the records so far.
+  std::optional<std::vector<ServoRecord>> finish();
 
   static constexpr double kBefore_s = 2.0;
   static constexpr double kAfter_s = 0.1;
@@ -42,9 +45,17 @@ struct FlightQuota {
 std::size_t keep_quota(const std::filesystem::path& folder, const std::filesystem::path& newest,
                        const FlightQuota& quota = {});
 
-/// Writes FOLDER/flight-UTC-FAULT.csv, one row per period: the tick fields that telemetry/tick_fields.h selects for it,
-/// pose, buttons, wanted and written wrench, actions of the gate. Removes older records beyond the quota (keep_quota).
-/// Returns the path.
+/// Checks at the start of a server that flight records can be written: creates the folder if it is missing, writes a
+/// small file and looks for room for one record. Errors: not possible, with the reason.
+Status check_flight_folder(const std::filesystem::path& folder);
+
+/// A time for the name of a flight record, to the millisecond: "20260101T000000.123Z".
+std::string flight_time(std::chrono::system_clock::time_point time);
+
+/// Writes FOLDER/flight-UTC-FAULT.csv, or flight-UTC-FAULT-2.csv and so on if there is such a file: no file is
+/// overwritten, also if several servers write to the folder. One row per period: the tick fields that
+/// telemetry/tick_fields.h selects for it, pose, buttons, wanted and written wrench, actions of the gate. Removes older
+/// records beyond the quota (keep_quota). Returns the path.
 Result<std::filesystem::path> write_flight(const std::filesystem::path& folder, const std::string& utc,
                                            const std::vector<ServoRecord>& flight);
 

@@ -62,6 +62,7 @@ struct HapticServer::Impl {
 
   /// After an error, the destructor ends the threads that have started.
   Status start_threads(const ThreadStarter& starter, int priority) {
+    control.check_flights();
     TROCAR_TRY(control_thread, starter("control", [this] {
                  control.run();
                  control_end.set_value();
@@ -79,6 +80,12 @@ struct HapticServer::Impl {
     return true;
   }
 
+  /// The control thread has ended, or loads a scene, which does not write flight records.
+  void write_late(const Flight& flight) {
+    const Result<std::string> written = control.write(flight);
+    log_warning("{}", written ? *written : written.error().text());
+  }
+
   ServerReport stop() {
     if (shared.is_stopping) return {};
     shared.is_fading = true;
@@ -90,6 +97,7 @@ struct HapticServer::Impl {
     if (link_thread.joinable()) link_thread.join();
     shared.door.close();
     const bool has_ended = wait_for_control();
+    for (const Flight& flight : shared.door.take_flights()) write_late(flight);
     // Loading a scene does not access the device; reopening it does.
     const bool is_loading = !has_ended && shared.door.status().loading > 0.0;
     if (is_loading) {

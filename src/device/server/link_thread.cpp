@@ -52,6 +52,7 @@ void LinkThread::run() {
   }
   drain();
   flush();
+  if (auto flight = recorder_.finish()) save(*std::move(flight));
 }
 
 /// Limited in messages and time, so that batches are sent under any load from clients.
@@ -85,12 +86,16 @@ void LinkThread::drain() {
     actions_ |= record.actions;
     coupling_share_ = std::min(coupling_share_, record.sample.coupling_share);
     ticks_ = record.tick + 1;
-    if (auto flight = recorder_.add(record)) {
-      const bool is_taken = shared_.door.post({0, 0, WriteFlight{std::move(*flight)}});
-      if (!is_taken) log_warning("a flight record was dropped: too many jobs are queued");
-    }
+    if (auto flight = recorder_.add(record)) save(*std::move(flight));
     newest_ = record;
   }
+}
+
+void LinkThread::save(Flight flight) {
+  if (shared_.door.post(std::move(flight))) return;
+  const std::string text = fmt::format("a flight record was dropped: {} others wait to be written", kMostFlights);
+  log_warning("{}", text);
+  shared_.door.update([&](ControlStatus& status) { status.warning = text; });
 }
 
 void LinkThread::flush() {

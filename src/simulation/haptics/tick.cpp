@@ -8,7 +8,7 @@ namespace {
 
 bool is_valid(const HapticInput& input, const HapticScene& scene) noexcept {
   const bool is_near = (input.tool.p_mm - scene.X_PD.p()).norm() < kFarAway_mm;
-  return input.tool.is_valid() && is_near && input.dt_s > 0.0 && input.dt_s <= kMaxDt_s;
+  return input.tool.is_valid() && is_near && input.dt_s >= kMinDt_s && input.dt_s <= kMaxDt_s;
 }
 
 HapticOutput reject(const HapticState& state, const HapticInput& input) noexcept {

@@ -12,7 +12,7 @@ namespace trocar::haptics {
 /// Input of a tick from the device.
 struct HapticInput {
   double time_s = 0.0;
-  double dt_s = 0.001;       ///< Time since the last tick; 0 < dt <= kMaxDt_s.
+  double dt_s = 0.001;       ///< Time since the last tick; kMinDt_s <= dt <= kMaxDt_s.
   telemetry::ToolPose tool;  ///< X_PN or X_PT, see tool_pose().
   bool is_stylet_in = true;
   anatomy::RestingAnatomy resting{};  ///< Present motion of the patient.
@@ -37,6 +37,9 @@ struct HapticOutput {
   telemetry::TickSample sample;
 };
 
+/// Speeds are displacements divided by dt: below, they and the forces are no longer finite. Far below any loop.
+/// [assumed]
+inline constexpr double kMinDt_s = 1e-6;
 inline constexpr double kMaxDt_s = 0.1;
 inline constexpr double kFarAway_mm = 5000.0;  ///< Beyond the reach of any device.
 

@@ -14,6 +14,10 @@ class Control {
   Control(Shared& shared, devices::HapticDevice& device, SceneBuilder builder, std::string tool,
           std::filesystem::path flight_folder);
   void run();
+  /// States in log and status if flight records cannot be written. Call it before run().
+  void check_flights();
+  /// Writes a flight record. May be called by another thread while run() loads a scene.
+  Result<std::string> write(const Flight& flight);
 
  private:
   /// Runs a job. Returns the text of the reply.
@@ -21,7 +25,7 @@ class Control {
   Result<std::string> perform(const link::LoadScene& request);
   Result<std::string> perform(const link::SetParameters& request);
   Result<std::string> perform(link::ServerCommand command);
-  Result<std::string> perform(const WriteFlight& flight);
+  Result<std::string> perform(const Flight& flight) { return write(flight); }
   void publish(const ServoScene& scene);
   link::Reply make_reply(const ControlJob& job, const Result<std::string>& done) const;
 
@@ -29,7 +33,7 @@ class Control {
   devices::HapticDevice& device_;
   SceneBuilder builder_;
   std::string tool_;
-  std::filesystem::path flight_folder_;
+  const std::filesystem::path flight_folder_;
   std::shared_ptr<const ServoScene> scene_;  ///< Scene that was published last.
 };
 

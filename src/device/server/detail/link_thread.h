@@ -22,6 +22,7 @@ class LinkThread {
   void take(const link::Received& received, const link::Command& command);
   void reply(const link::Received& received, std::uint32_t request, bool is_done, std::string text);
   void drain();
+  void save(Flight flight);
   void flush();
   link::ServerStatus make_status(double now_s);
   std::string warning() const;

@@ -29,14 +29,13 @@
 /// Data shared by the three threads of a haptic server. Private to `server`.
 namespace trocar::server {
 
+/// The records of the last seconds before a fault, to be written.
+using Flight = std::vector<ServoRecord>;
 /// Work for the control thread.
-struct WriteFlight {
-  std::vector<ServoRecord> records;
-};
 struct ControlJob {
   std::uint64_t session = 0;  ///< Session that gets the reply; 0: none.
   std::uint32_t request = 0;
-  std::variant<link::LoadScene, link::SetParameters, link::ServerCommand, WriteFlight> what;
+  std::variant<link::LoadScene, link::SetParameters, link::ServerCommand, Flight> what;
 };
 /// Bytes of the texts and tissue settings in the client's message.
 std::size_t text_bytes(const ControlJob& job);
@@ -56,6 +55,8 @@ struct ControlStatus {
 /// Limits of the job queue of the control thread: number of jobs, and bytes of their texts. [assumed]
 inline constexpr std::size_t kMostJobs = 16;
 inline constexpr std::size_t kMostJobBytes = 4 << 20;
+/// Flight records wait in a queue of their own, which clients cannot fill with jobs. [assumed]
+inline constexpr std::size_t kMostFlights = 4;
 
 /// Queues between the link thread and the control thread. Both threads may block; neither is the real-time thread. The
 /// job queue is bounded.
@@ -75,11 +76,31 @@ class ControlDoor {
     wake_.notify_one();
     return true;
   }
+  /// Queues a flight record, before all jobs. Returns false, and does not queue it, if kMostFlights wait.
+  bool post(Flight flight) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (flights_.size() >= kMostFlights) return false;
+      flights_.push_back(std::move(flight));
+    }
+    wake_.notify_one();
+    return true;
+  }
+  /// Takes the flight records that no job has written, at the end of the server.
+  std::deque<Flight> take_flights() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(flights_, {});
+  }
   /// Waits for the next job. Returns false after close().
   bool wait(ControlJob& job) {
     std::unique_lock lock(mutex_);
-    wake_.wait(lock, [&] { return is_closed_ || !jobs_.empty(); });
+    wake_.wait(lock, [&] { return is_closed_ || !jobs_.empty() || !flights_.empty(); });
     if (is_closed_) return false;
+    if (!flights_.empty()) {
+      job = {0, 0, std::move(flights_.front())};
+      flights_.pop_front();
+      return true;
+    }
     job = std::move(jobs_.front());
     jobs_.pop_front();
     bytes_ -= text_bytes(job);
@@ -124,6 +145,7 @@ class ControlDoor {
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   std::deque<ControlJob> jobs_;
+  std::deque<Flight> flights_;
   std::stop_source running_;
   std::size_t bytes_ = 0;  ///< Sum of text_bytes() of jobs_.
   std::vector<AddressedReply> replies_;

@@ -50,6 +50,32 @@ ControlJob parameters_of(std::size_t bytes) {
   return {1, 2, parameters};
 }
 
+TEST(ControlDoor, FlightsHaveTheirOwnPlacesAndComeFirst) {
+  ControlDoor door;
+  while (door.post({1, 2, link::ServerCommand::kReconnect})) {
+  }
+  for (std::size_t i = 0; i < kMostFlights; ++i) EXPECT_TRUE(door.post(Flight(i + 1)));
+  EXPECT_FALSE(door.post(Flight(9)));
+  ControlJob job;
+  ASSERT_TRUE(door.wait(job));
+  ASSERT_TRUE(std::holds_alternative<Flight>(job.what));
+  EXPECT_EQ(std::get<Flight>(job.what).size(), 1u);
+  EXPECT_EQ(job.session, 0u);
+  door.close();
+  EXPECT_FALSE(door.wait(job));
+  EXPECT_EQ(door.take_flights().size(), kMostFlights - 1) << "those that are still to be written";
+  EXPECT_TRUE(door.take_flights().empty());
+}
+
+TEST(ControlDoor, AFlightDoesNotStopALoading) {
+  ControlDoor door;
+  ControlJob job;
+  door.post(scene_job(1));
+  ASSERT_TRUE(door.wait(job));
+  EXPECT_TRUE(door.post(Flight(1)));
+  EXPECT_FALSE(door.stop_token().stop_requested());
+}
+
 TEST(ControlDoor, TakesAtMostSoManyJobs) {
   ControlDoor door;
   for (std::size_t i = 0; i < kMostJobs; ++i) EXPECT_TRUE(door.post({1, 2, link::ServerCommand::kReconnect}));

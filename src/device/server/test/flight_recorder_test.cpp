@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
+#include <set>
 
 #include "core/files/atomic_file.h"
 #include "core/files/temporary_folder.h"
@@ -93,6 +95,58 @@ TEST(WriteFlight, KeepsWithinItsBytesButAlwaysTheNewest) {
   EXPECT_TRUE(std::filesystem::exists(paths[2]));
   EXPECT_EQ(keep_quota(folder.path(), paths[3], {10, 10}), 1U);
   EXPECT_TRUE(std::filesystem::exists(paths[3])) << "the newest stays even if it is larger than the quota";
+}
+
+TEST(FlightRecorder, GivesAFaultOfTheLastMomentsAtTheEnd) {
+  FlightRecorder recorder(1000.0);
+  EXPECT_FALSE(recorder.finish());
+  for (std::uint64_t tick = 0; tick < 50; ++tick) recorder.add(record_at(tick, telemetry::GateFault::kNone));
+  EXPECT_FALSE(recorder.finish()) << "no fault";
+  for (std::uint64_t tick = 50; tick < 60; ++tick) recorder.add(record_at(tick, telemetry::GateFault::kRunaway));
+  const auto flight = recorder.finish();
+  ASSERT_TRUE(flight);
+  EXPECT_EQ(flight->back().tick, 59u);
+  EXPECT_FALSE(recorder.finish()) << "once";
+}
+
+TEST(WriteFlight, OverwritesNoFile) {
+  const TemporaryFolder folder;
+  std::set<std::filesystem::path> paths;
+  for (std::uint64_t tick = 0; tick < 8; ++tick) {  // equal faults of one moment
+    const auto path =
+        write_flight(folder.path(), "20260101T000000.123Z", {record_at(tick, telemetry::GateFault::kRunaway)});
+    ASSERT_TRUE(path) << path.error().text();
+    EXPECT_TRUE(paths.insert(*path).second) << path->string();
+    const auto text = read_file(*path);
+    ASSERT_TRUE(text);
+    EXPECT_NE(text->find(fmt::format("\n{},", tick)), std::string::npos);
+  }
+  std::size_t files = 0;
+  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder.path())) ++files;
+  EXPECT_EQ(files, 8u) << "no reserved name is left over";
+  EXPECT_EQ(keep_quota(folder.path(), *paths.begin(), {3, 1 << 20}), 5u) << "names with a number count, too";
+}
+
+TEST(FlightTime, HasMilliseconds) {
+  using namespace std::chrono;
+  const auto at = [](std::int64_t ms) { return flight_time(system_clock::time_point(milliseconds(ms))); };
+  EXPECT_EQ(at(0), "19700101T000000.000Z");
+  EXPECT_EQ(at(1767225600123), "20260101T000000.123Z");
+}
+
+TEST(FlightFolder, IsCheckedAtTheStart) {
+  const TemporaryFolder folder;
+  EXPECT_TRUE(check_flight_folder(folder.path()));
+  EXPECT_TRUE(folder.is_empty()) << "the check leaves nothing";
+  EXPECT_TRUE(check_flight_folder(folder / "new")) << "a missing folder is created";
+  EXPECT_TRUE(std::filesystem::is_directory(folder / "new"));
+  ASSERT_TRUE(write_file_atomically(folder / "file", "not a folder"));
+  for (const std::filesystem::path bad :
+       {folder / "file", folder / "file/below", std::filesystem::path("/proc/none")}) {
+    const Status checked = check_flight_folder(bad);
+    ASSERT_FALSE(checked) << bad;
+    EXPECT_NE(checked.error().text().find("--flight-records"), std::string::npos) << checked.error().text();
+  }
 }
 
 TEST(WriteFlight, SaysThatAFolderCannotBeWritten) {

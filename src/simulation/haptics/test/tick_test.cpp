@@ -153,6 +153,50 @@ TEST(Tick, StaysFiniteWhateverComesIn) {
   EXPECT_GT(rejected, 4000);
 }
 
+/// Of the bound and beyond it, in every force model and with every tool, moving and at rest.
+TEST(Tick, GivesNoForceForAnAbsurdlySmallPeriod) {
+  constexpr std::array kAbsurd_s{std::numeric_limits<double>::denorm_min(),
+                                 std::numeric_limits<double>::min(),
+                                 1e-300,
+                                 1e-100,
+                                 1e-30,
+                                 1e-12,
+                                 0.999e-6};
+  const auto is_rejected = [](const haptics::HapticOutput& output) {
+    const telemetry::TickEvent& event = output.sample.events[0];
+    return event.kind == telemetry::EventKind::kLimit &&
+           event.id == static_cast<int>(telemetry::LimitReason::kInputRejected);
+  };
+  for (const haptics::Tool tool : {haptics::Tool::kNeedle, haptics::Tool::kTransducer, haptics::Tool::kFinger}) {
+    for (const auto model :
+         {haptics::ForceModel::kInsertion, haptics::ForceModel::kProxy, haptics::ForceModel::kCombined}) {
+      haptics::HapticOptions options;
+      options.tool = tool;
+      options.force_model = model;
+      const auto scene = make_scene(liver_way(), options);
+      haptics::HapticState state;
+      const auto step = [&](double dt_s, double depth_mm) {
+        haptics::HapticInput input;
+        input.dt_s = dt_s;
+        input.tool = telemetry::to_tool_pose(needle_pose({0.0, 0.0, depth_mm}, Vec3::UnitZ()));
+        return haptics::tick(state, input, *scene);
+      };
+      for (int i = 0; i < 200; ++i) step(0.001, -1.0 + 0.02 * i);
+      for (const double dt_s : kAbsurd_s) {
+        const haptics::HapticOutput output = step(dt_s, 3.01);
+        EXPECT_EQ(output.f_D.norm(), 0.0) << dt_s;
+        EXPECT_EQ(output.tau_D.norm(), 0.0) << dt_s;
+        EXPECT_TRUE(is_rejected(output)) << dt_s;
+      }
+      for (const double dt_s : {haptics::kMinDt_s, 1e-5, 1e-4}) {
+        const haptics::HapticOutput output = step(dt_s, 3.01);
+        EXPECT_TRUE(output.f_D.allFinite() && output.sample.f_total_n.allFinite()) << dt_s;
+        EXPECT_FALSE(is_rejected(output)) << dt_s;
+      }
+    }
+  }
+}
+
 TEST(Tick, ReplaysToTheSameBits) {
   const auto scene = make_scene(liver_way());
   const auto run = [&] {

@@ -124,7 +124,7 @@ class RecordedTicks {
     constexpr double kRounding_s = 1e-9;  // of recorded times
     if (session_ == nullptr || tick == 0) return dt_s_;
     const double step_s = time_s(tick) - time_s(tick - 1);
-    return std::abs(step_s - dt_s_) < kRounding_s ? dt_s_ : std::clamp(step_s, kRounding_s, haptics::kMaxDt_s);
+    return std::abs(step_s - dt_s_) < kRounding_s ? dt_s_ : std::clamp(step_s, haptics::kMinDt_s, haptics::kMaxDt_s);
   }
   /// Empty: the operator's hand moves it.
   std::optional<telemetry::ToolPose> tool(std::size_t tick) const noexcept {

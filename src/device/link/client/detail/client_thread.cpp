@@ -131,6 +131,7 @@ void ClientThread::run() {
     const int first = socket_.is_open() ? 0 : 1;
     zmq_poll(items.data() + first, static_cast<int>(items.size()) - first, -1);
     read_messages();
+    send_stops();
     if ((items[2].revents & ZMQ_POLLIN) != 0) {
       drain(wake_);
       Outgoing outgoing = mailbox_.take_outgoing();
@@ -190,17 +191,32 @@ void ClientThread::send_hello(double now_s) {
 }
 
 void ClientThread::send_outgoing(Outgoing outgoing) {
+  send_stops();
   for (Command& command : outgoing.commands) {
     const std::uint32_t request = command.request;
-    if (!session_.is_welcomed()) {
+    if (session_.is_welcomed() && is_stop(command)) {
+      stops_.push_back(request);
+      send_stops();
+    } else if (!session_.is_welcomed()) {
       mailbox_.put_reply({request, false, "no server connected"});
-    } else if (!send(std::move(command))) {
+    } else if (!stops_.empty() || !send(std::move(command))) {
       mailbox_.put_reply({request, false, "the command is too large, or the server does not accept messages"});
     } else {
       session_.expect_reply(request);
     }
   }
   if (outgoing.hand && session_.is_welcomed()) send(*outgoing.hand);
+}
+
+void ClientThread::send_stops() {
+  if (!session_.is_welcomed()) {
+    for (const std::uint32_t request : std::exchange(stops_, {}))
+      mailbox_.put_reply({request, false, "the server disconnected before it accepted the stop"});
+  }
+  while (!stops_.empty() && send(Command{stops_.front(), ServerCommand::kStop})) {
+    session_.expect_reply(stops_.front());
+    stops_.erase(stops_.begin());
+  }
 }
 
 bool ClientThread::send(ClientBody body) {

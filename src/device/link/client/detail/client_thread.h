@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "core/result.h"
 #include "link/client/detail/client_beat.h"
@@ -40,6 +41,8 @@ class ClientThread {
   void beat();
   void send_hello(double now_s);
   void send_outgoing(Outgoing outgoing);
+  /// Sends the stops that the socket did not accept before; they end without a session.
+  void send_stops();
   bool send(ClientBody body);
   void say_goodbye();
 
@@ -56,6 +59,7 @@ class ClientThread {
   HandshakeMonitor handshakes_;
   ClientSession session_{mailbox_};
   ClientBeat beat_;
+  std::vector<std::uint32_t> stops_;  ///< Requests of stops that are still to be sent, before all other commands.
 
   std::thread thread_;
 };
