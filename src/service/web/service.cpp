@@ -87,6 +87,7 @@ struct Service::State {
                 logins,
                 public_answers,
                 passwords,
+                log_limit,
                 options.password_work,
                 std::move(unknown_hash),
                 options.is_secure} {}
@@ -108,6 +109,7 @@ struct Service::State {
   LoginThrottle logins;
   TokenBuckets requests{kRequestRule}, public_answers{kPublicRule};
   PasswordGate passwords;
+  LogLimit log_limit;
   Backend backend;
   std::vector<Route> routes = all_routes();
 };
@@ -193,6 +195,7 @@ Result<HttpAnswer> Service::State::answer_route(const Route& route, Call& call) 
     TROCAR_TRY(call.login, find_login(request, call.now));
     if (!call.login) return error_answer(401, "you are not logged in", "log in");
     if (route.access == Access::kAdmin && call.session().account.role != results::Role::kAdmin) {
+      const LimitedLog limited(backend.log_limit);
       log_warning("web: access refused: {} {} by {} from {}", request.method, log_text(request.path),
                   log_text(call.session().account.name), request.address);
       return error_answer(403, "only an admin may do this", "ask an admin");

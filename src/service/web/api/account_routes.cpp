@@ -76,6 +76,7 @@ Result<HttpAnswer> log_in(Backend& backend, const Call& call) {
   const std::string key = results::name_key(name);
   const std::string& address = call.request.address;
   if (const auto wait = backend.logins.try_begin(key, address, call.now.steady)) {
+    const LimitedLog limited(backend.log_limit);
     log_warning("web: login refused for {} s: account {} from {}", wait->count(), log_text(name), address);
     return wait_answer(*wait, "there were too many failed logins");
   }

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/log_limit.h"
 #include "results/accounts.h"
 #include "results/attempts.h"
 #include "signing/password.h"
@@ -37,6 +38,7 @@ struct Backend {
   LoginThrottle& logins;
   TokenBuckets& public_answers;  ///< Of questionnaires, by address.
   PasswordGate& passwords;
+  LogLimit& log_limit;  ///< Of lines that a client can cause again and again by what is refused.
   signing::PasswordWork password_work;
   std::string unknown_hash;  ///< Of no password: it takes as long to check as that of an account.
   bool is_secure = false;    ///< The browser uses TLS.

@@ -110,7 +110,8 @@ LibraryServer::LibraryServer(const ServerOptions& options, HttpServer::Handler h
     response.set_content(*ours.body, ours.content_type);
     return HandlerResponse::Handled;
   }));
-  set_exception_handler([](const httplib::Request&, httplib::Response& response, std::exception_ptr) {
+  set_exception_handler([this](const httplib::Request&, httplib::Response& response, std::exception_ptr) {
+    const LimitedLog limited(log_limit_);
     log(LogLevel::kError, "web: an exception ended a request");
     convert(error_answer(500, "the server failed", "try again"), response);
   });
@@ -161,6 +162,7 @@ bool LibraryServer::process_and_close_socket(socket_t socket) {
   try {
     if (connection.shake_hands()) converse(connection);
   } catch (const std::exception& error) {
+    const LimitedLog limited(log_limit_);
     log(LogLevel::kError, fmt::format("web: a connection ended: {}", error.what()));
   }
   count_out(address);

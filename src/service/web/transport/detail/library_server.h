@@ -6,6 +6,7 @@
 #include <mutex>
 #include <string>
 
+#include "core/log_limit.h"
 #include "web/transport/detail/connection.h"
 #include "web/transport/http_server.h"
 
@@ -36,6 +37,7 @@ class LibraryServer final : public httplib::Server {
   int listening_ = -1;
   std::atomic<bool> is_ending_{false};
   std::atomic<int> waiting_{0};  ///< Connections that wait for a thread.
+  LogLimit log_limit_;           ///< Of lines that a connection can cause.
   std::mutex mutex_;
   std::map<std::string, int> connections_;  ///< By address.
 };
