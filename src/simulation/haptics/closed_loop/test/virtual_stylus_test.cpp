@@ -30,6 +30,22 @@ TEST(VirtualStylus, FallsFreely) {
   EXPECT_LT((state.X_PS.R() - Mat3::Identity()).norm(), 1e-12);
 }
 
+TEST(VirtualStylus, StaysFiniteForAnAbsurdlySmallPeriod) {
+  for (const double dt_s : {std::numeric_limits<double>::denorm_min(), 1e-300, 1e-30, 1e-12}) {
+    VirtualStylusState state;
+    state.v_P = {3.0, 0.0, -2.0};
+    const VirtualStylusState before = state;
+    StylusHold hold = make_hand();
+    const Wrench wrench{{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}};
+    for (int i = 0; i < 100; ++i) {
+      const StylusMotion motion = step_stylus(state, {}, hold, wrench, Vec3::UnitY(), dt_s);
+      ASSERT_TRUE(motion.v_P.allFinite() && motion.w_P.allFinite()) << dt_s;
+    }
+    ASSERT_TRUE(state.X_PS.is_finite() && state.v_P.allFinite() && state.w_P.allFinite()) << dt_s;
+    EXPECT_LT((state.X_PS.p() - before.X_PS.p()).norm(), 1e-6) << dt_s;
+  }
+}
+
 TEST(VirtualStylus, TurnsUnderATorqueAsItsInertiaSays) {
   VirtualStylusState state;
   VirtualStylusParams params;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "core/random.h"
 #include "haptics/gate/safety_gate.h"
@@ -16,6 +17,30 @@ using testing::force_n;
 using testing::kDt_s;
 using testing::open_gate;
 using testing::wanting;
+
+// --- absurdly small periods ---
+
+TEST(SafetyGate, StaysFiniteForAnAbsurdlySmallPeriod) {
+  for (const double dt_s : {std::numeric_limits<double>::denorm_min(), 1e-300, 1e-30, 1e-12}) {
+    GateState state = open_gate();
+    for (int i = 0; i < 200; ++i) {
+      GateInput input = wanting({0.0, 3.0, 4.0}, {10.0, 0.0, 0.0});
+      input.dt_s = dt_s;
+      input.v_mm_per_s = Vec3(0.0, 10.0, 5.0);
+      input.coupling = {0.8, 0.0025};
+      const GateOutput output = step_gate(state, input, {});
+      ASSERT_TRUE(output.wrench.force_n.allFinite() && output.wrench.torque_nmm.allFinite()) << dt_s;
+      ASSERT_TRUE(std::isfinite(state.energy_mj) && std::isfinite(state.force_heat)) << dt_s;
+      ASSERT_LE(force_n(output), GateParams{}.peak_force_n) << dt_s;
+    }
+    for (int i = 0; i < 300; ++i) {
+      GateInput off = wanting(Vec3::Zero());
+      off.is_wanted = false;
+      step_gate(state, off, {});
+    }
+    EXPECT_EQ(state.last.force_n.norm(), 0.0) << "the gate still closes";
+  }
+}
 
 // --- drops and rises ---
 
