@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <thread>
+
 namespace trocar::server {
 namespace {
 
@@ -86,6 +89,35 @@ TEST(CommandQueue, NoOtherCommandTurnsForcesOn) {
       EXPECT_EQ(switches.is_reset, command == ServerCommand::kResetFault) << "a reset is not lost";
     }
   }
+}
+
+/// Both threads without pauses, for scripts/sanitize thread.
+TEST(CommandQueue, LosesNoStopBetweenTwoThreads) {
+  CommandQueue queue;
+  std::atomic<bool> is_ending{false}, is_wanted{false};
+  std::atomic<std::uint64_t> periods{0};
+  std::thread servo([&] {
+    for (ServoSwitches switches; !is_ending; ++periods) {
+      queue.apply_stops(switches);
+      switches.begin_period();
+      queue.apply_commands(switches);
+      is_wanted.store(switches.is_wanted, std::memory_order_relaxed);
+      queue.confirm(switches);
+    }
+  });
+  int lost = 0;
+  for (int round = 0; round < 500; ++round) {
+    for (int i = 0; i < 100; ++i) queue.push(ServerCommand::kStart, 1);
+    queue.stop(round);
+    while (!queue.have_stops_taken_effect()) std::this_thread::yield();
+    lost += is_wanted.load(std::memory_order_relaxed) ? 1 : 0;
+    const std::uint64_t end = periods + CommandQueue::kCapacity / CommandQueue::kMostAPeriod + 2;
+    while (periods < end) std::this_thread::yield();
+    lost += is_wanted.load(std::memory_order_relaxed) ? 1 : 0;
+  }
+  is_ending = true;
+  servo.join();
+  EXPECT_EQ(lost, 0);
 }
 
 TEST(CommandQueue, KeepsTheTimeOfTheOldestStopThatNoPeriodHasSeen) {
