@@ -155,7 +155,7 @@ Result<link::HapticClient> try_pass(const server::HapticServer& server, link::Ha
   { const link::HapticClient leaves = std::move(client); }
   const auto end = std::chrono::steady_clock::now() + kReplyPatience;
   while (!next.view().welcome.has_control) {
-    if (std::chrono::steady_clock::now() > end) return fail("the next client gets no control", "stops");
+    if (std::chrono::steady_clock::now() > end) return fail("the next client gets no control", "stops", "run it again");
     pause();
   }
   counts.lost += becomes_zero(log) ? 0 : 1;

@@ -3,6 +3,10 @@
 
 #include <atomic>
 #include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
 
 #include "server/test/server_rig.h"
 

@@ -1,7 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <optional>
+#include <memory>
+#include <string>
 #include <thread>
 
 #include "realtime/periodic_loop.h"
