@@ -141,7 +141,7 @@ TEST(FlightFolder, IsCheckedAtTheStart) {
   EXPECT_TRUE(check_flight_folder(folder / "new")) << "a missing folder is created";
   EXPECT_TRUE(std::filesystem::is_directory(folder / "new"));
   ASSERT_TRUE(write_file_atomically(folder / "file", "not a folder"));
-  for (const std::filesystem::path bad :
+  for (const std::filesystem::path& bad :
        {folder / "file", folder / "file/below", std::filesystem::path("/proc/none")}) {
     const Status checked = check_flight_folder(bad);
     ASSERT_FALSE(checked) << bad;
