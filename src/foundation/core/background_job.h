@@ -1,7 +1,7 @@
 #pragma once
 
 #include <algorithm>
-#include <functional>
+#include <exception>
 #include <memory>
 #include <mutex>
 #include <new>
@@ -16,6 +16,7 @@
 
 #include "core/progress.h"
 #include "core/result.h"
+#include "core/start_thread.h"
 
 namespace trocar {
 inline namespace core {
@@ -35,16 +36,24 @@ class BackgroundJob {
   /// No work: view().is_done is false and take() returns nothing.
   BackgroundJob() = default;
   /// Starts the work. `work` is `Result<T>(const Progress&)`, or `Result<T>(const Progress&, std::stop_token)` if it
-  /// can stop early. The result of a stopped job is always dropped.
+  /// can stop early. The result of a stopped job is always dropped. If no thread can start, or the work throws, the
+  /// result is an error.
   template <class Work>
   requires(!std::is_same_v<std::remove_cvref_t<Work>, BackgroundJob>) explicit BackgroundJob(Work work)
       : state_(std::make_shared<State>()) {
-    thread_ = std::jthread([state = state_, work = std::move(work)](const std::stop_token& stop) mutable {
-      std::optional<Result<T>> result = run(work, progress_to(state), stop);
-      const std::lock_guard lock(state->mutex);
-      if (!stop.stop_requested()) state->result = std::move(result);
-      state->view.is_done = true;
-    });
+    auto thread = start_stoppable_thread(
+        "background", [state = state_, work = std::make_shared<Work>(std::move(work))](const std::stop_token& stop) {
+          std::optional<Result<T>> result = run(*work, progress_to(state), stop);
+          const std::lock_guard lock(state->mutex);
+          if (!stop.stop_requested()) state->result = std::move(result);
+          state->view.is_done = true;
+        });
+    if (thread) {
+      thread_ = *std::move(thread);
+    } else {
+      state_->result = tl::unexpected(std::move(thread).error());
+      state_->view.is_done = true;
+    }
   }
   BackgroundJob(BackgroundJob&&) noexcept = default;
   BackgroundJob& operator=(BackgroundJob&&) noexcept = default;
@@ -90,7 +99,15 @@ class BackgroundJob {
       }
     } catch (const std::bad_alloc&) {
       return fail("not enough memory", {}, "close other programs, or use smaller data");
+    } catch (const std::exception& error) {  // of a library: this thread has no caller
+      return unforeseen(error.what());
+    } catch (...) {
+      return unforeseen("unknown");
     }
+  }
+
+  static Result<T> unforeseen(const char* what) {
+    return fail(std::string("unforeseen error: ").append(what), {}, "try again; if it remains, report it");
   }
 
   std::shared_ptr<State> state_;

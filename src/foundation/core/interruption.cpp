@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/files/unfinished_output.h"
+#include "core/start_thread.h"
 
 namespace trocar {
 inline namespace core {
@@ -70,12 +71,14 @@ void handle(int signal_number) {
 
 }  // namespace
 
-void handle_interruptions(std::string command) {
+Status handle_interruptions(std::string command) {
   command_name() = std::move(command);
-  if (::sem_init(&signals, 0, 0) != 0) return;
-  std::thread(watch).detach();
+  if (::sem_init(&signals, 0, 0) != 0) return {};
+  TROCAR_TRY(std::thread thread, start_thread("signal", watch));
+  thread.detach();
   for (const int signal_number : {SIGINT, SIGTERM, SIGHUP}) handle(signal_number);
   ::signal(SIGXFSZ, SIG_IGN);  // a file size limit is a write error, like a full disk
+  return {};
 }
 
 bool is_interrupted() noexcept {

@@ -8,8 +8,9 @@ namespace trocar {
 inline namespace core {
 
 /// Installs handlers: SIGINT, SIGTERM and SIGHUP remove unfinished outputs, print one line with the command's name and
-/// exit with status 1. Signals that the parent ignores stay ignored. Call once, in main.
-void handle_interruptions(std::string command);
+/// exit with status 1. Signals that the parent ignores stay ignored. Call once, in main. Errors: the thread that waits
+/// for signals does not start.
+Status handle_interruptions(std::string command);
 
 /// True after such a signal. Real-time safe.
 bool is_interrupted() noexcept;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/ascii.h"
+#include "core/files/list_folder.h"
 
 namespace trocar {
 inline namespace core {
@@ -117,13 +118,14 @@ PartFolder::~PartFolder() {
 void remove_abandoned_parts(const fs::path& target) {
   const auto [before, after] = part_name(target);
   std::vector<fs::path> parts;
-  std::error_code error;
-  for (fs::directory_iterator entry(target.parent_path(), error), end; !error && entry != end; entry.increment(error)) {
-    const std::string name = entry->path().filename().string();
+  const auto entries = list_folder(target.parent_path());
+  if (!entries) return;
+  for (const fs::path& entry : *entries) {
+    const std::string name = entry.filename().string();
     if (name.size() <= before.size() + after.size() || !name.starts_with(before) || !name.ends_with(after)) continue;
     const std::string_view process =
         std::string_view(name).substr(before.size(), name.size() - before.size() - after.size());
-    if (std::ranges::all_of(process, ascii::is_digit)) parts.push_back(entry->path());
+    if (std::ranges::all_of(process, ascii::is_digit)) parts.push_back(entry);
   }
   for (const fs::path& part : parts) remove_if_abandoned(part);
 }

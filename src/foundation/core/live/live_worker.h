@@ -16,6 +16,7 @@
 #include "core/log.h"
 #include "core/parallel.h"
 #include "core/result.h"
+#include "core/start_thread.h"
 
 namespace trocar {
 inline namespace core {
@@ -68,7 +69,7 @@ class LiveWorker {
   using Renderer = LiveRenderer<Traits>;
 
   explicit LiveWorker(LiveWorkerOptions options = {}, Traits traits = {})
-      : options_(std::move(options)), schedule_(std::move(traits)), thread_([this] { run(); }) {}
+      : options_(std::move(options)), schedule_(std::move(traits)) {}
   /// Requests the stop of a frame in work and waits for its end; a request that was not begun is dropped.
   ~LiveWorker() {
     {
@@ -77,7 +78,7 @@ class LiveWorker {
       stop_.request_stop();
     }
     wake_.notify_one();
-    thread_.join();
+    if (thread_.joinable()) thread_.join();
   }
   LiveWorker(const LiveWorker&) = delete;
   LiveWorker& operator=(const LiveWorker&) = delete;
@@ -95,7 +96,9 @@ class LiveWorker {
     error_.reset();
     old.swap(newest_);
   }
+  /// Starts the worker's thread if it does not run; error() tells that it cannot start.
   void request(Request request) {
+    if (!thread_.joinable() && !has_started()) return;
     {
       const std::lock_guard lock(mutex_);
       request_ = std::move(request);
@@ -108,7 +111,7 @@ class LiveWorker {
     const std::lock_guard lock(mutex_);
     return newest_;
   }
-  /// The error of the last frame, if its render failed.
+  /// The error of the last frame, if its render failed, or of the worker's thread.
   std::optional<Error> error() const {
     const std::lock_guard lock(mutex_);
     return error_;
@@ -120,6 +123,17 @@ class LiveWorker {
   }
 
  private:
+  bool has_started() {
+    auto thread = start_thread("image", [this] { run(); });
+    const std::lock_guard lock(mutex_);
+    if (thread) {
+      thread_ = *std::move(thread);
+    } else {
+      note_error(std::move(thread).error());
+    }
+    return thread_.joinable();
+  }
+
   struct Job {
     std::uint64_t opened = 0;
     Request request;
@@ -161,6 +175,8 @@ class LiveWorker {
       is_held ? work_held(job) : work_live(job);
     } catch (const std::exception& error) {  // a library error or out of memory: this thread has no caller
       publish(job, fail("an image could not be computed", error.what(), "close other programs if memory is short"));
+    } catch (...) {
+      publish(job, fail("an image could not be computed", "unknown error", "try again; if it remains, report it"));
     }
   }
 
@@ -190,13 +206,15 @@ class LiveWorker {
     }
     const std::lock_guard lock(mutex_);
     if (job.opened != opened_) return;  // of the former subject
-    if (!made) {
-      if (!error_) log_warning("{}", made.error().text());
-      error_ = std::move(made).error();
-      return;
-    }
+    if (!made) return note_error(std::move(made).error());
     error_.reset();
     newest_.swap(shared);
+  }
+
+  /// Under the mutex.
+  void note_error(Error error) {
+    if (!error_) log_warning("{}", error.text());
+    error_ = std::move(error);
   }
 
   // Shared, under the mutex.

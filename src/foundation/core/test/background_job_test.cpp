@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <future>
+#include <stdexcept>
 
 namespace trocar {
 inline namespace core {
@@ -110,6 +111,19 @@ TEST(RetiredJobs, KeepAJobUntilItsWorkHasEnded) {
   EXPECT_EQ(retired.sweep(), 1U);
   go_on.set_value();
   while (retired.sweep() > 0) std::this_thread::yield();
+}
+
+TEST(BackgroundJob, GivesWhatItsWorkThrowsAsAnError) {
+  const auto what_of = [](auto thrown) {
+    BackgroundJob<int> job([thrown](const Progress&) -> Result<int> { throw thrown; });
+    wait_done(job);
+    const auto result = job.take();
+    EXPECT_TRUE(result && !*result);
+    return result && !*result ? result->error().what : std::string();
+  };
+  EXPECT_EQ(what_of(std::runtime_error("a library's error")), "unforeseen error: a library's error");
+  EXPECT_EQ(what_of(7), "unforeseen error: unknown");
+  EXPECT_EQ(what_of(std::bad_alloc()), "not enough memory");
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ template <class Work>
 int interrupted(const Work& work) {
   const pid_t child = ::fork();
   if (child == 0) {
-    handle_interruptions("trocar test");
+    if (!handle_interruptions("trocar test")) ::_exit(kEndedByItself + 1);
     work();
     ::_exit(0);
   }
@@ -164,7 +164,7 @@ TEST(Interruption, LeavesAnIgnoredSignalIgnored) {
   const pid_t child = ::fork();
   if (child == 0) {
     ::signal(SIGHUP, SIG_IGN);
-    handle_interruptions("trocar test");
+    if (!handle_interruptions("trocar test")) ::_exit(1);
     ::raise(SIGHUP);
     ::_exit(is_interrupted() ? 1 : 0);
   }

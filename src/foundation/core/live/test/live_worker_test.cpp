@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/live/test/live_test_traits.h"
+#include "core/testing/no_threads.h"
 
 namespace trocar {
 namespace {
@@ -203,6 +204,24 @@ TEST(LiveWorker, RequestsWithoutASubjectAreDropped) {
   worker.request({1});
   worker.wait_until_idle();
   EXPECT_EQ(worker.newest(), nullptr);
+}
+
+TEST(LiveWorker, WithoutAThreadTellsItAndStartsItWithALaterRequest) {
+  Stage stage;
+  Worker worker(stage.options());
+  worker.open(std::make_unique<TestRenderer>(stage));
+  {
+    const testing::NoThreads none;
+    worker.request({1});
+    ASSERT_TRUE(worker.error());
+    EXPECT_NE(worker.error()->what.find("does not start"), std::string::npos);
+    worker.wait_until_idle();
+    EXPECT_FALSE(worker.newest());
+  }
+  worker.request({2});
+  worker.wait_until_idle();
+  ASSERT_TRUE(worker.newest());
+  EXPECT_FALSE(worker.error());
 }
 
 }  // namespace
