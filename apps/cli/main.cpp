@@ -47,6 +47,10 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   const bool has_command = argc > 1 && argv[1][0] != '-';
-  trocar::handle_interruptions(has_command ? std::string("trocar ") + argv[1] : "trocar");
-  return trocar::arguments::run_program([&] { return trocar::cli::run(argc, argv); }, "trocar");
+  const auto program = [&] {
+    const trocar::Status handled =
+        trocar::handle_interruptions(has_command ? std::string("trocar ") + argv[1] : "trocar");
+    return handled ? trocar::cli::run(argc, argv) : trocar::arguments::report_error(handled.error());
+  };
+  return trocar::arguments::run_program(program, "trocar");
 }

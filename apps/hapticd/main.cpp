@@ -13,6 +13,7 @@
 #include "core/files/data_dir.h"
 #include "core/files/user_folders.h"
 #include "core/log.h"
+#include "core/start_thread.h"
 #include "core/version.h"
 #include "devices/device_spec.h"
 #include "io/patient/patient_source.h"
@@ -107,23 +108,27 @@ Result<link::LoadScene> first_scene(const Arguments& arguments, Patients& patien
 /// loading the first patient takes seconds.
 class EndSignal {
  public:
-  EndSignal() : state_(std::make_shared<State>()) {
-    std::thread([state = state_] {
-      sigset_t signals;
-      sigemptyset(&signals);
-      sigaddset(&signals, SIGINT);
-      sigaddset(&signals, SIGTERM);
-      int signal = 0;
-      sigwait(&signals, &signal);
-      const std::lock_guard lock(state->mutex);
-      if (!state->holds_device) {
-        fmt::print(stderr, "error: stopped before the server was ready\n");
-        std::fflush(nullptr);
-        std::_Exit(1);
-      }
-      state->has_come = true;
-      state->wake.notify_all();
-    }).detach();
+  /// Errors: the thread does not start.
+  static Result<EndSignal> watch() {
+    EndSignal end;
+    TROCAR_TRY(std::thread thread, start_thread("signal", [state = end.state_] {
+                 sigset_t signals;
+                 sigemptyset(&signals);
+                 sigaddset(&signals, SIGINT);
+                 sigaddset(&signals, SIGTERM);
+                 int signal = 0;
+                 sigwait(&signals, &signal);
+                 const std::lock_guard lock(state->mutex);
+                 if (!state->holds_device) {
+                   fmt::print(stderr, "error: stopped before the server was ready\n");
+                   std::fflush(nullptr);
+                   std::_Exit(1);
+                 }
+                 state->has_come = true;
+                 state->wake.notify_all();
+               }));
+    thread.detach();
+    return end;
   }
   /// After this call, wait() ends the program.
   void hold_device() {
@@ -142,7 +147,7 @@ class EndSignal {
     bool holds_device = false;
     bool has_come = false;
   };
-  std::shared_ptr<State> state_;
+  std::shared_ptr<State> state_ = std::make_shared<State>();
 };
 
 void print_report(const server::ServerReport& report) {
@@ -166,9 +171,8 @@ Status serve(Arguments& arguments) {
   if (arguments.is_test) {
     TROCAR_TRY(const std::unique_ptr<devices::HapticDevice> device, open_named_device(arguments));
     // A device with injected faults has no weight of its own.
-    test_device(*device, arguments.rate_hz, arguments.priority,
-                arguments.faults.empty() ? stylus_folder() : std::filesystem::path());
-    return {};
+    return test_device(*device, arguments.rate_hz, arguments.priority,
+                       arguments.faults.empty() ? stylus_folder() : std::filesystem::path());
   }
   server::ServerOptions options;
   TROCAR_TRY(options.endpoint, link::parse_endpoint(arguments.endpoint.empty() ? link::default_endpoint(arguments.tool)
@@ -180,7 +184,7 @@ Status serve(Arguments& arguments) {
   options.tissues_file = data / "tissues.toml";
   options.flight_folder = arguments.flight_folder;
 
-  EndSignal end;
+  TROCAR_TRY(EndSignal end, EndSignal::watch());
   Patients patients;
   std::optional<link::LoadScene> scene;
   if (!arguments.patient.folder_or_name.empty()) {

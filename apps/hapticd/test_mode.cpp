@@ -13,6 +13,7 @@
 #include <string>
 #include <thread>
 
+#include "core/start_thread.h"
 #include "devices/stylus_profile.h"
 #include "realtime/periodic_loop.h"
 #include "realtime/real_time_grant.h"
@@ -138,8 +139,8 @@ class Weighing {
 
 }  // namespace
 
-void test_device(devices::HapticDevice& device, double rate_hz, int priority,
-                 const std::filesystem::path& stylus_folder) {
+Status test_device(devices::HapticDevice& device, double rate_hz, int priority,
+                   const std::filesystem::path& stylus_folder) {
   server::DeviceTrial trial(device, rate_hz);
   const haptics::DevicePreset& preset = device.preset();
   fmt::print("device\t{}\t{}\t{}\t{:.2f}\t{:d}\n", device.name(), preset.title, preset.sensed_dof, trial.push_n(),
@@ -147,7 +148,8 @@ void test_device(devices::HapticDevice& device, double rate_hz, int priority,
   std::fflush(stdout);
   Weighing weighing(trial, device, stylus_folder);
   Wishes wishes;
-  std::jthread reader([&wishes] { read_wishes(wishes); });
+  TROCAR_TRY(const std::jthread reader,
+             start_stoppable_thread("input", [&wishes](const std::stop_token&) { read_wishes(wishes); }));
   if (priority > 0) realtime::request_real_time(priority);
   const auto periods_a_line = static_cast<std::uint64_t>(std::max(1.0, rate_hz / kPrinted_hz));
   std::uint64_t made = 0;
@@ -171,6 +173,7 @@ void test_device(devices::HapticDevice& device, double rate_hz, int priority,
                            strongest_n = 0.0;
                          });
   if (wishes.forgets) forget(device.name(), stylus_folder);  // the input ended before a period took it
+  return {};
 }
 
 }  // namespace trocar

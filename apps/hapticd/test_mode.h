@@ -17,8 +17,8 @@ namespace trocar {
 ///   refused TEXT
 ///   forgot TEXT
 /// Position, axis (+z of the stylus) and force in D. TEXT is one line for people. `priority`: under SCHED_FIFO, where
-/// it is permitted; 0: ordinary scheduling.
-void test_device(devices::HapticDevice& device, double rate_hz, int priority,
-                 const std::filesystem::path& stylus_folder);
+/// it is permitted; 0: ordinary scheduling. Errors: the thread that reads standard input does not start.
+Status test_device(devices::HapticDevice& device, double rate_hz, int priority,
+                   const std::filesystem::path& stylus_folder);
 
 }  // namespace trocar

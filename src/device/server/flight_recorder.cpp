@@ -14,6 +14,7 @@
 
 #include "core/files/atomic_file.h"
 #include "core/files/disk_space.h"
+#include "core/files/list_folder.h"
 #include "telemetry/tick_fields.h"
 
 namespace trocar::server {
@@ -101,13 +102,14 @@ struct FlightFile {
 /// The flight records of a folder, oldest first.
 std::vector<FlightFile> find_flights(const fs::path& folder) {
   std::vector<FlightFile> flights;
-  std::error_code error;
-  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+  const auto files = list_folder(folder);
+  if (!files) return flights;
+  for (const fs::path& file : *files) {
     std::error_code gone;
-    const bool is_file = it->symlink_status(gone).type() == fs::file_type::regular;
-    if (gone || !is_file || !is_flight_name(it->path().filename().string())) continue;
-    const std::uintmax_t bytes = it->file_size(gone);
-    if (!gone) flights.push_back({it->path(), bytes});
+    const bool is_file = fs::symlink_status(file, gone).type() == fs::file_type::regular;
+    if (gone || !is_file || !is_flight_name(file.filename().string())) continue;
+    const std::uintmax_t bytes = fs::file_size(file, gone);
+    if (!gone) flights.push_back({file, bytes});
   }
   std::sort(flights.begin(), flights.end(), [](const FlightFile& a, const FlightFile& b) { return a.path < b.path; });
   return flights;

@@ -5,7 +5,6 @@
 #include <chrono>
 #include <future>
 #include <optional>
-#include <system_error>
 #include <thread>
 
 #include "core/log.h"
@@ -120,15 +119,6 @@ struct HapticServer::Impl {
   std::promise<void> control_end;
   std::thread control_thread, link_thread, servo_thread;
 };
-
-Result<std::thread> start_thread(const char* name, std::function<void()> body) {
-  try {
-    return std::thread(std::move(body));
-  } catch (const std::system_error& error) {
-    return fail(fmt::format("the {} thread does not start: {}", name, error.what()), "haptic server",
-                "end other programs, or raise the limit on threads (ulimit -u)");
-  }
-}
 
 HapticServer::HapticServer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 HapticServer::HapticServer(HapticServer&&) noexcept = default;

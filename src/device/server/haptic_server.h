@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "core/result.h"
+#include "core/start_thread.h"
 #include "devices/haptic_device.h"
 #include "link/endpoint.h"
 #include "link/messages.h"
@@ -29,10 +30,8 @@ struct ServerOptions {
 };
 inline constexpr int kLinkPriority = 20;
 
-/// Starts a thread. It is an argument of start(), so that a test can make a thread fail. Errors: the system cannot
-/// create a thread.
+/// start_thread(), or that of a test that makes a thread fail.
 using ThreadStarter = std::function<Result<std::thread>(const char* name, std::function<void()> body)>;
-Result<std::thread> start_thread(const char* name, std::function<void()> body);
 
 /// Statistics of a server, for messages and benchmarks.
 struct ServerReport {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/files/input_file.h"
+#include "core/files/list_folder.h"
 #include "signing/sha256.h"
 
 namespace trocar::web {
@@ -39,18 +40,18 @@ bool has_ending(std::string_view path) {
 
 Result<StaticFiles> StaticFiles::load(const fs::path& folder) {
   StaticFiles page;
-  std::error_code error;
-  for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-    if (!entry->is_regular_file()) continue;
+  for (const fs::path& path : list_tree(folder).value_or(std::vector<fs::path>())) {
+    std::error_code gone;
+    if (!fs::is_regular_file(path, gone)) continue;
     File file;
-    file.content_type = content_type_of(entry->path());
+    file.content_type = content_type_of(path);
     if (file.content_type.empty())
-      return fail("a file of the page has an unknown type", entry->path().string(), "remove it, or reinstall Trocar");
-    TROCAR_TRY(const InputFile input, InputFile::open(entry->path(), kPageFile, folder));
+      return fail("a file of the page has an unknown type", path.string(), "remove it, or reinstall Trocar");
+    TROCAR_TRY(const InputFile input, InputFile::open(path, kPageFile, folder));
     TROCAR_TRY(std::string bytes, input.read_all());
     file.etag = fmt::format("\"{}\"", signing::sha256(bytes).substr(0, kEtagDigits));
     file.bytes = std::make_shared<const std::string>(std::move(bytes));
-    page.files_[fmt::format("/{}", entry->path().lexically_relative(folder).generic_string())] = std::move(file);
+    page.files_[fmt::format("/{}", path.lexically_relative(folder).generic_string())] = std::move(file);
   }
   if (!page.files_.contains(kIndex))
     return fail("the page of trocar serve is missing", (folder / "index.html").string(), "reinstall Trocar");

@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
+#include <exception>
 #include <functional>
 #include <map>
 #include <memory>
@@ -13,6 +14,7 @@
 #include <thread>
 
 #include "core/result.h"
+#include "core/start_thread.h"
 
 namespace trocar::web {
 
@@ -26,7 +28,7 @@ struct CacheRules {
 
 /// Values by key that are costly to make: 200 readers of one page cost one query a second. A value is made by one
 /// thread at a time (single flight): the first request makes it while others wait; later a thread of the cache renews
-/// it while requests get the old one. Thread-safe. Errors are not kept.
+/// it while requests get the old one; if that thread cannot start, requests make it. Thread-safe. Errors are not kept.
 template <class T>
 class TimedCache {
  public:
@@ -37,14 +39,16 @@ class TimedCache {
   using CountBytes = std::function<std::size_t(const T&)>;
 
   explicit TimedCache(CountBytes count_bytes, const CacheRules& rules = {})
-      : rules_(rules), count_bytes_(std::move(count_bytes)), renewer_([this] { renew_all(); }) {}
+      : rules_(rules), count_bytes_(std::move(count_bytes)) {
+    if (auto thread = start_thread("cache", [this] { renew_all(); })) renewer_ = *std::move(thread);
+  }
   ~TimedCache() {
     {
       const std::lock_guard lock(mutex_);
       is_ending_ = true;
     }
     has_work_.notify_all();
-    renewer_.join();
+    if (renewer_.joinable()) renewer_.join();
   }
   TimedCache(const TimedCache&) = delete;
   TimedCache& operator=(const TimedCache&) = delete;
@@ -54,8 +58,10 @@ class TimedCache {
     std::unique_lock lock(mutex_);
     while (true) {
       Entry& entry = entries_[key];
-      if (entry.value && now - entry.made < rules_.stale + rest_after(entry)) {
-        if (now - entry.made >= std::max<Duration>(rules_.fresh, rest_after(entry)) && !entry.is_being_made) {
+      const bool is_due = now - entry.made >= std::max<Duration>(rules_.fresh, rest_after(entry));
+      const bool is_usable = entry.value && now - entry.made < rules_.stale + rest_after(entry);
+      if (is_usable && (!is_due || renewer_.joinable())) {
+        if (is_due && !entry.is_being_made) {
           entry.is_being_made = true;
           work_.push_back({key, make, now});
           has_work_.notify_one();
@@ -103,12 +109,20 @@ class TimedCache {
     TimePoint now;
   };
 
+  static Result<Value> result_of(const Make& make) {
+    try {
+      return make();
+    } catch (const std::exception& error) {  // of a library: others wait for the value
+      return fail(std::string("unforeseen error: ").append(error.what()), {}, "try again; if it remains, report it");
+    }
+  }
+
   /// Makes a value without the lock and stores it, unless everything was forgotten meanwhile.
   Result<Value> make_now(std::unique_lock<std::mutex>& lock, const Work& work) {
     const std::uint64_t generation = generation_;
     lock.unlock();
     const TimePoint start = std::chrono::steady_clock::now();
-    Result<Value> made = work.make();
+    Result<Value> made = result_of(work.make);
     const Duration cost = std::chrono::steady_clock::now() - start;
     lock.lock();
     if (generation == generation_) {

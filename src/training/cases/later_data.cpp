@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <new>
+#include <string>
 #include <utility>
 
 #include "core/live/live_thread.h"
 #include "core/log.h"
 #include "core/parallel.h"
+#include "core/start_thread.h"
 #include "io/patient/open_patient.h"
 #include "io/patient/patient_cache.h"
 #include "surface/extract_surface.h"
@@ -35,7 +38,13 @@ LaterData::LaterData(std::shared_ptr<const anatomy::VirtualPatient> patient, ult
                      io::PatientSource source)
     : patient_(std::move(patient)), acoustics_(std::move(acoustics)), source_(std::move(source)) {
   show("ultrasound", 0.0);
-  thread_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
+  auto thread = start_stoppable_thread("picture data", [this](const std::stop_token& stop) { work(stop); });
+  if (thread) {
+    thread_ = *std::move(thread);
+  } else {
+    note(thread.error());
+    view_ = {"ready", 1.0, true};
+  }
 }
 
 LaterData::~LaterData() = default;
@@ -77,6 +86,8 @@ void LaterData::work(const std::stop_token& stop) {
     if (!has_surfaces && !stop.stop_requested()) extract_surfaces(stop);
   } catch (const std::bad_alloc&) {
     note({"not enough memory for the pictures of the case", patient_->name, "close other programs"});
+  } catch (const std::exception& error) {  // of a library: this thread has no caller
+    note({std::string("no pictures of the case: ").append(error.what()), patient_->name, "open the case again"});
   }
   const std::lock_guard lock(mutex_);
   view_ = {"ready", 1.0, true};

@@ -7,6 +7,7 @@
 #include "config/toml.h"
 #include "config/toml_writer.h"
 #include "core/files/atomic_file.h"
+#include "core/files/list_folder.h"
 
 namespace trocar::cases {
 namespace {
@@ -91,10 +92,11 @@ Status delete_profile(const TissueProfile& profile) {
 
 ProfileList list_profiles(const std::filesystem::path& folder) {
   ProfileList list;
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-    if (entry.path().extension() != ".toml") continue;
-    if (auto profile = load_profile(entry.path())) {
+  const auto files = list_folder(folder);
+  if (!files) return list;
+  for (const std::filesystem::path& file : *files) {
+    if (file.extension() != ".toml") continue;
+    if (auto profile = load_profile(file)) {
       list.profiles.push_back(*std::move(profile));
     } else {
       list.problems.push_back(profile.error().text());

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/files/list_folder.h"
 #include "core/parallel.h"
 #include "core/parse_number.h"
 
@@ -59,13 +60,11 @@ std::optional<std::chrono::sys_seconds> parse_utc(std::string_view text) {
 }
 
 Result<std::vector<fs::path>> find_sessions(const fs::path& folder) {
-  std::vector<fs::path> files;
-  std::error_code error;
-  if (!fs::exists(folder, error)) return files;
-  for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
-    if (is_session_name(at->path())) files.push_back(at->path());
-  if (error) return fail("cannot be read: " + error.message(), folder.string(), "name the folder of the sessions");
-  std::sort(files.begin(), files.end());
+  std::error_code ignored;
+  if (!fs::exists(folder, ignored)) return std::vector<fs::path>();
+  auto files = list_folder(folder);
+  if (!files) return fail("cannot be read: " + files.error().what, folder.string(), "name the folder of the sessions");
+  std::erase_if(*files, [](const fs::path& file) { return !is_session_name(file); });
   return files;
 }
 

@@ -7,6 +7,7 @@
 
 #include "config/toml.h"
 #include "config/toml_writer.h"
+#include "core/files/list_folder.h"
 #include "tasks/detail/task_rules.h"
 #include "tasks/task.h"
 
@@ -247,14 +248,11 @@ Result<Task> read_task(const config::TomlTable& document, const std::string& nam
 }
 
 Result<std::vector<fs::path>> task_files(const fs::path& folder) {
-  std::vector<fs::path> files;
-  std::error_code error;
-  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
-    if (it->path().extension() == ".toml") files.push_back(it->path());
-  if (error)
-    return fail("the tasks cannot be listed: " + error.message(), folder.string(),
+  auto files = list_folder(folder);
+  if (!files)
+    return fail("the tasks cannot be listed: " + files.error().what, folder.string(),
                 "set TROCAR_DATA_DIR to the folder data");
-  std::sort(files.begin(), files.end());
+  std::erase_if(*files, [](const fs::path& file) { return file.extension() != ".toml"; });
   return files;
 }
 

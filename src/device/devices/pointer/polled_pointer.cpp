@@ -9,6 +9,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/start_thread.h"
 #include "geometry/clamp_norm.h"
 #include "haptics/closed_loop/rotation.h"
 #include "realtime/periodic_loop.h"
@@ -65,9 +66,14 @@ Status PolledPointer::start() {
   is_stopping_ = false;
   is_gone_ = true;
   force_n_.update();  // discards wrenches written before the device was opened
-  std::promise<Status> opened;
-  std::future<Status> outcome = opened.get_future();
-  thread_ = std::thread([this, promise = std::move(opened)]() mutable { run(std::move(promise)); });
+  const auto opened = std::make_shared<std::promise<Status>>();
+  std::future<Status> outcome = opened->get_future();
+  auto thread = start_thread("device", [this, opened] { run(*opened); });
+  if (!thread) {
+    stop();
+    return tl::unexpected(std::move(thread).error());
+  }
+  thread_ = *std::move(thread);
   Status status = outcome.get();
   if (!status) stop();
   return status;
@@ -84,7 +90,7 @@ void PolledPointer::stop() noexcept {
   wake_ = -1;
 }
 
-void PolledPointer::run(std::promise<Status> opened) {
+void PolledPointer::run(std::promise<Status>& opened) {
   Status status = source_->open();
   const bool is_open = status.has_value();
   is_gone_.store(!is_open, std::memory_order_release);

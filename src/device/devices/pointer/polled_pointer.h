@@ -77,7 +77,7 @@ class PolledPointer final : public HapticDevice {
   PolledPointer(const haptics::DevicePreset& preset, std::unique_ptr<PointerSource> source);
   Status start();
   void stop() noexcept;
-  void run(std::promise<Status> opened);
+  void run(std::promise<Status>& opened);
   void poll_until_stopped() noexcept;
 
   haptics::DevicePreset preset_;

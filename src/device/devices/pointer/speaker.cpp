@@ -11,7 +11,10 @@
 #include <string>
 #include <thread>
 
+#include "core/files/list_folder.h"
+#include "core/log.h"
 #include "core/random.h"
+#include "core/start_thread.h"
 
 namespace trocar::devices {
 namespace {
@@ -20,9 +23,10 @@ namespace {
 bool has_output() {
   namespace fs = std::filesystem;
   if (std::getenv("SDL_AUDIODRIVER") != nullptr || std::getenv("PULSE_SERVER") != nullptr) return true;
+  if (const auto devices = list_folder("/dev/snd"))
+    for (const fs::path& device : *devices)
+      if (device.filename().string().starts_with("pcm")) return true;
   std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator("/dev/snd", error))
-    if (entry.path().filename().string().starts_with("pcm")) return true;
   const char* runtime = std::getenv("XDG_RUNTIME_DIR");
   return runtime != nullptr && fs::exists(fs::path(runtime) / "pulse" / "native", error);
 }
@@ -54,18 +58,24 @@ double click_at(double time_s, double noise) {
 struct Speaker::Impl {
   std::atomic<SDL_AudioDeviceID> device{0};
   std::atomic<bool> is_opening{true};
-  std::jthread opening;
+  std::thread opening;
 };
 
 Speaker::Speaker() : impl_(std::make_unique<Impl>()) {
-  impl_->opening = std::jthread([impl = impl_.get()] {
+  auto thread = start_thread("sound", [impl = impl_.get()] {
     impl->device = open_output();
     impl->is_opening = false;
   });
+  if (thread) {
+    impl_->opening = *std::move(thread);
+  } else {
+    log_warning("no sound: {}", thread.error().text());
+    impl_->is_opening = false;
+  }
 }
 
 Speaker::~Speaker() {
-  impl_->opening.join();
+  if (impl_->opening.joinable()) impl_->opening.join();
   if (const SDL_AudioDeviceID device = impl_->device) SDL_CloseAudioDevice(device);
 }
 

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <utility>
 
+#include "core/start_thread.h"
 #include "devices/detail/factories.h"
 #include "devices/stylus_profile.h"
 #include "devices/vendor/detail/haply_messages.h"
@@ -81,7 +82,13 @@ Status HaplyDevice::start() {
   force_.update();  // discards wrenches written before the device was opened
   is_stopping_ = false;
   is_gone_ = false;
-  thread_ = std::thread([this] { run(); });
+  auto thread = start_thread("device", [this] { run(); });
+  if (!thread) {
+    is_gone_ = true;
+    socket_.reset();
+    return tl::unexpected(std::move(thread).error());
+  }
+  thread_ = *std::move(thread);
   return {};
 }
 

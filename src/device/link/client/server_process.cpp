@@ -14,10 +14,11 @@
 #include <mutex>
 #include <optional>
 #include <string_view>
-#include <system_error>
 #include <thread>
 
 #include "core/files/find_program.h"
+#include "core/files/list_folder.h"
+#include "core/start_thread.h"
 #include "link/client/detail/start_program.h"
 
 namespace trocar::link {
@@ -104,12 +105,9 @@ Result<ServerProcess> ServerProcess::start(const fs::path& program, const std::v
   if (!is_program(program))
     return fail("there is no such program", program.string(), "install trocar-hapticd beside trocar");
   auto impl = std::make_unique<Impl>();
-  try {
-    impl->thread =
-        std::thread([self = impl.get(), what = detail::Program{program, arguments, log}] { self->live(what); });
-  } catch (const std::system_error& error) {
-    return fail("no thread for the server's process", program.string(), error.what());
-  }
+  TROCAR_TRY(impl->thread,
+             start_thread("server process",
+                          [self = impl.get(), what = detail::Program{program, arguments, log}] { self->live(what); }));
   std::unique_lock lock(impl->mutex);
   impl->news.wait(lock, [&] { return impl->started.has_value(); });
   if (!*impl->started) {
@@ -138,12 +136,8 @@ bool ServerProcess::is_running() {
 
 bool ServerProcess::is_held_up() {
   if (!is_running()) return false;
-  std::error_code ignored;
-  for (fs::directory_iterator thread("/proc/" + std::to_string(pid()) + "/task", ignored), end; thread != end;
-       thread.increment(ignored)) {
-    if (is_held_up_thread(thread->path())) return true;
-  }
-  return false;
+  const auto threads = list_folder("/proc/" + std::to_string(pid()) + "/task");
+  return threads && std::ranges::any_of(*threads, is_held_up_thread);
 }
 
 std::string ServerProcess::how_it_ended() {

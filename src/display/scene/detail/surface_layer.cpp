@@ -10,6 +10,7 @@
 
 #include "core/check.h"
 #include "core/parallel.h"
+#include "core/start_thread.h"
 #include "scene/detail/simplify.h"
 
 namespace trocar::scene::detail {
@@ -98,7 +99,7 @@ void SurfaceLayer::build_waiting() {
   if (begun_ == all_.size()) return;
   std::vector<Order> orders(all_.begin() + static_cast<std::ptrdiff_t>(begun_), all_.end());
   begun_ = all_.size();
-  loading_ = std::async(std::launch::async, [orders = std::move(orders)] { return build(orders); });
+  loading_ = compute_beside([orders = std::move(orders)] { return build(orders); });
 }
 
 const TriangleMesh& SurfaceLayer::mesh_P(std::string_view name) const {

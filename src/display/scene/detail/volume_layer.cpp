@@ -10,6 +10,8 @@
 
 #include <algorithm>
 
+#include "core/start_thread.h"
+
 namespace trocar::scene::detail {
 namespace {
 
@@ -71,7 +73,7 @@ void VolumeLayer::set_patient(std::shared_ptr<const anatomy::VirtualPatient> pat
 
 void VolumeLayer::start() {
   if (preset_ == VolumePreset::kNone || patient_ == nullptr || patient_->ct.empty() || loading_.valid()) return;
-  loading_ = std::async(std::launch::async, [patient = patient_, content = content_of(preset_), gpu = has_gpu_] {
+  loading_ = compute_beside([patient = patient_, content = content_of(preset_), gpu = has_gpu_] {
     return make_drawable(*patient, content, gpu);
   });
 }

@@ -7,6 +7,7 @@
 #include <array>
 
 #include "core/ascii.h"
+#include "core/files/list_folder.h"
 #include "core/parallel.h"
 #include "io/dicom/detail/find_series.h"
 #include "io/image/detail/payload.h"
@@ -38,15 +39,14 @@ Result<std::vector<anatomy::LabelSource>> read_label_file(const fs::path& path, 
 
 // Folders of masks.
 
-std::vector<fs::path> sorted_entries(const fs::path& folder, bool want_folders) {
-  std::vector<fs::path> paths;
-  std::error_code error;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-    const bool is_hidden = entry->path().filename().string().starts_with('.');
-    const bool is_wanted = want_folders ? entry->is_directory(error) : entry->is_regular_file(error);
-    if (is_wanted && !is_hidden) paths.push_back(entry->path());
-  }
-  std::sort(paths.begin(), paths.end());
+Result<std::vector<fs::path>> sorted_entries(const fs::path& folder, bool want_folders) {
+  auto paths = list_folder(folder);
+  if (paths)
+    std::erase_if(*paths, [want_folders](const fs::path& path) {
+      std::error_code gone;
+      const bool is_wanted = want_folders ? fs::is_directory(path, gone) : fs::is_regular_file(path, gone);
+      return !is_wanted || path.filename().string().starts_with('.');
+    });
   return paths;
 }
 
@@ -118,9 +118,14 @@ bool may_hold_voxels(const fs::path& file) {
   return std::ranges::find(kOthers, ascii::lower_case(file.extension().string())) == kOthers.end();
 }
 
+/// For warnings: what cannot be listed is not named.
+std::vector<fs::path> or_none(Result<std::vector<fs::path>> listed) {
+  return std::move(listed).value_or(std::vector<fs::path>());
+}
+
 /// A folder with images in it, not deeper.
 bool holds_images(const fs::path& folder) {
-  const std::vector<fs::path> files = sorted_entries(folder, false);
+  const std::vector<fs::path> files = or_none(sorted_entries(folder, false));
   return std::ranges::any_of(files, [](const fs::path& file) { return detail::find_image_format(file).has_value(); }) ||
          detail::has_dicom_images(folder);
 }
@@ -145,9 +150,9 @@ std::vector<fs::path> beside_masks(const fs::path& folder) {
     const std::string ending = ascii::lower_case(file.extension().string());
     return ending == ".raw" || ending == ".zraw";
   };
-  for (const fs::path& file : sorted_entries(folder, false))
+  for (const fs::path& file : or_none(sorted_entries(folder, false)))
     if (!detail::find_image_format(file) && !is_data(file) && may_hold_voxels(file)) left_out.push_back(file);
-  for (const fs::path& inner : sorted_entries(folder, true))
+  for (const fs::path& inner : or_none(sorted_entries(folder, true)))
     if (holds_images(inner)) left_out.push_back(inner);
   return left_out;
 }
@@ -155,7 +160,7 @@ std::vector<fs::path> beside_masks(const fs::path& folder) {
 /// Beside DICOM objects: image files of another kind, in the folder or below.
 std::vector<fs::path> beside_objects(const fs::path& folder) {
   std::vector<fs::path> left_out;
-  for (const fs::path& file : detail::files_below(folder))
+  for (const fs::path& file : or_none(detail::files_below(folder)))
     if (detail::find_image_format(file)) left_out.push_back(file);
   return left_out;
 }
@@ -163,7 +168,7 @@ std::vector<fs::path> beside_objects(const fs::path& folder) {
 Result<std::vector<anatomy::LabelSource>> read_label_folder(const fs::path& folder, const LabelMap& map,
                                                             const dicom::CtReference& ct,
                                                             std::vector<std::string>& warnings) {
-  std::vector<fs::path> files = sorted_entries(folder, false);
+  TROCAR_TRY(std::vector<fs::path> files, sorted_entries(folder, false));
   std::erase_if(files, [](const fs::path& file) { return !detail::find_image_format(file); });
   if (!files.empty()) {
     tell_left_out(folder, beside_masks(folder), warnings);
@@ -179,7 +184,8 @@ Result<std::vector<anatomy::LabelSource>> read_label_folder(const fs::path& fold
     return masks.take();
   }
   bool any = false;
-  for (const fs::path& series : sorted_entries(folder, true)) {
+  TROCAR_TRY(const std::vector<fs::path> folders, sorted_entries(folder, true));
+  for (const fs::path& series : folders) {
     if (!detail::has_dicom_images(series)) continue;
     TROCAR_TRY(anatomy::LabelSource mask, read_dicom_mask(series, map, ct));
     masks.add(std::move(mask));

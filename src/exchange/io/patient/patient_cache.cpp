@@ -7,6 +7,7 @@
 
 #include "anatomy/phantom/phantom.h"
 #include "core/files/input_file.h"
+#include "core/files/list_folder.h"
 #include "core/files/unfinished_output.h"
 #include "core/files/user_folders.h"
 #include "core/hash.h"
@@ -36,8 +37,13 @@ bool is_embedded(const PatientSource& source) {
 std::uintmax_t bytes_of(const fs::path& folder) {
   std::uintmax_t bytes = 0;
   std::error_code ignored;
-  for (const auto& entry : fs::recursive_directory_iterator(folder, ignored))
-    if (entry.is_regular_file(ignored)) bytes += entry.file_size(ignored);
+  const auto files = list_tree(folder, {.skips_unreadable = true});
+  if (!files) return bytes;
+  for (const fs::path& file : *files) {
+    std::error_code gone;
+    const std::uintmax_t size = fs::is_regular_file(file, gone) ? fs::file_size(file, gone) : 0;
+    if (!gone) bytes += size;
+  }
   return bytes;
 }
 
@@ -45,8 +51,14 @@ std::uintmax_t bytes_of(const fs::path& folder) {
 void drop_oldest(const fs::path& folder) {
   std::error_code ignored;
   std::vector<std::pair<fs::file_time_type, fs::path>> entries;
-  for (const auto& entry : fs::directory_iterator(folder, ignored))
-    if (entry.is_directory(ignored)) entries.emplace_back(entry.last_write_time(ignored), entry.path());
+  const auto listed = list_folder(folder);
+  if (!listed) return;
+  for (const fs::path& entry : *listed) {
+    std::error_code gone;
+    const fs::file_time_type time =
+        fs::is_directory(entry, gone) ? fs::last_write_time(entry, gone) : fs::file_time_type();
+    if (!gone && fs::is_directory(entry, gone)) entries.emplace_back(time, entry);
+  }
   std::sort(entries.rbegin(), entries.rend());
   std::uintmax_t bytes = 0;
   for (std::size_t n = 0; n < entries.size(); ++n) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "anatomy/phantom/phantom.h"
+#include "core/files/list_folder.h"
 #include "io/patient/detail/patient_toml.h"
 #include "io/patient/patient_folder.h"
 
@@ -26,14 +27,12 @@ std::vector<fs::path> candidates(const fs::path& recorded, const fs::path& besid
   if (recorded.is_relative()) folders.push_back(beside / recorded);
   const fs::path name = recorded.has_filename() ? recorded.filename() : recorded.parent_path().filename();
   folders.push_back(beside / name);
-  std::error_code error;
-  std::vector<fs::path> neighbours;
-  for (fs::directory_iterator entry(beside, error), end; !error && entry != end; entry.increment(error)) {
-    std::error_code ignored;
-    if (entry->is_directory(ignored)) neighbours.push_back(entry->path());
-    if (neighbours.size() >= kMostFolders) break;
-  }
-  std::sort(neighbours.begin(), neighbours.end());
+  std::vector<fs::path> neighbours = list_folder(beside).value_or(std::vector<fs::path>());
+  std::erase_if(neighbours, [](const fs::path& entry) {
+    std::error_code gone;
+    return !fs::is_directory(entry, gone);
+  });
+  if (neighbours.size() > kMostFolders) neighbours.resize(kMostFolders);
   folders.insert(folders.end(), neighbours.begin(), neighbours.end());
   return folders;
 }

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <thread>
 
+#include "core/testing/no_threads.h"
 #include "raw_client.h"
 
 namespace trocar::web {
@@ -220,6 +221,13 @@ TEST(ListenAddress, ReadsHostsAndPorts) {
     ASSERT_FALSE(address) << bad;
     EXPECT_EQ(address.error().exit_status, 2);
   }
+}
+
+TEST_F(Transport, WithoutAThreadDoesNotStart) {
+  const trocar::testing::NoThreads none;
+  const auto server = HttpServer::start(options(), [](const HttpRequest&) { return HttpAnswer(); });
+  ASSERT_FALSE(server);
+  EXPECT_NE(server.error().what.find("does not start"), std::string::npos);
 }
 
 }  // namespace

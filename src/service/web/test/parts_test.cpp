@@ -3,12 +3,15 @@
 
 #include <atomic>
 #include <fstream>
+#include <stdexcept>
 #include <thread>
 
 #include "core/files/temporary_folder.h"
+#include "core/testing/no_threads.h"
 #include "web/static_files.h"
 #include "web/test/service_lab.h"
 #include "web/timed_cache.h"
+#include "web/transport/detail/worker_threads.h"
 
 namespace trocar::web {
 namespace {
@@ -159,6 +162,38 @@ TEST_F(Page, ALinkOutOfTheFolderAnUnknownTypeAndNoIndexAreErrors) {
   std::filesystem::remove(folder_ / "assets/host.txt");
   std::filesystem::remove(folder_ / "index.html");
   EXPECT_FALSE(StaticFiles::load(folder_.path()));
+}
+
+TEST(AnswerCache, WithoutAThreadRequestsRenewTheAnswer) {
+  const trocar::testing::NoThreads none;
+  AnswerCache cache;
+  int made = 0;
+  const auto make = [&]() -> Result<AnswerCache::Value> { return text(std::to_string(++made)); };
+  EXPECT_EQ(**cache.get("a", kFirstAsked, make), "1");
+  EXPECT_EQ(**cache.get("a", kFirstAsked + 999ms, make), "1");
+  EXPECT_EQ(**cache.get("a", kFirstAsked + 1000ms, make), "2");
+  cache.finish_renewal();
+}
+
+TEST(AnswerCache, GivesWhatItsMakerThrowsAsAnError) {
+  AnswerCache cache;
+  EXPECT_FALSE(cache.get("a", kFirstAsked, []() -> Result<AnswerCache::Value> { throw std::runtime_error("no"); }));
+  EXPECT_EQ(**cache.get("a", kFirstAsked, [] { return text("yes"); }), "yes");
+}
+
+TEST(WorkerThreads, WithoutAThreadTheCallerDoesTheJob) {
+  std::atomic<int> waiting{0};
+  int done = 0;
+  detail::WorkerThreads workers(2, waiting);
+  {
+    const trocar::testing::NoThreads none;
+    workers.enqueue([&] { ++done; });
+    EXPECT_EQ(done, 1);
+    EXPECT_EQ(waiting, 0);
+  }
+  workers.enqueue([&] { ++done; });
+  workers.shutdown();
+  EXPECT_EQ(done, 2);
 }
 
 }  // namespace

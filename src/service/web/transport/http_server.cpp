@@ -7,6 +7,7 @@
 #include <thread>
 #include <utility>
 
+#include "core/start_thread.h"
 #include "web/transport/detail/library_server.h"
 
 namespace trocar::web {
@@ -45,7 +46,7 @@ Result<HttpServer> HttpServer::start(ServerOptions options, Handler handler) {
                 "choose an address of this machine with --listen");
   }
   state->port = *port;
-  state->thread = std::thread([server = &state->server] { server->serve(); });
+  TROCAR_TRY(state->thread, start_thread("server", [server = &state->server] { server->serve(); }));
   while (!state->server.is_running()) std::this_thread::yield();
   return HttpServer(std::move(state));
 }

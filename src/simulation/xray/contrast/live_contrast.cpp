@@ -8,6 +8,7 @@
 #include "core/files/data_dir.h"
 #include "core/live/live_thread.h"
 #include "core/log.h"
+#include "core/start_thread.h"
 
 namespace trocar::xray {
 namespace {
@@ -74,9 +75,11 @@ LiveContrast::~LiveContrast() = default;
 
 void LiveContrast::open(std::shared_ptr<const anatomy::VirtualPatient> patient, BloodVelocity blood) {
   close();
-  impl_->thread =
-      std::jthread([impl = impl_.get(), patient = std::move(patient), blood = std::move(blood)](
-                       const std::stop_token& stop) mutable { impl->run(stop, std::move(patient), std::move(blood)); });
+  auto thread = start_stoppable_thread(
+      "contrast agent", [impl = impl_.get(), patient = std::move(patient),
+                         blood = std::move(blood)](const std::stop_token& stop) { impl->run(stop, patient, blood); });
+  if (!thread) return log_warning("no contrast agent: {}", thread.error().text());
+  impl_->thread = *std::move(thread);
 }
 
 void LiveContrast::close() {

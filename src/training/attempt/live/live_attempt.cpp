@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "core/start_thread.h"
 #include "io/patient/patient_source.h"
 #include "tasks/operator.h"
 
@@ -67,8 +68,15 @@ AttemptOperators trainee_operators(const cases::OpenCase& open_case, const Attem
 LiveAttempt::LiveAttempt(std::shared_ptr<const cases::OpenCase> open_case, AttemptOptions options,
                          std::shared_ptr<HapticServers> servers)
     : AttemptExchange(std::make_shared<SteadyClock>()), options_(std::move(options)) {
-  thread_ = std::jthread([this, open = std::move(open_case), kept = std::move(servers)](
-                             const std::stop_token& stop) mutable { run(stop, std::move(open), std::move(kept)); });
+  auto thread = start_stoppable_thread(
+      "attempt", [this, open = std::move(open_case), kept = std::move(servers)](const std::stop_token& stop) mutable {
+        run(stop, std::move(open), std::move(kept));
+      });
+  if (thread) {
+    thread_ = *std::move(thread);
+  } else {
+    publish_failure(std::move(thread).error());
+  }
 }
 
 LiveAttempt::~LiveAttempt() = default;
@@ -85,19 +93,20 @@ Result<std::shared_ptr<HapticServers>> LiveAttempt::find_servers(std::shared_ptr
   return HapticServers::start(needle, transducer);
 }
 
+void LiveAttempt::publish_failure(Error error) {
+  AttemptUpdate failed;
+  failed.view.phase = AttemptPhase::kFailed;
+  failed.result = tl::unexpected(std::move(error));
+  publish(std::move(failed));
+}
+
 void LiveAttempt::run(const std::stop_token& stop, std::shared_ptr<const cases::OpenCase> open_case,
                       std::shared_ptr<HapticServers> kept) {
   AttemptUpdate starting;
   starting.view.progress = "starting the haptic servers";
   publish(std::move(starting));
   Result<std::shared_ptr<HapticServers>> found = find_servers(std::move(kept));
-  if (!found) {
-    AttemptUpdate failed;
-    failed.view.phase = AttemptPhase::kFailed;
-    failed.result = tl::unexpected(found.error());
-    publish(std::move(failed));
-    return;
-  }
+  if (!found) return publish_failure(found.error());
   SteadyClock clock;
   const SupervisionOptions supervision{Recovery::kAll, options_.timeout, "trocar-trainer", true};
   ToolSupervisors supervisors = (*found)->supervise(supervision, clock);

@@ -77,6 +77,7 @@ class LiveAttempt : private AttemptExchange {
   std::optional<Result<RunResult>> take_result();
 
  private:
+  void publish_failure(Error error);
   void run(const std::stop_token& stop, std::shared_ptr<const cases::OpenCase> open_case,
            std::shared_ptr<HapticServers> servers);
   Result<std::shared_ptr<HapticServers>> find_servers(std::shared_ptr<HapticServers> kept) const;

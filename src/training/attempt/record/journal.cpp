@@ -2,6 +2,7 @@
 
 #include "config/json.h"
 #include "core/files/atomic_file.h"
+#include "core/files/list_folder.h"
 
 namespace trocar::attempt {
 namespace fs = std::filesystem;
@@ -92,11 +93,13 @@ std::optional<JournalEntry> Journal::find_cut_off() const {
   std::optional<JournalEntry> newest;
   fs::file_time_type newest_time;
   std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder_, error)) {
-    if (entry.path().extension() != ".json") continue;
-    std::optional<JournalEntry> state = load_state(entry.path());
-    if (!state || !fs::is_regular_file(state->session, error) || !lock_of(entry.path())) continue;
-    const fs::file_time_type time = fs::last_write_time(entry.path(), error);
+  const auto files = list_folder(folder_);
+  if (!files) return newest;
+  for (const fs::path& file : *files) {
+    if (file.extension() != ".json") continue;
+    std::optional<JournalEntry> state = load_state(file);
+    if (!state || !fs::is_regular_file(state->session, error) || !lock_of(file)) continue;
+    const fs::file_time_type time = fs::last_write_time(file, error);
     if (newest && time < newest_time) continue;
     newest = std::move(state);
     newest_time = time;

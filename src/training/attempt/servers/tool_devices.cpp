@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "attempt/servers/device_control.h"
+#include "core/files/list_folder.h"
 
 namespace trocar::attempt {
 namespace {
@@ -28,9 +29,10 @@ std::vector<std::string> openhaptics_names() {
   const char* home = std::getenv("GTDD_HOME");
   const fs::path folder = fs::path(home != nullptr && *home != '\0' ? home : "/usr/share/3DSystems") / "config";
   std::vector<std::string> names;
-  std::error_code error;
-  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
-    if (it->path().extension() == ".config") names.push_back(it->path().stem().string());
+  const auto files = list_folder(folder);
+  if (!files) return names;
+  for (const fs::path& file : *files)
+    if (file.extension() == ".config") names.push_back(file.stem().string());
   std::sort(names.begin(), names.end());
   return names;
 }

@@ -7,6 +7,7 @@
 #include "anatomy/phantom/phantom.h"
 #include "core/files/data_dir.h"
 #include "core/files/temporary_folder.h"
+#include "core/testing/no_threads.h"
 #include "io/patient/patient_cache.h"
 #include "io/patient/patient_folder.h"
 #include "surface/extract_surface.h"
@@ -94,6 +95,16 @@ TEST(LaterData, SaysWhyAPictureIsMissing) {
   ASSERT_EQ(later.errors().size(), 1u);
   EXPECT_NE(later.errors().front().find("acoustic table"), std::string::npos);
   EXPECT_FALSE(later.surfaces_after(0).empty());
+}
+
+TEST(LaterData, WithoutAThreadIsReadyWithoutPicturesAndTellsIt) {
+  const testing::NoThreads none;
+  const LaterData later(coarse(), acoustics(), {"abdomen", 3});
+  later.wait();
+  EXPECT_TRUE(later.view().is_done);
+  EXPECT_FALSE(later.acoustic());
+  ASSERT_EQ(later.errors().size(), 1u);
+  EXPECT_NE(later.errors().front().find("does not start"), std::string::npos);
 }
 
 }  // namespace

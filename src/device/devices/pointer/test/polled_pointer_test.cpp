@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/random.h"
+#include "core/testing/no_threads.h"
 #include "devices/test/bad_numbers.h"
 #include "devices/test/bounded_wait.h"
 
@@ -127,6 +128,25 @@ TEST(PolledPointer, IsPlacedOnceAndGoesOnFromThere) {
   hand.X_DS = Pose::translation(Vec3(kNaN, 0.0, 0.0));
   (*device)->hold(hand);
   EXPECT_EQ((*device)->read(1.01).X_DS.p(), moved.p());
+}
+
+TEST(PolledPointer, WithoutAThreadIsNotOpenedAndAReconnectIsRefused) {
+  const std::atomic<bool> is_silent{false};
+  haptics::DevicePreset preset;
+  preset.workspace_radius_mm = kRadius_mm;
+  const auto device = PolledPointer::open(preset, std::make_unique<SteadySource>(is_silent));
+  ASSERT_TRUE(device.has_value());
+  {
+    const trocar::testing::NoThreads none;
+    EXPECT_FALSE(PolledPointer::open(preset, std::make_unique<SteadySource>(is_silent)));
+    const Status refused = (*device)->reconnect();
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().what.find("does not start"), std::string::npos);
+    EXPECT_EQ((*device)->read(1.0).status, DeviceStatus::kDisconnected);
+    EXPECT_FALSE((*device)->write(haptics::Wrench{}));
+  }
+  EXPECT_TRUE((*device)->reconnect());
+  EXPECT_TRUE(testing::wait_until([&] { return (*device)->read(1.0).status == DeviceStatus::kFresh; }));
 }
 
 }  // namespace

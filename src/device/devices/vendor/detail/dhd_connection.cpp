@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/log.h"
+#include "core/start_thread.h"
 #include "devices/detail/units.h"
 
 namespace trocar::devices::dhd {
@@ -90,7 +91,7 @@ Status Connection::start(bool senses_rotation) {
   if (api_.enable_force(kOn, id_) < kNoError) return failed("cannot switch on its motors");
   if (!apply(haptics::Wrench{})) return failed("it does not accept forces");
   exchange_.emplace(sample_);
-  thread_ = std::thread([this] { pace_->run(is_stopping_, *this); });
+  TROCAR_TRY(thread_, start_thread("device", [this] { pace_->run(is_stopping_, *this); }));
   return {};
 }
 

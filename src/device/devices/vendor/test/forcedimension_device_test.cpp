@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "core/testing/allocation_guard.h"
+#include "core/testing/no_threads.h"
 #include "core/testing/source_dir.h"
 #include "devices/device_spec.h"
 #include "devices/test/standin/dhd_stand_in.h"
@@ -336,6 +337,26 @@ TEST_F(ForceDimension, StandInNotesBrokenRules) {
   api->enable_force(dhd::kOn, 0);
   api->close(0);
   EXPECT_NE(broken().find("motors on"), std::string::npos);
+}
+
+TEST_F(ForceDimension, WithoutAThreadIsClosedAndAReconnectIsRefused) {
+  {
+    const trocar::testing::NoThreads none;
+    const Status refused = open();
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().what.find("does not start"), std::string::npos) << refused.error().text();
+    EXPECT_FALSE(vendor->is_open());
+  }
+  open_or_fail();
+  {
+    const trocar::testing::NoThreads none;
+    EXPECT_FALSE(device->reconnect());
+    EXPECT_EQ(device->read(now_s).status, DeviceStatus::kDisconnected);
+    EXPECT_FALSE(device->write({Vec3(1, 0, 0), Vec3::Zero()}));
+    EXPECT_FALSE(vendor->is_open());
+  }
+  ASSERT_TRUE(device->reconnect());
+  EXPECT_EQ(read_after(1).status, DeviceStatus::kFresh);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "core/files/data_dir.h"
 #include "core/files/temporary_folder.h"
 #include "core/testing/allocation_guard.h"
+#include "core/testing/no_threads.h"
 #include "devices/device_spec.h"
 #include "devices/stylus_profile.h"
 #include "devices/test/bad_numbers.h"
@@ -391,6 +392,26 @@ TEST(HaplyDevice, ASavedWeightReplacesThePresets) {
   const auto device = open_device({"haply", service.address()}, options);
   ASSERT_TRUE(device.has_value()) << device.error().text();
   EXPECT_EQ((*device)->preset().capability.stylus_weight_n, 0.7);
+}
+
+TEST(HaplyDevice, WithoutAThreadIsNotOpenedAndAReconnectIsRefused) {
+  const HaplyService service(HaplyMood::kGood);
+  {
+    const trocar::testing::NoThreads none;
+    const auto refused = HaplyDevice::open(inverse3(), service.address());
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().what.find("does not start"), std::string::npos) << refused.error().text();
+  }
+  const auto device = open_at(service);
+  ASSERT_NE(device, nullptr);
+  {
+    const trocar::testing::NoThreads none;
+    EXPECT_FALSE(device->reconnect());
+    EXPECT_EQ(device->read(0.0).status, DeviceStatus::kDisconnected);
+    EXPECT_FALSE(device->write(pull(1.0, 0.0, 0.0)));
+  }
+  ASSERT_TRUE(device->reconnect());
+  EXPECT_TRUE(comes_to(*device, DeviceStatus::kFresh));
 }
 
 }  // namespace

@@ -9,10 +9,10 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <system_error>
 #include <utility>
 
 #include "core/log.h"
+#include "core/start_thread.h"
 #include "link/codec.h"
 #include "realtime/periodic_loop.h"
 
@@ -57,11 +57,7 @@ bool has_keys_set(ZmqSocket& socket, const ClientSecurity& security) {
 Result<std::unique_ptr<ClientThread>> ClientThread::start(const ClientOptions& options) {
   std::unique_ptr<ClientThread> client(new ClientThread(options));
   TROCAR_TRY_STATUS(client->open());
-  try {
-    client->thread_ = std::thread([self = client.get()] { self->run(); });
-  } catch (const std::system_error& error) {
-    return fail("cannot start the link thread", options.endpoint, error.what());
-  }
+  TROCAR_TRY(client->thread_, start_thread("link", [self = client.get()] { self->run(); }));
   return client;
 }
 
@@ -77,6 +73,8 @@ ClientThread::~ClientThread() {
 }
 
 Status ClientThread::open() {
+  constexpr int kThreads = 3;  // two of ZeroMQ, which aborts the program if one does not start, and this one's
+  TROCAR_TRY_STATUS(check_threads_can_start("link", kThreads));
   wake_ = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   clock_ = ::timerfd_create(CLOCK_MONOTONIC, TFD_CLOEXEC | TFD_NONBLOCK);
   // The first heartbeat at once, the others on its grid.

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "core/ascii.h"
+#include "core/files/list_folder.h"
 #include "core/parallel.h"
 #include "core/parse_number.h"
 
@@ -17,25 +18,7 @@ namespace trocar::io::detail {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr int kMaxFolderDepth =
-    16;  ///< Depth of sub-folders; DICOM media have four levels (patient, study, series, image).
 constexpr std::size_t kMaxListed = 12;
-
-template <class Iterator>
-std::vector<fs::path> regular_files(Iterator entry) {
-  std::vector<fs::path> files;
-  std::error_code error;
-  for (; entry != Iterator(); entry.increment(error)) {
-    if (error) break;
-    if constexpr (std::is_same_v<Iterator, fs::recursive_directory_iterator>)
-      if (entry.depth() >= kMaxFolderDepth) entry.disable_recursion_pending();
-    if (entry->is_regular_file(error)) files.push_back(entry->path());
-  }
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
-constexpr auto kSkip = fs::directory_options::skip_permission_denied;
 
 /// "1: 'Abdomen 3.0' CT, 119 images of 512x512, UID 1.2.3; 2: 'Topogram' CT, 1 image of 512x600, UID 1.2.4".
 std::string list_of(const std::vector<SeriesImages>& series) {
@@ -119,20 +102,26 @@ Status check_lost_slices(const std::vector<fs::path>& files,
 
 }  // namespace
 
-std::vector<fs::path> files_below(const fs::path& folder) {
-  std::error_code error;
-  return regular_files(fs::recursive_directory_iterator(folder, kSkip, error));
+Result<std::vector<fs::path>> files_below(const fs::path& folder, int most_depth) {
+  auto files = list_tree(folder, {.most_depth = most_depth, .skips_unreadable = true});
+  if (files)
+    std::erase_if(*files, [](const fs::path& file) {
+      std::error_code gone;
+      return !fs::is_regular_file(file, gone);
+    });
+  return files;
 }
 
 bool has_dicom_images(const fs::path& folder) {
-  std::error_code error;
-  for (const fs::path& file : regular_files(fs::directory_iterator(folder, kSkip, error)))
-    if (const auto slices = find_dicom_slices(file); !slices || !slices->empty()) return true;
-  return false;
+  const auto files = files_below(folder, 0);
+  return files && std::ranges::any_of(*files, [](const fs::path& file) {
+           const auto slices = find_dicom_slices(file);
+           return !slices || !slices->empty();
+         });
 }
 
 Result<std::vector<SeriesImages>> find_series(const fs::path& folder) {
-  const std::vector<fs::path> files = files_below(folder);
+  TROCAR_TRY(const std::vector<fs::path> files, files_below(folder));
   std::vector<Result<std::vector<DicomSlice>>> found(files.size());
   parallel_for(files.size(), 8, [&](std::size_t first, std::size_t last) {
     for (std::size_t n = first; n < last; ++n) found[n] = find_dicom_slices(files[n]);

@@ -12,8 +12,13 @@ namespace trocar::io::detail {
 /// The images of one series, ordered by file; at least one.
 using SeriesImages = std::vector<DicomSlice>;
 
-/// The regular files in a folder and its sub-folders, sorted. Symbolic links to folders are not followed.
-std::vector<std::filesystem::path> files_below(const std::filesystem::path& folder);
+/// Depth of sub-folders; DICOM media have four levels (patient, study, series, image).
+inline constexpr int kMaxFolderDepth = 16;
+
+/// The regular files in a folder and its sub-folders, sorted. Symbolic links to folders are not followed, sub-folders
+/// without permission are skipped. Errors: as list_tree().
+Result<std::vector<std::filesystem::path>> files_below(const std::filesystem::path& folder,
+                                                       int most_depth = kMaxFolderDepth);
 
 /// True if a folder contains at least one DICOM image, even a damaged one; its sub-folders are not searched.
 bool has_dicom_images(const std::filesystem::path& folder);

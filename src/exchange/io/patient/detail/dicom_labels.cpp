@@ -29,7 +29,7 @@ Result<std::vector<fs::path>> find_dicom_labels(const fs::path& path) {
   std::error_code error;
   std::vector<fs::path> files;
   if (fs::is_directory(path, error)) {
-    files = files_below(path);
+    TROCAR_TRY(files, files_below(path));
   } else if (fs::is_regular_file(path, error) && !find_image_format(path)) {
     files = {path};
   }

@@ -3,18 +3,30 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/log.h"
+#include "core/start_thread.h"
+
 namespace trocar::web::detail {
 
 WorkerThreads::Taken WorkerThreads::enqueue(std::function<void()> job) {
-  const std::lock_guard lock(mutex_);
-  jobs_.push_back(std::move(job));
-  if (jobs_.size() > free_ && threads_.size() < most_threads_) {
-    ++free_;
-    threads_.emplace_back([this] { work(); });
+  std::unique_lock lock(mutex_);
+  if (jobs_.size() >= free_ && threads_.size() < most_threads_) add_thread();
+  if (threads_.empty()) {
+    lock.unlock();
+    job();
+    return static_cast<Taken>(true);
   }
+  jobs_.push_back(std::move(job));
   count_waiting();
   has_job_.notify_one();
   return static_cast<Taken>(true);
+}
+
+void WorkerThreads::add_thread() {
+  auto thread = start_thread("connection", [this] { work(); });
+  if (!thread) return log_warning("{}", thread.error().text());
+  ++free_;
+  threads_.push_back(*std::move(thread));
 }
 
 void WorkerThreads::shutdown() {

@@ -14,7 +14,8 @@
 namespace trocar::web::detail {
 
 /// Threads of a server, one a connection. A thread starts when all others are busy, up to a maximum; then connections
-/// wait in a queue, and `waiting` counts them.
+/// wait in a queue, and `waiting` counts them. If no thread can start, connections wait for those that run; without
+/// one, the listening thread serves the connection itself.
 class WorkerThreads final : public httplib::TaskQueue {
  public:
   WorkerThreads(std::size_t most_threads, std::atomic<int>& waiting) : most_threads_(most_threads), waiting_(waiting) {}
@@ -26,6 +27,8 @@ class WorkerThreads final : public httplib::TaskQueue {
   void shutdown() override;
 
  private:
+  /// With the lock.
+  void add_thread();
   void work();
   void count_waiting();
 
