@@ -1,7 +1,10 @@
 #include "past_sessions.h"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 
+#include "attempt/record/other_forces.h"
 #include "core/files/user_folders.h"
 #include "output.h"
 
@@ -15,6 +18,11 @@ Result<learning::History> read_past_sessions(const std::string& folder) {
              learning::read_history(folder.empty() ? user_state_folder() / "sessions" : std::filesystem::path(folder)));
   for (const std::string& line : history.damaged) print_warning(line);
   return history;
+}
+
+void warn_of_forces(const storage::SessionInfo& info, const std::string& session) {
+  if (const std::string note = attempt::other_forces_note(info); !note.empty())
+    print_warning(fmt::format("{} — {}", note, session));
 }
 
 }  // namespace trocar::cli

@@ -9,6 +9,7 @@
 #include "config/json.h"
 #include "constants.h"
 #include "io/patient/open_patient.h"
+#include "past_sessions.h"
 #include "patient_option.h"
 #include "replay_arguments.h"
 #include "run_results.h"
@@ -211,6 +212,7 @@ Status check_case(const RunArguments& arguments) {
     return {};
   }
   TROCAR_TRY_STATUS(attempt::replay_parameters(*run.replayed, run.replay_changes));
+  warn_of_forces(run.replayed->info, run.operator_name);
   if (run.replay_changes.is_any())
     print_warning(
         "the replay uses other tissues or another force model than the session: its forces differ from the recorded "

@@ -5,6 +5,7 @@
 #include "commands.h"
 #include "core/files/atomic_file.h"
 #include "io/patient/open_patient.h"
+#include "past_sessions.h"
 #include "patient_option.h"
 #include "report/html_report.h"
 #include "storage/session_file.h"
@@ -21,6 +22,7 @@ void warn_of(const storage::Session& session, const std::string& file) {
   if (!session.has_checksums)
     print_warning(
         fmt::format("no checksums in a session of an older program: damage may remain undetected — {}", file));
+  warn_of_forces(session.info, file);
 }
 
 Status export_session(const std::string& session_file, const std::string& csv) {
@@ -37,6 +39,7 @@ Status export_session(const std::string& session_file, const std::string& csv) {
 Status write_session_motion(const std::string& session_file, const std::string& csv) {
   TROCAR_TRY_STATUS(check_new(csv, "--csv"));
   TROCAR_TRY(const storage::Session session, storage::load_session(session_file));
+  warn_of_forces(session.info, session_file);
   TROCAR_TRY(const devices::RecordedMotion motion, attempt::stylus_motion(session));
   return devices::write_motion(motion, csv);
 }

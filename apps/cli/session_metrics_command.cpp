@@ -12,6 +12,7 @@
 #include "io/patient/open_patient.h"
 #include "metrics/measure_run.h"
 #include "metrics/pose_csv.h"
+#include "past_sessions.h"
 #include "patient_option.h"
 #include "storage/session_moments.h"
 #include "tasks/fit_to_patient.h"
@@ -148,6 +149,7 @@ Result<std::vector<metrics::MetricValue>> measure_session(const MetricsArguments
   if (session.is_incomplete)
     print_warning(fmt::format("incomplete session: the program ended during the attempt; {} ticks are measured — {}",
                               session.samples.size(), arguments.recording));
+  warn_of_forces(session.info, arguments.recording);
   if (!session.damage.empty())
     measured.damage = tl::unexpected(
         storage::damage_error(session, arguments.recording, "the metrics are those of the undamaged part"));

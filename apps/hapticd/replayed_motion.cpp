@@ -66,7 +66,10 @@ Result<devices::RecordedMotion> load_motion(const fs::path& path) {
   const TemporaryFolder folder;
   const fs::path motion = folder / "motion.csv", errors = folder / "errors.txt";
   const int status = run_program(*trocar, {"session", "motion", path.string(), "--csv", motion.string()}, errors);
-  if (status == 0) return devices::read_motion(motion);
+  if (status == 0) {
+    fmt::print(stderr, "{}", read_file(errors).value_or(""));  // its warnings
+    return devices::read_motion(motion);
+  }
   return fail(fmt::format("trocar cannot read the session ({})", message_in(errors)), path.string(),
               "give another session, or a file of trocar session motion");
 }

@@ -1,4 +1,5 @@
 // A replay takes everything from its session.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,7 +10,9 @@
 #include <string_view>
 
 #include "core/parse_number.h"
+#include "haptics/force_version.h"
 #include "program.h"
+#include "storage/session_file.h"
 
 namespace trocar::cli_test {
 namespace {
@@ -99,6 +102,48 @@ TEST_F(ReplayCommand, SaysThatTheTicksAreTheSameToTheBit) {
   EXPECT_EQ(same["same_ticks_as_session"], true);
   EXPECT_EQ(json_of(replay("--set skin.fp=5", "other_bits.session"))["same_ticks_as_session"], false);
   EXPECT_FALSE(recorded_.contains("same_ticks_as_session"));
+}
+
+/// The session as another version of the force code would have recorded it.
+void write_with_forces(int version, const std::string& from, const std::string& to) {
+  auto session = storage::load_session(from);
+  ASSERT_TRUE(session) << session.error().text();
+  session->info.force_version = version;
+  auto writer = storage::SessionWriter::create(to, session->info);
+  ASSERT_TRUE(writer) << writer.error().text();
+  for (const telemetry::TickSample& sample : session->samples) ASSERT_TRUE(writer->append(sample));
+  for (const storage::SessionParameters& parameters : session->parameters) ASSERT_TRUE(writer->append(parameters));
+  ASSERT_TRUE(writer->finish(*session->outcome, session->shots));
+}
+
+TEST_F(ReplayCommand, SaysThatTheForcesAreOfAnotherVersion) {
+  const std::string older = *folder_ / "older.session", newer = *folder_ / "newer.session";
+  ASSERT_NO_FATAL_FAILURE(write_with_forces(1, session_, older));
+  ASSERT_NO_FATAL_FAILURE(write_with_forces(haptics::kForceVersion + 1, session_, newer));
+  const std::array<const char*, 6> commands{"trocar run --operator 'replay:{}' --out '{}'",
+                                            "trocar session export '{}' --csv '{}'",
+                                            "trocar session motion '{}' --csv '{}'",
+                                            "trocar session report '{}' --out '{}'",
+                                            "trocar session metrics '{}' >'{}'",
+                                            "trocar-hapticd --device 'replay:{}' --test </dev/null >'{}'"};
+  int files = 0;
+  for (const std::string command : commands) {
+    const auto told = [&](const std::string& session) {
+      const std::string line = fmt::format(fmt::runtime(command), session, *folder_ / fmt::format("out{}", ++files));
+      const auto name = line.find(' ');
+      const Outcome outcome = run_program(line.substr(0, name), line.substr(name + 1));
+      EXPECT_EQ(outcome.exit_status, 0) << line << outcome.err;
+      const auto at = outcome.err.find("warning: recorded with version ");
+      if (at == std::string::npos) return std::string();
+      EXPECT_EQ(outcome.err.find("recorded with version", at + 20), std::string::npos) << outcome.err;
+      return outcome.err.substr(at, outcome.err.find('\n', at) - at);
+    };
+    EXPECT_EQ(told(session_), "") << command;
+    const std::string here = fmt::format("this program has version {}: ", haptics::kForceVersion);
+    EXPECT_NE(told(older).find("version 1 of the forces, " + here), std::string::npos) << command;
+    const std::string next = fmt::format("version {} of the forces, ", haptics::kForceVersion + 1);
+    EXPECT_NE(told(newer).find(next + here), std::string::npos) << command;
+  }
 }
 
 using Position = std::array<double, 3>;

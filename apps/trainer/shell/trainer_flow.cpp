@@ -5,6 +5,7 @@
 #include <QFileDialog>
 #include <algorithm>
 
+#include "attempt/record/other_forces.h"
 #include "attempt/record/recording_space.h"
 #include "cases/scene_request.h"
 #include "control/attempt_control.h"
@@ -341,6 +342,8 @@ void TrainerFlow::poll_replay() {
 void TrainerFlow::show_replay(Result<attempt::AttemptReplay> replay) {
   if (!replay) return window_.show_banner(sentence_of(replay.error()), BannerKind::kError);
   window_.show_banner(to_qt(std::exchange(cut_short_, {})));
+  if (std::string note = attempt::other_forces_note(replay->session().info); !note.empty())
+    warnings_.push_back(std::move(note));
   replay_ = std::make_unique<ReplayControl>(*std::move(replay), open_, window_.work(), std::exchange(warnings_, {}));
   window_.work().set_parameters_locked(false);
   window_.work().feedback().show_again(needs_exam_body(choice_));

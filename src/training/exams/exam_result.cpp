@@ -10,8 +10,10 @@
 #include "core/files/atomic_file.h"
 #include "core/files/data_dir.h"
 #include "core/files/input_file.h"
+#include "core/files/list_folder.h"
 #include "core/version.h"
 #include "exams/exam_body.h"
+#include "haptics/force_version.h"
 #include "io/patient/patient_source.h"
 #include "learning/history.h"
 #include "signing/sha256.h"
@@ -61,6 +63,7 @@ Json describe(const storage::Session& session, bool is_known) {
   const anatomy::PhantomInfo* embedded = find_embedded(info.patient_source);
   return {{"format", kFormat},
           {"program_version", info.program_version},
+          {"force_version", info.force_version},
           {"task", info.task},
           {"patient", info.patient_source},
           {"patient_hash", info.patient_hash},
@@ -115,6 +118,10 @@ std::string fault_of_session(const fs::path& result, const Json& json, std::stri
 std::string other_version(const Json& json) {
   const std::string version = text_at(json, "program_version");
   if (version != kVersion) return fmt::format("by program version {}, this is {}", version, kVersion);
+  const auto forces = json.find("force_version");
+  if (forces == json.end() || *forces != haptics::kForceVersion)
+    return fmt::format("with version {} of the forces, this program has version {}",
+                       forces == json.end() ? "1" : forces->dump(), haptics::kForceVersion);
   const auto digest = digest_of_data(data_dir());
   if (digest && *digest == text_at(json, "data_sha256")) return {};
   return "with other data tables than those of this program";
@@ -135,13 +142,13 @@ fs::path result_file_of(const fs::path& session) {
 
 Result<std::string> digest_of_data(const fs::path& data_folder) {
   std::map<std::string, std::string> digests;  // by name
-  std::error_code error;
-  for (fs::recursive_directory_iterator at(data_folder, error), end; !error && at != end; at.increment(error)) {
-    if (at->path().extension() != ".toml") continue;
-    TROCAR_TRY(const std::string text, read_input(at->path(), FileKind::kToml));
-    digests[at->path().lexically_relative(data_folder).generic_string()] = signing::sha256(text);
+  const auto files = list_tree(data_folder);
+  if (!files) return fail("cannot be read: " + files.error().what, data_folder.string(), "set TROCAR_DATA_DIR");
+  for (const fs::path& file : *files) {
+    if (file.extension() != ".toml") continue;
+    TROCAR_TRY(const std::string text, read_input(file, FileKind::kToml));
+    digests[file.lexically_relative(data_folder).generic_string()] = signing::sha256(text);
   }
-  if (error) return fail("cannot be read: " + error.message(), data_folder.string(), "set TROCAR_DATA_DIR");
   std::string list;
   for (const auto& [name, digest] : digests) list += digest + "  " + name + "\n";
   return signing::sha256(list);

@@ -35,6 +35,7 @@ struct SessionInfo {
   std::uint64_t patient_seed = 1;  ///< Seed of an embedded patient.
   std::string operator_name;       ///< "expert", "constant-velocity:10" …
   std::string force_model = "insertion";
+  int force_version = 1;  ///< Of the force code, haptics/force_version.h; 1 also if the file has none. Range 1..1e9.
   std::uint64_t seed = 1;
   double rate_hz = 1000.0;
   /// Level of help in the trainer: "guided", "assisted", "exam"; empty: no window, or an older program.

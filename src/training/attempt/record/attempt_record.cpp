@@ -11,6 +11,7 @@
 #include "attempt/live/performer.h"
 #include "attempt/record/score_session.h"
 #include "core/version.h"
+#include "haptics/force_version.h"
 #include "io/patient/patient_source.h"
 #include "signing/token.h"
 
@@ -29,6 +30,7 @@ storage::SessionInfo describe(const cases::Case& the_case, const RecordOptions& 
   info.patient_seed = options.patient_seed;
   info.operator_name = options.operator_name;
   info.force_model = facts.force_model;
+  info.force_version = haptics::kForceVersion;
   info.seed = options.seed;
   info.person_id = options.person_id;
   info.attempt_id = options.attempt_id.empty() ? signing::make_id() : options.attempt_id;

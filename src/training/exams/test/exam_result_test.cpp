@@ -10,6 +10,7 @@
 #include "core/files/temporary_folder.h"
 #include "core/testing/data_folder.h"
 #include "core/version.h"
+#include "haptics/force_version.h"
 #include "storage/session_file.h"
 
 namespace trocar::exams {
@@ -21,6 +22,7 @@ using config::Json;
 storage::SessionInfo exam_info() {
   storage::SessionInfo info;
   info.program_version = kVersion;
+  info.force_version = haptics::kForceVersion;
   info.started_utc = "2026-02-03T04:05:06Z";
   info.task = "liver-biopsy";
   info.patient_source = "biopsy-2";
@@ -79,6 +81,7 @@ TEST_F(SignedExam, SaysWhatWasAskedAndReached) {
   EXPECT_EQ(all["passed"], false);
   EXPECT_EQ(all["fails"][0], "the lung was touched");
   EXPECT_EQ(all["program_version"], kVersion);
+  EXPECT_EQ(all["force_version"], haptics::kForceVersion);
   const Verification verification = verify(text);
   EXPECT_EQ(verification.verdict, Verdict::kValid);
   EXPECT_TRUE(
@@ -173,6 +176,13 @@ TEST_F(SignedExam, OtherTablesAndVersionsAreNamed) {
   const auto verification = verify_exam(folder / "b.result.json", key.public_key());
   EXPECT_EQ(verification->verdict, Verdict::kOtherVersion);
   EXPECT_NE(verification->text.find("program version 0.0.1"), std::string::npos) << verification->text;
+  info = exam_info();
+  info.force_version = 1;
+  write_session(folder / "c.trocar", info);
+  ASSERT_TRUE(sign_exam(folder / "c.trocar", {}, key));
+  const auto of_older_forces = verify_exam(folder / "c.result.json", key.public_key());
+  EXPECT_EQ(of_older_forces->verdict, Verdict::kOtherVersion);
+  EXPECT_NE(of_older_forces->text.find("version 1 of the forces"), std::string::npos) << of_older_forces->text;
 }
 
 TEST_F(SignedExam, IsNotSignedTwiceNorAnythingThatIsNoExam) {

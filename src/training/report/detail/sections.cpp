@@ -246,7 +246,7 @@ std::string case_section(const storage::Session& session) {
   out += interruption_rows(session);
   out += changes_rows(session);
   out += case_row("Hash of all ticks", session.ticks_hash);
-  out += case_row("Program", "Trocar " + info.program_version);
+  out += case_row("Program", fmt::format("Trocar {}, forces version {}", info.program_version, info.force_version));
   out += "</tbody></table>" + tissue_tables(session);
   return out + "</section>";
 }

@@ -60,6 +60,15 @@ Field parse_number(const std::string& key, const std::string& text) {
   return value;
 }
 
+constexpr const char* kForceVersionKey = "force_version";  // not in sessions of older programs
+constexpr int kMostForceVersion = 1'000'000'000;
+
+int parse_force_version(const std::string& text) {
+  const int version = parse_number<int>(kForceVersionKey, text);
+  if (version < 1 || version > kMostForceVersion) throw soci::soci_error("the version of the forces is out of range");
+  return version;
+}
+
 constexpr const char* kPlaneKey = "image_plane";
 
 /// The seven numbers of an image plane, separated by blanks, in the order of its members; empty: there is none.
@@ -127,6 +136,9 @@ void write_info(soci::session& database, const SessionInfo& info) {
     value = field;
     insert.execute(true);
   });
+  key = kForceVersionKey;
+  value = fmt::format("{}", info.force_version);
+  insert.execute(true);
   if (info.plane) {
     key = kPlaneKey;
     value = plane_text(info.plane);
@@ -171,6 +183,8 @@ SessionInfo read_info(soci::session& database) {
   visit_added_info(info, [&](const char* name, std::string& field) {
     if (const auto found = values.find(name); found != values.end()) field = found->second;
   });
+  if (const auto found = values.find(kForceVersionKey); found != values.end())
+    info.force_version = parse_force_version(found->second);
   if (const auto found = values.find(kPlaneKey); found != values.end()) info.plane = parse_plane(found->second);
   info.tissue_names = read_names(database, "tissues");
   info.layer_names = read_names(database, "layers");

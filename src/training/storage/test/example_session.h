@@ -18,6 +18,7 @@ namespace trocar::testing {
 inline storage::SessionInfo example_info() {
   storage::SessionInfo info;
   info.program_version = "0.1.0";
+  info.force_version = 7;
   info.started_utc = "2026-01-02T03:04:05Z";
   info.task = "liver-biopsy";
   info.patient_name = "Näme with 'quotes' & <signs>";

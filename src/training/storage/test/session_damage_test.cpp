@@ -195,6 +195,21 @@ TEST(SessionDamage, OlderSessionsOpenAndAreKnownByTheirLackOfChecksums) {
   expect_same_case(*session);
 }
 
+TEST(SessionDamage, SessionsWithoutTheVersionOfTheForcesHaveTheFirst) {
+  const TemporaryFolder folder;
+  const fs::path path = folder / "s.trocar";
+  write_example(path, 3);
+  EXPECT_EQ(load_session(path)->info.force_version, 7);
+  change_all(path, {"DROP TABLE tick_blocks", "DROP TABLE checksums", "DELETE FROM info WHERE key = 'force_version'"});
+  const auto session = load_session(path);
+  ASSERT_TRUE(session) << session.error().text();
+  EXPECT_EQ(session->info.force_version, 1);
+  for (const char* bad : {"", "0", "-1", "two", "2.5", "99999999999"}) {
+    change_all(path, {"INSERT OR REPLACE INTO info (key, value) VALUES ('force_version', '" + std::string(bad) + "')"});
+    EXPECT_FALSE(load_session(path)) << bad;
+  }
+}
+
 TEST(SessionDamage, RefusesTablesThatCompute) {
   const std::string endless = "WITH RECURSIVE c(x) AS (SELECT 0 UNION ALL SELECT x + 1 FROM c) ";
   const std::vector<std::vector<std::string>> hostile{

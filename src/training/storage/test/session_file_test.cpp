@@ -90,6 +90,7 @@ TEST(SessionFile, GivesTheCaseBack) {
   EXPECT_EQ(info.patient_seed, expected.patient_seed);
   EXPECT_EQ(info.operator_name, expected.operator_name);
   EXPECT_EQ(info.force_model, expected.force_model);
+  EXPECT_EQ(info.force_version, expected.force_version);
   EXPECT_EQ(info.seed, expected.seed);
   EXPECT_EQ(info.rate_hz, expected.rate_hz);
   EXPECT_EQ(info.level, expected.level);

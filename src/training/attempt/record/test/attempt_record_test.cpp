@@ -4,7 +4,9 @@
 
 #include "anatomy/phantom/phantom.h"
 #include "attempt/live/attempt_event.h"
+#include "attempt/record/other_forces.h"
 #include "core/files/temporary_folder.h"
+#include "haptics/force_version.h"
 
 namespace trocar::attempt {
 namespace {
@@ -110,6 +112,17 @@ TEST_F(GunRecordTest, APlainNeedleHasNoGunAndNothingHappensBeforeTheFirstSample)
   EXPECT_EQ(act(kLoad), "");
   EXPECT_EQ(act(kReplaceStylet), "stylet put back");
   EXPECT_EQ(recorded_kinds(), std::vector<tasks::ActionKind>{kReplaceStylet});
+}
+
+TEST_F(GunRecordTest, NamesTheVersionOfItsForces) {
+  begin(true, false);
+  go_to(-1.0);
+  record_.reset();
+  const auto session = storage::load_session(folder_ / "attempt.session");
+  ASSERT_TRUE(session) << session.error().text();
+  EXPECT_EQ(session->info.force_version, haptics::kForceVersion);
+  EXPECT_EQ(other_forces_note(session->info), "");
+  EXPECT_NE(other_forces_note(storage::SessionInfo()).find("recorded with version 1 of the forces"), std::string::npos);
 }
 
 }  // namespace
