@@ -89,7 +89,7 @@ Status check_written_by_user_alone(const fs::path& file) {
   if ((status.st_mode & kOthersMayWrite) != 0) {
     return fail("the key file is writable by other users", file.string(), fmt::format("chmod go-w {}", file.string()));
   }
-  if (status.st_uid == ::geteuid() || status.st_uid == 0) return {};
+  if (status.st_uid == ::geteuid() || status.st_uid == 0) return check_folders_of(file);
   return fail("the key file belongs to another user", file.string(), "copy it: cp FILE COPY");
 }
 
@@ -158,7 +158,11 @@ Result<std::string> load_public_key(const fs::path& file) {
 
 Result<std::set<std::string>> load_allow_list(const fs::path& file) {
   TROCAR_TRY_STATUS(check_written_by_user_alone(file));
-  return read_public_keys(file, kMostAllowListBytes);
+  TROCAR_TRY(std::set<std::string> keys, read_public_keys(file, kMostAllowListBytes));
+  if (keys.empty())
+    return fail("the list allows no client: it has no key", file.string(),
+                "add the key of a client's .pub file, one a line");
+  return keys;
 }
 
 }  // namespace trocar::link

@@ -20,11 +20,11 @@ Result<CurveKeys> make_curve_keys();
 /// empty.
 Status write_key_folder(const std::filesystem::path& folder);
 /// Reads a .key file: lines "public KEY" and "secret KEY". Errors: a key is missing or not Z85, the keys do not match,
-/// or other users can read the file.
+/// or check_private_file() fails. All three functions refuse a file that other users can replace (check_folders_of()).
 Result<CurveKeys> load_curve_keys(const std::filesystem::path& file);
 /// Reads a .pub file: one key.
 Result<std::string> load_public_key(const std::filesystem::path& file);
-/// Reads the public keys of the clients that may connect, one per line; # starts a comment.
+/// Reads the public keys of the clients that may connect, one per line; # starts a comment. Errors: no key.
 Result<std::set<std::string>> load_allow_list(const std::filesystem::path& file);
 
 }  // namespace trocar::link

@@ -1,7 +1,9 @@
 #include "link/curve_keys.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <fstream>
 
@@ -123,9 +125,73 @@ TEST(AllowList, CommentsAndEmptyLinesAreLeftOut) {
   EXPECT_EQ(load_allow_list(write_file(folder, text)).value(), std::set<std::string>{kPublic});
 }
 
-TEST(AllowList, MayBeEmpty) {
+TEST(AllowList, WithoutAKeyIsRefused) {
   const TemporaryFolder folder;
-  EXPECT_TRUE(load_allow_list(write_file(folder, "# nobody\n")).value().empty());
+  for (const char* text : {"", "\n", "# nobody\n"}) {
+    const auto allowed = load_allow_list(write_file(folder, text));
+    ASSERT_FALSE(allowed) << text;
+    EXPECT_NE(allowed.error().text().find("no key"), std::string::npos) << allowed.error().text();
+  }
+}
+
+/// All three kinds of files, by their error.
+std::vector<std::string> errors_of(const fs::path& keys) {
+  std::vector<std::string> errors;
+  const auto note = [&](const auto& loaded) { errors.push_back(loaded ? std::string() : loaded.error().text()); };
+  note(load_curve_keys(keys / "server.key"));
+  note(load_public_key(keys / "server.pub"));
+  note(load_allow_list(keys / "allowed"));
+  return errors;
+}
+
+TEST(KeyFolder, ThatOthersCanWriteIsRefused) {
+  const TemporaryFolder folder;
+  const fs::path keys = folder / "above" / "keys";
+  fs::create_directory(folder / "above");
+  ASSERT_TRUE(write_key_folder(keys));
+  for (const fs::path& open : {keys, keys.parent_path()}) {
+    for (const mode_t mode : {0777u, 0770u, 0707u, 0720u}) {
+      ASSERT_EQ(::chmod(open.c_str(), mode), 0);
+      for (const std::string& error : errors_of(keys)) {
+        EXPECT_NE(error.find(fmt::format("chmod go-w {}", open.string())), std::string::npos) << error;
+      }
+    }
+    for (const mode_t mode : {01777u, 0755u, 0700u}) {
+      ASSERT_EQ(::chmod(open.c_str(), mode), 0);
+      EXPECT_EQ(errors_of(keys), std::vector<std::string>(3)) << open << std::oct << mode;
+    }
+  }
+}
+
+TEST(KeyFolder, OfALinkAndOfItsTargetAreChecked) {
+  const TemporaryFolder folder;
+  const fs::path keys = folder / "keys", links = folder / "links";
+  ASSERT_TRUE(write_key_folder(keys));
+  fs::create_directory(links);
+  for (const char* name : {"server.key", "server.pub", "allowed"}) fs::create_symlink(keys / name, links / name);
+  EXPECT_EQ(errors_of(links), std::vector<std::string>(3));
+  for (const fs::path& open : {keys, links}) {
+    ASSERT_EQ(::chmod(open.c_str(), 0777), 0);
+    for (const std::string& error : errors_of(links)) EXPECT_NE(error, "") << open;
+    ASSERT_EQ(::chmod(open.c_str(), 0700), 0);
+  }
+}
+
+TEST(KeyFolder, FilesOfAnotherUserAreRefused) {
+  if (::geteuid() != 0) GTEST_SKIP() << "only root can give a file away";
+  const TemporaryFolder folder;
+  const fs::path keys = folder / "keys";
+  ASSERT_TRUE(write_key_folder(keys));
+  constexpr uid_t kAnother = 12345;
+  for (const char* name : {"server.key", "server.pub", "allowed"})
+    ASSERT_EQ(::chown((keys / name).c_str(), kAnother, kAnother), 0);
+  for (const std::string& error : errors_of(keys))
+    EXPECT_NE(error.find("belongs to another user"), std::string::npos) << error;
+  for (const char* name : {"server.key", "server.pub", "allowed"}) ASSERT_EQ(::chown((keys / name).c_str(), 0, 0), 0);
+  EXPECT_EQ(errors_of(keys), std::vector<std::string>(3));
+  ASSERT_EQ(::chown(keys.c_str(), kAnother, kAnother), 0);
+  for (const std::string& error : errors_of(keys))
+    EXPECT_NE(error.find("belongs to another user"), std::string::npos) << error;
 }
 
 TEST(AllowList, FileThatOthersCanWriteIsRefused) {

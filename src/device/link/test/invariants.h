@@ -14,7 +14,7 @@ std::string find_broken_invariant(Envelope<Body> message) {
   constexpr double kRounding = 1e-11;
   std::string broken;
   const auto expect = [&](bool holds, const char* what) {
-    if (!holds) broken += std::string(what) + "; ";
+    if (!holds) broken.append(what).append("; ");
   };
   const auto is_near = [&](const Vec3& p) { return p.norm() <= kFar_mm; };
   const auto check_text = [&](const std::string& text, bool is_table) {

@@ -14,7 +14,7 @@ class TokenBucket {
     filled_s_ = now_s;
     has_time_ = true;
   }
-  bool has_tokens() const noexcept { return tokens_ > 0.0; }
+  bool has_tokens() const noexcept { return tokens_ >= 1.0; }
   /// May take more tokens than there are; has_tokens() is then false until the deficit is refilled.
   void take(double amount) noexcept { tokens_ -= amount; }
 

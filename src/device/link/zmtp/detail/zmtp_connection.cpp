@@ -10,7 +10,9 @@ namespace trocar::link::detail {
 namespace {
 
 constexpr std::size_t kMostHandshakeBytes = 1024;  ///< The longest command of RFC 26 has 257 bytes plus metadata.
-constexpr std::size_t kFrameOverhead = 64;         ///< Overhead of ZMTP and CURVE, added to each limit.
+constexpr std::size_t kFrameOverhead = 64;         ///< Of ZMTP and CURVE, in the queue of a peer.
+constexpr std::size_t kCurveOverhead = 33;         ///< Bytes of a MESSAGE command of RFC 26 besides the payload.
+constexpr std::size_t kMostIdentityBytes = 255;    ///< RFC 23
 /// A connection that announces a larger frame is closed; a smaller frame beyond the limit is skipped.
 constexpr std::size_t kCutOffBytes = 2 * kMostMessageBytes;
 constexpr int kMostSkippedFrames = 64;
@@ -62,10 +64,11 @@ ZmtpConnection::Incoming ZmtpConnection::next(double now_s) {
     if (state_ == State::kGreeting && !read_greeting()) break;
     if (state_ == State::kBroken) break;
     const bool is_traffic = state_ == State::kTraffic;
+    const std::size_t overhead = curve_ ? kCurveOverhead : 0;
     const std::size_t most = !is_traffic   ? kMostHandshakeBytes
-                             : is_greeted_ ? kMostMessageBytes + kFrameOverhead
-                                           : kMostBytesBeforeHello + kFrameOverhead;
-    const std::size_t cut_off = is_traffic && is_greeted_ ? kCutOffBytes : most;
+                             : is_greeted_ ? kMostMessageBytes + overhead
+                                           : kMostBytesBeforeHello + overhead;
+    const std::size_t cut_off = is_traffic && is_greeted_ ? kCutOffBytes + overhead : most;
     FrameReader::Frame frame;
     const FrameReader::Outcome outcome = in_.next(most, cut_off, frame);
     if (outcome == FrameReader::Outcome::kNone) break;
@@ -140,6 +143,10 @@ void ZmtpConnection::take_metadata(std::span<const std::byte> bytes) {
     break_off("a client whose socket is not a DEALER");
     return;
   }
+  if (metadata.identity.size() > kMostIdentityBytes || metadata.identity.starts_with('\0')) {
+    break_off("a client whose identity has more than 255 bytes, or begins with the byte 0");
+    return;
+  }
   if (curve_ && !metadata.identity.empty()) {
     const auto& key = curve_->client_key();
     identity_.assign(key.begin(), key.end());
@@ -174,6 +181,8 @@ ZmtpConnection::Incoming ZmtpConnection::take_part(std::uint8_t more, std::span<
   if (more == 0 && multipart_frames_ == 0) return {Event::kMessage, payload};
   const bool is_first = multipart_frames_ == 0;
   multipart_bytes_ += payload.size();
+  if (!is_greeted_ && multipart_bytes_ > kMostBytesBeforeHello)
+    return break_off("a message before Hello that is too large");
   if (++multipart_frames_ > kMostSkippedFrames || multipart_bytes_ > kCutOffBytes) {
     return break_off("a message of frames without end");
   }

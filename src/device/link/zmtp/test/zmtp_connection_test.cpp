@@ -24,6 +24,20 @@ std::vector<std::byte> handshake(std::string_view socket_type = "DEALER", std::s
   zmtp::append_frame(bytes, zmtp::kCommand, ready);
   return bytes;
 }
+/// The handshake of a DEALER with an identity.
+std::vector<std::byte> handshake_as(const std::string& identity) {
+  std::vector<std::byte> bytes = zmtp::make_greeting("NULL", false), ready;
+  append_bytes(ready, bytes_of("\x05READY\x0bSocket-Type"));
+  append_bytes(ready, bytes_of(std::string_view("\0\0\0\x06"
+                                                "DEALER"
+                                                "\x08Identity\0\0",
+                                                21)));
+  ready.push_back(static_cast<std::byte>(identity.size() >> 8));
+  ready.push_back(static_cast<std::byte>(identity.size()));
+  append_bytes(ready, bytes_of(identity));
+  zmtp::append_frame(bytes, zmtp::kCommand, ready);
+  return bytes;
+}
 std::vector<std::byte> frame(std::uint8_t flags, std::size_t size) {
   std::vector<std::byte> bytes;
   zmtp::append_frame(bytes, flags, std::vector<std::byte>(size, std::byte{7}));
@@ -106,10 +120,72 @@ TEST(ZmtpConnection, MessagesBeforeHelloAreSmall) {
     connection->append(handshake());
     connection->append(frame(0, kMostBytesBeforeHello));
     EXPECT_EQ(next(*connection).event, Event::kMessage);
-    connection->append(frame(0, 2 * kMostBytesBeforeHello));
+    connection->append(frame(0, kMostBytesBeforeHello + 1));
   }
   EXPECT_EQ(next(stranger).event, Event::kBroken);
   EXPECT_EQ(next(greeted).event, Event::kMessage);
+}
+
+TEST(ZmtpConnection, FramesOfAMessageBeforeHelloCountTogether) {
+  for (const std::size_t last : {1u, 2u}) {
+    ZmtpConnection connection(nullptr);
+    connection.append(handshake());
+    connection.append(frame(zmtp::kMore, kMostBytesBeforeHello - 1));
+    EXPECT_EQ(next(connection).event, Event::kMultipart);
+    connection.append(frame(0, last));
+    EXPECT_EQ(next(connection).event, last == 1 ? Event::kNone : Event::kBroken);
+  }
+}
+
+TEST(ZmtpConnection, AMessageOfOneByteTooMuchIsSkippedAndOfTwiceAsMuchBrokenOff) {
+  const auto event_of = [](std::size_t size) {
+    ZmtpConnection connection(nullptr);
+    connection.set_greeted(true);
+    connection.append(handshake());
+    connection.append(frame(0, size));
+    return next(connection).event;
+  };
+  EXPECT_EQ(event_of(kMostMessageBytes), Event::kMessage);
+  EXPECT_EQ(event_of(kMostMessageBytes + 1), Event::kTooLarge);
+  EXPECT_EQ(event_of(2 * kMostMessageBytes), Event::kTooLarge);
+  EXPECT_EQ(event_of(2 * kMostMessageBytes + 1), Event::kBroken);
+}
+
+TEST(ZmtpConnection, AMessageOf64FramesOrTwoMebibytesIsSkippedAndOfMoreBrokenOff) {
+  const auto last_event = [](std::size_t frames, std::size_t size) {
+    ZmtpConnection connection(nullptr);
+    connection.set_greeted(true);
+    connection.append(handshake());
+    Event event = Event::kNone;
+    for (std::size_t n = 0; n < frames; ++n) {
+      connection.append(frame(zmtp::kMore, size));
+      event = next(connection).event;
+    }
+    return event;
+  };
+  EXPECT_EQ(last_event(64, 1), Event::kNone);
+  EXPECT_EQ(last_event(65, 1), Event::kBroken);
+  EXPECT_EQ(last_event(32, kMostMessageBytes / 16), Event::kNone);
+  EXPECT_EQ(last_event(33, kMostMessageBytes / 16), Event::kBroken);
+}
+
+TEST(ZmtpConnection, AnIdentityHasAtMost255BytesAndNoZeroInFront) {
+  const auto event_of = [](const std::string& identity) {
+    ZmtpConnection connection(nullptr);
+    connection.append(handshake_as(identity));
+    const Event event = connection.next(kReceived_s).event;
+    if (event == Event::kReady) {
+      EXPECT_EQ(connection.identity(), identity);
+    }
+    return event;
+  };
+  EXPECT_EQ(event_of(""), Event::kReady);
+  EXPECT_EQ(event_of("a"), Event::kReady);
+  EXPECT_EQ(event_of(std::string("a\0b", 3)), Event::kReady);
+  EXPECT_EQ(event_of(std::string(255, 'a')), Event::kReady);
+  EXPECT_EQ(event_of(std::string(256, 'a')), Event::kBroken);
+  EXPECT_EQ(event_of(std::string(1, '\0')), Event::kBroken);
+  EXPECT_EQ(event_of(std::string("\0connection 1", 13)), Event::kBroken);
 }
 
 TEST(ZmtpConnection, FrameThatAnnouncesTooMuchIsBrokenOffAtItsHeader) {
