@@ -8,6 +8,7 @@
 #include "cases/image_plane.h"
 #include "commands.h"
 #include "config/json.h"
+#include "core/files/input_file.h"
 #include "io/markups_file.h"
 #include "io/patient/open_patient.h"
 #include "metrics/measure_run.h"
@@ -41,8 +42,10 @@ struct MeasuredCase {
 };
 
 bool is_database(const std::string& file) {
+  const auto input = InputFile::open(file, FileKind::kSession);  // a pipe would block
+  if (!input) return false;
   std::string head(15, '\0');
-  std::ifstream(file, std::ios::binary).read(head.data(), static_cast<std::streamsize>(head.size()));
+  std::ifstream(input->pinned_path(), std::ios::binary).read(head.data(), static_cast<std::streamsize>(head.size()));
   return head == "SQLite format 3";
 }
 

@@ -7,8 +7,13 @@
 #include <cstdlib>
 #include <vector>
 
+#include "core/files/input_file.h"
+#include "devices/vendor/detail/library_trial.h"
+
 namespace trocar::devices {
 namespace {
+
+constexpr FileLimit kLibraryFile{FileKind::kOther, "library", std::uint64_t{1} << 30};
 
 std::string last_dl_error() {
   const char* text = dlerror();
@@ -27,6 +32,13 @@ std::vector<std::string> candidates_of(const LibraryPlace& place) {
 Result<DynamicLibrary> DynamicLibrary::open(const LibraryPlace& place) {
   std::vector<std::string> reasons;
   for (std::string& candidate : candidates_of(place)) {
+    if (candidate.find('/') != std::string::npos) {
+      if (const auto regular = InputFile::open(candidate, kLibraryFile); !regular) {  // a pipe would block
+        reasons.push_back(fmt::format("{}: {}", candidate, regular.error().what));
+        continue;
+      }
+    }
+    TROCAR_TRY_STATUS(detail::try_library(candidate, place.patience));
     void* const handle = dlopen(candidate.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
     if (handle != nullptr) return DynamicLibrary(handle, std::move(candidate));
     reasons.push_back(last_dl_error());

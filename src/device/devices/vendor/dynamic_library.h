@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <span>
 #include <string>
 #include <string_view>
@@ -14,14 +15,16 @@ struct LibraryPlace {
   std::span<const char* const> names;  ///< File names, tried in this order by the system's search rules: "libHD.so".
   std::string_view package;            ///< Name of the missing package: "the OpenHaptics toolkit".
   std::string_view advice;             ///< How to get the package.
+  std::chrono::milliseconds patience{10'000};  ///< Longest time of loading. [assumed: drivers load within a second]
 };
 
 /// A shared library loaded at run time. It stays loaded until the process ends: vendors' drivers cannot be unloaded
 /// safely (CHAI3D, src/devices/CPhantomDevices.cpp, on the PHANTOM driver).
 class DynamicLibrary {
  public:
-  /// Binds all symbols at once, so that the first call of a function needs no symbol search. The error names package,
-  /// driver and variable.
+  /// Binds all symbols at once, so that the first call of a function needs no symbol search. A child process loads the
+  /// library first (detail/library_trial.h). Errors: no library, with package, driver and variable; a file that is no
+  /// regular one; a library whose loading hangs or ends the program.
   static Result<DynamicLibrary> open(const LibraryPlace& place);
 
   /// Looks up `name` and sets `function`. The error names the missing function of an old library.

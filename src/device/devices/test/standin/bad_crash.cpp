@@ -1,0 +1,9 @@
+#include <cstdlib>
+
+namespace {
+
+[[gnu::constructor]] void crash() {
+  std::abort();
+}
+
+}  // namespace
