@@ -88,7 +88,7 @@ Result<Markup> markup_of(const config::Json& json, const std::string& where) {
 Result<std::vector<Markup>> read_markups(const fs::path& path, const fs::path& inside) {
   const std::string where = path.string();
   TROCAR_TRY(const std::string text, read_input(path, FileKind::kMarkups, inside));
-  TROCAR_TRY(const config::Json json, config::parse_json(text, where));
+  TROCAR_TRY(const config::Json json, config::parse_json(text, where, config::kMostJsonFileValues));
   const auto list = json.is_object() ? json.find("markups") : json.end();
   if (!json.is_object() || list == json.end() || !list->is_array())
     return fail("not a markups file", where, "save fiducials or lines in 3D Slicer as .mrk.json");

@@ -12,10 +12,15 @@ namespace {
 constexpr int kMaxJsonDepth =
     64;  ///< Our documents are nested less than 10 deep; recursive functions may process them.
 
-/// Deepest nesting of arrays and objects; brackets inside strings do not count.
-int nesting_depth(std::string_view text) {
+struct Extent {
+  int deepest = 0;         ///< Nesting of arrays and objects.
+  std::size_t commas = 0;  ///< Between values.
+};
+
+/// Strings do not count.
+Extent extent_of(std::string_view text) {
+  Extent extent;
   int depth = 0;
-  int deepest = 0;
   bool in_string = false;
   for (std::size_t n = 0; n < text.size(); ++n) {
     const char c = text[n];
@@ -25,19 +30,24 @@ int nesting_depth(std::string_view text) {
     } else if (c == '"') {
       in_string = true;
     } else if (c == '[' || c == '{') {
-      deepest = std::max(deepest, ++depth);
+      extent.deepest = std::max(extent.deepest, ++depth);
     } else if (c == ']' || c == '}') {
       --depth;
+    } else if (c == ',') {
+      ++extent.commas;
     }
   }
-  return deepest;
+  return extent;
 }
 
 }  // namespace
 
-Result<Json> parse_json(std::string_view text, const std::string& name) {
-  if (nesting_depth(text) > kMaxJsonDepth)
+Result<Json> parse_json(std::string_view text, const std::string& name, std::size_t most_values) {
+  const Extent extent = extent_of(text);
+  if (extent.deepest > kMaxJsonDepth)
     return fail(fmt::format("the JSON is nested more than {} deep", kMaxJsonDepth), name, "is this the right file?");
+  if (extent.commas > most_values)
+    return fail(fmt::format("the JSON has more than {} values", most_values), name, "is this the right file?");
   try {
     return Json::parse(text);
   } catch (const Json::parse_error& error) {
@@ -49,7 +59,7 @@ Result<Json> parse_json(std::string_view text, const std::string& name) {
 
 Result<Json> load_json(const std::filesystem::path& path) {
   TROCAR_TRY(const std::string text, read_input(path, FileKind::kJson));
-  return parse_json(text, path.string());
+  return parse_json(text, path.string(), kMostJsonFileValues);
 }
 
 std::string json_text(const Json& json, int indent) {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -10,8 +12,15 @@
 
 namespace trocar::config {
 
-/// Parses untrusted JSON, nested at most 64 deep; the error names `name` and the byte. Never throws.
-Result<Json> parse_json(std::string_view text, const std::string& name);
+/// Most values of a JSON file: a value takes up to 100 bytes of memory, and may be two bytes of the file. [assumed:
+/// markups of 3D Slicer have about 20 a control point]
+inline constexpr std::size_t kMostJsonFileValues = 500'000;
+
+/// Parses untrusted JSON, nested at most 64 deep; the error names `name` and the byte. A text of more than
+/// `most_values` commas, those in strings excepted, is refused. Never throws.
+Result<Json> parse_json(std::string_view text, const std::string& name,
+                        std::size_t most_values = std::numeric_limits<std::size_t>::max());
+/// The same for a file, with kMostJsonFileValues.
 Result<Json> load_json(const std::filesystem::path& path);
 
 /// The document as text; bytes that are not UTF-8 are replaced; they do not throw. indent < 0: one line.

@@ -10,8 +10,8 @@
 namespace trocar::config::detail {
 namespace {
 
-constexpr std::size_t kMaxBytes = std::size_t{4} << 20;
-constexpr int kMaxTomlDepth = 32;  ///< Nested brackets, and dots of one key.
+constexpr std::size_t kMaxBytes = std::size_t{1} << 20;  ///< Takes 35 times as much memory at most.
+constexpr int kMaxTomlDepth = 32;                        ///< Nested brackets, and dots of one key.
 
 /// Scans the text like toml++ up to the first error: text after an error is never parsed.
 class Scanner {

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+
+#include "core/files/temporary_folder.h"
 #include "core/random.h"
 
 namespace trocar::config {
@@ -29,6 +32,19 @@ TEST(Json, RefusesDeepNestingButNotBracketsInStrings) {
   EXPECT_FALSE(parse_json(std::string(65, '[') + std::string(65, ']'), "deep"));
   EXPECT_TRUE(parse_json(std::string(64, '[') + std::string(64, ']'), "deep"));
   EXPECT_TRUE(parse_json("\"\\\"" + std::string(1000, '[') + "\"", "string"));
+}
+
+TEST(Json, RefusesAFileOfTooManyValuesButNotCommasInStrings) {
+  const TemporaryFolder folder;
+  const auto loads = [&](std::size_t commas, const std::string& first) {
+    std::string text = "[" + first;
+    for (std::size_t n = 0; n < commas; ++n) text += ",0";
+    std::ofstream(folder / "values.json") << text << "]";
+    return load_json(folder / "values.json").has_value();
+  };
+  EXPECT_TRUE(loads(kMostJsonFileValues, "0"));
+  EXPECT_FALSE(loads(kMostJsonFileValues + 1, "0"));
+  EXPECT_TRUE(loads(kMostJsonFileValues, "\"" + std::string(1000, ',') + "\\\"," + "\""));
 }
 
 TEST(Json, RefusesNumbersThatOverflow) {

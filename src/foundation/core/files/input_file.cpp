@@ -25,7 +25,7 @@ constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
 
 // Assumed: several times the largest file of this kind found in practice.
 constexpr std::array kLimits{
-    FileLimit{FileKind::kToml, "TOML file", 4 * kMiB},
+    FileLimit{FileKind::kToml, "TOML file", 1 * kMiB},
     FileLimit{FileKind::kJson, "JSON file", 8 * kMiB},
     FileLimit{FileKind::kMarkups, "markups file", 8 * kMiB},
     FileLimit{FileKind::kTransform, "transform file", 1 * kMiB},

@@ -14,6 +14,7 @@ namespace trocar::io::detail {
 namespace {
 
 constexpr std::size_t kMostLines = 10'000;  ///< A segmentation of 255 structures has about 3,000.
+constexpr std::uint64_t kMostHeaderBytes = std::uint64_t{4} << 20;        ///< The libraries hold it several times.
 constexpr std::size_t kLongestNrrdField = 500, kLongestPair = 64 * 1024;  // nine numbers of 24 letters fit
 constexpr std::size_t kLongestMetaField = 250;                            ///< MetaIO keeps texts in arrays of 255.
 constexpr std::size_t kLongestKey = 250;
@@ -86,6 +87,8 @@ class TextHeaderReader {
 
   /// True: the header ends with this line.
   Result<bool> take(const std::string& line, std::size_t number) {
+    if (header_.end > kMostHeaderBytes)
+      return damaged(fmt::format("the header has more than {} MiB", kMostHeaderBytes >> 20));
     if (number > kMostLines) return damaged(fmt::format("the header has more than {} lines", kMostLines));
     if (line.size() > kLongestPair)
       return damaged(fmt::format("line {} of the header is longer than {} characters", number, kLongestPair));

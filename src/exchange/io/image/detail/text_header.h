@@ -25,8 +25,8 @@ enum class TextHeaderKind { kNrrd, kMeta };
 
 /// Reads "field: value" lines up to an empty line (NRRD), "Field = Value" lines up to ElementDataFile (MetaImage).
 /// Bounded, because the libraries that read the header afterwards overflow or take minutes for one that is not: 10,000
-/// lines; 500 characters a field (MetaImage: 250), 64 KiB a pair or comment; no control characters; no field and no key
-/// twice. Errors: such a header, or none.
+/// lines and 4 MiB; 500 characters a field (MetaImage: 250), 64 KiB a pair or comment; no control characters; no field
+/// and no key twice. Errors: such a header, or none.
 Result<TextHeader> read_text_header(const InputFile& input, TextHeaderKind kind);
 
 std::string trim(std::string_view text);

@@ -235,6 +235,14 @@ TEST_F(StatedPlaceTest, BoundsATextHeader) {
   std::string many;
   for (int n = 0; n < 10'000; ++n) many += "key" + std::to_string(n) + ":=value\n";
   expect_refused("a.nrrd", nrrd(place, many), "more than 10000 lines");
+  const auto pairs = [](std::size_t count) {  // of 64,000 bytes each
+    std::string text;
+    for (std::size_t n = 0; n < count; ++n) text += fmt::format("key{:04}:={}\n", n, std::string(63'990, 'A'));
+    return text;
+  };
+  expect_at("a.nrrd", nrrd(place, pairs(65)), 8, {14, 20, 34});
+  expect_refused("a.nrrd", nrrd(place, pairs(66)), "more than 4 MiB");
+  expect_refused("a.nrrd", nrrd(place, pairs(300)), "more than 4 MiB");
   expect_refused("a.nrrd", nrrd(place, std::string(5'000, '8') + "\n"), "line 10 of the header is no field");
   expect_refused("a.nrrd", nrrd(place, std::string(5'000, 'k') + ":=v\n"), "line 10 of the header is no field");
   expect_at("a.nrrd", nrrd(place, "# " + std::string(5'000, 'A') + "\n"), 8, {14, 20, 34});

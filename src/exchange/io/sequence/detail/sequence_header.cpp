@@ -19,6 +19,7 @@ namespace {
 
 constexpr std::size_t kMaxLineBytes = std::size_t{1} << 20;
 constexpr std::uint64_t kMaxSequenceHeaderBytes = std::uint64_t{64} << 20;  ///< 100,000 frames of three transforms.
+constexpr std::size_t kMaxSequenceFields = 1'000'000, kMaxOtherFields = 10'000;  ///< Short lines need much memory.
 constexpr double kMaxFrameSide = 65'535;
 constexpr double kMaxFrames = 1'000'000;
 constexpr double kMaxPixels = 2e9;
@@ -54,11 +55,14 @@ Result<HeaderText> read_text(const InputFile& input) {
   std::ifstream file(input.pinned_path(), std::ios::binary);
   HeaderText text;
   const auto line = std::make_unique_for_overwrite<char[]>(kMaxLineBytes);
+  std::size_t lines = 0;
   while (file.getline(line.get(), static_cast<std::streamsize>(kMaxLineBytes))) {
     text.end += static_cast<std::uint64_t>(file.gcount());
     const std::string_view content(line.get());
     const auto separator = content.find('=');
-    if (separator == std::string_view::npos || text.end > kMaxSequenceHeaderBytes) break;
+    if (separator == std::string_view::npos) break;
+    if (text.end > kMaxSequenceHeaderBytes || ++lines > kMaxSequenceFields || text.fields.size() > kMaxOtherFields)
+      return fail("the header is too large for a tracked sequence", where, "record or save a shorter sequence");
     const std::string_view key = trimmed(content.substr(0, separator));
     const std::string value(trimmed(content.substr(separator + 1)));
     if (const auto frame_key = find_frame_key(key)) {

@@ -127,6 +127,14 @@ TEST_F(SequenceFile, RefusesDamageWithOneLine) {
   EXPECT_FALSE(read_sequence(folder_.path()));
 }
 
+TEST_F(SequenceFile, RefusesAHeaderOfEndlessFields) {
+  std::string other, frames;
+  for (int n = 0; n < 10'001; ++n) other += "field" + std::to_string(n) + " = 1\n";
+  for (int n = 0; n < 1'000'001; ++n) frames += "Seq_Frame0000_a" + std::to_string(n % 10) + " =\n";
+  for (const std::string& fields : {other, frames})
+    EXPECT_NE(refusal(header("Kinds", fields + "Kinds") + kPixels).find("header is too large"), std::string::npos);
+}
+
 TEST_F(SequenceFile, RefusesAFileThatIsCutShort) {
   ultrasound::TrackedSequence sequence = *read(header() + kPixels);
   const auto whole_path = folder_ / "whole.igs.mha";
