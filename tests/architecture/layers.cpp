@@ -90,9 +90,10 @@ bool is_vocabulary(std::string_view header) {
 }
 
 bool is_system(std::string_view header) {
-  static const std::set<std::string_view> posix = {
-      "stdlib.h", "locale.h",  "dlfcn.h",  "fcntl.h",     "poll.h", "pthread.h",   "malloc.h",  "sched.h",  "signal.h",
-      "spawn.h",  "strings.h", "unistd.h", "semaphore.h", "time.h", "immintrin.h", "termios.h", "fnmatch.h"};
+  static const std::set<std::string_view> posix = {"stdlib.h",    "locale.h",  "dlfcn.h",  "link.h",      "fcntl.h",
+                                                   "poll.h",      "pthread.h", "malloc.h", "sched.h",     "signal.h",
+                                                   "spawn.h",     "strings.h", "unistd.h", "semaphore.h", "time.h",
+                                                   "immintrin.h", "termios.h", "fnmatch.h"};
   const bool is_standard = header.find_first_of("/.") == std::string_view::npos;
   return is_standard || header.starts_with("sys/") || header.starts_with("netinet/") || header.starts_with("arpa/") ||
          header.starts_with("sanitizer/") || posix.contains(header);

@@ -1,11 +1,16 @@
 #include "core/parallel.h"
 
 #include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/parallel_invoke.h>
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
+#include <memory>
+#include <thread>
+
+#include "core/start_thread.h"
 
 #ifdef TROCAR_THREAD_SANITIZER
 #include <sanitizer/tsan_interface.h>
@@ -48,28 +53,43 @@ struct HandOver {
 };
 #endif
 
+/// TBB throws in whatever thread wants work done, if its threads cannot start. Where the machine's cannot all start at
+/// the first call, no thread besides the caller's ever works.
+void prepare_threads() {
+  using Control = oneapi::tbb::global_control;
+  static const std::unique_ptr<Control> alone = [] {
+    const int others = static_cast<int>(std::thread::hardware_concurrency()) - 1;
+    const bool can_start = check_threads_can_start("worker", others).has_value();
+    return can_start ? nullptr : std::make_unique<Control>(Control::max_allowed_parallelism, 1);
+  }();
+}
+
 }  // namespace
 
 void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
   if (count == 0) return;
   using Range = oneapi::tbb::blocked_range<std::size_t>;
+  prepare_threads();
   HandOver hand_over;
   oneapi::tbb::parallel_for(Range(0, count, std::max<std::size_t>(grain, 1)),
                             [&](const Range& part) { hand_over.run([&] { body(part.begin(), part.end()); }); });
 }
 
 void run_on_threads(int most, const std::function<void()>& body) {
+  prepare_threads();
   oneapi::tbb::task_arena arena(std::max(most, 1));
   HandOver hand_over;
   arena.execute([&] { hand_over.run(body); });
 }
 
 void parallel_invoke(const std::function<void()>& a, const std::function<void()>& b) {
+  prepare_threads();
   HandOver hand_over;
   oneapi::tbb::parallel_invoke([&] { hand_over.run(a); }, [&] { hand_over.run(b); });
 }
 
 void parallel_invoke(const std::function<void()>& a, const std::function<void()>& b, const std::function<void()>& c) {
+  prepare_threads();
   HandOver hand_over;
   oneapi::tbb::parallel_invoke([&] { hand_over.run(a); }, [&] { hand_over.run(b); }, [&] { hand_over.run(c); });
 }

@@ -1,12 +1,15 @@
 #include "core/parallel.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <mutex>
 #include <set>
 #include <thread>
 #include <vector>
+
+#include "core/testing/no_threads.h"
 
 namespace trocar {
 inline namespace core {
@@ -58,6 +61,24 @@ TEST(ParallelInvoke, RunsAllAndWaits) {
   EXPECT_EQ(done.load(), 11);
   parallel_invoke([&] { done += 100; }, [&] { done += 1000; }, [&] { done += 10000; });
   EXPECT_EQ(done.load(), 11111);
+}
+
+/// In a program of its own, whose first work it is.
+TEST(ParallelForDeathTest, WithoutMoreThreadsTheCallersDoesAll) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto work = [] {
+    const testing::NoThreads none;
+    const std::thread::id self = std::this_thread::get_id();
+    std::atomic<std::size_t> visits = 0, others = 0;
+    run_on_threads(8, [&] {
+      parallel_for(200'000, 1, [&](std::size_t first, std::size_t last) {
+        visits += last - first;
+        if (std::this_thread::get_id() != self) ++others;
+      });
+    });
+    ::_exit(visits == 200'000 && others == 0 ? 0 : 1);
+  };
+  EXPECT_EXIT(work(), ::testing::ExitedWithCode(0), "");
 }
 
 }  // namespace
