@@ -7,7 +7,6 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
-#include <memory>
 #include <thread>
 
 #include "core/start_thread.h"
@@ -57,11 +56,13 @@ struct HandOver {
 /// the first call, no thread besides the caller's ever works.
 void prepare_threads() {
   using Control = oneapi::tbb::global_control;
-  static const std::unique_ptr<Control> alone = [] {
+  // Never freed: its destructor starts threads.
+  static const Control* const alone = [] {
     const int others = static_cast<int>(std::thread::hardware_concurrency()) - 1;
     const bool can_start = check_threads_can_start("worker", others).has_value();
-    return can_start ? nullptr : std::make_unique<Control>(Control::max_allowed_parallelism, 1);
+    return can_start ? nullptr : new Control(Control::max_allowed_parallelism, 1);
   }();
+  static_cast<void>(alone);
 }
 
 }  // namespace
