@@ -28,12 +28,99 @@ struct Needles {
   haptics::HapticState partly;
 };
 
+/// A tick behind the skin.
+struct Difference {
+  int tick = 0;
+  double force_n = 0.0;  ///< |dF|
+  Vec3 device_mm = Vec3::Zero();
+  std::uint8_t tissue = 0;
+};
+
+/// A layer that gave way.
+struct GaveWay {
+  int tick = 0;
+  std::uint8_t layer = haptics::kNoLayer;
+};
+
+void note_punctures(std::vector<GaveWay>& punctures, const telemetry::TickSample& sample, int tick) {
+  for (const telemetry::TickEvent& event : sample.events)
+    if (event.kind == telemetry::EventKind::kPuncture) punctures.push_back({tick, event.id});
+}
+
+/// Punctures of two scenes on the same motion: intervals of ticks around those that both have at the same place, and
+/// those that one has alone.
+struct SharedPunctures {
+  std::vector<std::pair<int, int>> both;
+  std::vector<GaveWay> alone;
+};
+SharedPunctures share_punctures(const std::vector<GaveWay>& full, std::vector<GaveWay> partly,
+                                const PrescribedMotion& motion) {
+  constexpr double kRounding_mm = 1e-9;
+  const int around = static_cast<int>(std::lround(kGiveWay_s / motion.dt_s));
+  SharedPunctures shared;
+  for (const GaveWay& a : full) {
+    const auto same = std::find_if(partly.begin(), partly.end(), [&](const GaveWay& b) {
+      const double apart_mm = std::abs(way_mm(motion, a.tick) - way_mm(motion, b.tick));
+      return b.layer == a.layer && apart_mm <= kSamePlace_mm + kRounding_mm;
+    });
+    if (same == partly.end()) {
+      shared.alone.push_back(a);
+      continue;
+    }
+    shared.both.emplace_back(std::min(a.tick, same->tick) - around, std::max(a.tick, same->tick) + around);
+    partly.erase(same);
+  }
+  shared.alone.insert(shared.alone.end(), partly.begin(), partly.end());
+  return shared;
+}
+
+ErrorPlace place_of(const Difference& worst, const SharedPunctures& punctures, const haptics::HapticScene& full,
+                    const PrescribedMotion& motion) {
+  ErrorPlace place;
+  place.time_s = worst.tick * motion.dt_s;
+  place.depth_mm = way_mm(motion, worst.tick);
+  place.tissue = worst.tissue;
+  place.ahead = haptics::tissue_at(full, worst.device_mm).tissue;
+  int nearest = static_cast<int>(std::lround(kGiveWay_s / motion.dt_s)) + 1;
+  for (const GaveWay& alone : punctures.alone) {
+    if (std::abs(alone.tick - worst.tick) >= nearest) continue;
+    nearest = std::abs(alone.tick - worst.tick);
+    place.layer = alone.layer;
+  }
+  return place;
+}
+
+/// The largest differences, with and without the moments at which a layer gives way in both scenes.
+void find_worst(PathError& error, const std::vector<Difference>& differences, const SharedPunctures& punctures,
+                const haptics::HapticScene& full, const PrescribedMotion& motion) {
+  const Difference* worst = nullptr;
+  const Difference* apart = nullptr;
+  for (const Difference& d : differences) {
+    if (d.force_n > (worst ? worst->force_n : 0.0)) worst = &d;
+    if (d.force_n <= (apart ? apart->force_n : 0.0)) continue;
+    const bool gives_way = std::any_of(punctures.both.begin(), punctures.both.end(), [&](const auto& interval) {
+      return d.tick >= interval.first && d.tick <= interval.second;
+    });
+    if (!gives_way) apart = &d;
+  }
+  if (worst) {
+    error.max_n = worst->force_n;
+    error.worst = place_of(*worst, punctures, full, motion);
+  }
+  if (apart) {
+    error.max_apart_n = apart->force_n;
+    error.worst_apart = place_of(*apart, punctures, full, motion);
+  }
+}
+
 PathError compare_on_path(Needles& needles, const haptics::HapticScene& full, const haptics::HapticScene& partly,
                           const PrescribedMotion& motion) {
   needles.full = haptics::HapticState{};
   needles.partly = haptics::HapticState{};
   PathError error;
   error.line_P = motion.line_P;
+  std::vector<Difference> differences;
+  std::vector<GaveWay> full_punctures, partly_punctures;
   double sum2 = 0.0;
   double torque2 = 0.0;
   double full2 = 0.0;
@@ -42,6 +129,8 @@ PathError compare_on_path(Needles& needles, const haptics::HapticScene& full, co
     const haptics::HapticInput input = input_at(motion, i);
     const haptics::HapticOutput a = haptics::tick(needles.full, input, full);
     const haptics::HapticOutput b = haptics::tick(needles.partly, input, partly);
+    note_punctures(full_punctures, a.sample, i);
+    note_punctures(partly_punctures, b.sample, i);
     if (way_mm(motion, i) <= 0.0) continue;
     const double difference_n = (a.f_D - b.f_D).norm();
     const double torque_nmm = (a.tau_D - b.tau_D).norm();
@@ -53,12 +142,9 @@ PathError compare_on_path(Needles& needles, const haptics::HapticScene& full, co
     error.full_max_n = std::max(error.full_max_n, force_n);
     error.torque_max_nmm = std::max(error.torque_max_nmm, torque_nmm);
     if (difference_n > std::max(kAffected_n, kAffectedShare * force_n)) ++error.affected;
-    if (difference_n <= error.max_n) continue;
-    error.max_n = difference_n;
-    error.worst_tissue = a.sample.tissue;
-    error.worst_ahead = haptics::tissue_at(full, a.sample.device_mm).tissue;
-    error.worst_depth_mm = way_mm(motion, i);
+    differences.push_back({i, difference_n, a.sample.device_mm, a.sample.tissue});
   }
+  find_worst(error, differences, share_punctures(full_punctures, partly_punctures, motion), full, motion);
   const double ticks = std::max(1, error.ticks);
   error.rms_n = std::sqrt(sum2 / ticks);
   error.torque_rms_nmm = std::sqrt(torque2 / ticks);
@@ -154,8 +240,8 @@ std::vector<WorstPlace> worst_places(std::span<const PathError> errors, const an
   std::map<std::string, WorstPlace> places;
   for (const PathError& error : errors) {
     if (!(error.max_n > 0.0)) continue;
-    std::string name = tissues.tissues[error.worst_tissue].name;
-    if (error.worst_ahead != error.worst_tissue) name += " > " + tissues.tissues[error.worst_ahead].name;
+    std::string name = tissues.tissues[error.worst.tissue].name;
+    if (error.worst.ahead != error.worst.tissue) name += " > " + tissues.tissues[error.worst.ahead].name;
     WorstPlace& place = places[name];
     place.place = name;
     ++place.paths;

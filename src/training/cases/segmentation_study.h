@@ -35,6 +35,15 @@ struct StudyMotion {
 };
 PrescribedMotion study_motion(const Segment& line_P, std::size_t number, const StudyMotion& study);
 
+/// Where on a path the two scenes differ: in the first scene, the tissue that the needle's tip had reached, the tissue
+/// against which the device's tip pushed it, and how far the device had moved past the skin.
+struct ErrorPlace {
+  double time_s = 0.0;  ///< From the start of the motion.
+  double depth_mm = 0.0;
+  std::uint8_t tissue = 0, ahead = 0;
+  std::uint8_t layer = haptics::kNoLayer;  ///< Layer that gave way within kGiveWay_s in one scene only.
+};
+
 /// Difference between two scenes on one path: wrench on the device (force in N, torque about the grip in N mm, without
 /// the stylus' weight), over the ticks in which the tip is past the skin.
 struct PathError {
@@ -43,14 +52,18 @@ struct PathError {
   double torque_rms_nmm = 0.0, torque_max_nmm = 0.0;
   int affected = 0;                           ///< Ticks with |dF| > max(kAffected_n, kAffectedShare |F|).
   double full_rms_n = 0.0, full_max_n = 0.0;  ///< |F| of the first scene.
-  // Place of the largest difference, in the first scene: the tissue that the needle's tip had reached, the tissue
-  // against which the device's tip pushed it, and the depth.
-  std::uint8_t worst_tissue = 0, worst_ahead = 0;
-  double worst_depth_mm = 0.0;
+  ErrorPlace worst;                           ///< Of max_n.
+  /// Largest difference apart from the moments at which a layer gives way in both scenes: without the ticks from
+  /// kGiveWay_s before to kGiveWay_s after a layer that is punctured in both within kSamePlace_mm of the device's way.
+  /// A layer that only one scene punctures counts.
+  double max_apart_n = 0.0;
+  ErrorPlace worst_apart;  ///< Of max_apart_n.
   Segment line_P{Vec3::Zero(), Vec3::Zero()};
 };
 inline constexpr double kAffected_n = 0.05;
 inline constexpr double kAffectedShare = 0.07;  ///< Force JND (Pang, Tan, Durlach; references.md).
+inline constexpr double kGiveWay_s = 0.020;     ///< Before and after the puncture of a layer. [assumed]
+inline constexpr double kSamePlace_mm = 0.2;    ///< Of the device's way. [assumed]
 
 /// Drives both scenes with the same poses along every path. Parallel over paths; the result does not depend on the
 /// number of threads. The scenes must differ in their patients only.

@@ -16,10 +16,16 @@ using testing::layered_patient;
 using testing::liver_way;
 using testing::paper_tissues;
 
-std::shared_ptr<const haptics::HapticScene> scene_of(std::shared_ptr<const anatomy::VirtualPatient> patient) {
+constexpr std::uint8_t kCapsule = 2;  ///< Row of the liver's capsule in the layers of paper_tissues.
+
+/// capsule_n: the force at which the liver's capsule gives way.
+std::shared_ptr<const haptics::HapticScene> scene_of(std::shared_ptr<const anatomy::VirtualPatient> patient,
+                                                     double capsule_n = 1.5) {
   haptics::HapticOptions options;
   options.has_weight_compensation = false;
-  auto scene = haptics::make_haptic_scene(std::move(patient), paper_tissues(), {}, {}, options);
+  anatomy::TissueTable tissues = paper_tissues();
+  tissues.layers[kCapsule].puncture_force_n = capsule_n;
+  auto scene = haptics::make_haptic_scene(std::move(patient), tissues, {}, {}, options);
   TROCAR_CHECK(scene.has_value());
   return *scene;
 }
@@ -65,6 +71,45 @@ TEST(SegmentationStudy, FeelsALabelThatIsGone) {
   const auto places = worst_places(errors, paper_tissues());
   ASSERT_FALSE(places.empty());
   EXPECT_NE(places.front().place.find("muscle"), std::string::npos);
+}
+
+TEST(SegmentationStudy, LeavesOutTheMomentAtWhichALayerGivesWayInBoth) {
+  // A hundredth of a newton more: the capsule gives way a few ticks later.
+  const auto patient = layered_patient(liver_way());
+  const auto errors = compare_forces(*scene_of(patient), *scene_of(patient, 1.51), motions(4));
+  for (const PathError& error : errors) {
+    EXPECT_GT(error.max_n, 0.1);  // one has lost the capsule's resistance, the other has not
+    EXPECT_LT(error.max_apart_n, 0.1 * error.max_n);
+    EXPECT_EQ(error.worst.layer, haptics::kNoLayer);
+    EXPECT_EQ(error.worst_apart.layer, haptics::kNoLayer);
+  }
+}
+
+TEST(SegmentationStudy, CountsALayerThatGivesWayElsewhere) {
+  const auto patient = layered_patient(liver_way());
+  for (const double capsule_n : {2.2, 0.8}) {
+    for (const PathError& error : compare_forces(*scene_of(patient), *scene_of(patient, capsule_n), motions(4))) {
+      EXPECT_GT(error.max_n, 0.5);
+      EXPECT_EQ(error.max_apart_n, error.max_n);
+      EXPECT_EQ(error.worst_apart.layer, kCapsule);
+      EXPECT_EQ(error.worst_apart.depth_mm, error.worst.depth_mm);
+    }
+  }
+}
+
+TEST(SegmentationStudy, CountsALayerThatIsMissingInEither) {
+  // Fat in place of the liver: its capsule is missing, the other layers give way at the same places.
+  const auto with = scene_of(layered_patient({{0, kFat}, {20, kLiver}}));
+  const auto without = scene_of(layered_patient({{0, kFat}}));
+  for (const auto& [full, partly] : {std::pair(with, without), std::pair(without, with)}) {
+    for (const PathError& error : compare_forces(*full, *partly, motions(4))) {
+      EXPECT_GT(error.max_apart_n, 1.0);
+      EXPECT_EQ(error.max_apart_n, error.max_n);
+      EXPECT_EQ(error.worst_apart.layer, kCapsule);
+      EXPECT_GT(error.worst_apart.depth_mm, 20.0);
+      EXPECT_NEAR(error.worst_apart.time_s, 1.0 + error.worst_apart.depth_mm / 10.0, 2e-3);  // 10 mm at 10 mm/s before
+    }
+  }
 }
 
 TEST(SegmentationStudy, GivesTheSameFiguresAgain) {
