@@ -120,7 +120,8 @@ Status add_cohort(std::vector<CaseResult>& results, const CohortPatient& on, con
                      figures_of(scores),
                      {},
                      fmt::format("mean {:.2f}, {:.1f} to {:.1f}; {} of {} reach the target", sum / kNovices, *worst,
-                                 *best, reached, kNovices)});
+                                 *best, reached, kNovices),
+                     {{"mean", sum / kNovices}, {"lowest", *worst}, {"highest", *best}, {"reached", reached}}});
   results.push_back(
       {prefix + "/inward", "n", figures_of(inward_n), {}, "path constraint into the body, most an attempt"});
   results.push_back({prefix + "/step", "n", figures_of(step_n), {}, "path constraint, largest change in a tick"});

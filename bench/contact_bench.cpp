@@ -39,10 +39,10 @@ Result<std::vector<haptics::PushSample>> push(const ContactSetting& setting,
 }
 
 void add_value(std::vector<CaseResult>& results, std::string name, const char* unit, double value,
-               std::string note = {}) {
+               std::string note = {}, std::vector<std::pair<std::string, double>> values = {}) {
   Figures figures;
   figures.median = value;
-  results.push_back({std::move(name), unit, figures, {}, std::move(note)});
+  results.push_back({std::move(name), unit, figures, {}, std::move(note), std::move(values)});
 }
 
 Status add_bone(std::vector<CaseResult>& results, const ContactSetting& setting,
@@ -56,7 +56,8 @@ Status add_bone(std::vector<CaseResult>& results, const ContactSetting& setting,
   add_value(
       results, name, "n", contact.peak_n,
       fmt::format("peak; steady {:.2f} N, overshoot {:.0f} %, p-p at rest {:.3f} N{}", contact.steady_n,
-                  100.0 * contact.overshoot, contact.chatter_n, contact.is_limited ? ", at the device's limit" : ""));
+                  100.0 * contact.overshoot, contact.chatter_n, contact.is_limited ? ", at the device's limit" : ""),
+      {{"overshoot", contact.overshoot}, {"ripple_n", contact.chatter_n}});
   add_value(results, name + "/slope", "n_per_mm", contact.slope_n_per_mm);
   return {};
 }

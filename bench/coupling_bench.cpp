@@ -130,13 +130,15 @@ Status add_device(std::vector<CaseResult>& results, const haptics::DevicePreset&
                      figure_of(k),
                      {},
                      fmt::format("alone stable from {:.3f} to {:.3f}; the device's limit is {:.1f}", spring.low * k,
-                                 spring.high * k, most_n_per_mm)});
+                                 spring.high * k, most_n_per_mm),
+                     {{"low", spring.low * k}, {"high", spring.high * k}, {"limit", most_n_per_mm}}});
   results.push_back({name + "/damping",
                      "ms",
                      figure_of(damping_ms),
                      {},
                      fmt::format("as the time b_c/k_c, alone stable from {:.1f} to {:.1f}", damping.low * damping_ms,
-                                 damping.high * damping_ms)});
+                                 damping.high * damping_ms),
+                     {{"low", damping.low * damping_ms}, {"high", damping.high * damping_ms}}});
   return {};
 }
 

@@ -108,7 +108,8 @@ void add_borders(std::vector<CaseResult>& results, const PathCurves& path) {
                          "mm",
                          figure_of(border.tip_mm - border.at_mm),
                          {},
-                         fmt::format("tip behind the border at its peak of {:.2f} N", border.peak_n)});
+                         fmt::format("tip behind the border at its peak of {:.2f} N", border.peak_n),
+                         {{"peak_n", border.peak_n}}});
 }
 
 /// One line per puncture, in order; repeated punctures are numbered. In JSON, drop and drop time are separate cases; in

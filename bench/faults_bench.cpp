@@ -59,18 +59,36 @@ void add_results(std::vector<CaseResult>& results, const std::string& device,
       fmt::format("peak to peak; {:.1f} in a healthy loop", healthy.travel_mm));
 }
 
+/// One reading time of a device, for programs: the text has a row of it.
+void add_row(std::vector<CaseResult>& results, const std::string& device, double slow_ms,
+             const server::SlowLoopOutcome& slow) {
+  const bool has_fault = slow.fault != telemetry::GateFault::kNone;
+  std::vector<std::pair<std::string, double>> values{
+      {"share", slow.least_share}, {"force_n", slow.after_n}, {"travel_mm", slow.travel_mm}};
+  if (has_fault) values.emplace_back("latch_ms", kMsPerS * slow.latch_s);
+  if (std::isfinite(slow.zero_s)) values.emplace_back("zero_ms", kMsPerS * slow.zero_s);
+  results.push_back({fmt::format("faults/{}/reading-{:.0f}ms", device, slow_ms),
+                     "ms",
+                     figure_of(slow_ms),
+                     {},
+                     has_fault ? to_string(slow.fault) : "none",
+                     std::move(values)});
+}
+
 Status measure(const haptics::DevicePreset& preset, const std::filesystem::path& tissues, const Options& options,
                std::vector<CaseResult>& results) {
   server::SceneBuilder builder(open_flat, tissues, preset);
   TROCAR_TRY(const server::ServoScene scene, builder.load(flat_request()));
   const server::SlowLoopOutcome healthy = server::run_slow_loop_trial(scene, preset, {});
   print_row(options, preset.name, 0.0, healthy);
+  if (!options.print) add_row(results, preset.name, 0.0, healthy);
   std::vector<server::SlowLoopOutcome> outcomes;
   for (const double slow_ms : kSlow_ms) {
     server::SlowLoopTrial trial;
     trial.slow_ms = slow_ms;
     outcomes.push_back(server::run_slow_loop_trial(scene, preset, trial));
     print_row(options, preset.name, slow_ms, outcomes.back());
+    if (!options.print) add_row(results, preset.name, slow_ms, outcomes.back());
   }
   add_results(results, preset.name, outcomes, healthy);
   return {};

@@ -39,6 +39,8 @@ config::Json to_json(const CaseResult& result) {
   if (result.peer)
     json["peer"] = {{"name", result.peer->name}, {"median", result.peer->median}, {"ratio", result.peer->ratio}};
   json["note"] = result.note;
+  json["values"] = config::Json::object();
+  for (const auto& [name, value] : result.values) json["values"][name] = value;
   return json;
 }
 

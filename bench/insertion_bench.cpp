@@ -52,7 +52,8 @@ void add_punctures(std::vector<CaseResult>& results, const anatomy::TissueTable&
                        peak,
                        {},
                        fmt::format("x {:.2f} mm, whole resistance {:.2f} N", samples[i].layer_displacement_mm,
-                                   axial_resistance_n(samples[i]))});
+                                   axial_resistance_n(samples[i])),
+                       {{"x_mm", samples[i].layer_displacement_mm}}});
     const std::size_t end = std::min(samples.size() - 1, i + 200);
     double lowest = axial_resistance_n(samples[i]);
     for (std::size_t j = i; j <= end; ++j) lowest = std::min(lowest, axial_resistance_n(samples[j]));
@@ -91,7 +92,8 @@ void add_skin_slope(std::vector<CaseResult>& results, const std::vector<telemetr
                        figure_of(product / square),
                        {},
                        fmt::format("over the first {:.0f} mm; up to the puncture, after {:.1f} mm, mean {:.3f} N/mm",
-                                   kFirst_mm, indentation_mm, force_n / indentation_mm)});
+                                   kFirst_mm, indentation_mm, force_n / indentation_mm),
+                       {{"puncture_mm", indentation_mm}, {"mean_n_per_mm", force_n / indentation_mm}}});
     return;
   }
 }
@@ -137,7 +139,8 @@ void add_second_insertion(std::vector<CaseResult>& results, const cases::Case& t
        "n",
        difference,
        {},
-       fmt::format("first {:.3f} N, second {:.3f} N, means from {:.0f} to {:.0f} mm deep", before, after, from, to)});
+       fmt::format("first {:.3f} N, second {:.3f} N, means from {:.0f} to {:.0f} mm deep", before, after, from, to),
+       {{"first_n", before}, {"second_n", after}}});
 }
 
 }  // namespace

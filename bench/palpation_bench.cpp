@@ -92,7 +92,8 @@ CaseResult finger_case(const std::string& name, const Press& pressed, const std:
           one(pressed.at_depth_n),
           {},
           fmt::format("{}: {:.2f} N/mm at 5 mm; {:.1f} mm at 5 N, {:.2f} N/mm", where, pressed.at_depth_n / 5.0,
-                      pressed.at_force_mm, kFingerForce_n / pressed.at_force_mm)};
+                      pressed.at_force_mm, kFingerForce_n / pressed.at_force_mm),
+          {{"mm_at_5_n", pressed.at_force_mm}}};
 }
 
 /// Presses along a line on the skin: the stiffest and the softest position, and their ratio.
@@ -189,7 +190,8 @@ void add_probe(std::vector<CaseResult>& results, const haptics::HapticScene& sce
                      one((flat.torque_nmm - tilted.torque_nmm) / tilted.at_depth_n),
                      {},
                      fmt::format("lever that rights it: {:.1f} N mm at {:.1f} N", flat.torque_nmm - tilted.torque_nmm,
-                                 tilted.at_depth_n)});
+                                 tilted.at_depth_n),
+                     {{"torque_nmm", flat.torque_nmm - tilted.torque_nmm}}});
 }
 
 /// Slides the pressed tool over the skin; a calibration after each tick.

@@ -108,6 +108,7 @@ void add_results(std::vector<CaseResult>& results, const std::vector<Trial>& tri
   };
   add("", "ratio", static_cast<double>(stable) / static_cast<double>(group.size()),
       fmt::format("{} of {} runs are stable, {} come to rest", stable, group.size(), resting));
+  results.back().values = {{"stable", static_cast<double>(stable)}, {"runs", static_cast<double>(group.size())}};
   add("/position", "mm", position(*worst(position)),
       fmt::format("worst peak to peak, allowed {:.3f}: {}", group.front()->outcome.allowed_mm,
                   name_of(*worst(position))));

@@ -62,7 +62,10 @@ void add_outcome(std::vector<CaseResult>& results, const std::string& name, cons
                      {},
                      fmt::format("{}; {} of {} placed; mean error of neighbours over their overlap, largest error of "
                                  "all targets {:.2f} mm",
-                                 what, outcome.placed, outcome.volumes, worst)});
+                                 what, outcome.placed, outcome.volumes, worst),
+                     {{"placed", static_cast<double>(outcome.placed)},
+                      {"volumes", static_cast<double>(outcome.volumes)},
+                      {"largest_mm", worst}}});
 }
 
 Result<Outcome> stitch_series(const registration::SeriesOptions& options, std::uint64_t first_seed, int seeds) {
