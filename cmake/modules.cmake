@@ -3,7 +3,7 @@
 # What it links is what src/modules.txt allows it to include.
 
 # Modules that read, write, record and show results: no loop of theirs takes long, and less optimising saves a third of the time
-# to compile them. Import takes as long as with -O3 (docs/validation.md).
+# to compile them. Import takes as long as with -O3 (docs/validation_history.md).
 set(trocar_light_modules config signing database dicom io png scene scoring storage learning cohort results exams report case_builder
   web)
 
