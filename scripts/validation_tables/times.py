@@ -112,8 +112,8 @@ def ct_us(f):
         rows.append((f"{program}: error, median of ten", "≤ 0.5" if seconds else "", "mm", name))
         rows.append((f"{program}: error, worst", "≤ 0.8" if seconds else "", "mm", name, 2, "max"))
         if seconds:
-            rows.append((f"{program}: time", "", "s", f"ct-us/{seconds}"))
-            rows.append((f"{program}: time, once more", "", "s", f"ct-us/{seconds}-plastimatch"))
+            rows.append((f"{program}: time, beside elastix", "", "s", f"ct-us/{seconds}"))
+            rows.append((f"{program}: time, beside plastimatch", "", "s", f"ct-us/{seconds}-plastimatch"))
     return times(f, *rows)
 
 
@@ -135,5 +135,5 @@ def xray(f):
 
 @table("live")
 def live(f):
-    return times(f, ("renewed pictures of full detail", "≥ 20", "/s", "live/ultrasound", 1),
+    return times(f, ("renewed pictures", "≥ 20", "/s", "live/ultrasound", 1),
                  ("one of them", "", "ms", "live/ultrasound/picture", 1))
