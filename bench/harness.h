@@ -39,9 +39,9 @@ struct CaseResult {
   };
   std::optional<Peer> peer;
   std::string note;
-  bool is_missed = false;  ///< A criterion is not met: the exit status is 1.
   /// Further figures of this case for programs (scripts/validation), under "values" in JSON: {"steady_n", 3.49}.
   std::vector<std::pair<std::string, double>> values{};
+  bool is_missed = false;  ///< A criterion is not met: the exit status is 1.
 };
 
 /// Calls `work` `rounds` times after `warm_up` calls and returns the times in milliseconds.

@@ -18,7 +18,7 @@ double AxialBalance::friction_at(double v) const noexcept {
 
 AxialBalance::Resistance AxialBalance::resistance_at(double s_mm, double v) const noexcept {
   const double x_mm = displacement(s_mm);
-  Resistance resistance{x_mm > 0.0 ? prepuncture_force_n(x_mm, v, loading) : 0.0, friction_at(v), 0.0, bed_n};
+  Resistance resistance{x_mm > 0.0 ? prepuncture_force_n(x_mm, v, loading) : 0.0, friction_at(v), 0.0, bed_at_n(s_mm)};
   if (cutting_n > 0.0 && s_mm > cut_to_mm && v > 0.0)
     resistance.cutting_n = std::max(0.0, cutting_n * motion_fade(v) - resistance.layer_n);
   return resistance;

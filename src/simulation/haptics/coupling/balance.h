@@ -22,17 +22,19 @@ class AxialBalance {
   double viscous_ns_per_mm = 0.0;                               ///< Sum of nu_i A_i over the inserted shaft.
   double noise_n = 0.0;  ///< Fluctuation of the friction in this step; never along the motion.
   double grows_to_mm_per_s = std::numeric_limits<double>::infinity();  ///< Viscous friction grows up to this speed.
-  double dry_n = 0.0;        ///< Dry friction of the body proxies, against the motion.
-  bool is_thinning = false;  ///< The viscous friction is that of the body proxies, less than linear (physics.md B6).
-  double bed_n = 0.0;        ///< Force with which the bed of the bent shaft pushes the needle out.
-  double stick_n = 0.0;      ///< Holding force of a needle at rest; it loads the tissue below.
-  double cutting_n = 0.0;    ///< F_c of the tissue in front of the tip and of the layer that it presses on.
-  double cut_to_mm = 0.0;    ///< Start of uncut tissue.
+  double dry_n = 0.0;         ///< Dry friction of the body proxies, against the motion.
+  bool is_thinning = false;   ///< The viscous friction is that of the body proxies, less than linear (physics.md B6).
+  double bed_n = 0.0;         ///< Force with which the bed of the bent shaft pushes the needle out.
+  double bed_n_per_mm = 0.0;  ///< Its growth over the step.
+  double stick_n = 0.0;       ///< Holding force of a needle at rest; it loads the tissue below.
+  double cutting_n = 0.0;     ///< F_c of the tissue in front of the tip and of the layer that it presses on.
+  double cut_to_mm = 0.0;     ///< Start of uncut tissue.
   const SoftColumn* below = nullptr;  ///< Tissue below the layer ahead, or what recoils; nullptr: rigid.
   bool is_yielding = false;           ///< The layer ahead presses that tissue in.
   double yielded_mm = 0.0;            ///< Depression of that tissue at the start of the step.
   double recoil_mm = 0.0;             ///< Depression that remains of the last puncture, at the start of the step.
 
+  double bed_at_n(double s_mm) const noexcept { return bed_n + bed_n_per_mm * (s_mm - s_previous_mm); }
   double velocity(double s_mm) const noexcept { return (s_mm - s_previous_mm) / dt_s; }
   double displacement(double s_mm) const noexcept { return s_mm > surface_mm ? s_mm - surface_mm : 0.0; }
   double prepuncture_n(double s_mm) const noexcept;

@@ -114,7 +114,8 @@ AxialBalance make_balance(const InsertionState& state, const InsertionPath& path
     balance.loading = scene.layers[ahead.layer].loading;
     balance.surface_mm = ahead.surface_mm;
   }
-  if (state.loading == kNoLayer) balance.bed_n = path.bed_out_n;  // else the tip rests at the layer
+  balance.bed_n = path.bed_out_n;
+  balance.bed_n_per_mm = path.bed_out_n_per_mm;
   if (state.below.cells > 0) balance.below = &state.below;
   balance.is_yielding = state.is_yielding && balance.below != nullptr;
   balance.cutting_n = state.front_n;
@@ -269,7 +270,7 @@ void record_forces(const InsertionState& state, const AxialBalance& balance, dou
   step.velocity_mm_per_s = is_stuck ? 0.0 : balance.velocity(s_mm);
   step.displacement_mm = balance.displacement(s_mm);
   step.prepuncture_n = balance.prepuncture_n(s_mm);
-  step.bed_n = balance.bed_n;
+  step.bed_n = balance.bed_at_n(s_mm);
   if (is_stuck) {
     step.stick_n = balance.coupling_n(s_mm) - step.prepuncture_n - step.bed_n;
     return;

@@ -60,7 +60,7 @@ EnteredLabels move_tip(InsertionPath& path, const HapticScene& scene, double res
 void leave_body(InsertionPath& path) noexcept {
   if (path.is_open) path.memory.remember(path.channel);
   path.is_open = false;
-  path.bed_out_n = 0.0;
+  path.bed_out_n = path.bed_out_n_per_mm = 0.0;
   path.contact_to_puncture_P = Vec3::Zero();
   path.rest_mm = 0.0;
   path.label = 0;

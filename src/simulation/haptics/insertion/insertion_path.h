@@ -27,6 +27,7 @@ struct InsertionPath {
   Vec3 contact_to_puncture_P = Vec3::Zero();      ///< PX_p of paper A; zero before the skin puncture.
   /// Force (N) along the path with which the bed of the bent shaft pushes the needle out, of the last step (B7).
   double bed_out_n = 0.0;
+  double bed_out_n_per_mm = 0.0;  ///< Its growth with depth, >= 0.
 };
 
 /// Starts a new channel on a line. Real-time safe.

@@ -71,6 +71,12 @@ void hold_on_skin(const NeedleState& state, const Pose& X_PN, const Pose& X_PN_a
   step.held_P.torque_nmm += Vec3(length_mm * X_PN.R().col(2)).cross(force_P);
 }
 
+/// Depth of the virtual needle's tip along the path: it grows evenly where a layer is pressed in, too.
+double needle_depth_mm(const NeedleState& state, const HapticScene& scene) noexcept {
+  const bool is_proxy = scene.options.force_model == ForceModel::kProxy;
+  return std::max(0.0, is_proxy ? state.proxy.needle_mm : state.insertion.s_mm);
+}
+
 /// Change of the share that is rendered per mm of depth: the grip's rotational stiffness between the last two depths.
 double share_slope_per_mm(GripTurning& turning, const HeldShaft& shaft, double tip_mm) noexcept {
   constexpr double kMoved_mm = 1e-3;
@@ -98,13 +104,15 @@ void hold_body(NeedleState& state, const HapticScene& scene, const Pose& X_PN_ah
     step.held_P.torque_nmm += Vec3(scene.needle.length_mm * X_PN_ahead.R().col(2)).cross(across_P);
     return;
   }
-  const HeldShaft shaft = hold_shaft(state.path.channel, scene, X_PN_ahead, state.path.rest_mm, is_stylet_in);
+  const double depth_mm = needle_depth_mm(state, scene);
+  const HeldShaft shaft = hold_shaft(state.path.channel, scene, X_PN_ahead, depth_mm, is_stylet_in);
   // The bevel deflects only while it cuts: at rest its force would have no potential.
   const double cuts = cutting_mm_per_s > 0.0 ? motion_fade(cutting_mm_per_s) : 0.0;
   const ShaftReaction reaction = react(shaft, scene, bevel_force_P(scene.needle, X_PN_ahead, cuts * on_tip_n));
   state.bent = reaction.bent;
   state.path.bed_out_n =
-      shaft.out_n + share_slope_per_mm(state.turning, shaft, state.path.rest_mm) / shaft.share * shaft.energy_nmm;
+      shaft.out_n + share_slope_per_mm(state.turning, shaft, depth_mm) / shaft.share * shaft.energy_nmm;
+  state.path.bed_out_n_per_mm = std::max(0.0, shaft.out_n_per_mm);
   step.held_P.force_n += reaction.wrench_P.force_n;
   step.held_P.torque_nmm += reaction.wrench_P.torque_nmm;
 }

@@ -97,6 +97,42 @@ const NeedleBeam& beam_of(const HapticScene& scene, bool is_stylet_in) noexcept 
   return is_stylet_in ? scene.beam_with_stylet : scene.beam_without_stylet;
 }
 
+/// Young's modulus of the tissue along a piece: linear between the centres of cells, so that the bed's stiffness and
+/// its change with depth are continuous.
+struct PieceYoung {
+  double integral_kpa_mm = 0.0;
+  double from_kpa = 0.0, to_kpa = 0.0;      // at its ends
+  double from_slope = 0.0, to_slope = 0.0;  // kPa/mm
+};
+PieceYoung young_of(const Channel& channel, const HapticScene& scene, const Piece& piece, double most_kpa) noexcept {
+  PieceYoung young;
+  if (channel.known_bins <= 0) return young;
+  const auto at_cell = [&](int cell) {
+    const int bin = std::min(bin_of((std::max(cell, 0) + 0.5) * kShaftCell_mm), channel.known_bins - 1);
+    return std::min(tissue_at_bin(channel, scene, static_cast<std::size_t>(bin)).young_kpa, most_kpa);
+  };
+  const int first = static_cast<int>(std::floor(piece.from_mm / kShaftCell_mm - 0.5));
+  const int last = static_cast<int>(std::floor(piece.to_mm / kShaftCell_mm - 0.5));
+  double before_kpa = at_cell(first);
+  for (int cell = first; cell <= last; ++cell) {  // from the centre of this cell to that of the next
+    const double after_kpa = at_cell(cell + 1);
+    const double slope = (after_kpa - before_kpa) / kShaftCell_mm;
+    const double centre_mm = (cell + 0.5) * kShaftCell_mm;
+    const double from_mm = std::max(piece.from_mm, centre_mm);
+    const double to_mm = std::min(piece.to_mm, centre_mm + kShaftCell_mm);
+    const double from_kpa = before_kpa + slope * (from_mm - centre_mm);
+    young.to_kpa = before_kpa + slope * (to_mm - centre_mm);
+    young.to_slope = slope;
+    if (cell == first) {
+      young.from_kpa = from_kpa;
+      young.from_slope = slope;
+    }
+    young.integral_kpa_mm += 0.5 * (from_kpa + young.to_kpa) * std::max(0.0, to_mm - from_mm);
+    before_kpa = after_kpa;
+  }
+  return young;
+}
+
 /// Springs of the foundation, with a total stiffness within the device's limit, and their change with depth: both ends
 /// of a piece move with the tip.
 void fill_stiffness(HeldShaft& shaft, const Channel& channel, const HapticScene& scene, const NeedleBeam& beam,
@@ -109,19 +145,16 @@ void fill_stiffness(HeldShaft& shaft, const Channel& channel, const HapticScene&
   for (int i = 0; i < beam.node_count; ++i) {
     const Piece piece = piece_of(beam, i, tip_mm);
     if (!(piece.length_mm() > 0.0)) continue;
-    double young_kpa_mm = 0.0, at_tip_kpa = 0.0, at_skin_kpa = -1.0;  // of the piece's ends
-    for_each_cell(channel, scene, piece, [&](const ShaftTissue& tissue, double length_mm) {
-      at_tip_kpa = std::min(tissue.young_kpa, most_kpa);
-      if (at_skin_kpa < 0.0) at_skin_kpa = at_tip_kpa;
-      young_kpa_mm += at_tip_kpa * length_mm;
-    });
+    const PieceYoung young = young_of(channel, scene, piece, most_kpa);
     const double length_mm = piece.length_mm();
-    const double mean_kpa = young_kpa_mm / length_mm;
+    const double mean_kpa = young.integral_kpa_mm / length_mm;
     const double per_mm = law.stiffness_n_per_mm2(mean_kpa);
+    const double per_kpa = mean_kpa > 0.0 ? kBedPower * per_mm / mean_kpa : 0.0;
     const bool is_growing = !(piece.from_mm > 0.0);  // the piece at the skin
-    const double mean_change_kpa = at_tip_kpa - (is_growing ? mean_kpa : at_skin_kpa);
     const double stiffening =
-        (is_growing ? per_mm : 0.0) + (mean_kpa > 0.0 ? kBedPower * per_mm / mean_kpa * mean_change_kpa : 0.0);
+        (is_growing ? per_mm : 0.0) + per_kpa * (young.to_kpa - (is_growing ? mean_kpa : young.from_kpa));
+    shaft.growth_n_per_mm3[static_cast<std::size_t>(i)] =
+        per_kpa * (young.to_slope - (is_growing ? 0.0 : young.from_slope));
     const auto index = static_cast<std::size_t>(i);
     bed.stiffness_n_per_mm[index] = per_mm * length_mm;
     shaft.stiffening_n_per_mm2[index] = stiffening;
@@ -131,6 +164,7 @@ void fill_stiffness(HeldShaft& shaft, const Channel& channel, const HapticScene&
   const double most_n_per_mm = 0.5 * scene.device.max_stiffness_n_per_mm;
   if (!(sum_n_per_mm > most_n_per_mm)) return;
   const double scale = most_n_per_mm / sum_n_per_mm;
+  for (double& growth : shaft.growth_n_per_mm3) growth *= scale;
   for (std::size_t i = 0; i < bed.stiffness_n_per_mm.size(); ++i) {
     double& k = bed.stiffness_n_per_mm[i];
     shaft.stiffening_n_per_mm2[i] = scale * (shaft.stiffening_n_per_mm2[i] - k * sum_stiffening / sum_n_per_mm);
@@ -143,7 +177,9 @@ void store_energy(HeldShaft& shaft) noexcept {
   for (std::size_t i = 0; i < static_cast<std::size_t>(shaft.beam.node_count); ++i) {
     const Vec3 stretch_P = shaft.bed.offset_mm[i] - shaft.beam.deflection_mm[i];
     shaft.energy_nmm += 0.5 * shaft.share * shaft.bed.stiffness_n_per_mm[i] * stretch_P.dot(shaft.bed.offset_mm[i]);
-    shaft.out_n += 0.5 * shaft.share * shaft.stiffening_n_per_mm2[i] * stretch_P.squaredNorm();
+    const double square_mm2 = 0.5 * shaft.share * stretch_P.squaredNorm();
+    shaft.out_n += square_mm2 * shaft.stiffening_n_per_mm2[i];
+    shaft.out_n_per_mm += square_mm2 * shaft.growth_n_per_mm3[i];
   }
 }
 
@@ -172,6 +208,7 @@ HeldShaft hold_shaft(const Channel& channel, const HapticScene& scene, const Pos
     return shaft;
   }
   shaft.X_PN = X_PN;
+  shaft.line_P = channel.direction_P;
   fill_stiffness(shaft, channel, scene, beam, tip_mm);
   const Vec3 axis_P = X_PN.R().col(2);
   const double most_mm = kMaxDeflection * scene.needle.length_mm;
@@ -182,6 +219,7 @@ HeldShaft hold_shaft(const Channel& channel, const HapticScene& scene, const Pos
     const Vec3 node_P = X_PN.p() - axis_P * (beam.spacing_mm * (beam.node_count - 1 - i));
     const Vec3 to_line_P = across(channel.origin_P - node_P, channel.direction_P);
     const Vec3 offset_P = across(to_line_P, axis_P);
+    shaft.along_mm[index] = axis_P.dot(to_line_P);
     shaft.bed.offset_mm[index] = limited(offset_P, most_mm);
     is_far = is_far || shaft.bed.offset_mm[index] != offset_P;
   }
@@ -215,11 +253,12 @@ ShaftReaction react(const HeldShaft& shaft, const HapticScene& scene, const Vec3
     const auto index = static_cast<std::size_t>(i);
     deflection_P[index] *= scale;
     const Vec3 lever_P = axis_P * (spacing_mm * (i + 1));
-    Vec3 force_P = shaft.bed.stiffness_n_per_mm[index] * (shaft.bed.offset_mm[index] - deflection_P[index]);
-    if (i == nodes - 1) force_P += tip_P;
-    force_P *= shaft.share;
+    const double k = shaft.share * shaft.bed.stiffness_n_per_mm[index];
+    const Vec3 bed_P = k * (shaft.bed.offset_mm[index] - deflection_P[index]);
+    Vec3 force_P = across(bed_P, shaft.line_P);  // a motion along the line does not stretch the bed
+    if (i == nodes - 1) force_P += shaft.share * tip_P;
     reaction.wrench_P.force_n += force_P;
-    reaction.wrench_P.torque_nmm += lever_P.cross(force_P);
+    reaction.wrench_P.torque_nmm += lever_P.cross(force_P) + shaft.along_mm[index] * axis_P.cross(bed_P);
   }
   return reaction;
 }

@@ -29,12 +29,16 @@ struct HeldShaft {
   BeamSolution beam;
   BeamBed bed;
   Pose X_PN;
+  Vec3 line_P = Vec3::UnitZ();                   ///< Unit, along the channel.
+  std::array<double, kMaxBeamNodes> along_mm{};  ///< Part along the shaft of the way from a node to the channel's line.
   std::array<double, kMaxBeamNodes> stiffening_n_per_mm2{};  ///< Change of the bed's stiffness per mm of depth.
+  std::array<double, kMaxBeamNodes> growth_n_per_mm3{};      ///< Change of that per mm of depth.
   double turning_nmm_per_rad = 0.0;                          ///< Rotational stiffness at the grip, without the share.
-  double share = 1.0;       ///< Share of the shaft's forces rendered at the hand: below 1 if the tissue's rotational
-                            ///< stiffness at the grip is too high.
-  double energy_nmm = 0.0;  ///< Stored in tissue and shaft without a force on the tip, as far as it is rendered.
-  double out_n = 0.0;       ///< Its growth with depth at a constant pose and share: pushes the needle out (B7).
+  double share = 1.0;         ///< Share of the shaft's forces rendered at the hand: below 1 if the tissue's rotational
+                              ///< stiffness at the grip is too high.
+  double energy_nmm = 0.0;    ///< Stored in tissue and shaft without a force on the tip, as far as it is rendered.
+  double out_n = 0.0;         ///< Its growth with depth at a constant pose and share: pushes the needle out (B7).
+  double out_n_per_mm = 0.0;  ///< Change of that with depth where the shaft keeps its shape.
 };
 inline constexpr double kMostTurning_nmm_per_rad = 1500.0;
 HeldShaft hold_shaft(const Channel& channel, const HapticScene& scene, const Pose& X_PN, double tip_mm,

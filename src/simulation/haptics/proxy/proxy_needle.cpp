@@ -194,7 +194,8 @@ ProxyNeedleStep in_body(ProxyNeedleState& state, InsertionPath& path, const Hapt
                           u.dot(X_PN_ahead.p() - path.channel.origin_P),
                           state.needle_mm,
                           dt_s,
-                          state.wall == kNoLayer ? path.bed_out_n : 0.0};
+                          path.bed_out_n,
+                          path.bed_out_n_per_mm};
   const Vec3 origin_P = path.channel.origin_P;
   state.proxy_P = origin_P + u.dot(state.proxy_P - origin_P) * u;  // the path also guides the tip
   const TipStep moved = move_proxy(state, path, scene, drive);
@@ -207,7 +208,7 @@ ProxyNeedleStep in_body(ProxyNeedleState& state, InsertionPath& path, const Hapt
   step.tip_force_P = -on_tip_n * u;
   InsertionStep& axial = step.axial;
   axial.body_axial_n = moved.balance.on_shaft_n;
-  axial.bed_n = drive.bed_n;
+  axial.bed_n = moved.balance.on_bed_n;
   axial.punctured = moved.punctured;
   axial.hit_solver_bound = moved.hit_bound;
   axial.axis_P = u;

@@ -45,12 +45,14 @@ struct NeedleDrive {
   double ahead_mm = 0.0;   ///< Position of the device a damping time ahead.
   double before_mm = 0.0;  ///< Position of the needle at the last tick.
   double dt_s = 0.001;
-  double bed_n = 0.0;  ///< Force with which the bed of the bent shaft pushes the needle out.
+  double bed_n = 0.0;         ///< Force with which the bed of the bent shaft pushes the needle out,
+  double bed_n_per_mm = 0.0;  ///< and its growth over the step.
 };
 struct NeedleBalance {
   double needle_mm = 0.0;
   double on_shaft_n = 0.0;
   double on_tip_n = 0.0;
+  double on_bed_n = 0.0;
   double tip_n_per_mm = 0.0;  ///< Decrease of on_tip_n per mm of proxy motion.
 };
 /// Closed form; at rest while dry friction exceeds the driving force.

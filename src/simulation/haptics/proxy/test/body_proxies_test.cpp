@@ -291,7 +291,9 @@ TEST(React, LetsABedThatHoldsTheTipKeepItsForceFromTheHand) {
   const Pose X_PN = displaced(world, 99.0, {0, 0, 0}, {0, 0, 0});
   const haptics::HeldShaft shaft = haptics::hold_shaft(world.channel, *world.scene, X_PN, 99.0, true);
   EXPECT_LT(shaft.share, 0.5);
-  const haptics::Wrench all = haptics::react({shaft.beam, shaft.bed, X_PN, 1.0}, *world.scene, {1, 0, 0}).wrench_P;
+  haptics::HeldShaft whole = shaft;
+  whole.share = 1.0;
+  const haptics::Wrench all = haptics::react(whole, *world.scene, {1, 0, 0}).wrench_P;
   const haptics::Wrench told = haptics::react(shaft, *world.scene, {1, 0, 0}).wrench_P;
   EXPECT_NEAR((told.force_n - shaft.share * all.force_n).norm(), 0.0, 1e-12);
   EXPECT_NEAR((told.torque_nmm - shaft.share * all.torque_nmm).norm(), 0.0, 1e-10);
