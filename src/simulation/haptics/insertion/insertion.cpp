@@ -27,11 +27,15 @@ void stop_loading(InsertionState& state) noexcept {
 }
 
 /// Where the tip of a needle in air meets the skin, or an open channel: false while it stays in air. Skin that still
-/// recoils from a puncture is met that much deeper.
+/// recoils from a puncture is met that much deeper. A tip that is below it without having met it (it left its channel
+/// sideways) meets it only after it has come out.
 bool meet(InsertionState& state, InsertionPath& path, const HapticScene& scene, const Vec3& tip_P,
           const Vec3& axis_P) noexcept {
   if (!(skin_distance_mm(scene, tip_P) < -state.recoil_mm)) return false;
-  const bool is_from_outside = skin_distance_mm(scene, state.device_tip_P) > 0.0;
+  constexpr double kBefore = 1.05;  // the recoil of the last tick was deeper by less
+  const double before_mm = skin_distance_mm(scene, state.device_tip_P);
+  if (before_mm < -kBefore * state.recoil_mm) return false;
+  const bool is_from_outside = before_mm > 0.0;
   const Vec3 entry_P = is_from_outside ? meet_skin(scene, state.device_tip_P, tip_P) : nearest_skin(scene, tip_P);
   Vec3 way_P = inward_normal(scene, entry_P);
   if (const Channel* hole = path.memory.find(entry_P, axis_P)) {
@@ -299,8 +303,12 @@ double solve_step(InsertionState& state, const HapticScene& scene, const LineSte
   const AxialSolution solution = solve(balance);
   step.hit_solver_bound = solution.hit_bound;
   if (ahead.layer == kNoLayer) return solution.s_mm;
-  if (step.is_on_skin && !can_pierce(state.skin, scene, step.axis_P)) return solution.s_mm;
-  const double puncture_force_n = scene.layers[ahead.layer].puncture_force_n;
+  double puncture_force_n = scene.layers[ahead.layer].puncture_force_n;
+  if (step.is_on_skin) {  // along the needle
+    const double share = piercing_share(state.skin, scene, step.axis_P);
+    if (!(share > 0.0)) return solution.s_mm;
+    puncture_force_n /= share;
+  }
   if (balance.prepuncture_n(solution.s_mm) < puncture_force_n) return solution.s_mm;
   const Puncture puncture = find_puncture(balance, line, state.device_velocity_mm_per_s, puncture_force_n);
   state.pending_s = (1.0 - puncture.fraction) * balance.dt_s;
@@ -338,6 +346,10 @@ InsertionStep step_insertion(InsertionState& state, InsertionPath& path, const H
   step.axis_P = path.channel.direction_P;
   const double s_mm = solve_step(state, scene, *line, ahead, balance, step);
   record_forces(state, balance, s_mm, share, step);
+  if (step.is_on_skin) {
+    step.on_skin_n = step.prepuncture_n;
+    step.prepuncture_n *= state.skin.way_P.dot(step.axis_P);
+  }
 
   // The tip stays at the resting surface of the indented layer until its puncture.
   state.s_mm = s_mm;

@@ -24,6 +24,14 @@ void start(NeedleState& state, const HapticScene& scene, const Pose& X_PN, Needl
   state.is_started = true;
 }
 
+/// True for a tip that is inside the body without path or contact: it left its channel sideways.
+bool is_lost_inside(const NeedleState& state, const HapticScene& scene, const Vec3& tip_P) noexcept {
+  if (state.path.is_open || state.insertion.loading != kNoLayer || state.proxy.is_on_skin) return false;
+  constexpr double kLost_mm = 1.0;
+  const double deeper_mm = kLost_mm + state.insertion.recoil_mm;
+  return skin_distance_mm(scene, tip_P) < -deeper_mm && skin_distance_mm(scene, state.X_PN.p()) < -deeper_mm;
+}
+
 /// The pose one damping time ahead: springs at this pose damp in proportion to their stiffness (physics.md B7).
 Pose pose_ahead(NeedleState& state, const Pose& X_PN, double ahead_s, double dt_s) noexcept {
   constexpr double kSmoothing_s = 0.002;
@@ -60,8 +68,8 @@ void hold_on_skin(const NeedleState& state, const Pose& X_PN, const Pose& X_PN_a
                   NeedleStep& step) noexcept {
   if (!step.axial.is_on_skin) return;
   const SkinContact& skin = state.insertion.skin;
-  const double load_n = step.axial.prepuncture_n;
-  Vec3 force_P = load_n * (step.axial.axis_P - skin.way_P);
+  const double load_n = step.axial.on_skin_n;
+  Vec3 force_P = step.axial.prepuncture_n * step.axial.axis_P - load_n * skin.way_P;
   constexpr double kNear_mm = 1e-6;
   if (!skin.has_slid && skin.to_device_mm > kNear_mm) {
     const Vec3 ahead_P = X_PN_ahead.p() - X_PN.p();
@@ -106,9 +114,10 @@ void hold_body(NeedleState& state, const HapticScene& scene, const Pose& X_PN_ah
   }
   const double depth_mm = needle_depth_mm(state, scene);
   const HeldShaft shaft = hold_shaft(state.path.channel, scene, X_PN_ahead, depth_mm, is_stylet_in);
-  // The bevel deflects only while it cuts: at rest its force would have no potential.
+  // The bevel deflects only while it cuts: at rest, or against a layer that holds, its force would have no potential.
   const double cuts = cutting_mm_per_s > 0.0 ? motion_fade(cutting_mm_per_s) : 0.0;
-  const ShaftReaction reaction = react(shaft, scene, bevel_force_P(scene.needle, X_PN_ahead, cuts * on_tip_n));
+  const ShaftReaction reaction =
+      react(shaft, scene, bevel_force_P(scene.needle, X_PN_ahead, cuts * (on_tip_n - axial.prepuncture_n)));
   state.bent = reaction.bent;
   state.path.bed_out_n =
       shaft.out_n + share_slope_per_mm(state.turning, shaft, depth_mm) / shaft.share * shaft.energy_nmm;
@@ -203,6 +212,7 @@ NeedleStep step_needle(NeedleState& state, const HapticScene& scene, const Pose&
   NeedleStep step;
   const double way_mm = (X_PN.p() - state.X_PN.p()).norm();
   if (!state.is_started || way_mm > kNeedleJump_mm + kNeedleJump_mm_per_s * dt_s) start(state, scene, X_PN, step);
+  if (is_lost_inside(state, scene, X_PN.p())) start(state, scene, X_PN, step);
   const CouplingParams& coupling = scene.options.coupling;
   const double ahead_s = coupling.damping_ns_per_mm / coupling.stiffness_n_per_mm;
   const Pose X_PN_ahead = pose_ahead(state, X_PN, ahead_s, dt_s);

@@ -52,8 +52,9 @@ void follow_skin(SkinContact& contact, const HapticScene& scene, const Vec3& dev
   contact.way_P = deep_mm > 0.0 ? Vec3(way.stableNormalized()) : normal_P;
 }
 
-bool can_pierce(const SkinContact& contact, const HapticScene& scene, const Vec3& axis_P) noexcept {
-  return axis_P.dot(inward_normal(scene, contact.anchor_P)) > kGrazing && axis_P.dot(contact.way_P) > kGrazing;
+double piercing_share(const SkinContact& contact, const HapticScene& scene, const Vec3& axis_P) noexcept {
+  const double share = axis_P.dot(contact.way_P);
+  return share > kGrazing && axis_P.dot(inward_normal(scene, contact.anchor_P)) > kGrazing ? share : 0.0;
 }
 
 }  // namespace trocar::haptics

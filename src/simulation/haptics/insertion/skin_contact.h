@@ -29,8 +29,8 @@ struct SkinContact {
 /// Follows the device's tip with the coefficient of friction `friction`. Real-time safe.
 void follow_skin(SkinContact& contact, const HapticScene& scene, const Vec3& device_tip_P, double friction) noexcept;
 
-/// True if a force along the contact's way drives a needle with this unit axis through the skin: it is neither flat on
-/// the skin nor pushed sideways.
-bool can_pierce(const SkinContact& contact, const HapticScene& scene, const Vec3& axis_P) noexcept;
+/// Share of a force along the contact's way that pushes a needle with this unit axis along its axis: its cosine; 0 for
+/// a needle that is flat on the skin or pushed sideways, which does not pierce.
+double piercing_share(const SkinContact& contact, const HapticScene& scene, const Vec3& axis_P) noexcept;
 
 }  // namespace trocar::haptics

@@ -219,7 +219,7 @@ HeldShaft hold_shaft(const Channel& channel, const HapticScene& scene, const Pos
     const Vec3 node_P = X_PN.p() - axis_P * (beam.spacing_mm * (beam.node_count - 1 - i));
     const Vec3 to_line_P = across(channel.origin_P - node_P, channel.direction_P);
     const Vec3 offset_P = across(to_line_P, axis_P);
-    shaft.along_mm[index] = axis_P.dot(to_line_P);
+    shaft.along_mm[index] = std::clamp(axis_P.dot(to_line_P), -most_mm, most_mm);
     shaft.bed.offset_mm[index] = limited(offset_P, most_mm);
     is_far = is_far || shaft.bed.offset_mm[index] != offset_P;
   }

@@ -65,8 +65,9 @@ ProxyNeedleStep on_skin(ProxyNeedleState& state, InsertionPath& path, const Hapt
   const Vec3 ahead_P = skin.has_slid ? Vec3(Vec3::Zero()) : Vec3(X_PN_ahead.p() - X_PN.p());
   double load_n = std::max(0.0, k * (skin.to_device_mm + skin.way_P.dot(ahead_P)));
   const double puncture_n = layer == kNoLayer ? 0.0 : scene.layers[layer].puncture_force_n;
-  const bool gives_way = load_n >= puncture_n && can_pierce(skin, scene, X_PN.R().col(2));
-  if (gives_way) load_n = puncture_n;
+  const double share = piercing_share(skin, scene, X_PN.R().col(2));  // the force along the needle counts
+  const bool gives_way = share > 0.0 && share * load_n >= puncture_n;
+  if (gives_way) load_n = puncture_n / share;
 
   ProxyNeedleStep step;
   step.tip_force_P = -load_n * skin.way_P - k * (ahead_P - skin.way_P * skin.way_P.dot(ahead_P));
@@ -224,9 +225,11 @@ ProxyNeedleStep in_body(ProxyNeedleState& state, InsertionPath& path, const Hapt
   return step;
 }
 
-/// A tip from outside: its intersection with the skin, and an open channel that it may enter.
-void meet(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene, const Pose& X_PN) noexcept {
-  state.proxy_P = skin_distance_mm(scene, state.proxy_P) >= 0.0 ? meet_skin(scene, state.proxy_P, X_PN.p()) : X_PN.p();
+/// A tip from outside: its intersection with the skin, and an open channel that it may enter. False for one that is
+/// inside without having met the skin: it left its channel sideways.
+bool meet(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene, const Pose& X_PN) noexcept {
+  if (!(skin_distance_mm(scene, X_PN.p()) < 0.0) || skin_distance_mm(scene, state.proxy_P) < 0.0) return false;
+  state.proxy_P = meet_skin(scene, state.proxy_P, X_PN.p());
   state.contact_P = state.skin.anchor_P = state.proxy_P;
   state.is_on_skin = true;
   if (const Channel* hole = path.memory.find(state.proxy_P, X_PN.R().col(2))) {
@@ -236,6 +239,7 @@ void meet(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene
     state.needle_mm = path.channel.direction_P.dot(state.proxy_P - path.channel.origin_P);
     state.is_on_skin = false;
   }
+  return true;
 }
 
 }  // namespace
@@ -250,10 +254,7 @@ void start_proxy_needle(ProxyNeedleState& state, const InsertionPath& path, cons
 
 ProxyNeedleStep step_proxy_needle(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene,
                                   const Pose& X_PN, const Pose& X_PN_ahead, double dt_s) noexcept {
-  if (!path.is_open && !state.is_on_skin) {
-    if (!(skin_distance_mm(scene, X_PN.p()) < 0.0)) return in_air(state, path, X_PN, dt_s);
-    meet(state, path, scene, X_PN);
-  }
+  if (!path.is_open && !state.is_on_skin && !meet(state, path, scene, X_PN)) return in_air(state, path, X_PN, dt_s);
   if (!path.is_open) return on_skin(state, path, scene, X_PN, X_PN_ahead, dt_s);
   return in_body(state, path, scene, X_PN_ahead, dt_s);
 }
