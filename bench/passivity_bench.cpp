@@ -25,13 +25,11 @@ struct RunMotion {
 
   bool is_lossless() const { return haptics::is_elastic(planned.kind); }
   bool is_limited() const { return outcome.limited_ticks > 0; }
-  /// Energy that the force model made. Without losses, energy that is missing counts, too, unless the needle is still
-  /// in its channel.
-  double error_mj() const {
-    if (!outcome.is_finite) return std::numeric_limits<double>::infinity();
-    const bool is_closed = is_lossless() && outcome.is_free_at_end;
-    return is_closed ? std::max(outcome.most_mj, std::abs(outcome.end_mj)) : outcome.most_mj;
-  }
+  /// Energy that the force model made.
+  double made_mj() const { return outcome.is_finite ? outcome.most_mj : std::numeric_limits<double>::infinity(); }
+  /// What is missing at the end of a motion without losses: where a stretched spring lets go at once. Not known while
+  /// the needle is still in its channel.
+  double lost_mj() const { return is_lossless() && outcome.is_free_at_end ? -std::min(0.0, outcome.end_mj) : 0.0; }
 };
 
 haptics::PassivityOutcome run_at(const PlannedMotion& planned, double rate_hz,
@@ -112,10 +110,17 @@ void add_group(std::vector<CaseResult>& results, const std::string& name, const 
 }
 
 double law_mj(const RunMotion& motion) {
-  return motion.error_mj();
+  return motion.made_mj();
+}
+double lost_mj(const RunMotion& motion) {
+  return motion.lost_mj();
 }
 double device_mj(const RunMotion& motion) {
   return motion.outcome.device_mj;
+}
+
+bool is_face(MovedModel model) {
+  return model == MovedModel::kProbe || model == MovedModel::kFinger;
 }
 
 void add_model(std::vector<CaseResult>& results, const std::vector<RunMotion>& motions, MovedModel model) {
@@ -129,8 +134,10 @@ void add_model(std::vector<CaseResult>& results, const std::vector<RunMotion>& m
   }
   const std::string prefix = fmt::format("passivity/{}", to_string(model));
   add_group(results, prefix + "/net", net, law_mj, true);
-  add_group(results, prefix + "/net-limited", limited, device_mj, true);
-  add_group(results, prefix + "/lossless", lossless, law_mj, true);
+  add_group(results, prefix + "/net-limited", limited, device_mj, false);
+  // The area of a face that the skin supports depends on its tilt without a torque for it (B9): told, not judged.
+  add_group(results, prefix + "/lossless", lossless, law_mj, !is_face(model));
+  add_group(results, prefix + "/lossless-lost", lossless, lost_mj, false);
   for (const auto& [kind, group] : by_kind)
     add_group(results, fmt::format("{}/{}", prefix, to_string(kind)), group, law_mj, false);
 }
@@ -174,8 +181,8 @@ Status write_list(const std::vector<RunMotion>& motions, const std::filesystem::
         "{},{},{},{:.2f},{:.2f},{:.0f},{},{},{},{:.6g},{:.6g},{:.3f},{:.6g},{:.6g},{:.6g},{:.4g},{},{},"
         "{},{:d},{:d}\n",
         p.number, to_string(p.model), haptics::to_string(p.kind), p.angle_deg, p.tempo_mm_per_s, p.rate_hz, p.patient,
-        p.needle, p.profile, motion.error_mj(), o.most_mj, o.most_s, o.end_mj, o.device_mj, o.stored_mj, o.peak_force_n,
-        o.punctures, o.ticks, o.limited_ticks, o.is_free_at_start, o.is_free_at_end);
+        p.needle, p.profile, std::max(motion.made_mj(), motion.lost_mj()), o.most_mj, o.most_s, o.end_mj, o.device_mj,
+        o.stored_mj, o.peak_force_n, o.punctures, o.ticks, o.limited_ticks, o.is_free_at_start, o.is_free_at_end);
   }
   return write_file_atomically(file, text);
 }

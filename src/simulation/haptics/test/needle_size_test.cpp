@@ -76,5 +76,18 @@ TEST(NeedleSize, ScalesPuncturesAndCutting) {
   }
 }
 
+TEST(NeedleSize, ABluntBevelNeedsMoreForce) {
+  anatomy::NeedleSizeLaw law = kLaw;
+  law.bevel_power = 0.5;
+  const auto of = [&](double bevel_deg) { return haptics::needle_size_factor(law, 0.0, needle(1.27, bevel_deg)); };
+  EXPECT_NEAR(of(20.0), 1.0, 1e-12);
+  double before = 0.0;
+  for (const double bevel_deg : {10.0, 15.0, 25.0, 45.0, 60.0, 85.0}) {
+    EXPECT_GT(of(bevel_deg), before) << bevel_deg;
+    before = of(bevel_deg);
+  }
+  EXPECT_GT(of(45.0), 1.2 * of(15.0));
+}
+
 }  // namespace
 }  // namespace trocar::testing

@@ -267,6 +267,52 @@ TEST(Insertion, PhasesFollowTheNeedle) {
   EXPECT_EQ(driver.move(-5.0, 10.0).back().phase, telemetry::InsertionPhase::kOutside);
 }
 
+TEST(Insertion, FrictionNeverActsAlongTheMotion) {
+  anatomy::TissueTable tissues = paper_tissues();
+  for (anatomy::TissueParams& tissue : tissues.tissues) tissue.roughness_n = 2.0;
+  Driver driver(make_scene(liver_way(), {}, tissues));
+  int seen = 0;
+  for (const double to_mm : {50.0, 20.0, 45.0, 5.0})
+    for (const telemetry::TickSample& sample : driver.move(to_mm, 2.0)) {
+      ASSERT_LE(sample.f_friction_n * sample.axial_velocity_mm_s, 0.0) << sample.depth_mm;
+      seen += sample.f_friction_n != 0.0 ? 1 : 0;
+    }
+  EXPECT_GT(seen, 10000);
+}
+
+TEST(Insertion, ViscousFrictionGrowsWithSpeedUpToABound) {
+  const auto friction_n = [](double speed_mm_per_s, double grows_to_mm_per_s) {
+    anatomy::TissueTable tissues = paper_tissues();
+    for (anatomy::TissueParams& tissue : tissues.tissues) tissue.roughness_n = 0.0;
+    tissues.friction.grows_to_mm_per_s = grows_to_mm_per_s;
+    Driver driver(make_scene({{0, kFat}}, {}, tissues));
+    const auto samples = driver.move(60.0, speed_mm_per_s);
+    return -samples[samples.size() - 2].f_friction_n;
+  };
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  EXPECT_NEAR(friction_n(5.0, 10.0), friction_n(5.0, kNever), 1e-12);  // paper A's law
+  EXPECT_NEAR(friction_n(50.0, kNever) / friction_n(5.0, kNever), 10.0, 0.1);
+  EXPECT_NEAR(friction_n(50.0, 10.0) / friction_n(5.0, 10.0), 2.0, 0.02);
+}
+
+TEST(Insertion, BesideItsPathTheHandFeelsTheBendThatIsDrawn) {
+  const auto sideways = [](const anatomy::TissueTable& tissues, haptics::ForceModel model) {
+    haptics::HapticOptions options;
+    options.force_model = model;
+    Driver driver(make_scene(liver_way(), options, tissues));
+    driver.move(40.0, 20.0);
+    telemetry::TickSample sample;
+    for (int i = 1; i <= 600; ++i) sample = driver.to({0.01 * i, 0.0, 40.0});
+    for (int i = 0; i < 300; ++i) sample = driver.to({6.0, 0.0, 40.0});
+    return -sample.f_constraint_n.x();
+  };
+  using enum haptics::ForceModel;
+  const double bent_n = sideways(paper_tissues(), kInsertion);
+  EXPECT_NEAR(bent_n, sideways(paper_tissues(), kProxy), 0.1 * bent_n);  // the drawn beam's
+  EXPECT_LT(bent_n, 0.5);
+  EXPECT_NEAR(sideways(constrained_tissues(), kInsertion), 3.0, 1e-6);  // paper A's, where it is selected
+}
+
 TEST(Insertion, KeepsThePathThatPiercedTheSkin) {
   Driver driver(make_scene(liver_way(), {}, constrained_tissues()));
   driver.move(10.0, 10.0);

@@ -133,6 +133,43 @@ TEST(YieldingWall, FollowsANeedleThatIsPulledBackAtAnySpeed) {
   }
 }
 
+TEST(YieldingWall, AHandAtRestPiercesNothingMore) {
+  anatomy::TissueTable table = yielding_tissues();
+  table.layers[1].load_spread_mm = 0.0;
+  for (const double muscle_mm : {3.0, 5.0, 12.0}) {
+    Driver driver(
+        make_scene({{0, kFat}, {muscle_mm, kMuscle}, {muscle_mm + 4.0, kLiver}}, haptics::HapticOptions{}, table));
+    std::vector<telemetry::TickSample> samples;
+    double depth_mm = -1.0;
+    while (punctures(samples).empty() && depth_mm < 40.0) samples = {driver.to({0, 0, depth_mm += 0.01})};
+    ASSERT_GT(driver.state().needle.insertion.recoil_mm, 3.0);
+    EXPECT_TRUE(punctures(driver.hold(2.0)).empty()) << muscle_mm;
+    EXPECT_LT(driver.state().needle.insertion.recoil_mm, 10.0);
+  }
+}
+
+TEST(YieldingWall, HoldsItsDepressionUnderTheLoadAfterThePuncture) {
+  // Against bone right under the skin the wall recoils only as far as the load permits.
+  anatomy::TissueTable table = yielding_tissues();
+  Driver driver(make_scene({{0, kFat}, {9, kBone}}, haptics::HapticOptions{}, table));
+  driver.move(22.0, 20.0);
+  const double load_n = resistance_n(driver.hold(3.0).back());
+  ASSERT_GT(load_n, 1.0);
+  const haptics::InsertionState& state = driver.state().needle.insertion;
+  EXPECT_NEAR(state.recoil_mm, std::min(state.below.depression_mm(load_n), state.below.depression_mm(2.8)), 0.05);
+}
+
+TEST(YieldingWall, IsAtLeastAsStiffAsPressedFat) {
+  const auto scene = make_scene({{0, kFat}});
+  constexpr double kForce_n = 1e-5;
+  const auto slope = [&](double least_kpa) {
+    return kForce_n /
+           haptics::soft_column(*scene, Vec3::Zero(), Vec3::UnitZ(), kRadius_mm, least_kpa).depression_mm(kForce_n);
+  };
+  EXPECT_NEAR(slope(26.1) / slope(0.0), 2.61, 1e-6);  // the table's 10 kPa
+  EXPECT_NEAR(slope(5.0), slope(0.0), 1e-9);
+}
+
 /// The flat patient with a fold of skin on it: 6 mm thick across x, 12 mm high, fat inside.
 std::shared_ptr<anatomy::VirtualPatient> folded_patient() {
   auto patient = layered_patient({{0, kFat}});
