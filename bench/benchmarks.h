@@ -23,6 +23,8 @@ Result<std::vector<CaseResult>> run_paths_benchmark(const Options& options);
 Result<std::vector<CaseResult>> run_cohort_benchmark(const Options& options);
 /// Force along one needle path as a curve, by each force model.
 Result<std::vector<CaseResult>> run_curves_benchmark(const Options& options);
+/// Peaks of the layers of the same paths from 1 to 50 mm/s; the figure is that at 50 over that at 1 mm/s.
+Result<std::vector<CaseResult>> run_speeds_benchmark(const Options& options);
 /// Every tissue, force model, device and holder in closed loop: the loop comes to rest and generates no energy.
 Result<std::vector<CaseResult>> run_stability_benchmark(const Options& options);
 /// Needle pushed on bone and through the ligamentum flavum, by device and force model.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 
 #include "anatomy/phantom/phantom.h"
@@ -68,7 +69,8 @@ Result<Tables> load_tables_of_curves() {
 }
 
 Result<PathCurves> curves_of(std::shared_ptr<const anatomy::VirtualPatient> patient, const std::string& needle_name,
-                             bool is_usual_needle, const Tables& tables, const Options& options) {
+                             bool is_usual_needle, const Tables& tables, const Options& options,
+                             double speed_mm_per_s = kCurveSpeed_mm_per_s) {
   if (patient->paths.empty())
     return fail_usage("the patient has no needle path of its own", patient->name, "use an embedded patient");
   const auto needle = std::find_if(tables.needles.begin(), tables.needles.end(),
@@ -78,13 +80,13 @@ Result<PathCurves> curves_of(std::shared_ptr<const anatomy::VirtualPatient> pati
 
   cases::PrescribedMotion motion;
   motion.line_P = patient->paths.front().line_P;
-  motion.speed_mm_per_s = kCurveSpeed_mm_per_s;
+  motion.speed_mm_per_s = speed_mm_per_s;
   motion.after_mm = kAfter_mm;
   const Segment with_rest{motion.line_P.a, motion.line_P.b + kAfter_mm * motion.line_P.direction()};
   PathCurves path;
   path.name = short_name(patient->name);
   if (!is_usual_needle) path.name += "-" + needle_name;
-  path.title = fmt::format("{}, {}, {:.0f} mm/s", patient->name, needle_name, kCurveSpeed_mm_per_s);
+  path.title = fmt::format("{}, {}, {:.0f} mm/s", patient->name, needle_name, speed_mm_per_s);
   for (const haptics::ForceModel model : kForceModels) {
     if (options.force_model && *options.force_model != model) continue;
     haptics::HapticOptions haptic;
@@ -157,7 +159,53 @@ Status write_all(const std::vector<PathCurves>& paths, const anatomy::TissueTabl
   });
 }
 
+/// Peak of each layer at one speed, by "PATH/MODEL/LAYER".
+using Peaks = std::map<std::string, double>;
+
+Result<Peaks> peaks_at(const std::vector<std::shared_ptr<const anatomy::VirtualPatient>>& patients,
+                       const Tables& tables, const Options& options, double speed_mm_per_s) {
+  Peaks peaks;
+  for (const auto& patient : patients) {
+    const std::vector<std::string> needles = needles_for(patient->name);
+    for (const std::string& needle : needles) {
+      TROCAR_TRY(const PathCurves path,
+                 curves_of(patient, needle, needle == needles.front(), tables, options, speed_mm_per_s));
+      for (const NamedCurve& curve : path.curves)
+        for (const cases::CurveEvent& event : curve.events)
+          peaks.emplace(fmt::format("{}/{}/{}", path.name, curve.name, event.layer), event.peak_n);
+    }
+  }
+  return peaks;
+}
+
 }  // namespace
+
+Result<std::vector<CaseResult>> run_speeds_benchmark(const Options& options) {
+  constexpr std::array kSpeeds_mm_per_s{1.0, 5.0, 10.0, 20.0, 50.0};
+  constexpr double kMostRatio = 1.5;
+  TROCAR_TRY(const Tables tables, load_tables_of_curves());
+  TROCAR_TRY(const auto patients, patients_of(options));
+  std::vector<Peaks> of_speed;
+  for (const double speed : kSpeeds_mm_per_s) {
+    TROCAR_TRY(Peaks peaks, peaks_at(patients, tables, options, speed));
+    of_speed.push_back(std::move(peaks));
+  }
+  std::vector<CaseResult> results;
+  for (const auto& [name, slowest_n] : of_speed.front()) {
+    CaseResult result{"speeds/" + name, "ratio", {}, {}, "peak"};
+    for (std::size_t i = 0; i < of_speed.size(); ++i) {
+      const auto found = of_speed[i].find(name);
+      result.note +=
+          found != of_speed[i].end()
+              ? fmt::format("{} {:.2f} N at {:.0f} mm/s", i > 0 ? "," : "", found->second, kSpeeds_mm_per_s[i])
+              : fmt::format("{} none at {:.0f} mm/s", i > 0 ? "," : "", kSpeeds_mm_per_s[i]);
+      if (found != of_speed[i].end()) result.figures = figure_of(found->second / slowest_n);  // of the fastest
+    }
+    result.is_missed = of_speed.back().contains(name) && of_speed.back().at(name) > kMostRatio * slowest_n;
+    results.push_back(std::move(result));
+  }
+  return results;
+}
 
 Result<std::vector<CaseResult>> run_curves_benchmark(const Options& options) {
   TROCAR_TRY(const Tables tables, load_tables_of_curves());

@@ -27,6 +27,7 @@ const std::vector<Benchmark>& all_benchmarks() {
        "force along one needle path by each force model, and its punctures; plots with --out",
        run_curves_benchmark,
        {"--patient", "--patient-seed", "--force-model", "--out"}},
+      {"speeds", "peaks of the layers along the same paths from 1 to 50 mm/s", run_speeds_benchmark, {"--force-model"}},
       {"stability",
        "every tissue, force model and device in closed loop, 60 simulated seconds each: minutes",
        run_stability_benchmark,

@@ -42,7 +42,7 @@ inline double motion_fade(double speed_mm_per_s) noexcept {
 
 /// Viscous friction of the body proxies as a share of the linear one (physics.md B6): 1 at rest, 1/2 at
 /// kThinning_mm_per_s.
-inline constexpr double kThinning_mm_per_s = 20.0;  ///< Range 10..100. [assumed]
+inline constexpr double kThinning_mm_per_s = 15.0;  ///< Range 10..100. [assumed]
 inline double shear_thinning(double speed_mm_per_s) noexcept {
   return 1.0 / (1.0 + std::abs(speed_mm_per_s) / kThinning_mm_per_s);
 }

@@ -156,7 +156,14 @@ TEST(YieldingWall, HoldsItsDepressionUnderTheLoadAfterThePuncture) {
   const double load_n = resistance_n(driver.hold(3.0).back());
   ASSERT_GT(load_n, 1.0);
   const haptics::InsertionState& state = driver.state().needle.insertion;
-  EXPECT_NEAR(state.recoil_mm, std::min(state.below.depression_mm(load_n), state.below.depression_mm(2.8)), 0.05);
+  EXPECT_LE(state.recoil_mm, state.below.depression_mm(load_n) + 0.05);
+  const double held_mm = state.recoil_mm;
+  EXPECT_GT(held_mm, 1.0);
+  driver.hold(2.0);
+  EXPECT_NEAR(state.recoil_mm, held_mm, 0.01);
+  driver.move(5.0, 20.0);  // without the load it recoils
+  driver.hold(4.0);
+  EXPECT_LT(state.recoil_mm, 0.1);
 }
 
 TEST(YieldingWall, IsAtLeastAsStiffAsPressedFat) {
@@ -166,7 +173,7 @@ TEST(YieldingWall, IsAtLeastAsStiffAsPressedFat) {
     return kForce_n /
            haptics::soft_column(*scene, Vec3::Zero(), Vec3::UnitZ(), kRadius_mm, least_kpa).depression_mm(kForce_n);
   };
-  EXPECT_NEAR(slope(26.1) / slope(0.0), 2.61, 1e-6);  // the table's 10 kPa
+  EXPECT_NEAR(slope(26.1) / slope(0.0), 2.61, 1e-3);  // the table's 10 kPa
   EXPECT_NEAR(slope(5.0), slope(0.0), 1e-9);
 }
 
