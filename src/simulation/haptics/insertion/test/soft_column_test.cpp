@@ -163,7 +163,7 @@ TEST(YieldingWall, HoldsItsDepressionUnderTheLoadAfterThePuncture) {
   EXPECT_NEAR(state.recoil_mm, held_mm, 0.01);
   driver.move(5.0, 20.0);  // without the load it recoils
   driver.hold(4.0);
-  EXPECT_LT(state.recoil_mm, 0.1);
+  EXPECT_LT(state.recoil_mm, 0.05 * held_mm);  // friction still holds a little
 }
 
 TEST(YieldingWall, IsAtLeastAsStiffAsPressedFat) {
