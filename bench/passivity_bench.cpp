@@ -133,9 +133,9 @@ void add_model(std::vector<CaseResult>& results, const std::vector<RunMotion>& m
     if (!motion.is_lossless() && motion.is_limited()) limited.push_back(&motion);
   }
   const std::string prefix = fmt::format("passivity/{}", to_string(model));
-  add_group(results, prefix + "/net", net, law_mj, true);
+  add_group(results, prefix + "/net", net, law_mj, !is_face(model));
   add_group(results, prefix + "/net-limited", limited, device_mj, false);
-  // The area of a face that the skin supports depends on its tilt without a torque for it (B9): told, not judged.
+  // Without losses: the area of a face that the skin supports depends on its tilt without a torque for it (B9).
   add_group(results, prefix + "/lossless", lossless, law_mj, !is_face(model));
   add_group(results, prefix + "/lossless-lost", lossless, lost_mj, false);
   for (const auto& [kind, group] : by_kind)

@@ -43,6 +43,32 @@ def published_forces(abdomen, torso, liver, curves):
         "skin, mean slope up to the puncture": f"{means} N/mm, after {ways} mm"})
 
 
+@table("passivity")
+def passivity(f):
+    rows = []
+    for model in ("insertion", "proxy", "combined", "probe", "finger"):
+        cells = [f"{f(f'passivity/{model}/{case}', 'max'):.3f} mJ" for case in ("net", "lossless", "lossless-lost")]
+        rows.append([model, *cells])
+    return lines_of(["model", "made, as it is", "made, without losses", "missing, without losses"], rows)
+
+
+@table("speeds")
+def speeds(f):
+    rows = []
+    for path, title in (("lumbar", "lumbar, 22 G"), ("lumbar-tuohy-18g", "lumbar, 18 G"), ("ascites", "ascites, 14 G"),
+                        ("liver", "liver, 22 G"), ("liver-biopsy-18g", "liver, 18 G")):
+        for layer in ("ligamentum_flavum", "dura", "muscle", "peritoneum", "liver_capsule", "bile_duct"):
+            cells = []
+            for model in MODELS:
+                try:
+                    cells.append(f"{f(f'speeds/{path}/{model}/{layer}'):.2f}")
+                except KeyError:
+                    cells.append("–")
+            if any(cell != "–" for cell in cells):
+                rows.append([title, layer.replace("_", " "), *cells])
+    return lines_of(["path", "layer", *MODELS], rows)
+
+
 @table("experts", "ct-torso", "ct-liver")
 def experts(*runs):
     titles = ("embedded abdomen", "`ct-liver`", "`ct-torso`")
