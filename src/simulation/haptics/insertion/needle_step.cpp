@@ -14,7 +14,6 @@ constexpr double kNeedleJump_mm_per_s = 3000.0;
 
 /// Starts at the needle's pose: outside, or inside with all layers down to the tip pierced.
 void start(NeedleState& state, const HapticScene& scene, const Pose& X_PN, NeedleStep& step) noexcept {
-  step.has_jumped = state.is_started;
   leave_body(state.path);
   step.has_resumed = resume_inside(state.path, scene, X_PN.p(), X_PN.R().col(2));
   start_insertion(state.insertion, state.path, X_PN.p());
@@ -22,6 +21,7 @@ void start(NeedleState& state, const HapticScene& scene, const Pose& X_PN, Needl
   state.X_PN = X_PN;
   state.tip_velocity_P = state.axis_rate_P = Vec3::Zero();
   state.is_started = true;
+  state.is_torn = false;
 }
 
 /// True for a tip that is inside the body without path or contact: it left its channel sideways.
@@ -114,6 +114,7 @@ void hold_body(NeedleState& state, const HapticScene& scene, const Pose& X_PN_ah
   }
   const double depth_mm = needle_depth_mm(state, scene);
   const HeldShaft shaft = hold_shaft(state.path.channel, scene, X_PN_ahead, depth_mm, is_stylet_in);
+  state.is_torn = shaft.is_torn;
   // The bevel deflects only while it cuts: at rest, or against a layer that holds, its force would have no potential.
   const double cuts = cutting_mm_per_s > 0.0 ? motion_fade(cutting_mm_per_s) : 0.0;
   const ShaftReaction reaction =
@@ -211,8 +212,9 @@ NeedleStep step_needle(NeedleState& state, const HapticScene& scene, const Pose&
                        double dt_s) noexcept {
   NeedleStep step;
   const double way_mm = (X_PN.p() - state.X_PN.p()).norm();
-  if (!state.is_started || way_mm > kNeedleJump_mm + kNeedleJump_mm_per_s * dt_s) start(state, scene, X_PN, step);
-  if (is_lost_inside(state, scene, X_PN.p())) start(state, scene, X_PN, step);
+  step.has_jumped = state.is_started && way_mm > kNeedleJump_mm + kNeedleJump_mm_per_s * dt_s;
+  if (!state.is_started || step.has_jumped || state.is_torn || is_lost_inside(state, scene, X_PN.p()))
+    start(state, scene, X_PN, step);
   const CouplingParams& coupling = scene.options.coupling;
   const double ahead_s = coupling.damping_ns_per_mm / coupling.stiffness_n_per_mm;
   const Pose X_PN_ahead = pose_ahead(state, X_PN, ahead_s, dt_s);

@@ -27,6 +27,7 @@ struct NeedleState {
   ProxyNeedleState proxy;    ///< Used by the proxy model.
   BentShaft bent;            ///< See needle_shape.
   GripTurning turning;
+  bool is_torn = false;  ///< Bent further than any needle bends: it leaves its channel.
 };
 
 /// Result of a step of the needle, in P, before weight and limits (physics.md T1, T2).

@@ -97,8 +97,8 @@ const NeedleBeam& beam_of(const HapticScene& scene, bool is_stylet_in) noexcept 
   return is_stylet_in ? scene.beam_with_stylet : scene.beam_without_stylet;
 }
 
-/// Young's modulus of the tissue along a piece: linear between the centres of cells, so that the bed's stiffness and
-/// its change with depth are continuous.
+/// Young's modulus of the tissue along a piece: linear between the centres of cells and from zero at the skin, so that
+/// the bed's stiffness and its change with depth are continuous.
 struct PieceYoung {
   double integral_kpa_mm = 0.0;
   double from_kpa = 0.0, to_kpa = 0.0;      // at its ends
@@ -107,9 +107,10 @@ struct PieceYoung {
 PieceYoung young_of(const Channel& channel, const HapticScene& scene, const Piece& piece, double most_kpa) noexcept {
   PieceYoung young;
   if (channel.known_bins <= 0) return young;
-  const auto at_cell = [&](int cell) {
+  const auto at_cell = [&](int cell) {  // zero at the skin
     const int bin = std::min(bin_of((std::max(cell, 0) + 0.5) * kShaftCell_mm), channel.known_bins - 1);
-    return std::min(tissue_at_bin(channel, scene, static_cast<std::size_t>(bin)).young_kpa, most_kpa);
+    const double kpa = std::min(tissue_at_bin(channel, scene, static_cast<std::size_t>(bin)).young_kpa, most_kpa);
+    return cell < 0 ? -kpa : kpa;
   };
   const int first = static_cast<int>(std::floor(piece.from_mm / kShaftCell_mm - 0.5));
   const int last = static_cast<int>(std::floor(piece.to_mm / kShaftCell_mm - 0.5));
@@ -229,6 +230,7 @@ HeldShaft hold_shaft(const Channel& channel, const HapticScene& scene, const Pos
     beam.bending_stiffness_n_mm2 = std::numeric_limits<double>::infinity();
   const double turning = shaft.turning_nmm_per_rad = grip_stiffness(beam, shaft.bed).turning_nmm_per_rad;
   if (turning > kMostTurning_nmm_per_rad) shaft.share = kMostTurning_nmm_per_rad / turning;
+  shaft.is_torn = is_far;
   shaft.beam.is_bound = shaft.beam.is_bound || is_far;
   store_energy(shaft);
   return shaft;

@@ -256,7 +256,9 @@ ProxyNeedleStep step_proxy_needle(ProxyNeedleState& state, InsertionPath& path, 
                                   const Pose& X_PN, const Pose& X_PN_ahead, double dt_s) noexcept {
   if (!path.is_open && !state.is_on_skin && !meet(state, path, scene, X_PN)) return in_air(state, path, X_PN, dt_s);
   if (!path.is_open) return on_skin(state, path, scene, X_PN, X_PN_ahead, dt_s);
-  return in_body(state, path, scene, X_PN_ahead, dt_s);
+  const ProxyNeedleStep step = in_body(state, path, scene, X_PN_ahead, dt_s);
+  if (!path.is_open) state.proxy_P = X_PN.p();  // left: the next contact begins where the device's tip comes from
+  return step;
 }
 
 }  // namespace trocar::haptics

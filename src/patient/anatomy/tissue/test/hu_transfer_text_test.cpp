@@ -145,9 +145,9 @@ TEST(HuTransferText, UnusableOverridesChangeNothing) {
 TEST(HuTransferText, ATableStoredBeforeYoungsModulusLoadsAndAFileWithoutItDoesNot) {
   std::string text = shipped_tissues().to_toml();
   const auto drop_young = [&](std::string& t) {
-    for (std::size_t at = t.find("young_kpa"); at != std::string::npos && at < t.find("[transfer]");
-         at = t.find("young_kpa"))
-      t.erase(at, t.find('\n', at) + 1 - at);
+    constexpr std::string_view kRow = "\nyoung_kpa";
+    for (std::size_t at = t.find(kRow); at != std::string::npos && at < t.find("[transfer]"); at = t.find(kRow))
+      t.erase(at, t.find('\n', at + 1) - at);
   };
   drop_young(text);
   const auto stored = parse_tissue_table(text, "stored");

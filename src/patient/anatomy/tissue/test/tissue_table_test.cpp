@@ -71,6 +71,7 @@ void expect_same(const TissueTable& a, const TissueTable& b) {
     EXPECT_EQ(a.layers[n].is_wall, b.layers[n].is_wall);
     EXPECT_EQ(a.layers[n].for_diameter_mm, b.layers[n].for_diameter_mm);
     EXPECT_EQ(a.layers[n].load_spread_mm, b.layers[n].load_spread_mm);
+    EXPECT_EQ(a.layers[n].pressed_young_kpa, b.layers[n].pressed_young_kpa);
   }
   for (std::size_t n = 0; n < a.tissues.size(); ++n) {
     EXPECT_EQ(a.tissues[n].name, b.tissues[n].name);
@@ -128,12 +129,13 @@ TEST(TissueTable, HoldsTable1OfPaperAAsPrinted) {
 }
 
 TEST(TissueTable, EveryNumberHasASourceAndEveryAssumedFiniteNumberARange) {
-  constexpr std::size_t kOptionalNumbers = 3;  // the needles of ligamentum flavum and dura, what the skin spreads
+  constexpr std::size_t kOptionalNumbers = 4;  // the needles of ligamentum flavum and dura, two of the skin
   for (const std::string_view profile : {"paper-a", "tented"}) {
     const TissueTable table = shipped_tissues(profile);
-    EXPECT_EQ(table.provenance.size(), 1 + kLayerFields.size() * table.layers.size() +
-                                           kTissueFields.size() * (table.tissues.size() - 1) + kHuLawFields.size() +
-                                           kGradientFields.size() + kNeedleSizeFields.size() + kOptionalNumbers);
+    EXPECT_EQ(table.provenance.size(),
+              1 + kLayerFields.size() * table.layers.size() + kTissueFields.size() * (table.tissues.size() - 1) +
+                  kHuLawFields.size() + kGradientFields.size() + kNeedleSizeFields.size() +
+                  kOptionalNeedleSizeFields.size() + kFrictionFields.size() + kOptionalNumbers);
     for (const auto& [path, provenance] : table.provenance) {
       EXPECT_FALSE(provenance.source.empty()) << path;
       const bool is_never = path == "layers.bone.puncture_force_n";
@@ -404,6 +406,28 @@ TEST(TissueTable, DamagedTableIsRefusedWithItsPlace) {
   refused("source = \"paper A, Table 1\"", "note = \"\"");
   refused("never = true", "never = false");
   refused("[skin]", "[skin2]");
+}
+
+TEST(TissueTable, FrictionIsReadChangedAndStored) {
+  TissueTable table = shipped_tissues("paper-a");
+  EXPECT_EQ(table.friction.tip, 2.0);
+  EXPECT_EQ(table.friction.grows_to_mm_per_s, 9.0);
+  ASSERT_TRUE(apply_override(table, "friction.grows_to=never"));
+  ASSERT_TRUE(apply_override(table, "friction.tip=1.5"));
+  const auto read = parse_tissue_table(table.to_toml(), "stored");
+  ASSERT_TRUE(read) << read.error().text();
+  EXPECT_TRUE(std::isinf(read->friction.grows_to_mm_per_s));
+  EXPECT_EQ(read->friction.tip, 1.5);
+  EXPECT_EQ(read->needle_size.bevel_power, 0.5);
+  for (const char* bad : {"friction.tip=never", "friction.grows_to=0", "friction.grows_to=nan", "friction.mu=1"})
+    EXPECT_FALSE(apply_override(table, bad)) << bad;
+  // A table stored before there was such a section keeps paper A's law.
+  std::string old = shipped_tissues("paper-a").to_toml();
+  const std::size_t at = old.find("[friction]");
+  old.erase(at, old.find('[', at + 1) == std::string::npos ? std::string::npos : old.find("\n[", at) - at);
+  const auto before = parse_tissue_table(old, "stored");
+  ASSERT_TRUE(before) << before.error().text();
+  EXPECT_TRUE(std::isinf(before->friction.grows_to_mm_per_s));
 }
 
 }  // namespace
