@@ -53,6 +53,7 @@ struct Options {
   std::shared_ptr<const anatomy::VirtualPatient> patient;  ///< Empty: the benchmark's default patient.
   std::string task = "liver-biopsy";
   int paths = 2000;
+  bool is_unlabelled = false;  ///< Of the partly segmented patient: what is not segmented has no label.
   std::optional<haptics::ForceModel> force_model;
   std::uint64_t seed = 1;
   double seconds = 10.0;  ///< Duration of the measurement of live servers.

@@ -19,9 +19,9 @@ namespace {
 using cli::BenchArguments;
 
 /// Options that only some benchmarks use.
-constexpr const char* kForSome[] = {"--patient", "--patient-seed", "--task",    "--paths", "--force-model",
-                                    "--seed",    "--out",          "--seconds", "--rate",  "--sequence",
-                                    "--motions", "--model",        "--only"};
+constexpr const char* kForSome[] = {"--patient", "--patient-seed", "--task",    "--paths",     "--force-model",
+                                    "--seed",    "--out",          "--seconds", "--rate",      "--sequence",
+                                    "--motions", "--model",        "--only",    "--unlabelled"};
 
 std::vector<std::string> given_options(const arguments::Command& command) {
   std::vector<std::string> given;

@@ -185,8 +185,10 @@ Result<std::vector<CaseResult>> run_paths_benchmark(const Options& options) {
   haptic.seed = options.seed;
   Study study;
   TROCAR_TRY(study.full, haptics::make_haptic_scene(patient, tables.tissues, needle, {}, haptic));
-  const auto less =
-      std::make_shared<const anatomy::VirtualPatient>(cases::partly_segmented(*patient, cases::kPartlySegmented));
+  TROCAR_TRY(anatomy::VirtualPatient partly,
+             cases::partly_segmented(*patient, cases::kPartlySegmented,
+                                     options.is_unlabelled ? cases::Rest::kUnlabelled : cases::Rest::kFound));
+  const auto less = std::make_shared<const anatomy::VirtualPatient>(std::move(partly));
   TROCAR_TRY(study.partly, haptics::make_haptic_scene(less, tables.tissues, needle, {}, haptic));
   TROCAR_TRY(study.motions, plan_motions(tables, *patient, options));
 

@@ -18,7 +18,7 @@ const std::vector<Benchmark>& all_benchmarks() {
       {"paths",
        "forces of partly against fully segmented data along planned paths",
        run_paths_benchmark,
-       {"--patient", "--patient-seed", "--task", "--paths", "--force-model", "--seed", "--out"}},
+       {"--patient", "--patient-seed", "--task", "--paths", "--unlabelled", "--force-model", "--seed", "--out"}},
       {"cohort",
        "40 scripted novices on each patient: scores, and the path constraint's inward part and steps; minutes",
        run_cohort_benchmark,

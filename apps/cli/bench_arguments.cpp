@@ -17,6 +17,8 @@ void add_bench_options(Command& command, BenchArguments& a) {
   command.add_option("--paths", a.options.paths, "Number of planned paths")
       .whole_number_within(1, 100000)
       .show_default();
+  command.add_flag("--unlabelled", a.options.is_unlabelled,
+                   "Leave out the fat, muscle and gas that a build finds from HU in a partly segmented patient");
   command.add_option("--force-model", a.force_model, "Force model: insertion, proxy or combined");
   const auto motions = command.add_option("--motions", a.options.motions, "Number of random closed motions")
                            .whole_number_within(1, 1000000)

@@ -7,8 +7,7 @@
 #include <array>
 #include <utility>
 
-#include "anatomy/derive/derive_structures.h"
-#include "anatomy/detail/fill_unlabelled.h"
+#include "anatomy/complete_labels.h"
 #include "anatomy/detail/merge_sources.h"
 #include "anatomy/known_structures.h"
 #include "anatomy/plausibility/judge_anatomy.h"
@@ -134,8 +133,7 @@ Result<VirtualPatient> build_patient(const volume::CtGrid& ct, std::vector<Label
   TROCAR_TRY_STATUS(check_hounsfield(ct, air_of(options.confirmed)));
   TROCAR_TRY(const std::filesystem::path data_folder, checked_data_dir());
   TROCAR_TRY(const KnownStructures known, KnownStructures::load(data_folder));
-  TROCAR_TRY_STATUS(detail::check_fill_names(known));
-  TROCAR_TRY_STATUS(check_derived_names(known));
+  TROCAR_TRY_STATUS(check_completed_names(known));
   VirtualPatient patient;
   patient.name = options.name;
   patient.provenance = options.provenance;
@@ -175,11 +173,9 @@ Result<VirtualPatient> build_patient(const volume::CtGrid& ct, std::vector<Label
   patient.repairs = repair_segmentation(patient.ct, patient.labels, patient.label_table);
   for (const Finding& repair : patient.repairs) warnings.push_back(repair.text);
 
-  report(progress, "fat and muscle", 0.7);
   const std::size_t known_count = patient.label_table.labels.size();
-  detail::fill_unlabelled(patient.ct, patient.skin_distance_mm, patient.labels, patient.label_table, known);
   const std::vector<std::string> derived =
-      derive_structures(patient, known, options.derive, part_of(progress, 0.8, 0.95));
+      complete_labels(patient, known, options.derive, part_of(progress, 0.7, 0.95));
   if (!derived.empty()) patient.provenance.push_back(fmt::format("derived: {}", fmt::join(derived, ", ")));
   warn_of_cut_structures(patient, known_count, warnings);
   patient.content_hash = hash_patient(patient);

@@ -1,12 +1,12 @@
 #include "cases/segmentation_study.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <memory>
 #include <numbers>
 
+#include "anatomy/complete_labels.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "haptics/tick.h"
@@ -154,18 +154,11 @@ PathError compare_on_path(Needles& needles, const haptics::HapticScene& full, co
 
 }  // namespace
 
-anatomy::VirtualPatient partly_segmented(const anatomy::VirtualPatient& full,
-                                         std::span<const std::string_view> tissues) {
-  anatomy::VirtualPatient partly = full;
+Result<anatomy::VirtualPatient> partly_segmented(const anatomy::VirtualPatient& full,
+                                                 std::span<const std::string_view> tissues, Rest rest) {
+  TROCAR_TRY(anatomy::VirtualPatient partly, anatomy::with_segmented_only(full, tissues));
+  if (rest == Rest::kUnlabelled) anatomy::remove_found_labels(partly);
   partly.name += ", partly segmented";
-  std::array<std::uint8_t, 256> kept{};
-  partly.label_table.labels.clear();
-  for (const anatomy::Label& label : full.label_table.labels) {
-    if (std::find(tissues.begin(), tissues.end(), label.tissue) == tissues.end()) continue;
-    kept[label.id] = label.id;
-    partly.label_table.labels.push_back(label);
-  }
-  for (std::uint8_t& voxel : partly.labels.voxels) voxel = kept[voxel];
   return partly;
 }
 

@@ -10,6 +10,7 @@
 #include "anatomy/tissue/tissue_table.h"
 #include "cases/prescribed_motion.h"
 #include "core/progress.h"
+#include "core/result.h"
 #include "haptics/haptic_scene.h"
 
 namespace trocar::cases {
@@ -19,9 +20,17 @@ namespace trocar::cases {
 /// cartilage is not among them: a bone threshold does not find it.
 inline constexpr std::string_view kPartlySegmented[] = {"bone", "liver", "liver_lesion", "vessel"};
 
-/// The same patient with only the labels of these tissues; all other labels are 0 and their forces follow from HU.
-anatomy::VirtualPatient partly_segmented(const anatomy::VirtualPatient& full,
-                                         std::span<const std::string_view> tissues);
+/// The rest of the body, which is not segmented.
+enum class Rest {
+  kFound,       ///< As a build leaves it: fat, muscle, gas, lung or soft tissue by HU and position.
+  kUnlabelled,  ///< No label: all forces follow from HU.
+};
+
+/// The patient that a build makes of the same CT, skin included, if only structures of these tissues are segmented
+/// (anatomy::with_segmented_only): thin structures of the kinds that `full` has are derived again from what is
+/// segmented and found. Errors: no structure data.
+Result<anatomy::VirtualPatient> partly_segmented(const anatomy::VirtualPatient& full,
+                                                 std::span<const std::string_view> tissues, Rest rest = Rest::kFound);
 
 /// `count` of `available` numbers, spread evenly over all of them, in rising order; all of them if there are fewer.
 std::vector<std::size_t> spread_choice(std::size_t available, std::size_t count, std::uint64_t seed);

@@ -9,9 +9,29 @@
 
 namespace trocar::anatomy {
 
-bool is_derivable(std::string_view name) {
+namespace {
+
+/// The one of kDerivable that a structure's name means, with or without a side; empty: none.
+std::string_view derivable_of(std::string_view name) {
   const std::string plain = detail::without_side(detail::plain_name(name));
-  return std::ranges::any_of(kDerivable, [&](std::string_view known) { return detail::plain_name(known) == plain; });
+  const auto* const found =
+      std::ranges::find_if(kDerivable, [&](std::string_view known) { return detail::plain_name(known) == plain; });
+  return found != std::end(kDerivable) ? *found : std::string_view{};
+}
+
+}  // namespace
+
+bool is_derivable(std::string_view name) {
+  return !derivable_of(name).empty();
+}
+
+DeriveChoice derivable_in(const LabelTable& table) {
+  DeriveChoice choice{false, {}};
+  for (const Label& label : table.labels) {
+    const std::string_view name = derivable_of(label.name);
+    if (!name.empty() && !choice.has(name)) choice.names.emplace_back(name);
+  }
+  return choice;
 }
 
 bool is_marked_derived(std::string_view name) {

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "anatomy/label_table.h"
 #include "core/result.h"
 
 namespace trocar::anatomy {
@@ -36,6 +37,9 @@ struct DeriveChoice {
 
   bool has(std::string_view name) const noexcept;
 };
+
+/// Those of kDerivable that a label table has, derived or segmented.
+DeriveChoice derivable_in(const LabelTable& table);
 
 /// "all", "none", or names separated by commas. Error (exit status 2): an unknown name.
 Result<DeriveChoice> parse_derive_choice(std::string_view text);

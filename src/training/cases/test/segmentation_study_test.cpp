@@ -11,7 +11,6 @@ namespace {
 
 using testing::kFat;
 using testing::kLiver;
-using testing::kMuscle;
 using testing::layered_patient;
 using testing::liver_way;
 using testing::paper_tissues;
@@ -56,10 +55,15 @@ TEST(SegmentationStudy, FindsNoErrorBetweenIdenticalScenes) {
   EXPECT_TRUE(worst_places(errors, paper_tissues()).empty());
 }
 
+std::shared_ptr<const anatomy::VirtualPatient> partly_of(const anatomy::VirtualPatient& full, Rest rest) {
+  auto partly = partly_segmented(full, kPartlySegmented, rest);
+  TROCAR_CHECK(partly.has_value());
+  return std::make_shared<const anatomy::VirtualPatient>(std::move(*partly));
+}
+
 TEST(SegmentationStudy, FeelsALabelThatIsGone) {
   const auto full = layered_patient(liver_way());
-  const auto partly = std::make_shared<const anatomy::VirtualPatient>(partly_segmented(*full, kPartlySegmented));
-  const auto errors = compare_forces(*scene_of(full), *scene_of(partly), motions(4));
+  const auto errors = compare_forces(*scene_of(full), *scene_of(partly_of(*full, Rest::kUnlabelled)), motions(4));
   const StudyFigures figures = study_figures(errors);
   EXPECT_EQ(figures.paths, 4U);
   // The muscle's surface gives way at 2.5 N and is not there any more.
@@ -71,6 +75,18 @@ TEST(SegmentationStudy, FeelsALabelThatIsGone) {
   const auto places = worst_places(errors, paper_tissues());
   ASSERT_FALSE(places.empty());
   EXPECT_NE(places.front().place.find("muscle"), std::string::npos);
+}
+
+TEST(SegmentationStudy, FindsTheLayersOfARestThatTheBuildLabels) {
+  const auto full = layered_patient(liver_way());
+  const auto errors = compare_forces(*scene_of(full), *scene_of(partly_of(*full, Rest::kFound)), motions(4));
+  const double unlabelled_n =
+      study_figures(compare_forces(*scene_of(full), *scene_of(partly_of(*full, Rest::kUnlabelled)), motions(4)))
+          .mean_rms_n;
+  for (const PathError& error : errors) {
+    EXPECT_LT(error.rms_n, 0.2 * unlabelled_n);
+    EXPECT_EQ(error.worst_apart.layer, haptics::kNoLayer);
+  }
 }
 
 TEST(SegmentationStudy, LeavesOutTheMomentAtWhichALayerGivesWayInBoth) {
@@ -123,13 +139,24 @@ TEST(SegmentationStudy, GivesTheSameFiguresAgain) {
 
 TEST(PartlySegmented, KeepsOnlyTheNamedTissues) {
   const auto full = layered_patient(liver_way());
-  const anatomy::VirtualPatient partly = partly_segmented(*full, kPartlySegmented);
-  EXPECT_EQ(anatomy::find_label(partly, {0.0, 0.0, 5.0}), nullptr);   // fat
-  EXPECT_EQ(anatomy::find_label(partly, {0.0, 0.0, 15.0}), nullptr);  // muscle
-  ASSERT_NE(anatomy::find_label(partly, {0.0, 0.0, 30.0}), nullptr);
-  EXPECT_EQ(anatomy::find_label(partly, {0.0, 0.0, 30.0})->id, kLiver);
-  EXPECT_EQ(partly.label_table.find(kMuscle), nullptr);
-  EXPECT_EQ(partly.skin_distance_mm.voxels, full->skin_distance_mm.voxels);
+  const auto partly = partly_of(*full, Rest::kUnlabelled);
+  EXPECT_EQ(anatomy::find_label(*partly, {0.0, 0.0, 5.0}), nullptr);   // fat
+  EXPECT_EQ(anatomy::find_label(*partly, {0.0, 0.0, 15.0}), nullptr);  // muscle
+  ASSERT_NE(anatomy::find_label(*partly, {0.0, 0.0, 30.0}), nullptr);
+  EXPECT_EQ(anatomy::find_label(*partly, {0.0, 0.0, 30.0})->name, "liver");
+  EXPECT_EQ(partly->label_table.find("muscle"), nullptr);
+  EXPECT_EQ(partly->skin_distance_mm.voxels, full->skin_distance_mm.voxels);
+}
+
+TEST(PartlySegmented, FindsFatAndMuscleFromTheCtAsABuildDoes) {
+  const auto full = layered_patient(liver_way());
+  const auto partly = partly_of(*full, Rest::kFound);
+  for (const double z : {5.0, 15.0, 30.0}) {
+    ASSERT_NE(anatomy::find_label(*partly, {0.0, 0.0, z}), nullptr);
+    EXPECT_EQ(anatomy::find_label(*partly, {0.0, 0.0, z})->name, anatomy::find_label(*full, {0.0, 0.0, z})->name);
+  }
+  EXPECT_TRUE(partly->label_table.find("muscle")->is_derived);
+  EXPECT_FALSE(partly->label_table.find("liver")->is_derived);
 }
 
 TEST(SpreadChoice, TakesEachOnceFromAllOver) {
