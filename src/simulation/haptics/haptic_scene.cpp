@@ -106,9 +106,9 @@ Status fill_laws(HapticScene& scene, const anatomy::TissueTable& table) {
   return {};
 }
 
-/// The combined model reads labelled tissue without a wall from the CT.
+/// The proxy models read labelled tissue without a wall from the CT.
 void mark_read_from_ct(HapticScene& scene) {
-  if (scene.options.force_model != ForceModel::kCombined) return;
+  if (scene.options.force_model == ForceModel::kInsertion) return;
   for (std::size_t i = 1; i < static_cast<std::size_t>(scene.tissue_count); ++i) {
     const std::uint8_t layer = scene.tissues[i].layer;
     scene.tissues[i].is_read_from_ct = i != scene.skin && (layer == kNoLayer || !scene.layers[layer].is_wall);

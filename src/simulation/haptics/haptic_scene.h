@@ -129,7 +129,7 @@ struct TissueAt {
 TissueAt tissue_at(const HapticScene& scene, const Vec3& p_P) noexcept;
 
 /// True for tissue that the model reads from the CT rather than from its label (physics.md T2): unlabelled tissue, and
-/// in the combined model all but the skin and structures with walls. Real-time safe.
+/// in the proxy models (proxy, combined) all but the skin and structures with walls. Real-time safe.
 inline bool is_read_from_ct(const HapticScene& scene, const TissueAt& here) noexcept {
   if (here.label == 0) return here.tissue != 0 && here.tissue != scene.skin;
   return scene.tissues[here.tissue].is_read_from_ct;

@@ -54,6 +54,20 @@ TEST(SoftColumn, EndsAtBoneAndAtFluid) {
   }
 }
 
+TEST(SoftColumn, IsTheSameWithAndWithoutLabelsOfTissueWithoutAWall) {
+  const std::vector<Slab> slabs{{0, kFat}, {12, kMuscle}, {24, kFat}};
+  for (const haptics::ForceModel model : {haptics::ForceModel::kProxy, haptics::ForceModel::kCombined}) {
+    const auto column_of = [&](const std::shared_ptr<const haptics::HapticScene>& scene) {
+      return haptics::soft_column(*scene, Vec3::Zero(), Vec3::UnitZ(), kRadius_mm);
+    };
+    const haptics::SoftColumn labelled = column_of(make_scene(slabs, model));
+    const haptics::SoftColumn unlabelled = column_of(make_unlabelled_scene(slabs, model));
+    EXPECT_GT(labelled.depression_mm(2.0), 0.5);
+    EXPECT_EQ(labelled.depression_mm(2.0), unlabelled.depression_mm(2.0));
+    EXPECT_NE(labelled.depression_mm(2.0), column_on_skin(slabs).depression_mm(2.0));  // insertion: from the labels
+  }
+}
+
 anatomy::TissueTable yielding_tissues() {
   anatomy::TissueTable table = paper_tissues();
   table.layers[0].load_spread_mm = table.layers[1].load_spread_mm = 2.0;
