@@ -42,6 +42,12 @@ Figures over_paths(const std::vector<cases::PathError>& errors, double cases::Pa
   return figures_of(std::move(values));
 }
 
+/// Name of what gave way; empty: nothing.
+std::string name_of_layer(std::uint8_t layer, const anatomy::TissueTable& tissues) {
+  if (layer == haptics::kNoLayer) return {};
+  return layer == cases::kBorder ? "border_in_ct" : tissues.layers[layer].name;
+}
+
 /// "path 12 at 3.214 s, 22.1 mm deep, adipose > muscle; peritoneum gives way in one only": the path with the largest
 /// value, and where on it that is.
 std::string place_of_largest(const std::vector<cases::PathError>& errors, double cases::PathError::*value,
@@ -54,7 +60,7 @@ std::string place_of_largest(const std::vector<cases::PathError>& errors, double
                                  place.depth_mm, tissues.tissues[place.tissue].name);
   if (place.ahead != place.tissue) text += fmt::format(" > {}", tissues.tissues[place.ahead].name);
   if (place.layer != haptics::kNoLayer)
-    text += fmt::format("; {} gives way in one only", tissues.layers[place.layer].name);
+    text += fmt::format("; {} gives way in one only", name_of_layer(place.layer, tissues));
   return text;
 }
 
@@ -75,7 +81,7 @@ std::vector<CaseResult> results_of(const std::vector<cases::PathError>& errors, 
        "n",
        over_paths(errors, &cases::PathError::max_apart_n),
        {},
-       fmt::format("without {:.0f} ms before and after a layer that gives way in both within {} mm; {}",
+       fmt::format("without {:.0f} ms before and after a layer or border that gives way in both within {} mm; {}",
                    kMsPerS * cases::kGiveWay_s, cases::kSamePlace_mm,
                    place_of_largest(errors, &cases::PathError::max_apart_n, &cases::PathError::worst_apart, tissues))},
       {"paths/affected",
@@ -138,7 +144,7 @@ std::string csv_of(const Study& study, const anatomy::TissueTable& tissues) {
     const cases::ErrorPlace& apart = e.worst_apart;
     csv += fmt::format("{:.4f},{:.3f},{:.2f},{},{},{}\n", e.max_apart_n, apart.time_s, apart.depth_mm,
                        tissues.tissues[apart.tissue].name, tissues.tissues[apart.ahead].name,
-                       apart.layer == haptics::kNoLayer ? std::string() : tissues.layers[apart.layer].name);
+                       name_of_layer(apart.layer, tissues));
   }
   return csv;
 }

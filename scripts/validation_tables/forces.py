@@ -209,7 +209,8 @@ def paths_rows(titles, studies):
 
 def where(note):
     """ "22.1 mm deep, adipose > muscle; skin gives way in one only" of the note of max-apart."""
-    return note.split(" s, ", 1)[1].replace("_", " ") if " s, " in note else note.split("; ", 1)[1]
+    place = note.split(" s, ", 1)[1] if " s, " in note else note.split("; ", 1)[1]
+    return place.replace("_", " ").replace("in ct", "in the CT")
 
 
 @table("paths-torso", "ct-torso")
@@ -221,6 +222,11 @@ def paths_torso(*studies):
 def paths(*studies):
     return paths_rows([f"{patient}, {model}" for model in ("proxy", "combined") for patient in
                        ("embedded abdomen", "`ct-torso`", "`ct-liver`")], studies)
+
+
+@table("paths-unlabelled", "ct-torso", "ct-liver")
+def paths_unlabelled(*studies):
+    return paths(*studies)
 
 
 CURVES = (("lumbar", "lumbar, Quincke 22 G"), ("lumbar-tuohy-18g", "lumbar, Tuohy 18 G"), ("ascites", "ascites, 14 G"),

@@ -36,19 +36,42 @@ struct Difference {
   std::uint8_t tissue = 0;
 };
 
-/// A layer that gave way.
+/// A layer or a border that gave way.
 struct GaveWay {
   int tick = 0;
   std::uint8_t layer = haptics::kNoLayer;
 };
 
-void note_punctures(std::vector<GaveWay>& punctures, const telemetry::TickSample& sample, int tick) {
-  for (const telemetry::TickEvent& event : sample.events)
-    if (event.kind == telemetry::EventKind::kPuncture) punctures.push_back({tick, event.id});
-}
+/// Notes what gives way in one scene, tick by tick.
+class GiveWayNotes {
+ public:
+  explicit GiveWayNotes(const PrescribedMotion& motion)
+      : suddenly_mm_(kSuddenly * motion.speed_mm_per_s * motion.dt_s) {}
 
-/// Punctures of two scenes on the same motion: intervals of ticks around those that both have at the same place, and
-/// those that one has alone.
+  void note(const telemetry::TickSample& sample, int tick) {
+    bool is_puncture = false;
+    for (const telemetry::TickEvent& event : sample.events) {
+      if (event.kind != telemetry::EventKind::kPuncture) continue;
+      noted_.push_back({tick, event.id});
+      is_puncture = true;
+    }
+    // A tip that moves suddenly behind a layer does not pass a border.
+    const bool is_sudden = is_puncture || sample.depth_mm - depth_mm_ > suddenly_mm_;
+    if (is_sudden && !is_puncture && !was_sudden_) noted_.push_back({tick, kBorder});
+    was_sudden_ = is_sudden;
+    depth_mm_ = sample.depth_mm;
+  }
+  const std::vector<GaveWay>& noted() const noexcept { return noted_; }
+
+ private:
+  std::vector<GaveWay> noted_;
+  double suddenly_mm_;
+  double depth_mm_ = 0.0;
+  bool was_sudden_ = false;
+};
+
+/// What gives way in two scenes on the same motion: intervals of ticks around those that both have at the same place,
+/// and those that one has alone.
 struct SharedPunctures {
   std::vector<std::pair<int, int>> both;
   std::vector<GaveWay> alone;
@@ -90,7 +113,7 @@ ErrorPlace place_of(const Difference& worst, const SharedPunctures& punctures, c
   return place;
 }
 
-/// The largest differences, with and without the moments at which a layer gives way in both scenes.
+/// The largest differences, with and without the moments at which a layer or a border gives way in both scenes.
 void find_worst(PathError& error, const std::vector<Difference>& differences, const SharedPunctures& punctures,
                 const haptics::HapticScene& full, const PrescribedMotion& motion) {
   const Difference* worst = nullptr;
@@ -120,7 +143,7 @@ PathError compare_on_path(Needles& needles, const haptics::HapticScene& full, co
   PathError error;
   error.line_P = motion.line_P;
   std::vector<Difference> differences;
-  std::vector<GaveWay> full_punctures, partly_punctures;
+  GiveWayNotes full_notes(motion), partly_notes(motion);
   double sum2 = 0.0;
   double torque2 = 0.0;
   double full2 = 0.0;
@@ -129,8 +152,8 @@ PathError compare_on_path(Needles& needles, const haptics::HapticScene& full, co
     const haptics::HapticInput input = input_at(motion, i);
     const haptics::HapticOutput a = haptics::tick(needles.full, input, full);
     const haptics::HapticOutput b = haptics::tick(needles.partly, input, partly);
-    note_punctures(full_punctures, a.sample, i);
-    note_punctures(partly_punctures, b.sample, i);
+    full_notes.note(a.sample, i);
+    partly_notes.note(b.sample, i);
     if (way_mm(motion, i) <= 0.0) continue;
     const double difference_n = (a.f_D - b.f_D).norm();
     const double torque_nmm = (a.tau_D - b.tau_D).norm();
@@ -144,7 +167,7 @@ PathError compare_on_path(Needles& needles, const haptics::HapticScene& full, co
     if (difference_n > std::max(kAffected_n, kAffectedShare * force_n)) ++error.affected;
     differences.push_back({i, difference_n, a.sample.device_mm, a.sample.tissue});
   }
-  find_worst(error, differences, share_punctures(full_punctures, partly_punctures, motion), full, motion);
+  find_worst(error, differences, share_punctures(full_notes.noted(), partly_notes.noted(), motion), full, motion);
   const double ticks = std::max(1, error.ticks);
   error.rms_n = std::sqrt(sum2 / ticks);
   error.torque_rms_nmm = std::sqrt(torque2 / ticks);

@@ -50,8 +50,11 @@ struct ErrorPlace {
   double time_s = 0.0;  ///< From the start of the motion.
   double depth_mm = 0.0;
   std::uint8_t tissue = 0, ahead = 0;
-  std::uint8_t layer = haptics::kNoLayer;  ///< Layer that gave way within kGiveWay_s in one scene only.
+  std::uint8_t layer = haptics::kNoLayer;  ///< Layer, or kBorder, that gave way within kGiveWay_s in one scene only.
 };
+/// In place of a layer: a border in the CT, as the one of fat and muscle, which the proxy models render without a
+/// label.
+inline constexpr std::uint8_t kBorder = haptics::kNoLayer - 1;
 
 /// Difference between two scenes on one path: wrench on the device (force in N, torque about the grip in N mm, without
 /// the stylus' weight), over the ticks in which the tip is past the skin.
@@ -62,9 +65,9 @@ struct PathError {
   int affected = 0;                           ///< Ticks with |dF| > max(kAffected_n, kAffectedShare |F|).
   double full_rms_n = 0.0, full_max_n = 0.0;  ///< |F| of the first scene.
   ErrorPlace worst;                           ///< Of max_n.
-  /// Largest difference apart from the moments at which a layer gives way in both scenes: without the ticks from
-  /// kGiveWay_s before to kGiveWay_s after a layer that is punctured in both within kSamePlace_mm of the device's way.
-  /// A layer that only one scene punctures counts.
+  /// Largest difference apart from the moments at which a layer or a border in the CT gives way in both scenes: without
+  /// the ticks from kGiveWay_s before to kGiveWay_s after it gives way in both within kSamePlace_mm of the device's
+  /// way. One that gives way in only one scene counts.
   double max_apart_n = 0.0;
   ErrorPlace worst_apart;  ///< Of max_apart_n.
   Segment line_P{Vec3::Zero(), Vec3::Zero()};
@@ -73,6 +76,8 @@ inline constexpr double kAffected_n = 0.05;
 inline constexpr double kAffectedShare = 0.07;  ///< Force JND (Pang, Tan, Durlach; references.md).
 inline constexpr double kGiveWay_s = 0.020;     ///< Before and after the puncture of a layer. [assumed]
 inline constexpr double kSamePlace_mm = 0.2;    ///< Of the device's way. [assumed]
+/// A border in the CT gives way when the tip starts to move this many times as fast as the device. [assumed]
+inline constexpr double kSuddenly = 10.0;
 
 /// Drives both scenes with the same poses along every path. Parallel over paths; the result does not depend on the
 /// number of threads. The scenes must differ in their patients only.

@@ -128,6 +128,35 @@ TEST(SegmentationStudy, CountsALayerThatIsMissingInEither) {
   }
 }
 
+/// The combined model, with another force at the border of fat and muscle in the CT.
+std::shared_ptr<const haptics::HapticScene> border_scene(double border_n) {
+  haptics::HapticOptions options;
+  options.has_weight_compensation = false;
+  options.force_model = haptics::ForceModel::kCombined;
+  anatomy::TissueTable tissues = paper_tissues();
+  for (std::size_t i = 0; i < tissues.transfer.knot_count; ++i) tissues.transfer.laws[i].normal_n *= border_n / 2.5;
+  auto scene =
+      haptics::make_haptic_scene(layered_patient({{0, kFat}, {15, testing::kMuscle}}), tissues, {}, {}, options);
+  TROCAR_CHECK(scene.has_value());
+  return *scene;
+}
+
+TEST(SegmentationStudy, TakesABorderOfTheCtAsALayer) {
+  const auto full = border_scene(2.5);
+  for (const PathError& error : compare_forces(*full, *border_scene(2.51), motions(4))) {
+    EXPECT_GT(error.max_n, 0.1);  // one has lost the border's resistance, the other has not
+    EXPECT_LT(error.max_apart_n, 0.1 * error.max_n);
+  }
+  // Another place counts, and is named where the difference is largest just before it.
+  for (const double border_n : {1.2, 2.2}) {
+    for (const PathError& error : compare_forces(*full, *border_scene(border_n), motions(4))) {
+      EXPECT_GT(error.max_apart_n, 0.5) << border_n;
+      EXPECT_EQ(error.max_apart_n, error.max_n) << border_n;
+      EXPECT_EQ(error.worst_apart.layer, border_n > 2.0 ? kBorder : haptics::kNoLayer);
+    }
+  }
+}
+
 TEST(SegmentationStudy, GivesTheSameFiguresAgain) {
   const auto full = scene_of(layered_patient(liver_way()));
   const auto other = scene_of(layered_patient({{0, kFat}, {20, kLiver}}));
