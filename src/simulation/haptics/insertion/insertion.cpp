@@ -346,10 +346,6 @@ InsertionStep step_insertion(InsertionState& state, InsertionPath& path, const H
   step.axis_P = path.channel.direction_P;
   const double s_mm = solve_step(state, scene, *line, ahead, balance, step);
   record_forces(state, balance, s_mm, share, step);
-  if (step.is_on_skin) {
-    step.on_skin_n = step.prepuncture_n;
-    step.prepuncture_n *= state.skin.way_P.dot(step.axis_P);
-  }
 
   // The tip stays at the resting surface of the indented layer until its puncture.
   state.s_mm = s_mm;

@@ -58,8 +58,8 @@ struct InsertionStep {
   std::uint8_t punctured = kNoLayer;  ///< Layer punctured in this step.
   EnteredLabels entered;
   bool hit_solver_bound = false;
-  bool is_on_skin = false;  ///< The tip presses unpierced skin: its force is along the contact's way (physics.md V2),
-  double on_skin_n = 0.0;   ///< and this; prepuncture_n is the part along the needle.
+  bool is_on_skin =
+      false;  ///< The tip presses unpierced skin: prepuncture_n is along the contact's way (physics.md V2).
 };
 
 /// Forces of the proxies of paper B along the path, instead of the friction of paper A (combined model; physics.md T2).

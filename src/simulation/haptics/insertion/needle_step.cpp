@@ -64,19 +64,21 @@ Vec3 axial_torque_nmm(const HapticScene& scene, const Pose& X_PN, const Vec3& di
 
 /// Force across the needle on unpierced skin, whose whole force is along the contact's way, at the tip; damped like the
 /// force along it (physics.md V2).
-void hold_on_skin(const NeedleState& state, const Pose& X_PN, const Pose& X_PN_ahead, double length_mm,
-                  NeedleStep& step) noexcept {
+void hold_on_skin(const NeedleState& state, const HapticScene& scene, const Pose& X_PN, const Pose& X_PN_ahead,
+                  double dt_s, NeedleStep& step) noexcept {
   if (!step.axial.is_on_skin) return;
   const SkinContact& skin = state.insertion.skin;
-  const double load_n = step.axial.on_skin_n;
-  Vec3 force_P = step.axial.prepuncture_n * step.axial.axis_P - load_n * skin.way_P;
+  const double load_n = step.axial.prepuncture_n;
+  const CouplingParams& coupling = scene.options.coupling;
+  const double ahead_s = coupling.damping_ns_per_mm / coupling.stiffness_n_per_mm;
+  Vec3 force_P = load_n * (step.axial.axis_P - skin.way_P);
   constexpr double kNear_mm = 1e-6;
-  if (!skin.has_slid && skin.to_device_mm > kNear_mm) {
-    const Vec3 ahead_P = X_PN_ahead.p() - X_PN.p();
+  if (skin.to_device_mm > kNear_mm) {
+    const Vec3 ahead_P = X_PN_ahead.p() - X_PN.p() - ahead_s / dt_s * skin.slid_P;
     force_P -= load_n / skin.to_device_mm * (ahead_P - skin.way_P * skin.way_P.dot(ahead_P));
   }
   step.held_P.force_n += force_P;
-  step.held_P.torque_nmm += Vec3(length_mm * X_PN.R().col(2)).cross(force_P);
+  step.held_P.torque_nmm += Vec3(scene.needle.length_mm * X_PN.R().col(2)).cross(force_P);
 }
 
 /// Depth of the virtual needle's tip along the path: it grows evenly where a layer is pressed in, too.
@@ -160,7 +162,7 @@ void step_insertion_model(NeedleState& state, const HapticScene& scene, const Po
     constrain_to_path(state, scene, X_PN, X_PN_ahead, step);
   else
     hold_body(state, scene, X_PN_ahead, is_stylet_in, kNoBevel, step);
-  hold_on_skin(state, X_PN, X_PN_ahead, scene.needle.length_mm, step);
+  hold_on_skin(state, scene, X_PN, X_PN_ahead, dt_s, step);
 }
 
 void step_proxy_model(NeedleState& state, const HapticScene& scene, const Pose& X_PN, const Pose& X_PN_ahead,
@@ -179,7 +181,7 @@ void step_combined_model(NeedleState& state, const HapticScene& scene, const Pos
   step.axial = step_insertion(state.insertion, state.path, scene, X_PN.p(), X_PN.R().col(2), dt_s, &share);
   step.tip_proxy_P = -step.axial.tip_proxy_n * step.axial.axis_P;
   hold_body(state, scene, X_PN_ahead, is_stylet_in, step.axial.velocity_mm_per_s, step);
-  hold_on_skin(state, X_PN, X_PN_ahead, scene.needle.length_mm, step);
+  hold_on_skin(state, scene, X_PN, X_PN_ahead, dt_s, step);
 }
 
 /// A tick without any bend that can be seen is sent as straight.

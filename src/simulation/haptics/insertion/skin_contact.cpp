@@ -36,17 +36,17 @@ void follow_skin(SkinContact& contact, const HapticScene& scene, const Vec3& dev
   constexpr double kOnCone_mm = 1e-9;
   Vec3 normal_P = inward_normal(scene, contact.anchor_P);
   Vec3 way = device_tip_P - contact.anchor_P;
-  contact.has_slid = false;
+  const Vec3 before_P = contact.anchor_P;
   for (int i = 0; i < kMostSteps; ++i) {
     const double deep_mm = way.dot(normal_P);
     const Vec3 beside = way - deep_mm * normal_P;
     const double beyond_mm = beside.norm() - friction * std::max(0.0, deep_mm);
     if (!(beyond_mm > kOnCone_mm)) break;
     contact.anchor_P = nearest_skin(scene, contact.anchor_P + beyond_mm * beside.normalized());
-    contact.has_slid = true;
     normal_P = inward_normal(scene, contact.anchor_P);
     way = device_tip_P - contact.anchor_P;
   }
+  contact.slid_P = contact.anchor_P - before_P;
   const double deep_mm = way.dot(normal_P);
   contact.to_device_mm = deep_mm > 0.0 ? way.norm() : deep_mm;
   contact.way_P = deep_mm > 0.0 ? Vec3(way.stableNormalized()) : normal_P;

@@ -23,7 +23,7 @@ struct SkinContact {
   Vec3 anchor_P = Vec3::Zero();  ///< On the resting skin.
   Vec3 way_P = Vec3::UnitZ();    ///< Unit, from there to the device's tip; into the body.
   double to_device_mm = 0.0;     ///< Length of that way; negative: the device's tip is that far outside the skin.
-  bool has_slid = false;         ///< In the last step.
+  Vec3 slid_P = Vec3::Zero();    ///< Way of the point in the last step.
 };
 
 /// Follows the device's tip with the coefficient of friction `friction`. Real-time safe.

@@ -62,7 +62,9 @@ ProxyNeedleStep on_skin(ProxyNeedleState& state, InsertionPath& path, const Hapt
   const std::uint8_t layer = scene.tissues[scene.skin].layer;
   const double tissue_n_per_mm = layer == kNoLayer ? 1.0 : scene.layers[layer].indent_n_per_mm;
   const double k = in_series(scene.options.coupling.stiffness_n_per_mm, tissue_n_per_mm);
-  const Vec3 ahead_P = skin.has_slid ? Vec3(Vec3::Zero()) : Vec3(X_PN_ahead.p() - X_PN.p());
+  const CouplingParams& coupling = scene.options.coupling;
+  const double ahead_s = coupling.damping_ns_per_mm / coupling.stiffness_n_per_mm;
+  const Vec3 ahead_P = X_PN_ahead.p() - X_PN.p() - ahead_s / dt_s * skin.slid_P;
   double load_n = std::max(0.0, k * (skin.to_device_mm + skin.way_P.dot(ahead_P)));
   const double puncture_n = layer == kNoLayer ? 0.0 : scene.layers[layer].puncture_force_n;
   const double share = piercing_share(skin, scene, X_PN.R().col(2));  // the force along the needle counts

@@ -15,7 +15,8 @@ constexpr double kTremorHigh_hz = 12.0;
 constexpr double kTremorAlongNeedle = 0.1;  // assumed
 
 constexpr double kSpeedSmoothing_s = 0.06;  // of each of two stages; assumed
-constexpr double kMaxLead_mm = 12.0;        // lead of the hand over the device: 7 N at 0.6 N/mm, for any grip; assumed
+constexpr double kMaxLead_mm = 12.0;        // lead of the hand over the device: 7 N at 0.6 N/mm; assumed
+constexpr double kBracedPush = 1.5;         // a braced hand pushes with as many times the force; assumed
 constexpr double kFeeling_s = 0.02;         // assumed
 constexpr double kTouch_n = 0.15;           // assumed; below the threshold of a fingertip
 constexpr double kLeastDrop_n = 0.3;        // assumed
@@ -99,7 +100,7 @@ void GuidedHand::move(double speed_mm_s, double dt_s) noexcept {
   speed_ahead_mm_s_ += (speed_mm_s - speed_ahead_mm_s_) * share;
   speed_mm_s_ += (speed_ahead_mm_s_ - speed_mm_s_) * share;
   const double unlimited_mm = wanted_mm_ + speed_mm_s_ * dt_s;
-  const double lead_mm = kMaxLead_mm / grip_;
+  const double lead_mm = kMaxLead_mm / grip_ * (grip_ > 1.0 ? kBracedPush : 1.0);
   wanted_mm_ = std::clamp(unlimited_mm, device_mm_ - lead_mm, device_mm_ + lead_mm);
   if (wanted_mm_ != unlimited_mm) speed_ahead_mm_s_ = speed_mm_s_ = 0.0;
 }

@@ -17,11 +17,11 @@ TEST(SkinContact, HoldsItsPointWithinTheConeOfFriction) {
   haptics::SkinContact contact;
   haptics::follow_skin(contact, *scene, {1.9, 0.0, 1.0}, kTip);
   EXPECT_LT(contact.anchor_P.norm(), 1e-9);
-  EXPECT_FALSE(contact.has_slid);
+  EXPECT_EQ(contact.slid_P.norm(), 0.0);
   EXPECT_NEAR(contact.to_device_mm, std::hypot(1.9, 1.0), 1e-9);
   haptics::follow_skin(contact, *scene, {0.0, 5.0, 1.0}, kTip);  // 2 mm of 1 mm deep: the rest slides
   EXPECT_LT((contact.anchor_P - Vec3(0.0, 3.0, 0.0)).norm(), 1e-6);
-  EXPECT_TRUE(contact.has_slid);
+  EXPECT_NEAR(contact.slid_P.norm(), 3.0, 1e-6);
   haptics::follow_skin(contact, *scene, {3.0, 3.0, 0.5}, 0.0);
   EXPECT_LT((contact.anchor_P - Vec3(3.0, 3.0, 0.0)).norm(), 1e-6);
   haptics::follow_skin(contact, *scene, {3.0, 3.0, -0.5}, kTip);
