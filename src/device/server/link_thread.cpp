@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "core/log.h"
 #include "realtime/periodic_loop.h"
@@ -112,7 +113,8 @@ void LinkThread::take(const link::Received& received) {
   } else if (const auto* command = std::get_if<link::Command>(&received.body)) {
     take(received, *command);
   } else if (const auto* target = std::get_if<link::HandTarget>(&received.body)) {
-    placements_ += target->is_placed ? 1 : 0;
+    // Sent again until it was taken, it is one placement.
+    if (target->is_placed && std::exchange(placed_s_, target->server_time_s) != target->server_time_s) ++placements_;
     shared_.hand.write({*target, placements_});
   }
 }

@@ -37,6 +37,7 @@ class LinkThread {
   std::uint64_t ticks_ = 0;
   std::uint64_t in_control_ = 0;  ///< Session of the client in control; 0: none.
   std::uint64_t placements_ = 0;  ///< See CountedHand.
+  double placed_s_ = -1.0;        ///< Time of the last placement.
   double window_age_s_ = 0.0;
   std::uint32_t actions_ = 0;
   double drop_n_ = 0.0, drop_s_ = 0.0;
