@@ -84,7 +84,7 @@ TEST(Insertion, SkinPeakIsExactForANeedleThatSlidesAndTilts) {
     }
     ASSERT_EQ(punctures(samples), (std::vector<int>{0}));
     const telemetry::TickSample& last = samples.back();  // the force along the needle pierces
-    constexpr double kDamper_n = 0.2;  // of the tip's motion across the needle
+    constexpr double kDamper_n = 0.2;                    // of the tip's motion across the needle
     EXPECT_NEAR(-(last.f_total_n - last.f_weight_n).dot(last.axis), 2.8, kDamper_n);
   }
 }
