@@ -9,6 +9,7 @@ inline constexpr std::size_t kMostMessageBytes = 1 << 20;  ///< Larger messages 
 inline constexpr std::size_t kMostTextBytes = 256 * 1024;  ///< Limit of one string (a tissue table is the longest).
 inline constexpr std::size_t kMostNameBytes = 256;         ///< Limit of a client's name in Hello.
 inline constexpr std::size_t kMostBytesBeforeHello = 4096;
+inline constexpr double kMostPressed_mm = 100.0;  ///< Of a placed needle: see HandTarget.
 
 // Rate limits of one connection, before and after Hello. A peer above them is read more slowly. [assumed]
 inline constexpr double kMostMessagesPerS = 4000.0;  ///< Above 1 kHz of hand targets plus heartbeats and commands.

@@ -178,8 +178,9 @@ void Servo::note_shape(const ServoInput& input, ServoRecord& record) noexcept {
   record.shape->time_s = record.sample.time_s;
 }
 
-void Servo::begin_anew() noexcept {
+void Servo::begin_anew(double pressed_mm) noexcept {
   tick_ = {};
+  tick_.needle.pressed_mm = pressed_mm;
   if (gate_.fault == telemetry::GateFault::kNone) gate_.mode = telemetry::GateMode::kOff;  // through the safe start
 }
 
@@ -205,8 +206,9 @@ ServoRecord Servo::step(const ServoInput& input) noexcept {
   }
 
   const Sensed sensed = sense(input);
-  if (was_placed_) begin_anew();  // a placed tool has no path from its former pose and creates no channel
+  if (was_placed_) begin_anew(pressed_mm_);  // a placed tool has no path from its former pose and creates no channel
   was_placed_ = input.hand && input.hand->is_placed;
+  if (was_placed_) pressed_mm_ = input.hand->pressed_mm;
   if (input.hand && input.scene != nullptr) {
     const haptics::HapticScene& scene = *input.scene->scene;
     R_WS_told_ = (scene.X_PD.inverse() * input.hand->X_PN * scene.X_SN.inverse()).R();

@@ -93,8 +93,8 @@ class Servo {
   };
   Sensed sense(const ServoInput& input) noexcept;
   telemetry::GateFault watch_encoder(const devices::DeviceReading& reading, double dt_s) noexcept;
-  /// Restarts the tool at its present pose: for a new scene, or a placed hand.
-  void begin_anew() noexcept;
+  /// Restarts the tool at its present pose: for a new scene, or a placed hand, whose needle may be behind it.
+  void begin_anew(double pressed_mm = 0.0) noexcept;
   Wanted feel(const Sensed& sensed, const ServoInput& input, telemetry::TickSample& sample) noexcept;
   devices::DeviceHand hand_in_device(const link::HandTarget& target, const haptics::HapticScene& scene) const noexcept;
   haptics::CouplingParams coupling_in_device(const ServoScene* scene) const noexcept;
@@ -112,6 +112,7 @@ class Servo {
   double shape_s_ = 0.0;  ///< Time of the last shape.
   bool has_read_ = false;
   bool was_placed_ = false;            ///< The hand target of the last period had is_placed.
+  double pressed_mm_ = 0.0;            ///< Of that target.
   devices::DeviceReading last_;        ///< Last fresh reading with a valid pose.
   Mat3 R_WS_told_ = Mat3::Identity();  ///< Used if the device senses no rotation; from the hand target.
   double unread_s_ = 0.0;

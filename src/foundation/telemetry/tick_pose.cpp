@@ -1,5 +1,7 @@
 #include "telemetry/tick_pose.h"
 
+#include <algorithm>
+
 #include "geometry/quaternion.h"
 
 namespace trocar::telemetry {
@@ -24,6 +26,12 @@ Pose device_pose(const TickSample& sample) noexcept {
 
 Pose felt_needle(const TickSample& sample) noexcept {
   return {felt_rotation(sample, 2), sample.tip_mm};
+}
+
+double pressed_mm(const TickSample& sample) noexcept {
+  const bool is_inserted = sample.phase == InsertionPhase::kInserted || sample.phase == InsertionPhase::kRetracting ||
+                           (sample.phase == InsertionPhase::kLoading && sample.contact_to_puncture_mm != Vec3::Zero());
+  return is_inserted ? std::max(0.0, sample.axis.dot(sample.device_mm - sample.tip_mm)) : 0.0;
 }
 
 Pose felt_probe(const TickSample& sample) noexcept {

@@ -9,6 +9,9 @@ namespace trocar::telemetry {
 Pose device_pose(const TickSample& sample) noexcept;
 /// Pose of the virtual needle: its tip and axis, with the device's roll.
 Pose felt_needle(const TickSample& sample) noexcept;
+/// How far (mm, >= 0) the device is ahead of the inserted virtual needle along its axis: tissue pressed in, and the
+/// coupling. 0 outside and on unpierced skin.
+double pressed_mm(const TickSample& sample) noexcept;
 /// Pose of the virtual transducer, whose axis is y of T.
 Pose felt_probe(const TickSample& sample) noexcept;
 

@@ -49,6 +49,7 @@ constexpr Range kYoung_gpa = {0.0, 1e4};
 constexpr Range kBevels_rad = {0.0, 3.2};
 constexpr Range kShares = {0.0, 1.0};
 constexpr Range kHandParameters = {0.0, 1e6};
+constexpr Range kPressed_mm = {0.0, kMostPressed_mm};
 constexpr Range kSettingValues = {-1e9, 1e9};
 constexpr Range kCouplings = {-1e6, 1e6};
 constexpr double kMostSpeed_mm_per_s = 1e5;
@@ -117,8 +118,8 @@ ClientMember build_body(Builder& b, const Command& command) {
 ClientMember build_body(Builder& b, const HandTarget& target) {
   const wire::Hand hand(to_wire(target.X_PN), to_wire(target.v_P), to_wire(target.w_P), target.server_time_s,
                         target.stiffness_n_per_mm, target.damping_ns_per_mm, target.mass_kg, target.turning_nmm_per_rad,
-                        target.turning_damping_nmms_per_rad, target.inertia_kg_mm2, target.buttons, target.holds_tip,
-                        target.is_held, target.is_rigid, target.is_placed);
+                        target.turning_damping_nmms_per_rad, target.inertia_kg_mm2, target.pressed_mm, target.buttons,
+                        target.holds_tip, target.is_held, target.is_rigid, target.is_placed);
   return {wire::ClientBody::HandTarget, wire::CreateHandTarget(b, &hand).Union()};
 }
 
@@ -216,6 +217,7 @@ HandTarget read(const wire::HandTarget& table, Inspection& in) {
   target.turning_damping_nmms_per_rad =
       in.number(hand.turning_damping_nmms_per_rad(), kHandParameters, "turning_damping_nmms_per_rad");
   target.inertia_kg_mm2 = in.number(hand.inertia_kg_mm2(), kHandParameters, "inertia_kg_mm2");
+  target.pressed_mm = in.number(hand.pressed_mm(), kPressed_mm, "pressed_mm");
   target.holds_tip = hand.holds_tip();
   target.buttons = hand.buttons();
   target.is_held = hand.is_held();

@@ -144,6 +144,8 @@ TEST(UnsoundNumber, NegativeStiffnessMassOrLengthIsRefused) {
   EXPECT_FALSE(is_accepted(with(&HandTarget::damping_ns_per_mm, -1e-9)));
   EXPECT_FALSE(is_accepted(with(&HandTarget::mass_kg, -1e-9)));
   EXPECT_FALSE(is_accepted(with(&HandTarget::inertia_kg_mm2, -1e-9)));
+  EXPECT_FALSE(is_accepted(with(&HandTarget::pressed_mm, -1e-9)));
+  EXPECT_FALSE(is_accepted(with(&HandTarget::pressed_mm, 101.0)));
   EXPECT_FALSE(is_accepted(Command{1, with(&LoadScene::needle_length_mm, -1.0)}));
   EXPECT_FALSE(is_accepted(Heartbeat{0.0, -1.0, 0}));
 }

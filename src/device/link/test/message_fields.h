@@ -32,8 +32,8 @@ void each_field(T& value, Visit&& visit) {
     auto& [a, b] = value;
     all(a, b);
   } else if constexpr (std::is_same_v<Plain, HandTarget>) {
-    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o] = value;
-    all(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o);
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] = value;
+    all(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p);
   } else if constexpr (std::is_same_v<Plain, DeviceSummary>) {
     auto& [a, b, c, d, e, f, g, h, i] = value;
     all(a, b, c, d, e, f, g, h, i);

@@ -201,6 +201,11 @@ telemetry::InsertionPhase next_phase(const InsertionState& state, const Insertio
                                                                : telemetry::InsertionPhase::kInserted;
 }
 
+SoftColumn column_below(const HapticScene& scene, const LayerLaw& law, const Vec3& surface_P,
+                        const Vec3& inward_P) noexcept {
+  return soft_column(scene, surface_P, inward_P, scene.needle.radius_mm + law.load_spread_mm, law.pressed_young_kpa);
+}
+
 /// The tip begins to press on a layer. Tissue that still recoils from the puncture before stays the tissue below.
 void begin_loading(InsertionState& state, const InsertionPath& path, const HapticScene& scene,
                    const LayerAhead& layer) noexcept {
@@ -210,8 +215,7 @@ void begin_loading(InsertionState& state, const InsertionPath& path, const Hapti
   if (!state.is_yielding || state.recoil_mm > kRecoiled_mm) return;
   const Channel& line = path.channel;
   const Vec3 inward_P = path.is_open ? line.direction_P : state.skin.way_P;
-  state.below = soft_column(scene, line.origin_P + layer.surface_mm * inward_P, inward_P,
-                            scene.needle.radius_mm + law.load_spread_mm, law.pressed_young_kpa);
+  state.below = column_below(scene, law, line.origin_P + layer.surface_mm * inward_P, inward_P);
 }
 
 /// Contact with hysteresis: starts at the resting surface, ends slightly above it.
@@ -319,12 +323,19 @@ double solve_step(InsertionState& state, const HapticScene& scene, const LineSte
 
 }  // namespace
 
-void start_insertion(InsertionState& state, const InsertionPath& path, const Vec3& device_tip_P) noexcept {
+void start_insertion(InsertionState& state, const InsertionPath& path, const HapticScene& scene,
+                     const Vec3& device_tip_P, double pressed_mm) noexcept {
   state = {};
   state.device_tip_P = device_tip_P;
   if (!path.is_open) return;
-  state.s_mm = state.s_device_mm = path.channel.direction_P.dot(device_tip_P - path.channel.origin_P);
+  const Channel& line = path.channel;
+  state.s_device_mm = line.direction_P.dot(device_tip_P - line.origin_P);
+  state.s_mm = state.s_device_mm - pressed_mm;
   state.phase = telemetry::InsertionPhase::kInserted;
+  const std::uint8_t skin = scene.tissues[scene.skin].layer;
+  if (!(pressed_mm > 0.0) || skin == kNoLayer || !(scene.layers[skin].load_spread_mm > 0.0)) return;
+  state.below = column_below(scene, scene.layers[skin], line.origin_P, line.direction_P);
+  state.yielded_mm = state.recoil_mm = pressed_mm;
 }
 
 InsertionStep step_insertion(InsertionState& state, InsertionPath& path, const HapticScene& scene,

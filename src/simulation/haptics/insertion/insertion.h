@@ -69,8 +69,10 @@ struct ProxyShare {
   double tip_viscous_ns_per_mm = 0.0;
 };
 
-/// Sets needle and device to the device's pose: zero force. Real-time safe.
-void start_insertion(InsertionState& state, const InsertionPath& path, const Vec3& device_tip_P) noexcept;
+/// Sets needle and device to the device's pose: zero force. The tip of an inserted needle is `pressed_mm` behind it: by
+/// so much the skin is pressed in (physics.md P6); where it does not give way, the coupling. Real-time safe.
+void start_insertion(InsertionState& state, const InsertionPath& path, const HapticScene& scene,
+                     const Vec3& device_tip_P, double pressed_mm = 0.0) noexcept;
 
 /// One step of the needle: device tip and unit axis in P, dt > 0. A puncture within the step ends the step there (force
 /// = puncture force); the rest of the time is added to the next step. `share`: nullptr for the insertion model alone.

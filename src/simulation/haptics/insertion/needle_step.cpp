@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "haptics/proxy/tip_law.h"
 
@@ -15,9 +16,15 @@ constexpr double kNeedleJump_mm_per_s = 3000.0;
 /// Starts at the needle's pose: outside, or inside with all layers down to the tip pierced.
 void start(NeedleState& state, const HapticScene& scene, const Pose& X_PN, NeedleStep& step) noexcept {
   leave_body(state.path);
-  step.has_resumed = resume_inside(state.path, scene, X_PN.p(), X_PN.R().col(2));
-  start_insertion(state.insertion, state.path, X_PN.p());
-  start_proxy_needle(state.proxy, state.path, X_PN.p());
+  const Vec3 axis_P = X_PN.R().col(2);
+  double pressed_mm = std::exchange(state.pressed_mm, 0.0);
+  step.has_resumed = resume_inside(state.path, scene, X_PN.p() - pressed_mm * axis_P, axis_P);
+  if (!step.has_resumed && pressed_mm > 0.0) {
+    pressed_mm = 0.0;
+    step.has_resumed = resume_inside(state.path, scene, X_PN.p(), axis_P);
+  }
+  start_insertion(state.insertion, state.path, scene, X_PN.p(), pressed_mm);
+  start_proxy_needle(state.proxy, state.path, X_PN.p() - pressed_mm * axis_P);
   state.X_PN = X_PN;
   state.tip_velocity_P = state.axis_rate_P = Vec3::Zero();
   state.is_started = true;

@@ -40,8 +40,10 @@ void ServerSupervisor::prepare(const PreparationRequest& request) {
   request_->place.is_rigid = true;
 }
 
-void ServerSupervisor::place_at(const Pose& X_PTool) {
-  if (request_) request_->place.X_PN = X_PTool;
+void ServerSupervisor::place_at(const Pose& X_PTool, double pressed_mm) {
+  if (!request_) return;
+  request_->place.X_PN = X_PTool;
+  request_->place.pressed_mm = pressed_mm;
 }
 
 void ServerSupervisor::enter(ServerState state) {

@@ -72,8 +72,9 @@ class ServerSupervisor {
 
   /// Sets scene and start pose. Before this call, a connected server stays in kIdle.
   void prepare(const PreparationRequest& request);
-  /// Sets the pose at which the tool is placed when the server is prepared again.
-  void place_at(const Pose& X_PTool);
+  /// Sets the pose at which the tool is placed when the server is prepared again; a needle's tip `pressed_mm` behind
+  /// it.
+  void place_at(const Pose& X_PTool, double pressed_mm = 0.0);
   /// Performs one step. Returns the text of a note; empty: none.
   std::string poll();
 
