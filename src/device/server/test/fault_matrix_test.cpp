@@ -18,7 +18,7 @@ using testing::needle_at_depth;
 
 constexpr double kFault_s = 4.0;  // when the device breaks: forces are on, the skin is pressed
 
-constexpr double kPress_mm = 5.0;   // where the hand wants the tip: its spring and the skin share the way
+constexpr double kPress_mm = 4.0;   // where the hand wants the tip; jitter must not pierce the skin there
 constexpr double kTremor_mm = 0.8;  // slow, and more than the joints' friction holds
 
 /// What must come of a fault.
@@ -64,7 +64,7 @@ std::unique_ptr<devices::HapticDevice> make_device(const Kind& kind, const hapti
   // A recorded hand: down onto the skin within 3 s, then trembling there.
   std::vector<Pose> poses;
   for (int i = 0; i < 20'000; ++i) {
-    const double depth_mm = std::min(3.0, -10.0 + 0.005 * i) + kTremor_mm * std::sin(0.012 * i);
+    const double depth_mm = std::min(2.5, -10.0 + 0.005 * i) + kTremor_mm * std::sin(0.012 * i);
     poses.push_back(needle_at_depth(depth_mm));
   }
   return std::make_unique<devices::ReplayDevice>(preset, "recorded", std::move(poses), 1000.0);

@@ -108,8 +108,8 @@ double share_slope_per_mm(GripTurning& turning, const HeldShaft& shaft, double t
 
 /// Forces of the body proxies across the path, the bent shape of the needle, and the torque about the grip of all
 /// forces (paper B, eq. 6): those along the path act at the tip, from whose motion they are computed.
-void hold_body(NeedleState& state, const HapticScene& scene, const Pose& X_PN_ahead, bool is_stylet_in,
-               double cutting_mm_per_s, NeedleStep& step) noexcept {
+void hold_body(NeedleState& state, const HapticScene& scene, const Pose& X_PN, const Pose& X_PN_ahead,
+               bool is_stylet_in, double cutting_mm_per_s, NeedleStep& step) noexcept {
   state.bent.node_count = 0;
   const InsertionStep& axial = step.axial;
   step.held_P.force_n = -axial.bed_n * axial.axis_P;
@@ -123,7 +123,7 @@ void hold_body(NeedleState& state, const HapticScene& scene, const Pose& X_PN_ah
   }
   const double depth_mm = needle_depth_mm(state, scene);
   const HeldShaft shaft = hold_shaft(state.path.channel, scene, X_PN_ahead, depth_mm, is_stylet_in);
-  state.is_torn = shaft.is_torn;
+  state.is_torn = is_torn(state.path.channel, scene, X_PN, depth_mm);
   // The bevel deflects only while it cuts: at rest, or against a layer that holds, its force would have no potential.
   const double cuts = cutting_mm_per_s > 0.0 ? motion_fade(cutting_mm_per_s) : 0.0;
   const ShaftReaction reaction =
@@ -168,7 +168,7 @@ void step_insertion_model(NeedleState& state, const HapticScene& scene, const Po
   if (scene.has_path_constraint)
     constrain_to_path(state, scene, X_PN, X_PN_ahead, step);
   else
-    hold_body(state, scene, X_PN_ahead, is_stylet_in, kNoBevel, step);
+    hold_body(state, scene, X_PN, X_PN_ahead, is_stylet_in, kNoBevel, step);
   hold_on_skin(state, scene, X_PN, X_PN_ahead, dt_s, step);
 }
 
@@ -179,7 +179,7 @@ void step_proxy_model(NeedleState& state, const HapticScene& scene, const Pose& 
   step.axial = moved.axial;
   step.tip_proxy_P = moved.tip_force_P;
   const double cutting_mm_per_s = (state.proxy.proxy_P - proxy_before_P).dot(step.axial.axis_P) / dt_s;
-  hold_body(state, scene, X_PN_ahead, is_stylet_in, cutting_mm_per_s, step);
+  hold_body(state, scene, X_PN, X_PN_ahead, is_stylet_in, cutting_mm_per_s, step);
 }
 
 void step_combined_model(NeedleState& state, const HapticScene& scene, const Pose& X_PN, const Pose& X_PN_ahead,
@@ -187,7 +187,7 @@ void step_combined_model(NeedleState& state, const HapticScene& scene, const Pos
   const ProxyShare share = proxy_share(state.path, scene);
   step.axial = step_insertion(state.insertion, state.path, scene, X_PN.p(), X_PN.R().col(2), dt_s, &share);
   step.tip_proxy_P = -step.axial.tip_proxy_n * step.axial.axis_P;
-  hold_body(state, scene, X_PN_ahead, is_stylet_in, step.axial.velocity_mm_per_s, step);
+  hold_body(state, scene, X_PN, X_PN_ahead, is_stylet_in, step.axial.velocity_mm_per_s, step);
   hold_on_skin(state, scene, X_PN, X_PN_ahead, dt_s, step);
 }
 

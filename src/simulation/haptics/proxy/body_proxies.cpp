@@ -230,10 +230,18 @@ HeldShaft hold_shaft(const Channel& channel, const HapticScene& scene, const Pos
     beam.bending_stiffness_n_mm2 = std::numeric_limits<double>::infinity();
   const double turning = shaft.turning_nmm_per_rad = grip_stiffness(beam, shaft.bed).turning_nmm_per_rad;
   if (turning > kMostTurning_nmm_per_rad) shaft.share = kMostTurning_nmm_per_rad / turning;
-  shaft.is_torn = is_far;
   shaft.beam.is_bound = shaft.beam.is_bound || is_far;
   store_energy(shaft);
   return shaft;
+}
+
+bool is_torn(const Channel& channel, const HapticScene& scene, const Pose& X_PN, double tip_mm) noexcept {
+  const auto beside_mm = [&](double behind_tip_mm) {
+    const Vec3 shaft_P = X_PN.p() - behind_tip_mm * X_PN.R().col(2);
+    return across(shaft_P - channel.origin_P, channel.direction_P).norm();
+  };
+  const double most_mm = kMaxDeflection * scene.needle.length_mm;
+  return std::max(beside_mm(0.0), beside_mm(std::min(tip_mm, scene.needle.length_mm))) > most_mm;
 }
 
 ShaftReaction react(const HeldShaft& shaft, const HapticScene& scene, const Vec3& tip_force_P) noexcept {

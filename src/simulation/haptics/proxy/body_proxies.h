@@ -34,7 +34,6 @@ struct HeldShaft {
   std::array<double, kMaxBeamNodes> stiffening_n_per_mm2{};  ///< Change of the bed's stiffness per mm of depth.
   std::array<double, kMaxBeamNodes> growth_n_per_mm3{};      ///< Change of that per mm of depth.
   double turning_nmm_per_rad = 0.0;                          ///< Rotational stiffness at the grip, without the share.
-  bool is_torn = false;       ///< Further beside the channel than kMaxDeflection: no needle bends so far.
   double share = 1.0;         ///< Share of the shaft's forces rendered at the hand: below 1 if the tissue's rotational
                               ///< stiffness at the grip is too high.
   double energy_nmm = 0.0;    ///< Stored in tissue and shaft without a force on the tip, as far as it is rendered.
@@ -44,6 +43,10 @@ struct HeldShaft {
 inline constexpr double kMostTurning_nmm_per_rad = 1500.0;
 HeldShaft hold_shaft(const Channel& channel, const HapticScene& scene, const Pose& X_PN, double tip_mm,
                      bool is_stylet_in) noexcept;
+
+/// True for a needle whose inserted part is further beside the channel than kMaxDeflection of its length: no needle
+/// bends so far, it tears its channel. Real-time safe.
+bool is_torn(const Channel& channel, const HapticScene& scene, const Pose& X_PN, double tip_mm) noexcept;
 
 /// Deflections of the beam's nodes from the straight shaft, across it, in P (mm); node_count 0: straight.
 struct BentShaft {
