@@ -28,7 +28,6 @@ Vec3 across(const Vec3& v, const Vec3& axis) noexcept {
 struct ShaftTissue {
   double dry_n_per_mm = 0.0;
   double viscosity_ns_per_mm = 0.0;
-  double young_kpa = 0.0;
 };
 
 ShaftTissue tissue_at_bin(const Channel& channel, const HapticScene& scene, std::size_t bin) noexcept {
@@ -36,9 +35,9 @@ ShaftTissue tissue_at_bin(const Channel& channel, const HapticScene& scene, std:
   if (here.tissue == 0) return {};  // Outside the body.
   const TissueLaw& labelled = scene.tissues[here.tissue];
   if (scene.transfer.knot_count == 0 || !is_read_from_ct(scene, here))
-    return {labelled.stick_n_per_mm, labelled.viscosity_ns_per_mm, labelled.young_kpa};
+    return {labelled.stick_n_per_mm, labelled.viscosity_ns_per_mm};
   const anatomy::HuLaw law = scene.transfer.at(channel.hu[bin]);
-  return {law.shaft_n_per_mm, law.shaft_viscosity_ns_per_mm, here.label != 0 ? labelled.young_kpa : law.young_kpa};
+  return {law.shaft_n_per_mm, law.shaft_viscosity_ns_per_mm};
 }
 
 /// Part of the channel of one proxy, within the body.
@@ -89,7 +88,8 @@ struct BedLaw {
     return factor() * young_kpa * std::cbrt(std::sqrt(std::sqrt(slenderness_per_kpa() * young_kpa)));
   }
   double young_kpa_of(double stiffness) const noexcept {
-    return std::pow(stiffness / factor(), 12.0 / 13.0) * std::pow(slenderness_per_kpa(), -1.0 / 13.0);
+    const double x = stiffness / factor(), x2 = x * x, x4 = x2 * x2;
+    return std::pow(x4 * x4 * x4 / slenderness_per_kpa(), 1.0 / 13.0);
   }
 };
 
@@ -97,42 +97,52 @@ const NeedleBeam& beam_of(const HapticScene& scene, bool is_stylet_in) noexcept 
   return is_stylet_in ? scene.beam_with_stylet : scene.beam_without_stylet;
 }
 
-/// Young's modulus of the tissue along a piece: linear between the centres of cells and from zero at the skin, so that
-/// the bed's stiffness and its change with depth are continuous.
-struct PieceYoung {
-  double integral_kpa_mm = 0.0;
-  double from_kpa = 0.0, to_kpa = 0.0;      // at its ends
-  double from_slope = 0.0, to_slope = 0.0;  // kPa/mm
-};
-PieceYoung young_of(const Channel& channel, const HapticScene& scene, const Piece& piece, double most_kpa) noexcept {
-  PieceYoung young;
-  if (channel.known_bins <= 0) return young;
-  const auto at_cell = [&](int cell) {  // zero at the skin
-    const int bin = std::min(bin_of((std::max(cell, 0) + 0.5) * kShaftCell_mm), channel.known_bins - 1);
-    const double kpa = std::min(tissue_at_bin(channel, scene, static_cast<std::size_t>(bin)).young_kpa, most_kpa);
-    return cell < 0 ? -kpa : kpa;
-  };
-  const int first = static_cast<int>(std::floor(piece.from_mm / kShaftCell_mm - 0.5));
-  const int last = static_cast<int>(std::floor(piece.to_mm / kShaftCell_mm - 0.5));
-  double before_kpa = at_cell(first);
-  for (int cell = first; cell <= last; ++cell) {  // from the centre of this cell to that of the next
-    const double after_kpa = at_cell(cell + 1);
-    const double slope = (after_kpa - before_kpa) / kShaftCell_mm;
-    const double centre_mm = (cell + 0.5) * kShaftCell_mm;
-    const double from_mm = std::max(piece.from_mm, centre_mm);
-    const double to_mm = std::min(piece.to_mm, centre_mm + kShaftCell_mm);
-    const double from_kpa = before_kpa + slope * (from_mm - centre_mm);
-    young.to_kpa = before_kpa + slope * (to_mm - centre_mm);
-    young.to_slope = slope;
-    if (cell == first) {
-      young.from_kpa = from_kpa;
-      young.from_slope = slope;
-    }
-    young.integral_kpa_mm += 0.5 * (from_kpa + young.to_kpa) * std::max(0.0, to_mm - from_mm);
-    before_kpa = after_kpa;
-  }
-  return young;
+double young_kpa_at_bin(const Channel& channel, const HapticScene& scene, std::size_t bin) noexcept {
+  const TissueAt here{channel.tissue[bin], channel.label[bin]};
+  if (here.tissue == 0) return 0.0;  // Outside the body.
+  const bool is_of_hu = here.label == 0 && scene.transfer.knot_count > 0 && is_read_from_ct(scene, here);
+  return is_of_hu ? scene.transfer.at(channel.hu[bin]).young_kpa : scene.tissues[here.tissue].young_kpa;
 }
+
+/// Young's modulus along the channel, from the skin to the tip: linear between the centres of cells and from zero at
+/// the skin, so that the bed's stiffness and its change with depth are continuous.
+class YoungAlong {
+ public:
+  struct At {
+    double integral_kpa_mm;  ///< From the skin.
+    double kpa;
+    double slope;  ///< kPa/mm
+  };
+
+  YoungAlong(const Channel& channel, const HapticScene& scene, double tip_mm, double most_kpa) noexcept {
+    constexpr double kDeepest_mm = Channel::kBins * Channel::kBin_mm;
+    const double deepest_mm = tip_mm < kDeepest_mm ? std::max(0.0, tip_mm) : kDeepest_mm;
+    const int last = static_cast<int>(deepest_mm / kShaftCell_mm + 0.5);
+    for (int cell = 0; cell <= last; ++cell) {
+      const int bin = std::min(bin_of((cell + 0.5) * kShaftCell_mm), channel.known_bins - 1);
+      const double young_kpa = bin < 0 ? 0.0 : young_kpa_at_bin(channel, scene, static_cast<std::size_t>(bin));
+      kpa_[static_cast<std::size_t>(cell) + 1] = std::min(young_kpa, most_kpa);
+    }
+    kpa_[0] = -kpa_[1];
+    integral_[0] = 0.25 * kShaftCell_mm * kpa_[1];  // zero at the skin
+    for (std::size_t n = 0; n <= static_cast<std::size_t>(last); ++n)
+      integral_[n + 1] = integral_[n] + 0.5 * kShaftCell_mm * (kpa_[n] + kpa_[n + 1]);
+  }
+
+  /// Between the skin and the tip.
+  At at(double s_mm) const noexcept {
+    const auto n = static_cast<std::size_t>(s_mm / kShaftCell_mm + 0.5);
+    const double slope = (kpa_[n + 1] - kpa_[n]) / kShaftCell_mm;
+    const double from_mm = s_mm - (static_cast<double>(n) - 0.5) * kShaftCell_mm;
+    const double kpa = kpa_[n] + slope * from_mm;
+    return {integral_[n] + 0.5 * (kpa_[n] + kpa) * from_mm, kpa, slope};
+  }
+
+ private:
+  static constexpr int kMost = static_cast<int>(Channel::kBins * Channel::kBin_mm / kShaftCell_mm) + 3;
+  std::array<double, kMost> kpa_;       ///< At the centre of cell n - 1; the one before the skin mirrors the first one.
+  std::array<double, kMost> integral_;  ///< From the skin to there.
+};
 
 /// Springs of the foundation, with a total stiffness within the device's limit, and their change with depth: both ends
 /// of a piece move with the tip.
@@ -141,26 +151,27 @@ void fill_stiffness(HeldShaft& shaft, const Channel& channel, const HapticScene&
   BeamBed& bed = shaft.bed;
   const BedLaw law{2.0 * scene.needle.radius_mm, beam.bending_stiffness_n_mm2};
   const double most_kpa = law.young_kpa_of(scene.options.coupling.stiffness_n_per_mm / beam.spacing_mm);
+  const YoungAlong young(channel, scene, tip_mm, most_kpa);
+  YoungAlong::At from = young.at(0.0);
   double sum_n_per_mm = 0.0;
   double sum_stiffening = 0.0;
   for (int i = 0; i < beam.node_count; ++i) {
     const Piece piece = piece_of(beam, i, tip_mm);
-    if (!(piece.length_mm() > 0.0)) continue;
-    const PieceYoung young = young_of(channel, scene, piece, most_kpa);
     const double length_mm = piece.length_mm();
-    const double mean_kpa = young.integral_kpa_mm / length_mm;
+    if (!(length_mm > 0.0)) continue;
+    const YoungAlong::At to = young.at(piece.to_mm);
+    const double mean_kpa = (to.integral_kpa_mm - from.integral_kpa_mm) / length_mm;
     const double per_mm = law.stiffness_n_per_mm2(mean_kpa);
     const double per_kpa = mean_kpa > 0.0 ? kBedPower * per_mm / mean_kpa : 0.0;
     const bool is_growing = !(piece.from_mm > 0.0);  // the piece at the skin
-    const double stiffening =
-        (is_growing ? per_mm : 0.0) + per_kpa * (young.to_kpa - (is_growing ? mean_kpa : young.from_kpa));
-    shaft.growth_n_per_mm3[static_cast<std::size_t>(i)] =
-        per_kpa * (young.to_slope - (is_growing ? 0.0 : young.from_slope));
+    const double stiffening = (is_growing ? per_mm : 0.0) + per_kpa * (to.kpa - (is_growing ? mean_kpa : from.kpa));
     const auto index = static_cast<std::size_t>(i);
+    shaft.growth_n_per_mm3[index] = per_kpa * (to.slope - (is_growing ? 0.0 : from.slope));
     bed.stiffness_n_per_mm[index] = per_mm * length_mm;
     shaft.stiffening_n_per_mm2[index] = stiffening;
     sum_n_per_mm += per_mm * length_mm;
     sum_stiffening += stiffening;
+    from = to;  // the next piece begins there
   }
   const double most_n_per_mm = 0.5 * scene.device.max_stiffness_n_per_mm;
   if (!(sum_n_per_mm > most_n_per_mm)) return;
@@ -176,6 +187,7 @@ void fill_stiffness(HeldShaft& shaft, const Channel& channel, const HapticScene&
 /// Energy of tissue and shaft, and its growth with depth: at equilibrium only the change of the stiffness counts.
 void store_energy(HeldShaft& shaft) noexcept {
   for (std::size_t i = 0; i < static_cast<std::size_t>(shaft.beam.node_count); ++i) {
+    if (!(shaft.bed.stiffness_n_per_mm[i] > 0.0)) continue;
     const Vec3 stretch_P = shaft.bed.offset_mm[i] - shaft.beam.deflection_mm[i];
     shaft.energy_nmm += 0.5 * shaft.share * shaft.bed.stiffness_n_per_mm[i] * stretch_P.dot(shaft.bed.offset_mm[i]);
     const double square_mm2 = 0.5 * shaft.share * stretch_P.squaredNorm();
@@ -204,31 +216,38 @@ HeldShaft hold_shaft(const Channel& channel, const HapticScene& scene, const Pos
   NeedleBeam beam = beam_of(scene, is_stylet_in);
   HeldShaft shaft;
   shaft.beam.node_count = beam.node_count;
-  if (!X_PN.is_finite()) {
+  const Vec3 axis_P = X_PN.R().col(2);
+  // From the tip, and its change per mm towards the grip.
+  const Vec3 to_line_P = across(channel.origin_P - X_PN.p(), channel.direction_P);
+  const Vec3 to_line_per_mm_P = across(axis_P, channel.direction_P);
+  const Vec3 across_P = across(to_line_P, axis_P), across_per_mm_P = across(to_line_per_mm_P, axis_P);
+  const double along_mm = axis_P.dot(to_line_P), along_per_mm = axis_P.dot(to_line_per_mm_P);
+  if (!across_P.allFinite() || !across_per_mm_P.allFinite() || !std::isfinite(along_mm + along_per_mm)) {
     shaft.beam.is_bound = true;
     return shaft;
   }
   shaft.X_PN = X_PN;
   shaft.line_P = channel.direction_P;
   fill_stiffness(shaft, channel, scene, beam, tip_mm);
-  const Vec3 axis_P = X_PN.R().col(2);
   const double most_mm = kMaxDeflection * scene.needle.length_mm;
   bool is_far = false;
   for (int i = 0; i < beam.node_count; ++i) {
     const auto index = static_cast<std::size_t>(i);
     if (!(shaft.bed.stiffness_n_per_mm[index] > 0.0)) continue;
-    const Vec3 node_P = X_PN.p() - axis_P * (beam.spacing_mm * (beam.node_count - 1 - i));
-    const Vec3 to_line_P = across(channel.origin_P - node_P, channel.direction_P);
-    const Vec3 offset_P = across(to_line_P, axis_P);
-    shaft.along_mm[index] = std::clamp(axis_P.dot(to_line_P), -most_mm, most_mm);
+    const double behind_mm = beam.spacing_mm * (beam.node_count - 1 - i);
+    const Vec3 offset_P = across_P + behind_mm * across_per_mm_P;
+    shaft.along_mm[index] = std::clamp(along_mm + behind_mm * along_per_mm, -most_mm, most_mm);
     shaft.bed.offset_mm[index] = limited(offset_P, most_mm);
     is_far = is_far || shaft.bed.offset_mm[index] != offset_P;
   }
-  if (scene.options.has_bending)
+  if (scene.options.has_bending) {
     shaft.beam = solve_beam(beam, shaft.bed);
-  else
+    shaft.turning_nmm_per_rad = shaft.beam.turning_nmm_per_rad;
+  } else {
     beam.bending_stiffness_n_mm2 = std::numeric_limits<double>::infinity();
-  const double turning = shaft.turning_nmm_per_rad = grip_stiffness(beam, shaft.bed).turning_nmm_per_rad;
+    shaft.turning_nmm_per_rad = grip_stiffness(beam, shaft.bed).turning_nmm_per_rad;
+  }
+  const double turning = shaft.turning_nmm_per_rad;
   if (turning > kMostTurning_nmm_per_rad) shaft.share = kMostTurning_nmm_per_rad / turning;
   shaft.beam.is_bound = shaft.beam.is_bound || is_far;
   store_energy(shaft);
@@ -252,24 +271,25 @@ ShaftReaction react(const HeldShaft& shaft, const HapticScene& scene, const Vec3
   ShaftReaction reaction;
   const int nodes = reaction.bent.node_count = shaft.beam.node_count;
   std::array<Vec3, kMaxBeamNodes>& deflection_P = reaction.bent.deflection_mm;
-  double largest_mm = 0.0;
+  double largest_mm2 = 0.0;
   for (int i = 0; i < nodes; ++i) {
     const auto index = static_cast<std::size_t>(i);
     deflection_P[index] = shaft.beam.deflection_mm[index] + shaft.beam.per_tip_force_mm_n[index] * tip_P;
-    largest_mm = std::max(largest_mm, deflection_P[index].norm());
+    largest_mm2 = std::max(largest_mm2, deflection_P[index].squaredNorm());
   }
-  const double scale = largest_mm > most_mm ? most_mm / largest_mm : 1.0;
+  const double scale = largest_mm2 > most_mm * most_mm ? most_mm / std::sqrt(largest_mm2) : 1.0;
+  Vec3 moment_P = Vec3::Zero();  // sum of lever times force
   for (int i = 0; i < nodes; ++i) {
     const auto index = static_cast<std::size_t>(i);
     deflection_P[index] *= scale;
-    const Vec3 lever_P = axis_P * (spacing_mm * (i + 1));
     const double k = shaft.share * shaft.bed.stiffness_n_per_mm[index];
     const Vec3 bed_P = k * (shaft.bed.offset_mm[index] - deflection_P[index]);
     Vec3 force_P = across(bed_P, shaft.line_P);  // a motion along the line does not stretch the bed
     if (i == nodes - 1) force_P += shaft.share * tip_P;
     reaction.wrench_P.force_n += force_P;
-    reaction.wrench_P.torque_nmm += lever_P.cross(force_P) + shaft.along_mm[index] * axis_P.cross(bed_P);
+    moment_P += spacing_mm * (i + 1) * force_P + shaft.along_mm[index] * bed_P;
   }
+  reaction.wrench_P.torque_nmm = axis_P.cross(moment_P);
   return reaction;
 }
 

@@ -19,6 +19,7 @@ struct EndCompliance {
 struct Node {
   EndCompliance compliance;
   Vec3 deflection = Vec3::Zero();
+  double turned = 0.0;  ///< Deflection per rotation of the grip.
   double stiffness = 0.0;
 };
 
@@ -89,39 +90,52 @@ BeamSolution solve_beam(const NeedleBeam& beam, const BeamBed& bed) noexcept {
   EndCompliance end;
   Vec3 deflection = Vec3::Zero();
   Vec3 slope = Vec3::Zero();
+  double turned = 0.0;
+  double turned_slope = 0.0;
   for (int i = 0; i < count; ++i) {
     const auto index = static_cast<std::size_t>(i);
     end = after_span(end, h, beam.bending_stiffness_n_mm2);
     deflection += h * slope;
+    turned += h * turned_slope;
     const double k = usable(bed.stiffness_n_per_mm[index]);
     const double share = 1.0 / (1.0 + k * end.w_per_force);
     if (k > 0.0) {
       const Vec3 pull = k * share * (bed.offset_mm[index] - deflection);
       slope += end.w_per_moment * pull;
       deflection += end.w_per_force * pull;
+      const double turned_pull =
+          -k * share * (h * (i + 1) + turned);  // the straight shaft's node has moved by its lever
+      turned_slope += end.w_per_moment * turned_pull;
+      turned += end.w_per_force * turned_pull;
       end = with_spring(end, k, share);
     }
-    nodes[index] = {end, deflection, k};
+    nodes[index] = {end, deflection, turned, k};
   }
 
-  // Inwards: force and moment of everything beyond a node; once with the load of the foundation, once with one newton
-  // at the tip.
+  // Inwards: force and moment of everything beyond a node; once with the load of the foundation, once with that of a
+  // rotated grip, once with one newton at the tip.
   Vec3 force = Vec3::Zero();
   Vec3 moment = Vec3::Zero();
+  double turned_force = 0.0;
+  double turned_moment = 0.0;
   double tip_force = 1.0;
   double tip_moment = 0.0;
   for (int i = count - 1; i >= 0; --i) {
     const auto index = static_cast<std::size_t>(i);
-    const auto& [c, held, k] = nodes[index];
+    const auto& [c, held, held_turned, k] = nodes[index];
     const Vec3 w = held + c.w_per_force * force + c.w_per_moment * moment;
     const double w_tip = c.w_per_force * tip_force + c.w_per_moment * tip_moment;
     solution.deflection_mm[index] = w;
     solution.per_tip_force_mm_n[index] = w_tip;
     if (k > 0.0) force += k * (bed.offset_mm[index] - w);
     moment += h * force;
+    const double w_turned = held_turned + c.w_per_force * turned_force + c.w_per_moment * turned_moment;
+    turned_force -= k * (h * (i + 1) + w_turned);
+    turned_moment += h * turned_force;
     tip_force -= k * w_tip;
     tip_moment += h * tip_force;
   }
+  solution.turning_nmm_per_rad = std::max(0.0, -turned_moment);
   limit(solution, kMaxDeflection * h * count);
   return solution;
 }

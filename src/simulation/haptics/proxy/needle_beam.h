@@ -35,6 +35,7 @@ struct BeamSolution {
   std::array<Vec3, kMaxBeamNodes> deflection_mm = zero_vectors<kMaxBeamNodes>();
   /// Deflection per newton on the tip; the last value is the tip's.
   std::array<double, kMaxBeamNodes> per_tip_force_mm_n{};
+  double turning_nmm_per_rad = 0.0;  ///< Torque at the grip per rotation of it, as of grip_stiffness.
   /// Deflections were limited to kMaxDeflection of the length, because the beam model is linear.
   bool is_bound = false;
 };

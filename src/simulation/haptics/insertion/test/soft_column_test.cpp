@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "haptics/test/layered_patient.h"
+#include "telemetry/tick_pose.h"
 
 namespace trocar::testing {
 namespace {
@@ -178,6 +179,33 @@ TEST(YieldingWall, HoldsItsDepressionUnderTheLoadAfterThePuncture) {
   driver.move(5.0, 20.0);  // without the load it recoils
   driver.hold(4.0);
   EXPECT_LT(state.recoil_mm, 0.05 * held_mm);  // friction still holds a little
+}
+
+/// A server that is prepared again places the needle where it was: the wall is still pressed in (S1).
+TEST(YieldingWall, ANeedleThatIsPlacedAgainStaysWhereItWas) {
+  for (const haptics::ForceModel model :
+       {haptics::ForceModel::kInsertion, haptics::ForceModel::kCombined, haptics::ForceModel::kProxy}) {
+    haptics::HapticOptions options;
+    options.force_model = model;
+    const auto scene = make_scene(liver_way(), options, yielding_tissues());
+    Driver driver(scene);
+    driver.move(26.0, 20.0);  // in muscle
+    const telemetry::TickSample rest = driver.hold(2.0).back();
+    const double pressed_mm = telemetry::pressed_mm(rest);
+    ASSERT_GT(pressed_mm, 0.2);
+    driver.state() = {};
+    driver.state().needle.pressed_mm = pressed_mm;
+    const std::vector<telemetry::TickSample> after = driver.hold(2.0);
+    EXPECT_TRUE(punctures(after).empty());
+    if (model != haptics::ForceModel::kProxy) {
+      EXPECT_NEAR(resistance_n(after.front()), 0.0, 0.1 * resistance_n(rest) + 0.02);
+    }
+    for (const telemetry::TickSample& sample : after) ASSERT_NEAR(sample.tip_mm.z(), rest.tip_mm.z(), 0.1) << static_cast<int>(model);
+    EXPECT_NEAR(resistance_n(after.back()), resistance_n(rest), 0.1);
+    // Without it the needle would be at the device.
+    driver.state() = {};
+    EXPECT_NEAR(driver.hold(0.01).back().tip_mm.z(), rest.tip_mm.z() + pressed_mm, 0.01);
+  }
 }
 
 TEST(YieldingWall, IsAtLeastAsStiffAsPressedFat) {
