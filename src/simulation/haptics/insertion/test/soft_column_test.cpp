@@ -193,6 +193,7 @@ TEST(YieldingWall, ANeedleThatIsPlacedAgainStaysWhereItWas) {
     const telemetry::TickSample rest = driver.hold(2.0).back();
     const double pressed_mm = telemetry::pressed_mm(rest);
     ASSERT_GT(pressed_mm, 0.2);
+    const double creep_mm = model == haptics::ForceModel::kProxy ? 0.5 : 0.05;  // its tip creeps in soft tissue
     driver.state() = {};
     driver.state().needle.pressed_mm = pressed_mm;
     const std::vector<telemetry::TickSample> after = driver.hold(2.0);
@@ -200,7 +201,7 @@ TEST(YieldingWall, ANeedleThatIsPlacedAgainStaysWhereItWas) {
     if (model != haptics::ForceModel::kProxy) {
       EXPECT_NEAR(resistance_n(after.front()), 0.0, 0.1 * resistance_n(rest) + 0.02);
     }
-    for (const telemetry::TickSample& sample : after) ASSERT_NEAR(sample.tip_mm.z(), rest.tip_mm.z(), 0.1) << static_cast<int>(model);
+    for (const telemetry::TickSample& sample : after) ASSERT_NEAR(sample.tip_mm.z(), rest.tip_mm.z(), creep_mm) << static_cast<int>(model);
     EXPECT_NEAR(resistance_n(after.back()), resistance_n(rest), 0.1);
     // Without it the needle would be at the device.
     driver.state() = {};
