@@ -157,6 +157,33 @@ TEST_F(Stalls, KillsBeforeTheServerIsBackLeaveTheNeedleWhereItWas) {
   EXPECT_EQ(attempt->view().servers[0].restarts, 3);
 }
 
+/// What the needle presses on when its server dies is not pierced by coming back.
+TEST_F(Stalls, ALayerUnderLoadIsNotPiercedByAnotherServer) {
+  for (const bool is_on_skin : {true, false}) {
+    SCOPED_TRACE(is_on_skin ? "skin" : "muscle");
+    start(impatient("mouse"));
+    ASSERT_TRUE(run_until_phase(AttemptPhase::kReady)) << where();
+    const auto& line_P = open->the_case.plan.line_P;
+    const auto is_loading = [&] { return attempt->view().needle.phase == telemetry::InsertionPhase::kLoading; };
+    double depth_mm = 0.0;
+    const double from_mm = is_on_skin ? 0.0 : 8.0;
+    ASSERT_TRUE(run_until([&] {  // slowly, until it presses
+      depth_mm += 0.01;
+      hand = needle_pose(line_P.a + depth_mm * line_P.direction(), line_P.direction());
+      attempt->set_goal(attempt::Tool::kNeedle, hand);
+      return attempt->view().needle.depth_mm > from_mm && is_loading();
+    })) << where();
+    run_for(1.0);
+    ASSERT_TRUE(is_loading());
+    needle->kill();
+    ASSERT_TRUE(run_until([&] { return needle->restarts() == 1; })) << where();
+    run_for(3.0);
+    EXPECT_TRUE(is_loading()) << where();
+    EXPECT_EQ(finished().punctures.size(), is_on_skin ? 0u : 1u);
+    std::filesystem::remove(options().session);
+  }
+}
+
 TEST_F(Stalls, AHungServerIsReplacedAfterTheTimeout) {
   start_inside();
   needle->hang();

@@ -28,10 +28,18 @@ Pose felt_needle(const TickSample& sample) noexcept {
   return {felt_rotation(sample, 2), sample.tip_mm};
 }
 
-double pressed_mm(const TickSample& sample) noexcept {
-  const bool is_inserted = sample.phase == InsertionPhase::kInserted || sample.phase == InsertionPhase::kRetracting ||
-                           (sample.phase == InsertionPhase::kLoading && sample.contact_to_puncture_mm != Vec3::Zero());
-  return is_inserted ? std::max(0.0, sample.axis.dot(sample.device_mm - sample.tip_mm)) : 0.0;
+NeedlePlace needle_place(const TickSample& sample) noexcept {
+  constexpr double kClear_mm = 0.1;
+  constexpr double kOblique = 3.0;  // a needle at 70 degrees to the skin's normal
+  const Pose felt = felt_needle(sample);
+  const double deep_mm = sample.layer_displacement_mm;
+  const bool is_loading = sample.phase == InsertionPhase::kLoading;
+  if (is_loading && sample.depth_mm <= deep_mm + kClear_mm)  // on unpierced skin
+    return {felt * Pose::translation({0.0, 0.0, -kOblique * deep_mm - kClear_mm}), 0.0};
+  if (sample.phase == InsertionPhase::kOutside) return {felt, 0.0};
+  const double back_mm = is_loading ? deep_mm + kClear_mm : 0.0;
+  const double ahead_mm = std::max(0.0, sample.axis.dot(sample.device_mm - sample.tip_mm));
+  return {felt * Pose::translation({0.0, 0.0, ahead_mm}), ahead_mm + back_mm};
 }
 
 Pose felt_probe(const TickSample& sample) noexcept {

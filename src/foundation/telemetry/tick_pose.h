@@ -9,9 +9,15 @@ namespace trocar::telemetry {
 Pose device_pose(const TickSample& sample) noexcept;
 /// Pose of the virtual needle: its tip and axis, with the device's roll.
 Pose felt_needle(const TickSample& sample) noexcept;
-/// How far (mm, >= 0) the device is ahead of the inserted virtual needle along its axis: tissue pressed in, and the
-/// coupling. 0 outside and on unpierced skin.
-double pressed_mm(const TickSample& sample) noexcept;
+/// Where a needle is placed after an interruption, so that it goes on where it was (physics.md S1): the device's pose
+/// on the virtual needle's axis, and how far the tip stays behind it because tissue is pressed in and the coupling
+/// stretched. A tip that presses on a layer is drawn back to that layer's surface, one on unpierced skin to outside it:
+/// being placed there pierces neither.
+struct NeedlePlace {
+  Pose X_PN;
+  double pressed_mm = 0.0;
+};
+NeedlePlace needle_place(const TickSample& sample) noexcept;
 /// Pose of the virtual transducer, whose axis is y of T.
 Pose felt_probe(const TickSample& sample) noexcept;
 

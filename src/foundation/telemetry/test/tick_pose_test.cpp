@@ -21,6 +21,38 @@ TEST(FeltNeedle, TurnsTheDevicesPoseToTheFeltAxis) {
   EXPECT_NEAR((device_pose(sample).R() - kHeld.R()).norm(), 0.0, 1e-12);
 }
 
+TickSample inserted(InsertionPhase phase) {
+  TickSample sample = sample_at(kHeld);
+  sample.phase = phase;
+  sample.axis = Vec3::UnitY();
+  sample.tip_mm = {1.0, 25.0, 3.0};
+  sample.device_mm = {4.0, 27.0, 3.0};  // the grip has swung, too
+  sample.depth_mm = 30.0;
+  return sample;
+}
+
+TEST(NeedlePlace, IsInTheChannelAheadOfTheTipWhereverTheGripHasSwung) {
+  for (const InsertionPhase phase : {InsertionPhase::kInserted, InsertionPhase::kRetracting}) {
+    const NeedlePlace place = needle_place(inserted(phase));
+    EXPECT_NEAR((place.X_PN.R().col(2) - Vec3::UnitY()).norm(), 0.0, 1e-12);
+    EXPECT_NEAR((place.X_PN.p() - Vec3(1.0, 27.0, 3.0)).norm(), 0.0, 1e-12);
+    EXPECT_NEAR(place.pressed_mm, 2.0, 1e-12);
+  }
+}
+
+TEST(NeedlePlace, DrawsATipBackThatPressesOnALayer) {
+  TickSample sample = inserted(InsertionPhase::kLoading);
+  sample.layer_displacement_mm = 0.7;
+  const NeedlePlace place = needle_place(sample);
+  EXPECT_NEAR((place.X_PN.p() - Vec3(1.0, 27.0, 3.0)).norm(), 0.0, 1e-12);
+  EXPECT_GT(place.pressed_mm, 2.0 + 0.7);
+  EXPECT_LT(place.pressed_mm, 2.0 + 1.0);
+  sample.depth_mm = 0.7;  // unpierced skin
+  const NeedlePlace outside = needle_place(sample);
+  EXPECT_LT(outside.X_PN.p().y(), sample.tip_mm.y() - 0.7);
+  EXPECT_EQ(outside.pressed_mm, 0.0);
+}
+
 TEST(FeltProbe, HasItsAxisInY) {
   TickSample sample = sample_at(Pose());
   sample.axis = Vec3(0.0, 1.0, 0.1).normalized();

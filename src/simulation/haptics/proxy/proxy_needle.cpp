@@ -5,7 +5,8 @@
 
 #include "haptics/insertion/insertion_law.h"
 #include "haptics/insertion/skin_contact.h"
-#include "haptics/proxy/tip_proxy.h"
+#include "haptics/proxy/needle_balance.h"
+#include "haptics/proxy/tip_law.h"
 #include "volume/sampling.h"
 
 namespace trocar::haptics {

@@ -93,7 +93,6 @@ class AttemptLoop {
 
   // attempt_loop_tools.cpp
   Status step_needle();
-  void place_in_channel(const telemetry::TickSample& sample);
   void answer_unrecorded(const std::vector<link::NumberedSample>& samples);
   Status record(const std::vector<link::NumberedSample>& samples);
   Status note_shape(const link::NumberedSample& numbered);

@@ -31,7 +31,7 @@ Status AttemptLoop::step_needle() {
     needle_time_s_ = samples.front().sample.time_s;
   }
   was_needle_on_ = true;
-  place_in_channel(samples.back().sample);
+  needle_->place_at(telemetry::needle_place(samples.back().sample));
   if (!live_) {
     answer_unrecorded(samples);
     return {};
@@ -40,13 +40,6 @@ Status AttemptLoop::step_needle() {
   needle_->set_target(live_->hand());
   send_scheduled_parameters();
   return {};
-}
-
-/// Where the needle is placed if its server is prepared again: in its channel, wherever the grip has moved, and as far
-/// ahead as the tissue is pressed in.
-void AttemptLoop::place_in_channel(const telemetry::TickSample& sample) {
-  const double pressed_mm = std::min(telemetry::pressed_mm(sample), link::kMostPressed_mm);
-  needle_->place_at(telemetry::felt_needle(sample) * Pose::translation({0.0, 0.0, pressed_mm}), pressed_mm);
 }
 
 void AttemptLoop::answer_unrecorded(const std::vector<link::NumberedSample>& samples) {

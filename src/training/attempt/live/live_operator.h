@@ -6,7 +6,6 @@
 #include "attempt/live/performer.h"
 #include "attempt/record/attempt_record.h"
 #include "link/client/haptic_client.h"
-#include "telemetry/tick_pose.h"
 
 namespace trocar::attempt {
 
@@ -39,8 +38,6 @@ class LiveOperator {
   double paused_s() const noexcept { return paused_s_; }  ///< Part of time_s() without a server.
   /// Part of time_s() whose ticks the operator did not process.
   double unseen_s() const noexcept { return unseen_s_; }
-  /// Pose at which the needle resumes after a server returns: the last virtual pose, which lies in its channel.
-  Pose X_PN_to_resume() const noexcept { return telemetry::felt_needle(view_.last); }
   const telemetry::TickSample& last() const noexcept { return view_.last; }  ///< Last tick, in session time.
   const tasks::HandCommand& command() const noexcept { return command_; }    ///< Command in reply to the last tick.
 

@@ -40,10 +40,10 @@ void ServerSupervisor::prepare(const PreparationRequest& request) {
   request_->place.is_rigid = true;
 }
 
-void ServerSupervisor::place_at(const Pose& X_PTool, double pressed_mm) {
+void ServerSupervisor::place_at(const telemetry::NeedlePlace& needle) {
   if (!request_) return;
-  request_->place.X_PN = X_PTool;
-  request_->place.pressed_mm = pressed_mm;
+  request_->place.X_PN = needle.X_PN;
+  request_->place.pressed_mm = std::min(needle.pressed_mm, link::kMostPressed_mm);
 }
 
 void ServerSupervisor::enter(ServerState state) {

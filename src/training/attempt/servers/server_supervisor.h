@@ -17,6 +17,7 @@
 #include "attempt/servers/parameter_memory.h"
 #include "attempt/servers/server_host.h"
 #include "core/clock.h"
+#include "telemetry/tick_pose.h"
 
 namespace trocar::attempt {
 
@@ -72,9 +73,9 @@ class ServerSupervisor {
 
   /// Sets scene and start pose. Before this call, a connected server stays in kIdle.
   void prepare(const PreparationRequest& request);
-  /// Sets the pose at which the tool is placed when the server is prepared again; a needle's tip `pressed_mm` behind
-  /// it.
-  void place_at(const Pose& X_PTool, double pressed_mm = 0.0);
+  /// Sets where the tool is placed when the server is prepared again.
+  void place_at(const telemetry::NeedlePlace& needle);
+  void place_at(const Pose& X_PTool) { place_at(telemetry::NeedlePlace{X_PTool, 0.0}); }
   /// Performs one step. Returns the text of a note; empty: none.
   std::string poll();
 

@@ -187,11 +187,11 @@ TEST(YieldingWall, ANeedleThatIsPlacedAgainStaysWhereItWas) {
        {haptics::ForceModel::kInsertion, haptics::ForceModel::kCombined, haptics::ForceModel::kProxy}) {
     haptics::HapticOptions options;
     options.force_model = model;
-    const auto scene = make_scene(liver_way(), options, yielding_tissues());
+    const auto scene = make_scene({{0, kMuscle}}, options, yielding_tissues());
     Driver driver(scene);
-    driver.move(26.0, 20.0);  // in muscle
+    driver.move(40.0, 20.0);
     const telemetry::TickSample rest = driver.hold(2.0).back();
-    const double pressed_mm = telemetry::pressed_mm(rest);
+    const double pressed_mm = telemetry::needle_place(rest).pressed_mm;
     ASSERT_GT(pressed_mm, 0.2);
     const double creep_mm = model == haptics::ForceModel::kProxy ? 0.5 : 0.05;  // its tip creeps in soft tissue
     driver.state() = {};
@@ -201,7 +201,8 @@ TEST(YieldingWall, ANeedleThatIsPlacedAgainStaysWhereItWas) {
     if (model != haptics::ForceModel::kProxy) {
       EXPECT_NEAR(resistance_n(after.front()), 0.0, 0.1 * resistance_n(rest) + 0.02);
     }
-    for (const telemetry::TickSample& sample : after) ASSERT_NEAR(sample.tip_mm.z(), rest.tip_mm.z(), creep_mm) << static_cast<int>(model);
+    for (const telemetry::TickSample& sample : after)
+      ASSERT_NEAR(sample.tip_mm.z(), rest.tip_mm.z(), creep_mm) << static_cast<int>(model);
     EXPECT_NEAR(resistance_n(after.back()), resistance_n(rest), 0.1);
     // Without it the needle would be at the device.
     driver.state() = {};

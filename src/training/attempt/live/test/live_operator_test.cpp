@@ -6,7 +6,6 @@
 
 #include "anatomy/phantom/phantom.h"
 #include "core/files/temporary_folder.h"
-#include "geometry/quaternion.h"
 
 namespace trocar::attempt {
 namespace {
@@ -241,20 +240,6 @@ TEST_F(LiveOperatorTest, FiresAtTheTickAfterTheCommandAndEndsWhenTheOperatorIsDo
   const storage::Session session = recorded();
   EXPECT_EQ(session.shots, std::vector<std::size_t>{2});
   EXPECT_EQ(session.samples.size(), 4u);
-}
-
-TEST_F(LiveOperatorTest, ResumesTheNeedleInItsChannelWhereverTheGripHasSwung) {
-  live_->begin(0.0);
-  telemetry::TickSample inside = tick(kServer_s, telemetry::InsertionPhase::kInserted);
-  inside.axis = Vec3::UnitY();
-  inside.tip_mm = {1.0, 25.0, 3.0};
-  inside.device_mm = {4.0, 27.0, 3.0};
-  const Eigen::Quaterniond swung(
-      Mat3(Eigen::AngleAxisd(0.28, Vec3::UnitX()) * rotation_between(Vec3::UnitZ(), Vec3::UnitY())));
-  inside.device_rotation_wxyz = to_wxyz(swung);
-  ASSERT_TRUE(live_->take(inside));
-  EXPECT_EQ(live_->X_PN_to_resume().p(), inside.tip_mm);
-  EXPECT_NEAR((live_->X_PN_to_resume().R().col(2) - Vec3::UnitY()).norm(), 0.0, kTolerance_s);
 }
 
 TEST_F(LiveOperatorTest, RecordsTheTransducerInTheSessionsTime) {
