@@ -13,7 +13,8 @@
 namespace trocar::devices {
 namespace {
 
-constexpr double kMaxStep_s = 1e-3;  ///< physics.md H2 holds at 1 kHz.
+constexpr double kFastestHand_mm_per_s = 1000.0;  // below what the safety gate takes for impossible [assumed]
+constexpr double kMaxStep_s = 1e-3;               ///< physics.md H2 holds at 1 kHz.
 /// Twice the stiffest hand of physics.md H1, and the same at the end of a 30 mm grip. A stiffer hand would oscillate.
 constexpr double kStiffestHand_n_per_mm = 10.0;
 constexpr double kStiffestTurn_nmm_per_rad = 1e4;
@@ -138,7 +139,9 @@ void VirtualHapticDevice::step(double time_s, double dt_s) noexcept {
   if (!was_ever_held_) return;
   const HandNow hand = hand_at(hand_, time_s);
   if (hand_.is_held && hand_.is_rigid) {
-    stylus_ = {hand.X_DS, hand.v_D, hand.w_D};
+    Vec3 way_D = hand.X_DS.p() - stylus_.X_PS.p();
+    clamp_norm(way_D, kFastestHand_mm_per_s * dt_s);  // a late target is caught up with, not jumped to
+    stylus_ = {Pose(hand.X_DS.R(), stylus_.X_PS.p() + way_D), hand.v_D, hand.w_D};
     return;
   }
   const haptics::Wrench push{acting_D_.force_n + wall_n(), acting_D_.torque_nmm};
