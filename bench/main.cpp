@@ -62,11 +62,13 @@ Result<std::vector<const Benchmark*>> choose(const std::vector<std::string>& nam
 }
 
 /// Every benchmark of the run must support a given option.
-Status check_options(const std::vector<const Benchmark*>& chosen, const std::vector<std::string>& given) {
+Status check_options(const std::vector<const Benchmark*>& chosen, bool is_all, const std::vector<std::string>& given) {
   for (const std::string& option : given) {
     for (const Benchmark* benchmark : chosen) {
       const auto& usable = benchmark->options;
       if (std::find(usable.begin(), usable.end(), option) != usable.end()) continue;
+      if (is_all)
+        return fail_usage("not every benchmark can use this option", option, "name those that take it: see --list");
       return fail_usage(
           fmt::format("the benchmark cannot use {}", option), std::string(benchmark->name),
           usable.empty() ? "it takes no options" : fmt::format("its options are {}", fmt::join(usable, ", ")));
@@ -104,7 +106,8 @@ Result<std::vector<CaseResult>> run_one(const Benchmark& benchmark, const BenchA
 void list_benchmarks(bool is_json) {
   config::Json list = config::Json::array();
   for (const Benchmark& b : all_benchmarks()) {
-    if (!is_json) fmt::print("{:<12} {}\n", b.name, b.description);
+    const std::string options = b.options.empty() ? "" : fmt::format(" [{}]", fmt::join(b.options, " "));
+    if (!is_json) fmt::print("{:<16} {}{}\n", b.name, b.description, options);
     list.push_back({{"name", b.name}, {"description", b.description}, {"options", b.options}});
   }
   if (is_json) cli::print_json({{"benchmarks", list}});
@@ -116,7 +119,7 @@ Status run_benchmarks(BenchArguments& arguments, const std::vector<std::string>&
     return {};
   }
   TROCAR_TRY(const auto chosen, choose(arguments.names));
-  TROCAR_TRY_STATUS(check_options(chosen, given));
+  TROCAR_TRY_STATUS(check_options(chosen, arguments.names.empty(), given));
   TROCAR_TRY_STATUS(prepare(arguments));
   config::Json all = config::Json::array();
   std::vector<std::string> missed;
@@ -136,8 +139,8 @@ Status run_benchmarks(BenchArguments& arguments, const std::vector<std::string>&
 }
 
 int run(int argc, char** argv) {
-  arguments::Program program("trocar-bench",
-                             "Measure the speed of the kernels and, if installed, of comparable libraries");
+  arguments::Program program(
+      "trocar-bench", "Measure speed, forces, energy and images, beside comparable libraries where they are installed");
   program.refuse_empty_texts();
   bool is_verbose = false;
   program.add_flag("-v,--verbose", is_verbose, "Print details to stderr");

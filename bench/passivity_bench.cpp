@@ -92,7 +92,7 @@ std::string group_note(const MotionGroup& group, const RunMotion& worst, std::si
       "mJ put in, {:.1f} N, {:.3f} mJ made after the device's limits; {}",
       missed, group.size(), kAllowed_mj, outcome.most_mj, outcome.end_mj, finer.most_mj, finer.end_mj, kFiner,
       outcome.stored_mj, outcome.peak_force_n, outcome.device_mj, worst.planned.text());
-  if (open > 0) note += fmt::format("; {} end in contact", open);
+  if (open > 0) note += fmt::format("; in contact at the end: {}", open);
   return note;
 }
 

@@ -202,9 +202,9 @@ Result<std::vector<CaseResult>> run_paths_benchmark(const Options& options) {
   study.errors = cases::compare_forces(*study.full, *study.partly, study.motions, options.progress);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
 
-  const std::string what = fmt::format("{} paths of {}, {} model, {} of {} labels kept", study.errors.size(),
-                                       patient->name, to_string(haptic.force_model), less->label_table.labels.size(),
-                                       patient->label_table.labels.size(), took.count());
+  const std::string what = fmt::format(
+      "{} paths of {}, {} model, {} labels of {} in the full patient", study.errors.size(), patient->name,
+      to_string(haptic.force_model), less->label_table.labels.size(), patient->label_table.labels.size(), took.count());
   std::vector<CaseResult> results = results_of(study.errors, what, tables.tissues, took.count());
   add_worst_places(results, study.errors, tables.tissues);
   if (options.out.empty()) return results;

@@ -41,7 +41,7 @@ constexpr std::pair<std::string_view, std::string_view> kTitles[] = {
     {"bevel", "Bevel against the fibres"},
 };
 
-/// Share of a part's points at a deviation: 1 at 0, 1/2 at the tolerance, decreasing without end (docs/physics.md, S1).
+/// Share of a part's points at a deviation: 1 at 0, 1/2 at the tolerance, decreasing without end (docs/physics.md, E1).
 double share_at(double deviation, double tolerance) noexcept {
   const double ratio = tolerance > 0.0 ? deviation / tolerance : HUGE_VAL;
   return deviation > 0.0 ? 1.0 / (1.0 + ratio * ratio) : 1.0;

@@ -80,7 +80,7 @@ struct Hint {
 
 /// Result of an attempt. A deviation d (target, entry, angle, access, comfort) with tolerance t is worth
 /// max_points/(1 + (d/t)^2); an expense e (length, time, dose) with limit l is worth max_points*(1 - (e/l)^2), 0 from l
-/// on; docs/physics.md, S1. Smaller is never worse. No part is negative; the parts' points add up to the score, within
+/// on; docs/physics.md, E1. Smaller is never worse. No part is negative; the parts' points add up to the score, within
 /// 0..100. A part that cannot be judged (no core without a biopsy needle, no visibility without a transducer) is left
 /// out, and the others count more in proportion. Several cores are worth
 /// their target tissue together against that of the task's number of cores; the end of the attempt is the first shot.

@@ -22,7 +22,7 @@ TissueSetting make_setting(std::string_view name, double value) {
 
 Result<TissueSetting> parse_setting(std::string_view text) {
   const auto malformed = [&] {
-    return fail_usage("--set needs NAME.KEY=NUMBER (finite)", std::string(text), "for example liver.k=0.5");
+    return fail_usage("--set needs NAME.KEY=NUMBER (finite, or never)", std::string(text), "for example liver.k=0.5");
   };
   const std::size_t equals = text.find('=');
   const std::string_view name = text.substr(0, equals);

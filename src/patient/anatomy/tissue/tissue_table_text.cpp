@@ -41,8 +41,11 @@ struct Assignment {
 Status check_range(const Assignment& assignment, std::string_view field, config::Range range, std::string_view text) {
   const bool is_never = std::isinf(assignment.value) && may_be_never(field);
   if (is_never || (assignment.value >= range.low && assignment.value <= range.high)) return {};
-  return fail_usage(fmt::format("{} must be a number from {} to {}", field, range.low, range.high), std::string(text),
-                    "give a number in this range");
+  const std::string named =
+      assignment.key == field ? std::string(field) : fmt::format("{} ({})", assignment.key, field);
+  return fail_usage(fmt::format("{} must be a number from {} to {}{}", named, range.low, range.high,
+                                may_be_never(field) ? ", or never" : ""),
+                    std::string(text), "give a number in this range");
 }
 
 const TissueField<LayerParams>* find_layer_field(std::string_view key) noexcept {
@@ -74,7 +77,7 @@ class Override {
     const auto layer = table_.find_layer(assignment_.name);
     if (!tissue && !layer)
       return fail_usage(fmt::format("there is no tissue or layer \"{}\"", assignment_.name), std::string(text_),
-                        "use a name of the tissue table");
+                        fmt::format("known are: {}", fmt::join(known_names(), ", ")));
     if (tissue && *tissue == 0) return fail_usage("air has no parameters", std::string(text_), "name another tissue");
     if (layer && assignment_.key == kWall) return set_wall(table_.layers[*layer]);
     const auto* tissue_field = find_field<TissueParams>(kTissueFields, assignment_.key);
@@ -91,6 +94,14 @@ class Override {
   }
 
  private:
+  std::vector<std::string> known_names() const {
+    std::vector<std::string> names{std::string(kFriction), std::string(kPathConstraint), std::string(kTransfer)};
+    for (std::size_t n = 1; n < table_.tissues.size(); ++n) names.push_back(table_.tissues[n].name);
+    for (const LayerParams& layer : table_.layers)
+      if (!table_.find_tissue(layer.name)) names.push_back(layer.name);
+    return names;
+  }
+
   bool is_first_with_layer(std::uint8_t tissue) const {
     for (std::uint8_t n = 0; n < tissue; ++n)
       if (table_.tissues[n].layer == table_.tissues[tissue].layer) return false;

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "anatomy/tissue/tissue_settings.h"
 #include "attempt/record/attempt_record.h"
 #include "core/parse_number.h"
+#include "haptics/haptic_scene.h"
 #include "tasks/bevel.h"
 
 namespace trocar::attempt {
@@ -21,14 +23,14 @@ struct OperatorChoice {
 Result<double> parse_speed(std::string_view text) {
   const auto speed = parse_number<double>(text);
   if (speed && *speed >= 0.1 && *speed <= 500.0) return *speed;
-  return fail_usage(fmt::format("speed {} is not a number from 0.1 to 500 mm/s", text), "--operator constant-velocity",
-                    "write it as constant-velocity:10");
+  return fail_usage(fmt::format("speed \"{}\" is not a number from 0.1 to 500 mm/s", text),
+                    "--operator constant-velocity", "write it as constant-velocity:10");
 }
 
 Result<double> parse_share(std::string_view text) {
   const auto share = parse_number<double>(text);
   if (share && *share >= 0.0 && *share <= 1.0) return *share;
-  return fail_usage(fmt::format("share of errors {} is not a number from 0 to 1", text), "--operator novice",
+  return fail_usage(fmt::format("share of errors \"{}\" is not a number from 0 to 1", text), "--operator novice",
                     "write it as novice:0.5");
 }
 
@@ -103,6 +105,12 @@ Status check_operator(std::string_view name) {
 Result<Performer> make_performer(const cases::Case& the_case, const RunOptions& options) {
   TROCAR_TRY(Performer performer, make_named(the_case, options));
   if (!options.force_model.empty()) performer.force_model = options.force_model;
+  if (performer.force_model != to_string(haptics::ForceModel::kInsertion)) {
+    for (const std::string& setting : anatomy::user_settings(the_case.tissues))
+      if (setting.starts_with("path_constraint."))
+        return fail_usage(fmt::format("the {} model has no path constraint", performer.force_model), "--set " + setting,
+                          "leave it out, or use --force-model insertion");
+  }
   return performer;
 }
 
