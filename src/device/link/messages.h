@@ -116,7 +116,7 @@ struct HandTarget {
   bool is_held = true;
   bool is_rigid = false;
   bool is_placed = false;  ///< Placed at X_PN now, at rest; the insertion restarts there, through the safe start.
-  /// Of a placed needle: its tip stays so far behind X_PN in tissue that is still pressed in (physics.md S1).
+  /// Of a placed needle: how far the tissue that it had pressed in gives way again (physics.md S1).
   /// 0..kMostPressed_mm.
   double pressed_mm = 0.0;
 };

@@ -114,14 +114,18 @@ void LinkThread::take(const link::Received& received) {
     take(received, *command);
   } else if (const auto* target = std::get_if<link::HandTarget>(&received.body)) {
     // Sent again until it was taken, it is one placement.
-    if (target->is_placed && std::exchange(placed_s_, target->server_time_s) != target->server_time_s) ++placements_;
-    shared_.hand.write({*target, placements_});
+    if (target->is_placed && std::exchange(placed_s_, target->server_time_s) != target->server_time_s) {
+      ++placements_;
+      pressed_mm_ = target->pressed_mm;
+    }
+    shared_.hand.write({*target, placements_, pressed_mm_});
   }
 }
 
 void LinkThread::watch_control() {
   const std::uint64_t controller = socket_.controller();
   if (controller == in_control_) return;
+  placed_s_ = kNotPlaced_s;
   shared_.commands.stop(realtime::now_ns());
   in_control_ = controller;
   window_age_s_ = 0.0;

@@ -39,6 +39,7 @@ std::optional<link::HandTarget> take_hand(Shared& shared, std::uint64_t& placeme
   const CountedHand& newest = shared.hand.value();
   link::HandTarget target = newest.target;
   target.is_placed = std::exchange(placements, newest.placements) != newest.placements;
+  target.pressed_mm = newest.pressed_mm;
   return target;
 }
 

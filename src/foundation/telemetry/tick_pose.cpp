@@ -39,7 +39,7 @@ NeedlePlace needle_place(const TickSample& sample) noexcept {
   if (sample.phase == InsertionPhase::kOutside) return {felt, 0.0};
   const double back_mm = is_loading ? deep_mm + kClear_mm : 0.0;
   const double ahead_mm = std::max(0.0, sample.axis.dot(sample.device_mm - sample.tip_mm));
-  return {felt * Pose::translation({0.0, 0.0, ahead_mm}), ahead_mm + back_mm};
+  return {felt * Pose::translation({0.0, 0.0, -back_mm}), ahead_mm};
 }
 
 Pose felt_probe(const TickSample& sample) noexcept {

@@ -9,10 +9,10 @@ namespace trocar::telemetry {
 Pose device_pose(const TickSample& sample) noexcept;
 /// Pose of the virtual needle: its tip and axis, with the device's roll.
 Pose felt_needle(const TickSample& sample) noexcept;
-/// Where a needle is placed after an interruption, so that it goes on where it was (physics.md S1): the device's pose
-/// on the virtual needle's axis, and how far the tip stays behind it because tissue is pressed in and the coupling
-/// stretched. A tip that presses on a layer is drawn back to that layer's surface, one on unpierced skin to outside it:
-/// being placed there pierces neither.
+/// Where a needle is placed after an interruption, so that it goes on where it was (physics.md S1): the virtual
+/// needle's pose, and how far its device was ahead of it because tissue was pressed in and the coupling stretched. A
+/// tip that presses on a layer is drawn back to that layer's surface, one on unpierced skin to outside it: being placed
+/// there pierces neither.
 struct NeedlePlace {
   Pose X_PN;
   double pressed_mm = 0.0;

@@ -37,7 +37,9 @@ class LinkThread {
   std::uint64_t ticks_ = 0;
   std::uint64_t in_control_ = 0;  ///< Session of the client in control; 0: none.
   std::uint64_t placements_ = 0;  ///< See CountedHand.
-  double placed_s_ = -1.0;        ///< Time of the last placement.
+  static constexpr double kNotPlaced_s = -1.0;
+  double placed_s_ = kNotPlaced_s;  ///< Time of the last placement by this client.
+  double pressed_mm_ = 0.0;         ///< Of the last placement.
   double window_age_s_ = 0.0;
   std::uint32_t actions_ = 0;
   double drop_n_ = 0.0, drop_s_ = 0.0;

@@ -160,6 +160,7 @@ inline constexpr double kNeverHeard_s = 1e6;
 struct CountedHand {
   link::HandTarget target;
   std::uint64_t placements = 0;  ///< Targets with is_placed so far.
+  double pressed_mm = 0.0;       ///< Of the last of them.
 };
 
 /// Data exchanged between the threads, grouped by direction.

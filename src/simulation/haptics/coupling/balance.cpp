@@ -31,6 +31,8 @@ double AxialBalance::recoiling_under(double load_n) const noexcept {
 }
 
 double AxialBalance::yielding_under(const Resistance& resistance) const noexcept {
+  if (gives_again_mm > 0.0 && below != nullptr)
+    return std::min(gives_again_mm, below->depression_mm(resistance.sum_n() + stick_n));
   const double under_load_mm = is_yielding ? below->depression_mm(resistance.layer_n) : 0.0;
   return std::max(under_load_mm, recoiling_under(resistance.sum_n() + stick_n));
 }
@@ -61,6 +63,25 @@ double AxialBalance::recoiling_mm(double s_mm) const noexcept {
 double AxialBalance::coupling_n(double s_mm) const noexcept {
   const double v = velocity(s_mm);
   return coupling_under(s_mm, v, resistance_at(s_mm, v));
+}
+
+double AxialBalance::holding_n() const noexcept {
+  AxialBalance held = *this;
+  const double others_n = prepuncture_n(s_previous_mm) + bed_n;
+  const auto missing_n = [&](double stick) {
+    held.stick_n = stick;
+    return held.coupling_n(s_previous_mm) - others_n - stick;
+  };
+  const double without_load_n = missing_n(0.0);
+  // A recoil is slow: its load of this tick counts in the next one.
+  if (!(gives_again_mm > 0.0) || !(without_load_n > 0.0)) return without_load_n;
+  constexpr int kHalvings = 30;
+  double low = 0.0, high = without_load_n;  // the missing force falls with the load
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = 0.5 * (low + high);
+    (missing_n(middle) > 0.0 ? low : high) = middle;
+  }
+  return low;
 }
 
 double AxialBalance::unbalance_n(double s_mm) const noexcept {

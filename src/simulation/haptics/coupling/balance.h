@@ -33,6 +33,7 @@ class AxialBalance {
   bool is_yielding = false;           ///< The layer ahead presses that tissue in.
   double yielded_mm = 0.0;            ///< Depression of that tissue at the start of the step.
   double recoil_mm = 0.0;             ///< Depression that remains of the last puncture, at the start of the step.
+  double gives_again_mm = 0.0;        ///< Above 0: that tissue follows the whole load again, up to this depression.
 
   double bed_at_n(double s_mm) const noexcept { return bed_n + bed_n_per_mm * (s_mm - s_previous_mm); }
   double velocity(double s_mm) const noexcept { return (s_mm - s_previous_mm) / dt_s; }
@@ -46,6 +47,9 @@ class AxialBalance {
   double yielding_mm(double s_mm) const noexcept;
   double recoiling_mm(double s_mm) const noexcept;
   double coupling_n(double s_mm) const noexcept;
+  /// Force that holds a needle at rest at s_previous: what the coupling pushes beyond layers and bed, while it loads the
+  /// tissue below, too.
+  double holding_n() const noexcept;
   /// Resistance minus coupling; increases with s.
   double unbalance_n(double s_mm) const noexcept;
 

@@ -44,6 +44,7 @@ bool meet(InsertionState& state, InsertionPath& path, const HapticScene& scene, 
     way_P = hole->direction_P;
   } else {
     start_channel(path, entry_P, axis_P);
+    state.skin = {};
     state.skin.anchor_P = entry_P;
   }
   // So far needle and device coincided, above skin that may still recoil.
@@ -56,11 +57,11 @@ bool meet(InsertionState& state, InsertionPath& path, const HapticScene& scene, 
 /// Projects needle and device onto the line of this step: the path after the skin puncture, before that the way from
 /// the point of the skin that the tip holds to the device's tip. Empty: in air.
 std::optional<LineStep> place_on_line(InsertionState& state, InsertionPath& path, const HapticScene& scene,
-                                      const Vec3& tip_P, const Vec3& axis_P) noexcept {
+                                      const Vec3& tip_P, const Vec3& axis_P, double dt_s) noexcept {
   if (!path.is_open && state.loading == kNoLayer && !meet(state, path, scene, tip_P, axis_P)) return std::nullopt;
   const Channel& line = path.channel;
   if (path.is_open) return LineStep{state.s_mm, state.s_device_mm, line.direction_P.dot(tip_P - line.origin_P)};
-  follow_skin(state.skin, scene, tip_P, scene.friction.tip);
+  follow_skin(state.skin, scene, tip_P, scene.friction.tip, dt_s);
   path.channel.origin_P = state.skin.anchor_P;
   path.channel.direction_P = axis_P;
   return LineStep{state.s_mm, state.s_device_mm, state.skin.to_device_mm};
@@ -114,6 +115,7 @@ AxialBalance make_balance(const InsertionState& state, const InsertionPath& path
   balance.coupling = scene.options.coupling;
   balance.yielded_mm = state.yielded_mm;
   balance.recoil_mm = state.recoil_mm;
+  balance.gives_again_mm = state.gives_again_mm;
   if (ahead.layer != kNoLayer) {
     balance.loading = scene.layers[ahead.layer].loading;
     balance.surface_mm = ahead.surface_mm;
@@ -151,7 +153,7 @@ bool is_held(const InsertionState& state, const InsertionPath& path, const Hapti
                                           state.device_speed_mm_per_s <= kRestSpeed_mm_per_s);
   if (!at_rest) return false;
   const double s = balance.s_previous_mm;
-  const double push = balance.coupling_n(s) - balance.prepuncture_n(s) - balance.bed_n;
+  const double push = balance.holding_n();
   const double holding = holding_force_n(path, scene, balance);
   // Uncut tissue holds until it is cut, except the share that the layer behind it bears.
   const double uncut = s >= balance.cut_to_mm ? std::max(0.0, balance.cutting_n - balance.prepuncture_n(s)) : 0.0;
@@ -160,8 +162,7 @@ bool is_held(const InsertionState& state, const InsertionPath& path, const Hapti
 
 /// The holding force of a needle at rest also loads the tissue that recoils.
 void hold(AxialBalance& balance) noexcept {
-  const double s = balance.s_previous_mm;
-  balance.stick_n = balance.coupling_n(s) - balance.prepuncture_n(s) - balance.bed_n;
+  balance.stick_n = balance.holding_n();
 }
 
 /// Fraction of the step at which the layer reaches its puncture force.
@@ -260,6 +261,7 @@ InsertionStep step_in_air(InsertionState& state, InsertionPath& path, const Vec3
   leave_body(path);
   stop_loading(state);
   state.recoil_mm *= kTissueRecoil_s / (kTissueRecoil_s + dt_s);
+  state.gives_again_mm = 0.0;
   state.yielded_mm = state.recoil_mm;
   InsertionStep step;
   step.tip_P = tip_P;
@@ -329,19 +331,18 @@ void start_insertion(InsertionState& state, const InsertionPath& path, const Hap
   state.device_tip_P = device_tip_P;
   if (!path.is_open) return;
   const Channel& line = path.channel;
-  state.s_device_mm = line.direction_P.dot(device_tip_P - line.origin_P);
-  state.s_mm = state.s_device_mm - pressed_mm;
+  state.s_mm = state.s_device_mm = line.direction_P.dot(device_tip_P - line.origin_P);
   state.phase = telemetry::InsertionPhase::kInserted;
   const std::uint8_t skin = scene.tissues[scene.skin].layer;
   if (!(pressed_mm > 0.0) || skin == kNoLayer || !(scene.layers[skin].load_spread_mm > 0.0)) return;
   state.below = column_below(scene, scene.layers[skin], line.origin_P, line.direction_P);
-  state.yielded_mm = state.recoil_mm = pressed_mm;
+  state.gives_again_mm = pressed_mm;
 }
 
 InsertionStep step_insertion(InsertionState& state, InsertionPath& path, const HapticScene& scene,
                              const Vec3& device_tip_P, const Vec3& device_axis_P, double dt_s,
                              const ProxyShare* share) noexcept {
-  const auto line = place_on_line(state, path, scene, device_tip_P, device_axis_P);
+  const auto line = place_on_line(state, path, scene, device_tip_P, device_axis_P, dt_s);
   if (!line) return step_in_air(state, path, device_tip_P, device_axis_P, dt_s);
 
   // Balance of the virtual needle over the tick and the remaining time of the last puncture.
@@ -366,6 +367,10 @@ InsertionStep step_insertion(InsertionState& state, InsertionPath& path, const H
   state.device_tip_P = device_tip_P;
   state.yielded_mm = balance.yielding_mm(s_mm);
   state.recoil_mm = step.punctured != kNoLayer ? state.yielded_mm : balance.recoiling_mm(s_mm);
+  if (state.gives_again_mm > 0.0 && (step.punctured != kNoLayer || state.yielded_mm >= state.gives_again_mm)) {
+    state.recoil_mm = state.yielded_mm;  // as pressed in as it was
+    state.gives_again_mm = 0.0;
+  }
   update_contact(state, path, scene, ahead);
   if (path.is_open) {
     const double rest_mm = state.loading != kNoLayer ? std::min(s_mm, state.surface_mm) : s_mm;

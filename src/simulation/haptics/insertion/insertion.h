@@ -34,6 +34,7 @@ struct InsertionState {
   bool is_yielding = false;         ///< The layer under load presses that tissue in.
   double yielded_mm = 0.0;          ///< Depression of that tissue: the device is that much further along the path.
   double recoil_mm = 0.0;           ///< What remains of it since the last puncture.
+  double gives_again_mm = 0.0;      ///< After a placement: it follows the load again, up to this depression.
   bool is_stuck = false;
   telemetry::InsertionPhase phase = telemetry::InsertionPhase::kOutside;
 };
@@ -69,8 +70,8 @@ struct ProxyShare {
   double tip_viscous_ns_per_mm = 0.0;
 };
 
-/// Sets needle and device to the device's pose: zero force. The tip of an inserted needle is `pressed_mm` behind it: by
-/// so much the skin is pressed in (physics.md P6); where it does not give way, the coupling. Real-time safe.
+/// Sets needle and device to the device's pose: zero force. Above 0, `pressed_mm` is how far the skin gives way again
+/// under the load of an inserted needle (physics.md S1, P6). Real-time safe.
 void start_insertion(InsertionState& state, const InsertionPath& path, const HapticScene& scene,
                      const Vec3& device_tip_P, double pressed_mm = 0.0) noexcept;
 

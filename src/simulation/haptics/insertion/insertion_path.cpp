@@ -69,6 +69,8 @@ void leave_body(InsertionPath& path) noexcept {
 
 namespace {
 
+constexpr double kAtSurface_mm = 1e-6;
+
 /// Distance (mm) back along the axis from a tip inside the body to the skin; the longest needle's length if there is
 /// none.
 double way_to_skin_back(const HapticScene& scene, const Vec3& tip_P, const Vec3& axis_P) noexcept {
@@ -84,17 +86,34 @@ double way_to_skin_back(const HapticScene& scene, const Vec3& tip_P, const Vec3&
   return kLongest_mm;
 }
 
+std::uint8_t layer_at(const Channel& channel, const HapticScene& scene, int bin) noexcept {
+  return scene.tissues[channel.tissue[static_cast<std::size_t>(bin)]].layer;
+}
+
+/// Depth of a tip that presses on bone: at its surface. A tip further in than any press is taken as it is.
+double in_front_of_bone(const Channel& channel, const HapticScene& scene, double tip_mm) noexcept {
+  constexpr int kDeepest = static_cast<int>(5.0 / Channel::kBin_mm);
+  const auto is_bone = [&](int bin) {
+    const std::uint8_t layer = layer_at(channel, scene, bin);
+    return layer != kNoLayer && std::isinf(scene.layers[layer].puncture_force_n);
+  };
+  const int tip = bin_of(tip_mm);
+  int bin = tip;
+  while (bin > 0 && tip - bin <= kDeepest && is_bone(bin)) --bin;
+  return bin == tip || is_bone(bin) ? tip_mm : (bin + 1) * Channel::kBin_mm - kAtSurface_mm;
+}
+
 }  // namespace
 
 bool resume_inside(InsertionPath& path, const HapticScene& scene, const Vec3& tip_P, const Vec3& axis_P) noexcept {
   if (!(volume::sample_linear(scene.patient->skin_distance_mm, tip_P) < 0.0)) return false;
-  const double depth_mm = way_to_skin_back(scene, tip_P, axis_P);
-  start_channel(path, tip_P - depth_mm * axis_P, axis_P);
+  const double tip_mm = way_to_skin_back(scene, tip_P, axis_P);
+  start_channel(path, tip_P - tip_mm * axis_P, axis_P);
   open_path(path, scene.tissues[scene.skin].layer);
-  const int end = bin_of(depth_mm);
-  while (path.channel.known_bins <= end) look_ahead(path.channel, scene, depth_mm, 0.0);
-  for (int bin = 0; bin <= end; ++bin) {
-    const std::uint8_t layer = scene.tissues[path.channel.tissue[static_cast<std::size_t>(bin)]].layer;
+  while (path.channel.known_bins <= bin_of(tip_mm)) look_ahead(path.channel, scene, tip_mm, 0.0);
+  const double depth_mm = in_front_of_bone(path.channel, scene, tip_mm);
+  for (int bin = 0; bin <= bin_of(depth_mm); ++bin) {
+    const std::uint8_t layer = layer_at(path.channel, scene, bin);
     if (layer != kNoLayer) path.channel.pierce(layer);
   }
   move_tip(path, scene, depth_mm, kNoLayer);

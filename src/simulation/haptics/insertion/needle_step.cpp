@@ -17,14 +17,9 @@ constexpr double kNeedleJump_mm_per_s = 3000.0;
 void start(NeedleState& state, const HapticScene& scene, const Pose& X_PN, NeedleStep& step) noexcept {
   leave_body(state.path);
   const Vec3 axis_P = X_PN.R().col(2);
-  double pressed_mm = std::exchange(state.pressed_mm, 0.0);
-  step.has_resumed = resume_inside(state.path, scene, X_PN.p() - pressed_mm * axis_P, axis_P);
-  if (!step.has_resumed && pressed_mm > 0.0) {
-    pressed_mm = 0.0;
-    step.has_resumed = resume_inside(state.path, scene, X_PN.p(), axis_P);
-  }
-  start_insertion(state.insertion, state.path, scene, X_PN.p(), pressed_mm);
-  start_proxy_needle(state.proxy, state.path, X_PN.p() - pressed_mm * axis_P);
+  step.has_resumed = resume_inside(state.path, scene, X_PN.p(), axis_P);
+  start_insertion(state.insertion, state.path, scene, X_PN.p(), std::exchange(state.pressed_mm, 0.0));
+  start_proxy_needle(state.proxy, state.path, X_PN.p());
   state.X_PN = X_PN;
   state.tip_velocity_P = state.axis_rate_P = Vec3::Zero();
   state.is_started = true;
@@ -41,8 +36,7 @@ bool is_lost_inside(const NeedleState& state, const HapticScene& scene, const Ve
 
 /// The pose one damping time ahead: springs at this pose damp in proportion to their stiffness (physics.md B7).
 Pose pose_ahead(NeedleState& state, const Pose& X_PN, double ahead_s, double dt_s) noexcept {
-  constexpr double kSmoothing_s = 0.002;
-  const double share = dt_s / (dt_s + kSmoothing_s);
+  const double share = dt_s / (dt_s + kVelocitySmoothing_s);
   const Vec3 axis = X_PN.R().col(2);
   state.tip_velocity_P += share * ((X_PN.p() - state.X_PN.p()) / dt_s - state.tip_velocity_P);
   state.axis_rate_P += share * ((axis - state.X_PN.R().col(2)) / dt_s - state.axis_rate_P);
@@ -72,7 +66,7 @@ Vec3 axial_torque_nmm(const HapticScene& scene, const Pose& X_PN, const Vec3& di
 /// Force across the needle on unpierced skin, whose whole force is along the contact's way, at the tip; damped like the
 /// force along it (physics.md V2).
 void hold_on_skin(const NeedleState& state, const HapticScene& scene, const Pose& X_PN, const Pose& X_PN_ahead,
-                  double dt_s, NeedleStep& step) noexcept {
+                  NeedleStep& step) noexcept {
   if (!step.axial.is_on_skin) return;
   const SkinContact& skin = state.insertion.skin;
   const double load_n = step.axial.prepuncture_n;
@@ -81,7 +75,7 @@ void hold_on_skin(const NeedleState& state, const HapticScene& scene, const Pose
   Vec3 force_P = load_n * (step.axial.axis_P - skin.way_P);
   constexpr double kNear_mm = 1e-6;
   if (skin.to_device_mm > kNear_mm) {
-    const Vec3 ahead_P = X_PN_ahead.p() - X_PN.p() - ahead_s / dt_s * skin.slid_P;
+    const Vec3 ahead_P = X_PN_ahead.p() - X_PN.p() - ahead_s * skin.slides_P;
     force_P -= load_n / skin.to_device_mm * (ahead_P - skin.way_P * skin.way_P.dot(ahead_P));
   }
   step.held_P.force_n += force_P;
@@ -169,7 +163,7 @@ void step_insertion_model(NeedleState& state, const HapticScene& scene, const Po
     constrain_to_path(state, scene, X_PN, X_PN_ahead, step);
   else
     hold_body(state, scene, X_PN, X_PN_ahead, is_stylet_in, kNoBevel, step);
-  hold_on_skin(state, scene, X_PN, X_PN_ahead, dt_s, step);
+  hold_on_skin(state, scene, X_PN, X_PN_ahead, step);
 }
 
 void step_proxy_model(NeedleState& state, const HapticScene& scene, const Pose& X_PN, const Pose& X_PN_ahead,
@@ -188,7 +182,7 @@ void step_combined_model(NeedleState& state, const HapticScene& scene, const Pos
   step.axial = step_insertion(state.insertion, state.path, scene, X_PN.p(), X_PN.R().col(2), dt_s, &share);
   step.tip_proxy_P = -step.axial.tip_proxy_n * step.axial.axis_P;
   hold_body(state, scene, X_PN, X_PN_ahead, is_stylet_in, step.axial.velocity_mm_per_s, step);
-  hold_on_skin(state, scene, X_PN, X_PN_ahead, dt_s, step);
+  hold_on_skin(state, scene, X_PN, X_PN_ahead, step);
 }
 
 /// A tick without any bend that can be seen is sent as straight.

@@ -18,7 +18,7 @@ struct GripTurning {
 /// State of the needle under any force model, from one tick to the next. Fixed size.
 struct NeedleState {
   bool is_started = false;
-  double pressed_mm = 0.0;  ///< Before the start: the tip is so far behind the device, in tissue that is pressed in.
+  double pressed_mm = 0.0;  ///< Before the start: how far the tissue gives way again (start_insertion).
   Pose X_PN;                ///< Device's needle at the last tick, in the resting anatomy.
   /// Velocity of the device's needle tip, mm/s, smoothed against ripple from encoder counts.
   Vec3 tip_velocity_P = Vec3::Zero();

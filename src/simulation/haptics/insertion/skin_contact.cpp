@@ -31,7 +31,8 @@ Vec3 meet_skin(const HapticScene& scene, const Vec3& outside_P, const Vec3& insi
   return outside_P + low * (inside_P - outside_P);
 }
 
-void follow_skin(SkinContact& contact, const HapticScene& scene, const Vec3& device_tip_P, double friction) noexcept {
+void follow_skin(SkinContact& contact, const HapticScene& scene, const Vec3& device_tip_P, double friction,
+                 double dt_s) noexcept {
   constexpr int kMostSteps = 4;
   constexpr double kOnCone_mm = 1e-9;
   Vec3 normal_P = inward_normal(scene, contact.anchor_P);
@@ -46,7 +47,7 @@ void follow_skin(SkinContact& contact, const HapticScene& scene, const Vec3& dev
     normal_P = inward_normal(scene, contact.anchor_P);
     way = device_tip_P - contact.anchor_P;
   }
-  contact.slid_P = contact.anchor_P - before_P;
+  contact.slides_P += dt_s / (dt_s + kVelocitySmoothing_s) * ((contact.anchor_P - before_P) / dt_s - contact.slides_P);
   const double deep_mm = way.dot(normal_P);
   contact.to_device_mm = deep_mm > 0.0 ? way.norm() : deep_mm;
   contact.way_P = deep_mm > 0.0 ? Vec3(way.stableNormalized()) : normal_P;

@@ -23,11 +23,15 @@ struct SkinContact {
   Vec3 anchor_P = Vec3::Zero();  ///< On the resting skin.
   Vec3 way_P = Vec3::UnitZ();    ///< Unit, from there to the device's tip; into the body.
   double to_device_mm = 0.0;     ///< Length of that way; negative: the device's tip is that far outside the skin.
-  Vec3 slid_P = Vec3::Zero();    ///< Way of the point in the last step.
+  Vec3 slides_P = Vec3::Zero();  ///< Velocity of that point, mm/s, smoothed like the device's.
 };
 
-/// Follows the device's tip with the coefficient of friction `friction`. Real-time safe.
-void follow_skin(SkinContact& contact, const HapticScene& scene, const Vec3& device_tip_P, double friction) noexcept;
+/// Velocities of the device are smoothed so long against the ripple of encoder counts. [assumed]
+inline constexpr double kVelocitySmoothing_s = 0.002;
+
+/// Follows the device's tip for a tick, with the coefficient of friction `friction`. Real-time safe.
+void follow_skin(SkinContact& contact, const HapticScene& scene, const Vec3& device_tip_P, double friction,
+                 double dt_s) noexcept;
 
 /// Share of a force along the contact's way that pushes a needle with this unit axis along its axis: its cosine; 0 for
 /// a needle that is flat on the skin or pushed sideways, which does not pierce.

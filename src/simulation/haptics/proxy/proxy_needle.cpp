@@ -58,14 +58,14 @@ void open_skin(ProxyNeedleState& state, InsertionPath& path, std::uint8_t layer,
 ProxyNeedleStep on_skin(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene, const Pose& X_PN,
                         const Pose& X_PN_ahead, double dt_s) noexcept {
   SkinContact& skin = state.skin;
-  follow_skin(skin, scene, X_PN.p(), scene.friction.tip);
+  follow_skin(skin, scene, X_PN.p(), scene.friction.tip, dt_s);
   if (!(skin.to_device_mm > 0.0)) return in_air(state, path, X_PN, dt_s);
   const std::uint8_t layer = scene.tissues[scene.skin].layer;
   const double tissue_n_per_mm = layer == kNoLayer ? 1.0 : scene.layers[layer].indent_n_per_mm;
   const double k = in_series(scene.options.coupling.stiffness_n_per_mm, tissue_n_per_mm);
   const CouplingParams& coupling = scene.options.coupling;
   const double ahead_s = coupling.damping_ns_per_mm / coupling.stiffness_n_per_mm;
-  const Vec3 ahead_P = X_PN_ahead.p() - X_PN.p() - ahead_s / dt_s * skin.slid_P;
+  const Vec3 ahead_P = X_PN_ahead.p() - X_PN.p() - ahead_s * skin.slides_P;
   double load_n = std::max(0.0, k * (skin.to_device_mm + skin.way_P.dot(ahead_P)));
   const double puncture_n = layer == kNoLayer ? 0.0 : scene.layers[layer].puncture_force_n;
   const double share = piercing_share(skin, scene, X_PN.R().col(2));  // the force along the needle counts
@@ -233,6 +233,7 @@ ProxyNeedleStep in_body(ProxyNeedleState& state, InsertionPath& path, const Hapt
 bool meet(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene, const Pose& X_PN) noexcept {
   if (!(skin_distance_mm(scene, X_PN.p()) < 0.0) || skin_distance_mm(scene, state.proxy_P) < 0.0) return false;
   state.proxy_P = meet_skin(scene, state.proxy_P, X_PN.p());
+  state.skin = {};
   state.contact_P = state.skin.anchor_P = state.proxy_P;
   state.is_on_skin = true;
   if (const Channel* hole = path.memory.find(state.proxy_P, X_PN.R().col(2))) {

@@ -93,6 +93,7 @@ class AttemptLoop {
 
   // attempt_loop_tools.cpp
   Status step_needle();
+  void note_place(const telemetry::TickSample& sample);
   void answer_unrecorded(const std::vector<link::NumberedSample>& samples);
   Status record(const std::vector<link::NumberedSample>& samples);
   Status note_shape(const link::NumberedSample& numbered);
@@ -134,6 +135,7 @@ class AttemptLoop {
   double transducer_on_s_ = 0.0;                          ///< Time at which the transducer's forces were switched on.
   /// ServerSupervisor::activations() when their ticks last began to arrive.
   int needle_activations_ = 0, transducer_activations_ = 0;
+  double pressed_mm_ = 0.0;  ///< Largest of this insertion, see note_place.
   bool was_needle_on_ = false, was_transducer_on_ = false;
   bool is_transducer_given_up_ = false;  ///< The transducer was given up, with a note.
   bool begins_ = false, finishes_ = false, is_stopped_ = false;

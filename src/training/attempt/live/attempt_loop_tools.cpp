@@ -31,7 +31,7 @@ Status AttemptLoop::step_needle() {
     needle_time_s_ = samples.front().sample.time_s;
   }
   was_needle_on_ = true;
-  needle_->place_at(telemetry::needle_place(samples.back().sample));
+  note_place(samples.back().sample);
   if (!live_) {
     answer_unrecorded(samples);
     return {};
@@ -40,6 +40,15 @@ Status AttemptLoop::step_needle() {
   needle_->set_target(live_->hand());
   send_scheduled_parameters();
   return {};
+}
+
+/// Where the needle is placed if its server is prepared again. The largest depression of this insertion counts: an
+/// interruption may come before the hand is back from the last one.
+void AttemptLoop::note_place(const telemetry::TickSample& sample) {
+  const bool is_outside = sample.phase == telemetry::InsertionPhase::kOutside;
+  telemetry::NeedlePlace place = telemetry::needle_place(sample);
+  place.pressed_mm = pressed_mm_ = is_outside ? 0.0 : std::max(pressed_mm_, place.pressed_mm);
+  needle_->place_at(place);
 }
 
 void AttemptLoop::answer_unrecorded(const std::vector<link::NumberedSample>& samples) {

@@ -181,32 +181,29 @@ TEST(YieldingWall, HoldsItsDepressionUnderTheLoadAfterThePuncture) {
   EXPECT_LT(state.recoil_mm, 0.05 * held_mm);  // friction still holds a little
 }
 
-/// A server that is prepared again places the needle where it was: the wall is still pressed in (S1).
-TEST(YieldingWall, ANeedleThatIsPlacedAgainStaysWhereItWas) {
+/// A server that is prepared again places the needle where it was, and the hand comes back to where it was (S1).
+TEST(YieldingWall, ANeedleThatIsPlacedAgainIsNotPushedOn) {
   for (const haptics::ForceModel model :
        {haptics::ForceModel::kInsertion, haptics::ForceModel::kCombined, haptics::ForceModel::kProxy}) {
+    SCOPED_TRACE(static_cast<int>(model));
     haptics::HapticOptions options;
     options.force_model = model;
     const auto scene = make_scene({{0, kMuscle}}, options, yielding_tissues());
+    constexpr double kDevice_mm = 40.0;
     Driver driver(scene);
-    driver.move(40.0, 20.0);
+    driver.move(kDevice_mm, 20.0);
     const telemetry::TickSample rest = driver.hold(2.0).back();
-    const double pressed_mm = telemetry::needle_place(rest).pressed_mm;
-    ASSERT_GT(pressed_mm, 0.2);
-    const double creep_mm = model == haptics::ForceModel::kProxy ? 0.5 : 0.05;  // its tip creeps in soft tissue
+    const telemetry::NeedlePlace place = telemetry::needle_place(rest);
+    ASSERT_GT(place.pressed_mm, 0.2);
     driver.state() = {};
-    driver.state().needle.pressed_mm = pressed_mm;
+    driver.state().needle.pressed_mm = place.pressed_mm;
+    driver.jump_to(place.X_PN.p().z());
+    const std::vector<telemetry::TickSample> placed = driver.hold(1.0);
+    for (const telemetry::TickSample& sample : placed) ASSERT_NEAR(resistance_n(sample), 0.0, 1e-6);
+    const std::vector<telemetry::TickSample> back = driver.move(kDevice_mm, 20.0);
     const std::vector<telemetry::TickSample> after = driver.hold(2.0);
-    EXPECT_TRUE(punctures(after).empty());
-    if (model != haptics::ForceModel::kProxy) {
-      EXPECT_NEAR(resistance_n(after.front()), 0.0, 0.1 * resistance_n(rest) + 0.02);
-    }
-    for (const telemetry::TickSample& sample : after)
-      ASSERT_NEAR(sample.tip_mm.z(), rest.tip_mm.z(), creep_mm) << static_cast<int>(model);
-    EXPECT_NEAR(resistance_n(after.back()), resistance_n(rest), 0.1);
-    // Without it the needle would be at the device.
-    driver.state() = {};
-    EXPECT_NEAR(driver.hold(0.01).back().tip_mm.z(), rest.tip_mm.z() + pressed_mm, 0.01);
+    EXPECT_TRUE(punctures(back).empty() && punctures(after).empty());
+    EXPECT_NEAR(after.back().tip_mm.z(), rest.tip_mm.z(), 0.4 * place.pressed_mm);  // at slow speeds it creeps
   }
 }
 
