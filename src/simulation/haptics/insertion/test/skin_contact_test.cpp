@@ -70,6 +70,37 @@ TEST(SkinContact, GivesTheHandNoEnergyWhereAnObliqueNeedleIsDragged) {
         EXPECT_LT(cycle_mj(model, angle_deg * 0.0174533, drag_mm), -1.0) << to_string(model) << " " << angle_deg;
 }
 
+/// Work of a hand that trembles sideways on the skin and lifts at the end.
+double tremble_mj(haptics::ForceModel model, double frequency_hz, double width_mm, double deep_mm) {
+  haptics::HapticOptions options;
+  options.force_model = model;
+  options.has_weight_compensation = false;
+  Driver driver(make_scene(liver_way(), options));
+  double work_mj = 0.0, most_mj = 0.0;
+  Vec3 before_P(0.0, 0.0, -2.0), before_n = Vec3::Zero();
+  for (int i = 0; i <= 1500; ++i) {
+    const double t = 0.001 * i;
+    const double down = std::min({1.0, t / 0.2, (1.5 - t) / 0.2});
+    const Vec3 tip_P(down * width_mm * std::sin(6.2832 * frequency_hz * t), 0.0, -2.0 + (2.0 + deep_mm) * down);
+    const Vec3 force_n = driver.to(tip_P).device_f_n;
+    work_mj += 0.5 * (force_n + before_n).dot(tip_P - before_P);
+    most_mj = std::max(most_mj, work_mj);
+    before_P = tip_P;
+    before_n = force_n;
+  }
+  return most_mj;
+}
+
+TEST(SkinContact, GivesTheHandNoEnergyWhereItTrembles) {
+  using enum haptics::ForceModel;
+  for (const haptics::ForceModel model : {kInsertion, kProxy, kCombined})
+    for (const double frequency_hz : {10.0, 40.0, 60.0, 100.0})
+      for (const double width_mm : {0.2, 1.0})
+        for (const double deep_mm : {0.02, 0.1, 0.5})
+          EXPECT_LT(tremble_mj(model, frequency_hz, width_mm, deep_mm), 0.1)
+              << to_string(model) << ' ' << frequency_hz << " Hz, " << width_mm << ", " << deep_mm << " mm";
+}
+
 TEST(SkinContact, ATurnAboutTheGripMeetsTheLeverOfTheForceAtTheTip) {
   using enum haptics::ForceModel;
   for (const haptics::ForceModel model : {kInsertion, kProxy, kCombined}) {

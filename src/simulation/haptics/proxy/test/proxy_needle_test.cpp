@@ -200,6 +200,20 @@ TEST(SafeStart, InsideTheBodyGivesNoForceAndIsTakenAsInserted) {
   }
 }
 
+TEST(SafeStart, OnBoneItIsNotPierced) {
+  for (const haptics::ForceModel model :
+       {haptics::ForceModel::kInsertion, haptics::ForceModel::kProxy, haptics::ForceModel::kCombined}) {
+    for (const double in_bone_mm : {0.3, 1.0, 3.0}) {
+      Driver driver(make_scene({{0, kFat}, {30, kBone}}, model));
+      driver.to({0.0, 0.0, 30.0 + in_bone_mm});
+      const auto samples = driver.move(45.0, 20.0);
+      EXPECT_TRUE(punctures(samples).empty());
+      EXPECT_GT(-samples.back().f_total_n.z(), 5.0) << to_string(model) << ' ' << in_bone_mm;
+      EXPECT_LT(samples.back().tip_mm.z(), 36.0) << to_string(model) << ' ' << in_bone_mm;
+    }
+  }
+}
+
 TEST(SafeStart, AJumpStartsAfreshWithoutAForceStep) {
   for (const haptics::ForceModel model :
        {haptics::ForceModel::kInsertion, haptics::ForceModel::kProxy, haptics::ForceModel::kCombined}) {
