@@ -37,8 +37,8 @@ Status start_bench_program(std::vector<std::string> words) {
 }  // namespace
 
 void add_bench_command(Command& program, Action& action, std::vector<std::string> words) {
-  Command command =
-      program.add_command(kBench, "Measure speed, forces, energy and images, beside comparable libraries where they are installed");
+  Command command = program.add_command(
+      kBench, "Measure speed, forces, energy and images, beside comparable libraries where they are installed");
   const auto arguments = std::make_shared<BenchArguments>();  // read twice: here for the help and the usage errors
   add_bench_options(command, *arguments);
   command.when_parsed(

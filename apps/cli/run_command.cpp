@@ -327,7 +327,9 @@ void add_run_command(Command& program, Action& action) {
                      "Level of difficulty of the task, by name or number; see trocar task list");
   command.add_option("--tissues", a->the_case.tissue_file, "Tissue table (TOML) instead of data/tissues.toml");
   command.add_option("--profile", a->the_case.profile, "Profile of the tissue table: paper-a, tented ...");
-  command.add_option("--set", a->the_case.overrides, "Override numbers of the tissue table: liver.k=0.5, friction.grows_to=never")
+  command
+      .add_option("--set", a->the_case.overrides,
+                  "Override numbers of the tissue table: liver.k=0.5, friction.grows_to=never")
       .one_value_each();
   command.add_option("--seed", a->run.seed, "Random seed for operator, friction and path choice").seed().show_default();
   command.add_option("--patient-seed", a->source.seed, "Random seed for the anatomy of an embedded patient")

@@ -47,8 +47,8 @@ class AxialBalance {
   double yielding_mm(double s_mm) const noexcept;
   double recoiling_mm(double s_mm) const noexcept;
   double coupling_n(double s_mm) const noexcept;
-  /// Force that holds a needle at rest at s_previous: what the coupling pushes beyond layers and bed, while it loads the
-  /// tissue below, too.
+  /// Force that holds a needle at rest at s_previous: what the coupling pushes beyond layers and bed, while it loads
+  /// the tissue below, too.
   double holding_n() const noexcept;
   /// Resistance minus coupling; increases with s.
   double unbalance_n(double s_mm) const noexcept;
