@@ -96,8 +96,8 @@ bool keep_pressing(link::HapticClient& client, double least_n, double& depth_mm)
   reset_loop_fault(client);
   const auto newest = client.newest();
   if (newest && felt_n(*newest) > least_n) return true;
-  // A needle that went through the skin is pulled out and pressed on it again.
-  constexpr double kStep_mm = 0.02, kDeepest_mm = 15.0, kOutside_mm = -5.0;
+  // Not through the skin, however late the forces come; a hand that felt nothing begins again.
+  constexpr double kStep_mm = 0.02, kDeepest_mm = 8.0, kOutside_mm = -5.0;
   depth_mm = depth_mm < kDeepest_mm ? depth_mm + kStep_mm : kOutside_mm;
   client.set_hand(hand_at_depth(depth_mm));
   return false;
