@@ -68,8 +68,10 @@ INSTANTIATE_TEST_SUITE_P(
         "run liver-biopsy --patient abdomen --operator expert --level 4 --out x", "exam", "exam draw",
         "exam draw nonsense", "exam draw liver-biopsy --difficulty 0", "exam sign", "exam sign ''", "exam verify",
         "exam verify nothing.json --key ''", "learn nonsense", "session metrics", "session metrics ''",
-        "run liver-biopsy --patient abdomen --operator expert --set liver.k=stiff --out x", "link", "link keygen",
-        "link nonsense", "bench nonsense", "bench slice --paths 3", "bench paths --paths 0",
+        "run liver-biopsy --patient abdomen --operator expert --set liver.k=stiff --out x",
+        "run liver-biopsy --patient layers-liver --operator expert --set path_constraint.m0=3 --force-model proxy "
+        "--out x",
+        "link", "link keygen", "link nonsense", "bench nonsense", "bench slice --paths 3", "bench paths --paths 0",
         "bench paths --patient nobody", "bench paths --force-model nonsense", "bench --patient abdomen", "ultrasound",
         "ultrasound sweep", "ultrasound reconstruct a.igs.mha", "ultrasound reconstruct --out x.nrrd",
         "ultrasound reconstruct a.igs.mha --out x.nii", "ultrasound reconstruct a.igs.mha --spacing 0 --out x.nrrd",

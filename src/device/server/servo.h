@@ -93,7 +93,7 @@ class Servo {
   };
   Sensed sense(const ServoInput& input) noexcept;
   telemetry::GateFault watch_encoder(const devices::DeviceReading& reading, double dt_s) noexcept;
-  /// Restarts the tool at its present pose: for a new scene, or a placed hand, whose needle may be behind it.
+  /// Restarts the tool at its present pose: for a new scene, or a placed hand (link::HandTarget::pressed_mm).
   void begin_anew(double pressed_mm = 0.0) noexcept;
   Wanted feel(const Sensed& sensed, const ServoInput& input, telemetry::TickSample& sample) noexcept;
   devices::DeviceHand hand_in_device(const link::HandTarget& target, const haptics::HapticScene& scene) const noexcept;

@@ -15,7 +15,7 @@ Pose felt_needle(const TickSample& sample) noexcept;
 /// there pierces neither.
 struct NeedlePlace {
   Pose X_PN;
-  double pressed_mm = 0.0;
+  double pressed_mm = 0.0;  ///< >= 0; 0 outside and on unpierced skin.
 };
 NeedlePlace needle_place(const TickSample& sample) noexcept;
 /// Pose of the virtual transducer, whose axis is y of T.

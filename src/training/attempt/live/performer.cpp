@@ -105,7 +105,8 @@ Status check_operator(std::string_view name) {
 Result<Performer> make_performer(const cases::Case& the_case, const RunOptions& options) {
   TROCAR_TRY(Performer performer, make_named(the_case, options));
   if (!options.force_model.empty()) performer.force_model = options.force_model;
-  if (performer.force_model != to_string(haptics::ForceModel::kInsertion)) {
+  const bool has_constraint = performer.force_model == to_string(haptics::ForceModel::kInsertion);
+  if (!has_constraint && performer.replayed == nullptr) {  // a recorded attempt stays as it was
     for (const std::string& setting : anatomy::user_settings(the_case.tissues))
       if (setting.starts_with("path_constraint."))
         return fail_usage(fmt::format("the {} model has no path constraint", performer.force_model), "--set " + setting,

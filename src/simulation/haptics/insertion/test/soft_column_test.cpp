@@ -207,6 +207,25 @@ TEST(YieldingWall, ANeedleThatIsPlacedAgainIsNotPushedOn) {
   }
 }
 
+TEST(YieldingWall, ThatGivesWayAgainGivesTheHandNoEnergy) {
+  for (const double speed_mm_per_s : {2.0, 20.0, 100.0}) {
+    Driver driver(make_scene({{0, kMuscle}}, haptics::HapticOptions{}, yielding_tissues()));
+    driver.state().needle.pressed_mm = 6.0;
+    double work_mj = 0.0, most_mj = 0.0, before_mm = 20.0, before_n = 0.0;
+    driver.jump_to(before_mm);
+    for (const double to_mm : {26.0, 20.0, 30.0, 20.0}) {
+      for (const telemetry::TickSample& sample : driver.move(to_mm, speed_mm_per_s)) {
+        work_mj -= 0.5 * (resistance_n(sample) + before_n) * (sample.device_mm.z() - before_mm);
+        most_mj = std::max(most_mj, work_mj);
+        before_mm = sample.device_mm.z();
+        before_n = resistance_n(sample);
+      }
+    }
+    EXPECT_LT(most_mj, 0.1) << speed_mm_per_s;
+    EXPECT_LT(work_mj, -0.5) << speed_mm_per_s;  // friction
+  }
+}
+
 TEST(YieldingWall, IsAtLeastAsStiffAsPressedFat) {
   const auto scene = make_scene({{0, kFat}});
   constexpr double kForce_n = 1e-5;

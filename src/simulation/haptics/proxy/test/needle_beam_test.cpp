@@ -178,6 +178,7 @@ TEST(NeedleBeam, TellsTheStiffnessThatTheGripMeets) {
     constexpr double kCancelling = 1e-7;  // Relative: supports are small differences of offset and deflection.
     EXPECT_NEAR(grip.across_n_per_mm, across, kCancelling * sum);
     EXPECT_NEAR(grip.turning_nmm_per_rad, turning, kCancelling * sum_turning);
+    EXPECT_NEAR(haptics::solve_beam(beam, shifted).turning_nmm_per_rad, turning, kCancelling * sum_turning);
     haptics::NeedleBeam rigid = beam;
     rigid.bending_stiffness_n_mm2 = std::numeric_limits<double>::infinity();
     EXPECT_NEAR(haptics::grip_stiffness(rigid, shifted).across_n_per_mm, sum, kRounding * sum);
