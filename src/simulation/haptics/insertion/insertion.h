@@ -59,8 +59,8 @@ struct InsertionStep {
   std::uint8_t punctured = kNoLayer;  ///< Layer punctured in this step.
   EnteredLabels entered;
   bool hit_solver_bound = false;
-  bool is_on_skin =
-      false;  ///< The tip presses unpierced skin: prepuncture_n is along the contact's way (physics.md V2).
+  /// The tip presses unpierced skin: prepuncture_n is along the contact's way (physics.md V2).
+  bool is_on_skin = false;
 };
 
 /// Forces of the proxies of paper B along the path, instead of the friction of paper A (combined model; physics.md T2).

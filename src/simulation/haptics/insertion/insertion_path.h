@@ -47,8 +47,8 @@ inline constexpr double kLeaveSkin_mm = 0.5;
 void leave_body(InsertionPath& path) noexcept;
 
 /// Treats a needle inside the body as inserted along its axis, with all layers down to the tip pierced (safe start: no
-/// force step), except bone less than 5 mm in front of the tip. Returns false if the tip is outside. Takes about 100
-/// us, once. Real-time safe.
+/// force step), except bone in which the tip is less than 5 mm deep. Returns false if the tip is outside. Takes about
+/// 100 us, once. Real-time safe.
 bool resume_inside(InsertionPath& path, const HapticScene& scene, const Vec3& tip_P, const Vec3& axis_P) noexcept;
 
 }  // namespace trocar::haptics

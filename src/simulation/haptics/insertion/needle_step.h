@@ -44,9 +44,9 @@ struct NeedleStep {
 NeedleStep step_needle(NeedleState& state, const HapticScene& scene, const Pose& X_PN, bool is_stylet_in,
                        double dt_s) noexcept;
 
-/// Shape of the shaft after a step, for display, ultrasound and X-ray, without its time. The insertion model has no
-/// bending and gives no force for it: its shaft has the shape of the same beam, held by the same tissue along its
-/// channel, without a force on the bevel. Real-time safe; cheap enough for 100 Hz.
+/// Shape of the shaft after a step, for display, ultrasound and X-ray, without its time. Where paper A's path
+/// constraint acts, which knows no bending, the shape is that of the same beam in the same bed, without a force on the
+/// bevel. Real-time safe; cheap enough for 100 Hz.
 telemetry::NeedleShape needle_shape(const NeedleState& state, const HapticScene& scene, bool is_stylet_in) noexcept;
 
 }  // namespace trocar::haptics
