@@ -24,8 +24,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 const KnownStructure* KnownStructures::find(std::string_view name) const {
-  const std::string plain = detail::plain_name(name);
-  const std::string key = detail::without_side(plain);
+  const std::string plain = plain_name(name);
+  const std::string key = without_side(plain);
   const auto row = std::find_if(rows_.begin(), rows_.end(), [&](const Row& r) {
     return (!r.needs_side || key.size() < plain.size()) && r.pattern.matches(key);
   });
@@ -33,18 +33,18 @@ const KnownStructure* KnownStructures::find(std::string_view name) const {
 }
 
 bool KnownStructures::is_background(std::string_view name) const {
-  return std::find(background_.begin(), background_.end(), detail::plain_name(name)) != background_.end();
+  return std::find(background_.begin(), background_.end(), plain_name(name)) != background_.end();
 }
 
 bool KnownStructures::is_region(std::string_view name) const {
-  return std::find(regions_.begin(), regions_.end(), detail::plain_name(name)) != regions_.end();
+  return std::find(regions_.begin(), regions_.end(), plain_name(name)) != regions_.end();
 }
 
 std::vector<std::string> KnownStructures::similar_names(std::string_view name, std::size_t count) const {
-  const std::string wanted = detail::plain_name(name);
+  const std::string wanted = plain_name(name);
   std::vector<std::pair<std::size_t, std::string>> candidates;
   const auto consider = [&](const std::string& known) {
-    const std::string spelled = detail::plain_name(known);
+    const std::string spelled = plain_name(known);
     const std::size_t distance = edit_distance(wanted, spelled);
     // With more changes it is another word, not a misspelling: "my_roi" is not "thyroid".
     const std::size_t allowed = std::max<std::size_t>(1, (std::max(wanted.size(), spelled.size()) + 1) / 4);
@@ -54,7 +54,7 @@ std::vector<std::string> KnownStructures::similar_names(std::string_view name, s
   for (const Row& row : rows_) {
     if (row.pattern.has_region()) continue;  // this includes all names of TotalSegmentator
     const std::string& known = row.pattern.stem();
-    const auto spelled = [&](const auto& candidate) { return detail::plain_name(candidate.second) == known; };
+    const auto spelled = [&](const auto& candidate) { return plain_name(candidate.second) == known; };
     if (std::none_of(candidates.begin(), candidates.end(), spelled)) consider(known);
   }
   std::stable_sort(candidates.begin(), candidates.end(),

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "anatomy/detail/structure_pattern.h"
+#include "anatomy/structure_pattern.h"
 #include "core/result.h"
 #include "volume/image.h"
 
@@ -54,7 +54,7 @@ class KnownStructures {
  private:
   friend class StructureReader;
   struct Row {
-    detail::StructurePattern pattern;
+    StructurePattern pattern;
     bool needs_side;        ///< Only a name with "left" or "right".
     std::size_t structure;  ///< Index into structures_.
   };

@@ -45,9 +45,9 @@ class StructureReader {
     TROCAR_TRY_STATUS(document.check_keys({"background", "regions", "priorities", "colours", "structures"}));
     known_.file_ = document.where();
     TROCAR_TRY(const std::vector<std::string> background, document.strings("background"));
-    for (const std::string& name : background) known_.background_.push_back(detail::plain_name(name));
+    for (const std::string& name : background) known_.background_.push_back(plain_name(name));
     TROCAR_TRY(const std::vector<std::string> regions, document.strings("regions"));
-    for (const std::string& name : regions) known_.regions_.push_back(detail::plain_name(name));
+    for (const std::string& name : regions) known_.regions_.push_back(plain_name(name));
     TROCAR_TRY(const config::TomlTable priorities, document.table("priorities"));
     for (const std::string& name : priorities.keys()) {
       TROCAR_TRY(const std::int64_t priority, priorities.integer(name, kPriorities));
@@ -99,7 +99,7 @@ class StructureReader {
   }
 
   Status add_name(const std::string& name, const config::TomlTable& row, bool needs_side) {
-    auto pattern = detail::StructurePattern::parse(name);
+    auto pattern = StructurePattern::parse(name);
     if (!pattern)
       return fail(fmt::format("no structure can have the name \"{}\"", name), row.where(),
                   "use letters, digits, '_', without left and right; only the end may be '#', '%#' or '*'");

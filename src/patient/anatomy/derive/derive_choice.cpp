@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "anatomy/detail/structure_pattern.h"
+#include "anatomy/structure_pattern.h"
 
 namespace trocar::anatomy {
 
@@ -13,9 +13,9 @@ namespace {
 
 /// The one of kDerivable that a structure's name means, with or without a side; empty: none.
 std::string_view derivable_of(std::string_view name) {
-  const std::string plain = detail::without_side(detail::plain_name(name));
+  const std::string plain = without_side(plain_name(name));
   const auto* const found =
-      std::ranges::find_if(kDerivable, [&](std::string_view known) { return detail::plain_name(known) == plain; });
+      std::ranges::find_if(kDerivable, [&](std::string_view known) { return plain_name(known) == plain; });
   return found != std::end(kDerivable) ? *found : std::string_view{};
 }
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "anatomy/derive/detail/trunk_parts.h"
-#include "anatomy/detail/structure_pattern.h"
+#include "anatomy/structure_pattern.h"
 
 namespace trocar::anatomy::detail {
 namespace {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "anatomy/derive/detail/trunk_parts.h"
-#include "anatomy/detail/structure_pattern.h"
+#include "anatomy/structure_pattern.h"
 #include "core/parallel.h"
 #include "volume/distance.h"
 #include "volume/morphology.h"

@@ -157,11 +157,11 @@ const Result<std::vector<phantom::CaseDescription>>& named_cases() {
   return kCases;
 }
 
-std::string_view plain_name(std::string_view name) {
+std::string_view phantom_name(std::string_view name) {
   return name.substr(0, name.find(kBodySign));
 }
 std::string_view factors_of(std::string_view name) {
-  return name.substr(std::min(name.size(), plain_name(name).size() + 1));
+  return name.substr(std::min(name.size(), phantom_name(name).size() + 1));
 }
 
 /// Precondition: the named cases were read.
@@ -174,7 +174,7 @@ std::optional<phantom::CaseDescription> find_case(std::string_view name, std::ui
 }  // namespace
 
 bool has_body(std::string_view name) {
-  return named_cases() && find_case(plain_name(name), 1).has_value();
+  return named_cases() && find_case(phantom_name(name), 1).has_value();
 }
 
 const std::vector<PhantomInfo>& embedded_patients() {
@@ -203,7 +203,7 @@ Result<VirtualPatient> generate_phantom(std::string_view name, std::uint64_t see
                                         const Progress& progress) {
   TROCAR_TRY_STATUS(check_resolution(resolution));
   if (!named_cases()) return tl::make_unexpected(named_cases().error());
-  const std::string_view plain = plain_name(name);
+  const std::string_view plain = phantom_name(name);
   if (auto description = find_case(plain, seed)) {
     TROCAR_TRY_STATUS(phantom::scale_body(description->body, factors_of(name)));
     PhantomInfo info = info_of(*description);

@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "anatomy/detail/structure_pattern.h"
+#include "anatomy/structure_pattern.h"
 #include "anatomy/repair/detail/label_parts.h"
 #include "anatomy/repair/detail/repairs.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "anatomy/detail/structure_pattern.h"
+#include "anatomy/structure_pattern.h"
 
 namespace trocar::anatomy::detail {
 

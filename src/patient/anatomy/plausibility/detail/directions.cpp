@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "anatomy/derive/detail/spine_labels.h"
-#include "anatomy/detail/structure_pattern.h"
+#include "anatomy/structure_pattern.h"
 
 namespace trocar::anatomy::detail {
 namespace {

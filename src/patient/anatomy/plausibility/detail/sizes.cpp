@@ -10,7 +10,7 @@
 
 #include "anatomy/derive/detail/spine_labels.h"
 #include "anatomy/detail/label_boxes.h"
-#include "anatomy/detail/structure_pattern.h"
+#include "anatomy/structure_pattern.h"
 
 namespace trocar::anatomy::detail {
 namespace {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <string_view>
 
-#include "anatomy/detail/structure_pattern.h"
+#include "anatomy/structure_pattern.h"
 #include "volume/distance.h"
 
 namespace trocar::anatomy::detail {

@@ -1,11 +1,11 @@
-#include "anatomy/detail/structure_pattern.h"
+#include "anatomy/structure_pattern.h"
 
 #include <algorithm>
 #include <array>
 
 #include "core/ascii.h"
 
-namespace trocar::anatomy::detail {
+namespace trocar::anatomy {
 namespace {
 
 constexpr std::array<std::string_view, 2> kSides = {"left", "right"};
@@ -61,4 +61,4 @@ bool StructurePattern::matches(std::string_view key) const {
   return is_digits(rest);
 }
 
-}  // namespace trocar::anatomy::detail
+}  // namespace trocar::anatomy

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace trocar::anatomy::detail {
+namespace trocar::anatomy {
 
 /// Lower case letters and digits only.
 std::string plain_name(std::string_view name);
@@ -29,4 +29,4 @@ class StructurePattern {
   std::string end_;  ///< "", "#", "%#" or "*".
 };
 
-}  // namespace trocar::anatomy::detail
+}  // namespace trocar::anatomy
