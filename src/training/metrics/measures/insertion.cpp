@@ -44,8 +44,7 @@ constexpr double kBackAgain_mm = 2.0;     ///< [assumed] Withdrawal after which 
 constexpr double kOutAgain_s = 0.2;       ///< [assumed] Time out of the body after which the skin counts again.
 constexpr double kInside_mm = 1.0;        ///< [assumed] Depth from which the skin is punctured, without events.
 constexpr double kRedirection_deg = 5.0;  ///< [assumed]
-constexpr double kSteady_deg = 1.0;       ///< [assumed] A redirection ends when the axis turns less in kSteady_s.
-constexpr double kSteady_s = 0.5;
+constexpr double kAdvance_mm = 5.0;       ///< [assumed] A turn without an advance is none.
 
 /// Punctures of layers from events, of the skin without them.
 class PunctureCounter {
@@ -107,46 +106,31 @@ class PunctureCounter {
   double out_s_ = 0.0;
 };
 
-/// Turns of the axis inside the body.
+/// Changes of the direction in which the needle is advanced. Only its way counts, not its speed: after each advance by
+/// kAdvance_mm its axis is compared with that of the advance of the last change.
 class RedirectionCounter {
  public:
   void step(const Step& step) {
     if (!step.is_inside()) {
-      has_reference_ = is_turning_ = false;
+      reference_P_.reset();
+      mark_mm_ = 0.0;
       return;
     }
+    const double depth_mm = *step.now.depth_mm;
+    mark_mm_ = std::min(mark_mm_, depth_mm);
+    if (depth_mm < mark_mm_ + kAdvance_mm) return;
+    mark_mm_ = depth_mm;
     const Vec3& axis_P = step.now.axis_P;
-    if (!has_reference_) {
-      set_reference(axis_P);
-      return;
-    }
-    const double turned_deg = angle_between_rad(axis_P, reference_P_) * 180.0 / std::numbers::pi;
-    if (!is_turning_) {
-      if (turned_deg < kRedirection_deg) return;
-      ++count_;
-      is_turning_ = true;
-      set_reference(axis_P);
-      return;
-    }
-    since_s_ += step.dt_s;
-    if (turned_deg >= kSteady_deg) set_reference(axis_P);
-    if (since_s_ >= kSteady_s) {
-      is_turning_ = false;
-      set_reference(axis_P);
-    }
+    if (reference_P_ && angle_between_rad(axis_P, *reference_P_) * 180.0 / std::numbers::pi < kRedirection_deg) return;
+    if (reference_P_) ++count_;
+    reference_P_ = axis_P;
   }
   double count() const noexcept { return count_; }
 
  private:
-  void set_reference(const Vec3& axis_P) noexcept {
-    reference_P_ = axis_P;
-    has_reference_ = true;
-    since_s_ = 0.0;
-  }
-
-  Vec3 reference_P_ = Vec3::UnitZ();
-  bool has_reference_ = false, is_turning_ = false;
-  double since_s_ = 0.0, count_ = 0.0;
+  std::optional<Vec3> reference_P_;
+  double mark_mm_ = 0.0;  ///< Depth from which the present advance is measured.
+  double count_ = 0.0;
 };
 
 class Insertion : public Metric {

@@ -1,6 +1,7 @@
 // Use of the ultrasound transducer (Johnson 2012).
 #include <array>
 
+#include "metrics/detail/smooth_path.h"
 #include "metrics/measures/groups.h"
 #include "volume/sampling.h"
 
@@ -10,6 +11,12 @@ namespace {
 constexpr std::array kPathValues{
     MetricDescription{"transducer_path",
                       "Path length of the transducer",
+                      "mm",
+                      Better::kLower,
+                      {Role::kTransducer},
+                      "Perk Tutor (Ungi 2012), for the transducer, of means"},
+    MetricDescription{"transducer_path_raw",
+                      "Path length of the transducer with the recording's noise",
                       "mm",
                       Better::kLower,
                       {Role::kTransducer},
@@ -36,13 +43,29 @@ constexpr double kLastingChange_s = 0.2;  ///< [assumed] A shorter change neithe
 class TransducerPath : public Metric {
  public:
   void step(const Step& step) override {
-    if (step.before != nullptr && step.now.X_PT && step.before->X_PT)
-      length_mm_ += (step.now.X_PT->p() - step.before->X_PT->p()).norm();
+    if (!step.now.X_PT) return;
+    Moment now;  // the transducer in the place of the needle
+    now.tip_P = step.now.X_PT->p();
+    if (step.before == nullptr || !step.before->X_PT) return add({now});
+    Moment before;
+    before.tip_P = step.before->X_PT->p();
+    raw_mm_ += (now.tip_P - before.tip_P).norm();
+    add({now, &before, step.dt_s});
   }
-  void report(const RunEnd&, std::span<MetricValue> values) const override { values[0].set(length_mm_); }
+  void report(const RunEnd&, std::span<MetricValue> values) const override {
+    double rest_mm = 0.0;
+    path_.finish([&](const auto& from, const auto& to) { rest_mm = (to.tip_P - from.tip_P).norm(); });
+    values[0].set(length_mm_ + rest_mm);
+    values[1].set(raw_mm_);
+  }
 
  private:
-  double length_mm_ = 0.0;
+  void add(const Step& step) {
+    path_.add(step, [this](const auto& from, const auto& to) { length_mm_ += (to.tip_P - from.tip_P).norm(); });
+  }
+
+  detail::SmoothPath path_;
+  double length_mm_ = 0.0, raw_mm_ = 0.0;
 };
 
 class TransducerContact : public Metric {

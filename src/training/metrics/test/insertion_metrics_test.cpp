@@ -68,7 +68,7 @@ TEST(InsertionMetrics, CountsPassesAndPullBacks) {
   EXPECT_EQ(value_of(values, "pull_backs"), 2.0);
   EXPECT_EQ(value_of(values, "skin_punctures"), 1.0);
   EXPECT_NEAR(value_of(values, "inward_travel"), 40.0 + 15.0 + 30.0, 1e-9);
-  EXPECT_NEAR(value_of(values, "path_in_tissue"), 40.0 + 5.0 + 15.0 + 30.0 + 30.0 + 50.0, 1e-6);
+  EXPECT_NEAR(value_of(values, "path_in_tissue_raw"), 40.0 + 5.0 + 15.0 + 30.0 + 30.0 + 50.0, 1e-6);
 }
 
 TEST(InsertionMetrics, TremorIsNoPullBack) {
@@ -81,17 +81,21 @@ TEST(InsertionMetrics, TremorIsNoPullBack) {
   EXPECT_NEAR(value_of(values, "inward_travel"), 40.0, 1.0);
 }
 
-TEST(InsertionMetrics, CountsRedirectionsOnceEach) {
-  // Turns by 12 degrees in 0.5 s, rests, turns back; a tremor of 1 degree and a turn outside the body do not count.
-  const Recording recording = record(10.0, 500.0, [](double t, Moment& m) {
-    set_depth(m, t < 1.0 ? -5.0 : 30.0);
-    double deg = t < 0.5 ? 40.0 * t : 20.0;
-    if (t >= 2.0) deg = 20.0 + 12.0 * std::min(1.0, (t - 2.0) / 0.5);
-    if (t >= 6.0) deg = 32.0 - 12.0 * std::min(1.0, (t - 6.0) / 0.5);
-    deg += 0.3 * std::sin(2.0 * pi * 9.0 * t);
-    m.axis_P = {std::sin(deg * pi / 180.0), std::cos(deg * pi / 180.0), 0.0};
-  });
-  EXPECT_EQ(measure_one("redirections", recording), 2.0);
+TEST(InsertionMetrics, CountsRedirectionsOnceEachAtAnySpeed) {
+  // In to 30 mm, turn by 12 degrees and in to 45 mm, back to 35 mm, turn back and in to 50 mm. A tremor of 1 degree, a
+  // turn outside the body and one without an advance do not count.
+  for (const double pace : {0.1, 1.0, 10.0}) {
+    const Recording recording = record(10.0 / pace, 500.0 * pace, [&](double time_s, Moment& m) {
+      const double t = pace * time_s;
+      const auto ramp = [&](double from, double to) { return std::clamp((t - from) / (to - from), 0.0, 1.0); };
+      set_depth(m,
+                -5.0 + 35.0 * ramp(1.0, 2.0) + 15.0 * ramp(3.0, 4.0) - 10.0 * ramp(4.0, 5.0) + 15.0 * ramp(6.0, 7.0));
+      double deg = 20.0 * ramp(0.0, 0.5) + 12.0 * ramp(2.2, 2.9) - 12.0 * ramp(5.2, 5.9) + 15.0 * ramp(8.0, 9.0);
+      deg += 0.3 * std::sin(2.0 * pi * 9.0 * t);
+      m.axis_P = {std::sin(deg * pi / 180.0), std::cos(deg * pi / 180.0), 0.0};
+    });
+    EXPECT_EQ(measure_one("redirections", recording), 2.0) << pace;
+  }
 }
 
 TEST(InsertionMetrics, PeaksAndOvershootOfPunctures) {
