@@ -96,8 +96,6 @@ Result<CaseDraft> set_risk(CaseDraft draft, const tasks::RiskStructure& risk) {
     return fail("a risk structure needs either a tissue or a label", {}, "give one of the two");
   if (!(risk.margin_mm >= 0.0 && risk.margin_mm <= 50.0))
     return fail("a margin is from 0 to 50 mm", fmt::format("{}", risk.margin_mm), "give a number in this range");
-  if (!(risk.penalty >= 0.0 && risk.penalty <= 100.0))
-    return fail("a penalty is from 0 to 100 points", fmt::format("{}", risk.penalty), "give a number in this range");
   auto& risks = draft.task.risks;
   const auto found = std::find_if(risks.begin(), risks.end(),
                                   [&](const tasks::RiskStructure& other) { return is_same_structure(other, risk); });

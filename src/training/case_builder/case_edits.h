@@ -25,7 +25,7 @@ Result<CaseDraft> set_target_point(CaseDraft draft, const Vec3& p_P);
 /// Sets the target label (empty: all labels of the template's target tissues) and clears a target point.
 Result<CaseDraft> set_target_label(CaseDraft draft, const std::string& name);
 
-/// Adds a risk structure, or changes the one of the same tissue or label. Margin 0..50 mm, penalty 0..100.
+/// Adds a risk structure, or changes the one of the same tissue or label. Margin 0..50 mm.
 Result<CaseDraft> set_risk(CaseDraft draft, const tasks::RiskStructure& risk);
 Result<CaseDraft> remove_risk(CaseDraft draft, std::size_t row);
 

@@ -1,14 +1,13 @@
 #include "metrics/attempt_metrics.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
 #include "geometry/pose.h"
 #include "metrics/detail/body.h"
 #include "metrics/detail/strokes.h"
-#include "tasks/task_labels.h"
+#include "telemetry/tick_pose.h"
 #include "volume/sampling.h"
 
 namespace trocar::metrics {
@@ -44,55 +43,6 @@ Vec3 skin_crossing(const anatomy::VirtualPatient& patient, const Vec3& tip_P, co
     before_mm = now_mm;
   }
   return tip_P;
-}
-
-/// Collects risk structures, each label once.
-class RiskFinder {
- public:
-  RiskFinder(const tasks::Task& task, const anatomy::VirtualPatient& patient)
-      : patient_(patient), labels_(task, patient) {}
-
-  void test(const Vec3& p_P, double depth_mm, double time_s) {
-    const std::uint8_t id = volume::sample_nearest<std::uint8_t>(patient_.labels, p_P, 0);
-    const tasks::RiskStructure* risk = labels_.risk(id);
-    if (risk == nullptr || is_found_[id]) return;
-    is_found_[id] = true;
-    found.push_back({patient_.label_table.find(id)->name, depth_mm, risk->penalty, time_s});
-  }
-  /// Tests from p_P to q_P, without p_P.
-  void test_way(const Vec3& p_P, const Vec3& q_P, double depth_mm, double time_s) {
-    const int steps =
-        std::max(1, static_cast<int>(std::ceil(std::min((q_P - p_P).norm(), 1000.0) / detail::kTestedEvery_mm)));
-    for (int step = 1; step <= steps; ++step) test(p_P + (q_P - p_P) * step / steps, depth_mm, time_s);
-  }
-
-  std::vector<RiskTouch> found;
-
- private:
-  const anatomy::VirtualPatient& patient_;
-  tasks::TaskLabels labels_;
-  std::array<bool, 256> is_found_{};
-};
-
-std::vector<RiskTouch> find_risks(const tasks::Task& task, const anatomy::VirtualPatient& patient,
-                                  std::span<const telemetry::TickSample> samples, std::size_t end) {
-  RiskFinder finder(task, patient);
-  const telemetry::TickSample* before = nullptr;  // the last sample inside the body
-  for (const telemetry::TickSample& sample : samples) {
-    if (!is_valid(sample)) continue;
-    if (sample.depth_mm <= 0.0) {
-      before = nullptr;
-      continue;
-    }
-    finder.test_way(before != nullptr ? before->tip_mm : sample.tip_mm, sample.tip_mm, sample.depth_mm, sample.time_s);
-    before = &sample;
-  }
-  const telemetry::TickSample& last = samples[end];
-  const int steps = static_cast<int>(std::min(last.depth_mm, 1000.0) / detail::kTestedEvery_mm);
-  for (int step = steps; step >= 1; --step)  // from the skin down: the first contact of the shaft comes first
-    finder.test(last.tip_mm - step * detail::kTestedEvery_mm * last.axis,
-                last.depth_mm - step * detail::kTestedEvery_mm, last.time_s);
-  return std::move(finder.found);
 }
 
 /// Inward travel of the tip, counted between turning points that are further apart than tremor.
@@ -141,10 +91,9 @@ Entry find_entry(std::span<const telemetry::TickSample> samples, std::size_t end
 
 }  // namespace
 
-AttemptMetrics measure_attempt(const tasks::Task& task, const anatomy::VirtualPatient& patient,
-                               const anatomy::TissueTable& tissues, const tasks::PlannedPath& plan,
-                               std::span<const telemetry::TickSample> samples, std::optional<std::size_t> fired,
-                               std::span<const tasks::Interruption> interruptions) {
+AttemptMetrics measure_attempt(const anatomy::VirtualPatient& patient, const anatomy::TissueTable& tissues,
+                               const tasks::PlannedPath& plan, std::span<const telemetry::TickSample> samples,
+                               std::optional<std::size_t> fired, std::span<const tasks::Interruption> interruptions) {
   AttemptMetrics metrics;
   const auto touch = std::find_if(samples.begin(), samples.end(), [](const telemetry::TickSample& sample) {
     return is_valid(sample) && (sample.phase != telemetry::InsertionPhase::kOutside || sample.depth_mm > 0.0);
@@ -165,12 +114,12 @@ AttemptMetrics measure_attempt(const tasks::Task& task, const anatomy::VirtualPa
   metrics.axis_P = last.axis;
   metrics.angle_deg = angle_between_rad(last.axis, plan.line_P.b - plan.line_P.a) * 180.0 / std::numbers::pi;
   metrics.tip_P = last.tip_mm;
+  metrics.pierced_tip_P = telemetry::pierced_tip_mm(last);
   metrics.target_offset_P = last.tip_mm - plan.line_P.b;
   metrics.travel_mm = inward_travel_mm(samples.first(*end + 1));
   for (const telemetry::TickSample& sample : samples.first(*end + 1))
     if (is_valid(sample)) metrics.deepest_mm = std::max(metrics.deepest_mm, sample.depth_mm);
   metrics.time_s = tasks::active_time_s(touch->time_s, last.time_s, interruptions);
-  metrics.risks = find_risks(task, patient, samples, *end);
   return metrics;
 }
 

@@ -2,8 +2,6 @@
 
 #include <optional>
 #include <span>
-#include <string>
-#include <vector>
 
 #include "anatomy/patient.h"
 #include "anatomy/tissue/tissue_table.h"
@@ -13,14 +11,6 @@
 #include "telemetry/tick_sample.h"
 
 namespace trocar::metrics {
-
-/// A risk structure that the needle touched.
-struct RiskTouch {
-  std::string label;
-  double depth_mm = 0.0;  ///< Depth of the tip below the skin, at the first touch.
-  double penalty = 0.0;   ///< Points lost.
-  double time_s = 0.0;    ///< Of the first touch.
-};
 
 /// Measures of an attempt, computed from its samples alone. Offsets are "is minus planned", in P.
 struct AttemptMetrics {
@@ -32,6 +22,7 @@ struct AttemptMetrics {
   Vec3 axis_P = Vec3::UnitZ();  ///< Axis of the needle at its end.
   double angle_deg = 0.0;       ///< Angle to the planned path.
   Vec3 tip_P = Vec3::Zero();    ///< Tip at the needle's end: when fired, otherwise at the deepest position.
+  Vec3 pierced_tip_P = Vec3::Zero();  ///< The same as far as layers have given way.
   Vec3 target_offset_P = Vec3::Zero();
   double travel_mm = 0.0;   ///< Inward path length of the tip inside the body, including repeated pushes after a pull
                             ///< back; motion to and fro of less than 1 mm is tremor and not counted.
@@ -39,14 +30,13 @@ struct AttemptMetrics {
   double entry_s = 0.0;     ///< Time of the last entry before the end.
   double end_s = 0.0;       ///< Time of the end.
   double time_s = 0.0;      ///< From the first contact with the skin to the end, without interruptions.
-  std::vector<RiskTouch> risks;  ///< Touched by tip and shaft, during the whole attempt, one entry per label.
 };
 
 /// Measures an attempt. `fired`: sample at which the gun was fired. Samples without an end (a killed session), none at
 /// all, or with values that are not finite are measured as far as possible.
-AttemptMetrics measure_attempt(const tasks::Task& task, const anatomy::VirtualPatient& patient,
-                               const anatomy::TissueTable& tissues, const tasks::PlannedPath& plan,
-                               std::span<const telemetry::TickSample> samples, std::optional<std::size_t> fired,
+AttemptMetrics measure_attempt(const anatomy::VirtualPatient& patient, const anatomy::TissueTable& tissues,
+                               const tasks::PlannedPath& plan, std::span<const telemetry::TickSample> samples,
+                               std::optional<std::size_t> fired,
                                std::span<const tasks::Interruption> interruptions = {});
 
 }  // namespace trocar::metrics

@@ -72,7 +72,8 @@ bool MeasureRun::complete(Moment& moment) const {
   moment.axis_P /= length;
   drop_invalid_parts(moment);
   if (const anatomy::VirtualPatient* patient = context_.patient) {
-    moment.label = volume::sample_nearest<std::uint8_t>(patient->labels, moment.tip_P, 0);
+    moment.label =
+        volume::sample_nearest<std::uint8_t>(patient->labels, moment.tip_P - moment.pressed_mm * moment.axis_P, 0);
     if (!moment.depth_mm) moment.depth_mm = detail::depth_in_body_mm(*patient, moment.tip_P, moment.axis_P);
   }
   if (moment.depth_mm) moment.depth_mm = std::max(0.0, *moment.depth_mm);

@@ -92,7 +92,8 @@ struct MetricContext {
   std::vector<ExpertPath> expert_paths;
   std::optional<ImagePlane> plane;
   std::vector<std::string> layer_names;  ///< Names of the layers in events, by id.
-  std::optional<double> fired_s;         ///< Recording time at which the biopsy gun was fired.
+  std::optional<double> fired_s;         ///< Recording time at which the biopsy gun was fired first.
+  std::vector<double> shots_s;           ///< Of all its shots, in order.
 
   const std::string* layer_name(std::uint8_t id) const noexcept {
     return id < layer_names.size() ? &layer_names[id] : nullptr;

@@ -18,7 +18,7 @@ struct Moment {
   /// Depth of the tip below the resting skin along the shaft, 0 outside. MeasureRun finds it in the patient if it is
   /// missing.
   std::optional<double> depth_mm;
-  /// Label at the tip, 0 for none; MeasureRun sets it from the patient.
+  /// Label that the tip is in, its wall pierced, 0 for none; MeasureRun sets it from the patient.
   std::optional<std::uint8_t> label;
   std::optional<telemetry::InsertionPhase> phase;
   std::optional<telemetry::TickEvents> events;  ///< Layer ids as in MetricContext::layer_names.
@@ -28,6 +28,11 @@ struct Moment {
   std::optional<tasks::XrayUse> xray;
   /// The trainee could not act between the moment before and this one: time and motion between them are not counted.
   bool is_paused = false;
+  /// How far the tip presses in a layer that has not given way: the needle is pierced to so much before the tip.
+  double pressed_mm = 0.0;
 };
+
+/// What a haptic tick says of the needle; image, X-ray and pauses are left out.
+Moment moment_of(const telemetry::TickSample& sample);
 
 }  // namespace trocar::metrics

@@ -105,7 +105,7 @@ BiopsyCore take_core(const tasks::Task& task, const anatomy::VirtualPatient& pat
   walk(0.0, std::min(shot + kCoreStep_mm, needle.throw_mm),
        [&](double beyond_tip_mm, double) {  // the bone that stopped it
          const std::uint8_t id = label_id(patient, tip_P + beyond_tip_mm * axis_P);
-         if (labels.risk(id) == nullptr) return;
+         if (labels.harm(id) == tasks::Harm::kNone) return;
          const std::string& name = patient.label_table.find(id)->name;
          auto& found = core.risks_in_throw;
          if (std::find(found.begin(), found.end(), name) == found.end()) found.push_back(name);

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <bitset>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
+#include "metrics/shadow.h"
 #include "scoring/core_sample.h"
+#include "scoring/pain.h"
 #include "tasks/bevel.h"
 #include "tasks/task_labels.h"
 #include "telemetry/tick_pose.h"
@@ -34,6 +37,13 @@ bool is_valid(const telemetry::TickSample& sample) noexcept {
 }  // namespace
 
 struct PhaseTracker::Impl {
+  /// Counts of what a phase asks for.
+  struct Begin {
+    int injections = 0, drawn_stylets = 0, held_breaths = 0, wires = 0, exits = 0;
+    double wire_mm = 0.0, contrast_in_target_ml = 0.0, contrast_ml = 0.0;
+    std::size_t cores = 0;
+  };
+
   const tasks::Task& task;
   const anatomy::VirtualPatient& patient;
   tasks::Needle needle;
@@ -44,10 +54,13 @@ struct PhaseTracker::Impl {
   std::optional<Vec3> fibres_P;  ///< Direction of the fibres at the target; empty: the task or the patient has none.
   std::vector<PhaseState> states;
   std::vector<double> held_since_s;  ///< Since when the conditions of each phase hold; NaN: they do not.
+  std::vector<bool> is_repeated;     ///< It has to lapse before it can be done again.
+  std::vector<Begin> begins;         ///< What had been done when each phase was repeated.
   // What actions and moments have changed so far.
-  bool is_stylet_drawn = false, is_anaesthetised = false, is_breath_held = false, has_been_inside = false;
-  double wire_mm = 0.0, contrast_in_target_ml = 0.0, contrast_ml = 0.0;
+  bool is_stylet_drawn = false, is_breath_held = false, has_been_inside = false;
+  Begin done;                                                 ///< Since the attempt began.
   std::vector<std::pair<double, tasks::Substance>> returned;  ///< Times and substances.
+  std::bitset<256> passed;                                    ///< Labels that the tip was in, of this insertion.
 
   Impl(const tasks::Task& t, const anatomy::VirtualPatient& p, const tasks::Needle& n, const tasks::PlannedPath& plan,
        const metrics::ImagePlane& image)
@@ -60,20 +73,25 @@ struct PhaseTracker::Impl {
         target_P(plan.line_P.b + n.notch_middle_mm() * plan.line_P.direction()),
         fibres_P(tasks::find_fibres(t, p, plan.line_P.b)),
         states(t.phases.size()),
-        held_since_s(t.phases.size(), std::nan("")) {}
+        held_since_s(t.phases.size(), std::nan("")),
+        is_repeated(t.phases.size(), false),
+        begins(t.phases.size()) {}
 
-  bool holds(const Condition& condition, const PhaseState& state, const PhaseMoment& moment) const;
+  bool holds(const Condition& condition, std::size_t phase, const PhaseMoment& moment) const;
+  bool holds_of_actions(const Condition& condition, std::size_t phase) const;
   bool holds_of_image(const Condition& condition, const PhaseMoment& moment) const;
   bool is_in_image(const Pose& X_PT, const Vec3& p_P, double most_mm) const;
   bool is_path_clear(const PhaseMoment& moment, double margin_mm) const;
   bool is_in_target(const Vec3& p_P) const;
+  bool has_passed(const std::string& name) const;
+  void note_place(const PhaseMoment& moment);
   void update(const PhaseMoment& moment);
   void open(double now_s);
 };
 
 bool PhaseTracker::Impl::is_in_image(const Pose& X_PT, const Vec3& p_P, double most_mm) const {
   const Vec3 p_T = X_PT.inverse() * p_P;
-  return std::abs(p_T.z()) <= most_mm && plane.is_in_field(p_T);
+  return std::abs(p_T.z()) <= most_mm && plane.is_in_field(p_T) && !metrics::find_shadow(patient, plane, X_PT, p_P);
 }
 
 bool PhaseTracker::Impl::holds_of_image(const Condition& condition, const PhaseMoment& moment) const {
@@ -102,7 +120,7 @@ bool PhaseTracker::Impl::is_path_clear(const PhaseMoment& moment, double margin_
   const Vec3 u_P = axis_P.unitOrthogonal(), v_P = axis_P.cross(u_P);
   const auto is_free = [&](const Vec3& p_P) {
     const std::uint8_t id = volume::sample_nearest<std::uint8_t>(patient.labels, p_P, 0);
-    return labels.risk(id) == nullptr;
+    return labels.risk(id) == nullptr && labels.harm(id) == tasks::Harm::kNone;
   };
   for (double along_mm = 0.0; along_mm <= length_mm; along_mm += kLineStep_mm) {
     const Vec3 p_P = tip_P + along_mm * axis_P;
@@ -121,8 +139,46 @@ bool PhaseTracker::Impl::is_in_target(const Vec3& p_P) const {
   return label != nullptr && tasks::is_target(task, *label);
 }
 
-bool PhaseTracker::Impl::holds(const Condition& condition, const PhaseState& state, const PhaseMoment& moment) const {
+bool PhaseTracker::Impl::has_passed(const std::string& name) const {
+  return std::ranges::any_of(patient.label_table.labels, [&](const anatomy::Label& label) {
+    return passed[label.id] && (label.tissue == name || label.name == name);
+  });
+}
+
+bool PhaseTracker::Impl::holds_of_actions(const Condition& condition, std::size_t phase) const {
+  const Begin& begin = begins[phase];
+  switch (condition.kind) {
+    case ConditionKind::kStyletDrawn:
+      return is_stylet_drawn && done.drawn_stylets > begin.drawn_stylets;
+    case ConditionKind::kReturned: {
+      const auto wanted = tasks::find_substance(condition.name);
+      const std::optional<double>& begun_s = states[phase].begun_s;
+      return std::any_of(returned.begin(), returned.end(), [&](const auto& entry) {
+        return entry.second == wanted && begun_s && entry.first >= *begun_s;
+      });
+    }
+    case ConditionKind::kAnaesthetised:
+      return done.injections > begin.injections;
+    case ConditionKind::kBreathHeld:
+      return is_breath_held && done.held_breaths > begin.held_breaths;
+    case ConditionKind::kContrast:
+      return done.contrast_in_target_ml - begin.contrast_in_target_ml >= condition.number;
+    case ConditionKind::kWire:
+      return done.wire_mm >= condition.number && done.wires > begin.wires;
+    case ConditionKind::kFired:
+      return done.cores > begin.cores;
+    case ConditionKind::kCores:
+      return static_cast<double>(done.cores) >= condition.number && (!is_repeated[phase] || done.cores > begin.cores);
+    case ConditionKind::kOutside:
+      return done.exits > begin.exits;
+    default:
+      return false;
+  }
+}
+
+bool PhaseTracker::Impl::holds(const Condition& condition, std::size_t phase, const PhaseMoment& moment) const {
   const telemetry::TickSample& sample = moment.needle;
+  const Vec3 pierced_P = telemetry::pierced_tip_mm(sample);
   switch (condition.kind) {
     case ConditionKind::kProbeOnSkin:
     case ConditionKind::kTargetInImage:
@@ -139,45 +195,43 @@ bool PhaseTracker::Impl::holds(const Condition& condition, const PhaseState& sta
     case ConditionKind::kPathClear:
       return is_path_clear(moment, condition.number);
     case ConditionKind::kInserted:
-      return sample.depth_mm >= condition.number;
+      return telemetry::is_in_body(sample) && sample.depth_mm >= condition.number;
     case ConditionKind::kTargetDistance: {
-      const Vec3 reach_P = sample.tip_mm + needle.notch_middle_mm() * sample.axis;
+      const Vec3 reach_P = pierced_P + needle.notch_middle_mm() * sample.axis;
       return (reach_P - target_P).norm() <= condition.number;
     }
     case ConditionKind::kTipIn: {
-      const anatomy::Label* const label = anatomy::find_label(patient, sample.tip_mm);
+      const anatomy::Label* const label = anatomy::find_label(patient, pierced_P);
       return label != nullptr && (label->tissue == condition.name || label->name == condition.name);
     }
-    case ConditionKind::kStyletDrawn:
-      return is_stylet_drawn;
-    case ConditionKind::kReturned: {
-      const auto wanted = tasks::find_substance(condition.name);
-      return std::any_of(returned.begin(), returned.end(), [&](const auto& entry) {
-        return entry.second == wanted && state.begun_s && entry.first >= *state.begun_s;
-      });
-    }
-    case ConditionKind::kAnaesthetised:
-      return is_anaesthetised;
-    case ConditionKind::kBreathHeld:
-      return is_breath_held;
-    case ConditionKind::kContrast:
-      return contrast_in_target_ml >= condition.number;
-    case ConditionKind::kWire:
-      return wire_mm >= condition.number;
+    case ConditionKind::kPassed:
+      return has_passed(condition.name);
     case ConditionKind::kThrowClear:
       return take_core(task, patient, needle, sample.tip_mm, sample.axis).risks_in_throw.empty();
-    case ConditionKind::kFired:
-      return moment.shots > 0;
-    case ConditionKind::kCores:
-      return static_cast<double>(moment.shots) >= condition.number;
-    case ConditionKind::kOutside:
-      return has_been_inside && sample.depth_mm <= 0.0;
     case ConditionKind::kBevelToFibres: {
       const Mat3 R_PN = telemetry::device_pose(sample).R();
       return fibres_P && tasks::bevel_to_fibres_deg(R_PN, *fibres_P) <= condition.number;
     }
+    default:
+      return holds_of_actions(condition, phase);
   }
-  return false;
+}
+
+/// What the tip is in, and whether it came out.
+void PhaseTracker::Impl::note_place(const PhaseMoment& moment) {
+  const telemetry::TickSample& sample = moment.needle;
+  const Vec3 pierced_P = telemetry::pierced_tip_mm(sample);
+  if (!telemetry::is_in_body(sample)) {
+    passed.reset();
+    if (std::exchange(has_been_inside, false)) ++done.exits;
+  } else {
+    has_been_inside |= sample.depth_mm >= kPassedDepth_mm;
+    passed.set(volume::sample_nearest<std::uint8_t>(patient.labels, pierced_P, 0));
+  }
+  if (moment.contrast_ml > done.contrast_ml && is_in_target(pierced_P))
+    done.contrast_in_target_ml += moment.contrast_ml - done.contrast_ml;
+  done.contrast_ml = std::max(done.contrast_ml, moment.contrast_ml);
+  done.cores = std::max(done.cores, moment.cores);
 }
 
 void PhaseTracker::Impl::open(double now_s) {
@@ -196,19 +250,21 @@ void PhaseTracker::Impl::open(double now_s) {
 
 void PhaseTracker::Impl::update(const PhaseMoment& moment) {
   const double now_s = moment.needle.time_s;
-  has_been_inside |= moment.needle.depth_mm >= kPassedDepth_mm;
-  if (moment.contrast_ml > contrast_ml && is_in_target(moment.needle.tip_mm))
-    contrast_in_target_ml += moment.contrast_ml - contrast_ml;
-  contrast_ml = std::max(contrast_ml, moment.contrast_ml);
+  note_place(moment);
   open(now_s);
   for (std::size_t n = 0; n < states.size(); ++n) {
     PhaseState& state = states[n];
     if (!state.is_open || state.done_s) continue;
     state.lacks.clear();
     for (const Condition& condition : task.phases[n].done)
-      if (!holds(condition, state, moment)) state.lacks.push_back(tasks::condition_words(condition));
+      if (!holds(condition, n, moment)) state.lacks.push_back(tasks::condition_words(condition));
     if (!state.lacks.empty()) {
       held_since_s[n] = std::nan("");
+      is_repeated[n] = false;
+      continue;
+    }
+    if (is_repeated[n]) {
+      state.lacks.emplace_back("do it once more");
       continue;
     }
     if (std::isnan(held_since_s[n])) held_since_s[n] = now_s;
@@ -228,10 +284,11 @@ void PhaseTracker::note(const tasks::Action& action) {
   Impl& impl = *impl_;
   switch (action.kind) {
     case ActionKind::kAnaesthetise:
-      impl.is_anaesthetised = true;
+      if (why_not_numb(action, impl.patient).empty()) ++impl.done.injections;
       break;
     case ActionKind::kDrawStylet:
       impl.is_stylet_drawn = true;
+      ++impl.done.drawn_stylets;
       break;
     case ActionKind::kReplaceStylet:
       impl.is_stylet_drawn = false;
@@ -241,10 +298,12 @@ void PhaseTracker::note(const tasks::Action& action) {
     case ActionKind::kLoad:
       break;
     case ActionKind::kAdvanceWire:
-      impl.wire_mm = action.amount;
+      impl.done.wire_mm = action.amount;
+      ++impl.done.wires;
       break;
     case ActionKind::kHoldBreath:
       impl.is_breath_held = true;
+      ++impl.done.held_breaths;
       break;
     case ActionKind::kBreathe:
       impl.is_breath_held = false;
@@ -274,6 +333,8 @@ void PhaseTracker::repeat(std::size_t phase) {
   if (phase >= impl.states.size()) return;
   impl.states[phase] = {};
   impl.held_since_s[phase] = std::nan("");
+  impl.is_repeated[phase] = true;
+  impl.begins[phase] = impl.done;
   for (std::size_t n = 0; n < impl.states.size(); ++n) {
     const std::vector<std::string>& after = impl.task.phases[n].after;
     const bool follows = std::ranges::find(after, impl.task.phases[phase].name) != after.end();

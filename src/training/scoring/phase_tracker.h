@@ -23,7 +23,7 @@ struct PhaseMoment {
   std::optional<Pose> X_PT;  ///< Transducer; empty: none.
   double contact_n = 0.0;    ///< Of transducer and skin.
   double contrast_ml = 0.0;  ///< Injected so far.
-  std::size_t shots = 0;     ///< Of the gun, so far.
+  std::size_t cores = 0;     ///< Taken so far: shots into the body that brought tissue.
 };
 
 /// State of a phase of the task, in the task's order.
@@ -52,7 +52,8 @@ class PhaseTracker {
   std::span<const PhaseState> states() const noexcept;
   /// The first phase that is open and not done, in the task's order; empty: all are done, or the task has none.
   std::optional<std::size_t> current() const noexcept;
-  /// Opens a phase again, with those that come after it: to practise it once more.
+  /// Opens a phase again, with those that come after it: to practise it once more. It has to be done anew: actions and
+  /// cores of before do not count, and conditions that hold at this moment count once they did not hold.
   void repeat(std::size_t phase);
 
  private:

@@ -14,8 +14,9 @@
 namespace trocar::scoring {
 namespace {
 
-constexpr double kEnoughCore = 0.5;         // share of the maximum that counts as having reached the target
-constexpr double kLesionReach = 2.0;        // a core with lesion counts up to this multiple of the target tolerance
+constexpr double kEnoughCore = 0.5;         // of what one core could hold: the target was reached
+constexpr double kMinorHarm = 0.4;          // share of the points for structures at risk that a minor harm costs
+constexpr std::size_t kMostMajor = 1;       // harms of a passed attempt
 constexpr double kPainTolerance = 1.0;      // pain events that halve the points of the comfort
 constexpr double kOrganTolerance_mm = 5.0;  // missing organ on the way that halves the points of the access
 constexpr double kPassTolerance = 1.0;      // needless punctures of the organ that halve the points of the passes
@@ -28,8 +29,8 @@ constexpr std::pair<std::string_view, std::string_view> kTitles[] = {
     {"target", "Distance to the target"},
     {"confirmation", "Proof of the place"},
     {"core", "Target tissue in the cores"},
-    {"passes", "Punctures of the organ beyond those needed"},
-    {"risk", "Structures at risk touched"},
+    {"passes", "Punctures and shots beyond those needed"},
+    {"risk", "Structures harmed"},
     {"access", "Missing margin to structures at risk"},
     {"entry", "Insertion point"},
     {"angle", "Needle direction"},
@@ -53,11 +54,10 @@ double share_below(double expense, double limit) noexcept {
   return std::max(0.0, 1.0 - ratio * ratio);
 }
 
-/// A part before its weight is known. Empty share: it cannot be judged.
+/// A part with its value. Empty share: the attempt did not come so far.
 struct PartShare {
-  const char* name;
-  double value;
-  const char* unit;
+  double value = 0.0;
+  const char* unit = "";
   std::optional<double> share;
 };
 
@@ -81,11 +81,21 @@ double target_in_cores_mm(const Judgement& judged) noexcept {
   return sum_mm;
 }
 
-/// Punctures of the organ that another way would have saved: a coaxial needle passes its surface once for all cores.
+/// Punctures of the organ and shots that another way would have saved: a coaxial needle passes its surface once for all
+/// cores, and a shot that takes no core of the task is one too many.
 double needless_passes(const Judgement& judged) noexcept {
-  const std::size_t needed = judged.attempt.needle.is_coaxial ? 1 : judged.attempt.task.cores;
-  const std::size_t passes = judged.bleeding->passes;
-  return passes > needed ? static_cast<double>(passes - needed) : 0.0;
+  const std::size_t cores = judged.attempt.needle.is_biopsy ? judged.attempt.task.cores : 1;
+  const std::size_t needed = judged.attempt.needle.is_coaxial ? 1 : cores;
+  const std::size_t passes = judged.bleeding ? judged.bleeding->passes : 0, shots = judged.attempt.shots.size();
+  const std::size_t surplus = (passes > needed ? passes - needed : 0) + (shots > cores ? shots - cores : 0);
+  return static_cast<double>(surplus);
+}
+
+/// Points for structures at risk: none with a critical or major harm.
+double unharmed_share(const Judgement& judged) noexcept {
+  double share = 1.0;
+  for (const metrics::HarmEvent& event : judged.harms) share -= event.grade >= tasks::Harm::kMajor ? 1.0 : kMinorHarm;
+  return std::max(0.0, share);
 }
 
 double access_share(const Judgement& judged) noexcept {
@@ -104,99 +114,105 @@ double confirmation_share(const Judgement& judged) noexcept {
   return kSlowReturn;
 }
 
-/// All parts that the program knows, in the order of display.
-std::vector<PartShare> all_parts(const Judgement& judged, double risk_weight) {
+PartShare share_of(const Judgement& judged, std::string_view part) {
   const tasks::Task& task = judged.attempt.task;
   const metrics::AttemptMetrics& measured = judged.measured;
-  const bool is_biopsy = judged.attempt.needle.is_biopsy;
-  const bool is_finished = !judged.cores.empty() || !is_biopsy;
-  const double length_mm = judged.expert.line_P.length_mm();
-  const auto risks = static_cast<double>(measured.risks.size() + judged.stylet_risks.size());
-  const double dose_gycm2 = judged.attempt.xray.dose_area_gycm2;
-  std::optional<double> core;
-  if (is_biopsy) core = cores_share(judged);
-  const double safe = risk_weight > 0.0 ? std::max(0.0, 1.0 - judged.risk_penalty / risk_weight) : 1.0;
-  const double time = is_finished ? share_below(measured.time_s, task.time_limit_s) : 0.0;
-  std::optional<double> dose;  // without X-ray there is nothing to judge
-  if (judged.attempt.xray.beam_s > 0.0) dose = is_finished ? share_below(dose_gycm2, task.dose_limit_gycm2) : 0.0;
-  std::optional<double> bevel;
-  if (judged.bevel && task.bevel) bevel = share_at(judged.bevel->to_fibres_deg, task.bevel->tolerance_deg);
-  const auto pain = static_cast<double>(judged.pain.size());
-  std::optional<double> passes;
-  if (judged.bleeding) passes = needless_passes(judged);
-  return {
-      {"target", judged.target_mm, "mm", share_at(judged.target_mm, task.target_tolerance_mm)},
-      {"confirmation", judged.confirmed_s ? 1.0 : 0.0, "", confirmation_share(judged)},
-      {"core", target_in_cores_mm(judged), "mm", core},
-      {"risk", risks, "", safe},
-      {"access", judged.access.missing_margin_mm, "mm", access_share(judged)},
-      {"entry", judged.entry_mm, "mm", share_at(judged.entry_mm, task.entry_tolerance_mm)},
-      {"angle", measured.angle_deg, "°", share_at(measured.angle_deg, task.angle_tolerance_deg)},
-      {"visibility", 100.0 * judged.attempt.tip_visible_share.value_or(0.0), "%", judged.attempt.tip_visible_share},
-      {"comfort", pain, "", share_at(pain, kPainTolerance)},
-      {"length", measured.travel_mm, "mm", share_below(std::max(0.0, measured.travel_mm - length_mm), length_mm)},
-      {"time", measured.time_s, "s", time},
-      {"dose", dose_gycm2, "Gy cm²", dose},
-      {"passes", passes.value_or(0.0), "", passes ? std::optional(share_at(*passes, kPassTolerance)) : std::nullopt},
-      {"bevel", judged.bevel ? judged.bevel->to_fibres_deg : 0.0, "°", bevel},
-  };
+  const bool is_finished = !judged.cores.empty() || !judged.attempt.needle.is_biopsy;
+  const auto finished = [&](double share) { return is_finished ? share : 0.0; };
+  if (part == "target") return {judged.target_mm, "mm", share_at(judged.target_mm, task.target_tolerance_mm)};
+  if (part == "confirmation") return {judged.confirmed_s ? 1.0 : 0.0, "", confirmation_share(judged)};
+  if (part == "core") return {target_in_cores_mm(judged), "mm", cores_share(judged)};
+  if (part == "risk") return {static_cast<double>(judged.harms.size()), "", unharmed_share(judged)};
+  if (part == "access") return {judged.access.missing_margin_mm, "mm", access_share(judged)};
+  if (part == "entry") return {judged.entry_mm, "mm", share_at(judged.entry_mm, task.entry_tolerance_mm)};
+  if (part == "angle") return {measured.angle_deg, "°", share_at(measured.angle_deg, task.angle_tolerance_deg)};
+  if (part == "visibility") {
+    const std::optional<double>& seen = judged.attempt.tip_visible_share;
+    return {100.0 * seen.value_or(0.0), "%", seen};
+  }
+  if (part == "comfort") {
+    const auto pain = static_cast<double>(judged.pain.size());
+    return {pain, "", share_at(pain, kPainTolerance)};
+  }
+  if (part == "length") {
+    const double length_mm = judged.expert.line_P.length_mm();
+    return {measured.travel_mm, "mm", share_below(std::max(0.0, measured.travel_mm - length_mm), length_mm)};
+  }
+  if (part == "time") return {measured.time_s, "s", finished(share_below(measured.time_s, task.time_limit_s))};
+  if (part == "dose") {
+    const double dose_gycm2 = judged.attempt.xray.dose_area_gycm2;
+    return {dose_gycm2, "Gy cm²", finished(share_below(dose_gycm2, task.dose_limit_gycm2))};
+  }
+  if (part == "passes") {
+    const double passes = needless_passes(judged);
+    return {passes, "", share_at(passes, kPassTolerance)};
+  }
+  if (part == "bevel" && judged.bevel && task.bevel)
+    return {judged.bevel->to_fibres_deg, "°", share_at(judged.bevel->to_fibres_deg, task.bevel->tolerance_deg)};
+  return {};
 }
 
-double weight_of(const tasks::Task& task, const char* part) {
+double weight_of(const tasks::Task& task, std::string_view part) {
   const auto found = task.weights.find(part);
   return found != task.weights.end() ? found->second : 0.0;
 }
 
 std::vector<ScorePart> parts_of(const Judgement& judged) {
-  const tasks::Task& task = judged.attempt.task;
-  std::vector<PartShare> shares = all_parts(judged, weight_of(task, "risk"));
-  std::erase_if(shares, [&](const PartShare& part) { return !part.share || weight_of(task, part.name) <= 0.0; });
-  double sum = 0.0;
-  for (const PartShare& part : shares) sum += weight_of(task, part.name);
+  const AttemptData& attempt = judged.attempt;
   std::vector<ScorePart> parts;
-  for (const PartShare& part : shares) {
-    const double most = 100.0 * weight_of(task, part.name) / sum;
-    const double share = judged.measured.has_entered ? *part.share : 0.0;
-    parts.push_back({part.name, std::string(part_title(part.name)), part.value, part.unit, share * most, most});
+  for (const auto& [name, most] : judged_parts(attempt.task, attempt.needle, attempt.has_transducer)) {
+    const PartShare found = share_of(judged, name);
+    const double share = judged.measured.has_entered ? found.share.value_or(0.0) : 0.0;
+    const bool is_place = name == "target" && judged.is_planned_place;
+    parts.push_back({name, is_place ? "Distance to the planned place" : std::string(part_title(name)), found.value,
+                     found.unit, share * most, most, found.share.has_value()});
   }
   return parts;
 }
 
-/// A biopsy reaches its target with a core taken near the planned point, or with a core that contains lesion from
-/// slightly further away, since a lesion has a size. Healthy organ is everywhere: a core of it does not prove the
-/// position.
+/// Healthy organ is everywhere: a core of it does not prove the place.
 bool has_reached_target(const Judgement& judged) noexcept {
   const tasks::Task& task = judged.attempt.task;
-  if (!judged.measured.has_entered || (judged.attempt.needle.is_biopsy && judged.cores.empty())) return false;
+  if (!judged.measured.has_entered) return false;
   if (task.confirmed_by != tasks::Substance::kNothing && !judged.confirmed_s) return false;
-  if (judged.target_mm <= task.target_tolerance_mm) return true;
-  const bool has_lesion = std::any_of(judged.cores.begin(), judged.cores.end(),
-                                      [&](const BiopsyCore& core) { return core_share(judged, core) >= kEnoughCore; });
-  return has_lesion && !judged.is_parenchymal && judged.target_mm <= kLesionReach * task.target_tolerance_mm;
+  const bool is_near = judged.target_mm <= task.target_tolerance_mm;
+  if (!judged.attempt.needle.is_biopsy) return judged.is_planned_place ? is_near : judged.target_mm <= 0.0;
+  const bool is_enough = !judged.cores.empty() && target_in_cores_mm(judged) >= kEnoughCore * judged.possible_core_mm;
+  return is_enough && (!judged.is_planned_place || is_near);
 }
 
 /// Empty: it can be scored.
 std::string why_not_scored(const Judgement& judged) {
   if (!judged.measured.has_touched_skin) return "the needle never touched the skin";
   if (!judged.measured.has_entered) return "the needle did not pierce the skin";
-  if (judged.attempt.needle.is_biopsy && judged.attempt.shots.empty()) return "the gun was not fired";
-  return {};
+  if (!judged.attempt.needle.is_biopsy || !judged.cores.empty()) return {};
+  return judged.attempt.shots.empty() ? "the gun was not fired" : "the gun was fired only outside the body";
+}
+
+std::string why_not_reached(const Judgement& judged) {
+  if (judged.cores.empty() || judged.is_planned_place) return "the target was not reached";
+  return fmt::format("the target was not reached: the cores hold {:.0f} mm of it, one can hold {:.0f} mm",
+                     target_in_cores_mm(judged), judged.possible_core_mm);
+}
+
+/// Harm that decides before any sum.
+void add_harms(const Judgement& judged, std::vector<std::string>& fails) {
+  const auto is_major = [](const metrics::HarmEvent& event) { return event.grade == tasks::Harm::kMajor; };
+  const auto majors = static_cast<std::size_t>(std::ranges::count_if(judged.harms, is_major));
+  for (const metrics::HarmEvent& event : judged.harms)
+    if (event.grade == tasks::Harm::kCritical || (is_major(event) && majors > kMostMajor))
+      fails.push_back(metrics::harm_words(event));
 }
 
 std::vector<std::string> find_fails(const Judgement& judged, const Outcome& outcome) {
   std::vector<std::string> fails;
+  add_harms(judged, fails);
+  if (judged.too_high_s) fails.push_back(judged.attempt.task.highest_entry->reason);
   const tasks::Substance wanted = judged.attempt.task.confirmed_by;
   if (wanted != tasks::Substance::kNothing && judged.measured.has_entered && !judged.confirmed_s)
     fails.push_back(fmt::format("the place is not proven: no {} came back", tasks::substance_words(wanted)));
   else if (!outcome.target_reached)
-    fails.emplace_back("the target was not reached");
-  if (judged.too_high_s) fails.push_back(judged.attempt.task.highest_entry->reason);
-  for (const std::string& name : outcome.risks_touched) {
-    const anatomy::Label* const label = judged.attempt.patient.label_table.find(name);
-    const tasks::RiskStructure* const risk = label != nullptr ? tasks::find_risk(judged.attempt.task, *label) : nullptr;
-    if (risk != nullptr && risk->is_critical)
-      fails.push_back(fmt::format("the {} was touched", anatomy::structure_words(name)));
-  }
+    fails.push_back(why_not_reached(judged));
   if (outcome.score < judged.attempt.task.pass_mark)
     fails.push_back(fmt::format("the score is below {:.0f}", judged.attempt.task.pass_mark));
   return fails;
@@ -226,24 +242,36 @@ std::string_view part_title(std::string_view part) noexcept {
   return {};
 }
 
+std::vector<std::pair<std::string, double>> judged_parts(const tasks::Task& task, const tasks::Needle& needle,
+                                                         bool has_transducer) {
+  std::vector<std::pair<std::string, double>> parts;
+  double sum = 0.0;
+  for (const auto& [name, title] : kTitles) {
+    const double weight = weight_of(task, name);
+    const bool is_left_out = (name == "core" && !needle.is_biopsy) || (name == "visibility" && !has_transducer);
+    if (weight <= 0.0 || is_left_out) continue;
+    parts.emplace_back(name, weight);
+    sum += weight;
+  }
+  for (auto& part : parts) part.second *= 100.0 / sum;
+  return parts;
+}
+
 std::string part_value_text(const ScorePart& part) {
+  if (!part.is_judged) return "not judged";
   if (part.name == "confirmation") return part.value > 0.0 ? "yes" : "no";
   if (part.unit.empty()) return fmt::format("{:.0f}", part.value);
   return fmt::format("{:.{}f} {}", part.value, part.value < 100.0 ? 1 : 0, part.unit);
 }
 
-Outcome score_attempt(const AttemptData& given) {
-  AttemptData attempt = given;
-  while (!attempt.shots.empty() && attempt.shots.back() >= attempt.samples.size())
-    attempt.shots = attempt.shots.first(attempt.shots.size() - 1);
+Outcome conclude(const Judgement& judged) {
   Outcome outcome;
-  const Judgement judged = judge(attempt, outcome.expert);
   outcome.not_scored = why_not_scored(judged);
   outcome.cores = judged.cores;
   outcome.bleeding = judged.bleeding;
   outcome.pain_events = judged.pain.size();
-  for (const auto* touches : {&judged.measured.risks, &judged.stylet_risks})
-    for (const metrics::RiskTouch& touch : *touches) outcome.risks_touched.push_back(touch.label);
+  outcome.harms = judged.harms;
+  for (const metrics::HarmEvent& event : judged.harms) outcome.risks_touched.push_back(event.label);
   outcome.parts = parts_of(judged);
   if (outcome.is_scored())
     for (const ScorePart& part : outcome.parts) outcome.score += part.points;
@@ -253,6 +281,17 @@ Outcome score_attempt(const AttemptData& given) {
   outcome.is_passed = outcome.is_scored() && outcome.fails.empty();
   outcome.hints = make_hints(judged, outcome.parts);
   if (!outcome.is_scored()) outcome.parts.clear();  // hints may still mention them
+  return outcome;
+}
+
+Outcome score_attempt(const AttemptData& given) {
+  AttemptData attempt = given;
+  while (!attempt.shots.empty() && attempt.shots.back() >= attempt.samples.size())
+    attempt.shots = attempt.shots.first(attempt.shots.size() - 1);
+  std::size_t expert = 0;
+  const Judgement judged = judge(attempt, expert);
+  Outcome outcome = conclude(judged);
+  outcome.expert = expert;
   return outcome;
 }
 

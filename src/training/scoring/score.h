@@ -5,10 +5,12 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "anatomy/patient.h"
 #include "anatomy/tissue/tissue_table.h"
+#include "metrics/harm_watch.h"
 #include "metrics/metric.h"
 #include "tasks/action.h"
 #include "tasks/active_time.h"
@@ -37,7 +39,7 @@ struct BiopsyCore {
   double organ_mm = 0.0;   ///< Length of the organ around the target; the four lengths add up to the open notch.
   double vessel_mm = 0.0;
   double other_mm = 0.0;
-  std::vector<std::string> risks_in_throw;  ///< Risk structures over the whole throw, by label name.
+  std::vector<std::string> risks_in_throw;  ///< What the throw harms, or comes near to (a risk), by label name.
   double time_s = 0.0;                      ///< Session time of the shot; 0 in a session of an older program.
 };
 
@@ -62,7 +64,12 @@ struct ScorePart {
   std::string unit;
   double points = 0.0;  ///< 0..max_points.
   double max_points = 0.0;
+  bool is_judged = true;  ///< False: the attempt did not come so far, which gives no points; there is no value.
 };
+/// Parts by which an attempt is judged, in the order of display, with their points; they add up to 100. A part of the
+/// task that this needle cannot show (no core without a biopsy needle) or no transducer sees (visibility) is left out.
+std::vector<std::pair<std::string, double>> judged_parts(const tasks::Task& task, const tasks::Needle& needle,
+                                                         bool has_transducer);
 /// Text of a part's value: "3.1 mm", a number of events, or whether the place was proven.
 std::string part_value_text(const ScorePart& part);
 /// True for a part of a session of an older program that contains penalties beyond the points of the part "risk".
@@ -81,26 +88,28 @@ struct Hint {
 /// Result of an attempt. A deviation d (target, entry, angle, access, comfort) with tolerance t is worth
 /// max_points/(1 + (d/t)^2); an expense e (length, time, dose) with limit l is worth max_points*(1 - (e/l)^2), 0 from l
 /// on; docs/physics.md, E1. Smaller is never worse. No part is negative; the parts' points add up to the score, within
-/// 0..100. A part that cannot be judged (no core without a biopsy needle, no visibility without a transducer) is left
-/// out, and the others count more in proportion. Several cores are worth
-/// their target tissue together against that of the task's number of cores; the end of the attempt is the first shot.
-/// The weights are the task's. An attempt that never pierced the skin, and a biopsy without a shot, have no end
-/// position and are not scored.
+/// 0..100. The parts are those of judged_parts. Several cores are worth their target tissue together against that of
+/// the task's number of cores; the end of the attempt is the first shot after the skin gave way. The weights are the
+/// task's. An attempt that never pierced the skin, and a biopsy without a shot in the body, have no end position and
+/// are not scored. Harm decides before the sum: a critical one, or two major ones, and the attempt is not passed.
 struct Outcome {
   /// Reason why it is not scored; then the score is 0 and there are no parts. Empty: it is scored.
   std::string not_scored;
   double score = 0.0;  ///< 0..100.
-  /// The tip ended within the target tolerance or in the target, for a biopsy with a core taken; or within twice the
-  /// tolerance with a core that holds at least half of the lesion tissue that was possible. Where something has to come
-  /// back, it did. Touched risks do not change it.
+  /// A biopsy: the cores hold at least half of the target tissue that one core could hold (of healthy organ: and were
+  /// taken within the tolerance of the planned place). Otherwise: what has to come back came, with the tip in the
+  /// target and its wall pierced; where nothing has to, the tip was in it, or within the tolerance of the task's target
+  /// point. Harm does not change it.
   bool target_reached = false;
-  bool is_passed = false;          ///< `fails` is empty and it is scored.
-  std::vector<std::string> fails;  ///< Reasons why it is not passed: "the lung was touched".
+  bool is_passed = false;  ///< `fails` is empty and it is scored.
+  std::vector<std::string>
+      fails;  ///< Reasons why it is not passed, harm first: "the needle went 12 mm into the heart".
   std::vector<ScorePart> parts;
-  std::vector<Hint> hints;           ///< Advice for improvement, most important first.
-  std::vector<BiopsyCore> cores;     ///< By time.
-  std::optional<Bleeding> bleeding;  ///< Empty: the target is a fluid, or an older program.
-  std::vector<std::string> risks_touched;
+  std::vector<Hint> hints;                     ///< Advice for improvement, most important first.
+  std::vector<BiopsyCore> cores;               ///< By time.
+  std::optional<Bleeding> bleeding;            ///< Empty: the target is a fluid, or an older program.
+  std::vector<metrics::HarmEvent> harms;       ///< The gravest first; empty in a session of an older program.
+  std::vector<std::string> risks_touched;      ///< Labels of the harms, by time.
   std::size_t expert = 0;                      ///< The expert path with which it is compared: the nearest one.
   std::size_t pain_events = 0;                 ///< See tasks::PainRules.
   std::vector<metrics::MetricValue> measures;  ///< Of the whole recording; empty in a session of an older program.
@@ -126,8 +135,9 @@ struct AttemptData {
   std::span<const std::size_t> shots = {};                  ///< Samples at which the biopsy gun was fired, in order.
   std::span<const tasks::Interruption> interruptions = {};  ///< Not counted.
   std::span<const tasks::Action> actions = {};
-  tasks::XrayUse xray = {};                      ///< At the end of the attempt.
-  std::optional<double> tip_visible_share = {};  ///< Of the advance, 0..1; empty: no transducer.
+  tasks::XrayUse xray = {};  ///< At the end of the attempt.
+  bool has_transducer = false;
+  std::optional<double> tip_visible_share = {};  ///< Of the advance, 0..1; empty: there was none.
 };
 /// Scores a whole attempt.
 Outcome score_attempt(const AttemptData& attempt);

@@ -13,13 +13,33 @@ config::Json vector_json(const Vec3& v) {
 
 config::Json parts_json(const std::vector<scoring::ScorePart>& parts) {
   config::Json all = config::Json::array();
-  for (const scoring::ScorePart& part : parts)
+  for (const scoring::ScorePart& part : parts) {
     all.push_back({{"name", part.name},
                    {"title", part.title},
                    {"value", part.value},
                    {"unit", part.unit},
                    {"points", part.points},
                    {"max_points", part.max_points}});
+    if (!part.is_judged) all.back()["judged"] = false;
+  }
+  return all;
+}
+
+config::Json harms_json(const std::vector<metrics::HarmEvent>& harms) {
+  config::Json all = config::Json::array();
+  for (const metrics::HarmEvent& event : harms)
+    all.push_back({{"label", event.label},
+                   {"grade", to_string(event.grade)},
+                   {"graze", event.is_graze},
+                   {"by_stylet", event.is_by_stylet},
+                   {"by_notch", event.is_by_notch},
+                   {"stayed", event.has_stayed},
+                   {"inside_mm", event.inside_mm},
+                   {"depth_mm", event.depth_mm},
+                   {"begin_s", event.begin_s},
+                   {"worst_s", event.worst_s},
+                   {"stayed_s", event.stayed_s},
+                   {"reason", event.reason}});
   return all;
 }
 

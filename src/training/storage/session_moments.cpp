@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "telemetry/tick_pose.h"
-
 namespace trocar::storage {
 namespace {
 
@@ -14,25 +12,12 @@ const Sample* newest(const std::vector<Sample>& samples, std::size_t& next, doub
   return next == 0 ? nullptr : &samples[next - 1];
 }
 
-metrics::Moment moment_of(const telemetry::TickSample& sample) {
-  metrics::Moment moment;
-  moment.time_s = sample.time_s;
-  moment.tip_P = sample.tip_mm;
-  moment.axis_P = sample.axis;
-  moment.R_PN = telemetry::felt_needle(sample).R();
-  moment.depth_mm = sample.depth_mm;
-  moment.phase = sample.phase;
-  moment.events = sample.events;
-  moment.resistance_n = telemetry::axial_resistance_n(sample);
-  return moment;
-}
-
 }  // namespace
 
 void walk_moments(const Session& session, const std::function<void(const metrics::Moment&)>& visit) {
   std::size_t transducer = 0, xray = 0, gap = 0, damage = 0;
   for (std::size_t n = 0; n < session.samples.size(); ++n) {
-    metrics::Moment moment = moment_of(session.samples[n]);
+    metrics::Moment moment = metrics::moment_of(session.samples[n]);
     if (const TransducerSample* sample = newest(session.transducer, transducer, moment.time_s)) {
       moment.X_PT = sample->X_PT;
       moment.contact_n = sample->contact_n;
@@ -50,8 +35,9 @@ metrics::MetricContext context_of(const Session& session) {
   metrics::MetricContext context;
   context.layer_names = session.info.layer_names;
   context.plane = session.info.plane;
-  if (!session.shots.empty() && session.shots.front() < session.samples.size())
-    context.fired_s = session.samples[session.shots.front()].time_s;
+  for (const std::size_t shot : session.shots)
+    if (shot < session.samples.size()) context.shots_s.push_back(session.samples[shot].time_s);
+  if (!context.shots_s.empty()) context.fired_s = context.shots_s.front();
   const anatomy::NeedlePath& plan = session.info.plan_P;
   if (plan.line_P.a.allFinite() && plan.line_P.b.allFinite() && plan.line_P.length_mm() > 0.0)
     context.expert_paths.push_back({plan.name.empty() ? "plan" : plan.name, plan.line_P});

@@ -128,6 +128,19 @@ const RiskStructure* find_risk(const Task& task, const anatomy::Label& label) no
   return it != task.risks.end() ? &*it : nullptr;
 }
 
+LabelHarm find_harm(const Task& task, const anatomy::Label& label) {
+  const RiskStructure* const risk = find_risk(task, label);
+  if (risk != nullptr && risk->harm) return {*risk->harm, *risk->harm, *risk->harm, 0.0, {}};
+  if (is_organ(task, label) || is_target(task, label)) return {};
+  const std::string plain = anatomy::without_side(anatomy::plain_name(label.name));
+  for (const HarmRule& rule : task.harms)
+    if (rule.matches(plain, label.tissue))
+      return {rule.grade, rule.notch.value_or(rule.grade), rule.stay.value_or(rule.grade), rule.stay_s, rule.reason};
+  if (!task.harms.empty()) return {Harm::kMajor, Harm::kMajor, Harm::kMajor, 0.0, "it is not known what it is"};
+  const Harm grade = risk != nullptr ? Harm::kMinor : Harm::kNone;
+  return {grade, grade, grade, 0.0, {}};
+}
+
 bool is_parenchymal(const Task& task, const anatomy::VirtualPatient& patient) {
   if (task.target_P) {
     const anatomy::Label* label = anatomy::find_label(patient, *task.target_P);

@@ -14,6 +14,7 @@
 #include "anatomy/patient.h"
 #include "anatomy/tissue/tissue_table.h"
 #include "core/result.h"
+#include "tasks/harm.h"
 #include "tasks/phases/phase.h"
 #include "tasks/substance.h"
 
@@ -24,9 +25,8 @@ struct RiskStructure {
   std::string tissue;        ///< Tissue class ("vessel", "bowel", "lung", "bone" …); empty: `label` is used.
   std::string label;         ///< A label's name; used when tissue is empty.
   double margin_mm = 5.0;    ///< Range 0..50.
-  double penalty = 20.0;     ///< Points lost when touched. Range 0..100.
   bool is_optional = false;  ///< A patient without it is not doubtful: it stands in for what others have labelled.
-  bool is_critical = false;  ///< An attempt that touches it is not passed, whatever its score.
+  std::optional<Harm> harm;  ///< Overrides the table of harm in this task; empty: as there.
 
   bool operator==(const RiskStructure&) const = default;
 };
@@ -90,7 +90,7 @@ const char* to_string(Guidance guidance) noexcept;
 /// What hurts the patient.
 struct PainRules {
   std::vector<std::string> tissues;  ///< Each new contact of the tip hurts: "bone" (periosteum), "nerve".
-  bool needs_anaesthesia = false;    ///< The skin pierced without local anaesthetic hurts.
+  bool needs_anaesthesia = false;    ///< The skin pierced where no local anaesthetic was injected hurts.
 
   bool operator==(const PainRules&) const = default;
 };
@@ -117,6 +117,8 @@ struct Task {
   /// Engine of the ultrasound image: raycast, or panorama if the patient has one (docs/physics.md U17).
   std::string ultrasound_engine = "raycast";
   std::vector<RiskStructure> risks;
+  /// What a needle does to each structure: the task's own rows, then those of the table (data/harm.toml).
+  std::vector<HarmRule> harms;
   // Settings that only a patient's own task has: they refer to places and structures of this patient.
   std::string target_label;      ///< The one label that is the target; empty: all of target_tissues.
   std::optional<Vec3> target_P;  ///< Target point; empty: the middle of a target's label.
@@ -190,6 +192,19 @@ const Level* level_of(const Task& task) noexcept;
 bool is_organ(const Task& task, const anatomy::Label& label) noexcept;
 bool is_target(const Task& task, const anatomy::Label& label) noexcept;
 const RiskStructure* find_risk(const Task& task, const anatomy::Label& label) noexcept;
+
+/// What a needle does to a label.
+struct LabelHarm {
+  Harm grade = Harm::kNone;
+  Harm notch = Harm::kNone;  ///< If the specimen notch closes in it.
+  Harm stay = Harm::kNone;   ///< If the needle stays in it for longer than `stay_s`.
+  double stay_s = 0.0;
+  std::string reason;  ///< What happens to the patient; may be empty.
+};
+/// In a task: organ and target are no harm, unless a risk names them by their label; then the first of the task's risks
+/// with a harm of its own, of its rules, of the table's. A label that no row names is major harm (without a table:
+/// minor if it is listed as a risk).
+LabelHarm find_harm(const Task& task, const anatomy::Label& label);
 
 /// The target lies in the organ's healthy tissue: no label of the patient is a target, or the task's point is in none.
 bool is_parenchymal(const Task& task, const anatomy::VirtualPatient& patient);

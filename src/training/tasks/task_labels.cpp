@@ -14,6 +14,7 @@ TaskLabels::TaskLabels(const Task& task, const anatomy::VirtualPatient& patient)
       parts_[label.id] = Part::kVessel;
     }
     risks_[label.id] = find_risk(task, label);
+    harms_[label.id] = find_harm(task, label).grade;
     is_bone_[label.id] = label.tissue == "bone";
   }
 }

@@ -24,10 +24,10 @@ class TaskReader {
 
   Status read(Task& task) const {
     TROCAR_TRY_STATUS(document_.check_keys(
-        {"base",          "title",       "organ",    "target_tissues", "needle", "force_model", "ultrasound_engine",
-         "path",          "parenchymal", "scoring",  "risks",          "target", "entry_zone",  "expert_path",
-         "exam",          "needles",     "guidance", "confirmed_by",   "phases", "pain",        "bevel",
-         "highest_entry", "levels",      "level",    "cores",          "posture"}));
+        {"base",          "title",       "organ",    "target_tissues", "needle",  "force_model", "ultrasound_engine",
+         "path",          "parenchymal", "scoring",  "risks",          "target",  "entry_zone",  "expert_path",
+         "exam",          "needles",     "guidance", "confirmed_by",   "phases",  "pain",        "bevel",
+         "highest_entry", "levels",      "level",    "cores",          "posture", "harms"}));
     if (!is_whole_) TROCAR_TRY_STATUS(detail::read_level_of(document_, task));  // before keys that replace its numbers
     TROCAR_TRY_STATUS(text(document_, "title", task.title));
     TROCAR_TRY_STATUS(text(document_, "organ", task.organ));
@@ -48,6 +48,8 @@ class TaskReader {
     TROCAR_TRY_STATUS(read_path(task));
     TROCAR_TRY_STATUS(read_scoring(task));
     TROCAR_TRY_STATUS(read_risks(task));
+    TROCAR_TRY(std::vector<HarmRule> harms, read_harm_rules(document_));
+    task.harms.insert(task.harms.begin(), std::make_move_iterator(harms.begin()), std::make_move_iterator(harms.end()));
     TROCAR_TRY_STATUS(read_target(task));
     TROCAR_TRY_STATUS(read_exam(task));
     TROCAR_TRY_STATUS(read_procedure(task));
@@ -186,18 +188,32 @@ class TaskReader {
     TROCAR_TRY(const std::vector<config::TomlTable> rows, document_.tables("risks"));
     task.risks.clear();
     for (const config::TomlTable& row : rows) {
-      TROCAR_TRY_STATUS(row.check_keys({"tissue", "label", "margin_mm", "penalty", "optional", "critical"}));
+      TROCAR_TRY_STATUS(row.check_keys({"tissue", "label", "margin_mm", "penalty", "optional", "critical", "harm"}));
       RiskStructure risk;
       TROCAR_TRY(risk.tissue, row.string_or("tissue", ""));
       TROCAR_TRY(risk.label, row.string_or("label", ""));
       if (risk.tissue.empty() == risk.label.empty())
         return fail("a risk structure is named by its tissue or its label", row.where(), "give one of the two");
       TROCAR_TRY(risk.margin_mm, row.number("margin_mm", {0.0, 50.0}));
-      TROCAR_TRY(risk.penalty, row.number("penalty", {0.0, 100.0}));
       TROCAR_TRY(risk.is_optional, row.boolean_or("optional", false));
-      TROCAR_TRY(risk.is_critical, row.boolean_or("critical", false));
+      TROCAR_TRY_STATUS(read_harm_of(row, risk));
       task.risks.push_back(std::move(risk));
     }
+    return {};
+  }
+
+  /// `critical` and `penalty` are those of files of older programs: the first is a harm, the second is not used any
+  /// more.
+  Status read_harm_of(const config::TomlTable& row, RiskStructure& risk) const {
+    TROCAR_TRY(const bool is_critical, row.boolean_or("critical", false));
+    if (is_critical) risk.harm = Harm::kCritical;
+    TROCAR_TRY_STATUS(row.number_or("penalty", {0.0, 100.0}, 0.0));
+    if (!row.has("harm")) return {};
+    TROCAR_TRY(const std::string name, row.string("harm"));
+    risk.harm = find_harm_grade(name);
+    if (!risk.harm)
+      return fail(fmt::format("harm = \"{}\" is no grade of harm", name), row.where(),
+                  "write none, minor, major or critical");
     return {};
   }
 
@@ -224,9 +240,10 @@ class TaskReader {
   bool is_whole_;
 };
 
-Result<Task> read_whole_task(const config::TomlTable& document, const std::string& name) {
+Result<Task> read_whole_task(const config::TomlTable& document, const std::string& name, const fs::path& tasks_folder) {
   Task task;
   task.name = name;
+  TROCAR_TRY(task.harms, load_harm_table(tasks_folder.parent_path() / kHarmFile, name));
   TROCAR_TRY_STATUS(TaskReader(document, true).read(task));
   return task;
 }
@@ -236,11 +253,11 @@ Result<Task> read_whole_task(const fs::path& path) {
   if (document.has("base"))
     return fail("a task of this folder has no base", path.string(),
                 "write the complete task, or move the file to a patient folder");
-  return read_whole_task(document, path.stem().string());
+  return read_whole_task(document, path.stem().string(), path.parent_path());
 }
 
 Result<Task> read_task(const config::TomlTable& document, const std::string& name, const fs::path& tasks_folder) {
-  if (!document.has("base")) return read_whole_task(document, name);
+  if (!document.has("base")) return read_whole_task(document, name, tasks_folder);
   TROCAR_TRY(const std::string base, document.string("base"));
   TROCAR_TRY(Task task, load_task(tasks_folder, base));
   TROCAR_TRY_STATUS(TaskReader(document, false).read(task));
@@ -281,9 +298,22 @@ void write_risk(config::TomlWriter& writer, const RiskStructure& risk) {
   writer.begin_row("risks");
   writer.set(risk.tissue.empty() ? "label" : "tissue", risk.tissue.empty() ? risk.label : risk.tissue);
   writer.set("margin_mm", risk.margin_mm);
-  writer.set("penalty", risk.penalty);
   if (risk.is_optional) writer.set("optional", true);
-  if (risk.is_critical) writer.set("critical", true);
+  if (risk.harm) writer.set("harm", to_string(*risk.harm));
+}
+
+void write_harm(config::TomlWriter& writer, const HarmRule& rule) {
+  writer.begin_row("harms");
+  if (!rule.name_texts.empty()) writer.set("names", rule.name_texts);
+  if (!rule.tissues.empty()) writer.set("tissues", rule.tissues);
+  writer.set("grade", to_string(rule.grade));
+  if (rule.notch) writer.set("notch", to_string(*rule.notch));
+  if (rule.stay) {
+    writer.set("stay", to_string(*rule.stay));
+    writer.set("stay_s", rule.stay_s);
+  }
+  writer.set("reason", rule.reason);
+  if (!rule.source.empty()) writer.set("source", rule.source);
 }
 
 }  // namespace
@@ -380,6 +410,8 @@ std::string task_to_toml(const Task& task, const Task& base) {
   if (task.phases != base.phases) write_phases(keys.writer(), task.phases);
   if (!has_same_risks)
     for (const RiskStructure& risk : task.risks) write_risk(keys.writer(), risk);
+  // The task's own rows stand before those of the base.
+  for (std::size_t n = 0; n + base.harms.size() < task.harms.size(); ++n) write_harm(keys.writer(), task.harms[n]);
   return keys.writer().text();
 }
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "telemetry/tick_pose.h"
+
 namespace trocar::attempt {
 
 GunShot make_gun_shot(const cases::Case& the_case, const telemetry::TickSample& fired) {
@@ -11,7 +13,7 @@ GunShot make_gun_shot(const cases::Case& the_case, const telemetry::TickSample& 
   const anatomy::VirtualPatient& patient = *the_case.patient;
   GunShot shot;
   shot.time_s = fired.time_s;
-  shot.depth_mm = fired.depth_mm;
+  shot.depth_mm = telemetry::is_in_body(fired) ? fired.depth_mm : 0.0;
   shot.throw_mm = needle.throw_mm;
   if (shot.is_in_body()) {
     shot.throw_mm = scoring::stylet_throw_mm(the_case.task, patient, needle, fired.tip_mm, fired.axis);

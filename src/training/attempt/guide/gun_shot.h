@@ -20,7 +20,7 @@ struct ShotPiece {
 /// Shot of a biopsy gun: path of the stylet and the taken core. Frame P.
 struct GunShot {
   double time_s = 0.0;    ///< Session time.
-  double depth_mm = 0.0;  ///< Depth of the tip below the skin before the shot.
+  double depth_mm = 0.0;  ///< Depth of the tip in the body before the shot; 0: the skin was not pierced.
   double throw_mm = 0.0;  ///< Distance that the stylet moved.
   Segment core_P;         ///< Position of the core.
   scoring::BiopsyCore core;

@@ -21,8 +21,9 @@ NeedleView needle_view(const cases::Case& the_case, const telemetry::TickSample&
   view.speed_mm_s = sample.axial_velocity_mm_s;
   view.phase = sample.phase;
   if (sample.tissue == 0 || sample.tissue >= the_case.tissues.tissues.size()) return view;
-  const anatomy::Label* label =
-      sample.tissue == the_case.tissues.skin ? nullptr : anatomy::find_label(*the_case.patient, sample.tip_mm);
+  const anatomy::Label* label = sample.tissue == the_case.tissues.skin
+                                    ? nullptr
+                                    : anatomy::find_label(*the_case.patient, telemetry::pierced_tip_mm(sample));
   view.tissue = anatomy::structure_words(label != nullptr ? label->name : the_case.tissues.tissues[sample.tissue].name);
   return view;
 }

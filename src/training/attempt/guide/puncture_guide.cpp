@@ -8,6 +8,7 @@
 #include "anatomy/direction_words.h"
 #include "anatomy/structure_words.h"
 #include "geometry/pose.h"
+#include "telemetry/tick_pose.h"
 
 namespace trocar::attempt {
 namespace {
@@ -15,16 +16,32 @@ namespace {
 constexpr double kFarFromEntry_mm = 15.0;
 constexpr double kLookStep_mm = 0.5;
 
-/// Structures at risk ahead of the tip.
+/// Distance ahead of the tip that the needle, or the stylet of its gun, still has to go.
+double still_to_go_mm(const cases::Case& the_case, const telemetry::TickSample& sample) {
+  const Segment& path_P = the_case.plan.line_P;
+  const Vec3 to_target = path_P.b - sample.tip_mm;
+  const double left_mm = to_target.dot(sample.axis);
+  const bool is_aimed = (to_target - left_mm * sample.axis).norm() <= the_case.task.target_tolerance_mm;
+  if (!is_aimed) return kGuideAhead_mm;
+  const double throw_mm = the_case.needle.is_biopsy ? the_case.needle.throw_mm : 0.0;
+  if (left_mm > kGuideAhead_mm) return kGuideAhead_mm;
+  return std::max(0.0, left_mm) + (left_mm <= kGuideDepth_mm ? throw_mm : 0.0);
+}
+
+/// What the tip is in, or will harm.
 std::string danger_ahead(const cases::Case& the_case, const telemetry::TickSample& sample) {
-  for (double ahead_mm = 0.0; ahead_mm <= kGuideAhead_mm; ahead_mm += kLookStep_mm) {
-    const anatomy::Label* label = anatomy::find_label(*the_case.patient, sample.tip_mm + ahead_mm * sample.axis);
+  const double far_mm = still_to_go_mm(the_case, sample);
+  const Vec3 tip_P = telemetry::pierced_tip_mm(sample);
+  for (double ahead_mm = 0.0; ahead_mm <= far_mm; ahead_mm += kLookStep_mm) {
+    const Vec3 from_P = ahead_mm > 0.0 ? sample.tip_mm : tip_P;
+    const anatomy::Label* label = anatomy::find_label(*the_case.patient, from_P + ahead_mm * sample.axis);
     if (label == nullptr) continue;
     const bool is_bone = label->tissue == "bone";
-    if (!is_bone && find_risk(the_case.task, *label) == nullptr) continue;
-    if (ahead_mm == 0.0) return fmt::format("The tip is in the {}: pull back", anatomy::structure_words(label->name));
-    return fmt::format("{} {:.0f} mm ahead: stop, {}", is_bone ? "Bone" : anatomy::structure_words(label->name),
-                       std::ceil(ahead_mm), sample.depth_mm > 0.0 ? "pull back and tilt" : "aim anew");
+    if (!is_bone && find_harm(the_case.task, *label).grade == tasks::Harm::kNone) continue;
+    const std::string name = anatomy::structure_words(label->name);
+    if (ahead_mm == 0.0) return fmt::format("The tip is in the {}: pull back", name);
+    return fmt::format("{} {:.0f} mm ahead: stop, {}", is_bone ? "Bone" : name, std::ceil(ahead_mm),
+                       sample.depth_mm > 0.0 ? "pull back and tilt" : "aim anew");
   }
   return {};
 }
@@ -43,16 +60,44 @@ std::string guide_outside(const Segment& path_P, const telemetry::TickSample& sa
   return "On the path: advance";
 }
 
+bool is_in_target(const cases::Case& the_case, const Vec3& p_P) {
+  const anatomy::Label* const label = anatomy::find_label(*the_case.patient, p_P);
+  return label != nullptr && is_target(the_case.task, *label);
+}
+
+/// The target is a place, not a structure.
+bool is_place(const cases::Case& the_case) noexcept {
+  return the_case.is_parenchymal || the_case.task.target_P.has_value();
+}
+
+std::string at_target_words(const cases::Case& the_case) {
+  if (the_case.needle.is_biopsy) return "At the target: hold still and fire";
+  if (the_case.task.confirmed_by == tasks::Substance::kNothing) return "At the target: hold still";
+  return the_case.needle.stylet_diameter_mm > 0.0 ? "At the target: hold still and draw the stylet"
+                                                  : "At the target: hold still and aspirate";
+}
+
+/// Near the planned place, but not in the target structure.
+std::string beside_target(const cases::Case& the_case, const telemetry::TickSample& sample, const Vec3& across) {
+  const std::string name = anatomy::structure_words(
+      the_case.task.target_tissues.empty() ? the_case.task.organ : the_case.task.target_tissues.front());
+  if (is_in_target(the_case, sample.tip_mm)) return "On the wall of the " + name + ": press on until it gives way";
+  if (across.norm() < 0.5) return "Beside the " + name + ": advance or pull back by a millimetre";
+  return fmt::format("Beside the {}: pull back a little and tilt the tip {}", name, anatomy::direction_words(across));
+}
+
 std::string guide_inside(const cases::Case& the_case, const telemetry::TickSample& sample) {
   const Segment& path_P = the_case.plan.line_P;
   const Vec3 axis = path_P.direction();
   const Vec3 to_target = path_P.b - sample.tip_mm;
   const double left_mm = to_target.dot(axis);
-  if (left_mm < -kGuideDepth_mm) return fmt::format("{:.1f} mm too deep: pull back", -left_mm);
   const Vec3 across = to_target - left_mm * axis;
   const double beside_mm = across.norm();
-  if (std::abs(left_mm) <= kGuideDepth_mm && beside_mm <= the_case.task.target_tolerance_mm)
-    return the_case.needle.is_biopsy ? "At the target: hold still and fire" : "At the target: hold still";
+  const bool is_near = std::abs(left_mm) <= kGuideDepth_mm && beside_mm <= the_case.task.target_tolerance_mm;
+  const bool is_structure = !is_place(the_case) && !the_case.needle.is_biopsy;
+  if (is_structure && is_in_target(the_case, telemetry::pierced_tip_mm(sample))) return at_target_words(the_case);
+  if (is_near) return is_structure ? beside_target(the_case, sample, across) : at_target_words(the_case);
+  if (left_mm < -kGuideDepth_mm) return fmt::format("{:.1f} mm too deep: pull back", -left_mm);
   if (beside_mm > kGuideBeside_mm) {
     const double turn_deg = kDegPerRad * angle_between_rad(sample.axis, to_target);
     return fmt::format("{:.1f} mm from the path: tilt the tip {} by {:.0f} degrees", beside_mm,
@@ -61,26 +106,41 @@ std::string guide_inside(const cases::Case& the_case, const telemetry::TickSampl
   return fmt::format("{:.0f} mm to the target", left_mm);
 }
 
-std::string guide_after_shot(const cases::Case& the_case, const telemetry::TickSample& sample, const GunState& gun) {
-  const bool is_outside = sample.phase == telemetry::InsertionPhase::kOutside;
-  const bool needs_more = gun.shots < the_case.task.cores;
+/// What the last shot brought.
+std::string shot_result(const GuideState& state) {
+  const GunShot* const shot = state.last_shot;
+  if (shot == nullptr || !shot->pieces.empty()) return "The core is taken";
+  return shot->is_in_body() ? "No core, the stylet hit bone" : "No core, the gun was fired outside the body";
+}
+
+std::string guide_after_shot(const cases::Case& the_case, const telemetry::TickSample& sample,
+                             const GuideState& state) {
+  const bool is_outside = !telemetry::is_in_body(sample);
+  const bool needs_more = state.cores < the_case.task.cores;
   if (needs_more && (is_outside || the_case.needle.is_coaxial))
-    return "The core is taken: load the gun for the next one";
-  if (needs_more) return "The core is taken: withdraw the needle, then load the gun";
+    return shot_result(state) + ": load the gun for the next one";
+  if (needs_more) return shot_result(state) + ": withdraw the needle, then load the gun";
   return is_outside ? "The needle is out: end the attempt" : "The gun was fired: withdraw the needle";
+}
+
+/// Once everything that the puncture was for has been done; empty: it has not.
+std::string guide_to_end(const cases::Case& the_case, const telemetry::TickSample& sample, const GuideState& state) {
+  const bool is_outside = !telemetry::is_in_body(sample);
+  const bool has_cores = the_case.needle.is_biopsy && state.cores >= the_case.task.cores;
+  const bool is_proven = !the_case.needle.is_biopsy && state.is_confirmed;
+  if (is_outside && (state.are_steps_done || has_cores || is_proven)) return "The needle is out: end the attempt";
+  if (state.are_steps_done || has_cores) return "Everything is done: withdraw the needle";
+  return is_proven ? "The place is proven: hold still for the next step" : "";
 }
 
 }  // namespace
 
-std::string guide_puncture(const cases::Case& the_case, const telemetry::TickSample& sample, const GunState& gun) {
+std::string guide_puncture(const cases::Case& the_case, const telemetry::TickSample& sample, const GuideState& state) {
   if (!sample.tip_mm.allFinite() || !(std::abs(sample.axis.norm() - 1.0) < 1e-3)) return {};
-  if (!gun.is_loaded) return guide_after_shot(the_case, sample, gun);
-  std::string danger = danger_ahead(the_case, sample);
-  if (!danger.empty()) return danger;
-  const bool is_inside = sample.phase == telemetry::InsertionPhase::kInserted ||
-                         sample.phase == telemetry::InsertionPhase::kRetracting ||
-                         sample.depth_mm > the_case.tissues.skin_thickness_mm;
-  return is_inside ? guide_inside(the_case, sample) : guide_outside(the_case.plan.line_P, sample);
+  if (!state.is_loaded) return guide_after_shot(the_case, sample, state);
+  if (std::string end = guide_to_end(the_case, sample, state); !end.empty()) return end;
+  if (std::string danger = danger_ahead(the_case, sample); !danger.empty()) return danger;
+  return telemetry::is_in_body(sample) ? guide_inside(the_case, sample) : guide_outside(the_case.plan.line_P, sample);
 }
 
 }  // namespace trocar::attempt

@@ -3,22 +3,27 @@
 #include <cstddef>
 #include <string>
 
+#include "attempt/guide/gun_shot.h"
 #include "cases/prepare_case.h"
 #include "telemetry/tick_sample.h"
 
 namespace trocar::attempt {
 
-/// State of a biopsy gun.
-struct GunState {
-  std::size_t shots = 0;
-  bool is_loaded = true;
+/// What advice depends on beside the needle's place.
+struct GuideState {
+  std::size_t cores = 0;               ///< Taken so far.
+  bool is_loaded = true;               ///< The biopsy gun.
+  const GunShot* last_shot = nullptr;  ///< Null: none.
+  bool is_confirmed = false;           ///< What has to come back came.
+  bool are_steps_done = false;         ///< All of the task's, which has some.
 };
 
-/// Advice to the trainee about the virtual needle and the planned path; at most one sentence, or empty. Priority:
-/// structures at risk ahead of the tip, depth, offset from the path, direction. Distances are measured in the resting
-/// anatomy. After a shot the advice is how to get the next
-/// core; after the last one "withdraw the needle".
-std::string guide_puncture(const cases::Case& the_case, const telemetry::TickSample& sample, const GunState& gun = {});
+/// Advice to the trainee about the virtual needle and the planned path; at most one sentence, or empty. Priority: what
+/// the tip is in or will harm on its way to the target, the target, depth, offset from the path, direction. Distances
+/// are measured in the resting anatomy. After a shot the advice is how to get the next core; after the last one, or
+/// when everything is done, "withdraw the needle" and "end the attempt".
+std::string guide_puncture(const cases::Case& the_case, const telemetry::TickSample& sample,
+                           const GuideState& state = {});
 
 inline constexpr double kGuideAhead_mm = 12.0;  ///< Distance ahead of the tip that is checked.
 inline constexpr double kGuideBeside_mm = 2.0;  ///< Offset from the path; smaller offsets give no advice. [assumed]

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "anatomy/direction_words.h"
+#include "anatomy/structure_words.h"
+#include "metrics/shadow.h"
 
 namespace trocar::attempt {
 namespace {
@@ -14,8 +16,8 @@ constexpr double kContact_n = 0.05;  ///< As in scoring/phase_tracker.cpp.
 
 }  // namespace
 
-std::string guide_transducer(const Vec3& target_P, const Pose& X_PT, double contact_n,
-                             const metrics::ImagePlane& plane) {
+std::string guide_transducer(const anatomy::VirtualPatient& patient, const Vec3& target_P, const Pose& X_PT,
+                             double contact_n, const metrics::ImagePlane& plane) {
   if (!X_PT.is_finite() || !target_P.allFinite()) return {};
   if (!(contact_n >= kContact_n)) return "The transducer does not touch the skin: press it on";
   const Vec3 target_T = X_PT.inverse() * target_P;
@@ -28,7 +30,11 @@ std::string guide_transducer(const Vec3& target_P, const Pose& X_PT, double cont
     return fmt::format("The image passes {:.0f} mm beside the target: move or tilt it {}", std::abs(target_T.z()),
                        anatomy::direction_words(aside_P));
   }
-  if (plane.is_in_field(target_T)) return "The target is in the image: hold still";
+  if (plane.is_in_field(target_T)) {
+    const anatomy::Label* const before = metrics::find_shadow(patient, plane, X_PT, target_P);
+    if (before == nullptr) return "The target is in the image: hold still";
+    return fmt::format("The {} hides the target: look beside it", anatomy::structure_words(before->name));
+  }
   Vec3 raised_T = target_T;
   raised_T.y() = std::min(target_T.y(), 0.9 * plane.depth_mm);
   if (plane.is_in_field(raised_T)) return "The target lies below the image: increase the depth";

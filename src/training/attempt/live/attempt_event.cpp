@@ -81,4 +81,11 @@ AttemptEvent describe_pain(const scoring::PainEvent& pain) {
   return {pain.time_s, pain.depth_mm, telemetry::EventKind::kNone, "pain", "the patient feels pain: " + why};
 }
 
+AttemptEvent describe_harm(const metrics::HarmEvent& harm, const telemetry::TickSample& now) {
+  const std::string words = metrics::harm_words(harm);
+  AttemptEvent told{now.time_s, now.depth_mm, telemetry::EventKind::kNone, "harm", {}, harm.grade};
+  told.text = harm.is_graze ? words : fmt::format("{} harm: {}", tasks::to_string(harm.grade), words);
+  return told;
+}
+
 }  // namespace trocar::attempt

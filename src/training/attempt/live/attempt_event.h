@@ -4,6 +4,7 @@
 #include <string>
 
 #include "attempt/live/attempt_view.h"
+#include "metrics/harm_watch.h"
 #include "scoring/pain.h"
 #include "storage/session_file.h"
 
@@ -17,5 +18,7 @@ std::optional<AttemptEvent> describe_event(const storage::SessionInfo& info, con
 AttemptEvent describe_action(const tasks::SubstanceTable& substances, const tasks::Action& action);
 /// The event "pain": "the patient feels pain: spinous process".
 AttemptEvent describe_pain(const scoring::PainEvent& pain);
+/// The event "harm": "critical harm: the needle went 2 mm into the heart", "grazed: …" at the moment `now`.
+AttemptEvent describe_harm(const metrics::HarmEvent& harm, const telemetry::TickSample& now);
 
 }  // namespace trocar::attempt

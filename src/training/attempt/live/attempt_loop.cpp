@@ -198,7 +198,10 @@ Status AttemptLoop::start_recording() {
   TROCAR_TRY(AttemptRecord record, AttemptRecord::create(*case_.the_case, options, facts));
   record_.emplace(std::move(record));
   const cases::Case& the_case = *case_.the_case;
-  if (options_.has_view) pain_.emplace(the_case.task, *the_case.patient);
+  if (options_.has_view) {
+    pain_.emplace(the_case.task, *the_case.patient);
+    harm_.emplace(the_case.task, *the_case.patient, the_case.needle);
+  }
   if (options_.has_view && case_.plane)
     phases_.emplace(the_case.task, *the_case.patient, the_case.needle, the_case.plan, *case_.plane);
   live_.emplace(performer_, *record_, command_, options_.longest_s);

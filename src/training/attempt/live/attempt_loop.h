@@ -15,6 +15,7 @@
 #include "attempt/servers/haptic_servers.h"
 #include "attempt/tools/transducer_motion.h"
 #include "cases/prepare_case.h"
+#include "metrics/harm_watch.h"
 #include "scoring/pain.h"
 #include "scoring/phase_tracker.h"
 
@@ -98,6 +99,7 @@ class AttemptLoop {
   Status record(const std::vector<link::NumberedSample>& samples);
   Status note_shape(const link::NumberedSample& numbered);
   void note_tick(const telemetry::TickSample& sample);
+  void note_harm(const telemetry::TickSample& sample);
   void note_shots();
   void note_actions();
   void step_phases();
@@ -111,6 +113,7 @@ class AttemptLoop {
   NeedleView needle_now() const;
   TransducerView transducer_now() const;
   void add_servers(AttemptView& view) const;
+  void add_harm(AttemptView& view) const;
   void add_times(AttemptView& view);
   void publish(AttemptPhase phase, std::optional<Result<RunResult>> result = {});
 
@@ -148,7 +151,12 @@ class AttemptLoop {
   std::vector<AttemptEvent> events_;
   std::shared_ptr<const GunShot> shot_;  ///< The last one.
   std::size_t told_shots_ = 0;
-  std::optional<scoring::PainWatch> pain_;       ///< From the begin of the recording.
+  std::size_t cores_ = 0;                   ///< Taken so far.
+  std::optional<scoring::PainWatch> pain_;  ///< From the begin of the recording.
+  std::optional<metrics::HarmWatch> harm_;  ///< From the begin of the recording.
+  std::optional<metrics::HarmEvent>
+      told_harm_;  ///< The last critical or major one, with the time at which it was told.
+  double told_harm_s_ = 0.0;
   std::optional<scoring::PhaseTracker> phases_;  ///< From the begin of the recording.
   double phases_s_ = 0.0;                        ///< Time of its last step.
   double contrast_ml_ = 0.0;

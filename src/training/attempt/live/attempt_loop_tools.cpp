@@ -105,16 +105,34 @@ void AttemptLoop::note_tick(const telemetry::TickSample& sample) {
     if (auto described = describe_event(record_->info(), sample, event)) events_.push_back(*std::move(described));
   }
   if (const auto pain = pain_ ? pain_->step(sample) : std::nullopt) events_.push_back(describe_pain(*pain));
+  if (!harm_) return;
+  harm_->step(metrics::moment_of(sample));
+  note_harm(sample);
+}
+
+void AttemptLoop::note_harm(const telemetry::TickSample& sample) {
+  for (const metrics::HarmEvent& event : harm_->take_news()) {
+    events_.push_back(describe_harm(event, sample));
+    if (event.grade < tasks::Harm::kMajor) continue;
+    told_harm_ = event;
+    told_harm_s_ = sample.time_s;
+  }
 }
 
 void AttemptLoop::note_shots() {
   const std::vector<std::size_t>& shots = record_->shots();
   if (!options_.has_view) return;
   for (; told_shots_ < shots.size(); ++told_shots_) {
-    shot_ = std::make_shared<const GunShot>(make_gun_shot(*case_.the_case, record_->samples()[shots[told_shots_]]));
+    const telemetry::TickSample& fired = record_->samples()[shots[told_shots_]];
+    shot_ = std::make_shared<const GunShot>(make_gun_shot(*case_.the_case, fired));
+    if (!shot_->pieces.empty()) ++cores_;
     // The composition of the core is displayed beside its picture.
     events_.push_back({shot_->time_s, shot_->depth_mm, telemetry::EventKind::kNone, "shot",
-                       fmt::format("the gun was fired at {:.0f}\u00a0mm", shot_->depth_mm)});
+                       shot_->is_in_body() ? fmt::format("the gun was fired at {:.0f}\u00a0mm", shot_->depth_mm)
+                                           : "the gun was fired outside the body"});
+    if (!harm_) continue;
+    harm_->fire(metrics::moment_of(fired));
+    note_harm(fired);
   }
 }
 

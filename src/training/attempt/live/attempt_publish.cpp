@@ -1,4 +1,6 @@
 // What a client sees of an attempt.
+#include <fmt/format.h>
+
 #include "attempt/guide/gun_shot.h"
 #include "attempt/guide/needle_view.h"
 #include "attempt/guide/puncture_guide.h"
@@ -103,7 +105,7 @@ void AttemptLoop::step_phases() {
     moment.contact_n = last_transducer_->f_constraint_n.norm();
   }
   moment.contrast_ml = contrast_ml_;
-  moment.shots = record_ ? record_->shots().size() : 0;
+  moment.cores = cores_;
   phases_->step(moment);
 }
 
@@ -129,6 +131,17 @@ void AttemptLoop::add_phases(AttemptView& view) const {
   view.current_phase = phases_->current();
 }
 
+/// At once, and for long enough to be read; an exam tells it at its end.
+void AttemptLoop::add_harm(AttemptView& view) const {
+  constexpr double kShown_s = 6.0;
+  const bool is_fresh = told_harm_ && last_needle_ && last_needle_->time_s - told_harm_s_ < kShown_s;
+  if (!is_fresh || !view.banner.empty() || options_.level == "exam") return;
+  view.is_harm = true;
+  view.banner =
+      fmt::format("{} harm: {}{}. Pull back.", told_harm_->grade == tasks::Harm::kCritical ? "Critical" : "Major",
+                  metrics::harm_words(*told_harm_), told_harm_->reason.empty() ? "" : " (" + told_harm_->reason + ")");
+}
+
 void AttemptLoop::add_times(AttemptView& view) {
   if (!last_needle_) return;
   if (live_) session_s_ = live_->active_s();
@@ -148,9 +161,15 @@ std::string AttemptLoop::hint_of(const AttemptView& view) const {
       is_step_of_transducer(the_case.task.phases[*view.current_phase])) {
     const Segment& path_P = the_case.plan.line_P;
     const Vec3 target_P = path_P.b + the_case.needle.notch_middle_mm() * path_P.direction();
-    return guide_transducer(target_P, view.probe.X_PT, view.probe.contact_n, *case_.plane);
+    return guide_transducer(*the_case.patient, target_P, view.probe.X_PT, view.probe.contact_n, *case_.plane);
   }
-  return guide_puncture(the_case, *last_needle_, {view.shots, view.is_gun_loaded});
+  GuideState state{cores_, view.is_gun_loaded, shot_.get()};
+  if (record_)
+    for (const tasks::Action& action : record_->actions())
+      state.is_confirmed = state.is_confirmed || (the_case.task.confirmed_by != tasks::Substance::kNothing &&
+                                                  action.result.substance == the_case.task.confirmed_by);
+  state.are_steps_done = phases_ && !phases_->states().empty() && !phases_->current();
+  return guide_puncture(the_case, *last_needle_, state);
 }
 
 void AttemptLoop::publish(AttemptPhase phase, std::optional<Result<RunResult>> result) {
@@ -179,6 +198,7 @@ void AttemptLoop::publish(AttemptPhase phase, std::optional<Result<RunResult>> r
   }
   view.notes = notes_;
   add_servers(view);
+  add_harm(view);
   add_times(view);
   step_phases();
   add_phases(view);

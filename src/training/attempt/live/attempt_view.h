@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "geometry/pose.h"
+#include "tasks/harm.h"
 #include "telemetry/tick_sample.h"
 
 namespace trocar::attempt {
@@ -88,6 +89,7 @@ struct AttemptView {
   std::string progress;            ///< Current activity in kStarting and kFinishing.
   double progress_fraction = 0.0;  ///< 0..1
   std::string banner;              ///< One line of high importance; empty: no problem.
+  bool is_harm = false;            ///< The banner tells of harm to the patient.
   std::string recovered;           ///< Description of the last recovery of a server, one sentence.
   int recoveries = 0;              ///< Number of times that forces returned after a server ended or was unavailable.
   std::string message;             ///< Result of the last set_parameters(), or of a command.
@@ -126,8 +128,9 @@ struct AttemptEvent {
   double time_s = 0.0;
   double depth_mm = 0.0;
   telemetry::EventKind kind = telemetry::EventKind::kNone;
-  std::string name;  ///< Name of the layer or label.
-  std::string text;  ///< "through the liver capsule at 1.9 N"
+  std::string name;                       ///< Name of the layer or label.
+  std::string text;                       ///< "through the liver capsule at 1.9 N"
+  tasks::Harm harm = tasks::Harm::kNone;  ///< What it did to the patient.
 };
 
 }  // namespace trocar::attempt

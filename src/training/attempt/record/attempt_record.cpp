@@ -14,6 +14,7 @@
 #include "haptics/force_version.h"
 #include "io/patient/patient_source.h"
 #include "signing/token.h"
+#include "telemetry/tick_pose.h"
 
 namespace trocar::attempt {
 namespace {
@@ -119,8 +120,9 @@ Result<std::optional<tasks::Action>> AttemptRecord::act(const tasks::ActionReque
   tasks::Action action{sample.time_s, request.kind, request.amount, {}, sample.tip_mm, sample.depth_mm};
   if (!session_.actions.empty()) action.time_s = std::max(action.time_s, session_.actions.back().time_s + kLater_s);
   if (request.kind == tasks::ActionKind::kDrawStylet || request.kind == tasks::ActionKind::kAspirate)
-    action.result = tasks::what_returns(the_case_->substances, *the_case_->patient, the_case_->needle, sample.tip_mm,
-                                        sample.axis, request.kind == tasks::ActionKind::kAspirate);
+    action.result = tasks::what_returns(the_case_->substances, *the_case_->patient, the_case_->needle,
+                                        telemetry::pierced_tip_mm(sample), sample.axis,
+                                        request.kind == tasks::ActionKind::kAspirate);
   TROCAR_TRY_STATUS(append(action));
   return std::optional<tasks::Action>(action);
 }

@@ -107,12 +107,14 @@ void AttemptReplay::find_moments() {
       }
       const anatomy::Label* label = find_entered(*open_, event);
       if (label == nullptr) continue;
-      const bool is_risk = tasks::find_risk(open_->the_case.task, *label) != nullptr;
-      moments_.push_back({sample.time_s, is_risk ? Kind::kRisk : Kind::kEnter,
-                          is_risk ? "touched: " + anatomy::structure_words(label->name)
-                                  : "into the " + anatomy::structure_words(label->name)});
+      moments_.push_back({sample.time_s, Kind::kEnter, "into the " + anatomy::structure_words(label->name)});
     }
   }
+  const cases::Case& the_case = open_->the_case;
+  harms_ = metrics::find_harms(the_case.task, *the_case.patient, the_case.needle, session_.samples, session_.shots,
+                               session_.interruptions);
+  for (const metrics::HarmEvent& harm : harms_)
+    moments_.push_back({harm.begin_s, Kind::kRisk, metrics::harm_words(harm)});
   for (const storage::SessionParameters& change : session_.parameters)
     if (change.tick > 0)
       moments_.push_back(
@@ -123,13 +125,11 @@ void AttemptReplay::find_moments() {
   for (const GunShot& shot : shots_) moments_.push_back({shot.time_s, Kind::kFired, shot_words(shot)});
 }
 
-/// Contact with a risk structure comes first; then the largest distance of the needle from the path in the body, if it
-/// is worth saying; then the largest force. A needle without contact has no worst moment.
+/// The gravest harm comes first, where the needle was deepest in it; then the largest distance of the needle from the
+/// path in the body, if it is worth saying; then the largest force. A needle without contact has no worst moment.
 void AttemptReplay::find_worst() {
-  const auto risk = std::find_if(moments_.begin(), moments_.end(),
-                                 [](const ReplayMoment& m) { return m.kind == ReplayMoment::Kind::kRisk; });
-  if (risk != moments_.end()) {
-    worst_ = {risk->time_s, ReplayMoment::Kind::kWorst, risk->text};
+  if (!harms_.empty()) {
+    worst_ = {harms_.front().worst_s, ReplayMoment::Kind::kWorst, metrics::harm_words(harms_.front())};
     return;
   }
   constexpr double kInside_mm = 1.0;

@@ -19,7 +19,7 @@ struct ReplayMoment {
   enum class Kind { kPuncture, kEnter, kRisk, kFired, kChange, kInterruption, kWorst };
   double time_s = 0.0;
   Kind kind = Kind::kPuncture;
-  std::string text;  ///< "through the liver capsule", "the lung was touched"
+  std::string text;  ///< "through the liver capsule", "the needle went 4 mm into the lung"
 };
 
 /// A recorded attempt for replay. Immutable. Frame P.
@@ -68,6 +68,7 @@ class AttemptReplay {
   std::shared_ptr<const cases::OpenCase> open_;
   bool was_cut_off_;
   std::vector<GunShot> shots_;
+  std::vector<metrics::HarmEvent> harms_;  ///< The gravest first.
   std::vector<ReplayMoment> moments_;
   std::optional<ReplayMoment> worst_;
 };

@@ -29,10 +29,10 @@ std::vector<Edit> all_edits() {
       [=](const CaseDraft& d, double c) { return set_target_point(d, point(c)); },
       [](const CaseDraft& d, double c) { return set_target_label(d, c < 0.5 ? "lesion" : ""); },
       [](const CaseDraft& d, double c) {
-        return set_risk(d, {"vessel", "", 10.0 * c, 30.0});
+        return set_risk(d, {"vessel", "", 10.0 * c, false, {}});
       },
       [](const CaseDraft& d, double c) {
-        return set_risk(d, {"", "gallbladder", 10.0 * c, 5.0});
+        return set_risk(d, {"", "gallbladder", 10.0 * c, false, {}});
       },
       [](const CaseDraft& d, double c) {
         return remove_risk(d, static_cast<std::size_t>(c * static_cast<double>(d.task.risks.size())));
@@ -121,7 +121,7 @@ TEST(CaseHistory, KeepsABoundedNumberOfSteps) {
   CaseHistory history;
   history.begin(made_draft());
   for (std::size_t n = 0; n < CaseHistory::kMaxSteps + 50; ++n)
-    history.apply(*set_risk(history.draft(), {"vessel", "", 0.1 * static_cast<double>(n + 1), 30.0}), "margin");
+    history.apply(*set_risk(history.draft(), {"vessel", "", 0.1 * static_cast<double>(n + 1), false, {}}), "margin");
   std::size_t undone = 0;
   for (; history.can_undo(); ++undone) history.undo();
   EXPECT_EQ(undone, CaseHistory::kMaxSteps);
@@ -144,8 +144,8 @@ TEST(CaseEdits, RefuseWhatCannotBeInOneLine) {
   EXPECT_FALSE(rename_label(draft, 200, "x"));
   EXPECT_FALSE(set_target_point(draft, {500.0, 0.0, 0.0}));
   EXPECT_FALSE(set_target_label(draft, "spleen"));
-  EXPECT_FALSE(set_risk(draft, {"vessel", "", 51.0, 1.0}));
-  EXPECT_FALSE(set_risk(draft, {"", "", 1.0, 1.0}));
+  EXPECT_FALSE(set_risk(draft, {"vessel", "", 51.0, false, {}}));
+  EXPECT_FALSE(set_risk(draft, {"", "", 1.0, false, {}}));
   EXPECT_FALSE(set_entry_zone(draft, {0.0, 0.0, 0.0}, 10.0));  // deep inside the body
   EXPECT_FALSE(set_expert_path(draft, {{-100.0, 0.0, 0.0}, {-99.0, 0.0, 0.0}}));
   EXPECT_FALSE(set_target_point(CaseDraft{}, {0.0, 0.0, 0.0}));
@@ -153,7 +153,7 @@ TEST(CaseEdits, RefuseWhatCannotBeInOneLine) {
 
 TEST(CaseEdits, RenamedLabelIsFollowedByTargetAndRisks) {
   CaseDraft draft = *set_target_label(made_draft(), "lesion");
-  draft = *set_risk(draft, {"", "gallbladder", 4.0, 10.0});
+  draft = *set_risk(draft, {"", "gallbladder", 4.0, false, {}});
   draft = *rename_label(draft, 4, "tumour");
   draft = *rename_label(draft, 8, "bladder of gall");
   EXPECT_EQ(draft.task.target_label, "tumour");

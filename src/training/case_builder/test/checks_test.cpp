@@ -82,7 +82,7 @@ TEST(Checks, TargetInTheWrongPlaceIsAnError) {
 
 TEST(Checks, TargetThatIsARiskIsAnError) {
   CaseDraft draft = *set_target_label(made_draft(), "lesion");
-  draft = *set_risk(draft, {"", "lesion", 2.0, 10.0});
+  draft = *set_risk(draft, {"", "lesion", 2.0, false, {}});
   EXPECT_NE(find(checks_of(draft), CheckLevel::kError, "is also a risk structure"), nullptr);
 }
 

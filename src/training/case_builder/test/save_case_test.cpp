@@ -23,7 +23,7 @@ using namespace testing;
 CaseDraft full_draft() {
   CaseDraft draft = *set_expert_path(made_draft(), good_path(shipped_needle()));
   draft = *set_target_label(draft, "lesion");
-  draft = *set_risk(draft, {"vessel", "", 4.0, 40.0});
+  draft = *set_risk(draft, {"vessel", "", 4.0, false, {}});
   draft = *set_entry_zone(draft, good_path(shipped_needle()).a, 15.0);
   draft = *set_landmark(draft, "rib 9", {-80.0, 10.0, 5.0});
   draft = *rename_label(draft, 3, "liver of the box");
@@ -117,7 +117,7 @@ TEST(SaveCase, NothingIsOverwrittenWithoutBeingTold) {
   const fs::path target = folder.path() / "case";
   ASSERT_TRUE(save_case(draft, patients, {target, false}));
   const std::string before = *read_file(target / "task.toml");
-  draft = *set_risk(draft, {"vessel", "", 6.0, 40.0});
+  draft = *set_risk(draft, {"vessel", "", 6.0, false, {}});
   EXPECT_FALSE(save_case(draft, patients, {target, false}));
   EXPECT_EQ(*read_file(target / "task.toml"), before);
   const auto replaced = save_case(draft, patients, {target, true});

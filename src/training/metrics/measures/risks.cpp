@@ -1,9 +1,11 @@
 // Target and risk structures of the task (paper B; Johnson 2012, no-go areas).
+#include <algorithm>
 #include <array>
 #include <bitset>
 #include <limits>
 
 #include "metrics/detail/body.h"
+#include "metrics/harm_watch.h"
 #include "metrics/measures/groups.h"
 #include "tasks/task_labels.h"
 #include "volume/sampling.h"
@@ -36,6 +38,12 @@ constexpr std::array kRiskValues{
                       Better::kLower,
                       {Role::kTask, Role::kPatient, Role::kDepth},
                       "Johnson 2012, total time in no-go area"},
+    MetricDescription{"complications",
+                      "Structures with major or critical harm",
+                      "1",
+                      Better::kLower,
+                      {Role::kTask, Role::kPatient, Role::kDepth},
+                      "PMC11583760; classes of Sacks 2003"},
 };
 constexpr double kShaftStep_mm = 1.0;  // distance of tested points of the shaft
 constexpr double kMoved_mm = 0.25;     // the contacts of a needle that moved less are those found before
@@ -49,11 +57,15 @@ class Risks : public Metric {
         patient_(*context.patient),
         labels_(task_, patient_),
         needle_(context.needle),
-        paths_(context.expert_paths) {
+        paths_(context.expert_paths),
+        shots_s_(context.shots_s),
+        watch_(task_, patient_, needle_.value_or(tasks::Needle())) {
     last_s_.fill(-std::numeric_limits<double>::infinity());
   }
 
   void step(const Step& step) override {
+    watch_.step(step.now);
+    for (; shot_ < shots_s_.size() && shots_s_[shot_] <= step.now.time_s; ++shot_) watch_.fire(step.now);
     if (!step.is_inside()) {
       contacts_.reset();
       is_checked_ = false;
@@ -67,7 +79,7 @@ class Risks : public Metric {
     contacts_.reset();
     const double length_mm = std::min(*step.now.depth_mm, kLongestTested_mm);
     for (double back_mm = 0.0; back_mm < length_mm; back_mm += kShaftStep_mm)
-      test(step.now.tip_P - back_mm * step.now.axis_P);
+      test(step.now.tip_P - (step.now.pressed_mm + back_mm) * step.now.axis_P);
     const std::bitset<256> now = contacts_;
     if (is_checked_ && step.before != nullptr) test_way(tip_P_, step.now.tip_P);
     tip_P_ = step.now.tip_P;
@@ -89,9 +101,18 @@ class Risks : public Metric {
     }
     values[2].set(touches_, first_s_);
     values[3].set(time_s_, first_s_);
+    report_complications(values[4]);
   }
 
  private:
+  void report_complications(MetricValue& value) const {
+    std::vector<HarmEvent> harms = watch_.events();
+    std::erase_if(harms, [](const HarmEvent& event) { return event.grade < tasks::Harm::kMajor; });
+    std::stable_sort(harms.begin(), harms.end(), is_graver);
+    value.set(static_cast<double>(harms.size()),
+              harms.empty() ? std::optional<double>() : std::optional(harms.front().worst_s));
+    for (const HarmEvent& event : harms) value.note += (value.note.empty() ? "" : ", ") + harm_words(event);
+  }
   bool has_moved(const Moment& now) const noexcept {
     if (!is_checked_) return true;
     const Vec3 skin_P = now.tip_P - std::min(*now.depth_mm, kLongestTested_mm) * now.axis_P;
@@ -99,7 +120,7 @@ class Risks : public Metric {
   }
   void test(const Vec3& p_P) {
     const std::uint8_t id = volume::sample_nearest<std::uint8_t>(patient_.labels, p_P, 0);
-    if (labels_.risk(id) != nullptr) contacts_.set(id);
+    if (labels_.harm(id) > tasks::Harm::kNone) contacts_.set(id);
   }
   void test_way(const Vec3& from_P, const Vec3& to_P) {
     const double length_mm = std::min((to_P - from_P).norm(), kLongestTested_mm);
@@ -117,17 +138,18 @@ class Risks : public Metric {
       if (!first_s_) first_s_ = step.now.time_s;
     }
   }
-  /// Any of: tip, or the notch's middle after the shot of a biopsy needle, in the target; tip within the task's
-  /// tolerance of the nearest expert path's end; tip in the organ, where the patient has no target and there is no
-  /// expert path.
+  /// The tip, its wall pierced, or the notch's middle after the shot of a biopsy needle is in the target. Where the
+  /// target is a place (a point of the task, healthy organ): within the tolerance of the nearest expert path's end, or
+  /// in the organ if there is no expert path.
   bool is_target_reached(const RunEnd& end) const {
-    const Vec3& tip_P = end.moment->tip_P;
-    if (end.expert && (tip_P - paths_[*end.expert].line_P.b).norm() <= task_.target_tolerance_mm) return true;
-    const double beyond_mm = needle_ ? needle_->notch_middle_mm() : 0.0;
-    const std::uint8_t id =
-        volume::sample_nearest<std::uint8_t>(patient_.labels, tip_P + beyond_mm * end.moment->axis_P, 0);
-    if (labels_.part(id) == tasks::TaskLabels::Part::kTarget) return true;
-    return labels_.part(id) == tasks::TaskLabels::Part::kOrgan && labels_.is_parenchymal() && !end.expert;
+    const Moment& last = *end.moment;
+    const bool is_place = labels_.is_parenchymal() || task_.target_P;
+    if (is_place && end.expert) return (last.tip_P - paths_[*end.expert].line_P.b).norm() <= task_.target_tolerance_mm;
+    const bool is_biopsy = needle_ && needle_->is_biopsy;
+    const double beyond_mm = is_biopsy ? needle_->notch_middle_mm() : -last.pressed_mm;
+    const Vec3 reach_P = last.tip_P + beyond_mm * last.axis_P;
+    return labels_.part(volume::sample_nearest<std::uint8_t>(patient_.labels, reach_P, 0)) ==
+           tasks::TaskLabels::Part::kTarget;
   }
 
   const tasks::Task& task_;
@@ -135,6 +157,9 @@ class Risks : public Metric {
   tasks::TaskLabels labels_;
   std::optional<tasks::Needle> needle_;
   std::vector<ExpertPath> paths_;
+  std::vector<double> shots_s_;
+  std::size_t shot_ = 0;  ///< The next one.
+  HarmWatch watch_;
   std::bitset<256> contacts_;  ///< Risk structures that the needle is in now, by label.
   Vec3 tip_P_ = Vec3::Zero(), skin_P_ = Vec3::Zero();
   bool is_checked_ = false;

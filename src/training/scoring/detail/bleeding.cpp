@@ -42,11 +42,10 @@ std::size_t count_passes(const AttemptData& attempt, const tasks::TaskLabels& la
 /// Vessels that needle or stylet touched, by label.
 std::vector<std::string> touched_vessels(const Judgement& judged) {
   std::vector<std::string> names;
-  for (const auto* touches : {&judged.measured.risks, &judged.stylet_risks})
-    for (const metrics::RiskTouch& touch : *touches) {
-      const anatomy::Label* const label = judged.attempt.patient.label_table.find(touch.label);
-      if (label != nullptr && label->tissue == "vessel") names.push_back(touch.label);
-    }
+  for (const metrics::HarmEvent& event : judged.harms) {
+    const anatomy::Label* const label = judged.attempt.patient.label_table.find(event.label);
+    if (label != nullptr && label->tissue == "vessel" && !event.is_graze) names.push_back(event.label);
+  }
   return names;
 }
 

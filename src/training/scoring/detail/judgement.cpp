@@ -8,12 +8,14 @@
 #include "scoring/detail/bleeding.h"
 #include "tasks/assess_path.h"
 #include "tasks/task_labels.h"
+#include "telemetry/tick_pose.h"
 #include "volume/sampling.h"
 
 namespace trocar::scoring {
 namespace {
 
-constexpr double kShortestPath_mm = 3.0;  // that has a direction and margins
+constexpr double kShortestPath_mm = 3.0;   // that has a direction and margins
+constexpr double kTargetSearch_mm = 40.0;  // farther away the plan's end is what counts
 
 /// Place that has to be at the target: the middle of the notch after the shot, or the tip.
 Vec3 reach_P(const tasks::Needle& needle, const Vec3& tip_P, const Vec3& axis_P) {
@@ -31,24 +33,59 @@ std::size_t nearest_expert(const AttemptData& attempt, const metrics::AttemptMet
   return static_cast<std::size_t>(nearest - attempt.experts.begin());
 }
 
-double find_target_mm(const Judgement& judged) {
+/// From a point to the nearest voxel of the target, 0 in it; empty: there is none within kTargetSearch_mm.
+std::optional<Vec3> way_to_target(const AttemptData& attempt, const tasks::TaskLabels& labels, const Vec3& p_P) {
+  const volume::LabelGrid& grid = attempt.patient.labels;
+  const auto is_target = [&](std::uint8_t id) { return labels.part(id) == tasks::TaskLabels::Part::kTarget; };
+  if (is_target(volume::sample_nearest<std::uint8_t>(grid, p_P, 0))) return Vec3(Vec3::Zero());
+  const Vec3 index = grid.geometry.to_index(p_P);
+  volume::Index3 low{}, high{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const double reach = kTargetSearch_mm / grid.geometry.spacing_mm[axis];
+    const auto last = static_cast<double>(grid.geometry.size[a] - 1);
+    low[a] = static_cast<std::int64_t>(std::clamp(std::ceil(index[axis] - reach), 0.0, last));
+    high[a] = static_cast<std::int64_t>(std::clamp(std::floor(index[axis] + reach), 0.0, last));
+  }
+  Vec3 nearest_V = Vec3::Constant(kTargetSearch_mm);
+  for (std::int64_t k = low[2]; k <= high[2]; ++k)
+    for (std::int64_t j = low[1]; j <= high[1]; ++j)
+      for (std::int64_t i = low[0]; i <= high[0]; ++i) {
+        if (!is_target(grid[{i, j, k}])) continue;
+        const Vec3 apart = Vec3(static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)) - index;
+        // To the voxel's box.
+        const Vec3 way_V = (apart - apart.cwiseMax(-0.5).cwiseMin(0.5)).cwiseProduct(grid.geometry.spacing_mm);
+        if (way_V.squaredNorm() < nearest_V.squaredNorm()) nearest_V = way_V;
+      }
+  if (nearest_V.norm() > kTargetSearch_mm) return std::nullopt;
+  return Vec3(grid.geometry.R_PV * nearest_V);
+}
+
+/// Of the place that has to be there, from that of the nearest expert path.
+double from_plan_mm(const AttemptData& attempt, const Vec3& tip_P, const Vec3& axis_P) {
+  double nearest_mm = HUGE_VAL;
+  for (const tasks::PlannedPath& path : attempt.experts)
+    nearest_mm = std::min(nearest_mm, (reach_P(attempt.needle, tip_P, axis_P) -
+                                       reach_P(attempt.needle, path.line_P.b, path.line_P.direction()))
+                                          .norm());
+  return nearest_mm;
+}
+
+double find_target_mm(Judgement& judged, const tasks::TaskLabels& labels) {
   const AttemptData& attempt = judged.attempt;
   const metrics::AttemptMetrics& metrics = judged.measured;
-  if (!attempt.needle.is_biopsy) {
-    const anatomy::Label* const label = anatomy::find_label(attempt.patient, metrics.tip_P);
-    const bool is_long_target = attempt.task.target_step_mm > 0.0;
-    if (is_long_target && judged.confirmed_s) return 0.0;  // nerve roots float in the fluid
-    if (is_long_target && label != nullptr && tasks::is_target(attempt.task, *label)) return 0.0;
-  }
+  if (!attempt.needle.is_biopsy && judged.confirmed_s) return 0.0;  // nerve roots float in the fluid
   double nearest_mm = HUGE_VAL;
   const auto reach = [&](const Vec3& tip_P, const Vec3& axis_P) {
-    for (const tasks::PlannedPath& path : attempt.experts)
-      nearest_mm = std::min(nearest_mm, (reach_P(attempt.needle, tip_P, axis_P) -
-                                         reach_P(attempt.needle, path.line_P.b, path.line_P.direction()))
-                                            .norm());
+    double found_mm = from_plan_mm(attempt, tip_P, axis_P);
+    if (!judged.is_planned_place) {
+      judged.to_target_P = way_to_target(attempt, labels, reach_P(attempt.needle, tip_P, axis_P));
+      found_mm = judged.to_target_P ? judged.to_target_P->norm() : std::max(kTargetSearch_mm, found_mm);
+    }
+    nearest_mm = std::min(nearest_mm, found_mm);
   };
   for (const BiopsyCore& core : judged.cores) reach(core.tip_P, core.axis_P);
-  if (judged.cores.empty()) reach(metrics.tip_P, metrics.axis_P);
+  if (judged.cores.empty()) reach(metrics.pierced_tip_P, metrics.axis_P);
   return nearest_mm;
 }
 
@@ -87,21 +124,6 @@ AccessJudgement judge_access(const Judgement& judged) {
   return access;
 }
 
-/// Structures touched by the stylet but not by the needle.
-std::vector<metrics::RiskTouch> find_stylet_risks(const Judgement& judged, const tasks::TaskLabels& labels) {
-  std::vector<metrics::RiskTouch> touches;
-  const auto is_among = [](const std::vector<metrics::RiskTouch>& known, const std::string& name) {
-    return std::any_of(known.begin(), known.end(), [&](const auto& touch) { return touch.label == name; });
-  };
-  for (const BiopsyCore& core : judged.cores)
-    for (const std::string& name : core.risks_in_throw) {
-      if (is_among(judged.measured.risks, name) || is_among(touches, name)) continue;
-      const anatomy::Label* const label = judged.attempt.patient.label_table.find(name);
-      touches.push_back({name, 0.0, labels.risk(label->id)->penalty, core.time_s});
-    }
-  return touches;
-}
-
 /// Everything that hurt; nothing if the skin was never pierced.
 std::vector<PainEvent> find_pain(const AttemptData& attempt, bool has_entered) {
   std::vector<PainEvent> events;
@@ -127,10 +149,9 @@ std::optional<double> find_confirmation(const AttemptData& attempt) {
 /// the deepest one.
 std::optional<std::size_t> find_end(const AttemptData& attempt, std::optional<double> confirmed_s) {
   if (attempt.needle.is_biopsy) {  // the first shot in the body
-    const auto is_inside = [&](std::size_t shot) { return attempt.samples[shot].depth_mm > 0.0; };
+    const auto is_inside = [&](std::size_t shot) { return telemetry::is_in_body(attempt.samples[shot]); };
     const auto shot = std::find_if(attempt.shots.begin(), attempt.shots.end(), is_inside);
     if (shot != attempt.shots.end()) return *shot;
-    if (!attempt.shots.empty()) return attempt.shots.front();
   }
   if (attempt.needle.is_biopsy || !confirmed_s) return std::nullopt;
   const auto found = std::find_if(attempt.samples.begin(), attempt.samples.end(),
@@ -144,7 +165,7 @@ std::vector<BiopsyCore> take_cores(const AttemptData& attempt) {
   std::vector<BiopsyCore> cores;
   for (const std::size_t shot : attempt.shots) {
     const telemetry::TickSample& sample = attempt.samples[shot];
-    if (!(sample.depth_mm > 0.0) || !sample.tip_mm.allFinite() || !sample.axis.allFinite()) continue;
+    if (!telemetry::is_in_body(sample) || !sample.tip_mm.allFinite() || !sample.axis.allFinite()) continue;
     cores.push_back(take_core(attempt.task, attempt.patient, attempt.needle, sample.tip_mm, sample.axis));
     cores.back().time_s = sample.time_s;
   }
@@ -157,7 +178,7 @@ Judgement judge(const AttemptData& attempt, std::size_t& expert) {
   const std::optional<double> confirmed_s = find_confirmation(attempt);
   const std::optional<std::size_t> end = find_end(attempt, confirmed_s);
   const auto measure = [&](const tasks::PlannedPath& path) {
-    return metrics::measure_attempt(attempt.task, attempt.patient, attempt.tissues, path, attempt.samples, end,
+    return metrics::measure_attempt(attempt.patient, attempt.tissues, path, attempt.samples, end,
                                     attempt.interruptions);
   };
   metrics::AttemptMetrics metrics = measure(attempt.experts.front());
@@ -167,6 +188,7 @@ Judgement judge(const AttemptData& attempt, std::size_t& expert) {
   const tasks::TaskLabels labels(attempt.task, attempt.patient);
   judged.confirmed_s = confirmed_s;
   judged.is_parenchymal = labels.is_parenchymal();
+  judged.is_planned_place = judged.is_parenchymal || attempt.task.target_P.has_value();
   if (attempt.needle.is_biopsy) {
     const Segment& plan_P = judged.expert.line_P;
     judged.possible_core_mm =
@@ -176,13 +198,12 @@ Judgement judge(const AttemptData& attempt, std::size_t& expert) {
     if (judged.measured.has_entered) judged.cores = take_cores(attempt);
   }
   if (judged.measured.has_entered) {
-    judged.target_mm = find_target_mm(judged);
+    judged.target_mm = find_target_mm(judged, labels);
     judged.entry_mm = find_entry_mm(attempt, judged.expert, judged.measured);
     judged.access = judge_access(judged);
   }
-  judged.stylet_risks = find_stylet_risks(judged, labels);
-  for (const auto* touches : {&judged.measured.risks, &judged.stylet_risks})
-    for (const metrics::RiskTouch& touch : *touches) judged.risk_penalty += touch.penalty;
+  judged.harms = metrics::find_harms(attempt.task, attempt.patient, attempt.needle, attempt.samples, attempt.shots,
+                                     attempt.interruptions);
   judged.pain = find_pain(attempt, judged.measured.has_entered);
   if (judged.measured.has_entered) judged.bleeding = judge_bleeding(judged);
   judged.too_high_s = entered_too_high_s(attempt);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "metrics/attempt_metrics.h"
+#include "metrics/harm_watch.h"
 #include "scoring/detail/needle_rules.h"
 #include "scoring/pain.h"
 #include "scoring/score.h"
@@ -29,13 +30,15 @@ struct Judgement {
   const tasks::PlannedPath& expert;  ///< The nearest one.
   metrics::AttemptMetrics measured;  ///< Against this path.
   bool is_parenchymal = false;
-  double target_mm = 0.0;  ///< Distance to the target: of the notch for a biopsy needle, 0 in the target.
-  double entry_mm = 0.0;   ///< Of the entry, from the zone's edge or the expert's.
+  /// The target is a place, not a structure: a point of the task, or of the plan in healthy organ.
+  bool is_planned_place = false;
+  double target_mm = 0.0;  ///< Distance to the target, of the notch for a biopsy needle; 0 in a target structure.
+  std::optional<Vec3> to_target_P = {};  ///< From there to the nearest point of the target structure, of the last core.
+  double entry_mm = 0.0;                 ///< Of the entry, from the zone's edge or the expert's.
   AccessJudgement access = {};
-  std::vector<BiopsyCore> cores = {};                 ///< By time.
-  double possible_core_mm = 0.0;                      ///< Length of target tissue in a core at the planned place.
-  std::vector<metrics::RiskTouch> stylet_risks = {};  ///< Structures that only the stylet touched.
-  double risk_penalty = 0.0;
+  std::vector<BiopsyCore> cores = {};          ///< By time.
+  double possible_core_mm = 0.0;               ///< Length of target tissue in a core at the planned place.
+  std::vector<metrics::HarmEvent> harms = {};  ///< The gravest first; those without harm are left out.
   std::vector<PainEvent> pain = {};
   std::optional<double> confirmed_s = {};  ///< Time at which the right substance came back.
   std::optional<Bleeding> bleeding = {};
@@ -45,5 +48,7 @@ struct Judgement {
 
 /// Judges an attempt against its nearest expert path.
 Judgement judge(const AttemptData& attempt, std::size_t& expert);
+/// Score, verdict and advice that follow from a judgement.
+Outcome conclude(const Judgement& judged);
 
 }  // namespace trocar::scoring

@@ -50,7 +50,10 @@ TEST(Bevel, IsJudgedAtThePunctureOfItsLayer) {
   made.task.bevel = tasks::BevelRule{"muscle", "liver", 30.0};
   made.task.weights = {{"target", 60.0}, {"bevel", 40.0}};
   Attempt attempt = make_attempt(make_box_plan().line_P);
-  EXPECT_EQ(made.score(attempt).parts.size(), 1U) << "the layer was not punctured";
+  const ScorePart none = part(made.score(attempt), "bevel");
+  EXPECT_FALSE(none.is_judged) << "the layer was not punctured";
+  EXPECT_EQ(none.points, 0.0);
+  EXPECT_EQ(part_value_text(none), "not judged");
   const auto points_at = [&](double turned_deg) {
     const double turned_rad = turned_deg * std::numbers::pi / 180.0;
     const Mat3 R_PN = tasks::needle_rotation(Vec3::UnitY(), {std::cos(turned_rad), 0.0, std::sin(turned_rad)});

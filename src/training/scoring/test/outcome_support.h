@@ -35,6 +35,7 @@ struct BoxCase {
                           .shots = shots,
                           .actions = actions,
                           .xray = xray,
+                          .has_transducer = tip_visible_share.has_value(),
                           .tip_visible_share = tip_visible_share});
   }
   /// The gun, if there is one, is fired at the end.

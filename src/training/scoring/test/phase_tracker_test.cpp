@@ -99,6 +99,86 @@ TEST_F(Phases, AreRepeatedWithThoseThatFollow) {
   EXPECT_EQ(tracked.current(), 0U);
 }
 
+TEST_F(Phases, ARepeatedOneIsNotDoneByWhatWasDoneBefore) {
+  const auto action = [](double time_s, ActionKind kind, double amount) {
+    return tasks::Action{time_s, kind, amount, {}, Vec3(50.0, 0.0, 50.0), 0.0};
+  };
+  add("see", {{ConditionKind::kTargetInImage, 3.0, {}}});
+  add("numb", {{ConditionKind::kAnaesthetised, 0.0, {}}});
+  add("shot", {{ConditionKind::kFired, 0.0, {}}});
+  add("wire", {{ConditionKind::kWire, 50.0, {}}});
+  add("out", {{ConditionKind::kOutside, 0.0, {}}});
+  PhaseTracker tracked = tracker();
+  tracked.note(action(0.0, ActionKind::kAnaesthetise, 5.0));
+  tracked.note(action(0.0, ActionKind::kAdvanceWire, 50.0));
+  PhaseMoment inside = at(0.1, {50.0, 20.0, 50.0});
+  inside.cores = 1;
+  tracked.step(inside);
+  PhaseMoment after = at(0.2, {50.0, -5.0, 50.0});
+  after.cores = 1;
+  tracked.step(after);
+  ASSERT_FALSE(tracked.current());
+  for (std::size_t n = 0; n < 5; ++n) tracked.repeat(n);
+  for (const double time_s : {0.3, 0.4, 5.0}) {
+    after.needle.time_s = time_s;
+    tracked.step(after);
+  }
+  for (std::size_t n = 0; n < 5; ++n) EXPECT_FALSE(tracked.states()[n].done_s) << n;
+  contact_n_ = 0.0;  // lifted once
+  tracked.step(at(5.1, {50.0, -5.0, 50.0}));
+  contact_n_ = 2.0;
+  tracked.note(action(5.2, ActionKind::kAnaesthetise, 5.0));
+  tracked.note(action(5.2, ActionKind::kAdvanceWire, 50.0));
+  inside.needle.time_s = 5.3;
+  inside.cores = 2;
+  tracked.step(inside);
+  tracked.step(at(5.4, {50.0, -5.0, 50.0}));
+  for (std::size_t n = 0; n < 5; ++n) EXPECT_TRUE(tracked.states()[n].done_s) << n;
+}
+
+TEST_F(Phases, AnaestheticIntoTheAirIsNone) {
+  add("numb", {{ConditionKind::kAnaesthetised, 0.0, {}}});
+  PhaseTracker tracked = tracker();
+  tracked.note({0.0, ActionKind::kAnaesthetise, 5.0, {}, Vec3(50.0, -20.0, 50.0), 0.0});
+  tracked.note({0.0, ActionKind::kAnaesthetise, 0.0, {}, Vec3(50.0, 0.0, 50.0), 0.0});
+  tracked.step(at(0.1, {50.0, -5.0, 50.0}));
+  EXPECT_FALSE(tracked.states()[0].done_s);
+  tracked.note({0.2, ActionKind::kAnaesthetise, 5.0, {}, Vec3(50.0, -2.0, 50.0), 0.0});
+  tracked.step(at(0.3, {50.0, -5.0, 50.0}));
+  EXPECT_TRUE(tracked.states()[0].done_s);
+}
+
+TEST_F(Phases, AWallThatIsOnlyPressedHidesWhatIsBehindIt) {
+  PhaseMoment pressed = at(0.0, {50.0, 53.0, 50.0});
+  const std::vector<tasks::Condition> in_lesion{{ConditionKind::kTipIn, 0.0, "liver_lesion"}};
+  EXPECT_TRUE(is_done_by(in_lesion, pressed));
+  pressed.needle.phase = telemetry::InsertionPhase::kLoading;
+  pressed.needle.layer_displacement_mm = 4.0;
+  EXPECT_FALSE(is_done_by(in_lesion, pressed));
+  EXPECT_FALSE(is_done_by({{ConditionKind::kPassed, 0.0, "liver_lesion"}}, pressed));
+}
+
+TEST_F(Phases, RememberWhatThisInsertionPassed) {
+  add("muscle", {{ConditionKind::kPassed, 0.0, "muscle"}});
+  add("lesion", {{ConditionKind::kPassed, 0.0, "liver_lesion"}});
+  PhaseTracker tracked = tracker();
+  tracked.step(at(0.0, {50.0, 5.0, 50.0}));
+  EXPECT_FALSE(tracked.states()[0].done_s);
+  tracked.step(at(0.1, {50.0, 15.0, 50.0}));
+  EXPECT_TRUE(tracked.states()[0].done_s);
+  tracked.step(at(0.2, {50.0, 45.0, 50.0}));
+  EXPECT_FALSE(tracked.states()[1].done_s);
+}
+
+TEST_F(Phases, ATargetInTheShadowOfARibIsNotSeen) {
+  // The rib is at z from 70 to 80, behind 10 mm.
+  const std::vector<tasks::Condition> tip_seen{{ConditionKind::kTipInImage, 3.0, {}}};
+  X_PT_ = Pose(Mat3::Identity(), Vec3(50.0, 0.0, 75.0));
+  EXPECT_FALSE(is_done_by(tip_seen, at(0.0, {50.0, 40.0, 75.0})));
+  X_PT_ = Pose(Mat3::Identity(), Vec3(50.0, 0.0, 60.0));
+  EXPECT_TRUE(is_done_by(tip_seen, at(0.0, {50.0, 40.0, 60.0})));
+}
+
 TEST_F(Phases, HaveToHoldForTheirTime) {
   add("hold", {{ConditionKind::kTipOnSkin, 0.0, {}}}, {}, 0.5);
   PhaseTracker tracked = tracker();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "scoring/pain.h"
 #include "scoring/test/outcome_support.h"
 
 namespace trocar::scoring {
@@ -37,9 +38,9 @@ TEST(Puncture, AConfirmedPlaceIsTheEndEvenIfTheNeedleWentDeeperBefore) {
   BoxCase puncture = make_puncture();
   puncture.task.confirmed_by = tasks::Substance::kBile;
   puncture.task.weights = {{"target", 60.0}, {"confirmation", 40.0}};
-  const Segment deep_P{make_box_plan().line_P.a, make_box_plan().line_P.b + Vec3(0.0, 12.0, 0.0)};
-  const Attempt attempt = make_attempt(deep_P);  // 12 mm too deep, then out
-  EXPECT_NEAR(part(puncture.score(attempt), "target").value, 12.0, 0.1);
+  const Segment deep_P{make_box_plan().line_P.a, make_box_plan().line_P.b + Vec3(0.0, 30.0, 0.0)};
+  const Attempt attempt = make_attempt(deep_P);  // through the lesion and 11 mm beyond it, then out
+  EXPECT_NEAR(part(puncture.score(attempt), "target").value, 11.0, 0.6);
   const auto back = std::find_if(attempt.samples.begin() + static_cast<std::ptrdiff_t>(attempt.fired),
                                  attempt.samples.end(), [](const auto& sample) { return sample.depth_mm <= 51.0; });
   puncture.actions = {{back->time_s, tasks::ActionKind::kDrawStylet, 0.0, {tasks::Substance::kBile, 1.0}, {}, 51.0}};
@@ -55,7 +56,7 @@ TEST(Puncture, TheNearestExpertPathCounts) {
   const Outcome outcome = puncture.score(make_attempt(shifted(beside_P)));
   EXPECT_EQ(outcome.expert, 1U);
   EXPECT_NEAR(part(outcome, "entry").value, 0.0, 0.1);
-  EXPECT_NEAR(part(outcome, "target").value, 0.0, 0.1);
+  EXPECT_NEAR(part(outcome, "target").value, 6.6, 0.6) << "beside the lesion: the path's end is not the target";
   EXPECT_EQ(puncture.score(make_attempt(make_box_plan().line_P)).expert, 0U);
 }
 
@@ -65,13 +66,86 @@ TEST(Puncture, PainIsCountedOnceAContact) {
   puncture.task.weights = {{"target", 50.0}, {"comfort", 50.0}};
   const Attempt attempt = make_attempt({{50.0, 0.0, 75.0}, {50.0, 15.0, 75.0}});  // onto the rib
   EXPECT_EQ(puncture.score(attempt).pain_events, 2U) << "the skin, then the rib";
-  puncture.actions = {{0.0, tasks::ActionKind::kAnaesthetise, 5.0, {}, {}, 0.0}};
+  puncture.actions = {{0.0, tasks::ActionKind::kAnaesthetise, 5.0, {}, Vec3(50.0, 0.0, 75.0), 0.0}};
   const Outcome numb = puncture.score(attempt);
   EXPECT_EQ(numb.pain_events, 1U);
   EXPECT_NEAR(part(numb, "comfort").points, 25.0, 1e-9);
-  EXPECT_TRUE(has_hint(numb, "The tip met the right rib 9"));
+  EXPECT_TRUE(has_hint(numb, "The needle touched the right rib 9"));
   puncture.actions[0].time_s = 1e3;  // after the puncture
   EXPECT_EQ(puncture.score(attempt).pain_events, 2U);
+}
+
+TEST(Puncture, AnaestheticHelpsOnlyWhereItWasInjected) {
+  BoxCase puncture = make_puncture();
+  puncture.task.pain = {{}, true};
+  puncture.task.weights = {{"target", 50.0}, {"comfort", 50.0}};
+  const Attempt attempt = make_attempt(make_box_plan().line_P);
+  const auto score_with = [&](double amount_ml, const Vec3& tip_P) {
+    puncture.actions = {{0.0, tasks::ActionKind::kAnaesthetise, amount_ml, {}, tip_P, 0.0}};
+    return puncture.score(attempt);
+  };
+  const Vec3 entry_P = make_box_plan().line_P.a;
+  EXPECT_EQ(score_with(5.0, entry_P).pain_events, 0U);
+  EXPECT_EQ(score_with(5.0, entry_P + Vec3(15.0, -4.0, 0.0)).pain_events, 0U);
+  EXPECT_EQ(score_with(0.0, entry_P).pain_events, 1U);
+  EXPECT_TRUE(has_hint(score_with(0.0, entry_P), "no anaesthetic was injected"));
+  EXPECT_EQ(score_with(5.0, entry_P - Vec3(0.0, 8.0, 0.0)).pain_events, 1U);
+  EXPECT_TRUE(has_hint(score_with(5.0, entry_P - Vec3(0.0, 8.0, 0.0)), "injected into the air"));
+  EXPECT_EQ(score_with(5.0, entry_P + Vec3(30.0, 0.0, 0.0)).pain_events, 1U);
+  EXPECT_TRUE(has_hint(score_with(5.0, entry_P + Vec3(30.0, 0.0, 0.0)), "more than 20 mm beside"));
+}
+
+TEST(Puncture, TouchingTheSkinDoesNotHurt) {
+  BoxCase puncture = make_puncture();
+  puncture.task.pain = {{}, true};
+  Attempt attempt = make_attempt(make_box_plan().line_P);
+  attempt.samples.resize(270);  // pressed, not pierced
+  PainWatch watch(puncture.task, patient());
+  for (const telemetry::TickSample& sample : attempt.samples) EXPECT_FALSE(watch.step(sample));
+}
+
+TEST(Puncture, AShotBeforeTheSkinGaveWayIsNoEnd) {
+  BoxCase made;
+  const Attempt attempt = make_attempt(make_box_plan().line_P);
+  const Outcome once = made.score(attempt.samples, {attempt.fired});
+  for (const std::size_t early : {std::size_t{0}, std::size_t{265}}) {  // in the air, and on the dented skin
+    const Outcome outcome = made.score(attempt.samples, {early, attempt.fired});
+    EXPECT_TRUE(outcome.is_scored()) << early;
+    EXPECT_EQ(outcome.cores.size(), 1U);
+    EXPECT_EQ(outcome.score, once.score) << "this task has no part for needless shots";
+    EXPECT_EQ(made.score(attempt.samples, {early}).not_scored, "the gun was fired only outside the body");
+  }
+}
+
+TEST(Puncture, NeedlessShotsCost) {
+  BoxCase made;
+  made.task.weights = {{"core", 50.0}, {"passes", 50.0}};
+  const Attempt attempt = make_attempt(make_box_plan().line_P);
+  double before = made.score(attempt.samples, {attempt.fired}).score;
+  EXPECT_NEAR(before, 100.0, 1e-6);
+  std::vector<std::size_t> shots{attempt.fired};
+  for (int n = 1; n < 12; ++n) {
+    shots.push_back(attempt.fired + static_cast<std::size_t>(n));
+    const Outcome now = made.score(attempt.samples, shots);
+    EXPECT_LT(now.score, before) << n;
+    before = now.score;
+  }
+  EXPECT_LT(before, 51.0);
+  EXPECT_TRUE(has_hint(made.score(attempt.samples, shots), "The gun was fired 12 times for 1 core"));
+}
+
+TEST(Puncture, WhatComesWithoutAPiercedWallIsNotTheTarget) {
+  // The tip presses 4 mm into the wall of the lesion: it is at the planned place, and in front of the lesion.
+  BoxCase puncture = make_puncture();
+  puncture.task.weights = {{"target", 100.0}};
+  Attempt attempt = make_attempt(make_box_plan().line_P);
+  attempt.samples.resize(attempt.fired + 1);
+  EXPECT_TRUE(puncture.score(attempt.samples, {}).target_reached);
+  attempt.samples.back().phase = telemetry::InsertionPhase::kLoading;
+  attempt.samples.back().layer_displacement_mm = 4.0;
+  const Outcome pressed = puncture.score(attempt.samples, {});
+  EXPECT_FALSE(pressed.target_reached);
+  EXPECT_GT(part(pressed, "target").value, 2.5);
 }
 
 TEST(Puncture, AnySafeWayIsWorthTheWholeAccess) {

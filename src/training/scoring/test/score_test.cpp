@@ -90,17 +90,15 @@ TEST(Score, CloserIsNeverWorse) {
 TEST(Score, EachPartFallsWithItsOwnDeviationOnly) {
   const Outcome off_entry = score({{54.0, 0.0, 50.0}, {50.0, 51.0, 50.0}});
   EXPECT_NEAR(part(off_entry, "entry").points, 10.0 / (1.0 + 0.16), 0.01);
-  // The tip is where it was planned; the notch, beyond it, is beside its place by the angle.
-  EXPECT_NEAR(part(off_entry, "target").value, make_gun().notch_middle_mm() * 4.0 / 51.0, 0.05);
+  EXPECT_EQ(part(off_entry, "target").value, 0.0) << "the notch is in the lesion";
   const Outcome shallow = score({{50.0, 0.0, 50.0}, {50.0, 48.0, 50.0}});
-  EXPECT_NEAR(part(shallow, "target").points, 25.0 / (1.0 + 0.36), 1e-6);
   EXPECT_NEAR(part(shallow, "entry").points, 10.0, 0.01);
 }
 
-TEST(Score, TouchedRisksCostTheirPenalty) {
+TEST(Score, HarmCostsByItsGrade) {
   const Outcome rib = score({{50.0, 0.0, 75.0}, {50.0, 15.0, 75.0}});
   EXPECT_EQ(rib.risks_touched, std::vector<std::string>{"rib_right_9"});
-  EXPECT_NEAR(part(rib, "risk").points, 20.0 - 15.0, 1e-9);
+  EXPECT_NEAR(part(rib, "risk").points, 12.0, 1e-9);
   EXPECT_TRUE(has_hint(rib, "right rib 9")) << rib.hints[0].text;
   // The stylet alone reaches the vessel.
   const Outcome throw_only = score({{50.0, 0.0, 20.0}, {39.0, 30.0, 20.0}});
@@ -109,19 +107,18 @@ TEST(Score, TouchedRisksCostTheirPenalty) {
   const Outcome vessel = score({{50.0, 0.0, 20.0}, {30.0, 30.0, 20.0}});
   EXPECT_EQ(vessel.risks_touched, std::vector<std::string>{"portal_vein"});
   EXPECT_NEAR(part(vessel, "risk").points, 0.0, 1e-9);
-  EXPECT_TRUE(has_hint(vessel, "stylet shot into a structure at risk, portal vein"));
+  EXPECT_TRUE(has_hint(vessel, "mm into the portal vein"));
 }
 
-TEST(Score, TargetPointsFallWithEveryMillimetre) {
-  // Beyond the tolerance (5 mm), too: short of the target along the path, so that nothing else changes the part.
+TEST(Score, TargetPointsFallWithEveryMillimetreOutsideTheLesion) {
+  // Short of the target along the path: the notch's middle leaves the lesion (10 mm in radius) after 10.5 mm.
   const auto points_at = [](double short_mm) {
     return part(score({{50.0, 0.0, 50.0}, {50.0, 51.0 - short_mm, 50.0}}), "target").points;
   };
-  double before = points_at(0.0);
-  EXPECT_NEAR(before, 25.0, 1e-6);
-  EXPECT_NEAR(points_at(5.0), 12.5, 1e-6);
-  EXPECT_GT(points_at(5.0), points_at(14.0) + 5.0);
-  for (double short_mm = 1.0; short_mm <= 30.0; short_mm += 1.0) {
+  for (const double short_mm : {0.0, 5.0, 10.0}) EXPECT_NEAR(points_at(short_mm), 25.0, 1e-6) << short_mm;
+  EXPECT_NEAR(points_at(15.5), 12.5, 0.7);
+  double before = points_at(10.0);
+  for (double short_mm = 11.0; short_mm <= 35.0; short_mm += 1.0) {
     const double now = points_at(short_mm);
     EXPECT_LT(now, before - 0.04) << short_mm;
     before = now;
@@ -130,12 +127,11 @@ TEST(Score, TargetPointsFallWithEveryMillimetre) {
 
 TEST(Score, NoPartIsNegativeAndACriticalTouchIsNotPassed) {
   BoxCase made;
-  for (tasks::RiskStructure& risk : made.task.risks) risk.penalty = 25.0;  // more than the part's 20 points
   const Attempt attempt = make_attempt({{50.0, 0.0, 75.0}, {50.0, 15.0, 75.0}});
   for (const bool is_critical : {false, true}) {
-    made.task.risks[1].is_critical = is_critical;
+    made.task.risks[1].harm = is_critical ? tasks::Harm::kCritical : tasks::Harm::kMinor;
     const Outcome outcome = made.score(attempt);
-    EXPECT_EQ(part(outcome, "risk").points, 0.0);
+    EXPECT_NEAR(part(outcome, "risk").points, is_critical ? 0.0 : 12.0, 1e-9);
     double points = 0.0;
     for (const ScorePart& one : outcome.parts) {
       points += one.points;
@@ -143,9 +139,7 @@ TEST(Score, NoPartIsNegativeAndACriticalTouchIsNotPassed) {
     }
     EXPECT_NEAR(points, outcome.score, 1e-9);
     EXPECT_FALSE(outcome.is_passed);
-    const bool is_named =
-        std::find(outcome.fails.begin(), outcome.fails.end(), "the right rib 9 was touched") != outcome.fails.end();
-    EXPECT_EQ(is_named, is_critical);
+    EXPECT_EQ(outcome.fails.front() == "the needle touched the right rib 9", is_critical) << outcome.fails.front();
   }
 }
 
@@ -155,11 +149,11 @@ TEST(Score, APassedAttemptHasNoFails) {
   EXPECT_TRUE(good.fails.empty());
   const Outcome far = score(shifted({20.0, 0.0, 0.0}));
   EXPECT_FALSE(far.is_passed);
-  EXPECT_EQ(far.fails.front(), "the target was not reached");
+  EXPECT_EQ(far.fails.front(), "the target was not reached: the cores hold 0 mm of it, one can hold 17 mm");
 }
 
-TEST(Score, ATargetFarOffIsNotReached) {
-  // 12 and 19 mm short of a long lesion: the core is full of lesion, and yet the tip is not at the planned point.
+TEST(Score, ALesionIsReachedAnywhereInItAHealthyOrganOnlyAtThePlannedPlace) {
+  // A long lesion is reached anywhere in it; healthy organ is everywhere, and only the planned place counts.
   anatomy::VirtualPatient long_lesion = make_box_patient();
   for (std::size_t i = 0; i < long_lesion.labels.voxels.size(); ++i)
     if (long_lesion.labels.voxels[i] == 3) long_lesion.labels.voxels[i] = 4;
@@ -172,8 +166,8 @@ TEST(Score, ATargetFarOffIsNotReached) {
   };
   EXPECT_TRUE(is_reached(long_lesion, 4.0));
   EXPECT_TRUE(is_reached(long_lesion, 9.0));
-  EXPECT_FALSE(is_reached(long_lesion, 12.0));
-  EXPECT_FALSE(is_reached(long_lesion, 19.0));
+  EXPECT_TRUE(is_reached(long_lesion, 12.0));
+  EXPECT_TRUE(is_reached(long_lesion, 19.0));
   EXPECT_TRUE(is_reached(healthy, 4.0));
   EXPECT_FALSE(is_reached(healthy, 9.0));  // liver is all around: a core of it does not tell the place
 }
@@ -195,8 +189,8 @@ TEST(Score, NoviceIsWorseThanTheExpertAndMostAreClearly) {
     clearly_worse += novice < expert - 5.0 ? 1 : 0;
     novices += novice / 20.0;
   }
-  EXPECT_GE(clearly_worse, 17);  // some novices are skilled, and this lesion is large
-  EXPECT_LT(novices, 85.0);
+  EXPECT_GE(clearly_worse, 12);  // some novices are skilled, and this lesion is large
+  EXPECT_LT(novices, 95.0);
 }
 
 TEST(Score, ScoresWhatThereIsOfAnUnfinishedAttempt) {

@@ -91,6 +91,26 @@ scoring::Bleeding read_bleeding(const config::Json& object, bool& is_valid) {
   return bleeding;
 }
 
+metrics::HarmEvent read_harm(const config::Json& object, bool& is_valid) {
+  Reader reader(object, is_valid);
+  metrics::HarmEvent event;
+  event.label = reader.text("label");
+  const auto grade = tasks::find_harm_grade(reader.text("grade"));
+  if (!grade) is_valid = false;
+  event.grade = grade.value_or(tasks::Harm::kMinor);
+  event.is_graze = reader.boolean("graze");
+  event.is_by_stylet = reader.boolean("by_stylet");
+  event.is_by_notch = reader.boolean("by_notch");
+  event.has_stayed = reader.boolean("stayed");
+  event.inside_mm = reader.number("inside_mm");
+  event.depth_mm = reader.number("depth_mm");
+  event.begin_s = reader.number("begin_s");
+  event.worst_s = reader.number("worst_s");
+  event.stayed_s = reader.number("stayed_s");
+  event.reason = reader.text("reason");
+  return event;
+}
+
 /// The metrics that have a value.
 config::Json metrics_json(const std::vector<metrics::MetricValue>& values) {
   config::Json all = config::Json::array();
@@ -133,6 +153,7 @@ std::string outcome_to_json(const scoring::Outcome& outcome) {
                       {"expert", outcome.expert},
                       {"pain_events", outcome.pain_events},
                       {"metrics", metrics_json(outcome.measures)},
+                      {"harms", harms_json(outcome.harms)},
                       {"risks_touched", outcome.risks_touched}};
   if (!outcome.is_scored()) object["not_scored"] = outcome.not_scored;
   if (!outcome.cores.empty()) object["cores"] = cores_json(outcome.cores);
@@ -150,11 +171,14 @@ Result<scoring::Outcome> outcome_from_json(std::string_view text, const std::str
   for (const config::Json& item : reader.array("parts")) {
     Reader part(item, is_valid);
     outcome.parts.push_back({part.text("name"), part.text("title"), part.number("value"), part.text("unit"),
-                             part.number("points"), part.number("max_points")});
+                             part.number("points"), part.number("max_points"),
+                             !item.contains("judged") || part.boolean("judged")});
   }
   for (std::string& hint : reader.texts("hints")) outcome.hints.push_back({std::move(hint), {}});
   if (object.contains("passed")) read_judgement(object, outcome, is_valid);
   outcome.risks_touched = reader.texts("risks_touched");
+  if (object.contains("harms"))
+    for (const config::Json& harm : reader.array("harms")) outcome.harms.push_back(read_harm(harm, is_valid));
   if (object.contains("not_scored")) outcome.not_scored = reader.text("not_scored");
   if (object.contains("cores"))
     for (const config::Json& core : reader.array("cores")) outcome.cores.push_back(read_core(core, is_valid));

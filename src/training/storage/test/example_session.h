@@ -72,7 +72,9 @@ inline scoring::Outcome example_outcome() {
   scoring::Outcome outcome;
   outcome.score = 100.0 / 3.0;
   outcome.target_reached = true;
-  outcome.parts = {{"target", "Distance to the target", 0.1, "mm", 29.5, 30.0}, {"time", "Time", 12.25, "s", 10, 10}};
+  outcome.parts = {{"target", "Distance to the target", 0.1, "mm", 29.5, 30.0},
+                   {"time", "Time", 12.25, "s", 10, 10},
+                   {"bevel", "Bevel", 0.0, "", 0, 5, false}};
   outcome.hints = {{"Hold the needle nearer to 30°", 1.25}, {"\"quoted\" \\ \n second line", {}}};
   scoring::BiopsyCore core;
   core.tip_P = {0.1, 0.2, 0.3};
@@ -85,6 +87,14 @@ inline scoring::Outcome example_outcome() {
   core.risks_in_throw = {"gallbladder"};
   outcome.cores = {core};
   outcome.risks_touched = {"rib_right_9"};
+  metrics::HarmEvent harm;
+  harm.label = "rib_right_9";
+  harm.grade = tasks::Harm::kCritical;
+  harm.has_stayed = true;
+  harm.inside_mm = 1.0 / 3.0;
+  harm.stayed_s = 12.5;
+  harm.reason = "it is a \"test\"";
+  outcome.harms = {harm};
   return outcome;
 }
 

@@ -121,6 +121,16 @@ TEST(SessionFile, GivesTheOutcomeBack) {
   EXPECT_TRUE(session->outcome->target_reached);
   EXPECT_EQ(session->outcome->hints, expected.hints);
   EXPECT_EQ(session->outcome->risks_touched, expected.risks_touched);
+  ASSERT_EQ(session->outcome->harms.size(), 1U);
+  const metrics::HarmEvent &harm = session->outcome->harms[0], &expected_harm = expected.harms[0];
+  EXPECT_EQ(harm.label, expected_harm.label);
+  EXPECT_EQ(harm.grade, expected_harm.grade);
+  EXPECT_EQ(harm.reason, expected_harm.reason);
+  EXPECT_EQ(harm.inside_mm, expected_harm.inside_mm);
+  EXPECT_EQ(harm.stayed_s, expected_harm.stayed_s);
+  EXPECT_TRUE(harm.has_stayed);
+  EXPECT_FALSE(harm.is_graze);
+  EXPECT_FALSE(session->outcome->parts[2].is_judged);
   ASSERT_EQ(session->outcome->parts.size(), 2u);
   EXPECT_EQ(session->outcome->parts[0].title, "Distance to the target");
   EXPECT_EQ(session->outcome->parts[0].value, 0.1);

@@ -15,10 +15,13 @@ class PendingActions {
   void forget_anaesthetic() noexcept { left_.gives_anaesthetic = false; }
   void forget_confirmation() noexcept { left_.confirms.reset(); }
 
-  /// The action that is due: anaesthetic at once, the others at the target, the guide wire `kBeforeWire_s` after the
-  /// arrival. `at_target_s`: time since the arrival; empty: not there.
-  std::optional<ActionRequest> next(std::optional<double> at_target_s) noexcept {
-    if (std::exchange(left_.gives_anaesthetic, false)) return ActionRequest{ActionKind::kAnaesthetise, kAnaesthetic_ml};
+  /// The action that is due: anaesthetic at the skin, the others at the target, the guide wire `kBeforeWire_s` after the
+  /// arrival. `tip_mm`: along the path from its entry. `at_target_s`: time since the arrival; empty: not there.
+  std::optional<ActionRequest> next(double tip_mm, std::optional<double> at_target_s) noexcept {
+    if (left_.gives_anaesthetic && tip_mm > -kAtSkin_mm) {
+      left_.gives_anaesthetic = false;
+      return ActionRequest{ActionKind::kAnaesthetise, kAnaesthetic_ml};
+    }
     if (!at_target_s) return std::nullopt;
     if (left_.confirms) return ActionRequest{*std::exchange(left_.confirms, std::nullopt), 0.0};
     if (left_.wire_mm > 0.0 && *at_target_s > kBeforeWire_s)
@@ -28,6 +31,7 @@ class PendingActions {
 
  private:
   static constexpr double kAnaesthetic_ml = 5.0;
+  static constexpr double kAtSkin_mm = 4.0;
   static constexpr double kBeforeWire_s = 0.25;
   OperatorActions left_;
 };

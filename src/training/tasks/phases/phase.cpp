@@ -35,6 +35,7 @@ constexpr std::array<ConditionRow, static_cast<std::size_t>(kLastCondition) + 1>
     {"inserted_mm", Argument::kNumber, {0.5, 200.0}, "advance the needle {:.0f} mm into the body"},
     {"target_distance_mm", Argument::kNumber, {0.5, 50.0}, "bring the tip to the target"},
     {"tip_in", Argument::kName, {}, "bring the tip into the {}"},
+    {"passed", Argument::kName, {}, "advance the tip into the {}"},
     {"stylet_drawn", Argument::kNone, {}, "draw the stylet"},
     {"returned", Argument::kSubstance, {}, "check what comes back: it has to be {}"},
     {"anaesthetised", Argument::kNone, {}, "give local anaesthetic"},

@@ -14,7 +14,7 @@ namespace trocar::tasks {
 /// What can be asked of one moment of an attempt. The argument is a number, a name, or none.
 enum class ConditionKind : std::uint8_t {
   kProbeOnSkin,     ///< The transducer touches the skin.
-  kTargetInImage,   ///< Number: the target is in the fan, at most so far from the image plane, mm.
+  kTargetInImage,   ///< Number: the target is in the fan, at most so far from the image plane, mm; nothing hides it.
   kNeedleInPlane,   ///< Number: angle of needle and image plane, degrees, with the tip at most 4 mm from the plane.
   kTipInImage,      ///< Number: the tip is in the fan, at most so far from the plane, mm.
   kTipOnSkin,       ///< The tip touches the skin or is in it.
@@ -22,16 +22,17 @@ enum class ConditionKind : std::uint8_t {
   kPathClear,       ///< Number: the line on to the target stays so far from structures at risk, mm.
   kInserted,        ///< Number: depth of the tip, mm.
   kTargetDistance,  ///< Number: distance of the tip from where it has to be, mm.
-  kTipIn,           ///< Name: tissue class or label at the tip.
+  kTipIn,           ///< Name: tissue class or label that the tip is in, its wall pierced.
+  kPassed,          ///< Name: tissue class or label that the tip has been in since it came into the body.
   kStyletDrawn,     ///< The stylet is out.
   kReturned,        ///< Name: a substance has come back in this phase.
-  kAnaesthetised,   ///< Local anaesthetic was given.
+  kAnaesthetised,   ///< Local anaesthetic was injected at the skin or below it.
   kBreathHeld,      ///< The patient holds the breath.
   kContrast,        ///< Number: contrast agent injected, ml, with the tip in the target.
   kWire,            ///< Number: guide wire advanced beyond the tip, mm.
   kThrowClear,      ///< The stylet's way when fired has no structure at risk.
-  kFired,           ///< The gun was fired.
-  kCores,           ///< So many cores were taken.
+  kFired,           ///< The gun was fired, and a core was taken.
+  kCores,           ///< Number: so many cores were taken.
   kOutside,         ///< The needle has left the body again.
   kBevelToFibres,   ///< Number: angle between the bevel and the fibres that it has to part (BevelRule), degrees.
 };

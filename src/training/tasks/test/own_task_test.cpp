@@ -23,7 +23,7 @@ Task changed_task() {
   task.title = "A \"hard\" case";
   task.max_path_mm = 123.456789012345;
   task.time_limit_s = 60.0;
-  task.risks = {{"", "rib_right_9", 4.0, 12.5}, {"vessel", "", 2.0, 30.0, true, true}};
+  task.risks = {{"", "rib_right_9", 4.0, false, {}}, {"vessel", "", 2.0, true, Harm::kCritical}};
   task.target_label = "lesion";
   task.target_P = Vec3(-30.1, -15.2, 1.0 / 3.0);
   task.entry_zone = EntryZone{{-100.0, 0.0, 0.0}, 25.0};
@@ -232,7 +232,7 @@ TEST(AssessPath, NamesEveryFaultOfADrawnPath) {
   EXPECT_NEAR(assessment.entry_angle_deg, 0.0, 1.0);
 
   const Segment past_vessel{{-100.0, 7.0, 0.0}, {-45.0, 7.0, 0.0}};
-  task.risks = {{"vessel", "", 5.0, 10.0}};
+  task.risks = {{"vessel", "", 5.0, false, {}}};
   assessment = assess_path(task, patient, shipped_needle(), past_vessel);
   ASSERT_TRUE(has(assessment, PathFault::kMargin, "vessel"));
   for (const PathFinding& finding : assessment.findings) {

@@ -58,7 +58,7 @@ TEST(Task, ARiskNamedByItsTissueIsNeitherTheOrganNorTheTarget) {
   Task task;
   task.organ = "pancreas";
   task.target_tissues = {"fluid"};
-  task.risks = {{"organ", "", 5.0, 20.0}, {"fluid", "", 5.0, 10.0}, {"", "spleen_tip", 5.0, 10.0}};
+  task.risks = {{"organ", "", 5.0, false, {}}, {"fluid", "", 5.0, false, {}}, {"", "spleen_tip", 5.0, false, {}}};
   EXPECT_EQ(find_risk(task, {1, "pancreas", "organ", {}}), nullptr);
   EXPECT_EQ(find_risk(task, {2, "pancreas_cyst", "fluid", {}}), nullptr);
   EXPECT_EQ(find_risk(task, {3, "adrenal_gland_left", "organ", {}}), &task.risks[0]);
@@ -83,11 +83,13 @@ TEST(Task, MissingFolderSaysWhatToDo) {
 TEST(Task, DamagedTaskIsRefusedWithItsPlace) {
   const std::string good = *read_file(tasks_folder() / "liver-biopsy.toml");
   const TemporaryFolder folder;
+  ASSERT_TRUE(std::filesystem::create_directory(folder / "tasks"));
+  ASSERT_TRUE(write_file_atomically(folder / kHarmFile, *read_file(tasks_folder().parent_path() / kHarmFile)));
   const auto error_of = [&](const std::string& from, const std::string& to) {
     std::string text = good;
     text.replace(text.find(from), from.size(), to);
-    EXPECT_TRUE(write_file_atomically(folder / "liver-biopsy.toml", text));
-    const auto task = load_task(folder.path(), "liver-biopsy");
+    EXPECT_TRUE(write_file_atomically(folder / "tasks/liver-biopsy.toml", text));
+    const auto task = load_task(folder / "tasks", "liver-biopsy");
     return task ? std::string("no error") : task.error().text();
   };
   EXPECT_EQ(error_of("organ", "organ"), "no error");
@@ -159,7 +161,7 @@ TEST(TaskReadiness, NamesWhatMakesTheTaskImpossible) {
 
 TEST(TaskReadiness, ARiskThatIsOptionalIsNotMissed) {
   Task task = liver_biopsy();
-  task.risks.push_back({"", "epigastric_zone", 2.0, 10.0});
+  task.risks.push_back({"", "epigastric_zone", 2.0, false, {}});
   EXPECT_TRUE(mentions(check_task(task, BoxPatient{}.make()), "epigastric_zone"));
   task.risks.back().is_optional = true;
   EXPECT_FALSE(mentions(check_task(task, BoxPatient{}.make()), "epigastric_zone"));

@@ -55,7 +55,7 @@ inline tasks::Task make_box_task() {
   task.target_tissues = {"liver_lesion"};
   task.weights = {{"target", 25.0}, {"core", 25.0},  {"risk", 20.0}, {"entry", 10.0},
                   {"angle", 10.0},  {"length", 5.0}, {"time", 5.0}};
-  task.risks = {{"vessel", "", 5.0, 20.0}, {"bone", "", 5.0, 15.0}};
+  task.risks = {{"vessel", "", 5.0, false, tasks::Harm::kMajor}, {"bone", "", 5.0, false, tasks::Harm::kMinor}};
   return task;
 }
 
@@ -97,6 +97,7 @@ inline Attempt make_attempt(const Segment& line_P, double dent_mm = 0.6) {
     sample.phase = is_inside         ? telemetry::InsertionPhase::kInserted
                    : along_mm >= 0.0 ? telemetry::InsertionPhase::kLoading
                                      : telemetry::InsertionPhase::kOutside;
+    if (sample.phase == telemetry::InsertionPhase::kLoading) sample.layer_displacement_mm = along_mm;
     attempt.samples.push_back(sample);
   };
   for (double along_mm = -5.0; along_mm < length_mm; along_mm += 0.02) add(along_mm);

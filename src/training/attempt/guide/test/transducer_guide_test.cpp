@@ -24,8 +24,23 @@ metrics::ImagePlane fan() {
   return plane;
 }
 
-std::string advice(const Vec3& target_T, double contact_n = 1.0) {
-  return guide_transducer(from_the_front() * target_T, from_the_front(), contact_n, fan());
+/// A rib across the middle of the image, 20 to 30 mm deep.
+anatomy::VirtualPatient with_rib(bool has_rib) {
+  anatomy::VirtualPatient patient;
+  volume::GridGeometry geometry;
+  geometry.size = {100, 150, 100};
+  geometry.origin_P = {-40.0, -100.0, -10.0};
+  patient.labels = volume::LabelGrid(geometry);
+  patient.label_table.labels = {{1, "rib_right_9", "bone", {}}};
+  for (std::size_t n = 0; n < patient.labels.voxels.size(); ++n) {
+    const Vec3 p_T = from_the_front().inverse() * geometry.centre_mm(geometry.index_of(n));
+    if (has_rib && std::abs(p_T.x()) < 8.0 && p_T.y() > 20.0 && p_T.y() < 30.0) patient.labels.voxels[n] = 1;
+  }
+  return patient;
+}
+
+std::string advice(const Vec3& target_T, double contact_n = 1.0, bool has_rib = false) {
+  return guide_transducer(with_rib(has_rib), from_the_front() * target_T, from_the_front(), contact_n, fan());
 }
 
 TEST(TransducerGuide, AsksForContactFirst) {
@@ -46,12 +61,19 @@ TEST(TransducerGuide, SaysWhichEdgeOfTheImageHidesTheTarget) {
   EXPECT_NE(advice({0.0, 130.0, 0.0}).find("increase the depth"), std::string::npos);
   metrics::ImagePlane narrow = fan();
   narrow.field_of_view_rad = 0.3;
-  const std::string beside = guide_transducer(from_the_front() * Vec3(40.0, 60.0, 0.0), from_the_front(), 1.0, narrow);
+  const std::string beside =
+      guide_transducer(with_rib(false), from_the_front() * Vec3(40.0, 60.0, 0.0), from_the_front(), 1.0, narrow);
   EXPECT_NE(beside.find("to the patient's left"), std::string::npos) << beside;
 }
 
 TEST(TransducerGuide, SaysHoldStillOnceTheTargetIsShown) {
   EXPECT_EQ(advice({5.0, 60.0, 1.0}), "The target is in the image: hold still");
+}
+
+TEST(TransducerGuide, SaysThatARibHidesTheTarget) {
+  EXPECT_EQ(advice({0.0, 60.0, 0.0}, 1.0, true), "The right rib 9 hides the target: look beside it");
+  EXPECT_NE(advice({25.0, 60.0, 0.0}, 1.0, true).find("hold still"), std::string::npos) << "beside the rib";
+  EXPECT_NE(advice({0.0, 15.0, 0.0}, 1.0, true).find("hold still"), std::string::npos) << "before the rib";
 }
 
 TEST(TransducerGuide, SaysNothingOfPosesThatAreNotFinite) {
