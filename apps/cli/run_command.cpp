@@ -111,6 +111,7 @@ config::Json result_json(const RunArguments& arguments, const cases::Case& the_c
       {"fails", outcome.fails},
       {"parts", storage::parts_json(outcome.parts)},
       {"punctures", punctures},
+      {"harms", storage::harms_json(outcome.harms)},
       {"risks_touched", outcome.risks_touched},
       {"core", best != nullptr ? storage::core_json(*best) : config::Json(nullptr)},
       {"cores", storage::cores_json(outcome.cores)},
@@ -159,11 +160,9 @@ void print_result(const RunArguments& arguments, const cases::Case& the_case, co
   } else {
     fmt::print("not scored: {}\n", outcome.not_scored);
   }
-  if (!outcome.risks_touched.empty()) {
-    std::vector<std::string> names;
-    for (const std::string& name : outcome.risks_touched) names.push_back(anatomy::structure_words(name));
-    fmt::print("structures at risk touched: {}\n", fmt::join(names, ", "));
-  }
+  for (const metrics::HarmEvent& event : outcome.harms)
+    fmt::print("{} harm: {}{}\n", to_string(event.grade), metrics::harm_words(event),
+               event.reason.empty() ? "" : " (" + event.reason + ")");
   for (const scoring::ScorePart& part : outcome.parts) print_part(part);
   for (const scoring::Hint& hint : outcome.hints) fmt::print("hint: {}\n", hint.text);
   if (const auto same = has_same_ticks(arguments.run, result))

@@ -16,7 +16,18 @@
 namespace trocar::trainer {
 namespace {
 
-enum RiskColumn { kRiskStructure, kRiskMargin, kRiskPenalty, kRiskColumns };
+enum RiskColumn { kRiskStructure, kRiskMargin, kRiskHarm, kRiskColumns };
+
+constexpr int kHarmChoices = static_cast<int>(tasks::Harm::kCritical) + 2;
+
+/// Of an entry of the list: the first one is "as in the table of harm".
+std::optional<tasks::Harm> harm_of(int entry) {
+  return entry > 0 ? std::optional(static_cast<tasks::Harm>(entry - 1)) : std::nullopt;
+}
+
+QString harm_text(const std::optional<tasks::Harm>& harm) {
+  return harm ? QString::fromLatin1(tasks::to_string(*harm)) : CasePanel::tr("usual");
+}
 
 QString name_of(const tasks::RiskStructure& risk) {
   return to_qt(risk.tissue.empty() ? risk.label : risk.tissue);
@@ -120,12 +131,12 @@ class TargetPanel final : public CasePanel {
     table_->setObjectName(QStringLiteral("case-risk-table"));
     table_->setAccessibleName(tr("Risk structures"));
     table_->setToolTip(tr("Select a row to change it below"));
-    table_->setHorizontalHeaderLabels({tr("Structure"), tr("Margin"), tr("Points")});
+    table_->setHorizontalHeaderLabels({tr("Structure"), tr("Margin"), tr("Harm")});
     table_->verticalHeader()->hide();
     table_->verticalHeader()->setDefaultSectionSize(26);
     table_->horizontalHeader()->setSectionResizeMode(kRiskStructure, QHeaderView::Stretch);
     table_->setColumnWidth(kRiskMargin, 72);
-    table_->setColumnWidth(kRiskPenalty, 64);
+    table_->setColumnWidth(kRiskHarm, 64);
     table_->setShowGrid(false);
     table_->setEditTriggers(QAbstractItemView::NoEditTriggers);
     table_->setSelectionBehavior(QAbstractItemView::SelectRows);
@@ -149,9 +160,14 @@ class TargetPanel final : public CasePanel {
   void add_editor(QVBoxLayout& column) {
     auto* numbers = new QHBoxLayout;
     margin_ = make_number("case-risk-margin", tr("Required margin of a path"), 50.0, tr(" mm"));
-    penalty_ = make_number("case-risk-penalty", tr("Penalty points for contact"), 100.0, tr(" points"));
+    harm_ = new QComboBox;
+    harm_->setObjectName(QStringLiteral("case-risk-harm"));
+    harm_->setAccessibleName(tr("Harm"));
+    harm_->setToolTip(tr("What it means if the needle goes into it"));
+    for (int n = 0; n < kHarmChoices; ++n) harm_->addItem(harm_text(harm_of(n)));
+    connect(harm_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this] { change_selected(); });
     numbers->addWidget(margin_);
-    numbers->addWidget(penalty_);
+    numbers->addWidget(harm_, 1);
     column.addLayout(numbers);
     auto* row = new QHBoxLayout;
     structure_ = new QComboBox;
@@ -191,12 +207,12 @@ class TargetPanel final : public CasePanel {
   void show_selected() {
     const tasks::RiskStructure* risk = selected();
     margin_->setEnabled(risk != nullptr);
-    penalty_->setEnabled(risk != nullptr);
+    harm_->setEnabled(risk != nullptr);
     if (risk == nullptr) return;
     const bool was_refreshing = is_refreshing_;
     is_refreshing_ = true;
     margin_->setValue(risk->margin_mm);
-    penalty_->setValue(risk->penalty);
+    harm_->setCurrentIndex(risk->harm ? static_cast<int>(*risk->harm) + 1 : 0);
     is_refreshing_ = was_refreshing;
   }
 
@@ -205,7 +221,7 @@ class TargetPanel final : public CasePanel {
     if (is_refreshing_ || risk == nullptr) return;
     tasks::RiskStructure next = *risk;
     next.margin_mm = margin_->value();
-    next.penalty = penalty_->value();
+    next.harm = harm_of(harm_->currentIndex());
     editor_.edit(case_builder::set_risk(editor_.draft(), next), "change a risk", "risk " + risk->tissue + risk->label);
   }
 
@@ -231,8 +247,7 @@ class TargetPanel final : public CasePanel {
     const auto& risks = editor_.draft().task.risks;
     table_->setRowCount(static_cast<int>(risks.size()));
     for (std::size_t n = 0; n < risks.size(); ++n) {
-      const QStringList texts{name_of(risks[n]), tr("%1 mm").arg(risks[n].margin_mm),
-                              QString::number(risks[n].penalty)};
+      const QStringList texts{name_of(risks[n]), tr("%1 mm").arg(risks[n].margin_mm), harm_text(risks[n].harm)};
       for (int column = 0; column < kRiskColumns; ++column) {
         QTableWidgetItem* cell = table_->item(static_cast<int>(n), column);
         if (cell == nullptr) table_->setItem(static_cast<int>(n), column, cell = new QTableWidgetItem);
@@ -250,7 +265,7 @@ class TargetPanel final : public CasePanel {
   QLabel* where_ = nullptr;
   QTableWidget* table_ = nullptr;
   QDoubleSpinBox* margin_ = nullptr;
-  QDoubleSpinBox* penalty_ = nullptr;
+  QComboBox* harm_ = nullptr;
   QComboBox* structure_ = nullptr;
   QStringList shown_labels_;
 };

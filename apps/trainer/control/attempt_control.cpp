@@ -280,7 +280,7 @@ void AttemptControl::poll_events() {
     if (is_exam() && is_shot) text = tr("the gun was fired");
     if (is_exam() && is_pain) text = tr("the patient feels pain");
     page_.puncture().add_event(QStringLiteral("%1 s  %2").arg(event.time_s, 0, 'f', 1).arg(text),
-                               is_pain || is_risk(open_->the_case, event));
+                               is_pain || event.harm > tasks::Harm::kNone);
     if (event.kind == telemetry::EventKind::kPuncture)
       page_.forces().add_event(event.depth_mm, event.time_s, to_qt(anatomy::layer_words(event.name)));
     if (!is_action && !is_pain) continue;

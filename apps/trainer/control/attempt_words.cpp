@@ -37,10 +37,4 @@ QString phase_text(const attempt::AttemptView& view) {
   return {};
 }
 
-bool is_risk(const cases::Case& the_case, const attempt::AttemptEvent& event) {
-  if (event.kind != telemetry::EventKind::kEnter) return false;
-  const anatomy::Label* label = the_case.patient->label_table.find(std::string_view(event.name));
-  return label != nullptr && find_risk(the_case.task, *label) != nullptr;
-}
-
 }  // namespace trocar::trainer

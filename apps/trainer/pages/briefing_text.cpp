@@ -181,7 +181,7 @@ QString rule_of(const tasks::Task& task, std::string_view part) {
   if (part == "entry") return half(task.entry_tolerance_mm, " mm");
   if (part == "angle") return half(task.angle_tolerance_deg, "°");
   if (part == "bevel" && task.bevel) return half(task.bevel->tolerance_deg, "°");
-  if (part == "passes") return briefing_tr("one needless puncture halves the points");
+  if (part == "passes") return briefing_tr("one needless puncture or shot halves the points");
   if (part == "access") return half(task.margin_tolerance_mm, " mm");
   if (part == "bevel" && task.bevel) return half(task.bevel->tolerance_deg, "°");
   if (part == "time") return briefing_tr("none from %1 s on").arg(task.time_limit_s, 0, 'f', 0);
@@ -189,20 +189,14 @@ QString rule_of(const tasks::Task& task, std::string_view part) {
   if (part == "comfort") return briefing_tr("one of them halves the points");
   if (part == "confirmation")
     return briefing_tr("%1 comes back").arg(escaped(tasks::substance_words(task.confirmed_by)));
-  if (part == "risk") return briefing_tr("each costs the points below");
+  if (part == "risk") return briefing_tr("none with major harm, minor harm costs 40 %");
   return {};
 }
 
-/// Parts that this needle can be judged by, the heaviest first.
+/// Parts that an attempt is judged by, the heaviest first.
 std::vector<std::pair<std::string, double>> weighed_parts(const cases::Case& tables) {
-  std::vector<std::pair<std::string, double>> parts;
-  double sum = 0.0;
-  for (const auto& [name, weight] : tables.task.weights) {
-    if (weight <= 0.0 || (name == "core" && !tables.needle.is_biopsy)) continue;
-    parts.emplace_back(name, weight);
-    sum += weight;
-  }
-  for (auto& part : parts) part.second *= 100.0 / sum;
+  const bool has_transducer = tables.task.guidance == tasks::Guidance::kUltrasound;
+  auto parts = scoring::judged_parts(tables.task, tables.needle, has_transducer);
   std::stable_sort(parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
   return parts;
 }
@@ -223,16 +217,20 @@ QString points_table(const cases::Case& tables) {
 QString risks_text(const tasks::Task& task) {
   QStringList risks;
   for (const tasks::RiskStructure& risk : task.risks)
-    risks << briefing_tr("%1&nbsp;(−%2)")
-                 .arg(words(risk.label.empty() ? risk.tissue : risk.label))
-                 .arg(risk.penalty, 0, 'f', 0);
+    risks << words(risk.label.empty() ? risk.tissue : risk.label);
   return risks.join(QStringLiteral(", "));
 }
 
-QString failing_text(const tasks::Task& task) {
+/// Structures of the patient whose harm fails the attempt, each kind once.
+QString failing_text(const cases::Case& the_case) {
   QStringList names;
-  for (const tasks::RiskStructure& risk : task.risks)
-    if (risk.is_critical) names << words(risk.label.empty() ? risk.tissue : risk.label);
+  if (the_case.patient == nullptr) return {};
+  for (const anatomy::Label& label : the_case.patient->label_table.labels) {
+    if (tasks::find_harm(the_case.task, label).grade != tasks::Harm::kCritical) continue;
+    const bool is_own_name = label.tissue == "organ" || label.tissue == "vessel" || label.tissue == "nerve";
+    const QString name = words(is_own_name ? label.name : label.tissue);
+    if (!names.contains(name)) names << name;
+  }
   return names.join(QStringLiteral(", "));
 }
 
@@ -341,7 +339,7 @@ std::vector<BriefingRow> scoring_rows(const cases::Case& tables) {
       {briefing_tr("Passed"),
        briefing_tr("with %1 of 100 points and the target reached").arg(task.pass_mark, 0, 'f', 0)}};
   if (!task.risks.empty()) rows.push_back({briefing_tr("Do not touch"), risks_text(task)});
-  if (const QString failing = failing_text(task); !failing.isEmpty())
+  if (const QString failing = failing_text(tables); !failing.isEmpty())
     rows.push_back({briefing_tr("Not passed"), briefing_tr("whatever the points, after touching: %1").arg(failing)});
   if (task.highest_entry)
     rows.push_back(

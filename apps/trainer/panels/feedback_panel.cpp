@@ -30,10 +30,28 @@ QString verdict_of(const scoring::Outcome& outcome) {
   return outcome.target_reached ? FeedbackPanel::tr("Target reached") : FeedbackPanel::tr("The target was missed");
 }
 
-/// One reason a line: "The lung was touched".
+/// Major and critical harm, one a line: "⚠ Critical harm: the needle went 12 mm into the heart (blood …)".
+QString alarm_of(const scoring::Outcome& outcome) {
+  QStringList lines;
+  for (const metrics::HarmEvent& event : outcome.harms) {
+    if (event.grade < tasks::Harm::kMajor) continue;
+    const QString what = event.grade == tasks::Harm::kCritical ? FeedbackPanel::tr("Critical harm: %1")
+                                                               : FeedbackPanel::tr("Major harm: %1");
+    QString line = QStringLiteral("\u26a0 ") + what.arg(to_qt(metrics::harm_words(event)));
+    if (!event.reason.empty()) line += QStringLiteral(" (%1)").arg(to_qt(event.reason));
+    lines << line;
+  }
+  return lines.join(QLatin1Char('\n'));
+}
+
+/// One reason a line: "The target was not reached"; the harm is told above.
 QString reasons_of(const scoring::Outcome& outcome) {
   QStringList reasons;
   for (const std::string& fail : outcome.fails) {
+    const bool is_told = std::any_of(outcome.harms.begin(), outcome.harms.end(), [&](const auto& event) {
+      return event.grade >= tasks::Harm::kMajor && metrics::harm_words(event) == fail;
+    });
+    if (is_told) continue;
     const QString reason = to_qt(fail);
     reasons << reason.left(1).toUpper() + reason.mid(1);
   }
@@ -80,12 +98,11 @@ FeedbackPanel::FeedbackPanel(QWidget* parent) : QWidget(parent) {
   auto* content = new QVBoxLayout(inside);
   content->setContentsMargins(16, 12, 16, 12);
   content->setSpacing(10);
-  dial_ = new ScoreDial;
-  content->addWidget(dial_, 0, Qt::AlignHCenter);
-  level_ = make_label({}, "badge");
-  level_->setObjectName(QStringLiteral("level"));
-  level_->hide();
-  content->addWidget(level_, 0, Qt::AlignHCenter);
+  alarm_ = make_label({}, "alarm");
+  alarm_->setObjectName(QStringLiteral("harm-alarm"));
+  alarm_->setWordWrap(true);
+  alarm_->hide();
+  content->addWidget(alarm_);
   verdict_ = make_label({}, "heading");
   verdict_->setObjectName(QStringLiteral("verdict"));
   verdict_->setAlignment(Qt::AlignHCenter);
@@ -97,6 +114,12 @@ FeedbackPanel::FeedbackPanel(QWidget* parent) : QWidget(parent) {
   reasons_->setWordWrap(true);
   reasons_->hide();
   content->addWidget(reasons_);
+  dial_ = new ScoreDial;
+  content->addWidget(dial_, 0, Qt::AlignHCenter);
+  level_ = make_label({}, "badge");
+  level_->setObjectName(QStringLiteral("level"));
+  level_->hide();
+  content->addWidget(level_, 0, Qt::AlignHCenter);
   result_ = make_label({}, "dim");
   result_->setObjectName(QStringLiteral("exam-result"));
   result_->setWordWrap(true);
@@ -202,6 +225,8 @@ void FeedbackPanel::show_verdict(const scoring::Outcome& outcome) {
   verdict_->setStyleSheet(
       is_coloured ? QStringLiteral("color: %1;").arg((outcome.is_passed ? theme().good : theme().bad).name())
                   : QString());
+  alarm_->setText(alarm_of(outcome));
+  alarm_->setVisible(!alarm_->text().isEmpty());
   reasons_->setText(outcome.is_scored() ? reasons_of(outcome) : QString());
   reasons_->setVisible(!reasons_->text().isEmpty());
 }

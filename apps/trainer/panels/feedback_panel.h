@@ -22,7 +22,8 @@ class ExpertPathList;
 class HintList;
 class ScoreDial;
 
-/// Result of an attempt: score, passed or not and why, parts of the score, improvements. Keys: Ctrl+R tries again or
+/// Result of an attempt, in the order of reading: harm to the patient, passed or not and why, score, improvements, parts
+/// of the score. Keys: Ctrl+R tries again or
 /// begins another exam, W shows the worst moment, H the moment of the next hint.
 class FeedbackPanel : public QWidget {
   Q_OBJECT
@@ -65,6 +66,7 @@ class FeedbackPanel : public QWidget {
   QPushButton* worst_button_ = nullptr;
   ScoreDial* dial_ = nullptr;
   QLabel* level_ = nullptr;
+  QLabel* alarm_ = nullptr;
   QLabel* verdict_ = nullptr;
   QGridLayout* parts_ = nullptr;
   QLabel* reasons_ = nullptr;

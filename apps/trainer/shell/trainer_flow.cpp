@@ -288,8 +288,8 @@ void TrainerFlow::try_again() {
 void TrainerFlow::poll_attempt() {
   if (!attempt_) return;
   const attempt::AttemptView& view = attempt_->view();
-  window_.show_banner(to_qt(view.banner),
-                      view.phase == attempt::AttemptPhase::kFailed ? BannerKind::kError : BannerKind::kWarning);
+  const bool is_bad = view.is_harm || view.phase == attempt::AttemptPhase::kFailed;
+  window_.show_banner(to_qt(view.banner), is_bad ? BannerKind::kError : BannerKind::kWarning);
   report_recoveries(view);
   std::vector<ServerLine> servers{line_of(view.servers[0], tr("Needle"))};
   if (view.has_probe) servers.push_back(line_of(view.servers[1], tr("Transducer")));

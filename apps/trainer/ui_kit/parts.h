@@ -17,7 +17,7 @@ class QWidget;
 /// Common widgets of all pages, for a uniform look.
 namespace trocar::trainer {
 
-/// `role` of the style sheet: "title", "heading", "dim", "badge"; empty: plain text.
+/// `role` of the style sheet: "title", "heading", "dim", "badge", "alarm"; empty: plain text.
 QLabel* make_label(const QString& text, const char* role = "", QWidget* parent = nullptr);
 /// `name` is the object name that scripts use; a shortcut ("Ctrl+R") is active in the whole window and appears in the
 /// tooltip.

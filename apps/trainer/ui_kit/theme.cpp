@@ -24,6 +24,7 @@ QLabel[role="heading"] { font-size: @13pt; font-weight: 600; }
 QLabel[role="brand"] { font-size: @12pt; font-weight: 700; }
 QLabel[role="dim"] { color: @dim; }
 QLabel[role="badge"] { background: @raised; border-radius: 9px; padding: 2px 10px; color: @dim; }
+QLabel[role="alarm"] { background: #c8322d; color: white; border-radius: 6px; padding: 8px 12px; font-weight: 600; }
 QFrame[role="card"] { background: @panel; border: 1px solid @line; border-radius: 8px; }
 QFrame[role="card"][chosen="true"] { border: 2px solid @accent; }
 QFrame[role="bar"] { background: @panel; border: none; }
