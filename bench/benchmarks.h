@@ -21,6 +21,8 @@ Result<std::vector<CaseResult>> run_insertion_benchmark(const Options& options);
 Result<std::vector<CaseResult>> run_paths_benchmark(const Options& options);
 /// Novices with many seeds on the embedded patient and on the real CTs: scores, and the path constraint tick by tick.
 Result<std::vector<CaseResult>> run_cohort_benchmark(const Options& options);
+/// The expert of every task with each structure on the way to the target: score and verdict.
+Result<std::vector<CaseResult>> run_harm_benchmark(const Options& options);
 /// Force along one needle path as a curve, by each force model.
 Result<std::vector<CaseResult>> run_curves_benchmark(const Options& options);
 /// Peaks of the layers of the same paths from 1 to 50 mm/s; the figure is that at 50 over that at 1 mm/s.

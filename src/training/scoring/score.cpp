@@ -16,7 +16,6 @@ namespace {
 
 constexpr double kEnoughCore = 0.5;         // of what one core could hold: the target was reached
 constexpr double kMinorHarm = 0.4;          // share of the points for structures at risk that a minor harm costs
-constexpr std::size_t kMostMajor = 1;       // harms of a passed attempt
 constexpr double kPainTolerance = 1.0;      // pain events that halve the points of the comfort
 constexpr double kOrganTolerance_mm = 5.0;  // missing organ on the way that halves the points of the access
 constexpr double kPassTolerance = 1.0;      // needless punctures of the organ that halve the points of the passes
@@ -197,11 +196,8 @@ std::string why_not_reached(const Judgement& judged) {
 
 /// Harm that decides before any sum.
 void add_harms(const Judgement& judged, std::vector<std::string>& fails) {
-  const auto is_major = [](const metrics::HarmEvent& event) { return event.grade == tasks::Harm::kMajor; };
-  const auto majors = static_cast<std::size_t>(std::ranges::count_if(judged.harms, is_major));
   for (const metrics::HarmEvent& event : judged.harms)
-    if (event.grade == tasks::Harm::kCritical || (is_major(event) && majors > kMostMajor))
-      fails.push_back(metrics::harm_words(event));
+    if (event.grade >= tasks::Harm::kMajor) fails.push_back(metrics::harm_words(event));
 }
 
 std::vector<std::string> find_fails(const Judgement& judged, const Outcome& outcome) {

@@ -91,7 +91,7 @@ struct Hint {
 /// 0..100. The parts are those of judged_parts. Several cores are worth their target tissue together against that of
 /// the task's number of cores; the end of the attempt is the first shot after the skin gave way. The weights are the
 /// task's. An attempt that never pierced the skin, and a biopsy without a shot in the body, have no end position and
-/// are not scored. Harm decides before the sum: a critical one, or two major ones, and the attempt is not passed.
+/// are not scored. Harm decides before the sum: with a critical or a major one the attempt is not passed.
 struct Outcome {
   /// Reason why it is not scored; then the score is 0 and there are no parts. Empty: it is scored.
   std::string not_scored;

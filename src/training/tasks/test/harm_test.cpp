@@ -82,6 +82,7 @@ TEST(HarmTable, GradesByStructureTaskAndRegion) {
       {"livertumor2", "liver_lesion", "m-mm"},
       {"hepatic_vein_2", "vessel", "mmmm"},
       {"portal_vein_and_splenic_vein", "vessel", "MMMm"},
+      {"portal_vein", "vessel", "MmMm"},
       {"epigastric_vessels", "vessel", "MMMM"},
       {"neurovascular_bundle_right_9", "vessel", "MMMM"},
       {"kidney_left", "kidney", "MMMM"},
