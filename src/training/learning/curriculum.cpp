@@ -11,7 +11,7 @@ namespace trocar::learning {
 namespace {
 
 constexpr config::Range kScore{0.0, 100.0}, kRow{1.0, 20.0}, kDays{1.0, 3650.0}, kAttempts{1.0, 100.0},
-    kShare{0.0, 1.0};
+    kSlope{0.0, 10.0}, kWindow{3.0, 100.0}, kRest{1.0, 1000.0};
 
 Result<int> read_count(const config::TomlTable& table, std::string_view key, config::Range range) {
   TROCAR_TRY(const std::int64_t count, table.integer(key, range));
@@ -54,22 +54,36 @@ std::string exercise_text(const Exercise& exercise, const Curriculum& curriculum
 
 Result<LearningRules> load_rules(const std::filesystem::path& file) {
   TROCAR_TRY(const config::TomlTable document, config::load_toml(file));
-  TROCAR_TRY_STATUS(document.check_keys({"order", "mastery", "repetition", "weakness"}));
+  TROCAR_TRY_STATUS(
+      document.check_keys({"order", "mastery", "test_out", "interleaving", "repetition", "plateau", "weakness"}));
   LearningRules rules;
   TROCAR_TRY(rules.order, document.strings("order"));
   TROCAR_TRY(const config::TomlTable mastery, document.table("mastery"));
   TROCAR_TRY_STATUS(mastery.check_keys({"score", "passes_in_a_row"}));
   TROCAR_TRY(rules.mastery_score, mastery.number("score", kScore));
   TROCAR_TRY(rules.passes_in_a_row, read_count(mastery, "passes_in_a_row", kRow));
+  TROCAR_TRY(const config::TomlTable test_out, document.table("test_out"));
+  TROCAR_TRY_STATUS(test_out.check_keys({"first_score", "exam_score"}));
+  TROCAR_TRY(rules.first_score, test_out.number("first_score", kScore));
+  TROCAR_TRY(rules.exam_score, test_out.number("exam_score", kScore));
+  TROCAR_TRY(const config::TomlTable interleaving, document.table("interleaving"));
+  TROCAR_TRY_STATUS(interleaving.check_keys({"most_in_a_row"}));
+  TROCAR_TRY(rules.most_in_a_row, read_count(interleaving, "most_in_a_row", kAttempts));
   TROCAR_TRY(const config::TomlTable repetition, document.table("repetition"));
   TROCAR_TRY_STATUS(repetition.check_keys({"intervals_days"}));
   TROCAR_TRY(rules.intervals_days, read_intervals(repetition));
+  TROCAR_TRY(const config::TomlTable plateau, document.table("plateau"));
+  TROCAR_TRY_STATUS(plateau.check_keys({"attempts", "least_slope", "rest_attempts"}));
+  TROCAR_TRY(rules.plateau_attempts, read_count(plateau, "attempts", kWindow));
+  TROCAR_TRY(rules.plateau_slope, plateau.number("least_slope", kSlope));
+  TROCAR_TRY(rules.plateau_rest, read_count(plateau, "rest_attempts", kRest));
   TROCAR_TRY(const config::TomlTable weakness, document.table("weakness"));
-  TROCAR_TRY_STATUS(weakness.check_keys({"recent_attempts", "least_attempts", "share"}));
+  TROCAR_TRY_STATUS(weakness.check_keys({"recent_attempts", "least_attempts", "lost_points", "more_help_attempts"}));
   TROCAR_TRY(rules.recent_attempts, read_count(weakness, "recent_attempts", kAttempts));
   TROCAR_TRY(rules.least_attempts,
              read_count(weakness, "least_attempts", {1.0, static_cast<double>(rules.recent_attempts)}));
-  TROCAR_TRY(rules.weak_share, weakness.number("share", kShare));
+  TROCAR_TRY(rules.lost_points, weakness.number("lost_points", kScore));
+  TROCAR_TRY(rules.more_help_attempts, read_count(weakness, "more_help_attempts", kRow));
   return rules;
 }
 

@@ -19,10 +19,17 @@ struct LearningRules {
   std::vector<std::string> order;     ///< Tasks, in the order in which they are begun; others follow.
   double mastery_score = 80.0;        ///< Least score of a pass that counts towards mastery. Range 0..100.
   int passes_in_a_row = 3;            ///< Range 1..20.
+  double first_score = 90.0;          ///< A first attempt at an exercise with so many points masters it. 0..100.
+  double exam_score = 80.0;           ///< A pass of an exam with so many points masters the case with help. 0..100.
+  int most_in_a_row = 3;              ///< Then another exercise comes in between. Range 1..100.
   std::vector<int> intervals_days{};  ///< Until the first, second … repetition; rising, 1..3650. The last one stays.
+  int plateau_attempts = 10;          ///< Attempts at an exercise over which progress is looked for. Range 3..100.
+  double plateau_slope = 0.25;        ///< Progress, points an attempt; less is a plateau. Range 0..10.
+  int plateau_rest = 10;              ///< Other attempts, after which the exercise is offered again. Range 1..1000.
   int recent_attempts = 5;            ///< Attempts over which the weakest part is found. Range 1..100.
   int least_attempts = 3;             ///< Of them, so many must have judged a part. Range 1..recent_attempts.
-  double weak_share = 0.7;            ///< A part below this mean share of its points is weak. Range 0..1.
+  double lost_points = 10.0;          ///< A part is weak that costs at least so many points on average. Range 0..100.
+  int more_help_attempts = 2;         ///< With more help, before the exercise itself comes again. Range 1..20.
 };
 
 /// An embedded patient that a task is practised on.

@@ -27,15 +27,19 @@ Result<PastAttempt> load_attempt(const fs::path& file) {
 
 }  // namespace
 
-const char* to_string(Level level) noexcept {
-  constexpr std::array kNames{"guided", "assisted", "exam"};
-  return kNames[static_cast<std::size_t>(level)];
+bool was_in_body(const scoring::Outcome& outcome) {
+  for (const metrics::MetricValue& measure : outcome.measures)
+    if (measure.name == kInBodyMetric && measure.value) return *measure.value > 0.0;
+  // Sessions of older programs have no measures; these were their words.
+  return outcome.not_scored != "the needle never touched the skin" &&
+         outcome.not_scored != "the needle did not pierce the skin";
 }
 
-std::optional<Level> find_level(std::string_view name) noexcept {
-  for (const Level level : kLevels)
-    if (name == to_string(level)) return level;
-  return std::nullopt;
+Ending ending_of(const storage::SessionSummary& session) {
+  if (!session.outcome) return Ending::kLost;
+  const scoring::Outcome& outcome = *session.outcome;
+  if (outcome.is_scored()) return std::isfinite(outcome.score) ? Ending::kScored : Ending::kLost;
+  return was_in_body(outcome) ? Ending::kUnscored : Ending::kNeverBegan;
 }
 
 std::optional<std::chrono::sys_seconds> parse_utc(std::string_view text) {
@@ -73,7 +77,8 @@ Result<PastAttempt> attempt_of(const storage::SessionSummary& session) {
   const auto when = parse_utc(info.started_utc);
   if (!when) return fail("the session has no time of its begin", {}, "record it again");
   PastAttempt attempt{info.task, info.patient_source, info.patient_seed, find_level(info.level), *when};
-  if (!session.outcome || !session.outcome->is_scored() || !std::isfinite(session.outcome->score)) return attempt;
+  attempt.ending = ending_of(session);
+  if (attempt.ending != Ending::kScored) return attempt;
   attempt.score = std::clamp(session.outcome->score, 0.0, 100.0);
   attempt.is_passed = session.outcome->is_passed;
   for (const scoring::ScorePart& part : session.outcome->parts)

@@ -23,6 +23,12 @@ struct History {
 /// "2026-01-02T03:04:05Z", as sessions have it; empty: another form, or no such time.
 std::optional<std::chrono::sys_seconds> parse_utc(std::string_view text);
 
+/// The metric that tells whether the needle was in the body: punctures of the skin.
+inline constexpr std::string_view kInBodyMetric = "skin_punctures";
+/// Whether the needle was in the body, by the punctures of the skin; in a session of an older program by the reason why
+/// it was not scored.
+bool was_in_body(const scoring::Outcome& outcome);
+Ending ending_of(const storage::SessionSummary& session);
 /// Error: the time of the session is none.
 Result<PastAttempt> attempt_of(const storage::SessionSummary& session);
 

@@ -35,7 +35,14 @@ TEST(LearningRules, NameTheFileAndTheKeyOfAFault) {
                              {"[1, 3, 7, 16, 35]", "[]", "intervals_days"},
                              {"[1, 3, 7, 16, 35]", "[0, 3]", "intervals_days"},
                              {"least_attempts = 3", "least_attempts = 6", "least_attempts"},
-                             {"share = 0.7", "share = \"a\"", "share"},
+                             {"lost_points = 10.0", "lost_points = \"a\"", "lost_points"},
+                             {"more_help_attempts = 2", "more_help_attempts = 0", "more_help_attempts"},
+                             {"first_score = 90.0", "first_score = 101.0", "first_score"},
+                             {"exam_score = 80.0", "exam_scores = 80.0", "exam_scores"},
+                             {"most_in_a_row = 3", "most_in_a_row = 0", "most_in_a_row"},
+                             {"attempts = 10 ", "attempts = 2 ", "plateau"},
+                             {"least_slope = 0.25", "least_slope = nan", "least_slope"},
+                             {"rest_attempts = 10", "rest_attempts = -1", "rest_attempts"},
                              {"\"ptcd\"]", "\"ptcd\", \"nothing\"]", "nothing"}}) {
     const testing::OwnDataFolder data;
     data.change("learning.toml", fault.from, fault.to);

@@ -11,11 +11,12 @@ namespace trocar::testing {
 
 using namespace std::chrono_literals;
 
-/// Two tasks: "biopsy" with three cases and "tap" with one; mastered with 3 passes of 80 points; intervals 1, 3 and 7
-/// days; the weakest part over 5 attempts.
+/// Two tasks: "biopsy" with three cases and "tap" with one; mastered with 3 passes of 80 points or a first attempt of
+/// 95; intervals 1, 3 and 7 days; 3 attempts in a row; the weakest part over 5 attempts; a plateau over 10.
 inline learning::Curriculum example_curriculum() {
   learning::Curriculum curriculum;
   curriculum.rules.intervals_days = {1, 3, 7};
+  curriculum.rules.first_score = 95.0;
   curriculum.courses = {
       {"biopsy",
        "Biopsy",
@@ -34,6 +35,15 @@ inline std::chrono::sys_seconds day(int n) {
 inline learning::PastAttempt attempt(const std::string& patient, learning::Level level, int on_day, double score = 90.0,
                                      bool is_passed = true) {
   return {patient.substr(0, patient.find('-')), patient, 1, level, day(on_day), score, is_passed, {}};
+}
+
+/// An attempt that ended in the body without a score.
+inline learning::PastAttempt unscored(const std::string& patient, learning::Level level, int on_day) {
+  learning::PastAttempt one = attempt(patient, level, on_day);
+  one.score.reset();
+  one.is_passed = false;
+  one.ending = learning::Ending::kUnscored;
+  return one;
 }
 
 /// The same attempt several times.

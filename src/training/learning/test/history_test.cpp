@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "core/files/atomic_file.h"
@@ -55,11 +56,46 @@ TEST(History, AnAttemptWithoutScoreOrLevelHasNone) {
   scoring::Outcome outcome;
   outcome.not_scored = "the needle never touched the skin";
   EXPECT_FALSE(attempt_of({info_at("2026-02-28T23:59:58Z"), outcome})->score);
+  EXPECT_EQ(attempt_of({info_at("2026-02-28T23:59:58Z"), outcome})->ending, Ending::kNeverBegan);
   outcome = outcome_of(std::numeric_limits<double>::quiet_NaN());
   EXPECT_FALSE(attempt_of({info_at("2026-02-28T23:59:58Z"), outcome})->score);
   storage::SessionInfo info = info_at("2026-02-28T23:59:58Z");
   info.level.clear();
   EXPECT_FALSE(attempt_of({info, outcome_of(1.0)})->level);
+}
+
+TEST(History, AnAttemptInTheBodyWithoutAScoreCounts) {
+  const storage::SessionInfo info = info_at("2026-02-28T23:59:58Z");
+  scoring::Outcome outcome;
+  outcome.not_scored = "the gun was not fired";  // of an older program: without measures
+  EXPECT_EQ(attempt_of({info, outcome})->ending, Ending::kUnscored);
+  outcome.not_scored = "any other words";
+  outcome.measures = {{"path_length", 12.0, "mm", {}, {}, {}}, {"skin_punctures", 0.0, "1", {}, {}, {}}};
+  EXPECT_EQ(attempt_of({info, outcome})->ending, Ending::kNeverBegan);
+  outcome.measures[1].value = 2.0;
+  EXPECT_EQ(attempt_of({info, outcome})->ending, Ending::kUnscored);
+  EXPECT_EQ(attempt_of({info, outcome_of(50.0)})->ending, Ending::kScored);
+  EXPECT_EQ(attempt_of({info, outcome_of(std::nan(""))})->ending, Ending::kLost);
+  EXPECT_EQ(attempt_of({info, std::nullopt})->ending, Ending::kLost);
+}
+
+TEST(History, CountsSayWhatWasLeftOutAndWhy) {
+  AttemptCounts counts;
+  EXPECT_EQ(counts_text(counts), "0 attempts counted");
+  for (int n = 0; n < 8; ++n) counts.add(Ending::kScored, true);
+  for (int n = 0; n < 16; ++n) counts.add(Ending::kUnscored, false);
+  EXPECT_EQ(counts_text(counts), "24 attempts counted (16 ended without a result)");
+  counts.add(Ending::kNeverBegan, false);
+  counts.add(Ending::kNeverBegan, false);
+  counts.add(Ending::kLost, false);
+  EXPECT_EQ(counts_text(counts),
+            "24 attempts counted (16 ended without a result), 3 left out: 2 never began, 1 was lost to a crash");
+  AttemptCounts all;
+  all.add(counts);
+  all.add(Ending::kRunning, false);
+  EXPECT_EQ(all.counted(), 24);
+  EXPECT_EQ(all.passed, 8);
+  EXPECT_EQ(all.left_out(), 4);
 }
 
 TEST(History, RefusesATimeThatIsNone) {

@@ -12,6 +12,7 @@ using testing::attempt;
 using testing::day;
 using testing::example_curriculum;
 using testing::master;
+using testing::unscored;
 
 Recommendation next(const std::vector<PastAttempt>& history, int on_day = 0, std::string_view task = {}) {
   return next_exercise(history, example_curriculum(), day(on_day), task);
@@ -49,15 +50,97 @@ TEST(NextExercise, TakesHelpAwayThenGoesToTheNextCase) {
   expect_exercise(next(history), Purpose::kNextStep, "biopsy-1", Level::kAssisted);
   add(history, 3, attempt("biopsy-1", Level::kAssisted, 0));
   expect_exercise(next(history), Purpose::kNextStep, "biopsy-1", Level::kExam);
+  history.push_back(attempt("biopsy-1", Level::kExam, 0, 60.0));
   add(history, 3, attempt("biopsy-1", Level::kExam, 0));
   expect_exercise(next(history), Purpose::kNextStep, "biopsy-2", Level::kGuided);
   EXPECT_TRUE(has_text(next(history).reasons, "case 1 at all levels of help"));
+}
+
+TEST(NextExercise, AnExamMasteredWithoutAFailureOffersTheNextOneAtOnce) {
+  std::vector<PastAttempt> history;
+  master(history, "biopsy-1", 0);
+  Recommendation advice = next(history, 0, "biopsy");
+  expect_exercise(advice, Purpose::kTestOut, "biopsy-2", Level::kExam);
+  EXPECT_TRUE(has_text(advice.reasons, "at least 80 points skips its steps with help"));
+  std::vector<PastAttempt> failed = history;
+  failed.push_back(attempt("biopsy-2", Level::kExam, 0, 70.0));
+  expect_exercise(next(failed, 0, "biopsy"), Purpose::kNextStep, "biopsy-2", Level::kGuided);
+  history.push_back(attempt("biopsy-2", Level::kExam, 0, 82.0));
+  expect_exercise(next(history, 0, "biopsy"), Purpose::kNextStep, "biopsy-2", Level::kExam);
+  history.back().score = 95.0;
+  expect_exercise(next(history, 0, "biopsy"), Purpose::kTestOut, "biopsy-3", Level::kExam);
+}
+
+TEST(NextExercise, AnotherTaskComesInBetween) {
+  std::vector<PastAttempt> history;
+  add(history, 3, attempt("biopsy-1", Level::kGuided, 0, 50.0, false));
+  Recommendation advice = next(history);
+  expect_exercise(advice, Purpose::kInterleave, "tap-1", Level::kGuided);
+  EXPECT_TRUE(has_text(advice.reasons, "one exercise 3 times in a row"));
+  add(history, 3, attempt("tap-1", Level::kGuided, 0, 50.0, false));
+  expect_exercise(next(history), Purpose::kInterleave, "biopsy-1", Level::kGuided);
+  // Of one task: another case.
+  history.resize(3);
+  expect_exercise(next(history, 0, "biopsy"), Purpose::kInterleave, "biopsy-2", Level::kGuided);
+  // Attempts that do not count do not interrupt a row, those without a result make one.
+  history.assign(3, unscored("biopsy-1", Level::kGuided, 0));
+  history.push_back(attempt("tap-1", Level::kGuided, 0));
+  history.back().ending = Ending::kLost;
+  history.back().score.reset();
+  expect_exercise(next(history), Purpose::kInterleave, "tap-1", Level::kGuided);
+}
+
+TEST(NextExercise, AMasteredExerciseComesInBetweenWhereNothingElseIsOpen) {
+  std::vector<PastAttempt> history;
+  add(history, 3, attempt("tap-1", Level::kExam, 0));
+  add(history, 3, attempt("biopsy-1", Level::kGuided, 0, 50.0, false));
+  expect_exercise(next(history), Purpose::kInterleave, "biopsy-2", Level::kGuided);  // the tap was just practised
+  add(history, 4, attempt("biopsy-1", Level::kAssisted, 0, 50.0, false));
+  add(history, 3, attempt("biopsy-1", Level::kGuided, 0, 50.0, false));
+  expect_exercise(next(history), Purpose::kInterleave, "tap-1", Level::kExam);
+}
+
+TEST(NextExercise, ARepetitionIsNotRecommendedForEver) {
+  std::vector<PastAttempt> history;
+  add(history, 3, attempt("biopsy-1", Level::kGuided, 0));
+  for (int n = 1; n <= 3; ++n) history.push_back(attempt("biopsy-1", Level::kGuided, n, 50.0, false));
+  expect_exercise(next(history, 4), Purpose::kNextStep, "biopsy-1", Level::kAssisted);
+}
+
+TEST(NextExercise, APlateauAsksForTheInstructor) {
+  std::vector<PastAttempt> history;
+  add(history, 10, attempt("biopsy-1", Level::kGuided, 0, 61.0));
+  Recommendation advice = next(history);
+  expect_exercise(advice, Purpose::kSeeInstructor, "tap-1", Level::kGuided);
+  EXPECT_TRUE(has_text(advice.reasons, "See your instructor about Biopsy, case 1, guided"));
+  EXPECT_TRUE(has_text(advice.reasons, "61 points on average, +0.0 an attempt"));
+  expect_exercise(next(history, 0, "biopsy"), Purpose::kSeeInstructor, "biopsy-2", Level::kGuided);
+  add(history, 2, attempt("tap-1", Level::kGuided, 0, 70.0));
+  advice = next(history);  // goes on with the other one, and is reminded
+  expect_exercise(advice, Purpose::kNextStep, "tap-1", Level::kGuided);
+  EXPECT_TRUE(has_text(advice.reasons, "Biopsy, case 1, guided waits for your instructor"));
+  for (int n = 0; n < 8; ++n) history.push_back(attempt("tap-1", Level::kGuided, 0, 70.0 + n));
+  expect_exercise(next(history), Purpose::kInterleave, "biopsy-1", Level::kGuided);  // rested: it may be tried again
+}
+
+TEST(NextExercise, APlateauOfTheOnlyExerciseHasNoOther) {
+  Curriculum curriculum;
+  curriculum.rules.intervals_days = {1};
+  curriculum.rules.most_in_a_row = 100;
+  curriculum.courses = {{"tap", "Tap", {{"tap-1", 1}}, {{"target", 100.0}}}};
+  std::vector<PastAttempt> history;
+  for (int n = 0; n < 10; ++n)
+    for (const Level level : kLevels) history.push_back(attempt("tap-1", level, 0, 61.0));
+  const Recommendation stuck = next_exercise(history, curriculum, day(0));
+  EXPECT_EQ(stuck.purpose, Purpose::kSeeInstructor);
+  EXPECT_FALSE(stuck.exercise);
 }
 
 TEST(NextExercise, ADueRepetitionComesFirst) {
   std::vector<PastAttempt> history;
   master(history, "biopsy-1", 0);
   add(history, 3, attempt("tap-1", Level::kGuided, 1));
+  add(history, 1, attempt("biopsy-2", Level::kGuided, 1, 50.0, false));
   expect_exercise(next(history, 0, "biopsy"), Purpose::kNextStep, "biopsy-2", Level::kGuided);
   const Recommendation advice = next(history, 3);  // biopsy-1 is due since day 1, tap-1 since day 2
   expect_exercise(advice, Purpose::kRepetition, "biopsy-1", Level::kExam);
@@ -84,16 +167,45 @@ PastAttempt weak(const std::string& patient, Level level, const std::string& par
 TEST(NextExercise, TheWeakestPartAsksForOneLevelMoreHelp) {
   std::vector<PastAttempt> history;
   add(history, 3, attempt("biopsy-1", Level::kGuided, 0));
-  add(history, 5, weak("biopsy-1", Level::kAssisted, "visibility"));
+  add(history, 3, weak("biopsy-1", Level::kAssisted, "visibility"));
   const Recommendation advice = next(history);
   expect_exercise(advice, Purpose::kMoreHelp, "biopsy-1", Level::kGuided);
-  EXPECT_TRUE(has_text(advice.reasons, "'Advance with the tip in the image': 41 % of its points"));
-  EXPECT_TRUE(has_text(advice.reasons, "last 5 attempts"));
+  EXPECT_TRUE(has_text(advice.reasons, "'Advance with the tip in the image': it cost 12 of 20 points"));
+  EXPECT_TRUE(has_text(advice.reasons, "last 3 attempts"));
   EXPECT_TRUE(has_text(advice.reasons, "case 1, assisted"));
   PastAttempt good = attempt("biopsy-1", Level::kGuided, 0);
   good.part_shares = {{"target", 0.9}, {"time", 0.95}, {"visibility", 0.95}};
-  add(history, 3, good);  // mean (2*0.41 + 3*0.95)/5 = 0.73: no longer weak
+  add(history, 1, good);  // (3 * 11.8 + 1.0) / 4 = 9.1 points: no longer weak
   expect_exercise(next(history), Purpose::kNextStep, "biopsy-1", Level::kAssisted);
+}
+
+TEST(NextExercise, MoreHelpDoesNotLockThePath) {
+  std::vector<PastAttempt> history;
+  add(history, 3, attempt("biopsy-1", Level::kGuided, 0));
+  add(history, 3, weak("biopsy-1", Level::kAssisted, "visibility"));
+  for (int n = 0; n < 2; ++n) {
+    expect_exercise(next(history), Purpose::kMoreHelp, "biopsy-1", Level::kGuided);
+    history.push_back(weak("biopsy-1", Level::kGuided, "visibility"));
+  }
+  expect_exercise(next(history), Purpose::kNextStep, "biopsy-1", Level::kAssisted);
+  PastAttempt success = weak("biopsy-1", Level::kAssisted, "visibility");
+  success.score = 85.0;
+  success.is_passed = true;
+  history.push_back(success);
+  expect_exercise(next(history), Purpose::kNextStep, "biopsy-1", Level::kAssisted);
+}
+
+TEST(NextExercise, APartOfFewPointsIsNotWeak) {
+  Curriculum curriculum = example_curriculum();
+  curriculum.courses[0].part_weights = {{"target", 90.0}, {"visibility", 5.0}, {"time", 5.0}};
+  std::vector<PastAttempt> history;
+  add(history, 3, attempt("biopsy-1", Level::kGuided, 0));
+  add(history, 2, weak("biopsy-1", Level::kAssisted, "visibility"));
+  add(history, 1, weak("tap-1", Level::kGuided, "visibility"));
+  add(history, 2, weak("biopsy-1", Level::kAssisted, "visibility"));
+  const Recommendation advice = next_exercise(history, curriculum, day(0));
+  expect_exercise(advice, Purpose::kNextStep, "biopsy-1", Level::kAssisted);
+  EXPECT_FALSE(has_text(advice.reasons, "weakest"));
 }
 
 TEST(NextExercise, TheWeakestPartChoosesATaskThatJudgesIt) {
@@ -104,7 +216,7 @@ TEST(NextExercise, TheWeakestPartChoosesATaskThatJudgesIt) {
   add(history, 2, tap);
   const Recommendation advice = next(history);  // a tap does not judge the visibility
   expect_exercise(advice, Purpose::kNextStep, "biopsy-1", Level::kGuided);
-  EXPECT_TRUE(has_text(advice.reasons, "41 %"));
+  EXPECT_TRUE(has_text(advice.reasons, "it cost 12 of 20 points"));
 }
 
 TEST(NextExercise, SaysWhenEverythingIsMastered) {

@@ -12,6 +12,7 @@ using testing::attempt;
 using testing::day;
 using testing::example_curriculum;
 using testing::master;
+using testing::unscored;
 
 StepProgress step_of(const std::vector<PastAttempt>& history, const std::string& patient, Level level, int on_day = 0) {
   const Curriculum curriculum = example_curriculum();
@@ -51,18 +52,80 @@ TEST(Progress, APassBelowTheMasteryScoreBreaksTheRow) {
   EXPECT_TRUE(step_of(history, "biopsy-1", Level::kGuided).is_mastered);
 }
 
-TEST(Progress, AttemptsWithoutScoreOrLevelDoNotCount) {
+TEST(Progress, LostAndNeverBegunAttemptsAndThoseWithoutLevelDoNotCount) {
   std::vector<PastAttempt> history;
   add(history, 2, attempt("biopsy-1", Level::kGuided, 0));
-  PastAttempt interrupted = attempt("biopsy-1", Level::kGuided, 0);
-  interrupted.score.reset();
-  interrupted.is_passed = false;
-  history.push_back(interrupted);
+  for (const Ending ending : {Ending::kLost, Ending::kNeverBegan, Ending::kRunning}) {
+    history.push_back(unscored("biopsy-1", Level::kGuided, 0));
+    history.back().ending = ending;
+  }
   PastAttempt scripted = attempt("biopsy-1", Level::kGuided, 0);
   scripted.level.reset();
   history.push_back(scripted);
   EXPECT_EQ(step_of(history, "biopsy-1", Level::kGuided).attempts, 2);
   EXPECT_EQ(step_of(history, "biopsy-1", Level::kGuided).passes_in_a_row, 2);
+}
+
+TEST(Progress, AnAttemptWithoutAResultIsNotPassed) {
+  std::vector<PastAttempt> history;
+  add(history, 2, attempt("biopsy-1", Level::kGuided, 0));
+  history.push_back(unscored("biopsy-1", Level::kGuided, 0));
+  EXPECT_EQ(step_of(history, "biopsy-1", Level::kGuided).attempts, 3);
+  EXPECT_EQ(step_of(history, "biopsy-1", Level::kGuided).passes_in_a_row, 0);
+  add(history, 3, attempt("biopsy-1", Level::kGuided, 0));
+  history.push_back(unscored("biopsy-1", Level::kGuided, 1));
+  EXPECT_TRUE(step_of(history, "biopsy-1", Level::kGuided, 1).repetition->has_failed);
+}
+
+TEST(Progress, AVeryGoodFirstAttemptMastersUntilOneFails) {
+  std::vector<PastAttempt> history{attempt("biopsy-1", Level::kGuided, 0, 95.0)};
+  EXPECT_TRUE(step_of(history, "biopsy-1", Level::kGuided).is_mastered);
+  EXPECT_TRUE(step_of(history, "biopsy-1", Level::kGuided).is_tested_out);
+  EXPECT_EQ(step_of(history, "biopsy-1", Level::kGuided).repetition->due, date(1));
+  history.push_back(attempt("biopsy-1", Level::kGuided, 1, 60.0));
+  EXPECT_FALSE(step_of(history, "biopsy-1", Level::kGuided, 1).is_mastered);
+  EXPECT_FALSE(step_of(history, "biopsy-1", Level::kGuided, 1).repetition);
+  add(history, 3, attempt("biopsy-1", Level::kGuided, 1));
+  EXPECT_TRUE(step_of(history, "biopsy-1", Level::kGuided, 1).is_mastered);
+  EXPECT_FALSE(step_of(history, "biopsy-1", Level::kGuided, 1).is_tested_out);
+  // Only the first attempt, and only a pass.
+  EXPECT_FALSE(step_of({attempt("tap-1", Level::kGuided, 0, 94.0), attempt("tap-1", Level::kGuided, 0, 99.0)}, "tap-1",
+                       Level::kGuided)
+                   .is_mastered);
+  EXPECT_FALSE(step_of({attempt("tap-1", Level::kGuided, 0, 99.0, false)}, "tap-1", Level::kGuided).is_mastered);
+}
+
+TEST(Progress, APassedExamCoversTheHelpOfItsCaseAndOfEasierOnes) {
+  const std::vector<PastAttempt> history{attempt("biopsy-2", Level::kExam, 0, 80.0)};
+  for (const char* patient : {"biopsy-1", "biopsy-2"}) {
+    EXPECT_TRUE(step_of(history, patient, Level::kAssisted).is_tested_out) << patient;
+    EXPECT_TRUE(step_of(history, patient, Level::kGuided).is_mastered) << patient;
+    EXPECT_FALSE(step_of(history, patient, Level::kExam).is_mastered) << patient;
+  }
+  EXPECT_FALSE(step_of(history, "biopsy-3", Level::kGuided).is_mastered);
+  EXPECT_FALSE(step_of({attempt("biopsy-2", Level::kExam, 0, 79.0)}, "biopsy-2", Level::kGuided).is_mastered);
+}
+
+TEST(Progress, APlateauHasNoSlopeOverTheLastAttempts) {
+  std::vector<PastAttempt> history;
+  for (int n = 0; n < 9; ++n)
+    history.push_back(attempt("biopsy-1", Level::kGuided, 0, n % 2 == 0 ? 60.0 : 62.0, false));
+  EXPECT_FALSE(step_of(history, "biopsy-1", Level::kGuided).plateau);
+  history.push_back(unscored("biopsy-1", Level::kGuided, 0));
+  const auto plateau = step_of(history, "biopsy-1", Level::kGuided).plateau;
+  ASSERT_TRUE(plateau);
+  EXPECT_LE(plateau->slope, 0.0);
+  EXPECT_NEAR(plateau->mean, (5 * 60.0 + 4 * 62.0 + 0.0) / 10.0, 1e-12);
+  EXPECT_FALSE(plateau->is_rested);
+  add(history, 10, attempt("tap-1", Level::kGuided, 0, 50.0, false));
+  EXPECT_TRUE(step_of(history, "biopsy-1", Level::kGuided).plateau->is_rested);
+
+  std::vector<PastAttempt> rising;
+  for (int n = 0; n < 10; ++n) rising.push_back(attempt("biopsy-1", Level::kGuided, 0, 50.0 + 0.25 * n, false));
+  EXPECT_FALSE(step_of(rising, "biopsy-1", Level::kGuided).plateau);
+  rising = history;
+  add(rising, 3, attempt("biopsy-1", Level::kGuided, 0));
+  EXPECT_FALSE(step_of(rising, "biopsy-1", Level::kGuided).plateau) << "it is mastered";
 }
 
 TEST(Progress, AHarderCaseWithLessHelpCoversTheEasierOnes) {
@@ -120,27 +183,28 @@ TEST(Progress, OnlyTheLevelWithTheLeastHelpComesBack) {
   EXPECT_TRUE(step_of(history, "biopsy-1", Level::kGuided).is_mastered);
 }
 
-TEST(WeakestPart, HasTheLowestMeanShareOverTheLastAttempts) {
+TEST(WeakestPart, CostsTheMostPointsOverTheLastAttempts) {
   std::vector<PastAttempt> history;
   const auto with = [](std::map<std::string, double, std::less<>> shares) {
     PastAttempt one = attempt("biopsy-1", Level::kGuided, 0);
     one.part_shares = std::move(shares);
     return one;
   };
-  add(history, 9, with({{"target", 0.0}}));  // older than the last five
-  add(history, 3, with({{"target", 0.9}, {"visibility", 0.5}}));
-  add(history, 2, with({{"target", 0.8}, {"visibility", 0.3}, {"time", 0.0}}));
+  add(history, 9, with({{"visibility", 0.0}}));                                  // older than the last five
+  add(history, 3, with({{"target", 0.7}, {"visibility", 0.5}}));                 // of 75 and 25 points
+  add(history, 2, with({{"target", 0.8}, {"visibility", 0.3}, {"time", 0.0}}));  // of 60, 20 and 20
   const auto weakest = find_weakest_part(history, example_curriculum());
   ASSERT_TRUE(weakest);
-  EXPECT_EQ(weakest->part, "visibility");  // the time was judged only twice
-  EXPECT_NEAR(weakest->share, (3 * 0.5 + 2 * 0.3) / 5, 1e-12);
+  EXPECT_EQ(weakest->part, "target");  // visibility has the lower share; the time was judged only twice
+  EXPECT_NEAR(weakest->lost_points, (3 * 0.3 * 75.0 + 2 * 0.2 * 60.0) / 5, 1e-12);
+  EXPECT_NEAR(weakest->most_points, (3 * 75.0 + 2 * 60.0) / 5, 1e-12);
   EXPECT_EQ(weakest->attempts, 5);
 }
 
 TEST(WeakestPart, NeedsEnoughAttemptsOfKnownTasks) {
   std::vector<PastAttempt> history;
   PastAttempt one = attempt("biopsy-1", Level::kGuided, 0);
-  one.part_shares = {{"target", 0.1}};
+  one.part_shares = {{"target", 0.1}, {"of another program", 0.0}};
   add(history, 2, one);
   one.task = "unknown";
   add(history, 4, one);
@@ -148,7 +212,8 @@ TEST(WeakestPart, NeedsEnoughAttemptsOfKnownTasks) {
   EXPECT_FALSE(find_weakest_part({}, example_curriculum()));
   one.task = "biopsy";
   history.push_back(one);
-  EXPECT_TRUE(find_weakest_part(history, example_curriculum()));
+  ASSERT_TRUE(find_weakest_part(history, example_curriculum()));
+  EXPECT_EQ(find_weakest_part(history, example_curriculum())->part, "target");
   EXPECT_FALSE(find_weakest_part(history, example_curriculum(), "tap"));
 }
 
