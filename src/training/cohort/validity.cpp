@@ -50,7 +50,8 @@ void decide_all(Validity& validity, const ValidityRules& rules) {
     validity.discriminating += metric.discriminates ? 1 : 0;
     validity.uncorrected += metric.separation->test.p <= rules.level && are_experts_better(metric) ? 1 : 0;
   }
-  if (validity.score.separation) decide(validity.score, validity.score.separation->test.p, rules.level);
+  for (MetricValidity* one : {&validity.score, &validity.passes})
+    if (one->separation) decide(*one, one->separation->test.p, rules.level);
 }
 
 bool has_value(const std::optional<double>& item) {
@@ -79,17 +80,29 @@ Validity validity_of(const CohortData& data, const ValidityRules& rules) {
   const auto count = [&](auto is_counted) {
     return static_cast<std::size_t>(std::count_if(data.people.begin(), data.people.end(), is_counted));
   };
+  Values pass_shares = data.pass_shares;
+  pass_shares.resize(data.people.size());
   Validity validity{
       count([](const CohortData::Person& person) { return person.is_expert; }),
       count([](const CohortData::Person& person) { return !person.is_expert; }),
       count([](const CohortData::Person& person) { return person.is_simulated; }),
+      0,
+      0,
+      0,
+      0,
       {"score", "Score", "points", Better::kHigher, separation_in(data, data.scores, Better::kHigher)},
+      {"pass_share", "Share of attempts passed", "1", Better::kHigher,
+       separation_in(data, pass_shares, Better::kHigher)},
       {},
       0,
       0,
       0,
       cronbach_alpha(common_items(data)),
       contrasting_groups(of_group(data.scores, data.people, true), of_group(data.scores, data.people, false))};
+  for (const CohortData::Person& person : data.people) {
+    (person.is_expert ? validity.expert_attempts : validity.novice_attempts) += person.attempts;
+    (person.is_expert ? validity.expert_unscored : validity.novice_unscored) += person.unscored;
+  }
   for (const MetricOfPeople& metric : data.metrics)
     validity.metrics.push_back(
         {metric.name, metric.title, metric.unit, metric.better, separation_in(data, metric.values, metric.better)});

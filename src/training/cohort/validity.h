@@ -27,10 +27,13 @@ struct CohortData {
   struct Person {
     bool is_expert = false;
     bool is_simulated = false;  ///< A scripted operator.
+    std::size_t attempts = 0;   ///< That count, within the range that was chosen.
+    std::size_t unscored = 0;   ///< Of them, without a score: not passed.
   };
   std::vector<Person> people;
   std::vector<MetricOfPeople> metrics;
-  std::vector<std::optional<double>> scores;              ///< 0..100, higher is better.
+  std::vector<std::optional<double>> scores;              ///< 0..100, higher is better; of the scored attempts.
+  std::vector<std::optional<double>> pass_shares = {};    ///< Passed of all attempts, 0..1; empty list: not known.
   std::vector<std::vector<std::optional<double>>> items;  ///< Points of each part of the score, same parts for all.
 };
 
@@ -53,7 +56,10 @@ struct MetricValidity {
 struct Validity {
   std::size_t experts = 0, novices = 0;  ///< People.
   std::size_t simulated = 0;             ///< Of them, scripted operators.
-  MetricValidity score;                  ///< Not corrected, not counted among the metrics.
+  /// Attempts of experts and novices, and those of them without a score.
+  std::size_t expert_attempts = 0, novice_attempts = 0, expert_unscored = 0, novice_unscored = 0;
+  MetricValidity score;   ///< Not corrected, not counted among the metrics.
+  MetricValidity passes;  ///< Share of passed attempts; likewise.
   std::vector<MetricValidity> metrics;
   std::size_t tested = 0;          ///< Metrics that both groups have.
   std::size_t discriminating = 0;  ///< Of them, after the correction.

@@ -17,23 +17,23 @@ std::optional<Level> find_level(std::string_view name) noexcept {
   return std::nullopt;
 }
 
-void AttemptCounts::add(Ending ending, bool is_passed) noexcept {
+void AttemptCounts::add(Ending ending, bool is_passed, std::int64_t count) noexcept {
   switch (ending) {
     case Ending::kScored:
-      ++scored;
-      passed += is_passed ? 1 : 0;
+      scored += count;
+      passed += is_passed ? count : 0;
       break;
     case Ending::kUnscored:
-      ++unscored;
+      unscored += count;
       break;
     case Ending::kNeverBegan:
-      ++never_began;
+      never_began += count;
       break;
     case Ending::kLost:
-      ++lost;
+      lost += count;
       break;
     case Ending::kRunning:
-      ++running;
+      running += count;
       break;
   }
 }

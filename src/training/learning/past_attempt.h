@@ -38,7 +38,7 @@ struct AttemptCounts {
 
   std::int64_t counted() const noexcept { return scored + unscored; }
   std::int64_t left_out() const noexcept { return never_began + lost + running + without_level; }
-  void add(Ending ending, bool is_passed) noexcept;
+  void add(Ending ending, bool is_passed, std::int64_t count = 1) noexcept;
   void add(const AttemptCounts& other) noexcept;
 };
 /// "24 attempts counted (16 ended without a result), 3 left out: 2 never began, 1 was lost to a crash".

@@ -7,10 +7,11 @@ namespace trocar::metrics {
 
 std::span<const MetricGroup> metric_groups() {
   static const std::array groups{
-      end_position_metrics(), curve_distance_metrics(), structure_metrics(),  risk_metrics(),       tip_path_metrics(),
-      tissue_path_metrics(),  insertion_metrics(),      bevel_metrics(),      smoothness_metrics(), action_metrics(),
-      force_metrics(),        puncture_force_metrics(), transducer_metrics(), contact_metrics(),    plane_metrics(),
-      visibility_metrics(),   xray_metrics(),
+      end_position_metrics(),   curve_distance_metrics(), structure_metrics(), risk_metrics(),
+      tip_path_metrics(),       tissue_path_metrics(),    insertion_metrics(), first_pass_metrics(),
+      bevel_metrics(),          smoothness_metrics(),     action_metrics(),    force_metrics(),
+      puncture_force_metrics(), transducer_metrics(),     contact_metrics(),   plane_metrics(),
+      visibility_metrics(),     xray_metrics(),
   };
   return groups;
 }

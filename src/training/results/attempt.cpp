@@ -5,11 +5,12 @@
 
 namespace trocar::results {
 namespace {
-constexpr std::array kStates{State::kRunning, State::kFinished, State::kInterrupted};
+constexpr std::array kStates{State::kRunning, State::kFinished, State::kInterrupted, State::kUnscored,
+                             State::kNeverBegan};
 }
 
 const char* to_string(State state) noexcept {
-  constexpr std::array kNames{"running", "finished", "interrupted"};
+  constexpr std::array kNames{"running", "finished", "interrupted", "unscored", "never-began"};
   return kNames[static_cast<std::size_t>(state)];
 }
 
@@ -19,10 +20,23 @@ std::optional<State> find_state(std::string_view name) noexcept {
   return std::nullopt;
 }
 
+learning::Ending ending_of(State state) noexcept {
+  constexpr std::array kEndings{learning::Ending::kRunning, learning::Ending::kScored, learning::Ending::kLost,
+                                learning::Ending::kUnscored, learning::Ending::kNeverBegan};
+  return kEndings[static_cast<std::size_t>(state)];
+}
+
+State state_of(learning::Ending ending) noexcept {
+  const auto found =
+      std::find_if(kStates.begin(), kStates.end(), [&](State state) { return ending_of(state) == ending; });
+  return found == kStates.end() ? State::kInterrupted : *found;
+}
+
 learning::PastAttempt past_attempt_of(const Attempt& attempt, const std::vector<Part>& parts) {
   learning::PastAttempt past{attempt.the_case.task, attempt.the_case.patient, attempt.the_case.seed,
                              learning::find_level(attempt.level), attempt.started};
-  if (attempt.state != State::kFinished || !attempt.score) return past;
+  past.ending = ending_of(attempt.state);
+  if (past.ending != learning::Ending::kScored || !attempt.score) return past;
   past.score = std::clamp(*attempt.score, 0.0, 100.0);
   past.is_passed = attempt.is_passed;
   for (const Part& part : parts)

@@ -12,13 +12,23 @@
 
 namespace trocar::results {
 
+/// The numbers are those of the database.
 enum class State : std::uint8_t {
   kRunning,      ///< Begun on a station, its end is not known yet.
-  kFinished,     ///< With its outcome.
+  kFinished,     ///< With a score.
   kInterrupted,  ///< The program ended before the attempt did; what it recorded is there.
+  kUnscored,     ///< Ended without a score although the needle was in the body: counts as not passed.
+  kNeverBegan,   ///< Ended without the needle in the body: does not count.
 };
-const char* to_string(State state) noexcept;  ///< "running", "finished", "interrupted".
+const char* to_string(State state) noexcept;  ///< "running", "finished", "interrupted", "unscored", "never-began".
 std::optional<State> find_state(std::string_view name) noexcept;
+/// Whether it counts, and why not.
+learning::Ending ending_of(State state) noexcept;
+State state_of(learning::Ending ending) noexcept;
+/// True for the states that are final: a finished attempt is never written again.
+constexpr bool has_ended(State state) noexcept {
+  return state != State::kRunning && state != State::kInterrupted;
+}
 
 /// What is practised on.
 struct Case {
@@ -40,7 +50,7 @@ struct Attempt {
   std::string station;  ///< Name of the computer.
   Seconds started{};
   State state = State::kRunning;
-  std::optional<double> score;  ///< 0..100; empty: not scored or not finished.
+  std::optional<double> score;  ///< 0..100; empty unless its state is kFinished.
   bool is_passed = false;
   double duration_s = 0.0;  ///< Of the recording.
   std::string program_version;

@@ -82,6 +82,29 @@ Result<std::vector<Attempt>> list_attempts(Repository& repository, const Attempt
                                    [&](soci::session& session) { return read_attempts(session, query, order); });
 }
 
+Result<learning::AttemptCounts> count_attempts(Repository& repository, const AttemptFilter& given) {
+  AttemptFilter filter = given;
+  filter.before.reset();
+  const AttemptQuery query = make_query(filter);
+  return repository.database().run(kCannotReadAttempts, [&](soci::session& session) {
+    learning::AttemptCounts counts;
+    int state = 0, is_passed = 0;
+    long long count = 0;
+    soci::statement select(session);
+    select.exchange(soci::into(state));
+    select.exchange(soci::into(is_passed));
+    select.exchange(soci::into(count));
+    query.bind(select);
+    select.alloc();
+    select.prepare("SELECT a.state, a.is_passed, count(*) FROM attempts a" + query.condition +
+                   " GROUP BY a.state, a.is_passed");
+    select.define_and_bind();
+    select.execute();
+    while (select.fetch()) counts.add(ending_of(static_cast<State>(state)), is_passed != 0, count);
+    return counts;
+  });
+}
+
 Result<std::optional<Attempt>> find_attempt(Repository& repository, std::string_view id) {
   return repository.database().run(kCannotReadAttempts,
                                    [&](soci::session& session) { return read_attempt(session, id); });

@@ -16,8 +16,9 @@ namespace trocar::results {
 Status begin_attempt(Repository& repository, const Attempt& attempt);
 /// Removes an attempt that has begun and recorded nothing; others stay.
 Status forget_begun_attempt(Repository& repository, std::string_view id);
-/// Writes an attempt with all its data; one with the same id that is running or interrupted is completed, a finished
-/// one stays as it is. `recording`: bytes of the session file; empty: not kept. Returns its sequence.
+/// Writes an attempt with all its data; one with the same id that is running or interrupted is completed, one that has
+/// ended stays as it is. A finished attempt without a score becomes kUnscored, or kNeverBegan if it has no puncture of
+/// the skin among its measures. `recording`: bytes of the session file; empty: not kept. Returns its sequence.
 /// Error (exit status 2): no such person.
 Result<std::int64_t> record_attempt(Repository& repository, const AttemptRecord& record, std::string_view recording);
 /// Many at once in one transaction, without recordings: for imports and measurements.
@@ -26,12 +27,15 @@ Status record_attempts(Repository& repository, const std::vector<AttemptRecord>&
 /// Which attempts. Empty members do not restrict.
 struct AttemptFilter {
   std::string person_id = {}, task = {}, course = {};
+  std::string patient = {}, level = {};     ///< "biopsy-2"; "exam".
   std::optional<std::int64_t> before = {};  ///< Only with a smaller sequence.
   std::size_t limit = 0;                    ///< The newest so many; 0: all.
   bool is_newest_first = false;
   std::optional<State> state = {};
 };
 Result<std::vector<Attempt>> list_attempts(Repository& repository, const AttemptFilter& filter);
+/// How many of them count, and why the others do not. Order, limit and `before` of the filter are ignored.
+Result<learning::AttemptCounts> count_attempts(Repository& repository, const AttemptFilter& filter);
 Result<std::optional<Attempt>> find_attempt(Repository& repository, std::string_view id);
 /// With parts, measures, hints and trace. Empty: no such attempt.
 Result<std::optional<AttemptRecord>> load_attempt(Repository& repository, std::string_view id);
@@ -48,7 +52,7 @@ Result<std::vector<learning::PastAttempt>> past_attempts(Repository& repository,
 /// One person at one task.
 struct TaskSummary {
   std::string person_id, task;
-  std::int64_t attempts = 0, scored = 0, passed = 0;
+  learning::AttemptCounts counts;
   std::optional<double> last_score, best_score;
   std::optional<double> recent_mean;  ///< Of the last kRecentAttempts scored ones.
   Seconds last{};
@@ -57,15 +61,15 @@ inline constexpr int kRecentAttempts = 5;
 /// `person_id` empty: of all people.
 Result<std::vector<TaskSummary>> summarise_tasks(Repository& repository, std::string_view person_id = {});
 
-/// One scored attempt's value of a metric, or its score (metric "score").
+/// The value of a metric in one attempt that counts, or its score (metric "score").
 struct MetricSample {
   std::string person_id;
   Group group = Group::kTrainee;
   bool is_simulated = false;
   std::int64_t sequence = 0;
-  double value = 0.0;
+  std::optional<double> value;  ///< Empty: its score, if it ended without one.
 };
-/// By sequence. `course`: empty: all.
+/// By sequence. An attempt that has no value of a metric is left out, one without a score is not. `course`: empty: all.
 Result<std::vector<MetricSample>> metric_samples(Repository& repository, std::string_view task, std::string_view metric,
                                                  std::string_view course = {});
 /// Metrics that attempts at a task have a value of, by name; with the unit.
@@ -74,11 +78,13 @@ struct StoredMetric {
 };
 Result<std::vector<StoredMetric>> list_metrics(Repository& repository, std::string_view task);
 
-/// Values of a metric in the scored attempts of experts: of real ones; of simulated ones if the task has no others.
+/// Means of a metric of each expert over the attempts that count: of real experts; of simulated ones if the task has no
+/// others. Each expert counts once. `without`: a person who is compared with the others; empty: none.
 struct ExpertMeasures {
   std::string metric;
-  std::vector<double> values;
+  std::vector<double> values;  ///< One an expert.
 };
-Result<std::vector<ExpertMeasures>> expert_measures(Repository& repository, std::string_view task);
+Result<std::vector<ExpertMeasures>> expert_measures(Repository& repository, std::string_view task,
+                                                    std::string_view without = {});
 
 }  // namespace trocar::results

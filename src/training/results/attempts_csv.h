@@ -18,8 +18,11 @@ inline constexpr std::string_view kPartColumn = "part ", kMetricColumn = "metric
 
 struct ImportedRows {
   std::int64_t added = 0, present = 0, people = 0;
+  learning::AttemptCounts counts;  ///< Of the added ones.
 };
-/// Reads such a file into the database, all rows or none; people that do not exist are added; attempts that exist stay.
+/// Reads such a file into the database, all rows or none; people that do not exist are added. Attempts of every state
+/// are kept. One that exists stays, with its path and recording; where the file knows its end and the database does
+/// not, it is completed.
 /// Errors name row and column.
 Result<ImportedRows> import_attempts(Repository& repository, const std::filesystem::path& file, Seconds now);
 

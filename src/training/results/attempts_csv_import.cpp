@@ -156,8 +156,9 @@ Result<ImportedRows> import_attempts(Repository& repository, const std::filesyst
         TROCAR_TRY(person, person_of(session, table, row, now, imported));
       }
       record.attempt.person_id = person;
-      ++(writer.is_finished(record.attempt.id) ? imported.present : imported.added);
-      TROCAR_TRY_STATUS(writer.record(record, {}));
+      TROCAR_TRY(const std::optional<State> written, writer.merge(record));
+      ++(written ? imported.added : imported.present);
+      if (written) imported.counts.add(ending_of(*written), record.attempt.is_passed);
     }
     return imported;
   });

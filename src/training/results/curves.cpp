@@ -17,7 +17,7 @@ template <class IsChosen>
 ScoresByPerson scores_of(const std::vector<MetricSample>& samples, const IsChosen& is_chosen) {
   ScoresByPerson scores;
   for (const MetricSample& sample : samples)
-    if (is_chosen(sample)) scores[sample.person_id].emplace_back(sample.value);
+    if (is_chosen(sample)) scores[sample.person_id].push_back(sample.value);
   return scores;
 }
 
@@ -27,7 +27,8 @@ std::optional<ExpertLevel> expert_level(const std::vector<MetricSample>& samples
       return sample.group == Group::kExpert && sample.is_simulated == is_simulated && sample.person_id != person_id;
     });
     std::vector<double> means;
-    for (const auto& [id, of_expert] : scores) means.push_back(*cohort::person_mean(of_expert));
+    for (const auto& [id, of_expert] : scores)
+      if (const auto mean = cohort::person_mean(of_expert)) means.push_back(*mean);
     if (means.empty()) continue;
     const auto [low, high] = std::minmax_element(means.begin(), means.end());
     return ExpertLevel{means.size(), is_simulated, cohort::mean_of(means), *low, *high};
@@ -35,12 +36,10 @@ std::optional<ExpertLevel> expert_level(const std::vector<MetricSample>& samples
   return std::nullopt;
 }
 
-Result<std::vector<Attempt>> finished_attempts(Repository& repository, const std::string& person_id,
-                                               std::string_view task) {
+Result<std::vector<Attempt>> all_attempts(Repository& repository, const std::string& person_id, std::string_view task) {
   AttemptFilter filter;
   filter.person_id = person_id;
   filter.task = task;
-  filter.state = State::kFinished;
   return list_attempts(repository, filter);
 }
 
@@ -58,22 +57,21 @@ Result<LearningCurve> learning_curve_of(Repository& repository, const Person& pe
   if (rules.window < 1 || rules.window > kMostWindow)
     return fail_usage(fmt::format("a moving mean of {} attempts is not within 1 and {}", rules.window, kMostWindow),
                       "learning curve", "choose another number");
-  TROCAR_TRY(std::vector<Attempt> attempts, finished_attempts(repository, person.id, task));
+  TROCAR_TRY(std::vector<Attempt> attempts, all_attempts(repository, person.id, task));
+  LearningCurve curve;
+  for (const Attempt& attempt : attempts) curve.counts.add(ending_of(attempt.state), attempt.is_passed);
+  std::erase_if(attempts, [](const Attempt& attempt) { return !learning::counts(ending_of(attempt.state)); });
   Scores scores;
   std::vector<bool> passed;
   for (const Attempt& attempt : attempts) {
     scores.push_back(attempt.score);
-    if (attempt.score) passed.push_back(attempt.is_passed);
+    passed.push_back(attempt.is_passed);
   }
-  LearningCurve curve;
   TROCAR_TRY(curve.cusum, cohort::cusum_of(passed, rules.cusum));
   curve.trend = cohort::trend_per_attempt(scores);
   const Scores means = cohort::moving_mean(scores, rules.window);
-  auto value = curve.cusum.values.begin();
-  for (std::size_t n = 0; n < attempts.size(); ++n) {
-    const auto cusum = scores[n] ? std::optional(*value++) : std::nullopt;
-    curve.attempts.push_back({std::move(attempts[n]), means[n], cusum});
-  }
+  for (std::size_t n = 0; n < attempts.size(); ++n)
+    curve.attempts.push_back({std::move(attempts[n]), means[n], curve.cusum.values[n]});
   curve.experts = expert_level(samples, person.id);
   const ScoresByPerson peers = scores_of(samples, [&](const MetricSample& sample) {
     return sample.group == Group::kTrainee && sample.is_simulated == person.is_simulated &&

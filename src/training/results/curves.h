@@ -12,15 +12,15 @@
 namespace trocar::results {
 
 struct CurveRules {
-  std::size_t window = 5;  ///< Scored attempts of the moving mean. Range 1..1000.
+  std::size_t window = 5;  ///< Scores of the moving mean. Range 1..1000.
   cohort::CusumRates cusum = {};
 };
 
-/// A finished attempt of a person at a task.
+/// An attempt of a person at a task that counts; without a score it is not passed.
 struct CurveAttempt {
   Attempt attempt;
-  std::optional<double> moving_mean;  ///< Of the scores up to this attempt.
-  std::optional<double> cusum;        ///< After this attempt; empty: it has no score.
+  std::optional<double> moving_mean;  ///< Of the scores up to this attempt; empty: there is none.
+  double cusum = 0.0;                 ///< After this attempt.
 };
 
 /// Experts at the same task. Real ones; simulated ones only if there are no others.
@@ -33,12 +33,13 @@ struct ExpertLevel {
 
 /// How a person learns a task.
 struct LearningCurve {
-  std::vector<CurveAttempt> attempts;                         ///< By sequence.
-  cohort::Cusum cusum;                                        ///< Step, limits, and the signals by scored attempt.
+  std::vector<CurveAttempt> attempts;                         ///< Those that count, by sequence.
+  learning::AttemptCounts counts;                             ///< Of all attempts at the task.
+  cohort::Cusum cusum;                                        ///< Step, limits, and the signals by attempt.
   std::optional<double> trend;                                ///< Points an attempt, see cohort::trend_per_attempt.
   std::optional<ExpertLevel> experts;                         ///< Without the person.
   std::size_t peers = 0;                                      ///< Other trainees, simulated as the person is or not.
-  std::vector<std::optional<cohort::CurvePoint>> peer_curve;  ///< By number of the scored attempt.
+  std::vector<std::optional<cohort::CurvePoint>> peer_curve;  ///< By number of the attempt; each person counts once.
 };
 /// Errors: those of the database; rules outside of their ranges (exit status 2).
 Result<LearningCurve> learning_curve(Repository& repository, const Person& person, std::string_view task,

@@ -43,11 +43,12 @@ Case case_of(const storage::SessionInfo& info, const learning::Curriculum& curri
 }
 
 void add_outcome(const scoring::Outcome& outcome, AttemptRecord& record) {
-  record.attempt.state = State::kFinished;
   record.not_scored = outcome.not_scored;
   record.fails = outcome.fails;
-  record.attempt.is_passed = outcome.is_passed;
-  if (outcome.is_scored() && std::isfinite(outcome.score)) record.attempt.score = outcome.score;
+  if (record.attempt.state == State::kFinished) {
+    record.attempt.score = outcome.score;
+    record.attempt.is_passed = outcome.is_passed;
+  }
   for (const scoring::Hint& hint : outcome.hints) record.hints.push_back({hint.text, hint.at_s});
   for (const scoring::ScorePart& part : outcome.parts)
     if (!scoring::is_deduction(part))
@@ -71,7 +72,7 @@ Result<std::string> read_recording(const fs::path& file) {
   return read_file(copy);
 }
 
-Result<std::optional<State>> state_of(Repository& repository, const std::string& id) {
+Result<std::optional<State>> known_state(Repository& repository, const std::string& id) {
   TROCAR_TRY(const std::optional<Attempt> attempt, find_attempt(repository, id));
   return attempt ? std::optional(attempt->state) : std::nullopt;
 }
@@ -82,7 +83,7 @@ Result<bool> is_left(Repository& repository, const storage::SessionSummary& sess
   if (info.person_id.empty() || info.attempt_id.empty()) return false;
   TROCAR_TRY(const auto person, find_person(repository, info.person_id));
   if (!person) return false;
-  TROCAR_TRY(const auto state, state_of(repository, info.attempt_id));
+  TROCAR_TRY(const auto state, known_state(repository, info.attempt_id));
   return !state || *state == State::kRunning || (*state == State::kInterrupted && session.outcome.has_value());
 }
 
@@ -114,9 +115,9 @@ Result<AttemptRecord> attempt_of_session(const fs::path& file, const std::string
   if (!person_id.empty()) record.attempt.person_id = person_id;
   if (record.attempt.person_id.empty())
     return fail_usage("the session names no person", file.string(), "name one with --person");
-  TROCAR_TRY(const learning::PastAttempt past, learning::attempt_of({session.info, {}}));
+  TROCAR_TRY(const learning::PastAttempt past, learning::attempt_of({session.info, session.outcome}));
   record.attempt.started = past.when;
-  record.attempt.state = State::kInterrupted;
+  record.attempt.state = state_of(past.ending);
   if (!session.samples.empty())
     record.attempt.duration_s = session.samples.back().time_s - session.samples.front().time_s;
   if (session.outcome) add_outcome(*session.outcome, record);
@@ -127,8 +128,8 @@ Result<AttemptRecord> attempt_of_session(const fs::path& file, const std::string
 Result<bool> import_session(Repository& repository, const fs::path& file, const std::string& person_id,
                             const learning::Curriculum& curriculum) {
   TROCAR_TRY(const AttemptRecord record, attempt_of_session(file, person_id, curriculum));
-  TROCAR_TRY(const auto state, state_of(repository, record.attempt.id));
-  if (state == State::kFinished) return false;
+  TROCAR_TRY(const auto state, known_state(repository, record.attempt.id));
+  if (state && has_ended(*state)) return false;
   TROCAR_TRY(const std::string bytes, read_recording(file));
   TROCAR_TRY_STATUS(record_attempt(repository, record, bytes));
   return true;

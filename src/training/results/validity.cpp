@@ -20,7 +20,9 @@ struct NamedMean {
 struct PersonMean {
   std::string person_id;
   bool is_expert = false, is_simulated = false;
-  double score = 0.0;
+  std::optional<double> score;  ///< Empty: no attempt has one.
+  double pass_share = 0.0;
+  std::size_t attempts = 0, unscored = 0;
 };
 struct Means {
   std::vector<PersonMean> people;
@@ -34,6 +36,8 @@ class MeanReader {
       : session_(session),
         task_(filter.task),
         course_key_(filter.course.empty() ? std::string() : name_key(filter.course)),
+        patient_(filter.patient),
+        level_(filter.level),
         first_(bounded(filter.attempts.first)),
         last_(bounded(filter.attempts.last)) {}
 
@@ -60,17 +64,20 @@ class MeanReader {
   /// The chosen attempts as the table `chosen`, and a query on it.
   std::string with_chosen(const std::string& query) const {
     std::string text =
-        "WITH chosen AS (SELECT sequence, person_id, is_expert, is_simulated, score FROM (SELECT a.sequence,"
-        " a.person_id, p.is_expert, p.is_simulated, a.score, row_number() OVER (PARTITION BY a.person_id ORDER BY"
-        " a.sequence) AS number FROM attempts a JOIN people p ON p.id = a.person_id WHERE a.task = :task AND"
-        " a.score IS NOT NULL";
+        "WITH chosen AS (SELECT sequence, person_id, is_expert, is_simulated, score, is_passed FROM (SELECT a.sequence,"
+        " a.person_id, p.is_expert, p.is_simulated, a.score, a.is_passed, row_number() OVER (PARTITION BY a.person_id"
+        " ORDER BY a.sequence) AS number FROM attempts a JOIN people p ON p.id = a.person_id WHERE a.task = :task AND"
+        " a.state IN (1, 3)";
     if (!course_key_.empty()) text += " AND p.course_id = (SELECT id FROM courses WHERE name_key = :course)";
+    if (!patient_.empty()) text += " AND a.case_id IN (SELECT q.id FROM cases q WHERE q.patient = :patient)";
+    if (!level_.empty()) text += " AND a.level = :level";
     return text + ") counted WHERE number >= :first AND number <= :last) " + query;
   }
 
   void execute(soci::statement& select, const std::string& query) {
     select.exchange(soci::use(task_));
-    if (!course_key_.empty()) select.exchange(soci::use(course_key_));
+    for (const std::string* text : {&course_key_, &patient_, &level_})
+      if (!text->empty()) select.exchange(soci::use(*text));
     select.exchange(soci::use(first_));
     select.exchange(soci::use(last_));
     select.alloc();
@@ -81,16 +88,25 @@ class MeanReader {
 
   void read_people(std::vector<PersonMean>& people) {
     PersonMean person;
+    detail::Nullable<double> score;
     int is_expert = 0, is_simulated = 0;
+    long long attempts = 0, scored = 0, passed = 0;
     soci::statement select(session_);
     select.exchange(soci::into(person.person_id));
     select.exchange(soci::into(is_expert));
     select.exchange(soci::into(is_simulated));
-    select.exchange(soci::into(person.score));
+    select.exchange(soci::into(score.value, score.indicator));
+    select.exchange(soci::into(attempts));
+    select.exchange(soci::into(scored));
+    select.exchange(soci::into(passed));
     execute(select,
-            "SELECT person_id, is_expert, is_simulated, avg(score) FROM chosen GROUP BY person_id, is_expert,"
-            " is_simulated ORDER BY person_id");
+            "SELECT person_id, is_expert, is_simulated, avg(score), count(*), count(score), sum(is_passed) FROM chosen"
+            " GROUP BY person_id, is_expert, is_simulated ORDER BY person_id");
     while (select.fetch()) {
+      person.score = score.get();
+      person.pass_share = static_cast<double>(passed) / static_cast<double>(attempts);
+      person.attempts = static_cast<std::size_t>(attempts);
+      person.unscored = static_cast<std::size_t>(attempts - scored);
       person.is_expert = is_expert != 0;
       person.is_simulated = is_simulated != 0;
       people.push_back(person);
@@ -111,7 +127,7 @@ class MeanReader {
   }
 
   soci::session& session_;
-  std::string task_, course_key_;
+  std::string task_, course_key_, patient_, level_;
   long long first_, last_;
 };
 
@@ -178,14 +194,33 @@ Result<cohort::CohortData> cohort_data(Repository& repository, const EvidenceFil
   std::map<std::string, std::size_t> rows;
   for (const PersonMean& person : means.people) {
     rows.emplace(person.person_id, rows.size());
-    data.people.push_back({person.is_expert, person.is_simulated});
-    data.scores.emplace_back(person.score);
+    data.people.push_back({person.is_expert, person.is_simulated, person.attempts, person.unscored});
+    data.scores.push_back(person.score);
+    data.pass_shares.emplace_back(person.pass_share);
   }
   data.metrics = metrics_of(means.metrics, columns_of(means.metrics, rows));
   data.items.resize(rows.size());
   for (const auto& [name, column] : columns_of(means.parts, rows))
     for (std::size_t row = 0; row < rows.size(); ++row) data.items[row].push_back(column[row]);
   return data;
+}
+
+Result<EvidenceChoices> evidence_choices(Repository& repository, std::string_view task) {
+  return repository.database().run(detail::kCannotReadAttempts, [&](soci::session& session) {
+    const std::string name(task);
+    const auto names = [&](const std::string& query) {
+      std::vector<std::string> found;
+      std::string one;
+      soci::statement select = (session.prepare << query, soci::use(name), soci::into(one));
+      select.execute();
+      while (select.fetch()) found.push_back(one);
+      return found;
+    };
+    return EvidenceChoices{
+        names(
+            "SELECT DISTINCT c.patient FROM attempts a JOIN cases c ON c.id = a.case_id WHERE a.task = :t ORDER BY 1"),
+        names("SELECT DISTINCT level FROM attempts WHERE task = :t AND level <> '' ORDER BY 1")};
+  });
 }
 
 Result<cohort::Validity> validity_of(Repository& repository, const EvidenceFilter& filter,

@@ -14,6 +14,7 @@ MetricGroup tissue_path_metrics();
 MetricGroup smoothness_metrics();
 MetricGroup action_metrics();
 MetricGroup insertion_metrics();
+MetricGroup first_pass_metrics();
 MetricGroup bevel_metrics();
 MetricGroup force_metrics();
 MetricGroup puncture_force_metrics();

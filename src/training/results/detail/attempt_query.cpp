@@ -30,6 +30,14 @@ AttemptQuery make_query(const AttemptFilter& filter) {
     query.condition += " AND a.task = :task";
     query.texts.push_back(filter.task);
   }
+  if (!filter.level.empty()) {
+    query.condition += " AND a.level = :level";
+    query.texts.push_back(filter.level);
+  }
+  if (!filter.patient.empty()) {
+    query.condition += " AND a.case_id IN (SELECT q.id FROM cases q WHERE q.patient = :patient)";
+    query.texts.push_back(filter.patient);
+  }
   if (!filter.course.empty()) {
     query.condition +=
         " AND a.person_id IN (SELECT p.id FROM people p JOIN courses k ON k.id = p.course_id"

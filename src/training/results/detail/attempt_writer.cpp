@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "config/json.h"
 #include "database/bytes.h"
+#include "learning/history.h"
 #include "results/detail/details_json.h"
 #include "results/detail/people_table.h"
 #include "results/detail/rows.h"
@@ -17,6 +19,21 @@ constexpr int kNoDifficulty = 0;
 
 double finite_or_zero(double value) {
   return std::isfinite(value) ? value : 0.0;
+}
+
+/// A finished attempt has a score: programs and files that know no other state mean those without, too.
+State settled_state(const AttemptRecord& record) {
+  const Attempt& attempt = record.attempt;
+  if (attempt.state != State::kFinished || (attempt.score && std::isfinite(*attempt.score))) return attempt.state;
+  const bool was_outside = std::ranges::any_of(record.measures, [](const Measure& measure) {
+    return measure.name == learning::kInBodyMetric && measure.value <= 0.0;
+  });
+  return was_outside ? State::kNeverBegan : State::kUnscored;
+}
+
+/// How much is known of an attempt.
+int knowledge_of(State state) {
+  return state == State::kRunning ? 0 : state == State::kInterrupted ? 1 : 2;
 }
 
 }  // namespace
@@ -57,10 +74,6 @@ AttemptWriter::Found AttemptWriter::find_for_update(const std::string& id) {
   return found;
 }
 
-bool AttemptWriter::is_finished(const std::string& id) {
-  return find_for_update(id).state == State::kFinished;
-}
-
 Status AttemptWriter::begin(const Attempt& attempt) {
   if (!find_person(session_, attempt.person_id)) return no_such_person(attempt.person_id);
   const long long key = case_key(attempt.the_case), started_s = attempt.started.time_since_epoch().count();
@@ -74,9 +87,12 @@ Status AttemptWriter::begin(const Attempt& attempt) {
   return {};
 }
 
-void AttemptWriter::update_row(long long sequence, const Attempt& attempt) {
-  Bound<double> score(attempt.score && std::isfinite(*attempt.score) ? attempt.score : std::nullopt);
-  const int state = static_cast<int>(attempt.state), is_passed = attempt.is_passed ? 1 : 0;
+void AttemptWriter::update_row(long long sequence, const AttemptRecord& record) {
+  const Attempt& attempt = record.attempt;
+  const State settled = settled_state(record);
+  const bool is_scored = settled == State::kFinished;
+  Bound<double> score(is_scored ? attempt.score : std::nullopt);
+  const int state = static_cast<int>(settled), is_passed = is_scored && attempt.is_passed ? 1 : 0;
   const double duration_s = finite_or_zero(attempt.duration_s);
   session_ << "UPDATE attempts SET state = :state, score = :score, is_passed = :passed, duration_s = :duration"
               " WHERE sequence = :sequence",
@@ -84,13 +100,16 @@ void AttemptWriter::update_row(long long sequence, const Attempt& attempt) {
       soci::use(sequence);
 }
 
-void AttemptWriter::replace_details(long long sequence, const AttemptRecord& record) {
-  for (const char* table : {"attempt_details", "attempt_parts", "attempt_metrics"})
-    session_ << fmt::format("DELETE FROM {} WHERE sequence = :s", table), soci::use(sequence);
+void AttemptWriter::replace_texts(long long sequence, const AttemptRecord& record) {
+  session_ << "DELETE FROM attempt_details WHERE sequence = :s", soci::use(sequence);
   const std::string verdict = verdict_json(record), trace = trace_json(record.trace);
   session_ << "INSERT INTO attempt_details (sequence, verdict, trace) VALUES (:s, :v, :t)", soci::use(sequence),
       soci::use(verdict), soci::use(trace);
+}
 
+void AttemptWriter::replace_values(long long sequence, const AttemptRecord& record) {
+  for (const char* table : {"attempt_parts", "attempt_metrics"})
+    session_ << fmt::format("DELETE FROM {} WHERE sequence = :s", table), soci::use(sequence);
   std::vector<long long> keys, sequences;
   std::vector<std::string> names, texts;
   std::vector<double> values, limits;
@@ -128,11 +147,27 @@ void AttemptWriter::replace_recording(long long sequence, std::string_view recor
 Result<std::int64_t> AttemptWriter::record(const AttemptRecord& record, std::string_view recording) {
   TROCAR_TRY_STATUS(begin(record.attempt));
   const Found found = find_for_update(record.attempt.id);
-  if (found.state == State::kFinished) return found.sequence;
-  update_row(found.sequence, record.attempt);
-  replace_details(found.sequence, record);
+  if (has_ended(found.state)) return found.sequence;
+  update_row(found.sequence, record);
+  replace_texts(found.sequence, record);
+  replace_values(found.sequence, record);
   replace_recording(found.sequence, recording);
   return found.sequence;
+}
+
+Result<std::optional<State>> AttemptWriter::merge(const AttemptRecord& record) {
+  const bool is_new = find_for_update(record.attempt.id).sequence == 0;
+  TROCAR_TRY_STATUS(begin(record.attempt));
+  const Found found = find_for_update(record.attempt.id);
+  if (!is_new && knowledge_of(record.attempt.state) <= knowledge_of(found.state)) return std::optional<State>();
+  if (record.attempt.state == State::kRunning) return std::optional(State::kRunning);
+  update_row(found.sequence, record);
+  replace_values(found.sequence, record);
+  int details = 0;
+  session_ << "SELECT count(*) FROM attempt_details WHERE sequence = :s", soci::use(found.sequence),
+      soci::into(details);
+  if (details == 0) replace_texts(found.sequence, record);
+  return std::optional(settled_state(record));
 }
 
 }  // namespace trocar::results::detail

@@ -64,10 +64,28 @@ database::Migration version_1() {
   };
 }
 
+// Attempts that ended without a score were "finished" (1); now 3: the needle was in the body, 4: it never was. By the
+// punctures of the skin, or (older sessions) by the reason why it was not scored; "_" stands for the colon.
+database::Migration version_2() {
+  return {
+      "UPDATE attempts SET is_passed = 0, state = CASE"
+      " WHEN EXISTS (SELECT 1 FROM attempt_metrics v JOIN metrics m ON m.id = v.metric_id"
+      " WHERE v.sequence = attempts.sequence AND m.name = 'skin_punctures' AND v.value > 0) THEN 3"
+      " WHEN EXISTS (SELECT 1 FROM attempt_metrics v JOIN metrics m ON m.id = v.metric_id"
+      " WHERE v.sequence = attempts.sequence AND m.name = 'skin_punctures') THEN 4"
+      " WHEN EXISTS (SELECT 1 FROM attempt_details d WHERE d.sequence = attempts.sequence"
+      " AND (d.verdict LIKE '%\"not_scored\"_\"the needle never touched the skin\"%'"
+      " OR d.verdict LIKE '%\"not_scored\"_\"the needle did not pierce the skin\"%')) THEN 4"
+      " ELSE 3 END WHERE state = 1 AND score IS NULL",
+      "DROP INDEX attempts_of_person",
+      "CREATE INDEX attempts_of_person ON attempts (person_id, task, sequence, score, is_passed, started_s, state)",
+  };
+}
+
 }  // namespace
 
 std::span<const database::Migration> migrations() {
-  static const std::vector<database::Migration> kAll{version_1()};
+  static const std::vector<database::Migration> kAll{version_1(), version_2()};
   return kAll;
 }
 

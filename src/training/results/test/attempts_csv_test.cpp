@@ -65,10 +65,83 @@ TEST_P(AttemptsCsv, ComeBackIntoAnotherDatabase) {
   EXPECT_EQ(get_person_named(*other, "Eva")->group, Group::kExpert);
   imported = import_attempts(*other, file, kNow);
   ASSERT_TRUE(imported);
-  EXPECT_EQ(imported->present, 2);  // the running one may still be completed
+  EXPECT_EQ(imported->present, 3);
   EXPECT_EQ(list_attempts(*other, {})->size(), 3u);
   const auto again = folder_ / "again.csv";
   ASSERT_TRUE(export_attempts(*other, {}, again));
+}
+
+TEST_P(AttemptsCsv, OfEveryStateComeBackUnchanged) {
+  const Person anna = add("Anna");
+  for (const State state :
+       {State::kInterrupted, State::kUnscored, State::kNeverBegan, State::kFinished, State::kRunning}) {
+    AttemptRecord record = attempt(anna.id, 71.125);
+    record.attempt.state = state;
+    record.hints.clear();
+    for (Part& part : record.parts) part.value = "3.1 mm";
+    if (state != State::kFinished) {
+      record.attempt.score.reset();
+      record.attempt.is_passed = false;
+    }
+    if (state == State::kRunning) {
+      ASSERT_TRUE(begin_attempt(*repository_, record.attempt));
+    } else {
+      put(record, "recording");
+    }
+  }
+  const auto file = folder_ / "attempts.csv";
+  const std::string written = attempts_csv(*repository_, {}).value();
+  ASSERT_TRUE(export_attempts(*repository_, {}, file));
+  auto other = Repository::open({folder_ / "other.sqlite", {}});
+  ASSERT_TRUE(other);
+  const auto imported = import_attempts(*other, file, kNow);
+  ASSERT_TRUE(imported) << imported.error().text();
+  EXPECT_EQ(imported->added, 5);
+  EXPECT_EQ(imported->counts.lost, 1);
+  EXPECT_EQ(imported->counts.unscored, 1);
+  EXPECT_EQ(attempts_csv(*other, {}).value(), written);
+}
+
+TEST_P(AttemptsCsv, ReadOverAnInterruptedAttemptKeepItsRecording) {
+  const Person anna = add("Anna");
+  AttemptRecord cut = attempt(anna.id, 0.0);
+  cut.attempt.state = State::kInterrupted;
+  cut.attempt.score.reset();
+  put(cut, "recording");
+  const auto same = folder_ / "same.csv", ended = folder_ / "ended.csv";
+  ASSERT_TRUE(export_attempts(*repository_, {}, same));
+  std::string text = attempts_csv(*repository_, {}).value();
+  auto imported = import_attempts(*repository_, same, kNow);
+  ASSERT_TRUE(imported) << imported.error().text();
+  EXPECT_EQ(imported->present, 1);
+  EXPECT_EQ(**load_recording(*repository_, cut.attempt.id), "recording");
+  EXPECT_EQ(load_attempt(*repository_, cut.attempt.id)->value().trace.time_s.size(), 2u);
+  // Another station knows how it ended.
+  text.replace(text.find("interrupted,,"), 13, "finished,64,");
+  std::ofstream(ended) << text;
+  imported = import_attempts(*repository_, ended, kNow);
+  ASSERT_TRUE(imported) << imported.error().text();
+  EXPECT_EQ(imported->added, 1);
+  EXPECT_EQ(find_attempt(*repository_, cut.attempt.id)->value().score, 64.0);
+  EXPECT_EQ(**load_recording(*repository_, cut.attempt.id), "recording");
+  imported = import_attempts(*repository_, same, kNow);
+  EXPECT_EQ(imported->present, 1) << "what is known is not forgotten";
+  EXPECT_EQ(find_attempt(*repository_, cut.attempt.id)->value().score, 64.0);
+}
+
+TEST_P(AttemptsCsv, OfAnOlderProgramSayFinishedWithoutAScore) {
+  const Person anna = add("Anna");
+  AttemptRecord record = attempt(anna.id, 50.0);
+  record.measures = {{"skin_punctures", "1", 1.0}};
+  put(record);
+  std::string text = attempts_csv(*repository_, {}).value();
+  text.replace(text.find("finished,50,"), 12, "finished,,");
+  const auto file = folder_ / "old.csv";
+  std::ofstream(file) << text;
+  auto other = Repository::open({folder_ / "other.sqlite", {}});
+  ASSERT_TRUE(import_attempts(*other, file, kNow));
+  EXPECT_EQ(list_attempts(*other, {})->front().state, State::kUnscored);
+  EXPECT_FALSE(list_attempts(*other, {})->front().is_passed);
 }
 
 TEST_P(AttemptsCsv, WithABadRowChangeNothing) {

@@ -134,16 +134,32 @@ TEST_P(Attempts, AreSummarisedByPersonAndTask) {
   for (const double score : {10.0, 20.0, 30.0, 40.0, 90.0, 60.0, 70.0}) put(attempt(anna.id, score));
   AttemptRecord unscored = attempt(anna.id, 0.0);
   unscored.attempt.score.reset();
+  unscored.attempt.is_passed = true;  // of a program that is wrong
   put(unscored);
+  unscored.attempt.id = make_id();
+  unscored.measures.push_back({"skin_punctures", "1", 0.0});
+  put(unscored);
+  unscored.attempt.id = make_id();
+  unscored.attempt.state = State::kInterrupted;
+  put(unscored);
+  unscored.attempt.id = make_id();
+  ASSERT_TRUE(begin_attempt(*repository_, unscored.attempt));
   put(attempt(ben.id, 5.0, "ptcd"));
   const auto summaries = summarise_tasks(*repository_);
   ASSERT_TRUE(summaries) << summaries.error().text();
   ASSERT_EQ(summaries->size(), 2u);
   const TaskSummary& of_anna = (*summaries)[(*summaries)[0].person_id == anna.id ? 0 : 1];
   EXPECT_EQ(of_anna.task, "liver-biopsy");
-  EXPECT_EQ(of_anna.attempts, 8);
-  EXPECT_EQ(of_anna.scored, 7);
-  EXPECT_EQ(of_anna.passed, 3);
+  EXPECT_EQ(of_anna.counts.counted(), 8);
+  EXPECT_EQ(of_anna.counts.scored, 7);
+  EXPECT_EQ(of_anna.counts.passed, 3);
+  EXPECT_EQ(learning::counts_text(of_anna.counts),
+            "8 attempts counted (1 ended without a result), 3 left out: 1 never began, 1 was lost to a crash, 1 is not "
+            "over");
+  const auto counts = count_attempts(*repository_, {anna.id, "liver-biopsy"});
+  ASSERT_TRUE(counts) << counts.error().text();
+  EXPECT_EQ(learning::counts_text(*counts), learning::counts_text(of_anna.counts));
+  EXPECT_EQ(counts->passed, 3);
   EXPECT_EQ(of_anna.last_score, 70.0);
   EXPECT_EQ(of_anna.best_score, 90.0);
   EXPECT_EQ(of_anna.recent_mean, (30.0 + 40.0 + 90.0 + 60.0 + 70.0) / 5.0);
@@ -253,7 +269,7 @@ TEST(AttemptsFile, TenThousandAreFoundByPageAndSummarised) {
   EXPECT_EQ(attempts->back().id, "4800");
   const auto summaries = summarise_tasks(*repository);
   ASSERT_EQ(summaries->size(), 2u);
-  EXPECT_EQ((*summaries)[0].attempts, kAttempts / 2);
+  EXPECT_EQ((*summaries)[0].counts.counted(), kAttempts / 2);
   EXPECT_EQ((*summaries)[0].best_score, 100.0);
 }
 

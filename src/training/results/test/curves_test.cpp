@@ -21,10 +21,14 @@ TEST_P(LearningCurveTest, HasTheAttemptsOfAPersonInTheOrderOfRecording) {
   ASSERT_EQ(curve->attempts.size(), 4u);
   EXPECT_EQ(curve->attempts[1].moving_mean, 49.0);
   EXPECT_EQ(curve->attempts[3].moving_mean, 74.0);
-  EXPECT_FALSE(curve->attempts[2].cusum);
+  EXPECT_EQ(curve->attempts[2].moving_mean, 49.0);
   const double step = curve->cusum.pass_step;
-  EXPECT_DOUBLE_EQ(*curve->attempts[1].cusum, 2.0 * (1.0 - step));
-  EXPECT_DOUBLE_EQ(*curve->attempts[3].cusum, 2.0 * (1.0 - step) - step);
+  EXPECT_DOUBLE_EQ(curve->attempts[1].cusum, 2.0 * (1.0 - step));
+  EXPECT_DOUBLE_EQ(curve->attempts[2].cusum, 3.0 * (1.0 - step)) << "without a result: not passed";
+  EXPECT_DOUBLE_EQ(curve->attempts[3].cusum, 3.0 * (1.0 - step) - step);
+  EXPECT_EQ(curve->counts.passed, 1);
+  EXPECT_EQ(curve->counts.unscored, 1);
+  EXPECT_EQ(curve->counts.lost, 1);
   EXPECT_DOUBLE_EQ(*curve->trend, 50.0 / 3.0);
   EXPECT_FALSE(curve->experts);
   EXPECT_EQ(curve->peers, 0u);
@@ -39,6 +43,7 @@ TEST_P(LearningCurveTest, ComparesWithRealExpertsAndPeersOfTheSameKind) {
   play(robot, 100.0);
   play(simulated, 10.0);
   play(peer, 60.0);
+  play(peer, std::nullopt);
   play(peer, 80.0);
   const auto only_simulated = learning_curve(*repository_, person, "liver-biopsy");
   ASSERT_TRUE(only_simulated) << only_simulated.error().text();
@@ -58,8 +63,9 @@ TEST_P(LearningCurveTest, ComparesWithRealExpertsAndPeersOfTheSameKind) {
   EXPECT_EQ(curve->experts->low, 85.0);
   EXPECT_EQ(curve->experts->high, 95.0);
   EXPECT_EQ(curve->peers, 1u);
-  ASSERT_EQ(curve->peer_curve.size(), 2u);
-  EXPECT_EQ(curve->peer_curve[1]->mean, 80.0);
+  ASSERT_EQ(curve->peer_curve.size(), 3u);
+  EXPECT_FALSE(curve->peer_curve[1]);
+  EXPECT_EQ(curve->peer_curve[2]->mean, 80.0);
   EXPECT_EQ(learning_curve(*repository_, first, "liver-biopsy")->experts->people, 1u) << "without oneself";
 }
 

@@ -128,6 +128,34 @@ TEST_P(Sessions, LeftOnAStationAreRecordedAtTheNextStart) {
   EXPECT_EQ(list_attempts(*repository_, {})->size(), 2u);
 }
 
+TEST_P(Sessions, WithoutAScoreCountIfTheNeedleWasInTheBody) {
+  const Person anna = add("Anna");
+  const auto state_with = [&](double punctures, const std::string& reason) {
+    const fs::path file = folder_ / (make_id() + ".session");
+    const storage::SessionInfo written = info(anna.id);
+    auto writer = storage::SessionWriter::create(file, written);
+    append_ticks(*writer, 100);
+    scoring::Outcome outcome;
+    outcome.not_scored = reason;
+    outcome.measures = {{"skin_punctures", punctures, "1", {}, {}, {}}};
+    EXPECT_TRUE(writer->finish(outcome, {}));
+    const auto is_new = import_session(*repository_, file, {}, curriculum());
+    EXPECT_TRUE(is_new && *is_new) << (is_new ? "" : is_new.error().text());
+    EXPECT_FALSE(*import_session(*repository_, file, {}, curriculum())) << "it has ended";
+    const AttemptRecord record = load_attempt(*repository_, written.attempt_id)->value();
+    EXPECT_EQ(record.not_scored, reason);
+    EXPECT_FALSE(record.attempt.score);
+    return record.attempt.state;
+  };
+  EXPECT_EQ(state_with(1.0, "the gun was not fired"), State::kUnscored);
+  EXPECT_EQ(state_with(0.0, "the needle never touched the skin"), State::kNeverBegan);
+  const auto past = past_attempts(*repository_, anna.id);
+  ASSERT_EQ(past->size(), 2u);
+  EXPECT_EQ(past->front().ending, learning::Ending::kUnscored);
+  EXPECT_TRUE(past->front().is_practice());
+  EXPECT_FALSE(past->back().is_practice());
+}
+
 TEST_P(Sessions, OfAKilledProgramLackAtMostTheLastHalfSecond) {
   const Person anna = add("Anna");
   const fs::path file = folder_ / "killed.session";

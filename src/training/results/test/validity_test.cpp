@@ -28,6 +28,10 @@ TEST_P(CohortDataTest, HasTheMeansOfEachPerson) {
   EXPECT_TRUE(data->people[n].is_simulated);
   EXPECT_EQ(data->scores[e], 95.0);
   EXPECT_EQ(data->scores[n], 30.0);
+  EXPECT_EQ(data->people[n].attempts, 3u);
+  EXPECT_EQ(data->people[n].unscored, 1u);
+  EXPECT_EQ(data->pass_shares[n], 0.0);
+  EXPECT_EQ(data->pass_shares[e], 1.0);
   ASSERT_EQ(data->metrics.size(), 2u);
   EXPECT_EQ(data->metrics[0].title, "Path length of the tip");
   EXPECT_EQ(data->metrics[0].better, cohort::Better::kLower);
@@ -48,8 +52,55 @@ TEST_P(CohortDataTest, ChoosesAttemptsOfEachPerson) {
   const auto second_and_third = cohort_data(*repository_, {"liver-biopsy", "", {2, 3}});
   ASSERT_TRUE(second_and_third) << second_and_third.error().text();
   ASSERT_EQ(second_and_third->people.size(), 1u) << "the other has no second attempt";
-  EXPECT_EQ(second_and_third->scores[0], 40.0);
+  EXPECT_EQ(second_and_third->scores[0], 20.0) << "the second has no result";
+  EXPECT_EQ(second_and_third->people[0].attempts, 2u);
   EXPECT_EQ(second_and_third->metrics[0].values[0].has_value(), true);
+}
+
+TEST_P(CohortDataTest, OfACaseAndALevelHasItsAttemptsAlone) {
+  const Person novice = add("Novice", Group::kTrainee, "Spring");
+  const auto put_at = [&](const std::string& patient, const std::string& level, double score) {
+    AttemptRecord record = attempt(novice.id, score);
+    record.attempt.the_case.patient = patient;
+    record.attempt.level = level;
+    put(record);
+  };
+  put_at("biopsy-1", "guided", 10.0);
+  put_at("biopsy-2", "guided", 30.0);
+  put_at("biopsy-2", "exam", 50.0);
+  put_at("biopsy-2", "exam", 70.0);
+  const auto score_of = [&](const EvidenceFilter& filter) {
+    const auto data = cohort_data(*repository_, filter);
+    EXPECT_TRUE(data) << data.error().text();
+    return data->scores.empty() ? std::optional<double>() : data->scores[0];
+  };
+  EXPECT_EQ(score_of({"liver-biopsy", "", {}, "biopsy-2"}), 50.0);
+  EXPECT_EQ(score_of({"liver-biopsy", "", {}, "", "guided"}), 20.0);
+  EXPECT_EQ(score_of({"liver-biopsy", "spring", {2, 2}, "biopsy-2", "exam"}), 70.0) << "counted within the filter";
+  EXPECT_EQ(score_of({"liver-biopsy", "", {}, "biopsy-1", "exam"}), std::nullopt);
+  EXPECT_EQ(score_of({"liver-biopsy", "", {}, "' OR '1' = '1"}), std::nullopt);
+  const auto choices = evidence_choices(*repository_, "liver-biopsy");
+  ASSERT_TRUE(choices) << choices.error().text();
+  EXPECT_EQ(choices->patients, (std::vector<std::string>{"biopsy-1", "biopsy-2"}));
+  EXPECT_EQ(choices->levels, (std::vector<std::string>{"exam", "guided"}));
+  EXPECT_EQ(count_attempts(*repository_, {{}, "liver-biopsy", {}, "biopsy-2", "exam"})->counted(), 2);
+}
+
+TEST_P(CohortDataTest, AnAttemptWithoutAResultIsNoEvidenceOfSuccess) {
+  const Person expert = add("Expert", Group::kExpert), novice = add("Novice", Group::kTrainee);
+  for (int n = 0; n < 3; ++n) play(expert, 90.0);
+  play(novice, 95.0);
+  play(novice, std::nullopt);
+  play(novice, std::nullopt);
+  play(novice, 95.0);
+  const auto validity = validity_of(*repository_, {"liver-biopsy"});
+  ASSERT_TRUE(validity) << validity.error().text();
+  EXPECT_EQ(validity->novice_attempts, 3u);
+  EXPECT_EQ(validity->novice_unscored, 2u);
+  EXPECT_EQ(validity->expert_unscored, 0u);
+  EXPECT_EQ(validity->score.separation->auc, 0.0) << "the one scored attempt is better";
+  EXPECT_EQ(validity->passes.separation->auc, 1.0);
+  EXPECT_DOUBLE_EQ(validity->passes.separation->novice_median, 1.0 / 3.0);
 }
 
 TEST_P(CohortDataTest, OfACourseHasItsPeopleAlone) {
