@@ -4,6 +4,7 @@
 
 #include "config/json.h"
 #include "geometry/pose.h"
+#include "learning/past_attempt.h"
 
 namespace trocar::cli {
 
@@ -13,5 +14,8 @@ template <class Value>
 config::Json or_null(const std::optional<Value>& value) {
   return value ? config::Json(*value) : config::Json(nullptr);
 }
+
+/// Which attempts count, and why the others do not.
+config::Json counts_json(const learning::AttemptCounts& counts);
 
 }  // namespace trocar::cli

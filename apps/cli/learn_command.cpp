@@ -7,6 +7,7 @@
 
 #include "commands.h"
 #include "config/json.h"
+#include "json_parts.h"
 #include "learning/next_exercise.h"
 #include "learning/progress.h"
 #include "past_sessions.h"
@@ -68,7 +69,23 @@ config::Json step_json(const learning::StepProgress& step) {
           {"attempts", step.attempts},
           {"passes_in_a_row", step.passes_in_a_row},
           {"mastered", step.is_mastered},
+          {"tested_out", step.is_tested_out},
+          {"no_progress", step.plateau.has_value()},
           {"repeat_on", step.repetition ? config::Json(date_text(step.repetition->due)) : config::Json(nullptr)}};
+}
+
+/// Of the task, or of all; attempts without a level of help have no place in a learning path.
+learning::AttemptCounts counts_of(const Learned& learned, const LearnArguments& arguments) {
+  learning::AttemptCounts counts;
+  for (const learning::PastAttempt& attempt : learned.history.attempts) {
+    if (!arguments.task.empty() && attempt.task != arguments.task) continue;
+    if (learning::counts(attempt.ending) && !attempt.level) {
+      ++counts.without_level;
+    } else {
+      counts.add(attempt.ending, attempt.is_passed);
+    }
+  }
+  return counts;
 }
 
 config::Json learned_json(const Learned& learned, const LearnArguments& arguments) {
@@ -89,7 +106,7 @@ config::Json learned_json(const Learned& learned, const LearnArguments& argument
     next["level"] = learning::to_string(advice.exercise->level);
   }
   next["reasons"] = advice.reasons;
-  return {{"attempts", learned.history.attempts.size()},
+  return {{"attempts", counts_json(counts_of(learned, arguments))},
           {"courses", courses},
           {"next", next},
           {"notes", advice.notes},
@@ -113,22 +130,25 @@ void print_course(const learning::Course& course, const std::vector<learning::St
   if (steps.empty()) return;
   fmt::print("{:<26} mastered: {}\n", course.title, mastered_text(steps));
   for (const learning::StepProgress& step : steps)
+    if (step.plateau)
+      fmt::print("{:<26} no progress at case {} {}: {:.0f} points on average\n", "", step.exercise.difficulty,
+                 learning::to_string(step.exercise.level), step.plateau->mean);
+  for (const learning::StepProgress& step : steps)
     if (step.repetition)
       fmt::print("{:<26} repeat case {} {} on {}\n", "", step.exercise.difficulty,
                  learning::to_string(step.exercise.level), date_text(step.repetition->due));
 }
 
 void print_learned(const Learned& learned, const LearnArguments& arguments) {
-  const std::vector<learning::PastAttempt>& attempts = learned.history.attempts;
-  const auto counted = std::count_if(attempts.begin(), attempts.end(), [](const learning::PastAttempt& attempt) {
-    return attempt.score.has_value() && attempt.level.has_value();
-  });
-  fmt::print("{} sessions, {} of them scored attempts of a trainee\n", attempts.size(), counted);
+  const learning::AttemptCounts counts = counts_of(learned, arguments);
+  fmt::print("{}\n", learning::counts_text(counts));
+  if (counts.counted() > 0) fmt::print("{} of {} passed\n", counts.passed, counts.counted());
   for (std::size_t n = 0; n < learned.progress.size(); ++n) {
     const learning::Course& course = learned.curriculum.courses[n];
     if (arguments.task.empty() || course.task == arguments.task) print_course(course, learned.progress[n]);
   }
   const learning::Recommendation& advice = learned.advice;
+  if (advice.purpose == learning::Purpose::kSeeInstructor) fmt::print("see your instructor\n");
   if (advice.exercise)
     fmt::print("next: {} (patient {})\n", learning::exercise_text(*advice.exercise, learned.curriculum),
                advice.exercise->patient);

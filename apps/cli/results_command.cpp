@@ -1,4 +1,4 @@
-// trocar results: people, attempts, learning curves and validity from the database of results.
+// trocar results: people, attempts, learning curves, proficiency and validity from the database of results.
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
@@ -31,7 +31,7 @@ results::Seconds now_s() {
 }
 
 void add_results_commands(Command& program, Action& action) {
-  Command results = program.add_command("results", "People, their attempts, learning curves and validity");
+  Command results = program.add_command("results", "People, their attempts, learning curves, proficiency and validity");
   results.require_command();
   const auto url = std::make_shared<std::string>();
   results.add_option("--db", *url,
@@ -45,6 +45,7 @@ void add_results_commands(Command& program, Action& action) {
   add_results_attempt_commands(results, url, action);
   add_results_exchange_commands(results, url, action);
   add_results_curve_command(results, url, action);
+  add_results_proficiency_command(results, url, action);
   add_results_validity_command(results, url, action);
 }
 

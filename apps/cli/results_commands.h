@@ -17,6 +17,7 @@ void add_results_people_commands(Command& results, const DatabaseOption& url, Ac
 void add_results_attempt_commands(Command& results, const DatabaseOption& url, Action& action);
 void add_results_exchange_commands(Command& results, const DatabaseOption& url, Action& action);
 void add_results_curve_command(Command& results, const DatabaseOption& url, Action& action);
+void add_results_proficiency_command(Command& results, const DatabaseOption& url, Action& action);
 void add_results_validity_command(Command& results, const DatabaseOption& url, Action& action);
 
 /// Opens the database of --db; empty: $TROCAR_DB, else that of the user. `missing`: whether a new one is made.

@@ -29,9 +29,9 @@ const char* decision_text(cohort::Cusum::Decision decision) {
 
 config::Json cusum_json(const LearningCurve& curve, const cohort::CusumRates& rates) {
   config::Json values = config::Json::array(), signals = config::Json::array();
-  for (const results::CurveAttempt& point : curve.attempts) values.push_back(or_null(point.cusum));
+  for (const results::CurveAttempt& point : curve.attempts) values.push_back(point.cusum);
   for (const cohort::Cusum::Signal& signal : curve.cusum.signals)
-    signals.push_back({{"scored_attempt", signal.attempt}, {"failure_rate", decision_text(signal.decision)}});
+    signals.push_back({{"attempt", signal.attempt}, {"failure_rate", decision_text(signal.decision)}});
   return {{"values", std::move(values)},       {"signals", std::move(signals)},  {"lower", curve.cusum.lower},
           {"upper", curve.cusum.upper},        {"acceptable", rates.acceptable}, {"unacceptable", rates.unacceptable},
           {"pass_step", curve.cusum.pass_step}};
@@ -47,7 +47,7 @@ config::Json curve_json(const LearningCurve& curve, const results::Person& perso
                       {"patient", attempt.the_case.patient},
                       {"difficulty", or_null(attempt.the_case.difficulty)},
                       {"score", or_null(attempt.score)},
-                      {"passed", attempt.score ? config::Json(attempt.is_passed) : config::Json(nullptr)},
+                      {"passed", attempt.is_passed},
                       {"moving_mean", or_null(point.moving_mean)}});
   }
   for (const auto& point : curve.peer_curve)
@@ -63,6 +63,7 @@ config::Json curve_json(const LearningCurve& curve, const results::Person& perso
           {"simulated", person.is_simulated},
           {"task", arguments.task},
           {"window", arguments.window},
+          {"attempts", counts_json(curve.counts)},
           {"points", std::move(points)},
           {"cusum", cusum_json(curve, arguments.rules.cusum)},
           {"trend", or_null(curve.trend)},
@@ -94,21 +95,18 @@ void print_attempts(const LearningCurve& curve, std::int64_t window) {
   const std::string mean_title = fmt::format("mean of {}", window);
   fmt::print("  n  {:<16}  {:<12} {:>5}  {:<10} {:>10} {:>6}  0{:>{}}\n", "started (UTC)", "patient", "score", "",
              mean_title, "CUSUM", "100", PlotLine::kWidth - 1);
-  std::size_t scored = 0;
   for (std::size_t n = 0; n < curve.attempts.size(); ++n) {
     const results::CurveAttempt& point = curve.attempts[n];
     const results::Attempt& attempt = point.attempt;
     PlotLine line;
     if (curve.experts) line.mark(curve.experts->mean, 'E');
-    if (attempt.score && scored < curve.peer_curve.size() && curve.peer_curve[scored])
-      line.mark(curve.peer_curve[scored]->mean, '.');
+    if (n < curve.peer_curve.size() && curve.peer_curve[n]) line.mark(curve.peer_curve[n]->mean, '.');
     line.mark(point.moving_mean, 'o');
     line.mark(attempt.score, '*');
-    scored += attempt.score ? 1 : 0;
-    const char* const verdict = !attempt.score ? "not scored" : attempt.is_passed ? "passed" : "not passed";
+    const char* const verdict = !attempt.score ? "no result" : attempt.is_passed ? "passed" : "not passed";
     fmt::print("{:>3}  {:<16}  {:<12} {:>5}  {:<10} {:>10} {:>6}  |{}|\n", n + 1, minute_text(attempt.started),
                attempt.the_case.patient, text_or_dash(attempt.score, 1), verdict, text_or_dash(point.moving_mean, 1),
-               text_or_dash(point.cusum, 2), line.text());
+               fmt::format("{:.2f}", point.cusum), line.text());
   }
   fmt::print("plot: * score, o moving mean{}{}\n", curve.peers > 0 ? ", . mean of the peers at this attempt" : "",
              curve.experts ? ", E mean of the experts" : "");
@@ -126,15 +124,13 @@ void print_cusum(const cohort::Cusum& cusum, const cohort::CusumRates& rates) {
     return;
   }
   const cohort::Cusum::Signal& last = cusum.signals.back();
-  fmt::print("{} since scored attempt {}\n", decision_text(last.decision), last.attempt);
+  fmt::print("{} since attempt {}\n", decision_text(last.decision), last.attempt);
 }
 
 void print_curve(const LearningCurve& curve, const results::Person& person, const CurveArguments& arguments) {
-  const auto passed = std::count_if(curve.attempts.begin(), curve.attempts.end(),
-                                    [](const auto& point) { return point.attempt.score && point.attempt.is_passed; });
-  fmt::print("{} ({}{}), {}: {} attempts, {} scored, {} passed\n", person.name, to_string(person.group),
-             simulated_text(person.is_simulated), arguments.task, curve.attempts.size(), curve.cusum.values.size(),
-             passed);
+  fmt::print("{} ({}{}), {}: {} of {} passed\n", person.name, to_string(person.group),
+             simulated_text(person.is_simulated), arguments.task, curve.counts.passed, curve.counts.counted());
+  fmt::print("{}\n", learning::counts_text(curve.counts));
   if (curve.attempts.empty()) return;
   print_attempts(curve, arguments.window);
   if (curve.trend) fmt::print("trend: {:+.1f} points an attempt (median slope)\n", *curve.trend);
@@ -142,7 +138,8 @@ void print_curve(const LearningCurve& curve, const results::Person& person, cons
   if (curve.experts)
     fmt::print("experts: {:.1f} points (mean of {}, {:.1f} to {:.1f}{})\n", curve.experts->mean, curve.experts->people,
                curve.experts->low, curve.experts->high, simulated_text(curve.experts->is_simulated));
-  if (curve.peers > 0) fmt::print("peers: {} people{}\n", curve.peers, simulated_text(person.is_simulated));
+  if (curve.peers > 0)
+    fmt::print("peers: {} people, each counted once{}\n", curve.peers, simulated_text(person.is_simulated));
 }
 
 Status check_task(const std::string& task) {
@@ -157,7 +154,7 @@ Status show_curve(const std::string& url, CurveArguments& arguments) {
   arguments.rules.window = static_cast<std::size_t>(arguments.window);
   TROCAR_TRY(const LearningCurve curve, results::learning_curve(repository, person, arguments.task, arguments.rules));
   // A misspelt task; one of a file of its own may have any name.
-  if (curve.attempts.empty()) TROCAR_TRY_STATUS(check_task(arguments.task));
+  if (curve.counts.counted() + curve.counts.left_out() == 0) TROCAR_TRY_STATUS(check_task(arguments.task));
   if (arguments.is_json) {
     print_json(curve_json(curve, person, arguments));
   } else {

@@ -61,6 +61,7 @@ Status import_files(const std::string& url, const ImportArguments& arguments) {
   TROCAR_TRY(results::Repository repository, open_results(url, database::Missing::kCreate));
   TROCAR_TRY(const std::string person, importing_person(repository, arguments));
   std::int64_t added = 0, present = 0, bad = 0;
+  learning::AttemptCounts counts;
   {
     const ProgressPrinter printer;
     const Progress progress = printer.callback();
@@ -70,16 +71,19 @@ Status import_files(const std::string& url, const ImportArguments& arguments) {
         TROCAR_TRY(const results::ImportedRows rows, results::import_attempts(repository, files[n], now_s()));
         added += rows.added;
         present += rows.present;
+        counts.add(rows.counts);
         continue;
       }
-      const auto is_new = results::import_session(repository, files[n], person, curriculum);
-      if (!is_new && files.size() == 1) return tl::unexpected(is_new.error());
-      if (!is_new) print_warning(is_new.error().text());
-      ++(!is_new ? bad : *is_new ? added : present);
+      const auto written = results::import_session(repository, files[n], person, curriculum);
+      if (!written && files.size() == 1) return tl::unexpected(written.error());
+      if (!written) print_warning(written.error().text());
+      ++(!written ? bad : *written ? added : present);
+      if (written && *written) counts.add(results::ending_of((*written)->state), (*written)->is_passed);
     }
   }
   fmt::print("{} attempts added, {} were there already{} ({})\n", added, present,
              bad > 0 ? fmt::format(", {} files were not imported", bad) : "", repository.url().shown());
+  if (added > 0) fmt::print("of the added: {}\n", learning::counts_text(counts));
   if (bad == 0) return {};
   return fail(fmt::format("{} of {} files were not imported", bad, files.size()), repository.url().shown(),
               "see the warnings above");

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "config/json.h"
+#include "json_parts.h"
 #include "results/attempts.h"
 #include "results/people.h"
 #include "results_commands.h"
@@ -46,8 +47,8 @@ Status list_people(const std::string& url, bool is_json) {
   TROCAR_TRY(results::Repository repository, open_results(url, Missing::kRefuse));
   TROCAR_TRY(const std::vector<results::Person> people, results::list_people(repository));
   TROCAR_TRY(const std::vector<results::TaskSummary> summaries, results::summarise_tasks(repository));
-  std::map<std::string, std::int64_t> attempts;
-  for (const results::TaskSummary& summary : summaries) attempts[summary.person_id] += summary.attempts;
+  std::map<std::string, learning::AttemptCounts> attempts;
+  for (const results::TaskSummary& summary : summaries) attempts[summary.person_id].add(summary.counts);
   if (is_json) {
     config::Json list = config::Json::array();
     for (const results::Person& person : people)
@@ -57,7 +58,7 @@ Status list_people(const std::string& url, bool is_json) {
                       {"course", person.course},
                       {"simulated", person.is_simulated},
                       {"pin", person.has_pin},
-                      {"attempts", attempts[person.id]}});
+                      {"attempts", counts_json(attempts[person.id])}});
     print_json({{"people", std::move(list)}});
     return {};
   }
@@ -65,8 +66,12 @@ Status list_people(const std::string& url, bool is_json) {
   std::size_t width = 0;
   for (const results::Person& person : people) width = std::max(width, person.name.size());
   for (const results::Person& person : people)
-    fmt::print("{:<{}}  {:<18} {:>5} attempts  {}{}\n", person.name, width, group_text(person), attempts[person.id],
-               person.course, person.has_pin ? "  (PIN)" : "");
+    fmt::print("{:<{}}  {:<18} {:>5} attempts, {:>5} passed  {}{}\n", person.name, width, group_text(person),
+               attempts[person.id].counted(), attempts[person.id].passed, person.course,
+               person.has_pin ? "  (PIN)" : "");
+  learning::AttemptCounts all;
+  for (const auto& [id, counts] : attempts) all.add(counts);
+  if (!people.empty()) fmt::print("{}\n", learning::counts_text(all));
   return {};
 }
 

@@ -1,11 +1,14 @@
 // trocar results validity: evidence that the scores of a task mean something.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <limits>
 
 #include "config/json.h"
 #include "core/parse_number.h"
+#include "json_parts.h"
+#include "results/attempts.h"
 #include "results/validity.h"
 #include "results_commands.h"
 
@@ -17,6 +20,7 @@ using cohort::Validity;
 struct ValidityArguments {
   results::EvidenceFilter filter;
   cohort::ValidityRules rules;
+  learning::AttemptCounts counts;  ///< Of all attempts of the filter.
   std::string attempts = "1-3", correction = "bh";
   bool is_json = false;
 };
@@ -38,6 +42,13 @@ Result<cohort::Correction> parse_correction(const std::string& name) {
   if (name == "holm") return cohort::Correction::kHolm;
   if (name == "bh") return cohort::Correction::kBenjaminiHochberg;
   return fail_usage("unknown correction \"" + name + "\"", "--correction", "use bh, holm or none");
+}
+
+/// The level of help. `--level 0.05` was the level of significance in older programs.
+Status check_level(const std::string& level) {
+  if (level.empty() || learning::find_level(level)) return {};
+  return fail_usage(fmt::format("unknown level of help \"{}\"", level), "--level",
+                    "use guided, assisted or exam; the level of significance is --significance");
 }
 
 config::Json metric_json(const cohort::MetricValidity& metric) {
@@ -87,14 +98,20 @@ config::Json validity_json(const Validity& validity, const ValidityArguments& ar
   const double share =
       validity.tested > 0 ? static_cast<double>(validity.discriminating) / static_cast<double>(validity.tested) : 0.0;
   return {{"task", arguments.filter.task},
+          {"patient", arguments.filter.patient},
+          {"level_of_help", arguments.filter.level},
           {"attempts", arguments.attempts},
+          {"all_attempts", counts_json(arguments.counts)},
+          {"expert_attempts", {{"counted", validity.expert_attempts}, {"without_result", validity.expert_unscored}}},
+          {"novice_attempts", {{"counted", validity.novice_attempts}, {"without_result", validity.novice_unscored}}},
           {"experts", validity.experts},
           {"novices", validity.novices},
           {"simulated", validity.simulated > 0},
           {"simulated_people", validity.simulated},
           {"score", metric_json(validity.score)},
+          {"passed", metric_json(validity.passes)},
           {"metrics", std::move(metrics)},
-          {"level", arguments.rules.level},
+          {"significance", arguments.rules.level},
           {"correction", to_string(arguments.rules.correction)},
           {"discriminating",
            {{"share", validity.tested > 0 ? config::Json(share) : config::Json(nullptr)},
@@ -123,6 +140,10 @@ void print_metric(const cohort::MetricValidity& metric) {
              found.auc_interval.high, found.test.p, metric.corrected_p, metric.discriminates ? "yes" : "no");
 }
 
+std::string unscored_text(std::size_t count) {
+  return count > 0 ? fmt::format(" ({} without a result: not passed, no score)", count) : std::string();
+}
+
 void print_people(const Validity& validity, const ValidityArguments& arguments) {
   const std::size_t people = validity.experts + validity.novices;
   std::string simulated;
@@ -130,8 +151,15 @@ void print_people(const Validity& validity, const ValidityArguments& arguments) 
     simulated = "; all simulated, no real people";
   else if (validity.simulated > 0)
     simulated = fmt::format("; {} of {} people are simulated", validity.simulated, people);
-  fmt::print("validity of {}: experts {}, novices {}, attempts {} of each{}\n", arguments.filter.task, validity.experts,
-             validity.novices, arguments.attempts, people > 0 ? simulated : "");
+  std::string of = arguments.filter.task;
+  for (const std::string& part : {arguments.filter.patient, arguments.filter.level})
+    if (!part.empty()) of += ", " + part;
+  fmt::print("validity of {}: experts {}, novices {}, attempts {} of each{}\n", of, validity.experts, validity.novices,
+             arguments.attempts, people > 0 ? simulated : "");
+  fmt::print("of all at the task: {}\n", learning::counts_text(arguments.counts));
+  fmt::print("of them here: {} of experts{}, {} of novices{}\n", validity.expert_attempts,
+             unscored_text(validity.expert_unscored), validity.novice_attempts,
+             unscored_text(validity.novice_unscored));
 }
 
 std::string share_text(std::size_t count, std::size_t of) {
@@ -184,6 +212,7 @@ void print_table(const Validity& validity) {
   fmt::print("{:<72} {:>9} {:>9}  {:<19}  {:>7} {:>9}  {}\n", "median over people of", "experts", "novices",
              "AUC (95 %)", "p", "corrected", "discriminates");
   print_metric(validity.score);
+  print_metric(validity.passes);
   for (const cohort::MetricValidity& metric : validity.metrics) print_metric(metric);
 }
 
@@ -193,13 +222,27 @@ void print_validity(const Validity& validity, const ValidityArguments& arguments
   print_summary(validity, arguments.rules);
 }
 
+/// The error where no attempt of the filter counts.
+Status no_attempts(results::Repository& repository, const ValidityArguments& arguments) {
+  TROCAR_TRY(const results::EvidenceChoices known, results::evidence_choices(repository, arguments.filter.task));
+  const std::string& patient = arguments.filter.patient;
+  if (!patient.empty() && std::ranges::find(known.patients, patient) == known.patients.end())
+    return fail("no attempts at this case", patient,
+                fmt::format("cases with attempts at {}: {}", arguments.filter.task, fmt::join(known.patients, ", ")));
+  return fail(fmt::format("no attempts to compare ({})", learning::counts_text(arguments.counts)),
+              arguments.filter.task, "see trocar results list");
+}
+
 Status show_validity(const std::string& url, ValidityArguments& arguments) {
   TROCAR_TRY(arguments.filter.attempts, parse_attempts(arguments.attempts));
   TROCAR_TRY(arguments.rules.correction, parse_correction(arguments.correction));
+  TROCAR_TRY_STATUS(check_level(arguments.filter.level));
   TROCAR_TRY(results::Repository repository, open_results(url, database::Missing::kRefuse));
   TROCAR_TRY(const Validity validity, results::validity_of(repository, arguments.filter, arguments.rules));
-  if (validity.experts + validity.novices == 0)
-    return fail("no scored attempts", arguments.filter.task, "see trocar results list");
+  const results::EvidenceFilter& filter = arguments.filter;
+  TROCAR_TRY(arguments.counts,
+             results::count_attempts(repository, {{}, filter.task, filter.course, filter.patient, filter.level}));
+  if (validity.experts + validity.novices == 0) return no_attempts(repository, arguments);
   if (arguments.is_json) {
     print_json(validity_json(validity, arguments));
   } else {
@@ -216,13 +259,20 @@ void add_results_validity_command(Command& results, const DatabaseOption& url, A
   const auto a = std::make_shared<ValidityArguments>();
   command.add_option("--task", a->filter.task, "Task; see trocar task list").required();
   command.add_option("--course", a->filter.course, "Only people of this course");
-  command.add_option("--attempts", a->attempts, "Scored attempts of each person: 1-3, or 4- for all from the fourth")
+  command.add_option("--patient", a->filter.patient, "Only attempts at this case: biopsy-2");
+  command.add_option("--level", a->filter.level, "Only attempts at this level of help: guided, assisted or exam");
+  command
+      .add_option("--attempts", a->attempts, "Attempts of each person that count: 1-3, or 4- for all from the fourth")
       .show_default();
   command.add_option("--correction", a->correction, "For many metrics: bh (Benjamini-Hochberg), holm or none")
       .show_default();
-  command.add_option("--level", a->rules.level, "Level of significance").number_within(0.0001, 0.5, "").show_default();
+  command.add_option("--significance", a->rules.level, "Level of significance")
+      .number_within(0.0001, 0.5, "")
+      .show_default();
   command.add_flag("--json", a->is_json, "Print one JSON object");
-  command.footer("Example:\n  trocar results validity --task liver-biopsy --attempts 1-2\n");
+  command.footer(
+      "Examples:\n  trocar results validity --task liver-biopsy --attempts 1-2\n"
+      "  trocar results validity --task liver-biopsy --patient biopsy-3 --level exam\n");
   command.when_parsed([&action, url, a] { action = [url, a] { return show_validity(*url, *a); }; });
 }
 

@@ -22,17 +22,17 @@ TEST(Learn, ContinuesFromTheSessionsOfAFolder) {
   std::ofstream(folder / "damaged.trocar") << "hello";
   const Outcome outcome = trocar("learn --task liver-biopsy --sessions '" + folder.path().string() + "'");
   EXPECT_EQ(outcome.exit_status, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("3 of them scored attempts"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("3 attempts counted\n3 of 3 passed\n"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("mastered: case 1 guided\n"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("repeat case 1 guided on 2026-01-03"), std::string::npos) << outcome.out;
-  // Its day has passed.
-  EXPECT_NE(outcome.out.find("next: Liver biopsy, case 1, guided (patient biopsy-1)"), std::string::npos)
+  // Its day has passed, but it was practised three times in a row.
+  EXPECT_NE(outcome.out.find("next: Liver biopsy, case 1, assisted (patient biopsy-1)"), std::string::npos)
       << outcome.out;
   EXPECT_EQ(line_count(outcome.err), 1) << outcome.err;
   EXPECT_NE(outcome.err.find("damaged.trocar"), std::string::npos) << outcome.err;
   const config::Json json = json_of(trocar("learn --json --sessions '" + folder.path().string() + "'"));
-  EXPECT_EQ(json["attempts"], 3);
-  EXPECT_EQ(json["next"]["purpose"], "repetition");
+  EXPECT_EQ(json["attempts"]["counted"], 3);
+  EXPECT_EQ(json["next"]["purpose"], "next-step");
   EXPECT_EQ(json["next"]["patient"], "biopsy-1");
   EXPECT_EQ(json["damaged"].size(), 1u);
 }

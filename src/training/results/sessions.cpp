@@ -125,14 +125,14 @@ Result<AttemptRecord> attempt_of_session(const fs::path& file, const std::string
   return record;
 }
 
-Result<bool> import_session(Repository& repository, const fs::path& file, const std::string& person_id,
-                            const learning::Curriculum& curriculum) {
+Result<std::optional<Attempt>> import_session(Repository& repository, const fs::path& file,
+                                              const std::string& person_id, const learning::Curriculum& curriculum) {
   TROCAR_TRY(const AttemptRecord record, attempt_of_session(file, person_id, curriculum));
   TROCAR_TRY(const auto state, known_state(repository, record.attempt.id));
-  if (state && has_ended(*state)) return false;
+  if (state && has_ended(*state)) return std::optional<Attempt>();
   TROCAR_TRY(const std::string bytes, read_recording(file));
   TROCAR_TRY_STATUS(record_attempt(repository, record, bytes));
-  return true;
+  return std::optional(record.attempt);
 }
 
 Result<Imported> import_left_sessions(Repository& repository, const fs::path& folder,

@@ -27,9 +27,9 @@ struct Imported {
   std::int64_t present = 0;          ///< Were in the database already.
   std::vector<std::string> damaged;  ///< One line for each file that could not be read.
 };
-/// Records a session file with its bytes. Returns false if it was there already.
-Result<bool> import_session(Repository& repository, const std::filesystem::path& file, const std::string& person_id,
-                            const learning::Curriculum& curriculum);
+/// Records a session file with its bytes. Returns the attempt; empty: it was there already.
+Result<std::optional<Attempt>> import_session(Repository& repository, const std::filesystem::path& file,
+                                              const std::string& person_id, const learning::Curriculum& curriculum);
 /// Records all session files of a station's folder that name a person of this database and are not there yet: what a
 /// killed program, a lost connection or a full disk left behind.
 Result<Imported> import_left_sessions(Repository& repository, const std::filesystem::path& folder,

@@ -21,7 +21,7 @@ Json attempt_json(const results::Attempt& attempt) {
           {"started_s", seconds_of(attempt.started)},
           {"state", results::to_string(attempt.state)},
           {"score", or_null(attempt.score)},
-          {"passed", attempt.score ? Json(attempt.is_passed) : Json(nullptr)},
+          {"passed", learning::counts(results::ending_of(attempt.state)) ? Json(attempt.is_passed) : Json(nullptr)},
           {"duration_s", rounded(attempt.duration_s)},
           {"station", or_null(attempt.station)}};
 }

@@ -15,9 +15,10 @@
 namespace trocar::web {
 namespace {
 
-/// {"path_length": [q1, median, q3]} of the experts at a task: of real ones, of simulated ones if there are no others.
-Result<Json> expert_quartiles(results::Repository& repository, const std::string& task) {
-  TROCAR_TRY(const std::vector<results::ExpertMeasures> measures, results::expert_measures(repository, task));
+/// {"path_length": [q1, median, q3]} over the means of the experts at a task without this person: of real ones, of
+/// simulated ones if there are no others.
+Result<Json> expert_quartiles(results::Repository& repository, const std::string& task, const std::string& without) {
+  TROCAR_TRY(const std::vector<results::ExpertMeasures> measures, results::expert_measures(repository, task, without));
   Json json = Json::object();
   for (const results::ExpertMeasures& one : measures)
     if (const auto quartiles = cohort::quartiles_of(one.values))
@@ -25,13 +26,17 @@ Result<Json> expert_quartiles(results::Repository& repository, const std::string
   return json;
 }
 
-Result<Json> experts_of(Backend& backend, const std::string& task, const Moment& now) {
+/// `person`: whose attempt is compared with them.
+Result<Json> experts_of(Backend& backend, const std::string& task, const results::Person& person, const Moment& now) {
+  // Trainees share one answer.
+  const std::string without = person.group == results::Group::kExpert ? person.id : std::string();
   TROCAR_TRY(const AnswerCache::Value text,
-             backend.statistics.get("experts\n" + task, now.steady, [&backend, task]() -> Result<AnswerCache::Value> {
-               const auto repository = backend.repositories.borrow();
-               TROCAR_TRY(const Json json, expert_quartiles(*repository, task));
-               return std::make_shared<const std::string>(config::json_text(json, -1));
-             }));
+             backend.statistics.get("experts\n" + task + "\n" + without, now.steady,
+                                    [&backend, task, without]() -> Result<AnswerCache::Value> {
+                                      const auto repository = backend.repositories.borrow();
+                                      TROCAR_TRY(const Json json, expert_quartiles(*repository, task, without));
+                                      return std::make_shared<const std::string>(config::json_text(json, -1));
+                                    }));
   return config::parse_json(*text, "experts");
 }
 
@@ -87,7 +92,7 @@ Result<std::optional<Json>> load_json_of(Backend& backend, const std::string& id
   if (!loaded) return std::optional<Json>();
   const results::AttemptRecord* const record = &loaded->record;
   const results::Person* const person = &loaded->person;
-  TROCAR_TRY(const Json experts, experts_of(backend, record->attempt.the_case.task, now));
+  TROCAR_TRY(const Json experts, experts_of(backend, record->attempt.the_case.task, *person, now));
   Json attempt = attempt_json(record->attempt);
   attempt["task_title"] = backend.titles.task_title(record->attempt.the_case.task);
   attempt["person"] = {{"id", person->id}, {"name", person->name}, {"simulated", person->is_simulated}};

@@ -1,9 +1,10 @@
-// Distributions of a metric by group, and the evidence that scores mean something.
+// Distributions of a metric by group, the evidence that scores mean something, and trials to proficiency.
 #include <algorithm>
 #include <map>
 
 #include "cohort/separation.h"
 #include "results/attempts.h"
+#include "results/proficiency.h"
 #include "results/validity.h"
 #include "web/api/route.h"
 
@@ -34,16 +35,38 @@ Result<HttpAnswer> list_metrics(Backend& backend, const Call& call) {
 using Samples = std::vector<results::MetricSample>;
 using GroupKey = std::pair<results::Group, bool>;  ///< And whether they are simulated.
 
+/// A person counts once, with the mean of the attempts: those of one person are not independent.
+struct PersonValue {
+  GroupKey group;
+  double mean = 0.0;
+  std::size_t attempts = 0;
+};
+using People = std::vector<PersonValue>;
+
+People people_of(const Samples& samples) {
+  std::map<std::string, std::pair<GroupKey, std::vector<std::optional<double>>>> by_person;
+  for (const results::MetricSample& sample : samples) {
+    auto& [group, values] = by_person[sample.person_id];
+    group = {sample.group, sample.is_simulated};
+    if (sample.value) values.push_back(sample.value);
+  }
+  People people;
+  for (const auto& [id, of_person] : by_person)
+    if (const auto mean = cohort::person_mean(of_person.second))
+      people.push_back({of_person.first, *mean, of_person.second.size()});
+  return people;
+}
+
 /// Borders of bins of equal width over all values.
-std::vector<double> edges_of(const Samples& samples) {
-  if (samples.empty()) return {};
-  const auto [low, high] = std::minmax_element(samples.begin(), samples.end(),
-                                               [](const auto& a, const auto& b) { return a.value < b.value; });
-  if (low->value >= high->value) return {low->value - 0.5, low->value + 0.5};
+std::vector<double> edges_of(const People& people) {
+  if (people.empty()) return {};
+  const auto [low, high] =
+      std::minmax_element(people.begin(), people.end(), [](const auto& a, const auto& b) { return a.mean < b.mean; });
+  if (low->mean >= high->mean) return {low->mean - 0.5, low->mean + 0.5};
   std::vector<double> edges;
   for (std::size_t n = 0; n < kBins; ++n)
-    edges.push_back(low->value + (high->value - low->value) * static_cast<double>(n) / static_cast<double>(kBins));
-  edges.push_back(high->value);
+    edges.push_back(low->mean + (high->mean - low->mean) * static_cast<double>(n) / static_cast<double>(kBins));
+  edges.push_back(high->mean);
   return edges;
 }
 
@@ -57,16 +80,20 @@ std::vector<std::size_t> counts_of(const std::vector<double>& values, const std:
   return counts;
 }
 
-Json groups_json(const Samples& samples, const std::vector<double>& edges) {
+Json groups_json(const People& people, const std::vector<double>& edges) {
   std::map<GroupKey, std::vector<double>> values;
-  for (const results::MetricSample& sample : samples)
-    values[{sample.group, sample.is_simulated}].push_back(sample.value);
+  std::map<GroupKey, std::size_t> attempts;
+  for (const PersonValue& person : people) {
+    values[person.group].push_back(person.mean);
+    attempts[person.group] += person.attempts;
+  }
   Json groups = Json::array();
   for (const auto& [key, of_group] : values) {
     const cohort::Quartiles quartiles = *cohort::quartiles_of(of_group);
     groups.push_back({{"group", results::to_string(key.first)},
                       {"simulated", key.second},
                       {"n", of_group.size()},
+                      {"attempts", attempts[key]},
                       {"counts", counts_of(of_group, edges)},
                       {"min", quartiles.min},
                       {"q1", quartiles.q1},
@@ -83,34 +110,34 @@ cohort::Better better_of(metrics::Better better) {
 }
 
 /// Whether both groups have real people: then simulated ones are left out, as in results::validity_of.
-bool has_real_groups(const Samples& samples) {
+bool has_real_groups(const People& people) {
   const auto has_real = [&](results::Group group) {
-    return std::any_of(samples.begin(), samples.end(),
-                       [&](const auto& sample) { return sample.group == group && !sample.is_simulated; });
+    return std::any_of(people.begin(), people.end(), [&](const PersonValue& person) {
+      return person.group == GroupKey{group, false};
+    });
   };
   return has_real(results::Group::kExpert) && has_real(results::Group::kTrainee);
 }
 
-/// Of the people's means: attempts of one person are not independent.
-Result<cohort::Separation> separation_of(const Samples& samples, metrics::Better better) {
-  const bool is_real_only = has_real_groups(samples);
-  std::map<std::pair<results::Group, std::string>, std::vector<std::optional<double>>> by_person;
-  for (const results::MetricSample& sample : samples)
-    if (!is_real_only || !sample.is_simulated) by_person[{sample.group, sample.person_id}].emplace_back(sample.value);
+Result<cohort::Separation> separation_of(const People& people, metrics::Better better) {
+  const bool is_real_only = has_real_groups(people);
   std::vector<double> experts, novices;
-  for (const auto& [key, values] : by_person)
-    (key.first == results::Group::kExpert ? experts : novices).push_back(*cohort::person_mean(values));
+  for (const PersonValue& person : people) {
+    const auto& [group, is_simulated] = person.group;
+    if (!is_real_only || !is_simulated) (group == results::Group::kExpert ? experts : novices).push_back(person.mean);
+  }
   return cohort::separation_of(experts, novices, better_of(better));
 }
 
 Json distribution_json(const Titles::Metric& metric, const Samples& samples) {
   Json json = metric_json(metric);
-  const std::vector<double> edges = edges_of(samples);
+  const People people = people_of(samples);
+  const std::vector<double> edges = edges_of(people);
   json["edges"] = edges;
-  json["groups"] = groups_json(samples, edges);
+  json["groups"] = groups_json(people, edges);
   json["auc"] = nullptr;
   json["reason"] = nullptr;
-  if (const auto separation = separation_of(samples, metric.better)) {
+  if (const auto separation = separation_of(people, metric.better)) {
     json["auc"] = {
         {"value", separation->auc}, {"low", separation->auc_interval.low}, {"high", separation->auc_interval.high}};
   } else {
@@ -196,30 +223,111 @@ Json pass_mark_json(const Result<cohort::PassMark>& mark) {
           {"reason", nullptr}};
 }
 
-Json validity_json(const std::string& task, const cohort::Validity& validity) {
+Json texts_json(const std::vector<std::string>& texts) {
+  Json list = Json::array();
+  for (const std::string& text : texts) list.push_back(text);
+  return list;
+}
+
+Json validity_json(const results::EvidenceFilter& filter, const cohort::Validity& validity,
+                   const results::EvidenceChoices& choices, const learning::AttemptCounts& counts) {
   Json metrics = Json::array();
   for (const cohort::MetricValidity& metric : validity.metrics) metrics.push_back(separated_json(metric));
-  return {{"task", task},
+  return {{"task", filter.task},
+          {"patients", texts_json(choices.patients)},
+          {"levels", texts_json(choices.levels)},
+          {"counts_text", learning::counts_text(counts)},
+          {"expert_attempts", validity.expert_attempts},
+          {"novice_attempts", validity.novice_attempts},
+          {"expert_unscored", validity.expert_unscored},
+          {"novice_unscored", validity.novice_unscored},
           {"experts", validity.experts},
           {"novices", validity.novices},
           {"simulated", validity.simulated > 0},
           {"score", separated_json(validity.score)},
+          {"passed", separated_json(validity.passes)},
           {"metrics", std::move(metrics)},
           {"discriminating", discriminating_json(validity)},
           {"alpha", alpha_json(validity.alpha)},
           {"pass_mark", pass_mark_json(validity.pass_mark)}};
 }
 
+Result<Json> load_validity(results::Repository& repository, const results::EvidenceFilter& filter) {
+  TROCAR_TRY(const cohort::Validity validity, results::validity_of(repository, filter));
+  TROCAR_TRY(const results::EvidenceChoices choices, results::evidence_choices(repository, filter.task));
+  TROCAR_TRY(const learning::AttemptCounts counts,
+             results::count_attempts(repository, {{}, filter.task, filter.course, filter.patient, filter.level}));
+  return validity_json(filter, validity, choices, counts);
+}
+
 Result<HttpAnswer> show_validity(Backend& backend, const Call& call) {
-  TROCAR_TRY(const std::string task, query_task(call.request));
-  TROCAR_TRY(const std::string course, query_course(call.request));
-  return cached(backend.statistics, backend.repositories, "validity\n" + task + "\n" + course, call.now, "task",
-                [=, &backend](results::Repository& repository) -> Result<std::optional<Json>> {
-                  results::EvidenceFilter filter;
-                  filter.task = task;
-                  filter.course = course;
-                  TROCAR_TRY(const cohort::Validity validity, results::validity_of(repository, filter));
-                  return std::optional<Json>(validity_json(task, validity));
+  results::EvidenceFilter filter;
+  TROCAR_TRY(filter.task, query_task(call.request));
+  TROCAR_TRY(filter.course, query_course(call.request));
+  TROCAR_TRY(filter.patient, query_patient(call.request));
+  TROCAR_TRY(filter.level, query_level(call.request));
+  const std::string key =
+      "validity\n" + filter.task + "\n" + filter.course + "\n" + filter.patient + "\n" + filter.level;
+  return cached(backend.statistics, backend.repositories, key, call.now, "task",
+                [=](results::Repository& repository) -> Result<std::optional<Json>> {
+                  TROCAR_TRY(Json json, load_validity(repository, filter));
+                  return std::optional<Json>(std::move(json));
+                });
+}
+
+Json proficiency_json(const results::GroupProficiency& group) {
+  Json people = Json::array();
+  for (const results::PersonProficiency& one : group.people)
+    people.push_back({{"id", one.person.id},
+                      {"name", one.person.name},
+                      {"attempts", one.counts.counted()},
+                      {"passed", one.counts.passed},
+                      {"trials", or_null(one.trials)},
+                      {"practice_s", rounded(one.practice_s)},
+                      {"first_pass_share", or_null(one.first_pass_share)},
+                      {"time_to_target_s", or_null(one.time_to_target_s)}});
+  Json curve = Json::array();
+  for (const cohort::Survival::Step& step : group.trials.steps)
+    curve.push_back({{"trials", step.time}, {"at_risk", step.at_risk}, {"open_share", step.open_share}});
+  return {{"group", results::to_string(group.group)},
+          {"simulated", group.is_simulated},
+          {"counts_text", learning::counts_text(group.counts)},
+          {"people_count", group.trials.people},
+          {"proficient", group.trials.reached},
+          {"not_yet", group.trials.censored()},
+          {"median", or_null(group.trials.median)},
+          {"low", or_null(group.trials.low)},
+          {"high", or_null(group.trials.high)},
+          {"curve", std::move(curve)},
+          {"practice_s", rounded(group.practice_s)},
+          {"instructor", results::instructor_time_text(group)},
+          {"first_pass_share", or_null(group.first_pass_share)},
+          {"time_to_target_s", or_null(group.time_to_target_s)},
+          {"people", std::move(people)}};
+}
+
+Result<HttpAnswer> show_proficiency(Backend& backend, const Call& call) {
+  results::ProficiencyFilter filter;
+  TROCAR_TRY(filter.task, query_task(call.request));
+  TROCAR_TRY(filter.course, query_course(call.request));
+  TROCAR_TRY(filter.patient, query_patient(call.request));
+  TROCAR_TRY(filter.level, query_level(call.request));
+  const std::string key =
+      "proficiency\n" + filter.task + "\n" + filter.course + "\n" + filter.patient + "\n" + filter.level;
+  const results::ProficiencyRules rules = backend.titles.proficiency();
+  return cached(backend.statistics, backend.repositories, key, call.now, "task",
+                [=](results::Repository& repository) -> Result<std::optional<Json>> {
+                  TROCAR_TRY(const auto groups, results::proficiency_of(repository, filter, rules));
+                  TROCAR_TRY(const results::EvidenceChoices choices,
+                             results::evidence_choices(repository, filter.task));
+                  Json list = Json::array();
+                  for (const results::GroupProficiency& group : groups) list.push_back(proficiency_json(group));
+                  return std::optional<Json>(Json{{"task", filter.task},
+                                                  {"score", rules.score},
+                                                  {"passes_in_a_row", rules.passes_in_a_row},
+                                                  {"patients", texts_json(choices.patients)},
+                                                  {"levels", texts_json(choices.levels)},
+                                                  {"groups", std::move(list)}});
                 });
 }
 
@@ -230,6 +338,7 @@ std::vector<Route> metric_routes() {
       {"GET", "/api/metrics", Access::kInstructor, list_metrics},
       {"GET", "/api/metrics/*", Access::kInstructor, show_distribution},
       {"GET", "/api/validity", Access::kInstructor, show_validity},
+      {"GET", "/api/proficiency", Access::kInstructor, show_proficiency},
   };
 }
 

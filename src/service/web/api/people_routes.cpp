@@ -18,9 +18,10 @@ namespace {
 using Summaries = std::map<std::string, std::vector<results::TaskSummary>>;  ///< By person.
 
 Json summary_json(const results::TaskSummary& summary) {
-  return {{"attempts", summary.attempts},
-          {"scored", summary.scored},
-          {"passed", summary.passed},
+  return {{"attempts", summary.counts.counted()},
+          {"scored", summary.counts.scored},
+          {"passed", summary.counts.passed},
+          {"counts_text", learning::counts_text(summary.counts)},
           {"last_score", or_null(summary.last_score)},
           {"best_score", or_null(summary.best_score)},
           {"recent_mean", or_null(summary.recent_mean)},
@@ -140,15 +141,16 @@ Json curve_json(const results::LearningCurve& curve) {
                       {"attempt", attempt.id},
                       {"started_s", seconds_of(attempt.started)},
                       {"score", or_null(attempt.score)},
-                      {"passed", attempt.score ? Json(attempt.is_passed) : Json(nullptr)},
+                      {"passed", attempt.is_passed},
                       {"patient", attempt.the_case.patient},
                       {"difficulty", attempt.the_case.difficulty ? Json(*attempt.the_case.difficulty) : Json(nullptr)},
                       {"moving_mean", or_null(point.moving_mean)}});
-    cusum.push_back(or_null(point.cusum));
+    cusum.push_back(point.cusum);
   }
   for (const auto& point : curve.peer_curve) peers.push_back(point ? Json(rounded(point->mean)) : Json(nullptr));
   const cohort::CusumRates rates = results::CurveRules().cusum;
   Json json = {{"points", std::move(points)},
+               {"counts_text", learning::counts_text(curve.counts)},
                {"cusum",
                 {{"values", std::move(cusum)},
                  {"upper", curve.cusum.upper},

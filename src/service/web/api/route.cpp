@@ -86,6 +86,20 @@ Result<std::string> query_course(const HttpRequest& request) {
   return results::clean_name(*course, "the name of a course");
 }
 
+Result<std::string> query_patient(const HttpRequest& request) {
+  const auto patient = request.find_query("patient");
+  if (!patient || patient->empty()) return std::string();
+  return results::clean_name(*patient, "the name of a case");
+}
+
+Result<std::string> query_level(const HttpRequest& request) {
+  const auto level = request.find_query("level");
+  if (!level || level->empty()) return std::string();
+  if (!learning::find_level(*level))
+    return fail_usage("not a level of help", "level", "choose guided, assisted or exam");
+  return std::string(*level);
+}
+
 bool is_id(std::string_view text) noexcept {
   constexpr std::size_t kDigits = 32;
   return text.size() == kDigits && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;

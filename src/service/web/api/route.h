@@ -89,6 +89,10 @@ HttpAnswer ok(const Json& json, int status = 200);
 Result<std::string> query_task(const HttpRequest& request);
 /// A course of the query; empty: all. Error (exit status 2): no name of a course.
 Result<std::string> query_course(const HttpRequest& request);
+/// A case of the query ("biopsy-2"); empty: all. Error (exit status 2): no name of a case.
+Result<std::string> query_patient(const HttpRequest& request);
+/// A level of help of the query; empty: all. Error (exit status 2): no level.
+Result<std::string> query_level(const HttpRequest& request);
 /// Whether a text is a key of a row: 32 hexadecimal digits.
 bool is_id(std::string_view text) noexcept;
 

@@ -1,5 +1,6 @@
 #include "web/api/titles.h"
 
+#include "learning/curriculum.h"
 #include "tasks/task.h"
 
 namespace trocar::web {
@@ -12,6 +13,8 @@ Result<Titles> Titles::load(const std::filesystem::path& data_folder) {
     titles.position_.emplace(metric.name, titles.metrics_.size());
     titles.metrics_.push_back({metric.name, metric.title, metric.unit, metric.better});
   }
+  TROCAR_TRY(const learning::LearningRules rules, learning::load_rules(data_folder / learning::kRulesFile));
+  titles.proficiency_ = {rules.mastery_score, rules.passes_in_a_row};
   return titles;
 }
 

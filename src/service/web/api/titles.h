@@ -7,13 +7,14 @@
 
 #include "core/result.h"
 #include "metrics/metric.h"
+#include "results/proficiency.h"
 
 namespace trocar::web {
 
-/// Names that people read: titles of tasks and metrics, and their order.
+/// What the data folder says: titles of tasks and metrics, their order, and when a person is called proficient.
 class Titles {
  public:
-  /// From the data folder. Errors: those of tasks::load_tasks.
+  /// From the data folder. Errors: those of tasks::load_tasks and learning::load_rules.
   static Result<Titles> load(const std::filesystem::path& data_folder);
 
   struct Task {
@@ -30,6 +31,7 @@ class Titles {
   const Metric& score() const noexcept { return score_; }
   /// A metric of the catalogue; another one with this unit and its name as title if there is none.
   Metric metric(std::string_view name, std::string_view unit) const;
+  const results::ProficiencyRules& proficiency() const noexcept { return proficiency_; }
   /// Position in reports; those that are not in the catalogue come last.
   std::size_t order_of(std::string_view name) const;
 
@@ -37,6 +39,7 @@ class Titles {
   std::vector<Task> tasks_;
   std::vector<Metric> metrics_;
   std::map<std::string, std::size_t, std::less<>> position_;
+  results::ProficiencyRules proficiency_;
   Metric score_{"score", "Score", "points", metrics::Better::kHigher};
 };
 

@@ -1,0 +1,151 @@
+// trocar results proficiency: how many attempts people need, and how long it takes.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "config/json.h"
+#include "json_parts.h"
+#include "learning/curriculum.h"
+#include "results/proficiency.h"
+#include "results/validity.h"
+#include "results_commands.h"
+#include "tasks/task.h"
+
+namespace trocar::cli {
+namespace {
+
+using results::GroupProficiency;
+
+constexpr double kMinute_s = 60.0;
+
+struct ProficiencyArguments {
+  results::ProficiencyFilter filter;
+  results::ProficiencyRules rules;
+  std::int64_t in_a_row = 0;
+  bool is_json = false;
+};
+
+config::Json person_json(const results::PersonProficiency& one) {
+  return {{"name", one.person.name},
+          {"attempts", counts_json(one.counts)},
+          {"trials_to_proficiency", or_null(one.trials)},
+          {"practice_s", one.practice_s},
+          {"first_pass_share", or_null(one.first_pass_share)},
+          {"time_to_target_s", or_null(one.time_to_target_s)}};
+}
+
+config::Json group_json(const GroupProficiency& group) {
+  config::Json people = config::Json::array();
+  for (const results::PersonProficiency& one : group.people) people.push_back(person_json(one));
+  return {{"group", to_string(group.group)},
+          {"simulated", group.is_simulated},
+          {"attempts", counts_json(group.counts)},
+          {"trials_to_proficiency",
+           {{"people", group.trials.people},
+            {"proficient", group.trials.reached},
+            {"not_yet", group.trials.censored()},
+            {"median", or_null(group.trials.median)},
+            {"low", or_null(group.trials.low)},
+            {"high", or_null(group.trials.high)}}},
+          {"practice_s", group.practice_s},
+          {"instructor_minutes", nullptr},
+          {"instructor_minutes_reason", results::instructor_time_text(group)},
+          {"first_pass_share", or_null(group.first_pass_share)},
+          {"time_to_target_s", or_null(group.time_to_target_s)},
+          {"people", std::move(people)}};
+}
+
+std::string or_dash(const std::optional<double>& value, double factor, int decimals, const char* unit) {
+  return value ? fmt::format("{:.{}f} {}", factor * *value, decimals, unit) : std::string("-");
+}
+
+std::string trials_text(const cohort::Survival& trials) {
+  const std::string open =
+      fmt::format("{} of {} people are proficient, {} not yet", trials.reached, trials.people, trials.censored());
+  if (!trials.median) return fmt::format("no median: {}", open);
+  const auto limit = [](const std::optional<double>& value) {
+    return value ? fmt::format("{:.0f}", *value) : std::string("open");
+  };
+  return fmt::format("median {:.0f} (95 % {} to {}; Kaplan-Meier); {}", *trials.median, limit(trials.low),
+                     limit(trials.high), open);
+}
+
+void print_group(const GroupProficiency& group) {
+  fmt::print("{}s{}: {} people, {}\n", to_string(group.group), group.is_simulated ? ", simulated" : "",
+             group.people.size(), learning::counts_text(group.counts));
+  std::size_t width = 4;
+  for (const results::PersonProficiency& one : group.people) width = std::max(width, one.person.name.size());
+  fmt::print("  {:<{}}  {:>8} {:>7}  {:>10}  {:>12}  {:>10}  {:>14}\n", "name", width, "attempts", "passed", "trials",
+             "practice", "first pass", "time to target");
+  for (const results::PersonProficiency& one : group.people)
+    fmt::print("  {:<{}}  {:>8} {:>7}  {:>10}  {:>12}  {:>10}  {:>14}\n", one.person.name, width, one.counts.counted(),
+               one.counts.passed, one.trials ? fmt::format("{}", *one.trials) : fmt::format("not yet"),
+               fmt::format("{:.1f} min", one.practice_s / kMinute_s), or_dash(one.first_pass_share, 100.0, 0, "%"),
+               or_dash(one.time_to_target_s, 1.0, 1, "s"));
+  fmt::print("  trials to proficiency: {}\n", trials_text(group.trials));
+  fmt::print("  first-pass success: {} (mean of the people's shares); time to target: {} (median of their medians)\n",
+             or_dash(group.first_pass_share, 100.0, 0, "%"), or_dash(group.time_to_target_s, 1.0, 1, "s"));
+  fmt::print("  instructor's minutes: {}\n", results::instructor_time_text(group));
+}
+
+/// The rules of data/learning.toml where the command line has none.
+Status complete_rules(ProficiencyArguments& arguments, bool has_score) {
+  TROCAR_TRY(const std::filesystem::path file, find_data(learning::kRulesFile));
+  TROCAR_TRY(const learning::LearningRules rules, learning::load_rules(file));
+  if (!has_score) arguments.rules.score = rules.mastery_score;
+  arguments.rules.passes_in_a_row =
+      arguments.in_a_row > 0 ? static_cast<int>(arguments.in_a_row) : rules.passes_in_a_row;
+  return {};
+}
+
+Status show_proficiency(const std::string& url, ProficiencyArguments& arguments, bool has_score) {
+  TROCAR_TRY_STATUS(complete_rules(arguments, has_score));
+  TROCAR_TRY(results::Repository repository, open_results(url, database::Missing::kRefuse));
+  const results::ProficiencyFilter& filter = arguments.filter;
+  TROCAR_TRY(const std::vector<GroupProficiency> groups, results::proficiency_of(repository, filter, arguments.rules));
+  if (groups.empty()) {
+    TROCAR_TRY(const learning::AttemptCounts counts,
+               results::count_attempts(repository, {{}, filter.task, filter.course, filter.patient, filter.level}));
+    return fail(learning::counts_text(counts), filter.task, "see trocar results list");
+  }
+  if (arguments.is_json) {
+    config::Json list = config::Json::array();
+    for (const GroupProficiency& group : groups) list.push_back(group_json(group));
+    print_json({{"task", filter.task},
+                {"score", arguments.rules.score},
+                {"passes_in_a_row", arguments.rules.passes_in_a_row},
+                {"groups", std::move(list)}});
+    return {};
+  }
+  std::string of = filter.task;
+  for (const std::string& part : {filter.patient, filter.level})
+    if (!part.empty()) of += ", " + part;
+  fmt::print("proficiency at {}: {} passes in a row with at least {:g} points\n", of, arguments.rules.passes_in_a_row,
+             arguments.rules.score);
+  for (const GroupProficiency& group : groups) print_group(group);
+  return {};
+}
+
+}  // namespace
+
+void add_results_proficiency_command(Command& results, const DatabaseOption& url, Action& action) {
+  Command command = results.add_command(
+      "proficiency", "Show how many attempts people need to become proficient, first-pass success and time");
+  const auto a = std::make_shared<ProficiencyArguments>();
+  command.add_option("--task", a->filter.task, "Task; see trocar task list").required();
+  command.add_option("--course", a->filter.course, "Only people of this course");
+  command.add_option("--patient", a->filter.patient, "Only attempts at this case: biopsy-2");
+  command.add_option("--level", a->filter.level, "Only attempts at this level of help")
+      .one_of({"guided", "assisted", "exam"});
+  Option score =
+      command.add_option("--score", a->rules.score, "Least points of a pass that counts [data/learning.toml]")
+          .number_within(0.0, 100.0, "");
+  command.add_option("--in-a-row", a->in_a_row, "Passes in a row [data/learning.toml]").whole_number_within(1, 20);
+  command.add_flag("--json", a->is_json, "Print one JSON object");
+  command.footer("Example:\n  trocar results proficiency --task liver-biopsy --course \"Radiology 2026\"\n");
+  command.when_parsed(
+      [&action, url, a, score] { action = [url, a, score] { return show_proficiency(*url, *a, score.is_given()); }; });
+}
+
+}  // namespace trocar::cli

@@ -1,0 +1,115 @@
+#include "results/proficiency.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "cohort/summary.h"
+
+namespace trocar::results {
+namespace {
+
+using Values = std::map<std::int64_t, double>;  ///< Of a metric, by sequence of the attempt.
+
+Status check_rules(const ProficiencyRules& rules) {
+  if (rules.score >= 0.0 && rules.score <= 100.0 && rules.passes_in_a_row >= 1 && rules.passes_in_a_row <= 20)
+    return {};
+  return fail_usage(fmt::format("{} passes in a row with {:g} points is no rule", rules.passes_in_a_row, rules.score),
+                    "proficiency", "use 1 to 20 passes and 0 to 100 points");
+}
+
+Result<Values> values_of(Repository& repository, const std::string& task, std::string_view metric) {
+  TROCAR_TRY(const std::vector<MetricSample> samples, metric_samples(repository, task, metric));
+  Values values;
+  for (const MetricSample& sample : samples)
+    if (sample.value) values[sample.sequence] = *sample.value;
+  return values;
+}
+
+std::vector<double> of_attempts(const Values& values, const std::vector<Attempt>& attempts) {
+  std::vector<double> found;
+  for (const Attempt& attempt : attempts)
+    if (const auto value = values.find(attempt.sequence); value != values.end()) found.push_back(value->second);
+  return found;
+}
+
+std::optional<double> mean_or_none(const std::vector<double>& values) {
+  return values.empty() ? std::nullopt : std::optional(cohort::mean_of(values));
+}
+
+/// The cohort's figures from those of its people.
+Status summarise(GroupProficiency& group) {
+  std::vector<cohort::FollowUp> trials;
+  std::vector<double> shares, times;
+  for (const PersonProficiency& one : group.people) {
+    group.counts.add(one.counts);
+    group.practice_s += one.practice_s;
+    const double followed = static_cast<double>(one.trials.value_or(static_cast<std::size_t>(one.counts.counted())));
+    trials.push_back({followed, one.trials.has_value()});
+    if (one.first_pass_share) shares.push_back(*one.first_pass_share);
+    if (one.time_to_target_s) times.push_back(*one.time_to_target_s);
+  }
+  TROCAR_TRY(group.trials, cohort::survival_of(trials));
+  group.first_pass_share = mean_or_none(shares);
+  group.time_to_target_s = cohort::quantile_of(times, 0.5);
+  return {};
+}
+
+}  // namespace
+
+std::optional<std::size_t> trials_to_proficiency(const std::vector<Attempt>& attempts, const ProficiencyRules& rules) {
+  int in_a_row = 0;
+  for (std::size_t n = 0; n < attempts.size(); ++n) {
+    const bool is_success = attempts[n].is_passed && attempts[n].score.value_or(0.0) >= rules.score;
+    in_a_row = is_success ? in_a_row + 1 : 0;
+    if (in_a_row == rules.passes_in_a_row) return n + 1;
+  }
+  return std::nullopt;
+}
+
+Result<std::vector<GroupProficiency>> proficiency_of(Repository& repository, const ProficiencyFilter& filter,
+                                                     const ProficiencyRules& rules) {
+  TROCAR_TRY_STATUS(check_rules(rules));
+  const AttemptFilter chosen{{}, filter.task, filter.course, filter.patient, filter.level};
+  TROCAR_TRY(const std::vector<Attempt> all, list_attempts(repository, chosen));
+  TROCAR_TRY(const std::vector<Person> people, list_people(repository));
+  TROCAR_TRY(const Values first_passes, values_of(repository, filter.task, "first_pass_success"));
+  TROCAR_TRY(const Values times, values_of(repository, filter.task, "time_to_target"));
+  std::map<std::string, std::vector<Attempt>> by_person;
+  for (const Attempt& attempt : all) by_person[attempt.person_id].push_back(attempt);
+  std::map<std::pair<Group, bool>, GroupProficiency> groups;
+  for (const Person& person : people) {
+    std::vector<Attempt>& attempts = by_person[person.id];
+    PersonProficiency one{person, {}, {}, 0.0, {}, {}};
+    for (const Attempt& attempt : attempts) {
+      one.counts.add(ending_of(attempt.state), attempt.is_passed);
+      one.practice_s += attempt.duration_s;
+    }
+    if (one.counts.counted() == 0) continue;
+    std::erase_if(attempts, [](const Attempt& attempt) { return !learning::counts(ending_of(attempt.state)); });
+    one.trials = trials_to_proficiency(attempts, rules);
+    one.first_pass_share = mean_or_none(of_attempts(first_passes, attempts));
+    one.time_to_target_s = cohort::quantile_of(of_attempts(times, attempts), 0.5);
+    GroupProficiency& group = groups[{person.group, person.is_simulated}];
+    group.group = person.group;
+    group.is_simulated = person.is_simulated;
+    group.people.push_back(std::move(one));
+  }
+  std::vector<GroupProficiency> found;
+  for (auto& [key, group] : groups) {
+    TROCAR_TRY_STATUS(summarise(group));
+    found.push_back(std::move(group));
+  }
+  return found;
+}
+
+std::string instructor_time_text(const GroupProficiency& group) {
+  constexpr double kMinute_s = 60.0;
+  return fmt::format(
+      "not recorded: no program knows who stood by. The attempts took {:.0f} min of recorded needle time, which is the "
+      "most that an instructor can have watched",
+      group.practice_s / kMinute_s);
+}
+
+}  // namespace trocar::results
