@@ -72,8 +72,8 @@ std::string trials_text(const cohort::Survival& trials) {
 }
 
 void print_group(const GroupProficiency& group) {
-  fmt::print("{}s{}: {} people, {}\n", to_string(group.group), group.is_simulated ? ", simulated" : "",
-             group.people.size(), learning::counts_text(group.counts));
+  fmt::print("{}s{}: {} {}, {}\n", to_string(group.group), group.is_simulated ? ", simulated" : "", group.people.size(),
+             group.people.size() == 1 ? "person" : "people", learning::counts_text(group.counts));
   std::size_t width = 4;
   for (const results::PersonProficiency& one : group.people) width = std::max(width, one.person.name.size());
   fmt::print("  {:<{}}  {:>8} {:>7}  {:>10}  {:>12}  {:>10}  {:>14}\n", "name", width, "attempts", "passed", "trials",
@@ -107,7 +107,8 @@ Status show_proficiency(const std::string& url, ProficiencyArguments& arguments,
   if (groups.empty()) {
     TROCAR_TRY(const learning::AttemptCounts counts,
                results::count_attempts(repository, {{}, filter.task, filter.course, filter.patient, filter.level}));
-    return fail(learning::counts_text(counts), filter.task, "see trocar results list");
+    return fail(fmt::format("no attempts that count ({})", learning::counts_text(counts)), filter.task,
+                "see trocar results list");
   }
   if (arguments.is_json) {
     config::Json list = config::Json::array();

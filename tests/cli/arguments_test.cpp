@@ -18,16 +18,15 @@ TEST_P(Help, ExitsZeroWithAnExample) {
   EXPECT_EQ(outcome.err, "");
 }
 
-INSTANTIATE_TEST_SUITE_P(EveryCommand, Help,
-                         ::testing::Values("", "patient", "patient list", "patient generate", "patient build",
-                                           "patient series", "patient fetch", "patient show", "patient check",
-                                           "patient render", "plan", "task", "task list", "device", "device list",
-                                           "link", "link keygen", "run", "session", "session export", "session report",
-                                           "ultrasound", "ultrasound image", "ultrasound sweep",
-                                           "ultrasound reconstruct", "ultrasound views", "ultrasound transducers",
-                                           "results", "results people", "results list", "results import",
-                                           "results export", "results delete", "results curve", "results validity",
-                                           "serve", "serve account add", "bench", "completion", "completion bash"));
+INSTANTIATE_TEST_SUITE_P(
+    EveryCommand, Help,
+    ::testing::Values("", "patient", "patient list", "patient generate", "patient build", "patient series",
+                      "patient fetch", "patient show", "patient check", "patient render", "plan", "task", "task list",
+                      "device", "device list", "link", "link keygen", "run", "session", "session export",
+                      "session report", "ultrasound", "ultrasound image", "ultrasound sweep", "ultrasound reconstruct",
+                      "ultrasound views", "ultrasound transducers", "results", "results people", "results list",
+                      "results import", "results export", "results delete", "results curve", "results validity",
+                      "results proficiency", "serve", "serve account add", "bench", "completion", "completion bash"));
 
 class Mistake : public ::testing::TestWithParam<const char*> {};
 
@@ -76,7 +75,9 @@ INSTANTIATE_TEST_SUITE_P(
         "ultrasound sweep", "ultrasound reconstruct a.igs.mha", "ultrasound reconstruct --out x.nrrd",
         "ultrasound reconstruct a.igs.mha --out x.nii", "ultrasound reconstruct a.igs.mha --spacing 0 --out x.nrrd",
         "ultrasound reconstruct a.igs.mha --holes all --out x.nrrd", "serve nonsense", "serve --listen nowhere",
-        "serve account", "results", "results nonsense", "results --db mysql://a/b people", "results --db x add ' '"));
+        "serve account", "results", "results nonsense", "results --db mysql://a/b people", "results --db x add ' '",
+        "results --db x validity --task liver-biopsy --level 0.05", "results --db x proficiency",
+        "results --db x proficiency --task liver-biopsy --in-a-row 0"));
 
 TEST(Arguments, UnknownCommandIsNamed) {
   EXPECT_NE(trocar("nonsense").err.find("nonsense"), std::string::npos);

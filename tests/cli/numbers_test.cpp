@@ -33,6 +33,8 @@ constexpr Command kCommands[] = {
     {"trocar", "xray", "--patient abdomen --out x.png"},
     {"trocar", "results list", ""},
     {"trocar", "results curve", "--person x --task liver-biopsy"},
+    {"trocar", "results validity", "--task liver-biopsy"},
+    {"trocar", "results proficiency", "--task liver-biopsy"},
     {"trocar", "bench", "slice"},
     {"trocar-hapticd", "", ""},
 };

@@ -14,6 +14,7 @@ const kRoutes: Route[] = [
   { pattern: /^\/people\/([^/]+)$/, section: "/", load: async () => (await import("./pages/person.ts")).person_page },
   { pattern: /^\/attempts\/([^/]+)$/, section: "/", load: async () => (await import("./pages/attempt.ts")).attempt_page },
   { pattern: /^\/metrics$/, section: "/metrics", load: async () => (await import("./pages/metrics.ts")).metrics_page },
+  { pattern: /^\/proficiency$/, section: "/proficiency", load: async () => (await import("./pages/proficiency.ts")).proficiency_page },
   { pattern: /^\/validity$/, section: "/validity", load: async () => (await import("./pages/validity.ts")).validity_page },
   { pattern: /^\/forms$/, section: "/forms", load: async () => (await import("./pages/forms.ts")).forms_page },
   { pattern: /^\/forms\/(new)$/, section: "/forms", load: async () => (await import("./pages/form_editor.ts")).form_editor_page },

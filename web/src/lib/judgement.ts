@@ -4,7 +4,7 @@ import type { CurvePoint, MetricValue } from "./types.ts";
 
 /** The last decision of the sequential test: each limit that is reached decides, and the next attempt begins a new test. */
 export function cusum_verdict(values: (number | null)[], upper: number, lower: number): string {
-  if (values.every((one) => one === null)) return "There are no scored attempts yet.";
+  if (values.every((one) => one === null)) return "There are no attempts yet.";
   for (let k = values.length - 1; k >= 0; k -= 1) {
     const value = values[k];
     if (value === null) continue;

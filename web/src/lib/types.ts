@@ -19,6 +19,7 @@ export interface Course {
   name: string;
 }
 export interface TaskResult {
+  /** That count: without a result they are not passed. */
   attempts: number;
   scored: number;
   passed: number;
@@ -26,6 +27,8 @@ export interface TaskResult {
   best_score: number | null;
   recent_mean: number | null;
   last_s: number | null;
+  /** What was counted, what was left out and why. */
+  counts_text?: string;
 }
 export interface Person {
   id: string;
@@ -79,6 +82,7 @@ export interface Curve {
   cusum: { values: (number | null)[]; upper: number; lower: number; acceptable: number; unacceptable: number } | null;
   experts: { n: number; simulated?: boolean; mean: number | null; low: number | null; high: number | null } | null;
   peers: { n: number; mean_by_attempt: (number | null)[] } | null;
+  counts_text?: string;
 }
 
 export type Better = "lower" | "higher" | "neither";
@@ -91,7 +95,9 @@ export interface MetricName {
 export interface MetricGroup {
   group: string;
   simulated: boolean;
+  /** People: each counts once, with the mean of the attempts. */
   n: number;
+  attempts: number;
   counts: number[];
   min: number | null;
   q1: number | null;
@@ -170,7 +176,16 @@ export interface Validity {
   experts: number;
   novices: number;
   simulated: boolean;
+  patients?: string[];
+  levels?: string[];
+  counts_text?: string;
+  expert_attempts?: number;
+  novice_attempts?: number;
+  expert_unscored?: number;
+  novice_unscored?: number;
   score?: ValidityMetric | null;
+  /** Share of passed attempts. */
+  passed?: ValidityMetric | null;
   metrics: ValidityMetric[] | null;
   discriminating: { share: number | null; count: number | null; of: number | null; uncorrected?: number | null; note?: string | null; reason?: string | null } | null;
   alpha: { value: number | null; low?: number | null; high?: number | null; items: number | null; n: number | null; reason?: string | null } | null;
@@ -183,6 +198,43 @@ export interface Validity {
     reason?: string | null;
   } | null;
   reason?: string | null;
+}
+
+export interface PersonProficiency {
+  id: string;
+  name: string;
+  attempts: number;
+  passed: number;
+  /** Attempts up to proficiency; null: not yet. */
+  trials: number | null;
+  practice_s: number;
+  first_pass_share: number | null;
+  time_to_target_s: number | null;
+}
+export interface GroupProficiency {
+  group: "trainee" | "expert";
+  simulated: boolean;
+  counts_text: string;
+  people_count: number;
+  proficient: number;
+  not_yet: number;
+  median: number | null;
+  low: number | null;
+  high: number | null;
+  curve: { trials: number; at_risk: number; open_share: number }[];
+  practice_s: number;
+  instructor: string;
+  first_pass_share: number | null;
+  time_to_target_s: number | null;
+  people: PersonProficiency[];
+}
+export interface Proficiency {
+  task: string;
+  score: number;
+  passes_in_a_row: number;
+  patients: string[];
+  levels: string[];
+  groups: GroupProficiency[];
 }
 
 export interface FormItem {

@@ -28,11 +28,10 @@ export function matches(person: Person, filter: { search: string; course: string
 }
 
 /** Sums over all tasks of a person. */
-export function total(person: Person): { attempts: number; scored: number; passed: number; last_s: number | null } {
-  const sum = { attempts: 0, scored: 0, passed: 0, last_s: null as number | null };
+export function total(person: Person): { attempts: number; passed: number; last_s: number | null } {
+  const sum = { attempts: 0, passed: 0, last_s: null as number | null };
   for (const one of Object.values(person.tasks)) {
     sum.attempts += one.attempts;
-    sum.scored += one.scored;
     sum.passed += one.passed;
     if (one.last_s !== null) sum.last_s = Math.max(sum.last_s ?? 0, one.last_s);
   }
@@ -44,16 +43,16 @@ function score_cell(score: number | null | undefined): Child {
   return h("span", { class: "score-cell" }, bar(score / 100), h("span", { class: "score-number" }, fixed(score, 0)));
 }
 
-function passed_cell(result: { scored: number; passed: number }): Child {
-  if (result.scored === 0) return h("span", { class: "dim" }, "–");
-  return [`${result.passed} of ${result.scored} `, h("span", { class: "dim" }, `(${percent(result.passed, result.scored)})`)];
+function passed_cell(result: { attempts: number; passed: number }): Child {
+  if (result.attempts === 0) return h("span", { class: "dim" }, "–");
+  return [`${result.passed} of ${result.attempts} `, h("span", { class: "dim" }, `(${percent(result.passed, result.attempts)})`)];
 }
 
 function columns_of(overview: Overview, task: string): Column<Person>[] {
   const course_names = new Map(overview.courses.map((one) => [String(one.id), one.name]));
   const course = (person: Person): string => (person.course === null ? "–" : (course_names.get(String(person.course)) ?? String(person.course)));
   const of_task = (person: Person): TaskResult | undefined => person.tasks[task];
-  const result = (person: Person): { attempts: number; scored: number; passed: number; last_s: number | null } => (task ? (of_task(person) ?? { attempts: 0, scored: 0, passed: 0, last_s: null }) : total(person));
+  const result = (person: Person): { attempts: number; passed: number; last_s: number | null } => (task ? (of_task(person) ?? { attempts: 0, passed: 0, last_s: null }) : total(person));
   const person_path = (person: Person): string => path_with(`/people/${encodeURIComponent(person.id)}`, { task });
   const scores: Column<Person>[] = task
     ? [
@@ -72,7 +71,7 @@ function columns_of(overview: Overview, task: string): Column<Person>[] {
     { name: "name", title: "Name", is_header: true, key: (one) => one.name, cell: (one) => h("span", { class: "person" }, h("a", { href: person_path(one) }, one.name), person_badges(one)) },
     { name: "course", title: "Course", key: course, cell: course },
     { name: "attempts", title: "Attempts", is_number: true, key: (one) => result(one).attempts, cell: (one) => String(result(one).attempts) },
-    { name: "passed", title: "Passed", is_number: true, key: (one) => (result(one).scored ? result(one).passed / result(one).scored : null), cell: (one) => passed_cell(result(one)) },
+    { name: "passed", title: "Passed", is_number: true, key: (one) => (result(one).attempts ? result(one).passed / result(one).attempts : null), cell: (one) => passed_cell(result(one)) },
     ...scores,
     { name: "date", title: "Last attempt", is_number: true, key: (one) => result(one).last_s, cell: (one) => date_text(result(one).last_s) },
   ];

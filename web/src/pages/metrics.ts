@@ -17,7 +17,8 @@ function quartile_table(metric: MetricDistribution): HTMLElement {
   const value = (title: string, name: "min" | "q1" | "median" | "q3" | "max"): Column<MetricGroup> => ({ name, title, is_number: true, cell: (one) => with_unit(one[name], metric.unit) });
   const columns: Column<MetricGroup>[] = [
     { name: "group", title: "Group", is_header: true, cell: group_title },
-    { name: "n", title: "Attempts", is_number: true, cell: (one) => String(one.n) },
+    { name: "n", title: "People", is_number: true, cell: (one) => String(one.n) },
+    { name: "attempts", title: "Attempts", is_number: true, cell: (one) => String(one.attempts) },
     value("Lowest", "min"), value("Lower quartile", "q1"), value("Median", "median"), value("Upper quartile", "q3"), value("Highest", "max"),
   ];
   return data_table({ caption: "Quartiles of each group", columns, rows: metric.groups });
@@ -33,12 +34,12 @@ function show_distribution(metric: MetricDistribution, signal: AbortSignal): Chi
   return card(
     metric.title,
     {},
-    h("p", { class: "dim" }, `${kBetter[metric.better] ?? ""} ${unit ? `Unit: ${unit}.` : ""}`),
+    h("p", { class: "dim" }, `${kBetter[metric.better] ?? ""} ${unit ? `Unit: ${unit}.` : ""} Each person counts once, with the mean of the attempts.`),
     metric.auc
       ? h("p", { class: "auc" }, h("strong", {}, "Separation of experts and trainees (AUC): "), auc_text(metric.auc), interval_strip(metric.auc.value, metric.auc.low, metric.auc.high), h("span", { class: "dim" }, "0.5 is no separation, 1 is complete."))
       : h("p", { class: "notice" }, metric.reason ?? "The separation of experts and trainees is not given: it needs attempts of both groups."),
     histograms(shown, signal),
-    h("details", { class: "as-table" }, h("summary", {}, "Histogram as a table"), plain_table("Attempts in each interval", [`Interval${unit ? ` (${unit})` : ""}`, ...filled.map(group_title)], bins)),
+    h("details", { class: "as-table" }, h("summary", {}, "Histogram as a table"), plain_table("People in each interval", [`Interval${unit ? ` (${unit})` : ""}`, ...filled.map(group_title)], bins)),
     quartile_table(shown),
   );
 }

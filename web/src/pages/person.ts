@@ -31,6 +31,8 @@ function score_plot(curve: Curve, signal: AbortSignal): HTMLElement {
     { label: "Passed", values: only(scores, (k) => points[k].passed === true), colour: "good", mark: "filled-points" },
     { label: "Not passed", values: only(scores, (k) => points[k].passed !== true), colour: "bad", mark: "hollow-points" },
   );
+  // An attempt without a result has no score: its mark lies on the axis.
+  if (scores.includes(null)) series.push({ label: "No result (not passed)", values: scores.map((one) => (one === null ? 0 : null)), colour: "bad", mark: "hollow-points" });
   const last = points[points.length - 1];
   return line_plot({
     title: "Score by attempt",
@@ -42,13 +44,13 @@ function score_plot(curve: Curve, signal: AbortSignal): HTMLElement {
     whole_x: true,
     series,
     signal,
-    read_out: (k) => `Attempt ${points[k].n}, ${date_time_text(points[k].started_s)}: ${fixed(points[k].score, 0)} points on ${points[k].patient}, moving mean ${fixed(points[k].moving_mean, 0)}`,
+    read_out: (k) => `Attempt ${points[k].n}, ${date_time_text(points[k].started_s)}: ${points[k].score === null ? "no result" : `${fixed(points[k].score, 0)} points`} on ${points[k].patient}, moving mean ${fixed(points[k].moving_mean, 0)}`,
     table: () =>
       plain_table(
         "Scores by attempt",
         ["Attempt", "Started", "Patient", "Score", "Result", "Moving mean", "Peers' mean"],
         points.map((one) => [
-          String(one.n), date_time_text(one.started_s), one.patient, fixed(one.score, 0), one.passed === null ? "not scored" : one.passed ? "passed" : "not passed",
+          String(one.n), date_time_text(one.started_s), one.patient, fixed(one.score, 0), one.score === null ? "no result" : one.passed ? "passed" : "not passed",
           fixed(one.moving_mean, 1), fixed(peers?.mean_by_attempt[one.n - 1], 1),
         ]),
       ),
@@ -58,7 +60,7 @@ function score_plot(curve: Curve, signal: AbortSignal): HTMLElement {
 function cusum_plot(curve: Curve, signal: AbortSignal): Child {
   const { points } = curve;
   const cusum = curve.cusum && { ...curve.cusum, values: cusum_by_point(points, curve.cusum.values) };
-  if (!cusum || cusum.values.every((one) => one === null)) return empty_box("No CUSUM", "It needs scored attempts.");
+  if (!cusum || cusum.values.every((one) => one === null)) return empty_box("No CUSUM", "It needs attempts.");
   const known = cusum.values.filter((one): one is number => one !== null);
   const low = Math.min(cusum.lower, ...known);
   const high = Math.max(cusum.upper, ...known);
@@ -84,7 +86,7 @@ function cusum_plot(curve: Curve, signal: AbortSignal): Child {
       table: () => plain_table("CUSUM by attempt", ["Attempt", "CUSUM"], points.map((one, k) => [String(one.n), fixed(cusum.values[k], 2)])),
     }).element,
     h("p", {}, h("strong", {}, verdict)),
-    h("p", { class: "help" }, `A passed attempt lowers the curve, a failed one raises it. A limit that is reached decides, and the next attempt begins at 0. Acceptable failure rate ${fixed(100 * cusum.acceptable, 0)} %, unacceptable ${fixed(100 * cusum.unacceptable, 0)} %.`),
+    h("p", { class: "help" }, `A passed attempt lowers the curve, one that failed or ended without a result raises it. A limit that is reached decides, and the next attempt begins at 0. Acceptable failure rate ${fixed(100 * cusum.acceptable, 0)} %, unacceptable ${fixed(100 * cusum.unacceptable, 0)} %.`),
   ];
 }
 
@@ -96,7 +98,7 @@ function attempt_columns(tasks: Task[]): Column<Attempt>[] {
     { name: "patient", title: "Patient", cell: (one) => one.patient },
     { name: "level", title: "Help", cell: (one) => words(one.level) },
     { name: "score", title: "Score", is_number: true, cell: (one) => fixed(one.score, 0) },
-    { name: "result", title: "Result", cell: (one) => (one.score !== null ? passed_text(one.passed, one.score) : one.state === "finished" ? "Not scored" : words(one.state)) },
+    { name: "result", title: "Result", cell: (one) => (one.passed !== null ? passed_text(one.passed, one.score) : words(one.state)) },
     { name: "duration", title: "Duration", is_number: true, cell: (one) => duration_text(one.duration_s) },
     { name: "station", title: "Station", cell: (one) => one.station ?? "–" },
   ];
@@ -157,7 +159,7 @@ function delete_button(person: Person): HTMLElement {
 
 function show_person({ person, tasks }: PersonAnswer, wished_task: string, context: PageContext): Child {
   context.set_title(person.name);
-  const practised = tasks.filter((one) => (person.tasks[one.id]?.attempts ?? 0) > 0);
+  const practised = tasks.filter((one) => person.tasks[one.id] !== undefined);
   const header = [
     breadcrumb({ label: "Cohort", path: "/" }, { label: person.name }),
     h("div", { class: "page-head" }, h("h1", {}, person.name), person.group !== "expert" && group_badge(person.group), person_badges(person)),
@@ -181,19 +183,20 @@ function show_person({ person, tasks }: PersonAnswer, wished_task: string, conte
         { class: "facts" },
         [
           ["Attempts", String(result.attempts)],
-          ["Passed", `${result.passed} of ${result.scored} (${percent(result.passed, result.scored)})`],
+          ["Passed", `${result.passed} of ${result.attempts} (${percent(result.passed, result.attempts)})`],
           ["Mean of last 5", fixed(result.recent_mean, 0)],
           ["Best score", fixed(result.best_score, 0)],
           ["Last attempt", date_time_text(result.last_s)],
         ].map(([term, value]) => h("div", {}, h("dt", {}, term), h("dd", {}, value))),
       ),
+      result.counts_text ? h("p", { class: "dim" }, `${result.counts_text}.`) : null,
       curves,
       attempts_section(person, tasks, task, signal),
     );
     const path = path_with(`/api/people/${encodeURIComponent(person.id)}/curve`, { task });
     void load_into(curves, signal, () => get<Curve>(path, signal), (curve) =>
       curve.points.length === 0
-        ? empty_box("No curve yet", `${plural(result.attempts, "attempt")} without a score.`)
+        ? empty_box("No curve yet", `${plural(result.attempts, "attempt")} that count.`)
         : h("div", { class: "curves" }, card("Learning curve", {}, score_plot(curve, signal)), card("CUSUM", {}, cusum_plot(curve, signal))),
     );
   };

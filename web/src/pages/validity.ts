@@ -1,12 +1,13 @@
 // Evidence that the scores mean something: separation, consistency, pass mark.
 
-import { get, path_with } from "../lib/api.ts";
+import { get } from "../lib/api.ts";
 import { h, type Child } from "../lib/dom.ts";
 import { fixed, number_text, plural, unit_text } from "../lib/format.ts";
-import { write_query, type PageContext } from "../lib/router.ts";
+import type { PageContext } from "../lib/router.ts";
 import type { Overview, Validity, ValidityMetric } from "../lib/types.ts";
 import { interval_strip } from "../plots/small.ts";
-import { card, select_field } from "../ui/parts.ts";
+import { evidence_filters } from "../ui/evidence.ts";
+import { card } from "../ui/parts.ts";
 import { empty_box, load_into } from "../ui/states.ts";
 import { data_table, type Column } from "../ui/table.ts";
 
@@ -56,12 +57,14 @@ function discriminating_text(found: Validity["discriminating"]): string {
 }
 
 function show_validity(answer: Validity): Child {
-  const { discriminating, alpha, pass_mark, metrics, score } = answer;
+  const { discriminating, alpha, pass_mark, metrics, score, passed } = answer;
+  const unscored = (answer.expert_unscored ?? 0) + (answer.novice_unscored ?? 0);
   const share = discriminating?.share ?? null;
   return [
     answer.simulated &&
       h("div", { class: "notice notice-simulated" }, h("p", { class: "notice-title" }, "Simulated"), h("p", {}, "Some or all of these attempts come from scripted operators. They test the computation; they are no evidence about people.")),
-    h("p", { class: "lead" }, `${plural(answer.experts, "expert")} and ${plural(answer.novices, "novice")}${answer.simulated ? ", simulated people included" : ""}. The first three scored attempts of each person count.`),
+    h("p", { class: "lead" }, `${plural(answer.experts, "expert")} and ${plural(answer.novices, "novice")}${answer.simulated ? ", simulated people included" : ""}. The first three attempts of each person count: ${answer.expert_attempts ?? 0} of experts, ${answer.novice_attempts ?? 0} of novices${unscored ? `; ${unscored} of them ended without a result, are not passed and have no score` : ""}.`),
+    answer.counts_text ? h("p", { class: "dim" }, `Of all: ${answer.counts_text}.`) : null,
     h(
       "div",
       { class: "figures" },
@@ -73,6 +76,7 @@ function show_validity(answer: Validity): Child {
         alpha?.reason ?? answer.reason,
       ),
       score && figure_card("Separation by the score", score.auc === null ? null : fixed(score.auc, 2), `AUC of the score${interval_text(score.low, score.high)}; medians ${number_text(score.expert_median)} of experts and ${number_text(score.novice_median)} of novices.`, score.reason),
+      passed && figure_card("Separation by passes", passed.auc === null ? null : fixed(passed.auc, 2), `AUC of the share of attempts passed${interval_text(passed.low, passed.high)}; medians ${fixed(100 * (passed.expert_median ?? 0), 0)} % of experts and ${fixed(100 * (passed.novice_median ?? 0), 0)} % of novices.`, passed.reason),
       figure_card(
         "Pass mark",
         pass_mark === null || pass_mark.value === null ? null : fixed(pass_mark.value, 1),
@@ -85,21 +89,7 @@ function show_validity(answer: Validity): Child {
 }
 
 function show_tasks(overview: Overview, context: PageContext): Child {
-  if (overview.tasks.length === 0) return empty_box("No tasks", "The database has no attempts yet.");
-  const place = h("div", {});
-  const chosen = { task: context.query.get("task") || overview.tasks[0].id, course: context.query.get("course") ?? "" };
-  const show = (): void => {
-    write_query(chosen);
-    void load_into(place, context.signal, () => get<Validity>(path_with("/api/validity", chosen), context.signal), show_validity);
-  };
-  const tasks = overview.tasks.map((one) => ({ value: one.id, label: one.title }));
-  const courses = [{ value: "", label: "All courses" }, ...overview.courses.map((one) => ({ value: String(one.id), label: one.name }))];
-  const choose = (name: "task" | "course") => (value: string): void => {
-    chosen[name] = value;
-    show();
-  };
-  show();
-  return [h("div", { class: "filters" }, select_field("Task", tasks, chosen.task, choose("task")), select_field("Course", courses, chosen.course, choose("course"))), place];
+  return evidence_filters(overview, context, "/api/validity", show_validity);
 }
 
 export async function validity_page(context: PageContext): Promise<void> {

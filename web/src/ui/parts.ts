@@ -16,7 +16,8 @@ export function person_badges(person: { group?: string; simulated: boolean }): H
 }
 
 export function passed_text(passed: boolean | null, score: number | null): HTMLElement {
-  if (score === null || passed === null) return h("span", { class: "outcome" }, "Not scored");
+  if (passed === null) return h("span", { class: "outcome" }, "Does not count");
+  if (score === null) return h("span", { class: "outcome outcome-bad" }, h("span", { "aria-hidden": "true" }, "✕ "), "Not passed: no result");
   return passed
     ? h("span", { class: "outcome outcome-good" }, h("span", { "aria-hidden": "true" }, "✓ "), "Passed")
     : h("span", { class: "outcome outcome-bad" }, h("span", { "aria-hidden": "true" }, "✕ "), "Not passed");

@@ -7,6 +7,7 @@ import { current_theme, switch_theme } from "./theme.ts";
 const kSections = [
   { path: "/", label: "Cohort" },
   { path: "/metrics", label: "Metrics" },
+  { path: "/proficiency", label: "Proficiency" },
   { path: "/validity", label: "Validity" },
   { path: "/forms", label: "Questionnaires" },
   { path: "/account", label: "Account" },

@@ -155,7 +155,7 @@ describe("browsing", () => {
   test("the learning curve has a text and a table with one row an attempt", needs_mock, () =>
     with_page(async (page) => {
       const person = site.mock!.results.people[3];
-      const count = site.mock!.results.attempts.filter((one) => one.person === person.id && one.task === "liver-biopsy").length;
+      const count = site.mock!.results.attempts.filter((one) => one.person === person.id && one.task === "liver-biopsy" && one.passed !== null).length;
       await page.goto(`/people/${person.id}?task=liver-biopsy`);
       const plot = page.getByRole("img", { name: /^Score by attempt/ });
       assert.match((await plot.getAttribute("aria-label"))!, new RegExp(`${count} attempts; moving mean now \\d+ of 100`));
@@ -191,6 +191,42 @@ describe("browsing", () => {
         await page.getByLabel("Task").selectOption("ptcd");
         await page.getByText("fewer than 30 scored attempts").first().waitFor();
       }
+    }));
+
+  test("validity of a case and a level stays in the address", needs_mock, () =>
+    with_page(async (page) => {
+      await page.goto("/validity?task=liver-biopsy");
+      await settled(page);
+      await page.getByLabel("Case").selectOption("biopsy-2");
+      await page.waitForURL(/patient=biopsy-2/);
+      await settled(page);
+      await page.getByLabel("Help").selectOption("exam");
+      await page.waitForURL(/level=exam/);
+      await settled(page);
+      assert.equal(await page.getByLabel("Case").inputValue(), "biopsy-2");
+      await page.getByLabel("Task").selectOption("ptcd");
+      await page.waitForURL((url) => !url.search.includes("patient"));
+    }));
+
+  test("proficiency counts people who are not there yet, and says that nobody records the instructor", () =>
+    with_page(async (page) => {
+      await page.goto("/proficiency");
+      await settled(page);
+      for (const name of ["Attempts to proficiency", "First-pass success", "Time to the target", "Instructor's minutes"]) await page.getByRole("heading", { name }).first().waitFor();
+      await page.getByText("Not recorded", { exact: true }).first().waitFor();
+      await page.getByRole("columnheader", { name: "Attempts to proficiency" }).first().waitFor();
+      if (site.mock) await page.getByText("Not yet").first().waitFor();
+    }));
+
+  test("attempts without a result are not passed", needs_mock, () =>
+    with_page(async (page) => {
+      const one = site.mock!.results.attempts.find((attempt) => attempt.state === "unscored" && attempt.task === "liver-biopsy")!;
+      await page.goto(`/people/${one.person}?task=liver-biopsy`);
+      await settled(page);
+      await page.getByText(/attempts counted \(\d+ ended without a result\)/).first().waitFor();
+      await page.goto(`/attempts/${one.id}`);
+      await settled(page);
+      await page.getByText("Not passed: no result").first().waitFor();
     }));
 
   test("an unknown page and an unknown attempt have a clear end", () =>

@@ -27,7 +27,7 @@ async function paths(page: Page): Promise<[string, string][]> {
     await settled(page);
   }
   const form = await first_link(page, "/forms/");
-  const list: [string, string][] = [["cohort", "/"], ["cohort_task", "/?task=liver-biopsy&order=mean.down"], ["person", person], ["attempt", attempt], ["metrics", "/metrics?task=liver-biopsy&metric=target_distance"], ["validity", "/validity?task=liver-biopsy"], ["forms", "/forms"], ["form", form], ["editor", `${form}/edit`], ["account", "/account"]];
+  const list: [string, string][] = [["cohort", "/"], ["cohort_task", "/?task=liver-biopsy&order=mean.down"], ["person", person], ["attempt", attempt], ["metrics", "/metrics?task=liver-biopsy&metric=target_distance"], ["validity", "/validity?task=liver-biopsy"], ["proficiency", "/proficiency?task=liver-biopsy"], ["forms", "/forms"], ["form", form], ["editor", `${form}/edit`], ["account", "/account"]];
   await page.goto(form);
   await settled(page);
   const address = await page.getByLabel("Address of the questionnaire").inputValue();

@@ -25,7 +25,7 @@ before(async () => {
   const attempt = await first_link(page, "/attempts/");
   await page.goto("/forms");
   await settled(page);
-  paths = ["/", "/?task=liver-biopsy", person, attempt, "/metrics", "/validity", "/forms", "/forms/new", "/account", "/no/such/page"];
+  paths = ["/", "/?task=liver-biopsy", person, attempt, "/metrics", "/validity", "/proficiency", "/forms", "/forms/new", "/account", "/no/such/page"];
   const forms = await page.locator("table a[href^='/forms/']").count();
   if (forms > 0) {
     const form = await first_link(page, "/forms/");

@@ -5,6 +5,11 @@ import { kMetrics, metric_value, quantile, separation } from "./metrics.ts";
 import { Random } from "./random.ts";
 import { make_trace } from "./trace.ts";
 
+const counts_text = (all: MockAttempt[]): string => {
+  const counted = all.filter((one) => one.passed !== null);
+  const lost = all.length - counted.length;
+  return `${counted.length} attempts counted (${counted.filter((one) => one.score === null).length} ended without a result)${lost ? `, ${lost} left out: ${lost} lost to crashes` : ""}`;
+};
 const mean = (values: number[]): number | null => (values.length ? values.reduce((a, b) => a + b, 0) / values.length : null);
 const kParts: [string, string, (lost: number) => string, number][] = [
   ["target", "Distance to the target", (lost) => `${(8 * lost).toFixed(1)} mm`, 15], ["core", "Target tissue in the cores", (lost) => `${(18 * (1 - lost)).toFixed(1)} mm`, 25],
@@ -29,12 +34,14 @@ export class MockResults {
   private person_answer(person: MockPerson): Record<string, unknown> {
     const tasks: Record<string, unknown> = {};
     for (const task of kTasks) {
-      const all = this.of(person.id, task.id);
-      if (all.length === 0) continue;
+      const every = this.of(person.id, task.id);
+      const all = every.filter((one) => one.passed !== null);
+      if (every.length === 0) continue;
       const scores = all.flatMap((one) => (one.score === null ? [] : [one.score]));
       tasks[task.id] = {
         attempts: all.length, scored: scores.length, passed: all.filter((one) => one.passed).length, last_score: scores[scores.length - 1] ?? null,
-        best_score: scores.length ? Math.max(...scores) : null, recent_mean: mean(scores.slice(-5)), last_s: all[all.length - 1].started_s,
+        best_score: scores.length ? Math.max(...scores) : null, recent_mean: mean(scores.slice(-5)), last_s: every[every.length - 1].started_s,
+        counts_text: counts_text(every),
       };
     }
     const { id, name, group, course, simulated } = person;
@@ -62,7 +69,7 @@ export class MockResults {
   }
 
   curve(person: string, task: string): unknown {
-    const all = this.of(person, task);
+    const all = this.of(person, task).filter((one) => one.passed !== null);
     const recent: number[] = [];
     const points = all.map((one, k) => {
       if (one.score !== null) recent.push(one.score);
@@ -79,7 +86,7 @@ export class MockResults {
     const sorted = [...experts].sort((a, b) => a - b);
     const peers = this.people.filter((one) => one.group === "trainee" && one.id !== person).map((one) => this.of(one.id, task));
     const mean_by_attempt = points.map((_, k) => mean(peers.flatMap((one) => one[k]?.score ?? [])));
-    return { points, cusum: { values, upper, lower, acceptable: 0.2, unacceptable: 0.4 }, experts: { n: sorted.length, mean: mean(sorted), low: quantile(sorted, 0.05), high: quantile(sorted, 0.95) }, peers: { n: peers.filter((one) => one.length).length, mean_by_attempt } };
+    return { points, counts_text: counts_text(this.of(person, task)), cusum: { values, upper, lower, acceptable: 0.2, unacceptable: 0.4 }, experts: { n: sorted.length, mean: mean(sorted), low: quantile(sorted, 0.05), high: quantile(sorted, 0.95) }, peers: { n: peers.filter((one) => one.length).length, mean_by_attempt } };
   }
 
   private value_of(attempt: MockAttempt, name: string): number | null {
@@ -88,9 +95,10 @@ export class MockResults {
     const index = kMetrics.findIndex((one) => one.name === name);
     return metric_value(kMetrics[index], attempt.skill, new Random(attempt.sequence * 131 + index));
   }
-  private values(task: string, name: string, keep: (person: MockPerson) => boolean): number[] {
-    const people = new Map(this.people.map((one) => [one.id, one]));
-    return this.attempts.flatMap((one) => (one.task === task && people.has(one.person) && keep(people.get(one.person)!) ? (this.value_of(one, name) ?? []) : [])).sort((a, b) => a - b);
+  /** One mean a person. */
+  private values(task: string, name: string, keep: (person: MockPerson) => boolean, is_wanted: (attempt: MockAttempt) => boolean = () => true): number[] {
+    const means = this.people.filter(keep).map((person) => mean(this.of(person.id, task).filter(is_wanted).flatMap((one) => this.value_of(one, name) ?? [])));
+    return means.flatMap((one) => one ?? []).sort((a, b) => a - b);
   }
   metrics(): unknown {
     return { metrics: kMetrics.map(({ name, title, unit, better }) => ({ name, title, unit, better })) };
@@ -110,7 +118,7 @@ export class MockResults {
       const counts = new Array<number>(bins).fill(0);
       for (const value of lists[k]) counts[Math.min(bins - 1, Math.floor(((value - low) / (high - low || 1)) * bins))] += 1;
       const q = (share: number): number | null => quantile(lists[k], share);
-      return { group, simulated, n: lists[k].length, counts, min: q(0), q1: q(0.25), median: q(0.5), q3: q(0.75), max: q(1) };
+      return { group, simulated, n: lists[k].length, attempts: 20 * lists[k].length, counts, min: q(0), q1: q(0.25), median: q(0.5), q3: q(0.75), max: q(1) };
     });
     const value = separation([...lists[0], ...lists[1]], [...lists[2], ...lists[3]], metric.better === "lower");
     const { title, unit, better } = metric;
@@ -131,7 +139,7 @@ export class MockResults {
       const values = this.values(one.task, name, (who) => who.group === "expert");
       return { name, title, unit, better, value: this.value_of(one, name), expert_median: quantile(values, 0.5), expert_q1: quantile(values, 0.25), expert_q3: quantile(values, 0.75) };
     });
-    const fails = one.passed === false ? (one.score! < 70 ? [`The score is below the pass mark of 70.`] : ["A critical structure was touched: right portal vein."]) : [];
+    const fails = one.passed === false && one.score !== null ? (one.score < 70 ? [`The score is below the pass mark of 70.`] : ["A critical structure was touched: right portal vein."]) : [];
     const hints = [
       { text: "The tip was in the image during 62 % of the advance: stop when you lose it, and move the transducer until you see it again.", at_s: 0.5 * one.duration_s },
       { text: "The needle was redirected twice inside the liver: withdraw it to the capsule before you change its direction.", at_s: 0.62 * one.duration_s },
@@ -145,12 +153,17 @@ export class MockResults {
     return { ...make_trace(one.sequence, one.skill, Math.max(30, one.duration_s)), expert: make_trace(7, 0.96, 55) };
   }
 
-  validity(task: string): unknown {
+  private choices(task: string): { patients: string[]; levels: string[] } {
+    const all = this.attempts.filter((one) => one.task === task);
+    return { patients: [...new Set(all.map((one) => one.patient))].sort(), levels: [...new Set(all.map((one) => one.level))].sort() };
+  }
+  validity(task: string, patient: string, level: string): unknown {
+    const is_wanted = (one: MockAttempt): boolean => (!patient || one.patient === patient) && (!level || one.level === level);
     const rows = kMetrics.map((metric) => {
-      const experts = this.values(task, metric.name, (one) => one.group === "expert");
-      const novices = this.values(task, metric.name, (one) => one.group === "trainee");
+      const experts = this.values(task, metric.name, (one) => one.group === "expert", is_wanted);
+      const novices = this.values(task, metric.name, (one) => one.group === "trainee", is_wanted);
       const { name, title, unit, better } = metric;
-      const enough = experts.length >= 5 && novices.length >= 5;
+      const enough = experts.length >= 3 && novices.length >= 3;
       const auc = separation(experts, novices, better === "lower");
       return { name, title, unit, n_expert: experts.length, n_novice: novices.length, expert_median: quantile(experts, 0.5), novice_median: quantile(novices, 0.5), auc: enough ? auc : null, low: enough ? Math.max(0, auc - 0.07) : null, high: enough ? Math.min(1, auc + 0.05) : null, p: enough ? Math.max(1e-5, (1 - auc) ** 3) : null, discriminates: enough ? auc > 0.7 : null };
     });
@@ -158,9 +171,26 @@ export class MockResults {
     const count = judged.filter((one) => one.discriminates).length;
     const few = task === "ptcd";
     return {
-      task, experts: 3, novices: 23, simulated: true, metrics: rows, discriminating: judged.length ? { share: count / judged.length, count, of: judged.length, uncorrected: Math.min(judged.length, count + 2), note: "" } : null,
+      task, ...this.choices(task), counts_text: counts_text(this.attempts.filter((one) => one.task === task && is_wanted(one))), experts: 3, novices: 23, expert_attempts: 9, novice_attempts: 69, expert_unscored: 0, novice_unscored: 3, simulated: true, passed: rows[0], metrics: rows, discriminating: judged.length ? { share: count / judged.length, count, of: judged.length, uncorrected: Math.min(judged.length, count + 2), note: "" } : null,
       alpha: few ? null : { value: 0.81, items: 9, n: 640 }, pass_mark: few ? null : { value: 68.4, false_passes: 4, false_fails: 0, experts: 3, novices: 23 }, reason: few ? "fewer than 30 scored attempts" : null,
     };
+  }
+  proficiency(task: string, patient: string, level: string): unknown {
+    const kinds = [["trainee", false], ["trainee", true], ["expert", false], ["expert", true]] as const;
+    const groups = kinds.flatMap(([group, simulated]) => {
+      const members = this.people.filter((one) => one.group === group && one.simulated === simulated);
+      const every = members.map((one) => ({ one, all: this.of(one.id, task).filter((a) => (!patient || a.patient === patient) && (!level || a.level === level)) })).filter(({ all }) => all.some((a) => a.passed !== null));
+      const people = every.map(({ one, all }) => {
+        const counted = all.filter((a) => a.passed !== null);
+        const at = counted.findIndex((_, k) => k >= 2 && counted.slice(k - 2, k + 1).every((a) => a.passed && a.score! >= 80));
+        return { id: one.id, name: one.name, attempts: counted.length, passed: counted.filter((a) => a.passed).length, trials: at < 0 ? null : at + 1, practice_s: all.reduce((sum, a) => sum + a.duration_s, 0), first_pass_share: one.skill, time_to_target_s: 20 - 10 * one.skill };
+      });
+      if (people.length === 0) return [];
+      const known = people.flatMap((one) => one.trials ?? []).sort((a, b) => a - b);
+      const practice_s = people.reduce((sum, one) => sum + one.practice_s, 0);
+      return [{ group, simulated, counts_text: counts_text(every.flatMap(({ all }) => all)), people_count: people.length, proficient: known.length, not_yet: people.length - known.length, median: 2 * known.length > people.length ? known[Math.floor(people.length / 2)] : null, low: known[0] ?? null, high: null, curve: [], practice_s, instructor: `not recorded: made up, ${Math.round(practice_s / 60)} min`, first_pass_share: 0.5, time_to_target_s: 12, people }];
+    });
+    return { task, score: 80, passes_in_a_row: 3, ...this.choices(task), groups };
   }
   csv(): string {
     return ["attempt,person,task,score", ...this.attempts.slice(0, 50).map((one) => `${one.id},"'${one.person}",${one.task},${one.score ?? ""}`)].join("\r\n");

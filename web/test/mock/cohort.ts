@@ -71,8 +71,8 @@ export function make_attempts(random: Random, people: MockPerson[]): MockAttempt
           id: hex(random), sequence: 0, person: person.id, task: task.id,
           patient: `${task.id === "liver-biopsy" ? "biopsy" : task.id.split("-")[0]}-${1 + Math.floor(random.uniform(0, 5))}`,
           difficulty: 1 + Math.floor(random.uniform(0, 5)), level: random.pick(["guided", "assisted", "exam"]),
-          started_s: Math.round(kStart_s + Math.floor(n * 0.9) * 86400 + random.uniform(0, 9 * 3600)), state: scored ? "finished" : "interrupted",
-          score: scored ? score : null, passed: scored ? score >= 70 && random.uniform() > 0.05 : null,
+          started_s: Math.round(kStart_s + Math.floor(n * 0.9) * 86400 + random.uniform(0, 9 * 3600)), state: scored ? "finished" : n % 2 ? "unscored" : "interrupted",
+          score: scored ? score : null, passed: scored ? score >= 70 && random.uniform() > 0.05 : n % 2 ? false : null,
           duration_s: random.normal(130 - 70 * skill, 8), station: random.pick(["station-1", "station-2"]), skill,
         });
       }

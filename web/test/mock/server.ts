@@ -169,7 +169,9 @@ export class MockServer {
       case "export":
         return this.results.csv();
       case "validity":
-        return this.results.validity(task);
+        return this.results.validity(task, query.get("patient") ?? "", query.get("level") ?? "");
+      case "proficiency":
+        return this.results.proficiency(task, query.get("patient") ?? "", query.get("level") ?? "");
       case "forms":
         return this.answer_forms(method, parts, body, found);
       default:

@@ -9,6 +9,7 @@ import { password_problem } from "../../src/pages/account.ts";
 import { matches, total } from "../../src/pages/cohort.ts";
 import { moved, problem_of } from "../../src/pages/form_editor.ts";
 import { safe_path } from "../../src/pages/login.ts";
+import { limits_text } from "../../src/pages/proficiency.ts";
 import { missing_items } from "../../src/pages/questionnaire.ts";
 import { nice_ticks } from "../../src/plots/histogram.ts";
 import { compare_keys, sorted_rows } from "../../src/ui/table.ts";
@@ -37,12 +38,17 @@ test("filters of the cohort", () => {
 
 test("totals of a person add up all tasks", () => {
   const result = (attempts: number, last_s: number | null) => ({ attempts, scored: attempts - 1, passed: 1, last_score: 1, best_score: 2, recent_mean: 1, last_s });
-  assert.deepEqual(total(person({ tasks: { a: result(3, 50), b: result(2, null) } })), { attempts: 5, scored: 3, passed: 2, last_s: 50 });
-  assert.deepEqual(total(person({})), { attempts: 0, scored: 0, passed: 0, last_s: null });
+  assert.deepEqual(total(person({ tasks: { a: result(3, 50), b: result(2, null) } })), { attempts: 5, passed: 2, last_s: 50 });
+  assert.deepEqual(total(person({})), { attempts: 0, passed: 0, last_s: null });
+});
+
+test("a median that is not reached has no limits, an open limit is said", () => {
+  assert.equal(limits_text({ median: 7, low: 5, high: null }), " (95 % 5 to open)");
+  assert.equal(limits_text({ median: null, low: 5, high: null }), "");
 });
 
 test("the last limit that the CUSUM reached decides", () => {
-  assert.match(cusum_verdict([], 2, -2), /no scored attempts/);
+  assert.match(cusum_verdict([], 2, -2), /no attempts yet/);
   assert.match(cusum_verdict([0.7, 1.4, null], 2, -2), /between the limits/);
   assert.match(cusum_verdict([0.7, 1.4, 2.1, -0.3], 2, -2), /Attempt 3 reached the upper limit/);
   assert.match(cusum_verdict([2.1, -0.3, -2], 2, -2), /Attempt 3 reached the lower limit/);

@@ -101,6 +101,62 @@ TEST_F(Interface, AttemptShowsItsValuesBesideThoseOfExperts) {
   EXPECT_FALSE(trace["expert"].contains("expert"));
 }
 
+TEST_F(Interface, AnAttemptIsComparedWithTheOtherExpertsEachOnce) {
+  const auto person = lab_.add_person("Anna"), first = lab_.add_person("Expert 1", results::Group::kExpert),
+             second = lab_.add_person("Expert 2", results::Group::kExpert);
+  const std::string of_person = lab_.add_attempt(person, 50.0), of_first = lab_.add_attempt(first, 90.0);
+  for (int n = 0; n < 9; ++n) lab_.add_attempt(second, 70.0);
+  const auto median = [this](const std::string& id) {
+    return get("/api/attempts/" + id)["metrics"][0]["expert_median"];
+  };
+  EXPECT_EQ(median(of_person), 120.0) << "of 110 and 130";
+  EXPECT_EQ(median(of_first), 130.0) << "without oneself";
+}
+
+TEST_F(Interface, AttemptsWithoutAResultAreNotPassed) {
+  const auto person = lab_.add_person("Anna");
+  for (int n = 0; n < 2; ++n) lab_.add_attempt(person, 90.0);
+  for (int n = 0; n < 4; ++n) lab_.add_attempt(person, std::nullopt);
+  const Json task = get("/api/overview")["people"][0]["tasks"]["liver-biopsy"];
+  EXPECT_EQ(task["attempts"], 6);
+  EXPECT_EQ(task["passed"], 2);
+  EXPECT_EQ(task["counts_text"], "6 attempts counted (4 ended without a result)");
+  const Json curve = get("/api/people/" + person.id + "/curve?task=liver-biopsy");
+  ASSERT_EQ(curve["points"].size(), 6U);
+  EXPECT_EQ(curve["points"][5]["passed"], false);
+  EXPECT_GT(curve["cusum"]["values"][5].get<double>(), 2.0);
+  EXPECT_EQ(get("/api/people/" + person.id + "/attempts")["attempts"][0]["passed"], false);
+}
+
+TEST_F(Interface, ProficiencyCountsPeopleWhoAreNotThere) {
+  const auto anna = lab_.add_person("Anna"), ben = lab_.add_person("Ben");
+  for (const double score : {50.0, 85.0, 90.0, 95.0}) lab_.add_attempt(anna, score);
+  for (int n = 0; n < 5; ++n) lab_.add_attempt(ben, std::nullopt);
+  const Json json = get("/api/proficiency?task=liver-biopsy");
+  EXPECT_EQ(json["passes_in_a_row"], 3);
+  EXPECT_EQ(json["patients"], Json::array({"biopsy-1"}));
+  ASSERT_EQ(json["groups"].size(), 1U);
+  const Json& group = json["groups"][0];
+  EXPECT_EQ(group["median"], 4.0);
+  EXPECT_EQ(group["not_yet"], 1);
+  EXPECT_EQ(group["people"][0]["trials"], 4.0);
+  EXPECT_EQ(group["people"][1]["trials"], nullptr);
+  EXPECT_EQ(group["people"][1]["attempts"], 5);
+  EXPECT_NE(group["instructor"].get<std::string>().find("not recorded"), std::string::npos);
+  EXPECT_TRUE(get("/api/proficiency?task=liver-biopsy&patient=biopsy-9")["groups"].empty());
+  get("/api/proficiency?task=liver-biopsy&level=hard", 400);
+  get("/api/proficiency", 400);
+}
+
+TEST_F(Interface, ValidityOfACaseAndALevel) {
+  lab_.add_attempt(lab_.add_person("Anna"), 50.0);
+  EXPECT_EQ(get("/api/validity?task=liver-biopsy&patient=biopsy-1")["novices"], 1);
+  EXPECT_EQ(get("/api/validity?task=liver-biopsy&patient=biopsy-2")["novices"], 0);
+  EXPECT_EQ(get("/api/validity?task=liver-biopsy&level=exam")["novices"], 0);
+  EXPECT_EQ(get("/api/validity?task=liver-biopsy")["patients"], Json::array({"biopsy-1"}));
+  get("/api/validity?task=liver-biopsy&level=0.05", 400);
+}
+
 TEST_F(Interface, RecordingIsAFile) {
   const std::string id = lab_.add_attempt(lab_.add_person("Anna"), 50.0);
   const HttpAnswer answer = lab_.get("/api/attempts/" + id + "/recording");
@@ -109,9 +165,11 @@ TEST_F(Interface, RecordingIsAFile) {
   EXPECT_EQ(header_of(answer, "Content-Disposition"), "attachment; filename=\"" + id + ".session\"");
 }
 
-TEST_F(Interface, DistributionsCountEveryAttempt) {
+TEST_F(Interface, DistributionsCountEveryPersonOnce) {
   const auto trainee = lab_.add_person("Anna"), expert = lab_.add_person("Expert", results::Group::kExpert);
   for (int n = 0; n <= 10; ++n) lab_.add_attempt(trainee, 5.0 * n);
+  lab_.add_attempt(trainee, std::nullopt);
+  lab_.add_attempt(lab_.add_person("Ben"), 45.0);
   lab_.add_attempt(expert, 100.0);
   const Json metrics = get("/api/metrics?task=liver-biopsy")["metrics"];
   EXPECT_EQ(metrics[0]["name"], "score");
@@ -124,12 +182,14 @@ TEST_F(Interface, DistributionsCountEveryAttempt) {
       EXPECT_EQ(group["counts"].size(), 20U);
       for (const Json& count : group["counts"]) counted += count.get<std::int64_t>();
     }
-    EXPECT_EQ(counted, 12);
+    EXPECT_EQ(counted, 3);
     EXPECT_EQ(json["auc"]["value"], 1.0);
   }
   const Json score = get("/api/metrics/score?task=liver-biopsy");
   EXPECT_EQ(score["groups"][0]["group"], "trainee");
-  EXPECT_EQ(score["groups"][0]["median"], 25.0);
+  EXPECT_EQ(score["groups"][0]["n"], 2);
+  EXPECT_EQ(score["groups"][0]["attempts"], 12);
+  EXPECT_EQ(score["groups"][0]["median"], 35.0) << "of 25 and 45";
   get("/api/metrics/unknown?task=liver-biopsy", 404);
 }
 
