@@ -106,11 +106,9 @@ config::Json learned_json(const Learned& learned, const LearnArguments& argument
     next["level"] = learning::to_string(advice.exercise->level);
   }
   next["reasons"] = advice.reasons;
-  return {{"attempts", counts_json(counts_of(learned, arguments))},
-          {"courses", courses},
-          {"next", next},
-          {"notes", advice.notes},
-          {"damaged", learned.history.damaged}};
+  const learning::AttemptCounts counts = counts_of(learned, arguments);
+  return {{"attempts", counts.counted()}, {"counts", counts_json(counts)},     {"courses", courses}, {"next", next},
+          {"notes", advice.notes},        {"damaged", learned.history.damaged}};
 }
 
 /// "case 1 guided, assisted; case 2 guided", or "nothing yet".

@@ -63,7 +63,7 @@ config::Json curve_json(const LearningCurve& curve, const results::Person& perso
           {"simulated", person.is_simulated},
           {"task", arguments.task},
           {"window", arguments.window},
-          {"attempts", counts_json(curve.counts)},
+          {"counts", counts_json(curve.counts)},
           {"points", std::move(points)},
           {"cusum", cusum_json(curve, arguments.rules.cusum)},
           {"trend", or_null(curve.trend)},

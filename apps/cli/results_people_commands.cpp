@@ -58,7 +58,8 @@ Status list_people(const std::string& url, bool is_json) {
                       {"course", person.course},
                       {"simulated", person.is_simulated},
                       {"pin", person.has_pin},
-                      {"attempts", counts_json(attempts[person.id])}});
+                      {"attempts", attempts[person.id].counted()},
+                      {"counts", counts_json(attempts[person.id])}});
     print_json({{"people", std::move(list)}});
     return {};
   }

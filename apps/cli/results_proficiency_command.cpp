@@ -28,7 +28,8 @@ struct ProficiencyArguments {
 
 config::Json person_json(const results::PersonProficiency& one) {
   return {{"name", one.person.name},
-          {"attempts", counts_json(one.counts)},
+          {"attempts", one.counts.counted()},
+          {"counts", counts_json(one.counts)},
           {"trials_to_proficiency", or_null(one.trials)},
           {"practice_s", one.practice_s},
           {"first_pass_share", or_null(one.first_pass_share)},
@@ -40,7 +41,8 @@ config::Json group_json(const GroupProficiency& group) {
   for (const results::PersonProficiency& one : group.people) people.push_back(person_json(one));
   return {{"group", to_string(group.group)},
           {"simulated", group.is_simulated},
-          {"attempts", counts_json(group.counts)},
+          {"attempts", group.counts.counted()},
+          {"counts", counts_json(group.counts)},
           {"trials_to_proficiency",
            {{"people", group.trials.people},
             {"proficient", group.trials.reached},

@@ -101,7 +101,7 @@ config::Json validity_json(const Validity& validity, const ValidityArguments& ar
           {"patient", arguments.filter.patient},
           {"level_of_help", arguments.filter.level},
           {"attempts", arguments.attempts},
-          {"all_attempts", counts_json(arguments.counts)},
+          {"counts", counts_json(arguments.counts)},
           {"expert_attempts", {{"counted", validity.expert_attempts}, {"without_result", validity.expert_unscored}}},
           {"novice_attempts", {{"counted", validity.novice_attempts}, {"without_result", validity.novice_unscored}}},
           {"experts", validity.experts},

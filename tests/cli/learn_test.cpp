@@ -31,10 +31,34 @@ TEST(Learn, ContinuesFromTheSessionsOfAFolder) {
   EXPECT_EQ(line_count(outcome.err), 1) << outcome.err;
   EXPECT_NE(outcome.err.find("damaged.trocar"), std::string::npos) << outcome.err;
   const config::Json json = json_of(trocar("learn --json --sessions '" + folder.path().string() + "'"));
-  EXPECT_EQ(json["attempts"]["counted"], 3);
+  EXPECT_EQ(json["attempts"], 3);
   EXPECT_EQ(json["next"]["purpose"], "next-step");
   EXPECT_EQ(json["next"]["patient"], "biopsy-1");
   EXPECT_EQ(json["damaged"].size(), 1u);
+}
+
+TEST(Learn, CountsAttemptsWithoutAResultAsNotPassed) {
+  const TemporaryFolder folder;
+  write_attempt(folder / "a.trocar", 0);
+  for (int n = 0; n < 2; ++n)
+    write_session(folder / ("u" + std::to_string(n) + ".trocar"),
+                  {.started_utc = "2026-01-02T11:00:00Z", .not_scored = "the gun was not fired"});
+  write_session(folder / "n.trocar", {.not_scored = "the needle never touched the skin", .punctures = 0.0});
+  write_session(folder / "c.trocar", {.is_cut = true});
+  write_session(folder / "s.trocar", {.level = ""});
+  const std::string sessions = " --sessions '" + folder.path().string() + "'";
+  const Outcome outcome = trocar("learn" + sessions);
+  EXPECT_EQ(outcome.exit_status, 0) << outcome.err;
+  EXPECT_NE(
+      outcome.out.find("3 attempts counted (2 ended without a result), 3 left out: 1 never began, 1 was lost to a "
+                       "crash, 1 had no level of help\n1 of 3 passed\n"),
+      std::string::npos)
+      << outcome.out;
+  const config::Json json = json_of(trocar("learn --json" + sessions));
+  EXPECT_EQ(json["counts"]["without_result"], 2);
+  EXPECT_EQ(json["counts"]["left_out"]["lost"], 1);
+  // Tested out by its first attempt, and failed since.
+  EXPECT_EQ(outcome.out.find("mastered: case 1"), std::string::npos) << outcome.out;
 }
 
 TEST(Learn, BeginsWithoutSessionsAndRefusesUnknownNames) {

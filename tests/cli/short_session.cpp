@@ -17,9 +17,14 @@ void write_session(const std::string& file, const ShortSession& session) {
   auto writer = storage::SessionWriter::create(file, info);
   ASSERT_TRUE(writer) << writer.error().text();
   ASSERT_TRUE(writer->append(telemetry::TickSample()));
+  if (session.is_cut) return;
   scoring::Outcome outcome;
-  outcome.score = session.score;
-  outcome.is_passed = true;
+  outcome.not_scored = session.not_scored;
+  if (outcome.is_scored()) {
+    outcome.score = session.score;
+    outcome.is_passed = true;
+  }
+  outcome.measures = {{"skin_punctures", session.punctures, "1", {}, {}, {}}};
   outcome.parts = session.parts;
   ASSERT_TRUE(writer->finish(outcome, {}));
 }

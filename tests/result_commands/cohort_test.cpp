@@ -49,7 +49,15 @@ TEST(Cohort, IsPlayedImportedAndJudgedAsSimulated) {
   EXPECT_GT(validity["metrics"].size(), 20u);
   EXPECT_EQ(validity["discriminating"]["uncorrected"], 0) << "1 and 1 people: every p is 1";
   EXPECT_NE(validity["smallest_p"].get<std::string>().find("can be below 1"), std::string::npos);
-  for (const std::string command : {"curve --person 'simulated novice 01' ", "validity "}) {
+  EXPECT_EQ(validity["counts"]["counted"], 3);
+  EXPECT_EQ(json_of(trocar(results + "validity --task liver-biopsy --patient layers-liver --json"))["novices"], 1);
+  const config::Json proficiency = json_of(trocar(results + "proficiency --task liver-biopsy --json"));
+  ASSERT_EQ(proficiency["groups"].size(), 2u);
+  EXPECT_EQ(proficiency["groups"][0]["trials_to_proficiency"]["not_yet"], 1);
+  EXPECT_EQ(proficiency["groups"][0]["instructor_minutes"], nullptr);
+  EXPECT_GT(proficiency["groups"][0]["people"][0]["practice_s"], 1.0);
+  EXPECT_TRUE(proficiency["groups"][1]["first_pass_share"].is_number());
+  for (const std::string command : {"curve --person 'simulated novice 01' ", "validity ", "proficiency "}) {
     const Outcome text = trocar(results + command + "--task liver-biopsy");
     EXPECT_EQ(text.exit_status, 0) << text.err;
     EXPECT_NE(text.out.find("simulated"), std::string::npos) << text.out;
@@ -72,10 +80,13 @@ TEST(ResultsEvidence, RefusesWhatItCannotAnswer) {
   expect_refused(trocar("results --db " + database + " validity --task liver-biopsy"), 1, "no such database");
   ASSERT_EQ(trocar("results --db " + database + " add Anna").exit_status, 0);
   const std::string results = "results --db " + database + " ";
-  expect_refused(trocar(results + "validity --task liver-biopsy"), 1, "no scored attempts");
+  expect_refused(trocar(results + "validity --task liver-biopsy"), 1, "no attempts to compare (0 attempts counted)");
   expect_refused(trocar(results + "validity --task liver-biopsy --attempts 3-1"), 2, "no range of attempts");
   expect_refused(trocar(results + "validity --task liver-biopsy --attempts 0-1"), 2, "no range of attempts");
   expect_refused(trocar(results + "validity --task liver-biopsy --correction nonsense"), 2, "unknown correction");
+  expect_refused(trocar(results + "validity --task liver-biopsy --level 0.05"), 2, "--significance");
+  expect_refused(trocar(results + "validity --task liver-biopsy --patient nobody"), 1, "no attempts at this case");
+  expect_refused(trocar(results + "proficiency --task liver-biopsy"), 1, "no attempts that count");
   expect_refused(trocar(results + "curve --person Hanna --task liver-biopsy"), 2, "Hanna");
   expect_refused(trocar(results + "curve --person Anna --task liver-biopsy --acceptable 0.5"), 2, "not above");
   expect_refused(trocar(results + "curve --person Anna --task nonsense"), 2, "nonsense");

@@ -55,6 +55,40 @@ TEST_F(Results, AreImportedListedAndExported) {
   EXPECT_NE(other.out.find("2 attempts added"), std::string::npos) << other.err;
 }
 
+TEST_F(Results, SayWhatWasCountedAndWhatWasLeftOut) {
+  add_anna();
+  std::string files;
+  const auto write = [&](const std::string& name, const ShortSession& session) {
+    write_session(folder_ / name, session);
+    files += " " + file(name);
+  };
+  write("passed.session", {.score = 91.0});
+  for (int n = 0; n < 2; ++n)
+    write("u" + std::to_string(n) + ".session",
+          {.started_utc = "2026-01-04T10:00:0" + std::to_string(n) + "Z", .not_scored = "the gun was not fired"});
+  write("air.session", {.started_utc = "2026-01-05T10:00:00Z", .not_scored = "in the air", .punctures = 0.0});
+  write("cut.session", {.started_utc = "2026-01-06T10:00:00Z", .is_cut = true});
+  const std::string counted =
+      "3 attempts counted (2 ended without a result), 2 left out: 1 never began, 1 was lost to a crash";
+  const Outcome imported = results("import" + files + " --person 'Anna Meier'");
+  EXPECT_NE(imported.out.find("of the added: " + counted), std::string::npos) << imported.out << imported.err;
+  for (const std::string command : {"list", "people", "curve --person 'Anna Meier' --task liver-biopsy",
+                                    "validity --task liver-biopsy", "proficiency --task liver-biopsy"}) {
+    const Outcome outcome = results(command);
+    EXPECT_EQ(outcome.exit_status, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find(counted), std::string::npos) << command << "\n" << outcome.out;
+  }
+  EXPECT_NE(results("curve --person 'Anna Meier' --task liver-biopsy").out.find("1 of 3 passed"), std::string::npos);
+  // Out as CSV and in again, nothing is lost.
+  ASSERT_EQ(results("export --csv " + file("a.csv")).exit_status, 0);
+  const std::string other = "results --db " + file("other.sqlite") + " ";
+  const Outcome read = trocar(other + "import " + file("a.csv"));
+  EXPECT_NE(read.out.find("5 attempts added"), std::string::npos) << read.out << read.err;
+  ASSERT_EQ(trocar(other + "export --csv " + file("b.csv")).exit_status, 0);
+  EXPECT_EQ(read_text(folder_ / "b.csv"), read_text(folder_ / "a.csv"));
+  EXPECT_NE(results("import " + file("a.csv")).out.find("0 attempts added, 5 were there already"), std::string::npos);
+}
+
 TEST_F(Results, DeleteAPersonOnlyWithYes) {
   add_anna();
   write_session(folder_ / "a.session", {});
