@@ -27,6 +27,10 @@ export interface TaskResult {
   best_score: number | null;
   recent_mean: number | null;
   last_s: number | null;
+  unscored: number;
+  never_began: number;
+  lost: number;
+  running: number;
   /** What was counted, what was left out and why. */
   counts_text?: string;
 }

@@ -27,12 +27,37 @@ export function matches(person: Person, filter: { search: string; course: string
   return !filter.group || person.group === filter.group;
 }
 
+interface Counted {
+  attempts: number;
+  unscored: number;
+  never_began: number;
+  lost: number;
+  running: number;
+}
+/** "24 attempts counted (16 ended without a result), 3 left out: 2 never began, 1 was lost to a crash" of several. */
+export function counted_text(all: Counted[]): string {
+  const sum = (name: keyof Counted): number => all.reduce((value, one) => value + one[name], 0);
+  const left_out = [
+    { count: sum("never_began"), one: "never began", many: "never began" },
+    { count: sum("lost"), one: "was lost to a crash", many: "were lost to crashes" },
+    { count: sum("running"), one: "is not over", many: "are not over" },
+  ].filter((one) => one.count > 0);
+  const unscored = sum("unscored");
+  const counted = `${plural(sum("attempts"), "attempt")} counted${unscored ? ` (${unscored} ended without a result)` : ""}`;
+  if (left_out.length === 0) return counted;
+  return `${counted}, ${left_out.reduce((value, one) => value + one.count, 0)} left out: ${left_out.map((one) => `${one.count} ${one.count === 1 ? one.one : one.many}`).join(", ")}`;
+}
+
 /** Sums over all tasks of a person. */
-export function total(person: Person): { attempts: number; passed: number; last_s: number | null } {
-  const sum = { attempts: 0, passed: 0, last_s: null as number | null };
+export function total(person: Person): Counted & { passed: number; last_s: number | null } {
+  const sum = { attempts: 0, passed: 0, unscored: 0, never_began: 0, lost: 0, running: 0, last_s: null as number | null };
   for (const one of Object.values(person.tasks)) {
     sum.attempts += one.attempts;
     sum.passed += one.passed;
+    sum.unscored += one.unscored;
+    sum.never_began += one.never_began;
+    sum.lost += one.lost;
+    sum.running += one.running;
     if (one.last_s !== null) sum.last_s = Math.max(sum.last_s ?? 0, one.last_s);
   }
   return sum;
@@ -98,7 +123,8 @@ function show_cohort(overview: Overview, filter: Filter): Child {
   const fill = (): void => {
     const people = overview.people.filter((one) => matches(one, filter));
     const simulated = people.filter((one) => one.simulated).length;
-    count.textContent = `${plural(people.length, "person", "people")} of ${overview.people.length}${simulated ? `, ${simulated} simulated` : ""}`;
+    const results = people.flatMap((one) => (filter.task ? (one.tasks[filter.task] ?? []) : total(one)));
+    count.textContent = `${plural(people.length, "person", "people")} of ${overview.people.length}${simulated ? `, ${simulated} simulated` : ""}; ${counted_text(results)}`;
     export_link.href = path_with("/api/export/attempts.csv", { task: filter.task, course: filter.course });
     const caption = filter.task ? `Results of ${overview.tasks.find((one) => one.id === filter.task)?.title ?? filter.task}` : "Mean of the last five scores of each task";
     replace_children(

@@ -41,7 +41,7 @@ export class MockResults {
       tasks[task.id] = {
         attempts: all.length, scored: scores.length, passed: all.filter((one) => one.passed).length, last_score: scores[scores.length - 1] ?? null,
         best_score: scores.length ? Math.max(...scores) : null, recent_mean: mean(scores.slice(-5)), last_s: every[every.length - 1].started_s,
-        counts_text: counts_text(every),
+        unscored: all.length - scores.length, never_began: 0, lost: every.length - all.length, running: 0, counts_text: counts_text(every),
       };
     }
     const { id, name, group, course, simulated } = person;

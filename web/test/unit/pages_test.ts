@@ -6,7 +6,7 @@ import { compared, cusum_by_point, cusum_verdict } from "../../src/lib/judgement
 import type { CurvePoint, MetricValue, Person } from "../../src/lib/types.ts";
 import { path_with } from "../../src/lib/api.ts";
 import { password_problem } from "../../src/pages/account.ts";
-import { matches, total } from "../../src/pages/cohort.ts";
+import { counted_text, matches, total } from "../../src/pages/cohort.ts";
 import { moved, problem_of } from "../../src/pages/form_editor.ts";
 import { safe_path } from "../../src/pages/login.ts";
 import { limits_text } from "../../src/pages/proficiency.ts";
@@ -37,9 +37,16 @@ test("filters of the cohort", () => {
 });
 
 test("totals of a person add up all tasks", () => {
-  const result = (attempts: number, last_s: number | null) => ({ attempts, scored: attempts - 1, passed: 1, last_score: 1, best_score: 2, recent_mean: 1, last_s });
-  assert.deepEqual(total(person({ tasks: { a: result(3, 50), b: result(2, null) } })), { attempts: 5, passed: 2, last_s: 50 });
-  assert.deepEqual(total(person({})), { attempts: 0, passed: 0, last_s: null });
+  const result = (attempts: number, last_s: number | null) => ({ attempts, scored: attempts - 1, passed: 1, last_score: 1, best_score: 2, recent_mean: 1, last_s, unscored: 1, never_began: 2, lost: 1, running: 0 });
+  assert.deepEqual(total(person({ tasks: { a: result(3, 50), b: result(2, null) } })), { attempts: 5, passed: 2, unscored: 2, never_began: 4, lost: 2, running: 0, last_s: 50 });
+  assert.deepEqual(total(person({})), { attempts: 0, passed: 0, unscored: 0, never_began: 0, lost: 0, running: 0, last_s: null });
+});
+
+test("what was counted and left out is said", () => {
+  const none = { attempts: 0, unscored: 0, never_began: 0, lost: 0, running: 0 };
+  assert.equal(counted_text([]), "0 attempts counted");
+  assert.equal(counted_text([{ ...none, attempts: 1 }]), "1 attempt counted");
+  assert.equal(counted_text([{ ...none, attempts: 20, unscored: 16, lost: 1 }, { ...none, attempts: 4, never_began: 2 }]), "24 attempts counted (16 ended without a result), 3 left out: 2 never began, 1 was lost to a crash");
 });
 
 test("a median that is not reached has no limits, an open limit is said", () => {

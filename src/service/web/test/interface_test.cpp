@@ -120,6 +120,7 @@ TEST_F(Interface, AttemptsWithoutAResultAreNotPassed) {
   const Json task = get("/api/overview")["people"][0]["tasks"]["liver-biopsy"];
   EXPECT_EQ(task["attempts"], 6);
   EXPECT_EQ(task["passed"], 2);
+  EXPECT_EQ(task["unscored"], 4);
   EXPECT_EQ(task["counts_text"], "6 attempts counted (4 ended without a result)");
   const Json curve = get("/api/people/" + person.id + "/curve?task=liver-biopsy");
   ASSERT_EQ(curve["points"].size(), 6U);
