@@ -1,6 +1,5 @@
 // trocar results proficiency: how many attempts people need, and how long it takes.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -8,9 +7,7 @@
 #include "json_parts.h"
 #include "learning/curriculum.h"
 #include "results/proficiency.h"
-#include "results/validity.h"
 #include "results_commands.h"
-#include "tasks/task.h"
 
 namespace trocar::cli {
 namespace {
