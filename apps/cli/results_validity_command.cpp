@@ -156,8 +156,8 @@ void print_people(const Validity& validity, const ValidityArguments& arguments) 
     if (!part.empty()) of += ", " + part;
   fmt::print("validity of {}: experts {}, novices {}, attempts {} of each{}\n", of, validity.experts, validity.novices,
              arguments.attempts, people > 0 ? simulated : "");
-  fmt::print("of all at the task: {}\n", learning::counts_text(arguments.counts));
-  fmt::print("of them here: {} of experts{}, {} of novices{}\n", validity.expert_attempts,
+  fmt::print("{}\n", learning::counts_text(arguments.counts));
+  fmt::print("of these are judged: {} of experts{}, {} of novices{}\n", validity.expert_attempts,
              unscored_text(validity.expert_unscored), validity.novice_attempts,
              unscored_text(validity.novice_unscored));
 }
