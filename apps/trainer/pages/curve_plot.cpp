@@ -37,13 +37,12 @@ void CurvePlot::show_curve(const results::LearningCurve& curve) {
   peers_.clear();
   experts_ = curve.experts;
   for (const results::CurveAttempt& one : curve.attempts)
-    if (one.attempt.score && one.moving_mean)
-      points_.push_back({*one.attempt.score, *one.moving_mean, one.attempt.is_passed});
+    points_.push_back({one.attempt.score, one.moving_mean, one.attempt.is_passed});
   for (const auto& point : curve.peer_curve) peers_.push_back(point ? std::optional(point->mean) : std::nullopt);
   // What the others did much later says nothing yet.
   constexpr std::size_t kLookAhead = 5;
   peers_.resize(std::min(peers_.size(), points_.size() + kLookAhead));
-  setAccessibleName(tr("Learning curve of %n scored attempt(s)", nullptr, static_cast<int>(points_.size())));
+  setAccessibleName(tr("Learning curve of %n attempt(s)", nullptr, static_cast<int>(points_.size())));
   update();
 }
 
@@ -95,13 +94,13 @@ void CurvePlot::paintEvent(QPaintEvent* /*event*/) {
     painter.drawPath(path);
   };
   draw_line(QPen(t.dim, 1.5, Qt::DashLine), peers_.size(), [&](std::size_t n) { return peers_[n]; });
-  draw_line(QPen(t.accent, 2.5), points_.size(), [&](std::size_t n) { return std::optional(points_[n].mean); });
+  draw_line(QPen(t.accent, 2.5), points_.size(), [&](std::size_t n) { return points_[n].mean; });
   const double radius = points_.size() > 60 ? 1.5 : 3.0;
   for (std::size_t n = 0; n < points_.size(); ++n) {
     // Passed attempts are filled, so that the difference does not rest on colour.
     painter.setPen(QPen(t.accent, 1.5));
     painter.setBrush(points_[n].is_passed ? QBrush(t.accent) : QBrush(t.panel));
-    painter.drawEllipse(QPointF(x_of(n), y_of(points_[n].score)), radius, radius);
+    painter.drawEllipse(QPointF(x_of(n), y_of(points_[n].score.value_or(0.0))), radius, radius);
   }
 }
 

@@ -27,8 +27,8 @@ class CurvePlot : public QWidget {
   double y_of(double score) const;
 
   struct Point {
-    double score = 0.0;
-    double mean = 0.0;
+    std::optional<double> score;  ///< Empty: without a result; drawn at 0.
+    std::optional<double> mean;
     bool is_passed = false;
   };
   std::vector<Point> points_;

@@ -19,6 +19,12 @@ std::size_t scored(const results::LearningCurve& curve) {
       std::ranges::count_if(curve.attempts, [](const auto& one) { return one.attempt.score.has_value(); }));
 }
 
+/// What ended without a result, and what does not count; empty: nothing.
+QString counts_of(const results::LearningCurve& curve) {
+  if (curve.counts.unscored + curve.counts.left_out() == 0) return {};
+  return to_qt(learning::counts_text(curve.counts)) + QLatin1Char('.');
+}
+
 /// The others at the same number of attempts; empty: nobody got that far.
 QString peers_text(const results::LearningCurve& curve, std::size_t attempt) {
   if (attempt == 0 || attempt > curve.peer_curve.size() || !curve.peer_curve[attempt - 1]) return {};
@@ -46,23 +52,23 @@ QString joined_without_empty(QStringList sentences) {
 }  // namespace
 
 QString history_text(const results::LearningCurve& curve) {
-  const std::size_t count = scored(curve);
-  if (count == 0) return joined_without_empty({QObject::tr("No scored attempt yet."), experts_text(curve)});
+  const std::size_t count = curve.attempts.size();
+  if (count == 0)
+    return joined_without_empty({QObject::tr("No attempt that counts yet."), counts_of(curve), experts_text(curve)});
   const auto passed = std::ranges::count_if(curve.attempts, [](const auto& one) { return one.attempt.is_passed; });
   const auto last = std::find_if(curve.attempts.rbegin(), curve.attempts.rend(),
                                  [](const auto& one) { return one.moving_mean.has_value(); });
-  QString own = (count == 1 ? QObject::tr("1 attempt, %2 passed.") : QObject::tr("%1 attempts, %2 passed.").arg(count))
-                    .arg(passed);
+  QString own = QObject::tr("%1 of %2 attempts passed.").arg(passed).arg(count);
   if (last != curve.attempts.rend())
     own += QObject::tr(" Mean of the last %1: %2.")
-               .arg(std::min(count, results::CurveRules().window))
+               .arg(std::min(scored(curve), results::CurveRules().window))
                .arg(points_text(*last->moving_mean));
-  return joined_without_empty({own, peers_text(curve, count), experts_text(curve)});
+  return joined_without_empty({own, counts_of(curve), peers_text(curve, count), experts_text(curve)});
 }
 
 QString comparison_text(const results::LearningCurve& curve) {
   if (curve.attempts.empty() || !curve.attempts.back().attempt.score) return {};
-  const std::size_t count = scored(curve);
+  const std::size_t count = curve.attempts.size();
   return joined_without_empty(
       {QObject::tr("Your attempt %1: %2 points.").arg(count).arg(points_text(*curve.attempts.back().attempt.score)),
        peers_text(curve, count), experts_text(curve)});

@@ -73,15 +73,18 @@ results::CurveAttempt attempt(std::optional<double> score, std::optional<double>
 
 TEST(History, ComparesWithOthersAtTheSameAttemptAndWithExperts) {
   results::LearningCurve curve;
-  EXPECT_EQ(history_text(curve), "No scored attempt yet.");
+  EXPECT_EQ(history_text(curve), "No attempt that counts yet.");
   EXPECT_EQ(comparison_text(curve), "");
   curve.attempts = {attempt(50.0, 50.0), attempt({}, 50.0), attempt(70.4, 60.2)};
+  curve.counts = {2, 1, 1, 1, 0, 0, 0};
   curve.peer_curve = {cohort::CurvePoint{8, 55.0}, cohort::CurvePoint{7, 61.6}, cohort::CurvePoint{1, 90.0}};
   curve.experts = results::ExpertLevel{2, false, 97.0, 96.0, 98.0};
   EXPECT_EQ(history_text(curve),
-            "2 attempts, 1 passed. Mean of the last 2: 60. Others at attempt 2: 62 (7 people). Experts: 96 to 98.");
+            "1 of 3 attempts passed. Mean of the last 2: 60. 3 attempts counted (1 ended without a result), 1 left "
+            "out: 1 never "
+            "began. Others at attempt 3: 90 (1 person). Experts: 96 to 98.");
   EXPECT_EQ(comparison_text(curve),
-            "Your attempt 2: 70 points. Others at attempt 2: 62 (7 people). Experts: 96 to 98.");
+            "Your attempt 3: 70 points. Others at attempt 3: 90 (1 person). Experts: 96 to 98.");
   curve.experts->is_simulated = true;
   EXPECT_NE(history_text(curve).indexOf("Simulated experts"), -1);
   curve.attempts.push_back(attempt({}, 60.2));  // the last one has no score
