@@ -6,6 +6,7 @@
 #include <memory>
 #include <set>
 
+#include "anatomy/phantom/phantom.h"
 #include "anatomy/structure_words.h"
 #include "attempt/offline/run_session.h"
 #include "bench/benchmarks.h"
@@ -55,6 +56,13 @@ std::vector<const anatomy::Label*> harmed_labels(const cases::Case& the_case) {
   return labels;
 }
 
+Result<std::shared_ptr<const cases::OpenCase>> open_harm_case(const std::string& task, const std::string& patient) {
+  cases::CaseChoice choice;
+  choice.options.task = task;
+  choice.patient_source = patient;
+  return cases::make_open_case(choice, {nullptr, io::patient_cache_folder()});
+}
+
 Result<scoring::Outcome> go_through(const cases::Case& the_case, const anatomy::Label& label,
                                     const std::string& patient) {
   cases::Case blocked = the_case;
@@ -73,37 +81,67 @@ std::string verdict_of(const scoring::Outcome& outcome) {
   return fmt::format("not passed: {}", outcome.fails.empty() ? outcome.not_scored : outcome.fails.front());
 }
 
+/// Adds a row for each structure: the score of the attempt that goes through it.
+Status add_structures(const char* task, const char* name, const Options& options, std::vector<CaseResult>& results) {
+  TROCAR_TRY(const auto open, open_harm_case(task, name));
+  const cases::Case& the_case = open->the_case;
+  for (const anatomy::Label* label : harmed_labels(the_case)) {
+    TROCAR_TRY(const scoring::Outcome outcome, go_through(the_case, *label, name));
+    const tasks::Harm grade = tasks::find_harm(the_case.task, *label).grade;
+    const bool is_sum_enough = outcome.target_reached && outcome.score >= the_case.task.pass_mark;
+    const std::string words = anatomy::structure_words(label->name);
+    results.push_back({fmt::format("harm/{}/{}", task, words),
+                       "points",
+                       figure_of(outcome.score),
+                       {},
+                       fmt::format("{}; {}", to_string(grade), verdict_of(outcome)),
+                       {{"grade", static_cast<double>(grade)},
+                        {"by_sum", is_sum_enough ? 1.0 : 0.0},
+                        {"passed", outcome.is_passed ? 1.0 : 0.0}}});
+    results.back().is_missed = grade == tasks::Harm::kCritical && outcome.is_passed;
+    core::report(options.progress, fmt::format("{}: {}", task, words), 0.0);
+  }
+  return {};
+}
+
+/// Attempts of an operator on all embedded patients with a difficulty.
+Result<CaseResult> good_attempts(const std::string& operator_name, const Options& options) {
+  double passed = 0.0, all = 0.0, harmed = 0.0;
+  std::string failed;
+  for (const anatomy::PhantomInfo& info : anatomy::embedded_patients()) {
+    if (info.difficulty == 0) continue;
+    for (const std::string& task : info.tasks) {
+      TROCAR_TRY(const auto open, open_harm_case(task, info.name));
+      const TemporaryFolder folder;
+      attempt::RunOptions run;
+      run.operator_name = operator_name;
+      run.patient_source = info.name;
+      run.session = folder / "good.session";
+      TROCAR_TRY(const attempt::RunResult result, attempt::run_session(open->the_case, run));
+      const scoring::Outcome& outcome = result.outcome;
+      passed += outcome.is_passed ? 1.0 : 0.0;
+      harmed += outcome.harms.empty() ? 0.0 : 1.0;
+      all += 1.0;
+      if (!outcome.is_passed) failed += fmt::format("; {}: {}", info.name, verdict_of(outcome));
+      core::report(options.progress, info.name, 0.0);
+    }
+  }
+  return CaseResult{"harm/good/" + operator_name,
+                    "",
+                    figure_of(passed),
+                    {},
+                    fmt::format("of {:.0f} attempts passed{}", all, failed),
+                    {{"all", all}, {"harmed", harmed}}};
+}
+
 }  // namespace
 
 Result<std::vector<CaseResult>> run_harm_benchmark(const Options& options) {
   std::vector<CaseResult> results;
-  for (const auto& [task, name] : kHarmCases) {
-    cases::CaseChoice choice;
-    choice.options.task = task;
-    choice.patient_source = name;
-    TROCAR_TRY(const auto open, cases::make_open_case(choice, {nullptr, io::patient_cache_folder()}));
-    const cases::Case& the_case = open->the_case;
-    double critical = 0.0, by_sum = 0.0, passed = 0.0;
-    for (const anatomy::Label* label : harmed_labels(the_case)) {
-      TROCAR_TRY(const scoring::Outcome outcome, go_through(the_case, *label, name));
-      const tasks::Harm grade = tasks::find_harm(the_case.task, *label).grade;
-      const bool is_sum_enough = outcome.target_reached && outcome.score >= the_case.task.pass_mark;
-      if (grade == tasks::Harm::kCritical) {
-        critical += 1.0;
-        by_sum += is_sum_enough ? 1.0 : 0.0;
-        passed += outcome.is_passed ? 1.0 : 0.0;
-      }
-      if (options.print)
-        options.print(fmt::format("{:<17} {:<26} {:<9} {:>5.1f} {:<10}  {}\n", task,
-                                  anatomy::structure_words(label->name), to_string(grade), outcome.score,
-                                  is_sum_enough ? "passed" : "not passed", verdict_of(outcome)));
-    }
-    const auto add = [&](const char* what, double count, const char* note) {
-      results.push_back({fmt::format("harm/{}/{}", task, what), "", figure_of(count), {}, note});
-    };
-    add("critical", critical, "structures with critical harm on the way to the target");
-    add("by-sum", by_sum, "of them passed by the score alone");
-    add("passed", passed, "of them passed");
+  for (const auto& [task, name] : kHarmCases) TROCAR_TRY_STATUS(add_structures(task, name, options, results));
+  for (const char* const operator_name : {"expert", "novice:0.1"}) {
+    TROCAR_TRY(CaseResult good, good_attempts(operator_name, options));
+    results.push_back(std::move(good));
   }
   return results;
 }

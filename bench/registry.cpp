@@ -23,7 +23,7 @@ const std::vector<Benchmark>& all_benchmarks() {
        "40 scripted novices on each patient: scores, and the path constraint's inward part and steps; minutes",
        run_cohort_benchmark,
        {"--patient", "--patient-seed", "--force-model"}},
-      {"harm", "the scripted expert of every task with each structure on the way to the target: verdicts; minutes",
+      {"harm", "the scripted expert with each structure on the way, and 40 good attempts: scores and verdicts; minutes",
        run_harm_benchmark},
       {"curves",
        "force along one needle path by each force model, and its punctures; plots with --out",

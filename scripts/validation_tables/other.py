@@ -85,3 +85,28 @@ def stitch(f):
 def variants(printed):
     kept, tried = re.search(r"(\d+) of (\d+) bodies are sound", printed).groups()
     return lines_of(["seeds", "sound, and serve their task"], [[tried, kept]])
+
+
+HARM_TASKS = ("liver-biopsy", "lumbar-puncture", "ascites-puncture", "ptcd")
+GRADES = ("none", "minor", "major", "critical")
+
+
+@table("harm")
+def harm(f):
+    names = sorted({case.split("/")[2] for case in f.cases if case.split("/")[1] in HARM_TASKS})
+    rows = []
+    for name in names:
+        cells = []
+        for task in HARM_TASKS:
+            case = f"harm/{task}/{name}"
+            if case not in f.cases:
+                cells.append("–")
+                continue
+            verdict = ["not passed", "passed"]
+            cells.append(f"{GRADES[int(f(case, 'grade'))]}; {f(case):.0f}, {verdict[int(f(case, 'by_sum'))]} → "
+                         f"{verdict[int(f(case, 'passed'))]}")
+        rows.append([name, *cells])
+    for operator, title in (("expert", "**good attempts**: experts"), ("novice:0.1", "**good attempts**: a tenth of a novice's errors")):
+        case = f"harm/good/{operator}"
+        rows.append([title, f"{f(case):.0f} of {f(case, 'all'):.0f} passed, {f(case, 'harmed'):.0f} with a harm", "", "", ""])
+    return lines_of(["structure on the way", *HARM_TASKS], rows)

@@ -29,7 +29,7 @@ void expect_whole_line(const Result<cases::Case>& prepared) {
   ASSERT_TRUE(prepared.has_value()) << prepared.error().text();
   const Attempt expert = perform(*prepared, "expert");
   expect_three_peaks(expert);
-  EXPECT_TRUE(expert.result.outcome.target_reached);
+  EXPECT_TRUE(expert.result.outcome.is_passed) << expert.result.outcome.fails.front();
   const Attempt novice = perform(*prepared, "novice");
   EXPECT_LT(novice.result.outcome.score, expert.result.outcome.score);
 }

@@ -8,6 +8,7 @@
 #include "attempt/record/recording_space.h"
 #include "attempt/record/session_case.h"
 #include "cases/scene_request.h"
+#include "telemetry/tick_pose.h"
 
 namespace trocar::attempt {
 namespace {
@@ -80,6 +81,13 @@ void AttemptLoop::abandon() {
   if (transducer_) transducer_->end();
   live_.reset();
   record_.reset();  // closes the file
+}
+
+void AttemptLoop::leave() {
+  if (has_ended_) return;
+  const bool was_inside = record_ && std::ranges::any_of(record_->samples(), telemetry::is_in_body);
+  if (was_inside) return conclude({});
+  abandon();
 }
 
 Status AttemptLoop::step() {

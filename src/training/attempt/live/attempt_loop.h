@@ -76,6 +76,9 @@ class AttemptLoop {
   bool poll();
   /// Switches the forces off and ends the attempt without a score; the incomplete session is kept.
   void abandon();
+  /// Ends an attempt that the trainee leaves: it is scored as it is if the needle was in the body, so that leaving is no
+  /// way not to be counted; otherwise it is abandoned.
+  void leave();
 
  private:
   // attempt_loop.cpp

@@ -113,6 +113,7 @@ void LiveAttempt::run(const std::stop_token& stop, std::shared_ptr<const cases::
   AttemptLoop loop(attempt_case(open_case), loop_options(*open_case, options_), trainee_operators(*open_case, options_),
                    *std::move(found), std::move(supervisors), clock, *this);
   while (!stop.stop_requested() && loop.poll()) clock.sleep_for(kBetweenLoopPolls);
+  loop.leave();
 }
 
 std::optional<Result<RunResult>> LiveAttempt::take_result() {

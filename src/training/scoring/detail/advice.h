@@ -19,6 +19,7 @@ struct Advice {
 
 inline constexpr double kFaultPoints = 1000.0;  ///< Of advice about a fault that fails the attempt: it comes first.
 inline constexpr double kNameable = 0.5;        ///< Rounds to 1 mm or degree.
+inline constexpr double kElsewhere_mm = 40.0;   ///< A needle farther off has to begin anew: corrections make no sense.
 
 /// What advice is made of.
 struct HintSubject {
@@ -35,8 +36,12 @@ struct HintSubject {
   double lost(std::string_view name) const noexcept;
   /// Name of the target for people: "lesion", "dural sac", "liver tissue".
   std::string target_name() const;
+  /// The bone that stopped a stylet; empty: none did.
+  std::string bone_of_stylet() const;
 };
 
+/// What the trainee finds a place by: "find it in the image", "by the landmarks".
+const char* found_by(tasks::Guidance guidance) noexcept;
 /// "the heart" -> "The heart".
 std::string as_sentence(std::string text);
 

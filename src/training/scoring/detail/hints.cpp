@@ -67,6 +67,26 @@ std::string HintSubject::target_name() const {
   return needle().is_biopsy ? "lesion" : anatomy::structure_words(task().target_tissues.front());
 }
 
+std::string HintSubject::bone_of_stylet() const {
+  for (const metrics::HarmEvent& event : judged.harms) {
+    const anatomy::Label* const label = judged.attempt.patient.label_table.find(event.label);
+    if (event.is_by_stylet && label != nullptr && label->tissue == "bone") return event.label;
+  }
+  return {};
+}
+
+const char* found_by(tasks::Guidance guidance) noexcept {
+  switch (guidance) {
+    case tasks::Guidance::kUltrasound:
+      return "in the ultrasound image";
+    case tasks::Guidance::kXray:
+      return "in the X-ray image";
+    case tasks::Guidance::kPalpation:
+      return "by the landmarks";
+  }
+  return "";
+}
+
 std::string as_sentence(std::string text) {
   if (!text.empty()) text.front() = ascii::to_upper(text.front());
   return text;
@@ -76,7 +96,10 @@ std::vector<Hint> make_hints(const Judgement& judged, std::span<const ScorePart>
   std::vector<Advice> advice;
   const HintSubject subject{judged, parts, kUsually};
   if (!judged.measured.has_touched_skin) {
-    advice.push_back({0.0, "The needle never reached the skin: bring its tip to the planned insertion point."});
+    advice.push_back({0.0, judged.attempt.shots.empty()
+                               ? "The needle never reached the skin: bring its tip to the planned insertion point."
+                               : "The gun was fired into the air: bring the tip to the planned insertion point, insert "
+                                 "the needle to the target, then fire."});
   } else if (!judged.measured.has_entered) {
     add_harm_advice(subject, advice);  // of a shot through the skin
     advice.push_back({0.0, "The skin was not pierced: push steadily along the planned direction until it gives way."});

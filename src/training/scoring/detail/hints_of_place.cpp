@@ -70,16 +70,26 @@ Correction correct_tip(const HintSubject& subject) {
 
 void add_core_hint(const HintSubject& subject, const BiopsyCore& core, double points, std::vector<Advice>& advice) {
   const Judgement& judged = subject.judged;
-  if (core.pieces.empty()) {  // deeper insertion would be wrong advice
+  const std::string bone = subject.bone_of_stylet();
+  if (core.pieces.empty() || !bone.empty()) {  // deeper insertion would be wrong advice
     advice.push_back({points,
-                      "No tissue was taken: the stylet hit bone. Choose an insertion point and a direction that pass "
-                      "beside it.",
+                      fmt::format("{}: the stylet hit {}. Choose an insertion point and a direction that pass beside "
+                                  "it.",
+                                  core.pieces.empty() ? "No tissue was taken" : "The core is incomplete",
+                                  bone.empty() ? "bone" : "the " + anatomy::structure_words(bone)),
                       core.time_s});
     return;
   }
   const double middle_mm = subject.needle().notch_middle_mm();
   const Vec3 path_P = judged.expert.line_P.direction();
   const Vec3 notch_offset_P = core.tip_P + middle_mm * core.axis_P - (judged.expert.line_P.b + middle_mm * path_P);
+  if (core.target_mm <= 0.0 && notch_offset_P.norm() > kElsewhere_mm) {
+    advice.push_back({points,
+                      fmt::format("The core was taken {:.0f} mm from the {}: find the target {} and plan the way anew.",
+                                  notch_offset_P.norm(), subject.target_name(), found_by(subject.task().guidance)),
+                      core.time_s});
+    return;
+  }
   const Correction correction = correct(subject, notch_offset_P, core.tip_P, core.axis_P);
   const std::string what = core.target_mm > 0.0
                                ? fmt::format("The core holds only {:.0f} mm of {} of {:.0f} mm possible",
@@ -149,6 +159,13 @@ void add_target_advice(const HintSubject& subject, std::vector<Advice>& advice) 
   if (subject.needle().is_biopsy) return add_biopsy_advice(subject, advice);
   const double points = subject.lost("target");
   if (points <= 0.0) return;
+  if (subject.judged.target_mm > kElsewhere_mm) {
+    advice.push_back({points,
+                      fmt::format("The tip ended {:.0f} mm from the {}: find the target {} and plan the way anew.",
+                                  subject.judged.target_mm, subject.target_name(), found_by(subject.task().guidance)),
+                      subject.measured().end_s});
+    return;
+  }
   const Correction correction = correct_tip(subject);
   const std::string how =
       correction.is_empty() ? "." : fmt::format(", {}: {}.", correction.deviation, correction.advice);

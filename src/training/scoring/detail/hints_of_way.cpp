@@ -11,6 +11,7 @@
 namespace trocar::scoring {
 namespace {
 
+constexpr double kOtherWay_deg = 60.0;    // from here on a tilt is no correction
 constexpr double kRepeatedTravel = 0.25;  // share of the excess travel for a hint about retractions
 
 /// What keeps a needle clear of a structure, by what guides it.
@@ -62,6 +63,15 @@ void add_entry_advice(const HintSubject& subject, std::vector<Advice>& advice) {
                       measured.entry_s});
     return;
   }
+  if (measured.entry_offset_P.norm() > kElsewhere_mm) {
+    advice.push_back(
+        {points,
+         fmt::format("The insertion point lay {:.0f} mm from the planned one: find it {} before you insert "
+                     "the needle.",
+                     measured.entry_offset_P.norm(), found_by(subject.task().guidance)),
+         measured.entry_s});
+    return;
+  }
   advice.push_back({points,
                     fmt::format("The insertion point was {}: move the needle {} before you insert it.",
                                 anatomy::direction_words(measured.entry_offset_P, " mm too far"),
@@ -74,7 +84,8 @@ void add_angle_advice(const HintSubject& subject, std::vector<Advice>& advice) {
   if (points <= 0.0) return;
   const metrics::AttemptMetrics& measured = subject.measured();
   const Vec3 turn_P = measured.axis_P - subject.judged.expert.line_P.direction();
-  if (!(turn_P.norm() > 0.0)) return;
+  const bool is_elsewhere = measured.entry_offset_P.norm() > kElsewhere_mm || measured.angle_deg > kOtherWay_deg;
+  if (!(turn_P.norm() > 0.0) || is_elsewhere) return;  // the place tells more
   const Vec3 tilt_deg = measured.angle_deg * turn_P.normalized();
   advice.push_back(
       {points,
@@ -89,7 +100,9 @@ void add_access_advice(const HintSubject& subject, std::vector<Advice>& advice) 
   if (points <= 0.0) return;
   const AccessJudgement& access = subject.judged.access;
   std::string text;
-  if (access.missing_margin_mm > kNameable)
+  const bool is_told =
+      std::ranges::any_of(subject.judged.harms, [&](const auto& event) { return event.label == access.margin_label; });
+  if (access.missing_margin_mm > kNameable && !is_told)
     text = fmt::format(
         "The way passed the {} at {:.0f} mm; it needs {:.0f} mm. Choose another entry or angle before you "
         "insert the needle.",
@@ -185,6 +198,7 @@ std::string passes_hint(const HintSubject& subject) {
 
 void add_harm_advice(const HintSubject& subject, std::vector<Advice>& advice) {
   for (const metrics::HarmEvent& event : subject.judged.harms) {
+    if (event.grade == tasks::Harm::kMinor && event.label == subject.bone_of_stylet()) continue;  // the core says it
     const std::string reason = event.reason.empty() || event.is_graze ? std::string() : ": " + event.reason;
     advice.push_back({harm_points(subject, event),
                       fmt::format("{}, {:.0f} mm below the skin{}. {}.", as_sentence(metrics::harm_words(event)),
