@@ -10,8 +10,8 @@
 #include "exams/exam_body.h"
 #include "exams/exam_result.h"
 #include "io/patient/patient_cache.h"
-#include "past_sessions.h"
-#include "storage/session_summary.h"
+#include "results_commands.h"
+#include "serve_accounts.h"
 #include "tasks/task.h"
 
 namespace trocar::cli {
@@ -30,11 +30,22 @@ struct DrawArguments {
 };
 
 struct ResultArguments {
-  std::string file, key, state, sessions;
+  std::string file, key, state, sessions, database;
 };
 
 fs::path state_folder(const std::string& given) {
   return given.empty() ? user_state_folder() : fs::path(given);
+}
+
+/// The bodies in a folder of sessions; empty: those of the trainer, which need not exist.
+Result<std::vector<exams::SeenBody>> seen_in(const std::string& folder) {
+  std::error_code error;
+  if (!folder.empty() && !fs::is_directory(folder, error))
+    return fail_usage("no such folder", folder, "name a folder of session files");
+  TROCAR_TRY(exams::SeenBodies seen,
+             exams::seen_on_station(folder.empty() ? user_state_folder() / "sessions" : fs::path(folder)));
+  for (const std::string& line : seen.damaged) print_warning(line);
+  return std::move(seen.attempts);
 }
 
 Status draw(const DrawArguments& arguments) {
@@ -42,15 +53,15 @@ Status draw(const DrawArguments& arguments) {
   TROCAR_TRY_STATUS(tasks::load_task(tasks_folder, arguments.task));
   TROCAR_TRY(const std::string patient,
              exams::patient_of_difficulty(arguments.task, static_cast<int>(arguments.difficulty)));
-  TROCAR_TRY(const learning::History history, read_past_sessions(arguments.sessions));
+  TROCAR_TRY(const std::vector<exams::SeenBody> history, seen_in(arguments.sessions));
   exams::ExamBody body;
   {
     const ProgressPrinter printer;
     const exams::FitCheck check =
         exams::fit_check(arguments.task, patient, io::patient_cache_folder(), printer.callback());
     std::random_device random;
-    TROCAR_TRY(body, arguments.number == 0 ? exams::draw_body(patient, history.attempts, random(), check)
-                                           : exams::find_body(patient, arguments.number, history.attempts, check));
+    TROCAR_TRY(body, arguments.number == 0 ? exams::draw_body(patient, history, random(), check)
+                                           : exams::find_body({patient, arguments.number}, history, {}, check));
   }
   for (const std::uint64_t unfit : body.unfit)
     print_warning(fmt::format("exam {} was not taken: its body cannot serve the task", unfit));
@@ -69,13 +80,37 @@ Status draw(const DrawArguments& arguments) {
   return {};
 }
 
+/// The attempts of who was examined: the sessions beside the exam, and what the database of results has of the person.
+Result<std::vector<exams::SeenBody>> history_of(const ResultArguments& arguments, const std::string& person_id) {
+  TROCAR_TRY(
+      std::vector<exams::SeenBody> history,
+      seen_in(arguments.sessions.empty() ? fs::absolute(arguments.file).parent_path().string() : arguments.sessions));
+  if (person_id.empty()) return history;
+  TROCAR_TRY(const database::DatabaseUrl url, database_of(arguments.database));
+  std::error_code error;
+  if (arguments.database.empty() && url.is_sqlite() && !fs::exists(url.file, error)) {
+    print_warning(fmt::format(
+        "the person's attempts on other stations do not count: there is no database of results — {} — name one with "
+        "--db",
+        url.file.string()));
+    return history;
+  }
+  TROCAR_TRY(results::Repository repository, open_results(arguments.database, database::Missing::kRefuse));
+  TROCAR_TRY(const std::vector<exams::SeenBody> recorded, exams::seen_by_person(repository, person_id));
+  history.insert(history.end(), recorded.begin(), recorded.end());
+  return history;
+}
+
 Status sign(const ResultArguments& arguments) {
-  TROCAR_TRY_STATUS(storage::load_summary(arguments.file));  // before a key is made, and before warnings about others
-  TROCAR_TRY(const auto key, signing::open_station_key(state_folder(arguments.state) / exams::kStationKeyFile));
-  TROCAR_TRY(const learning::History history,
-             read_past_sessions(arguments.sessions.empty() ? fs::absolute(arguments.file).parent_path().string()
-                                                           : arguments.sessions));
-  TROCAR_TRY(const fs::path result, exams::sign_exam(arguments.file, history.attempts, key));
+  TROCAR_TRY(const storage::SessionSummary exam, exams::load_exam(arguments.file));
+  const fs::path key_file = state_folder(arguments.state) / exams::kStationKeyFile;
+  std::error_code error;
+  if (!fs::exists(key_file, error))
+    return fail("this station has no key, so it has sealed no exam", key_file.string(),
+                "sign on the station of the exam, or name the folder of its key with --state");
+  TROCAR_TRY(const auto key, signing::load_station_key(key_file));
+  TROCAR_TRY(const std::vector<exams::SeenBody> history, history_of(arguments, exam.info.person_id));
+  TROCAR_TRY(const fs::path result, exams::sign_exam(arguments.file, history, key));
   fmt::print("{}\n", result.string());
   return {};
 }
@@ -113,6 +148,7 @@ Status verify(const ResultArguments& arguments) {
   TROCAR_TRY(const exams::Verification verification, without_verdict(exams::verify_exam(arguments.file, key)));
   if (!verification.is_valid()) return fail(verification.text, arguments.file, "do not rely on this result");
   fmt::print("{}\n", verification.text);
+  for (const std::string& line : verification.details) fmt::print("{}\n", line);
   return {};
 }
 
@@ -143,11 +179,16 @@ void add_draw(Command& exam, Action& action) {
 
 void add_result_commands(Command& exam, Action& action) {
   const auto a = std::make_shared<ResultArguments>();
-  Command sign_command = exam.add_command("sign", "Sign the session of an exam; the trainer does it by itself");
+  Command sign_command = exam.add_command("sign", "Make the result of an exam that the trainer sealed");
   sign_command.add_option("SESSION", a->file, "Session of an exam").required();
   sign_command.add_option("--sessions", a->sessions, "Folder of sessions whose bodies are known [that of the session]");
+  sign_command.add_option("--db", a->database, "Database with the person's attempts; see trocar results --help");
   add_state_option(sign_command, a);
-  sign_command.footer("Example:\n  trocar exam sign exam.trocar\n");
+  sign_command.footer(
+      "The trainer seals an exam (.seal.json) when the attempt ends, and makes the result by itself. This command "
+      "makes "
+      "it again, if it is lost or could not be made. A session without a seal, or changed since, is refused.\n"
+      "Example:\n  trocar exam sign exam.trocar\n");
   sign_command.when_parsed([&action, a] { action = [a] { return sign(*a); }; });
 
   Command verify_command = exam.add_command("verify", "Check the signature of a result, and the session beside it");
@@ -155,6 +196,7 @@ void add_result_commands(Command& exam, Action& action) {
   verify_command.add_option("--key", a->key, "Public key of the station, or a file with it [this station's]");
   add_state_option(verify_command, a);
   verify_command.footer(
+      "The lines say who was examined, whether the body was known, what the signature proves and what not.\n"
       "Exit status: 0 valid, also if it was signed by another version of the program, which is said; 1 changed, or "
       "signed with another key; 2 no result, no key.\n"
       "Example:\n  trocar exam verify exam.result.json --key station.pub\n");

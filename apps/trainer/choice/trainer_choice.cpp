@@ -19,12 +19,17 @@ bool needs_exam_body(const TrainerChoice& choice) {
 
 QString exam_text(const TrainerChoice& choice) {
   if (choice.difficulty != Difficulty::kExam) return {};
-  if (!needs_exam_body(choice)) return choice_tr("The case is known: a patient folder has no unseen variant.");
+  const bool is_folder = !needs_exam_body(choice);
   const bool is_found = choice.exam_number != 0 && choice.patient_seed == choice.exam_number;
-  if (!is_found) return {};  // it is being drawn
-  return choice.is_body_known
-             ? choice_tr("Exam %1: this body is known from an earlier attempt.").arg(choice.exam_number)
-             : choice_tr("Exam %1: an unseen body.").arg(choice.exam_number);
+  if (!is_folder && !is_found) return {};  // it is being drawn
+  QString text = choice_tr("The case is known: a patient folder has no unseen variant.");
+  if (!is_folder)
+    text = choice.is_body_known
+               ? choice_tr("Exam %1: this body is known from an earlier attempt.").arg(choice.exam_number)
+               : choice_tr("Exam %1: an unseen body.").arg(choice.exam_number);
+  if (choice.is_person_named) return text;
+  return text + QLatin1Char(' ') +
+         choice_tr("The result will name nobody: go back and choose who you are on the start page.");
 }
 
 }  // namespace trocar::trainer

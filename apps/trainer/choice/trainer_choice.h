@@ -15,9 +15,10 @@ struct TrainerChoice {
   std::uint64_t patient_seed = 1;
   /// Number of an exam on an embedded patient: the seed of the body. 0: a body that was not practised is drawn.
   std::uint64_t exam_number = 0;
-  bool is_body_known = false;  ///< In an exam: an earlier attempt of this station was on the same body.
-  std::string needle;          ///< Empty: the default of the task.
-  std::string force_model;     ///< Empty: the default of the task.
+  bool is_body_known = false;   ///< In an exam: an earlier attempt of the person was on the same body.
+  bool is_person_named = true;  ///< In an exam: somebody was chosen on the start page.
+  std::string needle;           ///< Empty: the default of the task.
+  std::string force_model;      ///< Empty: the default of the task.
   Difficulty difficulty = Difficulty::kGuided;
   /// Devices of needle and transducer: values of trocar-hapticd --device. "mouse" is the simulated device with a
   /// workspace for a whole body.
@@ -27,8 +28,8 @@ struct TrainerChoice {
 
 /// True if a body has to be found for the exam: an exam on an embedded patient. A folder has only one body.
 bool needs_exam_body(const TrainerChoice& choice);
-/// One sentence on the body of an exam: its number, and if it is known. Empty if it is no exam, or before the
-/// body is found.
+/// On the body of an exam: its number, and if it is known; then if the result will name nobody. Empty if it is no exam,
+/// or before the body is found.
 QString exam_text(const TrainerChoice& choice);
 
 }  // namespace trocar::trainer

@@ -44,6 +44,17 @@ Result<learning::History> history_of(const database::DatabaseUrl& url, const std
   return history;
 }
 
+/// The bodies that count for an exam: all of this station, and those of the person on other stations.
+Result<std::vector<exams::SeenBody>> seen_bodies(const std::filesystem::path& state, const database::DatabaseUrl& url,
+                                                 const std::string& person_id) {
+  TROCAR_TRY(exams::SeenBodies seen, exams::seen_on_station(state / "sessions"));
+  if (person_id.empty()) return std::move(seen.attempts);
+  TROCAR_TRY(results::Repository repository, results::Repository::open(url, database::Missing::kRefuse));
+  TROCAR_TRY(const std::vector<exams::SeenBody> recorded, exams::seen_by_person(repository, person_id));
+  seen.attempts.insert(seen.attempts.end(), recorded.begin(), recorded.end());
+  return std::move(seen.attempts);
+}
+
 }  // namespace
 
 LearningControl::LearningControl(std::filesystem::path state_folder, StartPage& start, FeedbackPanel& feedback,
@@ -82,11 +93,14 @@ void LearningControl::refresh() {
 void LearningControl::find_exam_body(const TrainerChoice& choice) {
   cancel_exam_body();
   exam_ = choice;
-  const auto work = [choice, folder = state_folder_ / "sessions"](const Progress& progress) -> Result<exams::ExamBody> {
-    TROCAR_TRY(const learning::History history, learning::read_history(folder));
+  const auto work = [choice, state = state_folder_, url = url_,
+                     person = person_id_](const Progress& progress) -> Result<exams::ExamBody> {
+    auto found = seen_bodies(state, url, person);
+    if (!found) found = seen_bodies(state, url, {});  // the database is away: the result will be made later
+    TROCAR_TRY(const std::vector<exams::SeenBody> seen, std::move(found));
     const exams::FitCheck check = exams::fit_check(choice.task, choice.patient, io::patient_cache_folder(), progress);
-    if (choice.exam_number != 0) return exams::find_body(choice.patient, choice.exam_number, history.attempts, check);
-    return exams::draw_body(choice.patient, history.attempts, std::random_device()(), check);
+    if (choice.exam_number != 0) return exams::find_body({choice.patient, choice.exam_number}, seen, person, check);
+    return exams::draw_body(choice.patient, seen, std::random_device()(), check);
   };
   drawing_ = BackgroundJob<exams::ExamBody>(work);
 }
@@ -95,12 +109,23 @@ void LearningControl::cancel_exam_body() {
   retired_.retire(std::exchange(drawing_, {}));
 }
 
-void LearningControl::sign(const std::filesystem::path& session) {
+void LearningControl::note_tables() {
+  data_sha256_ = exams::digest_of_data(data_dir());
+}
+
+void LearningControl::seal(const std::filesystem::path& session, exams::ExamEnd end) {
   feedback_.show_result(tr("The result of the exam is being signed …"));
-  const auto work = [session, state = state_folder_](const Progress&) -> Result<std::filesystem::path> {
+  const auto work = [session, end = std::move(end), data = data_sha256_, state = state_folder_,
+                     url = url_](const Progress&) mutable -> Result<std::filesystem::path> {
+    TROCAR_TRY(end.data_sha256, std::move(data));
     TROCAR_TRY(const auto key, signing::open_station_key(state / exams::kStationKeyFile));
-    TROCAR_TRY(const learning::History history, learning::read_history(state / "sessions"));
-    return exams::sign_exam(session, history.attempts, key);
+    TROCAR_TRY_STATUS(exams::seal_exam(session, end, key));
+    auto seen = seen_bodies(state, url, end.person.id);
+    if (!seen) {
+      seen.error().advice = "the exam is sealed: make its result later with trocar exam sign";
+      return tl::unexpected(std::move(seen).error());
+    }
+    return exams::sign_exam(session, *seen, key);
   };
   signing_ = BackgroundJob<std::filesystem::path>(work);
 }

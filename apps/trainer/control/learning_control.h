@@ -8,6 +8,7 @@
 #include "core/background_job.h"
 #include "database/database_url.h"
 #include "exams/exam_body.h"
+#include "exams/exam_seal.h"
 #include "learning/next_exercise.h"
 
 namespace trocar::trainer {
@@ -33,8 +34,11 @@ class LearningControl : public QObject {
   /// Finds the body of an exam; exam_found or exam_failed follows, exam_progress before.
   void find_exam_body(const TrainerChoice& choice);
   void cancel_exam_body();
-  /// Signs the session of a finished exam, then refreshes.
-  void sign(const std::filesystem::path& session);
+  /// Call when a case is opened: an exam is sealed only if the data tables have not changed since.
+  void note_tables();
+  /// Seals the session of an exam that has just ended and makes its result, then refreshes. `end` is what this program
+  /// has recorded; its tables are those noted.
+  void seal(const std::filesystem::path& session, exams::ExamEnd end);
   /// Clears the result of the last exam on the feedback page.
   void forget_result();
   void poll();
@@ -66,7 +70,8 @@ class LearningControl : public QObject {
   BackgroundJob<exams::ExamBody> drawing_;
   BackgroundJob<std::filesystem::path> signing_;
   RetiredJobs retired_;
-  TrainerChoice exam_;  ///< The choice whose body is being found.
+  TrainerChoice exam_;                               ///< The choice whose body is being found.
+  Result<std::string> data_sha256_ = std::string();  ///< When the case was opened.
   QString next_title_, result_file_;
 };
 

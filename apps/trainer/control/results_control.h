@@ -35,6 +35,8 @@ class ResultsControl : public QObject {
   /// Empty: nobody practises, nothing is recorded.
   std::string person_id() const { return person_ ? person_->id : std::string(); }
   std::string person_name() const { return person_ ? person_->name : std::string(); }
+  /// True if the person has a PIN: it was entered before the person could practise.
+  bool has_person_given_pin() const noexcept { return person_ && person_->has_pin; }
   /// Records sessions that are left on the station, then reads people and history anew.
   void refresh();
   /// Writes that an attempt has begun, and its result when it has ended; one that recorded nothing is forgotten.

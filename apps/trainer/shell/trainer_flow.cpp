@@ -144,7 +144,9 @@ void TrainerFlow::go_to_case_builder() {
   window_.show_page(QStringLiteral("case-builder"));
 }
 
-void TrainerFlow::start(const TrainerChoice& choice) {
+void TrainerFlow::start(const TrainerChoice& chosen) {
+  TrainerChoice choice = chosen;
+  choice.is_person_named = !results_->person_id().empty();
   if (!needs_exam_body(choice)) return open(choice);
   choice_ = choice;
   window_.work().set_parameters_locked(true);
@@ -158,6 +160,7 @@ void TrainerFlow::open(const TrainerChoice& choice) {
   // An interrupted exam can be replayed but not continued.
   window_.work().set_parameters_locked(is_exam() && !cut_off_);
   opened_.reset();
+  if (is_exam()) learning_->note_tables();
   retired_.retire(std::exchange(
       opening_, cases::open_case(case_choice(choice), cases::OpenOptions{open_, io::patient_cache_folder()})));
   window_.briefing().show_opening(choice);
@@ -252,7 +255,7 @@ void TrainerFlow::begin_attempt() {
   options.X_PT_start = open_->neutral.X_PT;
   if (const Status kept = journal_.begin({case_choice(choice_), options.session}); !kept)
     return window_.show_banner(sentence_of(kept.error()), BannerKind::kError);
-  record_begin(options);
+  record_begin(options, {results_->person_id(), results_->person_name(), results_->has_person_given_pin()});
   replay_.reset();
   recoveries_ = 0;
   window_.work().set_parameters_locked(is_exam());
@@ -311,7 +314,7 @@ void TrainerFlow::poll_attempt() {
                         BannerKind::kError);
     return window_.show_page(QStringLiteral("briefing"));
   }
-  keep_result(session);
+  keep_result(session, **result);
   warnings_ = (*result)->warnings;
   cut_short_ = (*result)->cut_short;
   if ((*result)->unsaved) {

@@ -17,6 +17,7 @@
 #include "core/background_job.h"
 #include "database/database_url.h"
 #include "devices/pointer/speaker.h"
+#include "exams/exam_seal.h"
 #include "ui_kit/frame_count.h"
 
 namespace trocar::trainer {
@@ -56,10 +57,11 @@ class TrainerFlow : public QObject {
   void connect_pages();
   void connect_learning();
   void connect_results();
-  void record_begin(const attempt::AttemptOptions& options);
+  void record_begin(const attempt::AttemptOptions& options, const exams::Examinee& person);
   /// Finds the body of an exam first.
-  void start(const TrainerChoice& choice);
-  void keep_result(const std::filesystem::path& session);
+  void start(const TrainerChoice& chosen);
+  void keep_result(const std::filesystem::path& session, const attempt::RunResult& result);
+  exams::ExamEnd exam_end(const attempt::RunResult& result) const;
   void frame();
   void poll_opening();
   void show_opened();
@@ -97,6 +99,8 @@ class TrainerFlow : public QObject {
   std::unique_ptr<LearningControl> learning_;
   std::unique_ptr<ResultsControl> results_;
   bool is_close_confirmed_ = false;
+  storage::SessionInfo begun_;         ///< What was known of the attempt when it began.
+  exams::Examinee examinee_;           ///< Who practised then.
   int recoveries_ = 0;                 ///< Reported recoveries of the attempt's servers.
   std::string cut_short_;              ///< See RunResult; for the same attempt.
   std::vector<std::string> warnings_;  ///< Warnings of the attempt whose replay is being loaded.

@@ -141,7 +141,7 @@ void expect_signed_exam(const std::filesystem::path& state) {
   ASSERT_TRUE(key) << key.error().text();
   std::vector<std::filesystem::path> results;
   for (const auto& entry : std::filesystem::directory_iterator(state / "sessions"))
-    if (entry.path().extension() == ".json") results.push_back(entry.path());
+    if (entry.path().string().ends_with(".result.json")) results.push_back(entry.path());
   ASSERT_EQ(results.size(), 1u);
   const auto verification = exams::verify_exam(results.front(), key->public_key());
   ASSERT_TRUE(verification) << verification.error().text();
@@ -152,6 +152,7 @@ void expect_signed_exam(const std::filesystem::path& state) {
   EXPECT_EQ((*json)["level"], "exam");
   EXPECT_EQ((*json)["body_was_known"], false);
   EXPECT_GE((*json)["exam_number"].get<int>(), 1000);
+  EXPECT_TRUE((*json)["person"].is_null()) << "nobody was chosen";
   EXPECT_TRUE((*json)["changed_settings"].empty()) << (*json)["changed_settings"].dump();
 }
 

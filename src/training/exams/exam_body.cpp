@@ -18,17 +18,11 @@ constexpr std::uint64_t kFirstDrawn = 1000, kLastDrawn = 9999;
 
 }  // namespace
 
-bool is_known_body(std::span<const learning::PastAttempt> history, const std::string& patient, std::uint64_t seed) {
-  return std::any_of(history.begin(), history.end(), [&](const learning::PastAttempt& attempt) {
-    return attempt.patient == patient && (attempt.patient_seed == seed || io::is_path(patient));
-  });
-}
-
-Result<ExamBody> draw_body(const std::string& patient, std::span<const learning::PastAttempt> history,
-                           std::uint64_t random_seed, const FitCheck& check) {
+Result<ExamBody> draw_body(const std::string& patient, std::span<const SeenBody> history, std::uint64_t random_seed,
+                           const FitCheck& check) {
   std::set<std::uint64_t> known;
-  for (const learning::PastAttempt& attempt : history)
-    if (attempt.patient == patient) known.insert(attempt.patient_seed);
+  for (const SeenBody& seen : history)
+    if (seen.patient == patient) known.insert(seen.seed);
   Random random(random_seed);
   ExamBody body;
   Status fit = fail("all bodies are known", patient, "choose another patient");
@@ -48,15 +42,16 @@ Result<ExamBody> draw_body(const std::string& patient, std::span<const learning:
   return tl::unexpected(std::move(fit).error());
 }
 
-Result<ExamBody> find_body(const std::string& patient, std::uint64_t number,
-                           std::span<const learning::PastAttempt> history, const FitCheck& check) {
+Result<ExamBody> find_body(const ExaminedBody& body, std::span<const SeenBody> history, std::string_view person_id,
+                           const FitCheck& check) {
+  const std::uint64_t number = body.seed;
   if (number <= kPractisedNumber || number > kMostNumber)
     return fail_usage(fmt::format("there is no exam {}", number), "exam number",
                       fmt::format("choose {} to {}", kPractisedNumber + 1, kMostNumber));
   if (const Status fit = check(number); !fit)
-    return fail(fmt::format("exam {} cannot be held: {}", number, fit.error().what), patient,
+    return fail(fmt::format("exam {} cannot be held: {}", number, fit.error().what), body.patient,
                 "choose another number, or let one be drawn");
-  return ExamBody{number, is_known_body(history, patient, number)};
+  return ExamBody{number, is_known_body(history, body, person_id)};
 }
 
 FitCheck fit_check(const std::string& task, const std::string& patient, const std::filesystem::path& cache_folder,

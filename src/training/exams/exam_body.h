@@ -9,7 +9,7 @@
 
 #include "core/progress.h"
 #include "core/result.h"
-#include "learning/past_attempt.h"
+#include "exams/seen_bodies.h"
 
 namespace trocar::exams {
 
@@ -20,25 +20,22 @@ inline constexpr std::uint64_t kMostNumber = 999'999;
 struct ExamBody {
   /// The exam's number: the patient's seed. The same number is the same body on every station of this version.
   std::uint64_t number = 0;
-  bool is_known = false;               ///< An attempt of the history was on this body.
+  bool is_known = false;               ///< An earlier attempt was on this body.
   std::vector<std::uint64_t> unfit{};  ///< Numbers that were drawn before and cannot serve the task.
 };
 
 /// Status of a body: an error says why it cannot serve the task.
 using FitCheck = std::function<Status(std::uint64_t number)>;
 
-/// True if the history has an attempt on this body, of any task and level, finished or not. A patient folder has one
-/// body, whatever the seed.
-bool is_known_body(std::span<const learning::PastAttempt> history, const std::string& patient, std::uint64_t seed);
-
-/// Draws numbers of four digits by `random_seed` until one is not in the history and passes the check. Error: none of
-/// kMostTries; the reason of the last one.
+/// Draws numbers of four digits by `random_seed` until one is not in the history, of anybody, and passes the check.
+/// Error: none of kMostTries; the reason of the last one.
 inline constexpr int kMostTries = 8;
-Result<ExamBody> draw_body(const std::string& patient, std::span<const learning::PastAttempt> history,
-                           std::uint64_t random_seed, const FitCheck& check);
-/// The body of a given number; it may be known. Errors: 2..kMostNumber (exit status 2); it does not pass the check.
-Result<ExamBody> find_body(const std::string& patient, std::uint64_t number,
-                           std::span<const learning::PastAttempt> history, const FitCheck& check);
+Result<ExamBody> draw_body(const std::string& patient, std::span<const SeenBody> history, std::uint64_t random_seed,
+                           const FitCheck& check);
+/// The body of a given number; it may be known to the person (empty: to anybody). Errors: 2..kMostNumber (exit status
+/// 2); it does not pass the check.
+Result<ExamBody> find_body(const ExaminedBody& body, std::span<const SeenBody> history, std::string_view person_id,
+                           const FitCheck& check);
 
 /// The check of a task on an embedded patient: all structures are there and a safe path is found. Bodies are kept in
 /// the cache folder, from which they then open.

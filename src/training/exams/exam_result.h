@@ -2,30 +2,21 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 
 #include "core/result.h"
-#include "learning/past_attempt.h"
-#include "signing/signing_key.h"
+#include "exams/exam_seal.h"
+#include "exams/seen_bodies.h"
 
 namespace trocar::exams {
 
-/// Name of the station's key in the folder for state (`user_state_folder()`, --state).
-inline constexpr const char* kStationKeyFile = "station.key";
-
-/// File of the signed result beside a session: "a.trocar" -> "a.result.json".
-std::filesystem::path result_file_of(const std::filesystem::path& session);
-
-/// SHA-256 over names and bytes of all tables (*.toml) of a data folder: other tasks, tissues or weights give another
-/// one.
-Result<std::string> digest_of_data(const std::filesystem::path& data_folder);
-
-/// Signs the session of an exam and writes the result beside it, never over another file. `history` tells if the body
-/// was known: an earlier attempt on it. Returns the file. Errors: the session is damaged, incomplete or no exam; the
-/// result exists; it cannot be written.
-Result<std::filesystem::path> sign_exam(const std::filesystem::path& session,
-                                        std::span<const learning::PastAttempt> history, const signing::SigningKey& key);
+/// Writes the signed result of a sealed exam beside its session, never over another file: what the seal says, and
+/// whether the body was known to the person by the attempts before it. Returns the file. Errors: those of
+/// load_exam and of check_seal; the result exists; it cannot be written.
+Result<std::filesystem::path> sign_exam(const std::filesystem::path& session, std::span<const SeenBody> history,
+                                        const signing::SigningKey& key);
 
 enum class Verdict : std::uint8_t {
   kValid,         ///< Signed with the key, by this version of the program with these tables.
@@ -36,11 +27,14 @@ enum class Verdict : std::uint8_t {
 struct Verification {
   Verdict verdict = Verdict::kChanged;
   std::string text;  ///< One line.
+  /// Of a valid result, a line each: person, body, what the signature proves and what not.
+  std::vector<std::string> details{};
 
   bool is_valid() const noexcept { return verdict == Verdict::kValid || verdict == Verdict::kOtherVersion; }
 };
-/// Checks a result with the public key that is trusted, and the session if it lies beside it. Errors: the file cannot
-/// be read, or is no result of an exam at all (exit status 2).
+/// Checks a result with the public key that is trusted, and the session if it lies beside it. Results of older programs
+/// (format 1, signed at any time after the attempt) stay verifiable; the details say that they prove less. Errors: the
+/// file cannot be read, or is no result of an exam at all (exit status 2).
 Result<Verification> verify_exam(const std::filesystem::path& result, const signing::PublicKey& key);
 
 }  // namespace trocar::exams

@@ -7,8 +7,8 @@
 namespace trocar::exams {
 namespace {
 
-learning::PastAttempt attempt_on(const std::string& patient, std::uint64_t seed) {
-  return {"liver-biopsy", patient, seed, {}, {}};
+SeenBody attempt_on(const std::string& patient, std::uint64_t seed, const std::string& person = {}) {
+  return {"attempt", person, patient, seed, {}, {}};
 }
 
 const FitCheck kAlways = [](std::uint64_t) { return Status(); };
@@ -29,7 +29,7 @@ TEST(ExamBody, IsDrawnByTheSeedAndNeverThePractisedOne) {
 
 TEST(ExamBody, IsNeverDrawnFromTheHistory) {
   const std::uint64_t first = draw_body("biopsy-2", {}, 5, kAlways)->number;
-  std::vector<learning::PastAttempt> history{attempt_on("biopsy-2", first)};
+  std::vector<SeenBody> history{attempt_on("biopsy-2", first)};
   const std::uint64_t second = draw_body("biopsy-2", history, 5, kAlways)->number;
   EXPECT_NE(second, first);
   EXPECT_EQ(draw_body("biopsy-3", history, 5, kAlways)->number, first);  // another patient
@@ -67,24 +67,29 @@ TEST(ExamBody, DrawingEndsWithTheReasonWhenNoneIsFit) {
 }
 
 TEST(ExamBody, OfAGivenNumberMayBeKnown) {
-  const std::vector<learning::PastAttempt> history{attempt_on("biopsy-2", 4711)};
-  EXPECT_TRUE(find_body("biopsy-2", 4711, history, kAlways)->is_known);
-  EXPECT_FALSE(find_body("biopsy-2", 4712, history, kAlways)->is_known);
-  EXPECT_FALSE(find_body("biopsy-3", 4711, history, kAlways)->is_known);
+  const std::vector<SeenBody> history{attempt_on("biopsy-2", 4711)};
+  EXPECT_TRUE(find_body({"biopsy-2", 4711}, history, {}, kAlways)->is_known);
+  EXPECT_FALSE(find_body({"biopsy-2", 4712}, history, {}, kAlways)->is_known);
+  EXPECT_FALSE(find_body({"biopsy-3", 4711}, history, {}, kAlways)->is_known);
+  const std::vector<SeenBody> of_ada{attempt_on("biopsy-2", 4711, "ada")};
+  EXPECT_TRUE(find_body({"biopsy-2", 4711}, of_ada, "ada", kAlways)->is_known);
+  EXPECT_FALSE(find_body({"biopsy-2", 4711}, of_ada, "bob", kAlways)->is_known);
+  EXPECT_TRUE(find_body({"biopsy-2", 4711}, of_ada, {}, kAlways)->is_known) << "nobody named: of anybody";
   for (const std::uint64_t number : {std::uint64_t{0}, std::uint64_t{1}, kMostNumber + 1}) {
-    const auto body = find_body("biopsy-2", number, history, kAlways);
+    const auto body = find_body({"biopsy-2", number}, history, {}, kAlways);
     ASSERT_FALSE(body) << number;
     EXPECT_EQ(body.error().exit_status, 2);
   }
-  const auto unfit = find_body("biopsy-2", 4711, history, [](std::uint64_t) -> Status { return fail("no liver"); });
+  const auto unfit =
+      find_body({"biopsy-2", 4711}, history, {}, [](std::uint64_t) -> Status { return fail("no liver"); });
   ASSERT_FALSE(unfit);
   EXPECT_NE(unfit.error().text().find("exam 4711 cannot be held: no liver"), std::string::npos);
 }
 
 TEST(ExamBody, AFolderIsKnownWhateverTheSeed) {
-  const std::vector<learning::PastAttempt> history{attempt_on("/cases/one", 1)};
-  EXPECT_TRUE(is_known_body(history, "/cases/one", 9));
-  EXPECT_FALSE(is_known_body(history, "/cases/two", 1));
+  const std::vector<SeenBody> history{attempt_on("/cases/one", 1)};
+  EXPECT_TRUE(is_known_body(history, {"/cases/one", 9}));
+  EXPECT_FALSE(is_known_body(history, {"/cases/two", 1}));
 }
 
 TEST(ExamBody, EachTaskHasAPatientOfEachDifficulty) {

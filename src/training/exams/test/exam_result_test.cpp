@@ -1,17 +1,7 @@
 #include "exams/exam_result.h"
 
-#include <gtest/gtest.h>
-
-#include <fstream>
-
-#include "config/json.h"
-#include "core/files/atomic_file.h"
-#include "core/files/data_dir.h"
-#include "core/files/temporary_folder.h"
 #include "core/testing/data_folder.h"
-#include "core/version.h"
-#include "haptics/force_version.h"
-#include "storage/session_file.h"
+#include "exams/test/exam_fixture.h"
 
 namespace trocar::exams {
 namespace {
@@ -19,40 +9,10 @@ namespace {
 namespace fs = std::filesystem;
 using config::Json;
 
-storage::SessionInfo exam_info() {
-  storage::SessionInfo info;
-  info.program_version = kVersion;
-  info.force_version = haptics::kForceVersion;
-  info.started_utc = "2026-02-03T04:05:06Z";
-  info.task = "liver-biopsy";
-  info.patient_source = "biopsy-2";
-  info.patient_hash = "0123456789abcdef";
-  info.patient_seed = 4711;
-  info.level = "exam";
-  info.operator_name = "trainee";
-  info.device = "virtual";
-  info.label_names.resize(256);
-  return info;
-}
-
-void write_session(const fs::path& file, const storage::SessionInfo& info, double score = 87.25,
-                   bool is_finished = true) {
-  auto writer = storage::SessionWriter::create(file, info);
-  ASSERT_TRUE(writer) << writer.error().text();
-  ASSERT_TRUE(writer->append(telemetry::TickSample()));
-  scoring::Outcome outcome;
-  outcome.score = score;
-  outcome.fails = {"the lung was touched"};
-  outcome.parts = {{"target", "Distance to the target", 1.5, "mm", 18.0, 20.0}};
-  if (is_finished) {
-    ASSERT_TRUE(writer->finish(outcome, {}));
-  }
-}
-
 /// An exam with its signed result.
 struct SignedExam : ::testing::Test {
   SignedExam() : key(*signing::SigningKey::make()) {
-    write_session(session, exam_info());
+    EXPECT_TRUE(seal_exam(session, record_exam(session, exam_info()), key));
     const auto made = sign_exam(session, {}, key);
     EXPECT_TRUE(made) << made.error().text();
     text = *read_file(result);
@@ -62,6 +22,14 @@ struct SignedExam : ::testing::Test {
     std::ofstream(result, std::ios::binary) << changed;
     const auto verification = verify_exam(result, key.public_key());
     return verification ? *verification : Verification{Verdict::kChanged, verification.error().text()};
+  }
+  /// Seals and signs another session.
+  fs::path sign(const std::string& name, const storage::SessionInfo& info) {
+    const fs::path file = folder / (name + ".trocar");
+    EXPECT_TRUE(seal_exam(file, record_exam(file, info), key));
+    const auto made = sign_exam(file, {}, key);
+    EXPECT_TRUE(made) << made.error().text();
+    return made.value_or(fs::path());
   }
   Json json() const { return *config::parse_json(text, "result"); }
 
@@ -82,11 +50,25 @@ TEST_F(SignedExam, SaysWhatWasAskedAndReached) {
   EXPECT_EQ(all["fails"][0], "the lung was touched");
   EXPECT_EQ(all["program_version"], kVersion);
   EXPECT_EQ(all["force_version"], haptics::kForceVersion);
+  EXPECT_EQ(all["person"], "Ada Lovelace");
+  EXPECT_EQ(all["patient_hash"], exam_info().patient_hash);
   const Verification verification = verify(text);
   EXPECT_EQ(verification.verdict, Verdict::kValid);
   EXPECT_TRUE(
       verification.text.starts_with("valid: 2026-02-03T04:05:06Z, liver-biopsy biopsy-2, 87 points, not passed"))
       << verification.text;
+  ASSERT_EQ(verification.details.size(), 5u);
+  EXPECT_EQ(verification.details[0], "person: Ada Lovelace (ada), who gave the PIN");
+  EXPECT_EQ(verification.details[1], "body: biopsy-2 4711, hash 0123456789abcdef, in no earlier attempt of the person");
+  EXPECT_TRUE(verification.details[3].starts_with("proves: ")) << verification.details[3];
+  EXPECT_TRUE(verification.details[4].starts_with("does not prove: who held the needle")) << verification.details[4];
+}
+
+TEST_F(SignedExam, OfNobodySaysSo) {
+  storage::SessionInfo info = exam_info();
+  info.person_id.clear();
+  const auto verification = verify_exam(sign("b", info), key.public_key());
+  EXPECT_EQ(verification->details[0], "person: nobody was chosen on the start page");
 }
 
 TEST_F(SignedExam, EveryChangedMemberIsFound) {
@@ -141,8 +123,11 @@ TEST_F(SignedExam, AnotherStationsKeyIsNamed) {
   const auto verification = verify_exam(result, other->public_key());
   ASSERT_TRUE(verification);
   EXPECT_EQ(verification->verdict, Verdict::kOtherKey);
-  // A forger signs with a key of their own.
+  // A forger seals and signs with a key of their own.
   fs::remove(result);
+  fs::remove(session);
+  fs::remove(seal_file_of(session));
+  ASSERT_TRUE(seal_exam(session, record_exam(session, exam_info(), 100.0), *other));
   ASSERT_TRUE(sign_exam(session, {}, *other));
   EXPECT_EQ(verify_exam(result, key.public_key())->verdict, Verdict::kOtherKey);
 }
@@ -153,7 +138,7 @@ TEST_F(SignedExam, AReplacedSessionIsFoundAndAMissingOneNoted) {
   ASSERT_TRUE(alone);
   EXPECT_EQ(alone->verdict, Verdict::kValid);
   EXPECT_NE(alone->text.find("not checked"), std::string::npos) << alone->text;
-  write_session(session, exam_info(), 99.0);
+  record_exam(session, exam_info(), 99.0);
   const auto replaced = verify_exam(result, key.public_key());
   ASSERT_TRUE(replaced);
   EXPECT_EQ(replaced->verdict, Verdict::kChanged);
@@ -171,18 +156,22 @@ TEST_F(SignedExam, OtherTablesAndVersionsAreNamed) {
   }
   storage::SessionInfo info = exam_info();
   info.program_version = "0.0.1";
-  write_session(folder / "b.trocar", info);
-  ASSERT_TRUE(sign_exam(folder / "b.trocar", {}, key));
-  const auto verification = verify_exam(folder / "b.result.json", key.public_key());
+  const auto verification = verify_exam(sign("b", info), key.public_key());
   EXPECT_EQ(verification->verdict, Verdict::kOtherVersion);
   EXPECT_NE(verification->text.find("program version 0.0.1"), std::string::npos) << verification->text;
   info = exam_info();
   info.force_version = 1;
-  write_session(folder / "c.trocar", info);
-  ASSERT_TRUE(sign_exam(folder / "c.trocar", {}, key));
-  const auto of_older_forces = verify_exam(folder / "c.result.json", key.public_key());
+  const auto of_older_forces = verify_exam(sign("c", info), key.public_key());
   EXPECT_EQ(of_older_forces->verdict, Verdict::kOtherVersion);
   EXPECT_NE(of_older_forces->text.find("version 1 of the forces"), std::string::npos) << of_older_forces->text;
+}
+
+TEST_F(SignedExam, HasTheTablesOfTheAttemptWheneverItIsSigned) {
+  fs::remove(result);
+  const testing::OwnDataFolder data;
+  data.change("tasks/liver-biopsy.toml", "pass_mark = 70.0", "pass_mark = 1.0");
+  ASSERT_TRUE(sign_exam(session, {}, key));
+  EXPECT_EQ(verify_exam(result, key.public_key())->verdict, Verdict::kOtherVersion);
 }
 
 TEST_F(SignedExam, IsNotSignedTwiceNorAnythingThatIsNoExam) {
@@ -191,29 +180,40 @@ TEST_F(SignedExam, IsNotSignedTwiceNorAnythingThatIsNoExam) {
   EXPECT_NE(again.error().text().find("signed already"), std::string::npos);
   storage::SessionInfo info = exam_info();
   info.level = "guided";
-  write_session(folder / "b.trocar", info);
-  EXPECT_FALSE(sign_exam(folder / "b.trocar", {}, key));
-  write_session(folder / "c.trocar", exam_info(), 1.0, false);
-  const auto interrupted = sign_exam(folder / "c.trocar", {}, key);
-  ASSERT_FALSE(interrupted);
-  EXPECT_NE(interrupted.error().text().find("interrupted"), std::string::npos);
+  record_exam(folder / "b.trocar", info);
+  const auto guided = sign_exam(folder / "b.trocar", {}, key);
+  ASSERT_FALSE(guided);
+  EXPECT_NE(guided.error().text().find("its level is guided"), std::string::npos) << guided.error().text();
+  record_exam(folder / "c.trocar", exam_info());
+  EXPECT_NE(sign_exam(folder / "c.trocar", {}, key).error().text().find("has no seal"), std::string::npos);
   EXPECT_FALSE(sign_exam(folder / "missing.trocar", {}, key));
 }
 
-TEST_F(SignedExam, SaysIfTheBodyWasKnown) {
-  using namespace std::chrono;
-  const sys_seconds begin = sys_days(year(2026) / 2 / 3) + hours(4) + minutes(5) + seconds(6);
-  const auto known = [&](const std::string& patient, std::uint64_t seed, sys_seconds when) {
-    fs::remove(result);
-    const std::vector<learning::PastAttempt> history{{"liver-biopsy", patient, seed, {}, when}};
-    EXPECT_TRUE(sign_exam(session, history, key));
-    return (*config::load_json(result))["body_was_known"].get<bool>();
-  };
-  EXPECT_FALSE(known("biopsy-2", 4711, begin));  // the exam itself
-  EXPECT_TRUE(known("biopsy-2", 4711, begin - hours(1)));
-  EXPECT_FALSE(known("biopsy-2", 4711, begin + hours(1)));
-  EXPECT_FALSE(known("biopsy-2", 1, begin - hours(1)));
-  EXPECT_FALSE(known("biopsy-3", 4711, begin - hours(1)));
+// Format 1 was signed at any time after the attempt: it stays what it was.
+TEST_F(SignedExam, AnOlderResultStaysVerifiableAndProvesLess) {
+  Json old = json();
+  for (const char* added : {"attempt_id", "person", "person_id", "person_checked_by", "patient_seed", "sealed_utc",
+                            "ticks_hash", "body_was_seen_unnamed"})
+    old.erase(added);
+  old["format"] = "trocar exam result 1";
+  sign_json(old, key);
+  const Verification verification = verify(canonical_text(old));
+  EXPECT_EQ(verification.verdict, Verdict::kValid) << verification.text;
+  EXPECT_NE(verification.text.find("an older program, which proves less"), std::string::npos) << verification.text;
+  ASSERT_EQ(verification.details.size(), 2u);
+  EXPECT_NE(verification.details[1].find("names no person"), std::string::npos);
+  old["score"] = 99.0;
+  EXPECT_EQ(verify(canonical_text(old)).verdict, Verdict::kChanged);
+  // The new text with the old format is no other signed text.
+  Json relabelled = json();
+  relabelled["format"] = "trocar exam result 1";
+  EXPECT_EQ(verify(canonical_text(relabelled)).verdict, Verdict::kChanged);
+}
+
+TEST_F(SignedExam, ASealIsNoResult) {
+  const auto verification = verify_exam(seal_file_of(session), key.public_key());
+  ASSERT_FALSE(verification);
+  EXPECT_NE(verification.error().text().find("is the seal of an exam"), std::string::npos);
 }
 
 TEST_F(SignedExam, AFileThatIsNoResultIsRefused) {
@@ -224,20 +224,6 @@ TEST_F(SignedExam, AFileThatIsNoResultIsRefused) {
     ASSERT_FALSE(verification) << other;
     EXPECT_EQ(verification.error().exit_status, 2);
   }
-}
-
-TEST(DigestOfData, ChangesWithAByteAndAName) {
-  const std::string before = *digest_of_data(data_dir());
-  EXPECT_EQ(before, *digest_of_data(data_dir()));
-  {
-    const testing::OwnDataFolder data;
-    EXPECT_EQ(*digest_of_data(data_dir()), before);
-    data.change("tissues.toml", " ", "  ");
-    EXPECT_NE(*digest_of_data(data_dir()), before);
-  }
-  const testing::OwnDataFolder data;
-  fs::rename(data_dir() / "needles.toml", data_dir() / "needle.toml");
-  EXPECT_NE(*digest_of_data(data_dir()), before);
 }
 
 }  // namespace
