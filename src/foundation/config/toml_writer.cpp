@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include "config/detail/toml_library.h"
@@ -37,6 +38,13 @@ std::string key_text(std::string_view key) {
   return !key.empty() && std::all_of(key.begin(), key.end(), is_bare) ? std::string(key) : text_of(key);
 }
 
+/// The shortest digits that read back to the same number; toml++ 3.3 writes 17: 0.46 as 0.46000000000000002.
+std::string shortest(double value) {
+  std::string text = fmt::format("{}", value);
+  if (!std::isfinite(value)) return std::isnan(value) ? "nan" : text;
+  return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+}
+
 }  // namespace
 
 TomlValue::TomlValue(std::string_view text) : text_(text_of(text)) {}
@@ -44,7 +52,7 @@ TomlValue::TomlValue(std::string_view text) : text_(text_of(text)) {}
 TomlValue::TomlValue(bool value) : text_(formatted(toml::value<bool>(value))) {}
 
 std::string TomlValue::number_text(double value) {
-  return formatted(toml::value<double>(value));
+  return shortest(value);
 }
 
 std::string TomlValue::number_text(std::int64_t value) {

@@ -119,5 +119,18 @@ TEST(TomlWriter, BreaksLongListsIntoLines) {
   EXPECT_EQ(parsed(writer.text()).strings("list").value().size(), 30u);
 }
 
+TEST(TomlWriter, WritesTheShortestDigitsThatReadBack) {
+  const auto text = [](double value) { return TomlValue(value).text(); };
+  EXPECT_EQ(text(0.46), "0.46");
+  EXPECT_EQ(text(0.1), "0.1");
+  EXPECT_EQ(text(2.0), "2.0");
+  EXPECT_EQ(text(-0.0), "-0.0");
+  EXPECT_EQ(text(1e300), "1e+300");
+  EXPECT_EQ(text(0.1 + 0.2), "0.30000000000000004");
+  EXPECT_EQ(text(std::numeric_limits<double>::infinity()), "inf");
+  EXPECT_EQ(text(-std::numeric_limits<double>::infinity()), "-inf");
+  EXPECT_EQ(text(std::numeric_limits<double>::quiet_NaN()), "nan");
+}
+
 }  // namespace
 }  // namespace trocar::config
