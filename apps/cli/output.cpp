@@ -11,6 +11,7 @@
 #include "config/json.h"
 #include "core/files/data_dir.h"
 #include "core/files/output_check.h"
+#include "core/parse_number.h"
 
 namespace trocar::cli {
 namespace fs = std::filesystem;
@@ -19,13 +20,26 @@ void print_warning(std::string_view text) {
   fmt::print(stderr, "warning: {}\n", text);
 }
 
-void print_json(const config::Json& json) {
-  fmt::print("{}\n", json.dump(2, ' ', false, config::Json::error_handler_t::replace));
+namespace {
+
+constexpr std::chrono::seconds kBetweenLines{1};
+
+/// A sum such as 17.208000000000002 is printed as 17.208: the last two digits are those of the arithmetic.
+void round_numbers(config::Json& json) {
+  if (json.is_structured()) {
+    for (config::Json& member : json) round_numbers(member);
+  } else if (json.is_number_float()) {
+    const double value = json.get<double>();
+    json = parse_number<double>(fmt::format("{:.{}g}", value, kJsonDigits)).value_or(value);
+  }
 }
 
-namespace {
-constexpr std::chrono::seconds kBetweenLines{1};
 }  // namespace
+
+void print_json(config::Json json) {
+  round_numbers(json);
+  fmt::print("{}\n", config::json_text(json));
+}
 
 struct ProgressPrinter::State {
   std::mutex mutex;  // several threads can report steps
