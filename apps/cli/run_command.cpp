@@ -158,7 +158,7 @@ void print_result(const RunArguments& arguments, const cases::Case& the_case, co
     fmt::print("score {:.0f} of 100, target {}: {}\n", outcome.score, outcome.target_reached ? "reached" : "missed",
                outcome.is_passed ? "passed" : fmt::format("not passed ({})", fmt::join(outcome.fails, "; ")));
   } else {
-    fmt::print("not scored: {}\n", outcome.not_scored);
+    fmt::print("not passed: not scored, {}\n", outcome.not_scored);
   }
   for (const metrics::HarmEvent& event : outcome.harms)
     fmt::print("{} harm: {}{}\n", to_string(event.grade), metrics::harm_words(event),

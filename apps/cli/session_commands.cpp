@@ -1,9 +1,12 @@
 // trocar session export, motion and report; metrics: session_metrics_command.cpp.
 #include <fmt/format.h>
 
+#include "attempt/live/attempt_event.h"
+#include "attempt/record/session_case.h"
 #include "attempt/record/stylus_motion.h"
 #include "commands.h"
 #include "core/files/atomic_file.h"
+#include "core/files/data_dir.h"
 #include "io/patient/open_patient.h"
 #include "past_sessions.h"
 #include "patient_option.h"
@@ -50,15 +53,16 @@ struct ReportArguments {
   std::string out;
 };
 
-/// The session's patient; empty with a warning if it is missing or has changed.
-std::optional<anatomy::VirtualPatient> find_report_patient(const storage::SessionInfo& info, io::PatientSource source,
-                                                           const std::filesystem::path& session,
-                                                           const Progress& progress) {
+/// The session's patient; null with a warning if it is missing or has changed.
+std::shared_ptr<const anatomy::VirtualPatient> find_report_patient(const storage::SessionInfo& info,
+                                                                   io::PatientSource source,
+                                                                   const std::filesystem::path& session,
+                                                                   const Progress& progress) {
   if (source.folder_or_name.empty()) {
     auto found = io::find_recorded_patient(info.patient_source, info.patient_hash, session.parent_path());
     if (!found) {
       print_warning("the report has no CT slices: " + found.error().text());
-      return std::nullopt;
+      return nullptr;
     }
     source.folder_or_name = *std::move(found);
   }
@@ -66,25 +70,49 @@ std::optional<anatomy::VirtualPatient> find_report_patient(const storage::Sessio
   auto patient = io::open_patient(source, progress);
   if (!patient) {
     print_warning("the report has no CT slices: " + patient.error().text());
-    return std::nullopt;
+    return nullptr;
   }
   if (patient->content_hash != info.patient_hash) {
     print_warning(
         fmt::format("the report has no CT slices: the patient differs from that of the session — {} — name the right "
                     "one with --patient",
                     source.folder_or_name));
-    return std::nullopt;
+    return nullptr;
   }
-  return *std::move(patient);
+  return std::make_shared<const anatomy::VirtualPatient>(*std::move(patient));
+}
+
+/// Steps and actions; what cannot be had is left out, steps with a warning.
+report::ReportStory story_of(const storage::Session& session,
+                             const std::shared_ptr<const anatomy::VirtualPatient>& patient, const std::string& file) {
+  report::ReportStory story;
+  if (const auto substances = tasks::load_substances(data_dir() / "substances.toml"))
+    for (const tasks::Action& action : session.actions)
+      story.actions.push_back({action.time_s, action.depth_mm, attempt::describe_action(*substances, action).text});
+  if (patient == nullptr) return story;
+  const auto the_case = [&]() -> Result<cases::Case> {
+    TROCAR_TRY(const auto parameters, attempt::replay_parameters(session, {}));
+    return attempt::restore_case(patient, session, parameters.front());
+  }();
+  if (!the_case) {
+    print_warning(fmt::format("the report has no steps: {} — {}", the_case.error().what, file));
+    return story;
+  }
+  story.steps = report::step_times(session, the_case->task, *patient, the_case->needle, the_case->plan);
+  return story;
 }
 
 Status write_report(const ReportArguments& arguments) {
-  TROCAR_TRY_STATUS(check_new(arguments.out));
+  const std::filesystem::path out =
+      arguments.out.empty() ? report::report_file_of(arguments.session) : std::filesystem::path(arguments.out);
+  TROCAR_TRY_STATUS(check_new(out));
   TROCAR_TRY(const storage::Session session, storage::salvage_session(arguments.session));
   warn_of(session, arguments.session);
   const ProgressPrinter printer;
   const auto patient = find_report_patient(session.info, arguments.patient, arguments.session, printer.callback());
-  TROCAR_TRY_STATUS(write_file_atomically(arguments.out, report::html_report(session, patient ? &*patient : nullptr)));
+  const report::ReportStory story = story_of(session, patient, arguments.session);
+  TROCAR_TRY_STATUS(write_file_atomically(out, report::html_report(session, patient.get(), story)));
+  if (arguments.out.empty()) fmt::print("{}\n", out.string());
   if (session.damage.empty()) return {};
   return tl::unexpected(storage::damage_error(session, arguments.session, "the report shows the undamaged part"));
 }
@@ -121,13 +149,16 @@ void add_session_commands(Command& program, Action& action) {
       "--tool needle --patient abdomen\n");
   motion_command.when_parsed([&action, m] { action = [m] { return write_session_motion(m->session, m->csv); }; });
 
-  Command report_command = session.add_command("report", "Write an HTML report with score, hints, forces and slices");
+  Command report_command = session.add_command(
+      "report", "Write an HTML report: passed or not, what to improve, score, steps, forces and slices");
   const auto r = std::make_shared<ReportArguments>();
   report_command.add_option("SESSION", r->session, "Session file of trocar run").required();
   report_command.add_option("--patient", r->patient.folder_or_name, "Patient folder, if it was moved");
   add_cache_option(report_command, r->patient);
-  report_command.add_option("--out", r->out, "HTML file to write").required();
-  report_command.footer("Example:\n  trocar session report first.session --out first.html\n");
+  report_command.add_option("--out", r->out,
+                            "HTML file to write [beside the session: first.report.html of first.session]");
+  report_command.footer(
+      "Example:\n  trocar session report first.session\n  trocar session report first.session --out first.html\n");
   report_command.when_parsed([&action, r] { action = [r] { return write_report(*r); }; });
 
   add_session_metrics_command(session, action);

@@ -3,6 +3,7 @@
 #include <QKeyEvent>
 #include <algorithm>
 
+#include "attempt/live/attempt_event.h"
 #include "control/force_bands.h"
 #include "control/path_comparison.h"
 #include "control/task_layout.h"
@@ -245,7 +246,14 @@ void ReplayControl::go_to(double time_s) {
 }
 
 Status ReplayControl::save_report(const std::filesystem::path& file) const {
-  return write_file_atomically(file, report::html_report(replay_.session(), open_->the_case.patient.get()));
+  const storage::Session& session = replay_.session();
+  const cases::Case& the_case = open_->the_case;
+  report::ReportStory story;
+  for (const tasks::Action& action : session.actions)
+    story.actions.push_back(
+        {action.time_s, action.depth_mm, attempt::describe_action(the_case.substances, action).text});
+  story.steps = report::step_times(session, the_case.task, *the_case.patient, the_case.needle, the_case.plan);
+  return write_file_atomically(file, report::html_report(session, the_case.patient.get(), story));
 }
 
 QVariantMap ReplayControl::facts() const {

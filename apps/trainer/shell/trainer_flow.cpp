@@ -3,6 +3,7 @@
 #include <QDateTime>
 #include <QDir>
 #include <QFileDialog>
+#include <QStandardPaths>
 #include <algorithm>
 
 #include "attempt/record/other_forces.h"
@@ -317,6 +318,7 @@ void TrainerFlow::poll_attempt() {
   keep_result(session, **result);
   warnings_ = (*result)->warnings;
   cut_short_ = (*result)->cut_short;
+  shown_session_ = session;
   if ((*result)->unsaved) {
     show_replay(attempt::AttemptReplay::of(*std::move((*result)->unsaved), open_));
   } else {
@@ -331,6 +333,7 @@ void TrainerFlow::report_recoveries(const attempt::AttemptView& view) {
 }
 
 void TrainerFlow::load_replay(const std::filesystem::path& session) {
+  shown_session_ = session;
   loading_ = BackgroundJob<attempt::AttemptReplay>(
       [session, open = open_](const Progress&) { return attempt::AttemptReplay::load(session, open); });
 }
@@ -375,8 +378,10 @@ void TrainerFlow::recover() {
 
 void TrainerFlow::save_report() {
   if (!replay_) return;
-  const QString file = QFileDialog::getSaveFileName(&window_, tr("Report of the attempt"),
-                                                    QStringLiteral("report.html"), tr("Pages (*.html)"));
+  const QDir documents(QStandardPaths::writableLocation(QStandardPaths::DocumentsLocation));
+  const QString name = to_qt(report::report_file_of(shown_session_.filename()).string());
+  const QString file = QFileDialog::getSaveFileName(&window_, tr("Report of the attempt"), documents.filePath(name),
+                                                    tr("Pages (*.html)"));
   if (file.isEmpty()) return;
   const Status status = replay_->save_report(to_std(file));
   if (!status) return window_.show_banner(sentence_of(status.error()), BannerKind::kError);

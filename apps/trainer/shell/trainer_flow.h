@@ -98,6 +98,7 @@ class TrainerFlow : public QObject {
   std::unique_ptr<ReplayControl> replay_;
   std::unique_ptr<LearningControl> learning_;
   std::unique_ptr<ResultsControl> results_;
+  std::filesystem::path shown_session_;  ///< Of the replay.
   bool is_close_confirmed_ = false;
   storage::SessionInfo begun_;         ///< What was known of the attempt when it began.
   exams::Examinee examinee_;           ///< Who practised then.

@@ -9,7 +9,12 @@
 namespace trocar::report {
 using namespace detail;
 
-std::string html_report(const storage::Session& session, const anatomy::VirtualPatient* patient) {
+std::filesystem::path report_file_of(const std::filesystem::path& session) {
+  return std::filesystem::path(session).replace_extension(".report.html");
+}
+
+std::string html_report(const storage::Session& session, const anatomy::VirtualPatient* patient,
+                        const ReportStory& story) {
   std::string page =
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"><title>";
@@ -17,16 +22,19 @@ std::string html_report(const storage::Session& session, const anatomy::VirtualP
   page += style_sheet();
   page += "</style></head><body><main>";
   page += page_header(session);
-  page += result_section(session);
-  page += hints_section(session);
+  page += verdict_section(session);
+  page += advice_section(session);
+  page += score_section(session);
+  page += steps_section(session, story);
+  page += actions_section(story);
+  page += core_section(session);
+  page += bleeding_section(session);
   page +=
       "<section><h2>Force against depth</h2>" + force_depth_figure(session) + puncture_table(session) + "</section>";
   if (!session.samples.empty()) {
     page += "<section><h2>Forces over time</h2>" + force_time_figure(session) + motion_figure(session) + "</section>";
     page += "<section class=\"together\"><h2>The path</h2>" + path_figure(session, patient) + "</section>";
   }
-  page += core_section(session);
-  page += bleeding_section(session);
   page += case_section(session);
   page += "<footer>Made by Trocar " + escape(session.info.program_version) +
           ", a training simulator and not a medical device. Lengths in mm, forces in N.</footer>";

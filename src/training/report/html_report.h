@@ -5,13 +5,18 @@
 
 #include "anatomy/patient.h"
 #include "core/result.h"
-#include "storage/session_file.h"
+#include "report/report_story.h"
 
 namespace trocar::report {
 
-/// The session as one self-contained HTML page: score and hints, force-displacement plot with the punctures marked
-/// (paper A, figure 4b), force components over time, the path in three CT slices, the core, the case. `patient` may be
-/// null (missing or changed): then the page states this and has no slices.
-std::string html_report(const storage::Session& session, const anatomy::VirtualPatient* patient);
+/// The session as one self-contained HTML page, in the order of reading: passed or not with the reasons, what to
+/// improve first, the score, steps and actions, the core, force-displacement plot with the punctures marked (paper A,
+/// figure 4b), force components over time, the path in three CT slices, the case. `patient` may be null (missing or
+/// changed): then the page states this and has no slices.
+std::string html_report(const storage::Session& session, const anatomy::VirtualPatient* patient,
+                        const ReportStory& story = {});
+
+/// Name of a session's report: "a.trocar" -> "a.report.html".
+std::filesystem::path report_file_of(const std::filesystem::path& session);
 
 }  // namespace trocar::report

@@ -55,9 +55,18 @@ std::string words(std::string_view name) {
 }
 
 std::string title_words(std::string_view name) {
-  std::string out = words(name);
-  if (!out.empty() && out[0] >= 'a' && out[0] <= 'z') out[0] = static_cast<char>(out[0] - 'a' + 'A');
+  return capitalised(words(name));
+}
+
+std::string joined_words(const std::vector<std::string>& names) {
+  std::string out;
+  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + escape(words(name));
   return out;
+}
+
+std::string capitalised(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
 }
 
 std::string base64(std::string_view bytes) {

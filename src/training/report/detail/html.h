@@ -2,6 +2,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace trocar::report::detail {
 
@@ -15,6 +16,11 @@ std::string number_text(double value, int decimals);
 std::string words(std::string_view name);
 /// The same with a capital first letter.
 std::string title_words(std::string_view name);
+
+/// Display texts of names, escaped, with commas between.
+std::string joined_words(const std::vector<std::string>& names);
+/// The text with a capital first letter.
+std::string capitalised(std::string text);
 
 std::string base64(std::string_view bytes);
 

@@ -11,19 +11,8 @@
 namespace trocar::report::detail {
 namespace {
 
-constexpr double kLowShare = 0.5;  ///< Share of a part's points below which the bar is drawn as weak.
-
-/// A number with at most one decimal, none for integers.
-std::string short_number(double value) {
-  const bool is_whole = std::abs(value - std::round(value)) < 0.05;
-  return number_text(value, is_whole ? 0 : 1);
-}
-
-std::string join(const std::vector<std::string>& names) {
-  std::string out;
-  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + escape(words(name));
-  return out;
-}
+/// Shorter interruptions are counted and not listed: a hand does not notice them. [assumed]
+constexpr double kShortInterruption_s = 0.1;
 
 /// "2026-01-02T03:04:05Z" -> "2026-01-02 03:04 UTC"; other texts are unchanged.
 std::string date_text(const std::string& utc) {
@@ -33,33 +22,6 @@ std::string date_text(const std::string& utc) {
 
 std::string fact(const char* term, const std::string& escaped) {
   return escaped.empty() ? std::string() : fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", term, escaped);
-}
-
-std::string score_ring(double score) {
-  constexpr double kRadius = 70.0;
-  const double around = 2.0 * 3.14159265358979 * kRadius;
-  const double share = std::isfinite(score) ? std::clamp(score / 100.0, 0.0, 1.0) : 0.0;
-  return fmt::format(
-      "<svg viewBox=\"0 0 172 172\" role=\"img\" aria-label=\"Score {0} of 100\">"
-      "<circle cx=\"86\" cy=\"86\" r=\"{1}\" fill=\"none\" stroke=\"#dfe6ea\" stroke-width=\"15\"/>"
-      "<circle cx=\"86\" cy=\"86\" r=\"{1}\" fill=\"none\" stroke=\"#0b6e75\" stroke-width=\"15\" "
-      "stroke-dasharray=\"{2:.1f} {3:.1f}\" transform=\"rotate(-90 86 86)\"/>"
-      "<text x=\"86\" y=\"98\" text-anchor=\"middle\" font-size=\"46\" font-weight=\"650\">{0}</text>"
-      "<text x=\"86\" y=\"120\" text-anchor=\"middle\" font-size=\"14\" fill=\"#5a6875\">of 100</text></svg>",
-      number_text(score, 0), kRadius, share * around, around);
-}
-
-std::string part_row(const scoring::ScorePart& part) {
-  if (scoring::is_deduction(part))
-    return fmt::format("<tr><td>{}</td><td></td><td></td><td class=\"number\"><b>{}</b></td></tr>", escape(part.title),
-                       number_text(part.points, std::abs(part.points - std::round(part.points)) < 0.05 ? 0 : 1));
-  const double share =
-      part.max_points > 0.0 && std::isfinite(part.points) ? std::clamp(part.points / part.max_points, 0.0, 1.0) : 0.0;
-  return fmt::format(
-      "<tr><td>{}</td><td class=\"number\">{}</td><td class=\"bar\"><div class=\"track\"><div class=\"fill{}\" "
-      "style=\"width:{:.1f}%\"></div></div></td><td class=\"number\"><b>{}</b> / {}</td></tr>",
-      escape(part.title), escape(scoring::part_value_text(part)), share < kLowShare ? " low" : "", 100.0 * share,
-      short_number(part.points), short_number(part.max_points));
 }
 
 /// The notch as a bar with its pieces to scale.
@@ -111,12 +73,24 @@ std::string changes_rows(const storage::Session& session) {
   return rows;
 }
 
+/// Each interruption that a trainee notices, and the number of the others.
 std::string interruption_rows(const storage::Session& session) {
   std::string rows;
-  for (const tasks::Interruption& gap : session.interruptions)
+  std::size_t short_ones = 0;
+  double short_s = 0.0;
+  for (const tasks::Interruption& gap : session.interruptions) {
+    const double length_s = gap.to_s - gap.from_s;
+    if (length_s < kShortInterruption_s) {
+      ++short_ones;
+      short_s += length_s;
+      continue;
+    }
     rows += case_row("Interruption", fmt::format("at {} s: {} s, {}", number_text(gap.from_s, 2),
-                                                 number_text(gap.to_s - gap.from_s, 2), gap.reason));
-  return rows;
+                                                 number_text(length_s, 2), gap.reason));
+  }
+  if (short_ones == 0) return rows;
+  return rows + case_row("Short interruptions", fmt::format("{} shorter than {:g} s, {} s in total", short_ones,
+                                                            kShortInterruption_s, number_text(short_s, 2)));
 }
 
 /// The tissue tables, each with the time from which on it was used.
@@ -146,52 +120,6 @@ std::string page_header(const storage::Session& session) {
       fact("Date", date_text(info.started_utc)), fact("Trocar", escape(info.program_version)));
 }
 
-/// Lists the damaged parts, which are missing; empty if there is no damage.
-std::string damage_note(const storage::Session& session) {
-  if (session.damage.empty()) return {};
-  std::string parts;
-  for (const storage::SessionDamage& damage : session.damage)
-    parts += (parts.empty() ? "" : ", ") + escape(damage.part);
-  return "<p class=\"warning\"><b>This session is damaged.</b> Missing: " + parts + ".</p>";
-}
-
-/// "Target reached", with the level of help of the attempt.
-std::string verdict_of(const storage::Session& session) {
-  const scoring::Outcome& outcome = *session.outcome;
-  std::string verdict = outcome.target_reached ? "Target reached" : "Target missed";
-  if (!outcome.is_scored()) verdict = "Not scored: " + escape(outcome.not_scored);
-  if (!session.info.level.empty())
-    verdict += "<div class=\"level\">" + escape(title_words(session.info.level)) + "</div>";
-  return verdict;
-}
-
-std::string result_section(const storage::Session& session) {
-  if (!session.outcome && !session.damage.empty()) return damage_note(session);
-  if (!session.outcome)
-    return "<p class=\"warning\"><b>This session is incomplete.</b> The program ended during the attempt: there is no "
-           "score. The recorded ticks "
-           "are shown below.</p>";
-  const scoring::Outcome& outcome = *session.outcome;
-  std::string out =
-      damage_note(session) + fmt::format(
-                                 "<section class=\"together\"><h2>Result</h2><div class=\"result\"><div "
-                                 "class=\"ring\">{}<div class=\"verdict\">{}"
-                                 "</div></div><table class=\"parts\"><tbody>",
-                                 outcome.is_scored() ? score_ring(outcome.score) : std::string(), verdict_of(session));
-  for (const scoring::ScorePart& part : outcome.parts) out += part_row(part);
-  out += "</tbody></table></div>";
-  if (!outcome.risks_touched.empty())
-    out += fmt::format("<p class=\"warning\">Structures at risk touched: <b>{}</b>.</p>", join(outcome.risks_touched));
-  return out + "</section>";
-}
-
-std::string hints_section(const storage::Session& session) {
-  if (!session.outcome || session.outcome->hints.empty()) return {};
-  std::string out = "<section class=\"together\"><h2>Hints</h2><ol class=\"hints\">";
-  for (const scoring::Hint& hint : session.outcome->hints) out += "<li>" + escape(hint.text) + "</li>";
-  return out + "</ol></section>";
-}
-
 std::string core_section(const storage::Session& session) {
   if (!session.outcome || session.outcome->cores.empty()) return {};
   const std::vector<scoring::BiopsyCore>& cores = session.outcome->cores;
@@ -203,7 +131,7 @@ std::string core_section(const storage::Session& session) {
                        number_text(core.target_mm, 1), number_text(core.organ_mm, 1), number_text(core.vessel_mm, 1),
                        number_text(core.other_mm, 1));
     if (!core.risks_in_throw.empty())
-      out += fmt::format("<p class=\"warning\">The shot hit: <b>{}</b>.</p>", join(core.risks_in_throw));
+      out += fmt::format("<p class=\"warning\">The shot hit: <b>{}</b>.</p>", joined_words(core.risks_in_throw));
   }
   return out + "</section>";
 }

@@ -2,14 +2,23 @@
 
 #include <string>
 
+#include "report/report_story.h"
 #include "storage/session_file.h"
 
 namespace trocar::report::detail {
 
 std::string page_header(const storage::Session& session);
-/// Score and its parts; a text if the session has no outcome.
-std::string result_section(const storage::Session& session);
-std::string hints_section(const storage::Session& session);
+// verdict_sections.cpp, in the order of reading.
+/// Passed or not, with the reasons; a text if the session has no outcome.
+std::string verdict_section(const storage::Session& session);
+/// The first thing to improve, then the other hints.
+std::string advice_section(const storage::Session& session);
+/// The score's parts; empty if it is not scored.
+std::string score_section(const storage::Session& session);
+std::string steps_section(const storage::Session& session, const ReportStory& story);
+std::string actions_section(const ReportStory& story);
+
+// sections.cpp
 /// The tissue along the specimen notch; empty without a core.
 std::string core_section(const storage::Session& session);
 std::string bleeding_section(const storage::Session& session);

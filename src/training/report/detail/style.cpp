@@ -19,11 +19,21 @@ p { margin: 6px 0; }
 .facts dt { color: var(--soft); } .facts dd { margin: 0; font-weight: 600; }
 .note { color: var(--soft); font-size: 13px; }
 .warning { border-left: 4px solid #b45309; background: #fff6e6; padding: 8px 14px; margin: 14px 0; }
+.verdict { display: flex; gap: 20px; align-items: flex-start; border: 2px solid currentColor; border-radius: 10px;
+  padding: 16px 20px; margin: 0 0 6px; }
+.verdict .icon { flex: 0 0 54px; width: 54px; } .verdict div { color: var(--ink); }
+.verdict h2 { font-size: 27px; line-height: 1.1; margin: 2px 0 4px; }
+.passed, .passed h2 { color: #146c2e; } .failed, .failed h2 { color: #b3261e; } .unjudged { color: #5a6875; }
+.passed { background: #f0f8f2; } .failed { background: #fdf1f0; } .unjudged { background: #f6f8fa; }
+.reasons { margin: 8px 0 2px; padding-left: 20px; font-size: 16.5px; font-weight: 600; }
+h3 { font-size: 15px; margin: 12px 0 2px; color: var(--soft); font-weight: 600; }
+.first-hint { font-size: 17px; border-left: 4px solid var(--accent); background: #eef7f8; padding: 10px 16px; }
+.when { color: var(--soft); font-size: 13px; white-space: nowrap; }
+table.actions td:nth-child(3), table.actions th:nth-child(3) { text-align: left; width: 75%; }
+table.steps td:first-child { width: 62%; } table.steps .undone td { color: var(--soft); }
 .result { display: flex; gap: 34px; align-items: center; }
 .ring { flex: 0 0 188px; text-align: center; }
 .ring svg { width: 172px; display: block; margin: 0 auto; }
-.ring .level { font-weight: 400; color: #5a6875; }
-.ring .verdict { font-weight: 600; margin-top: 4px; }
 .parts { flex: 1; border-collapse: collapse; width: 100%; }
 .parts td { padding: 4px 8px 4px 0; vertical-align: middle; }
 .parts .bar { width: 38%; } .parts .number { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
@@ -96,6 +106,8 @@ constexpr std::string_view kPictureStyle = R"css(
   h1 { font-size: 22px; } h2 { font-size: 14.5px; margin-top: 18px; break-after: avoid; }
   figure, table, .result, .hints, section.together { break-inside: avoid; }
   .note, figcaption, .key, footer { font-size: 10px; } .parts td { padding: 2px 8px 2px 0; }
+  .verdict h2 { font-size: 20px; margin-top: 0; } .verdict .icon { flex-basis: 38px; width: 38px; }
+  .reasons, .first-hint { font-size: 13px; }
   .ring { flex-basis: 130px; } .ring svg { width: 122px; }
 }
 )css";

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -59,16 +60,75 @@ TEST(HtmlReport, TellsTheLevelBesideTheScore) {
   session.info.level = "exam";
   const std::string html = html_report(session, nullptr);
   EXPECT_NE(html.find("<dt>Level</dt><dd>Exam</dd>"), std::string::npos);
-  EXPECT_NE(html.find("<div class=\"level\">Exam</div>"), std::string::npos);
+  EXPECT_NE(html.find("target reached, level Exam"), std::string::npos);
   EXPECT_EQ(first_unbalanced(html), "");
 }
 
 TEST(HtmlReport, TellsScorePartsHintsAndCore) {
   const std::string html = html_report(example_attempt(), nullptr);
   for (const char* text : {">83</text>", "Distance to the target", "Hold the needle flatter", "Target tissue 11.0 mm",
-                           "Target reached", "gallbladder", "not a medical device", "2026-01-02 03:04 UTC",
+                           "target reached", "gallbladder", "not a medical device", "2026-01-02 03:04 UTC",
                            "00112233445566778899aabbccddeeff", "liver.friction_mu"})
     EXPECT_NE(html.find(text), std::string::npos) << text;
+}
+
+/// The positions of texts in a page, which has all of them.
+std::vector<std::size_t> places(const std::string& html, const std::vector<const char*>& texts) {
+  std::vector<std::size_t> all;
+  for (const char* text : texts) {
+    all.push_back(html.find(text));
+    EXPECT_NE(all.back(), std::string::npos) << text;
+  }
+  return all;
+}
+
+TEST(HtmlReport, SaysPassedOrNotWithTheReasonsBeforeAllElse) {
+  storage::Session session = example_attempt();
+  session.outcome->is_passed = true;
+  EXPECT_NE(html_report(session, nullptr).find("<h2>Passed</h2>"), std::string::npos);
+  session.outcome->is_passed = false;
+  session.outcome->fails = {"the lung was touched", "the target was missed"};
+  session.outcome->hints.push_back({"Advance more slowly.", 4.25});
+  const ReportStory story{{{"Find the lesion", 0.0, 2.5}, {"Fire", 2.5, {}}, {"Withdraw", {}, {}}},
+                          {{1.5, 12.25, "aspirated: bile"}}};
+  const std::string html = html_report(session, nullptr, story);
+  const auto at = places(html, {"<h2>Not passed</h2>", "<li>The lung was touched</li>",
+                                "<li>The target was missed</li>", "Improve this first", "Hold the needle flatter",
+                                "Advance more slowly. <span class=\"when\">at 4.2 s</span>", "<h2>Score</h2>",
+                                "<h2>Steps</h2>", "<h2>Actions</h2>", "Force against depth", "The case"});
+  EXPECT_TRUE(std::ranges::is_sorted(at));
+  places(html, {"<td>1. Find the lesion</td><td>0.0 s</td><td>2.5 s</td><td>2.5 s</td>",
+                "<tr class=\"undone\"><td>2. Fire</td><td>2.5 s</td><td>not done</td><td>\u2013</td>",
+                "<td>3. Withdraw</td><td>not begun</td><td>not done</td>", "No transducer was recorded",
+                "<td>1.5 s</td><td>12.2 mm</td><td>Aspirated: bile</td>"});
+  EXPECT_EQ(first_unbalanced(html), "");
+}
+
+TEST(HtmlReport, AnAttemptWithoutAScoreHasNotPassed) {
+  storage::Session session = example_attempt();
+  session.outcome->not_scored = "the skin was not pierced";
+  const std::string html = html_report(session, nullptr);
+  places(html, {"<h2>Not passed</h2>", "<li>Not scored: the skin was not pierced</li>"});
+  EXPECT_EQ(html.find("of 100"), std::string::npos);
+}
+
+TEST(HtmlReport, AnOlderSessionHasNoVerdict) {
+  const std::string html = html_report(example_attempt(), nullptr);  // neither passed nor a reason against it
+  places(html, {"<h2>No verdict</h2>", "older program"});
+}
+
+TEST(HtmlReport, ShortInterruptionsAreCounted) {
+  storage::Session session = example_attempt();
+  session.interruptions = {
+      {1.0, 1.0, "busy"}, {2.0, 2.04, "busy"}, {3.0, 3.5, "the server was away"}, {4.0, 4.0, "busy"}};
+  const std::string html = html_report(session, nullptr);
+  places(html, {"3 shorter than 0.1 s, 0.04 s in total", "at 3.00 s: 0.50 s, the server was away"});
+  EXPECT_EQ(count_of(html, "<th>Interruption</th>"), 1u);
+}
+
+TEST(HtmlReport, HasANameOfItsOwn) {
+  EXPECT_EQ(report_file_of("out/a.trocar"), "out/a.report.html");
+  EXPECT_EQ(report_file_of("first.session"), "first.report.html");
 }
 
 TEST(HtmlReport, NamesDamagedPartsAndDeductions) {
@@ -126,7 +186,8 @@ TEST(HtmlReport, EscapesWhatPeopleWrote) {
   session.outcome->risks_touched = session.outcome->cores.back().risks_in_throw = {evil};
   for (scoring::CorePiece& piece : session.outcome->cores.back().pieces) piece.label = piece.tissue = evil;
   for (scoring::ScorePart& part : session.outcome->parts) part.title = part.unit = evil;
-  const std::string html = html_report(session, nullptr);
+  session.outcome->fails = {evil};
+  const std::string html = html_report(session, nullptr, {{{evil, 1.0, 2.0}}, {{1.0, 2.0, evil}}});
   EXPECT_EQ(html.find("<script"), std::string::npos);
   EXPECT_EQ(first_unbalanced(html), "");
 }
