@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
+#include <set>
+#include <vector>
 
 #include "core/files/input_file.h"
 
@@ -40,6 +43,51 @@ Extent extent_of(std::string_view text) {
   return extent;
 }
 
+/// "FILE, line 3, column 7" for a byte from 0.
+std::string place_of(const std::string& name, std::string_view text, std::size_t byte) {
+  const std::string_view before = text.substr(0, byte);
+  const auto line = 1 + std::ranges::count(before, '\n');
+  const std::size_t start = before.rfind('\n') + 1;  // npos + 1 is 0
+  return fmt::format("{}, line {}, column {}", name, line, before.size() - start + 1);
+}
+
+/// Where the key number `number` (from 0) of a valid text begins.
+std::size_t find_key(std::string_view text, std::size_t number) {
+  for (std::size_t n = 0; n < text.size(); ++n) {
+    if (text[n] != '"') continue;
+    const std::size_t begin = n;
+    for (++n; n < text.size() && text[n] != '"'; ++n)
+      if (text[n] == '\\') ++n;
+    const std::size_t next = text.find_first_not_of(" \t\r\n", n + 1);
+    if (next == std::string_view::npos || text[next] != ':') continue;  // a value
+    if (number-- == 0) return begin;
+  }
+  return 0;
+}
+
+/// Keys of the objects that are open while a text is parsed.
+class KeyWatch {
+ public:
+  void see(Json::parse_event_t event, const Json& value) {
+    if (event == Json::parse_event_t::object_start) open_.emplace_back();
+    if (event == Json::parse_event_t::object_end) open_.pop_back();
+    if (event != Json::parse_event_t::key) return;
+    const auto& key = value.get_ref<const std::string&>();
+    if (!open_.back().insert(key).second && !twice_) twice_ = {key, keys_};
+    ++keys_;
+  }
+  struct Key {
+    std::string text;
+    std::size_t number;  ///< Of all keys of the text.
+  };
+  const std::optional<Key>& twice() const noexcept { return twice_; }
+
+ private:
+  std::vector<std::set<std::string>> open_;
+  std::size_t keys_ = 0;
+  std::optional<Key> twice_;
+};
+
 }  // namespace
 
 Result<Json> parse_json(std::string_view text, const std::string& name, std::size_t most_values) {
@@ -49,9 +97,17 @@ Result<Json> parse_json(std::string_view text, const std::string& name, std::siz
   if (extent.commas > most_values)
     return fail(fmt::format("the JSON has more than {} values", most_values), name, "is this the right file?");
   try {
-    return Json::parse(text);
+    KeyWatch keys;
+    Json json = Json::parse(text, [&](int, Json::parse_event_t event, Json& value) {
+      keys.see(event, value);
+      return true;
+    });
+    if (!keys.twice()) return json;
+    return fail(fmt::format("the key \"{}\" occurs twice", keys.twice()->text),
+                place_of(name, text, find_key(text, keys.twice()->number)), "remove one");
   } catch (const Json::parse_error& error) {
-    return fail("not valid JSON", fmt::format("{}, byte {}", name, error.byte), "export or download the file again");
+    return fail("not valid JSON", place_of(name, text, error.byte > 0 ? error.byte - 1 : 0),
+                "correct it there, or export or download the file again");
   } catch (const std::exception& error) {
     return fail(fmt::format("the JSON cannot be read: {}", error.what()), name, "export or download the file again");
   }

@@ -16,8 +16,9 @@ namespace trocar::config {
 /// markups of 3D Slicer have about 20 a control point]
 inline constexpr std::size_t kMostJsonFileValues = 500'000;
 
-/// Parses untrusted JSON, nested at most 64 deep; the error names `name` and the byte. A text of more than
-/// `most_values` commas, those in strings excepted, is refused. Never throws.
+/// Parses untrusted JSON, nested at most 64 deep; the error names `name`, line and column (in bytes, from 1). A key
+/// that an object has twice is refused: readers differ in which one counts. So is a text of more than `most_values`
+/// commas, those in strings excepted. Never throws.
 Result<Json> parse_json(std::string_view text, const std::string& name,
                         std::size_t most_values = std::numeric_limits<std::size_t>::max());
 /// The same for a file, with kMostJsonFileValues.

@@ -20,11 +20,32 @@ TEST(Json, KeepsTheOrderOfKeysAndTheBitsOfNumbers) {
   EXPECT_EQ(*again, *json);
 }
 
-TEST(Json, ErrorNamesFileAndByte) {
-  const auto json = parse_json(R"({"a": 1,, })", "paths.mrk.json");
-  ASSERT_FALSE(json);
-  EXPECT_EQ(json.error().where, "paths.mrk.json, byte 9");
-  EXPECT_EQ(json.error().exit_status, 1);
+TEST(Json, ErrorNamesFileLineAndColumn) {
+  struct Case {
+    const char *text, *place, *what;
+  };
+  for (const Case& c : std::vector<Case>{
+           {R"({"a": 1,, })", "line 1, column 9", "not valid JSON"},
+           {"{\n  \"a\": 1,\n  \"b\": 1.0x\n}", "line 3, column 11", "not valid JSON"},
+           {"{\"a\": NaN}", "line 1, column 7", "not valid JSON"},
+           {"{\"a\": Infinity}", "line 1, column 7", "not valid JSON"},
+           {"{\"a\": 0,5}", "line 1, column 9", "not valid JSON"},
+           {"{\"a\": 1}}", "line 1, column 9", "not valid JSON"},
+           {"{\"a\": 1} {\"a\": 2}", "line 1, column 10", "not valid JSON"},
+           {"{'a': 1}", "line 1, column 2", "not valid JSON"},
+           {"{\"a\": .5}", "line 1, column 7", "not valid JSON"},
+           {"{\"a\": 1, \"a\": 2}", "line 1, column 10", "the key \"a\" occurs twice"},
+           {"{\"a\": 1,\n \"\\u0061\": 2}", "line 2, column 2", "the key \"a\" occurs twice"},
+           {"{\"x\": {\"k\": \"k\"}, \"y\": [{\"k\": 1}, {\"k\": 2, \"l\": \":\", \"k\": 3}]}", "line 1, column 54",
+            "the key \"k\" occurs twice"},
+       }) {
+    const auto json = parse_json(c.text, "paths.mrk.json");
+    ASSERT_FALSE(json) << c.text;
+    EXPECT_EQ(json.error().what, c.what) << c.text;
+    EXPECT_EQ(json.error().where, std::string("paths.mrk.json, ") + c.place) << c.text;
+    EXPECT_EQ(json.error().exit_status, 1);
+  }
+  EXPECT_TRUE(parse_json(R"({"a": {"a": [{"a": 1}, {"a": 1}]}, "b": "\"a\": 1, \"a\": 2"})", "nested"));
 }
 
 TEST(Json, RefusesDeepNestingButNotBracketsInStrings) {
