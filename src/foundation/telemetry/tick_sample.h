@@ -40,6 +40,7 @@ enum class LimitReason : std::uint8_t {
   kSafeStart,      ///< The gate began to wait or to ramp up.
   kFault,          ///< The gate began to fade to zero and latched.
 };
+inline constexpr LimitReason kLastLimitReason = LimitReason::kFault;
 const char* to_string(LimitReason reason) noexcept;
 
 /// The record of one haptic tick: `haptics` creates it, `link` transmits it, `training` scores it, `storage` stores it.

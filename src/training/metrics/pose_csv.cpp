@@ -13,6 +13,7 @@
 #include "core/parse_number.h"
 #include "geometry/quaternion.h"
 #include "metrics/detail/csv_fields.h"
+#include "metrics/detail/pose_events.h"
 #include "telemetry/tick_fields.h"
 
 namespace trocar::metrics {
@@ -20,6 +21,9 @@ namespace {
 
 constexpr std::uint64_t kMostBytes = 256ULL << 20;
 constexpr const char* kAdvice = "docs/metrics.md describes the columns";
+constexpr const char* kNumberAdvice = "write numbers with a decimal point, and leave a missing value empty";
+constexpr const char* kFieldAdvice = "put commas between the fields of a row, and decimal points into numbers";
+constexpr const char* kEventAdvice = "docs/metrics.md lists the events; rename the column if it means something else";
 constexpr double kMm_per_m = 1000.0;
 constexpr double kUnitTolerance = 1e-2;
 
@@ -80,6 +84,7 @@ class Header {
   }
   /// NAME_mm or NAME_m.
   std::optional<PoseColumn> find_length(const std::string& name) const {
+    // Both: check_twice.
     if (const auto index = find(name + "_mm")) return PoseColumn{*index, 1.0, name + "_mm"};
     if (const auto index = find(name + "_m")) return PoseColumn{*index, kMm_per_m, name + "_m"};
     return std::nullopt;
@@ -114,11 +119,20 @@ class Header {
     for (std::size_t n = 0; n < names_.size(); ++n)
       if (!names_[n].empty() && find(names_[n]) != n)
         return fail(fmt::format("line 1: column {} occurs twice", names_[n]), where_, "remove one");
+    for (const std::string& name : names_)
+      if (name.ends_with("_mm") && find(name.substr(0, name.size() - 1)) && is_length(name.substr(0, name.size() - 3)))
+        return fail(fmt::format("line 1: columns {} and {} are the same", name, name.substr(0, name.size() - 1)),
+                    where_, "keep one of mm and m");
     return {};
   }
   std::size_t size() const noexcept { return names_.size(); }
 
  private:
+  static bool is_length(std::string_view name) {
+    return name == "depth" || std::ranges::find(kTip, name) != kTip.end() ||
+           std::ranges::find(kProbe, name) != kProbe.end();
+  }
+
   std::vector<std::string> names_;
   std::string where_;
 };
@@ -128,7 +142,7 @@ Result<PoseLayout> find_layout(const Header& header, const std::string& where) {
   PoseLayout layout;
   layout.fields = header.size();
   const auto time = header.find_number("time_s");
-  if (!time) return fail("line 1: missing column time_s", where, kAdvice);
+  if (!time) return fail("line 1: missing column time_s", where, header.size() > 1 ? kAdvice : kFieldAdvice);
   layout.time = *time;
   TROCAR_TRY(layout.tip, header.need_group(kTip, true));
   TROCAR_TRY(layout.axis, header.need_group(kAxis, false));
@@ -149,18 +163,17 @@ Result<PoseLayout> find_layout(const Header& header, const std::string& where) {
 
 using Fields = std::vector<std::string_view>;
 
-/// Reads the numbers of one row; keeps the first fault.
+/// Reads the values of one row; keeps the first fault.
 class RowReader {
  public:
   explicit RowReader(const Fields& fields) : fields_(fields) {}
 
-  /// NaN for an empty field and for "nan", "inf".
+  /// NaN for an empty field and for "nan".
   double number(const PoseColumn& column) {
     const std::string_view text = fields_[column.index];
-    if (text.empty() || text == "nan" || text == "-nan" || text == "inf" || text == "-inf")
-      return std::numeric_limits<double>::quiet_NaN();
+    if (text.empty() || text == "nan" || text == "-nan") return std::numeric_limits<double>::quiet_NaN();
     if (const auto value = parse_number<double>(text)) return *value * column.scale;
-    if (fault_.empty()) fault_ = fmt::format("column {}: '{}' is not a number", column.name, text.substr(0, 40));
+    refuse(column.name, fmt::format("'{}' is not a number", text.substr(0, 40)), kNumberAdvice);
     return 0.0;
   }
   std::optional<double> number(const std::optional<PoseColumn>& column) {
@@ -169,14 +182,20 @@ class RowReader {
     return std::isnan(value) ? std::nullopt : std::optional(value);
   }
   Vec3 vector(const PoseColumns<3>& columns) { return {number(columns[0]), number(columns[1]), number(columns[2])}; }
-  void fail_at(std::string fault) {
-    if (fault_.empty()) fault_ = std::move(fault);
+  std::string_view text(std::size_t column) const { return fields_[column]; }
+
+  void refuse(std::string_view column, const std::string& what, const char* advice) {
+    if (!fault_.empty()) return;
+    fault_ = fmt::format("column {}: {}", column, what);
+    advice_ = advice;
   }
   const std::string& fault() const noexcept { return fault_; }
+  const char* advice() const noexcept { return advice_; }
 
  private:
   const Fields& fields_;
   std::string fault_;
+  const char* advice_ = kAdvice;
 };
 
 std::optional<Pose> read_probe(RowReader& reader, const PoseLayout& layout) {
@@ -187,7 +206,7 @@ std::optional<Pose> read_probe(RowReader& reader, const PoseLayout& layout) {
       from_wxyz({reader.number(turn[0]), reader.number(turn[1]), reader.number(turn[2]), reader.number(turn[3])});
   if (!p_P.allFinite() || !q.coeffs().allFinite()) return std::nullopt;
   if (std::abs(q.norm() - 1.0) > kUnitTolerance) {
-    reader.fail_at("column probe_qw: the quaternion's length is not 1");
+    reader.refuse("probe_qw", "the quaternion's length is not 1", kAdvice);
     return std::nullopt;
   }
   return Pose(q.normalized().toRotationMatrix(), p_P);
@@ -217,38 +236,49 @@ struct PoseTable::Impl {
   std::vector<std::string> layers;
   std::size_t rows = 0;
 
-  /// The events of a field; `names`: grows by unknown layers (at most 255).
-  static void read_events(std::string_view field, std::vector<std::string>& names, Moment& moment) {
+  /// `names` grows by unknown layers.
+  static void read_events(RowReader& reader, std::string_view field, std::vector<std::string>& names, Moment& moment) {
+    constexpr std::size_t kMostLayers = 255;
+    const detail::PoseEvents read = detail::read_pose_events(field);
+    if (!read.fault.empty()) return reader.refuse("event", read.fault, kEventAdvice);
     telemetry::TickEvents events{};
-    std::size_t count = 0;
-    for (const std::string_view event : detail::split(field, ';')) {
-      if (event.starts_with("interruption:")) moment.is_paused = true;
-      if (!event.starts_with("puncture:") || count == events.size()) continue;
-      const std::string name(event.substr(9));
+    if (read.punctures.size() > events.size())
+      return reader.refuse("event", fmt::format("more than {} punctures in a row", events.size()),
+                           "give each the row of its time");
+    for (std::size_t n = 0; n < read.punctures.size(); ++n) {
+      const std::string name(read.punctures[n]);
       auto found = std::find(names.begin(), names.end(), name);
-      if (found == names.end() && names.size() < 255) found = names.insert(names.end(), name);
-      if (found == names.end()) continue;
-      events[count++] = {telemetry::EventKind::kPuncture, static_cast<std::uint8_t>(found - names.begin())};
+      if (found == names.end() && names.size() == kMostLayers)
+        return reader.refuse("event", fmt::format("more than {} names of layers", kMostLayers), kEventAdvice);
+      if (found == names.end()) found = names.insert(names.end(), name);
+      events[n] = {telemetry::EventKind::kPuncture, static_cast<std::uint8_t>(found - names.begin())};
     }
     moment.events = events;
+    moment.is_paused = read.is_paused;
   }
 
-  static void read_phase(std::string_view field, Moment& moment) {
+  static void read_phase(RowReader& reader, std::string_view field, Moment& moment) {
+    if (field.empty()) return;
     for (int n = 0; n <= static_cast<int>(telemetry::kLastInsertionPhase); ++n)
       if (const auto phase = static_cast<telemetry::InsertionPhase>(n); field == to_string(phase)) moment.phase = phase;
+    if (!moment.phase)
+      reader.refuse("phase", fmt::format("'{}' is no phase", field.substr(0, 40)),
+                    "use outside, loading, inserted or retracting, or leave it empty");
   }
 
-  Moment read_row(RowReader& reader, const Fields& fields, std::vector<std::string>& names) const {
+  Moment read_row(RowReader& reader, std::vector<std::string>& names) const {
     Moment moment;
     moment.time_s = reader.number(layout.time);
+    if (std::isnan(moment.time_s))
+      reader.refuse(layout.time.name, "a row has no time", "remove the row, or give its time");
     moment.tip_P = reader.vector(layout.tip);
     moment.axis_P = reader.vector(layout.axis);
     moment.depth_mm = reader.number(layout.depth);
     moment.resistance_n = read_resistance(reader, layout, moment.axis_P);
     moment.X_PT = read_probe(reader, layout);
     moment.contact_n = reader.number(layout.contact);
-    if (layout.phase) read_phase(fields[*layout.phase], moment);
-    if (layout.event) read_events(fields[*layout.event], names, moment);
+    if (layout.phase) read_phase(reader, reader.text(*layout.phase), moment);
+    if (layout.event) read_events(reader, reader.text(*layout.event), names, moment);
     return moment;
   }
 
@@ -261,18 +291,20 @@ struct PoseTable::Impl {
     for (std::size_t line = 2; !rest.empty(); ++line) {
       const std::string_view row = detail::take_line(rest);
       if (row.empty()) continue;
-      detail::split_fields(row, fields);
-      const auto refuse = [&](const std::string& what) {
-        return fail(fmt::format("line {}: {}", line, what), where, kAdvice);
+      const char* const broken = detail::split_fields(row, fields);
+      const auto refuse = [&](const std::string& what, const char* advice) {
+        return fail(fmt::format("line {}: {}", line, what), where, advice);
       };
+      if (broken != nullptr) return refuse(fmt::format("field {}: {}", fields.size(), broken), "check the quotes");
       if (fields.size() != layout.fields)
-        return refuse(fmt::format("{} fields, the header has {}", fields.size(), layout.fields));
+        return refuse(fmt::format("{} fields, the header has {}", fields.size(), layout.fields), kFieldAdvice);
       RowReader reader(fields);
-      const Moment moment = read_row(reader, fields, names);
-      if (!reader.fault().empty()) return refuse(reader.fault());
+      const Moment moment = read_row(reader, names);
+      if (!reader.fault().empty()) return refuse(reader.fault(), reader.advice());
       if (moment.time_s < last_s)
-        return refuse(fmt::format("column time_s: {} s is before the line above ({} s)", moment.time_s, last_s));
-      if (std::isfinite(moment.time_s)) last_s = moment.time_s;
+        return refuse(fmt::format("column time_s: {} s is before the line above ({} s)", moment.time_s, last_s),
+                      "sort the rows by time");
+      last_s = moment.time_s;
       visit(moment);
     }
     return {};
@@ -296,7 +328,8 @@ Result<PoseTable> PoseTable::read(const std::filesystem::path& path) {
     rest = impl->text;
   }
   Fields fields;
-  detail::split_fields(detail::take_line(rest), fields);
+  if (const char* broken = detail::split_fields(detail::take_line(rest), fields))
+    return fail(fmt::format("line 1: field {}: {}", fields.size(), broken), impl->where, "check the quotes");
   TROCAR_TRY(impl->layout, find_layout(Header({fields.begin(), fields.end()}, impl->where), impl->where));
   std::size_t rows = 0;
   TROCAR_TRY_STATUS(impl->walk(impl->layers, [&](const Moment&) { ++rows; }));

@@ -17,12 +17,14 @@ namespace trocar::metrics {
 /// - depth_mm or depth_m, force_n, phase, event ("puncture:skin"): as in `trocar session export`, whose files can be
 ///   read, too; there the resistance follows from the columns of the forces.
 /// - probe_x_mm, probe_y_mm, probe_z_mm (or _m), probe_qw, probe_qx, probe_qy, probe_qz: X_PT; probe_contact_n.
-/// An empty field, and "nan", is no value. Time may not run backwards; interruptions are events "interruption:SECONDS".
+/// An empty field, and "nan", is no value; every row has a time. Time may not run backwards; interruptions are events
+/// "interruption:SECONDS".
 class PoseTable {
  public:
   /// Reads and checks the whole file. Errors name line and column: a required column is missing, or part of a group; a
-  /// name that occurs twice; a field that is no number; too few fields; time that runs backwards; no row; a file of
-  /// more than 256 MiB.
+  /// name that occurs twice, or in mm and m; a field that is no finite number, no phase or no event; another number of
+  /// fields than in the header; broken quotes; no time, or one that runs backwards; no row; a file of more than 256
+  /// MiB.
   static Result<PoseTable> read(const std::filesystem::path& path);
   PoseTable(PoseTable&&) noexcept;
   PoseTable& operator=(PoseTable&&) noexcept;

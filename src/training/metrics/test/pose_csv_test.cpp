@@ -95,6 +95,68 @@ TEST_F(PoseCsv, NamesLineAndColumnOfAFault) {
             "line 3: column time_s: 1 s is before the line above (2 s)");
 }
 
+TEST_F(PoseCsv, RefusesWhatIsNoNumberNoPhaseAndNoEvent) {
+  const std::string header = "time_s,tip_x_mm,tip_y_mm,tip_z_mm,axis_x,axis_y,axis_z,depth_mm,phase,event\n";
+  struct Case {
+    const char *row, *what;
+  };
+  for (const Case& c : std::vector<Case>{
+           {"0,0,0,0,0,0,1,1.0x,,", "line 2: column depth_mm: '1.0x' is not a number"},
+           {"0,inf,0,0,0,0,1,1,,", "line 2: column tip_x_mm: 'inf' is not a number"},
+           {"0,0,0,-inf,0,0,1,1,,", "line 2: column tip_z_mm: '-inf' is not a number"},
+           {"0,1e999,0,0,0,0,1,1,,", "line 2: column tip_x_mm: '1e999' is not a number"},
+           {"0,\"0,5\",0,0,0,0,1,1,,", "line 2: column tip_x_mm: '0,5' is not a number"},
+           {"0,0,5,0,0,0,0,1,1,,", "line 2: 11 fields, the header has 10"},
+           {"0;0;0;0;0;0;1;1;;", "line 2: 1 fields, the header has 10"},
+           {",0,0,0,0,0,1,1,,", "line 2: column time_s: a row has no time"},
+           {"nan,0,0,0,0,0,1,1,,", "line 2: column time_s: a row has no time"},
+           {"0,0,0,0,0,0,1,1,inside,", "line 2: column phase: 'inside' is no phase"},
+           {"0,0,0,0,0,0,1,1,Inserted,", "line 2: column phase: 'Inserted' is no phase"},
+           {"0,0,0,0,0,0,1,1,,interruption:abc",
+            "line 2: column event: 'interruption:abc': the length is no number of seconds"},
+           {"0,0,0,0,0,0,1,1,,interruption:",
+            "line 2: column event: 'interruption:': the length is no number of seconds"},
+           {"0,0,0,0,0,0,1,1,,interruption:-1",
+            "line 2: column event: 'interruption:-1': the length is no number of seconds"},
+           {"0,0,0,0,0,0,1,1,,interruption:1.0x",
+            "line 2: column event: 'interruption:1.0x': the length is no number of seconds"},
+           {"0,0,0,0,0,0,1,1,,interruption:inf",
+            "line 2: column event: 'interruption:inf': the length is no number of seconds"},
+           {"0,0,0,0,0,0,1,1,,puncture", "line 2: column event: 'puncture': the name is missing"},
+           {"0,0,0,0,0,0,1,1,,puncture:", "line 2: column event: 'puncture:': the name is missing"},
+           {"0,0,0,0,0,0,1,1,,puncture:skin;", "line 2: column event: '': an event is empty"},
+           {"0,0,0,0,0,0,1,1,,puncture:skin;;enter:liver", "line 2: column event: '': an event is empty"},
+           {"0,0,0,0,0,0,1,1,,puncure:skin", "line 2: column event: 'puncure:skin': there is no such event"},
+           {"0,0,0,0,0,0,1,1,,start", "line 2: column event: 'start': there is no such event"},
+           {"0,0,0,0,0,0,1,1,,limit:speed", "line 2: column event: 'limit:speed': there is no such limit"},
+           {"0,0,0,0,0,0,1,1,,set:skin.fp", "line 2: column event: 'set:skin.fp': it is not set:NAME=VALUE"},
+           {"0,0,0,0,0,0,1,1,,damaged:9-3", "line 2: column event: 'damaged:9-3': it is not damaged:FIRST-LAST"},
+           {"0,0,0,0,0,0,1,1,,incomplete:1", "line 2: column event: 'incomplete:1': it has no value"},
+           {"0,0,0,0,0,0,1,1,,puncture:a;puncture:b;puncture:c;puncture:d;puncture:e",
+            "line 2: column event: more than 4 punctures in a row"},
+           {"0,0,0,0,0,0,1,1,,\"puncture:skin", "line 2: field 10: a quotation does not end"},
+           {"0,\"0\"1,0,0,0,0,1,1,,", "line 2: field 2: text after a quotation"},
+           {"0,0,0,0,0,0,1,1,,puncture:\"skin\"", "line 2: field 10: a quotation mark inside of a field"},
+       })
+    EXPECT_EQ(refused(header + c.row + "\n"), c.what) << c.row;
+  EXPECT_EQ(refused("time_s;tip_x_mm\n0;0\n"), "line 1: missing column time_s");
+  EXPECT_EQ(refused("time_s,tip_x_mm,tip_x_m,tip_y_mm,tip_z_mm,axis_x,axis_y,axis_z\n"),
+            "line 1: columns tip_x_mm and tip_x_m are the same");
+}
+
+// What trocar session export writes.
+TEST_F(PoseCsv, ReadsEveryEventOfASession) {
+  const auto all = moments(
+      "time_s,tip_x_mm,tip_y_mm,tip_z_mm,axis_x,axis_y,axis_z,event\n"
+      "0,0,0,0,0,0,1,set:skin.fp=6;set:liver.k=0.5\n1,0,0,0,0,0,1,interruption:0.000;puncture:skin;enter:#7;limit:"
+      "force\n"
+      "2,0,0,0,0,0,1,limit:unknown;pain:rib\n3,0,0,0,0,0,1,damaged:500-999;incomplete\n");
+  ASSERT_EQ(all.size(), 4u);
+  EXPECT_FALSE(all[0].is_paused);
+  EXPECT_TRUE(all[1].is_paused);
+  EXPECT_EQ((*all[1].events)[0].kind, telemetry::EventKind::kPuncture);
+}
+
 TEST_F(PoseCsv, RefusesATurnThatIsNone) {
   EXPECT_EQ(refused("time_s,tip_x_mm,tip_y_mm,tip_z_mm,axis_x,axis_y,axis_z,probe_x_mm,probe_y_mm,probe_z_mm,probe_qw,"
                     "probe_qx,probe_qy,probe_qz\n0,0,0,0,0,0,1,0,0,0,2,0,0,0\n"),
