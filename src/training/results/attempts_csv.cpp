@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "core/files/atomic_file.h"
@@ -17,10 +18,7 @@ namespace trocar::results {
 using namespace detail;
 namespace {
 
-constexpr std::array kColumns{"attempt", "person", "group",  "simulated",  "course",   "task",    "patient",
-                              "seed",    "hash",   "case",   "level",      "operator", "station", "started_utc",
-                              "state",   "score",  "passed", "duration_s", "version"};
-constexpr std::string_view kOfMost = " of";
+constexpr double kPerSecond = 1e6;  ///< Durations are written in whole microseconds.
 
 std::string utc_text(Seconds time) {
   return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(time)));
@@ -74,7 +72,7 @@ std::vector<std::string> fixed_fields(const Attempt& a, const Person& person) {
           to_string(a.state),
           a.score ? fmt::format("{}", *a.score) : "",
           a.is_passed ? "1" : "0",
-          fmt::format("{}", a.duration_s),
+          fmt::format("{}", std::round(a.duration_s * kPerSecond) / kPerSecond),
           csv_text(a.program_version)};
 }
 
@@ -89,7 +87,7 @@ std::vector<std::string> names_of(soci::session& session, const std::string& que
 
 std::string write_csv(soci::session& session, const AttemptFilter& filter,
                       const std::map<std::string, Person>& people) {
-  std::vector<std::string> row(kColumns.begin(), kColumns.end());
+  std::vector<std::string> row(kAttemptColumns.begin(), kAttemptColumns.end());
   std::map<std::string, std::size_t, std::less<>> columns;
   const auto add_column = [&](const std::string& name) {
     columns[name] = row.size();
@@ -117,7 +115,7 @@ std::string write_csv(soci::session& session, const AttemptFilter& filter,
   for (const Attempt& attempt : read_attempts(session, query, " ORDER BY a.sequence")) {
     const auto person = people.find(attempt.person_id);
     if (person == people.end()) continue;  // added since the people were read
-    row.resize(kColumns.size() + columns.size());
+    row.resize(kAttemptColumns.size() + columns.size());
     std::ranges::fill(row, "");
     std::ranges::copy(fixed_fields(attempt, person->second), row.begin());
     const auto put = [&](const std::string& name, double value) {

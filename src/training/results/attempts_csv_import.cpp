@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
+#include <type_traits>
 
 #include "core/files/atomic_file.h"
 #include "core/parse_number.h"
@@ -16,6 +18,13 @@ namespace {
 
 constexpr std::size_t kMostBytes = std::size_t{1} << 30;
 constexpr const char* kUseExport = "use a file of trocar results export";
+constexpr double kRoundOff = 1e-6;  ///< Of points.
+
+/// The columns that a file may have beside those of parts and metrics.
+bool is_column(std::string_view name) {
+  return std::ranges::find(kAttemptColumns, name) != kAttemptColumns.end() || name.starts_with(kPartColumn) ||
+         name.starts_with(kMetricColumn);
+}
 
 /// The rows of a file with the places of its columns.
 class Table {
@@ -26,42 +35,63 @@ class Table {
     table.where_ = file.string();
     TROCAR_TRY(table.rows_, parse_csv(text, table.where_));
     if (table.rows_.empty()) return fail("the file is empty", table.where_, kUseExport);
-    for (std::size_t n = 0; n < table.rows_.front().size(); ++n) table.columns_[plain_text(table.rows_.front()[n])] = n;
-    for (const char* column : {"attempt", "person", "group", "task", "started_utc", "state"})
-      if (!table.columns_.contains(column))
-        return fail(fmt::format("the column \"{}\" is missing", column), table.where_, kUseExport);
+    TROCAR_TRY_STATUS(table.read_header());
+    const std::size_t fields = table.rows_.front().fields.size();
     for (std::size_t n = 1; n < table.rows_.size(); ++n)
-      if (table.rows_[n].size() != table.rows_.front().size())
-        return fail(fmt::format("the row has {} fields, not {}", table.rows_[n].size(), table.rows_.front().size()),
-                    table.place(n, ""), kUseExport);
+      if (const std::size_t found = table.rows_[n].fields.size(); found != fields)
+        return fail(fmt::format("the row has {} fields, the header {}", found, fields), table.place(n, ""),
+                    "put commas between the fields of a row, and decimal points into numbers");
     return table;
   }
 
   std::size_t rows() const { return rows_.size(); }  ///< With the header, row 0.
   const std::map<std::string, std::size_t, std::less<>>& columns() const { return columns_; }
-  std::string text(std::size_t row, std::string_view column) const {
-    const auto found = columns_.find(column);
-    return found == columns_.end() ? std::string() : plain_text(rows_[row][found->second]);
-  }
+  std::string text(std::size_t row, std::string_view column) const { return plain_text(field(row, column)); }
   std::string place(std::size_t row, std::string_view column) const {
-    return fmt::format("{}, row {}{}{}", where_, row + 1, column.empty() ? "" : ", column ", column);
+    return fmt::format("{}, line {}{}{}", where_, rows_[row].line, column.empty() ? "" : ", column ", column);
   }
-  /// Empty: an empty field. Error: no number.
+  /// Empty: an empty field. Error: no finite number. A negative one was written without an apostrophe.
   template <class Number>
   Result<std::optional<Number>> number(std::size_t row, std::string_view column) const {
-    // A negative number was written without an apostrophe.
-    const auto found = columns_.find(column);
-    const std::string field = found == columns_.end() ? std::string() : rows_[row][found->second];
-    if (field.empty()) return std::optional<Number>();
-    const auto value = find_leading_number<Number>(field);
-    if (!value || !value->rest.empty())
-      return fail(fmt::format("\"{}\" is no number", field), place(row, column), kUseExport);
-    return std::optional<Number>(value->value);
+    const std::string& text = field(row, column);
+    if (text.empty()) return std::optional<Number>();
+    if (const auto value = parse_number<Number>(text)) return std::optional<Number>(*value);
+    return fail(fmt::format("\"{}\" is no {}number", text, std::is_integral_v<Number> ? "whole " : ""),
+                place(row, column), "write numbers with a decimal point, and leave a missing value empty");
+  }
+  /// "1" or "0"; an empty field is 0.
+  Result<bool> truth(std::size_t row, std::string_view column) const {
+    const std::string& text = field(row, column);
+    if (text.empty() || text == "0" || text == "1") return text == "1";
+    return fail(fmt::format("\"{}\" is neither 0 nor 1", text), place(row, column), "write 0 or 1");
   }
 
  private:
+  Status read_header() {
+    const std::vector<std::string>& names = rows_.front().fields;
+    for (std::size_t n = 0; n < names.size(); ++n) {
+      const std::string name = plain_text(names[n]);
+      if (!is_column(name))
+        return fail(fmt::format("there is no column \"{}\"", name), place(0, ""), "correct its name, or remove it");
+      if (!columns_.emplace(name, n).second)
+        return fail(fmt::format("the column \"{}\" occurs twice", name), place(0, ""), "remove one");
+    }
+    for (const char* column : {"attempt", "person", "group", "task", "started_utc", "state"})
+      if (!columns_.contains(column))
+        return fail(fmt::format("the column \"{}\" is missing", column), where_, kUseExport);
+    for (const auto& [name, place_of_name] : columns_)
+      if (name.starts_with(kPartColumn) && !name.ends_with(kOfMost) && !columns_.contains(name + std::string(kOfMost)))
+        return fail(fmt::format("the column \"{}{}\" is missing", name, kOfMost), where_, kUseExport);
+    return {};
+  }
+  const std::string& field(std::size_t row, std::string_view column) const {
+    static const std::string kMissing;
+    const auto found = columns_.find(column);
+    return found == columns_.end() ? kMissing : rows_[row].fields[found->second];
+  }
+
   std::string where_;
-  std::vector<std::vector<std::string>> rows_;
+  std::vector<CsvRow> rows_;
   std::map<std::string, std::size_t, std::less<>> columns_;
 };
 
@@ -79,16 +109,39 @@ Measure measure_of(const std::string& column, double value) {
 Status read_values(const Table& table, std::size_t row, AttemptRecord& record) {
   for (const auto& [name, place] : table.columns()) {
     if (!name.starts_with(kPartColumn) && !name.starts_with(kMetricColumn)) continue;
-    if (name.ends_with(" of")) continue;
+    if (name.ends_with(kOfMost)) continue;
     TROCAR_TRY(const auto value, table.number<double>(row, name));
     if (!value) continue;
     if (name.starts_with(kMetricColumn)) {
       record.measures.push_back(measure_of(name.substr(kMetricColumn.size()), *value));
     } else {
-      TROCAR_TRY(const auto most, table.number<double>(row, name + " of"));
-      record.parts.push_back({name.substr(kPartColumn.size()), *value, most.value_or(0.0)});
+      const std::string most_name = name + std::string(kOfMost);
+      TROCAR_TRY(const auto most, table.number<double>(row, most_name));
+      if (!most || !(*most > 0.0) || *value > *most + kRoundOff)
+        return fail(fmt::format("the points are not of {}", most ? fmt::format("{:g}", *most) : "a number"),
+                    table.place(row, name), fmt::format("correct it, or the column \"{}\"", most_name));
+      record.parts.push_back({name.substr(kPartColumn.size()), *value, *most});
     }
   }
+  return {};
+}
+
+/// What has to be within a range or a list.
+Status check_row(const Table& table, std::size_t row, const Attempt& attempt) {
+  const auto refuse = [&](const char* what, const char* column, const char* advice) {
+    return fail(what, table.place(row, column), advice);
+  };
+  if (!is_id(attempt.id)) return refuse("the attempt has no valid key", "attempt", kUseExport);
+  if (attempt.the_case.task.empty()) return refuse("the task is empty", "task", kUseExport);
+  if (!attempt.level.empty() && !learning::find_level(attempt.level))
+    return refuse("the level is unknown", "level", "use guided, assisted or exam, or leave it empty");
+  if (attempt.score && !(*attempt.score >= 0.0 && *attempt.score <= 100.0))
+    return refuse("the score is not 0 to 100", "score", "correct it");
+  if (attempt.the_case.difficulty && (*attempt.the_case.difficulty < 1 || *attempt.the_case.difficulty > 5))
+    return refuse("the difficulty is not 1 to 5", "case", "correct it, or leave it empty");
+  if (!(attempt.duration_s >= 0.0)) return refuse("the duration is negative", "duration_s", "correct it");
+  if (attempt.is_passed && (!attempt.score || attempt.state != State::kFinished))
+    return refuse("an attempt without a score has not passed", "passed", "write 0, or its score");
   return {};
 }
 
@@ -96,17 +149,15 @@ Result<AttemptRecord> read_row(const Table& table, std::size_t row) {
   AttemptRecord record;
   Attempt& attempt = record.attempt;
   attempt.id = table.text(row, "attempt");
-  if (!is_id(attempt.id)) return fail("the attempt has no valid key", table.place(row, "attempt"), kUseExport);
   const auto state = find_state(table.text(row, "state"));
-  if (!state) return fail("the state is unknown", table.place(row, "state"), kUseExport);
+  if (!state) return fail("the state is unknown", table.place(row, "state"), "use running, finished or interrupted");
   const auto started = learning::parse_utc(table.text(row, "started_utc"));
-  if (!started) return fail("the time is none", table.place(row, "started_utc"), kUseExport);
+  if (!started) return fail("the time is none", table.place(row, "started_utc"), "write it as 2026-01-02T03:04:05Z");
   TROCAR_TRY(const auto seed, table.number<std::uint64_t>(row, "seed"));
   TROCAR_TRY(const auto difficulty, table.number<int>(row, "case"));
   TROCAR_TRY(attempt.score, table.number<double>(row, "score"));
+  TROCAR_TRY(attempt.is_passed, table.truth(row, "passed"));
   TROCAR_TRY(const auto duration_s, table.number<double>(row, "duration_s"));
-  if (attempt.score && !(*attempt.score >= 0.0 && *attempt.score <= 100.0))
-    return fail("the score is not 0 to 100", table.place(row, "score"), kUseExport);
   attempt.the_case = {table.text(row, "task"), table.text(row, "patient"), seed.value_or(1), table.text(row, "hash"),
                       difficulty};
   attempt.level = table.text(row, "level");
@@ -114,9 +165,9 @@ Result<AttemptRecord> read_row(const Table& table, std::size_t row) {
   attempt.station = table.text(row, "station");
   attempt.started = *started;
   attempt.state = *state;
-  attempt.is_passed = table.text(row, "passed") == "1";
   attempt.duration_s = duration_s.value_or(0.0);
   attempt.program_version = table.text(row, "version");
+  TROCAR_TRY_STATUS(check_row(table, row, attempt));
   TROCAR_TRY_STATUS(read_values(table, row, record));
   return record;
 }
@@ -130,11 +181,11 @@ Result<std::string> person_of(soci::session& session, const Table& table, std::s
   };
   const auto name = clean_name(table.text(row, "person"), "the name of a person");
   if (!name) return with_place(name.error());
-  if (const auto found = find_person_named(session, name_key(*name))) return found->id;
   const auto group = find_group(table.text(row, "group"));
   if (!group) return fail("the group is unknown", table.place(row, "group"), "use trainee or expert");
-  const auto added =
-      add_person(session, {*name, *group, table.text(row, "course"), table.text(row, "simulated") == "1", {}}, now);
+  TROCAR_TRY(const bool is_simulated, table.truth(row, "simulated"));
+  if (const auto found = find_person_named(session, name_key(*name))) return found->id;
+  const auto added = add_person(session, {*name, *group, table.text(row, "course"), is_simulated, {}}, now);
   if (!added) return with_place(added.error());
   ++imported.people;
   return added->id;
@@ -149,8 +200,12 @@ Result<ImportedRows> import_attempts(Repository& repository, const std::filesyst
     ImportedRows imported;
     AttemptWriter writer(session, database);
     std::map<std::string, std::string> people;
+    std::map<std::string, std::size_t> lines;  // rows of the attempts
     for (std::size_t row = 1; row < table.rows(); ++row) {
       TROCAR_TRY(AttemptRecord record, read_row(table, row));
+      if (const auto [first, is_new] = lines.emplace(record.attempt.id, row); !is_new)
+        return fail("the attempt occurs twice", table.place(row, "attempt"),
+                    fmt::format("remove this row, or that of {}", table.place(first->second, "")));
       std::string& person = people[table.text(row, "person")];
       if (person.empty()) {
         TROCAR_TRY(person, person_of(session, table, row, now, imported));

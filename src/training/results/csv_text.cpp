@@ -28,34 +28,70 @@ std::string plain_text(std::string_view field) {
   return std::string(has_mark ? field.substr(1) : field);
 }
 
-Result<std::vector<std::vector<std::string>>> parse_csv(std::string_view text, const std::string& where) {
-  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
-  std::vector<std::vector<std::string>> rows;
-  for (std::size_t at = 0; at < text.size();) {
-    const auto place = [&] { return fmt::format("{}, row {}", where, rows.size() + 1); };
-    std::vector<std::string> row;
+namespace {
+
+/// Reads a text field by field.
+class CsvReader {
+ public:
+  CsvReader(std::string_view text, const std::string& where) : text_(text), where_(where) {}
+
+  bool is_at_end() const { return at_ >= text_.size(); }
+
+  Result<CsvRow> read_row() {
+    CsvRow row{line_, {}};
     for (bool has_more = true; has_more;) {
-      std::string field;
-      if (at < text.size() && text[at] == '"') {
-        for (++at;; ++at) {
-          if (at >= text.size()) return fail("a quotation does not end", place(), "check the quotes");
-          if (text[at] == '"' && (at + 1 >= text.size() || text[at + 1] != '"')) break;
-          if (text[at] == '"') ++at;
-          field += text[at];
-        }
-        ++at;
-        if (at < text.size() && text[at] != ',' && text[at] != '\r' && text[at] != '\n')
-          return fail("text after a quotation", place(), "check the quotes");
-      } else {
-        for (; at < text.size() && text[at] != ',' && text[at] != '\r' && text[at] != '\n'; ++at) field += text[at];
-      }
-      row.push_back(std::move(field));
-      has_more = at < text.size() && text[at] == ',';
-      if (has_more) ++at;
+      const std::string place = fmt::format("{}, line {}, field {}", where_, line_, row.fields.size() + 1);
+      TROCAR_TRY(row.fields.emplace_back(), is_next('"') ? read_quoted(place) : read_plain(place));
+      has_more = is_next(',');
+      if (has_more) ++at_;
     }
-    if (at < text.size() && text[at] == '\r') ++at;
-    if (at < text.size() && text[at] == '\n') ++at;
-    if (row.size() > 1 || !row.front().empty()) rows.push_back(std::move(row));
+    if (is_next('\r')) ++at_;
+    if (is_next('\n')) ++at_;
+    ++line_;
+    return row;
+  }
+
+ private:
+  static constexpr const char* kCheckQuotes = "check the quotes";
+
+  bool is_next(char c) const { return at_ < text_.size() && text_[at_] == c; }
+  bool is_field_end() const { return is_at_end() || is_next(',') || is_next('\r') || is_next('\n'); }
+
+  Result<std::string> read_quoted(const std::string& place) {
+    std::string field;
+    for (++at_;; ++at_) {
+      if (is_at_end()) return fail("a quotation does not end", place, kCheckQuotes);
+      if (is_next('"') && (at_ + 1 >= text_.size() || text_[at_ + 1] != '"')) break;
+      if (is_next('"')) ++at_;
+      if (is_next('\n')) ++line_;
+      field += text_[at_];
+    }
+    ++at_;
+    if (!is_field_end()) return fail("text after a quotation", place, kCheckQuotes);
+    return field;
+  }
+
+  Result<std::string> read_plain(const std::string& place) {
+    std::string field;
+    for (; !is_field_end(); ++at_) field += text_[at_];
+    if (field.find('"') != std::string::npos) return fail("a quotation mark inside of a field", place, kCheckQuotes);
+    if (field.find('\0') != std::string::npos) return fail("it is no text", place, "name a CSV file");
+    return field;
+  }
+
+  std::string_view text_;
+  const std::string& where_;
+  std::size_t at_ = 0, line_ = 1;
+};
+
+}  // namespace
+
+Result<std::vector<CsvRow>> parse_csv(std::string_view text, const std::string& where) {
+  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+  std::vector<CsvRow> rows;
+  for (CsvReader reader(text, where); !reader.is_at_end();) {
+    TROCAR_TRY(CsvRow row, reader.read_row());
+    if (row.fields.size() > 1 || !row.fields.front().empty()) rows.push_back(std::move(row));
   }
   return rows;
 }

@@ -17,18 +17,32 @@ TEST(CsvText, ComesBackAndIsNoFormula) {
     const std::string field = csv_text(text);
     const auto rows = parse_csv(csv_row({"x", field}), "test");
     ASSERT_TRUE(rows) << text;
-    EXPECT_EQ(plain_text(rows->front()[1]), text);
+    EXPECT_EQ(plain_text(rows->front().fields[1]), text);
     if (!text.empty()) {
-      EXPECT_EQ(std::string_view("=+-@\t").find(rows->front()[1].front()), std::string_view::npos) << text;
+      EXPECT_EQ(std::string_view("=+-@\t").find(rows->front().fields[1].front()), std::string_view::npos) << text;
     }
   }
 }
 
-TEST(CsvText, BrokenQuotesAreNamedWithTheirRow) {
-  const auto open = parse_csv("a,b\r\nc,\"d", "file");
-  ASSERT_FALSE(open);
-  EXPECT_NE(open.error().text().find("row 2"), std::string::npos);
-  EXPECT_FALSE(parse_csv("\"a\"b", "file"));
+TEST(CsvText, FaultsAreNamedWithLineAndField) {
+  struct Case {
+    std::string text;
+    const char* error;
+  };
+  for (const Case& c : std::vector<Case>{
+           {"a,b\r\nc,\"d", "a quotation does not end — file, line 2, field 2"},
+           {"\"a\"b", "text after a quotation — file, line 1, field 1"},
+           {"a,b\n\nc,d\"e\n", "a quotation mark inside of a field — file, line 3, field 2"},
+           {"\"two\nlines\",b\nx\"", "a quotation mark inside of a field — file, line 3, field 1"},
+           {std::string("a\0b", 3), "it is no text — file, line 1, field 1"},
+       }) {
+    const auto rows = parse_csv(c.text, "file");
+    ASSERT_FALSE(rows) << c.text;
+    EXPECT_TRUE(rows.error().text().starts_with(c.error)) << rows.error().text();
+  }
+  const auto rows = parse_csv("\"two\nlines\",b\n\nc,d\n", "file");
+  ASSERT_TRUE(rows);
+  EXPECT_EQ(rows->at(1).line, 4u);
 }
 
 TEST_P(AttemptsCsv, ComeBackIntoAnotherDatabase) {
@@ -160,10 +174,78 @@ TEST_P(AttemptsCsv, WithABadRowChangeNothing) {
   const std::size_t row = good->find("\r\n") + 2;
   std::string bad = *good + good->substr(row);
   bad.replace(bad.rfind("finished"), 8, "whatever");
-  EXPECT_NE(refused(bad).find("row 3, column state"), std::string::npos) << refused(bad);
-  EXPECT_NE(refused(*good + "one,two\r\n").find("row 3"), std::string::npos);
+  EXPECT_NE(refused(bad).find("line 3, column state"), std::string::npos) << refused(bad);
+  EXPECT_NE(refused(*good + "one,two\r\n").find("line 3"), std::string::npos);
   EXPECT_NE(refused("").find("empty"), std::string::npos);
-  EXPECT_NE(refused("a,b\r\n1,2\r\n").find("column \"attempt\" is missing"), std::string::npos);
+  EXPECT_NE(refused("a,b\r\n1,2\r\n").find("there is no column \"a\""), std::string::npos);
+  EXPECT_NE(refused("person,task\r\n1,2\r\n").find("column \"attempt\" is missing"), std::string::npos);
+}
+
+TEST_P(AttemptsCsv, EveryKindOfFaultIsNamedWithItsLineAndColumn) {
+  const Person anna = add("Anna");
+  put(attempt(anna.id, 50.0));
+  const auto good = attempts_csv(*repository_, {});
+  ASSERT_TRUE(good);
+  const auto rows = parse_csv(*good, "good");
+  ASSERT_TRUE(rows && rows->size() == 2);
+  const std::vector<std::string>& names = rows->front().fields;
+  const auto import = [&](const std::string& text) {
+    const auto file = folder_ / "changed.csv";
+    std::ofstream(file) << text;
+    auto other = Repository::open({folder_ / "changed.sqlite", {}});
+    const auto imported = import_attempts(*other, file, kNow);
+    EXPECT_EQ(list_people(*other)->empty(), !imported) << "all or nothing";
+    return imported ? std::string("imported") : imported.error().text();
+  };
+  struct Case {
+    const char *column, *value, *error;
+  };
+  for (const Case& c : std::vector<Case>{
+           {"attempt", "", "the attempt has no valid key"},
+           {"attempt", "xyz", "the attempt has no valid key"},
+           {"person", "", "is empty"},
+           {"group", "student", "the group is unknown"},
+           {"simulated", "yes", "\"yes\" is neither 0 nor 1"},
+           {"task", "", "the task is empty"},
+           {"seed", "1.5", "\"1.5\" is no whole number"},
+           {"seed", "-1", "\"-1\" is no whole number"},
+           {"case", "6", "the difficulty is not 1 to 5"},
+           {"level", "beginner", "the level is unknown"},
+           {"started_utc", "2026-13-01T00:00:00Z", "the time is none"},
+           {"started_utc", "yesterday", "the time is none"},
+           {"state", "done", "the state is unknown"},
+           {"score", "50,5", "\"50,5\" is no number"},
+           {"score", "50.0x", "\"50.0x\" is no number"},
+           {"score", "nan", "\"nan\" is no number"},
+           {"score", "inf", "\"inf\" is no number"},
+           {"score", "101", "the score is not 0 to 100"},
+           {"score", " 50", "\" 50\" is no number"},
+           {"passed", "true", "\"true\" is neither 0 nor 1"},
+           {"duration_s", "-1", "the duration is negative"},
+           {"part target", "1e999", "\"1e999\" is no number"},
+           {"part target", "99", "the points are not of 30"},
+           {"part target of", "", "the points are not of a number"},
+           {"metric path_length (mm)", "long", "\"long\" is no number"},
+       }) {
+    const auto column = std::ranges::find(names, c.column);
+    ASSERT_NE(column, names.end()) << c.column;
+    std::vector<std::string> row = rows->back().fields;
+    row[static_cast<std::size_t>(column - names.begin())] = c.value;
+    for (std::string& field : row)
+      if (field.find(',') != std::string::npos) field = "\"" + field + "\"";
+    const std::string error = import(csv_row(names) + csv_row(row));
+    EXPECT_NE(error.find(c.error), std::string::npos) << c.column << "=" << c.value << ": " << error;
+    EXPECT_NE(error.find("changed.csv, line 2, column "), std::string::npos) << error;
+  }
+  EXPECT_NE(import(*good + good->substr(good->find("\r\n") + 2)).find("the attempt occurs twice"), std::string::npos);
+  EXPECT_NE(import("attempt,attempt" + good->substr(good->find(',', 8))).find("occurs twice"), std::string::npos);
+  std::string misspelt = *good;
+  misspelt.replace(misspelt.find("score"), 5, "scor");
+  EXPECT_NE(import(misspelt).find("there is no column \"scor\""), std::string::npos) << import(misspelt);
+  std::string without_limit = *good;
+  without_limit.replace(without_limit.find("part target of"), 14, "part other");
+  EXPECT_NE(import(without_limit).find("\"part other of\" is missing"), std::string::npos) << import(without_limit);
+  EXPECT_EQ(import(*good), "imported");
 }
 
 }  // namespace
