@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -32,16 +33,27 @@ std::string_view take_line(std::string_view& text) {
   return line;
 }
 
-std::optional<Row> parse_row(std::string_view line) {
+std::string_view take_field(std::string_view& line) {
+  const std::size_t end = std::min(line.find(','), line.size());
+  const std::string_view field = line.substr(0, end);
+  line.remove_prefix(std::min(end + 1, line.size()));
+  return field;
+}
+
+/// Eight numbers. Error: the column and what is wrong with it.
+tl::expected<Row, std::string> parse_row(std::string_view line) {
   Row row;
-  for (std::size_t column = 0; column < row.size(); ++column) {
-    const bool is_last = column + 1 == row.size();
-    const std::size_t end = is_last ? line.size() : line.find(',');
-    if (end == std::string_view::npos) return std::nullopt;
-    const auto number = parse_number<double>(line.substr(0, end));
-    if (!number) return std::nullopt;
-    row[column] = *number;
-    line.remove_prefix(is_last ? end : end + 1);
+  const auto fields = 1 + std::ranges::count(line, ',');
+  if (fields != static_cast<std::ptrdiff_t>(row.size()))
+    return tl::unexpected(fmt::format("{} fields, not {}: commas separate them, numbers have a decimal point",
+                                      line.empty() ? 0 : fields, row.size()));
+  std::string_view names = kHeader;
+  for (double& value : row) {
+    const std::string_view name = take_field(names), field = take_field(line);
+    const auto number = parse_number<double>(field);
+    if (!number)
+      return tl::unexpected(fmt::format("column {}: '{}' is not a finite number", name, field.substr(0, 40)));
+    value = *number;
   }
   return row;
 }
@@ -58,22 +70,23 @@ std::optional<Pose> pose_of(const Row& row) {
 Result<RecordedMotion> read_motion(const fs::path& path) {
   TROCAR_TRY(const std::string bytes, read_input(path, FileKind::kOther));
   std::string_view rest = bytes;
-  if (take_line(rest) != kHeader) return fail("not a recorded motion", path.string(), kRecordMotion);
-  const auto damaged = [&](std::size_t line, const char* what) {
+  if (take_line(rest) != kHeader)
+    return fail(fmt::format("not a recorded motion: line 1 is not {}", kHeader), path.string(), kRecordMotion);
+  const auto damaged = [&](std::size_t line, const std::string& what) {
     return fail(fmt::format("line {}: {}", line, what), path.string(), kRecordMotion);
   };
   RecordedMotion motion;
   double first_s = 0.0, last_s = 0.0, step_s = 0.0;
   for (std::size_t line = 2; !rest.empty(); ++line) {
     const auto row = parse_row(take_line(rest));
-    if (!row) return damaged(line, "not eight numbers");
+    if (!row) return damaged(line, row.error());
     const auto pose = pose_of(*row);
-    if (!pose) return damaged(line, "the quaternion's length is not 1");
+    if (!pose) return damaged(line, "column qw: the quaternion's length is not 1");
     const double time_s = row->front();
     if (motion.poses.empty()) first_s = time_s;
     if (motion.poses.size() == 1) step_s = time_s - first_s;
     if (!motion.poses.empty() && !(step_s > 0.0 && std::abs(time_s - last_s - step_s) <= kMostUneven * step_s))
-      return damaged(line, "the steps in time are not equal");
+      return damaged(line, "column time_s: the steps in time are not equal");
     last_s = time_s;
     motion.poses.push_back(*pose);
   }

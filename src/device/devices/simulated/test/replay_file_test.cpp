@@ -43,16 +43,33 @@ TEST_F(ReplayFile, NamesTheLineThatIsDamaged) {
   const std::string first = "0,1,2,3,1,0,0,0\n", second = "0.001,1,2,3,1,0,0,0\n";
   EXPECT_EQ(refusal(kHeader + first + second), "");
   EXPECT_EQ(refusal(kHeader + first + "0.001,1,2,3,1,0,0,0\r\n"), "") << "lines of another system";
-  EXPECT_EQ(refusal(""), "not a recorded motion");
-  EXPECT_EQ(refusal("x,y\n" + first), "not a recorded motion");
+  EXPECT_EQ(refusal(""), "not a recorded motion: line 1 is not time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz");
+  EXPECT_EQ(refusal("x,y\n" + first), "not a recorded motion: line 1 is not time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz");
   EXPECT_EQ(refusal(kHeader), "fewer than two poses");
   EXPECT_EQ(refusal(kHeader + first), "fewer than two poses");
-  EXPECT_EQ(refusal(kHeader + first + "0.001,1,2,3,1,0,0\n"), "line 3: not eight numbers");
-  EXPECT_EQ(refusal(kHeader + first + "0.001,1,nan,3,1,0,0,0\n"), "line 3: not eight numbers");
-  EXPECT_EQ(refusal(kHeader + first + "0.001,1,2,3,1,0,0,0,9\n"), "line 3: not eight numbers");
-  EXPECT_EQ(refusal(kHeader + first + "0.001,1,2,3,0,0,0,0\n"), "line 3: the quaternion's length is not 1");
-  EXPECT_EQ(refusal(kHeader + first + first), "line 3: the steps in time are not equal");
-  EXPECT_EQ(refusal(kHeader + first + second + "0.003,1,2,3,1,0,0,0\n"), "line 4: the steps in time are not equal");
+  EXPECT_EQ(refusal(kHeader + first + "0.001,1,2,3,1,0,0\n"),
+            "line 3: 7 fields, not 8: commas separate them, numbers have a decimal point");
+  EXPECT_EQ(refusal(kHeader + first + "0.001,1,nan,3,1,0,0,0\n"), "line 3: column y_mm: 'nan' is not a finite number");
+  EXPECT_EQ(refusal(kHeader + first + "0.001,1,2,3,1,0,0,0,9\n"),
+            "line 3: 9 fields, not 8: commas separate them, numbers have a decimal point");
+  struct Case {
+    const char *row, *what;
+  };
+  for (const Case& c : std::vector<Case>{
+           {"", "line 3: 0 fields, not 8: commas separate them, numbers have a decimal point"},
+           {"0.001,1.0x,2,3,1,0,0,0", "line 3: column x_mm: '1.0x' is not a finite number"},
+           {"0.001,1,inf,3,1,0,0,0", "line 3: column y_mm: 'inf' is not a finite number"},
+           {"0.001,1,2,,1,0,0,0", "line 3: column z_mm: '' is not a finite number"},
+           {"0.001,1,2,3,1,0,0, 0", "line 3: column qz: ' 0' is not a finite number"},
+           {"0.001,1e999,2,3,1,0,0,0", "line 3: column x_mm: '1e999' is not a finite number"},
+           {"\"0.001\",1,2,3,1,0,0,0", "line 3: column time_s: '\"0.001\"' is not a finite number"},
+           {"0,001,1,2,3,1,0,0,0", "line 3: 9 fields, not 8: commas separate them, numbers have a decimal point"},
+       })
+    EXPECT_EQ(refusal(kHeader + first + c.row + "\n"), c.what) << c.row;
+  EXPECT_EQ(refusal(kHeader + first + "0.001,1,2,3,0,0,0,0\n"), "line 3: column qw: the quaternion's length is not 1");
+  EXPECT_EQ(refusal(kHeader + first + first), "line 3: column time_s: the steps in time are not equal");
+  EXPECT_EQ(refusal(kHeader + first + second + "0.003,1,2,3,1,0,0,0\n"),
+            "line 4: column time_s: the steps in time are not equal");
 }
 
 }  // namespace
