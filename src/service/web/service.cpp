@@ -210,8 +210,10 @@ Result<HttpAnswer> Service::State::answer_route(const Route& route, Call& call) 
   }
   if (!request.body.empty()) {
     const auto body = config::parse_json(request.body, "body");
-    if (!body) return error_answer(400, body.error().what, "send an object of JSON");
+    if (!body)
+      return error_answer(400, fmt::format("{} ({})", body.error().what, body.error().where), "send an object of JSON");
     if (!body->is_object()) return error_answer(400, "the body is not an object", "send an object of JSON");
+    if (const Status known = check_fields(*body, route.fields); !known) return error_answer(400, known.error());
     call.body = *body;
   }
   return route.handle(backend, call);

@@ -196,12 +196,12 @@ Result<HttpAnswer> remove(Backend& backend, const Call& call) {
 
 std::vector<Route> account_routes() {
   return {
-      {"POST", "/api/login", Access::kPublic, log_in, false},
+      {"POST", "/api/login", Access::kPublic, log_in, false, {"name", "password"}},
       {"POST", "/api/logout", Access::kInstructor, log_out},
       {"GET", "/api/me", Access::kInstructor, show_me},
-      {"POST", "/api/password", Access::kInstructor, change_own_password},
+      {"POST", "/api/password", Access::kInstructor, change_own_password, true, {"old", "new"}},
       {"GET", "/api/accounts", Access::kAdmin, list_all},
-      {"POST", "/api/accounts", Access::kAdmin, add},
+      {"POST", "/api/accounts", Access::kAdmin, add, true, {"name", "password", "role"}},
       {"DELETE", "/api/accounts/*", Access::kAdmin, remove},
   };
 }

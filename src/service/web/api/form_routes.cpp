@@ -34,6 +34,7 @@ Json form_json(const results::Form& form) {
 
 Result<results::Item> read_item(const Json& json) {
   results::Item item;
+  TROCAR_TRY_STATUS(check_fields(json, std::array<std::string_view, 4>{"id", "kind", "text", "is_required"}));
   TROCAR_TRY(item.id, text_field_or_empty(json, "id"));
   TROCAR_TRY(item.text, text_field(json, "text"));
   TROCAR_TRY(const std::string kind_name, text_field(json, "kind"));
@@ -207,15 +208,16 @@ Result<HttpAnswer> add_answers(Backend& backend, const Call& call) {
 }  // namespace
 
 std::vector<Route> form_routes() {
+  const std::vector<std::string_view> of_form{"title", "intro", "is_open", "items"};
   return {
       {"GET", "/api/forms", Access::kInstructor, list_forms},
-      {"POST", "/api/forms", Access::kInstructor, add_form},
-      {"PUT", "/api/forms/*", Access::kInstructor, change_form},
+      {"POST", "/api/forms", Access::kInstructor, add_form, true, of_form},
+      {"PUT", "/api/forms/*", Access::kInstructor, change_form, true, of_form},
       {"DELETE", "/api/forms/*", Access::kInstructor, delete_form},
       {"GET", "/api/forms/*/summary", Access::kInstructor, show_summary},
       {"GET", "/api/forms/*/answers.csv", Access::kInstructor, send_answers_csv},
       {"GET", "/api/public/forms/*", Access::kPublic, show_public_form},
-      {"POST", "/api/public/forms/*/answers", Access::kPublic, add_answers, false},
+      {"POST", "/api/public/forms/*/answers", Access::kPublic, add_answers, false, {"answers", "response_id"}},
   };
 }
 

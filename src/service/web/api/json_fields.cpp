@@ -1,5 +1,10 @@
 #include "web/api/json_fields.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
 #include "core/utf8.h"
 
 namespace trocar::web {
@@ -22,6 +27,15 @@ Result<std::string> text_field(const Json& body, const char* name) {
 Result<std::string> text_field_or_empty(const Json& body, const char* name) {
   if (body.is_object() && (!body.contains(name) || body.at(name).is_null())) return std::string();
   return text_field(body, name);
+}
+
+Status check_fields(const Json& body, std::span<const std::string_view> names) {
+  if (!body.is_object()) return fail_usage("it is not an object", {}, "send an object of JSON");
+  for (const auto& [name, value] : body.items())
+    if (std::ranges::find(names, name) == names.end())
+      return fail_usage("there is no such field", name,
+                        names.empty() ? "send an empty object" : fmt::format("send {}", fmt::join(names, ", ")));
+  return {};
 }
 
 Json or_null(const std::optional<double>& value) {

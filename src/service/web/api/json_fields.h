@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -16,6 +17,9 @@ using config::Json;
 Result<std::string> text_field(const Json& body, const char* name);
 /// The same, empty if it is missing or null.
 Result<std::string> text_field_or_empty(const Json& body, const char* name);
+
+/// Error (exit status 2): not an object, or a field of another name.
+Status check_fields(const Json& body, std::span<const std::string_view> names);
 
 /// A value, or null.
 Json or_null(const std::optional<double>& value);

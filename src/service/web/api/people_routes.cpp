@@ -215,7 +215,7 @@ std::vector<Route> people_routes() {
   return {
       {"GET", "/api/overview", Access::kInstructor, show_overview},
       {"GET", "/api/people/*", Access::kInstructor, show_person},
-      {"DELETE", "/api/people/*", Access::kAdmin, delete_person},
+      {"DELETE", "/api/people/*", Access::kAdmin, delete_person, true, {"confirm"}},
       {"GET", "/api/people/*/attempts", Access::kInstructor, list_attempts},
       {"GET", "/api/people/*/curve", Access::kInstructor, show_curve},
   };

@@ -64,7 +64,8 @@ struct Route {
   std::string_view method, pattern;  ///< "GET", "/api/people/*/curve".
   Access access;
   RouteHandler handle;
-  bool needs_csrf = true;  ///< Not before a login. Never for GET.
+  bool needs_csrf = true;                     ///< Not before a login. Never for GET.
+  std::vector<std::string_view> fields = {};  ///< That the body may have: a misspelt one is refused.
 };
 
 // Groups of routes.

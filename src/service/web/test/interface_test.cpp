@@ -376,6 +376,19 @@ TEST_F(Questionnaire, BadAnswersNameTheItem) {
   EXPECT_EQ(submit(form, answers), 201);
 }
 
+TEST_F(Questionnaire, MisspeltFieldsAreRefusedAndNamed) {
+  const Json item = {{"kind", "scale"}, {"text", "Useful?"}, {"is_required", true}};
+  Json misspelt = item;
+  misspelt["required"] = true;
+  for (const Json& body : {Json{{"titel", "x"}}, Json{{"title", "x"}, {"language", "en"}},
+                           Json{{"items", Json::array({misspelt})}}, Json{{"items", Json::array({Json::array()})}}}) {
+    const HttpAnswer answer = lab_.post("/api/forms", body);
+    EXPECT_EQ(answer.status, 400) << body;
+  }
+  EXPECT_NE(body_of(lab_.post("/api/forms", {{"titel", "x"}})).find("titel"), std::string::npos);
+  EXPECT_EQ(lab_.post("/api/forms", {{"items", Json::array({item})}}).status, 201);
+}
+
 TEST_F(Questionnaire, ClosedAndUnknownOnesLookTheSame) {
   const Json form = add_form();
   const std::string id = form["id"].get<std::string>(),

@@ -1,4 +1,5 @@
 // Logins: who gets in, how a login ends, and what a forged request achieves.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -104,7 +105,11 @@ TEST(Login, MalformedBodiesAreRefused) {
                            Json{{"name", std::string(5000, 'x')}, {"password", "x"}}})
     EXPECT_EQ(lab.post("/api/login", body).status, 400) << body.dump();
   HttpRequest broken = lab.request("POST", "/api/login");
-  for (const std::string& text : {std::string("{"), std::string("{\"name\":\"\xff\"}"), std::string(1000, '[')}) {
+  for (const std::string& text : {std::string("{"), std::string("{\"name\":\"\xff\"}"), std::string(1000, '['),
+                                  fmt::format(R"({{"name":"{0}","name":"{0}","password":"{1}"}})", kAdmin, kPassword),
+                                  fmt::format(R"({{"name":"{}","password":"{}","role":"admin"}})", kAdmin, kPassword),
+                                  fmt::format(R"({{"name":"{}","password":"{}"}} trailing)", kAdmin, kPassword),
+                                  fmt::format(R"({{"name":"{}","password":NaN}})", kAdmin)}) {
     broken.body = text;
     EXPECT_EQ(lab.send(broken).status, 400) << text;
   }
