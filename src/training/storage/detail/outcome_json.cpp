@@ -131,8 +131,11 @@ void read_judgement(const config::Json& object, scoring::Outcome& outcome, bool&
   }
   outcome.pain_events = static_cast<std::size_t>(std::clamp(reader.number("pain_events"), 0.0, 1e9));
   const config::Json& times = reader.array("hint_times_s");
-  for (std::size_t n = 0; n < std::min(times.size(), outcome.hints.size()); ++n)
+  if (times.size() != outcome.hints.size()) is_valid = false;
+  for (std::size_t n = 0; n < std::min(times.size(), outcome.hints.size()); ++n) {
     if (times[n].is_number()) outcome.hints[n].at_s = times[n].get<double>();
+    if (!times[n].is_number() && !times[n].is_null()) is_valid = false;
+  }
 }
 
 }  // namespace
