@@ -130,6 +130,7 @@ void ResultsControl::check_pin(const QString& pin) {
         return found;
       }
       found.person = person;
+      found.person->has_pin = true;
       return found;
     }
     TROCAR_TRY(const results::PinCheck check, results::check_pin(repository, person.id, pin, now_s()));
@@ -159,6 +160,7 @@ void ResultsControl::add_person(const QString& name, const QString& pin) {
     }
     if (!pin.empty()) TROCAR_TRY_STATUS(results::set_pin(repository, added->id, pin));
     found.person = *added;
+    found.person->has_pin = !pin.empty();
     return found;
   });
 }

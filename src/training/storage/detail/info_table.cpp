@@ -60,6 +60,11 @@ Field parse_number(const std::string& key, const std::string& text) {
   return value;
 }
 
+bool parse_truth(const std::string& key, const std::string& text) {
+  if (text != "0" && text != "1") throw soci::soci_error(fmt::format("\"{}\" is neither 0 nor 1", key));
+  return text == "1";
+}
+
 constexpr const char* kForceVersionKey = "force_version";  // not in sessions of older programs
 constexpr int kMostForceVersion = 1'000'000'000;
 
@@ -176,13 +181,14 @@ SessionInfo read_info(soci::session& database) {
     if constexpr (std::is_same_v<Field, std::string>)
       field = found->second;
     else if constexpr (std::is_same_v<Field, bool>)
-      field = found->second == "1";
+      field = parse_truth(name, found->second);
     else
       field = parse_number<Field>(name, found->second);
   });
   visit_added_info(info, [&](const char* name, std::string& field) {
     if (const auto found = values.find(name); found != values.end()) field = found->second;
   });
+  if (!(info.rate_hz > 0.0 && std::isfinite(info.rate_hz))) throw soci::soci_error("the rate is none");
   if (const auto found = values.find(kForceVersionKey); found != values.end())
     info.force_version = parse_force_version(found->second);
   if (const auto found = values.find(kPlaneKey); found != values.end()) info.plane = parse_plane(found->second);
