@@ -135,10 +135,23 @@ void print_part(const scoring::ScorePart& part) {
   }
 }
 
+/// Passed or not with the reasons, then what to improve.
+void print_verdict(const scoring::Outcome& outcome) {
+  if (outcome.is_scored()) {
+    fmt::print("score {:.0f} of 100, target {}: {}\n", outcome.score, outcome.target_reached ? "reached" : "missed",
+               outcome.is_passed ? "passed" : fmt::format("not passed ({})", fmt::join(outcome.fails, "; ")));
+  } else {
+    fmt::print("not passed: not scored, {}\n", outcome.not_scored);
+  }
+  for (std::size_t n = 0; n < outcome.hints.size(); ++n)
+    fmt::print("{}: {}\n", n == 0 ? "improve first" : "then", outcome.hints[n].text);
+}
+
 void print_result(const RunArguments& arguments, const cases::Case& the_case, const attempt::RunResult& result) {
   const scoring::Outcome& outcome = result.outcome;
   fmt::print("{} on {} by {}: {:.1f} s, {} ticks\n", the_case.task.title, the_case.patient->name,
              arguments.run.operator_name, result.simulated_s, result.ticks);
+  print_verdict(outcome);
   if (const anatomy::Posture posture = tasks::posture_of(the_case.task, *the_case.patient);
       posture != the_case.patient->posture)
     fmt::print("with the patient {}\n", anatomy::posture_words(posture));
@@ -154,17 +167,11 @@ void print_result(const RunArguments& arguments, const cases::Case& the_case, co
   if (outcome.bleeding)
     fmt::print("risk of bleeding: {}{}{}\n", to_string(outcome.bleeding->risk),
                outcome.bleeding->reasons.empty() ? "" : ", ", fmt::join(outcome.bleeding->reasons, "; "));
-  if (outcome.is_scored()) {
-    fmt::print("score {:.0f} of 100, target {}: {}\n", outcome.score, outcome.target_reached ? "reached" : "missed",
-               outcome.is_passed ? "passed" : fmt::format("not passed ({})", fmt::join(outcome.fails, "; ")));
-  } else {
-    fmt::print("not passed: not scored, {}\n", outcome.not_scored);
-  }
   for (const metrics::HarmEvent& event : outcome.harms)
-    fmt::print("{} harm: {}{}\n", to_string(event.grade), metrics::harm_words(event),
+    fmt::print("{} harm: {}{}
+", to_string(event.grade), metrics::harm_words(event),
                event.reason.empty() ? "" : " (" + event.reason + ")");
   for (const scoring::ScorePart& part : outcome.parts) print_part(part);
-  for (const scoring::Hint& hint : outcome.hints) fmt::print("hint: {}\n", hint.text);
   if (const auto same = has_same_ticks(arguments.run, result))
     fmt::print("{}\n",
                *same ? "the ticks are those of the session, to the bit" : "the ticks differ from the session's");

@@ -11,6 +11,7 @@
 #include "past_sessions.h"
 #include "patient_option.h"
 #include "report/html_report.h"
+#include "report/text_report.h"
 #include "storage/session_file.h"
 
 namespace trocar::cli {
@@ -51,6 +52,7 @@ struct ReportArguments {
   std::string session;
   io::PatientSource patient;  ///< Empty: as recorded in the session.
   std::string out;
+  bool is_text = false;
 };
 
 /// The session's patient; null with a warning if it is missing or has changed.
@@ -61,7 +63,7 @@ std::shared_ptr<const anatomy::VirtualPatient> find_report_patient(const storage
   if (source.folder_or_name.empty()) {
     auto found = io::find_recorded_patient(info.patient_source, info.patient_hash, session.parent_path());
     if (!found) {
-      print_warning("the report has no CT slices: " + found.error().text());
+      print_warning("the report has no CT slices and no steps: " + found.error().text());
       return nullptr;
     }
     source.folder_or_name = *std::move(found);
@@ -69,14 +71,14 @@ std::shared_ptr<const anatomy::VirtualPatient> find_report_patient(const storage
   source.seed = info.patient_seed;
   auto patient = io::open_patient(source, progress);
   if (!patient) {
-    print_warning("the report has no CT slices: " + patient.error().text());
+    print_warning("the report has no CT slices and no steps: " + patient.error().text());
     return nullptr;
   }
   if (patient->content_hash != info.patient_hash) {
-    print_warning(
-        fmt::format("the report has no CT slices: the patient differs from that of the session — {} — name the right "
-                    "one with --patient",
-                    source.folder_or_name));
+    print_warning(fmt::format(
+        "the report has no CT slices and no steps: the patient differs from that of the session — {} — name the right "
+        "one with --patient",
+        source.folder_or_name));
     return nullptr;
   }
   return std::make_shared<const anatomy::VirtualPatient>(*std::move(patient));
@@ -103,16 +105,22 @@ report::ReportStory story_of(const storage::Session& session,
 }
 
 Status write_report(const ReportArguments& arguments) {
+  if (arguments.is_text && !arguments.out.empty())
+    return fail_usage("give --text or --out, not both", "--text, --out", "redirect the text to a file");
   const std::filesystem::path out =
       arguments.out.empty() ? report::report_file_of(arguments.session) : std::filesystem::path(arguments.out);
-  TROCAR_TRY_STATUS(check_new(out));
+  if (!arguments.is_text) TROCAR_TRY_STATUS(check_new(out));
   TROCAR_TRY(const storage::Session session, storage::salvage_session(arguments.session));
   warn_of(session, arguments.session);
   const ProgressPrinter printer;
   const auto patient = find_report_patient(session.info, arguments.patient, arguments.session, printer.callback());
   const report::ReportStory story = story_of(session, patient, arguments.session);
-  TROCAR_TRY_STATUS(write_file_atomically(out, report::html_report(session, patient.get(), story)));
-  if (arguments.out.empty()) fmt::print("{}\n", out.string());
+  if (arguments.is_text) {
+    fmt::print("{}", report::text_report(session, story));
+  } else {
+    TROCAR_TRY_STATUS(write_file_atomically(out, report::html_report(session, patient.get(), story)));
+    if (arguments.out.empty()) fmt::print("{}\n", out.string());
+  }
   if (session.damage.empty()) return {};
   return tl::unexpected(storage::damage_error(session, arguments.session, "the report shows the undamaged part"));
 }
@@ -158,7 +166,8 @@ void add_session_commands(Command& program, Action& action) {
   report_command.add_option("--out", r->out,
                             "HTML file to write [beside the session: first.report.html of first.session]");
   report_command.footer(
-      "Example:\n  trocar session report first.session\n  trocar session report first.session --out first.html\n");
+      "Examples:\n  trocar session report first.session\n  trocar session report first.session --text\n  trocar "
+      "session report first.session --out first.html\n");
   report_command.when_parsed([&action, r] { action = [r] { return write_report(*r); }; });
 
   add_session_metrics_command(session, action);

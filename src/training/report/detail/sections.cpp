@@ -7,12 +7,10 @@
 
 #include "report/detail/force_plots.h"
 #include "report/detail/html.h"
+#include "report/detail/verdict.h"
 
 namespace trocar::report::detail {
 namespace {
-
-/// Shorter interruptions are counted and not listed: a hand does not notice them. [assumed]
-constexpr double kShortInterruption_s = 0.1;
 
 /// "2026-01-02T03:04:05Z" -> "2026-01-02 03:04 UTC"; other texts are unchanged.
 std::string date_text(const std::string& utc) {
@@ -75,22 +73,12 @@ std::string changes_rows(const storage::Session& session) {
 
 /// Each interruption that a trainee notices, and the number of the others.
 std::string interruption_rows(const storage::Session& session) {
+  const Interruptions gaps = interruptions_of(session);
   std::string rows;
-  std::size_t short_ones = 0;
-  double short_s = 0.0;
-  for (const tasks::Interruption& gap : session.interruptions) {
-    const double length_s = gap.to_s - gap.from_s;
-    if (length_s < kShortInterruption_s) {
-      ++short_ones;
-      short_s += length_s;
-      continue;
-    }
+  for (const tasks::Interruption& gap : gaps.noticed)
     rows += case_row("Interruption", fmt::format("at {} s: {} s, {}", number_text(gap.from_s, 2),
-                                                 number_text(length_s, 2), gap.reason));
-  }
-  if (short_ones == 0) return rows;
-  return rows + case_row("Short interruptions", fmt::format("{} shorter than {:g} s, {} s in total", short_ones,
-                                                            kShortInterruption_s, number_text(short_s, 2)));
+                                                 number_text(gap.to_s - gap.from_s, 2), gap.reason));
+  return gaps.short_ones == 0 ? rows : rows + case_row("Short interruptions", gaps.short_text());
 }
 
 /// The tissue tables, each with the time from which on it was used.

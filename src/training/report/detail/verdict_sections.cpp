@@ -5,6 +5,7 @@
 
 #include "report/detail/html.h"
 #include "report/detail/sections.h"
+#include "report/detail/verdict.h"
 
 namespace trocar::report::detail {
 namespace {
@@ -44,20 +45,6 @@ std::string part_row(const scoring::ScorePart& part) {
       short_number(part.points), short_number(part.max_points));
 }
 
-/// Verdict in a word, whose icon and colour say the same.
-struct Verdict {
-  const char *word, *style, *icon;
-};
-constexpr Verdict kPassed{"Passed", "passed", "M24 52 L42 70 L76 32"};
-constexpr Verdict kNotPassed{"Not passed", "failed", "M30 30 L70 70 M70 30 L30 70"};
-constexpr Verdict kNoVerdict{"No verdict", "unjudged", "M50 26 L50 56 M50 70 L50 72"};
-
-/// A session of an older program has neither a pass nor a reason against it.
-Verdict verdict_of(const scoring::Outcome& outcome) {
-  if (outcome.is_passed) return kPassed;
-  return outcome.is_scored() && outcome.fails.empty() ? kNoVerdict : kNotPassed;
-}
-
 std::string icon_svg(const Verdict& verdict) {
   return fmt::format(
       "<svg class=\"icon\" viewBox=\"0 0 100 100\" aria-hidden=\"true\"><circle cx=\"50\" cy=\"50\" r=\"46\" "
@@ -67,11 +54,7 @@ std::string icon_svg(const Verdict& verdict) {
 }
 
 std::string reasons_list(const scoring::Outcome& outcome) {
-  std::vector<std::string> reasons;
-  if (!outcome.is_scored()) reasons.push_back("Not scored: " + outcome.not_scored);
-  for (const std::string& fail : outcome.fails) reasons.push_back(fail);
-  if (verdict_of(outcome).word == kNoVerdict.word)
-    reasons.emplace_back("The session is of an older program, which did not judge whether an attempt passes.");
+  const std::vector<std::string> reasons = reasons_of(outcome);
   if (reasons.empty()) return {};
   std::string list = "<ul class=\"reasons\">";
   for (const std::string& reason : reasons) list += "<li>" + escape(capitalised(reason)) + "</li>";

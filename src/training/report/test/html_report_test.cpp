@@ -108,7 +108,7 @@ TEST(HtmlReport, AnAttemptWithoutAScoreHasNotPassed) {
   storage::Session session = example_attempt();
   session.outcome->not_scored = "the skin was not pierced";
   const std::string html = html_report(session, nullptr);
-  places(html, {"<h2>Not passed</h2>", "<li>Not scored: the skin was not pierced</li>"});
+  places(html, {"<h2>Not passed</h2>", "<li>Not scored, the skin was not pierced</li>"});
   EXPECT_EQ(html.find("of 100"), std::string::npos);
 }
 
@@ -122,7 +122,7 @@ TEST(HtmlReport, ShortInterruptionsAreCounted) {
   session.interruptions = {
       {1.0, 1.0, "busy"}, {2.0, 2.04, "busy"}, {3.0, 3.5, "the server was away"}, {4.0, 4.0, "busy"}};
   const std::string html = html_report(session, nullptr);
-  places(html, {"3 shorter than 0.1 s, 0.04 s in total", "at 3.00 s: 0.50 s, the server was away"});
+  places(html, {"3 interruptions shorter than 0.1 s, 0.04 s in total", "at 3.00 s: 0.50 s, the server was away"});
   EXPECT_EQ(count_of(html, "<th>Interruption</th>"), 1u);
 }
 
