@@ -12,6 +12,7 @@
 #include "past_sessions.h"
 #include "patient_option.h"
 #include "replay_arguments.h"
+#include "report/report_story.h"
 #include "run_results.h"
 #include "storage/score_json.h"
 #include "tasks/postures.h"
@@ -143,8 +144,10 @@ void print_verdict(const scoring::Outcome& outcome) {
   } else {
     fmt::print("not passed: not scored, {}\n", outcome.not_scored);
   }
-  for (std::size_t n = 0; n < outcome.hints.size(); ++n)
-    fmt::print("{}: {}\n", n == 0 ? "improve first" : "then", outcome.hints[n].text);
+  for (std::size_t n = 0; n < outcome.hints.size(); ++n) {
+    const scoring::Hint& hint = outcome.hints[n];
+    fmt::print("{}{}\n", report::is_praise(hint) ? "" : n == 0 ? "improve first: " : "then: ", hint.text);
+  }
 }
 
 void print_result(const RunArguments& arguments, const cases::Case& the_case, const attempt::RunResult& result) {

@@ -165,6 +165,7 @@ void add_session_commands(Command& program, Action& action) {
   add_cache_option(report_command, r->patient);
   report_command.add_option("--out", r->out,
                             "HTML file to write [beside the session: first.report.html of first.session]");
+  report_command.add_flag("--text", r->is_text, "Print the report as text instead");
   report_command.footer(
       "Examples:\n  trocar session report first.session\n  trocar session report first.session --text\n  trocar "
       "session report first.session --out first.html\n");

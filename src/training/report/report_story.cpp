@@ -18,6 +18,10 @@ const Entry* newest_of(const std::vector<Entry>& entries, std::size_t& next, dou
 
 }  // namespace
 
+bool is_praise(const scoring::Hint& hint) noexcept {
+  return hint.text.starts_with("Well done");
+}
+
 std::vector<StepTime> step_times(const storage::Session& session, const tasks::Task& task,
                                  const anatomy::VirtualPatient& patient, const tasks::Needle& needle,
                                  const tasks::PlannedPath& plan) {

@@ -31,6 +31,9 @@ struct ReportStory {
   std::vector<ActionLine> actions;  ///< By time.
 };
 
+/// True for the hint of an attempt at which nothing is to be improved: "Well done: ...".
+bool is_praise(const scoring::Hint& hint) noexcept;
+
 /// The steps of a recorded attempt, each when it was done for the first time: that a trainee repeated a step is not
 /// recorded. `task` is fitted to the patient.
 std::vector<StepTime> step_times(const storage::Session& session, const tasks::Task& task,

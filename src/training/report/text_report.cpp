@@ -20,8 +20,11 @@ std::string verdict_text(const storage::Session& session) {
         fmt::format("{:.0f} of 100 points, target {}\n", outcome.score, outcome.target_reached ? "reached" : "missed");
   for (std::size_t n = 0; n < outcome.hints.size(); ++n) {
     const scoring::Hint& hint = outcome.hints[n];
-    text += fmt::format("{}: {}{}\n", n == 0 ? "improve first" : "then", hint.text,
-                        hint.at_s ? fmt::format(" (at {:.1f} s)", *hint.at_s) : "");
+    text += fmt::format("{}{}{}\n",
+                        is_praise(hint) ? ""
+                        : n == 0        ? "improve first: "
+                                        : "then: ",
+                        hint.text, hint.at_s ? fmt::format(" (at {:.1f} s)", *hint.at_s) : "");
   }
   for (const scoring::ScorePart& part : outcome.parts)
     text += fmt::format("  {:<44} {:>12} {:>6.1f} of {:.1f} points\n", part.title, scoring::part_value_text(part),

@@ -1,5 +1,7 @@
 #include "exams/exam_seal.h"
 
+#include <algorithm>
+
 #include "core/testing/data_folder.h"
 #include "exams/test/exam_fixture.h"
 
@@ -51,8 +53,9 @@ TEST_F(SealedExam, BindsPersonTaskBodyVersionTablesAndRecording) {
 TEST_F(SealedExam, ASessionEditedAtAnyPlaceIsNotSigned) {
   const std::string bytes = *read_file(session);
   ASSERT_GT(bytes.size(), 10'000u);
-  // Every 97th byte, the first and the last ones: header, pages, text, free space.
-  for (std::size_t at = 0; at < bytes.size(); at += at < 64 || at + 64 > bytes.size() ? 1 : 97) {
+  // Every 997th byte, the first and the last ones: header, pages, text, free space.
+  for (std::size_t at = 0; at < bytes.size();
+       at += at < 64 || at + 64 >= bytes.size() ? 1 : std::min<std::size_t>(997, bytes.size() - 64 - at)) {
     std::string changed = bytes;
     changed[at] = static_cast<char>(changed[at] ^ 1);
     overwrite(session, changed);

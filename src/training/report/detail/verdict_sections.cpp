@@ -109,7 +109,8 @@ std::string verdict_section(const storage::Session& session) {
 std::string advice_section(const storage::Session& session) {
   if (!session.outcome || session.outcome->hints.empty()) return {};
   const std::vector<scoring::Hint>& hints = session.outcome->hints;
-  std::string out = "<section class=\"together\"><h2>Improve this first</h2><p class=\"first-hint\">" +
+  std::string out = fmt::format("<section class=\"together\"><h2>{}</h2><p class=\"first-hint\">",
+                                is_praise(hints.front()) ? "Advice" : "Improve this first") +
                     hint_text(hints.front()) + "</p>";
   if (hints.size() > 1) {
     out += "<h3>Then</h3><ol class=\"hints\" start=\"2\">";

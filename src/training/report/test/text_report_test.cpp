@@ -35,6 +35,9 @@ TEST(TextReport, HasTheOrderOfReading) {
 TEST(TextReport, SaysPassedNotScoredAndIncomplete) {
   storage::Session session = testing::example_attempt();
   session.outcome->is_passed = true;
+  session.outcome->hints = {{"Well done: nothing at risk was touched.", {}}};
+  EXPECT_EQ(text_report(session).find("improve"), std::string::npos);
+  EXPECT_NE(text_report(session).find("\nWell done: nothing"), std::string::npos);
   EXPECT_NE(text_report(session).find("\nPassed\n83 of 100 points"), std::string::npos);
   session.outcome->is_passed = false;
   session.outcome->not_scored = "the skin was not pierced";
