@@ -93,6 +93,10 @@ TEST_F(StartPageTest, AnExamHasADifficultyAndANumber) {
   EXPECT_EQ(page.choice().exam_number, 0u);
   EXPECT_FALSE(needs_exam_body(page.choice()));
   EXPECT_TRUE(exam_text(page.choice()).contains(QStringLiteral("known")));
+  TrainerChoice nobody = page.choice();
+  EXPECT_FALSE(exam_text(nobody).contains(QStringLiteral("name nobody")));
+  nobody.is_person_named = false;
+  EXPECT_TRUE(exam_text(nobody).contains(QStringLiteral("name nobody")));
 }
 
 TEST_F(StartPageTest, AnExamDoesNotTakeTheSeedOfTheCommandLine) {
