@@ -16,7 +16,7 @@ namespace trocar::cli {
 void print_warning(std::string_view text);
 /// Prints results to standard output, as one JSON object. Numbers have kJsonDigits significant digits, without zeros at
 /// the end.
-inline constexpr int kJsonDigits = 14;
+inline constexpr int kJsonDigits = 13;
 void print_json(config::Json json);
 
 /// Prints progress of a long task to standard error: a bar on a terminal, else one plain line per step.
