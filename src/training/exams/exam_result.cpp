@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "config/json.h"
 #include "core/files/atomic_file.h"
 #include "core/files/data_dir.h"
@@ -22,6 +24,10 @@ using config::Json;
 constexpr const char* kFormat = "trocar exam result 2";
 constexpr const char* kOldFormat = "trocar exam result 1";  ///< Signed at any time after the attempt; names no person.
 constexpr const char* kAdvice = "name a .result.json file of an exam";
+
+/// What told whether the body was known.
+constexpr const char *kBySessions = "sessions of the station",
+                     *kBySessionsAndDatabase = "sessions of the station, database of results";
 
 /// By the earlier attempts: whether the person, and whether somebody who is not named, has seen the body.
 struct KnownBody {
@@ -93,6 +99,7 @@ std::string body_line(const Json& json) {
   std::string line = fmt::format("body: {} {}, hash {}, ", text_at(json, "patient"),
                                  json.value("patient_seed", Json(nullptr)).dump(), text_at(json, "patient_hash"));
   line += is_true(json, "body_was_known") ? "known from an earlier attempt" : "in no earlier attempt of the person";
+  line += fmt::format(" ({})", text_at(json, "known_by"));
   if (is_true(json, "body_was_seen_unnamed")) line += "; an earlier attempt on it names nobody and may be theirs";
   return line;
 }
@@ -129,6 +136,9 @@ Result<fs::path> sign_exam(const fs::path& session, std::span<const SeenBody> hi
   json["format"] = kFormat;
   json["body_was_known"] = known->to_person;
   json["body_was_seen_unnamed"] = known->to_unnamed;
+  const bool has_database =
+      std::ranges::any_of(history, [](const SeenBody& seen) { return seen.sequence.has_value(); });
+  json["known_by"] = has_database ? kBySessionsAndDatabase : kBySessions;
   json["session"] = session.filename().string();
   json.erase("public_key");
   sign_json(json, key);

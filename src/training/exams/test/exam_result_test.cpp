@@ -59,7 +59,9 @@ TEST_F(SignedExam, SaysWhatWasAskedAndReached) {
       << verification.text;
   ASSERT_EQ(verification.details.size(), 5u);
   EXPECT_EQ(verification.details[0], "person: Ada Lovelace (ada), who gave the PIN");
-  EXPECT_EQ(verification.details[1], "body: biopsy-2 4711, hash 0123456789abcdef, in no earlier attempt of the person");
+  EXPECT_EQ(verification.details[1],
+            "body: biopsy-2 4711, hash 0123456789abcdef, in no earlier attempt of the person (sessions of the "
+            "station)");
   EXPECT_TRUE(verification.details[3].starts_with("proves: ")) << verification.details[3];
   EXPECT_TRUE(verification.details[4].starts_with("does not prove: who held the needle")) << verification.details[4];
 }
@@ -193,7 +195,7 @@ TEST_F(SignedExam, IsNotSignedTwiceNorAnythingThatIsNoExam) {
 TEST_F(SignedExam, AnOlderResultStaysVerifiableAndProvesLess) {
   Json old = json();
   for (const char* added : {"attempt_id", "person", "person_id", "person_checked_by", "patient_seed", "sealed_utc",
-                            "ticks_hash", "body_was_seen_unnamed"})
+                            "ticks_hash", "body_was_seen_unnamed", "known_by"})
     old.erase(added);
   old["format"] = "trocar exam result 1";
   sign_json(old, key);

@@ -42,6 +42,8 @@ TEST(KnownBody, IsDecidedByTheOrderOfRecordingWhateverTheClock) {
   EXPECT_TRUE(is_known({itself, {"1", "ada", "biopsy-2", 4711, later, 6}})) << "the clock was set back before the exam";
   EXPECT_TRUE(is_known({itself, {"1", "ada", "biopsy-2", 4711, earlier, 8}})) << "recorded on another station";
   EXPECT_FALSE(is_known({itself, {"1", "ada", "biopsy-2", 4711, later, 8}}));
+  EXPECT_EQ(result_with({itself})["known_by"], "sessions of the station, database of results");
+  EXPECT_EQ(result_with({})["known_by"], "sessions of the station");
 }
 
 TEST(KnownBody, AttemptsThatNameNobodyAreSaidBeside) {
