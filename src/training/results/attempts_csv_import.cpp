@@ -150,7 +150,7 @@ Result<AttemptRecord> read_row(const Table& table, std::size_t row) {
   Attempt& attempt = record.attempt;
   attempt.id = table.text(row, "attempt");
   const auto state = find_state(table.text(row, "state"));
-  if (!state) return fail("the state is unknown", table.place(row, "state"), "use running, finished or interrupted");
+  if (!state) return fail("the state is unknown", table.place(row, "state"), "use running, finished, interrupted, unscored or never-began");
   const auto started = learning::parse_utc(table.text(row, "started_utc"));
   if (!started) return fail("the time is none", table.place(row, "started_utc"), "write it as 2026-01-02T03:04:05Z");
   TROCAR_TRY(const auto seed, table.number<std::uint64_t>(row, "seed"));
