@@ -171,8 +171,7 @@ void print_result(const RunArguments& arguments, const cases::Case& the_case, co
     fmt::print("risk of bleeding: {}{}{}\n", to_string(outcome.bleeding->risk),
                outcome.bleeding->reasons.empty() ? "" : ", ", fmt::join(outcome.bleeding->reasons, "; "));
   for (const metrics::HarmEvent& event : outcome.harms)
-    fmt::print("{} harm: {}{}
-", to_string(event.grade), metrics::harm_words(event),
+    fmt::print("{} harm: {}{}\n", to_string(event.grade), metrics::harm_words(event),
                event.reason.empty() ? "" : " (" + event.reason + ")");
   for (const scoring::ScorePart& part : outcome.parts) print_part(part);
   if (const auto same = has_same_ticks(arguments.run, result))

@@ -250,8 +250,8 @@ Status ReplayControl::save_report(const std::filesystem::path& file) const {
   const cases::Case& the_case = open_->the_case;
   report::ReportStory story;
   for (const tasks::Action& action : session.actions)
-    story.actions.push_back(
-        {action.time_s, action.depth_mm, attempt::describe_action(the_case.substances, action).text});
+    story.actions.push_back({action.time_s, action.depth_mm,
+                             attempt::describe_action(the_case.substances, action, the_case.patient.get()).text});
   story.steps = report::step_times(session, the_case.task, *the_case.patient, the_case.needle, the_case.plan);
   return write_file_atomically(file, report::html_report(session, the_case.patient.get(), story));
 }

@@ -16,6 +16,14 @@ const Entry* newest_of(const std::vector<Entry>& entries, std::size_t& next, dou
   return next == 0 ? nullptr : &entries[next - 1];
 }
 
+/// Cores taken up to a time.
+std::size_t cores_until(const storage::Session& session, double time_s) {
+  if (!session.outcome) return 0;
+  return static_cast<std::size_t>(std::ranges::count_if(session.outcome->cores, [&](const scoring::BiopsyCore& core) {
+    return !core.pieces.empty() && core.time_s <= time_s;
+  }));
+}
+
 }  // namespace
 
 bool is_praise(const scoring::Hint& hint) noexcept {
@@ -44,8 +52,7 @@ std::vector<StepTime> step_times(const storage::Session& session, const tasks::T
       moment.contact_n = pose->contact_n;
     }
     if (const tasks::XrayUse* use = newest_of(session.xray, xray, sample.time_s)) moment.contrast_ml = use->contrast_ml;
-    moment.shots =
-        static_cast<std::size_t>(std::ranges::count_if(session.shots, [&](std::size_t shot) { return shot <= n; }));
+    moment.cores = cores_until(session, sample.time_s);
     tracker.step(moment);
   }
   const auto states = tracker.states();

@@ -34,7 +34,8 @@ std::optional<AttemptEvent> describe_event(const storage::SessionInfo& info, con
   return told;
 }
 
-AttemptEvent describe_action(const tasks::SubstanceTable& substances, const tasks::Action& action) {
+AttemptEvent describe_action(const tasks::SubstanceTable& substances, const tasks::Action& action,
+                             const anatomy::VirtualPatient* patient) {
   AttemptEvent told{action.time_s, action.depth_mm, telemetry::EventKind::kNone, "action", {}};
   const auto look = [&](bool is_aspirated) {
     const auto found = substances.looks.find(action.result.substance);
@@ -47,6 +48,9 @@ AttemptEvent describe_action(const tasks::SubstanceTable& substances, const task
   switch (action.kind) {
     case tasks::ActionKind::kAnaesthetise:
       told.text = fmt::format("local anaesthetic: {:.0f}\u00a0ml", action.amount);
+      if (patient != nullptr)
+        if (const std::string fault = scoring::why_not_numb(action, *patient); !fault.empty())
+          told.text += "; " + fault;
       break;
     case tasks::ActionKind::kDrawStylet:
       told.text = "stylet drawn: " + look(false);

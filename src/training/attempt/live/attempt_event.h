@@ -14,8 +14,10 @@ namespace trocar::attempt {
 std::optional<AttemptEvent> describe_event(const storage::SessionInfo& info, const telemetry::TickSample& sample,
                                            const telemetry::TickEvent& event);
 
-/// The event of an action: "the stylet was drawn: bile drips from the hub".
-AttemptEvent describe_action(const tasks::SubstanceTable& substances, const tasks::Action& action);
+/// The event of an action: "the stylet was drawn: bile drips from the hub". `patient`: tells why an injection of
+/// anaesthetic numbs nothing; may be null.
+AttemptEvent describe_action(const tasks::SubstanceTable& substances, const tasks::Action& action,
+                             const anatomy::VirtualPatient* patient = nullptr);
 /// The event "pain": "the patient feels pain: spinous process".
 AttemptEvent describe_pain(const scoring::PainEvent& pain);
 /// The event "harm": "critical harm: the needle went 2 mm into the heart", "grazed: …" at the moment `now`.

@@ -143,7 +143,8 @@ void AttemptLoop::note_actions() {
     if (pain_) pain_->note(actions[told_actions_]);
     const bool is_told = actions[told_actions_].kind != tasks::ActionKind::kFire;  // told as a shot
     if (options_.has_view && is_told)
-      events_.push_back(describe_action(case_.the_case->substances, actions[told_actions_]));
+      events_.push_back(
+          describe_action(case_.the_case->substances, actions[told_actions_], case_.the_case->patient.get()));
   }
 }
 

@@ -18,6 +18,7 @@ p { margin: 6px 0; }
 .facts div { display: flex; gap: 7px; }
 .facts dt { color: var(--soft); } .facts dd { margin: 0; font-weight: 600; }
 .note { color: var(--soft); font-size: 13px; }
+.harm { background: #b3261e; color: #fff; border-radius: 8px; padding: 10px 16px; margin: 14px 0; font-weight: 700; }
 .warning { border-left: 4px solid #b45309; background: #fff6e6; padding: 8px 14px; margin: 14px 0; }
 .verdict { display: flex; gap: 20px; align-items: flex-start; border: 2px solid currentColor; border-radius: 10px;
   padding: 16px 20px; margin: 0 0 6px; }

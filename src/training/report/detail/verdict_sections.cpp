@@ -82,6 +82,11 @@ std::string damage_note(const storage::Session& session) {
   return "<p class=\"warning\"><b>This session is damaged.</b> Missing: " + parts + ".</p>";
 }
 
+/// "the needle went 12 mm into the heart (blood fills the pericardium and stops the heart)".
+std::string harm_text(const metrics::HarmEvent& event) {
+  return metrics::harm_words(event) + (event.reason.empty() ? "" : " (" + event.reason + ")");
+}
+
 std::string hint_text(const scoring::Hint& hint) {
   const std::string when =
       hint.at_s ? fmt::format(" <span class=\"when\">at {} s</span>", number_text(*hint.at_s, 1)) : std::string();
@@ -98,11 +103,18 @@ std::string verdict_section(const storage::Session& session) {
   const scoring::Outcome& outcome = *session.outcome;
   const Verdict verdict = verdict_of(outcome);
   std::string out = damage_note(session);
+  for (const metrics::HarmEvent& event : outcome.harms)
+    if (event.grade >= tasks::Harm::kMajor)
+      out += fmt::format("<p class=\"harm\">&#9888; {} harm: {}</p>", capitalised(to_string(event.grade)),
+                         escape(harm_text(event)));
   out += fmt::format("<section class=\"verdict {} together\">{}<div><h2>{}</h2><p>{}</p>{}</div></section>",
                      verdict.style, icon_svg(verdict), verdict.word, verdict_facts(session), reasons_list(outcome));
-  if (!outcome.risks_touched.empty())
+  if (outcome.harms.empty() && !outcome.risks_touched.empty())  // of an older program
     out += fmt::format("<p class=\"warning\">Structures at risk touched: <b>{}</b>.</p>",
                        joined_words(outcome.risks_touched));
+  for (const metrics::HarmEvent& event : outcome.harms)
+    if (event.grade < tasks::Harm::kMajor)
+      out += fmt::format("<p class=\"warning\">{}.</p>", escape(capitalised(harm_text(event))));
   return out;
 }
 
