@@ -57,7 +57,7 @@ TEST_F(SessionMetrics, ExpertsBiopsyIsOnItsPath) {
   EXPECT_LT(value_of(metrics, "path_distance_max"), 3.0);
   EXPECT_EQ(value_of(metrics, "skin_punctures"), 1.0);
   EXPECT_EQ(value_of(metrics, "needle_passes"), 1.0);
-  EXPECT_EQ(value_of(metrics, "target_reached"), 1.0);
+  EXPECT_EQ(value_of(metrics, "end_in_target"), 1.0);
   EXPECT_EQ(value_of(metrics, "risk_structures"), 0.0);
   EXPECT_GT(value_of(metrics, "force_peak"), 0.5);
   EXPECT_EQ(metrics["force_peak"]["unit"], "N");
@@ -92,7 +92,7 @@ TEST_F(SessionMetrics, PosesOfAnotherSystemAgainstExpertPaths) {
   EXPECT_EQ(value_of(metrics, "expert_path"), 2.0);
   EXPECT_NEAR(value_of(metrics, "target_distance"), 3.0, 0.001);
   EXPECT_EQ(metrics["path_in_tissue"]["missing"], "the recording has no depth and no patient was given");
-  EXPECT_EQ(metrics["target_reached"]["missing"], "the recording has no depth and no patient was given");
+  EXPECT_EQ(metrics["end_in_target"]["missing"], "the recording has no depth and no patient was given");
   const Outcome text = trocar("session metrics '" + poses + "' --expert '" + paths + "'");
   EXPECT_NE(text.out.find("Path length of the tip"), std::string::npos) << text.out;
   EXPECT_NE(text.out.find("no patient was given"), std::string::npos) << text.out;

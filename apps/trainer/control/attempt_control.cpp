@@ -138,9 +138,9 @@ void AttemptControl::ask_to_end() {
 
 void AttemptControl::ask_to_close() {
   question_ = Question::kClose;
-  page_.puncture().ask(tr("Close the trainer? This ends the attempt without a score. The recording is kept, and the "
-                          "next start offers to score it."),
-                       tr("Close (Enter)"));
+  page_.puncture().ask(
+      tr("Close the trainer? This ends the attempt: it is scored as it is if the needle was in the body."),
+      tr("Close (Enter)"));
 }
 
 ViewScale AttemptControl::scale_of_3d() const {

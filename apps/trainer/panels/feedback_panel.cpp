@@ -23,8 +23,14 @@ bool has_verdict(const scoring::Outcome& outcome) {
   return outcome.is_passed || !outcome.fails.empty();
 }
 
+/// Harm is not passed, with a score or without.
+bool is_harmful(const scoring::Outcome& outcome) {
+  return !outcome.harms.empty() && outcome.harms.front().grade >= tasks::Harm::kMajor;
+}
+
 QString verdict_of(const scoring::Outcome& outcome) {
-  if (!outcome.is_scored()) return FeedbackPanel::tr("Not scored: %1").arg(to_qt(outcome.not_scored));
+  if (!outcome.is_scored() && !is_harmful(outcome))
+    return FeedbackPanel::tr("Not scored: %1").arg(to_qt(outcome.not_scored));
   if (has_verdict(outcome)) return outcome.is_passed ? FeedbackPanel::tr("Passed") : FeedbackPanel::tr("Not passed");
   if (!outcome.risks_touched.empty()) return FeedbackPanel::tr("A structure at risk was touched");
   return outcome.target_reached ? FeedbackPanel::tr("Target reached") : FeedbackPanel::tr("The target was missed");
@@ -55,6 +61,7 @@ QString reasons_of(const scoring::Outcome& outcome) {
     const QString reason = to_qt(fail);
     reasons << reason.left(1).toUpper() + reason.mid(1);
   }
+  if (!outcome.is_scored()) reasons = {FeedbackPanel::tr("Not scored: %1").arg(to_qt(outcome.not_scored))};
   return reasons.join(QStringLiteral("\n"));
 }
 
@@ -221,13 +228,13 @@ void FeedbackPanel::show_parts(const std::vector<scoring::ScorePart>& parts) {
 
 void FeedbackPanel::show_verdict(const scoring::Outcome& outcome) {
   verdict_->setText(verdict_of(outcome));
-  const bool is_coloured = outcome.is_scored() && has_verdict(outcome);
+  const bool is_judged = outcome.is_scored() || is_harmful(outcome), is_coloured = is_judged && has_verdict(outcome);
   verdict_->setStyleSheet(
       is_coloured ? QStringLiteral("color: %1;").arg((outcome.is_passed ? theme().good : theme().bad).name())
                   : QString());
   alarm_->setText(alarm_of(outcome));
   alarm_->setVisible(!alarm_->text().isEmpty());
-  reasons_->setText(outcome.is_scored() ? reasons_of(outcome) : QString());
+  reasons_->setText(is_judged ? reasons_of(outcome) : QString());
   reasons_->setVisible(!reasons_->text().isEmpty());
 }
 

@@ -92,6 +92,27 @@ Result<tasks::Needle> find_needle(const tasks::Task& task, const std::string& wa
                     fmt::format("choose one of: {}", fmt::join(allowed, ", ")));
 }
 
+/// Tissues that a task names have to exist: a misspelt one would be a rule that never acts.
+Status check_tissues(const Case& made, const fs::path& usual_tissues) {
+  std::vector<std::string> named = made.task.target_tissues;
+  named.insert(named.end(), made.task.passes.begin(), made.task.passes.end());
+  named.insert(named.end(), made.task.pain.tissues.begin(), made.task.pain.tissues.end());
+  for (const tasks::RiskStructure& risk : made.task.risks)
+    if (!risk.tissue.empty()) named.push_back(risk.tissue);
+  for (const tasks::HarmRule& rule : made.task.harms)
+    named.insert(named.end(), rule.tissues.begin(), rule.tissues.end());
+  for (const std::string& tissue : named) {
+    if (made.tissues.find_tissue(tissue)) continue;
+    TROCAR_TRY(const anatomy::TissueTable usual, anatomy::load_tissue_table(usual_tissues, {}));
+    if (usual.find_tissue(tissue)) continue;  // a table of an older patient lacks it
+    std::vector<std::string> known;
+    for (const anatomy::TissueParams& one : usual.tissues) known.push_back(one.name);
+    return fail(fmt::format("there is no tissue \"{}\"", tissue), "task " + made.task.name,
+                fmt::format("write one of: {}", fmt::join(known, ", ")));
+  }
+  return {};
+}
+
 /// The path named by the task, measured like a planned one. Its faults are reported, but do not prevent the attempt.
 Result<tasks::PlannedPath> find_expert_path(const Case& the_case, const anatomy::VirtualPatient& patient) {
   const std::string& name = the_case.task.expert_path;
@@ -182,6 +203,7 @@ Result<Case> load_tables(const CaseOptions& options) {
              is_own ? load_own_tissues(options.patient_folder) : anatomy::load_tissue_table(tissues, options.profile));
   for (const std::string& assignment : options.overrides)
     TROCAR_TRY_STATUS(anatomy::apply_override(made.tissues, assignment));
+  TROCAR_TRY_STATUS(check_tissues(made, data / "tissues.toml"));
   return made;
 }
 

@@ -25,7 +25,7 @@ Result<ExamBody> draw_body(const std::string& patient, std::span<const SeenBody>
     if (seen.patient == patient) known.insert(seen.seed);
   Random random(random_seed);
   ExamBody body;
-  Status fit = fail("all bodies are known", patient, "choose another patient");
+  Result<std::string> fit = fail("all bodies are known", patient, "choose another patient");
   constexpr std::uint64_t kNumbers = kLastDrawn - kFirstDrawn + 1;
   std::uint64_t number = kFirstDrawn + random.next() % kNumbers;
   // One after the other, so that every number is tried at most once.
@@ -33,10 +33,13 @@ Result<ExamBody> draw_body(const std::string& patient, std::span<const SeenBody>
     if (number > kLastDrawn) number = kFirstDrawn;
     if (known.contains(number)) continue;
     fit = check(number);
-    if (fit) {
+    if (fit && !is_known_body(history, {patient, number, *fit})) {
       body.number = number;
       return body;
     }
+    if (fit)
+      fit = fail("the body is known by another name", fmt::format("{}, number {}", patient, number),
+                 "choose another patient");
     body.unfit.push_back(number);
   }
   return tl::unexpected(std::move(fit).error());
@@ -48,22 +51,24 @@ Result<ExamBody> find_body(const ExaminedBody& body, std::span<const SeenBody> h
   if (number <= kPractisedNumber || number > kMostNumber)
     return fail_usage(fmt::format("there is no exam {}", number), "exam number",
                       fmt::format("choose {} to {}", kPractisedNumber + 1, kMostNumber));
-  if (const Status fit = check(number); !fit)
+  const Result<std::string> fit = check(number);
+  if (!fit)
     return fail(fmt::format("exam {} cannot be held: {}", number, fit.error().what), body.patient,
                 "choose another number, or let one be drawn");
-  return ExamBody{number, is_known_body(history, body, person_id)};
+  return ExamBody{number, is_known_body(history, {body.patient, number, *fit}, person_id)};
 }
 
 FitCheck fit_check(const std::string& task, const std::string& patient, const std::filesystem::path& cache_folder,
                    const Progress& progress) {
-  return [=](std::uint64_t number) -> Status {
+  return [=](std::uint64_t number) -> Result<std::string> {
     TROCAR_TRY(anatomy::VirtualPatient body, io::open_patient({patient, number, cache_folder}, progress));
+    std::string hash = body.content_hash;
     cases::CaseOptions options;
     options.task = task;
     options.patient_folder = patient;
     TROCAR_TRY_STATUS(
         cases::prepare_case(std::make_shared<const anatomy::VirtualPatient>(std::move(body)), options, progress));
-    return {};
+    return hash;
   };
 }
 

@@ -25,7 +25,7 @@ struct ExamBody {
 };
 
 /// Status of a body: an error says why it cannot serve the task.
-using FitCheck = std::function<Status(std::uint64_t number)>;
+using FitCheck = std::function<Result<std::string>(std::uint64_t number)>;
 
 /// Draws numbers of four digits by `random_seed` until one is not in the history, of anybody, and passes the check.
 /// Error: none of kMostTries; the reason of the last one.

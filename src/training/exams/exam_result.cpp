@@ -36,7 +36,8 @@ struct KnownBody {
 
 Result<KnownBody> known_body(const Json& seal, std::span<const SeenBody> history) {
   const std::string person = text_at(seal, "person_id");
-  const ExaminedBody body{text_at(seal, "patient"), seal.value("patient_seed", std::uint64_t{0})};
+  const ExaminedBody body{text_at(seal, "patient"), seal.value("patient_seed", std::uint64_t{0}),
+                          text_at(seal, "patient_hash")};
   const auto begin = learning::parse_utc(text_at(seal, "started_utc"));
   if (!begin) return fail("the seal has no time of the begin", {}, "repeat the exam");
   const std::vector<SeenBody> earlier = before(history, {text_at(seal, "attempt_id"), person, *begin});

@@ -17,7 +17,8 @@ Result<SeenBody> load_seen(const fs::path& file) {
   const storage::SessionInfo& info = session.info;
   const auto begin = learning::parse_utc(info.started_utc);
   if (!begin) return fail("the session has no time of its begin", file.string(), "record it again");
-  return SeenBody{info.attempt_id, info.person_id, info.patient_source, info.patient_seed, *begin, {}};
+  return SeenBody{info.attempt_id,  info.person_id, info.patient_source, info.patient_seed, *begin, {},
+                  info.patient_hash};
 }
 
 }  // namespace
@@ -45,15 +46,21 @@ Result<std::vector<SeenBody>> seen_by_person(results::Repository& repository, st
   TROCAR_TRY(const std::vector<results::Attempt> attempts,
              results::list_attempts(repository, {.person_id = std::string(person_id)}));
   for (const results::Attempt& attempt : attempts)
-    seen.push_back({attempt.id, attempt.person_id, attempt.the_case.patient, attempt.the_case.seed, attempt.started,
-                    attempt.sequence});
+    seen.push_back({attempt.id,
+                    attempt.person_id,
+                    attempt.the_case.patient,
+                    attempt.the_case.seed,
+                    attempt.started,
+                    attempt.sequence,
+                    {}});
   return seen;
 }
 
 bool is_known_body(std::span<const SeenBody> attempts, const ExaminedBody& body, std::string_view person_id) {
   return std::ranges::any_of(attempts, [&](const SeenBody& seen) {
-    return seen.patient == body.patient && (seen.seed == body.seed || io::is_path(body.patient)) &&
-           (person_id.empty() || seen.person_id == person_id);
+    const bool is_named = seen.patient == body.patient && (seen.seed == body.seed || io::is_path(body.patient));
+    const bool is_same = !body.hash.empty() && seen.hash == body.hash;
+    return (is_named || is_same) && (person_id.empty() || seen.person_id == person_id);
   });
 }
 

@@ -23,6 +23,7 @@ struct SeenBody {
   std::uint64_t seed = 1;
   std::chrono::sys_seconds begin{};        ///< As recorded, UTC.
   std::optional<std::int64_t> sequence{};  ///< Order of recording in the database of results; empty: a session file.
+  std::string hash{};  ///< Of the body's content; empty: not known (a database of results).
 };
 
 struct SeenBodies {
@@ -39,9 +40,10 @@ Result<std::vector<SeenBody>> seen_by_person(results::Repository& repository, st
 struct ExaminedBody {
   std::string patient;
   std::uint64_t seed = 1;
+  std::string hash{};  ///< Of its content; empty: not known yet.
 };
 /// True if an attempt was on the body, of any task and level, finished or not. A patient folder has one body, whatever
-/// the seed. `person_id`: of this person; empty: of anybody.
+/// the seed; the same content is the same body, whatever its name. `person_id`: of this person; empty: of anybody.
 bool is_known_body(std::span<const SeenBody> attempts, const ExaminedBody& body, std::string_view person_id = {});
 
 /// An exam in the history.

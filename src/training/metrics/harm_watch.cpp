@@ -8,17 +8,22 @@
 
 #include "anatomy/structure_words.h"
 #include "metrics/detail/body.h"
+#include "volume/distance.h"
 #include "volume/sampling.h"
 
 namespace trocar::metrics {
 namespace {
 
 constexpr double kLeastTolerance_mm = 1.0;  // a finer grid does not make a needle's place better known [assumed]
-constexpr double kCrossed = 1.5;            // voxels of a thin structure in the needle's way: it was crossed
-constexpr double kHarmMoved_mm = 0.25;      // a needle that moved less is in the same structures
-constexpr double kFastStep_mm = 1.0;        // the tip's way between two moments is tested, too
-constexpr double kFarthest_mm = 500.0;      // of the shaft
-constexpr double kToBone_mm = 0.5;          // from a tip that presses on bone to its label
+constexpr double kThinShare = 0.5;          // deeper than this share of a thin structure's half thickness [assumed]
+constexpr double kLongestGraze_mm = 8.0;    // along a surface [assumed]
+constexpr double kAbout_mm = 6.0;           // around a point: its surroundings, as far as they count
+constexpr float kBeyond_mm = 100.0F;
+constexpr double kSameStay_s = 0.5;     // a needle that left for less has stayed [assumed]
+constexpr double kHarmMoved_mm = 0.25;  // a needle that moved less is in the same structures
+constexpr double kFastStep_mm = 1.0;    // the tip's way between two moments is tested, too
+constexpr double kFarthest_mm = 500.0;  // of the shaft
+constexpr double kToBone_mm = 0.5;      // from a tip that presses on bone to its label
 constexpr double kNotchStep_mm = 0.25;
 
 bool can_harm(const tasks::LabelHarm& harm) noexcept {
@@ -36,11 +41,9 @@ struct HarmWatch::Piece {
   std::uint8_t id = 0;
   double length_mm = 0.0;
   double first_mm = 0.0;  ///< From the line's begin to its first point.
-  double thin_mm = 0.0;   ///< Where the structure is thinner than two voxels.
   bool is_deep = false;
-  bool is_crossed = false;  ///< Enough of a thin structure is on the way.
 
-  bool is_graze() const noexcept { return !is_deep && !is_crossed; }
+  bool is_graze() const noexcept { return !is_deep && length_mm <= kLongestGraze_mm; }
 };
 
 std::string harm_words(const HarmEvent& event) {
@@ -63,37 +66,62 @@ bool is_graver(const HarmEvent& a, const HarmEvent& b) noexcept {
 HarmWatch::HarmWatch(const tasks::Task& task, const anatomy::VirtualPatient& patient, const tasks::Needle& needle)
     : patient_(&patient), needle_(needle) {
   event_of_.fill(-1);
+  left_s_.fill(-HUGE_VAL);
   for (const anatomy::Label& label : patient.label_table.labels) {
     harms_[label.id] = tasks::find_harm(task, label);
     is_bone_[label.id] = label.tissue == "bone";
   }
-  const Vec3& spacing_mm = patient.labels.geometry.spacing_mm;
-  for (int axis = 0; axis < 3; ++axis) resolution_index_[axis] = std::max(1.0, kLeastTolerance_mm / spacing_mm[axis]);
+  tolerance_mm_ = std::max(kLeastTolerance_mm, patient.labels.geometry.spacing_mm.maxCoeff());
 }
 
-bool HarmWatch::is_deep(std::uint8_t id, const Vec3& p_P) const noexcept {
-  const Vec3 index = patient_->labels.geometry.to_index(p_P);
-  for (int n = 0; n < 27; ++n) {
-    const Vec3 side(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
-    const Vec3 beside_P = patient_->labels.geometry.to_mm(index + side.cwiseProduct(resolution_index_));
-    const auto other = volume::sample_nearest<std::uint8_t>(patient_->labels, beside_P, 0);
-    if (other != id && harms_[other].grade < harms_[id].grade) return false;
-  }
-  return true;
-}
+/// Depths below the surface of what harms at least as much as a label, in a box of voxels about a place.
+struct HarmWatch::Depths {
+  volume::FloatGrid signed_mm;  ///< Negative inside.
+  Vec3 middle_P = Vec3::Zero();
+  double half_thickness_mm = 0.0;  ///< The largest depth within kAbout_mm of the middle.
 
-bool HarmWatch::is_thin(std::uint8_t id, const Vec3& p_P) const noexcept {
-  const volume::GridGeometry& geometry = patient_->labels.geometry;
-  const Vec3 index = geometry.to_index(p_P);
-  const auto is_outside = [&](const Vec3& at_index) {
-    const auto other = volume::sample_nearest<std::uint8_t>(patient_->labels, geometry.to_mm(at_index), 0);
-    return other != id && harms_[other].grade < harms_[id].grade;
-  };
+  /// Of the voxel that holds the point: the labels do not say more.
+  double at_mm(const Vec3& p_P) const noexcept { return -volume::sample_nearest(signed_mm, p_P, kBeyond_mm); }
+};
+
+const HarmWatch::Depths& HarmWatch::depths_about(std::uint8_t id, const Vec3& p_P) {
+  std::shared_ptr<const Depths>& kept = depths_[id];
+  if (kept && (kept->middle_P - p_P).norm() <= kAbout_mm) return *kept;
+  const volume::LabelGrid& labels = patient_->labels;
+  auto made = std::make_shared<Depths>();
+  made->middle_P = p_P;
+  const Vec3 index = labels.geometry.to_index(p_P);
+  volume::GridGeometry geometry = labels.geometry;
+  volume::Index3 low{};
   for (int axis = 0; axis < 3; ++axis) {
-    const Vec3 side = resolution_index_[axis] * Vec3::Unit(axis);
-    if (is_outside(index + side) && is_outside(index - side)) return true;
+    const auto a = static_cast<std::size_t>(axis);
+    const auto reach = static_cast<std::int64_t>(std::ceil(2.0 * kAbout_mm / labels.geometry.spacing_mm[axis]));
+    low[a] = std::max<std::int64_t>(0, static_cast<std::int64_t>(std::lround(index[axis])) - reach);
+    const std::int64_t high = std::min<std::int64_t>(labels.geometry.size[a] - 1, low[a] + 2 * reach);
+    geometry.size[a] = std::max<std::int64_t>(1, high - low[a] + 1);
   }
-  return false;
+  geometry.origin_P = labels.geometry.centre_mm(low);
+  volume::MaskGrid mask(geometry);
+  for (std::size_t n = 0; n < mask.voxels.size(); ++n) {
+    const volume::Index3 ijk = geometry.index_of(n);
+    const std::uint8_t other = labels[{low[0] + ijk[0], low[1] + ijk[1], low[2] + ijk[2]}];
+    mask.voxels[n] = other == id || harms_[other].grade >= harms_[id].grade ? 1 : 0;
+  }
+  made->signed_mm = volume::signed_distance_mm(mask);
+  for (std::size_t n = 0; n < made->signed_mm.voxels.size(); ++n) {
+    float& value_mm = made->signed_mm.voxels[n];
+    value_mm = std::clamp(value_mm, -kBeyond_mm, kBeyond_mm);  // infinite where the box has no surface
+    if ((geometry.centre_mm(geometry.index_of(n)) - p_P).squaredNorm() < kAbout_mm * kAbout_mm)
+      made->half_thickness_mm = std::max(made->half_thickness_mm, -static_cast<double>(value_mm));
+  }
+  kept = std::move(made);
+  return *kept;
+}
+
+/// Deeper below the surface than the labels resolve, or than a share of a thin structure.
+bool HarmWatch::is_deep(std::uint8_t id, const Vec3& p_P) {
+  const Depths& depths = depths_about(id, p_P);
+  return depths.at_mm(p_P) > std::min(tolerance_mm_, kThinShare * depths.half_thickness_mm);
 }
 
 HarmEvent& HarmWatch::event_of(std::uint8_t id, double depth_mm, double time_s, bool is_by_stylet) {
@@ -129,8 +157,9 @@ void HarmWatch::judge(const Piece& piece, double time_s, bool is_by_stylet) {
   }
   if (!piece.is_graze() || is_bone_[piece.id]) event.is_graze = false;
   raise(event, piece.is_graze() ? std::min(harm.grade, tasks::Harm::kMinor) : harm.grade);
-  if (is_by_stylet || piece.is_graze()) return;
-  if (!now_[piece.id]) stays_since_s_[piece.id] = time_s;
+  if (is_by_stylet || event.is_graze) return;
+  if (time_s - left_s_[piece.id] > kSameStay_s) stays_since_s_[piece.id] = time_s;
+  left_s_[piece.id] = time_s;
   now_.set(piece.id);
 }
 
@@ -142,10 +171,6 @@ void HarmWatch::walk(const Vec3& from_P, const Vec3& to_P, double depth_mm, doub
   const Vec3 direction_P = way_P.normalized();
   const int steps = static_cast<int>(std::ceil(length_mm / detail::kTestedEvery_mm));
   const double step_mm = length_mm / steps;
-  const volume::GridGeometry& geometry = patient_->labels.geometry;
-  const double voxel_mm =
-      1.0 /
-      (geometry.to_index(from_P + direction_P) - geometry.to_index(from_P)).cwiseQuotient(resolution_index_).norm();
   for (int n = 0; n < steps; ++n) {
     const double along_mm = (n + 0.5) * step_mm;
     const Vec3 p_P = from_P + along_mm * direction_P;
@@ -154,20 +179,24 @@ void HarmWatch::walk(const Vec3& from_P, const Vec3& to_P, double depth_mm, doub
     auto piece = std::find_if(pieces.begin(), pieces.end(), [&](const Piece& one) { return one.id == id; });
     if (piece == pieces.end()) piece = pieces.insert(pieces.end(), {id, 0.0, along_mm});
     piece->length_mm += step_mm;
-    piece->is_deep = piece->is_deep || is_deep(id, p_P);
-    if (!piece->is_deep && is_thin(id, p_P)) piece->thin_mm += step_mm;
+    piece->is_deep = piece->is_deep || is_known(id) || is_deep(id, p_P);
   }
-  for (Piece& piece : pieces) {
-    piece.is_crossed = piece.thin_mm >= kCrossed * voxel_mm;
+  for (const Piece& piece : pieces) {
     event_of(piece.id, depth_mm + piece.first_mm, time_s, is_by_stylet);
     judge(piece, time_s, is_by_stylet);
   }
+}
+
+/// It was in the structure beyond a graze before: nothing is to be found out any more.
+bool HarmWatch::is_known(std::uint8_t id) const noexcept {
+  return event_of_[id] >= 0 && !events_[static_cast<std::size_t>(event_of_[id])].is_graze;
 }
 
 void HarmWatch::stay(double time_s) {
   for (std::size_t id = 1; id < now_.size(); ++id) {
     if (!now_[id]) continue;
     HarmEvent& event = events_[static_cast<std::size_t>(event_of_[id])];
+    left_s_[id] = time_s;
     event.stayed_s = std::max(event.stayed_s, time_s - stays_since_s_[id]);
     const tasks::LabelHarm& harm = harms_[id];
     if (harm.stay <= event.grade || !(event.stayed_s > harm.stay_s)) continue;
@@ -182,7 +211,10 @@ void HarmWatch::step(const Moment& moment) {
       !std::isfinite(*moment.depth_mm))
     return;
   if (moment.is_paused)
-    for (double& since_s : stays_since_s_) since_s += moment.time_s - last_s_;
+    for (std::size_t id = 0; id < stays_since_s_.size(); ++id) {
+      stays_since_s_[id] += moment.time_s - last_s_;
+      left_s_[id] += moment.time_s - last_s_;
+    }
   last_s_ = moment.time_s;
   const double depth_mm = std::min(*moment.depth_mm - moment.pressed_mm, kFarthest_mm);
   if (!(depth_mm > 0.0)) {
@@ -197,13 +229,10 @@ void HarmWatch::step(const Moment& moment) {
   if (has_moved) {
     const std::optional<Vec3> way_from_P = std::exchange(tip_P_, tip_P);
     skin_P_ = skin_P;
-    const std::bitset<256> before = std::exchange(now_, {});
-    const std::array<double, 256> since_s = stays_since_s_;
+    now_.reset();
     walk(skin_P, tip_P, 0.0, moment.time_s, false);
     if (way_from_P && !moment.is_paused && (tip_P - *way_from_P).norm() > kFastStep_mm)
       walk(*way_from_P, tip_P, depth_mm, moment.time_s, false);
-    for (std::size_t id = 1; id < now_.size(); ++id)
-      if (now_[id] && before[id]) stays_since_s_[id] = since_s[id];
     const Vec3 ahead_P = moment.tip_P + (moment.pressed_mm > 0.0 ? kToBone_mm : 0.0) * moment.axis_P;
     const auto id = volume::sample_nearest<std::uint8_t>(patient_->labels, ahead_P, 0);
     if (is_bone_[id] && can_harm(harms_[id])) {
@@ -244,6 +273,15 @@ void HarmWatch::fire(const Moment& moment) {
   }
 }
 
+void HarmWatch::note(const tasks::Action& action) {
+  if (action.result.substance == tasks::Substance::kNothing) return;
+  const auto id = volume::sample_nearest<std::uint8_t>(patient_->labels, action.tip_P, 0);
+  if (event_of_[id] < 0) return;
+  HarmEvent& event = events_[static_cast<std::size_t>(event_of_[id])];
+  event.is_graze = false;
+  raise(event, harms_[id].grade);
+}
+
 std::vector<HarmEvent> HarmWatch::take_news() {
   std::vector<HarmEvent> news;
   for (std::size_t n = 0; n < events_.size(); ++n) {
@@ -259,15 +297,18 @@ std::vector<HarmEvent> HarmWatch::take_news() {
 std::vector<HarmEvent> find_harms(const tasks::Task& task, const anatomy::VirtualPatient& patient,
                                   const tasks::Needle& needle, std::span<const telemetry::TickSample> samples,
                                   std::span<const std::size_t> shots,
-                                  std::span<const tasks::Interruption> interruptions) {
+                                  std::span<const tasks::Interruption> interruptions,
+                                  std::span<const tasks::Action> actions) {
   HarmWatch watch(task, patient, needle);
   auto pause = interruptions.begin();
   auto shot = shots.begin();
+  auto action = actions.begin();
   for (std::size_t n = 0; n < samples.size(); ++n) {
     Moment moment = moment_of(samples[n]);
     for (; pause != interruptions.end() && pause->to_s <= moment.time_s; ++pause) moment.is_paused = n > 0;
     watch.step(moment);
     for (; shot != shots.end() && *shot <= n; ++shot) watch.fire(moment);
+    for (; action != actions.end() && action->time_s <= moment.time_s; ++action) watch.note(*action);
   }
   std::vector<HarmEvent> harms = watch.events();
   std::erase_if(harms, [](const HarmEvent& event) { return event.grade == tasks::Harm::kNone; });

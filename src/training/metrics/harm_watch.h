@@ -2,6 +2,7 @@
 
 #include <array>
 #include <bitset>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -9,6 +10,7 @@
 
 #include "anatomy/patient.h"
 #include "metrics/moment.h"
+#include "tasks/action.h"
 #include "tasks/active_time.h"
 #include "tasks/needle.h"
 #include "tasks/task.h"
@@ -47,6 +49,8 @@ class HarmWatch {
   void step(const Moment& moment);
   /// The gun was fired at this moment; the stylet goes straight on from the tip and stops at bone.
   void fire(const Moment& moment);
+  /// Something came out of the needle: it was no graze of the structure that the tip is in.
+  void note(const tasks::Action& action);
 
   /// All events so far, the first touch first.
   const std::vector<HarmEvent>& events() const noexcept { return events_; }
@@ -54,10 +58,12 @@ class HarmWatch {
   std::vector<HarmEvent> take_news();
 
  private:
-  struct Piece;  // of one label along a line
+  struct Piece;   // of one label along a line
+  struct Depths;  // distances below the surface of a structure, in a box
   void walk(const Vec3& from_P, const Vec3& to_P, double depth_mm, double time_s, bool is_by_stylet);
-  bool is_deep(std::uint8_t id, const Vec3& p_P) const noexcept;
-  bool is_thin(std::uint8_t id, const Vec3& p_P) const noexcept;
+  const Depths& depths_about(std::uint8_t id, const Vec3& p_P);
+  bool is_deep(std::uint8_t id, const Vec3& p_P);
+  bool is_known(std::uint8_t id) const noexcept;
   HarmEvent& event_of(std::uint8_t id, double depth_mm, double time_s, bool is_by_stylet);
   void judge(const Piece& piece, double time_s, bool is_by_stylet);
   void stay(double time_s);
@@ -67,13 +73,14 @@ class HarmWatch {
   tasks::Needle needle_;
   std::array<tasks::LabelHarm, 256> harms_{};
   std::array<bool, 256> is_bone_{};
-  Vec3 resolution_index_ = Vec3::Ones();  ///< One voxel, at least 1 mm, along each axis of the grid, in voxels.
+  double tolerance_mm_ = 1.0;                              ///< One voxel, at least 1 mm.
+  std::array<std::shared_ptr<const Depths>, 256> depths_;  ///< Of each label, about the place last looked at.
   std::vector<HarmEvent> events_;
   std::vector<std::pair<tasks::Harm, bool>> told_;  ///< Grade and graze of each event at the last take_news().
   std::array<std::int16_t, 256> event_of_{};        ///< Index into events_, -1: none.
-  std::bitset<256> now_;                            ///< Labels that the needle is in, beyond a graze.
-  std::array<double, 256> stays_since_s_{};
-  std::optional<Vec3> tip_P_;  ///< Of the last tested position.
+  std::bitset<256> now_;  ///< Labels that the needle is in, once it was in them beyond a graze.
+  std::array<double, 256> stays_since_s_{}, left_s_{};  ///< Begin and end of the last contact.
+  std::optional<Vec3> tip_P_;                           ///< Of the last tested position.
   Vec3 skin_P_ = Vec3::Zero();
   double last_s_ = 0.0;
 };
@@ -83,6 +90,7 @@ class HarmWatch {
 std::vector<HarmEvent> find_harms(const tasks::Task& task, const anatomy::VirtualPatient& patient,
                                   const tasks::Needle& needle, std::span<const telemetry::TickSample> samples,
                                   std::span<const std::size_t> shots = {},
-                                  std::span<const tasks::Interruption> interruptions = {});
+                                  std::span<const tasks::Interruption> interruptions = {},
+                                  std::span<const tasks::Action> actions = {});
 
 }  // namespace trocar::metrics

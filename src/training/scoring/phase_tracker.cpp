@@ -83,7 +83,7 @@ struct PhaseTracker::Impl {
   bool is_in_image(const Pose& X_PT, const Vec3& p_P, double most_mm) const;
   bool is_path_clear(const PhaseMoment& moment, double margin_mm) const;
   bool is_in_target(const Vec3& p_P) const;
-  bool has_passed(const std::string& name) const;
+  bool has_passed(std::string_view names) const;
   void note_place(const PhaseMoment& moment);
   void update(const PhaseMoment& moment);
   void open(double now_s);
@@ -139,10 +139,16 @@ bool PhaseTracker::Impl::is_in_target(const Vec3& p_P) const {
   return label != nullptr && tasks::is_target(task, *label);
 }
 
-bool PhaseTracker::Impl::has_passed(const std::string& name) const {
-  return std::ranges::any_of(patient.label_table.labels, [&](const anatomy::Label& label) {
-    return passed[label.id] && (label.tissue == name || label.name == name);
-  });
+bool PhaseTracker::Impl::has_passed(std::string_view names) const {
+  while (!names.empty()) {
+    const std::string_view name = names.substr(0, names.find('|'));
+    names.remove_prefix(std::min(names.size(), name.size() + 1));
+    const bool is_passed = std::ranges::any_of(patient.label_table.labels, [&](const anatomy::Label& label) {
+      return passed[label.id] && (label.tissue == name || label.name == name);
+    });
+    if (is_passed) return true;
+  }
+  return false;
 }
 
 bool PhaseTracker::Impl::holds_of_actions(const Condition& condition, std::size_t phase) const {

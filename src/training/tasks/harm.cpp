@@ -42,6 +42,12 @@ Result<HarmRule> read_rule(const config::TomlTable& row) {
     TROCAR_TRY(rule.stay_s, row.number("stay_s", kStay_s));
   }
   TROCAR_TRY(rule.reason, row.string("reason"));
+  if (rule.reason.empty())
+    return fail("a row of harm has no reason", row.where(),
+                "say what happens to the patient: it is told to the trainee");
+  for (const std::optional<Harm>& other : {rule.notch, rule.stay})
+    if (other && *other < rule.grade)
+      return fail("notch or stay is milder than grade", row.where(), "let them be as grave or graver");
   TROCAR_TRY(rule.source, row.string_or("source", ""));
   return rule;
 }

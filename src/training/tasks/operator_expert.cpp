@@ -96,7 +96,9 @@ class Expert final : public Operator {
     hand_.move(speed_mm_s, view.dt_s);
     HandCommand command = hand_.command();
     if (gun) command.action = ActionRequest{*gun};
-    if (!gun) command.action = actions_.next(hand_.tip_mm(), step_ == Step::kAfterFire ? std::optional(in_step_s()) : std::nullopt);
+    if (!gun)
+      command.action =
+          actions_.next(hand_.tip_mm(), step_ == Step::kAfterFire ? std::optional(in_step_s()) : std::nullopt);
     command.is_done = step_ == Step::kDone;
     return command;
   }

@@ -112,7 +112,9 @@ class Novice final : public Operator {
     hand_.move(step(view), view.dt_s);
     HandCommand command = hand_.command();
     if (wanted_) command.action = ActionRequest{*wanted_};
-    if (!wanted_) command.action = actions_.next(hand_.tip_mm(), step_ == Step::kAfterFire ? std::optional(in_step_s()) : std::nullopt);
+    if (!wanted_)
+      command.action =
+          actions_.next(hand_.tip_mm(), step_ == Step::kAfterFire ? std::optional(in_step_s()) : std::nullopt);
     command.is_done = step_ == Step::kDone;
     return command;
   }

@@ -209,6 +209,7 @@ class TaskReader {
     if (is_critical) risk.harm = Harm::kCritical;
     TROCAR_TRY_STATUS(row.number_or("penalty", {0.0, 100.0}, 0.0));
     if (!row.has("harm")) return {};
+    if (is_critical) return fail("harm and critical contradict each other", row.where(), "write harm alone");
     TROCAR_TRY(const std::string name, row.string("harm"));
     risk.harm = find_harm_grade(name);
     if (!risk.harm)

@@ -141,6 +141,7 @@ void AttemptLoop::note_actions() {
   for (; told_actions_ < actions.size(); ++told_actions_) {
     if (phases_) phases_->note(actions[told_actions_]);
     if (pain_) pain_->note(actions[told_actions_]);
+    if (harm_) harm_->note(actions[told_actions_]);
     const bool is_told = actions[told_actions_].kind != tasks::ActionKind::kFire;  // told as a shot
     if (options_.has_view && is_told)
       events_.push_back(

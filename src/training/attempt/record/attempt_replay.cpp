@@ -112,7 +112,7 @@ void AttemptReplay::find_moments() {
   }
   const cases::Case& the_case = open_->the_case;
   harms_ = metrics::find_harms(the_case.task, *the_case.patient, the_case.needle, session_.samples, session_.shots,
-                               session_.interruptions);
+                               session_.interruptions, session_.actions);
   for (const metrics::HarmEvent& harm : harms_)
     moments_.push_back({harm.begin_s, Kind::kRisk, metrics::harm_words(harm)});
   for (const storage::SessionParameters& change : session_.parameters)

@@ -46,7 +46,7 @@ scoring::Outcome score_session(const cases::Case& the_case, const storage::Sessi
        .interruptions = session.interruptions,
        .actions = session.actions,
        .xray = session.xray.empty() ? tasks::XrayUse{} : session.xray.back(),
-       .has_transducer = !session.transducer.empty(),
+       .has_transducer = !session.transducer.empty() && session.info.plane.has_value(),
        .tip_visible_share = visible_percent ? std::optional(*visible_percent / 100.0) : std::nullopt});
   outcome.measures = std::move(values);
   return outcome;

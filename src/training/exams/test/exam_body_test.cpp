@@ -11,7 +11,7 @@ SeenBody attempt_on(const std::string& patient, std::uint64_t seed, const std::s
   return {"attempt", person, patient, seed, {}, {}};
 }
 
-const FitCheck kAlways = [](std::uint64_t) { return Status(); };
+const FitCheck kAlways = [](std::uint64_t number) -> Result<std::string> { return std::to_string(number); };
 
 TEST(ExamBody, IsDrawnByTheSeedAndNeverThePractisedOne) {
   std::set<std::uint64_t> numbers;
@@ -46,7 +46,7 @@ TEST(ExamBody, IsNeverDrawnFromTheHistory) {
 
 TEST(ExamBody, ThatCannotServeTheTaskIsReplaced) {
   const std::uint64_t first = draw_body("biopsy-2", {}, 5, kAlways)->number;
-  const auto body = draw_body("biopsy-2", {}, 5, [&](std::uint64_t number) -> Status {
+  const auto body = draw_body("biopsy-2", {}, 5, [&](std::uint64_t number) -> Result<std::string> {
     if (number == first) return fail("there is no safe path");
     return {};
   });
@@ -57,7 +57,7 @@ TEST(ExamBody, ThatCannotServeTheTaskIsReplaced) {
 
 TEST(ExamBody, DrawingEndsWithTheReasonWhenNoneIsFit) {
   int tries = 0;
-  const auto body = draw_body("biopsy-2", {}, 5, [&](std::uint64_t) -> Status {
+  const auto body = draw_body("biopsy-2", {}, 5, [&](std::uint64_t) -> Result<std::string> {
     ++tries;
     return fail("there is no safe path");
   });
@@ -81,7 +81,7 @@ TEST(ExamBody, OfAGivenNumberMayBeKnown) {
     EXPECT_EQ(body.error().exit_status, 2);
   }
   const auto unfit =
-      find_body({"biopsy-2", 4711}, history, {}, [](std::uint64_t) -> Status { return fail("no liver"); });
+      find_body({"biopsy-2", 4711}, history, {}, [](std::uint64_t) -> Result<std::string> { return fail("no liver"); });
   ASSERT_FALSE(unfit);
   EXPECT_NE(unfit.error().text().find("exam 4711 cannot be held: no liver"), std::string::npos);
 }
@@ -102,7 +102,7 @@ TEST(ExamBody, EachTaskHasAPatientOfEachDifficulty) {
 TEST(ExamBody, IsCheckedOnTheRealBody) {
   // A layered scene serves a biopsy and, without a spine, no lumbar puncture.
   EXPECT_TRUE(fit_check("liver-biopsy", "layers-liver", {})(7));
-  const Status unfit = fit_check("lumbar-puncture", "layers-liver", {})(7);
+  const auto unfit = fit_check("lumbar-puncture", "layers-liver", {})(7);
   EXPECT_FALSE(unfit);
 }
 

@@ -14,8 +14,8 @@ namespace trocar::metrics {
 namespace {
 
 constexpr std::array kRiskValues{
-    MetricDescription{"target_reached",
-                      "Target reached (1) or not (0)",
+    MetricDescription{"end_in_target",
+                      "End position in the target (1) or not (0)",
                       "1",
                       Better::kHigher,
                       {Role::kTask, Role::kPatient, Role::kDepth},

@@ -83,16 +83,17 @@ TEST_F(Harms, TheShaftCounts) {
 }
 
 TEST_F(Harms, AGrazeWithinAVoxelIsAWarning) {
-  for (const double x_mm : {60.2, 60.9}) {  // along its side, 20 mm long
-    const auto events = push(x_mm, 50.0, 70.0);
+  for (const double x_mm : {60.2, 60.9}) {  // along its side, 6 mm long
+    const auto events = push(x_mm, 50.0, 46.0);
     ASSERT_EQ(events.size(), 1U) << x_mm;
     EXPECT_TRUE(events[0].is_graze) << x_mm;
     EXPECT_EQ(events[0].grade, Harm::kMinor);
     EXPECT_EQ(harm_words(events[0]), "the needle grazed the colon");
+    EXPECT_FALSE(push(x_mm, 50.0, 70.0)[0].is_graze) << "20 mm along it are no graze: " << x_mm;
   }
   EXPECT_TRUE(push(70.0, 50.0, 40.8)[0].is_graze) << "the tip alone";
-  for (const double x_mm : {62.2, 65.0}) EXPECT_FALSE(push(x_mm, 50.0, 70.0)[0].is_graze) << x_mm;
-  EXPECT_FALSE(push(70.0, 50.0, 42.2)[0].is_graze);
+  for (const double x_mm : {61.3, 65.0}) EXPECT_FALSE(push(x_mm, 50.0, 46.0)[0].is_graze) << x_mm;
+  EXPECT_FALSE(push(70.0, 50.0, 41.4)[0].is_graze);
   EXPECT_TRUE(push(59.4, 50.0, 70.0).empty()) << "beside it";
 }
 
@@ -101,10 +102,50 @@ TEST_F(Harms, AThinStructureIsCrossedNotGrazed) {
   ASSERT_EQ(vein.size(), 1U);
   EXPECT_FALSE(vein[0].is_graze);
   EXPECT_EQ(vein[0].grade, Harm::kMinor);
-  // A film of one voxel is less than the labels resolve.
-  const auto film = push(10.0, 50.0, 40.0);
+  const auto film = push(10.0, 50.0, 40.0);  // one voxel thick
   ASSERT_EQ(film.size(), 1U);
-  EXPECT_TRUE(film[0].is_graze);
+  EXPECT_FALSE(film[0].is_graze);
+  EXPECT_EQ(film[0].grade, Harm::kMajor);
+}
+
+/// Tubes of 1 to 5 voxels across that the needle crosses in the middle, along the grid and obliquely to it.
+TEST_F(Harms, ATubeCrossedInTheMiddleIsNeverAGraze) {
+  const auto& geometry = patient_.labels.geometry;
+  const anatomy::VirtualPatient clean = patient_;
+  for (const double radius_mm : {0.6, 1.0, 1.5, 2.0, 2.5})
+    for (const Vec3& way_P : {Vec3(1.0, 0.0, 0.0), Vec3(0.0, 0.0, 1.0), Vec3(1.0, 0.0, 1.0), Vec3(1.0, 0.6, 0.3)})
+      for (const double shift_mm : {0.0, 0.3, 0.5, 0.8}) {
+        patient_ = clean;
+        const Vec3 middle_P(40.0 + shift_mm, 40.0 + shift_mm, 50.0 + shift_mm), along_P = way_P.normalized();
+        for (std::size_t n = 0; n < patient_.labels.voxels.size(); ++n) {
+          const Vec3 apart_P = geometry.centre_mm(geometry.index_of(n)) - middle_P;
+          if ((apart_P - apart_P.dot(along_P) * along_P).norm() < radius_mm) patient_.labels.voxels[n] = 7;
+        }
+        const auto events = push(middle_P.x(), middle_P.z(), 60.0);
+        if (events.empty()) continue;  // a tube of less than a voxel has gaps
+        EXPECT_FALSE(events[0].is_graze) << radius_mm << " mm along " << way_P.transpose() << " at " << shift_mm;
+      }
+}
+
+TEST_F(Harms, WhatComesBackIsNoGraze) {
+  HarmWatch watching = watch();
+  watching.step(at({70.0, 40.7, 50.0}, 0.1));
+  ASSERT_TRUE(watching.events()[0].is_graze);
+  watching.note(
+      {0.2, tasks::ActionKind::kAspirate, 0.0, {tasks::Substance::kNothing, 0.0}, Vec3(70.0, 40.7, 50.0), 40.7});
+  EXPECT_TRUE(watching.events()[0].is_graze);
+  watching.note(
+      {0.3, tasks::ActionKind::kAspirate, 0.0, {tasks::Substance::kBowelContent, 0.4}, Vec3(70.0, 40.7, 50.0), 40.7});
+  EXPECT_FALSE(watching.events()[0].is_graze);
+  EXPECT_EQ(watching.events()[0].grade, Harm::kCritical);
+}
+
+TEST_F(Harms, TremorDoesNotEndAStay) {
+  HarmWatch watching = watch();
+  for (double y_mm = 0.0; y_mm < 40.0; y_mm += 0.2) watching.step(at({92.0, y_mm, 50.0}, y_mm / 20.0));
+  for (double time_s = 2.0; time_s < 13.0; time_s += 0.01)  // to and fro by 0.6 mm, so that each moment is looked at
+    watching.step(at({92.0 + 0.3 * std::sin(50.0 * time_s), 29.0 + 1.2 * std::sin(31.0 * time_s), 50.0}, time_s));
+  EXPECT_TRUE(watching.events()[0].has_stayed);
 }
 
 TEST_F(Harms, TwoStructuresOfOneGradeSideBySideAreNoGraze) {

@@ -108,7 +108,7 @@ void add_missing_cores(const HintSubject& subject, double points, std::vector<Ad
                                                       : "withdraw the needle, load the gun and puncture again";
   advice.push_back(
       {points,
-       fmt::format("{} of {} cores {} taken: {}, and fire once more.", taken, wanted, taken == 1 ? "was" : "were", how),
+       fmt::format("Only {} of {} cores {} taken: {}, and fire once more.", taken, wanted, taken == 1 ? "was" : "were", how),
        subject.judged.cores.back().time_s});
 }
 

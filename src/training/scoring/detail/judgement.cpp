@@ -203,7 +203,7 @@ Judgement judge(const AttemptData& attempt, std::size_t& expert) {
     judged.access = judge_access(judged);
   }
   judged.harms = metrics::find_harms(attempt.task, attempt.patient, attempt.needle, attempt.samples, attempt.shots,
-                                     attempt.interruptions);
+                                     attempt.interruptions, attempt.actions);
   judged.pain = find_pain(attempt, judged.measured.has_entered);
   if (judged.measured.has_entered) judged.bleeding = judge_bleeding(judged);
   judged.too_high_s = entered_too_high_s(attempt);

@@ -161,11 +161,14 @@ TEST_F(Phases, AWallThatIsOnlyPressedHidesWhatIsBehindIt) {
 TEST_F(Phases, RememberWhatThisInsertionPassed) {
   add("muscle", {{ConditionKind::kPassed, 0.0, "muscle"}});
   add("lesion", {{ConditionKind::kPassed, 0.0, "liver_lesion"}});
+  add("either", {{ConditionKind::kPassed, 0.0, "csf|muscle|bone"}});
+  EXPECT_EQ(tasks::condition_words(task_.phases[2].done[0]), "advance the tip into the csf");
   PhaseTracker tracked = tracker();
   tracked.step(at(0.0, {50.0, 5.0, 50.0}));
   EXPECT_FALSE(tracked.states()[0].done_s);
   tracked.step(at(0.1, {50.0, 15.0, 50.0}));
   EXPECT_TRUE(tracked.states()[0].done_s);
+  EXPECT_TRUE(tracked.states()[2].done_s) << "one of several";
   tracked.step(at(0.2, {50.0, 45.0, 50.0}));
   EXPECT_FALSE(tracked.states()[1].done_s);
 }

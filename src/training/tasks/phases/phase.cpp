@@ -147,8 +147,9 @@ std::string condition_words(const Condition& condition) {
   switch (row.argument) {
     case Argument::kNumber:
       return fmt::format(fmt::runtime(row.words), condition.number);
-    case Argument::kName:
-      return fmt::format(fmt::runtime(row.words), anatomy::structure_words(condition.name));
+    case Argument::kName:  // of several the first
+      return fmt::format(fmt::runtime(row.words),
+                         anatomy::structure_words(condition.name.substr(0, condition.name.find('|'))));
     case Argument::kSubstance:
       return fmt::format(fmt::runtime(row.words),
                          substance_words(find_substance(condition.name).value_or(Substance::kNothing)));

@@ -23,7 +23,8 @@ enum class ConditionKind : std::uint8_t {
   kInserted,        ///< Number: depth of the tip, mm.
   kTargetDistance,  ///< Number: distance of the tip from where it has to be, mm.
   kTipIn,           ///< Name: tissue class or label that the tip is in, its wall pierced.
-  kPassed,          ///< Name: tissue class or label that the tip has been in since it came into the body.
+  /// Name: tissue class or label that the tip has been in since it came into the body, or one of several ("a|b").
+  kPassed,
   kStyletDrawn,     ///< The stylet is out.
   kReturned,        ///< Name: a substance has come back in this phase.
   kAnaesthetised,   ///< Local anaesthetic was injected at the skin or below it.

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "cases/testing/phantom_case.h"
 
 namespace trocar::attempt {
@@ -90,6 +92,69 @@ TEST_F(PunctureGuide, WarnsOfBoneAheadBeforeAllElse) {
   const std::string said = guide_puncture(the_case, sample);
   EXPECT_NE(said.find("Bone"), std::string::npos) << said;
   EXPECT_NE(said.find("mm ahead"), std::string::npos) << said;
+}
+
+/// The case with another needle and with bone in a ball beyond the planned end.
+cases::Case with_bone_behind(const cases::Case& the_case, double behind_mm) {
+  cases::Case changed = the_case;
+  changed.needle.is_biopsy = false;
+  changed.needle.stylet_diameter_mm = 0.5;
+  changed.task.confirmed_by = tasks::Substance::kBile;
+  auto patient = std::make_shared<anatomy::VirtualPatient>(*the_case.patient);
+  const Segment& path_P = the_case.plan.line_P;
+  const Vec3 middle_P = path_P.b + (behind_mm + 3.0) * path_P.direction();
+  const auto bone = std::ranges::find(patient->label_table.labels, "bone", &anatomy::Label::tissue);
+  EXPECT_NE(bone, patient->label_table.labels.end());
+  for (std::size_t n = 0; n < patient->labels.voxels.size(); ++n) {
+    const Vec3 p_P = patient->labels.geometry.centre_mm(patient->labels.geometry.index_of(n));
+    if ((p_P - middle_P).norm() < 3.0) patient->labels.voxels[n] = bone->id;
+  }
+  changed.patient = std::move(patient);
+  return changed;
+}
+
+TEST_F(PunctureGuide, WarnsOnlyOfWhatIsOnTheWayToTheTarget) {
+  const cases::Case changed = with_bone_behind(the_case, 6.0);
+  const double length_mm = the_case.plan.line_P.length_mm();
+  EXPECT_EQ(guide_puncture(changed, on_path(length_mm - 3.0)).find("Bone"), std::string::npos) << "behind the target";
+  telemetry::TickSample beyond = on_path(length_mm + 2.0);  // on its way there
+  beyond.tip_mm += 8.0 * headward();
+  EXPECT_TRUE(guide_puncture(changed, beyond).find("Bone") != std::string::npos ||
+              guide_puncture(changed, beyond).find("too deep") != std::string::npos)
+      << guide_puncture(changed, beyond);
+  const cases::Case before = with_bone_behind(the_case, -15.0);
+  EXPECT_NE(guide_puncture(before, on_path(length_mm - 20.0)).find("Bone"), std::string::npos);
+}
+
+TEST_F(PunctureGuide, SaysAtTheTargetOnlyInIt) {
+  const double length_mm = the_case.plan.line_P.length_mm();
+  cases::Case changed = with_bone_behind(the_case, 30.0);
+  changed.is_parenchymal = false;
+  changed.task.target_tissues = {"bile_duct"};  // this patient has none there: the tip is beside it
+  EXPECT_EQ(guide_puncture(changed, on_path(length_mm)).find("At the target"), std::string::npos);
+  EXPECT_NE(guide_puncture(changed, on_path(length_mm)).find("Beside the bile duct"), std::string::npos);
+  changed.task.target_tissues = {anatomy::find_label(*changed.patient, on_path(length_mm).tip_mm)->tissue};
+  EXPECT_EQ(guide_puncture(changed, on_path(length_mm)), "At the target: hold still and draw the stylet");
+  telemetry::TickSample pressing = on_path(length_mm);
+  pressing.phase = telemetry::InsertionPhase::kLoading;
+  pressing.layer_displacement_mm = length_mm - 1.0;
+  EXPECT_EQ(guide_puncture(changed, pressing).find("At the target"), std::string::npos) << "the wall did not give way";
+}
+
+TEST_F(PunctureGuide, KnowsWhatAShotBroughtAndWhenAllIsDone) {
+  GunShot air;
+  EXPECT_EQ(guide_puncture(the_case, on_path(-5.0), {0, false, &air}),
+            "No core, the gun was fired outside the body: load the gun for the next one");
+  GunShot bone;
+  bone.depth_mm = 20.0;
+  EXPECT_NE(guide_puncture(the_case, on_path(20.0), {0, false, &bone}).find("No core, the stylet hit bone"),
+            std::string::npos);
+  const std::size_t all = the_case.task.cores;
+  EXPECT_EQ(guide_puncture(the_case, on_path(-5.0), {all, true}), "The needle is out: end the attempt");
+  EXPECT_EQ(guide_puncture(the_case, on_path(20.0), {all, true}), "Everything is done: withdraw the needle");
+  EXPECT_EQ(guide_puncture(the_case, on_path(-5.0), {.are_steps_done = true}), "The needle is out: end the attempt");
+  EXPECT_EQ(guide_puncture(with_bone_behind(the_case, 30.0), on_path(20.0), {.is_confirmed = true}),
+            "The place is proven: hold still for the next step");
 }
 
 TEST_F(PunctureGuide, HasNothingToSayOfWhatIsNoNumber) {
