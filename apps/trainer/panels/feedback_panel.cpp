@@ -61,7 +61,7 @@ QString reasons_of(const scoring::Outcome& outcome) {
     const QString reason = to_qt(fail);
     reasons << reason.left(1).toUpper() + reason.mid(1);
   }
-  if (!outcome.is_scored()) reasons = {FeedbackPanel::tr("Not scored: %1").arg(to_qt(outcome.not_scored))};
+  if (!outcome.is_scored()) reasons = QStringList(FeedbackPanel::tr("Not scored: %1").arg(to_qt(outcome.not_scored)));
   return reasons.join(QStringLiteral("\n"));
 }
 
