@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kLeastTolerance_mm = 1.0;  // a finer grid does not make a needle's place better known [assumed]
 constexpr double kThinShare = 0.5;          // deeper than this share of a thin structure's half thickness [assumed]
-constexpr double kLongestGraze_mm = 8.0;    // along a surface [assumed]
+constexpr double kLongestGraze_mm = 8.0;    // along a surface, and at most a structure's thickness [assumed]
 constexpr double kAbout_mm = 6.0;           // around a point: its surroundings, as far as they count
 constexpr float kBeyond_mm = 100.0F;
 constexpr double kSameStay_s = 0.5;     // a needle that left for less has stayed [assumed]
@@ -40,10 +40,13 @@ std::string length_words(double mm) {
 struct HarmWatch::Piece {
   std::uint8_t id = 0;
   double length_mm = 0.0;
-  double first_mm = 0.0;  ///< From the line's begin to its first point.
+  double first_mm = 0.0;           ///< From the line's begin to its first point.
+  double half_thickness_mm = 0.0;  ///< Of the structure there.
   bool is_deep = false;
 
-  bool is_graze() const noexcept { return !is_deep && length_mm <= kLongestGraze_mm; }
+  bool is_graze() const noexcept {
+    return !is_deep && length_mm <= std::min(kLongestGraze_mm, 2.0 * half_thickness_mm);
+  }
 };
 
 std::string harm_words(const HarmEvent& event) {
@@ -180,6 +183,8 @@ void HarmWatch::walk(const Vec3& from_P, const Vec3& to_P, double depth_mm, doub
     if (piece == pieces.end()) piece = pieces.insert(pieces.end(), {id, 0.0, along_mm});
     piece->length_mm += step_mm;
     piece->is_deep = piece->is_deep || is_known(id) || is_deep(id, p_P);
+    if (!piece->is_deep)
+      piece->half_thickness_mm = std::max(piece->half_thickness_mm, depths_about(id, p_P).half_thickness_mm);
   }
   for (const Piece& piece : pieces) {
     event_of(piece.id, depth_mm + piece.first_mm, time_s, is_by_stylet);
