@@ -14,6 +14,7 @@
 #include "io/patient/patient_source.h"
 #include "learning/history.h"
 #include "signing/sha256.h"
+#include "storage/session_file.h"
 
 namespace trocar::exams {
 namespace fs = std::filesystem;
@@ -54,10 +55,14 @@ std::string fault_of_session(const fs::path& result, const Json& json, std::stri
   if (name.empty() || fs::path(name).filename() != name) return "it names no session";
   const fs::path session = result.parent_path() / name;
   std::error_code error;
-  if (!fs::exists(session, error)) {
+  if (!fs::exists(fs::symlink_status(session, error))) {
     note = fmt::format("; the session {} is not beside it and was not checked", name);
     return {};
   }
+  const std::vector<fs::path> files = storage::session_files(session);
+  for (std::size_t n = 1; n < files.size(); ++n)  // a reader would see what stands in it
+    if (fs::exists(fs::symlink_status(files[n], error)))
+      return fmt::format("a journal lies beside the session, {}", files[n].filename().string());
   const auto digest = signing::sha256_of_session(session);
   if (!digest) return digest.error().text();
   return *digest == text_at(json, "session_sha256") ? std::string()

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <type_traits>
 
 #include "core/files/atomic_file.h"
 #include "core/parse_number.h"
 #include "learning/history.h"
+#include "metrics/metric.h"
 #include "results/attempts_csv.h"
 #include "results/csv_text.h"
 #include "results/detail/attempt_writer.h"
@@ -20,10 +22,39 @@ constexpr std::size_t kMostBytes = std::size_t{1} << 30;
 constexpr const char* kUseExport = "use a file of trocar results export";
 constexpr double kRoundOff = 1e-6;  ///< Of points.
 
+constexpr double kLongest_s = 86'400.0;  ///< Of an attempt: a day.
+
 /// The columns that a file may have beside those of parts and metrics.
 bool is_column(std::string_view name) {
-  return std::ranges::find(kAttemptColumns, name) != kAttemptColumns.end() || name.starts_with(kPartColumn) ||
-         name.starts_with(kMetricColumn);
+  const auto is_named = [&](std::string_view kind) {
+    return name.starts_with(kind) && name.size() > kind.size() && name[kind.size()] != ' ' && name[kind.size()] != '(';
+  };
+  return std::ranges::find(kAttemptColumns, name) != kAttemptColumns.end() || is_named(kPartColumn) ||
+         is_named(kMetricColumn);
+}
+
+/// What a metric of the catalogue cannot be; empty: it can. Others are not known here.
+std::string impossible(const std::string& metric, double value) {
+  for (const metrics::MetricDescription& known : metrics::metric_catalogue()) {
+    if (metric != known.name) continue;
+    const bool may_be_negative = metric == "spectral_arc_length" || metric == "log_dimensionless_jerk";
+    if (value < 0.0 && !may_be_negative) return "negative";
+    const bool is_yes_or_no = metric == "first_pass_success" || metric == "end_in_target";
+    if (is_yes_or_no && value != 0.0 && value != 1.0) return "neither 0 nor 1";
+    if (std::string_view(known.unit) == "%" && value > 100.0) return "above 100 %";
+  }
+  return {};
+}
+
+bool has_control_characters(std::string_view text) {
+  return std::ranges::any_of(text, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; });
+}
+
+/// "path_length (mm)"
+Measure measure_of(const std::string& column, double value) {
+  const std::size_t unit = column.find(" (");
+  if (unit == std::string::npos || !column.ends_with(')')) return {column, {}, value};
+  return {column.substr(0, unit), column.substr(unit + 2, column.size() - unit - 3), value};
 }
 
 /// The rows of a file with the places of its columns.
@@ -69,12 +100,16 @@ class Table {
  private:
   Status read_header() {
     const std::vector<std::string>& names = rows_.front().fields;
+    std::set<std::string> metrics;
     for (std::size_t n = 0; n < names.size(); ++n) {
       const std::string name = plain_text(names[n]);
       if (!is_column(name))
         return fail(fmt::format("there is no column \"{}\"", name), place(0, ""), "correct its name, or remove it");
       if (!columns_.emplace(name, n).second)
         return fail(fmt::format("the column \"{}\" occurs twice", name), place(0, ""), "remove one");
+      if (name.starts_with(kMetricColumn) && !metrics.insert(measure_of(name, 0.0).name).second)
+        return fail(fmt::format("the metric of the column \"{}\" occurs twice", name), place(0, ""),
+                    "leave the unit in which it is measured");
     }
     for (const char* column : {"attempt", "person", "group", "task", "started_utc", "state"})
       if (!columns_.contains(column))
@@ -99,13 +134,6 @@ bool is_id(std::string_view text) {
   return !text.empty() && text.size() <= 64 && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
 }
 
-/// "path_length (mm)"
-Measure measure_of(const std::string& column, double value) {
-  const std::size_t unit = column.find(" (");
-  if (unit == std::string::npos || !column.ends_with(')')) return {column, {}, value};
-  return {column.substr(0, unit), column.substr(unit + 2, column.size() - unit - 3), value};
-}
-
 Status read_values(const Table& table, std::size_t row, AttemptRecord& record) {
   for (const auto& [name, place] : table.columns()) {
     if (!name.starts_with(kPartColumn) && !name.starts_with(kMetricColumn)) continue;
@@ -114,10 +142,12 @@ Status read_values(const Table& table, std::size_t row, AttemptRecord& record) {
     if (!value) continue;
     if (name.starts_with(kMetricColumn)) {
       record.measures.push_back(measure_of(name.substr(kMetricColumn.size()), *value));
+      if (const std::string fault = impossible(record.measures.back().name, *value); !fault.empty())
+        return fail(fmt::format("{:g} is {}", *value, fault), table.place(row, name), "correct it, or leave it empty");
     } else {
       const std::string most_name = name + std::string(kOfMost);
       TROCAR_TRY(const auto most, table.number<double>(row, most_name));
-      if (!most || !(*most > 0.0) || *value > *most + kRoundOff)
+      if (!most || !(*most > 0.0) || *value > *most + kRoundOff || *value < 0.0)
         return fail(fmt::format("the points are not of {}", most ? fmt::format("{:g}", *most) : "a number"),
                     table.place(row, name), fmt::format("correct it, or the column \"{}\"", most_name));
       record.parts.push_back({name.substr(kPartColumn.size()), *value, *most});
@@ -139,7 +169,13 @@ Status check_row(const Table& table, std::size_t row, const Attempt& attempt) {
     return refuse("the score is not 0 to 100", "score", "correct it");
   if (attempt.the_case.difficulty && (*attempt.the_case.difficulty < 1 || *attempt.the_case.difficulty > 5))
     return refuse("the difficulty is not 1 to 5", "case", "correct it, or leave it empty");
-  if (!(attempt.duration_s >= 0.0)) return refuse("the duration is negative", "duration_s", "correct it");
+  if (!(attempt.duration_s >= 0.0 && attempt.duration_s <= kLongest_s))
+    return refuse("the duration is not 0 s to a day", "duration_s", "correct it");
+  if (attempt.score && attempt.state != State::kFinished)
+    return refuse("only a finished attempt has a score", "score", "leave it empty, or correct the state");
+  for (const char* column : {"task", "patient", "hash", "level", "operator", "station", "version", "person", "course"})
+    if (has_control_characters(table.text(row, column)))
+      return refuse("the text has line breaks or other control characters", column, "remove them");
   if (attempt.is_passed && (!attempt.score || attempt.state != State::kFinished))
     return refuse("an attempt without a score has not passed", "passed", "write 0, or its score");
   return {};
@@ -150,7 +186,9 @@ Result<AttemptRecord> read_row(const Table& table, std::size_t row) {
   Attempt& attempt = record.attempt;
   attempt.id = table.text(row, "attempt");
   const auto state = find_state(table.text(row, "state"));
-  if (!state) return fail("the state is unknown", table.place(row, "state"), "use running, finished, interrupted, unscored or never-began");
+  if (!state)
+    return fail("the state is unknown", table.place(row, "state"),
+                "use running, finished, interrupted, unscored or never-began");
   const auto started = learning::parse_utc(table.text(row, "started_utc"));
   if (!started) return fail("the time is none", table.place(row, "started_utc"), "write it as 2026-01-02T03:04:05Z");
   TROCAR_TRY(const auto seed, table.number<std::uint64_t>(row, "seed"));
@@ -199,13 +237,17 @@ Result<ImportedRows> import_attempts(Repository& repository, const std::filesyst
   return database.transaction("the attempts cannot be written", [&](soci::session& session) -> Result<ImportedRows> {
     ImportedRows imported;
     AttemptWriter writer(session, database);
-    std::map<std::string, std::string> people;
+    std::map<std::string, std::string> people, groups;
     std::map<std::string, std::size_t> lines;  // rows of the attempts
     for (std::size_t row = 1; row < table.rows(); ++row) {
       TROCAR_TRY(AttemptRecord record, read_row(table, row));
       if (const auto [first, is_new] = lines.emplace(record.attempt.id, row); !is_new)
         return fail("the attempt occurs twice", table.place(row, "attempt"),
                     fmt::format("remove this row, or that of {}", table.place(first->second, "")));
+      const std::string who = table.text(row, "group") + table.text(row, "simulated");
+      if (const auto [told, is_first] = groups.emplace(table.text(row, "person"), who);
+          !is_first && told->second != who)
+        return fail("the person has another group in an earlier row", table.place(row, "group"), "correct one of them");
       std::string& person = people[table.text(row, "person")];
       if (person.empty()) {
         TROCAR_TRY(person, person_of(session, table, row, now, imported));

@@ -44,6 +44,18 @@ TEST(ExamBody, IsNeverDrawnFromTheHistory) {
   EXPECT_NE(none.error().text().find("all bodies are known"), std::string::npos);
 }
 
+TEST(ExamBody, IsKnownByItsContentUnderAnotherName) {
+  SeenBody elsewhere = attempt_on("/cases/copy", 1);
+  elsewhere.hash = "4711";  // kAlways takes the number for the content
+  EXPECT_TRUE(find_body({"biopsy-2", 4711}, {&elsewhere, 1}, {}, kAlways)->is_known);
+  EXPECT_FALSE(find_body({"biopsy-2", 4712}, {&elsewhere, 1}, {}, kAlways)->is_known);
+  std::vector<SeenBody> all;
+  const std::uint64_t first = draw_body("biopsy-2", {}, 5, kAlways)->number;
+  elsewhere.hash = std::to_string(first);
+  all.push_back(elsewhere);
+  EXPECT_NE(draw_body("biopsy-2", all, 5, kAlways)->number, first);
+}
+
 TEST(ExamBody, ThatCannotServeTheTaskIsReplaced) {
   const std::uint64_t first = draw_body("biopsy-2", {}, 5, kAlways)->number;
   const auto body = draw_body("biopsy-2", {}, 5, [&](std::uint64_t number) -> Result<std::string> {

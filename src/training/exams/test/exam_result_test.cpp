@@ -147,6 +147,19 @@ TEST_F(SignedExam, AReplacedSessionIsFoundAndAMissingOneNoted) {
   EXPECT_NE(replaced->text.find("session a.trocar"), std::string::npos) << replaced->text;
 }
 
+TEST_F(SignedExam, AJournalBesideTheSessionIsFound) {
+  for (const std::filesystem::path& beside : storage::session_files(session)) {
+    if (beside == session) continue;
+    ASSERT_TRUE(write_file_atomically(beside, "what a reader would see instead"));
+    const auto found = verify_exam(result, key.public_key());
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->verdict, Verdict::kChanged) << beside;
+    EXPECT_NE(found->text.find("a journal lies beside"), std::string::npos) << found->text;
+    std::filesystem::remove(beside);
+  }
+  EXPECT_TRUE(verify_exam(result, key.public_key())->is_valid());
+}
+
 TEST_F(SignedExam, OtherTablesAndVersionsAreNamed) {
   {
     const testing::OwnDataFolder data;

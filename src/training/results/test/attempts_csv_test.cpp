@@ -221,7 +221,14 @@ TEST_P(AttemptsCsv, EveryKindOfFaultIsNamedWithItsLineAndColumn) {
            {"score", "101", "the score is not 0 to 100"},
            {"score", " 50", "\" 50\" is no number"},
            {"passed", "true", "\"true\" is neither 0 nor 1"},
-           {"duration_s", "-1", "the duration is negative"},
+           {"duration_s", "-1", "the duration is not 0 s to a day"},
+           {"duration_s", "1e308", "the duration is not 0 s to a day"},
+           {"started_utc", "2026-01-01T23:59:60Z", "the time is none"},
+           {"state", "unscored", "only a finished attempt has a score"},
+           {"task", "a\nb", "control characters"},
+           {"station", "\x1b[31mred", "control characters"},
+           {"part target", "-1", "the points are not of 30"},
+           {"metric path_length (mm)", "-5", "-5 is negative"},
            {"part target", "1e999", "\"1e999\" is no number"},
            {"part target", "99", "the points are not of 30"},
            {"part target of", "", "the points are not of a number"},
@@ -232,7 +239,7 @@ TEST_P(AttemptsCsv, EveryKindOfFaultIsNamedWithItsLineAndColumn) {
     std::vector<std::string> row = rows->back().fields;
     row[static_cast<std::size_t>(column - names.begin())] = c.value;
     for (std::string& field : row)
-      if (field.find(',') != std::string::npos) field = "\"" + field + "\"";
+      if (field.find_first_of(",\n") != std::string::npos) field = "\"" + field + "\"";
     const std::string error = import(csv_row(names) + csv_row(row));
     EXPECT_NE(error.find(c.error), std::string::npos) << c.column << "=" << c.value << ": " << error;
     EXPECT_NE(error.find("changed.csv, line 2, column "), std::string::npos) << error;
@@ -245,6 +252,11 @@ TEST_P(AttemptsCsv, EveryKindOfFaultIsNamedWithItsLineAndColumn) {
   std::string without_limit = *good;
   without_limit.replace(without_limit.find("part target of"), 14, "part other");
   EXPECT_NE(import(without_limit).find("\"part other of\" is missing"), std::string::npos) << import(without_limit);
+  std::string nameless = *good, twice = *good;
+  nameless.replace(nameless.find("metric path_length"), 18, "metric ");
+  EXPECT_NE(import(nameless).find("there is no column"), std::string::npos) << import(nameless);
+  twice.replace(twice.find("metric duration"), 15, "metric path_length");
+  EXPECT_NE(import(twice).find("occurs twice"), std::string::npos) << import(twice);
   EXPECT_EQ(import(*good), "imported");
 }
 
