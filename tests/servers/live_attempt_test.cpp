@@ -72,7 +72,8 @@ TEST_F(LiveAttemptTest, GoesOnWhereItWasWhenTheNeedlesServerIsKilled) {
     ASSERT_TRUE(wait_phase(attempt::AttemptPhase::kServerLost)) << where();
     EXPECT_FALSE(attempt->view().banner.empty());
     ASSERT_TRUE(wait_phase(attempt::AttemptPhase::kInBody)) << where();
-    EXPECT_TRUE(attempt->view().banner.empty()) << attempt->view().banner;
+    // The probe's server may have been too late on a busy machine, and come back.
+    EXPECT_TRUE(wait_for([&] { return attempt->view().banner.empty(); })) << attempt->view().banner;
     EXPECT_NE(attempt->view().servers[0].pid, pid);
     ASSERT_EQ(attempt->view().servers[0].restarts, ++kills) << "it did not come back at once";
   }
