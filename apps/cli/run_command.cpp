@@ -321,8 +321,9 @@ void add_run_command(Command& program, Action& action) {
                      "Patient folder, or name of an embedded patient; default of a replay: the session's patient");
   command
       .add_option("--operator", a->run.operator_name,
-                  "expert, novice, novice:SHARE with a share of the novice's errors from 0 (none) to 1, "
-                  "constant-velocity:MM_PER_S or replay:SESSION")
+                  "expert, novice (each seed another one), novice:SHARE with the same share of all of the novice's "
+                  "errors, from 0 "
+                  "(none) to 1, constant-velocity:MM_PER_S or replay:SESSION")
       .required();
   command.add_option("--out", a->run.session, "Session file to write").required();
   command.add_option("--force-model", a->run.force_model,

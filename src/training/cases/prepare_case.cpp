@@ -5,7 +5,9 @@
 
 #include <algorithm>
 
+#include "anatomy/known_structures.h"
 #include "anatomy/phantom/phantom.h"
+#include "anatomy/structure_pattern.h"
 #include "core/files/atomic_file.h"
 #include "core/files/data_dir.h"
 #include "core/log.h"
@@ -113,6 +115,29 @@ Status check_tissues(const Case& made, const fs::path& usual_tissues) {
   return {};
 }
 
+/// A structure that neither the patient nor structures.toml has may be of other patients, or misspelt: then its rule
+/// never acts.
+Status warn_of_unknown_names(const tasks::Task& task, const anatomy::VirtualPatient& patient) {
+  TROCAR_TRY(const fs::path data, checked_data_dir());
+  TROCAR_TRY(const anatomy::KnownStructures known, anatomy::KnownStructures::load(data));
+  std::vector<std::string> named;
+  for (const tasks::RiskStructure& risk : task.risks)
+    if (!risk.label.empty()) named.push_back(risk.label);
+  for (const tasks::HarmRule& rule : task.harms)
+    for (const std::string& name : rule.name_texts)
+      if (!name.ends_with('*') && !name.ends_with('#')) named.push_back(name);
+  for (const std::string& name : named) {
+    const auto is_it = [&](const anatomy::Label& label) {
+      return anatomy::plain_name(label.name) == anatomy::plain_name(name);
+    };
+    if (known.find(name) != nullptr || std::ranges::any_of(patient.label_table.labels, is_it)) continue;
+    const std::vector<std::string> similar = known.similar_names(name, 1);
+    log_warning("task {}: no structure is known as {}: its risk or harm has no effect in this patient{}", task.name,
+                name, similar.empty() ? "" : fmt::format("; perhaps {} is meant", similar.front()));
+  }
+  return {};
+}
+
 /// The path named by the task, measured like a planned one. Its faults are reported, but do not prevent the attempt.
 Result<tasks::PlannedPath> find_expert_path(const Case& the_case, const anatomy::VirtualPatient& patient) {
   const std::string& name = the_case.task.expert_path;
@@ -216,6 +241,7 @@ Result<Case> prepare_case(std::shared_ptr<const anatomy::VirtualPatient> patient
     return fail(
         fmt::format("the patient does not support the task {}: {}", made.task.name, fmt::join(readiness.reasons, "; ")),
         patient->name, "see trocar patient check");
+  TROCAR_TRY_STATUS(warn_of_unknown_names(made.task, *patient));
   made.is_parenchymal = readiness.is_parenchymal;
   const anatomy::NeedlePath* brought = path_for(made, *patient);
   if (made.task.expert_path.empty() && brought != nullptr) made.task.expert_path = brought->name;

@@ -16,12 +16,18 @@ const Entry* newest_of(const std::vector<Entry>& entries, std::size_t& next, dou
   return next == 0 ? nullptr : &entries[next - 1];
 }
 
-/// Cores taken up to a time.
-std::size_t cores_until(const storage::Session& session, double time_s) {
-  if (!session.outcome) return 0;
-  return static_cast<std::size_t>(std::ranges::count_if(session.outcome->cores, [&](const scoring::BiopsyCore& core) {
-    return !core.pieces.empty() && core.time_s <= time_s;
-  }));
+/// Times of the shots that took a core, in order. A session of an older program has no times of its cores: those of its
+/// shots count.
+std::vector<double> core_times_s(const storage::Session& session) {
+  std::vector<double> times_s;
+  if (!session.outcome) return times_s;
+  const std::vector<scoring::BiopsyCore>& cores = session.outcome->cores;
+  for (std::size_t n = 0; n < cores.size(); ++n) {
+    const bool has_shot = session.shots.size() == cores.size() && session.shots[n] < session.samples.size();
+    if (cores[n].pieces.empty()) continue;
+    times_s.push_back(cores[n].time_s > 0.0 || !has_shot ? cores[n].time_s : session.samples[session.shots[n]].time_s);
+  }
+  return times_s;
 }
 
 }  // namespace
@@ -37,6 +43,7 @@ std::vector<StepTime> step_times(const storage::Session& session, const tasks::T
   if (task.phases.empty()) return steps;
   scoring::PhaseTracker tracker(task, patient, needle, plan, session.info.plane.value_or(metrics::ImagePlane{}));
   std::size_t action = 0, transducer = 0, xray = 0;
+  const std::vector<double> cores_s = core_times_s(session);
   double due_s = -1.0;
   for (std::size_t n = 0; n < session.samples.size(); ++n) {
     const telemetry::TickSample& sample = session.samples[n];
@@ -52,7 +59,7 @@ std::vector<StepTime> step_times(const storage::Session& session, const tasks::T
       moment.contact_n = pose->contact_n;
     }
     if (const tasks::XrayUse* use = newest_of(session.xray, xray, sample.time_s)) moment.contrast_ml = use->contrast_ml;
-    moment.cores = cores_until(session, sample.time_s);
+    moment.cores = static_cast<std::size_t>(std::ranges::upper_bound(cores_s, sample.time_s) - cores_s.begin());
     tracker.step(moment);
   }
   const auto states = tracker.states();

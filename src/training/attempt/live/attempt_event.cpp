@@ -47,7 +47,7 @@ AttemptEvent describe_action(const tasks::SubstanceTable& substances, const task
   };
   switch (action.kind) {
     case tasks::ActionKind::kAnaesthetise:
-      told.text = fmt::format("local anaesthetic: {:.0f}\u00a0ml", action.amount);
+      told.text = fmt::format("anaesthetic: {:.0f}\u00a0ml", action.amount);
       if (patient != nullptr)
         if (const std::string fault = scoring::why_not_numb(action, *patient); !fault.empty())
           told.text += "; " + fault;

@@ -30,26 +30,34 @@ std::optional<JournalEntry> from_json(const config::Json& json) {
   const auto text = [&](const char* key) -> std::optional<std::string> {
     return json.contains(key) && json[key].is_string() ? std::optional(json[key].get<std::string>()) : std::nullopt;
   };
-  const auto number = [&](const char* key) -> std::uint64_t {
-    return json.contains(key) && json[key].is_number_unsigned() ? json[key].get<std::uint64_t>() : 1;
+  const auto number = [&](const char* key) -> std::optional<std::uint64_t> {
+    return json.contains(key) && json[key].is_number_unsigned() ? std::optional(json[key].get<std::uint64_t>())
+                                                                : std::nullopt;
   };
   if (!json.is_object() || !json.contains("version") || json["version"] != kVersion) return std::nullopt;
-  const auto session = text("session"), patient = text("patient"), task = text("task");
-  if (!session || !patient || !task) return std::nullopt;
+  const auto session = text("session"), patient = text("patient"), force_model = text("force_model"),
+             task = text("task"), needle = text("needle"), tissue_file = text("tissue_file"), profile = text("profile");
+  const auto patient_seed = number("patient_seed"), seed = number("seed");
+  if (!session || !patient || !force_model || !task || !needle || !tissue_file || !profile || !patient_seed || !seed ||
+      !json.contains("overrides") || !json["overrides"].is_array())
+    return std::nullopt;
+  std::vector<std::string> overrides;
+  for (const config::Json& one : json["overrides"]) {
+    if (!one.is_string()) return std::nullopt;
+    overrides.push_back(one.get<std::string>());
+  }
   JournalEntry state;
   state.session = *session;
   state.choice.patient_source = *patient;
-  state.choice.patient_seed = number("patient_seed");
-  state.choice.force_model = text("force_model").value_or("");
+  state.choice.patient_seed = *patient_seed;
+  state.choice.force_model = *force_model;
   cases::CaseOptions& options = state.choice.options;
   options.task = *task;
-  options.needle = text("needle").value_or("");
-  options.tissue_file = text("tissue_file").value_or("");
-  options.profile = text("profile").value_or("");
-  options.seed = number("seed");
-  if (json.contains("overrides") && json["overrides"].is_array())
-    for (const config::Json& one : json["overrides"])
-      if (one.is_string()) options.overrides.push_back(one.get<std::string>());
+  options.needle = *needle;
+  options.tissue_file = *tissue_file;
+  options.profile = *profile;
+  options.overrides = std::move(overrides);
+  options.seed = *seed;
   return state;
 }
 

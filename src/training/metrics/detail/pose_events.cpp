@@ -12,6 +12,8 @@
 namespace trocar::metrics::detail {
 namespace {
 
+constexpr double kLongest_s = 86400.0;
+
 bool is_limit(std::string_view name) {
   if (name == "unknown") return true;  // of a newer program
   for (int n = 0; n <= static_cast<int>(telemetry::kLastLimitReason); ++n)
@@ -32,7 +34,8 @@ const char* fault_of(std::string_view kind, std::string_view value) {
   if (kind == "puncture" || kind == "enter" || kind == "pain") return value.empty() ? "the name is missing" : nullptr;
   if (kind == "interruption") {
     const auto length_s = parse_number<double>(value);
-    return length_s && *length_s >= 0.0 ? nullptr : "the length is no number of seconds";
+    return length_s && *length_s >= 0.0 && *length_s <= kLongest_s ? nullptr
+                                                                   : "the length is no number of seconds up to a day";
   }
   if (kind == "limit") return is_limit(value) ? nullptr : "there is no such limit";
   if (kind == "set") {

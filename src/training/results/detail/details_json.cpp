@@ -91,7 +91,8 @@ Status read_verdict(std::string_view text, AttemptRecord& record) {
   record.not_scored = reason->get<std::string>();
   for (const config::Json& hint : *hints) {
     const auto hint_text = hint.find("text"), at = hint.find("at_s");
-    if (hint_text == hint.end() || !hint_text->is_string()) continue;
+    if (hint_text == hint.end() || !hint_text->is_string())
+      return fail("a hint of the attempt is damaged", record.attempt.id, kImportAgain);
     const bool has_time = at != hint.end() && at->is_number();
     record.hints.push_back({hint_text->get<std::string>(), has_time ? std::optional(at->get<double>()) : std::nullopt});
   }

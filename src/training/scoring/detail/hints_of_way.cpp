@@ -12,6 +12,7 @@ namespace trocar::scoring {
 namespace {
 
 constexpr double kOtherWay_deg = 60.0;    // from here on a tilt is no correction
+constexpr double kTouching_mm = 0.5;      // a distance that would be written as 0
 constexpr double kRepeatedTravel = 0.25;  // share of the excess travel for a hint about retractions
 
 /// What keeps a needle clear of a structure, by what guides it.
@@ -94,6 +95,15 @@ void add_angle_advice(const HintSubject& subject, std::vector<Advice>& advice) {
        measured.entry_s});
 }
 
+std::string margin_text(const AccessJudgement& access) {
+  const double room_mm = access.margin_mm - access.missing_margin_mm;
+  const bool is_touched = room_mm < kTouching_mm;
+  return fmt::format(
+      "The way {} the {}{}; it needs {:.0f} mm of room. Choose another entry or angle before you insert the needle.",
+      is_touched ? "touched" : "passed", anatomy::structure_words(access.margin_label),
+      is_touched ? "" : fmt::format(" at {:.0f} mm", room_mm), access.margin_mm);
+}
+
 /// Advice about the access: the worst fault of it.
 void add_access_advice(const HintSubject& subject, std::vector<Advice>& advice) {
   const double points = subject.lost("access");
@@ -103,11 +113,7 @@ void add_access_advice(const HintSubject& subject, std::vector<Advice>& advice) 
   const bool is_told =
       std::ranges::any_of(subject.judged.harms, [&](const auto& event) { return event.label == access.margin_label; });
   if (access.missing_margin_mm > kNameable && !is_told)
-    text = fmt::format(
-        "The way passed the {} at {:.0f} mm; it needs {:.0f} mm. Choose another entry or angle before you "
-        "insert the needle.",
-        anatomy::structure_words(access.margin_label), std::max(0.0, access.margin_mm - access.missing_margin_mm),
-        access.margin_mm);
+    text = margin_text(access);
   else if (access.outside_zone_mm > kNameable)
     text = fmt::format("The insertion point lay {:.0f} mm outside of the entry zone: move the needle {}.",
                        access.outside_zone_mm, anatomy::direction_words(access.to_zone_P, " mm"));

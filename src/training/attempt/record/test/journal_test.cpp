@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "config/json.h"
 #include "core/files/atomic_file.h"
 #include "core/files/temporary_folder.h"
 
@@ -117,6 +118,23 @@ TEST_F(JournalTest, DamageIsNoCrash) {
   for (const char* text : {"", "{", "[]", "{\"version\": 2}", "{\"version\": 1, \"session\": 3}", "\xff\xfe"}) {
     ASSERT_TRUE(write_file_atomically(folder->path() / "attempts" / "one.json", text));
     EXPECT_FALSE(journal.find_cut_off()) << text;
+  }
+}
+
+TEST_F(JournalTest, AFieldOfTheWrongTypeIsNoOtherCase) {
+  ASSERT_TRUE(write_file_atomically(state.session, "ticks"));
+  {
+    Journal cut_off(folder->path());
+    ASSERT_TRUE(cut_off.begin(state));
+  }
+  const auto file = folder->path() / "attempts" / (state.session.stem().string() + ".json");
+  const config::Json whole = config::load_json(file).value();
+  ASSERT_TRUE(journal.find_cut_off());
+  for (const auto& [key, value] : whole.items()) {
+    config::Json damaged = whole;
+    damaged[key] = nullptr;
+    ASSERT_TRUE(write_file_atomically(file, damaged.dump()));
+    EXPECT_FALSE(journal.find_cut_off()) << key;
   }
 }
 
