@@ -1,4 +1,4 @@
-// trocar results proficiency: how many attempts people need, and how long it takes.
+// trocar results proficiency, taught: how many attempts and minutes of instructors people need.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,8 +6,11 @@
 #include "config/json.h"
 #include "json_parts.h"
 #include "learning/curriculum.h"
+#include "results/people.h"
 #include "results/proficiency.h"
+#include "results/teaching.h"
 #include "results_commands.h"
+#include "tasks/task.h"
 
 namespace trocar::cli {
 namespace {
@@ -30,7 +33,8 @@ config::Json person_json(const results::PersonProficiency& one) {
           {"trials_to_proficiency", or_null(one.trials)},
           {"practice_s", one.practice_s},
           {"first_pass_share", or_null(one.first_pass_share)},
-          {"time_to_target_s", or_null(one.time_to_target_s)}};
+          {"time_to_target_s", or_null(one.time_to_target_s)},
+          {"instructor_minutes", or_null(one.instructor_min)}};
 }
 
 config::Json group_json(const GroupProficiency& group) {
@@ -48,8 +52,8 @@ config::Json group_json(const GroupProficiency& group) {
             {"low", or_null(group.trials.low)},
             {"high", or_null(group.trials.high)}}},
           {"practice_s", group.practice_s},
-          {"instructor_minutes", nullptr},
-          {"instructor_minutes_reason", results::instructor_time_text(group)},
+          {"instructor_minutes", or_null(group.instructor_min)},
+          {"people_with_instructor_minutes", group.taught},
           {"first_pass_share", or_null(group.first_pass_share)},
           {"time_to_target_s", or_null(group.time_to_target_s)},
           {"people", std::move(people)}};
@@ -75,13 +79,14 @@ void print_group(const GroupProficiency& group) {
              group.people.size() == 1 ? "person" : "people", learning::counts_text(group.counts));
   std::size_t width = 4;
   for (const results::PersonProficiency& one : group.people) width = std::max(width, one.person.name.size());
-  fmt::print("  {:<{}}  {:>8} {:>7}  {:>10}  {:>12}  {:>10}  {:>14}\n", "name", width, "attempts", "passed", "trials",
-             "practice", "first pass", "time to target");
+  fmt::print("  {:<{}}  {:>8} {:>7}  {:>10}  {:>12}  {:>10}  {:>14}  {:>10}\n", "name", width, "attempts", "passed",
+             "trials", "practice", "first pass", "time to target", "instructor");
   for (const results::PersonProficiency& one : group.people)
-    fmt::print("  {:<{}}  {:>8} {:>7}  {:>10}  {:>12}  {:>10}  {:>14}\n", one.person.name, width, one.counts.counted(),
-               one.counts.passed, one.trials ? fmt::format("{}", *one.trials) : fmt::format("not yet"),
+    fmt::print("  {:<{}}  {:>8} {:>7}  {:>10}  {:>12}  {:>10}  {:>14}  {:>10}\n", one.person.name, width,
+               one.counts.counted(), one.counts.passed,
+               one.trials ? fmt::format("{}", *one.trials) : fmt::format("not yet"),
                fmt::format("{:.1f} min", one.practice_s / kMinute_s), or_dash(one.first_pass_share, 100.0, 0, "%"),
-               or_dash(one.time_to_target_s, 1.0, 1, "s"));
+               or_dash(one.time_to_target_s, 1.0, 1, "s"), or_dash(one.instructor_min, 1.0, 0, "min"));
   fmt::print("  trials to proficiency: {}\n", trials_text(group.trials));
   fmt::print("  first-pass success: {} (mean of the people's shares); time to target: {} (median of their medians)\n",
              or_dash(group.first_pass_share, 100.0, 0, "%"), or_dash(group.time_to_target_s, 1.0, 1, "s"));
@@ -127,6 +132,56 @@ Status show_proficiency(const std::string& url, ProficiencyArguments& arguments,
   return {};
 }
 
+struct TeachingArguments {
+  std::string person, task;
+  double minutes = 0.0;
+  bool is_undone = false;
+};
+
+/// A misspelt task would take minutes that nobody ever sees: it is shipped, or has attempts.
+Status check_taught_task(results::Repository& repository, const std::string& task) {
+  TROCAR_TRY(const std::filesystem::path folder, find_data("tasks"));
+  const Result<tasks::Task> shipped = tasks::load_task(folder, task);
+  if (shipped) return {};
+  TROCAR_TRY(const std::vector<results::Attempt> attempts, results::list_attempts(repository, {{}, task}));
+  return attempts.empty() ? Status(tl::unexpected(shipped.error())) : Status();
+}
+
+Status note_teaching(const std::string& url, const TeachingArguments& arguments, bool has_minutes) {
+  if (has_minutes == arguments.is_undone)
+    return fail_usage("nothing to do", "trocar results taught", "give either --minutes or --undo");
+  TROCAR_TRY(results::Repository repository, open_results(url, database::Missing::kRefuse));
+  TROCAR_TRY(const results::Person person, results::get_person_named(repository, arguments.person));
+  TROCAR_TRY_STATUS(check_taught_task(repository, arguments.task));
+  double minutes = arguments.minutes;
+  if (arguments.is_undone) {
+    TROCAR_TRY(minutes, results::remove_last_teaching(repository, person.id, arguments.task));
+  } else {
+    TROCAR_TRY_STATUS(results::add_teaching(repository, person.id, arguments.task, minutes, now_s()));
+  }
+  TROCAR_TRY(const auto all, results::teaching_minutes(repository, arguments.task));
+  const auto now = all.find(person.id);
+  fmt::print("{} {:g} min of an instructor, {}: {:g} min in all\n", arguments.is_undone ? "took back" : "noted",
+             minutes, arguments.task, now == all.end() ? 0.0 : now->second);
+  return {};
+}
+
+void add_taught_command(Command& results, const DatabaseOption& url, Action& action) {
+  Command command = results.add_command("taught", "Note the minutes that an instructor spent with a person on a task");
+  const auto a = std::make_shared<TeachingArguments>();
+  command.add_option("person", a->person, "Name of the person").required();
+  command.add_option("--task", a->task, "Task; see trocar task list").required();
+  Option minutes = command.add_option("--minutes", a->minutes, "Minutes, added to those noted before")
+                       .number_within(results::kLeastTeaching_min, results::kMostTeaching_min, "min");
+  command.add_flag("--undo", a->is_undone, "Take the newest entry of person and task back");
+  command.footer(
+      "Examples:\n  trocar results taught \"Anna Meier\" --task liver-biopsy --minutes 25\n"
+      "  trocar results taught \"Anna Meier\" --task liver-biopsy --undo\n");
+  command.when_parsed([&action, url, a, minutes] {
+    action = [url, a, minutes] { return note_teaching(*url, *a, minutes.is_given()); };
+  });
+}
+
 }  // namespace
 
 void add_results_proficiency_command(Command& results, const DatabaseOption& url, Action& action) {
@@ -146,6 +201,7 @@ void add_results_proficiency_command(Command& results, const DatabaseOption& url
   command.footer("Example:\n  trocar results proficiency --task liver-biopsy --course \"Radiology 2026\"\n");
   command.when_parsed(
       [&action, url, a, score] { action = [url, a, score] { return show_proficiency(*url, *a, score.is_given()); }; });
+  add_taught_command(results, url, action);
 }
 
 }  // namespace trocar::cli

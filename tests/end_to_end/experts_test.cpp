@@ -7,24 +7,34 @@
 namespace trocar::testing {
 namespace {
 
+void expect_passes(const std::string& patient, const std::string& task) {
+  cases::CaseChoice choice;
+  choice.options.task = task;
+  choice.patient_source = patient;
+  const auto open = open_cached_case(choice);
+  ASSERT_TRUE(open) << patient << ": " << open.error().text();
+  const scoring::Outcome outcome = perform((*open)->the_case, "expert").result.outcome;
+  EXPECT_TRUE(outcome.is_passed) << patient << ": " << (outcome.fails.empty() ? "" : outcome.fails.front());
+  EXPECT_TRUE(outcome.harms.empty()) << patient << ": " << metrics::harm_words(outcome.harms.front());
+  EXPECT_GT(outcome.score, 95.0) << patient;
+}
+
 TEST(Experts, PassTheirTasksOnAllEmbeddedPatients) {
   int attempts = 0;
   for (const anatomy::PhantomInfo& info : anatomy::embedded_patients()) {
     if (info.difficulty == 0) continue;
     for (const std::string& task : info.tasks) {
-      cases::CaseChoice choice;
-      choice.options.task = task;
-      choice.patient_source = info.name;
-      const auto open = open_cached_case(choice);
-      ASSERT_TRUE(open) << info.name << ": " << open.error().text();
-      const scoring::Outcome outcome = perform((*open)->the_case, "expert").result.outcome;
-      EXPECT_TRUE(outcome.is_passed) << info.name << ": " << (outcome.fails.empty() ? "" : outcome.fails.front());
-      EXPECT_TRUE(outcome.harms.empty()) << info.name << ": " << metrics::harm_words(outcome.harms.front());
-      EXPECT_GT(outcome.score, 95.0) << info.name;
+      expect_passes(info.name, task);
       ++attempts;
     }
   }
   EXPECT_EQ(attempts, 20);
+}
+
+// In these the planned end lies so near to the wall that the wall has not given way there.
+TEST(Experts, PressOnThroughTheWallOfTheTarget) {
+  expect_passes("ascites-3", "lumbar-puncture");
+  expect_passes("biopsy-1", "ptcd");
 }
 
 }  // namespace

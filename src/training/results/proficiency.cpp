@@ -6,6 +6,7 @@
 #include <map>
 
 #include "cohort/summary.h"
+#include "results/teaching.h"
 
 namespace trocar::results {
 namespace {
@@ -49,6 +50,9 @@ Status summarise(GroupProficiency& group) {
     trials.push_back({followed, one.trials.has_value()});
     if (one.first_pass_share) shares.push_back(*one.first_pass_share);
     if (one.time_to_target_s) times.push_back(*one.time_to_target_s);
+    if (!one.instructor_min) continue;
+    group.instructor_min = group.instructor_min.value_or(0.0) + *one.instructor_min;
+    ++group.taught;
   }
   TROCAR_TRY(group.trials, cohort::survival_of(trials));
   group.first_pass_share = mean_or_none(shares);
@@ -76,12 +80,14 @@ Result<std::vector<GroupProficiency>> proficiency_of(Repository& repository, con
   TROCAR_TRY(const std::vector<Person> people, list_people(repository));
   TROCAR_TRY(const Values first_passes, values_of(repository, filter.task, "first_pass_success"));
   TROCAR_TRY(const Values times, values_of(repository, filter.task, "time_to_target"));
+  TROCAR_TRY(const auto minutes, teaching_minutes(repository, filter.task));
   std::map<std::string, std::vector<Attempt>> by_person;
   for (const Attempt& attempt : all) by_person[attempt.person_id].push_back(attempt);
   std::map<std::pair<Group, bool>, GroupProficiency> groups;
   for (const Person& person : people) {
     std::vector<Attempt>& attempts = by_person[person.id];
-    PersonProficiency one{person, {}, {}, 0.0, {}, {}};
+    PersonProficiency one{person, {}, {}, 0.0, {}, {}, {}};
+    if (const auto taught = minutes.find(person.id); taught != minutes.end()) one.instructor_min = taught->second;
     for (const Attempt& attempt : attempts) {
       one.counts.add(ending_of(attempt.state), attempt.is_passed);
       one.practice_s += attempt.duration_s;
@@ -106,10 +112,15 @@ Result<std::vector<GroupProficiency>> proficiency_of(Repository& repository, con
 
 std::string instructor_time_text(const GroupProficiency& group) {
   constexpr double kMinute_s = 60.0;
-  return fmt::format(
-      "not recorded: no program knows who stood by. The attempts took {:.0f} min of recorded needle time, which is the "
-      "most that an instructor can have watched",
-      group.practice_s / kMinute_s);
+  if (!group.instructor_min)
+    return fmt::format(
+        "none entered (trocar results taught); {:.0f} min of needle time were recorded, the most that an instructor "
+        "can have watched",
+        group.practice_s / kMinute_s);
+  const std::size_t others = group.people.size() - group.taught;
+  return fmt::format("{:.0f} min for {} {}, {:.0f} min each on average{}", *group.instructor_min, group.taught,
+                     group.taught == 1 ? "person" : "people", *group.instructor_min / static_cast<double>(group.taught),
+                     others > 0 ? fmt::format("; nothing was entered for {} more", others) : "");
 }
 
 }  // namespace trocar::results

@@ -31,6 +31,7 @@ struct PersonProficiency {
   double practice_s = 0.0;                 ///< Recorded time of all attempts, those that do not count included.
   std::optional<double> first_pass_share;  ///< Mean of the metric first_pass_success; empty: not measured.
   std::optional<double> time_to_target_s;  ///< Median of the metric time_to_target; empty: never reached.
+  std::optional<double> instructor_min;    ///< Entered for the task (teaching.h); empty: nothing was entered.
 };
 
 /// People of a kind: trainees or experts, real or simulated.
@@ -43,6 +44,8 @@ struct GroupProficiency {
   double practice_s = 0.0;                 ///< Sum of all people.
   std::optional<double> first_pass_share;  ///< Mean of the people's shares: each counts once.
   std::optional<double> time_to_target_s;  ///< Median of the people's medians.
+  std::optional<double> instructor_min;    ///< Sum of those for whom minutes were entered.
+  std::size_t taught = 0;                  ///< Number of these people.
 };
 
 /// Groups with at least one person, trainees before experts, real before simulated. Errors: rules outside of their
@@ -54,7 +57,7 @@ Result<std::vector<GroupProficiency>> proficiency_of(Repository& repository, con
 /// that count.
 std::optional<std::size_t> trials_to_proficiency(const std::vector<Attempt>& attempts, const ProficiencyRules& rules);
 
-/// Nobody records who stood by: what can be said of an instructor's time. One sentence for people.
+/// What is known of the instructors' time: the minutes that they entered, or that they entered none. For people.
 std::string instructor_time_text(const GroupProficiency& group);
 
 }  // namespace trocar::results

@@ -73,8 +73,9 @@ struct OperatorCase {
 };
 
 /// Follows the path: touches, pauses, inserts more slowly with more resistance, stops when the (virtual) tip is at the
-/// target, holds still, fires, loads the gun and fires again until all cores are taken, withdraws. Stops without firing
-/// if it cannot advance. The device must start at the pose of the first command. Takes about 10..30 s, at most 60.
+/// target, holds still, looks what comes back and presses on where a wall has not given way yet; or fires, loads the
+/// gun and fires again until all cores are taken, withdraws. Stops without firing if it cannot advance. The device must
+/// start at the pose of the first command. Takes about 10..30 s, at most 60.
 std::unique_ptr<Operator> make_expert(const OperatorCase& the_case);
 /// Misses the entry and the angle, trembles, moves unevenly and too fast, hesitates, pulls back, looks what comes back
 /// every few millimetres or stops short or too deep; withdraws from bone and from where nothing comes, and tries again

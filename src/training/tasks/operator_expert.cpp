@@ -28,6 +28,9 @@ constexpr double kHoming_per_s = 2.0;  // the last millimetres: speed per remain
 constexpr double kArrived_mm = 0.3;
 constexpr double kCreepBack_mm_s = 6.0;  // yields if the recoiling tissue lets the tip creep past the target
 constexpr double kSettled_mm = 0.5;
+constexpr double kLooked_s = 0.2;         // time to see what comes back, or that nothing does
+constexpr double kPressBeyond_mm = 10.0;  // a wall that has not given way: at most so far beyond the planned end
+constexpr int kPresses = 2;
 constexpr double kHold_s = 0.5;
 constexpr double kMostHold_s = 3.0;
 constexpr double kExpertLoading_s = 3.0;  // takes the core out and loads the gun
@@ -43,11 +46,13 @@ class Expert final : public Operator {
         target_mm_(the_case.path_P.length_mm()),
         cores_left_(the_case.fires_biopsy ? the_case.actions.cores : 0),
         loads_inside_(the_case.actions.loads_inside),
-        actions_(the_case.actions) {}
+        actions_(the_case.actions),
+        confirms_(the_case.actions.confirms),
+        awaited_(the_case.actions.awaited) {}
 
   HandCommand next(const OperatorView& view) noexcept override {
     hand_.sense(view);
-    std::optional<ActionKind> gun;
+    std::optional<ActionKind> action;
     double speed_mm_s = 0.0;
     switch (step_) {
       case Step::kApproach:
@@ -65,21 +70,30 @@ class Expert final : public Operator {
       case Step::kHold:
         speed_mm_s = holding_speed_mm_s();
         if ((in_step_s() > kHold_s && target_left_mm() > -kSettled_mm) || in_step_s() > kMostHold_s) {
-          if (cores_left_ > 0) gun = ActionKind::kFire;
+          if (cores_left_ > 0) action = ActionKind::kFire;
           enter(Step::kAfterFire);
         }
         break;
       case Step::kAfterFire:
         speed_mm_s = holding_speed_mm_s();
-        if (in_step_s() > kAfterFire_s) {
+        if (is_wrong_place(view) && presses_left_ > 0) {
+          --presses_left_;
+          actions_.look_again(*confirms_);
+          if (confirms_ == ActionKind::kDrawStylet) action = ActionKind::kReplaceStylet;
+          enter(Step::kPress);
+        } else if (in_step_s() > kAfterFire_s) {
           if (cores_left_ > 0) --cores_left_;
           enter(cores_left_ > 0 && loads_inside_ ? Step::kLoad : Step::kWithdraw);
         }
         break;
+      case Step::kPress:
+        speed_mm_s = kFine_mm_s;
+        if (hand_.has_felt_drop() || target_left_mm() < -kPressBeyond_mm || is_stuck()) enter(Step::kHold);
+        break;
       case Step::kLoad:
         speed_mm_s = loads_inside_ ? holding_speed_mm_s() : 0.0;
         if (in_step_s() > kExpertLoading_s) {
-          gun = ActionKind::kLoad;
+          action = ActionKind::kLoad;
           stall_ = {};  // another insertion
           enter(loads_inside_ ? Step::kHold : Step::kApproach);
         }
@@ -95,8 +109,8 @@ class Expert final : public Operator {
     if (is_late() && step_ < Step::kWithdraw) enter(Step::kWithdraw);
     hand_.move(speed_mm_s, view.dt_s);
     HandCommand command = hand_.command();
-    if (gun) command.action = ActionRequest{*gun};
-    if (!gun)
+    if (action) command.action = ActionRequest{*action};
+    if (!action)
       command.action =
           actions_.next(hand_.tip_mm(), step_ == Step::kAfterFire ? std::optional(in_step_s()) : std::nullopt);
     command.is_done = step_ == Step::kDone;
@@ -104,7 +118,7 @@ class Expert final : public Operator {
   }
 
  private:
-  enum class Step { kApproach, kPause, kInsert, kHold, kAfterFire, kLoad, kWithdraw, kDone };
+  enum class Step { kApproach, kPause, kInsert, kHold, kAfterFire, kPress, kLoad, kWithdraw, kDone };
 
   void enter(Step step) noexcept {
     step_ = step;
@@ -124,6 +138,11 @@ class Expert final : public Operator {
     return std::min({speed_mm_s, braking_mm_s, kHoming_per_s * std::max(0.0, target_left_mm())});
   }
 
+  /// The operator has looked, and not what proves the place came back: a wall was pushed along and has not given way.
+  bool is_wrong_place(const OperatorView& view) const noexcept {
+    return confirms_ && in_step_s() > kLooked_s && view.returned && view.returned->substance != awaited_;
+  }
+
   double holding_speed_mm_s() const noexcept {
     return target_left_mm() < -kArrived_mm ? std::max(-kCreepBack_mm_s, kHoming_per_s * target_left_mm()) : 0.0;
   }
@@ -136,6 +155,9 @@ class Expert final : public Operator {
   std::size_t cores_left_;
   bool loads_inside_;
   PendingActions actions_;
+  std::optional<ActionKind> confirms_;
+  Substance awaited_;
+  int presses_left_ = kPresses;
   Step step_ = Step::kApproach;
   double step_start_s_ = 0.0;
   double drop_s_ = -10.0;

@@ -214,6 +214,8 @@ export interface PersonProficiency {
   practice_s: number;
   first_pass_share: number | null;
   time_to_target_s: number | null;
+  /** Entered by instructors; null: nothing. */
+  instructor_min: number | null;
 }
 export interface GroupProficiency {
   group: "trainee" | "expert";
@@ -228,6 +230,7 @@ export interface GroupProficiency {
   curve: { trials: number; at_risk: number; open_share: number }[];
   practice_s: number;
   instructor: string;
+  instructor_min: number | null;
   first_pass_share: number | null;
   time_to_target_s: number | null;
   people: PersonProficiency[];

@@ -23,7 +23,7 @@ function share_text(share: number | null): string {
 }
 
 function figure(title: string, value: string, text: string): HTMLElement {
-  return h("section", { class: "card card-figure" }, h("h3", {}, title), h("p", { class: value === "None yet" || value === "Not recorded" ? "figure figure-none" : "figure" }, value), h("p", {}, text));
+  return h("section", { class: "card card-figure" }, h("h3", {}, title), h("p", { class: value === "None yet" || value === "None entered" ? "figure figure-none" : "figure" }, value), h("p", {}, text));
 }
 
 function people_table(people: PersonProficiency[]): HTMLElement {
@@ -35,6 +35,7 @@ function people_table(people: PersonProficiency[]): HTMLElement {
     { name: "first", title: "First pass", is_number: true, key: (one) => one.first_pass_share, cell: (one) => share_text(one.first_pass_share) },
     { name: "time", title: "Time to target", is_number: true, key: (one) => one.time_to_target_s, cell: (one) => duration_text(one.time_to_target_s) },
     { name: "practice", title: "Recorded time", is_number: true, key: (one) => one.practice_s, cell: (one) => duration_text(one.practice_s) },
+    { name: "instructor", title: "Instructor", is_number: true, key: (one) => one.instructor_min, cell: (one) => (one.instructor_min === null ? "–" : `${fixed(one.instructor_min, 0)}\u00a0min`) },
   ];
   return data_table({ caption: "Attempts of each person", columns, rows: people, order: { column: "trials", is_descending: false }, page_size: 100 });
 }
@@ -51,7 +52,7 @@ function show_group(group: GroupProficiency, rule: string): Child {
       figure("Attempts to proficiency", group.median === null ? "None yet" : fixed(group.median, 0), `Median${limits_text(group)} of ${plural(group.people_count, "person", "people")} by Kaplan and Meier, who count those that are not there yet: ${group.proficient} proficient, ${group.not_yet} not yet. Proficient: ${rule}.`),
       figure("First-pass success", share_text(group.first_pass_share), "The target was reached without a withdrawal of more than 10 mm and with one puncture of the skin. Mean of the people's shares; attempts that did not reach it are no success."),
       figure("Time to the target", duration_text(group.time_to_target_s), "From the first contact with the skin. Median of the people's medians, of attempts that reached it."),
-      figure("Instructor's minutes", "Not recorded", `${group.instructor.charAt(0).toUpperCase()}${group.instructor.slice(1)}.`),
+      figure("Instructor's minutes", group.instructor_min === null ? "None entered" : `${fixed(group.instructor_min, 0)}\u00a0min`, `${group.instructor.charAt(0).toUpperCase()}${group.instructor.slice(1)}.`),
     ),
     people_table(group.people),
   );

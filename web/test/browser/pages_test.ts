@@ -208,12 +208,12 @@ describe("browsing", () => {
       await page.waitForURL((url) => !url.search.includes("patient"));
     }));
 
-  test("proficiency counts people who are not there yet, and says that nobody records the instructor", () =>
+  test("proficiency counts people who are not there yet, and the minutes of their instructors", () =>
     with_page(async (page) => {
       await page.goto("/proficiency");
       await settled(page);
       for (const name of ["Attempts to proficiency", "First-pass success", "Time to the target", "Instructor's minutes"]) await page.getByRole("heading", { name }).first().waitFor();
-      await page.getByText("Not recorded", { exact: true }).first().waitFor();
+      await page.getByText("None entered", { exact: true }).first().waitFor();
       await page.getByRole("columnheader", { name: "Attempts to proficiency" }).first().waitFor();
       if (site.mock) await page.getByText("Not yet").first().waitFor();
     }));

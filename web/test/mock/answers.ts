@@ -183,12 +183,12 @@ export class MockResults {
       const people = every.map(({ one, all }) => {
         const counted = all.filter((a) => a.passed !== null);
         const at = counted.findIndex((_, k) => k >= 2 && counted.slice(k - 2, k + 1).every((a) => a.passed && a.score! >= 80));
-        return { id: one.id, name: one.name, attempts: counted.length, passed: counted.filter((a) => a.passed).length, trials: at < 0 ? null : at + 1, practice_s: all.reduce((sum, a) => sum + a.duration_s, 0), first_pass_share: one.skill, time_to_target_s: 20 - 10 * one.skill };
+        return { id: one.id, name: one.name, attempts: counted.length, passed: counted.filter((a) => a.passed).length, trials: at < 0 ? null : at + 1, practice_s: all.reduce((sum, a) => sum + a.duration_s, 0), first_pass_share: one.skill, time_to_target_s: 20 - 10 * one.skill, instructor_min: simulated ? null : 30 };
       });
       if (people.length === 0) return [];
       const known = people.flatMap((one) => one.trials ?? []).sort((a, b) => a - b);
       const practice_s = people.reduce((sum, one) => sum + one.practice_s, 0);
-      return [{ group, simulated, counts_text: counts_text(every.flatMap(({ all }) => all)), people_count: people.length, proficient: known.length, not_yet: people.length - known.length, median: 2 * known.length > people.length ? known[Math.floor(people.length / 2)] : null, low: known[0] ?? null, high: null, curve: [], practice_s, instructor: `not recorded: made up, ${Math.round(practice_s / 60)} min`, first_pass_share: 0.5, time_to_target_s: 12, people }];
+      return [{ group, simulated, counts_text: counts_text(every.flatMap(({ all }) => all)), people_count: people.length, proficient: known.length, not_yet: people.length - known.length, median: 2 * known.length > people.length ? known[Math.floor(people.length / 2)] : null, low: known[0] ?? null, high: null, curve: [], practice_s, instructor: simulated ? "none entered (made up)" : `${30 * people.length} min (made up)`, instructor_min: simulated ? null : 30 * people.length, first_pass_share: 0.5, time_to_target_s: 12, people }];
     });
     return { task, score: 80, passes_in_a_row: 3, ...this.choices(task), groups };
   }

@@ -285,7 +285,8 @@ Json proficiency_json(const results::GroupProficiency& group) {
                       {"trials", or_null(one.trials)},
                       {"practice_s", rounded(one.practice_s)},
                       {"first_pass_share", or_null(one.first_pass_share)},
-                      {"time_to_target_s", or_null(one.time_to_target_s)}});
+                      {"time_to_target_s", or_null(one.time_to_target_s)},
+                      {"instructor_min", or_null(one.instructor_min)}});
   Json curve = Json::array();
   for (const cohort::Survival::Step& step : group.trials.steps)
     curve.push_back({{"trials", step.time}, {"at_risk", step.at_risk}, {"open_share", step.open_share}});
@@ -301,6 +302,7 @@ Json proficiency_json(const results::GroupProficiency& group) {
           {"curve", std::move(curve)},
           {"practice_s", rounded(group.practice_s)},
           {"instructor", results::instructor_time_text(group)},
+          {"instructor_min", or_null(group.instructor_min)},
           {"first_pass_share", or_null(group.first_pass_share)},
           {"time_to_target_s", or_null(group.time_to_target_s)},
           {"people", std::move(people)}};

@@ -82,10 +82,19 @@ database::Migration version_2() {
   };
 }
 
+// Minutes of instructors, as they were entered.
+database::Migration version_3() {
+  return {
+      "CREATE TABLE teaching (sequence {sequence}, person_id TEXT NOT NULL REFERENCES people (id) ON DELETE CASCADE,"
+      " task TEXT NOT NULL, minutes DOUBLE PRECISION NOT NULL, entered_s BIGINT NOT NULL)",
+      "CREATE INDEX teaching_of_task ON teaching (task, person_id)",
+  };
+}
+
 }  // namespace
 
 std::span<const database::Migration> migrations() {
-  static const std::vector<database::Migration> kAll{version_1(), version_2()};
+  static const std::vector<database::Migration> kAll{version_1(), version_2(), version_3()};
   return kAll;
 }
 

@@ -1,5 +1,8 @@
 #include "results/proficiency.h"
 
+#include <cmath>
+
+#include "results/teaching.h"
 #include "results/test/small_study.h"
 
 namespace trocar::results {
@@ -53,7 +56,8 @@ TEST_P(ProficiencyTest, CountsTrialsAndThoseWhoAreNotThereYet) {
   EXPECT_EQ(group.trials.censored(), 1u);
   EXPECT_EQ(group.trials.median, 8.0);
   EXPECT_DOUBLE_EQ(group.practice_s, 30.0 * (4 + 8 + 11));
-  EXPECT_NE(instructor_time_text(group).find("12 min"), std::string::npos) << instructor_time_text(group);
+  EXPECT_NE(instructor_time_text(group).find("12 min of needle time"), std::string::npos)
+      << instructor_time_text(group);
   EXPECT_EQ(groups->back().group, Group::kExpert);
   EXPECT_EQ(groups->back().trials.median, 3.0);
 }
@@ -89,6 +93,37 @@ TEST_P(ProficiencyTest, SimulatedPeopleAreAGroupOfTheirOwn) {
   EXPECT_FALSE(groups->front().is_simulated);
   EXPECT_FALSE(groups->front().trials.median);
   EXPECT_TRUE(groups->back().is_simulated);
+}
+
+TEST_P(ProficiencyTest, AddsTheMinutesOfInstructors) {
+  const Person anna = add("Anna"), ben = add("Ben"), clara = add("Clara");
+  for (const Person& person : {anna, ben, clara}) play_all(person, "ppp");
+  EXPECT_FALSE(trainees({"liver-biopsy"}).instructor_min);
+  const Seconds now{};
+  ASSERT_TRUE(add_teaching(*repository_, anna.id, "liver-biopsy", 25.0, now));
+  ASSERT_TRUE(add_teaching(*repository_, anna.id, "liver-biopsy", 12.5, now));
+  ASSERT_TRUE(add_teaching(*repository_, ben.id, "liver-biopsy", 30.0, now));
+  ASSERT_TRUE(add_teaching(*repository_, ben.id, "ptcd", 60.0, now));
+  const GroupProficiency group = trainees({"liver-biopsy"});
+  EXPECT_EQ(group.instructor_min, 67.5);
+  EXPECT_EQ(group.taught, 2u);
+  EXPECT_EQ(group.people[0].instructor_min, 37.5);
+  EXPECT_FALSE(group.people[2].instructor_min);
+  EXPECT_NE(instructor_time_text(group).find("nothing was entered for 1 more"), std::string::npos);
+  EXPECT_EQ(remove_last_teaching(*repository_, anna.id, "liver-biopsy").value(), 12.5);
+  EXPECT_EQ(trainees({"liver-biopsy"}).instructor_min, 55.0);
+  ASSERT_TRUE(delete_person(*repository_, ben.id));
+  EXPECT_EQ(teaching_minutes(*repository_, "liver-biopsy").value(), (std::map<std::string, double>{{anna.id, 25.0}}));
+  EXPECT_TRUE(teaching_minutes(*repository_, "ptcd").value().empty());
+}
+
+TEST_P(ProficiencyTest, RefusesMinutesThatNobodyCanHaveSpent) {
+  const Person anna = add("Anna");
+  for (const double minutes : {0.0, -5.0, 601.0, std::nan(""), HUGE_VAL})
+    EXPECT_FALSE(add_teaching(*repository_, anna.id, "liver-biopsy", minutes, {})) << minutes;
+  EXPECT_FALSE(add_teaching(*repository_, "nobody", "liver-biopsy", 5.0, {}));
+  EXPECT_FALSE(remove_last_teaching(*repository_, anna.id, "liver-biopsy"));
+  EXPECT_TRUE(teaching_minutes(*repository_, "liver-biopsy").value().empty());
 }
 
 }  // namespace

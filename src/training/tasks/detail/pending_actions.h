@@ -14,6 +14,7 @@ class PendingActions {
 
   void forget_anaesthetic() noexcept { left_.gives_anaesthetic = false; }
   void forget_confirmation() noexcept { left_.confirms.reset(); }
+  void look_again(ActionKind confirms) noexcept { left_.confirms = confirms; }
 
   /// The action that is due: anaesthetic at the skin, the others at the target, the guide wire `kBeforeWire_s` after the
   /// arrival. `tip_mm`: along the path from its entry. `at_target_s`: time since the arrival; empty: not there.

@@ -85,6 +85,47 @@ TEST(Expert, TakesTheCoresThroughACoaxialNeedleOrByAnotherPuncture) {
   }
 }
 
+/// An operator that sees `substance` come back from a depth on, nothing before it.
+struct Looking final : Operator {
+  HandCommand next(const OperatorView& view) noexcept override {
+    OperatorView seen = view;
+    seen.returned = returned;
+    const HandCommand command = watched.next(seen);
+    if (!command.action) return command;
+    kinds.push_back(command.action->kind);
+    if (command.action->kind == ActionKind::kDrawStylet) {
+      const double depth_mm = (view.last.tip_mm - path_P.a).dot(path_P.direction());
+      returned.emplace().substance = depth_mm > opens_mm ? Substance::kCsf : Substance::kNothing;
+    }
+    return command;
+  }
+  Looking(Operator& o, const Segment& path, double opens) : watched(o), path_P(path), opens_mm(opens) {}
+  Operator& watched;
+  Segment path_P;
+  double opens_mm;
+  std::optional<Return> returned;
+  std::vector<ActionKind> kinds;
+};
+
+TEST(Expert, PressesOnWhereNothingComesBackButNotForEver) {
+  OperatorCase the_case = case_of_length(60.0);
+  the_case.fires_biopsy = false;
+  the_case.actions.confirms = ActionKind::kDrawStylet;
+  the_case.actions.awaited = Substance::kCsf;
+  using enum ActionKind;
+  for (const double opens_mm : {50.0, 62.0, 500.0}) {
+    LayeredBody body(the_case.path_P, skin_muscle_capsule(), 0.001);
+    const auto expert = make_expert(the_case);
+    Looking looking(*expert, the_case.path_P, opens_mm);
+    body.run(looking, 60.0);
+    ASSERT_TRUE(body.is_done) << opens_mm;
+    const bool is_open_at_once = opens_mm < 60.0;
+    EXPECT_EQ(looking.kinds.size(), is_open_at_once ? 1u : 5u) << "each further look: stylet in, on, stylet out";
+    EXPECT_LT(deepest_mm(body), is_open_at_once ? 61.0 : 71.5);
+    EXPECT_EQ(std::ranges::count(looking.kinds, kReplaceStylet), is_open_at_once ? 0 : 2) << opens_mm;
+  }
+}
+
 TEST(Expert, NeverOvershootsOnPathsOfAnyLength) {
   for (double length_mm = 42.0; length_mm <= 150.0; length_mm += 12.0) {
     const OperatorCase the_case = case_of_length(length_mm, static_cast<std::uint64_t>(length_mm));
