@@ -139,7 +139,7 @@ void print_part(const scoring::ScorePart& part) {
 /// Passed or not with the reasons, then what to improve.
 void print_verdict(const scoring::Outcome& outcome) {
   if (outcome.is_scored()) {
-    fmt::print("score {:.0f} of 100, target {}: {}\n", outcome.score, outcome.target_reached ? "reached" : "missed",
+    fmt::print("score {:.0f} of 100, target {}: {}\n", outcome.score, scoring::target_words(outcome),
                outcome.is_passed ? "passed" : fmt::format("not passed ({})", fmt::join(outcome.fails, "; ")));
   } else {
     fmt::print("not passed: not scored, {}\n", outcome.not_scored);

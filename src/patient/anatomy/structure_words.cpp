@@ -39,6 +39,8 @@ std::string structure_words(std::string_view name) {
     if (!part.empty()) part += ' ';
     part += word;
   }
+  constexpr std::string_view kVertebrae = "vertebrae ";  // of data sets: "vertebrae_L3"
+  if (rest.starts_with(kVertebrae)) rest.replace(0, kVertebrae.size(), "vertebra ");
   if (side.empty() || rest.empty()) return side + rest;
   return side + ' ' + rest;
 }

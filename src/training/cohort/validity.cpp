@@ -114,7 +114,8 @@ std::string smallest_p_text(std::size_t experts, std::size_t novices, std::size_
   if (experts == 0 || novices == 0) return {};
   const double smallest = smallest_rank_sum_p(experts, novices);
   if (smallest * static_cast<double>(std::max<std::size_t>(metrics, 1)) <= level) return {};
-  return fmt::format("with groups of {} and {} people no two-sided p can be below {:.2g}", experts, novices, smallest);
+  return fmt::format("with groups of {} and {} people whose values all differ no two-sided p can be below {:.2g}",
+                     experts, novices, smallest);
 }
 
 }  // namespace trocar::cohort

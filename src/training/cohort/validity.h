@@ -70,8 +70,8 @@ struct Validity {
 /// Precondition: the lists have the same length. Parts that cannot be computed have the reason as their error.
 Validity validity_of(const CohortData& data, const ValidityRules& rules = {});
 
-/// "with groups of 2 and 12 people no two-sided p can be below 0.022", or empty if the groups are large enough that the
-/// smallest p, corrected by Holm's rule for `metrics` metrics, is below the level.
+/// "with groups of 2 and 12 people whose values all differ no two-sided p can be below 0.022", or empty if the groups
+/// are large enough that the smallest p, corrected by Holm's rule for `metrics` metrics, is below the level.
 std::string smallest_p_text(std::size_t experts, std::size_t novices, std::size_t metrics, double level);
 
 }  // namespace trocar::cohort

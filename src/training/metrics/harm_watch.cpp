@@ -238,15 +238,19 @@ void HarmWatch::step(const Moment& moment) {
     walk(skin_P, tip_P, 0.0, moment.time_s, false);
     if (way_from_P && !moment.is_paused && (tip_P - *way_from_P).norm() > kFastStep_mm)
       walk(*way_from_P, tip_P, depth_mm, moment.time_s, false);
-    const Vec3 ahead_P = moment.tip_P + (moment.pressed_mm > 0.0 ? kToBone_mm : 0.0) * moment.axis_P;
-    const auto id = volume::sample_nearest<std::uint8_t>(patient_->labels, ahead_P, 0);
-    if (is_bone_[id] && can_harm(harms_[id])) {
-      HarmEvent& event = event_of(id, *moment.depth_mm, moment.time_s, false);
-      event.is_graze = false;
-      raise(event, harms_[id].grade);
-    }
   }
+  touch_bone(moment);
   stay(moment.time_s);
+}
+
+/// A tip that presses on bone does not move: it is looked at in every moment.
+void HarmWatch::touch_bone(const Moment& moment) {
+  const Vec3 ahead_P = moment.tip_P + (moment.pressed_mm > 0.0 ? kToBone_mm : 0.0) * moment.axis_P;
+  const auto id = volume::sample_nearest<std::uint8_t>(patient_->labels, ahead_P, 0);
+  if (!is_bone_[id] || !can_harm(harms_[id])) return;
+  HarmEvent& event = event_of(id, *moment.depth_mm, moment.time_s, false);
+  event.is_graze = false;
+  raise(event, harms_[id].grade);
 }
 
 void HarmWatch::fire(const Moment& moment) {

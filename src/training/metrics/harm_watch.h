@@ -66,6 +66,7 @@ class HarmWatch {
   bool is_known(std::uint8_t id) const noexcept;
   HarmEvent& event_of(std::uint8_t id, double depth_mm, double time_s, bool is_by_stylet);
   void judge(const Piece& piece, double time_s, bool is_by_stylet);
+  void touch_bone(const Moment& moment);
   void stay(double time_s);
   void raise(HarmEvent& event, tasks::Harm grade) noexcept;
 

@@ -16,8 +16,7 @@ std::string verdict_text(const storage::Session& session) {
   std::string text =
       fmt::format("{}{}{}\n", verdict_of(outcome).word, reasons.empty() ? "" : ": ", fmt::join(reasons, "; "));
   if (outcome.is_scored())
-    text +=
-        fmt::format("{:.0f} of 100 points, target {}\n", outcome.score, outcome.target_reached ? "reached" : "missed");
+    text += fmt::format("{:.0f} of 100 points, target {}\n", outcome.score, scoring::target_words(outcome));
   for (std::size_t n = 0; n < outcome.hints.size(); ++n) {
     const scoring::Hint& hint = outcome.hints[n];
     text += fmt::format("{}{}{}\n",

@@ -22,6 +22,8 @@ constexpr double kPassTolerance = 1.0;      // needless punctures of the organ t
 constexpr double kAwayTolerance_mm = 10.0;  // missing distance from a landmark that halves the points of the access
 constexpr double kSlowReturn = 0.7;         // share of the points for single drops: the bevel is only partly in it
 
+constexpr double kAtTarget_mm = 0.05;  // a distance that is shown as 0.0 mm
+
 constexpr const char* kBleedingNames[] = {"usual", "raised", "high"};
 
 constexpr std::pair<std::string_view, std::string_view> kTitles[] = {
@@ -113,11 +115,20 @@ double confirmation_share(const Judgement& judged) noexcept {
   return kSlowReturn;
 }
 
+/// Healthy organ is everywhere: a core of it does not prove the place.
+bool has_reached_target(const Judgement& judged) noexcept {
+  const tasks::Task& task = judged.attempt.task;
+  if (!judged.measured.has_entered) return false;
+  if (task.confirmed_by != tasks::Substance::kNothing && !judged.confirmed_s) return false;
+  const bool is_near = judged.target_mm <= task.target_tolerance_mm;
+  if (!judged.attempt.needle.is_biopsy) return judged.is_planned_place ? is_near : judged.target_mm <= 0.0;
+  const bool is_enough = !judged.cores.empty() && target_in_cores_mm(judged) >= kEnoughCore * judged.possible_core_mm;
+  return is_enough && (!judged.is_planned_place || is_near);
+}
+
 PartShare share_of(const Judgement& judged, std::string_view part) {
   const tasks::Task& task = judged.attempt.task;
   const metrics::AttemptMetrics& measured = judged.measured;
-  const bool is_finished = !judged.cores.empty() || !judged.attempt.needle.is_biopsy;
-  const auto finished = [&](double share) { return is_finished ? share : 0.0; };
   if (part == "target") return {judged.target_mm, "mm", share_at(judged.target_mm, task.target_tolerance_mm)};
   if (part == "confirmation") return {judged.confirmed_s ? 1.0 : 0.0, "", confirmation_share(judged)};
   if (part == "core") return {target_in_cores_mm(judged), "mm", cores_share(judged)};
@@ -137,10 +148,11 @@ PartShare share_of(const Judgement& judged, std::string_view part) {
     const double length_mm = judged.expert.line_P.length_mm();
     return {measured.travel_mm, "mm", share_below(std::max(0.0, measured.travel_mm - length_mm), length_mm)};
   }
-  if (part == "time") return {measured.time_s, "s", finished(share_below(measured.time_s, task.time_limit_s))};
-  if (part == "dose") {
+  if (part == "time" && is_finished(judged))
+    return {measured.time_s, "s", share_below(measured.time_s, task.time_limit_s)};
+  if (part == "dose" && is_finished(judged)) {
     const double dose_gycm2 = judged.attempt.xray.dose_area_gycm2;
-    return {dose_gycm2, "Gy cm²", finished(share_below(dose_gycm2, task.dose_limit_gycm2))};
+    return {dose_gycm2, "Gy cm²", share_below(dose_gycm2, task.dose_limit_gycm2)};
   }
   if (part == "passes") {
     const double passes = needless_passes(judged);
@@ -167,17 +179,6 @@ std::vector<ScorePart> parts_of(const Judgement& judged) {
                      found.unit, share * most, most, found.share.has_value()});
   }
   return parts;
-}
-
-/// Healthy organ is everywhere: a core of it does not prove the place.
-bool has_reached_target(const Judgement& judged) noexcept {
-  const tasks::Task& task = judged.attempt.task;
-  if (!judged.measured.has_entered) return false;
-  if (task.confirmed_by != tasks::Substance::kNothing && !judged.confirmed_s) return false;
-  const bool is_near = judged.target_mm <= task.target_tolerance_mm;
-  if (!judged.attempt.needle.is_biopsy) return judged.is_planned_place ? is_near : judged.target_mm <= 0.0;
-  const bool is_enough = !judged.cores.empty() && target_in_cores_mm(judged) >= kEnoughCore * judged.possible_core_mm;
-  return is_enough && (!judged.is_planned_place || is_near);
 }
 
 /// Empty: it can be scored.
@@ -209,7 +210,7 @@ std::vector<std::string> find_fails(const Judgement& judged, const Outcome& outc
     fails.push_back(fmt::format("the place is not proven: no {} came back", tasks::substance_words(wanted)));
   else if (!outcome.target_reached)
     fails.push_back(why_not_reached(judged));
-  if (outcome.score < judged.attempt.task.pass_mark)
+  if (outcome.is_scored() && outcome.score < judged.attempt.task.pass_mark)
     fails.push_back(fmt::format("the score is below {:.0f}", judged.attempt.task.pass_mark));
   return fails;
 }
@@ -230,6 +231,16 @@ const BiopsyCore* Outcome::best_core() const noexcept {
   const auto best = std::max_element(
       cores.begin(), cores.end(), [](const BiopsyCore& a, const BiopsyCore& b) { return a.target_mm < b.target_mm; });
   return best != cores.end() ? &*best : nullptr;
+}
+
+const char* target_words(const Outcome& outcome) noexcept {
+  if (outcome.target_reached) return "reached";
+  const auto value_of = [&](std::string_view name) {
+    const auto part = std::ranges::find(outcome.parts, name, &ScorePart::name);
+    return part != outcome.parts.end() && part->is_judged ? std::optional(part->value) : std::nullopt;
+  };
+  const bool is_unproven = value_of("confirmation").value_or(1.0) <= 0.0;
+  return is_unproven && value_of("target").value_or(HUGE_VAL) < kAtTarget_mm ? "not proven" : "missed";
 }
 
 std::string_view part_title(std::string_view part) noexcept {
@@ -258,6 +269,10 @@ std::string part_value_text(const ScorePart& part) {
   if (part.name == "confirmation") return part.value > 0.0 ? "yes" : "no";
   if (part.unit.empty()) return fmt::format("{:.0f}", part.value);
   return fmt::format("{:.{}f} {}", part.value, part.value < 100.0 ? 1 : 0, part.unit);
+}
+
+bool is_finished(const Judgement& judged) noexcept {
+  return judged.attempt.needle.is_biopsy ? !judged.cores.empty() : has_reached_target(judged);
 }
 
 Outcome conclude(const Judgement& judged) {

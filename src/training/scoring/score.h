@@ -119,6 +119,9 @@ struct Outcome {
   const BiopsyCore* best_core() const noexcept;
 };
 
+/// "reached", "missed", or "not proven": the needle was in it, and what has to come back did not.
+const char* target_words(const Outcome& outcome) noexcept;
+
 /// Takes the core at a fired tick. The stylet goes straight on from the tip; bone stops it, and the part of the notch
 /// that then stays inside the cannula takes nothing.
 BiopsyCore take_core(const tasks::Task& task, const anatomy::VirtualPatient& patient, const tasks::Needle& needle,

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "geometry/pose.h"
 #include "tasks/detail/block_grid.h"
@@ -24,17 +25,23 @@ std::optional<Vec3> find_fibres(const Task& task, const anatomy::VirtualPatient&
     is_along[label.id] = label.tissue == task.bevel->fibres || label.name == task.bevel->fibres;
   const volume::LabelGrid& labels = patient.labels;
   const detail::IndexBox box = detail::clipped(detail::box_around(labels.geometry, near_P, kReach_mm), labels.geometry);
-  std::array<Vec3, 2> sum{Vec3::Zero(), Vec3::Zero()};  // below and above the point
-  std::array<double, 2> count{};
+  std::vector<Vec3> points_P;
+  Vec3 middle_P = Vec3::Zero();
   for (std::int64_t k = box.low[2]; k <= box.high[2]; ++k)
     for (std::int64_t j = box.low[1]; j <= box.high[1]; ++j)
       for (std::int64_t i = box.low[0]; i <= box.high[0]; ++i) {
         if (!is_along[labels[{i, j, k}]]) continue;
-        const Vec3 p_P = labels.geometry.centre_mm({i, j, k});
-        const std::size_t half = p_P.z() < near_P.z() ? 0 : 1;
-        sum[half] += p_P;
-        count[half] += 1.0;
+        points_P.push_back(labels.geometry.centre_mm({i, j, k}));
+        middle_P += points_P.back();
       }
+  middle_P /= std::max<double>(1.0, static_cast<double>(points_P.size()));
+  std::array<Vec3, 2> sum{Vec3::Zero(), Vec3::Zero()};  // below and above the middle: the scan may end near the point
+  std::array<double, 2> count{};
+  for (const Vec3& p_P : points_P) {
+    const std::size_t half = p_P.z() < middle_P.z() ? 0 : 1;
+    sum[half] += p_P;
+    count[half] += 1.0;
+  }
   if (count[0] < 1.0 || count[1] < 1.0) return std::nullopt;
   const Vec3 up_P = sum[1] / count[1] - sum[0] / count[0];
   if (up_P.norm() < kLeast_mm) return std::nullopt;

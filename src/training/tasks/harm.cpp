@@ -70,17 +70,21 @@ bool HarmRule::matches(std::string_view plain, std::string_view tissue) const {
   return is_named && (tissues.empty() || std::find(tissues.begin(), tissues.end(), tissue) != tissues.end());
 }
 
-Result<std::vector<HarmRule>> load_harm_table(const std::filesystem::path& file, std::string_view task) {
+bool HarmRule::is_for(std::span<const std::string> target_tissues) const {
+  return targets.empty() || std::ranges::find_first_of(targets, target_tissues) != targets.end();
+}
+
+Result<std::vector<HarmRule>> load_harm_table(const std::filesystem::path& file) {
   TROCAR_TRY(const config::TomlTable document, config::load_toml(file));
   TROCAR_TRY_STATUS(document.check_keys({"harms"}));
   TROCAR_TRY(const std::vector<config::TomlTable> rows, document.tables("harms"));
   std::vector<HarmRule> rules;
   for (const config::TomlTable& row : rows) {
     TROCAR_TRY_STATUS(
-        row.check_keys({"names", "tissues", "tasks", "grade", "notch", "stay", "stay_s", "reason", "source"}));
-    TROCAR_TRY(const std::vector<std::string> tasks, row.strings("tasks"));
+        row.check_keys({"names", "tissues", "targets", "grade", "notch", "stay", "stay_s", "reason", "source"}));
     TROCAR_TRY(HarmRule rule, read_rule(row));
-    if (tasks.empty() || std::find(tasks.begin(), tasks.end(), task) != tasks.end()) rules.push_back(std::move(rule));
+    TROCAR_TRY(rule.targets, row.strings("targets"));
+    rules.push_back(std::move(rule));
   }
   return rules;
 }

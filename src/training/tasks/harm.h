@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,6 +25,7 @@ std::optional<Harm> find_harm_grade(std::string_view name) noexcept;
 struct HarmRule {
   std::vector<anatomy::StructurePattern> names;  ///< Any of them; empty: by the tissue alone.
   std::vector<std::string> tissues;              ///< Any of them; empty: by the name alone.
+  std::vector<std::string> targets;              ///< Only tasks with one of these target tissues; empty: all.
   Harm grade = Harm::kMajor;
   std::optional<Harm> notch;            ///< If the specimen notch of a biopsy gun closes in it.
   std::optional<Harm> stay;             ///< If the needle stays in it for longer than `stay_s`.
@@ -34,16 +36,18 @@ struct HarmRule {
 
   /// `plain`: name of the label as anatomy::plain_name, without its side.
   bool matches(std::string_view plain, std::string_view tissue) const;
+  /// `target_tissues`: those of the task.
+  bool is_for(std::span<const std::string> target_tissues) const;
   bool operator==(const HarmRule&) const = default;
 };
 
 /// File in the data folder, beside the folder of the tasks.
 inline constexpr const char* kHarmFile = "harm.toml";
 
-/// The rows of the table that concern a task, in the table's order. Errors name file and row: an unknown key, grade or
-/// name, a row without names and tissues, a stay without a time.
-Result<std::vector<HarmRule>> load_harm_table(const std::filesystem::path& file, std::string_view task);
-/// The [[harms]] of a task's file: rows of the same form, without `tasks`.
+/// The rows of the table, in its order. Errors name file and row: an unknown key, grade or name, a row without names
+/// and tissues, a stay without a time.
+Result<std::vector<HarmRule>> load_harm_table(const std::filesystem::path& file);
+/// The [[harms]] of a task's file: rows of the same form, without `targets`.
 Result<std::vector<HarmRule>> read_harm_rules(const config::TomlTable& document);
 
 }  // namespace trocar::tasks

@@ -134,7 +134,7 @@ LabelHarm find_harm(const Task& task, const anatomy::Label& label) {
   if (is_organ(task, label) || is_target(task, label)) return {};
   const std::string plain = anatomy::without_side(anatomy::plain_name(label.name));
   for (const HarmRule& rule : task.harms)
-    if (rule.matches(plain, label.tissue))
+    if (rule.is_for(task.target_tissues) && rule.matches(plain, label.tissue))
       return {rule.grade, rule.notch.value_or(rule.grade), rule.stay.value_or(rule.grade), rule.stay_s, rule.reason};
   if (!task.harms.empty()) return {Harm::kMajor, Harm::kMajor, Harm::kMajor, 0.0, "it is not known what it is"};
   const Harm grade = risk != nullptr ? Harm::kMinor : Harm::kNone;

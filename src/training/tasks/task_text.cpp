@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "config/toml.h"
 #include "config/toml_writer.h"
@@ -49,6 +50,7 @@ class TaskReader {
     TROCAR_TRY_STATUS(read_scoring(task));
     TROCAR_TRY_STATUS(read_risks(task));
     TROCAR_TRY(std::vector<HarmRule> harms, read_harm_rules(document_));
+    const std::size_t harm_count = harms.size();
     task.harms.insert(task.harms.begin(), std::make_move_iterator(harms.begin()), std::make_move_iterator(harms.end()));
     TROCAR_TRY_STATUS(read_target(task));
     TROCAR_TRY_STATUS(read_exam(task));
@@ -56,10 +58,25 @@ class TaskReader {
     TROCAR_TRY_STATUS(detail::read_rules(document_, task));
     if (task.weights.contains("bevel") && !task.bevel)
       return fail("the bevel has a weight and no rule", document_.where(), "give [bevel], or omit the weight");
+    TROCAR_TRY_STATUS(check_harms(task, harm_count));
     return is_whole_ ? detail::read_level_of(document_, task) : Status();
   }
 
  private:
+  /// The organ and the target of a task are no harm in it: a row for them would never act.
+  Status check_harms(const Task& task, std::size_t count) const {
+    for (const HarmRule& rule : std::span(task.harms).first(count)) {
+      const auto is_wanted = [&](const std::string& name) {
+        return name == task.organ || std::ranges::find(task.target_tissues, name) != task.target_tissues.end();
+      };
+      const bool is_for_them = rule.name_texts.empty() ? std::ranges::all_of(rule.tissues, is_wanted)
+                                                       : std::ranges::all_of(rule.name_texts, is_wanted);
+      if (is_for_them)
+        return fail("a row of [[harms]] is for the task's organ or target, which are no harm in it", document_.where(),
+                    "take the row out, or give a label of it a harm in [[risks]]");
+    }
+    return {};
+  }
   Status text(const config::TomlTable& table, const char* key, std::string& value) const {
     if (!is_whole_ && !table.has(key)) return {};
     TROCAR_TRY(value, table.string(key));
@@ -244,7 +261,7 @@ class TaskReader {
 Result<Task> read_whole_task(const config::TomlTable& document, const std::string& name, const fs::path& tasks_folder) {
   Task task;
   task.name = name;
-  TROCAR_TRY(task.harms, load_harm_table(tasks_folder.parent_path() / kHarmFile, name));
+  TROCAR_TRY(task.harms, load_harm_table(tasks_folder.parent_path() / kHarmFile));
   TROCAR_TRY_STATUS(TaskReader(document, true).read(task));
   return task;
 }

@@ -71,10 +71,10 @@ AttemptEvent describe_action(const tasks::SubstanceTable& substances, const task
       told.text = "the patient breathes again";
       break;
     case tasks::ActionKind::kFire:
-      told.text = "the gun was fired";
+      told.text = action.depth_mm > 0.0 ? "the gun was fired" : "the gun was fired outside the body";
       break;
     case tasks::ActionKind::kLoad:
-      told.text = "the core was taken out, the gun is loaded";
+      told.text = "the gun was emptied and loaded";
       break;
   }
   return told;

@@ -65,7 +65,8 @@ TEST(Validity, HolmIsTooStrictForTwoExpertsAndThreeMetrics) {
   EXPECT_EQ(holm.uncorrected, 2u);
   EXPECT_EQ(validity_of(data, {0.05, Correction::kNone}).discriminating, 2u);
   EXPECT_EQ(validity_of(data).discriminating, 2u);
-  EXPECT_EQ(smallest_p_text(2, 12, 3, 0.05), "with groups of 2 and 12 people no two-sided p can be below 0.022");
+  EXPECT_EQ(smallest_p_text(2, 12, 3, 0.05),
+            "with groups of 2 and 12 people whose values all differ no two-sided p can be below 0.022");
   EXPECT_EQ(smallest_p_text(8, 12, 3, 0.05), "");
   EXPECT_EQ(smallest_p_text(0, 12, 3, 0.05), "");
 }

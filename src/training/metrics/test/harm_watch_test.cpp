@@ -218,6 +218,17 @@ TEST_F(Harms, PressingOnAWallIsNoHarmButOnBoneIs) {
   EXPECT_EQ(harm_words(watching.events()[0]), "the needle touched the right rib 9");
 }
 
+TEST_F(Harms, PressingOnBoneWithoutMovingTouchesIt) {
+  HarmWatch watching = watch();
+  watching.step(at({50.0, 9.9, 75.0}, 0.0));  // stops before the rib
+  EXPECT_TRUE(watching.events().empty());
+  Moment on_bone = at({50.0, 10.1, 75.0}, 0.1);
+  on_bone.pressed_mm = 0.2;  // what is pierced stays where it was
+  watching.step(on_bone);
+  ASSERT_EQ(watching.events().size(), 1U);
+  EXPECT_EQ(watching.events()[0].label, "rib_right_9");
+}
+
 TEST_F(Harms, AFastNeedleSkipsNothing) {
   HarmWatch watching = watch();
   watching.step(at({50.0, 50.0, 50.0}, 0.0));

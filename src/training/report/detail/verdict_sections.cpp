@@ -66,8 +66,7 @@ std::string verdict_facts(const storage::Session& session) {
   const scoring::Outcome& outcome = *session.outcome;
   std::string facts;
   if (outcome.is_scored())
-    facts = fmt::format("{} of 100 points, target {}", number_text(outcome.score, 0),
-                        outcome.target_reached ? "reached" : "missed");
+    facts = fmt::format("{} of 100 points, target {}", number_text(outcome.score, 0), scoring::target_words(outcome));
   if (!session.info.level.empty())
     facts += (facts.empty() ? "Level " : ", level ") + escape(title_words(session.info.level));
   return facts;

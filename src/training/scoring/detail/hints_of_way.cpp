@@ -145,11 +145,13 @@ void add_level_advice(const HintSubject& subject, std::vector<Advice>& advice) {
 void add_bevel_advice(const HintSubject& subject, std::vector<Advice>& advice) {
   const double points = subject.lost("bevel");
   if (points <= 0.0 || !subject.judged.bevel) return;
+  const double across_deg = subject.judged.bevel->to_fibres_deg;
   advice.push_back(
       {points,
-       fmt::format("The bevel stood {:.0f}° across the fibres of the {} and cut them: turn the needle about "
-                   "its axis before you insert it, so that the bevel faces the patient's side.",
-                   subject.judged.bevel->to_fibres_deg, anatomy::structure_words(subject.task().bevel->layer)),
+       fmt::format("The bevel stood {:.0f}° across the fibres of the {}{}: turn the needle about its axis before you "
+                   "insert it, so that the bevel faces the patient's side.",
+                   across_deg, anatomy::structure_words(subject.task().bevel->layer),
+                   across_deg > subject.task().bevel->tolerance_deg ? " and cut them" : ""),
        subject.judged.bevel->time_s});
 }
 
@@ -244,12 +246,12 @@ void add_economy_advice(const HintSubject& subject, std::vector<Advice>& advice)
   if (const double points = subject.lost("length"); points > 0.0)
     if (std::string text = travel_hint(subject, is_depth_told); !text.empty())
       advice.push_back({points, std::move(text)});
-  const bool is_finished = !subject.judged.cores.empty() || !subject.needle().is_biopsy;
-  if (const double points = subject.lost("time"); points > 0.0 && is_finished)
+  const bool has_finished = is_finished(subject.judged);
+  if (const double points = subject.lost("time"); points > 0.0 && has_finished)
     advice.push_back({points, fmt::format("It took {:.0f} s from the skin to the target: plan the path first, then go "
                                           "on without stopping.",
                                           subject.measured().time_s)});
-  if (const double points = subject.lost("dose"); points > 0.0 && is_finished)
+  if (const double points = subject.lost("dose"); points > 0.0 && has_finished)
     advice.push_back({points, fmt::format("The dose-area product was {:.1f} Gy cm²: press the pedal briefly, with few "
                                           "pulses a second, collimate, and work with the last image.",
                                           subject.find_part("dose")->value)});

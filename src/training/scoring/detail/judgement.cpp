@@ -145,19 +145,42 @@ std::optional<double> find_confirmation(const AttemptData& attempt) {
   return std::nullopt;
 }
 
-/// The sample at which the needle has reached its end: the shot, or that at which the right substance came back. Empty:
-/// the deepest one.
+std::optional<std::size_t> sample_at(const AttemptData& attempt, double time_s) {
+  if (attempt.samples.empty()) return std::nullopt;
+  const auto found = std::ranges::lower_bound(attempt.samples, time_s, {}, &telemetry::TickSample::time_s);
+  return std::min<std::size_t>(static_cast<std::size_t>(found - attempt.samples.begin()), attempt.samples.size() - 1);
+}
+
+/// Where the trainee gave up: the last look for what has to come back, or the deepest sample of the last insertion if
+/// the needle went on after it. Empty: it never was in the body.
+std::optional<std::size_t> find_last_end(const AttemptData& attempt) {
+  std::optional<std::size_t> end;
+  bool was_inside = false;
+  for (std::size_t n = 0; n < attempt.samples.size(); ++n) {
+    const telemetry::TickSample& sample = attempt.samples[n];
+    const bool is_inside = telemetry::is_in_body(sample);
+    if (is_inside && (!was_inside || !(sample.depth_mm <= attempt.samples[*end].depth_mm))) end = n;
+    was_inside = is_inside;
+  }
+  if (!end) return end;
+  for (const tasks::Action& action : attempt.actions) {
+    const bool is_look = action.kind == tasks::ActionKind::kDrawStylet || action.kind == tasks::ActionKind::kAspirate;
+    const auto look = sample_at(attempt, action.time_s);
+    if (is_look && look && *look > *end && telemetry::is_in_body(attempt.samples[*look])) end = look;
+  }
+  return end;
+}
+
+/// The sample at which the needle has reached its end: the shot, or that at which the right substance came back.
+/// Without them the place at which the trainee gave up; empty for a gun that was not fired: the deepest sample.
 std::optional<std::size_t> find_end(const AttemptData& attempt, std::optional<double> confirmed_s) {
   if (attempt.needle.is_biopsy) {  // the first shot in the body
     const auto is_inside = [&](std::size_t shot) { return telemetry::is_in_body(attempt.samples[shot]); };
     const auto shot = std::find_if(attempt.shots.begin(), attempt.shots.end(), is_inside);
     if (shot != attempt.shots.end()) return *shot;
   }
-  if (attempt.needle.is_biopsy || !confirmed_s) return std::nullopt;
-  const auto found = std::find_if(attempt.samples.begin(), attempt.samples.end(),
-                                  [&](const telemetry::TickSample& sample) { return sample.time_s >= *confirmed_s; });
-  if (found == attempt.samples.end()) return attempt.samples.size() - 1;
-  return static_cast<std::size_t>(found - attempt.samples.begin());
+  if (attempt.needle.is_biopsy) return std::nullopt;
+  return confirmed_s ? sample_at(attempt, *confirmed_s) : find_last_end(attempt);
 }
 
 /// Cores of the shots inside the body.

@@ -48,6 +48,8 @@ struct Judgement {
 
 /// Judges an attempt against its nearest expert path.
 Judgement judge(const AttemptData& attempt, std::size_t& expert);
+/// True if the needle has done what it was put in for: a core was taken, or the target was reached.
+bool is_finished(const Judgement& judged) noexcept;
 /// Score, verdict and advice that follow from a judgement.
 Outcome conclude(const Judgement& judged);
 

@@ -113,6 +113,58 @@ TEST(Bleeding, ATremblingTipAtTheSurfaceIsOnePuncture) {
   EXPECT_EQ(score_of_punctures(once, make_core_task(1), true).bleeding->passes, 1u);
 }
 
+/// The box patient with something else in a slab from y to y + 10 mm.
+anatomy::VirtualPatient patient_with(const char* name, const char* tissue, double from_y_mm) {
+  anatomy::VirtualPatient made = testing::make_box_patient();
+  made.label_table.labels.push_back({7, name, tissue, {}});
+  for (std::size_t n = 0; n < made.labels.voxels.size(); ++n) {
+    const double y_mm = made.labels.geometry.centre_mm(made.labels.geometry.index_of(n)).y();
+    if (y_mm > from_y_mm && y_mm < from_y_mm + 10.0) made.labels.voxels[n] = 7;
+  }
+  return made;
+}
+
+Outcome score_with(const anatomy::VirtualPatient& patient) {
+  BoxCase made{.task = make_core_task(1), .who = &patient};
+  made.task.target_label = "livertumor1";
+  const Punctures once = punctures_along({kPlan_P});
+  return made.score(once.samples, once.shots);
+}
+
+TEST(Bleeding, AnotherLesionOnTheWayThroughTheOrganIsInIt) {
+  EXPECT_EQ(score_with(patient_with("livertumor2", "liver_lesion", 30.0)).bleeding->passes, 1u);
+  EXPECT_EQ(score_with(patient_with("liver_cyst", "fluid", 30.0)).bleeding->passes, 1u);
+  EXPECT_EQ(score_with(patient_with("gallbladder", "gallbladder", 30.0)).bleeding->passes, 2u);
+}
+
+TEST(Bleeding, AnOrganThatBleedsIsAReason) {
+  anatomy::VirtualPatient patient = patient_with("spleen", "spleen", 12.0);
+  BoxCase made{.task = make_core_task(1), .who = &patient};
+  made.task.risks.push_back({"spleen", "", 5.0, false, tasks::Harm::kCritical});
+  const Punctures once = punctures_along({kPlan_P});
+  const Outcome outcome = made.score(once.samples, once.shots);
+  EXPECT_EQ(outcome.bleeding->risk, BleedingRisk::kHigh);
+  EXPECT_NE(outcome.bleeding->reasons.at(0).find("into the spleen"), std::string::npos);
+}
+
+TEST(Bleeding, AGrazedVesselIsAReason) {
+  const anatomy::VirtualPatient patient = [] {
+    anatomy::VirtualPatient made = testing::make_box_patient();
+    for (std::size_t n = 0; n < made.labels.voxels.size(); ++n) {
+      const Vec3 p_P = made.labels.geometry.centre_mm(made.labels.geometry.index_of(n));
+      if ((p_P - Vec3(55.6, 33.0, 50.0)).norm() < 6.0) made.labels.voxels[n] = 5;
+    }
+    return made;
+  }();
+  BoxCase made{.task = make_core_task(1), .who = &patient};
+  const Punctures once = punctures_along({shifted({0.3, 0.0, 0.0})});
+  const Outcome outcome = made.score(once.samples, once.shots);
+  ASSERT_EQ(outcome.harms.size(), 1u);
+  ASSERT_TRUE(outcome.harms[0].is_graze);
+  EXPECT_EQ(outcome.bleeding->risk, BleedingRisk::kRaised);
+  EXPECT_NE(outcome.bleeding->reasons.at(0).find("grazed a vessel"), std::string::npos);
+}
+
 TEST(Bleeding, IsHighAfterAVesselWasHit) {
   // The vessel lies at x 20 to 25 mm below 20 mm of depth.
   const Outcome outcome = score_of_punctures(punctures_along({shifted({-27.5, 0.0, 0.0})}), make_core_task(1), true);

@@ -47,6 +47,43 @@ TEST(Puncture, AConfirmedPlaceIsTheEndEvenIfTheNeedleWentDeeperBefore) {
   EXPECT_NEAR(part(puncture.score(attempt), "target").value, 0.0, 0.1);
 }
 
+TEST(Puncture, WithoutProofTheLastLookIsTheEnd) {
+  BoxCase puncture = make_puncture();
+  puncture.task.confirmed_by = tasks::Substance::kBile;
+  puncture.task.weights = {{"target", 50.0}, {"confirmation", 20.0}, {"length", 10.0}, {"time", 20.0}};
+  const Segment plan_P = make_box_plan().line_P;
+  std::vector<telemetry::TickSample> samples = make_attempt({plan_P.a, plan_P.b + Vec3(0.0, 30.0, 0.0)}).samples;
+  const Attempt again = make_attempt({plan_P.a, plan_P.b - Vec3(0.0, 6.0, 0.0)});
+  const double begin_s = samples.back().time_s + 0.001;
+  for (telemetry::TickSample sample : again.samples) {
+    sample.time_s += begin_s;
+    samples.push_back(sample);
+  }
+  const double look_s = begin_s + again.samples[again.fired].time_s;
+  const Outcome no_look = puncture.score(samples, {});
+  EXPECT_NEAR(part(no_look, "target").value, 5.0, 0.6) << "5 mm before the lesion, not 11 mm behind it";
+  EXPECT_FALSE(part(no_look, "time").is_judged);
+  EXPECT_EQ(part(no_look, "time").points, 0.0);
+  puncture.actions = {{look_s, tasks::ActionKind::kDrawStylet, 0.0, {}, {}, 45.0}};
+  const Outcome looked = puncture.score(samples, {});
+  EXPECT_NEAR(part(looked, "target").value, 5.0, 0.6);
+  EXPECT_NEAR(part(looked, "length").value, 81.0 + 45.0, 1.0) << "all of the way";
+  EXPECT_STREQ(target_words(looked), "missed");
+  puncture.actions[0].time_s = samples[samples.size() / 4].time_s;  // early in the first insertion
+  EXPECT_NEAR(part(puncture.score(samples, {}), "target").value, 5.0, 0.6) << "the needle went on after it";
+}
+
+TEST(Puncture, ATargetThatWasNotProvenIsNotCalledMissed) {
+  BoxCase puncture = make_puncture();
+  puncture.task.confirmed_by = tasks::Substance::kBile;
+  puncture.task.weights = {{"target", 60.0}, {"confirmation", 40.0}};
+  const Attempt attempt = make_attempt(make_box_plan().line_P);
+  EXPECT_STREQ(target_words(puncture.score(attempt)), "not proven");
+  const double at_s = attempt.samples[attempt.fired].time_s;
+  puncture.actions = {{at_s, tasks::ActionKind::kDrawStylet, 0.0, {tasks::Substance::kBile, 1.0}, {}, 51.0}};
+  EXPECT_STREQ(target_words(puncture.score(attempt)), "reached");
+}
+
 TEST(Puncture, TheNearestExpertPathCounts) {
   BoxCase puncture = make_puncture();
   const Vec3 beside_P(14.0, 0.0, 0.0);

@@ -140,6 +140,13 @@ TEST(Bevel, FibresRunAlongTheirStructure) {
   EXPECT_GT(fibres_P->dot(along_P), std::cos(3.0 * std::numbers::pi / 180.0))
       << "the box cuts the sac's ends obliquely";
   EXPECT_FALSE(find_fibres(task, patient, {0.0, 80.0, 0.0}));
+
+  const volume::GridGeometry& geometry = patient.labels.geometry;
+  const Vec3 top_P = geometry.centre_mm({geometry.size[0] / 2, geometry.size[1] / 2, geometry.size[2] - 1});
+  const Vec3 end_P = (top_P.z() / along_P.z()) * along_P;
+  const auto at_end_P = find_fibres(task, patient, end_P);
+  ASSERT_TRUE(at_end_P) << "the scan ends at the point";
+  EXPECT_GT(at_end_P->dot(along_P), std::cos(8.0 * std::numbers::pi / 180.0));
 }
 
 TEST(Bevel, IsTurnedAcrossTheFibresForAnyNeedle) {

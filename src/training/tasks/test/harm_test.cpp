@@ -46,8 +46,9 @@ TEST(HarmTable, HasAVerdictForEveryStructureInEveryTask) {
   for (const Task& task : *tasks)
     for (const anatomy::Label& label : labels) {
       const std::string plain = anatomy::without_side(anatomy::plain_name(label.name));
-      const bool is_named =
-          std::ranges::any_of(task.harms, [&](const HarmRule& rule) { return rule.matches(plain, label.tissue); });
+      const bool is_named = std::ranges::any_of(task.harms, [&](const HarmRule& rule) {
+        return rule.is_for(task.target_tissues) && rule.matches(plain, label.tissue);
+      });
       EXPECT_TRUE(is_named) << task.name << ": " << label.name << " (" << label.tissue << ")";
       EXPECT_FALSE(find_harm(task, label).reason.empty() && !is_organ(task, label) && !is_target(task, label))
           << task.name << ": " << label.name;
@@ -143,6 +144,36 @@ reason = "there is only one"
   EXPECT_EQ(again->risks, task->risks);
 }
 
+TEST(HarmTable, ACopyOfATaskUnderAnotherNameIsJudgedAlike) {
+  const auto tasks = load_tasks(tasks_folder());
+  ASSERT_TRUE(tasks);
+  for (const Task& task : *tasks) {
+    const auto text = read_file(tasks_folder() / (task.name + ".toml"));
+    ASSERT_TRUE(text);
+    const auto copy = parse_task(*text, "renamed", "renamed.toml", tasks_folder());
+    ASSERT_TRUE(copy) << copy.error().text();
+    for (const anatomy::Label& label : known_labels()) {
+      const LabelHarm wanted = find_harm(task, label);
+      const LabelHarm found = find_harm(*copy, label);
+      EXPECT_EQ(found.grade, wanted.grade) << task.name << ": " << label.name;
+      EXPECT_EQ(found.notch, wanted.notch) << task.name << ": " << label.name;
+      EXPECT_EQ(found.stay, wanted.stay) << task.name << ": " << label.name;
+    }
+  }
+}
+
+TEST(HarmTable, ARowForTheTasksOwnOrganIsRefused) {
+  const auto refused = [](const std::string& row) {
+    const std::string text = "base = \"liver-biopsy\"\n[[harms]]\n" + row + "grade = \"major\"\nreason = \"blood\"\n";
+    const auto task = parse_task(text, "own", "own.toml", tasks_folder());
+    return !task && task.error().text().find("no harm in it") != std::string::npos;
+  };
+  EXPECT_TRUE(refused("names = [\"liver\"]\n"));
+  EXPECT_TRUE(refused("tissues = [\"liver\", \"liver_lesion\"]\n"));
+  EXPECT_FALSE(refused("names = [\"liver_cyst\"]\n"));
+  EXPECT_FALSE(refused("tissues = [\"liver\", \"spleen\"]\n"));
+}
+
 TEST(HarmTable, AnUnknownStructureIsMajor) {
   EXPECT_EQ(find_harm(testing::liver_biopsy(), labelled("thing", "blubber")).grade, Harm::kMajor);
 }
@@ -151,7 +182,7 @@ TEST(HarmTable, DamagedRowsAreRefused) {
   const TemporaryFolder folder;
   const auto error_of = [&](const std::string& row) {
     EXPECT_TRUE(write_file_atomically(folder / kHarmFile, "[[harms]]\n" + row));
-    const auto rules = load_harm_table(folder / kHarmFile, "ptcd");
+    const auto rules = load_harm_table(folder / kHarmFile);
     return rules ? std::string("no error") : rules.error().text();
   };
   const std::string good = "tissues = [\"lung\"]\ngrade = \"major\"\nreason = \"air\"\n";
@@ -162,7 +193,7 @@ TEST(HarmTable, DamagedRowsAreRefused) {
   EXPECT_NE(error_of(good + "stay = \"critical\"\n").find("belong together"), std::string::npos);
   EXPECT_NE(error_of(good + "names = [\"left_lung\"]\n").find("no label can be named"), std::string::npos);
   EXPECT_NE(error_of(good + "tissue = \"lung\"\n").find("did you mean"), std::string::npos);
-  EXPECT_NE(load_harm_table(folder / "none.toml", "ptcd").error().text().find("none.toml"), std::string::npos);
+  EXPECT_NE(load_harm_table(folder / "none.toml").error().text().find("none.toml"), std::string::npos);
 }
 
 }  // namespace
