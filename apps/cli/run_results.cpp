@@ -1,5 +1,6 @@
 #include "run_results.h"
 
+#include "core/log.h"
 #include "core/version.h"
 #include "io/patient/patient_source.h"
 #include "results/sessions.h"
@@ -19,6 +20,11 @@ Result<results::Repository> open_for_person(const std::string& person, const std
                                             attempt::RunOptions& run) {
   TROCAR_TRY(results::Repository repository, open_results(url, database::Missing::kRefuse));
   TROCAR_TRY(const results::Person found, results::get_person_named(repository, person));
+  if (!found.is_simulated)
+    log_warning(
+        "{} is not marked as simulated: the scripted operator's attempt counts as if {} had made it. People whose "
+        "attempts are scripted are added with trocar results add --simulated",
+        found.name, found.name);
   run.person_id = found.id;
   run.attempt_id = results::make_id();
   return repository;

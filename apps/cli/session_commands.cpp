@@ -90,7 +90,8 @@ report::ReportStory story_of(const storage::Session& session,
   report::ReportStory story;
   if (const auto substances = tasks::load_substances(data_dir() / "substances.toml"))
     for (const tasks::Action& action : session.actions)
-      story.actions.push_back({action.time_s, action.depth_mm, attempt::describe_action(*substances, action).text});
+      story.actions.push_back(
+          {action.time_s, action.depth_mm, attempt::describe_action(*substances, action, patient.get()).text});
   if (patient == nullptr) return story;
   const auto the_case = [&]() -> Result<cases::Case> {
     TROCAR_TRY(const auto parameters, attempt::replay_parameters(session, {}));
@@ -100,6 +101,8 @@ report::ReportStory story_of(const storage::Session& session,
     print_warning(fmt::format("the report has no steps: {} — {}", the_case.error().what, file));
     return story;
   }
+  story.title = the_case->task.title;
+  story.needs_image = the_case->task.guidance == tasks::Guidance::kUltrasound;
   story.steps = report::step_times(session, the_case->task, *patient, the_case->needle, the_case->plan);
   return story;
 }

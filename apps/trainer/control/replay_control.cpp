@@ -249,6 +249,8 @@ Status ReplayControl::save_report(const std::filesystem::path& file) const {
   const storage::Session& session = replay_.session();
   const cases::Case& the_case = open_->the_case;
   report::ReportStory story;
+  story.title = the_case.task.title;
+  story.needs_image = the_case.task.guidance == tasks::Guidance::kUltrasound;
   for (const tasks::Action& action : session.actions)
     story.actions.push_back({action.time_s, action.depth_mm,
                              attempt::describe_action(the_case.substances, action, the_case.patient.get()).text});

@@ -242,6 +242,8 @@ Result<Case> prepare_case(std::shared_ptr<const anatomy::VirtualPatient> patient
         fmt::format("the patient does not support the task {}: {}", made.task.name, fmt::join(readiness.reasons, "; ")),
         patient->name, "see trocar patient check");
   TROCAR_TRY_STATUS(warn_of_unknown_names(made.task, *patient));
+  for (const std::string& rule : tasks::unserved_rules(made.task, *patient))
+    log_warning("task {}, patient {}: {}", made.task.name, patient->name, rule);
   made.is_parenchymal = readiness.is_parenchymal;
   const anatomy::NeedlePath* brought = path_for(made, *patient);
   if (made.task.expert_path.empty() && brought != nullptr) made.task.expert_path = brought->name;

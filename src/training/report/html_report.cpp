@@ -18,10 +18,10 @@ std::string html_report(const storage::Session& session, const anatomy::VirtualP
   std::string page =
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"><title>";
-  page += escape(title_words(session.info.task)) + ": session report</title><style>";
+  page += escape(title_of(session, story)) + ": session report</title><style>";
   page += style_sheet();
   page += "</style></head><body><main>";
-  page += page_header(session);
+  page += page_header(session, story);
   page += verdict_section(session);
   page += advice_section(session);
   page += score_section(session);

@@ -29,6 +29,8 @@ struct ActionLine {
 struct ReportStory {
   std::vector<StepTime> steps;      ///< In the task's order; empty: the task has none, or the case is not at hand.
   std::vector<ActionLine> actions;  ///< By time.
+  std::string title = {};           ///< Of the task; empty: the case is not at hand.
+  bool needs_image = true;          ///< The needle is guided by ultrasound.
 };
 
 /// True for the hint of an attempt at which nothing is to be improved: "Well done: ...".

@@ -32,7 +32,7 @@ std::string verdict_text(const storage::Session& session) {
 }
 
 std::string step_text(const StepTime& step) {
-  if (!step.begun_s) return "not begun";
+  if (!step.begun_s) return "not counted, a step before it was not done";
   if (!step.done_s) return fmt::format("begun at {:.1f} s, not done", *step.begun_s);
   return fmt::format("begun at {:.1f} s, done at {:.1f} s, took {:.1f} s", *step.begun_s, *step.done_s,
                      *step.done_s - *step.begun_s);
@@ -42,8 +42,9 @@ std::string step_text(const StepTime& step) {
 
 std::string text_report(const storage::Session& session, const ReportStory& story) {
   const storage::SessionInfo& info = session.info;
-  std::string text = fmt::format("{} on {} by {}, {}{}\n", info.task, info.patient_name, info.operator_name,
-                                 info.started_utc, info.level.empty() ? "" : ", level " + info.level);
+  std::string text =
+      fmt::format("{} on {} by {}, {}{}\n", story.title.empty() ? info.task : story.title, info.patient_name,
+                  info.operator_name, info.started_utc, info.level.empty() ? "" : ", level " + info.level);
   text += verdict_text(session);
   if (!story.steps.empty()) text += "steps:\n";
   for (std::size_t n = 0; n < story.steps.size(); ++n)

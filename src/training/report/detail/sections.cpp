@@ -98,12 +98,16 @@ std::string tissue_tables(const storage::Session& session) {
 
 }  // namespace
 
-std::string page_header(const storage::Session& session) {
+std::string title_of(const storage::Session& session, const ReportStory& story) {
+  return story.title.empty() ? title_words(session.info.task) : story.title;
+}
+
+std::string page_header(const storage::Session& session, const ReportStory& story) {
   const storage::SessionInfo& info = session.info;
   return fmt::format(
       "<header><h1>{}: session report</h1><dl class=\"facts\">{}{}{}{}{}</dl>"
       "<p class=\"note\">Trocar is a training simulator, not a medical device.</p></header>",
-      escape(title_words(info.task)), fact("Patient", escape(info.patient_name)),
+      escape(title_of(session, story)), fact("Patient", escape(info.patient_name)),
       fact("Operator", escape(info.operator_name)), fact("Level", escape(title_words(info.level))),
       fact("Date", date_text(info.started_utc)), fact("Trocar", escape(info.program_version)));
 }

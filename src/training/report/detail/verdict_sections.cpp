@@ -163,7 +163,7 @@ std::string steps_section(const storage::Session& session, const ReportStory& st
       "asks for held at the same time.";
   const bool is_all_done =
       std::ranges::all_of(story.steps, [](const StepTime& step) { return step.done_s.has_value(); });
-  if (session.transducer.empty() && !is_all_done)
+  if (story.needs_image && session.transducer.empty() && !is_all_done)
     out += " No transducer was recorded: a step that needs its image, and those after it, cannot be done.";
   return out + "</p></section>";
 }

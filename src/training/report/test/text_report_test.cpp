@@ -25,7 +25,7 @@ TEST(TextReport, HasTheOrderOfReading) {
             "steps:\n"
             "  1. Find the lesion: begun at 0.0 s, done at 2.5 s, took 2.5 s\n"
             "  2. Fire: begun at 2.5 s, not done\n"
-            "  3. Withdraw: not begun\n"
+            "  3. Withdraw: not counted, a step before it was not done\n"
             "actions:\n"
             "  1.5 s, 12.2 mm deep: aspirated: bile\n"
             "interruption at 3.00 s: 0.50 s, the server was away\n"
