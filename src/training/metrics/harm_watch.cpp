@@ -73,6 +73,7 @@ HarmWatch::HarmWatch(const tasks::Task& task, const anatomy::VirtualPatient& pat
   for (const anatomy::Label& label : patient.label_table.labels) {
     harms_[label.id] = tasks::find_harm(task, label);
     is_bone_[label.id] = label.tissue == "bone";
+    is_vessel_[label.id] = label.tissue == "vessel";
   }
   tolerance_mm_ = std::max(kLeastTolerance_mm, patient.labels.geometry.spacing_mm.maxCoeff());
 }
@@ -283,12 +284,24 @@ void HarmWatch::fire(const Moment& moment) {
 }
 
 void HarmWatch::note(const tasks::Action& action) {
-  if (action.result.substance == tasks::Substance::kNothing) return;
-  const auto id = volume::sample_nearest<std::uint8_t>(patient_->labels, action.tip_P, 0);
-  if (event_of_[id] < 0) return;
-  HarmEvent& event = events_[static_cast<std::size_t>(event_of_[id])];
-  event.is_graze = false;
-  raise(event, harms_[id].grade);
+  const tasks::Substance substance = action.result.substance;
+  if (substance == tasks::Substance::kNothing) return;
+  const Vec3 axis_P =
+      tip_P_ && (*tip_P_ - skin_P_).norm() > 0.0 ? Vec3((*tip_P_ - skin_P_).normalized()) : Vec3::Zero();
+  std::bitset<256> in_bevel;
+  bool has_vessel = false;
+  for (double back_mm = 0.0; back_mm <= tasks::bevel_opening_mm(needle_); back_mm += kNotchStep_mm) {
+    const auto id = volume::sample_nearest<std::uint8_t>(patient_->labels, action.tip_P - back_mm * axis_P, 0);
+    in_bevel[id] = event_of_[id] >= 0;
+    has_vessel = has_vessel || (in_bevel[id] && is_vessel_[id]);
+  }
+  const bool is_of_vessel = substance == tasks::Substance::kBlood && has_vessel;  // else of an organ, by a syringe
+  for (std::size_t id = 1; id < in_bevel.size(); ++id) {
+    if (!in_bevel[id] || is_vessel_[id] != is_of_vessel) continue;
+    HarmEvent& event = events_[static_cast<std::size_t>(event_of_[id])];
+    event.is_graze = false;
+    raise(event, harms_[id].grade);
+  }
 }
 
 std::vector<HarmEvent> HarmWatch::take_news() {

@@ -49,7 +49,7 @@ class HarmWatch {
   void step(const Moment& moment);
   /// The gun was fired at this moment; the stylet goes straight on from the tip and stops at bone.
   void fire(const Moment& moment);
-  /// Something came out of the needle: it was no graze of the structure that the tip is in.
+  /// Something came out of the needle: it was no graze of the structure that the bevel is in.
   void note(const tasks::Action& action);
 
   /// All events so far, the first touch first.
@@ -73,7 +73,7 @@ class HarmWatch {
   const anatomy::VirtualPatient* patient_;
   tasks::Needle needle_;
   std::array<tasks::LabelHarm, 256> harms_{};
-  std::array<bool, 256> is_bone_{};
+  std::array<bool, 256> is_bone_{}, is_vessel_{};
   double tolerance_mm_ = 1.0;                              ///< One voxel, at least 1 mm.
   std::array<std::shared_ptr<const Depths>, 256> depths_;  ///< Of each label, about the place last looked at.
   std::vector<HarmEvent> events_;

@@ -185,24 +185,48 @@ std::string marker_shape(std::size_t number, double x, double y) {
   }
 }
 
+double label_width(const PlotMarker& marker) {
+  return text_width(marker.label, kFont + 1.0) + 12.0;
+}
+
+/// The markers whose labels fit beside each other; those of the lowest peaks are left out.
+std::vector<std::size_t> labelled_markers(const Plot& plot, double room) {
+  std::vector<std::size_t> labelled;
+  double width = 0.0;
+  for (std::size_t i = 0; i < plot.markers.size(); ++i) {
+    if (plot.markers[i].label.empty()) continue;
+    labelled.push_back(i);
+    width += label_width(plot.markers[i]);
+  }
+  while (width > room && !labelled.empty()) {
+    const auto lowest = std::ranges::min_element(labelled, {}, [&](std::size_t i) { return plot.markers[i].at.y(); });
+    width -= label_width(plot.markers[*lowest]);
+    labelled.erase(lowest);
+  }
+  return labelled;
+}
+
 /// Markers with labels above them, spread to avoid overlap.
 std::string draw_markers(const Plot& plot, const Frame& frame) {
+  const AxisRange room{frame.left + 2.0, frame.right - 2.0};
+  const std::vector<std::size_t> labelled = labelled_markers(plot, room.high - room.low);
   std::vector<double> at;
   std::vector<double> widths;
-  for (const PlotMarker& marker : plot.markers) {
-    at.push_back(frame.px(marker.at.x()));
-    widths.push_back(text_width(marker.label, kFont + 1.0) + 12.0);
+  for (const std::size_t i : labelled) {
+    at.push_back(frame.px(plot.markers[i].at.x()));
+    widths.push_back(label_width(plot.markers[i]));
   }
-  const std::vector<double> centers = spread_labels(at, widths, {frame.left + 2.0, frame.right - 2.0});
+  const std::vector<double> centers = spread_labels(at, widths, room);
   std::string out;
-  for (std::size_t i = 0; i < plot.markers.size(); ++i) {
-    const double y = frame.py(plot.markers[i].at.y());
+  for (std::size_t i = 0; i < plot.markers.size(); ++i)
+    out += marker_shape(i, frame.px(plot.markers[i].at.x()), frame.py(plot.markers[i].at.y()));
+  for (std::size_t n = 0; n < labelled.size(); ++n) {
+    const double y = frame.py(plot.markers[labelled[n]].at.y());
     const double label_y = y - 20.0;
-    out += fmt::format("<line class=\"lead\" x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\"/>", at[i], y - 5.0,
-                       centers[i], label_y + 4.0);
-    out += marker_shape(i, at[i], y);
+    out += fmt::format("<line class=\"lead\" x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\"/>", at[n], y - 5.0,
+                       centers[n], label_y + 4.0);
     out += fmt::format("<text class=\"marklabel\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>",
-                       centers[i], label_y, escape(plot.markers[i].label));
+                       centers[n], label_y, escape(plot.markers[labelled[n]].label));
   }
   return out;
 }

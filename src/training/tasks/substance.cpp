@@ -95,10 +95,14 @@ Result<SubstanceTable> load_substances(const std::filesystem::path& file) {
   return table;
 }
 
+double bevel_opening_mm(const Needle& needle) noexcept {
+  const double bevel_rad = std::clamp(needle.bevel_deg, 5.0, 90.0) * std::numbers::pi / 180.0;
+  return std::max(0.2, needle.outer_diameter_mm / std::tan(bevel_rad));
+}
+
 Return what_returns(const SubstanceTable& table, const anatomy::VirtualPatient& patient, const Needle& needle,
                     const Vec3& tip_P, const Vec3& axis_P, bool is_aspirated) {
-  const double bevel_rad = std::clamp(needle.bevel_deg, 5.0, 90.0) * std::numbers::pi / 180.0;
-  const double opening_mm = std::max(0.2, needle.outer_diameter_mm / std::tan(bevel_rad));
+  const double opening_mm = bevel_opening_mm(needle);
   std::array<int, kSubstanceNames.size()> points{};
   for (int n = 0; n < kPoints; ++n) {
     const double back_mm = opening_mm * n / (kPoints - 1);

@@ -52,9 +52,11 @@ struct Return {
   bool operator==(const Return&) const = default;
 };
 
-/// What comes out of a needle whose stylet is out, or into a syringe (`is_aspirated`). The opening reaches from the tip
-/// back over the bevel, outer diameter / tan(bevel angle); tissue that closes it gives nothing. The substance with the
-/// largest part of the opening comes. Frame P.
+/// Length of the opening from the tip back over the bevel: outer diameter / tan(bevel angle).
+double bevel_opening_mm(const Needle& needle) noexcept;
+
+/// What comes out of a needle whose stylet is out, or into a syringe (`is_aspirated`). Tissue that closes the opening
+/// gives nothing. The substance with the largest part of the opening comes. Frame P.
 Return what_returns(const SubstanceTable& table, const anatomy::VirtualPatient& patient, const Needle& needle,
                     const Vec3& tip_P, const Vec3& axis_P, bool is_aspirated);
 

@@ -140,6 +140,21 @@ TEST_F(Harms, WhatComesBackIsNoGraze) {
   EXPECT_EQ(watching.events()[0].grade, Harm::kCritical);
 }
 
+TEST_F(Harms, BloodThatRunsFromTheVeinBehindTheTipIsNoGraze) {
+  HarmWatch watching = watch();
+  watching.step(at({90.0, 28.7, 50.0}, 0.1));
+  ASSERT_EQ(watching.events().size(), 1U);
+  ASSERT_TRUE(watching.events()[0].is_graze);
+  const auto look = [&](tasks::Substance substance) {
+    watching.note({0.2, tasks::ActionKind::kDrawStylet, 0.0, {substance, 0.6}, Vec3(90.0, 32.2, 50.0), 32.2});
+  };
+  look(tasks::Substance::kBile);  // not of the vein
+  EXPECT_TRUE(watching.events()[0].is_graze);
+  look(tasks::Substance::kBlood);
+  EXPECT_FALSE(watching.events()[0].is_graze);
+  EXPECT_EQ(watching.events()[0].grade, Harm::kMinor);
+}
+
 TEST_F(Harms, TremorDoesNotEndAStay) {
   HarmWatch watching = watch();
   for (double y_mm = 0.0; y_mm < 40.0; y_mm += 0.2) watching.step(at({92.0, y_mm, 50.0}, y_mm / 20.0));

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "anatomy/structure_words.h"
@@ -61,6 +62,31 @@ std::vector<PlotLine> event_lines(const storage::Session& session, bool are_name
     if (shot < session.samples.size()) lines.push_back({session.samples[shot].time_s, are_named ? "fired" : ""});
   std::sort(lines.begin(), lines.end(), [](const PlotLine& a, const PlotLine& b) { return a.x < b.x; });
   return lines;
+}
+
+/// Peaks by depth. Those of one layer that lie together, of several insertions, have one label, at the highest.
+std::vector<PlotMarker> puncture_markers(const storage::Session& session) {
+  constexpr double kTogether_mm = 4.0;
+  std::vector<Puncture> punctures = find_punctures(session);
+  std::erase_if(punctures, [](const Puncture& one) { return !Point2(one.depth_mm, one.resistance_n).allFinite(); });
+  std::ranges::sort(punctures, {}, &Puncture::depth_mm);
+  std::vector<PlotMarker> markers;
+  for (const Puncture& puncture : punctures) {
+    double low_n = puncture.resistance_n;
+    bool is_highest = true;
+    for (const Puncture& other : punctures) {
+      if (other.layer != puncture.layer || std::abs(other.depth_mm - puncture.depth_mm) > kTogether_mm) continue;
+      low_n = std::min(low_n, other.resistance_n);
+      const bool is_higher = other.resistance_n > puncture.resistance_n ||
+                             (other.resistance_n == puncture.resistance_n && other.time_s < puncture.time_s);
+      is_highest = is_highest && !is_higher;
+    }
+    const std::string low = number_text(low_n, 2), high = number_text(puncture.resistance_n, 2);
+    const std::string force = low == high ? high : low + "\u2013" + high;
+    markers.push_back({{puncture.depth_mm, puncture.resistance_n},
+                       is_highest ? fmt::format("{} {} N", words(anatomy::layer_words(puncture.layer)), force) : ""});
+  }
+  return markers;
 }
 
 template <class Value>
@@ -124,15 +150,7 @@ std::string force_depth_figure(const storage::Session& session) {
       series.points.emplace_back(session.samples[i].depth_mm, telemetry::axial_resistance_n(session.samples[i]));
     plot.series.push_back(std::move(series));
   }
-  std::vector<Puncture> punctures = find_punctures(session);
-  std::sort(punctures.begin(), punctures.end(),
-            [](const Puncture& a, const Puncture& b) { return a.depth_mm < b.depth_mm; });
-  for (const Puncture& puncture : punctures) {
-    const Point2 peak(puncture.depth_mm, puncture.resistance_n);
-    if (!peak.allFinite()) continue;
-    plot.markers.push_back(
-        {peak, fmt::format("{} {} N", words(anatomy::layer_words(puncture.layer)), number_text(peak.y(), 2))});
-  }
+  plot.markers = puncture_markers(session);
   return figure(to_svg(plot),
                 "Forces on tip and shaft along the needle during insertion; positive pushes the needle out. Each "
                 "marked peak is a puncture. Stripes: tissue at the tip.");
