@@ -165,6 +165,9 @@ Result<std::vector<metrics::MetricValue>> measure_session(const MetricsArguments
   }
   TROCAR_TRY_STATUS(find_patient(session.info, arguments, measured));
   TROCAR_TRY_STATUS(complete(arguments, measured));
+  const auto& needle = measured.context.needle;
+  const bool is_biopsy = needle ? needle->is_biopsy : !session.shots.empty();
+  measured.context.end_s = storage::end_s_of(session, measured.context.task, is_biopsy);
   metrics::MeasureRun run(measured.context);
   storage::walk_moments(session, [&](const metrics::Moment& moment) { run.step(moment); });
   return run.report();

@@ -8,6 +8,7 @@
 
 #include "config/detail/toml_library.h"
 #include "config/detail/toml_text.h"
+#include "config/nearest_word.h"
 #include "core/files/input_file.h"
 
 namespace trocar::config {
@@ -91,7 +92,7 @@ bool TomlTable::has(std::string_view key) const {
 Status TomlTable::check_keys(const std::vector<std::string_view>& known) const {
   for (const std::string& key : keys()) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-    const std::string_view nearest = detail::nearest_word(key, known);
+    const std::string_view nearest = nearest_word(key, known);
     return fail("unknown key", TomlNodes{*this}.place(key),
                 nearest.empty() ? fmt::format("known are: {}", fmt::join(known, ", "))
                                 : fmt::format("did you mean \"{}\"?", nearest));

@@ -126,6 +126,18 @@ Status warn_of_unknown_names(const tasks::Task& task, const anatomy::VirtualPati
   for (const tasks::HarmRule& rule : task.harms)
     for (const std::string& name : rule.name_texts)
       if (!name.ends_with('*') && !name.ends_with('#')) named.push_back(name);
+  const auto lacks_tissue = [&](const std::string& tissue) {
+    return std::ranges::none_of(patient.label_table.labels, [&](const auto& label) { return label.tissue == tissue; });
+  };
+  const auto tell = [&](const std::string& tissue) {
+    if (lacks_tissue(tissue))
+      log_warning("task {}: no structure of this patient is of the tissue {}: its harm has no effect", task.name,
+                  tissue);
+  };
+  for (const tasks::RiskStructure& risk : task.risks)
+    if (risk.harm && !risk.tissue.empty()) tell(risk.tissue);
+  for (const tasks::HarmRule& rule : task.harms)
+    if (rule.is_own) std::ranges::for_each(rule.tissues, tell);
   for (const std::string& name : named) {
     const auto is_it = [&](const anatomy::Label& label) {
       return anatomy::plain_name(label.name) == anatomy::plain_name(name);
@@ -221,6 +233,10 @@ Result<Case> load_tables(const CaseOptions& options) {
   TROCAR_TRY_STATUS(apply_level(made, options.level));
   TROCAR_TRY_STATUS(apply_posture(made, options.posture));
   TROCAR_TRY(made.needle, find_needle(made.task, options.needle, data / "needles.toml"));
+  if (made.needle.is_biopsy && made.task.confirmed_by != tasks::Substance::kNothing)
+    return fail(fmt::format("the task {} is confirmed by {}, and the needle {} takes cores", made.task.name,
+                            tasks::substance_words(made.task.confirmed_by), made.needle.name),
+                "task " + made.task.name, "take confirmed_by out, or choose a needle with a stylet");
   TROCAR_TRY(made.substances, tasks::load_substances(data / "substances.toml"));
   const bool is_own = options.tissue_file.empty() && options.profile.empty() && has_own_tissues(options.patient_folder);
   const fs::path tissues = options.tissue_file.empty() ? data / "tissues.toml" : fs::path(options.tissue_file);

@@ -23,7 +23,6 @@ constexpr double kSameStay_s = 0.5;     // a needle that left for less has staye
 constexpr double kHarmMoved_mm = 0.25;  // a needle that moved less is in the same structures
 constexpr double kFastStep_mm = 1.0;    // the tip's way between two moments is tested, too
 constexpr double kFarthest_mm = 500.0;  // of the shaft
-constexpr double kToBone_mm = 0.5;      // from a tip that presses on bone to its label
 constexpr double kNotchStep_mm = 0.25;
 
 bool can_harm(const tasks::LabelHarm& harm) noexcept {
@@ -246,8 +245,7 @@ void HarmWatch::step(const Moment& moment) {
 
 /// A tip that presses on bone does not move: it is looked at in every moment.
 void HarmWatch::touch_bone(const Moment& moment) {
-  const Vec3 ahead_P = moment.tip_P + (moment.pressed_mm > 0.0 ? kToBone_mm : 0.0) * moment.axis_P;
-  const auto id = volume::sample_nearest<std::uint8_t>(patient_->labels, ahead_P, 0);
+  const std::uint8_t id = detail::label_ahead(*patient_, moment);
   if (!is_bone_[id] || !can_harm(harms_[id])) return;
   HarmEvent& event = event_of(id, *moment.depth_mm, moment.time_s, false);
   event.is_graze = false;

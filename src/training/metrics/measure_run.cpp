@@ -72,8 +72,8 @@ bool MeasureRun::complete(Moment& moment) const {
   moment.axis_P /= length;
   drop_invalid_parts(moment);
   if (const anatomy::VirtualPatient* patient = context_.patient) {
-    moment.label =
-        volume::sample_nearest<std::uint8_t>(patient->labels, moment.tip_P - moment.pressed_mm * moment.axis_P, 0);
+    const double pierced_mm = std::max(moment.pressed_mm, detail::kInside_mm);
+    moment.label = volume::sample_nearest<std::uint8_t>(patient->labels, moment.tip_P - pierced_mm * moment.axis_P, 0);
     if (!moment.depth_mm) moment.depth_mm = detail::depth_in_body_mm(*patient, moment.tip_P, moment.axis_P);
   }
   if (moment.depth_mm) moment.depth_mm = std::max(0.0, *moment.depth_mm);
@@ -130,13 +130,13 @@ void MeasureRun::follow_entry(const Step& step) {
 
 void MeasureRun::follow_end(const Step& step) {
   const Moment& now = step.now;
-  if (is_fired_) return;
+  if (is_over_) return;
   const auto take = [&] {
     end_ = now;
     end_entry_P_ = step.is_inside() ? entry_P_ : std::nullopt;
   };
-  if (context_.fired_s && now.time_s >= *context_.fired_s) {
-    is_fired_ = true;
+  if (context_.end_s && now.time_s >= *context_.end_s) {
+    is_over_ = true;
     return take();
   }
   if (now.depth_mm) {

@@ -42,7 +42,7 @@ class MeasureRun {
   std::optional<Vec3> entry_P_;  ///< Of the present insertion.
   std::optional<Moment> end_;
   std::optional<Vec3> end_entry_P_;
-  bool is_fired_ = false;
+  bool is_over_ = false;
   double nearest_mm_ = 0.0;  ///< Without depth: of the end to the end of an expert path.
 };
 

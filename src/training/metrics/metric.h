@@ -92,8 +92,8 @@ struct MetricContext {
   std::vector<ExpertPath> expert_paths;
   std::optional<ImagePlane> plane;
   std::vector<std::string> layer_names;  ///< Names of the layers in events, by id.
-  std::optional<double> fired_s;         ///< Recording time at which the biopsy gun was fired first.
-  std::vector<double> shots_s;           ///< Of all its shots, in order.
+  std::optional<double> end_s;  ///< Recording time of the end (scoring/attempt_end.h); empty: the deepest moment.
+  std::vector<double> shots_s;  ///< Of all its shots, in order.
 
   const std::string* layer_name(std::uint8_t id) const noexcept {
     return id < layer_names.size() ? &layer_names[id] : nullptr;
@@ -112,7 +112,7 @@ struct Step {
 
 /// End position of the needle and what follows from it, for metrics of the final position.
 struct RunEnd {
-  /// The end: the shot of the gun, else the deepest moment, else (no depth) the moment nearest to the end of an expert
+  /// The end: MetricContext::end_s, else the deepest moment, else (no depth) the moment nearest to the end of an expert
   /// path, else none.
   std::optional<Moment> moment;
   std::optional<Vec3> entry_P;        ///< Where the needle crossed the skin at its last entry before the end.

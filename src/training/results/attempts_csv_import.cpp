@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <type_traits>
 
+#include "config/nearest_word.h"
 #include "core/files/atomic_file.h"
 #include "core/parse_number.h"
 #include "learning/history.h"
@@ -20,7 +22,8 @@ namespace {
 
 constexpr std::size_t kMostBytes = std::size_t{1} << 30;
 constexpr const char* kUseExport = "use a file of trocar results export";
-constexpr double kRoundOff = 1e-6;  ///< Of points.
+constexpr double kRoundOff = 1e-6;       ///< Of points.
+constexpr double kScoreRoundOff = 0.01;  ///< Of a sum of points.
 
 constexpr double kLongest_s = 86'400.0;  ///< Of an attempt: a day.
 
@@ -55,6 +58,18 @@ Measure measure_of(const std::string& column, double value) {
   const std::size_t unit = column.find(" (");
   if (unit == std::string::npos || !column.ends_with(')')) return {column, {}, value};
   return {column.substr(0, unit), column.substr(unit + 2, column.size() - unit - 3), value};
+}
+
+/// A metric of the catalogue in another unit, or one that is spelled almost like one of it; empty: neither. Others are
+/// of another version of the program.
+std::string fault_of_metric(const Measure& column) {
+  std::vector<std::string_view> names;
+  for (const metrics::MetricDescription& known : metrics::metric_catalogue()) {
+    if (column.name == known.name) return column.unit == known.unit ? "" : fmt::format("its unit is {}", known.unit);
+    names.emplace_back(known.name);
+  }
+  const std::string_view nearest = config::nearest_word(column.name, names);
+  return nearest.empty() ? std::string() : fmt::format("did you mean \"{}\"?", nearest);
 }
 
 /// The rows of a file with the places of its columns.
@@ -107,7 +122,12 @@ class Table {
         return fail(fmt::format("there is no column \"{}\"", name), place(0, ""), "correct its name, or remove it");
       if (!columns_.emplace(name, n).second)
         return fail(fmt::format("the column \"{}\" occurs twice", name), place(0, ""), "remove one");
-      if (name.starts_with(kMetricColumn) && !metrics.insert(measure_of(name, 0.0).name).second)
+      if (!name.starts_with(kMetricColumn)) continue;
+      const Measure metric = measure_of(name.substr(kMetricColumn.size()), 0.0);
+      if (const std::string fault = fault_of_metric(metric); !fault.empty())
+        return fail(fmt::format("the metric \"{}\" is unknown: {}", name.substr(kMetricColumn.size()), fault),
+                    place(0, ""), "correct it, or remove the column");
+      if (!metrics.insert(metric.name).second)
         return fail(fmt::format("the metric of the column \"{}\" occurs twice", name), place(0, ""),
                     "leave the unit in which it is measured");
     }
@@ -207,6 +227,11 @@ Result<AttemptRecord> read_row(const Table& table, std::size_t row) {
   attempt.program_version = table.text(row, "version");
   TROCAR_TRY_STATUS(check_row(table, row, attempt));
   TROCAR_TRY_STATUS(read_values(table, row, record));
+  double sum = 0.0;
+  for (const auto& part : record.parts) sum += part.points;
+  if (attempt.score && !record.parts.empty() && std::abs(std::min(sum, 100.0) - *attempt.score) > kScoreRoundOff)
+    return fail(fmt::format("the score is {:g}, its parts add up to {:g}", *attempt.score, sum),
+                table.place(row, "score"), "correct the score, or the points of a part");
   return record;
 }
 

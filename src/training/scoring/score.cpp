@@ -22,7 +22,7 @@ constexpr double kPassTolerance = 1.0;      // needless punctures of the organ t
 constexpr double kAwayTolerance_mm = 10.0;  // missing distance from a landmark that halves the points of the access
 constexpr double kSlowReturn = 0.7;         // share of the points for single drops: the bevel is only partly in it
 
-constexpr double kAtTarget_mm = 0.05;  // a distance that is shown as 0.0 mm
+constexpr double kJustBefore_mm = 1.0;  // a needle that stops so near, on the target's wall, did not miss it
 
 constexpr const char* kBleedingNames[] = {"usual", "raised", "high"};
 
@@ -119,7 +119,7 @@ double confirmation_share(const Judgement& judged) noexcept {
 bool has_reached_target(const Judgement& judged) noexcept {
   const tasks::Task& task = judged.attempt.task;
   if (!judged.measured.has_entered) return false;
-  if (task.confirmed_by != tasks::Substance::kNothing && !judged.confirmed_s) return false;
+  if (task.confirmed_by != tasks::Substance::kNothing) return judged.confirmed_s.has_value();
   const bool is_near = judged.target_mm <= task.target_tolerance_mm;
   if (!judged.attempt.needle.is_biopsy) return judged.is_planned_place ? is_near : judged.target_mm <= 0.0;
   const bool is_enough = !judged.cores.empty() && target_in_cores_mm(judged) >= kEnoughCore * judged.possible_core_mm;
@@ -239,8 +239,9 @@ const char* target_words(const Outcome& outcome) noexcept {
     const auto part = std::ranges::find(outcome.parts, name, &ScorePart::name);
     return part != outcome.parts.end() && part->is_judged ? std::optional(part->value) : std::nullopt;
   };
-  const bool is_unproven = value_of("confirmation").value_or(1.0) <= 0.0;
-  return is_unproven && value_of("target").value_or(HUGE_VAL) < kAtTarget_mm ? "not proven" : "missed";
+  const double apart_mm = value_of("target").value_or(HUGE_VAL);
+  if (value_of("confirmation").value_or(1.0) <= 0.0 && apart_mm <= 0.0) return "not proven";
+  return apart_mm < kJustBefore_mm ? "not reached" : "missed";
 }
 
 std::string_view part_title(std::string_view part) noexcept {

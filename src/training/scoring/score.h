@@ -119,7 +119,8 @@ struct Outcome {
   const BiopsyCore* best_core() const noexcept;
 };
 
-/// "reached", "missed", or "not proven": the needle was in it, and what has to come back did not.
+/// "reached", "not proven" (the needle was in it, and what has to come back did not), "not reached" (it stopped less
+/// than 1 mm away) or "missed".
 const char* target_words(const Outcome& outcome) noexcept;
 
 /// Takes the core at a fired tick. The stylet goes straight on from the tip; bone stops it, and the part of the notch

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "scoring/attempt_end.h"
+
 namespace trocar::storage {
 namespace {
 
@@ -31,13 +33,18 @@ void walk_moments(const Session& session, const std::function<void(const metrics
   }
 }
 
+std::optional<double> end_s_of(const Session& session, const tasks::Task* task, bool is_biopsy) {
+  const auto end = scoring::end_of_attempt({session.samples, session.shots, session.actions, is_biopsy,
+                                            task != nullptr ? task->confirmed_by : tasks::Substance::kNothing});
+  return end ? std::optional(session.samples[*end].time_s) : std::nullopt;
+}
+
 metrics::MetricContext context_of(const Session& session) {
   metrics::MetricContext context;
   context.layer_names = session.info.layer_names;
   context.plane = session.info.plane;
   for (const std::size_t shot : session.shots)
     if (shot < session.samples.size()) context.shots_s.push_back(session.samples[shot].time_s);
-  if (!context.shots_s.empty()) context.fired_s = context.shots_s.front();
   const anatomy::NeedlePath& plan = session.info.plan_P;
   if (plan.line_P.a.allFinite() && plan.line_P.b.allFinite() && plan.line_P.length_mm() > 0.0)
     context.expert_paths.push_back({plan.name.empty() ? "plan" : plan.name, plan.line_P});

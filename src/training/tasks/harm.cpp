@@ -95,6 +95,7 @@ Result<std::vector<HarmRule>> read_harm_rules(const config::TomlTable& document)
   for (const config::TomlTable& row : rows) {
     TROCAR_TRY_STATUS(row.check_keys({"names", "tissues", "grade", "notch", "stay", "stay_s", "reason", "source"}));
     TROCAR_TRY(HarmRule rule, read_rule(row));
+    rule.is_own = true;
     rules.push_back(std::move(rule));
   }
   return rules;

@@ -33,6 +33,7 @@ struct HarmRule {
   std::string reason;                   ///< What happens to the patient: "bile gets into the belly: peritonitis".
   std::string source;                   ///< Empty: assumed.
   std::vector<std::string> name_texts;  ///< `names` as written.
+  bool is_own = false;                  ///< Of the task's file, not of the table.
 
   /// `plain`: name of the label as anatomy::plain_name, without its side.
   bool matches(std::string_view plain, std::string_view tissue) const;

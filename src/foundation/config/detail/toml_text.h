@@ -2,7 +2,6 @@
 
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "core/result.h"
 
@@ -12,8 +11,5 @@ namespace trocar::config::detail {
 /// of dotted keys (its parser and destructors recurse), only ASCII outside of strings and comments, and no backslash at
 /// the end of a line (both reach code that toml++ marks as unreachable). The error names `name` and the line.
 Status check_toml_text(std::string_view text, const std::string& name);
-
-/// The candidate that is closest to a misspelled word, empty when none is similar.
-std::string_view nearest_word(std::string_view word, const std::vector<std::string_view>& candidates);
 
 }  // namespace trocar::config::detail

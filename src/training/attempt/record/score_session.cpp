@@ -17,6 +17,7 @@ std::vector<metrics::MetricValue> measure(const cases::Case& the_case, const sto
   context.task = &the_case.task;
   context.patient = the_case.patient.get();
   context.needle = the_case.needle;
+  context.end_s = storage::end_s_of(session, context.task, the_case.needle.is_biopsy);
   context.expert_paths.clear();
   for (const tasks::PlannedPath& path : the_case.expert_paths())
     context.expert_paths.push_back({fmt::format("{}", context.expert_paths.size() + 1), path.line_P});

@@ -4,7 +4,9 @@
 #include "anatomy/phantom/cases.h"
 #include "anatomy/phantom/phantom.h"
 #include "cases/prepare_case.h"
+#include "core/files/atomic_file.h"
 #include "core/files/data_dir.h"
+#include "core/files/temporary_folder.h"
 
 namespace trocar::cases {
 namespace {
@@ -27,6 +29,17 @@ TEST(Level, IsKeptInTheTextFromWhichTheTaskIsMadeAgain) {
   EXPECT_TRUE(plain->task_toml.empty());
   EXPECT_LT(made->task.time_limit_s, plain->task.time_limit_s);
   EXPECT_LT(made->task.target_tolerance_mm, plain->task.target_tolerance_mm);
+}
+
+TEST(CaseTables, RefuseAGunForATargetThatHasToBeProven) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "proof.toml";
+  ASSERT_TRUE(write_file_atomically(file, "base = \"liver-biopsy\"\nconfirmed_by = \"bile\"\n"));
+  CaseOptions options;
+  options.task = file;
+  const auto made = load_tables(options);
+  ASSERT_FALSE(made);
+  EXPECT_NE(made.error().text().find("takes cores"), std::string::npos) << made.error().text();
 }
 
 TEST(Level, ThatTheTaskLacksIsRefusedWithTheList) {

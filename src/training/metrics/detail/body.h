@@ -5,11 +5,15 @@
 
 #include "anatomy/patient.h"
 #include "geometry/segment.h"
+#include "metrics/moment.h"
 #include "volume/sampling.h"
 
 namespace trocar::metrics::detail {
 
 inline constexpr double kTestedEvery_mm = 0.5;  ///< Distance of the points of a way whose structures are looked up.
+
+inline constexpr double kToBone_mm = 0.5;  ///< From a tip that presses on bone to its label.
+inline constexpr double kInside_mm = 0.1;  ///< A tip is in a structure from so much behind its border on.
 
 /// Depth (mm) of a tip below the resting skin along its shaft, 0 outside: the shaft is followed from the tip backwards
 /// in steps of the distance to the skin. A shaft that meets no skin within 400 mm has the depth 400.
@@ -23,6 +27,12 @@ inline double depth_in_body_mm(const anatomy::VirtualPatient& patient, const Vec
     depth_mm += std::max(kLeastStep_mm, -outside_mm);
   }
   return std::min(depth_mm, kFarthest_mm);
+}
+
+/// The label that the tip is in, or presses on if that is bone.
+inline std::uint8_t label_ahead(const anatomy::VirtualPatient& patient, const Moment& moment) noexcept {
+  const Vec3 ahead_P = moment.tip_P + (moment.pressed_mm > 0.0 ? kToBone_mm : 0.0) * moment.axis_P;
+  return volume::sample_nearest<std::uint8_t>(patient.labels, ahead_P, 0);
 }
 
 /// Share of a straight step that lies in the body: at a border the depth inside over the length of the step.

@@ -33,7 +33,7 @@ constexpr double kOut_mm = 0.0;
 /// Keeps the tip's way of the insertion that contains the end, and of the present one.
 class CurveDistance : public Metric {
  public:
-  explicit CurveDistance(const MetricContext& context) : paths_(context.expert_paths), fired_s_(context.fired_s) {}
+  explicit CurveDistance(const MetricContext& context) : paths_(context.expert_paths), end_s_(context.end_s) {}
 
   void step(const Step& step) override {
     const Moment& now = step.now;
@@ -45,11 +45,11 @@ class CurveDistance : public Metric {
     if (!was_inside_) begin();
     was_inside_ = true;
     present_.add(now.tip_P, now.time_s);
-    const bool is_fired = fired_s_ && now.time_s >= *fired_s_;
-    if (has_fired_ || (!is_fired && *now.depth_mm <= deepest_mm_)) return;
+    const bool is_end = end_s_ && now.time_s >= *end_s_;
+    if (is_over_ || (!is_end && *now.depth_mm <= deepest_mm_)) return;
     deepest_mm_ = *now.depth_mm;
     is_end_in_present_ = true;
-    has_fired_ = is_fired;
+    is_over_ = is_end;
   }
 
   void report(const RunEnd& end, std::span<MetricValue> values) const override {
@@ -76,9 +76,9 @@ class CurveDistance : public Metric {
   }
 
   std::vector<ExpertPath> paths_;
-  std::optional<double> fired_s_;
+  std::optional<double> end_s_;
   detail::ThinPath kept_, present_;
-  bool is_end_in_present_ = false, was_inside_ = false, has_fired_ = false;
+  bool is_end_in_present_ = false, was_inside_ = false, is_over_ = false;
   double deepest_mm_ = 0.0;
 };
 

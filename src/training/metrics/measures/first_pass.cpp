@@ -34,7 +34,7 @@ class TargetTest {
  public:
   explicit TargetTest(const MetricContext& context)
       : task_(*context.task), patient_(context.patient), paths_(context.expert_paths) {
-    if (context.needle) beyond_mm_ = context.needle->notch_middle_mm();
+    if (context.needle && context.needle->is_biopsy) beyond_mm_ = context.needle->notch_middle_mm();
     if (patient_ == nullptr) return;
     labels_.emplace(task_, *patient_);
     has_label_ = !labels_->is_parenchymal() || paths_.empty();
@@ -75,7 +75,7 @@ class TargetTest {
   const anatomy::VirtualPatient* patient_;
   std::optional<tasks::TaskLabels> labels_;
   std::vector<ExpertPath> paths_;
-  double beyond_mm_ = 0.0;
+  double beyond_mm_ = -detail::kInside_mm;  ///< From the tip; of a gun to the notch's middle.
   bool has_label_ = false;  ///< The target is known by its label; in healthy organ only by expert paths.
 };
 

@@ -68,10 +68,13 @@ class Risks : public Metric {
     for (; shot_ < shots_s_.size() && shots_s_[shot_] <= step.now.time_s; ++shot_) watch_.fire(step.now);
     if (!step.is_inside()) {
       contacts_.reset();
+      touched_bone_ = 0;
       is_checked_ = false;
       return;
     }
-    if (step.before != nullptr && contacts_.any()) time_s_ += step.dt_s;
+    if (step.before != nullptr && (contacts_.any() || touched_bone_)) time_s_ += step.dt_s;
+    const std::uint8_t ahead = detail::label_ahead(patient_, step.now);  // the needle only touches bone
+    touched_bone_ = labels_.is_bone(ahead) && labels_.harm(ahead) > tasks::Harm::kNone ? ahead : std::uint8_t{0};
     if (!has_moved(step.now)) {
       mark(step);
       return;
@@ -129,9 +132,9 @@ class Risks : public Metric {
   }
   /// Counts the contacts of this moment that did not exist just before.
   void mark(const Step& step) {
-    if (contacts_.none()) return;
+    if (contacts_.none() && !touched_bone_) return;
     for (std::size_t id = 1; id < contacts_.size(); ++id) {
-      if (!contacts_[id]) continue;
+      if (!contacts_[id] && id != touched_bone_) continue;
       if (last_s_[id] < 0.0) order_.push_back(static_cast<std::uint8_t>(id));
       if (step.active_s - last_s_[id] > kTouchesApart_s) ++touches_;
       last_s_[id] = step.active_s;
@@ -160,7 +163,8 @@ class Risks : public Metric {
   std::vector<double> shots_s_;
   std::size_t shot_ = 0;  ///< The next one.
   HarmWatch watch_;
-  std::bitset<256> contacts_;  ///< Risk structures that the needle is in now, by label.
+  std::bitset<256> contacts_;      ///< Risk structures that the needle is in now, by label.
+  std::uint8_t touched_bone_ = 0;  ///< Label of the bone that the tip touches now.
   Vec3 tip_P_ = Vec3::Zero(), skin_P_ = Vec3::Zero();
   bool is_checked_ = false;
   std::array<double, 256> last_s_{};  ///< Active time of the last contact, by label.

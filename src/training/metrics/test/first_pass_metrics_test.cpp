@@ -45,6 +45,17 @@ TEST(FirstPassMetrics, OneStraightPassSucceeds) {
   EXPECT_NEAR(*find(values, "time_to_target").at_s, 5.5, 0.1);
 }
 
+TEST(FirstPassMetrics, AWallThatDoesNotGiveWayIsNotTheTarget) {
+  Recording pressing =
+      depths({{0.0, -5.0}, {5.504, 50.04}, {6.0, 53.0}});  // in the lesion's first voxels before it loads
+  for (Moment& moment : pressing) {
+    if (moment.time_s <= 5.504) continue;
+    moment.phase = telemetry::InsertionPhase::kLoading;
+    moment.pressed_mm = *moment.depth_mm - 50.0;
+  }
+  EXPECT_EQ(measure_one("first_pass_success", pressing, box().context()), 0.0);
+}
+
 TEST(FirstPassMetrics, ASmallCorrectionIsNoNewPass) {
   EXPECT_EQ(
       measure_one("first_pass_success", depths({{0.0, -5.0}, {4.0, 40.0}, {5.0, 31.0}, {8.0, 60.0}}), box().context()),

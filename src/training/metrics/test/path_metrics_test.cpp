@@ -82,7 +82,7 @@ TEST(PathMetrics, TheNearestOfSeveralExpertPathsCounts) {
 
 TEST(PathMetrics, TheShotIsTheEndEvenIfTheNeedleGoesDeeperLater) {
   MetricContext context = with_paths({kStraight});
-  context.fired_s = 2.0;
+  context.end_s = 2.0;
   const Recording recording = record(4.0, 100.0, [](double t, Moment& m) { set_depth(m, 20.0 * t); });
   const auto values = measure(recording, context);
   EXPECT_NEAR(value_of(values, "target_distance"), 20.0, 1e-9);

@@ -97,6 +97,15 @@ TEST(StructureMetrics, CountsComplicationsButNoGrazes) {
   EXPECT_EQ(value_of(measure(puncture_at(50.0, 50.0, 40.0), in_box()), "complications"), 0.0);
 }
 
+TEST(StructureMetrics, BoneThatTheTipPressesOnIsTouched) {
+  Recording recording = puncture_at(50.0, 75.0, 10.2);  // the rib is behind 10 mm
+  for (Moment& moment : recording) moment.pressed_mm = std::max(0.0, moment.tip_P.y() - 9.9);
+  const auto values = measure(recording, in_box());
+  EXPECT_EQ(value_of(values, "risk_structures"), 1.0);
+  EXPECT_EQ(value_of(values, "no_go_touches"), 1.0);
+  EXPECT_GT(value_of(values, "no_go_time"), 0.0);
+}
+
 TEST(StructureMetrics, TheShaftTouchesRisksToo) {
   // Through the rib (z 70 to 80, behind 10 mm) with the tip far beyond it.
   Recording recording = record(1.0, 100.0, [](double, Moment& m) {

@@ -121,6 +121,7 @@ TEST_P(AttemptsCsv, ReadOverAnInterruptedAttemptKeepItsRecording) {
   AttemptRecord cut = attempt(anna.id, 0.0);
   cut.attempt.state = State::kInterrupted;
   cut.attempt.score.reset();
+  cut.parts.clear();
   put(cut, "recording");
   const auto same = folder_ / "same.csv", ended = folder_ / "ended.csv";
   ASSERT_TRUE(export_attempts(*repository_, {}, same));
@@ -216,6 +217,7 @@ TEST_P(AttemptsCsv, EveryKindOfFaultIsNamedWithItsLineAndColumn) {
            {"state", "done", "the state is unknown"},
            {"score", "50,5", "\"50,5\" is no number"},
            {"score", "50.0x", "\"50.0x\" is no number"},
+           {"score", "3", "the score is 3, its parts add up to"},
            {"score", "nan", "\"nan\" is no number"},
            {"score", "inf", "\"inf\" is no number"},
            {"score", "101", "the score is not 0 to 100"},
@@ -255,7 +257,12 @@ TEST_P(AttemptsCsv, EveryKindOfFaultIsNamedWithItsLineAndColumn) {
   std::string nameless = *good, twice = *good;
   nameless.replace(nameless.find("metric path_length"), 18, "metric ");
   EXPECT_NE(import(nameless).find("there is no column"), std::string::npos) << import(nameless);
-  twice.replace(twice.find("metric duration"), 15, "metric path_length");
+  twice.replace(twice.find("metric duration (s)"), 19, "metric path_length (mm)");
+  for (const auto& [from, to] : {std::pair("path_length (mm)", "path_length (cm)"), {"path_length", "path_lenght"}}) {
+    std::string changed = *good;
+    changed.replace(changed.find(from), std::string_view(from).size(), to);
+    EXPECT_NE(import(changed).find("is unknown"), std::string::npos) << import(changed);
+  }
   EXPECT_NE(import(twice).find("occurs twice"), std::string::npos) << import(twice);
   EXPECT_EQ(import(*good), "imported");
 }

@@ -52,7 +52,7 @@ class ResultsTest : public ::testing::TestWithParam<std::string> {
     record.attempt.duration_s = 31.5;
     record.fails = score >= 60.0 ? std::vector<std::string>() : std::vector<std::string>{"the lung was touched"};
     record.hints = {{"Breathe \"out\"", 3.25}, {"Slower", {}}};
-    record.parts = {{"target", 0.3 * score, 30.0}, {"time", 10.0, 10.0}};
+    record.parts = {{"target", 0.3 * score, 30.0}, {"time", 0.7 * score, 70.0}};
     record.measures = {{"path_length", "mm", 100.0 + score}, {"duration", "s", 31.5}};
     record.trace.time_s = {0.0, 0.04};
     record.trace.tip_mm = {{{1.0, 1.5}, {2.0, 2.5}, {-3.0, -3.25}}};

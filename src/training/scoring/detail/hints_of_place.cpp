@@ -106,10 +106,10 @@ void add_missing_cores(const HintSubject& subject, double points, std::vector<Ad
   const std::size_t taken = subject.judged.cores.size(), wanted = subject.task().cores;
   const char* const how = subject.needle().is_coaxial ? "load the gun again while the coaxial needle stays in place"
                                                       : "withdraw the needle, load the gun and puncture again";
-  advice.push_back(
-      {points,
-       fmt::format("Only {} of {} cores {} taken: {}, and fire once more.", taken, wanted, taken == 1 ? "was" : "were", how),
-       subject.judged.cores.back().time_s});
+  advice.push_back({points,
+                    fmt::format("Only {} of {} cores {} taken: {}, and fire once more.", taken, wanted,
+                                taken == 1 ? "was" : "were", how),
+                    subject.judged.cores.back().time_s});
 }
 
 void add_biopsy_advice(const HintSubject& subject, std::vector<Advice>& advice) {
@@ -191,6 +191,12 @@ void add_confirmation_advice(const HintSubject& subject, std::vector<Advice>& ad
                      "by a millimetre or two.",
                      wanted),
          subject.judged.confirmed_s});
+  } else if (looked == actions.rend() && has_pressed_only(subject, subject.measured().end_s)) {
+    advice.push_back({points,
+                      fmt::format("The tip pressed on the wall of the {}, which had not given way: advance until it "
+                                  "does, then {} and look whether {} comes.",
+                                  subject.target_name(), subject.has_stylet() ? "draw the stylet" : "aspirate", wanted),
+                      subject.measured().end_s});
   } else if (looked == actions.rend()) {
     advice.push_back({points,
                       fmt::format("Nothing proved the place: {} at the target and look whether {} comes.",

@@ -12,7 +12,7 @@ namespace trocar::scoring {
 namespace {
 
 constexpr double kOtherWay_deg = 60.0;    // from here on a tilt is no correction
-constexpr double kTouching_mm = 0.5;      // a distance that would be written as 0
+constexpr double kNoRoom_mm = 0.5;        // a distance that would be written as 0
 constexpr double kRepeatedTravel = 0.25;  // share of the excess travel for a hint about retractions
 
 /// What keeps a needle clear of a structure, by what guides it.
@@ -97,11 +97,11 @@ void add_angle_advice(const HintSubject& subject, std::vector<Advice>& advice) {
 
 std::string margin_text(const AccessJudgement& access) {
   const double room_mm = access.margin_mm - access.missing_margin_mm;
-  const bool is_touched = room_mm < kTouching_mm;
   return fmt::format(
-      "The way {} the {}{}; it needs {:.0f} mm of room. Choose another entry or angle before you insert the needle.",
-      is_touched ? "touched" : "passed", anatomy::structure_words(access.margin_label),
-      is_touched ? "" : fmt::format(" at {:.0f} mm", room_mm), access.margin_mm);
+      "The way passed the {} at {}; it needs {:.0f} mm of room. Choose another entry or angle before you insert the "
+      "needle.",
+      anatomy::structure_words(access.margin_label),
+      room_mm < kNoRoom_mm ? "less than 1 mm" : fmt::format("{:.0f} mm", room_mm), access.margin_mm);
 }
 
 /// Advice about the access: the worst fault of it.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "scoring/attempt_end.h"
 #include "scoring/core_sample.h"
 #include "scoring/detail/bleeding.h"
 #include "tasks/assess_path.h"
@@ -71,10 +72,17 @@ double from_plan_mm(const AttemptData& attempt, const Vec3& tip_P, const Vec3& a
   return nearest_mm;
 }
 
+/// Nerve roots float in the fluid of the sac.
+bool floats_in_target(const AttemptData& attempt, const Vec3& p_P) {
+  const anatomy::Label* const label = anatomy::find_label(attempt.patient, p_P);
+  return label != nullptr && label->tissue == "nerve" &&
+         tasks::find_harm(attempt.task, *label).grade == tasks::Harm::kNone;
+}
+
 double find_target_mm(Judgement& judged, const tasks::TaskLabels& labels) {
   const AttemptData& attempt = judged.attempt;
   const metrics::AttemptMetrics& metrics = judged.measured;
-  if (!attempt.needle.is_biopsy && judged.confirmed_s) return 0.0;  // nerve roots float in the fluid
+  if (!attempt.needle.is_biopsy && judged.confirmed_s && floats_in_target(attempt, metrics.pierced_tip_P)) return 0.0;
   double nearest_mm = HUGE_VAL;
   const auto reach = [&](const Vec3& tip_P, const Vec3& axis_P) {
     double found_mm = from_plan_mm(attempt, tip_P, axis_P);
@@ -138,51 +146,6 @@ std::vector<PainEvent> find_pain(const AttemptData& attempt, bool has_entered) {
   return events;
 }
 
-std::optional<double> find_confirmation(const AttemptData& attempt) {
-  if (attempt.task.confirmed_by == tasks::Substance::kNothing || attempt.samples.empty()) return std::nullopt;
-  for (const tasks::Action& action : attempt.actions)
-    if (action.result.substance == attempt.task.confirmed_by && action.result.share > 0.0) return action.time_s;
-  return std::nullopt;
-}
-
-std::optional<std::size_t> sample_at(const AttemptData& attempt, double time_s) {
-  if (attempt.samples.empty()) return std::nullopt;
-  const auto found = std::ranges::lower_bound(attempt.samples, time_s, {}, &telemetry::TickSample::time_s);
-  return std::min<std::size_t>(static_cast<std::size_t>(found - attempt.samples.begin()), attempt.samples.size() - 1);
-}
-
-/// Where the trainee gave up: the last look for what has to come back, or the deepest sample of the last insertion if
-/// the needle went on after it. Empty: it never was in the body.
-std::optional<std::size_t> find_last_end(const AttemptData& attempt) {
-  std::optional<std::size_t> end;
-  bool was_inside = false;
-  for (std::size_t n = 0; n < attempt.samples.size(); ++n) {
-    const telemetry::TickSample& sample = attempt.samples[n];
-    const bool is_inside = telemetry::is_in_body(sample);
-    if (is_inside && (!was_inside || !(sample.depth_mm <= attempt.samples[*end].depth_mm))) end = n;
-    was_inside = is_inside;
-  }
-  if (!end) return end;
-  for (const tasks::Action& action : attempt.actions) {
-    const bool is_look = action.kind == tasks::ActionKind::kDrawStylet || action.kind == tasks::ActionKind::kAspirate;
-    const auto look = sample_at(attempt, action.time_s);
-    if (is_look && look && *look > *end && telemetry::is_in_body(attempt.samples[*look])) end = look;
-  }
-  return end;
-}
-
-/// The sample at which the needle has reached its end: the shot, or that at which the right substance came back.
-/// Without them the place at which the trainee gave up; empty for a gun that was not fired: the deepest sample.
-std::optional<std::size_t> find_end(const AttemptData& attempt, std::optional<double> confirmed_s) {
-  if (attempt.needle.is_biopsy) {  // the first shot in the body
-    const auto is_inside = [&](std::size_t shot) { return telemetry::is_in_body(attempt.samples[shot]); };
-    const auto shot = std::find_if(attempt.shots.begin(), attempt.shots.end(), is_inside);
-    if (shot != attempt.shots.end()) return *shot;
-  }
-  if (attempt.needle.is_biopsy) return std::nullopt;
-  return confirmed_s ? sample_at(attempt, *confirmed_s) : find_last_end(attempt);
-}
-
 /// Cores of the shots inside the body.
 std::vector<BiopsyCore> take_cores(const AttemptData& attempt) {
   std::vector<BiopsyCore> cores;
@@ -198,8 +161,10 @@ std::vector<BiopsyCore> take_cores(const AttemptData& attempt) {
 }  // namespace
 
 Judgement judge(const AttemptData& attempt, std::size_t& expert) {
-  const std::optional<double> confirmed_s = find_confirmation(attempt);
-  const std::optional<std::size_t> end = find_end(attempt, confirmed_s);
+  const EndData end_data{attempt.samples, attempt.shots, attempt.actions, attempt.needle.is_biopsy,
+                         attempt.task.confirmed_by};
+  const std::optional<double> confirmed_s = confirmation_s(end_data);
+  const std::optional<std::size_t> end = end_of_attempt(end_data);
   const auto measure = [&](const tasks::PlannedPath& path) {
     return metrics::measure_attempt(attempt.patient, attempt.tissues, path, attempt.samples, end,
                                     attempt.interruptions);

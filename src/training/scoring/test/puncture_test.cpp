@@ -183,6 +183,25 @@ TEST(Puncture, WhatComesWithoutAPiercedWallIsNotTheTarget) {
   const Outcome pressed = puncture.score(attempt.samples, {});
   EXPECT_FALSE(pressed.target_reached);
   EXPECT_GT(part(pressed, "target").value, 2.5);
+  puncture.task.confirmed_by = tasks::Substance::kBile;
+  puncture.task.weights = {{"target", 50.0}, {"confirmation", 50.0}};
+  attempt.samples.back().layer_displacement_mm = 1.3;  // less than 1 mm before the lesion
+  const Outcome unproven = puncture.score(attempt.samples, {});
+  EXPECT_TRUE(has_hint(unproven, "had not given way: advance until it does, then draw the stylet"));
+  EXPECT_STREQ(target_words(unproven), "not reached");
+}
+
+TEST(Puncture, BileThatComesFromBehindTheTipDoesNotMoveIt) {
+  BoxCase puncture = make_puncture();
+  puncture.task.confirmed_by = tasks::Substance::kBile;
+  puncture.task.weights = {{"target", 60.0}, {"confirmation", 40.0}};
+  const Segment plan_P = make_box_plan().line_P;
+  const Attempt attempt = make_attempt({plan_P.a, plan_P.b + Vec3(0.0, 22.0, 0.0)});  // 3 mm beyond the lesion
+  const double at_s = attempt.samples[attempt.fired].time_s;
+  puncture.actions = {{at_s, tasks::ActionKind::kDrawStylet, 0.0, {tasks::Substance::kBile, 0.4}, {}, 73.0}};
+  const Outcome outcome = puncture.score(attempt);
+  EXPECT_TRUE(outcome.target_reached);
+  EXPECT_NEAR(part(outcome, "target").value, 3.0, 0.6);
 }
 
 TEST(Puncture, AnySafeWayIsWorthTheWholeAccess) {

@@ -76,11 +76,30 @@ TEST(SessionMoments, ContextHasPlanLayersAndShot) {
   ASSERT_EQ(context.expert_paths.size(), 1u);
   EXPECT_EQ(context.expert_paths[0].name, "expert");
   EXPECT_EQ(context.layer_names, session.info.layer_names);
-  EXPECT_EQ(*context.fired_s, session.samples[40].time_s);
+  EXPECT_EQ(context.shots_s, std::vector<double>{session.samples[40].time_s});
+  EXPECT_FALSE(context.end_s);
   session.shots = {60};
   session.info.plan_P.line_P.b = session.info.plan_P.line_P.a;
-  EXPECT_FALSE(context_of(session).fired_s);
+  EXPECT_TRUE(context_of(session).shots_s.empty());
   EXPECT_TRUE(context_of(session).expert_paths.empty());
+}
+
+TEST(SessionMoments, TheEndIsThatOfTheScore) {
+  Session session = session_of(60);
+  for (std::size_t n = 0; n < session.samples.size(); ++n) {
+    session.samples[n].phase = telemetry::InsertionPhase::kInserted;
+    session.samples[n].depth_mm = n < 10 ? 0.0 : n == 20 ? 50.0 : 30.0;
+  }
+  session.samples[5].phase = telemetry::InsertionPhase::kOutside;
+  session.shots = {5, 40};
+  EXPECT_EQ(end_s_of(session, nullptr, true), session.samples[40].time_s) << "the first shot was outside the body";
+  session.shots.clear();
+  EXPECT_FALSE(end_s_of(session, nullptr, true));
+  tasks::Task task;
+  task.confirmed_by = tasks::Substance::kBile;
+  EXPECT_EQ(end_s_of(session, &task, false), session.samples[20].time_s);
+  session.actions = {{session.samples[45].time_s, tasks::ActionKind::kDrawStylet, 0.0, {tasks::Substance::kBile, 1.0}}};
+  EXPECT_EQ(end_s_of(session, &task, false), session.samples[45].time_s);
 }
 
 TEST(SessionMoments, AnExportedSessionHasTheSameMetrics) {
