@@ -1,5 +1,6 @@
 #include "results/attempts_csv.h"
 
+#include <algorithm>
 #include <fstream>
 
 #include "results/csv_text.h"
