@@ -74,7 +74,7 @@ AttemptEvent describe_action(const tasks::SubstanceTable& substances, const task
       told.text = action.depth_mm > 0.0 ? "the gun was fired" : "the gun was fired outside the body";
       break;
     case tasks::ActionKind::kLoad:
-      told.text = "the gun was emptied and loaded";
+      told.text = "the gun is loaded again";
       break;
   }
   return told;

@@ -62,7 +62,7 @@ class GunRecordTest : public ::testing::Test {
 };
 
 constexpr const char* kFired = "the gun was fired";
-constexpr const char* kLoaded = "the gun was emptied and loaded";
+constexpr const char* kLoaded = "the gun is loaded again";
 
 TEST_F(GunRecordTest, AnEmptyGunCannotBeFired) {
   begin(true, true);
