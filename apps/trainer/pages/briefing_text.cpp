@@ -216,8 +216,7 @@ QString points_table(const cases::Case& tables) {
 
 QString risks_text(const tasks::Task& task) {
   QStringList risks;
-  for (const tasks::RiskStructure& risk : task.risks)
-    risks << words(risk.label.empty() ? risk.tissue : risk.label);
+  for (const tasks::RiskStructure& risk : task.risks) risks << words(risk.label.empty() ? risk.tissue : risk.label);
   return risks.join(QStringLiteral(", "));
 }
 

@@ -22,9 +22,9 @@ class ExpertPathList;
 class HintList;
 class ScoreDial;
 
-/// Result of an attempt, in the order of reading: harm to the patient, passed or not and why, score, improvements, parts
-/// of the score. Keys: Ctrl+R tries again or
-/// begins another exam, W shows the worst moment, H the moment of the next hint.
+/// Result of an attempt, in the order of reading: harm to the patient, passed or not and why, score, improvements,
+/// parts of the score. Keys: Ctrl+R tries again or begins another exam, W shows the worst moment, H the moment of the
+/// next hint.
 class FeedbackPanel : public QWidget {
   Q_OBJECT
 

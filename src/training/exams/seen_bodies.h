@@ -23,7 +23,7 @@ struct SeenBody {
   std::uint64_t seed = 1;
   std::chrono::sys_seconds begin{};        ///< As recorded, UTC.
   std::optional<std::int64_t> sequence{};  ///< Order of recording in the database of results; empty: a session file.
-  std::string hash{};  ///< Of the body's content; empty: not known (a database of results).
+  std::string hash{};                      ///< Of the body's content; empty: not known (a database of results).
 };
 
 struct SeenBodies {

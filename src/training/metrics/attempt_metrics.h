@@ -19,9 +19,9 @@ struct AttemptMetrics {
   int entries = 0;           ///< Punctures of the skin.
   /// Offset of the needle's crossing of the skin, at the last entry before the end.
   Vec3 entry_offset_P = Vec3::Zero();
-  Vec3 axis_P = Vec3::UnitZ();  ///< Axis of the needle at its end.
-  double angle_deg = 0.0;       ///< Angle to the planned path.
-  Vec3 tip_P = Vec3::Zero();    ///< Tip at the needle's end: when fired, otherwise at the deepest position.
+  Vec3 axis_P = Vec3::UnitZ();        ///< Axis of the needle at its end.
+  double angle_deg = 0.0;             ///< Angle to the planned path.
+  Vec3 tip_P = Vec3::Zero();          ///< Tip at the needle's end: when fired, otherwise at the deepest position.
   Vec3 pierced_tip_P = Vec3::Zero();  ///< The same as far as layers have given way.
   Vec3 target_offset_P = Vec3::Zero();
   double travel_mm = 0.0;   ///< Inward path length of the tip inside the body, including repeated pushes after a pull

@@ -21,7 +21,8 @@ const anatomy::Label* find_shadow(const anatomy::VirtualPatient& patient, const 
   const Vec3 way_T = in_plane_T - face_T;
   for (double at_mm = 0.0; at_mm < way_T.norm() - kBefore_mm; at_mm += kBeamStep_mm) {
     const anatomy::Label* const label = anatomy::find_label(patient, X_PT * (face_T + at_mm * way_T.normalized()));
-    if (label != nullptr && (label->tissue == "bone" || label->tissue == "lung" || label->tissue == "gas")) return label;
+    if (label != nullptr && (label->tissue == "bone" || label->tissue == "lung" || label->tissue == "gas"))
+      return label;
   }
   return nullptr;
 }

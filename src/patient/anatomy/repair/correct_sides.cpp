@@ -4,9 +4,9 @@
 #include <map>
 #include <string>
 
-#include "anatomy/structure_pattern.h"
 #include "anatomy/repair/detail/label_parts.h"
 #include "anatomy/repair/detail/repairs.h"
+#include "anatomy/structure_pattern.h"
 
 namespace trocar::anatomy::detail {
 namespace {

@@ -76,8 +76,8 @@ class AttemptLoop {
   bool poll();
   /// Switches the forces off and ends the attempt without a score; the incomplete session is kept.
   void abandon();
-  /// Ends an attempt that the trainee leaves: it is scored as it is if the needle was in the body, so that leaving is no
-  /// way not to be counted; otherwise it is abandoned.
+  /// Ends an attempt that the trainee leaves: it is scored as it is if the needle was in the body, so that leaving is
+  /// no way not to be counted; otherwise it is abandoned.
   void leave();
 
  private:

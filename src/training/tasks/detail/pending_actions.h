@@ -16,8 +16,8 @@ class PendingActions {
   void forget_confirmation() noexcept { left_.confirms.reset(); }
   void look_again(ActionKind confirms) noexcept { left_.confirms = confirms; }
 
-  /// The action that is due: anaesthetic at the skin, the others at the target, the guide wire `kBeforeWire_s` after the
-  /// arrival. `tip_mm`: along the path from its entry. `at_target_s`: time since the arrival; empty: not there.
+  /// The action that is due: anaesthetic at the skin, the others at the target, the guide wire `kBeforeWire_s` after
+  /// the arrival. `tip_mm`: along the path from its entry. `at_target_s`: time since the arrival; empty: not there.
   std::optional<ActionRequest> next(double tip_mm, std::optional<double> at_target_s) noexcept {
     if (left_.gives_anaesthetic && tip_mm > -kAtSkin_mm) {
       left_.gives_anaesthetic = false;

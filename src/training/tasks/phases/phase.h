@@ -25,17 +25,17 @@ enum class ConditionKind : std::uint8_t {
   kTipIn,           ///< Name: tissue class or label that the tip is in, its wall pierced.
   /// Name: tissue class or label that the tip has been in since it came into the body, or one of several ("a|b").
   kPassed,
-  kStyletDrawn,     ///< The stylet is out.
-  kReturned,        ///< Name: a substance has come back in this phase.
-  kAnaesthetised,   ///< Local anaesthetic was injected at the skin or below it.
-  kBreathHeld,      ///< The patient holds the breath.
-  kContrast,        ///< Number: contrast agent injected, ml, with the tip in the target.
-  kWire,            ///< Number: guide wire advanced beyond the tip, mm.
-  kThrowClear,      ///< The stylet's way when fired has no structure at risk.
-  kFired,           ///< The gun was fired, and a core was taken.
-  kCores,           ///< Number: so many cores were taken.
-  kOutside,         ///< The needle has left the body again.
-  kBevelToFibres,   ///< Number: angle between the bevel and the fibres that it has to part (BevelRule), degrees.
+  kStyletDrawn,    ///< The stylet is out.
+  kReturned,       ///< Name: a substance has come back in this phase.
+  kAnaesthetised,  ///< Local anaesthetic was injected at the skin or below it.
+  kBreathHeld,     ///< The patient holds the breath.
+  kContrast,       ///< Number: contrast agent injected, ml, with the tip in the target.
+  kWire,           ///< Number: guide wire advanced beyond the tip, mm.
+  kThrowClear,     ///< The stylet's way when fired has no structure at risk.
+  kFired,          ///< The gun was fired, and a core was taken.
+  kCores,          ///< Number: so many cores were taken.
+  kOutside,        ///< The needle has left the body again.
+  kBevelToFibres,  ///< Number: angle between the bevel and the fibres that it has to part (BevelRule), degrees.
 };
 inline constexpr ConditionKind kLastCondition = ConditionKind::kBevelToFibres;
 
