@@ -6,6 +6,7 @@
 
 #include "case_builder/case_edits.h"
 #include "case_panels/case_panel.h"
+#include "ui_kit/decimal_field.h"
 #include "ui_kit/parts.h"
 
 namespace trocar::trainer {
@@ -61,12 +62,12 @@ class PathPanel final : public CasePanel {
     auto* row = new QHBoxLayout;
     zone_ = make_pick("case-zone-pick", tr("Click the skin"), tr("Click the centre of the zone on the skin"),
                       QStringLiteral("Ctrl+E"), CaseClick::kZone);
-    radius_ = new QDoubleSpinBox;
+    radius_ = new DecimalField;
     radius_->setObjectName(QStringLiteral("case-zone-radius"));
     radius_->setAccessibleName(tr("Radius of the entry zone"));
     radius_->setToolTip(tr("Radius of the entry zone  (up and down keys)"));
     radius_->setRange(1.0, 200.0);
-    radius_->setDecimals(0);
+    radius_->setDecimals(1);
     radius_->setValue(20.0);
     radius_->setSuffix(tr(" mm"));
     row->addWidget(zone_);

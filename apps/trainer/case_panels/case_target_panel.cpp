@@ -11,6 +11,7 @@
 #include "case_builder/case_edits.h"
 #include "case_panels/case_landmarks.h"
 #include "case_panels/case_panel.h"
+#include "ui_kit/decimal_field.h"
 #include "ui_kit/parts.h"
 
 namespace trocar::trainer {
@@ -146,7 +147,7 @@ class TargetPanel final : public CasePanel {
   }
 
   QDoubleSpinBox* make_number(const char* name, const QString& title, double most, const QString& unit) {
-    auto* number = new QDoubleSpinBox;
+    auto* number = new DecimalField;
     number->setObjectName(QString::fromLatin1(name));
     number->setAccessibleName(title);
     number->setToolTip(title + tr("  (up and down keys)"));

@@ -87,6 +87,7 @@ void AttemptControl::connect_panel() {
   connect(&panel.steps(), &StepList::repeat_requested, this, [this](std::size_t step) { attempt_.repeat_phase(step); });
   connect(&gestures_, &ToolGestures::gestured, this, &AttemptControl::gesture);
   connect(&gestures_, &ToolGestures::key_pressed, this, &AttemptControl::handle_key);
+  connect(&gestures_, &ToolGestures::key_refused, this, &AttemptControl::refuse_key);
   connect(&gestures_, &ToolGestures::taken, this, &AttemptControl::show_taken);
   gestures_.watch(page_.view_3d(), [this] { return scale_of_3d(); });
   gestures_.watch(page_.ultrasound(), [this] { return scale_of_ultrasound(); });
@@ -106,7 +107,7 @@ void AttemptControl::show_taken(ActiveTool tool) {
 bool AttemptControl::take_key(const QKeyEvent& key, const KeyPlace& place) {
   const auto action = action_of(key.key(), actions_of(open_->the_case.task, open_->the_case.needle));
   if (action && key.modifiers() == Qt::NoModifier && !place.is_text && !place.is_aside) {
-    if (!key.isAutoRepeat()) act(*action);
+    if (!key.isAutoRepeat()) may_act(place) ? act(*action) : refuse_key();
     return true;
   }
   const bool plays_cine = key.key() == Qt::Key_P && page_.ultrasound().hasFocus() && page_.ultrasound().is_frozen();
@@ -120,6 +121,10 @@ bool AttemptControl::take_key(const QKeyEvent& key, const KeyPlace& place) {
   if (place.is_text && attempt_.view().are_forces_stopped) return false;
   if (!key.isAutoRepeat()) toggle_forces();
   return true;
+}
+
+void AttemptControl::refuse_key() {
+  show_notice(tr("A list or slider has the keyboard: click a view, then press the key again."));
 }
 
 void AttemptControl::handle_key(int key) {

@@ -52,6 +52,7 @@ class AttemptControl : public QObject {
   void gesture(const Gesture& gesture);
   bool take_key(const QKeyEvent& key, const KeyPlace& place);
   void handle_key(int key);
+  void refuse_key();
   void take(ActiveTool tool);
   void show_taken(ActiveTool tool);
   void aim();

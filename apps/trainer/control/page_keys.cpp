@@ -2,6 +2,7 @@
 
 #include <QAbstractButton>
 #include <QAbstractItemView>
+#include <QAbstractSlider>
 #include <QAbstractSpinBox>
 #include <QApplication>
 #include <QComboBox>
@@ -34,6 +35,9 @@ KeyPlace key_place_of(const QWidget& receiver, const QWidget& window) {
   place.is_text = is_text_field(&receiver) || is_text_field(focus);
   place.is_aside = QApplication::activePopupWidget() != nullptr || QApplication::activeModalWidget() != nullptr;
   place.button = qobject_cast<QAbstractButton*>(focus);
+  place.is_choice = qobject_cast<const QAbstractItemView*>(focus) != nullptr ||
+                    qobject_cast<const QComboBox*>(focus) != nullptr ||
+                    qobject_cast<const QAbstractSlider*>(focus) != nullptr;
   place.takes_space = place.button != nullptr || qobject_cast<const QAbstractItemView*>(focus) != nullptr ||
                       qobject_cast<const QComboBox*>(focus) != nullptr;
   place.is_unclaimed = &receiver == &window;

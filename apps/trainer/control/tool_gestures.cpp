@@ -177,6 +177,10 @@ bool ToolGestures::handle_key(const QKeyEvent& event, const KeyPlace& place) {
         place.button->click();
         return true;
       }
+      if (!may_act(place)) {
+        if (place.is_unclaimed && !event.isAutoRepeat()) Q_EMIT key_refused();
+        return false;
+      }
       Q_EMIT key_pressed(event.key());
       return true;
     default:

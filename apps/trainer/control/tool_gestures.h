@@ -47,8 +47,8 @@ class ToolGestures : public QObject {
   /// Includes child widgets. Keys use the directions of the first view.
   void watch(QWidget& view, std::function<ViewScale()> scale);
   void unwatch();
-  /// A, S, P and V select a tool, arrows and page keys move it, H, X, E and Enter emit key_pressed. False for other
-  /// keys, or if the widget with the focus uses the key.
+  /// A, S, P and V select a tool, arrows and page keys move it, H, X, E and Enter emit key_pressed, Enter in a
+  /// choice key_refused. False for other keys, or if the widget with the focus uses the key.
   bool handle_key(const QKeyEvent& event, const KeyPlace& place);
   ActiveTool active_tool() const noexcept { return active_tool_; }
   void take(ActiveTool tool);
@@ -60,6 +60,8 @@ class ToolGestures : public QObject {
   void taken(trocar::trainer::ActiveTool tool);
   /// Keys of the attempt: H aim, X clamp, Enter fire, E end.
   void key_pressed(int key);
+  /// Enter in a list, a choice or a slider that has no use for it: it does not fire.
+  void key_refused();
 
  private:
   struct Watched {

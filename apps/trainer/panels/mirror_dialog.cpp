@@ -8,6 +8,7 @@
 #include <QPushButton>
 #include <QVBoxLayout>
 
+#include "ui_kit/decimal_field.h"
 #include "ui_kit/parts.h"
 
 namespace trocar::trainer {
@@ -64,12 +65,12 @@ MirrorDialog::MirrorDialog(const MirrorSettings& settings, QWidget* parent) : QD
 
 QDoubleSpinBox* MirrorDialog::add(QFormLayout& form, const char* name, const QString& title, const QString& tooltip,
                                   const QString& unit, double least, double most, double value) {
-  auto* box = new QDoubleSpinBox;
+  auto* box = new DecimalField;
   box->setObjectName(QString::fromLatin1(name));
   box->setAccessibleName(title);
   box->setToolTip(tooltip);
   box->setRange(least, most);
-  box->setDecimals(0);
+  box->setDecimals(1);
   box->setSuffix(unit);
   box->setValue(value);
   form.addRow(make_label(title, "dim"), box);

@@ -15,6 +15,7 @@
 #include <QVBoxLayout>
 #include <QWidgetAction>
 
+#include "ui_kit/decimal_field.h"
 #include "ui_kit/parts.h"
 #include "views/patient/patient_view.h"
 
@@ -359,7 +360,7 @@ void StructurePanel::fill_stereo_menu(QMenu& menu) {
   add_switch(tr("Mirror up-down"), "mirror-up-down", &scene::StereoOptions::is_mirrored_up_down);
   const auto add_number = [&](const QString& prefix, const char* name, double low, double high, double step,
                               double scene::StereoOptions::*field) {
-    auto* box = new QDoubleSpinBox(&menu);
+    auto* box = new DecimalField(&menu);
     box->setObjectName(QString::fromLatin1(name));
     box->setAccessibleName(prefix);
     box->setToolTip(prefix + tr(" (Up, Down)"));

@@ -110,6 +110,15 @@ TEST_F(KeysTest, ToolsAreTakenWhereverTheFocusIsAndArrowsThenMoveThem) {
   strike(*text, Qt::Key_S);
   strike(*number, Qt::Key_S);
   EXPECT_EQ(gestures.active_tool(), ActiveTool::kNeedle);
+  int refused = 0;
+  QObject::connect(&gestures, &ToolGestures::key_refused, [&] { ++refused; });
+  for (QWidget* widget : std::initializer_list<QWidget*>{choice, list, slider})
+    for (const int key : {Qt::Key_Return, Qt::Key_Enter}) strike(*widget, key);
+  EXPECT_EQ(fired, 0) << "Enter in a list chooses";
+  EXPECT_EQ(refused, 6);
+  strike(*text, Qt::Key_Return);
+  strike(*number, Qt::Key_Return);
+  EXPECT_EQ(fired, 0);
   strike(*button, Qt::Key_Return);
   EXPECT_EQ(clicked, 1);
   EXPECT_EQ(fired, 0);
