@@ -54,8 +54,8 @@ double inward_travel_mm(std::span<const telemetry::TickSample> samples) noexcept
 }
 
 std::optional<std::size_t> end_of_attempt(std::span<const telemetry::TickSample> samples,
-                                          std::optional<std::size_t> fired) {
-  if (fired && *fired < samples.size() && is_valid(samples[*fired])) return fired;
+                                          std::optional<std::size_t> given_end) {
+  if (given_end && *given_end < samples.size() && is_valid(samples[*given_end])) return given_end;
   std::optional<std::size_t> deepest;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (!is_valid(samples[i])) continue;
@@ -93,13 +93,14 @@ Entry find_entry(std::span<const telemetry::TickSample> samples, std::size_t end
 
 AttemptMetrics measure_attempt(const anatomy::VirtualPatient& patient, const anatomy::TissueTable& tissues,
                                const tasks::PlannedPath& plan, std::span<const telemetry::TickSample> samples,
-                               std::optional<std::size_t> fired, std::span<const tasks::Interruption> interruptions) {
+                               std::optional<std::size_t> given_end,
+                               std::span<const tasks::Interruption> interruptions) {
   AttemptMetrics metrics;
   const auto touch = std::find_if(samples.begin(), samples.end(), [](const telemetry::TickSample& sample) {
     return is_valid(sample) && (sample.phase != telemetry::InsertionPhase::kOutside || sample.depth_mm > 0.0);
   });
   metrics.has_touched_skin = touch != samples.end();
-  const std::optional<std::size_t> end = end_of_attempt(samples, fired);
+  const std::optional<std::size_t> end = end_of_attempt(samples, given_end);
   if (!metrics.has_touched_skin || !end) return metrics;
   const Entry entry = find_entry(samples, *end, tissues.find_layer("skin"));
   if (!entry.sample) return metrics;

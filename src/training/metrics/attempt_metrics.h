@@ -21,7 +21,7 @@ struct AttemptMetrics {
   Vec3 entry_offset_P = Vec3::Zero();
   Vec3 axis_P = Vec3::UnitZ();        ///< Axis of the needle at its end.
   double angle_deg = 0.0;             ///< Angle to the planned path.
-  Vec3 tip_P = Vec3::Zero();          ///< Tip at the needle's end: when fired, otherwise at the deepest position.
+  Vec3 tip_P = Vec3::Zero();          ///< Tip at the needle's end.
   Vec3 pierced_tip_P = Vec3::Zero();  ///< The same as far as layers have given way.
   Vec3 target_offset_P = Vec3::Zero();
   double travel_mm = 0.0;   ///< Inward path length of the tip inside the body, including repeated pushes after a pull
@@ -32,11 +32,11 @@ struct AttemptMetrics {
   double time_s = 0.0;      ///< From the first contact with the skin to the end, without interruptions.
 };
 
-/// Measures an attempt. `fired`: sample at which the gun was fired. Samples without an end (a killed session), none at
-/// all, or with values that are not finite are measured as far as possible.
+/// Measures an attempt. `given_end`: sample of the end (scoring/attempt_end.h); empty: the deepest one. Samples without
+/// an end (a killed session), none at all, or with values that are not finite are measured as far as possible.
 AttemptMetrics measure_attempt(const anatomy::VirtualPatient& patient, const anatomy::TissueTable& tissues,
                                const tasks::PlannedPath& plan, std::span<const telemetry::TickSample> samples,
-                               std::optional<std::size_t> fired,
+                               std::optional<std::size_t> given_end,
                                std::span<const tasks::Interruption> interruptions = {});
 
 }  // namespace trocar::metrics
