@@ -4,6 +4,7 @@
 #include <charconv>
 #include <map>
 
+#include "core/csv_guard.h"
 #include "core/files/atomic_file.h"
 #include "storage/detail/columns.h"
 #include "storage/session_file.h"
@@ -18,8 +19,9 @@ std::string name_of(const std::vector<std::string>& names, std::uint8_t id) {
   return id < names.size() ? names[id] : fmt::format("#{}", id);
 }
 
-/// A field according to RFC 4180: quoted if it contains a comma, a quotation mark or a line break.
-void append_text(std::string& out, const std::string& text) {
+/// A field according to RFC 4180, without formulas: quoted if it contains a comma, a quotation mark or a line break.
+void append_text(std::string& out, const std::string& unguarded) {
+  const std::string text = guard_formulas(unguarded);
   if (text.find_first_of(",\"\r\n") == std::string::npos) {
     out += text;
     return;
