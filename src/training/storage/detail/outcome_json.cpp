@@ -1,5 +1,6 @@
 #include "storage/detail/outcome_json.h"
 
+#include <cmath>
 #include <limits>
 
 #include "config/json.h"
@@ -16,6 +17,12 @@ class Reader {
   double number(const char* key) {
     const config::Json* member = find(key);
     return member != nullptr ? number_of(*member) : 0.0;
+  }
+  /// A whole number from 0 to `most`.
+  std::size_t count(const char* key, double most) {
+    const double value = number(key);
+    if (!(value >= 0.0 && value <= most && value == std::floor(value))) return is_valid_ = false, 0;
+    return static_cast<std::size_t>(value);
   }
   bool boolean(const char* key) {
     const config::Json* member = find(key);
@@ -87,7 +94,7 @@ scoring::Bleeding read_bleeding(const config::Json& object, bool& is_valid) {
   if (!risk) is_valid = false;
   bleeding.risk = risk.value_or(scoring::BleedingRisk::kUsual);
   bleeding.reasons = reader.texts("reasons");
-  bleeding.passes = static_cast<std::size_t>(std::clamp(reader.number("passes"), 0.0, 1e9));
+  bleeding.passes = reader.count("passes", 1e9);
   return bleeding;
 }
 
@@ -124,12 +131,12 @@ void read_judgement(const config::Json& object, scoring::Outcome& outcome, bool&
   Reader reader(object, is_valid);
   outcome.is_passed = reader.boolean("passed");
   outcome.fails = reader.texts("fails");
-  outcome.expert = static_cast<std::size_t>(std::clamp(reader.number("expert"), 0.0, 1e6));
+  outcome.expert = reader.count("expert", 1e6);
   for (const config::Json& item : reader.array("metrics")) {
     Reader metric(item, is_valid);
     outcome.measures.push_back({metric.text("name"), metric.number("value"), metric.text("unit"), {}, {}, {}});
   }
-  outcome.pain_events = static_cast<std::size_t>(std::clamp(reader.number("pain_events"), 0.0, 1e9));
+  outcome.pain_events = reader.count("pain_events", 1e9);
   const config::Json& times = reader.array("hint_times_s");
   if (times.size() != outcome.hints.size()) is_valid = false;
   for (std::size_t n = 0; n < std::min(times.size(), outcome.hints.size()); ++n) {
