@@ -14,6 +14,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int kWaitForWriter_s = 10;
+constexpr int kMostConflicts = 5;  ///< Repetitions of a transaction that others have hindered.
 
 Status prepare_file(const fs::path& path, Missing missing) {
   std::error_code error;
@@ -34,6 +35,7 @@ Journal set_up_sqlite(soci::session& session, const fs::path& file) {
   session << "PRAGMA synchronous = FULL";
   session << "PRAGMA foreign_keys = ON";
   session << "PRAGMA trusted_schema = OFF";
+  session << "PRAGMA secure_delete = ON";  // otherwise deleted and changed names stay readable in the file
   return journal;
 }
 
@@ -128,12 +130,20 @@ bool Database::reconnect() noexcept {
   }
 }
 
+/// Empty: no transaction.
+const char* Database::begin_of(Kind kind) const noexcept {
+  if (kind == Kind::kRead) return "";
+  if (kind == Kind::kSnapshot) return is_sqlite() ? "BEGIN" : "BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY";
+  return is_sqlite() ? "BEGIN IMMEDIATE" : "BEGIN";
+}
+
 Status Database::execute(const char* what, Kind kind, const std::function<bool(soci::session&)>& work) {
-  for (bool is_repeated = false;; is_repeated = true) {
+  int conflicts = 0;
+  for (bool is_repeated = false;;) {
     bool is_open = false, is_committing = false;
     try {
-      if (kind == Kind::kWrite) {
-        *session_ << (is_sqlite() ? "BEGIN IMMEDIATE" : "BEGIN");
+      if (const std::string begin = begin_of(kind); !begin.empty()) {
+        *session_ << begin;
         is_open = true;
       }
       const bool is_kept = work(*session_);
@@ -150,15 +160,31 @@ Status Database::execute(const char* what, Kind kind, const std::function<bool(s
           // SQLite has undone it already, as after a full disk.
         }
       }
+      if (!has_lost && is_open && is_conflict(error) && ++conflicts <= kMostConflicts) continue;
       if (!has_lost) return tl::unexpected(std::move(translated));
-      const bool is_connected = reconnect();
-      if (is_connected && !is_repeated && !(is_open && is_committing)) continue;
-      if (is_open && is_committing)
+      const bool is_connected = reconnect(), is_unknown = kind == Kind::kWrite && is_open && is_committing;
+      if (is_connected && !std::exchange(is_repeated, true) && !is_unknown) continue;
+      if (is_unknown)
         return fail("the connection was lost while data were committed: they may have been written or not",
                     url_.shown(), "repeat it: what was written already is recognised");
       return fail("the connection to the database was lost", url_.shown(), "check the network and the server");
     }
   }
+}
+
+Result<bool> Database::empty_log(std::chrono::milliseconds wait) {
+  if (!is_sqlite() || !journal_.is_write_ahead) return true;
+  const auto set_wait = [this](std::chrono::milliseconds time) {
+    sqlite_api::sqlite3_busy_timeout(handle_of(*session_), static_cast<int>(time.count()));
+  };
+  set_wait(wait);
+  const auto emptied = run("the write-ahead log cannot be emptied", [](soci::session& session) {
+    int is_busy = 0, pages = 0, moved = 0;
+    session << "PRAGMA wal_checkpoint(TRUNCATE)", soci::into(is_busy), soci::into(pages), soci::into(moved);
+    return is_busy == 0;
+  });
+  set_wait(std::chrono::seconds(kWaitForWriter_s));
+  return emptied;
 }
 
 Error Database::translate(const char* what, const std::exception& error) const {

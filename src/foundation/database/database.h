@@ -2,6 +2,7 @@
 
 #include <soci/soci.h>
 
+#include <chrono>
 #include <exception>
 #include <functional>
 #include <memory>
@@ -47,16 +48,26 @@ class Database {
   auto run(const char* what, const Work& work) {
     return attempt(what, Kind::kRead, work);
   }
+  /// Runs reading statements that all see one state of the database, whatever others write meanwhile.
+  template <class Work>
+  auto snapshot(const char* what, const Work& work) {
+    return attempt(what, Kind::kSnapshot, work);
+  }
   /// Runs statements as one transaction: everything is written, or nothing if `work` fails. Other writers wait. The
-  /// work is repeated once if the connection was lost before it was committed; if it is lost during the commit, the
-  /// error says that it is not known whether the data were written, so work has to bear a repetition by the caller.
+  /// work is repeated once if the connection was lost before it was committed, and a few times if another program wrote
+  /// the same rows at the same time; if the connection is lost during the commit, the error says that it is not known
+  /// whether the data were written. So work has to bear a repetition.
   template <class Work>
   auto transaction(const char* what, const Work& work) {
     return attempt(what, Kind::kWrite, work);
   }
+  /// Moves the write-ahead log of an SQLite file into the file and empties it, so that it holds no deleted data. False:
+  /// another connection still read an older state of the database after `wait`.
+  Result<bool> empty_log(std::chrono::milliseconds wait);
 
  private:
-  enum class Kind { kRead, kWrite };
+  enum class Kind { kRead, kSnapshot, kWrite };
+  const char* begin_of(Kind kind) const noexcept;
   struct Connection {
     std::unique_ptr<soci::session> session;
     Journal journal;  ///< Of an SQLite file.

@@ -29,7 +29,9 @@ struct Known {
 constexpr std::array kKnown{
     Known{"28", "the server refuses the user or the password", "check both in the URL"},
     Known{"3D000", "the server has no such database", "ask its administrator to make it (createdb)"},
-    Known{"42501", "the user may not do this", "ask the administrator of the database for the rights"},
+    Known{"42501", "the user may not do this",
+          "a program with the rights of the owner makes or updates the tables; ask the administrator for other rights"},
+    Known{"40", "another program wrote the same data at the same time", "try again"},
     Known{"53100", "the server's disk is full", "ask its administrator; nothing of this was written"},
     Known{"53300", "the server has too many connections", "try again, or ask its administrator"},
     Known{"25006", "the database can only be read", "connect to the server that can be written"},
@@ -71,6 +73,15 @@ void open_server(soci::session& session, const std::string& url) {
 bool is_lost(soci::session& session) noexcept {
   PGconn* const connection = connection_of(session);
   return connection == nullptr || PQstatus(connection) == CONNECTION_BAD;
+}
+
+bool is_conflict(const std::exception& error) noexcept {
+  const auto* known = dynamic_cast<const soci::postgresql_soci_error*>(&error);
+  if (known == nullptr) return false;
+  // unique_violation, foreign_key_violation, serialization_failure, deadlock_detected
+  for (const std::string_view conflict : {"23505", "23503", "40001", "40P01"})
+    if (known->sqlstate() == conflict) return true;
+  return false;
 }
 
 std::optional<Error> server_error(const std::exception& error, const std::string& where) {

@@ -14,9 +14,11 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/files/temporary_folder.h"
+#include "core/testing/source_dir.h"
 #include "database/database.h"
 
 namespace trocar::database::testing {
@@ -79,8 +81,26 @@ class PostgresServer {
     process_ = 0;
   }
 
-  std::string url(const std::string& database, const std::string& password = kPassword) const {
-    return fmt::format("postgresql://{}:{}@127.0.0.1:{}/{}", kUser, password, port_, database);
+  std::string url(const std::string& database, const std::string& password = kPassword,
+                  const std::string& user = kUser) const {
+    return fmt::format("postgresql://{}:{}@127.0.0.1:{}/{}", user, password, port_, database);
+  }
+  /// URLs of a database (a new one, or one that is there) for the roles of packaging/postgresql_roles.sql.
+  struct Roles {
+    DatabaseUrl owner, writer;
+  };
+  Result<Roles> make_database_with_roles() { return give_roles(make_database()); }
+  Result<Roles> give_roles(const DatabaseUrl& made) {
+    const std::string name = made.server.substr(made.server.rfind('/') + 1);
+    TROCAR_TRY(auto administrator, Database::open(made, Missing::kRefuse));
+    TROCAR_TRY_STATUS(administrator.run("the roles cannot be made", [&](soci::session& session) {
+      for (const std::string& statement :
+           statements_of(trocar::testing::source_dir() / "packaging/postgresql_roles.sql"))
+        session << statement;
+      for (const char* role : {"trocar_owner", "trocar_writer"})
+        session << fmt::format("ALTER ROLE {} PASSWORD '{}'", role, kPassword);
+    }));
+    return Roles{{{}, url(name, kPassword, "trocar_owner")}, {{}, url(name, kPassword, "trocar_writer")}};
   }
   /// URL of a new, empty database.
   DatabaseUrl make_database() {
@@ -94,6 +114,21 @@ class PostgresServer {
  private:
   static constexpr uid_t kNobody = 65534;
 
+  /// The statements of a file, without comments; each ends with a line.
+  static std::vector<std::string> statements_of(const std::filesystem::path& path) {
+    std::ifstream file(path);
+    std::vector<std::string> statements;
+    std::string statement;
+    bool is_in_body = false;
+    for (std::string line; std::getline(file, line);) {
+      if (line.find_first_not_of(' ') == std::string::npos || line.find("--") == line.find_first_not_of(' ')) continue;
+      statement += line + "\n";
+      if (line.find("$$") != std::string::npos) is_in_body = !is_in_body;
+      if (!line.ends_with(';') || is_in_body) continue;
+      statements.push_back(std::exchange(statement, {}));
+    }
+    return statements;
+  }
   static void give_away(const std::filesystem::path& path) {
     if (::chown(path.c_str(), kNobody, kNobody) != 0) std::abort();
   }
