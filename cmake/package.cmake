@@ -25,6 +25,7 @@ add_custom_command(OUTPUT ${changelog} DEPENDS ${PROJECT_SOURCE_DIR}/CHANGELOG.m
 add_custom_target(package_files DEPENDS ${made_files} ${completion} ${changelog} trocar trocar-hapticd trocar-trainer)
 install(FILES ${completion} DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT trocar OPTIONAL)
 
+install(FILES ${packaging}/postgresql_roles.sql DESTINATION ${CMAKE_INSTALL_DOCDIR}/packaging COMPONENT trocar)
 install(FILES ${packaging}/trocar-trainer.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications COMPONENT trainer)
 install(FILES ${packaging}/trocar-trainer.svg DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps COMPONENT trainer)
 install(FILES ${packaging}/70-trocar.rules DESTINATION lib/udev/rules.d COMPONENT hapticd)
