@@ -91,10 +91,18 @@ database::Migration version_3() {
   };
 }
 
+// From where accounts have logged in.
+database::Migration version_4() {
+  return {
+      "CREATE TABLE login_clients (account_id TEXT NOT NULL REFERENCES accounts (id) ON DELETE CASCADE,"
+      " client TEXT NOT NULL, used_s BIGINT NOT NULL, PRIMARY KEY (account_id, client))",
+  };
+}
+
 }  // namespace
 
 std::span<const database::Migration> migrations() {
-  static const std::vector<database::Migration> kAll{version_1(), version_2(), version_3()};
+  static const std::vector<database::Migration> kAll{version_1(), version_2(), version_3(), version_4()};
   return kAll;
 }
 
