@@ -12,6 +12,7 @@
 #include "core/files/data_dir.h"
 #include "core/files/output_check.h"
 #include "core/parse_number.h"
+#include "core/utf8.h"
 
 namespace trocar::cli {
 namespace fs = std::filesystem;
@@ -77,6 +78,17 @@ ProgressPrinter::~ProgressPrinter() {
 
 Progress ProgressPrinter::callback() const {
   return [state = state_.get()](std::string_view step, double fraction) { state->show(step, fraction); };
+}
+
+std::string plain_line(std::string_view text) {
+  std::string line;
+  while (!text.empty()) {
+    const auto character = first_character(text);
+    const std::size_t bytes = character ? character->bytes : 1;
+    line += character && is_printable(character->code_point) ? text.substr(0, bytes) : std::string_view("?");
+    text.remove_prefix(bytes);
+  }
+  return line;
 }
 
 Status check_new(const fs::path& out, const char* option) {

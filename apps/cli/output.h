@@ -19,6 +19,10 @@ void print_warning(std::string_view text);
 inline constexpr int kJsonDigits = 13;
 void print_json(config::Json json);
 
+/// A text of a file or a database for a terminal: in one line, without characters that control it or change the order
+/// of others.
+std::string plain_line(std::string_view text);
+
 /// Prints progress of a long task to standard error: a bar on a terminal, else one plain line per step.
 class ProgressPrinter {
  public:

@@ -24,7 +24,7 @@ std::string verdict_text(const results::Attempt& attempt) {
 }
 
 std::string case_text(const results::Case& the_case) {
-  return fmt::format("{}, {}", the_case.task, the_case.patient);
+  return plain_line(fmt::format("{}, {}", the_case.task, the_case.patient));
 }
 
 config::Json attempt_json(const results::Attempt& a, const results::Person& person) {

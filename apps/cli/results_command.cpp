@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "commands.h"
+#include "results/deletion.h"
 #include "results_commands.h"
 #include "serve_accounts.h"
 
@@ -20,6 +21,14 @@ Result<results::Repository> open_results(const std::string& url, database::Missi
 
 void warn_of_journal(results::Repository& repository) {
   if (const std::string note = repository.database().note(); !note.empty()) print_warning(note);
+}
+
+void warn_of_log(results::Repository& repository) {
+  if (results::erase_deleted(repository, std::chrono::milliseconds(0)).value_or(false)) return;
+  print_warning(
+      fmt::format("{}-wal still has what was deleted, because another program reads the database: it is erased "
+                  "when that program ends, or with the next deletion",
+                  repository.url().shown()));
 }
 
 std::string minute_text(results::Seconds time) {

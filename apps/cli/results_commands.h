@@ -25,6 +25,9 @@ Result<results::Repository> open_results(const std::string& url, database::Missi
 /// Prints how the database is kept where it has no write-ahead log.
 void warn_of_journal(results::Repository& repository);
 
+/// Warns after a deletion if another program has kept the deleted data in the write-ahead log.
+void warn_of_log(results::Repository& repository);
+
 /// "2026-01-02 03:04" in UTC.
 std::string minute_text(results::Seconds time);
 results::Seconds now_s();

@@ -105,8 +105,8 @@ void print_attempts(const LearningCurve& curve, std::int64_t window) {
     line.mark(attempt.score, '*');
     const char* const verdict = !attempt.score ? "no result" : attempt.is_passed ? "passed" : "not passed";
     fmt::print("{:>3}  {:<16}  {:<12} {:>5}  {:<10} {:>10} {:>6}  |{}|\n", n + 1, minute_text(attempt.started),
-               attempt.the_case.patient, text_or_dash(attempt.score, 1), verdict, text_or_dash(point.moving_mean, 1),
-               fmt::format("{:.2f}", point.cusum), line.text());
+               plain_line(attempt.the_case.patient), text_or_dash(attempt.score, 1), verdict,
+               text_or_dash(point.moving_mean, 1), fmt::format("{:.2f}", point.cusum), line.text());
   }
   fmt::print("plot: * score, o moving mean{}{}\n", curve.peers > 0 ? ", . mean of the peers at this attempt" : "",
              curve.experts ? ", E mean of the experts" : "");

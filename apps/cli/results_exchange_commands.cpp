@@ -29,13 +29,13 @@ Result<std::string> importing_person(results::Repository& repository, const Impo
   if (arguments.person.empty()) return std::string();
   const auto group = results::find_group(arguments.group);
   if (!group) return fail_usage("unknown group \"" + arguments.group + "\"", "--group", "use trainee or expert");
-  TROCAR_TRY(const auto found, results::find_person_named(repository, arguments.person));
-  if (found) return found->id;
-  TROCAR_TRY(
-      const results::Person added,
-      results::add_person(repository, {arguments.person, *group, arguments.course, arguments.is_simulated}, now_s()));
-  fmt::print("added {} ({}{})\n", added.name, to_string(added.group), added.is_simulated ? ", simulated" : "");
-  return added.id;
+  TROCAR_TRY(const results::PersonOfName found,
+             results::find_or_add_person(
+                 repository, {arguments.person, *group, arguments.course, arguments.is_simulated}, now_s()));
+  const results::Person& person = found.person;
+  if (found.is_added)
+    fmt::print("added {} ({}{})\n", person.name, to_string(person.group), person.is_simulated ? ", simulated" : "");
+  return person.id;
 }
 
 /// The files, and the session files of the folders among them.
@@ -62,23 +62,28 @@ Status import_files(const std::string& url, const ImportArguments& arguments) {
   TROCAR_TRY(const std::string person, importing_person(repository, arguments));
   std::int64_t added = 0, present = 0, bad = 0;
   learning::AttemptCounts counts;
+  const auto import_file = [&](const fs::path& file) -> Status {
+    if (file.extension() == ".csv") {
+      TROCAR_TRY(const results::ImportedRows rows, results::import_attempts(repository, file, now_s()));
+      added += rows.added;
+      present += rows.present;
+      counts.add(rows.counts);
+      return {};
+    }
+    TROCAR_TRY(const auto written, results::import_session(repository, file, person, curriculum));
+    ++(written ? added : present);
+    if (written) counts.add(results::ending_of(written->state), written->is_passed);
+    return {};
+  };
   {
     const ProgressPrinter printer;
     const Progress progress = printer.callback();
     for (std::size_t n = 0; n < files.size(); ++n) {
       core::report(progress, files[n].filename().string(), static_cast<double>(n) / static_cast<double>(files.size()));
-      if (files[n].extension() == ".csv") {
-        TROCAR_TRY(const results::ImportedRows rows, results::import_attempts(repository, files[n], now_s()));
-        added += rows.added;
-        present += rows.present;
-        counts.add(rows.counts);
-        continue;
-      }
-      const auto written = results::import_session(repository, files[n], person, curriculum);
-      if (!written && files.size() == 1) return tl::unexpected(written.error());
-      if (!written) print_warning(written.error().text());
-      ++(!written ? bad : *written ? added : present);
-      if (written && *written) counts.add(results::ending_of((*written)->state), (*written)->is_passed);
+      const Status imported = import_file(files[n]);
+      if (!imported && files.size() == 1) return imported;
+      if (!imported) print_warning(imported.error().text());
+      bad += imported ? 0 : 1;
     }
   }
   fmt::print("{} attempts added, {} were there already{} ({})\n", added, present,

@@ -1,9 +1,7 @@
 // trocar results people, add, change, pin, delete: who practises.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <iostream>
 #include <map>
 
 #include "config/json.h"
@@ -11,6 +9,7 @@
 #include "results/attempts.h"
 #include "results/people.h"
 #include "results_commands.h"
+#include "secret_line.h"
 
 namespace trocar::cli {
 namespace {
@@ -92,15 +91,9 @@ Status change(const std::string& url, const PersonArguments& arguments, bool has
   return {};
 }
 
-/// Without echo from a terminal, else the first line of standard input: never an argument, which others could see.
+/// From the terminal, else the first line of standard input: never an argument, which others could see.
 Result<std::string> read_pin() {
-  if (::isatty(STDIN_FILENO) != 0) {
-    const char* const typed = ::getpass("New PIN (4 to 12 digits): ");
-    return typed != nullptr ? std::string(typed) : std::string();
-  }
-  std::string line;
-  std::getline(std::cin, line);
-  return line;
+  return is_terminal() ? read_secret_line("New PIN (4 to 12 digits): ") : read_piped_line();
 }
 
 Status set_pin(const std::string& url, const PersonArguments& arguments) {
@@ -128,7 +121,8 @@ Status delete_data(const std::string& url, const PersonArguments& arguments) {
     return fail_usage("nothing to delete", "trocar results delete", "give either --person or --attempt");
   TROCAR_TRY(results::Repository repository, open_results(url, Missing::kRefuse));
   if (!arguments.attempt.empty()) {
-    TROCAR_TRY_STATUS(results::delete_attempt(repository, arguments.attempt));
+    TROCAR_TRY(const bool is_erased, results::delete_attempt(repository, arguments.attempt));
+    if (!is_erased) warn_of_log(repository);
     fmt::print("deleted the attempt\n");
     return {};
   }
@@ -136,8 +130,9 @@ Status delete_data(const std::string& url, const PersonArguments& arguments) {
   TROCAR_TRY(const results::PersonalData data, results::count_personal_data(repository, person.id));
   const std::string what = fmt::format("{} with {} attempts, {} recordings, {} questionnaires", person.name,
                                        data.attempts, data.recordings, data.answers);
-  if (!arguments.is_sure) return fail_usage("this deletes " + what + " for ever", person.name, "add --yes to do it");
-  TROCAR_TRY_STATUS(results::delete_person(repository, person.id));
+  if (!arguments.is_sure) return fail_usage("this deletes " + what + " permanently", person.name, "add --yes to do it");
+  TROCAR_TRY(const results::PersonalData deleted, results::delete_person(repository, person.id));
+  if (!deleted.is_erased) warn_of_log(repository);
   fmt::print("deleted {}; session files on a station have to be deleted there\n", what);
   return {};
 }
@@ -180,7 +175,7 @@ void add_results_people_commands(Command& results, const DatabaseOption& url, Ac
   pins.footer("Example:\n  trocar results pins required\n");
   pins.when_parsed([&action, url, a] { action = [url, a] { return change_pins(*url, a->pins); }; });
 
-  Command removed = results.add_command("delete", "Delete a person with all data, or one attempt, for ever");
+  Command removed = results.add_command("delete", "Delete a person with all data, or one attempt, permanently");
   removed.add_option("--person", a->name, "Name of the person");
   removed.add_option("--attempt", a->attempt, "Key of the attempt; see trocar results list");
   removed.add_flag("--yes", a->is_sure, "Do it; without, the data of the person are only counted");

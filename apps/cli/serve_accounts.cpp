@@ -2,15 +2,14 @@
 #include "serve_accounts.h"
 
 #include <fmt/format.h>
-#include <termios.h>
-#include <unistd.h>
 
 #include <chrono>
-#include <iostream>
 
 #include "results/accounts.h"
+#include "results/deletion.h"
 #include "results/names.h"
 #include "results_commands.h"
+#include "secret_line.h"
 #include "signing/password.h"
 #include "signing/password_rules.h"
 
@@ -22,49 +21,16 @@ struct AccountArguments {
   bool is_from_input = false;
 };
 
-/// Typing is not shown during the lifetime of an object, if standard input is a terminal.
-class HiddenTyping {
- public:
-  HiddenTyping() {
-    if (::tcgetattr(STDIN_FILENO, &before_) != 0) return;
-    termios hidden = before_;
-    hidden.c_lflag &= ~static_cast<tcflag_t>(ECHO);
-    is_hidden_ = ::tcsetattr(STDIN_FILENO, TCSAFLUSH, &hidden) == 0;
-  }
-  ~HiddenTyping() {
-    if (is_hidden_) ::tcsetattr(STDIN_FILENO, TCSAFLUSH, &before_);
-  }
-  HiddenTyping(const HiddenTyping&) = delete;
-  HiddenTyping& operator=(const HiddenTyping&) = delete;
-
- private:
-  termios before_{};
-  bool is_hidden_ = false;
-};
-
-Result<std::string> read_line(const char* prompt) {
-  constexpr std::size_t kMostBytes = 4096;
-  if (*prompt != '\0') std::cerr << prompt << std::flush;
-  std::string line;
-  if (!std::getline(std::cin, line)) return fail("there is no password", "standard input", "type it");
-  if (line.size() > kMostBytes)
-    return fail_usage("the password is too long", "standard input", "use at most 128 characters");
-  if (line.ends_with('\r')) line.pop_back();
-  return line;
-}
-
 /// Twice from the terminal, or the first line of standard input.
 Result<std::string> read_new_password(const AccountArguments& arguments) {
   std::string password;
   if (arguments.is_from_input) {
-    TROCAR_TRY(password, read_line(""));
+    TROCAR_TRY(password, read_piped_line());
   } else {
-    if (::isatty(STDIN_FILENO) == 0)
-      return fail_usage("standard input is no terminal", "password", "add --password-stdin to read it from there");
-    const HiddenTyping hidden;
-    TROCAR_TRY(password, read_line("Password (12 to 128 characters): "));
-    TROCAR_TRY(const std::string again, read_line("\nAgain: "));
-    std::cerr << "\n";
+    if (!is_terminal())
+      return fail_usage("standard input is not a terminal", "password", "add --password-stdin to read it from there");
+    TROCAR_TRY(password, read_secret_line("Password (12 to 128 characters): "));
+    TROCAR_TRY(const std::string again, read_secret_line("Again: "));
     if (again != password) return fail_usage("the passwords differ", "password", "run the command again");
   }
   TROCAR_TRY_STATUS(signing::check_new_password(password, arguments.name));
@@ -85,7 +51,7 @@ Result<results::Repository> open(const AccountArguments& arguments) {
 Status add_account(const AccountArguments& arguments) {
   const auto role = results::find_role(arguments.role);
   if (!role) return fail_usage("there is no such role", "--role " + arguments.role, "choose admin or instructor");
-  TROCAR_TRY(const std::string name, results::clean_name(arguments.name, "the name of an account"));
+  TROCAR_TRY(const std::string name, results::clean_account_name(arguments.name));
   TROCAR_TRY(results::Repository repository, open(arguments));
   TROCAR_TRY(const auto other, results::find_account(repository, name));
   if (other) return fail_usage("the name is taken", other->name, "choose another name");
@@ -108,6 +74,7 @@ Status print_accounts(const AccountArguments& arguments) {
 Status remove(const AccountArguments& arguments) {
   TROCAR_TRY(results::Repository repository, open(arguments));
   TROCAR_TRY_STATUS(results::remove_account(repository, arguments.name));
+  warn_of_log(repository);
   fmt::print("{} can no longer log in\n", arguments.name);
   return {};
 }

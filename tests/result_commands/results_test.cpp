@@ -89,6 +89,20 @@ TEST_F(Results, SayWhatWasCountedAndWhatWasLeftOut) {
   EXPECT_NE(results("import " + file("a.csv")).out.find("0 attempts added, 5 were there already"), std::string::npos);
 }
 
+TEST_F(Results, OfOtherFilesAreImportedBesideAWrongOne) {
+  add_anna();
+  write_session(folder_ / "a.session", {.score = 91.0});
+  ASSERT_EQ(results("import " + file("a.session") + " --person 'Anna Meier'").exit_status, 0);
+  ASSERT_EQ(results("export --csv " + file("a.csv")).exit_status, 0);
+  std::ofstream(folder_ / "wrong.csv") << "a,b\r\n1,2\r\n";
+  const Outcome both =
+      trocar("results --db " + file("other.sqlite") + " import " + file("wrong.csv") + " " + file("a.csv"));
+  EXPECT_EQ(both.exit_status, 1);
+  EXPECT_NE(both.out.find("1 attempts added"), std::string::npos) << both.out;
+  EXPECT_NE(both.err.find("there is no column \"a\""), std::string::npos) << both.err;
+  EXPECT_NE(both.err.find("1 of 2 files were not imported"), std::string::npos) << both.err;
+}
+
 TEST_F(Results, DeleteAPersonOnlyWithYes) {
   add_anna();
   write_session(folder_ / "a.session", {});

@@ -28,6 +28,10 @@ TEST(Serve, AccountsAreAddedChangedAndRemoved) {
   expect_refused(with_input("passwordpassword", "serve account add x --password-stdin" + db), 2, "tried first");
   expect_refused(with_input("grinding copper lids", "serve account add x --role root --password-stdin" + db), 2,
                  "no such role");
+  for (const char* name : {"a/b", "..", "."})
+    expect_refused(
+        with_input("grinding copper lids", std::string("serve account add '") + name + "' --password-stdin" + db), 2,
+        "an address cannot contain the name");
   expect_refused(trocar("serve account add x < /dev/null" + db), 2, "--password-stdin");
   EXPECT_EQ(with_input("seven quiet otters", "serve account password 'Dr. Weber' --password-stdin" + db).exit_status,
             0);

@@ -1,8 +1,11 @@
 #include "results/accounts.h"
 
+#include "results/deletion.h"
+#include "results/detail/note_deletion.h"
 #include "results/names.h"
 
 namespace trocar::results {
+using namespace detail;
 namespace {
 
 constexpr const char* kCannotReadAccounts = "the accounts cannot be read";
@@ -39,9 +42,17 @@ std::optional<Role> find_role(std::string_view name) noexcept {
   return std::nullopt;
 }
 
+Result<std::string> clean_account_name(std::string_view name) {
+  TROCAR_TRY(std::string clean, clean_name(name, kAccountName));
+  if (clean == "." || clean == ".." || clean.find_first_of("/\\") != std::string::npos)
+    return fail_usage("an address cannot contain the name of the account", clean,
+                      "use a name without / and \\, other than . and ..");
+  return clean;
+}
+
 Result<Account> add_account(Repository& repository, std::string_view name, Role role, std::string_view password_hash,
                             Seconds now) {
-  TROCAR_TRY(std::string clean, clean_name(name, kAccountName));
+  TROCAR_TRY(std::string clean, clean_account_name(name));
   return repository.database().transaction(kCannotWriteAccount, [&](soci::session& session) -> Result<Account> {
     const Account account{make_id(), clean, role, std::string(password_hash), now};
     const std::string key = name_key(account.name);
@@ -101,7 +112,7 @@ Status change_password(Repository& repository, std::string_view account_id, std:
 Status remove_account(Repository& repository, std::string_view name) {
   TROCAR_TRY(const std::optional<Account> account, find_account(repository, name));
   if (!account) return no_such_account(std::string(name));
-  return repository.database().transaction(kCannotWriteAccount, [&](soci::session& session) -> Status {
+  const auto removed = repository.database().transaction(kCannotWriteAccount, [&](soci::session& session) -> Status {
     if (account->role == Role::kAdmin) {
       int others = 0;
       // The row is locked until the end, so that two admins cannot remove each other at the same time.
@@ -112,8 +123,11 @@ Status remove_account(Repository& repository, std::string_view name) {
         return fail_usage("it is the last account of an admin", account->name, "add another admin first");
     }
     session << "DELETE FROM accounts WHERE id = :i", soci::use(account->id);
+    note_deletion(session);
     return {};
   });
+  if (removed) static_cast<void>(erase_deleted(repository));
+  return removed;
 }
 
 Status add_web_session(Repository& repository, const WebSession& web) {

@@ -22,6 +22,9 @@ struct Account {
   std::string password_hash;  ///< Encoded, from signing/password.h: this module only stores it.
   Seconds added{};
 };
+/// The name of a new account as clean_name gives it. Error (exit status 2): also a name that no address of the page can
+/// contain: "..", or one with a slash.
+Result<std::string> clean_account_name(std::string_view name);
 /// Error (exit status 2): a name that cannot be used, or exists.
 Result<Account> add_account(Repository& repository, std::string_view name, Role role, std::string_view password_hash,
                             Seconds now);

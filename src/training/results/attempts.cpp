@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include "database/bytes.h"
+#include "results/deletion.h"
 #include "results/detail/attempt_query.h"
 #include "results/detail/attempt_writer.h"
 #include "results/detail/details_json.h"
+#include "results/detail/note_deletion.h"
 #include "results/detail/rows.h"
 
 namespace trocar::results {
@@ -60,8 +62,17 @@ Status forget_begun_attempt(Repository& repository, std::string_view id) {
 
 Result<std::int64_t> record_attempt(Repository& repository, const AttemptRecord& record, std::string_view recording) {
   database::Database& database = repository.database();
-  return database.transaction(kCannotWriteAttempt, [&](soci::session& session) {
-    return AttemptWriter(session, database).record(record, recording);
+  return database.transaction(kCannotWriteAttempt, [&](soci::session& session) -> Result<std::int64_t> {
+    TROCAR_TRY(const AttemptWriter::Recorded recorded, AttemptWriter(session, database).record(record, recording));
+    return recorded.sequence;
+  });
+}
+
+Result<bool> record_missing_attempt(Repository& repository, const AttemptRecord& record, std::string_view recording) {
+  database::Database& database = repository.database();
+  return database.transaction(kCannotWriteAttempt, [&](soci::session& session) -> Result<bool> {
+    TROCAR_TRY(const AttemptWriter::Recorded recorded, AttemptWriter(session, database).record(record, recording));
+    return recorded.is_written;
   });
 }
 
@@ -156,16 +167,18 @@ Result<std::optional<std::string>> find_expert_attempt(Repository& repository, c
   });
 }
 
-Status delete_attempt(Repository& repository, std::string_view id) {
-  database::Database& database = repository.database();
-  return database.transaction("the attempt cannot be deleted", [&](soci::session& session) -> Status {
-    const std::string key(id);
-    if (database.is_sqlite()) session << "PRAGMA secure_delete = ON";
-    soci::statement remove = (session.prepare << "DELETE FROM attempts WHERE id = :i", soci::use(key));
-    remove.execute(true);
-    if (remove.get_affected_rows() == 1) return {};
-    return fail_usage("no such attempt", key, "see trocar results list");
-  });
+Result<bool> delete_attempt(Repository& repository, std::string_view id) {
+  const auto deleted =
+      repository.database().transaction("the attempt cannot be deleted", [&](soci::session& session) -> Status {
+        const std::string key(id);
+        soci::statement remove = (session.prepare << "DELETE FROM attempts WHERE id = :i", soci::use(key));
+        remove.execute(true);
+        if (remove.get_affected_rows() != 1) return fail_usage("no such attempt", key, "see trocar results list");
+        note_deletion(session);
+        return {};
+      });
+  TROCAR_TRY_STATUS(deleted);
+  return erase_deleted(repository).value_or(false);
 }
 
 Result<std::vector<learning::PastAttempt>> past_attempts(Repository& repository, std::string_view person_id) {

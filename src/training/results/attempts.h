@@ -21,6 +21,9 @@ Status forget_begun_attempt(Repository& repository, std::string_view id);
 /// the skin among its measures. `recording`: bytes of the session file; empty: not kept. Returns its sequence.
 /// Error (exit status 2): no such person.
 Result<std::int64_t> record_attempt(Repository& repository, const AttemptRecord& record, std::string_view recording);
+/// The same. Returns whether it was written: false if it had ended already, also where another program has recorded it
+/// at the same time.
+Result<bool> record_missing_attempt(Repository& repository, const AttemptRecord& record, std::string_view recording);
 /// Many at once in one transaction, without recordings: for imports and measurements.
 Status record_attempts(Repository& repository, const std::vector<AttemptRecord>& records);
 
@@ -44,7 +47,8 @@ Result<std::optional<std::string>> load_recording(Repository& repository, std::s
 /// The id of the best attempt of an expert on the same case (of a simulated one only if there is no other); empty:
 /// none.
 Result<std::optional<std::string>> find_expert_attempt(Repository& repository, const Attempt& attempt);
-Status delete_attempt(Repository& repository, std::string_view id);
+/// Deletes an attempt permanently. Returns whether it is erased everywhere; see erase_deleted.
+Result<bool> delete_attempt(Repository& repository, std::string_view id);
 
 /// Past attempts of a person for the learning path, by sequence.
 Result<std::vector<learning::PastAttempt>> past_attempts(Repository& repository, std::string_view person_id);

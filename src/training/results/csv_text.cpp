@@ -2,21 +2,26 @@
 
 #include <fmt/format.h>
 
+#include "core/csv_guard.h"
+
 namespace trocar::results {
 namespace {
 
-bool is_formula(std::string_view text) {
-  return !text.empty() && std::string_view("=+-@\t'").find(text.front()) != std::string_view::npos;
-}
+constexpr const char* kCheckQuotes = "check the quotes";
+constexpr std::size_t kMostFields = 10'000;
+constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 
 }  // namespace
 
 std::string csv_text(std::string_view text) {
-  std::string field = is_formula(text) ? fmt::format("'{}", text) : std::string(text);
-  if (field.find_first_of(",\"\n\r") == std::string::npos) return field;
-  std::string quoted = "\"";
-  for (const char c : field) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
+  const std::string guarded = guard_formulas(text);
+  std::string field = "\"";
+  field.reserve(guarded.size() + 2);
+  for (const char c : guarded) {
+    if (c == '"') field += '"';
+    field += c;
+  }
+  return field += '"';
 }
 
 std::string csv_row(const std::vector<std::string>& fields) {
@@ -24,76 +29,103 @@ std::string csv_row(const std::vector<std::string>& fields) {
 }
 
 std::string plain_text(std::string_view field) {
-  const bool has_mark = field.size() >= 2 && field.front() == '\'' && is_formula(field.substr(1));
-  return std::string(has_mark ? field.substr(1) : field);
+  return without_formula_guards(field);
 }
 
-namespace {
+std::optional<char> CsvReader::peek(std::size_t distance) {
+  while (at_ + distance >= buffer_.size() && !is_ended_) {
+    buffer_.erase(0, at_);
+    at_ = 0;
+    Result<std::string> piece = source_();
+    if (!piece) fault_ = tl::unexpected(piece.error());
+    is_ended_ = !piece || piece->empty();
+    if (piece) buffer_ += *piece;
+  }
+  return at_ + distance < buffer_.size() ? std::optional(buffer_[at_ + distance]) : std::nullopt;
+}
 
-/// Reads a text field by field.
-class CsvReader {
- public:
-  CsvReader(std::string_view text, const std::string& where) : text_(text), where_(where) {}
+tl::unexpected<Error> CsvReader::refuse(std::string what, const char* advice) const {
+  return fail(std::move(what), fmt::format("{}, line {}, field {}", where_, field_line_, field_), advice);
+}
 
-  bool is_at_end() const { return at_ >= text_.size(); }
+/// Takes the next character into the field.
+Status CsvReader::add(std::string& field) {
+  if (buffer_[at_] == '\0') return refuse("it is no text", "name a CSV file");
+  if (++row_bytes_ > kMostRowBytes)
+    return refuse(fmt::format("the row is longer than {} MiB", kMostRowBytes >> 20), kCheckQuotes);
+  field += buffer_[at_++];
+  return {};
+}
 
-  Result<CsvRow> read_row() {
-    CsvRow row{line_, {}};
-    for (bool has_more = true; has_more;) {
-      const std::string place = fmt::format("{}, line {}, field {}", where_, line_, row.fields.size() + 1);
-      TROCAR_TRY(row.fields.emplace_back(), is_next('"') ? read_quoted(place) : read_plain(place));
-      has_more = is_next(',');
-      if (has_more) ++at_;
+Result<std::string> CsvReader::read_quoted() {
+  std::string field;
+  for (++at_; peek();) {
+    if (is_next('"')) {
+      if (peek(1) != '"') break;
+      ++at_;
+    } else if (is_next('\n')) {
+      ++line_;
     }
-    if (is_next('\r')) ++at_;
-    if (is_next('\n')) ++at_;
-    ++line_;
-    return row;
+    TROCAR_TRY_STATUS(add(field));
   }
+  TROCAR_TRY_STATUS(fault_);
+  if (!peek()) return refuse("a quotation does not end", kCheckQuotes);
+  ++at_;
+  if (!is_field_end()) return refuse("text after a quotation", kCheckQuotes);
+  return field;
+}
 
- private:
-  static constexpr const char* kCheckQuotes = "check the quotes";
-
-  bool is_next(char c) const { return at_ < text_.size() && text_[at_] == c; }
-  bool is_field_end() const { return is_at_end() || is_next(',') || is_next('\r') || is_next('\n'); }
-
-  Result<std::string> read_quoted(const std::string& place) {
-    std::string field;
-    for (++at_;; ++at_) {
-      if (is_at_end()) return fail("a quotation does not end", place, kCheckQuotes);
-      if (is_next('"') && (at_ + 1 >= text_.size() || text_[at_ + 1] != '"')) break;
-      if (is_next('"')) ++at_;
-      if (is_next('\n')) ++line_;
-      field += text_[at_];
-    }
-    ++at_;
-    if (!is_field_end()) return fail("text after a quotation", place, kCheckQuotes);
-    return field;
+Result<std::string> CsvReader::read_plain() {
+  std::string field;
+  while (!is_field_end()) {
+    if (is_next('"')) return refuse("a quotation mark inside of a field", kCheckQuotes);
+    TROCAR_TRY_STATUS(add(field));
   }
+  return field;
+}
 
-  Result<std::string> read_plain(const std::string& place) {
-    std::string field;
-    for (; !is_field_end(); ++at_) field += text_[at_];
-    if (field.find('"') != std::string::npos) return fail("a quotation mark inside of a field", place, kCheckQuotes);
-    if (field.find('\0') != std::string::npos) return fail("it is no text", place, "name a CSV file");
-    return field;
+Result<CsvRow> CsvReader::read_row() {
+  CsvRow row{line_, {}};
+  row_bytes_ = 0;
+  for (bool has_more = true; has_more;) {
+    field_ = row.fields.size() + 1;
+    field_line_ = line_;
+    TROCAR_TRY(row.fields.emplace_back(), is_next('"') ? read_quoted() : read_plain());
+    has_more = is_next(',');
+    if (has_more) ++at_;
+    if (has_more && row.fields.size() >= kMostFields)
+      return refuse(fmt::format("the row has more than {} fields", kMostFields), "use a file of trocar results export");
   }
+  if (is_next('\r')) ++at_;
+  if (is_next('\n')) ++at_;
+  ++line_;
+  TROCAR_TRY_STATUS(fault_);
+  return row;
+}
 
-  std::string_view text_;
-  const std::string& where_;
-  std::size_t at_ = 0, line_ = 1;
-};
-
-}  // namespace
+Result<std::optional<CsvRow>> CsvReader::next() {
+  if (!has_begun_) {
+    has_begun_ = true;
+    peek(kByteOrderMark.size());
+    if (std::string_view(buffer_).starts_with(kByteOrderMark)) at_ = kByteOrderMark.size();
+  }
+  while (peek()) {
+    TROCAR_TRY(CsvRow row, read_row());
+    if (row.fields.size() > 1 || !row.fields.front().empty()) return std::optional(std::move(row));
+  }
+  TROCAR_TRY_STATUS(fault_);
+  return std::optional<CsvRow>();
+}
 
 Result<std::vector<CsvRow>> parse_csv(std::string_view text, const std::string& where) {
-  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+  CsvReader reader([rest = std::string(text)]() mutable -> Result<std::string> { return std::exchange(rest, {}); },
+                   where);
   std::vector<CsvRow> rows;
-  for (CsvReader reader(text, where); !reader.is_at_end();) {
-    TROCAR_TRY(CsvRow row, reader.read_row());
-    if (row.fields.size() > 1 || !row.fields.front().empty()) rows.push_back(std::move(row));
+  while (true) {
+    TROCAR_TRY(std::optional<CsvRow> row, reader.next());
+    if (!row) return rows;
+    rows.push_back(*std::move(row));
   }
-  return rows;
 }
 
 }  // namespace trocar::results

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "results/deletion.h"
+#include "results/detail/note_deletion.h"
 #include "results/detail/people_table.h"
 #include "results/detail/rows.h"
 #include "signing/password.h"
@@ -63,14 +65,21 @@ std::optional<Person> first_of(std::vector<Person> people) {
 /// The course's id, made if it is new; empty without a name.
 std::optional<std::string> course_id(soci::session& session, const std::string& name) {
   if (name.empty()) return std::nullopt;
-  const std::string key = name_key(name);
+  const std::string key = name_key(name), new_id = make_id();
+  // An update of nothing locks the row: a deletion at the same time must not take it for an empty course.
+  session << "INSERT INTO courses (id, name, name_key) VALUES (:i, :n, :k)"
+             " ON CONFLICT (name_key) DO UPDATE SET name_key = excluded.name_key",
+      soci::use(new_id), soci::use(name), soci::use(key);
   std::string id;
   session << "SELECT id FROM courses WHERE name_key = :k", soci::use(key), soci::into(id);
-  if (session.got_data()) return id;
-  id = make_id();
-  session << "INSERT INTO courses (id, name, name_key) VALUES (:i, :n, :k)", soci::use(id), soci::use(name),
-      soci::use(key);
   return id;
+}
+
+/// Deletes the courses that nobody is in. Their rows are locked first, so that people who are added to one of them at
+/// the same time are seen.
+void remove_empty_courses(soci::session& session, bool is_sqlite) {
+  if (!is_sqlite) session << "SELECT count(*) FROM (SELECT id FROM courses ORDER BY id FOR UPDATE) locked";
+  session << "DELETE FROM courses WHERE NOT EXISTS (SELECT 1 FROM people p WHERE p.course_id = courses.id)";
 }
 
 bool is_name_taken(soci::session& session, const std::string& key, const std::string& but_id) {
@@ -133,10 +142,15 @@ Result<Person> add_person(soci::session& session, const NewPerson& person, Secon
   Bound<std::string> course_key(course_id(session, added.course));
   const int is_expert = added.group == Group::kExpert ? 1 : 0, is_simulated = added.is_simulated ? 1 : 0;
   const long long now_s = now.time_since_epoch().count();
-  session << "INSERT INTO people (id, name, name_key, is_expert, is_simulated, course_id, pin_hash, pin_failures,"
-             " pin_failed_s, added_s) VALUES (:id, :name, :key, :expert, :simulated, :course, '', 0, 0, :now)",
-      soci::use(added.id), soci::use(added.name), soci::use(key), soci::use(is_expert), soci::use(is_simulated),
-      soci::use(course_key.value, course_key.indicator), soci::use(now_s);
+  soci::statement insert =
+      (session.prepare
+           << "INSERT INTO people (id, name, name_key, is_expert, is_simulated, course_id, pin_hash, pin_failures,"
+              " pin_failed_s, added_s) VALUES (:id, :name, :key, :expert, :simulated, :course, '', 0, 0, :now)"
+              " ON CONFLICT (name_key) DO NOTHING",
+       soci::use(added.id), soci::use(added.name), soci::use(key), soci::use(is_expert), soci::use(is_simulated),
+       soci::use(course_key.value, course_key.indicator), soci::use(now_s));
+  insert.execute(true);
+  if (insert.get_affected_rows() != 1) return fail_usage("the name is taken", added.name, "choose another name");
   return added;
 }
 
@@ -148,11 +162,29 @@ std::optional<Person> find_person_named(soci::session& session, const std::strin
   return first_of(read_people(session, " WHERE p.name_key = :k", &key));
 }
 
+Result<PersonOfName> find_or_add_person(soci::session& session, const NewPerson& person, Seconds now) {
+  TROCAR_TRY(const std::string name, clean_name(person.name, kPersonName));
+  const std::string key = name_key(name);
+  if (auto found = find_person_named(session, key)) return PersonOfName{*std::move(found), false};
+  auto added = add_person(session, person, now);
+  if (added) return PersonOfName{*std::move(added), true};
+  // Another program may have added the name since.
+  if (auto found = find_person_named(session, key)) return PersonOfName{*std::move(found), false};
+  return tl::unexpected(added.error());
+}
+
 }  // namespace detail
 
 Result<Person> add_person(Repository& repository, const NewPerson& person, Seconds now) {
   return repository.database().transaction(
       kCannotWritePerson, [&](soci::session& session) { return detail::add_person(session, person, now); });
+}
+
+Result<PersonOfName> find_or_add_person(Repository& repository, const NewPerson& person, Seconds now) {
+  TROCAR_TRY(const std::string name, clean_name(person.name, kPersonName));
+  return repository.database().transaction(kCannotWritePerson, [&](soci::session& session) -> Result<PersonOfName> {
+    return detail::find_or_add_person(session, person, now);
+  });
 }
 
 Result<std::vector<Person>> list_people(Repository& repository) {
@@ -225,21 +257,26 @@ PersonalData count_personal_data(soci::session& session, const std::string& id) 
           count("SELECT count(*) FROM responses WHERE person_id = :i")};
 }
 
+Result<PersonalData> delete_person(soci::session& session, const std::string& id, bool is_sqlite) {
+  const PersonalData data = count_personal_data(session, id);
+  soci::statement remove = (session.prepare << "DELETE FROM people WHERE id = :i", soci::use(id));
+  remove.execute(true);
+  if (remove.get_affected_rows() != 1) return tl::unexpected(no_such_person(id).error());
+  remove_empty_courses(session, is_sqlite);
+  note_deletion(session);
+  return data;
+}
+
 }  // namespace detail
 
 Result<PersonalData> delete_person(Repository& repository, std::string_view id) {
-  return repository.database().transaction(
-      "the person cannot be deleted", [&](soci::session& session) -> Result<PersonalData> {
-        const std::string person(id);
-        // Otherwise the deleted bytes stay readable in the file.
-        if (repository.database().is_sqlite()) session << "PRAGMA secure_delete = ON";
-        const PersonalData data = detail::count_personal_data(session, person);
-        soci::statement remove = (session.prepare << "DELETE FROM people WHERE id = :i", soci::use(person));
-        remove.execute(true);
-        if (remove.get_affected_rows() != 1) return tl::unexpected(no_such_person(person).error());
-        session << "DELETE FROM courses WHERE NOT EXISTS (SELECT 1 FROM people p WHERE p.course_id = courses.id)";
-        return data;
-      });
+  database::Database& database = repository.database();
+  TROCAR_TRY(PersonalData data,
+             database.transaction("the person cannot be deleted", [&](soci::session& session) -> Result<PersonalData> {
+               return detail::delete_person(session, std::string(id), database.is_sqlite());
+             }));
+  data.is_erased = erase_deleted(repository).value_or(false);
+  return data;
 }
 
 Status set_pin(Repository& repository, std::string_view id, std::string_view pin) {

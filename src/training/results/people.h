@@ -36,6 +36,12 @@ struct NewPerson {
 
 /// Error (exit status 2): a name that cannot be used, or exists.
 Result<Person> add_person(Repository& repository, const NewPerson& person, Seconds now);
+/// The person of this name, as it is; added if there is none, also by another program at the same time.
+struct PersonOfName {
+  Person person;
+  bool is_added = false;
+};
+Result<PersonOfName> find_or_add_person(Repository& repository, const NewPerson& person, Seconds now);
 Result<std::vector<Person>> list_people(Repository& repository);  ///< By name.
 Result<std::optional<Person>> find_person(Repository& repository, std::string_view id);
 Result<std::optional<Person>> find_person_named(Repository& repository, std::string_view name);
@@ -50,9 +56,11 @@ struct PersonalData {
   std::int64_t attempts = 0;
   std::int64_t recordings = 0;
   std::int64_t answers = 0;  ///< Filled-in questionnaires.
+  bool is_erased = true;     ///< After a deletion: see erase_deleted.
 };
 Result<PersonalData> count_personal_data(Repository& repository, std::string_view id);
-/// Deletes a person with attempts, recordings and answers, for ever. In an SQLite file the freed bytes are overwritten.
+/// Deletes a person with attempts, recordings and answers, permanently, and a course that nobody is in any more. In an
+/// SQLite file the freed bytes are overwritten, and its log is emptied.
 Result<PersonalData> delete_person(Repository& repository, std::string_view id);
 
 /// Sets a PIN of 4 to 12 digits; empty: none from now on. Only its Argon2id hash is kept.

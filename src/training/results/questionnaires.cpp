@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <set>
 
+#include "results/deletion.h"
 #include "results/detail/form_tables.h"
+#include "results/detail/note_deletion.h"
 #include "results/names.h"
 #include "signing/token.h"
 
@@ -15,7 +17,7 @@ namespace {
 
 constexpr const char* kCannotReadForms = "the questionnaires cannot be read";
 constexpr const char* kCannotWriteForm = "the questionnaire cannot be written";
-constexpr std::size_t kMaxTitle = 200, kMaxIntro = 4000, kMaxItemText = 500;
+constexpr std::size_t kMaxTitle = 200, kMaxItemText = 500;
 constexpr int kTokenBits = 128;
 
 Status no_such_form(std::string_view id) {
@@ -31,7 +33,7 @@ Result<std::string> clean_required(std::string_view text, std::size_t max_charac
 /// The texts of a form, checked and without blanks at their ends.
 Result<Form> clean_form(Form form) {
   TROCAR_TRY(form.title, clean_required(form.title, kMaxTitle, "the title"));
-  TROCAR_TRY(form.intro, clean_text(form.intro, kMaxIntro, "the introduction"));
+  TROCAR_TRY(form.intro, clean_text(form.intro, kMaxIntroCharacters, "the introduction"));
   if (form.items.empty()) return fail_usage("the questionnaire has no item", form.title, "add one");
   if (form.items.size() > kMaxItems)
     return fail_usage(fmt::format("the questionnaire has {} items", form.items.size()), form.title,
@@ -160,14 +162,17 @@ Result<std::optional<Form>> find_open_form(Repository& repository, std::string_v
 }
 
 Status delete_form(Repository& repository, std::string_view id) {
-  return repository.database().transaction(
-      "the questionnaire cannot be deleted", [&](soci::session& session) -> Status {
-        if (repository.database().is_sqlite()) session << "PRAGMA secure_delete = ON";
+  const auto deleted =
+      repository.database().transaction("the questionnaire cannot be deleted", [&](soci::session& session) -> Status {
         const std::string key(id);
         soci::statement remove = (session.prepare << "DELETE FROM forms WHERE id = :i", soci::use(key));
         remove.execute(true);
-        return remove.get_affected_rows() == 1 ? Status() : no_such_form(id);
+        if (remove.get_affected_rows() != 1) return no_such_form(id);
+        note_deletion(session);
+        return {};
       });
+  if (deleted) static_cast<void>(erase_deleted(repository));
+  return deleted;
 }
 
 Status add_response(Repository& repository, std::string_view token, std::string_view response_id,

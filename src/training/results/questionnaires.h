@@ -14,7 +14,7 @@ namespace trocar::results {
 
 /// Six points, 1 = strongly agree … 6 = strongly disagree (paper B, section 4).
 inline constexpr int kScalePoints = 6;
-inline constexpr std::size_t kMaxAnswerCharacters = 2000;
+inline constexpr std::size_t kMaxAnswerCharacters = 2000, kMaxIntroCharacters = 2000;
 inline constexpr std::size_t kMaxItems = 50;
 
 enum class ItemKind : std::uint8_t { kScale, kText };

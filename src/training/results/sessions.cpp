@@ -9,7 +9,9 @@
 
 #include "core/files/atomic_file.h"
 #include "core/files/temporary_folder.h"
+#include "core/utf8.h"
 #include "learning/history.h"
+#include "results/detail/attempt_writer.h"
 #include "results/detail/trace_of.h"
 #include "signing/sha256.h"
 #include "storage/session_summary.h"
@@ -40,6 +42,13 @@ Case case_of(const storage::SessionInfo& info, const learning::Curriculum& curri
     for (const learning::CourseCase& one : course->cases)
       if (one.patient == the_case.patient) the_case.difficulty = one.difficulty;
   return the_case;
+}
+
+/// A text of a file or of the system as every database can keep it.
+std::string storable(std::string_view text) {
+  std::string clean = valid_utf8(text);
+  std::erase(clean, '\0');
+  return clean;
 }
 
 void add_outcome(const scoring::Outcome& outcome, AttemptRecord& record) {
@@ -91,7 +100,7 @@ Result<bool> is_left(Repository& repository, const storage::SessionSummary& sess
 
 std::string station_name() {
   std::array<char, 256> name{};
-  return gethostname(name.data(), name.size() - 1) == 0 ? std::string(name.data()) : std::string();
+  return gethostname(name.data(), name.size() - 1) == 0 ? storable(name.data()) : std::string();
 }
 
 Attempt begun_attempt(const storage::SessionInfo& info, const learning::Curriculum& curriculum) {
@@ -99,10 +108,12 @@ Attempt begun_attempt(const storage::SessionInfo& info, const learning::Curricul
   attempt.id = info.attempt_id;
   attempt.person_id = info.person_id;
   attempt.the_case = case_of(info, curriculum);
+  for (std::string* text : {&attempt.the_case.task, &attempt.the_case.patient, &attempt.the_case.patient_hash})
+    *text = storable(*text);
   attempt.level = info.level;
-  attempt.operator_name = info.operator_name;
+  attempt.operator_name = storable(info.operator_name);
   attempt.station = station_name();
-  attempt.program_version = info.program_version;
+  attempt.program_version = storable(info.program_version);
   return attempt;
 }
 
@@ -121,6 +132,10 @@ Result<AttemptRecord> attempt_of_session(const fs::path& file, const std::string
   if (!session.samples.empty())
     record.attempt.duration_s = session.samples.back().time_s - session.samples.front().time_s;
   if (session.outcome) add_outcome(*session.outcome, record);
+  if (Status can = detail::check_storable(record); !can) {
+    can.error().where = fmt::format("{}, {}", file.string(), can.error().where);
+    return tl::unexpected(std::move(can).error());
+  }
   record.trace = detail::trace_of(session);
   return record;
 }
@@ -131,8 +146,8 @@ Result<std::optional<Attempt>> import_session(Repository& repository, const fs::
   TROCAR_TRY(const auto state, known_state(repository, record.attempt.id));
   if (state && has_ended(*state)) return std::optional<Attempt>();
   TROCAR_TRY(const std::string bytes, read_recording(file));
-  TROCAR_TRY_STATUS(record_attempt(repository, record, bytes));
-  return std::optional(record.attempt);
+  TROCAR_TRY(const bool is_written, record_missing_attempt(repository, record, bytes));
+  return is_written ? std::optional(record.attempt) : std::nullopt;
 }
 
 Result<Imported> import_left_sessions(Repository& repository, const fs::path& folder,
@@ -156,8 +171,8 @@ Result<Imported> import_left_sessions(Repository& repository, const fs::path& fo
       continue;
     }
     TROCAR_TRY(const std::string bytes, read_recording(file));
-    TROCAR_TRY_STATUS(record_attempt(repository, *record, bytes));
-    ++imported.added;
+    TROCAR_TRY(const bool is_written, record_missing_attempt(repository, *record, bytes));
+    ++(is_written ? imported.added : imported.present);
   }
   return imported;
 }

@@ -8,25 +8,20 @@
 #include "core/utf8.h"
 
 namespace trocar::web {
-namespace {
 
-constexpr std::size_t kMostBytes = 4096;
-
-}  // namespace
-
-Result<std::string> text_field(const Json& body, const char* name) {
+Result<std::string> text_field(const Json& body, const char* name, std::size_t most_bytes) {
   if (!body.is_object() || !body.contains(name)) return fail_usage("a field is missing", name, "send it as a text");
   const Json& field = body.at(name);
   if (!field.is_string()) return fail_usage("a field is not a text", name, "send it as a text");
   const auto& text = field.get_ref<const std::string&>();
-  if (text.size() > kMostBytes) return fail_usage("a text is too long", name, "shorten it");
+  if (text.size() > most_bytes) return fail_usage("a text is too long", name, "shorten it");
   if (valid_utf8(text) != text) return fail_usage("a text is not UTF-8", name, "write it again");
   return text;
 }
 
-Result<std::string> text_field_or_empty(const Json& body, const char* name) {
+Result<std::string> text_field_or_empty(const Json& body, const char* name, std::size_t most_bytes) {
   if (body.is_object() && (!body.contains(name) || body.at(name).is_null())) return std::string();
-  return text_field(body, name);
+  return text_field(body, name, most_bytes);
 }
 
 Status check_fields(const Json& body, std::span<const std::string_view> names) {

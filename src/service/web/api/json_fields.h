@@ -13,10 +13,11 @@ namespace trocar::web {
 
 using config::Json;
 
-/// A text of the body, of at most 4096 bytes of UTF-8. Error (exit status 2): missing, not a text, too long.
-Result<std::string> text_field(const Json& body, const char* name);
+inline constexpr std::size_t kMostTextBytes = 4096;
+/// A text of the body, of at most so many bytes of UTF-8. Error (exit status 2): missing, not a text, too long.
+Result<std::string> text_field(const Json& body, const char* name, std::size_t most_bytes = kMostTextBytes);
 /// The same, empty if it is missing or null.
-Result<std::string> text_field_or_empty(const Json& body, const char* name);
+Result<std::string> text_field_or_empty(const Json& body, const char* name, std::size_t most_bytes = kMostTextBytes);
 
 /// Error (exit status 2): not an object, or a field of another name.
 Status check_fields(const Json& body, std::span<const std::string_view> names);

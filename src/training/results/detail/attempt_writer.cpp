@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "config/json.h"
+#include "core/utf8.h"
 #include "database/bytes.h"
 #include "learning/history.h"
+#include "results/detail/csv_columns.h"
 #include "results/detail/details_json.h"
 #include "results/detail/people_table.h"
 #include "results/detail/rows.h"
@@ -16,19 +17,31 @@ namespace trocar::results::detail {
 namespace {
 
 constexpr int kNoDifficulty = 0;
+constexpr std::size_t kMostIdDigits = 64;
 
 double finite_or_zero(double value) {
   return std::isfinite(value) ? value : 0.0;
 }
 
-/// A finished attempt has a score: programs and files that know no other state mean those without, too.
-State settled_state(const AttemptRecord& record) {
-  const Attempt& attempt = record.attempt;
-  if (attempt.state != State::kFinished || (attempt.score && std::isfinite(*attempt.score))) return attempt.state;
+/// The attempt as it is stored. A finished attempt has a score: programs and files that know no other state mean those
+/// without, too.
+Attempt settled(const AttemptRecord& record) {
+  Attempt attempt = record.attempt;
+  attempt.duration_s = finite_or_zero(attempt.duration_s);
+  if (attempt.state == State::kFinished && attempt.score && std::isfinite(*attempt.score)) return attempt;
   const bool was_outside = std::ranges::any_of(record.measures, [](const Measure& measure) {
     return measure.name == learning::kInBodyMetric && measure.value <= 0.0;
   });
-  return was_outside ? State::kNeverBegan : State::kUnscored;
+  if (attempt.state == State::kFinished) attempt.state = was_outside ? State::kNeverBegan : State::kUnscored;
+  attempt.score.reset();
+  attempt.is_passed = false;
+  return attempt;
+}
+
+Status check_text(std::string_view text, const char* column) {
+  if (text.find('\0') != std::string_view::npos) return fail("the text has a NUL byte", column, "remove it");
+  if (valid_utf8(text) != text) return fail("the text is not UTF-8", column, "write it as UTF-8");
+  return {};
 }
 
 /// How much is known of an attempt.
@@ -38,9 +51,58 @@ int knowledge_of(State state) {
 
 }  // namespace
 
+Status check_storable(const Attempt& attempt) {
+  const bool is_id = !attempt.id.empty() && attempt.id.size() <= kMostIdDigits &&
+                     attempt.id.find_first_not_of("0123456789abcdef") == std::string::npos;
+  if (!is_id) return fail("the attempt has no valid key", "attempt", "record it again");
+  if (attempt.the_case.task.empty()) return fail("the task is empty", "task", "name the task");
+  if (!attempt.level.empty() && !learning::find_level(attempt.level))
+    return fail("the level is unknown", "level", "use guided, assisted or exam, or leave it empty");
+  const std::pair<const char*, const std::string&> texts[]{{"task", attempt.the_case.task},
+                                                           {"patient", attempt.the_case.patient},
+                                                           {"hash", attempt.the_case.patient_hash},
+                                                           {"operator", attempt.operator_name},
+                                                           {"station", attempt.station},
+                                                           {"version", attempt.program_version}};
+  for (const auto& [column, text] : texts) TROCAR_TRY_STATUS(check_text(text, column));
+  return {};
+}
+
+Status check_storable(const AttemptRecord& record) {
+  TROCAR_TRY_STATUS(check_storable(record.attempt));
+  for (const Part& part : record.parts) {
+    TROCAR_TRY_STATUS(check_text(part.name, "part"));
+    TROCAR_TRY_STATUS(check_text(part.value, "part"));
+    if (!is_column_of(kPartColumn, part.name) || part.name.ends_with(kOfMost))
+      return fail("a part of the score has no usable name", part.name, "record the attempt again");
+  }
+  for (const Measure& measure : record.measures) {
+    TROCAR_TRY_STATUS(check_text(measure.name, "metric"));
+    TROCAR_TRY_STATUS(check_text(measure.unit, "metric"));
+    if (!is_column_of(kMetricColumn, measure.name) || measure.unit.find(kBeforeUnit) != std::string::npos)
+      return fail("a metric has no usable name or unit", measure.name, "record the attempt again");
+  }
+  return {};
+}
+
+AttemptWriter::AttemptWriter(soci::session& session, const database::Database& database)
+    : session_(session),
+      database_(database),
+      add_(session,
+           "INSERT INTO attempts (id, person_id, case_id, task, level, operator, station, started_s, state, score,"
+           " is_passed, duration_s, program_version) VALUES (:id, :person, :case, :task, :level, :operator, :station,"
+           " :started, :state, :score, :passed, :duration, :version) ON CONFLICT (id) DO NOTHING"),
+      add_details_(session, "INSERT INTO attempt_details (sequence, verdict, trace) VALUES (:s, :v, :t)"),
+      add_part_(session,
+                "INSERT INTO attempt_parts (sequence, part, points, max_points, value)"
+                " VALUES (:s, :n, :p, :m, :v)"),
+      add_metric_(session, "INSERT INTO attempt_metrics (metric_id, sequence, value) VALUES (:m, :s, :v)") {}
+
 long long AttemptWriter::case_key(const Case& the_case) {
   const std::string seed = std::to_string(the_case.seed);
-  const std::string name = fmt::format("{}\n{}\n{}\n{}", the_case.task, the_case.patient, seed, the_case.patient_hash);
+  std::string name;  // lengths keep texts with line breaks apart
+  for (const std::string& part : {the_case.task, the_case.patient, seed, the_case.patient_hash})
+    name += fmt::format("{}:{}", part.size(), part);
   if (const auto found = case_keys_.find(name); found != case_keys_.end()) return found->second;
   const int difficulty = the_case.difficulty.value_or(kNoDifficulty);
   session_ << "INSERT INTO cases (task, patient, seed, patient_hash, difficulty) VALUES (:t, :p, :s, :h, :d)"
@@ -63,111 +125,104 @@ long long AttemptWriter::metric_key(const Measure& measure) {
   return metric_keys_[measure.name] = key;
 }
 
-AttemptWriter::Found AttemptWriter::find_for_update(const std::string& id) {
-  Found found;
-  int state = 0;
-  // SQLite has one writer at a time anyway.
-  session_ << fmt::format("SELECT sequence, state FROM attempts WHERE id = :i{}",
-                          database_.is_sqlite() ? "" : " FOR UPDATE"),
-      soci::use(id), soci::into(found.sequence), soci::into(state);
-  found.state = static_cast<State>(state);
-  return found;
+bool AttemptWriter::is_person(const std::string& id) {
+  if (people_.contains(id)) return true;
+  if (!find_person(session_, id)) return false;
+  people_.insert(id);
+  return true;
+}
+
+Result<AttemptWriter::Row> AttemptWriter::add_or_lock(const Attempt& attempt) {
+  if (!is_person(attempt.person_id)) return tl::unexpected(no_such_person(attempt.person_id).error());
+  Row row;
+  row.is_new =
+      add_.execute(attempt.id, attempt.person_id, case_key(attempt.the_case), attempt.the_case.task, attempt.level,
+                   attempt.operator_name, attempt.station, attempt.started.time_since_epoch().count(),
+                   static_cast<int>(attempt.state), Bound<double>(attempt.score), attempt.is_passed ? 1 : 0,
+                   attempt.duration_s, attempt.program_version) == 1;
+  if (!find_.statement) {
+    // SQLite has one writer at a time anyway.
+    const char* const lock = database_.is_sqlite() ? "" : " FOR UPDATE";
+    find_.statement.emplace(
+        (session_.prepare << fmt::format("SELECT sequence, state FROM attempts WHERE id = :i{}", lock),
+         soci::use(find_.id), soci::into(find_.sequence), soci::into(find_.state)));
+  }
+  find_.id = attempt.id;
+  find_.statement->execute(true);
+  row.sequence = find_.sequence;
+  row.state = static_cast<State>(find_.state);
+  return row;
 }
 
 Status AttemptWriter::begin(const Attempt& attempt) {
-  if (!find_person(session_, attempt.person_id)) return no_such_person(attempt.person_id);
-  const long long key = case_key(attempt.the_case), started_s = attempt.started.time_since_epoch().count();
-  const int state = static_cast<int>(State::kRunning);
-  session_ << "INSERT INTO attempts (id, person_id, case_id, task, level, operator, station, started_s, state,"
-              " is_passed, duration_s, program_version) VALUES (:id, :person, :case, :task, :level, :operator,"
-              " :station, :started, :state, 0, 0, :version) ON CONFLICT (id) DO NOTHING",
-      soci::use(attempt.id), soci::use(attempt.person_id), soci::use(key), soci::use(attempt.the_case.task),
-      soci::use(attempt.level), soci::use(attempt.operator_name), soci::use(attempt.station), soci::use(started_s),
-      soci::use(state), soci::use(attempt.program_version);
+  TROCAR_TRY_STATUS(check_storable(attempt));
+  Attempt running = attempt;
+  running.state = State::kRunning;
+  running.score.reset();
+  running.is_passed = false;
+  running.duration_s = 0.0;
+  TROCAR_TRY_STATUS(add_or_lock(running));
   return {};
 }
 
-void AttemptWriter::update_row(long long sequence, const AttemptRecord& record) {
-  const Attempt& attempt = record.attempt;
-  const State settled = settled_state(record);
-  const bool is_scored = settled == State::kFinished;
-  Bound<double> score(is_scored ? attempt.score : std::nullopt);
-  const int state = static_cast<int>(settled), is_passed = is_scored && attempt.is_passed ? 1 : 0;
-  const double duration_s = finite_or_zero(attempt.duration_s);
+void AttemptWriter::update_row(long long sequence, const Attempt& settled) {
+  Bound<double> score(settled.score);
+  const int state = static_cast<int>(settled.state), is_passed = settled.is_passed ? 1 : 0;
   session_ << "UPDATE attempts SET state = :state, score = :score, is_passed = :passed, duration_s = :duration"
               " WHERE sequence = :sequence",
-      soci::use(state), soci::use(score.value, score.indicator), soci::use(is_passed), soci::use(duration_s),
+      soci::use(state), soci::use(score.value, score.indicator), soci::use(is_passed), soci::use(settled.duration_s),
       soci::use(sequence);
 }
 
-void AttemptWriter::replace_texts(long long sequence, const AttemptRecord& record) {
-  session_ << "DELETE FROM attempt_details WHERE sequence = :s", soci::use(sequence);
-  const std::string verdict = verdict_json(record), trace = trace_json(record.trace);
-  session_ << "INSERT INTO attempt_details (sequence, verdict, trace) VALUES (:s, :v, :t)", soci::use(sequence),
-      soci::use(verdict), soci::use(trace);
+void AttemptWriter::replace_texts(const Row& row, const AttemptRecord& record) {
+  if (!row.is_new) session_ << "DELETE FROM attempt_details WHERE sequence = :s", soci::use(row.sequence);
+  add_details_.execute(row.sequence, verdict_json(record), trace_json(record.trace));
 }
 
-void AttemptWriter::replace_values(long long sequence, const AttemptRecord& record) {
+void AttemptWriter::replace_values(const Row& row, const AttemptRecord& record) {
   for (const char* table : {"attempt_parts", "attempt_metrics"})
-    session_ << fmt::format("DELETE FROM {} WHERE sequence = :s", table), soci::use(sequence);
-  std::vector<long long> keys, sequences;
-  std::vector<std::string> names, texts;
-  std::vector<double> values, limits;
-  for (const Part& part : record.parts) {
-    names.push_back(part.name);
-    values.push_back(finite_or_zero(part.points));
-    limits.push_back(finite_or_zero(part.max_points));
-    texts.push_back(part.value);
-  }
-  sequences.assign(names.size(), sequence);
-  if (!names.empty())
-    session_ << "INSERT INTO attempt_parts (sequence, part, points, max_points, value) VALUES (:s, :n, :p, :m, :v)",
-        soci::use(sequences), soci::use(names), soci::use(values), soci::use(limits), soci::use(texts);
-
-  values.clear();
-  for (const Measure& measure : record.measures) {
-    if (!std::isfinite(measure.value)) continue;
-    keys.push_back(metric_key(measure));
-    values.push_back(measure.value);
-  }
-  sequences.assign(keys.size(), sequence);
-  if (!keys.empty())
-    session_ << "INSERT INTO attempt_metrics (metric_id, sequence, value) VALUES (:m, :s, :v)", soci::use(keys),
-        soci::use(sequences), soci::use(values);
+    if (!row.is_new) session_ << fmt::format("DELETE FROM {} WHERE sequence = :s", table), soci::use(row.sequence);
+  for (const Part& part : record.parts)
+    add_part_.execute(row.sequence, part.name, finite_or_zero(part.points), finite_or_zero(part.max_points),
+                      part.value);
+  for (const Measure& measure : record.measures)
+    if (std::isfinite(measure.value)) add_metric_.execute(metric_key(measure), row.sequence, measure.value);
 }
 
-void AttemptWriter::replace_recording(long long sequence, std::string_view recording) {
-  session_ << "DELETE FROM recordings WHERE sequence = :s", soci::use(sequence);
+void AttemptWriter::replace_recording(const Row& row, std::string_view recording) {
+  if (!row.is_new) session_ << "DELETE FROM recordings WHERE sequence = :s", soci::use(row.sequence);
   if (recording.empty()) return;
   const std::string bound = database::bind_bytes(database_, recording);
   session_ << "INSERT INTO recordings (sequence, bytes) VALUES (:s, " + database::bytes_in(database_, ":b") + ")",
-      soci::use(sequence), soci::use(bound);
+      soci::use(row.sequence), soci::use(bound);
 }
 
-Result<std::int64_t> AttemptWriter::record(const AttemptRecord& record, std::string_view recording) {
-  TROCAR_TRY_STATUS(begin(record.attempt));
-  const Found found = find_for_update(record.attempt.id);
-  if (has_ended(found.state)) return found.sequence;
-  update_row(found.sequence, record);
-  replace_texts(found.sequence, record);
-  replace_values(found.sequence, record);
-  replace_recording(found.sequence, recording);
-  return found.sequence;
+Result<AttemptWriter::Recorded> AttemptWriter::record(const AttemptRecord& record, std::string_view recording) {
+  TROCAR_TRY_STATUS(check_storable(record));
+  const Attempt attempt = settled(record);
+  TROCAR_TRY(const Row row, add_or_lock(attempt));
+  if (!row.is_new && has_ended(row.state)) return Recorded{row.sequence, false};
+  if (!row.is_new) update_row(row.sequence, attempt);
+  replace_texts(row, record);
+  replace_values(row, record);
+  replace_recording(row, recording);
+  return Recorded{row.sequence, true};
 }
 
 Result<std::optional<State>> AttemptWriter::merge(const AttemptRecord& record) {
-  const bool is_new = find_for_update(record.attempt.id).sequence == 0;
-  TROCAR_TRY_STATUS(begin(record.attempt));
-  const Found found = find_for_update(record.attempt.id);
-  if (!is_new && knowledge_of(record.attempt.state) <= knowledge_of(found.state)) return std::optional<State>();
-  if (record.attempt.state == State::kRunning) return std::optional(State::kRunning);
-  update_row(found.sequence, record);
-  replace_values(found.sequence, record);
+  TROCAR_TRY_STATUS(check_storable(record));
+  const Attempt attempt = settled(record);
+  TROCAR_TRY(const Row row, add_or_lock(attempt));
+  if (!row.is_new && knowledge_of(attempt.state) <= knowledge_of(row.state)) return std::optional<State>();
+  if (attempt.state == State::kRunning) return std::optional(State::kRunning);
+  if (!row.is_new) update_row(row.sequence, attempt);
+  replace_values(row, record);
   int details = 0;
-  session_ << "SELECT count(*) FROM attempt_details WHERE sequence = :s", soci::use(found.sequence),
-      soci::into(details);
-  if (details == 0) replace_texts(found.sequence, record);
-  return std::optional(settled_state(record));
+  if (!row.is_new)
+    session_ << "SELECT count(*) FROM attempt_details WHERE sequence = :s", soci::use(row.sequence),
+        soci::into(details);
+  if (details == 0) replace_texts(row, record);
+  return std::optional(attempt.state);
 }
 
 }  // namespace trocar::results::detail

@@ -5,44 +5,74 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 
 #include "database/database.h"
 #include "results/attempt.h"
+#include "results/detail/prepared.h"
 
 namespace trocar::results::detail {
 
-/// Writes attempts within a transaction; its functions throw soci::soci_error. It may live as long as the session does:
-/// keys of cases and metrics are found once.
+/// Error: what neither a CSV file nor every database can keep: an id that is none, no task, a level that is unknown, a
+/// text that is not UTF-8 or has a NUL byte, a name of a part or a metric that no column can have. `where` names the
+/// column.
+Status check_storable(const Attempt& attempt);
+Status check_storable(const AttemptRecord& record);
+
+/// Writes attempts within a transaction; its functions throw soci::soci_error. It may live as long as the transaction:
+/// statements are prepared, and keys of cases, metrics and people found, once.
 class AttemptWriter {
  public:
-  AttemptWriter(soci::session& session, const database::Database& database) : session_(session), database_(database) {}
+  AttemptWriter(soci::session& session, const database::Database& database);
 
-  /// Adds the attempt's row as running if there is none of its id. Error (exit status 2): no such person.
+  /// Adds the attempt's row as running if there is none of its id. Errors: no such person (exit status 2), those of
+  /// check_storable.
   Status begin(const Attempt& attempt);
-  /// Completes an attempt that has not ended, or adds it. Returns its sequence.
-  Result<std::int64_t> record(const AttemptRecord& record, std::string_view recording);
+  struct Recorded {
+    std::int64_t sequence = 0;
+    bool is_written = false;  ///< False: it had ended already.
+  };
+  /// Completes an attempt that has not ended, or adds it.
+  Result<Recorded> record(const AttemptRecord& record, std::string_view recording);
   /// Adds an attempt of a table without path and recording, or completes one of which the database knows less (running
   /// before interrupted before ended), and keeps its path and recording. Returns its state; empty: nothing to write.
   Result<std::optional<State>> merge(const AttemptRecord& record);
 
  private:
-  struct Found {
-    long long sequence = 0;  ///< 0: there is none.
+  struct Row {
+    long long sequence = 0;
     State state = State::kRunning;
+    bool is_new = false;  ///< Added by this call.
   };
-  Found find_for_update(const std::string& id);
+  /// The row of the attempt, locked; added with the values of `attempt` if there is none.
+  Result<Row> add_or_lock(const Attempt& attempt);
   long long case_key(const Case& the_case);
   long long metric_key(const Measure& measure);
-  void update_row(long long sequence, const AttemptRecord& record);
-  void replace_texts(long long sequence, const AttemptRecord& record);
-  void replace_values(long long sequence, const AttemptRecord& record);
-  void replace_recording(long long sequence, std::string_view recording);
+  bool is_person(const std::string& id);
+  void update_row(long long sequence, const Attempt& settled);
+  void replace_texts(const Row& row, const AttemptRecord& record);
+  void replace_values(const Row& row, const AttemptRecord& record);
+  void replace_recording(const Row& row, std::string_view recording);
 
   soci::session& session_;
   const database::Database& database_;
   std::map<std::string, long long, std::less<>> metric_keys_, case_keys_;
+  std::set<std::string> people_;
+  /// Sequence and state by id.
+  struct Find {
+    std::string id;
+    long long sequence = 0;
+    int state = 0;
+    std::optional<soci::statement> statement;
+  } find_;
+  Prepared<std::string, std::string, long long, std::string, std::string, std::string, std::string, long long, int,
+           Bound<double>, int, double, std::string>
+      add_;
+  Prepared<long long, std::string, std::string> add_details_;
+  Prepared<long long, std::string, double, double, std::string> add_part_;
+  Prepared<long long, long long, double> add_metric_;
 };
 
 }  // namespace trocar::results::detail

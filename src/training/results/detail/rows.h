@@ -20,6 +20,7 @@ struct Nullable {
 /// A value for soci::use that is NULL if it is empty. Outlives the statement.
 template <class T>
 struct Bound {
+  Bound() : Bound(std::nullopt) {}
   explicit Bound(const std::optional<T>& from)
       : value(from.value_or(T{})), indicator(from ? soci::i_ok : soci::i_null) {}
 

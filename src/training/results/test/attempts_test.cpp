@@ -281,6 +281,7 @@ TEST(AttemptsFile, LoseNothingOnAFullDisk) {
   AttemptRecord record;
   record.attempt.id = make_id();
   record.attempt.person_id = person->id;
+  record.attempt.the_case.task = "liver-biopsy";
   record.attempt.state = State::kFinished;
   ASSERT_TRUE(record_attempt(*repository, record, "bytes"));
   ASSERT_TRUE(repository->database().run("x", [](soci::session& session) {

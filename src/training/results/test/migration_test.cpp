@@ -12,10 +12,13 @@ class Migration : public ResultsTest {
   /// A database of the first schema, beside that of the test.
   void make_old() {
     if (GetParam() == "postgresql") {
-      ASSERT_TRUE(repository_->database().run("cannot be emptied", [](soci::session& session) {
-        session << "DROP SCHEMA public CASCADE";
-        session << "CREATE SCHEMA public";
+      Repository owner = *Repository::open(owner_url_);
+      ASSERT_TRUE(owner.database().run("cannot be emptied", [](soci::session& session) {
+        session
+            << "DO $$ DECLARE old record; BEGIN FOR old IN SELECT tablename FROM pg_tables WHERE schemaname = 'public'"
+               " LOOP EXECUTE format('DROP TABLE %I CASCADE', old.tablename); END LOOP; END $$";
       }));
+      url_ = owner_url_;
     } else {
       url_ = {folder_ / "old.sqlite", {}};
     }

@@ -116,23 +116,5 @@ TEST_P(People, NeedPinsOnlyWhereTheDepartmentWantsThem) {
   EXPECT_FALSE(*are_pins_required(*repository_));
 }
 
-TEST(PeopleFile, KeepsNoByteOfADeletedPerson) {
-  TemporaryFolder folder;
-  const std::string name = "Unmistakable Name";
-  {
-    auto repository = Repository::open({folder / "a.sqlite", {}});
-    ASSERT_TRUE(repository);
-    const auto person = add_person(*repository, {name}, Seconds());
-    ASSERT_TRUE(person);
-    ASSERT_TRUE(delete_person(*repository, person->id));
-  }
-  // The last connection has emptied the -wal file.
-  EXPECT_FALSE(std::filesystem::exists(folder / "a.sqlite-wal"));
-  std::ifstream file(folder / "a.sqlite", std::ios::binary);
-  const std::string bytes((std::istreambuf_iterator<char>(file)), {});
-  EXPECT_EQ(bytes.find(name), std::string::npos);
-  EXPECT_EQ(bytes.find("unmistakable"), std::string::npos);
-}
-
 }  // namespace
 }  // namespace trocar::results

@@ -12,14 +12,20 @@
 
 namespace trocar::results {
 
-/// A test with a new, empty database of results, in an SQLite file and on a PostgreSQL server.
+/// A test with a new, empty database of results, in an SQLite file and on a PostgreSQL server (with least rights).
 class ResultsTest : public ::testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
     if (GetParam() == "postgresql") {
       if (database::testing::PostgresServer::programs().empty()) GTEST_SKIP() << "PostgreSQL is not installed";
       ASSERT_TRUE(server().is_running());
-      url_ = server().make_database();
+      // The owner makes the tables; all that the tests do then needs no other rights than the writer's.
+      const auto roles = server().make_database_with_roles();
+      ASSERT_TRUE(roles) << roles.error().text();
+      const auto made = Repository::open(roles->owner);
+      ASSERT_TRUE(made) << made.error().text();
+      owner_url_ = roles->owner;
+      url_ = roles->writer;
     } else {
       url_ = {folder_ / "results.sqlite", {}};
     }
@@ -72,7 +78,7 @@ class ResultsTest : public ::testing::TestWithParam<std::string> {
 
   static constexpr Seconds kNow{std::chrono::seconds(1'780'000'000)};
   TemporaryFolder folder_;
-  database::DatabaseUrl url_;
+  database::DatabaseUrl url_, owner_url_;  ///< Of the server's: with the rights of the writer and of the owner.
   std::optional<Repository> repository_;
 
  private:
