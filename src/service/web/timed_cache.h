@@ -62,8 +62,8 @@ class TimedCache {
       const bool is_usable = entry.value && now - entry.made < rules_.stale + rest_after(entry);
       if (is_usable && (!is_due || renewer_.joinable())) {
         if (is_due && !entry.is_being_made) {
-          entry.is_being_made = true;
           work_.push_back({key, make, now});
+          entry.is_being_made = true;
           has_work_.notify_one();
         }
         return entry.value;
@@ -73,8 +73,9 @@ class TimedCache {
       const auto found = entries_.find(key);
       if (found != entries_.end() && found->second.value && !found->second.is_being_made) return found->second.value;
     }
+    const Work work{key, make, now};
     entries_[key].is_being_made = true;
-    return make_now(lock, {key, make, now});
+    return make_now(lock, work);
   }
 
   /// Forgets all values, also those that are being made: something was changed.
@@ -98,6 +99,7 @@ class TimedCache {
   static constexpr int kRest = 10;  ///< Times the cost of a value that pass until it is renewed.
   struct Entry {
     Value value;
+    std::size_t bytes = 0;
     TimePoint made;
     Duration cost{};
     bool is_being_made = false;
@@ -114,30 +116,63 @@ class TimedCache {
       return make();
     } catch (const std::exception& error) {  // of a library: others wait for the value
       return fail(std::string("unforeseen error: ").append(error.what()), {}, "try again; if it remains, report it");
+    } catch (...) {
+      return fail("unforeseen error", {}, "try again; if it remains, report it");
     }
   }
 
+  /// The end of making a value, also by an exception: nobody waits for it any more. With the lock.
+  class Making {
+   public:
+    Making(TimedCache& cache, std::unique_lock<std::mutex>& lock, const std::string& key)
+        : cache_(cache), lock_(lock), key_(key), generation_(cache.generation_) {}
+    ~Making() {
+      if (!lock_.owns_lock()) lock_.lock();
+      if (const auto found = cache_.entries_.find(key_); is_wanted() && found != cache_.entries_.end()) {
+        found->second.is_being_made = false;
+        if (!found->second.value) cache_.entries_.erase(found);
+      }
+      cache_.is_made_.notify_all();
+    }
+    Making(const Making&) = delete;
+    Making& operator=(const Making&) = delete;
+    /// False: everything was forgotten meanwhile.
+    bool is_wanted() const { return generation_ == cache_.generation_; }
+
+   private:
+    TimedCache& cache_;
+    std::unique_lock<std::mutex>& lock_;
+    const std::string& key_;
+    const std::uint64_t generation_;
+  };
+
   /// Makes a value without the lock and stores it, unless everything was forgotten meanwhile.
   Result<Value> make_now(std::unique_lock<std::mutex>& lock, const Work& work) {
-    const std::uint64_t generation = generation_;
+    const Making making(*this, lock, work.key);
     lock.unlock();
     const TimePoint start = std::chrono::steady_clock::now();
     Result<Value> made = result_of(work.make);
     const Duration cost = std::chrono::steady_clock::now() - start;
+    const std::size_t bytes = made && *made ? count_bytes_(**made) : 0;
     lock.lock();
-    if (generation == generation_) {
-      Entry& entry = entries_[work.key];
-      bytes_ -= entry.value ? count_bytes_(*entry.value) : 0;
-      entry.is_being_made = false;
-      entry.value = made ? *made : nullptr;
-      entry.made = work.now;
-      entry.cost = cost;
-      bytes_ += entry.value ? count_bytes_(*entry.value) : 0;
-      if (!entry.value) entries_.erase(work.key);
-      make_room();
-    }
-    is_made_.notify_all();
+    if (!making.is_wanted()) return made;
+    Entry& entry = entries_[work.key];
+    bytes_ += bytes - entry.bytes;
+    entry.value = made ? *made : nullptr;
+    entry.bytes = bytes;
+    entry.made = work.now;
+    entry.cost = cost;
+    make_room();
     return made;
+  }
+
+  /// An error is made again, and seen, by the next request.
+  void renew(std::unique_lock<std::mutex>& lock, const Work& work) noexcept {
+    try {
+      static_cast<void>(make_now(lock, work));
+    } catch (const std::exception&) {
+      // The value is not kept.
+    }
   }
 
   void renew_all() {
@@ -148,7 +183,7 @@ class TimedCache {
       const Work work = std::move(work_.front());
       work_.pop_front();
       is_renewing_ = true;
-      (void)make_now(lock, work);  // an error is made again, and seen, by the next request
+      renew(lock, work);
       is_renewing_ = false;
       is_made_.notify_all();
     }
@@ -162,7 +197,7 @@ class TimedCache {
         if (!entry->second.is_being_made && (oldest == entries_.end() || entry->second.made < oldest->second.made))
           oldest = entry;
       if (oldest == entries_.end()) return;
-      bytes_ -= oldest->second.value ? count_bytes_(*oldest->second.value) : 0;
+      bytes_ -= oldest->second.bytes;
       entries_.erase(oldest);
     }
   }

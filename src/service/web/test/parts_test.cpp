@@ -181,6 +181,20 @@ TEST(AnswerCache, GivesWhatItsMakerThrowsAsAnError) {
   EXPECT_EQ(**cache.get("a", kFirstAsked, [] { return text("yes"); }), "yes");
 }
 
+/// Whatever is thrown, and wherever: a later request makes the value again.
+TEST(AnswerCache, IsNotBlockedByAKeyWhoseValueFailed) {
+  AnswerCache cache;
+  EXPECT_FALSE(cache.get("a", kFirstAsked, []() -> Result<AnswerCache::Value> { throw 1; }));
+  EXPECT_EQ(**cache.get("a", kFirstAsked, [] { return text("yes"); }), "yes");
+  int counted = 0;
+  TimedCache<std::string> fails_to_count([&](const std::string& value) {
+    if (++counted == 1) throw std::runtime_error("no");
+    return value.size();
+  });
+  EXPECT_THROW(static_cast<void>(fails_to_count.get("a", kFirstAsked, [] { return text("no"); })), std::runtime_error);
+  EXPECT_EQ(**fails_to_count.get("a", kFirstAsked, [] { return text("yes"); }), "yes");
+}
+
 TEST(WorkerThreads, WithoutAThreadTheCallerDoesTheJob) {
   std::atomic<int> waiting{0};
   int done = 0;
