@@ -38,6 +38,24 @@ std::optional<std::string_view> HttpRequest::find_query(std::string_view name) c
   return find_single(query, [&](std::string_view other) { return other == name; });
 }
 
+std::optional<std::string> percent_decoded(std::string_view text) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string decoded;
+  for (std::size_t n = 0; n < text.size(); ++n) {
+    if (text[n] != '%') {
+      decoded += text[n];
+      continue;
+    }
+    if (n + 2 >= text.size()) return std::nullopt;
+    const std::size_t high = kDigits.find(ascii::to_lower(text[n + 1])),
+                      low = kDigits.find(ascii::to_lower(text[n + 2]));
+    if (high == std::string_view::npos || low == std::string_view::npos) return std::nullopt;
+    decoded += static_cast<char>(high * kDigits.size() + low);
+    n += 2;
+  }
+  return decoded;
+}
+
 HttpAnswer empty_answer(int status) {
   HttpAnswer answer;
   answer.status = status;
@@ -45,7 +63,7 @@ HttpAnswer empty_answer(int status) {
 }
 
 HttpAnswer text_answer(int status, std::string content_type, std::string body) {
-  return {status, std::move(content_type), std::make_shared<const std::string>(std::move(body)), {}};
+  return {status, std::move(content_type), std::make_shared<const std::string>(std::move(body)), {}, {}};
 }
 
 HttpAnswer json_answer(int status, std::string json) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <mutex>
 #include <utility>
 
 #include "core/log.h"
@@ -9,6 +10,8 @@
 #include "signing/password.h"
 #include "signing/token.h"
 #include "web/api/route.h"
+#include "web/deletion_watch.h"
+#include "web/security/client_address.h"
 #include "web/security/log_text.h"
 #include "web/security/request_origin.h"
 #include "web/security/session_cookie.h"
@@ -50,11 +53,12 @@ bool is_json(const HttpRequest& request) {
   return is_same_name(media, "application/json");
 }
 
-bool has_valid_text(const HttpRequest& request) {
+/// `path`: that of the request, decoded; empty: malformed.
+bool has_valid_text(const HttpRequest& request, const std::optional<std::string>& path) {
   const auto is_valid = [](std::string_view text) {
     return valid_utf8(text) == text && text.find('\0') == std::string_view::npos;
   };
-  if (!request.path.starts_with('/') || !is_valid(request.path)) return false;
+  if (!path || !path->starts_with('/') || !is_valid(*path)) return false;
   for (const auto& [name, value] : request.query)
     if (!is_valid(name) || !is_valid(value)) return false;
   return true;
@@ -87,6 +91,7 @@ struct Service::State {
                 logins,
                 public_answers,
                 passwords,
+                exports,
                 log_limit,
                 options.password_work,
                 std::move(unknown_hash),
@@ -94,6 +99,8 @@ struct Service::State {
 
   HttpAnswer answer(HttpRequest request);
   HttpAnswer answer_api(const HttpRequest& request, const Moment& now);
+  /// Forgets values that were read before a deletion by another program.
+  Status see_deletions(const Moment& now);
   Result<HttpAnswer> answer_route(const Route& route, Call& call);
   Result<LoginCache::Value> load_login(const std::string& digest, const Moment& now);
   Result<std::optional<results::WebSession>> find_login(const HttpRequest& request, const Moment& now);
@@ -102,16 +109,19 @@ struct Service::State {
   std::unique_ptr<RepositoryPool> repositories;
   Titles titles;
   StaticFiles page;
-  // An answer may need a statistic, and that samples: they end in this order.
-  SampleCache samples{count_bytes, kStatisticsRules};
-  LoginCache sessions{[](const auto&) { return sizeof(results::WebSession); }, kLoginRules};
-  AnswerCache statistics{kStatisticsRules}, answers;
   LoginThrottle logins;
   TokenBuckets requests{kRequestRule}, public_answers{kPublicRule};
   PasswordGate passwords;
+  std::mutex exports;
   LogLimit log_limit;
+  DeletionWatch deletions;
   Backend backend;
   std::vector<Route> routes = all_routes();
+  // Their threads use all of the above until they end. An answer may need a statistic, and that samples: they end in
+  // the order in which they need each other, the last one first.
+  SampleCache samples{count_bytes, kStatisticsRules};
+  LoginCache sessions{[](const auto&) { return sizeof(results::WebSession); }, kLoginRules};
+  AnswerCache statistics{kStatisticsRules}, answers;
 };
 
 Result<Service> Service::open(ServiceOptions options) {
@@ -146,29 +156,27 @@ HttpAnswer Service::answer(const HttpRequest& request) {
 }
 
 HttpAnswer Service::State::answer(HttpRequest request) {
-  if (options.is_behind_proxy)
-    if (const auto forwarded = request.find_header("x-forwarded-for")) {
-      std::string_view last = forwarded->substr(forwarded->rfind(',') + 1);
-      while (last.starts_with(' ')) last.remove_prefix(1);
-      request.address = std::string(last);
-    }
+  if (options.is_behind_proxy) request.address = forwarded_address(request).value_or(request.address);
+  request.client = client_of(request.address);
+  const std::optional<std::string> path = percent_decoded(request.path);
   if (!is_for_this_host(request, options.is_loopback, options.is_served))
     return error_answer(421, "this server has another name",
                         "use the address that trocar serve printed, or start it with --name");
-  if (!has_valid_text(request)) return error_answer(400, "not an address of this server", "check the address");
-  if (request.path == "/api" || request.path.starts_with("/api/")) return answer_api(request, options.now());
+  if (!has_valid_text(request, path)) return error_answer(400, "not an address of this server", "check the address");
+  if (*path == "/api" || path->starts_with("/api/")) return answer_api(request, options.now());
   if (!is_reading(request.method)) {
     HttpAnswer refused = error_answer(405, "pages can only be read", "send GET");
     refused.headers = {{"Allow", "GET, HEAD"}};
     return refused;
   }
+  request.path = *path;
   return page.answer(request);
 }
 
 HttpAnswer Service::State::answer_api(const HttpRequest& request, const Moment& now) {
   const ListenAddress client{request.address, 0};
   if (!client.is_loopback() || options.is_behind_proxy)
-    if (const auto wait = requests.try_take(request.address, now.steady)) {
+    if (const auto wait = requests.try_take(request.client, now.steady)) {
       HttpAnswer slow = error_answer(429, "too many requests came from this address", "wait a little, then try again");
       slow.headers = {{"Retry-After", std::to_string(wait->count())}};
       return slow;
@@ -194,6 +202,7 @@ Result<HttpAnswer> Service::State::answer_route(const Route& route, Call& call) 
   if (route.access != Access::kPublic) {
     TROCAR_TRY(call.login, find_login(request, call.now));
     if (!call.login) return error_answer(401, "you are not logged in", "log in");
+    TROCAR_TRY_STATUS(see_deletions(call.now));
     if (route.access == Access::kAdmin && call.session().account.role != results::Role::kAdmin) {
       const LimitedLog limited(backend.log_limit);
       log_warning("web: access refused: {} {} by {} from {}", request.method, log_text(request.path),
@@ -217,6 +226,14 @@ Result<HttpAnswer> Service::State::answer_route(const Route& route, Call& call) 
     call.body = *body;
   }
   return route.handle(backend, call);
+}
+
+Status Service::State::see_deletions(const Moment& now) {
+  if (!deletions.is_due(now.steady)) return {};
+  const auto repository = repositories->borrow();
+  TROCAR_TRY(const bool has_deleted, deletions.look(*repository));
+  if (has_deleted) forget_values(backend);
+  return {};
 }
 
 Result<std::optional<results::WebSession>> Service::State::find_login(const HttpRequest& request, const Moment& now) {

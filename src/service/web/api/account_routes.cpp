@@ -3,6 +3,7 @@
 
 #include "core/log.h"
 #include "core/version.h"
+#include "results/login_clients.h"
 #include "results/names.h"
 #include "signing/password.h"
 #include "signing/password_rules.h"
@@ -73,9 +74,13 @@ Result<std::optional<results::Account>> check_login(Backend& backend, const std:
 Result<HttpAnswer> log_in(Backend& backend, const Call& call) {
   TROCAR_TRY(const std::string name, text_field(call.body, "name"));
   TROCAR_TRY(const std::string password, text_field(call.body, "password"));
-  const std::string key = results::name_key(name);
   const std::string& address = call.request.address;
-  if (const auto wait = backend.logins.try_begin(key, address, call.now.steady)) {
+  LoginTry login{results::name_key(name), call.request.client};
+  {
+    const auto repository = backend.repositories.borrow();
+    TROCAR_TRY(login.is_known, results::is_login_client(*repository, name, login.client, call.now.utc));
+  }
+  if (const auto wait = backend.logins.try_begin(login, call.now.steady)) {
     const LimitedLog limited(backend.log_limit);
     log_warning("web: login refused for {} s: account {} from {}", wait->count(), log_text(name), address);
     return wait_answer(*wait, "there were too many failed logins");
@@ -87,12 +92,13 @@ Result<HttpAnswer> log_in(Backend& backend, const Call& call) {
     log_warning("web: login failed: account {} from {}", log_text(name), address);
     return error_answer(401, "name or password is wrong", "check both; upper and lower case matter in a password");
   }
-  backend.logins.succeeded(key, address);
+  backend.logins.succeeded(login);
   TROCAR_TRY(const NewSession session, make_session(*account, call.now));
   const auto repository = backend.repositories.borrow();
   if (const auto old = find_session_token(call.request, backend.is_secure))
     TROCAR_TRY_STATUS(results::end_web_session(*repository, signing::token_digest(*old)));
   TROCAR_TRY_STATUS(store_session(*repository, session, call.now));
+  TROCAR_TRY_STATUS(results::note_login_client(*repository, account->id, login.client, call.now.utc));
   backend.sessions.clear();
   log_info("web: login succeeded: account {} from {}", log_text(account->name), address);
   HttpAnswer answer = ok({{"account", account_json(*account)}, {"csrf", session.stored.csrf_token}});
@@ -121,8 +127,8 @@ Result<HttpAnswer> change_own_password(Backend& backend, const Call& call) {
   TROCAR_TRY(const std::string old_password, text_field(call.body, "old"));
   TROCAR_TRY(const std::string new_password, text_field(call.body, "new"));
   TROCAR_TRY_STATUS(signing::check_new_password(new_password, account.name));
-  const std::string key = results::name_key(account.name);
-  if (const auto wait = backend.logins.try_begin(key, call.request.address, call.now.steady))
+  const LoginTry login{results::name_key(account.name), call.request.client, true};
+  if (const auto wait = backend.logins.try_begin(login, call.now.steady))
     return wait_answer(*wait, "there were too many wrong passwords");
   const PasswordGate::Pass pass(backend.passwords);
   if (!pass) return busy_answer();
@@ -130,7 +136,7 @@ Result<HttpAnswer> change_own_password(Backend& backend, const Call& call) {
     log_warning("web: wrong password at its change: account {} from {}", log_text(account.name), call.request.address);
     return error_answer(403, "the present password is wrong", "type it again");
   }
-  backend.logins.succeeded(key, call.request.address);
+  backend.logins.succeeded(login);
   TROCAR_TRY(const std::string hash, signing::hash_password(new_password, backend.password_work));
   // A new token, with the CSRF token that the page has.
   TROCAR_TRY(NewSession session, make_session(account, call.now));
@@ -160,7 +166,7 @@ Result<HttpAnswer> list_all(Backend& backend, const Call&) {
 
 Result<HttpAnswer> add(Backend& backend, const Call& call) {
   TROCAR_TRY(const std::string given, text_field(call.body, "name"));
-  TROCAR_TRY(const std::string name, results::clean_name(given, "the name of an account"));
+  TROCAR_TRY(const std::string name, results::clean_account_name(given));
   TROCAR_TRY(const std::string password, text_field(call.body, "password"));
   TROCAR_TRY(const std::string role_name, text_field(call.body, "role"));
   const auto role = results::find_role(role_name);

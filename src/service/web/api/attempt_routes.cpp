@@ -155,10 +155,23 @@ Result<HttpAnswer> send_csv(Backend& backend, const Call& call) {
   if (call.request.find_query("task").value_or("") != "") {
     TROCAR_TRY(filter.task, query_task(call.request));
   }
-  const auto repository = backend.repositories.borrow();
-  TROCAR_TRY(std::string csv, results::attempts_csv(*repository, filter));
+  // A client may read slowly: a connection to the database is borrowed for each piece, and not while it is sent.
+  std::shared_ptr<results::AttemptsExport> attempts;
+  {
+    const std::lock_guard turn(backend.exports);
+    const auto repository = backend.repositories.borrow();
+    TROCAR_TRY(results::AttemptsExport begun, results::AttemptsExport::begin(*repository, filter));
+    attempts = std::make_shared<results::AttemptsExport>(std::move(begun));
+  }
   log_info("web: attempts exported by {} from {}", log_text(call.session().account.name), call.request.address);
-  return attachment("text/csv; charset=utf-8", std::move(csv), "attempts.csv");
+  HttpAnswer answer = attachment("text/csv; charset=utf-8", {}, "attempts.csv");
+  answer.body.reset();
+  answer.source = [&backend, attempts]() -> Result<std::string> {
+    const std::lock_guard turn(backend.exports);
+    const auto repository = backend.repositories.borrow();
+    return attempts->next(*repository);
+  };
+  return answer;
 }
 
 }  // namespace

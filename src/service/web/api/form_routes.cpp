@@ -54,7 +54,7 @@ Result<results::Form> read_form(const Json& body, results::Form form) {
     TROCAR_TRY(form.title, text_field(body, "title"));
   }
   if (body.contains("intro")) {
-    TROCAR_TRY(form.intro, text_field_or_empty(body, "intro"));
+    TROCAR_TRY(form.intro, text_field_or_empty(body, "intro", 4 * results::kMaxIntroCharacters));
   }
   if (const auto open = body.find("is_open"); open != body.end()) {
     if (!open->is_boolean()) return fail_usage("a field is not true or false", "is_open", "send true or false");
@@ -186,7 +186,7 @@ Result<Answers> read_answers(const Json& body) {
 }
 
 Result<HttpAnswer> add_answers(Backend& backend, const Call& call) {
-  if (const auto wait = backend.public_answers.try_take(call.request.address, call.now.steady)) {
+  if (const auto wait = backend.public_answers.try_take(call.request.client, call.now.steady)) {
     HttpAnswer answer = error_answer(429, "too many answers came from this address",
                                      fmt::format("wait {} s, then send it again", wait->count()));
     answer.headers = {{"Retry-After", std::to_string(wait->count())}};

@@ -202,8 +202,7 @@ Result<HttpAnswer> delete_person(Backend& backend, const Call& call) {
   if (confirmed != person->name)
     return fail_usage("the name is not that of the person", "confirm", "type the name as it is shown");
   TROCAR_TRY(const results::PersonalData deleted, results::delete_person(*repository, id));
-  backend.answers.clear();
-  backend.statistics.clear();
+  forget_values(backend);
   log_warning("web: person deleted: {} with {} attempts by {} from {}", id, deleted.attempts,
               log_text(call.session().account.name), call.request.address);
   return empty_answer(204);

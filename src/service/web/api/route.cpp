@@ -19,15 +19,18 @@ std::vector<std::string_view> parts_of(std::string_view path) {
   return parts;
 }
 
-/// The parts of `path` at the places of '*'. Empty: the path has another pattern.
+/// The decoded parts of `path` at the places of '*': an encoded slash is part of a name. Empty: the path has another
+/// pattern.
 std::optional<std::vector<std::string>> match(std::string_view pattern, std::string_view path) {
   const auto wanted = parts_of(pattern), given = parts_of(path);
   if (wanted.size() != given.size()) return std::nullopt;
   std::vector<std::string> names;
   for (std::size_t n = 0; n < wanted.size(); ++n) {
-    if (wanted[n] == "*" && !given[n].empty()) {
-      names.emplace_back(given[n]);
-    } else if (wanted[n] != given[n]) {
+    std::optional<std::string> part = percent_decoded(given[n]);
+    if (!part) return std::nullopt;
+    if (wanted[n] == "*" && !part->empty()) {
+      names.push_back(*std::move(part));
+    } else if (wanted[n] != *part) {
       return std::nullopt;
     }
   }
@@ -58,6 +61,12 @@ FoundRoute find_route(const std::vector<Route>& routes, std::string_view method,
     found.allowed += route.method;
   }
   return found;
+}
+
+void forget_values(Backend& backend) {
+  backend.samples.clear();
+  backend.statistics.clear();
+  backend.answers.clear();
 }
 
 HttpAnswer not_found(std::string_view what) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -38,6 +39,7 @@ struct Backend {
   LoginThrottle& logins;
   TokenBuckets& public_answers;  ///< Of questionnaires, by address.
   PasswordGate& passwords;
+  std::mutex& exports;  ///< One export reads at a time: it takes a processor, which pages would wait for.
   LogLimit& log_limit;  ///< Of lines that a client can cause again and again by what is refused.
   signing::PasswordWork password_work;
   std::string unknown_hash;  ///< Of no password: it takes as long to check as that of an account.
@@ -76,13 +78,18 @@ std::vector<Route> attempt_routes();
 std::vector<Route> form_routes();
 std::vector<Route> all_routes();
 
-/// The route of a request; `names` is filled. Null with the methods that the path has, if another method is meant.
+/// The route of a request with this path, still percent-encoded; `names` is filled. Null with the methods that the path
+/// has, if another method is meant.
 struct FoundRoute {
   const Route* route = nullptr;
   std::vector<std::string> names;
   std::string allowed;  ///< "GET, POST"; empty: no such path.
 };
 FoundRoute find_route(const std::vector<Route>& routes, std::string_view method, std::string_view path);
+
+/// Forgets all values that were read before a change of people or attempts. Those that others are made of come first:
+/// otherwise a request in between would make an answer of an old value.
+void forget_values(Backend& backend);
 
 HttpAnswer not_found(std::string_view what);
 HttpAnswer ok(const Json& json, int status = 200);

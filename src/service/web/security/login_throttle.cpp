@@ -1,9 +1,12 @@
 #include "web/security/login_throttle.h"
 
+#include <array>
+#include <utility>
+
+#include "web/security/client_address.h"
+
 namespace trocar::web {
 namespace {
-
-constexpr std::size_t kMostKnown = 10000;
 
 std::string pair_of(std::string_view account, std::string_view address) {
   return std::string(address) + "\n" + std::string(account);
@@ -12,27 +15,30 @@ std::string pair_of(std::string_view account, std::string_view address) {
 }  // namespace
 
 LoginThrottle::LoginThrottle(const LoginRules& rules)
-    : pairs_(rules.pair), addresses_(rules.address), accounts_(rules.account) {}
+    : pairs_(rules.pair), clients_(rules.client), networks_(rules.network), accounts_(rules.account) {}
 
-std::optional<std::chrono::seconds> LoginThrottle::try_begin(std::string_view account, std::string_view address,
-                                                             TimePoint now) {
-  if (const auto wait = addresses_.try_take(address, now)) return wait;
-  const std::string pair = pair_of(account, address);
-  if (const auto wait = pairs_.try_take(pair, now)) return wait;
-  {
-    const std::lock_guard lock(mutex_);
-    if (known_.contains(pair)) return std::nullopt;
+std::optional<std::chrono::seconds> LoginThrottle::try_begin(const LoginTry& login, TimePoint now) {
+  const std::array<std::pair<TokenBuckets*, std::string>, 4> needed{
+      {{&pairs_, pair_of(login.account, login.client)},
+       {&clients_, login.client},
+       {&networks_, pair_of(login.account, network_of(login.client))},
+       {&accounts_, login.account}}};
+  const std::size_t count = login.is_known ? 1 : needed.size();
+  for (std::size_t n = 0; n < count; ++n) {
+    const auto wait = needed[n].first->try_take(needed[n].second, now);
+    if (!wait) continue;
+    while (n-- > 0) needed[n].first->give_back(needed[n].second);
+    return wait;
   }
-  return accounts_.try_take(account, now);
+  return std::nullopt;
 }
 
-void LoginThrottle::succeeded(std::string_view account, std::string_view address) {
-  const std::string pair = pair_of(account, address);
-  addresses_.give_back(address);
-  pairs_.give_back(pair);
-  const std::lock_guard lock(mutex_);
-  if (!known_.contains(pair)) accounts_.give_back(account);
-  if (known_.size() < kMostKnown) known_.insert(pair);
+void LoginThrottle::succeeded(const LoginTry& login) {
+  pairs_.give_back(pair_of(login.account, login.client));
+  if (login.is_known) return;
+  clients_.give_back(login.client);
+  networks_.give_back(pair_of(login.account, network_of(login.client)));
+  accounts_.give_back(login.account);
 }
 
 }  // namespace trocar::web

@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
 
@@ -11,13 +10,21 @@
 namespace trocar::web {
 
 struct LoginRules {
-  BucketRule pair{5, 1.0 / 60};       ///< Of one account from one address: 5 tries, then one a minute.
-  BucketRule address{30, 1.0 / 30};   ///< Of one address at all accounts.
-  BucketRule account{100, 1.0 / 60};  ///< Of one account from all addresses that never logged in to it.
+  BucketRule pair{5, 1.0 / 60};       ///< Of one account from one client: 5 tries, then one a minute.
+  BucketRule client{30, 1.0 / 30};    ///< Of one client at all accounts from which it never logged in.
+  BucketRule network{20, 1.0 / 180};  ///< Of one account from all such clients of one network.
+  BucketRule account{100, 1.0 / 60};  ///< Of one account from all such clients.
 };
 
-/// Slows down the guessing of passwords. Nobody is locked out: another address is not slowed by the tries of one, and
-/// an address that has logged in to an account is not slowed by those of all others. Thread-safe.
+/// A try to log in. `client`: see client_of.
+struct LoginTry {
+  std::string account, client;
+  bool is_known = false;  ///< Somebody has logged in to this account from this client before.
+};
+
+/// Slows down the guessing of passwords. A known client is slowed only by tries at the same account from itself; others
+/// are slowed by those of their network, too, and by those of five networks or more at once. A try that is refused
+/// counts for nothing. Thread-safe.
 class LoginThrottle {
  public:
   using TimePoint = TokenBuckets::TimePoint;
@@ -25,14 +32,12 @@ class LoginThrottle {
 
   /// Counts a try before its password is checked, so that tries at the same time count, too. Otherwise the time to
   /// wait.
-  std::optional<std::chrono::seconds> try_begin(std::string_view account, std::string_view address, TimePoint now);
+  std::optional<std::chrono::seconds> try_begin(const LoginTry& login, TimePoint now);
   /// The password was right: the try does not count.
-  void succeeded(std::string_view account, std::string_view address);
+  void succeeded(const LoginTry& login);
 
  private:
-  TokenBuckets pairs_, addresses_, accounts_;
-  std::mutex mutex_;
-  std::set<std::string> known_;  ///< Pairs that have logged in.
+  TokenBuckets pairs_, clients_, networks_, accounts_;
 };
 
 }  // namespace trocar::web

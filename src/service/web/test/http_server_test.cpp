@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <thread>
 
@@ -50,11 +51,57 @@ TEST_F(Transport, AnswersSeveralRequestsOnOneConnection) {
     client.send("GET /a%20b?c=d HTTP/1.1\r\nHost: x\r\n\r\n");
     const std::string answer = client.read_until("[]");
     EXPECT_EQ(status_of(answer), 200) << answer;
-    EXPECT_NE(answer.find("GET /a b []"), std::string::npos) << answer;
+    EXPECT_NE(answer.find("GET /a%20b []"), std::string::npos) << "as it was sent\n" << answer;
     EXPECT_NE(answer.find("X-Default: here\r\n"), std::string::npos) << answer;
   }
   client.send("POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 4\r\nConnection: close\r\n\r\nbody");
   EXPECT_NE(client.read_to_end().find("POST / [body]"), std::string::npos);
+}
+
+class StreamedContent : public Transport {
+ protected:
+  void SetUp() override {
+    auto server = HttpServer::start(options(), [](const HttpRequest& request) {
+      HttpAnswer answer = text_answer(200, "text/csv", {});
+      answer.body.reset();
+      answer.source = [n = 0, does_fail = request.path == "/fails"]() mutable -> Result<std::string> {
+        if (++n <= 3) return std::string(100'000, static_cast<char>('a' + n));
+        if (does_fail) return fail("the disk failed");
+        return std::string();
+      };
+      return answer;
+    });
+    ASSERT_TRUE(server) << server.error().text();
+    server_.emplace(std::move(*server));
+  }
+  std::string get(const std::string& path, const std::string& version) {
+    return answer_to(port(), "GET " + path + " HTTP/" + version + "\r\nHost: x\r\nConnection: close\r\n\r\n");
+  }
+};
+
+TEST_F(StreamedContent, ArrivesInPiecesWithItsEnd) {
+  const std::string answer = get("/", "1.1");
+  EXPECT_EQ(status_of(answer), 200);
+  EXPECT_NE(answer.find("Transfer-Encoding: chunked\r\n"), std::string::npos);
+  EXPECT_EQ(std::ranges::count(answer, 'c'),
+            100'000 + std::ranges::count(answer.substr(0, answer.find("\r\n\r\n")), 'c'));
+  EXPECT_TRUE(answer.ends_with("\r\n0\r\n\r\n")) << answer.substr(answer.size() - 20);
+  const std::string head = answer_to(port(), "HEAD / HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
+  EXPECT_TRUE(head.ends_with("\r\n\r\n")) << head;
+}
+
+TEST_F(StreamedContent, EndsWithTheConnectionOfAnOlderClient) {
+  const std::string answer = get("/", "1.0");
+  EXPECT_EQ(status_of(answer), 200);
+  EXPECT_EQ(answer.find("chunked"), std::string::npos);
+  EXPECT_EQ(answer.size() - answer.find("\r\n\r\n") - 4, 300'000U);
+}
+
+TEST_F(StreamedContent, ThatFailsIsSeenToBeIncomplete) {
+  const std::string answer = get("/fails", "1.1");
+  EXPECT_EQ(status_of(answer), 200);
+  EXPECT_FALSE(answer.ends_with("0\r\n\r\n"));
+  EXPECT_EQ(status_of(get("/", "1.1")), 200) << "the next connection";
 }
 
 TEST_F(Transport, PipelinedRequestsAreAnsweredInOrder) {

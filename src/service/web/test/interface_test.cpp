@@ -236,9 +236,10 @@ TEST_F(Interface, ExportIsSafeForSpreadsheets) {
   lab_.add_attempt(lab_.add_person("=HYPERLINK(\"http://evil.example\")"), 50.0);
   const HttpAnswer csv = lab_.get("/api/export/attempts.csv");
   EXPECT_EQ(csv.content_type, "text/csv; charset=utf-8");
-  EXPECT_EQ(body_of(csv).find("\n=HYPERLINK"), std::string::npos);
-  EXPECT_EQ(body_of(csv).find(",=HYPERLINK"), std::string::npos);
-  EXPECT_NE(body_of(csv).find("'=HYPERLINK"), std::string::npos) << body_of(csv);
+  const std::string text = body_of(csv);
+  EXPECT_EQ(text.find("\n=HYPERLINK"), std::string::npos);
+  EXPECT_EQ(text.find(",=HYPERLINK"), std::string::npos);
+  EXPECT_NE(text.find("\"'=HYPERLINK"), std::string::npos) << text;
 }
 
 TEST_F(Interface, UnknownIdsAreNotFound) {
@@ -293,6 +294,32 @@ TEST_F(Interface, DeletionOfAPersonNeedsItsNameAndIsSeenAtOnce) {
   get("/api/attempts/" + id, 404);
   get("/api/attempts/" + id + "/recording", 404);
   get(target, 404);
+}
+
+/// Pages that compare people, and the values that they are made of: of this person nothing is left, in none of them.
+TEST_F(Interface, DeletionOfAPersonIsSeenInTheStatisticsOfOthersAtOnce) {
+  const auto anna = lab_.add_person("Anna"), ben = lab_.add_person("Ben"),
+             expert = lab_.add_person("Expert", results::Group::kExpert);
+  lab_.add_attempt(anna, 10.0);
+  lab_.add_attempt(ben, 50.0);
+  lab_.add_attempt(expert, 90.0);
+  const std::string curve = "/api/people/" + ben.id + "/curve?task=liver-biopsy";
+  EXPECT_EQ(get(curve)["peers"]["n"], 1);
+  const auto counted = [this] {
+    const Json score = get("/api/metrics/score?task=liver-biopsy");
+    std::int64_t people = 0;
+    for (const Json& group : score["groups"]) people += group["n"].get<int>();
+    return people;
+  };
+  EXPECT_EQ(counted(), 3);
+  EXPECT_EQ(lab_.send(lab_.request("DELETE", "/api/people/" + anna.id, {{"confirm", "Anna"}})).status, 204);
+  EXPECT_EQ(get(curve)["peers"]["n"], 0);
+  EXPECT_EQ(counted(), 2);
+  EXPECT_EQ(body_of(lab_.get("/api/export/attempts.csv")).find("Anna"), std::string::npos);
+  // By another program: within a second.
+  ASSERT_TRUE(results::delete_person(lab_.repository(), expert.id));
+  lab_.pass(1s);
+  EXPECT_EQ(counted(), 1);
 }
 
 TEST_F(Interface, HostHeaderOfAnotherNameIsRefused) {
@@ -387,6 +414,17 @@ TEST_F(Questionnaire, MisspeltFieldsAreRefusedAndNamed) {
   }
   EXPECT_NE(body_of(lab_.post("/api/forms", {{"titel", "x"}})).find("titel"), std::string::npos);
   EXPECT_EQ(lab_.post("/api/forms", {{"items", Json::array({item})}}).status, 201);
+}
+
+/// The limits of the page's fields are those of the server, in characters of any script.
+TEST_F(Questionnaire, IntroductionsHaveTheLengthThatThePageAllows) {
+  const auto of = [](std::size_t characters) {
+    std::string text;
+    while (characters-- > 0) text += "\xe9\x87\x9d";
+    return text;
+  };
+  EXPECT_EQ(lab_.post("/api/forms", {{"intro", of(2000)}}).status, 201);
+  EXPECT_EQ(lab_.post("/api/forms", {{"intro", of(2001)}}).status, 400);
 }
 
 TEST_F(Questionnaire, ClosedAndUnknownOnesLookTheSame) {

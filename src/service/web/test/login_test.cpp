@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "results/accounts.h"
+#include "results/names.h"
 #include "service_lab.h"
 #include "signing/password.h"
 #include "signing/token.h"
@@ -73,8 +74,36 @@ TEST(Login, AForgedAddressDoesNotHelp) {
     EXPECT_EQ(status(proxied, "192.0.2." + std::to_string(n) + ", 198.51.100.1"), 401);
   }
   EXPECT_EQ(status(direct, "192.0.2.99"), 429);
+  EXPECT_EQ(status(proxied, "192.0.2.99, 198.51.100.1:4711"), 429) << "a port makes no other client";
   EXPECT_EQ(status(proxied, "192.0.2.99, 198.51.100.1"), 429);
   EXPECT_EQ(status(proxied, "198.51.100.2"), 401) << "another client of the proxy";
+}
+
+/// Wrong tries from all the addresses of a network, and from many of them: who has logged in before can log in again,
+/// also after a restart of the server.
+TEST(Login, OfAKnownClientIsNotSlowedByOthers) {
+  ServiceLab lab;
+  lab.address = "2001:db8:1:2::1";
+  ASSERT_EQ(lab.log_in().status, 200);
+  lab.restart();
+  for (int n = 0; n < 300; ++n) {
+    lab.address = "10.0." + std::to_string(n % 100) + ".1";
+    lab.log_in(kAdmin, "wrong");
+  }
+  lab.address = "198.51.100.1";
+  EXPECT_EQ(lab.log_in().status, 429) << "a client that is not known";
+  lab.address = "2001:db8:1:2:ffff::7";
+  EXPECT_EQ(lab.log_in().status, 200) << "another address of the network that is known";
+}
+
+TEST(Login, FromAllAddressesOfANetworkLeavesTheOwnerAPlace) {
+  ServiceLab lab;
+  for (int n = 0; n < 500; ++n) {
+    lab.address = "2001:db8:1:2::" + std::to_string(n);
+    lab.log_in(kAdmin, "wrong");
+  }
+  lab.address = "192.0.2.1";
+  EXPECT_EQ(lab.log_in().status, 200);
 }
 
 TEST(Login, IsLoggedWithoutThePassword) {
@@ -290,13 +319,19 @@ TEST(Accounts, AreAddedListedAndRemoved) {
   ServiceLab lab;
   lab.log_in();
   const Json good = {
-      {"name", " Prof.  <b>X</b>'; DROP TABLE accounts "}, {"password", "seven quiet otters"}, {"role", "instructor"}};
+      {"name", " Prof.  <b>X<b>'; DROP TABLE accounts "}, {"password", "seven quiet otters"}, {"role", "instructor"}};
   const HttpAnswer added = lab.post("/api/accounts", good);
   ASSERT_EQ(added.status, 201) << body_of(added);
-  EXPECT_EQ(json_of(added)["name"], "Prof. <b>X</b>'; DROP TABLE accounts");
+  EXPECT_EQ(json_of(added)["name"], "Prof. <b>X<b>'; DROP TABLE accounts");
   EXPECT_EQ(lab.post("/api/accounts", good).status, 409);
-  for (const auto& [field, value] :
-       TextPairs{{"role", "root"}, {"password", "short"}, {"name", "a\nb"}, {"name", ""}}) {
+  for (const auto& [field, value] : TextPairs{{"role", "root"},
+                                              {"password", "short"},
+                                              {"name", "a\nb"},
+                                              {"name", ""},
+                                              {"name", "a/b"},
+                                              {"name", ".."},
+                                              {"name", "."},
+                                              {"name", "a\\b"}}) {
     Json bad = good;
     bad[field] = value;
     EXPECT_EQ(lab.post("/api/accounts", bad).status, 400) << field << value;
@@ -307,6 +342,23 @@ TEST(Accounts, AreAddedListedAndRemoved) {
   EXPECT_EQ(lab.send(lab.request("DELETE", "/api/accounts/huber")).status, 204);
   EXPECT_EQ(lab.send(lab.request("DELETE", "/api/accounts/Dr. Weber")).status, 409) << "the last admin";
   EXPECT_EQ(json_of(lab.get("/api/accounts"))["accounts"].size(), 2U);
+}
+
+/// A path is split before it is decoded: an older program took names with a slash.
+TEST(Accounts, OfAnyNameAreRemoved) {
+  ServiceLab lab;
+  lab.log_in();
+  ASSERT_TRUE(lab.repository().database().transaction("x", [](soci::session& session) {
+    for (const std::string name : {"a/b", "50%", "c%2Fd", "e?f#g"})
+      session << "INSERT INTO accounts (id, name, name_key, is_admin, password_hash, added_s) VALUES (:i, :n, :k, 0, "
+                 "'', 0)",
+          soci::use(name), soci::use(name), soci::use(results::name_key(name));
+  }));
+  for (const char* path : {"a%2Fb", "50%25", "c%252Fd", "e%3Ff%23g", "%68uber"})
+    EXPECT_EQ(lab.send(lab.request("DELETE", std::string("/api/accounts/") + path)).status, 204) << path;
+  EXPECT_EQ(lab.send(lab.request("DELETE", "/api/accounts/a%2")).status, 400) << "malformed";
+  EXPECT_EQ(lab.send(lab.request("DELETE", "/api%2Faccounts/a")).status, 404);
+  EXPECT_EQ(json_of(lab.get("/api/accounts"))["accounts"].size(), 1U);
 }
 
 TEST(Accounts, RemovalEndsTheirLogins) {

@@ -1,6 +1,7 @@
 // Each guard alone, without sockets, clocks or a database.
 #include <gtest/gtest.h>
 
+#include "web/security/client_address.h"
 #include "web/security/log_text.h"
 #include "web/security/login_throttle.h"
 #include "web/security/request_origin.h"
@@ -64,58 +65,114 @@ TEST(TokenBuckets, MadeUpKeysNeitherGrowNorEscape) {
   EXPECT_FALSE(buckets.try_take("other", kFirstTry + 10000s));
 }
 
-int tries(LoginThrottle& throttle, const std::string& account, const std::string& address, TimePoint now,
-          int most = 1000) {
+int tries(LoginThrottle& throttle, const LoginTry& login, TimePoint now, int most = 1000) {
   int count = 0;
-  while (count < most && !throttle.try_begin(account, address, now)) ++count;
+  while (count < most && !throttle.try_begin(login, now)) ++count;
   return count;
 }
 
-TEST(LoginThrottle, SlowsDownOneAddressAtOneAccount) {
+TEST(LoginThrottle, SlowsDownOneClientAtOneAccount) {
   LoginThrottle throttle;
-  EXPECT_EQ(tries(throttle, "weber", "192.0.2.1", kFirstTry), 5);
-  EXPECT_EQ(throttle.try_begin("weber", "192.0.2.1", kFirstTry), 60s);
-  EXPECT_EQ(tries(throttle, "weber", "192.0.2.1", kFirstTry + 60s), 1);
+  EXPECT_EQ(tries(throttle, {"weber", "192.0.2.1"}, kFirstTry), 5);
+  EXPECT_EQ(throttle.try_begin({"weber", "192.0.2.1"}, kFirstTry), 60s);
+  EXPECT_EQ(tries(throttle, {"weber", "192.0.2.1"}, kFirstTry + 60s), 1);
   // A day of guessing: the burst and one a minute.
   LoginThrottle day;
   int guesses = 0;
   for (int second = 0; second < 24 * 3600; ++second)
-    guesses += day.try_begin("weber", "192.0.2.1", kFirstTry + std::chrono::seconds(second)) ? 0 : 1;
+    guesses += day.try_begin({"weber", "192.0.2.1", true}, kFirstTry + std::chrono::seconds(second)) ? 0 : 1;
   EXPECT_LE(guesses, 5 + 24 * 60);
   EXPECT_GE(guesses, 24 * 60 / 2);
 }
 
 TEST(LoginThrottle, NobodyElseIsLockedOut) {
   LoginThrottle throttle;
-  tries(throttle, "weber", "192.0.2.1", kFirstTry);
-  EXPECT_FALSE(throttle.try_begin("weber", "192.0.2.2", kFirstTry)) << "the owner of the account, from another address";
-  EXPECT_FALSE(throttle.try_begin("huber", "192.0.2.1", kFirstTry)) << "a colleague behind the same address";
+  tries(throttle, {"weber", "192.0.2.1"}, kFirstTry);
+  EXPECT_FALSE(throttle.try_begin({"weber", "198.51.100.2"}, kFirstTry)) << "the owner of the account, elsewhere";
+  EXPECT_FALSE(throttle.try_begin({"huber", "192.0.2.1"}, kFirstTry)) << "a colleague behind the same address";
 }
 
-TEST(LoginThrottle, AnAddressCannotTryAllAccounts) {
+/// Tries that are refused take nothing from colleagues behind the same address.
+TEST(LoginThrottle, ARefusedTryCountsForNothing) {
+  LoginThrottle throttle;
+  EXPECT_EQ(tries(throttle, {"weber", "192.0.2.1"}, kFirstTry), 5);
+  for (int n = 0; n < 1000; ++n) EXPECT_TRUE(throttle.try_begin({"weber", "192.0.2.1"}, kFirstTry));
+  int colleagues = 0;
+  for (int n = 0; n < 1000; ++n) colleagues += throttle.try_begin({std::to_string(n), "192.0.2.1"}, kFirstTry) ? 0 : 1;
+  EXPECT_EQ(colleagues, 25) << "of the 30 of the address";
+  // Refused by the bucket of the address, a try takes nothing from that of the pair.
+  EXPECT_EQ(tries(throttle, {"eva", "192.0.2.1", true}, kFirstTry), 5);
+}
+
+TEST(LoginThrottle, AClientCannotTryAllAccounts) {
   LoginThrottle throttle;
   int count = 0;
-  for (int n = 0; n < 1000; ++n) count += throttle.try_begin(std::to_string(n), "192.0.2.1", kFirstTry) ? 0 : 1;
+  for (int n = 0; n < 1000; ++n) count += throttle.try_begin({std::to_string(n), "192.0.2.1"}, kFirstTry) ? 0 : 1;
   EXPECT_EQ(count, 30);
+  EXPECT_FALSE(throttle.try_begin({"weber", "192.0.2.1", true}, kFirstTry)) << "who has logged in from there before";
 }
 
-/// Guesses from many addresses are limited, and do not lock out one that has logged in before.
-TEST(LoginThrottle, ManyAddressesCannotTryOneAccount) {
+TEST(LoginThrottle, ManyClientsCannotTryOneAccount) {
   LoginThrottle throttle;
-  ASSERT_FALSE(throttle.try_begin("weber", "198.51.100.1", kFirstTry));
-  throttle.succeeded("weber", "198.51.100.1");
   int count = 0;
-  for (int n = 0; n < 1000; ++n) count += throttle.try_begin("weber", std::to_string(n), kFirstTry) ? 0 : 1;
+  for (int n = 0; n < 1000; ++n)
+    count +=
+        throttle.try_begin({"weber", "10.0." + std::to_string(n % 250) + "." + std::to_string(n)}, kFirstTry) ? 0 : 1;
   EXPECT_EQ(count, 100);
-  EXPECT_FALSE(throttle.try_begin("weber", "198.51.100.1", kFirstTry));
+  EXPECT_FALSE(throttle.try_begin({"weber", "198.51.100.1", true}, kFirstTry)) << "a client that is known";
+}
+
+/// All addresses of one customer: their tries leave the owner of the account a place.
+TEST(LoginThrottle, OneNetworkCannotTakeAllTriesAtAnAccount) {
+  LoginThrottle throttle;
+  int count = 0;
+  for (int n = 0; n < 60'000; ++n)
+    count += throttle.try_begin(
+                 {"weber", client_of("2001:db8:5:" + std::to_string(n % 9999) + "::" + std::to_string(n % 7))},
+                 kFirstTry + std::chrono::milliseconds(n))
+                 ? 0
+                 : 1;
+  EXPECT_LE(count, 21);
+  EXPECT_FALSE(throttle.try_begin({"weber", client_of("2001:db8:6::1")}, kFirstTry + 60s));
+  EXPECT_FALSE(throttle.try_begin({"weber", "198.51.100.1"}, kFirstTry + 60s));
 }
 
 TEST(LoginThrottle, RightPasswordsDoNotCount) {
   LoginThrottle throttle;
-  for (int n = 0; n < 200; ++n) {
-    ASSERT_FALSE(throttle.try_begin("weber", "192.0.2.1", kFirstTry)) << n;
-    throttle.succeeded("weber", "192.0.2.1");
-  }
+  for (const bool is_known : {false, true})
+    for (int n = 0; n < 200; ++n) {
+      const LoginTry login{"weber", "192.0.2.1", is_known};
+      ASSERT_FALSE(throttle.try_begin(login, kFirstTry)) << n;
+      throttle.succeeded(login);
+    }
+  EXPECT_EQ(tries(throttle, {"weber", "192.0.2.1"}, kFirstTry), 5) << "and give back no more than was taken";
+}
+
+TEST(ClientAddress, IsTheNetworkOfAMachine) {
+  EXPECT_EQ(client_of("192.0.2.1"), "192.0.2.1");
+  EXPECT_EQ(client_of("::ffff:192.0.2.1"), "192.0.2.1");
+  EXPECT_EQ(client_of("2001:db8:1:2:aaaa::1"), "2001:db8:1:2::/64");
+  EXPECT_EQ(client_of("2001:db8:1:2:bbbb::2"), client_of("2001:db8:1:2:aaaa::1"));
+  EXPECT_NE(client_of("2001:db8:1:3::1"), client_of("2001:db8:1:2::1"));
+  EXPECT_EQ(client_of("nonsense"), "nonsense");
+  EXPECT_EQ(network_of(client_of("2001:db8:1:2:aaaa::1")), "2001:db8:1::/48");
+  EXPECT_EQ(network_of("192.0.2.1"), "192.0.2.0/24");
+  EXPECT_EQ(network_of("nonsense"), "nonsense");
+}
+
+TEST(ForwardedFor, IsTheLastAddressWithoutItsPort) {
+  const auto last = [](TextPairs headers) { return forwarded_address(request_with(std::move(headers))); };
+  EXPECT_EQ(last({}), std::nullopt);
+  for (const char* header : {"192.0.2.1", "198.51.100.7, 192.0.2.1", "198.51.100.7,192.0.2.1:4711", " 192.0.2.1:1 ",
+                             "\"192.0.2.1:4711\"", "::ffff:192.0.2.1"})
+    EXPECT_EQ(last({{"X-Forwarded-For", header}}), "192.0.2.1") << header;
+  for (const char* header : {"2001:db8::1", "[2001:db8::1]", "\"[2001:db8::1]:4711\"", "192.0.2.1, 2001:DB8::1"})
+    EXPECT_EQ(last({{"X-Forwarded-For", header}}), "2001:db8::1") << header;
+  for (const char* header :
+       {"", "unknown", "_hidden", "192.0.2.1, unknown", "192.0.2", "[", "[]", ",", "a:b:c", "1.2.3.4,"})
+    EXPECT_EQ(last({{"X-Forwarded-For", header}}), std::nullopt) << header;
+  EXPECT_EQ(last({{"X-Forwarded-For", "198.51.100.7"}, {"x-forwarded-for", "192.0.2.1"}}), "192.0.2.1")
+      << "one list in two headers";
 }
 
 TEST(HostHeader, IsReadWithoutItsPort) {

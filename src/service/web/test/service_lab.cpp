@@ -22,23 +22,32 @@ const std::string& hash_of_password() {
 
 }  // namespace
 
-ServiceLab::ServiceLab(bool is_secure, bool is_behind_proxy) : now(kOpened) {
+ServiceLab::ServiceLab(bool is_secure, bool is_behind_proxy)
+    : now(kOpened), is_secure_(is_secure), is_behind_proxy_(is_behind_proxy) {
   std::filesystem::create_directories(folder_ / "web/assets");
   std::ofstream(folder_ / "web/index.html") << "<!doctype html>";
   std::ofstream(folder_ / "web/assets/index-1.js") << "code";
-  const database::DatabaseUrl url{folder_ / "results.sqlite", {}};
-  auto opened = results::Repository::open(url);
+  auto opened = results::Repository::open({folder_ / "results.sqlite", {}});
   EXPECT_TRUE(opened) << opened.error().text();
   repository_.emplace(*std::move(opened));
   EXPECT_TRUE(results::add_account(*repository_, kAdmin, results::Role::kAdmin, hash_of_password(), kOpened.utc));
   EXPECT_TRUE(
       results::add_account(*repository_, kInstructor, results::Role::kInstructor, hash_of_password(), kOpened.utc));
+  open_service();
+}
+
+void ServiceLab::restart() {
+  service_.reset();
+  open_service();
+}
+
+void ServiceLab::open_service() {
   ServiceOptions options;
-  options.database = url;
+  options.database = {folder_ / "results.sqlite", {}};
   options.data_folder = trocar::testing::source_dir() / "data";
   options.page_folder = folder_ / "web";
-  options.is_secure = is_secure;
-  options.is_behind_proxy = is_behind_proxy;
+  options.is_secure = is_secure_;
+  options.is_behind_proxy = is_behind_proxy_;
   options.password_work = kQuickWork;
   options.now = [this] { return now; };
   auto service = Service::open(std::move(options));
@@ -128,7 +137,14 @@ std::string header_of(const HttpAnswer& answer, const std::string& name) {
 }
 
 std::string body_of(const HttpAnswer& answer) {
-  return answer.body ? *answer.body : std::string();
+  if (!answer.source) return answer.body ? *answer.body : std::string();
+  std::string all;
+  while (true) {
+    const Result<std::string> piece = answer.source();
+    EXPECT_TRUE(piece) << piece.error().text();
+    if (!piece || piece->empty()) return all;
+    all += *piece;
+  }
 }
 
 }  // namespace trocar::web::testing

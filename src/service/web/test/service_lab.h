@@ -35,11 +35,15 @@ class ServiceLab {
   std::string add_attempt(const results::Person& person, std::optional<double> score);
 
   void pass(std::chrono::seconds time);  ///< Of both clocks.
+  void restart();                        ///< Of the service, with the same database.
 
   Moment now;
   std::string address = "127.0.0.1", cookie, csrf;
 
  private:
+  void open_service();
+
+  bool is_secure_, is_behind_proxy_;
   TemporaryFolder folder_;
   std::optional<results::Repository> repository_;
   std::optional<Service> service_;
@@ -47,7 +51,7 @@ class ServiceLab {
 
 Json json_of(const HttpAnswer& answer);
 std::string header_of(const HttpAnswer& answer, const std::string& name);
-/// The text of an answer.
+/// The text of an answer; that of a source can be read once.
 std::string body_of(const HttpAnswer& answer);
 
 }  // namespace trocar::web::testing

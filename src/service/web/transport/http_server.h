@@ -16,7 +16,7 @@ struct ServerOptions {
   ListenAddress listen;
   std::optional<TlsContext> tls;                    ///< Empty: HTTP without encryption.
   int threads = 256;                                ///< Connections at a time; more wait.
-  int connections_per_address = 128;                ///< Not counted on loopback.
+  int connections_per_address = 128;                ///< Or network, see client_of. Not counted on loopback.
   std::size_t body_bytes = std::size_t{256} << 10;  ///< Largest body of a request.
   std::chrono::milliseconds idle_time{15000};       ///< A connection without a request is closed.
   std::chrono::milliseconds header_time{5000};      ///< For a request's header, however its bytes come.

@@ -178,6 +178,11 @@ bool Connection::flush() {
   return is_sent;
 }
 
+void Connection::cut() {
+  const linger at_once{1, 0};  // the destructor sends a reset
+  ::setsockopt(socket_, SOL_SOCKET, SO_LINGER, &at_once, sizeof(at_once));
+}
+
 void Connection::close_gently() {
   if (ssl_ && !is_ended_) SSL_shutdown(ssl_.get());
   ::shutdown(socket_, SHUT_WR);

@@ -40,6 +40,8 @@ class Connection final : public httplib::Stream {
   bool flush();
   /// Whether the client sent bytes that no request has taken.
   bool has_unread_body() const noexcept { return is_in_body_ && budget_ > 0; }
+  /// Makes the end of the connection an error for the client, whose answer is not whole.
+  void cut();
   /// Ends the connection so that the client receives the last answer although it still sends.
   void close_gently();
 

@@ -4,6 +4,7 @@
 #include <sys/socket.h>
 
 #include "core/log.h"
+#include "web/security/client_address.h"
 #include "web/transport/detail/worker_threads.h"
 
 namespace trocar::web::detail {
@@ -12,6 +13,7 @@ namespace {
 constexpr int kBacklog = 1024;
 constexpr int kMostRequests = 1000;  ///< Of a connection.
 constexpr std::size_t kMostPathBytes = 1024;
+constexpr const char* kVersionWithChunks = "HTTP/1.1";
 constexpr std::chrono::milliseconds kIdleSlice{250};  ///< An idle connection sees a stop of the server so soon.
 
 enum Status { kBadRequest = 400, kLengthRequired = 411, kTooLarge = 413, kUriTooLong = 414, kUnsupportedMedia = 415 };
@@ -55,7 +57,7 @@ HttpAnswer answer_to_refused(int status) {
 HttpRequest converted(const httplib::Request& request) {
   HttpRequest ours;
   ours.method = request.method;
-  ours.path = request.path;
+  ours.path = request.target.substr(0, request.target.find_first_of("?#"));
   ours.query.assign(request.params.begin(), request.params.end());
   for (const auto& [name, value] : request.headers) ours.headers.emplace_back(name, value);
   ours.body = request.body;
@@ -63,14 +65,40 @@ HttpRequest converted(const httplib::Request& request) {
   return ours;
 }
 
-void convert(HttpAnswer answer, httplib::Response& response) {
+/// Sends all pieces. One call of the library does so: between two it would end with the server.
+httplib::ContentProviderWithoutLength provider_of(ContentSource source) {
+  return [source = std::move(source)](std::size_t, httplib::DataSink& sink) {
+    while (true) {
+      const Result<std::string> piece = source();
+      if (!piece) {
+        log(LogLevel::kError, fmt::format("web: an answer was cut off: {}", piece.error().text()));
+        return false;
+      }
+      if (piece->empty()) {
+        sink.done();
+        return true;
+      }
+      if (!sink.write(piece->data(), piece->size())) return false;
+    }
+  };
+}
+
+void convert(HttpAnswer answer, httplib::Response& response, bool has_chunks = true) {
   response.status = answer.status;
   for (const auto& [name, value] : answer.headers) {
     response.headers.erase(name);  // a default
     response.set_header(name, value);
   }
+  if (answer.source) {
+    if (has_chunks) {
+      response.set_chunked_content_provider(answer.content_type, provider_of(std::move(answer.source)));
+    } else {
+      response.set_content_provider(answer.content_type, provider_of(std::move(answer.source)));
+    }
+    return;
+  }
   if (!answer.body || answer.body->empty()) return;
-  response.set_content(*answer.body, answer.content_type);  // a content provider would be cut off by stop()
+  response.set_content(*answer.body, answer.content_type);
 }
 
 }  // namespace
@@ -135,13 +163,13 @@ void LibraryServer::end() {
 }
 
 void LibraryServer::answer(const httplib::Request& request, httplib::Response& response) const {
-  convert(handler_(converted(request)), response);
+  convert(handler_(converted(request)), response, request.version == kVersionWithChunks);
 }
 
 bool LibraryServer::count_in(const std::string& address) {
   if (address == "127.0.0.1" || address == "::1") return true;
   const std::lock_guard lock(mutex_);
-  int& count = connections_[address];
+  int& count = connections_[client_of(address)];
   if (count >= options_.connections_per_address) return false;
   ++count;
   return true;
@@ -149,7 +177,7 @@ bool LibraryServer::count_in(const std::string& address) {
 
 void LibraryServer::count_out(const std::string& address) {
   const std::lock_guard lock(mutex_);
-  const auto found = connections_.find(address);
+  const auto found = connections_.find(client_of(address));
   if (found != connections_.end() && --found->second <= 0) connections_.erase(found);
 }
 
@@ -205,10 +233,14 @@ void LibraryServer::converse(Connection& connection) {
       request.ranges.clear();
       const auto refusal = find_refusal(request, options_.body_bytes);
       if (refusal) request.set_header("Connection", "close");
-      is_closed = is_closed || refusal.has_value();
+      // The end of the connection is the end of an answer without length.
+      const bool has_chunks = request.version == kVersionWithChunks;
+      if (!has_chunks) request.set_header("Connection", "close");
+      is_closed = is_closed || refusal.has_value() || !has_chunks;
       connection.begin_body(refusal ? 0 : body_length(request));
     });
     const bool is_sent = connection.flush();
+    if (is_understood && !is_done) return connection.cut();
     const bool goes_on = is_done && is_sent && is_understood && !is_last && !is_closed && !connection.has_unread_body();
     if (!goes_on) return connection.close_gently();
   }

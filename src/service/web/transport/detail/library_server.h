@@ -39,7 +39,7 @@ class LibraryServer final : public httplib::Server {
   std::atomic<int> waiting_{0};  ///< Connections that wait for a thread.
   LogLimit log_limit_;           ///< Of lines that a connection can cause.
   std::mutex mutex_;
-  std::map<std::string, int> connections_;  ///< By address.
+  std::map<std::string, int> connections_;  ///< By client_of the address.
 };
 
 }  // namespace trocar::web::detail
