@@ -36,15 +36,14 @@ constexpr double kScoreRoundOff = 0.01;  ///< Of a sum of points.
 constexpr double kLongest_s = 86'400.0;  ///< Of an attempt: a day.
 
 /// What a metric of the catalogue cannot be; empty: it can. Others are not known here.
-std::string impossible(const std::string& metric, double value) {
-  for (const metrics::MetricDescription& known : metrics::metric_catalogue()) {
-    if (metric != known.name) continue;
-    const bool may_be_negative = metric == "spectral_arc_length" || metric == "log_dimensionless_jerk";
-    if (value < 0.0 && !may_be_negative) return "negative";
-    const bool is_yes_or_no = metric == "first_pass_success" || metric == "end_in_target";
-    if (is_yes_or_no && value != 0.0 && value != 1.0) return "neither 0 nor 1";
-    if (std::string_view(known.unit) == "%" && value > 100.0) return "above 100 %";
-  }
+std::string impossible(const std::optional<metrics::MetricDescription>& known, double value) {
+  if (!known) return {};
+  const std::string_view metric = known->name;
+  const bool may_be_negative = metric == "spectral_arc_length" || metric == "log_dimensionless_jerk";
+  if (value < 0.0 && !may_be_negative) return "negative";
+  const bool is_yes_or_no = metric == "first_pass_success" || metric == "end_in_target";
+  if (is_yes_or_no && value != 0.0 && value != 1.0) return "neither 0 nor 1";
+  if (std::string_view(known->unit) == "%" && value > 100.0) return "above 100 %";
   return {};
 }
 
@@ -137,7 +136,7 @@ Status read_values(const AttemptRows& row, AttemptRecord& record) {
   for (const CsvColumns::Metric& metric : row.columns().metrics()) {
     TROCAR_TRY(const auto value, row.number<double>(metric.place));
     if (!value) continue;
-    if (const std::string fault = impossible(metric.measure.name, *value); !fault.empty())
+    if (const std::string fault = impossible(metric.known, *value); !fault.empty())
       return fail(fmt::format("{:g} is {}", *value, fault), row.place(row.columns().name(metric.place)),
                   "correct it, or leave it empty");
     record.measures.push_back({metric.measure.name, metric.measure.unit, *value});

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/csv_guard.h"
 
 namespace trocar::results {
@@ -48,28 +50,33 @@ tl::unexpected<Error> CsvReader::refuse(std::string what, const char* advice) co
   return fail(std::move(what), fmt::format("{}, line {}, field {}", where_, field_line_, field_), advice);
 }
 
-/// Takes the next character into the field.
-Status CsvReader::add(std::string& field) {
-  if (buffer_[at_] == '\0') return refuse("it is no text", "name a CSV file");
-  if (++row_bytes_ > kMostRowBytes)
-    return refuse(fmt::format("the row is longer than {} MiB", kMostRowBytes >> 20), kCheckQuotes);
-  field += buffer_[at_++];
-  return {};
+/// Takes the characters up to one of `ends` into the field, or to the end of the file.
+Status CsvReader::take_until(std::string& field, std::string_view ends) {
+  while (peek()) {
+    const std::size_t end = std::min(buffer_.find_first_of(ends, at_), buffer_.size());
+    const std::string_view taken = std::string_view(buffer_).substr(at_, end - at_);
+    if (taken.find('\0') != std::string_view::npos) return refuse("it is no text", "name a CSV file");
+    row_bytes_ += taken.size();
+    if (row_bytes_ > kMostRowBytes)
+      return refuse(fmt::format("the row is longer than {} MiB", kMostRowBytes >> 20), kCheckQuotes);
+    line_ += static_cast<std::size_t>(std::ranges::count(taken, '\n'));
+    field += taken;
+    at_ = end;
+    if (at_ < buffer_.size()) break;
+  }
+  return fault_;
 }
 
 Result<std::string> CsvReader::read_quoted() {
   std::string field;
-  for (++at_; peek();) {
-    if (is_next('"')) {
-      if (peek(1) != '"') break;
-      ++at_;
-    } else if (is_next('\n')) {
-      ++line_;
-    }
-    TROCAR_TRY_STATUS(add(field));
+  for (++at_;; ++at_) {
+    TROCAR_TRY_STATUS(take_until(field, "\""));
+    if (!peek()) return refuse("a quotation does not end", kCheckQuotes);
+    if (peek(1) != '"') break;
+    ++at_;
+    ++row_bytes_;
+    field += '"';
   }
-  TROCAR_TRY_STATUS(fault_);
-  if (!peek()) return refuse("a quotation does not end", kCheckQuotes);
   ++at_;
   if (!is_field_end()) return refuse("text after a quotation", kCheckQuotes);
   return field;
@@ -77,10 +84,8 @@ Result<std::string> CsvReader::read_quoted() {
 
 Result<std::string> CsvReader::read_plain() {
   std::string field;
-  while (!is_field_end()) {
-    if (is_next('"')) return refuse("a quotation mark inside of a field", kCheckQuotes);
-    TROCAR_TRY_STATUS(add(field));
-  }
+  TROCAR_TRY_STATUS(take_until(field, ",\r\n\""));
+  if (is_next('"')) return refuse("a quotation mark inside of a field", kCheckQuotes);
   return field;
 }
 

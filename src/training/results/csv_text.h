@@ -47,7 +47,7 @@ class CsvReader {
   std::optional<char> peek(std::size_t distance = 0);
   bool is_next(char c) { return peek() == c; }
   bool is_field_end() { return !peek() || is_next(',') || is_next('\r') || is_next('\n'); }
-  Status add(std::string& field);
+  Status take_until(std::string& field, std::string_view ends);
   /// An error with the place of the present field.
   tl::unexpected<Error> refuse(std::string what, const char* advice) const;
 

@@ -30,6 +30,12 @@ Measure measure_of(std::string_view column) {
   return {std::string(column.substr(0, unit)), std::string(column.substr(begin, column.size() - begin - 1)), 0.0};
 }
 
+std::optional<metrics::MetricDescription> find_known(std::string_view metric) {
+  for (const metrics::MetricDescription& known : metrics::metric_catalogue())
+    if (metric == known.name) return known;
+  return std::nullopt;
+}
+
 /// A metric of the catalogue in another unit, or one that is spelled almost like one of it; empty: neither. Others are
 /// of another version of the program.
 std::string fault_of_metric(const Measure& column) {
@@ -87,7 +93,8 @@ Status CsvColumns::add_metrics(const std::string& place_of_header) {
     if (!metrics.insert(metric.name).second)
       return fail(fmt::format("the metric of the column \"{}\" occurs twice", name), place_of_header,
                   "leave the unit in which it is measured");
-    metrics_.push_back({std::move(metric), place});
+    auto known = find_known(metric.name);
+    metrics_.push_back({std::move(metric), place, std::move(known)});
   }
   return {};
 }

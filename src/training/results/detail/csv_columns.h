@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "metrics/metric.h"
 #include "results/attempt.h"
 #include "results/csv_text.h"
 
@@ -57,6 +58,7 @@ class CsvColumns {
   struct Metric {
     Measure measure;  ///< Name and unit.
     std::size_t place;
+    std::optional<metrics::MetricDescription> known;  ///< Empty: of another version of the program.
   };
   std::size_t size() const noexcept { return names_.size(); }
   const std::string& name(std::size_t place) const { return names_[place]; }
