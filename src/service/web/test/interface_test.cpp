@@ -296,32 +296,6 @@ TEST_F(Interface, DeletionOfAPersonNeedsItsNameAndIsSeenAtOnce) {
   get(target, 404);
 }
 
-/// Pages that compare people, and the values that they are made of: of this person nothing is left, in none of them.
-TEST_F(Interface, DeletionOfAPersonIsSeenInTheStatisticsOfOthersAtOnce) {
-  const auto anna = lab_.add_person("Anna"), ben = lab_.add_person("Ben"),
-             expert = lab_.add_person("Expert", results::Group::kExpert);
-  lab_.add_attempt(anna, 10.0);
-  lab_.add_attempt(ben, 50.0);
-  lab_.add_attempt(expert, 90.0);
-  const std::string curve = "/api/people/" + ben.id + "/curve?task=liver-biopsy";
-  EXPECT_EQ(get(curve)["peers"]["n"], 1);
-  const auto counted = [this] {
-    const Json score = get("/api/metrics/score?task=liver-biopsy");
-    std::int64_t people = 0;
-    for (const Json& group : score["groups"]) people += group["n"].get<int>();
-    return people;
-  };
-  EXPECT_EQ(counted(), 3);
-  EXPECT_EQ(lab_.send(lab_.request("DELETE", "/api/people/" + anna.id, {{"confirm", "Anna"}})).status, 204);
-  EXPECT_EQ(get(curve)["peers"]["n"], 0);
-  EXPECT_EQ(counted(), 2);
-  EXPECT_EQ(body_of(lab_.get("/api/export/attempts.csv")).find("Anna"), std::string::npos);
-  // By another program: within a second.
-  ASSERT_TRUE(results::delete_person(lab_.repository(), expert.id));
-  lab_.pass(1s);
-  EXPECT_EQ(counted(), 1);
-}
-
 TEST_F(Interface, HostHeaderOfAnotherNameIsRefused) {
   HttpRequest request = lab_.request("GET", "/api/me");
   request.headers[0].second = "evil.example";
