@@ -48,6 +48,20 @@ std::optional<HttpReader::Answer> HttpReader::send(std::string_view method, std:
   return answer;
 }
 
+/// Reads chunks from this place on without keeping them.
+std::optional<std::size_t> HttpReader::count_chunks(std::size_t begin) {
+  constexpr std::string_view kEnd = "\r\n0\r\n\r\n";
+  received_.erase(0, begin);
+  std::size_t bytes = received_.size();
+  while (!received_.ends_with(kEnd)) {
+    if (received_.size() > kEnd.size()) received_.erase(0, received_.size() - kEnd.size());
+    const std::size_t before = received_.size();
+    if (!read_more()) return std::nullopt;
+    bytes += received_.size() - before;
+  }
+  return bytes;
+}
+
 std::optional<HttpReader::Answer> HttpReader::exchange(std::string_view request) {
   if (!connect()) return std::nullopt;
   if (::send(socket_, request.data(), request.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(request.size()))
@@ -61,6 +75,12 @@ std::optional<HttpReader::Answer> HttpReader::exchange(std::string_view request)
   constexpr std::size_t kStatusAt = 9, kStatusDigits = 3;
   if (answer.header.size() < kStatusAt + kStatusDigits) return std::nullopt;
   answer.status = parse_number<int>(std::string_view(answer.header).substr(kStatusAt, kStatusDigits)).value_or(0);
+  if (answer.header.find("\r\nTransfer-Encoding: chunked\r\n") != std::string::npos) {
+    const auto bytes = count_chunks(end + 4);
+    if (!bytes) return std::nullopt;
+    answer.bytes = *bytes;
+    return answer;
+  }
   constexpr std::string_view kLength = "\r\nContent-Length: ";
   const std::size_t at = answer.header.find(kLength);
   std::size_t length = 0;
@@ -72,6 +92,7 @@ std::optional<HttpReader::Answer> HttpReader::exchange(std::string_view request)
   while (received_.size() < begin + length)
     if (!read_more()) return std::nullopt;
   answer.body = received_.substr(begin, length);
+  answer.bytes = length;
   return answer;
 }
 

@@ -19,7 +19,8 @@ class HttpReader {
   struct Answer {
     int status = 0;
     std::string header;
-    std::string body;
+    std::string body;       ///< Empty: it came in chunks, which are only counted.
+    std::size_t bytes = 0;  ///< Of the content; of chunks, with their sizes.
   };
   /// Sends a request with these header lines (each ends with CR LF) and reads its answer.
   std::optional<Answer> send(std::string_view method, std::string_view target, std::string_view headers,
@@ -27,6 +28,7 @@ class HttpReader {
 
  private:
   bool connect();
+  std::optional<std::size_t> count_chunks(std::size_t begin);
   void close();
   bool read_more();
   std::optional<Answer> exchange(std::string_view request);

@@ -1,5 +1,5 @@
 // The server of `trocar serve` with 100,000 simulated attempts: every page once with empty caches, then 200 readers at
-// the same time on kept connections, in this process and on the same cores.
+// the same time on kept connections, then exports beside one reader, in this process and on the same cores.
 
 #include <fmt/format.h>
 
@@ -121,6 +121,42 @@ Readings read_all(int port, const std::string& cookie, const SimulatedResults& f
   return all;
 }
 
+constexpr int kExports = 8;
+
+/// Lists of attempts on one connection, while so many others export all attempts. The addresses differ: each list is
+/// made, none comes from a cache.
+Result<std::vector<CaseResult>> time_exports(int port, const std::string& cookie, const SimulatedResults& filled) {
+  std::atomic<int> running{kExports};
+  std::atomic<std::size_t> bytes{0}, errors{0};
+  std::vector<double> exports_s(kExports), pages_ms;
+  std::vector<std::thread> threads;
+  const auto start = Clock::now();
+  for (std::size_t n = 0; n < exports_s.size(); ++n)
+    threads.emplace_back([&, n] {
+      HttpReader reader(port);
+      const auto answer = reader.send("GET", "/api/export/attempts.csv", cookie);
+      exports_s[n] = std::chrono::duration<double>(Clock::now() - start).count();
+      if (!answer || answer->status != 200) ++errors;
+      if (answer) bytes += answer->bytes;
+      --running;
+    });
+  HttpReader reader(port);
+  for (std::size_t n = 0; running > 0; ++n) {
+    const auto asked = Clock::now();
+    const std::string& person = filled.people[n % filled.people.size()];
+    const auto answer =
+        reader.send("GET", fmt::format("/api/people/{}/attempts?before={}", person, 10 * kAttempts + n), cookie);
+    pages_ms.push_back(Milliseconds(Clock::now() - asked).count());
+    if (!answer || answer->status != 200) ++errors;
+  }
+  for (std::thread& thread : threads) thread.join();
+  if (errors > 0) return fail(fmt::format("{} requests failed", errors.load()), "exports", "report this as a bug");
+  CaseResult pages{fmt::format("serve/a page beside {} exports", kExports), "ms", figures_of(pages_ms), {}, {}};
+  CaseResult all{fmt::format("serve/{} exports at once", kExports), "s", figures_of(exports_s), {}, {}};
+  all.note = fmt::format("{} MiB each", bytes / kExports / (1024 * 1024));
+  return std::vector{pages, all};
+}
+
 CaseResult reading_case(const std::string& name, const Readings& readings, double seconds) {
   const double count = static_cast<double>(readings.times_ms.size());
   CaseResult result{name, "ms", figures_of(readings.times_ms), {}, {}};
@@ -161,6 +197,8 @@ Result<std::vector<CaseResult>> run_serve_benchmark(const Options& options) {
   results.push_back(reading_case(fmt::format("serve/{} readers, a page a second", kReaders), calm, options.seconds));
   const Readings busy = read_all(server.port(), cookie, filled, options.seconds, {});
   results.push_back(reading_case(fmt::format("serve/{} readers without a pause", kReaders), busy, options.seconds));
+  TROCAR_TRY(const std::vector<CaseResult> exports, time_exports(server.port(), cookie, filled));
+  results.insert(results.end(), exports.begin(), exports.end());
   if (calm.errors + busy.errors > 0)
     return fail(fmt::format("{} requests failed", calm.errors + busy.errors), "trocar bench serve",
                 "report this as a bug");

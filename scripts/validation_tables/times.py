@@ -68,6 +68,8 @@ def serve(f):
                       for page in ("validity", "path length", "attempt", "overview")),
                  ("200 readers, each a page a second, p99", "≤ 100", "ms", "serve/200 readers, a page a second", 1, "p99"),
                  ("200 readers without a pause", "", "ms", "serve/200 readers without a pause", 1),
+                 ("a list of attempts beside 8 exports of 100,000 attempts, p99", "≤ 300", "ms", "serve/a page beside 8 exports", 0, "p99"),
+                 ("8 exports at once, until the last one has ended", "", "s", "serve/8 exports at once", 0),
                  ("filling the database, 100,000 attempts", "", "s", "serve/fill", 0))
 
 
