@@ -55,6 +55,17 @@ TEST(SessionCsv, HasThePromisedHeaderAndOneRowATick) {
   EXPECT_TRUE(text.ends_with('\n'));
 }
 
+/// A session of somebody else: its names are no formulas of a spreadsheet.
+TEST(SessionCsv, HasNoFormulas) {
+  Session session = example_session(2);
+  for (std::string& name : session.info.tissue_names) name = "=1+1;@x";
+  const TemporaryFolder folder;
+  ASSERT_TRUE(export_csv(session, folder / "s.csv"));
+  const std::string text = *read_file(folder / "s.csv");
+  EXPECT_NE(text.find(",'=1+1;'@x,"), std::string::npos) << text;
+  EXPECT_EQ(text.find(",=1"), std::string::npos);
+}
+
 TEST(SessionCsv, PutsEachFieldUnderItsName) {
   const Session session = example_session(4);
   const auto rows = exported_rows(session);
