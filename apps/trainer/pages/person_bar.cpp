@@ -21,10 +21,10 @@ PersonBar::PersonBar(QWidget* parent) : QFrame(parent) {
   row->setSpacing(8);
   message_ = make_label({}, "dim");
   message_->setObjectName(QStringLiteral("person-message"));
-  prompt_ = make_label(tr("Practising"), "dim");
+  prompt_ = make_label(tr("Trainee"), "dim");
   people_ = new QComboBox;
   people_->setObjectName(QStringLiteral("person"));
-  people_->setAccessibleName(tr("Who practises"));
+  people_->setAccessibleName(tr("Trainee"));
   people_->setMinimumContentsLength(24);
   people_->setToolTip(tr("Attempts are recorded for this person, in the database of the station or the department"));
   new_ = make_button("new-person", tr("New person …"), tr("Enter the name of somebody who is not in the list"));
@@ -97,7 +97,7 @@ void PersonBar::ask_for_pin(const PersonEntry& person, bool is_new) {
 }
 
 void PersonBar::close_entry() {
-  show_entry(tr("Practising"), false, false);
+  show_entry(tr("Trainee"), false, false);
   const QSignalBlocker blocked(people_);
   people_->setCurrentIndex(std::max(0, people_->findData(chosen_)));
 }

@@ -32,7 +32,7 @@ ExpertPathList::ExpertPathList(QWidget* parent) : QWidget(parent) {
   column->setContentsMargins(0, 0, 0, 0);
   column->setSpacing(4);
   column->addWidget(make_label(tr("Expert paths"), "heading"));
-  auto* caption = make_label(tr("Distance of the tip's way from each, mm"), "dim");
+  auto* caption = make_label(tr("Distance of the tip's path from each, mm"), "dim");
   caption->setWordWrap(true);
   column->addWidget(caption);
   grid_ = new QGridLayout;
@@ -56,7 +56,7 @@ void ExpertPathList::show_rows(const std::vector<Row>& rows) {
     grid_->addWidget(label, line, place);
     return label;
   };
-  add(tr("Fréchet"), 0, 2, true)->setToolTip(tr("The shortest leash that joins tip and path while both go forwards"));
+  add(tr("Fréchet"), 0, 2, true)->setToolTip(tr("Fréchet distance between the path of the tip and the expert path"));
   add(tr("Hausdorff"), 0, 3, true)->setToolTip(tr("The largest distance of a point of one from the other"));
   int line = 1;
   for (const Row& row : rows) {

@@ -74,7 +74,7 @@ QString cores_text(const std::vector<scoring::BiopsyCore>& cores) {
       .arg(lengths.join(QStringLiteral(", ")));
 }
 
-/// Risk of bleeding and painful moments, a line each.
+/// Risk of bleeding and pain events, a line each.
 QString harm_text(const scoring::Outcome& outcome) {
   QStringList lines;
   if (outcome.bleeding) {
@@ -82,7 +82,7 @@ QString harm_text(const scoring::Outcome& outcome) {
     for (const std::string& reason : outcome.bleeding->reasons) line += QStringLiteral("; ") + to_qt(reason);
     lines << line;
   }
-  if (outcome.pain_events > 0) lines << FeedbackPanel::tr("Painful moments: %1").arg(outcome.pain_events);
+  if (outcome.pain_events > 0) lines << FeedbackPanel::tr("Pain events: %1").arg(outcome.pain_events);
   return lines.join(QLatin1Char('\n'));
 }
 

@@ -44,7 +44,7 @@ TEST(BriefingPage, TellsTheReferralAndTheTaskBeforeThePatientIsLoaded) {
        "lumbar-3",
        {"lumbar-3", "male", "72 years", "174 cm", "encephalitis", "heparin", "penicillin", "sitting"},
        {"spinal fluid", "palpation", "Draw the stylet", "7. "},
-       {"Proof of the place", "spinal fluid comes back", "<b>5</b>", "points at 30°", "70 of 100", "nerve",
+       {"Confirmation of position", "spinal fluid comes back", "<b>5</b>", "points at 30°", "70 of 100", "nerve",
         "whatever the points: the needle went in above L2/L3"}},
       {"liver-biopsy",
        "biopsy-3",

@@ -28,15 +28,15 @@ constexpr const char* kBleedingNames[] = {"usual", "raised", "high"};
 
 constexpr std::pair<std::string_view, std::string_view> kTitles[] = {
     {"target", "Distance to the target"},
-    {"confirmation", "Proof of the place"},
+    {"confirmation", "Confirmation of position"},
     {"core", "Target tissue in the cores"},
-    {"passes", "Punctures and shots beyond those needed"},
+    {"passes", "Extra organ punctures and shots"},
     {"risk", "Structures harmed"},
-    {"access", "Missing margin to structures at risk"},
+    {"access", "Missing safety margin to structures at risk"},
     {"entry", "Insertion point"},
     {"angle", "Needle direction"},
-    {"visibility", "Advance with the tip in the image"},
-    {"comfort", "Painful moments"},
+    {"visibility", "Tip visible while advancing"},
+    {"comfort", "Pain events"},
     {"length", "Needle travel inside the body"},
     {"time", "Time from the skin to the target"},
     {"dose", "Radiation dose (dose-area product)"},
@@ -207,11 +207,11 @@ std::vector<std::string> find_fails(const Judgement& judged, const Outcome& outc
   if (judged.too_high_s) fails.push_back(judged.attempt.task.highest_entry->reason);
   const tasks::Substance wanted = judged.attempt.task.confirmed_by;
   if (wanted != tasks::Substance::kNothing && judged.measured.has_entered && !judged.confirmed_s)
-    fails.push_back(fmt::format("the place is not proven: no {} came back", tasks::substance_words(wanted)));
+    fails.push_back(fmt::format("position not confirmed: no {} came back", tasks::substance_words(wanted)));
   else if (!outcome.target_reached)
     fails.push_back(why_not_reached(judged));
   if (outcome.is_scored() && outcome.score < judged.attempt.task.pass_mark)
-    fails.push_back(fmt::format("the score is below {:.0f}", judged.attempt.task.pass_mark));
+    fails.push_back(fmt::format("the score is below the pass mark of {:.0f}", judged.attempt.task.pass_mark));
   return fails;
 }
 
@@ -240,7 +240,7 @@ const char* target_words(const Outcome& outcome) noexcept {
     return part != outcome.parts.end() && part->is_judged ? std::optional(part->value) : std::nullopt;
   };
   const double apart_mm = value_of("target").value_or(HUGE_VAL);
-  if (value_of("confirmation").value_or(1.0) <= 0.0 && apart_mm <= 0.0) return "not proven";
+  if (value_of("confirmation").value_or(1.0) <= 0.0 && apart_mm <= 0.0) return "not confirmed";
   return apart_mm < kJustBefore_mm ? "not reached" : "missed";
 }
 

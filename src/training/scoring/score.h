@@ -119,7 +119,7 @@ struct Outcome {
   const BiopsyCore* best_core() const noexcept;
 };
 
-/// "reached", "not proven" (the needle was in it, and what has to come back did not), "not reached" (it stopped less
+/// "reached", "not confirmed" (the needle was in it, and what has to come back did not), "not reached" (it stopped less
 /// than 1 mm away) or "missed".
 const char* target_words(const Outcome& outcome) noexcept;
 

@@ -130,7 +130,7 @@ std::string guide_to_end(const cases::Case& the_case, const telemetry::TickSampl
   const bool is_proven = !the_case.needle.is_biopsy && state.is_confirmed;
   if (is_outside && (state.are_steps_done || has_cores || is_proven)) return "The needle is out: end the attempt";
   if (state.are_steps_done || has_cores) return "Everything is done: withdraw the needle";
-  return is_proven ? "The place is proven: hold still for the next step" : "";
+  return is_proven ? "Position confirmed: hold still for the next step" : "";
 }
 
 }  // namespace

@@ -34,7 +34,8 @@ class ThinPath {
 std::vector<Vec3> resample(std::span<const Vec3> polyline, std::size_t count);
 
 // Distances (mm) of two sequences of points, neither of them empty.
-/// Discrete Fréchet distance (Eiter, Mannila 1994): the shortest leash with which both can be walked forwards.
+/// Discrete Fréchet distance (Eiter, Mannila 1994): largest gap between both when they are followed forwards, at the
+/// best choice of speeds.
 double frechet_mm(std::span<const Vec3> a, std::span<const Vec3> b);
 /// Hausdorff distance: the largest distance of a point of one to the nearest point of the other.
 double hausdorff_mm(std::span<const Vec3> a, std::span<const Vec3> b);

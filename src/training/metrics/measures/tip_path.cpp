@@ -11,12 +11,8 @@ constexpr std::array kTipPathValues{
     MetricDescription{"elapsed_time", "Elapsed time", "s", Better::kLower, {}, "Perk Tutor (Ungi 2012); Johnson 2012"},
     MetricDescription{
         "path_length", "Path length of the tip", "mm", Better::kLower, {}, "Perk Tutor (Ungi 2012), of means"},
-    MetricDescription{"path_length_raw",
-                      "Path length of the tip with the recording's noise",
-                      "mm",
-                      Better::kLower,
-                      {},
-                      "Perk Tutor (Ungi 2012)"},
+    MetricDescription{
+        "path_length_raw", "Path length of the tip, unfiltered", "mm", Better::kLower, {}, "Perk Tutor (Ungi 2012)"},
 };
 
 class TipPath : public Metric {

@@ -16,7 +16,7 @@ constexpr std::array kPathValues{
                       {Role::kTransducer},
                       "Perk Tutor (Ungi 2012), for the transducer, of means"},
     MetricDescription{"transducer_path_raw",
-                      "Path length of the transducer with the recording's noise",
+                      "Path length of the transducer, unfiltered",
                       "mm",
                       Better::kLower,
                       {Role::kTransducer},

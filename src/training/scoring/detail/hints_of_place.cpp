@@ -199,7 +199,7 @@ void add_confirmation_advice(const HintSubject& subject, std::vector<Advice>& ad
                       subject.measured().end_s});
   } else if (looked == actions.rend()) {
     advice.push_back({points,
-                      fmt::format("Nothing proved the place: {} at the target and look whether {} comes.",
+                      fmt::format("Position not confirmed: {} at the target and look whether {} comes.",
                                   subject.has_stylet() ? "draw the stylet" : "aspirate", wanted),
                       subject.measured().end_s});
   } else if (has_pressed_only(subject, looked->time_s)) {

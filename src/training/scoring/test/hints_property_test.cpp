@@ -215,7 +215,7 @@ std::string contradiction_in(const Outcome& outcome) {
   const std::pair<const char*, const char*> told[] = {{"The insertion point was", "entry"},
                                                       {"The needle pointed", "angle"},
                                                       {"The tip missed", "target"},
-                                                      {"Nothing proved", "confirmation"},
+                                                      {"Position not confirmed", "confirmation"},
                                                       {"It took", "time"},
                                                       {"dose-area", "dose"},
                                                       {"The bevel stood", "bevel"},

@@ -21,7 +21,7 @@ TEST(Puncture, TheRightSubstanceProvesTheTarget) {
   EXPECT_FALSE(unproved.target_reached);
   EXPECT_NEAR(unproved.score, 60.0, 1e-6);
   ASSERT_FALSE(unproved.fails.empty());
-  EXPECT_EQ(unproved.fails.front(), "the place is not proven: no bile came back");
+  EXPECT_EQ(unproved.fails.front(), "position not confirmed: no bile came back");
   EXPECT_TRUE(has_hint(unproved, "draw the stylet at the target and look whether bile comes"));
   puncture.actions = {{at_s, tasks::ActionKind::kDrawStylet, 0.0, {tasks::Substance::kBlood, 1.0}, {}, 51.0}};
   EXPECT_TRUE(has_hint(puncture.score(attempt), "Not bile but blood came back"));
@@ -78,7 +78,7 @@ TEST(Puncture, ATargetThatWasNotProvenIsNotCalledMissed) {
   puncture.task.confirmed_by = tasks::Substance::kBile;
   puncture.task.weights = {{"target", 60.0}, {"confirmation", 40.0}};
   const Attempt attempt = make_attempt(make_box_plan().line_P);
-  EXPECT_STREQ(target_words(puncture.score(attempt)), "not proven");
+  EXPECT_STREQ(target_words(puncture.score(attempt)), "not confirmed");
   const double at_s = attempt.samples[attempt.fired].time_s;
   puncture.actions = {{at_s, tasks::ActionKind::kDrawStylet, 0.0, {tasks::Substance::kBile, 1.0}, {}, 51.0}};
   EXPECT_STREQ(target_words(puncture.score(attempt)), "reached");

@@ -154,7 +154,7 @@ TEST_F(PunctureGuide, KnowsWhatAShotBroughtAndWhenAllIsDone) {
   EXPECT_EQ(guide_puncture(the_case, on_path(20.0), {all, true}), "Everything is done: withdraw the needle");
   EXPECT_EQ(guide_puncture(the_case, on_path(-5.0), {.are_steps_done = true}), "The needle is out: end the attempt");
   EXPECT_EQ(guide_puncture(with_bone_behind(the_case, 30.0), on_path(20.0), {.is_confirmed = true}),
-            "The place is proven: hold still for the next step");
+            "Position confirmed: hold still for the next step");
 }
 
 TEST_F(PunctureGuide, HasNothingToSayOfWhatIsNoNumber) {
