@@ -7,7 +7,7 @@
 #include "config/json.h"
 #include "json_parts.h"
 #include "results/attempts.h"
-#include "results/people.h"
+#include "results/courses.h"
 #include "results_commands.h"
 #include "secret_line.h"
 
@@ -81,9 +81,11 @@ Status change(const std::string& url, const PersonArguments& arguments, bool has
   TROCAR_TRY(const results::Group group, parse_group(arguments.group));
   if (arguments.new_name.empty() && !has_group && !has_course)
     return fail_usage("nothing to change", arguments.name, "give --name, --group or --course");
-  if (has_group) TROCAR_TRY_STATUS(results::change_group(repository, person.id, group));
-  if (has_course) TROCAR_TRY_STATUS(results::move_to_course(repository, person.id, arguments.course));
-  if (!arguments.new_name.empty()) TROCAR_TRY_STATUS(results::rename_person(repository, person.id, arguments.new_name));
+  results::PersonChange wished;
+  if (has_group) wished.group = group;
+  if (has_course) wished.course = arguments.course;
+  if (!arguments.new_name.empty()) wished.name = arguments.new_name;
+  TROCAR_TRY_STATUS(results::change_person(repository, person.id, wished));
   TROCAR_TRY(const auto changed, results::find_person(repository, person.id));
   if (changed)
     fmt::print("{}: {}{}{}\n", changed->name, group_text(*changed), changed->course.empty() ? "" : ", ",

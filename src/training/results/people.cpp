@@ -17,7 +17,6 @@ using namespace detail;
 namespace {
 
 constexpr const char* kCannotReadPeople = "the people cannot be read";
-constexpr const char* kCannotWritePerson = "the person cannot be written";
 constexpr const char* kPersonName = "the name of a person";
 constexpr const char* kSelectPeople =
     "SELECT p.id, p.name, p.is_expert, coalesce(c.name, ''), p.is_simulated, p.pin_hash, p.added_s"
@@ -173,6 +172,25 @@ Result<PersonOfName> find_or_add_person(soci::session& session, const NewPerson&
   return tl::unexpected(added.error());
 }
 
+Status rename_person(soci::session& session, const std::string& id, std::string_view name) {
+  TROCAR_TRY(const std::string clean, clean_name(name, kPersonName));
+  const std::string key = name_key(clean);
+  if (is_name_taken(session, key, id)) return fail_usage("the name is taken", clean, "choose another name");
+  soci::statement update = (session.prepare << "UPDATE people SET name = :n, name_key = :k WHERE id = :i",
+                            soci::use(clean), soci::use(key), soci::use(id));
+  update.execute(true);
+  return update.get_affected_rows() == 1 ? Status() : no_such_person(id);
+}
+
+Status move_to_course(soci::session& session, const std::string& id, std::string_view course) {
+  TROCAR_TRY(const std::string clean, clean_course(course));
+  Bound<std::string> key(course_id(session, clean));
+  soci::statement update = (session.prepare << "UPDATE people SET course_id = :c WHERE id = :i",
+                            soci::use(key.value, key.indicator), soci::use(id));
+  update.execute(true);
+  return update.get_affected_rows() == 1 ? Status() : no_such_person(id);
+}
+
 }  // namespace detail
 
 Result<Person> add_person(Repository& repository, const NewPerson& person, Seconds now) {
@@ -212,26 +230,14 @@ Result<Person> get_person_named(Repository& repository, std::string_view name) {
 }
 
 Status rename_person(Repository& repository, std::string_view id, std::string_view name) {
-  TROCAR_TRY(const std::string clean, clean_name(name, kPersonName));
-  return repository.database().transaction(kCannotWritePerson, [&](soci::session& session) -> Status {
-    const std::string key = name_key(clean), person(id);
-    if (is_name_taken(session, key, person)) return fail_usage("the name is taken", clean, "choose another name");
-    soci::statement update = (session.prepare << "UPDATE people SET name = :n, name_key = :k WHERE id = :i",
-                              soci::use(clean), soci::use(key), soci::use(person));
-    update.execute(true);
-    return update.get_affected_rows() == 1 ? Status() : no_such_person(person);
+  return repository.database().transaction(kCannotWritePerson, [&](soci::session& session) {
+    return detail::rename_person(session, std::string(id), name);
   });
 }
 
 Status move_to_course(Repository& repository, std::string_view id, std::string_view course) {
-  TROCAR_TRY(const std::string clean, clean_course(course));
-  return repository.database().transaction(kCannotWritePerson, [&](soci::session& session) -> Status {
-    const std::string person(id);
-    Bound<std::string> key(course_id(session, clean));
-    soci::statement update = (session.prepare << "UPDATE people SET course_id = :c WHERE id = :i",
-                              soci::use(key.value, key.indicator), soci::use(person));
-    update.execute(true);
-    return update.get_affected_rows() == 1 ? Status() : no_such_person(person);
+  return repository.database().transaction(kCannotWritePerson, [&](soci::session& session) {
+    return detail::move_to_course(session, std::string(id), course);
   });
 }
 

@@ -59,8 +59,8 @@ struct PersonalData {
   bool is_erased = true;     ///< After a deletion: see erase_deleted.
 };
 Result<PersonalData> count_personal_data(Repository& repository, std::string_view id);
-/// Deletes a person with attempts, recordings and answers, permanently, and a course that nobody is in any more. In an
-/// SQLite file the freed bytes are overwritten, and its log is emptied.
+/// Deletes a person with attempts, recordings, notes and answers, permanently, and a course that nobody is in any more.
+/// In an SQLite file the freed bytes are overwritten, and its log is emptied.
 Result<PersonalData> delete_person(Repository& repository, std::string_view id);
 
 /// Sets a PIN of 4 to 12 digits; empty: none from now on. Only its Argon2id hash is kept.

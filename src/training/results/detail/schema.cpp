@@ -99,10 +99,20 @@ database::Migration version_4() {
   };
 }
 
+// Notes of instructors to attempts. `number` is the order of writing.
+database::Migration version_5() {
+  return {
+      "CREATE TABLE notes (number {sequence}, id TEXT NOT NULL UNIQUE,"
+      " sequence BIGINT NOT NULL REFERENCES attempts (sequence) ON DELETE CASCADE,"
+      " author TEXT NOT NULL, text TEXT NOT NULL, written_s BIGINT NOT NULL)",
+      "CREATE INDEX notes_of_attempt ON notes (sequence)",
+  };
+}
+
 }  // namespace
 
 std::span<const database::Migration> migrations() {
-  static const std::vector<database::Migration> kAll{version_1(), version_2(), version_3(), version_4()};
+  static const std::vector<database::Migration> kAll{version_1(), version_2(), version_3(), version_4(), version_5()};
   return kAll;
 }
 

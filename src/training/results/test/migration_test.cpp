@@ -2,6 +2,7 @@
 
 #include "database/migrations.h"
 #include "results/detail/schema.h"
+#include "results/notes.h"
 #include "results_lab.h"
 
 namespace trocar::results {
@@ -85,6 +86,7 @@ TEST_P(Migration, TellsAttemptsWithoutAResultFromThoseThatNeverBegan) {
                                                   {"older, skin", State::kNeverBegan},
                                                   {"cut", State::kInterrupted},
                                                   {"running", State::kRunning}}));
+  EXPECT_TRUE(add_note(repository, "scored", "huber", "text", Seconds())) << "the newest table";
   const auto summaries = summarise_tasks(repository);
   ASSERT_TRUE(summaries) << summaries.error().text();
   EXPECT_EQ(learning::counts_text(summaries->front().counts),

@@ -40,9 +40,10 @@ TEST_F(Roles, OfTheWriterCannotMakeTables) {
 TEST_F(Roles, OfTheWriterChangeRowsAlone) {
   ASSERT_TRUE(Repository::open(roles_.owner));
   EXPECT_TRUE(run(roles_.writer, "DELETE FROM people"));
-  for (const char* statement : {"DROP TABLE people", "ALTER TABLE people ADD COLUMN x TEXT", "CREATE TABLE x (y TEXT)",
-                                "TRUNCATE people", "CREATE INDEX x ON people (added_s)", "CREATE SCHEMA x",
-                                "SELECT setval('attempts_sequence_seq', 1)", "CREATE ROLE x"})
+  for (const char* statement :
+       {"DROP TABLE people", "ALTER TABLE people ADD COLUMN x TEXT", "CREATE TABLE x (y TEXT)", "TRUNCATE people",
+        "CREATE INDEX x ON people (added_s)", "CREATE SCHEMA x", "SELECT setval('attempts_sequence_seq', 1)",
+        "SELECT setval('notes_number_seq', 1)", "CREATE ROLE x"})
     EXPECT_FALSE(run(roles_.writer, statement)) << statement;
 }
 
@@ -60,6 +61,8 @@ TEST_F(Roles, AreKeptByAnUpdate) {
   const auto person = add_person(*writer, {"Anna"}, Seconds());
   ASSERT_TRUE(person) << person.error().text();
   EXPECT_TRUE(delete_person(*writer, person->id));
+  for (const char* statement : {"SELECT nextval('notes_number_seq')", "DELETE FROM notes"})
+    EXPECT_TRUE(run(roles_.writer, statement)) << statement;
 }
 
 /// A database that another user has made is taken over.

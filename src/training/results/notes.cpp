@@ -1,0 +1,126 @@
+#include "results/notes.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include "results/csv_text.h"
+#include "results/deletion.h"
+#include "results/detail/attempt_query.h"
+#include "results/detail/note_deletion.h"
+
+namespace trocar::results {
+using namespace detail;
+namespace {
+
+constexpr const char* kCannotReadNotes = "the notes cannot be read";
+constexpr const char* kCannotWriteNote = "the note cannot be written";
+constexpr const char* kSelectNotes =
+    "SELECT n.id, a.id, n.author, n.text, n.written_s FROM notes n JOIN attempts a ON a.sequence = n.sequence";
+
+std::vector<Note> read_notes(soci::session& session, const char* condition, const std::string& key) {
+  std::vector<Note> notes;
+  Note note;
+  long long written_s = 0;
+  soci::statement select = (session.prepare << std::string(kSelectNotes) + condition + " ORDER BY n.number",
+                            soci::use(key), soci::into(note.id), soci::into(note.attempt_id), soci::into(note.author),
+                            soci::into(note.text), soci::into(written_s));
+  select.execute();
+  while (select.fetch()) {
+    note.written = Seconds(std::chrono::seconds(written_s));
+    notes.push_back(note);
+  }
+  return notes;
+}
+
+std::string time_text(long long utc_s) {
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(static_cast<std::time_t>(utc_s)));
+}
+
+}  // namespace
+
+Result<Note> add_note(Repository& repository, std::string_view attempt_id, std::string_view author,
+                      std::string_view text, Seconds now) {
+  TROCAR_TRY(const std::string clean, clean_text(text, kMaxNoteCharacters, "the note"));
+  if (clean.empty()) return fail_usage("the note is empty", {}, "write a text");
+  return repository.database().transaction(kCannotWriteNote, [&](soci::session& session) -> Result<Note> {
+    const Note note{make_id(), std::string(attempt_id), std::string(author), clean, now};
+    long long sequence = 0;
+    session << "SELECT sequence FROM attempts WHERE id = :i", soci::use(note.attempt_id), soci::into(sequence);
+    if (!session.got_data()) return fail_usage("no such attempt", note.attempt_id, "see trocar results list");
+    const long long now_s = now.time_since_epoch().count();
+    session << "INSERT INTO notes (id, sequence, author, text, written_s) VALUES (:i, :s, :a, :t, :n)",
+        soci::use(note.id), soci::use(sequence), soci::use(note.author), soci::use(note.text), soci::use(now_s);
+    return note;
+  });
+}
+
+Result<std::vector<Note>> list_notes(Repository& repository, std::string_view attempt_id) {
+  return repository.database().run(kCannotReadNotes, [&](soci::session& session) {
+    return read_notes(session, " WHERE a.id = :i", std::string(attempt_id));
+  });
+}
+
+Result<std::optional<Note>> find_note(Repository& repository, std::string_view id) {
+  return repository.database().run(kCannotReadNotes, [&](soci::session& session) -> std::optional<Note> {
+    const std::vector<Note> found = read_notes(session, " WHERE n.id = :i", std::string(id));
+    return found.empty() ? std::nullopt : std::optional(found.front());
+  });
+}
+
+Status delete_note(Repository& repository, std::string_view id) {
+  const auto deleted =
+      repository.database().transaction("the note cannot be deleted", [&](soci::session& session) -> Status {
+        const std::string key(id);
+        soci::statement remove = (session.prepare << "DELETE FROM notes WHERE id = :i", soci::use(key));
+        remove.execute(true);
+        if (remove.get_affected_rows() != 1) return fail_usage("no such note", key, "reload the page");
+        note_deletion(session);
+        return {};
+      });
+  if (deleted) static_cast<void>(erase_deleted(repository));
+  return deleted;
+}
+
+Result<std::map<std::int64_t, std::int64_t>> count_notes(Repository& repository, std::string_view person_id) {
+  return repository.database().run(kCannotReadNotes, [&](soci::session& session) {
+    std::map<std::int64_t, std::int64_t> counts;
+    const std::string person(person_id);
+    long long sequence = 0, count = 0;
+    soci::statement select =
+        (session.prepare << "SELECT n.sequence, count(*) FROM notes n JOIN attempts a ON a.sequence = n.sequence"
+                            " WHERE a.person_id = :p GROUP BY n.sequence",
+         soci::use(person), soci::into(sequence), soci::into(count));
+    select.execute();
+    while (select.fetch()) counts[sequence] = count;
+    return counts;
+  });
+}
+
+Result<std::string> notes_csv(Repository& repository, const AttemptFilter& filter) {
+  const AttemptQuery query = make_query(filter);
+  return repository.database().run(kCannotReadNotes, [&](soci::session& session) {
+    std::string text = csv_row({"attempt", "person", "course", "task", "started_utc", "written_utc", "author", "note"});
+    std::string attempt, person, course, task, author, note;
+    long long started_s = 0, written_s = 0;
+    soci::statement select(session);
+    for (std::string* column : {&attempt, &person, &course, &task, &author, &note})
+      select.exchange(soci::into(*column));
+    select.exchange(soci::into(started_s));
+    select.exchange(soci::into(written_s));
+    query.bind(select);
+    select.alloc();
+    select.prepare(
+        "SELECT a.id, p.name, coalesce(c.name, ''), a.task, n.author, n.text, a.started_s, n.written_s FROM notes n"
+        " JOIN attempts a ON a.sequence = n.sequence JOIN people p ON p.id = a.person_id"
+        " LEFT JOIN courses c ON c.id = p.course_id" +
+        query.condition + " ORDER BY n.number");
+    select.define_and_bind();
+    select.execute();
+    while (select.fetch())
+      text += csv_row({attempt, csv_text(person), csv_text(course), csv_text(task), time_text(started_s),
+                       time_text(written_s), csv_text(author), csv_text(note)});
+    return text;
+  });
+}
+
+}  // namespace trocar::results
