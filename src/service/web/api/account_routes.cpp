@@ -21,16 +21,6 @@ Json account_json(const results::Account& account) {
   return {{"name", account.name}, {"role", results::to_string(account.role)}};
 }
 
-HttpAnswer wait_answer(std::chrono::seconds wait, std::string_view error) {
-  HttpAnswer answer = error_answer(429, error, fmt::format("wait {} s, then try again", wait.count()));
-  answer.headers = {{"Retry-After", std::to_string(wait.count())}};
-  return answer;
-}
-
-HttpAnswer busy_answer() {
-  return wait_answer(std::chrono::seconds(1), "the server checks many passwords just now");
-}
-
 /// A new token of a session, which takes the place of the request's own one.
 struct NewSession {
   results::WebSession stored;
@@ -134,7 +124,7 @@ Result<HttpAnswer> change_own_password(Backend& backend, const Call& call) {
   if (!pass) return busy_answer();
   if (!signing::is_password(account.password_hash, old_password)) {
     log_warning("web: wrong password at its change: account {} from {}", log_text(account.name), call.request.address);
-    return error_answer(403, "the present password is wrong", "type it again");
+    return error_answer(403, "the current password is wrong", "type it again");
   }
   backend.logins.succeeded(login);
   TROCAR_TRY(const std::string hash, signing::hash_password(new_password, backend.password_work));
@@ -198,6 +188,29 @@ Result<HttpAnswer> remove(Backend& backend, const Call& call) {
   return empty_answer(204);
 }
 
+/// Of another account: the own one needs its current password.
+Result<HttpAnswer> reset_password(Backend& backend, const Call& call) {
+  TROCAR_TRY(const std::string password, text_field(call.body, "password"));
+  std::optional<results::Account> account;
+  {
+    const auto repository = backend.repositories.borrow();
+    TROCAR_TRY(account, results::find_account(*repository, call.names[0]));
+  }
+  if (!account) return not_found("account");
+  if (account->id == call.session().account.id)
+    return fail_usage("it is your own account", "password", "change it under Password, with the current one");
+  TROCAR_TRY_STATUS(signing::check_new_password(password, account->name));
+  const PasswordGate::Pass pass(backend.passwords);
+  if (!pass) return busy_answer();
+  TROCAR_TRY(const std::string hash, signing::hash_password(password, backend.password_work));
+  const auto repository = backend.repositories.borrow();
+  TROCAR_TRY_STATUS(results::change_password(*repository, account->id, hash));
+  backend.sessions.clear();
+  log_warning("web: password of account {} reset by {} from {}", log_text(account->name),
+              log_text(call.session().account.name), call.request.address);
+  return empty_answer(204);
+}
+
 }  // namespace
 
 std::vector<Route> account_routes() {
@@ -209,6 +222,7 @@ std::vector<Route> account_routes() {
       {"GET", "/api/accounts", Access::kAdmin, list_all},
       {"POST", "/api/accounts", Access::kAdmin, add, true, {"name", "password", "role"}},
       {"DELETE", "/api/accounts/*", Access::kAdmin, remove},
+      {"PUT", "/api/accounts/*/password", Access::kAdmin, reset_password, true, {"password"}},
   };
 }
 

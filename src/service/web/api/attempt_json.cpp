@@ -26,6 +26,10 @@ Json attempt_json(const results::Attempt& attempt) {
           {"station", or_null(attempt.station)}};
 }
 
+Json note_json(const results::Note& note) {
+  return {{"id", note.id}, {"author", note.author}, {"text", note.text}, {"written_s", seconds_of(note.written)}};
+}
+
 Json trace_json(const results::Trace& trace) {
   Json events = Json::array();
   for (const results::Trace::Event& event : trace.events)

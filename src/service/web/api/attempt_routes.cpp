@@ -76,6 +76,7 @@ Json metrics_json(std::vector<results::Measure> measures, const Titles& titles, 
 struct RecordOfPerson {
   results::AttemptRecord record;
   results::Person person;
+  std::vector<results::Note> notes;
 };
 /// Empty: no such attempt.
 Result<std::optional<RecordOfPerson>> load_record(RepositoryPool& repositories, const std::string& id) {
@@ -84,7 +85,8 @@ Result<std::optional<RecordOfPerson>> load_record(RepositoryPool& repositories, 
   if (!record) return std::optional<RecordOfPerson>();
   TROCAR_TRY(const auto person, results::find_person(*repository, record->attempt.person_id));
   if (!person) return std::optional<RecordOfPerson>();
-  return std::optional<RecordOfPerson>({*record, *person});
+  TROCAR_TRY(std::vector<results::Note> notes, results::list_notes(*repository, id));
+  return std::optional<RecordOfPerson>({*record, *person, std::move(notes)});
 }
 
 Result<std::optional<Json>> load_json_of(Backend& backend, const std::string& id, const Moment& now) {
@@ -101,7 +103,10 @@ Result<std::optional<Json>> load_json_of(Backend& backend, const std::string& id
   attempt["hints"] = Json::array();
   for (const results::Hint& hint : record->hints)
     attempt["hints"].push_back({{"text", hint.text}, {"at_s", or_null(hint.at_s)}});
+  Json notes = Json::array();
+  for (const results::Note& note : loaded->notes) notes.push_back(note_json(note));
   return std::optional<Json>({{"attempt", std::move(attempt)},
+                              {"notes", std::move(notes)},
                               {"parts", parts_json(record->parts)},
                               {"metrics", metrics_json(record->measures, backend.titles, experts)}});
 }

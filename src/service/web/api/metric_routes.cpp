@@ -109,6 +109,11 @@ cohort::Better better_of(metrics::Better better) {
   return better == metrics::Better::kHigher ? cohort::Better::kHigher : cohort::Better::kNeither;
 }
 
+const char* better_text(cohort::Better better) noexcept {
+  if (better == cohort::Better::kLower) return "lower";
+  return better == cohort::Better::kHigher ? "higher" : "neither";
+}
+
 /// Whether both groups have real people: then simulated ones are left out, as in results::validity_of.
 bool has_real_groups(const People& people) {
   const auto has_real = [&](results::Group group) {
@@ -174,7 +179,8 @@ Result<HttpAnswer> show_distribution(Backend& backend, const Call& call) {
 }
 
 Json separated_json(const cohort::MetricValidity& metric) {
-  Json json = {{"name", metric.name}, {"title", metric.title}, {"unit", metric.unit}};
+  Json json = {
+      {"name", metric.name}, {"title", metric.title}, {"unit", metric.unit}, {"better", better_text(metric.better)}};
   const auto& found = metric.separation;
   const auto or_missing = [&](auto value) { return found ? Json(value()) : Json(nullptr); };
   json["n_expert"] = or_missing([&] { return found->experts; });

@@ -8,6 +8,8 @@
 #include "core/log.h"
 #include "core/parse_number.h"
 #include "results/curves.h"
+#include "results/notes.h"
+#include "results/reasons.h"
 #include "web/api/attempt_json.h"
 #include "web/api/route.h"
 #include "web/security/log_text.h"
@@ -40,6 +42,7 @@ Json person_json(const results::Person& person, const std::vector<results::TaskS
           {"group", results::to_string(person.group)},
           {"course", or_null(person.course)},
           {"simulated", person.is_simulated},
+          {"has_pin", person.has_pin},
           {"tasks", std::move(tasks)}};
 }
 
@@ -52,6 +55,12 @@ Json tasks_json(const Titles& titles, std::set<std::string> practised) {
   return tasks;
 }
 
+Json courses_json(const std::vector<results::Course>& courses) {
+  Json list = Json::array();
+  for (const results::Course& one : courses) list.push_back({{"id", one.name}, {"name", one.name}});
+  return list;
+}
+
 Result<Json> overview_json(results::Repository& repository, const Titles& titles, const std::string& course) {
   TROCAR_TRY(const std::vector<results::Person> people, results::list_people(repository));
   TROCAR_TRY(const std::vector<results::Course> courses, results::list_courses(repository));
@@ -62,8 +71,7 @@ Result<Json> overview_json(results::Repository& repository, const Titles& titles
     by_person[summary.person_id].push_back(summary);
     practised.insert(summary.task);
   }
-  Json json = {{"tasks", tasks_json(titles, practised)}, {"courses", Json::array()}, {"people", Json::array()}};
-  for (const results::Course& one : courses) json["courses"].push_back({{"id", one.name}, {"name", one.name}});
+  Json json = {{"tasks", tasks_json(titles, practised)}, {"courses", courses_json(courses)}, {"people", Json::array()}};
   for (const results::Person& person : people)
     if (course.empty() || results::name_key(person.course) == results::name_key(course))
       json["people"].push_back(person_json(person, by_person[person.id]));
@@ -96,9 +104,12 @@ Result<HttpAnswer> show_person(Backend& backend, const Call& call) {
   return cached_of_person(
       backend, call, "", [=, &backend](results::Repository& repository, const results::Person& person) -> Result<Json> {
         TROCAR_TRY(const std::vector<results::TaskSummary> summaries, results::summarise_tasks(repository, person.id));
+        TROCAR_TRY(const std::vector<results::Course> courses, results::list_courses(repository));
         std::set<std::string> practised;
         for (const results::TaskSummary& summary : summaries) practised.insert(summary.task);
-        return Json{{"person", person_json(person, summaries)}, {"tasks", tasks_json(backend.titles, practised)}};
+        return Json{{"person", person_json(person, summaries)},
+                    {"tasks", tasks_json(backend.titles, practised)},
+                    {"courses", courses_json(courses)}};
       });
 }
 
@@ -111,6 +122,26 @@ Result<std::int64_t> query_number(const HttpRequest& request, const char* name, 
   const auto number = parse_number<std::int64_t>(*text);
   if (!number || *number < 1) return fail_usage("not a whole number from 1 on", name, "leave it out");
   return *number;
+}
+
+/// Attempts of a person, newest first, with the reasons of those that did not pass and the number of notes.
+Result<Json> attempt_list_json(results::Repository& repository, const std::string& person,
+                               const std::vector<results::Attempt>& attempts) {
+  Json list = Json::array();
+  if (attempts.empty()) return list;
+  TROCAR_TRY(const auto reasons,
+             results::list_reasons(repository, person, attempts.back().sequence, attempts.front().sequence));
+  TROCAR_TRY(const auto notes, results::count_notes(repository, person));
+  for (const results::Attempt& attempt : attempts) {
+    Json json = attempt_json(attempt);
+    const auto reason = reasons.find(attempt.sequence);
+    json["fails"] = reason == reasons.end() ? Json::array() : Json(reason->second.fails);
+    json["not_scored"] = reason == reasons.end() ? Json(nullptr) : or_null(reason->second.not_scored);
+    const auto noted = notes.find(attempt.sequence);
+    json["notes"] = noted == notes.end() ? 0 : noted->second;
+    list.push_back(std::move(json));
+  }
+  return list;
 }
 
 Result<HttpAnswer> list_attempts(Backend& backend, const Call& call) {
@@ -131,8 +162,7 @@ Result<HttpAnswer> list_attempts(Backend& backend, const Call& call) {
         TROCAR_TRY(std::vector<results::Attempt> attempts, results::list_attempts(repository, filter));
         const bool has_more = attempts.size() > page;
         if (has_more) attempts.pop_back();
-        Json list = Json::array();
-        for (const results::Attempt& attempt : attempts) list.push_back(attempt_json(attempt));
+        TROCAR_TRY(Json list, attempt_list_json(repository, filter.person_id, attempts));
         return Json{{"attempts", std::move(list)}, {"next", has_more ? Json(attempts.back().sequence) : Json(nullptr)}};
       });
 }

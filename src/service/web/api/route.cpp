@@ -1,5 +1,7 @@
 #include "web/api/route.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "core/utf8.h"
@@ -42,7 +44,8 @@ std::optional<std::vector<std::string>> match(std::string_view pattern, std::str
 std::vector<Route> all_routes() {
   std::vector<Route> routes = {
       {"GET", "/api/health", Access::kPublic, [](Backend&, const Call&) { return empty_answer(204); }}};
-  for (auto group : {account_routes, people_routes, metric_routes, attempt_routes, form_routes})
+  for (auto group :
+       {account_routes, people_routes, people_change_routes, metric_routes, attempt_routes, note_routes, form_routes})
     for (Route& route : group()) routes.push_back(std::move(route));
   return routes;
 }
@@ -71,6 +74,16 @@ void forget_values(Backend& backend) {
 
 HttpAnswer not_found(std::string_view what) {
   return error_answer(404, "there is no such " + std::string(what), "it may have been deleted: go back to the list");
+}
+
+HttpAnswer wait_answer(std::chrono::seconds wait, std::string_view error) {
+  HttpAnswer answer = error_answer(429, error, fmt::format("wait {} s, then try again", wait.count()));
+  answer.headers = {{"Retry-After", std::to_string(wait.count())}};
+  return answer;
+}
+
+HttpAnswer busy_answer() {
+  return wait_answer(std::chrono::seconds(1), "the server checks many passwords just now");
 }
 
 HttpAnswer ok(const Json& json, int status) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <mutex>
 #include <optional>
@@ -73,8 +74,10 @@ struct Route {
 // Groups of routes.
 std::vector<Route> account_routes();
 std::vector<Route> people_routes();
+std::vector<Route> people_change_routes();
 std::vector<Route> metric_routes();
 std::vector<Route> attempt_routes();
+std::vector<Route> note_routes();
 std::vector<Route> form_routes();
 std::vector<Route> all_routes();
 
@@ -92,6 +95,9 @@ FoundRoute find_route(const std::vector<Route>& routes, std::string_view method,
 void forget_values(Backend& backend);
 
 HttpAnswer not_found(std::string_view what);
+/// 429 with the time to wait.
+HttpAnswer wait_answer(std::chrono::seconds wait, std::string_view error);
+HttpAnswer busy_answer();  ///< Too many passwords and PINs wait to be hashed.
 HttpAnswer ok(const Json& json, int status = 200);
 /// A task of the query. Error (exit status 2): missing, or characters that no task has.
 Result<std::string> query_task(const HttpRequest& request);

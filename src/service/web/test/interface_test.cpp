@@ -42,7 +42,9 @@ TEST_F(Interface, OverviewSumsUpEveryPerson) {
   EXPECT_EQ(task["best_score"], 90.0);
   EXPECT_NEAR(task["recent_mean"].get<double>(), 200.0 / 3, 1e-9);
   EXPECT_TRUE(overview["people"][1]["tasks"].empty());
+  EXPECT_EQ(first["has_pin"], false);
   EXPECT_EQ(get("/api/people/" + person.id)["person"], first);
+  EXPECT_EQ(get("/api/people/" + person.id)["courses"], overview["courses"]);
   EXPECT_EQ(get("/api/overview?course=nobody's")["people"].size(), 0U);
 }
 
@@ -226,6 +228,7 @@ TEST_F(Interface, ValidityOfTwoGroups) {
   EXPECT_EQ(validity["experts"], 6);
   EXPECT_EQ(validity["metrics"][0]["auc"], 1.0);
   EXPECT_EQ(validity["metrics"][0]["discriminates"], true);
+  EXPECT_EQ(validity["metrics"][0]["better"], "lower");
   EXPECT_EQ(validity["discriminating"]["share"], 1.0);
   EXPECT_EQ(validity["discriminating"]["uncorrected"], 1);
   EXPECT_GT(validity["pass_mark"]["value"], 35.0);

@@ -3,12 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 
 #include "results/accounts.h"
 #include "results/names.h"
 #include "service_lab.h"
 #include "signing/password.h"
 #include "signing/token.h"
+#include "web/api/route.h"
 
 namespace trocar::web {
 namespace {
@@ -144,16 +146,27 @@ TEST(Login, MalformedBodiesAreRefused) {
   }
 }
 
+/// The pattern of a route with a key in place of each '*'.
+std::string target_of(const Route& route) {
+  std::string target(route.pattern);
+  for (std::size_t at = target.find('*'); at != std::string::npos; at = target.find('*'))
+    target.replace(at, 1, std::string(32, '0'));
+  return target;
+}
+
+int status_of(ServiceLab& lab, const Route& route) {
+  return lab.send(lab.request(std::string(route.method), target_of(route))).status;
+}
+
 TEST(Session, IsNeededForEverythingButThePublicAddresses) {
   ServiceLab lab;
-  for (const char* target :
-       {"/api/me", "/api/accounts", "/api/overview", "/api/people/x", "/api/people/x/attempts", "/api/people/x/curve",
-        "/api/metrics", "/api/metrics/x", "/api/validity", "/api/attempts/x", "/api/attempts/x/trace",
-        "/api/attempts/x/recording", "/api/export/attempts.csv", "/api/forms", "/api/forms/x/summary",
-        "/api/forms/x/answers.csv"})
-    EXPECT_EQ(lab.get(target).status, 401) << target;
-  for (const char* target : {"/api/logout", "/api/password", "/api/accounts", "/api/forms"})
-    EXPECT_EQ(lab.post(target, {}).status, 401) << target;
+  std::size_t closed = 0;
+  for (const Route& route : all_routes()) {
+    if (route.access == Access::kPublic) continue;
+    EXPECT_EQ(status_of(lab, route), 401) << route.method << " " << route.pattern;
+    ++closed;
+  }
+  EXPECT_GT(closed, 25U);
   EXPECT_EQ(lab.get("/api/health").status, 204);
   EXPECT_EQ(lab.get("/api/public/forms/x").status, 404);
 }
@@ -254,6 +267,16 @@ TEST(Csrf, RequestsFromAnotherSiteAreRefused) {
   EXPECT_EQ(lab.get("/api/me").status, 200);
 }
 
+TEST(Csrf, EveryChangeNeedsTheToken) {
+  for (const Route& route : all_routes()) {
+    if (route.access == Access::kPublic || route.method == "GET") continue;
+    ServiceLab lab;
+    lab.log_in();
+    lab.csrf = "x";
+    EXPECT_EQ(status_of(lab, route), 403) << route.method << " " << route.pattern;
+  }
+}
+
 /// A form of HTML can send these types across sites without asking first.
 TEST(Csrf, BodiesOfFormsAreRefused) {
   ServiceLab lab;
@@ -307,6 +330,15 @@ TEST(Password, AnOldHashIsRenewedAtTheNextLogin) {
 TEST(Accounts, AreOfAdminsAlone) {
   ServiceLab lab;
   lab.log_in(kInstructor);
+  std::set<std::string> of_admins;
+  for (const Route& route : all_routes()) {
+    if (route.access != Access::kAdmin) continue;
+    EXPECT_EQ(status_of(lab, route), 403) << route.method << " " << route.pattern;
+    of_admins.insert(fmt::format("{} {}", route.method, route.pattern));
+  }
+  EXPECT_EQ(of_admins,
+            (std::set<std::string>{"GET /api/accounts", "POST /api/accounts", "DELETE /api/accounts/*",
+                                   "PUT /api/accounts/*/password", "DELETE /api/people/*", "PUT /api/pins"}));
   EXPECT_EQ(lab.get("/api/accounts").status, 403);
   EXPECT_EQ(lab.post("/api/accounts", {{"name", "x"}, {"password", kPassword}, {"role", "admin"}}).status, 403);
   EXPECT_EQ(lab.send(lab.request("DELETE", "/api/accounts/Dr. Weber")).status, 403);
