@@ -3,7 +3,7 @@ import { defineConfig } from "vite";
 /** Three scripts: the frame with the public pages (a phone loads no more), the instructor's pages, the plotting library. */
 function chunk_of(id: string): string | undefined {
   if (id.includes("/node_modules/uplot/")) return "uplot";
-  if (/\/src\/(plots|replay)\/|\/src\/ui\/(table|dialog)\./.test(id)) return "instructor";
+  if (/\/src\/(plots|replay|manage)\/|\/src\/ui\/(table|dialog)\./.test(id)) return "instructor";
   if (/\/src\/pages\/(login|questionnaire|not_found)\.|\/src\/(lib|ui|session)/.test(id)) return "frame";
   return id.includes("/src/pages/") ? "instructor" : undefined;
 }

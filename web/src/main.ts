@@ -6,13 +6,16 @@ import type { Me } from "./lib/types.ts";
 import { session } from "./session.ts";
 import { make_shell } from "./ui/shell.ts";
 import { error_box, toast } from "./ui/states.ts";
-import { start_theme } from "./ui/theme.ts";
+import { start_printing } from "./ui/print.ts";
+import { keeping_theme, start_theme } from "./ui/theme.ts";
 
 const kRoutes: Route[] = [
   { pattern: /^\/$/, section: "/", load: async () => (await import("./pages/cohort.ts")).cohort_page },
   { pattern: /^\/login$/, is_public: true, load: async () => (await import("./pages/login.ts")).login_page },
   { pattern: /^\/people\/([^/]+)$/, section: "/", load: async () => (await import("./pages/person.ts")).person_page },
   { pattern: /^\/attempts\/([^/]+)$/, section: "/", load: async () => (await import("./pages/attempt.ts")).attempt_page },
+  { pattern: /^\/courses$/, section: "/courses", load: async () => (await import("./pages/courses.ts")).courses_page },
+  { pattern: /^\/course$/, section: "/courses", load: async () => (await import("./pages/course.ts")).course_page },
   { pattern: /^\/metrics$/, section: "/metrics", load: async () => (await import("./pages/metrics.ts")).metrics_page },
   { pattern: /^\/proficiency$/, section: "/proficiency", load: async () => (await import("./pages/proficiency.ts")).proficiency_page },
   { pattern: /^\/validity$/, section: "/validity", load: async () => (await import("./pages/validity.ts")).validity_page },
@@ -26,6 +29,7 @@ const kRoutes: Route[] = [
 ];
 
 start_theme();
+start_printing();
 const shell = make_shell(() => void sign_out());
 
 function set_me(me: Me | null): void {
@@ -35,10 +39,11 @@ function set_me(me: Me | null): void {
 
 async function sign_out(): Promise<void> {
   try {
-    await send("POST", "/api/logout", {}, { without_session: true });
+    // The server tells the browser to delete what the page has stored: drafts must not stay for the next person.
+    await keeping_theme(() => send("POST", "/api/logout", {}, { without_session: true }));
   } catch (error) {
     if (!(error instanceof ApiError) || error.status !== 401) {
-      toast("Signing out failed: the server does not answer. Try again.");
+      toast("You are still signed in: the server does not answer. Try again.");
       return;
     }
   }

@@ -23,15 +23,15 @@ export function on_session_expired(handler: () => void): void {
 }
 
 const kAdviceByStatus: Record<number, string> = {
-  403: "Reload the page and try again. If it happens again, ask an administrator for the right.",
+  403: "Reload the page and try again. If it happens again, ask an administrator for permission.",
   404: "It may have been deleted. Go back to the list.",
   413: "Shorten the text.",
-  429: "Wait a little, then try again.",
+  429: "Wait a moment, then try again.",
 };
 
 async function error_of(response: Response): Promise<ApiError> {
   let text = `The server answered with status ${response.status}`;
-  let advice = kAdviceByStatus[response.status] ?? "Try again. If it happens again, look into the log of trocar serve.";
+  let advice = kAdviceByStatus[response.status] ?? "Try again. If it happens again, tell the administrator: the log of trocar serve has the reason.";
   try {
     const body = (await response.json()) as { error?: unknown; advice?: unknown };
     if (typeof body.error === "string" && body.error) text = body.error;
@@ -67,7 +67,7 @@ async function request<T>(method: string, path: string, body: unknown, options: 
     });
   } catch (error) {
     if (options.signal?.aborted) throw error;
-    throw new ApiError(0, "The server does not answer", "Check the connection and that trocar serve runs, then try again.");
+    throw new ApiError(0, "The server does not answer", "Check the network connection, and that trocar serve is running. Then try again.");
   }
   if (response.status === 401 && !options.without_session) session.on_expired();
   if (!response.ok) throw await error_of(response);
@@ -76,7 +76,7 @@ async function request<T>(method: string, path: string, body: unknown, options: 
   try {
     return (text ? JSON.parse(text) : undefined) as T;
   } catch {
-    throw new ApiError(response.status, "The server's answer is not JSON", "Try again. A proxy between may have changed it.");
+    throw new ApiError(response.status, "The server's answer cannot be read", "Try again. A proxy between this browser and the server may have changed it.");
   }
 }
 

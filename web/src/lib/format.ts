@@ -88,6 +88,25 @@ export function event_text(text: string): string {
   return words(text.replace(/^(\w+):(?=\S)/, "$1: "));
 }
 
+/** "the needle went 12 mm into the colon" gives "The needle went 12 mm into the colon.". */
+export function sentence(text: string): string {
+  const trimmed = text.trim();
+  if (!trimmed) return "";
+  return `${trimmed.charAt(0).toUpperCase()}${trimmed.slice(1)}${/[.!?…]$/.test(trimmed) ? "" : "."}`;
+}
+
+const kStates: Record<string, string> = {
+  running: "Not finished yet",
+  finished: "Finished",
+  interrupted: "Interrupted: the program ended",
+  unscored: "Ended without a result",
+  "never-began": "The needle never entered the body",
+};
+/** State of an attempt. */
+export function state_text(state: string): string {
+  return kStates[state] ?? words(state);
+}
+
 export function plural(count: number, one: string, many = `${one}s`): string {
   return `${count} ${count === 1 ? one : many}`;
 }

@@ -14,6 +14,12 @@ export function cusum_verdict(values: (number | null)[], upper: number, lower: n
   return "The curve is between the limits: more attempts are needed for a decision.";
 }
 
+/** How strongly a metric separates the groups: an AUC, or of a metric without a better direction that of the direction in which it separates. */
+export function separation_strength(metric: { auc: number | null; better?: string }): number | null {
+  if (metric.auc === null) return null;
+  return metric.better === "neither" ? Math.max(metric.auc, 1 - metric.auc) : metric.auc;
+}
+
 /** Values by point: the server may leave out attempts without a result. */
 export function cusum_by_point(points: CurvePoint[], values: (number | null)[]): (number | null)[] {
   if (values.length === points.length) return values;
@@ -21,13 +27,13 @@ export function cusum_by_point(points: CurvePoint[], values: (number | null)[]):
   return points.map((one) => (one.passed === null ? null : (values[next++] ?? null)));
 }
 
-/** Words for a value beside the experts' middle half. */
+/** Words for a value compared with the interquartile range of the experts. */
 export function compared(metric: MetricValue): { text: string; tone: "good" | "bad" | "plain" } {
   const { value, expert_q1: q1, expert_q3: q3, better } = metric;
   if (value === null || q1 === null || q3 === null) return { text: "No comparison", tone: "plain" };
-  if (value >= q1 && value <= q3) return { text: "Within the experts' middle half", tone: "good" };
+  if (value >= q1 && value <= q3) return { text: "Within the interquartile range of experts", tone: "good" };
   const above = value > q3;
-  if (better === "neither") return { text: above ? "Above the experts" : "Below the experts", tone: "plain" };
+  if (better === "neither") return { text: above ? "Above the range of experts" : "Below the range of experts", tone: "plain" };
   const is_better = (better === "higher") === above;
-  return is_better ? { text: "Better than most experts", tone: "good" } : { text: above ? "Above the experts: worse" : "Below the experts: worse", tone: "bad" };
+  return is_better ? { text: "Better than most experts", tone: "good" } : { text: above ? "Above the range of experts: worse" : "Below the range of experts: worse", tone: "bad" };
 }

@@ -40,6 +40,7 @@ export interface Person {
   group: "trainee" | "expert";
   course: string | number | null;
   simulated: boolean;
+  has_pin?: boolean;
   tasks: Record<string, TaskResult>;
 }
 export interface Overview {
@@ -50,6 +51,7 @@ export interface Overview {
 export interface PersonAnswer {
   person: Person;
   tasks: Task[];
+  courses: Course[];
 }
 
 export interface Attempt {
@@ -65,9 +67,22 @@ export interface Attempt {
   passed: boolean | null;
   duration_s: number | null;
   station: string | null;
+  /** Why it did not pass; in lists and in the attempt itself. */
+  fails?: string[];
+  not_scored?: string | boolean | null;
+}
+export interface ListedAttempt extends Attempt {
+  /** Number of notes. */
+  notes?: number;
+}
+export interface Note {
+  id: string;
+  author: string;
+  text: string;
+  written_s: number;
 }
 export interface AttemptList {
-  attempts: Attempt[];
+  attempts: ListedAttempt[];
   next: number | null;
 }
 
@@ -137,6 +152,7 @@ export interface AttemptAnswer {
     fails: string[];
     hints: { text: string; at_s: number | null }[];
   };
+  notes?: Note[];
   parts: ScorePart[];
   metrics: MetricValue[];
 }
@@ -162,6 +178,7 @@ export interface ValidityMetric {
   name: string;
   title: string;
   unit: string;
+  better?: Better;
   n_expert: number | null;
   n_novice: number | null;
   expert_median: number | null;

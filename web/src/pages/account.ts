@@ -1,7 +1,7 @@
-// One's own account, its password; for administrators all accounts.
+// One's own account, its password; for administrators all accounts, and whether PINs are required.
 
 import { get, send } from "../lib/api.ts";
-import { h, replace_children, type Child } from "../lib/dom.ts";
+import { h, new_id, replace_children, type Child } from "../lib/dom.ts";
 import { words } from "../lib/format.ts";
 import type { PageContext } from "../lib/router.ts";
 import type { Account } from "../lib/types.ts";
@@ -11,7 +11,7 @@ import { card, run_once, select_field, text_field, type TextField } from "../ui/
 import { error_box, load_into, toast } from "../ui/states.ts";
 import { data_table, type Column } from "../ui/table.ts";
 
-const kPasswordHelp = "12 to 128 characters; no common password, and not the name.";
+const kPasswordHelp = "12 to 128 characters. Not a common password, not the name.";
 
 /** What is wrong with a new password before the server sees it; null if nothing is. */
 export function password_problem(password: string, name: string): string | null {
@@ -37,21 +37,21 @@ function submit_form(button: HTMLButtonElement, action: () => Promise<void>, ...
 }
 
 function password_card(): HTMLElement {
-  const old = text_field("Present password", { type: "password", autocomplete: "current-password" });
+  const old = text_field("Current password", { type: "password", autocomplete: "current-password" });
   const fresh = text_field("New password", { type: "password", autocomplete: "new-password" }, kPasswordHelp);
   const again = text_field("New password again", { type: "password", autocomplete: "new-password" });
   const problem = h("div", {});
   const fields = [old, fresh, again];
   const change = async (): Promise<void> => {
     replace_children(problem);
-    old.set_error(old.input.value ? null : "Enter your present password.");
+    old.set_error(old.input.value ? null : "Enter your current password.");
     fresh.set_error(password_problem(fresh.input.value, session.me?.account.name ?? ""));
     again.set_error(again.input.value === fresh.input.value ? null : "The two new passwords differ.");
     if (focus_first_error(fields)) return;
     try {
       await send("POST", "/api/password", { old: old.input.value, new: fresh.input.value });
       fields.forEach((one) => (one.input.value = ""));
-      toast("The password was changed. Other sessions of this account have ended.");
+      toast("The password was changed. Other browsers of this account were signed out.");
     } catch (error) {
       replace_children(problem, error_box(error));
     }
@@ -74,7 +74,7 @@ function new_account_card(reload: () => void): HTMLElement {
     if (focus_first_error([name, password])) return;
     try {
       await send("POST", "/api/accounts", { name: name.input.value.trim(), password: password.input.value, role });
-      toast(`The account ${name.input.value.trim()} was made.`);
+      toast(`The account ${name.input.value.trim()} was added.`);
       name.input.value = password.input.value = "";
       reload();
     } catch (error) {
@@ -84,11 +84,49 @@ function new_account_card(reload: () => void): HTMLElement {
   return card("New account", {}, submit_form(h("button", { type: "submit", class: "button button-primary" }, "Add account"), create, name.element, roles, password.element, problem));
 }
 
+function reset_password(account: Account): void {
+  const fresh = text_field("New password", { type: "password", autocomplete: "new-password" }, kPasswordHelp);
+  const again = text_field("New password again", { type: "password", autocomplete: "new-password" });
+  ask({
+    title: `Reset the password of ${account.name}`,
+    text: "The person is signed out at once and signs in with the new password. Ask the person to change it then.",
+    action: "Reset password",
+    fields: [fresh.element, again.element],
+    check: () => {
+      fresh.set_error(password_problem(fresh.input.value, account.name));
+      again.set_error(again.input.value === fresh.input.value ? null : "The two new passwords differ.");
+      return !fresh.input.hasAttribute("aria-invalid") && !again.input.hasAttribute("aria-invalid");
+    },
+    run: async () => {
+      await send("PUT", `/api/accounts/${encodeURIComponent(account.name)}/password`, { password: fresh.input.value });
+      toast(`${account.name} has a new password.`);
+    },
+  });
+}
+
+function show_pin_rule({ required }: { required: boolean }): Child {
+  const id = new_id("pins");
+  const box = h("input", { type: "checkbox", id, checked: required });
+  const problem = h("div", {});
+  box.addEventListener("change", () => {
+    const wished = box.checked;
+    replace_children(problem);
+    send("PUT", "/api/pins", { required: wished }).then(
+      () => toast(wished ? "Every person now needs a PIN." : "PINs are now optional."),
+      (error: unknown) => {
+        box.checked = !wished;
+        replace_children(problem, error_box(error));
+      },
+    );
+  });
+  return [h("div", { class: "check" }, box, h("label", { for: id }, "Every person needs a PIN at a station")), h("p", { class: "help" }, "A person without a PIN chooses one before the next attempt."), problem];
+}
+
 function accounts_table(accounts: Account[], reload: () => void): HTMLElement {
   const remove = (account: Account): void =>
     ask({
       title: `Delete the account ${account.name}?`,
-      text: "Its sessions end at once. Results stay.",
+      text: "The person is signed out at once. No results are deleted.",
       action: "Delete",
       run: async () => {
         await send("DELETE", `/api/accounts/${encodeURIComponent(account.name)}`, {});
@@ -96,15 +134,20 @@ function accounts_table(accounts: Account[], reload: () => void): HTMLElement {
         reload();
       },
     });
+  const is_own = (account: Account): boolean => account.name === session.me?.account.name;
   const columns: Column<Account>[] = [
     { name: "name", title: "Name", is_header: true, key: (one) => one.name, cell: (one) => one.name },
     { name: "role", title: "Role", key: (one) => one.role, cell: (one) => (one.role === "admin" ? "Administrator" : words(one.role)) },
     {
+      name: "password", title: "Password",
+      cell: (one) => (is_own(one) ? h("span", { class: "dim" }, "Your account") : h("button", { type: "button", class: "button button-small", "aria-label": `Reset the password of ${one.name}`, on: { click: () => reset_password(one) } }, "Reset …")),
+    },
+    {
       name: "delete", title: "Delete",
-      cell: (one) => (one.name === session.me?.account.name ? h("span", { class: "dim" }, "Your account") : h("button", { type: "button", class: "button button-small", "aria-label": `Delete ${one.name}`, on: { click: () => remove(one) } }, "Delete …")),
+      cell: (one) => (is_own(one) ? h("span", { class: "dim" }, "Your account") : h("button", { type: "button", class: "button button-small", "aria-label": `Delete the account ${one.name}`, on: { click: () => remove(one) } }, "Delete …")),
     },
   ];
-  return data_table({ caption: "Everyone who can sign in here", columns, rows: accounts });
+  return data_table({ caption: "Everybody who can sign in here", columns, rows: accounts });
 }
 
 export async function account_page({ main, signal, set_title }: PageContext): Promise<void> {
@@ -117,6 +160,7 @@ export async function account_page({ main, signal, set_title }: PageContext): Pr
   const place = h("div", {});
   const load = (): Promise<void> => load_into(place, signal, () => get<{ accounts: Account[] }>("/api/accounts", signal), ({ accounts }) => accounts_table(accounts, () => void load()));
   columns.append(new_account_card(() => void load()));
-  main.append(card("Accounts", {}, place));
-  await load();
+  const pins = h("div", {});
+  main.append(card("Accounts", {}, place), card("PINs of trainees", {}, pins));
+  await Promise.all([load(), load_into(pins, signal, () => get<{ required: boolean }>("/api/pins", signal), show_pin_rule)]);
 }

@@ -5,7 +5,9 @@ import { h, replace_children, type Child } from "../lib/dom.ts";
 import { date_text, fixed, percent, plural } from "../lib/format.ts";
 import { write_query, type PageContext } from "../lib/router.ts";
 import type { Overview, Person, TaskResult } from "../lib/types.ts";
-import { person_badges, select_field } from "../ui/parts.ts";
+import { add_person, move_people } from "../manage/people.ts";
+import { is_phone, person_badges, select_field } from "../ui/parts.ts";
+import { print_button } from "../ui/print.ts";
 import { bar } from "../plots/small.ts";
 import { empty_box, load_into } from "../ui/states.ts";
 import { data_table, type Column, type Order } from "../ui/table.ts";
@@ -113,20 +115,27 @@ function read_filter(query: URLSearchParams): Filter {
   };
 }
 
-function show_cohort(overview: Overview, filter: Filter): Child {
+function show_cohort(overview: Overview, filter: Filter, actions: Element, reload: () => void): Child {
+  const add = h("button", { type: "button", class: "button button-primary", on: { click: () => add_person(overview.courses) } }, "Add person …");
   if (overview.people.length === 0) {
-    return empty_box("No results yet", "Attempts appear here as soon as somebody has practised at a station that writes to this database.");
+    replace_children(actions, add);
+    return empty_box("No results yet", "Attempts appear here after somebody has practised at a station that uses this database.");
   }
+  const shown_people = (): Person[] => overview.people.filter((one) => matches(one, filter));
   const place = h("div", {});
   const count = h("p", { class: "dim", role: "status" });
   const export_link = h("a", { class: "button", download: true }, "Attempts as CSV");
+  const notes_link = h("a", { class: "button", download: true }, "Notes as CSV");
+  const move = h("button", { type: "button", class: "button", on: { click: () => move_people(shown_people(), overview.courses, reload) } }, "Move people …");
+  replace_children(actions, print_button(), export_link, notes_link, move, add);
   const fill = (): void => {
-    const people = overview.people.filter((one) => matches(one, filter));
+    const people = shown_people();
     const simulated = people.filter((one) => one.simulated).length;
     const results = people.flatMap((one) => (filter.task ? (one.tasks[filter.task] ?? []) : total(one)));
     count.textContent = `${plural(people.length, "person", "people")} of ${overview.people.length}${simulated ? `, ${simulated} simulated` : ""}; ${counted_text(results)}`;
     export_link.href = path_with("/api/export/attempts.csv", { task: filter.task, course: filter.course });
-    const caption = filter.task ? `Results of ${overview.tasks.find((one) => one.id === filter.task)?.title ?? filter.task}` : "Mean of the last five scores of each task";
+    notes_link.href = path_with("/api/export/notes.csv", { task: filter.task, course: filter.course });
+    const caption = filter.task ? `Results of ${overview.tasks.find((one) => one.id === filter.task)?.title ?? filter.task}` : "Mean of the last five scores at each task";
     replace_children(
       place,
       people.length === 0
@@ -136,7 +145,7 @@ function show_cohort(overview: Overview, filter: Filter): Child {
             columns: columns_of(overview, filter.task),
             rows: people,
             order: filter.order,
-            page_size: 100,
+            page_size: is_phone() ? 10 : 100,
             on_order: (order) => {
               filter.order = order;
               store();
@@ -160,8 +169,8 @@ function show_cohort(overview: Overview, filter: Filter): Child {
     { value: "", label: "Everyone" },
     { value: "trainee", label: "Trainees" },
     { value: "expert", label: "Experts" },
-    { value: "people", label: "Without simulated" },
-    { value: "simulated", label: "Only simulated" },
+    { value: "people", label: "Without simulated people" },
+    { value: "simulated", label: "Simulated people only" },
   ];
   fill();
   return [
@@ -172,7 +181,6 @@ function show_cohort(overview: Overview, filter: Filter): Child {
       select_field("Task", tasks, filter.task, (value) => { filter.task = value; change(); }),
       select_field("Course", courses, filter.course, (value) => { filter.course = value; change(); }),
       select_field("Group", groups, filter.group, (value) => { filter.group = value; change(); }),
-      export_link,
     ),
     count,
     place,
@@ -182,7 +190,9 @@ function show_cohort(overview: Overview, filter: Filter): Child {
 export async function cohort_page({ main, query, signal, set_title }: PageContext): Promise<void> {
   set_title("Cohort");
   const place = h("div", {});
-  main.append(h("h1", {}, "Cohort"), place);
+  const actions = h("span", { class: "page-actions" });
+  main.append(h("div", { class: "page-head" }, h("h1", {}, "Cohort"), actions), place);
   const filter = read_filter(query);
-  await load_into(place, signal, () => get<Overview>("/api/overview", signal), (overview) => show_cohort(overview, filter));
+  const load = (): Promise<void> => load_into(place, signal, () => get<Overview>("/api/overview", signal), (overview) => show_cohort(overview, filter, actions, () => void load()));
+  await load();
 }

@@ -2,17 +2,22 @@
 
 import { get, send } from "../lib/api.ts";
 import { h, new_id, replace_children, type Child } from "../lib/dom.ts";
+import { plural } from "../lib/format.ts";
 import { navigate, type PageContext } from "../lib/router.ts";
 import type { Form, FormItem } from "../lib/types.ts";
 import { form_view } from "../ui/form_view.ts";
 import { breadcrumb, card, run_once, text_field } from "../ui/parts.ts";
 import { error_box, load_into, toast } from "../ui/states.ts";
+import { kNoForm } from "./forms.ts";
 
 interface Draft {
   title: string;
   intro: string;
   items: FormItem[];
 }
+
+/** Characters of the introduction, as the server accepts them. */
+const kMaxIntro = 4000;
 
 const kNew: Draft = {
   title: "",
@@ -40,7 +45,7 @@ function unsaved(id: string): { read: () => Draft | null; write: (draft: Draft) 
 /** The first thing that keeps the form from being stored; null if nothing does. */
 export function problem_of(draft: Draft): string | null {
   if (!draft.title.trim()) return "Enter a title.";
-  if (draft.items.length === 0) return "Add an item.";
+  if (draft.items.length === 0) return "Add a statement or a question.";
   const empty = draft.items.findIndex((one) => !one.text.trim());
   return empty >= 0 ? `Enter the text of item ${empty + 1}, or remove it.` : null;
 }
@@ -89,7 +94,7 @@ function show_editor(form: Form | null, context: PageContext): Child {
   const draft: Draft = { title: first_title, intro: first_intro, items: first_items.map((one) => ({ ...one })) };
   const title = text_field("Title", { value: draft.title, maxlength: "200", on: { input: () => { draft.title = title.input.value; changed(); } } });
   const intro_id = new_id("intro");
-  const intro = h("textarea", { id: intro_id, class: "field", rows: "3", maxlength: "2000", value: draft.intro, on: { input: () => { draft.intro = intro.value; changed(); } } });
+  const intro = h("textarea", { id: intro_id, class: "field", rows: "3", maxlength: String(kMaxIntro), value: draft.intro, on: { input: () => { draft.intro = intro.value; changed(); } } });
   const list = h("ol", { class: "item-list" });
   const preview = h("div", { class: "preview" });
   const problem = h("div", {});
@@ -139,13 +144,13 @@ function show_editor(form: Form | null, context: PageContext): Child {
   const element = h(
     "form",
     { class: "form", novalidate: true },
-    form !== null && form.responses > 0 && h("p", { class: "notice" }, `This questionnaire has ${form.responses} responses. An item whose text you change is retired with its answers, and a new item takes its place.`),
+    form !== null && form.responses > 0 && h("p", { class: "notice" }, `This questionnaire has ${plural(form.responses, "response")}. If you change the text of an item, its answers stay with the old text, which is shown as retired; the new text starts without answers.`),
     restored && h("p", { class: "notice", role: "status" }, "Unsaved changes were restored. ", h("button", { type: "button", class: "button button-small", on: { click: () => discard() } }, "Discard them")),
     title.element,
     h("div", { class: "labelled" }, h("label", { for: intro_id }, "Introduction"), intro),
     h("h2", {}, "Items"),
     list,
-    h("div", { class: "buttons" }, h("button", { type: "button", class: "button", "data-name": "add-scale", on: { click: () => add("scale") } }, "Add a statement"), h("button", { type: "button", class: "button", on: { click: () => add("text") } }, "Add a free text")),
+    h("div", { class: "buttons" }, h("button", { type: "button", class: "button", "data-name": "add-scale", on: { click: () => add("scale") } }, "Add a statement"), h("button", { type: "button", class: "button", on: { click: () => add("text") } }, "Add a text question")),
     problem,
     h("div", { class: "buttons" }, save, h("a", { class: "button", href: form ? `/forms/${encodeURIComponent(String(form.id))}` : "/forms", on: { click: () => kept.clear() } }, "Cancel")),
   );
@@ -162,8 +167,8 @@ function show_editor(form: Form | null, context: PageContext): Child {
     context.main.replaceChildren();
     void form_editor_page(context);
   };
-  const name = form ? form.title : "New questionnaire";
-  return [breadcrumb({ label: "Questionnaires", path: "/forms" }, { label: name }), h("h1", {}, form ? "Edit questionnaire" : "New questionnaire"), section];
+  const steps = form ? [{ label: form.title, path: `/forms/${encodeURIComponent(String(form.id))}` }, { label: "Edit" }] : [{ label: "New questionnaire" }];
+  return [breadcrumb({ label: "Questionnaires", path: "/forms" }, ...steps), h("h1", {}, form ? "Edit questionnaire" : "New questionnaire"), section];
 }
 
 export async function form_editor_page(context: PageContext): Promise<void> {
@@ -175,5 +180,5 @@ export async function form_editor_page(context: PageContext): Promise<void> {
     if (id === "new") return null;
     return (await get<{ form: Form }>(`/api/forms/${encodeURIComponent(id)}/summary`, context.signal)).form;
   };
-  await load_into(place, context.signal, load, (form) => show_editor(form, context));
+  await load_into(place, context.signal, load, (form) => show_editor(form, context), kNoForm);
 }

@@ -10,7 +10,7 @@ import { ask } from "../ui/dialog.ts";
 import { breadcrumb, card, run_once, time_element } from "../ui/parts.ts";
 import { empty_box, load_into, toast } from "../ui/states.ts";
 import { data_table, plain_table, type Column } from "../ui/table.ts";
-import { form_path, status_badge } from "./forms.ts";
+import { form_path, kNoForm, status_badge } from "./forms.ts";
 
 function address_card(form: Form): HTMLElement {
   const address = `${location.origin}/q/${encodeURIComponent(form.token)}`;
@@ -21,7 +21,7 @@ function address_card(form: Form): HTMLElement {
       toast("The address was copied.");
     } catch {
       field.focus();
-      toast("Copying is not allowed here: the address is selected, press Ctrl+C.");
+      toast("The browser does not allow copying. The address is selected: press Ctrl+C.");
     }
   };
   return card(
@@ -29,7 +29,7 @@ function address_card(form: Form): HTMLElement {
     {},
     form.is_open
       ? h("div", { class: "address" }, field, h("button", { type: "button", class: "button", on: { click: () => void copy() } }, "Copy"), h("a", { class: "button", href: `/q/${encodeURIComponent(form.token)}`, target: "_blank", rel: "noopener" }, "Open in a new tab"))
-      : h("p", {}, "The questionnaire is closed: its address does not answer. Publish it to collect answers."),
+      : h("p", {}, "The questionnaire is closed: nobody can answer it. Open it to collect answers."),
   );
 }
 
@@ -55,7 +55,7 @@ function comments_card(item: ItemSummary): HTMLElement {
     item.is_retired ? `${item.text} (retired)` : item.text,
     {},
     comments.length === 0
-      ? h("p", { class: "dim" }, "No comment yet.")
+      ? h("p", { class: "dim" }, "No answers yet.")
       : h("ul", { class: "comments" }, comments.map((one) => h("li", {}, h("p", { class: "comment" }, one.text), one.submitted_s !== null && h("p", { class: "help" }, time_element(one.submitted_s))))),
   );
 }
@@ -64,7 +64,7 @@ function show_results(summary: FormSummary, context: PageContext, reload: () => 
   const { form, items, responses } = summary;
   context.set_title(form.title);
   const scales = items.filter((one) => one.kind === "scale");
-  const toggle = h("button", { type: "button", class: "button" }, form.is_open ? "Close" : "Publish");
+  const toggle = h("button", { type: "button", class: "button" }, form.is_open ? "Close for answers" : "Open for answers");
   const change = async (): Promise<void> => {
     try {
       await send("PUT", `/api${form_path(form)}`, { is_open: !form.is_open });
@@ -78,7 +78,7 @@ function show_results(summary: FormSummary, context: PageContext, reload: () => 
   const remove = (): void =>
     ask({
       title: "Delete this questionnaire?",
-      text: `${plural(responses, "response")} will be deleted with it. This cannot be undone.`,
+      text: `Responses that are deleted with it: ${responses}. This cannot be undone.`,
       action: "Delete",
       run: async () => {
         await send("DELETE", `/api${form_path(form)}`, {});
@@ -104,7 +104,7 @@ function show_results(summary: FormSummary, context: PageContext, reload: () => 
     ),
     form.intro && h("p", { class: "lead" }, form.intro),
     address_card(form),
-    card(`Results: ${plural(responses, "response")}`, {}, scales.length === 0 ? empty_box("No statements", "This questionnaire has only free texts.") : means_table(scales)),
+    card(`Results: ${plural(responses, "response")}`, {}, scales.length === 0 ? empty_box("No statements", "This questionnaire has only text questions.") : means_table(scales)),
     items.filter((one) => one.kind === "text").map(comments_card),
   ];
 }
@@ -114,6 +114,6 @@ export async function form_results_page(context: PageContext): Promise<void> {
   const place = h("div", {});
   context.main.append(place);
   const path = `/api/forms/${encodeURIComponent(context.params[0])}/summary`;
-  const load = (): Promise<void> => load_into(place, context.signal, () => get<FormSummary>(path, context.signal), (summary) => show_results(summary, context, () => void load()));
+  const load = (): Promise<void> => load_into(place, context.signal, () => get<FormSummary>(path, context.signal), (summary) => show_results(summary, context, () => void load()), kNoForm);
   await load();
 }

@@ -6,8 +6,11 @@ import { plural } from "../lib/format.ts";
 import { navigate, type PageContext } from "../lib/router.ts";
 import type { Form } from "../lib/types.ts";
 import { run_once } from "../ui/parts.ts";
-import { empty_box, error_box, load_into } from "../ui/states.ts";
+import { empty_box, error_box, load_into, type Missing } from "../ui/states.ts";
 import { data_table, type Column } from "../ui/table.ts";
+
+/** Shown for a questionnaire that does not exist. */
+export const kNoForm: Missing = { title: "There is no such questionnaire", text: "It may have been deleted, or the address is incomplete.", link: { label: "Go to the questionnaires", path: "/forms" } };
 
 export function status_badge(form: Form): HTMLElement {
   return form.is_open ? h("span", { class: "badge badge-open" }, "Open") : h("span", { class: "badge badge-plain" }, "Closed");
@@ -20,13 +23,13 @@ export function form_path(form: Form): string {
 const kColumns: Column<Form>[] = [
   { name: "title", title: "Title", is_header: true, key: (one) => one.title, cell: (one) => h("a", { href: form_path(one) }, one.title || "Without a title") },
   { name: "status", title: "Status", key: (one) => (one.is_open ? 0 : 1), cell: status_badge },
-  { name: "items", title: "Items", is_number: true, cell: (one) => String(one.items.length) },
+  { name: "items", title: "Questions", is_number: true, cell: (one) => String(one.items.length) },
   { name: "responses", title: "Responses", is_number: true, key: (one) => one.responses, cell: (one) => String(one.responses) },
   { name: "edit", title: "Edit", cell: (one) => h("a", { href: `${form_path(one)}/edit`, "aria-label": `Edit ${one.title}` }, "Edit") },
 ];
 
 function show_forms({ forms }: { forms: Form[] }): Child {
-  if (forms.length === 0) return empty_box("No questionnaires", "“Standard questionnaire” makes one with the four statements of the published study and a free text; “New questionnaire” begins with an empty one.");
+  if (forms.length === 0) return empty_box("No questionnaires", "“Standard questionnaire” adds one with the four statements of the published study and a text question. “New questionnaire” starts with an empty one.");
   return data_table({ caption: plural(forms.length, "questionnaire"), columns: kColumns, rows: forms });
 }
 
@@ -45,7 +48,7 @@ export async function forms_page({ main, signal, set_title }: PageContext): Prom
   standard.addEventListener("click", () => void run_once(standard, add_standard));
   main.append(
     h("div", { class: "page-head" }, h("h1", {}, "Questionnaires"), h("span", { class: "page-actions" }, standard, h("a", { class: "button button-primary", href: "/forms/new" }, "New questionnaire"))),
-    h("p", { class: "lead" }, "People answer on a six-point scale from 1 (strongly agree) to 6 (strongly disagree), and in their own words."),
+    h("p", { class: "lead" }, "Answers are given on a six-point scale from 1 (strongly agree) to 6 (strongly disagree) and as free text."),
     problem,
     place,
   );

@@ -48,8 +48,8 @@ export function login_page({ main, query, set_title }: PageContext): void {
       "div",
       { class: "narrow card" },
       h("h1", {}, "Sign in"),
-      query.has("expired") && h("p", { class: "notice", role: "status" }, "Your session has ended. Sign in to go on where you were."),
-      h("p", { class: "dim" }, "Results of the needle trainer, for instructors."),
+      query.has("expired") && h("p", { class: "notice", role: "status" }, "You were signed out. Sign in to continue where you were."),
+      h("p", { class: "dim" }, "Results of the needle training, for instructors."),
       form,
     ),
   );

@@ -11,7 +11,7 @@ import { card, select_field } from "../ui/parts.ts";
 import { empty_box, load_into } from "../ui/states.ts";
 import { data_table, plain_table, type Column } from "../ui/table.ts";
 
-const kBetter = { lower: "Lower values are better.", higher: "Higher values are better.", neither: "Neither direction is better." };
+const kBetter = { lower: "Lower values are better.", higher: "Higher values are better.", neither: "Neither higher nor lower values are better." };
 
 function quartile_table(metric: MetricDistribution): HTMLElement {
   const value = (title: string, name: "min" | "q1" | "median" | "q3" | "max"): Column<MetricGroup> => ({ name, title, is_number: true, cell: (one) => with_unit(one[name], metric.unit) });
@@ -19,7 +19,7 @@ function quartile_table(metric: MetricDistribution): HTMLElement {
     { name: "group", title: "Group", is_header: true, cell: group_title },
     { name: "n", title: "People", is_number: true, cell: (one) => String(one.n) },
     { name: "attempts", title: "Attempts", is_number: true, cell: (one) => String(one.attempts) },
-    value("Lowest", "min"), value("Lower quartile", "q1"), value("Median", "median"), value("Upper quartile", "q3"), value("Highest", "max"),
+    value("Minimum", "min"), value("Lower quartile", "q1"), value("Median", "median"), value("Upper quartile", "q3"), value("Maximum", "max"),
   ];
   return data_table({ caption: "Quartiles of each group", columns, rows: metric.groups });
 }
@@ -28,16 +28,16 @@ function show_distribution(metric: MetricDistribution, signal: AbortSignal): Chi
   const unit = unit_text(metric.unit);
   const rank = (one: MetricGroup): number => (one.group === "expert" ? 0 : 2) + (one.simulated ? 1 : 0);
   const filled = metric.groups.filter((one) => one.n > 0).sort((a, b) => rank(a) - rank(b));
-  if (filled.length === 0 || metric.edges.length < 2) return empty_box("No values", "Nobody of this course has this metric for this task yet.");
+  if (filled.length === 0 || metric.edges.length < 2) return empty_box("No values", "Nobody in this course has a value of this metric at this task yet.");
   const bins = metric.edges.slice(0, -1).map((edge, k) => [`${number_text(edge)} to ${number_text(metric.edges[k + 1])}`, ...filled.map((one) => String(one.counts[k] ?? 0))]);
   const shown = { ...metric, groups: filled };
   return card(
     metric.title,
     {},
-    h("p", { class: "dim" }, `${kBetter[metric.better] ?? ""} ${unit ? `Unit: ${unit}.` : ""} Each person counts once, with the mean of the attempts.`),
+    h("p", { class: "dim" }, `${kBetter[metric.better] ?? ""} ${unit ? `Unit: ${unit}.` : ""} Each person counts once, with the mean of all attempts.`),
     metric.auc
-      ? h("p", { class: "auc" }, h("strong", {}, "Separation of experts and trainees (AUC): "), auc_text(metric.auc), interval_strip(metric.auc.value, metric.auc.low, metric.auc.high), h("span", { class: "dim" }, "0.5 is no separation, 1 is complete."))
-      : h("p", { class: "notice" }, metric.reason ?? "The separation of experts and trainees is not given: it needs attempts of both groups."),
+      ? h("p", { class: "auc" }, h("strong", {}, "Separation of experts and trainees (AUC): "), auc_text(metric.auc), interval_strip(metric.auc.value, metric.auc.low, metric.auc.high), h("span", { class: "dim" }, metric.better === "neither" ? "Probability that the value of an expert is higher. 0.5: no separation; 0 or 1: complete separation." : "Probability that an expert is better than a trainee. 0.5: no separation; 1: complete separation."))
+      : h("p", { class: "notice" }, metric.reason ?? "Experts and trainees cannot be compared yet: attempts of both groups are needed."),
     histograms(shown, signal),
     h("details", { class: "as-table" }, h("summary", {}, "Histogram as a table"), plain_table("People in each interval", [`Interval${unit ? ` (${unit})` : ""}`, ...filled.map(group_title)], bins)),
     quartile_table(shown),
@@ -58,7 +58,7 @@ function show_metrics(overview: Overview, context: PageContext): Child {
   const show_task = (): void => {
     replace_children(place);
     void load_into(choice_place, signal, () => get<{ metrics: MetricName[] }>(path_with("/api/metrics", { task: chosen.task }), signal), ({ metrics }) => {
-      if (metrics.length === 0) return empty_box("No metrics", "Nobody has practised this task yet.");
+      if (metrics.length === 0) return empty_box("No metrics", "Nobody has attempts at this task yet.");
       if (!metrics.some((one) => one.name === chosen.metric)) chosen.metric = metrics[0].name;
       show_metric();
       return select_field("Metric", metrics.map((one) => ({ value: one.name, label: one.title })), chosen.metric, (value) => {
@@ -88,6 +88,6 @@ function show_metrics(overview: Overview, context: PageContext): Child {
 export async function metrics_page(context: PageContext): Promise<void> {
   context.set_title("Metrics");
   const place = h("div", {});
-  context.main.append(h("h1", {}, "Metrics"), h("p", { class: "lead" }, "How each metric is distributed among experts and trainees."), place);
+  context.main.append(h("h1", {}, "Metrics"), h("p", { class: "lead" }, "How the values of each metric differ between experts and trainees."), place);
   await load_into(place, context.signal, () => get<Overview>("/api/overview", context.signal), (overview) => show_metrics(overview, context));
 }

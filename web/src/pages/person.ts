@@ -1,15 +1,17 @@
-// A person: learning curve and CUSUM of a task, and the attempts.
+// A person: learning curve and CUSUM of a task, the attempts, and what instructors change.
 
 import { get, path_with, send } from "../lib/api.ts";
 import { h, replace_children, type Child } from "../lib/dom.ts";
-import { date_time_text, duration_text, fixed, percent, plural, words } from "../lib/format.ts";
+import { date_time_text, duration_text, fixed, percent, plural, state_text, words } from "../lib/format.ts";
 import { cusum_by_point, cusum_verdict } from "../lib/judgement.ts";
 import { navigate, write_query, type PageContext } from "../lib/router.ts";
-import type { Attempt, AttemptList, Curve, Person, PersonAnswer, Task } from "../lib/types.ts";
+import type { AttemptList, Course, Curve, ListedAttempt, Person, PersonAnswer } from "../lib/types.ts";
 import { line_plot, type Series } from "../plots/line_plot.ts";
+import { change_person, remove_pin, set_pin } from "../manage/people.ts";
 import { is_admin } from "../session.ts";
 import { ask } from "../ui/dialog.ts";
-import { breadcrumb, card, group_badge, passed_text, person_badges, run_once, select_field, time_element } from "../ui/parts.ts";
+import { breadcrumb, card, fold_card, group_badge, is_phone, passed_text, person_badges, reasons_list, run_once, select_field, time_element } from "../ui/parts.ts";
+import { print_button } from "../ui/print.ts";
 import { empty_box, error_box, load_into, toast } from "../ui/states.ts";
 import { data_table, plain_table, type Column } from "../ui/table.ts";
 
@@ -32,11 +34,11 @@ function score_plot(curve: Curve, signal: AbortSignal): HTMLElement {
     { label: "Not passed", values: only(scores, (k) => points[k].passed !== true), colour: "bad", mark: "hollow-points" },
   );
   // An attempt without a result has no score: its mark lies on the axis.
-  if (scores.includes(null)) series.push({ label: "No result (not passed)", values: scores.map((one) => (one === null ? 0 : null)), colour: "bad", mark: "hollow-points" });
+  if (scores.includes(null)) series.push({ label: "Without a result (not passed)", values: scores.map((one) => (one === null ? 0 : null)), colour: "bad", mark: "hollow-points" });
   const last = points[points.length - 1];
   return line_plot({
     title: "Score by attempt",
-    summary: `${points.length} attempts; moving mean now ${fixed(last.moving_mean, 0)} of 100.`,
+    summary: `${plural(points.length, "attempt")}; moving mean now ${fixed(last.moving_mean, 0)} of 100.`,
     x: points.map((one) => one.n),
     x_label: "attempt",
     y_label: "score",
@@ -60,7 +62,7 @@ function score_plot(curve: Curve, signal: AbortSignal): HTMLElement {
 function cusum_plot(curve: Curve, signal: AbortSignal): Child {
   const { points } = curve;
   const cusum = curve.cusum && { ...curve.cusum, values: cusum_by_point(points, curve.cusum.values) };
-  if (!cusum || cusum.values.every((one) => one === null)) return empty_box("No CUSUM", "It needs attempts.");
+  if (!cusum || cusum.values.every((one) => one === null)) return empty_box("No CUSUM", "The curve appears after the first attempt that counts.");
   const known = cusum.values.filter((one): one is number => one !== null);
   const low = Math.min(cusum.lower, ...known);
   const high = Math.max(cusum.upper, ...known);
@@ -86,36 +88,41 @@ function cusum_plot(curve: Curve, signal: AbortSignal): Child {
       table: () => plain_table("CUSUM by attempt", ["Attempt", "CUSUM"], points.map((one, k) => [String(one.n), fixed(cusum.values[k], 2)])),
     }).element,
     h("p", {}, h("strong", {}, verdict)),
-    h("p", { class: "help" }, `A passed attempt lowers the curve, one that failed or ended without a result raises it. A limit that is reached decides, and the next attempt begins at 0. Acceptable failure rate ${fixed(100 * cusum.acceptable, 0)} %, unacceptable ${fixed(100 * cusum.unacceptable, 0)} %.`),
+    h("p", { class: "help" }, `A passed attempt lowers the curve; an attempt that was not passed or ended without a result raises it. At the lower limit the failure rate is acceptable (at most ${fixed(100 * cusum.acceptable, 0)} %), at the upper limit it is not (at least ${fixed(100 * cusum.unacceptable, 0)} %); after either, the next attempt starts again at 0.`),
   ];
 }
 
-function attempt_columns(tasks: Task[]): Column<Attempt>[] {
-  const title = (id: string): string => tasks.find((one) => one.id === id)?.title ?? id;
+function result_cell(attempt: ListedAttempt): Child {
+  return h("span", { class: "result-cell" }, attempt.passed !== null ? passed_text(attempt.passed, attempt.score) : state_text(attempt.state), reasons_list(attempt));
+}
+
+function attempt_columns(): Column<ListedAttempt>[] {
   return [
-    { name: "started", title: "Started", is_header: true, cell: (one) => h("a", { href: `/attempts/${encodeURIComponent(one.id)}` }, time_element(one.started_s)) },
-    { name: "task", title: "Task", cell: (one) => title(one.task) },
+    {
+      name: "started", title: "Started", is_header: true,
+      cell: (one) => h("span", { class: "person" }, h("a", { href: `/attempts/${encodeURIComponent(one.id)}` }, time_element(one.started_s)), one.notes ? h("span", { class: "badge badge-plain" }, plural(one.notes, "note")) : null),
+    },
     { name: "patient", title: "Patient", cell: (one) => one.patient },
-    { name: "level", title: "Help", cell: (one) => words(one.level) },
+    { name: "level", title: "Level of help", cell: (one) => words(one.level) },
     { name: "score", title: "Score", is_number: true, cell: (one) => fixed(one.score, 0) },
-    { name: "result", title: "Result", cell: (one) => (one.passed !== null ? passed_text(one.passed, one.score) : words(one.state)) },
+    { name: "result", title: "Result", cell: result_cell },
     { name: "duration", title: "Duration", is_number: true, cell: (one) => duration_text(one.duration_s) },
     { name: "station", title: "Station", cell: (one) => one.station ?? "–" },
   ];
 }
 
-function attempts_section(person: Person, tasks: Task[], task: string, signal: AbortSignal): HTMLElement {
+function attempts_section(person: Person, task: string, signal: AbortSignal): HTMLElement {
   const place = h("div", {});
   const more = h("div", { class: "more" });
-  let rows: Attempt[] = [];
-  const path = (before: number | null): string => path_with(`/api/people/${encodeURIComponent(person.id)}/attempts`, { task, before, limit: 50 });
+  let rows: ListedAttempt[] = [];
+  const path = (before: number | null): string => path_with(`/api/people/${encodeURIComponent(person.id)}/attempts`, { task, before, limit: is_phone() ? 10 : 50 });
   const show = (answer: AttemptList): Child => {
     rows = rows.concat(answer.attempts);
     const button = h("button", { type: "button", class: "button" }, "Older attempts");
     button.addEventListener("click", () => void run_once(button, () => load_older(answer.next!)));
     replace_children(more, answer.next !== null && [h("span", {}, `${rows.length} shown`), button]);
-    if (rows.length === 0) return empty_box("No attempts", "This person has not practised this task.");
-    return data_table({ caption: "Attempts, newest first", columns: attempt_columns(tasks), rows });
+    if (rows.length === 0) return empty_box("No attempts", "This person has no attempts at this task.");
+    return data_table({ caption: "Attempts, newest first", columns: attempt_columns(), rows });
   };
   const load_older = async (before: number): Promise<void> => {
     const first_new = rows.length;
@@ -128,7 +135,7 @@ function attempts_section(person: Person, tasks: Task[], task: string, signal: A
     }
   };
   void load_into(place, signal, () => get<AttemptList>(path(null), signal), show);
-  return card("Attempts", {}, place, more);
+  return fold_card("Attempts", {}, place, more);
 }
 
 function delete_button(person: Person): HTMLElement {
@@ -146,7 +153,7 @@ function delete_button(person: Person): HTMLElement {
         click: () =>
           ask({
             title: "Delete this person?",
-            text: "All attempts, recordings and answers linked to this person are deleted. This cannot be undone.",
+            text: "All attempts, recordings, notes and answers of this person are deleted permanently. This cannot be undone.",
             action: "Delete",
             typed: { label: `Type the name to confirm: ${person.name}`, value: person.name },
             run,
@@ -157,15 +164,28 @@ function delete_button(person: Person): HTMLElement {
   );
 }
 
-function show_person({ person, tasks }: PersonAnswer, wished_task: string, context: PageContext): Child {
+/** Name, group, course and PIN. */
+function manage_card(person: Person, courses: Course[], reload: () => void): HTMLElement {
+  const button = (label: string, action: () => void): HTMLElement => h("button", { type: "button", class: "button", on: { click: action } }, label);
+  const course = courses.find((one) => String(one.id) === String(person.course ?? ""))?.name ?? "none";
+  return fold_card(
+    "Manage this person",
+    { class: "no-print" },
+    h("p", { class: "dim" }, person.has_pin ? `Course: ${course}. This person has a PIN.` : `Course: ${course}. This person has no PIN.`),
+    h("div", { class: "buttons" }, button("Rename or move …", () => change_person(person, courses, reload)), button(person.has_pin ? "Replace PIN …" : "Set PIN …", () => set_pin(person, reload)), person.has_pin && button("Remove PIN …", () => remove_pin(person, reload)), is_admin() && delete_button(person)),
+    is_admin() && h("p", { class: "help" }, "Everybody may ask that all own results are deleted. Deleted data cannot be restored."),
+  );
+}
+
+function show_person({ person, tasks, courses }: PersonAnswer, wished_task: string, context: PageContext, reload: () => void): Child {
   context.set_title(person.name);
   const practised = tasks.filter((one) => person.tasks[one.id] !== undefined);
   const header = [
     breadcrumb({ label: "Cohort", path: "/" }, { label: person.name }),
-    h("div", { class: "page-head" }, h("h1", {}, person.name), person.group !== "expert" && group_badge(person.group), person_badges(person)),
+    h("div", { class: "page-head" }, h("h1", {}, person.name), person.group !== "expert" && group_badge(person.group), person_badges(person), h("span", { class: "page-actions" }, print_button())),
   ];
-  const removal = is_admin() && card("Data protection", {}, h("p", { class: "dim" }, "A person may ask for the deletion of all results."), delete_button(person));
-  if (practised.length === 0) return [header, empty_box("No attempts yet", "Curves appear after the first attempt."), removal];
+  const manage = manage_card(person, courses, reload);
+  if (practised.length === 0) return [header, empty_box("No attempts yet", "Learning curves appear after the first attempt."), manage];
   const most = [...practised].sort((a, b) => (person.tasks[b.id].last_s ?? 0) - (person.tasks[a.id].last_s ?? 0))[0];
   const first = practised.some((one) => one.id === wished_task) ? wished_task : most.id;
   const place = h("div", { class: "stack" });
@@ -184,20 +204,20 @@ function show_person({ person, tasks }: PersonAnswer, wished_task: string, conte
         [
           ["Attempts", String(result.attempts)],
           ["Passed", `${result.passed} of ${result.attempts} (${percent(result.passed, result.attempts)})`],
-          ["Mean of last 5", fixed(result.recent_mean, 0)],
+          ["Mean of last 5 scores", fixed(result.recent_mean, 0)],
           ["Best score", fixed(result.best_score, 0)],
           ["Last attempt", date_time_text(result.last_s)],
         ].map(([term, value]) => h("div", {}, h("dt", {}, term), h("dd", {}, value))),
       ),
       result.counts_text ? h("p", { class: "dim" }, `${result.counts_text}.`) : null,
       curves,
-      attempts_section(person, tasks, task, signal),
+      attempts_section(person, task, signal),
     );
     const path = path_with(`/api/people/${encodeURIComponent(person.id)}/curve`, { task });
     void load_into(curves, signal, () => get<Curve>(path, signal), (curve) =>
       curve.points.length === 0
-        ? empty_box("No curve yet", `${plural(result.attempts, "attempt")} that count.`)
-        : h("div", { class: "curves" }, card("Learning curve", {}, score_plot(curve, signal)), card("CUSUM", {}, cusum_plot(curve, signal))),
+        ? empty_box("No learning curve yet", "It appears after the first attempt that counts.")
+        : h("div", { class: "curves" }, card("Learning curve", {}, score_plot(curve, signal)), fold_card("CUSUM: is the failure rate acceptable?", {}, cusum_plot(curve, signal))),
     );
   };
   const choice = select_field("Task", practised.map((one) => ({ value: one.id, label: one.title })), first, (task) => {
@@ -205,7 +225,7 @@ function show_person({ person, tasks }: PersonAnswer, wished_task: string, conte
     show_task(task);
   });
   show_task(first);
-  return [header, h("div", { class: "filters" }, choice), place, removal];
+  return [header, h("div", { class: "filters" }, choice), place, manage];
 }
 
 export async function person_page(context: PageContext): Promise<void> {
@@ -213,5 +233,7 @@ export async function person_page(context: PageContext): Promise<void> {
   const place = h("div", {});
   context.main.append(place);
   const path = `/api/people/${encodeURIComponent(context.params[0])}`;
-  await load_into(place, context.signal, () => get<PersonAnswer>(path, context.signal), (answer) => show_person(answer, context.query.get("task") ?? "", context));
+  const missing = { title: "There is no such person", text: "The person may have been deleted, or the address is incomplete.", link: { label: "Go to the cohort", path: "/" } };
+  const load = (): Promise<void> => load_into(place, context.signal, () => get<PersonAnswer>(path, context.signal), (answer) => show_person(answer, new URLSearchParams(location.search).get("task") ?? "", context, () => void load()), missing);
+  await load();
 }

@@ -66,7 +66,7 @@ function show_form(form: PublicForm, token: string, place: HTMLElement, context:
     for (const item of form.items) view.set_error(String(item.id), null);
     const missing = missing_items(form.items, answers);
     if (missing.length > 0) {
-      for (const item of missing) view.set_error(item, "Please answer this item.");
+      for (const item of missing) view.set_error(item, "Please answer this question.");
       replace_children(problem, h("p", { class: "notice notice-bad", role: "alert" }, `${plural(missing.length, "answer is", "answers are")} missing. The first one has the focus.`));
       view.focus(missing[0]);
       return;

@@ -1,13 +1,14 @@
-// Evidence that the scores mean something: separation, consistency, pass mark.
+// Evidence that the scores measure skill: separation, consistency, pass mark.
 
 import { get } from "../lib/api.ts";
 import { h, type Child } from "../lib/dom.ts";
-import { fixed, number_text, plural, unit_text } from "../lib/format.ts";
+import { fixed, number_text, plural, sentence, unit_text } from "../lib/format.ts";
+import { separation_strength } from "../lib/judgement.ts";
 import type { PageContext } from "../lib/router.ts";
 import type { Overview, Validity, ValidityMetric } from "../lib/types.ts";
 import { interval_strip } from "../plots/small.ts";
 import { evidence_filters } from "../ui/evidence.ts";
-import { card } from "../ui/parts.ts";
+import { card, fold_card } from "../ui/parts.ts";
 import { empty_box, load_into } from "../ui/states.ts";
 import { data_table, type Column } from "../ui/table.ts";
 
@@ -15,12 +16,12 @@ function figure_card(title: string, value: string | null, text: Child, reason: s
   return card(
     title,
     { class: "card-figure" },
-    value === null ? [h("p", { class: "figure figure-none" }, "Not computed"), h("p", {}, reason ?? "There are too few data.")] : [h("p", { class: "figure" }, value), h("p", {}, text)],
+    value === null ? [h("p", { class: "figure figure-none" }, "Not computed"), h("p", {}, sentence(reason ?? "there are too few data"))] : [h("p", { class: "figure" }, value), h("p", {}, text)],
   );
 }
 
 function interval_text(low: number | null | undefined, high: number | null | undefined): string {
-  return low === null || low === undefined || high === null || high === undefined ? "" : ` (95 % interval ${fixed(low, 2)} to ${fixed(high, 2)})`;
+  return low === null || low === undefined || high === null || high === undefined ? "" : ` (95 % interval: ${fixed(low, 2)} to ${fixed(high, 2)})`;
 }
 
 function p_text(p: number | null): string {
@@ -31,29 +32,32 @@ function p_text(p: number | null): string {
 function metrics_table(metrics: ValidityMetric[]): HTMLElement {
   const columns: Column<ValidityMetric>[] = [
     { name: "title", title: "Metric", is_header: true, key: (one) => one.title, cell: (one) => [one.title, unit_text(one.unit) && h("span", { class: "dim" }, ` (${unit_text(one.unit)})`)] },
-    { name: "expert", title: "Experts' median", is_number: true, key: (one) => one.expert_median, cell: (one) => [number_text(one.expert_median), one.n_expert !== null && h("span", { class: "dim" }, ` (n\u00a0${one.n_expert})`)] },
-    { name: "novice", title: "Novices' median", is_number: true, key: (one) => one.novice_median, cell: (one) => [number_text(one.novice_median), one.n_novice !== null && h("span", { class: "dim" }, ` (n\u00a0${one.n_novice})`)] },
+    { name: "expert", title: "Median of experts", is_number: true, key: (one) => one.expert_median, cell: (one) => [number_text(one.expert_median), one.n_expert !== null && h("span", { class: "dim" }, ` (n\u00a0${one.n_expert})`)] },
+    { name: "novice", title: "Median of novices", is_number: true, key: (one) => one.novice_median, cell: (one) => [number_text(one.novice_median), one.n_novice !== null && h("span", { class: "dim" }, ` (n\u00a0${one.n_novice})`)] },
     {
-      name: "auc", title: "AUC (95 % interval)", is_number: true, key: (one) => one.auc,
+      name: "auc", title: "AUC (95 % interval)", is_number: true, key: separation_strength,
       cell: (one) =>
         one.auc === null
           ? h("span", { class: "dim" }, one.reason ?? "–")
           : h("span", { class: "compared" }, interval_strip(one.auc, one.low, one.high), h("span", { class: "auc-number" }, fixed(one.auc, 2), h("span", { class: "dim" }, one.low === null ? "" : ` (${fixed(one.low, 2)}–${fixed(one.high, 2)})`))),
     },
-    { name: "p", title: metrics.some((one) => one.p_corrected !== undefined) ? "p, corrected" : "p", is_number: true, key: (one) => one.p_corrected ?? one.p, cell: (one) => p_text(one.p_corrected ?? one.p) },
+    { name: "p", title: metrics.some((one) => one.p_corrected !== undefined) ? "p (corrected for multiple tests)" : "p", is_number: true, key: (one) => one.p_corrected ?? one.p, cell: (one) => p_text(one.p_corrected ?? one.p) },
     {
-      name: "discriminates", title: "Discriminates", key: (one) => (one.discriminates === null ? null : one.discriminates ? 0 : 1),
+      name: "discriminates", title: "Separates the groups", key: (one) => (one.discriminates === null ? null : one.discriminates ? 0 : 1),
       cell: (one) => (one.discriminates === null ? "–" : one.discriminates ? h("span", { class: "outcome outcome-good" }, "✓ Yes") : h("span", { class: "outcome" }, "No")),
     },
   ];
-  return data_table({ caption: "Separation of experts and novices by each metric", columns, rows: metrics, order: { column: "auc", is_descending: true } });
+  const has_open_direction = metrics.some((one) => one.better === "neither" && one.auc !== null);
+  const table = data_table({ caption: "Separation of experts and novices by each metric", columns, rows: metrics, order: { column: "auc", is_descending: true }, page_size: 100 });
+  const help = h("p", { class: "help" }, "AUC of a metric without a better direction: the probability that the value of an expert is higher. Such metrics are sorted by the distance of the AUC from 0.5.");
+  return h("div", { class: "stack" }, table, has_open_direction && help);
 }
 
 function discriminating_text(found: Validity["discriminating"]): string {
   if (!found) return "";
-  const uncorrected = found.uncorrected == null ? "" : ` after correction for so many metrics, ${found.uncorrected} without`;
-  const note = found.note ? ` ${found.note[0].toUpperCase()}${found.note.slice(1)}.` : "";
-  return `${found.count} of ${found.of} metrics separate experts from novices${uncorrected}.${note} An automatic assessment has published 37 of 60.`;
+  const uncorrected = found.uncorrected == null ? "" : ` (without correction for multiple tests: ${found.uncorrected})`;
+  const note = found.note ? ` ${sentence(found.note)}` : "";
+  return `${found.count} of ${found.of} metrics separate experts from novices${uncorrected}.${note} For comparison: 37 of 60 in a published automatic assessment.`;
 }
 
 function show_validity(answer: Validity): Child {
@@ -62,29 +66,30 @@ function show_validity(answer: Validity): Child {
   const share = discriminating?.share ?? null;
   return [
     answer.simulated &&
-      h("div", { class: "notice notice-simulated" }, h("p", { class: "notice-title" }, "Simulated"), h("p", {}, "Some or all of these attempts come from scripted operators. They test the computation; they are no evidence about people.")),
-    h("p", { class: "lead" }, `${plural(answer.experts, "expert")} and ${plural(answer.novices, "novice")}${answer.simulated ? ", simulated people included" : ""}. The first three attempts of each person count: ${answer.expert_attempts ?? 0} of experts, ${answer.novice_attempts ?? 0} of novices${unscored ? `; ${unscored} of them ended without a result, are not passed and have no score` : ""}.`),
-    answer.counts_text ? h("p", { class: "dim" }, `Of all: ${answer.counts_text}.`) : null,
+      h("div", { class: "notice notice-simulated" }, h("p", { class: "notice-title" }, "Simulated attempts"), h("p", {}, "Some or all of these attempts come from scripted operators. They only test the calculation; they say nothing about people.")),
+    h("p", { class: "lead" }, `${plural(answer.experts, "expert")} and ${plural(answer.novices, "novice")}, with the first three attempts of each person: ${plural(answer.expert_attempts ?? 0, "attempt")} of experts, ${plural(answer.novice_attempts ?? 0, "attempt")} of novices.`),
+    unscored > 0 && h("p", { class: "dim" }, `${plural(unscored, "attempt")} ended without a result: not passed, and without a score.`),
+    answer.counts_text ? h("p", { class: "dim" }, `In total: ${answer.counts_text}.`) : null,
     h(
       "div",
       { class: "figures" },
-      figure_card("Discriminating metrics", share === null ? null : `${fixed(100 * share, 0)} %`, discriminating_text(discriminating), discriminating?.reason ?? answer.reason),
+      figure_card("Metrics that separate experts from novices", share === null ? null : `${fixed(100 * share, 0)} %`, discriminating_text(discriminating), discriminating?.reason ?? answer.reason),
       figure_card(
         "Internal consistency",
         alpha === null || alpha.value === null ? null : fixed(alpha.value, 2),
-        `Cronbach's alpha of ${alpha?.items} parts of the score over ${alpha?.n} people${interval_text(alpha?.low, alpha?.high)}. From 0.7 on it is usually called acceptable.`,
+        `Cronbach's alpha of ${plural(alpha?.items ?? 0, "part")} of the score for ${plural(alpha?.n ?? 0, "person", "people")}${interval_text(alpha?.low, alpha?.high)}. Values from 0.7 are usually called acceptable.`,
         alpha?.reason ?? answer.reason,
       ),
-      score && figure_card("Separation by the score", score.auc === null ? null : fixed(score.auc, 2), `AUC of the score${interval_text(score.low, score.high)}; medians ${number_text(score.expert_median)} of experts and ${number_text(score.novice_median)} of novices.`, score.reason),
-      passed && figure_card("Separation by passes", passed.auc === null ? null : fixed(passed.auc, 2), `AUC of the share of attempts passed${interval_text(passed.low, passed.high)}; medians ${fixed(100 * (passed.expert_median ?? 0), 0)} % of experts and ${fixed(100 * (passed.novice_median ?? 0), 0)} % of novices.`, passed.reason),
+      score && figure_card("Separation by the score", score.auc === null ? null : fixed(score.auc, 2), `AUC of the score${interval_text(score.low, score.high)}. Median of experts ${number_text(score.expert_median)}, of novices ${number_text(score.novice_median)}.`, score.reason),
+      passed && figure_card("Separation by passed attempts", passed.auc === null ? null : fixed(passed.auc, 2), `AUC of the share of passed attempts${interval_text(passed.low, passed.high)}. Median of experts ${fixed(100 * (passed.expert_median ?? 0), 0)} %, of novices ${fixed(100 * (passed.novice_median ?? 0), 0)} %.`, passed.reason),
       figure_card(
         "Pass mark",
         pass_mark === null || pass_mark.value === null ? null : fixed(pass_mark.value, 1),
-        `By contrasting groups: ${pass_mark?.false_passes} of ${pass_mark?.novices} novices would pass, ${pass_mark?.false_fails} of ${pass_mark?.experts} experts would fail.`,
+        `Score at which the groups separate best (contrasting groups method). With it ${pass_mark?.false_passes} of ${plural(pass_mark?.novices ?? 0, "novice")} would pass and ${pass_mark?.false_fails} of ${plural(pass_mark?.experts ?? 0, "expert")} would fail.`,
         pass_mark?.reason ?? answer.reason,
       ),
     ),
-    card("Metrics", {}, !metrics || metrics.length === 0 ? empty_box("No metrics", answer.reason ?? "It needs attempts of experts and of novices.") : metrics_table(metrics)),
+    fold_card("All metrics", {}, !metrics || metrics.length === 0 ? empty_box("No metrics", sentence(answer.reason ?? "attempts of experts and of novices are needed")) : metrics_table(metrics)),
   ];
 }
 
@@ -95,6 +100,6 @@ function show_tasks(overview: Overview, context: PageContext): Child {
 export async function validity_page(context: PageContext): Promise<void> {
   context.set_title("Validity");
   const place = h("div", {});
-  context.main.append(h("h1", {}, "Validity"), place);
+  context.main.append(h("h1", {}, "Validity"), h("p", { class: "lead" }, "Do the scores measure skill? Experts compared with novices."), place);
   await load_into(place, context.signal, () => get<Overview>("/api/overview", context.signal), (overview) => show_tasks(overview, context));
 }

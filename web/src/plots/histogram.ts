@@ -1,7 +1,7 @@
 // Distribution of a metric: a histogram and a box of the quartiles for each group, over one axis.
 
 import { h, svg } from "../lib/dom.ts";
-import { fixed, number_text, unit_text, words } from "../lib/format.ts";
+import { fixed, number_text, plural, unit_text, words } from "../lib/format.ts";
 import type { MetricDistribution, MetricGroup } from "../lib/types.ts";
 
 const kLeft = 8;
@@ -29,7 +29,7 @@ export function group_title(group: { group: string; simulated: boolean }): strin
 function group_summary(metric: MetricDistribution, group: MetricGroup): string {
   const unit = unit_text(metric.unit);
   if (group.n === 0) return `${group_title(group)}: no value.`;
-  return `${group_title(group)}: ${group.n} people, median ${number_text(group.median)} ${unit}, quartiles ${number_text(group.q1)} to ${number_text(group.q3)} ${unit}.`;
+  return `${group_title(group)}: ${plural(group.n, "person", "people")}, median ${number_text(group.median)} ${unit}, quartiles ${number_text(group.q1)} to ${number_text(group.q3)} ${unit}.`;
 }
 
 function group_drawing(metric: MetricDistribution, group: MetricGroup, width: number): SVGElement {
@@ -75,7 +75,7 @@ export function histograms(metric: MetricDistribution, signal: AbortSignal): HTM
         h(
           "figure",
           { class: "histogram" },
-          h("figcaption", {}, h("strong", {}, group_title(group)), h("span", { class: "dim" }, ` n = ${group.n} people`)),
+          h("figcaption", {}, h("strong", {}, group_title(group)), h("span", { class: "dim" },  `: ${plural(group.n, "person", "people")}`)),
           group_drawing(metric, group, width),
         ),
       ),

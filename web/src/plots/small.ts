@@ -69,3 +69,31 @@ export function scale_distribution(counts: number[]): HTMLElement {
     }),
   );
 }
+
+/** Quartiles of scores on 0..100: a line from the lowest to the highest, a band between the quartiles, the median as a dot. */
+export function score_strip(scores: { min: number; q1: number; median: number; q3: number; max: number }): SVGElement {
+  const width = 150;
+  const x = (at: number): string => String(6 + (Math.max(0, Math.min(100, at)) / 100) * (width - 12));
+  return svg(
+    "svg",
+    { class: "strip", viewBox: `0 0 ${width} 20`, width: String(width), height: "20", "aria-hidden": "true" },
+    svg("line", { class: "axis strip-scale", x1: x(0), x2: x(100), y1: "10", y2: "10" }),
+    svg("line", { class: "strip-median", x1: x(scores.min), x2: x(scores.max), y1: "10", y2: "10" }),
+    svg("rect", { class: "strip-band", x: x(scores.q1), y: "4", width: String(Math.max(2, Number(x(scores.q3)) - Number(x(scores.q1)))), height: "12", rx: "2" }),
+    svg("circle", { class: "strip-dot", cx: x(scores.median), cy: "10", r: "4.5" }),
+  );
+}
+
+/** How many scores lie in each tenth of 0..100, as columns with their counts. */
+export function score_histogram(bins: number[]): HTMLElement {
+  const most = Math.max(1, ...bins);
+  return h(
+    "ol",
+    { class: "distribution score-distribution" },
+    bins.map((count, k) => {
+      const column = h("span", { class: "distribution-bar", "aria-hidden": "true" });
+      column.style.height = `${(100 * count) / most}%`;
+      return h("li", {}, h("span", { class: "distribution-count" }, count > 0 ? String(count) : "\u00a0"), h("span", { class: "distribution-area" }, column), h("span", { class: "distribution-label" }, String(10 * k), h("span", { class: "hidden" }, ` to ${10 * (k + 1)}`)));
+    }),
+  );
+}

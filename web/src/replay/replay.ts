@@ -62,7 +62,7 @@ function second_table(title: string, unit: string, own: (number | null)[], exper
 }
 
 function event_list(trace: Trace, clock: ReplayClock): HTMLElement {
-  if (trace.events.length === 0) return h("p", { class: "dim" }, "No event was recorded.");
+  if (trace.events.length === 0) return h("p", { class: "dim" }, "No events were recorded.");
   return h(
     "ol",
     { class: "events" },
@@ -75,15 +75,14 @@ function event_list(trace: Trace, clock: ReplayClock): HTMLElement {
 function controls(clock: ReplayClock): HTMLElement {
   const play = h("button", { type: "button", class: "button button-primary play" }, "Play");
   const time = h("span", { class: "clock" });
-  const step = (label: string, sign: string, by_s: number): HTMLElement =>
-    h("button", { type: "button", class: "button", "aria-label": label, on: { click: () => clock.set_time(clock.time_s + by_s) } }, sign);
+  const step = (label: string, by_s: number): HTMLElement => h("button", { type: "button", class: "button", on: { click: () => clock.set_time(clock.time_s + by_s) } }, label);
   play.addEventListener("click", () => (clock.is_playing ? clock.pause() : clock.play()));
   clock.on_change(() => {
     play.textContent = clock.is_playing ? "Pause" : "Play";
     time.textContent = `${clock_text(clock.time_s)} / ${clock_text(clock.duration_s)}`;
   });
   const speed = select_field("Speed", kSpeeds.map((one) => ({ value: one, label: `${one}×` })), "1", (value) => clock.set_speed(Number(value)));
-  return h("div", { class: "replay-controls" }, play, step("One second back", "−1 s", -1), step("One second on", "+1 s", 1), time, speed);
+  return h("div", { class: "replay-controls" }, play, step("Back 1 s", -1), step("Forward 1 s", 1), time, speed);
 }
 
 /** Keys of the replay while the focus is inside it and not in a control that needs the key itself. */
@@ -147,7 +146,7 @@ export function replay(given: Trace, signal: AbortSignal): HTMLElement {
     time_plot("Resistance along the needle", "force (N)", own_force, expert_of(expert ? resistance(expert.force_n) : undefined), trace, clock, signal),
     time_plot("Depth of the tip", "depth (mm)", trace.depth_mm, expert_of(expert?.depth_mm), trace, clock, signal),
   ];
-  const extent_choice = select_field("Picture shows", [{ value: "inside", label: "the inserted part" }, { value: "all", label: "the whole path" }], "inside", (value) => {
+  const extent_choice = select_field("Pictures show", [{ value: "inside", label: "The path inside the body" }, { value: "all", label: "The whole path" }], "inside", (value) => {
     extent = extent_of(points_to_show(trace, value === "all"));
     draw();
   });
@@ -155,7 +154,7 @@ export function replay(given: Trace, signal: AbortSignal): HTMLElement {
   const section = h(
     "section",
     { class: "replay", tabindex: "0", role: "group", "aria-label": "Replay. Space plays and pauses, arrow keys step.", "aria-keyshortcuts": "Space ArrowLeft ArrowRight Home End" },
-    h("div", { class: "replay-top" }, h("ul", { class: "legend" }, key("own", "Tip, this attempt"), trace.plan && key("plan", "Planned path"), trace.plan && key("target", "Target"), expert && key("expert", "Best expert, same case")), extent_choice),
+    h("div", { class: "replay-top" }, h("ul", { class: "legend" }, key("own", "Tip, this attempt"), trace.plan && key("plan", "Planned path"), trace.plan && key("target", "Target"), expert && key("expert", "Best expert attempt, same case")), extent_choice),
     h("div", { class: "path-views" }, views.map((one) => one.element)),
     controls(clock),
     line.element,

@@ -27,7 +27,7 @@ export function evidence_filters<T extends { patients?: string[]; levels?: strin
     replace_children(
       more,
       select_field("Case", [{ value: "", label: "All cases" }, ...patients.map((one) => ({ value: one, label: one }))], chosen.patient, choose("patient")),
-      select_field("Help", [{ value: "", label: "All levels" }, ...levels.map((one) => ({ value: one, label: words(one) }))], chosen.level, choose("level")),
+      select_field("Level of help", [{ value: "", label: "All levels" }, ...levels.map((one) => ({ value: one, label: words(one) }))], chosen.level, choose("level")),
     );
   };
   const load = (): void => {

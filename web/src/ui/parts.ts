@@ -1,7 +1,7 @@
 // Small parts that several pages use.
 
 import { h, new_id, type Attributes, type Child } from "../lib/dom.ts";
-import { date_time_text, words } from "../lib/format.ts";
+import { date_time_text, sentence, words } from "../lib/format.ts";
 
 export function simulated_badge(): HTMLElement {
   return h("span", { class: "badge badge-simulated", title: "A scripted operator of Trocar, not a person" }, "Simulated");
@@ -13,6 +13,14 @@ export function group_badge(group: string): HTMLElement {
 
 export function person_badges(person: { group?: string; simulated: boolean }): HTMLElement {
   return h("span", { class: "badges" }, person.group === "expert" && group_badge(person.group), person.simulated && simulated_badge());
+}
+
+/** The reasons why an attempt did not pass, as a list of sentences. */
+export function reasons_list(attempt: { passed: boolean | null; score: number | null; fails?: string[]; not_scored?: string | boolean | null }): Child {
+  if (attempt.passed === true) return null;
+  const given = typeof attempt.not_scored === "string" && attempt.not_scored ? [attempt.not_scored] : [];
+  const reasons = [...given, ...(attempt.fails ?? [])];
+  return reasons.length > 0 && h("ul", { class: "reasons" }, reasons.map((one) => h("li", {}, sentence(one))));
 }
 
 export function passed_text(passed: boolean | null, score: number | null): HTMLElement {
@@ -33,6 +41,16 @@ export function card(title: string | null, attributes: Attributes, ...children: 
   if (title === null) return h("div", { class: `card ${more ?? ""}`, ...rest }, children);
   const id = new_id("card");
   return h("section", { class: `card ${more ?? ""}`, "aria-labelledby": id, ...rest }, h("h2", { id }, title), children);
+}
+
+export function is_phone(): boolean {
+  return window.matchMedia("(max-width: 560px)").matches;
+}
+
+/** A card that can be closed. On a phone it begins closed, so that a page shows what it has at a glance. */
+export function fold_card(title: string, attributes: Attributes, ...children: Child[]): HTMLDetailsElement {
+  const { class: more, ...rest } = attributes;
+  return h("details", { class: `card fold ${more ?? ""}`, open: !is_phone(), ...rest }, h("summary", {}, h("h2", {}, title)), h("div", { class: "stack" }, children));
 }
 
 export interface Choice {
@@ -73,6 +91,28 @@ export function text_field(label: string, attributes: Attributes, help?: string)
   const element = h("div", { class: "labelled" }, h("label", { for: id }, label), input, help && h("p", { class: "help", id: `${id}-help` }, help), error);
   return {
     element,
+    input,
+    set_error: (text) => {
+      error.textContent = text ?? "";
+      if (text) input.setAttribute("aria-invalid", "true");
+      else input.removeAttribute("aria-invalid");
+    },
+  };
+}
+
+export interface TextArea {
+  element: HTMLElement;
+  input: HTMLTextAreaElement;
+  set_error: (text: string | null) => void;
+}
+
+/** A labelled field of several lines. */
+export function text_area(label: string, attributes: Attributes): TextArea {
+  const id = new_id("area");
+  const error = h("p", { class: "field-error", id: `${id}-error` });
+  const input = h("textarea", { id, class: "field", rows: "3", "aria-describedby": `${id}-error`, ...attributes });
+  return {
+    element: h("div", { class: "labelled" }, h("label", { for: id }, label), input, error),
     input,
     set_error: (text) => {
       error.textContent = text ?? "";

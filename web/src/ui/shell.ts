@@ -6,6 +6,7 @@ import { current_theme, switch_theme } from "./theme.ts";
 
 const kSections = [
   { path: "/", label: "Cohort" },
+  { path: "/courses", label: "Courses" },
   { path: "/metrics", label: "Metrics" },
   { path: "/proficiency", label: "Proficiency" },
   { path: "/validity", label: "Validity" },

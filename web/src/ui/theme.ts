@@ -27,13 +27,27 @@ export function start_theme(): void {
   system_is_light.addEventListener("change", apply);
 }
 
-export function switch_theme(): void {
+function write(theme: Theme): void {
   try {
-    localStorage.setItem(kKey, current_theme() === "dark" ? "light" : "dark");
+    localStorage.setItem(kKey, theme);
   } catch {
     return;  // Without storage the system's choice stays.
   }
   apply();
+}
+
+export function switch_theme(): void {
+  write(current_theme() === "dark" ? "light" : "dark");
+}
+
+/** Runs `action`, after which the browser may have deleted what this page stored, and keeps the theme: it says nothing about a person. */
+export async function keeping_theme<T>(action: () => Promise<T>): Promise<T> {
+  const theme = stored();
+  try {
+    return await action();
+  } finally {
+    if (theme) write(theme);
+  }
 }
 
 /** A colour of the style sheet, for canvases: colour("accent"). */

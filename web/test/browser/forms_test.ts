@@ -27,10 +27,10 @@ async function make_form(page: Page, title: string): Promise<{ own: string; open
   await page.getByRole("button", { name: "Save" }).click();
   await page.getByRole("heading", { level: 1, name: title }).waitFor();
   await settled(page);
-  const publish = page.getByRole("button", { name: "Publish" });
+  const publish = page.getByRole("button", { name: "Open for answers" });
   if (await publish.isVisible()) {
     await publish.click();
-    await page.getByRole("button", { name: "Close" }).waitFor();
+    await page.getByRole("button", { name: "Close for answers" }).waitFor();
     await settled(page);
   }
   const open = new URL(await page.getByLabel("Address of the questionnaire").inputValue()).pathname;
@@ -61,8 +61,8 @@ describe("questionnaire", () => {
     assert.equal(await page.locator(".mean").first().textContent(), "3.0");
     assert.deepEqual(await page.locator(".distribution-count").allTextContents(), ["1", "1", "0", "0", "0", "1"]);
     await page.getByText("More cases, please.").waitFor();
-    await page.getByRole("button", { name: "Close" }).click();
-    await page.getByRole("button", { name: "Publish" }).waitFor();
+    await page.getByRole("button", { name: "Close for answers" }).click();
+    await page.getByRole("button", { name: "Open for answers" }).waitFor();
     await phone.page.goto(open);
     await phone.page.getByRole("heading", { name: "This questionnaire is not open" }).waitFor();
     await page.getByRole("button", { name: "Delete …" }).click();
@@ -79,6 +79,10 @@ describe("questionnaire", () => {
     const { page } = await open_page(browser, site);
     await login(page);
     await page.goto("/forms/new");
+    assert.equal(await page.getByLabel("Introduction").getAttribute("maxlength"), "4000");
+    const ends = page.locator(".preview .scale-ends").first();
+    assert.equal(await ends.isVisible(), true);
+    assert.deepEqual(await ends.locator("span").allTextContents(), ["strongly agree", "strongly disagree"]);
     await page.getByRole("button", { name: "Add a statement" }).click();
     await page.keyboard.type("Third");
     await page.getByRole("button", { name: "Move up item 3" }).click();
@@ -99,7 +103,7 @@ describe("questionnaire", () => {
     await page.getByLabel("Title").fill("Changed title");
     site.mock!.expire_sessions();
     await page.getByRole("button", { name: "Save" }).click();
-    await page.getByText("Your session has ended").waitFor();
+    await page.getByText("You were signed out").waitFor();
     await page.getByLabel("Name").fill("Dr. Weber");
     await page.getByLabel("Password").fill("a long test password");
     await page.keyboard.press("Enter");
@@ -212,7 +216,7 @@ describe("questionnaire", () => {
       await page.getByRole("button", { name: "Send answers" }).click();
       await page.getByRole("alert").filter({ hasText: `failure ${status} for the test` }).waitFor();
       await page.getByText("advice for the test").waitFor();
-      if (status === 429) await page.getByText("Possible again in 30 s").waitFor();
+      if (status === 429) await page.getByText("Try again in 30 s").waitFor();
       await has_count(page.locator("input[type=radio]:checked"), 4);
     }
     await page.context().close();

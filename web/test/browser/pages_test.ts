@@ -87,7 +87,7 @@ describe("browsing", () => {
       await page.locator("table a[href^='/attempts/']").first().click();
       await page.waitForURL(/\/attempts\//);
       await settled(page);
-      await page.getByRole("heading", { name: "Metrics beside the experts" }).waitFor();
+      await page.getByRole("heading", { name: "Metrics compared with experts" }).waitFor();
       await page.goBack();
       await page.waitForURL(/\/people\//);
       await page.getByRole("heading", { level: 1, name: name! }).waitFor();
@@ -183,13 +183,13 @@ describe("browsing", () => {
     with_page(async (page) => {
       await page.goto("/validity");
       await settled(page);
-      for (const name of ["Discriminating metrics", "Internal consistency", "Pass mark"]) await page.getByRole("heading", { name }).waitFor();
+      for (const name of ["Metrics that separate experts from novices", "Internal consistency", "Pass mark"]) await page.getByRole("heading", { name }).waitFor();
       if (site.mock) {
         await page.getByLabel("Task").selectOption("liver-biopsy");
-        await page.getByText("they are no evidence about people").waitFor();
+        await page.getByText("they say nothing about people").waitFor();
         await has_count(page.locator("tbody tr"), 15);
         await page.getByLabel("Task").selectOption("ptcd");
-        await page.getByText("fewer than 30 scored attempts").first().waitFor();
+        await page.getByText("Fewer than 30 scored attempts.").first().waitFor();
       }
     }));
 
@@ -200,7 +200,7 @@ describe("browsing", () => {
       await page.getByLabel("Case").selectOption("biopsy-2");
       await page.waitForURL(/patient=biopsy-2/);
       await settled(page);
-      await page.getByLabel("Help").selectOption("exam");
+      await page.getByLabel("Level of help").selectOption("exam");
       await page.waitForURL(/level=exam/);
       await settled(page);
       assert.equal(await page.getByLabel("Case").inputValue(), "biopsy-2");
@@ -212,7 +212,7 @@ describe("browsing", () => {
     with_page(async (page) => {
       await page.goto("/proficiency");
       await settled(page);
-      for (const name of ["Attempts to proficiency", "First-pass success", "Time to the target", "Instructor's minutes"]) await page.getByRole("heading", { name }).first().waitFor();
+      for (const name of ["Attempts to proficiency", "First-pass success", "Time to the target", "Time of instructors"]) await page.getByRole("heading", { name }).first().waitFor();
       await page.getByText("None entered", { exact: true }).first().waitFor();
       await page.getByRole("columnheader", { name: "Attempts to proficiency" }).first().waitFor();
       if (site.mock) await page.getByText("Not yet").first().waitFor();
@@ -233,8 +233,12 @@ describe("browsing", () => {
     with_page(async (page) => {
       await page.goto("/no/such/page");
       assert.equal(await heading(page), "Page not found");
-      await page.goto("/attempts/00000000000000000000000000000000");
-      await page.getByRole("alert").waitFor();
+      for (const [path, title] of [["/attempts/", "There is no such attempt"], ["/people/", "There is no such person"], ["/forms/", "There is no such questionnaire"], ["/course?name=", "There is no such course"]]) {
+        await page.goto(`${path}${"0".repeat(32)}`);
+        await page.getByRole("heading", { level: 1, name: title }).waitFor();
+        await page.getByRole("alert").getByRole("link", { name: /^Go to the/ }).waitFor();
+        await has_count(page.getByRole("button", { name: "Try again" }), 0);
+      }
     }));
 });
 

@@ -10,7 +10,7 @@ const only = process.argv[3];
 await mkdir(folder, { recursive: true });
 const site = await start_site();
 const browser = await start_browser();
-const sizes: [number, number][] = [[1440, 900], [768, 1024], [360, 780]];
+const sizes: [number, number][] = [[1280, 800], [768, 1024], [390, 844]];
 
 async function paths(page: Page): Promise<[string, string][]> {
   const person = process.env.PERSON ?? (await busiest_person(page));
@@ -27,7 +27,10 @@ async function paths(page: Page): Promise<[string, string][]> {
     await settled(page);
   }
   const form = await first_link(page, "/forms/");
-  const list: [string, string][] = [["cohort", "/"], ["cohort_task", "/?task=liver-biopsy&order=mean.down"], ["person", person], ["attempt", attempt], ["metrics", "/metrics?task=liver-biopsy&metric=target_distance"], ["validity", "/validity?task=liver-biopsy"], ["proficiency", "/proficiency?task=liver-biopsy"], ["forms", "/forms"], ["form", form], ["editor", `${form}/edit`], ["account", "/account"]];
+  await page.goto("/courses");
+  await settled(page);
+  const course = await first_link(page, "/course").catch(() => "/course");
+  const list: [string, string][] = [["cohort", "/"], ["cohort_task", "/?task=liver-biopsy&order=mean.down"], ["person", person], ["attempt", attempt], ["courses", "/courses"], ["course", course], ["metrics", "/metrics?task=liver-biopsy&metric=target_distance"], ["validity", "/validity?task=liver-biopsy"], ["proficiency", "/proficiency?task=liver-biopsy"], ["forms", "/forms"], ["form", form], ["editor", `${form}/edit`], ["account", "/account"]];
   await page.goto(form);
   await settled(page);
   const address = await page.getByLabel("Address of the questionnaire").inputValue();
@@ -47,7 +50,7 @@ for (const theme of ["dark", "light"] as const) {
       await page.goto(path);
       await settled(page);
       await page.waitForTimeout(250);
-      if (name === "attempt") {
+      if (name === "attempt" && width > 560) {
         await page.getByRole("slider").evaluate((one: HTMLInputElement) => {
           one.value = String(0.7 * Number(one.max));
           one.dispatchEvent(new Event("input"));

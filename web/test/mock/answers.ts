@@ -13,14 +13,15 @@ const counts_text = (all: MockAttempt[]): string => {
 const mean = (values: number[]): number | null => (values.length ? values.reduce((a, b) => a + b, 0) / values.length : null);
 const kParts: [string, string, (lost: number) => string, number][] = [
   ["target", "Distance to the target", (lost) => `${(8 * lost).toFixed(1)} mm`, 15], ["core", "Target tissue in the cores", (lost) => `${(18 * (1 - lost)).toFixed(1)} mm`, 25],
-  ["risk", "Structures at risk", (lost) => (lost > 0.3 ? "1 touched" : "none touched"), 20], ["access", "Access", (lost) => `${(6 * (1 - lost)).toFixed(1)} mm margin`, 15],
-  ["visibility", "Tip in the image", (lost) => `${(100 * (1 - lost)).toFixed(0)} %`, 5], ["comfort", "Painful moments", (lost) => String(Math.round(3 * lost)), 5],
-  ["length", "Length of the way", (lost) => `${(70 + 30 * lost).toFixed(0)} mm`, 5], ["time", "Time", (lost) => `${(40 + 80 * lost).toFixed(0)} s`, 5], ["passes", "Punctures of the organ", (lost) => String(1 + Math.round(3 * lost)), 5],
+  ["risk", "Structures harmed", (lost) => (lost > 0.3 ? "1 touched" : "none touched"), 20], ["access", "Missing safety margin to structures at risk", (lost) => `${(6 * (1 - lost)).toFixed(1)} mm margin`, 15],
+  ["visibility", "Tip visible while advancing", (lost) => `${(100 * (1 - lost)).toFixed(0)} %`, 5], ["comfort", "Pain events", (lost) => String(Math.round(3 * lost)), 5],
+  ["length", "Needle travel inside the body", (lost) => `${(70 + 30 * lost).toFixed(0)} mm`, 5], ["time", "Time", (lost) => `${(40 + 80 * lost).toFixed(0)} s`, 5], ["passes", "Extra organ punctures and shots", (lost) => String(1 + Math.round(3 * lost)), 5],
 ];
 
 export class MockResults {
   readonly people: MockPerson[];
   readonly attempts: MockAttempt[];
+  readonly courses = kCourses.map((one) => ({ ...one }));
   constructor() {
     const random = new Random(23);
     this.people = make_people(random);
@@ -44,16 +45,36 @@ export class MockResults {
         unscored: all.length - scores.length, never_began: 0, lost: every.length - all.length, running: 0, counts_text: counts_text(every),
       };
     }
-    const { id, name, group, course, simulated } = person;
-    return { id, name, group, course, simulated, tasks };
+    const { id, name, group, course, simulated, has_pin = false } = person;
+    return { id, name, group, course, simulated, has_pin, tasks };
   }
 
   overview(course: string | null): unknown {
-    return { tasks: kTasks, courses: kCourses, people: this.people.filter((one) => !course || one.course === course).map((one) => this.person_answer(one)) };
+    return { tasks: kTasks, courses: this.courses, people: this.people.filter((one) => !course || one.course === course).map((one) => this.person_answer(one)) };
   }
   person(id: string): unknown {
     const person = this.people.find((one) => one.id === id);
-    return person ? { person: this.person_answer(person), tasks: kTasks } : null;
+    return person ? { person: this.person_answer(person), tasks: kTasks, courses: this.courses } : null;
+  }
+  find_person(id: string): MockPerson | undefined {
+    return this.people.find((one) => one.id === id);
+  }
+  /** A course of this name, made if there is none; null without a name. */
+  course_of(name: string): string | null {
+    if (!name) return null;
+    if (!this.courses.some((one) => one.id === name)) this.courses.push({ id: name, name });
+    return name;
+  }
+  rename_course(name: string, new_name: string): void {
+    const course = this.courses.find((one) => one.id === name);
+    if (course) course.id = course.name = new_name;
+    for (const person of this.people) if (person.course === name) person.course = new_name;
+  }
+  find_attempt(id: string): MockAttempt | undefined {
+    return this.attempts.find((one) => one.id === id);
+  }
+  delete_note(id: string): void {
+    for (const one of this.attempts) one.notes = one.notes.filter((note) => note.id !== id);
   }
   delete_person(id: string): void {
     this.people.splice(this.people.findIndex((one) => one.id === id), 1);
@@ -61,11 +82,17 @@ export class MockResults {
   list(person: string, task: string, before: number, limit: number): unknown {
     const all = this.of(person, task).filter((one) => one.sequence < before).reverse();
     const page = all.slice(0, limit);
-    return { attempts: page.map((one) => this.attempt_answer(one)), next: all.length > limit ? page[page.length - 1].sequence : null };
+    return { attempts: page.map((one) => ({ ...this.attempt_answer(one), ...this.reasons(one), notes: one.notes.length })), next: all.length > limit ? page[page.length - 1].sequence : null };
   }
   private attempt_answer(one: MockAttempt): Record<string, unknown> {
     const { id, sequence, task, patient, difficulty, level, started_s, state, score, passed, duration_s, station } = one;
     return { id, sequence, task, patient, difficulty, level, started_s, state, score, passed, duration_s, station };
+  }
+
+  private reasons(one: MockAttempt): { not_scored: string | null; fails: string[] } {
+    const is_failed = one.passed === false && one.score !== null;
+    const fails = !is_failed ? [] : one.score! < 70 ? ["the score is below the pass mark of 70"] : ["the needle went 12 mm into the right portal vein"];
+    return { not_scored: one.score === null ? "the gun was not fired" : null, fails };
   }
 
   curve(person: string, task: string): unknown {
@@ -139,13 +166,12 @@ export class MockResults {
       const values = this.values(one.task, name, (who) => who.group === "expert");
       return { name, title, unit, better, value: this.value_of(one, name), expert_median: quantile(values, 0.5), expert_q1: quantile(values, 0.25), expert_q3: quantile(values, 0.75) };
     });
-    const fails = one.passed === false && one.score !== null ? (one.score < 70 ? [`The score is below the pass mark of 70.`] : ["A critical structure was touched: right portal vein."]) : [];
     const hints = [
       { text: "The tip was in the image during 62 % of the advance: stop when you lose it, and move the transducer until you see it again.", at_s: 0.5 * one.duration_s },
       { text: "The needle was redirected twice inside the liver: withdraw it to the capsule before you change its direction.", at_s: 0.62 * one.duration_s },
       { text: "Give the local anaesthetic before the skin is punctured.", at_s: null },
     ].slice(0, one.passed ? 1 : 3);
-    return { attempt: { ...this.attempt_answer(one), person: { id: person.id, name: person.name, simulated: person.simulated }, not_scored: one.score === null ? "the recording is incomplete" : null, fails, hints }, parts, metrics };
+    return { attempt: { ...this.attempt_answer(one), person: { id: person.id, name: person.name, simulated: person.simulated }, ...this.reasons(one), hints }, notes: one.notes, parts, metrics };
   }
   trace(id: string): unknown {
     const one = this.attempts.find((attempt) => attempt.id === id);
@@ -165,13 +191,13 @@ export class MockResults {
       const { name, title, unit, better } = metric;
       const enough = experts.length >= 3 && novices.length >= 3;
       const auc = separation(experts, novices, better === "lower");
-      return { name, title, unit, n_expert: experts.length, n_novice: novices.length, expert_median: quantile(experts, 0.5), novice_median: quantile(novices, 0.5), auc: enough ? auc : null, low: enough ? Math.max(0, auc - 0.07) : null, high: enough ? Math.min(1, auc + 0.05) : null, p: enough ? Math.max(1e-5, (1 - auc) ** 3) : null, discriminates: enough ? auc > 0.7 : null };
+      return { name, title, unit, better, n_expert: experts.length, n_novice: novices.length, expert_median: quantile(experts, 0.5), novice_median: quantile(novices, 0.5), auc: enough ? auc : null, low: enough ? Math.max(0, auc - 0.07) : null, high: enough ? Math.min(1, auc + 0.05) : null, p: enough ? Math.max(1e-5, (1 - auc) ** 3) : null, discriminates: enough ? auc > 0.7 : null };
     });
     const judged = rows.filter((one) => one.discriminates !== null);
     const count = judged.filter((one) => one.discriminates).length;
     const few = task === "ptcd";
     return {
-      task, ...this.choices(task), counts_text: counts_text(this.attempts.filter((one) => one.task === task && is_wanted(one))), experts: 3, novices: 23, expert_attempts: 9, novice_attempts: 69, expert_unscored: 0, novice_unscored: 3, simulated: true, passed: rows[0], metrics: rows, discriminating: judged.length ? { share: count / judged.length, count, of: judged.length, uncorrected: Math.min(judged.length, count + 2), note: "" } : null,
+      task, ...this.choices(task), counts_text: counts_text(this.attempts.filter((one) => one.task === task && is_wanted(one))), experts: 3, novices: 23, expert_attempts: 9, novice_attempts: 69, expert_unscored: 0, novice_unscored: 3, simulated: true, passed: { ...rows[0], expert_median: 0.9, novice_median: 0.4 }, metrics: rows, discriminating: judged.length ? { share: count / judged.length, count, of: judged.length, uncorrected: Math.min(judged.length, count + 2), note: "" } : null,
       alpha: few ? null : { value: 0.81, items: 9, n: 640 }, pass_mark: few ? null : { value: 68.4, false_passes: 4, false_fails: 0, experts: 3, novices: 23 }, reason: few ? "fewer than 30 scored attempts" : null,
     };
   }

@@ -8,6 +8,7 @@ export interface MockPerson {
   group: "trainee" | "expert";
   course: string | null;
   simulated: boolean;
+  has_pin?: boolean;
   skill: number;  ///< 0 novice … 1 expert, at the first attempt.
 }
 export interface MockAttempt {
@@ -25,6 +26,13 @@ export interface MockAttempt {
   duration_s: number;
   station: string;
   skill: number;
+  notes: MockNote[];
+}
+export interface MockNote {
+  id: string;
+  author: string;
+  text: string;
+  written_s: number;
 }
 
 export const kTasks = [
@@ -34,8 +42,8 @@ export const kTasks = [
   { id: "ptcd", title: "Bile duct puncture (PTCD)" },
 ];
 export const kCourses = [
-  { id: "c1", name: "Radiology residents 2026" },
-  { id: "c2", name: "Hepatology course, autumn" },
+  { id: "Radiology residents 2026", name: "Radiology residents 2026" },
+  { id: "Hepatology course, autumn", name: "Hepatology course, autumn" },
 ];
 export const kHtmlName = `<img src=x onerror="document.title='broken'"> <b>Bold</b>`;
 export const kSqlName = "Robert'); DROP TABLE people;--";
@@ -53,7 +61,7 @@ export function make_people(random: Random): MockPerson[] {
   for (let k = 1; k <= 12; k += 1) people.push({ id: hex(random), name: `Simulated novice ${k}`, group: "trainee", course: null, simulated: true, skill: random.uniform(0.1, 0.35) });
   people.push({ id: hex(random), name: "Prof. Ingrid Sommer", group: "expert", course: null, simulated: false, skill: 0.9 });
   kNames.forEach((name, k) => people.push({ id: hex(random), name, group: "trainee", course: kCourses[k % 2].id, simulated: false, skill: random.uniform(0.15, 0.5) }));
-  people.push({ id: hex(random), name: "Zoë Nobody-yet", group: "trainee", course: "c1", simulated: false, skill: 0.2 });
+  people.push({ id: hex(random), name: "Zoë Nobody-yet", group: "trainee", course: kCourses[0].id, simulated: false, skill: 0.2 });
   return people;
 }
 
@@ -73,7 +81,7 @@ export function make_attempts(random: Random, people: MockPerson[]): MockAttempt
           difficulty: 1 + Math.floor(random.uniform(0, 5)), level: random.pick(["guided", "assisted", "exam"]),
           started_s: Math.round(kStart_s + Math.floor(n * 0.9) * 86400 + random.uniform(0, 9 * 3600)), state: scored ? "finished" : n % 2 ? "unscored" : "interrupted",
           score: scored ? score : null, passed: scored ? score >= 70 && random.uniform() > 0.05 : n % 2 ? false : null,
-          duration_s: random.normal(130 - 70 * skill, 8), station: random.pick(["station-1", "station-2"]), skill,
+          duration_s: random.normal(130 - 70 * skill, 8), station: random.pick(["station-1", "station-2"]), skill, notes: [],
         });
       }
     }

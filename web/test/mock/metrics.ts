@@ -16,7 +16,7 @@ export const kMetrics: MockMetric[] = [
   { name: "target_distance", title: "Distance of the tip from the target at the end", unit: "mm", better: "lower", novice: 11, expert: 1.4 },
   { name: "entry_offset", title: "Distance of the entry from the expert's entry", unit: "mm", better: "lower", novice: 19, expert: 4 },
   { name: "path_angle", title: "Angle between the needle and the expert path", unit: "deg", better: "lower", novice: 14, expert: 3 },
-  { name: "frechet_distance", title: "Fréchet distance of the tip's way from the expert path", unit: "mm", better: "lower", novice: 22, expert: 5 },
+  { name: "frechet_distance", title: "Fréchet distance of the tip's path from the expert path", unit: "mm", better: "lower", novice: 22, expert: 5 },
   { name: "elapsed_time", title: "Elapsed time", unit: "s", better: "lower", novice: 140, expert: 52 },
   { name: "path_length", title: "Path length of the tip", unit: "mm", better: "lower", novice: 640, expert: 210 },
   { name: "tissue_damage", title: "Area swept by the shaft inside the body", unit: "mm²", better: "lower", novice: 2300, expert: 310 },

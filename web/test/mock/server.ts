@@ -31,6 +31,7 @@ export class MockServer {
   readonly forms = new MockForms();
   readonly accounts = new Map([["Dr. Weber", { password: "a long test password", role: "admin" }], ["instructor", { password: "another long password", role: "instructor" }]]);
   answers_received = 0;
+  pins_required = false;
   private readonly sessions = new Map<string, Session>();
   private failures: Failure[] = [];
   private failed_logins = 0;
@@ -129,6 +130,7 @@ export class MockServer {
     if (!session) throw new HttpError(401, "no session", "sign in");
     const body = method === "GET" ? null : await this.body(request);
     if (method !== "GET" && request.headers["x-csrf-token"] !== session.csrf) throw new HttpError(403, "X-CSRF-Token is missing or wrong", "reload the page");
+    if (parts[0] === "logout") response.setHeader("Clear-Site-Data", '"cache", "storage"');
     return this.answer_session(method, parts, url.searchParams, body, session, token, found);
   }
 
@@ -145,10 +147,14 @@ export class MockServer {
       case "me":
         return { account: { name: session.name, role }, csrf: session.csrf, program_version: "0.23.0" };
       case "password":
-        if (body.old !== this.accounts.get(session.name)!.password) throw new HttpError(403, "the present password is wrong", "type it again");
+        if (body.old !== this.accounts.get(session.name)!.password) throw new HttpError(403, "the current password is wrong", "type it again");
         return undefined;
       case "accounts":
         needs_admin();
+        if (parts[2] === "password") {
+          found(this.accounts.get(parts[1])).password = body.password;
+          return undefined;
+        }
         if (method === "POST") this.accounts.set(body.name, { password: body.password, role: body.role });
         if (method === "DELETE") this.accounts.delete(parts[1]);
         return method === "GET" ? { accounts: [...this.accounts].map(([name, one]) => ({ name, role: one.role })) } : undefined;
@@ -159,12 +165,29 @@ export class MockServer {
           needs_admin();
           return this.results.delete_person(parts[1]);
         }
+        if (method === "POST" || method === "PUT") return this.change_people(method, parts, body, found);
         if (parts[2] === "attempts") return this.results.list(parts[1], task, Number(query.get("before") ?? 1e9), Number(query.get("limit") ?? 50));
         return parts[2] === "curve" ? this.results.curve(parts[1], task) : found(this.results.person(parts[1]));
+      case "courses":
+        if (method === "DELETE") this.results.courses.splice(this.results.courses.findIndex((one) => one.id === body.name), 1);
+        else this.results.rename_course(body.name, body.new_name);
+        return undefined;
+      case "pins":
+        if (method === "PUT") needs_admin();
+        if (method === "PUT") this.pins_required = body.required;
+        return { required: this.pins_required };
+      case "notes":
+        this.results.delete_note(parts[1]);
+        return undefined;
       case "metrics":
         return parts[1] ? found(this.results.distribution(parts[1], task, query.get("course") ?? "")) : this.results.metrics();
       case "attempts":
         if (parts[2] === "recording") return found(null);
+        if (parts[2] === "notes") {
+          const note = { id: randomBytes(16).toString("hex"), author: session.name, text: body.text.trim(), written_s: Math.floor(Date.now() / 1000) };
+          found(this.results.find_attempt(parts[1])).notes.push(note);
+          return note;
+        }
         return found(parts[2] === "trace" ? this.results.trace(parts[1]) : this.results.attempt(parts[1]));
       case "export":
         return this.results.csv();
@@ -177,6 +200,23 @@ export class MockServer {
       default:
         return found(null);
     }
+  }
+
+  private change_people(method: string, parts: string[], body: any, found: <T>(value: T | null | undefined) => T): unknown {
+    const { results } = this;
+    if (parts[1] === "move") {
+      for (const id of body.people) found(results.find_person(id)).course = results.course_of(body.course);
+      return undefined;
+    }
+    if (parts[2] === "pin") {
+      found(results.find_person(parts[1])).has_pin = body.pin !== "";
+      return undefined;
+    }
+    if (results.people.some((one) => one.name.toLowerCase() === body.name.toLowerCase() && one.id !== parts[1])) throw new HttpError(409, "another person has this name", "choose another name");
+    const person = method === "PUT" ? found(results.find_person(parts[1])) : { id: randomBytes(16).toString("hex"), name: "", group: "trainee" as const, course: null, simulated: false, skill: 0.2 };
+    Object.assign(person, { name: body.name, group: body.group, course: results.course_of(body.course) });
+    if (method === "POST") results.people.push(person);
+    return { id: person.id, name: person.name };
   }
 
   private answer_forms(method: string, parts: string[], body: any, found: <T>(value: T | null | undefined) => T): unknown {

@@ -2,12 +2,14 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { compared, cusum_by_point, cusum_verdict } from "../../src/lib/judgement.ts";
+import { compared, cusum_by_point, cusum_verdict, separation_strength } from "../../src/lib/judgement.ts";
 import type { CurvePoint, MetricValue, Person } from "../../src/lib/types.ts";
 import { path_with } from "../../src/lib/api.ts";
 import { password_problem } from "../../src/pages/account.ts";
 import { counted_text, matches, total } from "../../src/pages/cohort.ts";
 import { moved, problem_of } from "../../src/pages/form_editor.ts";
+import { course_rows, numbers_of, quartiles_of, score_bins, trainees_of } from "../../src/manage/course_numbers.ts";
+import { pin_problem } from "../../src/manage/people.ts";
 import { safe_path } from "../../src/pages/login.ts";
 import { limits_text } from "../../src/pages/proficiency.ts";
 import { missing_items } from "../../src/pages/questionnaire.ts";
@@ -50,7 +52,9 @@ test("what was counted and left out is said", () => {
 });
 
 test("a median that is not reached has no limits, an open limit is said", () => {
-  assert.equal(limits_text({ median: 7, low: 5, high: null }), " (95 % 5 to open)");
+  assert.equal(limits_text({ median: 7, low: 5, high: null }), "95 % interval: at least 5. ");
+  assert.equal(limits_text({ median: 7, low: null, high: 9 }), "95 % interval: at most 9. ");
+  assert.equal(limits_text({ median: 7, low: 5, high: 9 }), "95 % interval: 5 to 9. ");
   assert.equal(limits_text({ median: null, low: 5, high: null }), "");
 });
 
@@ -77,6 +81,46 @@ test("a value outside of the experts' quartiles is worse, better or only differe
   assert.equal(compared(metric(null, "lower")).text, "No comparison");
 });
 
+test("a metric without a better direction separates by the distance of its AUC from 0.5", () => {
+  assert.equal(separation_strength({ auc: 0.05, better: "neither" }), 0.95);
+  assert.equal(separation_strength({ auc: 0.05, better: "lower" }), 0.05);
+  assert.equal(separation_strength({ auc: null, better: "neither" }), null);
+});
+
+test("a PIN has 4 to 12 digits", () => {
+  for (const good of ["0000", "123456789012"]) assert.equal(pin_problem(good), null);
+  for (const bad of ["", "123", "1234567890123", "12a4", " 1234", "١٢٣٤"]) assert.match(pin_problem(bad)!, /4 to 12 digits/);
+});
+
+const result = (attempts: number, passed: number, recent_mean: number | null, last_s: number) => ({ attempts, scored: attempts, passed, last_score: 1, best_score: 2, recent_mean, last_s, unscored: 0, never_began: 0, lost: 0, running: 0 });
+
+test("a course has the numbers of its real trainees, each counted once in the scores", () => {
+  const people = [
+    person({ id: "1", tasks: { a: result(4, 2, 60, 100), b: result(2, 1, 80, 300) } }),
+    person({ id: "2", tasks: { a: result(4, 0, 40, 200) } }),
+    person({ id: "3" }),
+    person({ id: "4", group: "expert", tasks: { a: result(9, 9, 99, 900) } }),
+    person({ id: "5", simulated: true, tasks: { a: result(9, 9, 99, 900) } }),
+    person({ id: "6", course: "c2", simulated: true, tasks: { a: result(5, 1, 30, 50) } }),
+    person({ id: "7", course: null }),
+  ];
+  const { people: members, is_simulated } = trainees_of(people, "c1");
+  assert.equal(is_simulated, false);
+  assert.deepEqual(members.map((one) => one.id), ["1", "2", "3"]);
+  assert.deepEqual(numbers_of(members, ""), { people: 3, practised: 2, with_pass: 1, attempts: 10, passed: 3, scores: [40, 70], last_s: 300 });
+  assert.deepEqual(numbers_of(members, "b"), { people: 3, practised: 1, with_pass: 1, attempts: 2, passed: 1, scores: [80], last_s: 300 });
+  assert.deepEqual(numbers_of([], ""), { people: 0, practised: 0, with_pass: 0, attempts: 0, passed: 0, scores: [], last_s: null });
+  const rows = course_rows({ tasks: [], courses: [{ id: "c1", name: "One" }, { id: "c2", name: "Two" }, { id: "c3", name: "Empty" }], people }, "");
+  assert.deepEqual(rows.map((one) => [one.name, one.is_simulated, one.numbers.people]), [["One", false, 3], ["Two", true, 1], ["Empty", false, 0], ["Without a course", false, 1]]);
+});
+
+test("quartiles lie linearly between the values, bins have their upper end in the last", () => {
+  assert.deepEqual(quartiles_of([10, 20, 30, 50]), { min: 10, q1: 17.5, median: 25, q3: 35, max: 50 });
+  assert.deepEqual(quartiles_of([7]), { min: 7, q1: 7, median: 7, q3: 7, max: 7 });
+  assert.equal(quartiles_of([]), null);
+  assert.deepEqual(score_bins([0, 9.9, 10, 95, 100]), [2, 1, 0, 0, 0, 0, 0, 0, 0, 2]);
+});
+
 test("the login leads only to paths of this server", () => {
   assert.equal(safe_path("/people/1?task=a"), "/people/1?task=a");
   for (const bad of [null, "", "https://evil.example", "//evil.example", "/\\evil.example", "javascript:alert(1)", "/login?next=/login"]) assert.equal(safe_path(bad), "/", String(bad));
@@ -92,7 +136,7 @@ test("passwords are checked before they are sent", () => {
 test("the editor names the first item without a text and moves items within the list", () => {
   const item = (text: string) => ({ kind: "scale" as const, text, is_required: true });
   assert.equal(problem_of({ title: " ", intro: "", items: [item("a")] }), "Enter a title.");
-  assert.equal(problem_of({ title: "t", intro: "", items: [] }), "Add an item.");
+  assert.equal(problem_of({ title: "t", intro: "", items: [] }), "Add a statement or a question.");
   assert.match(problem_of({ title: "t", intro: "", items: [item("a"), item(" ")] })!, /item 2/);
   assert.equal(problem_of({ title: "t", intro: "", items: [item("a")] }), null);
   assert.deepEqual(moved([1, 2, 3], 0, 1), [2, 1, 3]);

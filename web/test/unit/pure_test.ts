@@ -5,7 +5,7 @@ import { readdirSync, readFileSync, statSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { fileURLToPath } from "node:url";
-import { clock_text, duration_text, event_text, fixed, number_text, percent, plural, with_unit, words } from "../../src/lib/format.ts";
+import { clock_text, duration_text, event_text, fixed, number_text, percent, plural, sentence, state_text, with_unit, words } from "../../src/lib/format.ts";
 import { extent_of, index_at, kFront, kSide, project, tissue_stretches, turned } from "../../src/replay/trace.ts";
 import type { Point3, Trace } from "../../src/lib/types.ts";
 
@@ -38,6 +38,11 @@ test("words, plurals and shares", () => {
   assert.equal(words(null), "–");
   assert.equal(event_text("enter:supraspinous_ligament"), "Enter: supraspinous ligament");
   assert.equal(event_text("shot"), "Shot");
+  assert.equal(sentence("the needle went in"), "The needle went in.");
+  assert.equal(sentence("Done!"), "Done!");
+  assert.equal(sentence(" "), "");
+  assert.equal(state_text("never-began"), "The needle never entered the body");
+  assert.equal(state_text("of_a_newer_server"), "Of a newer server");
   assert.equal(plural(1, "person", "people"), "1 person");
   assert.equal(plural(0, "answer"), "0 answers");
   assert.equal(percent(1, 3), "33\u00a0%");

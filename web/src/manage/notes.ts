@@ -1,0 +1,71 @@
+// Notes of instructors to an attempt.
+
+import { send } from "../lib/api.ts";
+import { h, replace_children } from "../lib/dom.ts";
+import { plural } from "../lib/format.ts";
+import type { Note } from "../lib/types.ts";
+import { is_admin, session } from "../session.ts";
+import { ask } from "../ui/dialog.ts";
+import { card, run_once, text_area, time_element } from "../ui/parts.ts";
+import { error_box, toast } from "../ui/states.ts";
+
+const kMostCharacters = 2000;
+
+export function notes_card(attempt: string, given: Note[]): HTMLElement {
+  let notes = given;
+  const list = h("ul", { class: "comments" });
+  const problem = h("div", {});
+  const remove = (note: Note): void =>
+    ask({
+      title: "Delete this note?",
+      text: "This cannot be undone.",
+      action: "Delete",
+      run: async () => {
+        await send("DELETE", `/api/notes/${encodeURIComponent(note.id)}`, {});
+        notes = notes.filter((one) => one !== note);
+        show();
+        toast("The note was deleted.");
+      },
+    });
+  const show = (): void => {
+    replace_children(
+      list,
+      notes.map((note) => {
+        const may_delete = is_admin() || note.author === session.me?.account.name;
+        return h(
+          "li",
+          {},
+          h("p", { class: "comment" }, note.text),
+          h("p", { class: "help" }, `${note.author}, `, time_element(note.written_s)),
+          may_delete && h("button", { type: "button", class: "button button-small no-print", on: { click: () => remove(note) } }, "Delete note …"),
+        );
+      }),
+      notes.length === 0 && h("li", { class: "dim" }, "No notes yet."),
+    );
+  };
+  const field = text_area("New note", { maxlength: String(kMostCharacters), rows: "3" });
+  const button = h("button", { type: "submit", class: "button" }, "Add note");
+  const add = async (): Promise<void> => {
+    replace_children(problem);
+    field.set_error(field.input.value.trim() ? null : "Enter a text.");
+    if (!field.input.value.trim()) {
+      field.input.focus();
+      return;
+    }
+    try {
+      notes = [...notes, await send<Note>("POST", `/api/attempts/${encodeURIComponent(attempt)}/notes`, { text: field.input.value })];
+      field.input.value = "";
+      show();
+      toast(`The note was saved: ${plural(notes.length, "note")} in all.`);
+    } catch (error) {
+      replace_children(problem, error_box(error));
+    }
+  };
+  const form = h("form", { class: "form no-print", novalidate: true }, field.element, problem, button);
+  form.addEventListener("submit", (event) => {
+    event.preventDefault();
+    void run_once(button, add);
+  });
+  show();
+  return card("Notes", { class: "card-notes" }, h("p", { class: "help" }, "Every instructor can read the notes. They are deleted with the person."), list, form);
+}
