@@ -51,7 +51,7 @@ Result<PassMark> contrasting_groups(std::span<const double> experts, std::span<c
     return log_density(mark.experts, score) - log_density(mark.novices, score);
   };
   if (experts_over_novices(mark.novices.mean) >= 0.0 || experts_over_novices(mark.experts.mean) <= 0.0)
-    return fail("the distributions of experts and novices overlap too much to cross between their means", kPassMark,
+    return fail("the scores of experts and novices overlap too much for a pass mark between their means", kPassMark,
                 "record more people, or use a score that separates them");
   mark.value = bisect(mark.novices.mean, mark.experts.mean, experts_over_novices);
   mark.expected_false_pass = 1.0 - share_below(mark.novices, mark.value);

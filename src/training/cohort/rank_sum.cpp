@@ -76,7 +76,7 @@ double smallest_rank_sum_p(std::size_t n1, std::size_t n2) {
 Result<RankSumTest> rank_sum_test(std::span<const double> first, std::span<const double> second,
                                   std::size_t most_exact) {
   if (first.empty() || second.empty())
-    return fail("a group has no values", "rank sum test", "record attempts of experts and novices");
+    return fail("one of the two groups has no values", "rank sum test", "record attempts of experts and novices");
   TROCAR_TRY_STATUS(check_finite(first, "the first group"));
   TROCAR_TRY_STATUS(check_finite(second, "the second group"));
   const auto n1 = static_cast<double>(first.size()), n2 = static_cast<double>(second.size());

@@ -47,7 +47,7 @@ Result<Alpha> cronbach_alpha(std::span<const std::vector<double>> people) {
   const double total_variance = variance_of(totals);
   constexpr double kRounding = 1e-18;  // of the squares of the totals
   if (total_variance <= kRounding * (1.0 + totals.front() * totals.front()))
-    return fail("everyone has the same total", kConsistency, "record people of different skill");
+    return fail("all people have the same total score", kConsistency, "record people of different skill");
   Alpha alpha;
   alpha.items = items;
   alpha.people = people.size();

@@ -16,7 +16,7 @@ struct Alpha {
 };
 
 /// `people`: the items of each person, in the same order and unit (the total is their sum). Errors: fewer than two
-/// people or items, rows of different length, a value that is not finite, everyone has the same total.
+/// people or items, rows of different length, a value that is not finite, all people have the same total score.
 Result<Alpha> cronbach_alpha(std::span<const std::vector<double>> people);
 
 }  // namespace trocar::cohort

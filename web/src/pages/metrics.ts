@@ -2,7 +2,7 @@
 
 import { get, path_with } from "../lib/api.ts";
 import { h, replace_children, type Child } from "../lib/dom.ts";
-import { number_text, unit_text, with_unit } from "../lib/format.ts";
+import { number_text, sentence, unit_text, with_unit } from "../lib/format.ts";
 import { write_query, type PageContext } from "../lib/router.ts";
 import type { MetricDistribution, MetricGroup, MetricName, Overview } from "../lib/types.ts";
 import { auc_text, group_title, histograms } from "../plots/histogram.ts";
@@ -37,7 +37,7 @@ function show_distribution(metric: MetricDistribution, signal: AbortSignal): Chi
     h("p", { class: "dim" }, `${kBetter[metric.better] ?? ""} ${unit ? `Unit: ${unit}.` : ""} Each person counts once, with the mean of all attempts.`),
     metric.auc
       ? h("p", { class: "auc" }, h("strong", {}, "Separation of experts and trainees (AUC): "), auc_text(metric.auc), interval_strip(metric.auc.value, metric.auc.low, metric.auc.high), h("span", { class: "dim" }, metric.better === "neither" ? "Probability that the value of an expert is higher. 0.5: no separation; 0 or 1: complete separation." : "Probability that an expert is better than a trainee. 0.5: no separation; 1: complete separation."))
-      : h("p", { class: "notice" }, metric.reason ?? "Experts and trainees cannot be compared yet: attempts of both groups are needed."),
+      : h("p", { class: "notice" }, metric.reason ? sentence(`Experts and trainees cannot be compared: ${metric.reason}`) : "Experts and trainees cannot be compared yet: attempts of both groups are needed."),
     histograms(shown, signal),
     h("details", { class: "as-table" }, h("summary", {}, "Histogram as a table"), plain_table("People in each interval", [`Interval${unit ? ` (${unit})` : ""}`, ...filled.map(group_title)], bins)),
     quartile_table(shown),

@@ -83,7 +83,7 @@ HttpAnswer wait_answer(std::chrono::seconds wait, std::string_view error) {
 }
 
 HttpAnswer busy_answer() {
-  return wait_answer(std::chrono::seconds(1), "the server checks many passwords just now");
+  return wait_answer(std::chrono::seconds(1), "too many passwords are being checked at the moment");
 }
 
 HttpAnswer ok(const Json& json, int status) {
