@@ -17,7 +17,7 @@ interface Draft {
 }
 
 /** Characters of the introduction, as the server accepts them. */
-const kMaxIntro = 4000;
+const kMaxIntro = 2000;
 
 const kNew: Draft = {
   title: "",

@@ -79,7 +79,7 @@ describe("questionnaire", () => {
     const { page } = await open_page(browser, site);
     await login(page);
     await page.goto("/forms/new");
-    assert.equal(await page.getByLabel("Introduction").getAttribute("maxlength"), "4000");
+    assert.equal(await page.getByLabel("Introduction").getAttribute("maxlength"), "2000");
     const ends = page.locator(".preview .scale-ends").first();
     assert.equal(await ends.isVisible(), true);
     assert.deepEqual(await ends.locator("span").allTextContents(), ["strongly agree", "strongly disagree"]);

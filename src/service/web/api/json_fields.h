@@ -13,8 +13,6 @@ namespace trocar::web {
 
 using config::Json;
 
-/// Bytes of a text of several lines.
-inline constexpr std::size_t kMostLongBytes = 16000;
 inline constexpr std::size_t kMostTextBytes = 4096;
 /// A text of the body, of at most so many bytes of UTF-8. Error (exit status 2): missing, not a text, too long.
 Result<std::string> text_field(const Json& body, const char* name, std::size_t most_bytes = kMostTextBytes);

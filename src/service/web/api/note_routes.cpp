@@ -11,7 +11,7 @@ namespace {
 Result<HttpAnswer> add_attempt_note(Backend& backend, const Call& call) {
   const std::string& attempt = call.names[0];
   if (!is_id(attempt)) return not_found("attempt");
-  TROCAR_TRY(const std::string text, text_field(call.body, "text", kMostLongBytes));
+  TROCAR_TRY(const std::string text, text_field(call.body, "text", 4 * results::kMaxNoteCharacters));
   const auto repository = backend.repositories.borrow();
   TROCAR_TRY(const auto found, results::find_attempt(*repository, attempt));
   if (!found) return not_found("attempt");
