@@ -15,6 +15,7 @@ Result<std::vector<CaseResult>> run_haptics_benchmark();
 Result<std::vector<CaseResult>> run_session_benchmark();
 /// Opening a case of an embedded patient: the first time and again, with its parts and the peak of memory.
 Result<std::vector<CaseResult>> run_open_benchmark(const Options& options);
+Result<std::vector<CaseResult>> run_cancel_benchmark(const Options& options);
 /// Forces of an insertion into the embedded patient: peaks, drops, second insertion.
 Result<std::vector<CaseResult>> run_insertion_benchmark(const Options& options);
 /// Partly segmented data compared with fully segmented data along planned paths: the study of the Luebeck group.

@@ -10,6 +10,8 @@ const std::vector<Benchmark>& all_benchmarks() {
       {"session", "30 simulated seconds at 1 kHz with recording, and the whole process", run_session_benchmark},
       {"open", "opening an embedded patient in the trainer, the first time and again, at two resolutions: a minute",
        run_open_benchmark},
+      {"cancel", "opening a case and its pictures, cancelled at 24 moments each, until the work has ended; minutes",
+       run_cancel_benchmark},
       {"insertion",
        "forces along the planned path: skin under the needle, peaks by speed, drops, second insertion",
        run_insertion_benchmark,

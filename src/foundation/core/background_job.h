@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/cancellation.h"
 #include "core/progress.h"
 #include "core/result.h"
 #include "core/start_thread.h"
@@ -28,16 +29,17 @@ struct JobView {
   bool is_done = false;   ///< The result is ready.
 };
 
-/// Work on a separate thread, polled by a window once per frame. Only the destructor blocks (see RetiredJobs). One
-/// thread owns the job; the work accesses only its Progress and its stop token.
+/// Work on a separate thread, which a cancellation ends at the next cancellation_point(), polled by a window once per
+/// frame. Only the destructor blocks (see RetiredJobs). One thread owns the job; the work accesses only its Progress
+/// and its stop token.
 template <class T>
 class BackgroundJob {
  public:
   /// No work: view().is_done is false and take() returns nothing.
   BackgroundJob() = default;
   /// Starts the work. `work` is `Result<T>(const Progress&)`, or `Result<T>(const Progress&, std::stop_token)` if it
-  /// can stop early. The result of a stopped job is always dropped. If no thread can start, or the work throws, the
-  /// result is an error.
+  /// has something to do when it is cancelled. The result of a stopped job is always dropped. If no thread can start,
+  /// or the work throws, the result is an error.
   template <class Work>
   requires(!std::is_same_v<std::remove_cvref_t<Work>, BackgroundJob>) explicit BackgroundJob(Work work)
       : state_(std::make_shared<State>()) {
@@ -64,7 +66,7 @@ class BackgroundJob {
     const std::lock_guard lock(state_->mutex);
     return state_->view;
   }
-  /// Cancels the job and returns at once. The work gets a stop request and may continue for some time.
+  /// Cancels the job and returns at once. The work ends at its next cancellation_point().
   void cancel() noexcept { thread_.request_stop(); }
   bool is_cancelled() const noexcept { return thread_.get_stop_token().stop_requested(); }
   /// Returns the result once; empty before it is ready and for a cancelled job.
@@ -83,6 +85,7 @@ class BackgroundJob {
 
   static Progress progress_to(const std::shared_ptr<State>& state) {
     return [state](std::string_view step, double fraction) {
+      cancellation_point();
       const std::lock_guard lock(state->mutex);
       state->view.step = step;
       state->view.fraction = std::clamp(fraction, 0.0, 1.0);
@@ -91,12 +94,15 @@ class BackgroundJob {
 
   template <class Work>
   static Result<T> run(Work& work, const Progress& progress, const std::stop_token& stop) {
+    const CancellationScope scope(stop);
     try {
       if constexpr (std::is_invocable_v<Work&, const Progress&, std::stop_token>) {
         return work(progress, stop);
       } else {
         return work(progress);
       }
+    } catch (const Cancelled&) {
+      return fail("cancelled", {}, {});  // dropped: the job was stopped
     } catch (const std::bad_alloc&) {
       return fail("not enough memory", {}, "close other programs, or use smaller data");
     } catch (const std::exception& error) {  // of a library: this thread has no caller

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <thread>
 
+#include "core/cancellation.h"
 #include "core/start_thread.h"
 
 #ifdef TROCAR_THREAD_SANITIZER
@@ -69,30 +70,46 @@ void prepare_threads() {
 
 void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
   if (count == 0) return;
+  cancellation_point();
   using Range = oneapi::tbb::blocked_range<std::size_t>;
   prepare_threads();
   HandOver hand_over;
-  oneapi::tbb::parallel_for(Range(0, count, std::max<std::size_t>(grain, 1)),
-                            [&](const Range& part) { hand_over.run([&] { body(part.begin(), part.end()); }); });
+  const std::stop_token stop = cancellation_token();
+  oneapi::tbb::parallel_for(Range(0, count, std::max<std::size_t>(grain, 1)), [&](const Range& part) {
+    const CancellationScope scope(stop);
+    cancellation_point();
+    hand_over.run([&] { body(part.begin(), part.end()); });
+  });
 }
 
 void run_on_threads(int most, const std::function<void()>& body) {
   prepare_threads();
   oneapi::tbb::task_arena arena(std::max(most, 1));
   HandOver hand_over;
-  arena.execute([&] { hand_over.run(body); });
+  arena.execute([&, stop = cancellation_token()] {
+    const CancellationScope scope(stop);
+    hand_over.run(body);
+  });
 }
 
 void parallel_invoke(const std::function<void()>& a, const std::function<void()>& b) {
   prepare_threads();
   HandOver hand_over;
-  oneapi::tbb::parallel_invoke([&] { hand_over.run(a); }, [&] { hand_over.run(b); });
+  const auto run = [&, stop = cancellation_token()](const std::function<void()>& work) {
+    const CancellationScope scope(stop);
+    hand_over.run(work);
+  };
+  oneapi::tbb::parallel_invoke([&] { run(a); }, [&] { run(b); });
 }
 
 void parallel_invoke(const std::function<void()>& a, const std::function<void()>& b, const std::function<void()>& c) {
   prepare_threads();
   HandOver hand_over;
-  oneapi::tbb::parallel_invoke([&] { hand_over.run(a); }, [&] { hand_over.run(b); }, [&] { hand_over.run(c); });
+  const auto run = [&, stop = cancellation_token()](const std::function<void()>& work) {
+    const CancellationScope scope(stop);
+    hand_over.run(work);
+  };
+  oneapi::tbb::parallel_invoke([&] { run(a); }, [&] { run(b); }, [&] { run(c); });
 }
 
 }  // namespace core

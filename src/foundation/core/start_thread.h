@@ -8,6 +8,7 @@
 #include <thread>
 #include <type_traits>
 
+#include "core/cancellation.h"
 #include "core/result.h"
 
 namespace trocar {
@@ -29,7 +30,10 @@ Status check_threads_can_start(std::string_view name, int count);
 template <class Work>
 std::future<std::invoke_result_t<const Work&>> compute_beside(const Work& work) {
   try {
-    return std::async(std::launch::async, work);
+    return std::async(std::launch::async, [work, stop = cancellation_token()] {
+      const CancellationScope scope(stop);
+      return work();
+    });
   } catch (const std::system_error&) {
     std::packaged_task<std::invoke_result_t<const Work&>()> task(work);
     task();

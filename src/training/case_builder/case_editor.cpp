@@ -90,7 +90,7 @@ void CaseEditor::read_ultrasound(UltrasoundRequest request) {
   ultrasound_ = BackgroundJob<std::shared_ptr<const ImportedUltrasound>>(
       [request = std::move(request)](const Progress& progress) {
         report(progress, "reading the ultrasound", 0.0);
-        return case_builder::read_ultrasound(request);
+        return case_builder::read_ultrasound(request, progress);
       });
   work_ = Work::kReadingUltrasound;
   say({});
@@ -114,6 +114,7 @@ void CaseEditor::save(SaveOptions options) {
   save_version_ = history_.version();
   save_ = BackgroundJob<fs::path>([draft = draft(), patients = patients_,
                                    options = std::move(options)](const Progress& progress) -> Result<fs::path> {
+    const CompleteWork complete;
     TROCAR_TRY_STATUS(save_case(draft, *patients, options, progress));
     return fs::absolute(options.folder);
   });

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "core/cancellation.h"
 #include "core/live/live_thread.h"
 #include "core/log.h"
 #include "core/parallel.h"
@@ -35,9 +36,9 @@ void sort_by_label(std::vector<anatomy::NamedMesh>& meshes, const anatomy::Label
 }  // namespace
 
 LaterData::LaterData(std::shared_ptr<const anatomy::VirtualPatient> patient, ultrasound::AcousticTable acoustics,
-                     io::PatientSource source)
-    : patient_(std::move(patient)), acoustics_(std::move(acoustics)), source_(std::move(source)) {
-  show("ultrasound", 0.0);
+                     io::PatientSource source, First first)
+    : patient_(std::move(patient)), acoustics_(std::move(acoustics)), source_(std::move(source)), first_(first) {
+  show(first == First::kUltrasound ? "ultrasound" : "3D surfaces", 0.0);
   auto thread = start_stoppable_thread("picture data", [this](const std::stop_token& stop) { work(stop); });
   if (thread) {
     thread_ = *std::move(thread);
@@ -80,10 +81,20 @@ void LaterData::wait() const {
 }
 
 void LaterData::work(const std::stop_token& stop) {
+  const CancellationScope scope(stop);
   try {
     const bool has_surfaces = read_surfaces();
-    if (!stop.stop_requested()) make_acoustics();
-    if (!has_surfaces && !stop.stop_requested()) extract_surfaces(stop);
+    cancellation_point();
+    if (first_ == First::kUltrasound) {
+      make_acoustics();
+      if (!has_surfaces) extract_surfaces(stop);
+    } else {
+      if (!has_surfaces) extract_surfaces(stop);
+      lower_priority(kNice);
+      run_on_threads(1, [this] { make_acoustics(); });
+    }
+  } catch (const Cancelled&) {
+    // The rest never becomes ready.
   } catch (const std::bad_alloc&) {
     note({"not enough memory for the pictures of the case", patient_->name, "close other programs"});
   } catch (const std::exception& error) {  // of a library: this thread has no caller
@@ -94,9 +105,15 @@ void LaterData::work(const std::stop_token& stop) {
   changed_.notify_all();
 }
 
+double LaterData::share_of_whole(bool is_acoustic, double fraction) const noexcept {
+  if (first_ == First::kUltrasound)
+    return is_acoustic ? kAcousticShare * fraction : std::lerp(kAcousticShare, 1.0, fraction);
+  return is_acoustic ? std::lerp(1.0 - kAcousticShare, 1.0, fraction) : (1.0 - kAcousticShare) * fraction;
+}
+
 void LaterData::make_acoustics() {
   const Progress progress = [this](std::string_view, double fraction) {
-    show("ultrasound", kAcousticShare * fraction);
+    show("ultrasound", share_of_whole(true, fraction));
   };
   auto scene = ultrasound::make_acoustic_scene(*patient_, std::move(acoustics_), {}, progress);
   if (!scene) return note(scene.error());
@@ -117,12 +134,12 @@ bool LaterData::read_surfaces() {
 }
 
 void LaterData::extract_surfaces(const std::stop_token& stop) {
-  show("3D surfaces", kAcousticShare);
+  show("3D surfaces", share_of_whole(false, 0.0));
   lower_priority(kNice);
   std::vector<anatomy::NamedMesh> all;
   const auto receive = [&](anatomy::NamedMesh mesh, std::size_t done, std::size_t count) {
     const double share = static_cast<double>(done) / static_cast<double>(count);
-    show(fmt::format("3D surfaces: {} of {}", done, count), std::lerp(kAcousticShare, 1.0, share));
+    show(fmt::format("3D surfaces: {} of {}", done, count), share_of_whole(false, share));
     if (!mesh.mesh_P.triangles.empty()) {
       all.push_back(mesh);
       add({std::move(mesh)});
@@ -143,6 +160,7 @@ void LaterData::add(std::vector<anatomy::NamedMesh> meshes) {
 }
 
 void LaterData::show(std::string step, double fraction) {
+  cancellation_point();
   const std::lock_guard lock(mutex_);
   view_ = {std::move(step), fraction, false};
 }

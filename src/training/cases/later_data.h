@@ -2,6 +2,7 @@
 
 #include <condition_variable>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -20,14 +21,17 @@ namespace trocar::cases {
 /// first if they are in the patient folder or in the cache. Otherwise they are extracted after the scene, the skin
 /// first, then from small structures to large ones, on one thread of low priority, because haptic servers and the
 /// window run at the same time, and kept in the cache. Any thread may ask; only wait() and the destructor block, the
-/// latter until the present step ends.
+/// latter until the thread has stopped.
 class LaterData {
  public:
   using Surfaces = std::shared_ptr<const std::vector<anatomy::NamedMesh>>;
 
+  /// What the task needs first. kSurfaces: a task without ultrasound guidance; the acoustic scene then follows at low
+  /// priority.
+  enum class First : std::uint8_t { kUltrasound, kSurfaces };
   /// `source`: a patient folder, or an embedded patient with its cache folder (may be empty).
   LaterData(std::shared_ptr<const anatomy::VirtualPatient> patient, ultrasound::AcousticTable acoustics,
-            io::PatientSource source);
+            io::PatientSource source, First first = First::kUltrasound);
   ~LaterData();
   LaterData(const LaterData&) = delete;
   LaterData& operator=(const LaterData&) = delete;
@@ -40,7 +44,7 @@ class LaterData {
   JobView view() const;
   /// What could not be prepared, one line each.
   std::vector<std::string> errors() const;
-  /// Stops after the present step; the rest never becomes ready.
+  /// Stops within half a second; the rest never becomes ready.
   void cancel() noexcept;
   /// Waits until everything is ready.
   void wait() const;
@@ -48,6 +52,7 @@ class LaterData {
  private:
   void work(const std::stop_token& stop);
   void make_acoustics();
+  double share_of_whole(bool is_acoustic, double fraction) const noexcept;
   /// From the patient folder or the cache; false: they must be extracted.
   bool read_surfaces();
   void extract_surfaces(const std::stop_token& stop);
@@ -58,6 +63,7 @@ class LaterData {
   std::shared_ptr<const anatomy::VirtualPatient> patient_;
   ultrasound::AcousticTable acoustics_;
   io::PatientSource source_;
+  First first_;
 
   mutable std::mutex mutex_;
   mutable std::condition_variable changed_;

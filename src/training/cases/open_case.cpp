@@ -79,12 +79,12 @@ std::string keep_patient(const OpenCase& made, const anatomy::VirtualPatient& pa
 
 Result<std::shared_ptr<LaterData>> begin_later(const CaseChoice& choice,
                                                std::shared_ptr<const anatomy::VirtualPatient> patient,
-                                               const OpenOptions& options) {
+                                               LaterData::First first, const OpenOptions& options) {
   TROCAR_TRY(ultrasound::AcousticTable acoustics, ultrasound::load_acoustic_table(data_dir() / "acoustics.toml"));
   TROCAR_TRY_STATUS(ultrasound::check_acoustic_scene(*patient, acoustics));
   io::PatientSource source = source_of(choice);
   source.cache_folder = options.cache_folder;
-  return std::make_shared<LaterData>(std::move(patient), std::move(acoustics), std::move(source));
+  return std::make_shared<LaterData>(std::move(patient), std::move(acoustics), std::move(source), first);
 }
 
 Result<std::shared_ptr<ultrasound::FlowOnDemand>> flow_of(std::shared_ptr<const anatomy::VirtualPatient> patient) {
@@ -182,7 +182,11 @@ Result<std::shared_ptr<const OpenCase>> make_open_case(const CaseChoice& choice,
     TROCAR_TRY_STATUS(std::move(has_case));
     made->server_source = std::move(server_source);
     TROCAR_TRY(made->flow, flow_of(patient));
-    TROCAR_TRY(made->later, begin_later(choice, patient, options));
+    TROCAR_TRY(made->later,
+               begin_later(choice, patient,
+                           made->the_case.task.guidance == tasks::Guidance::kUltrasound ? LaterData::First::kUltrasound
+                                                                                        : LaterData::First::kSurfaces,
+                           options));
   }
   add_panorama(*made, previous.get());
   if (!made->flow->is_possible())

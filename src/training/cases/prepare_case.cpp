@@ -83,6 +83,12 @@ Status apply_posture(Case& made, const std::string& name) {
   return {};
 }
 
+bool advances_wire(const tasks::Task& task) {
+  return std::ranges::any_of(task.phases, [](const tasks::Phase& phase) {
+    return std::ranges::any_of(phase.done, [](const auto& done) { return done.kind == tasks::ConditionKind::kWire; });
+  });
+}
+
 /// The needle of the options, if the task allows it.
 Result<tasks::Needle> find_needle(const tasks::Task& task, const std::string& wanted, const fs::path& file) {
   TROCAR_TRY(tasks::Needle needle, tasks::load_needle(file, wanted.empty() ? task.needle : wanted));
@@ -276,6 +282,7 @@ Result<Case> prepare_case(std::shared_ptr<const anatomy::VirtualPatient> patient
   made.experts = find_experts(made, *patient);
   log_info("expert path: {:.1f} mm, {:.1f} mm of it in the organ, {:.1f} mm to spare from {}", made.plan.length_mm,
            made.plan.organ_path_mm, made.plan.spare_margin_mm, made.plan.nearest_risk);
+  if (advances_wire(made.task)) made.ducts = std::make_shared<const xray::DuctTree>(xray::make_duct_tree(*patient));
   made.patient = std::move(patient);
   return made;
 }

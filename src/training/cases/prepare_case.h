@@ -13,6 +13,7 @@
 #include "tasks/plan.h"
 #include "tasks/substance.h"
 #include "tasks/task.h"
+#include "xray/contrast/duct_tree.h"
 
 namespace trocar::cases {
 
@@ -42,6 +43,7 @@ struct Case {
   tasks::PlannedPath plan;                  ///< The expert path that is shown.
   std::vector<tasks::PlannedPath> experts;  ///< The plan, then others; an attempt is compared with the nearest.
   bool is_parenchymal = false;
+  std::shared_ptr<const xray::DuctTree> ducts;  ///< Of a task that advances a guide wire; else null.
 
   /// `experts`; in a case made without them the plan alone.
   std::span<const tasks::PlannedPath> expert_paths() const noexcept {
