@@ -1,5 +1,7 @@
 #include "case_builder/ultrasound.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "case_builder/detail/in_volume.h"
@@ -7,10 +9,12 @@
 #include "io/image/image_file.h"
 #include "io/markups_file.h"
 #include "io/patient/patient_panorama.h"
+#include "io/sequence/sequence_file.h"
 #include "io/sequence/transform_file.h"
 #include "registration/ct_ultrasound/rigid_registration.h"
 #include "registration/intensity/bright_gray.h"
 #include "registration/shadow/shadow_mask.h"
+#include "ultrasound/sweep/freehand.h"
 
 namespace trocar::case_builder {
 namespace fs = std::filesystem;
@@ -34,14 +38,37 @@ Status check_volume(const CaseDraft& draft) {
   return fail("the case has no recorded ultrasound", {}, "read an ultrasound volume first");
 }
 
+/// In the sweep's reference frame, with the settings that the command has without a calibration file.
+Result<volume::LabelGrid> volume_of_sweep(const fs::path& file, std::vector<std::string>& warnings,
+                                          const Progress& progress) {
+  TROCAR_TRY(const ultrasound::TrackedSequence sequence, io::read_sequence(file));
+  ultrasound::FreehandOptions options;
+  options.holes = {ultrasound::HoleFilling{}};
+  options.is_black_left_out = true;
+  auto made = ultrasound::reconstruct_freehand(sequence, {}, options, progress);
+  if (!made)
+    return fail("a tracked sweep, of which no volume can be made: " + made.error().what, file.string(),
+                made.error().advice + "; trocar ultrasound reconstruct takes a calibration file");
+  warnings.push_back(fmt::format(
+      "a tracked sweep: a volume of {:g} mm was reconstructed from {} images; choose the direction of its beams",
+      made->gray.geometry.spacing_mm[0], made->frames_used));
+  return std::move(made->gray);
+}
+
 }  // namespace
 
-Result<std::shared_ptr<const ImportedUltrasound>> read_ultrasound(const UltrasoundRequest& request) {
+Result<std::shared_ptr<const ImportedUltrasound>> read_ultrasound(const UltrasoundRequest& request,
+                                                                  const Progress& progress) {
   if (request.file.empty()) return fail("no ultrasound given", {}, "choose a volume of gray levels");
   auto read = std::make_shared<ImportedUltrasound>();
   read->source = request.file.string();
-  TROCAR_TRY(read->gray_U, io::read_gray_levels(request.file, read->warnings));
-  TROCAR_TRY(read->fields, io::read_image_fields(request.file));
+  TROCAR_TRY(const bool is_sweep, io::is_sequence(request.file));
+  if (is_sweep) {
+    TROCAR_TRY(read->gray_U, volume_of_sweep(request.file, read->warnings, progress));
+  } else {
+    TROCAR_TRY(read->gray_U, io::read_gray_levels(request.file, read->warnings));
+    TROCAR_TRY(read->fields, io::read_image_fields(request.file));
+  }
   auto beams = registration::Beams::choose(request.beam_axis, read->fields, read->gray_U.geometry);
   if (!beams) return fail_at(read->source, beams.error());
   read->beams = *beams;

@@ -22,8 +22,10 @@ struct UltrasoundRequest {
   std::string beam_axis;  ///< "+x" to "-z"; empty: the beams of the header, else +y.
 };
 
-/// Reads a volume. Errors: the file, its values, its beams. Takes a second for 100 MB.
-Result<std::shared_ptr<const ImportedUltrasound>> read_ultrasound(const UltrasoundRequest& request);
+/// Reads a volume, or makes one of a tracked sweep, with a warning that says so. Errors: the file, its values, its
+/// beams, those of reconstruct_freehand. Takes a second for 100 MB, some seconds for a sweep.
+Result<std::shared_ptr<const ImportedUltrasound>> read_ultrasound(const UltrasoundRequest& request,
+                                                                  const Progress& progress = {});
 
 /// Middle of the volume, in U.
 Vec3 middle_of(const ImportedUltrasound& ultrasound);

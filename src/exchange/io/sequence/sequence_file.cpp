@@ -8,6 +8,7 @@
 #include "core/ascii.h"
 #include "core/files/atomic_file.h"
 #include "io/image/detail/image_header.h"
+#include "io/image/detail/text_header.h"
 #include "io/sequence/detail/sequence_header.h"
 #include "io/sequence/detail/sequence_pixels.h"
 
@@ -51,6 +52,14 @@ Status check(const ultrasound::TrackedSequence& sequence) {
 }
 
 }  // namespace
+
+Result<bool> is_sequence(const fs::path& path) {
+  const std::string extension = ascii::lower_case(path.extension().string());
+  if (extension != ".mha" && extension != ".mhd") return false;
+  TROCAR_TRY(const InputFile file, InputFile::open(path, FileKind::kSequence));
+  TROCAR_TRY(const detail::TextHeader header, detail::read_text_header(file, detail::TextHeaderKind::kMeta));
+  return detail::has_frame_transforms(header);
+}
 
 Result<ultrasound::TrackedSequence> read_sequence(const fs::path& path) {
   TROCAR_TRY(InputFile file, InputFile::open(path, FileKind::kSequence));

@@ -15,6 +15,10 @@ namespace trocar::io {
 /// frames, fields that are not numbers, a transform that is not affine, too few pixels.
 Result<ultrasound::TrackedSequence> read_sequence(const std::filesystem::path& path);
 
+/// True for a MetaImage file whose images have poses of their own. Errors: as read_sequence for the file and its
+/// header.
+Result<bool> is_sequence(const std::filesystem::path& path);
+
 /// Writes .mha (.igs.mha) with the names and fields of PLUS, compressed, completely or not at all. A transform that
 /// only some frames have is written as INVALID for the others. Errors: another ending, no frame, a name that is not
 /// "AToB", NaN.

@@ -145,6 +145,9 @@ Result<ImageHeader> read_meta_header(const InputFile& input) {
   const std::string where = input.path().string();
   TROCAR_TRY(const TextHeader header, read_text_header(input, TextHeaderKind::kMeta));
   if (!header.has("dimsize")) return fail("not a MetaImage (no DimSize)", where, kExportAgain);
+  if (has_frame_transforms(header))
+    return fail("a tracked sequence of images, not a volume", where,
+                "make a volume of it first: trocar ultrasound reconstruct");
   const std::vector<std::int64_t> sizes = whole_numbers(header.get("dimsize"));
   const std::vector<std::int64_t> dimensions = whole_numbers(header.get("ndims"));
   if (dimensions.size() != 1 || dimensions[0] != static_cast<std::int64_t>(sizes.size()))

@@ -147,6 +147,12 @@ std::string TextHeader::get(const std::string& key, std::string fallback) const 
   return found == fields.end() ? fallback : found->second;
 }
 
+bool has_frame_transforms(const TextHeader& header) {
+  return std::any_of(header.fields.begin(), header.fields.end(), [](const auto& field) {
+    return field.first.starts_with("seq_frame") && field.first.ends_with("transform");
+  });
+}
+
 Result<TextHeader> read_text_header(const InputFile& input, TextHeaderKind kind) {
   return TextHeaderReader(input, kind).read();
 }

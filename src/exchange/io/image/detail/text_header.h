@@ -28,6 +28,8 @@ enum class TextHeaderKind { kNrrd, kMeta };
 /// lines and 4 MiB; 500 characters a field (MetaImage: 250), 64 KiB a pair or comment; no control characters; no field
 /// and no key twice. Errors: such a header, or none.
 Result<TextHeader> read_text_header(const InputFile& input, TextHeaderKind kind);
+/// True if images have poses of their own (Seq_Frame0000_ProbeToTrackerTransform): a sequence, not a volume.
+bool has_frame_transforms(const TextHeader& header);
 
 std::string trim(std::string_view text);
 /// Whole or finite numbers between white space; empty if the text contains anything else.
