@@ -142,7 +142,7 @@ Status check_new_password(std::string_view password, std::string_view account) {
 Status check_new_pin(std::string_view pin) {
   const bool has_only_digits = std::all_of(pin.begin(), pin.end(), [](char c) { return c >= '0' && c <= '9'; });
   if (!has_only_digits || pin.size() < kShortestPin || pin.size() > kLongestPin)
-    return fail_usage("not a PIN", "PIN", fmt::format("use {} to {} digits", kShortestPin, kLongestPin));
+    return fail_usage(fmt::format("a PIN has {} to {} digits", kShortestPin, kLongestPin), "PIN", "choose another one");
   if (pin.find_first_not_of(pin.front()) == std::string_view::npos)
     return fail_usage("the PIN has one digit only", "PIN", "use different digits");
   return {};
