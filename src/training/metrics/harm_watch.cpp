@@ -302,6 +302,16 @@ void HarmWatch::note(const tasks::Action& action) {
   }
 }
 
+const HarmEvent* HarmWatch::present() const noexcept {
+  const HarmEvent* gravest = nullptr;
+  for (std::size_t id = 1; id < now_.size(); ++id) {
+    if (!now_[id]) continue;
+    const HarmEvent& event = events_[static_cast<std::size_t>(event_of_[id])];
+    if (gravest == nullptr || is_graver(event, *gravest)) gravest = &event;
+  }
+  return gravest;
+}
+
 std::vector<HarmEvent> HarmWatch::take_news() {
   std::vector<HarmEvent> news;
   for (std::size_t n = 0; n < events_.size(); ++n) {

@@ -54,6 +54,8 @@ class HarmWatch {
 
   /// All events so far, the first touch first.
   const std::vector<HarmEvent>& events() const noexcept { return events_; }
+  /// The gravest of the events whose structure the needle is in now, beyond a graze; nullptr: none.
+  const HarmEvent* present() const noexcept;
   /// The events whose grade has risen, or that are new, since the last call.
   std::vector<HarmEvent> take_news();
 

@@ -48,7 +48,7 @@ struct Action {
 /// The last advance of the guide wire up to a time, whose amount is its length; nullptr: there is no wire in the
 /// needle.
 const Action* find_wire(std::span<const Action> actions, double time_s) noexcept;
-/// What came at the last look: stylet drawn or syringe pulled; empty: nobody looked.
+/// What came at the last look: stylet removed or syringe pulled; empty: nobody looked.
 std::optional<Return> last_return(std::span<const Action> actions) noexcept;
 /// A biopsy gun is loaded at first, and again after kLoad.
 bool is_gun_loaded(std::span<const Action> actions) noexcept;

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "geometry/vec.h"
 
 namespace trocar::tasks {
@@ -18,5 +21,15 @@ struct XrayUse {
 
   bool operator==(const XrayUse&) const = default;
 };
+
+/// Contrast agent that was injected without a pause.
+struct ContrastInjection {
+  double end_s = 0.0;     ///< Session time.
+  double ml = 0.0;        ///< Of this injection.
+  double total_ml = 0.0;  ///< Of all up to its end.
+};
+inline constexpr double kBetweenInjections_s = 0.5;  ///< A longer pause begins another injection. [assumed]
+/// `uses`: of an attempt, by time.
+std::vector<ContrastInjection> find_injections(std::span<const XrayUse> uses);
 
 }  // namespace trocar::tasks

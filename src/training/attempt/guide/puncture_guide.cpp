@@ -73,7 +73,7 @@ bool is_place(const cases::Case& the_case) noexcept {
 std::string at_target_words(const cases::Case& the_case) {
   if (the_case.needle.is_biopsy) return "At the target: hold still and fire";
   if (the_case.task.confirmed_by == tasks::Substance::kNothing) return "At the target: hold still";
-  return the_case.needle.stylet_diameter_mm > 0.0 ? "At the target: hold still and draw the stylet"
+  return the_case.needle.stylet_diameter_mm > 0.0 ? "At the target: hold still and remove the stylet"
                                                   : "At the target: hold still and aspirate";
 }
 

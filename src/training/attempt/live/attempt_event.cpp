@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "anatomy/structure_words.h"
 #include "core/ascii.h"
 
@@ -53,10 +55,10 @@ AttemptEvent describe_action(const tasks::SubstanceTable& substances, const task
           told.text += "; " + fault;
       break;
     case tasks::ActionKind::kDrawStylet:
-      told.text = "stylet drawn: " + look(false);
+      told.text = "stylet removed: " + look(false);
       break;
     case tasks::ActionKind::kReplaceStylet:
-      told.text = "stylet put back";
+      told.text = "stylet reinserted";
       break;
     case tasks::ActionKind::kAspirate:
       told.text = "aspirated: " + look(true);
@@ -78,6 +80,26 @@ AttemptEvent describe_action(const tasks::SubstanceTable& substances, const task
       break;
   }
   return told;
+}
+
+AttemptEvent describe_injection(const tasks::ContrastInjection& injection, double depth_mm) {
+  AttemptEvent told{injection.end_s, depth_mm, telemetry::EventKind::kNone, "action", {}};
+  told.text = fmt::format("contrast agent: {:.1f}\u00a0ml", injection.ml);
+  if (injection.total_ml > injection.ml + 0.05)
+    told.text += fmt::format(" ({:.1f}\u00a0ml in all)", injection.total_ml);
+  return told;
+}
+
+std::vector<AttemptEvent> describe_actions(const tasks::SubstanceTable& substances, const storage::Session& session,
+                                           const anatomy::VirtualPatient* patient) {
+  std::vector<AttemptEvent> all;
+  for (const tasks::Action& action : session.actions) all.push_back(describe_action(substances, action, patient));
+  for (const tasks::ContrastInjection& injection : tasks::find_injections(session.xray)) {
+    const auto sample = std::ranges::lower_bound(session.samples, injection.end_s, {}, &telemetry::TickSample::time_s);
+    all.push_back(describe_injection(injection, sample != session.samples.end() ? sample->depth_mm : 0.0));
+  }
+  std::ranges::stable_sort(all, {}, &AttemptEvent::time_s);
+  return all;
 }
 
 AttemptEvent describe_pain(const scoring::PainEvent& pain) {

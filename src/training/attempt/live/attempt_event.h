@@ -18,6 +18,11 @@ std::optional<AttemptEvent> describe_event(const storage::SessionInfo& info, con
 /// anaesthetic numbs nothing; may be null.
 AttemptEvent describe_action(const tasks::SubstanceTable& substances, const tasks::Action& action,
                              const anatomy::VirtualPatient* patient = nullptr);
+/// "contrast agent: 1.5 ml (3.0 ml in all)"
+AttemptEvent describe_injection(const tasks::ContrastInjection& injection, double depth_mm);
+/// All actions and injections of an attempt by time, for its story.
+std::vector<AttemptEvent> describe_actions(const tasks::SubstanceTable& substances, const storage::Session& session,
+                                           const anatomy::VirtualPatient* patient);
 /// The event "pain": "the patient feels pain: spinous process".
 AttemptEvent describe_pain(const scoring::PainEvent& pain);
 /// The event "harm": "critical harm: the needle went 2 mm into the heart", "grazed: …" at the moment `now`.

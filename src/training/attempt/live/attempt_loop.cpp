@@ -126,9 +126,10 @@ Status AttemptLoop::take_requests() {
   for (tasks::XrayUse& use : requests.xray) {
     if (!record_ || record_->samples().empty()) continue;  // before the attempt
     use.time_s = live_->time_s();
-    contrast_ml_ = use.contrast_ml;
+    note_contrast(use);
     TROCAR_TRY_STATUS(record_->append(use));
   }
+  tell_injection();
   if (requests.repeated_phase && phases_) phases_->repeat(*requests.repeated_phase);
   for (const tasks::ActionRequest& request : requests.actions)
     if (record_) TROCAR_TRY_STATUS(act(request));
@@ -136,9 +137,13 @@ Status AttemptLoop::take_requests() {
 }
 
 Status AttemptLoop::act(const tasks::ActionRequest& request) {
-  TROCAR_TRY([[maybe_unused]] const auto action, record_->act(request));
+  TROCAR_TRY(const auto action, record_->act(request));
   note_shots();
   note_actions();
+  constexpr double kLess_mm = 0.5;
+  const bool stops = action && action->kind == tasks::ActionKind::kAdvanceWire &&
+                     action->amount < request.amount - kLess_mm && options_.has_view;
+  if (stops) events_.back().text += ": it goes no further, do not force it";
   return {};
 }
 
@@ -236,7 +241,7 @@ void AttemptLoop::watch_disk() {
 
 void AttemptLoop::conclude(const Status& status) {
   has_ended_ = true;
-  progress_ = "scoring";
+  progress_ = "stopping the servers";
   progress_fraction_ = 0.0;
   publish(AttemptPhase::kFinishing);
   trace_.flush();
@@ -255,13 +260,18 @@ Result<RunResult> AttemptLoop::score(const Status& status) {
   if (!status && !is_unsaved) return tl::unexpected(status.error());
   if (!is_recorded)
     return fail("the attempt was ended before anything was recorded", options_.session.string(), "start a new attempt");
+  const Progress progress = [this](std::string_view step, double fraction) {
+    progress_ = step;
+    progress_fraction_ = fraction;
+    publish(AttemptPhase::kFinishing);
+  };
   RunResult result;
   if (!record_->write_failure()) {
-    Result<RunResult> finished = record_->finish();
+    Result<RunResult> finished = record_->finish(progress);
     if (!finished && !(options_.scores_unsaved && record_->write_failure())) return finished;
     if (finished) result = *std::move(finished);
   }
-  if (record_->write_failure()) result = record_->finish_unsaved();
+  if (record_->write_failure()) result = record_->finish_unsaved(progress);
   if (result.cut_short.empty()) result.cut_short = cut_short_;
   for (const ServerSupervisor* server : {needle_.get(), transducer_.get()})
     if (server != nullptr) result.servers.push_back(server->figures());

@@ -103,6 +103,9 @@ class AttemptLoop {
   Status note_shape(const link::NumberedSample& numbered);
   void note_tick(const telemetry::TickSample& sample);
   void note_harm(const telemetry::TickSample& sample);
+  void note_contrast(const tasks::XrayUse& use);
+  /// Tells of an injection when it has ended.
+  void tell_injection();
   void note_shots();
   void note_actions();
   void step_phases();
@@ -163,7 +166,8 @@ class AttemptLoop {
   std::optional<scoring::PhaseTracker> phases_;  ///< From the begin of the recording.
   double phases_s_ = 0.0;                        ///< Time of its last step.
   double contrast_ml_ = 0.0;
-  std::size_t told_actions_ = 0;  ///< Number of the record's actions that are among the events.
+  std::optional<tasks::ContrastInjection> injection_;  ///< Not told yet.
+  std::size_t told_actions_ = 0;                       ///< Number of the record's actions that are among the events.
   std::vector<std::string> notes_;
   std::string message_, progress_, recovered_;
   int recoveries_ = 0;

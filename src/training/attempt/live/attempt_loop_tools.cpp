@@ -136,6 +136,23 @@ void AttemptLoop::note_shots() {
   }
 }
 
+void AttemptLoop::note_contrast(const tasks::XrayUse& use) {
+  const double ml = use.contrast_ml - contrast_ml_;
+  contrast_ml_ = use.contrast_ml;
+  if (!(ml > 0.0)) return;
+  if (!injection_) injection_.emplace();
+  injection_->end_s = use.time_s;
+  injection_->ml += ml;
+  injection_->total_ml = use.contrast_ml;
+}
+
+void AttemptLoop::tell_injection() {
+  if (!injection_ || !live_ || live_->time_s() - injection_->end_s < tasks::kBetweenInjections_s) return;
+  const double depth_mm = last_needle_ ? last_needle_->depth_mm : 0.0;
+  if (options_.has_view) events_.push_back(describe_injection(*injection_, depth_mm));
+  injection_.reset();
+}
+
 void AttemptLoop::note_actions() {
   const std::vector<tasks::Action>& actions = record_->actions();
   for (; told_actions_ < actions.size(); ++told_actions_) {

@@ -1,6 +1,8 @@
 // What a client sees of an attempt.
 #include <fmt/format.h>
 
+#include <limits>
+
 #include "attempt/guide/gun_shot.h"
 #include "attempt/guide/needle_view.h"
 #include "attempt/guide/puncture_guide.h"
@@ -110,13 +112,16 @@ void AttemptLoop::step_phases() {
 }
 
 void AttemptLoop::add_phases(AttemptView& view) const {
-  if (record_)
+  if (record_) {
+    const tasks::Action* wire = tasks::find_wire(record_->actions(), std::numeric_limits<double>::infinity());
+    if (wire != nullptr) view.wire_mm = wire->amount;
     for (const tasks::Action& action : record_->actions()) {
       if (action.kind == tasks::ActionKind::kDrawStylet) view.is_stylet_drawn = true;
       if (action.kind == tasks::ActionKind::kReplaceStylet) view.is_stylet_drawn = false;
       if (action.kind == tasks::ActionKind::kHoldBreath) view.is_breath_held = true;
       if (action.kind == tasks::ActionKind::kBreathe) view.is_breath_held = false;
     }
+  }
   if (!phases_ || options_.level == "exam") return;
   const std::vector<tasks::Phase>& phases = case_.the_case->task.phases;
   for (std::size_t n = 0; n < phases.size(); ++n) {
@@ -131,15 +136,17 @@ void AttemptLoop::add_phases(AttemptView& view) const {
   view.current_phase = phases_->current();
 }
 
-/// At once, and for long enough to be read; an exam tells it at its end.
+/// At once, as long as the needle is in the structure, and for long enough to be read; an exam tells it at its end.
 void AttemptLoop::add_harm(AttemptView& view) const {
   constexpr double kShown_s = 6.0;
   const bool is_fresh = told_harm_ && last_needle_ && last_needle_->time_s - told_harm_s_ < kShown_s;
-  if (!is_fresh || !view.banner.empty() || options_.level == "exam") return;
+  const metrics::HarmEvent* present = harm_ ? harm_->present() : nullptr;
+  if (present != nullptr && present->grade < tasks::Harm::kMajor) present = nullptr;
+  const metrics::HarmEvent* told = present != nullptr ? present : is_fresh ? &*told_harm_ : nullptr;
+  if (told == nullptr || !view.banner.empty() || options_.level == "exam") return;
   view.is_harm = true;
-  view.banner =
-      fmt::format("{} harm: {}{}. Pull back.", told_harm_->grade == tasks::Harm::kCritical ? "Critical" : "Major",
-                  metrics::harm_words(*told_harm_), told_harm_->reason.empty() ? "" : " (" + told_harm_->reason + ")");
+  view.banner = fmt::format("{} harm: {}{}. Pull back.", told->grade == tasks::Harm::kCritical ? "Critical" : "Major",
+                            metrics::harm_words(*told), told->reason.empty() ? "" : " (" + told->reason + ")");
 }
 
 void AttemptLoop::add_times(AttemptView& view) {

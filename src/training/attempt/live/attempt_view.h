@@ -96,7 +96,8 @@ struct AttemptView {
   std::vector<PhaseView> phases;   ///< Empty in an exam, and for a task without phases.
   std::optional<std::size_t> current_phase;  ///< The first one that is open and not done.
   bool is_stylet_drawn = false, is_breath_held = false;
-  std::string hint;  ///< Instruction for the trainee (guided attempts only); may be empty.
+  double wire_mm = 0.0;  ///< Guide wire beyond the tip; 0: none in the needle.
+  std::string hint;      ///< Instruction for the trainee (guided attempts only); may be empty.
   NeedleView needle;
   TransducerView probe;
   bool has_probe = false;

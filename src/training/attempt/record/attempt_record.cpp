@@ -15,6 +15,7 @@
 #include "io/patient/patient_source.h"
 #include "signing/token.h"
 #include "telemetry/tick_pose.h"
+#include "xray/tools/guide_wire.h"
 
 namespace trocar::attempt {
 namespace {
@@ -123,8 +124,19 @@ Result<std::optional<tasks::Action>> AttemptRecord::act(const tasks::ActionReque
     action.result = tasks::what_returns(the_case_->substances, *the_case_->patient, the_case_->needle,
                                         telemetry::pierced_tip_mm(sample), sample.axis,
                                         request.kind == tasks::ActionKind::kAspirate);
+  if (request.kind == tasks::ActionKind::kAdvanceWire) action.amount = wire_way_mm(sample, request.amount);
   TROCAR_TRY_STATUS(append(action));
   return std::optional<tasks::Action>(action);
+}
+
+/// A wire goes no further than the duct: it stops at an obstruction, and buckles outside of any duct.
+double AttemptRecord::wire_way_mm(const telemetry::TickSample& sample, double wanted_mm) const {
+  if (the_case_->ducts == nullptr) return wanted_mm;
+  const std::vector<Vec3> way_P =
+      xray::guide_wire_way(*the_case_->ducts, telemetry::pierced_tip_mm(sample), sample.axis, wanted_mm);
+  double way_mm = 0.0;
+  for (std::size_t n = 1; n < way_P.size(); ++n) way_mm += (way_P[n] - way_P[n - 1]).norm();
+  return way_mm;
 }
 
 Status AttemptRecord::append(const tasks::Action& action) {
@@ -206,9 +218,9 @@ Status AttemptRecord::append(const tasks::XrayUse& use) {
   return written(writer_.append(use));
 }
 
-RunResult AttemptRecord::score() {
+RunResult AttemptRecord::score(const Progress& progress) {
   RunResult result;
-  result.outcome = score_session(*the_case_, session_);
+  result.outcome = score_session(*the_case_, session_, progress);
   result.punctures = find_punctures(session_.info, session_.samples);
   result.force_model = session_.info.force_model;
   result.ticks = session_.samples.size();
@@ -221,15 +233,16 @@ RunResult AttemptRecord::score() {
   return result;
 }
 
-Result<RunResult> AttemptRecord::finish() {
-  RunResult result = score();
+Result<RunResult> AttemptRecord::finish(const Progress& progress) {
+  RunResult result = score(progress);
+  report(progress, "closing the recording", 1.0);
   TROCAR_TRY_STATUS(written(writer_.finish(result.outcome, session_.shots)));
   result.ticks_hash = writer_.ticks_hash();
   return result;
 }
 
-RunResult AttemptRecord::finish_unsaved() {
-  RunResult result = score();
+RunResult AttemptRecord::finish_unsaved(const Progress& progress) {
+  RunResult result = score(progress);
   const std::size_t saved = std::min(writer_.saved_ticks(), session_.samples.size());
   const double saved_s = saved > 0 ? session_.samples[saved - 1].time_s : 0.0;
   const Error failure = write_failure_.value_or(Error{});

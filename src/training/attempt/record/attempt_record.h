@@ -84,11 +84,11 @@ class AttemptRecord {
   /// Indices of the samples at which the gun was fired.
   const std::vector<std::size_t>& shots() const noexcept { return session_.shots; }
   /// Scores the attempt and closes the session file.
-  Result<RunResult> finish();
+  Result<RunResult> finish(const Progress& progress = {});
   /// The first failure to write the session file; empty: no failure.
   const std::optional<Error>& write_failure() const noexcept { return write_failure_; }
   /// Call after such a failure: scores the recorded part and reports how much the file lacks.
-  RunResult finish_unsaved();
+  RunResult finish_unsaved(const Progress& progress = {});
 
  private:
   /// A sample whose scene is not known yet.
@@ -99,7 +99,8 @@ class AttemptRecord {
   Status record(std::size_t tick, const SceneParameters& parameters);
   Status written(Status status);
   bool is_possible(tasks::ActionKind kind, double depth_mm) const noexcept;
-  RunResult score();
+  RunResult score(const Progress& progress);
+  double wire_way_mm(const telemetry::TickSample& sample, double wanted_mm) const;
 
   AttemptRecord(const cases::Case& the_case, storage::SessionInfo info, storage::SessionWriter writer,
                 std::size_t expected_ticks);

@@ -7,6 +7,7 @@
 
 #include "anatomy/structure_words.h"
 #include "attempt/guide/needle_shaft.h"
+#include "attempt/live/attempt_event.h"
 #include "attempt/record/score_session.h"
 #include "geometry/segment.h"
 
@@ -119,9 +120,13 @@ void AttemptReplay::find_moments() {
     if (change.tick > 0)
       moments_.push_back(
           {change.time_s, Kind::kChange, fmt::format("parameters: {}", fmt::join(change.settings, ", "))});
+  for (AttemptEvent& action : describe_actions(the_case.substances, session_, the_case.patient.get()))
+    moments_.push_back({action.time_s, Kind::kAction, std::move(action.text)});
+  constexpr double kShortest_s = 0.1;  // shorter ones are not felt
   for (const tasks::Interruption& gap : session_.interruptions)
-    moments_.push_back({gap.to_s, Kind::kInterruption,
-                        fmt::format("interrupted for {:.1f} s: {}", gap.to_s - gap.from_s, gap.reason)});
+    if (gap.to_s - gap.from_s >= kShortest_s)
+      moments_.push_back({gap.to_s, Kind::kInterruption,
+                          fmt::format("interrupted for {:.1f} s: {}", gap.to_s - gap.from_s, gap.reason)});
   for (const GunShot& shot : shots_) moments_.push_back({shot.time_s, Kind::kFired, shot_words(shot)});
 }
 

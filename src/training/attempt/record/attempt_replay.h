@@ -16,7 +16,7 @@ namespace trocar::attempt {
 
 /// A notable moment of a recorded attempt.
 struct ReplayMoment {
-  enum class Kind { kPuncture, kEnter, kRisk, kFired, kChange, kInterruption, kWorst };
+  enum class Kind { kPuncture, kEnter, kRisk, kFired, kAction, kChange, kInterruption, kWorst };
   double time_s = 0.0;
   Kind kind = Kind::kPuncture;
   std::string text;  ///< "through the liver capsule", "the needle went 4 mm into the lung"

@@ -115,14 +115,22 @@ std::optional<JournalEntry> Journal::find_cut_off() const {
   return newest;
 }
 
-bool Journal::forget(const JournalEntry& state) const noexcept {
-  const fs::path file = file_of(folder_, state);
+std::optional<JournalClaim> Journal::claim(const JournalEntry& state) const {
+  fs::path file = file_of(folder_, state);
   std::optional<FileLock> lock = lock_of(file);
-  if (!lock) return false;
   std::error_code error;
-  const bool was_there = fs::remove(file, error);
-  lock->remove();
-  return was_there;
+  if (!lock) return std::nullopt;
+  if (!fs::is_regular_file(file, error)) {
+    lock->remove();
+    return std::nullopt;
+  }
+  return JournalClaim(state, std::move(file), *std::move(lock));
+}
+
+void JournalClaim::forget() && noexcept {
+  std::error_code ignored;
+  fs::remove(file_, ignored);
+  lock_.remove();
 }
 
 }  // namespace trocar::attempt

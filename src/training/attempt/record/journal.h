@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <utility>
 
 #include "cases/open_case.h"
 #include "core/files/file_lock.h"
@@ -13,6 +14,23 @@ namespace trocar::attempt {
 struct JournalEntry {
   cases::CaseChoice choice;
   std::filesystem::path session;  ///< Session file of the running attempt.
+};
+
+/// An interrupted attempt that this program holds.
+class JournalClaim {
+ public:
+  const JournalEntry& entry() const noexcept { return entry_; }
+  /// Removes the attempt from the journal.
+  void forget() && noexcept;
+
+ private:
+  friend class Journal;
+  JournalClaim(JournalEntry entry, std::filesystem::path file, FileLock lock)
+      : entry_(std::move(entry)), file_(std::move(file)), lock_(std::move(lock)) {}
+
+  JournalEntry entry_;
+  std::filesystem::path file_;
+  FileLock lock_;
 };
 
 /// Running attempts in a state folder, of all trainers that use it. Each attempt has a file `attempts`/NAME.json; NAME
@@ -29,8 +47,10 @@ class Journal {
   /// The newest interrupted attempt whose session still exists; attempts of running trainers are excluded. Unreadable
   /// files are ignored.
   std::optional<JournalEntry> find_cut_off() const;
-  /// Removes an interrupted attempt from the journal. False: it no longer exists, or another trainer has it.
-  bool forget(const JournalEntry& state) const noexcept;
+  /// Takes an interrupted attempt, to open it: while the claim lives, no other trainer finds it. It stays in the
+  /// journal until forget(), so that a program that is killed meanwhile offers it again. Empty: it no longer exists, or
+  /// another trainer has it.
+  std::optional<JournalClaim> claim(const JournalEntry& state) const;
 
  private:
   std::filesystem::path folder_;

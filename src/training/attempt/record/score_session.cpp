@@ -12,7 +12,10 @@
 namespace trocar::attempt {
 namespace {
 
-std::vector<metrics::MetricValue> measure(const cases::Case& the_case, const storage::Session& session) {
+constexpr double kMeasuringShare = 0.8;  ///< Of the time of scoring.
+
+std::vector<metrics::MetricValue> measure(const cases::Case& the_case, const storage::Session& session,
+                                          const Progress& progress) {
   metrics::MetricContext context = storage::context_of(session);
   context.task = &the_case.task;
   context.patient = the_case.patient.get();
@@ -22,7 +25,14 @@ std::vector<metrics::MetricValue> measure(const cases::Case& the_case, const sto
   for (const tasks::PlannedPath& path : the_case.expert_paths())
     context.expert_paths.push_back({fmt::format("{}", context.expert_paths.size() + 1), path.line_P});
   metrics::MeasureRun run(std::move(context));
-  storage::walk_moments(session, [&](const metrics::Moment& moment) { run.step(moment); });
+  constexpr std::size_t kReportEvery = 4096;
+  const double count = std::max(1.0, static_cast<double>(session.samples.size()));
+  std::size_t done = 0;
+  storage::walk_moments(session, [&](const metrics::Moment& moment) {
+    if (done++ % kReportEvery == 0)
+      report(progress, "measuring", std::min(1.0, kMeasuringShare * static_cast<double>(done) / count));
+    run.step(moment);
+  });
   return run.report();
 }
 
@@ -33,8 +43,9 @@ std::optional<double> find_value(const std::vector<metrics::MetricValue>& values
 
 }  // namespace
 
-scoring::Outcome score_session(const cases::Case& the_case, const storage::Session& session) {
-  std::vector<metrics::MetricValue> values = measure(the_case, session);
+scoring::Outcome score_session(const cases::Case& the_case, const storage::Session& session, const Progress& progress) {
+  std::vector<metrics::MetricValue> values = measure(the_case, session, progress);
+  report(progress, "scoring", kMeasuringShare);
   const auto visible_percent = find_value(values, "tip_visible");
   scoring::Outcome outcome = scoring::score_attempt(
       {.task = the_case.task,

@@ -190,6 +190,10 @@ TEST_F(Harms, ANeedleThatStaysInAVeinIsWorse) {
   EXPECT_TRUE(watching.events()[0].has_stayed);
   EXPECT_NE(harm_words(watching.events()[0]).find("stayed in the hepatic vein for 1"), std::string::npos);
   EXPECT_EQ(watching.take_news().size(), 1U) << "told again, it became worse";
+  ASSERT_NE(watching.present(), nullptr);
+  EXPECT_EQ(watching.present()->label, watching.events()[0].label);
+  watching.step(at({92.0, -5.0, 50.0}, 63.1));
+  EXPECT_EQ(watching.present(), nullptr) << "the needle is outside";
 }
 
 TEST_F(Harms, TheNotchInAVeinIsWorseThanTheStylet) {

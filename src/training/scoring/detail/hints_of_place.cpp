@@ -192,15 +192,16 @@ void add_confirmation_advice(const HintSubject& subject, std::vector<Advice>& ad
                      wanted),
          subject.judged.confirmed_s});
   } else if (looked == actions.rend() && has_pressed_only(subject, subject.measured().end_s)) {
-    advice.push_back({points,
-                      fmt::format("The tip pressed on the wall of the {}, which had not given way: advance until it "
-                                  "does, then {} and look whether {} comes.",
-                                  subject.target_name(), subject.has_stylet() ? "draw the stylet" : "aspirate", wanted),
-                      subject.measured().end_s});
+    advice.push_back(
+        {points,
+         fmt::format("The tip pressed on the wall of the {}, which had not given way: advance until it "
+                     "does, then {} and look whether {} comes.",
+                     subject.target_name(), subject.has_stylet() ? "remove the stylet" : "aspirate", wanted),
+         subject.measured().end_s});
   } else if (looked == actions.rend()) {
     advice.push_back({points,
                       fmt::format("Position not confirmed: {} at the target and look whether {} comes.",
-                                  subject.has_stylet() ? "draw the stylet" : "aspirate", wanted),
+                                  subject.has_stylet() ? "remove the stylet" : "aspirate", wanted),
                       subject.measured().end_s});
   } else if (has_pressed_only(subject, looked->time_s)) {
     advice.push_back(
@@ -213,7 +214,7 @@ void add_confirmation_advice(const HintSubject& subject, std::vector<Advice>& ad
     advice.push_back({points,
                       fmt::format("{} came back: the needle was in the wrong place. {} and look again.",
                                   substance_sentence(subject, *looked),
-                                  subject.has_stylet() ? "Put the stylet back, correct the tip" : "Correct the tip"),
+                                  subject.has_stylet() ? "Reinsert the stylet, correct the tip" : "Correct the tip"),
                       looked->time_s});
   }
 }

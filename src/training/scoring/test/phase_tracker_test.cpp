@@ -242,7 +242,7 @@ TEST_F(Phases, FollowActionsAndWhatComesBack) {
   tracked.note(draw(0.9, tasks::Substance::kBile));
   tracked.note({0.95, ActionKind::kReplaceStylet, 0.0, {}, {}, 0.0});
   tracked.step(at(1.0, {50.0, 5.0, 50.0}));
-  EXPECT_EQ(tracked.states()[1].lacks, std::vector<std::string>{"draw the stylet"});
+  EXPECT_EQ(tracked.states()[1].lacks, std::vector<std::string>{"remove the stylet"});
   tracked.note(draw(1.1, tasks::Substance::kNothing));
   tracked.step(at(1.2, {50.0, 5.0, 50.0}));
   EXPECT_FALSE(tracked.current());

@@ -22,7 +22,7 @@ TEST(Puncture, TheRightSubstanceProvesTheTarget) {
   EXPECT_NEAR(unproved.score, 60.0, 1e-6);
   ASSERT_FALSE(unproved.fails.empty());
   EXPECT_EQ(unproved.fails.front(), "position not confirmed: no bile came back");
-  EXPECT_TRUE(has_hint(unproved, "draw the stylet at the target and look whether bile comes"));
+  EXPECT_TRUE(has_hint(unproved, "remove the stylet at the target and look whether bile comes"));
   puncture.actions = {{at_s, tasks::ActionKind::kDrawStylet, 0.0, {tasks::Substance::kBlood, 1.0}, {}, 51.0}};
   EXPECT_TRUE(has_hint(puncture.score(attempt), "Not bile but blood came back"));
   EXPECT_FALSE(puncture.score(attempt).target_reached);
@@ -187,7 +187,7 @@ TEST(Puncture, WhatComesWithoutAPiercedWallIsNotTheTarget) {
   puncture.task.weights = {{"target", 50.0}, {"confirmation", 50.0}};
   attempt.samples.back().layer_displacement_mm = 1.3;  // less than 1 mm before the lesion
   const Outcome unproven = puncture.score(attempt.samples, {});
-  EXPECT_TRUE(has_hint(unproven, "had not given way: advance until it does, then draw the stylet"));
+  EXPECT_TRUE(has_hint(unproven, "had not given way: advance until it does, then remove the stylet"));
   EXPECT_STREQ(target_words(unproven), "not reached");
 }
 

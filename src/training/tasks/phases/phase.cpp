@@ -36,7 +36,7 @@ constexpr std::array<ConditionRow, static_cast<std::size_t>(kLastCondition) + 1>
     {"target_distance_mm", Argument::kNumber, {0.5, 50.0}, "bring the tip to the target"},
     {"tip_in", Argument::kName, {}, "bring the tip into the {}"},
     {"passed", Argument::kName, {}, "advance the tip into the {}"},
-    {"stylet_drawn", Argument::kNone, {}, "draw the stylet"},
+    {"stylet_drawn", Argument::kNone, {}, "remove the stylet"},
     {"returned", Argument::kSubstance, {}, "check what comes back: it has to be {}"},
     {"anaesthetised", Argument::kNone, {}, "give local anaesthetic"},
     {"breath_held", Argument::kNone, {}, "ask the patient to hold the breath"},

@@ -134,7 +134,7 @@ TEST_F(PunctureGuide, SaysAtTheTargetOnlyInIt) {
   EXPECT_EQ(guide_puncture(changed, on_path(length_mm)).find("At the target"), std::string::npos);
   EXPECT_NE(guide_puncture(changed, on_path(length_mm)).find("Beside the bile duct"), std::string::npos);
   changed.task.target_tissues = {anatomy::find_label(*changed.patient, on_path(length_mm).tip_mm)->tissue};
-  EXPECT_EQ(guide_puncture(changed, on_path(length_mm)), "At the target: hold still and draw the stylet");
+  EXPECT_EQ(guide_puncture(changed, on_path(length_mm)), "At the target: hold still and remove the stylet");
   telemetry::TickSample pressing = on_path(length_mm);
   pressing.phase = telemetry::InsertionPhase::kLoading;
   pressing.layer_displacement_mm = length_mm - 1.0;

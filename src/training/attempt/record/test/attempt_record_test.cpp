@@ -110,7 +110,7 @@ TEST_F(GunRecordTest, APlainNeedleHasNoGunAndNothingHappensBeforeTheFirstSample)
   go_to(40.0);
   EXPECT_EQ(act(kFire), "");
   EXPECT_EQ(act(kLoad), "");
-  EXPECT_EQ(act(kReplaceStylet), "stylet put back");
+  EXPECT_EQ(act(kReplaceStylet), "stylet reinserted");
   EXPECT_EQ(recorded_kinds(), std::vector<tasks::ActionKind>{kReplaceStylet});
 }
 

@@ -82,7 +82,7 @@ TEST_F(JournalTest, AnAttemptOfALivingTrainerIsNotCutOffUntilItIsKilled) {
   OtherTrainer other(folder->path(), state);
   ASSERT_TRUE(other.has_begun());
   EXPECT_FALSE(journal.find_cut_off());
-  EXPECT_FALSE(journal.forget(state));
+  EXPECT_FALSE(journal.claim(state));
   JournalEntry own = state;
   own.session = folder->path() / "two.trocar";
   ASSERT_TRUE(write_file_atomically(own.session, "ticks"));
@@ -92,9 +92,17 @@ TEST_F(JournalTest, AnAttemptOfALivingTrainerIsNotCutOffUntilItIsKilled) {
   const auto found = journal.find_cut_off();
   ASSERT_TRUE(found);
   EXPECT_EQ(found->session, state.session);
-  EXPECT_TRUE(journal.forget(*found));
+  {
+    const auto claim = journal.claim(*found);
+    ASSERT_TRUE(claim);
+    EXPECT_EQ(claim->entry().session, state.session);
+    EXPECT_FALSE(journal.find_cut_off()) << "somebody opens it";
+    EXPECT_FALSE(Journal(folder->path()).claim(*found));
+  }
+  ASSERT_TRUE(journal.find_cut_off()) << "it was not seen to its end: it is offered again";
+  std::move(*journal.claim(*found)).forget();
   EXPECT_FALSE(journal.find_cut_off());
-  EXPECT_FALSE(journal.forget(*found));
+  EXPECT_FALSE(journal.claim(*found));
 }
 
 TEST_F(JournalTest, TheAttemptUnderWayHereIsNotCutOff) {
