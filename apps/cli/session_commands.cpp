@@ -89,9 +89,8 @@ report::ReportStory story_of(const storage::Session& session,
                              const std::shared_ptr<const anatomy::VirtualPatient>& patient, const std::string& file) {
   report::ReportStory story;
   if (const auto substances = tasks::load_substances(data_dir() / "substances.toml"))
-    for (const tasks::Action& action : session.actions)
-      story.actions.push_back(
-          {action.time_s, action.depth_mm, attempt::describe_action(*substances, action, patient.get()).text});
+    for (const attempt::AttemptEvent& action : attempt::describe_actions(*substances, session, patient.get()))
+      story.actions.push_back({action.time_s, action.depth_mm, action.text});
   if (patient == nullptr) return story;
   const auto the_case = [&]() -> Result<cases::Case> {
     TROCAR_TRY(const auto parameters, attempt::replay_parameters(session, {}));

@@ -24,6 +24,7 @@
 #include "shell/main_window.h"
 #include "shell/trainer_flow.h"
 #include "tasks/task.h"
+#include "ui_kit/action_table.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/screen_scale.h"
 #include "ui_kit/theme.h"
@@ -41,7 +42,7 @@ struct Arguments {
   std::vector<std::string> scripts;
   std::string screenshot, state_folder, database;
   int frame_rate_hz = 60;
-  bool is_benchmark = false;
+  bool is_benchmark = false, prints_keys = false;
   std::vector<std::string> layouts;
 };
 
@@ -61,6 +62,7 @@ void add_options(arguments::Program& app, Arguments& arguments) {
   app.add_option("--frame-rate", arguments.frame_rate_hz,
                  "Frames per second, at most: fewer leave more of a slow processor to the simulation [60]")
       .whole_number_within(1, 60);
+  app.add_flag("--keys", arguments.prints_keys, "Print all keys and mouse actions as a table and exit");
   app.add_option("--state", arguments.state_folder, "Folder for sessions [$XDG_STATE_HOME/trocar]");
   app.add_option("--db", arguments.database,
                  "Database of people and results: a file, or postgresql://USER:PASSWORD@HOST/NAME [$TROCAR_DB, else "
@@ -137,6 +139,10 @@ int run(int argc, char** argv) {
   Arguments arguments;
   add_options(app, arguments);
   if (const std::optional<int> end = app.parse(argc, argv)) return *end;
+  if (arguments.prints_keys) {
+    fmt::print("{}", to_std(actions_as_markdown()));
+    return 0;
+  }
   if (!scene::can_render())
     return arguments::report_error(Error{"the window needs an X server with rendering; none is available", "DISPLAY",
                                          "start it from a desktop, or under xvfb-run"});

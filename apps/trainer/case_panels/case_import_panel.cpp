@@ -103,12 +103,18 @@ class ImportPanel final : public CasePanel {
     connect(file, &QPushButton::clicked, this, [this] {
       const QString path =
           QFileDialog::getOpenFileName(this, tr("CT"), {}, tr("Volumes (%1);;All files (*)").arg(volume_patterns()));
-      if (!path.isEmpty()) ct_->setText(path);
+      choose_ct(path);
     });
-    connect(folder, &QPushButton::clicked, this, [this] {
-      const QString path = QFileDialog::getExistingDirectory(this, tr("DICOM series or patient folder"));
-      if (!path.isEmpty()) ct_->setText(path);
-    });
+    connect(folder, &QPushButton::clicked, this,
+            [this] { choose_ct(QFileDialog::getExistingDirectory(this, tr("DICOM series or patient folder"))); });
+  }
+
+  /// Labels of another CT are not those of this one.
+  void choose_ct(const QString& path) {
+    if (path.isEmpty()) return;
+    ct_->setText(path);
+    if (labels_of_ != path) labels_->clear();
+    labels_of_ = path;
   }
 
   void add_label_choosers() {
@@ -120,9 +126,11 @@ class ImportPanel final : public CasePanel {
     content()->addLayout(row);
     const auto add = [this](const QString& path) {
       if (path.isEmpty()) return;
-      // A new selection replaces labels whose import failed; otherwise it is appended.
-      const QString before = has_failed_ ? QString() : labels_->text().trimmed();
+      // A new selection replaces labels whose import failed, or of another CT; otherwise it is appended.
+      const bool is_of_ct = !has_failed_ && labels_of_ == ct_->text().trimmed();
+      const QString before = is_of_ct ? labels_->text().trimmed() : QString();
       has_failed_ = false;
+      labels_of_ = ct_->text().trimmed();
       labels_->setText(before.isEmpty() ? path : before + QStringLiteral(";") + path);
     };
     connect(files, &QPushButton::clicked, this, [this, add] {
@@ -249,6 +257,7 @@ class ImportPanel final : public CasePanel {
     request.confirmed = confirmed_;
     request.findings = findings_ = std::make_shared<std::vector<anatomy::AnatomyFinding>>();
     request.ct = to_std(ct_->text().trimmed());
+    labels_of_ = ct_->text().trimmed();
     for (const QString& path : labels_->text().split(QLatin1Char(';')))
       if (!path.trimmed().isEmpty()) request.labels.push_back(to_std(path.trimmed()));
     request.label_map = to_std(map_->currentText().trimmed());
@@ -286,11 +295,13 @@ class ImportPanel final : public CasePanel {
     if (fields.size() != 3) return;
     ct_->setText(fields[0]);
     labels_->setText(fields[1]);
+    labels_of_ = fields[0];
     map_->setCurrentText(fields[2]);
   }
 
   QLineEdit* ct_ = nullptr;
   QLineEdit* labels_ = nullptr;
+  QString labels_of_;  ///< The CT whose labels the field holds.
   QComboBox* map_ = nullptr;
   QComboBox* posture_ = nullptr;
   QCheckBox* sibling_ = nullptr;

@@ -64,9 +64,8 @@ void CaseLandmarkPairs::add_naming() {
   name_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
   name_->setEditText(tr("landmark 1"));
   connect(name_, &QComboBox::editTextChanged, this, &CaseLandmarkPairs::name_changed);
-  pick_ = make_button("case-pair-pick", tr("Place by click"),
-                      tr("Click the same place in a slice of the CT and in one of the ultrasound, in any order"),
-                      QStringLiteral("Ctrl+U"));
+  pick_ = make_button("case-pair-pick", tr("Place by click"), Action::kPickPair,
+                      tr("Click the same place in a slice of the CT and in one of the ultrasound, in any order"));
   pick_->setCheckable(true);
   connect(pick_, &QPushButton::clicked, this, &CaseLandmarkPairs::picking_requested);
   QPushButton* next = make_button("case-pair-new", tr("New"), tr("Begin another landmark: the next free number"));

@@ -36,8 +36,8 @@ void CaseLandmarks::add_naming() {
   for (const std::string_view name : case_builder::landmark_names()) name_->addItem(to_qt(name));
   connect(name_, &QComboBox::editTextChanged, this, &CaseLandmarks::name_changed);
   layout()->addWidget(name_);
-  pick_ = make_button("case-landmark-pick", tr("Place by click"),
-                      tr("Click in a slice, or double-click in 3D; click again to move it"), QStringLiteral("Ctrl+L"));
+  pick_ = make_button("case-landmark-pick", tr("Place by click"), Action::kPickLandmark,
+                      tr("Click in a slice, or double-click in 3D; click again to move it"));
   pick_->setCheckable(true);
   connect(pick_, &QPushButton::clicked, this, &CaseLandmarks::picking_requested);
   layout()->addWidget(pick_);

@@ -48,9 +48,8 @@ class PathPanel final : public CasePanel {
   }
 
  private:
-  QPushButton* make_pick(const char* name, const QString& text, const QString& tooltip, const QString& keys,
-                         CaseClick click) {
-    QPushButton* button = make_button(name, text, tooltip, keys);
+  QPushButton* make_pick(const char* name, const QString& text, Action action, const QString& does, CaseClick click) {
+    QPushButton* button = make_button(name, text, action, does);
     button->setCheckable(true);
     connect(button, &QPushButton::clicked, this,
             [this, click](bool is_on) { Q_EMIT click_requested(is_on ? click : CaseClick::kLook); });
@@ -60,8 +59,8 @@ class PathPanel final : public CasePanel {
   void add_zone() {
     zone_text_ = add_text("case-zone-text");
     auto* row = new QHBoxLayout;
-    zone_ = make_pick("case-zone-pick", tr("Click the skin"), tr("Click the centre of the zone on the skin"),
-                      QStringLiteral("Ctrl+E"), CaseClick::kZone);
+    zone_ = make_pick("case-zone-pick", tr("Click the skin"), Action::kDrawZone,
+                      tr("Click the centre of the zone on the skin"), CaseClick::kZone);
     radius_ = new DecimalField;
     radius_->setObjectName(QStringLiteral("case-zone-radius"));
     radius_->setAccessibleName(tr("Radius of the entry zone"));
@@ -88,16 +87,15 @@ class PathPanel final : public CasePanel {
 
   void add_path() {
     path_text_ = add_text("case-path-text");
-    plan_ = make_button("case-plan", tr("Plan automatically"),
-                        tr("The shortest path from the entry zone to the target that keeps all margins"),
-                        QStringLiteral("Ctrl+P"));
+    plan_ = make_button("case-plan", tr("Plan automatically"), Action::kPlanPath,
+                        tr("The shortest path from the entry zone to the target that keeps all margins"));
     plan_->setProperty("role", "primary");
     content()->addWidget(plan_);
     auto* row = new QHBoxLayout;
-    entry_ = make_pick("case-entry-pick", tr("Set entry"), tr("Click the entry point; drag to move it"),
-                       QStringLiteral("Ctrl+1"), CaseClick::kEntry);
-    tip_ = make_pick("case-tip-pick", tr("Set tip"), tr("Click the end position of the tip; drag to move it"),
-                     QStringLiteral("Ctrl+2"), CaseClick::kTip);
+    entry_ = make_pick("case-entry-pick", tr("Set entry"), Action::kPickEntry,
+                       tr("Click the entry point; drag to move it"), CaseClick::kEntry);
+    tip_ = make_pick("case-tip-pick", tr("Set tip"), Action::kPickTip,
+                     tr("Click the end position of the tip; drag to move it"), CaseClick::kTip);
     row->addWidget(entry_);
     row->addWidget(tip_);
     content()->addLayout(row);

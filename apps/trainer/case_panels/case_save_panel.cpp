@@ -91,8 +91,7 @@ class SavePanel final : public CasePanel {
     replaces_ = new QCheckBox(tr("Replace the existing case"));
     replaces_->setObjectName(QStringLiteral("case-replace"));
     replaces_->setToolTip(tr("Without this option, nothing is overwritten"));
-    save_ =
-        make_button("case-save", tr("Save"), tr("Write the case completely or not at all"), QStringLiteral("Ctrl+S"));
+    save_ = make_button("case-save", tr("Save"), Action::kSaveCase, tr("Write the case completely or not at all"));
     save_->setProperty("role", "primary");
     open_ = make_button("case-open", tr("Open this case"), tr("Start an attempt with the saved case"));
     content()->addWidget(choose);

@@ -98,8 +98,7 @@ class TargetPanel final : public CasePanel {
       editor_.edit(case_builder::set_target_label(editor_.draft(), to_std(target_->currentData().toString())),
                    "choose the target");
     });
-    pick_ = make_button("case-target-pick", tr("Click a point"),
-                        tr("Click the target in a slice, or double click it in 3D"), QStringLiteral("Ctrl+T"));
+    pick_ = make_button("case-target-pick", tr("Click a point"), Action::kPickTarget);
     pick_->setCheckable(true);
     content()->addWidget(pick_);
     where_ = make_label({}, "dim");

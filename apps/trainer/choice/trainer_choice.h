@@ -17,6 +17,7 @@ struct TrainerChoice {
   std::uint64_t exam_number = 0;
   bool is_body_known = false;   ///< In an exam: an earlier attempt of the person was on the same body.
   bool is_person_named = true;  ///< In an exam: somebody was chosen on the start page.
+  bool is_tutorial = false;     ///< The guided first puncture: not recorded for a person.
   std::string needle;           ///< Empty: the default of the task.
   std::string force_model;      ///< Empty: the default of the task.
   Difficulty difficulty = Difficulty::kGuided;

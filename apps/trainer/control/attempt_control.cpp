@@ -70,6 +70,7 @@ AttemptControl::AttemptControl(std::shared_ptr<const cases::OpenCase> open, cons
 
 AttemptControl::~AttemptControl() {
   page_.view_3d().set_interrupt({});
+  page_.xray().set_injection_hindrance({});
   page_.workspace().set_tip_hidden(false);
   gestures_.unwatch();
 }
@@ -86,9 +87,8 @@ void AttemptControl::connect_panel() {
   connect(&panel, &PuncturePanel::action_requested, this, &AttemptControl::act);
   connect(&panel.steps(), &StepList::repeat_requested, this, [this](std::size_t step) { attempt_.repeat_phase(step); });
   connect(&gestures_, &ToolGestures::gestured, this, &AttemptControl::gesture);
-  connect(&gestures_, &ToolGestures::key_pressed, this, &AttemptControl::handle_key);
-  connect(&gestures_, &ToolGestures::key_refused, this, &AttemptControl::refuse_key);
   connect(&gestures_, &ToolGestures::taken, this, &AttemptControl::show_taken);
+  connect(&page_.xray(), &XrayView::injection_refused, this, &AttemptControl::show_notice);
   gestures_.watch(page_.view_3d(), [this] { return scale_of_3d(); });
   gestures_.watch(page_.ultrasound(), [this] { return scale_of_ultrasound(); });
 }
@@ -104,36 +104,80 @@ void AttemptControl::show_taken(ActiveTool tool) {
   if (tool == ActiveTool::kFinger && !hand_.failure().isEmpty()) show_notice(hand_.failure());
 }
 
+/// Actions that share a key are not offered together.
+bool AttemptControl::is_offered(Action action) const {
+  const tasks::Needle& needle = open_->the_case.needle;
+  switch (action) {
+    case Action::kFire:
+      return needle.is_biopsy && !hand_.is_active();
+    case Action::kMark:
+    case Action::kRemoveMark:
+      return hand_.is_active();
+    case Action::kSelectFinger:  // the key of the cine loop, too
+      return !(page_.ultrasound().hasFocus() && page_.ultrasound().is_frozen());
+    case Action::kConfirm:
+    case Action::kDecline:
+    case Action::kFluoroscopy:
+    case Action::kContrast:
+      return false;  // by panel and view
+    default:
+      break;
+  }
+  const std::vector<Action> of_task = actions_of(open_->the_case.task, needle);
+  const bool has_button =
+      std::find(std::begin(kTraineeActions), std::end(kTraineeActions), action) != std::end(kTraineeActions);
+  return !has_button || std::find(of_task.begin(), of_task.end(), action) != of_task.end();
+}
+
 bool AttemptControl::take_key(const QKeyEvent& key, const KeyPlace& place) {
-  const auto action = action_of(key.key(), actions_of(open_->the_case.task, open_->the_case.needle));
-  if (action && key.modifiers() == Qt::NoModifier && !place.is_text && !place.is_aside) {
-    if (!key.isAutoRepeat()) may_act(place) ? act(*action) : refuse_key();
+  const auto found = find_action(Scope::kPuncture, key, [this](Action action) { return is_offered(action); });
+  if (press_focused_button(key, place)) return true;
+  if (!found) return false;
+  if (found->action == Action::kForces) {
+    // Space in a text field stops the forces but must not switch them on.
+    if (place.is_text && attempt_.view().are_forces_stopped) return false;
+    if (!key.isAutoRepeat()) toggle_forces();
     return true;
   }
-  const bool plays_cine = key.key() == Qt::Key_P && page_.ultrasound().hasFocus() && page_.ultrasound().is_frozen();
-  if (plays_cine) return false;
-  if (key.key() == Qt::Key_Backspace && hand_.is_active() && !place.is_text && !place.is_aside) {
-    hand_.undo_mark();
-    return true;
+  const KeyVerdict verdict = judge_key(row_of(found->action), key, place);
+  if (verdict == KeyVerdict::kRefuse)
+    show_notice(tr("A list or slider has the keyboard: click a view, then press the key again."));
+  if (verdict == KeyVerdict::kPerform) return perform(*found, place);
+  return verdict != KeyVerdict::kPass;
+}
+
+/// True if the action is done or refused with a reason.
+bool AttemptControl::perform(const FoundAction& found, const KeyPlace& place) {
+  switch (found.action) {
+    case Action::kPlannedPosition:
+      aim();
+      return true;
+    case Action::kLock:
+      toggle_clamp();
+      return true;
+    case Action::kEnd:
+      ask_to_end();
+      return true;
+    case Action::kFire:
+      fire();
+      return true;
+    case Action::kMark:
+      hand_.set_mark();
+      return true;
+    case Action::kRemoveMark:
+      hand_.undo_mark();
+      return true;
+    case Action::kAnaesthetic:
+    case Action::kStylet:
+    case Action::kAspirate:
+    case Action::kWire:
+    case Action::kBreath:
+    case Action::kLoad:
+      act(found.action);
+      return true;
+    default:
+      return gestures_.handle_action(found, place);
   }
-  if (key.key() != Qt::Key_Space || key.modifiers() != Qt::NoModifier) return gestures_.handle_key(key, place);
-  // Space in a text field stops the forces but must not switch them on.
-  if (place.is_text && attempt_.view().are_forces_stopped) return false;
-  if (!key.isAutoRepeat()) toggle_forces();
-  return true;
-}
-
-void AttemptControl::refuse_key() {
-  show_notice(tr("A list or slider has the keyboard: click a view, then press the key again."));
-}
-
-void AttemptControl::handle_key(int key) {
-  if (key == Qt::Key_H) aim();
-  if (key == Qt::Key_X) toggle_clamp();
-  if (key == Qt::Key_E) ask_to_end();
-  const bool is_enter = key == Qt::Key_Return || key == Qt::Key_Enter;
-  if (is_enter && hand_.is_active()) return hand_.set_mark();
-  if (is_enter) fire();
 }
 
 void AttemptControl::ask_to_end() {
@@ -193,7 +237,8 @@ void AttemptControl::aim() {
     return show_notice(tr("The planned position is available in guided attempts only."));
   const ActiveTool tool = gestures_.active_tool();
   if (tool == ActiveTool::kNone || tool == ActiveTool::kFinger)
-    return show_notice(tr("Select needle (A) or transducer (S) first."));
+    return show_notice(tr("Select needle (%1) or transducer (%2) first.")
+                           .arg(keys_text(Action::kSelectNeedle), keys_text(Action::kSelectTransducer)));
   if (!is_free(tool == ActiveTool::kNeedle ? attempt::Tool::kNeedle : attempt::Tool::kProbe)) return;
   if (tool == ActiveTool::kNeedle && needle_.is_past_skin())
     return show_notice(tr("Withdraw the needle first: it moves to the planned position outside the body only."));
@@ -208,20 +253,17 @@ void AttemptControl::show_notice(const QString& text) {
 }
 
 void AttemptControl::fire() {
-  if (!view_.is_gun_loaded) return show_notice(tr("The gun is empty: take the core out and load it (Y)."));
+  if (!view_.is_gun_loaded)
+    return show_notice(tr("The gun is empty: take the core out and load it (%1).").arg(keys_text(Action::kLoad)));
   attempt_.act({tasks::ActionKind::kFire});
 }
 
-void AttemptControl::act(TraineeAction action) {
+void AttemptControl::act(Action action) {
   const ActionState state = action_state();
   if (const QString reason = why_not(action, state, open_->the_case.needle); !reason.isEmpty())
     return show_notice(reason);
   const tasks::ActionRequest request = request_of(action, state);
-  if (action == TraineeAction::kWire) {
-    const Pose& X_PN = view_.needle.X_PN;
-    wire_P_ = Segment{X_PN.p(), X_PN.p() + request.amount * X_PN.R().col(2)};
-  }
-  if (action == TraineeAction::kStylet) wire_P_.reset();
+  if (action == Action::kWire) X_PN_wire_ = view_.needle.X_PN;
   attempt_.act(request);
 }
 
@@ -320,7 +362,9 @@ void AttemptControl::show_tools(double dt_s) {
     if ((X_PN_goal.p() - needle.X_PN.p()).norm() > kGhost_mm)
       tools.goal_P = Segment{X_PN_goal.p() - length_mm * X_PN_goal.R().col(2), X_PN_goal.p()};
   }
-  tools.wire_P = wire_P_;
+  if (X_PN_wire_ && wire_mm() > 0.0)
+    tools.wire_P = Segment{X_PN_wire_->p(), X_PN_wire_->p() + wire_mm() * X_PN_wire_->R().col(2)};
+  page_.xray().set_injection_hindrance(injection_hindrance());
   if (view_.has_probe && view_.probe.is_known) tools.X_PT = view_.probe.X_PT;
   constexpr double kMoving_mm_s = 0.5;
   const bool is_moving = std::abs(needle.speed_mm_s) > kMoving_mm_s || tools.goal_P.has_value();
@@ -338,6 +382,13 @@ double AttemptControl::distance_mm() const {
   return (view_.needle.X_PN.p() - open_->the_case.plan.line_P.b).norm();
 }
 
+/// Why contrast agent cannot be injected now; empty: it can.
+QString AttemptControl::injection_hindrance() const {
+  const tasks::Needle& needle = open_->the_case.needle;
+  if (needle.inner_diameter_mm <= 0.0) return tr("This needle has no lumen.");
+  return why_not(Action::kAspirate, action_state(), needle);  // needs the same: a free lumen
+}
+
 QString AttemptControl::hint() const {
   return notice_s_ > 0.0 ? notice_ : to_qt(view_.hint);
 }
@@ -348,7 +399,7 @@ void AttemptControl::show_panel() {
   figures.tissue = is_exam() ? QStringLiteral("–") : to_qt(view_.needle.tissue);
   const bool is_starting =
       view_.phase == attempt::AttemptPhase::kStarting || view_.phase == attempt::AttemptPhase::kFinishing;
-  figures.hint = is_starting && notice_s_ <= 0.0 ? to_qt(view_.progress) : hint();
+  figures.hint = is_starting && notice_s_ <= 0.0 ? progress_text(view_) : hint();
   if (!is_tip_hidden()) figures.depth_mm = view_.needle.depth_mm;
   if (choice_.difficulty == Difficulty::kGuided && view_.needle.is_known) figures.to_target_mm = distance_mm();
   figures.force_n = std::abs(view_.needle.resistance_n);

@@ -8,11 +8,11 @@
 #include "attempt/tools/pointer_tools.h"
 #include "cases/open_case.h"
 #include "choice/trainer_choice.h"
-#include "control/page_keys.h"
 #include "control/palpating_hand.h"
 #include "control/planned_position.h"
 #include "control/tool_gestures.h"
 #include "panels/action_buttons.h"
+#include "ui_kit/page_keys.h"
 
 namespace trocar::trainer {
 
@@ -51,16 +51,17 @@ class AttemptControl : public QObject {
   void connect_panel();
   void gesture(const Gesture& gesture);
   bool take_key(const QKeyEvent& key, const KeyPlace& place);
-  void handle_key(int key);
-  void refuse_key();
+  bool is_offered(Action action) const;
+  bool perform(const FoundAction& found, const KeyPlace& place);
   void take(ActiveTool tool);
   void show_taken(ActiveTool tool);
   void aim();
   void toggle_clamp();
   void fire();
-  void act(TraineeAction action);
+  void act(Action action);
   ActionState action_state() const;
-  double wire_mm() const { return wire_P_ ? wire_P_->length_mm() : 0.0; }
+  double wire_mm() const { return view_.wire_mm; }
+  QString injection_hindrance() const;
   QString hint() const;
   void show_tools(double dt_s);
   void show_panel();
@@ -97,7 +98,7 @@ class AttemptControl : public QObject {
   QString notice_;
   double notice_s_ = 0.0;          ///< Remaining time of notice_.
   bool is_notice_result_ = false;  ///< notice_ is the result of an action.
-  std::optional<Segment> wire_P_;  ///< See ToolsShown.
+  std::optional<Pose> X_PN_wire_;  ///< The needle as the wire was advanced last.
   std::size_t frame_ = 0;
 };
 

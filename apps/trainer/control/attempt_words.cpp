@@ -37,4 +37,12 @@ QString phase_text(const attempt::AttemptView& view) {
   return {};
 }
 
+QString progress_text(const attempt::AttemptView& view) {
+  QString step = to_qt(view.progress);
+  if (step.isEmpty()) return step;
+  step[0] = step[0].toUpper();
+  if (view.progress_fraction <= 0.0) return step;
+  return QStringLiteral("%1, %2\u00a0%").arg(step).arg(100.0 * view.progress_fraction, 0, 'f', 0);
+}
+
 }  // namespace trocar::trainer

@@ -102,10 +102,11 @@ void LearningControl::find_exam_body(const TrainerChoice& choice) {
     if (choice.exam_number != 0) return exams::find_body({choice.patient, choice.exam_number}, seen, person, check);
     return exams::draw_body(choice.patient, seen, std::random_device()(), check);
   };
-  drawing_ = BackgroundJob<exams::ExamBody>(work);
+  draw_ = [work] { return BackgroundJob<exams::ExamBody>(work); };
 }
 
 void LearningControl::cancel_exam_body() {
+  draw_ = nullptr;
   retired_.retire(std::exchange(drawing_, {}));
 }
 
@@ -117,6 +118,7 @@ void LearningControl::seal(const std::filesystem::path& session, exams::ExamEnd 
   feedback_.show_result(tr("The result of the exam is being signed …"));
   const auto work = [session, end = std::move(end), data = data_sha256_, state = state_folder_,
                      url = url_](const Progress&) mutable -> Result<std::filesystem::path> {
+    const CompleteWork complete;
     TROCAR_TRY(end.data_sha256, std::move(data));
     TROCAR_TRY(const auto key, signing::open_station_key(state / exams::kStationKeyFile));
     TROCAR_TRY_STATUS(exams::seal_exam(session, end, key));
@@ -175,7 +177,8 @@ void LearningControl::poll_signature() {
 }
 
 void LearningControl::poll() {
-  retired_.sweep();
+  // One at a time: a body that is no longer wanted takes memory until its work has ended.
+  if (retired_.sweep() == 0 && draw_) drawing_ = std::exchange(draw_, nullptr)();
   poll_body();
   poll_signature();
   const auto advice = advising_.take();

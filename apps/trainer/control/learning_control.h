@@ -2,6 +2,7 @@
 
 #include <QObject>
 #include <filesystem>
+#include <functional>
 #include <memory>
 
 #include "choice/trainer_choice.h"
@@ -43,7 +44,7 @@ class LearningControl : public QObject {
   void forget_result();
   void poll();
 
-  bool is_finding_body() const noexcept { return drawing_.has_work(); }
+  bool is_finding_body() const noexcept { return draw_ || drawing_.has_work(); }
   const QString& next_title() const noexcept { return next_title_; }    ///< Empty: none, or not yet.
   const QString& result_file() const noexcept { return result_file_; }  ///< Of the last exam; empty: none.
 
@@ -67,6 +68,7 @@ class LearningControl : public QObject {
   StartPage& start_;
   FeedbackPanel& feedback_;
   BackgroundJob<Advice> advising_;
+  std::function<BackgroundJob<exams::ExamBody>()> draw_;  ///< Starts drawing_ when the former one has ended.
   BackgroundJob<exams::ExamBody> drawing_;
   BackgroundJob<std::filesystem::path> signing_;
   RetiredJobs retired_;

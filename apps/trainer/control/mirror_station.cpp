@@ -7,6 +7,7 @@
 #include <QShortcut>
 
 #include "panels/mirror_dialog.h"
+#include "ui_kit/action_table.h"
 #include "views/patient/patient_view.h"
 
 namespace trocar::trainer {
@@ -21,14 +22,16 @@ bool are_same(const scene::CameraView& a, const scene::CameraView& b) {
 }  // namespace
 
 MirrorStation::MirrorStation(QMainWindow& window)
-    : QObject(&window), window_(window), mirror_(window, tr("Window mirrored: F8 switches mirroring off")) {
-  auto* key = new QShortcut(QKeySequence(Qt::Key_F8), &window);
+    : QObject(&window),
+      window_(window),
+      mirror_(window, tr("Window mirrored: %1 switches mirroring off").arg(keys_text(Action::kMirroring))) {
+  auto* key = new QShortcut(key_of(Action::kMirroring), &window);
   connect(key, &QShortcut::activated, this, &MirrorStation::toggle);
   set(load_mirror_settings());
 }
 
 void MirrorStation::fill_menu(QMenu& menu) {
-  QAction* turn = menu.addAction(tr("Switch window mirroring on or off  (F8)"));
+  QAction* turn = menu.addAction(tr("Switch window mirroring on or off  (%1)").arg(keys_text(Action::kMirroring)));
   turn->setObjectName(QStringLiteral("mirror-toggle"));
   connect(turn, &QAction::triggered, this, &MirrorStation::toggle);
   QAction* dialog = menu.addAction(tr("Mirror workstation …"));

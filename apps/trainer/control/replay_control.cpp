@@ -40,6 +40,7 @@ TimeMark kind_of(const attempt::ReplayMoment& moment) {
       return TimeMark::kFire;
     case attempt::ReplayMoment::Kind::kWorst:
       return TimeMark::kWorst;
+    case attempt::ReplayMoment::Kind::kAction:
     case attempt::ReplayMoment::Kind::kChange:
     case attempt::ReplayMoment::Kind::kInterruption:
       break;
@@ -121,33 +122,20 @@ void ReplayControl::show_expert_paths() {
   page_.workspace().show_expert_paths(expert_paths_of(replay_, open_->the_case, has_others));
 }
 
-/// Letter keys and Space of the time line, independent of the focus.
+/// Keys of the replay, independent of the focus.
 bool ReplayControl::take_key(const QKeyEvent& key, const KeyPlace& place) {
-  if ((key.modifiers() & ~Qt::KeypadModifier) != Qt::NoModifier || place.is_text || place.is_aside) return false;
-  if (!page_.time_line().isVisible()) return false;
-  TimeLine& line = page_.time_line();
+  if (place.is_text || place.is_aside || !page_.time_line().isVisible()) return false;
   const UltrasoundView& ultrasound = page_.ultrasound();
-  switch (key.key()) {
-    case Qt::Key_Space:
-      if (place.takes_space) return false;
-      line.set_playing(!line.is_playing());
-      return true;
-    case Qt::Key_N:
-      line.go_to_next_event();
-      return true;
-    case Qt::Key_P:
-      if (ultrasound.hasFocus() && ultrasound.is_frozen()) return false;  // plays the cine loop
-      line.go_to_previous_event();
-      return true;
-    case Qt::Key_W:
-      line.go_to_worst();
-      return true;
-    case Qt::Key_H:
-      page_.feedback().hints().choose_next();
-      return true;
-    default:
-      return false;
+  const bool plays_cine = ultrasound.hasFocus() && ultrasound.is_frozen();
+  const auto found = find_action(Scope::kFeedback, key, [&](Action action) {
+    return !(action == Action::kPreviousEvent && plays_cine) && !(action == Action::kPlay && place.takes_space);
+  });
+  if (!found) return false;
+  if (found->action == Action::kNextHint) {
+    page_.feedback().hints().choose_next();
+    return true;
   }
+  return page_.time_line().perform(*found);
 }
 
 void ReplayControl::fill_plot() {
@@ -251,9 +239,9 @@ Status ReplayControl::save_report(const std::filesystem::path& file) const {
   report::ReportStory story;
   story.title = the_case.task.title;
   story.needs_image = the_case.task.guidance == tasks::Guidance::kUltrasound;
-  for (const tasks::Action& action : session.actions)
-    story.actions.push_back({action.time_s, action.depth_mm,
-                             attempt::describe_action(the_case.substances, action, the_case.patient.get()).text});
+  for (const attempt::AttemptEvent& action :
+       attempt::describe_actions(the_case.substances, session, the_case.patient.get()))
+    story.actions.push_back({action.time_s, action.depth_mm, action.text});
   story.steps = report::step_times(session, the_case.task, *the_case.patient, the_case.needle, the_case.plan);
   return write_file_atomically(file, report::html_report(session, the_case.patient.get(), story));
 }

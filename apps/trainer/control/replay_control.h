@@ -8,7 +8,7 @@
 #include "attempt/record/attempt_replay.h"
 #include "cases/open_case.h"
 #include "choice/trainer_choice.h"
-#include "control/page_keys.h"
+#include "ui_kit/page_keys.h"
 
 namespace trocar::trainer {
 

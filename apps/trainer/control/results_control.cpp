@@ -126,7 +126,7 @@ void ResultsControl::check_pin(const QString& pin) {
     if (!person.has_pin) {
       // Everybody has to have one: the first who practises under the name chooses it.
       if (const Status set = results::set_pin(repository, person.id, pin); !set) {
-        found.message = set.error().what;
+        found.refusal = set.error();
         return found;
       }
       found.person = person;
@@ -135,8 +135,9 @@ void ResultsControl::check_pin(const QString& pin) {
     }
     TROCAR_TRY(const results::PinCheck check, results::check_pin(repository, person.id, pin, now_s()));
     if (check == results::PinCheck::kRight) found.person = person;
-    if (check == results::PinCheck::kWrong) found.message = "The PIN is wrong.";
-    if (check == results::PinCheck::kTooManyTries) found.message = "Too many wrong PINs: wait, or ask your instructor.";
+    if (check == results::PinCheck::kWrong) found.refusal.what = "The PIN is wrong.";
+    if (check == results::PinCheck::kTooManyTries)
+      found.refusal.what = "Too many wrong PINs: wait, or ask your instructor.";
     return found;
   });
 }
@@ -148,14 +149,14 @@ void ResultsControl::add_person(const QString& name, const QString& pin) {
     Found found;
     if (!pin.empty())
       if (const Status usable = signing::check_new_pin(pin); !usable) {
-        found.message = usable.error().what;
+        found.refusal = usable.error();
         return found;
       }
     TROCAR_TRY(results::Repository repository, results::Repository::open(url));
     const auto added = results::add_person(repository, {name}, now_s());
     if (!added && added.error().exit_status == 1) return tl::unexpected(added.error());
     if (!added) {
-      found.message = added.error().what;
+      found.refusal = added.error();
       return found;
     }
     if (!pin.empty()) TROCAR_TRY_STATUS(results::set_pin(repository, added->id, pin));
@@ -163,6 +164,14 @@ void ResultsControl::add_person(const QString& name, const QString& pin) {
     found.person->has_pin = !pin.empty();
     return found;
   });
+}
+
+bool ResultsControl::is_signing_in() const {
+  return has_entry_ || start_.person().is_entry_open();
+}
+
+void ResultsControl::hold_person(bool is_held) {
+  is_held_ = is_held;
 }
 
 void ResultsControl::practise_as(std::optional<results::Person> person) {
@@ -229,17 +238,18 @@ void ResultsControl::poll() {
     has_entry_ = has_entry_ && has_work();
   }
   if (working_.has_work() || waiting_.empty()) return;
-  working_ =
-      BackgroundJob<Found>([work = std::move(waiting_.front()), url = url_](const Progress&) { return work(url); });
+  working_ = BackgroundJob<Found>([work = std::move(waiting_.front()), url = url_](const Progress&) {
+    const CompleteWork complete;
+    return work(url);
+  });
   waiting_.pop_front();
 }
 
 void ResultsControl::take(Found found) {
   if (!found.warning.empty() && !std::exchange(has_warned_, true)) Q_EMIT warned(to_qt(found.warning));
-  if (!found.message.empty())
-    start_.person().show_message(sentence_of({.what = found.message, .where = {}, .advice = {}}));
+  if (!found.refusal.what.empty()) start_.person().show_message(sentence_of(found.refusal));
   if (!found.people) {
-    if (found.person) {
+    if (found.person && !is_held_) {
       start_.person().close_entry();
       practise_as(std::move(found.person));
     }
@@ -257,7 +267,7 @@ void ResultsControl::take(Found found) {
   show_history();
   if (const auto curve = curves_.find(recorded_task_); curve != curves_.end())
     feedback_.show_comparison(comparison_text(curve->second));
-  if (person_ || asked_) return;
+  if (person_ || asked_ || is_held_) return;
   const QString last = QSettings().value(QString::fromLatin1(kLastPerson)).toString();
   const auto same =
       std::ranges::find_if(people_, [&](const results::Person& person) { return to_qt(person.id) == last; });

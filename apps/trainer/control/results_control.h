@@ -37,6 +37,10 @@ class ResultsControl : public QObject {
   std::string person_name() const { return person_ ? person_->name : std::string(); }
   /// True if the person has a PIN: it was entered before the person could practise.
   bool has_person_given_pin() const noexcept { return person_ && person_->has_pin; }
+  /// A name or a PIN is being entered or checked.
+  bool is_signing_in() const;
+  /// While it is held, the person does not change: an attempt belongs to who began it.
+  void hold_person(bool is_held);
   /// Records sessions that are left on the station, then reads people and history anew.
   void refresh();
   /// Writes that an attempt has begun, and its result when it has ended; one that recorded nothing is forgotten.
@@ -59,7 +63,7 @@ class ResultsControl : public QObject {
     std::optional<results::Person> person;  ///< Who practises from now on.
     std::string read_for;                   ///< Id of the person whose curves were read; empty: nobody's.
     std::optional<Curves> curves;           ///< Of that person, by task; empty: the person is deleted.
-    std::string message;                    ///< On the start page: a wrong PIN, a name that is taken.
+    Error refusal;                          ///< For the start page: a wrong PIN, a name that is taken; empty: none.
     std::string warning;                    ///< In the window, once: how the database is kept.
     bool has_recorded = false;              ///< An attempt was recorded.
   };
@@ -85,7 +89,8 @@ class ResultsControl : public QObject {
   std::optional<results::Person> person_;
   std::optional<results::Person> asked_;  ///< Whose PIN is being entered.
   bool has_entry_ = false;                ///< What was entered is being checked.
-  bool has_warned_ = false;               ///< Of how the database is kept.
+  bool is_held_ = false;
+  bool has_warned_ = false;  ///< Of how the database is kept.
   Curves curves_;
   std::string task_, attempt_id_;  ///< Of the attempt that has begun.
   std::string recorded_task_;      ///< Of the attempt that the feedback compares; empty: none.

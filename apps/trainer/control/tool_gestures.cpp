@@ -1,8 +1,6 @@
 #include "control/tool_gestures.h"
 
-#include <QAbstractButton>
 #include <QApplication>
-#include <QKeyEvent>
 #include <QMouseEvent>
 #include <QWheelEvent>
 #include <QWidget>
@@ -123,69 +121,46 @@ bool ToolGestures::take_by_key(ActiveTool tool) {
   return true;
 }
 
-bool ToolGestures::move_by_key(const QKeyEvent& event) {
+bool ToolGestures::move_by_key(const FoundAction& found) {
   if (active_tool_ == ActiveTool::kNone) return false;
-  const bool is_tilt = event.modifiers() & Qt::ShiftModifier;
+  constexpr QPointF kDirections[] = {{-1.0, 0.0}, {1.0, 0.0}, {0.0, -1.0}, {0.0, 1.0}};  // as the table's keys
   const ViewScale view = watched_.empty() ? ViewScale{} : watched_.front().scale();
-  const auto step = [&](double right, double down) {
-    const double size = is_tilt ? kKeyTilt_rad : kKeyGlide_mm;
-    Q_EMIT gestured({is_tilt ? Gesture::Kind::kTilt : Gesture::Kind::kGlide, size * right, size * down, view});
+  const auto step = [&](Gesture::Kind kind, double size) {
+    const QPointF by = size * kDirections[found.key];
+    Q_EMIT gestured({kind, by.x(), by.y(), view});
     return true;
   };
-  const auto push = [&](double sign) {
-    Q_EMIT gestured({Gesture::Kind::kPush, sign * (is_tilt ? kFineNotch_mm : kNotch_mm), 0.0, view});
+  const auto push = [&](double size_mm) {
+    Q_EMIT gestured({Gesture::Kind::kPush, found.key == 0 ? size_mm : -size_mm, 0.0, view});
     return true;
   };
-  switch (event.key()) {
-    case Qt::Key_Left:
-      return step(-1.0, 0.0);
-    case Qt::Key_Right:
-      return step(1.0, 0.0);
-    case Qt::Key_Up:
-      return step(0.0, -1.0);
-    case Qt::Key_Down:
-      return step(0.0, 1.0);
-    case Qt::Key_PageUp:
-      return push(1.0);
-    case Qt::Key_PageDown:
-      return push(-1.0);
+  switch (found.action) {
+    case Action::kMove:
+      return step(Gesture::Kind::kGlide, kKeyGlide_mm);
+    case Action::kTilt:
+      return step(Gesture::Kind::kTilt, kKeyTilt_rad);
+    case Action::kAdvance:
+      return push(kNotch_mm);
+    case Action::kAdvanceFinely:
+      return push(kFineNotch_mm);
     default:
       return false;
   }
 }
 
-bool ToolGestures::handle_key(const QKeyEvent& event, const KeyPlace& place) {
-  if ((event.modifiers() & (Qt::ControlModifier | Qt::AltModifier)) || place.is_text || place.is_aside) return false;
-  switch (event.key()) {
-    case Qt::Key_A:
+bool ToolGestures::handle_action(const FoundAction& found, const KeyPlace& place) {
+  switch (found.action) {
+    case Action::kSelectNeedle:
       return take_by_key(ActiveTool::kNeedle);
-    case Qt::Key_S:
+    case Action::kSelectTransducer:
       return take_by_key(ActiveTool::kTransducer);
-    case Qt::Key_P:
+    case Action::kSelectFinger:
       return take_by_key(ActiveTool::kFinger);
-    case Qt::Key_V:
+    case Action::kSelectView:
       return take_by_key(ActiveTool::kNone);
-    case Qt::Key_H:
-    case Qt::Key_X:
-    case Qt::Key_E:
-      Q_EMIT key_pressed(event.key());
-      return true;
-    case Qt::Key_Return:
-    case Qt::Key_Enter:
-      // Space stops the forces; therefore Enter presses a button.
-      if (place.button != nullptr) {
-        place.button->click();
-        return true;
-      }
-      if (!may_act(place)) {
-        if (place.is_unclaimed && !event.isAutoRepeat()) Q_EMIT key_refused();
-        return false;
-      }
-      Q_EMIT key_pressed(event.key());
-      return true;
     default:
       // Arrow keys also move sliders, lists and slices.
-      return (place.is_unclaimed || has_focus()) && move_by_key(event);
+      return (place.is_unclaimed || has_focus()) && move_by_key(found);
   }
 }
 

@@ -6,11 +6,11 @@
 #include <optional>
 #include <vector>
 
-#include "control/page_keys.h"
 #include "geometry/vec.h"
 #include "panels/puncture_panel.h"
+#include "ui_kit/action_table.h"
+#include "ui_kit/page_keys.h"
 
-class QKeyEvent;
 class QMouseEvent;
 class QWheelEvent;
 class QWidget;
@@ -47,9 +47,8 @@ class ToolGestures : public QObject {
   /// Includes child widgets. Keys use the directions of the first view.
   void watch(QWidget& view, std::function<ViewScale()> scale);
   void unwatch();
-  /// A, S, P and V select a tool, arrows and page keys move it, H, X, E and Enter emit key_pressed, Enter in a
-  /// choice key_refused. False for other keys, or if the widget with the focus uses the key.
-  bool handle_key(const QKeyEvent& event, const KeyPlace& place);
+  /// Selects or moves a tool. False for another action, or if the widget with the focus uses the key.
+  bool handle_action(const FoundAction& found, const KeyPlace& place);
   ActiveTool active_tool() const noexcept { return active_tool_; }
   void take(ActiveTool tool);
 
@@ -58,10 +57,6 @@ class ToolGestures : public QObject {
  Q_SIGNALS:
   void gestured(const trocar::trainer::Gesture& gesture);
   void taken(trocar::trainer::ActiveTool tool);
-  /// Keys of the attempt: H aim, X clamp, Enter fire, E end.
-  void key_pressed(int key);
-  /// Enter in a list, a choice or a slider that has no use for it: it does not fire.
-  void key_refused();
 
  private:
   struct Watched {
@@ -73,7 +68,7 @@ class ToolGestures : public QObject {
   bool move(const Watched& watched, const QMouseEvent& event);
   bool turn(const Watched& watched, const QWheelEvent& event);
   bool take_by_key(ActiveTool tool);
-  bool move_by_key(const QKeyEvent& event);
+  bool move_by_key(const FoundAction& found);
   bool has_focus() const;
 
   std::vector<Watched> watched_;

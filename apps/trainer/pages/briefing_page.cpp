@@ -87,7 +87,10 @@ QString level_line(const TrainerChoice& choice) {
 
 }  // namespace
 
-BriefingPage::BriefingPage(QWidget* parent) : QWidget(parent) {
+BriefingPage::BriefingPage(QWidget* parent)
+    : QWidget(parent), keys_(*this, [this](const QKeyEvent& key, const KeyPlace& place) {
+        return press_by_enter(key, place, Action::kBegin, *begin_);
+      }) {
   setObjectName(QStringLiteral("briefing-page"));
   auto* page = new QVBoxLayout(this);
   page->setContentsMargins(24, 16, 24, 16);
@@ -152,7 +155,7 @@ QWidget* BriefingPage::make_bottom() {
   auto* bottom = new QWidget;
   auto* row = new QHBoxLayout(bottom);
   row->setContentsMargins(0, 0, 0, 0);
-  auto* back = make_button("back", tr("Back"), tr("Back to the start page; cancels opening"), QStringLiteral("Esc"));
+  auto* back = make_button("back", tr("Back"), Action::kBack);
   row->addWidget(back);
   state_ = make_label({}, "dim");
   state_->setObjectName(QStringLiteral("opening-state"));
@@ -162,7 +165,7 @@ QWidget* BriefingPage::make_bottom() {
   progress_->setRange(0, kProgressSteps);
   progress_->setFixedWidth(260);
   row->addWidget(progress_);
-  begin_ = make_button("begin", tr("Begin"), tr("Starts the haptic servers and the attempt"), QStringLiteral("Return"));
+  begin_ = make_button("begin", tr("Begin"), Action::kBegin);
   begin_->setProperty("role", "primary");
   row->addWidget(begin_);
   connect(back, &QPushButton::clicked, this, &BriefingPage::back_requested);
@@ -203,7 +206,7 @@ void BriefingPage::show_opening(const TrainerChoice& choice) {
   std::vector<BriefingRow> rows = referral_rows(choice);
   if (tables && is_lesion_task(tables->task)) rows.push_back({tr("Finding"), tr("follows when the images are loaded")});
   referral_->setText(form_html(rows));
-  controls_->setText(form_html(control_rows(choice, !tables || tables->needle.is_biopsy)));
+  controls_->setText(form_html(control_rows(choice, tables ? &*tables : nullptr)));
   axial_->setText(tr("The images are being loaded."));
   second_->clear();
   legend_->clear();
@@ -239,8 +242,15 @@ void BriefingPage::show_case(std::shared_ptr<const cases::OpenCase> open, Diffic
   for (QLabel* label : {axial_, second_}) show_picture(*label);
   progress_->hide();
   state_->setText(tr("Ready"));
-  begin_->setEnabled(true);
+  set_hindrance({});
   begin_->setFocus();
+}
+
+void BriefingPage::set_hindrance(const QString& reason) {
+  hindrance_ = reason;
+  begin_->setEnabled(reason.isEmpty() && open_ != nullptr);
+  begin_->setToolTip(reason.isEmpty() ? tooltip_of(Action::kBegin) : reason);
+  if (!reason.isEmpty()) state_->setText(reason);
 }
 
 BriefingPlane BriefingPage::plane_of(const QLabel& label) const {
@@ -268,6 +278,7 @@ void BriefingPage::show_legend() {
 }
 
 void BriefingPage::show_later(const QString& step) {
+  if (is_hindered()) return;
   state_->setText(step.isEmpty() ? tr("Ready") : tr("Ready. Being prepared: %1").arg(step));
 }
 

@@ -7,6 +7,7 @@
 
 #include "cases/open_case.h"
 #include "choice/trainer_choice.h"
+#include "ui_kit/page_keys.h"
 #include "views/slices/briefing_picture.h"
 
 class QHBoxLayout;
@@ -30,6 +31,9 @@ class BriefingPage : public QWidget {
   void show_progress(const QString& step, double fraction);
   void show_error(const QString& text);
   void show_case(std::shared_ptr<const cases::OpenCase> open, Difficulty difficulty);
+  /// Why Begin is not possible now, shown as its tooltip and beside it; empty: it is possible once a case is shown.
+  void set_hindrance(const QString& reason);
+  bool is_hindered() const noexcept { return !hindrance_.isEmpty(); }
   /// Pictures of the case that are still prepared, after show_case; empty: none.
   void show_later(const QString& step);
 
@@ -68,8 +72,10 @@ class BriefingPage : public QWidget {
   QLabel* state_ = nullptr;
   QProgressBar* progress_ = nullptr;
   QPushButton* begin_ = nullptr;
+  QString hindrance_;
   TrainerChoice choice_;
   std::shared_ptr<const cases::OpenCase> open_;  ///< Whose slices are shown; nullptr: none.
+  PageKeys keys_;
 };
 
 }  // namespace trocar::trainer

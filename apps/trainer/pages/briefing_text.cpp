@@ -14,6 +14,7 @@
 #include "attempt/servers/device_control.h"
 #include "attempt/servers/tool_devices.h"
 #include "choice/patient_entry.h"
+#include "panels/action_buttons.h"
 #include "scoring/score.h"
 #include "tasks/postures.h"
 #include "ui_kit/parts.h"
@@ -237,10 +238,6 @@ struct Control {
   const char* with;
   const char* does;
 };
-constexpr Control kTakeMouse[] = {{"A / S", "select the needle / the transducer"},
-                                  {"drag", "move along the skin; right button: tilt"},
-                                  {"wheel", "advance and withdraw; Shift: fine steps"},
-                                  {"H", "move the active tool to its planned position (guided)"}};
 constexpr Control kNeedleByGamepad[] = {{"left stick", "moves the needle; cross: lifts and lowers it"},
                                         {"right stick", "swings the tip in the direction of the stick"},
                                         {"triggers", "right: push in, left: pull out; rumble: resistance"},
@@ -248,10 +245,11 @@ constexpr Control kNeedleByGamepad[] = {{"left stick", "moves the needle; cross:
 constexpr Control kProbeByGamepad[] = {{"left stick", "moves the transducer; cross: lifts and lowers it"},
                                        {"right stick", "tilts it"},
                                        {"shoulders", "turn it"}};
-constexpr Control kProbeByMouse[] = {{"S, mouse", "drag and wheel move the transducer"}};
-constexpr Control kNeedleByMouse[] = {{"A, mouse", "drag and wheel move the needle; Shift: finely"}};
-constexpr Control kGun[] = {{"Enter", "fire the biopsy gun"}};
-constexpr Control kAlways[] = {{"E", "end the attempt"}, {"Space", "stop all forces"}, {"F1", "all keys"}};
+constexpr Action kByMouse[] = {Action::kMove, Action::kTilt, Action::kAdvance, Action::kAdvanceFinely};
+
+void add_action(std::vector<BriefingRow>& rows, Action action) {
+  rows.push_back({keys_text(action), does_text(action)});
+}
 
 void add_controls(std::vector<BriefingRow>& rows, std::span<const Control> controls) {
   for (const Control& control : controls) rows.push_back({briefing_tr(control.with), briefing_tr(control.does)});
@@ -346,26 +344,28 @@ std::vector<BriefingRow> scoring_rows(const cases::Case& tables) {
   return rows;
 }
 
-std::vector<BriefingRow> control_rows(const TrainerChoice& choice, bool has_gun) {
+std::vector<BriefingRow> control_rows(const TrainerChoice& choice, const cases::Case* tables) {
   const bool is_needle_led = attempt::follows_targets(choice.needle_device);
   const bool is_probe_led = attempt::follows_targets(choice.probe_device);
   std::vector<BriefingRow> rows;
-  if (is_needle_led && is_probe_led) {
-    add_controls(rows, kTakeMouse);
-  } else {
-    if (is_needle_led) {
-      add_controls(rows, kNeedleByMouse);
-    } else {
-      add_device(rows, choice.needle_device, true);
-    }
-    if (is_probe_led) {
-      add_controls(rows, kProbeByMouse);
-    } else {
-      add_device(rows, choice.probe_device, false);
-    }
+  if (is_needle_led || is_probe_led) {
+    if (is_needle_led) add_action(rows, Action::kSelectNeedle);
+    if (is_probe_led) add_action(rows, Action::kSelectTransducer);
+    for (const Action action : kByMouse) add_action(rows, action);
   }
-  if (has_gun) add_controls(rows, kGun);
-  add_controls(rows, kAlways);
+  if (!is_needle_led) add_device(rows, choice.needle_device, true);
+  if (!is_probe_led) add_device(rows, choice.probe_device, false);
+  if (choice.difficulty == Difficulty::kGuided && is_needle_led) add_action(rows, Action::kPlannedPosition);
+  if (tables != nullptr) {
+    if (tables->needle.is_biopsy) add_action(rows, Action::kFire);
+    for (const Action action : actions_of(tables->task, tables->needle)) add_action(rows, action);
+    if (tables->task.guidance == tasks::Guidance::kXray) {
+      add_action(rows, Action::kFluoroscopy);
+      add_action(rows, Action::kContrast);
+    }
+    if (tables->task.guidance == tasks::Guidance::kPalpation) add_action(rows, Action::kSelectFinger);
+  }
+  for (const Action action : {Action::kEnd, Action::kForces, Action::kKeys}) add_action(rows, action);
   return rows;
 }
 

@@ -30,7 +30,7 @@ BriefingRow path_row(const cases::Case& the_case);
 /// Points of each part, the mark to pass, and what must not be touched; from the tables alone.
 std::vector<BriefingRow> scoring_rows(const cases::Case& tables);
 /// How tools are moved by the chosen devices; `has_gun`: and the biopsy gun is fired.
-std::vector<BriefingRow> control_rows(const TrainerChoice& choice, bool has_gun);
+std::vector<BriefingRow> control_rows(const TrainerChoice& choice, const cases::Case* tables);
 /// The target is a lesion, or healthy tissue in its place.
 bool is_lesion_task(const tasks::Task& task);
 

@@ -4,6 +4,7 @@
 #include <QGridLayout>
 #include <QKeyEvent>
 #include <QLabel>
+#include <QMessageBox>
 #include <QProgressBar>
 #include <QPushButton>
 #include <QScrollArea>
@@ -86,8 +87,8 @@ QWidget* CasePage::make_head() {
   row->addSpacing(16);
   row->addWidget(click_text_);
   row->addStretch();
-  undo_ = make_button("case-undo", tr("Undo"), tr("Undo the last step"), QStringLiteral("Ctrl+Z"));
-  redo_ = make_button("case-redo", tr("Redo"), tr("Redo the step"), QStringLiteral("Ctrl+Shift+Z"));
+  undo_ = make_button("case-undo", tr("Undo"), Action::kUndo);
+  redo_ = make_button("case-redo", tr("Redo"), Action::kRedo);
   row->addWidget(undo_);
   row->addWidget(redo_);
   connect(undo_, &QPushButton::clicked, this, [this] { editor_->undo(); });
@@ -108,9 +109,12 @@ QWidget* CasePage::make_steps() {
                            tr("Forces"), tr("Ultrasound"), tr("Save")};
   auto* group = new QButtonGroup(this);
   for (int step = 0; step < case_builder::kCaseSteps; ++step) {
-    QPushButton* button = make_button(qPrintable(QStringLiteral("case-step-%1").arg(step + 1)),
-                                      QStringLiteral("%1 %2").arg(step + 1).arg(titles[step]), tr("Go to this step"),
-                                      QStringLiteral("Alt+%1").arg(step + 1));
+    const QKeySequence key = keys_of(Action::kCaseStep)[static_cast<std::size_t>(step)];
+    QPushButton* button =
+        make_button(qPrintable(QStringLiteral("case-step-%1").arg(step + 1)),
+                    QStringLiteral("%1 %2").arg(step + 1).arg(titles[step]),
+                    QStringLiteral("%1  (%2)").arg(tr("Go to this step"), key.toString(QKeySequence::NativeText)));
+    button->setShortcut(key);
     button->setCheckable(true);
     button->setStyleSheet(QStringLiteral("padding: 6px 4px; text-align: left;"));
     buttons->addWidget(button, step / 3, step % 3);
@@ -313,6 +317,20 @@ void CasePage::refresh() {
 void CasePage::advance() {
   if (editor_->advance()) refresh();
   if (isVisible()) views_->draw();
+}
+
+bool CasePage::may_discard(const QString& question) {
+  const bool is_importing = editor_->work() == case_builder::CaseEditor::Work::kImporting;
+  if (!is_importing && (!editor_->has_patient() || editor_->is_saved())) return true;
+  QMessageBox box(QMessageBox::Question, tr("Unsaved case"), question, QMessageBox::NoButton, window());
+  box.setObjectName(QStringLiteral("case-discard"));
+  auto* discard = box.addButton(tr("Discard the case"), QMessageBox::DestructiveRole);
+  discard->setObjectName(QStringLiteral("case-discard-yes"));
+  auto* keep = box.addButton(tr("Go back to the case"), QMessageBox::RejectRole);
+  keep->setObjectName(QStringLiteral("case-discard-no"));
+  box.setDefaultButton(keep);
+  box.exec();
+  return box.clickedButton() == discard;
 }
 
 }  // namespace trocar::trainer

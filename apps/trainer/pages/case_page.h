@@ -33,6 +33,8 @@ class CasePage : public QWidget {
 
   /// Call once per frame.
   void advance();
+  /// False if a case would be lost and the user, who is asked, keeps it. `question`: what is about to happen.
+  bool may_discard(const QString& question);
   case_builder::CaseEditor& editor() noexcept { return *editor_; }
 
  Q_SIGNALS:

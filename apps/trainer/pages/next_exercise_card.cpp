@@ -24,8 +24,7 @@ NextExerciseCard::NextExerciseCard(QWidget* parent) : QFrame(parent) {
   texts->addWidget(title_);
   texts->addWidget(why_);
   row->addLayout(texts, 1);
-  auto* start = make_button("start-next", tr("Practise it"), tr("Selects this exercise and opens the case"),
-                            QStringLiteral("Ctrl+G"));
+  auto* start = make_button("start-next", tr("Start it"), Action::kStartProposal);
   row->addWidget(start);
   connect(start, &QPushButton::clicked, this, [this] { Q_EMIT exercise_requested(exercise_); });
   hide();

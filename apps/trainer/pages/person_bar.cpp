@@ -39,7 +39,7 @@ PersonBar::PersonBar(QWidget* parent) : QFrame(parent) {
   pin_->setEchoMode(QLineEdit::Password);
   pin_->setValidator(
       new QRegularExpressionValidator(QRegularExpression(QStringLiteral("\\d{0,%1}").arg(signing::kLongestPin)), pin_));
-  accept_ = make_button("person-ok", tr("OK"), tr("Practise as this person"));
+  accept_ = make_button("person-ok", tr("Sign in"), tr("Sign in as this person"));
   accept_->setProperty("role", "primary");
   cancel_ = make_button("person-cancel", tr("Cancel"), tr("Back to the list of people"));
   row->addWidget(message_);
@@ -100,6 +100,10 @@ void PersonBar::close_entry() {
   show_entry(tr("Trainee"), false, false);
   const QSignalBlocker blocked(people_);
   people_->setCurrentIndex(std::max(0, people_->findData(chosen_)));
+}
+
+bool PersonBar::is_entry_open() const {
+  return !name_->isHidden() || !pin_->isHidden();
 }
 
 void PersonBar::accept() {

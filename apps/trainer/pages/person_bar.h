@@ -31,6 +31,8 @@ class PersonBar : public QFrame {
   void ask_for_pin(const PersonEntry& person, bool is_new);
   /// Back to the list, with the person who practises.
   void close_entry();
+  /// A name or a PIN is being entered.
+  bool is_entry_open() const;
   void show_message(const QString& text);
 
  Q_SIGNALS:

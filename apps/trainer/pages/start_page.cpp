@@ -15,6 +15,7 @@
 
 #include "core/files/data_dir.h"
 #include "pages/exam_choice.h"
+#include "pages/first_steps_card.h"
 #include "pages/history_card.h"
 #include "pages/next_exercise_card.h"
 #include "pages/patient_cards.h"
@@ -24,6 +25,7 @@
 #include "tasks/needle.h"
 #include "tasks/task.h"
 #include "ui_kit/parts.h"
+#include "ui_kit/wrapped_rows.h"
 
 namespace trocar::trainer {
 namespace {
@@ -58,11 +60,20 @@ QListWidget* make_list(const char* name, const QString& title) {
 
 }  // namespace
 
-StartPage::StartPage(QWidget* parent) : QWidget(parent) {
+StartPage::StartPage(QWidget* parent)
+    : QWidget(parent), keys_(*this, [this](const QKeyEvent& key, const KeyPlace& place) {
+        return press_by_enter(key, place, Action::kStart, *start_);
+      }) {
   setObjectName(QStringLiteral("start-page"));
-  auto* page = new QVBoxLayout(this);
-  page->setContentsMargins(40, 14, 40, 14);
-  page->setSpacing(12);
+  // What needs more height than the window has is scrolled; Start is always visible.
+  auto* content = new QWidget;
+  auto* whole = new QVBoxLayout(this);
+  whole->setContentsMargins(0, 0, 0, 0);
+  whole->setSpacing(0);
+  whole->addWidget(make_scrolled(*content), 1);
+  auto* page = new QVBoxLayout(content);
+  page->setContentsMargins(24, 12, 24, 8);
+  page->setSpacing(10);
   auto* top = new QHBoxLayout;
   title_ = make_label(tr("Select a task and a patient"), "title");
   person_ = new PersonBar;
@@ -73,6 +84,8 @@ StartPage::StartPage(QWidget* parent) : QWidget(parent) {
   page->addWidget(make_recovery());
   next_ = new NextExerciseCard;
   page->addWidget(next_);
+  first_steps_ = new FirstStepsCard;
+  page->addWidget(first_steps_);
   auto* columns = new QHBoxLayout;
   columns->setSpacing(16);
   auto* tasks_and_history = new QVBoxLayout;
@@ -86,12 +99,25 @@ StartPage::StartPage(QWidget* parent) : QWidget(parent) {
   page->addLayout(columns, 1);
 
   auto* bottom = new QHBoxLayout;
+  bottom->setContentsMargins(24, 8, 24, 10);
+  bottom->setSpacing(10);
   bottom->addWidget(make_label(tr("A trainer, not a medical device."), "dim"));
   bottom->addStretch();
-  start_ = make_button("start", tr("Start"), tr("Open the case and show the briefing"), QStringLiteral("Return"));
+  auto* first_steps =
+      make_button("open-first-steps", tr("First steps"), tr("A guided first puncture on a block of tissue"));
+  bottom->addWidget(first_steps);
+  start_ = make_button("start", tr("Start"), Action::kStart);
   start_->setProperty("role", "primary");
   bottom->addWidget(start_);
-  page->addLayout(bottom);
+  whole->addLayout(bottom);
+  const auto begin_first_steps = [this] {
+    TrainerChoice exercise = FirstStepsCard::exercise();
+    exercise.needle_device = devices_->needle();
+    exercise.probe_device = devices_->probe();
+    Q_EMIT start_requested(exercise);
+  };
+  connect(first_steps, &QPushButton::clicked, this, begin_first_steps);
+  connect(first_steps_, &FirstStepsCard::exercise_requested, this, begin_first_steps);
   connect(start_, &QPushButton::clicked, this, &StartPage::start);
   connect(next_, &NextExerciseCard::exercise_requested, this, &StartPage::start_exercise);
   connect(tasks_, &QListWidget::currentRowChanged, this, [this] {
@@ -129,6 +155,7 @@ QWidget* StartPage::make_tasks() {
   } else {
     content->addWidget(make_label(to_qt(tasks.error().text()), "dim"));
   }
+  wrap_rows(*tasks_);
   // All tasks are visible beside the history.
   constexpr int kFrame = 6;
   tasks_->setMinimumHeight(tasks_->count() * std::max(0, tasks_->sizeHintForRow(0)) + kFrame);
@@ -150,9 +177,8 @@ QWidget* StartPage::make_patients() {
   patient_text_->setFixedHeight(patient_text_->fontMetrics().lineSpacing() * kLines);
   patient_text_->setAlignment(Qt::AlignTop);
   content->addWidget(patient_text_);
-  auto* open =
-      make_button("open-patient", tr("Open a patient folder …"),
-                  tr("A folder made by the case builder or by trocar patient build"), QStringLiteral("Ctrl+O"));
+  auto* open = make_button("open-patient", tr("Open a patient folder …"), Action::kOpenFolder,
+                           tr("Open a folder made by the case builder or by trocar patient build"));
   connect(open, &QPushButton::clicked, this, &StartPage::open_folder);
   content->addWidget(open);
   return card;
@@ -247,7 +273,6 @@ void StartPage::lock_for_exam() {
     box->setEnabled(!is_exam);
     box->setVisible(!is_exam);
     tool_form_->labelForField(box)->setVisible(!is_exam);
-    if (is_exam) box->setCurrentIndex(0);
   }
 }
 
@@ -258,8 +283,8 @@ QWidget* StartPage::make_recovery() {
   recovery_text_ = make_label({});
   recovery_text_->setWordWrap(true);
   row->addWidget(recovery_text_, 1);
-  auto* resume = make_button("recover", tr("See it"), tr("Scores and replays the recording"));
-  auto* decline = make_button("decline-recovery", tr("Not now"), tr("Keeps the recording and starts a new attempt"));
+  auto* resume = make_button("recover", tr("Review recording"), tr("Score and replay the recording"));
+  auto* decline = make_button("decline-recovery", tr("Not now"), tr("Keep the recording, without offering it again"));
   row->addWidget(resume);
   row->addWidget(decline);
   connect(resume, &QPushButton::clicked, this, &StartPage::recovery_requested);
@@ -322,6 +347,10 @@ void StartPage::show_patient_details() {
   start_->setEnabled(patient != nullptr && tasks_->currentItem() != nullptr);
 }
 
+void StartPage::note_first_steps() {
+  first_steps_->set_done();
+}
+
 void StartPage::open_folder() {
   const QString folder = QFileDialog::getExistingDirectory(this, tr("Patient folder"));
   if (!folder.isEmpty()) add_patient(folder);
@@ -382,8 +411,10 @@ void StartPage::save() const {
   QSettings settings;
   settings.setValue(QStringLiteral("start/task"), to_qt(now.task));
   settings.setValue(QStringLiteral("start/patient"), to_qt(now.patient));
-  settings.setValue(QStringLiteral("start/needle"), to_qt(now.needle));
-  settings.setValue(QStringLiteral("start/model"), to_qt(now.force_model));
+  if (now.difficulty != Difficulty::kExam) {  // which uses the task's own: those chosen before are kept
+    settings.setValue(QStringLiteral("start/needle"), to_qt(now.needle));
+    settings.setValue(QStringLiteral("start/model"), to_qt(now.force_model));
+  }
   settings.setValue(QStringLiteral("start/device"), to_qt(now.needle_device));
   settings.setValue(QStringLiteral("start/device-probe"), to_qt(now.probe_device));
   settings.setValue(QStringLiteral("start/difficulty"), static_cast<int>(now.difficulty));

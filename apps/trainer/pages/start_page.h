@@ -4,6 +4,7 @@
 
 #include "choice/trainer_choice.h"
 #include "results/curves.h"
+#include "ui_kit/page_keys.h"
 
 class QButtonGroup;
 class QComboBox;
@@ -17,6 +18,7 @@ namespace trocar::trainer {
 
 class DeviceChoice;
 class ExamChoice;
+class FirstStepsCard;
 class HistoryCard;
 class NextExerciseCard;
 class PatientCards;
@@ -39,6 +41,8 @@ class StartPage : public QWidget {
   /// no offer.
   void offer_next(const QString& title, const QString& why, const TrainerChoice& exercise);
   PersonBar& person() noexcept { return *person_; }
+  /// The guided first puncture was done: it is not offered any more.
+  void note_first_steps();
   /// Shows the history of who practises at the selected task.
   void show_history(const results::LearningCurve& curve);
   void hide_history();
@@ -74,6 +78,7 @@ class StartPage : public QWidget {
   PersonBar* person_ = nullptr;
   HistoryCard* history_ = nullptr;
   NextExerciseCard* next_ = nullptr;
+  FirstStepsCard* first_steps_ = nullptr;
   DeviceChoice* devices_ = nullptr;
   QFormLayout* tool_form_ = nullptr;  ///< Needle and forces; hidden in an exam.
   QComboBox* needle_ = nullptr;
@@ -83,6 +88,7 @@ class StartPage : public QWidget {
   QFrame* recovery_ = nullptr;
   QLabel* recovery_text_ = nullptr;
   TrainerChoice seeded_;  ///< Patient and seed that were chosen by choose().
+  PageKeys keys_;
 };
 
 }  // namespace trocar::trainer

@@ -15,60 +15,62 @@ bool asks_for(const tasks::Task& task, tasks::ConditionKind kind) {
   });
 }
 
-const char* name_of(TraineeAction action) {
+const char* name_of(Action action) {
   switch (action) {
-    case TraineeAction::kAnaesthetic:
+    case Action::kAnaesthetic:
       return "action-anaesthetic";
-    case TraineeAction::kStylet:
+    case Action::kStylet:
       return "action-stylet";
-    case TraineeAction::kAspirate:
+    case Action::kAspirate:
       return "action-aspirate";
-    case TraineeAction::kWire:
+    case Action::kWire:
       return "action-wire";
-    case TraineeAction::kBreath:
+    case Action::kBreath:
       return "action-breath";
-    case TraineeAction::kLoad:
+    case Action::kLoad:
       return "action-load";
+    default:
+      break;
   }
   return "";
 }
 
-QString text_of(TraineeAction action, const ActionState& state) {
+QString text_of(Action action, const ActionState& state) {
   switch (action) {
-    case TraineeAction::kAnaesthetic:
+    case Action::kAnaesthetic:
       return ActionButtons::tr("Anaesthetic");
-    case TraineeAction::kStylet:
-      return state.is_stylet_drawn ? ActionButtons::tr("Stylet in") : ActionButtons::tr("Draw stylet");
-    case TraineeAction::kAspirate:
+    case Action::kStylet:
+      return state.is_stylet_drawn ? ActionButtons::tr("Reinsert stylet") : ActionButtons::tr("Remove stylet");
+    case Action::kAspirate:
       return ActionButtons::tr("Aspirate");
-    case TraineeAction::kWire:
+    case Action::kWire:
       return state.wire_mm > 0.0 ? ActionButtons::tr("Wire further") : ActionButtons::tr("Guide wire");
-    case TraineeAction::kBreath:
+    case Action::kBreath:
       return state.is_breath_held ? ActionButtons::tr("Breathe") : ActionButtons::tr("Hold breath");
-    case TraineeAction::kLoad:
+    case Action::kLoad:
       return ActionButtons::tr("Load the gun");
+    default:
+      break;
   }
   return {};
 }
 
-QString tooltip_of(TraineeAction action, const ActionState& state) {
+/// Empty: what the table of actions says.
+QString effect_of(Action action, const ActionState& state) {
   switch (action) {
-    case TraineeAction::kAnaesthetic:
+    case Action::kAnaesthetic:
       return ActionButtons::tr("Inject %1 ml of local anaesthetic").arg(kAnaesthetic_ml, 0, 'f', 0);
-    case TraineeAction::kStylet:
-      return state.is_stylet_drawn ? ActionButtons::tr("Put the stylet back")
-                                   : ActionButtons::tr("Draw the stylet and see what comes out of the needle");
-    case TraineeAction::kAspirate:
-      return ActionButtons::tr("Pull at a syringe and see what comes");
-    case TraineeAction::kWire:
+    case Action::kStylet:
+      return state.is_stylet_drawn ? ActionButtons::tr("Reinsert the stylet")
+                                   : ActionButtons::tr("Remove the stylet and see what comes out of the needle");
+    case Action::kWire:
       return ActionButtons::tr("Advance the guide wire by %1 mm").arg(kWireStep_mm, 0, 'f', 0);
-    case TraineeAction::kBreath:
+    case Action::kBreath:
       return state.is_breath_held ? ActionButtons::tr("Let the patient breathe again")
                                   : ActionButtons::tr("Ask the patient to hold the breath");
-    case TraineeAction::kLoad:
-      return ActionButtons::tr("Take the core out and load the gun again");
+    default:
+      return {};
   }
-  return {};
 }
 
 void set_button_text(QPushButton& button, const QString& text, const QString& tooltip) {
@@ -80,68 +82,44 @@ void set_button_text(QPushButton& button, const QString& text, const QString& to
 
 }  // namespace
 
-std::vector<TraineeAction> actions_of(const tasks::Task& task, const tasks::Needle& needle) {
-  std::vector<TraineeAction> actions;
+std::vector<Action> actions_of(const tasks::Task& task, const tasks::Needle& needle) {
+  std::vector<Action> actions;
   if (task.pain.needs_anaesthesia || asks_for(task, tasks::ConditionKind::kAnaesthetised))
-    actions.push_back(TraineeAction::kAnaesthetic);
-  if (!needle.is_biopsy && needle.stylet_diameter_mm > 0.0) actions.push_back(TraineeAction::kStylet);
-  if (!needle.is_biopsy && needle.inner_diameter_mm > 0.0) actions.push_back(TraineeAction::kAspirate);
-  if (asks_for(task, tasks::ConditionKind::kWire)) actions.push_back(TraineeAction::kWire);
-  if (asks_for(task, tasks::ConditionKind::kBreathHeld)) actions.push_back(TraineeAction::kBreath);
-  if (needle.is_biopsy) actions.push_back(TraineeAction::kLoad);
+    actions.push_back(Action::kAnaesthetic);
+  if (!needle.is_biopsy && needle.stylet_diameter_mm > 0.0) actions.push_back(Action::kStylet);
+  if (!needle.is_biopsy && needle.inner_diameter_mm > 0.0) actions.push_back(Action::kAspirate);
+  if (asks_for(task, tasks::ConditionKind::kWire)) actions.push_back(Action::kWire);
+  if (asks_for(task, tasks::ConditionKind::kBreathHeld)) actions.push_back(Action::kBreath);
+  if (needle.is_biopsy) actions.push_back(Action::kLoad);
   return actions;
 }
 
-/// Letters that no view uses: N as in numb, Y as in stylet (and the gun's), Q as in aspirate (syringe), W as in wire,
-/// U.
-Qt::Key key_of(TraineeAction action) noexcept {
+tasks::ActionRequest request_of(Action action, const ActionState& state) noexcept {
   switch (action) {
-    case TraineeAction::kAnaesthetic:
-      return Qt::Key_N;
-    case TraineeAction::kStylet:
-      return Qt::Key_Y;
-    case TraineeAction::kAspirate:
-      return Qt::Key_Q;
-    case TraineeAction::kWire:
-      return Qt::Key_W;
-    case TraineeAction::kBreath:
-      return Qt::Key_U;
-    case TraineeAction::kLoad:
-      return Qt::Key_Y;
-  }
-  return Qt::Key_unknown;
-}
-
-std::optional<TraineeAction> action_of(int key, const std::vector<TraineeAction>& actions) noexcept {
-  for (const TraineeAction action : actions)
-    if (key_of(action) == key) return action;
-  return std::nullopt;
-}
-
-tasks::ActionRequest request_of(TraineeAction action, const ActionState& state) noexcept {
-  switch (action) {
-    case TraineeAction::kAnaesthetic:
+    case Action::kAnaesthetic:
       return {tasks::ActionKind::kAnaesthetise, kAnaesthetic_ml};
-    case TraineeAction::kStylet:
+    case Action::kStylet:
       return {state.is_stylet_drawn ? tasks::ActionKind::kReplaceStylet : tasks::ActionKind::kDrawStylet};
-    case TraineeAction::kAspirate:
+    case Action::kAspirate:
       return {tasks::ActionKind::kAspirate};
-    case TraineeAction::kWire:
+    case Action::kWire:
       return {tasks::ActionKind::kAdvanceWire, state.wire_mm + kWireStep_mm};
-    case TraineeAction::kBreath:
+    case Action::kBreath:
       return {state.is_breath_held ? tasks::ActionKind::kBreathe : tasks::ActionKind::kHoldBreath};
-    case TraineeAction::kLoad:
+    case Action::kLoad:
       return {tasks::ActionKind::kLoad};
+    default:
+      break;
   }
   return {};
 }
 
-QString why_not(TraineeAction action, const ActionState& state, const tasks::Needle& needle) {
+QString why_not(Action action, const ActionState& state, const tasks::Needle& needle) {
   if (!state.can_act) return ActionButtons::tr("The attempt is not running.");
-  const bool needs_bore = action == TraineeAction::kAspirate || action == TraineeAction::kWire;
+  const bool needs_bore = action == Action::kAspirate || action == Action::kWire;
   if (needs_bore && needle.stylet_diameter_mm > 0.0 && !state.is_stylet_drawn)
-    return ActionButtons::tr("Draw the stylet first (Y).");
-  if (action != TraineeAction::kLoad) return {};
+    return ActionButtons::tr("Remove the stylet first (%1).").arg(keys_text(Action::kStylet));
+  if (action != Action::kLoad) return {};
   if (state.is_gun_loaded) return ActionButtons::tr("The gun is loaded.");
   if (!needle.is_coaxial && !state.is_outside)
     return ActionButtons::tr("Withdraw the needle first: without a coaxial needle the gun is loaded outside.");
@@ -152,7 +130,7 @@ ActionButtons::ActionButtons(QWidget* parent) : QWidget(parent) {
   auto* grid = new QGridLayout(this);
   grid->setContentsMargins(0, 0, 0, 0);
   grid->setSpacing(6);
-  for (const TraineeAction action : kTraineeActions) {
+  for (const Action action : kTraineeActions) {
     auto* button = make_button(name_of(action), {}, {});
     button->setParent(this);
     button->setFocusPolicy(Qt::NoFocus);
@@ -164,14 +142,14 @@ ActionButtons::ActionButtons(QWidget* parent) : QWidget(parent) {
   hide();
 }
 
-void ActionButtons::begin(const std::vector<TraineeAction>& actions) {
+void ActionButtons::begin(const std::vector<Action>& actions) {
   auto& grid = static_cast<QGridLayout&>(*layout());
   for (const auto& [action, button] : buttons_) {
     grid.removeWidget(button);
     button->hide();
   }
   int place = 0;
-  for (const TraineeAction action : actions) {
+  for (const Action action : actions) {
     const bool is_alone = place % 2 == 0 && action == actions.back();
     grid.addWidget(buttons_[action], place / 2, place % 2, 1, is_alone ? 2 : 1);
     buttons_[action]->show();
@@ -183,8 +161,7 @@ void ActionButtons::begin(const std::vector<TraineeAction>& actions) {
 
 void ActionButtons::show_state(const ActionState& state) {
   for (const auto& [action, button] : buttons_) {
-    set_button_text(*button, text_of(action, state),
-                    tr("%1 (%2)").arg(tooltip_of(action, state)).arg(QChar(static_cast<char16_t>(key_of(action)))));
+    set_button_text(*button, text_of(action, state), tooltip_of(action, effect_of(action, state)));
     if (button->isEnabled() != state.can_act) button->setEnabled(state.can_act);
   }
 }

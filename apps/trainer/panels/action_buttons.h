@@ -2,32 +2,26 @@
 
 #include <QWidget>
 #include <map>
-#include <optional>
 #include <vector>
 
 #include "tasks/action.h"
 #include "tasks/needle.h"
 #include "tasks/task.h"
+#include "ui_kit/action_table.h"
 
 class QPushButton;
 
 namespace trocar::trainer {
 
-/// What a trainee can do with one button or key, besides moving tools. A second press of kStylet and kBreath undoes it.
-enum class TraineeAction { kAnaesthetic, kStylet, kAspirate, kWire, kBreath, kLoad };
-inline constexpr TraineeAction kTraineeActions[] = {TraineeAction::kAnaesthetic, TraineeAction::kStylet,
-                                                    TraineeAction::kAspirate,    TraineeAction::kWire,
-                                                    TraineeAction::kBreath,      TraineeAction::kLoad};
+/// Actions with a button of their own, in the order of the buttons. A second press of kStylet and kBreath undoes it.
+inline constexpr Action kTraineeActions[] = {Action::kAnaesthetic, Action::kStylet, Action::kAspirate,
+                                             Action::kWire,        Action::kBreath, Action::kLoad};
 
 inline constexpr double kAnaesthetic_ml = 5.0;  ///< Of one press. Range 0..20. [assumed: a syringe of 5 ml]
 inline constexpr double kWireStep_mm = 50.0;    ///< Of one press. Range 1..300. [assumed]
 
 /// Actions that make sense in a task with this needle, in the order of kTraineeActions.
-std::vector<TraineeAction> actions_of(const tasks::Task& task, const tasks::Needle& needle);
-/// Key of an action; independent of the focus. Stylet and gun share one: a needle has only one of them.
-Qt::Key key_of(TraineeAction action) noexcept;
-/// The action of a key among those of a task; empty: none.
-std::optional<TraineeAction> action_of(int key, const std::vector<TraineeAction>& actions) noexcept;
+std::vector<Action> actions_of(const tasks::Task& task, const tasks::Needle& needle);
 
 /// State on which the actions depend.
 struct ActionState {
@@ -37,9 +31,9 @@ struct ActionState {
   bool is_gun_loaded = true, is_outside = true;
 };
 /// The request of a pressed action.
-tasks::ActionRequest request_of(TraineeAction action, const ActionState& state) noexcept;
+tasks::ActionRequest request_of(Action action, const ActionState& state) noexcept;
 /// Reason why an action is not possible, for the trainee; empty: it is possible.
-QString why_not(TraineeAction action, const ActionState& state, const tasks::Needle& needle);
+QString why_not(Action action, const ActionState& state, const tasks::Needle& needle);
 
 /// Buttons of a task's actions, two in a row. Object names: action-anaesthetic, action-stylet, action-aspirate,
 /// action-wire, action-breath, action-load.
@@ -50,14 +44,14 @@ class ActionButtons : public QWidget {
   explicit ActionButtons(QWidget* parent = nullptr);
 
   /// Hidden without actions.
-  void begin(const std::vector<TraineeAction>& actions);
+  void begin(const std::vector<Action>& actions);
   void show_state(const ActionState& state);
 
  Q_SIGNALS:
-  void requested(trocar::trainer::TraineeAction action);
+  void requested(trocar::trainer::Action action);
 
  private:
-  std::map<TraineeAction, QPushButton*> buttons_;
+  std::map<Action, QPushButton*> buttons_;
 };
 
 }  // namespace trocar::trainer

@@ -46,14 +46,14 @@ DeviceChoice::DeviceChoice(QWidget* parent) : QWidget(parent) {
                           tr("An OpenHaptics device with the name assigned in the vendor's setup program"));
   add->setStyleSheet(QStringLiteral("padding: 1px 8px;"));
   auto* heading = new QHBoxLayout;
-  heading->addWidget(make_label(tr("Needle by"), "dim"));
+  heading->addWidget(make_label(tr("Needle device"), "dim"));
   heading->addStretch();
   heading->addWidget(add);
   column->addLayout(heading);
-  needle_ = add_tool(*column, tr("Needle by"), "device", "test-device");
+  needle_ = add_tool(*column, tr("Needle device"), "device", "test-device");
   column->addSpacing(4);
-  column->addWidget(make_label(tr("Transducer by"), "dim"));
-  probe_ = add_tool(*column, tr("Transducer by"), "device-probe", "test-device-probe");
+  column->addWidget(make_label(tr("Transducer device"), "dim"));
+  probe_ = add_tool(*column, tr("Transducer device"), "device-probe", "test-device-probe");
   connect(add, &QPushButton::clicked, this, &DeviceChoice::add_by_name);
   fill();
   for (QComboBox* box : {needle_, probe_})

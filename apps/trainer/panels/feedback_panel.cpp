@@ -186,13 +186,12 @@ QWidget* FeedbackPanel::make_buttons() {
   auto* grid = new QGridLayout(bar);
   grid->setContentsMargins(16, 8, 16, 12);
   grid->setSpacing(8);
-  again_button_ = make_button("try-again", {}, {});
+  again_button_ = make_button("try-again", {}, Action::kTryAgain);
   again_button_->setProperty("role", "primary");
   show_again(false);
-  worst_button_ = make_button("worst-moment", tr("Worst moment"), tr("Go to the worst moment in the replay (W)"));
-  auto* other = make_button("other-case", tr("Other case"), tr("Back to the start page"), QStringLiteral("Ctrl+N"));
-  auto* report =
-      make_button("open-report", tr("Report"), tr("Save the report of the attempt"), QStringLiteral("Ctrl+P"));
+  worst_button_ = make_button("worst-moment", tr("Worst moment"), Action::kWorstMoment);
+  auto* other = make_button("other-case", tr("Other case"), Action::kOtherCase);
+  auto* report = make_button("open-report", tr("Report"), Action::kReport);
   grid->addWidget(again_button_, 0, 0, 1, 2);
   grid->addWidget(worst_button_, 1, 0, 1, 2);
   grid->addWidget(report, 2, 0);
@@ -279,10 +278,7 @@ void FeedbackPanel::show_next(const QString& text) {
 void FeedbackPanel::show_again(bool is_next_exam) {
   const QString text = is_next_exam ? tr("Next exam") : tr("Try again");
   const QString tip = is_next_exam ? tr("Another exam, on a body that you have not seen") : tr("Repeat the same case");
-  again_button_->setText(text);  // clears the shortcut
-  again_button_->setAccessibleName(text);
-  again_button_->setToolTip(tip + QStringLiteral("  (Ctrl+R)"));
-  again_button_->setShortcut(QKeySequence(QStringLiteral("Ctrl+R")));
+  set_button_action(*again_button_, text, Action::kTryAgain, tip);
 }
 
 void FeedbackPanel::show_result(const QString& text) {

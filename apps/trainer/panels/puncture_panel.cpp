@@ -43,10 +43,10 @@ PuncturePanel::PuncturePanel(QWidget* parent) : QWidget(parent) {
   setObjectName(QStringLiteral("puncture-panel"));
   auto* inside = new QWidget;
   make_content(*inside);
-  fire_ = make_button("fire", tr("Fire the gun"), tr("Take a core (Enter)"));
+  fire_ = make_button("fire", tr("Fire the gun"), Action::kFire);
   fire_->setProperty("role", "primary");
   fire_->setFocusPolicy(Qt::NoFocus);
-  end_ = make_button("end-attempt", tr("End the attempt"), tr("End and score the attempt; asks for confirmation (E)"));
+  end_ = make_button("end-attempt", tr("End the attempt"), Action::kEnd);
   end_->setFocusPolicy(Qt::NoFocus);
   scroll_ = make_scrolled(*inside);
   scroll_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
@@ -116,9 +116,9 @@ QWidget* PuncturePanel::make_tool_choice() {
   grid->setSpacing(6);
   const QString narrow = QStringLiteral("QPushButton { padding: 4px 5px; }");
   tool_buttons_ = new QButtonGroup(this);
-  const auto add = [&](ActiveTool tool, const char* name, const QString& text, const QString& tooltip, int row,
-                       int column) {
-    auto* button = make_button(name, text, tooltip);
+  const auto add = [&](ActiveTool tool, const char* name, const QString& text, Action action, const QString& does,
+                       int row, int column) {
+    auto* button = make_button(name, text, action, does);
     button->setCheckable(true);
     button->setFocusPolicy(Qt::NoFocus);
     button->setStyleSheet(narrow);
@@ -126,21 +126,23 @@ QWidget* PuncturePanel::make_tool_choice() {
     grid->addWidget(button, row, column);
     connect(button, &QPushButton::clicked, this, [this, tool] { Q_EMIT tool_requested(tool); });
   };
-  add(ActiveTool::kNeedle, "tool-needle", tr("Needle"), tr("Active tool: the mouse moves the needle (A)"), 0, 0);
-  add(ActiveTool::kTransducer, "tool-transducer", tr("Transducer"),
-      tr("Active tool: the mouse moves the transducer (S)"), 0, 1);
-  add(ActiveTool::kFinger, "tool-finger", tr("Finger"),
-      tr("Active tool: a finger feels the skin under the pointer; a click marks the place (P)"), 0, 2);
-  add(ActiveTool::kNone, "tool-none", tr("View"), tr("No active tool: the mouse rotates the view (V)"), 1, 0);
-  clamp_ = make_button("clamp", tr("Clamp"), tr("Hold the active tool in place (X)"));
+  add(ActiveTool::kNeedle, "tool-needle", tr("Needle"), Action::kSelectNeedle,
+      tr("Active tool: the mouse moves the needle"), 0, 0);
+  add(ActiveTool::kTransducer, "tool-transducer", tr("Transducer"), Action::kSelectTransducer,
+      tr("Active tool: the mouse moves the transducer"), 0, 1);
+  add(ActiveTool::kFinger, "tool-finger", tr("Finger"), Action::kSelectFinger,
+      tr("Active tool: a finger feels the skin under the pointer; a click marks the place"), 0, 2);
+  add(ActiveTool::kNone, "tool-none", tr("View"), Action::kSelectView, tr("No active tool: the mouse rotates the view"),
+      1, 0);
+  clamp_ = make_button("clamp", tr("Lock"), Action::kLock, tr("Hold the active tool in place"));
   clamp_->setCheckable(true);
-  aim_ = make_button("aim", tr("To plan"), {});
+  aim_ = make_button("aim", tr("Move to planned position"), Action::kPlannedPosition);
   for (QPushButton* button : {clamp_, aim_}) {
     button->setFocusPolicy(Qt::NoFocus);
     button->setStyleSheet(narrow);
   }
   grid->addWidget(clamp_, 1, 1);
-  grid->addWidget(aim_, 1, 2);
+  grid->addWidget(aim_, 2, 0, 1, 3);
   connect(clamp_, &QPushButton::clicked, this, &PuncturePanel::clamp_requested);
   connect(aim_, &QPushButton::clicked, this, &PuncturePanel::aim_requested);
   return box;
@@ -155,7 +157,7 @@ QWidget* PuncturePanel::make_question() {
   rows->setSpacing(6);
   question_text_ = make_label({});
   question_text_->setWordWrap(true);
-  yes_ = make_button("question-yes", {}, tr("Enter"));
+  yes_ = make_button("question-yes", {}, Action::kConfirm);
   yes_->setProperty("role", "primary");
   auto* no = make_button("question-no", tr("Go on (Esc)"), tr("Continue the attempt"));
   for (QPushButton* button : {yes_, no}) button->setFocusPolicy(Qt::NoFocus);
@@ -228,13 +230,11 @@ QWidget* PuncturePanel::make_figures() {
   return box;
 }
 
-void PuncturePanel::begin(double most_force_n, bool can_aim, bool has_gun, const std::vector<TraineeAction>& actions) {
+void PuncturePanel::begin(double most_force_n, bool can_aim, bool has_gun, const std::vector<Action>& actions) {
   has_gun_ = has_gun;
   actions_->begin(actions);
   steps_->show_steps({}, {}, 0.0, false);
-  aim_->setEnabled(can_aim);
-  aim_->setToolTip(can_aim ? tr("Move needle or transducer to its planned position (H)")
-                           : tr("The planned position is available in guided attempts only"));
+  aim_->setVisible(can_aim);
   events_->clear();
   force_->clear();
   core_->hide();

@@ -53,7 +53,7 @@ class PuncturePanel : public QWidget {
   explicit PuncturePanel(QWidget* parent = nullptr);
 
   /// `can_aim`: the tools may be moved to their planned poses. `has_gun`: the needle is that of a biopsy gun.
-  void begin(double most_force_n, bool can_aim, bool has_gun = true, const std::vector<TraineeAction>& actions = {});
+  void begin(double most_force_n, bool can_aim, bool has_gun = true, const std::vector<Action>& actions = {});
   void show_figures(const PunctureFigures& figures);
   StepList& steps() noexcept { return *steps_; }
   /// In pixels: what its buttons and texts need beside the scroll bar.
@@ -73,7 +73,7 @@ class PuncturePanel : public QWidget {
   void aim_requested();
   void fire_requested();
   void end_requested();
-  void action_requested(trocar::trainer::TraineeAction action);
+  void action_requested(trocar::trainer::Action action);
   void asked();
   /// The question was answered with yes.
   void confirmed();

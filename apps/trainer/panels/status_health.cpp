@@ -17,9 +17,12 @@ std::optional<HealthReport> find_interruption(const HealthInput& input) {
       return HealthReport{
           Health::kInterrupted, health_tr("Interrupted"),
           health_tr("The safety gate of \"%1\" switched its forces off: %2.").arg(line.tool, line.fault)};
-    if (!line.is_connected)
-      return HealthReport{Health::kInterrupted, health_tr("Interrupted"),
-                          health_tr("The server of \"%1\" is not connected; it is restarted.").arg(line.tool)};
+    if (line.is_connected) continue;
+    const QString reason =
+        line.waits_for_resume
+            ? health_tr("The server of \"%1\" is not connected: it is restarted when you resume the forces.")
+            : health_tr("The server of \"%1\" is not connected; it is being restarted.");
+    return HealthReport{Health::kInterrupted, health_tr("Interrupted"), reason.arg(line.tool)};
   }
   return std::nullopt;
 }
@@ -37,7 +40,7 @@ std::optional<HealthReport> find_slow_pictures(const HealthInput& input, const H
   if (input.frames->per_s >= limits.least_frames_per_s && input.frames->slowest_ms <= limits.slowest_frame_ms)
     return std::nullopt;
   return HealthReport{Health::kSlow, health_tr("Slow display"),
-                      health_tr("The pictures are drawn late: the computer is too busy.")};
+                      health_tr("The display is slow: the computer is too busy.")};
 }
 
 QString row(const QString& title, const QStringList& cells) {

@@ -13,6 +13,7 @@ namespace trocar::trainer {
 struct ServerLine {
   QString tool;  ///< "Needle"
   bool is_connected = false;
+  bool waits_for_resume = false;  ///< Not restarted before the user resumes the forces.
   double rate_hz = 0.0;
   double served = 1.0;  ///< Share of periods that were served in time.
   double lateness_p99_us = 0.0;

@@ -61,7 +61,12 @@ QIcon symbol_of(Health health, int side, double pixel_ratio) {
 
 }  // namespace
 
-StatusStrip::StatusStrip(QWidget* parent) : QFrame(parent) {
+StatusStrip::StatusStrip(QWidget* parent)
+    : QFrame(parent), keys_(*this, [this](const QKeyEvent& key, const KeyPlace& place) {
+        if (key.key() != Qt::Key_Escape || place.is_aside || !shows_details()) return false;
+        set_details_shown(false);
+        return true;
+      }) {
   setObjectName(QStringLiteral("status-strip"));
   setProperty("role", "bar");
   auto* row = new QHBoxLayout(this);
@@ -121,7 +126,9 @@ void StatusStrip::show_forces(bool is_attempt, bool are_stopped) {
 }
 
 void StatusStrip::update_health() {
-  if (shows_details()) {
+  constexpr qint64 kEvery_ms = 500;  // slow enough to be read
+  if (shows_details() && refreshed_.hasExpired(kEvery_ms)) {
+    refreshed_.start();
     if (const QString text = health_details(input_); text != figures_->text()) {
       figures_->setText(text);
       place_details();
@@ -154,8 +161,11 @@ bool StatusStrip::shows_details() const {
 void StatusStrip::set_details_shown(bool are_shown) {
   if (indicator_->isChecked() != are_shown) return indicator_->setChecked(are_shown);
   if (are_shown) {
-    // In the window the frame covers the views above the strip; alone, the strip has no room for it.
-    if (details_->parentWidget() != window()) details_->setParent(window());
+    // In the window the frame covers the views above the strip, and is mirrored with them; alone, the strip has no room
+    // for it.
+    QWidget* area = parentWidget() != nullptr ? parentWidget() : this;
+    if (details_->parentWidget() != area) details_->setParent(area);
+    refreshed_.start();
     figures_->setText(health_details(input_));
   }
   details_->setVisible(are_shown);

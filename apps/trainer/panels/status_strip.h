@@ -1,10 +1,12 @@
 #pragma once
 
+#include <QElapsedTimer>
 #include <QFrame>
 #include <vector>
 
 #include "attempt/record/run_result.h"
 #include "panels/status_health.h"
+#include "ui_kit/page_keys.h"
 
 class QLabel;
 class QPushButton;
@@ -14,7 +16,7 @@ namespace trocar::trainer {
 
 /// Status bar of the window: one indicator of the state of forces and pictures, and the force stop button, which is
 /// always visible. A click on the indicator shows or hides the figures behind it, above the bar; its tooltip has them,
-/// too. The figures do not take the keyboard: Space stops the forces while they are open.
+/// too. Escape closes them. The figures do not take the keyboard: Space stops the forces while they are open.
 class StatusStrip : public QFrame {
   Q_OBJECT
 
@@ -55,6 +57,8 @@ class StatusStrip : public QFrame {
   QLabel* figures_ = nullptr;
   HealthInput input_;
   HealthReport report_;
+  QElapsedTimer refreshed_;  ///< When the figures were set last.
+  PageKeys keys_;            ///< Escape closes the figures.
 };
 
 }  // namespace trocar::trainer

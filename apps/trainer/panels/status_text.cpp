@@ -10,6 +10,7 @@ ServerLine line_of(const attempt::ServerView& server, const QString& tool) {
   ServerLine line;
   line.tool = tool;
   line.is_connected = server.is_connected;
+  line.waits_for_resume = server.waits_for_resume;
   line.rate_hz = server.rate_hz;
   line.served = server.wanted_hz > 0.0 ? std::min(1.0, server.rate_hz / server.wanted_hz) : 1.0;
   line.lateness_p99_us = server.p99_us;

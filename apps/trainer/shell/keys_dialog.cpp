@@ -3,91 +3,98 @@
 #include <QDialog>
 #include <QGridLayout>
 #include <QLabel>
+#include <QLineEdit>
 #include <QPushButton>
-#include <span>
+#include <QScrollArea>
+#include <algorithm>
 #include <vector>
 
+#include "ui_kit/action_table.h"
 #include "ui_kit/parts.h"
-#include "workspace/workspace.h"
 
 namespace trocar::trainer {
 namespace {
 
-struct Key {
-  const char* keys;
-  const char* does;
+/// Heading and rows of one scope.
+struct KeyGroup {
+  QLabel* heading;
+  std::vector<std::pair<QLabel*, QLabel*>> rows;  ///< Keys, and what they do.
 };
-constexpr Key kTools[] = {
-    {"A, S, P, V", "select needle, transducer, palpating finger or view as the active tool"},
-    {"click, Backspace", "finger: marks the skin (also Enter), removes the last mark"},
-    {"drag", "moves along the skin"},
-    {"right drag", "tilts; with Shift it turns about the axis"},
-    {"wheel", "needle: advance and withdraw, transducer: press harder and softer; Shift: fine steps"},
-    {"arrows", "same as dragging, one millimetre per step"},
-    {"Page up, down", "same as the wheel"},
-    {"H", "to the planned position"},
-    {"X", "locks or unlocks the active tool"},
-    {"Enter", "fires the biopsy gun"},
-    {"N", "local anaesthetic"},
-    {"Y", "draws the stylet, or puts it back; takes the core out and loads the gun"},
-    {"Q", "aspirates"},
-    {"W", "advances the guide wire"},
-    {"U", "the patient holds the breath, or breathes again"},
-    {"E", "ends the attempt"},
-    {"Space", "stops all forces, or switches them on again"}};
-constexpr Key kPages[] = {{"Tab", "next control; Space presses it, during a puncture Enter"},
-                          {"Ctrl++, Ctrl+-", "larger, smaller text"},
-                          {"Ctrl+R", "tries again; after an exam, begins another"},
-                          {"W", "worst moment of the replay"},
-                          {"N, P", "next and previous event of the replay"},
-                          {"H", "next hint's moment in the replay"},
-                          {"Ctrl+T", "tissue parameters"},
-                          {"Ctrl+B", "case builder"},
-                          {"F1", "these keys"},
-                          {"F8", "switches window mirroring on or off"},
-                          {"F11", "full screen"}};
 
-using Keys = std::vector<ViewKeys>;
-
-void append(Keys& keys, std::span<const Key> more) {
-  for (const Key& key : more) keys.push_back({QString::fromUtf8(key.keys), QString::fromUtf8(key.does)});
+std::vector<KeyGroup> add_groups(QGridLayout& grid) {
+  std::vector<KeyGroup> groups;
+  int line = 0;
+  const char* heading = nullptr;
+  Scope scope{};
+  for (const ActionRow& row : action_table()) {
+    if (heading == nullptr || scope != row.scope) {
+      groups.push_back({make_label(scope_title(row.scope), "heading"), {}});
+      grid.addWidget(groups.back().heading, line++, 0, 1, 2);
+    }
+    heading = row.does;
+    scope = row.scope;
+    auto* keys = make_label(keys_text(row.action), "badge");
+    auto* does = make_label(does_text(row.action));
+    does->setWordWrap(true);
+    grid.addWidget(keys, line, 0, Qt::AlignLeft | Qt::AlignTop);
+    grid.addWidget(does, line++, 1, Qt::AlignTop);
+    groups.back().rows.emplace_back(keys, does);
+  }
+  grid.setColumnStretch(1, 1);
+  grid.setRowStretch(line, 1);
+  return groups;
 }
 
-Keys keys_of_views_and_pages(const Workspace& workspace) {
-  Keys keys{{QStringLiteral("Ctrl+1 … %1").arg(workspace.layouts().size()), QStringLiteral("layouts")}};
-  for (const ViewDescription& view : workspace.registry().views())
-    keys.insert(keys.end(), view.keys.begin(), view.keys.end());
-  append(keys, kPages);
-  return keys;
-}
-
-void add_keys(QGridLayout& grid, int column, const QString& title, const Keys& keys) {
-  grid.addWidget(make_label(title, "heading"), 0, column, 1, 2);
-  int row = 1;
-  for (const ViewKeys& key : keys) {
-    grid.addWidget(make_label(key.keys, "badge"), row, column, Qt::AlignLeft);
-    grid.addWidget(make_label(key.action), row, column + 1);
-    ++row;
+/// A group whose heading contains the text is shown whole.
+void filter(const std::vector<KeyGroup>& groups, const QString& text) {
+  const auto contains = [&](const QLabel* label) { return label->text().contains(text, Qt::CaseInsensitive); };
+  for (const KeyGroup& group : groups) {
+    const bool is_whole = contains(group.heading);
+    bool is_any_shown = false;
+    for (const auto& [keys, does] : group.rows) {
+      const bool is_shown = is_whole || contains(keys) || contains(does);
+      keys->setVisible(is_shown);
+      does->setVisible(is_shown);
+      is_any_shown = is_any_shown || is_shown;
+    }
+    group.heading->setVisible(is_any_shown);
   }
 }
 
 }  // namespace
 
-void show_keys(QWidget* parent, const Workspace& workspace) {
+void show_keys(QWidget* parent) {
   QDialog dialog(parent);
   dialog.setObjectName(QStringLiteral("keys"));
   dialog.setWindowTitle(QDialog::tr("Keys and mouse"));
-  auto* grid = new QGridLayout(&dialog);
-  grid->setContentsMargins(24, 20, 24, 20);
+  auto* content = new QWidget;
+  auto* grid = new QGridLayout(content);
+  grid->setContentsMargins(4, 4, 16, 4);
   grid->setHorizontalSpacing(16);
-  grid->setVerticalSpacing(8);
-  Keys tools;
-  append(tools, kTools);
-  add_keys(*grid, 0, QDialog::tr("Tools"), tools);
-  add_keys(*grid, 2, QDialog::tr("Views and pages"), keys_of_views_and_pages(workspace));
-  auto* close = make_button("close-keys", QDialog::tr("Close"), QDialog::tr("Closes this"), QStringLiteral("Esc"));
-  grid->addWidget(close, grid->rowCount(), 3, Qt::AlignRight);
+  grid->setVerticalSpacing(6);
+  const std::vector<KeyGroup> groups = add_groups(*grid);
+  auto* search = new QLineEdit;
+  search->setObjectName(QStringLiteral("keys-filter"));
+  search->setAccessibleName(QDialog::tr("Filter"));
+  search->setPlaceholderText(QDialog::tr("Filter: a key, or a word such as stylet"));
+  search->setClearButtonEnabled(true);
+  QObject::connect(search, &QLineEdit::textChanged, content, [&](const QString& text) { filter(groups, text); });
+  auto* close = make_button(
+      "close-keys", QDialog::tr("Close"),
+      QDialog::tr("Closes this  (%1)").arg(QKeySequence(Qt::Key_Escape).toString(QKeySequence::NativeText)));
+  close->setAutoDefault(false);
   QObject::connect(close, &QPushButton::clicked, &dialog, &QDialog::accept);
+  auto* scrolled = make_scrolled(*content);
+  scrolled->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  auto* column = new QVBoxLayout(&dialog);
+  column->setContentsMargins(20, 16, 20, 16);
+  column->setSpacing(10);
+  column->addWidget(search);
+  column->addWidget(scrolled, 1);
+  column->addWidget(close, 0, Qt::AlignRight);
+  constexpr int kColumns = 90;  // average characters
+  const QSize most = parent->window()->size() - QSize(80, 80);
+  dialog.resize(QSize(dialog.fontMetrics().averageCharWidth() * kColumns, most.height()).boundedTo(most));
   dialog.exec();
 }
 

@@ -4,9 +4,8 @@ class QWidget;
 
 namespace trocar::trainer {
 
-class Workspace;
-
-/// Shows all keys and mouse actions (F1): those of the window, and those of the views of a workspace.
-void show_keys(QWidget* parent, const Workspace& workspace);
+/// A dialog with the table of actions: keys and mouse actions of each page and view. It fits the parent's window; what
+/// does not is scrolled. A text filters the rows.
+void show_keys(QWidget* parent);
 
 }  // namespace trocar::trainer

@@ -58,9 +58,8 @@ MainWindow::MainWindow(const std::filesystem::path& state_folder, const database
   briefing_ = new BriefingPage;
   work_ = new WorkPage;
   case_ = new CasePage;
-  for (QWidget* page : std::initializer_list<QWidget*>{start_, briefing_, case_})
-    pages_->addWidget(make_scrolled(*page));
-  pages_->addWidget(work_);
+  for (QWidget* page : std::initializer_list<QWidget*>{start_, briefing_, make_scrolled(*case_), work_})
+    pages_->addWidget(page);
   strip_ = new StatusStrip;
   column->addWidget(make_top_bar());
   column->addWidget(pages_, 1);
@@ -109,11 +108,9 @@ QWidget* MainWindow::make_top_bar() {
   views_menu_->addSeparator();
   views->setMenu(views_menu_);
   views->setPopupMode(QToolButton::InstantPopup);
-  auto* tissues = make_tool_button("open-parameters", tr("Tissues"), tr("Tissue parameters and the predicted force"),
-                                   QStringLiteral("Ctrl+T"));
-  auto* builder = make_tool_button("open-case-builder", tr("Case builder"), tr("Create cases from CT and labels"),
-                                   QStringLiteral("Ctrl+B"));
-  auto* keys = make_tool_button("open-keys", tr("Keys"), tr("All keys and mouse actions"), QStringLiteral("F1"));
+  auto* tissues = make_tool_button("open-parameters", tr("Tissues"), Action::kTissues);
+  auto* builder = make_tool_button("open-case-builder", tr("Case builder"), Action::kCaseBuilder);
+  auto* keys = make_tool_button("open-keys", tr("Keys"), Action::kKeys);
   for (QToolButton* button : {views, tissues, builder, keys}) row->addWidget(button);
   connect(tissues, &QToolButton::clicked, this, [this] {
     if (!work_->toggle_parameters())
@@ -123,7 +120,7 @@ QWidget* MainWindow::make_top_bar() {
   });
   connect(builder, &QToolButton::clicked, this,
           [this] { page_ == QLatin1String("case-builder") ? flow_->go_to_start() : flow_->go_to_case_builder(); });
-  connect(keys, &QToolButton::clicked, this, [this] { show_keys(this, work_->workspace()); });
+  connect(keys, &QToolButton::clicked, this, [this] { show_keys(this); });
   return bar;
 }
 
@@ -157,17 +154,17 @@ void MainWindow::fill_text_menu(QMenu& menu) {
     if (next >= 0 && next < actions.size()) actions[next]->trigger();
   };
   menu.addSeparator();
-  const auto add = [&](const QString& text, const QKeySequence& key, int by) {
+  const auto add = [&](const QString& text, Action of_table, int by) {
     QAction* action = menu.addAction(text);
-    action->setShortcut(key);
+    action->setShortcut(key_of(of_table));
     connect(action, &QAction::triggered, this, [step, by] { step(by); });
   };
-  add(tr("Larger"), QKeySequence(QStringLiteral("Ctrl++")), 1);
-  add(tr("Smaller"), QKeySequence(QStringLiteral("Ctrl+-")), -1);
+  add(tr("Larger"), Action::kLargerText, 1);
+  add(tr("Smaller"), Action::kSmallerText, -1);
 }
 
 void MainWindow::add_shortcuts() {
-  auto* full_screen = new QShortcut(QKeySequence(QStringLiteral("F11")), this);
+  auto* full_screen = new QShortcut(key_of(Action::kFullScreen), this);
   connect(full_screen, &QShortcut::activated, this, [this] { isFullScreen() ? showNormal() : showFullScreen(); });
 }
 

@@ -1,6 +1,5 @@
 // What scripts, tests and benchmarks read from a running trainer.
 #include <QLabel>
-#include <algorithm>
 
 #include "control/attempt_control.h"
 #include "control/learning_control.h"
@@ -17,27 +16,14 @@
 #include "views/ultrasound/ultrasound_view.h"
 
 namespace trocar::trainer {
-namespace {
-
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
-  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<std::size_t>(at)];
-}
-
-}  // namespace
-
 QVariantMap TrainerFlow::facts() const {
   QVariantMap facts;
   facts[QStringLiteral("case")] = open_ ? to_qt(open_->the_case.patient->name) : QString();
   facts[QStringLiteral("is_complete")] =
       open_ != nullptr && open_->later->view().is_done && window_.work().view_3d().is_ready();
-  facts[QStringLiteral("is_open")] =
-      open_ != nullptr && !learning_->is_finding_body() && !opening_.has_work() && !opened_;
+  facts[QStringLiteral("is_open")] = open_ != nullptr && in<FindingBody>() == nullptr && in<Opening>() == nullptr;
   constexpr double kBytesPerMiB = 1024.0 * 1024.0;
   facts[QStringLiteral("memory_mb")] = static_cast<double>(resident_memory_bytes()) / kBytesPerMiB;
-  facts[QStringLiteral("late_frames")] = static_cast<qulonglong>(frames_.late());
   facts[QStringLiteral("person")] = to_qt(results_->person_name());
   const auto text_of = [](const QWidget& page, const char* label) {
     const auto* found = page.findChild<QLabel*>(QString::fromLatin1(label));
@@ -50,18 +36,14 @@ QVariantMap TrainerFlow::facts() const {
   facts[QStringLiteral("next_exercise")] = learning_->next_title();
   facts[QStringLiteral("exam_result")] = learning_->result_file();
   facts[QStringLiteral("exam_number")] = static_cast<qulonglong>(is_exam() ? choice_.exam_number : 0);
-  if (attempt_) facts.insert(attempt_->facts());
-  if (replay_) facts.insert(replay_->facts());
+  const auto* attempting = in<Attempting>();
+  if (attempting != nullptr) facts.insert(attempting->control->facts());
+  if (const auto* reviewing = in<Reviewing>()) facts.insert(reviewing->control->facts());
   // Settings of the displayed ultrasound image.
-  const bool tells_plan = !attempt_ || !is_exam();
+  const bool tells_plan = attempting == nullptr || !is_exam();
   if (const auto picture = window_.work().ultrasound().picture(); picture && open_ && tells_plan)
     facts[QStringLiteral("picture_from_plan_mm")] = (picture->X_PT.p() - open_->X_PT_start.p()).norm();
-  facts[QStringLiteral("frame_p50_ms")] = quantile(frame_ms_, 0.5);
-  facts[QStringLiteral("frame_p99_ms")] = quantile(frame_ms_, 0.99);
-  const double watched_s = now_s() - watched_since_s_;
-  facts[QStringLiteral("ultrasound_per_s")] = static_cast<double>(scan_ms_.size()) / std::max(watched_s, 1e-3);
-  facts[QStringLiteral("ultrasound_p50_ms")] = quantile(scan_ms_, 0.5);
-  facts[QStringLiteral("ultrasound_p99_ms")] = quantile(scan_ms_, 0.99);
+  watch_.add_facts(facts, now_s());
   if (const auto picture = window_.work().ultrasound().picture())
     facts[QStringLiteral("ultrasound_lines")] = picture->scan.lines;
   const scene::FrameTimes& renders = window_.work().view_3d().moving_frame_times();
@@ -82,9 +64,7 @@ QVariantMap TrainerFlow::facts() const {
 
 void TrainerFlow::reset_watch() {
   window_.work().view_3d().clear_frame_times();
-  frame_ms_.clear();
-  scan_ms_.clear();
-  watched_since_s_ = now_s();
+  watch_.reset(now_s());
   if (auto* application = qobject_cast<TrainerApplication*>(QCoreApplication::instance())) application->reset_watch();
 }
 

@@ -33,6 +33,44 @@ QString text_of(const BriefingPage& page, const char* name) {
   return page.findChild<QLabel*>(QString::fromLatin1(name))->text();
 }
 
+TEST(BriefingPage, NamesTheKeysOfTheTasksActions) {
+  struct Expected {
+    const char* task;
+    std::vector<Action> actions, others;
+  };
+  using enum Action;
+  const Expected all[] = {{"ptcd", {kAnaesthetic, kStylet, kAspirate, kWire, kFluoroscopy, kContrast}, {kFire, kLoad}},
+                          {"liver-biopsy", {kFire, kLoad, kAnaesthetic, kBreath}, {kFluoroscopy, kContrast, kWire}},
+                          {"lumbar-puncture", {kStylet, kSelectFinger}, {kFluoroscopy, kFire}}};
+  for (const Expected& expected : all) {
+    BriefingPage page;
+    TrainerChoice choice;
+    choice.task = expected.task;
+    page.show_opening(choice);
+    const QString controls = text_of(page, "briefing-controls");
+    for (const Action action : expected.actions) {
+      EXPECT_TRUE(controls.contains(does_text(action))) << expected.task << ": " << does_text(action).toStdString();
+      EXPECT_TRUE(controls.contains(keys_text(action))) << expected.task << ": " << keys_text(action).toStdString();
+    }
+    for (const Action action : expected.others)
+      EXPECT_FALSE(controls.contains(does_text(action))) << expected.task << ": " << does_text(action).toStdString();
+  }
+}
+
+TEST(BriefingPage, SaysWhyAnAttemptCannotBegin) {
+  BriefingPage page;
+  page.show_case(open_abdomen(), Difficulty::kGuided);
+  auto* begin = page.findChild<QPushButton*>(QStringLiteral("begin"));
+  EXPECT_TRUE(begin->isEnabled());
+  page.set_hindrance(QStringLiteral("The disk is full."));
+  EXPECT_FALSE(begin->isEnabled());
+  EXPECT_EQ(begin->toolTip(), QStringLiteral("The disk is full."));
+  page.show_later(QStringLiteral("3D surfaces"));
+  EXPECT_EQ(text_of(page, "opening-state"), QStringLiteral("The disk is full."));
+  page.set_hindrance({});
+  EXPECT_TRUE(begin->isEnabled());
+}
+
 TEST(BriefingPage, TellsTheReferralAndTheTaskBeforeThePatientIsLoaded) {
   struct Expected {
     const char* task;
@@ -43,7 +81,7 @@ TEST(BriefingPage, TellsTheReferralAndTheTaskBeforeThePatientIsLoaded) {
       {"lumbar-puncture",
        "lumbar-3",
        {"lumbar-3", "male", "72 years", "174 cm", "encephalitis", "heparin", "penicillin", "sitting"},
-       {"spinal fluid", "palpation", "Draw the stylet", "7. "},
+       {"spinal fluid", "palpation", "Remove the stylet", "7. "},
        {"Confirmation of position", "spinal fluid comes back", "<b>5</b>", "points at 30°", "70 of 100", "nerve",
         "whatever the points: the needle went in above L2/L3"}},
       {"liver-biopsy",

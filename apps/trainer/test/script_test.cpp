@@ -57,7 +57,8 @@ TEST(Script, MistakesNameTheirLine) {
 struct SmallStage : ::testing::Test {
   SmallStage() {
     auto* column = new QVBoxLayout(&window);
-    button = make_button("push", QStringLiteral("Push"), QStringLiteral("Counts"), QStringLiteral("Ctrl+K"));
+    button = make_button("push", QStringLiteral("Push"), QStringLiteral("Counts"));
+    button->setShortcut(QKeySequence(QStringLiteral("Ctrl+K")));
     slider = new QSlider(Qt::Horizontal);
     slider->setObjectName(QStringLiteral("slide"));
     slider->setRange(0, 100);

@@ -4,7 +4,9 @@
 
 #include <QAbstractButton>
 #include <QComboBox>
+#include <QCoreApplication>
 #include <QLabel>
+#include <QLineEdit>
 #include <QListWidget>
 #include <QPushButton>
 #include <QSettings>
@@ -14,6 +16,7 @@
 #include "anatomy/phantom/phantom.h"
 #include "core/files/temporary_folder.h"
 #include "io/patient/patient_folder.h"
+#include "test/widget_actions.h"
 #include "ui_kit/parts.h"
 
 namespace trocar::trainer {
@@ -204,6 +207,43 @@ TEST_F(StartPageTest, OffersWhatACrashHasCutOff) {
   EXPECT_TRUE(page.findChild<QPushButton*>(QStringLiteral("recover"))->isVisible());
   page.offer_recovery({});
   EXPECT_FALSE(page.findChild<QPushButton*>(QStringLiteral("recover"))->isVisible());
+}
+
+TEST_F(StartPageTest, AnExamKeepsTheNeedleAndForcesThatWereChosenBefore) {
+  TrainerChoice wanted;
+  wanted.needle = "biopsy-16g";
+  wanted.force_model = "proxy";
+  for (const Difficulty difficulty : {Difficulty::kGuided, Difficulty::kExam}) {
+    StartPage page;
+    wanted.difficulty = difficulty;
+    page.choose(wanted);
+    page.findChild<QPushButton*>(QStringLiteral("start"))->click();
+  }
+  StartPage again;
+  TrainerChoice guided = again.choice();
+  EXPECT_EQ(guided.difficulty, Difficulty::kExam);
+  again.findChild<QAbstractButton*>(QStringLiteral("difficulty-guided"))->click();
+  guided = again.choice();
+  EXPECT_EQ(guided.needle, "biopsy-16g");
+  EXPECT_EQ(guided.force_model, "proxy");
+}
+
+TEST_F(StartPageTest, EnterStartsExceptWhereSomebodyTypes) {
+  StartPage page;
+  page.show();
+  QCoreApplication::processEvents();
+  int started = 0;
+  QObject::connect(&page, &StartPage::start_requested, [&] { ++started; });
+  auto& name = *page.findChild<QLineEdit*>(QStringLiteral("person-name"));
+  page.findChild<QPushButton*>(QStringLiteral("new-person"))->click();
+  name.setFocus();
+  for (const int key : {Qt::Key_Return, Qt::Key_Enter}) press_key(name, key);
+  EXPECT_EQ(started, 0);
+  page.findChild<QPushButton*>(QStringLiteral("person-cancel"))->click();
+  auto& tasks = *page.findChild<QListWidget*>(QStringLiteral("tasks"));
+  tasks.setFocus();
+  press_key(tasks, Qt::Key_Return);
+  EXPECT_EQ(started, 1);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <QToolButton>
 
 #include "script/cut_off.h"
+#include "test/widget_actions.h"
 
 namespace trocar::trainer {
 namespace {
@@ -111,9 +112,13 @@ TEST(StatusStrip, AClickShowsTheFiguresAboveTheBarWithoutTakingTheKeyboard) {
   EXPECT_LE(details->geometry().bottom(), strip.y());
   EXPECT_TRUE(window.rect().contains(details->geometry()));
   EXPECT_TRUE(figures->text().contains(QStringLiteral("99.87 %")));
-  strip.show_frames({41.0, 30.0, 1, 99});
-  EXPECT_TRUE(figures->text().contains(QStringLiteral("41 frames/s"))) << "they follow";
   EXPECT_FALSE(indicator->hasFocus() || details->hasFocus());
+  press_key(window, Qt::Key_Escape);
+  EXPECT_FALSE(strip.shows_details());
+  EXPECT_FALSE(indicator->isChecked());
+  strip.show_frames({41.0, 30.0, 1, 99});
+  indicator->click();
+  EXPECT_TRUE(figures->text().contains(QStringLiteral("41 frames/s"))) << "they follow";
   indicator->click();
   EXPECT_FALSE(strip.shows_details());
 }

@@ -11,7 +11,6 @@
 #include <QSettings>
 #include <QTimer>
 
-#include "shell/keys_dialog.h"
 #include "test/open_abdomen.h"
 #include "views/patient/patient_view.h"
 #include "workspace/workspace.h"
@@ -61,9 +60,8 @@ struct ViewRegistryTest : ::testing::Test {
     ViewDescription dummy;
     dummy.id = QStringLiteral("dummy");
     dummy.title = QStringLiteral("Dummy view");
-    dummy.shortcut = QStringLiteral("Ctrl+Shift+D");
+    dummy.toggled_by = Action::kXrayView;
     dummy.places = {{QStringLiteral("Puncture"), 1, 20}, {QStringLiteral("Fluoroscopy"), 0, 1}};
-    dummy.keys = {{QStringLiteral("Z"), QStringLiteral("does nothing")}};
     dummy.make = [this](ViewContext&) { return std::make_unique<DummyView>(received_); };
     registry.add(std::move(dummy));
     return registry;
@@ -83,7 +81,7 @@ TEST_F(ViewRegistryTest, ARegisteredViewIsInTheMenuWithItsTitleAndShortcut) {
   auto* action = menu.findChild<QAction*>(QStringLiteral("show-dummy"));
   ASSERT_NE(action, nullptr);
   EXPECT_EQ(action->text(), QStringLiteral("Dummy view"));
-  EXPECT_EQ(action->shortcut(), QKeySequence(QStringLiteral("Ctrl+Shift+D")));
+  EXPECT_EQ(action->shortcut(), key_of(Action::kXrayView));
 }
 
 TEST_F(ViewRegistryTest, ARegisteredViewHasItsPlacesInLayouts) {
@@ -147,20 +145,6 @@ TEST_F(ViewRegistryTest, StoredLayoutsStayValidWhenAViewIsAdded) {
   after.reset_layout();
   EXPECT_TRUE(is_visible(after, "dock-forces"));
   EXPECT_TRUE(is_visible(after, "dock-dummy"));
-}
-
-TEST_F(ViewRegistryTest, ThePageOfKeysHasTheKeysOfViews) {
-  const Workspace workspace(with_dummy());
-  QWidget window;
-  bool has_keys = false;
-  QTimer::singleShot(0, &window, [&] {
-    auto* dialog = window.findChild<QDialog*>(QStringLiteral("keys"));
-    for (const QLabel* label : dialog->findChildren<QLabel*>())
-      has_keys = has_keys || label->text() == QStringLiteral("does nothing");
-    dialog->accept();
-  });
-  show_keys(&window, workspace);
-  EXPECT_TRUE(has_keys);
 }
 
 TEST_F(ViewRegistryTest, AWidgetIsFoundByIdAndType) {

@@ -340,6 +340,14 @@ TEST_F(WindowTest, AnAttemptThatACrashCutOffCanBeSeenAgain) {
             "wheel-until view-3d 10 depth_mm > 15 within 60\n"
             "wait 1\nend-window\n");
   EXPECT_EQ(run({QStringLiteral("--script"), script}).exit_status, -1);
+  // Killed while the recording opens, and left with Back: it is offered again.
+  const QString killed = write("killed.txt", "click recover\nwait-for page is briefing within 60\nend-window\n");
+  EXPECT_EQ(run({QStringLiteral("--script"), killed}).exit_status, -1);
+  expect_played(run({QStringLiteral("--script"),
+                     write("left.txt",
+                           "click recover\nwait-for page is briefing within 60\nclick back\n"
+                           "wait-for page is start within 20\nclick recover\nwait-for page is briefing within 60\n"
+                           "click back\nwait-for page is start within 20\n")}));
   const QString again = write("again.txt",
                               "click recover\nwait-for page is feedback within 300\nexpect was_cut_off is true\n"
                               "expect duration_s > 1\n");

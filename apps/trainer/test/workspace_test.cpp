@@ -7,6 +7,7 @@
 #include <QDockWidget>
 #include <QMenu>
 #include <QSettings>
+#include <QStackedWidget>
 #include <QToolButton>
 #include <map>
 
@@ -227,6 +228,25 @@ TEST(NeedleModels, OfTheListAreAllDrawn) {
   EXPECT_EQ(models.at("tuohy-17g"), scene::NeedleModel::kTuohy);
   EXPECT_EQ(models.at("quincke-22g"), scene::NeedleModel::kQuincke);
   EXPECT_EQ(models.at("chiba-22g"), scene::NeedleModel::kChiba);
+}
+
+TEST(Workspace, AFloatingViewIsHiddenWithThePage) {
+  QSettings().clear();
+  QStackedWidget pages;
+  auto* workspace = new Workspace;
+  pages.addWidget(workspace);
+  pages.addWidget(new QWidget);
+  pages.resize(1000, 700);
+  pages.show();
+  auto* dock = workspace->findChild<QDockWidget*>(QStringLiteral("dock-3d"));
+  dock->setFloating(true);
+  dock->show();
+  QCoreApplication::processEvents();
+  pages.setCurrentIndex(1);
+  EXPECT_TRUE(dock->isHidden());
+  pages.setCurrentIndex(0);
+  EXPECT_FALSE(dock->isHidden());
+  EXPECT_TRUE(dock->isFloating());
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "ui_kit/parts.h"
 
+#include <QAbstractButton>
 #include <QFrame>
 #include <QLabel>
 #include <QPushButton>
@@ -13,13 +14,19 @@ namespace trocar::trainer {
 namespace {
 
 template <class Button>
-Button* dress(Button* button, const char* name, const QString& text, const QString& tooltip, const QString& shortcut) {
+Button* dress(Button* button, const char* name, const QString& text, const QString& tooltip) {
   button->setObjectName(QString::fromLatin1(name));
   button->setText(text);
   button->setAccessibleName(text);
-  button->setToolTip(shortcut.isEmpty() ? tooltip : tooltip + QStringLiteral("  (") + shortcut + QStringLiteral(")"));
-  if (!shortcut.isEmpty()) button->setShortcut(QKeySequence(shortcut));
+  button->setToolTip(tooltip);
   return button;
+}
+
+/// Single letters, Space and Enter are left to PageKeys, which knows what has the focus.
+bool is_shortcut(const QKeySequence& keys) {
+  const QString name = keys.toString(QKeySequence::PortableText);
+  return name.contains(QLatin1Char('+')) || (name.size() > 1 && name.startsWith(QLatin1Char('F'))) ||
+         name == QLatin1String("Esc");
 }
 
 }  // namespace
@@ -30,12 +37,31 @@ QLabel* make_label(const QString& text, const char* role, QWidget* parent) {
   return label;
 }
 
-QPushButton* make_button(const char* name, const QString& text, const QString& tooltip, const QString& shortcut) {
-  return dress(new QPushButton, name, text, tooltip, shortcut);
+QPushButton* make_button(const char* name, const QString& text, const QString& tooltip) {
+  return dress(new QPushButton, name, text, tooltip);
 }
 
-QToolButton* make_tool_button(const char* name, const QString& text, const QString& tooltip, const QString& shortcut) {
-  return dress(new QToolButton, name, text, tooltip, shortcut);
+QToolButton* make_tool_button(const char* name, const QString& text, const QString& tooltip) {
+  return dress(new QToolButton, name, text, tooltip);
+}
+
+void set_button_action(QAbstractButton& button, const QString& text, Action action, const QString& does) {
+  button.setText(text);
+  button.setAccessibleName(text);
+  button.setToolTip(tooltip_of(action, does));
+  if (const QKeySequence keys = key_of(action); is_shortcut(keys)) button.setShortcut(keys);
+}
+
+QPushButton* make_button(const char* name, const QString& text, Action action, const QString& does) {
+  auto* button = dress(new QPushButton, name, text, {});
+  set_button_action(*button, text, action, does);
+  return button;
+}
+
+QToolButton* make_tool_button(const char* name, const QString& text, Action action, const QString& does) {
+  auto* button = dress(new QToolButton, name, text, {});
+  set_button_action(*button, text, action, does);
+  return button;
 }
 
 QFrame* make_card(const QString& heading, QBoxLayout*& content) {

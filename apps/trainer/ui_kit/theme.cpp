@@ -59,6 +59,8 @@ QSlider::groove:vertical { width: 4px; background: @line; border-radius: 2px; }
 QSlider::add-page:vertical { background: @accent; border-radius: 2px; }
 QSlider::handle:vertical { width: 14px; height: 14px; margin: 0 -5px; border-radius: 7px; background: @text; }
 QSlider::handle:focus { background: @accent; }
+QComboBox::down-arrow { width: 0; height: 0; border-left: 5px solid @raised; border-right: 5px solid @raised; border-top: 6px solid @dim; }
+QComboBox::down-arrow:disabled { border-top-color: @line; }
 QProgressBar { background: @raised; border: none; border-radius: 4px; height: 8px; text-align: center; color: transparent; }
 QProgressBar::chunk { background: @accent; border-radius: 4px; }
 QTabWidget::pane { border: none; }

@@ -10,14 +10,14 @@ namespace trocar::trainer {
 namespace {
 
 QToolButton* make_undo_button(const char* prefix, const char* what, const QString& sign, const QString& text,
-                              const char* keys, QWidget& panel, const std::function<void()>& act) {
+                              Action action, QWidget& panel, const std::function<void()>& act) {
   const QString name = QStringLiteral("%1-%2").arg(QLatin1String(prefix), QLatin1String(what));
-  const QString tooltip = QWidget::tr("%1  (%2 in this panel)").arg(text, QLatin1String(keys));
+  const QString tooltip = QWidget::tr("%1  (%2 in this panel)").arg(text, keys_text(action));
   QToolButton* button = make_tool_button(qPrintable(name), sign, tooltip);
   button->setAccessibleName(text);
   button->setFocusPolicy(Qt::StrongFocus);
   QObject::connect(button, &QToolButton::clicked, &panel, act);
-  auto* shortcut = new QShortcut(QKeySequence(QLatin1String(keys)), &panel);
+  auto* shortcut = new QShortcut(key_of(action), &panel);
   shortcut->setContext(Qt::WidgetWithChildrenShortcut);
   QObject::connect(shortcut, &QShortcut::activated, &panel, act);
   return button;
@@ -27,8 +27,9 @@ QToolButton* make_undo_button(const char* prefix, const char* what, const QStrin
 
 UndoButtons::UndoButtons(const char* prefix, QWidget& panel, const std::function<void()>& undo,
                          const std::function<void()>& redo)
-    : undo_(make_undo_button(prefix, "undo", QStringLiteral("⤺"), QWidget::tr("Undo"), "Ctrl+Z", panel, undo)),
-      redo_(make_undo_button(prefix, "redo", QStringLiteral("⤻"), QWidget::tr("Redo"), "Ctrl+Shift+Z", panel, redo)) {}
+    : undo_(make_undo_button(prefix, "undo", QStringLiteral("⤺"), QWidget::tr("Undo"), Action::kUndoHere, panel, undo)),
+      redo_(
+          make_undo_button(prefix, "redo", QStringLiteral("⤻"), QWidget::tr("Redo"), Action::kRedoHere, panel, redo)) {}
 
 void UndoButtons::add_to(QBoxLayout& layout) {
   layout.addWidget(undo_);

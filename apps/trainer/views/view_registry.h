@@ -3,8 +3,10 @@
 #include <QString>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "ui_kit/action_table.h"
 #include "views/view.h"
 
 namespace trocar::trainer {
@@ -16,21 +18,14 @@ struct LayoutPlace {
   int share = 1;   ///< Of the column's height, relative to its other rows (or of the width for a new column).
 };
 
-/// A line of the keys dialog.
-struct ViewKeys {
-  QString keys;    ///< "T, L, B"
-  QString action;  ///< "3D view: follow the tip, along, beside the needle"
-};
-
-/// Data for a workspace to create a view and to list it in menus, layouts and help.
+/// Data for a workspace to create a view and to list it in menus and layouts.
 struct ViewDescription {
   QString id;     ///< "ultrasound": names of the dock ("dock-ultrasound"), of the menu entry ("show-ultrasound") and in
                   ///< layouts.
   QString title;  ///< In the dock's title and in the menu Views.
-  QString shortcut;                 ///< Shows or hides the view, "Ctrl+Shift+X"; empty: none.
-  bool is_panel = false;            ///< A panel of controls keeps its minimum size.
-  std::vector<LayoutPlace> places;  ///< In layouts, in addition to built_in_layouts().
-  std::vector<ViewKeys> keys;       ///< For the keys dialog.
+  std::optional<Action> toggled_by;  ///< Action whose key shows or hides the view.
+  bool is_panel = false;             ///< A panel of controls keeps its minimum size.
+  std::vector<LayoutPlace> places;   ///< In layouts, in addition to built_in_layouts().
   std::function<std::unique_ptr<View>(ViewContext&)> make;
 };
 

@@ -71,6 +71,9 @@ class Workspace : public QMainWindow {
 
  protected:
   void resizeEvent(QResizeEvent* event) override;
+  /// Floating views are windows of their own: they are hidden and shown with this page.
+  void hideEvent(QHideEvent* event) override;
+  void showEvent(QShowEvent* event) override;
   bool event(QEvent* event) override;
 
  private:
@@ -89,7 +92,8 @@ class Workspace : public QMainWindow {
   std::map<QString, QDockWidget*> docks_;
   QString layout_;
   std::map<QString, QSizeF> shares_;  ///< Shares of the workspace's size, by view; the last value for a hidden view.
-  bool is_arranging_ = false;         ///< The program moves the docks, not the user.
+  std::vector<QDockWidget*> hidden_floats_;  ///< Floating views that are hidden with the page.
+  bool is_arranging_ = false;                ///< The program moves the docks, not the user.
   CaseContext case_;
   bool is_tip_hidden_ = false;
   std::optional<ToolsShown> tools_;  ///< Tools of the last frame.

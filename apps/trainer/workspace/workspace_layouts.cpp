@@ -93,6 +93,21 @@ void Workspace::fit_to_shares() {
   resizeDocks(docks, heights, Qt::Vertical);
 }
 
+void Workspace::hideEvent(QHideEvent* event) {
+  QMainWindow::hideEvent(event);
+  if (event->spontaneous()) return;  // minimised
+  for (const auto& [view, dock] : docks_) {
+    if (!dock->isFloating() || dock->isHidden()) continue;
+    dock->hide();
+    hidden_floats_.push_back(dock);
+  }
+}
+
+void Workspace::showEvent(QShowEvent* event) {
+  QMainWindow::showEvent(event);
+  for (QDockWidget* dock : std::exchange(hidden_floats_, {})) dock->show();
+}
+
 void Workspace::resizeEvent(QResizeEvent* event) {
   QMainWindow::resizeEvent(event);
   fit_to_shares();
@@ -157,10 +172,11 @@ void Workspace::arrange_rows(const LayoutColumn& column, double width_share) {
 }
 
 void Workspace::fill_menu(QMenu& menu) {
-  int number = 0;
+  const std::vector<QKeySequence> keys = keys_of(Action::kLayout);
+  std::size_t number = 0;
   for (const Layout& layout : layouts_) {
     QAction* action = menu.addAction(tr("Layout: %1").arg(layout.name));
-    action->setShortcut(QKeySequence(QStringLiteral("Ctrl+%1").arg(++number)));
+    if (number < keys.size()) action->setShortcut(keys[number++]);
     connect(action, &QAction::triggered, this, [this, name = layout.name] { choose_layout(name); });
   }
   QAction* reset = menu.addAction(tr("Reset layout"));
@@ -168,8 +184,8 @@ void Workspace::fill_menu(QMenu& menu) {
   menu.addSeparator();
   for (const auto& [id, dock] : docks_) add_to_menu(menu, id, *dock);
   for (const ViewDescription& view : registry_.views())
-    if (auto* action = menu.findChild<QAction*>(QStringLiteral("show-") + view.id); !view.shortcut.isEmpty())
-      action->setShortcut(QKeySequence(view.shortcut));
+    if (auto* action = menu.findChild<QAction*>(QStringLiteral("show-") + view.id); view.toggled_by)
+      action->setShortcut(key_of(*view.toggled_by));
 }
 
 /// Qt's own action hides a view behind the tab of another.

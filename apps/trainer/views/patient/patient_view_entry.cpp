@@ -105,7 +105,11 @@ class PatientViewEntry final : public View {
       ++surface_groups_;
     }
     const JobView later = case_.open->later->view();
-    view_->set_note(later.is_done ? QString() : PatientView::tr("Being prepared: %1").arg(to_qt(later.step)));
+    // Surfaces that have arrived are still simplified for the graphics.
+    const QString step = !later.is_done       ? to_qt(later.step)
+                         : !view_->is_ready() ? PatientView::tr("3D surfaces")
+                                              : QString();
+    view_->set_note(step.isEmpty() ? step : PatientView::tr("Being prepared: %1").arg(step));
   }
 
   /// The newest ultrasound image as a plane. With the tools at rest one in full detail stays there: its noise alone is
@@ -137,8 +141,6 @@ ViewDescription patient_view_entry() {
   ViewDescription view;
   view.id = QStringLiteral("3d");
   view.title = PatientView::tr("3D");
-  view.keys = {{QStringLiteral("T, L, B"), PatientView::tr("3D view: follow the tip, along, beside the needle")},
-               {QStringLiteral("O, I"), PatientView::tr("3D view: guidance, landmarks")}};
   view.make = [](ViewContext& context) { return std::make_unique<PatientViewEntry>(Role::kMain, context); };
   return view;
 }

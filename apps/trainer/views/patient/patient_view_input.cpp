@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ui_kit/action_table.h"
 #include "views/patient/patient_view.h"
 
 namespace trocar::trainer {
@@ -19,9 +20,6 @@ QPointF whole_place_of(const QMouseEvent& event) {
   return QPointF(event.pos());
 }
 
-/// Action of a key; empty for other keys.
-using Act = void (*)(PatientView& view);
-
 void toggle(PatientView& view, scene::FollowMode mode) {
   view.set_follow(view.follow() == mode ? scene::FollowMode::kFree : mode);
 }
@@ -30,29 +28,32 @@ void turn(PatientView& view, double right, double up) {
   view.set_view(scene::orbited(view.view(), right, up));
 }
 
-Act act_of(int key) {
-  static constexpr std::pair<int, Act> kActs[] = {
-      {Qt::Key_1, [](PatientView& v) { v.set_camera(scene::CameraPreset::kAnterior); }},
-      {Qt::Key_2, [](PatientView& v) { v.set_camera(scene::CameraPreset::kRightAnteriorOblique); }},
-      {Qt::Key_3, [](PatientView& v) { v.set_camera(scene::CameraPreset::kRight); }},
-      {Qt::Key_4, [](PatientView& v) { v.set_camera(scene::CameraPreset::kLeft); }},
-      {Qt::Key_5, [](PatientView& v) { v.set_camera(scene::CameraPreset::kPosterior); }},
-      {Qt::Key_6, [](PatientView& v) { v.set_camera(scene::CameraPreset::kCranial); }},
-      {Qt::Key_T, [](PatientView& v) { toggle(v, scene::FollowMode::kTip); }},
-      {Qt::Key_L, [](PatientView& v) { toggle(v, scene::FollowMode::kAlongNeedle); }},
-      {Qt::Key_B, [](PatientView& v) { toggle(v, scene::FollowMode::kSide); }},
-      {Qt::Key_O, [](PatientView& v) { v.set_guidance_visible(!v.is_guidance_visible()); }},
-      {Qt::Key_I, [](PatientView& v) { v.set_landmarks_visible(!v.are_landmarks_visible()); }},
-      {Qt::Key_Home, [](PatientView& v) { v.reset_camera(); }},
-      {Qt::Key_Left, [](PatientView& v) { turn(v, -kKeyOrbit_rad, 0.0); }},
-      {Qt::Key_Right, [](PatientView& v) { turn(v, kKeyOrbit_rad, 0.0); }},
-      {Qt::Key_Up, [](PatientView& v) { turn(v, 0.0, kKeyOrbit_rad); }},
-      {Qt::Key_Down, [](PatientView& v) { turn(v, 0.0, -kKeyOrbit_rad); }},
-      {Qt::Key_Plus, [](PatientView& v) { v.set_view(scene::zoomed(v.view(), kZoomPerNotch)); }},
-      {Qt::Key_Minus, [](PatientView& v) { v.set_view(scene::zoomed(v.view(), 1.0 / kZoomPerNotch)); }},
-  };
-  const auto* found = std::find_if(std::begin(kActs), std::end(kActs), [key](const auto& a) { return a.first == key; });
-  return found == std::end(kActs) ? nullptr : found->second;
+void act(PatientView& view, const FoundAction& found) {
+  constexpr scene::CameraPreset kPresets[] = {
+      scene::CameraPreset::kAnterior,  scene::CameraPreset::kRightAnteriorOblique,
+      scene::CameraPreset::kRight,     scene::CameraPreset::kLeft,
+      scene::CameraPreset::kPosterior, scene::CameraPreset::kCranial};
+  constexpr double kTurns[][2] = {{-1.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}};  // left, right, up, down
+  switch (found.action) {
+    case Action::kCameraPreset:
+      return view.set_camera(kPresets[found.key]);
+    case Action::kOrbit:
+      return turn(view, kKeyOrbit_rad * kTurns[found.key][0], kKeyOrbit_rad * kTurns[found.key][1]);
+    case Action::kZoom3d:
+      return view.set_view(scene::zoomed(view.view(), found.key == 0 ? kZoomPerNotch : 1.0 / kZoomPerNotch));
+    case Action::kFollowTip:
+      return toggle(view, scene::FollowMode::kTip);
+    case Action::kAlongNeedle:
+      return toggle(view, scene::FollowMode::kAlongNeedle);
+    case Action::kBesideNeedle:
+      return toggle(view, scene::FollowMode::kSide);
+    case Action::kGuidance:
+      return view.set_guidance_visible(!view.is_guidance_visible());
+    case Action::kLandmarks:
+      return view.set_landmarks_visible(!view.are_landmarks_visible());
+    default:
+      return view.reset_camera();
+  }
 }
 
 }  // namespace
@@ -115,23 +116,17 @@ void PatientView::mouseDoubleClickEvent(QMouseEvent* event) {
 }
 
 void PatientView::keyPressEvent(QKeyEvent* event) {
-  const Act act = act_of(event->key());
-  if (act == nullptr) return QWidget::keyPressEvent(event);
-  act(*this);
+  const auto found = find_action(Scope::kView3d, *event);
+  if (!found) return QWidget::keyPressEvent(event);
+  act(*this, *found);
   Q_EMIT changed();
 }
 
 /// With the focus here, the view's keys take precedence over shortcuts of the window.
 bool PatientView::event(QEvent* event) {
-  if (event->type() == QEvent::ShortcutOverride) {
-    const auto* key = static_cast<QKeyEvent*>(event);
-    const bool is_plain = (key->modifiers() & ~(Qt::KeypadModifier | Qt::ShiftModifier)) == Qt::NoModifier;
-    const bool is_letter = key->key() >= Qt::Key_A && key->key() <= Qt::Key_Z;
-    const bool has_shift = (key->modifiers() & Qt::ShiftModifier) != 0;
-    if (is_plain && !(is_letter && has_shift) && act_of(key->key()) != nullptr) {
-      event->accept();
-      return true;
-    }
+  if (event->type() == QEvent::ShortcutOverride && find_action(Scope::kView3d, static_cast<QKeyEvent&>(*event))) {
+    event->accept();
+    return true;
   }
   return QWidget::event(event);
 }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ui_kit/action_table.h"
 #include "ui_kit/theme.h"
 #include "views/view_strip.h"
 
@@ -366,7 +367,7 @@ bool ForcePlot::event(QEvent* event) {
 }
 
 void ForcePlot::keyPressEvent(QKeyEvent* event) {
-  if (event->key() == Qt::Key_T)
+  if (find_action(Scope::kForcePlot, *event))
     axis_button_->click();
   else
     QWidget::keyPressEvent(event);

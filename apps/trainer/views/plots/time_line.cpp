@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ui_kit/action_table.h"
 #include "ui_kit/parts.h"
 #include "views/plots/player_icons.h"
 
@@ -169,32 +170,43 @@ void TimeLine::update_label() {
 }
 
 void TimeLine::keyPressEvent(QKeyEvent* event) {
-  const double step_s = event->modifiers().testFlag(Qt::ShiftModifier) ? kLongStep_s : kStep_s;
-  switch (event->key()) {
-    case Qt::Key_Space:
-      return set_playing(!is_playing_);
-    case Qt::Key_Left:
-      return set_time(time_s() - step_s);
-    case Qt::Key_Right:
-      return set_time(time_s() + step_s);
-    case Qt::Key_Home:
-      return set_time(0.0);
-    case Qt::Key_End:
-      return set_time(duration_s());
-    case Qt::Key_N:
-      return go_to_next_event();
-    case Qt::Key_P:
-      return go_to_previous_event();
-    case Qt::Key_W:
-      return go_to_worst();
-    case Qt::Key_Less:
-    case Qt::Key_Comma:
-      return step_speed(-1);
-    case Qt::Key_Greater:
-    case Qt::Key_Period:
-      return step_speed(1);
+  auto found = find_action(Scope::kTimeLine, *event);
+  if (!found) found = find_action(Scope::kFeedback, *event);
+  if (!found || !perform(*found)) QWidget::keyPressEvent(event);
+}
+
+bool TimeLine::perform(const FoundAction& found) {
+  const double sign = found.key == 0 ? -1.0 : 1.0;
+  switch (found.action) {
+    case Action::kPlay:
+      set_playing(!is_playing_);
+      return true;
+    case Action::kStepTime:
+      set_time(time_s() + sign * kStep_s);
+      return true;
+    case Action::kStepTimeFar:
+      set_time(time_s() + sign * kLongStep_s);
+      return true;
+    case Action::kFirstMoment:
+      set_time(0.0);
+      return true;
+    case Action::kLastMoment:
+      set_time(duration_s());
+      return true;
+    case Action::kNextEvent:
+      go_to_next_event();
+      return true;
+    case Action::kPreviousEvent:
+      go_to_previous_event();
+      return true;
+    case Action::kWorstMoment:
+      go_to_worst();
+      return true;
+    case Action::kSpeed:
+      step_speed(found.key < 2 ? -1 : 1);
+      return true;
     default:
-      QWidget::keyPressEvent(event);
+      return false;
   }
 }
 

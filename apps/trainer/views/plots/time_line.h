@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "ui_kit/action_table.h"
 #include "views/plots/time_track.h"
 
 class QComboBox;
@@ -16,8 +17,7 @@ namespace trocar::trainer {
 /// page calls advance() once per frame. Object names: time-line, time-play, time-previous, time-next, time-worst,
 /// time-speed, time-track.
 ///
-/// Keys: Space plays and pauses, Left/Right steps of 0.1 s (Shift: 1 s), Home/End, N/P next and previous event, W worst
-/// moment, < > slower and faster. Mouse: click or drag on the track.
+/// Keys: those of Scope::kTimeLine and kFeedback. Mouse: click or drag on the track.
 class TimeLine : public QWidget {
   Q_OBJECT
 
@@ -44,6 +44,8 @@ class TimeLine : public QWidget {
   void go_to_previous_event();
   /// No effect without such an event.
   void go_to_worst();
+  /// Performs an action of the replay; false: another action.
+  bool perform(const FoundAction& found);
 
   double time_s() const noexcept;
   double duration_s() const noexcept;

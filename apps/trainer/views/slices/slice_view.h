@@ -14,6 +14,7 @@
 #include "slices/paint_slice.h"
 #include "slices/slice_geometry.h"
 #include "tasks/task.h"
+#include "ui_kit/action_table.h"
 
 namespace trocar::trainer {
 
@@ -119,6 +120,7 @@ class SliceView : public QWidget {
   void mouseDoubleClickEvent(QMouseEvent* event) override;
   void wheelEvent(QWheelEvent* event) override;
   void keyPressEvent(QKeyEvent* event) override;
+  bool has_use_for(const FoundAction& found) const;
   void changeEvent(QEvent* event) override;
 
  private:

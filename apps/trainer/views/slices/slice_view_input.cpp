@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ui_kit/action_table.h"
 #include "views/slices/slice_view.h"
 #include "views/view_strip.h"
 
@@ -17,6 +18,7 @@ constexpr double kWheelStep = 120.0;  ///< angleDelta of one step; finer wheels 
 constexpr double kZoomStep = 1.15;
 constexpr double kNearestZoom_mm_per_px = 0.02;  ///< Nearest zoom: size of a device pixel.
 constexpr double kFarthestZoom_mm_per_px = 10.0;
+constexpr double kArrow_mm = 1.0, kFarArrow_mm = 10.0;
 constexpr double kPanStep = 16.0;  ///< Points per arrow key.
 
 }  // namespace
@@ -25,6 +27,14 @@ bool SliceView::event(QEvent* event) {
   // A tool tip over the picture would hide it.
   if (event->type() == QEvent::ToolTip && static_cast<QHelpEvent*>(event)->pos().y() > picture_rect().top())
     return true;
+  // With the focus here, the slice's keys take precedence over shortcuts of the window.
+  if (event->type() == QEvent::ShortcutOverride) {
+    const auto found = find_action(Scope::kSlices, static_cast<QKeyEvent&>(*event));
+    if (found && has_use_for(*found)) {
+      event->accept();
+      return true;
+    }
+  }
   return QWidget::event(event);
 }
 
@@ -149,44 +159,38 @@ void SliceView::wheelEvent(QWheelEvent* event) {
   event->accept();
 }
 
+bool SliceView::has_use_for(const FoundAction& found) const {
+  const bool is_of_ct = found.action == Action::kWindowPreset || found.action == Action::kLabels;
+  return patient_ != nullptr && !(is_ultrasound() && is_of_ct);
+}
+
 void SliceView::keyPressEvent(QKeyEvent* event) {
-  if (!patient_) return QWidget::keyPressEvent(event);
-  const double way_mm = event->modifiers().testFlag(Qt::ShiftModifier) ? 10.0 : 1.0;
-  const auto arrow = [&](double right, double down) {
+  const auto found = find_action(Scope::kSlices, *event);
+  if (!found || !has_use_for(*found)) return QWidget::keyPressEvent(event);
+  const auto arrow = [&](double way_mm) {
+    constexpr double kDirections[][2] = {{-1.0, 0.0}, {1.0, 0.0}, {0.0, -1.0}, {0.0, 1.0}};  // as the table's keys
+    const auto [right, down] = kDirections[found->key];
     if (follows_needle()) return pan_by(-kPanStep * QPointF(right, down));
     const slices::SliceAxes& axes = geometry_.axes;
     move_focus(focus_P_ + way_mm * (right * axes.u_P + down * axes.v_P));
     follow_anchor();
   };
-  const int key = event->key();
-  const bool is_of_ct = (key >= Qt::Key_1 && key <= Qt::Key_5) || key == Qt::Key_L;
-  if (is_ultrasound() && is_of_ct) return QWidget::keyPressEvent(event);
-  if (key >= Qt::Key_1 && key < Qt::Key_1 + static_cast<int>(slices::kWindowPresets.size()))
-    return change_window(slices::kWindowPresets[static_cast<std::size_t>(key - Qt::Key_1)].window);
-  switch (key) {
-    case Qt::Key_Left:
-      return arrow(-1.0, 0.0);
-    case Qt::Key_Right:
-      return arrow(1.0, 0.0);
-    case Qt::Key_Up:
-      return arrow(0.0, -1.0);
-    case Qt::Key_Down:
-      return arrow(0.0, 1.0);
-    case Qt::Key_PageUp:
-      return scroll(1.0);
-    case Qt::Key_PageDown:
-      return scroll(-1.0);
-    case Qt::Key_Plus:
-    case Qt::Key_Equal:
-      return zoom_at(position_of(anchor_P()), kZoomStep);
-    case Qt::Key_Minus:
-      return zoom_at(position_of(anchor_P()), 1.0 / kZoomStep);
-    case Qt::Key_R:
-      return reset();
-    case Qt::Key_L:
+  const bool is_minus = event->key() == Qt::Key_Minus;
+  switch (found->action) {
+    case Action::kMoveFocus:
+      return arrow(kArrow_mm);
+    case Action::kMoveFocusFar:
+      return arrow(kFarArrow_mm);
+    case Action::kScrollSlices:
+      return scroll(found->key == 0 ? 1.0 : -1.0);
+    case Action::kZoomSlice:
+      return zoom_at(position_of(anchor_P()), is_minus ? 1.0 / kZoomStep : kZoomStep);
+    case Action::kWindowPreset:
+      return change_window(slices::kWindowPresets[static_cast<std::size_t>(found->key)].window);
+    case Action::kLabels:
       return set_labels_visible(!has_labels_);
     default:
-      QWidget::keyPressEvent(event);
+      return reset();
   }
 }
 

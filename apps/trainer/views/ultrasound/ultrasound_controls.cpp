@@ -132,7 +132,7 @@ void UltrasoundControls::apply_preset(int index) {
 QWidget* UltrasoundControls::make_freeze() {
   QWidget* widget = nullptr;
   QVBoxLayout* box = make_section(widget, {});
-  freeze_ = make_button("ultrasound-freeze", tr("Freeze"), tr("Freezes the image  (F)"));
+  freeze_ = make_button("ultrasound-freeze", tr("Freeze"), tooltip_of(Action::kFreeze));
   freeze_->setCheckable(true);
   connect(freeze_, &QPushButton::clicked, this, [this](bool is_on) { view_.set_frozen(is_on); });
   box->addWidget(freeze_);
@@ -140,9 +140,11 @@ QWidget* UltrasoundControls::make_freeze() {
   auto* row = new QHBoxLayout(cine_row_);
   row->setContentsMargins(0, 0, 0, 0);
   row->setSpacing(6);
-  auto* back = small_button("ultrasound-cine-back", QStringLiteral("‹"), tr("Previous frame  (Left)"));
-  auto* on = small_button("ultrasound-cine-on", QStringLiteral("›"), tr("Next frame  (Right)"));
-  play_ = small_button("ultrasound-cine-play", tr("Play"), tr("Plays the cine loop  (P)"));
+  auto* back = small_button("ultrasound-cine-back", QStringLiteral("‹"),
+                            tr("Previous frame  (%1)").arg(keys_text(Action::kCineFrame)));
+  auto* on = small_button("ultrasound-cine-on", QStringLiteral("›"),
+                          tr("Next frame  (%1)").arg(keys_text(Action::kCineFrame)));
+  play_ = small_button("ultrasound-cine-play", tr("Play"), tooltip_of(Action::kCinePlay));
   play_->setCheckable(true);
   cine_ = new QSlider(Qt::Horizontal);
   cine_->setObjectName(QStringLiteral("ultrasound-cine"));
@@ -175,9 +177,14 @@ void UltrasoundControls::add_control(QGridLayout& grid, const ControlSpec& spec)
   grid.addWidget(make_label(spec.label), row, 0);
   grid.addWidget(control.slider, row, 1);
   grid.addWidget(control.value, row, 2);
-  connect(control.slider, &QSlider::valueChanged, this, [this, number = spec.number, step = spec.step](int position) {
-    view_.change_settings([&](UltrasoundSettings& s) { number(s) = position * step; });
-  });
+  std::function<void(double)> set = spec.set;
+  if (!set) {
+    set = [this, number = spec.number](double value) {
+      view_.change_settings([&](UltrasoundSettings& s) { number(s) = value; });
+    };
+  }
+  connect(control.slider, &QSlider::valueChanged, this,
+          [set, step = spec.step](int position) { set(position * step); });
   controls_.push_back(std::move(control));
 }
 
@@ -199,10 +206,14 @@ QWidget* UltrasoundControls::make_picture() {
   QVBoxLayout* box = make_section(widget, tr("Picture"));
   auto* grid = make_control_grid();
   using S = UltrasoundSettings;
-  add_control(*grid, {"ultrasound-gain", tr("Gain"), tr("Gain of all echoes  (G, Shift+G)"), -40, 40, 1,
-                      [](S& s) -> double& { return s.display.gain_db; }, decibels()});
-  add_control(*grid, {"ultrasound-depth", tr("Depth"), tr("Imaging depth  (D, Shift+D)"), 20, 300, 5,
-                      [](S& s) -> double& { return s.acquisition.depth_mm; }, centimetres()});
+  add_control(*grid,
+              {"ultrasound-gain", tr("Gain"),
+               tr("Gain of all echoes  (%1, %2)").arg(keys_text(Action::kMoreGain), keys_text(Action::kLessGain)), -40,
+               40, 1, [](S& s) -> double& { return s.display.gain_db; }, decibels(),
+               [this](double gain_db) { view_.set_gain(gain_db); }});
+  add_control(*grid, {"ultrasound-depth", tr("Depth"),
+                      tr("Imaging depth  (%1, %2)").arg(keys_text(Action::kDeeper), keys_text(Action::kShallower)), 20,
+                      300, 5, [](S& s) -> double& { return s.acquisition.depth_mm; }, centimetres()});
   add_control(*grid, {"ultrasound-frequency", tr("Frequency"), tr("Higher: better resolution; lower: more penetration"),
                       1, 20, 0.1, [](S& s) -> double& { return s.acquisition.frequency_mhz; },
                       [](double mhz) { return QStringLiteral("%1 MHz").arg(mhz, 0, 'f', 1); }});
@@ -213,6 +224,10 @@ QWidget* UltrasoundControls::make_picture() {
   add_control(*grid, {"ultrasound-persistence", tr("Persistence"), tr("Weight of the previous frame"), 0, 0.95, 0.05,
                       [](S& s) -> double& { return s.display.persistence; },
                       [](double part) { return QStringLiteral("%1 %").arg(100.0 * part, 0, 'f', 0); }});
+  automatic_ = small_button("ultrasound-automatic-gain", tr("Automatic gain"), tooltip_of(Action::kAutomaticGain));
+  automatic_->setCheckable(true);
+  connect(automatic_, &QPushButton::clicked, this, [this] { view_.set_gain_automatically(); });
+  grid->addWidget(automatic_, grid->rowCount(), 1, 1, 2);
   gray_map_ = new QComboBox;
   gray_map_->setObjectName(QStringLiteral("ultrasound-gray-map"));
   gray_map_->setAccessibleName(tr("Gray map"));
@@ -232,19 +247,21 @@ QWidget* UltrasoundControls::make_picture() {
     zoom->addWidget(button);
     return button;
   };
-  zoom_out_ = zoom_button("ultrasound-zoom-out", QStringLiteral("−"), tr("Smaller  (-, Ctrl + wheel)"),
-                          [this] { view_.zoom_by_steps(-1); });
+  zoom_out_ =
+      zoom_button("ultrasound-zoom-out", QStringLiteral("−"),
+                  tr("Smaller  (%1)").arg(keys_text(Action::kZoomUltrasound)), [this] { view_.zoom_by_steps(-1); });
   zoom_button("ultrasound-zoom-in", QStringLiteral("+"),
-              tr("Larger  (+, Ctrl + wheel at a point; the middle button moves the image)"),
+              tr("Larger  (%1); the middle button moves the image").arg(keys_text(Action::kZoomUltrasound)),
               [this] { view_.zoom_by_steps(1); });
-  zoom_reset_ = zoom_button("ultrasound-zoom-reset", tr("Whole"), tr("Shows the whole image  (0)"),
+  zoom_reset_ = zoom_button("ultrasound-zoom-reset", tr("Whole"), tooltip_of(Action::kWholeUltrasound),
                             [this] { view_.reset_zoom(); });
   grid->addWidget(make_label(tr("Zoom")), zoom_row, 0);
   grid->addLayout(zoom, zoom_row, 1, 1, 2);
   box->addLayout(grid);
   harmonic_ = new QCheckBox(tr("Harmonic imaging (THI)"));
   harmonic_->setObjectName(QStringLiteral("ultrasound-harmonic"));
-  harmonic_->setToolTip(tr("Receives the second harmonic: less haze and fewer side lobes, less penetration  (R)"));
+  harmonic_->setToolTip(tooltip_of(
+      Action::kHarmonic, tr("Receives the second harmonic: less haze and fewer side lobes, less penetration")));
   connect(harmonic_, &QCheckBox::clicked, this, [this](bool is_on) { view_.set_harmonic(is_on); });
   box->addWidget(harmonic_);
   add_check(*box, "ultrasound-mirror", tr("Marker on the left"),
@@ -391,6 +408,7 @@ void UltrasoundControls::show_view() {
     preset_->setCurrentIndex(0);
   for (QPushButton* button : {zoom_out_, zoom_reset_}) button->setEnabled(view_.zoom().factor > 1.0);
   const ultrasound::CineState cine = view_.cine();
+  automatic_->setChecked(settings.is_gain_automatic);
   freeze_->setChecked(cine.is_frozen);
   freeze_->setText(cine.is_frozen ? tr("Frozen") : tr("Freeze"));
   cine_row_->setVisible(cine.is_frozen);

@@ -45,6 +45,7 @@ class UltrasoundControls : public QWidget {
     double low, high, step;
     std::function<double&(UltrasoundSettings&)> number;
     std::function<QString(double)> text;
+    std::function<void(double)> set = {};  ///< Empty: sets `number`.
   };
 
   void load_tables();
@@ -71,6 +72,7 @@ class UltrasoundControls : public QWidget {
   QComboBox* preset_ = nullptr;
   QComboBox* gray_map_ = nullptr;
   QPushButton *zoom_out_ = nullptr, *zoom_reset_ = nullptr;
+  QPushButton* automatic_ = nullptr;
   QPushButton* freeze_ = nullptr;
   QSlider* cine_ = nullptr;
   QWidget* cine_row_ = nullptr;

@@ -24,6 +24,7 @@ void visit(UltrasoundSettings& s, const Visitor& field) {
   field("persistence", s.display.persistence);
   field("is_marker_left", s.display.is_mirrored);
   field("is_rolling", s.is_rolling);
+  field("is_gain_automatic", s.is_gain_automatic);
   field("doppler/scale_cm_per_s", s.doppler.scale_cm_per_s);
   field("doppler/gain_db", s.doppler.gain_db);
   field("doppler/baseline", s.doppler.baseline);

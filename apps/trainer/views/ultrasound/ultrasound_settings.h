@@ -21,6 +21,7 @@ struct UltrasoundSettings {
   ultrasound::DisplaySettings display;
   /// While transducer or needle moves, a picture renews a part of the scanlines, as in a scanner.
   bool is_rolling = false;
+  bool is_gain_automatic = true;  ///< Set by the first image of a case, and on demand.
   /// The image is sliced from the patient's panorama; not stored: it belongs to the case.
   bool is_panorama = false;
   bool has_doppler = false;

@@ -11,6 +11,7 @@
 #include "core/files/data_dir.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
+#include "ultrasound/scanner/automatic_gain.h"
 #include "views/ultrasound/needle_marks.h"
 #include "views/ultrasound/ultrasound_painter.h"
 
@@ -92,6 +93,7 @@ void UltrasoundView::show_patient(std::shared_ptr<const ultrasound::AcousticScen
   zoom_ = {};
   panned_from_.reset();
   settings_ = load_settings(transducer_);
+  is_gain_wanted_ = settings_.is_gain_automatic;
   picture_.reset();
   image_ = QImage();
   measurements_ = {};
@@ -214,6 +216,7 @@ void UltrasoundView::take_picture(double now_s) {
       image_ = QImage(p.colour.pixels.front().data(), p.colour.columns, p.colour.rows, 3 * p.colour.columns,
                       QImage::Format_RGB888);
     }
+    adjust_gain();
     update();
   } else if (picture_) {
     count_picture(now_s, false);
@@ -258,6 +261,30 @@ void UltrasoundView::change_settings(const std::function<void(UltrasoundSettings
   UltrasoundSettings settings = settings_;
   change(settings);
   set_settings(settings);
+}
+
+void UltrasoundView::set_gain_automatically() {
+  change_settings([](UltrasoundSettings& s) { s.is_gain_automatic = true; });
+  is_gain_wanted_ = true;
+}
+
+void UltrasoundView::set_gain(double gain_db) {
+  is_gain_wanted_ = false;
+  change_settings([=](UltrasoundSettings& s) {
+    s.is_gain_automatic = false;
+    s.display.gain_db = gain_db;
+  });
+}
+
+/// By a live image of tissue: the transducer may still be in the air.
+void UltrasoundView::adjust_gain() {
+  constexpr double kCoupled = 0.5;
+  if (!is_gain_wanted_ || !settings_.is_gain_automatic || !picture_ || picture_->is_frozen) return;
+  if (picture_->coupled_share < kCoupled) return;
+  const auto gain_db = ultrasound::automatic_gain_db(picture_->levels, settings_.display);
+  if (!gain_db) return;
+  is_gain_wanted_ = false;
+  change_settings([&](UltrasoundSettings& s) { s.display.gain_db = *gain_db; });
 }
 
 void UltrasoundView::reset_settings() {

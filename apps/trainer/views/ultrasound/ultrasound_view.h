@@ -76,6 +76,11 @@ class UltrasoundView : public QWidget {
   void set_settings(const UltrasoundSettings& settings);
   void change_settings(const std::function<void(UltrasoundSettings&)>& change);
   void reset_settings();
+  /// Sets the gain by the next image, as a scanner's button for automatic gain does, and again by the first image of
+  /// each case.
+  void set_gain_automatically();
+  /// Sets the gain by hand; it stays as it is from then on.
+  void set_gain(double gain_db);
   /// Tissue harmonic imaging; without effect if the transducer's band has less than an octave. Switched off, the
   /// frequency is the transducer's own again.
   void set_harmonic(bool is_on);
@@ -156,6 +161,7 @@ class UltrasoundView : public QWidget {
   void take_picture(double now_s);
   void count_picture(double now_s, bool is_live);
   void save_now();
+  void adjust_gain();
 
   ultrasound::ScanGeometry requested_scan() const;
   MarginSpace room() const;
@@ -168,7 +174,7 @@ class UltrasoundView : public QWidget {
   void set_zoom(const PictureZoom& zoom);
   bool begin_box_drag(const QPointF& place);
   void show_cursor(const QPointF& place);
-  bool handle_key(int key, Qt::KeyboardModifiers modifiers, bool is_rehearsal);
+  bool handle_key(const QKeyEvent& event, bool is_rehearsal);
   void leave_tool();
   void measurements_changed();
 
@@ -180,6 +186,7 @@ class UltrasoundView : public QWidget {
   ultrasound::Transducer transducer_;
   UltrasoundSettings settings_;
   bool is_saving_wanted_ = false;
+  bool is_gain_wanted_ = false;  ///< The next image sets the gain.
   double changed_s_ = 0.0, now_s_ = 0.0;
 
   PictureZoom zoom_;

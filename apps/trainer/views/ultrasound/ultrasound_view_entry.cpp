@@ -13,8 +13,8 @@ namespace {
 /// In the title of the dock, where it covers nothing of the picture.
 QToolButton* make_controls_button() {
   auto* button =
-      make_tool_button("show-ultrasound-controls", UltrasoundView::tr("Controls"),
-                       UltrasoundView::tr("Image controls next to the ultrasound image"), QStringLiteral("K"));
+      make_tool_button("show-ultrasound-controls", UltrasoundView::tr("Controls"), Action::kUltrasoundControls);
+  button->setShortcut(key_of(Action::kUltrasoundControls));
   button->setCheckable(true);
   button->setFocusPolicy(Qt::NoFocus);
   button->setStyleSheet(QStringLiteral("QToolButton { padding: 0 8px; min-height: 0; }"));
@@ -79,13 +79,6 @@ ViewDescription ultrasound_view_entry() {
   ViewDescription view;
   view.id = QStringLiteral("ultrasound");
   view.title = UltrasoundView::tr("Ultrasound");
-  view.keys = {{QStringLiteral("F"), UltrasoundView::tr("freezes the ultrasound")},
-               {QStringLiteral("G, D"), UltrasoundView::tr("gain, depth; with Shift less")},
-               {QStringLiteral("R"), UltrasoundView::tr("tissue harmonic imaging (THI)")},
-               {QStringLiteral("C"), UltrasoundView::tr("colour Doppler")},
-               {QStringLiteral("M"), UltrasoundView::tr("measures a distance; its ends can be dragged")},
-               {QStringLiteral("Ctrl+wheel"), UltrasoundView::tr("magnifies at the pointer; + and −, 0: whole image")},
-               {QStringLiteral("Delete"), UltrasoundView::tr("deletes the selected caliper, otherwise the last")}};
   view.make = [](ViewContext& context) { return std::make_unique<UltrasoundViewEntry>(context); };
   return view;
 }

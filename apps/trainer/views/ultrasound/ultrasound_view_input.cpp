@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "ui_kit/action_table.h"
 #include "ui_kit/parts.h"
 #include "views/ultrasound/ultrasound_view.h"
 
@@ -51,24 +52,23 @@ bool UltrasoundView::has_harmonic() const noexcept {
 }
 
 void UltrasoundView::make_shortcuts() {
-  const auto bind = [this](const char* keys, auto act) {
-    auto* shortcut = new QShortcut(QKeySequence(QString::fromLatin1(keys)), this);
+  const auto bind = [this](Action action, auto act) {
+    auto* shortcut = new QShortcut(key_of(action), this);
     connect(shortcut, &QShortcut::activated, this, act);
   };
-  const auto gain = [this](double by_db) {
-    change_settings([=](UltrasoundSettings& s) { s.display.gain_db += by_db; });
-  };
+  const auto gain = [this](double by_db) { set_gain(settings_.display.gain_db + by_db); };
   const auto depth = [this](double by_mm) {
     change_settings([=](UltrasoundSettings& s) { s.acquisition.depth_mm += by_mm; });
   };
-  bind("F", [this] { set_frozen(!is_frozen()); });
-  bind("R", [this] { set_harmonic(!settings_.acquisition.is_harmonic); });
-  bind("G", [=] { gain(kGainStep_db); });
-  bind("Shift+G", [=] { gain(-kGainStep_db); });
-  bind("D", [=] { depth(kDepthStep_mm); });
-  bind("Shift+D", [=] { depth(-kDepthStep_mm); });
-  bind("C", [this] { change_settings([](UltrasoundSettings& s) { s.has_doppler = !s.has_doppler; }); });
-  bind("M", [this] { start_measuring(MeasuringTool::kDistance); });
+  bind(Action::kFreeze, [this] { set_frozen(!is_frozen()); });
+  bind(Action::kHarmonic, [this] { set_harmonic(!settings_.acquisition.is_harmonic); });
+  bind(Action::kAutomaticGain, [this] { set_gain_automatically(); });
+  bind(Action::kMoreGain, [=] { gain(kGainStep_db); });
+  bind(Action::kLessGain, [=] { gain(-kGainStep_db); });
+  bind(Action::kDeeper, [=] { depth(kDepthStep_mm); });
+  bind(Action::kShallower, [=] { depth(-kDepthStep_mm); });
+  bind(Action::kDoppler, [this] { change_settings([](UltrasoundSettings& s) { s.has_doppler = !s.has_doppler; }); });
+  bind(Action::kMeasure, [this] { start_measuring(MeasuringTool::kDistance); });
 }
 
 void UltrasoundView::start_measuring(MeasuringTool tool) {
@@ -263,35 +263,31 @@ void UltrasoundView::wheelEvent(QWheelEvent* event) {
 }
 
 /// Returns true if the key has a function at present; a rehearsal has no effect.
-bool UltrasoundView::handle_key(int key, Qt::KeyboardModifiers modifiers, bool is_rehearsal) {
+bool UltrasoundView::handle_key(const QKeyEvent& event, bool is_rehearsal) {
+  auto found = find_action(Scope::kUltrasound, event);
+  if (!found) found = find_action(Scope::kPanel, event);
+  if (!found) return false;
   const auto act = [&](bool is_meant, auto what) {
     if (is_meant && !is_rehearsal) what();
     return is_meant;
   };
-  const bool has_items = !measurements_.items().empty();
-  if (key == Qt::Key_Z && modifiers == Qt::ControlModifier)
-    return act(measurements_.can_undo(), [this] { undo_measurement(); });
-  if (key == Qt::Key_Z && modifiers == (Qt::ControlModifier | Qt::ShiftModifier))
-    return act(measurements_.can_redo(), [this] { redo_measurement(); });
-  if (modifiers != Qt::NoModifier) return false;
-  switch (key) {
-    case Qt::Key_Escape:
+  const bool is_minus = event.key() == Qt::Key_Minus;
+  switch (found->action) {
+    case Action::kUndoHere:
+      return act(measurements_.can_undo(), [this] { undo_measurement(); });
+    case Action::kRedoHere:
+      return act(measurements_.can_redo(), [this] { redo_measurement(); });
+    case Action::kLeaveCaliper:
       return act(tool_ != MeasuringTool::kNone, [this] { leave_tool(); });
-    case Qt::Key_Delete:
-    case Qt::Key_Backspace:
-      return act(has_items, [this] { remove_measurement(); });
-    case Qt::Key_Left:
-      return act(is_frozen(), [this] { step_cine(-1); });
-    case Qt::Key_Right:
-      return act(is_frozen(), [this] { step_cine(1); });
-    case Qt::Key_Plus:
-    case Qt::Key_Equal:
-      return act(picture_ != nullptr, [this] { zoom_by_steps(1); });
-    case Qt::Key_Minus:
-      return act(zoom_.factor > 1.0, [this] { zoom_by_steps(-1); });
-    case Qt::Key_0:
+    case Action::kDeleteCaliper:
+      return act(!measurements_.items().empty(), [this] { remove_measurement(); });
+    case Action::kCineFrame:
+      return act(is_frozen(), [&] { step_cine(found->key == 0 ? -1 : 1); });
+    case Action::kZoomUltrasound:
+      return act(is_minus ? zoom_.factor > 1.0 : picture_ != nullptr, [&] { zoom_by_steps(is_minus ? -1 : 1); });
+    case Action::kWholeUltrasound:
       return act(zoom_.factor > 1.0, [this] { reset_zoom(); });
-    case Qt::Key_P:
+    case Action::kCinePlay:
       return act(is_frozen(), [this] { play_cine(!cine().is_playing); });
     default:
       return false;
@@ -299,14 +295,12 @@ bool UltrasoundView::handle_key(int key, Qt::KeyboardModifiers modifiers, bool i
 }
 
 void UltrasoundView::keyPressEvent(QKeyEvent* event) {
-  const auto modifiers = event->modifiers() & ~Qt::KeypadModifier;
-  if (!handle_key(event->key(), modifiers, false)) QWidget::keyPressEvent(event);
+  if (!handle_key(*event, false)) QWidget::keyPressEvent(event);
 }
 
 bool UltrasoundView::event(QEvent* event) {
   if (event->type() == QEvent::ShortcutOverride) {
-    const auto* key = static_cast<QKeyEvent*>(event);
-    if (handle_key(key->key(), key->modifiers() & ~Qt::KeypadModifier, true)) {
+    if (handle_key(static_cast<QKeyEvent&>(*event), true)) {
       event->accept();
       return true;
     }

@@ -65,7 +65,7 @@ void XrayView::show_patient(std::shared_ptr<const anatomy::VirtualPatient> patie
   needle_ = needle;
   patient_ = std::move(patient);
   find_middle_P_ = std::move(find_middle_P);
-  preparing_ = {};
+  retired_.retire(std::exchange(preparing_, {}));
   prepared_.reset();
   failure_.clear();
   fluoroscope_.reset();
@@ -228,8 +228,17 @@ void XrayView::set_pedal(bool is_down) {
   update();
 }
 
+void XrayView::set_injection_hindrance(const QString& reason) {
+  injection_hindrance_ = reason;
+  if (!reason.isEmpty()) set_injecting(false);
+}
+
 void XrayView::set_injecting(bool is_injecting) {
   is_injecting = is_injecting && !replay_;
+  if (is_injecting && !injection_hindrance_.isEmpty()) {
+    Q_EMIT injection_refused(injection_hindrance_);
+    return;
+  }
   if (std::exchange(is_injecting_, is_injecting) != is_injecting) Q_EMIT changed();
 }
 
@@ -290,13 +299,33 @@ void XrayView::draw_texts(QPainter& painter) const {
                          .arg(exposure.tube.kv, 0, 'f', 0)
                          .arg(exposure.mas, 0, 'f', 2)
                          .arg(settings_.pulses_per_s));
-  draw_outlined_text(painter, area, Qt::AlignRight | Qt::AlignBottom,
-                     tr("%1 s\n%2 mGy\n%3 Gy cm²")
+  QString use_text = tr("%1 s\n%2 mGy\n%3 Gy cm²")
                          .arg(shown.beam_s, 0, 'f', 1)
                          .arg(shown.air_kerma_mgy, 0, 'f', 2)
-                         .arg(shown.dose_area_gycm2, 0, 'f', 2));
+                         .arg(shown.dose_area_gycm2, 0, 'f', 2);
+  if (shown.contrast_ml > 0.0) use_text.prepend(tr("Contrast %1 ml\n").arg(shown.contrast_ml, 0, 'f', 1));
+  draw_outlined_text(painter, area, Qt::AlignRight | Qt::AlignBottom, use_text);
+  draw_sides(painter);
   painter.setPen(is_held() ? QColor(150, 160, 172) : QColor(255, 196, 60));
   draw_outlined_text(painter, area, Qt::AlignRight | Qt::AlignTop, is_held() ? tr("Last image") : tr("● X-rays on"));
+}
+
+/// R and L, or A and P, at the image's edges: towards which side of the patient they lie.
+void XrayView::draw_sides(QPainter& painter) const {
+  const Vec3 right_P = xray::rays_of(settings_.arm).column_P.normalized();
+  const bool is_lateral = std::abs(right_P.y()) > std::abs(right_P.x());
+  const bool is_forward = is_lateral ? right_P.y() > 0.0 : right_P.x() > 0.0;  // LPS: +x left, +y posterior
+  QString left = is_lateral ? tr("A", "anterior side of an X-ray image") : tr("R", "right side of the patient");
+  QString right = is_lateral ? tr("P", "posterior side of an X-ray image") : tr("L", "left side of the patient");
+  if (!is_forward) left.swap(right);
+  const QRectF area = image_rect().marginsRemoved({kCaptionMargin_px, 0, kCaptionMargin_px, 0});
+  QFont font = painter.font();
+  font.setBold(true);
+  painter.setFont(font);
+  draw_outlined_text(painter, area, Qt::AlignLeft | Qt::AlignVCenter, left);
+  draw_outlined_text(painter, area, Qt::AlignRight | Qt::AlignVCenter, right);
+  font.setBold(false);
+  painter.setFont(font);
 }
 
 void XrayView::mousePressEvent(QMouseEvent* event) {

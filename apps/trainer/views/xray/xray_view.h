@@ -63,6 +63,8 @@ class XrayView : public QWidget {
   /// Called once per frame: requests an image, takes the newest, repaints if necessary. now_s: time of any steady
   /// clock.
   void advance(double now_s);
+  /// Takes a step of the preparation of the patient's images, which a thread computes; advance() does, too.
+  void prepare();
 
   const XraySettings& settings() const noexcept { return settings_; }
   /// Clamps C-arm and collimation to the unit's ranges.
@@ -71,7 +73,10 @@ class XrayView : public QWidget {
 
   void set_pedal(bool is_down);
   bool is_pedal_down() const noexcept { return is_pedal_down_; }
+  /// Refused, with injection_refused, where there is a hindrance.
   void set_injecting(bool is_injecting);
+  /// Why nothing can be injected now, for the trainee; ends an injection. Empty: it can.
+  void set_injection_hindrance(const QString& reason);
   bool is_injecting() const noexcept { return is_injecting_; }
 
   /// The newest image; nullptr before the first. In a replay, time_s is its session time, and its dose is of no
@@ -88,6 +93,8 @@ class XrayView : public QWidget {
 
  Q_SIGNALS:
   void changed();
+  /// Somebody wanted to inject contrast agent, which is not possible for this reason.
+  void injection_refused(const QString& reason);
 
  protected:
   void paintEvent(QPaintEvent* event) override;
@@ -112,9 +119,9 @@ class XrayView : public QWidget {
     std::unique_ptr<ReplayFluoroscope> fluoroscope;  ///< nullptr before the patient is prepared.
   };
 
-  void prepare();
   void clear_examination();
   void open_contrast();
+  void draw_sides(QPainter& painter) const;
   void end_replay();
   void advance_live(double now_s);
   void advance_replay();
@@ -144,6 +151,7 @@ class XrayView : public QWidget {
   std::vector<Vec3> shaft_P_;
   std::optional<Segment> wire_P_;
   bool is_pedal_down_ = false, is_injecting_ = false;
+  QString injection_hindrance_;
   double opened_s_ = -1.0;
   std::shared_ptr<const xray::FluoroscopyFrame> frame_;
   QImage image_;  ///< Refers to the pixels of frame_.

@@ -43,9 +43,14 @@ class XrayViewEntry final : public View {
 
   bool open(const CaseContext& context) override {
     const cases::OpenCase& open = *context.open;
+    is_needed_ = open.the_case.task.guidance == tasks::Guidance::kXray;
     view_->show_patient(open.the_case.patient, open.the_case.needle,
                         [open = context.open] { return begin_at_P(*open); });
     return true;
+  }
+  /// A task under fluoroscopy prepares its images during the briefing, others when the view is shown.
+  void take_later_data() override {
+    if (is_needed_) view_->prepare();
   }
   void show_tools(const ToolContext& context) override {
     view_->set_needle(context.tools.shaft_P);
@@ -58,6 +63,7 @@ class XrayViewEntry final : public View {
   XrayView* view_;
   XrayControls* controls_;
   QToolButton* button_ = nullptr;
+  bool is_needed_ = false;
 };
 
 }  // namespace
@@ -66,9 +72,7 @@ ViewDescription xray_view_entry() {
   ViewDescription view;
   view.id = QStringLiteral("xray");
   view.title = XrayView::tr("X-ray");
-  view.shortcut = QStringLiteral("Ctrl+Shift+X");
-  view.keys = {{QStringLiteral("Z held"), XrayView::tr("X-ray pedal, while the X-ray view is visible")},
-               {QStringLiteral("J held"), XrayView::tr("injects contrast agent at the needle's tip")}};
+  view.toggled_by = Action::kXrayView;
   view.make = [](ViewContext&) { return std::make_unique<XrayViewEntry>(); };
   return view;
 }

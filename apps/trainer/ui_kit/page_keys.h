@@ -3,6 +3,8 @@
 #include <QObject>
 #include <functional>
 
+#include "ui_kit/action_table.h"
+
 class QAbstractButton;
 class QKeyEvent;
 class QWidget;
@@ -19,6 +21,8 @@ struct KeyPlace {
   QAbstractButton* button = nullptr;  ///< Null if it is not a button.
 };
 
+/// Of the widget with the focus, for a receiver of keys of its own.
+KeyPlace key_place();
 /// False where a key that acts on the patient must not: somebody who types or chooses did not mean it.
 inline bool may_act(const KeyPlace& place) noexcept {
   return !place.is_text && !place.is_aside && !place.is_choice;
@@ -42,5 +46,21 @@ class PageKeys : public QObject {
   QWidget& page_;
   Take take_;
 };
+
+enum class KeyVerdict {
+  kPass,     ///< The widget with the focus gets the key.
+  kPerform,  ///< The page acts.
+  kIgnore,   ///< Nobody gets it.
+  kRefuse,   ///< Nobody gets it, and the user is told why.
+};
+/// What becomes of the key of an action. One that acts on the patient is refused where somebody types or chooses, and
+/// does not repeat while it is held; Enter goes to a list that has a use for it.
+KeyVerdict judge_key(const ActionRow& row, const QKeyEvent& key, const KeyPlace& place);
+
+/// Space stops the forces; therefore Enter presses the button with the focus. False: another key, or no button.
+bool press_focused_button(const QKeyEvent& key, const KeyPlace& place);
+/// For Enter where it means `action`, whose button is `button`: presses the button with the focus, else this one. True
+/// if the key is handled; not while somebody types, or in a dialog.
+bool press_by_enter(const QKeyEvent& key, const KeyPlace& place, Action action, QAbstractButton& button);
 
 }  // namespace trocar::trainer

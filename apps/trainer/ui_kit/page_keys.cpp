@@ -1,7 +1,8 @@
-#include "control/page_keys.h"
+#include "ui_kit/page_keys.h"
 
 #include <QAbstractButton>
 #include <QAbstractItemView>
+#include <QAbstractScrollArea>
 #include <QAbstractSlider>
 #include <QAbstractSpinBox>
 #include <QApplication>
@@ -35,7 +36,7 @@ KeyPlace key_place_of(const QWidget& receiver, const QWidget& window) {
   place.is_text = is_text_field(&receiver) || is_text_field(focus);
   place.is_aside = QApplication::activePopupWidget() != nullptr || QApplication::activeModalWidget() != nullptr;
   place.button = qobject_cast<QAbstractButton*>(focus);
-  place.is_choice = qobject_cast<const QAbstractItemView*>(focus) != nullptr ||
+  place.is_choice = qobject_cast<const QAbstractScrollArea*>(focus) != nullptr ||
                     qobject_cast<const QComboBox*>(focus) != nullptr ||
                     qobject_cast<const QAbstractSlider*>(focus) != nullptr;
   place.takes_space = place.button != nullptr || qobject_cast<const QAbstractItemView*>(focus) != nullptr ||
@@ -45,6 +46,14 @@ KeyPlace key_place_of(const QWidget& receiver, const QWidget& window) {
 }
 
 }  // namespace
+
+KeyPlace key_place() {
+  const QWidget* focus = QApplication::focusWidget();
+  if (focus != nullptr) return key_place_of(*focus, *focus->window());
+  KeyPlace place;
+  place.is_aside = QApplication::activePopupWidget() != nullptr || QApplication::activeModalWidget() != nullptr;
+  return place;
+}
 
 PageKeys::PageKeys(QWidget& page, Take take) : page_(page), take_(std::move(take)) {
   QCoreApplication::instance()->installEventFilter(this);
@@ -57,6 +66,30 @@ bool PageKeys::eventFilter(QObject* watched, QEvent* event) {
   const auto* receiver = qobject_cast<const QWidget*>(watched);
   if (receiver == nullptr || main_window_of(*receiver) != main_window_of(page_)) return false;
   return take_(static_cast<const QKeyEvent&>(*event), key_place_of(*receiver, *receiver->window()));
+}
+
+KeyVerdict judge_key(const ActionRow& row, const QKeyEvent& key, const KeyPlace& place) {
+  if (place.is_text || place.is_aside) return KeyVerdict::kPass;
+  if (!row.acts_on_patient) return KeyVerdict::kPerform;
+  const bool is_enter = key.key() == Qt::Key_Return || key.key() == Qt::Key_Enter;
+  if (!may_act(place) && is_enter && !place.is_unclaimed) return KeyVerdict::kPass;
+  if (key.isAutoRepeat()) return KeyVerdict::kIgnore;
+  return may_act(place) ? KeyVerdict::kPerform : KeyVerdict::kRefuse;
+}
+
+bool press_focused_button(const QKeyEvent& key, const KeyPlace& place) {
+  const bool is_enter = key.key() == Qt::Key_Return || key.key() == Qt::Key_Enter;
+  if (!is_enter || place.button == nullptr || place.is_text || place.is_aside) return false;
+  if (!key.isAutoRepeat()) place.button->click();
+  return true;
+}
+
+bool press_by_enter(const QKeyEvent& key, const KeyPlace& place, Action action, QAbstractButton& button) {
+  const auto found = find_action(row_of(action).scope, key, [action](Action other) { return other == action; });
+  if (!found || !button.isVisible() || place.is_text || place.is_aside) return false;
+  if (press_focused_button(key, place)) return true;
+  if (!key.isAutoRepeat()) button.click();
+  return true;
 }
 
 }  // namespace trocar::trainer
