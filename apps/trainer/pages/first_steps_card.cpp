@@ -51,6 +51,7 @@ TrainerChoice FirstStepsCard::exercise() {
 void FirstStepsCard::set_done() {
   QSettings().setValue(QString::fromLatin1(kDone), true);
   hide();
+  Q_EMIT done();
 }
 
 }  // namespace trocar::trainer

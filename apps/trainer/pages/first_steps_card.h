@@ -20,6 +20,7 @@ class FirstStepsCard : public QFrame {
 
  Q_SIGNALS:
   void exercise_requested(const trocar::trainer::TrainerChoice& exercise);
+  void done();
 };
 
 }  // namespace trocar::trainer

@@ -34,7 +34,13 @@ void NextExerciseCard::offer(const QString& title, const QString& why, const Tra
   exercise_ = exercise;
   title_->setText(tr("Next exercise: %1").arg(title));
   why_->setText(why);
-  setVisible(!title.isEmpty());
+  has_exercise_ = !title.isEmpty();
+  setVisible(has_exercise_ && !is_held_back_);
+}
+
+void NextExerciseCard::set_held_back(bool is_held_back) {
+  is_held_back_ = is_held_back;
+  setVisible(has_exercise_ && !is_held_back_);
 }
 
 }  // namespace trocar::trainer

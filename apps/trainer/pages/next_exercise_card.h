@@ -17,6 +17,8 @@ class NextExerciseCard : public QFrame {
 
   /// `title`: "Liver biopsy, case 2, assisted"; empty: hides the card.
   void offer(const QString& title, const QString& why, const TrainerChoice& exercise);
+  /// Hides the card while something else comes first.
+  void set_held_back(bool is_held_back);
 
  Q_SIGNALS:
   void exercise_requested(const trocar::trainer::TrainerChoice& exercise);
@@ -25,6 +27,7 @@ class NextExerciseCard : public QFrame {
   QLabel* title_ = nullptr;
   QLabel* why_ = nullptr;
   TrainerChoice exercise_;
+  bool has_exercise_ = false, is_held_back_ = false;
 };
 
 }  // namespace trocar::trainer

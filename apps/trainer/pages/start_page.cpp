@@ -86,6 +86,9 @@ StartPage::StartPage(QWidget* parent)
   page->addWidget(next_);
   first_steps_ = new FirstStepsCard;
   page->addWidget(first_steps_);
+  // A new user begins there.
+  next_->set_held_back(!first_steps_->isHidden());
+  connect(first_steps_, &FirstStepsCard::done, next_, [this] { next_->set_held_back(false); });
   auto* columns = new QHBoxLayout;
   columns->setSpacing(16);
   auto* tasks_and_history = new QVBoxLayout;

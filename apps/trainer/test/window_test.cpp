@@ -180,7 +180,7 @@ TEST_F(WindowTest, AnExamTellsNothingAndIsNotAltered) {
 TEST_F(WindowTest, AFolderThatCannotBeWrittenIsNamedAndNothingBegins) {
   const QString script = write("unwritable.txt",
                                "expect banner has \"/dev/null/state/sessions\"\nexpect banner has \"--state\"\n"
-                               "click start\nwait-for is_open is true within 300\nclick begin\nwait 1\n"
+                               "click start\nwait-for is_open is true within 300\nwait 3\nkey Return\nwait 1\n"
                                "expect page is briefing\nexpect banner has \"/dev/null/state/sessions\"\n");
   expect_played(
       run({QStringLiteral("--state"), QStringLiteral("/dev/null/state"), QStringLiteral("--script"), script}));

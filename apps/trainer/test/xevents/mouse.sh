@@ -2,23 +2,23 @@
 drag() { xdotool mousemove "$1" "$2" mousedown 1 && sleep 0.2 && xdotool mousemove "$3" "$4" && sleep 0.2 && xdotool mouseup 1; }
 
 shot start
-click 150 264 # the task
+click 150 258 # the task
 click 403 300 # the patient
-click 955 238 # guided
+click 966 232 # guided
 shot chosen
-click 1194 721 # Start
+click 1210 725 # Start
 seen 1-briefing
 shot briefing
-click 1199 711 # Begin
+click 1208 719 # Begin
 seen 2-ready
 shot ready
 
 drag 500 260 540 280 # the transducer glides over the skin
 shot glided
-click 200 103 # To planned position
+click 120 137 # Move to planned position
 seen 2-found
 click 44 69 # Needle
-click 200 103
+click 120 137
 seen 2-aimed
 click 1164 55 # Controls
 shot controls
@@ -47,6 +47,6 @@ move 500 260
 until_seen 9-out wheel down 2
 click 122 724 # End the attempt
 shot asked
-click 122 680 # End
+click 126 675 # End
 seen 10-feedback
 shot feedback
