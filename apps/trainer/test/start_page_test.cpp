@@ -12,6 +12,7 @@
 #include <QSettings>
 #include <QSpinBox>
 #include <QTemporaryDir>
+#include <filesystem>
 
 #include "anatomy/phantom/phantom.h"
 #include "core/files/temporary_folder.h"
@@ -124,6 +125,8 @@ TEST_F(StartPageTest, OffersAndStartsTheNextExercise) {
   exercise.patient = "ptcd-2";
   exercise.difficulty = Difficulty::kAssisted;
   page.offer_next(QStringLiteral("Bile duct puncture, case 2, assisted"), QStringLiteral("It is due today."), exercise);
+  EXPECT_FALSE(card->isVisible()) << "a new user begins with the first steps";
+  page.findChild<QPushButton*>(QStringLiteral("first-steps-skip"))->click();
   EXPECT_TRUE(card->isVisible());
   EXPECT_EQ(page.findChild<QLabel*>(QStringLiteral("next-exercise-title"))->text(),
             QStringLiteral("Next exercise: Bile duct puncture, case 2, assisted"));
@@ -226,6 +229,32 @@ TEST_F(StartPageTest, AnExamKeepsTheNeedleAndForcesThatWereChosenBefore) {
   guided = again.choice();
   EXPECT_EQ(guided.needle, "biopsy-16g");
   EXPECT_EQ(guided.force_model, "proxy");
+}
+
+TEST_F(StartPageTest, OffersTheFirstStepsUntilTheyAreDoneOrSkipped) {
+  {
+    StartPage page;
+    page.show();
+    std::vector<TrainerChoice> started;
+    QObject::connect(&page, &StartPage::start_requested,
+                     [&](const TrainerChoice& choice) { started.push_back(choice); });
+    auto* card = page.findChild<QWidget*>(QStringLiteral("first-steps"));
+    EXPECT_TRUE(card->isVisible());
+    page.findChild<QPushButton*>(QStringLiteral("first-steps-start"))->click();
+    ASSERT_EQ(started.size(), 1U);
+    EXPECT_TRUE(started[0].is_tutorial);
+    EXPECT_EQ(started[0].patient, "layers-liver");
+    EXPECT_TRUE(std::filesystem::exists(started[0].task));
+    page.note_first_steps();
+    EXPECT_FALSE(card->isVisible());
+  }
+  StartPage again;
+  again.show();
+  EXPECT_FALSE(again.findChild<QWidget*>(QStringLiteral("first-steps"))->isVisible());
+  int started = 0;
+  QObject::connect(&again, &StartPage::start_requested, [&] { ++started; });
+  again.findChild<QPushButton*>(QStringLiteral("open-first-steps"))->click();
+  EXPECT_EQ(started, 1) << "they stay at hand";
 }
 
 TEST_F(StartPageTest, EnterStartsExceptWhereSomebodyTypes) {
