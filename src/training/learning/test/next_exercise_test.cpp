@@ -170,7 +170,7 @@ TEST(NextExercise, TheWeakestPartAsksForOneLevelMoreHelp) {
   add(history, 3, weak("biopsy-1", Level::kAssisted, "visibility"));
   const Recommendation advice = next(history);
   expect_exercise(advice, Purpose::kMoreHelp, "biopsy-1", Level::kGuided);
-  EXPECT_TRUE(has_text(advice.reasons, "'Advance with the tip in the image': it cost 12 of 20 points"));
+  EXPECT_TRUE(has_text(advice.reasons, "'Tip visible while advancing': it cost 12 of 20 points"));
   EXPECT_TRUE(has_text(advice.reasons, "last 3 attempts"));
   EXPECT_TRUE(has_text(advice.reasons, "case 1, assisted"));
   PastAttempt good = attempt("biopsy-1", Level::kGuided, 0);
