@@ -102,7 +102,7 @@ class BackgroundJob {
         return work(progress);
       }
     } catch (const Cancelled&) {
-      return fail("cancelled", {}, {});  // dropped: the job was stopped
+      return fail("cancelled", {}, "start it again");  // dropped: the job was stopped
     } catch (const std::bad_alloc&) {
       return fail("not enough memory", {}, "close other programs, or use smaller data");
     } catch (const std::exception& error) {  // of a library: this thread has no caller

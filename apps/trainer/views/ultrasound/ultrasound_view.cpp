@@ -11,7 +11,6 @@
 #include "core/files/data_dir.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
-#include "ultrasound/scanner/automatic_gain.h"
 #include "views/ultrasound/needle_marks.h"
 #include "views/ultrasound/ultrasound_painter.h"
 
@@ -261,30 +260,6 @@ void UltrasoundView::change_settings(const std::function<void(UltrasoundSettings
   UltrasoundSettings settings = settings_;
   change(settings);
   set_settings(settings);
-}
-
-void UltrasoundView::set_gain_automatically() {
-  change_settings([](UltrasoundSettings& s) { s.is_gain_automatic = true; });
-  is_gain_wanted_ = true;
-}
-
-void UltrasoundView::set_gain(double gain_db) {
-  is_gain_wanted_ = false;
-  change_settings([=](UltrasoundSettings& s) {
-    s.is_gain_automatic = false;
-    s.display.gain_db = gain_db;
-  });
-}
-
-/// By a live image of tissue: the transducer may still be in the air.
-void UltrasoundView::adjust_gain() {
-  constexpr double kCoupled = 0.5;
-  if (!is_gain_wanted_ || !settings_.is_gain_automatic || !picture_ || picture_->is_frozen) return;
-  if (picture_->coupled_share < kCoupled) return;
-  const auto gain_db = ultrasound::automatic_gain_db(picture_->levels, settings_.display);
-  if (!gain_db) return;
-  is_gain_wanted_ = false;
-  change_settings([&](UltrasoundSettings& s) { s.display.gain_db = *gain_db; });
 }
 
 void UltrasoundView::reset_settings() {

@@ -9,6 +9,7 @@
 
 #include "ui_kit/action_table.h"
 #include "ui_kit/parts.h"
+#include "ultrasound/scanner/automatic_gain.h"
 #include "views/ultrasound/ultrasound_view.h"
 
 namespace trocar::trainer {
@@ -49,6 +50,30 @@ void UltrasoundView::set_harmonic(bool is_on) {
 
 bool UltrasoundView::has_harmonic() const noexcept {
   return ultrasound::harmonic_mhz(transducer_, transducer_.frequency_mhz).has_value();
+}
+
+void UltrasoundView::set_gain_automatically() {
+  change_settings([](UltrasoundSettings& s) { s.is_gain_automatic = true; });
+  is_gain_wanted_ = true;
+}
+
+void UltrasoundView::set_gain(double gain_db) {
+  is_gain_wanted_ = false;
+  change_settings([=](UltrasoundSettings& s) {
+    s.is_gain_automatic = false;
+    s.display.gain_db = gain_db;
+  });
+}
+
+/// By a live image of tissue: the transducer may still be in the air.
+void UltrasoundView::adjust_gain() {
+  constexpr double kCoupled = 0.5;
+  if (!is_gain_wanted_ || !settings_.is_gain_automatic || !picture_ || picture_->is_frozen) return;
+  if (picture_->coupled_share < kCoupled) return;
+  const auto gain_db = ultrasound::automatic_gain_db(picture_->levels, settings_.display);
+  if (!gain_db) return;
+  is_gain_wanted_ = false;
+  change_settings([&](UltrasoundSettings& s) { s.display.gain_db = *gain_db; });
 }
 
 void UltrasoundView::make_shortcuts() {
