@@ -113,9 +113,12 @@ class ImportPanel final : public CasePanel {
   void choose_ct(const QString& path) {
     if (path.isEmpty()) return;
     ct_->setText(path);
-    if (labels_of_ != path) labels_->clear();
+    if (has_labels_of_another()) labels_->clear();
     labels_of_ = path;
   }
+
+  /// Labels that were chosen before any CT belong to the first one.
+  bool has_labels_of_another() const { return !labels_of_.isEmpty() && labels_of_ != ct_->text().trimmed(); }
 
   void add_label_choosers() {
     auto* row = new QHBoxLayout;
@@ -127,8 +130,8 @@ class ImportPanel final : public CasePanel {
     const auto add = [this](const QString& path) {
       if (path.isEmpty()) return;
       // A new selection replaces labels whose import failed, or of another CT; otherwise it is appended.
-      const bool is_of_ct = !has_failed_ && labels_of_ == ct_->text().trimmed();
-      const QString before = is_of_ct ? labels_->text().trimmed() : QString();
+      const bool is_new = has_failed_ || has_labels_of_another();
+      const QString before = is_new ? QString() : labels_->text().trimmed();
       has_failed_ = false;
       labels_of_ = ct_->text().trimmed();
       labels_->setText(before.isEmpty() ? path : before + QStringLiteral(";") + path);

@@ -125,11 +125,11 @@ QWidget* BriefingPage::make_texts() {
   card_widgets_ = {text_card(tr("Referral"), referral_), text_card(tr("Procedure"), procedure_),
                    text_card(tr("Scoring"), scoring_), text_card(tr("Controls"), controls_)};
   place_cards();
-  QScrollArea* area = make_scrolled(*content);
-  area->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-  area->setMinimumSize(380, 200);
-  area->setFocusPolicy(Qt::StrongFocus);  // arrow keys scroll
-  return area;
+  text_area_ = make_scrolled(*content);
+  text_area_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  text_area_->setMinimumSize(380, 200);
+  text_area_->setFocusPolicy(Qt::StrongFocus);  // arrow keys scroll
+  return text_area_;
 }
 
 QWidget* BriefingPage::make_pictures() {
@@ -210,7 +210,7 @@ void BriefingPage::show_opening(const TrainerChoice& choice) {
   axial_->setText(tr("The images are being loaded."));
   second_->clear();
   legend_->clear();
-  begin_->setEnabled(false);
+  hinder_begin();
   progress_->show();
   show_progress(tr("Opening the patient"), 0.0);
 }
@@ -247,10 +247,21 @@ void BriefingPage::show_case(std::shared_ptr<const cases::OpenCase> open, Diffic
 }
 
 void BriefingPage::set_hindrance(const QString& reason) {
+  if (reason.isEmpty() && is_hindered()) state_->setText(tr("Ready"));
   hindrance_ = reason;
-  begin_->setEnabled(reason.isEmpty() && open_ != nullptr);
   begin_->setToolTip(reason.isEmpty() ? tooltip_of(Action::kBegin) : reason);
-  if (!reason.isEmpty()) state_->setText(reason);
+  if (reason.isEmpty()) {
+    begin_->setEnabled(open_ != nullptr);
+    return;
+  }
+  state_->setText(reason);
+  hinder_begin();
+}
+
+void BriefingPage::hinder_begin() {
+  // Qt hands the focus of a disabled button to any other one, which the next Enter would press.
+  if (begin_->window()->focusWidget() == begin_) text_area_->setFocus();
+  begin_->setEnabled(false);
 }
 
 BriefingPlane BriefingPage::plane_of(const QLabel& label) const {

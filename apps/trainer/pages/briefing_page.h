@@ -14,6 +14,7 @@ class QHBoxLayout;
 class QLabel;
 class QProgressBar;
 class QPushButton;
+class QScrollArea;
 class QVBoxLayout;
 
 namespace trocar::trainer {
@@ -56,6 +57,7 @@ class BriefingPage : public QWidget {
   BriefingPlane plane_of(const QLabel& label) const;
   void show_picture(QLabel& label);
   void show_legend();
+  void hinder_begin();
 
   QLabel* title_ = nullptr;
   QLabel* subtitle_ = nullptr;
@@ -66,6 +68,7 @@ class BriefingPage : public QWidget {
   QHBoxLayout* cards_ = nullptr;
   QVBoxLayout *left_ = nullptr, *right_ = nullptr;  ///< Columns of cards.
   std::array<QWidget*, 4> card_widgets_{};          ///< Referral, procedure, scoring, controls.
+  QScrollArea* text_area_ = nullptr;                ///< The cards.
   QLabel* axial_ = nullptr;
   QLabel* second_ = nullptr;  ///< A slice perpendicular to the first.
   QLabel* legend_ = nullptr;

@@ -69,6 +69,17 @@ TEST(BriefingPage, SaysWhyAnAttemptCannotBegin) {
   EXPECT_EQ(text_of(page, "opening-state"), QStringLiteral("The disk is full."));
   page.set_hindrance({});
   EXPECT_TRUE(begin->isEnabled());
+  EXPECT_EQ(text_of(page, "opening-state"), QStringLiteral("Ready"));
+}
+
+TEST(BriefingPage, EnterPressesNothingWhereAnAttemptCannotBegin) {
+  BriefingPage page;
+  page.show();
+  page.show_case(open_abdomen(), Difficulty::kGuided);
+  const auto* begin = page.findChild<QPushButton*>(QStringLiteral("begin"));
+  EXPECT_EQ(page.focusWidget(), begin);
+  page.set_hindrance(QStringLiteral("The disk is full."));
+  EXPECT_EQ(qobject_cast<QAbstractButton*>(page.focusWidget()), nullptr);
 }
 
 TEST(BriefingPage, TellsTheReferralAndTheTaskBeforeThePatientIsLoaded) {

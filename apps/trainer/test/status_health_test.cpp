@@ -38,6 +38,14 @@ TEST(Health, IsOffWithoutAnAttemptAndStartsBeforeTheServersAreConnected) {
   EXPECT_EQ(assess_health({}).health, Health::kOff);
 }
 
+TEST(Health, SaysWhatBringsALostServerBack) {
+  HealthInput input = running();
+  input.servers[0].is_connected = false;
+  EXPECT_TRUE(assess_health(input).reason.contains(QStringLiteral("is being restarted")));
+  input.servers[0].waits_for_resume = true;
+  EXPECT_TRUE(assess_health(input).reason.contains(QStringLiteral("when you resume the forces")));
+}
+
 TEST(Health, IsSlowFromTheLimitsOnAndNamesTheTool) {
   const HealthLimits limits;
   HealthInput input = running();

@@ -56,6 +56,22 @@ class XrayViewTest : public ::testing::Test {
   double now_s = 100.0;
 };
 
+TEST_F(XrayViewTest, RefusesAnInjectionWhereSomethingHindersItAndEndsOne) {
+  QStringList refused;
+  QObject::connect(&view, &XrayView::injection_refused, [&](const QString& reason) { refused << reason; });
+  view.set_injecting(true);
+  EXPECT_TRUE(view.is_injecting());
+  const QString reason = QStringLiteral("Remove the stylet first.");
+  view.set_injection_hindrance(reason);
+  EXPECT_FALSE(view.is_injecting());
+  view.set_injecting(true);
+  EXPECT_FALSE(view.is_injecting());
+  EXPECT_EQ(refused, QStringList{reason});
+  view.set_injection_hindrance({});
+  view.set_injecting(true);
+  EXPECT_TRUE(view.is_injecting());
+}
+
 TEST_F(XrayViewTest, ShowsAnImageOnlyWhileThePedalIsDownAndHoldsTheLast) {
   ASSERT_FALSE(run_until([&, n = 0]() mutable { return view.frame() != nullptr || ++n > 200; }) && view.frame());
   view.set_pedal(true);

@@ -138,7 +138,8 @@ class Expert final : public Operator {
     return std::min({speed_mm_s, braking_mm_s, kHoming_per_s * std::max(0.0, target_left_mm())});
   }
 
-  /// The operator has looked, and not what proves the place came back: a wall was pushed along and has not given way.
+  /// The operator has looked, and what came back does not confirm the target: a wall was pushed along and has not
+  /// given way.
   bool is_wrong_place(const OperatorView& view) const noexcept {
     return confirms_ && in_step_s() > kLooked_s && view.returned && view.returned->substance != awaited_;
   }

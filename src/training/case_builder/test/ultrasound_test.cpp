@@ -12,8 +12,10 @@
 #include "core/files/atomic_file.h"
 #include "core/files/temporary_folder.h"
 #include "io/patient/patient_panorama.h"
+#include "io/sequence/sequence_file.h"
 #include "registration/ct_ultrasound/rigid_registration.h"
 #include "registration/ct_ultrasound/testing/generated_pair.h"
+#include "volume/sampling.h"
 
 namespace trocar::case_builder {
 namespace {
@@ -170,6 +172,56 @@ TEST(CaseUltrasound, SavedCaseKeepsVolumePoseLandmarksAndEngine) {
   EXPECT_FALSE(opened->ultrasound);
   ASSERT_FALSE(opened->imported->warnings.empty());
   EXPECT_NE(opened->imported->warnings.back().find("ultrasound cannot be read"), std::string::npos);
+}
+
+/// A block of 40 x 30 x 20 mm, bright in one half, by parallel images 1 mm apart.
+ultrasound::TrackedSequence parallel_sweep() {
+  ultrasound::TrackedSequence sweep;
+  sweep.columns = 41;
+  sweep.rows = 31;
+  for (int frame = 0; frame <= 20; ++frame) {
+    ultrasound::TrackedSequence::Frame one;
+    one.time_s = 0.1 * frame;
+    ultrasound::TrackedSequence::Matrix4 T = ultrasound::TrackedSequence::Matrix4::Identity();
+    T(2, 3) = frame;
+    one.transforms["ImageToReference"] = T;
+    sweep.frames.push_back(one);
+    for (int row = 0; row < sweep.rows; ++row)
+      for (int column = 0; column < sweep.columns; ++column)
+        sweep.pixels.push_back(column < 20 ? std::uint8_t{200} : std::uint8_t{60});
+  }
+  return sweep;
+}
+
+TEST(CaseUltrasound, ATrackedSweepBecomesAVolumeAndSaysSo) {
+  const TemporaryFolder folder;
+  const fs::path file = folder / "sweep.igs.mha";
+  ASSERT_TRUE(io::write_sequence(parallel_sweep(), file));
+  const auto read = read_ultrasound({file, {}});
+  ASSERT_TRUE(read) << read.error().text();
+  const volume::GridGeometry& grid = (*read)->gray_U.geometry;
+  const Vec3 extent_mm = grid.spacing_mm.cwiseProduct(volume::to_vec3(grid.size));
+  EXPECT_NEAR(extent_mm.x(), 41.0, 2.0);
+  EXPECT_NEAR(extent_mm.y(), 31.0, 2.0);
+  EXPECT_NEAR(extent_mm.z(), 21.0, 2.0);
+  EXPECT_EQ(volume::sample_nearest<std::uint8_t>((*read)->gray_U, Vec3(10.0, 15.0, 10.0), 0), 200);
+  EXPECT_EQ(volume::sample_nearest<std::uint8_t>((*read)->gray_U, Vec3(30.0, 15.0, 10.0), 0), 60);
+  ASSERT_EQ((*read)->warnings.size(), 1U);
+  EXPECT_NE((*read)->warnings[0].find("reconstructed from 21 images"), std::string::npos) << (*read)->warnings[0];
+}
+
+TEST(CaseUltrasound, ASweepWithoutCalibrationIsRefusedWithTheCommandThatTakesOne) {
+  const TemporaryFolder folder;
+  const fs::path file = folder / "sweep.igs.mha";
+  ultrasound::TrackedSequence sweep = parallel_sweep();
+  for (auto& frame : sweep.frames) {
+    frame.transforms["ProbeToTracker"] = frame.transforms["ImageToReference"];
+    frame.transforms.erase("ImageToReference");
+  }
+  ASSERT_TRUE(io::write_sequence(sweep, file));
+  const auto read = read_ultrasound({file, {}});
+  ASSERT_FALSE(read);
+  EXPECT_NE(read.error().advice.find("trocar ultrasound reconstruct"), std::string::npos) << read.error().text();
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <set>
+#include <thread>
 
 #include "anatomy/phantom/phantom.h"
 #include "core/files/data_dir.h"
@@ -48,6 +49,17 @@ TEST(LaterData, BringsTheSceneAndEverySurfaceOneByOne) {
   EXPECT_EQ(groups.front()->front().name, "skin");
   EXPECT_EQ(later.surfaces_after(groups.size() - 1).size(), 1u);
   EXPECT_TRUE(later.surfaces_after(groups.size() + 5).empty());
+}
+
+/// A task under fluoroscopy or palpation does not wait for an acoustic scene that it does not use.
+TEST(LaterData, MakesFirstWhatTheTaskNeeds) {
+  const auto patient = coarse();
+  const LaterData for_xray(patient, acoustics(), {"abdomen", 3}, LaterData::First::kSurfaces);
+  while (!for_xray.acoustic()) std::this_thread::yield();
+  EXPECT_EQ(for_xray.surfaces_after(0).size(), surface::extract_surfaces(*patient).size());
+  const LaterData for_ultrasound(patient, acoustics(), {"abdomen", 3});
+  while (for_ultrasound.surfaces_after(0).empty()) std::this_thread::yield();
+  EXPECT_TRUE(for_ultrasound.acoustic());
 }
 
 TEST(LaterData, KeepsSurfacesForTheNextTime) {

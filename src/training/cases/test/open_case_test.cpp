@@ -3,10 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <set>
 #include <thread>
 
+#include "core/cancellation.h"
+#include "core/files/list_folder.h"
 #include "core/files/temporary_folder.h"
+#include "io/patient/open_patient.h"
 #include "io/patient/patient_cache.h"
 #include "ultrasound/probe/probe_contact.h"
 #include "ultrasound/probe/scan_geometry.h"
@@ -155,6 +159,44 @@ TEST(OpenCase, CancelledGivesNothing) {
   job.cancel();
   while (!job.view().is_done) std::this_thread::yield();
   EXPECT_FALSE(job.take());
+}
+
+/// Opens a case in a scope that is cancelled at the report of progress number `n`; false: it was opened before.
+bool is_cancelled_at(int n, const std::filesystem::path& cache_folder) {
+  CaseChoice choice;
+  choice.options.task = "liver-biopsy";
+  choice.patient_source = "layers-liver";
+  std::stop_source source;
+  const CancellationScope scope(source.get_token());
+  std::atomic<int> reports = 0;
+  const Progress progress = [&](std::string_view, double) {
+    if (++reports == n) source.request_stop();
+    cancellation_point();
+  };
+  try {
+    const auto opened = make_open_case(choice, OpenOptions{nullptr, cache_folder}, progress);
+    EXPECT_TRUE(opened) << opened.error().text();
+    return false;
+  } catch (const Cancelled&) {
+    return true;
+  }
+}
+
+TEST(CancelledOpening, LeavesNothingHalfWrittenWheneverItHappens) {
+  const TemporaryFolder folder;
+  int cancelled = 0;
+  for (int n = 1; is_cancelled_at(n, folder / std::to_string(n)); ++n) {
+    ++cancelled;
+    // What is in the cache is a whole patient: no temporary folder beside it, and it opens.
+    const auto entries = list_folder(folder / std::to_string(n));
+    if (!entries) continue;
+    for (const std::filesystem::path& entry : *entries) {
+      if (!std::filesystem::is_directory(entry)) continue;
+      const auto patient = io::open_patient({entry.string(), 1});
+      EXPECT_TRUE(patient) << entry << ": " << (patient ? "" : patient.error().text());
+    }
+  }
+  EXPECT_GT(cancelled, 5);
 }
 
 }  // namespace

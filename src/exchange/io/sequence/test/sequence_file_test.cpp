@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "io/image/image_file.h"
 #include "io/test/test_support.h"
 
 namespace trocar::io {
@@ -61,6 +62,25 @@ TEST_F(SequenceFile, ReadsPicturesPlacesAndTimes) {
   EXPECT_EQ(sequence->pixels, std::vector<std::uint8_t>(kPixels.begin(), kPixels.end()));
   EXPECT_EQ(sequence->frames[0].transforms.at("ProbeToTracker")(1, 3), 20.0);
   EXPECT_EQ(sequence->frames[1].time_s, 1.75);
+}
+
+TEST_F(SequenceFile, IsToldFromAVolumeWhichItIsNotReadAs) {
+  write_bytes(path_, header() + kPixels);
+  EXPECT_TRUE(is_sequence(path_).value());
+  std::vector<std::string> warnings;
+  const auto gray = read_gray_levels(path_, warnings);
+  ASSERT_FALSE(gray);
+  EXPECT_EQ(gray.error().what, "a tracked sequence of images, not a volume");
+  EXPECT_NE(gray.error().advice.find("trocar ultrasound reconstruct"), std::string::npos);
+  EXPECT_FALSE(read_ct(path_)) << "nor as a CT";
+  volume::LabelGrid volume;
+  volume.geometry.size = {3, 2, 2};
+  volume.voxels.assign(12, 7);
+  for (const char* name : {"volume.mha", "volume.nrrd"}) {
+    ASSERT_TRUE(write_image(volume, folder_ / name));
+    EXPECT_FALSE(is_sequence(folder_ / name).value()) << name;
+  }
+  EXPECT_FALSE(is_sequence(folder_ / "none.mha"));
 }
 
 TEST_F(SequenceFile, HonoursStatuses) {

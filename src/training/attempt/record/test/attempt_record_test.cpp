@@ -7,6 +7,7 @@
 #include "attempt/record/other_forces.h"
 #include "core/files/temporary_folder.h"
 #include "haptics/force_version.h"
+#include "xray/tools/guide_wire.h"
 
 namespace trocar::attempt {
 namespace {
@@ -38,6 +39,12 @@ class GunRecordTest : public ::testing::Test {
     sample.depth_mm = depth_mm;
     sample.tip_mm = {0.0, depth_mm, 0.0};
     ASSERT_TRUE(record_->append(sample));
+  }
+  /// Length of the guide wire after it was advanced to `wanted_mm`.
+  double advance_wire(double wanted_mm) {
+    const auto action = record_->act({kAdvanceWire, wanted_mm});
+    EXPECT_TRUE(action && *action);
+    return action && *action ? (*action)->amount : -1.0;
   }
   /// The event's text; empty: refused.
   std::string act(tasks::ActionKind kind) {
@@ -112,6 +119,28 @@ TEST_F(GunRecordTest, APlainNeedleHasNoGunAndNothingHappensBeforeTheFirstSample)
   EXPECT_EQ(act(kLoad), "");
   EXPECT_EQ(act(kReplaceStylet), "stylet reinserted");
   EXPECT_EQ(recorded_kinds(), std::vector<tasks::ActionKind>{kReplaceStylet});
+}
+
+/// A duct of 3 mm along the needle from 30 to 60 mm, closed there; behind the obstruction it goes on.
+xray::DuctTree obstructed_duct() {
+  xray::DuctTree tree;
+  tree.cells.resize(2);
+  tree.cells[0] = {Vec3(0.0, 30.0, 0.0), Vec3(0.0, 60.0, 0.0), 1.5, 1.5, -1, false, {}, {}};
+  tree.cells[1] = {Vec3(0.0, 60.0, 0.0), Vec3(0.0, 100.0, 0.0), 1.5, 1.5, 0, true, {}, {}};
+  return tree;
+}
+
+TEST_F(GunRecordTest, AGuideWireStopsAtAnObstructionAndBucklesOutsideOfTheDucts) {
+  begin(false, false);
+  the_case_.ducts = std::make_shared<const xray::DuctTree>(obstructed_duct());
+  go_to(40.0);
+  EXPECT_NEAR(advance_wire(10.0), 10.0, 1e-9) << "in the duct";
+  EXPECT_NEAR(advance_wire(50.0), 20.0, 1e-9) << "up to the obstruction";
+  EXPECT_NEAR(advance_wire(350.0), 20.0, 1e-9) << "and never beyond";
+  go_to(10.0);
+  EXPECT_NEAR(advance_wire(50.0), xray::kWireInTissue_mm, 1e-9) << "no duct";
+  the_case_.ducts.reset();
+  EXPECT_NEAR(advance_wire(50.0), 50.0, 1e-9) << "a task without a way for it";
 }
 
 TEST_F(GunRecordTest, NamesTheVersionOfItsForces) {
