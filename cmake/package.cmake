@@ -85,6 +85,7 @@ set(CPACK_DEBIAN_TRAINER_PACKAGE_NAME trocar-trainer)
 set(CPACK_DEBIAN_TRAINER_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_TRAINER_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_TRAINER_PACKAGE_DEPENDS "trocar ${same_version}, trocar-hapticd ${same_version}")
+set(CPACK_DEBIAN_TRAINER_PACKAGE_RECOMMENDS "qttranslations5-l10n")
 set(CPACK_DEBIAN_TRAINER_DESCRIPTION "simulator for needle punctures: trainer's window
 The window in which a trainee performs a puncture on a virtual patient by
 mouse, keyboard or haptic device, with ultrasound, X-ray, slices, a 3D

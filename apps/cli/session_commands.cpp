@@ -52,6 +52,7 @@ struct ReportArguments {
   std::string session;
   io::PatientSource patient;  ///< Empty: as recorded in the session.
   std::string out;
+  std::string language = "en";
   bool is_text = false;
 };
 
@@ -109,6 +110,9 @@ report::ReportStory story_of(const storage::Session& session,
 Status write_report(const ReportArguments& arguments) {
   if (arguments.is_text && !arguments.out.empty())
     return fail_usage("give --text or --out, not both", "--text, --out", "redirect the text to a file");
+  if (arguments.is_text && arguments.language != "en")
+    return fail_usage("the text report is English", "--text, --language", "leave out --text for the HTML report");
+  TROCAR_TRY(const language::Language language, language::load_language(arguments.language));
   const std::filesystem::path out =
       arguments.out.empty() ? report::report_file_of(arguments.session) : std::filesystem::path(arguments.out);
   if (!arguments.is_text) TROCAR_TRY_STATUS(check_new(out));
@@ -120,7 +124,7 @@ Status write_report(const ReportArguments& arguments) {
   if (arguments.is_text) {
     fmt::print("{}", report::text_report(session, story));
   } else {
-    TROCAR_TRY_STATUS(write_file_atomically(out, report::html_report(session, patient.get(), story)));
+    TROCAR_TRY_STATUS(write_file_atomically(out, report::html_report(session, patient.get(), story, language)));
     if (arguments.out.empty()) fmt::print("{}\n", out.string());
   }
   if (session.damage.empty()) return {};
@@ -167,10 +171,11 @@ void add_session_commands(Command& program, Action& action) {
   add_cache_option(report_command, r->patient);
   report_command.add_option("--out", r->out,
                             "HTML file to write [beside the session: first.report.html of first.session]");
+  report_command.add_option("--language", r->language, "Language of the HTML report: en, de [en]");
   report_command.add_flag("--text", r->is_text, "Print the report as text instead");
   report_command.footer(
       "Examples:\n  trocar session report first.session\n  trocar session report first.session --text\n  trocar "
-      "session report first.session --out first.html\n");
+      "session report first.session --out first.html --language de\n");
   report_command.when_parsed([&action, r] { action = [r] { return write_report(*r); }; });
 
   add_session_metrics_command(session, action);

@@ -29,6 +29,7 @@
 #include "ui_kit/screen_scale.h"
 #include "ui_kit/theme.h"
 #include "ui_kit/trainer_application.h"
+#include "ui_kit/window_language.h"
 
 namespace {
 
@@ -42,6 +43,7 @@ struct Arguments {
   std::vector<std::string> scripts;
   std::string screenshot, state_folder, database;
   int frame_rate_hz = 60;
+  std::string language;  ///< Empty: the one chosen in the window, else the desktop's.
   bool is_benchmark = false, prints_keys = false;
   std::vector<std::string> layouts;
 };
@@ -62,6 +64,8 @@ void add_options(arguments::Program& app, Arguments& arguments) {
   app.add_option("--frame-rate", arguments.frame_rate_hz,
                  "Frames per second, at most: fewer leave more of a slow processor to the simulation [60]")
       .whole_number_within(1, 60);
+  app.add_option("--language", arguments.language,
+                 "Language of the window: en, de [the one chosen in the window, else the desktop's]");
   app.add_flag("--keys", arguments.prints_keys, "Print all keys and mouse actions as a table and exit");
   app.add_option("--state", arguments.state_folder, "Folder for sessions [$XDG_STATE_HOME/trocar]");
   app.add_option("--db", arguments.database,
@@ -134,6 +138,15 @@ Status play(const Arguments& arguments, MainWindow& window) {
   return {};
 }
 
+Status speak_as_chosen(TrainerApplication& application, const Arguments& arguments) {
+  if (!arguments.language.empty()) return speak(application, to_qt(arguments.language));
+  const QString chosen = chosen_language();
+  const Status status = speak(application, chosen.isEmpty() ? desktop_language() : chosen);
+  // A language that was removed or is broken does not keep people from training.
+  if (!status) fmt::print(stderr, "warning: the window stays English: {}\n", status.error().text());
+  return {};
+}
+
 int run(int argc, char** argv) {
   arguments::Program app("trocar-trainer", "The Trocar trainer window: ultrasound, slices, 3D, forces and score.");
   Arguments arguments;
@@ -158,6 +171,8 @@ int run(int argc, char** argv) {
   const QTemporaryDir own_settings;
   if (arguments.is_benchmark) QSettings::setPath(QSettings::NativeFormat, QSettings::UserScope, own_settings.path());
   apply_theme(application, kept_text_percent());
+  if (const Status status = speak_as_chosen(application, arguments); !status)
+    return arguments::report_error(status.error());
   const Result<database::DatabaseUrl> results =
       arguments.database.empty() ? results::default_url() : database::parse_url(arguments.database);
   if (!results) return arguments::report_error(results.error());

@@ -1,13 +1,16 @@
-// Start: theme, frame, routes, session.
+// Start: language, theme, frame, routes, session.
 
 import { ApiError, get, on_session_expired, send, set_csrf } from "./lib/api.ts";
-import { navigate, start_router, type Route } from "./lib/router.ts";
+import { keeping_choices } from "./lib/choices.ts";
+import { navigate, show_again, start_router, type Route } from "./lib/router.ts";
 import type { Me } from "./lib/types.ts";
+import { t } from "./lib/words.ts";
 import { session } from "./session.ts";
 import { make_shell } from "./ui/shell.ts";
 import { error_box, toast } from "./ui/states.ts";
 import { start_printing } from "./ui/print.ts";
-import { keeping_theme, start_theme } from "./ui/theme.ts";
+import { start_theme } from "./ui/theme.ts";
+import { load_server_words, start_language } from "./words/languages.ts";
 
 const kRoutes: Route[] = [
   { pattern: /^\/$/, section: "/", load: async () => (await import("./pages/cohort.ts")).cohort_page },
@@ -28,10 +31,6 @@ const kRoutes: Route[] = [
   { pattern: /./, is_public: true, load: async () => (await import("./pages/not_found.ts")).not_found_page },
 ];
 
-start_theme();
-start_printing();
-const shell = make_shell(() => void sign_out());
-
 function set_me(me: Me | null): void {
   session.me = me;
   set_csrf(me?.csrf ?? null);
@@ -40,10 +39,10 @@ function set_me(me: Me | null): void {
 async function sign_out(): Promise<void> {
   try {
     // The server tells the browser to delete what the page has stored: drafts must not stay for the next person.
-    await keeping_theme(() => send("POST", "/api/logout", {}, { without_session: true }));
+    await keeping_choices(() => send("POST", "/api/logout", {}, { without_session: true }));
   } catch (error) {
     if (!(error instanceof ApiError) || error.status !== 401) {
-      toast("You are still signed in: the server does not answer. Try again.");
+      toast(t("You are still signed in: the server does not answer. Try again."));
       return;
     }
   }
@@ -51,27 +50,37 @@ async function sign_out(): Promise<void> {
   navigate("/login");
 }
 
-on_session_expired(() => {
-  if (location.pathname === "/login") return;
-  const had_session = session.me !== null;
-  set_me(null);
-  const next = encodeURIComponent(location.pathname + location.search);
-  navigate(`/login?next=${next}${had_session ? "&expired=1" : ""}`, true);
-});
+/** Every text of the page is made after its language is there. */
+function start(): void {
+  start_printing();
+  const shell = make_shell(() => void sign_out());
+  on_session_expired(() => {
+    if (location.pathname === "/login") return;
+    const had_session = session.me !== null;
+    set_me(null);
+    const next = encodeURIComponent(location.pathname + location.search);
+    navigate(`/login?next=${next}${had_session ? "&expired=1" : ""}`, true);
+  });
 
-start_router(shell.main, kRoutes, async (route) => {
-  if (!route.is_public && !session.me) {
-    try {
-      set_me(await get<Me>("/api/me"));
-    } catch (error) {
-      if (!(error instanceof ApiError) || error.status !== 401) {
-        shell.set_account(null);
-        shell.main.replaceChildren(error_box(error, () => location.reload()));
+  document.addEventListener("wordschange", show_again);
+  start_router(shell.main, kRoutes, async (route) => {
+    if (!route.is_public && !session.me) {
+      try {
+        set_me(await get<Me>("/api/me"));
+      } catch (error) {
+        if (!(error instanceof ApiError) || error.status !== 401) {
+          shell.set_account(null);
+          shell.main.replaceChildren(error_box(error, () => location.reload()));
+        }
+        return false;
       }
-      return false;
     }
-  }
-  shell.set_account(route.is_public ? null : session.me);
-  shell.set_section(route.section ?? null);
-  return true;
-});
+    if (!route.is_public) await load_server_words();
+    shell.set_account(route.is_public ? null : session.me);
+    shell.set_section(route.section ?? null);
+    return true;
+  });
+}
+
+start_theme();
+void start_language().then(start);

@@ -1,17 +1,22 @@
 // Step 5 of the case builder: predicted force along the expert's path.
+#include <QCoreApplication>
 #include <QHeaderView>
 #include <QLabel>
+#include <QLocale>
 #include <QTableWidget>
 #include <QVBoxLayout>
 
+#include "anatomy/structure_words.h"
 #include "case_panels/case_panel.h"
 #include "ui_kit/parts.h"
+#include "ui_kit/window_language.h"
 #include "views/plots/force_plot.h"
 
 namespace trocar::trainer {
 namespace {
 
 class ForcePanel final : public CasePanel {
+  Q_DECLARE_TR_FUNCTIONS(trocar::trainer::ForcePanel)
  public:
   ForcePanel(case_builder::CaseEditor& editor, QWidget* parent) : CasePanel(editor, parent) {
     text_ = make_label({}, "dim");
@@ -41,7 +46,7 @@ class ForcePanel final : public CasePanel {
   void refresh() override {
     const auto& preview = editor_.preview();
     if (!preview) {
-      text_->setText(!editor_.has_patient() ? tr("Import a patient first.") : to_qt(editor_.preview_error()));
+      text_->setText(!editor_.has_patient() ? tr("Import a patient first.") : shown(editor_.preview_error()));
       plot_->set_predicted({});
       plot_->set_bands({});
       table_->setRowCount(0);
@@ -54,13 +59,13 @@ class ForcePanel final : public CasePanel {
     plot_->set_predicted(std::move(curve));
     std::vector<ForcePlot::Band> bands;
     for (const cases::PathPiece& piece : preview->pieces)
-      bands.push_back({piece.from_mm, piece.to_mm, to_qt(piece.name), color_of(piece.name)});
+      bands.push_back({piece.from_mm, piece.to_mm, shown(anatomy::structure_words(piece.name)), color_of(piece.name)});
     plot_->set_bands(std::move(bands));
     table_->setRowCount(static_cast<int>(preview->events.size()));
     for (std::size_t n = 0; n < preview->events.size(); ++n) {
       const cases::CurveEvent& event = preview->events[n];
-      const QStringList texts{to_qt(event.layer).replace(QLatin1Char('_'), QLatin1Char(' ')),
-                              QString::number(event.way_mm, 'f', 1), QString::number(event.peak_n, 'f', 2)};
+      const QStringList texts{shown(anatomy::structure_words(event.layer)),
+                              QLocale().toString(event.tip_mm, 'f', 1), QLocale().toString(event.peak_n, 'f', 2)};
       for (int column = 0; column < 3; ++column) {
         auto* cell = new QTableWidgetItem(texts[column]);
         if (column > 0) cell->setTextAlignment(Qt::AlignRight | Qt::AlignVCenter);
@@ -80,7 +85,7 @@ class ForcePanel final : public CasePanel {
     const auto& preview = editor_.preview();
     if (path == nullptr || !preview || row >= static_cast<int>(preview->events.size())) return;
     Q_EMIT place_requested(path->line_P.a +
-                           preview->events[static_cast<std::size_t>(row)].way_mm * path->line_P.direction());
+                           preview->events[static_cast<std::size_t>(row)].tip_mm * path->line_P.direction());
   }
 
   QLabel* text_ = nullptr;

@@ -1,4 +1,5 @@
 // Step 1 of the case builder: input files of the case.
+#include <QCoreApplication>
 #include <QCheckBox>
 #include <QComboBox>
 #include <QFileDialog>
@@ -20,6 +21,7 @@
 #include "case_builder/case_edits.h"
 #include "case_panels/case_panel.h"
 #include "ui_kit/parts.h"
+#include "ui_kit/window_language.h"
 
 namespace trocar::trainer {
 namespace {
@@ -32,6 +34,7 @@ QString first_line(const QString& entry) {
 }
 
 class ImportPanel final : public CasePanel {
+  Q_DECLARE_TR_FUNCTIONS(trocar::trainer::ImportPanel)
  public:
   ImportPanel(case_builder::CaseEditor& editor, QWidget* parent) : CasePanel(editor, parent) {
     add_finding();
@@ -153,7 +156,7 @@ class ImportPanel final : public CasePanel {
            "keeps its own."));
     using enum anatomy::Posture;
     for (const anatomy::Posture posture : {kSupine, kProne, kLeftLateral, kRightLateral, kSitting})
-      posture_->addItem(to_qt(anatomy::posture_words(posture)), to_qt(anatomy::posture_name(posture)));
+      posture_->addItem(shown(anatomy::posture_words(posture)), to_qt(anatomy::posture_name(posture)));
     content()->addWidget(posture_);
     sibling_ = new QCheckBox(tr("Labels of a sibling series"));
     sibling_->setObjectName(QStringLiteral("case-sibling-series"));
@@ -221,15 +224,15 @@ class ImportPanel final : public CasePanel {
     confirm_->setVisible(is_open);
     repair_->setVisible(is_open && !open_finding_->repair.empty());
     if (!is_open) return finding_->clear();
-    if (finding_->text() != to_qt(open_finding_->text)) QTimer::singleShot(0, this, [this] { scroll_to_top(); });
-    finding_->setText(to_qt(open_finding_->text));
+    if (finding_->text() != shown(open_finding_->text)) QTimer::singleShot(0, this, [this] { scroll_to_top(); });
+    finding_->setText(shown(open_finding_->text));
     confirm_->setText(has_failed_ ? tr("It is right: import as it is") : tr("It is right: keep it"));
     const std::string& option = open_finding_->repair;
     repair_->setText(option == anatomy::kMirrorLabels           ? tr("Mirror the labels and import")
                      : option == anatomy::kMirrorBoth           ? tr("Mirror CT and labels and import")
                      : option.starts_with(anatomy::kUsePosture) ? tr("Import with this posture")
                                                                 : tr("Use those numbers and import"));
-    repair_->setToolTip(to_qt(option));
+    repair_->setToolTip(shown(option));
   }
 
   void repair() {

@@ -1,8 +1,10 @@
 // Step 2 of the case builder: check and edit the labels.
+#include <QCoreApplication>
 #include <QColorDialog>
 #include <QComboBox>
 #include <QHeaderView>
 #include <QLabel>
+#include <QLocale>
 #include <QLineEdit>
 #include <QPushButton>
 #include <QSlider>
@@ -11,9 +13,11 @@
 #include <map>
 #include <set>
 
+#include "anatomy/structure_words.h"
 #include "case_builder/case_edits.h"
 #include "case_panels/case_panel.h"
 #include "ui_kit/parts.h"
+#include "ui_kit/window_language.h"
 
 namespace trocar::trainer {
 namespace {
@@ -21,6 +25,7 @@ namespace {
 enum LabelColumn { kLabelName, kLabelTissue, kLabelVolume, kLabelColumns };
 
 class LabelsPanel final : public CasePanel {
+  Q_DECLARE_TR_FUNCTIONS(trocar::trainer::LabelsPanel)
  public:
   LabelsPanel(case_builder::CaseEditor& editor, QWidget* parent) : CasePanel(editor, parent) {
     add_opacity();
@@ -101,7 +106,7 @@ class LabelsPanel final : public CasePanel {
     tissue_->setAccessibleName(tr("Tissue of the label"));
     tissue_->setToolTip(tr("Mechanical tissue of the selected label"));
     for (const anatomy::TissueParams& tissue : editor_.tissues().tissues)
-      if (tissue.name != "air") tissue_->addItem(to_qt(tissue.name));
+      if (tissue.name != "air") tissue_->addItem(shown(anatomy::structure_words(tissue.name)), to_qt(tissue.name));
     content()->addWidget(tissue_);
     connect(name_, &QLineEdit::editingFinished, this, [this] {
       const anatomy::Label* label = selected();
@@ -114,7 +119,7 @@ class LabelsPanel final : public CasePanel {
     connect(tissue_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this] {
       const anatomy::Label* label = selected();
       if (is_refreshing_ || label == nullptr || tissue_->currentIndex() < 0) return;
-      editor_.edit(case_builder::set_label_tissue(editor_.draft(), label->id, to_std(tissue_->currentText())),
+      editor_.edit(case_builder::set_label_tissue(editor_.draft(), label->id, to_std(tissue_->currentData().toString())),
                    "change a tissue");
     });
     connect(color_, &QPushButton::clicked, this, [this] { choose_color(); });
@@ -152,9 +157,9 @@ class LabelsPanel final : public CasePanel {
       QFont font = name->font();
       font.setItalic(label.is_derived);
       name->setFont(font);
-      item(row, kLabelTissue)->setText(to_qt(label.tissue));
+      item(row, kLabelTissue)->setText(shown(anatomy::structure_words(label.tissue)));
       QTableWidgetItem* volume = item(row, kLabelVolume);
-      volume->setText(QString::number(volumes[label.id], 'f', volumes[label.id] < 10.0 ? 1 : 0));
+      volume->setText(QLocale().toString(volumes[label.id], 'f', volumes[label.id] < 10.0 ? 1 : 0));
       volume->setTextAlignment(Qt::AlignRight | Qt::AlignVCenter);
     }
   }
@@ -180,7 +185,7 @@ class LabelsPanel final : public CasePanel {
       widget->setEnabled(label != nullptr);
     if (label == nullptr) return name_->clear();
     if (!name_->hasFocus()) name_->setText(to_qt(label->name));
-    tissue_->setCurrentIndex(tissue_->findText(to_qt(label->tissue)));
+    tissue_->setCurrentIndex(tissue_->findData(to_qt(label->tissue)));
   }
 
   void jump_to(int row) {

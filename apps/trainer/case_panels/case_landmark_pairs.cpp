@@ -11,7 +11,9 @@
 
 #include "case_builder/landmark_names.h"
 #include "case_builder/ultrasound.h"
+#include "case_panels/landmark_text.h"
 #include "ui_kit/parts.h"
+#include "ui_kit/window_language.h"
 
 namespace trocar::trainer {
 namespace {
@@ -62,7 +64,7 @@ void CaseLandmarkPairs::add_naming() {
   name_->setInsertPolicy(QComboBox::NoInsert);
   name_->setMinimumContentsLength(8);
   name_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-  name_->setEditText(tr("landmark 1"));
+  name_->setEditText(shown("landmark 1"));
   connect(name_, &QComboBox::editTextChanged, this, &CaseLandmarkPairs::name_changed);
   pick_ = make_button("case-pair-pick", tr("Place by click"), Action::kPickPair,
                       tr("Click the same place in a slice of the CT and in one of the ultrasound, in any order"));
@@ -119,15 +121,15 @@ void CaseLandmarkPairs::add_buttons() {
 }
 
 std::string CaseLandmarkPairs::name() const {
-  return to_std(name_->currentText().trimmed());
+  return landmark_of(name_->currentText());
 }
 
 void CaseLandmarkPairs::begin_next() {
   const std::vector<std::string> taken = all_names(editor_.draft());
   for (int n = 1;; ++n) {
-    const QString name = tr("landmark %1").arg(n);
-    if (std::find(taken.begin(), taken.end(), to_std(name)) != taken.end()) continue;
-    return name_->setEditText(name);
+    const std::string name = "landmark " + std::to_string(n);
+    if (std::find(taken.begin(), taken.end(), name) != taken.end()) continue;
+    return name_->setEditText(shown(name));
   }
 }
 
@@ -137,8 +139,8 @@ void CaseLandmarkPairs::show_picking(bool is_on) {
 
 void CaseLandmarkPairs::show_row(int row) {
   if (list_->item(row, kPairName) == nullptr) return;
-  const std::string name = to_std(list_->item(row, kPairName)->text());
-  name_->setEditText(to_qt(name));
+  const std::string name = landmark_of(list_->item(row, kPairName)->text());
+  name_->setEditText(shown(name));
   const case_builder::CaseDraft& draft = editor_.draft();
   if (const auto* point = find_in_ultrasound(draft, name)) Q_EMIT ultrasound_place_requested(point->p);
   // Last, since with a pose it also moves the ultrasound: the CT's landmark is the one that may be misplaced there.
@@ -148,7 +150,7 @@ void CaseLandmarkPairs::show_row(int row) {
 void CaseLandmarkPairs::remove_current() {
   const int row = list_->currentRow();
   if (row < 0) return;
-  const std::string name = to_std(list_->item(row, kPairName)->text());
+  const std::string name = landmark_of(list_->item(row, kPairName)->text());
   editor_.edit(case_builder::remove_ultrasound_landmark(editor_.draft(), name), "remove a landmark of the ultrasound");
 }
 
@@ -164,12 +166,12 @@ bool CaseLandmarkPairs::eventFilter(QObject* watched, QEvent* event) {
 /// Names that the user has not typed: those of the case, then the common ones.
 void CaseLandmarkPairs::fill_names() {
   QStringList names;
-  for (const std::string& name : all_names(editor_.draft())) names << to_qt(name);
+  for (const std::string& name : all_names(editor_.draft())) names << shown(name);
   for (const std::string_view name : case_builder::landmark_names())
-    if (!names.contains(to_qt(name))) names << to_qt(name);
-  QStringList shown;
-  for (int n = 0; n < name_->count(); ++n) shown << name_->itemText(n);
-  if (shown == names) return;
+    if (!names.contains(shown(name))) names << shown(name);
+  QStringList listed;
+  for (int n = 0; n < name_->count(); ++n) listed << name_->itemText(n);
+  if (listed == names) return;
   const QString typed = name_->currentText();
   const QSignalBlocker blocker(name_);
   name_->clear();
@@ -190,7 +192,7 @@ void CaseLandmarkPairs::fill_list() {
       list_->item(row, column)->setText(text);
       list_->item(row, column)->setToolTip(text);
     };
-    put(kPairName, to_qt(name));
+    put(kPairName, shown(name));
     put(kPairInCt, find_in_ct(draft, name) != nullptr ? QStringLiteral("✓") : QStringLiteral("–"));
     put(kPairInUltrasound, find_in_ultrasound(draft, name) != nullptr ? QStringLiteral("✓") : QStringLiteral("–"));
     QString off;
@@ -208,7 +210,7 @@ void CaseLandmarkPairs::fill_list() {
   if (fit)
     result_->setText(tr("%1 pairs fit within %2 mm (rms).").arg(pairs).arg(fit->fit.rms_mm, 0, 'f', 1));
   else
-    result_->setText(pairs < 3 ? tr("%1 of at least 3 pairs.").arg(pairs) : to_qt(fit.error().text()));
+    result_->setText(pairs < 3 ? tr("%1 of at least 3 pairs.").arg(pairs) : shown(fit.error().text()));
 }
 
 void CaseLandmarkPairs::refresh() {

@@ -10,7 +10,9 @@
 
 #include "case_builder/case_edits.h"
 #include "case_builder/landmark_names.h"
+#include "case_panels/landmark_text.h"
 #include "ui_kit/parts.h"
+#include "ui_kit/window_language.h"
 
 namespace trocar::trainer {
 
@@ -33,7 +35,7 @@ void CaseLandmarks::add_naming() {
   name_->setInsertPolicy(QComboBox::NoInsert);
   name_->setMinimumContentsLength(8);
   name_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-  for (const std::string_view name : case_builder::landmark_names()) name_->addItem(to_qt(name));
+  for (const std::string_view name : case_builder::landmark_names()) name_->addItem(shown(name));
   connect(name_, &QComboBox::editTextChanged, this, &CaseLandmarks::name_changed);
   layout()->addWidget(name_);
   pick_ = make_button("case-landmark-pick", tr("Place by click"), Action::kPickLandmark,
@@ -84,7 +86,7 @@ void CaseLandmarks::add_buttons() {
 }
 
 std::string CaseLandmarks::name() const {
-  return to_std(name_->currentText().trimmed());
+  return landmark_of(name_->currentText());
 }
 
 void CaseLandmarks::show_picking(bool is_on) {
@@ -92,7 +94,7 @@ void CaseLandmarks::show_picking(bool is_on) {
 }
 
 void CaseLandmarks::rename(int row) {
-  const std::string name = to_std(list_->item(row)->text().trimmed());
+  const std::string name = landmark_of(list_->item(row)->text());
   const auto at = static_cast<std::size_t>(row);
   if (at >= editor_.draft().landmarks.size() || name == editor_.draft().landmarks[at].name) return refresh();
   if (!editor_.edit(case_builder::rename_landmark(editor_.draft(), at, name), "rename a landmark")) refresh();
@@ -124,10 +126,10 @@ void CaseLandmarks::refresh() {
       item->setFlags(item->flags() | Qt::ItemIsEditable);
     }
     const Vec3& p_P = landmarks[n].p_P;
-    list_->item(static_cast<int>(n))->setText(to_qt(landmarks[n].name));
+    list_->item(static_cast<int>(n))->setText(shown(landmarks[n].name));
     list_->item(static_cast<int>(n))
         ->setToolTip(QStringLiteral("%1 (%2, %3, %4) mm")
-                         .arg(to_qt(landmarks[n].name))
+                         .arg(shown(landmarks[n].name))
                          .arg(p_P.x(), 0, 'f', 0)
                          .arg(p_P.y(), 0, 'f', 0)
                          .arg(p_P.z(), 0, 'f', 0));

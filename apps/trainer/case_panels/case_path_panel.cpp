@@ -1,4 +1,5 @@
 // Step 4 of the case builder: entry zone and expert path.
+#include <QCoreApplication>
 #include <QDoubleSpinBox>
 #include <QLabel>
 #include <QPushButton>
@@ -13,6 +14,7 @@ namespace trocar::trainer {
 namespace {
 
 class PathPanel final : public CasePanel {
+  Q_DECLARE_TR_FUNCTIONS(trocar::trainer::PathPanel)
  public:
   PathPanel(case_builder::CaseEditor& editor, QWidget* parent) : CasePanel(editor, parent) {
     content()->addWidget(make_label(tr("Entry zone"), "heading"));

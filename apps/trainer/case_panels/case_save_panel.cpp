@@ -1,4 +1,5 @@
 // Step 6 of the case builder: name, description and output folder.
+#include <QCoreApplication>
 #include <QCheckBox>
 #include <QDir>
 #include <QFileDialog>
@@ -15,6 +16,7 @@ namespace trocar::trainer {
 namespace {
 
 class SavePanel final : public CasePanel {
+  Q_DECLARE_TR_FUNCTIONS(trocar::trainer::SavePanel)
  public:
   SavePanel(case_builder::CaseEditor& editor, QWidget* parent) : CasePanel(editor, parent) {
     name_ = add_line("case-name", tr("Name"), tr("Name shown to trainees in the list of cases"));

@@ -1,4 +1,5 @@
 // Step 3 of the case builder: target and structures at risk.
+#include <QCoreApplication>
 #include <QComboBox>
 #include <QDoubleSpinBox>
 #include <QHeaderView>
@@ -8,11 +9,13 @@
 #include <QTableWidget>
 #include <QVBoxLayout>
 
+#include "anatomy/structure_words.h"
 #include "case_builder/case_edits.h"
 #include "case_panels/case_landmarks.h"
 #include "case_panels/case_panel.h"
 #include "ui_kit/decimal_field.h"
 #include "ui_kit/parts.h"
+#include "ui_kit/window_language.h"
 
 namespace trocar::trainer {
 namespace {
@@ -27,7 +30,7 @@ std::optional<tasks::Harm> harm_of(int entry) {
 }
 
 QString harm_text(const std::optional<tasks::Harm>& harm) {
-  return harm ? QString::fromLatin1(tasks::to_string(*harm)) : CasePanel::tr("usual");
+  return harm ? shown(tasks::to_string(*harm)) : CasePanel::tr("usual");
 }
 
 QString name_of(const tasks::RiskStructure& risk) {
@@ -35,6 +38,7 @@ QString name_of(const tasks::RiskStructure& risk) {
 }
 
 class TargetPanel final : public CasePanel {
+  Q_DECLARE_TR_FUNCTIONS(trocar::trainer::TargetPanel)
  public:
   TargetPanel(case_builder::CaseEditor& editor, QWidget* parent) : CasePanel(editor, parent) {
     add_template();
@@ -70,7 +74,7 @@ class TargetPanel final : public CasePanel {
 
  private:
   static QString place(const Vec3& p_P) {
-    return QStringLiteral("(%1, %2, %3) mm").arg(p_P.x(), 0, 'f', 0).arg(p_P.y(), 0, 'f', 0).arg(p_P.z(), 0, 'f', 0);
+    return QStringLiteral("(%L1, %L2, %L3) mm").arg(p_P.x(), 0, 'f', 0).arg(p_P.y(), 0, 'f', 0).arg(p_P.z(), 0, 'f', 0);
   }
 
   QComboBox* add_box(const char* name, const QString& title, const QString& tooltip) {
@@ -83,7 +87,7 @@ class TargetPanel final : public CasePanel {
   void add_template() {
     template_ =
         add_box("case-template", tr("Task, as a template"), tr("Limits, scoring and risks are copied from this task"));
-    for (const tasks::Task& task : editor_.templates()) template_->addItem(to_qt(task.title), to_qt(task.name));
+    for (const tasks::Task& task : editor_.templates()) template_->addItem(shown(task.title), to_qt(task.name));
     connect(template_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this](int row) {
       if (is_refreshing_ || row < 0) return;
       editor_.edit(case_builder::use_template(editor_.draft(), editor_.templates()[static_cast<std::size_t>(row)]),
@@ -236,7 +240,7 @@ class TargetPanel final : public CasePanel {
     structure_->clear();
     for (const anatomy::TissueParams& tissue : editor_.tissues().tissues)
       if (tissue.name != "air" && tissue.name != "skin")
-        structure_->addItem(tr("all %1").arg(to_qt(tissue.name)), to_qt(tissue.name));
+        structure_->addItem(tr("all %1").arg(shown(anatomy::structure_words(tissue.name))), to_qt(tissue.name));
     for (const QString& name : names) {
       target_->addItem(name, name);
       structure_->addItem(name, name);

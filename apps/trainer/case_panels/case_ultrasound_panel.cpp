@@ -1,4 +1,5 @@
 // Step 6 of the case builder: a recorded ultrasound volume and its registration to the CT.
+#include <QCoreApplication>
 #include <QCheckBox>
 #include <QComboBox>
 #include <QFileDialog>
@@ -20,6 +21,7 @@ using case_builder::CaseEditor;
 using case_builder::RegistrationStart;
 
 class UltrasoundPanel final : public CasePanel {
+  Q_DECLARE_TR_FUNCTIONS(trocar::trainer::UltrasoundPanel)
  public:
   UltrasoundPanel(CaseEditor& editor, QWidget* parent) : CasePanel(editor, parent) {
     add_file();

@@ -9,6 +9,7 @@
 #include "io/patient/patient_folder.h"
 #include "io/patient/patient_thumbnail.h"
 #include "tasks/task.h"
+#include "ui_kit/window_language.h"
 
 namespace trocar::trainer {
 namespace {
@@ -17,9 +18,9 @@ QString from_std(const std::string& text) {
   return QString::fromStdString(text);
 }
 
-QString entry_tr(const char* text) {
-  return QCoreApplication::translate("PatientEntry", text);
-}
+class PatientEntryText {
+  Q_DECLARE_TR_FUNCTIONS(PatientEntryText)
+};
 
 QString thumbnail_of(const std::string& source) {
   const auto file = io::find_thumbnail(source);
@@ -30,7 +31,7 @@ QString thumbnail_of(const std::string& source) {
 QString own_task_title(const std::string& folder) {
   if (!cases::has_own_task(folder)) return {};
   const auto task = tasks::load_task_file(std::filesystem::path(folder) / tasks::kOwnTaskFile, data_dir() / "tasks");
-  return task ? from_std(task->title) : QString();
+  return task ? shown(task->title) : QString();
 }
 
 }  // namespace
@@ -40,8 +41,8 @@ std::vector<PatientEntry> embedded_entries(const QString& task, const QString& t
   const std::string name = task.toStdString();
   for (const anatomy::PhantomInfo& info : anatomy::embedded_patients()) {
     if (std::find(info.tasks.begin(), info.tasks.end(), name) == info.tasks.end()) continue;
-    entries.push_back({from_std(info.name), from_std(info.name), task_title, from_std(info.description),
-                       from_std(info.briefing), thumbnail_of(info.name), info.difficulty});
+    entries.push_back({from_std(info.name), from_std(info.name), task_title, shown(info.description),
+                       shown(info.briefing), thumbnail_of(info.name), info.difficulty});
   }
   std::stable_sort(entries.begin(), entries.end(),
                    [](const PatientEntry& a, const PatientEntry& b) { return a.difficulty < b.difficulty; });
@@ -56,18 +57,18 @@ PatientEntry folder_entry(const QString& folder) {
   const std::string path = folder.toStdString();
   const auto title = io::load_patient_title(path);
   if (!title) {
-    entry.description = entry_tr("This folder cannot be read");
+    entry.description = PatientEntryText::tr("This folder cannot be read");
     return entry;
   }
   entry.name = from_std(title->name);
-  entry.description = from_std(title->description);
+  entry.description = shown(title->description);
   entry.task = own_task_title(path);
   entry.thumbnail = thumbnail_of(path);
   return entry;
 }
 
 QString difficulty_text(int difficulty) {
-  return difficulty > 0 ? entry_tr("difficulty %1 of 5").arg(difficulty) : QString();
+  return difficulty > 0 ? PatientEntryText::tr("difficulty %1 of 5").arg(difficulty) : QString();
 }
 
 QString spoken_text(const PatientEntry& entry) {

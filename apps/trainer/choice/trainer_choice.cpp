@@ -7,9 +7,9 @@
 namespace trocar::trainer {
 namespace {
 
-QString choice_tr(const char* text) {
-  return QCoreApplication::translate("TrainerChoice", text);
-}
+class TrainerChoiceText {
+  Q_DECLARE_TR_FUNCTIONS(TrainerChoiceText)
+};
 
 }  // namespace
 
@@ -22,14 +22,14 @@ QString exam_text(const TrainerChoice& choice) {
   const bool is_folder = !needs_exam_body(choice);
   const bool is_found = choice.exam_number != 0 && choice.patient_seed == choice.exam_number;
   if (!is_folder && !is_found) return {};  // it is being drawn
-  QString text = choice_tr("The case is known: a patient folder has no unseen variant.");
+  QString text = TrainerChoiceText::tr("The case is known: a patient folder has no unseen variant.");
   if (!is_folder)
     text = choice.is_body_known
-               ? choice_tr("Exam %1: this body is known from an earlier attempt.").arg(choice.exam_number)
-               : choice_tr("Exam %1: an unseen body.").arg(choice.exam_number);
+               ? TrainerChoiceText::tr("Exam %1: this body is known from an earlier attempt.").arg(choice.exam_number)
+               : TrainerChoiceText::tr("Exam %1: an unseen body.").arg(choice.exam_number);
   if (choice.is_person_named) return text;
   return text + QLatin1Char(' ') +
-         choice_tr("The result will name nobody: go back and choose who you are on the start page.");
+         TrainerChoiceText::tr("The result will name nobody: go back and choose who you are on the start page.");
 }
 
 }  // namespace trocar::trainer

@@ -14,6 +14,7 @@
 #include "panels/puncture_panel.h"
 #include "panels/step_list.h"
 #include "ui_kit/parts.h"
+#include "ui_kit/window_language.h"
 #include "views/patient/patient_view.h"
 #include "views/plots/force_plot.h"
 #include "views/ultrasound/ultrasound_view.h"
@@ -323,13 +324,13 @@ void AttemptControl::poll_events() {
   for (const attempt::AttemptEvent& event : attempt_.take_events()) {
     const bool is_action = event.name == "action", is_shot = event.name == "shot", is_pain = event.name == "pain";
     if (is_exam() && !is_shot && !is_action && !is_pain) continue;
-    QString text = to_qt(event.text);
+    QString text = shown(event.text);
     if (is_exam() && is_shot) text = tr("the gun was fired");
     if (is_exam() && is_pain) text = tr("the patient feels pain");
-    page_.puncture().add_event(QStringLiteral("%1 s  %2").arg(event.time_s, 0, 'f', 1).arg(text),
+    page_.puncture().add_event(QStringLiteral("%L1 s  %L2").arg(event.time_s, 0, 'f', 1).arg(text),
                                is_pain || event.harm > tasks::Harm::kNone);
     if (event.kind == telemetry::EventKind::kPuncture)
-      page_.forces().add_event(event.depth_mm, event.time_s, to_qt(anatomy::layer_words(event.name)));
+      page_.forces().add_event(event.depth_mm, event.time_s, shown(anatomy::layer_words(event.name)));
     if (!is_action && !is_pain) continue;
     show_notice(text.left(1).toUpper() + text.mid(1));
     constexpr double kResult_s = 8.0;
@@ -390,13 +391,13 @@ QString AttemptControl::injection_hindrance() const {
 }
 
 QString AttemptControl::hint() const {
-  return notice_s_ > 0.0 ? notice_ : to_qt(view_.hint);
+  return notice_s_ > 0.0 ? notice_ : shown(view_.hint);
 }
 
 void AttemptControl::show_panel() {
   PunctureFigures figures;
   figures.phase = phase_text(view_);
-  figures.tissue = is_exam() ? QStringLiteral("–") : to_qt(view_.needle.tissue);
+  figures.tissue = is_exam() ? QStringLiteral("–") : shown(view_.needle.tissue);
   const bool is_starting =
       view_.phase == attempt::AttemptPhase::kStarting || view_.phase == attempt::AttemptPhase::kFinishing;
   figures.hint = is_starting && notice_s_ <= 0.0 ? progress_text(view_) : hint();

@@ -2,6 +2,7 @@
 
 #include "anatomy/structure_words.h"
 #include "ui_kit/parts.h"
+#include "ui_kit/window_language.h"
 
 namespace trocar::trainer {
 namespace {
@@ -17,7 +18,7 @@ QColor color_of(const cases::OpenCase& open, const cases::PathPiece& piece) {
 std::vector<ForcePlot::Band> force_bands(const cases::OpenCase& open) {
   std::vector<ForcePlot::Band> bands;
   for (const cases::PathPiece& piece : open.pieces) {
-    bands.push_back({piece.from_mm, piece.to_mm, to_qt(anatomy::structure_words(piece.name)), color_of(open, piece)});
+    bands.push_back({piece.from_mm, piece.to_mm, shown(anatomy::structure_words(piece.name)), color_of(open, piece)});
   }
   return bands;
 }

@@ -13,6 +13,7 @@
 #include "panels/status_text.h"
 #include "results/attempts.h"
 #include "ui_kit/parts.h"
+#include "ui_kit/window_language.h"
 
 namespace trocar::trainer {
 namespace {
@@ -33,7 +34,7 @@ TrainerChoice choice_of(const learning::Exercise& exercise) {
 
 QString joined_sentences(const std::vector<std::string>& sentences) {
   QStringList lines;
-  for (const std::string& sentence : sentences) lines << to_qt(sentence);
+  for (const std::string& sentence : sentences) lines << shown(sentence);
   return lines.join(QLatin1Char(' '));
 }
 
@@ -138,7 +139,7 @@ void LearningControl::forget_result() {
 }
 
 void LearningControl::show(const Advice& advice) {
-  next_title_ = to_qt(advice.title);
+  next_title_ = shown(advice.title);
   QString why = joined_sentences(advice.next.reasons);
   if (!advice.next.notes.empty()) why += QLatin1Char(' ') + joined_sentences(advice.next.notes);
   start_.offer_next(next_title_, why, advice.next.exercise ? choice_of(*advice.next.exercise) : TrainerChoice());
@@ -150,12 +151,12 @@ void LearningControl::poll_body() {
   const JobView view = drawing_.view();
   auto body = drawing_.take();
   if (!body) {
-    if (!view.is_done) Q_EMIT exam_progress(tr("Drawing an unseen body: %1").arg(to_qt(view.step)), view.fraction);
+    if (!view.is_done) Q_EMIT exam_progress(tr("Drawing an unseen body: %1").arg(shown(view.step)), view.fraction);
     return;
   }
   drawing_ = {};
   if (!*body) {
-    Q_EMIT exam_failed(to_qt(body->error().text()));
+    Q_EMIT exam_failed(shown(body->error().text()));
     return;
   }
   exam_.exam_number = exam_.patient_seed = (*body)->number;

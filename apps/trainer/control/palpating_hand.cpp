@@ -8,6 +8,7 @@
 #include "cases/needle_geometry.h"
 #include "panels/palpation_tag.h"
 #include "ui_kit/parts.h"
+#include "ui_kit/window_language.h"
 #include "views/patient/patient_view.h"
 #include "volume/sampling.h"
 
@@ -52,7 +53,7 @@ PalpatingHand::PalpatingHand(std::shared_ptr<const cases::OpenCase> open, Patien
   auto scene = haptics::make_haptic_scene(the_case.patient, the_case.tissues, cases::needle_geometry(the_case.needle),
                                           {}, options);
   if (scene) scene_ = *std::move(scene);
-  if (!scene) failure_ = to_qt(scene.error().text());
+  if (!scene) failure_ = shown(scene.error().text());
   view_.installEventFilter(this);
 }
 

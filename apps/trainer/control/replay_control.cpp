@@ -16,6 +16,7 @@
 #include "telemetry/tick_pose.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
+#include "ui_kit/window_language.h"
 #include "views/plots/force_plot.h"
 #include "views/plots/time_line.h"
 #include "views/ultrasound/ultrasound_view.h"
@@ -65,7 +66,7 @@ QColor phase_color(telemetry::InsertionPhase phase) {
 /// Warnings, what was set before the start, and what changed or interrupted the attempt.
 QStringList notes_of(const attempt::AttemptReplay& replay, const std::vector<std::string>& warnings) {
   QStringList notes;
-  for (const std::string& warning : warnings) notes << to_qt(warning);
+  for (const std::string& warning : warnings) notes << shown(warning);
   const auto& parameters = replay.session().parameters;
   if (!parameters.empty() && parameters.front().tick == 0 && !parameters.front().settings.empty()) {
     QStringList settings;
@@ -74,7 +75,7 @@ QStringList notes_of(const attempt::AttemptReplay& replay, const std::vector<std
   }
   for (const attempt::ReplayMoment& moment : replay.moments())
     if (kind_of(moment) == TimeMark::kOther)
-      notes << ReplayControl::tr("at %1 s, %2").arg(moment.time_s, 0, 'f', 1).arg(to_qt(moment.text));
+      notes << ReplayControl::tr("at %1 s, %2").arg(moment.time_s, 0, 'f', 1).arg(shown(moment.text));
   return notes;
 }
 
@@ -98,7 +99,7 @@ ReplayControl::ReplayControl(attempt::AttemptReplay replay, std::shared_ptr<cons
   fill_time_line();
   QString worst;
   if (const auto& moment = replay_.worst())
-    worst = tr("Worst moment: %1, after %2 s").arg(to_qt(moment->text)).arg(moment->time_s, 0, 'f', 1);
+    worst = tr("Worst moment: %1, after %2 s").arg(shown(moment->text)).arg(moment->time_s, 0, 'f', 1);
   page_.feedback().show_outcome(replay_.outcome(), worst);
   page_.feedback().show_level(level_title(replay_.session().info.level));
   page_.feedback().show_cores(replay_.shots());
@@ -151,7 +152,7 @@ void ReplayControl::fill_plot() {
   plot.append(points);
   for (const attempt::ReplayMoment& moment : replay_.moments())
     if (moment.kind == attempt::ReplayMoment::Kind::kPuncture)
-      plot.add_event(replay_.at(moment.time_s).depth_mm, moment.time_s, to_qt(moment.text));
+      plot.add_event(replay_.at(moment.time_s).depth_mm, moment.time_s, shown(moment.text));
 }
 
 void ReplayControl::fill_time_line() {
@@ -159,7 +160,7 @@ void ReplayControl::fill_time_line() {
   line.set_duration(replay_.duration_s());
   std::vector<Event> events;
   for (const attempt::ReplayMoment& moment : replay_.moments())
-    events.push_back({moment.time_s, to_qt(moment.text), kind_of(moment)});
+    events.push_back({moment.time_s, shown(moment.text), kind_of(moment)});
   line.set_events(std::move(events));
   std::vector<TimeLine::Phase> phases;
   std::vector<QPointF> curve;
@@ -171,7 +172,7 @@ void ReplayControl::fill_time_line() {
       phases.back().to_s = samples[s].time_s;
       continue;
     }
-    phases.push_back({samples[s].time_s, samples[s].time_s, QString::fromLatin1(to_string(samples[s].phase)),
+    phases.push_back({samples[s].time_s, samples[s].time_s, shown(to_string(samples[s].phase)),
                       phase_color(samples[s].phase)});
   }
   line.set_phases(std::move(phases));
@@ -243,7 +244,7 @@ Status ReplayControl::save_report(const std::filesystem::path& file) const {
        attempt::describe_actions(the_case.substances, session, the_case.patient.get()))
     story.actions.push_back({action.time_s, action.depth_mm, action.text});
   story.steps = report::step_times(session, the_case.task, *the_case.patient, the_case.needle, the_case.plan);
-  return write_file_atomically(file, report::html_report(session, the_case.patient.get(), story));
+  return write_file_atomically(file, report::html_report(session, the_case.patient.get(), story, window_language()));
 }
 
 QVariantMap ReplayControl::facts() const {

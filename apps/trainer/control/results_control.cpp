@@ -15,6 +15,7 @@
 #include "signing/password_rules.h"
 #include "tasks/task.h"
 #include "ui_kit/parts.h"
+#include "ui_kit/window_language.h"
 
 namespace trocar::trainer {
 namespace {
@@ -246,7 +247,7 @@ void ResultsControl::poll() {
 }
 
 void ResultsControl::take(Found found) {
-  if (!found.warning.empty() && !std::exchange(has_warned_, true)) Q_EMIT warned(to_qt(found.warning));
+  if (!found.warning.empty() && !std::exchange(has_warned_, true)) Q_EMIT warned(shown(found.warning));
   if (!found.refusal.what.empty()) start_.person().show_message(sentence_of(found.refusal));
   if (!found.people) {
     if (found.person && !is_held_) {

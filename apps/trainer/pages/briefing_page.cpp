@@ -12,6 +12,7 @@
 #include "pages/briefing_text.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
+#include "ui_kit/window_language.h"
 #include "views/slices/briefing_picture.h"
 
 namespace trocar::trainer {
@@ -188,7 +189,7 @@ void BriefingPage::place_cards() {
 }
 
 void BriefingPage::show_tables(const cases::Case& tables, std::optional<bool> is_parenchymal) {
-  title_->setText(to_qt(tables.task.title));
+  title_->setText(shown(tables.task.title));
   procedure_->setText(form_html(procedure_rows(tables, is_parenchymal)));
   scoring_->setText(form_html(scoring_rows(tables)));
 }

@@ -19,17 +19,18 @@
 #include "tasks/postures.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
+#include "ui_kit/window_language.h"
 #include "volume/sampling.h"
 
 namespace trocar::trainer {
 namespace {
 
-QString briefing_tr(const char* text) {
-  return QCoreApplication::translate("Briefing", text);
-}
+class BriefingText {
+  Q_DECLARE_TR_FUNCTIONS(BriefingText)
+};
 
 QString escaped(const std::string& text) {
-  return to_qt(text).toHtmlEscaped();
+  return shown(text).toHtmlEscaped();
 }
 
 QString words(const std::string& name) {
@@ -43,13 +44,13 @@ const anatomy::PhantomInfo* find_info(const std::string& name) {
 }
 
 QString not_stated() {
-  return QStringLiteral("<span style='color:%1'>%2</span>").arg(theme().dim.name(), briefing_tr("not stated"));
+  return QStringLiteral("<span style='color:%1'>%2</span>").arg(theme().dim.name(), BriefingText::tr("not stated"));
 }
 
 QString person_text(const std::string& name, const anatomy::Referral& referral) {
   const double height_m = 0.01 * referral.height_cm;
-  return briefing_tr("<b>%1</b>, %2, %3 years, %4 cm, %5 kg (BMI %6)")
-      .arg(escaped(name), referral.is_female ? briefing_tr("female") : briefing_tr("male"))
+  return BriefingText::tr("<b>%1</b>, %2, %3 years, %4 cm, %5 kg (BMI %6)")
+      .arg(escaped(name), referral.is_female ? BriefingText::tr("female") : BriefingText::tr("male"))
       .arg(referral.age_years, 0, 'f', 0)
       .arg(referral.height_cm, 0, 'f', 0)
       .arg(referral.weight_kg, 0, 'f', 0)
@@ -114,15 +115,15 @@ QString lesion_text(const cases::Case& the_case) {
   const anatomy::Label* label = find_label(patient, middle_P);
   if (label == nullptr || !tasks::is_target(the_case.task, *label)) return {};
   const Vec3 size_mm = extent_mm(patient, middle_P, label->id);
-  QString text = briefing_tr("%1 × %2 × %3 mm")
+  QString text = BriefingText::tr("%1 × %2 × %3 mm")
                      .arg(size_mm.x(), 0, 'f', 0)
                      .arg(size_mm.y(), 0, 'f', 0)
                      .arg(size_mm.z(), 0, 'f', 0);
-  text = briefing_tr("lesion of %1 (right–left, front–back, head–feet)").arg(text);
+  text = BriefingText::tr("lesion of %1 (right–left, front–back, head–feet)").arg(text);
   if (const QString segment = segment_of(patient, *label, middle_P, 0.5 * size_mm.maxCoeff()); !segment.isEmpty())
-    text = briefing_tr("%1 in segment %2 of the %3").arg(text, segment, words(the_case.task.organ));
+    text = BriefingText::tr("%1 in segment %2 of the %3").arg(text, segment, words(the_case.task.organ));
   const double depth_mm = -volume::sample_linear(patient.skin_distance_mm, middle_P);
-  return depth_mm > 0.0 ? briefing_tr("%1; middle %2 mm below the nearest skin").arg(text).arg(depth_mm, 0, 'f', 0)
+  return depth_mm > 0.0 ? BriefingText::tr("%1; middle %2 mm below the nearest skin").arg(text).arg(depth_mm, 0, 'f', 0)
                         : text;
 }
 
@@ -132,35 +133,35 @@ bool is_target_tissue(const tasks::Task& task, std::string_view tissue) {
 
 QString goal_text(const tasks::Task& task, std::optional<bool> is_parenchymal) {
   if (is_target_tissue(task, "csf"))
-    return briefing_tr("Bring the needle's tip into the spinal fluid of the dural sac.");
+    return BriefingText::tr("Bring the needle's tip into the spinal fluid of the dural sac.");
   if (is_target_tissue(task, "ascites"))
-    return briefing_tr("Bring the needle's tip into the free fluid of the abdomen.");
-  if (is_target_tissue(task, "bile_duct")) return briefing_tr("Bring the needle's tip into a bile duct of the liver.");
+    return BriefingText::tr("Bring the needle's tip into the free fluid of the abdomen.");
+  if (is_target_tissue(task, "bile_duct")) return BriefingText::tr("Bring the needle's tip into a bile duct of the liver.");
   if (!is_parenchymal)
-    return briefing_tr("Bring the needle's tip to the lesion of the %1; without a lesion, to its healthy tissue.")
+    return BriefingText::tr("Bring the needle's tip to the lesion of the %1; without a lesion, to its healthy tissue.")
         .arg(words(task.organ));
-  return (*is_parenchymal ? briefing_tr("Bring the needle's tip to the healthy tissue of the %1.")
-                          : briefing_tr("Bring the needle's tip to the lesion of the %1."))
+  return (*is_parenchymal ? BriefingText::tr("Bring the needle's tip to the healthy tissue of the %1.")
+                          : BriefingText::tr("Bring the needle's tip to the lesion of the %1."))
       .arg(words(task.organ));
 }
 
 QString guidance_text(tasks::Guidance guidance) {
   switch (guidance) {
     case tasks::Guidance::kUltrasound:
-      return briefing_tr("ultrasound");
+      return BriefingText::tr("ultrasound");
     case tasks::Guidance::kXray:
-      return briefing_tr("fluoroscopy (X-ray)");
+      return BriefingText::tr("fluoroscopy (X-ray)");
     case tasks::Guidance::kPalpation:
-      return briefing_tr("palpation of the landmarks");
+      return BriefingText::tr("palpation of the landmarks");
   }
   return {};
 }
 
 /// The title has gauge, length and throw.
 QString needle_text(const tasks::Needle& needle) {
-  QString text = briefing_tr("%1; %2 mm thick").arg(escaped(needle.title)).arg(needle.outer_diameter_mm, 0, 'f', 2);
+  QString text = BriefingText::tr("%1; %2 mm thick").arg(escaped(needle.title)).arg(needle.outer_diameter_mm, 0, 'f', 2);
   if (needle.is_biopsy)
-    text += briefing_tr(", notch of %1 mm; the stylet shoots %2 mm beyond the tip")
+    text += BriefingText::tr(", notch of %1 mm; the stylet shoots %2 mm beyond the tip")
                 .arg(needle.notch_mm, 0, 'f', 0)
                 .arg(needle.throw_mm, 0, 'f', 0);
   return text;
@@ -169,28 +170,28 @@ QString needle_text(const tasks::Needle& needle) {
 QString steps_text(const std::vector<tasks::Phase>& phases) {
   QStringList lines;
   for (const tasks::Phase& phase : phases)
-    lines << briefing_tr("%1. %2").arg(lines.size() + 1).arg(escaped(phase.title));
+    lines << BriefingText::tr("%1. %2").arg(lines.size() + 1).arg(escaped(phase.title));
   return lines.join(QStringLiteral("<br>"));
 }
 
 /// How a part of the score is judged, after its title; empty: the title says it.
 QString rule_of(const tasks::Task& task, std::string_view part) {
   const auto half = [](double tolerance, const char* unit) {
-    return briefing_tr("half of the points at %1%2").arg(tolerance, 0, 'f', 0).arg(QString::fromUtf8(unit));
+    return BriefingText::tr("half of the points at %1%2").arg(tolerance, 0, 'f', 0).arg(QString::fromUtf8(unit));
   };
   if (part == "target") return half(task.target_tolerance_mm, " mm");
   if (part == "entry") return half(task.entry_tolerance_mm, " mm");
   if (part == "angle") return half(task.angle_tolerance_deg, "°");
   if (part == "bevel" && task.bevel) return half(task.bevel->tolerance_deg, "°");
-  if (part == "passes") return briefing_tr("one needless puncture or shot halves the points");
+  if (part == "passes") return BriefingText::tr("one needless puncture or shot halves the points");
   if (part == "access") return half(task.margin_tolerance_mm, " mm");
   if (part == "bevel" && task.bevel) return half(task.bevel->tolerance_deg, "°");
-  if (part == "time") return briefing_tr("none from %1 s on").arg(task.time_limit_s, 0, 'f', 0);
-  if (part == "dose") return briefing_tr("none from %1 Gy cm² on").arg(task.dose_limit_gycm2, 0, 'g', 3);
-  if (part == "comfort") return briefing_tr("one of them halves the points");
+  if (part == "time") return BriefingText::tr("none from %1 s on").arg(task.time_limit_s, 0, 'f', 0);
+  if (part == "dose") return BriefingText::tr("none from %1 Gy cm² on").arg(task.dose_limit_gycm2, 0, 'g', 3);
+  if (part == "comfort") return BriefingText::tr("one of them halves the points");
   if (part == "confirmation")
-    return briefing_tr("%1 comes back").arg(escaped(tasks::substance_words(task.confirmed_by)));
-  if (part == "risk") return briefing_tr("none with major harm, minor harm costs 40 %");
+    return BriefingText::tr("%1 comes back").arg(escaped(tasks::substance_words(task.confirmed_by)));
+  if (part == "risk") return BriefingText::tr("none with major harm, minor harm costs 40 %");
   return {};
 }
 
@@ -205,7 +206,7 @@ std::vector<std::pair<std::string, double>> weighed_parts(const cases::Case& tab
 QString points_table(const cases::Case& tables) {
   QString text = QStringLiteral("<table cellspacing='0' cellpadding='1'>");
   for (const auto& [name, points] : weighed_parts(tables)) {
-    QString what = to_qt(scoring::part_title(name)).toHtmlEscaped();
+    QString what = shown(scoring::part_title(name)).toHtmlEscaped();
     if (const QString rule = rule_of(tables.task, name); !rule.isEmpty())
       what += QStringLiteral(" <span style='color:%1'>(%2)</span>").arg(theme().dim.name(), rule);
     text += QStringLiteral("<tr><td align='right'><b>%1</b>&nbsp;&nbsp;</td><td>%2</td></tr>")
@@ -238,13 +239,13 @@ struct Control {
   const char* with;
   const char* does;
 };
-constexpr Control kNeedleByGamepad[] = {{"left stick", "moves the needle; cross: lifts and lowers it"},
-                                        {"right stick", "swings the tip in the direction of the stick"},
-                                        {"triggers", "right: push in, left: pull out; rumble: resistance"},
-                                        {"shoulders", "turn the bevel"}};
-constexpr Control kProbeByGamepad[] = {{"left stick", "moves the transducer; cross: lifts and lowers it"},
-                                       {"right stick", "tilts it"},
-                                       {"shoulders", "turn it"}};
+constexpr Control kNeedleByGamepad[] = {{QT_TRANSLATE_NOOP("Table", "left stick"), QT_TRANSLATE_NOOP("Table", "moves the needle; cross: lifts and lowers it")},
+                                        {QT_TRANSLATE_NOOP("Table", "right stick"), QT_TRANSLATE_NOOP("Table", "swings the tip in the direction of the stick")},
+                                        {QT_TRANSLATE_NOOP("Table", "triggers"), QT_TRANSLATE_NOOP("Table", "right: push in, left: pull out; rumble: resistance")},
+                                        {QT_TRANSLATE_NOOP("Table", "shoulders"), QT_TRANSLATE_NOOP("Table", "turn the bevel")}};
+constexpr Control kProbeByGamepad[] = {{QT_TRANSLATE_NOOP("Table", "left stick"), QT_TRANSLATE_NOOP("Table", "moves the transducer; cross: lifts and lowers it")},
+                                       {QT_TRANSLATE_NOOP("Table", "right stick"), QT_TRANSLATE_NOOP("Table", "tilts it")},
+                                       {QT_TRANSLATE_NOOP("Table", "shoulders"), QT_TRANSLATE_NOOP("Table", "turn it")}};
 constexpr Action kByMouse[] = {Action::kMove, Action::kTilt, Action::kAdvance, Action::kAdvanceFinely};
 
 void add_action(std::vector<BriefingRow>& rows, Action action) {
@@ -252,7 +253,7 @@ void add_action(std::vector<BriefingRow>& rows, Action action) {
 }
 
 void add_controls(std::vector<BriefingRow>& rows, std::span<const Control> controls) {
-  for (const Control& control : controls) rows.push_back({briefing_tr(control.with), briefing_tr(control.does)});
+  for (const Control& control : controls) rows.push_back({BriefingText::tr(control.with), BriefingText::tr(control.does)});
 }
 
 /// Rows for devices other than the mouse.
@@ -261,10 +262,10 @@ void add_device(std::vector<BriefingRow>& rows, const std::string& device, bool 
     if (is_needle) return add_controls(rows, kNeedleByGamepad);
     return add_controls(rows, kProbeByGamepad);
   }
-  const QString tool = is_needle ? briefing_tr("needle") : briefing_tr("transducer");
+  const QString tool = is_needle ? BriefingText::tr("needle") : BriefingText::tr("transducer");
   if (device == "spacemouse")
-    return rows.push_back({briefing_tr("cap"), briefing_tr("push and turn it to move and turn the %1").arg(tool)});
-  rows.push_back({to_qt(attempt::device_title(device)), briefing_tr("its stylus is the %1").arg(tool)});
+    return rows.push_back({BriefingText::tr("cap"), BriefingText::tr("push and turn it to move and turn the %1").arg(tool)});
+  rows.push_back({shown(attempt::device_title(device)), BriefingText::tr("its stylus is the %1").arg(tool)});
 }
 
 }  // namespace
@@ -277,70 +278,70 @@ std::vector<BriefingRow> referral_rows(const TrainerChoice& choice) {
   const anatomy::PhantomInfo* info = find_info(choice.patient);
   if (info != nullptr && info->referral) {
     const anatomy::Referral& referral = *info->referral;
-    return {{briefing_tr("Patient"), person_text(info->name, referral)},
-            {briefing_tr("Indication"), escaped(referral.indication)},
-            {briefing_tr("Coagulation"), escaped(referral.coagulation)},
-            {briefing_tr("Allergies"), escaped(referral.allergies)},
-            {briefing_tr("Posture"), escaped(std::string(posture_words(referral.posture)))}};
+    return {{BriefingText::tr("Patient"), person_text(info->name, referral)},
+            {BriefingText::tr("Indication"), escaped(referral.indication)},
+            {BriefingText::tr("Coagulation"), escaped(referral.coagulation)},
+            {BriefingText::tr("Allergies"), escaped(referral.allergies)},
+            {BriefingText::tr("Posture"), escaped(std::string(posture_words(referral.posture)))}};
   }
-  const PatientEntry entry = info != nullptr ? PatientEntry{{}, to_qt(info->name), {}, to_qt(info->description), {}, {}}
+  const PatientEntry entry = info != nullptr ? PatientEntry{{}, to_qt(info->name), {}, shown(info->description), {}, {}}
                                              : folder_entry(to_qt(choice.patient));
-  return {{briefing_tr("Patient"), QStringLiteral("<b>%1</b>").arg(entry.name.toHtmlEscaped())},
-          {briefing_tr("Description"), entry.description.isEmpty() ? not_stated() : entry.description.toHtmlEscaped()},
-          {briefing_tr("Indication"), not_stated()},
-          {briefing_tr("Coagulation"), not_stated()},
-          {briefing_tr("Allergies"), not_stated()}};
+  return {{BriefingText::tr("Patient"), QStringLiteral("<b>%1</b>").arg(entry.name.toHtmlEscaped())},
+          {BriefingText::tr("Description"), entry.description.isEmpty() ? not_stated() : entry.description.toHtmlEscaped()},
+          {BriefingText::tr("Indication"), not_stated()},
+          {BriefingText::tr("Coagulation"), not_stated()},
+          {BriefingText::tr("Allergies"), not_stated()}};
 }
 
 std::vector<BriefingRow> finding_rows(const cases::Case& the_case) {
   std::vector<BriefingRow> rows;
   const anatomy::PhantomInfo* info = find_info(the_case.patient->name);
   if (info == nullptr || !info->referral)
-    rows.push_back({briefing_tr("Posture"),
+    rows.push_back({BriefingText::tr("Posture"),
                     escaped(std::string(posture_words(tasks::posture_of(the_case.task, *the_case.patient))))});
   if (!is_lesion_task(the_case.task)) return rows;
   const QString lesion = the_case.is_parenchymal ? QString() : lesion_text(the_case);
   if (!lesion.isEmpty()) {
-    rows.push_back({briefing_tr("Finding"), lesion});
+    rows.push_back({BriefingText::tr("Finding"), lesion});
   } else {
-    rows.push_back({briefing_tr("Finding"),
+    rows.push_back({BriefingText::tr("Finding"),
                     the_case.is_parenchymal
-                        ? briefing_tr("no lesion: take healthy tissue of the %1").arg(words(the_case.task.organ))
-                        : briefing_tr("lesion of the %1").arg(words(the_case.task.organ))});
+                        ? BriefingText::tr("no lesion: take healthy tissue of the %1").arg(words(the_case.task.organ))
+                        : BriefingText::tr("lesion of the %1").arg(words(the_case.task.organ))});
   }
   return rows;
 }
 
 std::vector<BriefingRow> procedure_rows(const cases::Case& tables, std::optional<bool> is_parenchymal) {
-  std::vector<BriefingRow> rows{{briefing_tr("Goal"), goal_text(tables.task, is_parenchymal)},
-                                {briefing_tr("Guidance"), guidance_text(tables.task.guidance)},
-                                {briefing_tr("Needle"), needle_text(tables.needle)}};
-  if (!tables.task.phases.empty()) rows.push_back({briefing_tr("Steps"), steps_text(tables.task.phases)});
+  std::vector<BriefingRow> rows{{BriefingText::tr("Goal"), goal_text(tables.task, is_parenchymal)},
+                                {BriefingText::tr("Guidance"), guidance_text(tables.task.guidance)},
+                                {BriefingText::tr("Needle"), needle_text(tables.needle)}};
+  if (!tables.task.phases.empty()) rows.push_back({BriefingText::tr("Steps"), steps_text(tables.task.phases)});
   return rows;
 }
 
 BriefingRow path_row(const cases::Case& the_case) {
   const tasks::PlannedPath& plan = the_case.plan;
-  QString text = briefing_tr("%1 mm long").arg(plan.length_mm, 0, 'f', 0);
+  QString text = BriefingText::tr("%1 mm long").arg(plan.length_mm, 0, 'f', 0);
   if (plan.organ_path_mm >= 1.0)  // else the path ends where the organ begins: a space filled with fluid
-    text += briefing_tr(", %1 mm of it in the %2").arg(plan.organ_path_mm, 0, 'f', 0).arg(words(the_case.task.organ));
-  text += briefing_tr("; nearest structure at risk: %1")
-              .arg(plan.nearest_risk.empty() ? briefing_tr("none") : words(plan.nearest_risk));
-  return {briefing_tr("Planned path"), text};
+    text += BriefingText::tr(", %1 mm of it in the %2").arg(plan.organ_path_mm, 0, 'f', 0).arg(words(the_case.task.organ));
+  text += BriefingText::tr("; nearest structure at risk: %1")
+              .arg(plan.nearest_risk.empty() ? BriefingText::tr("none") : words(plan.nearest_risk));
+  return {BriefingText::tr("Planned path"), text};
 }
 
 std::vector<BriefingRow> scoring_rows(const cases::Case& tables) {
   const tasks::Task& task = tables.task;
   std::vector<BriefingRow> rows{
-      {briefing_tr("Points"), points_table(tables)},
-      {briefing_tr("Passed"),
-       briefing_tr("with %1 of 100 points and the target reached").arg(task.pass_mark, 0, 'f', 0)}};
-  if (!task.risks.empty()) rows.push_back({briefing_tr("Do not touch"), risks_text(task)});
+      {BriefingText::tr("Points"), points_table(tables)},
+      {BriefingText::tr("Passed"),
+       BriefingText::tr("with %1 of 100 points and the target reached").arg(task.pass_mark, 0, 'f', 0)}};
+  if (!task.risks.empty()) rows.push_back({BriefingText::tr("Do not touch"), risks_text(task)});
   if (const QString failing = failing_text(tables); !failing.isEmpty())
-    rows.push_back({briefing_tr("Not passed"), briefing_tr("whatever the points, after touching: %1").arg(failing)});
+    rows.push_back({BriefingText::tr("Not passed"), BriefingText::tr("whatever the points, after touching: %1").arg(failing)});
   if (task.highest_entry)
     rows.push_back(
-        {briefing_tr("Not passed"), briefing_tr("whatever the points: %1").arg(escaped(task.highest_entry->reason))});
+        {BriefingText::tr("Not passed"), BriefingText::tr("whatever the points: %1").arg(escaped(task.highest_entry->reason))});
   return rows;
 }
 

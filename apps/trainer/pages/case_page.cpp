@@ -18,6 +18,7 @@
 #include "ui_kit/check_list.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
+#include "ui_kit/window_language.h"
 
 namespace trocar::trainer {
 namespace {
@@ -31,17 +32,17 @@ const char* hint_of(CaseClick click) {
     case CaseClick::kLook:
       return "";
     case CaseClick::kTarget:
-      return "Click the target: in a slice, or by a double click in 3D. Esc: done.";
+      return QT_TRANSLATE_NOOP("Table", "Click the target: in a slice, or by a double click in 3D. Esc: done.");
     case CaseClick::kZone:
-      return "Click the centre of the entry zone on the skin. Esc: done.";
+      return QT_TRANSLATE_NOOP("Table", "Click the centre of the entry zone on the skin. Esc: done.");
     case CaseClick::kEntry:
-      return "Click the entry point; it is moved onto the skin. Esc: done.";
+      return QT_TRANSLATE_NOOP("Table", "Click the entry point; it is moved onto the skin. Esc: done.");
     case CaseClick::kTip:
-      return "Click the end position of the tip. Esc: done.";
+      return QT_TRANSLATE_NOOP("Table", "Click the end position of the tip. Esc: done.");
     case CaseClick::kLandmark:
-      return "Click the position of “%1”: in a slice, or double-click in 3D. Esc: done.";
+      return QT_TRANSLATE_NOOP("Table", "Click the position of “%1”: in a slice, or double-click in 3D. Esc: done.");
     case CaseClick::kPair:
-      return "Click “%1” in a slice of the CT, and in one of the ultrasound. Esc: done.";
+      return QT_TRANSLATE_NOOP("Table", "Click “%1” in a slice of the CT, and in one of the ultrasound. Esc: done.");
   }
   return "";
 }
@@ -284,7 +285,7 @@ void CasePage::refresh_foot() {
   progress_->setVisible(is_busy);
   progress_->setValue(static_cast<int>(1000.0 * view.fraction));
   cancel_->setVisible(is_busy && editor_->work() != case_builder::CaseEditor::Work::kSaving);
-  const QString text = is_busy ? to_qt(view.step) : to_qt(editor_->message());
+  const QString text = is_busy ? shown(view.step) : shown(editor_->message());
   message_->setText(text);
   message_->setToolTip(text);
   message_->setStyleSheet(!is_busy && editor_->is_error() ? QStringLiteral("color: %1;").arg(theme().bad.name())
@@ -309,8 +310,8 @@ void CasePage::refresh() {
   const case_builder::CaseHistory& history = editor_->history();
   undo_->setEnabled(history.can_undo());
   redo_->setEnabled(history.can_redo());
-  undo_->setToolTip(tr("Undo: %1  (Ctrl+Z)").arg(to_qt(history.undo_text())));
-  redo_->setToolTip(tr("Redo: %1  (Ctrl+Shift+Z)").arg(to_qt(history.redo_text())));
+  undo_->setToolTip(tr("Undo: %1  (Ctrl+Z)").arg(shown(history.undo_text())));
+  redo_->setToolTip(tr("Redo: %1  (Ctrl+Shift+Z)").arg(shown(history.redo_text())));
   views_->refresh(click_ == CaseClick::kLook);
 }
 

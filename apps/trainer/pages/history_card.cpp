@@ -6,6 +6,7 @@
 
 #include "pages/curve_plot.h"
 #include "ui_kit/parts.h"
+#include "ui_kit/window_language.h"
 
 namespace trocar::trainer {
 namespace {
@@ -22,7 +23,7 @@ std::size_t scored(const results::LearningCurve& curve) {
 /// What ended without a result, and what does not count; empty: nothing.
 QString counts_of(const results::LearningCurve& curve) {
   if (curve.counts.unscored + curve.counts.left_out() == 0) return {};
-  return to_qt(learning::counts_text(curve.counts)) + QLatin1Char('.');
+  return shown(learning::counts_text(curve.counts)) + QLatin1Char('.');
 }
 
 /// The others at the same number of attempts; empty: nobody got that far.

@@ -25,6 +25,7 @@
 #include "tasks/needle.h"
 #include "tasks/task.h"
 #include "ui_kit/parts.h"
+#include "ui_kit/window_language.h"
 #include "ui_kit/wrapped_rows.h"
 
 namespace trocar::trainer {
@@ -154,9 +155,9 @@ QWidget* StartPage::make_tasks() {
   const auto tasks = tasks::load_tasks(data_dir() / "tasks");
   if (tasks) {
     for (const tasks::Task& task : *tasks)
-      add_item(*tasks_, to_qt(task.title), to_qt(task.name), tr("Target organ: %1").arg(to_qt(task.organ)));
+      add_item(*tasks_, shown(task.title), to_qt(task.name), tr("Target organ: %1").arg(shown(task.organ)));
   } else {
-    content->addWidget(make_label(to_qt(tasks.error().text()), "dim"));
+    content->addWidget(make_label(shown(tasks.error().text()), "dim"));
   }
   wrap_rows(*tasks_);
   // All tasks are visible beside the history.
@@ -320,7 +321,7 @@ void StartPage::fill_needles() {
   const std::vector<std::string> allowed = tasks::allowed_needles(*task, *needles);
   for (const tasks::Needle& needle : *needles)
     if (std::ranges::find(allowed, needle.name) != allowed.end())
-      needle_->addItem(to_qt(needle.title), to_qt(needle.name));
+      needle_->addItem(shown(needle.title), to_qt(needle.name));
   needle_->setCurrentIndex(std::max(0, needle_->findData(chosen)));
 }
 

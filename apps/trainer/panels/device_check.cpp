@@ -8,6 +8,7 @@
 #include "panels/status_text.h"
 #include "telemetry/gate_state.h"
 #include "ui_kit/parts.h"
+#include "ui_kit/window_language.h"
 
 namespace trocar::trainer {
 namespace {
@@ -26,7 +27,7 @@ DeviceCheck::DeviceCheck(const QString& spec, bool is_calibrating, QObject* pare
   connect(&process_, qOverload<int, QProcess::ExitStatus>(&QProcess::finished), this, &DeviceCheck::note_end);
   const auto program = link::find_server_program();
   if (!program) {
-    fail_with(sentence_of(program.error()), to_qt(program.error().text()));
+    fail_with(sentence_of(program.error()), shown(program.error().text()));
     return;
   }
   QStringList arguments{QStringLiteral("--device"), spec, QStringLiteral("--test")};

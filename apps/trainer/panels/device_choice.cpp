@@ -13,6 +13,7 @@
 #include "attempt/servers/tool_devices.h"
 #include "panels/device_test_dialog.h"
 #include "ui_kit/parts.h"
+#include "ui_kit/window_language.h"
 
 namespace trocar::trainer {
 namespace {
@@ -88,7 +89,7 @@ void DeviceChoice::fill() {
 
 void DeviceChoice::list(const QString& spec) {
   for (QComboBox* box : {needle_, probe_})
-    if (box->findData(spec) < 0) box->addItem(to_qt(attempt::device_title(to_std(spec))), spec);
+    if (box->findData(spec) < 0) box->addItem(shown(attempt::device_title(to_std(spec))), spec);
 }
 
 /// On a conflict, the transducer gets the mouse.

@@ -3,6 +3,7 @@
 #include <QCheckBox>
 #include <QGridLayout>
 #include <QLabel>
+#include <QLocale>
 #include <QPainter>
 #include <QVBoxLayout>
 
@@ -66,8 +67,8 @@ void ExpertPathList::show_rows(const std::vector<Row>& rows) {
     auto* name = add(row.is_nearest ? tr("%1 (nearest)").arg(row.name) : row.name, line, 1, !row.is_nearest);
     name->setObjectName(QStringLiteral("expert-path-%1").arg(line));
     name->setWordWrap(true);
-    add(QString::number(row.frechet_mm, 'f', 1), line, 2, !row.is_nearest);
-    add(QString::number(row.hausdorff_mm, 'f', 1), line, 3, !row.is_nearest);
+    add(QLocale().toString(row.frechet_mm, 'f', 1), line, 2, !row.is_nearest);
+    add(QLocale().toString(row.hausdorff_mm, 'f', 1), line, 3, !row.is_nearest);
     ++line;
   }
   others_->setVisible(rows.size() > 1);

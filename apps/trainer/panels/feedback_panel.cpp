@@ -14,6 +14,7 @@
 #include "panels/score_dial.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
+#include "ui_kit/window_language.h"
 
 namespace trocar::trainer {
 namespace {
@@ -30,7 +31,7 @@ bool is_harmful(const scoring::Outcome& outcome) {
 
 QString verdict_of(const scoring::Outcome& outcome) {
   if (!outcome.is_scored() && !is_harmful(outcome))
-    return FeedbackPanel::tr("Not scored: %1").arg(to_qt(outcome.not_scored));
+    return FeedbackPanel::tr("Not scored: %1").arg(shown(outcome.not_scored));
   if (has_verdict(outcome)) return outcome.is_passed ? FeedbackPanel::tr("Passed") : FeedbackPanel::tr("Not passed");
   if (!outcome.risks_touched.empty()) return FeedbackPanel::tr("A structure at risk was touched");
   return outcome.target_reached ? FeedbackPanel::tr("Target reached") : FeedbackPanel::tr("The target was missed");
@@ -43,8 +44,8 @@ QString alarm_of(const scoring::Outcome& outcome) {
     if (event.grade < tasks::Harm::kMajor) continue;
     const QString what = event.grade == tasks::Harm::kCritical ? FeedbackPanel::tr("Critical harm: %1")
                                                                : FeedbackPanel::tr("Major harm: %1");
-    QString line = QStringLiteral("\u26a0 ") + what.arg(to_qt(metrics::harm_words(event)));
-    if (!event.reason.empty()) line += QStringLiteral(" (%1)").arg(to_qt(event.reason));
+    QString line = QStringLiteral("\u26a0 ") + what.arg(shown(metrics::harm_words(event)));
+    if (!event.reason.empty()) line += QStringLiteral(" (%1)").arg(shown(event.reason));
     lines << line;
   }
   return lines.join(QLatin1Char('\n'));
@@ -58,10 +59,10 @@ QString reasons_of(const scoring::Outcome& outcome) {
       return event.grade >= tasks::Harm::kMajor && metrics::harm_words(event) == fail;
     });
     if (is_told) continue;
-    const QString reason = to_qt(fail);
+    const QString reason = shown(fail);
     reasons << reason.left(1).toUpper() + reason.mid(1);
   }
-  if (!outcome.is_scored()) reasons = QStringList(FeedbackPanel::tr("Not scored: %1").arg(to_qt(outcome.not_scored)));
+  if (!outcome.is_scored()) reasons = QStringList(FeedbackPanel::tr("Not scored: %1").arg(shown(outcome.not_scored)));
   return reasons.join(QStringLiteral("\n"));
 }
 
@@ -78,8 +79,8 @@ QString cores_text(const std::vector<scoring::BiopsyCore>& cores) {
 QString harm_text(const scoring::Outcome& outcome) {
   QStringList lines;
   if (outcome.bleeding) {
-    QString line = FeedbackPanel::tr("Risk of bleeding: %1").arg(QLatin1String(to_string(outcome.bleeding->risk)));
-    for (const std::string& reason : outcome.bleeding->reasons) line += QStringLiteral("; ") + to_qt(reason);
+    QString line = FeedbackPanel::tr("Risk of bleeding: %1").arg(shown(to_string(outcome.bleeding->risk)));
+    for (const std::string& reason : outcome.bleeding->reasons) line += QStringLiteral("; ") + shown(reason);
     lines << line;
   }
   if (outcome.pain_events > 0) lines << FeedbackPanel::tr("Pain events: %1").arg(outcome.pain_events);
@@ -207,10 +208,10 @@ void FeedbackPanel::show_parts(const std::vector<scoring::ScorePart>& parts) {
   clear_layout(*parts_);
   int row = 0;
   for (const scoring::ScorePart& part : parts) {
-    auto* title = make_label(to_qt(part.title));
+    auto* title = make_label(shown(part.title));
     title->setWordWrap(true);
     parts_->addWidget(title, row, 0);
-    auto* value = make_label(to_qt(scoring::part_value_text(part)), "dim");
+    auto* value = make_label(shown(scoring::part_value_text(part)), "dim");
     value->setAlignment(Qt::AlignRight | Qt::AlignBottom);
     value->setVisible(!scoring::is_deduction(part));
     parts_->addWidget(value, row, 1);

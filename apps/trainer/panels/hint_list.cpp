@@ -6,6 +6,7 @@
 #include <QVBoxLayout>
 
 #include "ui_kit/parts.h"
+#include "ui_kit/window_language.h"
 
 namespace trocar::trainer {
 namespace {
@@ -49,7 +50,7 @@ void HintList::show_hints(const std::vector<scoring::Hint>& hints) {
 }
 
 void HintList::add_row(int number, const scoring::Hint& hint) {
-  const QString text = to_qt(hint.text), name = QStringLiteral("hint-%1").arg(number);
+  const QString text = shown(hint.text), name = QStringLiteral("hint-%1").arg(number);
   if (!hint.at_s) {
     auto* label = make_label(text);
     label->setObjectName(name);

@@ -9,6 +9,7 @@
 
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
+#include "ui_kit/window_language.h"
 
 namespace trocar::trainer {
 namespace {
@@ -137,10 +138,10 @@ void StepList::update_rows() {
                               : is_current ? QStringLiteral("\u25b6")
                                            : QString::number(s + 1));
     set_color(*row.mark, is_done ? theme().good : is_current ? theme().accent : theme().dim, is_done || is_current);
-    const QString title = to_qt(phase.title);
+    const QString title = shown(phase.title);
     set_label_text(*row.title, title);
     set_color(*row.title, steps_[s].is_confirmed ? theme().good : is_current ? theme().text : theme().dim, is_current);
-    row.title->setToolTip(has_help_ ? to_qt(phase.why) : QString());
+    row.title->setToolTip(has_help_ ? shown(phase.why) : QString());
     row.title->setAccessibleName(is_done ? tr("done: %1").arg(title) : is_current ? tr("now: %1").arg(title) : title);
     row.repeat->setToolTip(tr("Repeat this step: %1").arg(title));
     row.repeat->setAccessibleName(tr("Repeat: %1").arg(title));
@@ -154,10 +155,10 @@ void StepList::update_rows() {
       grid_->addWidget(stuck_, static_cast<int>(kLinesAStep * s + 3), 1, 1, 2);
     }
   }
-  const QString lacks = has_current ? to_qt(steps_[*current_].phase.lacks) : QString();
-  const bool is_title = has_current && lacks.compare(to_qt(steps_[*current_].phase.title), Qt::CaseInsensitive) == 0;
+  const QString lacks = has_current ? shown(steps_[*current_].phase.lacks) : QString();
+  const bool is_title = has_current && lacks.compare(shown(steps_[*current_].phase.title), Qt::CaseInsensitive) == 0;
   set_label_text(*lacks_, is_title ? QString() : lacks);
-  set_label_text(*why_, has_current ? to_qt(steps_[*current_].phase.why) : QString());
+  set_label_text(*why_, has_current ? shown(steps_[*current_].phase.why) : QString());
   lacks_->setVisible(!lacks_->text().isEmpty());
   why_->setVisible(!why_->text().isEmpty());
   stuck_->setVisible(has_current && !stuck_->text().isEmpty());

@@ -15,8 +15,10 @@
 #include <QVBoxLayout>
 #include <QWidgetAction>
 
+#include "anatomy/structure_words.h"
 #include "ui_kit/decimal_field.h"
 #include "ui_kit/parts.h"
+#include "ui_kit/window_language.h"
 #include "views/patient/patient_view.h"
 
 namespace trocar::trainer {
@@ -34,7 +36,7 @@ QString widget_name(const char* prefix, const std::string& structure) {
 
 /// Display text of "kidney_left".
 QString shown_name(const std::string& structure) {
-  QString name = to_qt(structure).replace(QLatin1Char('_'), QLatin1Char(' '));
+  QString name = shown(anatomy::structure_words(structure));
   if (!name.isEmpty()) name[0] = name[0].toUpper();
   return name;
 }

@@ -9,8 +9,10 @@
 #include <cmath>
 #include <utility>
 
+#include "anatomy/structure_words.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
+#include "ui_kit/window_language.h"
 #include "views/plots/force_plot.h"
 
 namespace trocar::trainer {
@@ -173,7 +175,7 @@ void ForcePreview::take_work() {
       is_wanted_ = false;
       show_curves();
       show_busy(false);
-      show_error(to_qt(result->error().text()));
+      show_error(shown(result->error().text()));
     }
   }
   if (auto result = job_.take()) {
@@ -181,7 +183,7 @@ void ForcePreview::take_work() {
     if (*result) changed_ = std::move(**result);
     show_curves();
     show_busy(false);
-    show_error(*result ? QString() : to_qt(result->error().text()));
+    show_error(*result ? QString() : shown(result->error().text()));
   }
 }
 
@@ -195,7 +197,7 @@ void ForcePreview::show_bands() {
   std::vector<ForcePlot::Band> bands;
   if (case_)
     for (const cases::PathPiece& piece : case_->pieces)
-      bands.push_back({piece.from_mm, piece.to_mm, to_qt(piece.name).replace(QLatin1Char('_'), QLatin1Char(' ')),
+      bands.push_back({piece.from_mm, piece.to_mm, shown(anatomy::structure_words(piece.name)),
                        color_of(*case_->the_case.patient, piece)});
   plot_->set_bands(std::move(bands));
 }

@@ -5,6 +5,7 @@
 #include <QVBoxLayout>
 #include <algorithm>
 
+#include "anatomy/structure_words.h"
 #include "ui_kit/parts.h"
 
 namespace trocar::trainer {
@@ -12,8 +13,8 @@ namespace {
 
 QString tissue_title(const std::string& tissue) {
   if (tissue == "transfer") return ParameterList::tr("Unlabelled tissue, by HU");
-  QString title = to_qt(tissue).replace(QLatin1Char('_'), QLatin1Char(' '));
-  if (tissue == "csf") return title.toUpper();
+  QString title = shown(anatomy::structure_words(tissue));
+  if (tissue == "csf" && window_language().is_english()) return title.toUpper();
   title[0] = title[0].toUpper();
   return title;
 }
@@ -26,7 +27,7 @@ QString depth_range_of(const std::string& tissue, const std::vector<cases::PathP
     if (to < 0.0) from = piece.from_mm;
     to = piece.to_mm;
   }
-  return to < 0.0 ? QString() : QStringLiteral("%1–%2 mm").arg(from, 0, 'f', 0).arg(to, 0, 'f', 0);
+  return to < 0.0 ? QString() : QStringLiteral("%L1–%L2 mm").arg(from, 0, 'f', 0).arg(to, 0, 'f', 0);
 }
 
 std::vector<std::string> along_path(const std::vector<cases::PathPiece>& pieces) {

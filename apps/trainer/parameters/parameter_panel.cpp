@@ -17,6 +17,7 @@
 #include "parameters/parameter_profiles.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
+#include "ui_kit/window_language.h"
 
 namespace trocar::trainer {
 namespace {
@@ -142,7 +143,7 @@ void ParameterPanel::edit(const std::string& setting, double value, bool joins) 
     show_changes();
   } else {
     show_values();
-    list_->show_refusal(setting, to_qt(done.error().what));
+    list_->show_refusal(setting, shown(done.error().what));
   }
 }
 
@@ -202,7 +203,7 @@ void ParameterPanel::choose_profile(const std::string& file) {
     show_values();
   }
   profiles_->show_problem(done ? QString()
-                               : tr("“%1” was not applied: %2").arg(to_qt(profile.name), to_qt(done.error().text())));
+                               : tr("“%1” was not applied: %2").arg(to_qt(profile.name), shown(done.error().text())));
 }
 
 void ParameterPanel::save_profile_as(cases::TissueProfile profile, bool may_replace) {
@@ -212,7 +213,7 @@ void ParameterPanel::save_profile_as(cases::TissueProfile profile, bool may_repl
   profile.file = cases::profile_file(profiles_->folder(), profile.name);
   const Status saved = cases::save_profile(profile, case_->the_case.tissues, profiles_->folder(), may_replace);
   if (!saved) {
-    profiles_->show_problem(to_qt(saved.error().text()));
+    profiles_->show_problem(shown(saved.error().text()));
     return;
   }
   profiles_->finish_saving(profile);

@@ -15,6 +15,7 @@
 
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
+#include "ui_kit/window_language.h"
 
 namespace trocar::trainer {
 namespace {
@@ -66,7 +67,7 @@ QString breakable_words(const QString& text) {
 QString about(const cases::TissueProfile& profile) {
   const int count = static_cast<int>(profile.overrides.size());
   QString text = count == 1 ? ParameterProfiles::tr("1 number") : ParameterProfiles::tr("%1 numbers").arg(count);
-  if (!profile.force_model.empty()) text += QStringLiteral(", ") + to_qt(profile.force_model);
+  if (!profile.force_model.empty()) text += QStringLiteral(", ") + shown(profile.force_model);
   if (!profile.note.empty()) text += QLatin1Char('\n') + to_qt(profile.note);
   return text;
 }
@@ -154,7 +155,7 @@ void ParameterProfiles::read_folder() {
   profiles_ = std::move(list.profiles);
   list_entries();
   if (!list.problems.empty()) {
-    QString text = to_qt(list.problems.front());
+    QString text = shown(list.problems.front());
     if (list.problems.size() > 1) text += tr(" (and %1 more)").arg(static_cast<int>(list.problems.size() - 1));
     show_problem(text);
   }
@@ -268,7 +269,7 @@ void ParameterProfiles::finish_saving(const cases::TissueProfile& saved) {
     if (profile.name == saved.name && profile.file != saved.file) done = cases::delete_profile(profile);
   ask(Question::kNone);
   read_folder();
-  if (!done) show_problem(to_qt(done.error().text()));
+  if (!done) show_problem(shown(done.error().text()));
 }
 
 void ParameterProfiles::remove() {
@@ -281,7 +282,7 @@ void ParameterProfiles::remove() {
   if (done) {
     show_message(tr("Profile “%1” is deleted; its values stay active.").arg(breakable_words(name)), false);
   } else {
-    show_problem(to_qt(done.error().text()));
+    show_problem(shown(done.error().text()));
   }
 }
 

@@ -10,6 +10,7 @@
 
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
+#include "ui_kit/window_language.h"
 
 namespace trocar::trainer {
 namespace {
@@ -101,7 +102,7 @@ ParameterRow::ParameterRow(const anatomy::TissueParameter& parameter, const QStr
 }
 
 void ParameterRow::make_parts(const QString& name) {
-  const QString plain = to_qt(parameter_.name);
+  const QString plain = shown(parameter_.name);
   caption_ = make_label(QStringLiteral("<b>%1</b>  %2").arg(to_qt(parameter_.symbol), plain));
   QString symbol = to_qt(parameter_.symbol);
   if (const auto at = symbol.indexOf(QLatin1Char('_')); at > 0)  // F_p as printed in the papers
@@ -112,7 +113,7 @@ void ParameterRow::make_parts(const QString& name) {
   field_->setAccessibleName(plain);
   field_->setAlignment(Qt::AlignRight);
   field_->setFixedWidth(kFieldWidth);
-  auto* unit = make_label(to_qt(parameter_.unit), "dim");
+  auto* unit = make_label(shown(parameter_.unit), "dim");
   unit->setFixedWidth(kUnitWidth);
   reset_ = new QToolButton;
   reset_->setObjectName(name + QStringLiteral("-reset"));
@@ -151,13 +152,13 @@ void ParameterRow::make_parts(const QString& name) {
 
 QString ParameterRow::tooltip() const {
   const anatomy::Provenance& source = parameter_.provenance;
-  const QString unit = parameter_.unit.empty() ? QString() : QStringLiteral(" ") + to_qt(parameter_.unit);
+  const QString unit = parameter_.unit.empty() ? QString() : QStringLiteral(" ") + shown(parameter_.unit);
   QStringList lines{tr("Default %1%2").arg(number_text(parameter_.value), unit),
-                    tr("Source: %1").arg(to_qt(source.source).toHtmlEscaped())};
+                    tr("Source: %1").arg(shown(source.source).toHtmlEscaped())};
   if (source.low && source.high)
     lines << tr("Plausible range: %1 to %2%3").arg(number_text(*source.low), number_text(*source.high), unit);
   lines << tr("Taken: %1").arg(range_text(parameter_));
-  if (!parameter_.owner.empty()) lines << tr("Same parameter as that of %1").arg(to_qt(parameter_.owner));
+  if (!parameter_.owner.empty()) lines << tr("Same parameter as that of %1").arg(shown(parameter_.owner));
   QStringList models;
   if (parameter_.is_insertion) models << tr("insertion");
   if (parameter_.is_proxy) models << tr("proxy");

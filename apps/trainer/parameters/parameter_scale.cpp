@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "ui_kit/parts.h"
+#include "ui_kit/window_language.h"
 
 namespace trocar::trainer {
 namespace {
@@ -42,20 +43,20 @@ double ParameterScale::value_at(int position) const noexcept {
 }
 
 QString number_text(double value) {
-  return std::isinf(value) ? QStringLiteral("never") : to_qt(fmt::format("{}", value));
+  return std::isinf(value) ? QCoreApplication::translate("ParameterScale", "never") : to_qt(fmt::format("{}", value));
 }
 
 QString range_text(const anatomy::TissueParameter& parameter) {
   QString text = QCoreApplication::translate("ParameterScale", "%1 to %2")
                      .arg(number_text(parameter.low), number_text(parameter.high));
-  if (!parameter.unit.empty()) text += QStringLiteral(" ") + to_qt(parameter.unit);
+  if (!parameter.unit.empty()) text += QStringLiteral(" ") + shown(parameter.unit);
   if (parameter.may_be_never) text += QCoreApplication::translate("ParameterScale", ", or never");
   return text;
 }
 
 bool read_number(const QString& text, const anatomy::TissueParameter& parameter, double& value) {
   QString plain = text.trimmed();
-  if (parameter.may_be_never && plain.compare(QStringLiteral("never"), Qt::CaseInsensitive) == 0) {
+  if (parameter.may_be_never && plain.compare(QCoreApplication::translate("ParameterScale", "never"), Qt::CaseInsensitive) == 0) {
     value = std::numeric_limits<double>::infinity();
     return true;
   }

@@ -13,8 +13,10 @@
 #include <cmath>
 
 #include "script/cut_off.h"
+#include "script/english_text.h"
 #include "script/widget_events.h"
 #include "ui_kit/parts.h"
+#include "ui_kit/window_language.h"
 
 namespace trocar::trainer {
 namespace {
@@ -278,11 +280,12 @@ Result<ScriptPlayer::Progress> ScriptPlayer::expect_whole() const {
   const auto* stop = stage_.window->findChild<QWidget*>(QStringLiteral("force-stop"));
   QStringList faults = find_cut_off(*stage_.window);
   if (stop == nullptr || !is_wholly_visible(*stop)) faults.prepend(QStringLiteral("force-stop: not fully visible"));
+  if (!window_language().is_english()) faults << find_english(*stage_.window);
   if (faults.isEmpty()) return Progress::kDone;
   if (seconds() < kSettled_s) return Progress::kAgain;
   const QSize size = stage_.window->size();
   return fail(to_std(faults.join(QStringLiteral("; "))), fmt::format("{}x{}", size.width(), size.height()),
-              "provide more space, or let it scroll");
+              "provide more space, let it scroll, or translate it");
 }
 
 }  // namespace trocar::trainer

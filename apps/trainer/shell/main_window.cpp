@@ -27,6 +27,7 @@
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
 #include "ui_kit/wheel_guard.h"
+#include "ui_kit/window_language.h"
 #include "workspace/workspace.h"
 
 namespace trocar::trainer {
@@ -37,7 +38,7 @@ struct Step {
   const char* title;
 };
 constexpr Step kPageSteps[] = {
-    {"start", "Choose"}, {"briefing", "Briefing"}, {"puncture", "Puncture"}, {"feedback", "Feedback"}};
+    {"start", QT_TRANSLATE_NOOP("Table", "Choose")}, {"briefing", QT_TRANSLATE_NOOP("Table", "Briefing")}, {"puncture", QT_TRANSLATE_NOOP("Table", "Puncture")}, {"feedback", QT_TRANSLATE_NOOP("Table", "Feedback")}};
 
 /// Fits a screen of 1024x768 with the bars of a desktop.
 constexpr QSize kLeastSize(960, 640);
@@ -104,6 +105,7 @@ QWidget* MainWindow::make_top_bar() {
   views_menu_ = new QMenu(views);
   work_->workspace().fill_menu(*views_menu_);
   fill_text_menu(*views_menu_->addMenu(tr("Text size")));
+  fill_language_menu(*views_menu_->addMenu(tr("Language")));
   add_sound(*views_menu_);
   views_menu_->addSeparator();
   views->setMenu(views_menu_);
@@ -136,6 +138,23 @@ void MainWindow::add_sound(QMenu& menu) {
 
 bool MainWindow::has_sound() const {
   return sound_->isChecked();
+}
+
+void MainWindow::fill_language_menu(QMenu& menu) {
+  auto* group = new QActionGroup(&menu);
+  const auto add = [&](const QString& name, const QString& code) {
+    QAction* action = group->addAction(name);
+    action->setObjectName(QStringLiteral("language-") + (code.isEmpty() ? QStringLiteral("desktop") : code));
+    action->setCheckable(true);
+    action->setChecked(code == chosen_language());
+    menu.addAction(action);
+    connect(action, &QAction::triggered, this, [this, code] {
+      choose_language(code);
+      show_message(tr("The language changes when you open the window next time."), BannerKind::kSuccess);
+    });
+  };
+  add(tr("As the desktop"), {});
+  for (const language::LanguageEntry& entry : language::list_languages()) add(to_qt(entry.name), to_qt(entry.code));
 }
 
 void MainWindow::fill_text_menu(QMenu& menu) {

@@ -58,6 +58,7 @@ class MainWindow : public QMainWindow {
  private:
   QWidget* make_top_bar();
   void add_sound(QMenu& menu);
+  void fill_language_menu(QMenu& menu);
   void fill_text_menu(QMenu& menu);
   void add_shortcuts();
 

@@ -19,6 +19,7 @@
 #include "shell/trainer_flow.h"
 #include "signing/token.h"
 #include "ui_kit/parts.h"
+#include "ui_kit/window_language.h"
 
 namespace trocar::trainer {
 
@@ -96,8 +97,8 @@ void TrainerFlow::connect_attempt(AttemptControl& control) {
 void TrainerFlow::poll(Attempting& attempting) {
   const attempt::AttemptView& view = attempting.control->view();
   const bool is_bad = view.is_harm || view.phase == attempt::AttemptPhase::kFailed;
-  window_.show_banner(to_qt(view.banner), is_bad ? BannerKind::kError : BannerKind::kWarning);
-  if (view.recoveries != attempting.recoveries) window_.show_message(to_qt(view.recovered), BannerKind::kSuccess);
+  window_.show_banner(shown(view.banner), is_bad ? BannerKind::kError : BannerKind::kWarning);
+  if (view.recoveries != attempting.recoveries) window_.show_message(shown(view.recovered), BannerKind::kSuccess);
   attempting.recoveries = view.recoveries;
   std::vector<ServerLine> servers{line_of(view.servers[0], tr("Needle"))};
   if (view.has_probe) servers.push_back(line_of(view.servers[1], tr("Transducer")));

@@ -26,6 +26,7 @@
 #include "report/html_report.h"
 #include "shell/main_window.h"
 #include "ui_kit/parts.h"
+#include "ui_kit/window_language.h"
 #include "views/plots/time_line.h"
 #include "workspace/workspace.h"
 
@@ -196,7 +197,7 @@ void TrainerFlow::show_replay(LoadingReplay loaded, Result<attempt::AttemptRepla
     window_.briefing().show_case(open_, choice_.difficulty);
     return window_.show_banner(sentence_of(replay.error()), BannerKind::kError);
   }
-  window_.show_banner(to_qt(loaded.cut_short));
+  window_.show_banner(shown(loaded.cut_short));
   if (std::string note = attempt::other_forces_note(replay->session().info); !note.empty())
     loaded.warnings.push_back(std::move(note));
   enter(Reviewing{loaded.session, std::make_unique<ReplayControl>(*std::move(replay), open_, window_.work(),

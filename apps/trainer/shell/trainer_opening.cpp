@@ -13,6 +13,7 @@
 #include "shell/main_window.h"
 #include "shell/trainer_flow.h"
 #include "ui_kit/parts.h"
+#include "ui_kit/window_language.h"
 #include "views/ultrasound/ultrasound_view.h"
 #include "workspace/workspace.h"
 
@@ -62,12 +63,12 @@ void TrainerFlow::poll(Opening& opening) {
   const JobView view = opening.job.view();
   auto result = opening.job.take();
   if (!result) {
-    if (!view.is_done) window_.briefing().show_progress(to_qt(view.step), view.fraction);
+    if (!view.is_done) window_.briefing().show_progress(shown(view.step), view.fraction);
     return;
   }
   if (!*result) {
     opening.has_failed = true;
-    return window_.briefing().show_error(to_qt(result->error().text()));
+    return window_.briefing().show_error(shown(result->error().text()));
   }
   opening.opened = **result;
   window_.work().workspace().begin_case(opening.opened);
@@ -110,11 +111,11 @@ void TrainerFlow::show_later() {
   window_.work().workspace().take_later_data();
   if (complete_ == open_->later) return;
   const JobView view = open_->later->view();
-  if (in<Briefed>() != nullptr) window_.briefing().show_later(view.is_done ? QString() : to_qt(view.step));
+  if (in<Briefed>() != nullptr) window_.briefing().show_later(view.is_done ? QString() : shown(view.step));
   if (!view.is_done) return;
   complete_ = open_->later;
   release_freed_memory();
-  for (const std::string& error : complete_->errors()) window_.show_message(to_qt(error), BannerKind::kWarning);
+  for (const std::string& error : complete_->errors()) window_.show_message(shown(error), BannerKind::kWarning);
 }
 
 /// Begin is possible only where the attempt can be recorded.
@@ -133,7 +134,7 @@ void TrainerFlow::watch_disk() {
 bool TrainerFlow::can_record() {
   const Result<std::string> recording = check_recording();
   if (!recording) window_.show_banner(sentence_of(recording.error()), BannerKind::kError);
-  if (recording && !recording->empty()) window_.show_banner(to_qt(*recording));
+  if (recording && !recording->empty()) window_.show_banner(shown(*recording));
   return recording.has_value();
 }
 
@@ -141,7 +142,7 @@ bool TrainerFlow::can_record() {
 Result<std::string> TrainerFlow::check_recording() const {
   const std::filesystem::path folder = state_folder_ / "sessions";
   if (Status made = make_writable_folder(folder); !made)
-    return fail(to_std(tr("Cannot record attempts in %1: %2").arg(to_qt(folder.string()), to_qt(made.error().what))),
+    return fail(to_std(tr("Cannot record attempts in %1: %2").arg(to_qt(folder.string()), shown(made.error().what))),
                 {}, to_std(tr("start trocar-trainer with --state and a folder with write permission")));
   const attempt::RecordingSpace room(folder, find_free_bytes(folder));
   TROCAR_TRY_STATUS(room.check_start());

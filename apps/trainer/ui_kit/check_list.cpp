@@ -6,6 +6,7 @@
 
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
+#include "ui_kit/window_language.h"
 #include "ui_kit/wrapped_rows.h"
 
 namespace trocar::trainer {
@@ -80,12 +81,12 @@ void CheckList::show_checks(const std::vector<case_builder::CaseCheck>& checks) 
   checks_ = std::move(sorted);
   clear();
   for (const case_builder::CaseCheck& check : checks_) {
-    auto* item = new QListWidgetItem(level_icon(check.level), shortened(to_qt(check.text)), this);
-    item->setToolTip(to_qt(check.text));
-    const char* word = check.level == case_builder::CheckLevel::kOk        ? "in order"
-                       : check.level == case_builder::CheckLevel::kWarning ? "doubtful"
-                                                                           : "wrong";
-    item->setData(Qt::AccessibleTextRole, QStringLiteral("%1: %2").arg(QString::fromLatin1(word), to_qt(check.text)));
+    auto* item = new QListWidgetItem(level_icon(check.level), shortened(shown(check.text)), this);
+    item->setToolTip(shown(check.text));
+    const char* word = check.level == case_builder::CheckLevel::kOk        ? QT_TRANSLATE_NOOP("Table", "in order")
+                       : check.level == case_builder::CheckLevel::kWarning ? QT_TRANSLATE_NOOP("Table", "doubtful")
+                                                                           : QT_TRANSLATE_NOOP("Table", "wrong");
+    item->setData(Qt::AccessibleTextRole, QStringLiteral("%1: %2").arg(tr(word), shown(check.text)));
   }
 }
 

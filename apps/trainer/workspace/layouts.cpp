@@ -29,20 +29,20 @@ void place(std::vector<Layout>& layouts, const QString& view, const LayoutPlace&
 
 const std::vector<Layout>& built_in_layouts() {
   static const std::vector<Layout> layouts = {
-      {QStringLiteral("Puncture"),
+      {QString::fromLatin1(QT_TRANSLATE_NOOP("Table", "Puncture")),
        {{{cell({"3d"}, 62), cell({"axial", "sagittal"}, 38)}, 56},
         {{cell({"ultrasound"}, 62), cell({"forces"}, 38)}, 44}}},
-      {QStringLiteral("Ultrasound"),
+      {QString::fromLatin1(QT_TRANSLATE_NOOP("Table", "Ultrasound")),
        {{{cell({"ultrasound"}, 1)}, 62}, {{cell({"3d"}, 40), cell({"along"}, 32), cell({"forces"}, 28)}, 38}}},
-      {QStringLiteral("Navigation"),
+      {QString::fromLatin1(QT_TRANSLATE_NOOP("Table", "Navigation")),
        {{{cell({"3d"}, 66), cell({"side", "forces"}, 34)}, 46},
         {{cell({"structures"}, 1)}, 27},
         {{cell({"axial"}, 1), cell({"coronal"}, 1), cell({"sagittal"}, 1)}, 27}}},
-      {QStringLiteral("Slices"),
+      {QString::fromLatin1(QT_TRANSLATE_NOOP("Table", "Slices")),
        {{{cell({"axial"}, 1), cell({"along"}, 1)}, 1},
         {{cell({"coronal"}, 1), cell({"across"}, 1)}, 1},
         {{cell({"sagittal"}, 1), cell({"3d"}, 1)}, 1}}},
-      {QStringLiteral("X-ray"),
+      {QString::fromLatin1(QT_TRANSLATE_NOOP("Table", "X-ray")),
        {{{cell({"xray"}, 1)}, 64}, {{cell({"3d"}, 44), cell({"ultrasound"}, 32), cell({"forces"}, 24)}, 36}}},
   };
   return layouts;

@@ -175,7 +175,7 @@ void Workspace::fill_menu(QMenu& menu) {
   const std::vector<QKeySequence> keys = keys_of(Action::kLayout);
   std::size_t number = 0;
   for (const Layout& layout : layouts_) {
-    QAction* action = menu.addAction(tr("Layout: %1").arg(layout.name));
+    QAction* action = menu.addAction(tr("Layout: %1").arg(tr(layout.name.toLatin1().constData())));
     if (number < keys.size()) action->setShortcut(keys[number++]);
     connect(action, &QAction::triggered, this, [this, name = layout.name] { choose_layout(name); });
   }

@@ -233,7 +233,7 @@ class Checks {
                   middle_P);
     const std::string how = draft_.placement->origin == PlacementOrigin::kOptimised
                                 ? fmt::format(", confidence {:.2f}", draft_.placement->confidence)
-                                : std::string(" when the case was saved");
+                                : std::string(", by the case that was opened");
     add(CheckLevel::kOk, CaseStep::kUltrasound,
         fmt::format("the ultrasound is registered{}; trainees get {}", how,
                     uses_recorded_ultrasound(draft_) ? "it" : "the simulated one"),

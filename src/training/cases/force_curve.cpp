@@ -51,6 +51,7 @@ std::vector<CurveEvent> find_curve_events(const std::vector<CurvePoint>& curve, 
     event.layer = tissues.layers[curve[i].layer].name;
     event.at = static_cast<std::size_t>(peak - begin);
     event.way_mm = peak->way_mm;
+    event.tip_mm = peak->tip_mm;
     event.peak_n = peak->force_n;
     event.after_n = lowest->force_n;
     event.highest_n = std::max_element(peak, lowest + 1, lower)->force_n;

@@ -25,6 +25,7 @@ struct CurveEvent {
   std::string layer;
   std::size_t at = 0;      ///< Index of the peak in the curve.
   double way_mm = 0.0;     ///< Position of the device along the path.
+  double tip_mm = 0.0;     ///< Depth of the virtual needle's tip, held by the layer that gives way.
   double peak_n = 0.0;     ///< Largest force just before the puncture.
   double highest_n = 0.0;  ///< Largest force from the peak to the minimum; above peak_n if the force continues to rise,
                            ///< which is wrong.

@@ -14,7 +14,7 @@ std::filesystem::path report_file_of(const std::filesystem::path& session) {
 }
 
 std::string html_report(const storage::Session& session, const anatomy::VirtualPatient* patient,
-                        const ReportStory& story) {
+                        const ReportStory& story, const language::Language& language) {
   std::string page =
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"><title>";
@@ -38,7 +38,7 @@ std::string html_report(const storage::Session& session, const anatomy::VirtualP
   page += case_section(session);
   page += "<footer>Made by Trocar " + escape(session.info.program_version) +
           ", a training simulator and not a medical device. Lengths in mm, forces in N.</footer>";
-  return page + "</main></body></html>\n";
+  return language::translate_page(language, page + "</main></body></html>\n");
 }
 
 }  // namespace trocar::report

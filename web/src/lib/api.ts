@@ -1,5 +1,8 @@
 // Requests to the server: JSON in, JSON out; errors carry the server's text and its advice.
 
+import { capital, sentence } from "./format.ts";
+import { said, t } from "./words.ts";
+
 export class ApiError extends Error {
   constructor(readonly status: number, message: string, readonly advice: string, readonly retry_after_s: number | null = null) {
     super(message);
@@ -22,20 +25,20 @@ export function on_session_expired(handler: () => void): void {
   session.on_expired = handler;
 }
 
-const kAdviceByStatus: Record<number, string> = {
-  403: "Reload the page and try again. If it happens again, ask an administrator for permission.",
-  404: "It may have been deleted. Go back to the list.",
-  413: "Shorten the text.",
-  429: "Wait a moment, then try again.",
-};
+const advice_by_status = (): Record<number, string> => ({
+  403: t("Reload the page and try again. If it happens again, ask an administrator for permission."),
+  404: t("It may have been deleted. Go back to the list."),
+  413: t("Shorten the text."),
+  429: t("Wait a moment, then try again."),
+});
 
 async function error_of(response: Response): Promise<ApiError> {
-  let text = `The server answered with status ${response.status}`;
-  let advice = kAdviceByStatus[response.status] ?? "Try again. If it happens again, tell the administrator: the log of trocar serve has the reason.";
+  let text = t("The server answered with status {0}", response.status);
+  let advice = advice_by_status()[response.status] ?? t("Try again. If it happens again, tell the administrator: the log of trocar serve has the reason.");
   try {
     const body = (await response.json()) as { error?: unknown; advice?: unknown };
-    if (typeof body.error === "string" && body.error) text = body.error;
-    if (typeof body.advice === "string" && body.advice) advice = body.advice;
+    if (typeof body.error === "string" && body.error) text = capital(said(body.error));
+    if (typeof body.advice === "string" && body.advice) advice = sentence(said(body.advice));
   } catch {
     // Not JSON, for instance from a proxy between: the status says enough.
   }
@@ -67,7 +70,7 @@ async function request<T>(method: string, path: string, body: unknown, options: 
     });
   } catch (error) {
     if (options.signal?.aborted) throw error;
-    throw new ApiError(0, "The server does not answer", "Check the network connection, and that trocar serve is running. Then try again.");
+    throw new ApiError(0, t("The server does not answer"), t("Check the network connection, and that trocar serve is running. Then try again."));
   }
   if (response.status === 401 && !options.without_session) session.on_expired();
   if (!response.ok) throw await error_of(response);
@@ -76,7 +79,7 @@ async function request<T>(method: string, path: string, body: unknown, options: 
   try {
     return (text ? JSON.parse(text) : undefined) as T;
   } catch {
-    throw new ApiError(response.status, "The server's answer cannot be read", "Try again. A proxy between this browser and the server may have changed it.");
+    throw new ApiError(response.status, t("The server's answer cannot be read"), t("Try again. A proxy between this browser and the server may have changed it."));
   }
 }
 

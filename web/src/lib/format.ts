@@ -1,32 +1,44 @@
 // Numbers, dates and words as people read them.
 
+import { decimal, language, said, t } from "./words.ts";
+
 const kNone = "–";
 
-const date_format = new Intl.DateTimeFormat("en-GB", { day: "numeric", month: "short", year: "numeric" });
-const time_format = new Intl.DateTimeFormat("en-GB", { hour: "2-digit", minute: "2-digit" });
+const kDate: Intl.DateTimeFormatOptions = { day: "numeric", month: "short", year: "numeric" };
+const kTime: Intl.DateTimeFormatOptions = { hour: "2-digit", minute: "2-digit" };
+
+/** The formats of a language: making one is slow. */
+const formats = new Map<string, { date: Intl.DateTimeFormat; time: Intl.DateTimeFormat }>();
+
+function format_of(name: "date" | "time"): Intl.DateTimeFormat {
+  const code = language() === "en" ? "en-GB" : language();
+  const known = formats.get(code) ?? { date: new Intl.DateTimeFormat(code, kDate), time: new Intl.DateTimeFormat(code, kTime) };
+  formats.set(code, known);
+  return known[name];
+}
 
 export function date_text(seconds: number | null | undefined): string {
-  return seconds === null || seconds === undefined ? kNone : date_format.format(new Date(seconds * 1000));
+  return seconds === null || seconds === undefined ? kNone : format_of("date").format(new Date(seconds * 1000));
 }
 
 export function date_time_text(seconds: number | null | undefined): string {
   if (seconds === null || seconds === undefined) return kNone;
   const date = new Date(seconds * 1000);
-  return `${date_format.format(date)}, ${time_format.format(date)}`;
+  return `${format_of("date").format(date)}, ${format_of("time").format(date)}`;
 }
 
 /** A number with a fixed count of decimals and a true minus sign. */
 export function fixed(value: number | null | undefined, decimals: number): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return kNone;
   const text = value.toFixed(decimals);
-  return Number(text) === 0 ? text.replace("-", "") : text.replace("-", "\u2212");
+  return decimal(Number(text) === 0 ? text.replace("-", "") : text.replace("-", "\u2212"));
 }
 
 /** 1.4 × 10⁹ */
 function power_text(value: number): string {
   const [digits, power] = value.toExponential(1).split("e");
   const raised = [...power].map((one) => (one === "-" ? "⁻" : one === "+" ? "" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[Number(one)])).join("");
-  return `${digits.replace("-", "\u2212")}\u00a0×\u00a010${raised}`;
+  return `${decimal(digits.replace("-", "\u2212"))}\u00a0×\u00a010${raised}`;
 }
 
 /** Three significant digits: 0.0123, 1.23, 12.3, 123, 12\u202f345. */
@@ -71,7 +83,7 @@ export function clock_text(seconds: number): string {
   const tenths = Math.max(0, Math.floor(seconds * 10 + 1e-6));
   const minutes = Math.floor(tenths / 600);
   const rest = (tenths - minutes * 600) / 10;
-  return `${minutes}:${rest.toFixed(1).padStart(4, "0")}`;
+  return `${minutes}:${decimal(rest.toFixed(1).padStart(4, "0"))}`;
 }
 
 const kAbbreviations = ["csf", "ptcd"];
@@ -80,35 +92,58 @@ const kAbbreviations = ["csf", "ptcd"];
 export function words(name: string | null | undefined): string {
   if (!name) return kNone;
   const text = name.replace(/_+/g, " ").replace(/(\w)-(?=\w)/g, "$1 ");
-  return kAbbreviations.includes(text) ? text.toUpperCase() : text.charAt(0).toUpperCase() + text.slice(1);
+  return kAbbreviations.includes(text) ? text.toUpperCase() : capital(text);
+}
+
+/** A name of the server in the page's language: "liver_lesion" gives "Liver lesion", or "Leberherd". */
+export function said_words(name: string | null | undefined): string {
+  return said(words(name));
 }
 
 /** "enter:supraspinous_ligament" gives "Enter: supraspinous ligament". */
 export function event_text(text: string): string {
-  return words(text.replace(/^(\w+):(?=\S)/, "$1: "));
+  const [, kind, what] = /^(\w+):\s*(\S.*)$/.exec(text) ?? [];
+  if (!kind) return said_words(text);
+  const name = said_words(what);
+  return `${said_words(kind)}: ${name === words(what) ? what.replace(/_+/g, " ") : name}`;
+}
+
+/** With a capital letter at its beginning. */
+export function capital(text: string): string {
+  return `${text.charAt(0).toUpperCase()}${text.slice(1)}`;
 }
 
 /** "the needle went 12 mm into the colon" gives "The needle went 12 mm into the colon.". */
 export function sentence(text: string): string {
   const trimmed = text.trim();
   if (!trimmed) return "";
-  return `${trimmed.charAt(0).toUpperCase()}${trimmed.slice(1)}${/[.!?…]$/.test(trimmed) ? "" : "."}`;
+  return `${capital(trimmed)}${/[.!?…]$/.test(trimmed) ? "" : "."}`;
 }
 
-const kStates: Record<string, string> = {
-  running: "Not finished yet",
-  finished: "Finished",
-  interrupted: "Interrupted: the program ended",
-  unscored: "Ended without a result",
-  "never-began": "The needle never entered the body",
-};
+const states = (): Record<string, string> => ({
+  running: t("Not finished yet"),
+  finished: t("Finished"),
+  interrupted: t("Interrupted: the program ended"),
+  unscored: t("Ended without a result"),
+  "never-began": t("The needle never entered the body"),
+});
 /** State of an attempt. */
 export function state_text(state: string): string {
-  return kStates[state] ?? words(state);
+  return states()[state] ?? said_words(state);
 }
 
-export function plural(count: number, one: string, many = `${one}s`): string {
-  return `${count} ${count === 1 ? one : many}`;
+/** Level of help of an attempt. */
+export function level_text(level: string | null): string {
+  const levels: Record<string, string> = { guided: t("Guided"), assisted: t("Assisted"), exam: t("Exam") };
+  return (level !== null && levels[level]) || said_words(level);
 }
 
-export const kScaleLabels = ["strongly agree", "agree", "somewhat agree", "somewhat disagree", "disagree", "strongly disagree"] as const;
+/** Group of a person. */
+export function group_text(group: string): string {
+  return group === "trainee" ? t("Trainee") : group === "expert" ? t("Expert") : said_words(group);
+}
+
+/** The points of a questionnaire's scale, 1 to 6. */
+export function scale_labels(): string[] {
+  return [t("strongly agree"), t("agree"), t("somewhat agree"), t("somewhat disagree"), t("disagree"), t("strongly disagree")];
+}

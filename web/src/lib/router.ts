@@ -3,6 +3,7 @@
 import { error_box } from "../ui/states.ts";
 import { ApiError } from "./api.ts";
 import { replace_children } from "./dom.ts";
+import { t } from "./words.ts";
 
 export interface PageContext {
   main: HTMLElement;
@@ -42,7 +43,7 @@ async function show(is_first: boolean): Promise<void> {
   try {
     page = await route.load();
   } catch {
-    page = ({ main: place }) => replace_children(place, error_box(new ApiError(0, "A part of the page could not be loaded", "Reload the page."), () => location.reload()));
+    page = ({ main: place }) => replace_children(place, error_box(new ApiError(0, t("A part of the page could not be loaded"), t("Reload the page.")), () => location.reload()));
   }
   if (controller.signal.aborted) return;
   main.replaceChildren();
@@ -74,6 +75,11 @@ function focus_heading(main: HTMLElement): void {
     heading.tabIndex = -1;
     heading.focus({ preventScroll: true });
   }
+}
+
+/** The same page again, in another language. The focus stays in the page's head. */
+export function show_again(): void {
+  void show(true);
 }
 
 export function navigate(path: string, replace = false): void {

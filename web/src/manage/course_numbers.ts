@@ -1,6 +1,7 @@
 // Numbers of a course from the cohort's overview. A person counts once, with the mean of the last five scores.
 
 import type { Overview, Person, TaskResult } from "../lib/types.ts";
+import { t } from "../lib/words.ts";
 
 export interface Quartiles {
   min: number;
@@ -91,6 +92,6 @@ export function course_rows(overview: Overview, task: string): CourseRow[] {
     return { id, name, is_simulated, numbers: numbers_of(people, task) };
   };
   const rows = overview.courses.map((one) => row(String(one.id), one.name));
-  const without = row(null, "Without a course");
+  const without = row(null, t("Without a course"));
   return without.numbers.people > 0 ? [...rows, without] : rows;
 }

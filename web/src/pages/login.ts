@@ -2,6 +2,7 @@ import { send, set_csrf } from "../lib/api.ts";
 import { h, replace_children } from "../lib/dom.ts";
 import { navigate, type PageContext } from "../lib/router.ts";
 import type { Me } from "../lib/types.ts";
+import { t } from "../lib/words.ts";
 import { session } from "../session.ts";
 import { run_once, text_field } from "../ui/parts.ts";
 import { error_box } from "../ui/states.ts";
@@ -12,15 +13,15 @@ export function safe_path(next: string | null): string {
 }
 
 export function login_page({ main, query, set_title }: PageContext): void {
-  set_title("Sign in");
-  const name = text_field("Name", { name: "username", autocomplete: "username", required: true, maxlength: "200" });
-  const password = text_field("Password", { name: "password", type: "password", autocomplete: "current-password", required: true, maxlength: "200" });
+  set_title(t("Sign in"));
+  const name = text_field(t("Name"), { name: "username", autocomplete: "username", required: true, maxlength: "200" });
+  const password = text_field(t("Password"), { name: "password", type: "password", autocomplete: "current-password", required: true, maxlength: "200" });
   const problem = h("div", {});
-  const button = h("button", { type: "submit", class: "button button-primary button-wide" }, "Sign in");
+  const button = h("button", { type: "submit", class: "button button-primary button-wide" }, t("Sign in"));
 
   const submit = async (): Promise<void> => {
-    name.set_error(name.input.value.trim() ? null : "Enter your name.");
-    password.set_error(password.input.value ? null : "Enter your password.");
+    name.set_error(name.input.value.trim() ? null : t("Enter your name."));
+    password.set_error(password.input.value ? null : t("Enter your password."));
     const missing = [name, password].find((one) => one.input.hasAttribute("aria-invalid"));
     if (missing) {
       missing.input.focus();
@@ -47,9 +48,9 @@ export function login_page({ main, query, set_title }: PageContext): void {
     h(
       "div",
       { class: "narrow card" },
-      h("h1", {}, "Sign in"),
-      query.has("expired") && h("p", { class: "notice", role: "status" }, "You were signed out. Sign in to continue where you were."),
-      h("p", { class: "dim" }, "Results of the needle training, for instructors."),
+      h("h1", {}, t("Sign in")),
+      query.has("expired") && h("p", { class: "notice", role: "status" }, t("You were signed out. Sign in to continue where you were.")),
+      h("p", { class: "dim" }, t("Results of the needle training, for instructors.")),
       form,
     ),
   );

@@ -2,9 +2,10 @@
 
 import { ApiError, get, send } from "../lib/api.ts";
 import { h, replace_children, type Child } from "../lib/dom.ts";
-import { plural } from "../lib/format.ts";
+
 import type { PageContext } from "../lib/router.ts";
 import type { PublicForm } from "../lib/types.ts";
+import { plural, t } from "../lib/words.ts";
 import { form_view, type Answers } from "../ui/form_view.ts";
 import { run_once } from "../ui/parts.ts";
 import { error_box, load_into } from "../ui/states.ts";
@@ -42,14 +43,14 @@ export function missing_items(items: PublicForm["items"], answers: Answers): str
 }
 
 function thanks(title: string, again: () => void): Child {
-  const heading = h("h1", { tabindex: "-1" }, "Thank you");
+  const heading = h("h1", { tabindex: "-1" }, t("Thank you"));
   setTimeout(() => heading.focus());
   return h(
     "div",
     { class: "questionnaire card" },
     heading,
-    h("p", {}, `Your answers to “${title}” were received. You can close this page.`),
-    h("button", { type: "button", class: "button", on: { click: again } }, "Answer for another person"),
+    h("p", {}, t("Your answers to “{0}” were received. You can close this page.", title)),
+    h("button", { type: "button", class: "button", on: { click: again } }, t("Answer for another person")),
   );
 }
 
@@ -60,29 +61,29 @@ function show_form(form: PublicForm, token: string, place: HTMLElement, context:
   const view = form_view(form.items, () => draft.write({ answers: view.answers(), response_id }));
   view.fill(kept);
   const problem = h("div", {});
-  const button = h("button", { type: "submit", class: "button button-primary button-wide" }, "Send answers");
+  const button = h("button", { type: "submit", class: "button button-primary button-wide" }, t("Send answers"));
   const submit = async (): Promise<void> => {
     const answers = view.answers();
     for (const item of form.items) view.set_error(String(item.id), null);
     const missing = missing_items(form.items, answers);
     if (missing.length > 0) {
-      for (const item of missing) view.set_error(item, "Please answer this question.");
-      replace_children(problem, h("p", { class: "notice notice-bad", role: "alert" }, `${plural(missing.length, "answer is", "answers are")} missing. The first one has the focus.`));
+      for (const item of missing) view.set_error(item, t("Please answer this question."));
+      replace_children(problem, h("p", { class: "notice notice-bad", role: "alert" }, plural(missing.length, "{0} answer is missing. The first one has the focus.", "{0} answers are missing. The first one has the focus.")));
       view.focus(missing[0]);
       return;
     }
     replace_children(problem);
-    button.textContent = "Sending …";
+    button.textContent = t("Sending …");
     try {
       await send("POST", `/api/public/forms/${encodeURIComponent(token)}/answers`, { answers, response_id }, { without_session: true });
       draft.clear();
       replace_children(place, thanks(form.title, () => replace_children(place, show_form(form, token, place, context))));
     } catch (error) {
       const is_network = error instanceof ApiError && error.status === 0;
-      const shown = is_network ? new ApiError(0, "Your answers could not be sent", "They are kept on this page. Check the connection, then send them again.") : error;
+      const shown = is_network ? new ApiError(0, t("Your answers could not be sent"), t("They are kept on this page. Check the connection, then send them again.")) : error;
       replace_children(problem, error_box(shown));
     } finally {
-      button.textContent = "Send answers";
+      button.textContent = t("Send answers");
     }
   };
   const element = h("form", { novalidate: true, lang: form.language || null }, view.element, problem, button);
@@ -95,14 +96,14 @@ function show_form(form: PublicForm, token: string, place: HTMLElement, context:
     { class: "questionnaire card" },
     h("h1", {}, form.title),
     form.intro.split(/\n+/).filter(Boolean).map((one) => h("p", { class: "lead" }, one)),
-    h("p", { class: "help" }, "Scale: 1 is strongly agree, 6 is strongly disagree."),
+    h("p", { class: "help" }, t("Scale: 1 is strongly agree, 6 is strongly disagree.")),
     element,
   );
 }
 
 export async function questionnaire_page(context: PageContext): Promise<void> {
   const token = context.params[0];
-  context.set_title("Questionnaire");
+  context.set_title(t("Questionnaire"));
   const place = h("div", {});
   context.main.append(place);
   const load = async (): Promise<PublicForm | null> => {
@@ -116,6 +117,6 @@ export async function questionnaire_page(context: PageContext): Promise<void> {
   await load_into(place, context.signal, load, (form) =>
     form
       ? show_form(form, token, place, context)
-      : h("div", { class: "questionnaire card" }, h("h1", {}, "This questionnaire is not open"), h("p", {}, "It may be closed, or the address is incomplete. Ask the person who gave you the address.")),
+      : h("div", { class: "questionnaire card" }, h("h1", {}, t("This questionnaire is not open")), h("p", {}, t("It may be closed, or the address is incomplete. Ask the person who gave you the address."))),
   );
 }

@@ -1,8 +1,9 @@
 // Distribution of a metric: a histogram and a box of the quartiles for each group, over one axis.
 
 import { h, svg } from "../lib/dom.ts";
-import { fixed, number_text, plural, unit_text, words } from "../lib/format.ts";
+import { fixed, number_text, said_words, with_unit } from "../lib/format.ts";
 import type { MetricDistribution, MetricGroup } from "../lib/types.ts";
+import { plural, t } from "../lib/words.ts";
 
 const kLeft = 8;
 const kRight = 8;
@@ -22,14 +23,14 @@ export function nice_ticks(low: number, high: number, wished: number): number[] 
 }
 
 export function group_title(group: { group: string; simulated: boolean }): string {
-  const name = group.group === "expert" ? "Experts" : group.group === "trainee" ? "Trainees" : words(group.group);
-  return group.simulated ? `${name} (simulated)` : name;
+  const name = group.group === "expert" ? t("Experts") : group.group === "trainee" ? t("Trainees") : said_words(group.group);
+  return group.simulated ? t("{0} (simulated)", name) : name;
 }
 
 function group_summary(metric: MetricDistribution, group: MetricGroup): string {
-  const unit = unit_text(metric.unit);
-  if (group.n === 0) return `${group_title(group)}: no value.`;
-  return `${group_title(group)}: ${plural(group.n, "person", "people")}, median ${number_text(group.median)} ${unit}, quartiles ${number_text(group.q1)} to ${number_text(group.q3)} ${unit}.`;
+  const people = plural(group.n, "{0} person", "{0} people");
+  if (group.n === 0) return t("{0}: no value.", group_title(group));
+  return t("{0}: {1}, median {2}, quartiles {3} to {4}.", group_title(group), people, with_unit(group.median, metric.unit), number_text(group.q1), with_unit(group.q3, metric.unit));
 }
 
 function group_drawing(metric: MetricDistribution, group: MetricGroup, width: number): SVGElement {
@@ -75,7 +76,7 @@ export function histograms(metric: MetricDistribution, signal: AbortSignal): HTM
         h(
           "figure",
           { class: "histogram" },
-          h("figcaption", {}, h("strong", {}, group_title(group)), h("span", { class: "dim" },  `: ${plural(group.n, "person", "people")}`)),
+          h("figcaption", {}, h("strong", {}, group_title(group)), h("span", { class: "dim" },  ": ", plural(group.n, "{0} person", "{0} people"))),
           group_drawing(metric, group, width),
         ),
       ),
@@ -93,6 +94,6 @@ export function histograms(metric: MetricDistribution, signal: AbortSignal): HTM
 }
 
 export function auc_text(auc: { value: number; low: number | null; high: number | null }): string {
-  const interval = auc.low !== null && auc.high !== null ? ` (95 % interval ${fixed(auc.low, 2)} to ${fixed(auc.high, 2)})` : "";
-  return `${fixed(auc.value, 2)}${interval}`;
+  const value = fixed(auc.value, 2);
+  return auc.low === null || auc.high === null ? value : t("{0} (95 % interval {1} to {2})", value, fixed(auc.low, 2), fixed(auc.high, 2));
 }

@@ -2,6 +2,7 @@
 
 import uPlot from "uplot";
 import { h, svg, type Child } from "../lib/dom.ts";
+import { decimal, t } from "../lib/words.ts";
 import { opened_later } from "../ui/table.ts";
 import { colour, on_theme_change } from "../ui/theme.ts";
 
@@ -104,7 +105,7 @@ function axis(label: string, size: number): uPlot.Axis {
     stroke: () => colour("dim"),
     grid: { stroke: () => colour("grid"), width: 1 },
     ticks: { show: false },
-    values: (_u, values) => values.map((one) => (one === null ? "" : String(one).replace("-", "\u2212"))),
+    values: (_u, values) => values.map((one) => (one === null ? "" : decimal(String(one).replace("-", "\u2212")))),
   };
 }
 
@@ -198,7 +199,7 @@ export function line_plot(plot: LinePlot): DrawnPlot {
     h("figcaption", {}, h("span", { class: "plot-title" }, plot.title), h("ul", { class: "legend" }, entries)),
     canvas_place,
     plot.read_out && read_out,
-    plot.table && opened_later("Values as a table", plot.table),
+    plot.table && opened_later(t("Values as a table"), plot.table),
   );
   if (plot.read_out) read_out.textContent = plot.summary;
   return {

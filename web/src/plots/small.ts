@@ -1,7 +1,8 @@
 // Small drawings inside text and tables: score gauge, bar, quartile strip, interval, distribution of a scale.
 
 import { h, svg } from "../lib/dom.ts";
-import { fixed, kScaleLabels } from "../lib/format.ts";
+import { fixed, scale_labels } from "../lib/format.ts";
+import { t } from "../lib/words.ts";
 
 /** Arc of the score, as in the trainer's window. */
 export function score_gauge(score: number | null, passed: boolean | null): HTMLElement {
@@ -13,7 +14,7 @@ export function score_gauge(score: number | null, passed: boolean | null): HTMLE
   const full = 2 * Math.PI * radius;
   const drawing = svg("svg", { viewBox: "0 0 128 128", width: "128", height: "128", "aria-hidden": "true" }, arc("gauge-rest", `${length} ${full}`));
   if (share > 0) drawing.append(arc(passed ? "gauge-good" : "gauge-bad", `${length * share} ${full}`));
-  return h("div", { class: "gauge" }, drawing, h("p", { class: "gauge-value" }, score === null ? "–" : fixed(score, 0)), h("p", { class: "gauge-caption" }, score === null ? "no score" : "of 100"));
+  return h("div", { class: "gauge" }, drawing, h("p", { class: "gauge-value" }, score === null ? "–" : fixed(score, 0)), h("p", { class: "gauge-caption" }, score === null ? t("no score") : t("of 100")));
 }
 
 export function bar(share: number, tone: "good" | "accent" | "warning" | "bad" = "accent"): HTMLElement {
@@ -61,7 +62,7 @@ export function scale_distribution(counts: number[]): HTMLElement {
   return h(
     "ol",
     { class: "distribution" },
-    kScaleLabels.map((label, k) => {
+    scale_labels().map((label, k) => {
       const count = counts[k] ?? 0;
       const column = h("span", { class: "distribution-bar", "aria-hidden": "true" });
       column.style.height = `${(100 * count) / most}%`;
@@ -93,7 +94,7 @@ export function score_histogram(bins: number[]): HTMLElement {
     bins.map((count, k) => {
       const column = h("span", { class: "distribution-bar", "aria-hidden": "true" });
       column.style.height = `${(100 * count) / most}%`;
-      return h("li", {}, h("span", { class: "distribution-count" }, count > 0 ? String(count) : "\u00a0"), h("span", { class: "distribution-area" }, column), h("span", { class: "distribution-label" }, String(10 * k), h("span", { class: "hidden" }, ` to ${10 * (k + 1)}`)));
+      return h("li", {}, h("span", { class: "distribution-count" }, count > 0 ? String(count) : "\u00a0"), h("span", { class: "distribution-area" }, column), h("span", { class: "distribution-label" }, String(10 * k), h("span", { class: "hidden" }, " ", t("to {0}", 10 * (k + 1)))));
     }),
   );
 }

@@ -2,6 +2,7 @@
 
 import { h } from "../lib/dom.ts";
 import type { Point3, Trace } from "../lib/types.ts";
+import { decimal } from "../lib/words.ts";
 import { colour, on_theme_change } from "../ui/theme.ts";
 import { nice_ticks } from "../plots/histogram.ts";
 import { is_inside, project, tip_at, type Extent, type Rotation } from "./trace.ts";
@@ -107,7 +108,7 @@ function draw_scale(pen: Pen): void {
   ctx.stroke();
   ctx.textAlign = "left";
   ctx.textBaseline = "bottom";
-  ctx.fillText(`${length_mm} mm`, left, y - 7);
+  ctx.fillText(`${decimal(String(length_mm))} mm`, left, y - 7);
 }
 
 /** A letter at the border to which a direction of the body points, if it lies nearly in the picture. */

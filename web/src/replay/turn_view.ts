@@ -1,6 +1,7 @@
 // The 3D view: a path view that is turned by dragging, by buttons, or by the arrow keys while it has the focus.
 
 import { h } from "../lib/dom.ts";
+import { t } from "../lib/words.ts";
 import { path_view, type PathView } from "./path_view.ts";
 import { turned } from "./trace.ts";
 
@@ -9,7 +10,7 @@ const kStep_deg = 15;
 export function turn_view(signal: AbortSignal): PathView {
   let turn = 35;
   let tilt = 20;
-  const view = path_view("3D, turnable", "Path of the tip in 3D. Arrow keys turn the view.", turned(turn, tilt), signal, true);
+  const view = path_view(t("3D, turnable"), t("Path of the tip in 3D. Arrow keys turn the view."), turned(turn, tilt), signal, true);
   const turn_by = (dx: number, dy: number): void => {
     turn = (turn + dx) % 360;
     tilt = Math.max(-90, Math.min(90, tilt + dy));
@@ -36,10 +37,10 @@ export function turn_view(signal: AbortSignal): PathView {
     h(
       "div",
       { class: "turn-buttons" },
-      button("Turn left", "←", kStep_deg, 0),
-      button("Turn right", "→", -kStep_deg, 0),
-      button("Tilt up", "↑", 0, -kStep_deg),
-      button("Tilt down", "↓", 0, kStep_deg),
+      button(t("Turn left"), "←", kStep_deg, 0),
+      button(t("Turn right"), "→", -kStep_deg, 0),
+      button(t("Tilt up"), "↑", 0, -kStep_deg),
+      button(t("Tilt down"), "↓", 0, kStep_deg),
     ),
   );
   return view;

@@ -3,6 +3,7 @@
 import { error_box } from "./states.ts";
 import { run_once, text_field } from "./parts.ts";
 import { h, new_id, replace_children, type Child } from "../lib/dom.ts";
+import { t } from "../lib/words.ts";
 
 interface Question {
   title: string;
@@ -27,7 +28,7 @@ export function ask(question: Question): void {
   const submit = (event: Event): void => {
     event.preventDefault();
     if (typed && typed.input.value.trim() !== question.typed!.value.trim()) {
-      typed.set_error(`Type exactly: ${question.typed!.value}`);
+      typed.set_error(t("Type exactly: {0}", question.typed!.value));
       typed.input.focus();
       return;
     }
@@ -55,7 +56,7 @@ export function ask(question: Question): void {
       question.fields,
       typed?.element,
       problem,
-      h("div", { class: "buttons" }, h("button", { type: "button", class: "button", on: { click: () => dialog.close() } }, "Cancel"), confirm),
+      h("div", { class: "buttons" }, h("button", { type: "button", class: "button", on: { click: () => dialog.close() } }, t("Cancel")), confirm),
     ),
   );
   document.body.append(dialog);

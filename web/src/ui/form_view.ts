@@ -1,8 +1,9 @@
 // The questionnaire as people answer it: for the public page and for the editor's preview.
 
 import { h, new_id, type Child } from "../lib/dom.ts";
-import { kScaleLabels, plural } from "../lib/format.ts";
+import { scale_labels } from "../lib/format.ts";
 import type { FormItem } from "../lib/types.ts";
+import { plural, t } from "../lib/words.ts";
 
 export type Answers = Record<string, number | string>;
 export const kMaxText = 2000;
@@ -25,13 +26,14 @@ interface ItemView {
 }
 
 function required_mark(item: FormItem): Child {
-  return item.is_required ? h("span", { class: "required" }, " (required)") : h("span", { class: "dim" }, " (optional)");
+  return item.is_required ? h("span", { class: "required" }, " ", t("(required)")) : h("span", { class: "dim" }, " ", t("(optional)"));
 }
 
 function scale_item(item: FormItem, number: number, error: HTMLElement, changed: () => void): ItemView {
   const name = new_id("scale");
   const chosen = h("p", { class: "chosen", "aria-hidden": "true" }, "\u00a0");
-  const inputs = kScaleLabels.map((_, k) =>
+  const labels = scale_labels();
+  const inputs = labels.map((_, k) =>
     h("input", {
       type: "radio", id: `${name}-${k}`, name, value: String(k + 1), required: item.is_required,
       on: { change: () => { show(); changed(); } },
@@ -39,7 +41,7 @@ function scale_item(item: FormItem, number: number, error: HTMLElement, changed:
   );
   const show = (): void => {
     const k = inputs.findIndex((one) => one.checked);
-    chosen.textContent = k < 0 ? "\u00a0" : `${k + 1} – ${kScaleLabels[k]}`;
+    chosen.textContent = k < 0 ? "\u00a0" : `${k + 1} – ${labels[k]}`;
   };
   const element = h(
     "fieldset",
@@ -48,9 +50,9 @@ function scale_item(item: FormItem, number: number, error: HTMLElement, changed:
     h(
       "div",
       { class: "scale" },
-      kScaleLabels.map((label, k) => h("div", { class: "scale-choice" }, inputs[k], h("label", { for: `${name}-${k}` }, h("span", { class: "scale-number" }, String(k + 1)), h("span", { class: "scale-label" }, label)))),
+      labels.map((label, k) => h("div", { class: "scale-choice" }, inputs[k], h("label", { for: `${name}-${k}` }, h("span", { class: "scale-number" }, String(k + 1)), h("span", { class: "scale-label" }, label)))),
     ),
-    h("div", { class: "scale-ends", "aria-hidden": "true" }, h("span", {}, kScaleLabels[0]), h("span", {}, kScaleLabels[5])),
+    h("div", { class: "scale-ends", "aria-hidden": "true" }, h("span", {}, labels[0]), h("span", {}, labels[5])),
     chosen,
     error,
   );
@@ -75,7 +77,7 @@ function text_item(item: FormItem, number: number, error: HTMLElement, changed: 
   const left = h("p", { class: "help", id: `${id}-left` });
   const area = h("textarea", { id, class: "field", rows: "5", maxlength: String(kMaxText), required: item.is_required, "aria-describedby": `${id}-left ${error.id}` });
   const show = (): void => {
-    left.textContent = `${plural(kMaxText - area.value.length, "character")} left`;
+    left.textContent = plural(kMaxText - area.value.length, "{0} character left", "{0} characters left");
   };
   area.addEventListener("input", () => {
     show();

@@ -1,14 +1,15 @@
 // Small parts that several pages use.
 
 import { h, new_id, type Attributes, type Child } from "../lib/dom.ts";
-import { date_time_text, sentence, words } from "../lib/format.ts";
+import { date_time_text, group_text, sentence } from "../lib/format.ts";
+import { said, t } from "../lib/words.ts";
 
 export function simulated_badge(): HTMLElement {
-  return h("span", { class: "badge badge-simulated", title: "A scripted operator of Trocar, not a person" }, "Simulated");
+  return h("span", { class: "badge badge-simulated", title: t("A scripted operator of Trocar, not a person") }, t("Simulated"));
 }
 
 export function group_badge(group: string): HTMLElement {
-  return h("span", { class: `badge badge-${group === "expert" ? "expert" : "plain"}` }, words(group));
+  return h("span", { class: `badge badge-${group === "expert" ? "expert" : "plain"}` }, group_text(group));
 }
 
 export function person_badges(person: { group?: string; simulated: boolean }): HTMLElement {
@@ -20,15 +21,15 @@ export function reasons_list(attempt: { passed: boolean | null; score: number | 
   if (attempt.passed === true) return null;
   const given = typeof attempt.not_scored === "string" && attempt.not_scored ? [attempt.not_scored] : [];
   const reasons = [...given, ...(attempt.fails ?? [])];
-  return reasons.length > 0 && h("ul", { class: "reasons" }, reasons.map((one) => h("li", {}, sentence(one))));
+  return reasons.length > 0 && h("ul", { class: "reasons" }, reasons.map((one) => h("li", {}, sentence(said(one)))));
 }
 
 export function passed_text(passed: boolean | null, score: number | null): HTMLElement {
-  if (passed === null) return h("span", { class: "outcome" }, "Does not count");
-  if (score === null) return h("span", { class: "outcome outcome-bad" }, h("span", { "aria-hidden": "true" }, "✕ "), "Not passed: no result");
+  if (passed === null) return h("span", { class: "outcome" }, t("Does not count"));
+  if (score === null) return h("span", { class: "outcome outcome-bad" }, h("span", { "aria-hidden": "true" }, "✕ "), t("Not passed: no result"));
   return passed
-    ? h("span", { class: "outcome outcome-good" }, h("span", { "aria-hidden": "true" }, "✓ "), "Passed")
-    : h("span", { class: "outcome outcome-bad" }, h("span", { "aria-hidden": "true" }, "✕ "), "Not passed");
+    ? h("span", { class: "outcome outcome-good" }, h("span", { "aria-hidden": "true" }, "✓ "), t("Passed"))
+    : h("span", { class: "outcome outcome-bad" }, h("span", { "aria-hidden": "true" }, "✕ "), t("Not passed"));
 }
 
 export function time_element(seconds: number | null): HTMLElement | string {
@@ -136,7 +137,7 @@ export async function run_once(button: HTMLButtonElement, action: () => Promise<
 export function breadcrumb(...steps: { label: string; path?: string }[]): HTMLElement {
   return h(
     "nav",
-    { class: "breadcrumb", "aria-label": "Breadcrumb" },
+    { class: "breadcrumb", "aria-label": t("Breadcrumb") },
     h("ol", {}, steps.map((one) => h("li", {}, one.path ? h("a", { href: one.path }, one.label) : h("span", { "aria-current": "page" }, one.label)))),
   );
 }

@@ -1,9 +1,10 @@
 // Printing: in the light theme, with everything that can be opened.
 
 import { h } from "../lib/dom.ts";
+import { t } from "../lib/words.ts";
 
 export function print_button(): HTMLElement {
-  return h("button", { type: "button", class: "button", on: { click: () => window.print() } }, "Print");
+  return h("button", { type: "button", class: "button", on: { click: () => window.print() } }, t("Print"));
 }
 
 /** Opens folded cards and draws plots in the light theme while the page is printed. */

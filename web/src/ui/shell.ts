@@ -1,17 +1,20 @@
-// The frame of every page: brand, navigation, theme, account.
+// The frame of every page: brand, navigation, language, theme, account.
 
 import { h, replace_children } from "../lib/dom.ts";
 import type { Me } from "../lib/types.ts";
+import { language, t } from "../lib/words.ts";
+import { choose_language, kLanguages, language_name } from "../words/languages.ts";
+import { toast } from "./states.ts";
 import { current_theme, switch_theme } from "./theme.ts";
 
-const kSections = [
-  { path: "/", label: "Cohort" },
-  { path: "/courses", label: "Courses" },
-  { path: "/metrics", label: "Metrics" },
-  { path: "/proficiency", label: "Proficiency" },
-  { path: "/validity", label: "Validity" },
-  { path: "/forms", label: "Questionnaires" },
-  { path: "/account", label: "Account" },
+const sections = (): { path: string; label: string }[] => [
+  { path: "/", label: t("Cohort") },
+  { path: "/courses", label: t("Courses") },
+  { path: "/metrics", label: t("Metrics") },
+  { path: "/proficiency", label: t("Proficiency") },
+  { path: "/validity", label: t("Validity") },
+  { path: "/forms", label: t("Questionnaires") },
+  { path: "/account", label: t("Account") },
 ];
 
 export interface Shell {
@@ -21,25 +24,31 @@ export interface Shell {
   set_section: (path: string | null) => void;
 }
 
-function theme_button(): HTMLElement {
-  const label = (): string => (current_theme() === "dark" ? "Light theme" : "Dark theme");
-  const button = h("button", { type: "button", class: "button button-quiet" }, label());
-  button.addEventListener("click", () => switch_theme());
-  document.addEventListener("themechange", () => (button.textContent = label()));
-  return button;
+function theme_button(): HTMLButtonElement {
+  return h("button", { type: "button", class: "button button-quiet", on: { click: () => switch_theme() } });
 }
 
+/** Every language by its own name. */
+function language_choice(): HTMLSelectElement {
+  const choice = h("select", { class: "language" }, kLanguages.map((code) => h("option", { value: code, lang: code }, language_name(code))));
+  choice.addEventListener("change", () => {
+    choose_language(choice.value).catch(() => {
+      choice.value = language();
+      toast(t("The language could not be loaded. Try again."));
+    });
+  });
+  return choice;
+}
+
+/** The frame keeps its elements when the language changes; only their texts are written again. */
 export function make_shell(sign_out: () => void): Shell {
   const main = h("main", { id: "content", class: "main", tabindex: "-1" });
-  const links = new Map(kSections.map((one) => [one.path, h("a", { href: one.path, class: "nav-link" }, one.label)]));
+  const links = new Map(sections().map(({ path }) => [path, h("a", { href: path, class: "nav-link" })]));
   const account_name = h("span", { class: "account-name" });
-  const menu_button = h("button", { type: "button", class: "button menu-button", "aria-expanded": "false", "aria-controls": "menu" }, "Menu");
-  const menu = h(
-    "div",
-    { id: "menu", class: "menu" },
-    h("nav", { "aria-label": "Main" }, h("ul", { class: "nav" }, [...links.values()].map((one) => h("li", {}, one)))),
-    h("div", { class: "menu-end" }, account_name, h("button", { type: "button", class: "button button-quiet", on: { click: sign_out } }, "Sign out")),
-  );
+  const menu_button = h("button", { type: "button", class: "button menu-button", "aria-expanded": "false", "aria-controls": "menu" });
+  const leave = h("button", { type: "button", class: "button button-quiet", on: { click: sign_out } });
+  const nav = h("nav", {}, h("ul", { class: "nav" }, [...links.values()].map((one) => h("li", {}, one))));
+  const menu = h("div", { id: "menu", class: "menu" }, nav, h("div", { class: "menu-end" }, account_name, leave));
   const set_menu = (is_open: boolean): void => {
     menu_button.setAttribute("aria-expanded", String(is_open));
     menu.classList.toggle("is-open", is_open);
@@ -50,22 +59,44 @@ export function make_shell(sign_out: () => void): Shell {
   });
 
   const brand = h("div", { class: "brand" });
-  const header = h("header", { class: "header" }, brand, menu_button, menu, theme_button());
+  const theme = theme_button();
+  const languages = language_choice();
+  const header = h("header", { class: "header" }, brand, menu_button, menu, h("div", { class: "head-choices" }, languages, theme));
   const footer = h("footer", { class: "footer" });
-  const skip = h("a", { class: "skip", href: "#content" }, "Skip to content");
+  const skip = h("a", { class: "skip", href: "#content" });
   document.body.replaceChildren(skip, header, main, footer);
   skip.addEventListener("click", (event) => {
     event.preventDefault();
     main.focus();
   });
+
+  let account: Me | null = null;
+  const write_theme = (): void => {
+    theme.textContent = current_theme() === "dark" ? t("Light theme") : t("Dark theme");
+  };
+  const write_texts = (): void => {
+    for (const { path, label } of sections()) links.get(path)!.textContent = label;
+    menu_button.textContent = t("Menu");
+    leave.textContent = t("Sign out");
+    skip.textContent = t("Skip to content");
+    nav.setAttribute("aria-label", t("Main"));
+    languages.setAttribute("aria-label", t("Language"));
+    languages.value = language();
+    account_name.textContent = account?.account.name ?? "";
+    const about = t("A trainer, not a medical device.");
+    footer.textContent = account?.program_version ? `Trocar ${account.program_version}. ${about}` : about;
+    write_theme();
+  };
+  document.addEventListener("themechange", write_theme);
+  document.addEventListener("wordschange", write_texts);
+  write_texts();
   return {
     main,
     set_account: (me) => {
+      account = me;
       document.body.classList.toggle("is-signed-in", me !== null);
       replace_children(brand, me ? h("a", { href: "/" }, "Trocar") : h("span", {}, "Trocar"));
-      account_name.textContent = me?.account.name ?? "";
-      const version = me?.program_version ? `Trocar ${me.program_version}. ` : "";
-      footer.textContent = `${version}A trainer, not a medical device.`;
+      write_texts();
     },
     set_section: (path) => {
       set_menu(false);

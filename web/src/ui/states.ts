@@ -2,6 +2,7 @@
 
 import { ApiError } from "../lib/api.ts";
 import { h, replace_children, type Child } from "../lib/dom.ts";
+import { t } from "../lib/words.ts";
 
 /** Where to go when what a page shows does not exist (any more). */
 export interface Missing {
@@ -17,14 +18,14 @@ function title_element(text: string): HTMLElement {
 
 export function error_box(error: unknown, retry?: () => void): HTMLElement {
   const known = error instanceof ApiError ? error : null;
-  const wait = known?.retry_after_s ? h("p", {}, `Try again in ${known.retry_after_s} s.`) : null;
+  const wait = known?.retry_after_s ? h("p", {}, t("Try again in {0} s.", known.retry_after_s)) : null;
   return h(
     "div",
     { class: "notice notice-bad", role: "alert" },
-    title_element(known ? known.message : "The page could not be shown"),
-    h("p", {}, known ? known.advice : "Reload the page."),
+    title_element(known ? known.message : t("The page could not be shown")),
+    h("p", {}, known ? known.advice : t("Reload the page.")),
     wait,
-    retry && h("button", { type: "button", class: "button", on: { click: retry } }, "Try again"),
+    retry && h("button", { type: "button", class: "button", on: { click: retry } }, t("Try again")),
   );
 }
 
@@ -37,7 +38,7 @@ export function empty_box(title: string, ...text: Child[]): HTMLElement {
 }
 
 export function loading_box(): HTMLElement {
-  return h("div", { class: "loading", role: "status" }, h("span", { class: "spinner", "aria-hidden": "true" }), "Loading …");
+  return h("div", { class: "loading", role: "status" }, h("span", { class: "spinner", "aria-hidden": "true" }), t("Loading …"));
 }
 
 /** Number of the last load of each place: an answer that arrives after a newer load began is dropped. */

@@ -1,6 +1,7 @@
 // A sortable table. On a narrow screen its rows become cards; explicit roles keep it a table for screen readers.
 
 import { h, replace_children, type Child } from "../lib/dom.ts";
+import { language, t } from "../lib/words.ts";
 
 export type Key = number | string | null;
 export interface Column<Row> {
@@ -29,7 +30,7 @@ interface TableOptions<Row> {
 /** Numbers by size, texts by the language's order; missing values are last in both directions. */
 export function compare_keys(a: Key, b: Key, is_descending: boolean): number {
   if (a === null || b === null) return a === b ? 0 : a === null ? 1 : -1;
-  const order = typeof a === "number" && typeof b === "number" ? a - b : String(a).localeCompare(String(b), "en", { numeric: true });
+  const order = typeof a === "number" && typeof b === "number" ? a - b : String(a).localeCompare(String(b), language(), { numeric: true });
   return is_descending ? -order : order;
 }
 
@@ -70,8 +71,8 @@ export function data_table<Row>(options: TableOptions<Row>): HTMLElement {
     replace_children(
       more,
       rows.length > shown && [
-        h("span", {}, `${shown} of ${rows.length} shown`),
-        h("button", { type: "button", class: "button", on: { click: () => show_more() } }, "Show more"),
+        h("span", {}, t("{0} of {1} shown", shown, rows.length)),
+        h("button", { type: "button", class: "button", on: { click: () => show_more() } }, t("Show more")),
       ],
     );
   };
@@ -107,7 +108,7 @@ export function data_table<Row>(options: TableOptions<Row>): HTMLElement {
     body,
   );
   fill();
-  return h("div", { class: "table-box" }, phone_sort && h("label", { class: "phone-sort" }, "Sort by ", phone_sort), table, more);
+  return h("div", { class: "table-box" }, phone_sort && h("label", { class: "phone-sort" }, h("span", {}, t("Sort by")), phone_sort), table, more);
 }
 
 function make_phone_sort<Row>(columns: Column<Row>[], order: Order | undefined, sort_by: (column: Column<Row>, is_descending: boolean) => void): HTMLSelectElement | null {
@@ -115,7 +116,7 @@ function make_phone_sort<Row>(columns: Column<Row>[], order: Order | undefined, 
   if (sortable.length === 0) return null;
   const choices = sortable.flatMap((one) =>
     [false, true].map((down) => {
-      const direction = one.is_number ? (down ? "high to low" : "low to high") : down ? "Z to A" : "A to Z";
+      const direction = one.is_number ? (down ? t("high to low") : t("low to high")) : down ? t("Z to A") : t("A to Z");
       return h("option", { value: `${one.name} ${down ? 1 : 0}` }, `${one.title}, ${direction}`);
     }),
   );

@@ -1,16 +1,13 @@
 // Dark or light: the system's choice, unless the person chose one here.
 
+import { read_choice, write_choice } from "../lib/choices.ts";
+
 export type Theme = "dark" | "light";
-const kKey = "trocar-theme";
 const system_is_light = window.matchMedia("(prefers-color-scheme: light)");
 
 function stored(): Theme | null {
-  try {
-    const value = localStorage.getItem(kKey);
-    return value === "dark" || value === "light" ? value : null;
-  } catch {
-    return null;
-  }
+  const value = read_choice("trocar-theme");
+  return value === "dark" || value === "light" ? value : null;
 }
 
 export function current_theme(): Theme {
@@ -27,27 +24,9 @@ export function start_theme(): void {
   system_is_light.addEventListener("change", apply);
 }
 
-function write(theme: Theme): void {
-  try {
-    localStorage.setItem(kKey, theme);
-  } catch {
-    return;  // Without storage the system's choice stays.
-  }
-  apply();
-}
-
+/** Without storage the system's choice stays. */
 export function switch_theme(): void {
-  write(current_theme() === "dark" ? "light" : "dark");
-}
-
-/** Runs `action`, after which the browser may have deleted what this page stored, and keeps the theme: it says nothing about a person. */
-export async function keeping_theme<T>(action: () => Promise<T>): Promise<T> {
-  const theme = stored();
-  try {
-    return await action();
-  } finally {
-    if (theme) write(theme);
-  }
+  if (write_choice("trocar-theme", current_theme() === "dark" ? "light" : "dark")) apply();
 }
 
 /** A colour of the style sheet, for canvases: colour("accent"). */

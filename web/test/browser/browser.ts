@@ -32,11 +32,13 @@ export interface Look {
   height?: number;
   theme?: "dark" | "light";
   touch?: boolean;
+  /** Of the browser; English if it is left out. */
+  locale?: string;
 }
 /** A page in a context of its own. Every message of the console that is an error is collected. */
 export async function open_page(browser: Browser, site: Site, look: Look = {}): Promise<{ page: Page; problems: string[] }> {
   const context = await browser.newContext({
-    baseURL: site.url, viewport: { width: look.width ?? 1280, height: look.height ?? 900 }, colorScheme: look.theme ?? "dark", ignoreHTTPSErrors: true, reducedMotion: "reduce", hasTouch: look.touch ?? false,
+    baseURL: site.url, viewport: { width: look.width ?? 1280, height: look.height ?? 900 }, colorScheme: look.theme ?? "dark", ignoreHTTPSErrors: true, reducedMotion: "reduce", hasTouch: look.touch ?? false, locale: look.locale ?? "en-US",
   });
   const page = await context.newPage();
   page.setDefaultTimeout(10_000);

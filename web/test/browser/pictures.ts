@@ -1,9 +1,10 @@
-// Pictures of every page: npm run pictures -- FOLDER. Three widths, two themes.
+// Pictures of every page: npm run pictures -- FOLDER. Three widths, two themes; LOCALE=de-DE for German.
 
 import { mkdir } from "node:fs/promises";
 import { join } from "node:path";
 import type { Page } from "playwright-core";
-import { busiest_person, first_link, login, open_page, settled, start_browser, start_site } from "./browser.ts";
+import { busiest_person, first_link, open_page, settled, start_browser, start_site } from "./browser.ts";
+import { login_anyhow } from "./walk.ts";
 
 const folder = process.argv[2] ?? "pictures";
 const only = process.argv[3];
@@ -21,7 +22,7 @@ async function paths(page: Page): Promise<[string, string][]> {
   await page.goto("/forms");
   await settled(page);
   if ((await page.locator("table a[href^='/forms/']").count()) === 0) {
-    await page.getByRole("button", { name: "Standard questionnaire" }).click();
+    await page.locator(".page-actions button").first().click();
     await page.waitForURL(/\/forms\/[^/]+$/);
     await page.goto("/forms");
     await settled(page);
@@ -33,18 +34,18 @@ async function paths(page: Page): Promise<[string, string][]> {
   const list: [string, string][] = [["cohort", "/"], ["cohort_task", "/?task=liver-biopsy&order=mean.down"], ["person", person], ["attempt", attempt], ["courses", "/courses"], ["course", course], ["metrics", "/metrics?task=liver-biopsy&metric=target_distance"], ["validity", "/validity?task=liver-biopsy"], ["proficiency", "/proficiency?task=liver-biopsy"], ["forms", "/forms"], ["form", form], ["editor", `${form}/edit`], ["account", "/account"]];
   await page.goto(form);
   await settled(page);
-  const address = await page.getByLabel("Address of the questionnaire").inputValue();
+  const address = await page.locator(".address input").inputValue();
   list.push(["questionnaire", new URL(address).pathname]);
   return list;
 }
 
 for (const theme of ["dark", "light"] as const) {
   for (const [width, height] of sizes) {
-    const { page, problems } = await open_page(browser, site, { width, height, theme });
+    const { page, problems } = await open_page(browser, site, { width, height, theme, locale: process.env.LOCALE ?? "en-US" });
     await page.goto("/login");
     await settled(page);
     await page.screenshot({ path: join(folder, `login_${theme}_${width}.png`), fullPage: true });
-    await login(page);
+    await login_anyhow(page);
     for (const [name, path] of await paths(page)) {
       if (only && !only.split(",").includes(name)) continue;
       await page.goto(path);

@@ -8,12 +8,12 @@ import { make_trace } from "./trace.ts";
 const counts_text = (all: MockAttempt[]): string => {
   const counted = all.filter((one) => one.passed !== null);
   const lost = all.length - counted.length;
-  return `${counted.length} attempts counted (${counted.filter((one) => one.score === null).length} ended without a result)${lost ? `, ${lost} left out: ${lost} lost to crashes` : ""}`;
+  return `${counted.length} attempts counted (${counted.filter((one) => one.score === null).length} ended without a result)${lost ? `, ${lost} left out: ${lost} ${lost === 1 ? "was lost to a crash" : "were lost to crashes"}` : ""}`;
 };
 const mean = (values: number[]): number | null => (values.length ? values.reduce((a, b) => a + b, 0) / values.length : null);
 const kParts: [string, string, (lost: number) => string, number][] = [
   ["target", "Distance to the target", (lost) => `${(8 * lost).toFixed(1)} mm`, 15], ["core", "Target tissue in the cores", (lost) => `${(18 * (1 - lost)).toFixed(1)} mm`, 25],
-  ["risk", "Structures harmed", (lost) => (lost > 0.3 ? "1 touched" : "none touched"), 20], ["access", "Missing safety margin to structures at risk", (lost) => `${(6 * (1 - lost)).toFixed(1)} mm margin`, 15],
+  ["risk", "Structures harmed", (lost) => (lost > 0.3 ? "1" : "0"), 20], ["access", "Missing safety margin to structures at risk", (lost) => `${(6 * (1 - lost)).toFixed(1)} mm`, 15],
   ["visibility", "Tip visible while advancing", (lost) => `${(100 * (1 - lost)).toFixed(0)} %`, 5], ["comfort", "Pain events", (lost) => String(Math.round(3 * lost)), 5],
   ["length", "Needle travel inside the body", (lost) => `${(70 + 30 * lost).toFixed(0)} mm`, 5], ["time", "Time", (lost) => `${(40 + 80 * lost).toFixed(0)} s`, 5], ["passes", "Extra organ punctures and shots", (lost) => String(1 + Math.round(3 * lost)), 5],
 ];
@@ -214,7 +214,7 @@ export class MockResults {
       if (people.length === 0) return [];
       const known = people.flatMap((one) => one.trials ?? []).sort((a, b) => a - b);
       const practice_s = people.reduce((sum, one) => sum + one.practice_s, 0);
-      return [{ group, simulated, counts_text: counts_text(every.flatMap(({ all }) => all)), people_count: people.length, proficient: known.length, not_yet: people.length - known.length, median: 2 * known.length > people.length ? known[Math.floor(people.length / 2)] : null, low: known[0] ?? null, high: null, curve: [], practice_s, instructor: simulated ? "none entered (made up)" : `${30 * people.length} min (made up)`, instructor_min: simulated ? null : 30 * people.length, first_pass_share: 0.5, time_to_target_s: 12, people }];
+      return [{ group, simulated, counts_text: counts_text(every.flatMap(({ all }) => all)), people_count: people.length, proficient: known.length, not_yet: people.length - known.length, median: 2 * known.length > people.length ? known[Math.floor(people.length / 2)] : null, low: known[0] ?? null, high: null, curve: [], practice_s, instructor: simulated ? "none entered (trocar results taught); 20 min of needle time were recorded, the most that an instructor can have watched" : `${30 * people.length} min for ${people.length} ${people.length === 1 ? "person" : "people"}, 30 min each on average`, instructor_min: simulated ? null : 30 * people.length, first_pass_share: 0.5, time_to_target_s: 12, people }];
     });
     return { task, score: 80, passes_in_a_row: 3, ...this.choices(task), groups };
   }

@@ -32,13 +32,13 @@ export function make_trace(seed: number, skill: number, duration_s: number): Rec
     if (layer > deepest) {
       deepest = layer;
       since = t;
-      events.push({ time_s: t, text: `Puncture: ${kLayers[layer][1].replace("_", " ")}` });
+      events.push({ time_s: t, text: `puncture:${kLayers[layer][1]}` });
     }
     const withdraws = share > 0.85;
     const peak = layer >= 0 && !withdraws ? kLayers[layer][2] * Math.exp(-(t - since) / 0.5) : 0;
     const friction = depth > 0 ? 0.015 * depth + 0.05 * Math.sin(3 * t) : 0;
     trace.force_n.push(Number((-(withdraws ? -friction : friction + peak)).toFixed(3)));
   }
-  events.push({ time_s: duration_s * 0.84, text: "Gun fired" });
+  events.push({ time_s: duration_s * 0.84, text: "limit:force" });
   return { ...trace, tissues: kLayers.map((one) => one[1]), plan: { entry: kEntry, target: kTarget }, events };
 }

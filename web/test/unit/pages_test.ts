@@ -52,9 +52,9 @@ test("what was counted and left out is said", () => {
 });
 
 test("a median that is not reached has no limits, an open limit is said", () => {
-  assert.equal(limits_text({ median: 7, low: 5, high: null }), "95 % interval: at least 5. ");
-  assert.equal(limits_text({ median: 7, low: null, high: 9 }), "95 % interval: at most 9. ");
-  assert.equal(limits_text({ median: 7, low: 5, high: 9 }), "95 % interval: 5 to 9. ");
+  assert.equal(limits_text({ median: 7, low: 5, high: null }), "95 % interval: at least 5.");
+  assert.equal(limits_text({ median: 7, low: null, high: 9 }), "95 % interval: at most 9.");
+  assert.equal(limits_text({ median: 7, low: 5, high: 9 }), "95 % interval: 5 to 9.");
   assert.equal(limits_text({ median: null, low: 5, high: null }), "");
 });
 

@@ -4,6 +4,7 @@
 
 #include "ui_kit/parts.h"
 #include "ui_kit/trainer_application.h"
+#include "ui_kit/window_language.h"
 #include "ultrasound/live/scan_picture.h"
 #include "ultrasound/scanner/scan_annotation.h"
 #include "views/patient/patient_view.h"
@@ -106,7 +107,7 @@ class PatientViewEntry final : public View {
     }
     const JobView later = case_.open->later->view();
     // Surfaces that have arrived are still simplified for the graphics.
-    const QString step = !later.is_done       ? to_qt(later.step)
+    const QString step = !later.is_done       ? shown(later.step)
                          : !view_->is_ready() ? PatientView::tr("3D surfaces")
                                               : QString();
     view_->set_note(step.isEmpty() ? step : PatientView::tr("Being prepared: %1").arg(step));

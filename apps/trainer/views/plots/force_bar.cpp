@@ -154,8 +154,8 @@ void ForceBar::paintEvent(QPaintEvent* /*event*/) {
 void ForceBar::paint_text(QPainter& painter) const {
   const Theme& t = theme();
   painter.setFont(scaled_font(0.85));
-  const QString force = QStringLiteral("%1 N").arg(force_n_, 0, 'f', full_n_ < 10.0 ? 2 : 1);
-  const QString distance = QStringLiteral("%1 mm").arg(lag_mm_, 0, 'f', lag_mm_ < 10.0 ? 1 : 0);
+  const QString force = QStringLiteral("%L1 N").arg(force_n_, 0, 'f', full_n_ < 10.0 ? 2 : 1);
+  const QString distance = QStringLiteral("%L1 mm").arg(lag_mm_, 0, 'f', lag_mm_ < 10.0 ? 1 : 0);
   const double high = text_height();
   const auto put = [&](const QRectF& room, int alignment, const QString& text, const QColor& color) {
     painter.setPen(color);

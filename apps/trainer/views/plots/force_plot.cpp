@@ -300,7 +300,7 @@ void ForcePlot::paint_events(QPainter& painter, const PlotFrame& frame) const {
 
 QString ForcePlot::force_text() const {
   const auto now = current();
-  return now ? QStringLiteral("%1 N").arg(now->resistance_n, 0, 'f', 2) : QString();
+  return now ? QStringLiteral("%L1 N").arg(now->resistance_n, 0, 'f', 2) : QString();
 }
 
 QString ForcePlot::figures_text() const {
@@ -309,7 +309,7 @@ QString ForcePlot::figures_text() const {
 
 QString ForcePlot::depth_text() const {
   const auto now = current();
-  return now && is_depth_shown_ ? QStringLiteral("%1 mm").arg(now->depth_mm, 0, 'f', 0) : QString();
+  return now && is_depth_shown_ ? QStringLiteral("%L1 mm").arg(now->depth_mm, 0, 'f', 0) : QString();
 }
 
 void ForcePlot::paint_strip(QPainter& painter, QRectF room) const {
@@ -348,11 +348,11 @@ QString ForcePlot::text_at(const QPoint& position) const {
   if (!plot.area.adjusted(0.0, 0.0, 0.0, band_height()).contains(position)) return toolTip();
   for (const Event& event : events_)
     if (std::abs(plot.to_point({place_of(event), 0.0}).x() - position.x()) < kNear) {
-      const QString depth = is_depth_shown_ ? QStringLiteral("%1 mm · ").arg(event.depth_mm, 0, 'f', 1) : QString();
-      return QStringLiteral("%1 · %2%3 s").arg(event.text, depth).arg(event.time_s, 0, 'f', 1);
+      const QString depth = is_depth_shown_ ? QStringLiteral("%L1 mm · ").arg(event.depth_mm, 0, 'f', 1) : QString();
+      return QStringLiteral("%L1 · %L2%L3 s").arg(event.text, depth).arg(event.time_s, 0, 'f', 1);
     }
   const QPointF value = plot.to_value(position);
-  const QString place = QStringLiteral("%1 %2").arg(value.x(), 0, 'f', 1).arg(axis_ == Axis::kDepth ? "mm" : "s");
+  const QString place = QStringLiteral("%L1 %L2").arg(value.x(), 0, 'f', 1).arg(axis_ == Axis::kDepth ? "mm" : "s");
   if (axis_ == Axis::kDepth)
     for (const Band& band : bands_)
       if (band.from_mm <= value.x() && value.x() < band.to_mm) return place + QStringLiteral(" · ") + band.name;

@@ -144,9 +144,9 @@ QString TimeTrack::text_at(const QPoint& position) const {
     if (distance <= kNear && (nearest == nullptr || distance < std::abs(x_of(nearest->time_s) - position.x())))
       nearest = &event;
   }
-  if (nearest != nullptr) return QStringLiteral("%1 · %2 s").arg(nearest->title).arg(nearest->time_s, 0, 'f', 1);
+  if (nearest != nullptr) return QStringLiteral("%L1 · %L2 s").arg(nearest->title).arg(nearest->time_s, 0, 'f', 1);
   const double time_s = time_at(position.x());
-  QString text = QStringLiteral("%1 s").arg(time_s, 0, 'f', 1);
+  QString text = QStringLiteral("%L1 s").arg(time_s, 0, 'f', 1);
   for (const Phase& phase : phases_)
     if (phase.from_s <= time_s && time_s < phase.to_s) text += QStringLiteral(" · ") + phase.name;
   return text;

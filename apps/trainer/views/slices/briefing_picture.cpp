@@ -11,6 +11,7 @@
 #include "slices/paint_slice.h"
 #include "slices/slice_geometry.h"
 #include "ui_kit/theme.h"
+#include "ui_kit/window_language.h"
 #include "views/slices/slice_canvas.h"
 
 namespace trocar::trainer {
@@ -136,7 +137,7 @@ std::vector<LegendEntry> briefing_legend(const cases::OpenCase& open, BriefingPl
     const QColor color(label.color[0], label.color[1], label.color[2]);
     const auto same =
         std::find_if(entries.begin(), entries.end(), [&](const LegendEntry& entry) { return entry.color == color; });
-    const QString name = QString::fromStdString(anatomy::structure_words(label.name));
+    const QString name = shown(anatomy::structure_words(label.name));
     if (same == entries.end()) {
       entries.push_back({color, name, share, tasks::is_target(open.the_case.task, label), name, share});
     } else {
@@ -144,7 +145,7 @@ std::vector<LegendEntry> briefing_legend(const cases::OpenCase& open, BriefingPl
         same->largest = name;
         same->largest_share = share;
       }
-      same->words = QString::fromStdString(anatomy::structure_words(label.tissue));
+      same->words = shown(anatomy::structure_words(label.tissue));
       same->share += share;
       same->is_target |= tasks::is_target(open.the_case.task, label);
     }

@@ -8,6 +8,7 @@
 
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
+#include "ui_kit/window_language.h"
 #include "views/slices/slice_canvas.h"
 #include "views/slices/slice_view.h"
 
@@ -109,7 +110,7 @@ void SliceMarks::paintEvent(QPaintEvent* /*event*/) {
     painter.setPen(pen_of(theme().warning, 1.5, away < kInPlane_mm));
     painter.drawLine(at - QPointF(4, 4), at + QPointF(4, 4));
     painter.drawLine(at - QPointF(4, -4), at + QPointF(4, -4));
-    const QString name = to_qt(landmark.name);
+    const QString name = shown(landmark.name);
     const QSizeF size(metrics.horizontalAdvance(name), metrics.height());
     const QRectF place = free_place(QRectF(at + QPointF(7.0, 4.0 - metrics.ascent()), size), names);
     names.push_back(place);

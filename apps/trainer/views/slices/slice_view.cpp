@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "ui_kit/theme.h"
+#include "ui_kit/window_language.h"
 #include "views/slices/slice_canvas.h"
 #include "views/view_strip.h"
 
@@ -26,25 +27,25 @@ KindInfo info_of(SliceKind kind) {
   const Theme& t = theme();
   switch (kind) {
     case SliceKind::kAxial:
-      return {"slice-axial", "Axial", t.axial, {t.sagittal, t.coronal}};
+      return {"slice-axial", QT_TRANSLATE_NOOP("Table", "Axial"), t.axial, {t.sagittal, t.coronal}};
     case SliceKind::kCoronal:
-      return {"slice-coronal", "Coronal", t.coronal, {t.sagittal, t.axial}};
+      return {"slice-coronal", QT_TRANSLATE_NOOP("Table", "Coronal"), t.coronal, {t.sagittal, t.axial}};
     case SliceKind::kSagittal:
-      return {"slice-sagittal", "Sagittal", t.sagittal, {t.coronal, t.axial}};
+      return {"slice-sagittal", QT_TRANSLATE_NOOP("Table", "Sagittal"), t.sagittal, {t.coronal, t.axial}};
     case SliceKind::kAlongNeedle:
-      return {"slice-along-needle", "Along needle", t.along_needle, {t.turned_needle, t.across_needle}};
+      return {"slice-along-needle", QT_TRANSLATE_NOOP("Table", "Along needle"), t.along_needle, {t.turned_needle, t.across_needle}};
     case SliceKind::kAlongNeedleTurned:
-      return {"slice-along-turned", "Along, turned", t.turned_needle, {t.along_needle, t.across_needle}};
+      return {"slice-along-turned", QT_TRANSLATE_NOOP("Table", "Along, turned"), t.turned_needle, {t.along_needle, t.across_needle}};
     case SliceKind::kAcrossNeedle:
-      return {"slice-across-needle", "Across needle", t.across_needle, {t.turned_needle, t.along_needle}};
+      return {"slice-across-needle", QT_TRANSLATE_NOOP("Table", "Across needle"), t.across_needle, {t.turned_needle, t.along_needle}};
     case SliceKind::kLateral:
-      return {"us-lateral", "Ultrasound, lateral", t.along_needle, {t.turned_needle, t.across_needle}};
+      return {"us-lateral", QT_TRANSLATE_NOOP("Table", "Ultrasound, lateral"), t.along_needle, {t.turned_needle, t.across_needle}};
     case SliceKind::kElevation:
-      return {"us-elevation", "Ultrasound, elevation", t.turned_needle, {t.along_needle, t.across_needle}};
+      return {"us-elevation", QT_TRANSLATE_NOOP("Table", "Ultrasound, elevation"), t.turned_needle, {t.along_needle, t.across_needle}};
     case SliceKind::kAcrossBeams:
       break;
   }
-  return {"us-across-beams", "Ultrasound, C-plane", t.across_needle, {t.turned_needle, t.along_needle}};
+  return {"us-across-beams", QT_TRANSLATE_NOOP("Table", "Ultrasound, C-plane"), t.across_needle, {t.turned_needle, t.along_needle}};
 }
 
 slices::SliceAxes axes_of(SliceKind kind, const Vec3& needle_P, const Mat3& R_UB) {
@@ -71,13 +72,15 @@ slices::SliceAxes axes_of(SliceKind kind, const Vec3& needle_P, const Mat3& R_UB
   return {R_UB.col(0), R_UB.col(2)};
 }
 
-const char* const kHelp =
+const char* const kHelp = QT_TRANSLATE_NOOP(
+    "Table",
     "Left drag: move the cross-hairs (arrow keys) · wheel: scroll (Page Up, Page Down) · Ctrl + wheel: zoom (+, −)\n"
     "Right drag: window (1–5: presets) · middle or Shift + left drag: pan · double click: centre\n"
-    "R: reset · L: labels on and off";
-const char* const kUltrasoundHelp =
+    "R: reset · L: labels on and off");
+const char* const kUltrasoundHelp = QT_TRANSLATE_NOOP(
+    "Table",
     "Left drag: move the cross-hairs (arrow keys) · wheel: scroll (Page Up, Page Down) · Ctrl + wheel: zoom (+, −)\n"
-    "Right drag: brightness and contrast · middle or Shift + left drag: pan · double click: centre · R: reset";
+    "Right drag: brightness and contrast · middle or Shift + left drag: pan · double click: centre · R: reset");
 
 }  // namespace
 
@@ -87,8 +90,8 @@ SliceView::SliceView(SliceKind kind, QWidget* parent)
       strip_(new ViewStrip(*this, [this](QPainter& painter, const QRectF& room) { paint_strip(painter, room); })) {
   const KindInfo info = info_of(kind);
   setObjectName(QString::fromLatin1(info.object_name));
-  setAccessibleName(QString::fromLatin1(info.title) + QStringLiteral(" slice"));
-  setToolTip(QString::fromUtf8(is_ultrasound() ? kUltrasoundHelp : kHelp));
+  setAccessibleName(tr("%1 slice").arg(tr(info.title)));
+  setToolTip(tr(is_ultrasound() ? kUltrasoundHelp : kHelp));
   style_.window = first_window();
   strip_->setToolTip(toolTip());
   setFocusPolicy(Qt::StrongFocus);
@@ -349,7 +352,7 @@ QString SliceView::place_text() const {
   // Direction letters of P: the LPS axes point to the left, to the back and to the head.
   const auto beyond = [](double mm, const char* positive, const char* negative) {
     const double shown_mm = std::abs(mm) < 0.05 ? 0.0 : std::abs(mm);
-    return QStringLiteral("%1 %2 mm").arg(QString::fromUtf8(mm < 0.0 ? negative : positive)).arg(shown_mm, 0, 'f', 1);
+    return QStringLiteral("%L1 %L2 mm").arg(QString::fromUtf8(mm < 0.0 ? negative : positive)).arg(shown_mm, 0, 'f', 1);
   };
   switch (kind_) {
     case SliceKind::kAxial:
@@ -394,12 +397,12 @@ void SliceView::paint_strip(QPainter& painter, QRectF room) const {
     painter.drawText(room, static_cast<int>(Qt::AlignVCenter | (is_right ? Qt::AlignRight : Qt::AlignLeft)), text);
     is_right ? room.setRight(room.right() - wide - kMargin) : room.setLeft(room.left() + wide + kMargin);
   };
-  put(QString::fromLatin1(info.title), 0.95, true, info.color, false);
+  put(tr(info.title), 0.95, true, info.color, false);
   put(place_text(), 0.9, false, t.text, false);
   put(window_text(), 0.85, false, t.dim, true);
   if (!has_labels_) put(tr("no labels"), 0.85, false, t.warning, true);
   if (!is_ultrasound())
-    put(QString::fromStdString(std::string(slices::window_name(style_.window))), 0.85, false, t.dim, true);
+    put(shown(slices::window_name(style_.window)), 0.85, false, t.dim, true);
 }
 
 QSize SliceView::sizeHint() const {

@@ -18,6 +18,7 @@
 #include "core/log.h"
 #include "ui_kit/control_section.h"
 #include "ui_kit/parts.h"
+#include "ui_kit/window_language.h"
 
 namespace trocar::trainer {
 namespace {
@@ -33,11 +34,11 @@ QPushButton* small_button(const char* name, const QString& text, const QString& 
 }
 
 auto decibels(int decimals = 0) {
-  return [decimals](double db) { return QStringLiteral("%1 dB").arg(db, 0, 'f', decimals); };
+  return [decimals](double db) { return QStringLiteral("%L1 dB").arg(db, 0, 'f', decimals); };
 }
 
 auto centimetres() {
-  return [](double mm) { return QStringLiteral("%1 cm").arg(mm / 10.0, 0, 'f', 1); };
+  return [](double mm) { return QStringLiteral("%L1 cm").arg(mm / 10.0, 0, 'f', 1); };
 }
 
 }  // namespace
@@ -95,11 +96,11 @@ QWidget* UltrasoundControls::make_source() {
   transducer_ = combo(0, "ultrasound-transducer", tr("Transducer"), tr("Ultrasound array"));
   for (const ultrasound::Transducer& t : transducers_) {
     transducer_->addItem(to_qt(t.name));
-    transducer_->setItemData(transducer_->count() - 1, to_qt(t.description), Qt::ToolTipRole);
+    transducer_->setItemData(transducer_->count() - 1, shown(t.description), Qt::ToolTipRole);
   }
   preset_ = combo(1, "ultrasound-preset", tr("Preset"), tr("Transducer and image settings for an examination"));
   preset_->addItem(tr("choose"));
-  for (const ultrasound::ScanPreset& preset : presets_) preset_->addItem(to_qt(preset.title));
+  for (const ultrasound::ScanPreset& preset : presets_) preset_->addItem(shown(preset.title));
   engine_ = combo(2, "ultrasound-engine", tr("Engine"),
                   tr("Ray cast: from CT and labels; panorama: from the patient's stitched ultrasound volumes"));
   engine_->addItems({tr("Ray cast"), tr("Panorama")});
@@ -216,14 +217,14 @@ QWidget* UltrasoundControls::make_picture() {
                       300, 5, [](S& s) -> double& { return s.acquisition.depth_mm; }, centimetres()});
   add_control(*grid, {"ultrasound-frequency", tr("Frequency"), tr("Higher: better resolution; lower: more penetration"),
                       1, 20, 0.1, [](S& s) -> double& { return s.acquisition.frequency_mhz; },
-                      [](double mhz) { return QStringLiteral("%1 MHz").arg(mhz, 0, 'f', 1); }});
+                      [](double mhz) { return QStringLiteral("%L1 MHz").arg(mhz, 0, 'f', 1); }});
   add_control(*grid, {"ultrasound-focus", tr("Focus"), tr("Depth of the transmit focus"), 5, 300, 5,
                       [](S& s) -> double& { return s.acquisition.focus_mm; }, centimetres()});
   add_control(*grid, {"ultrasound-dynamic-range", tr("Dynamic range"), tr("Smaller: higher contrast"), 20, 100, 1,
                       [](S& s) -> double& { return s.display.dynamic_range_db; }, decibels()});
   add_control(*grid, {"ultrasound-persistence", tr("Persistence"), tr("Weight of the previous frame"), 0, 0.95, 0.05,
                       [](S& s) -> double& { return s.display.persistence; },
-                      [](double part) { return QStringLiteral("%1 %").arg(100.0 * part, 0, 'f', 0); }});
+                      [](double part) { return QStringLiteral("%L1 %").arg(100.0 * part, 0, 'f', 0); }});
   automatic_ = small_button("ultrasound-automatic-gain", tr("Automatic gain"), tooltip_of(Action::kAutomaticGain));
   automatic_->setCheckable(true);
   connect(automatic_, &QPushButton::clicked, this, [this] { view_.set_gain_automatically(); });
@@ -232,7 +233,7 @@ QWidget* UltrasoundControls::make_picture() {
   gray_map_->setObjectName(QStringLiteral("ultrasound-gray-map"));
   gray_map_->setAccessibleName(tr("Gray map"));
   gray_map_->setToolTip(tr("Gray map"));
-  for (const ultrasound::GrayMap map : kMaps) gray_map_->addItem(to_qt(ultrasound::name_of(map)));
+  for (const ultrasound::GrayMap map : kMaps) gray_map_->addItem(shown(ultrasound::name_of(map)));
   connect(gray_map_, qOverload<int>(&QComboBox::activated), this,
           [this](int index) { view_.change_settings([&](S& s) { s.display.gray_map = kMaps[index]; }); });
   const int row = grid->rowCount();
@@ -341,7 +342,7 @@ QWidget* UltrasoundControls::make_guide() {
   add_control(
       *grid, {"ultrasound-guide-angle", tr("Angle"), tr("Angle between the guide and the central axis of the beam"), 10,
               80, 1, [](S& s) -> double& { return s.guide.angle_deg; },
-              [](double deg) { return QStringLiteral("%1°").arg(deg, 0, 'f', 0); }});
+              [](double deg) { return QStringLiteral("%L1°").arg(deg, 0, 'f', 0); }});
   box->addLayout(grid);
   guide_ = widget;
   return widget;
@@ -360,10 +361,10 @@ QWidget* UltrasoundControls::make_doppler() {
   auto* grid = make_control_grid();
   add_control(*grid, {"ultrasound-doppler-scale", tr("Scale"), tr("Velocity limit before aliasing (PRF)"), 2, 200, 1,
                       [](S& s) -> double& { return s.doppler.scale_cm_per_s; },
-                      [](double cm_per_s) { return QStringLiteral("%1 cm/s").arg(cm_per_s, 0, 'f', 0); }});
+                      [](double cm_per_s) { return QStringLiteral("%L1 cm/s").arg(cm_per_s, 0, 'f', 0); }});
   add_control(*grid, {"ultrasound-doppler-baseline", tr("Baseline"), tr("Baseline shift"), -0.9, 0.9, 0.05,
                       [](S& s) -> double& { return s.doppler.baseline; },
-                      [](double b) { return QStringLiteral("%1 %").arg(100.0 * b, 0, 'f', 0); }});
+                      [](double b) { return QStringLiteral("%L1 %").arg(100.0 * b, 0, 'f', 0); }});
   add_control(*grid, {"ultrasound-doppler-gain", tr("Gain"), tr("Colour gain: higher shows weaker flow, then noise"),
                       -40, 40, 1, [](S& s) -> double& { return s.doppler.gain_db; }, decibels()});
   controls->addLayout(grid);
@@ -398,7 +399,7 @@ void UltrasoundControls::show_view() {
     control.value->setText(control.text(value));
   }
   for (Check& check : checks_) check.box->setChecked(check.flag(settings));
-  gray_map_->setCurrentIndex(gray_map_->findText(to_qt(ultrasound::name_of(settings.display.gray_map))));
+  gray_map_->setCurrentIndex(gray_map_->findText(shown(ultrasound::name_of(settings.display.gray_map))));
   transducer_->setCurrentIndex(transducer_->findText(to_qt(view_.transducer().name)));
   engine_->setEnabled(view_.has_panorama());
   engine_->setCurrentIndex(settings.is_panorama && view_.has_panorama() ? 1 : 0);

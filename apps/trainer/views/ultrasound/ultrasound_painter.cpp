@@ -1,5 +1,6 @@
 #include "views/ultrasound/ultrasound_painter.h"
 
+#include <QCoreApplication>
 #include <QFontMetricsF>
 #include <QImage>
 #include <QPainter>
@@ -9,10 +10,15 @@
 
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
+#include "ui_kit/window_language.h"
 #include "ultrasound/doppler/colour_doppler.h"
 
 namespace trocar::trainer {
 namespace {
+
+class UltrasoundPainter {
+  Q_DECLARE_TR_FUNCTIONS(UltrasoundPainter)
+};
 
 const QColor kInk(0xc8, 0xce, 0xd6);
 const QColor kMarkerInk(0x5a, 0xc8, 0x78);
@@ -70,42 +76,42 @@ std::vector<CaptionLine> caption_of(const ultrasound::ScanPicture& picture, cons
   const ultrasound::ScanAnnotation annotation = ultrasound::make_scan_annotation(picture.raster, picture.scan, caption);
   std::vector<CaptionLine> lines;
   for (const ultrasound::ScanAnnotation::Text& text : annotation.texts)
-    if (text.column < annotation.scale_column) lines.push_back({to_qt(text.text), Kind::kPlain});
+    if (text.column < annotation.scale_column) lines.push_back({shown(text.text), Kind::kPlain});
   if (!lines.empty()) lines.front().kind = Kind::kName;
   if (facts.is_small) lines.resize(std::min<std::size_t>(lines.size(), 1));
   if (facts.output) {
     const double transmitted_mhz = picture.acquisition.frequency_mhz * (picture.acquisition.is_harmonic ? 0.5 : 1.0);
     const ultrasound::AcousticIndices indices =
         ultrasound::acoustic_indices(*facts.output, transmitted_mhz, picture.acquisition.focus_mm);
-    const QString mechanical = QStringLiteral("MI %1").arg(indices.mechanical, 0, 'f', 1);
+    const QString mechanical = QStringLiteral("MI %L1").arg(indices.mechanical, 0, 'f', 1);
     // A small view has no room for a further line.
     if (facts.is_small && !lines.empty()) {
       lines.front().text += QStringLiteral(" ") + mechanical;
     } else {
-      lines.push_back({QStringLiteral("%1  TIS %2").arg(mechanical).arg(indices.thermal, 0, 'f', 1), Kind::kPlain});
+      lines.push_back({QStringLiteral("%L1  TIS %L2").arg(mechanical).arg(indices.thermal, 0, 'f', 1), Kind::kPlain});
     }
   }
-  if (facts.zoom > 1.0) lines.push_back({QStringLiteral("Zoom %1x").arg(facts.zoom, 0, 'f', 1), Kind::kPlain});
+  if (facts.zoom > 1.0) lines.push_back({QStringLiteral("Zoom %L1x").arg(facts.zoom, 0, 'f', 1), Kind::kPlain});
   if (picture.is_frozen) {
-    const QString state = facts.cine.is_playing ? QStringLiteral("Cine") : QStringLiteral("Frozen");
+    const QString state = facts.cine.is_playing ? UltrasoundPainter::tr("Cine") : UltrasoundPainter::tr("Frozen");
     lines.push_back(
         {QStringLiteral("%1 %2/%3").arg(state).arg(facts.cine.position + 1).arg(facts.cine.size), Kind::kFrozen});
   } else if (!facts.is_small && facts.frames_per_s >= kLeastRate_hz) {
     lines.push_back(
-        {QStringLiteral("%1 Hz").arg(facts.frames_per_s, 0, 'f', facts.frames_per_s < 1.0 ? 1 : 0), Kind::kPlain});
+        {QStringLiteral("%L1 Hz").arg(facts.frames_per_s, 0, 'f', facts.frames_per_s < 1.0 ? 1 : 0), Kind::kPlain});
   }
   if (picture.coupled_share < kHardlyAny) {
-    lines.push_back({QStringLiteral("No contact"), Kind::kWarning});
+    lines.push_back({UltrasoundPainter::tr("No contact"), Kind::kWarning});
   } else if (picture.coupled_share < kMost) {
-    lines.push_back({QStringLiteral("Poor contact"), Kind::kWarning});
+    lines.push_back({UltrasoundPainter::tr("Poor contact"), Kind::kWarning});
   }
-  if (picture.unscanned_share > kUnscanned) lines.push_back({QStringLiteral("Outside CT"), Kind::kWarning});
+  if (picture.unscanned_share > kUnscanned) lines.push_back({UltrasoundPainter::tr("Outside CT"), Kind::kWarning});
   int number = 1;
   for (const ultrasound::Measurement& measurement : facts.measurements) {
     const std::vector<std::string> texts = ultrasound::results(measurement);
     for (std::size_t n = 0; n < texts.size(); ++n)
       lines.push_back(
-          {(n == 0 ? QStringLiteral("%1  ").arg(number) : QStringLiteral("    ")) + to_qt(texts[n]), Kind::kResult});
+          {(n == 0 ? QStringLiteral("%1  ").arg(number) : QStringLiteral("    ")) + shown(texts[n]), Kind::kResult});
     ++number;
   }
   return lines;
@@ -228,7 +234,7 @@ void draw_bars(QPainter& painter, const QRectF& place, const ultrasound::ScanAnn
   painter.setPen(kInk);
   const auto label = [&](double share) {
     const double value = share * picture.doppler_scale_cm_per_s;
-    return QStringLiteral("%1%2").arg(value > 0.0 ? QStringLiteral("+") : QString()).arg(value, 0, 'f', 0);
+    return QStringLiteral("%L1%L2").arg(value > 0.0 ? QStringLiteral("+") : QString()).arg(value, 0, 'f', 0);
   };
   const QFontMetricsF metrics(font);
   painter.drawText(QPointF(bar.left(), bar.top() - 0.5 * metrics.descent() - 2.0), label(b + 1.0));

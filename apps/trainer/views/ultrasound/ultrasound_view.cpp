@@ -338,8 +338,8 @@ MarginSpace UltrasoundView::room() const {
     std::erase_if(lines, [](const CaptionLine& line) {
       return line.kind == CaptionLine::Kind::kWarning || line.kind == CaptionLine::Kind::kFrozen;
     });
-    lines.push_back({QStringLiteral("Poor contact"), CaptionLine::Kind::kWarning});
-    lines.push_back({QStringLiteral("Outside CT"), CaptionLine::Kind::kWarning});
+    lines.push_back({tr("Poor contact"), CaptionLine::Kind::kWarning});
+    lines.push_back({tr("Outside CT"), CaptionLine::Kind::kWarning});
     if (!is_small && picture_->is_frozen) lines.push_back({QStringLiteral("8"), CaptionLine::Kind::kPlain});
     room.caption = caption_size(lines, font);
   }

@@ -9,6 +9,7 @@
 
 #include "ui_kit/action_table.h"
 #include "ui_kit/parts.h"
+#include "ui_kit/window_language.h"
 #include "ultrasound/scanner/automatic_gain.h"
 #include "views/ultrasound/ultrasound_view.h"
 
@@ -111,7 +112,7 @@ QString UltrasoundView::live_result() const {
   if (tool_ == MeasuringTool::kNone || marks_T_.empty() || marks_T_.size() + 1 < marks_of(tool_)) return {};
   std::vector<ultrasound::Vec2> marks_T = marks_T_;
   marks_T.push_back(hover_T_);
-  return to_qt(ultrasound::results(finished(tool_, marks_T)).front());
+  return shown(ultrasound::results(finished(tool_, marks_T)).front());
 }
 
 void UltrasoundView::leave_tool() {

@@ -24,10 +24,10 @@ struct Projection {
   double lao_deg, cranial_deg;
 };
 constexpr std::array<Projection, 4> kProjections{
-    {{"xray-ap", QT_TRANSLATE_NOOP("XrayControls", "AP"), 0.0, 0.0},
-     {"xray-rao30", QT_TRANSLATE_NOOP("XrayControls", "RAO 30"), -30.0, 0.0},
-     {"xray-lao30", QT_TRANSLATE_NOOP("XrayControls", "LAO 30"), 30.0, 0.0},
-     {"xray-lateral", QT_TRANSLATE_NOOP("XrayControls", "Lateral"), 90.0, 0.0}}};
+    {{"xray-ap", QT_TRANSLATE_NOOP("Table", "AP"), 0.0, 0.0},
+     {"xray-rao30", QT_TRANSLATE_NOOP("Table", "RAO 30"), -30.0, 0.0},
+     {"xray-lao30", QT_TRANSLATE_NOOP("Table", "LAO 30"), 30.0, 0.0},
+     {"xray-lateral", QT_TRANSLATE_NOOP("Table", "Lateral"), 90.0, 0.0}}};
 
 }  // namespace
 

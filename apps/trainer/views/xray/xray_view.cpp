@@ -13,6 +13,7 @@
 #include "core/log.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
+#include "ui_kit/window_language.h"
 
 namespace trocar::trainer {
 namespace {
@@ -43,7 +44,7 @@ void draw_outlined_text(QPainter& painter, const QRectF& area, int flags, const 
 }
 
 QString angle_text(double degrees, const QString& positive, const QString& negative) {
-  return QStringLiteral("%1 %2°").arg(degrees < 0.0 ? negative : positive).arg(std::abs(degrees), 0, 'f', 0);
+  return QStringLiteral("%L1 %L2°").arg(degrees < 0.0 ? negative : positive).arg(std::abs(degrees), 0, 'f', 0);
 }
 
 }  // namespace
@@ -134,7 +135,7 @@ void XrayView::prepare() {
       change_settings([&](XraySettings& s) { s.arm.isocentre_P = prepared_->middle_P; });
     if (!replay_) open_contrast();
   } else {
-    failure_ = to_qt(made->error().text());
+    failure_ = shown(made->error().text());
   }
   update();
 }
@@ -163,7 +164,7 @@ void XrayView::advance_live(double now_s) {
 }
 
 void XrayView::take(std::shared_ptr<const xray::FluoroscopyFrame> newest, const std::optional<Error>& error) {
-  const QString failure = error ? to_qt(error->text()) : QString();
+  const QString failure = error ? shown(error->text()) : QString();
   const bool is_new = newest && (!frame_ || newest->number != frame_->number);
   if (is_new) {
     frame_ = std::move(newest);

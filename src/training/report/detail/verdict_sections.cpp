@@ -104,7 +104,7 @@ std::string verdict_section(const storage::Session& session) {
   std::string out = damage_note(session);
   for (const metrics::HarmEvent& event : outcome.harms)
     if (event.grade >= tasks::Harm::kMajor)
-      out += fmt::format("<p class=\"harm\">&#9888; {} harm: {}</p>", capitalised(to_string(event.grade)),
+      out += fmt::format("<p class=\"harm\">\u26a0 {} harm: {}</p>", capitalised(to_string(event.grade)),
                          escape(harm_text(event)));
   out += fmt::format("<section class=\"verdict {} together\">{}<div><h2>{}</h2><p>{}</p>{}</div></section>",
                      verdict.style, icon_svg(verdict), verdict.word, verdict_facts(session), reasons_list(outcome));

@@ -91,10 +91,12 @@ void add_core_hint(const HintSubject& subject, const BiopsyCore& core, double po
     return;
   }
   const Correction correction = correct(subject, notch_offset_P, core.tip_P, core.axis_P);
-  const std::string what = core.target_mm > 0.0
-                               ? fmt::format("The core holds only {:.0f} mm of {} of {:.0f} mm possible",
-                                             core.target_mm, subject.target_name(), judged.possible_core_mm)
-                               : fmt::format("The core missed the {}", subject.target_name());
+  std::string what = fmt::format("The core missed the {}", subject.target_name());
+  if (core.target_mm >= kFullCore * judged.possible_core_mm)
+    what = "The core is complete, but the notch was off the target";
+  else if (core.target_mm > 0.0)
+    what = fmt::format("The core holds only {:.0f} mm of {} of {:.0f} mm possible", core.target_mm,
+                       subject.target_name(), judged.possible_core_mm);
   const std::string why = correction.is_empty() ? "."
                                                 : fmt::format(": the notch lay {}; {} before you fire.",
                                                               correction.deviation, correction.advice);
