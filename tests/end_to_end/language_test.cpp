@@ -4,6 +4,8 @@
 
 #include "anatomy/phantom/phantom.h"
 #include "anatomy/structure_words.h"
+#include "anatomy/tissue/tissue_parameters.h"
+#include "anatomy/tissue/tissue_table.h"
 #include "attempt.h"
 #include "attempt/live/attempt_event.h"
 #include "cases/testing/cached_case.h"
@@ -93,6 +95,10 @@ TEST(Languages, HaveWordsForEveryTask) {
   ASSERT_TRUE(tasks) << tasks.error().text();
   const auto tutorial = tasks::load_task_file(data_dir() / "tutorial" / "first-puncture.toml", data_dir() / "tasks");
   ASSERT_TRUE(tutorial) << tutorial.error().text();
+  const auto needles = tasks::load_needles(data_dir() / "needles.toml");
+  ASSERT_TRUE(needles) << needles.error().text();
+  const auto tissues = anatomy::load_tissue_table(data_dir() / "tissues.toml");
+  ASSERT_TRUE(tissues) << tissues.error().text();
   std::vector<tasks::Task> all = *tasks;
   all.push_back(*tutorial);
   for (const language::Language& language : other_languages()) {
@@ -104,6 +110,11 @@ TEST(Languages, HaveWordsForEveryTask) {
         lacking.check(phase.title);
         lacking.check(phase.why);
       }
+    }
+    for (const tasks::Needle& needle : *needles) lacking.check(needle.title);
+    for (const anatomy::TissueParameterGroup& group : anatomy::tissue_parameters(*tissues)) {
+      lacking.check(anatomy::structure_words(group.name));
+      for (const anatomy::TissueParameter& parameter : group.parameters) lacking.check(std::string(parameter.name));
     }
     for (const anatomy::PhantomInfo& info : anatomy::embedded_patients()) {
       lacking.check(info.description);

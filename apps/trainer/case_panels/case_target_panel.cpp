@@ -140,7 +140,7 @@ class TargetPanel final : public CasePanel {
     table_->verticalHeader()->setDefaultSectionSize(26);
     table_->horizontalHeader()->setSectionResizeMode(kRiskStructure, QHeaderView::Stretch);
     table_->setColumnWidth(kRiskMargin, 72);
-    table_->setColumnWidth(kRiskHarm, 64);
+    table_->setColumnWidth(kRiskHarm, 76);
     table_->setShowGrid(false);
     table_->setEditTriggers(QAbstractItemView::NoEditTriggers);
     table_->setSelectionBehavior(QAbstractItemView::SelectRows);
@@ -165,6 +165,8 @@ class TargetPanel final : public CasePanel {
     auto* numbers = new QHBoxLayout;
     margin_ = make_number("case-risk-margin", tr("Required margin of a path"), 50.0, tr(" mm"));
     harm_ = new QComboBox;
+    harm_->setMinimumContentsLength(6);
+    harm_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     harm_->setObjectName(QStringLiteral("case-risk-harm"));
     harm_->setAccessibleName(tr("Harm"));
     harm_->setToolTip(tr("What it means if the needle goes into it"));
@@ -178,7 +180,7 @@ class TargetPanel final : public CasePanel {
     structure_->setObjectName(QStringLiteral("case-risk-structure"));
     structure_->setAccessibleName(tr("Structure to add"));
     structure_->setToolTip(tr("A tissue, or one label of this patient"));
-    structure_->setMinimumContentsLength(6);
+    structure_->setMinimumContentsLength(4);
     structure_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     QPushButton* add = make_button("case-risk-add", tr("Add"), tr("Add this structure to the list"));
     QPushButton* remove = make_button("case-risk-remove", tr("Remove"), tr("Remove the selected row from the list"));

@@ -58,7 +58,9 @@ class UltrasoundPanel final : public CasePanel {
 
  private:
   void add_file() {
-    content()->addWidget(make_label(tr("A sweep or a stitched panorama"), "dim"));
+    QLabel* kind = make_label(tr("A sweep or a stitched panorama"), "dim");
+    kind->setWordWrap(true);
+    content()->addWidget(kind);
     file_ = new QLineEdit;
     file_->setObjectName(QStringLiteral("case-us-file"));
     file_->setAccessibleName(tr("Ultrasound volume"));

@@ -23,7 +23,7 @@
 namespace trocar::trainer {
 namespace {
 
-constexpr int kPanelWidth = 340;
+constexpr int kPanelWidth = 364;
 constexpr int kChecksHeight = 132;
 constexpr int kFootHeight = 36;
 

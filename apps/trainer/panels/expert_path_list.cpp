@@ -37,7 +37,7 @@ ExpertPathList::ExpertPathList(QWidget* parent) : QWidget(parent) {
   caption->setWordWrap(true);
   column->addWidget(caption);
   grid_ = new QGridLayout;
-  grid_->setHorizontalSpacing(8);
+  grid_->setHorizontalSpacing(5);
   grid_->setVerticalSpacing(3);
   grid_->setColumnStretch(1, 1);
   column->addLayout(grid_);

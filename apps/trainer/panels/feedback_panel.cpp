@@ -104,7 +104,7 @@ FeedbackPanel::FeedbackPanel(QWidget* parent) : QWidget(parent) {
   scroll_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   auto* inside = new QWidget;
   auto* content = new QVBoxLayout(inside);
-  content->setContentsMargins(16, 12, 16, 12);
+  content->setContentsMargins(12, 12, 12, 12);
   content->setSpacing(10);
   alarm_ = make_label({}, "alarm");
   alarm_->setObjectName(QStringLiteral("harm-alarm"));

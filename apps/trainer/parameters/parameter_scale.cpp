@@ -43,7 +43,7 @@ double ParameterScale::value_at(int position) const noexcept {
 }
 
 QString number_text(double value) {
-  return std::isinf(value) ? QCoreApplication::translate("ParameterScale", "never") : to_qt(fmt::format("{}", value));
+  return std::isinf(value) ? QCoreApplication::translate("ParameterScale", "never") : shown(fmt::format("{}", value));
 }
 
 QString range_text(const anatomy::TissueParameter& parameter) {

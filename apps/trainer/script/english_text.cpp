@@ -16,6 +16,7 @@ namespace {
 
 /// Frequent words of English that German, French, Spanish and Italian do not have.
 bool is_english(QString text) {
+  static const QRegularExpression citation(QStringLiteral("<span lang=\"en\">.*</span>"));
   static const QRegularExpression tag(QStringLiteral("<[^>]*>"));
   static const QRegularExpression words(
       QStringLiteral("\\b(the|of|and|with|is|are|from|this|that|has|have|not|for|needle|image|images|view|views|forces|"
@@ -24,7 +25,7 @@ bool is_english(QString text) {
       QRegularExpression::CaseInsensitiveOption);
   // Files, addresses and identifiers (liver-sweep) are the same in every language.
   static const QRegularExpression names(QStringLiteral("\\S*[/_@]\\S*|\\S+\\.[a-z]{2,}\\S*|\\b[a-z]+-[a-z0-9-]+"));
-  return text.remove(tag).remove(names).contains(words);
+  return text.remove(citation).remove(tag).remove(names).contains(words);
 }
 
 QStringList texts_of(const QWidget& widget) {

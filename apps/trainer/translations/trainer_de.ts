@@ -1564,10 +1564,6 @@ Rechts ziehen: Helligkeit und Kontrast · Mitte oder Umschalt + links ziehen: ve
         <translation>Eine Landmarke des Falls oder ein beliebiger anderer Name: eine Gefäßgabelung, ein Nierenpol</translation>
     </message>
     <message>
-        <source>landmark 1</source>
-        <translation>Landmarke 1</translation>
-    </message>
-    <message>
         <source>Place by click</source>
         <translation>Per Klick setzen</translation>
     </message>
@@ -1872,7 +1868,7 @@ Rechts ziehen: Helligkeit und Kontrast · Mitte oder Umschalt + links ziehen: ve
     </message>
     <message>
         <source>Add a device by name …</source>
-        <translation>Gerät nach Name hinzufügen …</translation>
+        <translation>Anderes Gerät …</translation>
     </message>
     <message>
         <source>An OpenHaptics device with the name assigned in the vendor&apos;s setup program</source>
@@ -1880,11 +1876,11 @@ Rechts ziehen: Helligkeit und Kontrast · Mitte oder Umschalt + links ziehen: ve
     </message>
     <message>
         <source>Needle device</source>
-        <translation>Gerät der Nadel</translation>
+        <translation>Nadelgerät</translation>
     </message>
     <message>
         <source>Transducer device</source>
-        <translation>Gerät des Schallkopfs</translation>
+        <translation>Schallkopfgerät</translation>
     </message>
     <message>
         <source>Test</source>
@@ -3527,7 +3523,7 @@ Nachlauf: Abstand, um den das Instrument hinter der Hand zurückbleibt.</transla
     <name>trocar::trainer::StartPage</name>
     <message>
         <source>Select a task and a patient</source>
-        <translation>Aufgabe und Patienten auswählen</translation>
+        <translation>Aufgabe und Patient</translation>
     </message>
     <message>
         <source>A trainer, not a medical device.</source>

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "ui_kit/theme.h"
+#include "ui_kit/window_language.h"
 
 namespace trocar::trainer {
 namespace {
@@ -15,7 +16,7 @@ int steps_in(double points, double room) {
 }
 
 QString tick_label(double value, double step) {
-  return QString::fromStdString(report::tick_text(value, step));
+  return shown(report::tick_text(value, step));
 }
 
 }  // namespace

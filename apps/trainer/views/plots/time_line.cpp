@@ -4,6 +4,7 @@
 #include <QHBoxLayout>
 #include <QKeyEvent>
 #include <QLabel>
+#include <QLocale>
 #include <QToolButton>
 #include <algorithm>
 #include <cmath>
@@ -21,7 +22,11 @@ constexpr double kSame_s = 1e-3;  ///< Within one tick of the recording: the sam
 
 QString clock_text(double time_s) {
   const auto tenths = std::llround(10.0 * time_s);
-  return QStringLiteral("%1:%2.%3").arg(tenths / 600).arg(tenths / 10 % 60, 2, 10, QLatin1Char('0')).arg(tenths % 10);
+  return QStringLiteral("%1:%2%3%4")
+      .arg(tenths / 600)
+      .arg(tenths / 10 % 60, 2, 10, QLatin1Char('0'))
+      .arg(QLocale().decimalPoint())
+      .arg(tenths % 10);
 }
 
 }  // namespace
