@@ -1,5 +1,7 @@
 // Every language has words for what attempts at the four tasks say to a trainee.
 
+#include "language/language.h"
+
 #include <set>
 
 #include "anatomy/phantom/phantom.h"
@@ -10,7 +12,6 @@
 #include "attempt/live/attempt_event.h"
 #include "cases/testing/cached_case.h"
 #include "core/files/data_dir.h"
-#include "language/language.h"
 #include "report/html_report.h"
 #include "tasks/task.h"
 
@@ -23,8 +24,8 @@ class Lacking {
   explicit Lacking(const language::Language& language) : language_(language) {}
   void check(const std::string& text) {
     // One word with a digit is an identifier: a needle, a hash, a version.
-    const bool is_name = names_.contains(text) || (text.find(' ') == std::string::npos &&
-                                                   text.find_first_of("0123456789") != std::string::npos);
+    const bool is_name = names_.contains(text) ||
+                         (text.find(' ') == std::string::npos && text.find_first_of("0123456789") != std::string::npos);
     if (!is_name && !language_.find(text)) texts_.insert(text);
   }
   /// A name: the same in every language.
@@ -60,8 +61,7 @@ std::string report_of(const cases::Case& the_case, const char* operator_name) {
   for (const attempt::AttemptEvent& action :
        attempt::describe_actions(the_case.substances, attempt.session, the_case.patient.get()))
     story.actions.push_back({action.time_s, action.depth_mm, action.text});
-  story.steps =
-      report::step_times(attempt.session, the_case.task, *the_case.patient, the_case.needle, the_case.plan);
+  story.steps = report::step_times(attempt.session, the_case.task, *the_case.patient, the_case.needle, the_case.plan);
   return report::html_report(attempt.session, the_case.patient.get(), story);
 }
 
@@ -69,8 +69,10 @@ TEST(Languages, HaveWordsForEveryReport) {
   const std::vector<language::Language> languages = other_languages();
   ASSERT_FALSE(languages.empty());
   std::vector<Lacking> lacking(languages.begin(), languages.end());
-  const std::pair<const char*, const char*> choices[] = {
-      {"liver-biopsy", "biopsy-1"}, {"lumbar-puncture", "lumbar-1"}, {"ascites-puncture", "ascites-1"}, {"ptcd", "ptcd-1"}};
+  const std::pair<const char*, const char*> choices[] = {{"liver-biopsy", "biopsy-1"},
+                                                         {"lumbar-puncture", "lumbar-1"},
+                                                         {"ascites-puncture", "ascites-1"},
+                                                         {"ptcd", "ptcd-1"}};
   for (const auto& [task, patient] : choices) {
     cases::CaseChoice choice;
     choice.options.task = task;
@@ -120,7 +122,8 @@ TEST(Languages, HaveWordsForEveryTask) {
       lacking.check(info.description);
       lacking.check(info.briefing);
       if (!info.referral) continue;
-      for (const std::string* text : {&info.referral->indication, &info.referral->coagulation, &info.referral->allergies})
+      for (const std::string* text :
+           {&info.referral->indication, &info.referral->coagulation, &info.referral->allergies})
         lacking.check(*text);
     }
     EXPECT_EQ(lacking.count(), 0u) << language.code() << " lacks:\n" << lacking.lines();

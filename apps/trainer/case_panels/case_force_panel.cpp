@@ -64,8 +64,8 @@ class ForcePanel final : public CasePanel {
     table_->setRowCount(static_cast<int>(preview->events.size()));
     for (std::size_t n = 0; n < preview->events.size(); ++n) {
       const cases::CurveEvent& event = preview->events[n];
-      const QStringList texts{shown(anatomy::structure_words(event.layer)),
-                              QLocale().toString(event.tip_mm, 'f', 1), QLocale().toString(event.peak_n, 'f', 2)};
+      const QStringList texts{shown(anatomy::structure_words(event.layer)), QLocale().toString(event.tip_mm, 'f', 1),
+                              QLocale().toString(event.peak_n, 'f', 2)};
       for (int column = 0; column < 3; ++column) {
         auto* cell = new QTableWidgetItem(texts[column]);
         if (column > 0) cell->setTextAlignment(Qt::AlignRight | Qt::AlignVCenter);

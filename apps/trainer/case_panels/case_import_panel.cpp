@@ -1,7 +1,7 @@
 // Step 1 of the case builder: input files of the case.
-#include <QCoreApplication>
 #include <QCheckBox>
 #include <QComboBox>
+#include <QCoreApplication>
 #include <QFileDialog>
 #include <QLabel>
 #include <QLineEdit>

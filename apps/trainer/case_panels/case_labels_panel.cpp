@@ -1,11 +1,11 @@
 // Step 2 of the case builder: check and edit the labels.
-#include <QCoreApplication>
 #include <QColorDialog>
 #include <QComboBox>
+#include <QCoreApplication>
 #include <QHeaderView>
 #include <QLabel>
-#include <QLocale>
 #include <QLineEdit>
+#include <QLocale>
 #include <QPushButton>
 #include <QSlider>
 #include <QTableWidget>
@@ -119,8 +119,9 @@ class LabelsPanel final : public CasePanel {
     connect(tissue_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this] {
       const anatomy::Label* label = selected();
       if (is_refreshing_ || label == nullptr || tissue_->currentIndex() < 0) return;
-      editor_.edit(case_builder::set_label_tissue(editor_.draft(), label->id, to_std(tissue_->currentData().toString())),
-                   "change a tissue");
+      editor_.edit(
+          case_builder::set_label_tissue(editor_.draft(), label->id, to_std(tissue_->currentData().toString())),
+          "change a tissue");
     });
     connect(color_, &QPushButton::clicked, this, [this] { choose_color(); });
   }

@@ -1,6 +1,6 @@
 // Step 6 of the case builder: name, description and output folder.
-#include <QCoreApplication>
 #include <QCheckBox>
+#include <QCoreApplication>
 #include <QDir>
 #include <QFileDialog>
 #include <QLabel>

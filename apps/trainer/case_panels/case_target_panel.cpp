@@ -1,6 +1,6 @@
 // Step 3 of the case builder: target and structures at risk.
-#include <QCoreApplication>
 #include <QComboBox>
+#include <QCoreApplication>
 #include <QDoubleSpinBox>
 #include <QHeaderView>
 #include <QLabel>

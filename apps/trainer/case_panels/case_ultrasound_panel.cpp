@@ -1,7 +1,7 @@
 // Step 6 of the case builder: a recorded ultrasound volume and its registration to the CT.
-#include <QCoreApplication>
 #include <QCheckBox>
 #include <QComboBox>
+#include <QCoreApplication>
 #include <QFileDialog>
 #include <QLabel>
 #include <QLineEdit>

@@ -10,13 +10,15 @@ const char* name_of(Difficulty difficulty) noexcept {
 }
 
 const char* title_of(Difficulty difficulty) noexcept {
-  constexpr std::array kTitles{QT_TRANSLATE_NOOP("Table", "Guided"), QT_TRANSLATE_NOOP("Table", "Assisted"), QT_TRANSLATE_NOOP("Table", "Exam")};
+  constexpr std::array kTitles{QT_TRANSLATE_NOOP("Table", "Guided"), QT_TRANSLATE_NOOP("Table", "Assisted"),
+                               QT_TRANSLATE_NOOP("Table", "Exam")};
   return kTitles[static_cast<std::size_t>(difficulty)];
 }
 
 const char* help_text_of(Difficulty difficulty) noexcept {
   constexpr std::array kTexts{QT_TRANSLATE_NOOP("Table", "Expert path, entry zone, target, guide line and hints."),
-                              QT_TRANSLATE_NOOP("Table", "Entry zone, target and hints, without the path."), QT_TRANSLATE_NOOP("Table", "Images and forces only.")};
+                              QT_TRANSLATE_NOOP("Table", "Entry zone, target and hints, without the path."),
+                              QT_TRANSLATE_NOOP("Table", "Images and forces only.")};
   return kTexts[static_cast<std::size_t>(difficulty)];
 }
 

@@ -74,6 +74,8 @@ bool PalpatingHand::eventFilter(QObject* /*watched*/, QEvent* event) {
   if (!is_active_) return false;
   const auto& mouse = static_cast<const QMouseEvent&>(*event);
   switch (event->type()) {
+    case QEvent::ToolTip:
+      return true;  // it would cover the tag beside the finger
     case QEvent::MouseMove:
       pointer_ = pointer_place_of(mouse);
       break;

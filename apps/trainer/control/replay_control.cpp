@@ -172,8 +172,8 @@ void ReplayControl::fill_time_line() {
       phases.back().to_s = samples[s].time_s;
       continue;
     }
-    phases.push_back({samples[s].time_s, samples[s].time_s, shown(to_string(samples[s].phase)),
-                      phase_color(samples[s].phase)});
+    phases.push_back(
+        {samples[s].time_s, samples[s].time_s, shown(to_string(samples[s].phase)), phase_color(samples[s].phase)});
   }
   line.set_phases(std::move(phases));
   line.set_curve(std::move(curve));

@@ -136,7 +136,8 @@ QString goal_text(const tasks::Task& task, std::optional<bool> is_parenchymal) {
     return BriefingText::tr("Bring the needle's tip into the spinal fluid of the dural sac.");
   if (is_target_tissue(task, "ascites"))
     return BriefingText::tr("Bring the needle's tip into the free fluid of the abdomen.");
-  if (is_target_tissue(task, "bile_duct")) return BriefingText::tr("Bring the needle's tip into a bile duct of the liver.");
+  if (is_target_tissue(task, "bile_duct"))
+    return BriefingText::tr("Bring the needle's tip into a bile duct of the liver.");
   if (!is_parenchymal)
     return BriefingText::tr("Bring the needle's tip to the lesion of the %1; without a lesion, to its healthy tissue.")
         .arg(words(task.organ));
@@ -159,7 +160,8 @@ QString guidance_text(tasks::Guidance guidance) {
 
 /// The title has gauge, length and throw.
 QString needle_text(const tasks::Needle& needle) {
-  QString text = BriefingText::tr("%1; %2 mm thick").arg(escaped(needle.title)).arg(needle.outer_diameter_mm, 0, 'f', 2);
+  QString text =
+      BriefingText::tr("%1; %2 mm thick").arg(escaped(needle.title)).arg(needle.outer_diameter_mm, 0, 'f', 2);
   if (needle.is_biopsy)
     text += BriefingText::tr(", notch of %1 mm; the stylet shoots %2 mm beyond the tip")
                 .arg(needle.notch_mm, 0, 'f', 0)
@@ -239,13 +241,19 @@ struct Control {
   const char* with;
   const char* does;
 };
-constexpr Control kNeedleByGamepad[] = {{QT_TRANSLATE_NOOP("Table", "left stick"), QT_TRANSLATE_NOOP("Table", "moves the needle; cross: lifts and lowers it")},
-                                        {QT_TRANSLATE_NOOP("Table", "right stick"), QT_TRANSLATE_NOOP("Table", "swings the tip in the direction of the stick")},
-                                        {QT_TRANSLATE_NOOP("Table", "triggers"), QT_TRANSLATE_NOOP("Table", "right: push in, left: pull out; rumble: resistance")},
-                                        {QT_TRANSLATE_NOOP("Table", "shoulders"), QT_TRANSLATE_NOOP("Table", "turn the bevel")}};
-constexpr Control kProbeByGamepad[] = {{QT_TRANSLATE_NOOP("Table", "left stick"), QT_TRANSLATE_NOOP("Table", "moves the transducer; cross: lifts and lowers it")},
-                                       {QT_TRANSLATE_NOOP("Table", "right stick"), QT_TRANSLATE_NOOP("Table", "tilts it")},
-                                       {QT_TRANSLATE_NOOP("Table", "shoulders"), QT_TRANSLATE_NOOP("Table", "turn it")}};
+constexpr Control kNeedleByGamepad[] = {
+    {QT_TRANSLATE_NOOP("Table", "left stick"),
+     QT_TRANSLATE_NOOP("Table", "moves the needle; cross: lifts and lowers it")},
+    {QT_TRANSLATE_NOOP("Table", "right stick"),
+     QT_TRANSLATE_NOOP("Table", "swings the tip in the direction of the stick")},
+    {QT_TRANSLATE_NOOP("Table", "triggers"),
+     QT_TRANSLATE_NOOP("Table", "right: push in, left: pull out; rumble: resistance")},
+    {QT_TRANSLATE_NOOP("Table", "shoulders"), QT_TRANSLATE_NOOP("Table", "turn the bevel")}};
+constexpr Control kProbeByGamepad[] = {
+    {QT_TRANSLATE_NOOP("Table", "left stick"),
+     QT_TRANSLATE_NOOP("Table", "moves the transducer; cross: lifts and lowers it")},
+    {QT_TRANSLATE_NOOP("Table", "right stick"), QT_TRANSLATE_NOOP("Table", "tilts it")},
+    {QT_TRANSLATE_NOOP("Table", "shoulders"), QT_TRANSLATE_NOOP("Table", "turn it")}};
 constexpr Action kByMouse[] = {Action::kMove, Action::kTilt, Action::kAdvance, Action::kAdvanceFinely};
 
 void add_action(std::vector<BriefingRow>& rows, Action action) {
@@ -253,7 +261,8 @@ void add_action(std::vector<BriefingRow>& rows, Action action) {
 }
 
 void add_controls(std::vector<BriefingRow>& rows, std::span<const Control> controls) {
-  for (const Control& control : controls) rows.push_back({BriefingText::tr(control.with), BriefingText::tr(control.does)});
+  for (const Control& control : controls)
+    rows.push_back({BriefingText::tr(control.with), BriefingText::tr(control.does)});
 }
 
 /// Rows for devices other than the mouse.
@@ -264,7 +273,8 @@ void add_device(std::vector<BriefingRow>& rows, const std::string& device, bool 
   }
   const QString tool = is_needle ? BriefingText::tr("needle") : BriefingText::tr("transducer");
   if (device == "spacemouse")
-    return rows.push_back({BriefingText::tr("cap"), BriefingText::tr("push and turn it to move and turn the %1").arg(tool)});
+    return rows.push_back(
+        {BriefingText::tr("cap"), BriefingText::tr("push and turn it to move and turn the %1").arg(tool)});
   rows.push_back({shown(attempt::device_title(device)), BriefingText::tr("its stylus is the %1").arg(tool)});
 }
 
@@ -286,11 +296,12 @@ std::vector<BriefingRow> referral_rows(const TrainerChoice& choice) {
   }
   const PatientEntry entry = info != nullptr ? PatientEntry{{}, to_qt(info->name), {}, shown(info->description), {}, {}}
                                              : folder_entry(to_qt(choice.patient));
-  return {{BriefingText::tr("Patient"), QStringLiteral("<b>%1</b>").arg(entry.name.toHtmlEscaped())},
-          {BriefingText::tr("Description"), entry.description.isEmpty() ? not_stated() : entry.description.toHtmlEscaped()},
-          {BriefingText::tr("Indication"), not_stated()},
-          {BriefingText::tr("Coagulation"), not_stated()},
-          {BriefingText::tr("Allergies"), not_stated()}};
+  return {
+      {BriefingText::tr("Patient"), QStringLiteral("<b>%1</b>").arg(entry.name.toHtmlEscaped())},
+      {BriefingText::tr("Description"), entry.description.isEmpty() ? not_stated() : entry.description.toHtmlEscaped()},
+      {BriefingText::tr("Indication"), not_stated()},
+      {BriefingText::tr("Coagulation"), not_stated()},
+      {BriefingText::tr("Allergies"), not_stated()}};
 }
 
 std::vector<BriefingRow> finding_rows(const cases::Case& the_case) {
@@ -324,7 +335,8 @@ BriefingRow path_row(const cases::Case& the_case) {
   const tasks::PlannedPath& plan = the_case.plan;
   QString text = BriefingText::tr("%1 mm long").arg(plan.length_mm, 0, 'f', 0);
   if (plan.organ_path_mm >= 1.0)  // else the path ends where the organ begins: a space filled with fluid
-    text += BriefingText::tr(", %1 mm of it in the %2").arg(plan.organ_path_mm, 0, 'f', 0).arg(words(the_case.task.organ));
+    text +=
+        BriefingText::tr(", %1 mm of it in the %2").arg(plan.organ_path_mm, 0, 'f', 0).arg(words(the_case.task.organ));
   text += BriefingText::tr("; nearest structure at risk: %1")
               .arg(plan.nearest_risk.empty() ? BriefingText::tr("none") : words(plan.nearest_risk));
   return {BriefingText::tr("Planned path"), text};
@@ -338,10 +350,11 @@ std::vector<BriefingRow> scoring_rows(const cases::Case& tables) {
        BriefingText::tr("with %1 of 100 points and the target reached").arg(task.pass_mark, 0, 'f', 0)}};
   if (!task.risks.empty()) rows.push_back({BriefingText::tr("Do not touch"), risks_text(task)});
   if (const QString failing = failing_text(tables); !failing.isEmpty())
-    rows.push_back({BriefingText::tr("Not passed"), BriefingText::tr("whatever the points, after touching: %1").arg(failing)});
-  if (task.highest_entry)
     rows.push_back(
-        {BriefingText::tr("Not passed"), BriefingText::tr("whatever the points: %1").arg(escaped(task.highest_entry->reason))});
+        {BriefingText::tr("Not passed"), BriefingText::tr("whatever the points, after touching: %1").arg(failing)});
+  if (task.highest_entry)
+    rows.push_back({BriefingText::tr("Not passed"),
+                    BriefingText::tr("whatever the points: %1").arg(escaped(task.highest_entry->reason))});
   return rows;
 }
 

@@ -213,8 +213,8 @@ void FeedbackPanel::show_parts(const std::vector<scoring::ScorePart>& parts) {
     parts_->addWidget(title, row, 0);
     auto* value = make_label(shown(scoring::part_value_text(part)), "dim");
     value->setAlignment(Qt::AlignRight | Qt::AlignBottom);
-    value->setVisible(!scoring::is_deduction(part));
     parts_->addWidget(value, row, 1);
+    value->setVisible(!scoring::is_deduction(part));  // without a parent it would be a window
     if (!scoring::is_deduction(part)) parts_->addWidget(new PointsBar(part.points, part.max_points), row + 1, 0);
     auto* points = make_label(scoring::is_deduction(part)
                                   ? tr("%1").arg(part.points, 0, 'f', 0)

@@ -153,9 +153,10 @@ void ParameterRow::make_parts(const QString& name) {
 QString ParameterRow::tooltip() const {
   const anatomy::Provenance& source = parameter_.provenance;
   const QString unit = parameter_.unit.empty() ? QString() : QStringLiteral(" ") + shown(parameter_.unit);
-  QStringList lines{tr("Default %1%2").arg(number_text(parameter_.value), unit),
-                    // A citation keeps its language.
-                    tr("Source: %1").arg(QStringLiteral("<span lang=\"en\">%1</span>").arg(to_qt(source.source).toHtmlEscaped()))};
+  QStringList lines{
+      tr("Default %1%2").arg(number_text(parameter_.value), unit),
+      // A citation keeps its language.
+      tr("Source: %1").arg(QStringLiteral("<span lang=\"en\">%1</span>").arg(to_qt(source.source).toHtmlEscaped()))};
   if (source.low && source.high)
     lines << tr("Plausible range: %1 to %2%3").arg(number_text(*source.low), number_text(*source.high), unit);
   lines << tr("Taken: %1").arg(range_text(parameter_));

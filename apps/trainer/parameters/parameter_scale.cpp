@@ -56,7 +56,8 @@ QString range_text(const anatomy::TissueParameter& parameter) {
 
 bool read_number(const QString& text, const anatomy::TissueParameter& parameter, double& value) {
   QString plain = text.trimmed();
-  if (parameter.may_be_never && plain.compare(QCoreApplication::translate("ParameterScale", "never"), Qt::CaseInsensitive) == 0) {
+  if (parameter.may_be_never &&
+      plain.compare(QCoreApplication::translate("ParameterScale", "never"), Qt::CaseInsensitive) == 0) {
     value = std::numeric_limits<double>::infinity();
     return true;
   }

@@ -37,8 +37,10 @@ struct Step {
   const char* page;
   const char* title;
 };
-constexpr Step kPageSteps[] = {
-    {"start", QT_TRANSLATE_NOOP("Table", "Choose")}, {"briefing", QT_TRANSLATE_NOOP("Table", "Briefing")}, {"puncture", QT_TRANSLATE_NOOP("Table", "Puncture")}, {"feedback", QT_TRANSLATE_NOOP("Table", "Feedback")}};
+constexpr Step kPageSteps[] = {{"start", QT_TRANSLATE_NOOP("Table", "Choose")},
+                               {"briefing", QT_TRANSLATE_NOOP("Table", "Briefing")},
+                               {"puncture", QT_TRANSLATE_NOOP("Table", "Puncture")},
+                               {"feedback", QT_TRANSLATE_NOOP("Table", "Feedback")}};
 
 /// Fits a screen of 1024x768 with the bars of a desktop.
 constexpr QSize kLeastSize(960, 640);

@@ -14,6 +14,15 @@
 namespace trocar::trainer {
 namespace {
 
+scoring::Outcome long_outcome() {
+  scoring::Outcome outcome;
+  outcome.score = 42.0;
+  for (int n = 0; n < 8; ++n) outcome.parts.push_back({"target", "Distance to the target", 12.0, "mm", 3.0, 25.0});
+  for (int n = 0; n < 6; ++n)
+    outcome.hints.push_back({"Bring the tip to the target, hold it still and fire the gun.", {}});
+  return outcome;
+}
+
 TEST(FeedbackPanelTest, ShowsTheNextExerciseAndTheSignedResult) {
   FeedbackPanel panel;
   const auto* next = panel.findChild<QLabel*>(QStringLiteral("feedback-next"));
@@ -31,6 +40,28 @@ TEST(FeedbackPanelTest, ShowsTheNextExerciseAndTheSignedResult) {
   EXPECT_TRUE(result->isHidden());
 }
 
+/// Counts the windows that are opened while it lives.
+class WindowCount : public QObject {
+ public:
+  WindowCount() { QCoreApplication::instance()->installEventFilter(this); }
+  bool eventFilter(QObject* watched, QEvent* event) override {
+    const auto* widget = qobject_cast<const QWidget*>(watched);
+    if (event->type() == QEvent::Show && widget != nullptr && widget->isWindow()) ++opened;
+    return false;
+  }
+  int opened = 0;
+};
+
+TEST(FeedbackPanelTest, OpensNoWindowOfItsOwn) {
+  FeedbackPanel panel;
+  panel.show();
+  const WindowCount windows;
+  panel.show_outcome(long_outcome(), QStringLiteral("Worst moment"));
+  panel.show_next(QStringLiteral("Liver biopsy"));
+  panel.show_notes({QStringLiteral("12 ticks of the needle did not arrive")});
+  EXPECT_EQ(windows.opened, 0);
+}
+
 TEST(FeedbackPanelTest, ShowsWhatHappenedBesideTheTrainee) {
   FeedbackPanel panel;
   const auto* notes = panel.findChild<QLabel*>(QStringLiteral("attempt-notes"));
@@ -43,15 +74,6 @@ TEST(FeedbackPanelTest, ShowsWhatHappenedBesideTheTrainee) {
   EXPECT_TRUE(notes->text().contains(QStringLiteral("skin.fp=6")));
   panel.show_notes({});
   EXPECT_TRUE(notes->isHidden());
-}
-
-scoring::Outcome long_outcome() {
-  scoring::Outcome outcome;
-  outcome.score = 42.0;
-  for (int n = 0; n < 8; ++n) outcome.parts.push_back({"target", "Distance to the target", 12.0, "mm", 3.0, 25.0});
-  for (int n = 0; n < 6; ++n)
-    outcome.hints.push_back({"Bring the tip to the target, hold it still and fire the gun.", {}});
-  return outcome;
 }
 
 TEST(FeedbackPanelTest, OpensAtTheTopEachTime) {

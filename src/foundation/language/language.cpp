@@ -19,12 +19,13 @@ constexpr int kMostFitting = 12;
 
 constexpr std::string_view kBlanks = " \n\t";
 /// Marks that may end a text and are the same in every language.
+constexpr std::size_t kFewMarks = 3;
 constexpr std::string_view kMarks = ".:;,!?";
 
 /// Units are the same in every language: a text of numbers and units needs no translation but its decimal sign.
-constexpr std::array kUnits = {"mm", "cm",  "m",    "N",   "mN",  "s",  "ms", "min", "h",  "Hz", "kHz", "MHz",
-                               "dB", "ml",  "mJ",   "J",   "kPa", "Pa", "HU", "G",   "kV", "mA", "mAs", "mGy",
-                               "Gy", "MPa", "fps", "kg", "MB", "GB", "Nm", "x"};
+constexpr std::array kUnits = {"mm",  "cm",  "m",  "N",   "mN",  "s",   "ms", "min", "h",  "Hz", "kHz",
+                               "MHz", "dB",  "ml", "mJ",  "J",   "kPa", "Pa", "HU",  "G",  "kV", "mA",
+                               "mAs", "mGy", "Gy", "MPa", "fps", "kg",  "MB", "GB",  "Nm", "x"};
 
 // The functions of <cctype> depend on the locale: bytes of UTF-8 are no letters here.
 bool is_upper(char c) {
@@ -104,22 +105,32 @@ std::size_t end_of_sentence(std::string_view text) {
   return std::string_view::npos;
 }
 
+/// With a capital first letter: of ASCII, or one with an accent of Latin-1 (two bytes in UTF-8: "ö", "é").
 std::string capitalised(std::string text) {
-  if (is_letter(text.front()) && !is_upper(text.front())) text.front() = static_cast<char>(text.front() - kToOtherCase);
+  const auto byte = [&](std::size_t n) { return n < text.size() ? static_cast<unsigned char>(text[n]) : 0U; };
+  if (is_letter(text.front()) && !is_upper(text.front()))
+    text.front() = static_cast<char>(text.front() - kToOtherCase);
+  else if (byte(0) == 0xC3 && byte(1) >= 0xA0 && byte(1) <= 0xBE && byte(1) != 0xB7)
+    text[1] = static_cast<char>(byte(1) - kToOtherCase);
   return text;
 }
 
 /// "3.5" and not "0.1.0", which is a version.
 std::string with_decimal_sign(std::string_view text, const std::string& sign) {
   std::string result;
-  for (std::size_t n = 0; n < text.size(); ++n) {
-    const auto is_part = [&](std::size_t k) { return k < text.size() && (is_digit(text[k]) || text[k] == '.'); };
-    std::size_t from = n, end = n;
-    while (from > 0 && is_part(from - 1)) --from;
-    while (is_part(end)) ++end;
-    const std::string_view number = text.substr(from, end - from);
-    const bool is_point = text[n] == '.' && n > from && n + 1 < end && std::ranges::count(number, '.') == 1;
-    is_point ? result += sign : result += text[n];
+  for (std::size_t n = 0; n < text.size();) {
+    std::size_t end = n;
+    while (end < text.size() && (is_digit(text[end]) || text[end] == '.')) ++end;
+    const std::string_view run = text.substr(n, std::max<std::size_t>(end - n, 1));
+    const std::size_t last = run.find_last_not_of('.');  // "3.5." at the end of a sentence
+    const std::size_t point = run.find('.');
+    const bool is_decimal = point != std::string_view::npos && point > 0 && last != std::string_view::npos &&
+                            point < last && std::ranges::count(run.substr(0, last + 1), '.') == 1;
+    if (is_decimal)
+      result += std::string(run.substr(0, point)) + sign + std::string(run.substr(point + 1));
+    else
+      result += run;
+    n += run.size();
   }
   return result;
 }
@@ -271,7 +282,9 @@ class Translation {
     if (begin > 0 || behind > 0) return with_inner(begin, behind);
     if (english.size() > 2 && english.starts_with('(') && english.ends_with(')')) return with_inner(1, 1);
     const std::size_t marks = english.size() - 1 - english.find_last_not_of(kMarks);
-    return marks > 0 ? std::optional(with_inner(0, marks)) : std::nullopt;
+    if (marks == 0 || marks == english.size()) return std::nullopt;
+    // One after the other, since "Stop." may be a text with its mark; of a long row all at once.
+    return with_inner(0, marks <= kFewMarks ? 1 : marks);
   }
 
   std::optional<Found> by_pieces(std::string_view english, std::string_view separator) {
@@ -312,7 +325,8 @@ std::vector<LanguageEntry> list_languages() {
   const auto files = list_folder(data_dir() / "language");
   if (!files) return entries;
   for (const std::filesystem::path& file : *files)
-    if (const auto language = file.extension() == ".json" ? Language::load(file) : Result<Language>(Language()); language)
+    if (const auto language = file.extension() == ".json" ? Language::load(file) : Result<Language>(Language());
+        language)
       if (!language->is_english()) entries.push_back({language->code(), language->name()});
   return entries;
 }

@@ -70,7 +70,8 @@ std::string changed_tag(const Change& change, std::string_view tag) {
 
 /// Where the text begins that follows the tag: behind the whole element for code.
 std::size_t end_of_tag(std::string_view html, std::size_t from) {
-  for (const auto& [begin, end] : {std::pair("<script", "</script>"), std::pair("<style", "</style>"), std::pair("<pre", "</pre>")})
+  for (const auto& [begin, end] :
+       {std::pair("<script", "</script>"), std::pair("<style", "</style>"), std::pair("<pre", "</pre>")})
     if (html.substr(from).starts_with(begin))
       if (const std::size_t at = html.find(end, from); at != std::string_view::npos)
         return at + std::string_view(end).size();

@@ -124,7 +124,7 @@ Result<SigningKey> open_station_key(const fs::path& file) {
   const int reason = errno;
   fs::remove(temporary, error);
   if (!is_linked && reason != EEXIST)
-    return fail(std::string("cannot be made: ") + std::strerror(reason), file.string(),
+    return fail(std::string("cannot write: ") + std::strerror(reason), file.string(),
                 "choose a folder that you may write to");
   return load_station_key(file);
 }

@@ -63,7 +63,7 @@ Status save_profile(const TissueProfile& profile, const anatomy::TissueTable& ta
     return fail_usage("there is a profile of that name already", file.string(), "choose another name, or replace it");
   std::filesystem::create_directories(folder, error);
   if (error)
-    return fail("the folder cannot be made: " + error.message(), folder.string(),
+    return fail("cannot create the folder: " + error.message(), folder.string(),
                 "check the permissions of the folder above it");
   return write_file_atomically(file, to_toml(profile));
 }

@@ -46,9 +46,9 @@ export function filled(text: string, values: readonly (string | number)[]): stri
   return text.replace(kPlace, (place, number: string) => String(values[Number(number)] ?? place));
 }
 
-/** "1.5 to 2.5 mm" with the language's sign. */
+/** "1.5 to 2.5 mm" with the language's sign; "0.1.0" is a version. */
 export function with_sign(text: string, decimal_sign: string): string {
-  return text.replace(/(?<=\d)\.(?=\d)/g, decimal_sign);
+  return text.replace(/\d[\d.]*\d/g, (number) => (number.split(".").length === 2 ? number.replace(".", decimal_sign) : number));
 }
 
 export function make_catalogue(texts: Record<string, string>, decimal_sign: string): Catalogue {
@@ -103,9 +103,24 @@ function by_pattern(search: Search, english: string, depth: number): Found | nul
   return partial;
 }
 
+/** A pattern that begins with a small letter, at the beginning of a sentence. */
+function by_capital(search: Search, english: string, depth: number): Found | null {
+  if (!/^[A-Z]/.test(english)) return null;
+  const found = by_pattern(search, english.charAt(0).toLowerCase() + english.slice(1), depth);
+  return found?.is_whole ? { text: found.text.charAt(0).toUpperCase() + found.text.slice(1), is_whole: true } : null;
+}
+
+/** The items of a list. */
+function by_pieces(search: Search, english: string, depth: number): Found | null {
+  const at = english.indexOf(", ");
+  if (at <= 0 || at + 2 === english.length) return null;
+  const [first, rest] = [english.slice(0, at), english.slice(at + 2)].map((one) => search_for(search, one, depth));
+  return { text: `${first.text}, ${rest.text}`, is_whole: first.is_whole && rest.is_whole };
+}
+
 /** Without blanks or brackets around it, or a mark at its end. */
 function by_inner(search: Search, english: string, depth: number): Found | null {
-  const [, before, inner, behind] = /^([ \n\t]+)(.*?)([ \n\t]*)$/s.exec(english) ?? /^()(.*?)([ \n\t]+)$/s.exec(english) ?? /^(\()(.+)(\))$/s.exec(english) ?? /^()(.+)([.:;,!?])$/s.exec(english) ?? [];
+  const [, before, inner, behind] = /^([ \n\t]+)(.*?)([ \n\t]*)$/s.exec(english) ?? /^()(.*?)([ \n\t]+)$/s.exec(english) ?? /^(\()(.+)(\))$/s.exec(english) ?? /^()(.*[^.:;,!?])([.:;,!?]{4,})$/s.exec(english) ?? /^()(.+)([.:;,!?])$/s.exec(english) ?? [];
   if (inner === undefined) return null;
   const found = search_for(search, inner, depth);
   return { text: before + found.text + behind, is_whole: found.is_whole };
@@ -130,7 +145,7 @@ function search_for(search: Search, english: string, depth: number): Found {
   search.left -= 1;
   if (search.left < 0) return { text: english, is_whole: false };
   let best: Found | null = null;
-  for (const way of [depth < kDeepest ? by_pattern : null, by_inner, by_sentence]) {
+  for (const way of [by_inner, depth < kDeepest ? by_pattern : null, depth < kDeepest ? by_capital : null, by_pieces, by_sentence]) {
     if (best?.is_whole) break;
     const found = way?.(search, english, depth) ?? null;
     if (found && (found.is_whole || !best)) best = found;

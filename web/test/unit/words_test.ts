@@ -32,6 +32,13 @@ const catalogue = make_catalogue(
 );
 const german = (text: string): string => translated(catalogue, text);
 
+test("the cases that the C++ test shares", () => {
+  const file = join(folder, "..", "src", "foundation", "language", "test", "cases.json");
+  const { texts, cases } = JSON.parse(readFileSync(file, "utf8")) as { texts: Record<string, string>; cases: [string, string][] };
+  const shared = make_catalogue(texts, ",");
+  for (const [english, expected] of cases) assert.equal(translated(shared, english), expected);
+});
+
 test("a whole text, else the pattern with the most fixed characters", () => {
   assert.equal(german("Liver"), "Leber");
   assert.equal(german("Needle 2.5 mm from the target"), "Nadel 2,5 mm vom Ziel");

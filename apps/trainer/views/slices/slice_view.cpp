@@ -33,19 +33,37 @@ KindInfo info_of(SliceKind kind) {
     case SliceKind::kSagittal:
       return {"slice-sagittal", QT_TRANSLATE_NOOP("Table", "Sagittal"), t.sagittal, {t.coronal, t.axial}};
     case SliceKind::kAlongNeedle:
-      return {"slice-along-needle", QT_TRANSLATE_NOOP("Table", "Along needle"), t.along_needle, {t.turned_needle, t.across_needle}};
+      return {"slice-along-needle",
+              QT_TRANSLATE_NOOP("Table", "Along needle"),
+              t.along_needle,
+              {t.turned_needle, t.across_needle}};
     case SliceKind::kAlongNeedleTurned:
-      return {"slice-along-turned", QT_TRANSLATE_NOOP("Table", "Along, turned"), t.turned_needle, {t.along_needle, t.across_needle}};
+      return {"slice-along-turned",
+              QT_TRANSLATE_NOOP("Table", "Along, turned"),
+              t.turned_needle,
+              {t.along_needle, t.across_needle}};
     case SliceKind::kAcrossNeedle:
-      return {"slice-across-needle", QT_TRANSLATE_NOOP("Table", "Across needle"), t.across_needle, {t.turned_needle, t.along_needle}};
+      return {"slice-across-needle",
+              QT_TRANSLATE_NOOP("Table", "Across needle"),
+              t.across_needle,
+              {t.turned_needle, t.along_needle}};
     case SliceKind::kLateral:
-      return {"us-lateral", QT_TRANSLATE_NOOP("Table", "Ultrasound, lateral"), t.along_needle, {t.turned_needle, t.across_needle}};
+      return {"us-lateral",
+              QT_TRANSLATE_NOOP("Table", "Ultrasound, lateral"),
+              t.along_needle,
+              {t.turned_needle, t.across_needle}};
     case SliceKind::kElevation:
-      return {"us-elevation", QT_TRANSLATE_NOOP("Table", "Ultrasound, elevation"), t.turned_needle, {t.along_needle, t.across_needle}};
+      return {"us-elevation",
+              QT_TRANSLATE_NOOP("Table", "Ultrasound, elevation"),
+              t.turned_needle,
+              {t.along_needle, t.across_needle}};
     case SliceKind::kAcrossBeams:
       break;
   }
-  return {"us-across-beams", QT_TRANSLATE_NOOP("Table", "Ultrasound, C-plane"), t.across_needle, {t.turned_needle, t.along_needle}};
+  return {"us-across-beams",
+          QT_TRANSLATE_NOOP("Table", "Ultrasound, C-plane"),
+          t.across_needle,
+          {t.turned_needle, t.along_needle}};
 }
 
 slices::SliceAxes axes_of(SliceKind kind, const Vec3& needle_P, const Mat3& R_UB) {
@@ -401,8 +419,7 @@ void SliceView::paint_strip(QPainter& painter, QRectF room) const {
   put(place_text(), 0.9, false, t.text, false);
   put(window_text(), 0.85, false, t.dim, true);
   if (!has_labels_) put(tr("no labels"), 0.85, false, t.warning, true);
-  if (!is_ultrasound())
-    put(shown(slices::window_name(style_.window)), 0.85, false, t.dim, true);
+  if (!is_ultrasound()) put(shown(slices::window_name(style_.window)), 0.85, false, t.dim, true);
 }
 
 QSize SliceView::sizeHint() const {

@@ -23,11 +23,10 @@ struct Projection {
   const char* text;
   double lao_deg, cranial_deg;
 };
-constexpr std::array<Projection, 4> kProjections{
-    {{"xray-ap", QT_TRANSLATE_NOOP("Table", "AP"), 0.0, 0.0},
-     {"xray-rao30", QT_TRANSLATE_NOOP("Table", "RAO 30"), -30.0, 0.0},
-     {"xray-lao30", QT_TRANSLATE_NOOP("Table", "LAO 30"), 30.0, 0.0},
-     {"xray-lateral", QT_TRANSLATE_NOOP("Table", "Lateral"), 90.0, 0.0}}};
+constexpr std::array<Projection, 4> kProjections{{{"xray-ap", QT_TRANSLATE_NOOP("Table", "AP"), 0.0, 0.0},
+                                                  {"xray-rao30", QT_TRANSLATE_NOOP("Table", "RAO 30"), -30.0, 0.0},
+                                                  {"xray-lao30", QT_TRANSLATE_NOOP("Table", "LAO 30"), 30.0, 0.0},
+                                                  {"xray-lateral", QT_TRANSLATE_NOOP("Table", "Lateral"), 90.0, 0.0}}};
 
 }  // namespace
 

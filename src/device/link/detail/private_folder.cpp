@@ -29,7 +29,7 @@ Status check_private_folder(const std::filesystem::path& folder) {
 
 Status make_private_folder(const std::filesystem::path& folder) {
   if (::mkdir(folder.c_str(), kUserAlone) != 0 && errno != EEXIST) {
-    return fail(std::string("cannot be made: ") + std::strerror(errno), folder.string(),
+    return fail(std::string("cannot create the folder: ") + std::strerror(errno), folder.string(),
                 "set XDG_RUNTIME_DIR to a folder of your own");
   }
   return check_private_folder(folder);

@@ -42,7 +42,7 @@ Status check_folders(std::filesystem::path folder) {
 Status write_private_file(const std::filesystem::path& file, std::string_view text) {
   const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kUserMayReadAndWrite);
   if (descriptor < 0)
-    return fail(std::string("cannot be made: ") + std::strerror(errno), file.string(),
+    return fail(std::string("cannot write: ") + std::strerror(errno), file.string(),
                 "choose a folder that you may write to");
   while (!text.empty()) {
     const ssize_t written = ::write(descriptor, text.data(), text.size());

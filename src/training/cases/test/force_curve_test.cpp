@@ -39,8 +39,8 @@ TEST(ForceCurve, FindsTheLayersInOrderWithTheirDrops) {
     EXPECT_EQ(events[i].layer, names[i]);
     EXPECT_GT(events[i].peak_n, puncture_n[i] - kFluctuation_n);  // friction of the shaft comes on top
     EXPECT_LT(events[i].peak_n, puncture_n[i] + 0.8);
-    EXPECT_GT(events[i].way_mm, surface_mm[i]);        // tissue and coupling yield first ...
-    EXPECT_LT(events[i].way_mm, surface_mm[i] + 6.0);  // ... by x and F/k
+    EXPECT_GT(events[i].way_mm, surface_mm[i]);         // tissue and coupling yield first ...
+    EXPECT_LT(events[i].way_mm, surface_mm[i] + 6.0);   // ... by x and F/k
     EXPECT_NEAR(events[i].tip_mm, surface_mm[i], 1.0);  // the layer holds the tip
     EXPECT_GT(events[i].drop_n(), 0.25 * puncture_n[i]);
     EXPECT_GT(events[i].fall_ms, 0.0);
