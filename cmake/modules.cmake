@@ -224,7 +224,7 @@ function(trocar_add_test name library)
     add_test(NAME ${test_name} COMMAND ${launcher} $<TARGET_FILE:${name}_test>)
     set_tests_properties(${test_name} PROPERTIES TIMEOUT ${timeout_s} ENVIRONMENT "${environment_of_part}")
     # These open the embedded patient: it is generated once, before the first of them.
-    if(name MATCHES "^(cases|attempt|servers|cli|result_commands|end_to_end|trainer)$")
+    if(name MATCHES "^(cases|attempt|servers|cli|result_commands|end_to_end|languages|trainer)$")
       set_tests_properties(${test_name} PROPERTIES FIXTURES_REQUIRED embedded_patient)
       if(NOT name STREQUAL "cases")
         add_dependencies(${name}_test cases_test)

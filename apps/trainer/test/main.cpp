@@ -12,6 +12,7 @@
 
 #include "core/testing/run_all_tests.h"
 #include "ui_kit/theme.h"
+#include "ui_kit/window_language.h"
 
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
@@ -25,5 +26,7 @@ int main(int argc, char** argv) {
   QSettings::setDefaultFormat(QSettings::IniFormat);
   QSettings::setPath(QSettings::IniFormat, QSettings::UserScope, settings.path());
   trocar::trainer::apply_theme(application);
+  // As main() does; else numbers have the desktop's decimal sign.
+  if (const auto status = trocar::trainer::speak(application, QStringLiteral("en")); !status) return 1;
   return trocar::testing::run_all_tests();
 }

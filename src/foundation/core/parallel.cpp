@@ -5,6 +5,7 @@
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/parallel_invoke.h>
 #include <oneapi/tbb/task_arena.h>
+#include <oneapi/tbb/task_group.h>
 
 #include <algorithm>
 #include <thread>
@@ -66,6 +67,10 @@ void prepare_threads() {
   static_cast<void>(alone);
 }
 
+/// Each call has a context of its own: otherwise TBB skips the parts of nested work without a word as soon as any part
+/// of the work around it has thrown, and the nested call returns as if they were done.
+constexpr auto kIsolated = oneapi::tbb::task_group_context::isolated;
+
 }  // namespace
 
 void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
@@ -75,11 +80,15 @@ void parallel_for(std::size_t count, std::size_t grain, const std::function<void
   prepare_threads();
   HandOver hand_over;
   const std::stop_token stop = cancellation_token();
-  oneapi::tbb::parallel_for(Range(0, count, std::max<std::size_t>(grain, 1)), [&](const Range& part) {
-    const CancellationScope scope(stop);
-    cancellation_point();
-    hand_over.run([&] { body(part.begin(), part.end()); });
-  });
+  oneapi::tbb::task_group_context own(kIsolated);
+  oneapi::tbb::parallel_for(
+      Range(0, count, std::max<std::size_t>(grain, 1)),
+      [&](const Range& part) {
+        const CancellationScope scope(stop);
+        cancellation_point();
+        hand_over.run([&] { body(part.begin(), part.end()); });
+      },
+      own);
 }
 
 void run_on_threads(int most, const std::function<void()>& body) {
@@ -99,7 +108,8 @@ void parallel_invoke(const std::function<void()>& a, const std::function<void()>
     const CancellationScope scope(stop);
     hand_over.run(work);
   };
-  oneapi::tbb::parallel_invoke([&] { run(a); }, [&] { run(b); });
+  oneapi::tbb::task_group_context own(kIsolated);
+  oneapi::tbb::parallel_invoke([&] { run(a); }, [&] { run(b); }, own);
 }
 
 void parallel_invoke(const std::function<void()>& a, const std::function<void()>& b, const std::function<void()>& c) {
@@ -109,7 +119,8 @@ void parallel_invoke(const std::function<void()>& a, const std::function<void()>
     const CancellationScope scope(stop);
     hand_over.run(work);
   };
-  oneapi::tbb::parallel_invoke([&] { run(a); }, [&] { run(b); }, [&] { run(c); });
+  oneapi::tbb::task_group_context own(kIsolated);
+  oneapi::tbb::parallel_invoke([&] { run(a); }, [&] { run(b); }, [&] { run(c); }, own);
 }
 
 }  // namespace core

@@ -59,6 +59,7 @@ async function request<T>(method: string, path: string, body: unknown, options: 
     if (session.csrf) headers["X-CSRF-Token"] = session.csrf;
   }
   let response: Response;
+  let text = "";
   try {
     response = await fetch(path, {
       method,
@@ -68,6 +69,8 @@ async function request<T>(method: string, path: string, body: unknown, options: 
       credentials: "same-origin",
       cache: "no-store",
     });
+    // The connection may end in the middle of the answer, too.
+    if (response.ok && response.status !== 204) text = await response.text();
   } catch (error) {
     if (options.signal?.aborted) throw error;
     throw new ApiError(0, t("The server does not answer"), t("Check the network connection, and that trocar serve is running. Then try again."));
@@ -75,7 +78,6 @@ async function request<T>(method: string, path: string, body: unknown, options: 
   if (response.status === 401 && !options.without_session) session.on_expired();
   if (!response.ok) throw await error_of(response);
   if (response.status === 204) return undefined as T;
-  const text = await response.text();
   try {
     return (text ? JSON.parse(text) : undefined) as T;
   } catch {

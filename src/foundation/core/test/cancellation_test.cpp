@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <future>
 #include <stop_token>
+#include <thread>
 
 #include "core/background_job.h"
 #include "core/parallel.h"
@@ -51,6 +53,33 @@ TEST(Cancellation, IsHandedToNestedWorkAndToOtherThreads) {
   compute_beside(ends).get();
   EXPECT_EQ(ended, 7);
   EXPECT_THROW(parallel_for(1, 1, [](std::size_t, std::size_t) {}), Cancelled);
+}
+
+// TBB cancels what is nested in work of which a part has thrown: its parts would be skipped without a word.
+TEST(Cancellation, LeavesNoNestedWorkUndoneThatReturns) {
+  std::stop_source source;
+  std::atomic<bool> is_beside_running = false, has_thrown = false;
+  std::atomic<int> parts = 0, calls = 0;
+  const auto beside = [&] {
+    const CompleteWork complete;
+    is_beside_running = true;
+    for (int n = 0; n < 2000 && !has_thrown; ++n) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // TBB notices
+    parallel_for(64, 1, [&](std::size_t from, std::size_t to) { parts += static_cast<int>(to - from); });
+    parallel_invoke([&] { ++calls; }, [&] { ++calls; });
+    parallel_invoke([&] { ++calls; }, [&] { ++calls; }, [&] { ++calls; });
+  };
+  const auto cancelled = [&] {
+    for (int n = 0; n < 2000 && !is_beside_running; ++n) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    source.request_stop();
+    has_thrown = true;
+    cancellation_point();
+  };
+  const CancellationScope scope(source.get_token());
+  EXPECT_THROW(parallel_invoke(cancelled, beside), Cancelled);
+  if (!is_beside_running) GTEST_SKIP() << "one thread only: there is no work beside";
+  EXPECT_EQ(parts, 64);
+  EXPECT_EQ(calls, 5);
 }
 
 TEST(Cancellation, ConcernsNobodyOutsideOfItsScope) {

@@ -8,10 +8,10 @@
 #include "anatomy/structure_words.h"
 #include "anatomy/tissue/tissue_parameters.h"
 #include "anatomy/tissue/tissue_table.h"
-#include "attempt.h"
 #include "attempt/live/attempt_event.h"
 #include "cases/testing/cached_case.h"
 #include "core/files/data_dir.h"
+#include "end_to_end/attempt.h"
 #include "report/html_report.h"
 #include "tasks/task.h"
 
