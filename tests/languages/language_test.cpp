@@ -115,7 +115,8 @@ TEST(Languages, HaveWordsForEveryTask) {
     }
     for (const tasks::Needle& needle : *needles) lacking.check(needle.title);
     for (const anatomy::TissueParameterGroup& group : anatomy::tissue_parameters(*tissues)) {
-      lacking.check(anatomy::structure_words(group.name));
+      // Unlabelled tissue, whose group the window names itself.
+      if (group.name != "transfer") lacking.check(anatomy::structure_words(group.name));
       for (const anatomy::TissueParameter& parameter : group.parameters) lacking.check(std::string(parameter.name));
     }
     for (const anatomy::PhantomInfo& info : anatomy::embedded_patients()) {
