@@ -129,7 +129,7 @@ void CaseLandmarkPairs::begin_next() {
   for (int n = 1;; ++n) {
     const std::string name = "landmark " + std::to_string(n);
     if (std::find(taken.begin(), taken.end(), name) != taken.end()) continue;
-    return name_->setEditText(shown(name));
+    return name_->setEditText(landmark_text(name));
   }
 }
 
@@ -140,7 +140,7 @@ void CaseLandmarkPairs::show_picking(bool is_on) {
 void CaseLandmarkPairs::show_row(int row) {
   if (list_->item(row, kPairName) == nullptr) return;
   const std::string name = landmark_of(list_->item(row, kPairName)->text());
-  name_->setEditText(shown(name));
+  name_->setEditText(landmark_text(name));
   const case_builder::CaseDraft& draft = editor_.draft();
   if (const auto* point = find_in_ultrasound(draft, name)) Q_EMIT ultrasound_place_requested(point->p);
   // Last, since with a pose it also moves the ultrasound: the CT's landmark is the one that may be misplaced there.
@@ -166,7 +166,7 @@ bool CaseLandmarkPairs::eventFilter(QObject* watched, QEvent* event) {
 /// Names that the user has not typed: those of the case, then the common ones.
 void CaseLandmarkPairs::fill_names() {
   QStringList names;
-  for (const std::string& name : all_names(editor_.draft())) names << shown(name);
+  for (const std::string& name : all_names(editor_.draft())) names << landmark_text(name);
   for (const std::string_view name : case_builder::landmark_names())
     if (!names.contains(shown(name))) names << shown(name);
   QStringList listed;
@@ -192,7 +192,7 @@ void CaseLandmarkPairs::fill_list() {
       list_->item(row, column)->setText(text);
       list_->item(row, column)->setToolTip(text);
     };
-    put(kPairName, shown(name));
+    put(kPairName, landmark_text(name));
     put(kPairInCt, find_in_ct(draft, name) != nullptr ? QStringLiteral("✓") : QStringLiteral("–"));
     put(kPairInUltrasound, find_in_ultrasound(draft, name) != nullptr ? QStringLiteral("✓") : QStringLiteral("–"));
     QString off;

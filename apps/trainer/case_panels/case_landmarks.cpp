@@ -126,10 +126,10 @@ void CaseLandmarks::refresh() {
       item->setFlags(item->flags() | Qt::ItemIsEditable);
     }
     const Vec3& p_P = landmarks[n].p_P;
-    list_->item(static_cast<int>(n))->setText(shown(landmarks[n].name));
+    list_->item(static_cast<int>(n))->setText(landmark_text(landmarks[n].name));
     list_->item(static_cast<int>(n))
         ->setToolTip(QStringLiteral("%1 (%2, %3, %4) mm")
-                         .arg(shown(landmarks[n].name))
+                         .arg(landmark_text(landmarks[n].name))
                          .arg(p_P.x(), 0, 'f', 0)
                          .arg(p_P.y(), 0, 'f', 0)
                          .arg(p_P.z(), 0, 'f', 0));

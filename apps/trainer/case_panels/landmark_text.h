@@ -5,8 +5,10 @@
 
 namespace trocar::trainer {
 
-/// The name of a landmark for the text that the window shows or somebody typed: a name of the list or "landmark 3" in
-/// the window's language becomes that of the case's file; any other name stays as it is.
+/// The text of a landmark's name: those of the list and "landmark 3" are shown in the window's language, any other
+/// name was typed by somebody and stays as it is.
+QString landmark_text(const std::string& name);
+/// The name for such a text, also a typed one.
 std::string landmark_of(const QString& text);
 
 }  // namespace trocar::trainer

@@ -8,7 +8,8 @@
 #include <QLocale>
 #include <QXmlStreamReader>
 
-#include "control/attempt_words.h"
+#include "case_builder/landmark_names.h"
+#include "case_panels/landmark_text.h"
 #include "script/english_text.h"
 #include "ui_kit/action_table.h"
 
@@ -54,6 +55,16 @@ TEST_F(WindowLanguage, HasEveryActionAndItsKeys) {
       label.setParent(nullptr);
     }
   EXPECT_TRUE(english.isEmpty()) << english.join(QLatin1Char('\n')).toStdString();
+}
+
+// What is shown comes back as the name in the case's file, also a name that somebody typed and that is a word here.
+TEST_F(WindowLanguage, KeepsTheNamesOfLandmarks) {
+  EXPECT_EQ(landmark_text("landmark 3"), QStringLiteral("Landmarke 3"));
+  EXPECT_EQ(landmark_text("liver"), QStringLiteral("liver"));
+  for (const std::string_view name : case_builder::landmark_names())
+    EXPECT_EQ(landmark_of(landmark_text(std::string(name))), name);
+  for (const char* name : {"landmark 1", "landmark 99", "landmark 100", "liver", "Leber", "my mark, left"})
+    EXPECT_EQ(landmark_of(landmark_text(name)), name);
 }
 
 TEST(EnglishText, IsFoundInWidgetsAndNotInNamesOfFiles) {

@@ -333,12 +333,13 @@ std::vector<LanguageEntry> list_languages() {
 
 Result<Language> load_language(const std::string& code) {
   if (code == "en") return Language();
-  const std::vector<LanguageEntry> entries = list_languages();
-  if (std::ranges::find(entries, code, &LanguageEntry::code) != entries.end())
-    return Language::load(data_dir() / "language" / (code + ".json"));
+  const bool is_code = !code.empty() && std::ranges::all_of(code, is_letter);
+  const std::filesystem::path file = data_dir() / "language" / (code + ".json");
+  std::error_code ignored;
+  if (is_code && std::filesystem::exists(file, ignored)) return Language::load(file);
   std::string codes;
-  for (const LanguageEntry& entry : entries) codes += (codes.empty() ? "" : ", ") + entry.code;
-  return fail(fmt::format("there is no language \"{}\"", code), "--language", "choose one of " + codes);
+  for (const LanguageEntry& entry : list_languages()) codes += (codes.empty() ? "" : ", ") + entry.code;
+  return fail_usage(fmt::format("there is no language \"{}\"", code), "--language", "choose one of " + codes);
 }
 
 }  // namespace trocar::language
