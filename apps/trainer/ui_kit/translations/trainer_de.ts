@@ -1352,7 +1352,7 @@ Rechts ziehen: Helligkeit und Kontrast · Mitte oder Umschalt + links ziehen: ve
     </message>
     <message>
         <source>Reinsert stylet</source>
-        <translation>Mandrin einführen</translation>
+        <translation>Mandrin rein</translation>
     </message>
     <message>
         <source>Remove stylet</source>
@@ -1364,7 +1364,7 @@ Rechts ziehen: Helligkeit und Kontrast · Mitte oder Umschalt + links ziehen: ve
     </message>
     <message>
         <source>Wire further</source>
-        <translation>Draht vorschieben</translation>
+        <translation>Draht weiter</translation>
     </message>
     <message>
         <source>Guide wire</source>
@@ -3334,7 +3334,7 @@ Nachlauf: Abstand, um den das Instrument hinter der Hand zurückbleibt.</transla
     </message>
     <message>
         <source>Tissue at the tip</source>
-        <translation>Gewebe an der Spitze</translation>
+        <translation>Gewebe</translation>
     </message>
     <message>
         <source>Depth</source>
@@ -3669,7 +3669,7 @@ Nachlauf: Abstand, um den das Instrument hinter der Hand zurückbleibt.</transla
     </message>
     <message>
         <source>All steps</source>
-        <translation>Alle zeigen</translation>
+        <translation>Alle</translation>
     </message>
     <message>
         <source>Fewer</source>
