@@ -20,6 +20,27 @@ std::size_t percentile(std::size_t count, double share) {
   return std::min(count - 1, static_cast<std::size_t>(share * static_cast<double>(count)));
 }
 
+/// About 128² values of the field, without those of direct radiation if the rest covers a twentieth of it.
+std::vector<float> sampled_values(std::span<const float> values, std::span<const float> signal, int columns,
+                                  const FieldPixels& field) {
+  std::vector<float> behind, all;
+  const int step = std::max(1, (field.last_row - field.first_row) / 128);
+  for (int row = field.first_row; row < field.last_row; row += step)
+    for (int column = field.first_column; column < field.last_column; column += step) {
+      const std::size_t n =
+          static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
+      all.push_back(values[n]);
+      if (signal[n] <= kDirect) behind.push_back(values[n]);
+    }
+  return 20 * behind.size() >= all.size() ? behind : all;
+}
+
+float value_at(std::vector<float>& values, double share) {
+  const auto place = values.begin() + static_cast<std::ptrdiff_t>(percentile(values.size(), share));
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+
 /// Continues the values at the field's edge behind the shutters, so that filters see no step there.
 void continue_field(std::vector<float>& values, int columns, int rows, const FieldPixels& field) {
   const auto line = [&](int row) { return values.begin() + static_cast<std::ptrdiff_t>(row) * columns; };
@@ -47,19 +68,56 @@ std::vector<float> cell_means(const std::vector<float>& values, int columns, int
   return means;
 }
 
-/// Takes off a share of the differences that are wider than a tenth of the image.
-void compress_range(std::vector<float>& values, int columns, int rows, double share) {
+/// The base of an image, a·v + b of its values v: their local mean where they differ little, the values themselves at
+/// great steps, so that a step gets no halo. Fast guided filter (He and Sun, arXiv:1505.00996).
+struct Base {
+  std::vector<float> a, b;  ///< For each pixel.
+  float mean = 0.0F;
+};
+Base base_of(const std::vector<float>& values, int columns, int rows) {
   constexpr int kCells = 64;
-  constexpr double kSigma_cells = 6.0;
+  constexpr double kSigma_cells = 3.0;
+  constexpr float kSmallVariance =
+      0.1F;  ///< Of attenuation: between that of ribs and that of the lung's edge. [assumed]
   const int cells = std::min({kCells, columns, rows});
-  std::vector<float> slow = cell_means(values, columns, rows, cells);
-  blur_image(slow, cells, cells, kSigma_cells);
-  const float mean = std::accumulate(slow.begin(), slow.end(), 0.0F) / static_cast<float>(slow.size());
-  slow = detail::resample_image(slow, cells, cells, columns, rows);
+  std::vector<float> mean = cell_means(values, columns, rows, cells), square = mean;
+  Base base;
+  base.mean = std::accumulate(mean.begin(), mean.end(), 0.0F) / static_cast<float>(mean.size());
+  for (float& value : square) value *= value;
+  blur_image(mean, cells, cells, kSigma_cells);
+  blur_image(square, cells, cells, kSigma_cells);
+  std::vector<float> a(mean.size()), b(mean.size());
+  for (std::size_t n = 0; n < mean.size(); ++n) {
+    const float variance = std::max(square[n] - mean[n] * mean[n], 0.0F);
+    a[n] = variance / (variance + kSmallVariance);
+    b[n] = mean[n] * (1.0F - a[n]);
+  }
+  for (std::vector<float>* one : {&a, &b}) blur_image(*one, cells, cells, kSigma_cells);
+  base.a = detail::resample_image(a, cells, cells, columns, rows);
+  base.b = detail::resample_image(b, cells, cells, columns, rows);
+  return base;
+}
+
+/// Takes off a share of the differences of the base. Values below `least`, those of direct radiation, count as `least`
+/// there: the step to them would take the contrast of what lies beside it.
+void compress_range(std::vector<float>& values, int columns, int rows, float least, double share) {
+  std::vector<float> within(values.size());
+  std::ranges::transform(values, within.begin(), [&](float value) { return std::max(value, least); });
+  const Base base = base_of(within, columns, rows);
   const auto part = static_cast<float>(share);
   parallel_for(values.size(), kGrainShown, [&](std::size_t first, std::size_t last) {
-    for (std::size_t n = first; n < last; ++n) values[n] -= part * (slow[n] - mean);
+    for (std::size_t n = first; n < last; ++n) values[n] -= part * (base.a[n] * within[n] + base.b[n] - base.mean);
   });
+}
+
+/// Brightness, 0 to 1, of a place in the window, 0 (dense) to 1: even over most of it; towards both ends it flattens,
+/// as on film, so that what lies beyond the window is not one flat area at once.
+float brightness_at(float place) noexcept {
+  constexpr float kKnee = 0.05F, kSlope = (1.0F - 2.0F * kKnee) / kKnee;
+  const float from_end = std::min(place, 1.0F - place);
+  if (from_end >= 0.0F) return kKnee + (1.0F - 2.0F * kKnee) * place;
+  const float rest = kKnee * std::exp(kSlope * from_end);
+  return place < 0.0F ? rest : 1.0F - rest;
 }
 
 }  // namespace
@@ -83,13 +141,16 @@ std::vector<float> shown_values(std::span<const float> signal, int columns, int 
   std::vector<float> values(signal.size());
   parallel_for(signal.size(), kGrainShown, [&](std::size_t first, std::size_t last) {
     if (settings.is_logarithmic)
-      for (std::size_t n = first; n < last; ++n) values[n] = -std::log(std::max(signal[n], kLeastSignal));
+      for (std::size_t n = first; n < last; ++n) values[n] = -std::log(std::max(kLeastSignal, signal[n]));
     else
       for (std::size_t n = first; n < last; ++n) values[n] = -signal[n];
   });
   continue_field(values, columns, rows, field);
   const double compression = std::clamp(settings.range_compression, 0.0, 0.9);
-  if (compression > 0.0) compress_range(values, columns, rows, compression);
+  if (compression > 0.0) {
+    std::vector<float> sample = sampled_values(values, signal, columns, field);
+    if (!sample.empty()) compress_range(values, columns, rows, value_at(sample, 0.05), compression);
+  }
   const auto gain = static_cast<float>(std::clamp(settings.edge_gain, 0.0, 4.0));
   if (gain == 0.0F) return values;
   std::vector<float> smooth = values;
@@ -102,24 +163,10 @@ std::vector<float> shown_values(std::span<const float> signal, int columns, int 
 
 GrayWindow window_of(std::span<const float> values, std::span<const float> signal, int columns,
                      const FieldPixels& field, float least_width) {
-  std::vector<float> behind, all;
-  const int step = std::max(1, (field.last_row - field.first_row) / 128);
-  for (int row = field.first_row; row < field.last_row; row += step)
-    for (int column = field.first_column; column < field.last_column; column += step) {
-      const std::size_t n =
-          static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
-      all.push_back(values[n]);
-      if (signal[n] <= kDirect) behind.push_back(values[n]);
-    }
-  std::vector<float>& used = 20 * behind.size() >= all.size() ? behind : all;
+  std::vector<float> used = sampled_values(values, signal, columns, field);
   if (used.empty()) return {};
-  const auto value_at = [&](double share) {
-    const auto place = used.begin() + static_cast<std::ptrdiff_t>(percentile(used.size(), share));
-    std::nth_element(used.begin(), place, used.end());
-    return *place;
-  };
-  GrayWindow window{value_at(0.01), value_at(0.99)};
-  const float median = value_at(0.5);
+  GrayWindow window{value_at(used, 0.01), value_at(used, 0.99)};
+  const float median = value_at(used, 0.5);
   window.low = std::max(window.low, median - kBrightSide * (window.high - median));
   if (const float missing = least_width - (window.high - window.low); missing > 0.0F) {
     window.low -= 0.5F * missing;
@@ -133,13 +180,12 @@ GrayImage to_gray(std::span<const float> values, int columns, int rows, const Gr
   TROCAR_CHECK(values.size() == static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
   GrayImage image{columns, rows, std::vector<std::uint8_t>(values.size(), 0)};
   const float width = std::max(window.high - window.low, 1e-6F);
-  const float scale = (is_inverted ? 255.0F : -255.0F) / width;
-  const float origin = is_inverted ? window.low : window.high;
   for (int row = field.first_row; row < field.last_row; ++row)
     for (int column = field.first_column; column < field.last_column; ++column) {
       const std::size_t n =
           static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
-      image.pixels[n] = static_cast<std::uint8_t>(std::clamp(scale * (values[n] - origin) + 0.5F, 0.0F, 255.0F));
+      const float bright = brightness_at((window.high - values[n]) / width);
+      image.pixels[n] = static_cast<std::uint8_t>(255.0F * (is_inverted ? 1.0F - bright : bright) + 0.5F);
     }
   return image;
 }

@@ -26,8 +26,9 @@ struct GrayWindow {
 struct DisplaySettings {
   bool is_logarithmic = true;  ///< Shown is the attenuation -ln(signal); otherwise the signal.
   bool is_inverted = false;    ///< Dense things are white, as in a radiograph; otherwise dark, as in fluoroscopy.
-  /// Share of slow differences (lung against abdomen) that is taken off, so that both fit the window. Range 0..0.9.
-  double range_compression = 0.6;
+  /// Share of great differences (lung against abdomen) that is taken off, so that both fit the window and small ones
+  /// (ribs, ducts) keep their contrast. Range 0..0.9.
+  double range_compression = 0.65;
   double edge_gain = 0.6;            ///< Of unsharp masking. Range 0..4; 0: off.
   double edge_sigma_px = 2.0;        ///< Standard deviation of its Gaussian. Range 0.7..20.
   std::optional<GrayWindow> window;  ///< In shown values; empty: from the image.
@@ -52,7 +53,7 @@ std::vector<float> shown_values(std::span<const float> signal, int columns, int 
 GrayWindow window_of(std::span<const float> values, std::span<const float> signal, int columns,
                      const FieldPixels& field, float least_width = 0.1F);
 
-/// Eight bits; outside of the field (shutters) black.
+/// Eight bits, even over the window and flatter towards and beyond its ends; outside of the field (shutters) black.
 GrayImage to_gray(std::span<const float> values, int columns, int rows, const GrayWindow& window, bool is_inverted,
                   const FieldPixels& field);
 

@@ -131,7 +131,8 @@ TEST(Fluoroscope, ATraceOfContrastAgentDoesNotShow) {
   Fluoroscope without(fat()), with(fat());
   const GrayImage expected = without.frame(request, 1).value().gray;
   request.iodine = iodine;
-  EXPECT_EQ(with.frame(request, 1).value().gray.pixels, expected.pixels);
+  const GrayImage traced = with.frame(request, 1).value().gray;
+  for (std::size_t n = 0; n < expected.pixels.size(); ++n) EXPECT_NEAR(traced.pixels[n], expected.pixels[n], 1);
 }
 
 TEST(Fluoroscope, ShowsATubeOfSteelByBeersLaw) {
