@@ -85,8 +85,12 @@ void parallel_for(std::size_t count, std::size_t grain, const std::function<void
       Range(0, count, std::max<std::size_t>(grain, 1)),
       [&](const Range& part) {
         const CancellationScope scope(stop);
-        cancellation_point();
-        hand_over.run([&] { body(part.begin(), part.end()); });
+        const std::size_t piece =
+            stop.stop_possible() ? std::max((part.size() + 3) / 4, part.grainsize()) : part.size();
+        for (std::size_t first = part.begin(); first < part.end(); first += piece) {
+          cancellation_point();
+          hand_over.run([&] { body(first, std::min(first + piece, part.end())); });
+        }
       },
       own);
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "anatomy/phantom/texture.h"
+#include "core/cancellation.h"
 #include "core/parallel.h"
 
 namespace trocar::anatomy::phantom {
@@ -33,12 +34,14 @@ class Painter {
 
   void paint_layer(std::size_t layer) const {
     std::vector<const Structure*> near;
-    for (std::int64_t j = 0; j < blocks_[1]; ++j)
+    for (std::int64_t j = 0; j < blocks_[1]; ++j) {
+      cancellation_point();
       for (std::int64_t i = 0; i < blocks_[0]; ++i) {
         const Block block = block_at({i, j, static_cast<std::int64_t>(layer)});
         find_near(block, near);
         paint_block(block, near);
       }
+    }
   }
 
  private:

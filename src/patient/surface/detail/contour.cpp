@@ -1,6 +1,9 @@
 #include "surface/detail/contour.h"
 
+#include <vtkAlgorithm.h>
+#include <vtkCallbackCommand.h>
 #include <vtkCellArray.h>
+#include <vtkCommand.h>
 #include <vtkFlyingEdges3D.h>
 #include <vtkIdList.h>
 #include <vtkImageData.h>
@@ -15,6 +18,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/cancellation.h"
 #include "surface/detail/mesh_repair.h"
 
 namespace trocar::surface::detail {
@@ -62,6 +66,18 @@ TriangleMesh from_vtk(vtkPolyData& surface) {
   return mesh;
 }
 
+/// Runs a filter; ends it early where the work is cancelled. An exception must not pass through VTK.
+void run(vtkAlgorithm& filter) {
+  vtkNew<vtkCallbackCommand> stop;
+  stop->SetCallback([](vtkObject* caller, unsigned long, void*, void*) {
+    if (cancellation_token().stop_requested()) static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1);
+  });
+  filter.AddObserver(vtkCommand::ProgressEvent, stop);
+  cancellation_point();
+  filter.Update();
+  cancellation_point();
+}
+
 vtkSmartPointer<vtkPolyData> low_passed(vtkPolyData& surface, const SurfaceOptions& options) {
   vtkNew<vtkWindowedSincPolyDataFilter> filter;
   filter->SetInputData(&surface);
@@ -70,7 +86,7 @@ vtkSmartPointer<vtkPolyData> low_passed(vtkPolyData& surface, const SurfaceOptio
   filter->BoundarySmoothingOff();
   filter->FeatureEdgeSmoothingOff();
   filter->NonManifoldSmoothingOn();
-  filter->Update();
+  run(*filter);
   return filter->GetOutput();
 }
 
@@ -174,6 +190,7 @@ volume::Grid<std::uint8_t> bounded_occupancy(const volume::MaskGrid& mask, doubl
                                              std::size_t max_faces) {
   volume::Grid<std::uint8_t> grid = occupancy(mask, spacing_mm);
   for (std::size_t faces = count_faces(grid); faces > wanted_faces; faces = count_faces(grid)) {
+    cancellation_point();
     volume::Grid<std::uint8_t> coarser = occupancy(mask, 2.0 * grid.geometry.spacing_mm.minCoeff());
     if (faces <= max_faces && !keeps_shape(coarser)) break;
     grid = std::move(coarser);
@@ -188,7 +205,7 @@ TriangleMesh contour(const volume::Grid<std::uint8_t>& occupancy, const SurfaceO
   edges->ComputeNormalsOff();
   edges->ComputeGradientsOff();
   edges->ComputeScalarsOff();
-  edges->Update();
+  run(*edges);
   vtkSmartPointer<vtkPolyData> surface = edges->GetOutput();
 
   if (options.smoothing_iterations > 0) surface = smoothed(*surface, options);
@@ -199,7 +216,7 @@ TriangleMesh contour(const volume::Grid<std::uint8_t>& occupancy, const SurfaceO
     decimate->SetInputData(surface);
     decimate->SetTargetReduction(1.0 - kept);
     decimate->VolumePreservationOn();
-    decimate->Update();
+    run(*decimate);
     surface = decimate->GetOutput();
   }
 
