@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <QApplication>
+#include <QHelpEvent>
+#include <QToolTip>
 #include <cmath>
 
 #include "anatomy/phantom/phantom.h"
@@ -96,6 +98,18 @@ TEST(SliceView, MovesTheCrossHairsToTheMouse) {
     has_red = has_red || horizontal.red() > std::max(50, 2 * horizontal.green());
   }
   EXPECT_TRUE(has_red);
+}
+
+TEST(SliceView, HasNoToolTipOverThePicture) {
+  ShownSlice shown(SliceKind::kAxial);
+  const auto asked_at = [&](const QPoint& at) {
+    QHelpEvent help(QEvent::ToolTip, at, shown.view.mapToGlobal(at));
+    QCoreApplication::sendEvent(&shown.view, &help);
+    return QToolTip::text();
+  };
+  EXPECT_EQ(asked_at({200, 200}), "");
+  EXPECT_EQ(asked_at({200, 1}), shown.view.toolTip());
+  QToolTip::hideText();
 }
 
 TEST(SliceView, ScrollsByTheSlicesOfTheVolume) {

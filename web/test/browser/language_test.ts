@@ -93,7 +93,7 @@ async function cut_texts(page: Page): Promise<string[]> {
 }
 
 for (const [width, height] of [[1280, 800], [390, 844]] as const) {
-  test(`every page in German at ${width}×${height}`, async () => {
+  test(`every page in German at ${width}×${height}`, needs_mock, async () => {
     const { page, problems } = await open_page(browser, site, { width, height, locale: "de-DE", touch: width < 600 });
     const found: string[] = [];
     const look = async (name: string): Promise<void> => {

@@ -68,6 +68,15 @@ TEST(Cores, OneOfTwoIsWorthHalf) {
   EXPECT_TRUE(has_hint(two, "Well done"));
 }
 
+TEST(Cores, AFullCoreBesideTheMiddleOfTheTargetIsNotCalledMissed) {
+  const Outcome outcome = score_of_punctures(punctures_along({shifted({5.0, 0.0, 0.0})}), make_core_task(1), true);
+  EXPECT_GT(share(outcome, "core"), 0.8);
+  EXPECT_LT(share(outcome, "core"), 1.0);
+  EXPECT_TRUE(has_hint(outcome, "The core is complete, but the notch was off the target: the notch lay "));
+  EXPECT_FALSE(has_hint(outcome, "missed"));
+  EXPECT_FALSE(has_hint(outcome, "holds only"));
+}
+
 TEST(Cores, TheBestOnesCount) {
   const Punctures three = punctures_along({kBesideLesion_P, kPlan_P, kPlan_P});
   const Outcome outcome = score_of_punctures(three, make_core_task(2), true);
