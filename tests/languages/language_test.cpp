@@ -13,6 +13,7 @@
 #include "core/files/data_dir.h"
 #include "end_to_end/attempt.h"
 #include "report/html_report.h"
+#include "tasks/active_time.h"
 #include "tasks/task.h"
 
 namespace trocar::testing {
@@ -114,6 +115,9 @@ TEST(Languages, HaveWordsForEveryTask) {
       }
     }
     for (const tasks::Needle& needle : *needles) lacking.check(needle.title);
+    for (const char* reason :
+         {tasks::kServerWasAway, tasks::kServerSentNothing, tasks::kProgramDidNotRun, tasks::kSamplesWereLost})
+      lacking.check(reason);
     for (const anatomy::TissueParameterGroup& group : anatomy::tissue_parameters(*tissues)) {
       // Unlabelled tissue, whose group the window names itself.
       if (group.name != "transfer") lacking.check(anatomy::structure_words(group.name));

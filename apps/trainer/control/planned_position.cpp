@@ -64,7 +64,9 @@ QString planned_position_help(const tasks::Task& task, const tasks::Phase& phase
 }
 
 ActiveTool first_tool(const tasks::Task& task) {
-  return task.guidance == tasks::Guidance::kUltrasound ? ActiveTool::kTransducer : ActiveTool::kNeedle;
+  if (task.phases.empty())
+    return task.guidance == tasks::Guidance::kUltrasound ? ActiveTool::kTransducer : ActiveTool::kNeedle;
+  return attempt::is_step_of_transducer(task.phases.front()) ? ActiveTool::kTransducer : ActiveTool::kNeedle;
 }
 
 }  // namespace trocar::trainer

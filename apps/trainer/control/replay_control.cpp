@@ -63,6 +63,20 @@ QColor phase_color(telemetry::InsertionPhase phase) {
   return theme().line;
 }
 
+/// Many interruptions in one line, with the longest one.
+QString interruptions_note(const std::vector<tasks::Interruption>& gaps, std::ptrdiff_t listed) {
+  const auto length_s = [](const tasks::Interruption& gap) { return gap.to_s - gap.from_s; };
+  const auto longest = std::ranges::max_element(gaps, {}, length_s);
+  double whole_s = 0.0;
+  for (const tasks::Interruption& gap : gaps) whole_s += length_s(gap);
+  return ReplayControl::tr("%1 interruptions, %2 s in total; the longest at %3 s: %4 s, %5")
+      .arg(listed)
+      .arg(whole_s, 0, 'f', 1)
+      .arg(longest->from_s, 0, 'f', 1)
+      .arg(length_s(*longest), 0, 'f', 1)
+      .arg(shown(longest->reason));
+}
+
 /// Warnings, what was set before the start, and what changed or interrupted the attempt.
 QStringList notes_of(const attempt::AttemptReplay& replay, const std::vector<std::string>& warnings) {
   QStringList notes;
@@ -73,9 +87,15 @@ QStringList notes_of(const attempt::AttemptReplay& replay, const std::vector<std
     for (const std::string& setting : parameters.front().settings) settings << to_qt(setting);
     notes << ReplayControl::tr("set before the start: %1").arg(settings.join(QStringLiteral(", ")));
   }
-  for (const attempt::ReplayMoment& moment : replay.moments())
-    if (kind_of(moment) == TimeMark::kOther)
+  using Kind = attempt::ReplayMoment::Kind;
+  constexpr std::ptrdiff_t kMostListed = 3;
+  const auto& moments = replay.moments();
+  const auto is_interruption = [](const attempt::ReplayMoment& moment) { return moment.kind == Kind::kInterruption; };
+  const auto interruptions = std::ranges::count_if(moments, is_interruption);
+  for (const attempt::ReplayMoment& moment : moments)
+    if (kind_of(moment) == TimeMark::kOther && (interruptions <= kMostListed || !is_interruption(moment)))
       notes << ReplayControl::tr("at %1 s, %2").arg(moment.time_s, 0, 'f', 1).arg(shown(moment.text));
+  if (interruptions > kMostListed) notes << interruptions_note(replay.session().interruptions, interruptions);
   return notes;
 }
 

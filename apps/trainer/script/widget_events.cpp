@@ -134,6 +134,7 @@ Status send_keys(QWidget& window, const QString& keys, KeyMotion motion) {
   if (!override_event.isAccepted()) {
     if (act_on_shortcut(window, sequence)) return {};
   }
+  target = &focused(window);  // an open list has closed
   QKeyEvent down(QEvent::KeyPress, key, modifiers, text);
   QCoreApplication::sendEvent(target, &down);
   if (motion == KeyMotion::kPress) QCoreApplication::sendEvent(target, &up);

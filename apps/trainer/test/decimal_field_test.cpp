@@ -5,6 +5,7 @@
 #include <QCoreApplication>
 #include <QKeyEvent>
 #include <QLocale>
+#include <QToolTip>
 
 #include "ui_kit/parts.h"
 
@@ -51,6 +52,17 @@ TEST_P(Field, KeepsItsRangeAndDecimals) {
   EXPECT_EQ(typed(field, "2x"), 2.0);
   field.setRange(-20.0, 50.0);
   EXPECT_EQ(typed(field, "-4,5"), -4.5);
+}
+
+TEST_P(Field, SaysWhatItTakesWhenItDoesNotTakeAKey) {
+  field.show();
+  QToolTip::hideText();
+  typed(field, "12.5");
+  EXPECT_EQ(to_std(QToolTip::text()), "");
+  typed(field, "1.234,5");
+  const QString range = QToolTip::text();
+  EXPECT_TRUE(range.startsWith(QLatin1Char('0')) && range.contains(QStringLiteral("50"))) << to_std(range);
+  QToolTip::hideText();
 }
 
 TEST_P(Field, ShowsWhatItTakesAndStepsByKeys) {

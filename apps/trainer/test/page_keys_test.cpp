@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <QAbstractItemView>
+#include <QApplication>
 #include <QComboBox>
 #include <QCoreApplication>
 #include <QKeyEvent>
@@ -80,6 +82,53 @@ TEST_F(KeysTest, KnowWhereTheyAreStruck) {
   strike(*button, Qt::Key_A);
   EXPECT_EQ(place.button, button);
   EXPECT_FALSE(place.is_unclaimed);
+}
+
+// Qt closes an open list at the override event of a key, and gives the key to the list's box.
+TEST_F(KeysTest, WhatClosesAnOpenListDoesNothingElse) {
+  int seen = 0, aside = 0;
+  PageKeys keys(window, [&](const QKeyEvent&, const KeyPlace& place) {
+    ++seen;
+    aside += place.is_aside ? 1 : 0;
+    return false;
+  });
+  unsigned long time = 100;
+  for (const int key : {Qt::Key_Return, Qt::Key_Enter, Qt::Key_Escape}) {
+    choice->setFocus();
+    choice->showPopup();
+    QWidget* popup = QApplication::activePopupWidget();
+    ASSERT_NE(popup, nullptr);
+    QKeyEvent override_event(QEvent::ShortcutOverride, key, Qt::NoModifier);
+    override_event.setTimestamp(++time);
+    QCoreApplication::sendEvent(choice->view(), &override_event);
+    choice->hidePopup();  // Qt 6 leaves it to the key
+    ASSERT_EQ(QApplication::activePopupWidget(), nullptr);
+    QKeyEvent down(QEvent::KeyPress, key, Qt::NoModifier);
+    down.setTimestamp(time);
+    seen = aside = 0;
+    QCoreApplication::sendEvent(choice, &down);
+    EXPECT_GT(seen, 0);
+    EXPECT_EQ(aside, seen) << key;
+    QKeyEvent up(QEvent::KeyRelease, key, Qt::NoModifier);
+    QCoreApplication::sendEvent(choice, &up);
+    seen = aside = 0;
+    QKeyEvent next_override(QEvent::ShortcutOverride, key, Qt::NoModifier);
+    next_override.setTimestamp(++time);
+    QCoreApplication::sendEvent(choice, &next_override);
+    QKeyEvent next(QEvent::KeyPress, key, Qt::NoModifier);
+    next.setTimestamp(time);
+    QCoreApplication::sendEvent(choice, &next);
+    EXPECT_EQ(aside, 0) << "the next key acts again";
+  }
+}
+
+TEST_F(KeysTest, EndingIsRefusedInAListToo) {
+  const ActionRow& end = row_of(Action::kEnd);
+  KeyPlace place;
+  place.is_choice = true;
+  EXPECT_EQ(judge_key(end, QKeyEvent(QEvent::KeyPress, Qt::Key_E, Qt::NoModifier), place), KeyVerdict::kRefuse);
+  const ActionRow& yes = row_of(Action::kConfirm);
+  EXPECT_NE(judge_key(yes, QKeyEvent(QEvent::KeyPress, Qt::Key_Return, Qt::NoModifier), place), KeyVerdict::kPerform);
 }
 
 TEST_F(KeysTest, ToolsAreTakenWhereverTheFocusIsAndArrowsThenMoveThem) {

@@ -163,6 +163,10 @@ TEST_F(WindowTest, ABiopsyGoesFromTheStartPageToTheScoreAndAgain) {
 }
 
 // A device that is not there, a killed server, stopped forces, the question before the end.
+TEST_F(WindowTest, TheFirstStepsAreDoneByTheirGestures) {
+  expect_played(play({"tutorial.txt"}));
+}
+
 TEST_F(WindowTest, WhatGoesWrongIsToldAndThePunctureGoesOn) {
   const trocar::testing::GamepadStandIn unplugged(false);
   expect_played(play({"no_device.txt", "server_killed.txt", "forces_stopped.txt", "layouts.txt", "end_asked_narrow.txt",

@@ -52,8 +52,9 @@ constexpr ActionRow kTable[] = {
     {Action::kForces, Scope::kPuncture, "Space", "",
      QT_TRANSLATE_NOOP("Action", "stop all forces, or switch them on again")},
     {Action::kEnd, Scope::kPuncture, "E", "",
-     QT_TRANSLATE_NOOP("Action", "end and score the attempt; asks for confirmation")},
-    {Action::kConfirm, Scope::kPuncture, "Return Enter", "", QT_TRANSLATE_NOOP("Action", "answer a question with yes")},
+     QT_TRANSLATE_NOOP("Action", "end and score the attempt; asks for confirmation"), true},
+    {Action::kConfirm, Scope::kPuncture, "Return Enter", "", QT_TRANSLATE_NOOP("Action", "answer a question with yes"),
+     true},
     {Action::kDecline, Scope::kPuncture, "Esc", "", QT_TRANSLATE_NOOP("Action", "answer a question with no")},
 
     {Action::kPlay, Scope::kFeedback, "Space", "", QT_TRANSLATE_NOOP("Action", "play or pause the replay")},

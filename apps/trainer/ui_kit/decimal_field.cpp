@@ -1,7 +1,10 @@
 #include "ui_kit/decimal_field.h"
 
+#include <QKeyEvent>
+#include <QLineEdit>
 #include <QLocale>
 #include <QRegularExpression>
+#include <QToolTip>
 
 namespace trocar::trainer {
 
@@ -43,6 +46,16 @@ QString DecimalField::textFromValue(double value) const {
 
 void DecimalField::fixup(QString& text) const {
   Q_UNUSED(text)
+}
+
+void DecimalField::keyPressEvent(QKeyEvent* event) {
+  const QString before = text();
+  const bool is_sign = !event->text().isEmpty() && event->text().at(0).isPrint() && !lineEdit()->hasSelectedText();
+  QDoubleSpinBox::keyPressEvent(event);
+  if (!is_sign || text() != before) return;
+  const QString range = tr("%1 to %2, decimals: at most %3")
+                            .arg(textFromValue(minimum()), textFromValue(maximum()), locale().toString(decimals()));
+  QToolTip::showText(mapToGlobal(QPoint(0, height())), range, this);
 }
 
 }  // namespace trocar::trainer

@@ -18,6 +18,10 @@ class DecimalField : public QDoubleSpinBox {
   /// Qt's own takes the locale's group separators out, which would make 35 of "3.5".
   void fixup(QString& text) const override;
 
+ protected:
+  /// A key that the number has no place for is not taken; what the field takes is then shown beside it.
+  void keyPressEvent(QKeyEvent* event) override;
+
  private:
   QString without_affixes(const QString& text) const;
 };

@@ -62,10 +62,21 @@ PageKeys::PageKeys(QWidget& page, Take take) : page_(page), take_(std::move(take
 PageKeys::~PageKeys() = default;
 
 bool PageKeys::eventFilter(QObject* watched, QEvent* event) {
+  if (event->type() == QEvent::ShortcutOverride) {
+    const unsigned long time = static_cast<const QKeyEvent*>(event)->timestamp();
+    if (QApplication::activePopupWidget() != nullptr)
+      pressed_aside_ = time;
+    else if (pressed_aside_ != time)
+      pressed_aside_.reset();
+  }
+  if (event->type() == QEvent::KeyRelease) pressed_aside_.reset();
   if (event->type() != QEvent::KeyPress) return false;
   const auto* receiver = qobject_cast<const QWidget*>(watched);
   if (receiver == nullptr || main_window_of(*receiver) != main_window_of(page_)) return false;
-  return take_(static_cast<const QKeyEvent&>(*event), key_place_of(*receiver, *receiver->window()));
+  const auto& key = static_cast<const QKeyEvent&>(*event);
+  KeyPlace place = key_place_of(*receiver, *receiver->window());
+  place.is_aside |= pressed_aside_ == key.timestamp();
+  return take_(key, place);
 }
 
 KeyVerdict judge_key(const ActionRow& row, const QKeyEvent& key, const KeyPlace& place) {

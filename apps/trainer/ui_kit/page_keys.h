@@ -2,6 +2,7 @@
 
 #include <QObject>
 #include <functional>
+#include <optional>
 
 #include "ui_kit/action_table.h"
 
@@ -45,6 +46,9 @@ class PageKeys : public QObject {
  private:
   QWidget& page_;
   Take take_;
+  /// Time of a key that was pressed in an open list or menu, from its override event to its release: Qt closes the list
+  /// at the override and gives the key itself to the widget below.
+  std::optional<unsigned long> pressed_aside_;
 };
 
 enum class KeyVerdict {

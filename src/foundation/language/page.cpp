@@ -14,6 +14,9 @@ constexpr std::array kEntities = {std::pair("&lt;", '<'), std::pair("&gt;", '>')
 /// Attributes that people read or hear.
 constexpr std::array kTextAttributes = {" title=\"", " alt=\"", " aria-label=\""};
 
+/// Around names that people gave, which stay as they are even where a language has a word for them.
+constexpr std::pair kKept("<span translate=\"no\"", "</span>");
+
 constexpr std::string_view kEnglishRoot = "<html lang=\"en\"";
 
 std::string unescaped(std::string_view html) {
@@ -71,7 +74,7 @@ std::string changed_tag(const Change& change, std::string_view tag) {
 /// Where the text begins that follows the tag: behind the whole element for code.
 std::size_t end_of_tag(std::string_view html, std::size_t from) {
   for (const auto& [begin, end] :
-       {std::pair("<script", "</script>"), std::pair("<style", "</style>"), std::pair("<pre", "</pre>")})
+       {std::pair("<script", "</script>"), std::pair("<style", "</style>"), std::pair("<pre", "</pre>"), kKept})
     if (html.substr(from).starts_with(begin))
       if (const std::size_t at = html.find(end, from); at != std::string_view::npos)
         return at + std::string_view(end).size();
@@ -80,7 +83,8 @@ std::size_t end_of_tag(std::string_view html, std::size_t from) {
 }
 
 bool is_code(std::string_view tag) {
-  return tag.starts_with("<script") || tag.starts_with("<style") || tag.starts_with("<pre");
+  return tag.starts_with("<script") || tag.starts_with("<style") || tag.starts_with("<pre") ||
+         tag.starts_with(kKept.first);
 }
 
 std::string changed_page(const Change& change, std::string_view html) {

@@ -58,11 +58,12 @@ struct LegendEntry {
 std::vector<LegendEntry> lay_out_legend(const Plot& plot) {
   constexpr double kSample = 34.0;
   constexpr double kGap = 16.0;
+  constexpr double kLongestTranslation = 1.5;  ///< In the width of the English name; a report is translated when drawn.
   std::vector<LegendEntry> entries;
   double x = kLeft;
   int row = 0;
   for (const PlotSeries& series : plot.series) {
-    const double width = kSample + text_width(series.name, kFont) + kGap;
+    const double width = kSample + kLongestTranslation * text_width(series.name, kFont) + kGap;
     if (x > kLeft && x + width - kGap > plot.width - kRight) {
       x = kLeft;
       ++row;

@@ -200,6 +200,10 @@ Result<AttemptRecord> read_record(const AttemptRows& row) {
   return record;
 }
 
+std::string group_words(Group group, bool is_simulated) {
+  return fmt::format("{}{}", is_simulated ? "a simulated " : group == Group::kExpert ? "an " : "a ", to_string(group));
+}
+
 /// The people that the rows name.
 class PeopleOfRows {
  public:
@@ -226,9 +230,13 @@ class PeopleOfRows {
     const auto found = find_or_add_person(session_, {name, *group, row.text(Column::kCourse), is_simulated, {}}, now_);
     if (!found) {
       Error error = found.error();
-      error.where = row.place(Column::kPerson);
+      error.where = row.place(error.what.find("course") == std::string::npos ? Column::kPerson : Column::kCourse);
       return tl::unexpected(std::move(error));
     }
+    if (const Person& person = found->person; person.group != *group || person.is_simulated != is_simulated)
+      return fail(fmt::format("\"{}\" is {} in the database, {} in this row", person.name,
+                              group_words(person.group, person.is_simulated), group_words(*group, is_simulated)),
+                  row.place(Column::kGroup), "correct the row, or change the person (trocar results change)");
     added_ += found->is_added ? 1 : 0;
     return found->person.id;
   }

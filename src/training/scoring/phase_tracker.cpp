@@ -58,6 +58,8 @@ struct PhaseTracker::Impl {
   std::vector<Begin> begins;         ///< What had been done when each phase was repeated.
   // What actions and moments have changed so far.
   bool is_stylet_drawn = false, is_breath_held = false, has_been_inside = false;
+  std::optional<Vec3> first_tip_P;
+  double moved_mm = 0.0;  ///< Farthest distance of the tip from there.
   Begin done;                                                 ///< Since the attempt began.
   std::vector<std::pair<double, tasks::Substance>> returned;  ///< Times and substances.
   std::bitset<256> passed;                                    ///< Labels that the tip was in, of this insertion.
@@ -218,6 +220,8 @@ bool PhaseTracker::Impl::holds(const Condition& condition, std::size_t phase, co
       const Mat3 R_PN = telemetry::device_pose(sample).R();
       return fibres_P && tasks::bevel_to_fibres_deg(R_PN, *fibres_P) <= condition.number;
     }
+    case ConditionKind::kMoved:
+      return moved_mm >= condition.number;
     default:
       return holds_of_actions(condition, phase);
   }
@@ -227,6 +231,8 @@ bool PhaseTracker::Impl::holds(const Condition& condition, std::size_t phase, co
 void PhaseTracker::Impl::note_place(const PhaseMoment& moment) {
   const telemetry::TickSample& sample = moment.needle;
   const Vec3 pierced_P = telemetry::pierced_tip_mm(sample);
+  if (!first_tip_P) first_tip_P = sample.tip_mm;
+  moved_mm = std::max(moved_mm, (sample.tip_mm - *first_tip_P).norm());
   if (!telemetry::is_in_body(sample)) {
     passed.reset();
     if (std::exchange(has_been_inside, false)) ++done.exits;

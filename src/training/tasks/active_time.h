@@ -11,10 +11,13 @@ namespace trocar::tasks {
 struct Interruption {
   double from_s = 0.0;
   double to_s = 0.0;
-  std::string reason;  ///< kServerWasAway, or other words.
+  std::string reason;  ///< One of the words below.
 };
-/// After such an interruption the insertion restarts at the needle's pose.
+/// Why; after this one the insertion restarts at the needle's pose.
 inline constexpr const char* kServerWasAway = "the needle's server was away";
+inline constexpr const char* kServerSentNothing = "the needle's server sent no data";
+inline constexpr const char* kProgramDidNotRun = "the program did not run";
+inline constexpr const char* kSamplesWereLost = "samples were lost";
 
 /// Time from `from_s` to `to_s` in which the trainee could act. Interruptions do not overlap.
 inline double active_time_s(double from_s, double to_s, std::span<const Interruption> interruptions) noexcept {

@@ -57,7 +57,7 @@ export function number_text(value: number | null | undefined): string {
 
 /** A unit to print after a number: "" for the unit 1. */
 export function unit_text(unit: string): string {
-  return unit === "1" || unit === "" ? "" : unit === "deg" ? "°" : unit;
+  return unit === "1" || unit === "" ? "" : unit === "deg" ? "°" : unit === "points" ? t("points") : unit;
 }
 
 export function with_unit(value: number | null | undefined, unit: string): string {

@@ -78,7 +78,7 @@ export function change_person(person: Person, courses: Course[], reload: () => v
 }
 
 function pin_field(label: string): TextField {
-  return text_field(label, { type: "password", inputmode: "numeric", autocomplete: "new-password", maxlength: "12" });
+  return text_field(label, { type: "password", inputmode: "numeric", autocomplete: "new-password", maxlength: "100" });
 }
 
 export function set_pin(person: Person, reload: () => void): void {

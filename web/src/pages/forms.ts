@@ -5,7 +5,7 @@ import { h, replace_children, type Child } from "../lib/dom.ts";
 
 import { navigate, type PageContext } from "../lib/router.ts";
 import type { Form } from "../lib/types.ts";
-import { plural, t } from "../lib/words.ts";
+import { language, plural, t } from "../lib/words.ts";
 import { run_once } from "../ui/parts.ts";
 import { empty_box, error_box, load_into, type Missing } from "../ui/states.ts";
 import { data_table, type Column } from "../ui/table.ts";
@@ -43,7 +43,7 @@ export async function forms_page({ main, signal, set_title }: PageContext): Prom
   const standard = h("button", { type: "button", class: "button" }, t("Standard questionnaire"));
   const add_standard = async (): Promise<void> => {
     try {
-      navigate(form_path(await send<Form>("POST", "/api/forms", {})));
+      navigate(form_path(await send<Form>("POST", "/api/forms", { language: language() })));
     } catch (error) {
       replace_children(problem, error_box(error));
     }

@@ -1854,6 +1854,13 @@ Rechts ziehen: Helligkeit und Kontrast · Mitte oder Umschalt + links ziehen: ve
     </message>
 </context>
 <context>
+    <name>trocar::trainer::DecimalField</name>
+    <message>
+        <source>%1 to %2, decimals: at most %3</source>
+        <translation>%1 bis %2, höchstens %3 Nachkommastellen</translation>
+    </message>
+</context>
+<context>
     <name>trocar::trainer::DeviceCheck</name>
     <message>
         <source>The device test ended unexpectedly.</source>
@@ -3358,6 +3365,10 @@ Nachlauf: Abstand, um den das Instrument hinter der Hand zurückbleibt.</transla
     <message>
         <source>set before the start: %1</source>
         <translation>vor dem Start eingestellt: %1</translation>
+    </message>
+    <message>
+        <source>%1 interruptions, %2 s in total; the longest at %3 s: %4 s, %5</source>
+        <translation>%1 Unterbrechungen, insgesamt %2 s; die längste nach %3 s: %4 s, %5</translation>
     </message>
     <message>
         <source>at %1 s, %2</source>

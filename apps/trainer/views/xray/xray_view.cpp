@@ -37,8 +37,8 @@ xray::CArmPreset load_unit() {
 void draw_outlined_text(QPainter& painter, const QRectF& area, int flags, const QString& text) {
   const QPen pen = painter.pen();
   painter.setPen(Qt::black);
-  for (const QPointF by : {QPointF(-1, 0), QPointF(1, 0), QPointF(0, -1), QPointF(0, 1)})
-    painter.drawText(area.translated(by), flags, text);
+  for (const double x : {-1.5, 0.0, 1.5})
+    for (const double y : {-1.5, 0.0, 1.5}) painter.drawText(area.translated(x, y), flags, text);
   painter.setPen(pen);
   painter.drawText(area, flags, text);
 }

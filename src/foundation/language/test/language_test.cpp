@@ -87,6 +87,8 @@ TEST_F(LanguageTest, TranslatesThePageAndNotItsCode) {
       "<b>2,5</b> &lt;x&gt;</p>Leber");
   EXPECT_EQ(translate_page(Language(), "<p>liver</p>"), "<p>liver</p>");
   EXPECT_EQ(translate_page(german, "<p>liver"), "<p>Leber");
+  const std::string given = "<td><span translate=\"no\">liver</span></td>";
+  EXPECT_EQ(translate_page(german, given + "<p>liver</p>"), given + "<p>Leber</p>") << "a name that somebody gave";
   EXPECT_EQ(translate_page(german, "<p"), "<p");
 }
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "core/log.h"
+#include "language/language.h"
 #include "results/questionnaires.h"
 #include "web/api/route.h"
 #include "web/security/log_text.h"
@@ -80,9 +81,21 @@ Result<HttpAnswer> list_forms(Backend& backend, const Call&) {
   return ok({{"forms", std::move(list)}});
 }
 
+/// The standard form, in the language that the body names.
+Result<results::Form> standard_form(const Json& body) {
+  results::Form form = results::default_form();
+  form.is_open = true;
+  if (!body.contains("language")) return form;
+  TROCAR_TRY(const std::string code, text_field(body, "language"));
+  TROCAR_TRY(const language::Language language, language::load_language(code));
+  form.title = language.translate(form.title);
+  form.intro = language.translate(form.intro);
+  for (results::Item& item : form.items) item.text = language.translate(item.text);
+  return form;
+}
+
 Result<HttpAnswer> add_form(Backend& backend, const Call& call) {
-  results::Form fresh = results::default_form();
-  fresh.is_open = true;
+  TROCAR_TRY(results::Form fresh, standard_form(call.body));
   TROCAR_TRY(const results::Form form, read_form(call.body, std::move(fresh)));
   const auto repository = backend.repositories.borrow();
   TROCAR_TRY(const results::Form added, results::add_form(*repository, form, call.now.utc));
@@ -209,9 +222,10 @@ Result<HttpAnswer> add_answers(Backend& backend, const Call& call) {
 
 std::vector<Route> form_routes() {
   const std::vector<std::string_view> of_form{"title", "intro", "is_open", "items"};
+  const std::vector<std::string_view> of_new_form{"title", "intro", "is_open", "items", "language"};
   return {
       {"GET", "/api/forms", Access::kInstructor, list_forms},
-      {"POST", "/api/forms", Access::kInstructor, add_form, true, of_form},
+      {"POST", "/api/forms", Access::kInstructor, add_form, true, of_new_form},
       {"PUT", "/api/forms/*", Access::kInstructor, change_form, true, of_form},
       {"DELETE", "/api/forms/*", Access::kInstructor, delete_form},
       {"GET", "/api/forms/*/summary", Access::kInstructor, show_summary},

@@ -332,6 +332,19 @@ class Questionnaire : public Interface {
   }
 };
 
+TEST_F(Questionnaire, TheStandardFormIsInTheLanguageOfThePage) {
+  const Json english = json_of(lab_.post("/api/forms", Json::object()));
+  EXPECT_EQ(json_of(lab_.post("/api/forms", {{"language", "en"}}))["title"], english["title"]);
+  const Json german = json_of(lab_.post("/api/forms", {{"language", "de"}}));
+  EXPECT_EQ(german["title"], "Ihre Meinung zum Punktionssimulator");
+  ASSERT_EQ(german["items"].size(), english["items"].size());
+  EXPECT_NE(german["intro"], english["intro"]);
+  for (std::size_t n = 0; n < german["items"].size(); ++n)
+    EXPECT_NE(german["items"][n]["text"], english["items"][n]["text"]);
+  EXPECT_EQ(lab_.post("/api/forms", {{"language", "xx"}}).status, 400);
+  EXPECT_EQ(lab_.post("/api/forms", {{"language", "../de"}}).status, 400);
+}
+
 TEST_F(Questionnaire, IsAnsweredWithoutALoginAndSummedUp) {
   const Json form = add_form();
   ASSERT_EQ(form["items"].size(), 5U) << "the default: four statements and a free text";

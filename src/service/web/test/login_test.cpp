@@ -63,6 +63,17 @@ TEST(Login, IsSlowedDownAfterFiveFailures) {
 }
 
 /// A client can write X-Forwarded-For itself; a proxy appends the address that it sees.
+TEST(Login, BlanksAroundTheNameDoNotHelp) {
+  ServiceLab lab;
+  const std::string name = kAdmin;
+  for (const std::string& typed : {name, " " + name, name + " ", "  " + name + "   ", " " + name + "  "})
+    EXPECT_EQ(lab.log_in(typed, "wrong").status, 401) << typed;
+  for (const std::string& typed : {name, "    " + name, name + "      "})
+    EXPECT_EQ(lab.log_in(typed, "wrong").status, 429) << typed;
+  EXPECT_EQ(results::login_key("  Anna \t Meier "), results::login_key("anna meier"));
+  EXPECT_NE(results::login_key("anna meier"), results::login_key("annameier"));
+}
+
 TEST(Login, AForgedAddressDoesNotHelp) {
   const auto status = [](ServiceLab& lab, const std::string& forwarded) {
     HttpRequest request = lab.request("POST", "/api/login", {{"name", kAdmin}, {"password", "wrong"}});

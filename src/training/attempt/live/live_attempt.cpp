@@ -123,7 +123,8 @@ std::optional<Result<RunResult>> LiveAttempt::take_result() {
   if (scored.ticks_missing > 0)
     scored.warnings.push_back(
         fmt::format("{} ticks of the needle did not arrive: the session has gaps there", scored.ticks_missing));
-  if (scored.paused_s > 0.0)
+  constexpr double kShown_s = 0.05;  // 0.1 s in the words
+  if (scored.paused_s >= kShown_s)
     scored.warnings.push_back(
         fmt::format("the needle's server was away: {:.1f} s are missing from the session", scored.paused_s));
   return result;

@@ -63,10 +63,10 @@ Status LiveOperator::note_interruption(double step_s, bool is_seen) {
   const bool was_away = has_new_servers_ && step_s > period_s_;
   const bool can_act = is_seen && !was_away && step_s <= kLongestGap_s;
   if (!can_act && !idle_) {
-    const char* const reason = !is_seen ? "the program did not run" : "ticks were lost";
+    const char* const reason = !is_seen ? tasks::kProgramDidNotRun : tasks::kSamplesWereLost;
     idle_ = tasks::Interruption{std::min(time_s_, time_s_ - step_s + period_s_), 0.0, reason};
   }
-  if (idle_ && was_away) idle_->reason = is_placed_anew_ ? tasks::kServerWasAway : "no tick came";
+  if (idle_ && was_away) idle_->reason = is_placed_anew_ ? tasks::kServerWasAway : tasks::kServerSentNothing;
   if (!idle_ || !is_seen) return {};
   idle_->to_s = time_s_;
   const tasks::Interruption ended = *std::exchange(idle_, std::nullopt);

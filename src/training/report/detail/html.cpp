@@ -64,6 +64,10 @@ std::string joined_words(const std::vector<std::string>& names) {
   return out;
 }
 
+std::string given_name(std::string_view name) {
+  return name.empty() ? std::string() : "<span translate=\"no\">" + escape(name) + "</span>";
+}
+
 std::string capitalised(std::string text) {
   if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
   return text;

@@ -22,6 +22,9 @@ std::string joined_words(const std::vector<std::string>& names);
 /// The text with a capital first letter.
 std::string capitalised(std::string text);
 
+/// A name that somebody gave, escaped, which a report in another language leaves as it is.
+std::string given_name(std::string_view name);
+
 std::string base64(std::string_view bytes);
 
 /// Approximate width of a text (px) at a font size, sufficient to place labels.

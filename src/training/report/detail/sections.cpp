@@ -58,6 +58,10 @@ std::string case_row(const char* name, const std::string& value) {
   return value.empty() ? std::string() : fmt::format("<tr><th>{}</th><td>{}</td></tr>", name, escape(value));
 }
 
+std::string name_row(const char* term, const std::string& name) {
+  return name.empty() ? std::string() : fmt::format("<tr><th>{}</th><td>{}</td></tr>", term, given_name(name));
+}
+
 /// Changes during the attempt with their times; settings of the user before it.
 std::string changes_rows(const storage::Session& session) {
   std::string rows;
@@ -71,13 +75,24 @@ std::string changes_rows(const storage::Session& session) {
   return rows;
 }
 
-/// Each interruption that a trainee notices, and the number of the others.
+/// Each interruption that a trainee notices, of many the longest ones, and the number of the others.
 std::string interruption_rows(const storage::Session& session) {
-  const Interruptions gaps = interruptions_of(session);
+  constexpr std::size_t kMostListed = 5;
+  Interruptions gaps = interruptions_of(session);
+  const auto length_s = [](const tasks::Interruption& gap) { return gap.to_s - gap.from_s; };
+  std::ranges::stable_sort(gaps.noticed, std::greater(), length_s);
   std::string rows;
+  if (gaps.noticed.size() > kMostListed) {
+    double whole_s = 0.0;
+    for (const tasks::Interruption& gap : gaps.noticed) whole_s += length_s(gap);
+    rows += case_row("Interruptions", fmt::format("{}, {} s in total; the longest ones follow", gaps.noticed.size(),
+                                                  number_text(whole_s, 2)));
+    gaps.noticed.resize(kMostListed);
+  }
+  std::ranges::sort(gaps.noticed, {}, &tasks::Interruption::from_s);
   for (const tasks::Interruption& gap : gaps.noticed)
     rows += case_row("Interruption", fmt::format("at {} s: {} s, {}", number_text(gap.from_s, 2),
-                                                 number_text(gap.to_s - gap.from_s, 2), gap.reason));
+                                                 number_text(length_s(gap), 2), gap.reason));
   return gaps.short_ones == 0 ? rows : rows + case_row("Short interruptions", gaps.short_text());
 }
 
@@ -107,7 +122,7 @@ std::string page_header(const storage::Session& session, const ReportStory& stor
   return fmt::format(
       "<header><h1>{}: session report</h1><dl class=\"facts\">{}{}{}{}{}</dl>"
       "<p class=\"note\">Trocar is a training simulator, not a medical device.</p></header>",
-      escape(title_of(session, story)), fact("Patient", escape(info.patient_name)),
+      escape(title_of(session, story)), fact("Patient", given_name(info.patient_name)),
       fact("Operator", escape(info.operator_name)), fact("Level", escape(title_words(info.level))),
       fact("Date", date_text(info.started_utc)), fact("Trocar", escape(info.program_version)));
 }
@@ -144,8 +159,8 @@ std::string case_section(const storage::Session& session) {
       session.samples.empty() ? 0.0 : session.samples.back().time_s - session.samples.front().time_s;
   std::string out = "<section><h2>The case</h2><table class=\"list case\"><tbody>";
   out += case_row("Task", info.task + (info.is_parenchymal ? " (no lesion: healthy tissue of the organ)" : ""));
-  out += case_row("Patient", info.patient_name);
-  out += case_row("Patient's source", info.patient_source);
+  out += name_row("Patient", info.patient_name);
+  out += name_row("Patient's source", info.patient_source);
   out += case_row("Patient's hash", info.patient_hash);
   // An embedded patient by its name; a folder has no seed.
   if (info.patient_source == info.patient_name) out += case_row("Patient's seed", fmt::format("{}", info.patient_seed));

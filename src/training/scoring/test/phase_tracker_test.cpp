@@ -248,6 +248,18 @@ TEST_F(Phases, FollowActionsAndWhatComesBack) {
   EXPECT_FALSE(tracked.current());
 }
 
+TEST_F(Phases, AreDoneByAMovedNeedleNotByWhereItBegins) {
+  add("move", {{ConditionKind::kMoved, 5.0, {}}});
+  PhaseTracker tracked = tracker();
+  tracked.step(at(0.0, {50.0, -40.0, 50.0}));
+  tracked.step(at(0.1, {54.0, -40.0, 50.0}));
+  EXPECT_EQ(tracked.states()[0].lacks, std::vector<std::string>{"move the needle"});
+  tracked.step(at(0.2, {50.0, -45.0, 50.0}));
+  EXPECT_EQ(tracked.states()[0].done_s, 0.2);
+  tracked.step(at(0.3, {50.0, -40.0, 50.0}));
+  EXPECT_TRUE(tracked.states()[0].done_s) << "and back";
+}
+
 TEST_F(Phases, CountContrastAgentInTheTargetOnly) {
   add("duct", {{ConditionKind::kContrast, 0.5, {}}});
   PhaseTracker tracked = tracker();

@@ -47,6 +47,7 @@ constexpr std::array<ConditionRow, static_cast<std::size_t>(kLastCondition) + 1>
     {"cores", Argument::kNumber, {1.0, 10.0}, "take core number {:.0f}"},
     {"outside", Argument::kNone, {}, "withdraw the needle"},
     {"bevel_to_fibres_deg", Argument::kNumber, {1.0, 90.0}, "turn the needle until the bevel faces the side"},
+    {"moved_mm", Argument::kNumber, {1.0, 100.0}, "move the needle"},
 }};
 
 const ConditionRow& row_of(ConditionKind kind) noexcept {

@@ -36,8 +36,9 @@ enum class ConditionKind : std::uint8_t {
   kCores,          ///< Number: so many cores were taken.
   kOutside,        ///< The needle has left the body again.
   kBevelToFibres,  ///< Number: angle between the bevel and the fibres that it has to part (BevelRule), degrees.
+  kMoved,          ///< Number: the tip has been so far from where it was when the attempt began, mm.
 };
-inline constexpr ConditionKind kLastCondition = ConditionKind::kBevelToFibres;
+inline constexpr ConditionKind kLastCondition = ConditionKind::kMoved;
 
 struct Condition {
   ConditionKind kind = ConditionKind::kTipOnSkin;
