@@ -397,7 +397,7 @@ TEST_F(Questionnaire, MisspeltFieldsAreRefusedAndNamed) {
   const Json item = {{"kind", "scale"}, {"text", "Useful?"}, {"is_required", true}};
   Json misspelt = item;
   misspelt["required"] = true;
-  for (const Json& body : {Json{{"titel", "x"}}, Json{{"title", "x"}, {"language", "en"}},
+  for (const Json& body : {Json{{"titel", "x"}}, Json{{"title", "x"}, {"lang", "en"}},
                            Json{{"items", Json::array({misspelt})}}, Json{{"items", Json::array({Json::array()})}}}) {
     const HttpAnswer answer = lab_.post("/api/forms", body);
     EXPECT_EQ(answer.status, 400) << body;
