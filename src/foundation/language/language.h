@@ -64,8 +64,8 @@ std::vector<LanguageEntry> list_languages();
 Result<Language> load_language(const std::string& code);
 
 /// An HTML page in that language: its texts, the values of `title`, `alt` and `aria-label`, and `lang` of the root.
-/// Elements `script`, `style` and `pre`, and `<span translate="no">` stay as they are. Meant for pages that this program made: comments and CDATA
-/// are not known.
+/// Elements `script`, `style` and `pre`, and `<span translate="no">` stay as they are. Meant for pages that this
+/// program made: comments and CDATA are not known.
 std::string translate_page(const Language& language, std::string_view html);
 
 /// What translate_page() translates, in the order of the page.

@@ -59,7 +59,7 @@ struct PhaseTracker::Impl {
   // What actions and moments have changed so far.
   bool is_stylet_drawn = false, is_breath_held = false, has_been_inside = false;
   std::optional<Vec3> first_tip_P;
-  double moved_mm = 0.0;  ///< Farthest distance of the tip from there.
+  double moved_mm = 0.0;                                      ///< Farthest distance of the tip from there.
   Begin done;                                                 ///< Since the attempt began.
   std::vector<std::pair<double, tasks::Substance>> returned;  ///< Times and substances.
   std::bitset<256> passed;                                    ///< Labels that the tip was in, of this insertion.
