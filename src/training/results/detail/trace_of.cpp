@@ -40,7 +40,7 @@ Trace trace_of(const storage::Session& session) {
   for (const telemetry::TickSample& sample : session.samples) {
     if (trace.tissues.size() <= sample.tissue) trace.tissues.resize(sample.tissue + std::size_t{1});
     for (const telemetry::TickEvent& event : sample.events)
-      if (event.kind != telemetry::EventKind::kNone)
+      if (event.kind == telemetry::EventKind::kPuncture || event.kind == telemetry::EventKind::kEnter)
         trace.events.push_back({sample.time_s, storage::event_text(session.info, event)});
     const double now_n = force_n(sample);
     if (std::abs(now_n) > std::abs(extreme_n)) extreme_n = now_n;

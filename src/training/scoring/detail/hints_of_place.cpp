@@ -130,9 +130,10 @@ void add_biopsy_advice(const HintSubject& subject, std::vector<Advice>& advice) 
   const auto worst = std::min_element(judged.cores.begin(), judged.cores.end(),
                                       [](const auto& a, const auto& b) { return a.target_mm < b.target_mm; });
   const bool is_full = worst->target_mm >= kFullCore * judged.possible_core_mm;
-  if (lost_core > 0.0 && is_full && judged.cores.size() < subject.task().cores)
-    add_missing_cores(subject, lost_core, advice);
-  else if ((lost_core > 0.0 && !is_full) || worst->pieces.empty())
+  const bool is_missing = lost_core > 0.0 && judged.cores.size() < subject.task().cores;
+  if (is_missing) add_missing_cores(subject, lost_core, advice);
+  if (is_missing && is_full) return;
+  if ((lost_core > 0.0 && !is_full) || worst->pieces.empty())
     add_core_hint(subject, *worst, lost_core + lost_target, advice);
   else if (lost_target > 0.0 || lost_core > 0.0)
     add_core_hint(subject, *worst, lost_target + lost_core, advice);

@@ -68,6 +68,12 @@ TEST(Cores, OneOfTwoIsWorthHalf) {
   EXPECT_TRUE(has_hint(two, "Well done"));
 }
 
+TEST(Cores, AMissingOneIsNamedBesideABadOne) {
+  const Outcome outcome = score_of_punctures(punctures_along({kBesideLesion_P}), make_core_task(2), true);
+  EXPECT_TRUE(has_hint(outcome, "1 of 2 cores was taken"));
+  EXPECT_GT(outcome.hints.size(), 1u) << "what was wrong with it, too";
+}
+
 TEST(Cores, AFullCoreBesideTheMiddleOfTheTargetIsNotCalledMissed) {
   const Outcome outcome = score_of_punctures(punctures_along({shifted({5.0, 0.0, 0.0})}), make_core_task(1), true);
   EXPECT_GT(share(outcome, "core"), 0.8);
