@@ -13,7 +13,7 @@ namespace trocar::xray {
 namespace {
 
 constexpr float kDirect = 0.5F;
-constexpr float kBrightSide = 1.5F;  ///< Widest part of a window above the median's brightness, in that below it.
+constexpr float kBrightSide = 2.0F;  ///< Widest part of a window above the median's brightness, in that below it.
 constexpr std::size_t kGrainShown = 16384;
 
 std::size_t percentile(std::size_t count, double share) {

@@ -48,7 +48,7 @@ std::vector<float> shown_values(std::span<const float> signal, int columns, int 
                                 const FieldPixels& field);
 
 /// Window of the values in the field: from the 1st to the 99th percentile, at least `least_width` wide. The bright side
-/// of the median is at most 1.5 times as wide as its dark side, so that lungs at the edge do not darken the abdomen.
+/// of the median is at most twice as wide as its dark side, so that lungs at the edge do not darken the abdomen.
 /// Direct radiation (`signal` > 0.5) is left out if the rest covers a twentieth of the field. docs/physics.md, X12.
 GrayWindow window_of(std::span<const float> values, std::span<const float> signal, int columns,
                      const FieldPixels& field, float least_width = 0.1F);
