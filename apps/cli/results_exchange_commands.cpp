@@ -6,6 +6,7 @@
 #include "learning/curriculum.h"
 #include "learning/history.h"
 #include "results/attempts_csv.h"
+#include "results/names.h"
 #include "results/people.h"
 #include "results/sessions.h"
 #include "results_commands.h"
@@ -16,7 +17,7 @@ namespace {
 
 struct ImportArguments {
   std::vector<std::string> files;
-  std::string person, group = "trainee", course;
+  std::string person, group, course;
   bool is_simulated = false;
 };
 
@@ -27,12 +28,23 @@ struct ExportArguments {
 /// The person of --person, added if there is none of this name; empty: the files name theirs.
 Result<std::string> importing_person(results::Repository& repository, const ImportArguments& arguments) {
   if (arguments.person.empty()) return std::string();
-  const auto group = results::find_group(arguments.group);
+  const auto group = arguments.group.empty() ? results::Group::kTrainee : results::find_group(arguments.group);
   if (!group) return fail_usage("unknown group \"" + arguments.group + "\"", "--group", "use trainee or expert");
   TROCAR_TRY(const results::PersonOfName found,
              results::find_or_add_person(
                  repository, {arguments.person, *group, arguments.course, arguments.is_simulated}, now_s()));
   const results::Person& person = found.person;
+  // What is said of a person has to be so: the group decides with whom the attempts are compared.
+  const bool is_other =
+      (!arguments.group.empty() && person.group != *group) || (arguments.is_simulated && !person.is_simulated) ||
+      (!arguments.course.empty() && results::name_key(person.course) != results::name_key(arguments.course));
+  if (is_other)
+    return fail_usage(fmt::format("\"{}\" is {}{}{}", person.name,
+                                  person.is_simulated                       ? "a simulated "
+                                  : person.group == results::Group::kExpert ? "an "
+                                                                            : "a ",
+                                  to_string(person.group), person.course.empty() ? "" : " of " + person.course),
+                      "--person", "leave out --group, --course and --simulated, or see trocar results change");
   if (found.is_added)
     fmt::print("added {} ({}{})\n", person.name, to_string(person.group), person.is_simulated ? ", simulated" : "");
   return person.id;
@@ -123,7 +135,7 @@ void add_results_exchange_commands(Command& results, const DatabaseOption& url, 
   const auto i = std::make_shared<ImportArguments>();
   imported.add_option("files", i->files, "Session files, folders of them, CSV files of results export").required();
   imported.add_option("--person", i->person, "Whose sessions they are, added if new [who the sessions name]");
-  imported.add_option("--group", i->group, "Group of a new person: trainee or expert").show_default();
+  imported.add_option("--group", i->group, "Group of a new person: trainee or expert [trainee]");
   imported.add_option("--course", i->course, "Course of a new person");
   imported.add_flag("--simulated", i->is_simulated, "A new person is a scripted operator");
   imported.footer(

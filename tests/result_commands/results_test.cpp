@@ -55,6 +55,19 @@ TEST_F(Results, AreImportedListedAndExported) {
   EXPECT_NE(other.out.find("2 attempts added"), std::string::npos) << other.err;
 }
 
+TEST_F(Results, OptionsThatContradictAPersonAreRefused) {
+  add_anna();
+  write_session(folder_ / "a.session", {.score = 91.0});
+  for (const char* option : {"--group expert", "--simulated", "--course Other"}) {
+    const Outcome refused = results("import " + file("a.session") + " --person ' anna  Meier' " + option);
+    EXPECT_EQ(refused.exit_status, 2) << option;
+    EXPECT_NE(refused.err.find("\"Anna Meier\" is a trainee of Course 1"), std::string::npos) << refused.err;
+    EXPECT_TRUE(json_of(results("list --json"))["attempts"].empty()) << option;
+  }
+  for (const char* option : {"--group trainee", "--course 'course 1'", ""})
+    EXPECT_EQ(results("import " + file("a.session") + " --person 'Anna Meier' " + option).exit_status, 0) << option;
+}
+
 TEST_F(Results, SayWhatWasCountedAndWhatWasLeftOut) {
   add_anna();
   std::string files;

@@ -63,14 +63,19 @@ QColor phase_color(telemetry::InsertionPhase phase) {
   return theme().line;
 }
 
-/// Many interruptions in one line, with the longest one.
-QString interruptions_note(const std::vector<tasks::Interruption>& gaps, std::ptrdiff_t listed) {
+/// Many interruptions in one line, with the longest one; without those that a hand does not notice.
+QString interruptions_note(const std::vector<tasks::Interruption>& gaps) {
   const auto length_s = [](const tasks::Interruption& gap) { return gap.to_s - gap.from_s; };
   const auto longest = std::ranges::max_element(gaps, {}, length_s);
+  int noticed = 0;
   double whole_s = 0.0;
-  for (const tasks::Interruption& gap : gaps) whole_s += length_s(gap);
+  for (const tasks::Interruption& gap : gaps) {
+    if (length_s(gap) < tasks::kNoticedInterruption_s) continue;
+    ++noticed;
+    whole_s += length_s(gap);
+  }
   return ReplayControl::tr("%1 interruptions, %2 s in total; the longest at %3 s: %4 s, %5")
-      .arg(listed)
+      .arg(noticed)
       .arg(whole_s, 0, 'f', 1)
       .arg(longest->from_s, 0, 'f', 1)
       .arg(length_s(*longest), 0, 'f', 1)
@@ -95,7 +100,7 @@ QStringList notes_of(const attempt::AttemptReplay& replay, const std::vector<std
   for (const attempt::ReplayMoment& moment : moments)
     if (kind_of(moment) == TimeMark::kOther && (interruptions <= kMostListed || !is_interruption(moment)))
       notes << ReplayControl::tr("at %1 s, %2").arg(moment.time_s, 0, 'f', 1).arg(shown(moment.text));
-  if (interruptions > kMostListed) notes << interruptions_note(replay.session().interruptions, interruptions);
+  if (interruptions > kMostListed) notes << interruptions_note(replay.session().interruptions);
   return notes;
 }
 

@@ -85,11 +85,13 @@ void parallel_for(std::size_t count, std::size_t grain, const std::function<void
       Range(0, count, std::max<std::size_t>(grain, 1)),
       [&](const Range& part) {
         const CancellationScope scope(stop);
-        const std::size_t piece =
-            stop.stop_possible() ? std::max((part.size() + 3) / 4, part.grainsize()) : part.size();
-        for (std::size_t first = part.begin(); first < part.end(); first += piece) {
+        // TBB's parts can take long: work that can be cancelled is done in up to four pieces.
+        const std::size_t pieces =
+            stop.stop_possible() ? std::clamp<std::size_t>(part.size() / part.grainsize(), 1, 4) : 1;
+        const auto begin_of = [&](std::size_t piece) { return part.begin() + piece * part.size() / pieces; };
+        for (std::size_t piece = 0; piece < pieces; ++piece) {
           cancellation_point();
-          hand_over.run([&] { body(first, std::min(first + piece, part.end())); });
+          hand_over.run([&] { body(begin_of(piece), begin_of(piece + 1)); });
         }
       },
       own);

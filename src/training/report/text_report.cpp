@@ -53,7 +53,8 @@ std::string text_report(const storage::Session& session, const ReportStory& stor
   for (const ActionLine& action : story.actions)
     text += fmt::format("  {:.1f} s, {:.1f} mm deep: {}\n", action.time_s, action.depth_mm, action.text);
   const Interruptions gaps = interruptions_of(session);
-  for (const tasks::Interruption& gap : gaps.noticed)
+  if (const std::string many = gaps.many_text(); !many.empty()) text += "interruptions: " + many + "\n";
+  for (const tasks::Interruption& gap : gaps.listed)
     text += fmt::format("interruption at {:.2f} s: {:.2f} s, {}\n", gap.from_s, gap.to_s - gap.from_s, gap.reason);
   if (gaps.short_ones > 0) text += fmt::format("{}\n", gaps.short_text());
   return text;

@@ -83,11 +83,6 @@ Result<std::vector<Account>> list_accounts(Repository& repository) {
   });
 }
 
-std::string login_key(std::string_view typed_name) {
-  const auto clean = clean_name(typed_name, kAccountName);
-  return name_key(clean ? std::string_view(*clean) : typed_name);
-}
-
 Result<std::optional<Account>> find_account(Repository& repository, std::string_view name) {
   const auto clean = clean_name(name, kAccountName);
   if (!clean) return std::optional<Account>();

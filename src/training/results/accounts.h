@@ -30,8 +30,6 @@ Result<Account> add_account(Repository& repository, std::string_view name, Role 
                             Seconds now);
 Result<std::vector<Account>> list_accounts(Repository& repository);
 Result<std::optional<Account>> find_account(Repository& repository, std::string_view name);
-/// One key for all ways to type the name of an account: what find_account() finds for two names of one key is the same.
-std::string login_key(std::string_view typed_name);
 /// Ends all sessions of the account but `kept_token_hash`.
 Status change_password(Repository& repository, std::string_view account_id, std::string_view password_hash,
                        std::string_view kept_token_hash = {});

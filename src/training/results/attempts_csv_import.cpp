@@ -19,6 +19,7 @@
 #include "results/detail/attempt_writer.h"
 #include "results/detail/csv_columns.h"
 #include "results/detail/people_table.h"
+#include "results/names.h"
 
 namespace trocar::results {
 using namespace detail;
@@ -227,12 +228,16 @@ class PeopleOfRows {
     const auto group = find_group(row.text(Column::kGroup));
     if (!group) return fail("the group is unknown", row.place(Column::kGroup), "use trainee or expert");
     TROCAR_TRY(const bool is_simulated, row.truth(Column::kSimulated));
-    const auto found = find_or_add_person(session_, {name, *group, row.text(Column::kCourse), is_simulated, {}}, now_);
-    if (!found) {
-      Error error = found.error();
-      error.where = row.place(error.what.find("course") == std::string::npos ? Column::kPerson : Column::kCourse);
+    const std::string course = row.text(Column::kCourse);
+    const auto at = [&](Column column, Error error) {
+      error.where = row.place(column);
       return tl::unexpected(std::move(error));
-    }
+    };
+    if (!course.empty())
+      if (const auto clean = clean_name(course, "the name of a course"); !clean)
+        return at(Column::kCourse, clean.error());
+    const auto found = find_or_add_person(session_, {name, *group, course, is_simulated, {}}, now_);
+    if (!found) return at(Column::kPerson, found.error());
     if (const Person& person = found->person; person.group != *group || person.is_simulated != is_simulated)
       return fail(fmt::format("\"{}\" is {} in the database, {} in this row", person.name,
                               group_words(person.group, person.is_simulated), group_words(*group, is_simulated)),

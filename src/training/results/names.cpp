@@ -60,8 +60,9 @@ Result<std::string> clean_name(std::string_view name, const char* kind) {
   return clean;
 }
 
-std::string name_key(std::string_view clean_name) {
-  return ascii::lower_case(clean_name);
+std::string name_key(std::string_view name) {
+  const auto clean = clean_name(name, "the name");
+  return ascii::lower_case(clean ? std::string_view(*clean) : name);  // one that cannot be used is nobody's
 }
 
 Result<std::string> clean_text(std::string_view text, std::size_t max_characters, const char* kind) {

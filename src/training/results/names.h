@@ -12,8 +12,8 @@ inline constexpr std::size_t kMaxNameCharacters = 100;
 /// A name without blanks at its ends, and with single blanks. Errors (exit status 2): empty, too long, control
 /// characters, not UTF-8. `kind`: "the name of a person".
 Result<std::string> clean_name(std::string_view name, const char* kind);
-/// Names that differ only in case (of a to z) have the same key.
-std::string name_key(std::string_view clean_name);
+/// Names that differ only in case (of a to z) and blanks have the same key, as typed or clean.
+std::string name_key(std::string_view name);
 
 /// A text of several lines, without blanks at its ends. Errors (exit status 2): more than `max_characters`, control
 /// characters other than line feed and tab, not UTF-8. May be empty.

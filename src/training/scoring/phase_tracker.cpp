@@ -42,6 +42,7 @@ struct PhaseTracker::Impl {
     int injections = 0, drawn_stylets = 0, held_breaths = 0, wires = 0, exits = 0;
     double wire_mm = 0.0, contrast_in_target_ml = 0.0, contrast_ml = 0.0;
     std::size_t cores = 0;
+    std::optional<Vec3> tip_P;
   };
 
   const tasks::Task& task;
@@ -58,8 +59,6 @@ struct PhaseTracker::Impl {
   std::vector<Begin> begins;         ///< What had been done when each phase was repeated.
   // What actions and moments have changed so far.
   bool is_stylet_drawn = false, is_breath_held = false, has_been_inside = false;
-  std::optional<Vec3> first_tip_P;
-  double moved_mm = 0.0;                                      ///< Farthest distance of the tip from there.
   Begin done;                                                 ///< Since the attempt began.
   std::vector<std::pair<double, tasks::Substance>> returned;  ///< Times and substances.
   std::bitset<256> passed;                                    ///< Labels that the tip was in, of this insertion.
@@ -221,7 +220,7 @@ bool PhaseTracker::Impl::holds(const Condition& condition, std::size_t phase, co
       return fibres_P && tasks::bevel_to_fibres_deg(R_PN, *fibres_P) <= condition.number;
     }
     case ConditionKind::kMoved:
-      return moved_mm >= condition.number;
+      return (sample.tip_mm - *begins[phase].tip_P).norm() >= condition.number;
     default:
       return holds_of_actions(condition, phase);
   }
@@ -231,8 +230,9 @@ bool PhaseTracker::Impl::holds(const Condition& condition, std::size_t phase, co
 void PhaseTracker::Impl::note_place(const PhaseMoment& moment) {
   const telemetry::TickSample& sample = moment.needle;
   const Vec3 pierced_P = telemetry::pierced_tip_mm(sample);
-  if (!first_tip_P) first_tip_P = sample.tip_mm;
-  moved_mm = std::max(moved_mm, (sample.tip_mm - *first_tip_P).norm());
+  done.tip_P = sample.tip_mm;
+  for (Begin& begin : begins)
+    if (!begin.tip_P) begin.tip_P = sample.tip_mm;
   if (!telemetry::is_in_body(sample)) {
     passed.reset();
     if (std::exchange(has_been_inside, false)) ++done.exits;

@@ -19,6 +19,9 @@ inline constexpr const char* kServerSentNothing = "the needle's server sent no d
 inline constexpr const char* kProgramDidNotRun = "the program did not run";
 inline constexpr const char* kSamplesWereLost = "samples were lost";
 
+/// Shorter ones are counted and not listed: a hand does not notice them. [assumed]
+inline constexpr double kNoticedInterruption_s = 0.1;
+
 /// Time from `from_s` to `to_s` in which the trainee could act. Interruptions do not overlap.
 inline double active_time_s(double from_s, double to_s, std::span<const Interruption> interruptions) noexcept {
   double time_s = std::max(0.0, to_s - from_s);

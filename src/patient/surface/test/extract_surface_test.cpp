@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <stop_token>
+#include <thread>
 
+#include "core/cancellation.h"
 #include "core/random.h"
 #include "surface/detail/contour.h"
 
@@ -47,6 +50,16 @@ bool is_closed(const TriangleMesh& mesh) {
     }
   }
   return std::all_of(walks.begin(), walks.end(), [](const auto& edge) { return edge.second == 0; });
+}
+
+// Wherever the stop comes, no half-made surface is returned.
+TEST(ExtractSurface, EndsWhereItIsCancelled) {
+  const volume::GridGeometry geometry = cube(150, Vec3::Ones());
+  const volume::MaskGrid mask = ball(geometry, Vec3::Constant(75.0), 60.0);
+  std::stop_source source;
+  const CancellationScope scope(source.get_token());
+  const std::jthread stop([&source] { source.request_stop(); });
+  EXPECT_THROW(extract_surface(mask, {}), Cancelled);
 }
 
 TEST(ExtractSurface, ASphereKeepsVolumeAndRadius) {

@@ -65,10 +65,10 @@ Result<HttpAnswer> log_in(Backend& backend, const Call& call) {
   TROCAR_TRY(const std::string name, text_field(call.body, "name"));
   TROCAR_TRY(const std::string password, text_field(call.body, "password"));
   const std::string& address = call.request.address;
-  LoginTry login{results::login_key(name), call.request.client};
+  LoginTry login{results::name_key(name), call.request.client};
   {
     const auto repository = backend.repositories.borrow();
-    TROCAR_TRY(login.is_known, results::is_login_client(*repository, login.account, login.client, call.now.utc));
+    TROCAR_TRY(login.is_known, results::is_login_client(*repository, name, login.client, call.now.utc));
   }
   if (const auto wait = backend.logins.try_begin(login, call.now.steady)) {
     const LimitedLog limited(backend.log_limit);
@@ -117,7 +117,7 @@ Result<HttpAnswer> change_own_password(Backend& backend, const Call& call) {
   TROCAR_TRY(const std::string old_password, text_field(call.body, "old"));
   TROCAR_TRY(const std::string new_password, text_field(call.body, "new"));
   TROCAR_TRY_STATUS(signing::check_new_password(new_password, account.name));
-  const LoginTry login{results::login_key(account.name), call.request.client, true};
+  const LoginTry login{results::name_key(account.name), call.request.client, true};
   if (const auto wait = backend.logins.try_begin(login, call.now.steady))
     return wait_answer(*wait, "there were too many wrong passwords");
   const PasswordGate::Pass pass(backend.passwords);

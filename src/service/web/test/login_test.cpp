@@ -70,8 +70,8 @@ TEST(Login, BlanksAroundTheNameDoNotHelp) {
     EXPECT_EQ(lab.log_in(typed, "wrong").status, 401) << typed;
   for (const std::string& typed : {name, "    " + name, name + "      "})
     EXPECT_EQ(lab.log_in(typed, "wrong").status, 429) << typed;
-  EXPECT_EQ(results::login_key("  Anna   Meier "), results::login_key("anna meier"));
-  EXPECT_NE(results::login_key("anna meier"), results::login_key("annameier"));
+  EXPECT_EQ(results::name_key("  Anna   Meier "), results::name_key("anna meier"));
+  EXPECT_NE(results::name_key("anna meier"), results::name_key("annameier"));
 }
 
 TEST(Login, AForgedAddressDoesNotHelp) {

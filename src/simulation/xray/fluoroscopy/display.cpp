@@ -77,8 +77,7 @@ struct Base {
 Base base_of(const std::vector<float>& values, int columns, int rows) {
   constexpr int kCells = 64;
   constexpr double kSigma_cells = 3.0;
-  constexpr float kSmallVariance =
-      0.1F;  ///< Of attenuation: between that of ribs and that of the lung's edge. [assumed]
+  constexpr float kSmallVariance = 0.1F;  ///< [assumed]: more than that of ribs, less than that of the lung's edge.
   const int cells = std::min({kCells, columns, rows});
   std::vector<float> mean = cell_means(values, columns, rows, cells), square = mean;
   Base base;

@@ -122,9 +122,8 @@ void AttemptReplay::find_moments() {
           {change.time_s, Kind::kChange, fmt::format("parameters: {}", fmt::join(change.settings, ", "))});
   for (AttemptEvent& action : describe_actions(the_case.substances, session_, the_case.patient.get()))
     moments_.push_back({action.time_s, Kind::kAction, std::move(action.text)});
-  constexpr double kShortest_s = 0.1;  // shorter ones are not felt
   for (const tasks::Interruption& gap : session_.interruptions)
-    if (gap.to_s - gap.from_s >= kShortest_s)
+    if (gap.to_s - gap.from_s >= tasks::kNoticedInterruption_s)
       moments_.push_back({gap.to_s, Kind::kInterruption,
                           fmt::format("interrupted for {:.1f} s: {}", gap.to_s - gap.from_s, gap.reason)});
   for (const GunShot& shot : shots_) moments_.push_back({shot.time_s, Kind::kFired, shot_words(shot)});

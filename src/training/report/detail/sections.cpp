@@ -77,22 +77,11 @@ std::string changes_rows(const storage::Session& session) {
 
 /// Each interruption that a trainee notices, of many the longest ones, and the number of the others.
 std::string interruption_rows(const storage::Session& session) {
-  constexpr std::size_t kMostListed = 5;
-  Interruptions gaps = interruptions_of(session);
-  const auto length_s = [](const tasks::Interruption& gap) { return gap.to_s - gap.from_s; };
-  std::ranges::stable_sort(gaps.noticed, std::greater(), length_s);
-  std::string rows;
-  if (gaps.noticed.size() > kMostListed) {
-    double whole_s = 0.0;
-    for (const tasks::Interruption& gap : gaps.noticed) whole_s += length_s(gap);
-    rows += case_row("Interruptions", fmt::format("{}, {} s in total; the longest ones follow", gaps.noticed.size(),
-                                                  number_text(whole_s, 2)));
-    gaps.noticed.resize(kMostListed);
-  }
-  std::ranges::sort(gaps.noticed, {}, &tasks::Interruption::from_s);
-  for (const tasks::Interruption& gap : gaps.noticed)
+  const Interruptions gaps = interruptions_of(session);
+  std::string rows = case_row("Interruptions", gaps.many_text());
+  for (const tasks::Interruption& gap : gaps.listed)
     rows += case_row("Interruption", fmt::format("at {} s: {} s, {}", number_text(gap.from_s, 2),
-                                                 number_text(length_s(gap), 2), gap.reason));
+                                                 number_text(gap.to_s - gap.from_s, 2), gap.reason));
   return gaps.short_ones == 0 ? rows : rows + case_row("Short interruptions", gaps.short_text());
 }
 

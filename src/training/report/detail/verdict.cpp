@@ -2,6 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <functional>
+
+#include "report/detail/html.h"
+#include "tasks/active_time.h"
+
 namespace trocar::report::detail {
 namespace {
 
@@ -29,22 +35,34 @@ std::vector<std::string> reasons_of(const scoring::Outcome& outcome) {
   return reasons;
 }
 
+std::string Interruptions::many_text() const {
+  if (listed.size() == noticed) return {};
+  return fmt::format("{}, {} s in total; the longest ones follow", noticed, number_text(noticed_s, 2));
+}
+
 std::string Interruptions::short_text() const {
   return fmt::format("{} interruption{} shorter than {:g} s, {:.2f} s in total", short_ones, short_ones == 1 ? "" : "s",
-                     kShortInterruption_s, short_s);
+                     tasks::kNoticedInterruption_s, short_s);
 }
 
 Interruptions interruptions_of(const storage::Session& session) {
   Interruptions all;
   for (const tasks::Interruption& gap : session.interruptions) {
     const double length_s = gap.to_s - gap.from_s;
-    if (length_s < kShortInterruption_s) {
+    if (length_s < tasks::kNoticedInterruption_s) {
       ++all.short_ones;
       all.short_s += length_s;
     } else {
-      all.noticed.push_back(gap);
+      ++all.noticed;
+      all.noticed_s += length_s;
+      all.listed.push_back(gap);
     }
   }
+  constexpr std::size_t kMostListed = 5;
+  if (all.listed.size() <= kMostListed) return all;
+  std::ranges::stable_sort(all.listed, std::greater(), [](const auto& gap) { return gap.to_s - gap.from_s; });
+  all.listed.resize(kMostListed);
+  std::ranges::sort(all.listed, {}, &tasks::Interruption::from_s);
   return all;
 }
 

@@ -18,13 +18,15 @@ Verdict verdict_of(const scoring::Outcome& outcome);
 /// Why it is not passed, or has no verdict.
 std::vector<std::string> reasons_of(const scoring::Outcome& outcome);
 
-/// Shorter interruptions are counted and not listed: a hand does not notice them. [assumed]
-inline constexpr double kShortInterruption_s = 0.1;
 struct Interruptions {
-  std::vector<tasks::Interruption> noticed;
+  std::size_t noticed = 0;                  ///< Not shorter than tasks::kNoticedInterruption_s.
+  double noticed_s = 0.0;                   ///< Sum of their lengths.
+  std::vector<tasks::Interruption> listed;  ///< At most five of them, the longest, in the order of time.
   std::size_t short_ones = 0;
   double short_s = 0.0;  ///< Sum of their lengths.
 
+  /// "12, 3.40 s in total; the longest ones follow"; empty: all are listed.
+  std::string many_text() const;
   /// "3 interruptions shorter than 0.1 s, 0.04 s in total".
   std::string short_text() const;
 };

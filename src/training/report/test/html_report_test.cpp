@@ -119,6 +119,17 @@ TEST(HtmlReport, AnOlderSessionHasNoVerdict) {
   places(html, {"<h2>No verdict</h2>", "older program"});
 }
 
+TEST(HtmlReport, OfManyInterruptionsTheLongestAreListed) {
+  storage::Session session = testing::example_attempt();
+  for (int n = 0; n < 8; ++n) session.interruptions.push_back({1.0 + n, 1.2 + n + 0.1 * (n % 4), "busy"});
+  session.interruptions.push_back({20.0, 20.05, "busy"});
+  const std::string html = html_report(session, nullptr);
+  EXPECT_EQ(count_of(html, "<th>Interruption</th>"), 5u);
+  places(html, {"8, 2.80 s in total; the longest ones follow", "at 3.00 s: 0.40 s, busy", "at 4.00 s: 0.50 s, busy",
+                "at 7.00 s: 0.40 s, busy", "at 8.00 s: 0.50 s, busy", "1 interruption shorter than 0.1 s"});
+  EXPECT_EQ(html.find("at 1.00 s: 0.20 s"), std::string::npos);
+}
+
 TEST(HtmlReport, ShortInterruptionsAreCounted) {
   storage::Session session = example_attempt();
   session.interruptions = {

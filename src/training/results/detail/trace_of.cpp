@@ -39,7 +39,7 @@ Trace trace_of(const storage::Session& session) {
   double extreme_n = 0.0;
   for (const telemetry::TickSample& sample : session.samples) {
     if (trace.tissues.size() <= sample.tissue) trace.tissues.resize(sample.tissue + std::size_t{1});
-    for (const telemetry::TickEvent& event : sample.events)
+    for (const telemetry::TickEvent& event : sample.events)  // limits of the device tell an instructor nothing
       if (event.kind == telemetry::EventKind::kPuncture || event.kind == telemetry::EventKind::kEnter)
         trace.events.push_back({sample.time_s, storage::event_text(session.info, event)});
     const double now_n = force_n(sample);

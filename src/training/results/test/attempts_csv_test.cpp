@@ -183,6 +183,25 @@ TEST_P(AttemptsCsv, WithABadRowChangeNothing) {
   EXPECT_NE(refused("person,task\r\n1,2\r\n").find("column \"attempt\" is missing"), std::string::npos);
 }
 
+TEST_P(AttemptsCsv, ARowThatContradictsThePersonIsRefused) {
+  const Person anna = add("Anna");
+  put(attempt(anna.id, 50.0));
+  const auto file = folder_ / "attempts.csv";
+  ASSERT_TRUE(export_attempts(*repository_, {}, file));
+  for (const NewPerson& known :
+       {NewPerson{"anna", Group::kExpert, {}, false, {}}, NewPerson{" Anna", Group::kTrainee, {}, true, {}}}) {
+    TemporaryFolder own;
+    auto other = Repository::open({own / "other.sqlite", {}});
+    ASSERT_TRUE(other && add_person(*other, known, kNow));
+    const auto imported = import_attempts(*other, file, kNow);
+    ASSERT_FALSE(imported);
+    EXPECT_NE(imported.error().text().find("in the database, a trainee in this row"), std::string::npos)
+        << imported.error().text();
+    EXPECT_NE(imported.error().text().find("group"), std::string::npos);
+    EXPECT_TRUE(list_attempts(*other, {})->empty());
+  }
+}
+
 TEST_P(AttemptsCsv, EveryKindOfFaultIsNamedWithItsLineAndColumn) {
   const Person anna = add("Anna");
   put(attempt(anna.id, 50.0));
@@ -207,6 +226,7 @@ TEST_P(AttemptsCsv, EveryKindOfFaultIsNamedWithItsLineAndColumn) {
            {"attempt", "xyz", "the attempt has no valid key"},
            {"person", "", "is empty"},
            {"group", "student", "the group is unknown"},
+           {"course", "a\tb", "column course"},
            {"simulated", "yes", "\"yes\" is neither 0 nor 1"},
            {"task", "", "the task is empty"},
            {"seed", "1.5", "\"1.5\" is no whole number"},

@@ -258,6 +258,12 @@ TEST_F(Phases, AreDoneByAMovedNeedleNotByWhereItBegins) {
   EXPECT_EQ(tracked.states()[0].done_s, 0.2);
   tracked.step(at(0.3, {50.0, -40.0, 50.0}));
   EXPECT_TRUE(tracked.states()[0].done_s) << "and back";
+  tracked.repeat(0);
+  tracked.step(at(0.4, {50.0, -40.0, 50.0}));
+  tracked.step(at(0.5, {50.0, -43.0, 50.0}));
+  EXPECT_FALSE(tracked.states()[0].done_s);
+  tracked.step(at(0.6, {50.0, -46.0, 50.0}));
+  EXPECT_EQ(tracked.states()[0].done_s, 0.6) << "moved anew";
 }
 
 TEST_F(Phases, CountContrastAgentInTheTargetOnly) {

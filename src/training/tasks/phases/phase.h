@@ -36,7 +36,7 @@ enum class ConditionKind : std::uint8_t {
   kCores,          ///< Number: so many cores were taken.
   kOutside,        ///< The needle has left the body again.
   kBevelToFibres,  ///< Number: angle between the bevel and the fibres that it has to part (BevelRule), degrees.
-  kMoved,          ///< Number: the tip has been so far from where it was when the attempt began, mm.
+  kMoved,  ///< Number: distance of the tip from where it was when the attempt began, or the phase was repeated, mm.
 };
 inline constexpr ConditionKind kLastCondition = ConditionKind::kMoved;
 
