@@ -72,6 +72,7 @@ AttemptControl::AttemptControl(std::shared_ptr<const cases::OpenCase> open, cons
 AttemptControl::~AttemptControl() {
   page_.view_3d().set_interrupt({});
   page_.xray().set_injection_hindrance({});
+  page_.xray().pause_injection(false);
   page_.workspace().set_tip_hidden(false);
   gestures_.unwatch();
 }
@@ -366,6 +367,7 @@ void AttemptControl::show_tools(double dt_s) {
   if (X_PN_wire_ && wire_mm() > 0.0)
     tools.wire_P = Segment{X_PN_wire_->p(), X_PN_wire_->p() + wire_mm() * X_PN_wire_->R().col(2)};
   page_.xray().set_injection_hindrance(injection_hindrance());
+  page_.xray().pause_injection(!action_state().can_act);
   if (view_.has_probe && view_.probe.is_known) tools.X_PT = view_.probe.X_PT;
   constexpr double kMoving_mm_s = 0.5;
   const bool is_moving = std::abs(needle.speed_mm_s) > kMoving_mm_s || tools.goal_P.has_value();
@@ -387,7 +389,9 @@ double AttemptControl::distance_mm() const {
 QString AttemptControl::injection_hindrance() const {
   const tasks::Needle& needle = open_->the_case.needle;
   if (needle.inner_diameter_mm <= 0.0) return tr("This needle has no lumen.");
-  return why_not(Action::kAspirate, action_state(), needle);  // needs the same: a free lumen
+  ActionState state = action_state();
+  state.can_act = true;                              // an interruption pauses an injection
+  return why_not(Action::kAspirate, state, needle);  // needs the same: a free lumen
 }
 
 QString AttemptControl::hint() const {

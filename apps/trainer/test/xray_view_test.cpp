@@ -72,6 +72,18 @@ TEST_F(XrayViewTest, RefusesAnInjectionWhereSomethingHindersItAndEndsOne) {
   EXPECT_TRUE(view.is_injecting());
 }
 
+TEST_F(XrayViewTest, AnInterruptionPausesAnInjectionWhoseKeyIsHeld) {
+  view.pause_injection(true);
+  view.set_injecting(true);
+  EXPECT_FALSE(view.is_injecting());
+  view.pause_injection(false);
+  EXPECT_TRUE(view.is_injecting());
+  view.pause_injection(true);
+  view.set_injecting(false);
+  view.pause_injection(false);
+  EXPECT_FALSE(view.is_injecting()) << "released during the interruption";
+}
+
 TEST_F(XrayViewTest, ShowsAnImageOnlyWhileThePedalIsDownAndHoldsTheLast) {
   ASSERT_FALSE(run_until([&, n = 0]() mutable { return view.frame() != nullptr || ++n > 200; }) && view.frame());
   view.set_pedal(true);

@@ -53,17 +53,17 @@ void DeviceTrial::weigh(const std::optional<Pose>& placed_X_DS) noexcept {
 
 /// Faults and velocities of a reading.
 haptics::GateInput DeviceTrial::sense(const devices::DeviceReading& now, double dt_s) noexcept {
-  const double since_fresh_s = unread_s_ + dt_s;
-  unread_s_ = now.status == devices::DeviceStatus::kFresh ? 0.0 : since_fresh_s;
+  const bool is_fresh = now.status == devices::DeviceStatus::kFresh;
+  const double since_fresh_s = age_.advance(is_fresh, dt_s, gate_.max_unread_s);
   haptics::GateInput input;
   input.dt_s = dt_s;
-  input.unread_s = unread_s_;
+  input.unread_s = age_.unread_s();
   input.is_reset = is_reset_;
   if (now.status == devices::DeviceStatus::kDisconnected || (has_refused_ && !is_reset_))
     input.device_fault = telemetry::GateFault::kDeviceLost;
   is_reset_ = false;
   if (!now.X_DS.is_finite()) input.device_fault = telemetry::GateFault::kNotFinite;
-  if (now.status == devices::DeviceStatus::kFresh && now.X_DS.is_finite()) {
+  if (is_fresh && now.X_DS.is_finite()) {
     if (last_X_DS_) {
       input.v_mm_per_s = (now.X_DS.p() - last_X_DS_->p()) / since_fresh_s;
       input.w_rad_per_s = haptics::rotation_vector(now.X_DS.R() * last_X_DS_->R().transpose()) / since_fresh_s;

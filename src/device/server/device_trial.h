@@ -4,6 +4,7 @@
 
 #include "devices/haptic_device.h"
 #include "haptics/gate/safety_gate.h"
+#include "server/detail/reading_age.h"
 #include "server/stylus_weighing.h"
 
 namespace trocar::server {
@@ -54,7 +55,7 @@ class DeviceTrial {
   std::optional<Pose> placed_X_DS_;  ///< Of a simulated hand, until it lets go.
   bool is_placed_ = false;
   std::optional<Pose> last_X_DS_;
-  double unread_s_ = 0.0;
+  detail::ReadingAge age_;
   bool is_reset_ = false;
   bool has_refused_ = false;  ///< The device did not take the last wrench.
 };

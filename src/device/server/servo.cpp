@@ -74,14 +74,14 @@ Servo::Sensed Servo::sense(const ServoInput& input) noexcept {
   Sensed sensed;
   sensed.reading = device_.read(input.now_s);
   const devices::DeviceReading& now = sensed.reading;
-  const double since_fresh_s = unread_s_ + input.dt_s;
-  unread_s_ = now.status == devices::DeviceStatus::kFresh ? 0.0 : since_fresh_s;
+  const bool is_fresh = now.status == devices::DeviceStatus::kFresh;
+  const double since_fresh_s = age_.advance(is_fresh, input.dt_s, params_.gate.max_unread_s);
   if (now.status == devices::DeviceStatus::kDisconnected || has_refused_)
     sensed.fault = telemetry::GateFault::kDeviceLost;
   const bool is_valid = now.X_DS.is_finite() && now.X_DS.p().norm() < haptics::kFarAway_mm;
   if (!is_valid) sensed.fault = telemetry::GateFault::kNotFinite;
   if (has_read_ && input.dt_s > params_.max_hole_s) sensed.fault = telemetry::GateFault::kLoopStalled;
-  if (now.status != devices::DeviceStatus::kFresh || !is_valid) {
+  if (!is_fresh || !is_valid) {
     sensed.reading.X_DS = last_.X_DS;
     return sensed;
   }
@@ -192,7 +192,8 @@ void Servo::resume() noexcept {
   begin_anew();
   haptics::restart_gate(gate_);
   has_read_ = was_placed_ = has_refused_ = false;
-  unread_s_ = unmoved_s_ = 0.0;
+  age_ = {};
+  unmoved_s_ = 0.0;
 }
 
 ServoRecord Servo::step(const ServoInput& input) noexcept {
@@ -225,7 +226,7 @@ ServoRecord Servo::step(const ServoInput& input) noexcept {
   gate.w_rad_per_s = sensed.w_D;
   gate.dt_s = input.dt_s;
   gate.silence_s = input.silence_s;
-  gate.unread_s = unread_s_;
+  gate.unread_s = age_.unread_s();
   gate.busy_s = input.busy_s;
   gate.coupling = coupling_in_device(input.scene);
   gate.is_wanted = input.is_wanted && input.scene != nullptr;

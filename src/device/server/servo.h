@@ -9,6 +9,7 @@
 #include "haptics/gate/safety_gate.h"
 #include "haptics/tick.h"
 #include "link/messages.h"
+#include "server/detail/reading_age.h"
 
 namespace trocar::server {
 
@@ -115,7 +116,7 @@ class Servo {
   double pressed_mm_ = 0.0;            ///< Of that target.
   devices::DeviceReading last_;        ///< Last fresh reading with a valid pose.
   Mat3 R_WS_told_ = Mat3::Identity();  ///< Used if the device senses no rotation; from the hand target.
-  double unread_s_ = 0.0;
+  detail::ReadingAge age_;
   double unmoved_s_ = 0.0;
   bool has_refused_ = false;  ///< The device did not take the last wrench.
   std::uint16_t actions_before_ = 0;

@@ -150,11 +150,11 @@ void XrayView::advance(double now_s) {
 
 void XrayView::advance_live(double now_s) {
   contrast_.request({shaft_P_.empty() ? Vec3(Vec3::Constant(NAN)) : shaft_P_.back(),
-                     is_injecting_ && !shaft_P_.empty() ? settings_.injection_ml_per_s : 0.0});
-  xray::FluoroscopyRequest request = make_request(shaft_P_, is_injecting_);
+                     is_injecting() && !shaft_P_.empty() ? settings_.injection_ml_per_s : 0.0});
+  xray::FluoroscopyRequest request = make_request(shaft_P_, is_injecting());
   if (const auto agent = contrast_.newest()) {
     request.iodine = agent->iodine;
-    if (is_injecting_ && !request.tools.empty())
+    if (is_injecting() && !request.tools.empty())
       request.tools.front().filling_iodine_mg_per_ml = agent->iodine_mg_per_ml;
   }
   request.is_pedal_down = is_pedal_down_;

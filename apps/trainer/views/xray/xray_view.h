@@ -77,7 +77,9 @@ class XrayView : public QWidget {
   void set_injecting(bool is_injecting);
   /// Why nothing can be injected now, for the trainee; ends an injection. Empty: it can.
   void set_injection_hindrance(const QString& reason);
-  bool is_injecting() const noexcept { return is_injecting_; }
+  /// While the attempt is interrupted nothing flows; an injection goes on after it if its key is still held.
+  void pause_injection(bool is_paused) noexcept { is_injection_paused_ = is_paused; }
+  bool is_injecting() const noexcept { return is_injecting_ && !is_injection_paused_; }
 
   /// The newest image; nullptr before the first. In a replay, time_s is its session time, and its dose is of no
   /// examination.
@@ -150,7 +152,7 @@ class XrayView : public QWidget {
   RetiredJobs retired_;  ///< The ends of former replays, which may wait for an image.
   std::vector<Vec3> shaft_P_;
   std::optional<Segment> wire_P_;
-  bool is_pedal_down_ = false, is_injecting_ = false;
+  bool is_pedal_down_ = false, is_injecting_ = false, is_injection_paused_ = false;
   QString injection_hindrance_;
   double opened_s_ = -1.0;
   std::shared_ptr<const xray::FluoroscopyFrame> frame_;

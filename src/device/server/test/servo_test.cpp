@@ -236,6 +236,45 @@ TEST(Servo, LatchesAFaultAfterALongHoleInTimeAndTakesAShortOne) {
   }
 }
 
+TEST(Servo, CallsADeviceSilentOnlyForTimeInWhichItsOwnLoopRan) {
+  for (const bool is_back : {true, false}) {
+    ServoRig rig;
+    rig.start();
+    rig.move_to(20.0, 20.0);
+    const double before_s = rig.input.now_s;
+    rig.device.reading.status = devices::DeviceStatus::kRepeated;
+    rig.input.dt_s = 0.025;  // the driver, delayed by the same machine, has brought nothing yet
+    EXPECT_EQ(rig.step().fault, telemetry::GateFault::kNone);
+    rig.input.dt_s = 0.001;
+    if (is_back) rig.device.reading.status = devices::DeviceStatus::kFresh;
+    const auto records = rig.hold(0.1);
+    const auto fault = std::ranges::find(records, telemetry::GateFault::kDeviceSilent, &ServoRecord::fault);
+    if (is_back) {
+      EXPECT_EQ(fault, records.end());
+    } else {
+      ASSERT_NE(fault, records.end());
+      EXPECT_LT(fault->sample.time_s, before_s + 0.025 + 0.02);
+    }
+  }
+}
+
+/// A slow loop finds an unplugged device after five of its periods, whatever their length.
+TEST(Servo, FindsASilentDeviceInASlowLoop) {
+  const double max_unread_s = haptics::GateParams{}.max_unread_s;
+  for (const auto& [period_s, expected] : {std::pair{0.00099, 21}, {0.003, 7}, {0.006, 5}, {0.1, 5}}) {
+    detail::ReadingAge age;
+    EXPECT_EQ(age.advance(true, period_s, max_unread_s), period_s);
+    int periods = 0;
+    while (age.unread_s() <= max_unread_s) {
+      ++periods;
+      EXPECT_NEAR(age.advance(false, period_s, max_unread_s), periods * period_s, 1e-12);
+    }
+    EXPECT_EQ(periods, expected) << period_s;
+    EXPECT_NEAR(age.advance(true, period_s, max_unread_s), (periods + 1) * period_s, 1e-12) << "a velocity's time";
+    EXPECT_EQ(age.unread_s(), 0.0);
+  }
+}
+
 /// A loop that is late for reasons of its own is weakened with the first late period; a machine is excused one hole.
 TEST(Servo, WeakensTheCouplingOfASlowLoopAtOnce) {
   for (const bool is_own : {true, false}) {

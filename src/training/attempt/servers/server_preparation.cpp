@@ -35,6 +35,7 @@ double seconds(milliseconds duration) noexcept {
 
 void ServerSupervisor::prepare(const PreparationRequest& request) {
   request_ = request;
+  stalls_left_ = kMostStallsOfStart;
   request_->place.v_P = request_->place.w_P = Vec3::Zero();
   // A soft hand would let the stylus sag across the needle's channel before the forces are on: they would not start.
   request_->place.is_rigid = true;
@@ -189,7 +190,7 @@ Status ServerSupervisor::step_placing() {
   const std::optional<telemetry::TickSample> newest = connection_->newest();
   if (!newest) return {};
   if (has_person()) {
-    start_forces(nullptr);
+    if (client_.status.fault == telemetry::GateFault::kNone) start_forces(nullptr);
     return {};
   }
   link::HandTarget place = request_->place;
@@ -237,6 +238,7 @@ void ServerSupervisor::become_on() {
   connection_->take_samples();
   last_tick_.reset();
   enter(ServerState::kOn);
+  stalls_left_ = 0;
   ++activations_;
   ticked_ = clock_->now();
   banner_.clear();

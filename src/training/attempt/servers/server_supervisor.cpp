@@ -122,6 +122,7 @@ std::string ServerSupervisor::poll_connection() {
       return fail_with({fmt::format("the safety gate has latched a fault: {}", to_string(fault)), host_->endpoint(),
                         "see the server's flight record for the cause; restart the server"});
     ++stalls_;
+    stalls_left_ = std::max(0, stalls_left_ - 1);
     const bool was_on = state_ == ServerState::kOn;
     enter(ServerState::kConnecting);
     if (was_on) return note_interruption("stopped because this machine is too busy");
@@ -151,11 +152,14 @@ std::string ServerSupervisor::note_interruption(const char* what) {
   return banner_ = fmt::format("The {} server {}; resume when you are ready", tool(), what);
 }
 
-/// The motors of a device in a person's hand are not switched on again without the person.
+/// The motors of a device in a person's hand are not switched on again without the person, who still waits for them
+/// until they were fully on.
 bool ServerSupervisor::is_forgivable_stall() const {
   const telemetry::GateFault fault = client_.status.fault;
   const bool is_stall = fault == telemetry::GateFault::kLoopStalled || fault == telemetry::GateFault::kLoopSlow;
-  return request_ && !has_person() && is_stall;
+  if (!request_) return false;
+  if (!has_person()) return is_stall;
+  return stalls_left_ > 0 && !is_stopped_ && (is_stall || fault == telemetry::GateFault::kDeviceSilent);
 }
 
 bool ServerSupervisor::is_device_lost() const {
@@ -327,6 +331,7 @@ void ServerSupervisor::stop_forces() {
 
 void ServerSupervisor::resume_forces() {
   is_stopped_ = false;
+  stalls_left_ = is_fresh() ? 0 : kMostStallsOfStart;
   if (state_ == ServerState::kFailed) returns_.clear();
   const Status alive = host_->check();
   if (is_fresh() && alive) {

@@ -198,9 +198,11 @@ class ServerSupervisor {
   std::vector<std::string> messages_;
 
   // Counters.
+  static constexpr int kMostStallsOfStart = 5;  ///< [assumed]
   std::uint64_t missing_ = 0;
   int restarts_ = 0, activations_ = 0;
   int reconnects_ = 0, stalls_ = 0;
+  int stalls_left_ = 0;  ///< That may still interrupt the start of a person's device; 0 when its forces were on.
 };
 
 }  // namespace trocar::attempt

@@ -219,6 +219,38 @@ TEST_F(SupervisionTest, NeverSwitchesForcesOnByItselfInAPersonsHand) {
   }
 }
 
+TEST_F(SupervisionTest, AStallBeforeTheForcesWereOnNeedsNoSecondRequestOfThePerson) {
+  for (const ServerState state : {ServerState::kLoading, ServerState::kStarting, ServerState::kSettling})
+    for (const GateFault fault : {GateFault::kLoopStalled, GateFault::kLoopSlow, GateFault::kDeviceSilent}) {
+      supervise("openhaptics");
+      ASSERT_TRUE(run_until([&] { return tool->state() == state; }, 5.0));
+      server->set_fault(fault);
+      EXPECT_TRUE(run_until([&] { return tool->is_fresh(); }, 5.0)) << to_string(fault) << tool->banner();
+    }
+  supervise("openhaptics");
+  ASSERT_TRUE(run_until([&] { return tool->state() == ServerState::kLoading; }));
+  server->set_fault(GateFault::kRunaway);
+  run_for(1.0);
+  EXPECT_TRUE(tool->view().waits_for_resume) << "a fault that is no stall";
+  supervise("openhaptics");
+  for (int stalls = 0; stalls < 6; ++stalls) {
+    ASSERT_TRUE(run_until([&] { return tool->state() == ServerState::kLoading; }, 5.0)) << stalls;
+    server->set_fault(GateFault::kDeviceSilent);
+    run_for(0.002);
+  }
+  EXPECT_TRUE(tool->view().waits_for_resume) << "five stalls are too many";
+}
+
+TEST_F(SupervisionTest, ADeviceThatStaysSilentBeforeTheForcesWereOnWaitsForResume) {
+  supervise("openhaptics");
+  server->is_fault_permanent = true;
+  ASSERT_TRUE(run_until([&] { return tool->state() == ServerState::kLoading; }));
+  server->set_fault(GateFault::kDeviceSilent);
+  ASSERT_TRUE(run_until([&] { return tool->view().waits_for_resume; }, 10.0));
+  EXPECT_TRUE(shows("which moves the needle, sends no data. Check its cable")) << tool->banner();
+  EXPECT_EQ(server->count(ServerCommand::kStart), 0);
+}
+
 TEST_F(SupervisionTest, APersonsDeviceThatIsGoneWaitsForResume) {
   start("openhaptics");
   server->is_device_gone = true;
