@@ -15,6 +15,7 @@
 #include "storage/detail/checksums.h"
 #include "storage/detail/database.h"
 #include "storage/detail/info_table.h"
+#include "storage/detail/log_keeper.h"
 #include "storage/detail/outcome_json.h"
 #include "storage/detail/parameters_table.h"
 #include "storage/detail/shape_table.h"
@@ -85,7 +86,8 @@ struct SessionWriter::Impl {
 
   soci::session database;
   database::Journal journal;
-  SharedLock lock;  ///< With a rollback journal, until the session is complete.
+  LogKeeper log_keeper;  ///< Of a write-ahead log.
+  SharedLock lock;       ///< With a rollback journal, until the session is complete.
 
   ~Impl() {
     if (!is_finished && !failure) static_cast<void>(flush(Readers::kAwait));
@@ -107,7 +109,6 @@ struct SessionWriter::Impl {
 void SessionWriter::Impl::set_up() {
   open_database(database, path);
   journal = database::set_journal(database, path, database::find_network_file_system(path));
-  if (journal.is_write_ahead) database << "PRAGMA synchronous = NORMAL";
   database << "BEGIN IMMEDIATE";
   for (const std::string& statement : schema_statements()) database << statement;
   write_info(database, info);
@@ -116,6 +117,10 @@ void SessionWriter::Impl::set_up() {
   database << "COMMIT";
   if (!journal.is_write_ahead) lock.take(database);
   ticks.prepare(database);
+  if (!journal.is_write_ahead) return;
+  const bool is_kept = log_keeper.start(path).has_value();
+  if (is_kept) database << "PRAGMA wal_autocheckpoint = 0";
+  database << (is_kept ? "PRAGMA synchronous = OFF" : "PRAGMA synchronous = NORMAL");
 }
 
 Status SessionWriter::Impl::flush(Readers readers) {
@@ -169,8 +174,10 @@ void SessionWriter::Impl::clear() {
 
 /// All is committed: another reader of the session, which keeps the -wal file, is not an error; a full disk is.
 Status SessionWriter::Impl::make_single_file() {
+  log_keeper.stop();
   const Status status = guarded("the session cannot be written", path, kWriteAdvice, [&] {
     std::string mode;
+    if (journal.is_write_ahead) database << "PRAGMA synchronous = NORMAL";
     database << "PRAGMA journal_mode = DELETE", soci::into(mode);
   });
   const bool is_locked = !status && status.error().what.find("is locked") != std::string::npos;

@@ -199,7 +199,7 @@ Status AttemptLoop::start_recording() {
   if (wanted_hz > 0.0) performer_.rate_hz = wanted_hz;
   const RecordOptions options{options_.session,   options_.operator_name, case_.patient_source,
                               case_.patient_seed, options_.seed,          transducer_ ? case_.plane : std::nullopt,
-                              options_.person_id, options_.attempt_id};
+                              options_.person_id, options_.attempt_id,    options_.longest_s};
   AttemptFacts facts;
   facts.device =
       fmt::format("{}, {}, through {}", client.welcome.device.name, client.welcome.device.title, client.welcome.server);

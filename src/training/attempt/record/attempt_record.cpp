@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <new>
 #include <utility>
 
 #include "anatomy/tissue/tissue_settings.h"
-#include "attempt/live/performer.h"
 #include "attempt/record/score_session.h"
 #include "core/version.h"
 #include "haptics/force_version.h"
@@ -19,6 +19,8 @@
 
 namespace trocar::attempt {
 namespace {
+
+constexpr double kMostReserved = 4e6;  // ticks: a server tells its rate
 
 storage::SessionInfo describe(const cases::Case& the_case, const RecordOptions& options, const AttemptFacts& facts) {
   storage::SessionInfo info;
@@ -79,7 +81,11 @@ AttemptRecord::AttemptRecord(const cases::Case& the_case, storage::SessionInfo i
                              std::size_t expected_ticks)
     : the_case_(&the_case), writer_(std::move(writer)) {
   session_.info = std::move(info);
-  session_.samples.reserve(expected_ticks);
+  try {
+    session_.samples.reserve(expected_ticks);
+  } catch (const std::bad_alloc&) {
+    // a limit of the address space: they grow as they come
+  }
 }
 
 Result<AttemptRecord> AttemptRecord::create(const cases::Case& the_case, const RecordOptions& options,
@@ -87,7 +93,8 @@ Result<AttemptRecord> AttemptRecord::create(const cases::Case& the_case, const R
   storage::SessionInfo info = describe(the_case, options, facts);
   info.plane = options.plane;
   TROCAR_TRY(storage::SessionWriter writer, storage::SessionWriter::create(options.session, info));
-  const auto expected_ticks = static_cast<std::size_t>(0.25 * kLongestAttempt_s * facts.rate_hz);
+  const auto expected_ticks =
+      static_cast<std::size_t>(std::clamp(options.longest_s * facts.rate_hz, 0.0, kMostReserved));
   return AttemptRecord(the_case, std::move(info), std::move(writer), expected_ticks);
 }
 
