@@ -15,13 +15,13 @@
 #include "storage/detail/checksums.h"
 #include "storage/detail/database.h"
 #include "storage/detail/info_table.h"
-#include "storage/detail/log_keeper.h"
 #include "storage/detail/outcome_json.h"
 #include "storage/detail/parameters_table.h"
 #include "storage/detail/shape_table.h"
 #include "storage/detail/shared_lock.h"
 #include "storage/detail/tick_buffer.h"
 #include "storage/detail/transducer_table.h"
+#include "storage/detail/wal_checkpointer.h"
 #include "storage/detail/xray_table.h"
 #include "storage/session_file.h"
 
@@ -86,8 +86,8 @@ struct SessionWriter::Impl {
 
   soci::session database;
   database::Journal journal;
-  LogKeeper log_keeper;  ///< Of a write-ahead log.
-  SharedLock lock;       ///< With a rollback journal, until the session is complete.
+  WalCheckpointer checkpointer;  ///< Of a write-ahead log.
+  SharedLock lock;               ///< With a rollback journal, until the session is complete.
 
   ~Impl() {
     if (!is_finished && !failure) static_cast<void>(flush(Readers::kAwait));
@@ -118,9 +118,9 @@ void SessionWriter::Impl::set_up() {
   if (!journal.is_write_ahead) lock.take(database);
   ticks.prepare(database);
   if (!journal.is_write_ahead) return;
-  const bool is_kept = log_keeper.start(path).has_value();
-  if (is_kept) database << "PRAGMA wal_autocheckpoint = 0";
-  database << (is_kept ? "PRAGMA synchronous = OFF" : "PRAGMA synchronous = NORMAL");
+  const bool is_beside = checkpointer.start(path).has_value();
+  if (is_beside) database << "PRAGMA wal_autocheckpoint = 0";
+  database << (is_beside ? "PRAGMA synchronous = OFF" : "PRAGMA synchronous = NORMAL");
 }
 
 Status SessionWriter::Impl::flush(Readers readers) {
@@ -174,7 +174,7 @@ void SessionWriter::Impl::clear() {
 
 /// All is committed: another reader of the session, which keeps the -wal file, is not an error; a full disk is.
 Status SessionWriter::Impl::make_single_file() {
-  log_keeper.stop();
+  checkpointer.stop();
   const Status status = guarded("the session cannot be written", path, kWriteAdvice, [&] {
     std::string mode;
     if (journal.is_write_ahead) database << "PRAGMA synchronous = NORMAL";

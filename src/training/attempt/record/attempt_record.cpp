@@ -84,7 +84,7 @@ AttemptRecord::AttemptRecord(const cases::Case& the_case, storage::SessionInfo i
   try {
     session_.samples.reserve(expected_ticks);
   } catch (const std::bad_alloc&) {
-    // a limit of the address space: they grow as they come
+    // the address space is limited: the vector grows with its ticks
   }
 }
 

@@ -35,8 +35,7 @@ struct RecordOptions {
   std::optional<metrics::ImagePlane> plane = {};  ///< Of the transducer; empty: none.
   std::string person_id = {};                     ///< Who practises; see storage::SessionInfo.
   std::string attempt_id = {};                    ///< Empty: a new one.
-  /// Address space for the ticks of this time is reserved: growing copies all of them, and a live loop would stand
-  /// still.
+  /// Address space for the ticks of this time is reserved: growing copies all of them, which interrupts a live loop.
   double longest_s = 30.0;
 };
 

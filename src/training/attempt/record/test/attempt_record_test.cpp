@@ -28,6 +28,7 @@ class GunRecordTest : public ::testing::Test {
     the_case_.needle.is_coaxial = is_coaxial;
     RecordOptions options;
     options.session = folder_ / "attempt.session";
+    options.longest_s = 50.0;
     auto record = AttemptRecord::create(the_case_, options, {"a device", 1000.0, "insertion", "", {}});
     ASSERT_TRUE(record.has_value()) << record.error().text();
     record_.emplace(*std::move(record));
@@ -67,6 +68,14 @@ class GunRecordTest : public ::testing::Test {
   cases::Case the_case_;
   std::optional<AttemptRecord> record_;
 };
+
+TEST_F(GunRecordTest, DoesNotCopyItsTicksWithinTheTimeItWasMadeFor) {
+  begin(true, true);
+  go_to(0.0);
+  const telemetry::TickSample* first = record_->samples().data();
+  while (record_->samples().size() < 40'000) go_to(0.0);
+  EXPECT_EQ(record_->samples().data(), first);
+}
 
 constexpr const char* kFired = "the gun was fired";
 constexpr const char* kLoaded = "the gun is loaded again";

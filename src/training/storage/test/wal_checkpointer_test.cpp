@@ -1,4 +1,4 @@
-#include "storage/detail/log_keeper.h"
+#include "storage/detail/wal_checkpointer.h"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ using testing::example_info;
 using testing::example_outcome;
 using testing::example_sample;
 
-/// A writer that waits for no disk: it does not move its log.
+/// A writer that neither checkpoints nor syncs.
 void open_writer(soci::session& database, const fs::path& file) {
   detail::open_database(database, file);
   ASSERT_TRUE(database::set_journal(database, file, {}).is_write_ahead);
@@ -27,7 +27,7 @@ void open_writer(soci::session& database, const fs::path& file) {
   database << "CREATE TABLE rows (text TEXT)";
 }
 
-TEST(LogKeeper, MovesALogWhileItIsWrittenSoThatItDoesNotGrow) {
+TEST(WalCheckpointer, CopiesALogWhileItIsWrittenSoThatItStartsAgain) {
   const TemporaryFolder folder;
   const fs::path file = folder / "s.trocar";
   const fs::path log = file.string() + "-wal";
@@ -38,27 +38,33 @@ TEST(LogKeeper, MovesALogWhileItIsWrittenSoThatItDoesNotGrow) {
     for (int n = 0; n < 20; ++n) database << "INSERT INTO rows VALUES (:t)", soci::use(text);
   };
   add_rows();
-  detail::LogKeeper keeper;
-  ASSERT_TRUE(keeper.start(file, std::chrono::milliseconds(1)));
+  detail::WalCheckpointer checkpointer;
+  ASSERT_TRUE(checkpointer.start(file, std::chrono::milliseconds(1)));
   auto largest = fs::file_size(log);
   EXPECT_GT(largest, 2'000'000u);
   const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(2);
   int rounds = 1;
-  bool is_begun_again = false;
-  while (!is_begun_again && std::chrono::steady_clock::now() < end) {
+  bool has_started_again = false;
+  while (!has_started_again && std::chrono::steady_clock::now() < end) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
     add_rows();
     ++rounds;
-    is_begun_again = fs::file_size(log) == std::exchange(largest, fs::file_size(log));
+    has_started_again = fs::file_size(log) == std::exchange(largest, fs::file_size(log));
   }
-  EXPECT_TRUE(is_begun_again) << largest << " bytes after " << rounds << " rounds";
-  keeper.stop();
+  EXPECT_TRUE(has_started_again) << largest << " bytes after " << rounds << " rounds";
+  checkpointer.stop();
   int rows = 0;
   database << "SELECT count(*) FROM rows", soci::into(rows);
   EXPECT_EQ(rows, 20 * rounds);
 }
 
-TEST(LogKeeper, LetsASessionEndAsOneFile) {
+TEST(WalCheckpointer, DoesNotStartWithoutASession) {
+  const TemporaryFolder folder;
+  detail::WalCheckpointer checkpointer;
+  EXPECT_FALSE(checkpointer.start(folder / "missing" / "s.trocar"));
+}
+
+TEST(WalCheckpointer, LetsASessionEndAsOneFile) {
   const TemporaryFolder folder;
   for (const bool is_finished : {true, false}) {
     const fs::path file = folder / (is_finished ? "finished.trocar" : "left.trocar");
