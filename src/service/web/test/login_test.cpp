@@ -392,10 +392,12 @@ TEST(Accounts, OfAnyNameAreRemoved) {
   ServiceLab lab;
   lab.log_in();
   ASSERT_TRUE(lab.repository().database().transaction("x", [](soci::session& session) {
-    for (const std::string name : {"a/b", "50%", "c%2Fd", "e?f#g"})
+    for (const std::string name : {"a/b", "50%", "c%2Fd", "e?f#g"}) {
+      const std::string key = results::name_key(name);  // must outlive the statement
       session << "INSERT INTO accounts (id, name, name_key, is_admin, password_hash, added_s) VALUES (:i, :n, :k, 0, "
                  "'', 0)",
-          soci::use(name), soci::use(name), soci::use(results::name_key(name));
+          soci::use(name), soci::use(name), soci::use(key);
+    }
   }));
   for (const char* path : {"a%2Fb", "50%25", "c%252Fd", "e%3Ff%23g", "%68uber"})
     EXPECT_EQ(lab.send(lab.request("DELETE", std::string("/api/accounts/") + path)).status, 204) << path;
