@@ -1,0 +1,69 @@
+#include "motion/patient_motion.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <limits>
+
+namespace trocar::motion {
+
+PatientMotion::PatientMotion(const MotionModel* model, const MotionState& state) noexcept
+    : model_(model), state_(state) {
+  for (double& driver : state_.drivers) driver = std::clamp(driver, -kMostDrive, kMostDrive);
+}
+
+Vec3 PatientMotion::moved(const Vec3& p_A) const noexcept {
+  return p_A + model_->displacement_mm(model_->region_of(p_A), p_A, state_.drivers);
+}
+
+/// Newton's method from the displacement at p_P: the displacement is a contraction (kMostGradient), so it converges.
+Vec3 PatientMotion::resting_in(int region, const Vec3& p_P) const noexcept {
+  constexpr int kMostSteps = 12;
+  constexpr double kClose_mm = 1e-7;
+  Vec3 p_A = p_P - model_->displacement_mm(region, p_P, state_.drivers);
+  for (int step = 0; step < kMostSteps; ++step) {
+    const MotionModel::Field here = model_->field(region, p_A, state_.drivers);
+    const Vec3 error = p_A + here.displacement_mm - p_P;
+    if (error.squaredNorm() < kClose_mm * kClose_mm) break;
+    p_A -= (Mat3::Identity() + here.gradient).inverse() * error;
+  }
+  return p_A;
+}
+
+Vec3 PatientMotion::resting(const Vec3& p_P) const noexcept {
+  Vec3 nearest_A = p_P;
+  double least_mm = std::numeric_limits<double>::infinity();
+  const int count = static_cast<int>(model_->parts().regions.size());
+  for (int region = 0; region < count; ++region) {
+    const Vec3 p_A = resting_in(region, p_P);
+    const double outside_mm = model_->outside_mm(region, p_A);
+    if (!(outside_mm < least_mm)) continue;
+    nearest_A = p_A;
+    least_mm = outside_mm;
+    if (outside_mm == 0.0) break;
+  }
+  return nearest_A;
+}
+
+Mat3 PatientMotion::jacobian(const Vec3& p_A) const noexcept {
+  if (model_ == nullptr) return Mat3::Identity();
+  return Mat3::Identity() + model_->field(model_->region_of(p_A), p_A, state_.drivers).gradient;
+}
+
+Vec3 PatientMotion::velocity(const Vec3& p_A) const noexcept {
+  if (model_ == nullptr) return Vec3::Zero();
+  return model_->displacement_mm(model_->region_of(p_A), p_A, state_.rates_per_s);
+}
+
+Vec3 PatientMotion::line_to_now(const Vec3& p_A, const Vec3& v_A) const noexcept {
+  return model_ == nullptr ? v_A : Vec3(jacobian(p_A) * v_A);
+}
+
+Vec3 PatientMotion::line_to_rest(const Vec3& p_A, const Vec3& v_P) const noexcept {
+  return model_ == nullptr ? v_P : Vec3(jacobian(p_A).inverse() * v_P);
+}
+
+Vec3 PatientMotion::gradient_to_now(const Vec3& p_A, const Vec3& g_A) const noexcept {
+  return model_ == nullptr ? g_A : Vec3(jacobian(p_A).inverse().transpose() * g_A);
+}
+
+}  // namespace trocar::motion
