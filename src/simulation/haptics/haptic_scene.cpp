@@ -208,11 +208,11 @@ Result<std::shared_ptr<const HapticScene>> make_haptic_scene(std::shared_ptr<con
   return scene;
 }
 
-TissueAt tissue_at(const HapticScene& scene, const Vec3& p_P) noexcept {
-  const double distance_mm = volume::sample_linear(scene.patient->skin_distance_mm, p_P);
+TissueAt tissue_at(const HapticScene& scene, const Vec3& p_A) noexcept {
+  const double distance_mm = volume::sample_linear(scene.patient->skin_distance_mm, p_A);
   if (!(distance_mm <= 0.0)) return {};
   const volume::LabelGrid& labels = scene.patient->labels;
-  const std::uint8_t label = labels.empty() ? std::uint8_t{0} : volume::sample_nearest(labels, p_P, std::uint8_t{0});
+  const std::uint8_t label = labels.empty() ? std::uint8_t{0} : volume::sample_nearest(labels, p_A, std::uint8_t{0});
   if (distance_mm > -scene.skin_thickness_mm) return {scene.skin, label};
   return {scene.tissue_of_label[label], label};
 }

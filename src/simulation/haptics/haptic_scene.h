@@ -45,6 +45,9 @@ struct DeviceCapability {
 struct CouplingParams {
   double stiffness_n_per_mm = 1.0;
   double damping_ns_per_mm = 0.003;
+
+  /// Springs at the pose so far ahead in time damp in proportion to their stiffness (physics.md B7).
+  double damping_time_s() const noexcept { return damping_ns_per_mm / stiffness_n_per_mm; }
 };
 
 /// Weight compensation, and switches for studies.
@@ -121,12 +124,12 @@ Result<std::shared_ptr<const HapticScene>> make_haptic_scene(std::shared_ptr<con
                                                              const DeviceCapability& device = {},
                                                              const HapticOptions& options = {});
 
-/// Tissue at a point of the resting anatomy. Real-time safe.
+/// Tissue at a point of the anatomy at rest. Real-time safe.
 struct TissueAt {
   std::uint8_t tissue = 0;  ///< 0: air.
   std::uint8_t label = 0;
 };
-TissueAt tissue_at(const HapticScene& scene, const Vec3& p_P) noexcept;
+TissueAt tissue_at(const HapticScene& scene, const Vec3& p_A) noexcept;
 
 /// True for tissue that the model reads from the CT rather than from its label (physics.md T2): unlabelled tissue, and
 /// in the proxy models (proxy, combined) all but the skin and structures with walls. Real-time safe.

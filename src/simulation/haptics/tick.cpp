@@ -62,22 +62,20 @@ HapticOutput tick(HapticState& state, const HapticInput& input, const HapticScen
   const Pose X_PS = X_PN * scene.X_SN.inverse();
 
   const NeedleStep step =
-      step_needle(state.needle, scene, input.resting.pull_back(X_PN), input.is_stylet_in, input.dt_s);
-  const auto forward = [&](const Vec3& v_P) { return input.resting.push_forward(step.axial.tip_P, v_P); };
+      step_needle(state.needle, PatientNow(scene, input.motion), X_PN, input.is_stylet_in, input.dt_s);
   const Wrench weight = weight_compensation(scene, X_PS.R());
 
   HapticOutput output;
   telemetry::TickSample& sample = output.sample;
   sample.time_s = input.time_s;
-  sample.breathing = input.resting.breathing;
+  sample.breathing = input.motion.phase();
   fill_insertion(sample, step.axial);
-  sample.axis = forward(step.axial.axis_P);
-  sample.f_constraint_n = forward(step.held_P.force_n);
-  sample.f_tip_proxy_n = forward(step.tip_proxy_P);
+  sample.f_constraint_n = step.held_P.force_n;
+  sample.f_tip_proxy_n = step.tip_proxy_P;
   sample.f_weight_n = weight.force_n;
   const double axial_n = sample.f_prepuncture_n + sample.f_friction_n + sample.f_cutting_n + sample.f_body_axial_n;
   sample.f_total_n = sample.axis * axial_n + sample.f_constraint_n + sample.f_tip_proxy_n + weight.force_n;
-  sample.tau_nmm = forward(step.held_P.torque_nmm) + weight.torque_nmm;
+  sample.tau_nmm = step.held_P.torque_nmm + weight.torque_nmm;
   sample.device_mm = input.tool.p_mm;
   sample.device_rotation_wxyz = input.tool.rotation_wxyz;
   sample.contact_to_puncture_mm = state.needle.path.contact_to_puncture_P;

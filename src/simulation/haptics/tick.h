@@ -1,9 +1,9 @@
 #pragma once
 
-#include "anatomy/resting_anatomy.h"
 #include "haptics/contact/contact.h"
 #include "haptics/haptic_scene.h"
 #include "haptics/insertion/needle_step.h"
+#include "motion/patient_motion.h"
 #include "telemetry/tick_sample.h"
 #include "telemetry/tool_pose.h"
 
@@ -15,7 +15,7 @@ struct HapticInput {
   double dt_s = 0.001;       ///< Time since the last tick; kMinDt_s <= dt <= kMaxDt_s.
   telemetry::ToolPose tool;  ///< X_PN or X_PT, see tool_pose().
   bool is_stylet_in = true;
-  anatomy::RestingAnatomy resting{};  ///< Present motion of the patient.
+  motion::PatientMotion motion{};  ///< Where the patient is now.
 };
 
 /// The scene's tool on the stylus of a device: X_PD * X_DS * X_SN (or X_ST).

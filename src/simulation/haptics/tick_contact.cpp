@@ -5,15 +5,14 @@
 namespace trocar::haptics {
 
 HapticOutput tick_contact(HapticState& state, const HapticInput& input, const HapticScene& scene) noexcept {
-  const Pose X_PT_now = input.tool.pose();
-  const Pose X_PS = X_PT_now * scene.X_SN.inverse();
-  const Pose X_PT = input.resting.pull_back(X_PT_now);
+  const Pose X_PT = input.tool.pose();
+  const Pose X_PS = X_PT * scene.X_SN.inverse();
   const Pose X_PT_before = state.contact.X_PT;
   const bool was_started = state.contact.is_started;
 
-  const ContactStep step = step_contact(state.contact, scene, X_PT, input.dt_s);
-  const Vec3 force_P = input.resting.push_forward(X_PT.p(), step.wrench_P.force_n);
-  const Vec3 torque_P = input.resting.push_forward(X_PT.p(), step.wrench_P.torque_nmm);
+  const ContactStep step = step_contact(state.contact, PatientNow(scene, input.motion), X_PT, input.dt_s);
+  const Vec3& force_P = step.wrench_P.force_n;
+  const Vec3& torque_P = step.wrench_P.torque_nmm;
   const Wrench weight = weight_compensation(scene, X_PS.R());
   const Pose& shown = state.contact.X_PT;
   const bool has_past = was_started && !step.has_jumped;
@@ -30,11 +29,11 @@ HapticOutput tick_contact(HapticState& state, const HapticInput& input, const Ha
   sample.f_constraint_n = force_P;
   sample.f_weight_n = weight.force_n;
   sample.f_total_n = force_P + weight.force_n;
-  sample.tau_nmm = torque_P + (X_PT_now.p() - X_PS.p()).cross(force_P) + weight.torque_nmm;
+  sample.tau_nmm = torque_P + (X_PT.p() - X_PS.p()).cross(force_P) + weight.torque_nmm;
   sample.device_f_n = sample.f_total_n;
   sample.device_mm = input.tool.p_mm;
   sample.device_rotation_wxyz = input.tool.rotation_wxyz;
-  sample.breathing = input.resting.breathing;
+  sample.breathing = input.motion.phase();
 
   EventList events(sample);
   if (step.has_jumped) events.add(telemetry::LimitReason::kJumped);

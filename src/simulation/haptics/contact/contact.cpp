@@ -24,21 +24,33 @@ Mat3 rotation_of(const Vec3& turn) noexcept {
 struct SkinHere {
   double distance_mm;
   Vec3 normal_P;  ///< Unit, outwards.
+  Vec3 p_A;       ///< The tissue there, at rest.
 };
 
 /// The signed distance to the skin with its gradient in the cell of voxels around a point.
 class SkinField {
  public:
-  explicit SkinField(const anatomy::VirtualPatient& patient) noexcept
-      : distance_(patient.skin_distance_mm),
+  explicit SkinField(const PatientNow& now) noexcept
+      : motion_(now.motion),
+        distance_(now.scene.patient->skin_distance_mm),
         per_mm_(distance_.geometry.spacing_mm.cwiseInverse()),
         row_(static_cast<std::size_t>(distance_.geometry.size[0])),
         plane_(row_ * static_cast<std::size_t>(distance_.geometry.size[1])) {}
 
   /// Empty outside the volume or without a gradient.
   std::optional<SkinHere> at(const Vec3& p_P) const noexcept {
+    auto skin = at_rest(motion_.to_rest(p_P));
+    if (!skin || motion_.is_rest()) return skin;
+    // The gradient of the distance at rest, now: its length is how much nearer the skin is at rest than now.
+    const Vec3 gradient_P = motion_.gradient_to_now(skin->p_A, skin->normal_P);
+    const double length = gradient_P.norm();
+    return SkinHere{skin->distance_mm / length, gradient_P / length, skin->p_A};
+  }
+
+ private:
+  std::optional<SkinHere> at_rest(const Vec3& p_A) const noexcept {
     const volume::GridGeometry& g = distance_.geometry;
-    const Vec3 index = (g.R_PV.transpose() * (p_P - g.origin_P)).cwiseProduct(per_mm_);
+    const Vec3 index = (g.R_PV.transpose() * (p_A - g.origin_P)).cwiseProduct(per_mm_);
     std::int64_t low[3];
     double f[3];
     for (int a = 0; a < 3; ++a) {
@@ -65,10 +77,10 @@ class SkinField {
     const double norm = gradient_P.norm();
     constexpr double kNoDirection = 0.1;
     if (!(norm > kNoDirection)) return {};
-    return SkinHere{mix(v0, v1, f[2]), gradient_P / norm};
+    return SkinHere{mix(v0, v1, f[2]), gradient_P / norm, p_A};
   }
 
- private:
+  const motion::PatientMotion& motion_;
   const volume::FloatGrid& distance_;
   Vec3 per_mm_;
   std::size_t row_;
@@ -83,9 +95,9 @@ TissueColumn blend(const TissueColumn& from, const TissueColumn& to, double shar
 
 /// The points of the face near the skin, with the tool at `X_PT`; `index` gives their numbers.
 void find_points(ContactBalance& balance, std::array<std::uint8_t, kMaxContactPoints>& index, const ContactState& state,
-                 const HapticScene& scene, const Pose& X_PT, const Pose& X_PT_before) noexcept {
-  const ContactFace& face = scene.face;
-  const SkinField field(*scene.patient);
+                 const PatientNow& now, const Pose& X_PT, const Pose& X_PT_before) noexcept {
+  const ContactFace& face = now.scene.face;
+  const SkinField field(now);
   for (std::size_t i = 0; i < static_cast<std::size_t>(std::min(face.count, kMaxContactPoints)); ++i) {
     const Vec3 p_PQ = X_PT * face.point_T[i];
     const auto skin = field.at(p_PQ);
@@ -100,13 +112,14 @@ void find_points(ContactBalance& balance, std::array<std::uint8_t, kMaxContactPo
     point.depth_mm = -skin->distance_mm;
     point.depth_before_mm = state.depth_mm[i];
     point.area_mm2 = facing * face.area_mm2[i];
-    point.column = tissue_column(scene, p_PQ - skin->distance_mm * skin->normal_P, -skin->normal_P);
+    point.column = tissue_column(now, p_PQ - skin->distance_mm * skin->normal_P, -skin->normal_P);
     if (state.depth_mm[i] > 0.0)
       point.column = blend(state.column[i], point.column, balance.dt_s / (balance.dt_s + kColumnBlend_s));
     const auto across = [&](const Vec3& v) -> Vec3 { return v - skin->normal_P * skin->normal_P.dot(v); };
     point.stretch_before_P = across(state.stretch_P[i]);
-    point.stretch_P = state.depth_mm[i] > 0.0 ? across(state.stretch_P[i] + p_PQ - X_PT_before * face.point_T[i])
-                                              : Vec3(Vec3::Zero());
+    Vec3 slide_P = state.stretch_P[i] + p_PQ - X_PT_before * face.point_T[i];
+    if (!now.motion.is_rest()) slide_P -= balance.dt_s * now.motion.velocity(skin->p_A);
+    point.stretch_P = state.depth_mm[i] > 0.0 ? across(slide_P) : Vec3(Vec3::Zero());
   }
 }
 
@@ -117,17 +130,18 @@ bool has_jumped(const ContactState& state, const Pose& X_PT, double dt_s) noexce
 }
 
 /// Sets the tool to the device's pose: outside the body at once, inside it with forces that increase from zero.
-bool start(ContactState& state, const HapticScene& scene, const Pose& X_PT) noexcept {
+bool start(ContactState& state, const PatientNow& now, const Pose& X_PT) noexcept {
+  const HapticScene& scene = now.scene;
   state = {};
   state.is_started = true;
   state.X_PT_device = state.X_PT = X_PT;
-  const SkinField field(*scene.patient);
+  const SkinField field(now);
   for (std::size_t i = 0; i < static_cast<std::size_t>(std::min(scene.face.count, kMaxContactPoints)); ++i) {
     const auto skin = field.at(X_PT * scene.face.point_T[i]);
     if (!skin || !(skin->distance_mm < 0.0)) continue;
     state.depth_mm[i] = -skin->distance_mm;
     state.column[i] =
-        tissue_column(scene, X_PT * scene.face.point_T[i] - skin->distance_mm * skin->normal_P, -skin->normal_P);
+        tissue_column(now, X_PT * scene.face.point_T[i] - skin->distance_mm * skin->normal_P, -skin->normal_P);
     state.engagement = 0.0;
   }
   return state.engagement == 0.0;
@@ -135,10 +149,11 @@ bool start(ContactState& state, const HapticScene& scene, const Pose& X_PT) noex
 
 }  // namespace
 
-ContactStep step_contact(ContactState& state, const HapticScene& scene, const Pose& X_PT, double dt_s) noexcept {
+ContactStep step_contact(ContactState& state, const PatientNow& now, const Pose& X_PT, double dt_s) noexcept {
+  const HapticScene& scene = now.scene;
   ContactStep step;
   step.has_jumped = state.is_started && has_jumped(state, X_PT, dt_s);
-  if (!state.is_started || step.has_jumped) step.started_inside = start(state, scene, X_PT);
+  if (!state.is_started || step.has_jumped) step.started_inside = start(state, now, X_PT);
 
   // The previous virtual tool, moved with the device.
   ContactBalance balance;
@@ -151,7 +166,7 @@ ContactStep step_contact(ContactState& state, const HapticScene& scene, const Po
   balance.dt_s = dt_s;
   const Pose X_PT_carried(rotation_of(state.tilt_P) * X_PT.R(), X_PT.p() + state.offset_P);
   std::array<std::uint8_t, kMaxContactPoints> index{};
-  find_points(balance, index, state, scene, X_PT_carried, state.X_PT);
+  find_points(balance, index, state, now, X_PT_carried, state.X_PT);
 
   const ContactSolution solution = solve(balance);
   const Vec3 offset_P = state.offset_P + solution.move_P;

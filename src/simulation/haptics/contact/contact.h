@@ -4,8 +4,8 @@
 
 #include "haptics/contact/contact_column.h"
 #include "haptics/contact/contact_face.h"
-#include "haptics/haptic_scene.h"
 #include "haptics/insertion/path_constraint.h"
+#include "haptics/patient_now.h"
 
 namespace trocar::haptics {
 
@@ -44,6 +44,6 @@ struct ContactStep {
 /// in contact. A column is softer where it is thick and soft, and stiff where bone or a hard tumour lies shallow.
 /// Friction acts on the skin. The scene's coupling couples the tool to the device in all six degrees of freedom.
 /// `X_PT`: the device's tool. dt > 0, finite pose. Real-time safe.
-ContactStep step_contact(ContactState& state, const HapticScene& scene, const Pose& X_PT, double dt_s) noexcept;
+ContactStep step_contact(ContactState& state, const PatientNow& now, const Pose& X_PT, double dt_s) noexcept;
 
 }  // namespace trocar::haptics

@@ -28,36 +28,44 @@ double across_fibres_kpa(double young_kpa) noexcept {
   return young_kpa >= kFibrous_kpa && young_kpa < kBone_kpa ? kAcross_kpa : young_kpa;
 }
 
-/// Reads moduli along a ray in voxel indices. Outside the volume its edge continues.
+/// Reads moduli along a ray in voxel indices, straight now; where the patient moves, each place is looked up at rest,
+/// as tissue may slide below the skin. Outside the volume its edge continues.
 class Ray {
  public:
-  Ray(const HapticScene& scene, const Vec3& from_P, const Vec3& direction_P) noexcept
-      : scene_(scene),
-        geometry_(scene.patient->skin_distance_mm.geometry),
+  Ray(const PatientNow& now, const Vec3& from_P, const Vec3& direction_P) noexcept
+      : now_(now),
+        geometry_(now.scene.patient->skin_distance_mm.geometry),
+        from_P_(from_P),
+        direction_P_(direction_P),
         from_(geometry_.to_index(from_P) + Vec3::Constant(0.5)),
         step_((geometry_.R_PV.transpose() * direction_P).cwiseQuotient(geometry_.spacing_mm)),
-        is_inside_(holds(from_) && holds(from_ + kColumn_mm * step_)) {}
+        is_inside_(now.motion.is_rest() && holds(from_) && holds(from_ + kColumn_mm * step_)) {}
 
   double soft_kpa(double depth_mm) const noexcept { return std::max(young_kpa(depth_mm), kSoftest_kpa); }
 
  private:
   double young_kpa(double depth_mm) const noexcept {
-    if (depth_mm < scene_.skin_thickness_mm) return scene_.tissues[scene_.skin].young_kpa;
+    const HapticScene& scene = now_.scene;
+    if (depth_mm < scene.skin_thickness_mm) return scene.tissues[scene.skin].young_kpa;
     const std::size_t voxel = voxel_at(depth_mm);
-    const anatomy::VirtualPatient& patient = *scene_.patient;
+    const anatomy::VirtualPatient& patient = *scene.patient;
     const std::uint8_t label = patient.labels.empty() ? std::uint8_t{0} : patient.labels.voxels[voxel];
-    if (label == 0 && scene_.transfer.knot_count > 0 && !patient.ct.empty())
-      return young_of_hu(scene_.transfer, patient.ct.voxels[voxel]);
-    return across_fibres_kpa(scene_.tissues[scene_.tissue_of_label[label]].young_kpa);
+    if (label == 0 && scene.transfer.knot_count > 0 && !patient.ct.empty())
+      return young_of_hu(scene.transfer, patient.ct.voxels[voxel]);
+    return across_fibres_kpa(scene.tissues[scene.tissue_of_label[label]].young_kpa);
   }
 
+  Vec3 at(double depth_mm) const noexcept {
+    if (now_.motion.is_rest()) return from_ + depth_mm * step_;
+    return geometry_.to_index(now_.motion.to_rest(from_P_ + depth_mm * direction_P_)) + Vec3::Constant(0.5);
+  }
   bool holds(const Vec3& index) const noexcept {
     return index.x() >= 0.0 && index.y() >= 0.0 && index.z() >= 0.0 &&
            index.x() < static_cast<double>(geometry_.size[0]) && index.y() < static_cast<double>(geometry_.size[1]) &&
            index.z() < static_cast<double>(geometry_.size[2]);
   }
   std::size_t voxel_at(double depth_mm) const noexcept {
-    const Vec3 index = from_ + depth_mm * step_;
+    const Vec3 index = at(depth_mm);
     if (is_inside_) {
       return geometry_.offset({static_cast<std::int64_t>(index.x()), static_cast<std::int64_t>(index.y()),
                                static_cast<std::int64_t>(index.z())});
@@ -71,9 +79,10 @@ class Ray {
     return geometry_.offset(ijk);
   }
 
-  const HapticScene& scene_;
+  const PatientNow& now_;
   const volume::GridGeometry& geometry_;
-  Vec3 from_;
+  Vec3 from_P_, direction_P_;
+  Vec3 from_;  ///< At rest: index, and index per mm.
   Vec3 step_;
   bool is_inside_;
 };
@@ -90,10 +99,10 @@ double rigid_from_mm(const Ray& ray, double soft_mm, double rigid_mm) noexcept {
 
 }  // namespace
 
-TissueColumn tissue_column(const HapticScene& scene, const Vec3& skin_point_P, const Vec3& inward_P) noexcept {
+TissueColumn tissue_column(const PatientNow& now, const Vec3& skin_point_P, const Vec3& inward_P) noexcept {
   constexpr double kPlaneStrain = 1.0 - kPoisson * kPoisson;
-  const Ray ray(scene, skin_point_P, inward_P);
-  const ContactFace& face = scene.face;
+  const Ray ray(now, skin_point_P, inward_P);
+  const ContactFace& face = now.scene.face;
   TissueColumn column;
   double yields = 0.0;   // mm/kPa, of layers in series
   double squares = 0.0;  // mm/kPa^2

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "haptics/haptic_scene.h"
+#include "haptics/patient_now.h"
 
 namespace trocar::haptics {
 
@@ -26,7 +26,7 @@ inline constexpr double kPoisson = 0.5;  ///< Soft tissue is nearly incompressib
 
 /// Column under a point of the skin along `inward_P` (unit vector), loaded by the scene's face: layers in series. Takes
 /// at most kColumnCells samples and a few more to find the bone's border. Real-time safe.
-TissueColumn tissue_column(const HapticScene& scene, const Vec3& skin_point_P, const Vec3& inward_P) noexcept;
+TissueColumn tissue_column(const PatientNow& now, const Vec3& skin_point_P, const Vec3& inward_P) noexcept;
 
 /// Response of a column pressed by `indentation_mm` (p): k p (1 + q p)/(1 - p/L), from 98 % of L on along its tangent;
 /// zero below zero. Convex, without steps. Real-time safe.

@@ -9,7 +9,8 @@ double AxialBalance::prepuncture_n(double s_mm) const noexcept {
   return prepuncture_force_n(displacement(s_mm), velocity(s_mm), loading);
 }
 
-double AxialBalance::friction_at(double v) const noexcept {
+double AxialBalance::friction_at(double v_tip) const noexcept {
+  const double v = drift_mm_per_s == 0.0 ? v_tip : v_tip + drift_mm_per_s;  // against the tissue at the shaft
   const double speed = std::abs(v);
   const double viscous_n = is_thinning ? viscous_ns_per_mm * shear_thinning(v) * speed
                                        : viscous_ns_per_mm * std::min(speed, grows_to_mm_per_s);

@@ -20,6 +20,8 @@ class AxialBalance {
   LoadingLaw loading;
   double surface_mm = std::numeric_limits<double>::infinity();  ///< Resting surface of the layer ahead.
   double viscous_ns_per_mm = 0.0;                               ///< Sum of nu_i A_i over the inserted shaft.
+  /// Where the patient moves: mean velocity of the tissue at the tip against that along the shaft.
+  double drift_mm_per_s = 0.0;
   double noise_n = 0.0;  ///< Fluctuation of the friction in this step; never along the motion.
   double grows_to_mm_per_s = std::numeric_limits<double>::infinity();  ///< Viscous friction grows up to this speed.
   double dry_n = 0.0;         ///< Dry friction of the body proxies, against the motion.
@@ -60,7 +62,7 @@ class AxialBalance {
     double sum_n() const noexcept { return layer_n + friction_n + cutting_n + bed_n; }
   };
   Resistance resistance_at(double s_mm, double v) const noexcept;
-  double friction_at(double v) const noexcept;
+  double friction_at(double v_tip) const noexcept;
   double recoiling_under(double load_n) const noexcept;
   double yielding_under(const Resistance& resistance) const noexcept;
   double coupling_under(double s_mm, double v, const Resistance& resistance) const noexcept;

@@ -33,22 +33,110 @@ std::uint8_t walled_layer(const HapticScene& scene, std::uint8_t tissue) noexcep
 
 }  // namespace
 
-void look_ahead(Channel& channel, const HapticScene& scene, double s_mm, double ahead_mm) noexcept {
+void Channel::forget_bins_from(int bin, const HapticScene& scene) noexcept {
+  forget_bins();
+  while (known_bins < bin) {
+    wall_at_next_bin(*this, walled_layer(scene, tissue[static_cast<std::size_t>(known_bins)]), known_bins);
+    ++known_bins;
+  }
+}
+
+ChannelNow::ChannelNow(const Channel& channel, const motion::PatientMotion& motion) noexcept
+    : channel_(channel), motion_(motion), end_P_(channel.origin_P), onward_P_(channel.direction_P) {
+  if (channel.nodes.count == 0) return;
+  const Vec3& last_A = channel.nodes.p_A[static_cast<std::size_t>(channel.nodes.count - 1)];
+  end_P_ = motion.to_now(last_A);
+  onward_P_ = motion.line_to_now(last_A, channel.nodes.onward_A).normalized();
+}
+
+Vec3 ChannelNow::node_tangent_P(int node) const noexcept {
+  if (node + 1 >= channel_.nodes.count) return onward_P_;
+  return (node_P(node + 1) - node_P(std::max(0, node - 1))).normalized();
+}
+
+Vec3 ChannelNow::point_P(double s_mm) const noexcept {
+  if (channel_.nodes.count == 0) return channel_.origin_P + s_mm * channel_.direction_P;
+  if (s_mm >= channel_.nodes.end_mm()) return end_P_ + (s_mm - channel_.nodes.end_mm()) * onward_P_;
+  return motion_.to_now(rest_A(s_mm));
+}
+
+Vec3 ChannelNow::tangent_P(double s_mm) const noexcept {
+  if (channel_.nodes.count == 0) return channel_.direction_P;
+  const double at = std::clamp(s_mm, 0.0, channel_.nodes.end_mm()) / ChannelNodes::kNode_mm;
+  const int node = static_cast<int>(at);
+  const Vec3 before_P = node_tangent_P(node);
+  return (before_P + (at - node) * (node_tangent_P(node + 1) - before_P)).normalized();
+}
+
+Vec3 ChannelNow::rest_A(double s_mm) const noexcept {
+  const ChannelNodes& nodes = channel_.nodes;
+  if (nodes.count == 0 || s_mm >= nodes.end_mm()) return motion_.to_rest(point_P(s_mm));
+  const double at = s_mm / ChannelNodes::kNode_mm;
+  const auto node = static_cast<std::size_t>(std::max(0.0, at));
+  return nodes.p_A[node] + (at - static_cast<double>(node)) * (nodes.p_A[node + 1] - nodes.p_A[node]);
+}
+
+void begin_nodes(Channel& channel, const motion::PatientMotion& motion) noexcept {
+  channel.nodes.count = 0;
+  if (motion.is_rest()) return;
+  channel.nodes.count = 1;
+  channel.nodes.p_A[0] = motion.to_rest(channel.origin_P);
+  channel.nodes.onward_A = motion.line_to_rest(channel.nodes.p_A[0], channel.direction_P);
+}
+
+void extend_nodes(Channel& channel, const motion::PatientMotion& motion) noexcept {
+  ChannelNodes& nodes = channel.nodes;
+  if (nodes.count == 0 || channel.cut_to_mm < nodes.end_mm() + ChannelNodes::kNode_mm) return;
+  const ChannelNow course(channel, motion);
+  const double from_mm = nodes.end_mm();
+  const Vec3 onward_P = course.tangent_P(from_mm);
+  while (nodes.count < ChannelNodes::kMost && channel.cut_to_mm >= nodes.end_mm() + ChannelNodes::kNode_mm) {
+    // Straight now: a needle cuts where it points.
+    const Vec3 p_P = course.point_P(from_mm) + (nodes.end_mm() + ChannelNodes::kNode_mm - from_mm) * onward_P;
+    nodes.p_A[static_cast<std::size_t>(nodes.count)] = motion.to_rest(p_P);
+    nodes.onward_A = motion.line_to_rest(nodes.p_A[static_cast<std::size_t>(nodes.count)], onward_P);
+    ++nodes.count;
+  }
+}
+
+void carry(Channel& channel, const PatientNow& now, double tip_mm) noexcept {
+  if (channel.nodes.count == 0) return;
+  constexpr double kMoved_mm = 0.5 * Channel::kBin_mm;
+  const ChannelNow course(channel, now.motion);
+  channel.direction_P = course.tangent_P(tip_mm);
+  channel.origin_P = course.point_P(tip_mm) - tip_mm * channel.direction_P;
+  const int cut = bin_of(channel.cut_to_mm) + 1;
+  if (channel.known_bins <= cut) return;
+  for (std::size_t i = 0; i < channel.nodes.seen_mm.size(); ++i) {
+    if ((course.rest_A(channel.nodes.seen_mm[i]) - channel.nodes.seen_A[i]).norm() < kMoved_mm) continue;
+    channel.forget_bins_from(cut, now.scene);
+    return;
+  }
+}
+
+void look_ahead(Channel& channel, const PatientNow& now, double s_mm, double ahead_mm) noexcept {
+  const HapticScene& scene = now.scene;
   const int wanted = bin_of(s_mm + ahead_mm) + 1;
   const int last = std::min(wanted, channel.known_bins + kMaxBinsPerLook);
+  if (last <= channel.known_bins) return;
   const bool reads_ct = scene.options.force_model != ForceModel::kInsertion;
+  const ChannelNow course(channel, now.motion);
   for (int bin = channel.known_bins; bin < last; ++bin) {
     const double middle_mm = (bin + 0.5) * Channel::kBin_mm;
-    const Vec3 middle_P = channel.origin_P + channel.direction_P * middle_mm;
-    const TissueAt here = tissue_at(scene, middle_P);
+    const Vec3 middle_A = course.rest_A(middle_mm);
+    const TissueAt here = tissue_at(scene, middle_A);
     const auto index = static_cast<std::size_t>(bin);
     channel.tissue[index] = here.tissue;
     channel.label[index] = here.label;
     channel.wall[index] = wall_at_next_bin(channel, walled_layer(scene, here.tissue), bin);
     if (reads_ct)
-      channel.hu[index] = static_cast<std::int16_t>(std::lround(volume::sample_linear(scene.patient->ct, middle_P)));
+      channel.hu[index] = static_cast<std::int16_t>(std::lround(volume::sample_linear(scene.patient->ct, middle_A)));
   }
-  channel.known_bins = std::max(channel.known_bins, last);
+  channel.known_bins = last;
+  if (channel.nodes.count == 0) return;
+  channel.nodes.seen_mm = {0.5 * (channel.cut_to_mm + last * Channel::kBin_mm), last * Channel::kBin_mm};
+  for (std::size_t i = 0; i < channel.nodes.seen_mm.size(); ++i)
+    channel.nodes.seen_A[i] = course.rest_A(channel.nodes.seen_mm[i]);
 }
 
 LayerAhead next_layer(const Channel& channel, const HapticScene& scene, double from_mm, double to_mm) noexcept {
@@ -73,18 +161,25 @@ LayerAhead next_wall(const Channel& channel, double from_mm, double to_mm) noexc
   return {};
 }
 
-const Channel* ChannelMemory::find(const Vec3& entry_P, const Vec3& axis_P) const noexcept {
+const Channel* ChannelMemory::find(const Vec3& entry_P, const Vec3& axis_P,
+                                   const motion::PatientMotion& motion) const noexcept {
   for (const Channel& channel : channels) {
-    if (channel.is_used && (channel.origin_P - entry_P).norm() < kSameHole_mm &&
-        angle_between_rad(channel.direction_P, axis_P) < kSameHole_rad)
+    if (!channel.is_used) continue;
+    const ChannelNow course(channel, motion);
+    if ((course.point_P(0.0) - entry_P).norm() < kSameHole_mm &&
+        angle_between_rad(course.tangent_P(0.0), axis_P) < kSameHole_rad)
       return &channel;
   }
   return nullptr;
 }
 
 void ChannelMemory::remember(const Channel& channel) noexcept {
+  const auto is_same = [&](const Channel& known) {
+    if (channel.nodes.count > 0) return known.nodes.count > 0 && known.nodes.p_A[0] == channel.nodes.p_A[0];
+    return known.origin_P == channel.origin_P && known.direction_P == channel.direction_P;
+  };
   for (Channel& known : channels) {
-    if (known.is_used && known.origin_P == channel.origin_P && known.direction_P == channel.direction_P) {
+    if (known.is_used && is_same(known)) {
       known = channel;
       return;
     }

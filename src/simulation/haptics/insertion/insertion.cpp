@@ -29,26 +29,28 @@ void stop_loading(InsertionState& state) noexcept {
 /// Where the tip of a needle in air meets the skin, or an open channel: false while it stays in air. Skin that still
 /// recoils from a puncture is met that much deeper. A tip that is below it without having met it (it left its channel
 /// sideways) meets it only after it has come out.
-bool meet(InsertionState& state, InsertionPath& path, const HapticScene& scene, const Vec3& tip_P,
+bool meet(InsertionState& state, InsertionPath& path, const PatientNow& now, const Vec3& tip_P,
           const Vec3& axis_P) noexcept {
-  if (!(skin_distance_mm(scene, tip_P) < -state.recoil_mm)) return false;
-  constexpr double kBefore = 1.05;  // the recoil of the last tick was deeper by less
-  const double before_mm = skin_distance_mm(scene, state.device_tip_P);
-  if (before_mm < -kBefore * state.recoil_mm) return false;
+  if (!(skin_distance_mm(now, tip_P) < -state.recoil_mm)) return false;
+  constexpr double kBefore = 1.05;       // the recoil of the last tick was deeper by less
+  constexpr double kRounding_mm = 1e-6;  // a tip that just touched the skin pressed on nothing
+  const Vec3 before_P = now.motion.to_now(state.device_tip_A);  // the skin may have come to the tip
+  const double before_mm = skin_distance_mm(now, before_P);
+  if (before_mm < -kBefore * state.recoil_mm - kRounding_mm) return false;
   const bool is_from_outside = before_mm > 0.0;
-  const Vec3 entry_P = is_from_outside ? meet_skin(scene, state.device_tip_P, tip_P) : nearest_skin(scene, tip_P);
-  Vec3 way_P = inward_normal(scene, entry_P);
-  if (const Channel* hole = path.memory.find(entry_P, axis_P)) {
+  const Vec3 entry_P = is_from_outside ? meet_skin(now, before_P, tip_P) : nearest_skin(now, tip_P);
+  Vec3 way_P = inward_normal(now, entry_P);
+  if (const Channel* hole = path.memory.find(entry_P, axis_P, now.motion)) {
     path.channel = *hole;
     path.is_open = true;
-    way_P = hole->direction_P;
+    carry(path.channel, now, 0.0);
+    way_P = path.channel.direction_P;
   } else {
     start_channel(path, entry_P, axis_P);
-    state.skin = {};
-    state.skin.anchor_P = entry_P;
+    state.skin = begin_contact(now, entry_P);
   }
   // So far needle and device coincided, above skin that may still recoil.
-  state.s_device_mm = way_P.dot(state.device_tip_P - path.channel.origin_P);
+  state.s_device_mm = way_P.dot(before_P - path.channel.origin_P);
   state.yielded_mm = state.recoil_mm;
   state.s_mm = state.s_device_mm - state.yielded_mm;
   return true;
@@ -56,22 +58,23 @@ bool meet(InsertionState& state, InsertionPath& path, const HapticScene& scene, 
 
 /// Projects needle and device onto the line of this step: the path after the skin puncture, before that the way from
 /// the point of the skin that the tip holds to the device's tip. Empty: in air.
-std::optional<LineStep> place_on_line(InsertionState& state, InsertionPath& path, const HapticScene& scene,
+std::optional<LineStep> place_on_line(InsertionState& state, InsertionPath& path, const PatientNow& now,
                                       const Vec3& tip_P, const Vec3& axis_P, double dt_s) noexcept {
-  if (!path.is_open && state.loading == kNoLayer && !meet(state, path, scene, tip_P, axis_P)) return std::nullopt;
+  if (!path.is_open && state.loading == kNoLayer && !meet(state, path, now, tip_P, axis_P)) return std::nullopt;
   const Channel& line = path.channel;
   if (path.is_open) return LineStep{state.s_mm, state.s_device_mm, line.direction_P.dot(tip_P - line.origin_P)};
-  follow_skin(state.skin, scene, tip_P, scene.friction.tip, dt_s);
+  follow_skin(state.skin, now, tip_P, now.scene.friction.tip, dt_s);
   path.channel.origin_P = state.skin.anchor_P;
   path.channel.direction_P = axis_P;
   return LineStep{state.s_mm, state.s_device_mm, state.skin.to_device_mm};
 }
 
 /// The layer under load, or the next one ahead of the tip.
-LayerAhead layer_in_front(InsertionState& state, InsertionPath& path, const HapticScene& scene) noexcept {
+LayerAhead layer_in_front(InsertionState& state, InsertionPath& path, const PatientNow& now) noexcept {
+  const HapticScene& scene = now.scene;
   if (state.loading != kNoLayer) return {state.loading, state.surface_mm};
   if (!path.is_open) return {scene.tissues[scene.skin].layer, 0.0};  // s is measured from the resting skin
-  look_ahead(path.channel, scene, std::max(state.s_mm, 0.0), kLook_mm);
+  look_ahead(path.channel, now, std::max(state.s_mm, 0.0), kLook_mm);
   // From the resting tip on: a punctured layer may have covered the next one.
   LayerAhead ahead = next_layer(path.channel, scene, path.rest_mm, std::max(state.s_mm, 0.0) + kLook_mm);
   ahead.surface_mm = std::max(ahead.surface_mm, state.s_mm);
@@ -104,10 +107,12 @@ void set_front(InsertionState& state, const InsertionPath& path, const HapticSce
   state.front_n = state.is_front_proxy ? share->tip_n : scene.tissues[path.channel.tissue[tip_bin]].cutting_n;
 }
 
-AxialBalance make_balance(const InsertionState& state, const InsertionPath& path, const HapticScene& scene,
+AxialBalance make_balance(const InsertionState& state, const InsertionPath& path, const PatientNow& now,
                           const LineStep& line, double dt_s, const LayerAhead& ahead,
                           const ProxyShare* share) noexcept {
+  const HapticScene& scene = now.scene;
   AxialBalance balance;
+  balance.drift_mm_per_s = tissue_drift_mm_per_s(path.channel, now, path.rest_mm);
   balance.s_previous_mm = line.s_previous_mm;
   balance.s_device_mm = line.s_device_mm;
   balance.v_device_mm_per_s = (line.s_device_mm - line.s_device_previous_mm) / dt_s;
@@ -202,30 +207,30 @@ telemetry::InsertionPhase next_phase(const InsertionState& state, const Insertio
                                                                : telemetry::InsertionPhase::kInserted;
 }
 
-SoftColumn column_below(const HapticScene& scene, const LayerLaw& law, const Vec3& surface_P,
+SoftColumn column_below(const PatientNow& now, const LayerLaw& law, const Vec3& surface_P,
                         const Vec3& inward_P) noexcept {
-  return soft_column(scene, surface_P, inward_P, scene.needle.radius_mm + law.load_spread_mm, law.pressed_young_kpa);
+  return soft_column(now, surface_P, inward_P, now.scene.needle.radius_mm + law.load_spread_mm, law.pressed_young_kpa);
 }
 
 /// The tip begins to press on a layer. Tissue that still recoils from the puncture before stays the tissue below.
-void begin_loading(InsertionState& state, const InsertionPath& path, const HapticScene& scene,
+void begin_loading(InsertionState& state, const InsertionPath& path, const PatientNow& now,
                    const LayerAhead& layer) noexcept {
   constexpr double kRecoiled_mm = 0.05;
-  const LayerLaw& law = scene.layers[layer.layer];
+  const LayerLaw& law = now.scene.layers[layer.layer];
   state.is_yielding = law.load_spread_mm > 0.0;
   if (!state.is_yielding || state.recoil_mm > kRecoiled_mm) return;
   const Channel& line = path.channel;
   const Vec3 inward_P = path.is_open ? line.direction_P : state.skin.way_P;
-  state.below = column_below(scene, law, line.origin_P + layer.surface_mm * inward_P, inward_P);
+  state.below = column_below(now, law, line.origin_P + layer.surface_mm * inward_P, inward_P);
 }
 
 /// Contact with hysteresis: starts at the resting surface, ends slightly above it.
-void update_contact(InsertionState& state, const InsertionPath& path, const HapticScene& scene,
+void update_contact(InsertionState& state, const InsertionPath& path, const PatientNow& now,
                     const LayerAhead& ahead) noexcept {
   if (ahead.layer == kNoLayer) return;
   if (state.s_mm > ahead.surface_mm) {
     if (!path.is_open && state.loading == kNoLayer) state.contact_P = path.channel.origin_P;
-    if (state.loading == kNoLayer) begin_loading(state, path, scene, ahead);
+    if (state.loading == kNoLayer) begin_loading(state, path, now, ahead);
     state.loading = ahead.layer;
     state.surface_mm = ahead.surface_mm;
     if (path.is_open) state.pressed_to_mm = std::max(state.pressed_to_mm, state.s_mm);
@@ -243,7 +248,8 @@ void turn_to_path(InsertionState& state, const InsertionPath& path) noexcept {
 }
 
 /// Punctures the layer under load; for the skin this opens the path.
-void give_way(InsertionState& state, InsertionPath& path, std::uint8_t layer) noexcept {
+void give_way(InsertionState& state, InsertionPath& path, std::uint8_t layer,
+              const motion::PatientMotion& motion) noexcept {
   state.loading = kNoLayer;
   state.is_yielding = false;
   if (path.is_open) {
@@ -252,12 +258,12 @@ void give_way(InsertionState& state, InsertionPath& path, std::uint8_t layer) no
   }
   path.contact_to_puncture_P = path.channel.origin_P + state.s_mm * state.skin.way_P - state.contact_P;
   turn_to_path(state, path);
-  open_path(path, layer);
+  open_path(path, layer, motion);
 }
 
 /// The virtual needle is at the device; skin that was pierced before recoils freely.
-InsertionStep step_in_air(InsertionState& state, InsertionPath& path, const Vec3& tip_P, const Vec3& axis_P,
-                          double dt_s) noexcept {
+InsertionStep step_in_air(InsertionState& state, InsertionPath& path, const PatientNow& now, const Vec3& tip_P,
+                          const Vec3& axis_P, double dt_s) noexcept {
   leave_body(path);
   stop_loading(state);
   state.recoil_mm *= kTissueRecoil_s / (kTissueRecoil_s + dt_s);
@@ -269,6 +275,7 @@ InsertionStep step_in_air(InsertionState& state, InsertionPath& path, const Vec3
   step.velocity_mm_per_s = (tip_P - state.device_tip_P).dot(axis_P) / dt_s;
   state.velocity_mm_per_s = state.device_velocity_mm_per_s = step.velocity_mm_per_s;
   state.device_tip_P = tip_P;
+  state.device_tip_A = now.motion.to_rest(tip_P);
   state.phase = telemetry::InsertionPhase::kOutside;
   return step;
 }
@@ -302,16 +309,16 @@ std::uint8_t tissue_at_tip(const InsertionState& state, const InsertionPath& pat
 }
 
 /// Balance over the step, divided at a puncture. Returns s of the virtual needle.
-double solve_step(InsertionState& state, const HapticScene& scene, const LineStep& line, const LayerAhead& ahead,
+double solve_step(InsertionState& state, const PatientNow& now, const LineStep& line, const LayerAhead& ahead,
                   AxialBalance& balance, InsertionStep& step) noexcept {
   state.pending_s = 0.0;
   if (state.is_stuck) return line.s_previous_mm;
   const AxialSolution solution = solve(balance);
   step.hit_solver_bound = solution.hit_bound;
   if (ahead.layer == kNoLayer) return solution.s_mm;
-  double puncture_force_n = scene.layers[ahead.layer].puncture_force_n;
+  double puncture_force_n = now.scene.layers[ahead.layer].puncture_force_n;
   if (step.is_on_skin) {  // along the needle
-    const double share = piercing_share(state.skin, scene, step.axis_P);
+    const double share = piercing_share(state.skin, now, step.axis_P);
     if (!(share > 0.0)) return solution.s_mm;
     puncture_force_n /= share;
   }
@@ -325,30 +332,33 @@ double solve_step(InsertionState& state, const HapticScene& scene, const LineSte
 
 }  // namespace
 
-void start_insertion(InsertionState& state, const InsertionPath& path, const HapticScene& scene,
-                     const Vec3& device_tip_P, double pressed_mm) noexcept {
+void start_insertion(InsertionState& state, const InsertionPath& path, const PatientNow& now, const Vec3& device_tip_P,
+                     double pressed_mm) noexcept {
   state = {};
   state.device_tip_P = device_tip_P;
+  state.device_tip_A = now.motion.to_rest(device_tip_P);
   if (!path.is_open) return;
   const Channel& line = path.channel;
   state.s_mm = state.s_device_mm = line.direction_P.dot(device_tip_P - line.origin_P);
   state.phase = telemetry::InsertionPhase::kInserted;
+  const HapticScene& scene = now.scene;
   const std::uint8_t skin = scene.tissues[scene.skin].layer;
   if (!(pressed_mm > 0.0) || skin == kNoLayer || !(scene.layers[skin].load_spread_mm > 0.0)) return;
-  state.below = column_below(scene, scene.layers[skin], line.origin_P, line.direction_P);
+  state.below = column_below(now, scene.layers[skin], line.origin_P, line.direction_P);
   state.gives_again_mm = pressed_mm;
 }
 
-InsertionStep step_insertion(InsertionState& state, InsertionPath& path, const HapticScene& scene,
+InsertionStep step_insertion(InsertionState& state, InsertionPath& path, const PatientNow& now,
                              const Vec3& device_tip_P, const Vec3& device_axis_P, double dt_s,
                              const ProxyShare* share) noexcept {
-  const auto line = place_on_line(state, path, scene, device_tip_P, device_axis_P, dt_s);
-  if (!line) return step_in_air(state, path, device_tip_P, device_axis_P, dt_s);
+  const HapticScene& scene = now.scene;
+  const auto line = place_on_line(state, path, now, device_tip_P, device_axis_P, dt_s);
+  if (!line) return step_in_air(state, path, now, device_tip_P, device_axis_P, dt_s);
 
   // Balance of the virtual needle over the tick and the remaining time of the last puncture.
-  const LayerAhead ahead = layer_in_front(state, path, scene);
+  const LayerAhead ahead = layer_in_front(state, path, now);
   set_front(state, path, scene, share);
-  AxialBalance balance = make_balance(state, path, scene, *line, dt_s + state.pending_s, ahead, share);
+  AxialBalance balance = make_balance(state, path, now, *line, dt_s + state.pending_s, ahead, share);
   const double smoothing = dt_s / (dt_s + kSpeedSmoothing_s);
   state.device_speed_mm_per_s += smoothing * (std::abs(balance.v_device_mm_per_s) - state.device_speed_mm_per_s);
   state.is_stuck = is_held(state, path, scene, balance);
@@ -356,7 +366,7 @@ InsertionStep step_insertion(InsertionState& state, InsertionPath& path, const H
   InsertionStep step;
   step.is_on_skin = !path.is_open;
   step.axis_P = path.channel.direction_P;
-  const double s_mm = solve_step(state, scene, *line, ahead, balance, step);
+  const double s_mm = solve_step(state, now, *line, ahead, balance, step);
   record_forces(state, balance, s_mm, share, step);
 
   // The tip stays at the resting surface of the indented layer until its puncture.
@@ -365,16 +375,17 @@ InsertionStep step_insertion(InsertionState& state, InsertionPath& path, const H
   state.velocity_mm_per_s = step.velocity_mm_per_s;
   state.device_velocity_mm_per_s = balance.v_device_mm_per_s;
   state.device_tip_P = device_tip_P;
+  state.device_tip_A = now.motion.to_rest(device_tip_P);
   state.yielded_mm = balance.yielding_mm(s_mm);
   state.recoil_mm = step.punctured != kNoLayer ? state.yielded_mm : balance.recoiling_mm(s_mm);
   if (state.gives_again_mm > 0.0 && (step.punctured != kNoLayer || state.yielded_mm >= state.gives_again_mm)) {
     state.recoil_mm = state.yielded_mm;  // as pressed in as it was
     state.gives_again_mm = 0.0;
   }
-  update_contact(state, path, scene, ahead);
+  update_contact(state, path, now, ahead);
   if (path.is_open) {
     const double rest_mm = state.loading != kNoLayer ? std::min(s_mm, state.surface_mm) : s_mm;
-    step.entered = move_tip(path, scene, std::max(0.0, rest_mm), state.loading);
+    step.entered = move_tip(path, now, std::max(0.0, rest_mm), state.loading);
   }
   state.phase = next_phase(state, path);
 
@@ -382,7 +393,7 @@ InsertionStep step_insertion(InsertionState& state, InsertionPath& path, const H
   step.tissue = tissue_at_tip(state, path, scene);
   step.tip_P = path.channel.origin_P + s_mm * (step.is_on_skin ? state.skin.way_P : step.axis_P);
   step.depth_mm = path.is_open || state.loading != kNoLayer ? std::max(0.0, s_mm) : 0.0;
-  if (step.punctured != kNoLayer) give_way(state, path, step.punctured);
+  if (step.punctured != kNoLayer) give_way(state, path, step.punctured, now.motion);
   if (path.is_open && s_mm < -kLeaveSkin_mm) {
     leave_body(path);
     stop_loading(state);

@@ -15,6 +15,7 @@ namespace trocar::haptics {
 /// State of an insertion from one tick to the next (paper A, section 4.1). Fixed size.
 struct InsertionState {
   Vec3 device_tip_P = Vec3::Zero();  ///< Device tip at the last tick.
+  Vec3 device_tip_A = Vec3::Zero();  ///< The tissue that was there, at rest.
   double s_device_mm = 0.0;          ///< Device tip along the path at the last solution.
   double s_mm = 0.0;                 ///< Virtual needle's tip along the path.
   double velocity_mm_per_s = 0.0;
@@ -72,13 +73,13 @@ struct ProxyShare {
 
 /// Sets needle and device to the device's pose: zero force. Above 0, `pressed_mm` is how far the skin gives way again
 /// under the load of an inserted needle (physics.md S1, P6). Real-time safe.
-void start_insertion(InsertionState& state, const InsertionPath& path, const HapticScene& scene,
-                     const Vec3& device_tip_P, double pressed_mm = 0.0) noexcept;
+void start_insertion(InsertionState& state, const InsertionPath& path, const PatientNow& now, const Vec3& device_tip_P,
+                     double pressed_mm = 0.0) noexcept;
 
 /// One step of the needle: device tip and unit axis in P, dt > 0. A puncture within the step ends the step there (force
 /// = puncture force); the rest of the time is added to the next step. `share`: nullptr for the insertion model alone.
 /// Real-time safe.
-InsertionStep step_insertion(InsertionState& state, InsertionPath& path, const HapticScene& scene,
+InsertionStep step_insertion(InsertionState& state, InsertionPath& path, const PatientNow& now,
                              const Vec3& device_tip_P, const Vec3& device_axis_P, double dt_s,
                              const ProxyShare* share = nullptr) noexcept;
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "volume/sampling.h"
+#include "haptics/insertion/skin_contact.h"
 
 namespace trocar::haptics {
 
@@ -11,19 +11,22 @@ void start_channel(InsertionPath& path, const Vec3& origin_P, const Vec3& direct
   path.channel.is_used = true;
   path.channel.origin_P = origin_P;
   path.channel.direction_P = direction_P;
+  path.channel.nodes.count = 0;
   path.channel.pierced = 0;
   path.channel.cut_to_mm = 0.0;
   path.channel.forget_bins();
 }
 
-void open_path(InsertionPath& path, std::uint8_t skin_layer) noexcept {
+void open_path(InsertionPath& path, std::uint8_t skin_layer, const motion::PatientMotion& motion) noexcept {
   path.is_open = true;
   if (skin_layer != kNoLayer) path.channel.pierce(skin_layer);
   path.rest_mm = 0.0;
   path.channel.forget_bins();  // the line may have rotated while the skin was loaded
+  begin_nodes(path.channel, motion);
 }
 
-EnteredLabels move_tip(InsertionPath& path, const HapticScene& scene, double rest_mm, std::uint8_t loading) noexcept {
+EnteredLabels move_tip(InsertionPath& path, const PatientNow& now, double rest_mm, std::uint8_t loading) noexcept {
+  const HapticScene& scene = now.scene;
   EnteredLabels entered;
   const auto is_held_back = [&](std::size_t bin) {
     return loading != kNoLayer && scene.tissues[path.channel.tissue[bin]].layer == loading;
@@ -54,6 +57,7 @@ EnteredLabels move_tip(InsertionPath& path, const HapticScene& scene, double res
   path.travel_mm += high - low;
   path.rest_mm = rest_mm;
   path.channel.cut_to_mm = std::max(path.channel.cut_to_mm, rest_mm);
+  extend_nodes(path.channel, now.motion);
   return entered;
 }
 
@@ -73,13 +77,12 @@ constexpr double kAtSurface_mm = 1e-6;
 
 /// Distance (mm) back along the axis from a tip inside the body to the skin; the longest needle's length if there is
 /// none.
-double way_to_skin_back(const HapticScene& scene, const Vec3& tip_P, const Vec3& axis_P) noexcept {
+double way_to_skin_back(const PatientNow& now, const Vec3& tip_P, const Vec3& axis_P) noexcept {
   constexpr double kStep_mm = 1.0;
   constexpr double kLongest_mm = (Channel::kBins - 1) * Channel::kBin_mm;
-  const volume::FloatGrid& distance = scene.patient->skin_distance_mm;
-  double inside = -volume::sample_linear(distance, tip_P);
+  double inside = -skin_distance_mm(now, tip_P);
   for (double back = kStep_mm; back < kLongest_mm; back += kStep_mm) {
-    const double next = -volume::sample_linear(distance, tip_P - back * axis_P);
+    const double next = -skin_distance_mm(now, tip_P - back * axis_P);
     if (next <= 0.0) return back - kStep_mm * (-next) / (inside - next);
     inside = next;
   }
@@ -105,18 +108,19 @@ double in_front_of_bone(const Channel& channel, const HapticScene& scene, double
 
 }  // namespace
 
-bool resume_inside(InsertionPath& path, const HapticScene& scene, const Vec3& tip_P, const Vec3& axis_P) noexcept {
-  if (!(volume::sample_linear(scene.patient->skin_distance_mm, tip_P) < 0.0)) return false;
-  const double tip_mm = way_to_skin_back(scene, tip_P, axis_P);
+bool resume_inside(InsertionPath& path, const PatientNow& now, const Vec3& tip_P, const Vec3& axis_P) noexcept {
+  if (!(skin_distance_mm(now, tip_P) < 0.0)) return false;
+  const HapticScene& scene = now.scene;
+  const double tip_mm = way_to_skin_back(now, tip_P, axis_P);
   start_channel(path, tip_P - tip_mm * axis_P, axis_P);
-  open_path(path, scene.tissues[scene.skin].layer);
-  while (path.channel.known_bins <= bin_of(tip_mm)) look_ahead(path.channel, scene, tip_mm, 0.0);
+  open_path(path, scene.tissues[scene.skin].layer, now.motion);
+  while (path.channel.known_bins <= bin_of(tip_mm)) look_ahead(path.channel, now, tip_mm, 0.0);
   const double depth_mm = in_front_of_bone(path.channel, scene, tip_mm);
   for (int bin = 0; bin <= bin_of(depth_mm); ++bin) {
     const std::uint8_t layer = layer_at(path.channel, scene, bin);
     if (layer != kNoLayer) path.channel.pierce(layer);
   }
-  move_tip(path, scene, depth_mm, kNoLayer);
+  move_tip(path, now, depth_mm, kNoLayer);
   return true;
 }
 

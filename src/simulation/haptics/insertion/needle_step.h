@@ -19,7 +19,7 @@ struct GripTurning {
 struct NeedleState {
   bool is_started = false;
   double pressed_mm = 0.0;  ///< Before the start: how far the tissue gives way again (start_insertion).
-  Pose X_PN;                ///< Device's needle at the last tick, in the resting anatomy.
+  Pose X_PN;                ///< Device's needle at the last tick.
   /// Velocity of the device's needle tip, mm/s, smoothed against ripple from encoder counts.
   Vec3 tip_velocity_P = Vec3::Zero();
   Vec3 axis_rate_P = Vec3::Zero();  ///< Rate of the device's needle axis, 1/s, smoothed likewise.
@@ -40,13 +40,13 @@ struct NeedleStep {
   bool has_jumped = false;          ///< The device moved further than a hand can; the needle restarted.
 };
 
-/// One step of the needle at the pose X_PN (resting anatomy) under the scene's force model. Real-time safe.
-NeedleStep step_needle(NeedleState& state, const HapticScene& scene, const Pose& X_PN, bool is_stylet_in,
+/// One step of the needle at the pose X_PN under the scene's force model. Real-time safe.
+NeedleStep step_needle(NeedleState& state, const PatientNow& now, const Pose& X_PN, bool is_stylet_in,
                        double dt_s) noexcept;
 
 /// Shape of the shaft after a step, for display, ultrasound and X-ray, without its time. Where paper A's path
 /// constraint acts, which knows no bending, the shape is that of the same beam in the same bed, without a force on the
 /// bevel. Real-time safe; cheap enough for 100 Hz.
-telemetry::NeedleShape needle_shape(const NeedleState& state, const HapticScene& scene, bool is_stylet_in) noexcept;
+telemetry::NeedleShape needle_shape(const NeedleState& state, const PatientNow& now, bool is_stylet_in) noexcept;
 
 }  // namespace trocar::haptics

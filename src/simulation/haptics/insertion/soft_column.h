@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "haptics/haptic_scene.h"
+#include "haptics/patient_now.h"
 
 namespace trocar::haptics {
 
@@ -23,7 +23,7 @@ struct SoftColumn {
 /// Column of the tissue along `inward_P` (unit) from a point on a layer, loaded over a disc. Ends at rigid tissue, at
 /// fluid or gas (modulus 0: they are displaced, not compressed) or after kColumn_mm. Soft tissue has at least the
 /// modulus `least_kpa`. Real-time safe.
-SoftColumn soft_column(const HapticScene& scene, const Vec3& surface_P, const Vec3& inward_P, double radius_mm,
+SoftColumn soft_column(const PatientNow& now, const Vec3& surface_P, const Vec3& inward_P, double radius_mm,
                        double least_kpa = 0.0) noexcept;
 
 /// Time constant with which the compressed tissue recoils after a puncture. Range 0.05..0.5. [assumed]

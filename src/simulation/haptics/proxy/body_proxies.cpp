@@ -184,6 +184,48 @@ void fill_stiffness(HeldShaft& shaft, const Channel& channel, const HapticScene&
   }
 }
 
+/// Way from a point of the shaft to the channel: across the shaft and along it, and the channel's direction there.
+struct ToChannel {
+  Vec3 across_P;
+  double along_mm;
+  Vec3 tangent_P;
+};
+
+/// The way to a channel that is straight: linear along the shaft.
+class ShaftFromLine {
+ public:
+  ShaftFromLine(const Channel& channel, const Pose& X_PN) noexcept : direction_P_(channel.direction_P) {
+    const Vec3 axis_P = X_PN.R().col(2);
+    // From the tip, and its change per mm towards the grip.
+    const Vec3 to_line_P = across(channel.origin_P - X_PN.p(), direction_P_);
+    const Vec3 to_line_per_mm_P = across(axis_P, direction_P_);
+    across_P_ = across(to_line_P, axis_P);
+    across_per_mm_P_ = across(to_line_per_mm_P, axis_P);
+    along_mm_ = axis_P.dot(to_line_P);
+    along_per_mm_ = axis_P.dot(to_line_per_mm_P);
+  }
+  bool is_finite() const noexcept {
+    return across_P_.allFinite() && across_per_mm_P_.allFinite() && std::isfinite(along_mm_ + along_per_mm_);
+  }
+  ToChannel at(double behind_mm) const noexcept {
+    return {across_P_ + behind_mm * across_per_mm_P_, along_mm_ + behind_mm * along_per_mm_, direction_P_};
+  }
+
+ private:
+  Vec3 direction_P_, across_P_, across_per_mm_P_;
+  double along_mm_, along_per_mm_;
+};
+
+/// The way to a channel that moves and bends with its tissue; `s_mm`: place on the channel beside that point.
+ToChannel way_to_channel(const ChannelNow& course, const motion::PatientMotion& motion, const Pose& X_PN,
+                         double behind_mm, double s_mm, double ahead_s) noexcept {
+  const Vec3 axis_P = X_PN.R().col(2);
+  const Vec3 tangent_P = course.tangent_P(s_mm);
+  const Vec3 moved_P = ahead_s * motion.velocity(course.rest_A(s_mm));
+  const Vec3 way_P = across(course.point_P(s_mm) + moved_P - (X_PN.p() - behind_mm * axis_P), tangent_P);
+  return {across(way_P, axis_P), axis_P.dot(way_P), tangent_P};
+}
+
 /// Energy of tissue and shaft, and its growth with depth: at equilibrium only the change of the stiffness counts.
 void store_energy(HeldShaft& shaft) noexcept {
   for (std::size_t i = 0; i < static_cast<std::size_t>(shaft.beam.node_count); ++i) {
@@ -211,23 +253,34 @@ ShaftResistance shaft_resistance(const Channel& channel, const HapticScene& scen
   return resistance;
 }
 
-HeldShaft hold_shaft(const Channel& channel, const HapticScene& scene, const Pose& X_PN, double tip_mm,
-                     bool is_stylet_in) noexcept {
+double tissue_drift_mm_per_s(const Channel& channel, const PatientNow& now, double tip_mm) noexcept {
+  if (channel.nodes.count == 0 || !(tip_mm > 0.0)) return 0.0;
+  constexpr int kPlaces = 8;
+  const ChannelNow course(channel, now.motion);
+  const auto along_mm_per_s = [&](double s_mm) {
+    return course.tangent_P(s_mm).dot(now.motion.velocity(course.rest_A(s_mm)));
+  };
+  double mean = 0.0;
+  for (int i = 0; i < kPlaces; ++i) mean += along_mm_per_s(tip_mm * (i + 0.5) / kPlaces) / kPlaces;
+  return along_mm_per_s(tip_mm) - mean;
+}
+
+HeldShaft hold_shaft(const Channel& channel, const PatientNow& now, const Pose& X_PN, double tip_mm, bool is_stylet_in,
+                     double ahead_s) noexcept {
+  const HapticScene& scene = now.scene;
   NeedleBeam beam = beam_of(scene, is_stylet_in);
   HeldShaft shaft;
   shaft.beam.node_count = beam.node_count;
-  const Vec3 axis_P = X_PN.R().col(2);
-  // From the tip, and its change per mm towards the grip.
-  const Vec3 to_line_P = across(channel.origin_P - X_PN.p(), channel.direction_P);
-  const Vec3 to_line_per_mm_P = across(axis_P, channel.direction_P);
-  const Vec3 across_P = across(to_line_P, axis_P), across_per_mm_P = across(to_line_per_mm_P, axis_P);
-  const double along_mm = axis_P.dot(to_line_P), along_per_mm = axis_P.dot(to_line_per_mm_P);
-  if (!across_P.allFinite() || !across_per_mm_P.allFinite() || !std::isfinite(along_mm + along_per_mm)) {
+  const ShaftFromLine line(channel, X_PN);
+  if (!line.is_finite()) {
     shaft.beam.is_bound = true;
     return shaft;
   }
+  const ChannelNow course(channel, now.motion);
   shaft.X_PN = X_PN;
   shaft.line_P = channel.direction_P;
+  shaft.is_straight = channel.nodes.count == 0;
+  if (!shaft.is_straight) shaft.bent_P.fill(shaft.line_P);
   fill_stiffness(shaft, channel, scene, beam, tip_mm);
   const double most_mm = kMaxDeflection * scene.needle.length_mm;
   bool is_far = false;
@@ -235,8 +288,12 @@ HeldShaft hold_shaft(const Channel& channel, const HapticScene& scene, const Pos
     const auto index = static_cast<std::size_t>(i);
     if (!(shaft.bed.stiffness_n_per_mm[index] > 0.0)) continue;
     const double behind_mm = beam.spacing_mm * (beam.node_count - 1 - i);
-    const Vec3 offset_P = across_P + behind_mm * across_per_mm_P;
-    shaft.along_mm[index] = std::clamp(along_mm + behind_mm * along_per_mm, -most_mm, most_mm);
+    const ToChannel way = shaft.is_straight
+                              ? line.at(behind_mm)
+                              : way_to_channel(course, now.motion, X_PN, behind_mm, tip_mm - behind_mm, ahead_s);
+    const Vec3& offset_P = way.across_P;
+    if (!shaft.is_straight) shaft.bent_P[index] = way.tangent_P;
+    shaft.along_mm[index] = std::clamp(way.along_mm, -most_mm, most_mm);
     shaft.bed.offset_mm[index] = limited(offset_P, most_mm);
     is_far = is_far || shaft.bed.offset_mm[index] != offset_P;
   }
@@ -254,13 +311,16 @@ HeldShaft hold_shaft(const Channel& channel, const HapticScene& scene, const Pos
   return shaft;
 }
 
-bool is_torn(const Channel& channel, const HapticScene& scene, const Pose& X_PN, double tip_mm) noexcept {
+bool is_torn(const Channel& channel, const PatientNow& now, const Pose& X_PN, double tip_mm) noexcept {
+  const ChannelNow course(channel, now.motion);
   const auto beside_mm = [&](double behind_tip_mm) {
     const Vec3 shaft_P = X_PN.p() - behind_tip_mm * X_PN.R().col(2);
-    return across(shaft_P - channel.origin_P, channel.direction_P).norm();
+    if (channel.nodes.count == 0) return across(shaft_P - channel.origin_P, channel.direction_P).norm();
+    const double s_mm = tip_mm - behind_tip_mm;
+    return across(shaft_P - course.point_P(s_mm), course.tangent_P(s_mm)).norm();
   };
-  const double most_mm = kMaxDeflection * scene.needle.length_mm;
-  return std::max(beside_mm(0.0), beside_mm(std::min(tip_mm, scene.needle.length_mm))) > most_mm;
+  const double length_mm = now.scene.needle.length_mm, most_mm = kMaxDeflection * length_mm;
+  return std::max(beside_mm(0.0), beside_mm(std::min(tip_mm, length_mm))) > most_mm;
 }
 
 ShaftReaction react(const HeldShaft& shaft, const HapticScene& scene, const Vec3& tip_force_P) noexcept {
@@ -284,7 +344,9 @@ ShaftReaction react(const HeldShaft& shaft, const HapticScene& scene, const Vec3
     deflection_P[index] *= scale;
     const double k = shaft.share * shaft.bed.stiffness_n_per_mm[index];
     const Vec3 bed_P = k * (shaft.bed.offset_mm[index] - deflection_P[index]);
-    Vec3 force_P = across(bed_P, shaft.line_P);  // a motion along the line does not stretch the bed
+    Vec3 force_P =
+        across(bed_P, shaft.is_straight ? shaft.line_P
+                                        : shaft.bent_P[index]);  // a motion along the channel does not stretch the bed
     if (i == nodes - 1) force_P += shaft.share * tip_P;
     reaction.wrench_P.force_n += force_P;
     moment_P += spacing_mm * (i + 1) * force_P + shaft.along_mm[index] * bed_P;

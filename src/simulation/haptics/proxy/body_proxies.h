@@ -21,15 +21,22 @@ struct ShaftResistance {
 };
 ShaftResistance shaft_resistance(const Channel& channel, const HapticScene& scene, double tip_mm) noexcept;
 
-/// The shaft held to the channel's line by its body proxies, before the tip's force is known. `X_PN`: the device's
-/// needle (rigid, +z axis). Purely elastic; the stiffness at the grip is at most half of the device's, and at most
-/// kMostTurning_nmm_per_rad. `beam.is_bound` is set for proxies or deflections beyond kMaxDeflection, and for a pose
-/// that is not finite (then no force acts). Real-time safe.
+/// Where the patient moves: velocity (mm/s) along the channel of the tissue at the tip minus that of the tissue at the
+/// shaft, its mean over the inserted length. 0 at rest. Real-time safe.
+double tissue_drift_mm_per_s(const Channel& channel, const PatientNow& now, double tip_mm) noexcept;
+
+/// The shaft held to its channel by its body proxies, before the tip's force is known. `X_PN`: the device's needle
+/// (rigid, +z axis); `ahead_s`: how far ahead in time that pose is, so that a moving channel is taken there, too.
+/// Purely elastic; the stiffness at the grip is at most half of the device's, and at most kMostTurning_nmm_per_rad.
+/// `beam.is_bound` is set for proxies or deflections beyond kMaxDeflection, and for a pose that is not finite (then no
+/// force acts). Real-time safe.
 struct HeldShaft {
   BeamSolution beam;
   BeamBed bed;
   Pose X_PN;
-  Vec3 line_P = Vec3::UnitZ();                   ///< Unit, along the channel.
+  bool is_straight = true;                       ///< The channel is a line, along line_P.
+  Vec3 line_P = Vec3::UnitZ();                   ///< Unit, along the channel at the tip.
+  std::array<Vec3, kMaxBeamNodes> bent_P;        ///< Unit, along the channel at a node, of one that is not straight.
   std::array<double, kMaxBeamNodes> along_mm{};  ///< Part along the shaft of the way from a node to the channel's line.
   std::array<double, kMaxBeamNodes> stiffening_n_per_mm2{};  ///< Change of the bed's stiffness per mm of depth.
   std::array<double, kMaxBeamNodes> growth_n_per_mm3{};      ///< Change of that per mm of depth.
@@ -41,12 +48,12 @@ struct HeldShaft {
   double out_n_per_mm = 0.0;  ///< Change of that with depth where the shaft keeps its shape.
 };
 inline constexpr double kMostTurning_nmm_per_rad = 1500.0;
-HeldShaft hold_shaft(const Channel& channel, const HapticScene& scene, const Pose& X_PN, double tip_mm,
-                     bool is_stylet_in) noexcept;
+HeldShaft hold_shaft(const Channel& channel, const PatientNow& now, const Pose& X_PN, double tip_mm, bool is_stylet_in,
+                     double ahead_s = 0.0) noexcept;
 
 /// True for a needle whose inserted part is further beside the channel than kMaxDeflection of its length: no needle
 /// bends so far, it tears its channel. Real-time safe.
-bool is_torn(const Channel& channel, const HapticScene& scene, const Pose& X_PN, double tip_mm) noexcept;
+bool is_torn(const Channel& channel, const PatientNow& now, const Pose& X_PN, double tip_mm) noexcept;
 
 /// Deflections of the beam's nodes from the straight shaft, across it, in P (mm); node_count 0: straight.
 struct BentShaft {

@@ -23,18 +23,20 @@ double in_series(double a, double b) noexcept {
 struct TipStep {
   NeedleBalance balance;
   double moved_mm = 0.0;  ///< Motion of the proxy.
-  double front_mm = 0.0;  ///< Tip on the path in the resting anatomy.
+  double front_mm = 0.0;  ///< Tip on the path in undented tissue.
   std::uint8_t punctured = kNoLayer;
   bool hit_bound = false;
 };
 
-ProxyNeedleStep in_air(ProxyNeedleState& state, InsertionPath& path, const Pose& X_PN, double dt_s) noexcept {
+ProxyNeedleStep in_air(ProxyNeedleState& state, InsertionPath& path, const PatientNow& now, const Pose& X_PN,
+                       double dt_s) noexcept {
   if (path.is_open) leave_body(path);
   ProxyNeedleStep step;
   step.axial.tip_P = X_PN.p();
   step.axial.axis_P = X_PN.R().col(2);
   step.axial.velocity_mm_per_s = (X_PN.p() - state.proxy_P).dot(step.axial.axis_P) / dt_s;
   state.proxy_P = X_PN.p();
+  state.proxy_A = now.motion.to_rest(X_PN.p());
   state.tissue_n_per_mm = 0.0;
   state.wall = kNoLayer;
   state.is_on_skin = false;
@@ -43,10 +45,11 @@ ProxyNeedleStep in_air(ProxyNeedleState& state, InsertionPath& path, const Pose&
 }
 
 /// The skin under the tip gives way: the path begins at the point that the tip held, along the needle's axis.
-void open_skin(ProxyNeedleState& state, InsertionPath& path, std::uint8_t layer, InsertionStep& axial) noexcept {
+void open_skin(ProxyNeedleState& state, InsertionPath& path, std::uint8_t layer, InsertionStep& axial,
+               const motion::PatientMotion& motion) noexcept {
   state.proxy_P = state.skin.anchor_P;
   start_channel(path, state.skin.anchor_P, axial.axis_P);
-  open_path(path, layer);
+  open_path(path, layer, motion);
   path.contact_to_puncture_P = axial.tip_P - state.contact_P;
   state.needle_mm = axial.depth_mm * state.skin.way_P.dot(axial.axis_P);
   axial.punctured = layer;
@@ -55,20 +58,20 @@ void open_skin(ProxyNeedleState& state, InsertionPath& path, std::uint8_t layer,
 
 /// The tip on unpierced skin (physics.md V2): its spring is the coupling in series with the skin's indentation, damped
 /// unless the point of the skin that it holds slides.
-ProxyNeedleStep on_skin(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene, const Pose& X_PN,
+ProxyNeedleStep on_skin(ProxyNeedleState& state, InsertionPath& path, const PatientNow& now, const Pose& X_PN,
                         const Pose& X_PN_ahead, double dt_s) noexcept {
+  const HapticScene& scene = now.scene;
   SkinContact& skin = state.skin;
-  follow_skin(skin, scene, X_PN.p(), scene.friction.tip, dt_s);
-  if (!(skin.to_device_mm > 0.0)) return in_air(state, path, X_PN, dt_s);
+  follow_skin(skin, now, X_PN.p(), scene.friction.tip, dt_s);
+  if (!(skin.to_device_mm > 0.0)) return in_air(state, path, now, X_PN, dt_s);
   const std::uint8_t layer = scene.tissues[scene.skin].layer;
   const double tissue_n_per_mm = layer == kNoLayer ? 1.0 : scene.layers[layer].indent_n_per_mm;
   const double k = in_series(scene.options.coupling.stiffness_n_per_mm, tissue_n_per_mm);
-  const CouplingParams& coupling = scene.options.coupling;
-  const double ahead_s = coupling.damping_ns_per_mm / coupling.stiffness_n_per_mm;
+  const double ahead_s = scene.options.coupling.damping_time_s();
   const Vec3 ahead_P = X_PN_ahead.p() - X_PN.p() - ahead_s * skin.slides_P;
   double load_n = std::max(0.0, k * (skin.to_device_mm + skin.way_P.dot(ahead_P)));
   const double puncture_n = layer == kNoLayer ? 0.0 : scene.layers[layer].puncture_force_n;
-  const double share = piercing_share(skin, scene, X_PN.R().col(2));  // the force along the needle counts
+  const double share = piercing_share(skin, now, X_PN.R().col(2));  // the force along the needle counts
   const bool gives_way = share > 0.0 && share * load_n >= puncture_n;
   if (gives_way) load_n = puncture_n / share;
 
@@ -81,7 +84,7 @@ ProxyNeedleStep on_skin(ProxyNeedleState& state, InsertionPath& path, const Hapt
   step.axial.phase = state.phase = telemetry::InsertionPhase::kLoading;
   state.proxy_P = skin.anchor_P;
   state.tissue_n_per_mm = tissue_n_per_mm;
-  if (gives_way) open_skin(state, path, layer, step.axial);
+  if (gives_way) open_skin(state, path, layer, step.axial, now.motion);
   return step;
 }
 
@@ -121,8 +124,9 @@ struct Front {
   double mm = 0.0;
   bool meets_wall = false;
 };
-Front find_front(ProxyNeedleState& state, const Channel& channel, const HapticScene& scene,
+Front find_front(ProxyNeedleState& state, const Channel& channel, const PatientNow& now,
                  const LayerAhead& ahead) noexcept {
+  const HapticScene& scene = now.scene;
   Front front;
   const double s_mm = channel.direction_P.dot(state.proxy_P - channel.origin_P);
   if (state.wall != kNoLayer && s_mm < state.wall_anchor_mm - kAtWall_mm) state.wall = kNoLayer;  // moved back from it
@@ -134,7 +138,7 @@ Front find_front(ProxyNeedleState& state, const Channel& channel, const HapticSc
   front.mm = state.wall != kNoLayer ? state.wall_mm : s_mm;
   const auto bin = static_cast<std::size_t>(bin_of(front.mm));
   const TissueAt here = front.mm > 0.0 ? TissueAt{channel.tissue[bin], channel.label[bin]} : TissueAt{};
-  front.law = tip_law_at(scene, state.proxy_P, here);
+  front.law = tip_law_now(now, now.motion.to_rest(state.proxy_P), here);
   front.law.law.viscosity_ns_per_mm *= shear_thinning(state.velocity_mm_per_s);
   if (front.mm < channel.cut_to_mm - kHole_mm) {  // in its own channel the tip cuts nothing and meets no border
     front.law.border = 0.0;
@@ -146,16 +150,17 @@ Front find_front(ProxyNeedleState& state, const Channel& channel, const HapticSc
 }
 
 /// Moves the proxy along the path until it rests, meets a wall or reaches the limit of sub-steps.
-TipStep move_proxy(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene,
+TipStep move_proxy(ProxyNeedleState& state, InsertionPath& path, const PatientNow& now,
                    const NeedleDrive& drive) noexcept {
+  const HapticScene& scene = now.scene;
   Channel& channel = path.channel;
   const Vec3& u = channel.direction_P;
   const auto along = [&] { return u.dot(state.proxy_P - channel.origin_P); };
   TipStep step;
-  look_ahead(channel, scene, std::max(0.0, along()), kLook_mm);
+  look_ahead(channel, now, std::max(0.0, along()), kLook_mm);
   const LayerAhead ahead = next_wall(channel, channel.cut_to_mm, along() + kLook_mm);
   for (int i = 0; i < kMaxProxySteps; ++i) {
-    const Front front = find_front(state, channel, scene, ahead);
+    const Front front = find_front(state, channel, now, ahead);
     step.front_mm = front.mm;
     set_stiffness(state, drive, channel, front.tissue_n_per_mm, front.meets_wall);
     if (front.meets_wall) state.wall_anchor_mm = along();
@@ -188,21 +193,31 @@ telemetry::InsertionPhase next_phase(const ProxyNeedleState& state, bool is_load
                                                                : telemetry::InsertionPhase::kInserted;
 }
 
+/// Where the patient moves: way of the tissue at the tip along the channel in the time that the pose ahead is ahead.
+double tissue_ahead_mm(const Channel& channel, const PatientNow& now, double tip_mm) noexcept {
+  if (channel.nodes.count == 0) return 0.0;
+  const Vec3 tissue_A = ChannelNow(channel, now.motion).rest_A(tip_mm);
+  return now.scene.options.coupling.damping_time_s() * channel.direction_P.dot(now.motion.velocity(tissue_A));
+}
+
 /// The tip on its path through the body.
-ProxyNeedleStep in_body(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene, const Pose& X_PN_ahead,
+ProxyNeedleStep in_body(ProxyNeedleState& state, InsertionPath& path, const PatientNow& now, const Pose& X_PN_ahead,
                         double dt_s) noexcept {
+  const HapticScene& scene = now.scene;
   const Vec3 u = path.channel.direction_P;
   const ShaftResistance resistance = shaft_resistance(path.channel, scene, path.rest_mm);
-  const NeedleDrive drive{scene.options.coupling,
-                          {resistance.dry_n, shear_thinning(state.velocity_mm_per_s) * resistance.viscous_ns_per_mm},
-                          u.dot(X_PN_ahead.p() - path.channel.origin_P),
-                          state.needle_mm,
-                          dt_s,
-                          path.bed_out_n,
-                          path.bed_out_n_per_mm};
+  const NeedleDrive drive{
+      scene.options.coupling,
+      {resistance.dry_n, shear_thinning(state.velocity_mm_per_s) * resistance.viscous_ns_per_mm},
+      u.dot(X_PN_ahead.p() - path.channel.origin_P) - tissue_ahead_mm(path.channel, now, state.along_mm),
+      state.needle_mm,
+      dt_s,
+      path.bed_out_n,
+      path.bed_out_n_per_mm};
   const Vec3 origin_P = path.channel.origin_P;
   state.proxy_P = origin_P + u.dot(state.proxy_P - origin_P) * u;  // the path also guides the tip
-  const TipStep moved = move_proxy(state, path, scene, drive);
+  const TipStep moved = move_proxy(state, path, now, drive);
+  state.along_mm = u.dot(state.proxy_P - origin_P);
   const bool is_at_wall = moved.punctured != kNoLayer || state.wall != kNoLayer;
   // The load of a punctured wall is its puncture force.
   const double on_tip_n =
@@ -220,7 +235,7 @@ ProxyNeedleStep in_body(ProxyNeedleState& state, InsertionPath& path, const Hapt
   axial.velocity_mm_per_s = state.velocity_mm_per_s = (moved.balance.needle_mm - state.needle_mm) / dt_s;
   state.needle_mm = moved.balance.needle_mm;
   if (is_at_wall) axial.displacement_mm = std::max(0.0, on_tip_n) / state.tissue_n_per_mm;
-  axial.entered = move_tip(path, scene, std::max(0.0, moved.front_mm), state.wall);
+  axial.entered = move_tip(path, now, std::max(0.0, moved.front_mm), state.wall);
   axial.depth_mm = std::max(0.0, state.needle_mm);
   axial.tissue = path.rest_mm > 0.0 ? path.channel.tissue[static_cast<std::size_t>(bin_of(path.rest_mm))] : 0;
   axial.phase = state.phase = next_phase(state, is_at_wall);
@@ -230,15 +245,17 @@ ProxyNeedleStep in_body(ProxyNeedleState& state, InsertionPath& path, const Hapt
 
 /// A tip from outside: its intersection with the skin, and an open channel that it may enter. False for one that is
 /// inside without having met the skin: it left its channel sideways.
-bool meet(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene, const Pose& X_PN) noexcept {
-  if (!(skin_distance_mm(scene, X_PN.p()) < 0.0) || skin_distance_mm(scene, state.proxy_P) < 0.0) return false;
-  state.proxy_P = meet_skin(scene, state.proxy_P, X_PN.p());
-  state.skin = {};
-  state.contact_P = state.skin.anchor_P = state.proxy_P;
+bool meet(ProxyNeedleState& state, InsertionPath& path, const PatientNow& now, const Pose& X_PN) noexcept {
+  const Vec3 before_P = now.motion.to_now(state.proxy_A);  // the skin may have come to the tip
+  if (!(skin_distance_mm(now, X_PN.p()) < 0.0) || skin_distance_mm(now, before_P) < 0.0) return false;
+  state.proxy_P = meet_skin(now, before_P, X_PN.p());
+  state.skin = begin_contact(now, state.proxy_P);
+  state.contact_P = state.proxy_P;
   state.is_on_skin = true;
-  if (const Channel* hole = path.memory.find(state.proxy_P, X_PN.R().col(2))) {
+  if (const Channel* hole = path.memory.find(state.proxy_P, X_PN.R().col(2), now.motion)) {
     path.channel = *hole;
     path.is_open = true;
+    carry(path.channel, now, 0.0);
     path.rest_mm = 0.0;
     state.needle_mm = path.channel.direction_P.dot(state.proxy_P - path.channel.origin_P);
     state.is_on_skin = false;
@@ -248,20 +265,28 @@ bool meet(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene
 
 }  // namespace
 
-void start_proxy_needle(ProxyNeedleState& state, const InsertionPath& path, const Vec3& tip_P) noexcept {
+void carry_proxy(ProxyNeedleState& state, const Channel& channel) noexcept {
+  state.proxy_P = channel.origin_P + state.along_mm * channel.direction_P;
+}
+
+void start_proxy_needle(ProxyNeedleState& state, const InsertionPath& path, const Vec3& tip_P,
+                        const motion::PatientMotion& motion) noexcept {
   state = {};
   state.proxy_P = tip_P;
+  state.proxy_A = motion.to_rest(tip_P);
   if (!path.is_open) return;
-  state.needle_mm = path.channel.direction_P.dot(tip_P - path.channel.origin_P);
+  state.needle_mm = state.along_mm = path.channel.direction_P.dot(tip_P - path.channel.origin_P);
   state.phase = telemetry::InsertionPhase::kInserted;
 }
 
-ProxyNeedleStep step_proxy_needle(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene,
-                                  const Pose& X_PN, const Pose& X_PN_ahead, double dt_s) noexcept {
-  if (!path.is_open && !state.is_on_skin && !meet(state, path, scene, X_PN)) return in_air(state, path, X_PN, dt_s);
-  if (!path.is_open) return on_skin(state, path, scene, X_PN, X_PN_ahead, dt_s);
-  const ProxyNeedleStep step = in_body(state, path, scene, X_PN_ahead, dt_s);
-  if (!path.is_open) state.proxy_P = X_PN.p();  // left: the next contact begins where the device's tip comes from
+ProxyNeedleStep step_proxy_needle(ProxyNeedleState& state, InsertionPath& path, const PatientNow& now, const Pose& X_PN,
+                                  const Pose& X_PN_ahead, double dt_s) noexcept {
+  if (!path.is_open && !state.is_on_skin && !meet(state, path, now, X_PN)) return in_air(state, path, now, X_PN, dt_s);
+  if (!path.is_open) return on_skin(state, path, now, X_PN, X_PN_ahead, dt_s);
+  const ProxyNeedleStep step = in_body(state, path, now, X_PN_ahead, dt_s);
+  if (path.is_open) return step;
+  state.proxy_P = X_PN.p();  // left: the next contact begins where the device's tip comes from
+  state.proxy_A = now.motion.to_rest(X_PN.p());
   return step;
 }
 

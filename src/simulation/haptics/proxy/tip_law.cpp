@@ -8,9 +8,9 @@
 namespace trocar::haptics {
 namespace {
 
-/// Gradient (HU/mm in P) by central differences of `scale_mm` to each side along the axes of P.
-Vec3 gradient_at_scale(const volume::CtGrid& ct, const Vec3& p_P, double scale_mm) noexcept {
-  const Vec3 index = ct.geometry.to_index(p_P);
+/// Gradient (HU/mm) by central differences of `scale_mm` to each side along the axes of A.
+Vec3 gradient_at_scale(const volume::CtGrid& ct, const Vec3& p_A, double scale_mm) noexcept {
+  const Vec3 index = ct.geometry.to_index(p_A);
   Vec3 slope;
   for (int axis = 0; axis < 3; ++axis) {
     const Vec3 step = (ct.geometry.R_PV.row(axis).transpose() * scale_mm).cwiseQuotient(ct.geometry.spacing_mm);
@@ -27,30 +27,30 @@ std::uint8_t wall_of(const HapticScene& scene, const TissueAt& there) noexcept {
 }
 
 /// True if the outside air, with a CT's blur, affects the gradient at a point.
-bool is_under_skin(const HapticScene& scene, const Vec3& p_P) noexcept {
+bool is_under_skin(const HapticScene& scene, const Vec3& p_A) noexcept {
   constexpr double kBlur_mm = 2.0;
-  return volume::sample_linear(scene.patient->skin_distance_mm, p_P) > -(scene.transfer.gradient_scale_mm + kBlur_mm);
+  return volume::sample_linear(scene.patient->skin_distance_mm, p_A) > -(scene.transfer.gradient_scale_mm + kBlur_mm);
 }
 
 /// True if the labels decide on the border at a point: it belongs to a walled structure, which has its own threshold,
 /// or to a labelled tissue that is cut and has no surface to pierce (a ligament).
-bool is_border_of_label(const HapticScene& scene, const Vec3& p_P, const Vec3& normal_P) noexcept {
+bool is_border_of_label(const HapticScene& scene, const Vec3& p_A, const Vec3& normal_A) noexcept {
   const double reach_mm = 2.0 * scene.transfer.gradient_scale_mm;
-  const TissueAt denser = tissue_at(scene, p_P + reach_mm * normal_P);
-  if (wall_of(scene, denser) != wall_of(scene, tissue_at(scene, p_P - reach_mm * normal_P))) return true;
+  const TissueAt denser = tissue_at(scene, p_A + reach_mm * normal_A);
+  if (wall_of(scene, denser) != wall_of(scene, tissue_at(scene, p_A - reach_mm * normal_A))) return true;
   const TissueLaw& law = scene.tissues[denser.tissue];
   return denser.label != 0 && denser.tissue != scene.skin && law.layer == kNoLayer && law.cutting_n > 0.0;
 }
 
 }  // namespace
 
-TipLaw tip_law_at(const HapticScene& scene, const Vec3& p_P, const TissueAt& here) noexcept {
+TipLaw tip_law_at(const HapticScene& scene, const Vec3& p_A, const TissueAt& here) noexcept {
   TipLaw tip;
   if (here.tissue == 0) {
     tip.law = {};
     return tip;
   }
-  tip.law = scene.transfer.at(volume::sample_linear(scene.patient->ct, p_P));
+  tip.law = scene.transfer.at(volume::sample_linear(scene.patient->ct, p_A));
   const double labelled_n = scene.tissues[here.tissue].cutting_n;
   if (here.tissue == scene.skin || wall_of(scene, here) != kNoLayer)
     tip.law.resistance_n = labelled_n;
@@ -59,20 +59,27 @@ TipLaw tip_law_at(const HapticScene& scene, const Vec3& p_P, const TissueAt& her
   if (here.tissue == scene.skin) return tip;  // its border is the body's surface
 
   const anatomy::HuTransfer& transfer = scene.transfer;
-  const Vec3 gradient = gradient_at_scale(scene.patient->ct, p_P, transfer.gradient_scale_mm);
+  const Vec3 gradient = gradient_at_scale(scene.patient->ct, p_A, transfer.gradient_scale_mm);
   const double strength = gradient.norm();
   if (!(strength > transfer.gradient_none_hu_per_mm)) return tip;
-  const Vec3 normal_P = gradient / strength;
-  if (is_under_skin(scene, p_P) || is_border_of_label(scene, p_P, normal_P)) return tip;
+  const Vec3 normal_A = gradient / strength;
+  if (is_under_skin(scene, p_A) || is_border_of_label(scene, p_A, normal_A)) return tip;
   const double t = std::min(1.0, (strength - transfer.gradient_none_hu_per_mm) /
                                      (transfer.gradient_full_hu_per_mm - transfer.gradient_none_hu_per_mm));
-  tip.normal_P = normal_P;
+  tip.normal = normal_A;
   tip.border = t * t * (3.0 - 2.0 * t);
   return tip;
 }
 
-double threshold_along_n(const TipLaw& tip, const Vec3& u_P) noexcept {
-  const double along = tip.normal_P.dot(u_P);
+TipLaw tip_law_now(const PatientNow& now, const Vec3& p_A, const TissueAt& here) noexcept {
+  TipLaw tip = tip_law_at(now.scene, p_A, here);
+  if (!now.motion.is_rest() && tip.border > 0.0)
+    tip.normal = now.motion.gradient_to_now(p_A, tip.normal).stableNormalized();
+  return tip;
+}
+
+double threshold_along_n(const TipLaw& tip, const Vec3& u) noexcept {
+  const double along = tip.normal.dot(u);
   const double across = std::sqrt(std::max(0.0, 1.0 - along * along));
   const double border_n = tip.law.normal_n * std::max(0.0, along) + tip.law.tangential_n * across;
   return tip.border * border_n + (1.0 - tip.border) * tip.law.resistance_n;

@@ -11,7 +11,7 @@ namespace {
 
 haptics::TipLaw border_law(double normal_n, double tangential_n) {
   haptics::TipLaw tip;
-  tip.normal_P = Vec3::UnitZ();
+  tip.normal = Vec3::UnitZ();
   tip.border = 1.0;
   tip.law.normal_n = normal_n;
   tip.law.tangential_n = tangential_n;
@@ -28,10 +28,10 @@ Vec3 beyond(const Vec3& v, double threshold) {
 /// Equations (3) to (5) of paper B in space: the part of a force that the tissue does not bear. The library uses only
 /// what they bear along the needle's path, threshold_along_n.
 Vec3 residual_force(const Vec3& f, const haptics::TipLaw& tip) {
-  const double f_normal = f.dot(tip.normal_P);
+  const double f_normal = f.dot(tip.normal);
   const double normal = f_normal > 0.0 ? std::max(0.0, f_normal - tip.border * tip.law.normal_n) : f_normal;  // (3)
-  const Vec3 tangential = beyond(f - f_normal * tip.normal_P, tip.border * tip.law.tangential_n);             // (4)
-  return beyond(normal * tip.normal_P + tangential, (1.0 - tip.border) * tip.law.resistance_n);               // (5)
+  const Vec3 tangential = beyond(f - f_normal * tip.normal, tip.border * tip.law.tangential_n);               // (4)
+  return beyond(normal * tip.normal + tangential, (1.0 - tip.border) * tip.law.resistance_n);                 // (5)
 }
 
 TEST(NeedleBalance, DryFrictionHoldsTheNeedle) {

@@ -1,0 +1,354 @@
+// Forces in a patient that moves: physics does not depend on who moves, and a channel goes with its tissue.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "core/testing/allocation_guard.h"
+#include "haptics/contact/test/flat_skin.h"
+#include "haptics/test/layered_patient.h"
+
+namespace trocar::testing {
+namespace {
+
+using haptics::ForceModel;
+using motion::MotionMode;
+using motion::MotionParts;
+using motion::MotionState;
+
+constexpr double kUnit_mm = 80.0;  ///< Displacement of a driver of 1.
+constexpr double kDt_s = 0.001;
+
+std::shared_ptr<const motion::MotionModel> made(MotionParts parts) {
+  auto model = motion::MotionModel::make(std::move(parts), "test");
+  TROCAR_CHECK(model.has_value());
+  return *model;
+}
+
+/// The whole patient along x, y and z.
+std::shared_ptr<const motion::MotionModel> whole_body() {
+  MotionParts parts;
+  parts.drivers = {"x", "y", "z"};
+  parts.regions = {{"body", {}}};
+  for (int axis = 0; axis < 3; ++axis) {
+    MotionMode mode;
+    mode.driver = axis;
+    mode.displacement_mm = kUnit_mm * Vec3::Unit(axis);
+    parts.modes.push_back(mode);
+  }
+  return made(std::move(parts));
+}
+
+/// Everything deeper than 20 mm slides along x below a wall at rest.
+std::shared_ptr<const motion::MotionModel> sliding_inside() {
+  MotionParts parts;
+  parts.drivers = {"inside"};
+  parts.regions = {{"wall", {{Vec3::UnitZ(), 20.0}}}, {"inside", {}}};
+  MotionMode mode;
+  mode.region = 1;
+  mode.displacement_mm = kUnit_mm * Vec3::UnitX();
+  parts.modes = {mode};
+  return made(std::move(parts));
+}
+
+/// The body compressed or stretched in depth, and its deep tissue moved along x: linear from the skin on.
+std::shared_ptr<const motion::MotionModel> stretched(const Vec3& displacement_mm) {
+  MotionParts parts;
+  parts.drivers = {"stretch"};
+  parts.regions = {{"body", {}}};
+  MotionMode mode;
+  mode.profile = motion::Profile::kRamp;
+  mode.displacement_mm = displacement_mm;
+  mode.extent_mm = 100.0;
+  parts.modes = {mode};
+  return made(std::move(parts));
+}
+
+/// Ticks of a tool in a patient whose motion is a function of time.
+class MovingLab {
+ public:
+  using Motion = std::function<MotionState(double time_s)>;
+
+  MovingLab(std::shared_ptr<const haptics::HapticScene> scene, std::shared_ptr<const motion::MotionModel> model,
+            Motion motion)
+      : scene_(std::move(scene)), model_(std::move(model)), motion_(std::move(motion)) {}
+
+  haptics::HapticOutput to(const Pose& X_PTool) {
+    time_s += kDt_s;
+    haptics::HapticInput input{time_s, kDt_s, telemetry::to_tool_pose(X_PTool)};
+    input.motion = now();
+    return haptics::tick(state, input, *scene_);
+  }
+  telemetry::TickSample needle_to(const Vec3& tip_P) { return to(needle_pose(tip_P, Vec3::UnitZ())).sample; }
+  motion::PatientMotion now() const {
+    return model_ == nullptr ? motion::PatientMotion() : motion::PatientMotion(model_.get(), motion_(time_s));
+  }
+  const haptics::HapticScene& scene() const { return *scene_; }
+
+  double time_s = 0.0;
+  haptics::HapticState state;
+
+ private:
+  std::shared_ptr<const haptics::HapticScene> scene_;
+  std::shared_ptr<const motion::MotionModel> model_;
+  Motion motion_;
+};
+
+MotionState held(const motion::MotionModel::Scalars& drivers) {
+  MotionState state;
+  state.drivers = drivers;
+  return state;
+}
+
+/// Constant velocity (mm/s) of the whole body.
+MotionState drifting(const Vec3& velocity_mm_per_s, double time_s) {
+  MotionState state;
+  for (std::size_t i = 0; i < 3; ++i) {
+    state.rates_per_s[i] = velocity_mm_per_s[static_cast<int>(i)] / kUnit_mm;
+    state.drivers[i] = state.rates_per_s[i] * time_s;
+  }
+  return state;
+}
+
+/// In to 45 mm, aside by 2 mm, out again: the tip against the patient's skin, one tick a step.
+std::vector<Vec3> way_in_aside_and_out() {
+  std::vector<Vec3> way;
+  for (double z = -3.0; z < 45.0; z += 0.02) way.emplace_back(0.0, 0.0, z);
+  for (double x = 0.0; x < 2.0; x += 0.01) way.emplace_back(x, 0.0, 45.0);
+  for (int i = 0; i < 200; ++i) way.emplace_back(2.0, 0.0, 45.0);
+  for (double z = 45.0; z > -3.0; z -= 0.03) way.emplace_back(2.0, 0.0, z);
+  return way;
+}
+
+class MovingPatient : public ::testing::TestWithParam<ForceModel> {
+ protected:
+  std::shared_ptr<const haptics::HapticScene> scene_ = make_scene(liver_way(), GetParam());
+};
+
+/// Held at another place, a patient feels as it does at rest. With the proxy model a change of 1e-13 mm grows to 2e-3 N
+/// at a border of the CT, also at rest, and may shift it by a tick.
+TEST_P(MovingPatient, FeelsTheSameAtAnotherPlace) {
+  const motion::MotionModel::Scalars drivers{0.4, -0.7, 0.25};
+  const Vec3 moved = kUnit_mm * Vec3(0.4, -0.7, 0.25);
+  MovingLab rest(scene_, nullptr, {}), away(scene_, whole_body(), [&](double) { return held(drivers); });
+  double worst_n = 0.0, worst_mm = 0.0;
+  int other_tissue = 0;
+  for (const Vec3& tip : way_in_aside_and_out()) {
+    const telemetry::TickSample here = rest.needle_to(tip), there = away.needle_to(tip + moved);
+    worst_n =
+        std::max({worst_n, (there.device_f_n - here.device_f_n).norm(), (there.tau_nmm - here.tau_nmm).norm() / 200.0});
+    worst_mm = std::max(worst_mm, (there.tip_mm - moved - here.tip_mm).norm());
+    other_tissue += there.tissue != here.tissue ? 1 : 0;
+  }
+  EXPECT_LT(worst_n, 0.01);
+  EXPECT_LT(worst_mm, 0.01);
+  EXPECT_LE(other_tissue, 3);
+}
+
+/// A hand that moves with the patient feels what it feels at a patient at rest.
+TEST_P(MovingPatient, FeelsTheSameToAHandThatMovesAlong) {
+  const Vec3 velocity(8.0, -5.0, 3.0);
+  MovingLab rest(scene_, nullptr, {}), moving(scene_, whole_body(), [&](double t) { return drifting(velocity, t); });
+  double worst_n = 0.0, most_n = 0.0;
+  for (const Vec3& tip : way_in_aside_and_out()) {
+    const Vec3 moved = velocity * (moving.time_s + kDt_s);
+    const telemetry::TickSample here = rest.needle_to(tip), there = moving.needle_to(tip + moved);
+    worst_n = std::max(worst_n, (there.device_f_n - here.device_f_n).norm());
+    most_n = std::max(most_n, (here.device_f_n - here.f_weight_n).norm());
+  }
+  EXPECT_GT(most_n, 2.0);
+  EXPECT_LT(worst_n, 0.02);
+}
+
+/// Tissue that comes to a needle feels like a needle that comes to the tissue: the skin rises to a tip that rests.
+TEST_P(MovingPatient, PuncturesANeedleAtRest) {
+  constexpr double kSpeed_mm_per_s = 10.0;
+  MovingLab rest(scene_, nullptr, {});
+  MovingLab rising(scene_, whole_body(), [&](double t) { return drifting({0.0, 0.0, -kSpeed_mm_per_s}, t); });
+  std::vector<telemetry::TickSample> comes, waits;
+  for (int tick = 1; tick <= 2500; ++tick) {
+    const double z = -2.0 + kSpeed_mm_per_s * kDt_s * tick;
+    comes.push_back(rest.needle_to({0.0, 0.0, z}));
+    waits.push_back(rising.needle_to({0.0, 0.0, -2.0}));
+  }
+  EXPECT_EQ(punctures(waits), punctures(comes));
+  EXPECT_FALSE(punctures(waits).empty());
+  double worst_n = 0.0;
+  for (std::size_t i = 0; i < waits.size(); ++i)
+    worst_n = std::max(worst_n, (waits[i].device_f_n - comes[i].device_f_n).norm());
+  EXPECT_LT(worst_n, 0.02);
+  EXPECT_NEAR(waits.back().depth_mm, comes.back().depth_mm, 1e-3);
+}
+
+/// The hand feels the same coupling in compressed tissue: the map stiffens nothing.
+TEST_P(MovingPatient, IsCoupledInTheRoom) {
+  const auto bony = make_scene({{0, kFat}, {12, kMuscle}, {30, kBone}}, GetParam());
+  const auto stiffness_n_per_mm = [&](const std::shared_ptr<const motion::MotionModel>& model) {
+    MovingLab lab(bony, model, [](double) { return held({1.0}); });
+    double before_n = 0.0;
+    for (double z = -2.0; z < 60.0; z += 0.01) {
+      const telemetry::TickSample sample = lab.needle_to({0.0, 0.0, z});
+      const double n = resistance_n(sample);
+      if (n > 20.0) return (n - before_n) / 0.01;
+      before_n = n;
+    }
+    return 0.0;
+  };
+  const double at_rest = stiffness_n_per_mm(nullptr);
+  EXPECT_GT(at_rest, 0.5);
+  EXPECT_NEAR(stiffness_n_per_mm(stretched({0.0, 0.0, -40.0})), at_rest, 0.02 * at_rest);
+}
+
+/// Liver that slides below the wall takes the tip along; the wall holds the shaft: the needle bends, in the way that
+/// the liver went, and the hand is pulled that way.
+TEST_P(MovingPatient, BendsANeedleInSlidingTissue) {
+  const auto model = sliding_inside();
+  constexpr double kSlide_mm = 6.0;
+  double share = 0.0;
+  MovingLab lab(scene_, model, [&](double) { return held({share * kSlide_mm / kUnit_mm}); });
+  for (double z = -3.0; z < 60.0; z += 0.02) lab.needle_to({0.0, 0.0, z});
+  telemetry::TickSample sample;
+  for (int tick = 1; tick <= 1000; ++tick) {
+    share = tick / 1000.0;
+    sample = lab.needle_to({0.0, 0.0, 60.0});
+  }
+  EXPECT_GT((sample.device_f_n - sample.f_weight_n).x(), 0.05) << "the hand is pulled along";
+  EXPECT_NEAR(sample.tip_mm.x(), kSlide_mm, 0.5) << "the tip stays in its tissue";
+  const telemetry::NeedleShape shape = haptics::needle_shape(lab.state.needle, {*scene_, lab.now()}, true);
+  ASSERT_GT(shape.spans, 4);
+  const auto beside_x_mm = [&](int node) {
+    const auto& beside = shape.beside_mm[static_cast<std::size_t>(node)];
+    const Mat3& R_PN = lab.state.needle.X_PN.R();
+    return R_PN(0, 0) * static_cast<double>(beside[0]) + R_PN(0, 1) * static_cast<double>(beside[1]);
+  };
+  EXPECT_GT(beside_x_mm(shape.spans - 1), 0.4 * kSlide_mm) << "the tip";
+  EXPECT_LT(beside_x_mm(0), 0.1 * kSlide_mm) << "the grip";
+  // The channel is a line of tissue: back at rest it is where it was cut.
+  for (int tick = 1; tick <= 1000; ++tick) {
+    share = 1.0 - tick / 1000.0;
+    sample = lab.needle_to({0.0, 0.0, 60.0});
+  }
+  EXPECT_NEAR(sample.tip_mm.x(), 0.0, 1e-3);
+}
+
+/// A needle that is pushed on through sheared tissue runs straight in the room, and is curved in the tissue at rest.
+TEST_P(MovingPatient, CutsStraightInTheRoom) {
+  MotionParts parts;
+  parts.drivers = {"bump"};
+  parts.regions = {{"body", {}}};
+  MotionMode bump;
+  bump.profile = motion::Profile::kBump;
+  bump.displacement_mm = {8.0, 0.0, 0.0};
+  bump.centre_A = {0.0, 0.0, 40.0};
+  bump.extent_mm = 20.0;
+  parts.modes = {bump};
+  MovingLab lab(scene_, made(parts), [](double) { return held({1.0}); });
+  for (double z = -3.0; z < 65.0; z += 0.02) lab.needle_to({0.0, 0.0, z});
+  const haptics::Channel& channel = lab.state.needle.path.channel;
+  ASSERT_GT(channel.nodes.count, 25);
+  const motion::PatientMotion now = lab.now();
+  double bent_mm = 0.0;
+  for (int node = 0; node < channel.nodes.count; ++node) {
+    const Vec3& p_A = channel.nodes.p_A[static_cast<std::size_t>(node)];
+    const Vec3 p_P = now.to_now(p_A);
+    EXPECT_LT(std::hypot(p_P.x(), p_P.y()), 1e-3) << node;
+    bent_mm = std::max(bent_mm, -p_A.x());
+  }
+  EXPECT_GT(bent_mm, 5.0);
+}
+
+TEST_P(MovingPatient, NeverAllocates) {
+  const auto model = whole_body();
+  MovingLab lab(scene_, model, [](double t) { return drifting({3.0, 0.0, 1.0}, t); });
+  std::size_t events = 0;
+  for (double z = -3.0; z < 50.0; z += 0.05) {
+    const AllocationGuard guard;
+    lab.needle_to({0.0, 0.0, z});
+    events += guard.count();
+  }
+  EXPECT_EQ(events, 0U);
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryModel, MovingPatient,
+                         ::testing::Values(ForceModel::kInsertion, ForceModel::kProxy, ForceModel::kCombined),
+                         [](const auto& model) { return std::string(to_string(model.param)); });
+
+/// Paper A's path constraint, which knows no bending: its line goes from the skin to the tip.
+TEST(MovingPatientConstraint, HoldsTheNeedleToTheLineFromSkinToTip) {
+  const auto scene = make_scene(liver_way(), ForceModel::kInsertion, constrained_tissues());
+  const auto model = stretched({20.0, 0.0, 0.0});
+  double share = 0.0;
+  MovingLab lab(scene, model, [&](double) { return held({share}); });
+  for (double z = -3.0; z < 60.0; z += 0.02) lab.needle_to({0.0, 0.0, z});
+  telemetry::TickSample sample;
+  for (int tick = 1; tick <= 1000; ++tick) {
+    share = tick / 1000.0;
+    sample = lab.needle_to({0.0, 0.0, 60.0});
+  }
+  // The channel leans by 0.2: a torque about +y turns the needle along it.
+  EXPECT_GT(sample.tau_nmm.y(), 20.0);
+}
+
+/// A transducer on skin that rises under it presses like one that is pushed onto skin at rest.
+TEST(MovingPatientContact, PressesAsIfTheToolHadMoved) {
+  const auto scene = make_face_scene(haptics::Tool::kTransducer, all_fat);
+  constexpr double kSpeed_mm_per_s = 10.0;
+  MovingLab rest(scene, nullptr, {});
+  MovingLab rising(scene, whole_body(), [&](double t) { return drifting({0.0, 0.0, -kSpeed_mm_per_s}, t); });
+  double worst_n = 0.0, most_n = 0.0;
+  for (int tick = 1; tick <= 1200; ++tick) {
+    const double z = -4.0 + kSpeed_mm_per_s * kDt_s * tick;
+    const telemetry::TickSample comes = rest.to(face_down({0.0, 0.0, z})).sample;
+    const telemetry::TickSample waits = rising.to(face_down({0.0, 0.0, -4.0})).sample;
+    worst_n = std::max(worst_n, (waits.device_f_n - comes.device_f_n).norm());
+    most_n = std::max(most_n, (comes.device_f_n - comes.f_weight_n).norm());
+  }
+  EXPECT_GT(most_n, 1.0);
+  EXPECT_LT(worst_n, 0.02 * most_n);
+}
+
+/// Skin that slides under a transducer drags it, up to its friction; a transducer that goes along is not dragged.
+TEST(MovingPatientContact, DragsATransducerAtRest) {
+  const auto scene = make_face_scene(haptics::Tool::kTransducer, all_fat);
+  const auto drag_n = [&](bool goes_along) {
+    const Vec3 velocity(10.0, 0.0, 0.0);
+    MovingLab lab(scene, whole_body(), [&](double t) { return t < 0.5 ? held({}) : drifting(velocity, t - 0.5); });
+    telemetry::TickSample sample;
+    for (int tick = 1; tick <= 1000; ++tick) {
+      const double z = std::min(6.0, -2.0 + 0.02 * tick);
+      const double x = goes_along && tick > 500 ? velocity.x() * kDt_s * (tick - 500) : 0.0;
+      sample = lab.to(face_down({x, 0.0, z})).sample;
+    }
+    EXPECT_LT((sample.device_f_n - sample.f_weight_n).z(), -0.5) << "it is pressed on";
+    return (sample.device_f_n - sample.f_weight_n).x();
+  };
+  EXPECT_GT(drag_n(false), 0.03) << "friction of gel, 0.05";
+  EXPECT_LT(std::abs(drag_n(true)), 0.2 * drag_n(false));
+}
+
+/// What lies below the skin is found where it is now: a rib that slid away from under the tool is not felt.
+TEST(MovingPatientContact, FeelsTheBoneWhereItIsNow) {
+  const auto rib = [](const Vec3& p) { return std::abs(p.x()) < 8.0 && p.z() > 6.0 ? kBone : kFat; };
+  const auto scene = make_face_scene(haptics::Tool::kFinger, rib);
+  MotionParts parts;
+  parts.drivers = {"inside"};
+  parts.regions = {{"wall", {{Vec3::UnitZ(), 4.0}}}, {"inside", {}}};
+  MotionMode mode;
+  mode.region = 1;
+  mode.displacement_mm = 30.0 * Vec3::UnitX();
+  parts.modes = {mode};
+  const auto pressed_n = [&](double share, double x_mm) {
+    MovingLab lab(scene, made(parts), [&](double) { return held({share}); });
+    telemetry::TickSample sample;
+    for (double z = -1.0; z < 4.0; z += 0.01) sample = lab.to(face_down({x_mm, 0.0, z})).sample;
+    return -(sample.device_f_n - sample.f_weight_n).z();
+  };
+  const double on_rib_n = pressed_n(0.0, 0.0), beside_n = pressed_n(0.0, 30.0);
+  EXPECT_GT(on_rib_n, 1.3 * beside_n);
+  EXPECT_NEAR(pressed_n(1.0, 0.0), beside_n, 0.05 * beside_n);
+  EXPECT_NEAR(pressed_n(1.0, 30.0), on_rib_n, 0.05 * on_rib_n);
+}
+
+}  // namespace
+}  // namespace trocar::testing
