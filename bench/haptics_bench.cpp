@@ -41,7 +41,7 @@ TickRound measure_round(const haptics::HapticScene& scene, const Segment& path_P
     const Vec3 axis = (path_P.direction() + 0.03 * sway * across).normalized();
     const Pose X_PN = needle_pose(path_P.a + depth * path_P.direction() + 1.5 * sway * across, axis);
     const haptics::HapticInput input{i * kDt_s, kDt_s, telemetry::to_tool_pose(X_PN)};
-    round.tick_us.push_back(time_us([&] { sink = sink + tick(*state, input, scene).f_D.x(); }));
+    round.tick_us.push_back(time_us([&] { sink = sink + tick(*state, input, scene).total_W.force_n.x(); }));
     round.calibration_us.push_back(time_us([&] { sink = calibration_arithmetic(sink); }));
   }
   return round;

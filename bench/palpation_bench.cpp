@@ -211,7 +211,7 @@ void add_time(std::vector<CaseResult>& results, const haptics::HapticScene& scen
       const Place place = on_skin(*scene.patient, from_P + way * (to_P - from_P));
       const haptics::HapticInput input{
           i * kDt_s, kDt_s, telemetry::to_tool_pose(pose_on(place, -depth_mm, 0.0)), true, {}};
-      ticks.push_back(time_us([&] { sink = sink + haptics::tick(*state, input, scene).f_D.x(); }));
+      ticks.push_back(time_us([&] { sink = sink + haptics::tick(*state, input, scene).total_W.force_n.x(); }));
       calibrations.push_back(time_us([&] { sink = calibration_arithmetic(sink); }));
       if (i == 0)
         points = static_cast<int>(std::ranges::count_if(state->contact.depth_mm, [](double d) { return d > 0.0; }));

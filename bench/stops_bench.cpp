@@ -48,7 +48,7 @@ class WeightDevice final : public devices::HapticDevice {
     reading.X_DS = Pose(rotation_between(Vec3::UnitZ(), -Vec3::UnitZ()), {0.0, 0.0, kAbove_mm});
     return reading;
   }
-  bool write(const haptics::Wrench& wrench_D) noexcept override {
+  bool write(const Wrench& wrench_D) noexcept override {
     const double force_n = wrench_D.force_n.norm();
     if (force_n > 0.0 && force_n >= last_n_) highest_s_ = now_s_;
     if (force_n == 0.0 && last_n_ > 0.0) log_.fall_s = now_s_ - highest_s_;

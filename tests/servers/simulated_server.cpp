@@ -44,7 +44,7 @@ class SimulatedServer::Device final : public devices::HapticDevice {
     if (!is_open_) reading.status = devices::DeviceStatus::kDisconnected;
     return reading;
   }
-  bool write(const haptics::Wrench& wrench_D) noexcept override { return is_open_ && device_->write(wrench_D); }
+  bool write(const Wrench& wrench_D) noexcept override { return is_open_ && device_->write(wrench_D); }
   void hold(const devices::DeviceHand& hand) noexcept override { device_->hold(hand); }
   bool is_in_real_hand() const noexcept override { return device_->is_in_real_hand(); }
   Status reconnect() override {
@@ -309,8 +309,8 @@ link::ServerStatus SimulatedServer::status(double now_s) const {
   const Process& process = *process_;
   link::ServerStatus status;
   status.server_time_s = now_s;
-  status.gate_mode = process.newest.mode;
-  status.fault = process.newest.fault;
+  status.gate_mode = process.newest.sample.gate_mode;
+  status.fault = process.newest.sample.gate_fault;
   status.grant = "simulated";
   const bool is_loading = !process.jobs.empty() && std::holds_alternative<link::LoadScene>(process.jobs.front().what);
   status.loading = is_loading ? 0.5 : 0.0;

@@ -5,9 +5,8 @@
 
 namespace trocar::devices {
 
-haptics::Wrench without_torque(const haptics::Wrench& wrench, const Vec3& axis,
-                               const std::optional<Vec3>& p_SE) noexcept {
-  haptics::Wrench turned{wrench.force_n, Vec3::Zero()};
+Wrench without_torque(const Wrench& wrench, const Vec3& axis, const std::optional<Vec3>& p_SE) noexcept {
+  Wrench turned{wrench.force_n, Vec3::Zero()};
   if (!p_SE) return turned;
   // A lateral force g at S has the moment -lever axis x g about the entry point: g = axis x torque / lever replaces the
   // torque, except its component along the axis, which cannot be replaced.

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "haptics/insertion/path_constraint.h"  // Wrench
+#include "geometry/wrench.h"
 
 namespace trocar::devices {
 
@@ -11,8 +11,7 @@ namespace trocar::devices {
 /// entry point; empty outside the body, and then the force is unchanged. If the lever is shorter than kLeastLever_mm,
 /// the share of the torque decreases to zero with the lever. `axis`: unit vector of the needle. All arguments are in
 /// one frame. Do not use it for the weight compensation of the stylus. Real-time safe.
-haptics::Wrench without_torque(const haptics::Wrench& wrench, const Vec3& axis,
-                               const std::optional<Vec3>& p_SE) noexcept;
+Wrench without_torque(const Wrench& wrench, const Vec3& axis, const std::optional<Vec3>& p_SE) noexcept;
 inline constexpr double kLeastLever_mm = 20.0;
 
 }  // namespace trocar::devices

@@ -5,8 +5,8 @@
 
 #include "core/result.h"
 #include "geometry/pose.h"
+#include "geometry/wrench.h"
 #include "haptics/coupling/device_preset.h"
-#include "haptics/insertion/path_constraint.h"  // Wrench
 
 namespace trocar::devices {
 
@@ -63,7 +63,7 @@ class HapticDevice {
   /// Reads the present pose. `now_s`: time of the steady clock (s). Real-time safe.
   virtual DeviceReading read(double now_s) noexcept = 0;
   /// Wrench for the motors, in D about S. Returns false if it was not accepted. Real-time safe.
-  virtual bool write(const haptics::Wrench& wrench_D) noexcept = 0;
+  virtual bool write(const Wrench& wrench_D) noexcept = 0;
   /// Sets the hand target of devices that no person holds; all other devices ignore it. Real-time safe.
   virtual void hold(const DeviceHand&) noexcept {}
   /// True if a person's hand holds the device (never completely at rest); false: simulated or recorded hand.

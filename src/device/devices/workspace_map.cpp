@@ -50,8 +50,7 @@ Pose map_from_room(const WorkspaceState& state, const WorkspaceParams& params, c
           X_WD.inverse() * X_WS.p() / params.motion_scale};
 }
 
-haptics::Wrench map_to_device(const WorkspaceState& state, const WorkspaceParams& params,
-                              const haptics::Wrench& wrench_W) noexcept {
+Wrench map_to_device(const WorkspaceState& state, const WorkspaceParams& params, const Wrench& wrench_W) noexcept {
   if (state.is_clutched) return {};
   const Mat3 R_DW = (state.is_started ? state.X_WD_now : params.X_WD).R().transpose();
   return {R_DW * wrench_W.force_n * params.force_scale, R_DW * wrench_W.torque_nmm * params.force_scale};

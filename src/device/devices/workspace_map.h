@@ -3,8 +3,8 @@
 #include <cstdint>
 
 #include "geometry/pose.h"
+#include "geometry/wrench.h"
 #include "haptics/coupling/device_preset.h"
-#include "haptics/insertion/path_constraint.h"  // Wrench
 
 namespace trocar::devices {
 
@@ -39,7 +39,6 @@ Pose map_from_room(const WorkspaceState& state, const WorkspaceParams& params, c
 
 /// Rotates and scales a wrench in W about S into D; zero while the clutch is pressed. Do not use it for the
 /// compensation of the device's own weight. Real-time safe.
-haptics::Wrench map_to_device(const WorkspaceState& state, const WorkspaceParams& params,
-                              const haptics::Wrench& wrench_W) noexcept;
+Wrench map_to_device(const WorkspaceState& state, const WorkspaceParams& params, const Wrench& wrench_W) noexcept;
 
 }  // namespace trocar::devices

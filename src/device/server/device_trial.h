@@ -12,7 +12,7 @@ namespace trocar::server {
 /// Result of one period of a trial.
 struct DeviceTrialRecord {
   devices::DeviceReading reading;
-  haptics::Wrench written_D;
+  Wrench written_D;
   telemetry::GateFault fault = telemetry::GateFault::kNone;
   bool is_pushing = false;
   bool is_weighing = false;

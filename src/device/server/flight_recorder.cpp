@@ -139,8 +139,9 @@ FlightRecorder::FlightRecorder(double rate_hz)
 std::optional<std::vector<ServoRecord>> FlightRecorder::add(const ServoRecord& record) {
   records_.push_back(record);
   if (records_.size() > before_ + after_) records_.pop_front();
-  const bool is_new_fault = record.fault != telemetry::GateFault::kNone && fault_ == telemetry::GateFault::kNone;
-  fault_ = record.fault;
+  const bool is_new_fault =
+      record.sample.gate_fault != telemetry::GateFault::kNone && fault_ == telemetry::GateFault::kNone;
+  fault_ = record.sample.gate_fault;
   if (is_new_fault && wanted_ == 0) {
     wanted_ = after_;
     return std::nullopt;
@@ -181,7 +182,7 @@ Result<std::filesystem::path> write_flight(const std::filesystem::path& folder, 
   telemetry::GateFault fault = telemetry::GateFault::kNone;
   for (const ServoRecord& record : flight) {
     append_row(text, record);
-    if (fault == telemetry::GateFault::kNone) fault = record.fault;
+    if (fault == telemetry::GateFault::kNone) fault = record.sample.gate_fault;
   }
   TROCAR_TRY(const fs::path path, reserve_name(folder, fmt::format("flight-{}-{}", utc, to_string(fault))));
   if (Status written = write_file_atomically(path, text); !written) {

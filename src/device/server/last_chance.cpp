@@ -83,7 +83,7 @@ void LastChance::adopt_thread() noexcept {
 bool LastChance::takes_over(bool is_lent) noexcept {
   if (!is_wanted_.load(std::memory_order_acquire)) return false;
   if (!is_done_.load(std::memory_order_acquire)) {
-    if (!is_lent) device_.write(haptics::Wrench{});
+    if (!is_lent) device_.write(Wrench{});
     is_done_.store(true, std::memory_order_release);
   }
   return true;
@@ -93,7 +93,7 @@ void LastChance::let_go() noexcept {
   is_wanted_.store(true, std::memory_order_release);
   const bool is_writer = thread_.load(std::memory_order_acquire) == ::gettid();
   for (int i = 0; i < kPatience_ms && !is_writer && !is_done_.load(std::memory_order_acquire); ++i) sleep_ms(1);
-  if (!is_done_.load(std::memory_order_acquire)) device_.write(haptics::Wrench{});
+  if (!is_done_.load(std::memory_order_acquire)) device_.write(Wrench{});
   sleep_ms(kSent_ms);
 }
 

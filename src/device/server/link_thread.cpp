@@ -164,8 +164,8 @@ link::ServerStatus LinkThread::make_status(double now_s) {
   const ControlStatus control = shared_.door.status();
   link::ServerStatus status;
   status.server_time_s = now_s;
-  status.gate_mode = newest_.mode;
-  status.fault = newest_.fault;
+  status.gate_mode = newest_.sample.gate_mode;
+  status.fault = newest_.sample.gate_fault;
   status.warning = warning();
   if (shared_.has_grant.load(std::memory_order_acquire)) status.grant = shared_.grant.text();
   status.patient = control.patient;
@@ -185,11 +185,11 @@ link::ServerStatus LinkThread::make_status(double now_s) {
   status.has_controller = in_control_ != 0;
   const bool is_running =
       shared_.commands.have_stops_taken_effect() && shared_.is_wanted.load(std::memory_order_relaxed);
-  status.state = newest_.fault != telemetry::GateFault::kNone ? link::ServerState::kFault
-                 : control.loading > 0.0                      ? link::ServerState::kLoading
-                 : !control.has_scene                         ? link::ServerState::kNoScene
-                 : is_running                                 ? link::ServerState::kRunning
-                                                              : link::ServerState::kReady;
+  status.state = newest_.sample.gate_fault != telemetry::GateFault::kNone ? link::ServerState::kFault
+                 : control.loading > 0.0                                  ? link::ServerState::kLoading
+                 : !control.has_scene                                     ? link::ServerState::kNoScene
+                 : is_running                                             ? link::ServerState::kRunning
+                                                                          : link::ServerState::kReady;
   return status;
 }
 

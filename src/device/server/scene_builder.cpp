@@ -102,7 +102,7 @@ Result<ServoScene> SceneBuilder::build(const link::LoadScene& request,
   options.constraint.force_n = std::min(options.constraint.force_n, stiffest * options.constraint.linear_mm);
   TROCAR_TRY(auto built, haptics::make_haptic_scene(patient, parts.tissues, needle_of(request), capability, options));
   auto scene = std::make_shared<haptics::HapticScene>(*built);
-  scene->X_PD = request.X_PW;
+  scene->X_PW = request.X_PW;
   scene->gravity_P = -request.X_PW.R().col(2);  // down in the room
 
   request_ = request;

@@ -29,7 +29,7 @@ constexpr std::array kGateEvents{
 std::optional<Vec3> to_entry_W(const haptics::HapticState& state, const haptics::HapticScene& scene,
                                const Pose& X_WS) noexcept {
   if (scene.options.tool != haptics::Tool::kNeedle || !state.needle.path.is_open) return std::nullopt;
-  return scene.X_PD.inverse() * state.needle.path.channel.origin_P - X_WS.p();
+  return scene.X_PW.inverse() * state.needle.path.channel.origin_P - X_WS.p();
 }
 
 }  // namespace
@@ -59,7 +59,8 @@ Servo::Servo(devices::HapticDevice& device, const ServoParams& params) noexcept
       senses_rotation_(device.preset().sensed_dof == 6),
       is_watched_(device.preset().has_force() && device.is_in_real_hand()) {
   workspace_.X_WD_now = params.workspace.X_WD;
-  R_WS_told_ = rotation_between(Vec3::UnitZ(), -Vec3::UnitZ());  // the tool points down until an orientation is set
+  commanded_R_WS_ =
+      rotation_between(Vec3::UnitZ(), -Vec3::UnitZ());  // the tool points down until an orientation is set
 }
 
 telemetry::GateFault Servo::watch_encoder(const devices::DeviceReading& reading, double dt_s) noexcept {
@@ -98,8 +99,8 @@ Servo::Sensed Servo::sense(const ServoInput& input) noexcept {
 
 devices::DeviceHand Servo::hand_in_device(const link::HandTarget& target,
                                           const haptics::HapticScene& scene) const noexcept {
-  const Pose X_WS = scene.X_PD.inverse() * target.X_PN * scene.X_SN.inverse();
-  const Mat3 R_DP = (scene.X_PD.R() * workspace_.X_WD_now.R()).transpose();
+  const Pose X_WS = scene.X_PW.inverse() * target.X_PN * scene.X_SN.inverse();
+  const Mat3 R_DP = (scene.X_PW.R() * workspace_.X_WD_now.R()).transpose();
   const double scale = params_.workspace.motion_scale;
   devices::DeviceHand hand;
   hand.X_DS = devices::map_from_room(workspace_, params_.workspace, X_WS);
@@ -123,7 +124,7 @@ devices::DeviceHand Servo::hand_in_device(const link::HandTarget& target,
 Servo::Wanted Servo::feel(const Sensed& sensed, const ServoInput& input, telemetry::TickSample& sample) noexcept {
   Wanted wanted;
   Pose X_WS = devices::map_to_room(workspace_, params_.workspace, sensed.reading.X_DS, sensed.reading.buttons);
-  if (!senses_rotation_) X_WS = Pose(R_WS_told_, X_WS.p());
+  if (!senses_rotation_) X_WS = Pose(commanded_R_WS_, X_WS.p());
   if (input.scene == nullptr) {
     sample = {};
     sample.time_s = input.now_s;
@@ -137,16 +138,12 @@ Servo::Wanted Servo::feel(const Sensed& sensed, const ServoInput& input, telemet
   sample = output.sample;
 
   const Vec3 axis_W = X_WS.R() * scene.X_SN.R().col(scene.options.tool == haptics::Tool::kNeedle ? 2 : 1);
-  haptics::Wrench tissue_W{output.f_D - output.weight_D.force_n, output.tau_D - output.weight_D.torque_nmm};
-  if (!has_torque_) {
-    const Mat3 R_WP = scene.X_PD.R().transpose();
-    tissue_W.torque_nmm = R_WP * output.sample.tau_nmm;
-    tissue_W = devices::without_torque(tissue_W, axis_W, to_entry_W(tick_, scene, X_WS));
-  }
+  Wrench tissue_W = output.tissue_W;
+  if (!has_torque_) tissue_W = devices::without_torque(tissue_W, axis_W, to_entry_W(tick_, scene, X_WS));
   wanted.wrench_D = devices::map_to_device(workspace_, params_.workspace, tissue_W);
   // The weight is also compensated while the clutch is pressed.
   const Mat3 R_DW = params_.workspace.force_scale * workspace_.X_WD_now.R().transpose();
-  wanted.weight_D = {R_DW * output.weight_D.force_n, R_DW * output.weight_D.torque_nmm};
+  wanted.weight_D = R_DW * output.weight_W;
   wanted.axis_D = workspace_.X_WD_now.R().transpose() * axis_W;
   return wanted;
 }
@@ -164,7 +161,7 @@ void Servo::note_gate(const haptics::GateOutput& output, const ServoInput& input
   sample.gate_scale = gate_.scale;
   sample.coupling_share = gate_.coupling_share;
   if (input.scene == nullptr) return;
-  const Mat3 R_PD = input.scene->scene->X_PD.R() * workspace_.X_WD_now.R();
+  const Mat3 R_PD = input.scene->scene->X_PW.R() * workspace_.X_WD_now.R();  // X_PW * X_WD
   sample.device_f_n = R_PD * output.wrench.force_n;
   sample.device_tau_nmm = R_PD * output.wrench.torque_nmm;
 }
@@ -178,7 +175,7 @@ void Servo::note_shape(const ServoInput& input, ServoRecord& record) noexcept {
   record.shape->time_s = record.sample.time_s;
 }
 
-void Servo::begin_anew(double pressed_mm) noexcept {
+void Servo::reset(double pressed_mm) noexcept {
   tick_ = {};
   tick_.needle.pressed_mm = pressed_mm;
   if (gate_.fault == telemetry::GateFault::kNone) gate_.mode = telemetry::GateMode::kOff;  // through the safe start
@@ -189,7 +186,7 @@ bool Servo::gives_force() const noexcept {
 }
 
 void Servo::resume() noexcept {
-  begin_anew();
+  reset();
   haptics::restart_gate(gate_);
   has_read_ = was_placed_ = has_refused_ = false;
   age_ = {};
@@ -202,17 +199,17 @@ ServoRecord Servo::step(const ServoInput& input) noexcept {
   record.scene = input.scene == nullptr ? 0 : input.scene->number;
   record.silence_s = input.silence_s;
   if (input.scene != nullptr && input.scene->number != scene_number_) {
-    if (!input.scene->continues) begin_anew();
+    if (!input.scene->continues) reset();
     scene_number_ = input.scene->number;
   }
 
   const Sensed sensed = sense(input);
-  if (was_placed_) begin_anew(pressed_mm_);  // a placed tool has no path from its former pose and creates no channel
+  if (was_placed_) reset(pressed_mm_);  // a placed tool has no path from its former pose and creates no channel
   was_placed_ = input.hand && input.hand->is_placed;
   if (was_placed_) pressed_mm_ = input.hand->pressed_mm;
   if (input.hand && input.scene != nullptr) {
     const haptics::HapticScene& scene = *input.scene->scene;
-    R_WS_told_ = (scene.X_PD.inverse() * input.hand->X_PN * scene.X_SN.inverse()).R();
+    commanded_R_WS_ = (scene.X_PW.inverse() * input.hand->X_PN * scene.X_SN.inverse()).R();
     device_.hold(hand_in_device(*input.hand, scene));
   }
   const Wanted wanted = feel(sensed, input, record.sample);
@@ -238,13 +235,10 @@ ServoRecord Servo::step(const ServoInput& input) noexcept {
 
   note_gate(output, input, record.sample);
   record.status = sensed.reading.status;
-  record.mode = gate_.mode;
-  record.fault = gate_.fault;
   record.actions = output.actions;
-  record.scale = gate_.scale;
   record.drop_n = output.drop_n;
   record.drop_s = output.drop_s;
-  record.wanted_D = {gate.wanted.force_n + gate.weight.force_n, gate.wanted.torque_nmm + gate.weight.torque_nmm};
+  record.wanted_D = gate.wanted + gate.weight;
   record.written_D = output.wrench;
   record.X_DS = sensed.reading.X_DS;
   record.buttons = sensed.reading.buttons;

@@ -13,8 +13,7 @@
 
 namespace trocar::server {
 
-/// Scene of the servo. The control thread builds it; it is swapped as a whole. `scene.X_PD` is X_PW: the device base of
-/// the tick is the room.
+/// Scene of the servo. The control thread builds it; it is swapped as a whole.
 struct ServoScene {
   std::shared_ptr<const haptics::HapticScene> scene;
   std::uint64_t number = 0;  ///< Increases with every scene.
@@ -57,13 +56,10 @@ struct ServoRecord {
   std::uint64_t scene = 0;       ///< Number of the scene of this tick; 0: none.
   telemetry::TickSample sample;  ///< device_f_n is the force that the gate wrote, in P.
   devices::DeviceStatus status = devices::DeviceStatus::kFresh;
-  telemetry::GateMode mode = telemetry::GateMode::kOff;
-  telemetry::GateFault fault = telemetry::GateFault::kNone;
-  std::uint16_t actions = 0;
-  double scale = 0.0;  ///< Scale of the gate, 0..1.
+  std::uint16_t actions = 0;  ///< Of the gate; its mode, fault and scale are in the sample.
   double drop_n = 0.0, drop_s = 0.0;
   std::optional<telemetry::NeedleShape> shape;  ///< Of a needle, every kShapeEvery_s.
-  haptics::Wrench wanted_D, written_D;
+  Wrench wanted_D, written_D;
   Pose X_DS;
   std::uint32_t buttons = 0;
   double silence_s = 0.0;
@@ -84,7 +80,7 @@ class Servo {
 
  private:
   struct Wanted {
-    haptics::Wrench wrench_D, weight_D;
+    Wrench wrench_D, weight_D;
     Vec3 axis_D = Vec3::UnitZ();
   };
   struct Sensed {
@@ -95,7 +91,7 @@ class Servo {
   Sensed sense(const ServoInput& input) noexcept;
   telemetry::GateFault watch_encoder(const devices::DeviceReading& reading, double dt_s) noexcept;
   /// Restarts the tool at its present pose: for a new scene, or a placed hand (link::HandTarget::pressed_mm).
-  void begin_anew(double pressed_mm = 0.0) noexcept;
+  void reset(double pressed_mm = 0.0) noexcept;
   Wanted feel(const Sensed& sensed, const ServoInput& input, telemetry::TickSample& sample) noexcept;
   devices::DeviceHand hand_in_device(const link::HandTarget& target, const haptics::HapticScene& scene) const noexcept;
   haptics::CouplingParams coupling_in_device(const ServoScene* scene) const noexcept;
@@ -112,10 +108,10 @@ class Servo {
   std::uint64_t ticks_ = 0;
   double shape_s_ = 0.0;  ///< Time of the last shape.
   bool has_read_ = false;
-  bool was_placed_ = false;            ///< The hand target of the last period had is_placed.
-  double pressed_mm_ = 0.0;            ///< Of that target.
-  devices::DeviceReading last_;        ///< Last fresh reading with a valid pose.
-  Mat3 R_WS_told_ = Mat3::Identity();  ///< Used if the device senses no rotation; from the hand target.
+  bool was_placed_ = false;                 ///< The hand target of the last period had is_placed.
+  double pressed_mm_ = 0.0;                 ///< Of that target.
+  devices::DeviceReading last_;             ///< Last fresh reading with a valid pose.
+  Mat3 commanded_R_WS_ = Mat3::Identity();  ///< Used if the device senses no rotation; from the hand target.
   detail::ReadingAge age_;
   double unmoved_s_ = 0.0;
   bool has_refused_ = false;  ///< The device did not take the last wrench.

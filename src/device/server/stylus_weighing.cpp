@@ -98,8 +98,8 @@ haptics::CouplingParams StylusWeighing::coupling() const noexcept {
   return {params_.stiffness_n_per_mm, params_.damping_ns_per_mm};
 }
 
-haptics::Wrench StylusWeighing::carried() const noexcept {
-  haptics::Wrench wrench;
+Wrench StylusWeighing::carried() const noexcept {
+  Wrench wrench;
   wrench.force_n = std::min(device_.stylus_weight_n, params_.most_n) * Vec3::UnitZ();
   const Vec3 arm_mm = -device_.stylus_lever_mm * hold_.X_DS().R().col(2);
   if (params_.most_nmm > 0.0) wrench.torque_nmm = arm_mm.cross(wrench.force_n);

@@ -49,12 +49,12 @@ class StylusWeighing {
 
   struct Input {
     std::optional<Pose> X_DS;                              ///< A fresh reading.
-    haptics::Wrench written_D;                             ///< Output of the gate in the last period.
+    Wrench written_D;                                      ///< Output of the gate in the last period.
     telemetry::GateMode mode = telemetry::GateMode::kOff;  ///< Of the gate in the last period.
     double dt_s = 0.001;
   };
   struct Demand {
-    haptics::Wrench wanted_D, weight_D;  ///< weight_D: the preset's; conservative.
+    Wrench wanted_D, weight_D;  ///< weight_D: the preset's; conservative.
     bool is_wanted = false;
   };
 
@@ -85,7 +85,7 @@ class StylusWeighing {
   };
 
   Demand hold(const Pose& X_DT, double dt_s) noexcept;
-  haptics::Wrench carried() const noexcept;
+  Wrench carried() const noexcept;
   Pose target() const noexcept;
   void settle(const Input& input, double dt_s) noexcept;
   void add(const Input& input) noexcept;

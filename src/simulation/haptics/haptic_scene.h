@@ -107,7 +107,7 @@ struct HapticScene {
   NeedleBeam beam_without_stylet;
   DeviceCapability device;
   HapticOptions options;
-  Pose X_PD;  ///< Device base in the patient.
+  Pose X_PW;  ///< The room in the patient.
   /// Needle in the stylus: tip at +z, length_mm from the stylus origin. For a transducer or a finger X_ST: y of T
   /// along +z of S, face.reach_mm from the stylus origin.
   Pose X_SN;

@@ -7,7 +7,7 @@ namespace trocar::haptics {
 namespace {
 
 bool is_valid(const HapticInput& input, const HapticScene& scene) noexcept {
-  const bool is_near = (input.tool.p_mm - scene.X_PD.p()).norm() < kFarAway_mm;
+  const bool is_near = (input.tool.p_mm - scene.X_PW.p()).norm() < kFarAway_mm;
   return input.tool.is_valid() && is_near && input.dt_s >= kMinDt_s && input.dt_s <= kMaxDt_s;
 }
 
@@ -51,8 +51,8 @@ void add_events(EventList& events, const NeedleStep& step) noexcept {
 
 }  // namespace
 
-telemetry::ToolPose tool_pose(const HapticScene& scene, const Pose& X_DS) noexcept {
-  return telemetry::to_tool_pose(scene.X_PD * X_DS * scene.X_SN);
+telemetry::ToolPose tool_pose(const HapticScene& scene, const Pose& X_WS) noexcept {
+  return telemetry::to_tool_pose(scene.X_PW * X_WS * scene.X_SN);
 }
 
 HapticOutput tick(HapticState& state, const HapticInput& input, const HapticScene& scene) noexcept {
@@ -85,7 +85,9 @@ HapticOutput tick(HapticState& state, const HapticInput& input, const HapticScen
 
   // The device receives the coupling's force: the balance of the laws and the holding force.
   sample.device_f_n = sample.f_total_n + sample.axis * sample.f_stick_n;
-  limit_to_device(output, weight, X_PS.R().col(2), events, scene);
+  const Wrench tissue_P{sample.axis * (axial_n + sample.f_stick_n) + sample.f_constraint_n + sample.f_tip_proxy_n,
+                        step.held_P.torque_nmm};
+  limit_to_device(output, tissue_P, weight, X_PS.R().col(2), events, scene);
   state.last = sample;
   return output;
 }

@@ -18,8 +18,8 @@ struct HapticInput {
   motion::PatientMotion motion{};  ///< Where the patient is now.
 };
 
-/// The scene's tool on the stylus of a device: X_PD * X_DS * X_SN (or X_ST).
-telemetry::ToolPose tool_pose(const HapticScene& scene, const Pose& X_DS) noexcept;
+/// The scene's tool on a stylus in the room: X_PW * X_WS * X_SN (or X_ST).
+telemetry::ToolPose tool_pose(const HapticScene& scene, const Pose& X_WS) noexcept;
 
 /// State from one tick to the next. Fixed size, copyable. Recorded inputs (the sample's time and tool pose) replay to
 /// the same bits.
@@ -29,11 +29,14 @@ struct HapticState {
   telemetry::TickSample last;
 };
 
-/// Output of a tick: the wrench for the device (in D, about the stylus origin) and its record.
+/// Output of a tick: wrenches on the stylus in the room (W, about the stylus origin), and the record. Only a server
+/// knows the device's frame D.
 struct HapticOutput {
-  Vec3 f_D = Vec3::Zero();
-  Vec3 tau_D = Vec3::Zero();
-  Wrench weight_D;  ///< Part of the wrench that carries the weight of links and stylus (before the device's limits).
+  /// Of tissue and path: what the device's limits, less the weight, leave of it. Its torque is given for a device
+  /// without torque, too.
+  Wrench tissue_W;
+  Wrench weight_W;  ///< Carries the weight of links and stylus, before the limits.
+  Wrench total_W;   ///< Both, within the device's limits.
   telemetry::TickSample sample;
 };
 
@@ -43,7 +46,7 @@ inline constexpr double kMinDt_s = 1e-6;
 inline constexpr double kMaxDt_s = 0.1;
 inline constexpr double kFarAway_mm = 5000.0;  ///< Beyond the reach of any device.
 
-/// One haptic tick: pose into P and into the resting anatomy, force model of the scene, weight compensation,
+/// One haptic tick in P: force model of the scene, which looks tissue up in the anatomy at rest, weight compensation,
 /// composition (paper A, force composition; physics.md T1, T2), limits of the device. Pure: a function of its arguments
 /// only. Input that is not finite, further than kFarAway_mm or with an impossible dt gives zero force and a limit
 /// event, and leaves the state as it was. A start inside the body and a jump cause no force step and add an event.

@@ -11,8 +11,7 @@ HapticOutput tick_contact(HapticState& state, const HapticInput& input, const Ha
   const bool was_started = state.contact.is_started;
 
   const ContactStep step = step_contact(state.contact, PatientNow(scene, input.motion), X_PT, input.dt_s);
-  const Vec3& force_P = step.wrench_P.force_n;
-  const Vec3& torque_P = step.wrench_P.torque_nmm;
+  const Wrench tissue_P = step.wrench_P.shifted_to(X_PS.p() - X_PT.p());
   const Wrench weight = weight_compensation(scene, X_PS.R());
   const Pose& shown = state.contact.X_PT;
   const bool has_past = was_started && !step.has_jumped;
@@ -26,10 +25,10 @@ HapticOutput tick_contact(HapticState& state, const HapticInput& input, const Ha
   sample.depth_mm = step.depth_mm;
   sample.tissue = step.points_in_contact > 0 ? scene.skin : std::uint8_t{0};
   sample.phase = step.points_in_contact > 0 ? telemetry::InsertionPhase::kLoading : telemetry::InsertionPhase::kOutside;
-  sample.f_constraint_n = force_P;
+  sample.f_constraint_n = tissue_P.force_n;
   sample.f_weight_n = weight.force_n;
-  sample.f_total_n = force_P + weight.force_n;
-  sample.tau_nmm = torque_P + (X_PT.p() - X_PS.p()).cross(force_P) + weight.torque_nmm;
+  sample.f_total_n = tissue_P.force_n + weight.force_n;
+  sample.tau_nmm = tissue_P.torque_nmm + weight.torque_nmm;
   sample.device_f_n = sample.f_total_n;
   sample.device_mm = input.tool.p_mm;
   sample.device_rotation_wxyz = input.tool.rotation_wxyz;
@@ -39,7 +38,7 @@ HapticOutput tick_contact(HapticState& state, const HapticInput& input, const Ha
   if (step.has_jumped) events.add(telemetry::LimitReason::kJumped);
   if (step.started_inside) events.add(telemetry::LimitReason::kResumedInside);
   if (step.is_bound) events.add(telemetry::LimitReason::kSolverBound);
-  limit_to_device(output, weight, X_PS.R().col(2), events, scene);
+  limit_to_device(output, tissue_P, weight, X_PS.R().col(2), events, scene);
   state.last = sample;
   return output;
 }

@@ -155,9 +155,9 @@ PathError compare_on_path(Needles& needles, const haptics::HapticScene& full, co
     full_notes.note(a.sample, i);
     partly_notes.note(b.sample, i);
     if (way_mm(motion, i) <= 0.0) continue;
-    const double difference_n = (a.f_D - b.f_D).norm();
-    const double torque_nmm = (a.tau_D - b.tau_D).norm();
-    const double force_n = a.f_D.norm();
+    const double difference_n = (a.total_W.force_n - b.total_W.force_n).norm();
+    const double torque_nmm = (a.total_W.torque_nmm - b.total_W.torque_nmm).norm();
+    const double force_n = a.total_W.force_n.norm();
     ++error.ticks;
     sum2 += difference_n * difference_n;
     torque2 += torque_nmm * torque_nmm;

@@ -48,7 +48,7 @@ DeviceReading PointerDevice::read(double now_s) noexcept {
   return reading;
 }
 
-bool PointerDevice::write(const haptics::Wrench& wrench_D) noexcept {
+bool PointerDevice::write(const Wrench& wrench_D) noexcept {
   return is_valid(wrench_D);
 }
 

@@ -21,7 +21,7 @@ class PointerDevice final : public HapticDevice {
   std::string name() const override { return preset_.name; }
   DeviceReading read(double now_s) noexcept override;
   /// Returns false for an invalid wrench.
-  bool write(const haptics::Wrench& wrench_D) noexcept override;
+  bool write(const Wrench& wrench_D) noexcept override;
   void hold(const DeviceHand& hand) noexcept override;
   bool is_in_real_hand() const noexcept override { return false; }
   Status reconnect() override { return {}; }

@@ -131,7 +131,7 @@ DeviceReading PolledPointer::read(double now_s) noexcept {
   return {DeviceStatus::kFresh, X_DS_, motion_.value().buttons};
 }
 
-bool PolledPointer::write(const haptics::Wrench& wrench_D) noexcept {
+bool PolledPointer::write(const Wrench& wrench_D) noexcept {
   const double force_n = wrench_D.force_n.norm();
   const bool is_taken = std::isfinite(force_n) && !is_gone_.load(std::memory_order_acquire);
   force_n_.write(is_taken ? force_n : 0.0);

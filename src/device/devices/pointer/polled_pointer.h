@@ -68,7 +68,7 @@ class PolledPointer final : public HapticDevice {
   const haptics::DevicePreset& preset() const noexcept override { return preset_; }
   std::string name() const override { return name_; }
   DeviceReading read(double now_s) noexcept override;
-  bool write(const haptics::Wrench& wrench_D) noexcept override;
+  bool write(const Wrench& wrench_D) noexcept override;
   /// Places the stylus at X_DS of a new target with `is_placed`. Other fields of the target are ignored.
   void hold(const DeviceHand& hand) noexcept override;
   Status reconnect() override;

@@ -94,7 +94,7 @@ DeviceReading FaultyDevice::read(double now_s) noexcept {
   return reading;
 }
 
-bool FaultyDevice::write(const haptics::Wrench& wrench_D) noexcept {
+bool FaultyDevice::write(const Wrench& wrench_D) noexcept {
   wait_for(DeviceFault::kSlowWrite);
   return !is_disconnected_ && device_->write(wrench_D);
 }

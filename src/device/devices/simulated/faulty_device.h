@@ -27,7 +27,7 @@ class FaultyDevice final : public HapticDevice {
   const haptics::DevicePreset& preset() const noexcept override { return device_->preset(); }
   std::string name() const override { return "faulty:" + device_->name(); }
   DeviceReading read(double now_s) noexcept override;
-  bool write(const haptics::Wrench& wrench_D) noexcept override;
+  bool write(const Wrench& wrench_D) noexcept override;
   void hold(const DeviceHand& hand) noexcept override { device_->hold(hand); }
   /// Fails if the fault "disconnect" has no end. During the fault the next read reports disconnected again.
   Status reconnect() override;

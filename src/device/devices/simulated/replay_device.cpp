@@ -47,7 +47,7 @@ DeviceReading ReplayDevice::read(double now_s) noexcept {
   return reading;
 }
 
-bool ReplayDevice::write(const haptics::Wrench& wrench_D) noexcept {
+bool ReplayDevice::write(const Wrench& wrench_D) noexcept {
   return is_valid(wrench_D);
 }
 

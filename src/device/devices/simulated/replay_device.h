@@ -16,7 +16,7 @@ class ReplayDevice final : public HapticDevice {
   std::string name() const override { return "replay:" + name_; }
   DeviceReading read(double now_s) noexcept override;
   /// Ignores the wrench. Returns false for an invalid wrench.
-  bool write(const haptics::Wrench& wrench_D) noexcept override;
+  bool write(const Wrench& wrench_D) noexcept override;
   bool is_in_real_hand() const noexcept override { return false; }
   Status reconnect() override { return {}; }
 

@@ -51,9 +51,9 @@ void VirtualHapticDevice::hold(const DeviceHand& hand) noexcept {
   }
 }
 
-bool VirtualHapticDevice::write(const haptics::Wrench& wrench_D) noexcept {
+bool VirtualHapticDevice::write(const Wrench& wrench_D) noexcept {
   if (!is_valid(wrench_D)) return false;
-  haptics::Wrench wrench = wrench_D;
+  Wrench wrench = wrench_D;
   clamp_norm(wrench.force_n, preset_.has_force() ? preset_.capability.peak_force_n : 0.0);
   clamp_norm(wrench.torque_nmm, preset_.capability.peak_torque_nmm);
   commanded_D_ = wrench;
@@ -144,7 +144,7 @@ void VirtualHapticDevice::step(double time_s, double dt_s) noexcept {
     stylus_ = {Pose(hand.X_DS.R(), stylus_.X_PS.p() + way_D), hand.v_D, hand.w_D};
     return;
   }
-  const haptics::Wrench push{acting_D_.force_n + wall_n(), acting_D_.torque_nmm};
+  const Wrench push{acting_D_.force_n + wall_n(), acting_D_.torque_nmm};
   haptics::step_stylus(stylus_, stylus_params(), grip(hand), push, -Vec3::UnitZ(), dt_s);
 }
 

@@ -39,7 +39,7 @@ class VirtualHapticDevice final : public HapticDevice {
   DeviceReading read(double now_s) noexcept override;
   /// Limits the wrench to the peaks of the preset; torque is ignored without motors for it. Returns false for an
   /// invalid wrench.
-  bool write(const haptics::Wrench& wrench_D) noexcept override;
+  bool write(const Wrench& wrench_D) noexcept override;
   /// Ignores an invalid target: a value is not finite, or an amount is negative.
   void hold(const DeviceHand& hand) noexcept override;
   bool is_in_real_hand() const noexcept override { return false; }
@@ -66,10 +66,10 @@ class VirtualHapticDevice final : public HapticDevice {
 
   double last_s_ = 0.0;
   bool is_started_ = false;
-  haptics::Wrench acting_D_;                              ///< About S.
-  haptics::Wrench commanded_D_;                           ///< About S: last written wrench.
-  std::array<haptics::Wrench, kMaxDelay + 1> written_{};  ///< commanded_D_ at the last reads, newest first.
-  std::array<DeviceReading, kMaxDelay + 1> readings_{};   ///< Newest first.
+  Wrench acting_D_;                                      ///< About S.
+  Wrench commanded_D_;                                   ///< About S: last written wrench.
+  std::array<Wrench, kMaxDelay + 1> written_{};          ///< commanded_D_ at the last reads, newest first.
+  std::array<DeviceReading, kMaxDelay + 1> readings_{};  ///< Newest first.
 };
 
 }  // namespace trocar::devices

@@ -56,7 +56,7 @@ inline devices::DeviceHand holding(const Pose& X_DS, double time_s) {
 }
 
 /// The tick's compensation of links and stylus (physics.md W1), from the pose of the reading.
-inline haptics::Wrench weight_compensation(const haptics::DevicePreset& preset, const Pose& X_DS) {
+inline Wrench weight_compensation(const haptics::DevicePreset& preset, const Pose& X_DS) {
   const Vec3 lift = Vec3::UnitZ() * preset.capability.stylus_weight_n;
   const Vec3 arm = X_DS.R() * Vec3(0.0, 0.0, -preset.capability.stylus_lever_mm);
   return {lift, arm.cross(lift)};
@@ -71,7 +71,7 @@ struct Bench {
       : device(preset, params) {
     device.read(time_s);
   }
-  devices::DeviceReading period(const std::optional<devices::DeviceHand>& hand, const haptics::Wrench& wrench,
+  devices::DeviceReading period(const std::optional<devices::DeviceHand>& hand, const Wrench& wrench,
                                 double dt_s = kDt_s) {
     time_s += dt_s;
     const devices::DeviceReading reading = device.read(time_s);

@@ -91,8 +91,8 @@ TEST(Clutch, NeverTurnsTheDirectionsOfMotionAndForce) {
   const WorkspaceParams params = turned_and_scaled();
   WorkspaceState state;
   map_to_room(state, params, Pose(), 0);
-  const haptics::Wrench push_W{{1.0, 2.0, 3.0}, {10.0, 20.0, 30.0}};
-  const haptics::Wrench before = map_to_device(state, params, push_W);
+  const Wrench push_W{{1.0, 2.0, 3.0}, {10.0, 20.0, 30.0}};
+  const Wrench before = map_to_device(state, params, push_W);
   map_to_room(state, params, Pose(), kButtonSecond);
   const Pose X_DS(haptics::rotation_from_vector({1.0, -0.5, 0.3}), {20.0, 30.0, -40.0});
   const Pose from = map_to_room(state, params, X_DS, 0);
@@ -110,8 +110,8 @@ TEST(Clutch, GivesNoForceWhilePressed) {
   const WorkspaceParams params = turned_and_scaled();
   WorkspaceState state;
   map_to_room(state, params, Pose(), 0);
-  const haptics::Wrench push_W{{1.0, 2.0, 3.0}, {10.0, 20.0, 30.0}};
-  const haptics::Wrench free = map_to_device(state, params, push_W);
+  const Wrench push_W{{1.0, 2.0, 3.0}, {10.0, 20.0, 30.0}};
+  const Wrench free = map_to_device(state, params, push_W);
   EXPECT_LT((free.force_n - 0.3 * (params.X_WD.R().transpose() * push_W.force_n)).norm(), 1e-12);
   EXPECT_LT((free.torque_nmm - 0.3 * (params.X_WD.R().transpose() * push_W.torque_nmm)).norm(), 1e-12);
   map_to_room(state, params, Pose(), kButtonSecond);
@@ -139,7 +139,7 @@ TEST(WorkspaceMap, NeverAllocates) {
   Pose X_WS = map_to_room(state, params, Pose(), 0);
   X_WS = map_to_room(state, params, X_WS, kButtonSecond);
   X_WS = map_from_room(state, params, map_to_room(state, params, X_WS, 0));
-  const haptics::Wrench wrench = map_to_device(state, params, {Vec3::Ones(), Vec3::Ones()});
+  const Wrench wrench = map_to_device(state, params, {Vec3::Ones(), Vec3::Ones()});
   EXPECT_EQ(guard.count(), 0u);
   EXPECT_TRUE(X_WS.is_finite() && wrench.force_n.allFinite());
 }

@@ -65,7 +65,7 @@ class ForceDimensionDevice final : public HapticDevice {
     if (!connection_) last_.status = DeviceStatus::kDisconnected;
     return last_;
   }
-  bool write(const haptics::Wrench& wrench_D) noexcept override {
+  bool write(const Wrench& wrench_D) noexcept override {
     return connection_ && connection_->exchange().write(wrench_D, preset_.capability);
   }
   Status reconnect() override {

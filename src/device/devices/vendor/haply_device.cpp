@@ -184,7 +184,7 @@ DeviceReading HaplyDevice::read(double) noexcept {
   return {is_new ? DeviceStatus::kFresh : DeviceStatus::kRepeated, sample.X_DS, sample.buttons};
 }
 
-bool HaplyDevice::write(const haptics::Wrench& wrench_D) noexcept {
+bool HaplyDevice::write(const Wrench& wrench_D) noexcept {
   const bool is_taken = wrench_D.force_n.allFinite() && !is_gone_.load(std::memory_order_acquire);
   force_.write(is_taken ? wrench_D.force_n : Vec3::Zero().eval());
   return is_taken;

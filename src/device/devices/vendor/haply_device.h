@@ -38,7 +38,7 @@ class HaplyDevice final : public HapticDevice {
   std::string name() const override { return name_of(address_); }
   static std::string name_of(const std::string& address) { return "haply:" + address; }
   DeviceReading read(double now_s) noexcept override;
-  bool write(const haptics::Wrench& wrench_D) noexcept override;
+  bool write(const Wrench& wrench_D) noexcept override;
   Status reconnect() override;
 
  private:

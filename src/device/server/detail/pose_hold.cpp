@@ -20,7 +20,7 @@ void PoseHold::sense(const Pose& X_DS, double since_s) noexcept {
   X_DS_ = X_DS;
 }
 
-haptics::Wrench PoseHold::step(const Pose& X_DT, const haptics::Wrench& carried, bool may_learn, double dt_s) noexcept {
+Wrench PoseHold::step(const Pose& X_DT, const Wrench& carried, bool may_learn, double dt_s) noexcept {
   const Vec3 off_mm = X_DT.p() - X_DS_.p();
   const Vec3 off_rad = haptics::rotation_vector(X_DT.R() * X_DS_.R().transpose());
   Vec3 force_n =

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "geometry/pose.h"
-#include "haptics/insertion/path_constraint.h"  // Wrench
+#include "geometry/wrench.h"
 
 namespace trocar::server::detail {
 
@@ -30,7 +30,7 @@ class PoseHold {
   /// Takes a new reading after `since_s` (s) since the last one.
   void sense(const Pose& X_DS, double since_s) noexcept;
   /// Wrench of the hold in addition to `carried`. `may_learn`: the integral grows.
-  haptics::Wrench step(const Pose& X_DT, const haptics::Wrench& carried, bool may_learn, double dt_s) noexcept;
+  Wrench step(const Pose& X_DT, const Wrench& carried, bool may_learn, double dt_s) noexcept;
 
   const Pose& X_DS() const noexcept { return X_DS_; }
   const Vec3& v_mm_per_s() const noexcept { return v_mm_per_s_; }

@@ -85,8 +85,8 @@ SlowLoopOutcome run_slow_loop_trial(const ServoScene& scene, const haptics::Devi
     } else {
       outcome.zero_s = std::min(outcome.zero_s, since_s);
     }
-    if (record.fault != telemetry::GateFault::kNone && outcome.fault == telemetry::GateFault::kNone) {
-      outcome.fault = record.fault;
+    if (record.sample.gate_fault != telemetry::GateFault::kNone && outcome.fault == telemetry::GateFault::kNone) {
+      outcome.fault = record.sample.gate_fault;
       outcome.latch_s = since_s;
       outcome.latch_periods = slow_periods;
     }

@@ -115,7 +115,7 @@ TEST_P(FaultMatrix, EndsAtZeroInTimeAndStaysWithinItsLimits) {
     ASSERT_LE(record.written_D.torque_nmm.norm(), preset.capability.peak_torque_nmm + 1e-9);
     if (time_s < kFault_s) before_n = written_n;
     zero_since_s = written_n > 0.0 ? std::numeric_limits<double>::infinity() : std::min(zero_since_s, time_s);
-    fault = record.fault;
+    fault = record.sample.gate_fault;
   }
   EXPECT_TRUE(!preset.has_force() || before_n > 0.1) << "there was something to be felt before";
   // A mouse has no hand whose force could go wrong: nothing is watched there.

@@ -27,7 +27,7 @@ class LosableDevice final : public devices::HapticDevice {
     if (is_lost_) reading.status = devices::DeviceStatus::kDisconnected;
     return reading;
   }
-  bool write(const haptics::Wrench&) noexcept override { return true; }
+  bool write(const Wrench&) noexcept override { return true; }
   Status reconnect() override { return {}; }
 
  private:

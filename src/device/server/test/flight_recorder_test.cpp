@@ -16,7 +16,7 @@ namespace {
 ServoRecord record_at(std::uint64_t tick, telemetry::GateFault fault) {
   ServoRecord record;
   record.tick = tick;
-  record.fault = fault;
+  record.sample.gate_fault = fault;
   return record;
 }
 
@@ -32,9 +32,9 @@ TEST(FlightRecorder, GivesTwoSecondsBeforeAFaultOnce) {
   const auto& flight = flights.front();
   EXPECT_EQ(flight.size(), 2100U);
   EXPECT_EQ(flight.back().tick, 5100U);
-  EXPECT_EQ(
-      std::count_if(flight.begin(), flight.end(), [](const auto& r) { return r.fault == telemetry::GateFault::kNone; }),
-      1999);
+  EXPECT_EQ(std::count_if(flight.begin(), flight.end(),
+                          [](const auto& r) { return r.sample.gate_fault == telemetry::GateFault::kNone; }),
+            1999);
 }
 
 TEST(FlightRecorder, GivesTheNextFaultToo) {
@@ -51,7 +51,7 @@ TEST(FlightRecorder, GivesTheNextFaultToo) {
 TEST(WriteFlight, WritesARowAPeriodUnderAHeader) {
   const TemporaryFolder folder;
   std::vector<ServoRecord> flight(3, record_at(7, telemetry::GateFault::kDeviceLost));
-  flight[0].fault = telemetry::GateFault::kNone;
+  flight[0].sample.gate_fault = telemetry::GateFault::kNone;
   const auto path = write_flight(folder.path(), "20260101T000000Z", flight);
   ASSERT_TRUE(path) << path.error().text();
   EXPECT_NE(path->filename().string().find(to_string(telemetry::GateFault::kDeviceLost)), std::string::npos);

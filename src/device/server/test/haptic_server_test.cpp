@@ -216,7 +216,7 @@ class ReopenedDevice final : public devices::HapticDevice {
     reading.X_DS = testing::needle_at_depth(log_.depth_mm + 0.01 * std::sin(30.0 * now_s));
     return reading;
   }
-  bool write(const haptics::Wrench& wrench_D) noexcept override {
+  bool write(const Wrench& wrench_D) noexcept override {
     const double written_n = wrench_D.force_n.norm();
     log_.largest_rise_n = std::max(log_.largest_rise_n.load(), written_n - last_n_);
     last_n_ = written_n;

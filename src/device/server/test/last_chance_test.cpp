@@ -31,7 +31,7 @@ class SeenDevice final : public devices::HapticDevice {
   const haptics::DevicePreset& preset() const noexcept override { return preset_; }
   std::string name() const override { return "seen"; }
   devices::DeviceReading read(double) noexcept override { return {}; }
-  bool write(const haptics::Wrench& wrench_D) noexcept override {
+  bool write(const Wrench& wrench_D) noexcept override {
     seen_.force_n = wrench_D.force_n.norm();
     ++seen_.writes;
     return true;
@@ -59,7 +59,7 @@ int signal_of_child(const std::function<void()>& run) {
 /// A loop that presses with 5 N until it is told to let go; `crash` is called in its thread after some periods.
 void press(LastChance& chance, SeenDevice& device, Seen& seen, const std::function<void()>& crash) {
   chance.adopt_thread();
-  haptics::Wrench pressing;
+  Wrench pressing;
   pressing.force_n = {0.0, 0.0, 5.0};
   for (int i = 0;; ++i) {
     if (!chance.takes_over(false)) {

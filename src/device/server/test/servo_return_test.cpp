@@ -55,7 +55,8 @@ TEST_F(Return, OfADeviceThatWasLent) {
   rig.servo.resume();
   rig.input.is_wanted = true;
   rig.input.now_s += 1.5;
-  EXPECT_EQ(rig.step().fault, telemetry::GateFault::kNone) << "a pose before the loan is no part of its way";
+  EXPECT_EQ(rig.step().sample.gate_fault, telemetry::GateFault::kNone)
+      << "a pose before the loan is no part of its way";
   expect_soft_return();
 }
 
@@ -71,14 +72,14 @@ TEST_F(Return, OfALostDevice) {
   EXPECT_EQ(rig.last_n, 0.0);
   rig.servo.resume();  // the control thread has opened it again
   rig.device.reading.status = devices::DeviceStatus::kFresh;
-  EXPECT_EQ(rig.hold(0.2).back().fault, telemetry::GateFault::kDeviceLost) << "until the reset";
+  EXPECT_EQ(rig.hold(0.2).back().sample.gate_fault, telemetry::GateFault::kDeviceLost) << "until the reset";
   reset();
   expect_soft_return();
 }
 
 TEST_F(Return, OfAResetFault) {
   rig.input.busy_s = rig.input.dt_s = 0.06;
-  EXPECT_EQ(rig.step().fault, telemetry::GateFault::kLoopSlow);
+  EXPECT_EQ(rig.step().sample.gate_fault, telemetry::GateFault::kLoopSlow);
   rig.input.dt_s = 0.001;
   rig.input.busy_s = 0.0;
   rig.hold(0.5);
@@ -117,7 +118,7 @@ TEST_F(Return, OfASilentClient) {
 
 TEST_F(Return, OfAStylusThatWasPutElsewhere) {
   link::HandTarget put;
-  put.X_PN = rig.scene.scene->X_PD * needle_at_depth(6.0) * rig.scene.scene->X_SN;
+  put.X_PN = rig.scene.scene->X_PW * needle_at_depth(6.0) * rig.scene.scene->X_SN;
   put.is_placed = put.is_rigid = true;
   rig.input.hand = put;
   rig.step();

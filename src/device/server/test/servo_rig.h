@@ -61,14 +61,14 @@ class ScriptedDevice final : public devices::HapticDevice {
   const haptics::DevicePreset& preset() const noexcept override { return preset_; }
   std::string name() const override { return "scripted"; }
   devices::DeviceReading read(double) noexcept override { return reading; }
-  bool write(const haptics::Wrench& wrench_D) noexcept override {
+  bool write(const Wrench& wrench_D) noexcept override {
     written = wrench_D;
     return takes_writes;
   }
   Status reconnect() override { return {}; }
 
   devices::DeviceReading reading;
-  haptics::Wrench written;
+  Wrench written;
   bool takes_writes = true;
 
  private:

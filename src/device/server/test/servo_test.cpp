@@ -38,9 +38,9 @@ TEST(Servo, LetsTheHandFeelTheSkinAndItsGivingWay) {
     const Vec3 turned_P = testing::layered_request().X_PW.R() * record.written_D.torque_nmm;
     ASSERT_NEAR((written_P - record.sample.device_f_n).norm(), 0.0, 1e-12) << "what is recorded is what was written";
     ASSERT_NEAR((turned_P - record.sample.device_tau_nmm).norm(), 0.0, 1e-12);
-    ASSERT_EQ(record.sample.gate_mode, record.mode);
-    ASSERT_EQ(record.sample.gate_fault, record.fault);
-    ASSERT_EQ(record.sample.gate_scale, record.scale);
+    ASSERT_EQ(record.sample.gate_mode, record.sample.gate_mode);
+    ASSERT_EQ(record.sample.gate_fault, record.sample.gate_fault);
+    ASSERT_EQ(record.sample.gate_scale, record.sample.gate_scale);
   }
 }
 
@@ -85,11 +85,11 @@ TEST(Servo, LatchesAFaultWhenTheDeviceIsGoneAndGoesOnAfterAReset) {
   for (int i = 0; i < 30; ++i) rig.step();
   EXPECT_EQ(rig.device.written.force_n.norm(), 0.0);
   rig.device.reading.status = devices::DeviceStatus::kFresh;
-  EXPECT_EQ(rig.hold(0.5).back().fault, telemetry::GateFault::kDeviceLost) << "until somebody resets it";
+  EXPECT_EQ(rig.hold(0.5).back().sample.gate_fault, telemetry::GateFault::kDeviceLost) << "until somebody resets it";
   rig.input.is_reset = true;
   rig.step();
   rig.move_to(-10.0, 50.0);
-  EXPECT_EQ(rig.hold(2.0).back().fault, telemetry::GateFault::kNone);
+  EXPECT_EQ(rig.hold(2.0).back().sample.gate_fault, telemetry::GateFault::kNone);
   EXPECT_EQ(rig.servo.mode(), telemetry::GateMode::kOn);
 }
 
@@ -98,7 +98,7 @@ TEST(Servo, TakesARefusedWriteAsALostDevice) {
   rig.start();
   rig.device.takes_writes = false;
   rig.hold(0.1);
-  EXPECT_EQ(rig.step().fault, telemetry::GateFault::kDeviceLost);
+  EXPECT_EQ(rig.step().sample.gate_fault, telemetry::GateFault::kDeviceLost);
 }
 
 TEST(Servo, LatchesAFaultOnAPoseThatIsNone) {
@@ -107,7 +107,7 @@ TEST(Servo, LatchesAFaultOnAPoseThatIsNone) {
     rig.start();
     rig.move_to(2.0, 10.0);
     rig.device.reading.X_DS = Pose(Mat3::Identity(), {bad, 0.0, 0.0});
-    EXPECT_EQ(rig.step().fault, telemetry::GateFault::kNotFinite);
+    EXPECT_EQ(rig.step().sample.gate_fault, telemetry::GateFault::kNotFinite);
     for (int i = 0; i < 30; ++i) rig.step();
     EXPECT_EQ(rig.device.written.force_n.norm(), 0.0);
   }
@@ -120,8 +120,8 @@ TEST(Servo, NoticesAnEncoderThatStandsStillUnderForce) {
   ASSERT_GT(rig.device.written.force_n.norm(), ServoParams{}.stuck_n);
   ServoRecord record;
   int periods = 0;
-  for (; periods < 7000 && record.fault == telemetry::GateFault::kNone; ++periods) record = rig.step();
-  EXPECT_EQ(record.fault, telemetry::GateFault::kEncoderStuck);
+  for (; periods < 7000 && record.sample.gate_fault == telemetry::GateFault::kNone; ++periods) record = rig.step();
+  EXPECT_EQ(record.sample.gate_fault, telemetry::GateFault::kEncoderStuck);
   EXPECT_NEAR(periods * rig.input.dt_s, ServoParams{}.stuck_s, 0.01);
 }
 
@@ -129,7 +129,7 @@ TEST(Servo, DoesNotMistakeATremblingHandForAStuckEncoder) {
   ServoRig rig;
   rig.start();
   rig.move_to(3.0, 10.0);
-  EXPECT_EQ(rig.hold(8.0).back().fault, telemetry::GateFault::kNone);
+  EXPECT_EQ(rig.hold(8.0).back().sample.gate_fault, telemetry::GateFault::kNone);
 }
 
 TEST(Servo, NeverAllocates) {
@@ -153,7 +153,7 @@ TEST(Servo, MakesTheSameOfTheSame) {
     rig.move_to(30.0, 25.0);
     return rig.device.written;
   };
-  const haptics::Wrench first = run(), second = run();
+  const Wrench first = run(), second = run();
   EXPECT_EQ(first.force_n, second.force_n);
   EXPECT_EQ(first.torque_nmm, second.torque_nmm);
 }
@@ -194,7 +194,7 @@ TEST(Servo, BeginsAnewWhereTheNeedleIsPut) {
   rig.device.reading.X_DS = Pose(X_DS_put.R(), X_DS_put.p() + Vec3(3.0, 0.0, 0.0));
   for (int i = 0; i < 100; ++i) rig.step();
   link::HandTarget put;
-  put.X_PN = rig.scene.scene->X_PD * X_DS_put * rig.scene.scene->X_SN;
+  put.X_PN = rig.scene.scene->X_PW * X_DS_put * rig.scene.scene->X_SN;
   put.is_placed = put.is_rigid = true;
   rig.input.hand = put;
   rig.step();
@@ -204,7 +204,7 @@ TEST(Servo, BeginsAnewWhereTheNeedleIsPut) {
   std::vector<ServoRecord> records;
   for (int i = 0; i < 1000; ++i) records.push_back(rig.step());
   EXPECT_EQ(rig.servo.mode(), telemetry::GateMode::kOn);
-  EXPECT_EQ(records.back().fault, telemetry::GateFault::kNone);
+  EXPECT_EQ(records.back().sample.gate_fault, telemetry::GateFault::kNone);
   EXPECT_LT(records.back().sample.f_constraint_n.norm(), 0.05);
   EXPECT_NEAR(records.back().sample.depth_mm, 20.0, 0.1);
 }
@@ -232,7 +232,8 @@ TEST(Servo, LatchesAFaultAfterALongHoleInTimeAndTakesAShortOne) {
     const auto records = rig.hold(1.0);
     EXPECT_TRUE(records.back().written_D.force_n.allFinite());
     EXPECT_LE(rig.largest_rise_n, haptics::GateParams{}.slew_n_per_s * rig.input.dt_s + 1e-9);
-    EXPECT_EQ(records.back().fault, hole_s > 1.0 ? telemetry::GateFault::kLoopStalled : telemetry::GateFault::kNone);
+    EXPECT_EQ(records.back().sample.gate_fault,
+              hole_s > 1.0 ? telemetry::GateFault::kLoopStalled : telemetry::GateFault::kNone);
   }
 }
 
@@ -244,11 +245,12 @@ TEST(Servo, CallsADeviceSilentOnlyForTimeInWhichItsOwnLoopRan) {
     const double before_s = rig.input.now_s;
     rig.device.reading.status = devices::DeviceStatus::kRepeated;
     rig.input.dt_s = 0.025;  // the driver, delayed by the same machine, has brought nothing yet
-    EXPECT_EQ(rig.step().fault, telemetry::GateFault::kNone);
+    EXPECT_EQ(rig.step().sample.gate_fault, telemetry::GateFault::kNone);
     rig.input.dt_s = 0.001;
     if (is_back) rig.device.reading.status = devices::DeviceStatus::kFresh;
     const auto records = rig.hold(0.1);
-    const auto fault = std::ranges::find(records, telemetry::GateFault::kDeviceSilent, &ServoRecord::fault);
+    const auto fault = std::ranges::find(records, telemetry::GateFault::kDeviceSilent,
+                                         [](const ServoRecord& record) { return record.sample.gate_fault; });
     if (is_back) {
       EXPECT_EQ(fault, records.end());
     } else {
@@ -296,11 +298,11 @@ TEST(Servo, WeakensTheCouplingOfASlowLoopAtOnce) {
     EXPECT_LT(second.written_D.force_n.norm(), 0.7 * before_n);
     double slow_s = 0.018;
     ServoRecord record = second;
-    while (record.fault == telemetry::GateFault::kNone && slow_s < 1.0) {
+    while (record.sample.gate_fault == telemetry::GateFault::kNone && slow_s < 1.0) {
       record = rig.step();
       slow_s += rig.input.dt_s;
     }
-    EXPECT_EQ(record.fault, telemetry::GateFault::kLoopSlow);
+    EXPECT_EQ(record.sample.gate_fault, telemetry::GateFault::kLoopSlow);
     EXPECT_LE(slow_s, 0.055) << "50 ms, and the period in which they end";
   }
 }
@@ -314,7 +316,7 @@ TEST(Servo, ExcusesSingleHolesOfABusyMachine) {
     const ServoRecord record = rig.step();
     EXPECT_EQ(record.sample.coupling_share, 1.0) << hole_s;
     rig.input.dt_s = 0.001;
-    EXPECT_EQ(rig.hold(0.1).back().fault, telemetry::GateFault::kNone) << hole_s;
+    EXPECT_EQ(rig.hold(0.1).back().sample.gate_fault, telemetry::GateFault::kNone) << hole_s;
   }
 }
 
@@ -332,12 +334,12 @@ TEST(Servo, LatchesAtOnceOnAJumpThatNoHandMakes) {
       const Pose X_DS = needle_at_depth(rig.depth);
       rig.device.reading.X_DS = Pose(X_DS.R(), X_DS.p() + Vec3((i / 20) % 2 == 0 ? jump_mm : 0.0, 0.0, 0.0));
       record = rig.step();
-      if (record.fault == telemetry::GateFault::kNone) ++periods;
+      if (record.sample.gate_fault == telemetry::GateFault::kNone) ++periods;
       if (i == 25) {
         EXPECT_EQ(rig.last_n, 0.0);
       }
     }
-    EXPECT_EQ(record.fault, telemetry::GateFault::kImpossibleMotion) << jump_mm;
+    EXPECT_EQ(record.sample.gate_fault, telemetry::GateFault::kImpossibleMotion) << jump_mm;
     EXPECT_EQ(periods, 0) << "in the very period";
     EXPECT_LE(rig.most_n, before_n) << "no brake is pressed for it";
     EXPECT_EQ(rig.last_n, 0.0);

@@ -25,7 +25,7 @@ class BlockingDevice final : public devices::HapticDevice {
     reading.X_DS = testing::needle_at_depth(-10.0);
     return reading;
   }
-  bool write(const haptics::Wrench& wrench_D) noexcept override {
+  bool write(const Wrench& wrench_D) noexcept override {
     ++writes;
     while (is_blocked) std::this_thread::yield();
     force_n = wrench_D.force_n.norm();

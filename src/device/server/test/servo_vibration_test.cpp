@@ -38,8 +38,8 @@ Outcome run(const ServoScene& scene, const haptics::DevicePreset& preset, const 
     input.hand->is_placed = input.now_s < 0.0015;
     const ServoRecord record = servo.step(input);
     const double written_n = record.written_D.force_n.norm();
-    if (record.fault != telemetry::GateFault::kNone && outcome.fault == telemetry::GateFault::kNone) {
-      outcome.fault = record.fault;
+    if (record.sample.gate_fault != telemetry::GateFault::kNone && outcome.fault == telemetry::GateFault::kNone) {
+      outcome.fault = record.sample.gate_fault;
       outcome.fault_s = input.now_s;
     }
     if (outcome.fault == telemetry::GateFault::kNone) {

@@ -95,7 +95,7 @@ class TiltedDevice final : public devices::HapticDevice {
     reading.X_DS = Pose(R_, Vec3::Zero()) * reading.X_DS;
     return reading;
   }
-  bool write(const haptics::Wrench& wrench) noexcept override {
+  bool write(const Wrench& wrench) noexcept override {
     return device_.write({R_.transpose() * wrench.force_n, R_.transpose() * wrench.torque_nmm});
   }
   void hold(const devices::DeviceHand& hand) noexcept override { device_.hold(hand); }
@@ -132,7 +132,7 @@ double drift_mm(const haptics::DevicePreset& compensated, const SimulatedDeviceP
   const auto run = [&](double run_s) {
     for (const double end_s = input.now_s + run_s; input.now_s < end_s;) {
       input.now_s += kPeriod_s;
-      EXPECT_EQ(servo.step(input).fault, telemetry::GateFault::kNone);
+      EXPECT_EQ(servo.step(input).sample.gate_fault, telemetry::GateFault::kNone);
     }
   };
   run(1.5);  // past the safe start

@@ -65,7 +65,7 @@ class ApproachingPatient {
   const ServoScene* at(const Pose& X_WS, double depth_mm) {
     auto scene = std::make_shared<haptics::HapticScene>(*scene_.scene);
     const Pose X_WN = X_WS * scene->X_SN;
-    scene->X_PD = needle_pose({0.0, 0.0, depth_mm}, Vec3::UnitZ()) * X_WN.inverse();
+    scene->X_PW = needle_pose({0.0, 0.0, depth_mm}, Vec3::UnitZ()) * X_WN.inverse();
     scene_ = {std::move(scene), scene_.number + 1, true};
     return &scene_;
   }
@@ -130,8 +130,8 @@ void run_trial(const VendorFault& expected, Trial& trial) {
           preset.sensed_dof == 6 ? record.X_DS : Pose(rotation_between(Vec3::UnitZ(), -Vec3::UnitZ()), record.X_DS.p());
       input.scene = patient.at(params.workspace.X_WD * X_WS, depth_mm);
       record = servo.step(input);
-      trial.fault = record.fault;
-      if (trial.broken_s == 0.0 && record.fault != telemetry::GateFault::kNone) break;
+      trial.fault = record.sample.gate_fault;
+      if (trial.broken_s == 0.0 && record.sample.gate_fault != telemetry::GateFault::kNone) break;
       const double written_n = record.written_D.force_n.norm();
       trial.most_n = std::max(trial.most_n, written_n);
       if (written_n > 0.0) trial.last_force_s = time_s;

@@ -61,24 +61,23 @@ const telemetry::TickSample& ClosedLoop::carry(const Vec3& tip_P, const Vec3& ax
 
 const telemetry::TickSample& ClosedLoop::run(const StylusHold& hold) noexcept {
   const StylusMotion motion = step_stylus(stylus_, params_, hold, acting_P_, scene_->gravity_P, dt_s_);
-  observer_.add({acting_P_.force_n - weight_P_.force_n, acting_P_.torque_nmm - weight_P_.torque_nmm}, motion.v_P,
-                motion.w_P, dt_s_);
+  observer_.add(acting_P_ - weight_P_, motion.v_P, motion.w_P, dt_s_);
   return sense();
 }
 
 const telemetry::TickSample& ClosedLoop::sense() noexcept {
   time_s_ += dt_s_;
-  Pose X_DS = quantise(scene_->X_PD.inverse() * stylus_.X_PS, encoder_);
-  if (!senses_rotation_) X_DS = Pose(scene_->X_PD.R().transpose() * R_PS_told_, X_DS.p());
+  Pose X_WS = quantise(scene_->X_PW.inverse() * stylus_.X_PS, encoder_);
+  if (!senses_rotation_) X_WS = Pose(scene_->X_PW.R().transpose() * R_PS_told_, X_WS.p());
   HapticInput input;
   input.time_s = time_s_;
   input.dt_s = dt_s_;
-  input.tool = tool_pose(*scene_, X_DS);
+  input.tool = tool_pose(*scene_, X_WS);
   const HapticOutput output = tick(state_, input, *scene_);
   sample_ = output.sample;
-  const Mat3& R_PD = scene_->X_PD.R();
-  acting_P_ = std::exchange(wrench_P_, {R_PD * output.f_D, R_PD * output.tau_D});
-  weight_P_ = std::exchange(next_weight_P_, {R_PD * output.weight_D.force_n, R_PD * output.weight_D.torque_nmm});
+  const Mat3& R_PW = scene_->X_PW.R();
+  acting_P_ = std::exchange(wrench_P_, R_PW * output.total_W);
+  weight_P_ = std::exchange(next_weight_P_, R_PW * output.weight_W);
   return sample_;
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "geometry/vec.h"
-#include "haptics/insertion/path_constraint.h"
+#include "geometry/wrench.h"
 
 namespace trocar::haptics {
 

@@ -101,8 +101,8 @@ PassivityOutcome run_passivity_trial(const HapticScene& scene, const PassivityTr
     input.tool = telemetry::to_tool_pose(X_PTool);
     const HapticOutput output = tick(*state, input, scene);
     const Wrench wrench = law_wrench(output.sample);
-    const Mat3& R_PD = scene.X_PD.R();
-    const Wrench limited{R_PD * output.f_D, R_PD * output.tau_D};
+    const Mat3& R_PW = scene.X_PW.R();
+    const Wrench limited = R_PW * output.total_W;
     if (n == 0) {
       outcome.is_free_at_start = is_free(wrench);
       law.start(wrench);

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "geometry/pose.h"
-#include "haptics/insertion/path_constraint.h"
+#include "geometry/wrench.h"
 
 namespace trocar::haptics {
 

@@ -2,9 +2,9 @@
 
 #include <array>
 
+#include "geometry/wrench.h"
 #include "haptics/contact/contact_column.h"
 #include "haptics/contact/contact_face.h"
-#include "haptics/insertion/path_constraint.h"
 #include "haptics/patient_now.h"
 
 namespace trocar::haptics {

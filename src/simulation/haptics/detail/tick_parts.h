@@ -34,9 +34,9 @@ inline Wrench weight_compensation(const HapticScene& scene, const Mat3& R_PS) no
 }
 
 /// Last step of every tick. Limits `device_f_n`, the torque and its part about the stylus to the device's peaks and
-/// adds limit events. Transforms both, and the weight's part of them, to D.
-inline void limit_to_device(HapticOutput& output, const Wrench& weight_P, const Vec3& stylus_axis_P, EventList& events,
-                            const HapticScene& scene) noexcept {
+/// adds limit events. Rotates them, and their parts of tissue and weight, to W.
+inline void limit_to_device(HapticOutput& output, const Wrench& tissue_P, const Wrench& weight_P,
+                            const Vec3& stylus_axis_P, EventList& events, const HapticScene& scene) noexcept {
   telemetry::TickSample& sample = output.sample;
   Vec3 torque_P = sample.tau_nmm;
   const bool force_limited = clamp_norm(sample.device_f_n, scene.device.peak_force_n);
@@ -52,13 +52,14 @@ inline void limit_to_device(HapticOutput& output, const Wrench& weight_P, const 
   if (torque_limited) events.add(telemetry::LimitReason::kTorqueClamped);
   sample.limited = force_limited || torque_limited;
 
-  const Mat3 R_DP = scene.X_PD.R().transpose();
-  output.f_D = R_DP * sample.device_f_n;
+  const Mat3 R_WP = scene.X_PW.R().transpose();
   if (!has_torque) torque_P.setZero();
   sample.device_tau_nmm = torque_P;
-  output.tau_D = R_DP * torque_P;
-  output.weight_D.force_n = R_DP * weight_P.force_n;
-  if (has_torque) output.weight_D.torque_nmm = R_DP * weight_P.torque_nmm;
+  output.total_W = R_WP * Wrench{sample.device_f_n, torque_P};
+  output.weight_W = R_WP * Wrench{weight_P.force_n, has_torque ? weight_P.torque_nmm : Vec3(Vec3::Zero())};
+  output.tissue_W = R_WP * tissue_P;
+  if (force_limited) output.tissue_W.force_n = output.total_W.force_n - output.weight_W.force_n;
+  if (torque_limited) output.tissue_W.torque_nmm = output.total_W.torque_nmm - output.weight_W.torque_nmm;
 }
 
 }  // namespace trocar::haptics

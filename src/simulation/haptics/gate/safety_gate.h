@@ -3,8 +3,8 @@
 #include <cstdint>
 
 #include "core/result.h"
-#include "haptics/haptic_scene.h"               // CouplingParams
-#include "haptics/insertion/path_constraint.h"  // Wrench
+#include "geometry/wrench.h"
+#include "haptics/haptic_scene.h"  // CouplingParams
 #include "telemetry/gate_state.h"
 
 namespace trocar::haptics {

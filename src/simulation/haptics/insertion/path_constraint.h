@@ -1,6 +1,6 @@
 #pragma once
 
-#include "geometry/vec.h"
+#include "geometry/wrench.h"
 
 namespace trocar::haptics {
 
@@ -20,12 +20,6 @@ inline constexpr double kMostPathTurning_nmm_per_rad = 1500.0;
 
 /// The parameters with theta0 enlarged until n0/theta0 is at most kMostPathTurning_nmm_per_rad; n0 stays as it is.
 PathConstraintParams renderable(PathConstraintParams params) noexcept;
-
-/// Force and torque on the needle in P.
-struct Wrench {
-  Vec3 force_n = Vec3::Zero();
-  Vec3 torque_nmm = Vec3::Zero();
-};
 
 /// The path: P on the resting skin, and the unit direction u.
 struct PathLine {

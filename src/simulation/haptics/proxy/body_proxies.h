@@ -2,9 +2,9 @@
 
 #include <array>
 
+#include "geometry/wrench.h"
 #include "haptics/haptic_scene.h"
 #include "haptics/insertion/channel.h"
-#include "haptics/insertion/path_constraint.h"
 #include "haptics/proxy/needle_beam.h"
 
 namespace trocar::haptics {

@@ -145,9 +145,9 @@ TEST(Tick, StaysFiniteWhateverComesIn) {
     }
     input.tool = telemetry::to_tool_pose(needle_pose(tip, Vec3(random.uniform(-1, 1), random.uniform(-1, 1), 1.0)));
     const haptics::HapticOutput output = haptics::tick(state, input, *scene);
-    ASSERT_TRUE(output.f_D.allFinite() && output.tau_D.allFinite());
+    ASSERT_TRUE(output.total_W.force_n.allFinite() && output.total_W.torque_nmm.allFinite());
     ASSERT_TRUE(output.sample.tip_mm.allFinite() && output.sample.f_total_n.allFinite());
-    ASSERT_LE(output.f_D.norm(), 37.5 + 1e-9);
+    ASSERT_LE(output.total_W.force_n.norm(), 37.5 + 1e-9);
     rejected += output.sample.events[0].kind == telemetry::EventKind::kLimit ? 1 : 0;
   }
   EXPECT_GT(rejected, 4000);
@@ -184,13 +184,13 @@ TEST(Tick, GivesNoForceForAnAbsurdlySmallPeriod) {
       for (int i = 0; i < 200; ++i) step(0.001, -1.0 + 0.02 * i);
       for (const double dt_s : kAbsurd_s) {
         const haptics::HapticOutput output = step(dt_s, 3.01);
-        EXPECT_EQ(output.f_D.norm(), 0.0) << dt_s;
-        EXPECT_EQ(output.tau_D.norm(), 0.0) << dt_s;
+        EXPECT_EQ(output.total_W.force_n.norm(), 0.0) << dt_s;
+        EXPECT_EQ(output.total_W.torque_nmm.norm(), 0.0) << dt_s;
         EXPECT_TRUE(is_rejected(output)) << dt_s;
       }
       for (const double dt_s : {haptics::kMinDt_s, 1e-5, 1e-4}) {
         const haptics::HapticOutput output = step(dt_s, 3.01);
-        EXPECT_TRUE(output.f_D.allFinite() && output.sample.f_total_n.allFinite()) << dt_s;
+        EXPECT_TRUE(output.total_W.force_n.allFinite() && output.sample.f_total_n.allFinite()) << dt_s;
         EXPECT_FALSE(is_rejected(output)) << dt_s;
       }
     }
@@ -205,7 +205,7 @@ TEST(Tick, ReplaysToTheSameBits) {
     for (int i = 0; i < 5000; ++i) {
       const Vec3 tip(0.1 * std::sin(0.01 * i), 0.0, -10.0 + 0.012 * i);
       sum += haptics::tick(state, {0.001 * i, 0.001, telemetry::to_tool_pose(needle_pose(tip, Vec3::UnitZ()))}, *scene)
-                 .f_D.z();
+                 .total_W.force_n.z();
     }
     return sum;
   };
@@ -229,7 +229,8 @@ TEST_P(ClosedLoop, ComesToRestInEveryTissue) {
       hand.anchor_P.z() = -5.0 + (depth + 5.0) * std::min(1.0, i / 2000.0);
       haptics::step_device(device, {GetParam(), 0.5}, hand, force_P, scene->gravity_P, 0.001);
       const Vec3 tip = (device.X_PN.p() / kCount_mm).array().round() * kCount_mm;
-      force_P = haptics::tick(state, {0.001 * i, 0.001, telemetry::to_tool_pose({device.X_PN.R(), tip})}, *scene).f_D;
+      force_P = haptics::tick(state, {0.001 * i, 0.001, telemetry::to_tool_pose({device.X_PN.R(), tip})}, *scene)
+                    .total_W.force_n;
       if (i < 5500) continue;
       low = std::min(low, device.X_PN.p().z());
       high = std::max(high, device.X_PN.p().z());
@@ -260,7 +261,7 @@ TEST(Tick, LimitsTheTorqueAboutTheStylusToItsOwnPeak) {
       const haptics::HapticOutput output =
           haptics::tick(state, {0.001 * i, 0.001, telemetry::to_tool_pose(Pose(R_PT, {0.0, 0.0, depth_mm}))}, **scene);
       const Vec3 stylus_P = (Pose(R_PT, Vec3::Zero()) * (*scene)->X_SN.inverse()).R().col(2);
-      roll_nmm = std::max(roll_nmm, std::abs(output.tau_D.dot(stylus_P)));
+      roll_nmm = std::max(roll_nmm, std::abs(output.total_W.torque_nmm.dot(stylus_P)));
     }
     if (most_nmm > 0.0)
       EXPECT_NEAR(roll_nmm, most_nmm, 1e-9);

@@ -239,7 +239,7 @@ TEST(Gamepad, ForceRumblesAndEndsWithTheWrites) {
   auto device = open_pad();
   ASSERT_NE(device, nullptr);
   const double force_n = (kRumbleFrom_n + kRumbleFull_n) / 2;
-  const haptics::Wrench wrench{Vec3(0.0, force_n, 0.0), Vec3::Zero()};
+  const Wrench wrench{Vec3(0.0, force_n, 0.0), Vec3::Zero()};
   const auto rumbles = [&] {
     EXPECT_TRUE(device->write(wrench));
     return pad.low() == 32767 && pad.high() == 32767;

@@ -143,7 +143,7 @@ TEST(PolledPointer, WithoutAThreadIsNotOpenedAndAReconnectIsRefused) {
     ASSERT_FALSE(refused);
     EXPECT_NE(refused.error().what.find("does not start"), std::string::npos);
     EXPECT_EQ((*device)->read(1.0).status, DeviceStatus::kDisconnected);
-    EXPECT_FALSE((*device)->write(haptics::Wrench{}));
+    EXPECT_FALSE((*device)->write(Wrench{}));
   }
   EXPECT_TRUE((*device)->reconnect());
   EXPECT_TRUE(testing::wait_until([&] { return (*device)->read(1.0).status == DeviceStatus::kFresh; }));

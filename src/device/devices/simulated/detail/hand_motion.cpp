@@ -30,7 +30,7 @@ bool is_valid(const DeviceHand& hand) noexcept {
          std::isfinite(hand.time_s);
 }
 
-bool is_valid(const haptics::Wrench& wrench) noexcept {
+bool is_valid(const Wrench& wrench) noexcept {
   return wrench.force_n.norm() <= kAbsurdForce_n && wrench.torque_nmm.norm() <= kAbsurdTorque_nmm;
 }
 

@@ -24,7 +24,7 @@ bool is_valid(const DeviceHand& hand) noexcept;
 
 /// True if a gate can have written the wrench: finite and within kAbsurdForce_n and kAbsurdTorque_nmm, which are more
 /// than a hundred times the peaks of any device in data/devices.toml. Real-time safe.
-bool is_valid(const haptics::Wrench& wrench) noexcept;
+bool is_valid(const Wrench& wrench) noexcept;
 inline constexpr double kAbsurdForce_n = 2e4;
 inline constexpr double kAbsurdTorque_nmm = 5e5;
 

@@ -25,7 +25,7 @@ class Mover final : public HapticDevice {
     reading.X_DS = Pose::translation({static_cast<double>(reads_++), 0.0, 0.0});
     return reading;
   }
-  bool write(const haptics::Wrench& wrench_D) noexcept override {
+  bool write(const Wrench& wrench_D) noexcept override {
     written = wrench_D;
     ++writes;
     return true;
@@ -37,7 +37,7 @@ class Mover final : public HapticDevice {
     return {};
   }
 
-  haptics::Wrench written;
+  Wrench written;
   int writes = 0, holds = 0, reconnects = 0;
   bool is_gone = false;
 

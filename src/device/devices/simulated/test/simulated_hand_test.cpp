@@ -21,7 +21,7 @@ TEST(SimulatedHand, HeldAgainstAForceGivesWayAsTheHandsSpring) {
     DeviceReading reading;
     for (int i = 0; i < 2000; ++i) {
       hand.time_s = bench.time_s;
-      haptics::Wrench wrench = weight_compensation(preset, reading.X_DS);
+      Wrench wrench = weight_compensation(preset, reading.X_DS);
       wrench.force_n += Vec3(0.0, 0.0, 1.2);
       reading = bench.period(hand, wrench);
     }

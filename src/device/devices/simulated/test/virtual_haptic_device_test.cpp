@@ -51,7 +51,7 @@ TEST(ReleasedStylus, TickOfAServerCarriesTheStylus) {
     ASSERT_TRUE(made) << made.error().text();
     haptics::HapticScene scene = **made;
     // Down in D is down in P, and the needle is far above the skin.
-    scene.X_PD = Pose(rotation_between(-Vec3::UnitZ(), scene.gravity_P), -800.0 * scene.gravity_P);
+    scene.X_PW = Pose(rotation_between(-Vec3::UnitZ(), scene.gravity_P), -800.0 * scene.gravity_P);
     Bench bench(preset);
     DeviceReading reading =
         bench.period(placed_at(Pose(haptics::rotation_from_vector({2.0, 0.5, 0.0}), Vec3::Zero())), {});
@@ -61,7 +61,7 @@ TEST(ReleasedStylus, TickOfAServerCarriesTheStylus) {
       input.time_s = bench.time_s;
       input.tool = haptics::tool_pose(scene, reading.X_DS);
       const haptics::HapticOutput output = haptics::tick(state, input, scene);
-      reading = bench.period(DeviceHand{}, {output.f_D, output.tau_D});
+      reading = bench.period(DeviceHand{}, {output.total_W.force_n, output.total_W.torque_nmm});
     }
     const double sunk_mm = -bench.device.X_DS().p().z();
     if (is_carried) {
@@ -97,7 +97,7 @@ TEST(VirtualHapticDevice, WrenchActsLateByItsDelay) {
     preset.capability.stylus_weight_n = 0.0;
     Bench bench(preset, params);
     bench.period(placed_at(Pose()), {});
-    const haptics::Wrench push{{2.0, 0.0, 0.0}, Vec3::Zero()};
+    const Wrench push{{2.0, 0.0, 0.0}, Vec3::Zero()};
     int waited = 0;
     bench.period(std::nullopt, push);
     while (!(bench.device.X_DS().p().x() > 0.0) && waited < 20) {
@@ -168,7 +168,7 @@ TEST(VirtualHapticDevice, WithoutTorqueMotorsIgnoresTorque) {
     const haptics::DevicePreset preset = preset_of(name);
     Bench bench(preset);
     bench.period(placed_at(Pose()), {});
-    const haptics::Wrench twist{Vec3(0.0, 0.0, preset.capability.stylus_weight_n), {0.0, 0.0, 100.0}};
+    const Wrench twist{Vec3(0.0, 0.0, preset.capability.stylus_weight_n), {0.0, 0.0, 100.0}};
     for (int i = 0; i < 50; ++i) bench.period(DeviceHand{}, twist);
     const double turned = haptics::rotation_vector(bench.device.X_DS().R()).norm();
     EXPECT_EQ(turned > 0.1, preset.has_torque()) << name << " " << turned;

@@ -89,7 +89,7 @@ Status Connection::start(bool senses_rotation) {
   if (api_.set_gravity_compensation(kOn, id_) < kNoError) return failed("cannot switch on its gravity compensation");
   if (sense(sample_) == Sensed::kFailed) return failed("cannot read its pose");
   if (api_.enable_force(kOn, id_) < kNoError) return failed("cannot switch on its motors");
-  if (!apply(haptics::Wrench{})) return failed("it does not accept forces");
+  if (!apply(Wrench{})) return failed("it does not accept forces");
   exchange_.emplace(sample_);
   TROCAR_TRY(thread_, start_thread("device", [this] { pace_->run(is_stopping_, *this); }));
   return {};
@@ -100,7 +100,7 @@ Connection::~Connection() {
   is_stopping_.store(true);
   pace_->wake();
   if (thread_.joinable()) thread_.join();
-  if (exchange_) apply(haptics::Wrench{});
+  if (exchange_) apply(Wrench{});
   api_.enable_force(kOff, id_);
   api_.close(id_);
 }
@@ -108,9 +108,9 @@ Connection::~Connection() {
 void Connection::serve(double now_s) noexcept {
   if (sample_.is_lost) return;
   const Sensed sensed = sense(sample_);
-  const haptics::Wrench wrench_D = exchange_->wanted(now_s);
+  const Wrench wrench_D = exchange_->wanted(now_s);
   // The library converts forces to motor torques with the pose: no force without a finite pose.
-  const bool is_applied = apply(sample_.X_DS.is_finite() ? wrench_D : haptics::Wrench{});
+  const bool is_applied = apply(sample_.X_DS.is_finite() ? wrench_D : Wrench{});
   failures_ = sensed != Sensed::kFailed && is_applied ? 0 : failures_ + 1;
   if (!is_applied) sample_.is_force_refused = true;
   if (failures_ >= kFailuresToLose) {
@@ -140,7 +140,7 @@ Connection::Sensed Connection::sense(ServoSample& sample) noexcept {
   return answer == kTimeGuard ? Sensed::kRepeated : Sensed::kNew;
 }
 
-bool Connection::apply(const haptics::Wrench& wrench_D) noexcept {
+bool Connection::apply(const Wrench& wrench_D) noexcept {
   const Vec3 f = R_DV().transpose() * wrench_D.force_n;
   const Vec3 t = R_DV().transpose() * wrench_D.torque_nmm / kNmmPerNm;
   return api_.set_wrench(f.x(), f.y(), f.z(), t.x(), t.y(), t.z(), 0.0, id_) >= kNoError;

@@ -46,7 +46,7 @@ class Connection final : private ServoBody {
   void serve(double now_s) noexcept override;
   enum class Sensed { kNew, kRepeated, kFailed };
   Sensed sense(ServoSample& sample) noexcept;
-  bool apply(const haptics::Wrench& wrench_D) noexcept;
+  bool apply(const Wrench& wrench_D) noexcept;
   bool has_force() noexcept;
 
   const Api api_;

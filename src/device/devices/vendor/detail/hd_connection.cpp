@@ -170,7 +170,7 @@ unsigned int Connection::on_first_period(void* connection) {
   self.first_ = self.sense();
   if (self.calibration_ == kCalibrationOk) {
     self.api_.enable(kForceOutput);
-    self.apply(haptics::Wrench{});
+    self.apply(Wrench{});
   }
   self.api_.end_frame(self.handle_);
   return kCallbackDone;
@@ -199,9 +199,9 @@ unsigned int Connection::on_closing(void* connection) {
 void Connection::serve() noexcept {
   api_.begin_frame(handle_);
   ServoSample sample = sense();
-  const haptics::Wrench wrench_D = exchange_->wanted(clock_s_());
+  const Wrench wrench_D = exchange_->wanted(clock_s_());
   // The driver converts forces to motor torques with the pose: no force without a finite pose.
-  apply(sample.X_DS.is_finite() ? wrench_D : haptics::Wrench{});
+  apply(sample.X_DS.is_finite() ? wrench_D : Wrench{});
   api_.end_frame(handle_);
   take_errors(sample);
   exchange_->sensed(sample);
@@ -224,7 +224,7 @@ ServoSample Connection::sense() noexcept {
   return sample;
 }
 
-void Connection::apply(const haptics::Wrench& wrench_D) noexcept {
+void Connection::apply(const Wrench& wrench_D) noexcept {
   const Vec3 force_V = R_DV().transpose() * wrench_D.force_n;
   api_.set_doublev(kCurrentForce, force_V.data());
   if (description_.output_dof <= 3) return;

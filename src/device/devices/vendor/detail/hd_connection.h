@@ -54,7 +54,7 @@ class Connection {
   static unsigned int on_calibration_update(void* connection);
   void serve() noexcept;
   ServoSample sense() noexcept;
-  void apply(const haptics::Wrench& wrench_D) noexcept;
+  void apply(const Wrench& wrench_D) noexcept;
   void take_errors(ServoSample& sample) noexcept;
 
   const Api api_;

@@ -53,9 +53,9 @@ class ServoExchange {
   /// For the real-time thread. Limits force and torque to the peaks of the device; a peak torque of zero removes the
   /// torque. Returns false if the wrench is invalid (zero is sent instead), the vendor's safety functions refuse
   /// forces, or the device is disconnected.
-  bool write(const haptics::Wrench& wrench_D, const haptics::DeviceCapability& capability) noexcept {
+  bool write(const Wrench& wrench_D, const haptics::DeviceCapability& capability) noexcept {
     const bool is_taken = is_valid(wrench_D);
-    haptics::Wrench sent;
+    Wrench sent;
     if (is_taken) {
       sent.force_n = clamped_norm(wrench_D.force_n, capability.peak_force_n);
       sent.torque_nmm = clamped_norm(wrench_D.torque_nmm, capability.peak_torque_nmm);
@@ -65,13 +65,13 @@ class ServoExchange {
   }
 
   /// For the servo loop: the present wrench for the motors.
-  haptics::Wrench wanted(double now_s) noexcept {
+  Wrench wanted(double now_s) noexcept {
     if (wrenches_.update()) {
       written_s_ = now_s;
       has_written_ = true;
     }
     const bool is_old = !has_written_ || !(now_s - written_s_ <= kOldestWrench_s);
-    return is_old || is_closing_.load(std::memory_order_acquire) ? haptics::Wrench{} : wrenches_.value();
+    return is_old || is_closing_.load(std::memory_order_acquire) ? Wrench{} : wrenches_.value();
   }
   /// For the servo loop: publishes a sample.
   void sensed(const ServoSample& sample) noexcept { samples_.write(sample); }
@@ -92,7 +92,7 @@ class ServoExchange {
   bool has_written_ = false;
 
   realtime::TripleBuffer<ServoSample> samples_;
-  realtime::TripleBuffer<haptics::Wrench> wrenches_;
+  realtime::TripleBuffer<Wrench> wrenches_;
   std::atomic<bool> is_closing_{false};
   std::atomic<bool> is_lost_{false};
 };

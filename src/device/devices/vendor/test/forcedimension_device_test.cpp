@@ -230,7 +230,7 @@ TEST_F(ForceDimension, UnpluggedIsDisconnectedUntilReconnected) {
   ASSERT_FALSE(gone);
   EXPECT_NE(gone.error().text().find("no device found"), std::string::npos) << gone.error().text();
   EXPECT_EQ(device->read(now_s).status, DeviceStatus::kDisconnected);
-  EXPECT_FALSE(device->write(haptics::Wrench{}));
+  EXPECT_FALSE(device->write(Wrench{}));
 
   vendor->set_present(true);
   const Status back = device->reconnect();

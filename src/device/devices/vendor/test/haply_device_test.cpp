@@ -48,7 +48,7 @@ std::string error_of(HaplyMood mood) {
   return device ? "opened" : device.error().text();
 }
 
-haptics::Wrench pull(double x, double y, double z) {
+Wrench pull(double x, double y, double z) {
   return {Vec3(x, y, z), Vec3::Zero()};
 }
 

@@ -255,9 +255,9 @@ TEST_F(OpenHaptics, ForceErrorIsARefusedWrite) {
   for (const hd::Enum code : {hd::kWarmMotors, hd::kExceededMaxForce, hd::kForceError}) {
     vendor->push_error(code);
     EXPECT_EQ(read_after(1).status, DeviceStatus::kFresh);
-    EXPECT_FALSE(device->write(haptics::Wrench{}));
+    EXPECT_FALSE(device->write(Wrench{}));
     EXPECT_EQ(read_after(1).status, DeviceStatus::kFresh);
-    EXPECT_TRUE(device->write(haptics::Wrench{}));
+    EXPECT_TRUE(device->write(Wrench{}));
   }
 }
 
@@ -271,7 +271,7 @@ TEST_F(OpenHaptics, UnpluggedIsDisconnectedUntilReconnected) {
   ASSERT_FALSE(gone);
   EXPECT_NE(gone.error().text().find("Communication error"), std::string::npos) << gone.error().text();
   EXPECT_EQ(device->read(now_s).status, DeviceStatus::kDisconnected);
-  EXPECT_FALSE(device->write(haptics::Wrench{}));
+  EXPECT_FALSE(device->write(Wrench{}));
 
   vendor->set_present(true);
   const Status back = device->reconnect();

@@ -92,9 +92,9 @@ TEST(Contact, SteadyForceDoesNotDependOnTheTickRate) {
       hand.go({1.0, 0.0, 7.0}, 0.1, 0.3, 0.0);
       return hand.go({2.0, 1.0, 7.0}, 0.1, 0.3, 0.4).wrench_P;
     };
-    const haptics::Wrench at_1 = at(1000.0);
+    const Wrench at_1 = at(1000.0);
     for (const double rate : {2000.0, 4000.0}) {
-      const haptics::Wrench other = at(rate);
+      const Wrench other = at(rate);
       EXPECT_LT((other.force_n - at_1.force_n).norm(), 0.005 * at_1.force_n.norm());
       EXPECT_LT((other.torque_nmm - at_1.torque_nmm).norm(), 0.005 * at_1.torque_nmm.norm());
     }
@@ -129,7 +129,7 @@ TEST(Contact, TorqueIsThatOfThePointsForces) {
   // Half of the face over a plate of bone: the force acts there.
   const auto plate = [](const Vec3& p) { return p.x() > 0.0 && p.z() > 6.0 ? kBone : kFat; };
   Hand hand(make_face_scene(haptics::Tool::kTransducer, plate));
-  const haptics::Wrench wrench = hand.go({0, 0, 8.0}, 0.0, 0.5, 2.0).wrench_P;
+  const Wrench wrench = hand.go({0, 0, 8.0}, 0.0, 0.5, 2.0).wrench_P;
   const double lever_mm = wrench.torque_nmm.y() / -wrench.force_n.z();  // M = x f: M_y = -x f_z
   EXPECT_GT(lever_mm, 2.0);
   EXPECT_LT(lever_mm, 30.0);
@@ -154,7 +154,7 @@ TEST(Contact, StaysInTheFrictionConeAndSlidesAtItsEdge) {
     hand.go({-10.0, 0, -2.0});
     hand.go({-10.0, 0, 5.0});
     const double mu = hand.scene().face.friction_mu;
-    const haptics::Wrench little = hand.go({-9.98, 0, 5.0}).wrench_P;  // sticks
+    const Wrench little = hand.go({-9.98, 0, 5.0}).wrench_P;  // sticks
     EXPECT_LT(little.force_n.x(), 0.0);
     EXPECT_LT(std::abs(little.force_n.x()), 0.9 * mu * std::abs(little.force_n.z()));
     const haptics::ContactStep sliding = hand.go({10.0, 0, 5.0}, 0.0, 1.0, 0.0);
@@ -248,10 +248,10 @@ TEST(ContactTick, NeverAllocatesAndStaysFiniteWhateverComesIn) {
       const AllocationGuard guard;
       const haptics::HapticOutput output = haptics::tick(state, input, *scene);
       allocations += guard.count();
-      ASSERT_TRUE(output.f_D.allFinite() && output.tau_D.allFinite());
+      ASSERT_TRUE(output.total_W.force_n.allFinite() && output.total_W.torque_nmm.allFinite());
       ASSERT_TRUE(output.sample.tip_mm.allFinite() && output.sample.f_total_n.allFinite());
-      ASSERT_LE(output.f_D.norm(), 37.5 + 1e-9);
-      ASSERT_LE(output.tau_D.norm(), 515.0 + 1e-9);
+      ASSERT_LE(output.total_W.force_n.norm(), 37.5 + 1e-9);
+      ASSERT_LE(output.total_W.torque_nmm.norm(), 515.0 + 1e-9);
       rejected += output.sample.events[0].kind == telemetry::EventKind::kLimit ? 1 : 0;
     }
     EXPECT_EQ(allocations, 0u);
@@ -263,7 +263,7 @@ TEST(ContactTick, RecordsTheToolAndComposesTheTotal) {
   const auto scene = make_face_scene(haptics::Tool::kTransducer, all_fat);
   haptics::HapticState state;
   telemetry::TickSample sample;
-  haptics::Wrench contact;
+  Wrench contact;
   haptics::ContactState own;
   for (int i = 0; i < 1000; ++i) {
     const Pose X_PT = face_down({0, 0, std::min(8.0, -2.0 + 0.02 * i)}, 0.1);
@@ -321,8 +321,8 @@ TEST_P(RestingOnSkin, ComesToRestAndStays) {
     for (int i = 0; i < 5000; ++i) {
       haptics::step_device(device, {GetParam().mass_kg, weight_n}, hand, force_P, Vec3::UnitZ(), kDt_s);
       const Vec3 seen = (device.X_PN.p() / kCount_mm).array().round() * kCount_mm;
-      force_P =
-          haptics::tick(state, {kDt_s * i, kDt_s, telemetry::to_tool_pose({hand.R_PN, seen}), true, {}}, *scene).f_D;
+      force_P = haptics::tick(state, {kDt_s * i, kDt_s, telemetry::to_tool_pose({hand.R_PN, seen}), true, {}}, *scene)
+                    .total_W.force_n;
       if (i < 4000) continue;
       low = low.cwiseMin(device.X_PN.p());
       high = high.cwiseMax(device.X_PN.p());

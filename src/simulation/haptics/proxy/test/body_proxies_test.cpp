@@ -69,7 +69,7 @@ Pose displaced(const World& world, double tip_mm, const Vec3& shift, const Vec3&
 Vector6 wrench_at(const World& world, double tip_mm, const Vector6& move, const Vec3& tip_force = Vec3::Zero()) {
   const Pose X_PN = displaced(world, tip_mm, move.head<3>(), move.tail<3>());
   const haptics::HeldShaft shaft = haptics::hold_shaft(world.channel, *world.scene, X_PN, tip_mm, true);
-  const haptics::Wrench wrench = haptics::react(shaft, *world.scene, tip_force).wrench_P;
+  const Wrench wrench = haptics::react(shaft, *world.scene, tip_force).wrench_P;
   return (Vector6() << wrench.force_n, wrench.torque_nmm).finished();
 }
 
@@ -236,7 +236,7 @@ TEST(HoldShaft, ComesToRestOnABareStylusWithATickOfDelay) {
         const haptics::VirtualStylusParams stylus{0.045, 50.0, 0.0, 0.0};
         haptics::VirtualStylusState state;
         state.X_PS = displaced(world, tip_mm, {1, 0.5, 0}, {0.02, -0.01, 0}) * world.scene->X_SN.inverse();
-        haptics::Wrench told, acting;
+        Wrench told, acting;
         double early = 0.0, late = 0.0;
         for (int i = 0; i < 2000; ++i) {
           const Vec3 axis = state.X_PS.R().col(2);
@@ -321,8 +321,8 @@ TEST(React, LetsABedThatHoldsTheTipKeepItsForceFromTheHand) {
   EXPECT_LT(shaft.share, 0.5);
   haptics::HeldShaft whole = shaft;
   whole.share = 1.0;
-  const haptics::Wrench all = haptics::react(whole, *world.scene, {1, 0, 0}).wrench_P;
-  const haptics::Wrench told = haptics::react(shaft, *world.scene, {1, 0, 0}).wrench_P;
+  const Wrench all = haptics::react(whole, *world.scene, {1, 0, 0}).wrench_P;
+  const Wrench told = haptics::react(shaft, *world.scene, {1, 0, 0}).wrench_P;
   EXPECT_NEAR((told.force_n - shaft.share * all.force_n).norm(), 0.0, 1e-12);
   EXPECT_NEAR((told.torque_nmm - shaft.share * all.torque_nmm).norm(), 0.0, 1e-10);
 }
